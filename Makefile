@@ -1,0 +1,110 @@
+# The front door. Every target installs what it needs, builds what it needs in build/, and keeps it. `make help` lists them.
+SHELL := /bin/bash
+.SHELLFLAGS := -eu -o pipefail -c
+.DEFAULT_GOAL := help
+.DELETE_ON_ERROR:
+MAKEFLAGS += --no-print-directory
+
+empty :=
+space := $(empty) $(empty)
+ifneq (,$(findstring $(space),$(CURDIR)))
+  $(error the checkout's path "$(CURDIR)" contains a space, which Verilator's makefiles cannot handle: move it)
+endif
+
+# Variables of `make sim` and their defaults; empty: chosen by raypool.
+CONFIG    ?= 8w8c
+CUS       ?= 1
+SCENE     ?= room
+SIZE      ?= 320x320
+DEPTH     ?= 3
+ENGINE    ?= lockstep
+TRAVERSER ?= static
+VIEW      ?=
+DETAIL    ?=
+OUT       ?=
+WAVES     ?= 0
+# `make run`
+KERNEL    ?= saxpy
+ARGS      ?=
+# `make cosim`
+PROGRAMS  ?= 1000
+SEED      ?= 1
+# Recipes read these from the environment, so that a value with spaces or quotes stays one word.
+export CONFIG CUS SCENE SIZE DEPTH ENGINE TRAVERSER VIEW DETAIL OUT WAVES KERNEL PROGRAMS SEED
+
+BUILD := build
+RAYPOOL := $(BUILD)/raypool
+# One build at a time in a checkout: a second make waits here.
+LOCKED := flock $(BUILD)/.lock
+# The functional and native engines need no Verilated unit.
+WAVES_FLAG := $(if $(filter-out 0,$(WAVES)),--waves)
+UNIT := scripts/unit.sh "$$CONFIG" $(WAVES_FLAG)
+UNIT_OF_ENGINE := $(if $(filter rtl lockstep,$(ENGINE)),$(UNIT),true)
+
+.PHONY: help sim run cosim unit test lint format bench clean setup-% program configured-%
+
+help: ## this list
+	@echo 'raypool: a ray-tracing GPU to render on, measure, verify and synthesise'
+	@echo
+	@sed -nE 's/^([a-z]+):.*## (.*)/  make \1\t\2/p' $(firstword $(MAKEFILE_LIST)) | expand -t 16
+	@echo
+	@echo 'variables of make sim                                                    default'
+	@echo '  SCENE=cornell|room|FILE.obj   what is drawn                               $(SCENE)'
+	@echo '  CONFIG=4w4c|8w8c|...|FILE     hardware: configs/*.json, NwMc or a file    $(CONFIG)'
+	@echo '  ENGINE=native|functional|rtl|lockstep   what stands in for the unit       $(ENGINE)'
+	@echo '  SIZE=WxH                      pixels, 1..16384 each                       $(SIZE)'
+	@echo '  DEPTH=N                       1: eye and shadow rays; more: reflections   $(DEPTH)'
+	@echo '  CUS=1|2|4                     compute units                               $(CUS)'
+	@echo '  TRAVERSER=static              timing model of the traverser               $(TRAVERSER)'
+	@echo '  VIEW=FILE                     camera and light (JSON)                     from the scene'
+	@echo '  DETAIL=N                      triangles of a built-in scene, 0.01..16      1'
+	@echo '  OUT=FOLDER                    image.png, report.json                      build/out/...'
+	@echo '  WAVES=1                       a waveform (FST) too; ENGINE=rtl, lockstep  $(WAVES)'
+	@echo 'variables of make cosim:  PROGRAMS=$(PROGRAMS)  SEED=$(SEED)  CONFIG'
+	@echo 'variables of make run:  KERNEL=saxpy|matmul|FILE.asm  CONFIG  ENGINE  ARGS="--n 1000"'
+
+sim: setup-sim program ## draw a scene on the simulated chip: picture, report, figures
+	@$(UNIT_OF_ENGINE)
+	@$(RAYPOOL) sim --scene "$$SCENE" --config "$$CONFIG" --units "$$CUS" --size "$$SIZE" --depth "$$DEPTH" --engine "$$ENGINE" \
+	  --traverser "$$TRAVERSER" $${VIEW:+--view "$$VIEW"} $${DETAIL:+--detail "$$DETAIL"} $${OUT:+--out "$$OUT"} $(WAVES_FLAG)
+
+run: setup-sim program ## run a compute kernel, check its results, print its cycles
+	@$(UNIT_OF_ENGINE)
+	@$(RAYPOOL) run "$$KERNEL" --config "$$CONFIG" --engine "$$ENGINE" $(ARGS)
+
+cosim: setup-sim program ## random programs, hardware against model: CONFIG, PROGRAMS, SEED
+	@$(UNIT)
+	@$(RAYPOOL) cosim --config "$$CONFIG" --programs "$$PROGRAMS" --seed "$$SEED"
+
+unit: setup-sim program ## Verilate the compute unit of CONFIG (WAVES=1: with waveforms)
+	@$(UNIT)
+
+test: setup-sim setup-test configured-ON ## every test
+	@$(LOCKED) cmake --build $(BUILD)
+	@ctest --test-dir $(BUILD) --output-on-failure -j "$$(nproc)"
+
+lint: setup-sim setup-lint configured-ON ## Verilog in three tools, C++ layout and checks
+	@scripts/lint.sh
+
+format: setup-lint ## lay out the C++ files as .clang-format says
+	@scripts/sources.sh cpp | xargs clang-format -i
+
+bench: setup-sim configured-OFF ## measured rates of the engines on this machine
+	@$(LOCKED) cmake --build $(BUILD) --target raypool raypool_bench
+	@for config in 4w4c 8w8c; do scripts/unit.sh "$$config"; done
+	@$(BUILD)/raypool_bench
+
+clean: ## remove build/ (pictures in build/out too)
+	@rm -rf $(BUILD)
+
+setup-%:
+	@scripts/setup.sh $*
+
+# Tests are left out until a target needs them; once in, they stay in.
+configured-%:
+	@mkdir -p $(BUILD)
+	@$(LOCKED) scripts/configure.sh $(BUILD) $*
+
+program: configured-OFF
+	@[ -x $(RAYPOOL) ] || echo 'building raypool; the first time this takes a minute or two'
+	@$(LOCKED) cmake --build $(BUILD) --target raypool -- --quiet | { grep -vE 'no work to do|GLOB mismatch' || true; }

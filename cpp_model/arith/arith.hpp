@@ -1,0 +1,120 @@
+// Arithmetic of the Flt and Slw ALUs and of the float compares, bit for bit as the RTL does it. Values are IEEE-754 single bit
+// patterns. Round to nearest even; every NaN result is 7FC00000. docs/numerics.md has the rules. Needs the host's default
+// floating-point environment: nearest even, and neither flush-to-zero nor denormals-are-zero set in MXCSR. What the kernels use
+// most is inline and runs on the host's own unit.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+#include "config/configuration.hpp"
+
+namespace raypool::arith {
+
+/// The modes that change results.
+struct Mode {
+  Subnormals subnormals = Subnormals::Ieee;
+  SlowUnit slow_unit = SlowUnit::Exact;
+};
+
+inline constexpr uint32_t kQuietNan = 0x7fc00000u;
+
+namespace detail {
+
+inline constexpr uint32_t kSign = 0x80000000u;
+inline constexpr uint32_t kMagnitude = 0x7fffffffu;
+inline constexpr uint32_t kInfinity = 0x7f800000u;  ///< also the mask of the exponent
+inline constexpr uint32_t kSmallestNormal = 0x00800000u;
+/// A magnitude below this rounds, to 24 bits and with any exponent allowed, to less than the smallest normal number 2^-126.
+inline constexpr double kTinyLimit = 0x1p-126 - 0x1p-151;
+
+inline float to_float(uint32_t bits) {
+  float value;
+  std::memcpy(&value, &bits, 4);
+  return value;
+}
+inline uint32_t to_bits(float value) {
+  uint32_t bits;
+  std::memcpy(&bits, &value, 4);
+  return bits;
+}
+inline bool is_nan(uint32_t a) { return (a & kMagnitude) > kInfinity; }
+inline bool flushes(Mode mode) { return mode.subnormals == Subnormals::Flush; }
+/// A subnormal number becomes the zero of its sign.
+inline uint32_t flushed(uint32_t a) { return (a & kInfinity) == 0 ? a & kSign : a; }
+/// An operand as the unit sees it.
+inline uint32_t operand(uint32_t a, Mode mode) { return flushes(mode) ? flushed(a) : a; }
+inline uint32_t canonical(float value) {
+  const uint32_t bits = to_bits(value);
+  return is_nan(bits) ? kQuietNan : bits;
+}
+/// Integers in the order of the numbers, -0 before +0. Not for NaNs.
+inline int32_t order(uint32_t a) { return static_cast<int32_t>(a & kSign ? a ^ kMagnitude : a); }
+/// The `flush` result for the correctly rounded `rounded` of the same sign; `exact` tells on which side of kTinyLimit the true
+/// value is.
+inline uint32_t flush_tiny(uint32_t rounded, double exact) {
+  if ((rounded & kMagnitude) == kSmallestNormal && std::fabs(exact) < kTinyLimit) return rounded & kSign;
+  return flushed(rounded);
+}
+
+}  // namespace detail
+
+inline uint32_t add(uint32_t a, uint32_t b, Mode mode) {
+  const uint32_t sum = detail::canonical(detail::to_float(detail::operand(a, mode)) + detail::to_float(detail::operand(b, mode)));
+  return detail::operand(sum, mode);  // a subnormal sum is exact, so there is no rounding to look behind
+}
+
+inline uint32_t sub(uint32_t a, uint32_t b, Mode mode) {
+  const uint32_t sum = detail::canonical(detail::to_float(detail::operand(a, mode)) - detail::to_float(detail::operand(b, mode)));
+  return detail::operand(sum, mode);
+}
+
+inline uint32_t mul(uint32_t a, uint32_t b, Mode mode) {
+  const float x = detail::to_float(detail::operand(a, mode)), y = detail::to_float(detail::operand(b, mode));
+  const uint32_t product = detail::canonical(x * y);
+  return detail::flushes(mode) ? detail::flush_tiny(product, double{x} * double{y}) : product;  // the double product is exact
+}
+
+inline uint32_t min(uint32_t a, uint32_t b, Mode mode) {
+  if (detail::is_nan(a)) return detail::is_nan(b) ? kQuietNan : detail::operand(b, mode);
+  a = detail::operand(a, mode), b = detail::operand(b, mode);
+  return detail::is_nan(b) || detail::order(a) <= detail::order(b) ? a : b;
+}
+
+inline uint32_t max(uint32_t a, uint32_t b, Mode mode) {
+  if (detail::is_nan(a)) return detail::is_nan(b) ? kQuietNan : detail::operand(b, mode);
+  a = detail::operand(a, mode), b = detail::operand(b, mode);
+  return detail::is_nan(b) || detail::order(a) >= detail::order(b) ? a : b;
+}
+
+/// Signed, to nearest even.
+inline uint32_t from_int(uint32_t a, Mode) { return detail::to_bits(static_cast<float>(static_cast<int32_t>(a))); }
+
+/// Towards zero, saturating; NaN gives 0.
+inline uint32_t to_int(uint32_t a, Mode) {
+  if (detail::is_nan(a)) return 0;
+  const float value = detail::to_float(a);
+  if (value >= 0x1p31f) return 0x7fffffffu;
+  if (value < -0x1p31f) return 0x80000000u;
+  return static_cast<uint32_t>(static_cast<int32_t>(value));
+}
+
+inline bool equal(uint32_t a, uint32_t b, Mode mode) {  ///< false with a NaN
+  return detail::to_float(detail::operand(a, mode)) == detail::to_float(detail::operand(b, mode));
+}
+inline bool less(uint32_t a, uint32_t b, Mode mode) {  ///< false with a NaN
+  return detail::to_float(detail::operand(a, mode)) < detail::to_float(detail::operand(b, mode));
+}
+inline bool less_equal(uint32_t a, uint32_t b, Mode mode) {  ///< false with a NaN
+  return detail::to_float(detail::operand(a, mode)) <= detail::to_float(detail::operand(b, mode));
+}
+
+// The slow unit. Exact: each correctly rounded. Newton modes: what the RTL's table and steps give (arith.cpp is their
+// definition). Zeros, infinities, NaNs and powers of four under rsqrt are exact in every mode.
+uint32_t div(uint32_t a, uint32_t b, Mode mode);
+uint32_t sqrt(uint32_t a, Mode mode);
+uint32_t rsqrt(uint32_t a, Mode mode);  ///< one rounding; rsqrt(+-0) = +-infinity
+uint32_t rcp(uint32_t a, Mode mode);
+
+}  // namespace raypool::arith

@@ -1,0 +1,107 @@
+// Operands for tests of arithmetic: the special values, and random pairs weighted towards cancellation, halfway cases, overflow
+// and the edge of the subnormal numbers. The same seed gives the same operands everywhere.
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+#include <random>
+#include <utility>
+#include <vector>
+
+namespace raypool::arith {
+
+inline std::vector<uint32_t> special_operands() {
+  std::vector<uint32_t> values;
+  for (const uint32_t magnitude :
+       {0x00000000u, 0x00000001u, 0x00000002u, 0x00000003u, 0x00400000u, 0x007ffffeu, 0x007fffffu, 0x00800000u,
+        0x00800001u, 0x00ffffffu, 0x01000000u, 0x01000001u, 0x0b800000u, 0x1fffffffu, 0x20000000u, 0x33800000u,
+        0x34000000u, 0x3effffffu, 0x3f000000u, 0x3f3504f3u, 0x3f7fffffu, 0x3f800000u, 0x3f800001u, 0x3fb504f3u,
+        0x3fffffffu, 0x40000000u, 0x40400000u, 0x407fffffu, 0x40800000u, 0x4b000000u, 0x4b000001u, 0x4b7fffffu,
+        0x4b800000u, 0x4effffffu, 0x4f000000u, 0x4f000001u, 0x5f000000u, 0x7e800000u, 0x7effffffu, 0x7f000000u,
+        0x7f000001u, 0x7f7ffffeu, 0x7f7fffffu, 0x7f800000u, 0x7f800001u, 0x7fbfffffu, 0x7fc00000u, 0x7fffffffu}) {
+    values.push_back(magnitude);
+    values.push_back(magnitude | 0x80000000u);
+  }
+  return values;
+}
+
+class OperandSource {
+ public:
+  explicit OperandSource(uint64_t seed) : random_(seed), specials_(special_operands()) {}
+
+  std::pair<uint32_t, uint32_t> next() {
+    uint32_t a = bits(), b = bits();
+    switch (random_() % 13) {
+      case 0:  // anything
+        break;
+      case 1:  // special and anything
+        a = specials_[random_() % specials_.size()];
+        break;
+      case 2:
+        b = specials_[random_() % specials_.size()];
+        break;
+      case 3:  // cancellation, small shifts
+        b = exponent(b, field(a) + range(-2, 2));
+        break;
+      case 4:  // nearly equal
+        b = (a + static_cast<uint32_t>(range(-3, 3))) ^ (bits() & 0x80000000u);
+        break;
+      case 5:  // every alignment
+        b = exponent(b, field(a) + range(-27, 27));
+        break;
+      case 6:  // halfway sums
+        a = few_bits(a), b = few_bits(exponent(b, field(a) + range(-26, 26)));
+        break;
+      case 7:  // products near 2
+        a = few_bits(a), b = exponent(few_bits(b), 254 - field(a) + range(-3, 3));
+        break;
+      case 8:  // product near overflow
+        b = exponent(b, 127 + 254 - field(a) + range(-2, 2));
+        break;
+      case 9:  // product near or below the smallest normal number
+        b = exponent(b, 127 - field(a) + range(-26, 3));
+        break;
+      case 10:  // quotient there
+        b = exponent(b, field(a) + 127 + range(-3, 27));
+        break;
+      case 11:  // product next to 2^-126, the smallest normal number, or twice that
+        b = partner(a, exponent(0, range(1, 2))) + static_cast<uint32_t>(range(-2, 2));
+        break;
+      default:  // subnormal operands
+        a = exponent(a, range(0, 3)), b = exponent(b, range(0, 26));
+        break;
+    }
+    return {a, b};
+  }
+
+ private:
+  uint32_t bits() { return static_cast<uint32_t>(random_()); }
+  int range(int low, int high) { return low + static_cast<int>(random_() % static_cast<uint64_t>(high - low + 1)); }
+  static int field(uint32_t a) { return static_cast<int>(a >> 23 & 0xff); }
+  static uint32_t exponent(uint32_t a, int field) {
+    if (field < 0) field = 0;
+    if (field > 255) field = 255;
+    return (a & 0x807fffffu) | static_cast<uint32_t>(field) << 23;
+  }
+  /// About product / a.
+  static uint32_t partner(uint32_t a, uint32_t product) {
+    float x, y;
+    std::memcpy(&x, &a, 4);
+    std::memcpy(&y, &product, 4);
+    if (!(x != 0)) x = 1;
+    const float quotient = y / x;
+    uint32_t bits;
+    std::memcpy(&bits, &quotient, 4);
+    return bits;
+  }
+  /// A fraction of few ones at its head and its tail, from which sums and products on the middle between two floats come.
+  uint32_t few_bits(uint32_t a) {
+    const uint32_t head = 0x7fffffu & ~((1u << range(8, 23)) - 1u), tail = (1u << range(0, 4)) - 1u;
+    return (a & (0xff800000u | head)) | (a & tail);
+  }
+
+  std::mt19937_64 random_;
+  std::vector<uint32_t> specials_;
+};
+
+}  // namespace raypool::arith

@@ -1,0 +1,274 @@
+// Reads, checks and writes configurations.
+#include "config/configuration.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <regex>
+
+namespace raypool {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr std::array<std::string_view, 2> kSubnormalNames = {"ieee", "flush"};
+constexpr std::array<std::string_view, 4> kSlowUnitNames = {"exact", "newton2", "newton1", "newton0"};
+
+/// Least pipeline depth of a type: what its function needs at speed. 0: the type has neither latency nor depth to choose.
+constexpr std::array<int, kUnits> kLeastDepth = {1, 2, 0, 2, 3, 11, 0};
+bool is_fixed(size_t unit) { return kLeastDepth[unit] == 0; }
+
+bool is_power_of_two(int value) { return value > 0 && (value & (value - 1)) == 0; }
+
+void check_range(const std::string& where, const std::string& key, int value, int least, int greatest,
+                 bool power_of_two = false) {
+  if (value >= least && value <= greatest && (!power_of_two || is_power_of_two(value))) return;
+  throw InputError(fmt::format("{}: {} is {}; it must be {} from {} to {}", where, key, value,
+                               power_of_two ? "a power of two" : "an integer", least, greatest));
+}
+
+template <typename Names>
+std::string join(const Names& names) {
+  std::string text;
+  for (const auto& name : names) text += (text.empty() ? "" : ", ") + std::string(name);
+  return text;
+}
+
+/// One JSON object of a file: hands out its values and refuses keys that nobody asked for.
+class Section {
+ public:
+  Section(const Json& json, std::string where, std::string prefix)
+      : json_(json), where_(std::move(where)), prefix_(std::move(prefix)) {
+    if (json_.is_object()) return;
+    const std::string what = prefix_.empty() ? "the file" : prefix_.substr(0, prefix_.size() - 1);
+    throw InputError(fmt::format("{}: {} must be an object in braces, not {}", where_, what, json_.dump()));
+  }
+
+  void integer(const char* key, int& value) {
+    const Json* found = find(key);
+    if (found == nullptr) return;
+    // Beyond int the range check would see a wrapped value.
+    if (!found->is_number_integer() || found->get<double>() < -2147483648.0 || found->get<double>() > 2147483647.0) {
+      throw InputError(fmt::format("{}: {}{} is {}; it must be an integer without quotes", where_, prefix_, key, found->dump()));
+    }
+    value = found->get<int>();
+  }
+  void text(const char* key, std::string& value) {
+    const Json* found = find(key);
+    if (found == nullptr) return;
+    if (!found->is_string())
+      throw InputError(fmt::format("{}: {}{} is {}; it must be a text in quotes", where_, prefix_, key, found->dump()));
+    value = found->get<std::string>();
+  }
+  template <typename Enum, typename Names>
+  void choice(const char* key, const Names& names, Enum& value) {
+    const Json* found = find(key);
+    if (found == nullptr) return;
+    for (size_t i = 0; i < names.size(); ++i) {
+      if (found->is_string() && found->get<std::string>() == names[i]) {
+        value = static_cast<Enum>(i);
+        return;
+      }
+    }
+    throw InputError(fmt::format("{}: {}{} is {}; it must be one of {}", where_, prefix_, key, found->dump(), join(names)));
+  }
+  std::optional<Section> section(const char* key) {
+    const Json* found = find(key);
+    if (found == nullptr) return std::nullopt;
+    return Section(*found, where_, prefix_ + key + ".");
+  }
+  /// To be called when all known keys have been asked for.
+  void refuse_others() const {
+    for (const auto& item : json_.items()) {
+      if (std::find(known_.begin(), known_.end(), item.key()) != known_.end()) continue;
+      throw InputError(fmt::format("{}: unknown key {}{}; known here: {}", where_, prefix_, item.key(), join(known_)));
+    }
+  }
+
+ private:
+  const Json* find(const char* key) {
+    known_.emplace_back(key);
+    const auto found = json_.find(key);
+    return found == json_.end() ? nullptr : &*found;
+  }
+
+  const Json& json_;
+  std::string where_;
+  std::string prefix_;
+  std::vector<std::string> known_;
+};
+
+Configuration from_json(const Json& json, const std::string& where, const std::string& name) {
+  Configuration configuration;
+  configuration.name = name;
+  Section root(json, where, "");
+  root.text("name", configuration.name);
+  root.integer("warps", configuration.warps);
+  root.integer("cores", configuration.cores);
+  root.integer("stack_depth", configuration.stack_depth);
+  if (auto alus = root.section("alus")) {
+    for (size_t unit = 0; unit < kUnits; ++unit) {
+      auto alu = alus->section(std::string(kUnitNames[unit]).c_str());
+      if (!alu) continue;
+      alu->integer("count", configuration.alus[unit].count);
+      if (!is_fixed(unit)) {
+        alu->integer("latency", configuration.alus[unit].latency);
+        alu->integer("depth", configuration.alus[unit].depth);
+      }
+      alu->refuse_others();
+    }
+    alus->refuse_others();
+  }
+  if (auto cache = root.section("instruction_cache")) {
+    cache->integer("bytes", configuration.instruction_cache_bytes);
+    cache->refuse_others();
+  }
+  if (auto cache = root.section("data_cache")) {
+    cache->integer("bytes", configuration.data_cache_bytes);
+    cache->integer("mshrs", configuration.data_cache_mshrs);
+    cache->refuse_others();
+  }
+  if (auto arithmetic = root.section("arithmetic")) {
+    arithmetic->choice("subnormals", kSubnormalNames, configuration.subnormals);
+    arithmetic->choice("slow_unit", kSlowUnitNames, configuration.slow_unit);
+    arithmetic->refuse_others();
+  }
+  root.refuse_others();
+  check_configuration(configuration, where);
+  return configuration;
+}
+
+Configuration read_file(const fs::path& path) {
+  const std::string where = path.string();
+  std::ifstream file(path);
+  if (!file) throw InputError(fmt::format("{}: the file cannot be read; check its permissions", where));
+  Json json;
+  try {
+    json = Json::parse(file);
+  } catch (const Json::parse_error& error) {
+    // The library's text begins with a bracketed tag that says nothing to a user.
+    std::string reason = error.what();
+    reason = reason.substr(std::min(reason.size(), reason.find("] ") + 2));
+    throw InputError(fmt::format("{}: not valid JSON: {}", where, reason));
+  }
+  return from_json(json, where, path.stem().string());
+}
+
+/// Folders in which a name is looked up, first match wins.
+std::vector<fs::path> configuration_folders() {
+  std::vector<fs::path> folders;
+  if (const char* folder = std::getenv("RAYPOOL_CONFIGS"); folder != nullptr && *folder != '\0') folders.emplace_back(folder);
+  folders.emplace_back("configs");
+  folders.push_back((fs::path(__FILE__).parent_path() / ".." / ".." / "configs").lexically_normal());
+  return folders;
+}
+
+}  // namespace
+
+Configuration load_configuration(const std::string& name_or_path) {
+  if (fs::is_regular_file(name_or_path)) return read_file(name_or_path);
+  const bool is_name = !name_or_path.empty() && name_or_path.find('/') == std::string::npos;
+  if (is_name) {
+    for (const fs::path& folder : configuration_folders()) {
+      const fs::path path = folder / (name_or_path + ".json");
+      if (fs::is_regular_file(path)) return read_file(path);
+    }
+    static const std::regex kWarpsAndCores("([0-9]{1,4})w([0-9]{1,4})c");
+    std::smatch match;
+    if (std::regex_match(name_or_path, match, kWarpsAndCores)) {
+      Configuration configuration;
+      configuration.name = name_or_path;
+      configuration.warps = std::stoi(match[1]);
+      configuration.cores = std::stoi(match[2]);
+      check_configuration(configuration, name_or_path);
+      return configuration;
+    }
+  }
+  throw InputError(fmt::format(
+      "no configuration '{}': give the path of a JSON file, the name of a file in configs/, or NwMc for N warps of M cores",
+      name_or_path));
+}
+
+void check_configuration(const Configuration& configuration, const std::string& where) {
+  static const std::regex kName("[A-Za-z0-9_.+-]{1,64}");
+  if (!std::regex_match(configuration.name, kName)) {
+    throw InputError(fmt::format("{}: name is '{}'; it must have 1 to 64 characters out of letters, digits and _ . + -", where,
+                                 configuration.name));
+  }
+  check_range(where, "warps", configuration.warps, 1, 32, true);
+  check_range(where, "cores", configuration.cores, 1, 32, true);
+  check_range(where, "stack_depth", configuration.stack_depth, 2, 32);
+  for (size_t unit = 0; unit < kUnits; ++unit) {
+    const AluConfiguration& alu = configuration.alus[unit];
+    const std::string prefix = "alus." + std::string(kUnitNames[unit]) + ".";
+    if (is_fixed(unit)) {
+      if (alu.count == 1) continue;
+      throw InputError(fmt::format("{}: {}count is {}; it must be 1, because this unit owns the {}", where, prefix, alu.count,
+                                   static_cast<Unit>(unit) == Unit::Mem ? "data cache" : "ray memory"));
+    }
+    check_range(where, prefix + "count", alu.count, 1, 4);
+    check_range(where, prefix + "latency", alu.latency, 1, 16);
+    check_range(where, prefix + "depth", alu.depth, kLeastDepth[unit], 32);
+  }
+  check_range(where, "instruction_cache.bytes", configuration.instruction_cache_bytes, 512, 65536, true);
+  check_range(where, "data_cache.bytes", configuration.data_cache_bytes, 512, 65536, true);
+  check_range(where, "data_cache.mshrs", configuration.data_cache_mshrs, 1, 16);
+  if (static_cast<size_t>(configuration.subnormals) >= kSubnormalNames.size()) {
+    throw InputError(fmt::format("{}: arithmetic.subnormals must be one of {}", where, join(kSubnormalNames)));
+  }
+  if (static_cast<size_t>(configuration.slow_unit) >= kSlowUnitNames.size()) {
+    throw InputError(fmt::format("{}: arithmetic.slow_unit must be one of {}", where, join(kSlowUnitNames)));
+  }
+}
+
+std::string to_json(const Configuration& configuration) {
+  Json json;
+  json["name"] = configuration.name;
+  json["warps"] = configuration.warps;
+  json["cores"] = configuration.cores;
+  json["stack_depth"] = configuration.stack_depth;
+  for (size_t unit = 0; unit < kUnits; ++unit) {
+    const AluConfiguration& alu = configuration.alus[unit];
+    Json& entry = json["alus"][std::string(kUnitNames[unit])];
+    entry["count"] = alu.count;
+    if (is_fixed(unit)) continue;
+    entry["latency"] = alu.latency;
+    entry["depth"] = alu.depth;
+  }
+  json["instruction_cache"]["bytes"] = configuration.instruction_cache_bytes;
+  json["data_cache"] = {{"bytes", configuration.data_cache_bytes}, {"mshrs", configuration.data_cache_mshrs}};
+  json["arithmetic"] = {{"subnormals", kSubnormalNames[static_cast<size_t>(configuration.subnormals)]},
+                        {"slow_unit", kSlowUnitNames[static_cast<size_t>(configuration.slow_unit)]}};
+  return json.dump(2);
+}
+
+std::vector<std::pair<std::string, int>> verilog_parameters(const Configuration& configuration) {
+  std::vector<std::pair<std::string, int>> parameters = {
+      {"WARPS", configuration.warps}, {"LANES", configuration.cores}, {"STACK_DEPTH", configuration.stack_depth}};
+  struct Column {
+    const char* suffix;
+    int AluConfiguration::*value;
+  };
+  for (const Column& column : {Column{"_COUNT", &AluConfiguration::count}, Column{"_LATENCY", &AluConfiguration::latency},
+                               Column{"_DEPTH", &AluConfiguration::depth}}) {
+    for (size_t unit = 0; unit < kUnits; ++unit) {
+      if (is_fixed(unit)) continue;
+      std::string name(kUnitNames[unit]);
+      for (char& c : name) c = static_cast<char>(c - 'a' + 'A');
+      parameters.emplace_back(name + column.suffix, configuration.alus[unit].*column.value);
+    }
+  }
+  parameters.emplace_back("ICACHE_BYTES", configuration.instruction_cache_bytes);
+  parameters.emplace_back("DCACHE_BYTES", configuration.data_cache_bytes);
+  parameters.emplace_back("DCACHE_MSHRS", configuration.data_cache_mshrs);
+  parameters.emplace_back("SUBNORMALS", static_cast<int>(configuration.subnormals));
+  parameters.emplace_back("SLOW_UNIT", static_cast<int>(configuration.slow_unit));
+  return parameters;
+}
+
+}  // namespace raypool

@@ -1,0 +1,54 @@
+// The hardware configuration: one JSON file (configs/*.json) that the models, the Verilated build, the chip and synthesis all
+// read.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "isa/input_error.hpp"
+#include "isa/isa.hpp"
+
+namespace raypool {
+
+enum class Subnormals : uint8_t { Ieee = 0, Flush = 1 };
+enum class SlowUnit : uint8_t { Exact = 0, Newton2 = 1, Newton1 = 2, Newton0 = 3 };
+
+struct AluConfiguration {
+  int count = 1;    ///< instances
+  int latency = 1;  ///< cycles between new tasks; not used by mem and ray
+  int depth = 1;    ///< pipeline stages; not used by mem and ray
+};
+
+struct Configuration {
+  std::string name = "8w8c";
+  int warps = 8;
+  int cores = 8;  ///< lanes, and threads in a warp
+  int stack_depth = 8;
+  std::array<AluConfiguration, kUnits> alus = {{{1, 1, 1}, {1, 1, 2}, {1, 1, 2}, {1, 1, 2}, {1, 1, 3}, {1, 1, 11}, {1, 1, 2}}};
+  int instruction_cache_bytes = 4096;
+  int data_cache_bytes = 8192;
+  int data_cache_mshrs = 4;
+  Subnormals subnormals = Subnormals::Ieee;
+  SlowUnit slow_unit = SlowUnit::Exact;
+
+  int contents() const { return warps * cores; }
+  const AluConfiguration& alu(Unit unit) const { return alus[static_cast<size_t>(unit)]; }
+};
+
+/// Reads a file; `name_or_path` is a path or the name of a file in the configs folder ("8w8c"). A name of the form NwMc that has
+/// no file gets the defaults with N warps and M cores. Throws InputError naming file, key, value and allowed range; unknown keys
+/// are refused.
+Configuration load_configuration(const std::string& name_or_path);
+
+/// Throws InputError when a value is out of its range; `where` names the source in the message.
+void check_configuration(const Configuration& configuration, const std::string& where);
+
+std::string to_json(const Configuration& configuration);
+
+/// Parameters of rtl/compute_unit.v, in the order of docs/architecture.md: {"WARPS", 8}, ...
+std::vector<std::pair<std::string, int>> verilog_parameters(const Configuration& configuration);
+
+}  // namespace raypool

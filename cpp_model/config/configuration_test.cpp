@@ -1,0 +1,179 @@
+#include "config/configuration.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+namespace raypool {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A file that is gone after the test.
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(const std::string& text, const std::string& name = "test.json") {
+    folder_ = fs::temp_directory_path() / ("raypool_configuration_test_" + std::to_string(::getpid()));
+    fs::create_directories(folder_);
+    std::ofstream(folder_ / name) << text;
+    path_ = folder_ / name;
+  }
+  ~TemporaryFile() { fs::remove_all(folder_); }
+  std::string path() const { return path_.string(); }
+  std::string folder() const { return folder_.string(); }
+
+ private:
+  fs::path folder_, path_;
+};
+
+std::string error_of(const std::string& json) {
+  const TemporaryFile file(json);
+  try {
+    load_configuration(file.path());
+  } catch (const InputError& error) {
+    const std::string what = error.what();
+    EXPECT_EQ(what.find(file.path() + ": "), 0u) << what;
+    return what.substr(std::min(what.size(), file.path().size() + 2));
+  }
+  return "no error";
+}
+
+bool equal(const Configuration& a, const Configuration& b) { return to_json(a) == to_json(b); }
+
+TEST(Configuration, CheckedInFilesHaveTheNameAndSizeTheyAreCalledBy) {
+  int files = 0;
+  for (const auto& entry : fs::directory_iterator("configs")) {
+    if (entry.path().extension() != ".json") continue;
+    const std::string name = entry.path().stem().string();
+    SCOPED_TRACE(name);
+    const Configuration configuration = load_configuration(name);
+    EXPECT_EQ(configuration.name, name);
+    EXPECT_TRUE(equal(configuration, load_configuration(entry.path().string())));
+    int warps = 0, cores = 0;
+    char end = 0;
+    if (std::sscanf(name.c_str(), "%dw%dc%c", &warps, &cores, &end) == 2) {
+      EXPECT_EQ(configuration.warps, warps);
+      EXPECT_EQ(configuration.cores, cores);
+    }
+    ++files;
+  }
+  EXPECT_GE(files, 10);
+}
+
+TEST(Configuration, NameOfTheFormNwMcNeedsNoFile) {
+  const Configuration configuration = load_configuration("2w16c");
+  EXPECT_EQ(configuration.name, "2w16c");
+  EXPECT_EQ(configuration.warps, 2);
+  EXPECT_EQ(configuration.cores, 16);
+  EXPECT_EQ(configuration.contents(), 32);
+}
+
+TEST(Configuration, WhatAFileDoesNotNameKeepsItsDefault) {
+  const TemporaryFile file(R"({"warps": 4, "alus": {"flt": {"count": 2}}, "arithmetic": {"subnormals": "flush"}})");
+  Configuration expected;
+  expected.name = "test";
+  expected.warps = 4;
+  expected.alus[static_cast<size_t>(Unit::Flt)].count = 2;
+  expected.subnormals = Subnormals::Flush;
+  EXPECT_TRUE(equal(load_configuration(file.path()), expected));
+}
+
+TEST(Configuration, WrittenAndReadAgainIsTheSame) {
+  Configuration configuration;
+  configuration.name = "odd-1.2";
+  configuration.warps = 16;
+  configuration.cores = 2;
+  configuration.stack_depth = 5;
+  configuration.alus = {{{2, 3, 4}, {1, 2, 3}, {1, 1, 2}, {3, 4, 5}, {4, 5, 6}, {2, 11, 12}, {1, 1, 2}}};
+  configuration.instruction_cache_bytes = 1024;
+  configuration.data_cache_bytes = 2048;
+  configuration.data_cache_mshrs = 7;
+  configuration.subnormals = Subnormals::Flush;
+  configuration.slow_unit = SlowUnit::Newton1;
+  const TemporaryFile file(to_json(configuration));
+  const Configuration read = load_configuration(file.path());
+  EXPECT_TRUE(equal(read, configuration));
+  EXPECT_EQ(verilog_parameters(read), verilog_parameters(configuration));
+  EXPECT_EQ(read.alu(Unit::Slw).depth, 12);
+  EXPECT_EQ(read.slow_unit, SlowUnit::Newton1);
+}
+
+TEST(Configuration, ErrorsNameKeyValueAndAllowedRange) {
+  EXPECT_EQ(error_of(R"({"warps": 3})"), "warps is 3; it must be a power of two from 1 to 32");
+  EXPECT_EQ(error_of(R"({"warps": 64})"), "warps is 64; it must be a power of two from 1 to 32");
+  EXPECT_EQ(error_of(R"({"cores": 0})"), "cores is 0; it must be a power of two from 1 to 32");
+  EXPECT_EQ(error_of(R"({"stack_depth": 1})"), "stack_depth is 1; it must be an integer from 2 to 32");
+  EXPECT_EQ(error_of(R"({"alus": {"slw": {"depth": 10}}})"), "alus.slw.depth is 10; it must be an integer from 11 to 32");
+  EXPECT_EQ(error_of(R"({"alus": {"int": {"latency": 17}}})"), "alus.int.latency is 17; it must be an integer from 1 to 16");
+  EXPECT_EQ(error_of(R"({"alus": {"mem": {"count": 2}}})"),
+            "alus.mem.count is 2; it must be 1, because this unit owns the data cache");
+  EXPECT_EQ(error_of(R"({"data_cache": {"bytes": 3000}})"),
+            "data_cache.bytes is 3000; it must be a power of two from 512 to 65536");
+  EXPECT_EQ(error_of(R"({"data_cache": {"mshrs": 0}})"), "data_cache.mshrs is 0; it must be an integer from 1 to 16");
+  EXPECT_EQ(error_of(R"({"warps": "8"})"), "warps is \"8\"; it must be an integer without quotes");
+  EXPECT_EQ(error_of(R"({"warps": 8.5})"), "warps is 8.5; it must be an integer without quotes");
+  EXPECT_EQ(error_of(R"({"warps": 4294967304})"), "warps is 4294967304; it must be an integer without quotes");
+  EXPECT_EQ(error_of(R"({"arithmetic": {"slow_unit": "fast"}})"),
+            "arithmetic.slow_unit is \"fast\"; it must be one of exact, newton2, newton1, newton0");
+  EXPECT_EQ(error_of(R"({"name": "a b"})"), "name is 'a b'; it must have 1 to 64 characters out of letters, digits and _ . + -");
+  EXPECT_EQ(error_of(R"({"alus": 3})"), "alus must be an object in braces, not 3");
+  EXPECT_EQ(error_of("[]"), "the file must be an object in braces, not []");
+}
+
+TEST(Configuration, UnknownKeysAreRefusedWithTheKnownOnes) {
+  EXPECT_EQ(error_of(R"({"warp": 8})"),
+            "unknown key warp; known here: name, warps, cores, stack_depth, alus, instruction_cache, data_cache, arithmetic");
+  EXPECT_EQ(error_of(R"({"alus": {"flt": {"counts": 1}}})"), "unknown key alus.flt.counts; known here: count, latency, depth");
+  EXPECT_EQ(error_of(R"({"alus": {"ray": {"depth": 2}}})"), "unknown key alus.ray.depth; known here: count");
+}
+
+TEST(Configuration, BrokenJsonIsReportedWithItsLine) {
+  const std::string error = error_of("{\n  \"warps\": 8,,\n}");
+  EXPECT_EQ(error.find("not valid JSON: parse error at line 2, column 14"), 0u) << error;
+}
+
+TEST(Configuration, NameWithoutFileSaysWhatToGive) {
+  try {
+    load_configuration("nonesuch");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(),
+                 "no configuration 'nonesuch': give the path of a JSON file, the name of a file in configs/, or NwMc for N warps "
+                 "of M cores");
+  }
+  EXPECT_THROW(load_configuration(""), InputError);
+  EXPECT_THROW(load_configuration("no/such/file.json"), InputError);
+  EXPECT_THROW(load_configuration("3w3c"), InputError);
+}
+
+TEST(Configuration, FolderOfTheEnvironmentComesFirst) {
+  const TemporaryFile file(R"({"warps": 1, "cores": 1})", "8w8c.json");
+  ::setenv("RAYPOOL_CONFIGS", file.folder().c_str(), 1);
+  const Configuration configuration = load_configuration("8w8c");
+  ::unsetenv("RAYPOOL_CONFIGS");
+  EXPECT_EQ(configuration.warps, 1);
+  EXPECT_EQ(load_configuration("8w8c").warps, 8);
+}
+
+TEST(Configuration, VerilogParametersAreThoseOfTheComputeUnitInOrder) {
+  // The port list is the contract: each `parameter integer NAME = VALUE` with the default configuration's value, but for derived
+  // ones.
+  std::ifstream file("rtl/compute_unit.v");
+  ASSERT_TRUE(file.good()) << "run the tests from the repository's root";
+  std::vector<std::pair<std::string, int>> declared;
+  for (std::string line; std::getline(file, line) && line.find(") (") == std::string::npos;) {
+    char name[64];
+    int value = 0;
+    if (std::sscanf(line.c_str(), " parameter integer %63[A-Z_] = %d", name, &value) == 2) declared.emplace_back(name, value);
+  }
+  const auto parameters = verilog_parameters(Configuration{});
+  ASSERT_GE(declared.size(), parameters.size());
+  declared.resize(parameters.size());
+  EXPECT_EQ(parameters, declared);
+}
+
+}  // namespace
+}  // namespace raypool

@@ -1,0 +1,72 @@
+#include "isa/encoding.hpp"
+
+#include <array>
+#include <stdexcept>
+#include <string>
+
+namespace raypool {
+namespace {
+
+constexpr uint64_t put(const Field& field, uint64_t value) { return (value & ((uint64_t{1} << field.bits) - 1)) << field.lsb; }
+constexpr uint32_t take(const Field& field, uint64_t encoding) {
+  return static_cast<uint32_t>(encoding >> field.lsb & ((uint64_t{1} << field.bits) - 1));
+}
+
+using Table = std::array<const InstructionInfo*, 512>;  // index: unit, then 5 bits of operation
+
+Table make_table() {
+  Table table{};
+  for (const InstructionInfo& info : kInstructions) table[static_cast<size_t>(info.unit) << 5 | info.operation] = &info;
+  return table;
+}
+
+}  // namespace
+
+const InstructionInfo* find_instruction(int unit, int operation) {
+  static const Table kTable = make_table();
+  return kTable[static_cast<size_t>((unit & 15) << 5 | (operation & 31))];
+}
+
+const InstructionInfo* find_instruction(std::string_view mnemonic) {
+  for (const InstructionInfo& info : kInstructions) {
+    if (info.mnemonic == mnemonic) return &info;
+  }
+  return nullptr;
+}
+
+const InstructionInfo& instruction(std::string_view mnemonic) {
+  const InstructionInfo* info = find_instruction(mnemonic);
+  if (info == nullptr) throw std::logic_error("the instruction table has no " + std::string(mnemonic));
+  return *info;
+}
+
+bool has_operand(const InstructionInfo& info, Operand operand) {
+  for (const Operand each : info.operands) {
+    if (each == operand) return true;
+  }
+  return false;
+}
+
+uint64_t encode(const Instruction& parts) {
+  return put(field::kUnit, static_cast<uint64_t>(parts.info->unit)) | put(field::kOperation, parts.info->operation) |
+         put(field::kGuardNegated, parts.guard_negated ? 1 : 0) | put(field::kGuard, parts.guard) | put(field::kRd, parts.rd) |
+         put(field::kRa, parts.ra) | put(field::kRb, parts.rb) | put(field::kBIsImmediate, parts.b_is_immediate ? 1 : 0) |
+         put(field::kX, parts.x) | put(field::kImmediate, parts.immediate);
+}
+
+Instruction unpack(uint64_t encoding) {
+  Instruction parts;
+  parts.info =
+      find_instruction(static_cast<int>(take(field::kUnit, encoding)), static_cast<int>(take(field::kOperation, encoding)));
+  parts.guard_negated = take(field::kGuardNegated, encoding) != 0;
+  parts.guard = static_cast<uint8_t>(take(field::kGuard, encoding));
+  parts.rd = static_cast<uint8_t>(take(field::kRd, encoding));
+  parts.ra = static_cast<uint8_t>(take(field::kRa, encoding));
+  parts.rb = static_cast<uint8_t>(take(field::kRb, encoding));
+  parts.b_is_immediate = take(field::kBIsImmediate, encoding) != 0;
+  parts.x = static_cast<uint8_t>(take(field::kX, encoding));
+  parts.immediate = take(field::kImmediate, encoding);
+  return parts;
+}
+
+}  // namespace raypool

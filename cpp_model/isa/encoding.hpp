@@ -1,0 +1,66 @@
+// Encoder and decoder of single instructions, derived from the table in isa.hpp.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "isa/isa.hpp"
+
+namespace raypool {
+
+/// Lowest bit and width of a field of the 64-bit encoding.
+struct Field {
+  std::string_view name;
+  int lsb;
+  int bits;
+};
+
+namespace field {
+inline constexpr Field kUnit = {"unit", 60, 4};
+inline constexpr Field kOperation = {"op", 55, 5};
+inline constexpr Field kGuardNegated = {"guard_negated", 54, 1};
+inline constexpr Field kGuard = {"guard", 50, 4};
+inline constexpr Field kRd = {"rd", 46, 4};
+inline constexpr Field kRa = {"ra", 42, 4};
+inline constexpr Field kRb = {"rb", 38, 4};
+inline constexpr Field kBIsImmediate = {"b_is_immediate", 37, 1};
+inline constexpr Field kX = {"x", 32, 5};
+inline constexpr Field kImmediate = {"immediate", 0, 32};
+inline constexpr Field kTarget = {"target", 0, 16};
+inline constexpr Field kEnd = {"end", 16, 16};
+}  // namespace field
+
+/// Fields from the most significant down. target and end are the halves of the immediate of `jany jnone call`.
+inline constexpr std::array<Field, 12> kFields = {field::kUnit, field::kOperation, field::kGuardNegated, field::kGuard,
+                                                  field::kRd,   field::kRa,        field::kRb,           field::kBIsImmediate,
+                                                  field::kX,    field::kImmediate, field::kTarget,       field::kEnd};
+
+/// An instruction in parts. Parts that its operands do not use are 0.
+struct Instruction {
+  const InstructionInfo* info = nullptr;  ///< null: no table row has this unit and operation
+  bool guard_negated = false;
+  uint8_t guard = 0;
+  uint8_t rd = 0, ra = 0, rb = 0;
+  bool b_is_immediate = false;
+  uint8_t x = 0;
+  uint32_t immediate = 0;
+};
+
+/// Table row of a unit and operation, null if there is none.
+const InstructionInfo* find_instruction(int unit, int operation);
+/// Table row of a mnemonic, null if there is none.
+const InstructionInfo* find_instruction(std::string_view mnemonic);
+/// Table row of a mnemonic that is known to exist; throws std::logic_error otherwise.
+const InstructionInfo& instruction(std::string_view mnemonic);
+
+/// True if the row has this operand.
+bool has_operand(const InstructionInfo& info, Operand operand);
+inline bool writes_register(const InstructionInfo& info) { return has_operand(info, Operand::Rd); }
+inline bool writes_predicate(const InstructionInfo& info) { return has_operand(info, Operand::Pd); }
+
+/// `instruction.info` must not be null.
+uint64_t encode(const Instruction& instruction);
+/// All fields as they are encoded, also those that the row does not use.
+Instruction unpack(uint64_t encoding);
+
+}  // namespace raypool

@@ -1,0 +1,275 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <random>
+#include <set>
+#include <sstream>
+
+#include "isa/assembler.hpp"
+#include "isa/encoding.hpp"
+#include "isa/input_error.hpp"
+#include "isa/reference.hpp"
+
+namespace raypool {
+namespace {
+
+std::string read(const std::string& path) {
+  std::ifstream file(path);
+  EXPECT_TRUE(file.good()) << path << ": run the tests from the repository's root";
+  std::stringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+uint64_t assemble_one(const std::string& text) {
+  const Program program = assemble(text, "test");
+  EXPECT_EQ(program.code.size(), 1u) << text;
+  return program.code.empty() ? 0 : program.code[0];
+}
+
+std::string error_of(const std::string& text) {
+  try {
+    assemble(text, "file");
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+/// A random instruction of a table row, its unused fields 0; or, with `any`, random in every bit beside unit and operation.
+uint64_t random_instruction(const InstructionInfo& info, std::mt19937_64& random, bool any) {
+  Instruction parts;
+  parts.info = &info;
+  if (any) return (random() & ((uint64_t{1} << field::kOperation.lsb) - 1)) | encode(parts);
+  const auto below = [&](uint32_t limit) { return static_cast<uint32_t>(random() % limit); };
+  parts.guard = static_cast<uint8_t>(below(16));
+  parts.guard_negated = below(2) != 0;
+  for (const Operand operand : info.operands) {
+    switch (operand) {
+      case Operand::None:
+        break;
+      case Operand::Rd:
+      case Operand::Pd:
+        parts.rd = static_cast<uint8_t>(below(16));
+        break;
+      case Operand::Ra:
+        parts.ra = static_cast<uint8_t>(below(16));
+        break;
+      case Operand::Rb:
+      case Operand::Pb:
+        parts.rb = static_cast<uint8_t>(below(16));
+        break;
+      case Operand::Px:
+        parts.x = static_cast<uint8_t>(below(16));
+        break;
+      case Operand::Word:
+        parts.x = static_cast<uint8_t>(below(21));
+        break;
+      case Operand::Argument:
+        parts.immediate = below(32);
+        break;
+      case Operand::Target:
+      case Operand::End:
+        parts.immediate |= below(65536);
+        break;
+      case Operand::B:
+        parts.b_is_immediate = below(2) != 0;
+        if (parts.b_is_immediate)
+          parts.immediate = below(2) != 0 ? static_cast<uint32_t>(random()) : below(200) - 100;
+        else
+          parts.rb = static_cast<uint8_t>(below(16));
+        break;
+      case Operand::Address:
+        parts.ra = static_cast<uint8_t>(below(16));
+        parts.immediate = below(2) != 0 ? static_cast<uint32_t>(random()) : below(200) - 100;
+        break;
+    }
+  }
+  if (has_operand(info, Operand::Target) && has_operand(info, Operand::End)) parts.immediate = static_cast<uint32_t>(random());
+  return encode(parts);
+}
+
+TEST(InstructionTable, RowsHaveDistinctEncodingsAndNames) {
+  std::set<std::pair<int, int>> encodings;
+  std::set<std::string_view> names;
+  for (const InstructionInfo& info : kInstructions) {
+    EXPECT_TRUE(encodings.emplace(static_cast<int>(info.unit), info.operation).second) << info.mnemonic;
+    EXPECT_TRUE(names.insert(info.mnemonic).second) << info.mnemonic;
+    EXPECT_LT(info.operation, 32) << info.mnemonic;
+    EXPECT_EQ(find_instruction(info.mnemonic), &info);
+    EXPECT_EQ(find_instruction(static_cast<int>(info.unit), info.operation), &info);
+  }
+}
+
+TEST(Encoding, FieldsCoverAllBitsOnce) {
+  uint64_t covered = 0;
+  for (const Field& each : kFields) {
+    if (each.name == field::kTarget.name || each.name == field::kEnd.name) continue;
+    const uint64_t bits = ((uint64_t{1} << each.bits) - 1) << each.lsb;
+    EXPECT_EQ(covered & bits, 0u) << each.name;
+    covered |= bits;
+  }
+  EXPECT_EQ(covered, ~uint64_t{0});
+}
+
+TEST(Encoding, UnpackedAndEncodedIsTheSame) {
+  std::mt19937_64 random(1);
+  for (const InstructionInfo& info : kInstructions) {
+    for (int i = 0; i < 200; ++i) {
+      const uint64_t encoding = random_instruction(info, random, true);
+      ASSERT_EQ(unpack(encoding).info, &info);
+      ASSERT_EQ(encode(unpack(encoding)), encoding) << fmt::format("{:016x}", encoding);
+    }
+  }
+}
+
+TEST(Encoding, IsTheOneThatIsaHppDescribes) {
+  // Written out by hand: unit 4, op 1, guard !p3, rd 5, ra 6, rb 7 | immediate.
+  EXPECT_EQ(assemble_one("@!p3 fsub r5, r6, r7"), 0x4000000000000000u | uint64_t{1} << 55 | uint64_t{1} << 54 |
+                                                      uint64_t{3} << 50 | uint64_t{5} << 46 | uint64_t{6} << 42 |
+                                                      uint64_t{7} << 38);
+  EXPECT_EQ(assemble_one("fadd r1, r2, 1.0"),
+            0x4000000000000000u | uint64_t{1} << 46 | uint64_t{2} << 42 | uint64_t{1} << 37 | 0x3f800000u);
+  EXPECT_EQ(assemble_one("rst 20, r9"), 0x6000000000000000u | uint64_t{4} << 55 | uint64_t{9} << 38 | uint64_t{20} << 32);
+  EXPECT_EQ(assemble_one("st [r1-4], r2"),
+            0x2000000000000000u | uint64_t{1} << 55 | uint64_t{1} << 42 | uint64_t{2} << 38 | 0xfffffffcu);
+  EXPECT_EQ(assemble_one("call 3, 4"), 0x1000000000000000u | uint64_t{26} << 55 | 0x00040003u);
+  EXPECT_EQ(assemble_one("loop 9"), 0x1000000000000000u | uint64_t{27} << 55 | 9u);
+  EXPECT_EQ(assemble_one("sel r1, p2, r3, -1"), 0x3000000000000000u | uint64_t{14} << 55 | uint64_t{1} << 46 | uint64_t{3} << 42 |
+                                                    uint64_t{1} << 37 | uint64_t{2} << 32 | 0xffffffffu);
+  EXPECT_EQ(assemble_one("pandn p1, p2, p3"),
+            0x1000000000000000u | uint64_t{19} << 55 | uint64_t{1} << 46 | uint64_t{3} << 38 | uint64_t{2} << 32);
+  EXPECT_EQ(assemble_one("arg r1, 31"), uint64_t{6} << 55 | uint64_t{1} << 46 | 31u);
+}
+
+TEST(Assembler, DisassembledInstructionsAssembleToThemselves) {
+  std::mt19937_64 random(2);
+  for (const InstructionInfo& info : kInstructions) {
+    for (int i = 0; i < 400; ++i) {
+      const uint64_t proper = random_instruction(info, random, false);
+      ASSERT_EQ(disassemble(proper).find(".word"), std::string::npos) << disassemble(proper);
+      ASSERT_EQ(assemble_one(disassemble(proper)), proper) << disassemble(proper);
+      const uint64_t any = random_instruction(info, random, true);
+      ASSERT_EQ(assemble_one(disassemble(any)), any) << disassemble(any);
+    }
+  }
+  for (int i = 0; i < 2000; ++i) {
+    const uint64_t any = random();
+    ASSERT_EQ(assemble_one(disassemble(any)), any) << disassemble(any);
+  }
+}
+
+TEST(Assembler, ListedProgramsAssembleToThemselves) {
+  std::mt19937_64 random(3);
+  for (int i = 0; i < 50; ++i) {
+    Program program;
+    const auto size = static_cast<uint32_t>(1 + random() % 100);
+    for (uint32_t k = 0; k < size; ++k) {
+      const InstructionInfo& info = kInstructions[random() % std::size(kInstructions)];
+      uint64_t encoding = random_instruction(info, random, false);
+      if (has_operand(info, Operand::Target) && random() % 4 != 0) {
+        encoding = (encoding & ~uint64_t{0xffffffff}) | random() % (size + 1) |
+                   (has_operand(info, Operand::End) ? random() % (size + 1) << 16 : 0);
+      }
+      program.code.push_back(encoding);
+    }
+    program.entries["first"] = 0;
+    program.entries["L5"] = static_cast<uint32_t>(random() % (size + 1));  // a name that a generated label would take
+    const std::string text = listing(program);
+    const Program again = assemble(text, "listing");
+    ASSERT_EQ(again.code, program.code) << text;
+    ASSERT_EQ(again.entries, program.entries) << text;
+  }
+}
+
+TEST(Assembler, LabelsKernelsCommentsAndGuards) {
+  const Program program = assemble(
+      "# a program\n"
+      "\n"
+      ".kernel first\r\n"
+      "start:  @p1 jany start   # back\n"
+      "        call sub, end\n"
+      ".kernel second\n"
+      "a: b:   exit\n"
+      "sub:\n"
+      "        ret\n"
+      "end:\n",
+      "test");
+  EXPECT_EQ(program.entries, (std::map<std::string, uint32_t>{{"first", 0}, {"second", 2}}));
+  ASSERT_EQ(program.code.size(), 4u);
+  EXPECT_EQ(disassemble(program.code[0]), "@p1 jany 0");
+  EXPECT_EQ(disassemble(program.code[1]), "call 3, 4");
+  EXPECT_EQ(disassemble(program.code[2]), "exit");
+}
+
+TEST(Assembler, ImmediatesInAllNotations) {
+  const auto immediate = [](const std::string& text) { return static_cast<uint32_t>(assemble_one(text)); };
+  EXPECT_EQ(immediate("iadd r1, r1, 4294967295"), 0xffffffffu);
+  EXPECT_EQ(immediate("iadd r1, r1, -2147483648"), 0x80000000u);
+  EXPECT_EQ(immediate("iadd r1, r1, 0xFF"), 0xffu);
+  EXPECT_EQ(immediate("fadd r1, r1, -0.0"), 0x80000000u);
+  EXPECT_EQ(immediate("fadd r1, r1, 1e-3"), 0x3a83126fu);
+  EXPECT_EQ(immediate("fadd r1, r1, 0x7fc00000"), 0x7fc00000u);
+  EXPECT_EQ(immediate("fadd r1, r1, -inf"), 0xff800000u);
+  EXPECT_EQ(immediate("fadd r1, r1, 1e-45"), 1u);
+  EXPECT_EQ(immediate("mov r1, 0.5"), 0x3f000000u);
+  EXPECT_EQ(immediate("ld r1, [r2 + 0x10]"), 16u);
+  EXPECT_EQ(immediate("ld r1, [ r2 - 1 ]"), 0xffffffffu);
+}
+
+TEST(Assembler, ErrorsNameLineColumnAndRemedy) {
+  EXPECT_EQ(error_of("exit\n mov r16, 1"), "file:2:6: unknown register r16; registers are r0 to r15");
+  EXPECT_EQ(error_of("mov p1, 1"), "file:1:5: expected a register, found 'p1'; registers are r0 to r15");
+  EXPECT_EQ(error_of("@p16 mov r1, 1"), "file:1:2: unknown predicate p16; predicates are p0 to p15");
+  EXPECT_EQ(error_of("mov r01, 1"), "file:1:5: unknown register r01; registers are r0 to r15");
+  EXPECT_EQ(error_of("iadd r1, r2, r17"), "file:1:14: unknown register r17; registers are r0 to r15");
+  EXPECT_EQ(error_of("fad r1, r2, r3"), "file:1:1: unknown instruction 'fad'; docs/isa.md lists them");
+  EXPECT_EQ(error_of("fadd r1, r2"), "file:1:12: expected ',' before the next operand, found the end of the line");
+  EXPECT_EQ(error_of("fadd r1, r2, r3, r4"), "file:1:16: expected the end of the line, found ','");
+  EXPECT_EQ(error_of("fadd r1, r2, 2"), "file:1:14: '2' is no float; write 2.0 for the number, or 0x... for the bit pattern");
+  EXPECT_EQ(error_of("iadd r1, r2, 2.5"), "file:1:14: iadd takes an integer, not the float 2.5");
+  EXPECT_EQ(error_of("iadd r1, r2, 4294967296"),
+            "file:1:14: 4294967296 does not fit in 32 bits; integers are -2147483648 to 4294967295");
+  EXPECT_EQ(error_of("iadd r1, r2, 99999999999999999999"),
+            "file:1:14: 99999999999999999999 does not fit in 32 bits; integers are -2147483648 to 4294967295");
+  EXPECT_EQ(error_of("iadd r1, r2, 12z"), "file:1:14: '12z' is not a number");
+  EXPECT_EQ(error_of("iadd r1, r2, *"), "file:1:14: expected a register or an immediate, found '*'");
+  EXPECT_EQ(error_of("fadd r1, r2, 1e99"),
+            "file:1:14: the float 1e99 is too large or too small for single precision; write inf or 0.0");
+  EXPECT_EQ(error_of("rst 21, r1"), "file:1:5: there is no ray word 21; ray words are 0 to 20");
+  EXPECT_EQ(error_of("arg r1, 32"), "file:1:9: there is no argument 32; arguments are 0 to 31");
+  EXPECT_EQ(error_of("jany nowhere"), "file:1:6: label 'nowhere' is not defined in this file");
+  EXPECT_EQ(error_of("jany 65536"), "file:1:6: target 65536 does not fit in 16 bits; instructions are 0 to 65535");
+  EXPECT_EQ(error_of("a: exit\na: exit"), "file:2:1: label 'a' is defined twice; give one of them another name");
+  EXPECT_EQ(error_of("ld r1, r2"), "file:1:8: expected '[' before an address, found 'r2'");
+  EXPECT_EQ(error_of("ld r1, [r2+4"), "file:1:13: expected ']' after an address, found the end of the line");
+  EXPECT_EQ(error_of(".kernel"), "file:1:8: expected the kernel's name, found the end of the line");
+  EXPECT_EQ(error_of(".word 12"), "file:1:7: expected 64 bits in hexadecimal, such as 0x1c00000000000000");
+  EXPECT_EQ(error_of("@p1"), "file:1:4: expected an instruction, found the end of the line");
+}
+
+TEST(Generated, CheckedInFilesAreThoseOfTheTable) {
+  EXPECT_EQ(read("rtl/isa.vh"), isa_verilog()) << "raypool isa --verilog > rtl/isa.vh";
+  EXPECT_EQ(read("rtl/isa_functions.vh"), isa_verilog_functions()) << "raypool isa --verilog-functions > rtl/isa_functions.vh";
+  EXPECT_EQ(read("docs/isa.md"), isa_markdown()) << "raypool isa --markdown > docs/isa.md";
+}
+
+TEST(Generated, ReferenceNamesEveryInstruction) {
+  const std::string text = isa_markdown();
+  for (const InstructionInfo& info : kInstructions) {
+    EXPECT_NE(text.find(fmt::format("`{}", info.mnemonic)), std::string::npos) << info.mnemonic;
+    EXPECT_NE(text.find(std::string(info.meaning)), std::string::npos) << info.mnemonic;
+  }
+}
+
+TEST(Generated, ExampleInTheReferenceAssembles) {
+  const std::string text = isa_markdown();
+  const size_t begin = text.find("    # a comment");
+  const size_t end = text.find("\n\n", begin);
+  ASSERT_NE(begin, std::string::npos);
+  EXPECT_EQ(assemble(text.substr(begin, end - begin), "docs/isa.md").code.size(), 7u);
+}
+
+}  // namespace
+}  // namespace raypool

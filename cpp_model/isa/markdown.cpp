@@ -1,0 +1,129 @@
+// Writes docs/isa.md.
+#include <fmt/format.h>
+
+#include "isa/encoding.hpp"
+#include "isa/reference.hpp"
+
+namespace raypool {
+namespace {
+
+std::string operand_text(Operand operand) {
+  switch (operand) {
+    case Operand::None:
+      return "";
+    case Operand::Rd:
+      return "rd";
+    case Operand::Ra:
+      return "ra";
+    case Operand::Rb:
+      return "rb";
+    case Operand::B:
+      return "b";
+    case Operand::Pd:
+      return "pd";
+    case Operand::Px:
+      return "px";
+    case Operand::Pb:
+      return "pb";
+    case Operand::Address:
+      return "[ra+offset]";
+    case Operand::Word:
+      return "word";
+    case Operand::Argument:
+      return "n";
+    case Operand::Target:
+      return "target";
+    case Operand::End:
+      return "end";
+  }
+  return "";
+}
+
+std::string syntax(const InstructionInfo& info) {
+  std::string text(info.mnemonic);
+  const char* separator = " ";
+  for (const Operand operand : info.operands) {
+    if (operand == Operand::None) continue;
+    text += separator + operand_text(operand);
+    separator = ", ";
+  }
+  return text;
+}
+
+constexpr const char* kUnitTitles[kUnits] = {
+    "indices, dimensions, arguments", "compares, predicates, control",         "memory",      "integer and logic",
+    "single-precision float",         "slow float: division and square roots", "ray packages"};
+
+constexpr const char* kIntroduction = R"(# Instruction set
+
+Generated from the one table, `cpp_model/isa/isa.hpp`, by `raypool isa --markdown`; a test compares. Do not edit.
+
+An instruction has 64 bits, data 32 bits. A thread has 16 registers r0 .. r15; a warp has 16 predicates p0 .. p15 of one bit a thread, of
+which p0 is all ones. What a mask does to each kind of result stands in [architecture.md](architecture.md), section 4.
+
+## Encoding
+
+| bits | field | |
+| --- | --- | --- |
+)";
+
+constexpr const char* kText = R"(
+`target` and `end` are the halves of the immediate of `jany`, `jnone` and `call`; `loop` has its end in the low half. Fields that an instruction
+does not use are written as 0 by the assembler and ignored by the machine. An instruction whose unit and operation stand in no row below is illegal.
+
+## Assembly text
+
+    # a comment
+    .kernel scale              # names the entry of a kernel
+            tid   r0
+            ult   p1, r0, 100
+      @p1   shl   r1, r0, 2
+      @p1   ld    r2, [r1+256]
+      @p1   fmul  r2, r2, 0.5
+      @p1   st    [r1+256], r2
+            exit
+
+One instruction a line, labels end in a colon. `@p3` before an instruction masks it with predicate p3, `@!p3` with its inverse. Where `b`
+stands, a register or an immediate is allowed. Immediates: decimal or 0x hexadecimal integers from -2147483648 to 4294967295; after a float
+instruction and `rst` a number with a point or an exponent, `inf`, `-inf`, or a bit pattern in 0x hexadecimal. A target is a label, or the number of an
+instruction. `.word 0x...` puts any 64-bit pattern in place.
+)";
+
+}  // namespace
+
+std::string isa_markdown() {
+  std::string text = kIntroduction;
+  const auto meaning = [](const Field& each) -> const char* {
+    if (each.name == field::kUnit.name) return "ALU type";
+    if (each.name == field::kOperation.name) return "operation of that type";
+    if (each.name == field::kGuardNegated.name) return "the guard predicate is inverted";
+    if (each.name == field::kGuard.name) return "guard predicate";
+    if (each.name == field::kRd.name) return "destination register, or destination predicate pd";
+    if (each.name == field::kRa.name) return "source register";
+    if (each.name == field::kRb.name) return "source register, or source predicate pb";
+    if (each.name == field::kBIsImmediate.name) return "b is the immediate, not rb";
+    if (each.name == field::kX.name) return "source predicate px, or word of a ray package";
+    return "immediate b, address offset, argument number, or target and end";
+  };
+  for (const Field& each : kFields) {
+    if (each.name == field::kTarget.name || each.name == field::kEnd.name) continue;
+    const std::string bits =
+        each.bits == 1 ? fmt::format("{}", each.lsb) : fmt::format("{}:{}", each.lsb + each.bits - 1, each.lsb);
+    text += fmt::format("| {} | {} | {} |\n", bits, each.name, meaning(each));
+  }
+  text += kText;
+  text +=
+      "\n## Instructions\n\nRows marked *c* are control instructions: they stop the instruction routine until their "
+      "write-back.\n";
+  for (int unit = 0; unit < kUnits; ++unit) {
+    text += fmt::format("\n### {}: {} (unit {})\n\n| op | instruction | | meaning |\n| --- | --- | --- | --- |\n",
+                        kUnitNames[static_cast<size_t>(unit)], kUnitTitles[unit], unit);
+    for (const InstructionInfo& info : kInstructions) {
+      if (static_cast<int>(info.unit) != unit) continue;
+      text += fmt::format("| {} | `{}` | {} | {} |\n", info.operation, syntax(info), info.control ? "*c*" : "", info.meaning);
+    }
+  }
+  return text;
+}
+
+}  // namespace raypool

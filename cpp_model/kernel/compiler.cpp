@@ -1,0 +1,97 @@
+// Runs the passes and writes machine code.
+#include "kernel/compiler.hpp"
+
+#include <fmt/format.h>
+
+#include "isa/input_error.hpp"
+
+namespace raypool::kernel {
+namespace {
+
+constexpr size_t kLongestProgram = 65535;
+
+/// The instruction with machine registers; label targets are not filled in.
+Instruction with_places(const Op& op, const Allocation& places) {
+  const auto reg = [&](int number) { return static_cast<uint8_t>(places.registers[static_cast<size_t>(number)]); };
+  const auto predicate = [&](int number) { return static_cast<uint8_t>(places.predicates[static_cast<size_t>(number)]); };
+  Instruction parts;
+  parts.info = op.info;
+  parts.guard = predicate(op.guard.predicate);
+  parts.guard_negated = op.guard.negated;
+  parts.immediate = op.immediate;
+  for (const Operand operand : op.info->operands) {
+    switch (operand) {
+      case Operand::Rd:
+        parts.rd = reg(op.rd);
+        break;
+      case Operand::Pd:
+        parts.rd = predicate(op.rd);
+        break;
+      case Operand::Ra:
+      case Operand::Address:
+        parts.ra = reg(op.ra);
+        break;
+      case Operand::Rb:
+        parts.rb = reg(op.rb);
+        break;
+      case Operand::Pb:
+        parts.rb = predicate(op.rb);
+        break;
+      case Operand::Px:
+        parts.x = predicate(op.px);
+        break;
+      case Operand::Word:
+        parts.x = op.word;
+        break;
+      case Operand::B:
+        parts.b_is_immediate = op.b_is_immediate;
+        if (!op.b_is_immediate) parts.rb = reg(op.rb);
+        break;
+      default:
+        break;
+    }
+  }
+  return parts;
+}
+
+/// A copy of a register or predicate to itself.
+bool does_nothing(const Op& op, const Instruction& parts) { return is_copy(op) && parts.rd == parts.rb; }
+
+}  // namespace
+
+void compile(Function function, Program& program) {
+  fold_constants(function);
+  fold_addresses(function);
+  remove_dead(function);
+  join_conditions(function);
+  sink_leaves(function);
+  remove_dead(function);
+  const Allocation places = allocate(function);
+
+  const auto entry = static_cast<uint32_t>(program.code.size());
+  std::vector<Instruction> code;
+  std::vector<std::pair<size_t, int>> jumps;  // instruction, label
+  std::vector<uint32_t> label_at(static_cast<size_t>(function.labels), 0);
+  for (const Op& op : function.ops) {
+    if (op.kind != Op::Kind::Instruction) {
+      label_at[static_cast<size_t>(op.label)] = entry + static_cast<uint32_t>(code.size());
+      continue;
+    }
+    const Instruction parts = with_places(op, places);
+    if (does_nothing(op, parts)) continue;
+    if (op.label != kNothing) jumps.emplace_back(code.size(), op.label);
+    code.push_back(parts);
+  }
+  for (const auto& [index, label] : jumps) code[index].immediate = label_at[static_cast<size_t>(label)];
+
+  if (program.code.size() + code.size() > kLongestProgram) {
+    throw InputError(
+        fmt::format("kernel '{}' makes the program longer than {} instructions; divide it", function.name, kLongestProgram));
+  }
+  if (!program.entries.emplace(function.name, entry).second) {
+    throw InputError(fmt::format("kernel '{}' is in the program twice; give one of them another name", function.name));
+  }
+  for (const Instruction& parts : code) program.code.push_back(encode(parts));
+}
+
+}  // namespace raypool::kernel

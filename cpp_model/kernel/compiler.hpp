@@ -1,0 +1,39 @@
+// From intermediate code to machine code.
+#pragma once
+
+#include <string>
+
+#include "isa/program.hpp"
+#include "kernel/intermediate.hpp"
+#include "kernel/recorded.hpp"
+
+namespace raypool::kernel {
+
+/// What the passes do one by one; for tests.
+void fold_constants(Function& function);
+void fold_addresses(Function& function);
+void join_conditions(Function& function);
+void sink_leaves(Function& function);
+void remove_dead(Function& function);
+
+/// Machine registers and predicates of a function's virtual ones.
+struct Allocation {
+  std::vector<int> registers;
+  std::vector<int> predicates;
+};
+/// Throws InputError with kernel and source line when 16 registers or 15 predicates do not suffice.
+Allocation allocate(const Function& function);
+
+/// Appends the kernel to the program, under its name.
+void compile(Function function, Program& program);
+
+/// Records and compiles a kernel: `body` is called with a RecordedKernel.
+template <typename Body>
+void add_kernel(Program& program, const std::string& name, const Body& body) {
+  Recorder recorder(name);
+  RecordedKernel kernel(recorder);
+  body(kernel);
+  compile(recorder.finish(), program);
+}
+
+}  // namespace raypool::kernel

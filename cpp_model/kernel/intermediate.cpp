@@ -1,0 +1,71 @@
+#include "kernel/intermediate.hpp"
+
+#include <fmt/format.h>
+
+namespace raypool::kernel {
+
+std::string to_string(const Location& location) {
+  std::string file = location.file;
+  file = file.substr(file.find_last_of('/') + 1);
+  return fmt::format("{}:{}", file, location.line);
+}
+
+bool is(const Op& op, std::string_view mnemonic) { return op.info != nullptr && op.info->mnemonic == mnemonic; }
+
+Effects effects(const Op& op) {
+  Effects result;
+  if (op.kind != Op::Kind::Instruction) return result;
+  int registers = 0;
+  int predicates = 0;
+  const auto use_register = [&](int number) {
+    if (number != kNothing) result.register_uses[registers++] = number;
+  };
+  const auto use_predicate = [&](int number) {
+    if (number > 0) result.predicate_uses[predicates++] = number;
+  };
+  use_predicate(op.guard.predicate);
+  for (const Operand operand : op.info->operands) {
+    switch (operand) {
+      case Operand::Ra:
+      case Operand::Address:
+        use_register(op.ra);
+        break;
+      case Operand::B:
+        if (!op.b_is_immediate) use_register(op.rb);
+        break;
+      case Operand::Rb:
+        use_register(op.rb);
+        break;
+      case Operand::Px:
+        use_predicate(op.px);
+        break;
+      case Operand::Pb:
+        use_predicate(op.rb);
+        break;
+      case Operand::Rd:
+        result.register_defined = op.rd;
+        break;
+      case Operand::Pd:
+        result.predicate_defined = op.rd;
+        break;
+      default:
+        break;
+    }
+  }
+  // Predicates are written in all lanes, registers in the masked ones.
+  result.partial = result.register_defined != kNothing && !op.fresh && !op.guard.all();
+  if (result.partial) use_register(result.register_defined);
+  return result;
+}
+
+bool is_pure(const Op& op) {
+  return op.kind == Op::Kind::Instruction && (writes_register(*op.info) || writes_predicate(*op.info));
+}
+
+bool is_copy(const Op& op) {
+  if (op.kind != Op::Kind::Instruction) return false;
+  if (is(op, "mov")) return !op.b_is_immediate;
+  return is(op, "pand") && op.px == op.rb && op.guard.all();
+}
+
+}  // namespace raypool::kernel

@@ -1,0 +1,76 @@
+// The compiler's intermediate code: machine instructions whose registers and predicates are not yet numbered as the machine's.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "isa/encoding.hpp"
+
+namespace raypool::kernel {
+
+/// A line of a kernel's source.
+struct Location {
+  const char* file = "";
+  int line = 0;
+  /// As a default argument: the place of the call.
+  static constexpr Location here(const char* file = __builtin_FILE(), int line = __builtin_LINE()) { return {file, line}; }
+};
+/// "kernels.cpp:57"
+std::string to_string(const Location& location);
+
+/// The mask under which code runs: a virtual predicate, 0 = p0.
+struct Guard {
+  int predicate = 0;
+  bool negated = false;
+  bool all() const { return predicate == 0 && !negated; }
+  friend bool operator==(const Guard& a, const Guard& b) { return a.predicate == b.predicate && a.negated == b.negated; }
+};
+
+inline constexpr int kNothing = -1;
+
+struct Op {
+  enum class Kind : uint8_t { Instruction, Label, LoopEnd };
+  Kind kind = Kind::Instruction;
+  const InstructionInfo* info = nullptr;
+  Guard guard;
+  int rd = kNothing;  ///< virtual register, or predicate if the instruction writes one
+  int ra = kNothing;  ///< virtual register
+  int rb = kNothing;  ///< virtual register or predicate, as the instruction has it
+  int px = kNothing;  ///< virtual predicate
+  bool b_is_immediate = false;
+  uint32_t immediate = 0;
+  uint8_t word = 0;      ///< ray word
+  int label = kNothing;  ///< Label, LoopEnd: its number; jumps and loop: where they go
+  /// Lanes outside the guard need nothing of rd's old value, so that whatever rd's register held before is dead.
+  bool fresh = false;
+  Location where;
+};
+
+/// One kernel. Virtual registers are 0 .. registers-1; virtual predicate 0 is p0.
+struct Function {
+  std::string name;
+  std::vector<Op> ops;
+  int registers = 0;
+  int predicates = 1;
+  int labels = 0;
+};
+
+/// What an op reads and writes. Predicate p0 is left out.
+struct Effects {
+  int register_uses[3] = {kNothing, kNothing, kNothing};
+  int predicate_uses[4] = {kNothing, kNothing, kNothing, kNothing};
+  int register_defined = kNothing;
+  int predicate_defined = kNothing;
+  /// The defined register's old value lives on in some lanes; it is then among the uses.
+  bool partial = false;
+};
+Effects effects(const Op& op);
+
+/// True for an instruction that may be left out when nobody reads its result.
+bool is_pure(const Op& op);
+/// True for a copy of one register or predicate to another, in all lanes that matter.
+bool is_copy(const Op& op);
+bool is(const Op& op, std::string_view mnemonic);
+
+}  // namespace raypool::kernel

@@ -1,0 +1,71 @@
+#include "kernel/kernel_report.hpp"
+
+#include <fmt/format.h>
+
+#include <numeric>
+
+#include "isa/encoding.hpp"
+
+namespace raypool {
+namespace {
+
+// M.-L. Hsieh, "Ray-Pool Based Configurable Multiprocessor Design for Ray Tracing", National Taiwan University, 2015; one compute
+// unit.
+constexpr std::array<InstructionCounts, kRayKernels> kThesisCounts = {
+    {{2, 2, 2, 33, 24, 1, 13}, {1, 7, 4, 54, 75, 5, 45}, {1, 5, 4, 38, 33, 3, 26}, {1, 6, 3, 23, 10, 1, 10}}};
+
+int total(const InstructionCounts& counts) { return std::accumulate(counts.begin(), counts.end(), 0); }
+
+}  // namespace
+
+Program extract_kernel(const Program& program, const std::string& name) {
+  const auto found = program.entries.find(name);
+  if (found == program.entries.end()) {
+    std::string names;
+    for (const auto& entry : program.entries) names += (names.empty() ? "" : ", ") + entry.first;
+    throw InputError(fmt::format("there is no kernel '{}'; there are {}", name, names));
+  }
+  const uint32_t begin = found->second;
+  auto end = static_cast<uint32_t>(program.code.size());
+  for (const auto& [other, entry] : program.entries) {
+    if (entry > begin) end = std::min(end, entry);
+  }
+  Program result;
+  result.entries[name] = 0;
+  for (uint32_t pc = begin; pc < end; ++pc) {
+    Instruction parts = unpack(program.code[pc]);
+    // Targets move with the kernel.
+    if (parts.info != nullptr && has_operand(*parts.info, Operand::Target)) parts.immediate -= begin;
+    if (parts.info != nullptr && has_operand(*parts.info, Operand::End)) {
+      parts.immediate -= has_operand(*parts.info, Operand::Target) ? begin << 16 : begin;
+    }
+    result.code.push_back(parts.info == nullptr ? program.code[pc] : encode(parts));
+  }
+  return result;
+}
+
+InstructionCounts count_instructions(const Program& program, const std::string& name) {
+  InstructionCounts counts{};
+  for (const uint64_t encoding : extract_kernel(program, name).code) {
+    const Instruction parts = unpack(encoding);
+    if (parts.info != nullptr) ++counts[static_cast<size_t>(parts.info->unit)];
+  }
+  return counts;
+}
+
+std::string kernel_table() {
+  std::string text = fmt::format("{:<22}", "instructions");
+  for (const std::string_view unit : kUnitNames) text += fmt::format("{:>9}", unit);
+  text += fmt::format("{:>10}\n", "total");
+  for (size_t kernel = 0; kernel < kRayKernels; ++kernel) {
+    const InstructionCounts counts = count_instructions(ray_kernel_program(), std::string(kRayKernelNames[kernel]));
+    const InstructionCounts& thesis = kThesisCounts[kernel];
+    text += fmt::format("{:<22}", kRayKernelNames[kernel]);
+    for (size_t unit = 0; unit < kUnits; ++unit) text += fmt::format("{:>9}", fmt::format("{} ({})", counts[unit], thesis[unit]));
+    text += fmt::format("{:>10}\n", fmt::format("{} ({})", total(counts), total(thesis)));
+  }
+  text += "in brackets: the thesis' kernels\n";
+  return text;
+}
+
+}  // namespace raypool

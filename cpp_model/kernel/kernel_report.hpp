@@ -1,0 +1,23 @@
+// What a program's kernels consist of.
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "isa/program.hpp"
+#include "kernel/kernels.hpp"
+
+namespace raypool {
+
+/// Instructions of a kernel by ALU type, index = Unit.
+using InstructionCounts = std::array<int, kUnits>;
+
+/// A kernel's instructions: from its entry to the next entry. Throws InputError, with the names there are, if the program has no
+/// such kernel.
+Program extract_kernel(const Program& program, const std::string& name);
+InstructionCounts count_instructions(const Program& program, const std::string& name);
+
+/// The ray kernels by ALU beside those of the thesis this machine starts from, as text with fixed columns.
+std::string kernel_table();
+
+}  // namespace raypool

@@ -1,0 +1,64 @@
+// The ray-tracing kernels and what runs them natively. Written once in the kernel language (kernel.hpp); the same source runs as
+// C++ and compiles to machine code.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "arith/arith.hpp"
+#include "config/configuration.hpp"
+#include "isa/isa.hpp"
+#include "isa/program.hpp"
+#include "machine/compute_unit.hpp"
+
+namespace raypool {
+
+/// Kernels of the renderer; their names in Program::entries and reports are in kRayKernelNames.
+enum class RayKernel : uint8_t {
+  CastEye = 0,              ///< makes an eye ray for each pixel of a tile
+  CastSecondary = 1,        ///< normal intersection -> reflection ray and shadow ray
+  CastSecondaryDirect = 2,  ///< normal intersection -> shadow ray only (primary mode)
+  Shade = 3,                ///< shadow intersection -> contribution to the frame buffer
+};
+inline constexpr int kRayKernels = 4;
+inline constexpr std::array<std::string_view, kRayKernels> kRayKernelNames = {"cast_eye", "cast_secondary",
+                                                                              "cast_secondary_direct", "shade"};
+
+/// Argument words of the ray kernels (floats unless said otherwise). The direction through the centre of pixel (x, y) is
+/// corner + x * step_x + y * step_y.
+namespace argument {
+inline constexpr int kEye = 0;          ///< x, y, z
+inline constexpr int kCorner = 3;       ///< x, y, z
+inline constexpr int kStepX = 6;        ///< x, y, z
+inline constexpr int kStepY = 9;        ///< x, y, z
+inline constexpr int kLight = 12;       ///< position x, y, z
+inline constexpr int kLightColor = 15;  ///< red, green, blue
+inline constexpr int kOffset = 18;      ///< distance by which a secondary ray's origin leaves the surface along the normal
+inline constexpr int kTileWidthLog2 =
+    19;                               ///< integer: an eye tile is 2^this pixels wide; thread t is pixel (t & mask, t >> log2)
+inline constexpr int kTileMask = 20;  ///< integer: tile width - 1
+inline constexpr int kWidth = 21;     ///< integer: image width, pixels
+inline constexpr int kHeight = 22;    ///< integer: image height, pixels
+inline constexpr int kCount = 23;
+}  // namespace argument
+// CastEye is launched with block word = x of the tile's first pixel | y << 16. Pixels outside the image export nothing.
+
+/// All ray kernels in one program. Throws InputError (with kernel and line) when registers or predicates do not suffice.
+const Program& ray_kernel_program();
+
+/// What one thread of a kernel sees and leaves when it runs as C++.
+struct NativeThread {
+  uint32_t thread = 0, block = 0, threads = 1, blocks = 1;
+  const std::array<uint32_t, kArguments>* arguments = nullptr;
+  Memory* memory = nullptr;
+  arith::Mode mode;
+  Intersection input{};                  ///< what `rin` makes current
+  std::vector<Ray> rays;                 ///< what `rout` exported, in order
+  std::vector<FrameContribution> frame;  ///< what `rfb` exported, in order
+};
+void run_native(RayKernel kernel, NativeThread& thread);
+
+}  // namespace raypool

@@ -1,0 +1,70 @@
+#include "kernel/liveness.hpp"
+
+namespace raypool::kernel {
+namespace {
+
+/// Ops that may follow each op.
+std::vector<std::vector<size_t>> find_successors(const Function& function) {
+  const std::vector<Op>& ops = function.ops;
+  std::vector<size_t> label_at(static_cast<size_t>(function.labels), 0);
+  std::vector<size_t> loop_at(static_cast<size_t>(function.labels), 0);
+  for (size_t i = 0; i < ops.size(); ++i) {
+    if (ops[i].kind != Op::Kind::Instruction)
+      label_at[static_cast<size_t>(ops[i].label)] = i;
+    else if (is(ops[i], "loop"))
+      loop_at[static_cast<size_t>(ops[i].label)] = i;
+  }
+  std::vector<std::vector<size_t>> successors(ops.size());
+  for (size_t i = 0; i < ops.size(); ++i) {
+    const Op& op = ops[i];
+    if (op.kind == Op::Kind::LoopEnd) {
+      successors[i] = {loop_at[static_cast<size_t>(op.label)]};  // the loop runs again and decides
+    } else if (is(op, "loop")) {
+      successors[i] = {i + 1, label_at[static_cast<size_t>(op.label)] + 1};
+    } else if (is(op, "jnone") || is(op, "jany")) {
+      successors[i] = {i + 1, label_at[static_cast<size_t>(op.label)]};
+    } else if (!is(op, "exit")) {
+      successors[i] = {i + 1};
+    }
+  }
+  return successors;
+}
+
+}  // namespace
+
+Liveness find_liveness(const Function& function) {
+  const size_t size = function.ops.size();
+  Liveness after;
+  after.registers_after.assign(size, NumberSet(function.registers));
+  after.predicates_after.assign(size, NumberSet(function.predicates));
+  Liveness before_ops = after;  // the same shape: what is needed before each op
+  const auto successors = find_successors(function);
+  bool changed = true;
+  while (changed) {
+    changed = false;
+    for (size_t i = size; i-- > 0;) {
+      NumberSet& registers = after.registers_after[i];
+      NumberSet& predicates = after.predicates_after[i];
+      for (const size_t next : successors[i]) {
+        registers.merge(before_ops.registers_after[next]);
+        predicates.merge(before_ops.predicates_after[next]);
+      }
+      const Effects effect = effects(function.ops[i]);
+      NumberSet registers_before = registers;
+      NumberSet predicates_before = predicates;
+      if (effect.register_defined != kNothing) registers_before.erase(effect.register_defined);
+      if (effect.predicate_defined != kNothing) predicates_before.erase(effect.predicate_defined);
+      for (const int used : effect.register_uses) {
+        if (used != kNothing) registers_before.insert(used);
+      }
+      for (const int used : effect.predicate_uses) {
+        if (used != kNothing) predicates_before.insert(used);
+      }
+      changed |= before_ops.registers_after[i].merge(registers_before);
+      changed |= before_ops.predicates_after[i].merge(predicates_before);
+    }
+  }
+  return after;
+}
+
+}  // namespace raypool::kernel

@@ -1,0 +1,195 @@
+// Passes over intermediate code that make it shorter or easier to allocate. None changes what a kernel computes.
+#include <algorithm>
+#include <map>
+#include <optional>
+
+#include "kernel/compiler.hpp"
+#include "kernel/liveness.hpp"
+
+namespace raypool::kernel {
+namespace {
+
+/// For each virtual register (or predicate) its only defining op, kNothing if there are several or none.
+std::vector<int> find_single_definitions(const Function& function, bool predicates) {
+  std::vector<int> definitions(static_cast<size_t>(predicates ? function.predicates : function.registers), kNothing);
+  std::vector<bool> several(definitions.size(), false);
+  for (size_t i = 0; i < function.ops.size(); ++i) {
+    const Effects effect = effects(function.ops[i]);
+    const int defined = predicates ? effect.predicate_defined : effect.register_defined;
+    if (defined == kNothing) continue;
+    const auto number = static_cast<size_t>(defined);
+    if (definitions[number] != kNothing) several[number] = true;
+    definitions[number] = static_cast<int>(i);
+  }
+  for (size_t i = 0; i < definitions.size(); ++i) {
+    if (several[i]) definitions[i] = kNothing;
+  }
+  return definitions;
+}
+
+/// The instruction that gives the same result with ra and rb exchanged, null if there is none.
+const InstructionInfo* exchanged(const InstructionInfo& info) {
+  static const std::map<std::string_view, std::string_view> kExchanged = {
+      {"iadd", "iadd"}, {"imul", "imul"}, {"and", "and"},   {"or", "or"},     {"xor", "xor"},   {"imin", "imin"},
+      {"imax", "imax"}, {"umin", "umin"}, {"umax", "umax"}, {"fadd", "fadd"}, {"fmul", "fmul"}, {"fmin", "fmin"},
+      {"fmax", "fmax"}, {"ieq", "ieq"},   {"ine", "ine"},   {"ilt", "igt"},   {"ile", "ige"},   {"igt", "ilt"},
+      {"ige", "ile"},   {"ult", "ugt"},   {"ule", "uge"},   {"ugt", "ult"},   {"uge", "ule"},   {"feq", "feq"},
+      {"fne", "fne"},   {"flt", "fgt"},   {"fle", "fge"},   {"fgt", "flt"},   {"fge", "fle"}};
+  const auto found = kExchanged.find(info.mnemonic);
+  return found == kExchanged.end() ? nullptr : &instruction(found->second);
+}
+
+bool ends_block(const Op& op) { return op.kind != Op::Kind::Instruction || op.info->control; }
+
+/// Needs no register: its value can be made anywhere before its use.
+bool is_leaf(const Op& op) {
+  if (op.kind != Op::Kind::Instruction || !op.fresh || !writes_register(*op.info)) return false;
+  return op.info->unit == Unit::Tid || is(op, "rld") || (is(op, "mov") && op.b_is_immediate);
+}
+
+/// True if the leaf must stay before `op`.
+bool blocks_leaf(const Op& leaf, const Op& op) {
+  if (ends_block(op)) return true;
+  const Effects effect = effects(op);
+  if (effect.predicate_defined != kNothing && effect.predicate_defined == leaf.guard.predicate) return true;
+  if (effect.register_defined == leaf.rd) return true;
+  for (const int used : effect.register_uses) {
+    if (used == leaf.rd) return true;
+  }
+  if (!is(leaf, "rld")) return false;
+  return is(op, "rin") || is(op, "rout") || is(op, "rfb") || (is(op, "rst") && op.word == leaf.word);
+}
+
+}  // namespace
+
+void fold_constants(Function& function) {
+  bool changed = true;
+  while (changed) {
+    changed = false;
+    const std::vector<int> definitions = find_single_definitions(function, false);
+    const auto constant = [&](int number) -> std::optional<uint32_t> {
+      if (number == kNothing || definitions[static_cast<size_t>(number)] == kNothing) return std::nullopt;
+      const Op& op = function.ops[static_cast<size_t>(definitions[static_cast<size_t>(number)])];
+      if (!is(op, "mov") || !op.b_is_immediate || !op.fresh) return std::nullopt;
+      return op.immediate;
+    };
+    for (Op& op : function.ops) {
+      if (op.kind != Op::Kind::Instruction || !has_operand(*op.info, Operand::B) || op.b_is_immediate) continue;
+      std::optional<uint32_t> value = constant(op.rb);
+      if (!value && constant(op.ra) && exchanged(*op.info) != nullptr) {
+        op.info = exchanged(*op.info);
+        std::swap(op.ra, op.rb);
+        value = constant(op.rb);
+      }
+      if (!value) continue;
+      op.b_is_immediate = true;
+      op.immediate = *value;
+      op.rb = kNothing;
+      changed = true;
+    }
+  }
+}
+
+void fold_addresses(Function& function) {
+  bool changed = true;
+  while (changed) {
+    changed = false;
+    const std::vector<int> definitions = find_single_definitions(function, false);
+    for (Op& op : function.ops) {
+      if (op.kind != Op::Kind::Instruction || !has_operand(*op.info, Operand::Address)) continue;
+      const int sum = definitions[static_cast<size_t>(op.ra)];
+      if (sum == kNothing) continue;
+      const Op& add = function.ops[static_cast<size_t>(sum)];
+      if (!is(add, "iadd") || !add.b_is_immediate || !add.fresh) continue;
+      // The base must hold the same value at the access as at the addition: it is written once, before both.
+      const int base = definitions[static_cast<size_t>(add.ra)];
+      if (base == kNothing || !function.ops[static_cast<size_t>(base)].fresh) continue;
+      op.ra = add.ra;
+      op.immediate += add.immediate;
+      changed = true;
+    }
+  }
+}
+
+void join_conditions(Function& function) {
+  // c = a and (x < y): the compare, guarded by a, gives c at once, since a compare's result is ANDed with its mask.
+  const std::vector<int> definitions = find_single_definitions(function, true);
+  std::vector<int> uses(static_cast<size_t>(function.predicates), 0);
+  for (const Op& op : function.ops) {
+    const Effects effect = effects(op);
+    for (const int used : effect.predicate_uses) {
+      if (used != kNothing) ++uses[static_cast<size_t>(used)];
+    }
+  }
+  std::vector<size_t> removed;
+  for (size_t i = 0; i < function.ops.size(); ++i) {
+    const Op& op = function.ops[i];
+    if (!is(op, "pand") || op.px == op.rb || op.px == 0 || op.rb == 0) continue;
+    const int first = definitions[static_cast<size_t>(op.px)];
+    const int second = definitions[static_cast<size_t>(op.rb)];
+    if (first == kNothing || second == kNothing) continue;
+    // Either operand may be the compare, if the other one is there before it.
+    const int late = std::max(first, second);
+    const int early_predicate = late == second ? op.px : op.rb;
+    const Op& early = function.ops[static_cast<size_t>(std::min(first, second))];
+    Op& compare = function.ops[static_cast<size_t>(late)];
+    const bool is_compare = has_operand(*compare.info, Operand::Ra);
+    if (!is_compare || !early.fresh || !compare.fresh || uses[static_cast<size_t>(compare.rd)] != 1) continue;
+    if (!(compare.guard == op.guard) || !(early.guard == op.guard)) continue;
+    // All three in one straight piece of code, in which neither the result nor the mask is written otherwise.
+    bool straight = true;
+    for (int k = late + 1; k < static_cast<int>(i) && straight; ++k) {
+      const Op& between = function.ops[static_cast<size_t>(k)];
+      const Effects effect = effects(between);
+      straight = !ends_block(between) && effect.predicate_defined != op.rd &&
+                 (effect.predicate_defined == kNothing || effect.predicate_defined != op.guard.predicate);
+      for (const int used : effect.predicate_uses) straight = straight && (used == kNothing || used != op.rd);
+    }
+    for (const Operand operand : compare.info->operands) straight = straight && operand != Operand::Px;
+    if (!straight) continue;
+    compare.guard = {early_predicate, false};
+    compare.rd = op.rd;
+    compare.fresh = op.fresh;
+    removed.push_back(i);
+  }
+  for (auto index = removed.rbegin(); index != removed.rend(); ++index) {
+    function.ops.erase(function.ops.begin() + static_cast<std::ptrdiff_t>(*index));
+  }
+}
+
+void sink_leaves(Function& function) {
+  const std::vector<int> definitions = find_single_definitions(function, false);
+  // From the end, so that a leaf does not stop at one that moves on.
+  for (size_t i = function.ops.size(); i-- > 0;) {
+    const Op leaf = function.ops[i];
+    if (!is_leaf(leaf) || definitions[static_cast<size_t>(leaf.rd)] == kNothing) continue;
+    size_t place = i + 1;
+    while (place < function.ops.size() && !blocks_leaf(leaf, function.ops[place])) ++place;
+    const auto begin = function.ops.begin();
+    std::rotate(begin + static_cast<std::ptrdiff_t>(i), begin + static_cast<std::ptrdiff_t>(i + 1),
+                begin + static_cast<std::ptrdiff_t>(place));
+  }
+}
+
+void remove_dead(Function& function) {
+  bool changed = true;
+  while (changed) {
+    changed = false;
+    const Liveness liveness = find_liveness(function);
+    std::vector<Op> kept;
+    kept.reserve(function.ops.size());
+    for (size_t i = 0; i < function.ops.size(); ++i) {
+      const Op& op = function.ops[i];
+      const Effects effect = effects(op);
+      const bool needed = (effect.register_defined != kNothing && liveness.registers_after[i].has(effect.register_defined)) ||
+                          (effect.predicate_defined != kNothing && liveness.predicates_after[i].has(effect.predicate_defined));
+      if (needed || !is_pure(op))
+        kept.push_back(op);
+      else
+        changed = true;
+    }
+    function.ops = std::move(kept);
+  }
+}
+
+}  // namespace raypool::kernel

@@ -1,0 +1,370 @@
+// Random kernels, run natively thread by thread and as machine code: every word they leave must agree.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "isa/assembler.hpp"
+#include "kernel/kernel.hpp"
+#include "kernel/test_interpreter.hpp"
+
+namespace raypool::kernel {
+namespace {
+
+constexpr uint32_t kMemoryBytes = 4096;
+constexpr int kSlotBytes = 64;  // of memory a thread
+
+/// Writes a kernel whose shape follows from the seed alone, so that it comes out the same for every K and however often a body is
+/// run.
+template <typename K>
+class RandomKernel {
+  using Bool = typename K::Bool;
+  using Int = typename K::Int;
+  using Float = typename K::Float;
+  using Random = std::mt19937;
+
+ public:
+  RandomKernel(K& k, uint32_t seed) : k_(k), seed_(seed), slot_((k.thread() << 6) + 1024) {}
+
+  void run() {
+    Random random(seed_);
+    k_.ray_in();
+    std::vector<Int> ints;
+    std::vector<Float> floats;
+    std::vector<Bool> bools;
+    // Room is reserved, so that no value is copied but by the kernel's own statements.
+    ints.reserve(3), floats.reserve(4), bools.reserve(2);
+    ints.push_back(k_.thread());
+    ints.push_back(k_.int_argument(1));
+    ints.push_back(k_.int_word(7) & 255);
+    for (int i = 0; i < 4; ++i) floats.push_back(k_.float_word(i));
+    bools.push_back(ints[0] < 4);
+    bools.push_back(floats[0] > floats[1]);
+    statements(random, ints, floats, bools, 3);
+    for (size_t i = 0; i < ints.size(); ++i) k_.set_word(static_cast<int>(i), ints[i]);
+    for (size_t i = 0; i < floats.size(); ++i) k_.set_word(static_cast<int>(4 + i), floats[i]);
+    for (size_t i = 0; i < bools.size(); ++i) k_.set_word(static_cast<int>(9 + i), select(bools[i], Int(1), Int(0)));
+    k_.set_word(8, Float(0.0f));
+    k_.set_word(11, Int(5));
+    k_.set_word(3, Int(6));
+    k_.if_(bools[0] || !bools[1], [&] { k_.ray_out(); });
+  }
+
+ private:
+  static uint32_t below(Random& random, uint32_t limit) { return static_cast<uint32_t>(random() % limit); }
+
+  const Int& pick(Random& random, const std::vector<Int>& from) {
+    return from[below(random, static_cast<uint32_t>(from.size()))];
+  }
+  const Float& pick(Random& random, const std::vector<Float>& from) {
+    return from[below(random, static_cast<uint32_t>(from.size()))];
+  }
+
+  // Operands of an operator are computed in statements of their own: C++ leaves the order within an expression open.
+  Int int_expression(Random& random, const std::vector<Int>& ints, const std::vector<Float>& floats,
+                     const std::vector<Bool>& bools) {
+    const Int& a = pick(random, ints);
+    const Int& b = pick(random, ints);
+    const Float& f = pick(random, floats);
+    const Bool& c = bools[below(random, static_cast<uint32_t>(bools.size()))];
+    const int literal = static_cast<int>(below(random, 40)) - 20;
+    const int kind = static_cast<int>(below(random, 24));
+    switch (kind) {
+      case 0:
+        return a + b;
+      case 1:
+        return a - literal;
+      case 2:
+        return literal - a;
+      case 3:
+        return a * b + literal;
+      case 4:
+        return (a & b) | (a ^ literal);
+      case 5:
+        return a << (b & 7);
+      case 6:
+        return shift_right_logical(a, Int(literal));
+      case 7:
+        return a >> 3;
+      case 8:
+        return min(a, b);
+      case 9:
+        return max(literal, a);
+      case 10:
+        return min_unsigned(a, b);
+      case 11:
+        return max_unsigned(a, b);
+      case 12:
+        return select(c, a, b);
+      case 13:
+        return select(!c, a, Int(literal));
+      case 14:
+        return select(c, Int(literal), a);
+      case 15:
+        return -a;
+      case 16:
+        return ~a;
+      case 17:
+        return to_int(f);
+      case 18:
+        return as_int(f);
+      case 19:
+        return k_.load_int(slot_, 4 * static_cast<int>(below(random, 8)));
+      case 20:
+        return k_.load_int(slot_ + 4 * static_cast<int>(below(random, 4)), 16);
+      case 21:
+        return a;
+      case 22:
+        return k_.int_word(static_cast<int>(below(random, 21)));
+      default:
+        return literal;
+    }
+  }
+
+  Float float_expression(Random& random, const std::vector<Int>& ints, const std::vector<Float>& floats,
+                         const std::vector<Bool>& bools) {
+    const Float& a = pick(random, floats);
+    const Float& b = pick(random, floats);
+    const Int& i = pick(random, ints);
+    const Bool& c = bools[below(random, static_cast<uint32_t>(bools.size()))];
+    const float literal = static_cast<float>(below(random, 64)) * 0.25f - 8.0f;
+    const int kind = static_cast<int>(below(random, 20));
+    switch (kind) {
+      case 0:
+        return a + b;
+      case 1:
+        return a - literal;
+      case 2:
+        return literal - a;
+      case 3:
+        return a * b;
+      case 4:
+        return literal * a + b * a;
+      case 5:
+        return a / b;
+      case 6:
+        return a / literal;
+      case 7:
+        return min(a, b);
+      case 8:
+        return max(literal, a);
+      case 9:
+        return -a;
+      case 10:
+        return abs(a);
+      case 11:
+        return sqrt(abs(a));
+      case 12:
+        return rsqrt(b);
+      case 13:
+        return rcp(a);
+      case 14:
+        return select(c, a, b);
+      case 15:
+        return select(!c, Float(literal), b);
+      case 16:
+        return to_float(i);
+      case 17:
+        return as_float(i);
+      case 18:
+        return a;
+      default:
+        return literal;
+    }
+  }
+
+  Bool bool_expression(Random& random, const std::vector<Int>& ints, const std::vector<Float>& floats,
+                       const std::vector<Bool>& bools) {
+    const Int& i = pick(random, ints);
+    const Int& j = pick(random, ints);
+    const Float& f = pick(random, floats);
+    const Float& g = pick(random, floats);
+    const Bool& c = bools[below(random, static_cast<uint32_t>(bools.size()))];
+    const Bool& d = bools[below(random, static_cast<uint32_t>(bools.size()))];
+    switch (below(random, 18)) {
+      case 0:
+        return i == j;
+      case 1:
+        return i != 3;
+      case 2:
+        return 5 < i;
+      case 3:
+        return i <= j;
+      case 4:
+        return less_unsigned(i, j);
+      case 5:
+        return less_equal_unsigned(Int(7), i);
+      case 6:
+        return f < g;
+      case 7:
+        return f <= 1.0f;
+      case 8:
+        return 0.5f >= f;
+      case 9:
+        return f == g;
+      case 10:
+        return f != g;
+      case 11:
+        return i < 6 && f < 2.0f;
+      case 12:
+        return c && i > j;
+      case 13:
+        return c || !d;
+      case 14:
+        return !c && !d;
+      case 15:
+        return !c ^ d;
+      case 16:
+        return !c;
+      default:
+        return c;
+    }
+  }
+
+  void statements(Random& random, std::vector<Int>& ints, std::vector<Float>& floats, std::vector<Bool>& bools, int depth) {
+    const uint32_t count = 2 + below(random, 5);
+    for (uint32_t s = 0; s < count; ++s) statement(random, ints, floats, bools, depth);
+  }
+
+  void statement(Random& random, std::vector<Int>& ints, std::vector<Float>& floats, std::vector<Bool>& bools, int depth) {
+    const uint32_t kind = below(random, depth > 0 ? 14 : 9);
+    const uint32_t seed = static_cast<uint32_t>(random());
+    const size_t target = below(random, 60);
+    if (kind < 3) {
+      ints[target % ints.size()] = int_expression(random, ints, floats, bools);
+    } else if (kind < 6) {
+      floats[target % floats.size()] = float_expression(random, ints, floats, bools);
+    } else if (kind == 6) {
+      const size_t index = target % bools.size();
+      if (index != locked_) bools[index] = bool_expression(random, ints, floats, bools);
+    } else if (kind == 7) {
+      const Float value = float_expression(random, ints, floats, bools);
+      k_.store(slot_, 4 * static_cast<int>(below(random, 8)), value);
+    } else if (kind == 8) {
+      floats[target % floats.size()] += pick(random, floats);
+    } else if (kind < 12) {
+      // Either a new condition, or a variable of the kernel, which the body then leaves alone.
+      const bool variable = below(random, 3) == 0 && locked_ == kNone;
+      const size_t index = target % bools.size();
+      const auto then = [&] {
+        Random inner(seed);
+        statements(inner, ints, floats, bools, depth - 1);
+      };
+      const auto otherwise = [&] {
+        Random inner(seed + 1);
+        statements(inner, ints, floats, bools, depth - 1);
+      };
+      const size_t outer_locked = locked_;
+      if (variable) {
+        locked_ = index;
+        if (kind == 9)
+          k_.if_(bools[index], then);
+        else if (kind == 10)
+          k_.if_(!bools[index], then);
+        else
+          k_.if_(bools[index], then, otherwise);
+      } else {
+        const Bool condition = bool_expression(random, ints, floats, bools);
+        if (kind == 9)
+          k_.if_(condition, then);
+        else if (kind == 10)
+          k_.if_(!condition, then);
+        else
+          k_.if_(condition, then, otherwise);
+      }
+      locked_ = outer_locked;
+    } else {
+      // Some trips, of a number that differs between threads.
+      Int left = (pick(random, ints) & 3) + static_cast<int>(below(random, 2));
+      const uint32_t form = below(random, 3);
+      Bool again = left > 1;
+      k_.while_(
+          [&]() -> Bool {
+            if (form == 0) return left > 0;
+            if (form == 1) return left > 0 && left < 4;
+            return again;
+          },
+          [&] {
+            Random inner(seed);
+            statements(inner, ints, floats, bools, depth - 1);
+            left -= 1;
+            again = left > 0;
+          });
+    }
+  }
+
+  static constexpr size_t kNone = 99;
+  K& k_;
+  uint32_t seed_;
+  Int slot_;
+  size_t locked_ = kNone;
+};
+
+struct Outcome {
+  int compiled = 0;
+  int refused = 0;
+};
+
+void compare(uint32_t seed, Outcome& outcome) {
+  Program program;
+  program.code.assign(seed % 5, 0);  // entries are not always 0
+  try {
+    add_kernel(program, "random", [&](RecordedKernel& k) { RandomKernel<RecordedKernel>(k, seed).run(); });
+  } catch (const InputError& error) {
+    ++outcome.refused;
+    return;
+  }
+  ++outcome.compiled;
+  ASSERT_EQ(assemble(listing(program), "listing").code, program.code) << "seed " << seed;
+
+  test::Interpreter machine;
+  std::mt19937 random(seed);
+  machine.memory = Memory(kMemoryBytes);
+  for (uint32_t address = 0; address < kMemoryBytes; address += 4) machine.memory.store(address, static_cast<uint32_t>(random()));
+  for (uint32_t& word : machine.arguments) word = static_cast<uint32_t>(random() % 100);
+  for (auto& package : machine.input) {
+    for (size_t i = 0; i < package.size(); ++i) {
+      const float value = static_cast<float>(static_cast<int>(random() % 4001) - 2000) / 256.0f;
+      package[i] = random() % 16 == 0 ? static_cast<uint32_t>(random()) : arith::detail::to_bits(value);
+    }
+  }
+  machine.mode.subnormals = seed % 2 != 0 ? Subnormals::Flush : Subnormals::Ieee;
+  machine.threads = 1 + seed % test::Interpreter::kLanes;
+  Memory native_memory = machine.memory;
+  machine.run(program, program.entries["random"]);
+
+  for (uint32_t lane = 0; lane < machine.threads; ++lane) {
+    NativeThread thread;
+    thread.thread = lane;
+    thread.threads = machine.threads;
+    thread.arguments = &machine.arguments;
+    thread.memory = &native_memory;
+    thread.mode = machine.mode;
+    thread.input = machine.input[lane];
+    if (thread.mode.subnormals == Subnormals::Flush) {
+      NativeKernel<Subnormals::Flush, SlowUnit::Exact> k(thread);
+      RandomKernel<decltype(k)>(k, seed).run();
+    } else {
+      NativeKernel<Subnormals::Ieee, SlowUnit::Exact> k(thread);
+      RandomKernel<decltype(k)>(k, seed).run();
+    }
+    ASSERT_EQ(thread.rays, machine.rays[lane]) << "seed " << seed << ", thread " << lane << "\n" << listing(program);
+  }
+  for (uint32_t address = 0; address < kMemoryBytes; address += 4) {
+    ASSERT_EQ(native_memory.load(address), machine.memory.load(address))
+        << "seed " << seed << ", address " << address << ", thread " << (static_cast<int>(address) - 1024) / kSlotBytes << "\n"
+        << listing(program);
+  }
+}
+
+TEST(RandomKernel, MachineCodeLeavesWhatTheSourceRunAsCppLeaves) {
+  Outcome outcome;
+  for (uint32_t seed = 1; seed <= 1500; ++seed) {
+    ASSERT_NO_FATAL_FAILURE(compare(seed, outcome));
+  }
+  // Large ones may need more registers than there are; but a compiler that gives up easily would show here.
+  EXPECT_GT(outcome.compiled, 1350) << outcome.refused << " refused";
+}
+
+}  // namespace
+}  // namespace raypool::kernel

@@ -1,0 +1,141 @@
+// The ray kernels' source. kernels.hpp says what each is for, packages.hpp what the words hold, docs/kernels.md has the formulas.
+#pragma once
+
+#include <limits>
+
+#include "kernel/kernel.hpp"
+#include "kernel/kernels.hpp"
+
+namespace raypool::kernel {
+
+template <typename K>
+void cast_eye(K& k) {
+  using Int = typename K::Int;
+  using Float = typename K::Float;
+  const Int thread = k.thread();
+  // Thread and block both become x | y << 16: their sum is the pixel.
+  const Int pixel = (thread & k.int_argument(argument::kTileMask)) +
+                    (shift_right_logical(thread, k.int_argument(argument::kTileWidthLog2)) << 16) + k.block();
+  const Int x = pixel & 0xffff;
+  const Int y = shift_right_logical(pixel, 16);
+  const Float column = to_float(x);
+  const Float row = to_float(y);
+  for (int axis = 0; axis < 3; ++axis) {
+    k.set_word(word::kOrigin + axis, k.int_argument(argument::kEye + axis));
+    k.set_word(word::kDirection + axis, k.float_argument(argument::kCorner + axis) +
+                                            column * k.float_argument(argument::kStepX + axis) +
+                                            row * k.float_argument(argument::kStepY + axis));
+    k.set_word(word::kColor + axis, Float(1.0f));
+  }
+  k.set_word(word::kLimit, Float(std::numeric_limits<float>::infinity()));
+  k.set_word(word::kPixel, pixel);
+  k.set_word(word::kFlags, Int(1));
+  k.if_(x < k.int_argument(argument::kWidth) && y < k.int_argument(argument::kHeight), [&] { k.ray_out(); });
+}
+
+/// What the light gives through the hit: the shadow ray's direction, from `origin` to the light, and by how much the surface
+/// faces it.
+template <typename K>
+struct Lighting {
+  Vector<K> direction;
+  typename K::Float cosine;  // 0 if the light is behind the surface
+};
+
+/// The package's words up to the limit are those of a normal intersection; `back` says that the ray met the normal's back side.
+template <typename K>
+Lighting<K> light_hit(K& k, const Vector<K>& origin, const Vector<K>& normal, const typename K::Bool& back) {
+  using Float = typename K::Float;
+  const Vector<K> direction = vector_argument(k, argument::kLight) - origin;
+  Float cosine = dot(normal, direction) * rsqrt(dot(direction, direction));
+  k.if_(back, [&] { cosine = -cosine; });
+  // 0 * infinity, from a light that lies on the surface, becomes 0 too.
+  return {direction, max(cosine, 0.0f)};
+}
+
+/// Where secondary rays begin: at the hit, moved off the surface to the side from which the ray came.
+template <typename K>
+Vector<K> secondary_origin(K& k, const Vector<K>& direction, const Vector<K>& normal, const typename K::Bool& back) {
+  using Float = typename K::Float;
+  Float offset = k.float_argument(argument::kOffset);
+  k.if_(back, [&] { offset = -offset; });
+  const Float distance = k.float_word(word::kDistance);
+  const auto along = [&](const Float& from, const Float& d, const Float& n) { return from + distance * d + offset * n; };
+  return {along(k.float_word(word::kOrigin), direction.x, normal.x),
+          along(k.float_word(word::kOrigin + 1), direction.y, normal.y),
+          along(k.float_word(word::kOrigin + 2), direction.z, normal.z)};
+}
+
+template <typename K>
+void cast_secondary_direct(K& k) {
+  using Int = typename K::Int;
+  using Float = typename K::Float;
+  using Bool = typename K::Bool;
+  k.ray_in();
+  const Vector<K> direction = vector_word(k, word::kDirection);
+  const Vector<K> normal = vector_word(k, word::kNormal);
+  const Bool back = dot(direction, normal) > 0.0f;
+  const Vector<K> origin = secondary_origin(k, direction, normal, back);
+  set_vector_word(k, word::kOrigin, origin);
+  const Lighting<K> light = light_hit(k, origin, normal, back);
+  set_vector_word(k, word::kDirection, light.direction);
+  const Int material = k.int_word(word::kMaterial);
+  for (int i = 0; i < 3; ++i) {
+    const Float reflected = k.float_word(word::kColor + i) * k.load_float(material, kMaterialDiffuse + 4 * i);
+    k.set_word(word::kColor + i, reflected * (light.cosine * k.float_argument(argument::kLightColor + i)));
+  }
+  k.set_word(word::kLimit, Float(1.0f));
+  k.set_word(word::kFlags, k.int_word(word::kFlags) | kShadowFlag);
+  k.ray_out();
+}
+
+template <typename K>
+void cast_secondary(K& k) {
+  using Int = typename K::Int;
+  using Float = typename K::Float;
+  using Bool = typename K::Bool;
+  k.ray_in();
+  // The reflection ray is made in place: it keeps pixel and limit. What the shadow ray needs stays in registers.
+  const Vector<K> direction = vector_word(k, word::kDirection);
+  const Vector<K> normal = vector_word(k, word::kNormal);
+  const Float projection = dot(direction, normal);
+  const Bool back = projection > 0.0f;
+  const Vector<K> origin = secondary_origin(k, direction, normal, back);
+  set_vector_word(k, word::kOrigin, origin);
+  const Float twice = projection + projection;
+  set_vector_word(k, word::kDirection, direction - twice * normal);
+  const Lighting<K> light = light_hit(k, origin, normal, back);
+  const Int material = k.int_word(word::kMaterial);
+  const auto contribution = [&](int i) {
+    const Float throughput = k.float_word(word::kColor + i);
+    k.set_word(word::kColor + i, throughput * k.load_float(material, kMaterialReflectance + 4 * i));
+    return throughput * k.load_float(material, kMaterialDiffuse + 4 * i) *
+           (light.cosine * k.float_argument(argument::kLightColor + i));
+  };
+  const Float red = contribution(0);
+  const Float green = contribution(1);
+  const Float blue = contribution(2);
+  const Int pixel = k.int_word(word::kPixel);
+  const Int flags = k.int_word(word::kFlags);
+  k.set_word(word::kFlags, flags + 1);
+  k.ray_out();
+
+  // The slice that is current now holds nothing of this thread's: all twelve words are written.
+  set_vector_word(k, word::kOrigin, origin);
+  set_vector_word(k, word::kDirection, light.direction);
+  k.set_word(word::kLimit, Float(1.0f));
+  k.set_word(word::kPixel, pixel);
+  k.set_word(word::kColor, red);
+  k.set_word(word::kColor + 1, green);
+  k.set_word(word::kColor + 2, blue);
+  k.set_word(word::kFlags, flags | kShadowFlag);
+  k.ray_out();
+}
+
+template <typename K>
+void shade(K& k) {
+  // A shadow intersection holds pixel and contribution where the frame buffer's port takes them.
+  k.ray_in();
+  k.frame_out();
+}
+
+}  // namespace raypool::kernel

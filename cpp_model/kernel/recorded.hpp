@@ -1,0 +1,336 @@
+// The kernel language recorded: each operation becomes an instruction of intermediate code. kernel.hpp describes the language.
+// A value owns a virtual register or predicate. Operands are taken as Float/Int/BoolOperand, which notice the source line.
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+#include <utility>
+
+#include "kernel/recorder.hpp"
+
+namespace raypool::kernel {
+namespace recorded {
+
+class Bool;
+class Int;
+class Float;
+
+inline uint32_t bits_of(float value) {
+  uint32_t bits;
+  std::memcpy(&bits, &value, sizeof bits);
+  return bits;
+}
+
+/// !condition, not yet computed. Use it at once: it does not follow later assignments to the condition.
+class Negation {
+ public:
+  explicit Negation(const Condition& condition) : condition_(condition) {}
+  const Condition& condition() const { return condition_; }
+
+ private:
+  Condition condition_;
+};
+
+class BoolOperand {
+ public:
+  BoolOperand(const Bool& value, Location where = Location::here());
+  BoolOperand(const Negation& value, Location where = Location::here())
+      : condition_{value.condition().predicate, value.condition().negated, where} {}
+  BoolOperand(bool literal, Location where = Location::here());
+  const Condition& condition() const { return condition_; }
+  const Location& where() const { return condition_.where; }
+  /// The predicate, negated by an instruction if need be.
+  int positive() const { return condition_.negated ? Recorder::active().materialise(condition_) : condition_.predicate; }
+
+ private:
+  Condition condition_;
+};
+
+class IntOperand {
+ public:
+  IntOperand(const Int& value, Location place = Location::here());
+  IntOperand(int literal, Location place = Location::here()) : IntOperand(static_cast<uint32_t>(literal), place) {}
+  IntOperand(uint32_t literal, Location place = Location::here())
+      : number(Recorder::active().emit_constant(literal, place)), where(place) {}
+  int number;
+  Location where;
+};
+
+class FloatOperand {
+ public:
+  FloatOperand(const Float& value, Location place = Location::here());
+  FloatOperand(float literal, Location place = Location::here())
+      : number(Recorder::active().emit_constant(bits_of(literal), place)), where(place) {}
+  int number;
+  Location where;
+};
+
+/// A virtual register or predicate that is copied with an instruction, and handed over without one when it is moved.
+class Bool {
+ public:
+  Bool(bool literal, Location where = Location::here())
+      : number_(Recorder::active().emit_predicates(literal ? "pand" : "pxor", 0, 0, where)) {}
+  Bool(const Negation& value) : number_(Recorder::active().materialise(value.condition())) {}
+  Bool(const Bool& other, Location where = Location::here())
+      : number_(Recorder::active().emit_predicates("pand", other.number_, other.number_, where)) {}
+  Bool(Bool&& other) noexcept : number_(other.number_) {}
+  Bool& operator=(const Bool& other) {
+    Recorder::active().assign_predicate(number_, other.number_, false);
+    return *this;
+  }
+  // Assigning records an instruction, which may be refused: it can throw.
+  Bool& operator=(Bool&& other) {  // NOLINT(performance-noexcept-move-constructor)
+    Recorder::active().assign_predicate(number_, other.number_, true);
+    return *this;
+  }
+  static Bool of(int number) { return Bool(number, 0); }
+  int number() const { return number_; }
+
+ private:
+  Bool(int number, int) : number_(number) {}
+  int number_;
+};
+
+class Int {
+ public:
+  Int(int literal, Location where = Location::here()) : Int(static_cast<uint32_t>(literal), where) {}
+  Int(uint32_t literal, Location where = Location::here()) : number_(Recorder::active().emit_constant(literal, where)) {}
+  Int(const Int& other, Location where = Location::here()) : number_(Recorder::active().emit_copy(other.number_, where)) {}
+  Int(Int&& other) noexcept : number_(other.number_) {}
+  Int& operator=(const Int& other) {
+    Recorder::active().assign_register(number_, other.number_, false);
+    return *this;
+  }
+  Int& operator=(Int&& other) {  // NOLINT(performance-noexcept-move-constructor): as Bool
+    Recorder::active().assign_register(number_, other.number_, true);
+    return *this;
+  }
+  Int& operator+=(const IntOperand& b);
+  Int& operator-=(const IntOperand& b);
+  Int& operator*=(const IntOperand& b);
+  struct Number {
+    int value;
+  };
+  explicit Int(Number number) : number_(number.value) {}
+  int number() const { return number_; }
+
+ private:
+  int number_;
+};
+
+class Float {
+ public:
+  Float(float literal, Location where = Location::here()) : number_(Recorder::active().emit_constant(bits_of(literal), where)) {}
+  Float(const Float& other, Location where = Location::here()) : number_(Recorder::active().emit_copy(other.number_, where)) {}
+  Float(Float&& other) noexcept : number_(other.number_) {}
+  Float& operator=(const Float& other) {
+    Recorder::active().assign_register(number_, other.number_, false);
+    return *this;
+  }
+  Float& operator=(Float&& other) {  // NOLINT(performance-noexcept-move-constructor): as Bool
+    Recorder::active().assign_register(number_, other.number_, true);
+    return *this;
+  }
+  Float& operator+=(const FloatOperand& b);
+  Float& operator-=(const FloatOperand& b);
+  Float& operator*=(const FloatOperand& b);
+  struct Number {
+    int value;
+  };
+  explicit Float(Number number) : number_(number.value) {}
+  int number() const { return number_; }
+
+ private:
+  int number_;
+};
+
+inline BoolOperand::BoolOperand(const Bool& value, Location where) : condition_{value.number(), false, where} {}
+inline BoolOperand::BoolOperand(bool literal, Location where)
+    : condition_{Recorder::active().emit_predicates(literal ? "pand" : "pxor", 0, 0, where), false, where} {}
+inline IntOperand::IntOperand(const Int& value, Location place) : number(value.number()), where(place) {}
+inline FloatOperand::FloatOperand(const Float& value, Location place) : number(value.number()), where(place) {}
+
+// Helpers: an instruction with one or two operands, as a value of the language.
+inline Int int_value(int number) { return Int(Int::Number{number}); }
+inline Float float_value(int number) { return Float(Float::Number{number}); }
+template <typename Operand>
+int unary(std::string_view mnemonic, const Operand& a) {
+  return Recorder::active().emit_unary(mnemonic, a.number, a.where);
+}
+template <typename Operand>
+int binary(std::string_view mnemonic, const Operand& a, const Operand& b) {
+  return Recorder::active().emit_binary(mnemonic, a.number, b.number, a.where);
+}
+template <typename Operand>
+Bool compare(std::string_view mnemonic, const Operand& a, const Operand& b) {
+  return Bool::of(binary(mnemonic, a, b));
+}
+
+// Conditions
+inline Negation operator!(const BoolOperand& a) {
+  Condition condition = a.condition();
+  condition.negated = !condition.negated;
+  return Negation(condition);
+}
+inline Bool operator&&(const BoolOperand& a, const BoolOperand& b) {
+  Recorder& recorder = Recorder::active();
+  if (b.condition().negated) return Bool::of(recorder.emit_predicates("pandn", a.positive(), b.condition().predicate, a.where()));
+  if (a.condition().negated)
+    return Bool::of(recorder.emit_predicates("pandn", b.condition().predicate, a.condition().predicate, a.where()));
+  return Bool::of(recorder.emit_predicates("pand", a.condition().predicate, b.condition().predicate, a.where()));
+}
+inline Bool operator||(const BoolOperand& a, const BoolOperand& b) {
+  const int px = a.positive();
+  return Bool::of(Recorder::active().emit_predicates("por", px, b.positive(), a.where()));
+}
+inline Bool operator^(const BoolOperand& a, const BoolOperand& b) {
+  const int px = a.positive();
+  return Bool::of(Recorder::active().emit_predicates("pxor", px, b.positive(), a.where()));
+}
+
+// Integers
+inline Int operator+(const IntOperand& a, const IntOperand& b) { return int_value(binary("iadd", a, b)); }
+inline Int operator-(const IntOperand& a, const IntOperand& b) { return int_value(binary("isub", a, b)); }
+inline Int operator*(const IntOperand& a, const IntOperand& b) { return int_value(binary("imul", a, b)); }
+inline Int operator&(const IntOperand& a, const IntOperand& b) { return int_value(binary("and", a, b)); }
+inline Int operator|(const IntOperand& a, const IntOperand& b) { return int_value(binary("or", a, b)); }
+inline Int operator^(const IntOperand& a, const IntOperand& b) { return int_value(binary("xor", a, b)); }
+inline Int operator<<(const IntOperand& a, const IntOperand& b) { return int_value(binary("shl", a, b)); }
+inline Int operator>>(const IntOperand& a, const IntOperand& b) { return int_value(binary("sar", a, b)); }
+inline Int shift_right_logical(const IntOperand& a, const IntOperand& b) { return int_value(binary("shr", a, b)); }
+inline Int operator~(const IntOperand& a) { return int_value(Recorder::active().emit_immediate("xor", a.number, ~0u, a.where)); }
+inline Int operator-(const IntOperand& a) {
+  const int zero = Recorder::active().emit_constant(0, a.where);
+  return int_value(Recorder::active().emit_binary("isub", zero, a.number, a.where));
+}
+inline Int min(const IntOperand& a, const IntOperand& b) { return int_value(binary("imin", a, b)); }
+inline Int max(const IntOperand& a, const IntOperand& b) { return int_value(binary("imax", a, b)); }
+inline Int min_unsigned(const IntOperand& a, const IntOperand& b) { return int_value(binary("umin", a, b)); }
+inline Int max_unsigned(const IntOperand& a, const IntOperand& b) { return int_value(binary("umax", a, b)); }
+inline Int select(const BoolOperand& condition, const IntOperand& a, const IntOperand& b) {
+  return int_value(Recorder::active().emit_select(condition.condition(), a.number, b.number, condition.where()));
+}
+inline Bool operator==(const IntOperand& a, const IntOperand& b) { return compare("ieq", a, b); }
+inline Bool operator!=(const IntOperand& a, const IntOperand& b) { return compare("ine", a, b); }
+inline Bool operator<(const IntOperand& a, const IntOperand& b) { return compare("ilt", a, b); }
+inline Bool operator<=(const IntOperand& a, const IntOperand& b) { return compare("ile", a, b); }
+inline Bool operator>(const IntOperand& a, const IntOperand& b) { return compare("igt", a, b); }
+inline Bool operator>=(const IntOperand& a, const IntOperand& b) { return compare("ige", a, b); }
+inline Bool less_unsigned(const IntOperand& a, const IntOperand& b) { return compare("ult", a, b); }
+inline Bool less_equal_unsigned(const IntOperand& a, const IntOperand& b) { return compare("ule", a, b); }
+inline Int& Int::operator+=(const IntOperand& b) { return *this = IntOperand(*this, b.where) + b; }
+inline Int& Int::operator-=(const IntOperand& b) { return *this = IntOperand(*this, b.where) - b; }
+inline Int& Int::operator*=(const IntOperand& b) { return *this = IntOperand(*this, b.where) * b; }
+
+// Floats
+inline Float operator+(const FloatOperand& a, const FloatOperand& b) { return float_value(binary("fadd", a, b)); }
+inline Float operator-(const FloatOperand& a, const FloatOperand& b) { return float_value(binary("fsub", a, b)); }
+inline Float operator*(const FloatOperand& a, const FloatOperand& b) { return float_value(binary("fmul", a, b)); }
+inline Float operator/(const FloatOperand& a, const FloatOperand& b) { return float_value(binary("fdiv", a, b)); }
+inline Float operator-(const FloatOperand& a) {
+  return float_value(Recorder::active().emit_immediate("xor", a.number, 0x80000000u, a.where));
+}
+inline Float abs(const FloatOperand& a) {
+  return float_value(Recorder::active().emit_immediate("and", a.number, 0x7fffffffu, a.where));
+}
+inline Float min(const FloatOperand& a, const FloatOperand& b) { return float_value(binary("fmin", a, b)); }
+inline Float max(const FloatOperand& a, const FloatOperand& b) { return float_value(binary("fmax", a, b)); }
+inline Float sqrt(const FloatOperand& a) { return float_value(unary("fsqrt", a)); }
+inline Float rsqrt(const FloatOperand& a) { return float_value(unary("frsqrt", a)); }
+inline Float rcp(const FloatOperand& a) { return float_value(unary("frcp", a)); }
+inline Float select(const BoolOperand& condition, const FloatOperand& a, const FloatOperand& b) {
+  return float_value(Recorder::active().emit_select(condition.condition(), a.number, b.number, condition.where()));
+}
+inline Bool operator==(const FloatOperand& a, const FloatOperand& b) { return compare("feq", a, b); }
+inline Bool operator!=(const FloatOperand& a, const FloatOperand& b) { return compare("fne", a, b); }
+inline Bool operator<(const FloatOperand& a, const FloatOperand& b) { return compare("flt", a, b); }
+inline Bool operator<=(const FloatOperand& a, const FloatOperand& b) { return compare("fle", a, b); }
+inline Bool operator>(const FloatOperand& a, const FloatOperand& b) { return compare("fgt", a, b); }
+inline Bool operator>=(const FloatOperand& a, const FloatOperand& b) { return compare("fge", a, b); }
+inline Float& Float::operator+=(const FloatOperand& b) { return *this = FloatOperand(*this, b.where) + b; }
+inline Float& Float::operator-=(const FloatOperand& b) { return *this = FloatOperand(*this, b.where) - b; }
+inline Float& Float::operator*=(const FloatOperand& b) { return *this = FloatOperand(*this, b.where) * b; }
+
+// Conversions; the `as_` ones keep the bits.
+inline Int to_int(const FloatOperand& a) { return int_value(unary("f2i", a)); }
+inline Float to_float(const IntOperand& a) { return float_value(unary("i2f", a)); }
+inline Int as_int(const FloatOperand& a) { return int_value(Recorder::active().emit_copy(a.number, a.where)); }
+inline Float as_float(const IntOperand& a) { return float_value(Recorder::active().emit_copy(a.number, a.where)); }
+
+}  // namespace recorded
+
+/// What a kernel is given when it is recorded.
+class RecordedKernel {
+ public:
+  using Bool = recorded::Bool;
+  using Int = recorded::Int;
+  using Float = recorded::Float;
+  using BoolOperand = recorded::BoolOperand;
+
+  explicit RecordedKernel(Recorder& recorder) : recorder_(recorder) {}
+
+  Int thread(Location where = Location::here()) { return index("tid", where); }
+  Int block(Location where = Location::here()) { return index("block", where); }
+  Int threads(Location where = Location::here()) { return index("threads", where); }
+  Int blocks(Location where = Location::here()) { return index("blocks", where); }
+  Int int_argument(int number, Location where = Location::here()) { return recorded::int_value(argument(number, where)); }
+  Float float_argument(int number, Location where = Location::here()) { return recorded::float_value(argument(number, where)); }
+
+  Int load_int(const Int& address, int offset = 0, Location where = Location::here()) {
+    return recorded::int_value(load(address, offset, where));
+  }
+  Float load_float(const Int& address, int offset = 0, Location where = Location::here()) {
+    return recorded::float_value(load(address, offset, where));
+  }
+  void store(const Int& address, int offset, const Int& value, Location where = Location::here()) {
+    store_number(address, offset, value.number(), where);
+  }
+  void store(const Int& address, int offset, const Float& value, Location where = Location::here()) {
+    store_number(address, offset, value.number(), where);
+  }
+
+  void ray_in(Location where = Location::here()) { recorder_.emit("rin", where); }
+  void ray_out(Location where = Location::here()) { recorder_.emit("rout", where); }
+  void frame_out(Location where = Location::here()) { recorder_.emit("rfb", where); }
+  Int int_word(int number, Location where = Location::here()) { return recorded::int_value(word(number, where)); }
+  Float float_word(int number, Location where = Location::here()) { return recorded::float_value(word(number, where)); }
+  void set_word(int number, const Int& value, Location where = Location::here()) { write_word(number, value.number(), where); }
+  void set_word(int number, const Float& value, Location where = Location::here()) { write_word(number, value.number(), where); }
+
+  template <typename Then>
+  void if_(const BoolOperand& condition, const Then& then) {
+    recorder_.begin_if(condition.condition());
+    then();
+    recorder_.end_if();
+  }
+  template <typename Then, typename Else>
+  void if_(const BoolOperand& condition, const Then& then, const Else& otherwise) {
+    recorder_.begin_if(condition.condition());
+    then();
+    recorder_.begin_else();
+    otherwise();
+    recorder_.end_if();
+  }
+  template <typename ConditionOf, typename Body>
+  void while_(const ConditionOf& condition, const Body& body, Location where = Location::here()) {
+    const Bool first = condition();
+    recorder_.begin_loop(first.number(), where);
+    body();
+    const Bool again = condition();
+    recorder_.end_loop(again.number(), true);
+  }
+
+ private:
+  Int index(std::string_view mnemonic, const Location& where) {
+    return recorded::int_value(recorder_.emit_value(mnemonic, where));
+  }
+  int argument(int number, const Location& where);
+  int load(const Int& address, int offset, const Location& where);
+  void store_number(const Int& address, int offset, int value, const Location& where);
+  int word(int number, const Location& where);
+  void write_word(int number, int value, const Location& where);
+
+  Recorder& recorder_;
+};
+
+}  // namespace raypool::kernel

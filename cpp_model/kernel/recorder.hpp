@@ -1,0 +1,86 @@
+// Collects a kernel's operations as intermediate code while its source runs once. The value types of recorded.hpp call it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "kernel/intermediate.hpp"
+
+namespace raypool::kernel {
+
+/// A condition as a statement takes it: a virtual predicate or its inverse.
+struct Condition {
+  int predicate = 0;
+  bool negated = false;
+  Location where;
+};
+
+class Recorder {
+ public:
+  /// Becomes the active recorder of this C++ thread until it is destroyed; there may be one at a time.
+  explicit Recorder(const std::string& name);
+  ~Recorder();
+  Recorder(const Recorder&) = delete;
+  Recorder& operator=(const Recorder&) = delete;
+
+  /// Throws std::logic_error when values of the recorded kind are used outside a kernel.
+  static Recorder& active();
+
+  /// Ends the kernel with `exit` and hands it over.
+  Function finish();
+
+  /// An instruction under the current mask, without operands.
+  Op& emit(std::string_view mnemonic, const Location& where);
+  Op& last_op() { return function_.ops.back(); }
+  /// The same with a new destination; returns the destination's number.
+  int emit_value(std::string_view mnemonic, const Location& where);
+  int emit_unary(std::string_view mnemonic, int ra, const Location& where);
+  int emit_binary(std::string_view mnemonic, int ra, int rb, const Location& where);
+  int emit_immediate(std::string_view mnemonic, int ra, uint32_t immediate, const Location& where);
+  int emit_constant(uint32_t bits, const Location& where);
+  int emit_copy(int source, const Location& where);
+  int emit_predicates(std::string_view mnemonic, int px, int pb, const Location& where);
+  int emit_select(const Condition& condition, int a, int b, const Location& where);
+
+  /// variable = source, where `temporary` says that nobody else reads the source.
+  void assign_register(int variable, int source, bool temporary);
+  void assign_predicate(int variable, int source, bool temporary);
+  /// A predicate that equals the condition within the current mask.
+  int materialise(const Condition& condition);
+
+  /// Statements: begin, body, end. `Else` may follow a then-body.
+  void begin_if(const Condition& condition);
+  void begin_else();
+  void end_if();
+  /// `condition` is a predicate that belongs to the loop alone.
+  void begin_loop(int condition, const Location& where);
+  /// `condition`: evaluated at the end of the body.
+  void end_loop(int condition, bool temporary);
+
+ private:
+  struct Block {
+    Guard outer;
+    Condition condition;  // of an if
+    int locked = 0;       // predicate that must not change before the block ends
+    size_t first_op = 0;
+    int label = kNothing;
+    Location where;
+  };
+
+  Guard mask_for(const Condition& condition);
+  void open(const Condition& condition, const Location& where);
+  void close_body();
+  int new_register();
+  int new_predicate();
+  bool defined_last(int destination, bool predicate) const;
+  void check_unlocked(int predicate, const Location& where) const;
+
+  Function function_;
+  Guard guard_;
+  std::vector<Guard> register_masks_;   // mask under which a virtual register was declared
+  std::vector<Guard> predicate_masks_;  // mask outside which a virtual predicate is 0
+  std::vector<Block> blocks_;
+  Location last_;
+};
+
+}  // namespace raypool::kernel

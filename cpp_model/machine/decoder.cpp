@@ -1,0 +1,30 @@
+#include "machine/decoder.hpp"
+
+#include "isa/encoding.hpp"
+
+namespace raypool {
+
+DecodedInstruction decode(uint64_t encoding) {
+  const Instruction fields = unpack(encoding);
+  DecodedInstruction result;
+  result.encoding = encoding;
+  result.immediate = fields.immediate;
+  result.info = fields.info;
+  result.guard = fields.guard;
+  result.guard_negated = fields.guard_negated;
+  result.rd = fields.rd;
+  result.ra = fields.ra;
+  result.rb = fields.rb;
+  result.b_is_immediate = fields.b_is_immediate;
+  result.x = fields.x;
+  if (fields.info == nullptr) return result;
+  result.code = instruction_code(fields.info->unit, fields.info->operation);
+  result.uses_b = has_operand(*fields.info, Operand::B) || has_operand(*fields.info, Operand::Rb);
+  result.writes_register = raypool::writes_register(*fields.info);
+  result.writes_predicate = raypool::writes_predicate(*fields.info);
+  // `st` stores register rb, whatever bit 37 says.
+  if (has_operand(*fields.info, Operand::Rb)) result.b_is_immediate = false;
+  return result;
+}
+
+}  // namespace raypool

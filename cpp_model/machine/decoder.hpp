@@ -1,0 +1,35 @@
+// Decodes an instruction once, so that executing it needs no more field extraction.
+#pragma once
+
+#include <cstdint>
+
+#include "isa/isa.hpp"
+
+namespace raypool {
+
+struct DecodedInstruction {
+  uint64_t encoding = 0;
+  uint32_t immediate = 0;
+  const InstructionInfo* info = nullptr;  ///< null: illegal
+  uint16_t code = 0;                      ///< unit * 32 + operation of a legal one
+  uint8_t guard = 0;                      ///< predicate number
+  bool guard_negated = false;
+  uint8_t rd = 0, ra = 0, rb = 0;
+  uint8_t x = 0;
+  bool b_is_immediate = false;
+  bool uses_b = false;  ///< has an operand B (or rb of `st`)
+  bool writes_register = false;
+  bool writes_predicate = false;
+
+  bool legal() const { return info != nullptr; }
+  uint32_t target() const { return immediate & 0xffffu; }
+  uint32_t end() const { return immediate >> 16; }
+};
+
+inline constexpr uint16_t instruction_code(Unit unit, int operation) {
+  return static_cast<uint16_t>(static_cast<int>(unit) * 32 + operation);
+}
+
+DecodedInstruction decode(uint64_t encoding);
+
+}  // namespace raypool

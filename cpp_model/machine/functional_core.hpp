@@ -1,0 +1,143 @@
+// The architecture itself: registers, predicates, PC stacks, ray slices and memory of one compute unit, without ports and without
+// time. step() executes one instruction of one warp and says everything it did. Engine `functional` runs on it, and the lockstep
+// compares with it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "arith/arith.hpp"
+#include "config/configuration.hpp"
+#include "machine/compute_unit.hpp"
+#include "machine/decoder.hpp"
+#include "machine/memory.hpp"
+#include "machine/packages.hpp"
+#include "machine/ray_slices.hpp"
+
+namespace raypool {
+
+inline constexpr int kMaxLanes = 32;
+
+/// What a call of FunctionalCore::step did. Pointers stay valid until the same warp's next step.
+struct Step {
+  enum class Status : uint8_t {
+    Executed,        ///< one instruction was executed
+    WaitsForImport,  ///< nothing happened: `rin`, and the warp's packages are not there
+    WaitsForExport,  ///< nothing happened: `rout` or `rfb`, and the output slice was marked busy
+    NotRunning,      ///< nothing happened: the warp has not been started or has ended
+    Fault,           ///< nothing happened but a fault
+  };
+  struct LaneStore {
+    uint32_t lane, address, value;
+  };
+
+  Status status = Status::NotRunning;
+  uint32_t warp = 0;
+  uint32_t pc = 0;
+  const DecodedInstruction* instruction = nullptr;  ///< null if the PC is outside the program
+  uint32_t mask = 0;                                ///< thread mask
+  const uint32_t* data = nullptr;  ///< instruction writes a register: one word a lane, meaningful in masked lanes
+  uint32_t predicate = 0;          ///< instruction writes a predicate: its value
+  uint32_t store_count = 0;        ///< `st`: masked lanes in rising order; the last store to an address wins
+  std::array<LaneStore, kMaxLanes> stores{};
+  const uint32_t* ray_words = nullptr;  ///< `rst`: one word a lane, written in masked lanes
+  uint32_t ray_count = 0;               ///< `rout`: rays in order
+  std::array<Ray, kMaxLanes> rays{};
+  uint32_t frame_count = 0;  ///< `rfb`: contributions in order
+  std::array<FrameContribution, kMaxLanes> frame{};
+  bool warp_ended = false;  ///< `exit`
+  Fault fault;
+};
+
+class FunctionalCore {
+ public:
+  /// `memory` must outlive the core.
+  FunctionalCore(const Configuration& configuration, Memory& memory);
+
+  /// Stops everything, forgets imports, clears registers. The program is decoded at the next launch.
+  void reset(uint32_t program_length, uint32_t memory_limit);
+  void set_argument(int index, uint32_t value) { arguments_[static_cast<size_t>(index)] = value; }
+
+  /// Starts a kernel; the previous one must have ended. Imports are announced apart, by expect_import.
+  void launch(const LaunchCommand& command);
+  /// True while a warp of the kernel has not executed `exit`. A fault stops a kernel without ending it.
+  bool running() const { return running_warps_ > 0; }
+  bool warp_running(uint32_t warp) const { return warps_[warp].running; }
+  const LaunchCommand& launched() const { return launched_; }
+
+  /// Executes the warp's next instruction. After a fault every call returns that fault.
+  const Step& step(uint32_t warp) { return (this->*step_)(warp); }
+
+  /// PC of the warp's next instruction (after popping finished entries); the instruction there, null if outside the program.
+  uint32_t next_pc(uint32_t warp) const;
+  const DecodedInstruction* instruction_at(uint32_t pc) const { return pc < program_.size() ? &program_[pc] : nullptr; }
+
+  /// Packages of a launch with an import kind: announce their number, then give them in order of threads. Launches are served in
+  /// turn.
+  void expect_import(uint32_t threads) { slices_.expect_import(threads); }
+  void import_package(const Intersection& package) { slices_.import_package(package); }
+  const RaySlices& slices() const { return slices_; }
+
+  /// While true, the warp's next `rout` or `rfb` waits. Nothing else sets or clears it.
+  void set_output_busy(uint32_t warp, bool busy) { warps_[warp].output_busy = busy; }
+
+  int warps() const { return static_cast<int>(warps_.size()); }
+  int lanes() const { return lanes_; }
+  const Memory& memory() const { return *memory_; }
+  /// One word a lane.
+  const uint32_t* register_row(uint32_t warp, uint32_t number) const {
+    return &registers_[(warp * kRegisters + number) * lanes_];
+  }
+  uint32_t predicate(uint32_t warp, uint32_t number) const { return warps_[warp].predicates[number]; }
+  uint32_t argument(uint32_t index) const { return arguments_[index % kArguments]; }
+  /// Thread mask that `instruction` would have now.
+  uint32_t thread_mask(uint32_t warp, const DecodedInstruction& instruction) const {
+    const uint32_t guard = warps_[warp].predicates[instruction.guard];
+    return (instruction.guard_negated ? ~guard : guard) & warps_[warp].launched;
+  }
+
+ private:
+  struct StackEntry {
+    uint32_t pc, rpc;
+  };
+  struct Warp {
+    bool running = false;
+    bool output_busy = false;
+    uint32_t launched = 0;  ///< lanes that have a thread
+    uint32_t depth = 0;     ///< entries on the PC stack
+    std::array<StackEntry, 32> stack{};
+    std::array<uint32_t, kPredicates> predicates{};
+  };
+
+  template <int kLanes>
+  const Step& step_lanes(uint32_t warp);
+  template <int kLanes>
+  void execute_data(const DecodedInstruction& instruction, Warp& warp, uint32_t* rd, const uint32_t* a, const uint32_t* b);
+  template <int kLanes>
+  uint32_t compare(const DecodedInstruction& instruction, const Warp& warp, const uint32_t* a, const uint32_t* b) const;
+  template <int kLanes>
+  bool execute_memory(const DecodedInstruction& instruction, uint32_t* rd, const uint32_t* a, const uint32_t* b);
+  template <int kLanes>
+  bool execute_ray(const DecodedInstruction& instruction, Warp& warp, uint32_t* rd, const uint32_t* b);
+  bool execute_control(const DecodedInstruction& instruction, Warp& warp);
+  bool fault(FaultCode code);
+
+  Memory* memory_;
+  int lanes_;
+  uint32_t stack_depth_;
+  arith::Mode mode_;
+  uint32_t program_length_ = 0, memory_limit_ = 0;
+  bool program_decoded_ = false;
+  const Step& (FunctionalCore::*step_)(uint32_t) = nullptr;
+  std::vector<DecodedInstruction> program_;
+  std::vector<uint32_t> registers_;  ///< [warp][register][lane]
+  std::vector<Warp> warps_;
+  std::array<uint32_t, kArguments> arguments_{};
+  RaySlices slices_;
+  LaunchCommand launched_;
+  uint32_t running_warps_ = 0;
+  Step result_;
+};
+
+}  // namespace raypool

@@ -1,0 +1,170 @@
+#include "machine/functional_unit.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "machine/test_chip.hpp"
+#include "machine/test_program.hpp"
+
+namespace raypool {
+namespace {
+
+using test::Encode;
+using test::TestChip;
+
+constexpr uint32_t kMemoryBytes = 8192;
+
+struct Fixture {
+  Memory memory{kMemoryBytes};
+  std::unique_ptr<ComputeUnit> unit;
+  TestChip chip;
+
+  explicit Fixture(const std::vector<uint64_t>& code, int ready_percent = 100, uint32_t seed = 1)
+      : unit(make_functional_unit(configuration(), memory)), chip(*unit, memory, seed, ready_percent) {
+    test::put_program(memory, code);
+    unit->reset(static_cast<uint32_t>(code.size()), kMemoryBytes);
+  }
+  static Configuration configuration() {
+    Configuration result;
+    result.warps = 2;
+    result.cores = 4;
+    return result;
+  }
+  void launch(uint32_t threads, ImportKind import = ImportKind::None, uint32_t pc = 0) {
+    LaunchCommand command;
+    command.threads = threads;
+    command.import = import;
+    command.pc = pc;
+    chip.launches.push_back(command);
+  }
+};
+
+// r1 = word 7 of the package + 1 into word 7, exported as a ray and, from the next kernel's point of view, nothing else.
+const std::vector<uint64_t> kRayProgram = {
+    Encode("rin"), Encode("rld").rd(1).x(7), Encode("iadd").rd(1).ra(1).imm(1), Encode("rst").x(7).rb(1), Encode("rout"),
+    Encode("exit")};
+
+TEST(FunctionalUnit, KernelsEndInTurnWithOnePulseEach) {
+  Fixture fixture(
+      {Encode("tid").rd(1), Encode("shl").rd(2).ra(1).imm(2), Encode("st").ra(2).rb(1).plain_imm(1024), Encode("exit")});
+  EXPECT_TRUE(fixture.unit->outputs().idle);
+  for (int i = 0; i < 5; ++i) fixture.launch(7);
+  EXPECT_TRUE(fixture.chip.run());
+  EXPECT_EQ(fixture.chip.kernels_done, 5u);
+  for (uint32_t thread = 0; thread < 7; ++thread) EXPECT_EQ(fixture.memory.load(1024 + 4 * thread), thread);
+  EXPECT_EQ(fixture.memory.load(1024 + 4 * 7), 0u);
+  EXPECT_EQ(fixture.unit->counter(counter::kInstructions), 5u * 2 * 4);
+  EXPECT_EQ(fixture.unit->counter(counter::kThreadInstructions), 5u * 7 * 4);
+  EXPECT_EQ(fixture.unit->counter(counter::kIssued + static_cast<int>(Unit::Mem)), 5u * 2);
+  EXPECT_FALSE(fixture.unit->timed());
+}
+
+TEST(FunctionalUnit, ABusyUnitIsNotIdleAndTakesOneLaunchMore) {
+  Fixture fixture({Encode("jany").target(0)});
+  fixture.launch(8);
+  fixture.launch(8);
+  fixture.launch(8);
+  for (int i = 0; i < 6; ++i) fixture.chip.cycle();
+  EXPECT_EQ(fixture.chip.launches.size(), 1u);
+  EXPECT_TRUE(fixture.unit->outputs().busy);
+  EXPECT_FALSE(fixture.unit->outputs().idle);
+  EXPECT_FALSE(fixture.unit->outputs().launch_ready);
+}
+
+TEST(FunctionalUnit, PackagesComeInAndRaysGoOutInOrderWhateverThePortsDo) {
+  for (uint32_t seed = 1; seed <= 20; ++seed) {
+    Fixture fixture(kRayProgram, seed == 1 ? 100 : 40, seed);
+    for (int i = 0; i < 3; ++i) fixture.launch(7, i == 1 ? ImportKind::Shadow : ImportKind::Normal);
+    ASSERT_TRUE(fixture.chip.run()) << "seed " << seed;
+    ASSERT_EQ(fixture.chip.requests.size(), 21u);
+    EXPECT_EQ(fixture.chip.requests[6], ImportKind::Normal);
+    EXPECT_EQ(fixture.chip.requests[7], ImportKind::Shadow);
+    ASSERT_EQ(fixture.chip.rays.size(), 21u) << "seed " << seed;
+    std::vector<uint32_t> pixels;
+    for (const Ray& ray : fixture.chip.rays) {
+      pixels.push_back(ray[7]);
+      EXPECT_EQ(ray[11], ray[7] + 3) << "a ray is 12 words of one package";
+    }
+    std::sort(pixels.begin(), pixels.end());
+    for (uint32_t i = 0; i < 21; ++i) EXPECT_EQ(pixels[i], i * 100 + 8) << "seed " << seed;
+  }
+}
+
+TEST(FunctionalUnit, TheNextKernelsPackagesComeWhileTheFirstOneWaits) {
+  Fixture fixture(kRayProgram);
+  fixture.chip.exports_ready = false;
+  for (int i = 0; i < 3; ++i) fixture.launch(8, ImportKind::Normal);
+  for (int i = 0; i < 400; ++i) fixture.chip.cycle();
+  // Kernel 1 has ended with its rays in the output slices, kernel 2 waits in rout, kernel 3's packages fill the input slices.
+  EXPECT_EQ(fixture.chip.kernels_done, 1u);
+  EXPECT_EQ(fixture.chip.requests.size(), 24u);
+  EXPECT_TRUE(fixture.unit->outputs().export_valid);
+  const Beat beat = fixture.unit->outputs().export_data;
+  fixture.chip.cycle();
+  EXPECT_EQ(fixture.unit->outputs().export_data, beat) << "a payload is stable while it waits";
+  fixture.chip.exports_ready = true;
+  EXPECT_TRUE(fixture.chip.run());
+  EXPECT_EQ(fixture.chip.kernels_done, 3u);
+  EXPECT_EQ(fixture.chip.rays.size(), 24u);
+}
+
+TEST(FunctionalUnit, APackageIsNotRequestedBeforeItsSliceIsFree) {
+  Fixture fixture({Encode("jany").target(0)});
+  fixture.launch(8, ImportKind::Normal);
+  fixture.launch(8, ImportKind::Normal);
+  for (int i = 0; i < 200; ++i) fixture.chip.cycle();
+  EXPECT_EQ(fixture.chip.requests.size(), 8u);
+  EXPECT_FALSE(fixture.unit->outputs().import_request_valid);
+}
+
+TEST(FunctionalUnit, FrameContributionsCarryPixelAndColour) {
+  Fixture fixture({Encode("rin"), Encode("lane").rd(1), Encode("ige").rd(1).ra(1).imm(2), Encode("rfb").guard(1), Encode("exit")},
+                  50);
+  fixture.launch(8, ImportKind::Shadow);
+  EXPECT_TRUE(fixture.chip.run());
+  ASSERT_EQ(fixture.chip.frame.size(), 4u);
+  EXPECT_EQ(fixture.chip.frame[1].pixel, 307u);
+  EXPECT_EQ(fixture.chip.frame[1].rgb[2], 310u);
+  EXPECT_TRUE(fixture.chip.rays.empty());
+}
+
+TEST(FunctionalUnit, AFaultIsStickyAndStopsEverything) {
+  Fixture fixture({Encode("ret")});
+  fixture.launch(8);
+  EXPECT_FALSE(fixture.chip.run());
+  EXPECT_EQ(fixture.unit->outputs().fault.code, FaultCode::StackUnderflow);
+  for (int i = 0; i < 10; ++i) fixture.chip.cycle();
+  EXPECT_EQ(fixture.unit->outputs().fault.code, FaultCode::StackUnderflow);
+  EXPECT_FALSE(fixture.unit->outputs().launch_ready);
+  fixture.unit->reset(1, kMemoryBytes);
+  EXPECT_EQ(fixture.unit->outputs().fault.code, FaultCode::None);
+  EXPECT_TRUE(fixture.unit->outputs().idle);
+}
+
+TEST(FunctionalUnit, TheTraceShowsAtMostOneInstructionOfAWarpInACycle) {
+  Fixture fixture({Encode("tid").rd(1), Encode("shl").rd(2).ra(1).imm(2), Encode("st").ra(2).rb(1).plain_imm(1024),
+                   Encode("rst").x(3).rb(1), Encode("exit")});
+  fixture.unit->trace_on();
+  fixture.launch(8);
+  size_t retired = 0, stores = 0, ray_writes = 0;
+  for (int i = 0; i < 10; ++i) {
+    fixture.chip.cycle();
+    const UnitTrace& trace = fixture.unit->trace();
+    EXPECT_LE(trace.retired.size(), 2u);
+    retired += trace.retired.size();
+    stores += trace.stores.size();
+    ray_writes += trace.ray_writes.size();
+  }
+  EXPECT_EQ(retired, 10u);
+  EXPECT_EQ(stores, 2u);
+  EXPECT_EQ(ray_writes, 2u);
+}
+
+TEST(FunctionalUnit, WritesNoWaveform) {
+  Fixture fixture({Encode("exit")});
+  EXPECT_THROW(fixture.unit->open_waveform("waves.fst"), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace raypool

@@ -1,0 +1,42 @@
+// The two packages that travel between pools, compute units and traverser. Words are raw 32-bit patterns.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace raypool {
+
+inline constexpr int kRayWords = 12;           ///< 48 bytes
+inline constexpr int kIntersectionWords = 21;  ///< 84 bytes
+inline constexpr int kBeatWords = 4;           ///< 128 bits, one cycle of any pool or memory port
+inline constexpr int kRayBeats = 3;
+inline constexpr int kIntersectionBeats = 6;  ///< the last one carries word 20 and zeros
+
+/// Word numbers; a ray has words 0-11, an intersection is its ray followed by words 12-20.
+namespace word {
+inline constexpr int kOrigin = 0;        ///< x, y, z
+inline constexpr int kDirection = 3;     ///< x, y, z, not normalised
+inline constexpr int kLimit = 6;         ///< largest t: infinity, or 1 for a shadow ray
+inline constexpr int kPixel = 7;         ///< x in bits 15:0, y in bits 31:16
+inline constexpr int kColor = 8;         ///< red, green, blue: throughput (normal ray) or contribution (shadow ray)
+inline constexpr int kFlags = 11;        ///< kShadowFlag, depth in bits 7:0 (an eye ray has 1)
+inline constexpr int kDistance = 12;     ///< t of the hit
+inline constexpr int kBarycentric = 13;  ///< u, v
+inline constexpr int kNormal = 15;       ///< unit geometric normal, as wound
+inline constexpr int kMaterial = 18;     ///< byte address of the material record
+inline constexpr int kTriangle = 19;     ///< triangle index
+}  // namespace word
+
+inline constexpr uint32_t kShadowFlag = 0x80000000u;
+inline constexpr uint32_t kDepthMask = 0xffu;
+
+using Ray = std::array<uint32_t, kRayWords>;
+using Intersection = std::array<uint32_t, kIntersectionWords>;
+using Beat = std::array<uint32_t, kBeatWords>;
+
+/// Material record in memory: diffuse r, g, b, 0, reflectance r, g, b, 0 (floats).
+inline constexpr int kMaterialBytes = 32;
+inline constexpr int kMaterialDiffuse = 0;       ///< byte offset
+inline constexpr int kMaterialReflectance = 16;  ///< byte offset
+
+}  // namespace raypool

@@ -1,0 +1,69 @@
+// Local ray memory as the architecture sees it: three slices a warp that change roles, and the packages that wait to become
+// current.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <vector>
+
+#include "machine/packages.hpp"
+
+namespace raypool {
+
+class RaySlices {
+ public:
+  RaySlices(int warps, int lanes);
+  void reset();
+
+  /// A launch will import packages for `threads` threads; they go to warps in order once earlier launches have theirs.
+  void expect_import(uint32_t threads);
+  /// The next package. One that nobody expects is an error of the caller: std::logic_error.
+  void import_package(const Intersection& package);
+  /// Packages that were announced and have not come.
+  uint32_t packages_expected() const;
+
+  /// True if all packages of the warp's next `rin` are there.
+  bool input_complete(uint32_t warp) const { return !warps_[warp].inputs.empty() && warps_[warp].inputs.front().complete(); }
+  /// Sets of packages, complete or arriving, that wait for a `rin` of the warp.
+  size_t inputs_waiting(uint32_t warp) const { return warps_[warp].inputs.size(); }
+
+  /// `rin`: the packages get into the input slice, then input and current swap. input_complete() must hold.
+  void swap_input(uint32_t warp);
+  /// `rout`, `rfb`: current and output swap.
+  void swap_output(uint32_t warp);
+
+  /// Word `word` of all lanes of a slice.
+  uint32_t* current(uint32_t warp, uint32_t word) { return row(warp, warps_[warp].current, word); }
+  const uint32_t* output(uint32_t warp, uint32_t word) const { return row(warp, warps_[warp].output, word); }
+
+ private:
+  struct Input {
+    uint32_t lanes = 0;  ///< packages it will hold
+    uint32_t taken = 0;
+    std::vector<uint32_t> words;  ///< [word][lane]
+    bool complete() const { return taken == lanes; }
+  };
+  struct Warp {
+    uint8_t input = 0, current = 1, output = 2;
+    std::deque<Input> inputs;
+  };
+  struct Job {
+    uint32_t threads, taken;
+  };
+
+  uint32_t* row(uint32_t warp, uint32_t slice, uint32_t word) {
+    return &words_[((warp * 3 + slice) * kIntersectionWords + word) * lanes_];
+  }
+  const uint32_t* row(uint32_t warp, uint32_t slice, uint32_t word) const {
+    return &words_[((warp * 3 + slice) * kIntersectionWords + word) * lanes_];
+  }
+
+  uint32_t lanes_;
+  std::vector<uint32_t> words_;  ///< [warp][slice][word][lane]
+  std::vector<Warp> warps_;
+  std::deque<Job> jobs_;
+};
+
+}  // namespace raypool

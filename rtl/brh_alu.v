@@ -1,0 +1,105 @@
+// Compares into predicates, predicate logic, and the decision of control instructions: taken, in every lane of done_pred_o.
+`default_nettype none
+module brh_alu #(
+  parameter integer WARPS = 8,
+  parameter integer LANES = 8,
+  parameter integer WARP_BITS = 3,
+  parameter integer LATENCY = 1,
+  parameter integer DEPTH = 2,
+  parameter integer SUBNORMALS = 0
+) (
+  input  wire                   clk_i,
+  input  wire                   rst_ni,
+  input  wire                   task_valid_i,
+  input  wire [WARP_BITS-1:0]   task_warp_i,
+  input  wire [4:0]             task_op_i,
+  input  wire [LANES-1:0]       task_mask_i,
+  input  wire [LANES*32-1:0]    task_a_i,
+  input  wire [LANES*32-1:0]    task_b_i,
+  input  wire [31:0]            task_imm_i,
+  input  wire [4:0]             task_x_i,
+  input  wire [LANES-1:0]       task_px_i,
+  input  wire [LANES-1:0]       task_pb_i,
+  output wire                   ready_o,
+  output wire                   done_valid_o,
+  output wire [WARP_BITS-1:0]   done_warp_o,
+  output wire [LANES*32-1:0]    done_data_o,
+  output wire [LANES-1:0]       done_pred_o
+);
+`include "isa.vh"
+  generate
+    if (DEPTH < 2) begin : gen_illegal
+      brh_alu_depth_must_be_at_least_2 illegal ();
+    end
+  endgenerate
+  wire [DEPTH-1:0] stage_valid;
+  reg [LANES-1:0] result_q;
+  integer l;
+
+  alu_pipeline #(.WARP_BITS(WARP_BITS), .LATENCY(LATENCY), .DEPTH(DEPTH)) alu_pipeline (
+    .clk_i(clk_i), .rst_ni(rst_ni), .task_valid_i(task_valid_i), .task_warp_i(task_warp_i), .ready_o(ready_o),
+    .done_valid_o(done_valid_o), .done_warp_o(done_warp_o), .stage_valid_o(stage_valid));
+
+  // Zero, also where subnormals are flushed.
+  function is_zero(input [31:0] v);
+    is_zero = v[30:23] == 8'd0 && (SUBNORMALS != 0 || v[22:0] == 23'd0);
+  endfunction
+  function is_nan(input [31:0] v);
+    is_nan = v[30:23] == 8'hff && v[22:0] != 23'd0;
+  endfunction
+
+  function compare(input [4:0] op, input [31:0] a, input [31:0] b);
+    reg equal, less, signed_less, float_equal, float_less, ordered;
+    begin
+      equal = a == b;
+      less = a < b;
+      signed_less = (a[31] != b[31]) ? a[31] : less;
+      ordered = !is_nan(a) && !is_nan(b);
+      float_equal = ordered && ((is_zero(a) && is_zero(b)) || equal);
+      // Magnitudes order like integers; a flushed or signed zero equals any other zero.
+      if (is_zero(a)) float_less = !is_zero(b) && !b[31];
+      else if (is_zero(b)) float_less = a[31];
+      else if (a[31] != b[31]) float_less = a[31];
+      else float_less = a[31] ? (b < a) : less;
+      float_less = float_less && ordered;
+      case (op)
+        ISA_BRH_IEQ: compare = equal;
+        ISA_BRH_INE: compare = !equal;
+        ISA_BRH_ILT: compare = signed_less;
+        ISA_BRH_ILE: compare = signed_less || equal;
+        ISA_BRH_IGT: compare = !(signed_less || equal);
+        ISA_BRH_IGE: compare = !signed_less;
+        ISA_BRH_ULT: compare = less;
+        ISA_BRH_ULE: compare = less || equal;
+        ISA_BRH_UGT: compare = !(less || equal);
+        ISA_BRH_UGE: compare = !less;
+        ISA_BRH_FEQ: compare = float_equal;
+        ISA_BRH_FNE: compare = !float_equal;
+        ISA_BRH_FLT: compare = float_less;
+        ISA_BRH_FLE: compare = float_less || float_equal;
+        ISA_BRH_FGT: compare = ordered && !float_less && !float_equal;
+        default: compare = ordered && !float_less;
+      endcase
+    end
+  endfunction
+
+  always @(posedge clk_i)
+    if (task_valid_i)
+      case (task_op_i)
+        ISA_BRH_PAND: result_q <= task_px_i & task_pb_i;
+        ISA_BRH_POR: result_q <= task_px_i | task_pb_i;
+        ISA_BRH_PXOR: result_q <= task_px_i ^ task_pb_i;
+        ISA_BRH_PANDN: result_q <= task_px_i & ~task_pb_i;
+        ISA_BRH_JANY, ISA_BRH_LOOP: result_q <= {LANES{|task_mask_i}};
+        ISA_BRH_JNONE: result_q <= {LANES{~|task_mask_i}};
+        ISA_BRH_CALL, ISA_BRH_RET, ISA_BRH_EXIT: result_q <= {LANES{1'b1}};
+        default:
+          for (l = 0; l < LANES; l = l + 1)
+            result_q[l] <= compare(task_op_i, task_a_i[l*32 +: 32], task_b_i[l*32 +: 32]);
+      endcase
+
+  alu_delay #(.WIDTH(LANES), .STAGES(DEPTH-1)) alu_delay (
+    .clk_i(clk_i), .valid_i(stage_valid[DEPTH-1:1]), .data_i(result_q), .data_o(done_pred_o));
+  assign done_data_o = {LANES*32{1'b0}};
+endmodule
+`default_nettype wire

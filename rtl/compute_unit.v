@@ -1,0 +1,372 @@
+// One SIMT compute unit: instruction routine, data routine, ALUs, caches, ray memory, launch. docs/architecture.md describes it.
+// Promises: no output depends combinationally on an input; every valid/ready pair keeps its payload until taken.
+`default_nettype none
+module compute_unit #(
+  parameter integer WARPS = 8,
+  parameter integer LANES = 8,
+  parameter integer STACK_DEPTH = 8,
+  parameter integer TID_COUNT = 1,
+  parameter integer BRH_COUNT = 1,
+  parameter integer INT_COUNT = 1,
+  parameter integer FLT_COUNT = 1,
+  parameter integer SLW_COUNT = 1,
+  parameter integer TID_LATENCY = 1,
+  parameter integer BRH_LATENCY = 1,
+  parameter integer INT_LATENCY = 1,
+  parameter integer FLT_LATENCY = 1,
+  parameter integer SLW_LATENCY = 1,
+  parameter integer TID_DEPTH = 1,
+  parameter integer BRH_DEPTH = 2,
+  parameter integer INT_DEPTH = 2,
+  parameter integer FLT_DEPTH = 3,
+  parameter integer SLW_DEPTH = 11,
+  parameter integer ICACHE_BYTES = 4096,
+  parameter integer DCACHE_BYTES = 8192,
+  parameter integer DCACHE_MSHRS = 4,
+  parameter integer SUBNORMALS = 0,
+  parameter integer SLOW_UNIT = 0,
+  parameter integer WARP_BITS = (WARPS > 1) ? $clog2(WARPS) : 1
+) (
+  input  wire                      clk_i,
+  input  wire                      rst_ni,
+  // set by the host before a launch, constant while a kernel runs
+  input  wire [15:0]               program_length_i,   // instructions
+  input  wire [31:0]               memory_limit_i,     // bytes
+  input  wire                      argument_write_i,   // while idle; also invalidates the caches, as memory may have changed
+  input  wire [4:0]                argument_index_i,
+  input  wire [31:0]               argument_data_i,
+  // launch
+  input  wire                      launch_valid_i,
+  output wire                      launch_ready_o,
+  input  wire [15:0]               launch_pc_i,
+  input  wire [10:0]               launch_threads_i,   // 1 .. WARPS*LANES
+  input  wire [31:0]               launch_block_i,
+  input  wire [31:0]               launch_blocks_i,
+  input  wire [1:0]                launch_import_i,    // 0 none, 1 normal, 2 shadow
+  output wire                      kernel_done_o,      // one cycle a kernel
+  output wire                      busy_o,             // a kernel is running
+  output wire                      idle_o,             // nothing runs, waits, is being exported or stored
+  // memory port
+  output wire                      memory_request_valid_o,
+  input  wire                      memory_request_ready_i,
+  output wire                      memory_request_write_o,
+  output wire [31:0]               memory_request_address_o,
+  output wire [127:0]              memory_request_data_o,
+  output wire [3:0]                memory_request_mask_o,
+  output wire [4:0]                memory_request_id_o,
+  input  wire                      memory_response_valid_i,
+  input  wire [4:0]                memory_response_id_i,
+  input  wire [1:0]                memory_response_beat_i,
+  input  wire [127:0]              memory_response_data_i,
+  // pools
+  output wire                      import_request_valid_o,
+  output wire [1:0]                import_request_kind_o,
+  input  wire                      import_request_ready_i,
+  input  wire                      import_beat_valid_i,
+  input  wire [127:0]              import_beat_data_i,
+  output wire                      export_valid_o,
+  input  wire                      export_ready_i,
+  output wire [127:0]              export_data_o,
+  output wire                      export_last_o,
+  // frame buffer
+  output wire                      frame_valid_o,
+  input  wire                      frame_ready_i,
+  output wire [31:0]               frame_pixel_o,
+  output wire [95:0]               frame_color_o,      // red in the low word
+  // faults, sticky
+  output wire                      fault_valid_o,
+  output wire [3:0]                fault_code_o,
+  output wire [WARP_BITS-1:0]      fault_warp_o,
+  output wire [15:0]               fault_pc_o,
+  // performance counters, docs/architecture.md
+  input  wire [5:0]                counter_select_i,
+  output wire [63:0]               counter_o,          // the one exception: depends on counter_select_i
+  // trace, valid in the cycle of write-back
+  output wire [WARPS-1:0]          retire_valid_o,
+  output wire [WARPS*16-1:0]       retire_pc_o,
+  output wire [WARPS*64-1:0]       retire_instruction_o,
+  output wire [WARPS*LANES-1:0]    retire_mask_o,
+  output wire [WARPS*LANES*32-1:0] retire_data_o,
+  output wire [WARPS*LANES-1:0]    retire_predicate_o,
+  output wire                      store_trace_valid_o,
+  output wire [WARP_BITS-1:0]      store_trace_warp_o,
+  output wire [31:0]               store_trace_address_o,
+  output wire [127:0]              store_trace_data_o,
+  output wire [3:0]                store_trace_mask_o,
+  output wire                      ray_trace_valid_o,
+  output wire [WARP_BITS-1:0]      ray_trace_warp_o,
+  output wire [4:0]                ray_trace_word_o,
+  output wire [LANES-1:0]          ray_trace_mask_o,
+  output wire [LANES*32-1:0]       ray_trace_data_o
+);
+`include "isa.vh"
+  localparam integer DATA = LANES * 32;
+  localparam integer UNITS = 7;
+  // ALU instances, by type in the order of the unit numbers
+  localparam integer TID_SLOT = 0;
+  localparam integer BRH_SLOT = TID_SLOT + TID_COUNT;
+  localparam integer MEM_SLOT = BRH_SLOT + BRH_COUNT;
+  localparam integer INT_SLOT = MEM_SLOT + 1;
+  localparam integer FLT_SLOT = INT_SLOT + INT_COUNT;
+  localparam integer SLW_SLOT = FLT_SLOT + FLT_COUNT;
+  localparam integer RAY_SLOT = SLW_SLOT + SLW_COUNT;
+  localparam integer SLOTS = RAY_SLOT + 1;
+  localparam [SLOTS*4-1:0] SLOT_UNITS = {ISA_UNIT_RAY, {SLW_COUNT{ISA_UNIT_SLW}}, {FLT_COUNT{ISA_UNIT_FLT}},
+                                         {INT_COUNT{ISA_UNIT_INT}}, ISA_UNIT_MEM, {BRH_COUNT{ISA_UNIT_BRH}},
+                                         {TID_COUNT{ISA_UNIT_TID}}};
+
+  generate
+    if (WARPS < 1 || WARPS > 32 || (WARPS & (WARPS - 1)) != 0) begin : gen_bad_warps
+      compute_unit_WARPS_must_be_a_power_of_two_from_1_to_32 illegal ();
+    end
+    if (LANES < 1 || LANES > 32 || (LANES & (LANES - 1)) != 0) begin : gen_bad_lanes
+      compute_unit_LANES_must_be_a_power_of_two_from_1_to_32 illegal ();
+    end
+    if (STACK_DEPTH < 2 || STACK_DEPTH > 32) begin : gen_bad_stack
+      compute_unit_STACK_DEPTH_must_be_from_2_to_32 illegal ();
+    end
+    if (TID_COUNT < 1 || TID_COUNT > 4 || BRH_COUNT < 1 || BRH_COUNT > 4 || INT_COUNT < 1 || INT_COUNT > 4 || FLT_COUNT < 1 ||
+        FLT_COUNT > 4 || SLW_COUNT < 1 || SLW_COUNT > 4) begin : gen_bad_count
+      compute_unit_counts_of_ALUs_must_be_from_1_to_4 illegal ();
+    end
+  endgenerate
+
+  // launch
+  wire [WARPS-1:0] start, active;
+  wire [15:0] start_pc;
+  wire [WARPS*LANES-1:0] start_lanes;
+  wire [10:0] threads;
+  wire [31:0] block, blocks;
+  wire waiting_launch, import_start, import_active, exporting;
+  // instruction routine
+  wire [WARPS-1:0] fetch_request, fetch_grant;
+  wire [WARPS*16-1:0] fetch_pc;
+  wire fetch_valid, instruction_hit, instruction_miss, refill_done;
+  wire [WARP_BITS-1:0] fetch_warp, result_warp;
+  wire [63:0] fetched;
+  // data routine
+  wire [WARPS-1:0] want, grant;
+  wire [WARPS*LANES-1:0] px, pb;
+  wire [WARPS*DATA-1:0] a, b;
+  wire [SLOTS-1:0] ready, slot_grant, task_valid, done_valid;
+  wire [SLOTS*WARP_BITS-1:0] task_warp, done_warp;
+  wire [SLOTS*5-1:0] task_op, task_x;
+  wire [SLOTS*LANES-1:0] task_mask, task_px, task_pb, done_pred;
+  wire [SLOTS*DATA-1:0] task_a, task_b, done_data;
+  wire [SLOTS*32-1:0] task_imm;
+  wire [UNITS*6-1:0] waiting;
+  // memory
+  wire instruction_request, instruction_request_ready, instruction_response;
+  wire [31:0] instruction_request_address;
+  wire data_request, data_request_ready, data_request_write, data_response;
+  wire [31:0] data_request_address;
+  wire [127:0] data_request_data;
+  wire [3:0] data_request_mask;
+  wire [4:0] data_request_id;
+  wire data_hit, data_miss, data_store, mem_idle, arbiter_idle;
+  // faults
+  wire [WARPS-1:0] warp_fault;
+  wire [WARPS*4-1:0] warp_fault_code;
+  wire [WARPS*16-1:0] warp_fault_pc;
+  wire mem_fault, ray_fault;
+  wire [3:0] mem_fault_code, ray_fault_code;
+  wire [WARP_BITS-1:0] mem_fault_warp, ray_fault_warp;
+
+  genvar w, k;
+
+  launcher #(.WARPS(WARPS), .LANES(LANES)) launcher (
+    .clk_i(clk_i), .rst_ni(rst_ni),
+    .launch_valid_i(launch_valid_i), .launch_ready_o(launch_ready_o), .launch_pc_i(launch_pc_i),
+    .launch_threads_i(launch_threads_i), .launch_block_i(launch_block_i), .launch_blocks_i(launch_blocks_i),
+    .launch_import_i(launch_import_i), .import_start_o(import_start), .import_active_i(import_active),
+    .start_o(start), .start_pc_o(start_pc), .start_lanes_o(start_lanes), .active_i(active),
+    .threads_o(threads), .block_o(block), .blocks_o(blocks),
+    .kernel_done_o(kernel_done_o), .running_o(busy_o), .waiting_o(waiting_launch));
+  assign idle_o = !busy_o && !waiting_launch && !import_active && !exporting && mem_idle && arbiter_idle;
+
+  fetch_arbiter #(.WARPS(WARPS), .WARP_BITS(WARP_BITS)) fetch_arbiter (
+    .clk_i(clk_i), .rst_ni(rst_ni), .request_i(fetch_request), .grant_o(fetch_grant), .valid_o(fetch_valid), .warp_o(fetch_warp));
+
+  instruction_cache #(.CACHE_BYTES(ICACHE_BYTES), .WARP_BITS(WARP_BITS)) instruction_cache (
+    .clk_i(clk_i), .rst_ni(rst_ni),
+    .invalidate_i(argument_write_i), .lookup_valid_i(fetch_valid), .lookup_warp_i(fetch_warp), .lookup_pc_i(fetch_pc[fetch_warp*16 +: 16]),
+    .hit_o(instruction_hit), .miss_o(instruction_miss), .result_warp_o(result_warp), .instruction_o(fetched),
+    .refill_done_o(refill_done), .request_valid_o(instruction_request), .request_ready_i(instruction_request_ready),
+    .request_address_o(instruction_request_address), .response_valid_i(instruction_response),
+    .response_beat_i(memory_response_beat_i), .response_data_i(memory_response_data_i));
+
+  generate
+    for (w = 0; w < WARPS; w = w + 1) begin : gen_warp
+      warp #(.INDEX(w), .LANES(LANES), .WARP_BITS(WARP_BITS), .STACK_DEPTH(STACK_DEPTH), .SLOTS(SLOTS)) warp (
+        .clk_i(clk_i), .rst_ni(rst_ni), .start_i(start[w]), .start_pc_i(start_pc), .start_lanes_i(start_lanes[w*LANES +: LANES]),
+        .halt_i(fault_valid_o), .active_o(active[w]), .program_length_i(program_length_i),
+        .fetch_request_o(fetch_request[w]), .fetch_pc_o(fetch_pc[w*16 +: 16]), .fetch_grant_i(fetch_grant[w]),
+        .cache_hit_i(instruction_hit && result_warp == w), .cache_instruction_i(fetched), .refill_done_i(refill_done),
+        .want_o(want[w]), .grant_i(grant[w]), .instruction_o(retire_instruction_o[w*64 +: 64]),
+        .mask_o(retire_mask_o[w*LANES +: LANES]), .px_o(px[w*LANES +: LANES]), .pb_o(pb[w*LANES +: LANES]),
+        .a_o(a[w*DATA +: DATA]), .b_o(b[w*DATA +: DATA]),
+        .done_valid_i(done_valid), .done_warp_i(done_warp), .done_data_i(done_data), .done_pred_i(done_pred),
+        .retire_o(retire_valid_o[w]), .pc_o(retire_pc_o[w*16 +: 16]), .retire_data_o(retire_data_o[w*DATA +: DATA]),
+        .retire_predicate_o(retire_predicate_o[w*LANES +: LANES]),
+        .fault_valid_o(warp_fault[w]), .fault_code_o(warp_fault_code[w*4 +: 4]), .fault_pc_o(warp_fault_pc[w*16 +: 16]));
+    end
+  endgenerate
+
+  dispatcher #(
+    .WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS), .SLOTS(SLOTS), .UNITS(UNITS), .SLOT_UNITS(SLOT_UNITS)
+  ) dispatcher (
+    .clk_i(clk_i), .rst_ni(rst_ni), .want_i(want), .grant_o(grant), .instruction_i(retire_instruction_o), .mask_i(retire_mask_o),
+    .px_i(px), .pb_i(pb), .a_i(a), .b_i(b), .ready_i(ready), .slot_grant_o(slot_grant),
+    .task_valid_o(task_valid), .task_warp_o(task_warp), .task_op_o(task_op), .task_mask_o(task_mask), .task_a_o(task_a),
+    .task_b_o(task_b), .task_imm_o(task_imm), .task_x_o(task_x), .task_px_o(task_px), .task_pb_o(task_pb), .waiting_o(waiting));
+
+  generate
+    for (k = 0; k < TID_COUNT; k = k + 1) begin : gen_tid
+      tid_alu #(.WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS), .LATENCY(TID_LATENCY), .DEPTH(TID_DEPTH)) tid_alu (
+        .clk_i(clk_i), .rst_ni(rst_ni),
+        .task_valid_i(task_valid[TID_SLOT + k]), .task_warp_i(task_warp[(TID_SLOT + k)*WARP_BITS +: WARP_BITS]), .task_op_i(task_op[(TID_SLOT + k)*5 +: 5]),
+        .task_mask_i(task_mask[(TID_SLOT + k)*LANES +: LANES]), .task_a_i(task_a[(TID_SLOT + k)*DATA +: DATA]), .task_b_i(task_b[(TID_SLOT + k)*DATA +: DATA]),
+        .task_imm_i(task_imm[(TID_SLOT + k)*32 +: 32]), .task_x_i(task_x[(TID_SLOT + k)*5 +: 5]),
+        .task_px_i(task_px[(TID_SLOT + k)*LANES +: LANES]), .task_pb_i(task_pb[(TID_SLOT + k)*LANES +: LANES]),
+        .ready_o(ready[TID_SLOT + k]), .done_valid_o(done_valid[TID_SLOT + k]), .done_warp_o(done_warp[(TID_SLOT + k)*WARP_BITS +: WARP_BITS]),
+        .done_data_o(done_data[(TID_SLOT + k)*DATA +: DATA]), .done_pred_o(done_pred[(TID_SLOT + k)*LANES +: LANES]),
+        .block_i(block), .blocks_i(blocks), .threads_i(threads), .argument_write_i(argument_write_i),
+        .argument_index_i(argument_index_i), .argument_data_i(argument_data_i));
+    end
+    for (k = 0; k < BRH_COUNT; k = k + 1) begin : gen_brh
+      brh_alu #(.WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS), .LATENCY(BRH_LATENCY), .DEPTH(BRH_DEPTH), .SUBNORMALS(SUBNORMALS)) brh_alu (
+        .clk_i(clk_i), .rst_ni(rst_ni),
+        .task_valid_i(task_valid[BRH_SLOT + k]), .task_warp_i(task_warp[(BRH_SLOT + k)*WARP_BITS +: WARP_BITS]), .task_op_i(task_op[(BRH_SLOT + k)*5 +: 5]),
+        .task_mask_i(task_mask[(BRH_SLOT + k)*LANES +: LANES]), .task_a_i(task_a[(BRH_SLOT + k)*DATA +: DATA]), .task_b_i(task_b[(BRH_SLOT + k)*DATA +: DATA]),
+        .task_imm_i(task_imm[(BRH_SLOT + k)*32 +: 32]), .task_x_i(task_x[(BRH_SLOT + k)*5 +: 5]),
+        .task_px_i(task_px[(BRH_SLOT + k)*LANES +: LANES]), .task_pb_i(task_pb[(BRH_SLOT + k)*LANES +: LANES]),
+        .ready_o(ready[BRH_SLOT + k]), .done_valid_o(done_valid[BRH_SLOT + k]), .done_warp_o(done_warp[(BRH_SLOT + k)*WARP_BITS +: WARP_BITS]),
+        .done_data_o(done_data[(BRH_SLOT + k)*DATA +: DATA]), .done_pred_o(done_pred[(BRH_SLOT + k)*LANES +: LANES]));
+    end
+    for (k = 0; k < INT_COUNT; k = k + 1) begin : gen_int
+      int_alu #(.WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS), .LATENCY(INT_LATENCY), .DEPTH(INT_DEPTH)) int_alu (
+        .clk_i(clk_i), .rst_ni(rst_ni),
+        .task_valid_i(task_valid[INT_SLOT + k]), .task_warp_i(task_warp[(INT_SLOT + k)*WARP_BITS +: WARP_BITS]), .task_op_i(task_op[(INT_SLOT + k)*5 +: 5]),
+        .task_mask_i(task_mask[(INT_SLOT + k)*LANES +: LANES]), .task_a_i(task_a[(INT_SLOT + k)*DATA +: DATA]), .task_b_i(task_b[(INT_SLOT + k)*DATA +: DATA]),
+        .task_imm_i(task_imm[(INT_SLOT + k)*32 +: 32]), .task_x_i(task_x[(INT_SLOT + k)*5 +: 5]),
+        .task_px_i(task_px[(INT_SLOT + k)*LANES +: LANES]), .task_pb_i(task_pb[(INT_SLOT + k)*LANES +: LANES]),
+        .ready_o(ready[INT_SLOT + k]), .done_valid_o(done_valid[INT_SLOT + k]), .done_warp_o(done_warp[(INT_SLOT + k)*WARP_BITS +: WARP_BITS]),
+        .done_data_o(done_data[(INT_SLOT + k)*DATA +: DATA]), .done_pred_o(done_pred[(INT_SLOT + k)*LANES +: LANES]));
+    end
+    for (k = 0; k < FLT_COUNT; k = k + 1) begin : gen_flt
+      flt_alu #(.WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS), .LATENCY(FLT_LATENCY), .DEPTH(FLT_DEPTH), .SUBNORMALS(SUBNORMALS)) flt_alu (
+        .clk_i(clk_i), .rst_ni(rst_ni),
+        .task_valid_i(task_valid[FLT_SLOT + k]), .task_warp_i(task_warp[(FLT_SLOT + k)*WARP_BITS +: WARP_BITS]), .task_op_i(task_op[(FLT_SLOT + k)*5 +: 5]),
+        .task_mask_i(task_mask[(FLT_SLOT + k)*LANES +: LANES]), .task_a_i(task_a[(FLT_SLOT + k)*DATA +: DATA]), .task_b_i(task_b[(FLT_SLOT + k)*DATA +: DATA]),
+        .task_imm_i(task_imm[(FLT_SLOT + k)*32 +: 32]), .task_x_i(task_x[(FLT_SLOT + k)*5 +: 5]),
+        .task_px_i(task_px[(FLT_SLOT + k)*LANES +: LANES]), .task_pb_i(task_pb[(FLT_SLOT + k)*LANES +: LANES]),
+        .ready_o(ready[FLT_SLOT + k]), .done_valid_o(done_valid[FLT_SLOT + k]), .done_warp_o(done_warp[(FLT_SLOT + k)*WARP_BITS +: WARP_BITS]),
+        .done_data_o(done_data[(FLT_SLOT + k)*DATA +: DATA]), .done_pred_o(done_pred[(FLT_SLOT + k)*LANES +: LANES]));
+    end
+    for (k = 0; k < SLW_COUNT; k = k + 1) begin : gen_slw
+      slw_alu #(.WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS), .LATENCY(SLW_LATENCY), .DEPTH(SLW_DEPTH), .SUBNORMALS(SUBNORMALS),
+                .SLOW_UNIT(SLOW_UNIT)) slw_alu (
+        .clk_i(clk_i), .rst_ni(rst_ni),
+        .task_valid_i(task_valid[SLW_SLOT + k]), .task_warp_i(task_warp[(SLW_SLOT + k)*WARP_BITS +: WARP_BITS]), .task_op_i(task_op[(SLW_SLOT + k)*5 +: 5]),
+        .task_mask_i(task_mask[(SLW_SLOT + k)*LANES +: LANES]), .task_a_i(task_a[(SLW_SLOT + k)*DATA +: DATA]), .task_b_i(task_b[(SLW_SLOT + k)*DATA +: DATA]),
+        .task_imm_i(task_imm[(SLW_SLOT + k)*32 +: 32]), .task_x_i(task_x[(SLW_SLOT + k)*5 +: 5]),
+        .task_px_i(task_px[(SLW_SLOT + k)*LANES +: LANES]), .task_pb_i(task_pb[(SLW_SLOT + k)*LANES +: LANES]),
+        .ready_o(ready[SLW_SLOT + k]), .done_valid_o(done_valid[SLW_SLOT + k]), .done_warp_o(done_warp[(SLW_SLOT + k)*WARP_BITS +: WARP_BITS]),
+        .done_data_o(done_data[(SLW_SLOT + k)*DATA +: DATA]), .done_pred_o(done_pred[(SLW_SLOT + k)*LANES +: LANES]));
+    end
+  endgenerate
+
+  mem_alu #(.WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS), .CACHE_BYTES(DCACHE_BYTES), .MSHRS(DCACHE_MSHRS)) mem_alu (
+    .clk_i(clk_i), .rst_ni(rst_ni),
+    .task_valid_i(task_valid[MEM_SLOT]), .task_warp_i(task_warp[(MEM_SLOT)*WARP_BITS +: WARP_BITS]), .task_op_i(task_op[(MEM_SLOT)*5 +: 5]),
+    .task_mask_i(task_mask[(MEM_SLOT)*LANES +: LANES]), .task_a_i(task_a[(MEM_SLOT)*DATA +: DATA]), .task_b_i(task_b[(MEM_SLOT)*DATA +: DATA]),
+    .task_imm_i(task_imm[(MEM_SLOT)*32 +: 32]), .task_x_i(task_x[(MEM_SLOT)*5 +: 5]),
+    .task_px_i(task_px[(MEM_SLOT)*LANES +: LANES]), .task_pb_i(task_pb[(MEM_SLOT)*LANES +: LANES]),
+    .ready_o(ready[MEM_SLOT]), .done_valid_o(done_valid[MEM_SLOT]), .done_warp_o(done_warp[(MEM_SLOT)*WARP_BITS +: WARP_BITS]),
+    .done_data_o(done_data[(MEM_SLOT)*DATA +: DATA]), .done_pred_o(done_pred[(MEM_SLOT)*LANES +: LANES]),
+    .invalidate_i(argument_write_i), .memory_limit_i(memory_limit_i),
+    .fault_valid_o(mem_fault), .fault_code_o(mem_fault_code), .fault_warp_o(mem_fault_warp),
+    .request_valid_o(data_request), .request_ready_i(data_request_ready), .request_write_o(data_request_write),
+    .request_address_o(data_request_address), .request_data_o(data_request_data), .request_mask_o(data_request_mask),
+    .request_id_o(data_request_id), .response_valid_i(data_response), .response_id_i(memory_response_id_i),
+    .response_beat_i(memory_response_beat_i), .response_data_i(memory_response_data_i),
+    .store_trace_valid_o(store_trace_valid_o), .store_trace_warp_o(store_trace_warp_o),
+    .store_trace_address_o(store_trace_address_o), .store_trace_data_o(store_trace_data_o),
+    .store_trace_mask_o(store_trace_mask_o),
+    .hit_o(data_hit), .miss_o(data_miss), .store_o(data_store), .idle_o(mem_idle));
+
+  ray_alu #(.WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS)) ray_alu (
+    .clk_i(clk_i), .rst_ni(rst_ni),
+    .task_valid_i(task_valid[RAY_SLOT]), .task_warp_i(task_warp[(RAY_SLOT)*WARP_BITS +: WARP_BITS]), .task_op_i(task_op[(RAY_SLOT)*5 +: 5]),
+    .task_mask_i(task_mask[(RAY_SLOT)*LANES +: LANES]), .task_a_i(task_a[(RAY_SLOT)*DATA +: DATA]), .task_b_i(task_b[(RAY_SLOT)*DATA +: DATA]),
+    .task_imm_i(task_imm[(RAY_SLOT)*32 +: 32]), .task_x_i(task_x[(RAY_SLOT)*5 +: 5]),
+    .task_px_i(task_px[(RAY_SLOT)*LANES +: LANES]), .task_pb_i(task_pb[(RAY_SLOT)*LANES +: LANES]),
+    .ready_o(ready[RAY_SLOT]), .done_valid_o(done_valid[RAY_SLOT]), .done_warp_o(done_warp[(RAY_SLOT)*WARP_BITS +: WARP_BITS]),
+    .done_data_o(done_data[(RAY_SLOT)*DATA +: DATA]), .done_pred_o(done_pred[(RAY_SLOT)*LANES +: LANES]),
+    .import_start_i(import_start), .import_start_kind_i(launch_import_i), .import_start_threads_i(launch_threads_i),
+    .import_active_o(import_active), .import_request_valid_o(import_request_valid_o),
+    .import_request_kind_o(import_request_kind_o), .import_request_ready_i(import_request_ready_i),
+    .import_beat_valid_i(import_beat_valid_i), .import_beat_data_i(import_beat_data_i),
+    .export_valid_o(export_valid_o), .export_ready_i(export_ready_i), .export_data_o(export_data_o), .export_last_o(export_last_o),
+    .frame_valid_o(frame_valid_o), .frame_ready_i(frame_ready_i), .frame_pixel_o(frame_pixel_o), .frame_color_o(frame_color_o),
+    .ray_trace_valid_o(ray_trace_valid_o), .ray_trace_warp_o(ray_trace_warp_o), .ray_trace_word_o(ray_trace_word_o),
+    .ray_trace_mask_o(ray_trace_mask_o), .ray_trace_data_o(ray_trace_data_o),
+    .fault_valid_o(ray_fault), .fault_code_o(ray_fault_code), .fault_warp_o(ray_fault_warp), .exporting_o(exporting));
+
+  memory_arbiter memory_arbiter (
+    .clk_i(clk_i), .rst_ni(rst_ni),
+    .instruction_request_valid_i(instruction_request), .instruction_request_ready_o(instruction_request_ready),
+    .instruction_request_address_i(instruction_request_address), .instruction_response_valid_o(instruction_response),
+    .data_request_valid_i(data_request), .data_request_ready_o(data_request_ready), .data_request_write_i(data_request_write),
+    .data_request_address_i(data_request_address), .data_request_data_i(data_request_data),
+    .data_request_mask_i(data_request_mask), .data_request_id_i(data_request_id), .data_response_valid_o(data_response),
+    .request_valid_o(memory_request_valid_o), .request_ready_i(memory_request_ready_i),
+    .request_write_o(memory_request_write_o), .request_address_o(memory_request_address_o),
+    .request_data_o(memory_request_data_o), .request_mask_o(memory_request_mask_o), .request_id_o(memory_request_id_o),
+    .response_valid_i(memory_response_valid_i), .response_id_i(memory_response_id_i), .idle_o(arbiter_idle));
+
+  performance_counters #(
+    .WARPS(WARPS), .LANES(LANES), .SLOTS(SLOTS), .UNITS(UNITS), .SLOT_UNITS(SLOT_UNITS)
+  ) performance_counters (
+    .clk_i(clk_i), .rst_ni(rst_ni), .running_i(busy_o), .retire_i(retire_valid_o), .retire_mask_i(retire_mask_o),
+    .instruction_hit_i(instruction_hit), .instruction_miss_i(instruction_miss), .data_hit_i(data_hit), .data_miss_i(data_miss),
+    .data_store_i(data_store), .ready_i(ready), .grant_i(slot_grant), .waiting_i(waiting),
+    .select_i(counter_select_i), .value_o(counter_o));
+
+  // The first fault stays; of several in one cycle an ALU's wins, then the lowest warp's.
+  reg fault_q;
+  reg [3:0] fault_code_q;
+  reg [WARP_BITS-1:0] fault_warp_q;
+  reg [15:0] fault_pc_q;
+  integer f;
+  assign fault_valid_o = fault_q;
+  assign fault_code_o = fault_code_q;
+  assign fault_warp_o = fault_warp_q;
+  assign fault_pc_o = fault_pc_q;
+  always @(posedge clk_i)
+    if (!rst_ni) begin
+      fault_q <= 1'b0;
+      fault_code_q <= 4'd0;
+      fault_warp_q <= {WARP_BITS{1'b0}};
+      fault_pc_q <= 16'd0;
+    end else if (!fault_q && (mem_fault || ray_fault || |warp_fault)) begin
+      fault_q <= 1'b1;
+      if (mem_fault) begin
+        fault_code_q <= mem_fault_code;
+        fault_warp_q <= mem_fault_warp;
+        fault_pc_q <= retire_pc_o[mem_fault_warp*16 +: 16];
+      end else if (ray_fault) begin
+        fault_code_q <= ray_fault_code;
+        fault_warp_q <= ray_fault_warp;
+        fault_pc_q <= retire_pc_o[ray_fault_warp*16 +: 16];
+      end else begin
+        for (f = WARPS - 1; f >= 0; f = f - 1)
+          if (warp_fault[f]) begin
+            fault_code_q <= warp_fault_code[f*4 +: 4];
+            fault_warp_q <= f[WARP_BITS-1:0];
+            fault_pc_q <= warp_fault_pc[f*16 +: 16];
+          end
+      end
+    end
+endmodule
+`default_nettype wire

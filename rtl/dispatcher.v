@@ -1,0 +1,95 @@
+// Each cycle, gives every free ALU instance (slot) the lowest-numbered warp that wants its type and has no slot yet, and latches that
+// warp's task into the slot's task register. Never grants a slot that is not ready, nor a warp twice.
+`default_nettype none
+module dispatcher #(
+  parameter integer WARPS = 8,
+  parameter integer LANES = 8,
+  parameter integer WARP_BITS = 3,
+  parameter integer SLOTS = 7,
+  parameter integer UNITS = 7,
+  parameter [SLOTS*4-1:0] SLOT_UNITS = 28'h6543210   // type of each slot
+) (
+  input  wire                        clk_i,
+  input  wire                        rst_ni,
+  // warps
+  input  wire [WARPS-1:0]            want_i,
+  output reg  [WARPS-1:0]            grant_o,
+  input  wire [WARPS*64-1:0]         instruction_i,
+  input  wire [WARPS*LANES-1:0]      mask_i,
+  input  wire [WARPS*LANES-1:0]      px_i,
+  input  wire [WARPS*LANES-1:0]      pb_i,
+  input  wire [WARPS*LANES*32-1:0]   a_i,
+  input  wire [WARPS*LANES*32-1:0]   b_i,
+  // slots
+  input  wire [SLOTS-1:0]            ready_i,
+  output reg  [SLOTS-1:0]            slot_grant_o,   // in this cycle; the task register is valid in the next
+  output reg  [SLOTS-1:0]            task_valid_o,
+  output reg  [SLOTS*WARP_BITS-1:0]  task_warp_o,
+  output reg  [SLOTS*5-1:0]          task_op_o,
+  output reg  [SLOTS*LANES-1:0]      task_mask_o,
+  output reg  [SLOTS*LANES*32-1:0]   task_a_o,
+  output reg  [SLOTS*LANES*32-1:0]   task_b_o,
+  output reg  [SLOTS*32-1:0]         task_imm_o,
+  output reg  [SLOTS*5-1:0]          task_x_o,
+  output reg  [SLOTS*LANES-1:0]      task_px_o,
+  output reg  [SLOTS*LANES-1:0]      task_pb_o,
+  // how many warps wanted each type and got no slot
+  output reg  [UNITS*6-1:0]          waiting_o
+);
+  localparam [WARPS-1:0] ONE = 1;
+  reg [SLOTS*WARP_BITS-1:0] slot_warp;
+  reg [WARPS-1:0] candidates, winner;
+  integer s, w;
+
+  always @* begin
+    grant_o = {WARPS{1'b0}};
+    slot_grant_o = {SLOTS{1'b0}};
+    slot_warp = {SLOTS*WARP_BITS{1'b0}};
+    candidates = {WARPS{1'b0}};
+    winner = {WARPS{1'b0}};
+    if (|want_i)
+      for (s = 0; s < SLOTS; s = s + 1)
+        if (ready_i[s]) begin
+          for (w = 0; w < WARPS; w = w + 1)
+            candidates[w] = want_i[w] && !grant_o[w] && instruction_i[w*64+60 +: 4] == SLOT_UNITS[s*4 +: 4];
+          winner = candidates & (~candidates + ONE);
+          grant_o = grant_o | winner;
+          slot_grant_o[s] = |candidates;
+          for (w = 0; w < WARPS; w = w + 1)
+            if (winner[w]) slot_warp[s*WARP_BITS +: WARP_BITS] = w[WARP_BITS-1:0];
+        end
+  end
+
+  always @* begin
+    waiting_o = {UNITS*6{1'b0}};
+    if (want_i != grant_o)
+      for (w = 0; w < WARPS; w = w + 1)
+        if (want_i[w] && !grant_o[w])
+          waiting_o[instruction_i[w*64+60 +: 3]*6 +: 6] = waiting_o[instruction_i[w*64+60 +: 3]*6 +: 6] + 6'd1;
+  end
+
+  always @(posedge clk_i)
+    if (!rst_ni) task_valid_o <= {SLOTS{1'b0}};
+    else task_valid_o <= slot_grant_o;
+
+  genvar k;
+  generate
+    for (k = 0; k < SLOTS; k = k + 1) begin : gen_slot
+      wire [WARP_BITS-1:0] source = slot_warp[k*WARP_BITS +: WARP_BITS];
+      always @(posedge clk_i)
+        if (slot_grant_o[k]) begin
+          task_warp_o[k*WARP_BITS +: WARP_BITS] <= source;
+          task_op_o[k*5 +: 5] <= instruction_i[source*64+55 +: 5];
+          task_imm_o[k*32 +: 32] <= instruction_i[source*64 +: 32];
+          task_x_o[k*5 +: 5] <= instruction_i[source*64+32 +: 5];
+          task_mask_o[k*LANES +: LANES] <= mask_i[source*LANES +: LANES];
+          task_px_o[k*LANES +: LANES] <= px_i[source*LANES +: LANES];
+          task_pb_o[k*LANES +: LANES] <= pb_i[source*LANES +: LANES];
+          task_a_o[k*LANES*32 +: LANES*32] <= a_i[source*LANES*32 +: LANES*32];
+          task_b_o[k*LANES*32 +: LANES*32] <= instruction_i[source*64+37 +: 1] ? {LANES{instruction_i[source*64 +: 32]}}
+                                                                               : b_i[source*LANES*32 +: LANES*32];
+        end
+    end
+  endgenerate
+endmodule
+`default_nettype wire

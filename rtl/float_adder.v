@@ -1,0 +1,135 @@
+// Floating-point adder and subtracter, three stages: align, add and begin to normalise, normalise and round.
+// Operands are taken with enable_i[0]; enable_i[k] must say that stage k holds that operation k cycles later. result_o is combinational,
+// valid in stage 2, and zero while enable_i[2] is low, so that units of a lane can be ORed. Nearest even, one NaN (quiet, positive).
+// SUBNORMALS 0: IEEE; 1: subnormal operands and results become the zero of their sign. A subnormal sum is exact, so it never depends on
+// rounding whether one is flushed.
+`default_nettype none
+module float_adder #(
+  parameter integer EXPONENT_BITS = 8,
+  parameter integer MANTISSA_BITS = 23,   // stored bits, without the leading one
+  parameter integer SUBNORMALS = 0,
+  parameter integer BITS = 1 + EXPONENT_BITS + MANTISSA_BITS
+) (
+  input  wire            clk_i,
+  input  wire [2:0]      enable_i,
+  input  wire            subtract_i,
+  input  wire [BITS-1:0] a_i,
+  input  wire [BITS-1:0] b_i,
+  output reg  [BITS-1:0] result_o
+);
+  localparam integer E = EXPONENT_BITS;
+  localparam integer M = MANTISSA_BITS;
+  localparam integer A = M + 4;             // aligned mantissa: leading bit, M bits, guard, round, sticky
+  localparam integer W = M + 5;             // sum, with its carry
+  localparam integer STEPS = $clog2(W);     // of the normaliser: shifts by 2^(STEPS-1) .. 1
+  localparam integer EARLY = STEPS - 3;     // steps 2^(STEPS-1) .. 8 are taken in stage 1
+
+  // Stage 0 -> 1
+  reg s1_nan_q, s1_infinite_q, s1_sign_q, s1_subtract_q;
+  reg [E-1:0] s1_exponent_q;
+  reg [M:0] s1_large_q;
+  reg [A-1:0] s1_small_q;
+  // Stage 1 -> 2
+  reg s2_nan_q, s2_infinite_q, s2_sign_q, s2_subtract_q;
+  reg [E:0] s2_exponent_q;
+  reg [W-1:0] s2_sum_q, s2_guide_q;
+
+  always @(posedge clk_i) begin
+    if (enable_i[0]) begin : stage0
+      reg sign_a, sign_b, swap, nan_a, nan_b, max_a, max_b;
+      reg [E-1:0] exponent_a, exponent_b, larger, smaller, distance;
+      reg [M:0] mantissa_a, mantissa_b;
+      reg [A-1:0] aligned, lost;
+      sign_a = a_i[BITS-1];
+      sign_b = b_i[BITS-1] ^ subtract_i;
+      exponent_a = a_i[BITS-2 -: E];
+      exponent_b = b_i[BITS-2 -: E];
+      mantissa_a = {exponent_a != {E{1'b0}}, (SUBNORMALS == 0 || exponent_a != {E{1'b0}}) ? a_i[M-1:0] : {M{1'b0}}};
+      mantissa_b = {exponent_b != {E{1'b0}}, (SUBNORMALS == 0 || exponent_b != {E{1'b0}}) ? b_i[M-1:0] : {M{1'b0}}};
+      max_a = &exponent_a;
+      max_b = &exponent_b;
+      nan_a = max_a && a_i[M-1:0] != {M{1'b0}};
+      nan_b = max_b && b_i[M-1:0] != {M{1'b0}};
+      s1_nan_q <= nan_a || nan_b || (max_a && max_b && sign_a != sign_b);
+      s1_infinite_q <= max_a || max_b;
+      swap = b_i[BITS-2:0] > a_i[BITS-2:0];
+      larger = swap ? exponent_b : exponent_a;
+      smaller = swap ? exponent_a : exponent_b;
+      // A subnormal number has the exponent of the smallest normal one.
+      if (larger == {E{1'b0}}) larger = {{E-1{1'b0}}, 1'b1};
+      if (smaller == {E{1'b0}}) smaller = {{E-1{1'b0}}, 1'b1};
+      distance = larger - smaller;
+      aligned = {swap ? mantissa_a : mantissa_b, 3'b000};
+      lost = aligned & ~({A{1'b1}} << distance);
+      aligned = aligned >> distance;
+      s1_sign_q <= swap ? sign_b : sign_a;
+      s1_subtract_q <= sign_a ^ sign_b;
+      s1_exponent_q <= larger;
+      s1_large_q <= swap ? mantissa_b : mantissa_a;
+      s1_small_q <= {aligned[A-1:1], aligned[0] || lost != {A{1'b0}}};
+    end
+    if (enable_i[1]) begin : stage1
+      reg [W-1:0] sum, guide;
+      reg [E:0] exponent;
+      integer step;
+      sum = s1_subtract_q ? {1'b0, s1_large_q, 3'b000} - {1'b0, s1_small_q} : {1'b0, s1_large_q, 3'b000} + {1'b0, s1_small_q};
+      // The sum is shifted up until its leading one is at the top. The guide has a further one where the exponent would become zero.
+      guide = sum | ({1'b1, {W-1{1'b0}}} >> s1_exponent_q);
+      exponent = {1'b0, s1_exponent_q} + {{E{1'b0}}, 1'b1};
+      for (step = STEPS - 1; step >= STEPS - EARLY; step = step - 1) begin
+        if (guide >> (W - (1 << step)) == {W{1'b0}}) begin
+          guide = guide << (1 << step);
+          sum = sum << (1 << step);
+          exponent = exponent - ({{E{1'b0}}, 1'b1} << step);
+        end
+      end
+      s2_nan_q <= s1_nan_q;
+      s2_infinite_q <= s1_infinite_q;
+      s2_sign_q <= s1_sign_q;
+      s2_subtract_q <= s1_subtract_q;
+      s2_exponent_q <= exponent;
+      s2_sum_q <= sum;
+      s2_guide_q <= guide;
+    end
+  end
+
+  always @* begin : stage2
+    reg [W-1:0] sum, guide;
+    reg [E:0] exponent, shift;
+    reg [E+M-1:0] magnitude;
+    reg round_up, sign;
+    integer step;
+    result_o = {BITS{1'b0}};
+    sum = s2_sum_q;
+    guide = s2_guide_q;
+    exponent = {E+1{1'b0}};
+    shift = {E+1{1'b0}};
+    magnitude = {E+M{1'b0}};
+    round_up = 1'b0;
+    sign = s2_sign_q;
+    if (enable_i[2]) begin
+      for (step = STEPS - EARLY - 1; step >= 0; step = step - 1) begin
+        if (guide >> (W - (1 << step)) == {W{1'b0}}) begin
+          guide = guide << (1 << step);
+          sum = sum << (1 << step);
+          shift[step] = 1'b1;
+        end
+      end
+      exponent = s2_exponent_q - shift;
+      round_up = sum[3] && (sum[4] || sum[2:0] != 3'b000);
+      if (!sum[W-1]) exponent = {E+1{1'b0}};
+      if (s2_nan_q) begin
+        sign = 1'b0;
+        magnitude = {{E+1{1'b1}}, {M-1{1'b0}}};
+      end else if (s2_infinite_q || exponent[E] || &exponent[E-1:0]) begin
+        magnitude = {{E{1'b1}}, {M{1'b0}}};
+      end else begin
+        // A carry out of the mantissa goes up into the exponent, to infinity too.
+        if (SUBNORMALS == 0 || sum[W-1]) magnitude = {exponent[E-1:0], sum[W-2:4]} + {{E+M-1{1'b0}}, round_up};
+        if (sum == {W{1'b0}} && s2_subtract_q) sign = 1'b0;
+      end
+      result_o = {sign, magnitude};
+    end
+  end
+endmodule
+`default_nettype wire

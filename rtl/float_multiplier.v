@@ -1,0 +1,144 @@
+// Floating-point multiplier, three stages: partial products, their sum with its leading one brought to the
+// top two bits, rounding.
+// Operands are taken with enable_i[0]; enable_i[k] must say that stage k holds that operation k cycles later. result_o is combinational,
+// valid in stage 2, and zero while enable_i[2] is low, so that units of a lane can be ORed. Nearest even, one NaN (quiet, positive).
+// SUBNORMALS 0: IEEE; 1: subnormal operands count as zero and a result is flushed to zero when it is tiny after rounding, as in SSE.
+`default_nettype none
+module float_multiplier #(
+  parameter integer EXPONENT_BITS = 8,
+  parameter integer MANTISSA_BITS = 23,   // stored bits, without the leading one
+  parameter integer SUBNORMALS = 0,
+  parameter integer BITS = 1 + EXPONENT_BITS + MANTISSA_BITS
+) (
+  input  wire            clk_i,
+  input  wire [2:0]      enable_i,
+  input  wire [BITS-1:0] a_i,
+  input  wire [BITS-1:0] b_i,
+  output reg  [BITS-1:0] result_o
+);
+  localparam integer E = EXPONENT_BITS;
+  localparam integer M = MANTISSA_BITS;
+  localparam integer P = 2*M + 2;           // bits of the product
+  localparam integer L = (M + 1) / 3;       // digits of b in the low and the middle partial product; the rest is in the high one
+  localparam integer X = E + 2;             // signed exponent
+  localparam integer STEPS = $clog2(M + 1); // of the normaliser: shifts by 2^(STEPS-1) .. 1
+  localparam integer F = $clog2(M + 4);
+  localparam integer FAR = M + 3;
+  localparam [X-1:0] BIAS = {3'b000, {E-1{1'b1}}};
+  localparam [X-1:0] ONE = {{X-1{1'b0}}, 1'b1};
+
+  // Stage 0 -> 1
+  reg s1_nan_q, s1_infinite_q, s1_sign_q;
+  reg [X-1:0] s1_exponent_q;                // of a product in [1, 2), biased
+  reg [STEPS-1:0] s1_shift_q;               // leading zeros of the subnormal operand
+  reg [M+L:0] s1_low_q, s1_middle_q;
+  reg [P-2*L-1:0] s1_high_q;
+  // Stage 1 -> 2
+  reg s2_nan_q, s2_infinite_q, s2_infinite_above_q, s2_sign_q;  // above: infinite if the product is 2 or more
+  reg [X-1:0] s2_exponent_q;                // of a product in [1, 2)
+  reg [F-1:0] s2_distance_q;                // shift to the right of a subnormal result; more leaves the sticky bit only
+  reg [P-1:0] s2_product_q;
+
+  always @(posedge clk_i) begin
+    if (enable_i[0]) begin : stage0
+      reg zero_a, zero_b, max_a, max_b, nan_a, nan_b;
+      reg [E-1:0] exponent_a, exponent_b;
+      reg [M:0] mantissa_a, mantissa_b, guide;
+      reg [STEPS-1:0] shift;
+      integer step;
+      exponent_a = a_i[BITS-2 -: E];
+      exponent_b = b_i[BITS-2 -: E];
+      mantissa_a = {exponent_a != {E{1'b0}}, (SUBNORMALS == 0 || exponent_a != {E{1'b0}}) ? a_i[M-1:0] : {M{1'b0}}};
+      mantissa_b = {exponent_b != {E{1'b0}}, (SUBNORMALS == 0 || exponent_b != {E{1'b0}}) ? b_i[M-1:0] : {M{1'b0}}};
+      zero_a = mantissa_a == {M+1{1'b0}};
+      zero_b = mantissa_b == {M+1{1'b0}};
+      max_a = &exponent_a;
+      max_b = &exponent_b;
+      nan_a = max_a && a_i[M-1:0] != {M{1'b0}};
+      nan_b = max_b && b_i[M-1:0] != {M{1'b0}};
+      s1_nan_q <= nan_a || nan_b || (max_a && zero_b) || (max_b && zero_a);
+      s1_infinite_q <= max_a || max_b;
+      s1_sign_q <= a_i[BITS-1] ^ b_i[BITS-1];
+      // Leading zeros of the one subnormal operand; of two the product vanishes however it is shifted.
+      shift = {STEPS{1'b0}};
+      if (SUBNORMALS == 0 && !(mantissa_a[M] && mantissa_b[M])) begin
+        guide = mantissa_a[M] ? mantissa_b : mantissa_a;
+        for (step = STEPS - 1; step >= 0; step = step - 1) begin
+          if (guide >> (M + 1 - (1 << step)) == {M+1{1'b0}}) begin
+            guide = guide << (1 << step);
+            shift[step] = 1'b1;
+          end
+        end
+      end
+      s1_shift_q <= shift;
+      if (exponent_a == {E{1'b0}}) exponent_a = {{E-1{1'b0}}, 1'b1};
+      if (exponent_b == {E{1'b0}}) exponent_b = {{E-1{1'b0}}, 1'b1};
+      s1_exponent_q <= {2'b00, exponent_a} + {2'b00, exponent_b} - BIAS;
+      s1_low_q <= {{L{1'b0}}, mantissa_a} * {{M+1{1'b0}}, mantissa_b[L-1:0]};
+      s1_middle_q <= {{L{1'b0}}, mantissa_a} * {{M+1{1'b0}}, mantissa_b[2*L-1:L]};
+      s1_high_q <= {{M+1-2*L{1'b0}}, mantissa_a} * {{M+1{1'b0}}, mantissa_b[M:2*L]};
+    end
+    if (enable_i[1]) begin : stage1
+      reg [P-1:0] product;
+      reg [X-1:0] exponent, distance;
+      product = {s1_high_q, {2*L{1'b0}}} + {{M+1-2*L{1'b0}}, s1_middle_q, {L{1'b0}}} + {{M+1-L{1'b0}}, s1_low_q};
+      s2_product_q <= (SUBNORMALS == 0) ? product << s1_shift_q : product;
+      exponent = s1_exponent_q - {{X-STEPS{1'b0}}, s1_shift_q};
+      distance = ONE - exponent;
+      if (SUBNORMALS != 0 || distance[X-1]) distance = {X{1'b0}};
+      if (distance > FAR[X-1:0]) distance = FAR[X-1:0];
+      s2_distance_q <= distance[F-1:0];
+      s2_exponent_q <= exponent;
+      s2_nan_q <= s1_nan_q;
+      s2_infinite_q <= s1_infinite_q || (!exponent[X-1] && (exponent[X-2] || &exponent[E-1:0]));
+      s2_infinite_above_q <= s1_infinite_q || (!exponent[X-1] && (exponent[X-2] || &exponent[E-1:1]));
+      s2_sign_q <= s1_sign_q;
+    end
+  end
+
+  always @* begin : stage2
+    reg [M+2:0] top, lost;                  // leading two bits, mantissa, guard
+    reg [M:0] kept;                         // mantissa and guard
+    reg [X-1:0] exponent;
+    reg [X+M-1:0] magnitude;
+    reg sticky, sign;
+    result_o = {BITS{1'b0}};
+    top = s2_product_q[P-1:M-1];
+    lost = {M+3{1'b0}};
+    kept = {M+1{1'b0}};
+    exponent = s2_exponent_q;
+    magnitude = {X+M{1'b0}};
+    sticky = s2_product_q[M-2:0] != {M-1{1'b0}};
+    sign = s2_sign_q;
+    if (enable_i[2]) begin
+      if (SUBNORMALS == 0 && s2_distance_q != {F{1'b0}}) begin
+        // Below the normal numbers: the exponent is 0, or 1 if the leading bit comes to where a normal number's is.
+        lost = top & ~({M+3{1'b1}} << s2_distance_q);
+        top = top >> s2_distance_q;
+        kept = top[M:0];
+        sticky = sticky || lost != {M+3{1'b0}};
+        exponent = {{X-1{1'b0}}, top[M+1]};
+      end else if (top[M+2]) begin
+        kept = top[M+1:1];
+        sticky = sticky || top[0];
+        exponent = s2_exponent_q + ONE;
+      end else begin
+        kept = top[M:0];
+      end
+      // A carry out of the mantissa goes up into the exponent.
+      magnitude = {exponent, kept[M:1]} + {{X+M-1{1'b0}}, kept[0] && (kept[1] || sticky)};
+      if (s2_nan_q) begin
+        sign = 1'b0;
+        magnitude = {2'b00, {E+1{1'b1}}, {M-1{1'b0}}};
+      end else if (s2_product_q == {P{1'b0}}) begin
+        magnitude = {X+M{1'b0}};
+      end else if (s2_product_q[P-1] ? s2_infinite_above_q : s2_infinite_q) begin
+        magnitude = {2'b00, {E{1'b1}}, {M{1'b0}}};
+      end else if (SUBNORMALS != 0 && (magnitude[X+M-1] || magnitude[X+M-1:M] == {X{1'b0}})) begin
+        magnitude = {X+M{1'b0}};
+      end
+      result_o = {sign, magnitude[E+M-1:0]};
+    end
+  end
+endmodule
+`default_nettype wire

@@ -1,0 +1,110 @@
+// One warp's instruction buffer: the current instruction in the data routine, the next one in the instruction routine, and the state of
+// both. docs/architecture.md, section 3, has the cycles.
+`default_nettype none
+module instruction_buffer (
+  input  wire        clk_i,
+  input  wire        rst_ni,
+  input  wire        start_i,          // begin fetching at the PC stack's first entry
+  input  wire        halt_i,           // a fault anywhere: nothing new is issued
+  output reg         active_o,         // started and not yet exited
+  // instruction routine
+  output wire        step_o,           // PCStack: step the PC stack
+  input  wire        pc_valid_i,
+  input  wire [15:0] pc_i,
+  input  wire [15:0] program_length_i,
+  output wire        fetch_request_o,  // IArb: wants the instruction cache
+  output reg  [15:0] fetch_pc_o,
+  input  wire        fetch_grant_i,
+  input  wire        cache_hit_i,      // ICache: result of the lookup granted in the cycle before
+  input  wire [63:0] cache_instruction_i,
+  input  wire        refill_done_i,    // a line has come back; missed lookups are worth repeating
+  // data routine
+  output wire        read_o,           // RegFile
+  output wire        want_o,           // Dispatch
+  input  wire        grant_i,
+  input  wire        retire_i,         // WriBack
+  output reg  [63:0] instruction_o,
+  output reg  [15:0] pc_o,
+  output wire        writes_register_o,
+  output wire        writes_predicate_o,
+  // faults, one cycle
+  output wire        illegal_o,        // the next instruction has no table row; it is not issued
+  output wire        outside_o         // its PC is not in the program
+);
+`include "isa.vh"
+`include "isa_functions.vh"
+  localparam [2:0] F_IDLE = 3'd0, F_STACK = 3'd1, F_ARBITER = 3'd2, F_CACHE = 3'd3, F_MISS = 3'd4, F_FULL = 3'd5;
+  localparam [1:0] D_IDLE = 2'd0, D_READ = 2'd1, D_WANT = 2'd2, D_EXECUTE = 2'd3;
+
+  reg [2:0] fetch_q;
+  reg [1:0] data_q;
+  reg [63:0] next_q;
+  reg next_legal_q;
+  reg next_control_q;
+
+  wire [3:0] unit = instruction_o[63:60];
+  wire [4:0] operation = instruction_o[59:55];
+  wire current_control = isa_control(unit, operation);
+  wire exits = unit == ISA_UNIT_BRH && operation == ISA_BRH_EXIT;
+  wire ready = fetch_q == F_FULL && (data_q == D_IDLE || retire_i) && !halt_i;
+
+  assign step_o = fetch_q == F_STACK && !halt_i;
+  assign fetch_request_o = fetch_q == F_ARBITER && !halt_i;
+  wire issue = ready && next_legal_q;
+  assign illegal_o = ready && !next_legal_q;
+  assign outside_o = step_o && pc_valid_i && pc_i >= program_length_i;
+  assign read_o = data_q == D_READ;
+  assign want_o = data_q == D_WANT && !halt_i;
+  assign writes_register_o = isa_writes_register(unit, operation);
+  assign writes_predicate_o = isa_writes_predicate(unit, operation);
+
+  always @(posedge clk_i)
+    if (!rst_ni) begin
+      active_o <= 1'b0;
+      fetch_q <= F_IDLE;
+      data_q <= D_IDLE;
+    end else if (start_i) begin
+      active_o <= 1'b1;
+      fetch_q <= F_STACK;
+      data_q <= D_IDLE;
+    end else if (active_o) begin
+      case (fetch_q)
+        F_STACK:
+          if (pc_valid_i && !outside_o) begin
+            fetch_pc_o <= pc_i;
+            fetch_q <= F_ARBITER;
+          end
+        F_ARBITER: if (fetch_grant_i) fetch_q <= F_CACHE;
+        F_CACHE:
+          if (cache_hit_i) begin
+            next_q <= cache_instruction_i;
+            next_legal_q <= isa_legal(cache_instruction_i);
+            next_control_q <= isa_control(cache_instruction_i[63:60], cache_instruction_i[59:55]);
+            fetch_q <= F_FULL;
+          end else begin
+            fetch_q <= refill_done_i ? F_ARBITER : F_MISS;
+          end
+        F_MISS: if (refill_done_i) fetch_q <= F_ARBITER;
+        default: ;
+      endcase
+
+      case (data_q)
+        D_READ: data_q <= D_WANT;
+        D_WANT: if (grant_i) data_q <= D_EXECUTE;
+        default: ;
+      endcase
+      if (retire_i) begin
+        data_q <= D_IDLE;
+        if (exits) active_o <= 1'b0;
+        else if (current_control) fetch_q <= F_STACK;
+      end
+
+      if (issue) begin
+        instruction_o <= next_q;
+        pc_o <= fetch_pc_o;
+        data_q <= D_READ;
+        fetch_q <= next_control_q ? F_IDLE : F_STACK;
+      end
+    end
+endmodule
+`default_nettype wire

@@ -1,0 +1,93 @@
+// Integer and logic operations. Stage 1: everything but the multiplication, of which it makes two partial products; stage 2 adds those.
+`default_nettype none
+module int_alu #(
+  parameter integer WARPS = 8,
+  parameter integer LANES = 8,
+  parameter integer WARP_BITS = 3,
+  parameter integer LATENCY = 1,
+  parameter integer DEPTH = 2
+) (
+  input  wire                   clk_i,
+  input  wire                   rst_ni,
+  input  wire                   task_valid_i,
+  input  wire [WARP_BITS-1:0]   task_warp_i,
+  input  wire [4:0]             task_op_i,
+  input  wire [LANES-1:0]       task_mask_i,
+  input  wire [LANES*32-1:0]    task_a_i,
+  input  wire [LANES*32-1:0]    task_b_i,
+  input  wire [31:0]            task_imm_i,
+  input  wire [4:0]             task_x_i,
+  input  wire [LANES-1:0]       task_px_i,
+  input  wire [LANES-1:0]       task_pb_i,
+  output wire                   ready_o,
+  output wire                   done_valid_o,
+  output wire [WARP_BITS-1:0]   done_warp_o,
+  output wire [LANES*32-1:0]    done_data_o,
+  output wire [LANES-1:0]       done_pred_o
+);
+`include "isa.vh"
+  generate
+    if (DEPTH < 2) begin : gen_illegal
+      int_alu_depth_must_be_at_least_2 illegal ();
+    end
+  endgenerate
+  wire [DEPTH-1:0] stage_valid;
+  reg [LANES*32-1:0] low_q;     // the result, or a * b[15:0]
+  reg [LANES*16-1:0] high_q;    // low half of a * b[31:16]
+  reg multiply_q;
+  reg [LANES*32-1:0] result_q;
+  integer l;
+
+  alu_pipeline #(.WARP_BITS(WARP_BITS), .LATENCY(LATENCY), .DEPTH(DEPTH)) alu_pipeline (
+    .clk_i(clk_i), .rst_ni(rst_ni), .task_valid_i(task_valid_i), .task_warp_i(task_warp_i), .ready_o(ready_o),
+    .done_valid_o(done_valid_o), .done_warp_o(done_warp_o), .stage_valid_o(stage_valid));
+
+  function [31:0] compute(input [4:0] op, input [31:0] a, input [31:0] b, input p);
+    reg signed_less;
+    begin
+      signed_less = $signed(a) < $signed(b);
+      case (op)
+        ISA_INT_MOV: compute = b;
+        ISA_INT_IADD: compute = a + b;
+        ISA_INT_ISUB: compute = a - b;
+        ISA_INT_IMUL: compute = a * {16'd0, b[15:0]};
+        ISA_INT_AND: compute = a & b;
+        ISA_INT_OR: compute = a | b;
+        ISA_INT_XOR: compute = a ^ b;
+        ISA_INT_SHL: compute = a << b[4:0];
+        ISA_INT_SHR: compute = a >> b[4:0];
+        ISA_INT_SAR: compute = $signed(a) >>> b[4:0];
+        ISA_INT_IMIN: compute = signed_less ? a : b;
+        ISA_INT_IMAX: compute = signed_less ? b : a;
+        ISA_INT_UMIN: compute = a < b ? a : b;
+        ISA_INT_UMAX: compute = a < b ? b : a;
+        default: compute = p ? a : b;
+      endcase
+    end
+  endfunction
+
+  always @(posedge clk_i)
+    if (task_valid_i) begin
+      multiply_q <= task_op_i == ISA_INT_IMUL;
+      for (l = 0; l < LANES; l = l + 1) begin
+        low_q[l*32 +: 32] <= compute(task_op_i, task_a_i[l*32 +: 32], task_b_i[l*32 +: 32], task_px_i[l]);
+        high_q[l*16 +: 16] <= task_a_i[l*32 +: 16] * task_b_i[l*32+16 +: 16];
+      end
+    end
+
+  always @(posedge clk_i)
+    if (stage_valid[1])
+      for (l = 0; l < LANES; l = l + 1)
+        result_q[l*32 +: 32] <= multiply_q ? {low_q[l*32+16 +: 16] + high_q[l*16 +: 16], low_q[l*32 +: 16]} : low_q[l*32 +: 32];
+
+  generate
+    if (DEPTH == 2) begin : gen_direct
+      assign done_data_o = result_q;
+    end else begin : gen_delay
+      alu_delay #(.WIDTH(LANES*32), .STAGES(DEPTH-2)) alu_delay (
+        .clk_i(clk_i), .valid_i(stage_valid[DEPTH-1:2]), .data_i(result_q), .data_o(done_data_o));
+    end
+  endgenerate
+  assign done_pred_o = {LANES{1'b0}};
+endmodule
+`default_nettype wire

@@ -1,0 +1,98 @@
+// Import engine: requests a launch's packages, thread after thread, and writes their beats into the warps' input slices. Knows which input
+// slices hold all their packages: full_o.
+// Promises: at most two packages are requested and not yet received; one is only requested while its warp's input slice is not full; a beat is
+// written in the cycle after its arrival. Must be given: for each request taken, in order, six beats (words 4b .. 4b+3), any time after; the
+// memory's port whenever write_o is high; no start while active_o is high; take_i only for a full slice.
+`default_nettype none
+module ray_import #(
+  parameter integer WARPS = 8,
+  parameter integer LANES = 8,
+  parameter integer WARP_BITS = 3
+) (
+  input  wire                 clk_i,
+  input  wire                 rst_ni,
+  input  wire                 start_i,           // one cycle; kind 0 starts nothing
+  input  wire [1:0]           start_kind_i,
+  input  wire [10:0]          start_threads_i,   // 1 .. WARPS*LANES
+  output reg                  active_o,          // packages are left to be requested or received
+  output reg                  request_valid_o,
+  output reg  [1:0]           request_kind_o,
+  input  wire                 request_ready_i,
+  input  wire                 beat_valid_i,
+  input  wire [127:0]         beat_data_i,
+  // slices
+  input  wire [WARPS*2-1:0]   input_set_i,       // set that is the input of each warp
+  output wire [WARPS-1:0]     full_o,
+  input  wire                 take_i,            // take_warp_i's packages become current
+  input  wire [WARP_BITS-1:0] take_warp_i,
+  // ray memory: a package access
+  output reg                  write_o,
+  output reg  [1:0]           write_set_o,
+  output reg  [9:0]           write_thread_o,
+  output reg  [4:0]           write_word_o,
+  output reg  [3:0]           write_mask_o,
+  output reg  [127:0]         write_data_o
+);
+  localparam integer LANE_BITS = $clog2(LANES);
+  localparam integer LAST_LANE = LANES - 1;
+  localparam [2:0] LAST_BEAT = 3'd5;   // carries word 20 alone
+
+  reg [10:0] threads_q, requested_q, received_q;
+  reg [1:0] outstanding_q;
+  reg [2:0] beat_q;
+  reg [WARPS-1:0] full_q;
+  assign full_o = full_q;
+
+  wire taken = request_valid_o && request_ready_i;
+  wire received = beat_valid_i && beat_q == LAST_BEAT;
+  wire [10:0] requested_next = requested_q + {10'd0, taken};
+  wire [10:0] received_next = received_q + 11'd1;
+  wire [1:0] outstanding_next = outstanding_q + {1'b0, taken} - {1'b0, received};
+  wire launch_end = received_next == threads_q;
+  wire slice_end = (received_q & LAST_LANE[10:0]) == LAST_LANE[10:0] || launch_end;
+
+  wire [10:0] request_warp = requested_next >> LANE_BITS;
+  wire [10:0] receive_warp = received_q >> LANE_BITS;
+  wire unused = &{1'b0, request_warp, receive_warp};   // the upper bits are 0 where it matters
+
+  always @(posedge clk_i)
+    if (!rst_ni) begin
+      active_o <= 1'b0;
+      request_valid_o <= 1'b0;
+      outstanding_q <= 2'd0;
+      full_q <= {WARPS{1'b0}};
+      write_o <= 1'b0;
+    end else begin
+      if (start_i && start_kind_i != 2'd0) begin
+        active_o <= 1'b1;
+        request_kind_o <= start_kind_i;
+        threads_q <= start_threads_i;
+        requested_q <= 11'd0;
+        received_q <= 11'd0;
+        beat_q <= 3'd0;
+      end
+      if (active_o) begin
+        requested_q <= requested_next;
+        outstanding_q <= outstanding_next;
+        // A request that waits keeps these conditions: nothing but itself changes them.
+        request_valid_o <= requested_next != threads_q && outstanding_next != 2'd2 && !full_q[request_warp[WARP_BITS-1:0]];
+        if (received) begin
+          received_q <= received_next;
+          if (launch_end) active_o <= 1'b0;
+          if (slice_end) full_q[receive_warp[WARP_BITS-1:0]] <= 1'b1;
+        end
+      end
+      if (take_i) full_q[take_warp_i] <= 1'b0;
+
+      write_o <= beat_valid_i;
+      if (beat_valid_i) begin
+        beat_q <= received ? 3'd0 : beat_q + 3'd1;
+        write_set_o <= input_set_i[receive_warp[WARP_BITS-1:0]*2 +: 2];
+        write_thread_o <= received_q[9:0];
+        write_word_o <= {beat_q, 2'b00};
+        write_mask_o <= beat_q == LAST_BEAT ? 4'b0001 : 4'b1111;
+        write_data_o <= beat_data_i;
+      end
+    end
+endmodule
+`default_nettype wire

@@ -1,0 +1,48 @@
+// One lane of the Slw ALU: eleven stages, and the result register behind them. enable_i[k] says that stage k holds a task of this lane.
+// root_i and unary_i name the operation: 00 fdiv, 10 fsqrt, 11 frsqrt, 01 frcp. SLOW_UNIT 0: exact, 1 .. 3: two, one, no Newton steps.
+`default_nettype none
+module slow_lane #(
+  parameter integer SUBNORMALS = 0,
+  parameter integer SLOW_UNIT = 0
+) (
+  input  wire        clk_i,
+  input  wire [10:0] enable_i,
+  input  wire        root_i,
+  input  wire        unary_i,
+  input  wire [31:0] a_i,
+  input  wire [31:0] b_i,
+  output wire [31:0] result_o
+);
+  wire special, nan, sign, root;
+  wire [7:0] exponent;
+  wire [4:0] shift;
+  wire [24:0] v, w;
+  wire [8:0] index;
+  wire [31:0] result;
+  reg [31:0] result_q;
+
+  generate
+    if (SLOW_UNIT == 0) begin : gen_exact
+      wire unary;
+      slow_prepare #(.SUBNORMALS(SUBNORMALS)) prepare (
+        .clk_i(clk_i), .enable_i(enable_i[1:0]), .root_i(root_i), .unary_i(unary_i), .a_i(a_i), .b_i(b_i), .special_o(special),
+        .nan_o(nan), .sign_o(sign), .root_o(root), .unary_o(unary), .exponent_o(exponent), .shift_o(shift), .v_o(v), .w_o(w),
+        .index_1_o(index));
+      slow_exact quotient (
+        .clk_i(clk_i), .enable_i(enable_i[10:1]), .index_1_i(index), .special_i(special), .nan_i(nan), .sign_i(sign), .root_i(root), .unary_i(unary),
+        .exponent_i(exponent), .shift_i(shift), .v_i(v), .w_i(w), .result_o(result));
+    end else begin : gen_newton
+      slow_prepare #(.SUBNORMALS(SUBNORMALS)) prepare (
+        .clk_i(clk_i), .enable_i(enable_i[1:0]), .root_i(root_i), .unary_i(unary_i), .a_i(a_i), .b_i(b_i), .special_o(special),
+        .nan_o(nan), .sign_o(sign), .root_o(root), .unary_o(), .exponent_o(exponent), .shift_o(shift), .v_o(v), .w_o(w),
+        .index_1_o(index));
+      slow_newton #(.STEPS(3 - SLOW_UNIT)) quotient (
+        .clk_i(clk_i), .enable_i(enable_i[10:1]), .index_1_i(index), .special_i(special), .nan_i(nan), .sign_i(sign), .root_i(root),
+        .exponent_i(exponent), .shift_i(shift), .v_i(v), .w_i(w), .result_o(result));
+    end
+  endgenerate
+
+  always @(posedge clk_i) if (enable_i[10]) result_q <= result;
+  assign result_o = result_q;
+endmodule
+`default_nettype wire

@@ -1,0 +1,117 @@
+// One warp: instruction buffer, PC stack, predicates and register bank, joined. INDEX is its number.
+`default_nettype none
+module warp #(
+  parameter integer INDEX = 0,
+  parameter integer LANES = 8,
+  parameter integer WARP_BITS = 3,
+  parameter integer STACK_DEPTH = 8,
+  parameter integer SLOTS = 7
+) (
+  input  wire                      clk_i,
+  input  wire                      rst_ni,
+  input  wire                      start_i,
+  input  wire [15:0]               start_pc_i,
+  input  wire [LANES-1:0]          start_lanes_i,
+  input  wire                      halt_i,
+  output wire                      active_o,
+  input  wire [15:0]               program_length_i,
+  // instruction fetch
+  output wire                      fetch_request_o,
+  output wire [15:0]               fetch_pc_o,
+  input  wire                      fetch_grant_i,
+  input  wire                      cache_hit_i,
+  input  wire [63:0]               cache_instruction_i,
+  input  wire                      refill_done_i,
+  // dispatch
+  output wire                      want_o,
+  input  wire                      grant_i,
+  output wire [63:0]               instruction_o,
+  output wire [LANES-1:0]          mask_o,
+  output wire [LANES-1:0]          px_o,
+  output wire [LANES-1:0]          pb_o,
+  output wire [LANES*32-1:0]       a_o,
+  output wire [LANES*32-1:0]       b_o,
+  // write-back: what every ALU instance has finished in this cycle
+  input  wire [SLOTS-1:0]          done_valid_i,
+  input  wire [SLOTS*WARP_BITS-1:0] done_warp_i,
+  input  wire [SLOTS*LANES*32-1:0] done_data_i,
+  input  wire [SLOTS*LANES-1:0]    done_pred_i,
+  output reg                       retire_o,
+  output wire [15:0]               pc_o,
+  output reg  [LANES*32-1:0]       retire_data_o,
+  output reg  [LANES-1:0]          retire_predicate_o,
+  // faults, one cycle
+  output wire                      fault_valid_o,
+  output wire [3:0]                fault_code_o,
+  output wire [15:0]               fault_pc_o
+);
+`include "isa.vh"
+  reg [LANES-1:0] launched_q;
+  reg [LANES-1:0] retire_pred;
+  integer s;
+
+  wire step, pc_valid, read, writes_register, writes_predicate, illegal, outside, overflow, underflow;
+  wire [15:0] stack_pc;
+  wire [3:0] unit = instruction_o[63:60];
+  wire [4:0] operation = instruction_o[59:55];
+  wire [31:0] immediate = instruction_o[31:0];
+
+  // The result mux: at most one ALU instance holds this warp.
+  always @* begin
+    retire_o = 1'b0;
+    retire_data_o = {LANES*32{1'b0}};
+    retire_pred = {LANES{1'b0}};
+    for (s = 0; s < SLOTS; s = s + 1)
+      if (done_valid_i[s] && done_warp_i[s*WARP_BITS +: WARP_BITS] == INDEX[WARP_BITS-1:0]) begin
+        retire_o = 1'b1;
+        retire_data_o = done_data_i[s*LANES*32 +: LANES*32];
+        retire_pred = done_pred_i[s*LANES +: LANES];
+      end
+    retire_predicate_o = retire_pred & mask_o;
+  end
+
+  // Control instructions: the branch ALU says in every lane's predicate bit whether the jump is taken.
+  wire taken = retire_pred[0];
+  wire control = retire_o && unit == ISA_UNIT_BRH;
+  wire jump = control && taken && (operation == ISA_BRH_JANY || operation == ISA_BRH_JNONE);
+  wire enter = control && taken && operation == ISA_BRH_LOOP;
+  wire leave = control && !taken && operation == ISA_BRH_LOOP;
+  wire call = control && operation == ISA_BRH_CALL;
+
+  always @(posedge clk_i) if (start_i) launched_q <= start_lanes_i;
+
+  pc_stack #(.DEPTH(STACK_DEPTH)) pc_stack (
+    .clk_i(clk_i), .rst_ni(rst_ni), .start_i(start_i), .start_pc_i(start_pc_i),
+    .step_i(step), .pc_valid_o(pc_valid), .pc_o(stack_pc),
+    .jump_i(jump || leave), .push_i(enter || call), .push_return_i(enter), .pop_i(control && operation == ISA_BRH_RET),
+    .target_i(enter ? pc_o + 16'd1 : immediate[15:0]), .end_i(enter ? immediate[15:0] : immediate[31:16]), .return_i(pc_o),
+    .overflow_o(overflow), .underflow_o(underflow));
+
+  instruction_buffer instruction_buffer (
+    .clk_i(clk_i), .rst_ni(rst_ni), .start_i(start_i), .halt_i(halt_i), .active_o(active_o),
+    .step_o(step), .pc_valid_i(pc_valid), .pc_i(stack_pc), .program_length_i(program_length_i),
+    .fetch_request_o(fetch_request_o), .fetch_pc_o(fetch_pc_o), .fetch_grant_i(fetch_grant_i),
+    .cache_hit_i(cache_hit_i), .cache_instruction_i(cache_instruction_i), .refill_done_i(refill_done_i),
+    .read_o(read), .want_o(want_o), .grant_i(grant_i), .retire_i(retire_o),
+    .instruction_o(instruction_o), .pc_o(pc_o), .writes_register_o(writes_register), .writes_predicate_o(writes_predicate),
+    .illegal_o(illegal), .outside_o(outside));
+
+  predicate_file #(.LANES(LANES)) predicate_file (
+    .clk_i(clk_i), .clear_i(start_i), .read_i(read), .launched_i(launched_q),
+    .guard_negated_i(instruction_o[54]), .guard_i(instruction_o[53:50]),
+    .x_index_i(instruction_o[35:32]), .b_index_i(instruction_o[41:38]),
+    .mask_o(mask_o), .x_o(px_o), .b_o(pb_o),
+    .write_i(retire_o && writes_predicate), .write_index_i(instruction_o[49:46]), .write_data_i(retire_predicate_o));
+
+  ram_2r1w #(.WIDTH(LANES*32), .DEPTH(16), .GRANULE(32)) register_bank (
+    .clk_i(clk_i), .read_i(read),
+    .read_address_a_i(instruction_o[45:42]), .read_address_b_i(instruction_o[41:38]),
+    .read_data_a_o(a_o), .read_data_b_o(b_o),
+    .write_mask_i(retire_o && writes_register ? mask_o : {LANES{1'b0}}),
+    .write_address_i(instruction_o[49:46]), .write_data_i(retire_data_o));
+
+  assign fault_valid_o = illegal || outside || overflow || underflow;
+  assign fault_code_o = illegal ? 4'd1 : outside ? 4'd2 : overflow ? 4'd3 : 4'd4;
+  assign fault_pc_o = illegal ? fetch_pc_o : outside ? stack_pc : pc_o;
+endmodule
+`default_nettype wire

@@ -1,0 +1,67 @@
+#!/bin/bash
+# Checks the sources: Verilog in Verilator, Icarus and Yosys for several configurations, C++ layout and clang-tidy, shell syntax.
+# Prints what failed and the command that shows it again; ends with 1 if anything did. Needs build/ configured with tests.
+set -u -o pipefail
+cd "$(dirname "$0")/.."
+export LC_ALL=C.UTF-8
+failed=0
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
+
+# check NAME COMMAND...: silent success; on failure, or on any output when the tool only warns, prints it and how to repeat it.
+check() {
+  local name=$1; shift
+  if "$@" > "$log" 2>&1 && ! grep -qiE 'warning|error' "$log"; then
+    echo "lint: $name: clean"
+  else
+    failed=1
+    cat "$log"
+    printf 'lint: %s: NOT clean; again with:\n ' "$name"; printf ' %q' "$@"; echo
+  fi
+}
+
+# Corners of the parameter space: the smallest, the largest, narrow and wide warps, and every optional mode.
+verilog_configurations=(
+  "WARPS=8 LANES=8"
+  "WARPS=4 LANES=4 SLOW_UNIT=3 BRH_LATENCY=2"
+  "WARPS=1 LANES=1 STACK_DEPTH=2 DCACHE_MSHRS=1 ICACHE_BYTES=512 DCACHE_BYTES=512"
+  "WARPS=32 LANES=1"
+  "WARPS=1 LANES=32"
+  "WARPS=2 LANES=16 INT_COUNT=2 FLT_COUNT=4 SLW_LATENCY=3 TID_DEPTH=2 SUBNORMALS=1 SLOW_UNIT=2"
+)
+mapfile -t rtl < <(scripts/sources.sh verilog)
+
+for parameters in "${verilog_configurations[@]}"; do
+  verilator_flags=() iverilog_flags=() yosys_flags=()
+  for parameter in $parameters; do
+    verilator_flags+=("-G$parameter")
+    iverilog_flags+=("-Pcompute_unit.$parameter")
+    yosys_flags+=(-chparam "${parameter%=*}" "${parameter#*=}")
+  done
+  check "verilator $parameters" verilator --lint-only -Wall --default-language 1364-2005 -Irtl rtl/waivers.vlt \
+    "${verilator_flags[@]}" --top-module compute_unit "${rtl[@]}"
+  check "iverilog $parameters" iverilog -g2005 -Wall -Irtl -o /dev/null "${iverilog_flags[@]}" -s compute_unit "${rtl[@]}"
+done
+
+# Synthesis view: no latch, no combinational loop, no undriven or doubly driven net.
+check "yosys" yosys -q -e '.*latch.*' -p "read_verilog -Irtl ${rtl[*]}; hierarchy -check -top compute_unit; proc -noopt; opt_clean;
+  select -assert-none t:\$dlatch t:\$adlatch t:\$dlatchsr; check -assert"
+
+mapfile -t cpp < <(scripts/sources.sh cpp)
+check "clang-format (make format)" clang-format --dry-run -Werror "${cpp[@]}"
+
+for file in $(scripts/sources.sh shell); do check "bash -n $file" bash -n "$file"; done
+
+# clang-tidy reads each source as the build compiles it; what only the build generates (Verilated models) is left to the compiler.
+tidy=()
+for file in "${cpp[@]}"; do
+  case $file in *.cpp) grep -qF "\"$PWD/$file\"" build/compile_commands.json && tidy+=("$file") ;; esac
+done
+if [ ${#tidy[@]} -gt 0 ]; then
+  check "clang-tidy, ${#tidy[@]} files" bash -c 'printf "%s\0" "$@" | xargs -0 -n 1 -P "$(nproc)" clang-tidy -p build --quiet 2>&1 |
+    grep -vE "^[0-9]+ warnings? (generated|treated)|^Suppressed|^Use -header-filter"; exit "${PIPESTATUS[1]}"' clang-tidy "${tidy[@]}"
+else
+  echo "lint: clang-tidy: build/compile_commands.json names no file of the project; run make lint, not scripts/lint.sh" >&2
+  failed=1
+fi
+exit $failed

@@ -1,0 +1,90 @@
+#!/bin/bash
+# Builds the Verilated compute unit of one set of Verilog parameters: OUTPUT_DIR/libraypool_unit.so.
+#   scripts/verilate.sh OUTPUT_DIR [--trace] NAME=VALUE...        (NAME=VALUE as `raypool config CONFIG --verilog-parameters` prints them)
+# --trace: the unit can write waveforms (FST), and is slower. Does nothing when the library is newer than all it is made from; a build
+# that fails leaves the old library as it was. VERILATOR, CXX and JOBS (default 2) choose the tools and the number of compilers.
+set -eu -o pipefail
+
+fail() {
+  echo "verilate.sh: $*" >&2
+  exit 1
+}
+
+[ $# -ge 1 ] || fail "usage: scripts/verilate.sh OUTPUT_DIR [--trace] NAME=VALUE..."
+output=$1
+shift
+trace=0
+parameters=()
+for argument in "$@"; do
+  if [ "$argument" = --trace ]; then
+    trace=1
+  elif [[ $argument =~ ^[A-Z][A-Z0-9_]*=[0-9]+$ ]]; then
+    parameters+=("$argument")
+  else
+    fail "'$argument' is neither --trace nor a Verilog parameter such as WARPS=8"
+  fi
+done
+
+verilator=${VERILATOR:-verilator}
+jobs=${JOBS:-2}
+version=$("$verilator" --version 2> /dev/null) || fail "verilator was not found: install it (Debian package verilator) or set VERILATOR to its path"
+command -v make > /dev/null || fail "make was not found: install it (Debian package make)"
+compiler=${CXX:-g++}
+compiler_version=$("$compiler" --version 2> /dev/null | head -n 1) || fail "the C++ compiler '$compiler' was not found: install g++ or set CXX"
+
+mkdir -p "$output"
+output=$(cd "$output" && pwd)
+root=$(cd "$(dirname "$0")/.." && pwd)
+library=$output/libraypool_unit.so
+stamp=$output/libraypool_unit.stamp
+
+# Everything the library is made from.
+cd "$root"
+shopt -s nullglob
+headers=(cpp_model/isa/isa.hpp cpp_model/config/configuration.hpp cpp_model/machine/{compute_unit,memory,packages}.hpp tb/rtl/*.hpp)
+wrapper=(tb/rtl/rtl_unit.cpp cpp_model/machine/compute_unit.cpp)
+verilog=(rtl/*.v)
+waivers=(rtl/*.vlt)
+digest=$({
+  printf '%s\n' "$version" "$compiler_version" "trace $trace" "${parameters[@]}"
+  sha256sum "${verilog[@]}" "${waivers[@]}" rtl/*.vh "${headers[@]}" "${wrapper[@]}" scripts/verilate.sh
+} | sha256sum | cut -d ' ' -f 1)
+if [ -f "$library" ] && [ "$(cat "$stamp" 2> /dev/null)" = "$digest" ]; then
+  echo "verilate.sh: $library is up to date"
+  exit 0
+fi
+
+build=$(mktemp -d "$output/.verilate.XXXXXX")
+trap 'rm -rf "$build"' EXIT
+log=$build/log
+run() {
+  "$@" > "$log" 2>&1 && return
+  cat "$log" >&2
+  fail "$message; nothing was changed in $output"
+}
+
+begin=$SECONDS
+echo "verilate.sh: verilating rtl/ (${parameters[*]:-default parameters})"
+echo "#define RAYPOOL_UNIT_PARAMETERS \"${parameters[*]}\"" > "$build/unit_parameters.h"
+options=(--cc --exe --top-module compute_unit --Mdir "$build" -Irtl --default-language 1364-2005
+  -O3 --x-assign fast --x-initial fast --noassert
+  -CFLAGS "-std=c++17 -fPIC -fvisibility=hidden -fno-gnu-unique -fno-plt -fno-semantic-interposition"
+  -CFLAGS "-I$root/cpp_model -I$root/tb -I$build"
+  -LDFLAGS "-shared -Wl,-Bsymbolic -Wl,-O1" -o libraypool_unit.so)
+[ "$trace" = 0 ] || options+=(--trace-fst)
+for parameter in "${parameters[@]}"; do options+=("-G$parameter"); done
+message="verilator refused the hardware description (its messages are above)"
+run "$verilator" "${options[@]}" "${waivers[@]}" "${verilog[@]}" "${wrapper[@]/#/$root/}"
+
+echo "verilate.sh: compiling $(cat "$build"/Vcompute_unit*.cpp | wc -l) lines of C++ with $jobs compilers"
+message="the Verilated unit does not compile (messages above)"
+launcher=
+command -v ccache > /dev/null && launcher=ccache
+run env CCACHE_BASEDIR="$build" CCACHE_NOHASHDIR=1 make -C "$build" -f Vcompute_unit.mk -j "$jobs" CXX="$compiler" LINK="$compiler" OBJCACHE="$launcher" \
+  OPT_FAST=-O2 OPT_SLOW=-O1 OPT_GLOBAL=-O2 libraypool_unit.so
+
+# The stamp goes first and comes last: an interrupted move never passes for a finished one.
+rm -f "$stamp"
+mv "$build/libraypool_unit.so" "$library"
+echo "$digest" > "$stamp"
+echo "verilate.sh: built $library in $((SECONDS - begin)) s"

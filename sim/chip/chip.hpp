@@ -1,0 +1,127 @@
+// The whole chip, simulated with SystemC: ray pool, traverser, intersection pool, controller and memory port around 1, 2 or 4
+// compute units, whichever engine they are. docs/chip.md describes the blocks, their timing, and why the chip cannot lock up.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "chip/ports.hpp"
+#include "config/configuration.hpp"
+#include "isa/isa.hpp"
+#include "kernel/kernels.hpp"
+#include "machine/compute_unit.hpp"
+#include "machine/memory.hpp"
+
+namespace raypool {
+
+inline constexpr int kPoolPackages = 512;  ///< rays, and intersections of each kind, that the pools hold
+
+struct ChipProgress {
+  double pixels_done = 0;  ///< share of the image's pixels of which no ray is left, 0 .. 1
+  uint64_t cycles = 0;
+  uint64_t rays = 0;  ///< traced
+};
+
+struct ChipOptions {
+  Configuration configuration;
+  std::vector<ComputeUnit*>
+      units;                    ///< 1, 2 or 4 that fit `configuration`; run_chip resets them and leaves their counters to be read
+  Memory* memory = nullptr;     ///< program and materials
+  uint32_t program_length = 0;  ///< instructions, from address 0
+  std::array<uint32_t, kRayKernels> entries{};  ///< PC of each RayKernel
+  /// Words kTileWidthLog2, kTileMask, kWidth and kHeight are set by the chip, whatever they hold.
+  std::array<uint32_t, kArguments> arguments{};
+  int width = 0, height = 0;  ///< pixels, 1 .. 65535
+  int depth = 1;              ///< 1: eye and shadow rays only; up to kLargestDepth (scene/native_renderer.hpp)
+  RayTracer* tracer = nullptr;
+  FrameSink* frame = nullptr;
+
+  std::string traverser = "static";  ///< timing of the traverser
+  std::string policy = "thesis";     ///< which kernel the controller launches next
+  bool window_remedy = true;         ///< false: eye rays only when every earlier one is finished
+  bool launch_ahead = true;          ///< false: a unit's next kernel is launched only when the previous one has ended
+  int held_limit = kPoolPackages;    ///< unfinished pixels at a time, from a tile's width to intersection_packages
+  int ray_packages = kPoolPackages;
+  int intersection_packages = kPoolPackages;          ///< of each kind
+  std::function<void(const ChipProgress&)> progress;  ///< called now and then, and at the end
+  uint64_t watchdog_cycles = 100'000;  ///< this long without a retired instruction or a transfer is an error; 0: never
+  uint64_t cycle_limit = 0;            ///< give up after this many cycles; 0: never
+};
+
+/// The fill of a pool over the run.
+struct PoolFill {
+  uint32_t capacity = 0;
+  uint32_t peak = 0;
+  double mean = 0;  ///< over time
+};
+
+struct ChipResult {
+  bool timed = true;    ///< false: the engine has no notion of time, and cycles and all that is made from them mean nothing
+  uint64_t cycles = 0;  ///< of 1 ns, from reset until everything is idle
+  double nanoseconds = 0;
+  double wall_seconds = 0;
+  /// Thesis' figure: rays / time; primary mode (depth 1) counts an eye and a shadow ray a pixel. 0 when untimed.
+  double mrays_per_s = 0;
+
+  // Rays.
+  uint64_t eye_rays = 0, secondary_rays = 0, shadow_rays = 0;  ///< traced
+  uint64_t rays() const { return eye_rays + secondary_rays + shadow_rays; }
+  uint64_t dropped_missed = 0;   ///< normal rays that hit nothing
+  uint64_t dropped_blocked = 0;  ///< shadow rays that hit something
+  uint64_t dropped_depth = 0;    ///< rays beyond the depth limit; never traced
+  uint64_t contributions = 0;    ///< to the frame buffer
+  uint32_t held_peak = 0;        ///< most unfinished pixels at a time
+
+  struct Kernel {
+    uint64_t launches = 0;
+    uint64_t threads = 0;  ///< launched
+    uint64_t cycles = 0;   ///< running, summed over the units
+  };
+  std::array<Kernel, kRayKernels> kernels{};  ///< [RayKernel]
+
+  // The multiprocessor: averages over the units. Shares are 0 .. 1.
+  double time_utilisation = 0;      ///< busy time / total time
+  double resource_utilisation = 0;  ///< threads launched / threads launchable, weighted by kernel time
+  struct Alu {
+    double utilisation = 0;  ///< 1 - share of busy time in which an instance was free for a new task and got none
+    double waiting = 0;      ///< warps that wanted this type and were not granted, averaged over busy time
+    uint64_t issued = 0;     ///< tasks
+  };
+  std::array<Alu, kUnits> alus{};  ///< [Unit]
+  uint64_t busy_cycles = 0, instructions = 0, thread_instructions = 0;
+  uint64_t instruction_cache_hits = 0, instruction_cache_misses = 0;
+  uint64_t data_cache_hits = 0, data_cache_misses = 0, data_cache_stores = 0;
+
+  // Pools and ports. A port's utilisation is the share of time in which it serves a request.
+  PoolFill rays_pool, normal_pool, shadow_pool;
+  double ray_port_utilisation = 0, intersection_port_utilisation = 0, memory_port_utilisation = 0;
+  uint64_t memory_reads = 0;             ///< lines of 64 bytes
+  uint64_t memory_writes = 0;            ///< quadwords of 16 bytes
+  uint64_t traverser_batches = 0;        ///< at a kernel's end
+  uint64_t traverser_stall_batches = 0;  ///< after a stall of the shader
+};
+
+/// A unit stopped with a fault. what() says which, where, and what it means.
+struct ChipFault : InputError {
+  ChipFault(int unit_number, const Fault& what_fault, const std::string& message)
+      : InputError(message), unit(unit_number), fault(what_fault) {}
+  int unit;
+  Fault fault;
+};
+
+/// Nothing moves any more, or cycle_limit has passed. what() gives the state of controller, pools and units.
+struct ChipStalled : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Draws one frame. Throws InputError for options out of range, ChipFault, ChipStalled, and whatever a unit's clock() or the
+/// tracer throws. One run at a time in a process; any number of them one after the other.
+ChipResult run_chip(const ChipOptions& options);
+
+/// One sentence: code, its meaning, unit, warp and PC.
+std::string fault_sentence(int unit, const Fault& fault);
+
+}  // namespace raypool

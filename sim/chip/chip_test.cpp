@@ -1,0 +1,279 @@
+#include "chip/chip.hpp"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "chip/test_scripted_unit.hpp"
+
+namespace raypool {
+namespace {
+
+using test::Expected;
+using test::ScriptedUnit;
+using test::World;
+using test::WorldFrame;
+using test::WorldTracer;
+
+/// A run of the scripted world on a chip.
+struct FrameRun {
+  World world;
+  ChipOptions options;
+  Memory memory{4096};
+  WorldFrame frame;
+  std::vector<std::unique_ptr<ScriptedUnit>> units;
+
+  FrameRun(int warps, int cores, int unit_count, int width, int height, int depth, int pace = 60, uint32_t seed = 1) {
+    world.seed = seed;
+    for (uint32_t i = 0; i < memory.size(); i += 4) memory.store(i, i * 2654435761u);
+    options.configuration.warps = warps;
+    options.configuration.cores = cores;
+    options.width = width;
+    options.height = height;
+    options.depth = depth;
+    for (int i = 0; i < unit_count; ++i) {
+      units.push_back(std::make_unique<ScriptedUnit>(world, warps * cores, pace, seed + static_cast<uint32_t>(i), memory));
+      options.units.push_back(units.back().get());
+    }
+    options.entries = test::kScriptedEntries;
+    options.memory = &memory;
+    options.watchdog_cycles = 20'000;
+  }
+
+  ChipResult go() {
+    for (auto& unit : units) unit->set_world(world);
+    WorldTracer tracer(world);
+    options.tracer = &tracer;
+    options.frame = &frame;
+    return run_chip(options);
+  }
+
+  /// Every ray and contribution of the world, once.
+  void expect_conserved(const ChipResult& result) const {
+    const Expected expected(world, options.width, options.height, options.depth);
+    EXPECT_EQ(result.eye_rays, expected.eye);
+    EXPECT_EQ(result.secondary_rays, expected.secondary);
+    EXPECT_EQ(result.shadow_rays, expected.shadow);
+    EXPECT_EQ(result.dropped_missed, expected.missed);
+    EXPECT_EQ(result.dropped_blocked, expected.blocked);
+    EXPECT_EQ(result.dropped_depth, expected.beyond);
+    EXPECT_EQ(result.contributions, expected.contributions.size());
+    EXPECT_EQ(frame.contributions, expected.contributions);
+    EXPECT_LE(result.held_peak, static_cast<uint32_t>(options.held_limit));
+    EXPECT_LE(result.rays_pool.peak, result.rays_pool.capacity);
+    EXPECT_LE(result.normal_pool.peak, result.normal_pool.capacity);
+    EXPECT_LE(result.shadow_pool.peak, result.shadow_pool.capacity);
+  }
+};
+
+struct Shape {
+  int warps, cores, units;
+};
+
+std::string shape_name(const testing::TestParamInfo<Shape>& shape) {
+  return std::to_string(shape.param.warps) + "w" + std::to_string(shape.param.cores) + "c" + std::to_string(shape.param.units) +
+         "u";
+}
+
+class EveryShape : public testing::TestWithParam<Shape> {};
+
+TEST_P(EveryShape, DrawsEveryImageWithoutLosingARay) {
+  const Shape shape = GetParam();
+  const std::array<std::array<int, 3>, 6> images = {{{1, 1, 1}, {1, 1, 5}, {7, 13, 1}, {31, 17, 4}, {61, 53, 2}, {97, 3, 5}}};
+  for (const auto& [width, height, depth] : images) {
+    SCOPED_TRACE(testing::Message() << width << "x" << height << " depth " << depth);
+    FrameRun run(shape.warps, shape.cores, shape.units, width, height, depth);
+    run.expect_conserved(run.go());
+  }
+}
+
+TEST_P(EveryShape, SurvivesFullPools) {
+  // Nothing misses, everything is mirrored and lit: the most rays that can be alive. Small pools, so that they are full all the
+  // time.
+  const Shape shape = GetParam();
+  for (const int packages : {512, 33}) {
+    for (const int rays : {512, 64, 1}) {
+      SCOPED_TRACE(testing::Message() << packages << " intersections, " << rays << " rays");
+      FrameRun run(shape.warps, shape.cores, shape.units, rays == 1 ? 11 : 31, 23, 6, 30);
+      run.world.misses = run.world.blocked = 0;
+      run.world.shadows = run.world.mirrors = 16;
+      run.options.intersection_packages = run.options.held_limit = packages;
+      run.options.ray_packages = rays;
+      run.expect_conserved(run.go());
+    }
+  }
+}
+
+TEST_P(EveryShape, DrawsWithoutTheRemedyAndWithoutLaunchingAhead) {
+  const Shape shape = GetParam();
+  for (const bool remedy : {false, true}) {
+    FrameRun run(shape.warps, shape.cores, shape.units, 29, 23, 3);
+    run.options.window_remedy = remedy;
+    run.options.launch_ahead = false;
+    run.expect_conserved(run.go());
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Chip, EveryShape,
+                         testing::Values(Shape{1, 1, 1}, Shape{1, 1, 2}, Shape{1, 1, 4}, Shape{4, 4, 1}, Shape{4, 4, 2},
+                                         Shape{4, 4, 4}, Shape{1, 2, 4}, Shape{8, 8, 1}, Shape{8, 8, 2}, Shape{8, 8, 4},
+                                         Shape{16, 32, 2}, Shape{32, 32, 1}, Shape{32, 32, 2}, Shape{32, 32, 4}),
+                         shape_name);
+
+TEST(Chip, SurvivesPoolsSmallerThanAKernel) {
+  for (const int units : {1, 2, 4}) {
+    for (const int rays : {512, 64, 5}) {
+      for (const int packages : {16, 17, 30}) {
+        for (const int width : {16, 27}) {
+          SCOPED_TRACE(testing::Message() << units << " units, " << rays << " rays, " << packages << " intersections, width "
+                                          << width);
+          FrameRun run(8, 16, units, width, 9, 9, 30);
+          run.world.misses = run.world.blocked = 0;
+          run.world.shadows = run.world.mirrors = 16;
+          run.options.intersection_packages = run.options.held_limit = packages;
+          run.options.ray_packages = rays;
+          run.expect_conserved(run.go());
+        }
+      }
+    }
+  }
+}
+
+TEST(Chip, DrawsWhateverTheRandomDelays) {
+  for (uint32_t seed = 1; seed <= 24; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    FrameRun run(seed % 3 == 0 ? 2 : 8, seed % 2 == 0 ? 4 : 8, 1 << seed % 3, 37, 29, 1 + static_cast<int>(seed % 5),
+                 1 << seed % 9, seed);
+    run.world.shadows = 8 + static_cast<int>(seed % 9);
+    run.world.mirrors = 16 - static_cast<int>(seed % 7);
+    run.expect_conserved(run.go());
+  }
+}
+
+TEST(Chip, GivesTheSameResultTwice) {
+  const auto cycles = [] {
+    FrameRun run(8, 8, 4, 61, 53, 3);
+    return run.go().cycles;
+  };
+  EXPECT_EQ(cycles(), cycles());
+}
+
+TEST(Chip, TakesRaysFromTheWindowWithTheRemedy) {
+  const auto cycles = [](bool remedy) {
+    FrameRun run(8, 8, 1, 64, 64, 1, 200);
+    run.options.window_remedy = remedy;
+    return run.go().cycles;
+  };
+  EXPECT_LT(cycles(true), cycles(false));
+}
+
+TEST(Chip, HoldsNoMorePixelsThanAllowed) {
+  FrameRun run(8, 8, 2, 96, 96, 3);
+  run.options.held_limit = 100;  // one tile of 64, and another as soon as 28 pixels of it are finished
+  const ChipResult result = run.go();
+  run.expect_conserved(result);
+  EXPECT_GE(result.held_peak, 64u);
+  EXPECT_LE(result.held_peak, 100u);
+}
+
+TEST(Chip, CountsKernelsAndThreads) {
+  FrameRun run(8, 8, 1, 24, 16, 1);
+  run.world.misses = run.world.blocked = 0;
+  run.world.shadows = 16;
+  const ChipResult result = run.go();
+  const auto& kernels = result.kernels;
+  EXPECT_EQ(kernels[static_cast<size_t>(RayKernel::CastEye)].launches, 6u);
+  EXPECT_EQ(kernels[static_cast<size_t>(RayKernel::CastEye)].threads, 384u);
+  EXPECT_EQ(kernels[static_cast<size_t>(RayKernel::CastSecondary)].launches, 0u);
+  EXPECT_EQ(kernels[static_cast<size_t>(RayKernel::CastSecondaryDirect)].threads, 384u);
+  EXPECT_EQ(kernels[static_cast<size_t>(RayKernel::Shade)].threads, 384u);
+  uint64_t cycles = 0;
+  for (const auto& kernel : kernels) cycles += kernel.cycles;
+  EXPECT_GE(cycles, result.busy_cycles);
+  EXPECT_LE(cycles, result.cycles);
+  EXPECT_GT(result.time_utilisation, 0.1);
+  EXPECT_LE(result.time_utilisation, 1);
+  EXPECT_GT(result.resource_utilisation, 0.1);
+  EXPECT_LE(result.resource_utilisation, 1);
+  EXPECT_DOUBLE_EQ(result.mrays_per_s, 24 * 16 * 2 * 1000.0 / static_cast<double>(result.cycles));
+}
+
+TEST(Chip, PutsThousandPixelTilesInBandsThatThePoolsHold) {
+  FrameRun run(32, 32, 1, 64, 64, 1);
+  const ChipResult result = run.go();
+  EXPECT_EQ(result.kernels[0].launches, 8u);
+  EXPECT_EQ(result.kernels[0].threads, 4096u);
+}
+
+TEST(Chip, CallsProgressUpToTheEnd) {
+  FrameRun run(8, 8, 1, 64, 64, 1, 200);
+  std::vector<ChipProgress> calls;
+  run.options.progress = [&](const ChipProgress& progress) { calls.push_back(progress); };
+  const ChipResult result = run.go();
+  ASSERT_GE(calls.size(), 2u);
+  for (size_t i = 1; i < calls.size(); ++i) EXPECT_GE(calls[i].pixels_done, calls[i - 1].pixels_done);
+  EXPECT_EQ(calls.back().pixels_done, 1);
+  EXPECT_EQ(calls.back().cycles, result.cycles);
+  EXPECT_EQ(calls.back().rays, result.rays());
+}
+
+TEST(Chip, StopsOnAFaultAndSaysWhere) {
+  FrameRun run(8, 8, 2, 64, 64, 1);
+  run.units[1]->fault_at_start = Fault{FaultCode::Misaligned, 3, 17};
+  try {
+    run.go();
+    FAIL() << "no fault";
+  } catch (const ChipFault& fault) {
+    EXPECT_EQ(fault.unit, 1);
+    EXPECT_STREQ(fault.what(), "compute unit 1 stopped with fault 5 (address that is not a multiple of 4) in warp 3 at PC 17");
+  }
+}
+
+TEST(Chip, EndsWithItsStateWhenNothingMoves) {
+  FrameRun run(8, 8, 1, 64, 64, 1);
+  run.units[0]->hang = true;
+  try {
+    run.go();
+    FAIL() << "no error";
+  } catch (const ChipStalled& stalled) {
+    EXPECT_NE(std::string(stalled.what()).find("locked up"), std::string::npos) << stalled.what();
+    EXPECT_NE(std::string(stalled.what()).find("ray pool 0 of 512"), std::string::npos) << stalled.what();
+    EXPECT_NE(std::string(stalled.what()).find("unit 0: running"), std::string::npos) << stalled.what();
+  }
+}
+
+TEST(Chip, GivesUpAtTheCycleLimit) {
+  FrameRun run(8, 8, 1, 64, 64, 1);
+  run.options.cycle_limit = 1000;
+  EXPECT_THROW(run.go(), ChipStalled);
+}
+
+TEST(Chip, LetsErrorsOfTheTracerThrough) {
+  struct Broken : RayTracer {
+    bool trace(const Ray&, Intersection&) override { throw std::out_of_range("tracer"); }
+  } broken;
+  FrameRun run(8, 8, 1, 64, 64, 1);
+  run.options.frame = &run.frame;
+  run.options.tracer = &broken;
+  EXPECT_THROW(run_chip(run.options), std::out_of_range);
+}
+
+TEST(Chip, RefusesOptionsOutOfRange) {
+  const auto refuses = [](const std::function<void(FrameRun&)>& change, const char* what) {
+    FrameRun run(8, 8, 1, 8, 8, 1);
+    change(run);
+    EXPECT_THROW(run.go(), InputError) << what;
+  };
+  refuses([](FrameRun& run) { run.options.units.resize(3, run.options.units[0]); }, "three units");
+  refuses([](FrameRun& run) { run.options.width = 0; }, "width");
+  refuses([](FrameRun& run) { run.options.height = 65536; }, "height");
+  refuses([](FrameRun& run) { run.options.depth = 0; }, "depth");
+  refuses([](FrameRun& run) { run.options.depth = 255; }, "depth");
+  refuses([](FrameRun& run) { run.options.traverser = "magic"; }, "traverser");
+  refuses([](FrameRun& run) { run.options.policy = "magic"; }, "policy");
+  refuses([](FrameRun& run) { run.options.held_limit = 7; }, "held limit below a tile's width");
+  refuses([](FrameRun& run) { run.options.held_limit = 513; }, "held limit above the pool");
+}
+
+}  // namespace
+}  // namespace raypool

@@ -1,0 +1,168 @@
+#include "chip/controller.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "scene/native_renderer.hpp"
+
+namespace raypool::chip {
+
+Controller::Controller(const sc_core::sc_module_name& name, const ChipOptions& options, ChipClock& clock, RayPool& rays,
+                       IntersectionPool& intersections, PixelLedger& ledger)
+    : sc_module(name),
+      options_(options),
+      clock_(clock),
+      rays_(rays),
+      intersections_(intersections),
+      ledger_(ledger),
+      secondary_(options.depth == 1 ? RayKernel::CastSecondaryDirect : RayKernel::CastSecondary),
+      tile_width_(1 << tile_width_log2(options.configuration.contents())),
+      given_(options.units.size()),
+      ended_(options.units.size()) {
+  const int contents = options.configuration.contents();
+  // A tile that would hold more pixels than allowed is cut into bands of whole rows.
+  tile_height_ = std::min(contents, options.held_limit) / tile_width_;
+  const PolicySetup setup{static_cast<uint32_t>(contents), static_cast<uint32_t>(options.units.size()), rays.capacity(),
+                          intersections.capacity()};
+  policy_ = make_policy(options.policy, setup);
+  SC_METHOD(decide);
+  sensitive << decide_;
+  dont_initialize();
+}
+
+void Controller::accepted(int unit) {
+  const auto u = static_cast<size_t>(unit);
+  given_[u].back().begins = clock_.cycle() + 1;
+}
+
+void Controller::kernel_ended(int unit) {
+  const auto u = static_cast<size_t>(unit);
+  const GivenKernel kernel = given_[u].front();
+  given_[u].pop_front();
+  const uint64_t time = clock_.cycle() - std::max(kernel.begins, ended_[u]);
+  ended_[u] = clock_.cycle();
+  kernels_[static_cast<size_t>(kernel.kind)].cycles += time;
+  thread_time_ += static_cast<double>(time) * kernel.threads;
+  thread_time_launchable_ += static_cast<double>(time) * options_.configuration.contents();
+}
+
+uint32_t Controller::pixels_of_next_tile() const {
+  const int columns = std::min(tile_width_, options_.width - tile_x_), rows = std::min(tile_height_, options_.height - tile_y_);
+  return static_cast<uint32_t>(columns * rows);
+}
+
+bool Controller::eye_possible() const {
+  if (tile_y_ >= options_.height) return false;
+  if (!options_.window_remedy && ledger_.held() > 0 && round_ == 0) return false;
+  return ledger_.held() + pixels_of_next_tile() <= static_cast<uint32_t>(options_.held_limit);
+}
+
+uint32_t Controller::secondary_room() const {
+  const uint32_t limit = intersections_.capacity() + rays_.capacity() - 1;
+  const uint32_t shadows = rays_.shadow_rays() + ledger_.shadow_rays_to_come() + intersections_.available(ImportKind::Shadow);
+  return shadows < limit ? limit - shadows : 0;
+}
+
+PolicyView Controller::view(bool ahead) const {
+  PolicyView view;
+  view.rays = rays_.size();
+  view.normal = intersections_.available(ImportKind::Normal);
+  view.shadow = intersections_.available(ImportKind::Shadow);
+  view.secondary_room = secondary_room();
+  view.eye_possible = eye_possible();
+  view.more_to_come = rays_.size() > 0 || ledger_.rays_to_come() > 0;
+  view.ahead = ahead;
+  return view;
+}
+
+void Controller::decide() {
+  clock_.guard([&] {
+    if (end_if_finished()) return;
+    // Free units first; then those that still run a kernel.
+    for (const bool ahead : {false, true}) {
+      if (ahead && !options_.launch_ahead) break;
+      for (size_t i = 0; i < units_.size(); ++i) {
+        const size_t u = (first_ + i) % units_.size();
+        if (units_[u]->busy() != ahead || !units_[u]->can_launch()) continue;
+        const Choice choice = policy_->choose(view(ahead));
+        if (choice.kind == Choice::Kind::Halt) continue;
+        launch(static_cast<int>(u), choice);
+        if (!ahead) first_ = (u + 1) % units_.size();
+      }
+    }
+  });
+}
+
+bool Controller::end_if_finished() {
+  if (ledger_.finished() < ledger_.pixels()) return false;
+  for (const UnitHost* unit : units_) {
+    if (!unit->idle()) return false;
+  }
+  finished_ = true;
+  clock_.stop();
+  return true;
+}
+
+void Controller::launch(int unit, const Choice& choice) {
+  LaunchCommand command;
+  RayKernel kernel = RayKernel::CastEye;
+  if (choice.kind == Choice::Kind::Eye) {
+    if (!eye_possible()) throw std::logic_error("the policy casts eye rays that must not be cast now");
+    command = next_tile(unit);
+  } else {
+    const bool shade = choice.kind == Choice::Kind::Shade;
+    command.import = shade ? ImportKind::Shadow : ImportKind::Normal;
+    command.threads = choice.threads;
+    kernel = shade ? RayKernel::Shade : secondary_;
+    if (choice.threads == 0 || choice.threads > intersections_.available(command.import) ||
+        choice.threads > static_cast<uint32_t>(options_.configuration.contents()) ||
+        (!shade && choice.threads > secondary_room())) {
+      throw std::logic_error("the policy launches a kernel of a size that is not possible now");
+    }
+    intersections_.reserve(command.import, choice.threads);
+    ledger_.launched(unit, kernel, choice.threads);
+  }
+  command.pc = options_.entries[static_cast<size_t>(kernel)];
+  ChipResult::Kernel& count = kernels_[static_cast<size_t>(kernel)];
+  ++count.launches;
+  count.threads += command.threads;
+  given_[static_cast<size_t>(unit)].push_back({kernel, command.threads, UINT64_MAX});
+  units_[static_cast<size_t>(unit)]->launch(command);
+}
+
+LaunchCommand Controller::next_tile(int unit) {
+  if (ledger_.held() == 0) round_ = static_cast<int>(units_.size());
+  --round_;
+  std::vector<uint32_t> pixels;
+  for (int y = tile_y_; y < std::min(tile_y_ + tile_height_, options_.height); ++y) {
+    for (int x = tile_x_; x < std::min(tile_x_ + tile_width_, options_.width); ++x) {
+      pixels.push_back(static_cast<uint32_t>(x) | static_cast<uint32_t>(y) << 16);
+    }
+  }
+  ledger_.eye_launched(unit, std::move(pixels));
+  held_peak_ = std::max(held_peak_, ledger_.held());
+
+  LaunchCommand command;
+  command.threads = static_cast<uint32_t>(tile_width_ * tile_height_);
+  command.block = static_cast<uint32_t>(tile_x_) | static_cast<uint32_t>(tile_y_) << 16;
+  tile_x_ += tile_width_;
+  if (tile_x_ >= options_.width) {
+    tile_x_ = 0;
+    tile_y_ += tile_height_;
+  }
+  return command;
+}
+
+std::string Controller::describe() const {
+  return fmt::format(
+      "controller: next tile at ({}, {}) of {}x{} pixels, {} pixels finished, {} held; ray pool {} of {} rays, {} of them shadow "
+      "rays, {} more may "
+      "come; intersection pool {} normal and {} shadow of {} each, {} and {} of them not promised to a kernel",
+      tile_x_, tile_y_, options_.width, options_.height, ledger_.finished(), ledger_.held(), rays_.size(), rays_.capacity(),
+      rays_.shadow_rays(), ledger_.rays_to_come(), intersections_.size(ImportKind::Normal),
+      intersections_.size(ImportKind::Shadow), intersections_.capacity(), intersections_.available(ImportKind::Normal),
+      intersections_.available(ImportKind::Shadow));
+}
+
+}  // namespace raypool::chip

@@ -1,0 +1,91 @@
+// The controller: cuts the image into tiles, and gives each unit its next kernel as the policy proposes, as far as it is safe.
+//
+// Two rules keep the chip from locking up, whatever the policy (docs/chip.md has the argument): no more pixels are held than the
+// intersection pool has places for normal intersections, and a secondary kernel starts only if all shadow rays and intersections
+// that can exist then leave at least one place of the ray pool free. It decides without delay: a kernel that it chooses in cycle
+// c is offered in c+1.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <string>
+#include <systemc>
+#include <vector>
+
+#include "chip/chip.hpp"
+#include "chip/intersection_pool.hpp"
+#include "chip/launcher.hpp"
+#include "chip/pixel_ledger.hpp"
+#include "chip/policy.hpp"
+#include "chip/ray_pool.hpp"
+#include "chip/statistics.hpp"
+#include "chip/unit_host.hpp"
+
+namespace raypool::chip {
+
+class Controller : public sc_core::sc_module, public Launcher {
+ public:
+  SC_HAS_PROCESS(Controller);
+  /// All must outlive the controller.
+  Controller(const sc_core::sc_module_name& name, const ChipOptions& options, ChipClock& clock, RayPool& rays,
+             IntersectionPool& intersections, PixelLedger& ledger);
+
+  /// Before the run.
+  void connect(std::vector<UnitHost*> units) { units_ = std::move(units); }
+
+  void accepted(int unit) override;
+  void kernel_ended(int unit) override;
+  void changed() override { clock_.notify(decide_, Phase::Controller); }
+
+  bool finished() const { return finished_; }
+  const std::array<ChipResult::Kernel, kRayKernels>& kernels() const { return kernels_; }
+  double resource_utilisation() const { return thread_time_launchable_ == 0 ? 0 : thread_time_ / thread_time_launchable_; }
+  uint32_t held_peak() const { return held_peak_; }
+  std::string describe() const;
+
+  /// Pixels of an eye tile: tile_width_log2(contents) gives its width; its height is what fits with the held limit.
+  int tile_width() const { return tile_width_; }
+  int tile_height() const { return tile_height_; }
+
+ private:
+  struct GivenKernel {
+    RayKernel kind;
+    uint32_t threads;
+    uint64_t begins;  // not before this cycle
+  };
+
+  void decide();
+  bool end_if_finished();
+  PolicyView view(bool ahead) const;
+  bool eye_possible() const;
+  uint32_t secondary_room() const;
+  void launch(int unit, const Choice& choice);
+  LaunchCommand next_tile(int unit);
+  uint32_t pixels_of_next_tile() const;
+
+  const ChipOptions& options_;
+  ChipClock& clock_;
+  RayPool& rays_;
+  IntersectionPool& intersections_;
+  PixelLedger& ledger_;
+  std::unique_ptr<KernelPolicy> policy_;
+  RayKernel secondary_;
+  sc_core::sc_event decide_;
+  std::vector<UnitHost*> units_;
+  size_t first_ = 0;  // unit that is asked first
+
+  int tile_width_, tile_height_;
+  int tile_x_ = 0, tile_y_ = 0;  // first pixel of the next tile
+  int round_ = 0;                // tiles that may be cast before all held pixels are finished; without the remedy only
+
+  bool finished_ = false;
+  uint32_t held_peak_ = 0;
+  std::vector<std::deque<GivenKernel>> given_;  // [unit] not ended, oldest first
+  std::vector<uint64_t> ended_;                 // [unit] cycle in which the last one ended
+  std::array<ChipResult::Kernel, kRayKernels> kernels_{};
+  double thread_time_ = 0, thread_time_launchable_ = 0;
+};
+
+}  // namespace raypool::chip

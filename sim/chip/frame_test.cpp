@@ -1,0 +1,74 @@
+// The real kernels on the chip, engine `functional`, against the native renderer.
+#include <gtest/gtest.h>
+
+#include "chip/chip.hpp"
+#include "machine/functional_unit.hpp"
+#include "scene/native_renderer.hpp"
+
+namespace raypool {
+namespace {
+
+struct Case {
+  int warps, cores, units, width, height, depth;
+};
+
+class Frame : public testing::TestWithParam<Case> {};
+
+TEST_P(Frame, IsThatOfTheNativeRenderer) {
+  const Case c = GetParam();
+  const Scene scene = make_cornell();
+  const Program& program = ray_kernel_program();
+  const MemoryImage image = build_memory(program, scene);
+  const Tracer tracer(scene, image.material_base);
+
+  NativeOptions native;
+  native.width = c.width;
+  native.height = c.height;
+  native.depth = c.depth;
+  NativeStatistics statistics;
+  const FrameBuffer expected = render_native(scene, image, tracer, native, &statistics);
+
+  ChipOptions options;
+  options.configuration.warps = c.warps;
+  options.configuration.cores = c.cores;
+  Memory memory = image.memory;
+  std::vector<std::unique_ptr<ComputeUnit>> units;
+  for (int i = 0; i < c.units; ++i) {
+    units.push_back(make_functional_unit(options.configuration, memory));
+    options.units.push_back(units.back().get());
+  }
+  FrameBuffer frame(c.width, c.height);
+  FrameBufferSink sink(frame);
+  SceneTracer scene_tracer(tracer);
+  options.memory = &memory;
+  options.program_length = static_cast<uint32_t>(program.code.size());
+  for (size_t i = 0; i < kRayKernels; ++i) options.entries[i] = program.entries.at(std::string(kRayKernelNames[i]));
+  options.arguments = camera_arguments(scene, c.width, c.height, options.configuration.contents());
+  options.width = c.width;
+  options.height = c.height;
+  options.depth = c.depth;
+  options.tracer = &scene_tracer;
+  options.frame = &sink;
+  const ChipResult result = run_chip(options);
+
+  EXPECT_TRUE(frame == expected);
+  EXPECT_EQ(result.eye_rays, statistics.eye_rays);
+  EXPECT_EQ(result.secondary_rays, statistics.reflection_rays);
+  EXPECT_EQ(result.shadow_rays, statistics.shadow_rays);
+  EXPECT_EQ(result.dropped_missed, statistics.missed_rays);
+  EXPECT_EQ(result.dropped_blocked, statistics.blocked_rays);
+  EXPECT_EQ(result.dropped_depth, statistics.dropped_rays);
+  EXPECT_EQ(result.contributions, statistics.contributions);
+  EXPECT_FALSE(result.timed);
+}
+
+INSTANTIATE_TEST_SUITE_P(Chip, Frame,
+                         testing::Values(Case{8, 8, 1, 32, 24, 1}, Case{8, 8, 4, 67, 41, 5}, Case{1, 1, 2, 13, 7, 3},
+                                         Case{2, 8, 2, 31, 29, 2}, Case{32, 32, 4, 61, 53, 4}, Case{4, 4, 1, 1, 1, 5}),
+                         [](const testing::TestParamInfo<Case>& c) {
+                           return std::to_string(c.param.warps) + "w" + std::to_string(c.param.cores) + "c" +
+                                  std::to_string(c.param.units) + "u_depth" + std::to_string(c.param.depth);
+                         });
+
+}  // namespace
+}  // namespace raypool

@@ -1,0 +1,61 @@
+#include "chip/intersection_pool.hpp"
+
+namespace raypool::chip {
+
+IntersectionPool::IntersectionPool(const sc_core::sc_module_name& name, ChipClock& clock, PixelLedger& ledger, int units,
+                                   int capacity)
+    : sc_module(name),
+      clock_(clock),
+      ledger_(ledger),
+      capacity_(static_cast<size_t>(capacity)),
+      turn_(units),
+      wanting_(static_cast<size_t>(units), ImportKind::None) {
+  SC_METHOD(serve);
+  sensitive << work_;
+  dont_initialize();
+}
+
+void IntersectionPool::want(int unit, ImportKind kind) {
+  wanting_[static_cast<size_t>(unit)] = kind;
+  const uint64_t now = clock_.cycle();
+  clock_.notify(work_, Phase::Ports, free_at_ > now ? free_at_ - now : 0);
+}
+
+bool IntersectionPool::beat(int unit, Beat& beat) const {
+  const uint64_t now = clock_.cycle();
+  if (granted_ != unit || now < granted_at_ + kPoolOverhead || now >= granted_at_ + kServiceCycles) return false;
+  const auto first = static_cast<size_t>(now - granted_at_ - kPoolOverhead) * kBeatWords;
+  for (size_t i = 0; i < kBeatWords; ++i) beat[i] = first + i < kIntersectionWords ? leaving_[first + i] : 0;
+  return true;
+}
+
+void IntersectionPool::put(ImportKind kind, const Intersection& intersection) {
+  queue(kind).push_back(intersection);
+  fill_[number(kind)].set(clock_.cycle(), size(kind));
+}
+
+void IntersectionPool::serve() {
+  clock_.guard([&] {
+    const uint64_t now = clock_.cycle();
+    if (now < free_at_) return clock_.notify(work_, Phase::Ports, free_at_ - now);
+    const int unit = turn_.next([&](int u) {
+      const ImportKind kind = wanting_[static_cast<size_t>(u)];
+      return kind != ImportKind::None && !queue(kind).empty();
+    });
+    if (unit < 0) return;
+    const ImportKind kind = wanting_[static_cast<size_t>(unit)];
+    wanting_[static_cast<size_t>(unit)] = ImportKind::None;
+    granted_ = unit;
+    granted_at_ = now;
+    free_at_ = now + kServiceCycles;
+    leaving_ = queue(kind).front();
+    queue(kind).pop_front();
+    --reserved_[number(kind)];
+    ++taken_;
+    fill_[number(kind)].set(now, size(kind));
+    ledger_.imported(unit, leaving_[word::kPixel]);
+    clock_.notify(work_, Phase::Ports, kServiceCycles);
+  });
+}
+
+}  // namespace raypool::chip

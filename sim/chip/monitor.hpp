@@ -1,0 +1,43 @@
+// Watches a run: says how far it is, and ends it with an error when nothing moves any more or it takes too long.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <systemc>
+
+#include "chip/chip_clock.hpp"
+
+namespace raypool::chip {
+
+struct MonitorOptions {
+  uint64_t watchdog_cycles = 0;           ///< 0: never
+  uint64_t cycle_limit = 0;               ///< 0: none
+  std::function<uint64_t()> retired;      ///< instructions so far
+  std::function<uint64_t()> transfers;    ///< so far
+  std::function<void()> progress;         ///< called every kProgressCycles; may be empty
+  std::function<std::string()> describe;  ///< state, for the error
+};
+
+class Monitor : public sc_core::sc_module {
+ public:
+  SC_HAS_PROCESS(Monitor);
+  Monitor(const sc_core::sc_module_name& name, ChipClock& clock, MonitorOptions options);
+
+  static constexpr uint64_t kProgressCycles = 16384;
+  /// A program may compute for long without a transfer, but not for so many watchdog periods.
+  static constexpr uint64_t kSilentPeriods = 100;
+
+ private:
+  void show();
+  void watch();
+  void limit();
+
+  ChipClock& clock_;
+  MonitorOptions options_;
+  sc_core::sc_event show_, watch_, limit_;
+  uint64_t retired_ = 0, transfers_ = 0;
+  uint64_t silent_ = 0;  // periods without a transfer
+};
+
+}  // namespace raypool::chip

@@ -1,0 +1,114 @@
+#include "chip/policy.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "config/configuration.hpp"
+
+namespace raypool::chip {
+namespace {
+
+using Kind = Choice::Kind;
+
+PolicyView seen(uint32_t rays, uint32_t normal, uint32_t shadow, bool eye_possible) {
+  PolicyView view;
+  view.rays = rays;
+  view.normal = normal;
+  view.shadow = shadow;
+  view.secondary_room = 1023;
+  view.eye_possible = eye_possible;
+  view.more_to_come = true;
+  return view;
+}
+
+TEST(ThesisPolicy, ChoosesAsFigure53WithOneUnitOf64Contents) {
+  const ThesisPolicy policy({64, 1, 512, 512});
+  EXPECT_EQ(policy.ray_threshold(), 48u);
+  EXPECT_EQ(policy.intersection_threshold(), 8u);
+  // RP > 48: draw out if there are shadow intersections, else halt.
+  EXPECT_EQ(policy.choose(seen(49, 100, 1, true)).kind, Kind::Shade);
+  EXPECT_EQ(policy.choose(seen(49, 100, 0, true)).kind, Kind::Halt);
+  // RP <= 48, ISP > 8: the kind of which there are more.
+  EXPECT_EQ(policy.choose(seen(48, 9, 0, true)).kind, Kind::Secondary);
+  EXPECT_EQ(policy.choose(seen(48, 5, 4, true)).kind, Kind::Secondary);
+  EXPECT_EQ(policy.choose(seen(48, 5, 5, true)).kind, Kind::Shade);
+  EXPECT_EQ(policy.choose(seen(0, 0, 9, true)).kind, Kind::Shade);
+  // ISP <= 8: eye rays if possible, else halt.
+  EXPECT_EQ(policy.choose(seen(48, 4, 4, true)).kind, Kind::Eye);
+  EXPECT_EQ(policy.choose(seen(48, 4, 4, false)).kind, Kind::Halt);
+}
+
+TEST(ThesisPolicy, RunsWhatIsLeftWhenNothingElseCanCome) {
+  const ThesisPolicy policy({64, 1, 512, 512});
+  PolicyView view = seen(0, 3, 2, false);
+  view.more_to_come = false;
+  EXPECT_EQ(policy.choose(view).kind, Kind::Secondary);
+  EXPECT_EQ(policy.choose(view).threads, 3u);
+  view.shadow = 4;
+  EXPECT_EQ(policy.choose(view).kind, Kind::Shade);
+  EXPECT_EQ(policy.choose(view).threads, 4u);
+}
+
+TEST(ThesisPolicy, LaunchesAheadOnlyFullKernelsThatImport) {
+  const ThesisPolicy policy({64, 1, 512, 512});
+  PolicyView view = seen(0, 63, 0, true);
+  view.ahead = true;
+  EXPECT_EQ(policy.choose(view).kind, Kind::Halt);
+  view.normal = 64;
+  EXPECT_EQ(policy.choose(view).kind, Kind::Secondary);
+  view.normal = 0;
+  EXPECT_EQ(policy.choose(view).kind, Kind::Halt);
+}
+
+TEST(ThesisPolicy, ScalesItsThresholds) {
+  const auto thresholds = [](uint32_t contents, uint32_t units) {
+    const ThesisPolicy policy({contents, units, 512, 512});
+    return std::make_pair(policy.ray_threshold(), policy.intersection_threshold());
+  };
+  EXPECT_EQ(thresholds(1, 1), std::make_pair(48u, 0u));
+  EXPECT_EQ(thresholds(4, 1), std::make_pair(48u, 3u));
+  EXPECT_EQ(thresholds(16, 1), std::make_pair(48u, 8u));
+  EXPECT_EQ(thresholds(64, 4), std::make_pair(192u, 8u));
+  EXPECT_EQ(thresholds(128, 2), std::make_pair(192u, 16u));
+  EXPECT_EQ(thresholds(1024, 4), std::make_pair(384u, 128u));
+  EXPECT_EQ(ThesisPolicy({128, 1, 512, 16}).intersection_threshold(), 15u);
+}
+
+TEST(ThesisPolicy, NeverProposesWhatIsImpossibleAndNeverHaltsForGood) {
+  std::mt19937 random(7);
+  const auto roll = [&](uint32_t below) { return static_cast<uint32_t>(random()) % below; };
+  for (int i = 0; i < 200'000; ++i) {
+    const uint32_t contents = 1u << roll(11);
+    const uint32_t capacity = roll(2) == 0 ? 512 : 1 + roll(100), limit = 512 + capacity - 1;
+    const ThesisPolicy policy({contents, 1u << roll(3), 512, capacity});
+    const auto shadow = std::min(capacity, roll(3) * roll(capacity + 1));
+    PolicyView view = seen(roll(2) * roll(513), roll(2) * roll(capacity + 1), shadow, roll(2) == 0);
+    view.more_to_come = view.rays > 0 || roll(2) == 0;
+    view.secondary_room = limit - std::min(limit, view.shadow + (view.more_to_come ? roll(2) * roll(512) : 0));
+    view.ahead = roll(4) == 0;
+    const Choice choice = policy.choose(view);
+    EXPECT_TRUE(choice.kind != Kind::Eye || view.eye_possible);
+    if (choice.kind == Kind::Secondary) {
+      EXPECT_GE(choice.threads, 1u);
+      EXPECT_LE(choice.threads, std::min({contents, view.normal, view.secondary_room}));
+    }
+    if (choice.kind == Kind::Shade) {
+      EXPECT_GE(choice.threads, 1u);
+      EXPECT_LE(choice.threads, std::min(contents, view.shadow));
+    }
+    if (choice.kind == Kind::Halt && !view.ahead) {
+      EXPECT_LT(view.shadow, capacity);
+      if (!view.more_to_come) {
+        EXPECT_FALSE(view.eye_possible);
+        EXPECT_EQ(view.normal + view.shadow, 0u);
+      }
+    }
+    if (HasFailure()) FAIL() << "view " << i;
+  }
+}
+
+TEST(Policy, RefusesAnUnknownName) { EXPECT_THROW(make_policy("magic", {}), InputError); }
+
+}  // namespace
+}  // namespace raypool::chip

@@ -1,0 +1,35 @@
+// Runs a compute program, which needs no pools, on one compute unit behind the chip's memory port.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "chip/chip.hpp"
+
+namespace raypool {
+
+struct ProgramOptions {
+  Configuration configuration;
+  ComputeUnit* unit = nullptr;  ///< is reset; its counters can be read afterwards
+  Memory* memory = nullptr;
+  uint32_t program_length = 0;  ///< instructions, from address 0
+  uint32_t entry = 0;
+  uint32_t blocks = 1;   ///< launched with block words 0 .. blocks-1
+  uint32_t threads = 1;  ///< a block, 1 .. contents
+  std::array<uint32_t, kArguments> arguments{};
+  uint64_t watchdog_cycles = 100'000;
+  uint64_t cycle_limit = 0;  ///< 0: none
+};
+
+struct ProgramResult {
+  bool timed = true;
+  uint64_t cycles = 0;  ///< until the unit is idle
+  std::array<uint64_t, counter::kCount> counters{};
+  uint64_t memory_reads = 0, memory_writes = 0;
+  double memory_port_utilisation = 0;
+};
+
+/// Throws InputError for options out of range and for programs that use the pools, ChipFault, ChipStalled.
+ProgramResult run_program(const ProgramOptions& options);
+
+}  // namespace raypool

@@ -1,0 +1,95 @@
+#include "chip/program_run.hpp"
+
+#include <gtest/gtest.h>
+
+#include "machine/functional_unit.hpp"
+#include "machine/test_program.hpp"
+
+namespace raypool {
+namespace {
+
+using test::Encode;
+
+constexpr uint32_t kResults = 1024;
+
+struct Bench {
+  Configuration configuration;
+  Memory memory{65536};
+  std::unique_ptr<ComputeUnit> unit;
+  ProgramOptions options;
+
+  explicit Bench(const std::vector<uint64_t>& code) {
+    test::put_program(memory, code);
+    unit = make_functional_unit(configuration, memory);
+    options.configuration = configuration;
+    options.unit = unit.get();
+    options.memory = &memory;
+    options.program_length = static_cast<uint32_t>(code.size());
+    options.threads = 64;
+  }
+};
+
+// word[arg0 + 4 * (block * threads + tid)] = block * threads + tid
+std::vector<uint64_t> number_threads() {
+  return {Encode("tid").rd(1),
+          Encode("block").rd(2),
+          Encode("threads").rd(3),
+          Encode("imul").rd(2).ra(2).rb(3),
+          Encode("iadd").rd(1).ra(1).rb(2),
+          Encode("shl").rd(2).ra(1).imm(2),
+          Encode("arg").rd(3).plain_imm(0),
+          Encode("iadd").rd(2).ra(2).rb(3),
+          Encode("st").ra(2).rb(1),
+          Encode("exit")};
+}
+
+TEST(ProgramRun, RunsEveryBlockOnce) {
+  Bench bench(number_threads());
+  bench.options.blocks = 7;
+  bench.options.arguments[0] = kResults;
+  const ProgramResult result = run_program(bench.options);
+  for (uint32_t i = 0; i < 7 * 64; ++i) EXPECT_EQ(bench.memory.load(kResults + 4 * i), i);
+  EXPECT_EQ(bench.memory.load(kResults + 4 * 7 * 64), 0u);
+  EXPECT_EQ(result.counters[counter::kInstructions], 7u * 8 * 10);
+  EXPECT_FALSE(result.timed);
+  EXPECT_GT(result.cycles, 0u);
+}
+
+TEST(ProgramRun, ReportsAFault) {
+  Bench bench({Encode("mov").rd(1).imm(2), Encode("ld").rd(2).ra(1), Encode("exit")});
+  try {
+    run_program(bench.options);
+    FAIL() << "no fault";
+  } catch (const ChipFault& fault) {
+    EXPECT_EQ(fault.fault.code, FaultCode::Misaligned);
+    EXPECT_EQ(fault.fault.pc, 1u);
+  }
+}
+
+TEST(ProgramRun, RefusesProgramsThatNeedThePools) {
+  for (const char* mnemonic : {"rout", "rfb"}) {
+    Bench bench({Encode(mnemonic), Encode("exit")});
+    EXPECT_THROW(run_program(bench.options), InputError) << mnemonic;
+  }
+}
+
+TEST(ProgramRun, GivesUpOnAProgramThatNeverEnds) {
+  Bench bench({Encode("jnone").guard(1).target(0), Encode("exit")});
+  bench.options.watchdog_cycles = 10;
+  EXPECT_THROW(run_program(bench.options), ChipStalled);
+  bench.options.watchdog_cycles = 0;
+  bench.options.cycle_limit = 200;
+  EXPECT_THROW(run_program(bench.options), ChipStalled);
+}
+
+TEST(ProgramRun, RefusesSizesThatTheUnitDoesNotHold) {
+  Bench bench(number_threads());
+  bench.options.threads = 65;
+  EXPECT_THROW(run_program(bench.options), InputError);
+  bench.options.threads = 64;
+  bench.options.blocks = 0;
+  EXPECT_THROW(run_program(bench.options), InputError);
+}
+
+}  // namespace
+}  // namespace raypool

@@ -1,0 +1,31 @@
+// The thesis' traverser: its speed is a constant, whatever the rays. 64 rays become intersections at the end of every kernel, on
+// whichever unit; and 64 a unit after every 1000 ns in which the shader stalls, that is, in which every unit runs no kernel or
+// waits for room in the ray pool.
+#pragma once
+
+#include "chip/traverser.hpp"
+
+namespace raypool::chip {
+
+inline constexpr uint32_t kTraverserBatch = 64;  ///< rays
+inline constexpr uint64_t kTraverserStallCycles = 1000;
+
+class StaticTraverser : public Traverser {
+ public:
+  SC_HAS_PROCESS(StaticTraverser);
+  StaticTraverser(const sc_core::sc_module_name& name, const TraverserSurroundings& surroundings);
+
+  void kernel_ended() override;
+  void unit_stalls(int unit, bool stalls) override;
+  void ray_arrived() override {}
+
+ private:
+  void end_of_kernel();
+  void end_of_stall();
+
+  sc_core::sc_event kernel_ended_, stall_over_;
+  uint32_t kernels_ = 0;  // that ended in this cycle
+  uint32_t stalling_;     // units, one bit each
+};
+
+}  // namespace raypool::chip

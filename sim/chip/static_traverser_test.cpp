@@ -1,0 +1,135 @@
+#include "chip/static_traverser.hpp"
+
+#include <gtest/gtest.h>
+
+#include "chip/simulation.hpp"
+#include "chip/test_driver.hpp"
+
+namespace raypool::chip {
+namespace {
+
+struct HalfTracer : RayTracer {
+  /// Rays of odd pixels leave nothing.
+  bool trace(const Ray& ray, Intersection& intersection) override {
+    ++traced;
+    std::copy(ray.begin(), ray.end(), intersection.begin());
+    return (ray[word::kPixel] & 1) == 0;
+  }
+  int traced = 0;
+};
+
+/// A traverser between pools that the test fills.
+struct Bench {
+  Simulation simulation;
+  ChipClock clock{"clock"};
+  PixelLedger ledger;
+  RayPool rays;
+  IntersectionPool intersections;
+  HalfTracer tracer;
+  int moved = 0;
+  StaticTraverser traverser;
+
+  explicit Bench(int units, int capacity = 512)
+      : ledger(units, 512, 1),
+        rays("ray_pool", clock, ledger, units, 512, 5),
+        intersections("intersection_pool", clock, ledger, units, capacity),
+        traverser("traverser", {clock, rays, intersections, ledger, tracer, units, [this] { ++moved; }}) {}
+
+  /// Puts `count` rays into the pool; with kShadowFlag shadow rays.
+  void fill(int count, uint32_t flags = 1) {
+    std::vector<uint32_t> pixels;
+    for (int i = 0; i < count; ++i) pixels.push_back(static_cast<uint32_t>(i));
+    ledger.eye_launched(0, pixels);  // so that the pixels are held
+    for (const uint32_t pixel : pixels) {
+      PooledRay ray{};
+      ray.ray[word::kPixel] = pixel;
+      ray.ray[word::kFlags] = flags;
+      rays.rays().push_back(ray);
+    }
+  }
+  void run(std::function<bool(uint64_t)> cycle) {
+    test::Driver driver("driver", clock, std::move(cycle));
+    simulation.run();
+    clock.rethrow();
+  }
+};
+
+TEST(StaticTraverser, Turns64RaysIntoIntersectionsAtTheEndOfAKernel) {
+  Bench bench(1);
+  bench.run([&](uint64_t cycle) {
+    if (cycle == 1) bench.fill(200);
+    if (cycle == 1) bench.traverser.unit_stalls(0, false);
+    if (cycle == 5) bench.traverser.kernel_ended();
+    EXPECT_EQ(bench.rays.size(), cycle <= 5 ? 200u : 136u);
+    if (cycle == 6) {
+      EXPECT_EQ(bench.rays.size(), 136u);
+      EXPECT_EQ(bench.intersections.size(ImportKind::Normal), 32u);  // the other half missed
+    }
+    return cycle < 5000;
+  });
+  EXPECT_EQ(bench.traverser.counts().batches, 1u);
+  EXPECT_EQ(bench.traverser.counts().missed, 32u);
+  EXPECT_EQ(bench.traverser.counts().eye_rays, 64u);
+  EXPECT_EQ(bench.ledger.held(), 168u);
+}
+
+TEST(StaticTraverser, Turns64RaysAUnitIntoIntersectionsAfter1000CyclesOfStall) {
+  for (const int units : {1, 2, 4}) {
+    Bench bench(units);
+    std::vector<std::pair<uint64_t, uint32_t>> steps;  // cycle in which it is first seen, rays left
+    bench.run([&](uint64_t cycle) {
+      const uint32_t before = bench.rays.size();
+      if (cycle == 1) {
+        bench.fill(500);
+        for (int unit = 0; unit < units; ++unit) bench.traverser.unit_stalls(unit, false);
+      }
+      if (cycle == 50) {
+        for (int unit = 0; unit < units; ++unit) bench.traverser.unit_stalls(unit, true);
+      }
+      if (cycle > 1 && (steps.empty() ? 500 : steps.back().second) != before) steps.push_back({cycle, before});
+      return cycle < 2100;
+    });
+    const auto batch = static_cast<uint32_t>(64 * units);
+    ASSERT_EQ(steps.size(), 2u) << units;
+    EXPECT_EQ(steps[0], (std::pair<uint64_t, uint32_t>(1051, 500 - batch)));
+    EXPECT_EQ(steps[1], (std::pair<uint64_t, uint32_t>(2051, units == 4 ? 0 : 500 - 2 * batch)));
+  }
+}
+
+TEST(StaticTraverser, DoesNothingWhileAUnitWorks) {
+  Bench bench(2);
+  bench.run([&](uint64_t cycle) {
+    if (cycle == 1) {
+      bench.fill(100);
+      bench.traverser.unit_stalls(0, false);
+      bench.traverser.unit_stalls(1, false);
+    }
+    if (cycle == 10) bench.traverser.unit_stalls(0, true);
+    if (cycle == 20) bench.traverser.unit_stalls(1, true);
+    if (cycle == 1019) bench.traverser.unit_stalls(0, false);  // 999 cycles are not enough
+    return cycle < 4000;
+  });
+  EXPECT_EQ(bench.rays.size(), 100u);
+}
+
+TEST(StaticTraverser, KeepsRaysWithoutRoomAndTracesThemOnce) {
+  Bench bench(1, 10);
+  bench.run([&](uint64_t cycle) {
+    if (cycle == 1) bench.fill(64, 1 | kShadowFlag);
+    if (cycle == 2) bench.traverser.kernel_ended();
+    if (cycle == 3) {
+      EXPECT_EQ(bench.intersections.size(ImportKind::Shadow), 10u);
+      EXPECT_EQ(bench.rays.size(), 22u);  // 32 are free, 10 of them found room
+      bench.fill(20);                     // normal rays pass those that wait
+      bench.traverser.kernel_ended();
+    }
+    return cycle < 10;
+  });
+  EXPECT_EQ(bench.intersections.size(ImportKind::Normal), 10u);
+  EXPECT_EQ(bench.rays.size(), 22u);
+  EXPECT_EQ(bench.tracer.traced, 84);
+  EXPECT_EQ(bench.traverser.counts().blocked, 32u);
+}
+
+}  // namespace
+}  // namespace raypool::chip

@@ -1,0 +1,89 @@
+// What the subcommands of `raypool` do; main/main.cpp parses the command line into these options. Each throws InputError on input
+// that cannot be used and returns the exit code otherwise.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace raypool {
+
+/// `raypool sim`
+struct SimOptions {
+  std::string scene = "room";  ///< built-in name or path of an OBJ
+  std::string config = "8w8c";
+  std::string engine = "functional";
+  std::string size = "320x320";
+  std::string view;  ///< JSON file with camera and light; empty: the scene's own
+  std::string out;   ///< folder; empty: out/<what was run> beside the executable
+  std::string traverser = "static";
+  std::string unit_library;  ///< Verilated unit; empty: unit_library_path()
+  int depth = 3;
+  int units = 1;
+  double detail = 1;  ///< of a built-in scene, 0.01 .. 16
+  bool waves = false;
+  bool quiet = false;                ///< no progress, no table
+  std::vector<std::string> command;  ///< the command line, for the report
+};
+int sim_command(const SimOptions& options);
+
+/// `raypool run`
+struct RunOptions {
+  std::string kernel;  ///< saxpy, matmul or path of an assembly file
+  std::string config = "8w8c";
+  std::string engine = "functional";
+  std::string unit_library;
+  uint32_t n = 0;        ///< problem size of saxpy and matmul; 0: theirs
+  uint32_t blocks = 1;   ///< assembly file only, like all below
+  uint32_t threads = 0;  ///< a block; 0: as many as the unit holds
+  uint32_t memory_bytes = 65536;
+  std::vector<std::string> arguments;  ///< integers, 0x..., or floats (with a point or exponent)
+  std::vector<std::string> print;      ///< ADDRESS:COUNT words of memory to print afterwards
+  std::string waves;                   ///< path of a waveform, empty: none
+  uint64_t cycle_limit = 100'000'000;
+};
+int run_command(const RunOptions& options);
+
+/// `raypool config`
+struct ConfigOptions {
+  std::string config = "8w8c";
+  bool verilog_parameters = false;
+  bool json = false;
+  bool unit_library = false;  ///< path of the Verilated unit
+};
+int config_command(const ConfigOptions& options);
+
+/// `raypool isa`
+enum class IsaFormat { Verilog, VerilogFunctions, Markdown };
+int isa_command(IsaFormat format);
+
+/// `raypool asm FILE`: hexadecimal words, one an instruction. `raypool disasm FILE`: back to text.
+int asm_command(const std::string& path, const std::string& out);
+int disasm_command(const std::string& path, const std::string& out);
+
+/// `raypool kernels [NAME]`: counts by ALU, or the listing of one kernel.
+int kernels_command(const std::string& name);
+
+/// `raypool scene` and `raypool hits`
+struct SceneCommandOptions {
+  std::string scene = "room";
+  std::string view;
+  std::string size = "320x320";
+  double detail = 1;      ///< of a built-in scene, 0.01 .. 16
+  std::string write_obj;  ///< path, empty: only information
+};
+int scene_command(const SceneCommandOptions& options);
+int hits_command(const SceneCommandOptions& options);
+
+/// `raypool cosim`: random programs, each with its own seed: seed, seed + 1, ...
+struct CosimOptions {
+  std::string config = "8w8c";
+  std::string engine = "lockstep";
+  std::string unit_library;
+  uint64_t programs = 100;
+  uint64_t seed = 1;
+  int length = 120;  ///< about how many instructions a program's body has
+};
+int cosim_command(const CosimOptions& options);
+
+}  // namespace raypool

@@ -1,0 +1,166 @@
+// The command line: what each subcommand takes, what it does with errors. Exit codes: 0 done, 1 input that cannot be used or a
+// program that faults, 2 lockstep found a difference, 3 any other failure.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+
+#include "chip/chip.hpp"
+#include "cli/commands.hpp"
+#include "cli/engine.hpp"
+#include "lockstep/lockstep_unit.hpp"
+
+namespace raypool {
+namespace {
+
+constexpr int kInputFailure = 1;
+constexpr int kDifference = 2;
+constexpr int kOtherFailure = 3;
+
+void add_config(CLI::App& app, std::string& config) {
+  app.add_option("--config", config, "hardware: a name in configs/, NwMc (N warps, M cores) or a JSON file")
+      ->capture_default_str();
+}
+
+void add_unit(CLI::App& app, std::string& engine, std::string& library) {
+  app.add_option("--engine", engine, "functional, rtl or lockstep; sim also native")->capture_default_str();
+  app.add_option("--unit-library", library, "Verilated unit (default: where make unit builds it)");
+}
+
+void add_scene(CLI::App& app, std::string& scene, std::string& size, std::string& view, double& detail) {
+  app.add_option("--scene,scene", scene, "cornell, room, or the path of an OBJ")->capture_default_str();
+  app.add_option("--size", size, "image, WIDTHxHEIGHT in pixels, 1 to 16384 each")->capture_default_str();
+  app.add_option("--view", view, "JSON file with camera and light (default: the scene's own, or framed automatically)");
+  app.add_option("--detail", detail, "triangles of a built-in scene, 0.01 to 16, 1 = as designed")->capture_default_str();
+}
+
+int run(int argc, char** argv) {
+  CLI::App app(
+      "raypool: a ray-tracing GPU to render on, measure, verify and synthesise. RAYPOOL COMMAND --help tells more of a command.",
+      "raypool");
+  app.require_subcommand(1);
+  app.set_help_all_flag("--help-all", "help of every command");
+  // Given twice, the later one counts: scripts put defaults first.
+  app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+  int code = 0;
+
+  SimOptions sim;
+  CLI::App* sim_app = app.add_subcommand("sim", "draw a scene on the simulated chip; leaves image.png and report.json");
+  add_scene(*sim_app, sim.scene, sim.size, sim.view, sim.detail);
+  add_config(*sim_app, sim.config);
+  add_unit(*sim_app, sim.engine, sim.unit_library);
+  sim_app->add_option("--units", sim.units, "compute units: 1, 2 or 4")->capture_default_str();
+  sim_app->add_option("--depth", sim.depth, "1: eye and shadow rays only; up to 254: with reflections")->capture_default_str();
+  sim_app->add_option("--traverser", sim.traverser, "timing of the traverser: static")->capture_default_str();
+  sim_app->add_option("--out", sim.out, "folder for the results (default: out/<what was run> beside the program)");
+  sim_app->add_flag("--waves", sim.waves, "leave a waveform, waves.fst, too; rtl and lockstep only");
+  sim_app->add_flag("--quiet", sim.quiet, "no progress and no table");
+  sim.command.assign(argv, argv + argc);
+  sim_app->callback([&] { code = sim_command(sim); });
+
+  RunOptions compute;
+  CLI::App* run_app = app.add_subcommand("run", "run a compute kernel on one compute unit");
+  run_app->add_option("kernel", compute.kernel, "saxpy, matmul, or the path of an assembly file")->required();
+  add_config(*run_app, compute.config);
+  add_unit(*run_app, compute.engine, compute.unit_library);
+  run_app->add_option("--n", compute.n, "size of saxpy (elements) or matmul (rows of a square matrix)");
+  run_app->add_option("--blocks", compute.blocks, "assembly file: blocks to launch")->capture_default_str();
+  run_app->add_option("--threads", compute.threads, "assembly file: threads a block (default: warps x cores)");
+  run_app->add_option("--arg", compute.arguments, "assembly file: next kernel argument; integer, 0x..., or float (with a point)")
+      ->allow_extra_args(false)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  run_app->add_option("--memory", compute.memory_bytes, "assembly file: bytes of memory, program first")->capture_default_str();
+  run_app->add_option("--print", compute.print, "assembly file: ADDRESS:WORDS of memory to print afterwards")
+      ->allow_extra_args(false)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  run_app->add_option("--waves", compute.waves, "leave a waveform (FST) in this file; rtl and lockstep only");
+  run_app->add_option("--cycles", compute.cycle_limit, "give up after this many cycles")->capture_default_str();
+  run_app->callback([&] { code = run_command(compute); });
+
+  CosimOptions cosim;
+  CLI::App* cosim_app =
+      app.add_subcommand("cosim", "random programs, with stalls on every port, in lockstep with the golden model");
+  add_config(*cosim_app, cosim.config);
+  add_unit(*cosim_app, cosim.engine, cosim.unit_library);
+  cosim_app->add_option("--programs", cosim.programs, "how many")->capture_default_str();
+  cosim_app->add_option("--seed", cosim.seed, "of the first; the next one has the next seed")->capture_default_str();
+  cosim_app->add_option("--length", cosim.length, "about how many instructions a program has, 1 to 2000")
+      ->check(CLI::Range(1, 2000))
+      ->capture_default_str();
+  cosim_app->callback([&] { code = cosim_command(cosim); });
+
+  ConfigOptions config;
+  CLI::App* config_app = app.add_subcommand("config", "print a configuration");
+  config_app->add_option("config", config.config, "a name in configs/, NwMc or a JSON file")->capture_default_str();
+  auto* formats = config_app->add_option_group("format");
+  formats->add_flag("--json", config.json, "as a configuration file");
+  formats->add_flag("--verilog-parameters", config.verilog_parameters, "as NAME=VALUE lines for rtl/compute_unit.v");
+  formats->add_flag("--unit-library", config.unit_library, "path of its Verilated unit");
+  formats->require_option(0, 1);
+  config_app->callback([&] { code = config_command(config); });
+
+  CLI::App* isa_app = app.add_subcommand("isa", "print the instruction table (default: as Markdown)");
+  bool verilog = false, functions = false, markdown = false;
+  auto* isa_formats = isa_app->add_option_group("format");
+  isa_formats->add_flag("--markdown", markdown, "docs/isa.md");
+  isa_formats->add_flag("--verilog", verilog, "rtl/isa.vh: constants");
+  isa_formats->add_flag("--verilog-functions", functions, "rtl/isa_functions.vh: decoding");
+  isa_formats->require_option(0, 1);
+  isa_app->callback([&] {
+    code = isa_command(verilog ? IsaFormat::Verilog : functions ? IsaFormat::VerilogFunctions : IsaFormat::Markdown);
+  });
+
+  std::string text_path, text_out;
+  CLI::App* asm_app = app.add_subcommand("asm", "assemble: one hexadecimal 64-bit word a line");
+  CLI::App* disasm_app = app.add_subcommand("disasm", "disassemble what asm has written");
+  for (CLI::App* sub : {asm_app, disasm_app}) {
+    sub->add_option("file", text_path, "input, - for standard input")->required();
+    sub->add_option("--out,-o", text_out, "output (default: standard output)");
+  }
+  asm_app->callback([&] { code = asm_command(text_path, text_out); });
+  disasm_app->callback([&] { code = disasm_command(text_path, text_out); });
+
+  std::string kernel;
+  CLI::App* kernels_app =
+      app.add_subcommand("kernels", "the ray kernels' instruction counts by ALU, or the listing of one kernel");
+  kernels_app->add_option("name", kernel, "kernel to list");
+  kernels_app->callback([&] { code = kernels_command(kernel); });
+
+  SceneCommandOptions scene;
+  CLI::App* scene_app = app.add_subcommand("scene", "what a scene holds: triangles, materials, box, camera, light");
+  CLI::App* hits_app = app.add_subcommand("hits", "compare our traversal's hits on a frame with Embree's");
+  for (CLI::App* sub : {scene_app, hits_app}) add_scene(*sub, scene.scene, scene.size, scene.view, scene.detail);
+  scene_app->add_option("--write-obj", scene.write_obj, "write it as an OBJ, with its MTL beside it");
+  scene_app->callback([&] { code = scene_command(scene); });
+  hits_app->callback([&] { code = hits_command(scene); });
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& success) {
+    return app.exit(success);
+  } catch (const CLI::ParseError& error) {
+    std::fprintf(stderr, "raypool: %s (raypool --help shows what there is)\n", error.what());
+    return kInputFailure;
+  }
+  return code;
+}
+
+}  // namespace
+}  // namespace raypool
+
+int main(int argc, char** argv) {
+  try {
+    return raypool::run(argc, argv);
+  } catch (const raypool::InputError& error) {
+    std::fprintf(stderr, "raypool: %s\n", error.what());
+    return raypool::kInputFailure;
+  } catch (const raypool::LockstepDifference& difference) {
+    std::fprintf(stderr, "raypool: %s\n", difference.what());
+    return raypool::kDifference;
+  } catch (const raypool::ChipStalled& stalled) {
+    std::fprintf(stderr, "raypool: %s\n", stalled.what());
+    return raypool::kOtherFailure;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "raypool: failed: %s\n", error.what());
+    return raypool::kOtherFailure;
+  }
+}

@@ -1,0 +1,188 @@
+#include "cli/report.hpp"
+
+#include <fmt/format.h>
+
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "cli/version.hpp"
+
+namespace raypool {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double share(uint64_t part, uint64_t rest) {
+  return part + rest == 0 ? 0 : static_cast<double>(part) / static_cast<double>(part + rest);
+}
+
+double rate(uint64_t count, double seconds) { return seconds > 0 ? static_cast<double>(count) / seconds : 0; }
+
+/// A figure that only an engine with a notion of time has.
+template <typename Value>
+Json timed(const ChipResult& chip, const Value& value) {
+  return chip.timed ? Json(value) : Json(nullptr);
+}
+
+Json pool_json(const PoolFill& pool) { return {{"capacity", pool.capacity}, {"peak", pool.peak}, {"mean", pool.mean}}; }
+
+Json lockstep_json(const LockstepCounts& counts) {
+  return {{"instructions", counts.instructions},
+          {"differences", counts.differences},
+          {"cycles", counts.cycles},
+          {"kernels", counts.kernels},
+          {"thread_results", counts.thread_results},
+          {"stored_words", counts.stores},
+          {"memory_writes", counts.memory_writes},
+          {"ray_words", counts.ray_words},
+          {"imports", counts.imports},
+          {"exports", counts.exports},
+          {"frame_contributions", counts.frame_contributions}};
+}
+
+void add_chip(Json& json, const ChipResult& chip) {
+  json["cycles"] = timed(chip, chip.cycles);
+  json["rays"] = chip.rays();
+  json["mrays_per_second"] = timed(chip, chip.mrays_per_s);
+  json["time_utilisation"] = timed(chip, chip.time_utilisation);
+  json["resource_utilisation"] = chip.resource_utilisation;
+  json["instructions"] = chip.instructions;
+  json["thread_instructions"] = chip.thread_instructions;
+  json["rays_by_kind"] = {{"eye", chip.eye_rays}, {"reflection", chip.secondary_rays}, {"shadow", chip.shadow_rays}};
+  json["rays_that_end"] = {{"missed", chip.dropped_missed}, {"blocked", chip.dropped_blocked}, {"too_deep", chip.dropped_depth}};
+  json["contributions"] = chip.contributions;
+  for (size_t i = 0; i < kRayKernels; ++i) {
+    const ChipResult::Kernel& kernel = chip.kernels[i];
+    json["kernels"][std::string(kRayKernelNames[i])] = {
+        {"launches", kernel.launches}, {"threads", kernel.threads}, {"cycles", timed(chip, kernel.cycles)}};
+  }
+  for (size_t i = 0; i < kUnits; ++i) {
+    const ChipResult::Alu& alu = chip.alus[i];
+    json["alus"][std::string(kUnitNames[i])] = {
+        {"utilisation", timed(chip, alu.utilisation)}, {"waiting", timed(chip, alu.waiting)}, {"issued", alu.issued}};
+  }
+  if (!chip.timed) return;
+  json["caches"]["instruction"] = {{"hits", chip.instruction_cache_hits},
+                                   {"misses", chip.instruction_cache_misses},
+                                   {"hit_rate", share(chip.instruction_cache_hits, chip.instruction_cache_misses)}};
+  json["caches"]["data"] = {{"hits", chip.data_cache_hits},
+                            {"misses", chip.data_cache_misses},
+                            {"hit_rate", share(chip.data_cache_hits, chip.data_cache_misses)},
+                            {"stores", chip.data_cache_stores}};
+  json["pools"] = {{"rays", pool_json(chip.rays_pool)},
+                   {"normal_intersections", pool_json(chip.normal_pool)},
+                   {"shadow_intersections", pool_json(chip.shadow_pool)},
+                   {"unfinished_pixels_peak", chip.held_peak},
+                   {"ray_port_utilisation", chip.ray_port_utilisation},
+                   {"intersection_port_utilisation", chip.intersection_port_utilisation}};
+  json["memory"] = {{"line_reads", chip.memory_reads},
+                    {"quadword_writes", chip.memory_writes},
+                    {"port_utilisation", chip.memory_port_utilisation}};
+  json["traverser_batches"] = {{"at_kernel_end", chip.traverser_batches}, {"after_stall", chip.traverser_stall_batches}};
+}
+
+void add_native(Json& json, const NativeStatistics& native) {
+  json["cycles"] = nullptr;
+  json["rays"] = native.rays();
+  for (const char* key : {"mrays_per_second", "time_utilisation", "resource_utilisation"}) json[key] = nullptr;
+  json["rays_by_kind"] = {{"eye", native.eye_rays}, {"reflection", native.reflection_rays}, {"shadow", native.shadow_rays}};
+  json["rays_that_end"] = {{"missed", native.missed_rays}, {"blocked", native.blocked_rays}, {"too_deep", native.dropped_rays}};
+  json["contributions"] = native.contributions;
+  for (size_t i = 0; i < kRayKernels; ++i) {
+    json["kernels"][std::string(kRayKernelNames[i])] = {{"threads", native.kernel_threads[i]}};
+  }
+}
+
+/// Appends a line to the table.
+template <typename... Arguments>
+void line(std::string& text, fmt::format_string<Arguments...> format, Arguments&&... arguments) {
+  fmt::format_to(std::back_inserter(text), format, std::forward<Arguments>(arguments)...);
+  text += '\n';
+}
+
+void kernel_table(std::string& text, const ChipResult& chip) {
+  line(text, "  kernel                  launches    threads  a launch");
+  for (size_t i = 0; i < kRayKernels; ++i) {
+    const ChipResult::Kernel& kernel = chip.kernels[i];
+    if (kernel.launches == 0) continue;
+    line(text, "    {:<21} {:>8} {:>10} {:>9.1f}", kRayKernelNames[i], kernel.launches, kernel.threads,
+         static_cast<double>(kernel.threads) / static_cast<double>(kernel.launches));
+  }
+}
+
+void chip_table(std::string& text, const ChipResult& chip) {
+  line(text, "  rays        {}: {} eye, {} reflection, {} shadow", chip.rays(), chip.eye_rays, chip.secondary_rays,
+       chip.shadow_rays);
+  if (!chip.timed) {
+    kernel_table(text, chip);
+    line(text, "  work        {} warp instructions, {} thread instructions", chip.instructions, chip.thread_instructions);
+    return;
+  }
+  line(text, "  speed       {:.2f} Mrays/s ({} cycles at 1 GHz)", chip.mrays_per_s, chip.cycles);
+  line(text, "  utilisation time {:.1f}%, resources {:.1f}%", 100 * chip.time_utilisation, 100 * chip.resource_utilisation);
+  kernel_table(text, chip);
+  line(text, "  ALU   utilisation  waiting      tasks");
+  for (size_t i = 0; i < kUnits; ++i) {
+    const ChipResult::Alu& alu = chip.alus[i];
+    line(text, "    {} {:>11.1f}% {:>8.2f} {:>10}", kUnitNames[i], 100 * alu.utilisation, alu.waiting, alu.issued);
+  }
+  line(text, "  work        {} warp instructions, {} thread instructions", chip.instructions, chip.thread_instructions);
+  line(text, "  caches      instructions {:.2f}% hits of {}, data {:.2f}% hits of {}",
+       100 * share(chip.instruction_cache_hits, chip.instruction_cache_misses),
+       chip.instruction_cache_hits + chip.instruction_cache_misses, 100 * share(chip.data_cache_hits, chip.data_cache_misses),
+       chip.data_cache_hits + chip.data_cache_misses);
+  line(text, "  pools       rays {:.0f} of {} (peak {}), intersections {:.0f} normal (peak {}), {:.0f} shadow (peak {})",
+       chip.rays_pool.mean, chip.rays_pool.capacity, chip.rays_pool.peak, chip.normal_pool.mean, chip.normal_pool.peak,
+       chip.shadow_pool.mean, chip.shadow_pool.peak);
+  line(text, "  ports       rays {:.1f}%, intersections {:.1f}%, memory {:.1f}% busy", 100 * chip.ray_port_utilisation,
+       100 * chip.intersection_port_utilisation, 100 * chip.memory_port_utilisation);
+}
+
+}  // namespace
+
+std::string to_json(const RunRecord& record) {
+  Json json;
+  json["raypool"] = kVersion;
+  json["command"] = record.command;
+  json["config"] = record.configuration.name;
+  json["configuration"] = Json::parse(to_json(record.configuration));
+  json["engine"] = record.engine;
+  json["scene"] = {{"name", record.scene}, {"triangles", record.triangles}, {"materials", record.materials}};
+  json["size"] = {{"width", record.width}, {"height", record.height}};
+  json["depth"] = record.depth;
+  json["units"] = record.units;
+  json["traverser"] = record.traverser;
+  if (record.chip) add_chip(json, *record.chip);
+  if (record.native) add_native(json, *record.native);
+  if (record.lockstep) json["lockstep"] = lockstep_json(*record.lockstep);
+  json["wall_seconds"] = record.wall_seconds;
+  json["simulation_seconds"] = record.simulation_seconds;
+  if (record.chip && record.chip->timed) {
+    json["simulated_per_second"] = {{"cycles", rate(record.chip->cycles, record.simulation_seconds)},
+                                    {"thread_instructions", rate(record.chip->thread_instructions, record.simulation_seconds)}};
+  }
+  return json.dump(2) + "\n";
+}
+
+std::string to_table(const RunRecord& record) {
+  std::string text;
+  line(text, "{}, {} triangles, {}x{}, depth {}: {} on {}, {} compute unit{}", record.scene, record.triangles, record.width,
+       record.height, record.depth, record.engine, record.configuration.name, record.units, record.units == 1 ? "" : "s");
+  if (record.chip) chip_table(text, *record.chip);
+  if (record.native) {
+    const NativeStatistics& native = *record.native;
+    line(text, "  rays        {}: {} eye, {} reflection, {} shadow", native.rays(), native.eye_rays, native.reflection_rays,
+         native.shadow_rays);
+  }
+  if (record.lockstep) line(text, "  {}", to_string(*record.lockstep));
+  std::string simulated;
+  if (record.chip && record.chip->timed) {
+    simulated = fmt::format(", {:.0f} thousand cycles and {:.0f} thousand thread instructions a second",
+                            rate(record.chip->cycles, record.simulation_seconds) / 1e3,
+                            rate(record.chip->thread_instructions, record.simulation_seconds) / 1e3);
+  }
+  line(text, "  wall time   {:.1f} s, of which drawing {:.1f} s{}", record.wall_seconds, record.simulation_seconds, simulated);
+  return text;
+}
+
+}  // namespace raypool

@@ -1,0 +1,39 @@
+// What a run leaves in words and numbers: report.json (docs/report.md) and the table on the terminal.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "chip/chip.hpp"
+#include "config/configuration.hpp"
+#include "lockstep/lockstep_unit.hpp"
+#include "scene/native_renderer.hpp"
+
+namespace raypool {
+
+/// Everything a report is made from.
+struct RunRecord {
+  std::vector<std::string> command;  ///< the command line
+  std::string engine;
+  Configuration configuration;
+  std::string scene;
+  size_t triangles = 0, materials = 0;
+  int width = 0, height = 0;
+  int depth = 0;
+  int units = 0;
+  std::string traverser;
+  std::optional<ChipResult> chip;          ///< engines with a chip
+  std::optional<NativeStatistics> native;  ///< engine native
+  std::optional<LockstepCounts> lockstep;  ///< engine lockstep
+  double wall_seconds = 0;                 ///< the whole run
+  double simulation_seconds = 0;           ///< drawing alone, without scene, tree and files
+};
+
+/// report.json's text.
+std::string to_json(const RunRecord& record);
+
+/// The table, several lines.
+std::string to_table(const RunRecord& record);
+
+}  // namespace raypool

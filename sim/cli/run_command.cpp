@@ -1,0 +1,258 @@
+// `raypool run`: a compute kernel on one compute unit, without pools; saxpy and matmul are checked against C++.
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+
+#include "chip/program_run.hpp"
+#include "cli/commands.hpp"
+#include "cli/engine.hpp"
+#include "cli/output_folder.hpp"
+#include "cli/text_file.hpp"
+#include "isa/assembler.hpp"
+#include "kernel/compute_kernels.hpp"
+#include "lockstep/lockstep_unit.hpp"
+
+namespace raypool {
+namespace {
+
+/// A program in memory with its data, ready to launch, and how to look at what it leaves.
+struct Job {
+  std::string title;
+  Program program;
+  ProgramOptions options;
+  Memory memory;
+  std::function<bool()> check;  ///< prints whether the results are right; empty: nothing to check
+};
+
+uint32_t bits(float value) {
+  uint32_t pattern = 0;
+  std::memcpy(&pattern, &value, 4);
+  return pattern;
+}
+
+/// Numbers of both signs and many magnitudes, the same in every run.
+float sample(uint32_t i) { return static_cast<float>(static_cast<int>(i * 37 % 201) - 100) / static_cast<float>(i % 13 + 3); }
+
+void load_program(Job& job, uint32_t bytes) {
+  job.memory.grow(bytes);
+  for (uint32_t i = 0; i < job.program.code.size(); ++i) {
+    job.memory.store(8 * i, static_cast<uint32_t>(job.program.code[i]));
+    job.memory.store(8 * i + 4, static_cast<uint32_t>(job.program.code[i] >> 32));
+  }
+  job.options.program_length = static_cast<uint32_t>(job.program.code.size());
+}
+
+uint32_t first_data(const Program& program) { return (static_cast<uint32_t>(program.code.size()) * 8 + 63) / 64 * 64; }
+
+/// Compares `expected` with the words from `address` on.
+bool check_results(const Job& job, uint32_t address, const std::vector<float>& expected) {
+  size_t wrong = 0;
+  for (uint32_t i = 0; i < expected.size(); ++i) {
+    const uint32_t got = job.memory.load(address + 4 * i);
+    if (got == bits(expected[i])) continue;
+    if (++wrong <= 5) fmt::print("  result {} is {:08x}; C++ gives {:08x}\n", i, got, bits(expected[i]));
+  }
+  fmt::print("  {} results, {} wrong\n", expected.size(), wrong);
+  return wrong == 0;
+}
+
+void prepare_kernel(Job& job, const RunOptions& options, uint32_t default_n, uint32_t largest_n) {
+  const uint32_t n = options.n == 0 ? default_n : options.n;
+  if (n > largest_n) throw InputError(fmt::format("{} of size {}: the largest is {}", options.kernel, n, largest_n));
+  if (options.blocks != 1 || options.threads != 0 || !options.arguments.empty()) {
+    throw InputError(fmt::format("{} sets its own blocks, threads and arguments: choose its size with --n", options.kernel));
+  }
+  job.title = fmt::format("{}, n = {}", options.kernel, n);
+  job.program = compute_kernel_program();
+  job.options.entry = job.program.entries.at(options.kernel);
+  job.options.threads = static_cast<uint32_t>(job.options.configuration.contents());
+  job.options.arguments[saxpy_argument::kN] = n;
+}
+
+void prepare_saxpy(Job& job, const RunOptions& options) {
+  prepare_kernel(job, options, 1000, 1u << 24);
+  const uint32_t n = job.options.arguments[saxpy_argument::kN];
+  const uint32_t x = first_data(job.program);
+  const uint32_t y = x + 4 * n;
+  const float a = 2.7182817f;
+  load_program(job, y + 4 * n);
+  job.options.blocks = (n + job.options.threads - 1) / job.options.threads;
+  job.options.arguments[saxpy_argument::kA] = bits(a);
+  job.options.arguments[saxpy_argument::kX] = x;
+  job.options.arguments[saxpy_argument::kY] = y;
+  std::vector<float> expected;
+  for (uint32_t i = 0; i < n; ++i) {
+    job.memory.store(x + 4 * i, bits(sample(i)));
+    job.memory.store(y + 4 * i, bits(sample(i + n)));
+    expected.push_back(a * sample(i) + sample(i + n));
+  }
+  job.check = [&job, y, expected] { return check_results(job, y, expected); };
+}
+
+void prepare_matmul(Job& job, const RunOptions& options) {
+  prepare_kernel(job, options, 24, 1024);
+  const uint32_t n = job.options.arguments[matmul_argument::kN];
+  const uint32_t a = first_data(job.program);
+  const uint32_t b = a + 4 * n * n;
+  const uint32_t c = b + 4 * n * n;
+  load_program(job, c + 4 * n * n);
+  job.options.blocks = (n * n + job.options.threads - 1) / job.options.threads;
+  job.options.arguments[matmul_argument::kA] = a;
+  job.options.arguments[matmul_argument::kB] = b;
+  job.options.arguments[matmul_argument::kC] = c;
+  for (uint32_t i = 0; i < n * n; ++i) {
+    job.memory.store(a + 4 * i, bits(sample(i)));
+    job.memory.store(b + 4 * i, bits(sample(i + 7)));
+  }
+  std::vector<float> expected;
+  for (uint32_t row = 0; row < n; ++row) {
+    for (uint32_t column = 0; column < n; ++column) {
+      float sum = 0;
+      for (uint32_t k = 0; k < n; ++k) sum += sample(row * n + k) * sample(k * n + column + 7);
+      expected.push_back(sum);
+    }
+  }
+  job.check = [&job, c, expected] { return check_results(job, c, expected); };
+}
+
+/// An integer, decimal or 0x..., or a float; as a machine word.
+uint32_t parse_argument(const std::string& text) {
+  const bool hexadecimal = text.compare(0, 2, "0x") == 0;
+  const char* const begin = text.data() + (hexadecimal ? 2 : 0);
+  const char* const end = text.data() + text.size();
+  int64_t integer = 0;
+  const auto [stop, error] = std::from_chars(begin, end, integer, hexadecimal ? 16 : 10);
+  if (error == std::errc{} && stop == end && integer >= INT32_MIN && integer <= UINT32_MAX) return static_cast<uint32_t>(integer);
+  float real = 0;
+  const auto [real_stop, real_error] = std::from_chars(begin, end, real);
+  if (!hexadecimal && real_error == std::errc{} && real_stop == end && text.find_first_of(".einf") != std::string::npos)
+    return bits(real);
+  throw InputError(fmt::format("argument '{}' is neither a 32-bit integer (12, -3, 0xff) nor a float (1.5, 2e3)", text));
+}
+
+struct PrintRange {
+  uint32_t address, words;
+};
+
+PrintRange parse_print(const std::string& text) {
+  const size_t colon = text.find(':');
+  if (colon == std::string::npos)
+    throw InputError(fmt::format("--print '{}' is not ADDRESS:WORDS: write for example 0x400:16", text));
+  const PrintRange range{parse_argument(text.substr(0, colon)), parse_argument(text.substr(colon + 1))};
+  if (range.address % 4 != 0) throw InputError(fmt::format("--print '{}': the address must be a multiple of 4", text));
+  return range;
+}
+
+void prepare_assembly(Job& job, const RunOptions& options) {
+  if (!std::filesystem::exists(options.kernel)) {
+    throw InputError(
+        fmt::format("there is no kernel and no file '{}': use saxpy, matmul or the path of an assembly file", options.kernel));
+  }
+  if (options.n != 0) throw InputError("--n is for saxpy and matmul: give an assembly file its size with --arg");
+  if (options.arguments.size() > kArguments)
+    throw InputError(fmt::format("{} arguments: there are {}", options.arguments.size(), kArguments));
+  constexpr uint32_t kLargestMemory = 1u << 30;
+  job.title = options.kernel;
+  job.program = assemble(read_text(options.kernel), options.kernel);
+  const uint64_t code_bytes = 8 * job.program.code.size();
+  if (options.memory_bytes < code_bytes || options.memory_bytes > kLargestMemory) {
+    throw InputError(fmt::format("memory of {} bytes: it must hold the program's {} and at most {}", options.memory_bytes,
+                                 code_bytes, kLargestMemory));
+  }
+  load_program(job, options.memory_bytes);
+  job.options.blocks = options.blocks;
+  job.options.threads = options.threads == 0 ? static_cast<uint32_t>(job.options.configuration.contents()) : options.threads;
+  for (size_t i = 0; i < options.arguments.size(); ++i) job.options.arguments[i] = parse_argument(options.arguments[i]);
+}
+
+void print_words(const Memory& memory, const PrintRange& range) {
+  for (uint32_t i = 0; i < range.words; ++i) {
+    if (i % 8 == 0) fmt::print("{}  {:08x}:", i == 0 ? "" : "\n", range.address + 4 * i);
+    fmt::print(" {:08x}", memory.load(range.address + 4 * i));
+  }
+  if (range.words > 0) fmt::print("\n");
+}
+
+void print_figures(const ProgramResult& result, const Configuration& configuration) {
+  const auto count = [&](int number) { return result.counters[static_cast<size_t>(number)]; };
+  if (result.timed) fmt::print("  {} cycles\n", result.cycles);
+  fmt::print("  {} warp instructions, {} thread instructions\n", count(counter::kInstructions),
+             count(counter::kThreadInstructions));
+  if (!result.timed) return;
+  const auto busy = static_cast<double>(std::max<uint64_t>(1, count(counter::kBusyCycles)));
+  fmt::print("  ALU   utilisation  waiting      tasks\n");
+  for (int i = 0; i < kUnits; ++i) {
+    const double unused =
+        static_cast<double>(count(counter::kUnused + i)) / (busy * configuration.alus[static_cast<size_t>(i)].count);
+    fmt::print("    {} {:>11.1f}% {:>8.2f} {:>10}\n", kUnitNames[static_cast<size_t>(i)], 100 * (1 - unused),
+               static_cast<double>(count(counter::kWaiting + i)) / busy, count(counter::kIssued + i));
+  }
+  fmt::print("  data cache: {} hits, {} misses, {} stores; memory: {} lines read, {} quadwords written\n",
+             count(counter::kDataCacheHits), count(counter::kDataCacheMisses), count(counter::kDataCacheStores),
+             result.memory_reads, result.memory_writes);
+}
+
+}  // namespace
+
+int run_command(const RunOptions& options) {
+  Job job;
+  job.options.configuration = load_configuration(options.config);
+  const Engine engine = parse_engine(options.engine);
+  std::vector<PrintRange> ranges;
+  for (const std::string& text : options.print) ranges.push_back(parse_print(text));
+  if (!options.waves.empty() && engine == Engine::Functional)
+    throw InputError("engine functional has no waveform: use rtl or lockstep");
+  if (options.kernel == "saxpy") {
+    prepare_saxpy(job, options);
+  } else if (options.kernel == "matmul") {
+    prepare_matmul(job, options);
+  } else {
+    prepare_assembly(job, options);
+  }
+
+  const EngineOptions unit_options{engine, job.options.configuration, options.unit_library, !options.waves.empty()};
+  std::unique_ptr<ComputeUnit> unit = make_unit(unit_options, job.memory);
+  std::unique_ptr<OutputFolder> waves;
+  const std::filesystem::path waves_path =
+      options.waves.empty() ? std::filesystem::path() : std::filesystem::absolute(options.waves);
+  if (!options.waves.empty()) {
+    waves = std::make_unique<OutputFolder>(waves_path.parent_path());
+    unit->open_waveform(waves->temporary(waves_path.filename()));
+  }
+  // The waveform is wanted most when something goes wrong.
+  const auto close_waves = [&] {
+    unit.reset();
+    if (waves) waves->publish();
+  };
+
+  job.options.unit = unit.get();
+  job.options.memory = &job.memory;
+  job.options.cycle_limit = options.cycle_limit;
+  ProgramResult result;
+  std::string compared;
+  try {
+    result = run_program(job.options);
+    if (const auto* lockstep = dynamic_cast<const LockstepUnit*>(unit.get())) compared = to_string(lockstep->counts());
+  } catch (const ChipStalled& stalled) {
+    close_waves();
+    throw InputError(stalled.what());
+  } catch (const std::exception&) {
+    close_waves();
+    throw;
+  }
+  close_waves();
+
+  fmt::print("{}: {} on {}, {} blocks of {} threads\n", job.title, options.engine, job.options.configuration.name,
+             job.options.blocks, job.options.threads);
+  const bool right = !job.check || job.check();
+  print_figures(result, job.options.configuration);
+  if (!compared.empty()) fmt::print("  {}\n", compared);
+  for (const PrintRange& range : ranges) print_words(job.memory, range);
+  return right ? 0 : 1;
+}
+
+}  // namespace raypool

@@ -1,0 +1,63 @@
+// `raypool scene` and `raypool hits`
+#include <fmt/format.h>
+
+#include "cli/commands.hpp"
+#include "cli/image_size.hpp"
+#include "scene/hits_check.hpp"
+#include "scene/scene.hpp"
+
+namespace raypool {
+namespace {
+
+std::string text(const Vec3& vector) { return fmt::format("{:g} {:g} {:g}", vector.x, vector.y, vector.z); }
+
+Scene load(const SceneCommandOptions& options) { return load_scene(options.scene, {options.detail, options.view}); }
+
+void print_counts(const char* kind, const HitCounts& counts, const TraversalCounts& visits) {
+  const double rays = counts.rays > 0 ? static_cast<double>(counts.rays) : 1;
+  fmt::print("{:<8} {:>10} {:>10} {:>8} {:>11} {:>13} {:>11.1f} {:>15.1f}\n", kind, counts.rays, counts.agree, counts.ties,
+             counts.ours_wrong, counts.embree_wrong, static_cast<double>(visits.nodes) / rays,
+             static_cast<double>(visits.triangles) / rays);
+}
+
+}  // namespace
+
+int scene_command(const SceneCommandOptions& options) {
+  const Scene scene = load(options);
+  if (!options.write_obj.empty()) write_obj(scene, options.write_obj);
+
+  size_t degenerate = 0;
+  for (size_t i = 0; i < scene.triangles.size(); ++i) degenerate += is_degenerate(scene, i) ? 1 : 0;
+  size_t mirrors = 0;
+  for (const Material& material : scene.materials) {
+    mirrors += material.ks.x > 0 || material.ks.y > 0 || material.ks.z > 0 ? 1 : 0;
+  }
+  const Bounds bounds = scene.bounds();
+  fmt::print("scene      {}\n", scene.name);
+  fmt::print("triangles  {}, of which {} have no area; {} vertices\n", scene.triangles.size(), degenerate, scene.vertices.size());
+  fmt::print("materials  {}, of which {} reflect\n", scene.materials.size(), mirrors);
+  fmt::print("box        {} .. {}\n", text(bounds.lower), text(bounds.upper));
+  fmt::print("camera     eye {}, direction {}, up {}, vertical field of view {:g} degrees\n", text(scene.camera.eye),
+             text(scene.camera.direction), text(scene.camera.up), scene.camera.fov);
+  fmt::print("light      position {}, colour {}\n", text(scene.light.position), text(scene.light.color));
+  return 0;
+}
+
+int hits_command(const SceneCommandOptions& options) {
+  const ImageSize size = parse_image_size(options.size);
+  const Scene scene = load(options);
+  HitsOptions hits;
+  hits.width = size.width;
+  hits.height = size.height;
+  const HitsReport report = compare_with_embree(scene, hits);
+
+  fmt::print("{} at {}x{}, our traversal against Embree's (robust)\n", scene.name, size.width, size.height);
+  fmt::print("rays           count      agree     ties  ours wrong  Embree wrong  nodes a ray  triangles a ray\n");
+  print_counts("primary", report.primary, report.primary_visits);
+  print_counts("shadow", report.shadow, report.shadow_visits);
+  for (const std::string& line : report.explanations) fmt::print("  {}\n", line);
+  fmt::print("tracing, one thread: ours {:.2f} s, Embree {:.2f} s\n", report.our_seconds, report.embree_seconds);
+  return 0;
+}
+
+}  // namespace raypool

@@ -1,0 +1,179 @@
+// `raypool sim`: one frame, from the scene to the files it leaves.
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <thread>
+
+#include "chip/chip.hpp"
+#include "cli/commands.hpp"
+#include "cli/engine.hpp"
+#include "cli/image_size.hpp"
+#include "cli/output_folder.hpp"
+#include "cli/progress.hpp"
+#include "cli/report.hpp"
+#include "lockstep/lockstep_unit.hpp"
+#include "scene/image.hpp"
+#include "scene/native_renderer.hpp"
+#include "scene/scene.hpp"
+#include "scene/traversal.hpp"
+
+namespace raypool {
+namespace {
+
+namespace fs = std::filesystem;
+using Units = std::vector<std::unique_ptr<ComputeUnit>>;
+
+void check(const SimOptions& options, Engine engine) {
+  if (options.depth < 1 || options.depth > kLargestDepth) {
+    throw InputError(fmt::format("depth is {}; it must be from 1 to {}", options.depth, kLargestDepth));
+  }
+  if (options.units != 1 && options.units != 2 && options.units != 4) {
+    throw InputError(fmt::format("compute units are {}; they must be 1, 2 or 4", options.units));
+  }
+  if (options.waves && engine != Engine::Rtl && engine != Engine::Lockstep) {
+    throw InputError(fmt::format("engine {} has no waveform: use rtl or lockstep, or leave waves out", options.engine));
+  }
+}
+
+fs::path default_folder(const SimOptions& options, const Configuration& configuration, const ImageSize& size) {
+  const fs::path executable = fs::read_symlink("/proc/self/exe");
+  return executable.parent_path() / "out" /
+         fmt::format("{}-{}-{}cu-{}x{}-depth{}-{}", fs::path(options.scene).stem().string(), configuration.name, options.units,
+                     size.width, size.height, options.depth, options.engine);
+}
+
+/// "62% of the pixels, ..."; an engine without time has no cycles to tell.
+std::string progress_text(const ChipProgress& done, bool timed, double seconds) {
+  std::string text = fmt::format("  {:3.0f}% of the pixels, {} rays, ", 100 * done.pixels_done, done.rays);
+  if (timed) text += fmt::format("{} cycles, ", done.cycles);
+  text += fmt::format("{:.0f} s", seconds);
+  if (done.pixels_done > 0.02) text += fmt::format(", about {:.0f} s to go", seconds * (1 / done.pixels_done - 1));
+  return text;
+}
+
+/// The chip around `units`, for as long as a frame lasts.
+ChipResult draw_on_chip(const SimOptions& options, const RunRecord& record, const Scene& scene, const Tracer& tracer,
+                        MemoryImage& image, const Units& units, FrameBuffer& frame) {
+  const Program& program = ray_kernel_program();
+  SceneTracer scene_tracer(tracer);
+  FrameBufferSink sink(frame);
+  Progress progress(options.quiet);
+
+  ChipOptions chip;
+  chip.configuration = record.configuration;
+  for (const auto& unit : units) chip.units.push_back(unit.get());
+  chip.memory = &image.memory;
+  chip.program_length = static_cast<uint32_t>(program.code.size());
+  for (size_t i = 0; i < kRayKernels; ++i) chip.entries[i] = program.entries.at(std::string(kRayKernelNames[i]));
+  chip.arguments = camera_arguments(scene, record.width, record.height, record.configuration.contents());
+  chip.width = record.width;
+  chip.height = record.height;
+  chip.depth = record.depth;
+  chip.tracer = &scene_tracer;
+  chip.frame = &sink;
+  chip.traverser = record.traverser;
+  chip.progress = [&](const ChipProgress& done) {
+    if (progress.due()) progress.show(progress_text(done, units.front()->timed(), progress.seconds()));
+  };
+  return run_chip(chip);
+}
+
+std::map<uint32_t, std::string> kernel_names(const Program& program) {
+  std::map<uint32_t, std::string> names;
+  for (const auto& [name, entry] : program.entries) names[entry] = name;
+  return names;
+}
+
+Units make_units(const SimOptions& options, const EngineOptions& engine, Memory& memory, OutputFolder& out) {
+  Units units;
+  for (int i = 0; i < options.units; ++i) {
+    units.push_back(make_unit(engine, memory, fmt::format("unit {}", i), kernel_names(ray_kernel_program())));
+    if (!options.waves) continue;
+    units.back()->open_waveform(out.temporary(options.units == 1 ? "waves.fst" : fmt::format("waves{}.fst", i)));
+  }
+  return units;
+}
+
+std::optional<LockstepCounts> lockstep_counts(const Units& units) {
+  std::optional<LockstepCounts> sum;
+  for (const auto& unit : units) {
+    if (const auto* lockstep = dynamic_cast<const LockstepUnit*>(unit.get())) {
+      if (!sum) sum.emplace();
+      *sum += lockstep->counts();
+    }
+  }
+  return sum;
+}
+
+}  // namespace
+
+int sim_command(const SimOptions& options) {
+  const Progress whole(true);
+  const Engine engine = parse_engine(options.engine);
+  const ImageSize size = parse_image_size(options.size);
+  check(options, engine);
+
+  RunRecord record;
+  record.command = options.command;
+  record.engine = options.engine;
+  record.configuration = load_configuration(options.config);
+  record.width = size.width;
+  record.height = size.height;
+  record.depth = options.depth;
+  record.units = options.units;
+  record.traverser = options.traverser;
+
+  const Scene scene = load_scene(options.scene, {options.detail, options.view});
+  record.scene = scene.name;
+  record.triangles = scene.triangles.size();
+  record.materials = scene.materials.size();
+  MemoryImage image = build_memory(ray_kernel_program(), scene);
+  OutputFolder out(options.out.empty() ? default_folder(options, record.configuration, size) : fs::path(options.out));
+
+  FrameBuffer frame(size.width, size.height);
+  if (engine == Engine::Native) {
+    const Tracer tracer(scene, image.material_base);
+    NativeOptions native;
+    native.width = size.width;
+    native.height = size.height;
+    native.depth = options.depth;
+    native.contents = record.configuration.contents();
+    native.threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+    native.mode = {record.configuration.subnormals, record.configuration.slow_unit};
+    record.native.emplace();
+    const Progress drawing(true);
+    frame = render_native(scene, image, tracer, native, &*record.native);
+    record.simulation_seconds = drawing.seconds();
+  } else {
+    const EngineOptions unit_options{engine, record.configuration, options.unit_library, options.waves};
+    Units units = make_units(options, unit_options, image.memory, out);
+    const Tracer tracer(scene, image.material_base);
+    try {
+      record.chip = draw_on_chip(options, record, scene, tracer, image, units, frame);
+    } catch (const std::exception&) {
+      // The waveform up to here is what one wants to see now.
+      units.clear();
+      if (options.waves) {
+        out.publish();
+        std::fprintf(stderr, "raypool: the waveform until then is in %s\n", out.path("").c_str());
+      }
+      throw;
+    }
+    record.simulation_seconds = record.chip->wall_seconds;
+    record.lockstep = lockstep_counts(units);
+  }
+
+  const std::vector<uint8_t> png = encode_png(frame);
+  out.write("image.png", std::string(png.begin(), png.end()));
+  record.wall_seconds = whole.seconds();
+  out.write("report.json", to_json(record));
+  out.publish();
+  if (!options.quiet) {
+    fmt::print("{}  results     {}: image.png, report.json{}\n", to_table(record),
+               fs::proximate(out.path(".")).lexically_normal().string(), options.waves ? ", waves*.fst" : "");
+  }
+  return 0;
+}
+
+}  // namespace raypool

@@ -1,0 +1,254 @@
+// Comparison with Embree, and the exact judge.
+#include "scene/hits_check.hpp"
+
+#include <embree3/rtcore.h>
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+
+#include "scene/native_renderer.hpp"
+
+namespace raypool {
+namespace {
+
+// Differences and products of three floats fit in 113 bits unless their magnitudes lie far apart, so signs come out exact.
+using Quad = __float128;
+
+/// Nearer to an edge than this share of the triangle is on it, however near and large the triangle is.
+constexpr double kBorder = 1e-6;
+/// Two t this near, relatively, are equal to single precision.
+constexpr double kSameT = 2e-6;
+
+Vector3<Quad> quad(const Vec3& v) { return v.as<Quad>(); }
+
+class EmbreeScene {
+ public:
+  explicit EmbreeScene(const Scene& scene) : device_(rtcNewDevice("threads=1")) {
+    if (device_ == nullptr) throw std::runtime_error("Embree cannot be started; check its installation");
+    scene_ = rtcNewScene(device_);
+    rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_HIGH);
+    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                                 3 * sizeof(float), scene.vertices.size()));
+    for (const Vec3& v : scene.vertices) *vertices++ = v.x, *vertices++ = v.y, *vertices++ = v.z;
+    auto* indices = static_cast<uint32_t*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                                                   3 * sizeof(uint32_t), scene.triangles.size()));
+    for (const auto& triangle : scene.triangles) {
+      for (uint32_t index : triangle) *indices++ = index;
+    }
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene_, geometry);
+    rtcReleaseGeometry(geometry);
+    rtcCommitScene(scene_);
+  }
+  EmbreeScene(const EmbreeScene&) = delete;
+  EmbreeScene& operator=(const EmbreeScene&) = delete;
+  ~EmbreeScene() {
+    rtcReleaseScene(scene_);
+    rtcReleaseDevice(device_);
+  }
+
+  bool nearest(const RayQuery& query, uint32_t& triangle, float& t) const {
+    RTCRayHit hit{};
+    set(hit.ray, query);
+    hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcIntersect1(scene_, &context, &hit);
+    triangle = hit.hit.primID;
+    t = hit.ray.tfar;
+    return hit.hit.geomID != RTC_INVALID_GEOMETRY_ID;
+  }
+
+  bool occluded(const RayQuery& query) const {
+    RTCRay ray{};
+    set(ray, query);
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded1(scene_, &context, &ray);
+    return ray.tfar < 0;
+  }
+
+ private:
+  static void set(RTCRay& ray, const RayQuery& query) {
+    ray.org_x = query.origin.x, ray.org_y = query.origin.y, ray.org_z = query.origin.z;
+    ray.dir_x = query.direction.x, ray.dir_y = query.direction.y, ray.dir_z = query.direction.z;
+    ray.tnear = 0;
+    ray.tfar = query.limit;
+    ray.mask = 0xffffffffu;
+  }
+
+  RTCDevice device_;
+  RTCScene scene_;
+};
+
+std::string describe(const HitAnswer& answer) {
+  return answer.hit ? fmt::format("triangle {} at t {:.9g}", answer.triangle, answer.t) : "no hit";
+}
+
+std::string describe(const ExactHit& exact) {
+  const char* names[] = {"inside", "on the border", "outside", "edge-on or without area"};
+  return fmt::format("{}, t {:.12g}, margin {:.3g}", names[static_cast<int>(exact.passage)], exact.t, exact.margin);
+}
+
+void settle(HitVerdict verdict, const std::string& line, HitCounts& counts, HitsReport& report, size_t max_explanations) {
+  if (verdict == HitVerdict::Tie) {
+    ++counts.ties;
+    return;
+  }
+  ++(verdict == HitVerdict::OursWrong ? counts.ours_wrong : counts.embree_wrong);
+  if (report.explanations.size() < max_explanations) {
+    report.explanations.push_back((verdict == HitVerdict::OursWrong ? "OURS WRONG " : "Embree wrong ") + line);
+  }
+}
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+}  // namespace
+
+HitVerdict judge_hits(const Scene& scene, const RayQuery& ray, const HitAnswer& ours, const HitAnswer& embree,
+                      std::string& reason) {
+  ExactHit exact[2];
+  const HitAnswer* answers[2] = {&ours, &embree};
+  const HitVerdict wrong[2] = {HitVerdict::OursWrong, HitVerdict::EmbreeWrong};
+  for (int i = 0; i < 2; ++i) {
+    if (!answers[i]->hit) continue;
+    exact[i] = exact_hit(scene, answers[i]->triangle, ray);
+    // Where the limits 0 and ray.limit cut is decided to single precision only.
+    const double t = exact[i].t, limit = ray.limit, slack = kSameT * std::max(1.0, std::isfinite(limit) ? limit : t);
+    if (exact[i].passage == Passage::Inside && (t <= slack || t >= limit - slack)) exact[i].passage = Passage::Border;
+    if (t < -slack || t > limit + slack) exact[i].passage = Passage::Outside;
+    reason += fmt::format("; exactly, {} passes triangle {} {}", i == 0 ? "ours" : "Embree's", answers[i]->triangle,
+                          describe(exact[i]));
+  }
+  auto hits = [&](int i) { return answers[i]->hit && exact[i].passage <= Passage::Border; };
+  for (int i = 0; i < 2; ++i) {
+    if (answers[i]->hit && !hits(i)) return wrong[i];
+  }
+  if (ours.hit && embree.hit) {
+    const double gap = std::fabs(exact[0].t - exact[1].t);
+    if (gap <= kSameT * std::max(std::fabs(exact[0].t), std::fabs(exact[1].t))) return HitVerdict::Tie;
+    const int nearer = exact[0].t < exact[1].t ? 0 : 1;
+    // The nearer hit counts when it is a hit beyond doubt; on its border the ray may as well pass by.
+    return exact[nearer].passage == Passage::Inside ? wrong[1 - nearer] : HitVerdict::Tie;
+  }
+  const int hitting = ours.hit ? 0 : 1;
+  return exact[hitting].passage == Passage::Inside ? wrong[1 - hitting] : HitVerdict::Tie;
+}
+
+ExactHit exact_hit(const Scene& scene, uint32_t triangle, const RayQuery& ray) {
+  const Vector3<Quad> origin = quad(ray.origin), direction = quad(ray.direction);
+  const Vector3<Quad> a = quad(scene.corner(triangle, 0)) - origin, b = quad(scene.corner(triangle, 1)) - origin,
+                      c = quad(scene.corner(triangle, 2)) - origin;
+  const Quad u = dot(direction, cross(c, b)), v = dot(direction, cross(a, c)), w = dot(direction, cross(b, a));
+  const Quad sum = u + v + w;
+  ExactHit result;
+  const Vector3<Quad> normal = cross(b - a, c - a);
+  const double normal_length = std::sqrt(static_cast<double>(dot(normal, normal)));
+  const double direction_length = std::sqrt(static_cast<double>(dot(direction, direction)));
+  // Below the resolution of single precision the direction lies in the triangle's plane.
+  if (!(std::fabs(static_cast<double>(sum)) > 1e-12 * normal_length * direction_length)) {
+    result.passage = Passage::Parallel;
+    return result;
+  }
+  result.margin = static_cast<double>(std::min(u / sum, std::min(v / sum, w / sum)));
+  result.t = static_cast<double>(dot(normal, a) / dot(normal, direction));
+  // How far single precision can move the ray, as a share of the triangle: its coordinates' rounding against its smallest height,
+  // seen along the ray.
+  double reach = 0, longest = 0;
+  for (const Vector3<Quad>& corner : {a, b, c}) reach = std::max(reach, std::sqrt(static_cast<double>(dot(corner, corner))));
+  for (const Vector3<Quad>& edge : {b - a, c - b, a - c})
+    longest = std::max(longest, std::sqrt(static_cast<double>(dot(edge, edge))));
+  const double seen_height = std::fabs(static_cast<double>(sum)) / direction_length / longest;
+  const double border = std::max(kBorder, 4 * 0x1p-24 * reach / seen_height);
+  result.passage = result.margin > border ? Passage::Inside : result.margin >= -border ? Passage::Border : Passage::Outside;
+  return result;
+}
+
+HitsReport compare_with_embree(const Scene& scene, const HitsOptions& options) {
+  const auto arguments = camera_arguments(scene, options.width, options.height, 1);
+  MemoryImage image = build_memory({}, scene);
+  const Tracer tracer(scene, image.material_base);
+  const EmbreeScene embree(scene);
+  auto run = [&](RayKernel kernel, NativeThread& thread) {
+    thread.arguments = &arguments;
+    thread.memory = &image.memory;
+    options.kernel ? options.kernel(kernel, thread) : run_native(kernel, thread);
+  };
+
+  // Eye rays, one a tile.
+  std::vector<Ray> rays;
+  for (int y = 0; y < options.height; ++y) {
+    for (int x = 0; x < options.width; ++x) {
+      NativeThread thread;
+      thread.block = static_cast<uint32_t>(x) | static_cast<uint32_t>(y) << 16;
+      run(RayKernel::CastEye, thread);
+      rays.insert(rays.end(), thread.rays.begin(), thread.rays.end());
+    }
+  }
+
+  HitsReport report;
+  std::vector<Ray> shadow_rays;
+  std::vector<HitAnswer> ours(rays.size()), theirs(rays.size());
+  auto start = std::chrono::steady_clock::now();
+  for (size_t i = 0; i < rays.size(); ++i) {
+    Hit hit;
+    ours[i].hit = tracer.traversal().nearest(to_query(rays[i]), hit, &report.primary_visits);
+    ours[i].triangle = hit.triangle;
+    ours[i].t = hit.t;
+  }
+  report.our_seconds += seconds_since(start);
+  start = std::chrono::steady_clock::now();
+  for (size_t i = 0; i < rays.size(); ++i) theirs[i].hit = embree.nearest(to_query(rays[i]), theirs[i].triangle, theirs[i].t);
+  report.embree_seconds += seconds_since(start);
+
+  for (size_t i = 0; i < rays.size(); ++i) {
+    ++report.primary.rays;
+    if (ours[i].hit == theirs[i].hit && (!ours[i].hit || ours[i].triangle == theirs[i].triangle)) {
+      ++report.primary.agree;
+    } else {
+      std::string line = fmt::format("eye ray of pixel ({}, {}): ours {}, Embree {}", rays[i][word::kPixel] & 0xffffu,
+                                     rays[i][word::kPixel] >> 16, describe(ours[i]), describe(theirs[i]));
+      const HitVerdict verdict = judge_hits(scene, to_query(rays[i]), ours[i], theirs[i], line);
+      settle(verdict, line, report.primary, report, options.max_explanations);
+    }
+    NativeThread thread;
+    if (!tracer.trace(rays[i], thread.input)) continue;
+    run(RayKernel::CastSecondaryDirect, thread);
+    shadow_rays.insert(shadow_rays.end(), thread.rays.begin(), thread.rays.end());
+  }
+
+  // A blocked shadow ray names no triangle: where the sides differ, each side's nearest hit within the limit is judged.
+  for (const Ray& ray : shadow_rays) {
+    const RayQuery query = to_query(ray);
+    start = std::chrono::steady_clock::now();
+    HitAnswer our, their;
+    our.hit = tracer.traversal().occluded(query, &report.shadow_visits);
+    report.our_seconds += seconds_since(start);
+    start = std::chrono::steady_clock::now();
+    their.hit = embree.occluded(query);
+    report.embree_seconds += seconds_since(start);
+    ++report.shadow.rays;
+    if (our.hit == their.hit) {
+      ++report.shadow.agree;
+      continue;
+    }
+    Hit hit;
+    if (our.hit && tracer.traversal().nearest(query, hit)) our.triangle = hit.triangle, our.t = hit.t;
+    const bool named = !their.hit || embree.nearest(query, their.triangle, their.t);
+    std::string line = fmt::format("shadow ray of pixel ({}, {}): ours {}, Embree {}", ray[word::kPixel] & 0xffffu,
+                                   ray[word::kPixel] >> 16, describe(our), named ? describe(their) : "blocked by no triangle");
+    // Embree's occlusion query without a hit of its intersection query cannot be judged, nor be right.
+    const HitVerdict verdict = named ? judge_hits(scene, query, our, their, line) : HitVerdict::EmbreeWrong;
+    settle(verdict, line, report.shadow, report, options.max_explanations);
+  }
+  return report;
+}
+
+}  // namespace raypool

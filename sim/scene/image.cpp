@@ -1,0 +1,129 @@
+// Frame buffer, tone and PNG.
+#include "scene/image.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#define STB_IMAGE_WRITE_IMPLEMENTATION
+#define STB_IMAGE_WRITE_STATIC
+#define STBI_WRITE_NO_STDIO
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#include <stb/stb_image_write.h>
+#pragma GCC diagnostic pop
+
+namespace raypool {
+namespace {
+
+uint64_t add_saturating(uint64_t a, uint64_t b) { return a + b < a ? UINT64_MAX : a + b; }
+
+}  // namespace
+
+uint64_t to_fixed(float contribution) {
+  if (!(contribution > 0)) return 0;
+  if (contribution >= 0x1p32f) return UINT64_MAX;
+  // Exact but for the rounding asked for: a float of 2^-8 and more is a whole number of units, and a smaller one plus a half is
+  // exact.
+  const double units = static_cast<double>(contribution) * 0x1p32;
+  return static_cast<uint64_t>(units < 0x1p40 ? units + 0.5 : units);
+}
+
+FrameBuffer::FrameBuffer(int width, int height) : width_(width), height_(height) {
+  if (width < 1 || width > 65535 || height < 1 || height > 65535) {
+    throw InputError(fmt::format("image size {} x {}: width and height must lie in 1 .. 65535 pixels", width, height));
+  }
+  accumulators_.assign(3 * static_cast<size_t>(width) * static_cast<size_t>(height), 0);
+}
+
+bool FrameBuffer::add(const FrameContribution& contribution) {
+  const int x = static_cast<int>(contribution.pixel & 0xffffu), y = static_cast<int>(contribution.pixel >> 16);
+  if (x >= width_ || y >= height_) return false;
+  for (size_t channel = 0; channel < 3; ++channel) {
+    float value = 0;
+    std::memcpy(&value, &contribution.rgb[channel], sizeof value);
+    uint64_t& accumulator = accumulators_[index(x, y) + channel];
+    accumulator = add_saturating(accumulator, to_fixed(value));
+  }
+  return true;
+}
+
+void FrameBuffer::add(const FrameBuffer& other) {
+  if (width_ != other.width_ || height_ != other.height_) throw InputError("frame buffers of different size cannot be added");
+  for (size_t i = 0; i < accumulators_.size(); ++i) accumulators_[i] = add_saturating(accumulators_[i], other.accumulators_[i]);
+}
+
+uint8_t to_srgb8(double linear) {
+  if (!(linear > 0)) return 0;
+  if (linear >= 1) return 255;
+  const double encoded = linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+  return static_cast<uint8_t>(encoded * 255 + 0.5);
+}
+
+std::vector<uint8_t> to_rgb8(const FrameBuffer& frame) {
+  std::vector<uint8_t> bytes;
+  bytes.reserve(3 * static_cast<size_t>(frame.width()) * static_cast<size_t>(frame.height()));
+  for (int y = 0; y < frame.height(); ++y) {
+    for (int x = 0; x < frame.width(); ++x) {
+      for (int channel = 0; channel < 3; ++channel) bytes.push_back(to_srgb8(frame.linear(x, y, channel)));
+    }
+  }
+  return bytes;
+}
+
+std::vector<uint8_t> encode_png(const FrameBuffer& frame) {
+  const std::vector<uint8_t> rgb = to_rgb8(frame);
+  std::vector<uint8_t> png;
+  auto append = [](void* context, void* data, int size) {
+    const auto* bytes = static_cast<const uint8_t*>(data);
+    auto* out = static_cast<std::vector<uint8_t>*>(context);
+    out->insert(out->end(), bytes, bytes + size);
+  };
+  if (stbi_write_png_to_func(append, &png, frame.width(), frame.height(), 3, rgb.data(), 3 * frame.width()) == 0) {
+    throw std::runtime_error("the picture could not be encoded as PNG");
+  }
+  return png;
+}
+
+void write_png(const FrameBuffer& frame, const std::string& path) {
+  const std::vector<uint8_t> png = encode_png(frame);
+  const std::string temporary = fmt::format("{}.{}.part", path, static_cast<long>(getpid()));
+  std::ofstream file(temporary, std::ios::binary);
+  file.write(reinterpret_cast<const char*>(png.data()), static_cast<std::streamsize>(png.size()));
+  file.close();
+  std::error_code error;
+  if (file) std::filesystem::rename(temporary, path, error);
+  if (!file || error) {
+    std::error_code ignored;
+    std::filesystem::remove(temporary, ignored);
+    throw InputError(path + ": the picture cannot be written; check that its folder exists, is writable and has space");
+  }
+}
+
+ImageDifference compare(const FrameBuffer& a, const FrameBuffer& b) {
+  if (a.width() != b.width() || a.height() != b.height()) throw InputError("pictures of different size cannot be compared");
+  ImageDifference result;
+  for (int y = 0; y < a.height(); ++y) {
+    for (int x = 0; x < a.width(); ++x) {
+      bool differs = false;
+      for (int channel = 0; channel < 3; ++channel) differs |= a.raw(x, y, channel) != b.raw(x, y, channel);
+      result.pixels += differs;
+    }
+  }
+  const std::vector<uint8_t> pa = to_rgb8(a), pb = to_rgb8(b);
+  double squares = 0;
+  for (size_t i = 0; i < pa.size(); ++i) {
+    const int difference = std::abs(static_cast<int>(pa[i]) - static_cast<int>(pb[i]));
+    result.largest = std::max(result.largest, difference);
+    squares += static_cast<double>(difference) * difference;
+  }
+  result.psnr = squares == 0 ? INFINITY : 10 * std::log10(255.0 * 255.0 * static_cast<double>(pa.size()) / squares);
+  return result;
+}
+
+}  // namespace raypool

@@ -1,0 +1,68 @@
+// The frame buffer, whose content does not depend on the order of contributions, and the way from it to a PNG file.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "machine/compute_unit.hpp"
+
+namespace raypool {
+
+/// A contribution as the frame buffer adds it: unsigned fixed point, unit 2^-32. NaN and everything not above zero give 0; the
+/// rest is rounded to the nearest unit, halves up; values of 2^32 and more, and infinity, give the largest number.
+uint64_t to_fixed(float contribution);
+
+/// Width x height pixels of three 64-bit accumulators that saturate. Addition of non-negative numbers that saturates is
+/// associative and commutative, so the picture depends on the set of contributions only.
+class FrameBuffer {
+ public:
+  /// Throws InputError unless both lie in 1 .. 65535.
+  FrameBuffer(int width, int height);
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+
+  /// x to the right, y downwards, both from 0. Returns false, and adds nothing, when the pixel lies outside.
+  bool add(const FrameContribution& contribution);
+  /// Adds another frame buffer of the same size.
+  void add(const FrameBuffer& other);
+
+  /// Channel 0 .. 2, in units of 2^-32.
+  uint64_t raw(int x, int y, int channel) const { return accumulators_[index(x, y) + static_cast<size_t>(channel)]; }
+  double linear(int x, int y, int channel) const { return static_cast<double>(raw(x, y, channel)) * 0x1p-32; }
+
+  bool operator==(const FrameBuffer& other) const {
+    return width_ == other.width_ && height_ == other.height_ && accumulators_ == other.accumulators_;
+  }
+
+ private:
+  size_t index(int x, int y) const { return 3 * (static_cast<size_t>(y) * static_cast<size_t>(width_) + static_cast<size_t>(x)); }
+
+  int width_, height_;
+  std::vector<uint64_t> accumulators_;
+};
+
+/// 8 bits of a linear value: clamped to 0 .. 1, the sRGB transfer function (IEC 61966-2-1), times 255, rounded.
+uint8_t to_srgb8(double linear);
+
+/// Rows from the top, 3 bytes a pixel.
+std::vector<uint8_t> to_rgb8(const FrameBuffer& frame);
+
+/// The PNG file's bytes: 8 bits a channel, the same for the same frame buffer.
+std::vector<uint8_t> encode_png(const FrameBuffer& frame);
+
+/// Writes beside `path` and renames, so that a PNG under this name is always complete. Throws InputError when that cannot be
+/// done.
+void write_png(const FrameBuffer& frame, const std::string& path);
+
+struct ImageDifference {
+  uint64_t pixels = 0;  ///< that differ in any accumulator
+  double psnr = 0;      ///< of the 8-bit pictures, dB; infinity when they are equal
+  int largest = 0;      ///< largest 8-bit difference
+};
+/// Throws InputError when the sizes differ.
+ImageDifference compare(const FrameBuffer& a, const FrameBuffer& b);
+
+}  // namespace raypool

@@ -1,0 +1,223 @@
+// Start of a frame, and the native engine.
+#include "scene/native_renderer.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstring>
+#include <exception>
+#include <thread>
+
+namespace raypool {
+namespace {
+
+uint32_t as_bits(float value) {
+  uint32_t bits = 0;
+  std::memcpy(&bits, &value, sizeof bits);
+  return bits;
+}
+
+void require_range(const char* what, int value, int low, int high) {
+  if (value < low || value > high) throw InputError(fmt::format("{} is {}; it must lie in {} .. {}", what, value, low, high));
+}
+
+void add(TraversalCounts& sum, const TraversalCounts& part) {
+  sum.nodes += part.nodes;
+  sum.blocks += part.blocks;
+  sum.triangles += part.triangles;
+}
+
+void add(NativeStatistics& sum, const NativeStatistics& part) {
+  sum.eye_rays += part.eye_rays;
+  sum.reflection_rays += part.reflection_rays;
+  sum.shadow_rays += part.shadow_rays;
+  sum.missed_rays += part.missed_rays;
+  sum.blocked_rays += part.blocked_rays;
+  sum.dropped_rays += part.dropped_rays;
+  sum.contributions += part.contributions;
+  for (size_t i = 0; i < kRayKernels; ++i) sum.kernel_threads[i] += part.kernel_threads[i];
+  add(sum.normal_visits, part.normal_visits);
+  add(sum.shadow_visits, part.shadow_visits);
+}
+
+/// One worker: its own picture and counts.
+class Worker {
+ public:
+  Worker(const std::array<uint32_t, kArguments>& arguments, Memory& memory, const Tracer& tracer, const NativeOptions& options)
+      : frame(options.width, options.height), tracer_(tracer), options_(options) {
+    thread_.arguments = &arguments;
+    thread_.memory = &memory;
+    thread_.mode = options.mode;
+  }
+
+  void render_tile(int x, int y) {
+    for (int i = 0; i < options_.contents; ++i) {
+      thread_.thread = static_cast<uint32_t>(i);
+      thread_.threads = static_cast<uint32_t>(options_.contents);
+      thread_.block = static_cast<uint32_t>(x) | static_cast<uint32_t>(y) << 16;
+      run(RayKernel::CastEye);
+      while (!pending_.empty()) {
+        const Ray ray = pending_.back();
+        pending_.pop_back();
+        follow(ray);
+      }
+    }
+  }
+
+  FrameBuffer frame;
+  NativeStatistics statistics;
+
+ private:
+  void run(RayKernel kernel) {
+    thread_.rays.clear();
+    thread_.frame.clear();
+    if (options_.kernel) {
+      options_.kernel(kernel, thread_);
+    } else {
+      run_native(kernel, thread_);
+    }
+    ++statistics.kernel_threads[static_cast<size_t>(kernel)];
+    pending_.insert(pending_.end(), thread_.rays.begin(), thread_.rays.end());
+    for (const FrameContribution& contribution : thread_.frame) statistics.contributions += frame.add(contribution);
+  }
+
+  void follow(const Ray& ray) {
+    const bool shadow = (ray[word::kFlags] & kShadowFlag) != 0;
+    const uint32_t depth = ray[word::kFlags] & kDepthMask;
+    if (!shadow && depth > static_cast<uint32_t>(options_.depth)) {
+      ++statistics.dropped_rays;
+      return;
+    }
+    ++(shadow ? statistics.shadow_rays : depth == 1 ? statistics.eye_rays : statistics.reflection_rays);
+    thread_.thread = 0;
+    thread_.threads = 1;
+    thread_.block = 0;
+    if (!tracer_.trace(ray, thread_.input, shadow ? &statistics.shadow_visits : &statistics.normal_visits)) {
+      ++(shadow ? statistics.blocked_rays : statistics.missed_rays);
+      return;
+    }
+    run(shadow ? RayKernel::Shade : options_.depth == 1 ? RayKernel::CastSecondaryDirect : RayKernel::CastSecondary);
+  }
+
+  const Tracer& tracer_;
+  const NativeOptions& options_;
+  NativeThread thread_;
+  std::vector<Ray> pending_;
+};
+
+float offset(const Scene& scene) {
+  const Bounds bounds = scene.bounds();
+  double largest = 0;
+  for (const Vec3& point : {bounds.lower, bounds.upper, scene.camera.eye}) {
+    for (int axis = 0; axis < 3; ++axis) largest = std::max(largest, std::fabs(static_cast<double>(point[axis])));
+  }
+  return static_cast<float>(std::max(kOffsetShare * static_cast<double>(bounds.diagonal()), kLeastOffset * largest));
+}
+
+}  // namespace
+
+MemoryImage build_memory(const Program& program, const Scene& scene) {
+  auto round_up = [](uint64_t bytes) { return (bytes + 63) / 64 * 64; };
+  const uint64_t base = round_up(8 * static_cast<uint64_t>(program.code.size()));
+  const uint64_t size = round_up(base + kMaterialBytes * static_cast<uint64_t>(scene.materials.size()));
+  if (size > UINT32_MAX)
+    throw InputError(fmt::format("{}: {} materials do not fit in the memory", scene.name, scene.materials.size()));
+  MemoryImage image{Memory(static_cast<uint32_t>(size)), static_cast<uint32_t>(base)};
+  for (uint32_t i = 0; i < program.code.size(); ++i) {
+    image.memory.store(8 * i, static_cast<uint32_t>(program.code[i]));
+    image.memory.store(8 * i + 4, static_cast<uint32_t>(program.code[i] >> 32));
+  }
+  for (uint32_t i = 0; i < scene.materials.size(); ++i) {
+    const uint32_t record = image.material_base + i * kMaterialBytes;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto offset = static_cast<uint32_t>(4 * axis);
+      image.memory.store(record + kMaterialDiffuse + offset, as_bits(scene.materials[i].kd[axis]));
+      image.memory.store(record + kMaterialReflectance + offset, as_bits(scene.materials[i].ks[axis]));
+    }
+  }
+  return image;
+}
+
+int tile_width_log2(int contents) {
+  int log2 = 0;
+  while ((1 << log2) < contents) ++log2;
+  return (log2 + 1) / 2;
+}
+
+std::array<uint32_t, kArguments> camera_arguments(const Scene& scene, int width, int height, int contents) {
+  require_range("image width", width, 1, 65535);
+  require_range("image height", height, 1, 65535);
+  std::array<uint32_t, kArguments> arguments{};
+  auto put = [&](int first, const Vec3d& v) {
+    const Vec3 f = v.as<float>();
+    for (int axis = 0; axis < 3; ++axis) arguments[static_cast<size_t>(first + axis)] = as_bits(f[axis]);
+  };
+  const Vec3d forward = normalized(scene.camera.direction.as<double>());
+  const Vec3d right = normalized(cross(forward, scene.camera.up.as<double>()));
+  const Vec3d up = cross(right, forward);
+  const double pi = 3.14159265358979323846;
+  const double half_height = std::tan(static_cast<double>(scene.camera.fov) * 0.5 * pi / 180);
+  const double pixel = 2 * half_height / height;  // pixels are square
+  const Vec3d step_x = right * pixel, step_y = up * -pixel;
+  put(argument::kEye, scene.camera.eye.as<double>());
+  put(argument::kCorner, forward + step_x * (0.5 * (1 - width)) + step_y * (0.5 * (1 - height)));
+  put(argument::kStepX, step_x);
+  put(argument::kStepY, step_y);
+  put(argument::kLight, scene.light.position.as<double>());
+  put(argument::kLightColor, scene.light.color.as<double>());
+  arguments[argument::kOffset] = as_bits(offset(scene));
+  const int log2 = tile_width_log2(contents);
+  arguments[argument::kTileWidthLog2] = static_cast<uint32_t>(log2);
+  arguments[argument::kTileMask] = (1u << log2) - 1;
+  arguments[argument::kWidth] = static_cast<uint32_t>(width);
+  arguments[argument::kHeight] = static_cast<uint32_t>(height);
+  return arguments;
+}
+
+FrameBuffer render_native(const Scene& scene, const MemoryImage& image, const Tracer& tracer, const NativeOptions& options,
+                          NativeStatistics* statistics) {
+  require_range("depth", options.depth, 1, kLargestDepth);
+  require_range("threads", options.threads, 1, 256);
+  require_range("contents", options.contents, 1, 1024);
+  if ((options.contents & (options.contents - 1)) != 0) {
+    throw InputError(fmt::format("contents is {}; it must be a power of two", options.contents));
+  }
+  const auto arguments = camera_arguments(scene, options.width, options.height, options.contents);
+  const int tile_width = 1 << tile_width_log2(options.contents), tile_height = options.contents / tile_width;
+  Memory memory = image.memory;
+
+  // Rows of tiles are handed out one at a time. Who gets which does not matter: pictures and counts are sums.
+  const auto workers_count = static_cast<size_t>(options.threads);
+  std::vector<Worker> workers(workers_count, Worker(arguments, memory, tracer, options));
+  std::vector<std::exception_ptr> errors(workers_count);
+  std::atomic<int> next_row{0};
+  auto work = [&](size_t index) {
+    try {
+      for (int y = tile_height * next_row++; y < options.height; y = tile_height * next_row++) {
+        for (int x = 0; x < options.width; x += tile_width) workers[index].render_tile(x, y);
+      }
+    } catch (...) {
+      errors[index] = std::current_exception();
+    }
+  };
+  std::vector<std::thread> threads;
+  for (size_t i = 1; i < workers_count; ++i) threads.emplace_back(work, i);
+  work(0);
+  for (std::thread& thread : threads) thread.join();
+  for (const std::exception_ptr& error : errors) {
+    if (error) std::rethrow_exception(error);
+  }
+
+  FrameBuffer frame = std::move(workers[0].frame);
+  NativeStatistics sum = workers[0].statistics;
+  for (size_t i = 1; i < workers_count; ++i) {
+    frame.add(workers[i].frame);
+    add(sum, workers[i].statistics);
+  }
+  if (statistics != nullptr) *statistics = sum;
+  return frame;
+}
+
+}  // namespace raypool

@@ -1,0 +1,65 @@
+// Engine `native`: the kernels as C++, every pixel in turn, no machine and no time. Also what all engines need to start a frame:
+// the memory image and the kernel arguments.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+
+#include "kernel/kernels.hpp"
+#include "machine/memory.hpp"
+#include "scene/image.hpp"
+#include "scene/scene.hpp"
+#include "scene/traversal.hpp"
+
+namespace raypool {
+
+/// Program at address 0, material records from material_base on (a multiple of 64), size a multiple of 64.
+struct MemoryImage {
+  Memory memory;
+  uint32_t material_base = 0;
+};
+/// Throws InputError when it would not fit in 32-bit addresses.
+MemoryImage build_memory(const Program& program, const Scene& scene);
+
+/// log2 of an eye tile's width for `contents` threads (a power of two): tiles are square or twice as wide as high.
+int tile_width_log2(int contents);
+
+/// A secondary ray's origin leaves its surface by this share of the diagonal of the scene's bounding box (docs/scenes.md has the
+/// measurement), but by no less than this share of the largest coordinate of box and eye: eight of its units in the last place.
+inline constexpr double kOffsetShare = 1e-5;
+inline constexpr double kLeastOffset = 1e-6;
+
+/// The kernel arguments of a frame (namespace argument). Throws InputError unless width and height lie in 1 .. 65535.
+std::array<uint32_t, kArguments> camera_arguments(const Scene& scene, int width, int height, int contents);
+
+/// A package's depth has 8 bits, and a reflection of the last depth must still be seen as beyond it.
+inline constexpr int kLargestDepth = 254;
+
+struct NativeOptions {
+  int width = 512, height = 512;
+  int depth = 1;      ///< 1 .. kLargestDepth; 1: eye and shadow rays only; d: up to d - 1 reflections
+  int contents = 64;  ///< size of an eye tile in pixels, a power of two; changes no picture
+  int threads = 1;    ///< changes no picture and no count
+  arith::Mode mode;
+  std::function<void(RayKernel, NativeThread&)> kernel;  ///< run_native when empty
+};
+
+struct NativeStatistics {
+  uint64_t eye_rays = 0, reflection_rays = 0, shadow_rays = 0;  ///< traced
+  uint64_t missed_rays = 0;                                     ///< normal rays that hit nothing
+  uint64_t blocked_rays = 0;                                    ///< shadow rays that were blocked
+  uint64_t dropped_rays = 0;                                    ///< normal rays beyond the depth limit, not traced
+  uint64_t contributions = 0;                                   ///< added to the frame buffer
+  std::array<uint64_t, kRayKernels> kernel_threads{};           ///< threads run of each kernel
+  TraversalCounts normal_visits, shadow_visits;
+
+  uint64_t rays() const { return eye_rays + reflection_rays + shadow_rays; }
+};
+
+/// `tracer` must have been made from `scene` with the material_base of build_memory(ray_kernel_program(), scene). Throws
+/// InputError when an option is out of its range.
+FrameBuffer render_native(const Scene& scene, const MemoryImage& image, const Tracer& tracer, const NativeOptions& options,
+                          NativeStatistics* statistics = nullptr);
+
+}  // namespace raypool

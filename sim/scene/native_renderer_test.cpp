@@ -1,0 +1,192 @@
+#include "scene/native_renderer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "scene/mesh_builder.hpp"
+#include "scene/reference_kernels.hpp"
+
+namespace raypool {
+namespace {
+
+using reference::as_float;
+using reference::read3;
+
+struct Rendered {
+  FrameBuffer frame;
+  NativeStatistics statistics;
+};
+
+Rendered render(const Scene& scene, NativeOptions options) {
+  options.kernel = reference::run;
+  const MemoryImage image = build_memory({}, scene);
+  const Tracer tracer(scene, image.material_base);
+  NativeStatistics statistics;
+  FrameBuffer frame = render_native(scene, image, tracer, options, &statistics);
+  return {std::move(frame), statistics};
+}
+
+NativeOptions size(int width, int height, int depth) {
+  NativeOptions options;
+  options.width = width;
+  options.height = height;
+  options.depth = depth;
+  return options;
+}
+
+TEST(MemoryImage, HoldsProgramAndAlignedMaterials) {
+  const Scene scene = make_room(0.02);
+  Program program;
+  for (uint64_t i = 0; i < 11; ++i) program.code.push_back(i << 32 | (100 + i));
+  const MemoryImage image = build_memory(program, scene);
+  EXPECT_EQ(image.material_base, 128u);
+  EXPECT_EQ(image.memory.size() % 64, 0u);
+  EXPECT_EQ(image.memory.size(), 128u + 36 * 32);
+  EXPECT_EQ(image.memory.load(8 * 10), 110u);
+  EXPECT_EQ(image.memory.load(8 * 10 + 4), 10u);
+  for (uint32_t i = 0; i < 36; ++i) {
+    const uint32_t record = 128 + 32 * i;
+    EXPECT_EQ(reference::load3(image.memory, record), scene.materials[i].kd);
+    EXPECT_EQ(image.memory.load(record + 12), 0u);
+    EXPECT_EQ(reference::load3(image.memory, record + 16), scene.materials[i].ks);
+    EXPECT_EQ(image.memory.load(record + 28), 0u);
+  }
+}
+
+TEST(CameraArguments, SpanTheFieldOfView) {
+  Scene scene = make_cornell(0.05);
+  scene.camera = {{1, 2, 3}, {0, 0, -5}, {0, 1, 0}, 90};
+  const auto a = camera_arguments(scene, 200, 100, 32);
+  auto direction = [&](float x, float y) {
+    return read3(a, argument::kCorner) + read3(a, argument::kStepX) * x + read3(a, argument::kStepY) * y;
+  };
+  EXPECT_EQ(read3(a, argument::kEye), (Vec3{1, 2, 3}));
+  // The outer edges of the picture lie at 45 degrees up and down; x to the right, y downwards.
+  const Vec3 top_left = direction(-0.5f, -0.5f), bottom_right = direction(199.5f, 99.5f);
+  EXPECT_NEAR(top_left.x / -top_left.z, -2, 1e-5);
+  EXPECT_NEAR(top_left.y / -top_left.z, 1, 1e-5);
+  EXPECT_NEAR(bottom_right.x / -bottom_right.z, 2, 1e-5);
+  EXPECT_NEAR(bottom_right.y / -bottom_right.z, -1, 1e-5);
+  EXPECT_EQ(a[argument::kTileWidthLog2], 3u);
+  EXPECT_EQ(a[argument::kTileMask], 7u);
+  EXPECT_EQ(a[argument::kWidth], 200u);
+  EXPECT_EQ(a[argument::kHeight], 100u);
+  EXPECT_NEAR(as_float(a[argument::kOffset]), 1e-5f * scene.bounds().diagonal(), 1e-9);
+  scene.camera.eye.x = 5000;
+  EXPECT_NEAR(as_float(camera_arguments(scene, 200, 100, 32)[argument::kOffset]), 5e-3, 1e-8);
+  EXPECT_THROW(camera_arguments(scene, 0, 10, 64), InputError);
+  EXPECT_THROW(camera_arguments(scene, 10, 65536, 64), InputError);
+}
+
+TEST(TileWidth, IsHalfTheContentsRoundedUp) {
+  const int expected[][2] = {{1, 0}, {2, 1}, {4, 1}, {8, 2}, {16, 2}, {32, 3}, {64, 3}, {128, 4}, {1024, 5}};
+  for (const auto& pair : expected) EXPECT_EQ(tile_width_log2(pair[0]), pair[1]) << pair[0];
+}
+
+TEST(NativeRenderer, PictureDoesNotDependOnThreadsOrTiles) {
+  const Scene scene = make_cornell(0.2);
+  NativeOptions options = size(61, 43, 4);
+  const Rendered one = render(scene, options);
+  for (int threads : {2, 5}) {
+    for (int contents : {1, 32, 1024}) {
+      options.threads = threads;
+      options.contents = contents;
+      const Rendered other = render(scene, options);
+      EXPECT_TRUE(other.frame == one.frame) << threads << " threads, " << contents << " contents";
+      EXPECT_EQ(other.statistics.rays(), one.statistics.rays());
+      EXPECT_EQ(other.statistics.normal_visits.nodes, one.statistics.normal_visits.nodes);
+    }
+  }
+}
+
+TEST(NativeRenderer, CountsRaysByKindAndDepth) {
+  // All materials reflect and the room is closed: every normal ray up to the depth is traced, one more is dropped.
+  const Scene scene = make_room(0.02);
+  const uint64_t pixels = 40 * 30;
+  for (int depth : {1, 2, 4}) {
+    const NativeStatistics s = render(scene, size(40, 30, depth)).statistics;
+    EXPECT_EQ(s.eye_rays, pixels);
+    EXPECT_EQ(s.reflection_rays, pixels * static_cast<uint64_t>(depth - 1));
+    EXPECT_EQ(s.dropped_rays, depth == 1 ? 0 : pixels);
+    EXPECT_EQ(s.missed_rays, 0u);
+    EXPECT_GT(s.shadow_rays, pixels / 2);
+    EXPECT_EQ(s.contributions, s.shadow_rays - s.blocked_rays);
+    const auto direct = static_cast<size_t>(RayKernel::CastSecondaryDirect),
+               reflecting = static_cast<size_t>(RayKernel::CastSecondary);
+    EXPECT_EQ(s.kernel_threads[direct], depth == 1 ? pixels : 0);
+    EXPECT_EQ(s.kernel_threads[reflecting], depth == 1 ? 0 : pixels * static_cast<uint64_t>(depth));
+    EXPECT_GT(s.normal_visits.nodes, pixels);
+  }
+}
+
+TEST(NativeRenderer, ColoursAreLambertTimesLight) {
+  // One large floor seen from above: pixel = Kd * colour * cosine.
+  Scene scene;
+  MeshBuilder mesh(scene, 1);
+  mesh.add_material("floor", {0.25f, 0.5f, 1}, {});
+  mesh.quad({-50, 0, 50}, {50, 0, 50}, {50, 0, -50}, {-50, 0, -50});
+  scene.camera = {{0, 10, 0}, {0, -1, 0}, {0, 0, -1}, 60};
+  scene.light = {{3, 4, 0}, {1, 1, 0.5f}};
+  const Rendered result = render(scene, size(1, 1, 1));
+  // The offset raises the point towards the light a little.
+  EXPECT_NEAR(result.frame.linear(0, 0, 0), 0.25 * 0.8, 1e-3);
+  EXPECT_NEAR(result.frame.linear(0, 0, 1), 0.5 * 0.8, 1e-3);
+  EXPECT_NEAR(result.frame.linear(0, 0, 2), 0.5 * 0.8, 1e-3);
+}
+
+TEST(NativeRenderer, OffsetKeepsSurfacesFreeOfTheirOwnShadow) {
+  // Nothing but a ball in a room's light: no point of it that faces the light may be in shadow.
+  Scene scene;
+  MeshBuilder mesh(scene, 1);
+  mesh.add_material("ball", {1, 1, 1}, {});
+  mesh.sphere({200, 100, -300}, 2, 200);
+  const View view = automatic_view(scene);
+  scene.camera = view.camera;
+  scene.light = view.light;
+  const NativeStatistics s = render(scene, size(160, 160, 1)).statistics;
+  EXPECT_GT(s.shadow_rays, 4000u);
+  EXPECT_LT(static_cast<double>(s.blocked_rays), 0.002 * static_cast<double>(s.shadow_rays));
+}
+
+TEST(NativeRenderer, KernelsDrawWhatTheirFormulasSay) {
+  const Scene scene = make_room(0.02);
+  const MemoryImage image = build_memory(ray_kernel_program(), scene);
+  const Tracer tracer(scene, image.material_base);
+  for (int depth : {1, 3}) {
+    NativeOptions options = size(64, 48, depth);
+    NativeStatistics statistics;
+    const FrameBuffer kernels = render_native(scene, image, tracer, options, &statistics);
+    const FrameBuffer formulas = render(scene, options).frame;
+    // Rounding differs, and with it a few hits at the edge of something.
+    EXPECT_GT(compare(kernels, formulas).psnr, 30) << "depth " << depth;
+    EXPECT_EQ(statistics.eye_rays, 64u * 48);
+    EXPECT_EQ(statistics.reflection_rays, 64u * 48 * static_cast<uint64_t>(depth - 1));
+    EXPECT_EQ(statistics.shadow_rays, 64u * 48 * static_cast<uint64_t>(depth)) << "one for each hit";
+  }
+}
+
+TEST(NativeRenderer, RefusesOptionsOutOfRange) {
+  const Scene scene = make_cornell(0.05);
+  EXPECT_THROW(render(scene, size(10, 10, 0)), InputError);
+  EXPECT_THROW(render(scene, size(10, 10, 255)), InputError);
+  NativeOptions options = size(10, 10, 1);
+  options.contents = 48;
+  EXPECT_THROW(render(scene, options), InputError);
+  options.contents = 64;
+  options.threads = 0;
+  EXPECT_THROW(render(scene, options), InputError);
+}
+
+TEST(NativeRenderer, ErrorOfAKernelReachesTheCaller) {
+  const Scene scene = make_cornell(0.05);
+  const MemoryImage image = build_memory({}, scene);
+  const Tracer tracer(scene, image.material_base);
+  NativeOptions options = size(64, 64, 1);
+  options.threads = 2;
+  options.kernel = [](RayKernel, NativeThread&) { throw std::runtime_error("kernel"); };
+  EXPECT_THROW(render_native(scene, image, tracer, options), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace raypool

@@ -1,0 +1,118 @@
+// Scene checks and the choice between built-in scenes and files.
+#include "scene/scene.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace raypool {
+namespace {
+
+bool usable(const Vec3& v) {
+  // A NaN fails every comparison.
+  return std::fabs(v.x) <= kLargestCoordinate && std::fabs(v.y) <= kLargestCoordinate && std::fabs(v.z) <= kLargestCoordinate;
+}
+
+std::string text(const Vec3& v) { return fmt::format("({}, {}, {})", v.x, v.y, v.z); }
+
+void require_usable(const Vec3& v, const std::string& where, const char* what) {
+  if (!usable(v)) {
+    throw InputError(fmt::format("{}: {} is {}; each component must be a number of at most {:g} in magnitude", where, what,
+                                 text(v), kLargestCoordinate));
+  }
+}
+
+void require_colour(const Vec3& v, const std::string& where, const std::string& what) {
+  const bool good = v.x >= 0 && v.y >= 0 && v.z >= 0 && v.x <= 1000 && v.y <= 1000 && v.z <= 1000;
+  if (!good) throw InputError(fmt::format("{}: {} is {}; each component must lie in 0 .. 1000", where, what, text(v)));
+}
+
+}  // namespace
+
+Bounds Scene::bounds() const {
+  if (triangles.empty()) return {};
+  const float infinity = INFINITY;
+  Bounds result{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
+  for (const auto& triangle : triangles) {
+    for (uint32_t index : triangle) {
+      for (int axis = 0; axis < 3; ++axis) {
+        result.lower[axis] = std::min(result.lower[axis], vertices[index][axis]);
+        result.upper[axis] = std::max(result.upper[axis], vertices[index][axis]);
+      }
+    }
+  }
+  return result;
+}
+
+bool is_degenerate(const Scene& scene, size_t triangle) {
+  const Vec3d a = scene.corner(triangle, 0).as<double>();
+  const Vec3d normal = cross(scene.corner(triangle, 1).as<double>() - a, scene.corner(triangle, 2).as<double>() - a);
+  return !(dot(normal, normal) > 0);
+}
+
+void check_scene(const Scene& scene, const std::string& where) {
+  if (scene.triangles.empty()) throw InputError(where + ": the scene has no triangles; give it at least one face");
+  if (scene.triangle_materials.size() != scene.triangles.size()) {
+    throw InputError(fmt::format("{}: {} triangles but {} material indices; give each triangle one", where,
+                                 scene.triangles.size(), scene.triangle_materials.size()));
+  }
+  for (size_t i = 0; i < scene.vertices.size(); ++i) {
+    if (!usable(scene.vertices[i])) require_usable(scene.vertices[i], where, fmt::format("vertex {}", i).c_str());
+  }
+  for (size_t i = 0; i < scene.triangles.size(); ++i) {
+    for (uint32_t index : scene.triangles[i]) {
+      if (index >= scene.vertices.size()) {
+        throw InputError(fmt::format("{}: triangle {} names vertex {}, but there are {}; correct the index", where, i, index,
+                                     scene.vertices.size()));
+      }
+    }
+    if (scene.triangle_materials[i] >= scene.materials.size()) {
+      throw InputError(fmt::format("{}: triangle {} names material {}, but there are {}; correct the index", where, i,
+                                   scene.triangle_materials[i], scene.materials.size()));
+    }
+  }
+  for (const Material& material : scene.materials) {
+    require_colour(material.kd, where, fmt::format("Kd of material '{}'", material.name));
+    require_colour(material.ks, where, fmt::format("Ks of material '{}'", material.name));
+  }
+  const Camera& camera = scene.camera;
+  require_usable(camera.eye, where, "the camera's eye");
+  require_usable(camera.direction, where, "the camera's direction");
+  require_usable(camera.up, where, "the camera's up");
+  const Vec3d direction = camera.direction.as<double>(), up = camera.up.as<double>();
+  if (!(length(direction) > 0))
+    throw InputError(where + ": the camera's direction is zero; give a direction or a target off the eye");
+  if (!(length(up) > 0)) throw InputError(where + ": the camera's up is zero; give for example [0, 1, 0]");
+  if (length(cross(direction, up)) <= 1e-6 * length(direction) * length(up)) {
+    throw InputError(where + ": the camera's up is parallel to its direction; choose another up");
+  }
+  if (!(camera.fov >= 1 && camera.fov <= 170)) {
+    throw InputError(fmt::format("{}: fov is {}; it must lie in 1 .. 170 degrees", where, camera.fov));
+  }
+  require_usable(scene.light.position, where, "the light's position");
+  require_colour(scene.light.color, where, "the light's color");
+}
+
+Scene load_scene(const std::string& name_or_path, const SceneOptions& options) {
+  if (!(options.detail >= 0.01 && options.detail <= 16)) {
+    throw InputError(fmt::format("detail is {}; it must lie in 0.01 .. 16", options.detail));
+  }
+  Scene scene;
+  if (name_or_path == "cornell") {
+    scene = make_cornell(options.detail);
+  } else if (name_or_path == "room") {
+    scene = make_room(options.detail);
+  } else {
+    scene = load_obj(name_or_path);
+  }
+  if (!options.view.empty()) {
+    const View view = load_view(options.view);
+    scene.camera = view.camera;
+    scene.light = view.light;
+  }
+  check_scene(scene, name_or_path);
+  return scene;
+}
+
+}  // namespace raypool

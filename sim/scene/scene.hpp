@@ -1,0 +1,96 @@
+// What is rendered: triangles, materials, one camera, one point light; the built-in scenes, OBJ files and view files.
+// docs/scenes.md describes the formats.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "config/configuration.hpp"
+#include "scene/vec.hpp"
+
+namespace raypool {
+
+struct Material {
+  std::string name;
+  Vec3 kd{0.5f, 0.5f, 0.5f};  ///< diffuse
+  Vec3 ks{};                  ///< mirror reflectance; zero is matt
+};
+
+struct Camera {
+  Vec3 eye{0, 0, 0};
+  Vec3 direction{0, 0, -1};  ///< any length but zero, not parallel to up
+  Vec3 up{0, 1, 0};
+  float fov = 60;  ///< vertical field of view, degrees
+};
+
+/// Point light without fall-off.
+struct PointLight {
+  Vec3 position{0, 0, 0};
+  Vec3 color{1, 1, 1};
+};
+
+struct Bounds {
+  Vec3 lower, upper;
+  float diagonal() const { return static_cast<float>(length(upper.as<double>() - lower.as<double>())); }
+};
+
+struct Scene {
+  std::string name;
+  std::vector<Vec3> vertices;
+  std::vector<std::array<uint32_t, 3>> triangles;
+  std::vector<uint32_t> triangle_materials;  ///< one a triangle, below materials.size()
+  std::vector<Material> materials;
+  Camera camera;
+  PointLight light;
+
+  const Vec3& corner(size_t triangle, int k) const { return vertices[triangles[triangle][static_cast<size_t>(k)]]; }
+  /// Of the vertices that triangles use; both corners zero without triangles.
+  Bounds bounds() const;
+};
+
+/// Coordinates beyond this are refused: products of four of them must stay finite in single precision.
+inline constexpr float kLargestCoordinate = 1e9f;
+
+struct SceneOptions {
+  double detail = 1.0;  ///< built-in scenes: share of the full triangle count, 0.01 .. 16
+  std::string view;     ///< view file; empty: the scene's own view, or for an OBJ file one framed from its bounding box
+};
+
+struct View {
+  Camera camera;
+  PointLight light;
+};
+
+/// `name_or_path` is "cornell", "room" or the path of an OBJ file. Throws InputError.
+Scene load_scene(const std::string& name_or_path, const SceneOptions& options = {});
+
+/// Closed box of 5.5 m with two blocks, one of them a mirror, camera and light inside.
+Scene make_cornell(double detail = 1.0);
+/// Furnished meeting room, 331,000 triangles at detail 1, 36 materials that each mirror half of what they reflect diffusely.
+Scene make_room(double detail = 1.0);
+
+/// Reads Wavefront OBJ with its MTL files; polygons become triangles, faces without a material a grey one. Camera and light are
+/// framed from the bounding box. Throws InputError naming file and line.
+Scene load_obj(const std::string& path);
+/// Writes `path` and, beside it with the ending .mtl, its materials; load_obj reads the same triangles and materials back, bit
+/// for bit.
+void write_obj(const Scene& scene, const std::string& path);
+
+/// Reads a view file (JSON): eye, direction or target, up, fov, light {position, color}. Throws InputError naming file, key and
+/// range.
+View load_view(const std::string& path);
+void write_view(const View& view, const std::string& path);
+
+/// A view for a scene of which nothing is known but its triangles: from inside when walls close its bounding box, else from
+/// outside.
+View automatic_view(const Scene& scene);
+
+/// Throws InputError when camera, light, indices, coordinates or materials cannot be rendered; `where` begins the sentence.
+void check_scene(const Scene& scene, const std::string& where);
+
+/// True when the triangle has no area, so that no ray hits it.
+bool is_degenerate(const Scene& scene, size_t triangle);
+
+}  // namespace raypool

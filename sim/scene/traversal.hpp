@@ -1,0 +1,81 @@
+// Which triangle a ray hits. The answer is a function of ray and triangles alone: the nearest hit, at exactly equal t the lowest
+// triangle index, whatever the tree, the order of its nodes or the machine. No ray slips between triangles that share an edge or
+// a vertex.
+//
+// How that is kept: a triangle's hit is decided by Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection" (JCGT 2013) in
+// single precision, zero edge functions in double; its t is then held within the t-interval of the triangle's own padded box. The
+// box test is monotone in the box, operation by operation, so that every box around the triangle has an interval that contains
+// this t, and no ancestor can be pruned while its t may still win.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "machine/compute_unit.hpp"
+#include "scene/bvh.hpp"
+
+namespace raypool {
+
+struct Hit {
+  float t = 0;
+  float u = 0, v = 0;  ///< the point is (1-u-v) corner 0 + u corner 1 + v corner 2
+  Vec3 normal;         ///< unit length, cross(corner 1 - corner 0, corner 2 - corner 0)
+  uint32_t triangle = 0;
+};
+
+/// What one or more rays visited. They are added to.
+struct TraversalCounts {
+  uint64_t nodes = 0;      ///< nodes of four boxes
+  uint64_t blocks = 0;     ///< leaves
+  uint64_t triangles = 0;  ///< triangles in them
+};
+/// Nodes and leaves in the order of visit; a leaf has kLeafBit. They are appended to.
+using VisitList = std::vector<uint32_t>;
+
+struct RayQuery {
+  Vec3 origin;
+  Vec3 direction;  ///< not normalised
+  float limit;     ///< hits with 0 < t < limit count
+};
+
+/// A direction that is zero, infinite or NaN, an origin that is not finite or further than 1e18 from the scene, and a limit that
+/// is NaN or not above zero hit nothing.
+class Traversal {
+ public:
+  explicit Traversal(const Scene& scene);
+
+  bool nearest(const RayQuery& ray, Hit& hit, TraversalCounts* counts = nullptr, VisitList* visits = nullptr) const;
+  /// Any hit at all; visits fewer nodes than nearest().
+  bool occluded(const RayQuery& ray, TraversalCounts* counts = nullptr, VisitList* visits = nullptr) const;
+  /// The same answer as nearest(), from every triangle in turn. For tests.
+  bool nearest_of_all(const RayQuery& ray, Hit& hit) const;
+
+  const Bvh& bvh() const { return bvh_; }
+  /// Replaces the tree by another over the same triangles; no answer changes. For tests.
+  void set_bvh(Bvh bvh);
+
+ private:
+  Bvh bvh_;
+};
+
+/// The traverser of the chip and of the native renderer: packages in, packages out. Safe to use from several threads.
+class Tracer {
+ public:
+  /// Material words are material_base + 32 * the triangle's material index. Keeps nothing of `scene`.
+  explicit Tracer(const Scene& scene, uint32_t material_base = 0);
+
+  /// Normal ray: true and the intersection when it hits, false when it misses. Shadow ray: false when it is blocked; true when it
+  /// is free, with words 12 .. 20 of the intersection zero. Words 0 .. 11 are the ray's.
+  bool trace(const Ray& ray, Intersection& intersection, TraversalCounts* counts = nullptr, VisitList* visits = nullptr) const;
+
+  const Traversal& traversal() const { return traversal_; }
+
+ private:
+  Traversal traversal_;
+  std::vector<uint32_t> material_words_;  ///< one a triangle
+};
+
+/// Words 0 .. 6 of a ray.
+RayQuery to_query(const Ray& ray);
+
+}  // namespace raypool

@@ -1,0 +1,406 @@
+// The lockstep with a functional unit in the place of the RTL, whose trace and outputs a test can alter.
+#include "lockstep/lockstep_unit.hpp"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <iostream>
+
+#include "machine/functional_unit.hpp"
+#include "machine/test_chip.hpp"
+#include "machine/test_program.hpp"
+
+namespace raypool {
+namespace {
+
+using test::Encode;
+using test::TestChip;
+
+constexpr uint32_t kMemoryBytes = 8192;
+
+Configuration make_configuration() {
+  Configuration configuration;
+  configuration.warps = 2;
+  configuration.cores = 4;
+  return configuration;
+}
+
+// A device under test: a functional unit that sends its stores through the memory port, and what a test does to it.
+class Device : public ComputeUnit {
+ public:
+  std::function<void(UnitTrace&)> alter_trace = [](UnitTrace&) {};
+  std::function<void(UnitOutputs&)> alter_outputs = [](UnitOutputs&) {};
+  std::function<void(std::deque<StoreEvent>&)> alter_writes = [](std::deque<StoreEvent>&) {};
+  std::function<UnitInputs(UnitInputs)> alter_inputs = [](UnitInputs inputs) { return inputs; };
+
+  explicit Device(const Memory& initial) : memory_(initial), unit_(make_functional_unit(make_configuration(), memory_)) {}
+
+  void reset(uint32_t program_length, uint32_t memory_limit) override {
+    unit_->reset(program_length, memory_limit);
+    writes_.clear();
+    update();
+  }
+  void set_argument(int index, uint32_t value) override { unit_->set_argument(index, value); }
+  const UnitOutputs& outputs() const override { return outputs_; }
+  void clock(const UnitInputs& inputs) override {
+    if (outputs_.memory_request_valid && inputs.memory_request_ready) writes_.pop_front();
+    unit_->clock(alter_inputs(inputs));
+    update();
+  }
+  void trace_on() override { unit_->trace_on(); }
+  const UnitTrace& trace() const override { return trace_; }
+  uint64_t counter(int number) override { return unit_->counter(number); }
+  bool timed() const override { return false; }
+
+ private:
+  void update() {
+    outputs_ = unit_->outputs();
+    trace_ = unit_->trace();
+    writes_.insert(writes_.end(), trace_.stores.begin(), trace_.stores.end());
+    alter_writes(writes_);
+    outputs_.idle = outputs_.idle && writes_.empty();
+    outputs_.memory_request_valid = !writes_.empty();
+    if (!writes_.empty())
+      outputs_.memory_request = {true, writes_.front().address, writes_.front().data, writes_.front().mask, 0};
+    alter_trace(trace_);
+    alter_outputs(outputs_);
+  }
+  Memory memory_;
+  std::unique_ptr<ComputeUnit> unit_;
+  std::deque<StoreEvent> writes_;
+  UnitOutputs outputs_;
+  UnitTrace trace_;
+};
+
+// Everything a kernel can do: import, ray words, arithmetic, predicates, a loop, loads and stores, exports of both sorts.
+const std::vector<uint64_t> kProgram = {Encode("rin"),                               // 0
+                                        Encode("rld").rd(1).x(7),                    // 1
+                                        Encode("tid").rd(2),                         // 2
+                                        Encode("shl").rd(3).ra(2).imm(2),            // 3
+                                        Encode("st").ra(3).rb(1).plain_imm(1024),    // 4
+                                        Encode("ld").rd(4).ra(3).plain_imm(1024),    // 5
+                                        Encode("and").rd(5).ra(2).imm(3),            // 6
+                                        Encode("igt").rd(1).ra(5).imm(0),            // 7
+                                        Encode("loop").guard(1).target(12),          // 8
+                                        Encode("isub").guard(1).rd(5).ra(5).imm(1),  // 9
+                                        Encode("iadd").guard(1).rd(4).ra(4).imm(1),  // 10
+                                        Encode("igt").guard(1).rd(1).ra(5).imm(0),   // 11
+                                        Encode("rst").x(8).rb(4),                    // 12
+                                        Encode("ige").rd(2).ra(2).imm(2),            // 13
+                                        Encode("rout").guard(2),                     // 14
+                                        Encode("rst").x(7).rb(2),
+                                        Encode("rst").x(8).imm(1),  // 15, 16
+                                        Encode("rst").x(9).imm(2),
+                                        Encode("rst").x(10).imm(3),
+                                        Encode("rfb").guard(2),  // 19
+                                        Encode("exit")};
+
+struct Fixture {
+  Memory memory;
+  Device* device;
+  std::unique_ptr<LockstepUnit> unit;
+  TestChip chip;
+
+  explicit Fixture(const std::vector<uint64_t>& code = kProgram, LockstepOptions options = {}, int ready_percent = 60)
+      : memory(with_program(code)),
+        device(new Device(memory)),
+        unit(make_lockstep_unit(make_configuration(), std::unique_ptr<ComputeUnit>(device), memory, named(std::move(options)))),
+        chip(*unit, memory, 7, ready_percent) {
+    unit->reset(static_cast<uint32_t>(code.size()), kMemoryBytes);
+  }
+  static Memory with_program(const std::vector<uint64_t>& code) {
+    Memory result(kMemoryBytes);
+    test::put_program(result, code);
+    return result;
+  }
+  static LockstepOptions named(LockstepOptions options) {
+    options.kernel_names = {{0, "everything"}};
+    return options;
+  }
+  void launch(uint32_t threads = 7, ImportKind import = ImportKind::Normal) {
+    LaunchCommand command;
+    command.threads = threads;
+    command.import = import;
+    chip.launches.push_back(command);
+  }
+  // Runs two kernels; the report, or "" without a difference.
+  std::string report() {
+    launch();
+    launch();
+    try {
+      chip.run(20000);
+    } catch (const LockstepDifference& difference) {
+      EXPECT_EQ(unit->counts().differences, 1u);
+      return difference.what();
+    }
+    return "";
+  }
+};
+
+void expect_parts(const std::string& report, const std::vector<std::string>& parts) {
+  for (const std::string& part : parts) {
+    EXPECT_NE(report.find(part), std::string::npos) << "the report lacks '" << part << "':\n" << report;
+  }
+}
+
+TEST(Lockstep, EqualUnitsShowNoDifferenceAndEverythingIsCounted) {
+  Fixture fixture;
+  EXPECT_EQ(fixture.report(), "");
+  const LockstepCounts& counts = fixture.unit->counts();
+  EXPECT_EQ(counts.kernels, 2u);
+  // 17 instructions outside the loop; 4 times `loop` and 3 bodies of 3 in warp 0; warp 1 has 3 threads and one turn less.
+  EXPECT_EQ(counts.instructions, 2u * ((17 + 4 + 9) + (17 + 3 + 6)));
+  EXPECT_EQ(fixture.unit->instructions_compared(), counts.instructions);
+  EXPECT_EQ(counts.stores, 14u);
+  EXPECT_EQ(counts.memory_writes, 4u);
+  EXPECT_EQ(counts.ray_words, 2u * 5 * 7);
+  EXPECT_EQ(counts.imports, 14u);
+  EXPECT_EQ(counts.exports, 10u);
+  EXPECT_EQ(counts.frame_contributions, 10u);
+  EXPECT_EQ(counts.differences, 0u);
+  EXPECT_GT(counts.thread_results, 0u);
+  EXPECT_NE(to_string(counts).find("0 differences"), std::string::npos);
+}
+
+TEST(Lockstep, AWrongRegisterResultIsReportedWithItsOperandsAndHistory) {
+  Fixture fixture;
+  fixture.device->alter_trace = [](UnitTrace& trace) {
+    for (RetireEvent& event : trace.retired) {
+      if (event.warp == 1 && event.pc == 6) event.data[2] ^= 0x10;
+    }
+  };
+  const std::string report = fixture.report();
+  expect_parts(report, {"register result differs", "everything", "warp 1, PC 6: and", "<-- differs", "00000012", "00000002",
+                        "int_alu.v", "not in the thread mask", "kernel launch 1", "before it", "immediate"});
+  EXPECT_THROW(fixture.chip.cycle(), LockstepDifference) << "a difference stays";
+}
+
+TEST(Lockstep, AWrongLaneOutsideTheMaskIsNoDifference) {
+  Fixture fixture;
+  fixture.device->alter_trace = [](UnitTrace& trace) {
+    for (RetireEvent& event : trace.retired) {
+      for (uint32_t lane = 0; lane < 4; ++lane) {
+        if (!(event.mask >> lane & 1)) event.data[lane] = 0xdead;
+      }
+    }
+  };
+  EXPECT_EQ(fixture.report(), "");
+}
+
+struct TraceCase {
+  const char* name;
+  std::function<void(UnitTrace&)> alter;
+  std::vector<std::string> parts;
+};
+
+// Alters the event of warp 0 at a PC.
+std::function<void(UnitTrace&)> at(uint32_t pc, const std::function<void(RetireEvent&)>& change) {
+  return [=](UnitTrace& trace) {
+    for (RetireEvent& event : trace.retired) {
+      if (event.warp == 0 && event.pc == pc) change(event);
+    }
+  };
+}
+
+class LockstepTrace : public testing::TestWithParam<TraceCase> {};
+
+TEST_P(LockstepTrace, DifferenceIsFound) {
+  Fixture fixture;
+  fixture.device->alter_trace = GetParam().alter;
+  expect_parts(fixture.report(), GetParam().parts);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, LockstepTrace,
+    testing::Values(
+        TraceCase{"pc", at(9, [](RetireEvent& event) { event.pc = 13; }), {"another PC", "PC    13", "pc_stack.v"}},
+        TraceCase{"instruction",
+                  at(9, [](RetireEvent& event) { event.instruction ^= 1; }),
+                  {"another instruction", "instruction_cache.v"}},
+        TraceCase{
+            "mask", at(9, [](RetireEvent& event) { event.mask ^= 1; }), {"thread mask differs", "1111", "predicate_file.v"}},
+        TraceCase{"predicate",
+                  at(7, [](RetireEvent& event) { event.predicate ^= 1; }),
+                  {"predicate result differs", "igt", "brh_alu.v"}},
+        TraceCase{"lost_instruction",
+                  [](UnitTrace& trace) {
+                    if (!trace.retired.empty() && trace.retired[0].warp == 0 && trace.retired[0].pc == 3)
+                      trace.retired.erase(trace.retired.begin());
+                  },
+                  {"another PC"}},
+        TraceCase{"store_data",
+                  [](UnitTrace& trace) {
+                    for (StoreEvent& event : trace.stores) event.data[1] ^= 1;
+                  },
+                  {"words stored differ", "st", "mem_alu.v"}},
+        TraceCase{"store_address",
+                  [](UnitTrace& trace) {
+                    for (StoreEvent& event : trace.stores) event.address += 16;
+                  },
+                  {"words stored differ", "00000410"}},
+        TraceCase{"store_lost", [](UnitTrace& trace) { trace.stores.clear(); }, {"words stored differ", "RTL: nothing"}},
+        TraceCase{"ray_data",
+                  [](UnitTrace& trace) {
+                    for (RayWriteEvent& event : trace.ray_writes) event.data[1] ^= 1;
+                  },
+                  {"words written to ray memory differ", "rst", "ray_alu.v"}},
+        TraceCase{"ray_word",
+                  [](UnitTrace& trace) {
+                    for (RayWriteEvent& event : trace.ray_writes) event.word ^= 1;
+                  },
+                  {"words written to ray memory differ", "word 9"}},
+        TraceCase{"ray_mask",
+                  [](UnitTrace& trace) {
+                    for (RayWriteEvent& event : trace.ray_writes) event.mask &= 7;
+                  },
+                  {"words written to ray memory differ", "0111"}}),
+    [](const auto& test_case) { return std::string(test_case.param.name); });
+
+struct PortCase {
+  const char* name;
+  std::function<void(UnitOutputs&)> alter;
+  std::vector<std::string> parts;
+};
+
+class LockstepPort : public testing::TestWithParam<PortCase> {};
+
+TEST_P(LockstepPort, DifferenceIsFound) {
+  Fixture fixture;
+  fixture.device->alter_outputs = GetParam().alter;
+  expect_parts(fixture.report(), GetParam().parts);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, LockstepPort,
+    testing::Values(
+        PortCase{"write_data",
+                 [](UnitOutputs& out) { out.memory_request.data[1] ^= 1; },
+                 {"write on the memory port", "data_cache.v"}},
+        PortCase{"write_mask", [](UnitOutputs& out) { out.memory_request.mask &= 7; }, {"write on the memory port"}},
+        PortCase{"write_address", [](UnitOutputs& out) { out.memory_request.address ^= 64; }, {"write on the memory port"}},
+        PortCase{"export_data",
+                 [](UnitOutputs& out) {
+                   if (out.export_last) out.export_data[0] ^= 1;
+                 },
+                 {"exported ray differs", "word 8", "<-- differs", "PC 14"}},
+        PortCase{"export_last", [](UnitOutputs& out) { out.export_last = false; }, {"export_last is false in beat 2"}},
+        PortCase{
+            "frame_colour", [](UnitOutputs& out) { out.frame.rgb[1] ^= 1; }, {"frame contribution differs", "green", "PC 19"}},
+        PortCase{"frame_pixel", [](UnitOutputs& out) { out.frame.pixel ^= 1; }, {"frame contribution differs", "pixel"}},
+        PortCase{"import_kind", [](UnitOutputs& out) { out.import_request_kind = ImportKind::Shadow; }, {"another kind"}},
+        PortCase{"done_early", [](UnitOutputs& out) { out.kernel_done = out.busy; }, {"reports a kernel as done"}},
+        PortCase{"done_never", [](UnitOutputs& out) { out.kernel_done = false; }, {"RTL is idle and the model is not"}},
+        PortCase{"idle_early", [](UnitOutputs& out) { out.idle = true; }, {"idle"}},
+        PortCase{"fault",
+                 [](UnitOutputs& out) {
+                   if (out.export_valid) out.fault = {FaultCode::Misaligned, 0, 3};
+                 },
+                 {"fault that the model does not have", "misaligned address (code 5) at warp 0, PC 3"}}),
+    [](const auto& test_case) { return std::string(test_case.param.name); });
+
+TEST(Lockstep, AWriteLostOnTheWayToTheMemoryPortIsFound) {
+  Fixture fixture;
+  bool lost = false;
+  fixture.device->alter_writes = [&lost](std::deque<StoreEvent>& writes) {
+    if (lost || writes.empty()) return;
+    writes.pop_back();
+    lost = true;
+  };
+  const std::string report = fixture.report();
+  EXPECT_TRUE(lost);
+  expect_parts(report, {"memory port"});
+}
+
+TEST(Lockstep, TheLastWriteLostIsFoundWhenTheUnitIsIdle) {
+  Fixture fixture({Encode("tid").rd(1), Encode("st").ra(0).rb(1).plain_imm(1024), Encode("exit")});
+  fixture.device->alter_writes = [](std::deque<StoreEvent>& writes) { writes.clear(); };
+  fixture.launch(4, ImportKind::None);
+  try {
+    fixture.chip.run();
+    FAIL() << "no difference";
+  } catch (const LockstepDifference& difference) {
+    expect_parts(difference.what(), {"1 stores have not left"});
+  }
+}
+
+TEST(Lockstep, AnOutputThatChangesWhileItWaitsIsFound) {
+  Fixture fixture;
+  uint32_t salt = 0;
+  fixture.device->alter_outputs = [&salt](UnitOutputs& out) { out.export_data[3] = ++salt; };
+  expect_parts(fixture.report(), {"export"});
+}
+
+TEST(Lockstep, AnAlteredImportIsFound) {
+  Fixture fixture;
+  fixture.device->alter_inputs = [](UnitInputs inputs) {
+    inputs.import_beat[3] ^= 4;
+    return inputs;
+  };
+  expect_parts(fixture.report(), {"register result differs", "rld", "ray_alu.v"});
+}
+
+TEST(Lockstep, AWrongLaunchIsFound) {
+  Fixture fixture;
+  fixture.device->alter_inputs = [](UnitInputs inputs) {
+    inputs.launch.threads = 8;
+    return inputs;
+  };
+  expect_parts(fixture.report(), {"RTL requests a package"});
+}
+
+TEST(Lockstep, AHangIsReportedWithWhatEveryWarpWaitsFor) {
+  LockstepOptions options;
+  options.watchdog_cycles = 100;
+  Fixture fixture(kProgram, options);
+  fixture.chip.imports_ready = false;
+  const std::string report = fixture.report();
+  expect_parts(report,
+               {"hang", "for 100 cycles", "warp  0: PC     0: rin", "its packages have not come", "7 packages announced"});
+  EXPECT_LT(fixture.unit->counts().cycles, 200u);
+}
+
+TEST(Lockstep, FaultsThatBothReportAlikeAreNoDifference) {
+  Fixture fixture({Encode("mov").rd(1).imm(2), Encode("ld").rd(1).ra(1)});
+  fixture.launch(3, ImportKind::None);
+  EXPECT_FALSE(fixture.chip.run());
+  for (int i = 0; i < 50; ++i) fixture.chip.cycle();
+  EXPECT_EQ(fixture.unit->counts().faults, 1u);
+  EXPECT_EQ(fixture.unit->counts().differences, 0u);
+  EXPECT_EQ(fixture.unit->outputs().fault.code, FaultCode::Misaligned);
+}
+
+TEST(Lockstep, AFaultThatTheUnitMissesIsFound) {
+  Fixture fixture({Encode("mov").rd(1).imm(2), Encode("ld").rd(1).ra(1)});
+  fixture.device->alter_outputs = [](UnitOutputs& out) { out.fault = {}; };
+  const uint64_t load = Encode("ld").rd(1).ra(1);
+  fixture.device->alter_trace = [load, cycle = 0](UnitTrace& trace) mutable {
+    if (++cycle == 6) trace.retired.push_back({0, 1, load, 7, {0, 0, 0, 0}, 0});
+  };
+  fixture.launch(3, ImportKind::None);
+  try {
+    fixture.chip.run(100);
+    FAIL() << "no difference";
+  } catch (const LockstepDifference& difference) {
+    expect_parts(difference.what(),
+                 {"executed an instruction at which the model faults", "misaligned address", "ld", "mem_alu.v"});
+  }
+}
+
+TEST(Lockstep, ResetStartsAfresh) {
+  Fixture fixture;
+  EXPECT_EQ(fixture.report(), "");
+  fixture.unit->reset(static_cast<uint32_t>(kProgram.size()), kMemoryBytes);
+  EXPECT_EQ(fixture.report(), "");
+  EXPECT_EQ(fixture.unit->counts().kernels, 4u);
+}
+
+TEST(Lockstep, ArgumentsReachBoth) {
+  Fixture fixture({Encode("arg").rd(1).plain_imm(5), Encode("exit")});
+  fixture.unit->set_argument(5, 99);
+  fixture.launch(8, ImportKind::None);
+  EXPECT_TRUE(fixture.chip.run());
+  EXPECT_EQ(fixture.unit->counts().thread_results, 8u);
+}
+
+}  // namespace
+}  // namespace raypool

@@ -1,0 +1,76 @@
+#include "lockstep/text.hpp"
+
+#include <fmt/format.h>
+
+#include <cstring>
+
+#include "isa/assembler.hpp"
+
+namespace raypool::lockstep {
+
+std::string word_text(uint32_t word) {
+  float value;
+  std::memcpy(&value, &word, 4);
+  return fmt::format("{:08x} ({:.7g})", word, value);
+}
+
+std::string mask_text(uint32_t mask, int lanes) { return fmt::format("{:0{}b}", mask, lanes); }
+
+std::string instruction_text(uint64_t encoding) { return disassemble(encoding); }
+
+std::string module_of(const DecodedInstruction* instruction) {
+  if (instruction == nullptr || !instruction->legal()) return "rtl/instruction_buffer.v, rtl/pc_stack.v";
+  return fmt::format("rtl/{}_alu.v; if other instructions of this ALU are right, its operands: rtl/dispatcher.v, rtl/warp.v",
+                     kUnitNames[static_cast<size_t>(instruction->info->unit)]);
+}
+
+std::string fault_text(const Fault& fault) {
+  static constexpr std::array<const char*, 8> kNames = {
+      "no fault",           "illegal instruction", "PC outside the program", "PC stack overflow",
+      "PC stack underflow", "misaligned address",  "address outside memory", "ray word above 20"};
+  const size_t code = static_cast<size_t>(fault.code);
+  if (fault.code == FaultCode::None) return kNames[0];
+  return fmt::format("{} (code {}) at warp {}, PC {}", code < kNames.size() ? kNames[code] : "unknown fault", code, fault.warp,
+                     fault.pc);
+}
+
+std::string lane_table(const InstructionContext& context, int lanes, const uint32_t* rtl, const uint32_t* model) {
+  const DecodedInstruction& instruction = *context.instruction;
+  bool uses_a = false, uses_px = false, uses_pb = false;
+  for (const Operand operand : instruction.info->operands) {
+    uses_a |= operand == Operand::Ra || operand == Operand::Address;
+    uses_px |= operand == Operand::Px;
+    uses_pb |= operand == Operand::Pb;
+  }
+  std::string text = "  lane";
+  const auto column = [&text](const std::string& cell) { text += fmt::format("  {:<24}", cell); };
+  if (uses_a) column(fmt::format("r{}", instruction.ra));
+  if (instruction.uses_b) column(instruction.b_is_immediate ? "immediate" : fmt::format("r{}", instruction.rb));
+  if (uses_px) column(fmt::format("p{}", instruction.x & 15));
+  if (uses_pb) column(fmt::format("p{}", instruction.rb));
+  if (rtl != nullptr) column("RTL"), column("model");
+  const auto end_line = [&text] {
+    text.erase(text.find_last_not_of(' ') + 1);
+    text += '\n';
+  };
+  end_line();
+  for (int lane = 0; lane < lanes; ++lane) {
+    const size_t i = static_cast<size_t>(lane);
+    const bool masked = context.mask >> lane & 1;
+    text += fmt::format("  {:>4}", lane);
+    if (uses_a) column(word_text(context.a[i]));
+    if (instruction.uses_b) column(word_text(context.b[i]));
+    if (uses_px) column(std::to_string(context.px >> lane & 1));
+    if (uses_pb) column(std::to_string(context.pb >> lane & 1));
+    if (!masked) {
+      text += "  not in the thread mask";
+    } else if (rtl != nullptr) {
+      column(word_text(rtl[lane])), column(word_text(model[lane]));
+      if (rtl[lane] != model[lane]) text += "  <-- differs";
+    }
+    end_line();
+  }
+  return text;
+}
+
+}  // namespace raypool::lockstep

@@ -1,0 +1,171 @@
+// The whole compute unit in RTL: Verilated for several configurations and run in lockstep with the model, on random programs.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
+#include <iostream>
+
+#include "cosim/cosim.hpp"
+#include "lockstep/lockstep_unit.hpp"
+#include "lockstep/rtl_loader.hpp"
+#include "machine/test_chip.hpp"
+#include "machine/test_program.hpp"
+
+namespace raypool {
+namespace {
+
+using test::Encode;
+using test::TestChip;
+
+constexpr uint32_t kData = 32768;
+constexpr uint32_t kMemoryBytes = kData + 64 * 1024;
+
+struct Case {
+  const char* name;
+  std::function<void(Configuration&)> change;
+  bool waves = false;
+};
+
+Configuration configuration_of(const Case& test_case) {
+  Configuration configuration;
+  configuration.name = test_case.name;
+  test_case.change(configuration);
+  check_configuration(configuration, test_case.name);
+  return configuration;
+}
+
+// The library of a configuration, built if it is not up to date.
+std::string library_of(const Case& test_case) {
+  const std::string folder = std::string(RAYPOOL_TEST_UNITS) + "/" + test_case.name;
+  std::filesystem::create_directories(folder);
+  std::string command = "flock " + folder + "/.lock scripts/verilate.sh " + folder + (test_case.waves ? " --trace" : "");
+  for (const auto& [name, value] : verilog_parameters(configuration_of(test_case)))
+    command += " " + name + "=" + std::to_string(value);
+  if (std::system(command.c_str()) != 0) throw std::runtime_error("this command failed: " + command);
+  return folder + "/libraypool_unit.so";
+}
+
+class RtlUnit : public testing::TestWithParam<Case> {};
+
+TEST_P(RtlUnit, AgreesWithTheModelOnRandomPrograms) {
+  const std::string library = library_of(GetParam());
+  const Configuration configuration = configuration_of(GetParam());
+  LockstepCounts sum;
+  for (uint64_t seed = 1; seed <= 100; ++seed) {
+    const RandomProgram program = make_random_program(configuration, seed);
+    Memory memory = program.memory;
+    const auto unit = make_lockstep_unit(configuration, load_rtl_unit(library, configuration), memory);
+    try {
+      run_random_program(*unit, memory, program, seed);
+    } catch (const std::exception& error) {
+      FAIL() << "seed " << seed << ": " << error.what();
+    }
+    sum += unit->counts();
+  }
+  std::cout << to_string(sum) << "\n";
+  EXPECT_GT(sum.instructions, 10000u);
+  EXPECT_GT(sum.stores, 100u);
+  EXPECT_GT(sum.exports, 5u);
+  EXPECT_GT(sum.frame_contributions, 5u);
+  EXPECT_GT(sum.imports, 10u);
+}
+
+struct FaultProgram {
+  const char* name;
+  std::vector<uint64_t> code;
+  FaultCode fault;
+};
+
+TEST_P(RtlUnit, ReportsTheModelsFaults) {
+  const std::string library = library_of(GetParam());
+  const Configuration configuration = configuration_of(GetParam());
+  const FaultProgram programs[] = {
+      {"illegal", {Encode("mov").rd(1).imm(1), uint64_t{0xf} << 60, Encode("exit")}, FaultCode::IllegalInstruction},
+      {"outside", {Encode("mov").rd(1).imm(1), Encode("jany").target(99)}, FaultCode::PcOutsideProgram},
+      {"end", {Encode("mov").rd(1).imm(1)}, FaultCode::PcOutsideProgram},
+      {"overflow", {Encode("call").target(0, 99), Encode("exit")}, FaultCode::StackOverflow},
+      {"underflow", {Encode("mov").rd(1).imm(1), Encode("ret"), Encode("exit")}, FaultCode::StackUnderflow},
+      {"misaligned", {Encode("mov").rd(1).imm(1026), Encode("ld").rd(1).ra(1), Encode("exit")}, FaultCode::Misaligned},
+      {"limit",
+       {Encode("mov").rd(1).imm(kMemoryBytes), Encode("st").ra(1).rb(1), Encode("exit")},
+       FaultCode::AddressOutsideMemory},
+      {"word", {Encode("rld").rd(1).x(21), Encode("exit")}, FaultCode::RayWordOutside},
+      {"unmasked_word", {Encode("rst").guard(0, true).x(30).rb(1), Encode("exit")}, FaultCode::RayWordOutside},
+  };
+  for (const FaultProgram& program : programs) {
+    Memory memory(kMemoryBytes);
+    test::put_program(memory, program.code);
+    auto unit = make_lockstep_unit(configuration, load_rtl_unit(library, configuration), memory);
+    unit->reset(static_cast<uint32_t>(program.code.size()), kMemoryBytes);
+    TestChip chip(*unit, memory);
+    LaunchCommand command;
+    command.threads = static_cast<uint32_t>(configuration.contents());
+    chip.launches.push_back(command);
+    try {
+      EXPECT_FALSE(chip.run(20000)) << program.name;
+      EXPECT_EQ(unit->outputs().fault.code, program.fault) << program.name;
+      EXPECT_EQ(unit->counts().faults, 1u) << program.name;
+    } catch (const LockstepDifference& difference) {
+      ADD_FAILURE() << program.name << ": " << difference.what();
+    }
+  }
+}
+
+TEST_P(RtlUnit, ALibraryOfOtherParametersIsRefused) {
+  const std::string library = library_of(GetParam());
+  Configuration other = configuration_of(GetParam());
+  other.data_cache_mshrs = other.data_cache_mshrs == 3 ? 5 : 3;
+  try {
+    load_rtl_unit(library, other);
+    FAIL() << "it was loaded";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("DCACHE_MSHRS"), std::string::npos) << error.what();
+  }
+  EXPECT_THROW(load_rtl_unit("no/such/library.so", other), InputError);
+}
+
+const Case kCases[] = {
+    {"8w8c", [](Configuration&) {}},
+    {"1w1c",
+     [](Configuration& c) {
+       c.warps = c.cores = 1, c.data_cache_mshrs = 1, c.data_cache_bytes = c.instruction_cache_bytes = 512;
+     }},
+    {"4w2c_many",
+     [](Configuration& c) {
+       c.warps = 4, c.cores = 2, c.subnormals = Subnormals::Flush, c.slow_unit = SlowUnit::Newton1, c.stack_depth = 5;
+       c.alus[static_cast<size_t>(Unit::Int)] = {2, 1, 4};
+       c.alus[static_cast<size_t>(Unit::Flt)] = {3, 4, 5};
+       c.alus[static_cast<size_t>(Unit::Slw)] = {1, 16, 12};
+       c.alus[static_cast<size_t>(Unit::Brh)] = {1, 2, 2};
+       c.alus[static_cast<size_t>(Unit::Tid)] = {2, 1, 1};
+     }},
+};
+
+INSTANTIATE_TEST_SUITE_P(Configurations, RtlUnit, testing::ValuesIn(kCases),
+                         [](const auto& test_case) { return std::string(test_case.param.name); });
+
+TEST(RtlUnitWaves, WritesAWaveformWhenBuiltForIt) {
+  const Case waves{"1w1c_waves", [](Configuration& c) { c.warps = c.cores = 1; }, true};
+  const Configuration configuration = configuration_of(waves);
+  const std::string path = std::string(RAYPOOL_TEST_UNITS) + "/waves.fst";
+  std::filesystem::remove(path);
+  Memory memory(kMemoryBytes);
+  test::put_program(memory, {Encode("exit")});
+  {
+    auto unit = load_rtl_unit(library_of(waves), configuration);
+    unit->open_waveform(path);
+    unit->reset(1, kMemoryBytes);
+    TestChip chip(*unit, memory);
+    LaunchCommand command;
+    command.threads = 1;
+    chip.launches.push_back(command);
+    EXPECT_TRUE(chip.run(10000));
+    EXPECT_TRUE(unit->timed());
+    EXPECT_EQ(unit->counter(counter::kInstructions), 1u);
+  }
+  EXPECT_GT(std::filesystem::file_size(path), 1000u);
+}
+
+}  // namespace
+}  // namespace raypool

@@ -1,0 +1,149 @@
+// Drives a bench top of several ALUs (flt_units.v, slw_units.v) with the same tasks and compares every result, its warp and the
+// cycle it comes in with the model. Tasks come with random masks, warps and pauses.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <verilated.h>
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "arith/arith.hpp"
+#include "arith/test_operands.hpp"
+
+namespace raypool {
+
+inline constexpr int kBenchLanes = 4;  ///< parameter LANES of the tops
+
+/// One of the ALUs in the top, in the order of its output bits.
+struct AluUnderTest {
+  std::string name;
+  arith::Mode mode;
+  int depth;
+};
+
+using ModelFunction = uint32_t (*)(int operation, uint32_t a, uint32_t b, arith::Mode mode);
+
+template <typename Top>
+class AluBench {
+ public:
+  AluBench(std::vector<AluUnderTest> units, ModelFunction model, uint64_t seed)
+      : units_(std::move(units)), model_(model), seed_(seed), random_(seed), expected_(units_.size()), top_(&context_) {
+    top_.rst_ni = 0;
+    top_.task_valid_i = 0;
+    tick();
+    tick();
+    top_.rst_ni = 1;
+  }
+  ~AluBench() { top_.final(); }
+
+  /// Adds one lane's operation to the next task; a task takes operations of one kind, so a change of kind sends what is gathered.
+  void add(int operation, uint32_t a, uint32_t b) {
+    if (lanes_ != 0 && operation != operation_) send();
+    operation_ = operation;
+    if (lanes_ < kBenchLanes - 1 && random_() % 8 == 0) ++lanes_;  // a hole in the mask; the lane has old operands
+    mask_ |= 1u << lanes_;
+    a_[lanes_] = a;
+    b_[lanes_] = b;
+    if (++lanes_ == kBenchLanes) send();
+  }
+
+  /// Sends the rest and waits for all results.
+  void finish() {
+    if (lanes_ != 0) send();
+    for (int i = 0; i < 64; ++i) clock();
+    for (size_t u = 0; u < units_.size(); ++u) ASSERT_TRUE(expected_[u].empty()) << units_[u].name << " lost tasks";
+  }
+
+  uint64_t compared() const { return compared_; }
+
+ private:
+  struct Expected {
+    uint64_t cycle;
+    int operation;
+    uint32_t warp, mask;
+    std::array<uint32_t, kBenchLanes> a, b, result;
+  };
+
+  void send() {
+    while (random_() % 4 == 0) clock();
+    const uint32_t warp = random_() % 8;
+    top_.task_valid_i = 1;
+    top_.task_warp_i = warp;
+    top_.task_op_i = operation_;
+    top_.task_mask_i = mask_;
+    for (int l = 0; l < kBenchLanes; ++l) {
+      top_.task_a_i[l] = a_[l];
+      top_.task_b_i[l] = b_[l];
+    }
+    for (size_t u = 0; u < units_.size(); ++u) {
+      Expected e{cycle_ + units_[u].depth, operation_, warp, mask_, a_, b_, {}};
+      for (int l = 0; l < lanes_; ++l) e.result[l] = model_(operation_, a_[l], b_[l], units_[u].mode);
+      expected_[u].push_back(e);
+    }
+    clock();
+    top_.task_valid_i = 0;
+    top_.task_a_i[0] = static_cast<uint32_t>(random_());  // nobody may look at it
+    lanes_ = 0;
+    mask_ = 0;
+  }
+
+  void clock() {
+    check();
+    tick();
+    ++cycle_;
+  }
+
+  void tick() {
+    top_.clk_i = 0;
+    top_.eval();
+    top_.clk_i = 1;
+    top_.eval();
+  }
+
+  void check() {
+    for (size_t u = 0; u < units_.size(); ++u) {
+      const bool done = top_.done_valid_o >> u & 1;
+      const bool due = !expected_[u].empty() && expected_[u].front().cycle == cycle_;
+      if (done != due || !(top_.ready_o >> u & 1)) {
+        if (++failures_ <= 10)
+          ADD_FAILURE() << units_[u].name << ": done " << done << ", expected " << due << ", cycle " << cycle_;
+      }
+      if (!due) continue;
+      const Expected e = expected_[u].front();
+      expected_[u].pop_front();
+      const uint32_t warp = top_.done_warp_o >> (3 * u) & 7;
+      for (int l = 0; l < kBenchLanes; ++l) {
+        if (!(e.mask >> l & 1)) continue;
+        const uint32_t result = top_.done_data_o[u * kBenchLanes + l];
+        ++compared_;
+        if ((result != e.result[l] || warp != e.warp) && ++failures_ <= 10) {
+          ADD_FAILURE() << units_[u].name << " operation " << e.operation << " lane " << l << std::hex << ": a " << e.a[l]
+                        << " b " << e.b[l] << " RTL " << result << " model " << e.result[l] << std::dec << ", warp " << warp
+                        << " expected " << e.warp << ", seed " << seed_;
+        }
+      }
+    }
+  }
+
+  std::vector<AluUnderTest> units_;
+  ModelFunction model_;
+  uint64_t seed_;
+  std::mt19937_64 random_;
+  std::vector<std::deque<Expected>> expected_;
+  VerilatedContext context_;
+  Top top_;
+  int operation_ = 0;
+  int lanes_ = 0;      ///< used or left out in the task that is being gathered
+  uint32_t mask_ = 0;  ///< of those used
+  std::array<uint32_t, kBenchLanes> a_{}, b_{};
+  uint64_t cycle_ = 0, compared_ = 0;
+  int failures_ = 0;
+};
+
+}  // namespace raypool

@@ -1,0 +1,50 @@
+# Benches of the ALU framework and of the Flt and Slw ALUs, in Verilator, and a replay of some of their results in Icarus.
+set(arith_rtl ${CMAKE_SOURCE_DIR}/rtl)
+set(arith_unit ${CMAKE_SOURCE_DIR}/tb/unit)
+
+# arith_bench(NAME TOP SOURCES...): the test program NAME of unit/NAME.cpp with the Verilated bench top TOP.
+function(arith_bench name top)
+  add_executable(${name} ${arith_unit}/${name}.cpp)
+  target_link_libraries(${name} PRIVATE raypool_arith GTest::gtest_main)
+  target_include_directories(${name} SYSTEM PRIVATE ${VERILATOR_ROOT}/include)  # its headers warn
+  verilate(${name} SOURCES ${arith_unit}/${top}.v ${ARGN} TOP_MODULE ${top} PREFIX V${top} INCLUDE_DIRS ${arith_rtl}
+    OPT_SLOW -w OPT_FAST -O2 -w OPT_GLOBAL -O1 -w
+    VERILATOR_ARGS --default-language 1364-2005 -O3 --x-assign fast --x-initial fast)
+  gtest_discover_tests(${name} WORKING_DIRECTORY ${CMAKE_SOURCE_DIR} DISCOVERY_TIMEOUT 60)
+endfunction()
+
+set(arith_flt_sources ${arith_rtl}/flt_alu.v ${arith_rtl}/float_lane.v ${arith_rtl}/float_adder.v ${arith_rtl}/float_multiplier.v
+  ${arith_rtl}/float_convert.v ${arith_rtl}/alu_pipeline.v ${arith_rtl}/alu_delay.v)
+arith_bench(flt_alu_test flt_units ${arith_flt_sources})
+
+set(arith_slw_sources ${arith_rtl}/slw_alu.v ${arith_rtl}/slow_lane.v ${arith_rtl}/slow_prepare.v ${arith_rtl}/slow_exact.v
+  ${arith_rtl}/slow_newton.v ${arith_rtl}/slow_refine.v ${arith_rtl}/slow_line_table.v ${arith_rtl}/slow_seed_table.v ${arith_rtl}/alu_pipeline.v ${arith_rtl}/alu_delay.v)
+arith_bench(slw_alu_test slw_units ${arith_slw_sources})
+
+arith_bench(alu_pipeline_test pipeline_units ${arith_rtl}/alu_pipeline.v)
+
+# Icarus: the same sources in a second simulator, for the modes that differ most.
+find_program(IVERILOG iverilog)
+find_program(VVP vvp)
+if(IVERILOG AND VVP)
+  add_executable(arith_vectors ${arith_unit}/arith_vectors.cpp)
+  target_link_libraries(arith_vectors PRIVATE raypool_arith)
+  foreach(mode IN ITEMS "0 0" "1 0" "0 1" "1 2" "0 3")
+    separate_arguments(mode)
+    list(GET mode 0 subnormals)
+    list(GET mode 1 slow_unit)
+    set(replay arith_icarus_${subnormals}${slow_unit})
+    set(program ${CMAKE_CURRENT_BINARY_DIR}/${replay}.vvp)
+    set(vectors ${CMAKE_CURRENT_BINARY_DIR}/${replay}.txt)
+    set(sources ${arith_flt_sources} ${arith_slw_sources})
+    list(REMOVE_DUPLICATES sources)
+    add_custom_command(OUTPUT ${program}
+      COMMAND ${IVERILOG} -g2005 -Wall -I ${arith_rtl} -s arith_icarus -Parith_icarus.SUBNORMALS=${subnormals}
+        -Parith_icarus.SLOW_UNIT=${slow_unit} -o ${program} ${arith_unit}/arith_icarus.v ${sources}
+      DEPENDS ${arith_unit}/arith_icarus.v ${sources} ${arith_rtl}/isa.vh VERBATIM)
+    add_custom_command(OUTPUT ${vectors} COMMAND arith_vectors ${subnormals} ${slow_unit} 4000 > ${vectors} DEPENDS arith_vectors VERBATIM)
+    add_custom_target(${replay} ALL DEPENDS ${program} ${vectors})
+    add_test(NAME ${replay} COMMAND ${VVP} -n ${program} +vectors=${vectors})
+    set_tests_properties(${replay} PROPERTIES PASS_REGULAR_EXPRESSION "results agree" FAIL_REGULAR_EXPRESSION "FAILED")
+  endforeach()
+endif()

@@ -1,0 +1,107 @@
+// Replays a vector file (written by arith_vectors) through the Flt and Slw ALUs of one configuration in Icarus: the same sources, another
+// simulator. Plus-arguments: vectors=FILE, a line a task: unit (0 Flt, 1 Slw), operation, a, b, expected, in hexadecimal. One lane, one task
+// a cycle. Prints "arith_icarus: N results agree" at the end, or the first differences and FAILED.
+`default_nettype none
+module arith_icarus #(
+  parameter integer SUBNORMALS = 0,
+  parameter integer SLOW_UNIT = 0
+);
+  localparam integer FLT_DEPTH = 3;
+  localparam integer SLW_DEPTH = 11;
+  reg clk = 1'b0;
+  reg rst_n = 1'b0;
+  reg flt_valid = 1'b0, slw_valid = 1'b0;
+  reg [2:0] warp = 3'd0;
+  reg [4:0] op = 5'd0;
+  reg [31:0] a = 32'd0, b = 32'd0, expected = 32'd0;
+  wire flt_done, slw_done;
+  wire [2:0] flt_warp, slw_warp;
+  wire [31:0] flt_data, slw_data;
+
+  flt_alu #(.WARPS(8), .LANES(1), .LATENCY(1), .DEPTH(FLT_DEPTH), .SUBNORMALS(SUBNORMALS)) flt (
+    .clk_i(clk), .rst_ni(rst_n), .task_valid_i(flt_valid), .task_warp_i(warp), .task_op_i(op), .task_mask_i(1'b1), .task_a_i(a),
+    .task_b_i(b), .task_imm_i(32'd0), .task_x_i(5'd0), .task_px_i(1'b0), .task_pb_i(1'b0), .ready_o(), .done_valid_o(flt_done),
+    .done_warp_o(flt_warp), .done_data_o(flt_data), .done_pred_o());
+  slw_alu #(.WARPS(8), .LANES(1), .LATENCY(1), .DEPTH(SLW_DEPTH), .SUBNORMALS(SUBNORMALS), .SLOW_UNIT(SLOW_UNIT)) slw (
+    .clk_i(clk), .rst_ni(rst_n), .task_valid_i(slw_valid), .task_warp_i(warp), .task_op_i(op), .task_mask_i(1'b1), .task_a_i(a),
+    .task_b_i(b), .task_imm_i(32'd0), .task_x_i(5'd0), .task_px_i(1'b0), .task_pb_i(1'b0), .ready_o(), .done_valid_o(slw_done),
+    .done_warp_o(slw_warp), .done_data_o(slw_data), .done_pred_o());
+
+  // What is expected, beside the pipelines: entry k arrived k cycles ago.
+  reg [SLW_DEPTH:0] flt_due = 0, slw_due = 0;
+  reg [31:0] due_data [0:SLW_DEPTH];
+  reg [2:0] due_warp [0:SLW_DEPTH];
+
+  reg [8*1024-1:0] path;
+  integer file, fields, unit, operation, agreed, failed, drain, k;
+
+  always #1 clk = !clk;
+
+  // Called between edges, after the inputs of this cycle have been set.
+  task check;
+    begin
+      due_data[0] = expected;
+      due_warp[0] = warp;
+      flt_due[0] = flt_valid;
+      slw_due[0] = slw_valid;
+      if (flt_done !== flt_due[FLT_DEPTH] || slw_done !== slw_due[SLW_DEPTH]) begin
+        failed = failed + 1;
+        $display("arith_icarus: done at the wrong time, flt %b slw %b, time %0d", flt_done, slw_done, $time);
+      end
+      if (flt_due[FLT_DEPTH]) compare("flt", flt_data, flt_warp, due_data[FLT_DEPTH], due_warp[FLT_DEPTH]);
+      if (slw_due[SLW_DEPTH]) compare("slw", slw_data, slw_warp, due_data[SLW_DEPTH], due_warp[SLW_DEPTH]);
+      for (k = SLW_DEPTH; k > 0; k = k - 1) begin
+        due_data[k] = due_data[k-1];
+        due_warp[k] = due_warp[k-1];
+      end
+      flt_due = flt_due << 1;
+      slw_due = slw_due << 1;
+    end
+  endtask
+
+  task compare(input [23:0] name, input [31:0] data, input [2:0] from, input [31:0] good, input [2:0] good_from);
+    begin
+      if (data === good && from === good_from) agreed = agreed + 1;
+      else begin
+        failed = failed + 1;
+        if (failed < 10) $display("arith_icarus: %0s gives %h for warp %0d, expected %h for %0d", name, data, from, good, good_from);
+      end
+    end
+  endtask
+
+  initial begin
+    agreed = 0;
+    failed = 0;
+    if (!$value$plusargs("vectors=%s", path)) begin
+      $display("arith_icarus: FAILED, no +vectors=FILE");
+      $finish;
+    end
+    file = $fopen(path, "r");
+    if (file == 0) begin
+      $display("arith_icarus: FAILED, cannot read %0s", path);
+      $finish;
+    end
+    repeat (3) @(negedge clk);
+    rst_n = 1'b1;
+    fields = $fscanf(file, "%h %h %h %h %h\n", unit, operation, a, b, expected);
+    while (fields == 5) begin
+      op = operation[4:0];
+      warp = warp + 3'd1;
+      flt_valid = unit == 0;
+      slw_valid = unit == 1;
+      #0 check;
+      @(negedge clk);
+      fields = $fscanf(file, "%h %h %h %h %h\n", unit, operation, a, b, expected);
+    end
+    flt_valid = 1'b0;
+    slw_valid = 1'b0;
+    for (drain = 0; drain <= SLW_DEPTH; drain = drain + 1) begin
+      #0 check;
+      @(negedge clk);
+    end
+    if (failed == 0 && agreed > 0) $display("arith_icarus: %0d results agree", agreed);
+    else $display("arith_icarus: FAILED, %0d of %0d results differ", failed, agreed + failed);
+    $finish;
+  end
+endmodule
+`default_nettype wire

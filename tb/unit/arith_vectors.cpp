@@ -1,0 +1,68 @@
+// Writes tasks with the model's results for arith_icarus.v: arith_vectors SUBNORMALS SLOW_UNIT COUNT > FILE
+#include <cstdio>
+#include <cstdlib>
+
+#include "arith/arith.hpp"
+#include "arith/test_operands.hpp"
+
+namespace raypool {
+namespace {
+
+uint32_t model(int unit, int operation, uint32_t a, uint32_t b, arith::Mode mode) {
+  if (unit == 1) {
+    switch (operation) {
+      case 0:
+        return arith::div(a, b, mode);
+      case 1:
+        return arith::sqrt(a, mode);
+      case 2:
+        return arith::rsqrt(a, mode);
+      default:
+        return arith::rcp(a, mode);
+    }
+  }
+  switch (operation) {
+    case 0:
+      return arith::add(a, b, mode);
+    case 1:
+      return arith::sub(a, b, mode);
+    case 2:
+      return arith::mul(a, b, mode);
+    case 3:
+      return arith::min(a, b, mode);
+    case 4:
+      return arith::max(a, b, mode);
+    case 5:
+      return arith::to_int(a, mode);
+    default:
+      return arith::from_int(a, mode);
+  }
+}
+
+void write(int unit, int operation, uint32_t a, uint32_t b, arith::Mode mode) {
+  std::printf("%x %x %08x %08x %08x\n", unit, operation, a, b, model(unit, operation, a, b, mode));
+}
+
+}  // namespace
+}  // namespace raypool
+
+int main(int argc, char** argv) {
+  using namespace raypool;
+  if (argc != 4) {
+    std::fputs("usage: arith_vectors SUBNORMALS SLOW_UNIT COUNT > FILE\n", stderr);
+    return 1;
+  }
+  const arith::Mode mode{static_cast<Subnormals>(std::atoi(argv[1])), static_cast<SlowUnit>(std::atoi(argv[2]))};
+  arith::OperandSource source(7);
+  std::mt19937_64 random(7);
+  for (int i = std::atoi(argv[3]); i > 0; --i) {
+    const auto [a, b] = source.next();
+    const int unit = static_cast<int>(random() % 2);
+    write(unit, static_cast<int>(random() % (unit == 0 ? 7 : 4)), a, unit == 1 && random() % 2 ? b & 0x7fffffffu : b, mode);
+  }
+  const std::vector<uint32_t> specials = arith::special_operands();
+  for (const uint32_t a : specials) {
+    for (int operation = 0; operation < 7; ++operation) write(0, operation, a, specials[random() % specials.size()], mode);
+    for (int operation = 0; operation < 4; ++operation) write(1, operation, a, specials[random() % specials.size()], mode);
+  }
+}
