@@ -39,6 +39,8 @@ LOCKED := flock $(BUILD)/.lock
 # The functional and native engines need no Verilated unit.
 WAVES_FLAG := $(if $(filter-out 0,$(WAVES)),--waves)
 UNIT := scripts/unit.sh "$$CONFIG" $(WAVES_FLAG)
+# Engine rtl simulates the whole multiprocessor; lockstep puts it together from single units, and so do compute kernels.
+UNITS_FLAG = $(if $(filter rtl,$(ENGINE)),--units "$$CUS")
 UNIT_OF_ENGINE := $(if $(filter rtl lockstep,$(ENGINE)),$(UNIT),true)
 
 .PHONY: help sim run cosim unit test lint format bench clean setup-% program configured-%
@@ -64,7 +66,7 @@ help: ## this list
 	@echo 'variables of make run:  KERNEL=saxpy|matmul|FILE.asm  CONFIG  ENGINE  ARGS="--n 1000"'
 
 sim: setup-sim program ## draw a scene on the simulated chip: picture, report, figures
-	@$(UNIT_OF_ENGINE)
+	@$(UNIT_OF_ENGINE) $(UNITS_FLAG)
 	@$(RAYPOOL) sim --scene "$$SCENE" --config "$$CONFIG" --units "$$CUS" --size "$$SIZE" --depth "$$DEPTH" --engine "$$ENGINE" \
 	  --traverser "$$TRAVERSER" $${VIEW:+--view "$$VIEW"} $${DETAIL:+--detail "$$DETAIL"} $${OUT:+--out "$$OUT"} $(WAVES_FLAG)
 
@@ -76,8 +78,8 @@ cosim: setup-sim program ## random programs, hardware against model: CONFIG, PRO
 	@$(UNIT)
 	@$(RAYPOOL) cosim --config "$$CONFIG" --programs "$$PROGRAMS" --seed "$$SEED"
 
-unit: setup-sim program ## Verilate the compute unit of CONFIG (WAVES=1: with waveforms)
-	@$(UNIT)
+unit: setup-sim program ## Verilate CUS compute units of CONFIG (WAVES=1: with waveforms)
+	@$(UNIT) --units "$$CUS"
 
 test: setup-sim setup-test configured-ON ## every test
 	@$(LOCKED) cmake --build $(BUILD)

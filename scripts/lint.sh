@@ -20,11 +20,12 @@ check() {
   fi
 }
 
-# Corners of the parameter space: the smallest, the largest, narrow and wide warps, and every optional mode.
+# Corners of the parameter space: the smallest, the largest, narrow and wide warps, every optional mode, every number of units.
 verilog_configurations=(
   "WARPS=8 LANES=8"
   "WARPS=4 LANES=4 SLOW_UNIT=3 BRH_LATENCY=2"
-  "WARPS=1 LANES=1 STACK_DEPTH=2 DCACHE_MSHRS=1 ICACHE_BYTES=512 DCACHE_BYTES=512"
+  "UNITS=2 WARPS=4 LANES=2"
+  "UNITS=4 WARPS=1 LANES=1 STACK_DEPTH=2 DCACHE_MSHRS=1 ICACHE_BYTES=512 DCACHE_BYTES=512"
   "WARPS=32 LANES=1"
   "WARPS=1 LANES=32"
   "WARPS=2 LANES=16 INT_COUNT=2 FLT_COUNT=4 SLW_LATENCY=3 TID_DEPTH=2 SUBNORMALS=1 SLOW_UNIT=2"
@@ -32,20 +33,21 @@ verilog_configurations=(
 mapfile -t rtl < <(scripts/sources.sh verilog)
 
 for parameters in "${verilog_configurations[@]}"; do
-  verilator_flags=() iverilog_flags=() yosys_flags=()
+  verilator_flags=() iverilog_flags=()
   for parameter in $parameters; do
     verilator_flags+=("-G$parameter")
-    iverilog_flags+=("-Pcompute_unit.$parameter")
-    yosys_flags+=(-chparam "${parameter%=*}" "${parameter#*=}")
+    iverilog_flags+=("-Pmultiprocessor.$parameter")
   done
   check "verilator $parameters" verilator --lint-only -Wall --default-language 1364-2005 -Irtl rtl/waivers.vlt \
-    "${verilator_flags[@]}" --top-module compute_unit "${rtl[@]}"
-  check "iverilog $parameters" iverilog -g2005 -Wall -Irtl -o /dev/null "${iverilog_flags[@]}" -s compute_unit "${rtl[@]}"
+    "${verilator_flags[@]}" --top-module multiprocessor "${rtl[@]}"
+  check "iverilog $parameters" iverilog -g2005 -Wall -Irtl -o /dev/null "${iverilog_flags[@]}" -s multiprocessor "${rtl[@]}"
 done
 
 # Synthesis view: no latch, no combinational loop, no undriven or doubly driven net.
-check "yosys" yosys -q -e '.*latch.*' -p "read_verilog -Irtl ${rtl[*]}; hierarchy -check -top compute_unit; proc -noopt; opt_clean;
-  select -assert-none t:\$dlatch t:\$adlatch t:\$dlatchsr; check -assert"
+for units in 1 4; do
+  check "yosys UNITS=$units" yosys -q -e '.*latch.*' -p "read_verilog -Irtl ${rtl[*]}; hierarchy -check -top multiprocessor -chparam UNITS $units;
+    proc -noopt; opt_clean; select -assert-none t:\$dlatch t:\$adlatch t:\$dlatchsr; check -assert"
+done
 
 mapfile -t cpp < <(scripts/sources.sh cpp)
 check "clang-format (make format)" clang-format --dry-run -Werror "${cpp[@]}"

@@ -1,6 +1,7 @@
 #!/bin/bash
-# Builds the Verilated compute unit of one set of Verilog parameters: OUTPUT_DIR/libraypool_unit.so.
-#   scripts/verilate.sh OUTPUT_DIR [--trace] NAME=VALUE...        (NAME=VALUE as `raypool config CONFIG --verilog-parameters` prints them)
+# Builds the Verilated multiprocessor of one set of Verilog parameters: OUTPUT_DIR/libraypool_unit.so.
+#   scripts/verilate.sh OUTPUT_DIR [--trace] NAME=VALUE...
+# NAME=VALUE as `raypool config CONFIG --verilog-parameters` prints them, and UNITS=1|2|4 (default 1).
 # --trace: the unit can write waveforms (FST), and is slower. Does nothing when the library is newer than all it is made from; a build
 # that fails leaves the old library as it was. VERILATOR, CXX and JOBS (default 2) choose the tools and the number of compilers.
 set -eu -o pipefail
@@ -65,8 +66,10 @@ run() {
 
 begin=$SECONDS
 echo "verilate.sh: verilating rtl/ (${parameters[*]:-default parameters})"
-echo "#define RAYPOOL_UNIT_PARAMETERS \"${parameters[*]}\"" > "$build/unit_parameters.h"
-options=(--cc --exe --top-module compute_unit --Mdir "$build" -Irtl --default-language 1364-2005
+units=1
+for parameter in "${parameters[@]}"; do [ "${parameter%%=*}" != UNITS ] || units=${parameter#*=}; done
+printf '#define RAYPOOL_UNIT_PARAMETERS "%s"\n#define RAYPOOL_UNIT_COUNT %d\n' "${parameters[*]}" "$units" > "$build/unit_parameters.h"
+options=(--cc --exe --top-module multiprocessor --Mdir "$build" -Irtl --default-language 1364-2005
   -O3 --x-assign fast --x-initial fast --noassert
   -CFLAGS "-std=c++17 -fPIC -fvisibility=hidden -fno-gnu-unique -fno-plt -fno-semantic-interposition"
   -CFLAGS "-I$root/cpp_model -I$root/tb -I$build"
@@ -76,11 +79,11 @@ for parameter in "${parameters[@]}"; do options+=("-G$parameter"); done
 message="verilator refused the hardware description (its messages are above)"
 run "$verilator" "${options[@]}" "${waivers[@]}" "${verilog[@]}" "${wrapper[@]/#/$root/}"
 
-echo "verilate.sh: compiling $(cat "$build"/Vcompute_unit*.cpp | wc -l) lines of C++ with $jobs compilers"
+echo "verilate.sh: compiling $(cat "$build"/Vmultiprocessor*.cpp | wc -l) lines of C++ with $jobs compilers"
 message="the Verilated unit does not compile (messages above)"
 launcher=
 command -v ccache > /dev/null && launcher=ccache
-run env CCACHE_BASEDIR="$build" CCACHE_NOHASHDIR=1 make -C "$build" -f Vcompute_unit.mk -j "$jobs" CXX="$compiler" LINK="$compiler" OBJCACHE="$launcher" \
+run env CCACHE_BASEDIR="$build" CCACHE_NOHASHDIR=1 make -C "$build" -f Vmultiprocessor.mk -j "$jobs" CXX="$compiler" LINK="$compiler" OBJCACHE="$launcher" \
   OPT_FAST=-O2 OPT_SLOW=-O1 OPT_GLOBAL=-O2 libraypool_unit.so
 
 # The stamp goes first and comes last: an interrupted move never passes for a finished one.

@@ -1,9 +1,10 @@
 // The compute-unit interface: one set of ports, behind which stand the functional model, the Verilated RTL and the lockstep of
-// both.
+// both; and several units as one device (machine/multiprocessor.hpp), with the same ports. A device of n units numbers them from
+// 0; a single unit is number 0 of its own.
 //
 // Use, once a cycle: read outputs() (what the unit's output ports show in this cycle; they never depend on this cycle's inputs),
 // decide the inputs, call clock(inputs). A handshake transfers when both its valid and its ready are set in the same cycle.
-// docs/architecture.md gives the protocols; names are those of rtl/compute_unit.v without _i and _o.
+// docs/architecture.md and docs/multiprocessor.md give the protocols; names are those of rtl/multiprocessor.v without _i and _o.
 #pragma once
 
 #include <cstdint>
@@ -15,6 +16,8 @@
 #include "machine/packages.hpp"
 
 namespace raypool {
+
+inline constexpr uint32_t kMostUnits = 4;  ///< compute units of a device: 1, 2 or 4
 
 enum class ImportKind : uint8_t { None = 0, Normal = 1, Shadow = 2 };
 
@@ -31,8 +34,11 @@ struct MemoryRequest {
   uint32_t address = 0;  ///< read: multiple of 64, a line; write: multiple of 16, a quadword
   Beat data{};           ///< write only
   uint8_t mask = 0;      ///< write only: bit i = word i is written
-  uint8_t id = 0;        ///< read only: comes back with the response
+  uint8_t id = 0;        ///< read only: comes back with the response; bits 6:5 are the unit's number, of a write too
 };
+
+/// The unit that a memory request or response belongs to.
+inline uint32_t unit_of_id(uint8_t id) { return id >> 5; }
 
 struct MemoryResponse {
   uint8_t id = 0;
@@ -60,6 +66,7 @@ struct Fault {
   FaultCode code = FaultCode::None;
   uint32_t warp = 0;
   uint32_t pc = 0;
+  uint32_t unit = 0;
 };
 
 struct UnitInputs {
@@ -75,19 +82,25 @@ struct UnitInputs {
   bool frame_ready = false;
 };
 
+/// What belongs to a valid means something only while it is set; masks have one bit a unit.
 struct UnitOutputs {
   bool launch_ready = false;
-  bool kernel_done = false;  ///< one cycle for each kernel that ends
-  bool busy = false;         ///< a kernel is running
-  bool idle = true;          ///< nothing runs, waits, is being exported or stored
+  bool idle = true;  ///< every unit: nothing runs, waits, is being exported or stored
   bool memory_request_valid = false;
-  MemoryRequest memory_request;
   bool import_request_valid = false;  ///< wants one package
-  ImportKind import_request_kind = ImportKind::None;
   bool export_valid = false;
-  Beat export_data{};
   bool export_last = false;  ///< third beat of a ray
   bool frame_valid = false;
+  uint8_t launch_unit = 0;  ///< takes the launch in this cycle; means something while launch_ready
+  uint8_t import_request_unit = 0;
+  uint8_t export_unit = 0;
+  uint8_t frame_unit = 0;
+  ImportKind import_request_kind = ImportKind::None;
+  uint32_t kernel_done = 0;  ///< mask: one cycle for each kernel that ends
+  uint32_t busy = 0;         ///< mask: a kernel is running
+  uint32_t unit_idle = 1;    ///< mask: as `idle`, of each unit
+  MemoryRequest memory_request;
+  Beat export_data{};
   FrameContribution frame;
   Fault fault;  ///< sticky
 };
@@ -100,23 +113,26 @@ struct RetireEvent {
   uint32_t mask = 0;           ///< thread mask
   std::vector<uint32_t> data;  ///< one word a lane; meaningful in masked lanes when the instruction writes a register
   uint32_t predicate = 0;      ///< value written when the instruction writes a predicate
+  uint32_t unit = 0;
 };
 struct StoreEvent {
   uint32_t warp = 0;
   uint32_t address = 0;  ///< multiple of 16
   Beat data{};
   uint8_t mask = 0;
+  uint32_t unit = 0;
 };
 struct RayWriteEvent {
   uint32_t warp = 0;
   uint32_t word = 0;
   uint32_t mask = 0;
   std::vector<uint32_t> data;  ///< one word a lane
+  uint32_t unit = 0;
 };
 struct UnitTrace {
-  std::vector<RetireEvent> retired;  ///< rising warp number
-  std::vector<StoreEvent> stores;
-  std::vector<RayWriteEvent> ray_writes;
+  std::vector<RetireEvent> retired;       ///< rising unit, then warp number
+  std::vector<StoreEvent> stores;         ///< rising unit
+  std::vector<RayWriteEvent> ray_writes;  ///< rising unit
 };
 
 /// Performance counters; the number is the RTL's counter_select_i. For those of an ALU type add the Unit's value.
@@ -139,6 +155,9 @@ class ComputeUnit {
  public:
   virtual ~ComputeUnit() = default;
 
+  /// Compute units behind these ports: 1, 2 or 4.
+  virtual uint32_t units() const { return 1; }
+
   /// Reset, then set what stays for a program: its length (instructions), the memory's size (bytes).
   virtual void reset(uint32_t program_length, uint32_t memory_limit) = 0;
   /// Writes argument word `index` (0 .. 31). Only while idle.
@@ -151,7 +170,7 @@ class ComputeUnit {
   virtual void trace_on() {}
   virtual const UnitTrace& trace() const = 0;
 
-  virtual uint64_t counter(int number) = 0;  ///< see namespace counter
+  virtual uint64_t counter(int number) = 0;  ///< see namespace counter; summed over the units
   /// False for an engine that has no notion of time; its cycles and counters of time mean nothing.
   virtual bool timed() const = 0;
 

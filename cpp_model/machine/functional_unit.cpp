@@ -45,9 +45,9 @@ class FunctionalUnit : public ComputeUnit {
 
   void clock(const UnitInputs& inputs) override {
     if (tracing_) trace_ = UnitTrace{};
-    if (outputs_.busy) ++counters_[counter::kBusyCycles];
+    if (outputs_.busy != 0) ++counters_[counter::kBusyCycles];
     transfer(inputs);
-    outputs_.kernel_done = false;
+    outputs_.kernel_done = 0;
     if (outputs_.fault.code == FaultCode::None) run();
     present();
   }
@@ -121,7 +121,7 @@ class FunctionalUnit : public ComputeUnit {
         executed(step);
       }
     }
-    outputs_.kernel_done = !core_.running();
+    outputs_.kernel_done = core_.running() ? 0 : 1;
   }
 
   void executed(const Step& step) {
@@ -167,8 +167,9 @@ class FunctionalUnit : public ComputeUnit {
     const uint32_t next = import_.requested;
     const bool wants_import = next < import_.threads;
     outputs_.launch_ready = !launch_waits_ && !wants_import && !stopped;
-    outputs_.busy = core_.running();
+    outputs_.busy = core_.running() ? 1 : 0;
     outputs_.idle = !core_.running() && !launch_waits_ && exports_.empty();
+    outputs_.unit_idle = outputs_.idle ? 1 : 0;
     outputs_.import_request_valid = wants_import && (next % lanes_ != 0 || reserved_[next / lanes_] == 0);
     outputs_.import_request_kind = import_.kind;
     outputs_.export_valid = !exports_.empty() && !exports_.front().to_frame;

@@ -1,5 +1,5 @@
-// For tests: the smallest chip around a compute unit. Launches kernels, answers memory, gives packages, takes rays and
-// contributions, with randomly hesitating ports.
+// For tests: the smallest chip around a compute unit, or a multiprocessor. Launches kernels, answers memory, gives packages,
+// takes rays and contributions, with randomly hesitating ports.
 #pragma once
 
 #include <deque>
@@ -57,7 +57,7 @@ class TestChip {
     if (out.frame_valid && in.frame_ready) frame.push_back(out.frame);
     unit_->clock(in);
     ++cycles;
-    kernels_done += unit_->outputs().kernel_done;
+    kernels_done += static_cast<uint64_t>(__builtin_popcount(unit_->outputs().kernel_done));
   }
 
   /// Until all is launched and the unit has been idle for some cycles, has a fault, or `limit` cycles have passed. True if idle.

@@ -8,6 +8,7 @@
 
 #include "chip/chip_clock.hpp"
 #include "chip/controller.hpp"
+#include "chip/device_host.hpp"
 #include "chip/frame_port.hpp"
 #include "chip/intersection_pool.hpp"
 #include "chip/memory_port.hpp"
@@ -16,7 +17,6 @@
 #include "chip/ray_pool.hpp"
 #include "chip/simulation.hpp"
 #include "chip/traverser.hpp"
-#include "chip/unit_host.hpp"
 #include "scene/native_renderer.hpp"
 
 namespace raypool {
@@ -32,13 +32,8 @@ void require_range(const char* what, int value, int low, int high) {
 int tile_width(const ChipOptions& options) { return 1 << tile_width_log2(options.configuration.contents()); }
 
 void check(const ChipOptions& options) {
-  const size_t units = options.units.size();
-  if (units != 1 && units != 2 && units != 4) throw InputError(fmt::format("{} compute units: a chip has 1, 2 or 4", units));
-  for (const ComputeUnit* unit : options.units) {
-    if (unit == nullptr) throw std::logic_error("run_chip was given no unit");
-  }
-  if (options.memory == nullptr || options.tracer == nullptr || options.frame == nullptr) {
-    throw std::logic_error("run_chip needs memory, tracer and frame");
+  if (options.device == nullptr || options.memory == nullptr || options.tracer == nullptr || options.frame == nullptr) {
+    throw std::logic_error("run_chip needs device, memory, tracer and frame");
   }
   require_range("image width", options.width, 1, 65535);
   require_range("image height", options.height, 1, 65535);
@@ -51,36 +46,26 @@ void check(const ChipOptions& options) {
 /// The modules of a chip, connected.
 struct Chip {
   explicit Chip(const ChipOptions& options)
-      : units(static_cast<int>(options.units.size())),
+      : units(static_cast<int>(options.device->units())),
         clock("clock"),
         ledger(units, options.width, options.height),
-        memory("memory_port", clock, *options.memory, units),
-        rays("ray_pool", clock, ledger, units, options.ray_packages, options.depth),
-        intersections("intersection_pool", clock, ledger, units, options.intersection_packages),
+        memory("memory_port", clock, *options.memory),
+        rays("ray_pool", clock, ledger, options.ray_packages, options.depth),
+        intersections("intersection_pool", clock, ledger, options.intersection_packages),
         frame(ledger, *options.frame),
         controller("controller", options, clock, rays, intersections, ledger),
-        traverser(make_traverser(
-            options.traverser, {clock, rays, intersections, ledger, *options.tracer, units, [this] { controller.changed(); }})) {
-    std::vector<UnitHost*> connections;
-    for (int i = 0; i < units; ++i) {
-      const UnitSurroundings around{clock, memory, controller,
-                                    UnitSurroundings::Frame{rays, intersections, frame, ledger, *traverser}};
-      hosts.push_back(
-          std::make_unique<UnitHost>(fmt::format("unit_{}", i).c_str(), i, *options.units[static_cast<size_t>(i)], around));
-      connections.push_back(hosts.back().get());
-    }
-    controller.connect(std::move(connections));
+        traverser(make_traverser(options.traverser,
+                                 {clock, rays, intersections, ledger, *options.tracer, units, [this] { controller.changed(); }})),
+        device("device", *options.device,
+               {clock, memory, controller, DeviceSurroundings::Frame{rays, intersections, frame, ledger, *traverser}}) {
+    controller.connect(device);
   }
 
   uint64_t rays_traced() const {
     const TraverserCounts& counts = traverser->counts();
     return counts.eye_rays + counts.secondary_rays + counts.shadow_rays;
   }
-  std::string describe() const {
-    std::string text = controller.describe();
-    for (const auto& host : hosts) text += "; " + host->describe();
-    return text;
-  }
+  std::string describe() { return controller.describe() + "; " + device.describe(); }
 
   int units;
   ChipClock clock;
@@ -91,23 +76,15 @@ struct Chip {
   FramePort frame;
   Controller controller;
   std::unique_ptr<Traverser> traverser;
-  std::vector<std::unique_ptr<UnitHost>> hosts;
+  DeviceHost device;
 };
 
 MonitorOptions watch(const ChipOptions& options, Chip& chip) {
   MonitorOptions watch;
   watch.watchdog_cycles = options.watchdog_cycles;
   watch.cycle_limit = options.cycle_limit;
-  watch.retired = [&chip] {
-    uint64_t sum = 0;
-    for (const auto& host : chip.hosts) sum += host->instructions();
-    return sum;
-  };
-  watch.transfers = [&chip] {
-    uint64_t sum = chip.rays_traced() + chip.traverser->counts().delivered;
-    for (const auto& host : chip.hosts) sum += host->transfers();
-    return sum;
-  };
+  watch.retired = [&chip] { return chip.device.instructions(); };
+  watch.transfers = [&chip] { return chip.rays_traced() + chip.traverser->counts().delivered + chip.device.transfers(); };
   if (options.progress) {
     watch.progress = [&options, &chip] {
       options.progress({static_cast<double>(chip.ledger.finished()) / static_cast<double>(chip.ledger.pixels()),
@@ -127,11 +104,7 @@ PoolFill pool_fill(const LevelStatistics& fill, uint32_t capacity, uint64_t cycl
 
 /// Averages over the units, from their counters.
 void collect_units(const ChipOptions& options, ChipResult& result) {
-  const auto sum = [&](int number) {
-    uint64_t total = 0;
-    for (ComputeUnit* unit : options.units) total += unit->counter(number);
-    return total;
-  };
+  const auto sum = [&](int number) { return options.device->counter(number); };
   const uint64_t busy = sum(counter::kBusyCycles);
   result.instructions = sum(counter::kInstructions);
   result.thread_instructions = sum(counter::kThreadInstructions);
@@ -152,7 +125,7 @@ void collect_units(const ChipOptions& options, ChipResult& result) {
 
 ChipResult collect(const ChipOptions& options, const Chip& chip) {
   ChipResult result;
-  for (const ComputeUnit* unit : options.units) result.timed = result.timed && unit->timed();
+  result.timed = options.device->timed();
   result.cycles = chip.clock.cycle();
   result.nanoseconds = static_cast<double>(result.cycles);
   const TraverserCounts& counts = chip.traverser->counts();
@@ -170,8 +143,8 @@ ChipResult collect(const ChipOptions& options, const Chip& chip) {
     result.mrays_per_s = ratio(1000 * (options.depth == 1 ? primary : static_cast<double>(result.rays())), result.nanoseconds);
   }
 
-  for (const auto& host : chip.hosts) result.busy_cycles += host->busy_cycles();
-  result.time_utilisation = ratio(result.busy_cycles, result.cycles * options.units.size());
+  result.busy_cycles = chip.device.busy_cycles();
+  result.time_utilisation = ratio(result.busy_cycles, result.cycles * options.device->units());
   result.resource_utilisation = chip.controller.resource_utilisation();
   collect_units(options, result);
 
@@ -230,10 +203,8 @@ ChipResult run_chip(const ChipOptions& options) {
   arguments[argument::kTileMask] = static_cast<uint32_t>(tile_width(options)) - 1;
   arguments[argument::kWidth] = static_cast<uint32_t>(options.width);
   arguments[argument::kHeight] = static_cast<uint32_t>(options.height);
-  for (ComputeUnit* unit : options.units) {
-    unit->reset(options.program_length, options.memory->size());
-    for (int i = 0; i < kArguments; ++i) unit->set_argument(i, arguments[static_cast<size_t>(i)]);
-  }
+  options.device->reset(options.program_length, options.memory->size());
+  for (int i = 0; i < kArguments; ++i) options.device->set_argument(i, arguments[static_cast<size_t>(i)]);
 
   Simulation simulation;
   Chip chip(options);

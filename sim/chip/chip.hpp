@@ -1,5 +1,6 @@
-// The whole chip, simulated with SystemC: ray pool, traverser, intersection pool, controller and memory port around 1, 2 or 4
-// compute units, whichever engine they are. docs/chip.md describes the blocks, their timing, and why the chip cannot lock up.
+// The whole chip, simulated with SystemC: ray pool, traverser, intersection pool, controller and memory port around one device of
+// 1, 2 or 4 compute units, whichever engine it is. docs/chip.md describes the blocks, their timing, and why the chip cannot lock
+// up.
 #pragma once
 
 #include <array>
@@ -27,10 +28,9 @@ struct ChipProgress {
 
 struct ChipOptions {
   Configuration configuration;
-  std::vector<ComputeUnit*>
-      units;                    ///< 1, 2 or 4 that fit `configuration`; run_chip resets them and leaves their counters to be read
-  Memory* memory = nullptr;     ///< program and materials
-  uint32_t program_length = 0;  ///< instructions, from address 0
+  ComputeUnit* device = nullptr;                ///< fits `configuration`; run_chip resets it and leaves its counters to be read
+  Memory* memory = nullptr;                     ///< program and materials
+  uint32_t program_length = 0;                  ///< instructions, from address 0
   std::array<uint32_t, kRayKernels> entries{};  ///< PC of each RayKernel
   /// Words kTileWidthLog2, kTileMask, kWidth and kHeight are set by the chip, whatever they hold.
   std::array<uint32_t, kArguments> arguments{};

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "chip/test_scripted_unit.hpp"
+#include "machine/multiprocessor.hpp"
 
 namespace raypool {
 namespace {
@@ -21,7 +22,8 @@ struct FrameRun {
   ChipOptions options;
   Memory memory{4096};
   WorldFrame frame;
-  std::vector<std::unique_ptr<ScriptedUnit>> units;
+  std::vector<ScriptedUnit*> units;  ///< of the device
+  std::unique_ptr<ComputeUnit> device;
 
   FrameRun(int warps, int cores, int unit_count, int width, int height, int depth, int pace = 60, uint32_t seed = 1) {
     world.seed = seed;
@@ -31,17 +33,21 @@ struct FrameRun {
     options.width = width;
     options.height = height;
     options.depth = depth;
+    std::vector<std::unique_ptr<ComputeUnit>> made;
     for (int i = 0; i < unit_count; ++i) {
-      units.push_back(std::make_unique<ScriptedUnit>(world, warps * cores, pace, seed + static_cast<uint32_t>(i), memory));
-      options.units.push_back(units.back().get());
+      auto unit = std::make_unique<ScriptedUnit>(world, warps * cores, pace, seed + static_cast<uint32_t>(i), memory);
+      units.push_back(unit.get());
+      made.push_back(std::move(unit));
     }
+    device = make_multiprocessor(std::move(made));
+    options.device = device.get();
     options.entries = test::kScriptedEntries;
     options.memory = &memory;
     options.watchdog_cycles = 20'000;
   }
 
   ChipResult go() {
-    for (auto& unit : units) unit->set_world(world);
+    for (ScriptedUnit* unit : units) unit->set_world(world);
     WorldTracer tracer(world);
     options.tracer = &tracer;
     options.frame = &frame;
@@ -264,7 +270,6 @@ TEST(Chip, RefusesOptionsOutOfRange) {
     change(run);
     EXPECT_THROW(run.go(), InputError) << what;
   };
-  refuses([](FrameRun& run) { run.options.units.resize(3, run.options.units[0]); }, "three units");
   refuses([](FrameRun& run) { run.options.width = 0; }, "width");
   refuses([](FrameRun& run) { run.options.height = 65536; }, "height");
   refuses([](FrameRun& run) { run.options.depth = 0; }, "depth");

@@ -18,13 +18,12 @@ Controller::Controller(const sc_core::sc_module_name& name, const ChipOptions& o
       ledger_(ledger),
       secondary_(options.depth == 1 ? RayKernel::CastSecondaryDirect : RayKernel::CastSecondary),
       tile_width_(1 << tile_width_log2(options.configuration.contents())),
-      given_(options.units.size()),
-      ended_(options.units.size()) {
+      given_(options.device->units()),
+      ended_(options.device->units()) {
   const int contents = options.configuration.contents();
   // A tile that would hold more pixels than allowed is cut into bands of whole rows.
   tile_height_ = std::min(contents, options.held_limit) / tile_width_;
-  const PolicySetup setup{static_cast<uint32_t>(contents), static_cast<uint32_t>(options.units.size()), rays.capacity(),
-                          intersections.capacity()};
+  const PolicySetup setup{static_cast<uint32_t>(contents), options.device->units(), rays.capacity(), intersections.capacity()};
   policy_ = make_policy(options.policy, setup);
   SC_METHOD(decide);
   sensitive << decide_;
@@ -79,32 +78,23 @@ PolicyView Controller::view(bool ahead) const {
 void Controller::decide() {
   clock_.guard([&] {
     if (end_if_finished()) return;
-    // Free units first; then those that still run a kernel.
-    for (const bool ahead : {false, true}) {
-      if (ahead && !options_.launch_ahead) break;
-      for (size_t i = 0; i < units_.size(); ++i) {
-        const size_t u = (first_ + i) % units_.size();
-        if (units_[u]->busy() != ahead || !units_[u]->can_launch()) continue;
-        const Choice choice = policy_->choose(view(ahead));
-        if (choice.kind == Choice::Kind::Halt) continue;
-        launch(static_cast<int>(u), choice);
-        if (!ahead) first_ = (u + 1) % units_.size();
-      }
-    }
+    if (!device_->can_launch()) return;
+    const bool ahead = device_->busy(device_->next_unit());
+    if (ahead && !options_.launch_ahead) return;
+    const Choice choice = policy_->choose(view(ahead));
+    if (choice.kind != Choice::Kind::Halt) launch(choice);
   });
 }
 
 bool Controller::end_if_finished() {
-  if (ledger_.finished() < ledger_.pixels()) return false;
-  for (const UnitHost* unit : units_) {
-    if (!unit->idle()) return false;
-  }
+  if (ledger_.finished() < ledger_.pixels() || !device_->idle()) return false;
   finished_ = true;
   clock_.stop();
   return true;
 }
 
-void Controller::launch(int unit, const Choice& choice) {
+void Controller::launch(const Choice& choice) {
+  const int unit = static_cast<int>(device_->next_unit());
   LaunchCommand command;
   RayKernel kernel = RayKernel::CastEye;
   if (choice.kind == Choice::Kind::Eye) {
@@ -128,11 +118,11 @@ void Controller::launch(int unit, const Choice& choice) {
   ++count.launches;
   count.threads += command.threads;
   given_[static_cast<size_t>(unit)].push_back({kernel, command.threads, UINT64_MAX});
-  units_[static_cast<size_t>(unit)]->launch(command);
+  device_->launch(command);
 }
 
 LaunchCommand Controller::next_tile(int unit) {
-  if (ledger_.held() == 0) round_ = static_cast<int>(units_.size());
+  if (ledger_.held() == 0) round_ = static_cast<int>(device_->units());
   --round_;
   std::vector<uint32_t> pixels;
   for (int y = tile_y_; y < std::min(tile_y_ + tile_height_, options_.height); ++y) {

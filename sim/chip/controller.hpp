@@ -1,4 +1,5 @@
-// The controller: cuts the image into tiles, and gives each unit its next kernel as the policy proposes, as far as it is safe.
+// The controller: cuts the image into tiles, and launches on the device what the policy proposes, as far as it is safe. Which
+// unit gets a launch is the device's choice (its block scheduler's); the controller sees it beforehand.
 //
 // Two rules keep the chip from locking up, whatever the policy (docs/chip.md has the argument): no more pixels are held than the
 // intersection pool has places for normal intersections, and a secondary kernel starts only if all shadow rays and intersections
@@ -15,13 +16,13 @@
 #include <vector>
 
 #include "chip/chip.hpp"
+#include "chip/device_host.hpp"
 #include "chip/intersection_pool.hpp"
 #include "chip/launcher.hpp"
 #include "chip/pixel_ledger.hpp"
 #include "chip/policy.hpp"
 #include "chip/ray_pool.hpp"
 #include "chip/statistics.hpp"
-#include "chip/unit_host.hpp"
 
 namespace raypool::chip {
 
@@ -33,7 +34,7 @@ class Controller : public sc_core::sc_module, public Launcher {
              IntersectionPool& intersections, PixelLedger& ledger);
 
   /// Before the run.
-  void connect(std::vector<UnitHost*> units) { units_ = std::move(units); }
+  void connect(DeviceHost& device) { device_ = &device; }
 
   void accepted(int unit) override;
   void kernel_ended(int unit) override;
@@ -61,7 +62,7 @@ class Controller : public sc_core::sc_module, public Launcher {
   PolicyView view(bool ahead) const;
   bool eye_possible() const;
   uint32_t secondary_room() const;
-  void launch(int unit, const Choice& choice);
+  void launch(const Choice& choice);
   LaunchCommand next_tile(int unit);
   uint32_t pixels_of_next_tile() const;
 
@@ -73,8 +74,7 @@ class Controller : public sc_core::sc_module, public Launcher {
   std::unique_ptr<KernelPolicy> policy_;
   RayKernel secondary_;
   sc_core::sc_event decide_;
-  std::vector<UnitHost*> units_;
-  size_t first_ = 0;  // unit that is asked first
+  DeviceHost* device_ = nullptr;
 
   int tile_width_, tile_height_;
   int tile_x_ = 0, tile_y_ = 0;  // first pixel of the next tile

@@ -1,4 +1,4 @@
-// The frame buffer's port: takes one contribution a cycle from every unit, always.
+// The frame buffer's port: takes one contribution a cycle, always.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +14,8 @@ class FramePort {
   FramePort(PixelLedger& ledger, FrameSink& frame) : ledger_(ledger), frame_(frame) {}
 
   /// Throws std::runtime_error when the contribution is of a pixel that the unit has nothing to do with.
-  void take(int unit, const FrameContribution& contribution) {
-    ledger_.contribution_exported(unit, contribution.pixel);
+  void take(uint32_t unit, const FrameContribution& contribution) {
+    ledger_.contribution_exported(static_cast<int>(unit), contribution.pixel);
     frame_.add(contribution);
     ++taken_;
   }

@@ -3,6 +3,7 @@
 
 #include "chip/chip.hpp"
 #include "machine/functional_unit.hpp"
+#include "machine/multiprocessor.hpp"
 #include "scene/native_renderer.hpp"
 
 namespace raypool {
@@ -33,10 +34,9 @@ TEST_P(Frame, IsThatOfTheNativeRenderer) {
   options.configuration.cores = c.cores;
   Memory memory = image.memory;
   std::vector<std::unique_ptr<ComputeUnit>> units;
-  for (int i = 0; i < c.units; ++i) {
-    units.push_back(make_functional_unit(options.configuration, memory));
-    options.units.push_back(units.back().get());
-  }
+  for (int i = 0; i < c.units; ++i) units.push_back(make_functional_unit(options.configuration, memory));
+  const std::unique_ptr<ComputeUnit> device = make_multiprocessor(std::move(units));
+  options.device = device.get();
   FrameBuffer frame(c.width, c.height);
   FrameBufferSink sink(frame);
   SceneTracer scene_tracer(tracer);

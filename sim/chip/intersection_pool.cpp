@@ -2,28 +2,23 @@
 
 namespace raypool::chip {
 
-IntersectionPool::IntersectionPool(const sc_core::sc_module_name& name, ChipClock& clock, PixelLedger& ledger, int units,
-                                   int capacity)
-    : sc_module(name),
-      clock_(clock),
-      ledger_(ledger),
-      capacity_(static_cast<size_t>(capacity)),
-      turn_(units),
-      wanting_(static_cast<size_t>(units), ImportKind::None) {
+IntersectionPool::IntersectionPool(const sc_core::sc_module_name& name, ChipClock& clock, PixelLedger& ledger, int capacity)
+    : sc_module(name), clock_(clock), ledger_(ledger), capacity_(static_cast<size_t>(capacity)) {
   SC_METHOD(serve);
   sensitive << work_;
   dont_initialize();
 }
 
-void IntersectionPool::want(int unit, ImportKind kind) {
-  wanting_[static_cast<size_t>(unit)] = kind;
+void IntersectionPool::want(uint32_t unit, ImportKind kind) {
+  wanting_ = kind;
+  wanting_unit_ = unit;
   const uint64_t now = clock_.cycle();
   clock_.notify(work_, Phase::Ports, free_at_ > now ? free_at_ - now : 0);
 }
 
-bool IntersectionPool::beat(int unit, Beat& beat) const {
+bool IntersectionPool::beat(Beat& beat) const {
   const uint64_t now = clock_.cycle();
-  if (granted_ != unit || now < granted_at_ + kPoolOverhead || now >= granted_at_ + kServiceCycles) return false;
+  if (!granted_ || now < granted_at_ + kPoolOverhead || now >= granted_at_ + kServiceCycles) return false;
   const auto first = static_cast<size_t>(now - granted_at_ - kPoolOverhead) * kBeatWords;
   for (size_t i = 0; i < kBeatWords; ++i) beat[i] = first + i < kIntersectionWords ? leaving_[first + i] : 0;
   return true;
@@ -38,14 +33,10 @@ void IntersectionPool::serve() {
   clock_.guard([&] {
     const uint64_t now = clock_.cycle();
     if (now < free_at_) return clock_.notify(work_, Phase::Ports, free_at_ - now);
-    const int unit = turn_.next([&](int u) {
-      const ImportKind kind = wanting_[static_cast<size_t>(u)];
-      return kind != ImportKind::None && !queue(kind).empty();
-    });
-    if (unit < 0) return;
-    const ImportKind kind = wanting_[static_cast<size_t>(unit)];
-    wanting_[static_cast<size_t>(unit)] = ImportKind::None;
-    granted_ = unit;
+    const ImportKind kind = wanting_;
+    if (kind == ImportKind::None || queue(kind).empty()) return;
+    wanting_ = ImportKind::None;
+    granted_ = true;
     granted_at_ = now;
     free_at_ = now + kServiceCycles;
     leaving_ = queue(kind).front();
@@ -53,7 +44,7 @@ void IntersectionPool::serve() {
     --reserved_[number(kind)];
     ++taken_;
     fill_[number(kind)].set(now, size(kind));
-    ledger_.imported(unit, leaving_[word::kPixel]);
+    ledger_.imported(static_cast<int>(wanting_unit_), leaving_[word::kPixel]);
     clock_.notify(work_, Phase::Ports, kServiceCycles);
   });
 }

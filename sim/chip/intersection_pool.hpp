@@ -1,8 +1,8 @@
 // The intersection pool: intersections of normal and of shadow rays, a queue for each kind, behind one 128-bit port.
 //
-// An intersection costs the port 8 cycles: 2 for the request, 6 beats. A unit that requests one in cycle c from an idle port sees
-// its request taken in c+1 and the beats in c+2 .. c+7. Units are served round robin, package by package; the oldest package of
-// the kind goes first. Its place is free as soon as its request is taken (the port keeps it in a register of its own).
+// An intersection costs the port 8 cycles: 2 for the request, 6 beats. A request in cycle c to an idle port is taken in c+1, and
+// the beats move in c+2 .. c+7. The oldest package of the kind goes first. Its place is free as soon as its request is taken (the
+// port keeps it in a register of its own).
 //
 // Whoever launches a kernel reserves its packages at once, so that available() never promises the same package twice.
 #pragma once
@@ -11,12 +11,10 @@
 #include <cstdint>
 #include <deque>
 #include <systemc>
-#include <vector>
 
 #include "chip/chip_clock.hpp"
 #include "chip/pixel_ledger.hpp"
 #include "chip/ray_pool.hpp"
-#include "chip/round_robin.hpp"
 #include "chip/statistics.hpp"
 #include "machine/compute_unit.hpp"
 #include "machine/packages.hpp"
@@ -27,15 +25,15 @@ class IntersectionPool : public sc_core::sc_module {
  public:
   SC_HAS_PROCESS(IntersectionPool);
   /// `clock` and `ledger` must outlive the pool; `capacity` packages of each kind.
-  IntersectionPool(const sc_core::sc_module_name& name, ChipClock& clock, PixelLedger& ledger, int units, int capacity);
+  IntersectionPool(const sc_core::sc_module_name& name, ChipClock& clock, PixelLedger& ledger, int capacity);
 
-  // For unit `unit`, in the phase of the units.
-  /// True if the unit's request is taken in this cycle.
-  bool ready(int unit) const { return granted_ == unit && clock_.cycle() == granted_at_ + 1; }
-  /// The unit requests a package of `kind` and is not ready().
-  void want(int unit, ImportKind kind);
+  // For the device, in the phase of the units.
+  /// True if the request is taken in this cycle.
+  bool ready() const { return granted_ && clock_.cycle() == granted_at_ + 1; }
+  /// Compute unit `unit` requests a package of `kind`, and the pool is not ready(). A request stays until it is taken.
+  void want(uint32_t unit, ImportKind kind);
   /// True if a beat arrives in this cycle.
-  bool beat(int unit, Beat& beat) const;
+  bool beat(Beat& beat) const;
 
   // For the traverser.
   bool full(ImportKind kind) const { return queue(kind).size() >= capacity_; }
@@ -64,11 +62,11 @@ class IntersectionPool : public sc_core::sc_module {
   PixelLedger& ledger_;
   size_t capacity_;
   sc_core::sc_event work_;
-  RoundRobin turn_;
   std::array<std::deque<Intersection>, 2> queues_;
   std::array<uint32_t, 2> reserved_{};
-  std::vector<ImportKind> wanting_;  // [unit]
-  int granted_ = -1;                 // unit served last
+  ImportKind wanting_ = ImportKind::None;  // a package of this kind
+  uint32_t wanting_unit_ = 0;
+  bool granted_ = false;  // ever
   uint64_t granted_at_ = 0, free_at_ = 0;
   Intersection leaving_{};
   uint64_t taken_ = 0;

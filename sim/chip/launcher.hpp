@@ -1,4 +1,4 @@
-// Who gives compute units their kernels: the controller of a frame, or the block scheduler of a compute program.
+// Who launches kernels on the device: the controller of a frame, or the grid of a compute program.
 #pragma once
 
 namespace raypool::chip {

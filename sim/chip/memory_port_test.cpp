@@ -14,7 +14,7 @@ struct Bench {
   Memory memory{65536};
   MemoryPort port;
 
-  explicit Bench(int units) : port("memory_port", clock, memory, units) {
+  Bench() : port("memory_port", clock, memory) {
     for (uint32_t i = 0; i < memory.size(); i += 4) memory.store(i, i * 2654435761u);
   }
   void run(std::function<bool(uint64_t)> cycle) {
@@ -27,12 +27,12 @@ struct Bench {
 MemoryRequest read_of(uint32_t address, uint8_t id = 0) { return {false, address, {}, 0, id}; }
 
 TEST(MemoryPort, GivesALineInFourBeatsThatEndAfter120Cycles) {
-  Bench bench(1);
+  Bench bench;
   std::vector<uint64_t> beats;
   bench.run([&](uint64_t cycle) {
-    if (cycle == 10) bench.port.request(0, read_of(128, 5));
+    if (cycle == 10) bench.port.request(read_of(128, 5));
     MemoryResponse response;
-    if (bench.port.response(0, response)) {
+    if (bench.port.response(response)) {
       EXPECT_EQ(response.id, 5);
       EXPECT_EQ(response.beat, beats.size());
       for (uint32_t i = 0; i < 4; ++i) EXPECT_EQ(response.data[i], bench.memory.load(128 + response.beat * 16 + i * 4));
@@ -47,38 +47,32 @@ TEST(MemoryPort, GivesALineInFourBeatsThatEndAfter120Cycles) {
 }
 
 TEST(MemoryPort, MovesEightGigabytesASecond) {
-  for (const int units : {1, 4}) {
-    Bench bench(units);
-    uint64_t first = 0, last = 0;
-    int beats = 0, asked = 0;
-    bench.run([&](uint64_t cycle) {
-      for (int unit = 0; unit < units; ++unit) {
-        if (asked < 100 && bench.port.ready(unit)) {
-          bench.port.request(unit, read_of(64u * static_cast<uint32_t>(asked++)));
-        }
-        MemoryResponse response;
-        if (bench.port.response(unit, response)) {
-          if (beats++ == 0) first = cycle;
-          last = cycle;
-        }
-      }
-      return cycle < 2000;
-    });
-    EXPECT_EQ(beats, 400);
-    EXPECT_EQ(last - first + 2, 100u * 64 / 8) << units << " units";
-  }
+  Bench bench;
+  uint64_t first = 0, last = 0;
+  int beats = 0, asked = 0;
+  bench.run([&](uint64_t cycle) {
+    if (asked < 100 && bench.port.ready()) bench.port.request(read_of(64u * static_cast<uint32_t>(asked++)));
+    MemoryResponse response;
+    if (bench.port.response(response)) {
+      if (beats++ == 0) first = cycle;
+      last = cycle;
+    }
+    return cycle < 2000;
+  });
+  EXPECT_EQ(beats, 400);
+  EXPECT_EQ(last - first + 2, 100u * 64 / 8);
 }
 
 TEST(MemoryPort, TakesTwoCyclesForAWrite) {
-  Bench bench(1);
+  Bench bench;
   uint64_t beat = 0;
   bench.run([&](uint64_t cycle) {
     if (cycle == 1) {
-      for (int i = 0; i < 3; ++i) bench.port.request(0, {true, 0, {1, 2, 3, 4}, 15, 0});
-      bench.port.request(0, read_of(64));
+      for (int i = 0; i < 3; ++i) bench.port.request({true, 0, {1, 2, 3, 4}, 15, 0});
+      bench.port.request(read_of(64));
     }
     MemoryResponse response;
-    if (bench.port.response(0, response) && response.beat == 3) beat = cycle;
+    if (bench.port.response(response) && response.beat == 3) beat = cycle;
     return cycle < 200;
   });
   EXPECT_EQ(beat, 1u + 3 * 2 + 120);
@@ -86,57 +80,63 @@ TEST(MemoryPort, TakesTwoCyclesForAWrite) {
 }
 
 TEST(MemoryPort, LetsAReadSeeEveryEarlierWriteAndNoLaterOne) {
-  Bench bench(1);
+  Bench bench;
   const uint32_t before = bench.memory.load(68);
   Beat seen{};
   bench.run([&](uint64_t cycle) {
     if (cycle == 1) {
-      bench.port.request(0, {true, 64, {11, 12, 13, 14}, 0b1101, 0});
-      bench.port.request(0, read_of(64));
-      bench.port.request(0, {true, 64, {21, 22, 23, 24}, 15, 0});
+      bench.port.request({true, 64, {11, 12, 13, 14}, 0b1101, 0});
+      bench.port.request(read_of(64));
+      bench.port.request({true, 64, {21, 22, 23, 24}, 15, 0});
     }
     MemoryResponse response;
-    if (bench.port.response(0, response) && response.beat == 0) seen = response.data;
+    if (bench.port.response(response) && response.beat == 0) seen = response.data;
     return cycle < 200;
   });
   EXPECT_EQ(seen, (Beat{11, before, 13, 14}));
   EXPECT_EQ(bench.memory.load(64), 21u);
 }
 
-TEST(MemoryPort, HoldsEightWaitingRequestsOfAUnit) {
-  Bench bench(2);
+TEST(MemoryPort, HoldsEightWaitingRequests) {
+  Bench bench;
   bench.run([&](uint64_t cycle) {
     if (cycle == 1) {
       for (size_t i = 0; i < kMemoryQueue; ++i) {
-        EXPECT_TRUE(bench.port.ready(0));
-        bench.port.request(0, read_of(0));
+        EXPECT_TRUE(bench.port.ready());
+        bench.port.request(read_of(0));
       }
-      EXPECT_FALSE(bench.port.ready(0));
-      EXPECT_TRUE(bench.port.ready(1));
+      EXPECT_FALSE(bench.port.ready());
     }
     // One is served in cycle 1, the next in cycle 9.
     if (cycle == 2) {
-      EXPECT_TRUE(bench.port.ready(0));
-      bench.port.request(0, read_of(0));
+      EXPECT_TRUE(bench.port.ready());
+      bench.port.request(read_of(0));
     }
-    EXPECT_EQ(bench.port.ready(0), cycle < 1 || cycle >= 10) << cycle;
+    EXPECT_EQ(bench.port.ready(), cycle < 1 || cycle >= 10) << cycle;
     return cycle < 12;
   });
 }
 
-TEST(MemoryPort, ServesUnitsInTurn) {
-  Bench bench(4);
-  std::array<int, 4> lines{};
+TEST(MemoryPort, KnowsOfEachUnitWhetherSomethingIsUnderWay) {
+  Bench bench;
   bench.run([&](uint64_t cycle) {
-    for (int unit = 0; unit < 4; ++unit) {
-      // Unit 0 asks as much as it can, the others one line at a time.
-      if (unit == 0 ? bench.port.ready(0) : bench.port.quiet(unit)) bench.port.request(unit, read_of(0));
-      MemoryResponse response;
-      if (bench.port.response(unit, response) && response.beat == 3) ++lines[static_cast<size_t>(unit)];
+    if (cycle == 1) {
+      bench.port.request(read_of(0, 3));
+      bench.port.request({true, 64, {1, 2, 3, 4}, 15, 2 << 5});
+      bench.port.request(read_of(128, 1 | 3 << 5));
     }
-    return cycle < 4000;
+    MemoryResponse response;
+    const bool came = bench.port.response(response);
+    if (came) {
+      EXPECT_EQ(response.id, cycle > 121 ? 1 | 3 << 5 : 3) << cycle;
+    }
+    // Served in cycles 1, 9 and 11.
+    EXPECT_EQ(bench.port.quiet(0), cycle < 1 || cycle >= 121) << cycle;
+    EXPECT_TRUE(bench.port.quiet(1));
+    EXPECT_EQ(bench.port.quiet(2), cycle < 1 || cycle >= 10) << cycle;
+    EXPECT_EQ(bench.port.quiet(3), cycle < 1 || cycle >= 131) << cycle;
+    return cycle < 200;
   });
-  for (int unit = 1; unit < 4; ++unit) EXPECT_GE(lines[static_cast<size_t>(unit)], 4000 / (120 + 4 * 8)) << unit;
 }
 
 }  // namespace

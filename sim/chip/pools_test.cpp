@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "chip/intersection_pool.hpp"
 #include "chip/ray_pool.hpp"
 #include "chip/simulation.hpp"
@@ -19,8 +21,8 @@ struct Bench {
 
   explicit Bench(int units, int capacity = 512, int depth = 5)
       : ledger(units, 64, 64),
-        rays("ray_pool", clock, ledger, units, capacity, depth),
-        intersections("intersection_pool", clock, ledger, units, capacity),
+        rays("ray_pool", clock, ledger, capacity, depth),
+        intersections("intersection_pool", clock, ledger, capacity),
         next(static_cast<size_t>(units)),
         beat(static_cast<size_t>(units)) {
     for (int unit = 0; unit < units; ++unit) {
@@ -41,10 +43,10 @@ struct Bench {
     simulation.run();
     clock.rethrow();
   }
-  /// The unit offers its next beat in this cycle. True if a ray was completed.
+  /// The device offers the unit's next beat in this cycle. True if a ray was completed.
   bool offer(int unit) {
-    if (!rays.ready(unit)) {
-      rays.want(unit);
+    if (!rays.ready()) {
+      rays.want();
       return false;
     }
     const auto u = static_cast<size_t>(unit);
@@ -52,7 +54,7 @@ struct Bench {
     Beat data;
     for (size_t i = 0; i < 4; ++i) data[i] = ray[beat[u] * 4 + i];
     const bool last = ++beat[u] == 3;
-    rays.take(unit, data, last);
+    rays.take(static_cast<uint32_t>(unit), data, last);
     if (last) {
       beat[u] = 0;
       ++next[u];
@@ -74,36 +76,34 @@ TEST(RayPool, TakesARayInFiveCycles) {
   for (uint32_t i = 0; i < 20; ++i) EXPECT_EQ(bench.rays.rays()[i].ray, Bench::eye_ray(0, i));
 }
 
-TEST(RayPool, SharesItsPortAmongTheUnits) {
+TEST(RayPool, TakesARayOfAnyUnitInFiveCycles) {
   Bench bench(4);
-  std::vector<int> order;
+  int completed = 0;
   bench.run([&](uint64_t cycle) {
-    for (int unit = 0; unit < 4; ++unit) {
-      if (bench.offer(unit)) {
-        order.push_back(unit);
-        EXPECT_EQ(cycle, 1 + 4 + 5 * (order.size() - 1));
-      }
+    if (bench.offer(completed % 4)) {
+      EXPECT_EQ(cycle, 1u + 4 + 5 * static_cast<uint32_t>(completed++));
     }
-    return order.size() < 40;
+    return completed < 40;
   });
-  for (size_t i = 0; i < order.size(); ++i) EXPECT_EQ(order[i], static_cast<int>(i % 4));
+  ASSERT_EQ(bench.rays.size(), 40u);
+  for (int i = 0; i < 40; ++i) {
+    EXPECT_EQ(bench.rays.rays()[static_cast<size_t>(i)].ray, Bench::eye_ray(i % 4, static_cast<uint32_t>(i / 4)));
+  }
 }
 
 TEST(RayPool, TakesNothingWhileFull) {
-  Bench bench(2, 8);
+  Bench bench(1, 8);
   int completed = 0;
   uint64_t resumed = 0;
   bench.run([&](uint64_t cycle) {
-    for (int unit = 0; unit < 2; ++unit) {
-      const bool full_before = bench.rays.full();
-      if (bench.offer(unit) && ++completed == 9) resumed = cycle;
-      // The ray that fills the pool holds nobody up in its own cycle, whichever unit is asked first.
-      EXPECT_FALSE(!full_before && bench.rays.held_up(1 - unit));
+    if (bench.offer(0) && ++completed == 9) resumed = cycle;
+    // The ray that fills the pool holds nobody up in its own cycle.
+    if (completed < 8 || cycle == 1 + 4 + 5 * 7) {
+      EXPECT_FALSE(bench.rays.held_up()) << cycle;
     }
     if (cycle == 100) {
       EXPECT_EQ(bench.rays.size(), 8u);
-      EXPECT_TRUE(bench.rays.held_up(0));
-      EXPECT_TRUE(bench.rays.held_up(1));
+      EXPECT_TRUE(bench.rays.held_up());
       bench.rays.rays().erase(bench.rays.rays().begin());
       bench.rays.removed(0);
     }
@@ -129,8 +129,8 @@ TEST(RayPool, DropsNormalRaysBeyondTheDepthLimitAndNoShadowRays) {
   uint32_t ray = 0, number = 0;
   bench.run([&](uint64_t cycle) {
     if (ray < made.size()) {
-      if (!bench.rays.ready(0)) {
-        bench.rays.want(0);
+      if (!bench.rays.ready()) {
+        bench.rays.want();
       } else {
         Beat data;
         for (size_t i = 0; i < 4; ++i) data[i] = made[ray][number * 4 + i];
@@ -151,8 +151,8 @@ TEST(RayPool, DropsNormalRaysBeyondTheDepthLimitAndNoShadowRays) {
 TEST(RayPool, RefusesARayOfAWrongNumberOfBeats) {
   Bench bench(1);
   EXPECT_THROW(bench.run([&](uint64_t) {
-    if (!bench.rays.ready(0)) {
-      bench.rays.want(0);
+    if (!bench.rays.ready()) {
+      bench.rays.want();
     } else {
       bench.rays.take(0, Beat{}, true);
     }
@@ -180,12 +180,12 @@ TEST(IntersectionPool, GivesAPackageInEightCycles) {
       EXPECT_EQ(bench.intersections.available(ImportKind::Shadow), 0u);
     }
     Beat data;
-    if (bench.intersections.beat(0, data)) {
+    if (bench.intersections.beat(data)) {
       beats.push_back(cycle);
       words.insert(words.end(), data.begin(), data.end());
     }
     if (cycle >= 10 && taken.size() < 3) {
-      if (bench.intersections.ready(0)) {
+      if (bench.intersections.ready()) {
         taken.push_back(cycle);
       } else {
         bench.intersections.want(0, ImportKind::Shadow);
@@ -202,51 +202,44 @@ TEST(IntersectionPool, GivesAPackageInEightCycles) {
   EXPECT_EQ(bench.intersections.busy_cycles(), 24u);
 }
 
-TEST(IntersectionPool, SharesItsPortAndKeepsTheKindsApart) {
+TEST(IntersectionPool, KeepsTheKindsApart) {
   Bench bench(4);
-  std::vector<int> order;
-  std::vector<ImportKind> kinds = {ImportKind::Normal, ImportKind::Shadow, ImportKind::Normal, ImportKind::Shadow};
+  const std::array<ImportKind, 4> kinds = {ImportKind::Normal, ImportKind::Shadow, ImportKind::Normal, ImportKind::Shadow};
   for (int unit = 0; unit < 4; ++unit) bench.ledger.launched(unit, RayKernel::Shade, 1000);
+  uint32_t taken = 0, came = 0;
   bench.run([&](uint64_t cycle) {
     if (cycle == 1) {
       for (uint32_t i = 0; i < 40; ++i) bench.intersections.put(i < 20 ? ImportKind::Normal : ImportKind::Shadow, numbered(i));
     }
-    for (int unit = 0; unit < 4; ++unit) {
-      Beat data;
-      if (bench.intersections.beat(unit, data) && data[1] % 100 == 1) {
-        EXPECT_EQ(data[1] / 100 < 20, kinds[static_cast<size_t>(unit)] == ImportKind::Normal);
-      }
-      if (bench.intersections.ready(unit)) {
-        order.push_back(unit);
-        EXPECT_EQ(cycle, 2 + 8 * (order.size() - 1));
-      } else {
-        bench.intersections.want(unit, kinds[static_cast<size_t>(unit)]);
-      }
+    Beat data;
+    if (bench.intersections.beat(data) && data[1] % 100 == 1) {
+      EXPECT_EQ(data[1] / 100 < 20, kinds[came++ % 4] == ImportKind::Normal);
     }
-    return order.size() < 40;
+    if (taken == 40) return came < 40;
+    if (bench.intersections.ready()) {
+      EXPECT_EQ(cycle, 2 + 8 * uint64_t{taken++});
+    } else {
+      bench.intersections.want(taken % 4, kinds[taken % 4]);
+    }
+    return true;
   });
-  for (size_t i = 0; i < order.size(); ++i) EXPECT_EQ(order[i], static_cast<int>(i % 4));
+  EXPECT_EQ(came, 40u);
   EXPECT_EQ(bench.intersections.size(ImportKind::Normal) + bench.intersections.size(ImportKind::Shadow), 0u);
 }
 
-TEST(IntersectionPool, LetsAUnitWithoutPackagesWaitAndServesTheOthers) {
-  Bench bench(2);
-  int given = 0;
-  bench.ledger.launched(1, RayKernel::Shade, 8);
+TEST(IntersectionPool, LetsARequestWaitUntilItsKindComes) {
+  Bench bench(1);
+  bench.ledger.launched(0, RayKernel::Shade, 1);
+  uint64_t taken = 0;
   bench.run([&](uint64_t cycle) {
-    if (cycle == 1) {
-      for (uint32_t i = 0; i < 8; ++i) bench.intersections.put(ImportKind::Shadow, numbered(i));
-    }
-    EXPECT_FALSE(bench.intersections.ready(0));
-    bench.intersections.want(0, ImportKind::Normal);
-    if (bench.intersections.ready(1)) {
-      ++given;
-    } else {
-      bench.intersections.want(1, ImportKind::Shadow);
-    }
+    if (cycle == 1) bench.intersections.put(ImportKind::Shadow, numbered(0));
+    if (cycle == 50) bench.intersections.put(ImportKind::Normal, numbered(1));
+    if (taken == 0 && bench.intersections.ready()) taken = cycle;
+    if (taken == 0) bench.intersections.want(0, ImportKind::Normal);
     return cycle < 100;
   });
-  EXPECT_EQ(given, 8);
+  EXPECT_EQ(taken, 51u);
+  EXPECT_EQ(bench.intersections.size(ImportKind::Shadow), 1u);
 }
 
 TEST(LevelStatistics, WeighsLevelsByTime) {

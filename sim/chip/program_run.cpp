@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include "chip/chip_clock.hpp"
+#include "chip/device_host.hpp"
 #include "chip/launcher.hpp"
 #include "chip/memory_port.hpp"
 #include "chip/monitor.hpp"
 #include "chip/simulation.hpp"
-#include "chip/unit_host.hpp"
 
 namespace raypool {
 
@@ -15,17 +15,17 @@ namespace {
 
 using namespace chip;
 
-/// Gives the blocks of a grid to one unit, in order.
-class BlockScheduler : public sc_core::sc_module, public Launcher {
+/// Launches the blocks of a grid, in order.
+class Grid : public sc_core::sc_module, public Launcher {
  public:
-  SC_HAS_PROCESS(BlockScheduler);
-  BlockScheduler(const sc_core::sc_module_name& name, ChipClock& clock, const ProgramOptions& options)
+  SC_HAS_PROCESS(Grid);
+  Grid(const sc_core::sc_module_name& name, ChipClock& clock, const ProgramOptions& options)
       : sc_module(name), clock_(clock), options_(options) {
     SC_METHOD(decide);
     sensitive << decide_;
     dont_initialize();
   }
-  void connect(UnitHost& host) { host_ = &host; }
+  void connect(DeviceHost& host) { host_ = &host; }
 
   void accepted(int) override {}
   void kernel_ended(int) override {}
@@ -47,13 +47,13 @@ class BlockScheduler : public sc_core::sc_module, public Launcher {
 
   ChipClock& clock_;
   const ProgramOptions& options_;
-  UnitHost* host_ = nullptr;
+  DeviceHost* host_ = nullptr;
   sc_core::sc_event decide_;
   uint32_t launched_ = 0;
 };
 
 void check(const ProgramOptions& options) {
-  if (options.unit == nullptr || options.memory == nullptr) throw std::logic_error("run_program needs a unit and a memory");
+  if (options.device == nullptr || options.memory == nullptr) throw std::logic_error("run_program needs a device and a memory");
   const auto contents = static_cast<uint32_t>(options.configuration.contents());
   if (options.threads < 1 || options.threads > contents) {
     throw InputError(
@@ -66,31 +66,31 @@ void check(const ProgramOptions& options) {
 
 ProgramResult run_program(const ProgramOptions& options) {
   check(options);
-  ComputeUnit& unit = *options.unit;
-  unit.reset(options.program_length, options.memory->size());
-  for (int i = 0; i < kArguments; ++i) unit.set_argument(i, options.arguments[static_cast<size_t>(i)]);
+  ComputeUnit& device = *options.device;
+  device.reset(options.program_length, options.memory->size());
+  for (int i = 0; i < kArguments; ++i) device.set_argument(i, options.arguments[static_cast<size_t>(i)]);
 
   Simulation simulation;
   ChipClock clock("clock");
-  MemoryPort memory("memory_port", clock, *options.memory, 1);
-  BlockScheduler scheduler("block_scheduler", clock, options);
-  UnitHost host("unit", 0, unit, {clock, memory, scheduler, std::nullopt});
-  scheduler.connect(host);
+  MemoryPort memory("memory_port", clock, *options.memory);
+  Grid grid("grid", clock, options);
+  DeviceHost host("device", device, {clock, memory, grid, std::nullopt});
+  grid.connect(host);
   MonitorOptions watch;
   watch.watchdog_cycles = options.watchdog_cycles;
   watch.cycle_limit = options.cycle_limit;
   watch.retired = [&] { return host.instructions(); };
   watch.transfers = [&] { return host.transfers(); };
-  watch.describe = [&] { return scheduler.describe(); };
+  watch.describe = [&] { return grid.describe(); };
   Monitor monitor("monitor", clock, watch);
-  scheduler.changed();
+  grid.changed();
   simulation.run();
   clock.rethrow();
 
   ProgramResult result;
-  result.timed = unit.timed();
+  result.timed = device.timed();
   result.cycles = clock.cycle();
-  for (int i = 0; i < counter::kCount; ++i) result.counters[static_cast<size_t>(i)] = unit.counter(i);
+  for (int i = 0; i < counter::kCount; ++i) result.counters[static_cast<size_t>(i)] = device.counter(i);
   result.memory_reads = memory.reads();
   result.memory_writes = memory.writes();
   if (result.cycles > 0)

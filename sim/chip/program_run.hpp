@@ -1,4 +1,4 @@
-// Runs a compute program, which needs no pools, on one compute unit behind the chip's memory port.
+// Runs a compute program, which needs no pools, on a device of one or more compute units behind the chip's memory port.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@ namespace raypool {
 
 struct ProgramOptions {
   Configuration configuration;
-  ComputeUnit* unit = nullptr;  ///< is reset; its counters can be read afterwards
+  ComputeUnit* device = nullptr;  ///< is reset; its counters can be read afterwards
   Memory* memory = nullptr;
   uint32_t program_length = 0;  ///< instructions, from address 0
   uint32_t entry = 0;
@@ -23,7 +23,7 @@ struct ProgramOptions {
 
 struct ProgramResult {
   bool timed = true;
-  uint64_t cycles = 0;  ///< until the unit is idle
+  uint64_t cycles = 0;  ///< until the device is idle
   std::array<uint64_t, counter::kCount> counters{};
   uint64_t memory_reads = 0, memory_writes = 0;
   double memory_port_utilisation = 0;

@@ -22,7 +22,7 @@ struct Bench {
     test::put_program(memory, code);
     unit = make_functional_unit(configuration, memory);
     options.configuration = configuration;
-    options.unit = unit.get();
+    options.device = unit.get();
     options.memory = &memory;
     options.program_length = static_cast<uint32_t>(code.size());
     options.threads = 64;

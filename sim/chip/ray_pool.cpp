@@ -6,26 +6,25 @@
 
 namespace raypool::chip {
 
-RayPool::RayPool(const sc_core::sc_module_name& name, ChipClock& clock, PixelLedger& ledger, int units, int capacity, int depth)
+RayPool::RayPool(const sc_core::sc_module_name& name, ChipClock& clock, PixelLedger& ledger, int capacity, int depth)
     : sc_module(name),
       clock_(clock),
       ledger_(ledger),
       capacity_(static_cast<size_t>(capacity)),
-      depth_(static_cast<uint32_t>(depth)),
-      turn_(units) {
+      depth_(static_cast<uint32_t>(depth)) {
   rays_.reserve(capacity_);
   SC_METHOD(serve);
   sensitive << work_;
   dont_initialize();
 }
 
-void RayPool::want(int unit) {
-  if (granted_ == unit) return;
-  wanting_ |= 1u << unit;
-  if (granted_ < 0 && !full()) clock_.notify(work_, Phase::Ports);
+void RayPool::want() {
+  if (granted_) return;
+  wanting_ = true;
+  if (!full()) clock_.notify(work_, Phase::Ports);
 }
 
-bool RayPool::take(int unit, const Beat& beat, bool last) {
+bool RayPool::take(uint32_t unit, const Beat& beat, bool last) {
   for (size_t i = 0; i < kBeatWords; ++i) arriving_[beats_ * kBeatWords + i] = beat[i];
   ++beats_;
   if (last != (beats_ == kRayBeats)) {
@@ -35,14 +34,14 @@ bool RayPool::take(int unit, const Beat& beat, bool last) {
   if (!last) return false;
 
   beats_ = 0;
-  granted_ = -1;
+  granted_ = false;
   busy_cycles_ += clock_.cycle() + 1 - granted_at_;
   ++taken_;
   free_at_ = clock_.cycle() + 1;
   clock_.notify(work_, Phase::Ports, 1);
   const bool shadow = (arriving_[word::kFlags] & kShadowFlag) != 0;
   const bool kept = shadow || (arriving_[word::kFlags] & kDepthMask) <= depth_;
-  ledger_.ray_exported(unit, arriving_, kept);
+  ledger_.ray_exported(static_cast<int>(unit), arriving_, kept);
   if (!kept) {
     ++dropped_depth_;
     return false;
@@ -57,16 +56,16 @@ bool RayPool::take(int unit, const Beat& beat, bool last) {
 void RayPool::removed(uint32_t shadow_rays) {
   shadow_rays_ -= shadow_rays;
   fill_.set(clock_.cycle(), size());
-  if (granted_ < 0 && wanting_ != 0) clock_.notify(work_, Phase::Ports);
+  if (!granted_ && wanting_) clock_.notify(work_, Phase::Ports);
 }
 
 void RayPool::serve() {
   clock_.guard([&] {
-    if (granted_ >= 0 || full()) return;
+    if (granted_ || full()) return;
     if (clock_.cycle() < free_at_) return clock_.notify(work_, Phase::Ports, 1);
-    granted_ = turn_.next([&](int unit) { return (wanting_ >> unit & 1) != 0; });
-    if (granted_ < 0) return;
-    wanting_ &= ~(1u << granted_);
+    if (!wanting_) return;
+    wanting_ = false;
+    granted_ = true;
     granted_at_ = clock_.cycle();
     first_beat_ = granted_at_ + kPoolOverhead;
   });

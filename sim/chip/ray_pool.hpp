@@ -1,7 +1,7 @@
 // The ray pool: rays that units have exported and the traverser has not finished, oldest first, behind one 128-bit port.
 //
-// A ray costs the port 5 cycles: 2 to choose the unit, 3 beats. A unit that offers a ray in cycle c to an idle port transfers in
-// c+2, c+3, c+4 (later if it has bubbles between its beats). Units are served round robin, ray by ray. A full pool serves nobody.
+// A ray costs the port 5 cycles: 2 of overhead, 3 beats. A ray offered in cycle c to an idle port moves in c+2, c+3, c+4 (later
+// if there are bubbles between its beats). A full pool serves nobody.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,6 @@
 
 #include "chip/chip_clock.hpp"
 #include "chip/pixel_ledger.hpp"
-#include "chip/round_robin.hpp"
 #include "chip/statistics.hpp"
 #include "machine/packages.hpp"
 
@@ -30,17 +29,17 @@ class RayPool : public sc_core::sc_module {
  public:
   SC_HAS_PROCESS(RayPool);
   /// `clock` and `ledger` must outlive the pool. Normal rays deeper than `depth` are dropped when they arrive.
-  RayPool(const sc_core::sc_module_name& name, ChipClock& clock, PixelLedger& ledger, int units, int capacity, int depth);
+  RayPool(const sc_core::sc_module_name& name, ChipClock& clock, PixelLedger& ledger, int capacity, int depth);
 
-  // For unit `unit`, in the phase of the units.
-  /// True if the unit's beat is taken in this cycle.
-  bool ready(int unit) const { return granted_ == unit && clock_.cycle() >= first_beat_; }
-  /// The unit offers a beat and is not ready().
-  void want(int unit);
-  /// Takes a beat; ready() must hold. Returns true when it completes a ray that stays in the pool.
-  bool take(int unit, const Beat& beat, bool last);
-  /// True if the unit waits because there has been no room since before this cycle.
-  bool held_up(int unit) const { return granted_ != unit && full() && clock_.cycle() > kept_at_; }
+  // For the device, in the phase of the units.
+  /// True if a beat is taken in this cycle.
+  bool ready() const { return granted_ && clock_.cycle() >= first_beat_; }
+  /// A beat is offered, and the pool is not ready().
+  void want();
+  /// Takes a beat of compute unit `unit`; ready() must hold. Returns true when it completes a ray that stays in the pool.
+  bool take(uint32_t unit, const Beat& beat, bool last);
+  /// True if a ray that is offered waits because there has been no room since before this cycle.
+  bool held_up() const { return !granted_ && full() && clock_.cycle() > kept_at_; }
 
   /// For the traverser: oldest first. After removing some, of which so many were shadow rays, call removed().
   std::vector<PooledRay>& rays() { return rays_; }
@@ -64,9 +63,8 @@ class RayPool : public sc_core::sc_module {
   size_t capacity_;
   uint32_t depth_;
   sc_core::sc_event work_;
-  RoundRobin turn_;
-  uint32_t wanting_ = 0;  // units, one bit each
-  int granted_ = -1;
+  bool wanting_ = false;  // a ray is offered
+  bool granted_ = false;
   uint64_t granted_at_ = 0, first_beat_ = 0, free_at_ = 0, kept_at_ = 0;
   Ray arriving_{};
   size_t beats_ = 0;

@@ -3,7 +3,7 @@
 namespace raypool::chip {
 
 StaticTraverser::StaticTraverser(const sc_core::sc_module_name& name, const TraverserSurroundings& surroundings)
-    : Traverser(name, surroundings), stalling_((1u << surroundings.units) - 1) {
+    : Traverser(name, surroundings) {
   SC_METHOD(end_of_kernel);
   sensitive << kernel_ended_;
   dont_initialize();
@@ -17,12 +17,10 @@ void StaticTraverser::kernel_ended() {
   around_.clock.notify(kernel_ended_, Phase::Traverser);
 }
 
-void StaticTraverser::unit_stalls(int unit, bool stalls) {
-  const uint32_t all = (1u << around_.units) - 1;
-  const uint32_t before = stalling_;
-  stalling_ = stalls ? stalling_ | 1u << unit : stalling_ & ~(1u << unit);
-  if (before != all && stalling_ == all) around_.clock.notify(stall_over_, Phase::Traverser, kTraverserStallCycles);
-  if (before == all && stalling_ != all) stall_over_.cancel();
+void StaticTraverser::shader_stalls(bool stalls) {
+  if (!stalling_ && stalls) around_.clock.notify(stall_over_, Phase::Traverser, kTraverserStallCycles);
+  if (stalling_ && !stalls) stall_over_.cancel();
+  stalling_ = stalls;
 }
 
 void StaticTraverser::end_of_kernel() {

@@ -1,5 +1,5 @@
 // The thesis' traverser: its speed is a constant, whatever the rays. 64 rays become intersections at the end of every kernel, on
-// whichever unit; and 64 a unit after every 1000 ns in which the shader stalls, that is, in which every unit runs no kernel or
+// whichever unit; and 64 a unit after every 1000 ns in which the shader stalls, that is, in which no unit has a kernel or a ray
 // waits for room in the ray pool.
 #pragma once
 
@@ -16,7 +16,7 @@ class StaticTraverser : public Traverser {
   StaticTraverser(const sc_core::sc_module_name& name, const TraverserSurroundings& surroundings);
 
   void kernel_ended() override;
-  void unit_stalls(int unit, bool stalls) override;
+  void shader_stalls(bool stalls) override;
   void ray_arrived() override {}
 
  private:
@@ -25,7 +25,7 @@ class StaticTraverser : public Traverser {
 
   sc_core::sc_event kernel_ended_, stall_over_;
   uint32_t kernels_ = 0;  // that ended in this cycle
-  uint32_t stalling_;     // units, one bit each
+  bool stalling_ = true;
 };
 
 }  // namespace raypool::chip

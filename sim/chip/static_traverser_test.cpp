@@ -31,8 +31,8 @@ struct Bench {
 
   explicit Bench(int units, int capacity = 512)
       : ledger(units, 512, 1),
-        rays("ray_pool", clock, ledger, units, 512, 5),
-        intersections("intersection_pool", clock, ledger, units, capacity),
+        rays("ray_pool", clock, ledger, 512, 5),
+        intersections("intersection_pool", clock, ledger, capacity),
         traverser("traverser", {clock, rays, intersections, ledger, tracer, units, [this] { ++moved; }}) {}
 
   /// Puts `count` rays into the pool; with kShadowFlag shadow rays.
@@ -58,7 +58,7 @@ TEST(StaticTraverser, Turns64RaysIntoIntersectionsAtTheEndOfAKernel) {
   Bench bench(1);
   bench.run([&](uint64_t cycle) {
     if (cycle == 1) bench.fill(200);
-    if (cycle == 1) bench.traverser.unit_stalls(0, false);
+    if (cycle == 1) bench.traverser.shader_stalls(false);
     if (cycle == 5) bench.traverser.kernel_ended();
     EXPECT_EQ(bench.rays.size(), cycle <= 5 ? 200u : 136u);
     if (cycle == 6) {
@@ -81,10 +81,10 @@ TEST(StaticTraverser, Turns64RaysAUnitIntoIntersectionsAfter1000CyclesOfStall) {
       const uint32_t before = bench.rays.size();
       if (cycle == 1) {
         bench.fill(500);
-        for (int unit = 0; unit < units; ++unit) bench.traverser.unit_stalls(unit, false);
+        bench.traverser.shader_stalls(false);
       }
       if (cycle == 50) {
-        for (int unit = 0; unit < units; ++unit) bench.traverser.unit_stalls(unit, true);
+        bench.traverser.shader_stalls(true);
       }
       if (cycle > 1 && (steps.empty() ? 500 : steps.back().second) != before) steps.push_back({cycle, before});
       return cycle < 2100;
@@ -96,17 +96,15 @@ TEST(StaticTraverser, Turns64RaysAUnitIntoIntersectionsAfter1000CyclesOfStall) {
   }
 }
 
-TEST(StaticTraverser, DoesNothingWhileAUnitWorks) {
+TEST(StaticTraverser, DoesNothingWhileTheShaderWorks) {
   Bench bench(2);
   bench.run([&](uint64_t cycle) {
     if (cycle == 1) {
       bench.fill(100);
-      bench.traverser.unit_stalls(0, false);
-      bench.traverser.unit_stalls(1, false);
+      bench.traverser.shader_stalls(false);
     }
-    if (cycle == 10) bench.traverser.unit_stalls(0, true);
-    if (cycle == 20) bench.traverser.unit_stalls(1, true);
-    if (cycle == 1019) bench.traverser.unit_stalls(0, false);  // 999 cycles are not enough
+    if (cycle == 20) bench.traverser.shader_stalls(true);
+    if (cycle == 1019) bench.traverser.shader_stalls(false);  // 999 cycles are not enough
     return cycle < 4000;
   });
   EXPECT_EQ(bench.rays.size(), 100u);

@@ -114,9 +114,9 @@ class ScriptedUnit : public ComputeUnit {
   bool timed() const override { return true; }
 
   void clock(const UnitInputs& in) override {
-    busy_ += outputs_.busy;
+    busy_ += outputs_.busy != 0;
     transfer(in);
-    outputs_.kernel_done = false;
+    outputs_.kernel_done = 0;
     step();
     present();
   }
@@ -237,7 +237,7 @@ class ScriptedUnit : public ComputeUnit {
         break;
       default:
         if (asking_) return;  // reads that are under way may outlive the kernel, as a prefetch does
-        outputs_.kernel_done = true;
+        outputs_.kernel_done = 1;
         running_.reset();
         return;
     }
@@ -277,8 +277,9 @@ class ScriptedUnit : public ComputeUnit {
 
   void present() {
     outputs_.launch_ready = !waiting_ && to_request_ == 0;
-    outputs_.busy = running_.has_value();
+    outputs_.busy = running_.has_value() ? 1 : 0;
     outputs_.idle = !running_ && !waiting_ && exports_.empty();
+    outputs_.unit_idle = outputs_.idle ? 1 : 0;
     outputs_.import_request_valid = to_request_ > 0 && arrived_.size() + requested_ < contents_;
     outputs_.import_request_kind = import_kind_;
     const bool shown = !exports_.empty() && bubble_ == 0;

@@ -41,8 +41,8 @@ class Traverser : public sc_core::sc_module {
   // What the chip tells it, in the phase of the units.
   /// A kernel has ended on some unit.
   virtual void kernel_ended() = 0;
-  /// A unit begins or ceases to stall: it runs no kernel, or waits for room in the ray pool. All stall at first.
-  virtual void unit_stalls(int unit, bool stalls) = 0;
+  /// The shader begins or ceases to stall: no unit has a kernel, or a ray waits for room in the ray pool. It stalls at first.
+  virtual void shader_stalls(bool stalls) = 0;
   /// A ray has come into the ray pool.
   virtual void ray_arrived() = 0;
 

@@ -50,6 +50,7 @@ struct ConfigOptions {
   bool verilog_parameters = false;
   bool json = false;
   bool unit_library = false;  ///< path of the Verilated unit
+  int units = 1;              ///< of which `unit_library` has so many
 };
 int config_command(const ConfigOptions& options);
 

@@ -37,7 +37,7 @@ int config_command(const ConfigOptions& options) {
   } else if (options.verilog_parameters) {
     for (const auto& [name, value] : verilog_parameters(configuration)) fmt::print("{}={}\n", name, value);
   } else if (options.unit_library) {
-    fmt::print("{}\n", unit_library_path(configuration, false));
+    fmt::print("{}\n", unit_library_path(configuration, false, options.units));
   } else {
     print_table(configuration);
   }

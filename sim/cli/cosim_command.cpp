@@ -32,7 +32,7 @@ int cosim_command(const CosimOptions& options) {
     } catch (const InputError& error) {
       throw InputError(fmt::format("{}; the program that shows it: {}", error.what(), again));
     }
-    if (const auto* lockstep = dynamic_cast<const LockstepUnit*>(unit.get())) total += lockstep->counts();
+    if (const auto counts = lockstep_counts(*unit)) total += *counts;
     const auto now = std::chrono::steady_clock::now();
     if (now - shown > std::chrono::seconds(5)) {
       shown = now;

@@ -4,9 +4,11 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "config/configuration.hpp"
+#include "lockstep/lockstep_unit.hpp"
 #include "machine/compute_unit.hpp"
 #include "machine/memory.hpp"
 
@@ -18,20 +20,25 @@ enum class Engine : uint8_t { Native, Functional, Rtl, Lockstep };
 Engine parse_engine(const std::string& name);
 
 /// <folder of the executable>/units/<name from the Verilog parameters>/libraypool_unit.so, where scripts/unit.sh builds it; with
-/// `waves` the one that can write waveforms.
-std::string unit_library_path(const Configuration& configuration, bool waves);
+/// `waves` the one that can write waveforms. Of a multiprocessor of `units` units.
+std::string unit_library_path(const Configuration& configuration, bool waves, int units = 1);
 
-/// What it takes to make a compute unit.
+/// What it takes to make a compute unit, or a multiprocessor.
 struct EngineOptions {
   Engine engine = Engine::Functional;  ///< not Native, which has no unit
   Configuration configuration;
-  std::string unit_library;  ///< empty: unit_library_path(configuration, waves)
+  std::string unit_library;  ///< empty: unit_library_path()
   bool waves = false;        ///< a waveform will be asked for
+  int units = 1;             ///< compute units of the device: 1, 2 or 4
 };
 
-/// A unit for the program and data in `memory`, which must outlive it. `name` and `kernel_names` (entry PC -> name) are for the
-/// reports of a lockstep. Throws InputError when the Verilated unit is missing or does not fit.
+/// A device for the program and data in `memory`, which must outlive it. The rtl engine's is the Verilated multiprocessor, that
+/// of the others is put together from units; lockstep units are Verilated one by one. `name` and `kernel_names` (entry PC ->
+/// name) are for the reports of a lockstep. Throws InputError when the Verilated unit is missing or does not fit.
 std::unique_ptr<ComputeUnit> make_unit(const EngineOptions& options, Memory& memory, const std::string& name = "unit",
                                        const std::map<uint32_t, std::string>& kernel_names = {});
+
+/// What the lockstep units of a device have compared; none without such units.
+std::optional<LockstepCounts> lockstep_counts(ComputeUnit& device);
 
 }  // namespace raypool

@@ -14,7 +14,6 @@
 #include "cli/text_file.hpp"
 #include "isa/assembler.hpp"
 #include "kernel/compute_kernels.hpp"
-#include "lockstep/lockstep_unit.hpp"
 
 namespace raypool {
 namespace {
@@ -229,14 +228,14 @@ int run_command(const RunOptions& options) {
     if (waves) waves->publish();
   };
 
-  job.options.unit = unit.get();
+  job.options.device = unit.get();
   job.options.memory = &job.memory;
   job.options.cycle_limit = options.cycle_limit;
   ProgramResult result;
   std::string compared;
   try {
     result = run_program(job.options);
-    if (const auto* lockstep = dynamic_cast<const LockstepUnit*>(unit.get())) compared = to_string(lockstep->counts());
+    if (const auto counts = lockstep_counts(*unit)) compared = to_string(*counts);
   } catch (const ChipStalled& stalled) {
     close_waves();
     throw InputError(stalled.what());

@@ -12,7 +12,7 @@
 #include "cli/output_folder.hpp"
 #include "cli/progress.hpp"
 #include "cli/report.hpp"
-#include "lockstep/lockstep_unit.hpp"
+#include "machine/multiprocessor.hpp"
 #include "scene/image.hpp"
 #include "scene/native_renderer.hpp"
 #include "scene/scene.hpp"
@@ -22,7 +22,6 @@ namespace raypool {
 namespace {
 
 namespace fs = std::filesystem;
-using Units = std::vector<std::unique_ptr<ComputeUnit>>;
 
 void check(const SimOptions& options, Engine engine) {
   if (options.depth < 1 || options.depth > kLargestDepth) {
@@ -52,9 +51,9 @@ std::string progress_text(const ChipProgress& done, bool timed, double seconds) 
   return text;
 }
 
-/// The chip around `units`, for as long as a frame lasts.
+/// The chip around `device`, for as long as a frame lasts.
 ChipResult draw_on_chip(const SimOptions& options, const RunRecord& record, const Scene& scene, const Tracer& tracer,
-                        MemoryImage& image, const Units& units, FrameBuffer& frame) {
+                        MemoryImage& image, ComputeUnit& device, FrameBuffer& frame) {
   const Program& program = ray_kernel_program();
   SceneTracer scene_tracer(tracer);
   FrameBufferSink sink(frame);
@@ -62,7 +61,7 @@ ChipResult draw_on_chip(const SimOptions& options, const RunRecord& record, cons
 
   ChipOptions chip;
   chip.configuration = record.configuration;
-  for (const auto& unit : units) chip.units.push_back(unit.get());
+  chip.device = &device;
   chip.memory = &image.memory;
   chip.program_length = static_cast<uint32_t>(program.code.size());
   for (size_t i = 0; i < kRayKernels; ++i) chip.entries[i] = program.entries.at(std::string(kRayKernelNames[i]));
@@ -74,7 +73,7 @@ ChipResult draw_on_chip(const SimOptions& options, const RunRecord& record, cons
   chip.frame = &sink;
   chip.traverser = record.traverser;
   chip.progress = [&](const ChipProgress& done) {
-    if (progress.due()) progress.show(progress_text(done, units.front()->timed(), progress.seconds()));
+    if (progress.due()) progress.show(progress_text(done, device.timed(), progress.seconds()));
   };
   return run_chip(chip);
 }
@@ -85,25 +84,12 @@ std::map<uint32_t, std::string> kernel_names(const Program& program) {
   return names;
 }
 
-Units make_units(const SimOptions& options, const EngineOptions& engine, Memory& memory, OutputFolder& out) {
-  Units units;
-  for (int i = 0; i < options.units; ++i) {
-    units.push_back(make_unit(engine, memory, fmt::format("unit {}", i), kernel_names(ray_kernel_program())));
-    if (!options.waves) continue;
-    units.back()->open_waveform(out.temporary(options.units == 1 ? "waves.fst" : fmt::format("waves{}.fst", i)));
+void open_waveforms(ComputeUnit& device, OutputFolder& out) {
+  auto* several = dynamic_cast<Multiprocessor*>(&device);  // of units that each write their own
+  if (several == nullptr) return device.open_waveform(out.temporary("waves.fst"));
+  for (uint32_t u = 0; u < several->units(); ++u) {
+    several->unit(u).open_waveform(out.temporary(fmt::format("waves{}.fst", u)));
   }
-  return units;
-}
-
-std::optional<LockstepCounts> lockstep_counts(const Units& units) {
-  std::optional<LockstepCounts> sum;
-  for (const auto& unit : units) {
-    if (const auto* lockstep = dynamic_cast<const LockstepUnit*>(unit.get())) {
-      if (!sum) sum.emplace();
-      *sum += lockstep->counts();
-    }
-  }
-  return sum;
 }
 
 }  // namespace
@@ -146,14 +132,15 @@ int sim_command(const SimOptions& options) {
     frame = render_native(scene, image, tracer, native, &*record.native);
     record.simulation_seconds = drawing.seconds();
   } else {
-    const EngineOptions unit_options{engine, record.configuration, options.unit_library, options.waves};
-    Units units = make_units(options, unit_options, image.memory, out);
+    const EngineOptions device_options{engine, record.configuration, options.unit_library, options.waves, options.units};
+    std::unique_ptr<ComputeUnit> device = make_unit(device_options, image.memory, "unit", kernel_names(ray_kernel_program()));
+    if (options.waves) open_waveforms(*device, out);
     const Tracer tracer(scene, image.material_base);
     try {
-      record.chip = draw_on_chip(options, record, scene, tracer, image, units, frame);
+      record.chip = draw_on_chip(options, record, scene, tracer, image, *device, frame);
     } catch (const std::exception&) {
       // The waveform up to here is what one wants to see now.
-      units.clear();
+      device.reset();
       if (options.waves) {
         out.publish();
         std::fprintf(stderr, "raypool: the waveform until then is in %s\n", out.path("").c_str());
@@ -161,7 +148,7 @@ int sim_command(const SimOptions& options) {
       throw;
     }
     record.simulation_seconds = record.chip->wall_seconds;
-    record.lockstep = lockstep_counts(units);
+    record.lockstep = lockstep_counts(*device);
   }
 
   const std::vector<uint8_t> png = encode_png(frame);

@@ -46,14 +46,16 @@ class Library {
   void* handle_ = nullptr;
 };
 
-void check_parameters(const std::string& path, const std::string& text, const Configuration& configuration) {
-  std::map<std::string, int> built;
+void check_parameters(const std::string& path, const std::string& text, const Configuration& configuration, int units) {
+  std::map<std::string, int> built = {{"UNITS", 1}};
   std::istringstream stream(text);
   for (std::string item; stream >> item;) {
     const size_t equals = item.find('=');
     built[item.substr(0, equals)] = std::atoi(item.c_str() + equals + 1);
   }
-  for (const auto& [name, value] : verilog_parameters(configuration)) {
+  auto needed = verilog_parameters(configuration);
+  needed.emplace_back("UNITS", units);
+  for (const auto& [name, value] : needed) {
     const auto found = built.find(name);
     if (found != built.end() && found->second == value) continue;
     throw InputError(path + ": the Verilated compute unit was built " +
@@ -69,6 +71,7 @@ class LoadedUnit : public ComputeUnit {
   LoadedUnit(Library library, const Configuration& configuration)
       : library_(std::move(library)), unit_(library_.find<CreateUnit>(kCreateUnitName)(configuration)) {}
 
+  uint32_t units() const override { return unit_->units(); }
   void reset(uint32_t program_length, uint32_t memory_limit) override { unit_->reset(program_length, memory_limit); }
   void set_argument(int index, uint32_t value) override { unit_->set_argument(index, value); }
   const UnitOutputs& outputs() const override { return unit_->outputs(); }
@@ -86,7 +89,7 @@ class LoadedUnit : public ComputeUnit {
 
 }  // namespace
 
-std::unique_ptr<ComputeUnit> load_rtl_unit(const std::string& library_path, const Configuration& configuration) {
+std::unique_ptr<ComputeUnit> load_rtl_unit(const std::string& library_path, const Configuration& configuration, int units) {
   Library library(library_path);
   const std::string interface = library.find<UnitText>(kUnitInterfaceName)();
   if (interface != unit_interface()) {
@@ -94,7 +97,7 @@ std::unique_ptr<ComputeUnit> load_rtl_unit(const std::string& library_path, cons
                      ": the Verilated compute unit was built against another version of the compute-unit interface (" +
                      interface + " instead of " + unit_interface() + "); build it again with scripts/verilate.sh");
   }
-  check_parameters(library_path, library.find<UnitText>(kUnitParametersName)(), configuration);
+  check_parameters(library_path, library.find<UnitText>(kUnitParametersName)(), configuration, units);
   return std::make_unique<LoadedUnit>(std::move(library), configuration);
 }
 

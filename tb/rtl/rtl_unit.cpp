@@ -1,6 +1,6 @@
-// Engine `rtl`: the Verilated rtl/compute_unit.v behind the compute-unit interface. scripts/verilate.sh compiles it into a shared
-// library. A clock is two evaluations of the model and the copying of the narrow outputs; wide ports are read only while they are
-// valid, the trace only after trace_on().
+// Engine `rtl`: the Verilated rtl/multiprocessor.v, of one unit or several, behind the compute-unit interface.
+// scripts/verilate.sh compiles it into a shared library. A clock is two evaluations of the model and the copying of the narrow
+// outputs; wide ports are read only while they are valid, the trace only after trace_on().
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "Vcompute_unit.h"
+#include "Vmultiprocessor.h"
 #include "rtl/unit_library.hpp"
 #include "unit_parameters.h"
 #include "verilated.h"
@@ -18,6 +18,8 @@
 
 namespace raypool {
 namespace {
+
+constexpr uint32_t kUnitCount = RAYPOOL_UNIT_COUNT;
 
 // A port is an integer or, beyond 64 bits, an array of 32-bit words. A field never crosses a word.
 template <typename Port>
@@ -42,11 +44,14 @@ inline void write_beat(Port& port, const Beat& beat) {
 
 class RtlUnit : public ComputeUnit {
  public:
-  explicit RtlUnit(const Configuration& configuration) : lanes_(static_cast<uint32_t>(configuration.cores)) {
+  explicit RtlUnit(const Configuration& configuration)
+      : warps_(static_cast<uint32_t>(configuration.warps)),
+        lanes_(static_cast<uint32_t>(configuration.cores)),
+        warp_bits_(warps_ > 1 ? static_cast<uint32_t>(__builtin_ctz(warps_)) : 1) {
 #if VM_TRACE
     context_.traceEverOn(true);
 #endif
-    top_ = std::make_unique<Vcompute_unit>(&context_, "compute_unit");
+    top_ = std::make_unique<Vmultiprocessor>(&context_, "multiprocessor");
     top_->clk_i = 0;
     top_->rst_ni = 0;
     top_->eval();
@@ -79,7 +84,7 @@ class RtlUnit : public ComputeUnit {
   const UnitOutputs& outputs() const override { return outputs_; }
 
   void clock(const UnitInputs& inputs) override {
-    Vcompute_unit& top = *top_;
+    Vmultiprocessor& top = *top_;
     top.launch_valid_i = inputs.launch_valid;
     if (inputs.launch_valid) {
       top.launch_pc_i = static_cast<SData>(inputs.launch.pc);
@@ -113,10 +118,17 @@ class RtlUnit : public ComputeUnit {
   void trace_on() override { tracing_ = true; }
   const UnitTrace& trace() const override { return trace_; }
 
+  uint32_t units() const override { return kUnitCount; }
+
   uint64_t counter(int number) override {
+    uint64_t sum = 0;
     top_->counter_select_i = static_cast<CData>(number);
-    top_->eval();
-    return top_->counter_o;
+    for (uint32_t u = 0; u < kUnitCount; ++u) {
+      top_->counter_unit_i = static_cast<CData>(u);
+      top_->eval();
+      sum += top_->counter_o;
+    }
+    return sum;
   }
 
   bool timed() const override { return true; }
@@ -141,12 +153,14 @@ class RtlUnit : public ComputeUnit {
   }
 
   void read_outputs() {
-    const Vcompute_unit& top = *top_;
+    const Vmultiprocessor& top = *top_;
     UnitOutputs& out = outputs_;
     out.launch_ready = top.launch_ready_o;
+    out.launch_unit = top.launch_unit_o;
     out.kernel_done = top.kernel_done_o;
     out.busy = top.busy_o;
-    out.idle = top.idle_o;
+    out.unit_idle = top.idle_o;
+    out.idle = out.unit_idle == (1u << kUnitCount) - 1;
     out.memory_request_valid = top.memory_request_valid_o;
     if (out.memory_request_valid) {
       MemoryRequest& request = out.memory_request;
@@ -158,52 +172,66 @@ class RtlUnit : public ComputeUnit {
     }
     out.import_request_valid = top.import_request_valid_o;
     out.import_request_kind = static_cast<ImportKind>(top.import_request_kind_o);
+    out.import_request_unit = top.import_request_unit_o;
     out.export_valid = top.export_valid_o;
     if (out.export_valid) {
       read_beat(top.export_data_o, out.export_data);
       out.export_last = top.export_last_o;
+      out.export_unit = top.export_unit_o;
     }
     out.frame_valid = top.frame_valid_o;
     if (out.frame_valid) {
       out.frame.pixel = top.frame_pixel_o;
+      out.frame_unit = top.frame_unit_o;
       for (uint32_t i = 0; i < 3; ++i) out.frame.rgb[i] = bits(top.frame_color_o, 32 * i, 32);
     }
     out.fault = Fault{};
-    if (top.fault_valid_o) out.fault = {static_cast<FaultCode>(top.fault_code_o), top.fault_warp_o, top.fault_pc_o};
+    if (top.fault_valid_o) {
+      out.fault = {static_cast<FaultCode>(top.fault_code_o), top.fault_warp_o, top.fault_pc_o, top.fault_unit_o};
+    }
   }
 
   void read_trace() {
-    const Vcompute_unit& top = *top_;
+    const Vmultiprocessor& top = *top_;
     // Vectors of lanes are kept for the next event, so that a cycle allocates nothing.
     for (RetireEvent& event : trace_.retired) spare_.push_back(std::move(event.data));
     for (RayWriteEvent& event : trace_.ray_writes) spare_.push_back(std::move(event.data));
     trace_.retired.clear();
     trace_.stores.clear();
     trace_.ray_writes.clear();
-    for (uint32_t valid = top.retire_valid_o; valid != 0; valid &= valid - 1) {
+    for (uint32_t u = 0; u < kUnitCount; ++u) read_unit_trace(u);
+  }
+
+  void read_unit_trace(uint32_t u) {
+    const Vmultiprocessor& top = *top_;
+    for (uint32_t valid = bits(top.retire_valid_o, u * warps_, warps_); valid != 0; valid &= valid - 1) {
       const uint32_t warp = static_cast<uint32_t>(__builtin_ctz(valid));
+      const uint32_t row = u * warps_ + warp;  // of the concatenated ports
       RetireEvent& event = trace_.retired.emplace_back();
+      event.unit = u;
       event.warp = warp;
-      event.pc = bits(top.retire_pc_o, warp * 16, 16);
-      const uint64_t high = bits(top.retire_instruction_o, warp * 64 + 32, 32);
-      event.instruction = high << 32 | bits(top.retire_instruction_o, warp * 64, 32);
-      event.mask = bits(top.retire_mask_o, warp * lanes_, lanes_);
-      event.predicate = bits(top.retire_predicate_o, warp * lanes_, lanes_);
-      read_lanes(top.retire_data_o, warp * lanes_ * 32, event.data);
+      event.pc = bits(top.retire_pc_o, row * 16, 16);
+      const uint64_t high = bits(top.retire_instruction_o, row * 64 + 32, 32);
+      event.instruction = high << 32 | bits(top.retire_instruction_o, row * 64, 32);
+      event.mask = bits(top.retire_mask_o, row * lanes_, lanes_);
+      event.predicate = bits(top.retire_predicate_o, row * lanes_, lanes_);
+      read_lanes(top.retire_data_o, row * lanes_ * 32, event.data);
     }
-    if (top.store_trace_valid_o) {
+    if ((top.store_trace_valid_o >> u & 1) != 0) {
       StoreEvent& event = trace_.stores.emplace_back();
-      event.warp = top.store_trace_warp_o;
-      event.address = top.store_trace_address_o;
-      read_beat(top.store_trace_data_o, event.data);
-      event.mask = top.store_trace_mask_o;
+      event.unit = u;
+      event.warp = bits(top.store_trace_warp_o, u * warp_bits_, warp_bits_);
+      event.address = bits(top.store_trace_address_o, u * 32, 32);
+      for (uint32_t i = 0; i < kBeatWords; ++i) event.data[i] = bits(top.store_trace_data_o, u * 128 + i * 32, 32);
+      event.mask = static_cast<uint8_t>(bits(top.store_trace_mask_o, u * 4, 4));
     }
-    if (top.ray_trace_valid_o) {
+    if ((top.ray_trace_valid_o >> u & 1) != 0) {
       RayWriteEvent& event = trace_.ray_writes.emplace_back();
-      event.warp = top.ray_trace_warp_o;
-      event.word = top.ray_trace_word_o;
-      event.mask = bits(top.ray_trace_mask_o, 0, lanes_);
-      read_lanes(top.ray_trace_data_o, 0, event.data);
+      event.unit = u;
+      event.warp = bits(top.ray_trace_warp_o, u * warp_bits_, warp_bits_);
+      event.word = bits(top.ray_trace_word_o, u * 5, 5);
+      event.mask = bits(top.ray_trace_mask_o, u * lanes_, lanes_);
+      read_lanes(top.ray_trace_data_o, u * lanes_ * 32, event.data);
     }
   }
 
@@ -217,9 +245,10 @@ class RtlUnit : public ComputeUnit {
     for (uint32_t lane = 0; lane < lanes_; ++lane) data[lane] = bits(port, low + 32 * lane, 32);
   }
 
-  uint32_t lanes_;
+  uint32_t warps_, lanes_;
+  uint32_t warp_bits_;  // of a warp number
   VerilatedContext context_;
-  std::unique_ptr<Vcompute_unit> top_;
+  std::unique_ptr<Vmultiprocessor> top_;
   UnitOutputs outputs_;
   bool tracing_ = false;
   UnitTrace trace_;

@@ -1,7 +1,6 @@
 // The whole compute unit in RTL: Verilated for several configurations and run in lockstep with the model, on random programs.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <functional>
 #include <iostream>
@@ -11,6 +10,7 @@
 #include "lockstep/rtl_loader.hpp"
 #include "machine/test_chip.hpp"
 #include "machine/test_program.hpp"
+#include "rtl/test_library.hpp"
 
 namespace raypool {
 namespace {
@@ -35,16 +35,7 @@ Configuration configuration_of(const Case& test_case) {
   return configuration;
 }
 
-// The library of a configuration, built if it is not up to date.
-std::string library_of(const Case& test_case) {
-  const std::string folder = std::string(RAYPOOL_TEST_UNITS) + "/" + test_case.name;
-  std::filesystem::create_directories(folder);
-  std::string command = "flock " + folder + "/.lock scripts/verilate.sh " + folder + (test_case.waves ? " --trace" : "");
-  for (const auto& [name, value] : verilog_parameters(configuration_of(test_case)))
-    command += " " + name + "=" + std::to_string(value);
-  if (std::system(command.c_str()) != 0) throw std::runtime_error("this command failed: " + command);
-  return folder + "/libraypool_unit.so";
-}
+std::string library_of(const Case& test_case) { return test::build_library(configuration_of(test_case), 1, test_case.waves); }
 
 class RtlUnit : public testing::TestWithParam<Case> {};
 

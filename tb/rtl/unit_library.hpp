@@ -1,4 +1,4 @@
-// What a shared library with a Verilated compute unit exports, and how its loader knows that both were compiled from the same
+// What a shared library with a Verilated multiprocessor exports, and how its loader knows that both were compiled from the same
 // interface.
 #pragma once
 
@@ -9,7 +9,7 @@
 namespace raypool {
 
 /// Raised when the meaning of compute_unit.hpp changes in a way that its sizes do not show.
-inline constexpr int kUnitInterfaceVersion = 1;
+inline constexpr int kUnitInterfaceVersion = 2;
 
 inline std::string unit_interface() {
   std::string text = "version " + std::to_string(kUnitInterfaceVersion) + ", sizes";
@@ -24,7 +24,8 @@ inline std::string unit_interface() {
 using CreateUnit = ComputeUnit*(const Configuration&);  ///< the caller deletes the unit
 using UnitText = const char*();
 inline constexpr const char* kCreateUnitName = "raypool_create_unit";
-inline constexpr const char* kUnitParametersName = "raypool_unit_parameters";  ///< "WARPS=8 LANES=8 ..."
-inline constexpr const char* kUnitInterfaceName = "raypool_unit_interface";    ///< unit_interface() of the library
+inline constexpr const char* kUnitParametersName =
+    "raypool_unit_parameters";  ///< "WARPS=8 LANES=8 ..."; without UNITS it has one unit
+inline constexpr const char* kUnitInterfaceName = "raypool_unit_interface";  ///< unit_interface() of the library
 
 }  // namespace raypool

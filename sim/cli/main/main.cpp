@@ -93,9 +93,11 @@ int run(int argc, char** argv) {
   config_app->add_option("config", config.config, "a name in configs/, NwMc or a JSON file")->capture_default_str();
   auto* formats = config_app->add_option_group("format");
   formats->add_flag("--json", config.json, "as a configuration file");
-  formats->add_flag("--verilog-parameters", config.verilog_parameters, "as NAME=VALUE lines for rtl/compute_unit.v");
+  formats->add_flag("--verilog-parameters", config.verilog_parameters, "as NAME=VALUE lines for rtl/multiprocessor.v");
   formats->add_flag("--unit-library", config.unit_library, "path of its Verilated unit");
   formats->require_option(0, 1);
+  config_app->add_option("--units", config.units, "with --unit-library: compute units, 1, 2 or 4")
+      ->check(CLI::IsMember({1, 2, 4}));
   config_app->callback([&] { code = config_command(config); });
 
   CLI::App* isa_app = app.add_subcommand("isa", "print the instruction table (default: as Markdown)");

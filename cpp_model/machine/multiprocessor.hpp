@@ -1,0 +1,50 @@
+// Several compute units behind one set of ports: rtl/multiprocessor.v in C++, around units of any engine.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "machine/arbiters.hpp"
+#include "machine/compute_unit.hpp"
+
+namespace raypool {
+
+/// Block scheduler and arbiters agree with the RTL in every cycle (docs/multiprocessor.md); so the whole agrees as far as its
+/// units do. A clock costs a clock of each unit and some tests; payloads are copied only while they are valid.
+class Multiprocessor : public ComputeUnit {
+ public:
+  /// 2 to kMostUnits single units of one configuration.
+  explicit Multiprocessor(std::vector<std::unique_ptr<ComputeUnit>> units);
+
+  uint32_t units() const override { return static_cast<uint32_t>(units_.size()); }
+  ComputeUnit& unit(uint32_t number) { return *units_.at(number); }
+
+  void reset(uint32_t program_length, uint32_t memory_limit) override;
+  void set_argument(int index, uint32_t value) override;
+  const UnitOutputs& outputs() const override { return outputs_; }
+  void clock(const UnitInputs& inputs) override;
+  void trace_on() override;
+  const UnitTrace& trace() const override { return trace_; }
+  uint64_t counter(int number) override;
+  bool timed() const override;
+
+ private:
+  void give(const UnitInputs& inputs);
+  void present();
+  void gather_trace();
+
+  std::vector<std::unique_ptr<ComputeUnit>> units_;
+  std::vector<UnitInputs> inputs_;  // [unit]
+  UnitOutputs outputs_;
+  BlockScheduler block_scheduler_;
+  PortArbiter memory_arbiter_, export_arbiter_, frame_arbiter_, fault_arbiter_;
+  ImportArbiter import_arbiter_;
+  bool tracing_ = false;
+  UnitTrace trace_;
+  std::vector<std::vector<uint32_t>> spare_;  // lanes of past events, so that a traced cycle allocates nothing
+};
+
+/// One device of 1, 2 or 4 units: a single one is returned as it is. Throws InputError for other numbers.
+std::unique_ptr<ComputeUnit> make_multiprocessor(std::vector<std::unique_ptr<ComputeUnit>> units);
+
+}  // namespace raypool
