@@ -36,11 +36,9 @@ BUILD := build
 RAYPOOL := $(BUILD)/raypool
 # One build at a time in a checkout: a second make waits here.
 LOCKED := flock $(BUILD)/.lock
-# The functional and native engines need no Verilated unit.
+# Only engines rtl and lockstep need a Verilated device.
 WAVES_FLAG := $(if $(filter-out 0,$(WAVES)),--waves)
 UNIT := scripts/unit.sh "$$CONFIG" $(WAVES_FLAG)
-# Engine rtl simulates the whole multiprocessor; lockstep puts it together from single units, and so do compute kernels.
-UNITS_FLAG = $(if $(filter rtl,$(ENGINE)),--units "$$CUS")
 UNIT_OF_ENGINE := $(if $(filter rtl lockstep,$(ENGINE)),$(UNIT),true)
 
 .PHONY: help sim run cosim unit test lint format bench clean setup-% program configured-%
@@ -53,7 +51,7 @@ help: ## this list
 	@echo 'variables of make sim                                                    default'
 	@echo '  SCENE=cornell|room|FILE.obj   what is drawn                               $(SCENE)'
 	@echo '  CONFIG=4w4c|8w8c|...|FILE     hardware: configs/*.json, NwMc or a file    $(CONFIG)'
-	@echo '  ENGINE=native|functional|rtl|lockstep   what stands in for the unit       $(ENGINE)'
+	@echo '  ENGINE=native|functional|model|rtl|lockstep  what stands in for the unit  $(ENGINE)'
 	@echo '  SIZE=WxH                      pixels, 1..16384 each                       $(SIZE)'
 	@echo '  DEPTH=N                       1: eye and shadow rays; more: reflections   $(DEPTH)'
 	@echo '  CUS=1|2|4                     compute units                               $(CUS)'
@@ -66,7 +64,7 @@ help: ## this list
 	@echo 'variables of make run:  KERNEL=saxpy|matmul|FILE.asm  CONFIG  ENGINE  ARGS="--n 1000"'
 
 sim: setup-sim program ## draw a scene on the simulated chip: picture, report, figures
-	@$(UNIT_OF_ENGINE) $(UNITS_FLAG)
+	@$(UNIT_OF_ENGINE) --units "$$CUS"
 	@$(RAYPOOL) sim --scene "$$SCENE" --config "$$CONFIG" --units "$$CUS" --size "$$SIZE" --depth "$$DEPTH" --engine "$$ENGINE" \
 	  --traverser "$$TRAVERSER" $${VIEW:+--view "$$VIEW"} $${DETAIL:+--detail "$$DETAIL"} $${OUT:+--out "$$OUT"} $(WAVES_FLAG)
 

@@ -80,6 +80,12 @@ struct UnitInputs {
   Beat import_beat{};
   bool export_ready = false;
   bool frame_ready = false;
+
+  /// The ready inputs, placed as in UnitOutputs::signals().
+  uint32_t ready_signals() const {
+    return uint32_t{memory_request_ready} << 2 | uint32_t{import_request_ready} << 3 | uint32_t{export_ready} << 4 |
+           uint32_t{frame_ready} << 5;
+  }
 };
 
 /// What belongs to a valid means something only while it is set; masks have one bit a unit.
@@ -103,6 +109,13 @@ struct UnitOutputs {
   Beat export_data{};
   FrameContribution frame;
   Fault fault;  ///< sticky
+
+  /// The outputs that a host acts on.
+  uint32_t signals() const {
+    return uint32_t{launch_ready} | uint32_t{idle} << 1 | uint32_t{memory_request_valid} << 2 |
+           uint32_t{import_request_valid} << 3 | uint32_t{export_valid} << 4 | uint32_t{frame_valid} << 5 |
+           uint32_t{fault.code != FaultCode::None} << 6 | kernel_done << 8 | busy << 12 | unit_idle << 16;
+  }
 };
 
 /// What the trace ports show in this cycle (RTL: retire_*, store_trace_*, ray_trace_*).
@@ -165,6 +178,14 @@ class ComputeUnit {
 
   virtual const UnitOutputs& outputs() const = 0;
   virtual void clock(const UnitInputs& inputs) = 0;
+  /// Clocks at least once and at most `cycles` times, and returns how often. Launch, response and beat are of the first cycle
+  /// only, the readies of all. It ends early when outputs().signals() is no longer what it was, or when the last cycle had a
+  /// transfer. An engine that cannot do it faster than clock() clocks once.
+  virtual uint64_t run(const UnitInputs& inputs, uint64_t cycles) {
+    static_cast<void>(cycles);
+    clock(inputs);
+    return 1;
+  }
 
   /// Trace of the current cycle. Filled only after trace_on(); costs time.
   virtual void trace_on() {}

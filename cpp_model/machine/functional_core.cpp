@@ -401,7 +401,7 @@ void FunctionalCore::execute_data(const DecodedInstruction& instruction, Warp& w
 // Loads and stores. All masked lanes are checked before any of them is served; misalignment is the first thing looked for.
 template <int kLanes>
 bool FunctionalCore::execute_memory(const DecodedInstruction& instruction, uint32_t* rd, const uint32_t* a, const uint32_t* b) {
-  uint32_t addresses[kLanes];
+  uint32_t* const addresses = result_.addresses.data();
   uint32_t low_bits = 0, highest = 0;
   for (int lane = 0; lane < kLanes; ++lane) {
     addresses[lane] = a[lane] + instruction.immediate;

@@ -37,9 +37,10 @@ struct Step {
   uint32_t pc = 0;
   const DecodedInstruction* instruction = nullptr;  ///< null if the PC is outside the program
   uint32_t mask = 0;                                ///< thread mask
-  const uint32_t* data = nullptr;  ///< instruction writes a register: one word a lane, meaningful in masked lanes
-  uint32_t predicate = 0;          ///< instruction writes a predicate: its value
-  uint32_t store_count = 0;        ///< `st`: masked lanes in rising order; the last store to an address wins
+  const uint32_t* data = nullptr;               ///< instruction writes a register: one word a lane, meaningful in masked lanes
+  uint32_t predicate = 0;                       ///< instruction writes a predicate: its value
+  std::array<uint32_t, kMaxLanes> addresses{};  ///< `ld`, `st`: byte address of each lane, meaningful in masked lanes
+  uint32_t store_count = 0;                     ///< `st`: masked lanes in rising order; the last store to an address wins
   std::array<LaneStore, kMaxLanes> stores{};
   const uint32_t* ray_words = nullptr;  ///< `rst`: one word a lane, written in masked lanes
   uint32_t ray_count = 0;               ///< `rout`: rays in order
@@ -68,6 +69,33 @@ class FunctionalCore {
 
   /// Executes the warp's next instruction. After a fault every call returns that fault.
   const Step& step(uint32_t warp) { return (this->*step_)(warp); }
+
+  /// After a fault: goes on as if nothing had happened. For a model whose faults take effect later than their instruction is
+  /// executed.
+  void forget_fault() { result_.status = Step::Status::NotRunning; }
+
+  /// The instruction routine's next step for a warp.
+  struct Fetch {
+    uint32_t pops = 0;  ///< finished entries above the entry that is taken
+    uint32_t pc = 0;
+  };
+  /// `past_current`: as if the warp's next instruction, which must not be a control instruction, had been executed.
+  Fetch next_fetch(uint32_t warp, bool past_current) const {
+    const Warp& state = warps_[warp];
+    uint32_t top = state.depth - 1;
+    const auto finished = [&state](uint32_t entry, uint32_t pc) { return entry > 0 && pc >= state.stack[entry].rpc; };
+    // What the warp's own step pops before it executes is no step of the instruction routine any more.
+    if (past_current) {
+      while (finished(top, state.stack[top].pc)) --top;
+    }
+    Fetch fetch;
+    fetch.pc = state.stack[top].pc + (past_current ? 1 : 0);
+    while (finished(top, fetch.pc)) {
+      fetch.pc = state.stack[--top].pc;
+      ++fetch.pops;
+    }
+    return fetch;
+  }
 
   /// PC of the warp's next instruction (after popping finished entries); the instruction there, null if outside the program.
   uint32_t next_pc(uint32_t warp) const;

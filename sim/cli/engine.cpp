@@ -8,6 +8,7 @@
 
 #include "lockstep/rtl_loader.hpp"
 #include "machine/functional_unit.hpp"
+#include "machine/model.hpp"
 #include "machine/multiprocessor.hpp"
 
 namespace raypool {
@@ -15,9 +16,10 @@ namespace raypool {
 Engine parse_engine(const std::string& name) {
   if (name == "native") return Engine::Native;
   if (name == "functional") return Engine::Functional;
+  if (name == "model") return Engine::Model;
   if (name == "rtl") return Engine::Rtl;
   if (name == "lockstep") return Engine::Lockstep;
-  throw InputError(fmt::format("there is no engine '{}': use native, functional, rtl or lockstep", name));
+  throw InputError(fmt::format("there is no engine '{}': use native, functional, model, rtl or lockstep", name));
 }
 
 std::string unit_library_path(const Configuration& configuration, bool waves, int units) {
@@ -37,43 +39,32 @@ std::unique_ptr<ComputeUnit> make_unit(const EngineOptions& options, Memory& mem
                                        const std::map<uint32_t, std::string>& kernel_names) {
   const Configuration& configuration = options.configuration;
   if (options.engine == Engine::Native)
-    throw InputError("the native engine has no compute unit: use functional, rtl or lockstep");
-  std::vector<std::unique_ptr<ComputeUnit>> units;
+    throw InputError("the native engine has no compute unit: use functional, model, rtl or lockstep");
   if (options.engine == Engine::Functional) {
+    std::vector<std::unique_ptr<ComputeUnit>> units;
     for (int i = 0; i < options.units; ++i) units.push_back(make_functional_unit(configuration, memory));
     return make_multiprocessor(std::move(units));
   }
+  if (options.engine == Engine::Model) return make_model(configuration, memory, static_cast<uint32_t>(options.units)).device;
 
-  const int in_library = options.engine == Engine::Rtl ? options.units : 1;
   const std::string library =
-      options.unit_library.empty() ? unit_library_path(configuration, options.waves, in_library) : options.unit_library;
+      options.unit_library.empty() ? unit_library_path(configuration, options.waves, options.units) : options.unit_library;
   if (!std::filesystem::exists(library)) {
     throw InputError(fmt::format("there is no Verilated unit '{}': build it with make unit CONFIG={}{}{}", library,
-                                 configuration.name, in_library == 1 ? "" : fmt::format(" CUS={}", in_library),
+                                 configuration.name, options.units == 1 ? "" : fmt::format(" CUS={}", options.units),
                                  options.waves ? " WAVES=1" : ""));
   }
-  if (options.engine == Engine::Rtl) return load_rtl_unit(library, configuration, in_library);
-  for (int i = 0; i < options.units; ++i) {
-    LockstepOptions lockstep;
-    lockstep.name = options.units == 1 ? name : fmt::format("{} {}", name, i);
-    lockstep.kernel_names = kernel_names;
-    units.push_back(make_lockstep_unit(configuration, load_rtl_unit(library, configuration), memory, lockstep));
-  }
-  return make_multiprocessor(std::move(units));
+  std::unique_ptr<ComputeUnit> rtl = load_rtl_unit(library, configuration, options.units);
+  if (options.engine == Engine::Rtl) return rtl;
+  LockstepOptions lockstep;
+  lockstep.name = name;
+  lockstep.kernel_names = kernel_names;
+  return make_lockstep_unit(configuration, std::move(rtl), memory, lockstep);
 }
 
 std::optional<LockstepCounts> lockstep_counts(ComputeUnit& device) {
-  if (const auto* lockstep = dynamic_cast<const LockstepUnit*>(&device)) return lockstep->counts();
-  std::optional<LockstepCounts> sum;
-  if (auto* several = dynamic_cast<Multiprocessor*>(&device)) {
-    for (uint32_t u = 0; u < several->units(); ++u) {
-      const std::optional<LockstepCounts> counts = lockstep_counts(several->unit(u));
-      if (!counts) continue;
-      if (!sum) sum.emplace();
-      *sum += *counts;
-    }
-  }
-  return sum;
+  const auto* lockstep = dynamic_cast<const LockstepUnit*>(&device);
+  return lockstep == nullptr ? std::nullopt : std::optional(lockstep->counts());
 }
 
 }  // namespace raypool

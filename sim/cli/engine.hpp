@@ -14,7 +14,7 @@
 
 namespace raypool {
 
-enum class Engine : uint8_t { Native, Functional, Rtl, Lockstep };
+enum class Engine : uint8_t { Native, Functional, Model, Rtl, Lockstep };
 
 /// Throws InputError naming the engines.
 Engine parse_engine(const std::string& name);

@@ -1,6 +1,7 @@
-// Engine `lockstep`: the RTL and the functional model, compared as they run; stops at the first difference.
+// Engine `lockstep`: the RTL and the golden model side by side on the same inputs, compared in every cycle; stops at the first
+// difference.
 //
-// It is a ComputeUnit, so that the chip does not know it has one. docs/lockstep.md says what is compared and when.
+// It is a ComputeUnit, so that the chip does not know it has one. docs/lockstep.md says what is compared.
 #pragma once
 
 #include <cstdint>
@@ -17,9 +18,7 @@ namespace raypool {
 
 struct LockstepOptions {
   uint64_t watchdog_cycles = 20000;  ///< cycles without retirement or port transfer, while busy, that count as a hang; 0 = never
-  bool check_memory_port =
-      true;                   ///< writes on the memory port are compared with the stores; off for a unit that has no memory port
-  std::string name = "unit";  ///< names the compute unit in reports
+  std::string name = "unit";         ///< names the device in reports
   std::map<uint32_t, std::string> kernel_names = {};  ///< entry PC -> name of the kernel, for reports
 };
 
@@ -27,14 +26,16 @@ struct LockstepOptions {
 struct LockstepCounts {
   uint64_t cycles = 0;
   uint64_t kernels = 0;         ///< kernels that ended
-  uint64_t instructions = 0;    ///< retired warp instructions
+  uint64_t instructions = 0;    ///< retired warp instructions, each in its cycle
   uint64_t thread_results = 0;  ///< register words and predicate bits of threads
   uint64_t stores = 0;          ///< words stored
+  uint64_t memory_reads = 0;    ///< lines requested on the memory port
   uint64_t memory_writes = 0;   ///< quadwords written on the memory port
   uint64_t ray_words = 0;       ///< words written to ray memory by `rst`
-  uint64_t imports = 0;         ///< packages given to both
+  uint64_t imports = 0;         ///< packages requested
   uint64_t exports = 0;         ///< rays
   uint64_t frame_contributions = 0;
+  uint64_t counters = 0;     ///< times that all performance counters were compared
   uint64_t faults = 0;       ///< faults of a program which both reported alike
   uint64_t differences = 0;  ///< 0, or 1: the first one ends the run
 
@@ -52,15 +53,12 @@ struct LockstepDifference : std::runtime_error {
 class LockstepUnit : public ComputeUnit {
  public:
   virtual const LockstepCounts& counts() const = 0;
-  uint64_t instructions_compared() const { return counts().instructions; }
-  /// Replaces the model's memory. For a host that changes memory after the unit was made; only while idle.
-  virtual void set_memory(const Memory& memory) = 0;
 };
 
-/// Wraps `rtl`, whose trace it switches on. The model works on its own copy of `initial`, which must hold program and data as the
-/// RTL will see them. clock() throws LockstepDifference at the first difference, and again at every later call. A unit that
-/// shares memory with others is compared correctly as long as none of them reads what another one has stored.
+/// Wraps `rtl`, whose trace it switches on, and a golden model of the same configuration and number of units. The model reads
+/// program and data from `memory`, the host's, when the first kernel after reset() or set_argument() starts; it must outlive the
+/// lockstep. clock() throws LockstepDifference at the first difference, and again at every later call.
 std::unique_ptr<LockstepUnit> make_lockstep_unit(const Configuration& configuration, std::unique_ptr<ComputeUnit> rtl,
-                                                 const Memory& initial, const LockstepOptions& options = {});
+                                                 const Memory& memory, const LockstepOptions& options = {});
 
 }  // namespace raypool

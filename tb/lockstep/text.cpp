@@ -34,8 +34,8 @@ std::string fault_text(const Fault& fault) {
                      fault.pc);
 }
 
-std::string lane_table(const InstructionContext& context, int lanes, const uint32_t* rtl, const uint32_t* model) {
-  const DecodedInstruction& instruction = *context.instruction;
+std::string lane_table(const CycleUnit::Issue& issue, int lanes, const uint32_t* rtl, const uint32_t* model) {
+  const DecodedInstruction& instruction = *issue.instruction;
   bool uses_a = false, uses_px = false, uses_pb = false;
   for (const Operand operand : instruction.info->operands) {
     uses_a |= operand == Operand::Ra || operand == Operand::Address;
@@ -56,12 +56,12 @@ std::string lane_table(const InstructionContext& context, int lanes, const uint3
   end_line();
   for (int lane = 0; lane < lanes; ++lane) {
     const size_t i = static_cast<size_t>(lane);
-    const bool masked = context.mask >> lane & 1;
+    const bool masked = issue.mask >> lane & 1;
     text += fmt::format("  {:>4}", lane);
-    if (uses_a) column(word_text(context.a[i]));
-    if (instruction.uses_b) column(word_text(context.b[i]));
-    if (uses_px) column(std::to_string(context.px >> lane & 1));
-    if (uses_pb) column(std::to_string(context.pb >> lane & 1));
+    if (uses_a) column(word_text(issue.a[i]));
+    if (instruction.uses_b) column(word_text(issue.b[i]));
+    if (uses_px) column(std::to_string(issue.px >> lane & 1));
+    if (uses_pb) column(std::to_string(issue.pb >> lane & 1));
     if (!masked) {
       text += "  not in the thread mask";
     } else if (rtl != nullptr) {

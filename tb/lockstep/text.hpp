@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "lockstep/mismatch.hpp"
+#include "machine/cycle_unit.hpp"
 
 namespace raypool::lockstep {
 
@@ -15,6 +15,6 @@ std::string fault_text(const Fault& fault);                    ///< "misaligned 
 std::string module_of(const DecodedInstruction* instruction);  ///< RTL files that execute it
 
 /// Operands and results of an instruction, a line a lane. `rtl` and `model` are null when it writes no register.
-std::string lane_table(const InstructionContext& context, int lanes, const uint32_t* rtl, const uint32_t* model);
+std::string lane_table(const CycleUnit::Issue& issue, int lanes, const uint32_t* rtl, const uint32_t* model);
 
 }  // namespace raypool::lockstep

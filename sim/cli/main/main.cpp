@@ -22,7 +22,7 @@ void add_config(CLI::App& app, std::string& config) {
 }
 
 void add_unit(CLI::App& app, std::string& engine, std::string& library) {
-  app.add_option("--engine", engine, "functional, rtl or lockstep; sim also native")->capture_default_str();
+  app.add_option("--engine", engine, "functional, model, rtl or lockstep; sim also native")->capture_default_str();
   app.add_option("--unit-library", library, "Verilated unit (default: where make unit builds it)");
 }
 

@@ -1,0 +1,520 @@
+#include "machine/cycle_unit.hpp"
+
+#include <algorithm>
+
+namespace raypool {
+namespace {
+
+constexpr uint8_t kInstructionId = 16;  // of a read of the instruction side
+constexpr uint8_t kLastBeat = 3;        // of a line
+
+uint32_t lowest(uint32_t bits) { return static_cast<uint32_t>(__builtin_ctz(bits)); }
+uint64_t popcount(uint32_t bits) { return static_cast<uint64_t>(__builtin_popcount(bits)); }
+
+constexpr size_t index(Unit unit) { return static_cast<size_t>(unit); }
+
+}  // namespace
+
+CycleUnit::CycleUnit(const Configuration& configuration, const Memory& memory)
+    : lanes_(configuration.cores),
+      host_memory_(&memory),
+      core_(configuration, memory_),
+      mem_(configuration),
+      ray_(configuration),
+      instruction_cache_(configuration),
+      issues_(static_cast<size_t>(configuration.warps)) {
+  for (size_t type = 0; type < kUnits; ++type) {
+    const AluConfiguration& alu = configuration.alus[type];
+    slots_[type].count = static_cast<uint32_t>(alu.count);
+    slots_[type].latency = static_cast<uint32_t>(alu.latency);
+    slots_[type].depth = static_cast<uint32_t>(alu.depth);
+  }
+}
+
+void CycleUnit::reset(uint32_t program_length, uint32_t memory_limit) {
+  program_length_ = program_length;
+  core_.reset(program_length, memory_limit);
+  mem_.reset();
+  ray_.reset();
+  instruction_cache_.reset();
+  memory_stale_ = true;
+  ring_.fill(Planned{});
+  active_ = fetching_ = missed_ = full_ = control_ = want_types_ = 0;
+  behind_ = idle_ = ~0u;
+  wants_.fill(0);
+  for (Slots& slots : slots_) {
+    slots.free_at.fill(0);
+    slots.unready = 0;
+  }
+  mem_task_ = ray_task_ = -1;
+  request_valid_ = waiting_ = running_ = false;
+  package_words_ = package_beats_ = 0;
+  fault_ = raised_ = Fault{};
+  planned_faults_.clear();
+  busy_cycles_ = instructions_ = thread_instructions_ = hits_ = misses_ = 0;
+  waited_.fill(0);
+  issued_.fill(0);
+  outputs_ = UnitOutputs{};
+  trace_ = UnitTrace{};
+  present();
+}
+
+void CycleUnit::set_argument(int number, uint32_t value) {
+  core_.set_argument(number, value);
+  mem_.invalidate();
+  instruction_cache_.invalidate();
+  memory_stale_ = true;
+}
+
+void CycleUnit::clock(const UnitInputs& inputs) {
+  step(inputs);
+  present();
+  if (tracing_) record();
+}
+
+// ---- The data routine
+
+void CycleUnit::dispatch_to_slots(Slots& slots, uint32_t& wants, uint64_t& issued) {
+  for (uint32_t slot = 0; slot < slots.count && wants != 0; ++slot) {
+    if (slots.free_at[slot] > now_) continue;
+    planned(now_ + 1 + slots.depth).retired |= wants & (0u - wants);
+    wants &= wants - 1;
+    slots.free_at[slot] = now_ + slots.latency;
+    slots.unready += slots.latency - 1;
+    ++issued;
+  }
+}
+
+// Each type's free instances take the lowest warps that want it. Mem and Ray say themselves whether they take a task.
+void CycleUnit::dispatch(bool mem_ready, bool ray_ready) {
+  for (uint32_t types = want_types_; types != 0; types &= types - 1) {
+    const uint32_t type = lowest(types);
+    uint32_t& wants = wants_[type];
+    if (type == index(Unit::Mem) || type == index(Unit::Ray)) {
+      const bool memory = type == index(Unit::Mem);
+      if (memory ? mem_ready : ray_ready) {
+        (memory ? mem_task_ : ray_task_) = static_cast<int>(lowest(wants));
+        wants &= wants - 1;
+        ++issued_[type];
+      }
+    } else {
+      dispatch_to_slots(slots_[type], wants, issued_[type]);
+    }
+    if (wants == 0)
+      want_types_ &= ~(1u << type);
+    else
+      waited_[type] += popcount(wants);
+  }
+}
+
+// The instruction in the buffer becomes the warp's current one and is executed, unless it has to wait for a slice to arrive or
+// leave.
+void CycleUnit::issue_warp(uint32_t warp) {
+  const uint32_t bit = 1u << warp;
+  const DecodedInstruction* instruction = core_.instruction_at(fetch_pc_[warp]);
+  if (!instruction->legal()) return raise({FaultCode::IllegalInstruction, warp, fetch_pc_[warp]});
+  full_ &= ~bit;
+  idle_ &= ~bit;
+  pc_[warp] = fetch_pc_[warp];
+  const uint8_t type = static_cast<uint8_t>(instruction->code >> 5);
+  type_[warp] = type;
+  planned(now_ + 2).wants |= bit;
+  if (tracing_) record_issue(warp, *instruction);
+
+  uint32_t mask;
+  const bool swaps = type == index(Unit::Ray) && (instruction->code & 31) < 3;
+  if (swaps) {
+    mask = core_.thread_mask(warp, *instruction);
+    ray_.task(warp) = {(instruction->code & 31) == 0 ? RayAlu::Task::Kind::Input : RayAlu::Task::Kind::Output, mask == 0};
+  } else {
+    const Step& step = core_.step(warp);
+    mask = step.mask;
+    const bool faults = step.status == Step::Status::Fault;
+    if (type == index(Unit::Mem)) {
+      begin_memory(warp, step);
+    } else if (type == index(Unit::Ray)) {
+      ray_.task(warp).kind = faults                          ? RayAlu::Task::Kind::Illegal
+                             : (instruction->code & 31) == 3 ? RayAlu::Task::Kind::Read
+                                                             : RayAlu::Task::Kind::Write;
+    } else if (instruction->info->control) {
+      control_ |= bit;
+      stack_fault_[warp] = faults ? step.fault.code : FaultCode::None;
+    }
+    if (tracing_) record_result(warp, step);
+    if (faults) core_.forget_fault();
+  }
+  ++instructions_;
+  thread_instructions_ += popcount(mask);
+  if (!instruction->info->control) plan_fetch(warp, now_ + 1, swaps);
+}
+
+void CycleUnit::begin_memory(uint32_t warp, const Step& step) {
+  MemAlu::Task& task = mem_.task(warp);
+  task.store = (step.instruction->code & 31) == 1;
+  task.fault = step.status == Step::Status::Fault ? step.fault.code : FaultCode::None;
+  task.count = 0;
+  if (step.store_count != 0) {
+    for (uint32_t i = 0; i < step.store_count; ++i) mem_.add_store(task, step.stores[i].address, step.stores[i].value);
+  } else {
+    for (uint32_t lanes = step.mask; lanes != 0; lanes &= lanes - 1) mem_.add_load(task, step.addresses[lowest(lanes)]);
+  }
+}
+
+// Control instructions among the warps that retire: only now does the instruction routine go on.
+void CycleUnit::retire_control(uint32_t warps) {
+  control_ &= ~warps;
+  for (; warps != 0; warps &= warps - 1) {
+    const uint32_t warp = lowest(warps);
+    if (stack_fault_[warp] != FaultCode::None) {
+      raise({stack_fault_[warp], warp, pc_[warp]});
+    } else if (!core_.warp_running(warp)) {
+      active_ &= ~(1u << warp);
+    } else {
+      plan_fetch(warp, now_ + 1, false);
+    }
+  }
+}
+
+void CycleUnit::swap(uint32_t warp) {
+  const Step& step = core_.step(warp);
+  for (uint32_t i = 0; i < step.ray_count; ++i) ray_.add_ray(step.rays[i]);
+  for (uint32_t i = 0; i < step.frame_count; ++i) ray_.add_contribution(step.frame[i]);
+}
+
+// ---- The instruction routine
+
+// The PC stack is stepped from `cycle` on: a cycle for each entry that is popped, and one for the PC that is taken.
+void CycleUnit::plan_fetch(uint32_t warp, uint64_t cycle, bool past_current) {
+  const FunctionalCore::Fetch fetch = core_.next_fetch(warp, past_current);
+  fetch_pc_[warp] = fetch.pc;
+  if (fetch.pc >= program_length_) {
+    planned_faults_.push_back({cycle + fetch.pops, {FaultCode::PcOutsideProgram, warp, fetch.pc}});
+  } else {
+    planned(cycle + fetch.pops + 1).fetches |= 1u << warp;
+  }
+}
+
+// ---- Launch, imports, faults
+
+void CycleUnit::start_kernel() {
+  waiting_ = false;
+  if (memory_stale_) {
+    memory_ = *host_memory_;
+    memory_stale_ = false;
+  }
+  core_.launch(waiting_launch_);
+  const uint32_t lanes = static_cast<uint32_t>(lanes_);
+  for (uint32_t warp = 0; warp * lanes < waiting_launch_.threads; ++warp) {
+    active_ |= 1u << warp;
+    plan_fetch(warp, now_ + 1, false);
+  }
+}
+
+void CycleUnit::take_package_beat(const Beat& beat) {
+  for (int i = 0; i < kBeatWords && package_words_ < kIntersectionWords; ++i)
+    package_[package_words_++] = beat[static_cast<size_t>(i)];
+  if (++package_beats_ < kIntersectionBeats) return;
+  package_words_ = package_beats_ = 0;
+  core_.import_package(package_);
+}
+
+// Of several faults of warps in a cycle the lowest warp's counts.
+void CycleUnit::raise(const Fault& fault) {
+  if (raised_.code == FaultCode::None || fault.warp < raised_.warp) raised_ = fault;
+}
+
+// The first fault stays; of several in one cycle an ALU's wins.
+void CycleUnit::settle_faults(FaultCode mem_fault, uint32_t mem_warp, bool ray_fault, uint32_t ray_warp) {
+  for (const PlannedFault& planned_fault : planned_faults_) {
+    if (planned_fault.cycle == now_) raise(planned_fault.fault);
+  }
+  if (fault_.code == FaultCode::None) {
+    if (mem_fault != FaultCode::None)
+      fault_ = {mem_fault, mem_warp, pc_[mem_warp]};
+    else if (ray_fault)
+      fault_ = {FaultCode::RayWordOutside, ray_warp, pc_[ray_warp]};
+    else
+      fault_ = raised_;
+  }
+  raised_ = Fault{};
+}
+
+// Instances that are taken while no kernel runs are not counted as such.
+void CycleUnit::run_changes(bool running) {
+  running_ = running;
+  for (Slots& slots : slots_) {
+    for (uint32_t slot = 0; slot < slots.count; ++slot) {
+      const uint64_t rest = slots.free_at[slot] > now_ + 1 ? slots.free_at[slot] - (now_ + 1) : 0;
+      if (running)
+        slots.unready += rest;
+      else
+        slots.unready -= rest;
+    }
+  }
+}
+
+// ---- One cycle
+
+void CycleUnit::step(const UnitInputs& inputs) {
+  // Everything is worked out from the registers of this cycle; where a block changes its own, what others need is taken first.
+  Planned plan = planned(now_);
+  planned(now_) = Planned{};
+  fetching_ |= plan.fetches;
+  for (uint32_t warps = plan.wants; warps != 0; warps &= warps - 1) {
+    const uint32_t warp = lowest(warps);
+    wants_[type_[warp]] |= 1u << warp;
+    want_types_ |= 1u << type_[warp];
+  }
+  const bool halted = fault_.code != FaultCode::None;
+  const uint32_t retired = plan.retired | mem_.done() | ray_.done();
+  const bool mem_ready = mem_.ready();
+  const bool ray_ready = ray_.ready(ray_task_);
+  const FaultCode mem_fault = mem_.fault();
+  const uint32_t mem_fault_warp = mem_.fault_warp();
+  const bool ray_fault = ray_.fault();
+  const uint32_t ray_fault_warp = ray_.fault_warp();
+  const bool starts = waiting_ && !running_;
+  const bool ends = running_ && active_ == 0;
+  busy_cycles_ += running_;
+
+  // Instruction cache and fetch arbiter. What has missed asks again when a line has come.
+  uint32_t fetches_next = 0, full_next = 0;
+  if (instruction_cache_.result()) {
+    const uint32_t bit = 1u << lookup_warp_;
+    if (instruction_cache_.hit()) {
+      full_next = bit;
+      ++hits_;
+    } else {
+      missed_ |= bit;
+      ++misses_;
+    }
+  }
+  if (instruction_cache_.refill_done()) {
+    fetches_next = missed_;
+    missed_ = 0;
+  }
+  int lookup = -1;
+  if (fetching_ != 0 && !halted) {
+    const uint32_t candidates = (fetching_ & behind_) != 0 ? fetching_ & behind_ : fetching_;
+    const uint32_t bit = candidates & (0u - candidates);
+    lookup_warp_ = lowest(bit);
+    behind_ = ~(bit | (bit - 1));
+    fetching_ &= ~bit;
+    lookup = static_cast<int>(fetch_pc_[lookup_warp_]);
+  }
+  fetching_ |= fetches_next;
+
+  // Memory arbiter.
+  const bool arbiter_free = !request_valid_ || inputs.memory_request_ready;
+  const bool instruction_request = instruction_cache_.request_valid();
+  const bool data_ready = arbiter_free && !instruction_request;
+  if (arbiter_free) {
+    request_valid_ = instruction_request || mem_.request_valid();
+    if (instruction_request) {
+      request_ = MemoryRequest{};
+      request_.address = instruction_cache_.request_address();
+      request_.id = kInstructionId;
+    } else if (request_valid_) {
+      request_ = mem_.request();
+    }
+  }
+  const bool of_instruction = inputs.memory_response.id == kInstructionId;
+  const bool last_beat = inputs.memory_response_valid && of_instruction && inputs.memory_response.beat == kLastBeat;
+  if (lookup >= 0 || last_beat || instruction_request || instruction_cache_.active()) {
+    instruction_cache_.clock(lookup, arbiter_free, last_beat);
+  }
+
+  // Write-back and the next instructions. Who retires in this cycle may issue in it.
+  idle_ |= retired;
+  if ((retired & control_) != 0) retire_control(retired & control_);
+  if (!halted) {
+    for (uint32_t warps = full_ & idle_; warps != 0; warps &= warps - 1) issue_warp(lowest(warps));
+  }
+  full_ |= full_next;
+
+  // Mem and Ray.
+  const bool data_response = inputs.memory_response_valid && !of_instruction;
+  if (mem_task_ >= 0 || data_response || mem_.active()) {
+    mem_.clock({mem_task_, data_response, inputs.memory_response.id, inputs.memory_response.beat, data_ready});
+    mem_task_ = -1;
+  }
+  const bool accepts = inputs.launch_valid && outputs_.launch_ready;
+  const ImportKind import = accepts ? inputs.launch.import : ImportKind::None;
+  if (inputs.import_beat_valid) take_package_beat(inputs.import_beat);
+  if (ray_task_ >= 0 || inputs.import_beat_valid || import != ImportKind::None || ray_.active()) {
+    const int swapped = ray_.clock({ray_task_, import, inputs.launch.threads, inputs.import_request_ready,
+                                    inputs.import_beat_valid, inputs.export_ready, inputs.frame_ready});
+    ray_task_ = -1;
+    if (swapped >= 0) swap(static_cast<uint32_t>(swapped));
+  }
+
+  if (want_types_ != 0 && !halted) dispatch(mem_ready, ray_ready);
+
+  // Launch
+  if (starts) {
+    start_kernel();
+    run_changes(true);
+  } else if (ends) {
+    run_changes(false);
+  }
+  if (accepts) {
+    waiting_ = true;
+    waiting_launch_ = inputs.launch;
+    if (import != ImportKind::None) core_.expect_import(inputs.launch.threads);
+  }
+  if (mem_fault != FaultCode::None || ray_fault || raised_.code != FaultCode::None || !planned_faults_.empty()) {
+    settle_faults(mem_fault, mem_fault_warp, ray_fault, ray_fault_warp);
+  }
+  ++now_;
+}
+
+bool CycleUnit::quiet() const {
+  return (full_ & idle_) == 0 && want_types_ == 0 && fetching_ == 0 && mem_task_ < 0 && ray_task_ < 0 && !request_valid_ &&
+         !instruction_cache_.request_valid() && !instruction_cache_.active() && !mem_.active() && !ray_.active() &&
+         !(waiting_ && !running_) && !(running_ && active_ == 0) && planned_faults_.empty();
+}
+
+uint64_t CycleUnit::run(const UnitInputs& inputs, uint64_t cycles) {
+  const uint32_t before = outputs_.signals();
+  const uint32_t taken = inputs.ready_signals();
+  clock(inputs);
+  uint64_t done = 1;
+  UnitInputs rest;
+  rest.memory_request_ready = inputs.memory_request_ready;
+  rest.import_request_ready = inputs.import_request_ready;
+  rest.export_ready = inputs.export_ready;
+  rest.frame_ready = inputs.frame_ready;
+  while (done < cycles && outputs_.signals() == before && (before & taken) == 0) {
+    if (quiet()) {
+      // Nothing happens before the next planned event.
+      uint64_t skip = 0;
+      while (skip < kRing && done + skip < cycles && !planned(now_ + skip).any()) ++skip;
+      if (skip == kRing) skip = cycles - done;
+      now_ += skip;
+      busy_cycles_ += running_ ? skip : 0;
+      done += skip;
+      if (done == cycles) break;
+    }
+    clock(rest);
+    ++done;
+  }
+  return done;
+}
+
+// ---- What is seen from outside
+
+void CycleUnit::present() {
+  UnitOutputs& out = outputs_;
+  out.launch_ready = !waiting_ && !ray_.import_active();
+  out.kernel_done = running_ && active_ == 0 ? 1 : 0;
+  out.busy = running_ ? 1 : 0;
+  out.idle = !running_ && !waiting_ && !ray_.import_active() && !ray_.exporting() && mem_.idle() && !request_valid_;
+  out.unit_idle = out.idle ? 1 : 0;
+  out.memory_request_valid = request_valid_;
+  if (request_valid_) out.memory_request = request_;
+  out.import_request_valid = ray_.import_request_valid();
+  out.import_request_kind = ray_.import_kind();
+  out.export_valid = ray_.export_valid();
+  out.frame_valid = ray_.frame_valid();
+  if (out.export_valid) {
+    out.export_data = ray_.beat().data;
+    out.export_last = ray_.beat().last;
+  } else if (out.frame_valid) {
+    const Beat& beat = ray_.beat().data;
+    out.frame = {beat[0], {beat[1], beat[2], beat[3]}};
+  }
+  out.fault = fault_;
+}
+
+uint64_t CycleUnit::counter(int number) {
+  switch (number) {
+    case counter::kBusyCycles:
+      return busy_cycles_;
+    case counter::kInstructions:
+      return instructions_;
+    case counter::kThreadInstructions:
+      return thread_instructions_;
+    case counter::kInstructionCacheHits:
+      return hits_;
+    case counter::kInstructionCacheMisses:
+      return misses_;
+    case counter::kDataCacheHits:
+      return mem_.hits();
+    case counter::kDataCacheMisses:
+      return mem_.misses();
+    case counter::kDataCacheStores:
+      return mem_.stores();
+    default:
+      break;
+  }
+  const size_t type = static_cast<size_t>(number & 7);
+  if (type >= kUnits) return 0;
+  switch (number & ~7) {
+    case counter::kUnused: {
+      const Slots& slots = slots_[type];
+      uint64_t unready = slots.unready;
+      if (type == index(Unit::Mem)) unready = mem_.unready();
+      if (type == index(Unit::Ray)) unready = ray_.unready();
+      for (uint32_t slot = 0; running_ && slot < slots.count; ++slot) {
+        if (slots.free_at[slot] > now_) unready -= slots.free_at[slot] - now_;
+      }
+      return busy_cycles_ * slots.count - unready - issued_[type];
+    }
+    case counter::kWaiting:
+      return waited_[type];
+    case counter::kIssued:
+      return issued_[type];
+    default:
+      return 0;
+  }
+}
+
+// ---- Trace
+
+void CycleUnit::record_issue(uint32_t warp, const DecodedInstruction& instruction) {
+  Issue& issue = issues_[warp];
+  const auto row = [this, warp](std::vector<uint32_t>& words, uint32_t number) {
+    const uint32_t* first = core_.register_row(warp, number);
+    words.assign(first, first + lanes_);
+  };
+  issue.pc = pc_[warp];
+  issue.instruction = &instruction;
+  issue.mask = core_.thread_mask(warp, instruction);
+  row(issue.a, instruction.ra);
+  row(issue.b, instruction.rb);
+  if (instruction.b_is_immediate) std::fill(issue.b.begin(), issue.b.end(), instruction.immediate);
+  issue.px = core_.predicate(warp, instruction.x & 15);
+  issue.pb = core_.predicate(warp, instruction.rb);
+  issue.predicate = 0;
+}
+
+void CycleUnit::record_result(uint32_t warp, const Step& step) {
+  Issue& issue = issues_[warp];
+  if (step.data != nullptr) issue.data.assign(step.data, step.data + lanes_);
+  issue.predicate = step.predicate;
+}
+
+// What the trace ports show in the cycle that begins.
+void CycleUnit::record() {
+  trace_.retired.clear();
+  trace_.stores.clear();
+  trace_.ray_writes.clear();
+  for (uint32_t warps = planned(now_).retired | mem_.done() | ray_.done(); warps != 0; warps &= warps - 1) {
+    const uint32_t warp = lowest(warps);
+    const Issue& issue = issues_[warp];
+    RetireEvent& event = trace_.retired.emplace_back();
+    event.warp = warp;
+    event.pc = issue.pc;
+    event.instruction = issue.instruction->encoding;
+    event.mask = issue.mask;
+    event.data = issue.data;
+    event.data.resize(static_cast<size_t>(lanes_));
+    event.predicate = issue.predicate;
+    if ((ray_.done() >> warp & 1) != 0 && ray_.wrote())
+      trace_.ray_writes.push_back({warp, issue.instruction->x, issue.mask, issue.b, 0});
+  }
+  StoreEvent store;
+  if (mem_.storing(store)) trace_.stores.push_back(store);
+}
+
+}  // namespace raypool

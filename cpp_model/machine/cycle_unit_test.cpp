@@ -1,0 +1,197 @@
+#include "machine/cycle_unit.hpp"
+
+#include <gtest/gtest.h>
+
+#include "machine/functional_unit.hpp"
+#include "machine/model.hpp"
+#include "machine/test_chip.hpp"
+#include "machine/test_program.hpp"
+
+namespace raypool {
+namespace {
+
+using test::Encode;
+using test::TestChip;
+
+constexpr uint32_t kMemoryBytes = 16384;
+constexpr uint32_t kData = 8192;
+
+Configuration make_configuration(int warps, int cores) {
+  Configuration configuration;
+  configuration.warps = warps;
+  configuration.cores = cores;
+  return configuration;
+}
+
+// Imports, a divergent loop over memory, slow arithmetic, exports: every block has something to do.
+const std::vector<uint64_t> kProgram = {Encode("rin"),
+                                        Encode("rld").rd(1).x(7),
+                                        Encode("tid").rd(2),
+                                        Encode("and").rd(5).ra(2).imm(3),
+                                        Encode("shl").rd(3).ra(2).imm(6),
+                                        Encode("ige").rd(1).ra(5).imm(0),
+                                        Encode("loop").guard(1).target(14),
+                                        Encode("ld").rd(4).guard(1).ra(3).plain_imm(kData),
+                                        Encode("iadd").rd(4).guard(1).ra(4).rb(5),
+                                        Encode("st").guard(1).ra(3).rb(4).plain_imm(kData),
+                                        Encode("i2f").rd(6).ra(4),
+                                        Encode("fsqrt").rd(6).ra(6),
+                                        Encode("isub").rd(5).guard(1).ra(5).imm(1),
+                                        Encode("ige").rd(1).guard(1).ra(5).imm(0),
+                                        Encode("rst").x(8).rb(6),
+                                        Encode("rout"),
+                                        Encode("rst").x(9).rb(4),
+                                        Encode("rfb"),
+                                        Encode("exit")};
+
+Memory with_program(const std::vector<uint64_t>& code) {
+  Memory memory(kMemoryBytes);
+  test::put_program(memory, code);
+  return memory;
+}
+
+LaunchCommand launch_of(uint32_t threads, ImportKind import = ImportKind::None) {
+  LaunchCommand command;
+  command.threads = threads;
+  command.import = import;
+  return command;
+}
+
+TEST(CycleUnit, LeavesWhatTheFunctionalUnitLeaves) {
+  for (const auto& [warps, cores] : {std::pair{1, 1}, {4, 4}, {8, 8}, {2, 32}}) {
+    const Configuration configuration = make_configuration(warps, cores);
+    std::vector<std::vector<Ray>> rays;
+    std::vector<Memory> memories;
+    for (const bool timed : {false, true}) {
+      Memory memory = with_program(kProgram);
+      std::unique_ptr<ComputeUnit> unit;
+      if (timed) {
+        unit = std::make_unique<CycleUnit>(configuration, memory);
+      } else {
+        unit = make_functional_unit(configuration, memory);
+      }
+      unit->reset(static_cast<uint32_t>(kProgram.size()), kMemoryBytes);
+      TestChip chip(*unit, memory, 3, 70);
+      for (int i = 0; i < 3; ++i)
+        chip.launches.push_back(launch_of(static_cast<uint32_t>(configuration.contents()), ImportKind::Normal));
+      EXPECT_TRUE(chip.run());
+      EXPECT_EQ(chip.kernels_done, 3u);
+      // Warps finish in another order, rays are the same.
+      std::sort(chip.rays.begin(), chip.rays.end());
+      rays.push_back(chip.rays);
+      memories.push_back(memory);
+    }
+    EXPECT_EQ(rays[0], rays[1]);
+    for (uint32_t address = 0; address < kMemoryBytes; address += 4)
+      EXPECT_EQ(memories[0].load(address), memories[1].load(address));
+  }
+}
+
+// docs/architecture.md, section 3.
+TEST(CycleUnit, AWarpWithoutStallsIssuesEveryFourCyclesWithAnAluOfDepthOne) {
+  const std::vector<uint64_t> code = {Encode("tid").rd(1), Encode("tid").rd(2), Encode("tid").rd(3), Encode("tid").rd(4),
+                                      Encode("exit")};
+  Memory memory = with_program(code);
+  CycleUnit unit(make_configuration(1, 4), memory);
+  unit.trace_on();
+  unit.reset(static_cast<uint32_t>(code.size()), kMemoryBytes);
+  TestChip chip(unit, memory);
+  chip.launches.push_back(launch_of(4));
+  std::vector<uint64_t> retired;
+  for (int i = 0; i < 200; ++i) {
+    chip.cycle();
+    for (size_t n = 0; n < unit.trace().retired.size(); ++n) retired.push_back(chip.cycles);
+  }
+  ASSERT_EQ(retired.size(), 5u);
+  for (size_t i = 1; i < 4; ++i) EXPECT_EQ(retired[i] - retired[i - 1], 4u);
+  // The branch ALU has two stages.
+  EXPECT_EQ(retired[4] - retired[3], 5u);
+}
+
+TEST(CycleUnit, TheLowestWarpGoesFirstAndTheOthersAreCountedAsWaiting) {
+  Configuration configuration = make_configuration(4, 1);
+  configuration.alus[static_cast<size_t>(Unit::Int)].latency = 16;
+  const std::vector<uint64_t> code = {Encode("mov").rd(1).imm(1), Encode("exit")};
+  Memory memory = with_program(code);
+  CycleUnit unit(configuration, memory);
+  unit.trace_on();
+  unit.reset(static_cast<uint32_t>(code.size()), kMemoryBytes);
+  TestChip chip(unit, memory);
+  chip.launches.push_back(launch_of(4));
+  std::vector<std::pair<uint32_t, uint64_t>> retired;
+  for (int i = 0; i < 300; ++i) {
+    chip.cycle();
+    for (const RetireEvent& event : unit.trace().retired) {
+      if (event.pc == 0) retired.emplace_back(event.warp, chip.cycles);
+    }
+  }
+  ASSERT_EQ(retired.size(), 4u);
+  for (uint32_t warp = 0; warp < 4; ++warp) {
+    EXPECT_EQ(retired[warp].first, warp);
+    if (warp > 0) {
+      EXPECT_EQ(retired[warp].second - retired[warp - 1].second, 16u);
+    }
+  }
+  EXPECT_GT(unit.counter(counter::kWaiting + static_cast<int>(Unit::Int)), 3u * 10);
+  EXPECT_EQ(unit.counter(counter::kIssued + static_cast<int>(Unit::Int)), 4u);
+}
+
+// Two units, one clocked and one run; the memory answers after a fixed time, the ports are always ready.
+TEST(CycleUnit, RunIsClockRepeatedUntilSomethingHappens) {
+  const Configuration configuration = make_configuration(4, 4);
+  Memory memory = with_program(kProgram);
+  CycleUnit clocked(configuration, memory), run(configuration, memory);
+  for (CycleUnit* unit : {&clocked, &run}) unit->reset(static_cast<uint32_t>(kProgram.size()), kMemoryBytes);
+  UnitInputs ready;
+  ready.memory_request_ready = ready.import_request_ready = ready.export_ready = ready.frame_ready = true;
+  std::deque<std::pair<uint64_t, uint8_t>> lines;
+  std::deque<uint64_t> beats;  // cycles in which a beat of a package comes
+  uint64_t now = 0, calls = 0;
+  bool launched = false;
+  while (now < 20000) {
+    UnitInputs inputs = ready;
+    const UnitOutputs& out = run.outputs();
+    EXPECT_EQ(out.signals(), clocked.outputs().signals()) << now;
+    if (!launched && out.launch_ready) {
+      inputs.launch_valid = launched = true;
+      inputs.launch = launch_of(16, ImportKind::Shadow);
+    }
+    if (out.memory_request_valid && !out.memory_request.write) lines.emplace_back(now + 100, out.memory_request.id);
+    if (out.import_request_valid) {
+      for (uint64_t i = 0; i < kIntersectionBeats; ++i) beats.push_back(std::max(now + 10, beats.empty() ? 0 : beats.back() + 1));
+    }
+    if (!lines.empty() && now >= lines.front().first) {
+      inputs.memory_response_valid = true;
+      inputs.memory_response.id = lines.front().second;
+      inputs.memory_response.beat = static_cast<uint8_t>(now - lines.front().first);
+      if (inputs.memory_response.beat == 3) lines.pop_front();
+    }
+    if (!beats.empty() && beats.front() == now) {
+      inputs.import_beat_valid = true;
+      beats.pop_front();
+    }
+    // Until the next thing that the host has to do.
+    uint64_t next = 20000;
+    if (!lines.empty()) next = std::min(next, std::max(lines.front().first, now + 1));
+    if (!beats.empty()) next = std::min(next, beats.front());
+    const uint64_t cycles = run.run(inputs, next - now);
+    ASSERT_GE(cycles, 1u);
+    ASSERT_LE(cycles, next - now);
+    clocked.clock(inputs);
+    for (uint64_t i = 1; i < cycles; ++i) clocked.clock(ready);
+    now += cycles;
+    ++calls;
+  }
+  EXPECT_LT(calls, 3000u) << "run() was to skip what is quiet";
+  EXPECT_GT(run.counter(counter::kInstructions), 50u);
+  for (int number = 0; number < counter::kCount; ++number) EXPECT_EQ(run.counter(number), clocked.counter(number)) << number;
+}
+
+TEST(Model, RefusesNumbersOfUnitsThatAMultiprocessorCannotHave) {
+  Memory memory = with_program(kProgram);
+  EXPECT_EQ(make_model(make_configuration(2, 2), memory, 4).units.size(), 4u);
+  EXPECT_THROW(make_model(make_configuration(2, 2), memory, 3), InputError);
+}
+
+}  // namespace
+}  // namespace raypool

@@ -1,0 +1,181 @@
+#include "machine/ray_alu.hpp"
+
+#include <algorithm>
+
+namespace raypool {
+namespace {
+
+constexpr uint32_t kRing = 32;  // warps at most, of which each is in the export's order once
+
+uint32_t lowest(uint32_t bits) { return static_cast<uint32_t>(__builtin_ctz(bits)); }
+
+}  // namespace
+
+RayAlu::RayAlu(const Configuration& configuration)
+    : lane_bits_(lowest(static_cast<uint32_t>(configuration.cores))),
+      last_lane_(static_cast<uint32_t>(configuration.cores) - 1),
+      last_step_(configuration.cores > 4 ? static_cast<uint32_t>(configuration.cores) / 4 - 1 : 0),
+      tasks_(static_cast<size_t>(configuration.warps)),
+      roles_(static_cast<size_t>(configuration.warps)),
+      order_(kRing),
+      reads_(static_cast<size_t>(configuration.warps)) {
+  // A warp's slice is busy until it has been read, so at most one and a few beats more are there.
+  uint32_t beats = 4;
+  while (beats < static_cast<uint32_t>(configuration.contents() * kRayBeats + 4)) beats *= 2;
+  beats_.resize(beats);
+  beats_mask_ = beats - 1;
+}
+
+void RayAlu::reset() {
+  std::fill(roles_.begin(), roles_.end(), Roles{});
+  hold_ = false;
+  step_ = 0;
+  result_ = Result{};
+  done_ = 0;
+  wrote_ = fault_ = false;
+  parked_input_ = parked_output_ = 0;
+  import_active_ = import_request_ = false;
+  outstanding_ = 0;
+  full_ = 0;
+  write_ = Write{};
+  first_ = end_ = busy_ = 0;
+  next_ = Next{};
+  slice_ = Slice{};
+  landing_ = false;
+  fill_ = 0;
+  beats_first_ = beats_end_ = 0;
+  unready_ = 0;
+}
+
+int RayAlu::clock(const Inputs& inputs) {
+  unready_ += !ready(inputs.arriving);
+
+  // Arrival, and the port of the access' set.
+  const Task* task = inputs.arriving >= 0 ? &tasks_[static_cast<size_t>(inputs.arriving)] : nullptr;
+  const uint32_t arriving = static_cast<uint32_t>(std::max(inputs.arriving, 0));
+  const bool arrives_access = task != nullptr && (task->kind == Task::Kind::Read || task->kind == Task::Kind::Write);
+  if (arrives_access) {
+    hold_warp_ = arriving;
+    hold_set_ = roles_[arriving].current;
+    hold_writes_ = task->kind == Task::Kind::Write;
+  }
+  const bool access = hold_ || arrives_access;
+  const bool access_granted = access && !(write_.valid && write_.set == hold_set_);
+  const bool access_last = step_ == last_step_;
+  const bool result_end = result_.valid && result_.last;
+  const bool read = slice_.valid && fill_ + landing_ != 3;
+  const bool read_granted = read && !(write_.valid && write_.set == slice_.set) && !(access && hold_set_ == slice_.set);
+
+  const uint32_t ready_swaps = can();
+  const int swap = ready_swaps != 0 && !result_end ? static_cast<int>(lowest(ready_swaps)) : -1;
+  const bool swaps_input = swap >= 0 && (parked_input_ >> swap & 1) != 0;
+
+  // Done: an access first. The result stage knows its own task, as the next one may be held by now.
+  done_ = result_end ? 1u << result_warp_ : swap >= 0 ? 1u << swap : 0;
+  wrote_ = result_end && result_writes_;
+  fault_ = task != nullptr && task->kind == Task::Kind::Illegal;
+  fault_warp_ = arriving;
+  result_ = {access_granted, access_last};
+  if (access_granted) {
+    result_warp_ = hold_warp_;
+    result_writes_ = hold_writes_;
+  }
+  if (access) {
+    hold_ = !(access_granted && access_last);
+    if (access_granted) step_ = access_last ? 0 : step_ + 1;
+  }
+
+  // The engines see the roles of this cycle, so the swap comes after them.
+  clock_import(inputs);
+  clock_export(inputs, read_granted);
+  if (task != nullptr && task->kind == Task::Kind::Input) parked_input_ |= 1u << arriving;
+  if (task != nullptr && task->kind == Task::Kind::Output) parked_output_ |= 1u << arriving;
+  if (swap < 0) return -1;
+  const uint32_t warp = static_cast<uint32_t>(swap);
+  const uint32_t bit = 1u << warp;
+  Roles& roles = roles_[warp];
+  if (swaps_input) {
+    parked_input_ &= ~bit;
+    full_ &= ~bit;
+    std::swap(roles.input, roles.current);
+  } else {
+    parked_output_ &= ~bit;
+    std::swap(roles.output, roles.current);
+    if (!tasks_[warp].empty) {
+      order_[end_++ % kRing] = warp;
+      busy_ |= bit;
+      reads_[warp] = 0;
+      added_ = warp;
+    }
+  }
+  return swap;
+}
+
+void RayAlu::clock_import(const Inputs& inputs) {
+  const uint32_t warp = received_ >> lane_bits_;
+  write_.valid = inputs.import_beat_valid;
+  if (inputs.import_beat_valid) write_.set = roles_[warp].input;
+  if (import_active_) {
+    const bool received = inputs.import_beat_valid && import_beat_ == kIntersectionBeats - 1;
+    const bool taken = import_request_ && inputs.import_request_ready;
+    requested_ += taken;
+    outstanding_ += static_cast<uint32_t>(taken) - static_cast<uint32_t>(received);
+    import_request_ = requested_ != threads_ && outstanding_ != 2 && (full_ >> (requested_ >> lane_bits_) & 1) == 0;
+    if (inputs.import_beat_valid) import_beat_ = received ? 0 : import_beat_ + 1;
+    if (received) {
+      const bool launch_end = received_ + 1 == threads_;
+      if (launch_end || (received_ & last_lane_) == last_lane_) full_ |= 1u << warp;
+      if (launch_end) import_active_ = false;
+      ++received_;
+    }
+  }
+  if (inputs.import_start != ImportKind::None) {
+    import_active_ = true;
+    import_kind_ = inputs.import_start;
+    threads_ = inputs.import_threads;
+    requested_ = received_ = import_beat_ = 0;
+  }
+}
+
+void RayAlu::clock_export(const Inputs& inputs, bool granted) {
+  // Beats leave, and one that was read in the cycle before joins those that wait.
+  if (fill_ != 0 && (beat().frame ? inputs.frame_ready : inputs.export_ready)) {
+    ++beats_first_;
+    --fill_;
+  }
+  fill_ += landing_;
+  landing_ = granted;
+
+  bool slice_end = false;
+  if (granted) {
+    slice_end = --reads_[slice_.warp] == 0;
+    if (slice_end) busy_ &= ~(1u << slice_.warp);
+  }
+  const bool load = next_.valid && (!slice_.valid || slice_end);
+  const bool take_first = first_ != end_ && (!next_.valid || load);
+  if (load)
+    slice_ = {true, next_.warp, roles_[next_.warp].output};
+  else if (slice_end)
+    slice_.valid = false;
+  if (take_first)
+    next_ = {true, order_[first_++ % kRing]};
+  else if (load)
+    next_.valid = false;
+}
+
+void RayAlu::add_ray(const Ray& ray) {
+  for (size_t beat = 0; beat < kRayBeats; ++beat) {
+    OutBeat out;
+    out.last = beat == kRayBeats - 1;
+    std::copy_n(&ray[beat * kBeatWords], kBeatWords, out.data.begin());
+    push_beat(out);
+  }
+  reads_[added_] += kRayBeats;
+}
+
+void RayAlu::add_contribution(const FrameContribution& contribution) {
+  push_beat({true, true, {contribution.pixel, contribution.rgb[0], contribution.rgb[1], contribution.rgb[2]}});
+  ++reads_[added_];
+}
+
+}  // namespace raypool

@@ -1,0 +1,153 @@
+// Time of the ray ALU with its import and export engines: rtl/ray_alu.v, cycle by cycle. The words of the local ray memory are
+// the functional core's; only the beats that are exported pass through here. docs/ray-alu.md gives the rules that both sides
+// follow.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "config/configuration.hpp"
+#include "machine/compute_unit.hpp"
+
+namespace raypool {
+
+class RayAlu {
+ public:
+  /// A task of a warp, from its issue to its end.
+  struct Task {
+    enum class Kind : uint8_t { Input, Output, Read, Write, Illegal };  ///< rin; rout and rfb; rld; rst; a word above 20
+    Kind kind = Kind::Input;
+    bool empty = false;  ///< no lane is masked
+  };
+  struct Inputs {
+    int arriving = -1;  ///< warp whose task arrives in this cycle
+    ImportKind import_start = ImportKind::None;
+    uint32_t import_threads = 0;
+    bool import_request_ready = false;
+    bool import_beat_valid = false;
+    bool export_ready = false;
+    bool frame_ready = false;
+  };
+  /// A beat on its way out.
+  struct OutBeat {
+    bool frame = false;  ///< to the frame buffer: pixel, red, green, blue
+    bool last = false;   ///< third beat of a ray
+    Beat data{};
+  };
+
+  explicit RayAlu(const Configuration& configuration);
+
+  void reset();
+
+  Task& task(uint32_t warp) { return tasks_[warp]; }
+
+  // Registers, as they stand in the present cycle.
+  /// Whether a task granted in this cycle is taken; `arriving` as in Inputs.
+  bool ready(int arriving) const {
+    if (hold_) return step_ == last_step_ && !(write_.valid && write_.set == hold_set_);
+    if (arriving < 0) return true;
+    const Task::Kind kind = tasks_[static_cast<size_t>(arriving)].kind;
+    const bool access = kind != Task::Kind::Input && kind != Task::Kind::Output;
+    return !(access && (last_step_ > 0 || write_.valid));
+  }
+  /// False if clock() would change nothing: it need not be called as long as no task, no import and no beat arrives.
+  bool active() const {
+    return hold_ || result_.valid || done_ != 0 || fault_ || can() != 0 || write_.valid || import_moves() || first_ != end_ ||
+           next_.valid || slice_.valid || landing_ || fill_ != 0;
+  }
+  uint32_t done() const { return done_; }  ///< the warp whose task is done in this cycle, as a bit
+  bool wrote() const { return wrote_; }    ///< that task was an rst
+  bool fault() const { return fault_; }    ///< ray word above 20
+  uint32_t fault_warp() const { return fault_warp_; }
+  bool import_active() const { return import_active_; }
+  bool import_request_valid() const { return import_request_; }
+  ImportKind import_kind() const { return import_kind_; }
+  bool exporting() const { return busy_ != 0 || landing_ || fill_ != 0; }
+  bool export_valid() const { return fill_ != 0 && !beat().frame; }
+  bool frame_valid() const { return fill_ != 0 && beat().frame; }
+  /// The beat that is offered.
+  const OutBeat& beat() const { return beats_[beats_first_ & beats_mask_]; }
+
+  /// Returns the warp whose rin, rout or rfb is executed at the end of this cycle, or -1. After an rout or rfb with a mask that
+  /// is not empty the caller adds its beats.
+  int clock(const Inputs& inputs);
+  void add_ray(const Ray& ray);
+  void add_contribution(const FrameContribution& contribution);
+
+  /// Cycles in which it was not ready().
+  uint64_t unready() const { return unready_; }
+
+ private:
+  struct Roles {
+    uint8_t input = 0, current = 1, output = 2;
+  };
+  struct Write {
+    bool valid = false;
+    uint8_t set = 0;
+  };
+  struct Result {
+    bool valid = false, last = false;
+  };
+  struct Next {
+    bool valid = false;
+    uint32_t warp = 0;
+  };
+  struct Slice {
+    bool valid = false;
+    uint32_t warp = 0;
+    uint8_t set = 0;
+  };
+
+  uint32_t can() const { return (parked_input_ & full_) | (parked_output_ & ~busy_); }
+  bool import_moves() const {
+    return import_active_ &&
+           (import_request_ || (requested_ != threads_ && outstanding_ != 2 && (full_ >> (requested_ >> lane_bits_) & 1) == 0));
+  }
+  void clock_import(const Inputs& inputs);
+  void clock_export(const Inputs& inputs, bool granted);
+  void push_beat(const OutBeat& beat) { beats_[beats_end_++ & beats_mask_] = beat; }
+
+  uint32_t lane_bits_ = 0, last_lane_ = 0, last_step_ = 0;
+  std::vector<Task> tasks_;
+  std::vector<Roles> roles_;
+
+  // Access: rld and rst
+  bool hold_ = false;
+  uint32_t step_ = 0;
+  uint32_t hold_warp_ = 0;
+  uint8_t hold_set_ = 0;
+  bool hold_writes_ = false;
+  Result result_;
+  uint32_t result_warp_ = 0;
+  bool result_writes_ = false;
+  uint32_t done_ = 0;
+  bool wrote_ = false, fault_ = false;
+  uint32_t fault_warp_ = 0;
+
+  uint32_t parked_input_ = 0, parked_output_ = 0;  // warps, a bit each
+
+  // Import
+  bool import_active_ = false, import_request_ = false;
+  ImportKind import_kind_ = ImportKind::None;
+  uint32_t threads_ = 0, requested_ = 0, received_ = 0, outstanding_ = 0, import_beat_ = 0;
+  uint32_t full_ = 0;
+  Write write_;  // of the beat that came in the cycle before
+
+  // Export
+  std::vector<uint32_t> order_;  // warps in the order of their swaps, a ring
+  uint32_t first_ = 0, end_ = 0;
+  uint32_t busy_ = 0;
+  Next next_;
+  Slice slice_;
+  std::vector<uint32_t> reads_;  // [warp] beats of its output slice that are left to be read
+  bool landing_ = false;
+  uint32_t fill_ = 0;
+  std::vector<OutBeat> beats_;  // a ring: those that wait, and behind them those not read yet
+  uint32_t beats_first_ = 0, beats_end_ = 0, beats_mask_ = 0;
+  uint32_t added_ = 0;  // warp to which add_ray and add_contribution add
+
+  uint64_t unready_ = 0;
+};
+
+}  // namespace raypool

@@ -1,0 +1,238 @@
+#include "lockstep/comparison.hpp"
+
+#include <fmt/format.h>
+
+#include "lockstep/text.hpp"
+
+namespace raypool::lockstep {
+namespace {
+
+constexpr const char* kMemoryModules = "rtl/data_cache.v, rtl/request_queue.v, rtl/mem_alu.v, rtl/memory_arbiter.v";
+constexpr const char* kRayModules = "rtl/ray_alu.v, rtl/ray_import.v, rtl/ray_export.v, rtl/ray_memory.v";
+constexpr const char* kLaunchModules = "rtl/launcher.v, rtl/compute_unit.v";
+
+// A row of a table of what differs.
+template <typename Value>
+std::string row(const char* name, const Value& rtl, const Value& model) {
+  return fmt::format("  {:<24} RTL {:<24} model {:<24}{}\n", name, rtl, model, rtl == model ? "" : "  <-- differs");
+}
+
+std::string quadword_line(const char* who, uint32_t address, uint32_t mask, const Beat& data) {
+  std::string text = fmt::format("  {:<5} {:08x}, word mask {}:", who, address, mask_text(mask, kBeatWords));
+  for (uint32_t i = 0; i < kBeatWords; ++i) text += mask >> i & 1 ? ' ' + word_text(data[i]) : " -";
+  return text + '\n';
+}
+
+bool same_words(const Beat& a, const Beat& b, uint32_t mask) {
+  for (uint32_t i = 0; i < kBeatWords; ++i) {
+    if (mask >> i & 1 && a[i] != b[i]) return false;
+  }
+  return true;
+}
+
+std::string beat_rows(const Beat& rtl, const Beat& model) {
+  std::string text;
+  for (size_t i = 0; i < kBeatWords; ++i) text += row(fmt::format("word {}", i).c_str(), word_text(rtl[i]), word_text(model[i]));
+  return text;
+}
+
+std::string retired_line(const char* who, const RetireEvent& event) {
+  return fmt::format("  {:<5} PC {:>5}: {}\n", who, event.pc, instruction_text(event.instruction));
+}
+
+template <typename Event>
+bool before(const Event& a, const Event& b) {
+  return a.unit != b.unit ? a.unit < b.unit : a.warp < b.warp;
+}
+
+// Events of both sides, in the order of unit and warp: `both` for a pair, `one` for one that the other side has not.
+template <typename Event, typename Both, typename One>
+void pair_up(const std::vector<Event>& rtl, const std::vector<Event>& model, Both both, One one) {
+  size_t r = 0, m = 0;
+  while (r < rtl.size() || m < model.size()) {
+    if (m == model.size() || (r < rtl.size() && before(rtl[r], model[m]))) {
+      one(rtl[r++], true);
+    } else if (r == rtl.size() || before(model[m], rtl[r])) {
+      one(model[m++], false);
+    } else {
+      both(rtl[r++], model[m++]);
+    }
+  }
+}
+
+}  // namespace
+
+void Comparison::trace(const UnitTrace& rtl, const UnitTrace& model) {
+  const auto other_cycle = [](const char* what, const char* module) {
+    return [what, module](const auto& event, bool in_rtl) {
+      throw Mismatch{fmt::format("warp {} {} in this cycle in {}, and not in {}", event.warp, what,
+                                 in_rtl ? "the RTL" : "the model", in_rtl ? "the model" : "the RTL"),
+                     "",
+                     module,
+                     Context::Operands,
+                     event.unit,
+                     event.warp};
+    };
+  };
+  pair_up(
+      rtl.stores, model.stores, [this](const auto& r, const auto& m) { store(r, m); }, other_cycle("stores", kMemoryModules));
+  pair_up(
+      rtl.ray_writes, model.ray_writes, [this](const auto& r, const auto& m) { ray_write(r, m); },
+      other_cycle("writes ray memory", kRayModules));
+  pair_up(
+      rtl.retired, model.retired, [this](const auto& r, const auto& m) { retirement(r, m); },
+      [this](const auto& event, bool in_rtl) { only_one(event, in_rtl); });
+}
+
+void Comparison::only_one(const RetireEvent& event, bool in_rtl) const {
+  const DecodedInstruction instruction = decode(event.instruction);
+  throw Mismatch{fmt::format("warp {} retires an instruction in this cycle in {}, and not in {}", event.warp,
+                             in_rtl ? "the RTL" : "the model", in_rtl ? "the model" : "the RTL"),
+                 retired_line(in_rtl ? "RTL" : "model", event),
+                 "time: rtl/fetch_arbiter.v, rtl/instruction_buffer.v, " + module_of(&instruction),
+                 Context::Warp,
+                 event.unit,
+                 event.warp};
+}
+
+void Comparison::retirement(const RetireEvent& rtl, const RetireEvent& model) {
+  const auto differs = [&rtl](std::string title, std::string details, std::string module, Context context) {
+    return Mismatch{std::move(title), std::move(details), std::move(module), context, rtl.unit, rtl.warp};
+  };
+  const auto both = [&] { return retired_line("RTL", rtl) + retired_line("model", model); };
+  if (rtl.pc != model.pc) {
+    throw differs(fmt::format("warp {} retired another PC than the model's", rtl.warp), both(), "rtl/pc_stack.v, rtl/brh_alu.v",
+                  Context::Warp);
+  }
+  if (rtl.instruction != model.instruction) {
+    throw differs(fmt::format("warp {} executed another instruction than lies in memory at PC {}", rtl.warp, rtl.pc),
+                  both() + fmt::format("  encoding: RTL {:016x}, memory {:016x}\n", rtl.instruction, model.instruction),
+                  "rtl/instruction_cache.v, rtl/instruction_buffer.v", Context::Warp);
+  }
+  const CycleUnit::Issue& issue = issue_(rtl.unit, rtl.warp);
+  const auto masks = [&](uint32_t r, uint32_t m) {
+    return fmt::format("  RTL   {}\n  model {}  (lane 0 rightmost)\n", mask_text(r, lanes_), mask_text(m, lanes_));
+  };
+  if (rtl.mask != model.mask) {
+    throw differs("the thread mask differs", masks(rtl.mask, model.mask), "rtl/predicate_file.v, rtl/warp.v", Context::Operands);
+  }
+  ++counts_->instructions;
+  if (issue.instruction->writes_register) {
+    for (uint32_t mask = model.mask; mask != 0; mask &= mask - 1) {
+      const size_t lane = static_cast<size_t>(__builtin_ctz(mask));
+      if (rtl.data[lane] == model.data[lane]) continue;
+      throw differs("the register result differs", lane_table(issue, lanes_, rtl.data.data(), model.data.data()),
+                    module_of(issue.instruction), Context::Instruction);
+    }
+    counts_->thread_results += static_cast<uint64_t>(__builtin_popcount(model.mask));
+  } else if (issue.instruction->writes_predicate) {
+    if (rtl.predicate != model.predicate) {
+      throw differs("the predicate result differs", masks(rtl.predicate, model.predicate), module_of(issue.instruction),
+                    Context::Operands);
+    }
+    counts_->thread_results += static_cast<uint64_t>(lanes_);
+  }
+}
+
+void Comparison::store(const StoreEvent& rtl, const StoreEvent& model) {
+  if (rtl.address != model.address || rtl.mask != model.mask || !same_words(rtl.data, model.data, model.mask)) {
+    throw Mismatch{
+        "the words stored differ",
+        quadword_line("RTL", rtl.address, rtl.mask, rtl.data) + quadword_line("model", model.address, model.mask, model.data),
+        "rtl/mem_alu.v, rtl/data_cache.v",
+        Context::Operands,
+        rtl.unit,
+        rtl.warp};
+  }
+  counts_->stores += static_cast<uint64_t>(__builtin_popcount(model.mask));
+}
+
+void Comparison::ray_write(const RayWriteEvent& rtl, const RayWriteEvent& model) {
+  bool same = rtl.mask == model.mask && rtl.word == model.word;
+  for (uint32_t left = model.mask; same && left != 0; left &= left - 1) {
+    const size_t lane = static_cast<size_t>(__builtin_ctz(left));
+    same = rtl.data[lane] == model.data[lane];
+  }
+  if (!same) {
+    throw Mismatch{"the words written to ray memory differ",
+                   fmt::format("  RTL wrote word {} of lanes {}, the model word {} of lanes {} (lane 0 rightmost)\n", rtl.word,
+                               mask_text(rtl.mask, lanes_), model.word, mask_text(model.mask, lanes_)) +
+                       lane_table(issue_(rtl.unit, rtl.warp), lanes_, rtl.data.data(), model.data.data()),
+                   "rtl/ray_alu.v",
+                   Context::Instruction,
+                   rtl.unit,
+                   rtl.warp};
+  }
+  counts_->ray_words += static_cast<uint64_t>(__builtin_popcount(model.mask));
+}
+
+void Comparison::outputs(const UnitOutputs& rtl, const UnitOutputs& model) const {
+  if (rtl.fault.code != model.fault.code || rtl.fault.unit != model.fault.unit || rtl.fault.warp != model.fault.warp ||
+      rtl.fault.pc != model.fault.pc) {
+    throw Mismatch{"the faults differ in this cycle",
+                   "  RTL:   " + fault_text(rtl.fault) + "\n  model: " + fault_text(model.fault) + "\n",
+                   "rtl/compute_unit.v and the block that found it", Context::Unit};
+  }
+  if (rtl.launch_ready != model.launch_ready || rtl.kernel_done != model.kernel_done || rtl.busy != model.busy ||
+      rtl.unit_idle != model.unit_idle || rtl.idle != model.idle || (rtl.launch_ready && rtl.launch_unit != model.launch_unit)) {
+    throw Mismatch{"the launch outputs differ in this cycle",
+                   row("launch_ready", rtl.launch_ready, model.launch_ready) +
+                       row("launch_unit", rtl.launch_unit, model.launch_unit) +
+                       row("kernel_done", rtl.kernel_done, model.kernel_done) + row("busy", rtl.busy, model.busy) +
+                       row("unit_idle", rtl.unit_idle, model.unit_idle) + row("idle", rtl.idle, model.idle),
+                   kLaunchModules, Context::Unit};
+  }
+  const MemoryRequest &r = rtl.memory_request, &m = model.memory_request;
+  const bool same_request =
+      !rtl.memory_request_valid || (r.write == m.write && r.address == m.address &&
+                                    (r.write ? r.mask == m.mask && same_words(r.data, m.data, m.mask) : r.id == m.id));
+  if (rtl.memory_request_valid != model.memory_request_valid || !same_request) {
+    std::string details = row("valid", rtl.memory_request_valid, model.memory_request_valid);
+    if (rtl.memory_request_valid && model.memory_request_valid) {
+      details +=
+          row("write", r.write, m.write) + row("address", fmt::format("{:08x}", r.address), fmt::format("{:08x}", m.address));
+      if (r.write && m.write)
+        details += row("mask", mask_text(r.mask, kBeatWords), mask_text(m.mask, kBeatWords)) + beat_rows(r.data, m.data);
+      else
+        details += row("id", int{r.id}, int{m.id});
+    }
+    throw Mismatch{"the memory requests differ in this cycle", details, kMemoryModules, Context::Unit};
+  }
+  if (rtl.import_request_valid != model.import_request_valid ||
+      (rtl.import_request_valid &&
+       (rtl.import_request_kind != model.import_request_kind || rtl.import_request_unit != model.import_request_unit))) {
+    throw Mismatch{"the import requests differ in this cycle",
+                   row("valid", rtl.import_request_valid, model.import_request_valid) +
+                       row("kind", static_cast<int>(rtl.import_request_kind), static_cast<int>(model.import_request_kind)) +
+                       row("unit", rtl.import_request_unit, model.import_request_unit),
+                   kRayModules, Context::Unit};
+  }
+  if (rtl.export_valid != model.export_valid ||
+      (rtl.export_valid &&
+       (rtl.export_data != model.export_data || rtl.export_last != model.export_last || rtl.export_unit != model.export_unit))) {
+    throw Mismatch{"the exported beats differ in this cycle",
+                   row("valid", rtl.export_valid, model.export_valid) + row("last", rtl.export_last, model.export_last) +
+                       row("unit", rtl.export_unit, model.export_unit) + beat_rows(rtl.export_data, model.export_data),
+                   kRayModules, Context::Unit};
+  }
+  if (rtl.frame_valid != model.frame_valid ||
+      (rtl.frame_valid &&
+       (rtl.frame.pixel != model.frame.pixel || rtl.frame.rgb != model.frame.rgb || rtl.frame_unit != model.frame_unit))) {
+    std::string details = row("valid", rtl.frame_valid, model.frame_valid) + row("unit", rtl.frame_unit, model.frame_unit) +
+                          row("pixel", word_text(rtl.frame.pixel), word_text(model.frame.pixel));
+    static constexpr std::array<const char*, 3> kColors = {"red", "green", "blue"};
+    for (size_t i = 0; i < 3; ++i) details += row(kColors[i], word_text(rtl.frame.rgb[i]), word_text(model.frame.rgb[i]));
+    throw Mismatch{"the frame contributions differ in this cycle", details, kRayModules, Context::Unit};
+  }
+}
+
+void compare_counters(ComputeUnit& rtl, ComputeUnit& model) {
+  for (int number = 0; number < counter::kCount; ++number) {
+    const uint64_t r = rtl.counter(number), m = model.counter(number);
+    if (r == m) continue;
+    throw Mismatch{fmt::format("performance counter {} differs", number), row("counter", r, m), "rtl/performance_counters.v",
+                   Context::Unit};
+  }
+}
+
+}  // namespace raypool::lockstep

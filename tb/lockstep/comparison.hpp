@@ -1,0 +1,40 @@
+// What RTL and model show in one cycle, compared: outputs, and the trace of what happened inside. A difference is thrown as
+// Mismatch.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "lockstep/lockstep_unit.hpp"
+#include "lockstep/mismatch.hpp"
+#include "machine/compute_unit.hpp"
+#include "machine/cycle_unit.hpp"
+
+namespace raypool::lockstep {
+
+class Comparison {
+ public:
+  /// `issue` gives the model's instruction under way of a unit's warp. `counts` must outlive the comparison.
+  Comparison(int lanes, std::function<const CycleUnit::Issue&(uint32_t unit, uint32_t warp)> issue, LockstepCounts& counts)
+      : lanes_(lanes), issue_(std::move(issue)), counts_(&counts) {}
+
+  /// Retirements, stores, writes of ray memory.
+  void trace(const UnitTrace& rtl, const UnitTrace& model);
+  /// Every output, and what goes with a valid one.
+  void outputs(const UnitOutputs& rtl, const UnitOutputs& model) const;
+
+ private:
+  void retirement(const RetireEvent& rtl, const RetireEvent& model);
+  void only_one(const RetireEvent& event, bool in_rtl) const;
+  void store(const StoreEvent& rtl, const StoreEvent& model);
+  void ray_write(const RayWriteEvent& rtl, const RayWriteEvent& model);
+
+  int lanes_;
+  std::function<const CycleUnit::Issue&(uint32_t, uint32_t)> issue_;
+  LockstepCounts* counts_;
+};
+
+/// Counter by counter; only while both are idle.
+void compare_counters(ComputeUnit& rtl, ComputeUnit& model);
+
+}  // namespace raypool::lockstep
