@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <regex>
+#include <sstream>
 
 namespace raypool {
 namespace {
@@ -143,20 +144,26 @@ Configuration from_json(const Json& json, const std::string& where, const std::s
   return configuration;
 }
 
-Configuration read_file(const fs::path& path) {
-  const std::string where = path.string();
-  std::ifstream file(path);
-  if (!file) throw InputError(fmt::format("{}: the file cannot be read; check its permissions", where));
+Configuration parse(const std::string& text, const std::string& where, const std::string& name) {
   Json json;
   try {
-    json = Json::parse(file);
+    json = Json::parse(text);
   } catch (const Json::parse_error& error) {
     // The library's text begins with a bracketed tag that says nothing to a user.
     std::string reason = error.what();
     reason = reason.substr(std::min(reason.size(), reason.find("] ") + 2));
     throw InputError(fmt::format("{}: not valid JSON: {}", where, reason));
   }
-  return from_json(json, where, path.stem().string());
+  return from_json(json, where, name);
+}
+
+Configuration read_file(const fs::path& path) {
+  const std::string where = path.string();
+  std::ifstream file(path);
+  if (!file) throw InputError(fmt::format("{}: the file cannot be read; check its permissions", where));
+  std::stringstream text;
+  text << file.rdbuf();
+  return parse(text.str(), where, path.stem().string());
 }
 
 /// Folders in which a name is looked up, first match wins.
@@ -192,6 +199,10 @@ Configuration load_configuration(const std::string& name_or_path) {
   throw InputError(fmt::format(
       "no configuration '{}': give the path of a JSON file, the name of a file in configs/, or NwMc for N warps of M cores",
       name_or_path));
+}
+
+Configuration parse_configuration(const std::string& json, const std::string& where) {
+  return parse(json, where, Configuration().name);
 }
 
 void check_configuration(const Configuration& configuration, const std::string& where) {

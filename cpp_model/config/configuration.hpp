@@ -43,6 +43,9 @@ struct Configuration {
 /// are refused.
 Configuration load_configuration(const std::string& name_or_path);
 
+/// A configuration from the text of a configuration file; `where` names the source in messages.
+Configuration parse_configuration(const std::string& json, const std::string& where);
+
 /// Throws InputError when a value is out of its range; `where` names the source in the message.
 void check_configuration(const Configuration& configuration, const std::string& where);
 

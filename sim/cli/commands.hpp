@@ -84,6 +84,13 @@ struct CosimOptions {
   uint64_t programs = 100;
   uint64_t seed = 1;
   int length = 120;  ///< about how many instructions a program's body has
+  bool quiet = false;
+  bool shrink = true;                    ///< a program that fails is made short and saved
+  std::string save = "tb/regressions";   ///< folder for it
+  std::string coverage;                  ///< JSON file with what was covered, empty: none
+  std::string vectors;                   ///< file for another simulator to replay, empty: none
+  std::string replay;                    ///< a saved program, instead of random ones
+  bool show_configuration = false;       ///< of the saved program, instead of running it
 };
 int cosim_command(const CosimOptions& options);
 

@@ -1,48 +1,162 @@
 // `raypool cosim`: random programs on the Verilated unit in lockstep with the golden model.
 #include <fmt/format.h>
 
-#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <optional>
 
 #include "cli/commands.hpp"
 #include "cli/engine.hpp"
+#include "cli/progress.hpp"
 #include "cosim/cosim.hpp"
+#include "cosim/coverage.hpp"
+#include "cosim/program_file.hpp"
+#include "cosim/shrink.hpp"
+#include "cosim/vector_recorder.hpp"
 #include "lockstep/lockstep_unit.hpp"
+#include "lockstep/rtl_loader.hpp"
 
 namespace raypool {
+namespace {
+
+/// Runs programs of one configuration and adds up what was compared.
+class Cosim {
+ public:
+  Cosim(const CosimOptions& options, const Configuration& configuration) : coverage_(configuration) {
+    engine_.engine = parse_engine(options.engine);
+    engine_.configuration = configuration;
+    engine_.unit_library = options.unit_library;
+    if (options.vectors.empty()) return;
+    if (engine_.engine != Engine::Lockstep) throw InputError("--vectors records a lockstep: use --engine lockstep");
+    vectors_.emplace(options.vectors);
+    if (!*vectors_) throw InputError(fmt::format("{}: the file cannot be written", options.vectors));
+  }
+
+  bool traced() const { return engine_.engine == Engine::Rtl || engine_.engine == Engine::Lockstep; }
+  const LockstepCounts& counts() const { return counts_; }
+  const Coverage& coverage() const { return coverage_; }
+  const Configuration& configuration() const { return engine_.configuration; }
+  Engine engine() const { return engine_.engine; }
+
+  /// Throws what the run throws.
+  uint64_t run(const RandomProgram& program, const std::string& name) {
+    Memory memory = program.memory;
+    const std::unique_ptr<ComputeUnit> unit = make(memory, name);
+    unit->trace_on();
+    coverage_.begin(program);
+    const uint64_t cycles = run_random_program(*unit, memory, program, program.seed, kCycleLimit, traced() ? &coverage_ : nullptr);
+    if (traced()) coverage_.end(*unit);
+    if (const auto* lockstep = dynamic_cast<const LockstepUnit*>(unit.get())) counts_ += lockstep->counts();
+    return cycles;
+  }
+
+  /// Why the program fails, with neither coverage nor counts; empty if it does not.
+  std::string failure(const RandomProgram& program) const {
+    Memory memory = program.memory;
+    try {
+      run_random_program(*make_unit(engine_, memory), memory, program, program.seed, kCycleLimit);
+    } catch (const LockstepDifference& difference) {
+      return difference.what();
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+ private:
+  static constexpr uint64_t kCycleLimit = 5'000'000;
+
+  std::unique_ptr<ComputeUnit> make(Memory& memory, const std::string& name) {
+    if (!vectors_) return make_unit(engine_, memory, name);
+    const Configuration& configuration = engine_.configuration;
+    const std::string library =
+        engine_.unit_library.empty() ? unit_library_path(configuration, false) : engine_.unit_library;
+    auto recorder = make_vector_recorder(configuration, load_rtl_unit(library, configuration), *vectors_);
+    return make_lockstep_unit(configuration, std::move(recorder), memory);
+  }
+
+  EngineOptions engine_;
+  Coverage coverage_;
+  LockstepCounts counts_;
+  std::optional<std::ofstream> vectors_;
+};
+
+/// Shrinks a program that fails, saves it, and throws what is to be told.
+[[noreturn]] void report_failure(const Cosim& cosim, const CosimOptions& options, const RandomProgram& program,
+                                 const std::string& report, const std::string& again, bool is_difference) {
+  std::string text = report;
+  if (!cosim.failure(program).empty() && options.shrink) {
+    Progress progress(false);
+    ShrinkOptions shrink;
+    shrink.progress = [&progress](size_t instructions, uint64_t runs) {
+      if (progress.due()) progress.show(fmt::format("shrinking: {} instructions after {} runs", instructions, runs));
+    };
+    SavedProgram saved;
+    saved.configuration = cosim.configuration();
+    saved.program = shrink_program(
+        cosim.configuration(), program, [&cosim](const RandomProgram& p) { return !cosim.failure(p).empty(); }, shrink);
+    text = cosim.failure(saved.program);
+    saved.note = text.substr(0, text.find('\n'));
+    const std::filesystem::path folder = options.save;
+    std::filesystem::create_directories(folder);
+    const std::string path =
+        (folder / fmt::format("{}-seed{}.json", saved.configuration.name, saved.program.seed)).string();
+    std::ofstream(path) << to_json(saved);
+    text += fmt::format("\nshrunk from {} to {} instructions and saved; again with: raypool cosim --replay {}",
+                        program.program.code.size(), saved.program.program.code.size(), path);
+  }
+  text += fmt::format("\nthe whole program again: {}", again);
+  if (is_difference) throw LockstepDifference(text);
+  throw InputError(text);
+}
+
+void run_or_report(Cosim& cosim, const CosimOptions& options, const RandomProgram& program, const std::string& again,
+                   uint64_t& cycles) {
+  try {
+    cycles += cosim.run(program, fmt::format("seed {}", program.seed));
+  } catch (const LockstepDifference& difference) {
+    report_failure(cosim, options, program, difference.what(), again, true);
+  } catch (const InputError& error) {
+    report_failure(cosim, options, program, error.what(), again, false);
+  }
+}
+
+}  // namespace
 
 int cosim_command(const CosimOptions& options) {
-  EngineOptions engine;
-  engine.engine = parse_engine(options.engine);
-  engine.configuration = load_configuration(options.config);
-  engine.unit_library = options.unit_library;
-  LockstepCounts total;
-  uint64_t cycles = 0;
-  auto shown = std::chrono::steady_clock::now();
-  for (uint64_t n = 0; n < options.programs; ++n) {
-    const uint64_t seed = options.seed + n;
-    const RandomProgram program = make_random_program(engine.configuration, seed, options.length);
-    Memory memory = program.memory;
-    const std::unique_ptr<ComputeUnit> unit = make_unit(engine, memory, fmt::format("seed {}", seed));
-    const std::string again =
-        fmt::format("raypool cosim --config {} --programs 1 --seed {} --length {}", options.config, seed, options.length);
-    try {
-      cycles += run_random_program(*unit, memory, program, seed);
-    } catch (const LockstepDifference& difference) {
-      throw LockstepDifference(fmt::format("{}\nthe program that shows it: {}", difference.what(), again));
-    } catch (const InputError& error) {
-      throw InputError(fmt::format("{}; the program that shows it: {}", error.what(), again));
+  if (!options.replay.empty()) {
+    const SavedProgram saved = load_saved_program(options.replay);
+    if (options.show_configuration) {
+      fmt::print("{}\n", to_json(saved.configuration));
+      return 0;
     }
-    if (const auto counts = lockstep_counts(*unit)) total += *counts;
-    const auto now = std::chrono::steady_clock::now();
-    if (now - shown > std::chrono::seconds(5)) {
-      shown = now;
-      fmt::print("  {} of {} programs\n", n + 1, options.programs);
-      std::fflush(stdout);
-    }
+    Cosim cosim(options, saved.configuration);
+    const uint64_t cycles = cosim.run(saved.program, options.replay);
+    fmt::print("replayed {}: {} instructions of code, {} cycles\n", options.replay, saved.program.program.code.size(), cycles);
+    if (cosim.engine() == Engine::Lockstep) fmt::print("{}\n", to_string(cosim.counts()));
+    return 0;
   }
-  fmt::print("cosim {}: {} programs from seed {}, {} cycles\n", engine.configuration.name, options.programs, options.seed,
-             cycles);
-  if (engine.engine == Engine::Lockstep) fmt::print("{}\n", to_string(total));
+
+  Cosim cosim(options, load_configuration(options.config));
+  const std::string& name = cosim.configuration().name;
+  uint64_t cycles = 0;
+  Progress progress(options.quiet);
+  for (uint64_t n = 0; n < options.programs; ++n) {
+    const RandomProgram program = make_random_program(cosim.configuration(), options.seed + n, options.length);
+    run_or_report(cosim, options, program,
+                  fmt::format("raypool cosim --config {} --programs 1 --seed {} --length {}", options.config, program.seed,
+                              options.length),
+                  cycles);
+    if (progress.due()) progress.show(fmt::format("cosim {}: {} of {} programs, {} cycles", name, n + 1, options.programs, cycles));
+  }
+  fmt::print("cosim {}: {} programs from seed {}, {} cycles in {:.1f} s\n", name, options.programs, options.seed, cycles,
+             progress.seconds());
+  if (cosim.engine() == Engine::Lockstep) fmt::print("{}\n", to_string(cosim.counts()));
+  if (cosim.traced()) fmt::print("{}", to_string(cosim.coverage()));
+  if (!options.coverage.empty()) {
+    if (!cosim.traced()) throw InputError("--coverage needs an engine with a trace: rtl or lockstep");
+    std::ofstream(options.coverage) << to_json(cosim.coverage(), name, options.programs);
+  }
   return 0;
 }
 

@@ -3,124 +3,146 @@
 #include <fmt/format.h>
 
 #include <deque>
-#include <random>
+#include <vector>
+
+#include "isa/input_error.hpp"
 
 namespace raypool {
 namespace {
 
-/// Memory and pools around one unit, each with moods: for a while a port is quick, then slow.
+// After a fault the unit is watched a little longer: nothing more may come of it.
+constexpr uint64_t kFaultCycles = 20;
+
+/// Memory and pools around one unit.
 class RandomHost {
  public:
-  RandomHost(ComputeUnit& unit, Memory& memory, const RandomProgram& program, uint64_t seed)
-      : unit_(unit), memory_(memory), program_(program), random_(seed) {}
+  RandomHost(ComputeUnit& unit, Memory& memory, const RandomProgram& program, uint64_t seed, RunObserver* observer)
+      : unit_(unit), memory_(memory), program_(program), seed_(seed), stalls_(program.stalls, seed), observer_(observer) {}
 
   uint64_t run(uint64_t cycle_limit) {
     unit_.reset(static_cast<uint32_t>(program_.program.code.size()), memory_.size());
     for (int i = 0; i < kArguments; ++i) unit_.set_argument(i, program_.arguments[static_cast<size_t>(i)]);
-    for (uint64_t cycle = 0; cycle < cycle_limit; ++cycle) {
+    uint64_t fault_cycles = 0;
+    for (; now_ < cycle_limit; ++now_) {
       const UnitOutputs& outputs = unit_.outputs();
-      if (outputs.fault.code != FaultCode::None)
-        throw InputError(fmt::format("fault {} of warp {} at PC {}; random programs must not fault",
-                                     static_cast<int>(outputs.fault.code), outputs.fault.warp, outputs.fault.pc));
-      if (launched_ == program_.kernels.size() && outputs.idle && !outputs.busy) return cycle;
-      if (cycle % 64 == 0) stall_ = 1 + random_() % 8;
+      if (outputs.fault.code != FaultCode::None) {
+        if (outputs.fault.code != program_.fault) {
+          throw InputError(fmt::format("fault {} of warp {} at PC {} in a program that must not end so",
+                                       static_cast<int>(outputs.fault.code), outputs.fault.warp, outputs.fault.pc));
+        }
+        if (++fault_cycles == kFaultCycles) return now_;
+      }
+      if (launched_ == program_.kernels.size() && outputs.idle && !outputs.busy) return now_;
       clock(outputs);
     }
     throw InputError(fmt::format("not finished after {} cycles", cycle_limit));
   }
 
  private:
-  bool sometimes() { return random_() % stall_ == 0; }
+  struct Line {
+    uint8_t id;
+    uint64_t ready;  ///< first cycle in which it may be answered
+    std::array<uint32_t, 16> words;
+  };
+
+  bool open(Port port) const { return stalls_.open(port, now_); }
 
   void clock(const UnitOutputs& outputs) {
     UnitInputs inputs;
-    if (launched_ < program_.kernels.size() && sometimes()) {
-      const auto& kernel = program_.kernels[launched_];
-      inputs.launch_valid = true;
-      inputs.launch = {program_.program.entries.at("main"), kernel.threads, kernel.block,
-                       static_cast<uint32_t>(program_.kernels.size()), kernel.import};
-      if (outputs.launch_ready) ++launched_;
-    }
+    serve_launch(outputs, inputs);
+    // A beat that is given was asked for in an earlier cycle: the unit's outputs are registers.
+    give_beat(inputs);
+    give_package(inputs);
     serve_memory(outputs, inputs);
-    serve_import(outputs, inputs);
-    inputs.export_ready = sometimes();
-    inputs.frame_ready = sometimes();
+    inputs.import_request_ready = open(Port::ImportRequest);
+    if (inputs.import_request_ready && outputs.import_request_valid) ++packages_asked_;
+    inputs.export_ready = open(Port::Export);
+    inputs.frame_ready = open(Port::Frame);
+    if (observer_ != nullptr) observer_->cycle(outputs, inputs, unit_.trace());
     unit_.clock(inputs);
-    ++now_;
+  }
+
+  void serve_launch(const UnitOutputs& outputs, UnitInputs& inputs) {
+    // An offer stays until it is taken.
+    if (launched_ == program_.kernels.size() || !(offered_ || open(Port::Launch))) return;
+    const RandomProgram::Kernel& kernel = program_.kernels[launched_];
+    inputs.launch_valid = true;
+    inputs.launch.pc = kernel.pc;
+    inputs.launch.threads = kernel.threads;
+    inputs.launch.block = kernel.block;
+    inputs.launch.blocks = static_cast<uint32_t>(program_.kernels.size());
+    inputs.launch.import = kernel.import;
+    offered_ = !outputs.launch_ready;
+    if (outputs.launch_ready) ++launched_;
   }
 
   void serve_memory(const UnitOutputs& outputs, UnitInputs& inputs) {
-    inputs.memory_request_ready = sometimes();
-    if (inputs.memory_request_ready && outputs.memory_request_valid) {
-      const MemoryRequest& request = outputs.memory_request;
-      if (request.write) {
-        for (uint32_t i = 0; i < kBeatWords; ++i)
-          if (request.mask >> i & 1) memory_.store(request.address + 4 * i, request.data[i]);
-      } else {
-        Line line{request.id, now_ + 1 + random_() % (20 * stall_), 0, {}};
-        for (uint32_t i = 0; i < 16; ++i) line.words[i] = memory_.load(request.address + 4 * i);
-        lines_.push_back(line);
-      }
+    inputs.memory_request_ready = open(Port::MemoryRequest);
+    if (!inputs.memory_request_ready || !outputs.memory_request_valid) return;
+    const MemoryRequest& request = outputs.memory_request;
+    if (request.write) {
+      for (uint32_t i = 0; i < kBeatWords; ++i)
+        if (request.mask >> i & 1) memory_.store(request.address + 4 * i, request.data[i]);
+      return;
     }
-    // Lines come back in any order, beats of a line in theirs and without another line between them.
-    if (lines_.empty() || !sometimes()) return;
-    if (lines_[sending_ % lines_.size()].beat == 0) sending_ = random_() % lines_.size();
-    Line& line = lines_[sending_ % lines_.size()];
-    if (line.ready > now_) return;
+    Line line{request.id, now_ + stalls_.latency(now_), {}};
+    for (uint32_t i = 0; i < line.words.size(); ++i) line.words[i] = memory_.load(request.address + 4 * i);
+    lines_.push_back(line);
+  }
+
+  // Lines come back in any order, beats of a line in theirs and without another line between them.
+  void give_beat(UnitInputs& inputs) {
+    if (lines_.empty() || !open(Port::MemoryResponse)) return;
+    if (beat_ == 0) {
+      const size_t first = mix(seed_, 500, now_) % lines_.size();
+      size_t n = 0;
+      while (n < lines_.size() && lines_[(first + n) % lines_.size()].ready > now_) ++n;
+      if (n == lines_.size()) return;
+      sending_ = (first + n) % lines_.size();
+    }
+    const Line& line = lines_[sending_];
     inputs.memory_response_valid = true;
     inputs.memory_response.id = line.id;
-    inputs.memory_response.beat = line.beat;
-    for (size_t i = 0; i < kBeatWords; ++i) inputs.memory_response.data[i] = line.words[line.beat * size_t{4} + i];
-    if (++line.beat == 4) {
-      lines_.erase(lines_.begin() + static_cast<std::ptrdiff_t>(sending_ % lines_.size()));
-      sending_ = 0;
-    }
+    inputs.memory_response.beat = static_cast<uint8_t>(beat_);
+    for (size_t i = 0; i < kBeatWords; ++i) inputs.memory_response.data[i] = line.words[beat_ * size_t{kBeatWords} + i];
+    if (++beat_ < 4) return;
+    beat_ = 0;
+    lines_.erase(lines_.begin() + static_cast<std::ptrdiff_t>(sending_));
   }
 
-  void serve_import(const UnitOutputs& outputs, UnitInputs& inputs) {
-    inputs.import_request_ready = sometimes();
-    if (inputs.import_request_ready && outputs.import_request_valid) {
-      Intersection package;
-      for (auto& word : package) word = static_cast<uint32_t>(random_());
-      packages_.push_back(package);
-    }
-    if (packages_.empty() || !sometimes()) return;
+  void give_package(UnitInputs& inputs) {
+    if (packages_given_ == packages_asked_ || !open(Port::ImportBeat)) return;
     inputs.import_beat_valid = true;
     for (size_t i = 0; i < kBeatWords; ++i) {
-      const size_t word = import_beat_ * size_t{4} + i;
-      inputs.import_beat[i] = word < packages_.front().size() ? packages_.front()[word] : 0;
+      const size_t word = import_beat_ * size_t{kBeatWords} + i;
+      inputs.import_beat[i] = word < kIntersectionWords ? random_word(mix(seed_, 600 + word, packages_given_)) : 0;
     }
-    if (++import_beat_ == kIntersectionBeats) {
-      packages_.pop_front();
-      import_beat_ = 0;
-    }
+    if (++import_beat_ < kIntersectionBeats) return;
+    import_beat_ = 0;
+    ++packages_given_;
   }
-
-  struct Line {
-    uint8_t id;
-    uint64_t ready;
-    uint8_t beat;
-    std::array<uint32_t, 16> words;
-  };
 
   ComputeUnit& unit_;
   Memory& memory_;
   const RandomProgram& program_;
-  std::mt19937_64 random_;
+  uint64_t seed_;
+  Stalls stalls_;
+  RunObserver* observer_;
   uint64_t now_ = 0;
-  uint64_t stall_ = 1;
   size_t launched_ = 0;
+  bool offered_ = false;  ///< and not taken
   std::vector<Line> lines_;
   size_t sending_ = 0;
-  std::deque<Intersection> packages_;
+  int beat_ = 0;  ///< of lines_[sending_]
+  uint64_t packages_asked_ = 0, packages_given_ = 0;
   int import_beat_ = 0;
 };
 
 }  // namespace
 
-uint64_t run_random_program(ComputeUnit& unit, Memory& memory, const RandomProgram& program, uint64_t seed,
-                            uint64_t cycle_limit) {
-  return RandomHost(unit, memory, program, seed).run(cycle_limit);
+uint64_t run_random_program(ComputeUnit& unit, Memory& memory, const RandomProgram& program, uint64_t seed, uint64_t cycle_limit,
+                            RunObserver* observer) {
+  return RandomHost(unit, memory, program, seed, observer).run(cycle_limit);
 }
 
 }  // namespace raypool

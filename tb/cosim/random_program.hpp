@@ -1,31 +1,49 @@
 // Constrained-random programs for the lockstep: every instruction of the table, nested loops, calls, divergent predicates, loads
-// and stores with and without locality, ray memory rotation, special float values.
+// and stores with and without locality, ray memory rotation, special float values, long code, early exits, faults.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "config/configuration.hpp"
+#include "cosim/stalls.hpp"
 #include "isa/program.hpp"
 #include "machine/compute_unit.hpp"
 
 namespace raypool {
 
-/// A program and what it needs around it. The same seed gives the same program.
+/// A program and what it needs around it: the job of one run.
 struct RandomProgram {
-  Program program;  ///< entry "main"; every kernel of the job runs it
-  Memory memory;    ///< program and data
+  Program program;  ///< entries "main", and "second" when there are two kernels to launch
+  Memory memory;    ///< program and data, as fill_memory() makes it
   std::array<uint32_t, kArguments> arguments{};
   struct Kernel {
     uint32_t threads;
     uint32_t block;
     ImportKind import;
+    uint32_t pc = 0;  ///< entry
   };
-  std::vector<Kernel> kernels;  ///< launched one after the other; they share one import kind
+  std::vector<Kernel> kernels;  ///< launched one after the other
+  StallPlan stalls;
+
+  uint64_t seed = 0;
+  std::string profile;                 ///< name of the mix of instructions
+  uint32_t data_begin = 0;             ///< byte address; random words from here to the end of memory
+  uint32_t memory_bytes = 0;           ///< memory limit
+  FaultCode fault = FaultCode::None;  ///< in which the program ends, instead of `exit`
 };
 
-/// Warps store only to regions of their own and read those or a region that nobody writes, so that the result does not depend on
-/// the order of warps. `length`: about how many instructions the body has.
+/// A program that shows one thing; the next seed shows another one. The same configuration and seed give the same program. Warps store only to
+/// words of their own and read those or words that nobody writes, so that the result does not depend on the order of warps; program_check.hpp
+/// says exactly what a program promises. `length`: about how many instructions the body of a kernel has.
 RandomProgram make_random_program(const Configuration& configuration, uint64_t seed, int length = 120);
+
+/// Makes `program.memory` from its code, seed and data range. To be called after a change of one of them.
+void fill_memory(RandomProgram& program);
+
+/// A word: small, random, or a float at one of the edges; `random` is 64 random bits.
+uint32_t random_word(uint64_t random);
 
 }  // namespace raypool

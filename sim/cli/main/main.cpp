@@ -86,6 +86,13 @@ int run(int argc, char** argv) {
   cosim_app->add_option("--length", cosim.length, "about how many instructions a program has, 1 to 2000")
       ->check(CLI::Range(1, 2000))
       ->capture_default_str();
+  cosim_app->add_flag("--quiet", cosim.quiet, "no progress");
+  cosim_app->add_flag("!--no-shrink", cosim.shrink, "leave a program that fails as it is");
+  cosim_app->add_option("--save", cosim.save, "folder for the shrunk program")->capture_default_str();
+  cosim_app->add_option("--coverage", cosim.coverage, "JSON file with what was covered");
+  cosim_app->add_option("--vectors", cosim.vectors, "record every cycle in this file, for tb/icarus");
+  auto* replay = cosim_app->add_option("--replay", cosim.replay, "run a saved program instead of random ones");
+  cosim_app->add_flag("--show-config", cosim.show_configuration, "print the configuration of the saved program")->needs(replay);
   cosim_app->callback([&] { code = cosim_command(cosim); });
 
   ConfigOptions config;

@@ -1,0 +1,266 @@
+#include "cosim/coverage.hpp"
+
+#include <algorithm>
+
+namespace raypool {
+namespace {
+
+constexpr uint64_t kNever = ~uint64_t{0} / 2;
+// A store that waited for its line passes again within this many cycles of the line's last beat.
+constexpr uint64_t kReplayCycles = 12;
+constexpr size_t kInstructionId = 16;
+constexpr uint32_t kLineBytes = 64;
+
+size_t row_of(const InstructionInfo* info) { return static_cast<size_t>(info - kInstructions); }
+
+}  // namespace
+
+Coverage::Coverage(const Configuration& configuration)
+    : configuration_(configuration),
+      lanes_(static_cast<uint32_t>(configuration.cores)),
+      full_(lanes_ == 32 ? ~0u : (1u << lanes_) - 1),
+      rows_(std::size(kInstructions)),
+      empty_(std::size(kInstructions)),
+      partial_(std::size(kInstructions)),
+      depths_(static_cast<size_t>(configuration.stack_depth) + 1) {}
+
+void Coverage::begin(const RandomProgram& /*program*/) {
+  now_ = 1000;  // so that "some cycles ago" is never before 0
+  warps_.assign(static_cast<size_t>(configuration_.warps), Warp{});
+  for (Warp& warp : warps_) {
+    warp.registers.assign(size_t{kRegisters} * lanes_, 0);
+    warp.roles = {0, 1, 2};
+  }
+  recent_.clear();
+  lines_.clear();
+  reads_ = {};
+  data_fetches_ = 0;
+  last_line_end_ = last_beat_ = last_import_beat_ = 0;
+  import_beat_ = 0;
+  made_ = left_ = 0;
+  moved_ = {};
+  accepted_.clear();
+  last_pc_ = ~0u;
+  fault_seen_ = false;
+}
+
+void Coverage::cycle(const UnitOutputs& outputs, const UnitInputs& inputs, const UnitTrace& trace) {
+  ++now_;
+  for (const StoreEvent& event : trace.stores) stored(event);
+  for (const RetireEvent& event : trace.retired) retired(event);
+  launches(outputs, inputs);
+  memory_response(inputs);
+  memory_request(outputs, inputs);
+  pools(outputs, inputs, trace);
+  if (outputs.fault.code != FaultCode::None && !fault_seen_) {
+    fault_seen_ = true;
+    ++faults_[static_cast<size_t>(outputs.fault.code)];
+  }
+}
+
+void Coverage::end(ComputeUnit& unit) {
+  const uint64_t misses = unit.counter(counter::kDataCacheMisses);
+  hit(Event::LoadHit, unit.counter(counter::kDataCacheHits));
+  hit(Event::LoadMiss, misses);
+  hit(Event::Store, unit.counter(counter::kDataCacheStores));
+  hit(Event::InstructionHit, unit.counter(counter::kInstructionCacheHits));
+  hit(Event::InstructionMiss, unit.counter(counter::kInstructionCacheMisses));
+  // Every fetch is of one quadword that missed; the others used its line.
+  if (misses > data_fetches_) hit(Event::FetchShared, misses - data_fetches_);
+}
+
+void Coverage::retired(const RetireEvent& event) {
+  const Instruction instruction = unpack(event.instruction);
+  if (instruction.info == nullptr || event.warp >= warps_.size()) return;
+  const size_t row = row_of(instruction.info);
+  const auto unit = static_cast<size_t>(instruction.info->unit);
+  Warp& warp = warps_[event.warp];
+  ++rows_[row];
+  if (event.mask == 0) ++empty_[row];
+  if (event.mask != 0 && event.mask != full_) ++partial_[row];
+  if (warp.last_unit >= 0) ++after_[static_cast<size_t>(warp.last_unit)][unit];
+  if (warp.stack.empty()) warp.stack = {{event.pc, 0xffff}};
+  if (warp.stack.size() < depths_.size()) ++depths_[warp.stack.size()];
+  together(event, unit);
+  if (instruction.info->unit == Unit::Mem && instruction.info->mnemonic == "ld") loaded(warp, event, instruction);
+  if (instruction.info->unit == Unit::Ray) rays(warp, event, instruction);
+  if (writes_register(*instruction.info)) {
+    for (uint32_t mask = event.mask; mask != 0; mask &= mask - 1) {
+      const auto lane = static_cast<uint32_t>(__builtin_ctz(mask));
+      warp.registers[instruction.rd * lanes_ + lane] = event.data[lane];
+    }
+  }
+  warp.last_unit = static_cast<int>(unit);
+  warp.last_retired = now_;
+  control(warp, event, instruction);
+}
+
+// An instruction that retires in this cycle was in its ALU for at least the type's depth, so it was there together with all that retired since.
+void Coverage::together(const RetireEvent& event, size_t unit) {
+  const auto type = static_cast<Unit>(unit);
+  const int depth = type == Unit::Mem ? 3 : configuration_.alu(type).depth;
+  while (!recent_.empty() && recent_.front().cycle + 40 < now_) recent_.pop_front();
+  for (auto other = recent_.rbegin(); other != recent_.rend() && other->cycle + static_cast<uint64_t>(depth) >= now_; ++other)
+    if (other->warp != event.warp) ++together_[std::min(unit, other->unit)][std::max(unit, other->unit)];
+  recent_.push_back({now_, event.warp, unit});
+}
+
+void Coverage::control(Warp& warp, const RetireEvent& event, const Instruction& instruction) {
+  const std::string_view name = instruction.info->mnemonic;
+  Entry& top = warp.stack.back();
+  top.pc = event.pc + 1;
+  if (instruction.info->control) {
+    const uint32_t low = instruction.immediate & 0xffff;
+    if ((name == "jany" && event.mask != 0) || (name == "jnone" && event.mask == 0) || (name == "loop" && event.mask == 0)) {
+      top.pc = low;
+    } else if (name == "loop") {
+      top.pc = event.pc;
+      warp.stack.push_back({event.pc + 1, low});
+    } else if (name == "call") {
+      warp.stack.push_back({low, instruction.immediate >> 16});
+    } else if (name == "ret") {
+      warp.stack.pop_back();
+    } else if (name == "exit") {
+      warp.stack.clear();
+      warp.last_unit = -1;
+    }
+  }
+  while (warp.stack.size() > 1 && warp.stack.back().pc >= warp.stack.back().rpc) warp.stack.pop_back();
+}
+
+uint32_t Coverage::set_of(uint32_t address) const {
+  return address / kLineBytes % (static_cast<uint32_t>(configuration_.data_cache_bytes) / (2 * kLineBytes));
+}
+
+void Coverage::loaded(const Warp& warp, const RetireEvent& event, const Instruction& instruction) {
+  std::array<uint32_t, 32> quadwords{};
+  size_t count = 0, active = 0;
+  for (uint32_t mask = event.mask; mask != 0; mask &= mask - 1, ++active) {
+    const auto lane = static_cast<uint32_t>(__builtin_ctz(mask));
+    const uint32_t address = warp.registers[instruction.ra * lanes_ + lane] + instruction.immediate;
+    if (std::find(quadwords.begin(), quadwords.begin() + count, address / 16) == quadwords.begin() + count)
+      quadwords[count++] = address / 16;
+    const auto line = lines_.find(address / kLineBytes);
+    if (line != lines_.end() && line->second.stored) hit(Event::StoreHit);
+  }
+  if (active > 1 && count == 1) hit(Event::OneQuadword);
+  if (count > 1) hit(Event::SeveralQuadwords);
+  if (count > 1 && count == lanes_) hit(Event::QuadwordALane);
+}
+
+void Coverage::stored(const StoreEvent& event) {
+  const auto line = lines_.find(event.address / kLineBytes);
+  if (line == lines_.end()) return;
+  line->second.stored = true;
+  const bool waited = event.warp < warps_.size() && warps_[event.warp].last_retired < line->second.first_beat;
+  if (waited && line->second.last_beat + kReplayCycles >= now_) hit(Event::StoreAfterRefill);
+}
+
+void Coverage::rays(Warp& warp, const RetireEvent& event, const Instruction& instruction) {
+  const std::string_view name = instruction.info->mnemonic;
+  if (name == "rin") {
+    std::swap(warp.roles[0], warp.roles[1]);
+  } else if (name == "rout" || name == "rfb") {
+    if (warp.last_export > left_) hit(Event::RotatedTwice);
+    std::swap(warp.roles[1], warp.roles[2]);
+    hit(event.mask == 0 ? Event::NothingLeaves : name == "rout" ? Event::RayLeaves : Event::ContributionLeaves);
+    made_ += static_cast<uint64_t>(__builtin_popcount(event.mask));
+    if (event.mask != 0) warp.last_export = made_;
+  } else {
+    return;
+  }
+  const size_t permutation = size_t{warp.roles[0]} * 2 + (warp.roles[1] > warp.roles[2] ? 1 : 0);
+  ++events_[static_cast<size_t>(Event::SetPermutation0) + permutation];
+}
+
+void Coverage::launches(const UnitOutputs& outputs, const UnitInputs& inputs) {
+  if (outputs.kernel_done && !accepted_.empty()) accepted_.pop_front();
+  if (!inputs.launch_valid) return;
+  if (!outputs.launch_ready) return hit(Event::LaunchWaits);
+  const uint32_t threads = inputs.launch.threads;
+  if (outputs.busy) hit(Event::LaunchQueued);
+  if (threads == static_cast<uint32_t>(configuration_.contents())) hit(Event::FullBlock);
+  if (threads == 1) hit(Event::OneThread);
+  if (threads % lanes_ != 0) hit(Event::PartOfWarp);
+  if ((threads + lanes_ - 1) / lanes_ < static_cast<uint32_t>(configuration_.warps)) hit(Event::WarpsLeftOut);
+  if (last_pc_ != ~0u && last_pc_ != inputs.launch.pc) hit(Event::OtherKernelNext);
+  last_pc_ = inputs.launch.pc;
+  accepted_.push_back(inputs.launch);
+}
+
+void Coverage::memory_request(const UnitOutputs& outputs, const UnitInputs& inputs) {
+  if (!outputs.memory_request_valid) {
+    if (inputs.memory_request_ready) hit(Event::MemoryRequestFree);
+    return;
+  }
+  if (!inputs.memory_request_ready) return hit(Event::MemoryRequestWaits);
+  hit(Event::MemoryRequestMoves);
+  if (moved_[0] + 1 == now_) hit(Event::MemoryRequestTwice);
+  moved_[0] = now_;
+  const MemoryRequest& request = outputs.memory_request;
+  if (request.write || request.id > kInstructionId) return;
+  reads_[request.id] = {true, request.address, reads_asked_++};
+  if (request.id == kInstructionId) return;
+
+  ++data_fetches_;
+  hit(Event::LineFetched);
+  Line& line = lines_[request.address / kLineBytes];
+  if (++line.fetches > 1) hit(Event::FetchedAgain);
+  line.stored = false;
+  line.first_beat = kNever;
+  int in_use = 0, of_set = 0;
+  for (size_t id = 0; id < kInstructionId; ++id) {
+    if (!reads_[id].valid) continue;
+    ++in_use;
+    if (set_of(reads_[id].address) == set_of(request.address)) ++of_set;
+  }
+  if (in_use == configuration_.data_cache_mshrs) hit(Event::AllRegisters);
+  if (of_set > 1) hit(Event::OneSet);
+  if (reads_[kInstructionId].valid) hit(Event::BothCaches);
+}
+
+void Coverage::memory_response(const UnitInputs& inputs) {
+  if (!inputs.memory_response_valid || inputs.memory_response.id > kInstructionId) return;
+  const MemoryResponse& response = inputs.memory_response;
+  Read& read = reads_[response.id];
+  if (response.beat > 0 && last_beat_ + 1 != now_) hit(Event::ResponseGap);
+  if (response.beat == 0 && last_line_end_ + 1 == now_) hit(Event::ResponseTwice);
+  last_beat_ = now_;
+  const bool data = response.id != kInstructionId;
+  if (response.beat == 0 && data) lines_[read.address / kLineBytes].first_beat = now_;
+  if (response.beat != 3) return;
+  last_line_end_ = now_;
+  read.valid = false;
+  for (const Read& other : reads_)
+    if (other.valid && other.order < read.order) hit(Event::OutOfOrder);
+  if (data) lines_[read.address / kLineBytes].last_beat = now_;
+}
+
+void Coverage::pools(const UnitOutputs& outputs, const UnitInputs& inputs, const UnitTrace& trace) {
+  if (outputs.import_request_valid) hit(inputs.import_request_ready ? Event::ImportRequestMoves : Event::ImportRequestWaits);
+  if (!outputs.import_request_valid && inputs.import_request_ready) hit(Event::ImportRequestFree);
+  const auto leaves = [&](bool valid, bool ready, Event moves, uint64_t& moved) {
+    const auto event = [&](size_t n) { return static_cast<Event>(static_cast<size_t>(moves) + n); };
+    if (!valid || !ready) {
+      if (valid || ready) hit(event(valid ? 1 : 2));
+      return;
+    }
+    hit(moves);
+    if (moved + 1 == now_) hit(event(3));
+    moved = now_;
+  };
+  leaves(outputs.export_valid, inputs.export_ready, Event::ExportMoves, moved_[1]);
+  leaves(outputs.frame_valid, inputs.frame_ready, Event::FrameMoves, moved_[2]);
+  const bool beat_leaves = outputs.export_valid && inputs.export_ready;
+  if ((beat_leaves && outputs.export_last) || (outputs.frame_valid && inputs.frame_ready)) ++left_;
+  if (!inputs.import_beat_valid) return;
+  if (!trace.ray_writes.empty()) hit(Event::ImportAndStore);
+  if (beat_leaves) hit(Event::ImportAndExport);
+  if (accepted_.size() > 1 && outputs.busy) hit(Event::ImportAhead);
+  if (import_beat_ > 0 && last_import_beat_ + 1 != now_) hit(Event::ImportGap);
+  if (import_beat_ == 0 && last_import_beat_ + 1 == now_) hit(Event::ImportTwice);
+  last_import_beat_ = now_;
+  import_beat_ = (import_beat_ + 1) % kIntersectionBeats;
+}
+
+}  // namespace raypool

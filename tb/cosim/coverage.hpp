@@ -1,0 +1,111 @@
+// What random programs have exercised, read from a unit's ports, trace and counters alone: nothing inside the RTL is looked at.
+// docs/verification.md says what each group means.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "cosim/cosim.hpp"
+#include "cosim/coverage_events.hpp"
+#include "isa/encoding.hpp"
+
+namespace raypool {
+
+class Coverage : public RunObserver {
+ public:
+  explicit Coverage(const Configuration& configuration);
+
+  /// To be called before a program's run, which must use this observer, and after it.
+  void begin(const RandomProgram& program);
+  void cycle(const UnitOutputs& outputs, const UnitInputs& inputs, const UnitTrace& trace) override;
+  void end(ComputeUnit& unit);
+
+  struct Item {
+    std::string name;
+    uint64_t count;  ///< times seen; 0: not covered
+  };
+  struct Group {
+    std::string name;
+    std::vector<Item> items;
+    size_t covered() const;
+  };
+  /// All groups, with the items that the configuration can have.
+  std::vector<Group> groups() const;
+
+ private:
+  struct Entry {
+    uint32_t pc, rpc;
+  };
+  struct Warp {
+    std::vector<Entry> stack;
+    std::vector<uint32_t> registers;  ///< [register][lane]
+    int last_unit = -1;               ///< of the instruction before
+    uint64_t last_retired = 0;        ///< cycle
+    std::array<uint8_t, 3> roles{};   ///< sets that are input, current, output
+    uint64_t last_export = 0;         ///< rays and contributions that had been made when it last exported
+  };
+  struct Line {
+    uint64_t fetches = 0;
+    uint64_t first_beat = 0, last_beat = 0;  ///< cycles of the last fetch
+    bool stored = false;                     ///< since it was fetched
+  };
+  struct Read {
+    bool valid = false;
+    uint32_t address = 0;
+    uint64_t order = 0;
+  };
+  struct Recent {
+    uint64_t cycle;
+    uint32_t warp;
+    size_t unit;
+  };
+
+  void hit(Event event, uint64_t times = 1) { events_[static_cast<size_t>(event)] += times; }
+  void retired(const RetireEvent& event);
+  void together(const RetireEvent& event, size_t unit);
+  void control(Warp& warp, const RetireEvent& event, const Instruction& instruction);
+  void loaded(const Warp& warp, const RetireEvent& event, const Instruction& instruction);
+  void rays(Warp& warp, const RetireEvent& event, const Instruction& instruction);
+  void stored(const StoreEvent& event);
+  void memory_request(const UnitOutputs& outputs, const UnitInputs& inputs);
+  void memory_response(const UnitInputs& inputs);
+  void pools(const UnitOutputs& outputs, const UnitInputs& inputs, const UnitTrace& trace);
+  void launches(const UnitOutputs& outputs, const UnitInputs& inputs);
+  uint32_t set_of(uint32_t address) const;
+
+  Configuration configuration_;
+  uint32_t lanes_, full_;
+  // Counts over all programs.
+  std::vector<uint64_t> rows_, empty_, partial_;                ///< [row of the table]: retired; with no lane; with some lanes
+  std::array<std::array<uint64_t, kUnits>, kUnits> after_{};    ///< [type][type of the warp's next instruction]
+  std::array<std::array<uint64_t, kUnits>, kUnits> together_{};  ///< [lower type][higher type] in flight in one cycle
+  std::vector<uint64_t> depths_;                                ///< [entries on the PC stack]
+  std::array<uint64_t, 8> faults_{};
+  std::array<uint64_t, kEvents> events_{};
+
+  // The program that runs.
+  uint64_t now_ = 0;
+  std::vector<Warp> warps_;
+  std::deque<Recent> recent_;  ///< what retired in the last cycles
+  std::unordered_map<uint32_t, Line> lines_;
+  std::array<Read, 17> reads_{};  ///< [id]; 16 is the instruction cache
+  uint64_t reads_asked_ = 0, data_fetches_ = 0;
+  uint64_t last_line_end_ = 0, last_beat_ = 0, last_import_beat_ = 0;
+  int import_beat_ = 0;
+  uint64_t made_ = 0, left_ = 0;  ///< rays and contributions: by rout and rfb, and those that have left
+  std::array<uint64_t, 3> moved_{};  ///< last cycle in which memory request, export, frame moved
+  std::deque<LaunchCommand> accepted_;  ///< kernels that have not ended
+  uint32_t last_pc_ = ~0u;
+  bool fault_seen_ = false;
+};
+
+/// Several lines: how much of each group is covered, then what is not.
+std::string to_string(const Coverage& coverage);
+/// A JSON object: groups, items, counts.
+std::string to_json(const Coverage& coverage, const std::string& configuration, uint64_t programs);
+
+}  // namespace raypool

@@ -1,0 +1,161 @@
+#include "cosim/program_check.hpp"
+
+#include <fmt/format.h>
+
+#include <vector>
+
+#include "isa/encoding.hpp"
+#include "machine/functional_core.hpp"
+
+namespace raypool {
+namespace {
+
+/// Which warps have touched a word in the current kernel.
+struct Touched {
+  static constexpr int8_t kNobody = -1, kSeveral = -2;
+  uint32_t kernel = 0;
+  int8_t writer = kNobody, reader = kNobody;
+};
+
+class Checker {
+ public:
+  Checker(const Configuration& configuration, const RandomProgram& program)
+      : program_(program),
+        memory_(program.memory),
+        core_(configuration, memory_),
+        warps_(static_cast<uint32_t>(configuration.warps)),
+        lanes_(static_cast<uint32_t>(configuration.cores)),
+        defined_(warps_ * kRegisters),
+        slices_(warps_),
+        touched_(memory_.size() / 4) {}
+
+  std::string run(uint64_t step_limit, uint64_t& executed) {
+    core_.reset(static_cast<uint32_t>(program_.program.code.size()), program_.memory_bytes);
+    for (int i = 0; i < kArguments; ++i) core_.set_argument(i, program_.arguments[static_cast<size_t>(i)]);
+    for (const RandomProgram::Kernel& kernel : program_.kernels) {
+      ++kernel_;
+      launch(kernel);
+      bool faulted = false;
+      while (core_.running() && !faulted) {
+        bool progress = false;
+        for (uint32_t warp = 0; warp < warps_ && !faulted; ++warp) {
+          if (!core_.warp_running(warp)) continue;
+          if (++executed > step_limit) return fmt::format("it does not end within {} instructions", step_limit);
+          const std::string problem = program_.fault == FaultCode::None ? before(warp) : "";
+          if (!problem.empty()) return fmt::format("warp {}, PC {}: {}", warp, core_.next_pc(warp), problem);
+          const Step& step = core_.step(warp);
+          if (step.status == Step::Status::Fault) {
+            if (step.fault.code != program_.fault)
+              return fmt::format("warp {} ends in fault {} at PC {}", warp, static_cast<int>(step.fault.code), step.fault.pc);
+            faulted = true;
+          }
+          if (step.status == Step::Status::Executed) {
+            progress = true;
+            after(step);
+          }
+        }
+        if (!progress && !faulted) return "a rin waits for packages that nobody sends";
+      }
+      if (faulted) return "";
+      for (uint32_t warp = 0; warp < warps_; ++warp)
+        if (core_.slices().inputs_waiting(warp) != 0) return fmt::format("warp {} ends without a rin", warp);
+    }
+    return "";
+  }
+
+ private:
+  void launch(const RandomProgram::Kernel& kernel) {
+    LaunchCommand command;
+    command.pc = kernel.pc;
+    command.threads = kernel.threads;
+    command.block = kernel.block;
+    command.blocks = static_cast<uint32_t>(program_.kernels.size());
+    command.import = kernel.import;
+    if (kernel.import != ImportKind::None) {
+      core_.expect_import(kernel.threads);
+      for (uint32_t n = 0; n < kernel.threads; ++n) core_.import_package(Intersection{});
+    }
+    core_.launch(command);
+  }
+
+  // Is what the warp's next instruction reads defined, and may it touch that memory?
+  std::string before(uint32_t warp) {
+    const DecodedInstruction* i = core_.instruction_at(core_.next_pc(warp));
+    if (i == nullptr || !i->legal()) return "";  // the step will say it
+    const uint32_t mask = core_.thread_mask(warp, *i);
+    const InstructionInfo& info = *i->info;
+    const auto undefined = [&](uint8_t number) { return (mask & ~defined_[warp * kRegisters + number]) != 0; };
+    const bool reads_a = has_operand(info, Operand::Ra) || has_operand(info, Operand::Address);
+    const bool reads_b = has_operand(info, Operand::Rb) || (has_operand(info, Operand::B) && !i->b_is_immediate);
+    if (reads_a && undefined(i->ra)) return fmt::format("r{} is read and was not written", i->ra);
+    if (reads_b && undefined(i->rb)) return fmt::format("r{} is read and was not written", i->rb);
+    if (info.unit == Unit::Mem) return touch(warp, *i, mask);
+    if (info.unit != Unit::Ray) return "";
+    if (info.mnemonic == "rld") return read_words(warp, i->x, i->x + 1, mask);
+    if (info.mnemonic == "rout") return read_words(warp, 0, kRayWords, mask);
+    if (info.mnemonic == "rfb") return read_words(warp, word::kPixel, word::kColor + 3, mask);
+    return "";
+  }
+
+  std::string read_words(uint32_t warp, int from, int to, uint32_t mask) const {
+    for (int n = from; n < to && n < kIntersectionWords; ++n)
+      if ((mask & ~slices_[warp][static_cast<size_t>(n)]) != 0) return fmt::format("word {} of the current slice is undefined", n);
+    return "";
+  }
+
+  std::string touch(uint32_t warp, const DecodedInstruction& i, uint32_t mask) {
+    const uint32_t* base = core_.register_row(warp, i.ra);
+    const bool store = i.info->mnemonic == "st";
+    const auto me = static_cast<int8_t>(warp);
+    for (; mask != 0; mask &= mask - 1) {
+      const uint32_t address = base[__builtin_ctz(mask)] + i.immediate;
+      if (address >= program_.memory_bytes) return "";  // the step will say it
+      if (store && address < program_.program.code.size() * 8) return "it stores into its code";
+      Touched& word = touched_[address / 4];
+      if (word.kernel != kernel_) word = {kernel_, Touched::kNobody, Touched::kNobody};
+      const bool read_by_others = word.reader != Touched::kNobody && word.reader != me;
+      const bool written_by_others = word.writer != Touched::kNobody && word.writer != me;
+      if (written_by_others || (store && read_by_others)) return fmt::format("a race at address {}", address);
+      if (store)
+        word.writer = me;
+      else
+        word.reader = read_by_others ? Touched::kSeveral : me;
+    }
+    return "";
+  }
+
+  void after(const Step& step) {
+    const InstructionInfo& info = *step.instruction->info;
+    if (writes_register(info)) defined_[step.warp * kRegisters + step.instruction->rd] |= step.mask;
+    if (info.unit != Unit::Ray) return;
+    auto& words = slices_[step.warp];
+    if (info.mnemonic == "rin") words.fill(~0u);
+    if (info.mnemonic == "rout" || info.mnemonic == "rfb") words.fill(0);
+    if (info.mnemonic == "rst" && step.instruction->x < kIntersectionWords) words[step.instruction->x] |= step.mask;
+  }
+
+  const RandomProgram& program_;
+  Memory memory_;
+  FunctionalCore core_;
+  uint32_t warps_, lanes_;
+  std::vector<uint32_t> defined_;                                     ///< [warp][register], a bit a lane
+  std::vector<std::array<uint32_t, kIntersectionWords>> slices_;      ///< [warp][word of the current slice], a bit a lane
+  std::vector<Touched> touched_;                                      ///< [word of memory]
+  uint32_t kernel_ = 0;
+};
+
+}  // namespace
+
+std::string check_program(const Configuration& configuration, const RandomProgram& program, uint64_t step_limit,
+                          uint64_t* executed) {
+  for (const RandomProgram::Kernel& kernel : program.kernels) {
+    if (kernel.threads < 1 || kernel.threads > static_cast<uint32_t>(configuration.contents()))
+      return fmt::format("a kernel has {} threads", kernel.threads);
+  }
+  uint64_t steps = 0;
+  std::string problem = Checker(configuration, program).run(step_limit, steps);
+  if (executed != nullptr) *executed = steps;
+  return problem;
+}
+
+}  // namespace raypool

@@ -1,0 +1,114 @@
+#include "cosim/program_file.hpp"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "cosim/program_check.hpp"
+#include "isa/assembler.hpp"
+#include "isa/input_error.hpp"
+
+namespace raypool {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kFormat = 1;
+constexpr std::array<std::string_view, 3> kImportNames = {"none", "normal", "shadow"};
+
+template <typename Names>
+size_t number_of(const Names& names, const std::string& name) {
+  for (size_t i = 0; i < names.size(); ++i)
+    if (names[i] == name) return i;
+  throw InputError("unknown name '" + name + "'");
+}
+
+uint32_t hex_word(const Json& json) {
+  size_t used = 0;
+  const std::string text = json.get<std::string>();
+  const unsigned long value = std::stoul(text, &used, 16);
+  if (used != text.size() || value > 0xffffffffu) throw InputError("'" + text + "' is no word of 8 hexadecimal digits");
+  return static_cast<uint32_t>(value);
+}
+
+std::string hex(uint32_t value) { return fmt::format("{:08x}", value); }
+
+}  // namespace
+
+std::string to_json(const SavedProgram& saved) {
+  const RandomProgram& program = saved.program;
+  Json json;
+  json["format"] = kFormat;
+  json["note"] = saved.note;
+  json["configuration"] = Json::parse(to_json(saved.configuration));
+  json["seed"] = program.seed;
+  json["profile"] = program.profile;
+  json["fault"] = static_cast<int>(program.fault);
+  json["data_begin"] = program.data_begin;
+  json["memory_bytes"] = program.memory_bytes;
+  for (const uint32_t argument : program.arguments) json["arguments"].push_back(hex(argument));
+  for (size_t port = 0; port < kPorts; ++port)
+    json["stalls"][std::string(kPortNames[port])] = kStallStyleNames[static_cast<size_t>(program.stalls.styles[port])];
+  json["kernels"] = Json::array();
+  for (const RandomProgram::Kernel& kernel : program.kernels) {
+    json["kernels"].push_back({{"pc", kernel.pc},
+                               {"threads", kernel.threads},
+                               {"block", hex(kernel.block)},
+                               {"import", kImportNames[static_cast<size_t>(kernel.import)]}});
+  }
+  json["code"] = Json::array();
+  for (const uint64_t instruction : program.program.code) json["code"].push_back(disassemble(instruction));
+  return json.dump(1) + "\n";
+}
+
+SavedProgram parse_saved_program(const std::string& text, const std::string& where) {
+  SavedProgram saved;
+  RandomProgram& program = saved.program;
+  try {
+    const Json json = Json::parse(text);
+    if (json.at("format").get<int>() != kFormat) throw InputError("its format is not " + std::to_string(kFormat));
+    saved.note = json.at("note").get<std::string>();
+    saved.configuration = parse_configuration(json.at("configuration").dump(), where);
+    program.seed = json.at("seed").get<uint64_t>();
+    program.profile = json.at("profile").get<std::string>();
+    program.fault = static_cast<FaultCode>(json.at("fault").get<int>());
+    program.data_begin = json.at("data_begin").get<uint32_t>();
+    program.memory_bytes = json.at("memory_bytes").get<uint32_t>();
+    for (size_t i = 0; i < program.arguments.size(); ++i) program.arguments[i] = hex_word(json.at("arguments").at(i));
+    for (size_t port = 0; port < kPorts; ++port) {
+      const std::string style = json.at("stalls").at(std::string(kPortNames[port])).get<std::string>();
+      program.stalls.styles[port] = static_cast<StallStyle>(number_of(kStallStyleNames, style));
+    }
+    for (const Json& kernel : json.at("kernels")) {
+      program.kernels.push_back({kernel.at("threads").get<uint32_t>(), hex_word(kernel.at("block")),
+                                 static_cast<ImportKind>(number_of(kImportNames, kernel.at("import").get<std::string>())),
+                                 kernel.at("pc").get<uint32_t>()});
+    }
+    std::string code;
+    for (const Json& line : json.at("code")) code += line.get<std::string>() + "\n";
+    program.program.code = assemble(code, "code").code;
+  } catch (const std::exception& error) {
+    throw InputError(fmt::format("{}: not a saved program: {}", where, error.what()));
+  }
+  if (program.data_begin < program.program.code.size() * 8 || program.data_begin > program.memory_bytes ||
+      program.memory_bytes > 64u << 20) {
+    throw InputError(fmt::format("{}: data_begin {} and memory_bytes {} do not fit the code of {} instructions (and 64 MB)", where,
+                                 program.data_begin, program.memory_bytes, program.program.code.size()));
+  }
+  fill_memory(program);
+  const std::string problem = check_program(saved.configuration, program);
+  if (!problem.empty()) throw InputError(fmt::format("{}: the program is not a valid one: {}", where, problem));
+  return saved;
+}
+
+SavedProgram load_saved_program(const std::string& path) {
+  std::ifstream file(path);
+  if (!file) throw InputError(fmt::format("{}: the file cannot be read; give the path of a saved program", path));
+  std::stringstream text;
+  text << file.rdbuf();
+  return parse_saved_program(text.str(), path);
+}
+
+}  // namespace raypool

@@ -1,0 +1,137 @@
+#include "cosim/shrink.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "cosim/program_check.hpp"
+#include "isa/encoding.hpp"
+
+namespace raypool {
+namespace {
+
+class Shrinker {
+ public:
+  Shrinker(const Configuration& configuration, RandomProgram program, const Fails& fails, const ShrinkOptions& options)
+      : configuration_(configuration), best_(std::move(program)), fails_(fails), options_(options) {
+    uint64_t executed = 0;
+    check_program(configuration_, best_, ~uint64_t{0}, &executed);
+    step_limit_ = 2 * executed + 1000;
+  }
+
+  RandomProgram run() {
+    for (bool again = true; again && !exhausted();) {
+      again = kernels();
+      again |= instructions();
+      again |= stalls();
+      again |= threads();
+    }
+    return best_;
+  }
+
+ private:
+  bool exhausted() const {
+    return runs_ >= options_.attempts ||
+           std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count() > options_.seconds;
+  }
+
+  bool attempt(RandomProgram program) {
+    if (exhausted()) return false;
+    if (!check_program(configuration_, program, step_limit_).empty()) return false;
+    ++runs_;
+    const bool failed = fails_(program);
+    if (failed) best_ = std::move(program);
+    if (options_.progress) options_.progress(best_.program.code.size(), runs_);
+    return failed;
+  }
+
+  bool kernels() {
+    bool any = false;
+    for (size_t k = 0; k < best_.kernels.size() && best_.kernels.size() > 1;) {
+      RandomProgram program = best_;
+      program.kernels.erase(program.kernels.begin() + static_cast<std::ptrdiff_t>(k));
+      if (attempt(std::move(program)))
+        any = true;
+      else
+        ++k;
+    }
+    return any;
+  }
+
+  bool instructions() {
+    bool any = false;
+    for (size_t block = std::max<size_t>(1, best_.program.code.size() / 2);; block /= 2) {
+      for (size_t from = 0; from < best_.program.code.size() && !exhausted();) {
+        if (attempt(without_instructions(best_, from, block)))
+          any = true;
+        else
+          from += block;
+      }
+      if (block == 1) return any;
+    }
+  }
+
+  bool stalls() {
+    bool any = false;
+    for (size_t port = 0; port < kPorts; ++port) {
+      if (best_.stalls.styles[port] == StallStyle::None) continue;
+      RandomProgram program = best_;
+      program.stalls.styles[port] = StallStyle::None;
+      any |= attempt(std::move(program));
+    }
+    return any;
+  }
+
+  bool threads() {
+    bool any = false;
+    for (size_t k = 0; k < best_.kernels.size(); ++k) {
+      for (const uint32_t threads : {1u, static_cast<uint32_t>(configuration_.cores)}) {
+        if (best_.kernels[k].threads <= threads) continue;
+        RandomProgram program = best_;
+        program.kernels[k].threads = threads;
+        any |= attempt(std::move(program));
+      }
+    }
+    return any;
+  }
+
+  const Configuration& configuration_;
+  RandomProgram best_;
+  const Fails& fails_;
+  ShrinkOptions options_;
+  uint64_t step_limit_ = 0;
+  uint64_t runs_ = 0;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace
+
+RandomProgram without_instructions(const RandomProgram& program, size_t from, size_t count) {
+  RandomProgram result = program;
+  std::vector<uint64_t>& code = result.program.code;
+  const size_t to = std::min(code.size(), from + count);
+  const auto moved = [from, to](uint32_t pc) {
+    return static_cast<uint32_t>(pc < from ? pc : pc < to ? from : pc - (to - from));
+  };
+  code.erase(code.begin() + static_cast<std::ptrdiff_t>(from), code.begin() + static_cast<std::ptrdiff_t>(to));
+  for (uint64_t& word : code) {
+    const Instruction i = unpack(word);
+    if (i.info == nullptr) continue;
+    const bool target = has_operand(*i.info, Operand::Target), end = has_operand(*i.info, Operand::End);
+    if (!target && !end) continue;
+    // Addresses beyond the program mean "outside", not a place.
+    const auto place = [&](uint32_t pc) { return pc <= program.program.code.size() ? moved(pc) : pc; };
+    const uint32_t low = place(i.immediate & 0xffff), high = target && end ? place(i.immediate >> 16) : i.immediate >> 16;
+    word = (word & ~uint64_t{0xffffffff}) | low | high << 16;
+  }
+  for (auto& [name, pc] : result.program.entries) pc = moved(pc);
+  for (RandomProgram::Kernel& kernel : result.kernels) kernel.pc = moved(kernel.pc);
+  fill_memory(result);
+  return result;
+}
+
+RandomProgram shrink_program(const Configuration& configuration, const RandomProgram& program, const Fails& fails,
+                             const ShrinkOptions& options) {
+  return Shrinker(configuration, program, fails, options).run();
+}
+
+}  // namespace raypool

@@ -1,0 +1,193 @@
+#include "cosim/vector_recorder.hpp"
+
+#include <string>
+#include <vector>
+
+#include "isa/encoding.hpp"
+
+namespace raypool {
+namespace {
+
+/// A bus, put together from its highest field down.
+class Bus {
+ public:
+  void put(uint64_t value, int bits) {
+    for (int i = bits - 1; i >= 0; --i) bits_.push_back((value >> i & 1) != 0);
+  }
+  void put(const Beat& beat) {
+    for (size_t i = kBeatWords; i-- > 0;) put(beat[i], 32);
+  }
+  void clear() { bits_.clear(); }
+  std::string hex() const {
+    std::string text;
+    const size_t lead = (4 - bits_.size() % 4) % 4;
+    unsigned digit = 0;
+    for (size_t i = 0; i < bits_.size(); ++i) {
+      digit = digit << 1 | (bits_[i] ? 1u : 0u);
+      if ((i + 1 + lead) % 4 == 0) {
+        text += "0123456789abcdef"[digit];
+        digit = 0;
+      }
+    }
+    return text;
+  }
+
+ private:
+  std::vector<bool> bits_;
+};
+
+class Recorder : public ComputeUnit {
+ public:
+  Recorder(const Configuration& configuration, std::unique_ptr<ComputeUnit> unit, std::ostream& out)
+      : unit_(std::move(unit)),
+        out_(&out),
+        warps_(configuration.warps),
+        lanes_(configuration.cores),
+        warp_bits_(1) {
+    while ((1 << warp_bits_) < warps_) ++warp_bits_;
+  }
+
+  void reset(uint32_t program_length, uint32_t memory_limit) override {
+    program_length_ = program_length;
+    memory_limit_ = memory_limit;
+    // As many cycles as rtl_unit.cpp takes do not matter: the outputs are compared from the end of the reset on.
+    for (int i = 0; i < 4; ++i) record(UnitInputs{}, true, -1, 0);
+    unit_->reset(program_length, memory_limit);
+  }
+  void set_argument(int index, uint32_t value) override {
+    record(UnitInputs{}, false, index, value);
+    unit_->set_argument(index, value);
+  }
+  const UnitOutputs& outputs() const override { return unit_->outputs(); }
+  void clock(const UnitInputs& inputs) override {
+    record(inputs, false, -1, 0);
+    unit_->clock(inputs);
+  }
+  void trace_on() override { unit_->trace_on(); }
+  const UnitTrace& trace() const override { return unit_->trace(); }
+  uint64_t counter(int number) override { return unit_->counter(number); }
+  bool timed() const override { return unit_->timed(); }
+
+ private:
+  void record(const UnitInputs& in, bool reset, int argument, uint32_t value) {
+    bus_.clear();
+    bus_.put(reset ? 0 : 1, 1);
+    bus_.put(program_length_, 16);
+    bus_.put(memory_limit_, 32);
+    bus_.put(argument >= 0 ? 1 : 0, 1);
+    bus_.put(static_cast<uint64_t>(argument), 5);
+    bus_.put(value, 32);
+    bus_.put(in.launch_valid ? 1 : 0, 1);
+    bus_.put(in.launch.pc, 16);
+    bus_.put(in.launch.threads, 11);
+    bus_.put(in.launch.block, 32);
+    bus_.put(in.launch.blocks, 32);
+    bus_.put(static_cast<uint64_t>(in.launch.import), 2);
+    bus_.put(in.memory_request_ready ? 1 : 0, 1);
+    bus_.put(in.memory_response_valid ? 1 : 0, 1);
+    bus_.put(in.memory_response.id, 5);
+    bus_.put(in.memory_response.beat, 2);
+    bus_.put(in.memory_response.data);
+    bus_.put(in.import_request_ready ? 1 : 0, 1);
+    bus_.put(in.import_beat_valid ? 1 : 0, 1);
+    bus_.put(in.import_beat);
+    bus_.put(in.export_ready ? 1 : 0, 1);
+    bus_.put(in.frame_ready ? 1 : 0, 1);
+    *out_ << bus_.hex();
+    outputs(reset);
+    *out_ << ' ' << bus_.hex() << ' ' << care_.hex() << '\n';
+  }
+
+  void field(uint64_t value, int bits, bool counts) {
+    bus_.put(value, bits);
+    care_.put(counts ? ~uint64_t{0} : 0, bits);
+  }
+  /// Words of a beat, each with a mask bit.
+  void words(const Beat& beat, uint32_t mask) {
+    for (size_t i = kBeatWords; i-- > 0;) field(beat[i], 32, (mask >> i & 1) != 0);
+  }
+
+  void outputs(bool reset) {
+    bus_.clear();
+    care_.clear();
+    const bool on = !reset;
+    const UnitOutputs& out = unit_->outputs();
+    field(out.launch_ready ? 1 : 0, 1, on);
+    field(out.kernel_done ? 1 : 0, 1, on);
+    field(out.busy ? 1 : 0, 1, on);
+    field(out.idle ? 1 : 0, 1, on);
+    const bool request = on && out.memory_request_valid, write = request && out.memory_request.write;
+    field(out.memory_request_valid ? 1 : 0, 1, on);
+    field(out.memory_request.write ? 1 : 0, 1, request);
+    field(out.memory_request.address, 32, request);
+    words(out.memory_request.data, write ? out.memory_request.mask : 0);
+    field(out.memory_request.mask, 4, write);
+    field(out.memory_request.id, 5, request && !write);
+    field(out.import_request_valid ? 1 : 0, 1, on);
+    field(static_cast<uint64_t>(out.import_request_kind), 2, on && out.import_request_valid);
+    field(out.export_valid ? 1 : 0, 1, on);
+    words(out.export_data, on && out.export_valid ? 15 : 0);
+    field(out.export_last ? 1 : 0, 1, on && out.export_valid);
+    field(out.frame_valid ? 1 : 0, 1, on);
+    field(out.frame.pixel, 32, on && out.frame_valid);
+    for (size_t i = 3; i-- > 0;) field(out.frame.rgb[i], 32, on && out.frame_valid);
+    const bool fault = out.fault.code != FaultCode::None;
+    field(fault ? 1 : 0, 1, on);
+    field(static_cast<uint64_t>(out.fault.code), 4, on && fault);
+    field(out.fault.warp, warp_bits_, on && fault);
+    field(out.fault.pc, 16, on && fault);
+    for (int warp = warps_ - 1; warp >= 0; --warp) retirement(static_cast<uint32_t>(warp), on);
+    const UnitTrace& trace = unit_->trace();
+    const StoreEvent* store = trace.stores.empty() ? nullptr : &trace.stores.front();
+    const StoreEvent nothing;
+    field(store != nullptr ? 1 : 0, 1, on);
+    const StoreEvent& s = store != nullptr ? *store : nothing;
+    field(s.warp, warp_bits_, on && store != nullptr);
+    field(s.address, 32, on && store != nullptr);
+    words(s.data, on && store != nullptr ? s.mask : 0);
+    field(s.mask, 4, on && store != nullptr);
+    const RayWriteEvent* ray = trace.ray_writes.empty() ? nullptr : &trace.ray_writes.front();
+    field(ray != nullptr ? 1 : 0, 1, on);
+    field(ray != nullptr ? ray->warp : 0, warp_bits_, on && ray != nullptr);
+    field(ray != nullptr ? ray->word : 0, 5, on && ray != nullptr);
+    field(ray != nullptr ? ray->mask : 0, lanes_, on && ray != nullptr);
+    for (int lane = lanes_ - 1; lane >= 0; --lane) {
+      const auto l = static_cast<size_t>(lane);
+      field(ray != nullptr ? ray->data[l] : 0, 32, on && ray != nullptr && (ray->mask >> lane & 1) != 0);
+    }
+  }
+
+  void retirement(uint32_t warp, bool on) {
+    const RetireEvent* event = nullptr;
+    for (const RetireEvent& each : unit_->trace().retired)
+      if (each.warp == warp) event = &each;
+    const bool valid = on && event != nullptr;
+    const Instruction instruction = event != nullptr ? unpack(event->instruction) : Instruction{};
+    const bool data = valid && instruction.info != nullptr && writes_register(*instruction.info);
+    const bool predicate = valid && instruction.info != nullptr && writes_predicate(*instruction.info);
+    field(event != nullptr ? 1 : 0, 1, on);
+    field(event != nullptr ? event->pc : 0, 16, valid);
+    field(event != nullptr ? event->instruction : 0, 64, valid);
+    field(event != nullptr ? event->mask : 0, lanes_, valid);
+    for (int lane = lanes_ - 1; lane >= 0; --lane) {
+      const auto l = static_cast<size_t>(lane);
+      field(event != nullptr ? event->data[l] : 0, 32, data && (event->mask >> lane & 1) != 0);
+    }
+    field(event != nullptr ? event->predicate : 0, lanes_, predicate);
+  }
+
+  std::unique_ptr<ComputeUnit> unit_;
+  std::ostream* out_;
+  int warps_, lanes_, warp_bits_;
+  uint32_t program_length_ = 0, memory_limit_ = 0;
+  Bus bus_, care_;
+};
+
+}  // namespace
+
+std::unique_ptr<ComputeUnit> make_vector_recorder(const Configuration& configuration, std::unique_ptr<ComputeUnit> unit,
+                                                  std::ostream& out) {
+  return std::make_unique<Recorder>(configuration, std::move(unit), out);
+}
+
+}  // namespace raypool

@@ -1,0 +1,322 @@
+// Runs every mutant of a unit (scripts/mutants.sh makes them) on random programs in lockstep until it differs from the model, and says which were
+// noticed. A process a mutant: what a fault does to the simulator itself stays there.
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <set>
+#include <thread>
+#include <vector>
+
+#include "cosim/cosim.hpp"
+#include "lockstep/lockstep_unit.hpp"
+#include "lockstep/rtl_loader.hpp"
+
+namespace raypool {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Options {
+  std::string unit, list, config, survivors, json;
+  uint64_t programs = 400;
+  uint64_t seed = 1;
+  int length = 120;
+  unsigned jobs = std::max(1u, std::thread::hardware_concurrency());
+  std::vector<int> only;
+  bool verbose = false;
+};
+
+/// One fault, as Yosys' mutate describes it.
+struct Mutant {
+  int number = 0;
+  std::string id;      ///< what it is: mode, module, cell, port and bit, without the names that Yosys makes up from parameters
+  std::string module;  ///< of rtl/
+  std::string source;  ///< file and line
+};
+
+/// How it went.
+struct Outcome {
+  enum class Kind : uint8_t { Survived, Difference, Hang, Stopped, Crashed };
+  Kind kind = Kind::Survived;
+  uint64_t programs = 0;  ///< run, the last one noticed it
+  std::string text;       ///< first line of the report
+};
+constexpr std::array<std::string_view, 5> kKindNames = {"survived", "difference", "hang", "fault or cycle limit", "simulator stopped"};
+
+// A mutant that hangs must be found soon: stalls of the host are some hundred cycles long.
+constexpr uint64_t kWatchdogCycles = 4000;
+constexpr uint64_t kCycleLimit = 400'000;
+constexpr unsigned kSecondsLimit = 300;
+
+std::string option_of(const std::string& line, const std::string& name) {
+  std::smatch match;
+  return std::regex_search(line, match, std::regex(" -" + name + " ([^ ]+)")) ? match[1].str() : "";
+}
+
+std::vector<Mutant> read_list(const std::string& path) {
+  std::ifstream file(path);
+  if (!file) throw InputError(fmt::format("{}: the list of mutants cannot be read; make it with scripts/mutants.sh", path));
+  std::vector<Mutant> mutants;
+  for (std::string line; std::getline(file, line);) {
+    Mutant mutant;
+    mutant.number = static_cast<int>(mutants.size()) + 1;
+    // $paramod\name\PARAMETER=... and $paramod$hash\name
+    std::string module = option_of(line, "module");
+    static const std::regex kParametrised(R"(^\$paramod(\$[0-9a-f]+)?\\([a-z_0-9]+).*)");
+    mutant.module = std::regex_replace(module, kParametrised, "$2");
+    // Cells carry the place that they come from and a running number; the place is enough.
+    static const std::regex kSource(R"(-src [^ ]*?([a-z_0-9]+\.vh?):([0-9]+)\.)");
+    for (auto i = std::sregex_iterator(line.begin(), line.end(), kSource); i != std::sregex_iterator(); ++i) {
+      if ((*i)[1] != mutant.module + ".v" && !mutant.source.empty()) continue;
+      mutant.source = (*i)[1].str() + ":" + (*i)[2].str();
+    }
+    std::string cell = option_of(line, "cell");
+    static const std::regex kPlaced(R"(^\$([a-z_]+)\$[^ ]*?([a-z_0-9]+\.vh?:[0-9]+)\$[0-9]+(.*)$)");
+    static const std::regex kMade(R"(^\$(auto|techmap|flatten|procmux|procdff)(\$[^$]*)*)");
+    cell = std::regex_replace(cell, kPlaced, "$1 at $2$3");
+    if (cell[0] == '$') cell = std::regex_replace(cell, std::regex(R"(\$[0-9]+)"), "").substr(1);
+    mutant.id = fmt::format("{}: {}, {}[{}] of {}", mutant.module, option_of(line, "mode"), option_of(line, "port"),
+                            option_of(line, "portbit"), cell);
+    const std::string control = option_of(line, "ctrlbit");
+    if (!control.empty()) mutant.id += ", by bit " + control;
+    const std::string wire = option_of(line, "wire");
+    if (!wire.empty()) mutant.id += fmt::format(", wire {}[{}]", wire, option_of(line, "wirebit"));
+    mutants.push_back(mutant);
+  }
+  return mutants;
+}
+
+Outcome run_mutant(const Options& options, const Configuration& configuration, int number) {
+  setenv("RAYPOOL_MUTANT", std::to_string(number).c_str(), 1);
+  const auto kept = load_rtl_unit(options.unit, configuration);  // keeps the library loaded
+  Outcome outcome;
+  for (uint64_t n = 0; n < options.programs; ++n) {
+    outcome.programs = n + 1;
+    const RandomProgram program = make_random_program(configuration, options.seed + n, options.length);
+    Memory memory = program.memory;
+    LockstepOptions lockstep;
+    lockstep.watchdog_cycles = kWatchdogCycles;
+    try {
+      const auto unit = make_lockstep_unit(configuration, load_rtl_unit(options.unit, configuration), memory, lockstep);
+      run_random_program(*unit, memory, program, program.seed, kCycleLimit);
+    } catch (const LockstepDifference& difference) {
+      outcome.text = difference.what();
+      outcome.kind = outcome.text.find("hang: ") != std::string::npos ? Outcome::Kind::Hang : Outcome::Kind::Difference;
+    } catch (const std::exception& error) {
+      outcome.text = error.what();
+      outcome.kind = Outcome::Kind::Stopped;
+    }
+    if (outcome.kind != Outcome::Kind::Survived) break;
+  }
+  return outcome;
+}
+
+/// A child process that runs one mutant.
+struct Worker {
+  pid_t pid;
+  int pipe;
+  size_t mutant;
+};
+
+Worker start(const Options& options, const Configuration& configuration, size_t index, int number) {
+  int ends[2];
+  if (pipe(ends) != 0) throw std::runtime_error("no pipe");
+  const pid_t pid = fork();
+  if (pid < 0) throw std::runtime_error("no process");
+  if (pid == 0) {
+    close(ends[0]);
+    alarm(kSecondsLimit);
+    if (!options.verbose) {
+      // Verilator says on both why it stops.
+      if (freopen("/dev/null", "w", stderr) == nullptr || freopen("/dev/null", "w", stdout) == nullptr) _exit(2);
+    }
+    const Outcome outcome = run_mutant(options, configuration, number);
+    const std::string text = options.verbose ? outcome.text : outcome.text.substr(0, outcome.text.find('\n'));
+    const std::string message = fmt::format("{} {} {}", static_cast<int>(outcome.kind), outcome.programs, text).substr(0, 4000);
+    if (write(ends[1], message.data(), message.size()) < 0) _exit(2);
+    _exit(0);
+  }
+  close(ends[1]);
+  return {pid, ends[0], index};
+}
+
+Outcome finish(const Worker& worker) {
+  std::string message(4096, '\0');
+  const ssize_t size = read(worker.pipe, message.data(), message.size());
+  close(worker.pipe);
+  int status = 0;
+  waitpid(worker.pid, &status, 0);
+  Outcome outcome;
+  if (size <= 0) {
+    outcome.kind = Outcome::Kind::Crashed;
+    outcome.text = WIFSIGNALED(status) ? fmt::format("signal {}", WTERMSIG(status)) : "no result";
+    return outcome;
+  }
+  message.resize(static_cast<size_t>(size));
+  char* rest = nullptr;
+  outcome.kind = static_cast<Outcome::Kind>(std::strtol(message.c_str(), &rest, 10));
+  outcome.programs = std::strtoull(rest, &rest, 10);
+  outcome.text = rest;
+  return outcome;
+}
+
+std::vector<Outcome> run_all(const Options& options, const Configuration& configuration, const std::vector<Mutant>& mutants) {
+  std::vector<Outcome> outcomes(mutants.size());
+  std::vector<Worker> workers;
+  size_t next = 0, done = 0;
+  auto shown = std::chrono::steady_clock::now();
+  while (done < mutants.size()) {
+    while (workers.size() < options.jobs && next < mutants.size()) {
+      workers.push_back(start(options, configuration, next, mutants[next].number));
+      ++next;
+    }
+    std::vector<pollfd> polls;
+    polls.reserve(workers.size());
+    for (const Worker& worker : workers) polls.push_back({worker.pipe, POLLIN, 0});
+    poll(polls.data(), polls.size(), 5000);
+    for (size_t i = workers.size(); i-- > 0;) {
+      if (polls[i].revents == 0) continue;
+      outcomes[workers[i].mutant] = finish(workers[i]);
+      workers.erase(workers.begin() + static_cast<std::ptrdiff_t>(i));
+      ++done;
+    }
+    if (std::chrono::steady_clock::now() - shown < std::chrono::seconds(10)) continue;
+    shown = std::chrono::steady_clock::now();
+    fmt::print(stderr, "mutants: {} of {} done\n", done, mutants.size());
+  }
+  return outcomes;
+}
+
+/// What tb/mutants/survivors.json says of a survivor.
+struct Judgement {
+  bool equivalent = false;
+  std::string reason;
+};
+
+std::map<std::string, Judgement> read_judgements(const std::string& path) {
+  std::map<std::string, Judgement> judgements;
+  if (path.empty()) return judgements;
+  std::ifstream file(path);
+  if (!file) throw InputError(fmt::format("{}: the judged survivors cannot be read", path));
+  try {
+    for (const Json& entry : Json::parse(file))
+      judgements[entry.at("mutant").get<std::string>()] = {entry.at("equivalent").get<bool>(), entry.at("reason").get<std::string>()};
+  } catch (const nlohmann::json::exception& error) {
+    throw InputError(fmt::format("{}: not a list of {{mutant, equivalent, reason}}: {}", path, error.what()));
+  }
+  return judgements;
+}
+
+int report(const Options& options, const std::vector<Mutant>& mutants, const std::vector<Outcome>& outcomes) {
+  const std::map<std::string, Judgement> judgements = read_judgements(options.survivors);
+  struct Count {
+    int all = 0, killed = 0;
+  };
+  std::map<std::string, Count> modules;
+  std::array<int, kKindNames.size()> kinds{};
+  std::map<uint64_t, int> by_program;
+  int equivalent = 0, open = 0;
+  std::set<std::string> survivors;
+  Json list = Json::array();
+  for (size_t i = 0; i < mutants.size(); ++i) {
+    const Mutant& mutant = mutants[i];
+    const Outcome& outcome = outcomes[i];
+    const bool survived = outcome.kind == Outcome::Kind::Survived;
+    ++kinds[static_cast<size_t>(outcome.kind)];
+    Count& count = modules[mutant.module];
+    ++count.all;
+    count.killed += survived ? 0 : 1;
+    list.push_back({{"number", mutant.number}, {"mutant", mutant.id}, {"source", mutant.source},
+                    {"outcome", kKindNames[static_cast<size_t>(outcome.kind)]}, {"programs", outcome.programs}, {"text", outcome.text}});
+    if (!survived) {
+      ++by_program[outcome.programs <= 1 ? 1 : outcome.programs <= 10 ? 10 : outcome.programs <= 100 ? 100 : ~0u];
+      continue;
+    }
+    survivors.insert(mutant.id);
+    const auto judged = judgements.find(mutant.id);
+    const bool known = judged != judgements.end();
+    if (known && judged->second.equivalent) ++equivalent;
+    if (!known) ++open;
+    fmt::print("survived: {:>4} {} ({})\n          {}\n", mutant.number, mutant.id, mutant.source,
+               !known ? "NOT JUDGED" : (judged->second.equivalent ? "equivalent: " : "a gap: ") + judged->second.reason);
+  }
+  if (!options.json.empty()) std::ofstream(options.json) << list.dump(1) << "\n";
+  const auto all = static_cast<int>(mutants.size());
+  const int survived = kinds[0], killed = all - survived;
+  fmt::print("{:<24} mutants  killed\n", "module");
+  for (const auto& [name, count] : modules) fmt::print("{:<24} {:>7} {:>7}\n", name, count.all, count.killed);
+  for (size_t kind = 1; kind < kinds.size(); ++kind) fmt::print("killed by {:<22} {:>5}\n", kKindNames[kind], kinds[kind]);
+  for (const auto& [programs, count] : by_program)
+    fmt::print("killed {:<25} {:>5}\n", programs == ~0u ? std::string("by a later one") : fmt::format("within {} programs", programs), count);
+  fmt::print("mutants: {} of {} killed ({:.1f}%); {} survived, of which {} are judged equivalent: {:.1f}% of the others killed\n", killed, all,
+             100.0 * killed / all, survived, equivalent, 100.0 * killed / (all - equivalent));
+  if (!options.only.empty()) return 0;
+  int stale = 0;
+  for (const auto& [id, judgement] : judgements) {
+    if (survivors.count(id) != 0) continue;
+    ++stale;
+    fmt::print("stale: {} is in {} and did not survive\n", id, options.survivors);
+  }
+  if (options.survivors.empty() || (open == 0 && stale == 0)) return 0;
+  fmt::print("{} is not up to date: {} survivors are not judged, {} entries are stale\n", options.survivors, open, stale);
+  return 1;
+}
+
+int run(int argc, char** argv) {
+  Options options;
+  CLI::App app("Runs mutants of the compute unit on random programs in lockstep; scripts/mutants.sh makes them.");
+  app.add_option("--unit", options.unit, "library with the mutants")->required();
+  app.add_option("--list", options.list, "list of the mutants")->required();
+  app.add_option("--config", options.config, "their configuration")->required();
+  app.add_option("--survivors", options.survivors, "JSON file with the judged survivors, to be compared");
+  app.add_option("--json", options.json, "file for the outcome of each mutant");
+  app.add_option("--programs", options.programs, "random programs that a mutant must survive")->capture_default_str();
+  app.add_option("--seed", options.seed, "of the first program")->capture_default_str();
+  app.add_option("--length", options.length, "about how many instructions a program has")->capture_default_str();
+  app.add_option("--jobs", options.jobs, "processes")->capture_default_str();
+  app.add_option("--only", options.only, "run these mutants only (numbers)");
+  app.add_flag("--verbose", options.verbose, "print the whole report of each difference");
+  CLI11_PARSE(app, argc, argv);
+
+  const Configuration configuration = load_configuration(options.config);
+  std::vector<Mutant> mutants = read_list(options.list);
+  if (!options.only.empty()) {
+    std::vector<Mutant> chosen;
+    for (const int number : options.only)
+      if (number >= 1 && number <= static_cast<int>(mutants.size())) chosen.push_back(mutants[static_cast<size_t>(number) - 1]);
+    mutants = chosen;
+  }
+  // Without a fault there must be no difference, or every kill would be worth nothing.
+  const Worker sound = start(options, configuration, 0, 0);
+  const Outcome none = finish(sound);
+  if (none.kind != Outcome::Kind::Survived) throw InputError("without any fault the unit differs from the model: " + none.text);
+  fmt::print("no fault: {} programs agree\n", none.programs);
+  const std::vector<Outcome> outcomes = run_all(options, configuration, mutants);
+  if (options.verbose)
+    for (size_t i = 0; i < mutants.size(); ++i) fmt::print("{} {}\n{}\n", mutants[i].number, mutants[i].id, outcomes[i].text);
+  return report(options, mutants, outcomes);
+}
+
+}  // namespace
+}  // namespace raypool
+
+int main(int argc, char** argv) {
+  try {
+    return raypool::run(argc, argv);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "raypool_mutants: {}\n", error.what());
+    return 1;
+  }
+}
