@@ -91,7 +91,15 @@ struct CosimOptions {
   std::string vectors;                   ///< file for another simulator to replay, empty: none
   std::string replay;                    ///< a saved program, instead of random ones
   bool show_configuration = false;       ///< of the saved program, instead of running it
+  bool unchecked = false;                ///< the saved program may break the rules of random programs
 };
 int cosim_command(const CosimOptions& options);
+
+/// `raypool configurations`: a set of configurations that covers the parameters' values and pairs of them.
+struct ConfigurationsOptions {
+  bool all_pairs = false;  ///< else a few small ones that cover every value
+  std::string folder;      ///< gets a JSON file for each; empty: only the table is printed
+};
+int configurations_command(const ConfigurationsOptions& options);
 
 }  // namespace raypool

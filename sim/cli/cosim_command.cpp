@@ -125,7 +125,7 @@ void run_or_report(Cosim& cosim, const CosimOptions& options, const RandomProgra
 
 int cosim_command(const CosimOptions& options) {
   if (!options.replay.empty()) {
-    const SavedProgram saved = load_saved_program(options.replay);
+    const SavedProgram saved = load_saved_program(options.replay, !options.unchecked);
     if (options.show_configuration) {
       fmt::print("{}\n", to_json(saved.configuration));
       return 0;

@@ -63,7 +63,7 @@ std::string to_json(const SavedProgram& saved) {
   return json.dump(1) + "\n";
 }
 
-SavedProgram parse_saved_program(const std::string& text, const std::string& where) {
+SavedProgram parse_saved_program(const std::string& text, const std::string& where, bool check) {
   SavedProgram saved;
   RandomProgram& program = saved.program;
   try {
@@ -98,17 +98,18 @@ SavedProgram parse_saved_program(const std::string& text, const std::string& whe
                                  program.data_begin, program.memory_bytes, program.program.code.size()));
   }
   fill_memory(program);
+  if (!check) return saved;
   const std::string problem = check_program(saved.configuration, program);
   if (!problem.empty()) throw InputError(fmt::format("{}: the program is not a valid one: {}", where, problem));
   return saved;
 }
 
-SavedProgram load_saved_program(const std::string& path) {
+SavedProgram load_saved_program(const std::string& path, bool check) {
   std::ifstream file(path);
   if (!file) throw InputError(fmt::format("{}: the file cannot be read; give the path of a saved program", path));
   std::stringstream text;
   text << file.rdbuf();
-  return parse_saved_program(text.str(), path);
+  return parse_saved_program(text.str(), path, check);
 }
 
 }  // namespace raypool

@@ -50,17 +50,18 @@ class Recorder : public ComputeUnit {
   void reset(uint32_t program_length, uint32_t memory_limit) override {
     program_length_ = program_length;
     memory_limit_ = memory_limit;
-    // As many cycles as rtl_unit.cpp takes do not matter: the outputs are compared from the end of the reset on.
-    for (int i = 0; i < 4; ++i) record(UnitInputs{}, true, -1, 0);
+    // Nothing is compared before the reset has done its work; then comes the cycle that every unit's reset() ends with.
+    for (int i = 0; i < 4; ++i) record(UnitInputs{}, Cycle::Reset, -1, 0);
+    record(UnitInputs{}, Cycle::Unchecked, -1, 0);
     unit_->reset(program_length, memory_limit);
   }
   void set_argument(int index, uint32_t value) override {
-    record(UnitInputs{}, false, index, value);
+    record(UnitInputs{}, Cycle::Checked, index, value);
     unit_->set_argument(index, value);
   }
   const UnitOutputs& outputs() const override { return unit_->outputs(); }
   void clock(const UnitInputs& inputs) override {
-    record(inputs, false, -1, 0);
+    record(inputs, Cycle::Checked, -1, 0);
     unit_->clock(inputs);
   }
   void trace_on() override { unit_->trace_on(); }
@@ -69,9 +70,11 @@ class Recorder : public ComputeUnit {
   bool timed() const override { return unit_->timed(); }
 
  private:
-  void record(const UnitInputs& in, bool reset, int argument, uint32_t value) {
+  enum class Cycle : uint8_t { Reset, Unchecked, Checked };
+
+  void record(const UnitInputs& in, Cycle cycle, int argument, uint32_t value) {
     bus_.clear();
-    bus_.put(reset ? 0 : 1, 1);
+    bus_.put(cycle == Cycle::Reset ? 0 : 1, 1);
     bus_.put(program_length_, 16);
     bus_.put(memory_limit_, 32);
     bus_.put(argument >= 0 ? 1 : 0, 1);
@@ -94,7 +97,7 @@ class Recorder : public ComputeUnit {
     bus_.put(in.export_ready ? 1 : 0, 1);
     bus_.put(in.frame_ready ? 1 : 0, 1);
     *out_ << bus_.hex();
-    outputs(reset);
+    outputs(cycle == Cycle::Checked);
     *out_ << ' ' << bus_.hex() << ' ' << care_.hex() << '\n';
   }
 
@@ -107,10 +110,10 @@ class Recorder : public ComputeUnit {
     for (size_t i = kBeatWords; i-- > 0;) field(beat[i], 32, (mask >> i & 1) != 0);
   }
 
-  void outputs(bool reset) {
+  /// `on`: they count.
+  void outputs(bool on) {
     bus_.clear();
     care_.clear();
-    const bool on = !reset;
     const UnitOutputs& out = unit_->outputs();
     field(out.launch_ready ? 1 : 0, 1, on);
     field(out.kernel_done ? 1 : 0, 1, on);

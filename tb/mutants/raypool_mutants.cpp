@@ -133,6 +133,7 @@ struct Worker {
 Worker start(const Options& options, const Configuration& configuration, size_t index, int number) {
   int ends[2];
   if (pipe(ends) != 0) throw std::runtime_error("no pipe");
+  std::fflush(nullptr);  // or the child would write it again
   const pid_t pid = fork();
   if (pid < 0) throw std::runtime_error("no process");
   if (pid == 0) {

@@ -93,7 +93,14 @@ int run(int argc, char** argv) {
   cosim_app->add_option("--vectors", cosim.vectors, "record every cycle in this file, for tb/icarus");
   auto* replay = cosim_app->add_option("--replay", cosim.replay, "run a saved program instead of random ones");
   cosim_app->add_flag("--show-config", cosim.show_configuration, "print the configuration of the saved program")->needs(replay);
+  cosim_app->add_flag("--unchecked", cosim.unchecked, "run the saved program even if it breaks the rules")->needs(replay);
   cosim_app->callback([&] { code = cosim_command(cosim); });
+
+  ConfigurationsOptions configurations;
+  CLI::App* configurations_app = app.add_subcommand("configurations", "a set of configurations that covers the parameters");
+  configurations_app->add_flag("--all-pairs", configurations.all_pairs, "every pair of values (default: every value, small ones)");
+  configurations_app->add_option("--out", configurations.folder, "folder that gets a JSON file for each");
+  configurations_app->callback([&] { code = configurations_command(configurations); });
 
   ConfigOptions config;
   CLI::App* config_app = app.add_subcommand("config", "print a configuration");
