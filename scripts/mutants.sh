@@ -21,6 +21,7 @@ for folder in cpp_model tb scripts; do ln -sfn "$root/$folder" "$tree/$folder"; 
 
 digest=$({ printf '%s\n' "$parameters" "$count $seed"; cat rtl/*.v rtl/*.vh scripts/mutants.sh; yosys -V; } | sha256sum | cut -d ' ' -f 1)
 if [ "$(cat "$output/stamp" 2> /dev/null)" != "$digest" ]; then
+  rm -f "$tree"/rtl/*
   chparam=
   for parameter in $parameters; do chparam+=" -chparam ${parameter%=*} ${parameter#*=}"; done
   width=1
@@ -53,8 +54,13 @@ EOF
       "$output/netlist.v"
   } > "$tree/rtl/compute_unit.v"
   grep -q 'initial mutant_i' "$tree/rtl/compute_unit.v" || { echo "mutants.sh: the netlist has no fault selector" >&2; exit 1; }
+  # What stands around the unit comes as it is.
   cp rtl/*.vh "$tree/rtl/"
+  for file in rtl/*.v; do
+    name=$(basename "$file" .v)
+    grep -q "^module $name *(" "$output/netlist.v" || cp "$file" "$tree/rtl/"
+  done
   echo "$digest" > "$output/stamp"
 fi
 # Unquoted: each parameter is a word.
-JOBS=${JOBS:-$(nproc)} "$tree/scripts/verilate.sh" "$output" $parameters
+JOBS=${JOBS:-$(nproc)} "$tree/scripts/verilate.sh" "$output" UNITS=1 $parameters

@@ -122,6 +122,7 @@ void CycleUnit::issue_warp(uint32_t warp) {
   if (tracing_) record_issue(warp, *instruction);
 
   uint32_t mask;
+  bool faults = false;
   const bool swaps = type == index(Unit::Ray) && (instruction->code & 31) < 3;
   if (swaps) {
     mask = core_.thread_mask(warp, *instruction);
@@ -129,7 +130,7 @@ void CycleUnit::issue_warp(uint32_t warp) {
   } else {
     const Step& step = core_.step(warp);
     mask = step.mask;
-    const bool faults = step.status == Step::Status::Fault;
+    faults = step.status == Step::Status::Fault;
     if (type == index(Unit::Mem)) {
       begin_memory(warp, step);
     } else if (type == index(Unit::Ray)) {
@@ -145,7 +146,8 @@ void CycleUnit::issue_warp(uint32_t warp) {
   }
   ++instructions_;
   thread_instructions_ += popcount(mask);
-  if (!instruction->info->control) plan_fetch(warp, now_ + 1, swaps);
+  // The core's PC stays at an instruction that has not been executed; the RTL's instruction routine goes on behind it.
+  if (!instruction->info->control) plan_fetch(warp, now_ + 1, swaps || faults);
 }
 
 void CycleUnit::begin_memory(uint32_t warp, const Step& step) {

@@ -81,6 +81,7 @@ struct CosimOptions {
   std::string config = "8w8c";
   std::string engine = "lockstep";
   std::string unit_library;
+  int units = 1;  ///< compute units of the device
   uint64_t programs = 100;
   uint64_t seed = 1;
   int length = 120;  ///< about how many instructions a program's body has

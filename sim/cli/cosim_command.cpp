@@ -22,13 +22,15 @@ namespace {
 /// Runs programs of one configuration and adds up what was compared.
 class Cosim {
  public:
-  Cosim(const CosimOptions& options, const Configuration& configuration) : coverage_(configuration) {
+  Cosim(const CosimOptions& options, const Configuration& configuration, int units) : coverage_(configuration, units) {
     engine_.engine = parse_engine(options.engine);
     engine_.configuration = configuration;
     engine_.unit_library = options.unit_library;
+    engine_.units = units;
     if (options.vectors.empty()) return;
     if (engine_.engine != Engine::Lockstep) throw InputError("--vectors records a lockstep: use --engine lockstep");
     vectors_.emplace(options.vectors);
+    if (units != 1) throw InputError("--vectors records a single unit");
     if (!*vectors_) throw InputError(fmt::format("{}: the file cannot be written", options.vectors));
   }
 
@@ -46,7 +48,7 @@ class Cosim {
     coverage_.begin(program);
     const uint64_t cycles = run_random_program(*unit, memory, program, program.seed, kCycleLimit, traced() ? &coverage_ : nullptr);
     if (traced()) coverage_.end(*unit);
-    if (const auto* lockstep = dynamic_cast<const LockstepUnit*>(unit.get())) counts_ += lockstep->counts();
+    if (const auto counts = lockstep_counts(*unit)) counts_ += *counts;
     return cycles;
   }
 
@@ -81,11 +83,20 @@ class Cosim {
   std::optional<std::ofstream> vectors_;
 };
 
+/// What a report is about: its first line without numbers, so that a shorter program that fails otherwise is not taken for the same.
+std::string subject(const std::string& report) {
+  std::string text;
+  const size_t begin = report.find(": ");
+  for (const char c : report.substr(begin == std::string::npos ? 0 : begin, report.find('\n') - (begin == std::string::npos ? 0 : begin)))
+    if (c < '0' || c > '9') text += c;
+  return text;
+}
+
 /// Shrinks a program that fails, saves it, and throws what is to be told.
 [[noreturn]] void report_failure(const Cosim& cosim, const CosimOptions& options, const RandomProgram& program,
                                  const std::string& report, const std::string& again, bool is_difference) {
   std::string text = report;
-  if (!cosim.failure(program).empty() && options.shrink) {
+  if (options.shrink) {
     Progress progress(false);
     ShrinkOptions shrink;
     shrink.progress = [&progress](size_t instructions, uint64_t runs) {
@@ -93,8 +104,9 @@ class Cosim {
     };
     SavedProgram saved;
     saved.configuration = cosim.configuration();
-    saved.program = shrink_program(
-        cosim.configuration(), program, [&cosim](const RandomProgram& p) { return !cosim.failure(p).empty(); }, shrink);
+    const std::string wanted = subject(report);
+    const auto fails = [&](const RandomProgram& shorter) { return subject(cosim.failure(shorter)) == wanted; };
+    saved.program = shrink_program(cosim.configuration(), program, fails, shrink);
     text = cosim.failure(saved.program);
     saved.note = text.substr(0, text.find('\n'));
     const std::filesystem::path folder = options.save;
@@ -130,22 +142,23 @@ int cosim_command(const CosimOptions& options) {
       fmt::print("{}\n", to_json(saved.configuration));
       return 0;
     }
-    Cosim cosim(options, saved.configuration);
+    Cosim cosim(options, saved.configuration, saved.program.units);
     const uint64_t cycles = cosim.run(saved.program, options.replay);
     fmt::print("replayed {}: {} instructions of code, {} cycles\n", options.replay, saved.program.program.code.size(), cycles);
     if (cosim.engine() == Engine::Lockstep) fmt::print("{}\n", to_string(cosim.counts()));
     return 0;
   }
 
-  Cosim cosim(options, load_configuration(options.config));
-  const std::string& name = cosim.configuration().name;
+  Cosim cosim(options, load_configuration(options.config), options.units);
+  const std::string name =
+      options.units == 1 ? cosim.configuration().name : fmt::format("{} x {}", options.units, cosim.configuration().name);
   uint64_t cycles = 0;
   Progress progress(options.quiet);
   for (uint64_t n = 0; n < options.programs; ++n) {
-    const RandomProgram program = make_random_program(cosim.configuration(), options.seed + n, options.length);
+    const RandomProgram program = make_random_program(cosim.configuration(), options.seed + n, options.length, options.units);
     run_or_report(cosim, options, program,
-                  fmt::format("raypool cosim --config {} --programs 1 --seed {} --length {}", options.config, program.seed,
-                              options.length),
+                  fmt::format("raypool cosim --config {} --units {} --programs 1 --seed {} --length {}", options.config, options.units,
+                              program.seed, options.length),
                   cycles);
     if (progress.due()) progress.show(fmt::format("cosim {}: {} of {} programs, {} cycles", name, n + 1, options.programs, cycles));
   }

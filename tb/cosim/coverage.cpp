@@ -8,15 +8,20 @@ namespace {
 constexpr uint64_t kNever = ~uint64_t{0} / 2;
 // A store that waited for its line passes again within this many cycles of the line's last beat.
 constexpr uint64_t kReplayCycles = 12;
-constexpr size_t kInstructionId = 16;
+constexpr uint32_t kInstructionId = 16;
 constexpr uint32_t kLineBytes = 64;
+
+/// Of a line in a unit's data cache.
+uint32_t line_key(uint32_t unit, uint32_t address) { return unit << 26 | address / kLineBytes; }
+bool is_instruction(uint8_t id) { return (id & 31) == kInstructionId; }
 
 size_t row_of(const InstructionInfo* info) { return static_cast<size_t>(info - kInstructions); }
 
 }  // namespace
 
-Coverage::Coverage(const Configuration& configuration)
+Coverage::Coverage(const Configuration& configuration, int units)
     : configuration_(configuration),
+      units_(static_cast<uint32_t>(units)),
       lanes_(static_cast<uint32_t>(configuration.cores)),
       full_(lanes_ == 32 ? ~0u : (1u << lanes_) - 1),
       rows_(std::size(kInstructions)),
@@ -26,7 +31,7 @@ Coverage::Coverage(const Configuration& configuration)
 
 void Coverage::begin(const RandomProgram& /*program*/) {
   now_ = 1000;  // so that "some cycles ago" is never before 0
-  warps_.assign(static_cast<size_t>(configuration_.warps), Warp{});
+  warps_.assign(units_ * static_cast<size_t>(configuration_.warps), Warp{});
   for (Warp& warp : warps_) {
     warp.registers.assign(size_t{kRegisters} * lanes_, 0);
     warp.roles = {0, 1, 2};
@@ -37,9 +42,9 @@ void Coverage::begin(const RandomProgram& /*program*/) {
   data_fetches_ = 0;
   last_line_end_ = last_beat_ = last_import_beat_ = 0;
   import_beat_ = 0;
-  made_ = left_ = 0;
+  made_ = left_ = {};
   moved_ = {};
-  accepted_.clear();
+  accepted_ = {};
   last_pc_ = ~0u;
   fault_seen_ = false;
 }
@@ -71,10 +76,10 @@ void Coverage::end(ComputeUnit& unit) {
 
 void Coverage::retired(const RetireEvent& event) {
   const Instruction instruction = unpack(event.instruction);
-  if (instruction.info == nullptr || event.warp >= warps_.size()) return;
+  if (instruction.info == nullptr || event.unit >= units_) return;
   const size_t row = row_of(instruction.info);
   const auto unit = static_cast<size_t>(instruction.info->unit);
-  Warp& warp = warps_[event.warp];
+  Warp& warp = warp_of(event.unit, event.warp);
   ++rows_[row];
   if (event.mask == 0) ++empty_[row];
   if (event.mask != 0 && event.mask != full_) ++partial_[row];
@@ -98,11 +103,13 @@ void Coverage::retired(const RetireEvent& event) {
 // An instruction that retires in this cycle was in its ALU for at least the type's depth, so it was there together with all that retired since.
 void Coverage::together(const RetireEvent& event, size_t unit) {
   const auto type = static_cast<Unit>(unit);
+  const auto per_unit = static_cast<uint32_t>(configuration_.warps);
+  const uint32_t me = event.unit * per_unit + event.warp;
   const int depth = type == Unit::Mem ? 3 : configuration_.alu(type).depth;
   while (!recent_.empty() && recent_.front().cycle + 40 < now_) recent_.pop_front();
   for (auto other = recent_.rbegin(); other != recent_.rend() && other->cycle + static_cast<uint64_t>(depth) >= now_; ++other)
-    if (other->warp != event.warp) ++together_[std::min(unit, other->unit)][std::max(unit, other->unit)];
-  recent_.push_back({now_, event.warp, unit});
+    if (other->warp != me && other->warp / per_unit == event.unit) ++together_[std::min(unit, other->unit)][std::max(unit, other->unit)];
+  recent_.push_back({now_, me, unit});
 }
 
 void Coverage::control(Warp& warp, const RetireEvent& event, const Instruction& instruction) {
@@ -140,7 +147,7 @@ void Coverage::loaded(const Warp& warp, const RetireEvent& event, const Instruct
     const uint32_t address = warp.registers[instruction.ra * lanes_ + lane] + instruction.immediate;
     if (std::find(quadwords.begin(), quadwords.begin() + count, address / 16) == quadwords.begin() + count)
       quadwords[count++] = address / 16;
-    const auto line = lines_.find(address / kLineBytes);
+    const auto line = lines_.find(line_key(event.unit, address));
     if (line != lines_.end() && line->second.stored) hit(Event::StoreHit);
   }
   if (active > 1 && count == 1) hit(Event::OneQuadword);
@@ -149,10 +156,10 @@ void Coverage::loaded(const Warp& warp, const RetireEvent& event, const Instruct
 }
 
 void Coverage::stored(const StoreEvent& event) {
-  const auto line = lines_.find(event.address / kLineBytes);
+  const auto line = lines_.find(line_key(event.unit, event.address));
   if (line == lines_.end()) return;
   line->second.stored = true;
-  const bool waited = event.warp < warps_.size() && warps_[event.warp].last_retired < line->second.first_beat;
+  const bool waited = warp_of(event.unit, event.warp).last_retired < line->second.first_beat;
   if (waited && line->second.last_beat + kReplayCycles >= now_) hit(Event::StoreAfterRefill);
 }
 
@@ -161,11 +168,11 @@ void Coverage::rays(Warp& warp, const RetireEvent& event, const Instruction& ins
   if (name == "rin") {
     std::swap(warp.roles[0], warp.roles[1]);
   } else if (name == "rout" || name == "rfb") {
-    if (warp.last_export > left_) hit(Event::RotatedTwice);
+    if (warp.last_export > left_[event.unit]) hit(Event::RotatedTwice);
     std::swap(warp.roles[1], warp.roles[2]);
     hit(event.mask == 0 ? Event::NothingLeaves : name == "rout" ? Event::RayLeaves : Event::ContributionLeaves);
-    made_ += static_cast<uint64_t>(__builtin_popcount(event.mask));
-    if (event.mask != 0) warp.last_export = made_;
+    made_[event.unit] += static_cast<uint64_t>(__builtin_popcount(event.mask));
+    if (event.mask != 0) warp.last_export = made_[event.unit];
   } else {
     return;
   }
@@ -174,18 +181,18 @@ void Coverage::rays(Warp& warp, const RetireEvent& event, const Instruction& ins
 }
 
 void Coverage::launches(const UnitOutputs& outputs, const UnitInputs& inputs) {
-  if (outputs.kernel_done && !accepted_.empty()) accepted_.pop_front();
+  for (uint32_t unit = 0; unit < units_; ++unit) accepted_[unit] -= static_cast<int>(outputs.kernel_done >> unit & 1);
   if (!inputs.launch_valid) return;
   if (!outputs.launch_ready) return hit(Event::LaunchWaits);
   const uint32_t threads = inputs.launch.threads;
-  if (outputs.busy) hit(Event::LaunchQueued);
+  if ((outputs.busy >> outputs.launch_unit & 1) != 0) hit(Event::LaunchQueued);
   if (threads == static_cast<uint32_t>(configuration_.contents())) hit(Event::FullBlock);
   if (threads == 1) hit(Event::OneThread);
   if (threads % lanes_ != 0) hit(Event::PartOfWarp);
   if ((threads + lanes_ - 1) / lanes_ < static_cast<uint32_t>(configuration_.warps)) hit(Event::WarpsLeftOut);
   if (last_pc_ != ~0u && last_pc_ != inputs.launch.pc) hit(Event::OtherKernelNext);
   last_pc_ = inputs.launch.pc;
-  accepted_.push_back(inputs.launch);
+  ++accepted_[outputs.launch_unit];
 }
 
 void Coverage::memory_request(const UnitOutputs& outputs, const UnitInputs& inputs) {
@@ -198,42 +205,44 @@ void Coverage::memory_request(const UnitOutputs& outputs, const UnitInputs& inpu
   if (moved_[0] + 1 == now_) hit(Event::MemoryRequestTwice);
   moved_[0] = now_;
   const MemoryRequest& request = outputs.memory_request;
-  if (request.write || request.id > kInstructionId) return;
+  if (request.write) return;
   reads_[request.id] = {true, request.address, reads_asked_++};
-  if (request.id == kInstructionId) return;
+  if (is_instruction(request.id)) return;
 
   ++data_fetches_;
   hit(Event::LineFetched);
-  Line& line = lines_[request.address / kLineBytes];
+  const uint32_t unit = unit_of_id(request.id);
+  Line& line = lines_[line_key(unit, request.address)];
   if (++line.fetches > 1) hit(Event::FetchedAgain);
   line.stored = false;
   line.first_beat = kNever;
   int in_use = 0, of_set = 0;
-  for (size_t id = 0; id < kInstructionId; ++id) {
+  for (uint32_t id = unit * 32; id < unit * 32 + kInstructionId; ++id) {
     if (!reads_[id].valid) continue;
     ++in_use;
     if (set_of(reads_[id].address) == set_of(request.address)) ++of_set;
   }
   if (in_use == configuration_.data_cache_mshrs) hit(Event::AllRegisters);
   if (of_set > 1) hit(Event::OneSet);
-  if (reads_[kInstructionId].valid) hit(Event::BothCaches);
+  if (reads_[unit * 32 + kInstructionId].valid) hit(Event::BothCaches);
 }
 
 void Coverage::memory_response(const UnitInputs& inputs) {
-  if (!inputs.memory_response_valid || inputs.memory_response.id > kInstructionId) return;
+  if (!inputs.memory_response_valid) return;
   const MemoryResponse& response = inputs.memory_response;
   Read& read = reads_[response.id];
   if (response.beat > 0 && last_beat_ + 1 != now_) hit(Event::ResponseGap);
   if (response.beat == 0 && last_line_end_ + 1 == now_) hit(Event::ResponseTwice);
   last_beat_ = now_;
-  const bool data = response.id != kInstructionId;
-  if (response.beat == 0 && data) lines_[read.address / kLineBytes].first_beat = now_;
+  const bool data = !is_instruction(response.id);
+  const uint32_t key = line_key(unit_of_id(response.id), read.address);
+  if (response.beat == 0 && data) lines_[key].first_beat = now_;
   if (response.beat != 3) return;
   last_line_end_ = now_;
   read.valid = false;
   for (const Read& other : reads_)
     if (other.valid && other.order < read.order) hit(Event::OutOfOrder);
-  if (data) lines_[read.address / kLineBytes].last_beat = now_;
+  if (data) lines_[key].last_beat = now_;
 }
 
 void Coverage::pools(const UnitOutputs& outputs, const UnitInputs& inputs, const UnitTrace& trace) {
@@ -252,11 +261,12 @@ void Coverage::pools(const UnitOutputs& outputs, const UnitInputs& inputs, const
   leaves(outputs.export_valid, inputs.export_ready, Event::ExportMoves, moved_[1]);
   leaves(outputs.frame_valid, inputs.frame_ready, Event::FrameMoves, moved_[2]);
   const bool beat_leaves = outputs.export_valid && inputs.export_ready;
-  if ((beat_leaves && outputs.export_last) || (outputs.frame_valid && inputs.frame_ready)) ++left_;
+  if (beat_leaves && outputs.export_last) ++left_[outputs.export_unit];
+  if (outputs.frame_valid && inputs.frame_ready) ++left_[outputs.frame_unit];
   if (!inputs.import_beat_valid) return;
   if (!trace.ray_writes.empty()) hit(Event::ImportAndStore);
   if (beat_leaves) hit(Event::ImportAndExport);
-  if (accepted_.size() > 1 && outputs.busy) hit(Event::ImportAhead);
+  if (units_ == 1 && accepted_[0] > 1 && outputs.busy != 0) hit(Event::ImportAhead);
   if (import_beat_ > 0 && last_import_beat_ + 1 != now_) hit(Event::ImportGap);
   if (import_beat_ == 0 && last_import_beat_ + 1 == now_) hit(Event::ImportTwice);
   last_import_beat_ = now_;

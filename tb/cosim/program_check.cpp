@@ -10,11 +10,11 @@
 namespace raypool {
 namespace {
 
-/// Which warps have touched a word in the current kernel.
+/// Which warps have touched a word in the current kernel; with several units, whose kernels overlap, in which kernel.
 struct Touched {
-  static constexpr int8_t kNobody = -1, kSeveral = -2;
+  static constexpr int kNobody = -1, kSeveral = -2;
   uint32_t kernel = 0;
-  int8_t writer = kNobody, reader = kNobody;
+  int writer = kNobody, reader = kNobody;
 };
 
 class Checker {
@@ -106,13 +106,14 @@ class Checker {
   std::string touch(uint32_t warp, const DecodedInstruction& i, uint32_t mask) {
     const uint32_t* base = core_.register_row(warp, i.ra);
     const bool store = i.info->mnemonic == "st";
-    const auto me = static_cast<int8_t>(warp);
+    const bool several = program_.units > 1;
+    const int me = static_cast<int>(several ? kernel_ * warps_ + warp : warp);
     for (; mask != 0; mask &= mask - 1) {
       const uint32_t address = base[__builtin_ctz(mask)] + i.immediate;
       if (address >= program_.memory_bytes) return "";  // the step will say it
       if (store && address < program_.program.code.size() * 8) return "it stores into its code";
       Touched& word = touched_[address / 4];
-      if (word.kernel != kernel_) word = {kernel_, Touched::kNobody, Touched::kNobody};
+      if (!several && word.kernel != kernel_) word = {kernel_, Touched::kNobody, Touched::kNobody};
       const bool read_by_others = word.reader != Touched::kNobody && word.reader != me;
       const bool written_by_others = word.writer != Touched::kNobody && word.writer != me;
       if (written_by_others || (store && read_by_others)) return fmt::format("a race at address {}", address);

@@ -43,6 +43,7 @@ std::string to_json(const SavedProgram& saved) {
   json["format"] = kFormat;
   json["note"] = saved.note;
   json["configuration"] = Json::parse(to_json(saved.configuration));
+  json["units"] = program.units;
   json["seed"] = program.seed;
   json["profile"] = program.profile;
   json["fault"] = static_cast<int>(program.fault);
@@ -71,6 +72,7 @@ SavedProgram parse_saved_program(const std::string& text, const std::string& whe
     if (json.at("format").get<int>() != kFormat) throw InputError("its format is not " + std::to_string(kFormat));
     saved.note = json.at("note").get<std::string>();
     saved.configuration = parse_configuration(json.at("configuration").dump(), where);
+    program.units = json.at("units").get<int>();
     program.seed = json.at("seed").get<uint64_t>();
     program.profile = json.at("profile").get<std::string>();
     program.fault = static_cast<FaultCode>(json.at("fault").get<int>());

@@ -31,7 +31,7 @@ struct OwnWords {
 
 class Generator : public ProgramEmitter {
  public:
-  Generator(const Configuration& configuration, uint64_t seed)
+  Generator(const Configuration& configuration, uint64_t seed, int units)
       : ProgramEmitter(seed),
         configuration_(configuration),
         warps_(static_cast<uint32_t>(configuration.warps)),
@@ -39,6 +39,11 @@ class Generator : public ProgramEmitter {
         profile_(kProgramProfiles[seed % std::size(kProgramProfiles)]) {
     result_.seed = seed;
     result_.profile = std::string(profile_.name);
+    result_.units = units;
+    // Kernels of different units run at the same time, so that each must have words of its own.
+    kernels_ = 1 + below(profile_.most_kernels + (units > 1 ? 3 * static_cast<uint32_t>(units) : 0));
+    if (units > 1)
+      while (block_mask_ + 1 < kernels_) block_mask_ = block_mask_ * 2 + 1;
   }
 
   RandomProgram make(int length) {
@@ -72,7 +77,7 @@ class Generator : public ProgramEmitter {
     own_.entries = 64u << below(4);
     own_.way_entries = std::max(1u, way >> own_.shift);
     if (chance(2)) own_.entries = std::max(own_.entries, own_.way_entries * 4);  // lines of one set collide
-    while (own_.entries > 64 && own_.entries * spread > kMostDataBytes) own_.entries /= 2;
+    while (own_.entries > 64 && own_.entries * spread * (block_mask_ + 1) > 2 * kMostDataBytes) own_.entries /= 2;
     own_.bytes = own_.entries * spread;
     if (own_.shift == 2) own_.stride = own_.entries * 4;
     shared_bytes_ = 1024u << below(4);
@@ -91,8 +96,7 @@ class Generator : public ProgramEmitter {
   void choose_kernels() {
     const auto contents = static_cast<uint32_t>(configuration_.contents());
     const auto lanes = static_cast<uint32_t>(configuration_.cores);
-    const int kernels = 1 + static_cast<int>(below(profile_.most_kernels));
-    for (int k = 0; k < kernels; ++k) {
+    for (uint32_t k = 0; k < kernels_; ++k) {
       uint32_t threads = contents;
       switch (below(6)) {
         case 0:
@@ -109,7 +113,8 @@ class Generator : public ProgramEmitter {
       }
       const Entry& entry = entries_[below(static_cast<uint32_t>(entries_.size()))];
       const ImportKind import = !entry.import ? ImportKind::None : chance(2) ? ImportKind::Normal : ImportKind::Shadow;
-      result_.kernels.push_back({threads, value(), import, entry.pc});
+      const uint32_t block = result_.units > 1 ? (value() & ~block_mask_) | k : value();
+      result_.kernels.push_back({threads, block, import, entry.pc});
     }
   }
 
@@ -454,7 +459,8 @@ class Generator : public ProgramEmitter {
   RandomProgram result_;
   OwnWords own_;
   uint32_t shared_bytes_ = 1024;
-  uint32_t block_mask_ = 1;
+  uint32_t kernels_ = 1;     ///< launches
+  uint32_t block_mask_ = 1;  ///< bits of the block word that choose the kernel's words
   std::vector<Entry> entries_;
   std::vector<Call> calls_;
   int call_sites_ = 0;
@@ -502,8 +508,8 @@ void fill_memory(RandomProgram& program) {
     program.memory.store(a, random_word(mix(program.seed, 400, a)));
 }
 
-RandomProgram make_random_program(const Configuration& configuration, uint64_t seed, int length) {
-  return Generator(configuration, seed).make(length);
+RandomProgram make_random_program(const Configuration& configuration, uint64_t seed, int length, int units) {
+  return Generator(configuration, seed, units).make(length);
 }
 
 }  // namespace raypool
