@@ -29,8 +29,11 @@ ARGS      ?=
 # `make cosim`
 PROGRAMS  ?= 1000
 SEED      ?= 1
+COVERAGE  ?=
+# `make mutants`
+MUTANTS   ?= 600
 # Recipes read these from the environment, so that a value with spaces or quotes stays one word.
-export CONFIG CUS SCENE SIZE DEPTH ENGINE TRAVERSER VIEW DETAIL OUT WAVES KERNEL PROGRAMS SEED
+export CONFIG CUS SCENE SIZE DEPTH ENGINE TRAVERSER VIEW DETAIL OUT WAVES KERNEL PROGRAMS SEED COVERAGE MUTANTS
 
 BUILD := build
 RAYPOOL := $(BUILD)/raypool
@@ -41,7 +44,7 @@ WAVES_FLAG := $(if $(filter-out 0,$(WAVES)),--waves)
 UNIT := scripts/unit.sh "$$CONFIG" $(WAVES_FLAG)
 UNIT_OF_ENGINE := $(if $(filter rtl lockstep,$(ENGINE)),$(UNIT),true)
 
-.PHONY: help sim run cosim unit test lint format bench clean setup-% program configured-%
+.PHONY: help sim run cosim configurations mutants unit test lint format bench clean setup-% program configured-%
 
 help: ## this list
 	@echo 'raypool: a ray-tracing GPU to render on, measure, verify and synthesise'
@@ -60,7 +63,7 @@ help: ## this list
 	@echo '  DETAIL=N                      triangles of a built-in scene, 0.01..16      1'
 	@echo '  OUT=FOLDER                    image.png, report.json                      build/out/...'
 	@echo '  WAVES=1                       a waveform (FST) too; ENGINE=rtl, lockstep  $(WAVES)'
-	@echo 'variables of make cosim:  PROGRAMS=$(PROGRAMS)  SEED=$(SEED)  CONFIG'
+	@echo 'variables of make cosim:  PROGRAMS=$(PROGRAMS)  SEED=$(SEED)  CONFIG  CUS  COVERAGE=FILE.json'
 	@echo 'variables of make run:  KERNEL=saxpy|matmul|FILE.asm  CONFIG  ENGINE  ARGS="--n 1000"'
 
 sim: setup-sim program ## draw a scene on the simulated chip: picture, report, figures
@@ -72,9 +75,18 @@ run: setup-sim program ## run a compute kernel, check its results, print its cyc
 	@$(UNIT_OF_ENGINE)
 	@$(RAYPOOL) run "$$KERNEL" --config "$$CONFIG" --engine "$$ENGINE" $(ARGS)
 
-cosim: setup-sim program ## random programs, hardware against model: CONFIG, PROGRAMS, SEED
-	@$(UNIT)
-	@$(RAYPOOL) cosim --config "$$CONFIG" --programs "$$PROGRAMS" --seed "$$SEED"
+cosim: setup-sim program ## random programs, hardware against model: CONFIG, CUS, PROGRAMS, SEED
+	@$(UNIT) --units "$$CUS"
+	@$(RAYPOOL) cosim --config "$$CONFIG" --units "$$CUS" --programs "$$PROGRAMS" --seed "$$SEED" $${COVERAGE:+--coverage "$$COVERAGE"}
+
+configurations: setup-sim program ## random programs on configurations with every pair of values (hours): PROGRAMS
+	@scripts/configurations.sh pairs "$$PROGRAMS"
+
+mutants: setup-sim setup-lint program ## small faults put into the RTL: which does the lockstep notice? MUTANTS
+	@$(LOCKED) cmake --build $(BUILD) --target raypool_mutants
+	@scripts/mutants.sh $(BUILD)/mutants tb/mutants/2w2c.json "$$MUTANTS" 1
+	@$(BUILD)/raypool_mutants --unit $(BUILD)/mutants/libraypool_unit.so --list $(BUILD)/mutants/list.txt --config tb/mutants/2w2c.json \
+	  --survivors tb/mutants/survivors.json --json $(BUILD)/mutants/outcomes.json
 
 unit: setup-sim program ## Verilate CUS compute units of CONFIG (WAVES=1: with waveforms)
 	@$(UNIT) --units "$$CUS"

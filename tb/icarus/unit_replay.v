@@ -10,7 +10,7 @@ module unit_replay #(
   localparam integer WARP_BITS = (WARPS > 1) ? $clog2(WARPS) : 1;
   localparam integer RETIRE_BITS = 1 + 16 + 64 + LANES + LANES * 32 + LANES;
   localparam integer IN_BITS = 1 + 16 + 32 + 38 + 94 + 1 + 136 + 1 + 129 + 2;
-  localparam integer OUT_BITS = 4 + 172 + 3 + 130 + 129 + 1 + 4 + WARP_BITS + 16 + WARPS * RETIRE_BITS + 1 + WARP_BITS + 164 + 1 + WARP_BITS + 5 +
+  localparam integer OUT_BITS = 4 + 171 + 3 + 130 + 129 + 1 + 4 + WARP_BITS + 16 + WARPS * RETIRE_BITS + 1 + WARP_BITS + 164 + 1 + WARP_BITS + 5 +
                                 LANES + LANES * 32;
 
   reg clk = 1'b0;

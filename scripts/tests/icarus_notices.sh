@@ -1,0 +1,40 @@
+#!/bin/bash
+# Does the replay in Icarus notice what Verilator cannot: scripts/tests/icarus_notices.sh RAYPOOL FOLDER. Registers without their reset, and a program
+# that reads a register which it never wrote, must each end with an X on a named output. Needs the Verilated unit of tb/mutants/2w2c.json.
+set -u -o pipefail
+raypool=$(realpath "$1") folder=$2
+cd "$(dirname "$0")/../.." || exit 1
+mkdir -p "$folder"
+failures=0
+
+# notices WHAT RTL OUTPUT PROGRAM: the replay of PROGRAM on the files of RTL shows an X on OUTPUT.
+notices() {
+  local what=$1 rtl=$2 output=$3 program=$4 text
+  text=$(RTL=$rtl scripts/icarus.sh "$raypool" tb/mutants/2w2c.json "$folder/run" "$program" 2>&1) && text="it passed: $text"
+  if grep -q "X on $output" <<< "$text"; then
+    echo "ok: $what: $(grep -m 1 "X on $output" <<< "$text" | tr -s ' ')"
+  else
+    failures=$((failures + 1))
+    echo "FAILED: $what: no X on $output: $text"
+  fi
+}
+
+# without_reset FILE REGISTER: a copy of rtl/ in which the reset leaves the register alone.
+without_reset() {
+  rm -rf "$folder/rtl"
+  cp -r rtl "$folder/rtl"
+  sed -i -E "0,/^ *$2 <= [^;]*;/ s/^( *)$2 <= [^;]*;/\1;/" "$folder/rtl/$1"
+  if cmp -s "rtl/$1" "$folder/rtl/$1"; then
+    failures=$((failures + 1))
+    echo "FAILED: rtl/$1 has no assignment of $2 to take out"
+  fi
+}
+
+text=$(scripts/icarus.sh "$raypool" tb/mutants/2w2c.json "$folder/run" 1 2>&1) || { failures=$((failures + 1)); echo "FAILED: the sound unit: $text"; }
+notices "a register that is read before it is written" rtl "retire_data" tb/icarus/undefined_register.json
+without_reset compute_unit.v fault_q
+notices "the fault flag without reset" "$folder/rtl" "fault_valid" 1
+without_reset launcher.v running_o
+notices "the launcher's state without reset" "$folder/rtl" "busy" 1
+
+[ "$failures" = 0 ] || { echo "$failures cases failed"; exit 1; }

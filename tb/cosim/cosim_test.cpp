@@ -1,0 +1,206 @@
+// What random programs, their files, their shrinking and the covering sets promise.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "cosim/covering.hpp"
+#include "cosim/coverage.hpp"
+#include "cosim/program_check.hpp"
+#include "cosim/program_file.hpp"
+#include "cosim/program_profile.hpp"
+#include "cosim/shrink.hpp"
+#include "isa/encoding.hpp"
+#include "machine/functional_unit.hpp"
+#include "machine/test_program.hpp"
+
+namespace raypool {
+namespace {
+
+using test::Encode;
+
+Configuration configuration_of(int warps, int cores, int stack_depth = 8) {
+  Configuration configuration;
+  configuration.warps = warps;
+  configuration.cores = cores;
+  configuration.stack_depth = stack_depth;
+  return configuration;
+}
+
+/// A program of one kernel with `code`, without random parts.
+RandomProgram program_of(const std::vector<uint64_t>& code, uint32_t threads = 1) {
+  RandomProgram program;
+  program.program.code = code;
+  program.program.entries["main"] = 0;
+  program.data_begin = 1024;
+  program.memory_bytes = 4096;
+  program.kernels.push_back({threads, 0, ImportKind::None});
+  fill_memory(program);
+  return program;
+}
+
+bool contains(const RandomProgram& program, const char* mnemonic) {
+  return std::any_of(program.program.code.begin(), program.program.code.end(),
+                     [&](uint64_t word) { return unpack(word).info == &instruction(mnemonic); });
+}
+
+TEST(RandomPrograms, KeepTheirPromisesForEveryConfiguration) {
+  for (const Configuration& configuration :
+       {configuration_of(1, 1, 2), configuration_of(4, 4), configuration_of(32, 2, 32), configuration_of(2, 32, 3)}) {
+    for (const int units : {1, 4}) {
+      for (uint64_t seed = 1; seed <= 80; ++seed) {
+        const RandomProgram program = make_random_program(configuration, seed, 120, units);
+        EXPECT_EQ(check_program(configuration, program), "") << configuration.warps << "w, seed " << seed << ", " << units << " units";
+      }
+    }
+  }
+}
+
+TEST(RandomPrograms, AreTheSameForTheSameSeedAndHaveEveryProfileAndFault) {
+  std::set<std::string> profiles;
+  std::set<FaultCode> faults;
+  for (uint64_t seed = 1; seed <= 600; ++seed) {
+    const RandomProgram a = make_random_program(configuration_of(2, 2), seed), b = make_random_program(configuration_of(2, 2), seed);
+    EXPECT_EQ(a.program.code, b.program.code);
+    EXPECT_EQ(a.arguments, b.arguments);
+    profiles.insert(a.profile);
+    faults.insert(a.fault);
+  }
+  EXPECT_EQ(profiles.size(), std::size(kProgramProfiles));
+  EXPECT_EQ(faults.size(), 8u);
+}
+
+TEST(ProgramCheck, NamesWhatBreaksTheRules) {
+  const Configuration two = configuration_of(2, 1);
+  const auto problem = [&](const std::vector<uint64_t>& code, uint32_t threads = 1) {
+    return check_program(two, program_of(code, threads), 10000);
+  };
+  EXPECT_EQ(problem({Encode("mov").rd(1).imm(1), Encode("exit")}), "");
+  EXPECT_NE(problem({Encode("iadd").rd(1).ra(2).imm(1), Encode("exit")}).find("r2 is read"), std::string::npos);
+  EXPECT_NE(problem({Encode("jany").target(0), Encode("exit")}).find("does not end"), std::string::npos);
+  EXPECT_NE(problem({Encode("rld").rd(1).x(3), Encode("exit")}).find("word 3"), std::string::npos);
+  EXPECT_NE(problem({Encode("ret"), Encode("exit")}).find("fault 4"), std::string::npos);
+  EXPECT_NE(problem({Encode("rin"), Encode("exit")}).find("nobody sends"), std::string::npos);
+  EXPECT_NE(problem({Encode("mov").rd(1).imm(0), Encode("st").ra(1).rb(1), Encode("exit")}).find("its code"), std::string::npos);
+  const std::vector<uint64_t> race = {Encode("mov").rd(1).imm(2048), Encode("st").ra(1).rb(1), Encode("exit")};
+  EXPECT_EQ(problem(race), "");
+  EXPECT_NE(problem(race, 2).find("race at address 2048"), std::string::npos);
+}
+
+TEST(ProgramCheck, KernelsOfSeveralUnitsMayNotShareStoredWords) {
+  RandomProgram program = program_of({Encode("mov").rd(1).imm(2048), Encode("st").ra(1).rb(1), Encode("exit")});
+  program.kernels.push_back(program.kernels.front());
+  EXPECT_EQ(check_program(configuration_of(1, 1), program), "");
+  program.units = 2;
+  EXPECT_NE(check_program(configuration_of(1, 1), program).find("race"), std::string::npos);
+}
+
+TEST(SavedPrograms, AreReadAsTheyWereWritten) {
+  const Configuration configuration = configuration_of(2, 2);
+  for (uint64_t seed = 1; seed <= 40; ++seed) {
+    SavedProgram saved;
+    saved.configuration = configuration;
+    saved.program = make_random_program(configuration, seed, 40);
+    saved.note = "a note";
+    const SavedProgram read = parse_saved_program(to_json(saved), "text");
+    const RandomProgram &a = saved.program, &b = read.program;
+    EXPECT_EQ(read.note, saved.note);
+    EXPECT_EQ(to_json(read.configuration), to_json(saved.configuration));
+    EXPECT_EQ(a.program.code, b.program.code);
+    EXPECT_EQ(a.arguments, b.arguments);
+    EXPECT_EQ(a.stalls.styles, b.stalls.styles);
+    EXPECT_EQ(a.seed, b.seed);
+    EXPECT_EQ(a.fault, b.fault);
+    ASSERT_EQ(a.kernels.size(), b.kernels.size());
+    for (size_t k = 0; k < a.kernels.size(); ++k) {
+      EXPECT_EQ(a.kernels[k].threads, b.kernels[k].threads);
+      EXPECT_EQ(a.kernels[k].block, b.kernels[k].block);
+      EXPECT_EQ(a.kernels[k].import, b.kernels[k].import);
+      EXPECT_EQ(a.kernels[k].pc, b.kernels[k].pc);
+    }
+    ASSERT_EQ(a.memory.size(), b.memory.size());
+    for (uint32_t address = 0; address < a.memory.size(); address += 4) ASSERT_EQ(a.memory.load(address), b.memory.load(address));
+  }
+  EXPECT_THROW(parse_saved_program("{}", "text"), InputError);
+  EXPECT_THROW(load_saved_program("no/such/file.json"), InputError);
+}
+
+TEST(Shrinking, MovesTargetsWithTheirInstructions) {
+  const RandomProgram program = program_of({Encode("mov").rd(1).imm(1), Encode("jany").target(3), Encode("mov").rd(2).imm(2),
+                                            Encode("call").target(5, 7), Encode("exit"), Encode("mov").rd(3).imm(3), Encode("ret")});
+  const RandomProgram shorter = without_instructions(program, 2, 1);
+  ASSERT_EQ(shorter.program.code.size(), 6u);
+  EXPECT_EQ(unpack(shorter.program.code[1]).immediate, 2u);
+  EXPECT_EQ(unpack(shorter.program.code[2]).immediate, 4u | 6u << 16);
+  EXPECT_EQ(check_program(configuration_of(1, 1), shorter), "");
+}
+
+TEST(Shrinking, LeavesTheCulpritAndAValidProgram) {
+  const Configuration configuration = configuration_of(4, 4);
+  int shrunk = 0;
+  for (uint64_t seed = 1; seed <= 30; ++seed) {
+    const RandomProgram program = make_random_program(configuration, seed);
+    if (program.fault != FaultCode::None || !contains(program, "fdiv")) continue;
+    ++shrunk;
+    const RandomProgram shorter =
+        shrink_program(configuration, program, [](const RandomProgram& each) { return contains(each, "fdiv"); });
+    EXPECT_TRUE(contains(shorter, "fdiv"));
+    EXPECT_EQ(check_program(configuration, shorter), "");
+    EXPECT_LE(shorter.program.code.size(), 8u) << "seed " << seed;
+    EXPECT_EQ(shorter.kernels.size(), 1u);
+    for (const StallStyle style : shorter.stalls.styles) EXPECT_EQ(style, StallStyle::None);
+  }
+  EXPECT_GT(shrunk, 3);
+}
+
+TEST(Stalls, OpenAndShutAsTheirStyleSays) {
+  for (int style = 0; style < kStallStyles; ++style) {
+    for (int port = 0; port < kPorts; ++port) {
+      StallPlan plan;
+      plan.styles.fill(static_cast<StallStyle>(style));
+      const Stalls stalls(plan, 7);
+      int open = 0;
+      for (uint64_t cycle = 0; cycle < 10000; ++cycle) {
+        open += stalls.open(static_cast<Port>(port), cycle) ? 1 : 0;
+        EXPECT_GE(stalls.latency(cycle), 1u);
+      }
+      if (plan.styles[0] == StallStyle::None) {
+        EXPECT_EQ(open, 10000);
+      } else {
+        EXPECT_GT(open, 500);
+        EXPECT_LT(open, 9500);
+      }
+    }
+  }
+}
+
+TEST(Covering, SmallConfigurationsHaveEveryValueAndTheLongSetEveryPair) {
+  const Covered small = count_covered(small_configurations());
+  EXPECT_EQ(small.values, small.all_values);
+  for (const Configuration& configuration : small_configurations()) EXPECT_EQ(configuration.contents(), 32);
+  const Covered all = count_covered(all_pairs_configurations());
+  EXPECT_EQ(all.pairs, all.all_pairs);
+}
+
+TEST(CoverageOfNothing, ListsEverythingAsNotCovered) {
+  const Coverage coverage(configuration_of(2, 2));
+  size_t items = 0;
+  for (const Coverage::Group& group : coverage.groups()) {
+    EXPECT_EQ(group.covered(), 0u) << group.name;
+    items += group.items.size();
+  }
+  EXPECT_GT(items, 300u);
+  EXPECT_NE(to_string(coverage).find("NOT covered: tid, lane"), std::string::npos);
+}
+
+TEST(RandomHost, RunsEveryProgramOnTheFunctionalUnit) {
+  const Configuration configuration = configuration_of(4, 4);
+  for (uint64_t seed = 1; seed <= 40; ++seed) {
+    const RandomProgram program = make_random_program(configuration, seed);
+    Memory memory = program.memory;
+    EXPECT_NO_THROW(run_random_program(*make_functional_unit(configuration, memory), memory, program, seed)) << "seed " << seed;
+  }
+}
+
+}  // namespace
+}  // namespace raypool

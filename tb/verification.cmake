@@ -1,0 +1,38 @@
+# Random programs, regressions, configurations and the second simulator, as tests. docs/verification.md tells what each is for.
+set(raypool_program $<TARGET_FILE:raypool>)
+set(scripts ${CMAKE_SOURCE_DIR}/scripts)
+set(small_config ${CMAKE_SOURCE_DIR}/tb/mutants/2w2c.json)
+
+# A small unit of two warps and two lanes, for what needs many runs.
+add_test(NAME verilate_2w2c_small COMMAND ${CMAKE_COMMAND} -E env RAYPOOL=${raypool_program} ${scripts}/unit.sh ${small_config})
+set_tests_properties(verilate_2w2c_small PROPERTIES FIXTURES_SETUP unit_2w2c_small TIMEOUT 900)
+add_test(NAME cosim_2w2c_small COMMAND raypool cosim --config ${small_config} --programs 1000 --seed 1 --no-shrink --quiet)
+set_tests_properties(cosim_2w2c_small PROPERTIES FIXTURES_REQUIRED unit_2w2c_small TIMEOUT 300)
+foreach(units 2 4)
+  add_test(NAME cosim_4w4c_${units}cu COMMAND raypool cosim --config 4w4c --units ${units} --programs 100 --no-shrink --quiet)
+  set_tests_properties(cosim_4w4c_${units}cu PROPERTIES FIXTURES_REQUIRED unit_4w4c_${units}cu TIMEOUT 300)
+endforeach()
+
+# Every program that has once shown a fault.
+file(GLOB regressions CONFIGURE_DEPENDS RELATIVE ${CMAKE_SOURCE_DIR}/tb/regressions ${CMAKE_SOURCE_DIR}/tb/regressions/*.json)
+foreach(regression IN LISTS regressions)
+  add_test(NAME regression_${regression} COMMAND ${scripts}/tests/regression.sh ${raypool_program} ${CMAKE_SOURCE_DIR}/tb/regressions/${regression}
+                                                 ${CMAKE_BINARY_DIR}/regressions)
+  set_tests_properties(regression_${regression} PROPERTIES FIXTURES_REQUIRED unit_2w2c_small TIMEOUT 900)
+endforeach()
+
+# Configurations that together have every value of every parameter.
+add_test(NAME configurations_small
+         COMMAND ${CMAKE_COMMAND} -E env RAYPOOL=${raypool_program} ${scripts}/configurations.sh small 100 ${CMAKE_BINARY_DIR}/configurations)
+set_tests_properties(configurations_small PROPERTIES TIMEOUT 2400)
+
+# The same Verilog in a 4-state simulator.
+find_program(IVERILOG iverilog)
+if(IVERILOG)
+  add_test(NAME icarus_2w2c_small COMMAND ${scripts}/icarus.sh ${raypool_program} ${small_config} ${CMAKE_BINARY_DIR}/icarus/2w2c_small 1 2 3 4 5 6 7 8)
+  set_tests_properties(icarus_2w2c_small PROPERTIES FIXTURES_REQUIRED unit_2w2c_small TIMEOUT 300)
+  add_test(NAME icarus_4w4c COMMAND ${scripts}/icarus.sh ${raypool_program} 4w4c ${CMAKE_BINARY_DIR}/icarus/4w4c 1 3)
+  set_tests_properties(icarus_4w4c PROPERTIES FIXTURES_REQUIRED unit_4w4c TIMEOUT 300)
+  add_test(NAME icarus_notices_x COMMAND ${scripts}/tests/icarus_notices.sh ${raypool_program} ${CMAKE_BINARY_DIR}/icarus/notices)
+  set_tests_properties(icarus_notices_x PROPERTIES FIXTURES_REQUIRED unit_2w2c_small TIMEOUT 300)
+endif()
