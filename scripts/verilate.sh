@@ -42,7 +42,7 @@ stamp=$output/libraypool_unit.stamp
 # Everything the library is made from.
 cd "$root"
 shopt -s nullglob
-headers=(cpp_model/isa/isa.hpp cpp_model/config/configuration.hpp cpp_model/machine/{compute_unit,memory,packages}.hpp tb/rtl/*.hpp)
+headers=(cpp_model/isa/isa.hpp cpp_model/config/configuration.hpp cpp_model/machine/{compute_unit,memory,packages}.hpp tb/rtl/unit_library.hpp)
 wrapper=(tb/rtl/rtl_unit.cpp cpp_model/machine/compute_unit.cpp)
 verilog=(rtl/*.v)
 waivers=(rtl/*.vlt)

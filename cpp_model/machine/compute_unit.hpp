@@ -76,7 +76,7 @@ struct UnitInputs {
   bool memory_response_valid = false;
   MemoryResponse memory_response;
   bool import_request_ready = false;
-  bool import_beat_valid = false;
+  bool import_beat_valid = false;  ///< of packages in the order of their requests, from the cycle after the request on
   Beat import_beat{};
   bool export_ready = false;
   bool frame_ready = false;
