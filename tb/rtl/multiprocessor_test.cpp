@@ -100,6 +100,42 @@ TEST_P(RtlMultiprocessor, AgreesWithTheArbitersInCppInEveryCycleOfRandomPrograms
   }
 }
 
+TEST_P(RtlMultiprocessor, AgreesWhenEveryUnitWantsThePoolsAllTheTime) {
+  const std::vector<uint64_t> code = {
+      Encode("rin"), Encode("rld").rd(1).x(7),  Encode("rst").x(8).rb(1), Encode("rout"), Encode("rst").x(7).rb(1),
+      Encode("rfb"), Encode("rst").x(11).rb(1), Encode("rout"),           Encode("exit")};
+  for (const int ready_percent : {100, 70, 25}) {
+    SCOPED_TRACE(testing::Message() << ready_percent << "% ready");
+    Memory memory(8192);
+    test::put_program(memory, code);
+    const std::unique_ptr<ComparedDevice> compared = device();
+    compared->reset(static_cast<uint32_t>(code.size()), memory.size());
+    test::TestChip chip(*compared, memory, 1, ready_percent);
+    const int launches = 60 * GetParam();
+    for (int i = 0; i < launches; ++i) {
+      LaunchCommand command;
+      command.threads = 4;
+      command.import = i % 3 == 0 ? ImportKind::Shadow : ImportKind::Normal;
+      chip.launches.push_back(command);
+    }
+    try {
+      ASSERT_TRUE(chip.run(200000));
+    } catch (const std::exception& error) {
+      FAIL() << error.what();
+    }
+    const test::PortCounts& counts = compared->counts;
+    EXPECT_EQ(chip.kernels_done, static_cast<uint64_t>(launches));
+    for (size_t u = 0; u < static_cast<size_t>(GetParam()); ++u) {
+      EXPECT_EQ(counts.rays[u], 2 * 4 * counts.launches[u]);
+      EXPECT_EQ(counts.contributions[u], 4 * counts.launches[u]);
+      EXPECT_EQ(counts.imports[u], 4 * counts.launches[u]);
+      EXPECT_GT(counts.launches[u], 40u);
+    }
+    std::cout << GetParam() << " units, ports " << ready_percent << "% ready: " << chip.rays.size() << " rays, "
+              << chip.frame.size() << " contributions in " << compared->cycles << " cycles; 0 differences\n";
+  }
+}
+
 TEST_P(RtlMultiprocessor, ShowsTheFirstFaultAndItsUnit) {
   // The block word is an address: 0 is good, 2 misaligned.
   const std::vector<uint64_t> code = {Encode("block").rd(1), Encode("ld").rd(2).ra(1), Encode("exit")};
