@@ -17,7 +17,6 @@ class Multiprocessor : public ComputeUnit {
   explicit Multiprocessor(std::vector<std::unique_ptr<ComputeUnit>> units);
 
   uint32_t units() const override { return static_cast<uint32_t>(units_.size()); }
-  ComputeUnit& unit(uint32_t number) { return *units_.at(number); }
 
   void reset(uint32_t program_length, uint32_t memory_limit) override;
   void set_argument(int index, uint32_t value) override;

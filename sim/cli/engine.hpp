@@ -32,13 +32,13 @@ struct EngineOptions {
   int units = 1;             ///< compute units of the device: 1, 2 or 4
 };
 
-/// A device for the program and data in `memory`, which must outlive it. The rtl engine's is the Verilated multiprocessor, that
-/// of the others is put together from units; lockstep units are Verilated one by one. `name` and `kernel_names` (entry PC ->
-/// name) are for the reports of a lockstep. Throws InputError when the Verilated unit is missing or does not fit.
+/// A device for the program and data in `memory`, which must outlive it: for rtl the Verilated multiprocessor, for functional and
+/// model a Multiprocessor over as many units, for lockstep both. `name` and `kernel_names` (entry PC -> name) are for the reports
+/// of a lockstep. Throws InputError when the Verilated device is missing or does not fit.
 std::unique_ptr<ComputeUnit> make_unit(const EngineOptions& options, Memory& memory, const std::string& name = "unit",
                                        const std::map<uint32_t, std::string>& kernel_names = {});
 
-/// What the lockstep units of a device have compared; none without such units.
+/// What the device has compared; none unless it is a lockstep.
 std::optional<LockstepCounts> lockstep_counts(ComputeUnit& device);
 
 }  // namespace raypool

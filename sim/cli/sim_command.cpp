@@ -12,7 +12,6 @@
 #include "cli/output_folder.hpp"
 #include "cli/progress.hpp"
 #include "cli/report.hpp"
-#include "machine/multiprocessor.hpp"
 #include "scene/image.hpp"
 #include "scene/native_renderer.hpp"
 #include "scene/scene.hpp"
@@ -84,14 +83,6 @@ std::map<uint32_t, std::string> kernel_names(const Program& program) {
   return names;
 }
 
-void open_waveforms(ComputeUnit& device, OutputFolder& out) {
-  auto* several = dynamic_cast<Multiprocessor*>(&device);  // of units that each write their own
-  if (several == nullptr) return device.open_waveform(out.temporary("waves.fst"));
-  for (uint32_t u = 0; u < several->units(); ++u) {
-    several->unit(u).open_waveform(out.temporary(fmt::format("waves{}.fst", u)));
-  }
-}
-
 }  // namespace
 
 int sim_command(const SimOptions& options) {
@@ -134,7 +125,7 @@ int sim_command(const SimOptions& options) {
   } else {
     const EngineOptions device_options{engine, record.configuration, options.unit_library, options.waves, options.units};
     std::unique_ptr<ComputeUnit> device = make_unit(device_options, image.memory, "unit", kernel_names(ray_kernel_program()));
-    if (options.waves) open_waveforms(*device, out);
+    if (options.waves) device->open_waveform(out.temporary("waves.fst"));
     const Tracer tracer(scene, image.material_base);
     try {
       record.chip = draw_on_chip(options, record, scene, tracer, image, *device, frame);
@@ -158,7 +149,7 @@ int sim_command(const SimOptions& options) {
   out.publish();
   if (!options.quiet) {
     fmt::print("{}  results     {}: image.png, report.json{}\n", to_table(record),
-               fs::proximate(out.path(".")).lexically_normal().string(), options.waves ? ", waves*.fst" : "");
+               fs::proximate(out.path(".")).lexically_normal().string(), options.waves ? ", waves.fst" : "");
   }
   return 0;
 }
