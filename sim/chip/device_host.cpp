@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "chip/chip.hpp"
@@ -15,7 +16,7 @@ DeviceHost::DeviceHost(const sc_core::sc_module_name& name, ComputeUnit& device,
       around_(surroundings),
       idle_before_((1u << units_) - 1),
       settled_((1u << units_) - 1) {
-  SC_METHOD(cycle);
+  SC_METHOD(cycles);
   sensitive << around_.clock.tick();
   dont_initialize();
 }
@@ -31,40 +32,62 @@ void DeviceHost::launch(const LaunchCommand& command) {
   around_.clock.wake();
 }
 
-void DeviceHost::cycle() {
+void DeviceHost::cycles() {
   if (!awake_) return;
   around_.clock.guard([&] {
-    // Outputs stay as they are until clock(), so the reference may be kept.
-    const UnitOutputs& outputs = device_.outputs();
-    if (outputs.fault.code != FaultCode::None) {
-      const int unit = static_cast<int>(outputs.fault.unit);
-      throw ChipFault(unit, outputs.fault, fault_sentence(unit, outputs.fault));
-    }
-    busy_cycles_ += static_cast<uint64_t>(__builtin_popcount(outputs.busy));
-
-    UnitInputs inputs;
-    if (pending_) offer_launch(outputs, inputs);
-    serve_memory(outputs, inputs);
-    bool held_up = false;
-    if (around_.frame) {
-      serve_pools(outputs, inputs);
-      held_up = outputs.export_valid && !inputs.export_ready && around_.frame->rays.held_up();
-    } else if (outputs.export_valid || outputs.frame_valid || outputs.import_request_valid) {
-      throw InputError(fmt::format(
-          "the program uses {}, but a compute program has no ray pools and no frame buffer: remove rin, rout and rfb from it",
-          outputs.import_request_valid ? "an import"
-          : outputs.export_valid       ? "rout"
-                                       : "rfb"));
-    }
-    report(outputs, held_up);
-    device_.clock(inputs);
-    settle(device_.outputs());
+    do {
+      cycle();
+    } while (awake_ && around_.clock.run_on());
   });
 }
 
-void DeviceHost::offer_launch(const UnitOutputs& outputs, UnitInputs& inputs) {
-  inputs.launch_valid = true;
-  inputs.launch = *pending_;
+void DeviceHost::cycle() {
+  // Outputs stay as they are until clock(), so the reference may be kept.
+  const UnitOutputs& outputs = device_.outputs();
+  if (outputs.fault.code != FaultCode::None) {
+    const int unit = static_cast<int>(outputs.fault.unit);
+    throw ChipFault(unit, outputs.fault, fault_sentence(unit, outputs.fault));
+  }
+  inputs_.launch_valid = inputs_.import_request_ready = inputs_.import_beat_valid = inputs_.export_ready = false;
+  if (pending_) offer_launch(outputs);
+  serve_memory(outputs);
+  bool held_up = false;
+  released_ = false;
+  if (around_.frame) {
+    serve_pools(outputs);
+    held_up = outputs.export_valid && !inputs_.export_ready && around_.frame->rays.held_up();
+  } else if (outputs.export_valid || outputs.frame_valid || outputs.import_request_valid) {
+    throw InputError(fmt::format(
+        "the program uses {}, but a compute program has no ray pools and no frame buffer: remove rin, rout and rfb from it",
+        outputs.import_request_valid ? "an import"
+        : outputs.export_valid       ? "rout"
+                                     : "rfb"));
+  }
+  report(outputs, held_up);
+  const auto busy = static_cast<uint64_t>(__builtin_popcount(outputs.busy));
+  const uint64_t cycles = device_.run(inputs_, quiet_cycles(outputs));
+  busy_cycles_ += busy * cycles;
+  around_.clock.pass(cycles);
+  settle(device_.outputs());
+  // A pixel that is finished may allow eye rays, or have been the last one.
+  if (released_ && (can_launch() || idle())) around_.launcher.changed();
+}
+
+// Cycles from now on in which the device can be left alone.
+uint64_t DeviceHost::quiet_cycles(const UnitOutputs& outputs) const {
+  if (outputs.memory_request_valid || outputs.import_request_valid || outputs.export_valid || outputs.frame_valid ||
+      inputs_.launch_valid || inputs_.memory_response_valid || inputs_.import_beat_valid) {
+    return 1;
+  }
+  const uint64_t now = around_.clock.cycle();
+  uint64_t cycles = std::min(around_.clock.quiet_cycles(), around_.memory.response_due() - now);
+  if (around_.frame) cycles = std::min(cycles, around_.frame->intersections.beat_due() - now);
+  return cycles;
+}
+
+void DeviceHost::offer_launch(const UnitOutputs& outputs) {
+  inputs_.launch_valid = true;
+  inputs_.launch = *pending_;
   if (!outputs.launch_ready) return;
   if (outputs.launch_unit != pending_unit_) {
     throw std::logic_error(
@@ -75,28 +98,28 @@ void DeviceHost::offer_launch(const UnitOutputs& outputs, UnitInputs& inputs) {
   around_.launcher.accepted(static_cast<int>(pending_unit_));
 }
 
-void DeviceHost::serve_memory(const UnitOutputs& outputs, UnitInputs& inputs) {
-  inputs.memory_request_ready = around_.memory.ready();
-  if (outputs.memory_request_valid && inputs.memory_request_ready) {
+void DeviceHost::serve_memory(const UnitOutputs& outputs) {
+  inputs_.memory_request_ready = around_.memory.ready();
+  if (outputs.memory_request_valid && inputs_.memory_request_ready) {
     around_.memory.request(outputs.memory_request);
     ++transfers_;
   }
-  inputs.memory_response_valid = around_.memory.response(inputs.memory_response);
+  inputs_.memory_response_valid = around_.memory.response(inputs_.memory_response);
 }
 
-void DeviceHost::serve_pools(const UnitOutputs& outputs, UnitInputs& inputs) {
+void DeviceHost::serve_pools(const UnitOutputs& outputs) {
   DeviceSurroundings::Frame& frame = *around_.frame;
   const uint64_t releases = frame.ledger.releases();
   if (outputs.import_request_valid) {
-    inputs.import_request_ready = frame.intersections.ready();
-    if (!inputs.import_request_ready) frame.intersections.want(outputs.import_request_unit, outputs.import_request_kind);
+    inputs_.import_request_ready = frame.intersections.ready();
+    if (!inputs_.import_request_ready) frame.intersections.want(outputs.import_request_unit, outputs.import_request_kind);
   }
-  inputs.import_beat_valid = frame.intersections.beat(inputs.import_beat);
-  transfers_ += inputs.import_beat_valid;
+  inputs_.import_beat_valid = frame.intersections.beat(inputs_.import_beat);
+  transfers_ += inputs_.import_beat_valid;
 
   if (outputs.export_valid) {
-    inputs.export_ready = frame.rays.ready();
-    if (!inputs.export_ready) {
+    inputs_.export_ready = frame.rays.ready();
+    if (!inputs_.export_ready) {
       frame.rays.want();
     } else {
       ++transfers_;
@@ -104,12 +127,12 @@ void DeviceHost::serve_pools(const UnitOutputs& outputs, UnitInputs& inputs) {
     }
   }
 
-  inputs.frame_ready = true;
+  inputs_.frame_ready = true;
   if (outputs.frame_valid) {
     frame.port.take(outputs.frame_unit, outputs.frame);
     ++transfers_;
   }
-  if (frame.ledger.releases() != releases) around_.launcher.changed();
+  released_ = frame.ledger.releases() != releases;
 }
 
 void DeviceHost::report(const UnitOutputs& outputs, bool held_up) {

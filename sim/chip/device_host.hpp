@@ -60,14 +60,18 @@ class DeviceHost : public sc_core::sc_module {
   std::string describe();
 
  private:
+  void cycles();
   void cycle();
-  void offer_launch(const UnitOutputs& outputs, UnitInputs& inputs);
-  void serve_memory(const UnitOutputs& outputs, UnitInputs& inputs);
-  void serve_pools(const UnitOutputs& outputs, UnitInputs& inputs);
+  void offer_launch(const UnitOutputs& outputs);
+  void serve_memory(const UnitOutputs& outputs);
+  void serve_pools(const UnitOutputs& outputs);
   void report(const UnitOutputs& outputs, bool held_up);
   void settle(const UnitOutputs& outputs);
 
+  uint64_t quiet_cycles(const UnitOutputs& outputs) const;
+
   ComputeUnit& device_;
+  UnitInputs inputs_;
   uint32_t units_;
   DeviceSurroundings around_;
   bool awake_ = false;
@@ -80,6 +84,7 @@ class DeviceHost : public sc_core::sc_module {
   uint32_t pending_unit_ = 0;
   std::array<uint32_t, kMostUnits> given_{};  // [unit] kernels that have not ended
   uint32_t given_in_all_ = 0;
+  bool released_ = false;                     // pixels, in this cycle
   uint64_t busy_cycles_ = 0, transfers_ = 0;
 };
 

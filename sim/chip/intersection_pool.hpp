@@ -7,6 +7,7 @@
 // Whoever launches a kernel reserves its packages at once, so that available() never promises the same package twice.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <deque>
@@ -23,7 +24,6 @@ namespace raypool::chip {
 
 class IntersectionPool : public sc_core::sc_module {
  public:
-  SC_HAS_PROCESS(IntersectionPool);
   /// `clock` and `ledger` must outlive the pool; `capacity` packages of each kind.
   IntersectionPool(const sc_core::sc_module_name& name, ChipClock& clock, PixelLedger& ledger, int capacity);
 
@@ -33,7 +33,17 @@ class IntersectionPool : public sc_core::sc_module {
   /// Compute unit `unit` requests a package of `kind`, and the pool is not ready(). A request stays until it is taken.
   void want(uint32_t unit, ImportKind kind);
   /// True if a beat arrives in this cycle.
-  bool beat(Beat& beat) const;
+  bool beat(Beat& beat) const {
+    if (beat_due() != clock_.cycle()) return false;
+    next_beat(beat);
+    return true;
+  }
+  /// Cycle of the next beat, the present one or later; UINT64_MAX: none is on its way.
+  uint64_t beat_due() const {
+    const uint64_t now = clock_.cycle();
+    if (!granted_ || now >= granted_at_ + kServiceCycles) return UINT64_MAX;
+    return std::max(now, granted_at_ + kPoolOverhead);
+  }
 
   // For the traverser.
   bool full(ImportKind kind) const { return queue(kind).size() >= capacity_; }
@@ -56,12 +66,13 @@ class IntersectionPool : public sc_core::sc_module {
   static size_t number(ImportKind kind) { return kind == ImportKind::Shadow ? 1 : 0; }
   std::deque<Intersection>& queue(ImportKind kind) { return queues_[number(kind)]; }
   const std::deque<Intersection>& queue(ImportKind kind) const { return queues_[number(kind)]; }
+  void next_beat(Beat& beat) const;
   void serve();
 
   ChipClock& clock_;
   PixelLedger& ledger_;
   size_t capacity_;
-  sc_core::sc_event work_;
+  PortWork work_;
   std::array<std::deque<Intersection>, 2> queues_;
   std::array<uint32_t, 2> reserved_{};
   ImportKind wanting_ = ImportKind::None;  // a package of this kind

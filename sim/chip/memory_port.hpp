@@ -23,7 +23,6 @@ inline constexpr size_t kMemoryQueue = 8;      ///< requests that wait to be ser
 
 class MemoryPort : public sc_core::sc_module {
  public:
-  SC_HAS_PROCESS(MemoryPort);
   /// `clock` and `memory` must outlive the port.
   MemoryPort(const sc_core::sc_module_name& name, ChipClock& clock, Memory& memory);
 
@@ -32,7 +31,9 @@ class MemoryPort : public sc_core::sc_module {
   /// Takes a request; ready() must hold.
   void request(const MemoryRequest& request);
   /// True if a beat arrives in this cycle.
-  bool response(MemoryResponse& response);
+  bool response(MemoryResponse& response) { return !responses_.empty() && next_response(response); }
+  /// Cycle of the next beat; UINT64_MAX: none is on its way.
+  uint64_t response_due() const { return responses_.empty() ? UINT64_MAX : responses_.front().cycle; }
   /// True if nothing of compute unit `unit` is waiting or on its way.
   bool quiet(uint32_t unit) const { return open_[unit] == 0; }
 
@@ -46,11 +47,12 @@ class MemoryPort : public sc_core::sc_module {
     MemoryResponse response;
   };
 
+  bool next_response(MemoryResponse& response);
   void serve();
 
   ChipClock& clock_;
   Memory& memory_;
-  sc_core::sc_event work_;
+  PortWork work_;
   uint64_t free_at_ = 0;  // cycle in which the next request can be served
   std::deque<MemoryRequest> requests_;
   std::deque<TimedResponse> responses_;

@@ -11,17 +11,15 @@ RayPool::RayPool(const sc_core::sc_module_name& name, ChipClock& clock, PixelLed
       clock_(clock),
       ledger_(ledger),
       capacity_(static_cast<size_t>(capacity)),
-      depth_(static_cast<uint32_t>(depth)) {
+      depth_(static_cast<uint32_t>(depth)),
+      work_(clock, [this] { serve(); }) {
   rays_.reserve(capacity_);
-  SC_METHOD(serve);
-  sensitive << work_;
-  dont_initialize();
 }
 
 void RayPool::want() {
   if (granted_) return;
   wanting_ = true;
-  if (!full()) clock_.notify(work_, Phase::Ports);
+  if (!full()) work_.ask();
 }
 
 bool RayPool::take(uint32_t unit, const Beat& beat, bool last) {
@@ -38,7 +36,6 @@ bool RayPool::take(uint32_t unit, const Beat& beat, bool last) {
   busy_cycles_ += clock_.cycle() + 1 - granted_at_;
   ++taken_;
   free_at_ = clock_.cycle() + 1;
-  clock_.notify(work_, Phase::Ports, 1);
   const bool shadow = (arriving_[word::kFlags] & kShadowFlag) != 0;
   const bool kept = shadow || (arriving_[word::kFlags] & kDepthMask) <= depth_;
   ledger_.ray_exported(static_cast<int>(unit), arriving_, kept);
@@ -56,19 +53,17 @@ bool RayPool::take(uint32_t unit, const Beat& beat, bool last) {
 void RayPool::removed(uint32_t shadow_rays) {
   shadow_rays_ -= shadow_rays;
   fill_.set(clock_.cycle(), size());
-  if (!granted_ && wanting_) clock_.notify(work_, Phase::Ports);
+  if (!granted_ && wanting_) work_.ask();
 }
 
 void RayPool::serve() {
-  clock_.guard([&] {
-    if (granted_ || full()) return;
-    if (clock_.cycle() < free_at_) return clock_.notify(work_, Phase::Ports, 1);
-    if (!wanting_) return;
-    wanting_ = false;
-    granted_ = true;
-    granted_at_ = clock_.cycle();
-    first_beat_ = granted_at_ + kPoolOverhead;
-  });
+  if (granted_ || full()) return;
+  if (clock_.cycle() < free_at_) return work_.ask(1);
+  if (!wanting_) return;
+  wanting_ = false;
+  granted_ = true;
+  granted_at_ = clock_.cycle();
+  first_beat_ = granted_at_ + kPoolOverhead;
 }
 
 }  // namespace raypool::chip

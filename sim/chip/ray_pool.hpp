@@ -27,7 +27,6 @@ struct PooledRay {
 
 class RayPool : public sc_core::sc_module {
  public:
-  SC_HAS_PROCESS(RayPool);
   /// `clock` and `ledger` must outlive the pool. Normal rays deeper than `depth` are dropped when they arrive.
   RayPool(const sc_core::sc_module_name& name, ChipClock& clock, PixelLedger& ledger, int capacity, int depth);
 
@@ -62,7 +61,7 @@ class RayPool : public sc_core::sc_module {
   PixelLedger& ledger_;
   size_t capacity_;
   uint32_t depth_;
-  sc_core::sc_event work_;
+  PortWork work_;
   bool wanting_ = false;  // a ray is offered
   bool granted_ = false;
   uint64_t granted_at_ = 0, first_beat_ = 0, free_at_ = 0, kept_at_ = 0;
