@@ -42,6 +42,7 @@ void CycleUnit::reset(uint32_t program_length, uint32_t memory_limit) {
   active_ = fetching_ = missed_ = full_ = control_ = want_types_ = 0;
   behind_ = idle_ = ~0u;
   wants_.fill(0);
+  wants_ahead_.fill({});
   for (Slots& slots : slots_) {
     slots.free_at.fill(0);
     slots.unready = 0;
@@ -118,7 +119,8 @@ void CycleUnit::issue_warp(uint32_t warp) {
   pc_[warp] = fetch_pc_[warp];
   const uint8_t type = static_cast<uint8_t>(instruction->code >> 5);
   type_[warp] = type;
-  planned(now_ + 2).wants |= bit;
+  wants_ahead_[(now_ + 2) % 4][type] |= bit;
+  planned(now_ + 2).types |= 1u << type;
   if (tracing_) record_issue(warp, *instruction);
 
   uint32_t mask;
@@ -259,14 +261,17 @@ void CycleUnit::run_changes(bool running) {
 
 void CycleUnit::step(const UnitInputs& inputs) {
   // Everything is worked out from the registers of this cycle; where a block changes its own, what others need is taken first.
-  Planned plan = planned(now_);
-  planned(now_) = Planned{};
+  Planned& slot = planned(now_);
+  const Planned plan = slot;
+  slot = Planned{};
   fetching_ |= plan.fetches;
-  for (uint32_t warps = plan.wants; warps != 0; warps &= warps - 1) {
-    const uint32_t warp = lowest(warps);
-    wants_[type_[warp]] |= 1u << warp;
-    want_types_ |= 1u << type_[warp];
+  full_ |= plan.full;
+  for (uint32_t types = plan.types; types != 0; types &= types - 1) {
+    uint32_t& joining = wants_ahead_[now_ % 4][lowest(types)];
+    wants_[lowest(types)] |= joining;
+    joining = 0;
   }
+  want_types_ |= plan.types;
   const bool halted = fault_.code != FaultCode::None;
   const uint32_t retired = plan.retired | mem_.done() | ray_.done();
   const bool mem_ready = mem_.ready();
@@ -278,33 +283,6 @@ void CycleUnit::step(const UnitInputs& inputs) {
   const bool starts = waiting_ && !running_;
   const bool ends = running_ && active_ == 0;
   busy_cycles_ += running_;
-
-  // Instruction cache and fetch arbiter. What has missed asks again when a line has come.
-  uint32_t fetches_next = 0, full_next = 0;
-  if (instruction_cache_.result()) {
-    const uint32_t bit = 1u << lookup_warp_;
-    if (instruction_cache_.hit()) {
-      full_next = bit;
-      ++hits_;
-    } else {
-      missed_ |= bit;
-      ++misses_;
-    }
-  }
-  if (instruction_cache_.refill_done()) {
-    fetches_next = missed_;
-    missed_ = 0;
-  }
-  int lookup = -1;
-  if (fetching_ != 0 && !halted) {
-    const uint32_t candidates = (fetching_ & behind_) != 0 ? fetching_ & behind_ : fetching_;
-    const uint32_t bit = candidates & (0u - candidates);
-    lookup_warp_ = lowest(bit);
-    behind_ = ~(bit | (bit - 1));
-    fetching_ &= ~bit;
-    lookup = static_cast<int>(fetch_pc_[lookup_warp_]);
-  }
-  fetching_ |= fetches_next;
 
   // Memory arbiter.
   const bool arbiter_free = !request_valid_ || inputs.memory_request_ready;
@@ -320,10 +298,37 @@ void CycleUnit::step(const UnitInputs& inputs) {
       request_ = mem_.request();
     }
   }
-  const bool of_instruction = inputs.memory_response.id == kInstructionId;
-  const bool last_beat = inputs.memory_response_valid && of_instruction && inputs.memory_response.beat == kLastBeat;
-  if (lookup >= 0 || last_beat || instruction_request || instruction_cache_.active()) {
-    instruction_cache_.clock(lookup, arbiter_free, last_beat);
+  const bool of_instruction = inputs.memory_response_valid && inputs.memory_response.id == kInstructionId;
+  const bool data_response = inputs.memory_response_valid && !of_instruction;
+
+  // Instruction cache and fetch arbiter. What has missed asks again when a line has come.
+  const bool cache_active = instruction_request || of_instruction || instruction_cache_.active();
+  uint32_t fetches_next = 0;
+  if (cache_active) {
+    if (instruction_cache_.missed()) {
+      missed_ |= 1u << lookup_warp_;
+      ++misses_;
+    }
+    if (instruction_cache_.refill_done()) {
+      fetches_next = missed_;
+      missed_ = 0;
+    }
+    instruction_cache_.clock(arbiter_free, of_instruction && inputs.memory_response.beat == kLastBeat);
+  }
+  if (fetching_ != 0 && !halted) {
+    const uint32_t behind = fetching_ & behind_;
+    const uint32_t candidates = behind != 0 ? behind : fetching_;
+    const uint32_t bit = candidates & (0u - candidates);
+    lookup_warp_ = lowest(bit);
+    behind_ = ~(bit | (bit - 1));
+    fetching_ &= ~bit;
+    const bool hit = instruction_cache_.lookup(fetch_pc_[lookup_warp_]);
+    planned(now_ + 2).full |= hit ? bit : 0;
+    hits_ += hit;
+  }
+  if (cache_active) {
+    instruction_cache_.end_cycle();
+    fetching_ |= fetches_next;
   }
 
   // Write-back and the next instructions. Who retires in this cycle may issue in it.
@@ -332,20 +337,18 @@ void CycleUnit::step(const UnitInputs& inputs) {
   if (!halted) {
     for (uint32_t warps = full_ & idle_; warps != 0; warps &= warps - 1) issue_warp(lowest(warps));
   }
-  full_ |= full_next;
 
   // Mem and Ray.
-  const bool data_response = inputs.memory_response_valid && !of_instruction;
   if (mem_task_ >= 0 || data_response || mem_.active()) {
     mem_.clock({mem_task_, data_response, inputs.memory_response.id, inputs.memory_response.beat, data_ready});
     mem_task_ = -1;
   }
-  const bool accepts = inputs.launch_valid && outputs_.launch_ready;
+  const bool accepts = inputs.launch_valid && !waiting_ && !ray_.import_active();
   const ImportKind import = accepts ? inputs.launch.import : ImportKind::None;
   if (inputs.import_beat_valid) take_package_beat(inputs.import_beat);
   if (ray_task_ >= 0 || inputs.import_beat_valid || import != ImportKind::None || ray_.active()) {
-    const int swapped = ray_.clock({ray_task_, import, inputs.launch.threads, inputs.import_request_ready,
-                                    inputs.import_beat_valid, inputs.export_ready, inputs.frame_ready});
+    const int swapped = ray_.clock({ray_task_, import, inputs.launch.threads, inputs.import_request_ready, inputs.import_beat_valid,
+                                    inputs.export_ready, inputs.frame_ready});
     ray_task_ = -1;
     if (swapped >= 0) swap(static_cast<uint32_t>(swapped));
   }
@@ -378,32 +381,45 @@ bool CycleUnit::quiet() const {
 
 uint64_t CycleUnit::run(const UnitInputs& inputs, uint64_t cycles) {
   const uint32_t before = outputs_.signals();
-  const uint32_t taken = inputs.ready_signals();
-  clock(inputs);
+  const bool transfers = (before & inputs.ready_signals()) != 0;
+  step(inputs);
   uint64_t done = 1;
-  UnitInputs rest;
-  rest.memory_request_ready = inputs.memory_request_ready;
-  rest.import_request_ready = inputs.import_request_ready;
-  rest.export_ready = inputs.export_ready;
-  rest.frame_ready = inputs.frame_ready;
-  while (done < cycles && outputs_.signals() == before && (before & taken) == 0) {
-    if (quiet()) {
-      // Nothing happens before the next planned event.
-      uint64_t skip = 0;
-      while (skip < kRing && done + skip < cycles && !planned(now_ + skip).any()) ++skip;
-      if (skip == kRing) skip = cycles - done;
-      now_ += skip;
-      busy_cycles_ += running_ ? skip : 0;
-      done += skip;
-      if (done == cycles) break;
+  if (done < cycles && !transfers) {
+    UnitInputs rest;
+    rest.memory_request_ready = inputs.memory_request_ready;
+    rest.import_request_ready = inputs.import_request_ready;
+    rest.export_ready = inputs.export_ready;
+    rest.frame_ready = inputs.frame_ready;
+    while (done < cycles && signals() == before) {
+      if (quiet()) {
+        // Nothing happens before the next planned event.
+        uint64_t skip = 0;
+        while (skip < kRing && done + skip < cycles && !planned(now_ + skip).any()) ++skip;
+        if (skip == kRing) skip = cycles - done;
+        now_ += skip;
+        busy_cycles_ += running_ ? skip : 0;
+        done += skip;
+        if (done == cycles) break;
+      }
+      step(rest);
+      ++done;
     }
-    clock(rest);
-    ++done;
   }
+  present();
+  if (tracing_) record();
   return done;
 }
 
 // ---- What is seen from outside
+
+// As UnitOutputs::signals().
+uint32_t CycleUnit::signals() const {
+  const bool idle = !running_ && !waiting_ && !ray_.import_active() && !ray_.exporting() && mem_.idle() && !request_valid_;
+  return uint32_t{!waiting_ && !ray_.import_active()} | uint32_t{idle} << 1 | uint32_t{request_valid_} << 2 |
+         uint32_t{ray_.import_request_valid()} << 3 | uint32_t{ray_.export_valid()} << 4 | uint32_t{ray_.frame_valid()} << 5 |
+         uint32_t{fault_.code != FaultCode::None} << 6 | uint32_t{running_ && active_ == 0} << 8 | uint32_t{running_} << 12 |
+         uint32_t{idle} << 16;
+}
 
 void CycleUnit::present() {
   UnitOutputs& out = outputs_;
@@ -425,7 +441,7 @@ void CycleUnit::present() {
     const Beat& beat = ray_.beat().data;
     out.frame = {beat[0], {beat[1], beat[2], beat[3]}};
   }
-  out.fault = fault_;
+  if (fault_.code != FaultCode::None) out.fault = fault_;
 }
 
 uint64_t CycleUnit::counter(int number) {

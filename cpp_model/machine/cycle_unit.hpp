@@ -58,9 +58,10 @@ class CycleUnit final : public ComputeUnit {
   static constexpr uint32_t kRing = 64;  // cycles ahead for which something can be planned; the deepest ALU has 32 stages
   struct Planned {
     uint32_t retired = 0;  // warps whose instruction is done in this cycle
-    uint32_t wants = 0;    // ... is in stage Dispatch from this cycle on
-    uint32_t fetches = 0;  // warps that want the instruction cache from this cycle on
-    bool any() const { return (retired | wants | fetches) != 0; }
+    uint32_t fetches = 0;  // ... that want the instruction cache from this cycle on
+    uint32_t full = 0;     // ... whose next instruction is in the buffer from this cycle on
+    uint32_t types = 0;    // types with new wants in wants_ahead_
+    bool any() const { return (retired | fetches | full | types) != 0; }
   };
   struct Slots {  // the ALU instances of a type
     uint32_t count = 1, latency = 1, depth = 1;
@@ -74,6 +75,7 @@ class CycleUnit final : public ComputeUnit {
 
   Planned& planned(uint64_t cycle) { return ring_[cycle % kRing]; }
   void step(const UnitInputs& inputs);
+  uint32_t signals() const;
   void present();
   void record();
   bool quiet() const;
@@ -120,7 +122,8 @@ class CycleUnit final : public ComputeUnit {
   uint32_t idle_ = ~0u;                       // no instruction under way
   uint32_t control_ = 0;                      // the instruction under way is a control instruction
   uint32_t want_types_ = 0;                   // types with a warp in stage Dispatch
-  std::array<uint32_t, kUnits + 1> wants_{};  // [type] warps
+  std::array<uint32_t, kUnits> wants_{};  // [type] warps
+  std::array<std::array<uint32_t, kUnits>, 4> wants_ahead_{};  // [cycle % 4][type] warps that join them
   std::array<uint8_t, kWarps> type_{};        // [warp]
   std::array<uint32_t, kWarps> pc_{};
   std::array<FaultCode, kWarps> stack_fault_{};  // [warp] of the control instruction under way

@@ -18,38 +18,46 @@ class InstructionCache {
   void reset() {
     sets_.assign(sets_.size(), Set{});
     fetch_ = Fetch::None;
-    done_ = result_ = false;
+    done_ = missed_ = changes_ = false;
   }
   /// Forgets all lines; only while no line is being fetched.
   void invalidate() {
-    for (Set& set : sets_) set.valid = {};
+    for (Set& set : sets_) set.line = {kNone, kNone};
+  }
+
+  /// A lookup of the present cycle, whose result comes in the next: true for a hit. Between clock() and end_cycle() of its cycle.
+  bool lookup(uint32_t pc) {
+    const uint32_t line = pc >> 3;
+    Set& set = sets_[line & set_mask_];
+    const bool hit_0 = set.line[0] == line, hit_1 = set.line[1] == line;
+    missed_line_ = line;
+    missed_ = !hit_0 && !hit_1;
+    // Nothing asks for the older way before the result is there, so it may change now.
+    set.older = missed_ ? set.older : static_cast<uint8_t>(hit_0);
+    return !missed_;
   }
 
   // Registers, as they stand in the present cycle.
-  /// The result of the lookup of the cycle before is there.
-  bool result() const { return result_; }
-  bool hit() const { return way_ >= 0; }  ///< of result()
+  bool missed() const { return missed_; }  ///< the lookup of the cycle before
   bool refill_done() const { return done_; }
   bool request_valid() const { return fetch_ == Fetch::Request; }
   uint32_t request_address() const { return fetch_line_ << 6; }
-  /// False if clock() would change nothing without a lookup, request_ready or response.
-  bool active() const { return result_ || done_ || fetch_ == Fetch::Settle; }
+  /// False if clock() would change nothing without request_ready or last_beat.
+  bool active() const { return missed_ || done_ || fetch_ == Fetch::Settle; }
 
-  /// `lookup`: PC that is looked up in this cycle, -1: none.
-  void clock(int lookup, bool request_ready, bool last_beat) {
-    // The lookup belongs to the valid bits of this cycle.
-    int way = -1;
-    if (lookup >= 0) {
-      const uint32_t line = static_cast<uint32_t>(lookup) >> 3;
-      const Set& set = sets_[line & set_mask_];
-      for (int i = 0; i < 2; ++i) {
-        if (set.valid[static_cast<size_t>(i)] && set.line[static_cast<size_t>(i)] == line) way = i;
-      }
-    }
+  void clock(bool request_ready, bool last_beat) {
     done_ = fetch_ == Fetch::Settle;
     Fetch next = fetch_;
     switch (fetch_) {
       case Fetch::None:
+        if (missed_) {
+          Set& set = sets_[missed_line_ & set_mask_];
+          next = Fetch::Request;
+          fetch_line_ = missed_line_;
+          fetch_way_ = set.older;
+          set.older ^= 1;
+          changes_ = true;
+        }
         break;
       case Fetch::Request:
         if (request_ready) next = Fetch::Beats;
@@ -57,50 +65,38 @@ class InstructionCache {
       case Fetch::Beats:
         if (last_beat) {
           next = Fetch::Settle;
-          Set& set = sets_[fetch_line_ & set_mask_];
-          set.valid[fetch_way_] = true;
-          set.line[fetch_way_] = fetch_line_;
+          changes_ = true;
         }
         break;
       case Fetch::Settle:
         next = Fetch::None;
         break;
     }
-    if (result_) {
-      Set& set = sets_[line_ & set_mask_];
-      if (way_ >= 0) {
-        set.older = static_cast<uint8_t>(way_ == 0);
-      } else if (fetch_ == Fetch::None) {
-        next = Fetch::Request;
-        fetch_line_ = line_;
-        fetch_way_ = set.older;
-        set.valid[fetch_way_] = false;
-        set.older ^= 1;
-      }
-    }
     fetch_ = next;
-    result_ = lookup >= 0;
-    way_ = way;
-    line_ = static_cast<uint32_t>(lookup) >> 3;
+    missed_ = false;
+  }
+  /// The end of a cycle with a clock(): a line that has come is valid from the next cycle on, and one that gives way is not.
+  void end_cycle() {
+    if (!changes_) return;
+    changes_ = false;
+    sets_[fetch_line_ & set_mask_].line[fetch_way_] = fetch_ == Fetch::Settle ? fetch_line_ : kNone;
   }
 
  private:
+  static constexpr uint32_t kNone = ~0u;  // no line
   enum class Fetch : uint8_t { None, Request, Beats, Settle };
   struct Set {
-    std::array<uint32_t, 2> line{};
-    std::array<bool, 2> valid{};
+    std::array<uint32_t, 2> line{kNone, kNone};
     uint8_t older = 0;
   };
 
   uint32_t set_mask_;
   std::vector<Set> sets_;
   Fetch fetch_ = Fetch::None;
-  uint32_t fetch_line_ = 0;
+  uint32_t fetch_line_ = 0, missed_line_ = 0;
   uint8_t fetch_way_ = 0;
-  bool done_ = false;
-  bool result_ = false;
-  int way_ = -1;  // of the result
-  uint32_t line_ = 0;
+  bool done_ = false, changes_ = false;
+  bool missed_ = false;  // the lookup of the cycle before
 };
 
 }  // namespace raypool

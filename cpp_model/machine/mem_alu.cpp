@@ -29,6 +29,7 @@ void MemAlu::reset() {
   privilege_ = attempt_ = false;
   privilege_warp_ = 0;
   queue_count_ = 0;
+  active_ = false;
   hits_ = misses_ = stores_ = unready_ = 0;
 }
 
@@ -298,6 +299,8 @@ void MemAlu::clock(const Inputs& inputs) {
     privilege_ = attempt_ = true;
     privilege_warp_ = lowest(above != 0 ? above : losers);
   }
+  active_ = pass_.valid || access_.valid || done_ != 0 || parking_ || refill_.valid || next_.valid || queue_count_ != 0 ||
+            (queued_ | filled_ | losers_) != 0 || privilege_ || fault_ != FaultCode::None;
 }
 
 }  // namespace raypool

@@ -53,10 +53,7 @@ class MemAlu {
   // Registers, as they stand in the present cycle.
   bool ready() const { return queued_ == 0; }
   /// False if clock() would change nothing: it need not be called as long as no task and no response arrives.
-  bool active() const {
-    return pass_.valid || access_.valid || done_ != 0 || parking_ || refill_.valid || next_.valid || queue_count_ != 0 ||
-           (queued_ | filled_ | losers_) != 0 || privilege_ || fault_ != FaultCode::None;
-  }
+  bool active() const { return active_; }
   bool idle() const {
     return !pass_.valid && !access_.valid && done_ == 0 && !parking_ && !next_.valid && (queued_ | parked_ | busy_) == 0 &&
            queue_count_ == 0;
@@ -148,6 +145,7 @@ class MemAlu {
 
   std::array<MemoryRequest, 4> queue_{};
   uint32_t queue_count_ = 0;
+  bool active_ = false;
   uint64_t hits_ = 0, misses_ = 0, stores_ = 0, unready_ = 0;
 };
 

@@ -44,6 +44,7 @@ void RayAlu::reset() {
   landing_ = false;
   fill_ = 0;
   beats_first_ = beats_end_ = 0;
+  active_ = false;
   unready_ = 0;
 }
 
@@ -68,7 +69,6 @@ int RayAlu::clock(const Inputs& inputs) {
 
   const uint32_t ready_swaps = can();
   const int swap = ready_swaps != 0 && !result_end ? static_cast<int>(lowest(ready_swaps)) : -1;
-  const bool swaps_input = swap >= 0 && (parked_input_ >> swap & 1) != 0;
 
   // Done: an access first. The result stage knows its own task, as the next one may be held by now.
   done_ = result_end ? 1u << result_warp_ : swap >= 0 ? 1u << swap : 0;
@@ -90,25 +90,28 @@ int RayAlu::clock(const Inputs& inputs) {
   clock_export(inputs, read_granted);
   if (task != nullptr && task->kind == Task::Kind::Input) parked_input_ |= 1u << arriving;
   if (task != nullptr && task->kind == Task::Kind::Output) parked_output_ |= 1u << arriving;
-  if (swap < 0) return -1;
-  const uint32_t warp = static_cast<uint32_t>(swap);
+  if (swap >= 0) execute_swap(static_cast<uint32_t>(swap));
+  active_ = hold_ || result_.valid || done_ != 0 || fault_ || write_.valid || slice_.valid || landing_ || fill_ != 0 ||
+            next_.valid || first_ != end_ || can() != 0 || import_moves();
+  return swap;
+}
+
+void RayAlu::execute_swap(uint32_t warp) {
   const uint32_t bit = 1u << warp;
   Roles& roles = roles_[warp];
-  if (swaps_input) {
+  if ((parked_input_ & bit) != 0) {
     parked_input_ &= ~bit;
     full_ &= ~bit;
     std::swap(roles.input, roles.current);
-  } else {
-    parked_output_ &= ~bit;
-    std::swap(roles.output, roles.current);
-    if (!tasks_[warp].empty) {
-      order_[end_++ % kRing] = warp;
-      busy_ |= bit;
-      reads_[warp] = 0;
-      added_ = warp;
-    }
+    return;
   }
-  return swap;
+  parked_output_ &= ~bit;
+  std::swap(roles.output, roles.current);
+  if (tasks_[warp].empty) return;
+  order_[end_++ % kRing] = warp;
+  busy_ |= bit;
+  reads_[warp] = 0;
+  added_ = warp;
 }
 
 void RayAlu::clock_import(const Inputs& inputs) {

@@ -52,10 +52,7 @@ class RayAlu {
     return !(access && (last_step_ > 0 || write_.valid));
   }
   /// False if clock() would change nothing: it need not be called as long as no task, no import and no beat arrives.
-  bool active() const {
-    return hold_ || result_.valid || done_ != 0 || fault_ || can() != 0 || write_.valid || import_moves() || first_ != end_ ||
-           next_.valid || slice_.valid || landing_ || fill_ != 0;
-  }
+  bool active() const { return active_; }
   uint32_t done() const { return done_; }  ///< the warp whose task is done in this cycle, as a bit
   bool wrote() const { return wrote_; }    ///< that task was an rst
   bool fault() const { return fault_; }    ///< ray word above 20
@@ -104,6 +101,7 @@ class RayAlu {
     return import_active_ &&
            (import_request_ || (requested_ != threads_ && outstanding_ != 2 && (full_ >> (requested_ >> lane_bits_) & 1) == 0));
   }
+  void execute_swap(uint32_t warp);
   void clock_import(const Inputs& inputs);
   void clock_export(const Inputs& inputs, bool granted);
   void push_beat(const OutBeat& beat) { beats_[beats_end_++ & beats_mask_] = beat; }
@@ -147,6 +145,7 @@ class RayAlu {
   uint32_t beats_first_ = 0, beats_end_ = 0, beats_mask_ = 0;
   uint32_t added_ = 0;  // warp to which add_ray and add_contribution add
 
+  bool active_ = false;
   uint64_t unready_ = 0;
 };
 
