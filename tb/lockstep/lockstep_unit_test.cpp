@@ -357,7 +357,7 @@ TEST(Lockstep, AHangIsReportedWithWhatEveryWarpWaitsFor) {
 }
 
 TEST(Lockstep, FaultsThatBothReportAlikeAreNoDifference) {
-  Fixture fixture({Encode("mov").rd(1).imm(2), Encode("ld").rd(1).ra(1)});
+  Fixture fixture({Encode("mov").rd(1).imm(2), Encode("ld").rd(1).ra(1), Encode("mov").rd(2).imm(0), Encode("exit")});
   fixture.launch(3, ImportKind::None);
   EXPECT_FALSE(fixture.chip.run());
   for (int i = 0; i < 50; ++i) fixture.chip.cycle();
@@ -367,7 +367,7 @@ TEST(Lockstep, FaultsThatBothReportAlikeAreNoDifference) {
 }
 
 TEST(Lockstep, AFaultThatTheUnitMissesIsFound) {
-  Fixture fixture({Encode("mov").rd(1).imm(2), Encode("ld").rd(1).ra(1)});
+  Fixture fixture({Encode("mov").rd(1).imm(2), Encode("ld").rd(1).ra(1), Encode("mov").rd(2).imm(0), Encode("exit")});
   fixture.device->alter_outputs = [](UnitOutputs& out) { out.fault = {}; };
   fixture.launch(3, ImportKind::None);
   try {
