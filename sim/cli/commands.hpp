@@ -3,8 +3,13 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <string>
 #include <vector>
+
+#include "machine/compute_unit.hpp"
+#include "machine/memory.hpp"
 
 namespace raypool {
 
@@ -24,6 +29,8 @@ struct SimOptions {
   bool waves = false;
   bool quiet = false;                ///< no progress, no table
   std::vector<std::string> command;  ///< the command line, for the report
+  /// Puts something around the device, which works on that memory; empty: nothing. No option of the command line.
+  std::function<std::unique_ptr<ComputeUnit>(std::unique_ptr<ComputeUnit>, const Memory&)> wrap = {};
 };
 int sim_command(const SimOptions& options);
 
@@ -86,13 +93,13 @@ struct CosimOptions {
   uint64_t seed = 1;
   int length = 120;  ///< about how many instructions a program's body has
   bool quiet = false;
-  bool shrink = true;                    ///< a program that fails is made short and saved
-  std::string save = "tb/regressions";   ///< folder for it
-  std::string coverage;                  ///< JSON file with what was covered, empty: none
-  std::string vectors;                   ///< file for another simulator to replay, empty: none
-  std::string replay;                    ///< a saved program, instead of random ones
-  bool show_configuration = false;       ///< of the saved program, instead of running it
-  bool unchecked = false;                ///< the saved program may break the rules of random programs
+  bool shrink = true;                   ///< a program that fails is made short and saved
+  std::string save = "tb/regressions";  ///< folder for it
+  std::string coverage;                 ///< JSON file with what was covered, empty: none
+  std::string vectors;                  ///< file for another simulator to replay, empty: none
+  std::string replay;                   ///< a saved program, instead of random ones
+  bool show_configuration = false;      ///< of the saved program, instead of running it
+  bool unchecked = false;               ///< the saved program may break the rules of random programs
 };
 int cosim_command(const CosimOptions& options);
 

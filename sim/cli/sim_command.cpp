@@ -125,6 +125,7 @@ int sim_command(const SimOptions& options) {
   } else {
     const EngineOptions device_options{engine, record.configuration, options.unit_library, options.waves, options.units};
     std::unique_ptr<ComputeUnit> device = make_unit(device_options, image.memory, "unit", kernel_names(ray_kernel_program()));
+    if (options.wrap) device = options.wrap(std::move(device), image.memory);
     if (options.waves) device->open_waveform(out.temporary("waves.fst"));
     const Tracer tracer(scene, image.material_base);
     try {
