@@ -7,6 +7,7 @@ namespace {
 
 constexpr uint8_t kInstructionId = 16;  // of a read of the instruction side
 constexpr uint8_t kLastBeat = 3;        // of a line
+constexpr uint64_t kAhead = 2;          // cycles from IBuf to Dispatch, and from IBuf to IArb
 
 uint32_t lowest(uint32_t bits) { return static_cast<uint32_t>(__builtin_ctz(bits)); }
 uint64_t popcount(uint32_t bits) { return static_cast<uint64_t>(__builtin_popcount(bits)); }
@@ -42,7 +43,8 @@ void CycleUnit::reset(uint32_t program_length, uint32_t memory_limit) {
   active_ = fetching_ = missed_ = full_ = control_ = want_types_ = 0;
   behind_ = idle_ = ~0u;
   wants_.fill(0);
-  wants_ahead_.fill({});
+  mem_wants_ = ray_wants_ = 0;
+  fetch_cycle_ = now_;
   for (Slots& slots : slots_) {
     slots.free_at.fill(0);
     slots.unready = 0;
@@ -75,37 +77,37 @@ void CycleUnit::clock(const UnitInputs& inputs) {
 
 // ---- The data routine
 
-void CycleUnit::dispatch_to_slots(Slots& slots, uint32_t& wants, uint64_t& issued) {
-  for (uint32_t slot = 0; slot < slots.count && wants != 0; ++slot) {
-    if (slots.free_at[slot] > now_) continue;
-    planned(now_ + 1 + slots.depth).retired |= wants & (0u - wants);
-    wants &= wants - 1;
-    slots.free_at[slot] = now_ + slots.latency;
-    slots.unready += slots.latency - 1;
-    ++issued;
+// What is issued in a cycle wants its ALU two cycles later, together with those that were not granted before. All of them are
+// known now, and so are the instances that will be free then, so the pipelined types are dispatched two cycles ahead: mostly that
+// is all there is to do for an instruction until it retires. Each type's free instances take the lowest warps.
+void CycleUnit::dispatch_ahead() {
+  const uint64_t cycle = now_ + kAhead;
+  for (uint32_t types = want_types_; types != 0; types &= types - 1) {
+    const uint32_t type = lowest(types);
+    Slots& slots = slots_[type];
+    uint32_t wants = wants_[type];
+    for (uint32_t slot = 0; slot < slots.count && wants != 0; ++slot) {
+      if (slots.free_at[slot] > cycle) continue;
+      planned(cycle + 1 + slots.depth).retired |= wants & (0u - wants);
+      wants &= wants - 1;
+      slots.free_at[slot] = cycle + slots.latency;
+      slots.unready += slots.latency - 1;
+      ++issued_[type];
+    }
+    wants_[type] = wants;
+    if (wants == 0) want_types_ &= ~(1u << type);
+    waited_[type] += popcount(wants);
   }
 }
 
-// Each type's free instances take the lowest warps that want it. Mem and Ray say themselves whether they take a task.
-void CycleUnit::dispatch(bool mem_ready, bool ray_ready) {
-  for (uint32_t types = want_types_; types != 0; types &= types - 1) {
-    const uint32_t type = lowest(types);
-    uint32_t& wants = wants_[type];
-    if (type == index(Unit::Mem) || type == index(Unit::Ray)) {
-      const bool memory = type == index(Unit::Mem);
-      if (memory ? mem_ready : ray_ready) {
-        (memory ? mem_task_ : ray_task_) = static_cast<int>(lowest(wants));
-        wants &= wants - 1;
-        ++issued_[type];
-      }
-    } else {
-      dispatch_to_slots(slots_[type], wants, issued_[type]);
-    }
-    if (wants == 0)
-      want_types_ &= ~(1u << type);
-    else
-      waited_[type] += popcount(wants);
+// Mem and Ray say themselves, in the very cycle, whether they take a task.
+void CycleUnit::dispatch(uint32_t& wants, bool ready, int& task, Unit type) {
+  if (ready) {
+    task = static_cast<int>(lowest(wants));
+    wants &= wants - 1;
+    ++issued_[index(type)];
   }
+  waited_[index(type)] += popcount(wants);
 }
 
 // The instruction in the buffer becomes the warp's current one and is executed, unless it has to wait for a slice to arrive or
@@ -118,9 +120,14 @@ void CycleUnit::issue_warp(uint32_t warp) {
   idle_ &= ~bit;
   pc_[warp] = fetch_pc_[warp];
   const uint8_t type = static_cast<uint8_t>(instruction->code >> 5);
-  type_[warp] = type;
-  wants_ahead_[(now_ + 2) % 4][type] |= bit;
-  planned(now_ + 2).types |= 1u << type;
+  if (type == index(Unit::Mem)) {
+    planned(now_ + kAhead).mem_wants |= bit;
+  } else if (type == index(Unit::Ray)) {
+    planned(now_ + kAhead).ray_wants |= bit;
+  } else {
+    wants_[type] |= bit;
+    want_types_ |= 1u << type;
+  }
   if (tracing_) record_issue(warp, *instruction);
 
   uint32_t mask;
@@ -186,6 +193,29 @@ void CycleUnit::swap(uint32_t warp) {
 }
 
 // ---- The instruction routine
+
+// The fetch arbiter's grants of the cycles up to `until`, and what the cache says to them.
+void CycleUnit::fetch(uint64_t until) {
+  for (; fetch_cycle_ <= until; ++fetch_cycle_) {
+    uint32_t& joining = planned(fetch_cycle_).fetches;
+    fetching_ |= joining;
+    joining = 0;
+    if (fetching_ == 0) continue;
+    const uint32_t behind = fetching_ & behind_;
+    const uint32_t candidates = behind != 0 ? behind : fetching_;
+    const uint32_t bit = candidates & (0u - candidates);
+    lookup_warp_ = lowest(bit);
+    behind_ = ~(bit | (bit - 1));
+    fetching_ &= ~bit;
+    if (instruction_cache_.lookup(fetch_pc_[lookup_warp_])) {
+      planned(fetch_cycle_ + 2).full |= bit;
+      ++hits_;
+    } else {
+      miss_cycle_ = fetch_cycle_ + 1;
+      until = std::min(until, fetch_cycle_);
+    }
+  }
+}
 
 // The PC stack is stepped from `cycle` on: a cycle for each entry that is popped, and one for the PC that is taken.
 void CycleUnit::plan_fetch(uint32_t warp, uint64_t cycle, bool past_current) {
@@ -262,24 +292,20 @@ void CycleUnit::run_changes(bool running) {
 void CycleUnit::step(const UnitInputs& inputs) {
   // Everything is worked out from the registers of this cycle; where a block changes its own, what others need is taken first.
   Planned& slot = planned(now_);
-  const Planned plan = slot;
-  slot = Planned{};
-  fetching_ |= plan.fetches;
-  full_ |= plan.full;
-  for (uint32_t types = plan.types; types != 0; types &= types - 1) {
-    uint32_t& joining = wants_ahead_[now_ % 4][lowest(types)];
-    wants_[lowest(types)] |= joining;
-    joining = 0;
-  }
-  want_types_ |= plan.types;
+  const uint32_t planned_retired = slot.retired;
+  full_ |= slot.full;
+  mem_wants_ |= slot.mem_wants;
+  ray_wants_ |= slot.ray_wants;
+  slot.retired = slot.full = slot.mem_wants = slot.ray_wants = 0;
   const bool halted = fault_.code != FaultCode::None;
-  const uint32_t retired = plan.retired | mem_.done() | ray_.done();
+  const uint32_t retired = planned_retired | mem_.done() | ray_.done();
   const bool mem_ready = mem_.ready();
   const bool ray_ready = ray_.ready(ray_task_);
   const FaultCode mem_fault = mem_.fault();
   const uint32_t mem_fault_warp = mem_.fault_warp();
   const bool ray_fault = ray_.fault();
   const uint32_t ray_fault_warp = ray_.fault_warp();
+  const bool accepts = inputs.launch_valid && !waiting_ && !ray_.import_active();
   const bool starts = waiting_ && !running_;
   const bool ends = running_ && active_ == 0;
   busy_cycles_ += running_;
@@ -301,34 +327,12 @@ void CycleUnit::step(const UnitInputs& inputs) {
   const bool of_instruction = inputs.memory_response_valid && inputs.memory_response.id == kInstructionId;
   const bool data_response = inputs.memory_response_valid && !of_instruction;
 
-  // Instruction cache and fetch arbiter. What has missed asks again when a line has come.
-  const bool cache_active = instruction_request || of_instruction || instruction_cache_.active();
-  uint32_t fetches_next = 0;
-  if (cache_active) {
-    if (instruction_cache_.missed()) {
-      missed_ |= 1u << lookup_warp_;
-      ++misses_;
-    }
-    if (instruction_cache_.refill_done()) {
-      fetches_next = missed_;
-      missed_ = 0;
-    }
-    instruction_cache_.clock(arbiter_free, of_instruction && inputs.memory_response.beat == kLastBeat);
-  }
-  if (fetching_ != 0 && !halted) {
-    const uint32_t behind = fetching_ & behind_;
-    const uint32_t candidates = behind != 0 ? behind : fetching_;
-    const uint32_t bit = candidates & (0u - candidates);
-    lookup_warp_ = lowest(bit);
-    behind_ = ~(bit | (bit - 1));
-    fetching_ &= ~bit;
-    const bool hit = instruction_cache_.lookup(fetch_pc_[lookup_warp_]);
-    planned(now_ + 2).full |= hit ? bit : 0;
-    hits_ += hit;
-  }
-  if (cache_active) {
-    instruction_cache_.end_cycle();
-    fetching_ |= fetches_next;
+  // Begin and end of a kernel.
+  if (starts) {
+    start_kernel();
+    run_changes(true);
+  } else if (ends) {
+    run_changes(false);
   }
 
   // Write-back and the next instructions. Who retires in this cycle may issue in it.
@@ -338,30 +342,44 @@ void CycleUnit::step(const UnitInputs& inputs) {
     for (uint32_t warps = full_ & idle_; warps != 0; warps &= warps - 1) issue_warp(lowest(warps));
   }
 
+  // Instruction cache and fetch arbiter. What has missed asks again when a line has come. Without a line on its way the cache's
+  // answers are known ahead.
+  const bool missed = instruction_cache_.missed() && miss_cycle_ == now_;
+  if (missed || instruction_request || of_instruction || instruction_cache_.active()) {
+    uint32_t fetches_next = 0;
+    if (missed) {
+      missed_ |= 1u << lookup_warp_;
+      ++misses_;
+    }
+    if (instruction_cache_.refill_done()) {
+      fetches_next = missed_;
+      missed_ = 0;
+    }
+    instruction_cache_.clock(missed, arbiter_free, of_instruction && inputs.memory_response.beat == kLastBeat);
+    if (!halted) fetch(now_);
+    instruction_cache_.end_cycle();
+    fetching_ |= fetches_next;
+  }
+  if (!halted) fetch(instruction_cache_.busy() ? now_ : now_ + kAhead);
+  if (want_types_ != 0) dispatch_ahead();
+
   // Mem and Ray.
   if (mem_task_ >= 0 || data_response || mem_.active()) {
     mem_.clock({mem_task_, data_response, inputs.memory_response.id, inputs.memory_response.beat, data_ready});
     mem_task_ = -1;
   }
-  const bool accepts = inputs.launch_valid && !waiting_ && !ray_.import_active();
   const ImportKind import = accepts ? inputs.launch.import : ImportKind::None;
   if (inputs.import_beat_valid) take_package_beat(inputs.import_beat);
   if (ray_task_ >= 0 || inputs.import_beat_valid || import != ImportKind::None || ray_.active()) {
-    const int swapped = ray_.clock({ray_task_, import, inputs.launch.threads, inputs.import_request_ready, inputs.import_beat_valid,
-                                    inputs.export_ready, inputs.frame_ready});
+    const int swapped = ray_.clock({ray_task_, import, inputs.launch.threads, inputs.import_request_ready,
+                                    inputs.import_beat_valid, inputs.export_ready, inputs.frame_ready});
     ray_task_ = -1;
     if (swapped >= 0) swap(static_cast<uint32_t>(swapped));
   }
 
-  if (want_types_ != 0 && !halted) dispatch(mem_ready, ray_ready);
+  if (mem_wants_ != 0 && !halted) dispatch(mem_wants_, mem_ready, mem_task_, Unit::Mem);
+  if (ray_wants_ != 0 && !halted) dispatch(ray_wants_, ray_ready, ray_task_, Unit::Ray);
 
-  // Launch
-  if (starts) {
-    start_kernel();
-    run_changes(true);
-  } else if (ends) {
-    run_changes(false);
-  }
   if (accepts) {
     waiting_ = true;
     waiting_launch_ = inputs.launch;
@@ -374,9 +392,10 @@ void CycleUnit::step(const UnitInputs& inputs) {
 }
 
 bool CycleUnit::quiet() const {
-  return (full_ & idle_) == 0 && want_types_ == 0 && fetching_ == 0 && mem_task_ < 0 && ray_task_ < 0 && !request_valid_ &&
-         !instruction_cache_.request_valid() && !instruction_cache_.active() && !mem_.active() && !ray_.active() &&
-         !(waiting_ && !running_) && !(running_ && active_ == 0) && planned_faults_.empty();
+  return (full_ & idle_) == 0 && (want_types_ | mem_wants_ | ray_wants_ | fetching_) == 0 && mem_task_ < 0 && ray_task_ < 0 &&
+         !request_valid_ && !instruction_cache_.request_valid() && !instruction_cache_.active() &&
+         !(instruction_cache_.missed() && miss_cycle_ >= now_) && !mem_.active() && !ray_.active() && !(waiting_ && !running_) &&
+         !(running_ && active_ == 0) && planned_faults_.empty();
 }
 
 uint64_t CycleUnit::run(const UnitInputs& inputs, uint64_t cycles) {
@@ -397,6 +416,7 @@ uint64_t CycleUnit::run(const UnitInputs& inputs, uint64_t cycles) {
         while (skip < kRing && done + skip < cycles && !planned(now_ + skip).any()) ++skip;
         if (skip == kRing) skip = cycles - done;
         now_ += skip;
+        fetch_cycle_ = std::max(fetch_cycle_, now_);
         busy_cycles_ += running_ ? skip : 0;
         done += skip;
         if (done == cycles) break;

@@ -57,11 +57,12 @@ class CycleUnit final : public ComputeUnit {
  private:
   static constexpr uint32_t kRing = 64;  // cycles ahead for which something can be planned; the deepest ALU has 32 stages
   struct Planned {
-    uint32_t retired = 0;  // warps whose instruction is done in this cycle
-    uint32_t fetches = 0;  // ... that want the instruction cache from this cycle on
-    uint32_t full = 0;     // ... whose next instruction is in the buffer from this cycle on
-    uint32_t types = 0;    // types with new wants in wants_ahead_
-    bool any() const { return (retired | fetches | full | types) != 0; }
+    uint32_t retired = 0;    // warps whose instruction is done in this cycle
+    uint32_t fetches = 0;    // ... that want the instruction cache from this cycle on
+    uint32_t full = 0;       // ... whose next instruction is in the buffer from this cycle on
+    uint32_t mem_wants = 0;  // ... that want the memory ALU from this cycle on
+    uint32_t ray_wants = 0;
+    bool any() const { return (retired | fetches | full | mem_wants | ray_wants) != 0; }
   };
   struct Slots {  // the ALU instances of a type
     uint32_t count = 1, latency = 1, depth = 1;
@@ -79,8 +80,9 @@ class CycleUnit final : public ComputeUnit {
   void present();
   void record();
   bool quiet() const;
-  void dispatch(bool mem_ready, bool ray_ready);
-  void dispatch_to_slots(Slots& slots, uint32_t& wants, uint64_t& issued);
+  void fetch(uint64_t until);
+  void dispatch_ahead();
+  void dispatch(uint32_t& wants, bool ready, int& task, Unit type);
   void issue_warp(uint32_t warp);
   void begin_memory(uint32_t warp, const Step& step);
   void record_issue(uint32_t warp, const DecodedInstruction& instruction);
@@ -110,21 +112,22 @@ class CycleUnit final : public ComputeUnit {
   std::array<Planned, kRing> ring_{};
 
   // Instruction routine. Sets of warps, a bit each.
-  uint32_t active_ = 0;    // started and not yet exited
-  uint32_t fetching_ = 0;  // stage IArb
-  uint32_t behind_ = ~0u;  // behind the warp that was granted last
+  uint32_t active_ = 0;       // started and not yet exited
+  uint32_t fetching_ = 0;     // stage IArb
+  uint32_t behind_ = ~0u;     // behind the warp that was granted last
+  uint64_t fetch_cycle_ = 0;  // up to it, not included, the fetch arbiter's grants are known
+  uint64_t miss_cycle_ = 0;   // in which the latest lookup's miss is known, if it was one
   uint32_t lookup_warp_ = 0;
   uint32_t missed_ = 0;  // wait for a line
   uint32_t full_ = 0;    // the next instruction is in the buffer
   std::array<uint32_t, kWarps> fetch_pc_{};
 
   // Data routine
-  uint32_t idle_ = ~0u;                       // no instruction under way
-  uint32_t control_ = 0;                      // the instruction under way is a control instruction
-  uint32_t want_types_ = 0;                   // types with a warp in stage Dispatch
-  std::array<uint32_t, kUnits> wants_{};  // [type] warps
-  std::array<std::array<uint32_t, kUnits>, 4> wants_ahead_{};  // [cycle % 4][type] warps that join them
-  std::array<uint8_t, kWarps> type_{};        // [warp]
+  uint32_t idle_ = ~0u;                     // no instruction under way
+  uint32_t control_ = 0;                    // the instruction under way is a control instruction
+  uint32_t want_types_ = 0;                 // pipelined types that warps want
+  std::array<uint32_t, kUnits> wants_{};    // [type] those warps
+  uint32_t mem_wants_ = 0, ray_wants_ = 0;  // warps in stage Dispatch
   std::array<uint32_t, kWarps> pc_{};
   std::array<FaultCode, kWarps> stack_fault_{};  // [warp] of the control instruction under way
   std::array<Slots, kUnits> slots_{};

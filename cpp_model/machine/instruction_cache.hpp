@@ -25,7 +25,8 @@ class InstructionCache {
     for (Set& set : sets_) set.line = {kNone, kNone};
   }
 
-  /// A lookup of the present cycle, whose result comes in the next: true for a hit. Between clock() and end_cycle() of its cycle.
+  /// A lookup, whose result comes in the next cycle: true for a hit. Between clock() and end_cycle() of its cycle; or ahead,
+  /// while not busy().
   bool lookup(uint32_t pc) {
     const uint32_t line = pc >> 3;
     Set& set = sets_[line & set_mask_];
@@ -38,19 +39,22 @@ class InstructionCache {
   }
 
   // Registers, as they stand in the present cycle.
-  bool missed() const { return missed_; }  ///< the lookup of the cycle before
+  bool missed() const { return missed_; }  ///< the latest lookup, and clock() has not been told yet
   bool refill_done() const { return done_; }
   bool request_valid() const { return fetch_ == Fetch::Request; }
   uint32_t request_address() const { return fetch_line_ << 6; }
-  /// False if clock() would change nothing without request_ready or last_beat.
-  bool active() const { return missed_ || done_ || fetch_ == Fetch::Settle; }
+  /// False if clock() would change nothing without a miss, request_ready or last_beat.
+  bool active() const { return done_ || fetch_ == Fetch::Settle; }
+  /// A line is on its way, or a lookup has missed: the next lookups' results depend on when the line comes.
+  bool busy() const { return missed_ || done_ || fetch_ != Fetch::None; }
 
-  void clock(bool request_ready, bool last_beat) {
+  /// `missed`: the latest lookup was one of the cycle before and missed.
+  void clock(bool missed, bool request_ready, bool last_beat) {
     done_ = fetch_ == Fetch::Settle;
     Fetch next = fetch_;
     switch (fetch_) {
       case Fetch::None:
-        if (missed_) {
+        if (missed) {
           Set& set = sets_[missed_line_ & set_mask_];
           next = Fetch::Request;
           fetch_line_ = missed_line_;
@@ -73,7 +77,7 @@ class InstructionCache {
         break;
     }
     fetch_ = next;
-    missed_ = false;
+    if (missed) missed_ = false;
   }
   /// The end of a cycle with a clock(): a line that has come is valid from the next cycle on, and one that gives way is not.
   void end_cycle() {
@@ -96,7 +100,7 @@ class InstructionCache {
   uint32_t fetch_line_ = 0, missed_line_ = 0;
   uint8_t fetch_way_ = 0;
   bool done_ = false, changes_ = false;
-  bool missed_ = false;  // the lookup of the cycle before
+  bool missed_ = false;
 };
 
 }  // namespace raypool
