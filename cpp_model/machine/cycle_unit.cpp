@@ -50,6 +50,7 @@ void CycleUnit::reset(uint32_t program_length, uint32_t memory_limit) {
     slots.unready = 0;
   }
   mem_task_ = ray_task_ = -1;
+  attention_ = faulty_ = false;
   request_valid_ = waiting_ = running_ = false;
   package_words_ = package_beats_ = 0;
   fault_ = raised_ = Fault{};
@@ -151,7 +152,10 @@ void CycleUnit::issue_warp(uint32_t warp) {
       stack_fault_[warp] = faults ? step.fault.code : FaultCode::None;
     }
     if (tracing_) record_result(warp, step);
-    if (faults) core_.forget_fault();
+    if (faults) {
+      core_.forget_fault();
+      faulty_ = attention_ = true;
+    }
   }
   ++instructions_;
   thread_instructions_ += popcount(mask);
@@ -180,6 +184,7 @@ void CycleUnit::retire_control(uint32_t warps) {
       raise({stack_fault_[warp], warp, pc_[warp]});
     } else if (!core_.warp_running(warp)) {
       active_ &= ~(1u << warp);
+      attention_ = true;
     } else {
       plan_fetch(warp, now_ + 1, false);
     }
@@ -212,6 +217,7 @@ void CycleUnit::fetch(uint64_t until) {
       ++hits_;
     } else {
       miss_cycle_ = fetch_cycle_ + 1;
+      attention_ = true;
       until = std::min(until, fetch_cycle_);
     }
   }
@@ -223,6 +229,7 @@ void CycleUnit::plan_fetch(uint32_t warp, uint64_t cycle, bool past_current) {
   fetch_pc_[warp] = fetch.pc;
   if (fetch.pc >= program_length_) {
     planned_faults_.push_back({cycle + fetch.pops, {FaultCode::PcOutsideProgram, warp, fetch.pc}});
+    faulty_ = attention_ = true;
   } else {
     planned(cycle + fetch.pops + 1).fetches |= 1u << warp;
   }
@@ -255,6 +262,7 @@ void CycleUnit::take_package_beat(const Beat& beat) {
 // Of several faults of warps in a cycle the lowest warp's counts.
 void CycleUnit::raise(const Fault& fault) {
   if (raised_.code == FaultCode::None || fault.warp < raised_.warp) raised_ = fault;
+  faulty_ = attention_ = true;
 }
 
 // The first fault stays; of several in one cycle an ALU's wins.
@@ -289,16 +297,39 @@ void CycleUnit::run_changes(bool running) {
 
 // ---- One cycle
 
+// Most cycles have nothing to do with memory, launches or faults.
 void CycleUnit::step(const UnitInputs& inputs) {
-  // Everything is worked out from the registers of this cycle; where a block changes its own, what others need is taken first.
+  if (attention_ || inputs.memory_response_valid || inputs.launch_valid) return step_all(inputs);
   Planned& slot = planned(now_);
-  const uint32_t planned_retired = slot.retired;
   full_ |= slot.full;
   mem_wants_ |= slot.mem_wants;
   ray_wants_ |= slot.ray_wants;
+  const uint32_t retired = slot.retired | ray_.done();
+  slot.retired = slot.full = slot.mem_wants = slot.ray_wants = 0;
+  busy_cycles_ += running_;
+  advance_warps(retired);
+  fetch(now_ + kAhead);
+  if (want_types_ != 0) dispatch_ahead();
+  const bool ray_ready = ray_.ready(ray_task_);
+  advance_rays(inputs, ImportKind::None);
+  if (ray_wants_ != 0) dispatch(ray_wants_, ray_ready, ray_task_, Unit::Ray);
+  if (mem_wants_ != 0) {
+    dispatch(mem_wants_, true, mem_task_, Unit::Mem);
+    attention_ = true;
+  }
+  if (faulty_) settle_faults(FaultCode::None, 0, false, 0);
+  ++now_;
+}
+
+void CycleUnit::step_all(const UnitInputs& inputs) {
+  // Everything is worked out from the registers of this cycle; where a block changes its own, what others need is taken first.
+  Planned& slot = planned(now_);
+  full_ |= slot.full;
+  mem_wants_ |= slot.mem_wants;
+  ray_wants_ |= slot.ray_wants;
+  const uint32_t retired = slot.retired | mem_.done() | ray_.done();
   slot.retired = slot.full = slot.mem_wants = slot.ray_wants = 0;
   const bool halted = fault_.code != FaultCode::None;
-  const uint32_t retired = planned_retired | mem_.done() | ray_.done();
   const bool mem_ready = mem_.ready();
   const bool ray_ready = ray_.ready(ray_task_);
   const FaultCode mem_fault = mem_.fault();
@@ -306,8 +337,6 @@ void CycleUnit::step(const UnitInputs& inputs) {
   const bool ray_fault = ray_.fault();
   const uint32_t ray_fault_warp = ray_.fault_warp();
   const bool accepts = inputs.launch_valid && !waiting_ && !ray_.import_active();
-  const bool starts = waiting_ && !running_;
-  const bool ends = running_ && active_ == 0;
   busy_cycles_ += running_;
 
   // Memory arbiter.
@@ -328,19 +357,14 @@ void CycleUnit::step(const UnitInputs& inputs) {
   const bool data_response = inputs.memory_response_valid && !of_instruction;
 
   // Begin and end of a kernel.
-  if (starts) {
+  if (waiting_ && !running_) {
     start_kernel();
     run_changes(true);
-  } else if (ends) {
+  } else if (running_ && active_ == 0) {
     run_changes(false);
   }
 
-  // Write-back and the next instructions. Who retires in this cycle may issue in it.
-  idle_ |= retired;
-  if ((retired & control_) != 0) retire_control(retired & control_);
-  if (!halted) {
-    for (uint32_t warps = full_ & idle_; warps != 0; warps &= warps - 1) issue_warp(lowest(warps));
-  }
+  advance_warps(retired);
 
   // Instruction cache and fetch arbiter. What has missed asks again when a line has come. Without a line on its way the cache's
   // answers are known ahead.
@@ -363,32 +387,41 @@ void CycleUnit::step(const UnitInputs& inputs) {
   if (!halted) fetch(instruction_cache_.busy() ? now_ : now_ + kAhead);
   if (want_types_ != 0) dispatch_ahead();
 
-  // Mem and Ray.
   if (mem_task_ >= 0 || data_response || mem_.active()) {
     mem_.clock({mem_task_, data_response, inputs.memory_response.id, inputs.memory_response.beat, data_ready});
     mem_task_ = -1;
   }
-  const ImportKind import = accepts ? inputs.launch.import : ImportKind::None;
-  if (inputs.import_beat_valid) take_package_beat(inputs.import_beat);
-  if (ray_task_ >= 0 || inputs.import_beat_valid || import != ImportKind::None || ray_.active()) {
-    const int swapped = ray_.clock({ray_task_, import, inputs.launch.threads, inputs.import_request_ready,
-                                    inputs.import_beat_valid, inputs.export_ready, inputs.frame_ready});
-    ray_task_ = -1;
-    if (swapped >= 0) swap(static_cast<uint32_t>(swapped));
-  }
-
+  advance_rays(inputs, accepts ? inputs.launch.import : ImportKind::None);
   if (mem_wants_ != 0 && !halted) dispatch(mem_wants_, mem_ready, mem_task_, Unit::Mem);
   if (ray_wants_ != 0 && !halted) dispatch(ray_wants_, ray_ready, ray_task_, Unit::Ray);
 
   if (accepts) {
     waiting_ = true;
     waiting_launch_ = inputs.launch;
-    if (import != ImportKind::None) core_.expect_import(inputs.launch.threads);
+    if (inputs.launch.import != ImportKind::None) core_.expect_import(inputs.launch.threads);
   }
-  if (mem_fault != FaultCode::None || ray_fault || raised_.code != FaultCode::None || !planned_faults_.empty()) {
-    settle_faults(mem_fault, mem_fault_warp, ray_fault, ray_fault_warp);
-  }
+  if (faulty_) settle_faults(mem_fault, mem_fault_warp, ray_fault, ray_fault_warp);
+  attention_ = faulty_ || request_valid_ || instruction_cache_.busy() || mem_.active() || mem_task_ >= 0 ||
+               (waiting_ && !running_) || (running_ && active_ == 0);
   ++now_;
+}
+
+// Write-back and the next instructions. Who retires in this cycle may issue in it.
+void CycleUnit::advance_warps(uint32_t retired) {
+  idle_ |= retired;
+  if ((retired & control_) != 0) retire_control(retired & control_);
+  uint32_t warps = full_ & idle_;
+  if (warps == 0 || fault_.code != FaultCode::None) return;
+  for (; warps != 0; warps &= warps - 1) issue_warp(lowest(warps));
+}
+
+void CycleUnit::advance_rays(const UnitInputs& inputs, ImportKind import) {
+  if (inputs.import_beat_valid) take_package_beat(inputs.import_beat);
+  if (ray_task_ < 0 && !inputs.import_beat_valid && import == ImportKind::None && !ray_.active()) return;
+  const int swapped = ray_.clock({ray_task_, import, inputs.launch.threads, inputs.import_request_ready, inputs.import_beat_valid,
+                                  inputs.export_ready, inputs.frame_ready});
+  ray_task_ = -1;
+  if (swapped >= 0) swap(static_cast<uint32_t>(swapped));
 }
 
 bool CycleUnit::quiet() const {

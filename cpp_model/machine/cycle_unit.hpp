@@ -76,6 +76,9 @@ class CycleUnit final : public ComputeUnit {
 
   Planned& planned(uint64_t cycle) { return ring_[cycle % kRing]; }
   void step(const UnitInputs& inputs);
+  void step_all(const UnitInputs& inputs);
+  void advance_warps(uint32_t retired);
+  void advance_rays(const UnitInputs& inputs, ImportKind import);
   uint32_t signals() const;
   void present();
   void record();
@@ -109,6 +112,8 @@ class CycleUnit final : public ComputeUnit {
   InstructionCache instruction_cache_;
 
   uint64_t now_ = 0;
+  bool attention_ = false;  // the next cycle has more to do than warps, pipelined ALUs and the ray ALU
+  bool faulty_ = false;     // an instruction has faulted since the reset
   std::array<Planned, kRing> ring_{};
 
   // Instruction routine. Sets of warps, a bit each.

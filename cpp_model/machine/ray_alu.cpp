@@ -49,11 +49,29 @@ void RayAlu::reset() {
 }
 
 int RayAlu::clock(const Inputs& inputs) {
-  unready_ += !ready(inputs.arriving);
+  // The engines see the roles of this cycle, so a swap comes after them.
+  bool read_granted = slice_.valid && fill_ + landing_ != 3 && !(write_.valid && write_.set == slice_.set);
+  int swap = -1;
+  if (inputs.arriving >= 0 || hold_ || result_.valid || done_ != 0 || fault_ || can() != 0)
+    swap = clock_kernel(inputs.arriving, read_granted);
+  if (write_.valid || inputs.import_beat_valid || import_active_ || inputs.import_start != ImportKind::None) clock_import(inputs);
+  if (slice_.valid || landing_ || fill_ != 0 || next_.valid || first_ != end_) clock_export(inputs, read_granted);
+  if (inputs.arriving >= 0) {
+    const Task::Kind kind = tasks_[static_cast<size_t>(inputs.arriving)].kind;
+    parked_input_ |= uint32_t{kind == Task::Kind::Input} << inputs.arriving;
+    parked_output_ |= uint32_t{kind == Task::Kind::Output} << inputs.arriving;
+  }
+  if (swap >= 0) execute_swap(static_cast<uint32_t>(swap));
+  active_ = (fill_ | done_ | can() | (first_ ^ end_)) != 0 || write_.valid || slice_.valid || landing_ || result_.valid ||
+            hold_ || next_.valid || fault_ || import_moves();
+  return swap;
+}
 
-  // Arrival, and the port of the access' set.
-  const Task* task = inputs.arriving >= 0 ? &tasks_[static_cast<size_t>(inputs.arriving)] : nullptr;
-  const uint32_t arriving = static_cast<uint32_t>(std::max(inputs.arriving, 0));
+// Tasks: accesses, one step a cycle, and the choice of a swap. An access may take the port of the export's set.
+int RayAlu::clock_kernel(int arriving_warp, bool& read_granted) {
+  unready_ += !ready(arriving_warp);
+  const Task* task = arriving_warp >= 0 ? &tasks_[static_cast<size_t>(arriving_warp)] : nullptr;
+  const uint32_t arriving = static_cast<uint32_t>(std::max(arriving_warp, 0));
   const bool arrives_access = task != nullptr && (task->kind == Task::Kind::Read || task->kind == Task::Kind::Write);
   if (arrives_access) {
     hold_warp_ = arriving;
@@ -64,9 +82,7 @@ int RayAlu::clock(const Inputs& inputs) {
   const bool access_granted = access && !(write_.valid && write_.set == hold_set_);
   const bool access_last = step_ == last_step_;
   const bool result_end = result_.valid && result_.last;
-  const bool read = slice_.valid && fill_ + landing_ != 3;
-  const bool read_granted = read && !(write_.valid && write_.set == slice_.set) && !(access && hold_set_ == slice_.set);
-
+  if (access && hold_set_ == slice_.set) read_granted = false;
   const uint32_t ready_swaps = can();
   const int swap = ready_swaps != 0 && !result_end ? static_cast<int>(lowest(ready_swaps)) : -1;
 
@@ -84,15 +100,6 @@ int RayAlu::clock(const Inputs& inputs) {
     hold_ = !(access_granted && access_last);
     if (access_granted) step_ = access_last ? 0 : step_ + 1;
   }
-
-  // The engines see the roles of this cycle, so the swap comes after them.
-  clock_import(inputs);
-  clock_export(inputs, read_granted);
-  if (task != nullptr && task->kind == Task::Kind::Input) parked_input_ |= 1u << arriving;
-  if (task != nullptr && task->kind == Task::Kind::Output) parked_output_ |= 1u << arriving;
-  if (swap >= 0) execute_swap(static_cast<uint32_t>(swap));
-  active_ = hold_ || result_.valid || done_ != 0 || fault_ || write_.valid || slice_.valid || landing_ || fill_ != 0 ||
-            next_.valid || first_ != end_ || can() != 0 || import_moves();
   return swap;
 }
 

@@ -101,6 +101,7 @@ class RayAlu {
     return import_active_ &&
            (import_request_ || (requested_ != threads_ && outstanding_ != 2 && (full_ >> (requested_ >> lane_bits_) & 1) == 0));
   }
+  int clock_kernel(int arriving_warp, bool& read_granted);
   void execute_swap(uint32_t warp);
   void clock_import(const Inputs& inputs);
   void clock_export(const Inputs& inputs, bool granted);
