@@ -44,12 +44,12 @@ WAVES_FLAG := $(if $(filter-out 0,$(WAVES)),--waves)
 UNIT := scripts/unit.sh "$$CONFIG" $(WAVES_FLAG)
 UNIT_OF_ENGINE := $(if $(filter rtl lockstep,$(ENGINE)),$(UNIT),true)
 
-.PHONY: help sim run cosim configurations mutants unit test lint format bench clean setup-% program configured-%
+.PHONY: help sim run cosim configurations mutants unit test lint format bench clean setup-% program configured-% numerics-long
 
 help: ## this list
 	@echo 'raypool: a ray-tracing GPU to render on, measure, verify and synthesise'
 	@echo
-	@sed -nE 's/^([a-z]+):.*## (.*)/  make \1\t\2/p' $(firstword $(MAKEFILE_LIST)) | expand -t 16
+	@sed -nE 's/^([a-z-]+):.*## (.*)/  make \1\t\2/p' $(firstword $(MAKEFILE_LIST)) | expand -t 16
 	@echo
 	@echo 'variables of make sim                                                    default'
 	@echo '  SCENE=cornell|room|FILE.obj   what is drawn                               $(SCENE)'
@@ -94,6 +94,11 @@ unit: setup-sim program ## Verilate CUS compute units of CONFIG (WAVES=1: with w
 test: setup-sim setup-test configured-ON ## every test
 	@$(LOCKED) cmake --build $(BUILD)
 	@ctest --test-dir $(BUILD) --output-on-failure -j "$$(nproc)"
+
+numerics-long: setup-sim setup-test configured-ON ## arithmetic against its oracles: every unary input, 10^8 pairs; an hour
+	@$(LOCKED) cmake --build $(BUILD) --target numerics_long flt_alu_test slw_alu_test
+	@$(BUILD)/tb/numerics_long
+	@for bench in flt_alu_test slw_alu_test; do $(BUILD)/tb/$$bench --gtest_filter='*Long*'; done
 
 lint: setup-sim setup-lint configured-ON ## Verilog in three tools, C++ layout and checks
 	@scripts/lint.sh

@@ -16,6 +16,7 @@ namespace raypool::arith {
 struct Mode {
   Subnormals subnormals = Subnormals::Ieee;
   SlowUnit slow_unit = SlowUnit::Exact;
+  bool fused = false;  ///< the machine has a fused multiply-add; muladd() uses it
 };
 
 inline constexpr uint32_t kQuietNan = 0x7fc00000u;
@@ -57,6 +58,18 @@ inline uint32_t flush_tiny(uint32_t rounded, double exact) {
   if ((rounded & kMagnitude) == kSmallestNormal && std::fabs(exact) < kTinyLimit) return rounded & kSign;
   return flushed(rounded);
 }
+/// The same for x * y + z, whose exact value a double may not hold.
+inline uint32_t flush_tiny_sum(uint32_t rounded, float x, float y, float z) {
+  if ((rounded & kMagnitude) != kSmallestNormal) return flushed(rounded);
+  // Knuth's two-sum: product + z = sum + rest exactly.
+  const double product = double{x} * double{y}, addend = z;
+  const double sum = product + addend;
+  const double virtual_addend = sum - product;
+  const double rest = (product - (sum - virtual_addend)) + (addend - virtual_addend);
+  const double beyond = rounded & kSign ? -rest : rest;
+  const double magnitude = std::fabs(sum);
+  return magnitude < kTinyLimit || (magnitude == kTinyLimit && beyond < 0) ? rounded & kSign : rounded;
+}
 
 }  // namespace detail
 
@@ -74,6 +87,19 @@ inline uint32_t mul(uint32_t a, uint32_t b, Mode mode) {
   const float x = detail::to_float(detail::operand(a, mode)), y = detail::to_float(detail::operand(b, mode));
   const uint32_t product = detail::canonical(x * y);
   return detail::flushes(mode) ? detail::flush_tiny(product, double{x} * double{y}) : product;  // the double product is exact
+}
+
+/// a * b + c, rounded once.
+inline uint32_t fma(uint32_t a, uint32_t b, uint32_t c, Mode mode) {
+  const float x = detail::to_float(detail::operand(a, mode)), y = detail::to_float(detail::operand(b, mode));
+  const float z = detail::to_float(detail::operand(c, mode));
+  const uint32_t rounded = detail::canonical(std::fma(x, y, z));
+  return detail::flushes(mode) ? detail::flush_tiny_sum(rounded, x, y, z) : rounded;
+}
+
+/// a * b + c as the machine of this mode computes it: rounded once if it can, else twice.
+inline uint32_t muladd(uint32_t a, uint32_t b, uint32_t c, Mode mode) {
+  return mode.fused ? fma(a, b, c, mode) : add(mul(a, b, mode), c, mode);
 }
 
 inline uint32_t min(uint32_t a, uint32_t b, Mode mode) {

@@ -2,6 +2,7 @@
 // and the edge of the subnormal numbers. The same seed gives the same operands everywhere.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <random>
@@ -21,6 +22,18 @@ inline std::vector<uint32_t> special_operands() {
         0x7f000001u, 0x7f7ffffeu, 0x7f7fffffu, 0x7f800000u, 0x7f800001u, 0x7fbfffffu, 0x7fc00000u, 0x7fffffffu}) {
     values.push_back(magnitude);
     values.push_back(magnitude | 0x80000000u);
+  }
+  return values;
+}
+
+/// The special values and the two neighbours of each.
+inline std::vector<uint32_t> boundary_operands() {
+  std::vector<uint32_t> values;
+  for (const uint32_t special : special_operands()) {
+    for (const uint32_t step : {0u, 1u, 0xffffffffu}) {
+      const uint32_t value = special + step;
+      if (std::find(values.begin(), values.end(), value) == values.end()) values.push_back(value);
+    }
   }
   return values;
 }
@@ -72,6 +85,38 @@ class OperandSource {
         break;
     }
     return {a, b};
+  }
+
+  /// An addend for a * b: anything, special, cancelling all or nearly all of the product, at every alignment to it, or at the
+  /// edge of the subnormal numbers.
+  uint32_t third(uint32_t a, uint32_t b) {
+    float x, y;
+    std::memcpy(&x, &a, 4);
+    std::memcpy(&y, &b, 4);
+    const float rounded = x * y;
+    uint32_t product;
+    std::memcpy(&product, &rounded, 4);
+    const uint32_t c = bits();
+    switch (random_() % 9) {
+      case 0:
+        return c;
+      case 1:
+        return specials_[random_() % specials_.size()];
+      case 2:  // the rounded product itself: what is left is its rounding error
+        return product ^ 0x80000000u;
+      case 3:
+        return (product ^ 0x80000000u) + static_cast<uint32_t>(range(-3, 3));
+      case 4:  // cancellation, small shifts
+        return exponent((c & 0x7fffffffu) | (~product & 0x80000000u), field(product) + range(-2, 2));
+      case 5:  // every alignment
+        return exponent(c, field(product) + range(-51, 30));
+      case 6:  // halfway sums
+        return few_bits(exponent(c, field(product) + range(-51, 30)));
+      case 7:  // results at the edge of the subnormal numbers
+        return exponent(c, range(0, 3));
+      default:  // few bits below everything
+        return (c & 0x807fffffu) >> range(0, 22) | (c & 0x80000000u);
+    }
   }
 
  private:

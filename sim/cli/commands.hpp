@@ -72,6 +72,9 @@ int disasm_command(const std::string& path, const std::string& out);
 /// `raypool kernels [NAME]`: counts by ALU, or the listing of one kernel.
 int kernels_command(const std::string& name);
 
+/// `raypool errors`: measured errors of the slow unit. Exit code 3 if one breaks its promise.
+int errors_command(uint32_t grid);
+
 /// `raypool scene` and `raypool hits`
 struct SceneCommandOptions {
   std::string scene = "room";

@@ -10,7 +10,8 @@ function(arith_bench name top)
   verilate(${name} SOURCES ${arith_unit}/${top}.v ${ARGN} TOP_MODULE ${top} PREFIX V${top} INCLUDE_DIRS ${arith_rtl}
     OPT_SLOW -w OPT_FAST -O2 -w OPT_GLOBAL -O1 -w
     VERILATOR_ARGS --default-language 1364-2005 -O3 --x-assign fast --x-initial fast)
-  gtest_discover_tests(${name} WORKING_DIRECTORY ${CMAKE_SOURCE_DIR} DISCOVERY_TIMEOUT 60)
+  # Tests named Long run in `make numerics-long`.
+  gtest_discover_tests(${name} WORKING_DIRECTORY ${CMAKE_SOURCE_DIR} DISCOVERY_TIMEOUT 60 TEST_FILTER "-*Long*")
 endfunction()
 
 set(arith_flt_sources ${arith_rtl}/flt_alu.v ${arith_rtl}/float_lane.v ${arith_rtl}/float_adder.v ${arith_rtl}/float_multiplier.v

@@ -1,4 +1,6 @@
 // rtl/flt_alu.v in both subnormal modes against the model of arithmetic.
+#include <cstdio>
+
 #include "Vflt_units.h"
 #include "alu_bench.hpp"
 #include "isa/isa.hpp"
@@ -61,6 +63,18 @@ TEST(FltAlu, RandomPairsAgreeWithTheModel) {
   }
   bench.finish();
   EXPECT_GE(bench.compared(), 3000000u);
+}
+
+// Names with Long: in `make numerics-long` only.
+TEST(FltAluLong, ManyRandomPairsAgreeWithTheModel) {
+  AluBench<Vflt_units> bench(units(), model, kSeed + 1);
+  arith::OperandSource source(kSeed + 1);
+  for (int i = 0; i < 40000000; ++i) {
+    const auto [a, b] = source.next();
+    bench.add(i / kBenchLanes % 3, a, b);
+  }
+  bench.finish();
+  std::printf("%llu results compared\n", static_cast<unsigned long long>(bench.compared()));
 }
 
 }  // namespace

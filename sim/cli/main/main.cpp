@@ -142,6 +142,13 @@ int run(int argc, char** argv) {
   kernels_app->add_option("name", kernel, "kernel to list");
   kernels_app->callback([&] { code = kernels_command(kernel); });
 
+  uint32_t grid = 4096;
+  CLI::App* errors_app = app.add_subcommand("errors", "measure the errors of division and roots of every slow unit, in ulp");
+  errors_app->add_option("--grid", grid, "fdiv: GRID x GRID pairs of mantissas, 2 to 32768")
+      ->check(CLI::Range(2u, 32768u))
+      ->capture_default_str();
+  errors_app->callback([&] { code = errors_command(grid); });
+
   SceneCommandOptions scene;
   CLI::App* scene_app = app.add_subcommand("scene", "what a scene holds: triangles, materials, box, camera, light");
   CLI::App* hits_app = app.add_subcommand("hits", "compare our traversal's hits on a frame with Embree's");

@@ -1,0 +1,217 @@
+// Independent oracles for tests of arithmetic: the host's SSE unit (and its fused multiply-add), with MXCSR set to the mode, and
+// MPFR at 24 bits where the host has no such operation. None shares code with the model.
+#pragma once
+
+#include <immintrin.h>
+#include <mpfr.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <string_view>
+#include <vector>
+
+#include "arith/arith.hpp"
+
+namespace raypool::arith {
+
+enum class Operation : uint8_t { Add, Sub, Mul, Fma, Min, Max, ToInt, FromInt, Div, Sqrt, Rsqrt, Rcp, Equal, Less, LessEqual };
+inline constexpr int kOperations = 15;
+inline constexpr const char* kOperationNames[kOperations] = {"fadd", "fsub",  "fmul",   "ffma", "fmin", "fmax", "f2i", "i2f",
+                                                             "fdiv", "fsqrt", "frsqrt", "frcp", "feq",  "flt",  "fle"};
+
+/// What the model gives; a truth value as 0 or 1.
+inline uint32_t model(Operation operation, uint32_t a, uint32_t b, uint32_t c, Mode mode) {
+  switch (operation) {
+    case Operation::Add:
+      return add(a, b, mode);
+    case Operation::Sub:
+      return sub(a, b, mode);
+    case Operation::Mul:
+      return mul(a, b, mode);
+    case Operation::Fma:
+      return fma(a, b, c, mode);
+    case Operation::Min:
+      return min(a, b, mode);
+    case Operation::Max:
+      return max(a, b, mode);
+    case Operation::ToInt:
+      return to_int(a, mode);
+    case Operation::FromInt:
+      return from_int(a, mode);
+    case Operation::Div:
+      return div(a, b, mode);
+    case Operation::Sqrt:
+      return sqrt(a, mode);
+    case Operation::Rsqrt:
+      return rsqrt(a, mode);
+    case Operation::Rcp:
+      return rcp(a, mode);
+    case Operation::Equal:
+      return equal(a, b, mode);
+    case Operation::Less:
+      return less(a, b, mode);
+    case Operation::LessEqual:
+      return less_equal(a, b, mode);
+  }
+  return 0;
+}
+
+/// Operands of a block of operations; unused ones may hold anything.
+struct OperandBlock {
+  std::vector<uint32_t> a, b, c;
+  size_t size() const { return a.size(); }
+  void clear() { a.clear(), b.clear(), c.clear(); }
+  void push(uint32_t first, uint32_t second, uint32_t third) { a.push_back(first), b.push_back(second), c.push_back(third); }
+};
+
+/// False if the host has no fused multiply-add: MPFR then judges all of ffma.
+inline bool host_has_fma() { return __builtin_cpu_supports("fma") != 0; }
+
+namespace oracle {
+
+/// MXCSR with flush-to-zero and denormals-are-zero on or off, as long as it lives.
+class HostMode {
+ public:
+  explicit HostMode(bool flush) : before_(_mm_getcsr()) { _mm_setcsr(0x1f80u | (flush ? 0x8040u : 0u)); }
+  ~HostMode() { _mm_setcsr(before_); }
+  HostMode(const HostMode&) = delete;
+  HostMode& operator=(const HostMode&) = delete;
+
+ private:
+  unsigned before_;
+};
+
+// Loads and stores of volatile keep the operation between the two changes of MXCSR.
+inline __m128 load(uint32_t bits) {
+  volatile uint32_t held = bits;
+  return _mm_castsi128_ps(_mm_cvtsi32_si128(static_cast<int>(held)));
+}
+inline uint32_t canonical_bits(__m128 value) {
+  volatile uint32_t bits = static_cast<uint32_t>(_mm_cvtsi128_si32(_mm_castps_si128(value)));
+  const uint32_t held = bits;
+  return (held & 0x7fffffffu) > 0x7f800000u ? 0x7fc00000u : held;
+}
+inline bool unordered(uint32_t a, uint32_t b) { return (a & 0x7fffffffu) > 0x7f800000u || (b & 0x7fffffffu) > 0x7f800000u; }
+
+__attribute__((noinline, target("fma"))) inline void fuse(const OperandBlock& in, std::vector<uint32_t>& out) {
+  for (size_t i = 0; i < in.size(); ++i) out[i] = canonical_bits(_mm_fmadd_ss(load(in.a[i]), load(in.b[i]), load(in.c[i])));
+}
+
+template <typename Function>
+__attribute__((noinline)) void each(const OperandBlock& in, std::vector<uint32_t>& out, Function function) {
+  for (size_t i = 0; i < in.size(); ++i) out[i] = function(in.a[i], in.b[i]);
+}
+
+/// Numbers of 24 bits in MPFR with single precision's exponents.
+class Wide {
+ public:
+  Wide() {
+    mpfr_inits2(24, a_, b_, c_, result_, static_cast<mpfr_ptr>(nullptr));
+    mpfr_set_emin(-148);
+    mpfr_set_emax(128);
+  }
+  ~Wide() { mpfr_clears(a_, b_, c_, result_, static_cast<mpfr_ptr>(nullptr)); }
+  Wide(const Wide&) = delete;
+  Wide& operator=(const Wide&) = delete;
+
+  uint32_t operator()(Operation operation, uint32_t a, uint32_t b, uint32_t c, bool flush) {
+    set(a_, a, flush), set(b_, b, flush), set(c_, c, flush);
+    int inexact = 0;
+    switch (operation) {
+      case Operation::Min:
+        mpfr_min(result_, a_, b_, MPFR_RNDN);
+        break;
+      case Operation::Max:
+        mpfr_max(result_, a_, b_, MPFR_RNDN);
+        break;
+      case Operation::Rsqrt:
+        // MPFR gives +infinity for -0; IEEE 754-2008, 9.2.1, gives the infinity of the zero's sign.
+        inexact = mpfr_rec_sqrt(result_, a_, MPFR_RNDN);
+        if (mpfr_zero_p(a_)) mpfr_setsign(result_, result_, mpfr_signbit(a_), MPFR_RNDN);
+        break;
+      default:
+        if (flush) mpfr_set_emin(-1000);  // tiny is judged at 24 bits, before the exponent's end is looked at
+        inexact = mpfr_fma(result_, a_, b_, c_, MPFR_RNDN);
+        mpfr_set_emin(-148);
+        break;
+    }
+    if (!flush) mpfr_subnormalize(result_, inexact, MPFR_RNDN);
+    if (mpfr_nan_p(result_)) return 0x7fc00000u;
+    const bool tiny = flush && mpfr_regular_p(result_) && mpfr_get_exp(result_) < -125;
+    const float value = tiny ? (mpfr_signbit(result_) ? -0.0f : 0.0f) : mpfr_get_flt(result_, MPFR_RNDN);
+    uint32_t bits;
+    std::memcpy(&bits, &value, 4);
+    return bits;
+  }
+
+ private:
+  static void set(mpfr_t& wide, uint32_t bits, bool flush) {
+    if (flush && (bits & 0x7f800000u) == 0) bits &= 0x80000000u;
+    float value;
+    std::memcpy(&value, &bits, 4);
+    mpfr_set_flt(wide, value, MPFR_RNDN);
+  }
+
+  mpfr_t a_, b_, c_, result_;
+};
+
+inline void wide(Operation operation, const OperandBlock& in, bool flush, std::vector<uint32_t>& out) {
+  static thread_local Wide numbers;
+  for (size_t i = 0; i < in.size(); ++i) out[i] = numbers(operation, in.a[i], in.b[i], in.c[i], flush);
+}
+
+/// The correct results of a block. `with_mpfr`: ffma by MPFR, though the host has it.
+inline void results(Operation operation, const OperandBlock& in, bool flush, bool with_mpfr, std::vector<uint32_t>& out) {
+  out.resize(in.size());
+  const HostMode mode(flush);
+  switch (operation) {
+    case Operation::Add:
+      return each(in, out, [](uint32_t a, uint32_t b) { return canonical_bits(_mm_add_ss(load(a), load(b))); });
+    case Operation::Sub:
+      return each(in, out, [](uint32_t a, uint32_t b) { return canonical_bits(_mm_sub_ss(load(a), load(b))); });
+    case Operation::Mul:
+      return each(in, out, [](uint32_t a, uint32_t b) { return canonical_bits(_mm_mul_ss(load(a), load(b))); });
+    case Operation::Div:
+      return each(in, out, [](uint32_t a, uint32_t b) { return canonical_bits(_mm_div_ss(load(a), load(b))); });
+    case Operation::Rcp:
+      return each(in, out, [](uint32_t a, uint32_t) { return canonical_bits(_mm_div_ss(load(0x3f800000u), load(a))); });
+    case Operation::Sqrt:
+      return each(in, out, [](uint32_t a, uint32_t) { return canonical_bits(_mm_sqrt_ss(load(a))); });
+    case Operation::FromInt:
+      return each(in, out,
+                  [](uint32_t a, uint32_t) { return canonical_bits(_mm_cvtsi32_ss(_mm_setzero_ps(), static_cast<int>(a))); });
+    case Operation::ToInt:
+      // The host's 64-bit conversion, saturated; it gives its most negative number for whatever it cannot hold.
+      return each(in, out, [](uint32_t a, uint32_t) {
+        if (unordered(a, a)) return uint32_t{0};
+        const int64_t whole = _mm_cvttss_si64(load(a));
+        if (whole == INT64_MIN) return a >> 31 ? 0x80000000u : 0x7fffffffu;
+        return static_cast<uint32_t>(whole < INT32_MIN ? INT32_MIN : whole > INT32_MAX ? INT32_MAX : whole);
+      });
+    case Operation::Equal:
+      return each(in, out, [](uint32_t a, uint32_t b) {
+        return static_cast<uint32_t>(_mm_comieq_ss(load(a), load(b)) != 0 && !unordered(a, b));
+      });
+    case Operation::Less:
+      return each(in, out, [](uint32_t a, uint32_t b) {
+        return static_cast<uint32_t>(_mm_comilt_ss(load(a), load(b)) != 0 && !unordered(a, b));
+      });
+    case Operation::LessEqual:
+      return each(in, out, [](uint32_t a, uint32_t b) {
+        return static_cast<uint32_t>(_mm_comile_ss(load(a), load(b)) != 0 && !unordered(a, b));
+      });
+    case Operation::Fma:
+      if (host_has_fma() && !with_mpfr) return fuse(in, out);
+      break;
+    case Operation::Min:
+    case Operation::Max:
+    case Operation::Rsqrt:
+      break;
+  }
+  const HostMode plain(false);
+  wide(operation, in, flush, out);
+}
+
+}  // namespace oracle
+}  // namespace raypool::arith

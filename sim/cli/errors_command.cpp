@@ -1,0 +1,18 @@
+// `raypool errors`
+#include <cstdio>
+
+#include "arith/error_table.hpp"
+#include "cli/commands.hpp"
+
+namespace raypool {
+
+int errors_command(uint32_t grid) {
+  const std::vector<arith::ErrorRow> rows = arith::error_table(grid);
+  std::fputs(arith::to_text(rows).c_str(), stdout);
+  for (const arith::ErrorRow& row : rows) {
+    if (!arith::keeps_promise(row)) return 3;
+  }
+  return 0;
+}
+
+}  // namespace raypool
