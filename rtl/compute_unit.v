@@ -25,6 +25,7 @@ module compute_unit #(
   parameter integer DCACHE_MSHRS = 4,
   parameter integer SUBNORMALS = 0,
   parameter integer SLOW_UNIT = 0,
+  parameter integer FMA = 0,
   parameter integer WARP_BITS = (WARPS > 1) ? $clog2(WARPS) : 1
 ) (
   input  wire                      clk_i,
@@ -147,12 +148,13 @@ module compute_unit #(
   // data routine
   wire [WARPS-1:0] want, grant;
   wire [WARPS*LANES-1:0] px, pb;
-  wire [WARPS*DATA-1:0] a, b;
+  wire [WARPS*DATA-1:0] a, b, c;
   wire [SLOTS-1:0] ready, slot_grant, task_valid, done_valid;
   wire [SLOTS*WARP_BITS-1:0] task_warp, done_warp;
   wire [SLOTS*5-1:0] task_op, task_x;
   wire [SLOTS*LANES-1:0] task_mask, task_px, task_pb, done_pred;
   wire [SLOTS*DATA-1:0] task_a, task_b, done_data;
+  wire [SLOTS*DATA-1:0] task_c;      // of Flt slots only
   wire [SLOTS*32-1:0] task_imm;
   wire [UNITS*6-1:0] waiting;
   // memory
@@ -197,14 +199,14 @@ module compute_unit #(
 
   generate
     for (w = 0; w < WARPS; w = w + 1) begin : gen_warp
-      warp #(.INDEX(w), .LANES(LANES), .WARP_BITS(WARP_BITS), .STACK_DEPTH(STACK_DEPTH), .SLOTS(SLOTS)) warp (
+      warp #(.INDEX(w), .LANES(LANES), .WARP_BITS(WARP_BITS), .STACK_DEPTH(STACK_DEPTH), .SLOTS(SLOTS), .FMA(FMA)) warp (
         .clk_i(clk_i), .rst_ni(rst_ni), .start_i(start[w]), .start_pc_i(start_pc), .start_lanes_i(start_lanes[w*LANES +: LANES]),
         .halt_i(fault_valid_o), .active_o(active[w]), .program_length_i(program_length_i),
         .fetch_request_o(fetch_request[w]), .fetch_pc_o(fetch_pc[w*16 +: 16]), .fetch_grant_i(fetch_grant[w]),
         .cache_hit_i(instruction_hit && result_warp == w), .cache_instruction_i(fetched), .refill_done_i(refill_done),
         .want_o(want[w]), .grant_i(grant[w]), .instruction_o(retire_instruction_o[w*64 +: 64]),
         .mask_o(retire_mask_o[w*LANES +: LANES]), .px_o(px[w*LANES +: LANES]), .pb_o(pb[w*LANES +: LANES]),
-        .a_o(a[w*DATA +: DATA]), .b_o(b[w*DATA +: DATA]),
+        .a_o(a[w*DATA +: DATA]), .b_o(b[w*DATA +: DATA]), .c_o(c[w*DATA +: DATA]),
         .done_valid_i(done_valid), .done_warp_i(done_warp), .done_data_i(done_data), .done_pred_i(done_pred),
         .retire_o(retire_valid_o[w]), .pc_o(retire_pc_o[w*16 +: 16]), .retire_data_o(retire_data_o[w*DATA +: DATA]),
         .retire_predicate_o(retire_predicate_o[w*LANES +: LANES]),
@@ -213,12 +215,12 @@ module compute_unit #(
   endgenerate
 
   dispatcher #(
-    .WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS), .SLOTS(SLOTS), .UNITS(UNITS), .SLOT_UNITS(SLOT_UNITS)
+    .WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS), .SLOTS(SLOTS), .UNITS(UNITS), .SLOT_UNITS(SLOT_UNITS), .FMA(FMA)
   ) dispatcher (
     .clk_i(clk_i), .rst_ni(rst_ni), .want_i(want), .grant_o(grant), .instruction_i(retire_instruction_o), .mask_i(retire_mask_o),
-    .px_i(px), .pb_i(pb), .a_i(a), .b_i(b), .ready_i(ready), .slot_grant_o(slot_grant),
+    .px_i(px), .pb_i(pb), .a_i(a), .b_i(b), .c_i(c), .ready_i(ready), .slot_grant_o(slot_grant),
     .task_valid_o(task_valid), .task_warp_o(task_warp), .task_op_o(task_op), .task_mask_o(task_mask), .task_a_o(task_a),
-    .task_b_o(task_b), .task_imm_o(task_imm), .task_x_o(task_x), .task_px_o(task_px), .task_pb_o(task_pb), .waiting_o(waiting));
+    .task_b_o(task_b), .task_c_o(task_c), .task_imm_o(task_imm), .task_x_o(task_x), .task_px_o(task_px), .task_pb_o(task_pb), .waiting_o(waiting));
 
   generate
     for (k = 0; k < TID_COUNT; k = k + 1) begin : gen_tid
@@ -254,10 +256,12 @@ module compute_unit #(
         .done_data_o(done_data[(INT_SLOT + k)*DATA +: DATA]), .done_pred_o(done_pred[(INT_SLOT + k)*LANES +: LANES]));
     end
     for (k = 0; k < FLT_COUNT; k = k + 1) begin : gen_flt
-      flt_alu #(.WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS), .LATENCY(FLT_LATENCY), .DEPTH(FLT_DEPTH), .SUBNORMALS(SUBNORMALS)) flt_alu (
+      flt_alu #(.WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS), .LATENCY(FLT_LATENCY), .DEPTH(FLT_DEPTH), .SUBNORMALS(SUBNORMALS),
+                .FMA(FMA)) flt_alu (
         .clk_i(clk_i), .rst_ni(rst_ni),
         .task_valid_i(task_valid[FLT_SLOT + k]), .task_warp_i(task_warp[(FLT_SLOT + k)*WARP_BITS +: WARP_BITS]), .task_op_i(task_op[(FLT_SLOT + k)*5 +: 5]),
         .task_mask_i(task_mask[(FLT_SLOT + k)*LANES +: LANES]), .task_a_i(task_a[(FLT_SLOT + k)*DATA +: DATA]), .task_b_i(task_b[(FLT_SLOT + k)*DATA +: DATA]),
+        .task_c_i(task_c[(FLT_SLOT + k)*DATA +: DATA]),
         .task_imm_i(task_imm[(FLT_SLOT + k)*32 +: 32]), .task_x_i(task_x[(FLT_SLOT + k)*5 +: 5]),
         .task_px_i(task_px[(FLT_SLOT + k)*LANES +: LANES]), .task_pb_i(task_pb[(FLT_SLOT + k)*LANES +: LANES]),
         .ready_o(ready[FLT_SLOT + k]), .done_valid_o(done_valid[FLT_SLOT + k]), .done_warp_o(done_warp[(FLT_SLOT + k)*WARP_BITS +: WARP_BITS]),

@@ -7,7 +7,8 @@ module dispatcher #(
   parameter integer WARP_BITS = 3,
   parameter integer SLOTS = 7,
   parameter integer UNITS = 7,
-  parameter [SLOTS*4-1:0] SLOT_UNITS = 28'h6543210   // type of each slot
+  parameter [SLOTS*4-1:0] SLOT_UNITS = 28'h6543210,  // type of each slot
+  parameter integer FMA = 0                          // slots of type Flt have a third operand
 ) (
   input  wire                        clk_i,
   input  wire                        rst_ni,
@@ -20,6 +21,7 @@ module dispatcher #(
   input  wire [WARPS*LANES-1:0]      pb_i,
   input  wire [WARPS*LANES*32-1:0]   a_i,
   input  wire [WARPS*LANES*32-1:0]   b_i,
+  input  wire [WARPS*LANES*32-1:0]   c_i,
   // slots
   input  wire [SLOTS-1:0]            ready_i,
   output reg  [SLOTS-1:0]            slot_grant_o,   // in this cycle; the task register is valid in the next
@@ -29,6 +31,7 @@ module dispatcher #(
   output reg  [SLOTS*LANES-1:0]      task_mask_o,
   output reg  [SLOTS*LANES*32-1:0]   task_a_o,
   output reg  [SLOTS*LANES*32-1:0]   task_b_o,
+  output wire [SLOTS*LANES*32-1:0]   task_c_o,       // of slots without a third operand: zero
   output reg  [SLOTS*32-1:0]         task_imm_o,
   output reg  [SLOTS*5-1:0]          task_x_o,
   output reg  [SLOTS*LANES-1:0]      task_px_o,
@@ -36,6 +39,7 @@ module dispatcher #(
   // how many warps wanted each type and got no slot
   output reg  [UNITS*6-1:0]          waiting_o
 );
+`include "isa.vh"
   localparam [WARPS-1:0] ONE = 1;
   reg [SLOTS*WARP_BITS-1:0] slot_warp;
   reg [WARPS-1:0] candidates, winner;
@@ -89,6 +93,13 @@ module dispatcher #(
           task_b_o[k*LANES*32 +: LANES*32] <= instruction_i[source*64+37 +: 1] ? {LANES{instruction_i[source*64 +: 32]}}
                                                                                : b_i[source*LANES*32 +: LANES*32];
         end
+      if (FMA != 0 && SLOT_UNITS[k*4 +: 4] == ISA_UNIT_FLT) begin : gen_third
+        reg [LANES*32-1:0] c_q;
+        always @(posedge clk_i) if (slot_grant_o[k]) c_q <= c_i[source*LANES*32 +: LANES*32];
+        assign task_c_o[k*LANES*32 +: LANES*32] = c_q;
+      end else begin : gen_no_third
+        assign task_c_o[k*LANES*32 +: LANES*32] = {LANES*32{1'b0}};
+      end
     end
   endgenerate
 endmodule

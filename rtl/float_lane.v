@@ -1,33 +1,56 @@
-// One lane of the Flt ALU: adder, multiplier and the unit of conversions, each in three stages, and the result register behind them.
-// add_enable_i, multiply_enable_i and convert_enable_i: bit 0 takes the operands into that unit, bits 1 and 2 follow one and two cycles later;
-// at most one unit is enabled in a stage. result_o is loaded at the end of stage 2 and stays until the next one.
+// One lane of the Flt ALU and the result register behind it. FMA 0: adder, multiplier and the unit of conversions, each in three stages.
+// FMA 1: the fused unit, which adds a * 1 + b and multiplies too, in five, and the conversions, whose results wait for two more.
+// add_enable_i, multiply_enable_i, fuse_enable_i and convert_enable_i: bit 0 takes the operands into that unit, bit k says that stage k holds that
+// operation k cycles later; at most one unit is enabled in a stage.
+// result_o is loaded at the end of the last stage and stays until the next one.
 `default_nettype none
 module float_lane #(
-  parameter integer SUBNORMALS = 0
+  parameter integer SUBNORMALS = 0,
+  parameter integer FMA = 0,
+  parameter integer STAGES = (FMA != 0) ? 5 : 3
 ) (
   input  wire        clk_i,
-  input  wire [2:0]  add_enable_i,
-  input  wire [2:0]  multiply_enable_i,
-  input  wire [2:0]  convert_enable_i,
+  input  wire [STAGES-1:0] add_enable_i,
+  input  wire [STAGES-1:0] multiply_enable_i,
+  input  wire [STAGES-1:0] fuse_enable_i,
+  input  wire [STAGES-1:0] convert_enable_i,
   input  wire        subtract_i,
   input  wire [1:0]  convert_op_i,
   input  wire [31:0] a_i,
   input  wire [31:0] b_i,
+  input  wire [31:0] c_i,
   output wire [31:0] result_o
 );
-  wire [31:0] sum, product, converted;
+  wire [31:0] converted;
   reg [31:0] result_q;
 
-  float_adder #(.EXPONENT_BITS(8), .MANTISSA_BITS(23), .SUBNORMALS(SUBNORMALS)) adder (
-    .clk_i(clk_i), .enable_i(add_enable_i), .subtract_i(subtract_i), .a_i(a_i), .b_i(b_i), .result_o(sum));
-  float_multiplier #(.EXPONENT_BITS(8), .MANTISSA_BITS(23), .SUBNORMALS(SUBNORMALS)) multiplier (
-    .clk_i(clk_i), .enable_i(multiply_enable_i), .a_i(a_i), .b_i(b_i), .result_o(product));
   float_convert #(.SUBNORMALS(SUBNORMALS)) convert (
-    .clk_i(clk_i), .enable_i(convert_enable_i), .op_i(convert_op_i), .a_i(a_i), .b_i(b_i), .result_o(converted));
+    .clk_i(clk_i), .enable_i(convert_enable_i[2:0]), .op_i(convert_op_i), .a_i(a_i), .b_i(b_i), .result_o(converted));
 
-  always @(posedge clk_i) begin
-    if (add_enable_i[2] || multiply_enable_i[2] || convert_enable_i[2]) result_q <= sum | product | converted;
-  end
+  generate
+    if (FMA == 0) begin : gen_separate
+      wire [31:0] sum, product;
+      float_adder #(.EXPONENT_BITS(8), .MANTISSA_BITS(23), .SUBNORMALS(SUBNORMALS)) adder (
+        .clk_i(clk_i), .enable_i(add_enable_i[2:0]), .subtract_i(subtract_i), .a_i(a_i), .b_i(b_i), .result_o(sum));
+      float_multiplier #(.EXPONENT_BITS(8), .MANTISSA_BITS(23), .SUBNORMALS(SUBNORMALS)) multiplier (
+        .clk_i(clk_i), .enable_i(multiply_enable_i[2:0]), .a_i(a_i), .b_i(b_i), .result_o(product));
+      always @(posedge clk_i) begin
+        if (add_enable_i[2] || multiply_enable_i[2] || convert_enable_i[2]) result_q <= sum | product | converted;
+      end
+    end else begin : gen_fused
+      wire [4:0] enable = add_enable_i | multiply_enable_i | fuse_enable_i;
+      wire [31:0] fused;
+      reg [31:0] s3_converted_q, s4_converted_q;
+      float_fma #(.EXPONENT_BITS(8), .MANTISSA_BITS(23), .SUBNORMALS(SUBNORMALS)) fma (
+        .clk_i(clk_i), .enable_i(enable), .a_i(a_i), .b_i(add_enable_i[0] ? 32'h3f800000 : b_i),
+        .c_i(add_enable_i[0] ? {b_i[31] ^ subtract_i, b_i[30:0]} : c_i), .multiply_i(multiply_enable_i[0]), .result_o(fused));
+      always @(posedge clk_i) begin
+        if (convert_enable_i[2]) s3_converted_q <= converted;
+        if (convert_enable_i[3]) s4_converted_q <= s3_converted_q;
+        if (enable[4] || convert_enable_i[4]) result_q <= convert_enable_i[4] ? s4_converted_q : fused;
+      end
+    end
+  endgenerate
   assign result_o = result_q;
 endmodule
 `default_nettype wire

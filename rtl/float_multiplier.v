@@ -1,4 +1,4 @@
-// Floating-point multiplier, three stages: partial products, their sum with its leading one brought to the
+// Floating-point multiplier, three stages: the product as two numbers (multiply_tree), their sum with its leading one brought to the
 // top two bits, rounding.
 // Operands are taken with enable_i[0]; enable_i[k] must say that stage k holds that operation k cycles later. result_o is combinational,
 // valid in stage 2, and zero while enable_i[2] is low, so that units of a lane can be ORed. Nearest even, one NaN (quiet, positive).
@@ -19,7 +19,6 @@ module float_multiplier #(
   localparam integer E = EXPONENT_BITS;
   localparam integer M = MANTISSA_BITS;
   localparam integer P = 2*M + 2;           // bits of the product
-  localparam integer L = (M + 1) / 3;       // digits of b in the low and the middle partial product; the rest is in the high one
   localparam integer X = E + 2;             // signed exponent
   localparam integer STEPS = $clog2(M + 1); // of the normaliser: shifts by 2^(STEPS-1) .. 1
   localparam integer F = $clog2(M + 4);
@@ -31,25 +30,30 @@ module float_multiplier #(
   reg s1_nan_q, s1_infinite_q, s1_sign_q;
   reg [X-1:0] s1_exponent_q;                // of a product in [1, 2), biased
   reg [STEPS-1:0] s1_shift_q;               // leading zeros of the subnormal operand
-  reg [M+L:0] s1_low_q, s1_middle_q;
-  reg [P-2*L-1:0] s1_high_q;
+  reg [P-1:0] s1_sum_q, s1_carry_q;
   // Stage 1 -> 2
   reg s2_nan_q, s2_infinite_q, s2_infinite_above_q, s2_sign_q;  // above: infinite if the product is 2 or more
   reg [X-1:0] s2_exponent_q;                // of a product in [1, 2)
   reg [F-1:0] s2_distance_q;                // shift to the right of a subnormal result; more leaves the sticky bit only
   reg [P-1:0] s2_product_q;
 
+  wire normal_a = a_i[BITS-2 -: E] != {E{1'b0}};
+  wire normal_b = b_i[BITS-2 -: E] != {E{1'b0}};
+  wire [M:0] mantissa_a = {normal_a, (SUBNORMALS == 0 || normal_a) ? a_i[M-1:0] : {M{1'b0}}};
+  wire [M:0] mantissa_b = {normal_b, (SUBNORMALS == 0 || normal_b) ? b_i[M-1:0] : {M{1'b0}}};
+  wire [P-1:0] tree_sum, tree_carry;
+  multiply_tree #(.A_BITS(M+1), .B_BITS(M+1), .OUT_BITS(P)) tree (
+    .a_i(mantissa_a), .b_i(mantissa_b), .sum_o(tree_sum), .carry_o(tree_carry));
+
   always @(posedge clk_i) begin
     if (enable_i[0]) begin : stage0
       reg zero_a, zero_b, max_a, max_b, nan_a, nan_b;
       reg [E-1:0] exponent_a, exponent_b;
-      reg [M:0] mantissa_a, mantissa_b, guide;
+      reg [M:0] guide;
       reg [STEPS-1:0] shift;
       integer step;
       exponent_a = a_i[BITS-2 -: E];
       exponent_b = b_i[BITS-2 -: E];
-      mantissa_a = {exponent_a != {E{1'b0}}, (SUBNORMALS == 0 || exponent_a != {E{1'b0}}) ? a_i[M-1:0] : {M{1'b0}}};
-      mantissa_b = {exponent_b != {E{1'b0}}, (SUBNORMALS == 0 || exponent_b != {E{1'b0}}) ? b_i[M-1:0] : {M{1'b0}}};
       zero_a = mantissa_a == {M+1{1'b0}};
       zero_b = mantissa_b == {M+1{1'b0}};
       max_a = &exponent_a;
@@ -74,14 +78,13 @@ module float_multiplier #(
       if (exponent_a == {E{1'b0}}) exponent_a = {{E-1{1'b0}}, 1'b1};
       if (exponent_b == {E{1'b0}}) exponent_b = {{E-1{1'b0}}, 1'b1};
       s1_exponent_q <= {2'b00, exponent_a} + {2'b00, exponent_b} - BIAS;
-      s1_low_q <= {{L{1'b0}}, mantissa_a} * {{M+1{1'b0}}, mantissa_b[L-1:0]};
-      s1_middle_q <= {{L{1'b0}}, mantissa_a} * {{M+1{1'b0}}, mantissa_b[2*L-1:L]};
-      s1_high_q <= {{M+1-2*L{1'b0}}, mantissa_a} * {{M+1{1'b0}}, mantissa_b[M:2*L]};
+      s1_sum_q <= tree_sum;
+      s1_carry_q <= tree_carry;
     end
     if (enable_i[1]) begin : stage1
       reg [P-1:0] product;
       reg [X-1:0] exponent, distance;
-      product = {s1_high_q, {2*L{1'b0}}} + {{M+1-2*L{1'b0}}, s1_middle_q, {L{1'b0}}} + {{M+1-L{1'b0}}, s1_low_q};
+      product = s1_sum_q + s1_carry_q;
       s2_product_q <= (SUBNORMALS == 0) ? product << s1_shift_q : product;
       exponent = s1_exponent_q - {{X-STEPS{1'b0}}, s1_shift_q};
       distance = ONE - exponent;

@@ -1,5 +1,5 @@
-// Flt ALU: fadd fsub fmul fmin fmax f2i i2f in three stages, further ones as delay. docs/numerics.md has the rules of the results.
-// SUBNORMALS 0: IEEE, 1: flushed. Lanes outside the mask keep what they held. Only the unit an operation needs is clocked.
+// Flt ALU: fadd fsub fmul fmin fmax f2i i2f in three stages, or with FMA these and ffma in five, further ones as delay. docs/numerics.md
+// has the rules of the results. SUBNORMALS 0: IEEE, 1: flushed. task_c_i: register rc, the third operand of ffma. Lanes outside the mask keep what they held. Only the unit an operation needs is clocked.
 `default_nettype none
 module flt_alu #(
   parameter integer WARPS = 8,
@@ -7,7 +7,8 @@ module flt_alu #(
   parameter integer WARP_BITS = (WARPS > 1) ? $clog2(WARPS) : 1,
   parameter integer LATENCY = 1,
   parameter integer DEPTH = 3,
-  parameter integer SUBNORMALS = 0
+  parameter integer SUBNORMALS = 0,
+  parameter integer FMA = 0
 ) (
   input  wire                 clk_i,
   input  wire                 rst_ni,
@@ -17,6 +18,7 @@ module flt_alu #(
   input  wire [LANES-1:0]     task_mask_i,
   input  wire [LANES*32-1:0]  task_a_i,
   input  wire [LANES*32-1:0]  task_b_i,
+  input  wire [LANES*32-1:0]  task_c_i,
   input  wire [31:0]          task_imm_i,
   input  wire [4:0]           task_x_i,
   input  wire [LANES-1:0]     task_px_i,
@@ -28,10 +30,17 @@ module flt_alu #(
   output wire [LANES-1:0]     done_pred_o
 );
   `include "isa.vh"
+  localparam integer STAGES = (FMA != 0) ? 5 : 3;
 
   generate
-    if (DEPTH < 3) begin : gen_illegal_depth
+    if (FMA == 0 && DEPTH < 3) begin : gen_illegal_depth
       flt_alu_needs_a_depth_of_at_least_3 illegal ();
+    end
+    if (FMA != 0 && DEPTH < 5) begin : gen_illegal_fma_depth
+      flt_alu_with_fma_needs_a_depth_of_at_least_5 illegal ();
+    end
+    if (FMA < 0 || FMA > 1) begin : gen_illegal_fma
+      flt_alu_needs_fma_0_or_1 illegal ();
     end
     if (SUBNORMALS < 0 || SUBNORMALS > 1) begin : gen_illegal_subnormals
       flt_alu_needs_subnormals_0_or_1 illegal ();
@@ -43,11 +52,12 @@ module flt_alu #(
     .clk_i(clk_i), .rst_ni(rst_ni), .task_valid_i(task_valid_i), .task_warp_i(task_warp_i), .ready_o(ready_o),
     .done_valid_o(done_valid_o), .done_warp_o(done_warp_o), .stage_valid_o(stage_valid));
 
-  wire moving = |stage_valid[2:0];
+  wire moving = |stage_valid[STAGES-1:0];
   // The unit of an operation, and what its conversion is.
   wire add = task_valid_i && (task_op_i == ISA_FLT_FADD || task_op_i == ISA_FLT_FSUB);
   wire multiply = task_valid_i && task_op_i == ISA_FLT_FMUL;
-  wire convert = task_valid_i && !add && !multiply;
+  wire fuse = task_valid_i && FMA != 0 && task_op_i == ISA_FLT_FFMA;
+  wire convert = task_valid_i && !add && !multiply && !fuse;
   reg [1:0] convert_op;
   always @* begin
     case (task_op_i)
@@ -63,29 +73,32 @@ module flt_alu #(
   generate
     for (l = 0; l < LANES; l = l + 1) begin : gen_lane
       // Whether each stage of a unit holds a task of this lane.
-      reg [1:0] add_later_q, multiply_later_q, convert_later_q;
-      wire [2:0] add_enable = {add_later_q, add && task_mask_i[l]};
-      wire [2:0] multiply_enable = {multiply_later_q, multiply && task_mask_i[l]};
-      wire [2:0] convert_enable = {convert_later_q, convert && task_mask_i[l]};
+      reg [STAGES-2:0] add_later_q, multiply_later_q, fuse_later_q, convert_later_q;
+      wire [STAGES-1:0] add_enable = {add_later_q, add && task_mask_i[l]};
+      wire [STAGES-1:0] multiply_enable = {multiply_later_q, multiply && task_mask_i[l]};
+      wire [STAGES-1:0] fuse_enable = {fuse_later_q, fuse && task_mask_i[l]};
+      wire [STAGES-1:0] convert_enable = {convert_later_q, convert && task_mask_i[l]};
       always @(posedge clk_i) begin
         if (!rst_ni) begin
-          add_later_q <= 2'd0;
-          multiply_later_q <= 2'd0;
-          convert_later_q <= 2'd0;
+          add_later_q <= {STAGES-1{1'b0}};
+          multiply_later_q <= {STAGES-1{1'b0}};
+          fuse_later_q <= {STAGES-1{1'b0}};
+          convert_later_q <= {STAGES-1{1'b0}};
         end else if (moving) begin
-          add_later_q <= add_enable[1:0];
-          multiply_later_q <= multiply_enable[1:0];
-          convert_later_q <= convert_enable[1:0];
+          add_later_q <= add_enable[STAGES-2:0];
+          multiply_later_q <= multiply_enable[STAGES-2:0];
+          fuse_later_q <= fuse_enable[STAGES-2:0];
+          convert_later_q <= convert_enable[STAGES-2:0];
         end
       end
-      float_lane #(.SUBNORMALS(SUBNORMALS)) lane (
-        .clk_i(clk_i), .add_enable_i(add_enable), .multiply_enable_i(multiply_enable), .convert_enable_i(convert_enable),
+      float_lane #(.SUBNORMALS(SUBNORMALS), .FMA(FMA)) lane (
+        .clk_i(clk_i), .add_enable_i(add_enable), .multiply_enable_i(multiply_enable), .fuse_enable_i(fuse_enable), .convert_enable_i(convert_enable),
         .subtract_i(task_op_i == ISA_FLT_FSUB), .convert_op_i(convert_op), .a_i(task_a_i[l*32 +: 32]), .b_i(task_b_i[l*32 +: 32]),
-        .result_o(result[l*32 +: 32]));
+        .c_i(task_c_i[l*32 +: 32]), .result_o(result[l*32 +: 32]));
     end
-    if (DEPTH > 3) begin : gen_delay
-      alu_delay #(.WIDTH(LANES*32), .STAGES(DEPTH-3)) delay (
-        .clk_i(clk_i), .valid_i(stage_valid[DEPTH-1:3]), .data_i(result), .data_o(done_data_o));
+    if (DEPTH > STAGES) begin : gen_delay
+      alu_delay #(.WIDTH(LANES*32), .STAGES(DEPTH-STAGES)) delay (
+        .clk_i(clk_i), .valid_i(stage_valid[DEPTH-1:STAGES]), .data_i(result), .data_o(done_data_o));
     end else begin : gen_direct
       assign done_data_o = result;
     end

@@ -1,7 +1,9 @@
 // One warp's instruction buffer: the current instruction in the data routine, the next one in the instruction routine, and the state of
 // both. docs/architecture.md, section 3, has the cycles.
 `default_nettype none
-module instruction_buffer (
+module instruction_buffer #(
+  parameter [0:0] FMA = 1'b0           // ffma is legal
+) (
   input  wire        clk_i,
   input  wire        rst_ni,
   input  wire        start_i,          // begin fetching at the PC stack's first entry
@@ -78,7 +80,7 @@ module instruction_buffer (
         F_CACHE:
           if (cache_hit_i) begin
             next_q <= cache_instruction_i;
-            next_legal_q <= isa_legal(cache_instruction_i);
+            next_legal_q <= isa_legal(cache_instruction_i, FMA);
             next_control_q <= isa_control(cache_instruction_i[63:60], cache_instruction_i[59:55]);
             fetch_q <= F_FULL;
           end else begin

@@ -70,6 +70,7 @@
   localparam [4:0] ISA_FLT_FMAX = 5'd4;
   localparam [4:0] ISA_FLT_F2I = 5'd5;
   localparam [4:0] ISA_FLT_I2F = 5'd6;
+  localparam [4:0] ISA_FLT_FFMA = 5'd7;
   localparam [4:0] ISA_SLW_FDIV = 5'd0;
   localparam [4:0] ISA_SLW_FSQRT = 5'd1;
   localparam [4:0] ISA_SLW_FRSQRT = 5'd2;

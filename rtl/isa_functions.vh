@@ -2,7 +2,7 @@
   // Decoding functions of the instruction set. To be included inside a module body; they need no constants. A label is
   // unit * 32 + operation.
 
-  // the table has this unit and operation
+  // every machine has this unit and operation
   function isa_legal_op;
     input [3:0] unit;
     input [4:0] op;
@@ -29,14 +29,30 @@
     end
   endfunction
 
-  // the instruction has a table row
+  // machines with arithmetic.fma have this unit and operation
+  function isa_legal_fma_op;
+    input [3:0] unit;
+    input [4:0] op;
+    begin
+      case ({unit, op})
+        // flt: ffma
+        9'd135
+          : isa_legal_fma_op = 1'b1;
+        default: isa_legal_fma_op = 1'b0;
+      endcase
+    end
+  endfunction
+
+  // the instruction has a table row, and the machine what it needs; fma: arithmetic.fma
   function isa_legal;
     // Only unit and operation decide; the whole instruction is taken for the caller's convenience.
     /* verilator lint_off UNUSEDSIGNAL */
     input [63:0] instruction;
     /* verilator lint_on UNUSEDSIGNAL */
+    input fma;
     begin
-      isa_legal = isa_legal_op(instruction[63:60], instruction[59:55]);
+      isa_legal = isa_legal_op(instruction[63:60], instruction[59:55]) ||
+                  (fma && isa_legal_fma_op(instruction[63:60], instruction[59:55]));
     end
   endfunction
 
@@ -52,8 +68,8 @@
         , 9'd64
         // int: mov iadd isub imul and or xor shl shr sar imin imax umin umax sel
         , 9'd96, 9'd97, 9'd98, 9'd99, 9'd100, 9'd101, 9'd102, 9'd103, 9'd104, 9'd105, 9'd106, 9'd107, 9'd108, 9'd109, 9'd110
-        // flt: fadd fsub fmul fmin fmax f2i i2f
-        , 9'd128, 9'd129, 9'd130, 9'd131, 9'd132, 9'd133, 9'd134
+        // flt: fadd fsub fmul fmin fmax f2i i2f ffma
+        , 9'd128, 9'd129, 9'd130, 9'd131, 9'd132, 9'd133, 9'd134, 9'd135
         // slw: fdiv fsqrt frsqrt frcp
         , 9'd160, 9'd161, 9'd162, 9'd163
         // ray: rld

@@ -29,6 +29,7 @@ module multiprocessor #(
   parameter integer DCACHE_MSHRS = 4,
   parameter integer SUBNORMALS = 0,
   parameter integer SLOW_UNIT = 0,
+  parameter integer FMA = 0,
   parameter integer WARP_BITS = (WARPS > 1) ? $clog2(WARPS) : 1
 ) (
   input  wire                            clk_i,
@@ -142,7 +143,7 @@ module multiprocessor #(
         .FLT_COUNT(FLT_COUNT), .SLW_COUNT(SLW_COUNT), .TID_LATENCY(TID_LATENCY), .BRH_LATENCY(BRH_LATENCY),
         .INT_LATENCY(INT_LATENCY), .FLT_LATENCY(FLT_LATENCY), .SLW_LATENCY(SLW_LATENCY), .TID_DEPTH(TID_DEPTH),
         .BRH_DEPTH(BRH_DEPTH), .INT_DEPTH(INT_DEPTH), .FLT_DEPTH(FLT_DEPTH), .SLW_DEPTH(SLW_DEPTH), .ICACHE_BYTES(ICACHE_BYTES),
-        .DCACHE_BYTES(DCACHE_BYTES), .DCACHE_MSHRS(DCACHE_MSHRS), .SUBNORMALS(SUBNORMALS), .SLOW_UNIT(SLOW_UNIT),
+        .DCACHE_BYTES(DCACHE_BYTES), .DCACHE_MSHRS(DCACHE_MSHRS), .SUBNORMALS(SUBNORMALS), .SLOW_UNIT(SLOW_UNIT), .FMA(FMA),
         .WARP_BITS(WARP_BITS)
       ) compute_unit (
         .clk_i(clk_i), .rst_ni(rst_ni), .program_length_i(program_length_i), .memory_limit_i(memory_limit_i),

@@ -5,7 +5,8 @@ module warp #(
   parameter integer LANES = 8,
   parameter integer WARP_BITS = 3,
   parameter integer STACK_DEPTH = 8,
-  parameter integer SLOTS = 7
+  parameter integer SLOTS = 7,
+  parameter integer FMA = 0         // reads register rc too, and issues ffma
 ) (
   input  wire                      clk_i,
   input  wire                      rst_ni,
@@ -31,6 +32,7 @@ module warp #(
   output wire [LANES-1:0]          pb_o,
   output wire [LANES*32-1:0]       a_o,
   output wire [LANES*32-1:0]       b_o,
+  output wire [LANES*32-1:0]       c_o,
   // write-back: what every ALU instance has finished in this cycle
   input  wire [SLOTS-1:0]          done_valid_i,
   input  wire [SLOTS*WARP_BITS-1:0] done_warp_i,
@@ -87,7 +89,7 @@ module warp #(
     .target_i(enter ? pc_o + 16'd1 : immediate[15:0]), .end_i(enter ? immediate[15:0] : immediate[31:16]), .return_i(pc_o),
     .overflow_o(overflow), .underflow_o(underflow));
 
-  instruction_buffer instruction_buffer (
+  instruction_buffer #(.FMA(FMA != 0)) instruction_buffer (
     .clk_i(clk_i), .rst_ni(rst_ni), .start_i(start_i), .halt_i(halt_i), .active_o(active_o),
     .step_o(step), .pc_valid_i(pc_valid), .pc_i(stack_pc), .program_length_i(program_length_i),
     .fetch_request_o(fetch_request_o), .fetch_pc_o(fetch_pc_o), .fetch_grant_i(fetch_grant_i),
@@ -109,6 +111,21 @@ module warp #(
     .read_data_a_o(a_o), .read_data_b_o(b_o),
     .write_mask_i(retire_o && writes_register ? mask_o : {LANES{1'b0}}),
     .write_address_i(instruction_o[49:46]), .write_data_i(retire_data_o));
+
+  // A copy of the bank gives the third operand, as memories with three read ports are rare.
+  genvar l;
+  generate
+    if (FMA != 0) begin : gen_third
+      for (l = 0; l < LANES; l = l + 1) begin : gen_lane
+        ram_1r1w #(.WIDTH(32), .DEPTH(16)) register_copy (
+          .clk_i(clk_i), .read_i(read), .read_address_i(instruction_o[35:32]), .read_data_o(c_o[l*32 +: 32]),
+          .write_i(retire_o && writes_register && mask_o[l]), .write_address_i(instruction_o[49:46]),
+          .write_data_i(retire_data_o[l*32 +: 32]));
+      end
+    end else begin : gen_no_third
+      assign c_o = {LANES*32{1'b0}};
+    end
+  endgenerate
 
   assign fault_valid_o = illegal || outside || overflow || underflow;
   assign fault_code_o = illegal ? 4'd1 : outside ? 4'd2 : overflow ? 4'd3 : 4'd4;

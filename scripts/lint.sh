@@ -29,6 +29,7 @@ verilog_configurations=(
   "WARPS=32 LANES=1"
   "WARPS=1 LANES=32"
   "WARPS=2 LANES=16 INT_COUNT=2 FLT_COUNT=4 SLW_LATENCY=3 TID_DEPTH=2 SUBNORMALS=1 SLOW_UNIT=2"
+  "WARPS=2 LANES=2 FMA=1 FLT_DEPTH=5"
 )
 mapfile -t rtl < <(scripts/sources.sh verilog)
 

@@ -19,6 +19,11 @@ struct Mode {
   bool fused = false;  ///< the machine has a fused multiply-add; muladd() uses it
 };
 
+/// The mode of a machine.
+inline Mode mode_of(const Configuration& configuration) {
+  return {configuration.subnormals, configuration.slow_unit, configuration.fma};
+}
+
 inline constexpr uint32_t kQuietNan = 0x7fc00000u;
 
 namespace detail {

@@ -20,8 +20,8 @@ using Json = nlohmann::ordered_json;
 constexpr std::array<std::string_view, 2> kSubnormalNames = {"ieee", "flush"};
 constexpr std::array<std::string_view, 4> kSlowUnitNames = {"exact", "newton2", "newton1", "newton0"};
 
-/// Least pipeline depth of a type: what its function needs at speed. 0: the type has neither latency nor depth to choose.
 constexpr std::array<int, kUnits> kLeastDepth = {1, 2, 0, 2, 3, 11, 0};
+constexpr int kLeastFusedDepth = 5;  // of flt, whose additions and multiplications go through the fused unit
 bool is_fixed(size_t unit) { return kLeastDepth[unit] == 0; }
 
 bool is_power_of_two(int value) { return value > 0 && (value & (value - 1)) == 0; }
@@ -58,6 +58,14 @@ class Section {
       throw InputError(fmt::format("{}: {}{} is {}; it must be an integer without quotes", where_, prefix_, key, found->dump()));
     }
     value = found->get<int>();
+  }
+  void boolean(const char* key, bool& value) {
+    const Json* found = find(key);
+    if (found == nullptr) return;
+    if (!found->is_boolean()) {
+      throw InputError(fmt::format("{}: {}{} is {}; it must be true or false", where_, prefix_, key, found->dump()));
+    }
+    value = found->get<bool>();
   }
   void text(const char* key, std::string& value) {
     const Json* found = find(key);
@@ -112,6 +120,14 @@ Configuration from_json(const Json& json, const std::string& where, const std::s
   root.integer("warps", configuration.warps);
   root.integer("cores", configuration.cores);
   root.integer("stack_depth", configuration.stack_depth);
+  // First, as the depth that is not given follows it.
+  if (auto arithmetic = root.section("arithmetic")) {
+    arithmetic->choice("subnormals", kSubnormalNames, configuration.subnormals);
+    arithmetic->choice("slow_unit", kSlowUnitNames, configuration.slow_unit);
+    arithmetic->boolean("fma", configuration.fma);
+    arithmetic->refuse_others();
+  }
+  configuration.alus[static_cast<size_t>(Unit::Flt)].depth = least_depth(configuration, Unit::Flt);
   if (auto alus = root.section("alus")) {
     for (size_t unit = 0; unit < kUnits; ++unit) {
       auto alu = alus->section(std::string(kUnitNames[unit]).c_str());
@@ -133,11 +149,6 @@ Configuration from_json(const Json& json, const std::string& where, const std::s
     cache->integer("bytes", configuration.data_cache_bytes);
     cache->integer("mshrs", configuration.data_cache_mshrs);
     cache->refuse_others();
-  }
-  if (auto arithmetic = root.section("arithmetic")) {
-    arithmetic->choice("subnormals", kSubnormalNames, configuration.subnormals);
-    arithmetic->choice("slow_unit", kSlowUnitNames, configuration.slow_unit);
-    arithmetic->refuse_others();
   }
   root.refuse_others();
   check_configuration(configuration, where);
@@ -205,6 +216,10 @@ Configuration parse_configuration(const std::string& json, const std::string& wh
   return parse(json, where, Configuration().name);
 }
 
+int least_depth(const Configuration& configuration, Unit unit) {
+  return unit == Unit::Flt && configuration.fma ? kLeastFusedDepth : kLeastDepth[static_cast<size_t>(unit)];
+}
+
 void check_configuration(const Configuration& configuration, const std::string& where) {
   static const std::regex kName("[A-Za-z0-9_.+-]{1,64}");
   if (!std::regex_match(configuration.name, kName)) {
@@ -224,7 +239,7 @@ void check_configuration(const Configuration& configuration, const std::string& 
     }
     check_range(where, prefix + "count", alu.count, 1, 4);
     check_range(where, prefix + "latency", alu.latency, 1, 16);
-    check_range(where, prefix + "depth", alu.depth, kLeastDepth[unit], 32);
+    check_range(where, prefix + "depth", alu.depth, least_depth(configuration, static_cast<Unit>(unit)), 32);
   }
   check_range(where, "instruction_cache.bytes", configuration.instruction_cache_bytes, 512, 65536, true);
   check_range(where, "data_cache.bytes", configuration.data_cache_bytes, 512, 65536, true);
@@ -254,7 +269,8 @@ std::string to_json(const Configuration& configuration) {
   json["instruction_cache"]["bytes"] = configuration.instruction_cache_bytes;
   json["data_cache"] = {{"bytes", configuration.data_cache_bytes}, {"mshrs", configuration.data_cache_mshrs}};
   json["arithmetic"] = {{"subnormals", kSubnormalNames[static_cast<size_t>(configuration.subnormals)]},
-                        {"slow_unit", kSlowUnitNames[static_cast<size_t>(configuration.slow_unit)]}};
+                        {"slow_unit", kSlowUnitNames[static_cast<size_t>(configuration.slow_unit)]},
+                        {"fma", configuration.fma}};
   return json.dump(2);
 }
 
@@ -279,6 +295,7 @@ std::vector<std::pair<std::string, int>> verilog_parameters(const Configuration&
   parameters.emplace_back("DCACHE_MSHRS", configuration.data_cache_mshrs);
   parameters.emplace_back("SUBNORMALS", static_cast<int>(configuration.subnormals));
   parameters.emplace_back("SLOW_UNIT", static_cast<int>(configuration.slow_unit));
+  parameters.emplace_back("FMA", configuration.fma ? 1 : 0);
   return parameters;
 }
 

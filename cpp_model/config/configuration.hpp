@@ -33,7 +33,10 @@ struct Configuration {
   int data_cache_mshrs = 4;
   Subnormals subnormals = Subnormals::Ieee;
   SlowUnit slow_unit = SlowUnit::Exact;
+  bool fma = false;  ///< fused multiply-add: the instruction ffma, used by kernels; flt then has 5 stages at least
 
+  /// Whether instructions that need the feature are legal.
+  bool has(Feature feature) const { return feature == Feature::Base || fma; }
   int contents() const { return warps * cores; }
   const AluConfiguration& alu(Unit unit) const { return alus[static_cast<size_t>(unit)]; }
 };
@@ -45,6 +48,10 @@ Configuration load_configuration(const std::string& name_or_path);
 
 /// A configuration from the text of a configuration file; `where` names the source in messages.
 Configuration parse_configuration(const std::string& json, const std::string& where);
+
+/// Least pipeline depth of a type in this configuration: what its function needs at speed. 0: the type has neither latency nor
+/// depth to choose. flt and slw have it as their default.
+int least_depth(const Configuration& configuration, Unit unit);
 
 /// Throws InputError when a value is out of its range; `where` names the source in the message.
 void check_configuration(const Configuration& configuration, const std::string& where);

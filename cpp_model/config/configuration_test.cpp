@@ -93,12 +93,14 @@ TEST(Configuration, WrittenAndReadAgainIsTheSame) {
   configuration.data_cache_mshrs = 7;
   configuration.subnormals = Subnormals::Flush;
   configuration.slow_unit = SlowUnit::Newton1;
+  configuration.fma = true;
   const TemporaryFile file(to_json(configuration));
   const Configuration read = load_configuration(file.path());
   EXPECT_TRUE(equal(read, configuration));
   EXPECT_EQ(verilog_parameters(read), verilog_parameters(configuration));
   EXPECT_EQ(read.alu(Unit::Slw).depth, 12);
   EXPECT_EQ(read.slow_unit, SlowUnit::Newton1);
+  EXPECT_TRUE(read.fma);
 }
 
 TEST(Configuration, ErrorsNameKeyValueAndAllowedRange) {
@@ -123,9 +125,22 @@ TEST(Configuration, ErrorsNameKeyValueAndAllowedRange) {
   EXPECT_EQ(error_of("[]"), "the file must be an object in braces, not []");
 }
 
+TEST(Configuration, FusedMultiplyAddDeepensFlt) {
+  const TemporaryFile file(R"({"alus": {"flt": {"count": 2}}, "arithmetic": {"fma": true}})");
+  const Configuration read = load_configuration(file.path());
+  EXPECT_EQ(read.alu(Unit::Flt).depth, 5);
+  EXPECT_EQ(least_depth(read, Unit::Flt), 5);
+  EXPECT_EQ(least_depth(Configuration{}, Unit::Flt), 3);
+  EXPECT_TRUE(read.has(Feature::FusedMultiplyAdd));
+  EXPECT_FALSE(Configuration{}.has(Feature::FusedMultiplyAdd));
+  EXPECT_EQ(error_of(R"({"alus": {"flt": {"depth": 4}}, "arithmetic": {"fma": true}})"),
+            "alus.flt.depth is 4; it must be an integer from 5 to 32");
+  EXPECT_EQ(error_of(R"({"arithmetic": {"fma": 1}})"), "arithmetic.fma is 1; it must be true or false");
+}
+
 TEST(Configuration, UnknownKeysAreRefusedWithTheKnownOnes) {
   EXPECT_EQ(error_of(R"({"warp": 8})"),
-            "unknown key warp; known here: name, warps, cores, stack_depth, alus, instruction_cache, data_cache, arithmetic");
+            "unknown key warp; known here: name, warps, cores, stack_depth, arithmetic, alus, instruction_cache, data_cache");
   EXPECT_EQ(error_of(R"({"alus": {"flt": {"counts": 1}}})"), "unknown key alus.flt.counts; known here: count, latency, depth");
   EXPECT_EQ(error_of(R"({"alus": {"ray": {"depth": 2}}})"), "unknown key alus.ray.depth; known here: count");
 }

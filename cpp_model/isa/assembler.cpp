@@ -211,6 +211,9 @@ class Assembler {
       case Operand::Rb:
         parts.rb = parse_register();
         break;
+      case Operand::Rc:
+        parts.x = parse_register();
+        break;
       case Operand::Pd:
         parts.rd = parse_numbered('p', "predicate", kPredicates);
         break;

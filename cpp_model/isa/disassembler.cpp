@@ -58,6 +58,8 @@ std::string operand_text(Operand operand, const Instruction& parts, const Labels
       return fmt::format("r{}", parts.ra);
     case Operand::Rb:
       return fmt::format("r{}", parts.rb);
+    case Operand::Rc:
+      return fmt::format("r{}", parts.x & 15);
     case Operand::B:
       if (!parts.b_is_immediate) return fmt::format("r{}", parts.rb);
       return parts.info->immediate == ImmediateType::Float ? float_text(parts.immediate) : integer_text(parts.immediate);
@@ -109,6 +111,7 @@ Instruction canonical(const Instruction& parts) {
         else
           result.rb = parts.rb;
         break;
+      case Operand::Rc:
       case Operand::Px:
         result.x = parts.x & 15;
         break;

@@ -2,7 +2,7 @@
 //
 // Encoding of an instruction, 64 bits:
 //   63:60 unit | 59:55 operation | 54 guard negated | 53:50 guard predicate | 49:46 rd (or pd) | 45:42 ra | 41:38 rb (or pb)
-//   37 b is the immediate | 36:32 x (predicate ps/pa, or word of a ray package) | 31:0 immediate
+//   37 b is the immediate | 36:32 x (predicate ps/pa, register rc, or word of a ray package) | 31:0 immediate
 #pragma once
 
 #include <array>
@@ -22,6 +22,7 @@ enum class Operand : uint8_t {
   Rd,        ///< destination register, rd
   Ra,        ///< source register, ra
   Rb,        ///< source register rb
+  Rc,        ///< source register, in x[3:0]
   B,         ///< source register rb, or the immediate (b_is_immediate)
   Pd,        ///< destination predicate, in rd
   Px,        ///< source predicate, in x[3:0]
@@ -36,6 +37,12 @@ enum class Operand : uint8_t {
 /// How the immediate of operand B is written in assembly text.
 enum class ImmediateType : uint8_t { None, Integer, Float };
 
+/// What a configuration must have for an instruction to be legal.
+enum class Feature : uint8_t {
+  Base,              ///< nothing: every machine has the instruction
+  FusedMultiplyAdd,  ///< arithmetic.fma
+};
+
 struct InstructionInfo {
   std::string_view mnemonic;
   Unit unit;
@@ -44,6 +51,7 @@ struct InstructionInfo {
   ImmediateType immediate;  ///< type of B when it is an immediate
   bool control;             ///< stops the instruction routine until write-back
   std::string_view meaning;
+  Feature needs = Feature::Base;
 };
 
 // A table is read by its columns.
@@ -51,6 +59,9 @@ struct InstructionInfo {
 inline constexpr InstructionInfo kInstructions[] = {
 #define RAYPOOL_ROW(mnemonic, unit, op, o0, o1, o2, o3, imm, control, meaning) \
   {mnemonic, Unit::unit, op, {Operand::o0, Operand::o1, Operand::o2, Operand::o3}, ImmediateType::imm, control, meaning}
+#define RAYPOOL_ROW_WITH(feature, mnemonic, unit, op, o0, o1, o2, o3, imm, control, meaning) \
+  {mnemonic, Unit::unit, op, {Operand::o0, Operand::o1, Operand::o2, Operand::o3}, ImmediateType::imm, control, meaning, \
+   Feature::feature}
   // Tid: indices, dimensions, arguments
   RAYPOOL_ROW("tid",    Tid, 0, Rd, None, None, None, None, false, "rd = index of the thread in its block"),
   RAYPOOL_ROW("lane",   Tid, 1, Rd, None, None, None, None, false, "rd = lane of the thread"),
@@ -114,6 +125,7 @@ inline constexpr InstructionInfo kInstructions[] = {
   RAYPOOL_ROW("fmax", Flt, 4, Rd, Ra, B, None, Float, false, "rd = larger of ra and b; the number if one is a NaN; -0 < +0"),
   RAYPOOL_ROW("f2i",  Flt, 5, Rd, Ra, None, None, None, false, "rd = signed integer, towards zero, saturating; NaN gives 0"),
   RAYPOOL_ROW("i2f",  Flt, 6, Rd, Ra, None, None, None, false, "rd = float of signed ra"),
+  RAYPOOL_ROW_WITH(FusedMultiplyAdd, "ffma", Flt, 7, Rd, Ra, B, Rc, Float, false, "rd = ra * b + rc, one rounding"),
   // Slw
   RAYPOOL_ROW("fdiv",  Slw, 0, Rd, Ra, B, None, Float, false, "rd = ra / b"),
   RAYPOOL_ROW("fsqrt", Slw, 1, Rd, Ra, None, None, None, false, "rd = square root of ra"),
@@ -126,6 +138,7 @@ inline constexpr InstructionInfo kInstructions[] = {
   RAYPOOL_ROW("rld",  Ray, 3, Rd, Word, None, None, None, false, "rd = word of the current slice"),
   RAYPOOL_ROW("rst",  Ray, 4, Word, B, None, None, Float, false, "word of the current slice = b"),
 #undef RAYPOOL_ROW
+#undef RAYPOOL_ROW_WITH
 };
 // clang-format on
 

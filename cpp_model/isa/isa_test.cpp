@@ -60,6 +60,7 @@ uint64_t random_instruction(const InstructionInfo& info, std::mt19937_64& random
       case Operand::Pb:
         parts.rb = static_cast<uint8_t>(below(16));
         break;
+      case Operand::Rc:
       case Operand::Px:
         parts.x = static_cast<uint8_t>(below(16));
         break;

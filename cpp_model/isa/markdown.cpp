@@ -17,6 +17,8 @@ std::string operand_text(Operand operand) {
       return "ra";
     case Operand::Rb:
       return "rb";
+    case Operand::Rc:
+      return "rc";
     case Operand::B:
       return "b";
     case Operand::Pd:
@@ -50,6 +52,11 @@ std::string syntax(const InstructionInfo& info) {
   return text;
 }
 
+const char* marks(const InstructionInfo& info) {
+  if (info.needs == Feature::FusedMultiplyAdd) return "*fma*";
+  return info.control ? "*c*" : "";
+}
+
 constexpr const char* kUnitTitles[kUnits] = {
     "indices, dimensions, arguments", "compares, predicates, control",         "memory",      "integer and logic",
     "single-precision float",         "slow float: division and square roots", "ray packages"};
@@ -69,7 +76,8 @@ which p0 is all ones. What a mask does to each kind of result stands in [archite
 
 constexpr const char* kText = R"(
 `target` and `end` are the halves of the immediate of `jany`, `jnone` and `call`; `loop` has its end in the low half. Fields that an instruction
-does not use are written as 0 by the assembler and ignored by the machine. An instruction whose unit and operation stand in no row below is illegal.
+does not use are written as 0 by the assembler and ignored by the machine. An instruction whose unit and operation stand in no row below is illegal,
+and so is one that the configuration has not: `ffma` without `arithmetic.fma`.
 
 ## Assembly text
 
@@ -102,7 +110,7 @@ std::string isa_markdown() {
     if (each.name == field::kRa.name) return "source register";
     if (each.name == field::kRb.name) return "source register, or source predicate pb";
     if (each.name == field::kBIsImmediate.name) return "b is the immediate, not rb";
-    if (each.name == field::kX.name) return "source predicate px, or word of a ray package";
+    if (each.name == field::kX.name) return "source predicate px, source register rc, or word of a ray package";
     return "immediate b, address offset, argument number, or target and end";
   };
   for (const Field& each : kFields) {
@@ -114,13 +122,13 @@ std::string isa_markdown() {
   text += kText;
   text +=
       "\n## Instructions\n\nRows marked *c* are control instructions: they stop the instruction routine until their "
-      "write-back.\n";
+      "write-back. Rows marked *fma* are there in configurations with `arithmetic.fma` only.\n";
   for (int unit = 0; unit < kUnits; ++unit) {
     text += fmt::format("\n### {}: {} (unit {})\n\n| op | instruction | | meaning |\n| --- | --- | --- | --- |\n",
                         kUnitNames[static_cast<size_t>(unit)], kUnitTitles[unit], unit);
     for (const InstructionInfo& info : kInstructions) {
       if (static_cast<int>(info.unit) != unit) continue;
-      text += fmt::format("| {} | `{}` | {} | {} |\n", info.operation, syntax(info), info.control ? "*c*" : "", info.meaning);
+      text += fmt::format("| {} | `{}` | {} | {} |\n", info.operation, syntax(info), marks(info), info.meaning);
     }
   }
   return text;

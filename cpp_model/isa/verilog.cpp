@@ -92,16 +92,21 @@ std::string isa_verilog_functions() {
   text +=
       "  // Decoding functions of the instruction set. To be included inside a module body; they need no constants. A label is\n";
   text += "  // unit * 32 + operation.\n";
-  text += function_of_row("isa_legal_op", "the table has this unit and operation", [](const InstructionInfo&) { return true; });
+  text += function_of_row("isa_legal_op", "every machine has this unit and operation",
+                          [](const InstructionInfo& info) { return info.needs == Feature::Base; });
+  text += function_of_row("isa_legal_fma_op", "machines with arithmetic.fma have this unit and operation",
+                          [](const InstructionInfo& info) { return info.needs == Feature::FusedMultiplyAdd; });
   text +=
-      "\n  // the instruction has a table row\n"
+      "\n  // the instruction has a table row, and the machine what it needs; fma: arithmetic.fma\n"
       "  function isa_legal;\n"
       "    // Only unit and operation decide; the whole instruction is taken for the caller's convenience.\n"
       "    /* verilator lint_off UNUSEDSIGNAL */\n"
       "    input [63:0] instruction;\n"
       "    /* verilator lint_on UNUSEDSIGNAL */\n"
+      "    input fma;\n"
       "    begin\n"
-      "      isa_legal = isa_legal_op(instruction[63:60], instruction[59:55]);\n"
+      "      isa_legal = isa_legal_op(instruction[63:60], instruction[59:55]) ||\n"
+      "                  (fma && isa_legal_fma_op(instruction[63:60], instruction[59:55]));\n"
       "    end\n"
       "  endfunction\n";
   text += function_of_row("isa_writes_register", "writes register rd",

@@ -37,6 +37,9 @@ Instruction with_places(const Op& op, const Allocation& places) {
       case Operand::Pb:
         parts.rb = predicate(op.rb);
         break;
+      case Operand::Rc:
+        parts.x = reg(op.rc);
+        break;
       case Operand::Px:
         parts.x = predicate(op.px);
         break;

@@ -27,10 +27,10 @@ Allocation allocate(const Function& function);
 /// Appends the kernel to the program, under its name.
 void compile(Function function, Program& program);
 
-/// Records and compiles a kernel: `body` is called with a RecordedKernel.
+/// Records and compiles a kernel: `body` is called with a RecordedKernel. `fused`: for machines with arithmetic.fma.
 template <typename Body>
-void add_kernel(Program& program, const std::string& name, const Body& body) {
-  Recorder recorder(name);
+void add_kernel(Program& program, const std::string& name, const Body& body, bool fused = false) {
+  Recorder recorder(name, fused);
   RecordedKernel kernel(recorder);
   body(kernel);
   compile(recorder.finish(), program);

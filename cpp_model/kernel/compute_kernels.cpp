@@ -17,7 +17,7 @@ void saxpy(K& k) {
            [&] {
              const Int offset = i << 2;
              const Int y = k.int_argument(saxpy_argument::kY) + offset;
-             k.store(y, 0, a * k.load_float(k.int_argument(saxpy_argument::kX) + offset) + k.load_float(y));
+             k.store(y, 0, multiply_add(a, k.load_float(k.int_argument(saxpy_argument::kX) + offset), k.load_float(y)));
              i += step;
            });
 }
@@ -42,7 +42,7 @@ void matmul(K& k) {
                         Float sum = 0.0f;
                         k.while_([&] { return a != a_end; },
                                  [&] {
-                                   sum += k.load_float(a) * k.load_float(b);
+                                   sum = multiply_add(k.load_float(a), k.load_float(b), sum);
                                    a += 4;
                                    b += row_bytes;
                                  });
@@ -53,9 +53,9 @@ void matmul(K& k) {
            });
 }
 
-template <Subnormals kSubnormals, SlowUnit kSlowUnit>
+template <Subnormals kSubnormals, bool kFused>
 void run_in_mode(ComputeKernel which, NativeThread& thread) {
-  kernel::NativeKernel<kSubnormals, kSlowUnit> k(thread);
+  kernel::NativeKernel<kSubnormals, SlowUnit::Exact, kFused> k(thread);
   if (which == ComputeKernel::Saxpy)
     saxpy(k);
   else
@@ -67,19 +67,23 @@ void run_in_mode(ComputeKernel which, NativeThread& thread) {
 void run_native(ComputeKernel which, NativeThread& thread) {
   // Neither kernel uses the slow unit.
   if (thread.mode.subnormals == Subnormals::Flush)
-    run_in_mode<Subnormals::Flush, SlowUnit::Exact>(which, thread);
+    thread.mode.fused ? run_in_mode<Subnormals::Flush, true>(which, thread)
+                      : run_in_mode<Subnormals::Flush, false>(which, thread);
   else
-    run_in_mode<Subnormals::Ieee, SlowUnit::Exact>(which, thread);
+    thread.mode.fused ? run_in_mode<Subnormals::Ieee, true>(which, thread) : run_in_mode<Subnormals::Ieee, false>(which, thread);
 }
 
-const Program& compute_kernel_program() {
-  static const Program kProgram = [] {
+const Program& compute_kernel_program(bool fused) {
+  const auto build = [](bool with_fused) {
     Program program;
-    kernel::add_kernel(program, std::string(kComputeKernelNames[0]), [](auto& k) { saxpy(k); });
-    kernel::add_kernel(program, std::string(kComputeKernelNames[1]), [](auto& k) { matmul(k); });
+    kernel::add_kernel(
+        program, std::string(kComputeKernelNames[0]), [](auto& k) { saxpy(k); }, with_fused);
+    kernel::add_kernel(
+        program, std::string(kComputeKernelNames[1]), [](auto& k) { matmul(k); }, with_fused);
     return program;
-  }();
-  return kProgram;
+  };
+  static const Program kPlain = build(false), kFused = build(true);
+  return fused ? kFused : kPlain;
 }
 
 }  // namespace raypool

@@ -36,6 +36,9 @@ Effects effects(const Op& op) {
       case Operand::Rb:
         use_register(op.rb);
         break;
+      case Operand::Rc:
+        use_register(op.rc);
+        break;
       case Operand::Px:
         use_predicate(op.px);
         break;

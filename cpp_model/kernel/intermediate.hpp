@@ -37,6 +37,7 @@ struct Op {
   int rd = kNothing;  ///< virtual register, or predicate if the instruction writes one
   int ra = kNothing;  ///< virtual register
   int rb = kNothing;  ///< virtual register or predicate, as the instruction has it
+  int rc = kNothing;  ///< virtual register
   int px = kNothing;  ///< virtual predicate
   bool b_is_immediate = false;
   uint32_t immediate = 0;
@@ -58,7 +59,7 @@ struct Function {
 
 /// What an op reads and writes. Predicate p0 is left out.
 struct Effects {
-  int register_uses[3] = {kNothing, kNothing, kNothing};
+  int register_uses[4] = {kNothing, kNothing, kNothing, kNothing};
   int predicate_uses[4] = {kNothing, kNothing, kNothing, kNothing};
   int register_defined = kNothing;
   int predicate_defined = kNothing;

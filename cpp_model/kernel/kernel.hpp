@@ -30,7 +30,9 @@ struct Vector {
   friend Vector operator-(const Vector& a, const Vector& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
   friend Vector operator*(const Vector& a, const Vector& b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
   friend Vector operator*(const typename K::Float& a, const Vector& b) { return {a * b.x, a * b.y, a * b.z}; }
-  friend typename K::Float dot(const Vector& a, const Vector& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+  friend typename K::Float dot(const Vector& a, const Vector& b) {
+    return multiply_add(a.z, b.z, multiply_add(a.y, b.y, a.x * b.x));
+  }
 };
 
 template <typename K>

@@ -53,12 +53,12 @@ InstructionCounts count_instructions(const Program& program, const std::string& 
   return counts;
 }
 
-std::string kernel_table() {
+std::string kernel_table(bool fused) {
   std::string text = fmt::format("{:<22}", "instructions");
   for (const std::string_view unit : kUnitNames) text += fmt::format("{:>9}", unit);
   text += fmt::format("{:>10}\n", "total");
   for (size_t kernel = 0; kernel < kRayKernels; ++kernel) {
-    const InstructionCounts counts = count_instructions(ray_kernel_program(), std::string(kRayKernelNames[kernel]));
+    const InstructionCounts counts = count_instructions(ray_kernel_program(fused), std::string(kRayKernelNames[kernel]));
     const InstructionCounts& thesis = kThesisCounts[kernel];
     text += fmt::format("{:<22}", kRayKernelNames[kernel]);
     for (size_t unit = 0; unit < kUnits; ++unit) text += fmt::format("{:>9}", fmt::format("{} ({})", counts[unit], thesis[unit]));

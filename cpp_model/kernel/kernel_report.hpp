@@ -18,6 +18,7 @@ Program extract_kernel(const Program& program, const std::string& name);
 InstructionCounts count_instructions(const Program& program, const std::string& name);
 
 /// The ray kernels by ALU beside those of the thesis this machine starts from, as text with fixed columns.
-std::string kernel_table();
+/// `fused`: of machines with arithmetic.fma.
+std::string kernel_table(bool fused = false);
 
 }  // namespace raypool

@@ -6,9 +6,9 @@
 namespace raypool {
 namespace {
 
-template <Subnormals kSubnormals, SlowUnit kSlowUnit>
+template <Subnormals kSubnormals, SlowUnit kSlowUnit, bool kFused>
 void run_in_mode(RayKernel which, NativeThread& thread) {
-  kernel::NativeKernel<kSubnormals, kSlowUnit> k(thread);
+  kernel::NativeKernel<kSubnormals, kSlowUnit, kFused> k(thread);
   switch (which) {
     case RayKernel::CastEye:
       return kernel::cast_eye(k);
@@ -21,17 +21,17 @@ void run_in_mode(RayKernel which, NativeThread& thread) {
   }
 }
 
-template <Subnormals kSubnormals>
+template <Subnormals kSubnormals, bool kFused>
 void run_in_mode(RayKernel which, NativeThread& thread) {
   switch (thread.mode.slow_unit) {
     case SlowUnit::Exact:
-      return run_in_mode<kSubnormals, SlowUnit::Exact>(which, thread);
+      return run_in_mode<kSubnormals, SlowUnit::Exact, kFused>(which, thread);
     case SlowUnit::Newton2:
-      return run_in_mode<kSubnormals, SlowUnit::Newton2>(which, thread);
+      return run_in_mode<kSubnormals, SlowUnit::Newton2, kFused>(which, thread);
     case SlowUnit::Newton1:
-      return run_in_mode<kSubnormals, SlowUnit::Newton1>(which, thread);
+      return run_in_mode<kSubnormals, SlowUnit::Newton1, kFused>(which, thread);
     case SlowUnit::Newton0:
-      return run_in_mode<kSubnormals, SlowUnit::Newton0>(which, thread);
+      return run_in_mode<kSubnormals, SlowUnit::Newton0, kFused>(which, thread);
   }
 }
 
@@ -41,21 +41,24 @@ std::string name_of(RayKernel which) { return std::string(kRayKernelNames[static
 
 void run_native(RayKernel which, NativeThread& thread) {
   if (thread.mode.subnormals == Subnormals::Flush)
-    run_in_mode<Subnormals::Flush>(which, thread);
+    thread.mode.fused ? run_in_mode<Subnormals::Flush, true>(which, thread)
+                      : run_in_mode<Subnormals::Flush, false>(which, thread);
   else
-    run_in_mode<Subnormals::Ieee>(which, thread);
+    thread.mode.fused ? run_in_mode<Subnormals::Ieee, true>(which, thread) : run_in_mode<Subnormals::Ieee, false>(which, thread);
 }
 
-const Program& ray_kernel_program() {
-  static const Program kProgram = [] {
+const Program& ray_kernel_program(bool fused) {
+  const auto build = [](bool with_fused) {
     Program program;
-    kernel::add_kernel(program, name_of(RayKernel::CastEye), [](auto& k) { kernel::cast_eye(k); });
-    kernel::add_kernel(program, name_of(RayKernel::CastSecondary), [](auto& k) { kernel::cast_secondary(k); });
-    kernel::add_kernel(program, name_of(RayKernel::CastSecondaryDirect), [](auto& k) { kernel::cast_secondary_direct(k); });
-    kernel::add_kernel(program, name_of(RayKernel::Shade), [](auto& k) { kernel::shade(k); });
+    const auto add = [&](RayKernel which, const auto& body) { kernel::add_kernel(program, name_of(which), body, with_fused); };
+    add(RayKernel::CastEye, [](auto& k) { kernel::cast_eye(k); });
+    add(RayKernel::CastSecondary, [](auto& k) { kernel::cast_secondary(k); });
+    add(RayKernel::CastSecondaryDirect, [](auto& k) { kernel::cast_secondary_direct(k); });
+    add(RayKernel::Shade, [](auto& k) { kernel::shade(k); });
     return program;
-  }();
-  return kProgram;
+  };
+  static const Program kPlain = build(false), kFused = build(true);
+  return fused ? kFused : kPlain;
 }
 
 }  // namespace raypool

@@ -46,8 +46,9 @@ inline constexpr int kCount = 23;
 }  // namespace argument
 // CastEye is launched with block word = x of the tile's first pixel | y << 16. Pixels outside the image export nothing.
 
-/// All ray kernels in one program. Throws InputError (with kernel and line) when registers or predicates do not suffice.
-const Program& ray_kernel_program();
+/// All ray kernels in one program, `fused` for machines with arithmetic.fma. Throws InputError (with kernel and line) when
+/// registers or predicates do not suffice.
+const Program& ray_kernel_program(bool fused = false);
 
 /// What one thread of a kernel sees and leaves when it runs as C++.
 struct NativeThread {

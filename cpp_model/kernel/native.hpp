@@ -13,9 +13,10 @@ namespace raypool::kernel {
 /// What a thread reads from ray words that nobody has written: a NaN that shows up in pictures and comparisons.
 inline constexpr uint32_t kUndefinedWord = 0x7fdeadadu;
 
-template <Subnormals kSubnormals, SlowUnit kSlowUnit>
+/// kFused: as a machine with arithmetic.fma computes.
+template <Subnormals kSubnormals, SlowUnit kSlowUnit, bool kFused = false>
 class NativeKernel {
-  static constexpr arith::Mode kMode = {kSubnormals, kSlowUnit};
+  static constexpr arith::Mode kMode = {kSubnormals, kSlowUnit, kFused};
 
  public:
   struct Bool {
@@ -78,6 +79,7 @@ class NativeKernel {
     friend Float operator-(Float a, Float b) { return of_bits(arith::sub(a.bits, b.bits, kMode)); }
     friend Float operator*(Float a, Float b) { return of_bits(arith::mul(a.bits, b.bits, kMode)); }
     friend Float operator/(Float a, Float b) { return of_bits(arith::div(a.bits, b.bits, kMode)); }
+    friend Float multiply_add(Float a, Float b, Float c) { return of_bits(arith::muladd(a.bits, b.bits, c.bits, kMode)); }
     friend Float operator-(Float a) { return of_bits(a.bits ^ 0x80000000u); }
     Float& operator+=(Float b) { return *this = *this + b; }
     Float& operator-=(Float b) { return *this = *this - b; }

@@ -32,9 +32,9 @@ const InstructionInfo* exchanged(const InstructionInfo& info) {
   static const std::map<std::string_view, std::string_view> kExchanged = {
       {"iadd", "iadd"}, {"imul", "imul"}, {"and", "and"},   {"or", "or"},     {"xor", "xor"},   {"imin", "imin"},
       {"imax", "imax"}, {"umin", "umin"}, {"umax", "umax"}, {"fadd", "fadd"}, {"fmul", "fmul"}, {"fmin", "fmin"},
-      {"fmax", "fmax"}, {"ieq", "ieq"},   {"ine", "ine"},   {"ilt", "igt"},   {"ile", "ige"},   {"igt", "ilt"},
-      {"ige", "ile"},   {"ult", "ugt"},   {"ule", "uge"},   {"ugt", "ult"},   {"uge", "ule"},   {"feq", "feq"},
-      {"fne", "fne"},   {"flt", "fgt"},   {"fle", "fge"},   {"fgt", "flt"},   {"fge", "fle"}};
+      {"fmax", "fmax"}, {"ffma", "ffma"}, {"ieq", "ieq"},   {"ine", "ine"},   {"ilt", "igt"},   {"ile", "ige"},
+      {"igt", "ilt"},   {"ige", "ile"},   {"ult", "ugt"},   {"ule", "uge"},   {"ugt", "ult"},   {"uge", "ule"},
+      {"feq", "feq"},   {"fne", "fne"},   {"flt", "fgt"},   {"fle", "fge"},   {"fgt", "flt"},   {"fge", "fle"}};
   const auto found = kExchanged.find(info.mnemonic);
   return found == kExchanged.end() ? nullptr : &instruction(found->second);
 }

@@ -139,7 +139,7 @@ class RandomKernel {
       case 3:
         return a * b;
       case 4:
-        return literal * a + b * a;
+        return multiply_add(b, a, literal * a);
       case 5:
         return a / b;
       case 6:
@@ -305,11 +305,19 @@ struct Outcome {
   int refused = 0;
 };
 
+template <Subnormals kSubnormals, bool kFused>
+void run_random(NativeThread& thread, uint32_t seed) {
+  NativeKernel<kSubnormals, SlowUnit::Exact, kFused> k(thread);
+  RandomKernel<decltype(k)>(k, seed).run();
+}
+
 void compare(uint32_t seed, Outcome& outcome) {
+  const bool fused = seed % 3 == 0;
   Program program;
   program.code.assign(seed % 5, 0);  // entries are not always 0
   try {
-    add_kernel(program, "random", [&](RecordedKernel& k) { RandomKernel<RecordedKernel>(k, seed).run(); });
+    add_kernel(
+        program, "random", [&](RecordedKernel& k) { RandomKernel<RecordedKernel>(k, seed).run(); }, fused);
   } catch (const InputError& error) {
     ++outcome.refused;
     return;
@@ -329,6 +337,7 @@ void compare(uint32_t seed, Outcome& outcome) {
     }
   }
   machine.mode.subnormals = seed % 2 != 0 ? Subnormals::Flush : Subnormals::Ieee;
+  machine.mode.fused = fused;
   machine.threads = 1 + seed % test::Interpreter::kLanes;
   Memory native_memory = machine.memory;
   machine.run(program, program.entries["random"]);
@@ -342,11 +351,9 @@ void compare(uint32_t seed, Outcome& outcome) {
     thread.mode = machine.mode;
     thread.input = machine.input[lane];
     if (thread.mode.subnormals == Subnormals::Flush) {
-      NativeKernel<Subnormals::Flush, SlowUnit::Exact> k(thread);
-      RandomKernel<decltype(k)>(k, seed).run();
+      thread.mode.fused ? run_random<Subnormals::Flush, true>(thread, seed) : run_random<Subnormals::Flush, false>(thread, seed);
     } else {
-      NativeKernel<Subnormals::Ieee, SlowUnit::Exact> k(thread);
-      RandomKernel<decltype(k)>(k, seed).run();
+      thread.mode.fused ? run_random<Subnormals::Ieee, true>(thread, seed) : run_random<Subnormals::Ieee, false>(thread, seed);
     }
     ASSERT_EQ(thread.rays, machine.rays[lane]) << "seed " << seed << ", thread " << lane << "\n" << listing(program);
   }

@@ -22,9 +22,9 @@ void cast_eye(K& k) {
   const Float row = to_float(y);
   for (int axis = 0; axis < 3; ++axis) {
     k.set_word(word::kOrigin + axis, k.int_argument(argument::kEye + axis));
-    k.set_word(word::kDirection + axis, k.float_argument(argument::kCorner + axis) +
-                                            column * k.float_argument(argument::kStepX + axis) +
-                                            row * k.float_argument(argument::kStepY + axis));
+    k.set_word(word::kDirection + axis, multiply_add(row, k.float_argument(argument::kStepY + axis),
+                                                     multiply_add(column, k.float_argument(argument::kStepX + axis),
+                                                                  k.float_argument(argument::kCorner + axis))));
     k.set_word(word::kColor + axis, Float(1.0f));
   }
   k.set_word(word::kLimit, Float(std::numeric_limits<float>::infinity()));
@@ -59,7 +59,9 @@ Vector<K> secondary_origin(K& k, const Vector<K>& direction, const Vector<K>& no
   Float offset = k.float_argument(argument::kOffset);
   k.if_(back, [&] { offset = -offset; });
   const Float distance = k.float_word(word::kDistance);
-  const auto along = [&](const Float& from, const Float& d, const Float& n) { return from + distance * d + offset * n; };
+  const auto along = [&](const Float& from, const Float& d, const Float& n) {
+    return multiply_add(offset, n, multiply_add(distance, d, from));
+  };
   return {along(k.float_word(word::kOrigin), direction.x, normal.x),
           along(k.float_word(word::kOrigin + 1), direction.y, normal.y),
           along(k.float_word(word::kOrigin + 2), direction.z, normal.z)};
@@ -101,8 +103,10 @@ void cast_secondary(K& k) {
   const Bool back = projection > 0.0f;
   const Vector<K> origin = secondary_origin(k, direction, normal, back);
   set_vector_word(k, word::kOrigin, origin);
-  const Float twice = projection + projection;
-  set_vector_word(k, word::kDirection, direction - twice * normal);
+  const Float minus_twice = projection * -2.0f;
+  set_vector_word(k, word::kDirection,
+                  {multiply_add(minus_twice, normal.x, direction.x), multiply_add(minus_twice, normal.y, direction.y),
+                   multiply_add(minus_twice, normal.z, direction.z)});
   const Lighting<K> light = light_hit(k, origin, normal, back);
   const Int material = k.int_word(word::kMaterial);
   const auto contribution = [&](int i) {

@@ -227,6 +227,9 @@ inline Float operator+(const FloatOperand& a, const FloatOperand& b) { return fl
 inline Float operator-(const FloatOperand& a, const FloatOperand& b) { return float_value(binary("fsub", a, b)); }
 inline Float operator*(const FloatOperand& a, const FloatOperand& b) { return float_value(binary("fmul", a, b)); }
 inline Float operator/(const FloatOperand& a, const FloatOperand& b) { return float_value(binary("fdiv", a, b)); }
+inline Float multiply_add(const FloatOperand& a, const FloatOperand& b, const FloatOperand& c) {
+  return float_value(Recorder::active().emit_multiply_add(a.number, b.number, c.number, a.where));
+}
 inline Float operator-(const FloatOperand& a) {
   return float_value(Recorder::active().emit_immediate("xor", a.number, 0x80000000u, a.where));
 }

@@ -16,7 +16,7 @@ constexpr size_t kShortestJump = 6;
 
 }  // namespace
 
-Recorder::Recorder(const std::string& name) {
+Recorder::Recorder(const std::string& name, bool fused) : fused_(fused) {
   if (active_recorder != nullptr) throw std::logic_error("a kernel is being recorded inside another one");
   function_.name = name;
   predicate_masks_.push_back({});
@@ -70,6 +70,13 @@ int Recorder::emit_unary(std::string_view mnemonic, int ra, const Location& wher
 int Recorder::emit_binary(std::string_view mnemonic, int ra, int rb, const Location& where) {
   const int rd = emit_unary(mnemonic, ra, where);
   function_.ops.back().rb = rb;
+  return rd;
+}
+
+int Recorder::emit_multiply_add(int a, int b, int c, const Location& where) {
+  if (!fused_) return emit_binary("fadd", emit_binary("fmul", a, b, where), c, where);
+  const int rd = emit_binary("ffma", a, b, where);
+  function_.ops.back().rc = c;
   return rd;
 }
 

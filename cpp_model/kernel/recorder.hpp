@@ -18,7 +18,8 @@ struct Condition {
 class Recorder {
  public:
   /// Becomes the active recorder of this C++ thread until it is destroyed; there may be one at a time.
-  explicit Recorder(const std::string& name);
+  /// `fused`: the machine has a fused multiply-add.
+  explicit Recorder(const std::string& name, bool fused = false);
   ~Recorder();
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
@@ -36,6 +37,8 @@ class Recorder {
   int emit_value(std::string_view mnemonic, const Location& where);
   int emit_unary(std::string_view mnemonic, int ra, const Location& where);
   int emit_binary(std::string_view mnemonic, int ra, int rb, const Location& where);
+  /// a * b + c: one instruction if the machine has it, else two.
+  int emit_multiply_add(int a, int b, int c, const Location& where);
   int emit_immediate(std::string_view mnemonic, int ra, uint32_t immediate, const Location& where);
   int emit_constant(uint32_t bits, const Location& where);
   int emit_copy(int source, const Location& where);
@@ -75,6 +78,7 @@ class Recorder {
   bool defined_last(int destination, bool predicate) const;
   void check_unlocked(int predicate, const Location& where) const;
 
+  bool fused_;
   Function function_;
   Guard guard_;
   std::vector<Guard> register_masks_;   // mask under which a virtual register was declared

@@ -154,6 +154,7 @@ class Interpreter {
     if (name == "fadd") return arith::add(a, b, mode);
     if (name == "fsub") return arith::sub(a, b, mode);
     if (name == "fmul") return arith::mul(a, b, mode);
+    if (name == "ffma") return arith::fma(a, b, registers_[lane][op.x], mode);
     if (name == "fmin") return arith::min(a, b, mode);
     if (name == "fmax") return arith::max(a, b, mode);
     if (name == "f2i") return arith::to_int(a, mode);

@@ -553,6 +553,7 @@ void CycleUnit::record_issue(uint32_t warp, const DecodedInstruction& instructio
   issue.mask = core_.thread_mask(warp, instruction);
   row(issue.a, instruction.ra);
   row(issue.b, instruction.rb);
+  row(issue.c, instruction.x & 15);
   if (instruction.b_is_immediate) std::fill(issue.b.begin(), issue.b.end(), instruction.immediate);
   issue.px = core_.predicate(warp, instruction.x & 15);
   issue.pb = core_.predicate(warp, instruction.rb);

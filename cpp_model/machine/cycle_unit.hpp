@@ -42,7 +42,7 @@ class CycleUnit final : public ComputeUnit {
     uint32_t pc = 0;
     const DecodedInstruction* instruction = nullptr;
     uint32_t mask = 0;
-    std::vector<uint32_t> a, b;  ///< one word a lane
+    std::vector<uint32_t> a, b, c;  ///< one word a lane; c: register rc of instructions that have it
     uint32_t px = 0, pb = 0;
     std::vector<uint32_t> data;  ///< result, one word a lane
     uint32_t predicate = 0;

@@ -4,12 +4,12 @@
 
 namespace raypool {
 
-DecodedInstruction decode(uint64_t encoding) {
+DecodedInstruction decode(uint64_t encoding, const Configuration& configuration) {
   const Instruction fields = unpack(encoding);
   DecodedInstruction result;
   result.encoding = encoding;
   result.immediate = fields.immediate;
-  result.info = fields.info;
+  result.info = fields.info != nullptr && configuration.has(fields.info->needs) ? fields.info : nullptr;
   result.guard = fields.guard;
   result.guard_negated = fields.guard_negated;
   result.rd = fields.rd;
@@ -17,7 +17,7 @@ DecodedInstruction decode(uint64_t encoding) {
   result.rb = fields.rb;
   result.b_is_immediate = fields.b_is_immediate;
   result.x = fields.x;
-  if (fields.info == nullptr) return result;
+  if (result.info == nullptr) return result;
   result.code = instruction_code(fields.info->unit, fields.info->operation);
   result.uses_b = has_operand(*fields.info, Operand::B) || has_operand(*fields.info, Operand::Rb);
   result.writes_register = raypool::writes_register(*fields.info);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "config/configuration.hpp"
 #include "isa/isa.hpp"
 
 namespace raypool {
@@ -30,6 +31,7 @@ inline constexpr uint16_t instruction_code(Unit unit, int operation) {
   return static_cast<uint16_t>(static_cast<int>(unit) * 32 + operation);
 }
 
-DecodedInstruction decode(uint64_t encoding);
+/// Rows that need a feature which the configuration has not are illegal.
+DecodedInstruction decode(uint64_t encoding, const Configuration& configuration);
 
 }  // namespace raypool

@@ -46,7 +46,8 @@ FunctionalCore::FunctionalCore(const Configuration& configuration, Memory& memor
     : memory_(&memory),
       lanes_(configuration.cores),
       stack_depth_(static_cast<uint32_t>(configuration.stack_depth)),
-      mode_{configuration.subnormals, configuration.slow_unit},
+      configuration_(configuration),
+      mode_(arith::mode_of(configuration)),
       registers_(static_cast<size_t>(configuration.contents() * kRegisters)),
       warps_(static_cast<size_t>(configuration.warps)),
       slices_(configuration.warps, configuration.cores) {
@@ -91,7 +92,7 @@ void FunctionalCore::launch(const LaunchCommand& command) {
   if (!program_decoded_) {
     program_.reserve(program_length_);
     for (uint32_t i = 0; i < program_length_; ++i) {
-      program_.push_back(decode(uint64_t{memory_->load(8 * i + 4)} << 32 | memory_->load(8 * i)));
+      program_.push_back(decode(uint64_t{memory_->load(8 * i + 4)} << 32 | memory_->load(8 * i), configuration_));
     }
     program_decoded_ = true;
   }
@@ -181,7 +182,7 @@ const Step& FunctionalCore::step_lanes(uint32_t number) {
       if (!execute_ray<kLanes>(instruction, warp, rd, b)) return result;
       break;
     default:
-      execute_data<kLanes>(instruction, warp, rd, a, b);
+      execute_data<kLanes>(instruction, warp, rd, a, b, bank + (instruction.x & 15) * kLanes);
       break;
   }
   if (instruction.writes_register) result.data = rd;
@@ -278,7 +279,7 @@ uint32_t FunctionalCore::compare(const DecodedInstruction& instruction, const Wa
 
 template <int kLanes>
 void FunctionalCore::execute_data(const DecodedInstruction& instruction, Warp& warp, uint32_t* rd, const uint32_t* a,
-                                  const uint32_t* b) {
+                                  const uint32_t* b, const uint32_t* c) {
   const arith::Mode mode = mode_;
   const uint32_t mask = result_.mask;
   const auto map = [=](auto function) { map_lanes<kLanes>(mask, rd, a, b, function); };
@@ -381,6 +382,12 @@ void FunctionalCore::execute_data(const DecodedInstruction& instruction, Warp& w
       break;
     case code(Unit::Flt, 6):
       map([mode](uint32_t x, uint32_t) { return arith::from_int(x, mode); });
+      break;
+    case code(Unit::Flt, 7):
+      // A masked lane sees its own operands only, so rd may be one of them.
+      for (uint32_t lane = 0; lane < kLanes; ++lane) {
+        if (mask >> lane & 1) rd[lane] = arith::fma(a[lane], b[lane], c[lane], mode);
+      }
       break;
 
     case code(Unit::Slw, 0):

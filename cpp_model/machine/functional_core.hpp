@@ -141,7 +141,8 @@ class FunctionalCore {
   template <int kLanes>
   const Step& step_lanes(uint32_t warp);
   template <int kLanes>
-  void execute_data(const DecodedInstruction& instruction, Warp& warp, uint32_t* rd, const uint32_t* a, const uint32_t* b);
+  void execute_data(const DecodedInstruction& instruction, Warp& warp, uint32_t* rd, const uint32_t* a, const uint32_t* b,
+                    const uint32_t* c);
   template <int kLanes>
   uint32_t compare(const DecodedInstruction& instruction, const Warp& warp, const uint32_t* a, const uint32_t* b) const;
   template <int kLanes>
@@ -154,6 +155,7 @@ class FunctionalCore {
   Memory* memory_;
   int lanes_;
   uint32_t stack_depth_;
+  Configuration configuration_;
   arith::Mode mode_;
   uint32_t program_length_ = 0, memory_limit_ = 0;
   bool program_decoded_ = false;

@@ -54,16 +54,17 @@ Result run(FunctionalCore& core, const LaunchCommand& command, const std::vector
 
 TEST(KernelsOnCore, RayKernelsLeaveWhatTheyLeaveNatively) {
   for (const char* name : kConfigurations) {
-    for (int mode = 0; mode < 8; ++mode) {
+    for (int mode = 0; mode < 16; ++mode) {
       SCOPED_TRACE(std::string(name) + " mode " + std::to_string(mode));
       Configuration configuration = load_configuration(name);
       configuration.subnormals = static_cast<Subnormals>(mode & 1);
-      configuration.slow_unit = static_cast<SlowUnit>(mode >> 1);
+      configuration.slow_unit = static_cast<SlowUnit>(mode >> 1 & 3);
+      configuration.fma = mode >= 8;
       std::mt19937 random(static_cast<uint32_t>(mode) + 1);
       const auto number = [&] { return test::float_bits(static_cast<float>(static_cast<int>(random() % 4001) - 2000) / 512.0f); };
 
       Memory memory(kMemoryBytes);
-      const Program& program = ray_kernel_program();
+      const Program& program = ray_kernel_program(configuration.fma);
       test::put_program(memory, program.code);
       for (uint32_t i = 0; i < 8; ++i) memory.store(kMaterial + 4 * i, number());
       FunctionalCore core(configuration, memory);
@@ -80,7 +81,7 @@ TEST(KernelsOnCore, RayKernelsLeaveWhatTheyLeaveNatively) {
         const auto which = static_cast<RayKernel>(kernel);
         LaunchCommand command;
         command.pc = program.entries.at(std::string(kRayKernelNames[static_cast<size_t>(kernel)]));
-        command.threads = static_cast<uint32_t>(std::max(1, configuration.contents() - mode));
+        command.threads = static_cast<uint32_t>(std::max(1, configuration.contents() - mode % 8));
         command.block = 24u | 16u << 16;
         if (which != RayKernel::CastEye) command.import = which == RayKernel::Shade ? ImportKind::Shadow : ImportKind::Normal;
         std::vector<Intersection> packages(command.threads);
@@ -97,7 +98,7 @@ TEST(KernelsOnCore, RayKernelsLeaveWhatTheyLeaveNatively) {
           thread.threads = command.threads;
           thread.arguments = &arguments;
           thread.memory = &memory;
-          thread.mode = {configuration.subnormals, configuration.slow_unit};
+          thread.mode = arith::mode_of(configuration);
           thread.input = packages[t];
           run_native(which, thread);
           ASSERT_EQ(result.rays[t], thread.rays) << kRayKernelNames[static_cast<size_t>(kernel)] << ", thread " << t;
@@ -117,8 +118,9 @@ TEST(KernelsOnCore, ComputeKernelsLeaveTheMemoryTheyLeaveNatively) {
     for (const ComputeKernel which : {ComputeKernel::Saxpy, ComputeKernel::Matmul}) {
       const std::string kernel(kComputeKernelNames[static_cast<size_t>(which)]);
       SCOPED_TRACE(name + (" " + kernel));
-      const Configuration configuration = load_configuration(name);
-      const Program& program = compute_kernel_program();
+      Configuration configuration = load_configuration(name);
+      configuration.fma = configuration.warps == 4;
+      const Program& program = compute_kernel_program(configuration.fma);
       Memory memory(kMemoryBytes);
       test::put_program(memory, program.code);
       for (uint32_t address = 4096; address < kMemoryBytes; address += 4) {
@@ -145,6 +147,7 @@ TEST(KernelsOnCore, ComputeKernelsLeaveTheMemoryTheyLeaveNatively) {
           thread.blocks = command.blocks;
           thread.arguments = &arguments;
           thread.memory = &native;
+          thread.mode = arith::mode_of(configuration);
           run_native(which, thread);
         }
       }

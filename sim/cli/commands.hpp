@@ -69,8 +69,8 @@ int isa_command(IsaFormat format);
 int asm_command(const std::string& path, const std::string& out);
 int disasm_command(const std::string& path, const std::string& out);
 
-/// `raypool kernels [NAME]`: counts by ALU, or the listing of one kernel.
-int kernels_command(const std::string& name);
+/// `raypool kernels [NAME]`: counts by ALU, or the listing of one kernel, as compiled for a configuration.
+int kernels_command(const std::string& name, const std::string& config);
 
 /// `raypool errors`: measured errors of the slow unit. Exit code 3 if one breaks its promise.
 int errors_command(uint32_t grid);

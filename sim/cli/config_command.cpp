@@ -17,8 +17,9 @@ void print_table(const Configuration& configuration) {
   fmt::print("  PC stack       {} entries a warp\n", configuration.stack_depth);
   fmt::print("  caches         instructions {} bytes, data {} bytes with {} miss-status holding registers\n",
              configuration.instruction_cache_bytes, configuration.data_cache_bytes, configuration.data_cache_mshrs);
-  fmt::print("  arithmetic     subnormals {}, slow unit {}\n", kSubnormalsNames[static_cast<size_t>(configuration.subnormals)],
-             kSlowUnitNames[static_cast<size_t>(configuration.slow_unit)]);
+  fmt::print("  arithmetic     subnormals {}, slow unit {}, fused multiply-add {}\n",
+             kSubnormalsNames[static_cast<size_t>(configuration.subnormals)],
+             kSlowUnitNames[static_cast<size_t>(configuration.slow_unit)], configuration.fma ? "on" : "off");
   fmt::print("  ALU   instances  latency  depth\n");
   for (size_t i = 0; i < kUnits; ++i) {
     const AluConfiguration& alu = configuration.alus[i];

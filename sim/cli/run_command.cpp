@@ -66,10 +66,15 @@ void prepare_kernel(Job& job, const RunOptions& options, uint32_t default_n, uin
     throw InputError(fmt::format("{} sets its own blocks, threads and arguments: choose its size with --n", options.kernel));
   }
   job.title = fmt::format("{}, n = {}", options.kernel, n);
-  job.program = compute_kernel_program();
+  job.program = compute_kernel_program(job.options.configuration.fma);
   job.options.entry = job.program.entries.at(options.kernel);
   job.options.threads = static_cast<uint32_t>(job.options.configuration.contents());
   job.options.arguments[saxpy_argument::kN] = n;
+}
+
+/// As the job's machine rounds it.
+float multiply_add(const Job& job, float a, float b, float c) {
+  return job.options.configuration.fma ? std::fma(a, b, c) : a * b + c;
 }
 
 void prepare_saxpy(Job& job, const RunOptions& options) {
@@ -87,7 +92,7 @@ void prepare_saxpy(Job& job, const RunOptions& options) {
   for (uint32_t i = 0; i < n; ++i) {
     job.memory.store(x + 4 * i, bits(sample(i)));
     job.memory.store(y + 4 * i, bits(sample(i + n)));
-    expected.push_back(a * sample(i) + sample(i + n));
+    expected.push_back(multiply_add(job, a, sample(i), sample(i + n)));
   }
   job.check = [&job, y, expected] { return check_results(job, y, expected); };
 }
@@ -111,7 +116,7 @@ void prepare_matmul(Job& job, const RunOptions& options) {
   for (uint32_t row = 0; row < n; ++row) {
     for (uint32_t column = 0; column < n; ++column) {
       float sum = 0;
-      for (uint32_t k = 0; k < n; ++k) sum += sample(row * n + k) * sample(k * n + column + 7);
+      for (uint32_t k = 0; k < n; ++k) sum = multiply_add(job, sample(row * n + k), sample(k * n + column + 7), sum);
       expected.push_back(sum);
     }
   }

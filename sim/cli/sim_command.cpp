@@ -53,7 +53,7 @@ std::string progress_text(const ChipProgress& done, bool timed, double seconds) 
 /// The chip around `device`, for as long as a frame lasts.
 ChipResult draw_on_chip(const SimOptions& options, const RunRecord& record, const Scene& scene, const Tracer& tracer,
                         MemoryImage& image, ComputeUnit& device, FrameBuffer& frame) {
-  const Program& program = ray_kernel_program();
+  const Program& program = ray_kernel_program(record.configuration.fma);
   SceneTracer scene_tracer(tracer);
   FrameBufferSink sink(frame);
   Progress progress(options.quiet);
@@ -105,7 +105,7 @@ int sim_command(const SimOptions& options) {
   record.scene = scene.name;
   record.triangles = scene.triangles.size();
   record.materials = scene.materials.size();
-  MemoryImage image = build_memory(ray_kernel_program(), scene);
+  MemoryImage image = build_memory(ray_kernel_program(record.configuration.fma), scene);
   OutputFolder out(options.out.empty() ? default_folder(options, record.configuration, size) : fs::path(options.out));
 
   FrameBuffer frame(size.width, size.height);
@@ -117,14 +117,15 @@ int sim_command(const SimOptions& options) {
     native.depth = options.depth;
     native.contents = record.configuration.contents();
     native.threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-    native.mode = {record.configuration.subnormals, record.configuration.slow_unit};
+    native.mode = arith::mode_of(record.configuration);
     record.native.emplace();
     const Progress drawing(true);
     frame = render_native(scene, image, tracer, native, &*record.native);
     record.simulation_seconds = drawing.seconds();
   } else {
     const EngineOptions device_options{engine, record.configuration, options.unit_library, options.waves, options.units};
-    std::unique_ptr<ComputeUnit> device = make_unit(device_options, image.memory, "unit", kernel_names(ray_kernel_program()));
+    std::unique_ptr<ComputeUnit> device =
+        make_unit(device_options, image.memory, "unit", kernel_names(ray_kernel_program(record.configuration.fma)));
     if (options.wrap) device = options.wrap(std::move(device), image.memory);
     if (options.waves) device->open_waveform(out.temporary("waves.fst"));
     const Tracer tracer(scene, image.material_base);

@@ -227,7 +227,7 @@ class Generator : public ProgramEmitter {
     while (pick >= profile_.units[unit]) pick -= profile_.units[unit++];
     for (;;) {
       const InstructionInfo& info = kInstructions[below(std::size(kInstructions))];
-      if (static_cast<size_t>(info.unit) == unit && !info.control) return info;
+      if (static_cast<size_t>(info.unit) == unit && !info.control && configuration_.has(info.needs)) return info;
     }
   }
 
@@ -244,6 +244,7 @@ class Generator : public ProgramEmitter {
     else if (has_operand(info, Operand::B) || has_operand(info, Operand::Rb))
       i.rb = static_cast<uint8_t>(source());
     if (has_operand(info, Operand::Pb)) i.rb = static_cast<uint8_t>(any_predicate());
+    if (has_operand(info, Operand::Rc)) i.x = static_cast<uint8_t>(source());
     if (has_operand(info, Operand::Px)) i.x = static_cast<uint8_t>(any_predicate());
     if (has_operand(info, Operand::Argument)) i.immediate = below(kArguments);
     emit(i);

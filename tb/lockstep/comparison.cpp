@@ -85,7 +85,9 @@ void Comparison::trace(const UnitTrace& rtl, const UnitTrace& model) {
 }
 
 void Comparison::only_one(const RetireEvent& event, bool in_rtl) const {
-  const DecodedInstruction instruction = decode(event.instruction);
+  Configuration with_everything;  // as it has been executed, the machine has it
+  with_everything.fma = true;
+  const DecodedInstruction instruction = decode(event.instruction, with_everything);
   throw Mismatch{fmt::format("warp {} retires an instruction in this cycle in {}, and not in {}", event.warp,
                              in_rtl ? "the RTL" : "the model", in_rtl ? "the model" : "the RTL"),
                  retired_line(in_rtl ? "RTL" : "model", event),

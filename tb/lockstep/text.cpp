@@ -36,9 +36,10 @@ std::string fault_text(const Fault& fault) {
 
 std::string lane_table(const CycleUnit::Issue& issue, int lanes, const uint32_t* rtl, const uint32_t* model) {
   const DecodedInstruction& instruction = *issue.instruction;
-  bool uses_a = false, uses_px = false, uses_pb = false;
+  bool uses_a = false, uses_c = false, uses_px = false, uses_pb = false;
   for (const Operand operand : instruction.info->operands) {
     uses_a |= operand == Operand::Ra || operand == Operand::Address;
+    uses_c |= operand == Operand::Rc;
     uses_px |= operand == Operand::Px;
     uses_pb |= operand == Operand::Pb;
   }
@@ -46,6 +47,7 @@ std::string lane_table(const CycleUnit::Issue& issue, int lanes, const uint32_t*
   const auto column = [&text](const std::string& cell) { text += fmt::format("  {:<24}", cell); };
   if (uses_a) column(fmt::format("r{}", instruction.ra));
   if (instruction.uses_b) column(instruction.b_is_immediate ? "immediate" : fmt::format("r{}", instruction.rb));
+  if (uses_c) column(fmt::format("r{}", instruction.x & 15));
   if (uses_px) column(fmt::format("p{}", instruction.x & 15));
   if (uses_pb) column(fmt::format("p{}", instruction.rb));
   if (rtl != nullptr) column("RTL"), column("model");
@@ -60,6 +62,7 @@ std::string lane_table(const CycleUnit::Issue& issue, int lanes, const uint32_t*
     text += fmt::format("  {:>4}", lane);
     if (uses_a) column(word_text(issue.a[i]));
     if (instruction.uses_b) column(word_text(issue.b[i]));
+    if (uses_c) column(word_text(issue.c[i]));
     if (uses_px) column(std::to_string(issue.px >> lane & 1));
     if (uses_pb) column(std::to_string(issue.pb >> lane & 1));
     if (!masked) {

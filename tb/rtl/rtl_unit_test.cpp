@@ -124,7 +124,8 @@ const Case kCases[] = {
      }},
     {"4w2c_many",
      [](Configuration& c) {
-       c.warps = 4, c.cores = 2, c.subnormals = Subnormals::Flush, c.slow_unit = SlowUnit::Newton1, c.stack_depth = 5;
+       c.warps = 4, c.cores = 2, c.subnormals = Subnormals::Flush, c.slow_unit = SlowUnit::Newton1, c.stack_depth = 5,
+       c.fma = true;
        c.alus[static_cast<size_t>(Unit::Int)] = {2, 1, 4};
        c.alus[static_cast<size_t>(Unit::Flt)] = {3, 4, 5};
        c.alus[static_cast<size_t>(Unit::Slw)] = {1, 16, 12};

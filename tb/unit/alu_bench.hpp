@@ -27,13 +27,22 @@ struct AluUnderTest {
   int depth;
 };
 
-using ModelFunction = uint32_t (*)(int operation, uint32_t a, uint32_t b, arith::Mode mode);
+using ModelFunction = uint32_t (*)(int operation, uint32_t a, uint32_t b, uint32_t c, arith::Mode mode);
+/// Whether a unit of this mode has the operation; without it its result is not looked at.
+using HasFunction = bool (*)(int operation, arith::Mode mode);
+inline bool has_every(int, arith::Mode) { return true; }
 
 template <typename Top>
 class AluBench {
  public:
-  AluBench(std::vector<AluUnderTest> units, ModelFunction model, uint64_t seed)
-      : units_(std::move(units)), model_(model), seed_(seed), random_(seed), expected_(units_.size()), top_(&context_) {
+  AluBench(std::vector<AluUnderTest> units, ModelFunction model, uint64_t seed, HasFunction has = has_every)
+      : units_(std::move(units)),
+        model_(model),
+        has_(has),
+        seed_(seed),
+        random_(seed),
+        expected_(units_.size()),
+        top_(&context_) {
     top_.rst_ni = 0;
     top_.task_valid_i = 0;
     tick();
@@ -43,13 +52,14 @@ class AluBench {
   ~AluBench() { top_.final(); }
 
   /// Adds one lane's operation to the next task; a task takes operations of one kind, so a change of kind sends what is gathered.
-  void add(int operation, uint32_t a, uint32_t b) {
+  void add(int operation, uint32_t a, uint32_t b, uint32_t c = 0) {
     if (lanes_ != 0 && operation != operation_) send();
     operation_ = operation;
     if (lanes_ < kBenchLanes - 1 && random_() % 8 == 0) ++lanes_;  // a hole in the mask; the lane has old operands
     mask_ |= 1u << lanes_;
     a_[lanes_] = a;
     b_[lanes_] = b;
+    c_[lanes_] = c;
     if (++lanes_ == kBenchLanes) send();
   }
 
@@ -67,7 +77,7 @@ class AluBench {
     uint64_t cycle;
     int operation;
     uint32_t warp, mask;
-    std::array<uint32_t, kBenchLanes> a, b, result;
+    std::array<uint32_t, kBenchLanes> a, b, c, result;
   };
 
   void send() {
@@ -80,10 +90,11 @@ class AluBench {
     for (int l = 0; l < kBenchLanes; ++l) {
       top_.task_a_i[l] = a_[l];
       top_.task_b_i[l] = b_[l];
+      set_third(top_, l, c_[l], 0);
     }
     for (size_t u = 0; u < units_.size(); ++u) {
-      Expected e{cycle_ + units_[u].depth, operation_, warp, mask_, a_, b_, {}};
-      for (int l = 0; l < lanes_; ++l) e.result[l] = model_(operation_, a_[l], b_[l], units_[u].mode);
+      Expected e{cycle_ + units_[u].depth, operation_, warp, has_(operation_, units_[u].mode) ? mask_ : 0, a_, b_, c_, {}};
+      for (int l = 0; l < lanes_; ++l) e.result[l] = model_(operation_, a_[l], b_[l], c_[l], units_[u].mode);
       expected_[u].push_back(e);
     }
     clock();
@@ -92,6 +103,14 @@ class AluBench {
     lanes_ = 0;
     mask_ = 0;
   }
+
+  /// The third operand, of tops that have one.
+  template <typename T>
+  static auto set_third(T& top, int lane, uint32_t c, int) -> decltype(void(top.task_c_i[0])) {
+    top.task_c_i[lane] = c;
+  }
+  template <typename T>
+  static void set_third(T&, int, uint32_t, long) {}
 
   void clock() {
     check();
@@ -124,8 +143,8 @@ class AluBench {
         ++compared_;
         if ((result != e.result[l] || warp != e.warp) && ++failures_ <= 10) {
           ADD_FAILURE() << units_[u].name << " operation " << e.operation << " lane " << l << std::hex << ": a " << e.a[l]
-                        << " b " << e.b[l] << " RTL " << result << " model " << e.result[l] << std::dec << ", warp " << warp
-                        << " expected " << e.warp << ", seed " << seed_;
+                        << " b " << e.b[l] << " c " << e.c[l] << " RTL " << result << " model " << e.result[l] << std::dec
+                        << ", warp " << warp << " expected " << e.warp << ", seed " << seed_;
         }
       }
     }
@@ -133,6 +152,7 @@ class AluBench {
 
   std::vector<AluUnderTest> units_;
   ModelFunction model_;
+  HasFunction has_;
   uint64_t seed_;
   std::mt19937_64 random_;
   std::vector<std::deque<Expected>> expected_;
@@ -141,7 +161,7 @@ class AluBench {
   int operation_ = 0;
   int lanes_ = 0;      ///< used or left out in the task that is being gathered
   uint32_t mask_ = 0;  ///< of those used
-  std::array<uint32_t, kBenchLanes> a_{}, b_{};
+  std::array<uint32_t, kBenchLanes> a_{}, b_{}, c_{};
   uint64_t cycle_ = 0, compared_ = 0;
   int failures_ = 0;
 };

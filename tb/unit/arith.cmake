@@ -15,7 +15,7 @@ function(arith_bench name top)
 endfunction()
 
 set(arith_flt_sources ${arith_rtl}/flt_alu.v ${arith_rtl}/float_lane.v ${arith_rtl}/float_adder.v ${arith_rtl}/float_multiplier.v
-  ${arith_rtl}/float_convert.v ${arith_rtl}/alu_pipeline.v ${arith_rtl}/alu_delay.v)
+  ${arith_rtl}/float_convert.v ${arith_rtl}/float_fma.v ${arith_rtl}/multiply_tree.v ${arith_rtl}/alu_pipeline.v ${arith_rtl}/alu_delay.v)
 arith_bench(flt_alu_test flt_units ${arith_flt_sources})
 
 set(arith_slw_sources ${arith_rtl}/slw_alu.v ${arith_rtl}/slow_lane.v ${arith_rtl}/slow_prepare.v ${arith_rtl}/slow_exact.v
@@ -30,20 +30,21 @@ find_program(VVP vvp)
 if(IVERILOG AND VVP)
   add_executable(arith_vectors ${arith_unit}/arith_vectors.cpp)
   target_link_libraries(arith_vectors PRIVATE raypool_arith)
-  foreach(mode IN ITEMS "0 0" "1 0" "0 1" "1 2" "0 3")
+  foreach(mode IN ITEMS "0 0 0" "1 0 0" "0 1 1" "1 2 1" "0 3 0")
     separate_arguments(mode)
     list(GET mode 0 subnormals)
     list(GET mode 1 slow_unit)
-    set(replay arith_icarus_${subnormals}${slow_unit})
+    list(GET mode 2 fma)
+    set(replay arith_icarus_${subnormals}${slow_unit}${fma})
     set(program ${CMAKE_CURRENT_BINARY_DIR}/${replay}.vvp)
     set(vectors ${CMAKE_CURRENT_BINARY_DIR}/${replay}.txt)
     set(sources ${arith_flt_sources} ${arith_slw_sources})
     list(REMOVE_DUPLICATES sources)
     add_custom_command(OUTPUT ${program}
       COMMAND ${IVERILOG} -g2005 -Wall -I ${arith_rtl} -s arith_icarus -Parith_icarus.SUBNORMALS=${subnormals}
-        -Parith_icarus.SLOW_UNIT=${slow_unit} -o ${program} ${arith_unit}/arith_icarus.v ${sources}
+        -Parith_icarus.SLOW_UNIT=${slow_unit} -Parith_icarus.FMA=${fma} -o ${program} ${arith_unit}/arith_icarus.v ${sources}
       DEPENDS ${arith_unit}/arith_icarus.v ${sources} ${arith_rtl}/isa.vh VERBATIM)
-    add_custom_command(OUTPUT ${vectors} COMMAND arith_vectors ${subnormals} ${slow_unit} 4000 > ${vectors} DEPENDS arith_vectors VERBATIM)
+    add_custom_command(OUTPUT ${vectors} COMMAND arith_vectors ${subnormals} ${slow_unit} ${fma} 4000 > ${vectors} DEPENDS arith_vectors VERBATIM)
     add_custom_target(${replay} ALL DEPENDS ${program} ${vectors})
     add_test(NAME ${replay} COMMAND ${VVP} -n ${program} +vectors=${vectors})
     set_tests_properties(${replay} PROPERTIES PASS_REGULAR_EXPRESSION "results agree" FAIL_REGULAR_EXPRESSION "FAILED")

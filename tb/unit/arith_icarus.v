@@ -1,26 +1,27 @@
 // Replays a vector file (written by arith_vectors) through the Flt and Slw ALUs of one configuration in Icarus: the same sources, another
-// simulator. Plus-arguments: vectors=FILE, a line a task: unit (0 Flt, 1 Slw), operation, a, b, expected, in hexadecimal. One lane, one task
+// simulator. Plus-arguments: vectors=FILE, a line a task: unit (0 Flt, 1 Slw), operation, a, b, c, expected, in hexadecimal. One lane, one task
 // a cycle. Prints "arith_icarus: N results agree" at the end, or the first differences and FAILED.
 `default_nettype none
 module arith_icarus #(
   parameter integer SUBNORMALS = 0,
-  parameter integer SLOW_UNIT = 0
+  parameter integer SLOW_UNIT = 0,
+  parameter integer FMA = 0
 );
-  localparam integer FLT_DEPTH = 3;
+  localparam integer FLT_DEPTH = (FMA != 0) ? 5 : 3;
   localparam integer SLW_DEPTH = 11;
   reg clk = 1'b0;
   reg rst_n = 1'b0;
   reg flt_valid = 1'b0, slw_valid = 1'b0;
   reg [2:0] warp = 3'd0;
   reg [4:0] op = 5'd0;
-  reg [31:0] a = 32'd0, b = 32'd0, expected = 32'd0;
+  reg [31:0] a = 32'd0, b = 32'd0, c = 32'd0, expected = 32'd0;
   wire flt_done, slw_done;
   wire [2:0] flt_warp, slw_warp;
   wire [31:0] flt_data, slw_data;
 
-  flt_alu #(.WARPS(8), .LANES(1), .LATENCY(1), .DEPTH(FLT_DEPTH), .SUBNORMALS(SUBNORMALS)) flt (
+  flt_alu #(.WARPS(8), .LANES(1), .LATENCY(1), .DEPTH(FLT_DEPTH), .SUBNORMALS(SUBNORMALS), .FMA(FMA)) flt (
     .clk_i(clk), .rst_ni(rst_n), .task_valid_i(flt_valid), .task_warp_i(warp), .task_op_i(op), .task_mask_i(1'b1), .task_a_i(a),
-    .task_b_i(b), .task_imm_i(32'd0), .task_x_i(5'd0), .task_px_i(1'b0), .task_pb_i(1'b0), .ready_o(), .done_valid_o(flt_done),
+    .task_b_i(b), .task_c_i(c), .task_imm_i(32'd0), .task_x_i(5'd0), .task_px_i(1'b0), .task_pb_i(1'b0), .ready_o(), .done_valid_o(flt_done),
     .done_warp_o(flt_warp), .done_data_o(flt_data), .done_pred_o());
   slw_alu #(.WARPS(8), .LANES(1), .LATENCY(1), .DEPTH(SLW_DEPTH), .SUBNORMALS(SUBNORMALS), .SLOW_UNIT(SLOW_UNIT)) slw (
     .clk_i(clk), .rst_ni(rst_n), .task_valid_i(slw_valid), .task_warp_i(warp), .task_op_i(op), .task_mask_i(1'b1), .task_a_i(a),
@@ -83,15 +84,15 @@ module arith_icarus #(
     end
     repeat (3) @(negedge clk);
     rst_n = 1'b1;
-    fields = $fscanf(file, "%h %h %h %h %h\n", unit, operation, a, b, expected);
-    while (fields == 5) begin
+    fields = $fscanf(file, "%h %h %h %h %h %h\n", unit, operation, a, b, c, expected);
+    while (fields == 6) begin
       op = operation[4:0];
       warp = warp + 3'd1;
       flt_valid = unit == 0;
       slw_valid = unit == 1;
       #0 check;
       @(negedge clk);
-      fields = $fscanf(file, "%h %h %h %h %h\n", unit, operation, a, b, expected);
+      fields = $fscanf(file, "%h %h %h %h %h %h\n", unit, operation, a, b, c, expected);
     end
     flt_valid = 1'b0;
     slw_valid = 1'b0;

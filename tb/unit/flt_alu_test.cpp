@@ -1,4 +1,4 @@
-// rtl/flt_alu.v in both subnormal modes against the model of arithmetic.
+// rtl/flt_alu.v in both subnormal modes, with and without fused multiply-add, against the model of arithmetic.
 #include <cstdio>
 
 #include "Vflt_units.h"
@@ -10,7 +10,7 @@ namespace {
 
 constexpr uint64_t kSeed = 4711;
 
-uint32_t model(int operation, uint32_t a, uint32_t b, arith::Mode mode) {
+uint32_t model(int operation, uint32_t a, uint32_t b, uint32_t c, arith::Mode mode) {
   switch (operation) {
     case 0:
       return arith::add(a, b, mode);
@@ -24,54 +24,76 @@ uint32_t model(int operation, uint32_t a, uint32_t b, arith::Mode mode) {
       return arith::max(a, b, mode);
     case 5:
       return arith::to_int(a, mode);
-    default:
+    case 6:
       return arith::from_int(a, mode);
+    default:
+      return arith::fma(a, b, c, mode);
   }
 }
-constexpr int kOperations = 7;
+constexpr int kOperations = 8;
+constexpr int kFma = 7;
+bool has(int operation, arith::Mode mode) { return operation != kFma || mode.fused; }
 
 std::vector<AluUnderTest> units() {
-  return {{"ieee", {Subnormals::Ieee, SlowUnit::Exact}, 3}, {"flush", {Subnormals::Flush, SlowUnit::Exact}, 5}};
+  return {{"ieee", {Subnormals::Ieee, SlowUnit::Exact}, 3},
+          {"flush", {Subnormals::Flush, SlowUnit::Exact}, 5},
+          {"ieee fma", {Subnormals::Ieee, SlowUnit::Exact, true}, 5},
+          {"flush fma", {Subnormals::Flush, SlowUnit::Exact, true}, 7}};
 }
 
 TEST(FltAlu, EveryPairOfSpecialValuesAgreesWithTheModel) {
-  AluBench<Vflt_units> bench(units(), model, kSeed);
+  AluBench<Vflt_units> bench(units(), model, kSeed, has);
   const std::vector<uint32_t> specials = arith::special_operands();
-  for (int operation = 0; operation < kOperations; ++operation) {
+  for (int operation = 0; operation < kFma; ++operation) {
     for (const uint32_t a : specials) {
       for (const uint32_t b : specials) bench.add(operation, a, b);
     }
   }
   bench.finish();
-  EXPECT_EQ(bench.compared(), 2 * kOperations * specials.size() * specials.size());
+  EXPECT_EQ(bench.compared(), 4 * kFma * specials.size() * specials.size());
+}
+
+TEST(FltAlu, TriplesOfSpecialValuesFuseAsTheModelDoes) {
+  AluBench<Vflt_units> bench(units(), model, kSeed, has);
+  const std::vector<uint32_t> specials = arith::special_operands();
+  std::mt19937_64 random(kSeed);
+  for (const uint32_t a : specials) {
+    for (const uint32_t b : specials) {
+      // Every pair with a fifth of the addends; over the pairs all of them.
+      for (size_t i = random() % 5; i < specials.size(); i += 5) bench.add(kFma, a, b, specials[i]);
+    }
+  }
+  bench.finish();
+  EXPECT_GE(bench.compared(), 300000u);
 }
 
 TEST(FltAlu, RandomPairsAgreeWithTheModel) {
-  AluBench<Vflt_units> bench(units(), model, kSeed);
+  AluBench<Vflt_units> bench(units(), model, kSeed, has);
   arith::OperandSource source(kSeed);
   std::mt19937_64 random(kSeed);
   // Sums and products most of all; conversions see operands of every magnitude.
-  const int operations[] = {0, 0, 0, 1, 1, 2, 2, 2, 3, 4, 5, 6};
+  const int operations[] = {0, 0, 1, 2, 2, 3, 4, 5, 6, 7, 7, 7};
   for (int i = 0; i < 1500000; i += kBenchLanes) {
     const int operation = operations[random() % 12];
     for (int l = 0; l < kBenchLanes; ++l) {
       auto [a, b] = source.next();
       if (operation == 5 && random() % 2) a = (a & 0x807fffffu) | static_cast<uint32_t>(120 + random() % 42) << 23;
       if (operation == 6) a = static_cast<uint32_t>(static_cast<int32_t>(a) >> random() % 32);
-      bench.add(operation, a, b);
+      bench.add(operation, a, b, source.third(a, b));
     }
   }
   bench.finish();
-  EXPECT_GE(bench.compared(), 3000000u);
+  EXPECT_GE(bench.compared(), 5000000u);
 }
 
 // Names with Long: in `make numerics-long` only.
 TEST(FltAluLong, ManyRandomPairsAgreeWithTheModel) {
-  AluBench<Vflt_units> bench(units(), model, kSeed + 1);
+  AluBench<Vflt_units> bench(units(), model, kSeed + 1, has);
   arith::OperandSource source(kSeed + 1);
   for (int i = 0; i < 40000000; ++i) {
     const auto [a, b] = source.next();
-    bench.add(i / kBenchLanes % 3, a, b);
+    constexpr int kLongOperations[] = {0, 1, 2, kFma};
+    bench.add(kLongOperations[i / kBenchLanes % 4], a, b, source.third(a, b));
   }
   bench.finish();
   std::printf("%llu results compared\n", static_cast<unsigned long long>(bench.compared()));

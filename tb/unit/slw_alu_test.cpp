@@ -9,7 +9,7 @@ namespace {
 
 constexpr uint64_t kSeed = 815;
 
-uint32_t model(int operation, uint32_t a, uint32_t b, arith::Mode mode) {
+uint32_t model(int operation, uint32_t a, uint32_t b, uint32_t, arith::Mode mode) {
   switch (operation) {
     case 0:
       return arith::div(a, b, mode);

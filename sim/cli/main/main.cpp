@@ -136,11 +136,12 @@ int run(int argc, char** argv) {
   asm_app->callback([&] { code = asm_command(text_path, text_out); });
   disasm_app->callback([&] { code = disasm_command(text_path, text_out); });
 
-  std::string kernel;
+  std::string kernel, kernels_config = "8w8c";
   CLI::App* kernels_app =
       app.add_subcommand("kernels", "the ray kernels' instruction counts by ALU, or the listing of one kernel");
   kernels_app->add_option("name", kernel, "kernel to list");
-  kernels_app->callback([&] { code = kernels_command(kernel); });
+  add_config(*kernels_app, kernels_config);
+  kernels_app->callback([&] { code = kernels_command(kernel, kernels_config); });
 
   uint32_t grid = 4096;
   CLI::App* errors_app = app.add_subcommand("errors", "measure the errors of division and roots of every slow unit, in ulp");
