@@ -17,53 +17,63 @@ module float_convert #(
   // value: the chosen operand, a mantissa at the top of a word, or an integer's magnitude.
   reg [1:0] s1_op_q, s2_op_q;
   reg s1_sign_q, s2_sign_q, s1_saturate_q, s2_saturate_q;
-  reg [5:0] s1_shift_q;                     // to the right, 32 and more leave nothing
+  reg [4:0] s1_places_q, s2_places_q;    // rotation to the left: for 2 the digits before the point, for 3 the leading zeros
   reg [31:0] s1_value_q, s2_value_q;
-  reg [4:0] s2_zeros_q;
 
   always @(posedge clk_i) begin
     if (enable_i[0]) begin : stage0
-      reg [31:0] a, b;
       reg nan_a, nan_b, below;
-      reg [8:0] distance;
+      reg [31:0] a, b;
       s1_op_q <= op_i;
       s1_sign_q <= a_i[31];
       nan_a = &a_i[30:23] && a_i[22:0] != 23'd0;
       nan_b = &b_i[30:23] && b_i[22:0] != 23'd0;
+      a = a_i;
+      b = b_i;
+      if (SUBNORMALS != 0 && a[30:23] == 8'd0) a[22:0] = 23'd0;
+      if (SUBNORMALS != 0 && b[30:23] == 8'd0) b[22:0] = 23'd0;
+      below = {!a[31], a[30:0] ^ {31{a[31]}}} < {!b[31], b[30:0] ^ {31{b[31]}}};
       if (!op_i[1]) begin
-        a = a_i;
-        b = b_i;
-        if (SUBNORMALS != 0 && a[30:23] == 8'd0) a[22:0] = 23'd0;
-        if (SUBNORMALS != 0 && b[30:23] == 8'd0) b[22:0] = 23'd0;
-        below = {!a[31], a[30:0] ^ {31{a[31]}}} < {!b[31], b[30:0] ^ {31{b[31]}}};
         if (nan_a && nan_b) s1_value_q <= 32'h7fc00000;
         else s1_value_q <= (nan_b || (!nan_a && below != op_i[0])) ? a : b;
       end else if (!op_i[0]) begin
-        // Mantissa with its leading one at bit 31, to be shifted right by 158 - exponent.
-        distance = 9'd158 - {1'b0, a_i[30:23]};
-        s1_saturate_q <= distance[8] || distance == 9'd0;
-        s1_shift_q <= (distance > 9'd32) ? 6'd32 : distance[5:0];
-        s1_value_q <= nan_a ? 32'd0 : {1'b1, a_i[22:0], 8'd0};
-        if (nan_a) s1_saturate_q <= 1'b0;
+        s1_value_q <= {1'b1, a_i[22:0], 8'd0};
       end else begin
-        s1_value_q <= a_i[31] ? -a_i : a_i;
+        s1_value_q <= (a_i ^ {32{a_i[31]}}) + {31'd0, a_i[31]};
       end
+      // 127 is the exponent of 1, with one digit before the point; 158 that of 2^31.
+      s1_places_q <= (a_i[30:23] < 8'd127 || nan_a) ? 5'd0 : a_i[27:23] + 5'd2;
+      s1_saturate_q <= a_i[30:23] >= 8'd158 && !nan_a;
     end
     if (enable_i[1]) begin : stage1
-      reg [31:0] value;
-      reg [4:0] zeros;
-      value = s1_value_q;
-      zeros = 5'd0;
-      if (s1_op_q == 2'd2) value = s1_value_q >> s1_shift_q;
-      if (s1_op_q == 2'd3) begin
-        if (value[31:16] == 16'd0) begin value = {value[15:0], 16'd0}; zeros[4] = 1'b1; end
-        if (value[31:24] == 8'd0) begin value = {value[23:0], 8'd0}; zeros[3] = 1'b1; end
-        if (value[31:28] == 4'd0) begin value = {value[27:0], 4'd0}; zeros[2] = 1'b1; end
-        if (value[31:30] == 2'd0) begin value = {value[29:0], 2'd0}; zeros[1] = 1'b1; end
-        if (!value[31]) begin value = {value[30:0], 1'b0}; zeros[0] = 1'b1; end
+      reg [31:0] value, kept;
+      // The lowest bit of each part does not matter: if no other one is set the number is 1 or 0.
+      reg [14:0] half;
+      reg [6:0] quarter;
+      reg [2:0] three;
+      reg [4:0] places;
+      places = s1_places_q;
+      if (s1_op_q[0]) begin
+        places[4] = s1_value_q[31:16] == 16'd0;
+        half = places[4] ? s1_value_q[15:1] : s1_value_q[31:17];
+        places[3] = half[14:7] == 8'd0;
+        quarter = places[3] ? half[6:0] : half[14:8];
+        places[2] = quarter[6:3] == 4'd0;
+        three = places[2] ? quarter[2:0] : quarter[6:4];
+        places[1] = three[2:1] == 2'd0;
+        places[0] = places[1] ? !three[0] : !three[2];
       end
-      s2_value_q <= value;
-      s2_zeros_q <= zeros;
+      if (!s1_op_q[1]) places = 5'd0;
+      // Of a number the digits before the point come to the bottom and the others are left out; the zeros above an integer may come in below.
+      value = s1_value_q;
+      if (places[4]) value = {value[15:0], value[31:16]};
+      if (places[3]) value = {value[23:0], value[31:24]};
+      if (places[2]) value = {value[27:0], value[31:28]};
+      if (places[1]) value = {value[29:0], value[31:30]};
+      if (places[0]) value = {value[30:0], value[31]};
+      kept = ~(32'hffffffff << places);
+      s2_value_q <= (s1_op_q == 2'd2) ? value & kept : value;
+      s2_places_q <= places;
       s2_op_q <= s1_op_q;
       s2_sign_q <= s1_sign_q;
       s2_saturate_q <= s1_saturate_q;
@@ -71,23 +81,24 @@ module float_convert #(
   end
 
   always @* begin : stage2
+    reg [31:0] value;
+    reg increment;
     result_o = 32'd0;
+    value = s2_value_q;
+    increment = 1'b0;
     if (enable_i[2]) begin
-      case (s2_op_q)
-        2'd2: begin
-          if (s2_saturate_q) result_o = s2_sign_q ? 32'h80000000 : 32'h7fffffff;
-          else result_o = s2_sign_q ? -s2_value_q : s2_value_q;
-        end
-        2'd3: begin
-          // 158 is the exponent of 2^31. No leading one: zero.
-          if (s2_value_q[31]) begin
-            result_o = {1'b0, 8'd158 - {3'd0, s2_zeros_q}, s2_value_q[30:8]} +
-                       {31'd0, s2_value_q[7] && (s2_value_q[8] || s2_value_q[6:0] != 7'd0)};
-            result_o[31] = s2_sign_q;
-          end
-        end
-        default: result_o = s2_value_q;
-      endcase
+      if (s2_op_q == 2'd2) begin
+        value = s2_value_q ^ {32{s2_sign_q}};
+        increment = s2_sign_q;
+      end
+      if (s2_op_q == 2'd3) begin
+        // No leading one: zero.
+        value = s2_value_q[31] ? {1'b0, 8'd158 - {3'd0, s2_places_q}, s2_value_q[30:8]} : 32'd0;
+        increment = s2_value_q[7] && (s2_value_q[8] || s2_value_q[6:0] != 7'd0);
+      end
+      result_o = value + {31'd0, increment};
+      if (s2_op_q == 2'd3 && s2_value_q[31]) result_o[31] = s2_sign_q;
+      if (s2_op_q == 2'd2 && s2_saturate_q) result_o = {s2_sign_q, {31{!s2_sign_q}}};
     end
   end
 endmodule

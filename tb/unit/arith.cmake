@@ -50,3 +50,19 @@ if(IVERILOG AND VVP)
     set_tests_properties(${replay} PROPERTIES PASS_REGULAR_EXPRESSION "results agree" FAIL_REGULAR_EXPRESSION "FAILED")
   endforeach()
 endif()
+
+# Narrow formats, against exact integers with all operands there are.
+add_executable(small_floats_test ${arith_unit}/small_floats_test.cpp)
+target_link_libraries(small_floats_test PRIVATE GTest::gtest_main)
+target_include_directories(small_floats_test SYSTEM PRIVATE ${VERILATOR_ROOT}/include)
+foreach(format IN ITEMS "16 5 10" "8 4 3")
+  separate_arguments(format)
+  list(GET format 0 bits)
+  list(GET format 1 exponent)
+  list(GET format 2 mantissa)
+  verilate(small_floats_test SOURCES ${arith_unit}/small_floats.v ${arith_rtl}/float_adder.v ${arith_rtl}/float_multiplier.v
+      ${arith_rtl}/float_fma.v ${arith_rtl}/multiply_tree.v
+    TOP_MODULE small_floats PREFIX Vsmall_floats_${bits} INCLUDE_DIRS ${arith_rtl} OPT_SLOW -w OPT_FAST -O2 -w OPT_GLOBAL -O1 -w
+    VERILATOR_ARGS --default-language 1364-2005 -O3 --x-assign fast --x-initial fast -GEXPONENT_BITS=${exponent} -GMANTISSA_BITS=${mantissa})
+endforeach()
+gtest_discover_tests(small_floats_test WORKING_DIRECTORY ${CMAKE_SOURCE_DIR} DISCOVERY_TIMEOUT 60 TEST_FILTER "-*Long*")
