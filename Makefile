@@ -44,7 +44,7 @@ WAVES_FLAG := $(if $(filter-out 0,$(WAVES)),--waves)
 UNIT := scripts/unit.sh "$$CONFIG" $(WAVES_FLAG)
 UNIT_OF_ENGINE := $(if $(filter rtl lockstep,$(ENGINE)),$(UNIT),true)
 
-.PHONY: help sim run cosim configurations mutants unit test lint format bench clean setup-% program configured-% numerics-long
+.PHONY: help sim run cosim configurations mutants unit test lint format bench clean setup-% program configured-% numerics-long proofs
 
 help: ## this list
 	@echo 'raypool: a ray-tracing GPU to render on, measure, verify and synthesise'
@@ -96,9 +96,12 @@ test: setup-sim setup-test configured-ON ## every test
 	@ctest --test-dir $(BUILD) --output-on-failure -j "$$(nproc)"
 
 numerics-long: setup-sim setup-test configured-ON ## arithmetic against its oracles: every unary input, 10^8 pairs; an hour
-	@$(LOCKED) cmake --build $(BUILD) --target numerics_long flt_alu_test slw_alu_test
+	@$(LOCKED) cmake --build $(BUILD) --target numerics_long flt_alu_test slw_alu_test small_floats_test
 	@$(BUILD)/tb/numerics_long
-	@for bench in flt_alu_test slw_alu_test; do $(BUILD)/tb/$$bench --gtest_filter='*Long*'; done
+	@for bench in flt_alu_test slw_alu_test small_floats_test; do $(BUILD)/tb/$$bench --gtest_filter='*Long*'; done
+
+proofs: setup-lint ## formal proofs of blocks (Yosys, ABC)
+	@scripts/proofs.sh
 
 lint: setup-sim setup-lint configured-ON ## Verilog in three tools, C++ layout and checks
 	@scripts/lint.sh
