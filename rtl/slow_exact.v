@@ -40,17 +40,22 @@ module slow_exact (
   reg [24:0] s6_half_q;           // half a unit in the last place of the result: the lowest one of m
   reg [24:0] s6_keep_q;           // the bits of the estimate that stay in m
   reg [24:0] s7_m_q;              // 24 fraction bits
-  reg [31:0] s7_part0_q;          // m, times the digits 6:0, 12:7, 18:13, 24:19 of v or m
-  reg [30:0] s7_part1_q, s7_part2_q, s7_part3_q;
+  reg [49:0] s7_sum_q, s7_carry_q;  // m*v or m*m as two numbers
   reg [23:0] s8_n_q, s9_n_q;      // the float below m
   reg [49:0] s8_product_q;        // m*v or m*m
-  reg [52:0] s9_part0_q;          // m*v or m*m, or m*m times the same digits of v; modulo 2^53, as what is left over is small
-  reg [45:0] s9_part1_q;
-  reg [39:0] s9_part2_q;
-  reg [33:0] s9_part3_q;
+  reg [52:0] s9_sum_q, s9_carry_q;  // m*v or m*m, or m*m*v, as two numbers; modulo 2^53, as what is left over is small
   reg [52:0] s9_whole_q;
   reg [52:0] s10_rest_q;
   reg [30:0] s10_below_q, s10_above_q;  // the floats below and above m
+
+  // No true quotient is nearer to 2 than 2^-24, so the estimate is below 2 too.
+  wire [24:0] s6_m = (s6_estimate[30:6] & s6_keep_q) | s6_half_q;
+  wire [49:0] s6_sum, s6_carry;
+  multiply_tree #(.A_BITS(25), .B_BITS(25), .OUT_BITS(50)) first_product (
+    .a_i(s6_m), .b_i(s6_tag_q[ROOT] ? s6_m : s6_v_q), .sum_o(s6_sum), .carry_o(s6_carry));
+  wire [52:0] s8_sum, s8_carry;
+  multiply_tree #(.A_BITS(50), .B_BITS(25), .OUT_BITS(53)) second_product (
+    .a_i(s8_product_q), .b_i(s8_v_q), .sum_o(s8_sum), .carry_o(s8_carry));
 
   always @(posedge clk_i) begin
     if (enable_i[9:1] != 9'd0) begin
@@ -71,22 +76,16 @@ module slow_exact (
         s6_v_q <= s5_v_q;
         s6_w_q <= s5_w_q;
       end
-      if (enable_i[5]) begin : stage6
-        // No true quotient is nearer to 2 than 2^-24, so the estimate is below 2 too.
-        reg [24:0] m, factor;
-        m = (s6_estimate[30:6] & s6_keep_q) | s6_half_q;
-        factor = s6_tag_q[ROOT] ? m : s6_v_q;
-        s7_m_q <= m;
-        s7_part0_q <= {7'd0, m} * {25'd0, factor[6:0]};
-        s7_part1_q <= {6'd0, m} * {25'd0, factor[12:7]};
-        s7_part2_q <= {6'd0, m} * {25'd0, factor[18:13]};
-        s7_part3_q <= {6'd0, m} * {25'd0, factor[24:19]};
+      if (enable_i[5]) begin
+        s7_m_q <= s6_m;
+        s7_sum_q <= s6_sum;
+        s7_carry_q <= s6_carry;
         s7_tag_q <= s6_tag_q;
         s7_v_q <= s6_v_q;
         s7_w_q <= s6_w_q;
       end
       if (enable_i[6]) begin
-        s8_product_q <= {18'd0, s7_part0_q} + {12'd0, s7_part1_q, 7'd0} + {6'd0, s7_part2_q, 13'd0} + {s7_part3_q, 19'd0};
+        s8_product_q <= s7_sum_q + s7_carry_q;
         s8_n_q <= s7_m_q[24:1] >> s7_tag_q[4:0];
         s8_tag_q <= s7_tag_q;
         s8_v_q <= s7_v_q;
@@ -94,23 +93,19 @@ module slow_exact (
       end
       if (enable_i[7]) begin
         if (s8_tag_q[ROOT] && s8_tag_q[UNARY]) begin
-          s9_part0_q <= {3'd0, s8_product_q} * {46'd0, s8_v_q[6:0]};
-          s9_part1_q <= s8_product_q[45:0] * {40'd0, s8_v_q[12:7]};
-          s9_part2_q <= s8_product_q[39:0] * {34'd0, s8_v_q[18:13]};
-          s9_part3_q <= s8_product_q[33:0] * {28'd0, s8_v_q[24:19]};
+          s9_sum_q <= s8_sum;
+          s9_carry_q <= s8_carry;
           s9_whole_q <= 53'd0;    // 4 with 71 fraction bits
         end else begin
-          s9_part0_q <= {3'd0, s8_product_q};
-          s9_part1_q <= 46'd0;
-          s9_part2_q <= 40'd0;
-          s9_part3_q <= 34'd0;
+          s9_sum_q <= {3'd0, s8_product_q};
+          s9_carry_q <= 53'd0;
           s9_whole_q <= s8_tag_q[ROOT] ? {3'd0, s8_v_q, 25'd0} : {4'd0, s8_w_q, 24'd0};
         end
         s9_n_q <= s8_n_q;
         s9_tag_q <= s8_tag_q;
       end
       if (enable_i[8]) begin
-        s10_rest_q <= s9_whole_q - (s9_part0_q + {s9_part1_q, 7'd0} + {s9_part2_q, 13'd0} + {s9_part3_q, 19'd0});
+        s10_rest_q <= s9_whole_q - (s9_sum_q + s9_carry_q);
         s10_below_q <= {s9_tag_q[EXPONENT +: 8], 23'd0} + {7'd0, s9_n_q};
         s10_above_q <= {s9_tag_q[EXPONENT +: 8], 23'd1} + {7'd0, s9_n_q};
         s10_tag_q <= s9_tag_q;

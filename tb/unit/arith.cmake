@@ -19,7 +19,7 @@ set(arith_flt_sources ${arith_rtl}/flt_alu.v ${arith_rtl}/float_lane.v ${arith_r
 arith_bench(flt_alu_test flt_units ${arith_flt_sources})
 
 set(arith_slw_sources ${arith_rtl}/slw_alu.v ${arith_rtl}/slow_lane.v ${arith_rtl}/slow_prepare.v ${arith_rtl}/slow_exact.v
-  ${arith_rtl}/slow_newton.v ${arith_rtl}/slow_refine.v ${arith_rtl}/slow_line_table.v ${arith_rtl}/slow_seed_table.v ${arith_rtl}/alu_pipeline.v ${arith_rtl}/alu_delay.v)
+  ${arith_rtl}/slow_newton.v ${arith_rtl}/slow_refine.v ${arith_rtl}/slow_line_table.v ${arith_rtl}/slow_seed_table.v ${arith_rtl}/multiply_tree.v ${arith_rtl}/alu_pipeline.v ${arith_rtl}/alu_delay.v)
 arith_bench(slw_alu_test slw_units ${arith_slw_sources})
 
 arith_bench(alu_pipeline_test pipeline_units ${arith_rtl}/alu_pipeline.v)
