@@ -156,7 +156,8 @@ module compute_unit #(
   wire [SLOTS*DATA-1:0] task_a, task_b, done_data;
   wire [SLOTS*DATA-1:0] task_c;      // of Flt slots only
   wire [SLOTS*32-1:0] task_imm;
-  wire [UNITS*6-1:0] waiting;
+  wire [WARPS-1:0] waiting;
+  wire [WARPS*3-1:0] wanted_unit;
   // memory
   wire instruction_request, instruction_request_ready, instruction_response;
   wire [31:0] instruction_request_address;
@@ -199,7 +200,11 @@ module compute_unit #(
 
   generate
     for (w = 0; w < WARPS; w = w + 1) begin : gen_warp
-      warp #(.INDEX(w), .LANES(LANES), .WARP_BITS(WARP_BITS), .STACK_DEPTH(STACK_DEPTH), .SLOTS(SLOTS), .FMA(FMA)) warp (
+      wire [SLOTS-1:0] done;   // the slots that have finished this warp's task
+      for (k = 0; k < SLOTS; k = k + 1) begin : gen_done
+        assign done[k] = done_valid[k] && done_warp[k*WARP_BITS +: WARP_BITS] == w;
+      end
+      warp #(.LANES(LANES), .STACK_DEPTH(STACK_DEPTH), .SLOTS(SLOTS), .FMA(FMA)) warp (
         .clk_i(clk_i), .rst_ni(rst_ni), .start_i(start[w]), .start_pc_i(start_pc), .start_lanes_i(start_lanes[w*LANES +: LANES]),
         .halt_i(fault_valid_o), .active_o(active[w]), .program_length_i(program_length_i),
         .fetch_request_o(fetch_request[w]), .fetch_pc_o(fetch_pc[w*16 +: 16]), .fetch_grant_i(fetch_grant[w]),
@@ -207,7 +212,7 @@ module compute_unit #(
         .want_o(want[w]), .grant_i(grant[w]), .instruction_o(retire_instruction_o[w*64 +: 64]),
         .mask_o(retire_mask_o[w*LANES +: LANES]), .px_o(px[w*LANES +: LANES]), .pb_o(pb[w*LANES +: LANES]),
         .a_o(a[w*DATA +: DATA]), .b_o(b[w*DATA +: DATA]), .c_o(c[w*DATA +: DATA]),
-        .done_valid_i(done_valid), .done_warp_i(done_warp), .done_data_i(done_data), .done_pred_i(done_pred),
+        .done_i(done), .done_data_i(done_data), .done_pred_i(done_pred),
         .retire_o(retire_valid_o[w]), .pc_o(retire_pc_o[w*16 +: 16]), .retire_data_o(retire_data_o[w*DATA +: DATA]),
         .retire_predicate_o(retire_predicate_o[w*LANES +: LANES]),
         .fault_valid_o(warp_fault[w]), .fault_code_o(warp_fault_code[w*4 +: 4]), .fault_pc_o(warp_fault_pc[w*16 +: 16]));
@@ -215,7 +220,7 @@ module compute_unit #(
   endgenerate
 
   dispatcher #(
-    .WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS), .SLOTS(SLOTS), .UNITS(UNITS), .SLOT_UNITS(SLOT_UNITS), .FMA(FMA)
+    .WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS), .SLOTS(SLOTS), .SLOT_UNITS(SLOT_UNITS), .FMA(FMA)
   ) dispatcher (
     .clk_i(clk_i), .rst_ni(rst_ni), .want_i(want), .grant_o(grant), .instruction_i(retire_instruction_o), .mask_i(retire_mask_o),
     .px_i(px), .pb_i(pb), .a_i(a), .b_i(b), .c_i(c), .ready_i(ready), .slot_grant_o(slot_grant),
@@ -329,12 +334,18 @@ module compute_unit #(
     .request_data_o(memory_request_data_o), .request_mask_o(memory_request_mask_o), .request_id_o(memory_request_id_o),
     .response_valid_i(memory_response_valid_i), .response_id_i(memory_response_id_i), .idle_o(arbiter_idle));
 
+  generate
+    for (w = 0; w < WARPS; w = w + 1) begin : gen_wanted_unit
+      assign wanted_unit[w*3 +: 3] = retire_instruction_o[w*64+60 +: 3];
+    end
+  endgenerate
+
   performance_counters #(
     .WARPS(WARPS), .LANES(LANES), .SLOTS(SLOTS), .UNITS(UNITS), .SLOT_UNITS(SLOT_UNITS)
   ) performance_counters (
     .clk_i(clk_i), .rst_ni(rst_ni), .running_i(busy_o), .retire_i(retire_valid_o), .retire_mask_i(retire_mask_o),
     .instruction_hit_i(instruction_hit), .instruction_miss_i(instruction_miss), .data_hit_i(data_hit), .data_miss_i(data_miss),
-    .data_store_i(data_store), .ready_i(ready), .grant_i(slot_grant), .waiting_i(waiting),
+    .data_store_i(data_store), .ready_i(ready), .grant_i(slot_grant), .waiting_i(waiting), .unit_i(wanted_unit),
     .select_i(counter_select_i), .value_o(counter_o));
 
   // The first fault stays; of several in one cycle an ALU's wins, then the lowest warp's.

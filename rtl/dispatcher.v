@@ -6,7 +6,6 @@ module dispatcher #(
   parameter integer LANES = 8,
   parameter integer WARP_BITS = 3,
   parameter integer SLOTS = 7,
-  parameter integer UNITS = 7,
   parameter [SLOTS*4-1:0] SLOT_UNITS = 28'h6543210,  // type of each slot
   parameter integer FMA = 0                          // slots of type Flt have a third operand
 ) (
@@ -36,8 +35,8 @@ module dispatcher #(
   output reg  [SLOTS*5-1:0]          task_x_o,
   output reg  [SLOTS*LANES-1:0]      task_px_o,
   output reg  [SLOTS*LANES-1:0]      task_pb_o,
-  // how many warps wanted each type and got no slot
-  output reg  [UNITS*6-1:0]          waiting_o
+  // warps that got no slot in this cycle
+  output wire [WARPS-1:0]            waiting_o
 );
 `include "isa.vh"
   localparam [WARPS-1:0] ONE = 1;
@@ -64,13 +63,7 @@ module dispatcher #(
         end
   end
 
-  always @* begin
-    waiting_o = {UNITS*6{1'b0}};
-    if (want_i != grant_o)
-      for (w = 0; w < WARPS; w = w + 1)
-        if (want_i[w] && !grant_o[w])
-          waiting_o[instruction_i[w*64+60 +: 3]*6 +: 6] = waiting_o[instruction_i[w*64+60 +: 3]*6 +: 6] + 6'd1;
-  end
+  assign waiting_o = want_i & ~grant_o;
 
   always @(posedge clk_i)
     if (!rst_ni) task_valid_o <= {SLOTS{1'b0}};

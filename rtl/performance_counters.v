@@ -1,4 +1,5 @@
 // Counts events while a kernel runs; numbers as in cpp_model/machine/compute_unit.hpp, namespace counter.
+// The events of a cycle are taken into registers and counted in the next one; value_o includes those of the cycle before.
 `default_nettype none
 module performance_counters #(
   parameter integer WARPS = 8,
@@ -19,105 +20,124 @@ module performance_counters #(
   input  wire                   data_store_i,
   input  wire [SLOTS-1:0]       ready_i,
   input  wire [SLOTS-1:0]       grant_i,
-  input  wire [UNITS*6-1:0]     waiting_i,
+  input  wire [WARPS-1:0]       waiting_i,        // warps that wanted an ALU and got none
+  input  wire [WARPS*3-1:0]     unit_i,           // the type each warp wants
   input  wire [5:0]             select_i,
-  output reg  [63:0]            value_o
+  output wire [63:0]            value_o
 );
   localparam integer BITS = 48;
-  reg [BITS-1:0] busy_q, instructions_q, threads_q, ihit_q, imiss_q, dhit_q, dmiss_q, dstore_q;
+  localparam integer LOW_BITS = 12;
+  localparam integer COUNTERS = 8 + 3 * UNITS;
+  localparam integer LANE_BITS = $clog2(LANES) + 1;   // of the number of a warp's lanes
+  localparam [LANE_BITS-1:0] ONE_LANE = 1;
+
+  // ---- Events of the cycle before; none while nothing runs.
+  reg running_q;
+  reg [4:0] single_q;                                 // instruction hit, miss, data hit, miss, store
+  reg [WARPS-1:0] retire_q, waiting_q;
+  reg [WARPS*LANE_BITS-1:0] threads_q;                // lanes that retire, for each warp
+  reg [WARPS*3-1:0] unit_q;
+  reg [SLOTS-1:0] unused_q, issued_q;
+  integer w, n;
+
+  always @(posedge clk_i) begin
+    running_q <= rst_ni && running_i;
+    retire_q <= retire_i;
+    waiting_q <= waiting_i;
+    unit_q <= unit_i;
+    unused_q <= ready_i & ~grant_i;
+    issued_q <= grant_i;
+    single_q <= {data_store_i, data_miss_i, data_hit_i, instruction_miss_i, instruction_hit_i};
+  end
+
+  function [LANE_BITS-1:0] lanes(input [LANES-1:0] mask);   // that are set
+    integer l;
+    begin
+      lanes = {LANE_BITS{1'b0}};
+      for (l = 0; l < LANES; l = l + 1) if (mask[l]) lanes = lanes + ONE_LANE;
+    end
+  endfunction
+  always @(posedge clk_i)
+    for (w = 0; w < WARPS; w = w + 1)
+      if (retire_i[w]) threads_q[w*LANE_BITS +: LANE_BITS] <= lanes(retire_mask_i[w*LANES +: LANES]);
+
   reg [5:0] instructions;
   reg [10:0] threads;
-  integer i;
-
   always @* begin
     instructions = 6'd0;
     threads = 11'd0;
-    if (|retire_i)
-      for (i = 0; i < WARPS * LANES; i = i + 1) begin
-        if (i % LANES == 0) instructions = instructions + {5'd0, retire_i[i / LANES]};
-        threads = threads + {10'd0, retire_i[i / LANES] & retire_mask_i[i]};
-      end
+    if (running_q && |retire_q)
+      for (n = 0; n < WARPS; n = n + 1)
+        if (retire_q[n]) begin
+          instructions = instructions + 6'd1;
+          threads = threads + {{11-LANE_BITS{1'b0}}, threads_q[n*LANE_BITS +: LANE_BITS]};
+        end
   end
 
-  always @(posedge clk_i)
-    if (!rst_ni) begin
-      busy_q <= {BITS{1'b0}};
-      instructions_q <= {BITS{1'b0}};
-      threads_q <= {BITS{1'b0}};
-      ihit_q <= {BITS{1'b0}};
-      imiss_q <= {BITS{1'b0}};
-      dhit_q <= {BITS{1'b0}};
-      dmiss_q <= {BITS{1'b0}};
-      dstore_q <= {BITS{1'b0}};
-    end else if (running_i) begin
-      busy_q <= busy_q + {{BITS-1{1'b0}}, 1'b1};
-      if (|retire_i) begin
-        instructions_q <= instructions_q + {{BITS-6{1'b0}}, instructions};
-        threads_q <= threads_q + {{BITS-11{1'b0}}, threads};
-      end
-      if (instruction_hit_i) ihit_q <= ihit_q + {{BITS-1{1'b0}}, 1'b1};
-      if (instruction_miss_i) imiss_q <= imiss_q + {{BITS-1{1'b0}}, 1'b1};
-      if (data_hit_i) dhit_q <= dhit_q + {{BITS-1{1'b0}}, 1'b1};
-      if (data_miss_i) dmiss_q <= dmiss_q + {{BITS-1{1'b0}}, 1'b1};
-      if (data_store_i) dstore_q <= dstore_q + {{BITS-1{1'b0}}, 1'b1};
-    end
-
-  // How many of a type's slots are set in `slots`.
-  function [4:0] count(input [3:0] unit, input [SLOTS-1:0] slots);
-    integer n;
+  // How many of a type's slots are set in `slots`; how many warps wait for a type.
+  function [2:0] count(input [3:0] unit, input [SLOTS-1:0] slots);
+    integer s;
     begin
-      count = 5'd0;
-      for (n = 0; n < SLOTS; n = n + 1)
-        if (SLOT_UNITS[n*4 +: 4] == unit) count = count + {4'd0, slots[n]};
+      count = 3'd0;
+      for (s = 0; s < SLOTS; s = s + 1)
+        if (SLOT_UNITS[s*4 +: 4] == unit) count = count + {2'd0, slots[s]};
+    end
+  endfunction
+  function [5:0] queue(input [2:0] unit, input [WARPS-1:0] warps, input [WARPS*3-1:0] units);
+    integer s;
+    begin
+      queue = 6'd0;
+      if (|warps)
+        for (s = 0; s < WARPS; s = s + 1)
+          if (warps[s] && units[s*3 +: 3] == unit) queue = queue + 6'd1;
     end
   endfunction
 
-  wire [BITS*UNITS-1:0] unused, waiting, issued;
-  genvar u;
+  // ---- Counters, in the order of their numbers: eight single ones, then rows of one a type.
+  wire [COUNTERS*BITS-1:0] values;
+  wire [COUNTERS*(LOW_BITS+1)-1:0] pendings;
+  genvar c;
   generate
-    for (u = 0; u < UNITS; u = u + 1) begin : gen_unit
-      localparam [3:0] UNIT = u;
-      reg [BITS-1:0] unused_q, waiting_q, issued_q;
-      always @(posedge clk_i)
-        if (!rst_ni) begin
-          unused_q <= {BITS{1'b0}};
-          waiting_q <= {BITS{1'b0}};
-          issued_q <= {BITS{1'b0}};
-        end else if (running_i) begin
-          unused_q <= unused_q + {{BITS-5{1'b0}}, count(UNIT, ready_i & ~grant_i)};
-          waiting_q <= waiting_q + {{BITS-6{1'b0}}, waiting_i[u*6 +: 6]};
-          issued_q <= issued_q + {{BITS-5{1'b0}}, count(UNIT, grant_i)};
-        end
-      assign unused[u*BITS +: BITS] = unused_q;
-      assign waiting[u*BITS +: BITS] = waiting_q;
-      assign issued[u*BITS +: BITS] = issued_q;
+    for (c = 0; c < COUNTERS; c = c + 1) begin : gen_counter
+      localparam integer UNIT = (c - 8) % UNITS;
+      localparam integer EVENT_BITS = (c == 2) ? 11 : (c == 1 || (c >= 8 + UNITS && c < 8 + 2 * UNITS)) ? 6 : (c >= 8) ? 3 : 1;
+      wire [EVENT_BITS-1:0] events;
+      if (c == 0) begin : gen_event
+        assign events = running_q;
+      end else if (c == 1) begin : gen_event
+        assign events = instructions;
+      end else if (c == 2) begin : gen_event
+        assign events = threads;
+      end else if (c < 8) begin : gen_event
+        assign events = running_q && single_q[c - 3];
+      end else if (c < 8 + UNITS) begin : gen_event
+        assign events = running_q ? count(UNIT[3:0], unused_q) : 3'd0;
+      end else if (c < 8 + 2 * UNITS) begin : gen_event
+        assign events = running_q ? queue(UNIT[2:0], waiting_q, unit_q) : 6'd0;
+      end else begin : gen_event
+        assign events = running_q ? count(UNIT[3:0], issued_q) : 3'd0;
+      end
+      event_counter #(.BITS(BITS), .LOW_BITS(LOW_BITS), .EVENT_BITS(EVENT_BITS)) event_counter (
+        .clk_i(clk_i), .rst_ni(rst_ni), .event_i(events),
+        .value_o(values[c*BITS +: BITS]), .pending_o(pendings[c*(LOW_BITS+1) +: LOW_BITS+1]));
     end
   endgenerate
 
-  // Numbers 16, 24 and 32 begin a row of eight, one a type.
-  reg [BITS-1:0] selected;
+  // Numbers 0 to 7, and from 16, 24 and 32 on a row of eight, one a type.
+  reg [BITS-1:0] value;
+  reg [LOW_BITS:0] pending;
+  integer i;
   always @* begin
-    selected = {BITS{1'b0}};
-    case (select_i)
-      6'd0: selected = busy_q;
-      6'd1: selected = instructions_q;
-      6'd2: selected = threads_q;
-      6'd3: selected = ihit_q;
-      6'd4: selected = imiss_q;
-      6'd5: selected = dhit_q;
-      6'd6: selected = dmiss_q;
-      6'd7: selected = dstore_q;
-      default:
-        for (i = 0; i < UNITS; i = i + 1)
-          if (select_i[2:0] == i[2:0])
-            case (select_i[5:3])
-              3'd2: selected = unused[i*BITS +: BITS];
-              3'd3: selected = waiting[i*BITS +: BITS];
-              3'd4: selected = issued[i*BITS +: BITS];
-              default: ;
-            endcase
-    endcase
-    value_o = {{64-BITS{1'b0}}, selected};
+    value = {BITS{1'b0}};
+    pending = {LOW_BITS+1{1'b0}};
+    for (i = 0; i < COUNTERS; i = i + 1)
+      if ((i < 8 && select_i == i[5:0]) ||
+          (i >= 8 && {26'd0, select_i} == 16 + 8 * ((i - 8) / UNITS) + (i - 8) % UNITS)) begin
+        value = value | values[i*BITS +: BITS];
+        pending = pending | pendings[i*(LOW_BITS+1) +: LOW_BITS+1];
+      end
   end
+  wire [BITS-1:0] total = value + {{BITS-LOW_BITS-1{1'b0}}, pending};
+  assign value_o = {{64-BITS{1'b0}}, total};
 endmodule
 `default_nettype wire

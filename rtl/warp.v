@@ -1,9 +1,7 @@
-// One warp: instruction buffer, PC stack, predicates and register bank, joined. INDEX is its number.
+// One warp: instruction buffer, PC stack, predicates and register bank, joined.
 `default_nettype none
 module warp #(
-  parameter integer INDEX = 0,
   parameter integer LANES = 8,
-  parameter integer WARP_BITS = 3,
   parameter integer STACK_DEPTH = 8,
   parameter integer SLOTS = 7,
   parameter integer FMA = 0         // reads register rc too, and issues ffma
@@ -33,9 +31,8 @@ module warp #(
   output wire [LANES*32-1:0]       a_o,
   output wire [LANES*32-1:0]       b_o,
   output wire [LANES*32-1:0]       c_o,
-  // write-back: what every ALU instance has finished in this cycle
-  input  wire [SLOTS-1:0]          done_valid_i,
-  input  wire [SLOTS*WARP_BITS-1:0] done_warp_i,
+  // write-back: what every ALU instance has finished in this cycle, and whether it is this warp's task
+  input  wire [SLOTS-1:0]          done_i,
   input  wire [SLOTS*LANES*32-1:0] done_data_i,
   input  wire [SLOTS*LANES-1:0]    done_pred_i,
   output reg                       retire_o,
@@ -64,7 +61,7 @@ module warp #(
     retire_data_o = {LANES*32{1'b0}};
     retire_pred = {LANES{1'b0}};
     for (s = 0; s < SLOTS; s = s + 1)
-      if (done_valid_i[s] && done_warp_i[s*WARP_BITS +: WARP_BITS] == INDEX[WARP_BITS-1:0]) begin
+      if (done_i[s]) begin
         retire_o = 1'b1;
         retire_data_o = done_data_i[s*LANES*32 +: LANES*32];
         retire_pred = done_pred_i[s*LANES +: LANES];
