@@ -26,6 +26,15 @@ WAVES     ?= 0
 # `make run`
 KERNEL    ?= saxpy
 ARGS      ?=
+# `make synth` and its relatives; empty: chosen by the flow.
+LIBERTY   ?=
+CLOCK     ?=
+MEMORIES  ?= macros
+AGAINST   ?=
+RUN       ?=
+POWER     ?= 1
+BREAK     ?= 0
+ONLY      ?=
 # `make cosim`
 PROGRAMS  ?= 1000
 SEED      ?= 1
@@ -34,6 +43,7 @@ COVERAGE  ?=
 MUTANTS   ?= 600
 # Recipes read these from the environment, so that a value with spaces or quotes stays one word.
 export CONFIG CUS SCENE SIZE DEPTH ENGINE TRAVERSER VIEW DETAIL OUT WAVES KERNEL PROGRAMS SEED COVERAGE MUTANTS
+export LIBERTY CLOCK MEMORIES AGAINST RUN ONLY
 
 BUILD := build
 RAYPOOL := $(BUILD)/raypool
@@ -42,9 +52,12 @@ LOCKED := flock $(BUILD)/.lock
 # Only engines rtl and lockstep need a Verilated device.
 WAVES_FLAG := $(if $(filter-out 0,$(WAVES)),--waves)
 UNIT := scripts/unit.sh "$$CONFIG" $(WAVES_FLAG)
+# The synthesis flow; paths may be relative to this folder.
+SYNTH := PYTHONPATH=scripts python3 -m synth
+SYNTH_OPTIONS := --config "$$CONFIG" --memories "$$MEMORIES" $${LIBERTY:+--liberty "$$LIBERTY"} $${CLOCK:+--clock "$$CLOCK"}
 UNIT_OF_ENGINE := $(if $(filter rtl lockstep,$(ENGINE)),$(UNIT),true)
 
-.PHONY: help sim run cosim configurations mutants unit test lint format bench clean setup-% program configured-% numerics-long proofs
+.PHONY: help sim run cosim configurations mutants unit test lint format bench clean setup-% program configured-% numerics-long proofs synth synth-replay synth-prove growth
 
 help: ## this list
 	@echo 'raypool: a ray-tracing GPU to render on, measure, verify and synthesise'
@@ -63,6 +76,8 @@ help: ## this list
 	@echo '  DETAIL=N                      triangles of a built-in scene, 0.01..16      1'
 	@echo '  OUT=FOLDER                    image.png, report.json                      build/out/...'
 	@echo '  WAVES=1                       a waveform (FST) too; ENGINE=rtl, lockstep  $(WAVES)'
+	@echo 'variables of make synth, synth-replay, synth-prove:  CONFIG  LIBERTY=FILE  CLOCK=NS  MEMORIES=macros|flops'
+	@echo '  make synth:  AGAINST=REPORT  RUN=REPORT_OF_SIM  POWER=0  OUT=FOLDER;  synth-replay:  BREAK=N;  synth-prove:  ONLY=BLOCKS'
 	@echo 'variables of make cosim:  PROGRAMS=$(PROGRAMS)  SEED=$(SEED)  CONFIG  CUS  COVERAGE=FILE.json'
 	@echo 'variables of make run:  KERNEL=saxpy|matmul|FILE.asm  CONFIG  ENGINE  ARGS="--n 1000"'
 
@@ -90,6 +105,19 @@ mutants: setup-sim setup-lint program ## small faults put into the RTL: which do
 
 unit: setup-sim program ## Verilate CUS compute units of CONFIG (WAVES=1: with waveforms)
 	@$(UNIT) --units "$$CUS"
+
+synth: setup-sim setup-synth program ## area, timing and power of CONFIG from open tools
+	@$(SYNTH) report $(SYNTH_OPTIONS) $${AGAINST:+--against "$$AGAINST"} $${RUN:+--run "$$RUN"} $${OUT:+--out "$$OUT"} \
+	  $(if $(filter-out 0,$(POWER)),--power)
+
+synth-replay: setup-sim setup-synth program ## run the mapped netlist in lockstep; BREAK=1: a broken one must fail
+	@$(SYNTH) replay $(SYNTH_OPTIONS) --break "$(BREAK)"
+
+synth-prove: setup-sim setup-synth program ## prove each mapped block equal to its RTL
+	@$(SYNTH) prove $(SYNTH_OPTIONS) $${ONLY:+--only "$$ONLY"}
+
+growth: setup-sim setup-synth program ## area against warps, cores, ALUs; what each feature costs
+	@$(SYNTH) growth $${OUT:+--out "$$OUT"}
 
 test: setup-sim setup-test configured-ON ## every test
 	@$(LOCKED) cmake --build $(BUILD)

@@ -34,24 +34,26 @@ verilog_configurations=(
 mapfile -t rtl < <(scripts/sources.sh verilog)
 
 for parameters in "${verilog_configurations[@]}"; do
-  verilator_flags=() iverilog_flags=()
+  verilator_flags=() iverilog_flags=() yosys_flags=()
   for parameter in $parameters; do
     verilator_flags+=("-G$parameter")
     iverilog_flags+=("-Pmultiprocessor.$parameter")
+    yosys_flags+=(-chparam "${parameter%=*}" "${parameter#*=}")
   done
   check "verilator $parameters" verilator --lint-only -Wall --default-language 1364-2005 -Irtl rtl/waivers.vlt \
     "${verilator_flags[@]}" --top-module multiprocessor "${rtl[@]}"
   check "iverilog $parameters" iverilog -g2005 -Wall -Irtl -o /dev/null "${iverilog_flags[@]}" -s multiprocessor "${rtl[@]}"
-done
-
-# Synthesis view: no latch, no combinational loop, no undriven or doubly driven net.
-for units in 1 4; do
-  check "yosys UNITS=$units" yosys -q -e '.*latch.*' -p "read_verilog -Irtl ${rtl[*]}; hierarchy -check -top multiprocessor -chparam UNITS $units;
-    proc -noopt; opt_clean; select -assert-none t:\$dlatch t:\$adlatch t:\$dlatchsr; check -assert"
+  # Synthesis view, of the whole in one piece: no latch, no combinational loop, no undriven or doubly driven net.
+  check "yosys $parameters" yosys -q -e '.*latch.*' -p "read_verilog -DSYNTHESIS -Irtl ${rtl[*]};
+    hierarchy -check -top multiprocessor ${yosys_flags[*]}; proc -noopt; flatten; opt_clean;
+    select -assert-none t:\$dlatch t:\$adlatch t:\$dlatchsr; check -assert"
 done
 
 mapfile -t cpp < <(scripts/sources.sh cpp)
 check "clang-format (make format)" clang-format --dry-run -Werror "${cpp[@]}"
+
+mapfile -t python < <(scripts/sources.sh python)
+for file in "${python[@]}"; do check "python3 $file" python3 -W error -c 'import ast, sys; ast.parse(open(sys.argv[1]).read())' "$file"; done
 
 for file in $(scripts/sources.sh shell); do check "bash -n $file" bash -n "$file"; done
 

@@ -1,7 +1,8 @@
 #!/bin/bash
 # Builds the Verilated multiprocessor of one set of Verilog parameters: OUTPUT_DIR/libraypool_unit.so.
-#   scripts/verilate.sh OUTPUT_DIR [--trace] NAME=VALUE...
+#   scripts/verilate.sh OUTPUT_DIR [--trace] [--netlist FILE]... NAME=VALUE...
 # NAME=VALUE as `raypool config CONFIG --verilog-parameters` prints them, and UNITS=1|2|4 (default 1).
+# --netlist: files of a mapped netlist of that configuration's compute unit, which stands in for that of rtl/.
 # --trace: the unit can write waveforms (FST), and is slower. Does nothing when the library is newer than all it is made from; a build
 # that fails leaves the old library as it was. VERILATOR, CXX and JOBS (default 2) choose the tools and the number of compilers.
 set -eu -o pipefail
@@ -11,14 +12,21 @@ fail() {
   exit 1
 }
 
-[ $# -ge 1 ] || fail "usage: scripts/verilate.sh OUTPUT_DIR [--trace] NAME=VALUE..."
+[ $# -ge 1 ] || fail "usage: scripts/verilate.sh OUTPUT_DIR [--trace] [--netlist FILE]... NAME=VALUE..."
 output=$1
 shift
 trace=0
 parameters=()
-for argument in "$@"; do
+netlist=()
+while [ $# -gt 0 ]; do
+  argument=$1
+  shift
   if [ "$argument" = --trace ]; then
     trace=1
+  elif [ "$argument" = --netlist ]; then
+    [ $# -ge 1 ] || fail "--netlist needs a file"
+    netlist+=("$(realpath "$1")")
+    shift
   elif [[ $argument =~ ^[A-Z][A-Z0-9_]*=[0-9]+$ ]]; then
     parameters+=("$argument")
   else
@@ -46,6 +54,17 @@ headers=(cpp_model/isa/isa.hpp cpp_model/config/configuration.hpp cpp_model/mach
 wrapper=(tb/rtl/rtl_unit.cpp cpp_model/machine/compute_unit.cpp)
 verilog=(rtl/*.v)
 waivers=(rtl/*.vlt)
+language=1364-2005
+what=rtl/
+optimise=(OPT_FAST=-O2 OPT_SLOW=-O1 OPT_GLOBAL=-O2)
+# A netlist runs for seconds and compiles for minutes.
+if [ ${#netlist[@]} -gt 0 ]; then
+  verilog=("${netlist[@]}")
+  for file in rtl/*.v; do [ "$file" = rtl/compute_unit.v ] || verilog+=("$file"); done
+  language=1800-2017
+  what="a netlist"
+  optimise=(OPT_FAST=-O1 OPT_SLOW=-O0 OPT_GLOBAL=-O1)
+fi
 digest=$({
   printf '%s\n' "$version" "$compiler_version" "trace $trace" "${parameters[@]}"
   sha256sum "${verilog[@]}" "${waivers[@]}" rtl/*.vh "${headers[@]}" "${wrapper[@]}" scripts/verilate.sh
@@ -65,17 +84,19 @@ run() {
 }
 
 begin=$SECONDS
-echo "verilate.sh: verilating rtl/ (${parameters[*]:-default parameters})"
+echo "verilate.sh: verilating $what (${parameters[*]:-default parameters})"
 units=1
 for parameter in "${parameters[@]}"; do [ "${parameter%%=*}" != UNITS ] || units=${parameter#*=}; done
 printf '#define RAYPOOL_UNIT_PARAMETERS "%s"\n#define RAYPOOL_UNIT_COUNT %d\n' "${parameters[*]}" "$units" > "$build/unit_parameters.h"
-options=(--cc --exe --top-module multiprocessor --Mdir "$build" -Irtl --default-language 1364-2005
+options=(--cc --exe --top-module multiprocessor --Mdir "$build" -Irtl --default-language $language
   -O3 --x-assign fast --x-initial fast --noassert
   -CFLAGS "-std=c++17 -fPIC -fvisibility=hidden -fno-gnu-unique -fno-plt -fno-semantic-interposition"
   -CFLAGS "-I$root/cpp_model -I$root/tb -I$build"
   -LDFLAGS "-shared -Wl,-Bsymbolic -Wl,-O1" -o libraypool_unit.so)
 [ "$trace" = 0 ] || options+=(--trace-fst)
 for parameter in "${parameters[@]}"; do options+=("-G$parameter"); done
+# The cells of a library name no units of time and leave pins open.
+[ ${#netlist[@]} -eq 0 ] || options+=(-Wno-lint -Wno-style -Wno-fatal --timescale 1ns/1ps --output-split 10000 --output-split-cfuncs 1000)
 message="verilator refused the hardware description (its messages are above)"
 run "$verilator" "${options[@]}" "${waivers[@]}" "${verilog[@]}" "${wrapper[@]/#/$root/}"
 
@@ -84,7 +105,7 @@ message="the Verilated unit does not compile (messages above)"
 launcher=
 command -v ccache > /dev/null && launcher=ccache
 run env CCACHE_BASEDIR="$build" CCACHE_NOHASHDIR=1 make -C "$build" -f Vmultiprocessor.mk -j "$jobs" CXX="$compiler" LINK="$compiler" OBJCACHE="$launcher" \
-  OPT_FAST=-O2 OPT_SLOW=-O1 OPT_GLOBAL=-O2 libraypool_unit.so
+  "${optimise[@]}" libraypool_unit.so
 
 # The stamp goes first and comes last: an interrupted move never passes for a finished one.
 rm -f "$stamp"

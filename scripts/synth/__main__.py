@@ -1,0 +1,121 @@
+"""python3 -m synth COMMAND, with scripts/ as the folder of modules. The Makefile's targets call it."""
+import argparse
+import json
+import os
+import shutil
+import sys
+import time
+
+from . import flow, growth, plots, power, prove, replay, report, timing
+from .errors import SynthError, say, warn
+
+
+def options_of(arguments):
+    clock = arguments.clock
+    return flow.Options(config=arguments.config, liberty=arguments.liberty or None, clock_ns=float(clock) if clock else None,
+                        memories=arguments.memories or "macros", jobs=arguments.jobs)
+
+
+def synth_command(arguments):
+    design = flow.open_design(options_of(arguments))
+    against = report.load(arguments.against) if arguments.against else None
+    path = os.path.join(design.folder, "report.json")
+    key = flow.digest(design)
+    begin = time.time()
+    result = None
+    if os.path.exists(path):
+        with open(path, encoding="utf-8") as file:
+            kept = json.load(file)
+        if kept.get("key") == key and (kept.get("power") or not arguments.power) and (kept.get("proofs") or not arguments.prove):
+            result = kept
+    if result is None:
+        flow.synthesise(design)
+        worst = timing.describe([design.endpoints[0].pin], design.verilog, design.library, design.macros, design.clock_ns,
+                                os.path.join(design.folder, "work"))[0]
+        used = power.estimate(design) if arguments.power else None
+        proofs = prove.prove(design) if arguments.prove else None
+        result = report.make(design, key, worst, used, proofs)
+        result["seconds"] = round(time.time() - begin, 1)
+        report.check(result)
+        with open(path + ".new", "w", encoding="utf-8") as file:
+            json.dump(result, file, indent=1)
+        os.rename(path + ".new", path)
+        plots.area_bars(result, os.path.join(design.folder, "work"), os.path.join(design.folder, "area.png"))
+    if arguments.run:
+        result["efficiency"] = report.efficiency(result, arguments.run)
+    say(report.table(result, against))
+    if arguments.out:
+        os.makedirs(arguments.out, exist_ok=True)
+        for name in ("report.json", "area.png", "netlist.v"):
+            shutil.copy(os.path.join(design.folder, name), arguments.out)
+        if arguments.run:
+            with open(os.path.join(arguments.out, "report.json"), "w", encoding="utf-8") as file:
+                json.dump(result, file, indent=1)
+    say(f"report   {arguments.out or design.folder}/report.json, area.png, netlist.v" +
+        (f" ({result['seconds']:.0f} s)" if time.time() - begin > 5 else " (kept)"))
+
+
+def netlist_of(arguments):
+    """The mapped netlist for the commands that work on it."""
+    design = flow.open_design(options_of(arguments))
+    flow.synthesise(design)
+    return design
+
+
+def replay_command(arguments):
+    replay.replay(netlist_of(arguments), arguments.break_number)
+
+
+def prove_command(arguments):
+    verdicts = prove.prove(netlist_of(arguments), set(arguments.only.split(",")) if arguments.only else None)
+    if arguments.only and not verdicts:
+        raise SynthError(f"there is no block {arguments.only}")
+    proved = sum(v == "proved" for v in verdicts.values())
+    say(f"prove: {proved} of {len(verdicts)} kinds of block proved equal to their RTL")
+    if any(v == "different" for v in verdicts.values()):
+        raise SynthError("a mapped block differs from its RTL")
+
+
+def growth_command(arguments):
+    growth.grow(arguments.jobs, arguments.out or os.path.join(flow.BUILD, "growth"))
+
+
+def parser():
+    top = argparse.ArgumentParser(prog="synth", description="synthesis of the compute unit: area, timing, power")
+    commands = top.add_subparsers(dest="command", required=True)
+    for name, function in (("report", synth_command), ("replay", replay_command), ("prove", prove_command), ("growth", growth_command)):
+        command = commands.add_parser(name)
+        command.set_defaults(function=function)
+        command.add_argument("--config", default="8w8c", help="as in raypool: a name, NwMc, or a JSON file")
+        command.add_argument("--liberty", help="cell library instead of the default one")
+        command.add_argument("--clock", help="ns; default from the library's set-up")
+        command.add_argument("--memories", help="macros (default) or flops")
+        command.add_argument("--jobs", type=int, default=os.cpu_count() or 2)
+        command.add_argument("--out", help="folder for the results")
+        if name == "report":
+            command.add_argument("--against", help="an earlier report.json to compare with")
+            command.add_argument("--run", help="report.json of raypool sim with this configuration: Mrays/s a mm2")
+            command.add_argument("--power", action="store_true", help="simulate the netlist and estimate power by block")
+            command.add_argument("--prove", action="store_true", help="prove blocks equal to their RTL")
+        if name == "replay":
+            command.add_argument("--break", dest="break_number", type=int, default=0, help="swap a cell first: must be noticed")
+        if name == "prove":
+            command.add_argument("--only", help="modules, with commas between")
+    return top
+
+
+def main():
+    arguments = parser().parse_args()
+    try:
+        arguments.function(arguments)
+    except SynthError as error:
+        warn(f"synth: {error}")
+        return 1
+    except KeyboardInterrupt:
+        warn("synth: interrupted; what was mapped is kept")
+        return 130
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,93 @@
+"""What a configuration consists of: its Verilog parameters, and the tree of modules with the parameters of each."""
+import glob
+import json
+import os
+import subprocess
+from dataclasses import dataclass
+
+from .errors import SynthError, need, run
+from .library import ROOT
+
+MEMORIES = ("ram_1rw", "ram_1r1w", "ram_2r1w")
+
+
+@dataclass
+class Kind:
+    """One module with one set of parameters. `identity` is Yosys' name for it, the type of its instances."""
+    identity: str
+    base: str
+    parameters: dict     # name -> (bits as text)
+    ports: dict          # name -> (direction, width)
+    children: dict       # instance -> identity
+    name: str = ""       # unique and fit for Verilog; the base name where that is enough
+
+    def value(self, parameter):
+        return int(self.parameters[parameter], 2)
+
+    @property
+    def memory(self):
+        return self.base in MEMORIES
+
+
+def rtl_files():
+    return sorted(glob.glob(os.path.join(ROOT, "rtl", "*.v")))
+
+
+def rtl_texts():
+    """Every text the RTL is made of, by path below the project."""
+    texts = {}
+    for path in rtl_files() + sorted(glob.glob(os.path.join(ROOT, "rtl", "*.vh"))):
+        with open(path, encoding="utf-8") as file:
+            texts[os.path.relpath(path, ROOT)] = file.read()
+    return texts
+
+
+def raypool():
+    program = os.environ.get("RAYPOOL", os.path.join(ROOT, "build", "raypool"))
+    if not os.access(program, os.X_OK):
+        raise SynthError(f"{program} is not there: build it with make program")
+    return program
+
+
+def configuration(name):
+    """The Verilog parameters of a configuration, as raypool says them."""
+    done = subprocess.run([raypool(), "config", name, "--verilog-parameters"], capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        raise SynthError((done.stderr or done.stdout).strip())
+    return dict(line.split("=") for line in done.stdout.split())
+
+
+def tree(parameters, folder):
+    """All kinds of module below compute_unit, by identity; the top has identity `compute_unit`."""
+    os.makedirs(folder, exist_ok=True)
+    script, result = os.path.join(folder, "elaborate.ys"), os.path.join(folder, "elaborate.json")
+    chosen = " ".join(f"-chparam {n} {v}" for n, v in parameters.items())
+    with open(script, "w", encoding="utf-8") as file:
+        file.write(f"read_verilog -I{ROOT}/rtl {' '.join(rtl_files())}\nhierarchy -check -top compute_unit {chosen}\n"
+                   f"delete */p:*\nwrite_json {result}\n")
+    run([need("yosys", "yosys"), "-q", script], os.path.join(folder, "elaborate.log"))
+    with open(result, encoding="utf-8") as file:
+        modules = json.load(file)["modules"]
+    kinds = {}
+    for identity, module in modules.items():
+        base = module["attributes"].get("hdlname", "\\" + identity).lstrip("\\")
+        ports = {n: (p["direction"], len(p["bits"])) for n, p in module["ports"].items()}
+        children = {n: c["type"] for n, c in module["cells"].items() if c["type"] in modules}
+        kinds[identity] = Kind(identity, base, module.get("parameter_default_values", {}), ports, children)
+    by_base = {}
+    for kind in kinds.values():
+        by_base.setdefault(kind.base, []).append(kind)
+    for base, group in by_base.items():
+        for kind in group:
+            if kind.memory:
+                kind.name = f"{base}_{kind.value('DEPTH')}x{kind.value('WIDTH')}"
+            else:
+                kind.name = base if len(group) == 1 else base + distinguishing(kind, group)
+    return kinds
+
+
+def distinguishing(kind, group):
+    """A suffix from the parameters in which a module's kinds differ: _stages2_width8."""
+    parts = [f"_{n.lower()}{int(v, 2)}" for n, v in sorted(kind.parameters.items())
+             if any(other.parameters.get(n) != v for other in group)]
+    return "".join(parts) or "_" + kind.identity[-6:]

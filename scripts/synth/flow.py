@@ -1,0 +1,166 @@
+"""From a configuration to a timed netlist: elaborate, map, time, map the blocks on failing paths for speed, time again."""
+import hashlib
+import json
+import os
+from dataclasses import dataclass, field
+
+from . import elaborate, mapping, timing
+from .errors import SynthError, say
+from .library import ROOT, Library
+from .memories import MemoryModel
+from .netlist import Netlist
+
+BUILD = os.path.join(ROOT, "build", "synth")
+# Rounds of mapping for speed what lies on failing paths.
+CLOSURE_ROUNDS = 3
+# Failing end points whose paths are looked at in a round.
+PATHS_A_ROUND = 60
+
+
+@dataclass
+class Options:
+    config: str = "8w8c"
+    liberty: str = None
+    clock_ns: float = None
+    memories: str = "macros"
+    jobs: int = 2
+    out: str = None
+
+
+@dataclass
+class Design:
+    """A configuration as netlist; what the later steps need."""
+    options: Options
+    library: Library
+    parameters: dict
+    folder: str
+    clock_ns: float = 0.0
+    fo4_ns: float = 0.0
+    kinds: dict = field(default_factory=dict)
+    netlist: Netlist = None
+    memory: MemoryModel = None
+    endpoints: list = field(default_factory=list)
+    fast: set = field(default_factory=set)
+
+    @property
+    def verilog(self):
+        return os.path.join(self.folder, "netlist.v")
+
+    @property
+    def macros(self):
+        path = os.path.join(self.folder, "memories.lib")
+        return path if any(k.memory for k in self.blocks()) else None
+
+    def blocks(self):
+        """Kinds that stay blocks: the memories, unless they are made of flip-flops."""
+        return [] if self.options.memories == "flops" else [k for k in self.kinds.values() if k.memory]
+
+
+def label(options, library):
+    """The folder's name: the configuration and whatever is not the default."""
+    name = os.path.splitext(os.path.basename(options.config))[0]
+    parts = [name] + ([library.name] if library.name != "osu018" else []) + (["flops"] if options.memories == "flops" else [])
+    if options.clock_ns is not None:
+        parts.append(f"{options.clock_ns:g}ns")
+    return "-".join(parts)
+
+
+def open_design(options):
+    """Checks the input; nothing is synthesised yet."""
+    if options.memories not in ("macros", "flops"):
+        raise SynthError(f"MEMORIES={options.memories}: macros or flops")
+    library = Library(options.liberty)
+    parameters = elaborate.configuration(options.config)
+    folder = options.out or os.path.join(BUILD, label(options, library))
+    os.makedirs(folder, exist_ok=True)
+    return Design(options, library, parameters, folder)
+
+
+def digest(design):
+    """Everything a report depends on."""
+    sources = dict(elaborate.rtl_texts())
+    here = os.path.dirname(os.path.abspath(__file__))
+    for folder in (here, os.path.join(ROOT, "constraints")):
+        for name in sorted(os.listdir(folder)):
+            if name.endswith((".py", ".json", ".sdc")):
+                with open(os.path.join(folder, name), encoding="utf-8") as file:
+                    sources[name] = file.read()
+    parts = [sources, design.parameters, design.library.digest, mapping.versions(), timing.version(), str(design.options.clock_ns),
+             design.options.memories]
+    return hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()[:16]
+
+
+def prepare(design):
+    """Elaborates, and measures the library."""
+    work = os.path.join(design.folder, "work")
+    os.makedirs(work, exist_ok=True)
+    design.fo4_ns = timing.measure_fo4(design.library, work)
+    # A library that says nothing else gets the default library's clock, counted in its own FO4.
+    default = 40.0 * design.fo4_ns
+    design.clock_ns = design.options.clock_ns or design.library.setup.get("clock_ns") or round(default, 3)
+    design.kinds = elaborate.tree(design.parameters, work)
+    design.memory = MemoryModel(design.library)
+    return work
+
+
+def mapper_of(design):
+    return mapping.Mapper(design.library, BUILD, design.clock_ns, design.options.jobs)
+
+
+def map_design(design, fast=()):
+    mapper = mapper_of(design)
+    stay = {k.identity for k in design.blocks()}
+    paths = mapper.map_all([k for k in design.kinds.values() if k.identity not in stay], fast)
+    design.netlist = Netlist(design.kinds, paths, design.library)
+    design.netlist.write(design.verilog)
+    if design.blocks():
+        design.memory.liberty(design.blocks(), design.fo4_ns, os.path.join(design.folder, "memories.lib"))
+
+
+def time_design(design, work):
+    design.endpoints, loops = timing.time_unit(design.verilog, design.library, design.macros, design.clock_ns, work)
+    if loops:
+        raise SynthError(f"the netlist has combinational loops:\n{loops}")
+    return design.endpoints[0].slack
+
+
+def identities_on(design, pins):
+    """The kinds of block that own the given pins."""
+    owners = {"/".join(path): identity for path, identity in design.netlist.instances()}
+    found = set()
+    for pin in pins:
+        path = pin.split("/")[:-1]
+        while path and "/".join(path) not in owners:
+            path = path[:-1]
+        found.add(owners["/".join(path)] if path else design.netlist.top)
+    return found
+
+
+def synthesise(design):
+    """The whole of it. design.netlist and design.endpoints hold the result."""
+    work = prepare(design)
+    map_design(design)
+    slack = time_design(design, work)
+    say(f"synth: {design.options.config}: slack {slack:+.3f} ns at {design.clock_ns:g} ns")
+    for _ in range(CLOSURE_ROUNDS):
+        if slack >= 0:
+            break
+        failing = [e.pin for e in design.endpoints if e.slack < 0]
+        # Lanes fail alike: one end point of each name is enough.
+        seen, chosen = set(), []
+        for pin in failing:
+            name = "".join(c for c in pin if not c.isdigit())
+            if name not in seen:
+                seen.add(name)
+                chosen.append(pin)
+        pins = [step[0] for _, _, steps in timing.describe(chosen[:PATHS_A_ROUND], design.verilog, design.library, design.macros,
+                                                           design.clock_ns, work) for step in steps]
+        mapper = mapper_of(design)
+        more = {i for i in identities_on(design, pins) if i in design.netlist.modules and mapper.can_be_faster(design.kinds[i])} - design.fast
+        if not more:
+            break
+        say(f"synth: slack {slack:+.3f} ns; for speed: {', '.join(sorted(design.kinds[i].name for i in more))}")
+        design.fast |= more
+        map_design(design, design.fast)
+        slack = time_design(design, work)
+    return slack

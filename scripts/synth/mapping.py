@@ -1,0 +1,174 @@
+"""Maps each kind of module once to the library's cells, with Yosys and ABC, and keeps the result under a key of all it was made from."""
+import concurrent.futures
+import hashlib
+import json
+import os
+import re
+import subprocess
+
+from .elaborate import rtl_files, rtl_texts
+from .errors import SynthError, need, run, say
+from .library import ROOT
+
+# ABC sees neither clock-to-output nor set-up time: it gets this share of the period.
+LOGIC_SHARE = 0.7
+# A block whose slowest logic takes no more than this share is small enough a problem to be mapped for area.
+ACCEPTED_SHARE = 0.75
+# What a block drives and is driven by is not known while it is mapped alone.
+OUTPUT_LOAD_FF = 30
+
+
+def versions():
+    """The tools that make the netlist."""
+    text = subprocess.run([need("yosys", "yosys"), "-V"], capture_output=True, text=True, check=True).stdout
+    return {"yosys": text.split()[1]}
+
+
+# Ways of mapping: for area, for speed. Each ends with buffers and drive strengths for the target {d}, and says its delay.
+_SIZING = "topo;buffer,-c;upsize,-D,{d};dnsize,-D,{d};stime"
+ABC_SCRIPTS = {
+    "area": "+strash;dc2;dch,-f;amap,-m;" + _SIZING,
+    "speed": "+strash;dch;map,-B,0.9,-D,{d};" + _SIZING,
+}
+
+
+def constant(bits):
+    return str(int(bits, 2)) if len(bits) == 32 else f"{len(bits)}'b{bits}"
+
+
+class Mapper:
+    def __init__(self, library, folder, clock_ns, jobs=2):
+        self.library = library
+        self.folder = os.path.join(folder, "kinds")
+        os.makedirs(self.folder, exist_ok=True)
+        self.clock_ns = clock_ns
+        self.jobs = jobs
+        self.cells = library.usable_file(os.path.join(folder, "libraries"))
+        self.texts = rtl_texts()
+        self.shared = {p: t for p, t in self.texts.items() if p.endswith(".vh")}
+        self.version = versions()["yosys"]
+
+    def prepare_script(self, kind, result):
+        """Yosys: one kind down to generic gates and library flip-flops. Its children stay blocks."""
+        chosen = " ".join(f"-chparam {n} {constant(v)}" for n, v in sorted(kind.parameters.items()))
+        return f"""read_verilog -DSYNTHESIS -I{ROOT}/rtl {' '.join(rtl_files())}
+hierarchy -check -top {kind.base} {chosen}
+select -set kids * A:top %d
+blackbox @kids
+select -clear
+proc
+opt_clean
+select -assert-none t:$dlatch t:$adlatch t:$dlatchsr
+check -assert
+synth -run coarse:fine -noabc
+opt -fast -full
+memory_map
+opt -undriven -fine
+techmap
+opt -fast
+select -assert-none t:$_DLATCH_* t:$_DLATCHSR_*
+dfflibmap -liberty {self.cells}
+opt
+write_rtlil {result}
+"""
+
+    def map_script(self, way, prepared, result):
+        """Yosys: the gates of a prepared kind."""
+        script = ABC_SCRIPTS[way].format(d=int(self.clock_ns * 1000 * LOGIC_SHARE))
+        return f"""read_rtlil {prepared}
+abc -liberty {self.cells} -constr {self.folder}/abc.constr -script {script}
+opt_clean -purge
+read_liberty -lib -ignore_miss_func {self.cells}
+check -assert
+write_json {result}
+"""
+
+    def key(self, kind, fast):
+        """All that decides the result. The text of a module and what it includes; its children only by their interface."""
+        scripts = (self.prepare_script(kind, "") + "".join(self.map_script(w, "", "") for w in ABC_SCRIPTS)).replace(ROOT, "")
+        for path in rtl_files():
+            scripts = scripts.replace(path.replace(ROOT, ""), "")
+        source = self.texts[f"rtl/{kind.base}.v"]
+        parts = [self.version, self.library.digest, scripts.replace(self.folder.replace(ROOT, ""), ""), source,
+                 json.dumps(self.shared, sort_keys=True), str(OUTPUT_LOAD_FF), str(ACCEPTED_SHARE), str(fast),
+                 json.dumps(sorted(kind.children.items())), json.dumps(sorted(kind.parameters.items()))]
+        return hashlib.sha256("\0".join(parts).encode()).hexdigest()[:24]
+
+    def path(self, kind, fast=False):
+        return os.path.join(self.folder, f"{kind.base}-{self.key(kind, fast)}.json")
+
+    def yosys(self, script, stem):
+        with open(stem + ".ys", "w", encoding="utf-8") as file:
+            file.write(script)
+        run([need("yosys", "yosys"), "-q", "-l", stem + ".yosys", stem + ".ys"], stem + ".log")
+        os.remove(stem + ".ys")
+
+    def map_one(self, kind, fast):
+        """Takes the smallest way whose delay is within the accepted share of the period, else the fastest. `fast`: the fastest."""
+        final = self.path(kind, fast)
+        # Two runs may map the same kind at a time: each works on files of its own.
+        stem = f"{final[:-len('.json')]}.{os.getpid()}"
+        prepared = stem + ".il"
+        self.yosys(self.prepare_script(kind, prepared), stem)
+        best = None
+        for way in ["speed"] if fast else ["area", "speed"]:
+            result = f"{stem}.{way}"
+            self.yosys(self.map_script(way, prepared, result), stem)
+            with open(stem + ".yosys", encoding="utf-8", errors="replace") as file:
+                delays = re.findall(r"Delay = *([\d.]+) ps", file.read())
+            delay = float(delays[-1]) if delays else 0.0
+            if best is None or delay < best[0]:
+                best = (delay, way, result)
+            if not fast and delay <= self.clock_ns * 1000 * ACCEPTED_SHARE:
+                break
+        with open(best[2], encoding="utf-8") as file:
+            module = next(m for m in json.load(file)["modules"].values() if "top" in m["attributes"])
+        slim = {"way": best[1], "delay_ps": best[0],
+                "ports": {n: {"direction": p["direction"], "bits": p["bits"]} for n, p in module["ports"].items()},
+                "cells": {n: {"type": c["type"], "connections": c["connections"]} for n, c in module["cells"].items()},
+                "netnames": {n: {"bits": w["bits"]} for n, w in module["netnames"].items() if not w["hide_name"]}}
+        with open(stem + ".new", "w", encoding="utf-8") as file:
+            json.dump(slim, file)
+        os.rename(stem + ".new", final)
+        for leftover in [prepared, stem + ".log", stem + ".yosys", *(f"{stem}.{w}" for w in ABC_SCRIPTS)]:
+            if os.path.exists(leftover):
+                os.remove(leftover)
+        return kind
+
+    def kept(self, kind, fast):
+        """The path of a kept result, or None. What was mapped for speed because nothing else met the target serves for both."""
+        usual = self.path(kind)
+        if fast and os.path.exists(usual) and self.way(usual) == "speed":
+            return usual
+        path = self.path(kind, fast)
+        return path if os.path.exists(path) else None
+
+    @staticmethod
+    def way(path):
+        with open(path, encoding="utf-8") as file:
+            return re.search(r'"way": "(\w+)"', file.read(200))[1]
+
+    def can_be_faster(self, kind):
+        usual = self.path(kind)
+        return os.path.exists(usual) and self.way(usual) != "speed"
+
+    def map_all(self, kinds, fast=()):
+        """Maps what is not kept yet; the identities in `fast` for speed. Returns the paths of the results, by identity."""
+        with open(os.path.join(self.folder, "abc.constr"), "w", encoding="utf-8") as file:
+            file.write(f"set_driving_cell {self.library.driver}\nset_load {OUTPUT_LOAD_FF} [all_outputs]\n")
+        missing = [k for k in kinds if self.kept(k, k.identity in fast) is None]
+        if missing:
+            say(f"synth: mapping {len(missing)} of {len(kinds)} kinds of block" + (" for speed" if fast else ""))
+        # The large ones first, so that the last to finish is a small one.
+        missing.sort(key=lambda k: -sum(w for _, w in k.ports.values()))
+        with concurrent.futures.ThreadPoolExecutor(self.jobs) as pool:
+            pending = {pool.submit(self.map_one, k, k.identity in fast): k for k in missing}
+            for count, done in enumerate(concurrent.futures.as_completed(pending), 1):
+                kind = pending[done]
+                try:
+                    done.result()
+                except SynthError as error:
+                    pool.shutdown(cancel_futures=True)
+                    raise SynthError(f"{kind.name} cannot be mapped: {error}") from error
+                say(f"synth: {count} of {len(missing)}: {kind.name}")
+        return {k.identity: self.kept(k, k.identity in fast) for k in kinds}

@@ -1,0 +1,138 @@
+"""Proves each mapped block equal to its RTL: both as and-inverter graphs, a miter, then ABC. Children are cut off at their ports."""
+import concurrent.futures
+import hashlib
+import json
+import os
+import re
+import subprocess
+
+from . import mapping
+from .elaborate import rtl_files
+from .errors import need, run, say
+from .library import ROOT
+
+SECONDS = 120
+ABC = "read_aiger {aig}; strash; scorr; dprove"
+
+
+def escaped(name):
+    return f"\\{name} "
+
+
+def gate_module(design, module):
+    """The mapped block with its children's ports as its own, under the names that Yosys' expose -evert gives them."""
+    own = {n: v for n, v in module.names.items()}
+
+    def text(net):
+        return f"1'b{net}" if isinstance(net, str) else own[net]
+    lines, ports, outputs = [], [], []
+    for name, direction, nets in module.ports:
+        ports.append(name)
+        lines.append(f"  {direction} {f'[{len(nets) - 1}:0] ' if len(nets) > 1 else ''}{name};")
+        if direction == "output":
+            for i, net in enumerate(nets):
+                label = f"{name}[{i}]" if len(nets) > 1 else name
+                if text(net) != label:
+                    outputs.append(f"  assign {label} = {text(net)};")
+    for label, (identity, connections) in module.blocks.items():
+        original = module.originals[label]
+        for port, (direction, width) in design.kinds[identity].ports.items():
+            name = escaped(f"{original}.{port}")
+            ports.append(name)
+            span = f"[{width - 1}:0] " if width > 1 else ""
+            # What a child takes leaves the block, and what it gives comes in.
+            lines.append(f"  {'output' if direction == 'input' else 'input'} {span}{name};")
+            for i, net in enumerate(connections.get(port, [])):
+                bit = f"{name}[{i}]" if width > 1 else name
+                if direction == "input":
+                    outputs.append(f"  assign {bit} = {text(net)};")
+                elif not isinstance(net, str):
+                    outputs.append(f"  assign {text(net)} = {bit};")
+    taken = {p[0] for p in module.ports}
+    wires = [n for n in own.values() if n.split("[")[0] not in taken]
+    gates = [f"  {cell} {label} ({', '.join(f'.{p}({text(n)})' for p, n in pins.items())});"
+             for label, (cell, pins) in module.gates.items()]
+    declared = [f"  wire {', '.join(wires[i:i + 12])};" for i in range(0, len(wires), 12)]
+    return "\n".join([f"module gate ({', '.join(ports)});", *lines, *declared, *outputs, *gates, "endmodule", ""])
+
+
+def prove_one(design, identity, folder, cells):
+    """'proved', 'different', or why not."""
+    module = design.netlist.modules[identity]
+    kind = module.kind
+    stem = os.path.join(folder, kind.name)
+    text = gate_module(design, module)
+    key = hashlib.sha256(("".join(open(p, encoding="utf-8").read() for p in rtl_files() if os.path.basename(p) == kind.base + ".v") +
+                          text + ABC + json.dumps(kind.parameters, sort_keys=True) + design.library.digest).encode()).hexdigest()[:16]
+    kept = stem + ".result"
+    if os.path.exists(kept):
+        with open(kept, encoding="utf-8") as file:
+            result = json.load(file)
+        if result["key"] == key:
+            return result["verdict"]
+    with open(stem + ".v", "w", encoding="utf-8") as file:
+        file.write(text)
+    chosen = " ".join(f"-chparam {n} {mapping.constant(v)}" for n, v in sorted(kind.parameters.items()))
+    script = f"""read_verilog -DSYNTHESIS -I{ROOT}/rtl {' '.join(rtl_files())}
+hierarchy -check -top {kind.base} {chosen}
+select -set kids * A:top %d
+blackbox @kids
+select -clear
+proc
+expose -evert t:*
+opt_clean
+memory_map
+opt -fast
+rename {kind.base} gold
+read_liberty -ignore_miss_func -overwrite {cells}
+read_verilog {stem}.v
+flatten gate
+miter -equiv -flatten -make_outputs gold gate miter
+hierarchy -top miter
+delete -output miter/gold_* miter/gate_*
+setundef -undriven -zero
+setundef -init -zero
+opt -fast
+techmap
+opt -fast
+dffunmap
+setundef -zero
+setundef -init -zero
+abc -g AND -fast
+opt_clean
+write_aiger -zinit {stem}.aig
+"""
+    with open(stem + ".ys", "w", encoding="utf-8") as file:
+        file.write(script)
+    run([need("yosys", "yosys"), "-q", stem + ".ys"], stem + ".log")
+    try:
+        done = subprocess.run([need("yosys-abc", "yosys"), "-q", ABC.format(aig=stem + ".aig")], capture_output=True,
+                              text=True, timeout=SECONDS, check=False)
+        said = done.stdout + done.stderr
+        if "not equivalent" in said.lower() or "was asserted" in said or re.search(r"^SATISFIABLE", said, re.M):
+            verdict = "different"
+        elif "are equivalent" in said or "UNSATISFIABLE" in said:
+            verdict = "proved"
+        else:
+            verdict = "undecided: " + (said.strip().splitlines() or ["ABC said nothing"])[-1][:100]
+    except subprocess.TimeoutExpired:
+        verdict = f"undecided: more than {SECONDS} s"
+    with open(kept, "w", encoding="utf-8") as file:
+        json.dump({"key": key, "verdict": verdict}, file)
+    return verdict
+
+
+def prove(design, only=None):
+    """All kinds of block, or those whose module is in `only`. Returns {kind's name: verdict}."""
+    folder = os.path.join(design.folder, "proofs")
+    os.makedirs(folder, exist_ok=True)
+    cells = design.library.usable_file(os.path.join(folder, "libraries"))
+    chosen = [i for i, m in design.netlist.modules.items() if only is None or m.kind.base in only]
+    verdicts = {}
+    with concurrent.futures.ThreadPoolExecutor(design.options.jobs) as pool:
+        pending = {pool.submit(prove_one, design, i, folder, cells): i for i in chosen}
+        for done in concurrent.futures.as_completed(pending):
+            name = design.kinds[pending[done]].name
+            verdicts[name] = done.result()
+            say(f"prove: {name}: {verdicts[name]}")
+    return verdicts

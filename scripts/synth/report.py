@@ -1,0 +1,235 @@
+"""report.json of a synthesised configuration, its table, and the comparison with an earlier one. docs/synthesis.md explains the fields."""
+import json
+import os
+import statistics
+from collections import defaultdict
+
+from . import mapping, timing
+from .errors import SynthError
+from .library import ROOT
+
+SCHEMA = "raypool-synth-1"
+THESIS_MM2 = 0.537
+# Lanes whose size has a goal: (block, goal in kGE, for which parameters).
+GOALS = [("float_lane", "Flt lane", {"SUBNORMALS": {"0": 12.0, "1": 10.5}}), ("slow_lane", "Slw lane", {"SLOW_UNIT": {"0": 28.0, "2": 15.0}})]
+
+
+def scaling():
+    with open(os.path.join(ROOT, "constraints", "scaling.json"), encoding="utf-8") as file:
+        return json.load(file)
+
+
+def base_path(design, path):
+    """The block of an instance path, by the names of its modules: flt_alu/float_lane/float_adder."""
+    identity, names = design.netlist.top, []
+    for instance in path:
+        identity = design.netlist.modules[identity].blocks[instance][0]
+        names.append(design.kinds[identity].base)
+    return "/".join(names)
+
+
+def blocks(design):
+    """One row for each block of the hierarchy, all instances of a place together; areas include what lies below."""
+    netlist, library = design.netlist, design.library
+    rows = defaultdict(lambda: {"instances": 0, "logic_um2": 0.0, "own_um2": 0.0, "memory_um2": 0.0, "flip_flops": 0, "memory_bits": 0, "cells": 0})
+    stay = {k.identity for k in design.blocks()}
+    of_path = {}
+    for path, identity in netlist.instances():
+        name = base_path(design, path)
+        of_path["/".join(path)] = name
+        row = rows[name]
+        row["instances"] += 1
+        if identity in stay:
+            price = design.memory.price(design.kinds[identity])
+            change = {"memory_um2": price.nominal, "memory_bits": price.bits}
+        else:
+            change = {"logic_um2": netlist.own_area(identity), "flip_flops": netlist.own_flops(identity),
+                      "cells": sum(netlist.gate_count(identity).values())}
+            row["own_um2"] += change["logic_um2"]
+        for depth in range(len(path) + 1):
+            upper = rows[base_path(design, path[:depth])]
+            for key, value in change.items():
+                upper[key] += value
+    worst = {}
+    for end in design.endpoints:
+        path = end.pin.split("/")[:-1]
+        while path and "/".join(path) not in of_path:
+            path = path[:-1]
+        name = of_path["/".join(path)]
+        worst.setdefault(name, end)
+    listed = []
+    for name in sorted(rows, key=lambda n: (n.count("/") if n else -1, -rows[n]["logic_um2"] - rows[n]["memory_um2"])):
+        row = rows[name]
+        end = worst.get(name)
+        listed.append({"block": name or "compute_unit", **{k: round(v, 1) if isinstance(v, float) else v for k, v in row.items()},
+                       "logic_kge": round(library.kge(row["logic_um2"]), 3), "memory_kge": round(library.kge(row["memory_um2"]), 3),
+                       "slack_ns": end.slack if end else None, "delay_ns": round(design.clock_ns - end.slack, 4) if end else None,
+                       "endpoint": end.pin if end else None})
+    return listed, of_path
+
+
+def block_of(of_path, pin):
+    path = pin.split("/")[:-1]
+    while path and "/".join(path) not in of_path:
+        path = path[:-1]
+    return of_path["/".join(path)] or "compute_unit"
+
+
+def forty_nm(design, logic_um2):
+    """mm2 at 40 nm by the rule of constraints/scaling.json."""
+    rule = scaling()
+    gates = logic_um2 / design.library.nand2_area
+    result = {}
+    instances = [i for _, i in design.netlist.instances()]
+    stay = {k.identity: k for k in design.blocks()}
+    prices = [design.memory.price_at_reference(stay[i]) for i in instances if i in stay]
+    for end, index in (("", 1), ("_low", 2), ("_high", 3)):
+        result["logic_mm2" + end] = gates * rule["nand2_um2" + end] * 1e-6
+        result["memory_mm2" + end] = sum(p[index] for p in prices) * rule["memory_factor" + end] * 1e-6
+        result["total_mm2" + end] = result["logic_mm2" + end] + result["memory_mm2" + end]
+    result["memory_mm2_high"] = max(result["memory_mm2_high"], result["memory_mm2"])
+    result["total_mm2_high"] = result["logic_mm2_high"] + result["memory_mm2_high"]
+    return {**{k: round(v, 4) for k, v in result.items()}, "rule": rule["rule"]}
+
+
+def make(design, key, path, power, proofs):
+    """The report as a dictionary."""
+    listed, of_path = blocks(design)
+    whole = listed[0]
+    library, clock = design.library, design.clock_ns
+    start, end, steps = path
+    slack = design.endpoints[0].slack
+    delays = {b["block"]: b["delay_ns"] for b in listed if b["delay_ns"] and b["flip_flops"] and b["block"] != "compute_unit"}
+    median = statistics.median(delays.values())
+    allowed = clock - slack
+    report = {
+        "schema": SCHEMA, "key": key, "config": design.options.config, "parameters": design.parameters,
+        "library": {"name": library.name, "liberty": library.path, "nand2": library.nand2, "nand2_um2": library.nand2_area,
+                    "fo4_ns": round(design.fo4_ns, 5), "setup": os.path.basename(library.setup["file"])},
+        "tools": {**mapping.versions(), "opensta": timing.version()}, "memories": design.options.memories,
+        "area": {"logic_um2": whole["logic_um2"], "memory_um2": whole["memory_um2"], "total_um2": round(whole["logic_um2"] + whole["memory_um2"], 1),
+                 "logic_kge": whole["logic_kge"], "memory_kge": whole["memory_kge"],
+                 "total_kge": round(whole["logic_kge"] + whole["memory_kge"], 3), "flip_flops": whole["flip_flops"],
+                 "memory_bits": whole["memory_bits"], "cells": whole["cells"]},
+        "timing": {"clock_ns": clock, "slack_ns": slack, "allowed_ns": round(allowed, 4), "allowed_fo4": round(allowed / design.fo4_ns, 1),
+                   "mhz": round(1000 / allowed, 1), "from": start, "to": end, "from_block": block_of(of_path, start + "/x"),
+                   "to_block": block_of(of_path, end + "/x"),
+                   "steps": [{"pin": p, "cell": c, "delay_ns": d, "at_ns": t, "block": block_of(of_path, p)} for p, c, d, t in steps],
+                   "median_delay_ns": median, "slower_than_four_thirds_of_median": sorted(b for b, d in delays.items() if d > median * 4 / 3),
+                   "mapped_for_speed": sorted(design.kinds[i].name for i in design.fast)},
+        "forty_nm": {**forty_nm(design, whole["logic_um2"]), "thesis_4w4c_mm2": THESIS_MM2},
+        "lanes": lanes(design, listed), "blocks": listed, "power": power, "proofs": proofs,
+    }
+    return report
+
+
+def lanes(design, listed):
+    """kGE of one lane, flip-flops included, and its goal."""
+    result = {}
+    for base, label, goals in GOALS:
+        rows = [b for b in listed if b["block"].endswith("/" + base)]
+        if not rows:
+            continue
+        parameter, by_value = next(iter(goals.items()))
+        result[label] = {"kge": round(sum(r["logic_kge"] for r in rows) / sum(r["instances"] for r in rows), 2),
+                         "goal_kge": by_value.get(design.parameters.get(parameter))}
+    return result
+
+
+def check(report):
+    """The report's own promises, for the tests: raises what is broken."""
+    needed = {"area": ["logic_um2", "logic_kge", "memory_bits", "flip_flops"], "timing": ["slack_ns", "allowed_fo4", "to_block", "steps"],
+              "forty_nm": ["total_mm2", "total_mm2_low", "total_mm2_high"], "library": ["fo4_ns", "nand2_um2"], "tools": ["yosys", "opensta"]}
+    for group, names in needed.items():
+        for name in names:
+            if name not in report.get(group, {}):
+                raise SynthError(f"the report has no {group}.{name}")
+    top = [b for b in report["blocks"] if b["block"] != "compute_unit" and "/" not in b["block"]]
+    whole = report["blocks"][0]
+    for what in ("logic_um2", "memory_um2"):
+        parts = sum(b[what] for b in top) + (whole["own_um2"] if what == "logic_um2" else 0)
+        if abs(parts - whole[what]) > 1 + 1e-6 * whole[what]:
+            raise SynthError(f"the blocks' {what} add up to {parts:.1f}, not to {whole[what]:.1f}")
+
+
+def efficiency(report, path):
+    """Mrays/s a mm2 and a kGE with a run's report, whose clock is that of the simulated chip."""
+    try:
+        with open(path, encoding="utf-8") as file:
+            run = json.load(file)
+    except (OSError, ValueError) as error:
+        raise SynthError(f"RUN={path}: not a report of raypool sim ({error})") from error
+    if "mrays_per_second" not in run:
+        raise SynthError(f"RUN={path}: not a report of raypool sim (it has no mrays_per_second)")
+    if run.get("config") != os.path.splitext(os.path.basename(report["config"]))[0]:
+        raise SynthError(f"RUN={path}: drawn with configuration {run.get('config')}, but this is {report['config']}")
+    units = run.get("units", 1)
+    rate = run["mrays_per_second"]
+    return {"run": path, "mrays_per_second": rate, "units": units, "mrays_per_second_mm2": rate / units / report["forty_nm"]["total_mm2"],
+            "mrays_per_second_kge": rate / units / report["area"]["total_kge"]}
+
+
+def number(value, places=2):
+    return "-" if value is None else f"{value:.{places}f}"
+
+
+def table(report, against=None, depth=2):
+    """What is printed."""
+    area, when, scaled = report["area"], report["timing"], report["forty_nm"]
+    lines = [f"{report['config']}  {report['library']['name']}, FO4 {report['library']['fo4_ns'] * 1000:.1f} ps, yosys {report['tools']['yosys']}, "
+             f"OpenSTA {report['tools']['opensta']}", ""]
+    old = {b["block"]: b for b in against["blocks"]} if against else {}
+    head = f"{'block':44} {'n':>4} {'um2':>11} {'kGE':>9} {'memory kGE':>11} {'flip-flops':>11} {'memory bits':>12} {'slack ns':>9}"
+    lines.append(head + (f" {'kGE before':>11} {'change':>8}" if against else ""))
+    for block in report["blocks"]:
+        name = block["block"]
+        if name.count("/") >= depth or (block["logic_um2"] + block["memory_um2"]) < 0.0005 * area["total_um2"]:
+            continue
+        line = (f"{'  ' * name.count('/') + name:44} {block['instances']:>4} {block['logic_um2']:>11.0f} {block['logic_kge']:>9.2f} "
+                f"{number(block['memory_kge']) if block['memory_bits'] else '-':>11} {block['flip_flops']:>11} {block['memory_bits'] or '-':>12} "
+                f"{number(block['slack_ns'], 3):>9}")
+        if against:
+            before = old.get(name)
+            line += f" {number(before['logic_kge']) if before else '-':>11} "
+            line += f"{100 * (block['logic_kge'] / before['logic_kge'] - 1):>+7.1f}%" if before and before["logic_kge"] else f"{'new':>8}"
+        lines.append(line)
+    lines += ["", f"area     {area['logic_kge']:.1f} kGE logic, {area['memory_kge']:.1f} kGE memory ({area['memory_bits']} bits, {report['memories']}), "
+              f"{area['flip_flops']} flip-flops, {area['cells']} cells",
+              f"40 nm    {scaled['total_mm2']:.3f} mm2 ({scaled['total_mm2_low']:.3f} to {scaled['total_mm2_high']:.3f}): logic "
+              f"{scaled['logic_mm2']:.3f}, memory {scaled['memory_mm2']:.3f}; the thesis' 4w4c: {scaled['thesis_4w4c_mm2']}",
+              f"timing   slack {when['slack_ns']:+.3f} ns at {when['clock_ns']:g} ns: {when['mhz']:.0f} MHz, {when['allowed_ns']:.2f} ns, "
+              f"{when['allowed_fo4']:.1f} FO4",
+              f"slowest  from {when['from_block']} ({when['from']}) to {when['to_block']} ({when['to']})"]
+    missed = [b for b in report["blocks"] if b["slack_ns"] is not None and b["slack_ns"] < 0]
+    lines.append("missed   " + (", ".join(f"{b['block']} {b['slack_ns']:+.3f}" for b in missed) if missed else "nothing: every block makes the clock"))
+    lines.append(f"stages   median of the blocks' slowest paths {when['median_delay_ns']:.2f} ns; more than a third slower: "
+                 + (", ".join(when["slower_than_four_thirds_of_median"]) or "none"))
+    for label, lane in report["lanes"].items():
+        goal = f", goal at most {lane['goal_kge']:g}" if lane["goal_kge"] else ""
+        lines.append(f"{label:8} {lane['kge']:.2f} kGE{goal}")
+    if report.get("power"):
+        power = report["power"]
+        lines.append(f"power    {power['total_w'] * 1000:.0f} mW at {1000 / power['clock_ns']:.0f} MHz while drawing ({power['kernel']}); the largest: " +
+                     ", ".join(f"{r['block']} {r['total_w'] * 1000:.1f}" for r in sorted(power["blocks"], key=lambda r: -r["total_w"])[:6]))
+    if report.get("proofs"):
+        proved = sum(v == "proved" for v in report["proofs"].values())
+        rest = {k: v for k, v in report["proofs"].items() if v != "proved"}
+        lines.append(f"proofs   {proved} of {len(report['proofs'])} kinds of block proved equal to their RTL" + (f"; {rest}" if rest else ""))
+    if report.get("efficiency"):
+        e = report["efficiency"]
+        lines.append(f"speed    {e['mrays_per_second']:.2f} Mrays/s: {e['mrays_per_second_mm2']:.1f} a mm2 at 40 nm, "
+                     f"{e['mrays_per_second_kge']:.4f} a kGE (memories counted)")
+    if against:
+        lines.append(f"against  {against['config']} ({against['area']['total_kge']:.1f} kGE, {against['timing']['mhz']:.0f} MHz)")
+    return "\n".join(lines)
+
+
+def load(path):
+    try:
+        with open(path, encoding="utf-8") as file:
+            report = json.load(file)
+    except (OSError, ValueError) as error:
+        raise SynthError(f"{path}: not a synthesis report ({error})") from error
+    if report.get("schema") != SCHEMA:
+        raise SynthError(f"{path}: not a synthesis report (schema {report.get('schema')}, wanted {SCHEMA})")
+    return report
