@@ -32,7 +32,7 @@ CLOCK     ?=
 MEMORIES  ?= macros
 AGAINST   ?=
 RUN       ?=
-POWER     ?= 1
+POWER     ?= 0
 BREAK     ?= 0
 ONLY      ?=
 # `make cosim`
@@ -77,7 +77,7 @@ help: ## this list
 	@echo '  OUT=FOLDER                    image.png, report.json                      build/out/...'
 	@echo '  WAVES=1                       a waveform (FST) too; ENGINE=rtl, lockstep  $(WAVES)'
 	@echo 'variables of make synth, synth-replay, synth-prove:  CONFIG  LIBERTY=FILE  CLOCK=NS  MEMORIES=macros|flops'
-	@echo '  make synth:  AGAINST=REPORT  RUN=REPORT_OF_SIM  POWER=0  OUT=FOLDER;  synth-replay:  BREAK=N;  synth-prove:  ONLY=BLOCKS'
+	@echo '  make synth:  AGAINST=REPORT  RUN=REPORT_OF_SIM  POWER=1  OUT=FOLDER;  synth-replay:  BREAK=N;  synth-prove:  ONLY=BLOCKS'
 	@echo 'variables of make cosim:  PROGRAMS=$(PROGRAMS)  SEED=$(SEED)  CONFIG  CUS  COVERAGE=FILE.json'
 	@echo 'variables of make run:  KERNEL=saxpy|matmul|FILE.asm  CONFIG  ENGINE  ARGS="--n 1000"'
 

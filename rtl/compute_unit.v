@@ -353,7 +353,23 @@ module compute_unit #(
   reg [3:0] fault_code_q;
   reg [WARP_BITS-1:0] fault_warp_q;
   reg [15:0] fault_pc_q;
+  localparam [WARPS-1:0] ONE_WARP = 1;
+  wire [WARPS-1:0] first_fault = warp_fault & (~warp_fault + ONE_WARP);
+  reg [3:0] first_code;
+  reg [WARP_BITS-1:0] first_warp;
+  reg [15:0] first_pc;
   integer f;
+  always @* begin
+    first_code = 4'd0;
+    first_warp = {WARP_BITS{1'b0}};
+    first_pc = 16'd0;
+    if (|warp_fault)
+      for (f = 0; f < WARPS; f = f + 1) begin
+        first_code = first_code | ({4{first_fault[f]}} & warp_fault_code[f*4 +: 4]);
+        first_warp = first_warp | ({WARP_BITS{first_fault[f]}} & f[WARP_BITS-1:0]);
+        first_pc = first_pc | ({16{first_fault[f]}} & warp_fault_pc[f*16 +: 16]);
+      end
+  end
   assign fault_valid_o = fault_q;
   assign fault_code_o = fault_code_q;
   assign fault_warp_o = fault_warp_q;
@@ -375,12 +391,9 @@ module compute_unit #(
         fault_warp_q <= ray_fault_warp;
         fault_pc_q <= retire_pc_o[ray_fault_warp*16 +: 16];
       end else begin
-        for (f = WARPS - 1; f >= 0; f = f - 1)
-          if (warp_fault[f]) begin
-            fault_code_q <= warp_fault_code[f*4 +: 4];
-            fault_warp_q <= f[WARP_BITS-1:0];
-            fault_pc_q <= warp_fault_pc[f*16 +: 16];
-          end
+        fault_code_q <= first_code;
+        fault_warp_q <= first_warp;
+        fault_pc_q <= first_pc;
       end
     end
 endmodule

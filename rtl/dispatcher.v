@@ -72,19 +72,30 @@ module dispatcher #(
   genvar k;
   generate
     for (k = 0; k < SLOTS; k = k + 1) begin : gen_slot
+      // A type that does not look at an operand gets zeros: no register and no multiplexer is spent on it. A new type gets everything.
+      localparam [3:0] UNIT = SLOT_UNITS[k*4 +: 4];
+      localparam [0:0] NEW = UNIT != ISA_UNIT_TID && UNIT != ISA_UNIT_BRH && UNIT != ISA_UNIT_MEM && UNIT != ISA_UNIT_INT &&
+                             UNIT != ISA_UNIT_FLT && UNIT != ISA_UNIT_SLW && UNIT != ISA_UNIT_RAY;
+      localparam [0:0] USES_A = UNIT != ISA_UNIT_TID && UNIT != ISA_UNIT_RAY;
+      localparam [0:0] USES_B = UNIT != ISA_UNIT_TID;
+      localparam [0:0] USES_IMM = NEW || UNIT == ISA_UNIT_TID || UNIT == ISA_UNIT_MEM;
+      localparam [0:0] USES_X = NEW || UNIT == ISA_UNIT_RAY;
+      localparam [0:0] USES_PX = NEW || UNIT == ISA_UNIT_BRH || UNIT == ISA_UNIT_INT;
+      localparam [0:0] USES_PB = NEW || UNIT == ISA_UNIT_BRH;
       wire [WARP_BITS-1:0] source = slot_warp[k*WARP_BITS +: WARP_BITS];
       always @(posedge clk_i)
         if (slot_grant_o[k]) begin
           task_warp_o[k*WARP_BITS +: WARP_BITS] <= source;
           task_op_o[k*5 +: 5] <= instruction_i[source*64+55 +: 5];
-          task_imm_o[k*32 +: 32] <= instruction_i[source*64 +: 32];
-          task_x_o[k*5 +: 5] <= instruction_i[source*64+32 +: 5];
+          task_imm_o[k*32 +: 32] <= USES_IMM ? instruction_i[source*64 +: 32] : 32'd0;
+          task_x_o[k*5 +: 5] <= USES_X ? instruction_i[source*64+32 +: 5] : 5'd0;
           task_mask_o[k*LANES +: LANES] <= mask_i[source*LANES +: LANES];
-          task_px_o[k*LANES +: LANES] <= px_i[source*LANES +: LANES];
-          task_pb_o[k*LANES +: LANES] <= pb_i[source*LANES +: LANES];
-          task_a_o[k*LANES*32 +: LANES*32] <= a_i[source*LANES*32 +: LANES*32];
-          task_b_o[k*LANES*32 +: LANES*32] <= instruction_i[source*64+37 +: 1] ? {LANES{instruction_i[source*64 +: 32]}}
-                                                                               : b_i[source*LANES*32 +: LANES*32];
+          task_px_o[k*LANES +: LANES] <= USES_PX ? px_i[source*LANES +: LANES] : {LANES{1'b0}};
+          task_pb_o[k*LANES +: LANES] <= USES_PB ? pb_i[source*LANES +: LANES] : {LANES{1'b0}};
+          task_a_o[k*LANES*32 +: LANES*32] <= USES_A ? a_i[source*LANES*32 +: LANES*32] : {LANES*32{1'b0}};
+          task_b_o[k*LANES*32 +: LANES*32] <= !USES_B ? {LANES*32{1'b0}} :
+                                              instruction_i[source*64+37 +: 1] ? {LANES{instruction_i[source*64 +: 32]}} :
+                                              b_i[source*LANES*32 +: LANES*32];
         end
       if (FMA != 0 && SLOT_UNITS[k*4 +: 4] == ISA_UNIT_FLT) begin : gen_third
         reg [LANES*32-1:0] c_q;

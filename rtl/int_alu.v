@@ -32,7 +32,8 @@ module int_alu #(
     end
   endgenerate
   wire [DEPTH-1:0] stage_valid;
-  reg [LANES*32-1:0] low_q;     // the result, or a * b[15:0]
+  reg [LANES*32-1:0] low_q;     // the result, but of a multiplication
+  reg [LANES*32-1:0] product_q; // a * b[15:0]
   reg [LANES*16-1:0] high_q;    // low half of a * b[31:16]
   reg multiply_q;
   reg [LANES*32-1:0] result_q;
@@ -50,7 +51,6 @@ module int_alu #(
         ISA_INT_MOV: compute = b;
         ISA_INT_IADD: compute = a + b;
         ISA_INT_ISUB: compute = a - b;
-        ISA_INT_IMUL: compute = a * {16'd0, b[15:0]};
         ISA_INT_AND: compute = a & b;
         ISA_INT_OR: compute = a | b;
         ISA_INT_XOR: compute = a ^ b;
@@ -71,6 +71,7 @@ module int_alu #(
       multiply_q <= task_op_i == ISA_INT_IMUL;
       for (l = 0; l < LANES; l = l + 1) begin
         low_q[l*32 +: 32] <= compute(task_op_i, task_a_i[l*32 +: 32], task_b_i[l*32 +: 32], task_px_i[l]);
+        product_q[l*32 +: 32] <= task_a_i[l*32 +: 32] * {16'd0, task_b_i[l*32 +: 16]};
         high_q[l*16 +: 16] <= task_a_i[l*32 +: 16] * task_b_i[l*32+16 +: 16];
       end
     end
@@ -78,7 +79,8 @@ module int_alu #(
   always @(posedge clk_i)
     if (stage_valid[1])
       for (l = 0; l < LANES; l = l + 1)
-        result_q[l*32 +: 32] <= multiply_q ? {low_q[l*32+16 +: 16] + high_q[l*16 +: 16], low_q[l*32 +: 16]} : low_q[l*32 +: 32];
+        result_q[l*32 +: 32] <= multiply_q ? {product_q[l*32+16 +: 16] + high_q[l*16 +: 16], product_q[l*32 +: 16]}
+                                                : low_q[l*32 +: 32];
 
   generate
     if (DEPTH == 2) begin : gen_direct

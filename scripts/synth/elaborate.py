@@ -57,19 +57,21 @@ def configuration(name):
     return dict(line.split("=") for line in done.stdout.split())
 
 
-def tree(parameters, folder):
-    """All kinds of module below compute_unit, by identity; the top has identity `compute_unit`."""
+def tree(parameters, folder, top="compute_unit"):
+    """All kinds of module from `top` down, by identity; that of the top is its name."""
     os.makedirs(folder, exist_ok=True)
     script, result = os.path.join(folder, "elaborate.ys"), os.path.join(folder, "elaborate.json")
     chosen = " ".join(f"-chparam {n} {v}" for n, v in parameters.items())
     with open(script, "w", encoding="utf-8") as file:
-        file.write(f"read_verilog -I{ROOT}/rtl {' '.join(rtl_files())}\nhierarchy -check -top compute_unit {chosen}\n"
+        file.write(f"read_verilog -I{ROOT}/rtl {' '.join(rtl_files())}\nhierarchy -check -top {top} {chosen}\n"
                    f"delete */p:*\nwrite_json {result}\n")
     run([need("yosys", "yosys"), "-q", script], os.path.join(folder, "elaborate.log"))
     with open(result, encoding="utf-8") as file:
         modules = json.load(file)["modules"]
     kinds = {}
     for identity, module in modules.items():
+        if "top" in module["attributes"]:
+            identity = top
         base = module["attributes"].get("hdlname", "\\" + identity).lstrip("\\")
         ports = {n: (p["direction"], len(p["bits"])) for n, p in module["ports"].items()}
         children = {n: c["type"] for n, c in module["cells"].items() if c["type"] in modules}

@@ -4,7 +4,7 @@ import json
 import os
 from dataclasses import dataclass, field
 
-from . import elaborate, mapping, timing
+from . import elaborate, fanout, mapping, timing
 from .errors import SynthError, say
 from .library import ROOT, Library
 from .memories import MemoryModel
@@ -41,6 +41,7 @@ class Design:
     memory: MemoryModel = None
     endpoints: list = field(default_factory=list)
     fast: set = field(default_factory=set)
+    buffers: dict = field(default_factory=dict)   # added to each kind for fan-out
 
     @property
     def verilog(self):
@@ -112,6 +113,7 @@ def map_design(design, fast=()):
     stay = {k.identity for k in design.blocks()}
     paths = mapper.map_all([k for k in design.kinds.values() if k.identity not in stay], fast)
     design.netlist = Netlist(design.kinds, paths, design.library)
+    design.buffers = fanout.repair(design.netlist)
     design.netlist.write(design.verilog)
     if design.blocks():
         design.memory.liberty(design.blocks(), design.fo4_ns, os.path.join(design.folder, "memories.lib"))

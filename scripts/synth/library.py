@@ -2,34 +2,15 @@
 import fnmatch
 import glob
 import hashlib
-import itertools
 import json
 import os
-import re
 
 from . import liberty
 from .errors import SynthError
+from .function import truth
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 DEFAULT_SETUP = os.path.join(ROOT, "constraints", "osu018.json")
-
-
-def truth(function, inputs):
-    """The truth table of a Liberty function as an integer: bit i is the value for the inputs' bits i, first input lowest."""
-    text = re.sub(r"([A-Za-z_][A-Za-z0-9_]*)\s*'", r"(not \1)", function)
-    text = text.replace("!", " not ").replace("*", " and ").replace("&", " and ").replace("+", " or ").replace("|", " or ")
-    # Python's `not` binds weaker than Liberty's `!`, and `^` is a word here: numbers avoid both.
-    text = re.sub(r"\bnot\s+(\w+)", r"(1 - \1)", text)
-    text = re.sub(r"\bnot\s+\(", r"1 ^ (", text)
-    text = text.replace(" and ", " & ").replace(" or ", " | ")
-    value = 0
-    for i, bits in enumerate(itertools.product((0, 1), repeat=len(inputs))):
-        values = dict(zip(reversed(inputs), bits))
-        try:
-            value |= (eval(text, {"__builtins__": {}}, values) & 1) << i   # pylint: disable=eval-used
-        except (SyntaxError, NameError, TypeError) as error:
-            raise SynthError(f"a Liberty function is not understood: {function}") from error
-    return value
 
 
 class Library:

@@ -110,6 +110,8 @@ write_json {result}
         stem = f"{final[:-len('.json')]}.{os.getpid()}"
         prepared = stem + ".il"
         self.yosys(self.prepare_script(kind, prepared), stem)
+        if rtl_texts() != self.texts:
+            raise SynthError("rtl/ changed while it was being mapped; run it again")
         best = None
         for way in ["speed"] if fast else ["area", "speed"]:
             result = f"{stem}.{way}"

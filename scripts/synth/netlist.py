@@ -34,12 +34,12 @@ class Module:
 
 
 class Netlist:
-    """All modules by identity; `top` is compute_unit. Memories are kinds without a module."""
+    """All modules by identity; `top` is where instances begin. Memories are kinds without a module."""
 
-    def __init__(self, kinds, paths, library):
+    def __init__(self, kinds, paths, library, top="compute_unit"):
         self.kinds = kinds
         self.library = library
-        self.top = "compute_unit"
+        self.top = top
         self.modules = {}
         for identity, path in paths.items():
             self.modules[identity] = self._read(kinds[identity], path)

@@ -7,7 +7,7 @@ import re
 import subprocess
 
 from . import mapping
-from .elaborate import rtl_files
+from .elaborate import rtl_files, rtl_texts
 from .errors import need, run, say
 from .library import ROOT
 
@@ -62,8 +62,8 @@ def prove_one(design, identity, folder, cells):
     kind = module.kind
     stem = os.path.join(folder, kind.name)
     text = gate_module(design, module)
-    key = hashlib.sha256(("".join(open(p, encoding="utf-8").read() for p in rtl_files() if os.path.basename(p) == kind.base + ".v") +
-                          text + ABC + json.dumps(kind.parameters, sort_keys=True) + design.library.digest).encode()).hexdigest()[:16]
+    source = rtl_texts()[f"rtl/{kind.base}.v"]
+    key = hashlib.sha256("\0".join([source, text, ABC, json.dumps(kind.parameters, sort_keys=True), design.library.digest]).encode()).hexdigest()[:16]
     kept = stem + ".result"
     if os.path.exists(kept):
         with open(kept, encoding="utf-8") as file:

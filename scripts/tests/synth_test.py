@@ -1,0 +1,92 @@
+#!/usr/bin/env python3
+"""The synthesis flow on small blocks: what it refuses, what it measures, what it proves. RAYPOOL names the program."""
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+sys.path.insert(0, os.path.join(ROOT, "scripts"))
+
+from synth import elaborate, flow, function, library, mapping, netlist, prove, replay, report, timing  # noqa: E402
+from synth.errors import SynthError  # noqa: E402
+from synth.memories import MemoryModel  # noqa: E402
+
+
+def small_design(folder, top, parameters):
+    """One block mapped alone, as a design."""
+    lib = library.Library()
+    design = flow.Design(flow.Options(config=top), lib, {}, folder, 4.0, 0.1)
+    design.kinds = elaborate.tree(parameters, folder, top)
+    design.memory = MemoryModel(lib)
+    mapper = mapping.Mapper(lib, folder, 4.0, 2)
+    paths = mapper.map_all([k for k in design.kinds.values() if not k.memory])
+    design.netlist = netlist.Netlist(design.kinds, paths, lib, top)
+    return design
+
+
+class Synthesis(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.mkdtemp()
+        self.addCleanup(subprocess.run, ["rm", "-rf", self.folder], check=False)
+
+    def command(self, *arguments):
+        done = subprocess.run([sys.executable, "-m", "synth", *arguments], capture_output=True, text=True, check=False,
+                              env={**os.environ, "PYTHONPATH": os.path.join(ROOT, "scripts")})
+        return done.returncode, done.stderr.strip()
+
+    def test_bad_input_gets_one_sentence(self):
+        for arguments, word in ((["report", "--liberty", "/no/such.lib"], "Liberty"), (["report", "--config", "5w5c"], "5"),
+                                (["report", "--memories", "clay", "--config", "1w1c"], "clay"),
+                                (["report", "--config", "1w1c", "--against", "/dev/null"], "/dev/null")):
+            code, text = self.command(*arguments)
+            self.assertEqual(code, 1, text)
+            self.assertIn(word, text)
+            self.assertNotIn("Traceback", text)
+
+    def test_cell_functions_and_fo4(self):
+        lib = library.Library()
+        self.assertEqual(function.truth("(!(A B))", ["A", "B"]), 0b0111)
+        self.assertEqual(function.truth("A ^ B' + 0", ["A", "B"]), 0b1001)
+        self.assertEqual(function.truth("!A*B | A&!B", ["A", "B"]), 0b0110)
+        self.assertEqual(lib._smallest("nand", 2, 0b0111), lib.nand2)  # pylint: disable=protected-access
+        self.assertNotIn("LATCH", lib.usable)
+        fo4 = timing.measure_fo4(lib, self.folder)
+        self.assertTrue(0.03 < fo4 < 0.3, fo4)
+
+    def test_a_latch_is_refused(self):
+        path = os.path.join(self.folder, "rtl", "held.v")
+        os.makedirs(os.path.dirname(path))
+        with open(path, "w", encoding="utf-8") as file:
+            file.write("module held (input wire e_i, input wire d_i, output reg q_o);\n  always @* if (e_i) q_o = d_i;\nendmodule\n")
+        mapper = mapping.Mapper(library.Library(), self.folder, 4.0)
+        kind = elaborate.Kind("held", "held", {}, {"e_i": ("input", 1), "d_i": ("input", 1), "q_o": ("output", 1)}, {}, "held")
+        mapper.texts["rtl/held.v"] = ""
+        original = mapping.rtl_files
+        mapping.rtl_files = lambda: [path]
+        try:
+            with self.assertRaisesRegex(SynthError, "dlatch"):
+                mapper.map_all([kind])
+        finally:
+            mapping.rtl_files = original
+
+    def test_memories_are_priced_and_areas_add_up(self):
+        design = small_design(self.folder, "ray_memory", {"CONTENTS": "16"})
+        rows, _ = report.blocks(design)
+        self.assertEqual(rows[0]["memory_bits"], 4 * 84 * 32)
+        self.assertEqual(rows[0]["flip_flops"], 2)
+        self.assertEqual(sum(r["memory_bits"] for r in rows[1:]), rows[0]["memory_bits"])
+        self.assertGreater(rows[0]["logic_um2"], 100 * design.library.nand2_area)
+        report.check({**{g: {n: 0 for n in names} for g, names in report.NEEDED.items()}, "blocks": rows})
+
+    def test_a_block_is_proved_and_a_swapped_cell_noticed(self):
+        design = small_design(self.folder, "fetch_arbiter", {"WARPS": "4", "WARP_BITS": "2"})
+        self.assertEqual(prove.prove(design), {"fetch_arbiter": "proved"})
+        done = replay.broken(design, 1, "fetch_arbiter")
+        self.assertIn("became", done)
+        self.assertEqual(prove.prove(design), {"fetch_arbiter": "different"})
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
