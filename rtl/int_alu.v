@@ -1,4 +1,4 @@
-// Integer and logic operations. Stage 1: everything but the multiplication, of which it makes two partial products; stage 2 adds those.
+// Integer and logic operations. Stage 1: everything but the multiplication, of which it makes three partial products; stage 2 adds those.
 `default_nettype none
 module int_alu #(
   parameter integer WARPS = 8,
@@ -33,8 +33,9 @@ module int_alu #(
   endgenerate
   wire [DEPTH-1:0] stage_valid;
   reg [LANES*32-1:0] low_q;     // the result, but of a multiplication
-  reg [LANES*32-1:0] product_q; // a * b[15:0]
-  reg [LANES*16-1:0] high_q;    // low half of a * b[31:16]
+  reg [LANES*32-1:0] product_q; // a * b[10:0]
+  reg [LANES*21-1:0] middle_q;  // a * b[21:11], weighing 2^11
+  reg [LANES*10-1:0] high_q;    // a * b[31:22], weighing 2^22
   reg multiply_q;
   reg [LANES*32-1:0] result_q;
   integer l;
@@ -71,16 +72,17 @@ module int_alu #(
       multiply_q <= task_op_i == ISA_INT_IMUL;
       for (l = 0; l < LANES; l = l + 1) begin
         low_q[l*32 +: 32] <= compute(task_op_i, task_a_i[l*32 +: 32], task_b_i[l*32 +: 32], task_px_i[l]);
-        product_q[l*32 +: 32] <= task_a_i[l*32 +: 32] * {16'd0, task_b_i[l*32 +: 16]};
-        high_q[l*16 +: 16] <= task_a_i[l*32 +: 16] * task_b_i[l*32+16 +: 16];
+        product_q[l*32 +: 32] <= task_a_i[l*32 +: 32] * {21'd0, task_b_i[l*32 +: 11]};
+        middle_q[l*21 +: 21] <= task_a_i[l*32 +: 21] * {10'd0, task_b_i[l*32+11 +: 11]};
+        high_q[l*10 +: 10] <= task_a_i[l*32 +: 10] * task_b_i[l*32+22 +: 10];
       end
     end
 
   always @(posedge clk_i)
     if (stage_valid[1])
       for (l = 0; l < LANES; l = l + 1)
-        result_q[l*32 +: 32] <= multiply_q ? {product_q[l*32+16 +: 16] + high_q[l*16 +: 16], product_q[l*32 +: 16]}
-                                                : low_q[l*32 +: 32];
+        result_q[l*32 +: 32] <= multiply_q ? product_q[l*32 +: 32] + {middle_q[l*21 +: 21], 11'd0} + {high_q[l*10 +: 10], 22'd0}
+                                               : low_q[l*32 +: 32];
 
   generate
     if (DEPTH == 2) begin : gen_direct
