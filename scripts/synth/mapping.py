@@ -85,11 +85,11 @@ write_json {result}
 
     def key(self, kind, fast):
         """All that decides the result. The text of a module and what it includes; its children only by their interface."""
-        scripts = (self.prepare_script(kind, "") + "".join(self.map_script(w, "", "") for w in ABC_SCRIPTS)).replace(ROOT, "")
-        for path in rtl_files():
-            scripts = scripts.replace(path.replace(ROOT, ""), "")
+        scripts = self.prepare_script(kind, "") + "".join(self.map_script(w, "", "") for w in ABC_SCRIPTS)
+        # Neither where the project lies nor which other files it has.
+        scripts = scripts.split("\n", 1)[1].replace(ROOT, "").replace(self.folder.replace(ROOT, ""), "").replace(self.cells.replace(ROOT, ""), "")
         source = self.texts[f"rtl/{kind.base}.v"]
-        parts = [self.version, self.library.digest, scripts.replace(self.folder.replace(ROOT, ""), ""), source,
+        parts = [self.version, self.library.digest, scripts, source,
                  json.dumps(self.shared, sort_keys=True), str(OUTPUT_LOAD_FF), str(ACCEPTED_SHARE), str(fast),
                  json.dumps(sorted(kind.children.items())), json.dumps(sorted(kind.parameters.items()))]
         return hashlib.sha256("\0".join(parts).encode()).hexdigest()[:24]

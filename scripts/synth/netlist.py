@@ -139,18 +139,22 @@ class Netlist:
 
     # ---- Verilog
 
-    def write(self, path, extra=None):
-        """One Verilog file with a module for each kind; memories are left out. extra(module) gives lines put before endmodule."""
+    def write(self, path, extra=None, parameters=None):
+        """One Verilog file with a module for each kind; memories are left out. extra(module) gives lines put before endmodule. With
+        `parameters` it stands in for the RTL's top beside the rest of the RTL: the top takes them, and the other names get a prefix."""
         with open(path, "w", encoding="utf-8") as file:
-            for identity in self.modules:
-                self._write_module(file, self.modules[identity], extra)
+            for module in self.modules.values():
+                self._write_module(file, module, extra, parameters)
 
-    def _write_module(self, file, module, extra):
+    def _write_module(self, file, module, extra, parameters):
         names = module.names
+        prefix = "mapped_" if parameters else ""
+        top = module is self.modules[self.top]
 
         def text(net):
             return f"1'b{net}" if isinstance(net, str) else names[net]
-        file.write(f"module {module.name} ({', '.join(p[0] for p in module.ports)});\n")
+        chosen = " #(" + ", ".join(f"parameter {n} = {v}" for n, v in parameters.items()) + ")" if parameters and top else ""
+        file.write(f"module {'' if top else prefix}{module.name}{chosen} ({', '.join(p[0] for p in module.ports)});\n")
         for name, direction, nets in module.ports:
             width = f"[{len(nets) - 1}:0] " if len(nets) > 1 else ""
             file.write(f"  {direction} {width}{name};\n")
@@ -172,7 +176,7 @@ class Netlist:
             for port, nets in connections.items():
                 joined = ", ".join(text(n) for n in reversed(nets))
                 listed.append(f".{port}({'{' + joined + '}' if len(nets) > 1 else joined})")
-            file.write(f"  {child.name} {label} ({', '.join(listed)});\n")
+            file.write(f"  {prefix if identity in self.modules else ''}{child.name} {label} ({', '.join(listed)});\n")
         if extra:
             for line in extra(module):
                 file.write("  " + line + "\n")

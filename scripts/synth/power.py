@@ -9,6 +9,13 @@ from .errors import SynthError, say
 KERNEL = ["sim", "room", "--size", "8x8", "--depth", "1"]
 
 
+def below_unit(name):
+    """The path below compute_unit of a name as the simulator writes it."""
+    words = name.split(".")
+    last = max((i for i, w in enumerate(words) if w == "compute_unit"), default=0)
+    return "/".join(words[last + 1:])
+
+
 def measure(design, folder):
     """Simulates the netlist on a small picture. Returns toggles and nets by instance path, accesses of memories, cycles."""
     library = replay.build(design, folder, count=True)
@@ -19,11 +26,10 @@ def measure(design, folder):
     for line in text.splitlines():
         words = line.split()
         if words[:1] == ["TOGGLES"]:
-            path = words[1].split(".")[1:]
-            toggles["/".join(path)] = (int(words[2]), int(words[4]))
+            toggles[below_unit(words[1])] = (int(words[2]), int(words[4]))
             cycles = max(cycles, int(words[3]))
         elif words[:1] == ["ACCESSES"]:
-            accesses["/".join(words[1].split(".")[1:])] = int(words[2])
+            accesses[below_unit(words[1]).rpartition("/")[0] if words[1].endswith(".ram") else below_unit(words[1])] = int(words[2])
     if not toggles or not cycles:
         raise SynthError(f"the simulated netlist counted no toggles; see {folder}/sim.log")
     return toggles, accesses, cycles

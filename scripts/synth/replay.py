@@ -125,13 +125,12 @@ def build(design, folder, count=False):
     """Verilates the netlist; returns the shared library's path."""
     os.makedirs(folder, exist_ok=True)
     netlist = os.path.join(folder, "netlist.v")
-    design.netlist.write(netlist, counting if count else None)
+    design.netlist.write(netlist, counting if count else None, design.parameters)
     cells, memories = os.path.join(folder, "cells.v"), os.path.join(folder, "memories.v")
     own, derived = cells_file(design, cells)
     memories_file(design, memories, count)
     say(f"replay: {own} cells from the library's Verilog, {derived} from its Liberty file (flip-flops); building the netlist's simulator")
-    rams = [os.path.join(ROOT, "rtl", f"{n}.v") for n in elaborate.MEMORIES] if design.blocks() else []
-    options = [o for f in [netlist, cells, memories, *rams] for o in ("--netlist", f)]
+    options = [o for f in [netlist, cells, memories] for o in ("--netlist", f)]
     parameters = [f"{n}={v}" for n, v in design.parameters.items()]
     run([os.path.join(ROOT, "scripts", "verilate.sh"), folder, *options, *parameters], os.path.join(folder, "build.log"),
         environment={"JOBS": str(design.options.jobs)})
