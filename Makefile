@@ -35,6 +35,7 @@ RUN       ?=
 POWER     ?= 0
 BREAK     ?= 0
 ONLY      ?=
+PLAN      ?=
 # `make cosim`
 PROGRAMS  ?= 1000
 SEED      ?= 1
@@ -43,7 +44,7 @@ COVERAGE  ?=
 MUTANTS   ?= 600
 # Recipes read these from the environment, so that a value with spaces or quotes stays one word.
 export CONFIG CUS SCENE SIZE DEPTH ENGINE TRAVERSER VIEW DETAIL OUT WAVES KERNEL PROGRAMS SEED COVERAGE MUTANTS
-export LIBERTY CLOCK MEMORIES AGAINST RUN ONLY
+export LIBERTY CLOCK MEMORIES AGAINST RUN ONLY PLAN
 
 BUILD := build
 RAYPOOL := $(BUILD)/raypool
@@ -77,7 +78,7 @@ help: ## this list
 	@echo '  OUT=FOLDER                    image.png, report.json                      build/out/...'
 	@echo '  WAVES=1                       a waveform (FST) too; ENGINE=rtl, lockstep  $(WAVES)'
 	@echo 'variables of make synth, synth-replay, synth-prove:  CONFIG  LIBERTY=FILE  CLOCK=NS  MEMORIES=macros|flops'
-	@echo '  make synth:  AGAINST=REPORT  RUN=REPORT_OF_SIM  POWER=1  OUT=FOLDER;  synth-replay:  BREAK=N;  synth-prove:  ONLY=BLOCKS'
+	@echo '  make synth:  AGAINST=REPORT  RUN=REPORT_OF_SIM  POWER=1  OUT=FOLDER;  synth-replay:  BREAK=N;  synth-prove:  ONLY=BLOCKS;  growth:  PLAN=FILE'
 	@echo 'variables of make cosim:  PROGRAMS=$(PROGRAMS)  SEED=$(SEED)  CONFIG  CUS  COVERAGE=FILE.json'
 	@echo 'variables of make run:  KERNEL=saxpy|matmul|FILE.asm  CONFIG  ENGINE  ARGS="--n 1000"'
 
@@ -117,7 +118,7 @@ synth-prove: setup-sim setup-synth program ## prove each mapped block equal to i
 	@$(SYNTH) prove $(SYNTH_OPTIONS) $${ONLY:+--only "$$ONLY"}
 
 growth: setup-sim setup-synth program ## area against warps, cores, ALUs; what each feature costs
-	@$(SYNTH) growth $${OUT:+--out "$$OUT"}
+	@$(SYNTH) growth $${PLAN:+--plan "$$PLAN"} $${OUT:+--out "$$OUT"}
 
 test: setup-sim setup-test configured-ON ## every test
 	@$(LOCKED) cmake --build $(BUILD)

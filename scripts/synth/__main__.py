@@ -85,7 +85,7 @@ def prove_command(arguments):
 
 
 def growth_command(arguments):
-    growth.grow(arguments.jobs, arguments.out or os.path.join(flow.BUILD, "growth"))
+    growth.grow(arguments.jobs, arguments.out or os.path.join(flow.BUILD, "growth"), arguments.plan)
 
 
 def parser():
@@ -107,6 +107,8 @@ def parser():
             command.add_argument("--prove", action="store_true", help="prove blocks equal to their RTL")
         if name == "replay":
             command.add_argument("--break", dest="break_number", type=int, default=0, help="swap a cell first: must be noticed")
+        if name == "growth":
+            command.add_argument("--plan", help="what to synthesise, instead of constraints/growth.json")
         if name == "prove":
             command.add_argument("--only", help="modules, with commas between")
     return top

@@ -50,9 +50,14 @@ def area_of(change, jobs):
     return found
 
 
-def grow(jobs, out):
-    with open(os.path.join(ROOT, "constraints", "growth.json"), encoding="utf-8") as file:
-        plan = json.load(file)
+def grow(jobs, out, plan_path=None):
+    plan_path = plan_path or os.path.join(ROOT, "constraints", "growth.json")
+    try:
+        with open(plan_path, encoding="utf-8") as file:
+            plan = json.load(file)
+        plan["base"], plan["axes"], plan["steps"]
+    except (OSError, ValueError, KeyError) as error:
+        raise SynthError(f"{plan_path}: not a plan like constraints/growth.json ({error})") from error
     os.makedirs(out, exist_ok=True)
     results = {"axes": {}, "steps": []}
     for axis in plan["axes"]:
