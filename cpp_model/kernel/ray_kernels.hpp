@@ -48,8 +48,9 @@ Lighting<K> light_hit(K& k, const Vector<K>& origin, const Vector<K>& normal, co
   const Vector<K> direction = vector_argument(k, argument::kLight) - origin;
   Float cosine = dot(normal, direction) * rsqrt(dot(direction, direction));
   k.if_(back, [&] { cosine = -cosine; });
-  // 0 * infinity, from a light that lies on the surface, becomes 0 too.
-  return {direction, max(cosine, 0.0f)};
+  // 0 * infinity, from a light that lies on the surface, becomes 0 too; the largest cosine is 1, even where the square of the
+  // distance is less than the smallest number.
+  return {direction, min(max(cosine, 0.0f), 1.0f)};
 }
 
 /// Where secondary rays begin: at the hit, moved off the surface to the side from which the ray came.

@@ -22,7 +22,10 @@ constexpr double kBorder = 1e-6;
 /// Two t this near, relatively, are equal to single precision.
 constexpr double kSameT = 2e-6;
 
-Vector3<Quad> quad(const Vec3& v) { return v.as<Quad>(); }
+template <typename T>
+Vector3<Quad> quad(const Vector3<T>& v) {
+  return v.template as<Quad>();
+}
 
 class EmbreeScene {
  public:
@@ -112,7 +115,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 
 }  // namespace
 
-HitVerdict judge_hits(const Scene& scene, const RayQuery& ray, const HitAnswer& ours, const HitAnswer& embree,
+HitVerdict judge_hits(const Scene& scene, const ExactRay& ray, const HitAnswer& ours, const HitAnswer& embree,
                       std::string& reason) {
   ExactHit exact[2];
   const HitAnswer* answers[2] = {&ours, &embree};
@@ -142,7 +145,7 @@ HitVerdict judge_hits(const Scene& scene, const RayQuery& ray, const HitAnswer& 
   return exact[hitting].passage == Passage::Inside ? wrong[1 - hitting] : HitVerdict::Tie;
 }
 
-ExactHit exact_hit(const Scene& scene, uint32_t triangle, const RayQuery& ray) {
+ExactHit exact_hit(const Scene& scene, uint32_t triangle, const ExactRay& ray) {
   const Vector3<Quad> origin = quad(ray.origin), direction = quad(ray.direction);
   const Vector3<Quad> a = quad(scene.corner(triangle, 0)) - origin, b = quad(scene.corner(triangle, 1)) - origin,
                       c = quad(scene.corner(triangle, 2)) - origin;

@@ -24,7 +24,16 @@ struct ExactHit {
   double t = 0;       ///< of the triangle's plane
   double margin = 0;  ///< smallest barycentric coordinate; below 0 outside
 };
-ExactHit exact_hit(const Scene& scene, uint32_t triangle, const RayQuery& ray);
+/// A ray in double precision; a RayQuery is one.
+struct ExactRay {
+  Vec3d origin, direction;  ///< direction of any length
+  double limit = INFINITY;  ///< hits with 0 < t < limit count
+
+  ExactRay(const Vec3d& from, const Vec3d& towards, double largest_t) : origin(from), direction(towards), limit(largest_t) {}
+  ExactRay(const RayQuery& ray)
+      : origin(ray.origin.as<double>()), direction(ray.direction.as<double>()), limit(static_cast<double>(ray.limit)) {}
+};
+ExactHit exact_hit(const Scene& scene, uint32_t triangle, const ExactRay& ray);
 
 /// What one side says about a ray.
 struct HitAnswer {
@@ -34,7 +43,7 @@ struct HitAnswer {
 };
 enum class HitVerdict : uint8_t { Tie, OursWrong, EmbreeWrong };
 /// Judges two answers that differ by exact_hit() of their triangles. The exact values are appended to `reason`.
-HitVerdict judge_hits(const Scene& scene, const RayQuery& ray, const HitAnswer& ours, const HitAnswer& embree,
+HitVerdict judge_hits(const Scene& scene, const ExactRay& ray, const HitAnswer& ours, const HitAnswer& embree,
                       std::string& reason);
 
 /// Outcome of one kind of rays.

@@ -34,14 +34,14 @@ TEST(HitsCheck, ExactVerdictTellsInsideBorderAndOutside) {
   mesh.add_material("grey", {0.5f, 0.5f, 0.5f}, {});
   mesh.triangle({0, 0, 5}, {1, 0, 5}, {0, 1, 5});
   auto passage = [&](float x, float y, const Vec3& direction) {
-    return exact_hit(scene, 0, {{x, y, 0}, direction, INFINITY}).passage;
+    return exact_hit(scene, 0, RayQuery{{x, y, 0}, direction, INFINITY}).passage;
   };
   EXPECT_EQ(passage(0.25f, 0.25f, {0, 0, 1}), Passage::Inside);
   EXPECT_EQ(passage(0.5f, 0.5f, {0, 0, 1}), Passage::Border);
   EXPECT_EQ(passage(0.5f, 0.5f + 1e-6f, {0, 0, 1}), Passage::Border);
   EXPECT_EQ(passage(0.5f, 0.51f, {0, 0, 1}), Passage::Outside);
   EXPECT_EQ(passage(0.25f, 0.25f, {1, 0, 0}), Passage::Parallel);
-  const ExactHit hit = exact_hit(scene, 0, {{0.25f, 0.25f, 0}, {0, 0, 2}, INFINITY});
+  const ExactHit hit = exact_hit(scene, 0, RayQuery{{0.25f, 0.25f, 0}, {0, 0, 2}, INFINITY});
   EXPECT_DOUBLE_EQ(hit.t, 2.5);
   EXPECT_DOUBLE_EQ(hit.margin, 0.25);
 }

@@ -94,7 +94,10 @@ class Worker {
     thread_.thread = 0;
     thread_.threads = 1;
     thread_.block = 0;
-    if (!tracer_.trace(ray, thread_.input, shadow ? &statistics.shadow_visits : &statistics.normal_visits)) {
+    const bool goes_on = options_.trace
+                             ? options_.trace(ray, thread_.input)
+                             : tracer_.trace(ray, thread_.input, shadow ? &statistics.shadow_visits : &statistics.normal_visits);
+    if (!goes_on) {
       ++(shadow ? statistics.blocked_rays : statistics.missed_rays);
       return;
     }
@@ -184,7 +187,8 @@ FrameBuffer render_native(const Scene& scene, const MemoryImage& image, const Tr
   if ((options.contents & (options.contents - 1)) != 0) {
     throw InputError(fmt::format("contents is {}; it must be a power of two", options.contents));
   }
-  const auto arguments = camera_arguments(scene, options.width, options.height, options.contents);
+  auto arguments = camera_arguments(scene, options.width, options.height, options.contents);
+  if (options.change_arguments) options.change_arguments(arguments);
   const int tile_width = 1 << tile_width_log2(options.contents), tile_height = options.contents / tile_width;
   Memory memory = image.memory;
 

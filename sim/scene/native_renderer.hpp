@@ -43,6 +43,9 @@ struct NativeOptions {
   int threads = 1;    ///< changes no picture and no count
   arith::Mode mode;
   std::function<void(RayKernel, NativeThread&)> kernel;  ///< run_native when empty
+  /// Called with camera_arguments() before the frame begins, to change them; may be empty.
+  std::function<void(std::array<uint32_t, kArguments>&)> change_arguments;
+  std::function<bool(const Ray&, Intersection&)> trace;  ///< the tracer's when empty; then no visits are counted
 };
 
 struct NativeStatistics {

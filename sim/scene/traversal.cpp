@@ -16,6 +16,7 @@ constexpr float kUlp = 1.1920929e-7f;  // 2^-23
 constexpr float kPadding = 8 * kUlp;   // of the largest distance; the triangle test and the slabs err by less than half of it
 constexpr float kNearScale = 1 - 4 * kUlp;  // t of a slab carries three roundings
 constexpr float kFarScale = 1 + 4 * kUlp;
+constexpr double kCancelled = 0x1p-10;     // what is left of a sum is a smaller share of its terms than this
 constexpr float kLargestDistance = 1e18f;  // products of two distances stay finite
 
 /// A ray with all that boxes and triangles ask of it. Its direction is scaled by a power of two so that the largest component
@@ -28,6 +29,7 @@ struct PreparedRay {
   int near_side[3];  // 0: the lower bound is met first
   int kx, ky, kz;
   float shear_x, shear_y;
+  double direction[3];
   double inverse_z;
   double t_scale;
   float limit;           // the ray's
@@ -55,7 +57,7 @@ PreparedRay prepare(const RayQuery& query, const Bounds& bounds) {
   if (static_cast<double>(ray.internal_limit) < internal_limit) ray.internal_limit = std::nextafter(ray.internal_limit, INFINITY);
 
   const double padding = static_cast<double>(kPadding) * static_cast<double>(distance);
-  double direction[3];
+  double* const direction = ray.direction;
   for (int axis = 0; axis < 3; ++axis) {
     const double o = query.origin[axis];
     ray.origin[axis] = query.origin[axis];
@@ -133,6 +135,18 @@ struct Candidate {
   unsigned lane = 0;
 };
 
+/// t of the triangle's plane.
+double plane_t(const PreparedRay& ray, const TriangleBlock& block, unsigned lane) {
+  Vec3d corners[3];
+  for (int corner = 0; corner < 3; ++corner) {
+    for (int axis = 0; axis < 3; ++axis) {
+      corners[corner][axis] = static_cast<double>(block.vertices[corner][axis][lane]) - static_cast<double>(ray.origin[axis]);
+    }
+  }
+  const Vec3d normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
+  return dot(normal, corners[0]) / dot(normal, Vec3d{ray.direction[0], ray.direction[1], ray.direction[2]});
+}
+
 /// Finishes a triangle whose edge functions agree in sign; true when it becomes the candidate.
 bool accept(const PreparedRay& ray, const TriangleBlock& block, unsigned lane, double u, double v, double w, Candidate& best) {
   const double determinant = u + v + w;
@@ -141,7 +155,13 @@ bool accept(const PreparedRay& ray, const TriangleBlock& block, unsigned lane, d
   for (int corner = 0; corner < 3; ++corner) {
     z[corner] = static_cast<double>(block.vertices[corner][ray.kz][lane]) - static_cast<double>(ray.origin[ray.kz]);
   }
-  const double exact_t = (u * z[0] + v * z[1] + w * z[2]) / determinant * ray.inverse_z;
+  const double sum = u * z[0] + v * z[1] + w * z[2];
+  double exact_t = sum / determinant * ray.inverse_z;
+  // Near the plane, compared with the triangle's size, the edge functions' roundings would decide on which side of it the ray
+  // begins: a triangle of 1e9 would be met or not met at random, and a surface could shadow itself.
+  if (std::fabs(sum) < kCancelled * (std::fabs(u * z[0]) + std::fabs(v * z[1]) + std::fabs(w * z[2]))) {
+    exact_t = plane_t(ray, block, lane);
+  }
   float t = static_cast<float>(exact_t), near = 0, far = 0;
   if (!(t > 0) || !own_box_interval(ray, block, lane, near, far)) return false;
   t = std::min(std::max(t, near), far);

@@ -1,0 +1,250 @@
+// The catalogue as a whole, and the machine that its cases run on.
+#include "numerics/extremes.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <map>
+
+#include "chip/chip.hpp"
+#include "chip/program_run.hpp"
+#include "isa/assembler.hpp"
+#include "isa/encoding.hpp"
+#include "scene/native_renderer.hpp"
+
+namespace raypool::numerics {
+namespace {
+
+constexpr uint64_t kCycleLimit = 20'000'000;  // a frame that takes longer hangs
+constexpr uint32_t kResultAddress = 256;
+
+bool is_nan(uint32_t bits) { return (bits & 0x7fffffffu) > 0x7f800000u; }
+
+uint32_t operate_natively(const std::string& mnemonic, uint32_t a, uint32_t b, const arith::Mode& mode) {
+  using Binary = uint32_t (*)(uint32_t, uint32_t, arith::Mode);
+  static const std::map<std::string, Binary> kOperations = {
+      {"fadd", arith::add},
+      {"fsub", arith::sub},
+      {"fmul", arith::mul},
+      {"fdiv", arith::div},
+      {"fmin", arith::min},
+      {"fmax", arith::max},
+      {"frcp", [](uint32_t x, uint32_t, arith::Mode m) { return arith::rcp(x, m); }},
+      {"fsqrt", [](uint32_t x, uint32_t, arith::Mode m) { return arith::sqrt(x, m); }},
+      {"frsqrt", [](uint32_t x, uint32_t, arith::Mode m) { return arith::rsqrt(x, m); }},
+      {"f2i", [](uint32_t x, uint32_t, arith::Mode m) { return arith::to_int(x, m); }},
+      {"i2f", [](uint32_t x, uint32_t, arith::Mode m) { return arith::from_int(x, m); }},
+      {"feq", [](uint32_t x, uint32_t y, arith::Mode m) { return uint32_t{arith::equal(x, y, m)}; }},
+      {"fne", [](uint32_t x, uint32_t y, arith::Mode m) { return uint32_t{!arith::equal(x, y, m)}; }},
+      {"flt", [](uint32_t x, uint32_t y, arith::Mode m) { return uint32_t{arith::less(x, y, m)}; }},
+      {"fle", [](uint32_t x, uint32_t y, arith::Mode m) { return uint32_t{arith::less_equal(x, y, m)}; }},
+      {"fgt", [](uint32_t x, uint32_t y, arith::Mode m) { return uint32_t{arith::less(y, x, m)}; }},
+      {"fge", [](uint32_t x, uint32_t y, arith::Mode m) { return uint32_t{arith::less_equal(y, x, m)}; }},
+  };
+  return kOperations.at(mnemonic)(a, b, mode);
+}
+
+/// One thread that computes `mnemonic` of arguments 0 and 1 and stores the result.
+Program operation_program(const std::string& mnemonic) {
+  const InstructionInfo& info = instruction(mnemonic);
+  const std::string operands = has_operand(info, Operand::B) ? "r1, r2" : "r1";
+  const std::string compute = writes_predicate(info)
+                                  ? fmt::format("{} p1, {}\nmov r4, 0\nmov r3, 1\nsel r3, p1, r3, r4\n", mnemonic, operands)
+                                  : fmt::format("{} r3, {}\n", mnemonic, operands);
+  return assemble(fmt::format("arg r1, 0\narg r2, 1\n{}mov r5, {}\nst [r5+0], r3\nexit\n", compute, kResultAddress), "operation");
+}
+
+/// Puts what a frame left into an order that is the same for all engines.
+void sort(Drawing& drawing) {
+  std::sort(drawing.traced.begin(), drawing.traced.end(), [](const TracedRay& a, const TracedRay& b) { return a.ray < b.ray; });
+  std::sort(drawing.contributions.begin(), drawing.contributions.end(),
+            [](const FrameContribution& a, const FrameContribution& b) {
+              return a.pixel != b.pixel ? a.pixel < b.pixel : a.rgb < b.rgb;
+            });
+}
+
+void require_same(const Drawing& ours, const Drawing& native) {
+  auto equal_rays = [](const TracedRay& a, const TracedRay& b) {
+    return a.ray == b.ray && a.goes_on == b.goes_on && (!a.goes_on || a.intersection == b.intersection);
+  };
+  require(ours.traced.size() == native.traced.size() &&
+              std::equal(ours.traced.begin(), ours.traced.end(), native.traced.begin(), equal_rays),
+          "its rays are not those of engine native");
+  auto equal_contributions = [](const FrameContribution& a, const FrameContribution& b) {
+    return a.pixel == b.pixel && a.rgb == b.rgb;
+  };
+  require(ours.contributions.size() == native.contributions.size() &&
+              std::equal(ours.contributions.begin(), ours.contributions.end(), native.contributions.begin(), equal_contributions),
+          "its contributions are not those of engine native");
+  require(ours.frame == native.frame, "its picture is not that of engine native");
+}
+
+/// Finds hits, by the scene or by the frame's own function, and writes down what was asked.
+class RecordingTracer : public RayTracer {
+ public:
+  RecordingTracer(const ExtremeFrame& frame, uint32_t material_base, std::vector<TracedRay>& traced)
+      : frame_(frame), material_base_(material_base), tracer_(frame.scene, material_base), traced_(traced) {}
+
+  bool trace(const Ray& ray, Intersection& intersection) override {
+    bool goes_on = false;
+    if (frame_.trace) {
+      intersection.fill(0);
+      std::copy(ray.begin(), ray.end(), intersection.begin());
+      goes_on = frame_.trace(ray, intersection);
+      intersection[word::kMaterial] = material_base_ + intersection[word::kMaterial] * static_cast<uint32_t>(kMaterialBytes);
+    } else {
+      goes_on = tracer_.trace(ray, intersection);
+    }
+    traced_.push_back({ray, goes_on, intersection});
+    return goes_on;
+  }
+  const Tracer& scene_tracer() const { return tracer_; }
+
+ private:
+  const ExtremeFrame& frame_;
+  uint32_t material_base_;
+  Tracer tracer_;
+  std::vector<TracedRay>& traced_;
+};
+
+class RecordingSink : public FrameSink {
+ public:
+  explicit RecordingSink(Drawing& drawing) : drawing_(drawing) {}
+  void add(const FrameContribution& contribution) override {
+    drawing_.contributions.push_back(contribution);
+    drawing_.frame.add(contribution);
+  }
+
+ private:
+  Drawing& drawing_;
+};
+
+Drawing draw_natively(const ExtremeFrame& frame, const arith::Mode& mode) {
+  Drawing drawing{FrameBuffer(frame.width, frame.height), {}, {}};
+  const MemoryImage image = build_memory(ray_kernel_program(), frame.scene);
+  RecordingTracer tracer(frame, image.material_base, drawing.traced);
+  NativeOptions options;
+  options.width = frame.width;
+  options.height = frame.height;
+  options.depth = frame.depth;
+  options.mode = mode;
+  options.change_arguments = frame.change_arguments;
+  options.trace = [&](const Ray& ray, Intersection& intersection) { return tracer.trace(ray, intersection); };
+  options.kernel = [&](RayKernel which, NativeThread& thread) {
+    run_native(which, thread);
+    drawing.contributions.insert(drawing.contributions.end(), thread.frame.begin(), thread.frame.end());
+  };
+  drawing.frame = render_native(frame.scene, image, tracer.scene_tracer(), options);
+  sort(drawing);
+  return drawing;
+}
+
+}  // namespace
+
+uint64_t Drawing::nan_contributions() const {
+  return static_cast<uint64_t>(std::count_if(contributions.begin(), contributions.end(), [](const FrameContribution& c) {
+    return std::any_of(c.rgb.begin(), c.rgb.end(), is_nan);
+  }));
+}
+
+std::vector<TracedRay> Drawing::rays(bool shadow, uint32_t depth) const {
+  std::vector<TracedRay> found;
+  std::copy_if(traced.begin(), traced.end(), std::back_inserter(found),
+               [&](const TracedRay& t) { return t.ray[word::kFlags] == ((shadow ? kShadowFlag : 0) | depth); });
+  return found;
+}
+
+void require(bool condition, const std::string& otherwise) {
+  if (!condition) throw ExtremeFailure(otherwise);
+}
+
+ExtremeMachine::ExtremeMachine(std::string engine, const ArithmeticMode& mode, const Configuration& base, UnitMaker unit)
+    : engine_(std::move(engine)), mode_(mode), configuration_(mode.applied_to(base)), unit_(std::move(unit)) {}
+
+uint32_t ExtremeMachine::operate(const std::string& mnemonic, uint32_t a, uint32_t b) const {
+  const uint32_t native = operate_natively(mnemonic, a, b, mode_.mode);
+  if (!unit_) return native;
+  const uint32_t ours = operate_on_unit(mnemonic, a, b);
+  require(ours == native,
+          fmt::format("{} of {:08x} and {:08x} is {:08x}, but {:08x} on engine native", mnemonic, a, b, ours, native));
+  return ours;
+}
+
+uint32_t ExtremeMachine::operate_on_unit(const std::string& mnemonic, uint32_t a, uint32_t b) const {
+  const Program program = operation_program(mnemonic);
+  Memory memory(kResultAddress + 64);
+  for (uint32_t i = 0; i < program.code.size(); ++i) {
+    memory.store(8 * i, static_cast<uint32_t>(program.code[i]));
+    memory.store(8 * i + 4, static_cast<uint32_t>(program.code[i] >> 32));
+  }
+  const std::unique_ptr<ComputeUnit> unit = unit_(configuration_, memory);
+  ProgramOptions options;
+  options.configuration = configuration_;
+  options.unit = unit.get();
+  options.memory = &memory;
+  options.program_length = static_cast<uint32_t>(program.code.size());
+  options.arguments[0] = a;
+  options.arguments[1] = b;
+  options.cycle_limit = kCycleLimit;
+  run_program(options);
+  return memory.load(kResultAddress);
+}
+
+Drawing ExtremeMachine::draw(const ExtremeFrame& frame) const {
+  Drawing native = draw_natively(frame, mode_.mode);
+  if (!unit_) return native;
+  Drawing ours = draw_on_unit(frame);
+  require_same(ours, native);
+  return ours;
+}
+
+Drawing ExtremeMachine::draw_on_unit(const ExtremeFrame& frame) const {
+  Drawing drawing{FrameBuffer(frame.width, frame.height), {}, {}};
+  const Program& program = ray_kernel_program();
+  MemoryImage image = build_memory(program, frame.scene);
+  RecordingTracer tracer(frame, image.material_base, drawing.traced);
+  RecordingSink sink(drawing);
+  const std::unique_ptr<ComputeUnit> unit = unit_(configuration_, image.memory);
+  ChipOptions chip;
+  chip.configuration = configuration_;
+  chip.units = {unit.get()};
+  chip.memory = &image.memory;
+  chip.program_length = static_cast<uint32_t>(program.code.size());
+  for (size_t i = 0; i < kRayKernels; ++i) chip.entries[i] = program.entries.at(std::string(kRayKernelNames[i]));
+  chip.arguments = camera_arguments(frame.scene, frame.width, frame.height, configuration_.contents());
+  if (frame.change_arguments) frame.change_arguments(chip.arguments);
+  chip.width = frame.width;
+  chip.height = frame.height;
+  chip.depth = frame.depth;
+  chip.tracer = &tracer;
+  chip.frame = &sink;
+  chip.cycle_limit = kCycleLimit;
+  run_chip(chip);
+  sort(drawing);
+  return drawing;
+}
+
+const std::vector<ExtremeCase>& extreme_cases() {
+  static const std::vector<ExtremeCase> kCases = [] {
+    std::vector<ExtremeCase> all;
+    for (auto* theme : {arithmetic_extremes, ray_extremes, triangle_extremes, scene_extremes, shading_extremes, image_extremes}) {
+      const std::vector<ExtremeCase> cases = theme();
+      all.insert(all.end(), cases.begin(), cases.end());
+    }
+    return all;
+  }();
+  return kCases;
+}
+
+std::string run_extreme(const ExtremeCase& extreme, const ExtremeMachine& machine) {
+  try {
+    extreme.check(machine);
+    return "";
+  } catch (const std::exception& error) {
+    const std::string text = error.what();
+    return text.empty() ? "it failed without saying why" : text;
+  }
+}
+
+}  // namespace raypool::numerics

@@ -1,0 +1,138 @@
+// Extremes of single operations: results are the same in every mode but where subnormal numbers are concerned.
+#include <fmt/format.h>
+
+#include "numerics/extremes.hpp"
+
+namespace raypool::numerics {
+namespace {
+
+constexpr uint32_t kOne = 0x3f800000, kMinusOne = 0xbf800000, kHalf = 0x3f000000, kTwo = 0x40000000;
+constexpr uint32_t kZero = 0, kMinusZero = 0x80000000;
+constexpr uint32_t kInfinity = 0x7f800000, kMinusInfinity = 0xff800000;
+constexpr uint32_t kNan = 0x7fc00000, kOtherNan = 0xffa5a5a5;
+constexpr uint32_t kLargest = 0x7f7fffff;
+constexpr uint32_t kSmallestNormal = 0x00800000, kLargestSubnormal = 0x007fffff, kSmallest = 0x00000001;
+
+/// One operation and its result, with subnormal numbers and without.
+struct Row {
+  const char* mnemonic;
+  uint32_t a, b;
+  uint32_t ieee, flush;
+};
+constexpr Row same(const char* mnemonic, uint32_t a, uint32_t b, uint32_t result) { return {mnemonic, a, b, result, result}; }
+
+ExtremeCase make(const char* name, const char* expected, std::vector<Row> rows) {
+  return {"arithmetic", name, expected, [rows = std::move(rows)](const ExtremeMachine& machine) {
+            for (const Row& row : rows) {
+              const uint32_t wanted = machine.flushes() ? row.flush : row.ieee;
+              const uint32_t result = machine.operate(row.mnemonic, row.a, row.b);
+              require(result == wanted,
+                      fmt::format("{} of {:08x} and {:08x} is {:08x}, not {:08x}", row.mnemonic, row.a, row.b, result, wanted));
+            }
+          }};
+}
+
+}  // namespace
+
+std::vector<ExtremeCase> arithmetic_extremes() {
+  return {
+      make("division by zero", "infinity of the signs' product",
+           {same("fdiv", kOne, kZero, kInfinity), same("fdiv", kOne, kMinusZero, kMinusInfinity),
+            same("fdiv", kMinusOne, kZero, kMinusInfinity), same("fdiv", kInfinity, kZero, kInfinity),
+            same("frcp", kZero, 0, kInfinity), same("frcp", kMinusZero, 0, kMinusInfinity)}),
+      make("division of zero", "zero of the signs' product; by zero or NaN 7FC00000",
+           {same("fdiv", kZero, kOne, kZero), same("fdiv", kZero, kMinusOne, kMinusZero),
+            same("fdiv", kMinusZero, kOne, kMinusZero), same("fdiv", kZero, kInfinity, kZero), same("fdiv", kZero, kZero, kNan),
+            same("fdiv", kMinusZero, kZero, kNan), same("fdiv", kZero, kOtherNan, kNan)}),
+      make("division of and by infinity", "zero or infinity; infinity by infinity 7FC00000",
+           {same("fdiv", kOne, kInfinity, kZero), same("fdiv", kOne, kMinusInfinity, kMinusZero),
+            same("fdiv", kInfinity, kMinusOne, kMinusInfinity), same("fdiv", kInfinity, kMinusInfinity, kNan),
+            same("frcp", kMinusInfinity, 0, kMinusZero)}),
+      make("division out of range", "infinity above, gradual underflow or zero below",
+           {same("fdiv", kLargest, kHalf, kInfinity),
+            same("fdiv", kSmallestNormal, 0x7f000000, kZero),
+            {"fdiv", kSmallestNormal, kTwo, 0x00400000, kZero},
+            {"fdiv", kMinusOne, 0x7f000000, 0x80400000, kMinusZero},
+            same("fdiv", kOne, 0x7e800000, kSmallestNormal)}),
+      make("roots of negatives", "7FC00000; flushed, a subnormal is a zero",
+           {same("fsqrt", kMinusOne, 0, kNan),
+            same("fsqrt", kMinusInfinity, 0, kNan),
+            same("frsqrt", kMinusOne, 0, kNan),
+            same("frsqrt", kMinusInfinity, 0, kNan),
+            {"fsqrt", kMinusZero | kSmallest, 0, kNan, kMinusZero},
+            {"frsqrt", kMinusZero | kSmallest, 0, kNan, kMinusInfinity}}),
+      make("roots of zeros and infinity", "fsqrt(-0) = -0, frsqrt(-0) = -infinity",
+           {same("fsqrt", kMinusZero, 0, kMinusZero), same("fsqrt", kZero, 0, kZero),
+            same("frsqrt", kMinusZero, 0, kMinusInfinity), same("frsqrt", kZero, 0, kInfinity),
+            same("fsqrt", kInfinity, 0, kInfinity), same("frsqrt", kInfinity, 0, kZero), same("fsqrt", kOtherNan, 0, kNan)}),
+      make("infinity minus infinity", "7FC00000",
+           {same("fsub", kInfinity, kInfinity, kNan), same("fadd", kInfinity, kMinusInfinity, kNan),
+            same("fadd", kMinusInfinity, kInfinity, kNan), same("fadd", kInfinity, kInfinity, kInfinity),
+            same("fsub", kMinusInfinity, kInfinity, kMinusInfinity), same("fadd", kInfinity, kOtherNan, kNan)}),
+      make("zero times infinity", "7FC00000",
+           {same("fmul", kZero, kInfinity, kNan),
+            same("fmul", kMinusInfinity, kZero, kNan),
+            same("fmul", kMinusZero, kInfinity, kNan),
+            same("fmul", kMinusOne, kInfinity, kMinusInfinity),
+            {"fmul", kSmallest, kInfinity, kInfinity, kNan}}),
+      make("zeros and their signs", "x - x is +0; -0 only from -0 and -0, or a product",
+           {same("fsub", kOne, kOne, kZero), same("fadd", kMinusZero, kZero, kZero),
+            same("fadd", kMinusZero, kMinusZero, kMinusZero), same("fsub", kMinusZero, kZero, kMinusZero),
+            same("fmul", kMinusZero, kOne, kMinusZero), same("fmul", kMinusZero, kMinusOne, kZero)}),
+      make("overflow", "infinity from the middle above the largest number on",
+           {same("fadd", kLargest, kLargest, kInfinity), same("fmul", kLargest, kTwo, kInfinity),
+            same("fadd", kLargest, 0x73000000, kInfinity), same("fadd", kLargest, 0x72ffffff, kLargest),
+            same("fmul", 0xff7fffff, kTwo, kMinusInfinity)}),
+      make("conversion to integer out of range", "80000000 or 7FFFFFFF; NaN 0",
+           {same("f2i", 0x4f000000, 0, 0x7fffffff), same("f2i", 0x4effffff, 0, 0x7fffff80),
+            same("f2i", 0xcf000000, 0, 0x80000000), same("f2i", 0xcf000001, 0, 0x80000000), same("f2i", kInfinity, 0, 0x7fffffff),
+            same("f2i", kMinusInfinity, 0, 0x80000000), same("f2i", kNan, 0, 0), same("f2i", kOtherNan, 0, 0)}),
+      make("conversion to integer near zero", "towards zero; no negative zero",
+           {same("f2i", kMinusZero, 0, 0), same("f2i", 0x3f7fffff, 0, 0), same("f2i", 0xbf7fffff, 0, 0),
+            same("f2i", kSmallest, 0, 0), same("f2i", kMinusOne, 0, 0xffffffff)}),
+      make("conversion from integer", "to nearest even",
+           {same("i2f", 0x7fffffff, 0, 0x4f000000), same("i2f", 0x80000000, 0, 0xcf000000),
+            same("i2f", 0x01000001, 0, 0x4b800000), same("i2f", 0x01000003, 0, 0x4b800002), same("i2f", 0, 0, 0)}),
+      make("the smallest normal's neighbours, sums", "exact; flushed, a subnormal operand or result is zero",
+           {{"fsub", kSmallestNormal, kSmallest, kLargestSubnormal, kSmallestNormal},
+            {"fadd", kLargestSubnormal, kSmallest, kSmallestNormal, kZero},
+            {"fsub", kSmallestNormal + 1, kSmallestNormal, kSmallest, kZero},
+            {"fsub", kSmallestNormal, kSmallestNormal + 1, kMinusZero | kSmallest, kMinusZero},
+            same("fadd", kSmallestNormal, kSmallestNormal, 0x01000000)}),
+      make("the smallest normal's neighbours, products", "tiny is judged after rounding to 24 bits of any exponent",
+           {{"fmul", kSmallestNormal, kHalf, 0x00400000, kZero},
+            {"fmul", 0x3f7fffff, kSmallestNormal, kSmallestNormal, kZero},
+            same("fmul", 0x3f000001, 0x00fffffe, kSmallestNormal),
+            {"fmul", kSmallest, kHalf, kZero, kZero},
+            {"fmul", kSmallest, 0x3f000001, kSmallest, kZero}}),
+      make("the smallest normal's neighbours, reciprocals and roots", "subnormal operands are numbers; flushed, they are zeros",
+           {{"frcp", 0x7f000000, 0, 0x00400000, kZero},
+            {"frcp", 0x00400000, 0, 0x7f000000, kInfinity},
+            same("frcp", 0x00200000, 0, kInfinity),
+            same("frcp", 0x7e800000, 0, kSmallestNormal),
+            {"frsqrt", 0x00200000, 0, 0x5f800000, kInfinity},
+            same("frsqrt", kSmallestNormal, 0, 0x5f000000)}),
+      make("smaller and larger", "the number beside a NaN; -0 below +0",
+           {same("fmin", kOtherNan, kOne, kOne),
+            same("fmax", kOne, kOtherNan, kOne),
+            same("fmin", kNan, kOtherNan, kNan),
+            same("fmin", kZero, kMinusZero, kMinusZero),
+            same("fmax", kMinusZero, kZero, kZero),
+            same("fmin", kMinusInfinity, kMinusOne, kMinusInfinity),
+            {"fmax", kSmallest, kMinusOne, kSmallest, kZero}}),
+      make("compares", "false with a NaN, but fne true; -0 equals +0",
+           {same("feq", kNan, kNan, 0),
+            same("fne", kNan, kNan, 1),
+            same("flt", kNan, kOne, 0),
+            same("fle", kOne, kNan, 0),
+            same("fgt", kNan, kOne, 0),
+            same("fge", kOne, kNan, 0),
+            same("feq", kZero, kMinusZero, 1),
+            same("flt", kMinusZero, kZero, 0),
+            same("flt", kLargest, kInfinity, 1),
+            {"flt", kZero, kSmallest, 1, 0},
+            {"feq", kSmallest, kMinusZero, 0, 1}}),
+  };
+}
+
+}  // namespace raypool::numerics

@@ -1,0 +1,88 @@
+// Every case of the catalogue on engines native and functional, in every mode. scripts/tests/extremes.sh has the hardware.
+#include "numerics/extremes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "machine/functional_unit.hpp"
+#include "numerics/extreme_parts.hpp"
+
+namespace raypool::numerics {
+namespace {
+
+Configuration small_unit() { return load_configuration("4w4c"); }
+
+class Extremes : public testing::TestWithParam<ArithmeticMode> {
+ protected:
+  static void run_all(const ExtremeMachine& machine) {
+    for (const ExtremeCase& extreme : extreme_cases()) {
+      const std::string failure = run_extreme(extreme, machine);
+      EXPECT_EQ(failure, "") << extreme.theme << ": " << extreme.name << " (" << extreme.expected << ")";
+    }
+  }
+};
+
+TEST_P(Extremes, AreDefinedOnEngineNative) { run_all({"native", GetParam(), small_unit()}); }
+
+TEST_P(Extremes, AreTheSameOnEngineFunctional) { run_all({"functional", GetParam(), small_unit(), make_functional_unit}); }
+
+INSTANTIATE_TEST_SUITE_P(Modes, Extremes, testing::ValuesIn(arithmetic_modes()), [](const auto& instance) {
+  std::string name = instance.param.name;
+  for (char& c : name) c = c == '-' ? '_' : c;
+  return name;
+});
+
+TEST(ExtremeCatalogue, NamesAreUnique) {
+  std::set<std::string> names;
+  for (const ExtremeCase& extreme : extreme_cases())
+    EXPECT_TRUE(names.insert(extreme.theme + extreme.name).second) << extreme.name;
+  EXPECT_GT(names.size(), 55u);
+}
+
+/// A unit whose results are those of another arithmetic.
+UnitMaker functional_in(const arith::Mode& mode) {
+  return [mode](const Configuration& configuration, Memory& memory) {
+    Configuration other = configuration;
+    other.slow_unit = mode.slow_unit;
+    other.subnormals = mode.subnormals;
+    return make_functional_unit(other, memory);
+  };
+}
+
+TEST(ExtremeCatalogue, AnEngineOfOtherArithmeticFails) {
+  const ArithmeticMode& ieee = arithmetic_modes().front();
+  const ExtremeMachine flushing("functional", ieee, small_unit(), functional_in({Subnormals::Flush, SlowUnit::Exact}));
+  const ExtremeMachine coarse("functional", ieee, small_unit(), functional_in({Subnormals::Ieee, SlowUnit::Newton0}));
+  int flush_failures = 0, coarse_failures = 0;
+  for (const ExtremeCase& extreme : extreme_cases()) {
+    flush_failures += !run_extreme(extreme, flushing).empty();
+    coarse_failures += !run_extreme(extreme, coarse).empty();
+  }
+  EXPECT_GT(flush_failures, 5);
+  EXPECT_GT(coarse_failures, 5);
+}
+
+TEST(ExtremeCatalogue, AFrameThatDoesNotEndFails) {
+  // A unit that never takes a launch.
+  class Deaf : public ComputeUnit {
+   public:
+    void reset(uint32_t, uint32_t) override {}
+    void set_argument(int, uint32_t) override {}
+    const UnitOutputs& outputs() const override { return outputs_; }
+    void clock(const UnitInputs&) override {}
+    const UnitTrace& trace() const override { return trace_; }
+    uint64_t counter(int) override { return 0; }
+    bool timed() const override { return true; }
+
+   private:
+    UnitOutputs outputs_;
+    UnitTrace trace_;
+  };
+  const ExtremeMachine machine("deaf", arithmetic_modes().front(), small_unit(),
+                               [](const Configuration&, Memory&) { return std::make_unique<Deaf>(); });
+  EXPECT_NE(run_extreme(image_extremes().front(), machine), "");
+}
+
+}  // namespace
+}  // namespace raypool::numerics

@@ -1,0 +1,33 @@
+#include "numerics/modes.hpp"
+
+#include <array>
+
+namespace raypool::numerics {
+
+Configuration ArithmeticMode::applied_to(Configuration base) const {
+  base.subnormals = mode.subnormals;
+  base.slow_unit = mode.slow_unit;
+  if (name != arithmetic_modes().front().name) base.name += "-" + name;
+  return base;
+}
+
+const std::vector<ArithmeticMode>& arithmetic_modes() {
+  static const std::vector<ArithmeticMode> kModes = [] {
+    constexpr std::array<const char*, 2> kSubnormals = {"ieee", "flush"};
+    constexpr std::array<const char*, 4> kSlowUnits = {"exact", "newton2", "newton1", "newton0"};
+    std::vector<ArithmeticMode> modes;
+    for (size_t s = 0; s < kSubnormals.size(); ++s) {
+      for (size_t u = 0; u < kSlowUnits.size(); ++u) {
+        ArithmeticMode mode;
+        mode.name = std::string(kSubnormals[s]) + "-" + kSlowUnits[u];
+        mode.mode.subnormals = static_cast<Subnormals>(s);
+        mode.mode.slow_unit = static_cast<SlowUnit>(u);
+        modes.push_back(mode);
+      }
+    }
+    return modes;
+  }();
+  return kModes;
+}
+
+}  // namespace raypool::numerics

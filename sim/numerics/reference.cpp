@@ -1,0 +1,176 @@
+#include "numerics/reference.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace raypool::numerics {
+namespace {
+
+using Quad = __float128;
+
+/// Of the largest coordinate or diagonal; a hit point in double precision is off by some 1e-15 of it, along a grazing ray by
+/// more.
+constexpr double kReferenceOffset = 1e-13;
+/// A double-precision triple product of this share of its factors' lengths has a sign that can be trusted.
+constexpr double kSureShare = 1e-14;
+
+double as_double(uint32_t bits) {
+  float value = 0;
+  std::memcpy(&value, &bits, sizeof value);
+  return static_cast<double>(value);
+}
+
+/// d . (b x c) with the sign of the exact value.
+double volume(const Vec3d& d, const Vec3d& b, const Vec3d& c) {
+  const double value = dot(d, cross(b, c));
+  double bound = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int i = (axis + 1) % 3, j = (axis + 2) % 3;
+    bound += std::fabs(d[axis]) * (std::fabs(b[i] * c[j]) + std::fabs(b[j] * c[i]));
+  }
+  if (std::fabs(value) > kSureShare * bound) return value;
+  return static_cast<double>(dot(d.as<Quad>(), cross(b.as<Quad>(), c.as<Quad>())));
+}
+
+}  // namespace
+
+ReferenceTracer::ReferenceTracer(const Scene& scene) : scene_(scene), bvh_(build_bvh(scene)) {}
+
+Vec3d ReferenceTracer::normal(uint32_t triangle) const {
+  const Vec3d a = scene_.corner(triangle, 0).as<double>();
+  return normalized(cross(scene_.corner(triangle, 1).as<double>() - a, scene_.corner(triangle, 2).as<double>() - a));
+}
+
+ReferenceHit ReferenceTracer::trace(const Vec3d& origin, const Vec3d& direction, double limit, bool any) const {
+  ReferenceHit best;
+  best.t = limit;
+  if (bvh_.nodes.empty()) return best;
+  double inverse[3], reach = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double d = direction[axis];
+    inverse[axis] = 1 / (std::fabs(d) < 1e-200 ? std::copysign(1e-200, d) : d);
+    reach = std::max({reach, std::fabs(origin[axis]), std::fabs(static_cast<double>(bvh_.bounds.lower[axis])),
+                      std::fabs(static_cast<double>(bvh_.bounds.upper[axis]))});
+  }
+  const double padding = 1e-15 * reach;
+
+  auto test = [&](const TriangleBlock& block, unsigned lane) {
+    Vec3d corners[3];
+    for (int k = 0; k < 3; ++k) {
+      for (int axis = 0; axis < 3; ++axis) corners[k][axis] = static_cast<double>(block.vertices[k][axis][lane]);
+    }
+    const Vec3d a = corners[0] - origin, b = corners[1] - origin, c = corners[2] - origin;
+    const double u = volume(direction, c, b), v = volume(direction, a, c), w = volume(direction, b, a);
+    if ((u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0)) return;
+    if (u + v + w == 0) return;
+    // From the plane, not from the weights: exact for the coordinates that a plane keeps constant.
+    const Vec3d plane = cross(corners[1] - corners[0], corners[2] - corners[0]);
+    const double t = dot(plane, a) / dot(plane, direction);
+    const uint32_t triangle = block.triangles[lane];
+    if (!(t > 0) || !(t < best.t || (t == best.t && triangle < best.triangle && best.triangle != kNoTriangle))) return;
+    best = {triangle, t};
+  };
+
+  struct Entry {
+    uint32_t child;
+    double t;
+  };
+  std::vector<Entry> stack = {{0, 0}};
+  while (!stack.empty()) {
+    const Entry top = stack.back();
+    stack.pop_back();
+    if (top.t > best.t) continue;
+    if ((top.child & kLeafBit) != 0) {
+      const TriangleBlock& block = bvh_.blocks[top.child & ~kLeafBit];
+      for (unsigned lane = 0; lane < block.count; ++lane) test(block, lane);
+      if (any && best.triangle != kNoTriangle) return best;
+      continue;
+    }
+    const BvhNode& node = bvh_.nodes[top.child];
+    const size_t base = stack.size();
+    for (int i = 0; i < kBvhWidth && node.children[i] != kNoChild; ++i) {
+      double near = 0, far = best.t;
+      for (int axis = 0; axis < 3; ++axis) {
+        const double low = (static_cast<double>(node.bounds[0][axis][i]) - padding - origin[axis]) * inverse[axis];
+        const double high = (static_cast<double>(node.bounds[1][axis][i]) + padding - origin[axis]) * inverse[axis];
+        near = std::max(near, std::min(low, high) * (1 - 1e-14));
+        far = std::min(far, std::max(low, high) * (1 + 1e-14));
+      }
+      if (!(near <= far)) continue;
+      // The nearest child on top.
+      size_t place = stack.size();
+      stack.push_back({});
+      for (; place > base && stack[place - 1].t < near; --place) stack[place] = stack[place - 1];
+      stack[place] = {node.children[i], near};
+    }
+  }
+  return best;
+}
+
+ReferenceCamera::ReferenceCamera(const std::array<uint32_t, kArguments>& arguments) {
+  auto get = [&](int first) {
+    return Vec3d{as_double(arguments[static_cast<size_t>(first)]), as_double(arguments[static_cast<size_t>(first) + 1]),
+                 as_double(arguments[static_cast<size_t>(first) + 2])};
+  };
+  eye = get(argument::kEye);
+  corner = get(argument::kCorner);
+  step_x = get(argument::kStepX);
+  step_y = get(argument::kStepY);
+  light = get(argument::kLight);
+  light_color = get(argument::kLightColor);
+}
+
+ReferenceShadowRay shadow_ray(const ReferenceTracer& tracer, const Vec3d& origin, const Vec3d& direction, const ReferenceHit& hit,
+                              const Vec3d& light) {
+  Vec3d normal = tracer.normal(hit.triangle);
+  if (dot(normal, direction) > 0) normal = normal * -1.0;
+  const Vec3d point = origin + direction * hit.t;
+  double scale = 0;
+  for (int axis = 0; axis < 3; ++axis) scale = std::max({scale, std::fabs(point[axis]), std::fabs(origin[axis])});
+  ReferenceShadowRay ray;
+  ray.origin = point + normal * (kReferenceOffset * scale);
+  ray.direction = light - ray.origin;
+  const double distance = length(ray.direction);
+  // From a corner, the distance to the plane has no error of the point: a light in the plane is exactly behind it.
+  ray.cosine = distance > 0 ? dot(normal, light - tracer.scene().corner(hit.triangle, 0).as<double>()) / distance : 0;
+  return ray;
+}
+
+PathImage render_reference(const ReferenceTracer& tracer, const std::array<uint32_t, kArguments>& arguments, int width,
+                           int height, int depth, const std::function<void(double)>& progress) {
+  const ReferenceCamera camera(arguments);
+  const Scene& scene = tracer.scene();
+  PathImage image(width, height, depth);
+  auto scaled = [](const Vec3d& a, const Vec3d& b) { return Vec3d{a.x * b.x, a.y * b.y, a.z * b.z}; };
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const size_t pixel = static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x);
+      Vec3d origin = camera.eye, direction = camera.direction(x, y), throughput{1, 1, 1};
+      for (int reflections = 0; reflections < depth; ++reflections) {
+        if (!(throughput.x > 0 || throughput.y > 0 || throughput.z > 0)) break;
+        PathStep& step = image.step(pixel, reflections);
+        step.followed = true;
+        const ReferenceHit hit = tracer.nearest(origin, direction, INFINITY);
+        step.triangle = hit.triangle;
+        if (hit.triangle == kNoTriangle) break;
+        const Material& material = scene.materials[scene.triangle_materials[hit.triangle]];
+        const ReferenceShadowRay shadow = shadow_ray(tracer, origin, direction, hit, camera.light);
+        step.facing = shadow.cosine > 0;
+        step.lit = step.facing && tracer.occluder(shadow.origin, shadow.direction, 1) == kNoTriangle;
+        if (step.lit) {
+          image.color[pixel] =
+              image.color[pixel] + scaled(scaled(throughput, material.kd.as<double>()), camera.light_color) * shadow.cosine;
+        }
+        const Vec3d normal = tracer.normal(hit.triangle);
+        origin = shadow.origin;
+        direction = direction - normal * (2 * dot(normal, direction));
+        throughput = scaled(throughput, material.ks.as<double>());
+      }
+    }
+    if (progress) progress(static_cast<double>(y + 1) / height);
+  }
+  return image;
+}
+
+}  // namespace raypool::numerics
