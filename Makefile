@@ -58,7 +58,7 @@ SYNTH := PYTHONPATH=scripts python3 -m synth
 SYNTH_OPTIONS := --config "$$CONFIG" --memories "$$MEMORIES" $${LIBERTY:+--liberty "$$LIBERTY"} $${CLOCK:+--clock "$$CLOCK"}
 UNIT_OF_ENGINE := $(if $(filter rtl lockstep,$(ENGINE)),$(UNIT),true)
 
-.PHONY: help sim run cosim configurations mutants unit test lint format bench clean setup-% program configured-% numerics-long proofs synth synth-replay synth-prove growth
+.PHONY: help sim run cosim configurations mutants unit test lint format bench clean setup-% program configured-% numerics-long proofs synth synth-replay synth-prove growth numerics extremes
 
 help: ## this list
 	@echo 'raypool: a ray-tracing GPU to render on, measure, verify and synthesise'
@@ -142,6 +142,13 @@ bench: setup-sim configured-OFF ## measured rates of the engines on this machine
 	@$(LOCKED) cmake --build $(BUILD) --target raypool raypool_bench
 	@for config in 4w4c 8w8c; do scripts/unit.sh "$$config"; done
 	@$(BUILD)/raypool_bench
+
+numerics: setup-sim setup-numerics program ## what each arithmetic mode does to pictures, and costs: tables, plots
+	@$(RAYPOOL) numerics
+
+extremes: setup-sim program ## hard cases in every arithmetic mode, on every engine
+	@for config in $$($(RAYPOOL) numerics --configurations $(BUILD)/out/modes); do scripts/unit.sh "$$config"; done
+	@$(RAYPOOL) numerics --extremes
 
 clean: ## remove build/ (pictures in build/out too)
 	@rm -rf $(BUILD)

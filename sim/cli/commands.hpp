@@ -113,4 +113,18 @@ struct ConfigurationsOptions {
 };
 int configurations_command(const ConfigurationsOptions& options);
 
+/// `raypool numerics`
+struct NumericsOptions {
+  std::string config = "4w4c";  ///< the base, to which each mode's arithmetic is applied
+  std::string mode = "all";     ///< or one of numerics::arithmetic_modes()
+  std::string size = "256x256";
+  int depth = 3;
+  std::string out;             ///< folder; empty: out/numerics beside the executable
+  std::string synthesis;       ///< folder of synthesis reports; empty: synth beside the executable
+  std::string configurations;  ///< folder: only write a configuration file for each mode
+  bool extremes = false;       ///< the catalogue of hard cases instead of the trade
+  bool quiet = false;          ///< no progress
+};
+int numerics_command(const NumericsOptions& options);
+
 }  // namespace raypool

@@ -1,6 +1,7 @@
 #include "numerics/watertight.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <random>
@@ -31,7 +32,7 @@ Scene with_material() {
 }
 
 WatertightMesh ball(const std::string& name, const Vec3d& centre, const Vec3d& radii, int around) {
-  WatertightMesh mesh{name, with_material(), true, {}};
+  WatertightMesh mesh{name, with_material(), {}};
   MeshBuilder builder(mesh.scene, 1);
   builder.surface(around, around / 2, true, false, [&](double s, double t) {
     const double a = 2 * M_PI * s, b = M_PI * (t - 0.5);
@@ -48,7 +49,7 @@ WatertightMesh ball(const std::string& name, const Vec3d& centre, const Vec3d& r
 }
 
 WatertightMesh star() {
-  WatertightMesh mesh{"bumpy body", with_material(), true, {Vec3{0, 0, 0}}};
+  WatertightMesh mesh{"bumpy body", with_material(), {Vec3{0, 0, 0}}};
   MeshBuilder builder(mesh.scene, 1);
   builder.surface(96, 48, true, false, [](double s, double t) {
     const double a = 2 * M_PI * s, b = M_PI * (t - 0.5);
@@ -59,7 +60,7 @@ WatertightMesh star() {
 }
 
 WatertightMesh terrain() {
-  WatertightMesh mesh{"terrain from above", with_material(), false, {}};
+  WatertightMesh mesh{"terrain from above", with_material(), {}};
   MeshBuilder builder(mesh.scene, 1);
   builder.surface(64, 64, false, false, [](double s, double t) {
     return Vec3d{200 * s - 100, 3 * std::sin(17 * s) * std::cos(13 * t), 200 * t - 100};
@@ -75,9 +76,18 @@ struct Edge {
 
 /// Edges of two triangles, none of whose ends lies on a rim: a ray at the rim may pass beside the mesh.
 std::vector<Edge> shared_edges(const Scene& scene) {
+  // Vertices of one place, as at the poles, are one.
+  std::map<std::array<float, 3>, uint32_t> places;
+  auto place = [&](uint32_t vertex) {
+    const Vec3& v = scene.vertices[vertex];
+    return places.insert({{v.x, v.y, v.z}, vertex}).first->second;
+  };
   std::map<std::pair<uint32_t, uint32_t>, int> count;
   for (const auto& triangle : scene.triangles) {
-    for (size_t k = 0; k < 3; ++k) ++count[std::minmax(triangle[k], triangle[(k + 1) % 3])];
+    for (size_t k = 0; k < 3; ++k) {
+      const uint32_t a = place(triangle[k]), b = place(triangle[(k + 1) % 3]);
+      ++count[{std::min(a, b), std::max(a, b)}];
+    }
   }
   std::set<uint32_t> rim;
   for (const auto& [edge, triangles] : count) {

@@ -12,8 +12,7 @@ namespace raypool::numerics {
 
 struct WatertightMesh {
   std::string name;
-  Scene scene;  ///< closed, or a sheet all of whose edges but the rim are shared
-  bool closed = true;
+  Scene scene;                ///< closed, or a sheet all of whose edges but the rim are shared
   std::vector<Vec3> origins;  ///< from which every point of the mesh is in sight, and rays are cast
 };
 /// Balls near and far, a ball squeezed to needles of 1000 to 1, a bumpy star-shaped body, a terrain seen from above.

@@ -158,6 +158,22 @@ int run(int argc, char** argv) {
   scene_app->callback([&] { code = scene_command(scene); });
   hits_app->callback([&] { code = hits_command(scene); });
 
+  NumericsOptions numerics;
+  CLI::App* numerics_app =
+      app.add_subcommand("numerics", "what each arithmetic mode does to pictures, and costs; seams; offsets; extremes");
+  add_config(*numerics_app, numerics.config);
+  numerics_app->add_option("--mode", numerics.mode, "all, or one: ieee-exact, flush-newton1, ...")->capture_default_str();
+  numerics_app->add_option("--size", numerics.size, "pictures, WIDTHxHEIGHT in pixels")->capture_default_str();
+  numerics_app->add_option("--depth", numerics.depth, "of the pictures' rays")->check(CLI::Range(1, 254))->capture_default_str();
+  numerics_app->add_option("--out", numerics.out,
+                           "folder for numerics.json and plots (default: out/numerics beside the program)");
+  numerics_app->add_option("--synthesis", numerics.synthesis, "folder of synthesis reports (default: synth beside the program)");
+  numerics_app->add_flag("--extremes", numerics.extremes, "the catalogue of hard cases, by mode and engine");
+  numerics_app->add_option("--configurations", numerics.configurations,
+                           "only write a configuration file of each mode into this folder");
+  numerics_app->add_flag("--quiet", numerics.quiet, "no progress");
+  numerics_app->callback([&] { code = numerics_command(numerics); });
+
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& success) {

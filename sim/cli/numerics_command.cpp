@@ -1,0 +1,227 @@
+// `raypool numerics`: what each arithmetic mode does to pictures and costs; the catalogue of extremes.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "cli/commands.hpp"
+#include "cli/engine.hpp"
+#include "cli/image_size.hpp"
+#include "cli/output_folder.hpp"
+#include "cli/progress.hpp"
+#include "numerics/cost.hpp"
+#include "numerics/extreme_parts.hpp"
+#include "numerics/extremes.hpp"
+#include "numerics/trade_report.hpp"
+
+namespace raypool {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace numerics;
+
+constexpr uint64_t kSeamRays = 1'000'000;
+constexpr int kFailed = 3;  // the exit code of a promise that is not kept
+
+std::vector<ArithmeticMode> chosen_modes(const std::string& name) {
+  if (name == "all") return arithmetic_modes();
+  std::string names;
+  for (const ArithmeticMode& mode : arithmetic_modes()) {
+    if (mode.name == name) return {mode};
+    names += ", " + mode.name;
+  }
+  throw InputError(fmt::format("there is no arithmetic mode '{}': use all{}", name, names));
+}
+
+fs::path build_folder() { return fs::read_symlink("/proc/self/exe").parent_path(); }
+
+UnitMaker unit_maker(Engine engine) {
+  return [engine](const Configuration& configuration, Memory& memory) {
+    EngineOptions options;
+    options.engine = engine;
+    options.configuration = configuration;
+    return make_unit(options, memory);
+  };
+}
+
+/// Whether the Verilated unit of a configuration has been built.
+bool has_rtl(const Configuration& configuration) { return fs::exists(unit_library_path(configuration, false)); }
+
+bool has_gnuplot() { return std::system("command -v gnuplot > /dev/null 2>&1") == 0; }
+
+void plot(const std::string& script) {
+  FILE* gnuplot = popen("gnuplot", "w");
+  if (gnuplot != nullptr) std::fputs(script.c_str(), gnuplot);
+  if (gnuplot == nullptr || pclose(gnuplot) != 0)
+    throw std::runtime_error("gnuplot could not draw a plot; its message stands above");
+}
+
+struct NamedScene {
+  std::string title;
+  Scene scene;
+};
+
+std::vector<NamedScene> trade_scenes() {
+  std::vector<NamedScene> scenes;
+  scenes.push_back({"cornell", make_cornell()});
+  scenes.push_back({"room at detail 0.1", make_room(0.1)});
+  scenes.push_back({"cornell moved by 1 km", moved(make_cornell(), 1, {1000, 700, -900})});
+  return scenes;
+}
+
+TradeResult measure_trade(const NumericsOptions& options, const ImageSize& size, Progress& progress) {
+  const Configuration base = load_configuration(options.config);
+  const std::vector<ArithmeticMode> modes = chosen_modes(options.mode);
+  TradeResult result;
+  result.configuration = base.name;
+  for (NamedScene& named : trade_scenes()) {
+    progress.show(fmt::format("  {}: the reference picture", named.title));
+    TradeScene scene(named.title, std::move(named.scene), size.width, size.height, options.depth);
+    scene.draw_reference([&](double share) {
+      if (progress.due()) progress.show(fmt::format("  {}: the reference picture, {:.0f}%", named.title, 100 * share));
+    });
+    for (const ArithmeticMode& mode : modes) {
+      if (progress.due()) progress.show(fmt::format("  {}: {}", named.title, mode.name));
+      result.rows.push_back({named.title, mode, judge_frame(scene, record_frame(scene, mode.mode))});
+    }
+  }
+  const Scene timed = make_cornell();
+  for (const ArithmeticMode& mode : modes) {
+    const Configuration configuration = mode.applied_to(base);
+    TradeCost cost{mode, std::nullopt,
+                   read_gates(options.synthesis.empty() ? build_folder() / "synth" : fs::path(options.synthesis), configuration)};
+    if (progress.due()) progress.show(fmt::format("  cost: {}", mode.name));
+    if (has_rtl(configuration)) cost.timing = time_mode(timed, options.depth, configuration, unit_maker(Engine::Rtl));
+    result.costs.push_back(cost);
+  }
+  return result;
+}
+
+int trade_command(const NumericsOptions& options) {
+  const ImageSize size = parse_image_size(options.size);
+  OutputFolder out(options.out.empty() ? build_folder() / "out" / "numerics" : fs::path(options.out));
+  Progress progress(options.quiet);
+  const TradeResult trade = measure_trade(options, size, progress);
+
+  const std::vector<WatertightMesh> meshes = watertight_meshes();
+  std::vector<WatertightCounts> seams;
+  for (const WatertightMesh& mesh : meshes) {
+    if (progress.due()) progress.show(fmt::format("  rays at seams: {}", mesh.name));
+    seams.push_back(aim_at_seams(mesh, kSeamRays / meshes.size()));
+  }
+
+  const std::vector<OffsetScene> scenes = offset_scenes();
+  const std::vector<OffsetRule> rules = offset_rules();
+  std::vector<std::vector<OffsetCounts>> offsets;
+  for (const OffsetScene& scene : scenes) {
+    if (progress.due()) progress.show(fmt::format("  offsets: {}", scene.name));
+    offsets.push_back(study_offsets(scene.scene, rules, std::clamp(size.width, 16, 256)));
+  }
+
+  out.write("numerics.json", to_json(trade, meshes, seams, scenes, rules, offsets));
+  std::string files = "numerics.json";
+  const bool plots = has_gnuplot(), gates_known = !pareto_plot(trade, "").empty();
+  if (plots) {
+    plot(quality_plot(trade, out.temporary("quality.png").string()));
+    files += ", quality.png";
+  }
+  if (plots && gates_known) {
+    plot(pareto_plot(trade, out.temporary("pareto.png").string()));
+    files += ", pareto.png";
+  }
+  out.publish();
+
+  fmt::print("{}\nrays aimed at shared edges and vertices\n{}\n", trade_table(trade), seam_table(meshes, seams));
+  fmt::print("offset of secondary rays, against the reference, ties apart\n{}\n", offset_table(scenes, rules, offsets));
+  if (!plots) fmt::print("no plots: gnuplot is missing; make numerics installs it\n");
+  if (!gates_known)
+    fmt::print("no plot of quality against gates: fewer than two modes of {} have a synthesis report\n", trade.configuration);
+  fmt::print("results in {}: {}\n", fs::proximate(out.path(".")).lexically_normal().string(), files);
+  const bool leak = std::any_of(seams.begin(), seams.end(), [](const WatertightCounts& counts) { return counts.leaks > 0; });
+  return leak ? kFailed : 0;
+}
+
+/// One letter an engine, in the order native, functional, lockstep: lower case passed, X failed, - not run.
+int extremes_command(const NumericsOptions& options) {
+  const Configuration base = load_configuration(options.config);
+  const std::vector<ArithmeticMode> modes = chosen_modes(options.mode);
+  std::vector<ExtremeMachine> machines;
+  std::vector<std::string> missing;
+  for (const ArithmeticMode& mode : modes) {
+    machines.emplace_back("native", mode, base);
+    machines.emplace_back("functional", mode, base, unit_maker(Engine::Functional));
+    if (has_rtl(mode.applied_to(base))) {
+      machines.emplace_back("lockstep", mode, base, unit_maker(Engine::Lockstep));
+    } else {
+      missing.push_back(mode.name);
+    }
+  }
+  Progress progress(options.quiet);
+  std::string failures;
+  uint64_t checks = 0, failed = 0, on_rtl = 0;
+  fmt::print("n engine native, f functional, l RTL in lockstep with functional, X failed, - no Verilated unit\n{:<62}", "");
+  for (const ArithmeticMode& mode : modes) fmt::print(" {:>13}", mode.name);
+  fmt::print("\n");
+  std::string theme;
+  for (const ExtremeCase& extreme : extreme_cases()) {
+    if (extreme.theme != theme) {
+      theme = extreme.theme;
+      fmt::print("{}\n", theme);
+    }
+    std::map<std::string, std::string> letters;
+    for (const ExtremeMachine& machine : machines) {
+      if (progress.due()) progress.show(fmt::format("  {}: {}, {}", extreme.name, machine.mode().name, machine.engine()));
+      const std::string failure = run_extreme(extreme, machine);
+      ++checks;
+      on_rtl += machine.engine() == "lockstep";
+      failed += !failure.empty();
+      letters[machine.mode().name] += failure.empty() ? machine.engine()[0] : 'X';
+      if (!failure.empty()) {
+        failures += fmt::format("FAILED: {}: {} ({}), {}, {}: {}\n", extreme.theme, extreme.name, extreme.expected,
+                                machine.mode().name, machine.engine(), failure);
+      }
+    }
+    fmt::print("  {:<60}", extreme.name);
+    for (const ArithmeticMode& mode : modes) {
+      std::string cell = letters[mode.name];
+      if (cell.size() < 3) cell += '-';
+      fmt::print(" {:>13}", cell);
+    }
+    fmt::print("\n");
+    std::fflush(stdout);
+  }
+  fmt::print("{}{} cases, {} runs ({} on RTL in lockstep), {} failed\n", failures, extreme_cases().size(), checks, on_rtl,
+             failed);
+  if (!missing.empty()) {
+    fmt::print("without hardware: {} of {} modes; make extremes builds their units\n", missing.size(), modes.size());
+  }
+  return failed == 0 ? 0 : kFailed;
+}
+
+/// A configuration file for each mode, named after it.
+int configurations_command(const NumericsOptions& options) {
+  const Configuration base = load_configuration(options.config);
+  fs::create_directories(options.configurations);
+  for (const ArithmeticMode& mode : chosen_modes(options.mode)) {
+    const Configuration configuration = mode.applied_to(base);
+    const fs::path path = fs::path(options.configurations) / (configuration.name + ".json");
+    std::ofstream file(path);
+    file << to_json(configuration) << '\n';
+    file.close();
+    if (!file) throw InputError(fmt::format("cannot write '{}': name another folder", path.string()));
+    fmt::print("{}\n", path.string());
+  }
+  return 0;
+}
+
+}  // namespace
+
+int numerics_command(const NumericsOptions& options) {
+  if (!options.configurations.empty()) return configurations_command(options);
+  return options.extremes ? extremes_command(options) : trade_command(options);
+}
+
+}  // namespace raypool

@@ -1,0 +1,188 @@
+#include "numerics/offset_study.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "kernel/kernel.hpp"
+#include "kernel/kernel_report.hpp"
+#include "numerics/extreme_parts.hpp"
+#include "numerics/reference.hpp"
+#include "scene/hits_check.hpp"
+#include "scene/native_renderer.hpp"
+#include "scene/traversal.hpp"
+
+namespace raypool::numerics {
+namespace {
+
+// Constants of the source.
+constexpr float kNearOrigin = 1.0f / 32;
+constexpr float kFloatScale = 1.0f / 65536;
+constexpr float kIntegerScale = 256;
+
+Vec3 along(const OffsetInput& in, float offset) { return in.origin + in.direction * in.t + in.normal * offset; }
+
+Vec3 integer_offset(const OffsetInput& in) {
+  const Vec3 point = in.origin + in.direction * in.t;
+  Vec3 result;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float p = point[axis], n = in.normal[axis];
+    const auto steps = static_cast<int32_t>(kIntegerScale * n);
+    const auto bits = static_cast<int32_t>(float_as_word(p)) + (p < 0 ? -steps : steps);
+    result[axis] = std::fabs(p) < kNearOrigin ? p + kFloatScale * n : word_as_float(static_cast<uint32_t>(bits));
+  }
+  return result;
+}
+
+/// The two rules in the kernel language, nothing around them but words in and words out.
+template <typename K>
+void kernel_in_use(K& k) {
+  using Float = typename K::Float;
+  k.ray_in();
+  for (int axis = 0; axis < 3; ++axis) {
+    const Float p = k.float_word(word::kOrigin + axis) + k.float_word(word::kDistance) * k.float_word(word::kDirection + axis);
+    k.set_word(word::kOrigin + axis, p + k.float_argument(argument::kOffset) * k.float_word(word::kNormal + axis));
+  }
+  k.ray_out();
+}
+template <typename K>
+void kernel_integer(K& k) {
+  using Int = typename K::Int;
+  using Float = typename K::Float;
+  k.ray_in();
+  for (int axis = 0; axis < 3; ++axis) {
+    const Float p = k.float_word(word::kOrigin + axis) + k.float_word(word::kDistance) * k.float_word(word::kDirection + axis);
+    const Float n = k.float_word(word::kNormal + axis);
+    Int steps = to_int(n * kIntegerScale);
+    k.if_(p < 0.0f, [&] { steps = -steps; });
+    Float moved = as_float(as_int(p) + steps);
+    k.if_(abs(p) < kNearOrigin, [&] { moved = p + n * kFloatScale; });
+    k.set_word(word::kOrigin + axis, moved);
+  }
+  k.ray_out();
+}
+
+/// A primary hit and what is true of its shadow.
+struct Hitpoint {
+  RayQuery eye;
+  Hit hit;
+  Vec3 normal;  // on the eye's side
+  ReferenceShadowRay shadow;
+  uint32_t blocker;
+};
+
+std::vector<Hitpoint> hitpoints(const Scene& scene, const Traversal& traversal, const ReferenceTracer& reference, int size) {
+  const auto arguments = camera_arguments(scene, size, size, 1);
+  const ReferenceCamera camera(arguments);
+  std::vector<Hitpoint> points;
+  for (int y = 0; y < size; ++y) {
+    for (int x = 0; x < size; ++x) {
+      // The float ray is the truth here: only what happens at the hit is on trial.
+      const RayQuery eye{camera.eye.as<float>(), camera.direction(x, y).as<float>(), INFINITY};
+      Hitpoint point{eye, {}, {}, {}, kNoTriangle};
+      const ReferenceHit truth = reference.nearest(eye.origin.as<double>(), eye.direction.as<double>(), INFINITY);
+      if (!traversal.nearest(eye, point.hit) || truth.triangle != point.hit.triangle) continue;
+      point.normal = dot(point.hit.normal, eye.direction) > 0 ? point.hit.normal * -1.0f : point.hit.normal;
+      point.shadow = shadow_ray(reference, eye.origin.as<double>(), eye.direction.as<double>(), truth, camera.light);
+      if (point.shadow.cosine > 0) point.blocker = reference.occluder(point.shadow.origin, point.shadow.direction, 1);
+      points.push_back(point);
+    }
+  }
+  return points;
+}
+
+void judge_shadow(const Scene& scene, const Traversal& traversal, const Hitpoint& point, const Vec3& origin,
+                  OffsetCounts& counts) {
+  ++counts.shadow_rays;
+  Hit blocker;
+  const RayQuery ray{origin, scene.light.position - origin, 1};
+  const bool blocked = traversal.nearest(ray, blocker);
+  if (blocked == (point.blocker != kNoTriangle)) return;
+  if (blocked && blocker.triangle == point.hit.triangle) {
+    ++counts.acne;
+    return;
+  }
+  std::string reason;
+  const HitAnswer ours{blocked, blocker.triangle, 0}, theirs{!blocked, point.blocker, 0};
+  if (judge_hits(scene, {point.shadow.origin, point.shadow.direction, 1}, ours, theirs, reason) == HitVerdict::Tie) return;
+  ++(blocked ? counts.moved : counts.leaks);
+}
+
+}  // namespace
+
+std::vector<OffsetRule> offset_rules() {
+  std::vector<OffsetRule> rules;
+  rules.push_back({"none", [](const OffsetInput& in) { return along(in, 0); }});
+  for (float distance : {1e-5f, 1e-4f, 1e-3f}) {
+    rules.push_back({fmt::format("fixed {:.0e} m", distance), [distance](const OffsetInput& in) { return along(in, distance); }});
+  }
+  for (float share : {1e-7f, 1e-6f, 3e-6f, 1e-5f, 3e-5f, 1e-4f}) {
+    rules.push_back(
+        {fmt::format("{:.0e} of diagonal", share), [share](const OffsetInput& in) { return along(in, share * in.diagonal); }});
+  }
+  rules.push_back({"in use", [](const OffsetInput& in) {
+                     const double offset = std::max(kOffsetShare * static_cast<double>(in.diagonal),
+                                                    kLeastOffset * static_cast<double>(in.largest));
+                     return along(in, static_cast<float>(offset));
+                   }});
+  rules.push_back({"integer", integer_offset});
+  return rules;
+}
+
+std::vector<OffsetScene> offset_scenes() {
+  const Scene cornell = make_cornell(0.5);
+  std::vector<OffsetScene> scenes;
+  scenes.push_back({"cornell", cornell});
+  scenes.push_back({"room", make_room(0.1)});
+  scenes.push_back({"cornell x 1e-3", moved(cornell, 1e-3, {})});
+  scenes.push_back({"cornell x 1e3", moved(cornell, 1e3, {})});
+  scenes.push_back({"cornell + 100 m", moved(cornell, 1, {100, 70, -90})});
+  scenes.push_back({"cornell + 10 km", moved(cornell, 1, {1e4, 7e3, -9e3})});
+  return scenes;
+}
+
+std::vector<OffsetCounts> study_offsets(const Scene& scene, const std::vector<OffsetRule>& rules, int size) {
+  const Traversal traversal(scene);
+  const ReferenceTracer reference(scene);
+  const std::vector<Hitpoint> points = hitpoints(scene, traversal, reference, size);
+  const Bounds bounds = scene.bounds();
+  OffsetInput input{};
+  input.diagonal = bounds.diagonal();
+  for (const Vec3& corner : {bounds.lower, bounds.upper, scene.camera.eye}) {
+    for (int axis = 0; axis < 3; ++axis) input.largest = std::max(input.largest, std::fabs(corner[axis]));
+  }
+  std::vector<OffsetCounts> results;
+  for (const OffsetRule& rule : rules) {
+    OffsetCounts counts;
+    for (const Hitpoint& point : points) {
+      input.origin = point.eye.origin;
+      input.direction = point.eye.direction;
+      input.t = point.hit.t;
+      input.normal = point.normal;
+      const Vec3 origin = rule.origin(input);
+      if (point.shadow.cosine > 0) judge_shadow(scene, traversal, point, origin, counts);
+      const Vec3 reflected = point.eye.direction - point.normal * (2 * dot(point.normal, point.eye.direction));
+      Hit hit;
+      ++counts.reflections;
+      counts.self_hits += traversal.nearest({origin, reflected, INFINITY}, hit) && hit.triangle == point.hit.triangle;
+    }
+    results.push_back(counts);
+  }
+  return results;
+}
+
+OffsetInstructions offset_instructions() {
+  Program program;
+  kernel::add_kernel(program, "in_use", [](auto& k) { kernel_in_use(k); });
+  kernel::add_kernel(program, "integer", [](auto& k) { kernel_integer(k); });
+  auto computed = [&](const char* name) {
+    const InstructionCounts counts = count_instructions(program, name);
+    return counts[static_cast<size_t>(Unit::Int)] + counts[static_cast<size_t>(Unit::Flt)] +
+           counts[static_cast<size_t>(Unit::Brh)] - 1;
+  };
+  return {computed("in_use"), computed("integer")};
+}
+
+}  // namespace raypool::numerics

@@ -1,0 +1,104 @@
+// The trade as gnuplot texts.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "numerics/trade_report.hpp"
+
+namespace raypool::numerics {
+namespace {
+
+/// A bar's height for pictures that are equal.
+constexpr double kEqual = 160;
+
+// The dashed line is the noise of rounding linear values to 8 bits, 10 log10(12 * 255^2).
+constexpr const char* kQuality = R"plot(set terminal pngcairo size 1100,600 font ",13"
+set output "{}"
+$data << END
+{}END
+set title "Error of the colours alone: pixels whose rays all hit what they should"
+set ylabel "PSNR before quantisation, dB (more is better)"
+set yrange [0:*]
+set style data histograms
+set style histogram clustered gap 1
+set style fill solid 0.8 border -1
+set boxwidth 0.9
+set grid ytics
+set key outside top center horizontal
+set xtics rotate by -25
+set arrow from graph 0, first 58.9 to graph 1, first 58.9 nohead front dashtype 2 linewidth 2 linecolor "black"
+set label "8-bit rounding" at graph 0.005, first 55.5 front
+{}
+)plot";
+
+constexpr const char* kPareto = R"plot(set terminal pngcairo size 1000,620 font ",13"
+set output "{}"
+$all << END
+{}END
+$front << END
+{}END
+set title "Arithmetic on {}: quality against size"
+set xlabel "Flt and Slw ALUs, all lanes, kGE (less is better)"
+set ylabel "PSNR of equal paths, worst scene, dB (more is better)"
+set grid
+set key bottom right
+set xrange [{}:{}]
+set offsets graph 0, graph 0, graph 0.12, graph 0.12
+plot $front using 1:2 with steps linewidth 2 linecolor "#4477aa" title "not beaten in both", \
+  $all using 1:2 with points pointtype 7 pointsize 1.6 linecolor "#4477aa" notitle, \
+  $all using 1:2:3 with labels left offset char 0.7,{} notitle
+)plot";
+
+}  // namespace
+
+std::string quality_plot(const TradeResult& result, const std::string& png) {
+  std::vector<std::string> scenes;
+  for (const TradeRow& row : result.rows) {
+    if (scenes.empty() || scenes.back() != row.scene) scenes.push_back(row.scene);
+  }
+  std::string data, plots;
+  for (const TradeCost& cost : result.costs) {
+    data += '"' + cost.mode.name + '"';
+    for (const TradeRow& row : result.rows) {
+      if (row.mode.name != cost.mode.name) continue;
+      data += fmt::format(" {}", std::isfinite(row.quality.psnr_same_paths) ? row.quality.psnr_same_paths : kEqual);
+    }
+    data += '\n';
+  }
+  for (size_t i = 0; i < scenes.size(); ++i) {
+    plots += fmt::format("{}$data using {}{} title \"{}\"", i == 0 ? "plot " : ", ", i + 2, i == 0 ? ":xtic(1)" : "", scenes[i]);
+  }
+  return fmt::format(kQuality, png, data, plots);
+}
+
+std::string pareto_plot(const TradeResult& result, const std::string& png) {
+  struct Point {
+    std::string modes;
+    double kge, worst;  // of the scenes
+  };
+  std::vector<Point> points;
+  for (const TradeCost& cost : result.costs) {
+    if (!cost.gates) continue;
+    double worst = INFINITY;
+    for (const TradeRow& row : result.rows) {
+      if (row.mode.name == cost.mode.name) worst = std::min(worst, row.quality.psnr_same_paths);
+    }
+    if (std::isfinite(worst)) points.push_back({cost.mode.name, cost.gates->total(), worst});
+  }
+  if (points.size() < 2) return "";
+  std::sort(points.begin(), points.end(),
+            [](const Point& a, const Point& b) { return a.kge != b.kge ? a.kge < b.kge : a.worst > b.worst; });
+  std::string all, front;
+  double best = -INFINITY;
+  for (const Point& point : points) {
+    const std::string line = fmt::format("{} {} \"{}\"\n", point.kge, point.worst, point.modes);
+    all += line;
+    if (point.worst > best) front += line, best = point.worst;
+  }
+  const double width = std::max(points.back().kge - points.front().kge, 1.0);
+  return fmt::format(kPareto, png, all, front, result.configuration, points.front().kge - 0.06 * width,
+                     points.back().kge + 0.2 * width, 0.6);
+}
+
+}  // namespace raypool::numerics
