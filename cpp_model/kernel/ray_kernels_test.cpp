@@ -286,8 +286,8 @@ TEST(RayKernels, AreAsShortAsTheyWere) {
     return std::accumulate(counts.begin(), counts.end(), 0);
   };
   EXPECT_LE(total("cast_eye"), 55);
-  EXPECT_LE(total("cast_secondary"), 112);
-  EXPECT_LE(total("cast_secondary_direct"), 85);
+  EXPECT_LE(total("cast_secondary"), 113);
+  EXPECT_LE(total("cast_secondary_direct"), 86);
   EXPECT_EQ(total("shade"), 3);
   EXPECT_EQ(count_instructions(ray_kernel_program(), "shade"), (InstructionCounts{0, 1, 0, 0, 0, 0, 2}));
   const std::string table = kernel_table();

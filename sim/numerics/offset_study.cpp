@@ -93,14 +93,15 @@ std::vector<Hitpoint> hitpoints(const Scene& scene, const Traversal& traversal, 
   return points;
 }
 
-void judge_shadow(const Scene& scene, const Traversal& traversal, const Hitpoint& point, const Vec3& origin,
+void judge_shadow(const ReferenceTracer& reference, const Traversal& traversal, const Hitpoint& point, const Vec3& origin,
                   OffsetCounts& counts) {
   ++counts.shadow_rays;
+  const Scene& scene = reference.scene();
   Hit blocker;
   const RayQuery ray{origin, scene.light.position - origin, 1};
   const bool blocked = traversal.nearest(ray, blocker);
   if (blocked == (point.blocker != kNoTriangle)) return;
-  if (blocked && blocker.triangle == point.hit.triangle) {
+  if (blocked && same_surface(reference, blocker.triangle, point.hit.triangle)) {
     ++counts.acne;
     return;
   }
@@ -162,11 +163,12 @@ std::vector<OffsetCounts> study_offsets(const Scene& scene, const std::vector<Of
       input.t = point.hit.t;
       input.normal = point.normal;
       const Vec3 origin = rule.origin(input);
-      if (point.shadow.cosine > 0) judge_shadow(scene, traversal, point, origin, counts);
+      if (point.shadow.cosine > 0) judge_shadow(reference, traversal, point, origin, counts);
       const Vec3 reflected = point.eye.direction - point.normal * (2 * dot(point.normal, point.eye.direction));
       Hit hit;
       ++counts.reflections;
-      counts.self_hits += traversal.nearest({origin, reflected, INFINITY}, hit) && hit.triangle == point.hit.triangle;
+      counts.self_hits +=
+          traversal.nearest({origin, reflected, INFINITY}, hit) && same_surface(reference, hit.triangle, point.hit.triangle);
     }
     results.push_back(counts);
   }

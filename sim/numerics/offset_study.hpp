@@ -37,11 +37,12 @@ std::vector<OffsetScene> offset_scenes();
 /// Shadow and reflection rays of the primary hits of a picture, against the reference, ties apart.
 struct OffsetCounts {
   uint64_t shadow_rays = 0;  ///< from points that face the light
-  uint64_t acne = 0;         ///< blocked by the triangle that the ray starts from, where the reference sees the light
+  uint64_t acne =
+      0;  ///< blocked by the triangle that the ray starts from, or one in its plane, where the reference sees the light
   uint64_t moved = 0;        ///< blocked by another triangle, where the reference sees the light
   uint64_t leaks = 0;        ///< free, where the reference is in shadow
   uint64_t reflections = 0;  ///< reflection rays, of which
-  uint64_t self_hits = 0;    ///< hit the triangle that they start from
+  uint64_t self_hits = 0;    ///< hit it
   uint64_t wrong() const { return acne + moved + leaks + self_hits; }
 };
 /// A picture of size x size pixels, every rule in turn; the result has the order of `rules`.

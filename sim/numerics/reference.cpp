@@ -137,6 +137,19 @@ ReferenceShadowRay shadow_ray(const ReferenceTracer& tracer, const Vec3d& origin
   return ray;
 }
 
+bool same_surface(const ReferenceTracer& tracer, uint32_t a, uint32_t b) {
+  if (a == b) return true;
+  const Vec3d normal = tracer.normal(a);
+  if (std::fabs(dot(normal, tracer.normal(b))) < 1 - 1e-9) return false;
+  // Vertices are floats: they lie within their roundings of a common plane.
+  const Vec3d from = tracer.scene().corner(a, 0).as<double>();
+  for (int k = 0; k < 3; ++k) {
+    const Vec3d corner = tracer.scene().corner(b, k).as<double>();
+    if (std::fabs(dot(normal, corner - from)) > 1e-6 * std::max(length(corner), length(from))) return false;
+  }
+  return true;
+}
+
 PathImage render_reference(const ReferenceTracer& tracer, const std::array<uint32_t, kArguments>& arguments, int width,
                            int height, int depth, const std::function<void(double)>& progress) {
   const ReferenceCamera camera(arguments);

@@ -91,6 +91,9 @@ struct ReferenceShadowRay {
 ReferenceShadowRay shadow_ray(const ReferenceTracer& tracer, const Vec3d& origin, const Vec3d& direction, const ReferenceHit& hit,
                               const Vec3d& light);
 
+/// The triangle itself, or one in its plane: no shadow ray from the one is blocked by the other.
+bool same_surface(const ReferenceTracer& tracer, uint32_t a, uint32_t b);
+
 /// Draws width x height pixels with up to depth - 1 reflections (depth 1 .. 254). `progress`, if not empty, is called now and
 /// then with the share done.
 PathImage render_reference(const ReferenceTracer& tracer, const std::array<uint32_t, kArguments>& arguments, int width,

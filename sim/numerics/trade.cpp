@@ -32,7 +32,11 @@ bool shadow_is_wrong(const TradeScene& scene, const PathStep& ours, const PathSt
   HitAnswer machine, reference;
   machine.hit = !ours.lit;
   Hit blocker;
-  if (machine.hit && scene.tracer.traversal().nearest(to_query(machine_ray), blocker)) machine.triangle = blocker.triangle;
+  if (machine.hit && scene.tracer.traversal().nearest(to_query(machine_ray), blocker)) {
+    machine.triangle = blocker.triangle;
+    // The judge would call a block at t = 0 a tie.
+    if (same_surface(scene.reference_tracer, hit.triangle, blocker.triangle)) return true;
+  }
   reference.hit = !truth.lit;
   if (reference.hit) reference.triangle = scene.reference_tracer.occluder(shadow.origin, shadow.direction, 1);
   std::string reason;
