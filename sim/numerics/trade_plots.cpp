@@ -28,7 +28,8 @@ set grid ytics
 set key outside top center horizontal
 set xtics rotate by -25
 set arrow from graph 0, first 58.9 to graph 1, first 58.9 nohead front dashtype 2 linewidth 2 linecolor "black"
-set label "8-bit rounding" at graph 0.005, first 55.5 front
+set rmargin 17
+set label "8-bit rounding" at graph 1.01, first 58.9 left front
 {}
 )plot";
 
