@@ -94,7 +94,7 @@ TradeResult measure_trade(const NumericsOptions& options, const ImageSize& size,
     TradeCost cost{mode, std::nullopt,
                    read_gates(options.synthesis.empty() ? build_folder() / "synth" : fs::path(options.synthesis), configuration)};
     if (progress.due()) progress.show(fmt::format("  cost: {}", mode.name));
-    if (has_rtl(configuration)) cost.timing = time_mode(timed, options.depth, configuration, unit_maker(Engine::Rtl));
+    cost.timing = time_mode(timed, options.depth, configuration, unit_maker(Engine::Model));
     result.costs.push_back(cost);
   }
   return result;
@@ -144,7 +144,7 @@ int trade_command(const NumericsOptions& options) {
   return leak ? kFailed : 0;
 }
 
-/// One letter an engine, in the order native, functional, lockstep: lower case passed, X failed, - not run.
+/// One letter an engine, in the order native, functional, model, lockstep: lower case passed, X failed, - not run.
 int extremes_command(const NumericsOptions& options) {
   const Configuration base = load_configuration(options.config);
   const std::vector<ArithmeticMode> modes = chosen_modes(options.mode);
@@ -153,6 +153,7 @@ int extremes_command(const NumericsOptions& options) {
   for (const ArithmeticMode& mode : modes) {
     machines.emplace_back("native", mode, base);
     machines.emplace_back("functional", mode, base, unit_maker(Engine::Functional));
+    machines.emplace_back("model", mode, base, unit_maker(Engine::Model));
     if (has_rtl(mode.applied_to(base))) {
       machines.emplace_back("lockstep", mode, base, unit_maker(Engine::Lockstep));
     } else {
@@ -162,7 +163,8 @@ int extremes_command(const NumericsOptions& options) {
   Progress progress(options.quiet);
   std::string failures;
   uint64_t checks = 0, failed = 0, on_rtl = 0;
-  fmt::print("n engine native, f functional, l RTL in lockstep with functional, X failed, - no Verilated unit\n{:<62}", "");
+  fmt::print("n engine native, f functional, m model, l RTL in lockstep with the model, X failed, - no Verilated unit\n{:<62}",
+             "");
   for (const ArithmeticMode& mode : modes) fmt::print(" {:>13}", mode.name);
   fmt::print("\n");
   std::string theme;
@@ -187,7 +189,7 @@ int extremes_command(const NumericsOptions& options) {
     fmt::print("  {:<60}", extreme.name);
     for (const ArithmeticMode& mode : modes) {
       std::string cell = letters[mode.name];
-      if (cell.size() < 3) cell += '-';
+      if (cell.size() < 4) cell += '-';
       fmt::print(" {:>13}", cell);
     }
     fmt::print("\n");

@@ -51,7 +51,7 @@ std::optional<ModeTiming> time_mode(const Scene& scene, int depth, const Configu
   const std::unique_ptr<ComputeUnit> unit = make(configuration, image.memory);
   ChipOptions chip;
   chip.configuration = configuration;
-  chip.units = {unit.get()};
+  chip.device = unit.get();
   chip.memory = &image.memory;
   chip.program_length = static_cast<uint32_t>(program.code.size());
   for (size_t i = 0; i < kRayKernels; ++i) chip.entries[i] = program.entries.at(std::string(kRayKernelNames[i]));

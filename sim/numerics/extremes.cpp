@@ -181,7 +181,7 @@ uint32_t ExtremeMachine::operate_on_unit(const std::string& mnemonic, uint32_t a
   const std::unique_ptr<ComputeUnit> unit = unit_(configuration_, memory);
   ProgramOptions options;
   options.configuration = configuration_;
-  options.unit = unit.get();
+  options.device = unit.get();
   options.memory = &memory;
   options.program_length = static_cast<uint32_t>(program.code.size());
   options.arguments[0] = a;
@@ -208,7 +208,7 @@ Drawing ExtremeMachine::draw_on_unit(const ExtremeFrame& frame) const {
   const std::unique_ptr<ComputeUnit> unit = unit_(configuration_, image.memory);
   ChipOptions chip;
   chip.configuration = configuration_;
-  chip.units = {unit.get()};
+  chip.device = unit.get();
   chip.memory = &image.memory;
   chip.program_length = static_cast<uint32_t>(program.code.size());
   for (size_t i = 0; i < kRayKernels; ++i) chip.entries[i] = program.entries.at(std::string(kRayKernelNames[i]));
