@@ -163,9 +163,10 @@ int extremes_command(const NumericsOptions& options) {
   Progress progress(options.quiet);
   std::string failures;
   uint64_t checks = 0, failed = 0, on_rtl = 0;
-  fmt::print("n engine native, f functional, m model, l RTL in lockstep with the model, X failed, - no Verilated unit\n{:<62}",
-             "");
-  for (const ArithmeticMode& mode : modes) fmt::print(" {:>13}", mode.name);
+  fmt::print("n engine native, f functional, m model, l RTL in lockstep with the model, X failed, - no Verilated unit\n");
+  for (size_t i = 0; i < modes.size(); ++i) fmt::print("{}{} {}", i == 0 ? "modes " : ", ", i + 1, modes[i].name);
+  fmt::print("\n{:<58}", "");
+  for (size_t i = 0; i < modes.size(); ++i) fmt::print(" {:>4}", i + 1);
   fmt::print("\n");
   std::string theme;
   for (const ExtremeCase& extreme : extreme_cases()) {
@@ -186,11 +187,11 @@ int extremes_command(const NumericsOptions& options) {
                                 machine.mode().name, machine.engine(), failure);
       }
     }
-    fmt::print("  {:<60}", extreme.name);
+    fmt::print("  {:<56}", extreme.name);
     for (const ArithmeticMode& mode : modes) {
       std::string cell = letters[mode.name];
       if (cell.size() < 4) cell += '-';
-      fmt::print(" {:>13}", cell);
+      fmt::print(" {:>4}", cell);
     }
     fmt::print("\n");
     std::fflush(stdout);
