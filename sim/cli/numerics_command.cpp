@@ -205,7 +205,7 @@ int extremes_command(const NumericsOptions& options) {
 }
 
 /// A configuration file for each mode, named after it.
-int configurations_command(const NumericsOptions& options) {
+int write_configurations(const NumericsOptions& options) {
   const Configuration base = load_configuration(options.config);
   fs::create_directories(options.configurations);
   for (const ArithmeticMode& mode : chosen_modes(options.mode)) {
@@ -223,7 +223,7 @@ int configurations_command(const NumericsOptions& options) {
 }  // namespace
 
 int numerics_command(const NumericsOptions& options) {
-  if (!options.configurations.empty()) return configurations_command(options);
+  if (!options.configurations.empty()) return write_configurations(options);
   return options.extremes ? extremes_command(options) : trade_command(options);
 }
 

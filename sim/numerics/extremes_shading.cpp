@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "kernel/kernels.hpp"
 #include "numerics/extreme_parts.hpp"
 #include "numerics/extremes.hpp"
 
@@ -30,9 +31,17 @@ ExtremeFrame frame_of(Scene scene, int size, int depth = 2) {
   return frame;
 }
 
-/// One pixel whose eye ray hits at `t` with `normal`; its reflection hits nothing, its shadow ray is free.
-Drawing shade_hit(const ExtremeMachine& machine, const Vec3& normal, float t, int depth) {
+/// One pixel whose eye ray hits at `t` with `normal`; its reflection hits nothing, its shadow ray is free. With `light`,
+/// secondary rays start at the hit itself.
+Drawing shade_hit(const ExtremeMachine& machine, const Vec3& normal, float t, int depth, const Vec3* light = nullptr) {
   ExtremeFrame frame = ray_frame(scene_of_triangles(square(1, -2)), {0, 0, 0}, {0.25f, 0.125f, -1});
+  if (light != nullptr) {
+    frame.scene.light.position = *light;
+    frame.change_arguments = [ray = frame.change_arguments](std::array<uint32_t, kArguments>& arguments) {
+      ray(arguments);
+      arguments[argument::kOffset] = 0;
+    };
+  }
   frame.depth = depth;
   frame.trace = [=](const Ray& ray, Intersection& intersection) {
     if ((ray[word::kFlags] & kShadowFlag) != 0) return true;
@@ -84,6 +93,18 @@ void light_on_a_surface(const ExtremeMachine& machine) {
     const Drawing drawing = machine.draw(frame_of(scene, 11));
     require_no_nan(drawing);
     require(lit_pixels(drawing.frame) == 0, "a light in the plane of the only surface lights it");
+  }
+}
+
+void light_at_the_point(const ExtremeMachine& machine) {
+  // The way to the light is zero: 0 times the infinite reciprocal of its length. An ulp before it, the cosine is about 1.
+  const Vec3 at{0.5f, 0.25f, -2}, before{0.5f, 0.25f, -2 + 0x1p-22f};
+  for (int depth : {1, 2}) {
+    const Drawing dark = shade_hit(machine, {0, 0, 1}, 2, depth, &at), lit = shade_hit(machine, {0, 0, 1}, 2, depth, &before);
+    require_no_nan(dark);
+    require_no_nan(lit);
+    require(lit_pixels(dark.frame) == 0, "a light in the very point lights it");
+    require(lit_pixels(lit.frame) == 1, "a light next to the point does not light it");
   }
 }
 
@@ -223,6 +244,7 @@ std::vector<ExtremeCase> shading_extremes() {
       make("subnormal normals", "no light; beside a larger component nothing", subnormal_normals),
       make("NaN and infinite normals and distances", "no NaN", bad_hits),
       make("a light on a surface", "does not light it", light_on_a_surface),
+      make("a light in the shaded point", "does not light it; no NaN", light_at_the_point),
       make("a light behind the surface", "does not light it", light_behind),
       make("a light inside the geometry", "walls hold it", light_inside),
       make("a light at the eye", "lights all that is seen", light_at_the_eye),
