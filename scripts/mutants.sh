@@ -26,14 +26,19 @@ if [ "$(cat "$output/stamp" 2> /dev/null)" != "$digest" ]; then
   for parameter in $parameters; do chparam+=" -chparam ${parameter%=*} ${parameter#*=}"; done
   width=1
   while [ $((1 << width)) -le "$count" ]; do width=$((width + 1)); done
-  # The memories stay whole: faults are in what drives them. `-norom`: no table becomes one.
+  # The memories stay whole: faults are in what drives them. `-norom`: no table becomes one. What the language makes wider than needed (a loop's
+  # 32-bit index) is cut off first, since a fault there is none.
   cat > "$output/mutate.ys" << EOF
 read_verilog -Irtl rtl/*.v
 hierarchy -check -top compute_unit $chparam
 proc -norom
+opt_expr
+wreduce
+opt -full
+wreduce
 opt_clean
 select -set logic *ram_1rw *ram_1r1w *ram_2r1w %u %u %n
-mutate -list $count -seed $seed -o $output/list.txt -ctrl mutant_i $width 1 @logic
+mutate -list $count -seed $seed -o $output/list.txt -ctrl mutant_i $width 1 @logic t:\$mem* %d
 tee -q -o $output/apply.log script $output/list.txt
 delete -input compute_unit/w:mutant_i
 opt_clean

@@ -14,12 +14,13 @@ int configurations_command(const ConfigurationsOptions& options) {
   const std::vector<Configuration> configurations = options.all_pairs ? all_pairs_configurations() : small_configurations();
   fmt::print("{:<16}", "configuration");
   for (const Factor& factor : covering_factors()) {
-    if (factor.name.find('.') == std::string::npos || factor.name.find("cache") != std::string::npos) fmt::print(" {}", factor.name);
+    if (factor.name.find('.') == std::string::npos || factor.name.find("cache") != std::string::npos)
+      fmt::print(" {}", factor.name);
   }
   fmt::print("; tid brh int flt slw as count/latency/depth\n");
   for (const Configuration& c : configurations) {
-    fmt::print("{:<16} {} {} {} {} {} {} {} {};", c.name, c.warps, c.cores, c.stack_depth, c.instruction_cache_bytes, c.data_cache_bytes,
-               c.data_cache_mshrs, static_cast<int>(c.subnormals), static_cast<int>(c.slow_unit));
+    fmt::print("{:<16} {} {} {} {} {} {} {} {};", c.name, c.warps, c.cores, c.stack_depth, c.instruction_cache_bytes,
+               c.data_cache_bytes, c.data_cache_mshrs, static_cast<int>(c.subnormals), static_cast<int>(c.slow_unit));
     for (const Unit unit : {Unit::Tid, Unit::Brh, Unit::Int, Unit::Flt, Unit::Slw})
       fmt::print(" {}/{}/{}", c.alu(unit).count, c.alu(unit).latency, c.alu(unit).depth);
     fmt::print("\n");

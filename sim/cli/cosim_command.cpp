@@ -46,7 +46,8 @@ class Cosim {
     const std::unique_ptr<ComputeUnit> unit = make(memory, name);
     unit->trace_on();
     coverage_.begin(program);
-    const uint64_t cycles = run_random_program(*unit, memory, program, program.seed, kCycleLimit, traced() ? &coverage_ : nullptr);
+    const uint64_t cycles =
+        run_random_program(*unit, memory, program, program.seed, kCycleLimit, traced() ? &coverage_ : nullptr);
     if (traced()) coverage_.end(*unit);
     if (const auto counts = lockstep_counts(*unit)) counts_ += *counts;
     return cycles;
@@ -71,8 +72,7 @@ class Cosim {
   std::unique_ptr<ComputeUnit> make(Memory& memory, const std::string& name) {
     if (!vectors_) return make_unit(engine_, memory, name);
     const Configuration& configuration = engine_.configuration;
-    const std::string library =
-        engine_.unit_library.empty() ? unit_library_path(configuration, false) : engine_.unit_library;
+    const std::string library = engine_.unit_library.empty() ? unit_library_path(configuration, false) : engine_.unit_library;
     auto recorder = make_vector_recorder(configuration, load_rtl_unit(library, configuration), *vectors_);
     return make_lockstep_unit(configuration, std::move(recorder), memory);
   }
@@ -83,11 +83,13 @@ class Cosim {
   std::optional<std::ofstream> vectors_;
 };
 
-/// What a report is about: its first line without numbers, so that a shorter program that fails otherwise is not taken for the same.
+/// What a report is about: its first line without numbers, so that a shorter program that fails otherwise is not taken for the
+/// same.
 std::string subject(const std::string& report) {
   std::string text;
   const size_t begin = report.find(": ");
-  for (const char c : report.substr(begin == std::string::npos ? 0 : begin, report.find('\n') - (begin == std::string::npos ? 0 : begin)))
+  for (const char c :
+       report.substr(begin == std::string::npos ? 0 : begin, report.find('\n') - (begin == std::string::npos ? 0 : begin)))
     if (c < '0' || c > '9') text += c;
   return text;
 }
@@ -111,8 +113,7 @@ std::string subject(const std::string& report) {
     saved.note = text.substr(0, text.find('\n'));
     const std::filesystem::path folder = options.save;
     std::filesystem::create_directories(folder);
-    const std::string path =
-        (folder / fmt::format("{}-seed{}.json", saved.configuration.name, saved.program.seed)).string();
+    const std::string path = (folder / fmt::format("{}-seed{}.json", saved.configuration.name, saved.program.seed)).string();
     std::ofstream(path) << to_json(saved);
     text += fmt::format("\nshrunk from {} to {} instructions and saved; again with: raypool cosim --replay {}",
                         program.program.code.size(), saved.program.program.code.size(), path);
@@ -157,10 +158,11 @@ int cosim_command(const CosimOptions& options) {
   for (uint64_t n = 0; n < options.programs; ++n) {
     const RandomProgram program = make_random_program(cosim.configuration(), options.seed + n, options.length, options.units);
     run_or_report(cosim, options, program,
-                  fmt::format("raypool cosim --config {} --units {} --programs 1 --seed {} --length {}", options.config, options.units,
-                              program.seed, options.length),
+                  fmt::format("raypool cosim --config {} --units {} --programs 1 --seed {} --length {}", options.config,
+                              options.units, program.seed, options.length),
                   cycles);
-    if (progress.due()) progress.show(fmt::format("cosim {}: {} of {} programs, {} cycles", name, n + 1, options.programs, cycles));
+    if (progress.due())
+      progress.show(fmt::format("cosim {}: {} of {} programs, {} cycles", name, n + 1, options.programs, cycles));
   }
   fmt::print("cosim {}: {} programs from seed {}, {} cycles in {:.1f} s\n", name, options.programs, options.seed, cycles,
              progress.seconds());

@@ -16,9 +16,10 @@ class RunObserver {
   virtual void cycle(const UnitOutputs& outputs, const UnitInputs& inputs, const UnitTrace& trace) = 0;
 };
 
-/// Runs all kernels of `program` on `unit`, which must use (or be a lockstep over) `memory`, until the unit is idle, or has stopped with the fault
-/// that the program ends in. `seed` is that of the stalls and of the imported packages. Returns the cycles. Throws InputError when another fault
-/// occurs or the job has not ended after `cycle_limit` cycles; what the unit throws passes through.
+/// Runs all kernels of `program` on `unit`, which must use (or be a lockstep over) `memory`, until the unit is idle, or has
+/// stopped with the fault that the program ends in. `seed` is that of the stalls and of the imported packages. Returns the
+/// cycles. Throws InputError when another fault occurs or the job has not ended after `cycle_limit` cycles; what the unit throws
+/// passes through.
 uint64_t run_random_program(ComputeUnit& unit, Memory& memory, const RandomProgram& program, uint64_t seed,
                             uint64_t cycle_limit = 5'000'000, RunObserver* observer = nullptr);
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <set>
 
-#include "cosim/covering.hpp"
 #include "cosim/coverage.hpp"
+#include "cosim/covering.hpp"
 #include "cosim/program_check.hpp"
 #include "cosim/program_file.hpp"
 #include "cosim/program_profile.hpp"
@@ -50,7 +50,8 @@ TEST(RandomPrograms, KeepTheirPromisesForEveryConfiguration) {
     for (const int units : {1, 4}) {
       for (uint64_t seed = 1; seed <= 80; ++seed) {
         const RandomProgram program = make_random_program(configuration, seed, 120, units);
-        EXPECT_EQ(check_program(configuration, program), "") << configuration.warps << "w, seed " << seed << ", " << units << " units";
+        EXPECT_EQ(check_program(configuration, program), "")
+            << configuration.warps << "w, seed " << seed << ", " << units << " units";
       }
     }
   }
@@ -60,7 +61,8 @@ TEST(RandomPrograms, AreTheSameForTheSameSeedAndHaveEveryProfileAndFault) {
   std::set<std::string> profiles;
   std::set<FaultCode> faults;
   for (uint64_t seed = 1; seed <= 600; ++seed) {
-    const RandomProgram a = make_random_program(configuration_of(2, 2), seed), b = make_random_program(configuration_of(2, 2), seed);
+    const RandomProgram a = make_random_program(configuration_of(2, 2), seed),
+                        b = make_random_program(configuration_of(2, 2), seed);
     EXPECT_EQ(a.program.code, b.program.code);
     EXPECT_EQ(a.arguments, b.arguments);
     profiles.insert(a.profile);
@@ -126,8 +128,9 @@ TEST(SavedPrograms, AreReadAsTheyWereWritten) {
 }
 
 TEST(Shrinking, MovesTargetsWithTheirInstructions) {
-  const RandomProgram program = program_of({Encode("mov").rd(1).imm(1), Encode("jany").target(3), Encode("mov").rd(2).imm(2),
-                                            Encode("call").target(5, 7), Encode("exit"), Encode("mov").rd(3).imm(3), Encode("ret")});
+  const RandomProgram program =
+      program_of({Encode("mov").rd(1).imm(1), Encode("jany").target(3), Encode("mov").rd(2).imm(2), Encode("call").target(5, 7),
+                  Encode("exit"), Encode("mov").rd(3).imm(3), Encode("ret")});
   const RandomProgram shorter = without_instructions(program, 2, 1);
   ASSERT_EQ(shorter.program.code.size(), 6u);
   EXPECT_EQ(unpack(shorter.program.code[1]).immediate, 2u);

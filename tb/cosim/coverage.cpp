@@ -100,7 +100,8 @@ void Coverage::retired(const RetireEvent& event) {
   control(warp, event, instruction);
 }
 
-// An instruction that retires in this cycle was in its ALU for at least the type's depth, so it was there together with all that retired since.
+// An instruction that retires in this cycle was in its ALU for at least the type's depth, so it was there together with all that
+// retired since.
 void Coverage::together(const RetireEvent& event, size_t unit) {
   const auto type = static_cast<Unit>(unit);
   const auto per_unit = static_cast<uint32_t>(configuration_.warps);
@@ -108,7 +109,8 @@ void Coverage::together(const RetireEvent& event, size_t unit) {
   const int depth = type == Unit::Mem ? 3 : configuration_.alu(type).depth;
   while (!recent_.empty() && recent_.front().cycle + 40 < now_) recent_.pop_front();
   for (auto other = recent_.rbegin(); other != recent_.rend() && other->cycle + static_cast<uint64_t>(depth) >= now_; ++other)
-    if (other->warp != me && other->warp / per_unit == event.unit) ++together_[std::min(unit, other->unit)][std::max(unit, other->unit)];
+    if (other->warp != me && other->warp / per_unit == event.unit)
+      ++together_[std::min(unit, other->unit)][std::max(unit, other->unit)];
   recent_.push_back({now_, me, unit});
 }
 

@@ -76,32 +76,30 @@ class Coverage : public RunObserver {
   void pools(const UnitOutputs& outputs, const UnitInputs& inputs, const UnitTrace& trace);
   void launches(const UnitOutputs& outputs, const UnitInputs& inputs);
   uint32_t set_of(uint32_t address) const;
-  Warp& warp_of(uint32_t unit, uint32_t warp) {
-    return warps_[unit * static_cast<uint32_t>(configuration_.warps) + warp];
-  }
+  Warp& warp_of(uint32_t unit, uint32_t warp) { return warps_[unit * static_cast<uint32_t>(configuration_.warps) + warp]; }
 
   Configuration configuration_;
   uint32_t units_, lanes_, full_;
   // Counts over all programs.
-  std::vector<uint64_t> rows_, empty_, partial_;                ///< [row of the table]: retired; with no lane; with some lanes
-  std::array<std::array<uint64_t, kUnits>, kUnits> after_{};    ///< [type][type of the warp's next instruction]
+  std::vector<uint64_t> rows_, empty_, partial_;                 ///< [row of the table]: retired; with no lane; with some lanes
+  std::array<std::array<uint64_t, kUnits>, kUnits> after_{};     ///< [type][type of the warp's next instruction]
   std::array<std::array<uint64_t, kUnits>, kUnits> together_{};  ///< [lower type][higher type] in flight in one cycle
-  std::vector<uint64_t> depths_;                                ///< [entries on the PC stack]
+  std::vector<uint64_t> depths_;                                 ///< [entries on the PC stack]
   std::array<uint64_t, 8> faults_{};
   std::array<uint64_t, kEvents> events_{};
 
   // The program that runs.
   uint64_t now_ = 0;
-  std::vector<Warp> warps_;  ///< of all units
-  std::deque<Recent> recent_;  ///< what retired in the last cycles
-  std::unordered_map<uint32_t, Line> lines_;  ///< [line_key()]
+  std::vector<Warp> warps_;                    ///< of all units
+  std::deque<Recent> recent_;                  ///< what retired in the last cycles
+  std::unordered_map<uint32_t, Line> lines_;   ///< [line_key()]
   std::array<Read, 32 * kMostUnits> reads_{};  ///< [id]; 16 of each unit is its instruction cache
   uint64_t reads_asked_ = 0, data_fetches_ = 0;
   uint64_t last_line_end_ = 0, last_beat_ = 0, last_import_beat_ = 0;
   int import_beat_ = 0;
   std::array<uint64_t, kMostUnits> made_{}, left_{};  ///< rays and contributions: by rout and rfb, and those that have left
-  std::array<uint64_t, 3> moved_{};  ///< last cycle in which memory request, export, frame moved
-  std::array<int, kMostUnits> accepted_{};  ///< kernels that have not ended
+  std::array<uint64_t, 3> moved_{};                   ///< last cycle in which memory request, export, frame moved
+  std::array<int, kMostUnits> accepted_{};            ///< kernels that have not ended
   uint32_t last_pc_ = ~0u;
   bool fault_seen_ = false;
 };

@@ -7,9 +7,14 @@
 namespace raypool {
 namespace {
 
-constexpr std::array<std::string_view, 8> kFaultNames = {
-    "", "illegal instruction", "PC outside the program", "stack overflow", "stack underflow", "misaligned address",
-    "address outside the memory", "ray word outside"};
+constexpr std::array<std::string_view, 8> kFaultNames = {"",
+                                                         "illegal instruction",
+                                                         "PC outside the program",
+                                                         "stack overflow",
+                                                         "stack underflow",
+                                                         "misaligned address",
+                                                         "address outside the memory",
+                                                         "ray word outside"};
 
 std::string quoted(const std::string& name) { return name.find(' ') == std::string::npos ? name : '"' + name + '"'; }
 
@@ -30,7 +35,8 @@ std::vector<Coverage::Group> Coverage::groups() const {
   };
   const auto table = [&](const char* name, const std::vector<uint64_t>& counts) {
     Group& rows = group(name);
-    for (size_t row = 0; row < counts.size(); ++row) rows.items.push_back({std::string(kInstructions[row].mnemonic), counts[row]});
+    for (size_t row = 0; row < counts.size(); ++row)
+      rows.items.push_back({std::string(kInstructions[row].mnemonic), counts[row]});
   };
   table("instructions", rows_);
   table("instructions with an empty mask", empty_);
@@ -50,8 +56,8 @@ std::vector<Coverage::Group> Coverage::groups() const {
   for (size_t event = 0; event < kEvents; ++event) {
     const auto one = static_cast<Event>(event);
     // What a configuration of one warp or one lane cannot do.
-    if (lanes_ == 1 && (one == Event::OneQuadword || one == Event::SeveralQuadwords || one == Event::QuadwordALane ||
-                        one == Event::PartOfWarp))
+    if (lanes_ == 1 &&
+        (one == Event::OneQuadword || one == Event::SeveralQuadwords || one == Event::QuadwordALane || one == Event::PartOfWarp))
       continue;
     if (configuration_.warps == 1 && one == Event::WarpsLeftOut) continue;
     const bool one_read = configuration_.data_cache_mshrs == 1 || configuration_.contents() == 1;

@@ -1,4 +1,5 @@
-// Sets of configurations that cover the parameters of docs/architecture.md, section 2: every value that matters, and pairs of values.
+// Sets of configurations that cover the parameters of docs/architecture.md, section 2: every value that matters, and pairs of
+// values.
 #pragma once
 
 #include <cstdint>
@@ -24,8 +25,8 @@ struct Covered {
 };
 Covered count_covered(const std::vector<Configuration>& configurations);
 
-/// Every pair of values of any two parameters is in one of them. Greedy: each next one is the best of some that are put together value by value, so
-/// that each value brings most pairs that were not there. The same set every time.
+/// Every pair of values of any two parameters is in one of them. Greedy: each next one is the best of some that are put together
+/// value by value, so that each value brings most pairs that were not there. The same set every time.
 std::vector<Configuration> all_pairs_configurations();
 
 /// Six configurations of 32 threads each, which compile quickly, with every value of every parameter and as many pairs as fit.

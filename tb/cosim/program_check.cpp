@@ -99,7 +99,8 @@ class Checker {
 
   std::string read_words(uint32_t warp, int from, int to, uint32_t mask) const {
     for (int n = from; n < to && n < kIntersectionWords; ++n)
-      if ((mask & ~slices_[warp][static_cast<size_t>(n)]) != 0) return fmt::format("word {} of the current slice is undefined", n);
+      if ((mask & ~slices_[warp][static_cast<size_t>(n)]) != 0)
+        return fmt::format("word {} of the current slice is undefined", n);
     return "";
   }
 
@@ -139,9 +140,9 @@ class Checker {
   Memory memory_;
   FunctionalCore core_;
   uint32_t warps_, lanes_;
-  std::vector<uint32_t> defined_;                                     ///< [warp][register], a bit a lane
-  std::vector<std::array<uint32_t, kIntersectionWords>> slices_;      ///< [warp][word of the current slice], a bit a lane
-  std::vector<Touched> touched_;                                      ///< [word of memory]
+  std::vector<uint32_t> defined_;                                 ///< [warp][register], a bit a lane
+  std::vector<std::array<uint32_t, kIntersectionWords>> slices_;  ///< [warp][word of the current slice], a bit a lane
+  std::vector<Touched> touched_;                                  ///< [word of memory]
   uint32_t kernel_ = 0;
 };
 

@@ -96,8 +96,8 @@ SavedProgram parse_saved_program(const std::string& text, const std::string& whe
   }
   if (program.data_begin < program.program.code.size() * 8 || program.data_begin > program.memory_bytes ||
       program.memory_bytes > 64u << 20) {
-    throw InputError(fmt::format("{}: data_begin {} and memory_bytes {} do not fit the code of {} instructions (and 64 MB)", where,
-                                 program.data_begin, program.memory_bytes, program.program.code.size()));
+    throw InputError(fmt::format("{}: data_begin {} and memory_bytes {} do not fit the code of {} instructions (and 64 MB)",
+                                 where, program.data_begin, program.memory_bytes, program.program.code.size()));
   }
   fill_memory(program);
   if (!check) return saved;

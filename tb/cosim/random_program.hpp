@@ -30,15 +30,16 @@ struct RandomProgram {
   int units = 1;  ///< compute units of the device; with several, each kernel has words of its own
 
   uint64_t seed = 0;
-  std::string profile;                 ///< name of the mix of instructions
-  uint32_t data_begin = 0;             ///< byte address; random words from here to the end of memory
-  uint32_t memory_bytes = 0;           ///< memory limit
+  std::string profile;                ///< name of the mix of instructions
+  uint32_t data_begin = 0;            ///< byte address; random words from here to the end of memory
+  uint32_t memory_bytes = 0;          ///< memory limit
   FaultCode fault = FaultCode::None;  ///< in which the program ends, instead of `exit`
 };
 
-/// A program that shows one thing; the next seed shows another one. The same configuration and seed give the same program. Warps store only to
-/// words of their own and read those or words that nobody writes, so that the result does not depend on the order of warps; program_check.hpp
-/// says exactly what a program promises. `length`: about how many instructions the body of a kernel has. `units`: of the device.
+/// A program that shows one thing; the next seed shows another one. The same configuration and seed give the same program. Warps
+/// store only to words of their own and read those or words that nobody writes, so that the result does not depend on the order
+/// of warps; program_check.hpp says exactly what a program promises. `length`: about how many instructions the body of a kernel
+/// has. `units`: of the device.
 RandomProgram make_random_program(const Configuration& configuration, uint64_t seed, int length = 120, int units = 1);
 
 /// Makes `program.memory` from its code, seed and data range. To be called after a change of one of them.

@@ -1,5 +1,5 @@
-// How the ports of a unit hesitate under random programs. A decision depends on seed, port and cycle alone, so that making one port quick leaves
-// the decisions of all others as they were.
+// How the ports of a unit hesitate under random programs. A decision depends on seed, port and cycle alone, so that making one
+// port quick leaves the decisions of all others as they were.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
-// Runs every mutant of a unit (scripts/mutants.sh makes them) on random programs in lockstep until it differs from the model, and says which were
-// noticed. A process a mutant: what a fault does to the simulator itself stays there.
+// Runs every mutant of a unit (scripts/mutants.sh makes them) on random programs in lockstep until it differs from the model, and
+// says which were noticed. A process a mutant: what a fault does to the simulator itself stays there.
 #include <fmt/format.h>
 #include <poll.h>
 #include <sys/wait.h>
@@ -53,7 +53,8 @@ struct Outcome {
   uint64_t programs = 0;  ///< run, the last one noticed it
   std::string text;       ///< first line of the report
 };
-constexpr std::array<std::string_view, 5> kKindNames = {"survived", "difference", "hang", "fault or cycle limit", "simulator stopped"};
+constexpr std::array<std::string_view, 5> kKindNames = {"survived", "difference", "hang", "fault or cycle limit",
+                                                        "simulator stopped"};
 
 // A mutant that hangs must be found soon: stalls of the host are some hundred cycles long.
 constexpr uint64_t kWatchdogCycles = 4000;
@@ -173,10 +174,20 @@ Outcome finish(const Worker& worker) {
   return outcome;
 }
 
+/// A line of the --json file.
+std::string to_json(const Mutant& mutant, const Outcome& outcome) {
+  const Json json = {{"number", mutant.number},      {"mutant", mutant.id},
+                     {"source", mutant.source},      {"outcome", kKindNames[static_cast<size_t>(outcome.kind)]},
+                     {"programs", outcome.programs}, {"text", outcome.text}};
+  return json.dump() + "\n";
+}
+
 std::vector<Outcome> run_all(const Options& options, const Configuration& configuration, const std::vector<Mutant>& mutants) {
   std::vector<Outcome> outcomes(mutants.size());
   std::vector<Worker> workers;
   size_t next = 0, done = 0;
+  std::ofstream file;
+  if (!options.json.empty()) file.open(options.json);
   auto shown = std::chrono::steady_clock::now();
   while (done < mutants.size()) {
     while (workers.size() < options.jobs && next < mutants.size()) {
@@ -189,7 +200,9 @@ std::vector<Outcome> run_all(const Options& options, const Configuration& config
     poll(polls.data(), polls.size(), 5000);
     for (size_t i = workers.size(); i-- > 0;) {
       if (polls[i].revents == 0) continue;
-      outcomes[workers[i].mutant] = finish(workers[i]);
+      const size_t finished = workers[i].mutant;
+      outcomes[finished] = finish(workers[i]);
+      if (file.is_open()) file << to_json(mutants[finished], outcomes[finished]) << std::flush;
       workers.erase(workers.begin() + static_cast<std::ptrdiff_t>(i));
       ++done;
     }
@@ -213,7 +226,8 @@ std::map<std::string, Judgement> read_judgements(const std::string& path) {
   if (!file) throw InputError(fmt::format("{}: the judged survivors cannot be read", path));
   try {
     for (const Json& entry : Json::parse(file))
-      judgements[entry.at("mutant").get<std::string>()] = {entry.at("equivalent").get<bool>(), entry.at("reason").get<std::string>()};
+      judgements[entry.at("mutant").get<std::string>()] = {entry.at("equivalent").get<bool>(),
+                                                           entry.at("reason").get<std::string>()};
   } catch (const nlohmann::json::exception& error) {
     throw InputError(fmt::format("{}: not a list of {{mutant, equivalent, reason}}: {}", path, error.what()));
   }
@@ -230,7 +244,6 @@ int report(const Options& options, const std::vector<Mutant>& mutants, const std
   std::map<uint64_t, int> by_program;
   int equivalent = 0, open = 0;
   std::set<std::string> survivors;
-  Json list = Json::array();
   for (size_t i = 0; i < mutants.size(); ++i) {
     const Mutant& mutant = mutants[i];
     const Outcome& outcome = outcomes[i];
@@ -239,8 +252,6 @@ int report(const Options& options, const std::vector<Mutant>& mutants, const std
     Count& count = modules[mutant.module];
     ++count.all;
     count.killed += survived ? 0 : 1;
-    list.push_back({{"number", mutant.number}, {"mutant", mutant.id}, {"source", mutant.source},
-                    {"outcome", kKindNames[static_cast<size_t>(outcome.kind)]}, {"programs", outcome.programs}, {"text", outcome.text}});
     if (!survived) {
       ++by_program[outcome.programs <= 1 ? 1 : outcome.programs <= 10 ? 10 : outcome.programs <= 100 ? 100 : ~0u];
       continue;
@@ -253,16 +264,16 @@ int report(const Options& options, const std::vector<Mutant>& mutants, const std
     fmt::print("survived: {:>4} {} ({})\n          {}\n", mutant.number, mutant.id, mutant.source,
                !known ? "NOT JUDGED" : (judged->second.equivalent ? "equivalent: " : "a gap: ") + judged->second.reason);
   }
-  if (!options.json.empty()) std::ofstream(options.json) << list.dump(1) << "\n";
   const auto all = static_cast<int>(mutants.size());
   const int survived = kinds[0], killed = all - survived;
   fmt::print("{:<24} mutants  killed\n", "module");
   for (const auto& [name, count] : modules) fmt::print("{:<24} {:>7} {:>7}\n", name, count.all, count.killed);
   for (size_t kind = 1; kind < kinds.size(); ++kind) fmt::print("killed by {:<22} {:>5}\n", kKindNames[kind], kinds[kind]);
   for (const auto& [programs, count] : by_program)
-    fmt::print("killed {:<25} {:>5}\n", programs == ~0u ? std::string("by a later one") : fmt::format("within {} programs", programs), count);
-  fmt::print("mutants: {} of {} killed ({:.1f}%); {} survived, of which {} are judged equivalent: {:.1f}% of the others killed\n", killed, all,
-             100.0 * killed / all, survived, equivalent, 100.0 * killed / (all - equivalent));
+    fmt::print("killed {:<25} {:>5}\n",
+               programs == ~0u ? std::string("by a later one") : fmt::format("within {} programs", programs), count);
+  fmt::print("mutants: {} of {} killed ({:.1f}%); {} survived, of which {} are judged equivalent: {:.1f}% of the others killed\n",
+             killed, all, 100.0 * killed / all, survived, equivalent, 100.0 * killed / (all - equivalent));
   if (!options.only.empty()) return 0;
   int stale = 0;
   for (const auto& [id, judgement] : judgements) {
@@ -282,7 +293,7 @@ int run(int argc, char** argv) {
   app.add_option("--list", options.list, "list of the mutants")->required();
   app.add_option("--config", options.config, "their configuration")->required();
   app.add_option("--survivors", options.survivors, "JSON file with the judged survivors, to be compared");
-  app.add_option("--json", options.json, "file for the outcome of each mutant");
+  app.add_option("--json", options.json, "file that gets a JSON object a line for each mutant as it ends");
   app.add_option("--programs", options.programs, "random programs that a mutant must survive")->capture_default_str();
   app.add_option("--seed", options.seed, "of the first program")->capture_default_str();
   app.add_option("--length", options.length, "about how many instructions a program has")->capture_default_str();

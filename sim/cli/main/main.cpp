@@ -81,7 +81,9 @@ int run(int argc, char** argv) {
       app.add_subcommand("cosim", "random programs, with stalls on every port, in lockstep with the golden model");
   add_config(*cosim_app, cosim.config);
   add_unit(*cosim_app, cosim.engine, cosim.unit_library);
-  cosim_app->add_option("--units", cosim.units, "compute units: 1, 2 or 4")->check(CLI::IsMember({1, 2, 4}))->capture_default_str();
+  cosim_app->add_option("--units", cosim.units, "compute units: 1, 2 or 4")
+      ->check(CLI::IsMember({1, 2, 4}))
+      ->capture_default_str();
   cosim_app->add_option("--programs", cosim.programs, "how many")->capture_default_str();
   cosim_app->add_option("--seed", cosim.seed, "of the first; the next one has the next seed")->capture_default_str();
   cosim_app->add_option("--length", cosim.length, "about how many instructions a program has, 1 to 2000")
@@ -99,7 +101,8 @@ int run(int argc, char** argv) {
 
   ConfigurationsOptions configurations;
   CLI::App* configurations_app = app.add_subcommand("configurations", "a set of configurations that covers the parameters");
-  configurations_app->add_flag("--all-pairs", configurations.all_pairs, "every pair of values (default: every value, small ones)");
+  configurations_app->add_flag("--all-pairs", configurations.all_pairs,
+                               "every pair of values (default: every value, small ones)");
   configurations_app->add_option("--out", configurations.folder, "folder that gets a JSON file for each");
   configurations_app->callback([&] { code = configurations_command(configurations); });
 

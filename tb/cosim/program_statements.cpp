@@ -1,0 +1,244 @@
+#include "cosim/program_statements.hpp"
+
+#include <algorithm>
+
+namespace raypool {
+namespace {
+
+constexpr uint32_t kMostInstructions = 60000;
+constexpr uint32_t kFarJump = 20000;
+constexpr int kMostCalls = 40;
+
+}  // namespace
+
+void ProgramStatements::body(int length, int loops, int entries) {
+  const size_t end = code_.size() + static_cast<size_t>(std::max(1, length));
+  const ProgramProfile& p = profile_;
+  const uint32_t total = p.plain + p.memory + p.ray + p.loop + p.jump + p.call + p.far + p.early_exit;
+  while (code_.size() < end) {
+    uint32_t kind = below(total);
+    const auto is = [&kind](uint32_t weight) {
+      if (kind < weight) return true;
+      kind -= weight;
+      return false;
+    };
+    if (is(p.memory)) {
+      memory();
+    } else if (is(p.ray)) {
+      ray(loops == 0 && entries == 1 && !in_function_);
+    } else if (is(p.loop)) {
+      if (loops < kLoopDepth && entries < stack_depth_ && length > 8) loop(length / 3, loops, entries);
+    } else if (is(p.jump)) {
+      jump(loops, entries);
+    } else if (is(p.call)) {
+      call(loops, entries);
+    } else if (is(p.far)) {
+      far_jump();
+    } else if (is(p.early_exit)) {
+      if (!import_pending_ && !in_function_) early_exit();
+    } else {
+      plain();
+    }
+  }
+}
+
+const InstructionInfo& ProgramStatements::plain_row() {
+  uint32_t total = 0;
+  for (const uint32_t weight : profile_.units) total += weight;
+  uint32_t pick = below(total);
+  size_t unit = 0;
+  while (pick >= profile_.units[unit]) pick -= profile_.units[unit++];
+  for (;;) {
+    const InstructionInfo& info = kInstructions[below(std::size(kInstructions))];
+    if (static_cast<size_t>(info.unit) == unit && !info.control && configuration_.has(info.needs)) return info;
+  }
+}
+
+void ProgramStatements::plain() {
+  Instruction i;
+  i.info = &plain_row();
+  const InstructionInfo& info = *i.info;
+  if (percent(profile_.guarded_percent)) i.guard = static_cast<uint8_t>(any_predicate()), i.guard_negated = chance(2);
+  i.rd = static_cast<uint8_t>(has_operand(info, Operand::Pd) ? free_predicate() : destination());
+  if (has_operand(info, Operand::Ra)) i.ra = static_cast<uint8_t>(source());
+  if (has_operand(info, Operand::B) && chance(2))
+    i.b_is_immediate = true, i.immediate = value();
+  else if (has_operand(info, Operand::B) || has_operand(info, Operand::Rb))
+    i.rb = static_cast<uint8_t>(source());
+  if (has_operand(info, Operand::Pb)) i.rb = static_cast<uint8_t>(any_predicate());
+  if (has_operand(info, Operand::Rc)) i.x = static_cast<uint8_t>(source());
+  if (has_operand(info, Operand::Px)) i.x = static_cast<uint8_t>(any_predicate());
+  if (has_operand(info, Operand::Argument)) i.immediate = below(kArguments);
+  emit(i);
+}
+
+void ProgramStatements::address(bool own, uint32_t offset) {
+  const uint32_t entries = own ? own_.entries : shared_bytes_ / 4;
+  switch (below(6)) {
+    case 0:
+      emit_immediate("mov", kAddress, 0, below(entries));
+      break;
+    case 1:
+      emit("lane", kAddress);
+      emit_immediate("iadd", kAddress, kAddress, below(entries));
+      break;
+    case 2:
+      emit("tid", kAddress);
+      emit_immediate("imul", kAddress, kAddress, 1 + below(24));
+      break;
+    case 3:
+    case 4:
+      // A few lines that share a set.
+      if (own && own_.entries >= 2 * own_.way_entries) {
+        emit_immediate(chance(2) ? "and" : "shr", kAddress, source(), 3);
+        emit_immediate("imul", kAddress, kAddress, own_.way_entries);
+        emit_immediate("iadd", kAddress, kAddress, below(2) + own_.way_entries * below(4));
+        break;
+      }
+      [[fallthrough]];
+    default:
+      emit("imul", kAddress, source(), source());
+      break;
+  }
+  emit_immediate("and", kAddress, kAddress, entries - 1);
+  emit_immediate("shl", kAddress, kAddress, own ? own_.shift : 2);
+  emit("iadd", kAddress, kAddress, own ? kOwn : kShared);
+  if (offset != 0) emit_immediate("isub", kAddress, kAddress, offset);
+}
+
+void ProgramStatements::memory() {
+  const bool own = !chance(3);
+  const uint32_t offset = chance(3) ? value() : 0;
+  address(own, offset);
+  const int accesses = 1 + static_cast<int>(below(4));
+  for (int n = 0; n < accesses; ++n) {
+    // So that a load or store comes after every type.
+    if (chance(4)) plain();
+    if (chance(8) && written_words_ > 0 && !in_function_)
+      emit_word("rld", static_cast<int>(below(static_cast<uint32_t>(written_words_))), destination());
+    Instruction i;
+    const bool store = own && chance(2);
+    i.info = &instruction(store ? "st" : "ld");
+    if (chance(2)) i.guard = static_cast<uint8_t>(any_predicate()), i.guard_negated = chance(2);
+    i.ra = kAddress;
+    i.immediate = offset;
+    if (store)
+      i.rb = static_cast<uint8_t>(source());
+    else
+      i.rd = static_cast<uint8_t>(destination());
+    emit(i);
+  }
+}
+
+void ProgramStatements::ray(bool top) {
+  if (!top) {
+    if (in_function_) return plain();
+    const int words = chance(2) ? kRayWords : 1 + static_cast<int>(below(kIntersectionWords));
+    for (int n = 0; n < words; ++n) emit_word("rst", n);
+    for (int n = 0; n < 2; ++n) emit_word("rld", static_cast<int>(below(static_cast<uint32_t>(words))), destination());
+    if (words >= kRayWords) rotate();
+    written_words_ = 0;
+    return;
+  }
+  if (written_words_ > 0 && chance(3)) {
+    emit_word("rld", static_cast<int>(below(static_cast<uint32_t>(written_words_))), destination(),
+              chance(2) ? any_predicate() : 0);
+  } else if (written_words_ >= kRayWords && chance(2)) {
+    rotate();
+  } else if (written_words_ > 0 && (written_words_ == kIntersectionWords || chance(3))) {
+    emit_word("rst", static_cast<int>(below(static_cast<uint32_t>(written_words_))), 0, any_predicate());
+  } else {
+    // Words are written from 0 up, unmasked the first time, so that nothing undefined is ever read or exported.
+    const int count = std::min(kIntersectionWords - written_words_, 1 + static_cast<int>(below(14)));
+    for (int n = 0; n < count; ++n) emit_word("rst", written_words_++);
+  }
+}
+
+void ProgramStatements::rotate() {
+  Instruction i;
+  i.info = &instruction(chance(3) ? "rfb" : "rout");
+  if (chance(2)) i.guard = static_cast<uint8_t>(any_predicate()), i.guard_negated = chance(2);
+  emit(i);
+  written_words_ = 0;
+}
+
+void ProgramStatements::loop(int length, int loops, int entries) {
+  const int counter = kDataRegisters + loops;
+  const int going = kLoopPredicate + loops;
+  // Threads leave after different numbers of rounds.
+  emit("lane", counter);
+  emit_immediate("and", counter, counter, below(4));
+  emit_immediate("iadd", counter, counter, below(2));
+  emit_immediate("igt", going, counter, 0);
+  written_words_ = 0;
+  const size_t start = emit("loop", 0, 0, 0, going);
+  body(length, loops + 1, entries + 1);
+  emit_immediate("isub", counter, counter, 1, going);
+  emit_immediate("igt", going, counter, 0);
+  patch(start, here());
+  written_words_ = 0;
+}
+
+void ProgramStatements::jump(int loops, int entries) {
+  Instruction i;
+  i.info = &instruction(chance(2) ? "jany" : "jnone");
+  i.guard = static_cast<uint8_t>(any_predicate());
+  i.guard_negated = chance(2);
+  const size_t at = emit(i);
+  const int skipped = 1 + static_cast<int>(below(4));
+  for (int n = 0; n < skipped; ++n) {
+    if (chance(4))
+      memory();
+    else if (chance(6))
+      call(loops, entries);
+    else
+      plain();
+  }
+  patch(at, here());
+}
+
+void ProgramStatements::far_jump() {
+  const size_t at = emit("jany");
+  const uint32_t way = instruction_cache_bytes_ / 16;
+  filler(chance(8) ? below(kFarJump) : chance(2) ? way - here() % way : below(2 * way));
+  patch(at, here());
+}
+
+void ProgramStatements::filler(uint32_t count) {
+  if (code_.size() + count > kMostInstructions) return;
+  for (uint32_t n = 0; n < count; ++n) code_.push_back(random());
+}
+
+void ProgramStatements::early_exit() {
+  emit("warp", kAddress);
+  const int leaves = free_predicate();
+  emit_immediate(chance(2) ? "ieq" : "ult", leaves, kAddress, below(warps_));
+  const size_t at = emit("jnone", 0, 0, 0, leaves);
+  emit("exit");
+  patch(at, here());
+}
+
+void ProgramStatements::call(int loops, int entries) {
+  if (entries >= stack_depth_ || call_sites_ >= kMostCalls) return;
+  ++call_sites_;
+  calls_.push_back({emit("call", 0, 0, 0, control_guard()), loops, entries});
+}
+
+void ProgramStatements::functions() {
+  in_function_ = true;
+  const bool deep = chance(4);
+  while (!calls_.empty()) {
+    const Call call = calls_.back();
+    calls_.pop_back();
+    if (profile_.far > 0 && chance(2)) filler(below(instruction_cache_bytes_ / 8));
+    const uint32_t start = here();
+    body(1 + static_cast<int>(below(8)), call.loops, call.entries + 1);
+    // Deep stacks come from calls in calls.
+    if (!chance(deep ? 16 : 2)) this->call(call.loops, call.entries + 1);
+    if (chance(2)) emit("ret", 0, 0, 0, control_guard());
+    patch(call.at, start | here() << 16);
+  }
+  in_function_ = false;
+}
+
+}  // namespace raypool

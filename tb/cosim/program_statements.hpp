@@ -1,0 +1,86 @@
+// The middle of the generator of random programs: the statements that the body of a kernel is made of. Each leaves the program
+// valid (program_check.hpp) wherever it is put.
+#pragma once
+
+#include "cosim/program_emitter.hpp"
+#include "cosim/program_profile.hpp"
+
+namespace raypool {
+
+/// Where a warp's own words lie: word e of warp w at base + ((e << shift) + w * stride).
+struct OwnWords {
+  uint32_t entries = 64;  ///< power of two
+  uint32_t shift = 2;
+  uint32_t stride = 256;
+  uint32_t way_entries = 64;  ///< words of that many entries apart lie in one set of the data cache
+  uint32_t bytes = 0;         ///< of all warps
+};
+
+class ProgramStatements : public ProgramEmitter {
+ protected:
+  // r0 .. r9 hold data. r10 .. r12 count loops, r13 is an address, r14 the base of what is only read, r15 of the warp's own
+  // words.
+  static constexpr int kDataRegisters = 10;
+  static constexpr int kLoopDepth = 3;
+  static constexpr int kAddress = 13, kShared = 14, kOwn = 15;
+  // p1 .. p12 are free, p13 .. p15 keep loops going.
+  static constexpr int kLoopPredicate = 13;
+
+  ProgramStatements(const Configuration& configuration, uint64_t seed)
+      : ProgramEmitter(seed),
+        configuration_(configuration),
+        warps_(static_cast<uint32_t>(configuration.warps)),
+        stack_depth_(configuration.stack_depth),
+        instruction_cache_bytes_(static_cast<uint32_t>(configuration.instruction_cache_bytes)),
+        profile_(kProgramProfiles[seed % std::size(kProgramProfiles)]) {}
+
+  /// `entries`: entries of the PC stack in use.
+  void body(int length, int loops, int entries);
+  int source() { return static_cast<int>(below(16)); }
+  int destination() { return static_cast<int>(below(kDataRegisters)); }
+  int any_predicate() { return static_cast<int>(below(16)); }
+  /// These instructions do what they do whatever their mask is.
+  int control_guard() { return chance(3) ? any_predicate() : 0; }
+  int free_predicate() { return 1 + static_cast<int>(below(kLoopPredicate - 1)); }
+  const InstructionInfo& plain_row();
+  /// One instruction that touches neither memory, rays nor control, with random operands.
+  void plain();
+  /// r13 = an aligned address: one for all lanes, neighbours, a stride, lines of one set, or anywhere; off by -offset.
+  void address(bool own, uint32_t offset);
+  void memory();
+  /// At the top level the words of the current slice are known from statement to statement; elsewhere a statement writes all that
+  /// it reads.
+  void ray(bool top);
+  void rotate();
+  void loop(int length, int loops, int entries);
+  void jump(int loops, int entries);
+  /// Over instructions that are never executed, so that what follows lies in another line of the cache, or in the same set.
+  void far_jump();
+  void filler(uint32_t count);
+  void early_exit();
+  /// Each call has a function of its own, so that the number of instructions executed stays bounded.
+  void call(int loops, int entries);
+  void functions();
+
+  Configuration configuration_;
+  uint32_t warps_;
+  int stack_depth_;
+  uint32_t instruction_cache_bytes_;
+  ProgramProfile profile_;
+  OwnWords own_;
+  uint32_t shared_bytes_ = 1024;
+  bool import_pending_ = false;
+  int written_words_ = 0;  ///< words 0 .. n-1 of the current slice are defined
+
+  struct Call {
+    size_t at;
+    int loops, entries;
+  };
+  std::vector<Call> calls_;  ///< whose functions are not there yet
+
+ private:
+  int call_sites_ = 0;
+  bool in_function_ = false;
+};
+
+}  // namespace raypool
