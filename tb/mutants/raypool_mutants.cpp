@@ -30,7 +30,7 @@ using Json = nlohmann::ordered_json;
 
 struct Options {
   std::string unit, list, config, survivors, json;
-  uint64_t programs = 200;
+  uint64_t programs = 60;
   uint64_t seed = 1;
   int length = 80;
   unsigned jobs = std::max(1u, std::thread::hardware_concurrency());
