@@ -42,7 +42,7 @@ double block_kge(const Json& blocks, const std::string& name) {
 }  // namespace
 
 std::optional<ModeTiming> time_mode(const Scene& scene, int depth, const Configuration& configuration, const UnitMaker& make) {
-  const Program& program = ray_kernel_program();
+  const Program& program = ray_kernel_program(configuration.fma);
   MemoryImage image = build_memory(program, scene);
   const Tracer tracer(scene, image.material_base);
   SceneTracer scene_tracer(tracer);

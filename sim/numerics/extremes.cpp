@@ -122,7 +122,7 @@ class RecordingSink : public FrameSink {
 
 Drawing draw_natively(const ExtremeFrame& frame, const arith::Mode& mode) {
   Drawing drawing{FrameBuffer(frame.width, frame.height), {}, {}};
-  const MemoryImage image = build_memory(ray_kernel_program(), frame.scene);
+  const MemoryImage image = build_memory(ray_kernel_program(mode.fused), frame.scene);
   RecordingTracer tracer(frame, image.material_base, drawing.traced);
   NativeOptions options;
   options.width = frame.width;
@@ -201,7 +201,7 @@ Drawing ExtremeMachine::draw(const ExtremeFrame& frame) const {
 
 Drawing ExtremeMachine::draw_on_unit(const ExtremeFrame& frame) const {
   Drawing drawing{FrameBuffer(frame.width, frame.height), {}, {}};
-  const Program& program = ray_kernel_program();
+  const Program& program = ray_kernel_program(configuration_.fma);
   MemoryImage image = build_memory(program, frame.scene);
   RecordingTracer tracer(frame, image.material_base, drawing.traced);
   RecordingSink sink(drawing);

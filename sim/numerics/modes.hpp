@@ -10,10 +10,11 @@
 namespace raypool::numerics {
 
 struct ArithmeticMode {
-  std::string name;  ///< "ieee-exact", ...: subnormals, then slow unit
+  std::string name;  ///< "ieee-exact", ...: subnormals, slow unit, and "-fma" with a fused multiply-add
   arith::Mode mode;
 
-  /// `base` with this arithmetic. Its name gets the mode's behind it when that is not the default one.
+  /// `base` with this arithmetic. Its Flt ALU becomes as deep as a fused unit needs, its name gets the mode's behind it when that
+  /// is not the default one.
   Configuration applied_to(Configuration base) const;
 };
 

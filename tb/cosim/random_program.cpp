@@ -13,8 +13,7 @@ constexpr uint32_t kFarLimit = 20000;
 
 class Generator : public ProgramStatements {
  public:
-  Generator(const Configuration& configuration, uint64_t seed, int units)
-      : ProgramStatements(configuration, seed) {
+  Generator(const Configuration& configuration, uint64_t seed, int units) : ProgramStatements(configuration, seed) {
     result_.seed = seed;
     result_.profile = std::string(profile_.name);
     result_.units = units;
