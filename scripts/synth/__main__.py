@@ -56,17 +56,15 @@ def synth_command(arguments):
 
 
 def netlist_of(arguments):
-    """The mapped netlist for the commands that work on it."""
+    """The mapped netlist for the commands that work on it: that of the kept report, else one that was not timed."""
     design = flow.open_design(options_of(arguments))
     path = os.path.join(design.folder, "report.json")
     kept = report.load(path) if os.path.exists(path) else {}
+    flow.prepare(design)
     if kept.get("key") == flow.digest(design):
-        flow.prepare(design)
         names = set(kept["timing"]["mapped_for_speed"])
         design.fast = {k.identity for k in design.kinds.values() if k.name in names}
-        flow.map_design(design, design.fast)
-    else:
-        flow.synthesise(design)
+    flow.map_design(design, design.fast)
     return design
 
 

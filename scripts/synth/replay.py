@@ -125,7 +125,8 @@ def build(design, folder, count=False):
     """Verilates the netlist; returns the shared library's path."""
     os.makedirs(folder, exist_ok=True)
     netlist = os.path.join(folder, "netlist.v")
-    design.netlist.write(netlist, counting if count else None, design.parameters)
+    top = design.kinds[design.netlist.top].parameters
+    design.netlist.write(netlist, counting if count else None, {n: int(v, 2) for n, v in top.items()})
     cells, memories = os.path.join(folder, "cells.v"), os.path.join(folder, "memories.v")
     own, derived = cells_file(design, cells)
     memories_file(design, memories, count)
