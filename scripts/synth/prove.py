@@ -56,6 +56,21 @@ def gate_module(design, module):
     return "\n".join([f"module gate ({', '.join(ports)});", *lines, *declared, *outputs, *gates, "endmodule", ""])
 
 
+def proof_module(design, module):
+    """Around the miter: the first cycle is one of reset, as the encodings of state machines differ before it."""
+    ports = [(n, len(nets)) for n, direction, nets in module.ports if direction == "input"]
+    for label, (identity, _) in module.blocks.items():
+        ports += [(f"{module.originals[label]}.{p}", w) for p, (d, w) in design.kinds[identity].ports.items() if d == "output"]
+    names = {n for n, _ in ports}
+    reset = {"clk_i", "rst_ni"} <= names
+    lines = [f"  input {f'[{w - 1}:0] ' if w > 1 else ''}{escaped('in_' + n)};" for n, w in ports]
+    joined = [f".{escaped('in_' + n)}({escaped('in_' + n)}{'& started' if reset and n == 'rst_ni' else ''})" for n, _ in ports]
+    started = "reg started = 0; always @(posedge \\in_clk_i ) started <= 1;" if reset else "wire started = 1;"
+    return "\n".join([f"module proof ({', '.join([escaped('in_' + n) for n, _ in ports] + ['bad'])});", *lines, "  output bad;", "  wire trigger;",
+                      "  " + started, f"  miter miter ({', '.join(joined + ['.trigger(trigger)'])});",
+                      "  assign bad = trigger & started;", "endmodule", ""])
+
+
 def prove_one(design, identity, folder, cells):
     """'proved', 'different', or why not."""
     module = design.netlist.modules[identity]
@@ -63,7 +78,7 @@ def prove_one(design, identity, folder, cells):
     stem = os.path.join(folder, kind.name)
     text = gate_module(design, module)
     source = rtl_texts()[f"rtl/{kind.base}.v"]
-    key = hashlib.sha256("\0".join([source, text, ABC, json.dumps(kind.parameters, sort_keys=True), design.library.digest]).encode()).hexdigest()[:16]
+    key = hashlib.sha256("\0".join([source, text, ABC, proof_module(design, module), json.dumps(kind.parameters, sort_keys=True), design.library.digest]).encode()).hexdigest()[:16]
     kept = stem + ".result"
     if os.path.exists(kept):
         with open(kept, encoding="utf-8") as file:
@@ -72,6 +87,8 @@ def prove_one(design, identity, folder, cells):
             return result["verdict"]
     with open(stem + ".v", "w", encoding="utf-8") as file:
         file.write(text)
+    with open(stem + ".proof.v", "w", encoding="utf-8") as file:
+        file.write(proof_module(design, module))
     chosen = " ".join(f"-chparam {n} {mapping.constant(v)}" for n, v in sorted(kind.parameters.items()))
     script = f"""read_verilog -DSYNTHESIS -I{ROOT}/rtl {' '.join(rtl_files())}
 hierarchy -check -top {kind.base} {chosen}
@@ -87,9 +104,11 @@ rename {kind.base} gold
 read_liberty -ignore_miss_func -overwrite {cells}
 read_verilog {stem}.v
 flatten gate
-miter -equiv -flatten -make_outputs gold gate miter
-hierarchy -top miter
-delete -output miter/gold_* miter/gate_*
+miter -equiv -flatten gold gate miter
+read_verilog {stem}.proof.v
+hierarchy -top proof
+proc
+flatten
 setundef -undriven -zero
 setundef -init -zero
 opt -fast
