@@ -17,7 +17,7 @@ namespace raypool {
 struct SimOptions {
   std::string scene = "room";  ///< built-in name or path of an OBJ
   std::string config = "8w8c";
-  std::string engine = "functional";
+  std::string engine = "model";
   std::string size = "320x320";
   std::string view;  ///< JSON file with camera and light; empty: the scene's own
   std::string out;   ///< folder; empty: out/<what was run> beside the executable
@@ -38,7 +38,7 @@ int sim_command(const SimOptions& options);
 struct RunOptions {
   std::string kernel;  ///< saxpy, matmul or path of an assembly file
   std::string config = "8w8c";
-  std::string engine = "functional";
+  std::string engine = "model";
   std::string unit_library;
   uint32_t n = 0;        ///< problem size of saxpy and matmul; 0: theirs
   uint32_t blocks = 1;   ///< assembly file only, like all below

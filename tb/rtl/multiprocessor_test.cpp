@@ -62,6 +62,7 @@ TEST_P(RtlMultiprocessor, AgreesWithTheArbitersInCppInEveryCycleOfRandomPrograms
   for (uint64_t seed = 1; seed <= 150; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     RandomProgram program = make_random_program(configuration(), seed, 60);
+    if (program.fault != FaultCode::None) continue;  // it would end before its last kernel
     std::mt19937_64 random(seed);
     const size_t distinct = program.kernels.size();
     for (size_t i = random() % (6 * units); i > 0; --i) {

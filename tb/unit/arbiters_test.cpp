@@ -115,7 +115,9 @@ TYPED_TEST(PortArbiter, KeepsPackagesTogetherInTurnAndLosesNothing) {
       if (u.valid_o) {
         ASSERT_TRUE(valid >> number & 1);
         ASSERT_EQ(offered >> 14, number);
-        if (owner >= 0) ASSERT_EQ(number, static_cast<uint32_t>(owner)) << "two packages are mixed";
+        if (owner >= 0) {
+          ASSERT_EQ(number, static_cast<uint32_t>(owner)) << "two packages are mixed";
+        }
         owner = static_cast<int>(number);
         requesters[number].begun = true;
       }
@@ -267,7 +269,9 @@ TYPED_TEST(BlockScheduler, GivesALaunchToAReadyUnitAndFreeOnesFirst) {
     ASSERT_EQ(u.valid_o, u.launch_valid_i && u.ready_i ? 1u << unit : 0u);
     if (u.ready_i) {
       ASSERT_TRUE(u.ready_i >> unit & 1);
-      if (u.ready_i & ~u.busy_i) ASSERT_FALSE(u.busy_i >> unit & 1) << "a unit that runs no kernel was passed over";
+      if (u.ready_i & ~u.busy_i) {
+        ASSERT_FALSE(u.busy_i >> unit & 1) << "a unit that runs no kernel was passed over";
+      }
     }
     bench.clock();
   }
