@@ -1,0 +1,86 @@
+#!/bin/bash
+# Proves the control logic: tb/proofs/control.sh [--quick] [NAME...]. NAME is a checker tb/proofs/control/NAME.v; without one, all of them.
+# A checker is a module `check` around what it checks, with assumptions and assertions, and says in its head
+#   @modules FILE...           of rtl/, without .v
+#   @proves SENTENCE           printed when it holds, once for each
+#   @parameters NAME=VALUE...  set of parameters to prove it for; more lines are more proofs; without one, as the checker stands
+#   @break FILE SED            a sed script that breaks FILE; the proof must then fail
+#   @zeros                     registers that have no reset start as 0 instead of anything
+#   @slow                      not with --quick
+# Every proof is unbounded (property-directed reachability, ABC's pdr). --quick leaves the broken copies out.
+# Exit code 1 if a proof fails, or holds for a broken copy.
+set -eu -o pipefail
+cd "$(dirname "$0")/../.."
+quick=
+[ "${1:-}" != --quick ] || { quick=1; shift; }
+for tool in yosys yosys-abc; do
+  command -v $tool > /dev/null || { echo "control.sh: $tool was not found: install it (Debian package yosys)" >&2; exit 1; }
+done
+names=("$@")
+[ ${#names[@]} -gt 0 ] || for file in tb/proofs/control/*.v; do names+=("$(basename "$file" .v)"); done
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+
+# solve CHECKER PARAMETERS FILE...: sets verdict to proved, refuted or unknown, and depth to the length of the counterexample.
+solve() {
+  local checker=$1 parameters=$2 parameter chparam= zeros=
+  shift 2
+  for parameter in $parameters; do chparam+=" -set ${parameter%=*} ${parameter#*=}"; done
+  [ -z "$chparam" ] || chparam="chparam$chparam check;"
+  ! grep -q '^// @zeros' "$checker" || zeros="zinit -all;"
+  yosys -q -l "$folder/yosys" -p "read_verilog -formal -DSYNTHESIS -Irtl $checker $*; $chparam prep -top check -flatten; delete -output; memory_map;
+    async2sync; $zeros opt -fast; setundef -undriven -anyseq; setundef -anyseq; formalff -clk2ff -ff2anyinit; techmap; opt -fast; dffunmap; aigmap;
+    opt_clean; setundef -undriven -anyseq; setundef -anyseq; write_aiger -I -B -zinit -no-startoffset $folder/check.aig" > "$folder/console" 2>&1 ||
+    { echo "FAILED: $checker: yosys says"; tail -3 "$folder/console"; exit 1; }
+  yosys-abc -c "read_aiger $folder/check.aig; fold; strash; scorr; pdr -T ${SECONDS_EACH:-600}; print_status" > "$folder/abc" 2>&1 || true
+  verdict=unknown depth=
+  if grep -q '^Status = 1' "$folder/abc"; then verdict=proved
+  elif grep -q '^Status = 0' "$folder/abc"; then
+    verdict=refuted
+    depth=$(sed -nE 's/.*asserted in frame ([0-9]+).*/\1/p' "$folder/abc" | tail -1)
+  fi
+}
+
+failed=0
+for name in "${names[@]}"; do
+  checker=tb/proofs/control/$name.v
+  [ -f "$checker" ] || { echo "control.sh: there is no checker '$name'; see tb/proofs/control" >&2; exit 1; }
+  [ -z "$quick" ] || ! grep -q '^// @slow' "$checker" || continue
+  files=
+  for module in $(sed -n 's/^\/\/ @modules //p' "$checker"); do files+=" rtl/$module.v"; done
+  mapfile -t sets < <(sed -n 's/^\/\/ @parameters //p' "$checker")
+  [ ${#sets[@]} -gt 0 ] || sets=("")
+  started=$SECONDS
+  for set in "${sets[@]}"; do
+    begun=$(date +%s%N)
+    # shellcheck disable=SC2086 # a list of files
+    solve "$checker" "$set" $files
+    took=$(awk "BEGIN { printf \"%.1f\", ($(date +%s%N) - $begun) / 1e9 }")
+    if [ $verdict = proved ]; then echo "proved: $name${set:+, $set} (pdr, $took s)"
+    else
+      failed=1
+      echo "FAILED: $name${set:+, $set}: $verdict${depth:+ after $depth cycles}"
+      tail -3 "$folder/abc"
+    fi
+  done
+  sed -n 's/^\/\/ @proves /  - /p' "$checker"
+  [ -z "$quick" ] || continue
+  broken=0
+  while read -r module script; do
+    sed -E "$script" "rtl/$module.v" > "$folder/$module.v"
+    ! cmp -s "rtl/$module.v" "$folder/$module.v" || { echo "FAILED: $name: '$script' changes nothing in rtl/$module.v"; failed=1; continue; }
+    # shellcheck disable=SC2086 # a list of files
+    solve "$checker" "${sets[0]}" ${files/rtl\/$module.v/$folder/$module.v}
+    rm "$folder/$module.v"
+    if [ $verdict = refuted ]; then
+      broken=$((broken + 1))
+      [ -z "${VERBOSE:-}" ] || echo "  broken: $module $script: refuted after $depth cycles"
+    else
+      failed=1
+      echo "FAILED: $name: $verdict with rtl/$module.v broken by '$script'"
+    fi
+  done < <(sed -n 's/^\/\/ @break //p' "$checker")
+  [ $broken -gt 0 ] || { echo "FAILED: $name: no broken copy was refuted"; failed=1; }
+  echo "  broken copies refuted: $broken ($((SECONDS - started)) s in all)"
+done
+exit $failed
