@@ -5,8 +5,8 @@
 // @proves at most one warp has the privilege, a loser; it has it no longer two cycles after it took a register or is no loser
 // @proves a privileged loser that may try goes before new tasks; every loser has the privilege after WARPS - 1 others at most
 // @zeros
-// @parameters WARPS=4 WARP_BITS=2
 // @parameters WARPS=2 WARP_BITS=1
+// @parameters WARPS=4 WARP_BITS=2
 // @break memory_sequencer s/pass_of_privileged && pass_allocated_i/1'b0/
 // @break memory_sequencer s/\|\| !loser_q\[privilege_warp_q\]\)/)/
 // @break memory_sequencer s/lowest\(after\(loser_q, privilege_warp_q\)\)/lowest(loser_q)/

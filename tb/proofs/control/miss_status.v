@@ -15,10 +15,12 @@
 `default_nettype none
 module check #(parameter MSHRS = 3, WARPS = 2, MSHR_BITS = 2) (
   input wire clk_i, access_i, join_i, allocate_i, way_i, fill_i, last_i, served_i, warp_i, served_warp_i,
-  input wire [25:0] line_i, input wire [MSHR_BITS-1:0] fill_id_i, served_id_i
+  input wire [3:0] some_line_i, input wire [MSHR_BITS-1:0] fill_id_i, served_id_i
 );
   reg rst_n = 1'b0;
   always @(posedge clk_i) rst_n <= 1'b1;
+  // Lines of four sets, four of each
+  wire [25:0] line_i = {22'd0, some_line_i};
   wire match, available, fill_way, freed, idle;
   wire [MSHR_BITS-1:0] available_id;
   wire [1:0] locked;

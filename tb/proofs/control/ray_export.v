@@ -5,6 +5,7 @@
 // @proves what is read is offered on its port, in order: nothing lost, nothing twice; what is offered stays until it is taken
 // @proves while memory and ports are willing, no more than 4 cycles pass without a read or a beat
 // @zeros
+// @slow
 // @break ray_export s/fill_q\} \+ \{2'd0, landing_q\} != 3'd3/fill_q} != 3'd3/
 // @break ray_export s/first_q <= first_q \+ NEXT_PLACE/first_q <= first_q/
 // @break ray_export s/\{!slot_q\[first_warp\], first_warp\}/{slot_q[first_warp], first_warp}/
@@ -41,11 +42,11 @@ module check (
   // Protocol
   reg [3:0] parked_q = 0, frames_q = 0, busy_q = 0;
   reg [7:0] masks_q = 0, sets_q = 0;
-  wire fallen = (busy_q & ~busy) != 0;
   // One slice
   reg tracked_q = 1'b0, slice_frame_q = 1'b0;
   reg [1:0] slice_warp_q = 0, rest_q = 0, beat_q = 0;
   reg [2:0] before_q = 0;
+  wire fallen = (busy_q & ~busy & ~(4'd1 << slice_warp_q)) != 0;    // the slice of another warp has ended
   wire [2:0] before = before_q - fallen;
   wire choose = push_i && choose_i && !tracked_q;
   wire last_beat = slice_frame_q || beat_q == 2;

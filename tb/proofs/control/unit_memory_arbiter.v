@@ -3,8 +3,8 @@
 // @proves a request at the memory port is that of exactly one unit, unchanged, its id grown by the unit's number, and stays until it is taken
 // @proves a request that stays is taken after UNITS - 1 others at most; the port is not idle while somebody asks
 // @proves a response goes to the unit that its id names, and to no other
-// @parameters UNITS=4
 // @parameters UNITS=2
+// @parameters UNITS=4
 // @break unit_memory_arbiter s/response_unit_i == UNIT/response_unit_i >= UNIT/
 // @break unit_memory_arbiter s/unit_request_mask_i\[u\*4 \+: 4\]/4'hF/
 // @break port_arbiter s/locked_q \? choice_q : next/next/
