@@ -120,7 +120,7 @@ synth-prove: setup-sim setup-synth program ## prove each mapped block equal to i
 growth: setup-sim setup-synth program ## area against warps, cores, ALUs; what each feature costs
 	@$(SYNTH) growth $${PLAN:+--plan "$$PLAN"} $${OUT:+--out "$$OUT"}
 
-test: setup-sim setup-test configured-ON ## every test
+test: setup-sim setup-test setup-synth configured-ON ## every test
 	@$(LOCKED) cmake --build $(BUILD)
 	@ctest --test-dir $(BUILD) --output-on-failure -j "$$(nproc)"
 

@@ -53,7 +53,7 @@ refuses "size 0x0" "0x0.*1 to 16384" "${sim[@]}" --size 0x0
 refuses "size without x" "1 to 16384" "${sim[@]}" --size 64
 refuses "depth 0" "depth.*1" "${sim[@]}" --depth 0
 refuses "3 compute units" "3" "${sim[@]}" --units 3
-refuses "unknown engine" "native, functional, rtl or lockstep" "${sim[@]}" --engine spice
+refuses "unknown engine" "native, functional, model, rtl or lockstep" "${sim[@]}" --engine spice
 refuses "unknown traverser" "static" "${sim[@]}" --traverser quick
 refuses "engine without a built unit" "make unit" "${sim[@]}" --engine rtl --unit-library "$folder/none.so"
 refuses "results folder that is a file" "good.obj" "${sim[@]}" --out "$folder/good.obj"

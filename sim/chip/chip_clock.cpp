@@ -50,7 +50,8 @@ void ChipClock::advance() {
   tick_.notify(sc_core::SC_ZERO_TIME);
 }
 
-// The ports' work of the cycles before `cycle`, each with its own cycle's number. Work that has waited while the device slept is made up for.
+// The ports' work of the cycles before `cycle`, each with its own cycle's number. Work that has waited while the device slept is
+// made up for.
 void ChipClock::serve_ports(uint64_t before) {
   const uint64_t now = cycle_;
   while (port_due_ < before) {

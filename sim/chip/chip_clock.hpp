@@ -3,9 +3,9 @@
 // A cycle is 1 ns. Units run at its beginning; what they hand over is dealt with in the later phases of the same cycle, so that
 // no result depends on the order in which SystemC runs processes. The clock ticks only while a unit is awake.
 //
-// A SystemC process costs more than a cycle of the golden model. So whoever drives the device may run on, cycle after cycle within one
-// process, as long as SystemC has nothing to do (run_on()): SystemC's time then stands still, cycle() goes on, and every notification is
-// made relative to cycle(). What ports do in their phase needs no process for the same reason (PortWork).
+// A SystemC process costs more than a cycle of the golden model. So whoever drives the device may run on, cycle after cycle
+// within one process, as long as SystemC has nothing to do (run_on()): SystemC's time then stands still, cycle() goes on, and
+// every notification is made relative to cycle(). What ports do in their phase needs no process for the same reason (PortWork).
 #pragma once
 
 #include <cstdint>
@@ -59,8 +59,8 @@ class ChipClock : public sc_core::sc_module {
   void wake();
   void sleep();
 
-  /// For the only process that is awake, at the end of its work in the phase of the units: true if it shall go on with the next cycle at once,
-  /// which has begun then; false if something else comes first, and tick() will call it again.
+  /// For the only process that is awake, at the end of its work in the phase of the units: true if it shall go on with the next
+  /// cycle at once, which has begun then; false if something else comes first, and tick() will call it again.
   bool run_on();
   /// Cycles, counted from the present one, in which nothing but the units acts: at least 1.
   uint64_t quiet_cycles() const;

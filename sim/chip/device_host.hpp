@@ -84,7 +84,7 @@ class DeviceHost : public sc_core::sc_module {
   uint32_t pending_unit_ = 0;
   std::array<uint32_t, kMostUnits> given_{};  // [unit] kernels that have not ended
   uint32_t given_in_all_ = 0;
-  bool released_ = false;                     // pixels, in this cycle
+  bool released_ = false;  // pixels, in this cycle
   uint64_t busy_cycles_ = 0, transfers_ = 0;
 };
 

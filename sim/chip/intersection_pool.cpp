@@ -3,7 +3,9 @@
 namespace raypool::chip {
 
 IntersectionPool::IntersectionPool(const sc_core::sc_module_name& name, ChipClock& clock, PixelLedger& ledger, int capacity)
-    : sc_module(name), clock_(clock), ledger_(ledger), capacity_(static_cast<size_t>(capacity)), work_(clock, [this] { serve(); }) {}
+    : sc_module(name), clock_(clock), ledger_(ledger), capacity_(static_cast<size_t>(capacity)), work_(clock, [this] {
+        serve();
+      }) {}
 
 void IntersectionPool::want(uint32_t unit, ImportKind kind) {
   wanting_ = kind;
