@@ -10,7 +10,7 @@ function(arith_bench name top)
   target_include_directories(${name} SYSTEM PRIVATE ${VERILATOR_ROOT}/include)  # its headers warn
   verilate(${name} SOURCES ${arith_unit}/${top}.v ${ARGN} TOP_MODULE ${top} PREFIX V${top} INCLUDE_DIRS ${arith_rtl}
     OPT_SLOW -w OPT_FAST -O2 -w OPT_GLOBAL -O1 -w
-    VERILATOR_ARGS --default-language 1364-2005 -DSYNTHESIS -O3 --x-assign fast --x-initial fast)
+    VERILATOR_ARGS --default-language 1364-2005 -DSYNTHESIS --output-split 10000 --output-split-cfuncs 1000 -O3 --x-assign fast --x-initial fast)
   # Tests named Long run in `make numerics-long`.
   gtest_discover_tests(${name} WORKING_DIRECTORY ${CMAKE_SOURCE_DIR} DISCOVERY_TIMEOUT 60 TEST_FILTER "-*Long*")
 endfunction()
@@ -64,6 +64,6 @@ foreach(format IN ITEMS "16 5 10" "8 4 3")
   verilate(small_floats_test SOURCES ${arith_unit}/small_floats.v ${arith_rtl}/float_adder.v ${arith_rtl}/float_multiplier.v
       ${arith_rtl}/float_fma.v ${arith_rtl}/multiply_tree.v
     TOP_MODULE small_floats PREFIX Vsmall_floats_${bits} INCLUDE_DIRS ${arith_rtl} OPT_SLOW -w OPT_FAST -O2 -w OPT_GLOBAL -O1 -w
-    VERILATOR_ARGS --default-language 1364-2005 -DSYNTHESIS -O3 --x-assign fast --x-initial fast -GEXPONENT_BITS=${exponent} -GMANTISSA_BITS=${mantissa})
+    VERILATOR_ARGS --default-language 1364-2005 -DSYNTHESIS --output-split 10000 --output-split-cfuncs 1000 -O3 --x-assign fast --x-initial fast -GEXPONENT_BITS=${exponent} -GMANTISSA_BITS=${mantissa})
 endforeach()
 gtest_discover_tests(small_floats_test WORKING_DIRECTORY ${CMAKE_SOURCE_DIR} DISCOVERY_TIMEOUT 60 TEST_FILTER "-*Long*")
