@@ -58,7 +58,7 @@ SYNTH := PYTHONPATH=scripts python3 -m synth
 SYNTH_OPTIONS := --config "$$CONFIG" --memories "$$MEMORIES" $${LIBERTY:+--liberty "$$LIBERTY"} $${CLOCK:+--clock "$$CLOCK"}
 UNIT_OF_ENGINE := $(if $(filter rtl lockstep,$(ENGINE)),$(UNIT),true)
 
-.PHONY: help sim run cosim configurations mutants unit test lint format bench clean setup-% program configured-% numerics-long proofs synth synth-replay synth-prove growth numerics extremes
+.PHONY: help sim run cosim configurations mutants unit test lint format bench clean setup-% program configured-% numerics-long proofs synth synth-replay synth-prove growth numerics extremes isa
 
 help: ## this list
 	@echo 'raypool: a ray-tracing GPU to render on, measure, verify and synthesise'
@@ -103,6 +103,9 @@ mutants: setup-sim setup-lint program ## small faults put into the RTL: which do
 	@scripts/mutants.sh $(BUILD)/mutants tb/mutants/2w2c.json "$$MUTANTS" 1
 	@$(BUILD)/raypool_mutants --unit $(BUILD)/mutants/libraypool_unit.so --list $(BUILD)/mutants/list.txt --config tb/mutants/2w2c.json \
 	  --survivors tb/mutants/survivors.json --json $(BUILD)/mutants/outcomes.json
+
+isa: setup-sim program ## write what is derived from the tables of ALU types and instructions
+	@$(RAYPOOL) isa --write
 
 unit: setup-sim program ## Verilate CUS compute units of CONFIG (WAVES=1: with waveforms)
 	@$(UNIT) --units "$$CUS"

@@ -5,21 +5,7 @@ module compute_unit #(
   parameter integer WARPS = 8,
   parameter integer LANES = 8,
   parameter integer STACK_DEPTH = 8,
-  parameter integer TID_COUNT = 1,
-  parameter integer BRH_COUNT = 1,
-  parameter integer INT_COUNT = 1,
-  parameter integer FLT_COUNT = 1,
-  parameter integer SLW_COUNT = 1,
-  parameter integer TID_LATENCY = 1,
-  parameter integer BRH_LATENCY = 1,
-  parameter integer INT_LATENCY = 1,
-  parameter integer FLT_LATENCY = 1,
-  parameter integer SLW_LATENCY = 1,
-  parameter integer TID_DEPTH = 1,
-  parameter integer BRH_DEPTH = 2,
-  parameter integer INT_DEPTH = 2,
-  parameter integer FLT_DEPTH = 3,
-  parameter integer SLW_DEPTH = 11,
+`include "alu_parameters.vh"
   parameter integer ICACHE_BYTES = 4096,
   parameter integer DCACHE_BYTES = 8192,
   parameter integer DCACHE_MSHRS = 4,
@@ -102,19 +88,7 @@ module compute_unit #(
 );
 `include "isa.vh"
   localparam integer DATA = LANES * 32;
-  localparam integer UNITS = 7;
-  // ALU instances, by type in the order of the unit numbers
-  localparam integer TID_SLOT = 0;
-  localparam integer BRH_SLOT = TID_SLOT + TID_COUNT;
-  localparam integer MEM_SLOT = BRH_SLOT + BRH_COUNT;
-  localparam integer INT_SLOT = MEM_SLOT + 1;
-  localparam integer FLT_SLOT = INT_SLOT + INT_COUNT;
-  localparam integer SLW_SLOT = FLT_SLOT + FLT_COUNT;
-  localparam integer RAY_SLOT = SLW_SLOT + SLW_COUNT;
-  localparam integer SLOTS = RAY_SLOT + 1;
-  localparam [SLOTS*4-1:0] SLOT_UNITS = {ISA_UNIT_RAY, {SLW_COUNT{ISA_UNIT_SLW}}, {FLT_COUNT{ISA_UNIT_FLT}},
-                                         {INT_COUNT{ISA_UNIT_INT}}, ISA_UNIT_MEM, {BRH_COUNT{ISA_UNIT_BRH}},
-                                         {TID_COUNT{ISA_UNIT_TID}}};
+`include "alu_slots.vh"
 
   generate
     if (WARPS < 1 || WARPS > 32 || (WARPS & (WARPS - 1)) != 0) begin : gen_bad_warps
@@ -125,10 +99,6 @@ module compute_unit #(
     end
     if (STACK_DEPTH < 2 || STACK_DEPTH > 32) begin : gen_bad_stack
       compute_unit_STACK_DEPTH_must_be_from_2_to_32 illegal ();
-    end
-    if (TID_COUNT < 1 || TID_COUNT > 4 || BRH_COUNT < 1 || BRH_COUNT > 4 || INT_COUNT < 1 || INT_COUNT > 4 || FLT_COUNT < 1 ||
-        FLT_COUNT > 4 || SLW_COUNT < 1 || SLW_COUNT > 4) begin : gen_bad_count
-      compute_unit_counts_of_ALUs_must_be_from_1_to_4 illegal ();
     end
   endgenerate
 
@@ -240,49 +210,7 @@ module compute_unit #(
         .block_i(block), .blocks_i(blocks), .threads_i(threads), .argument_write_i(argument_write_i),
         .argument_index_i(argument_index_i), .argument_data_i(argument_data_i));
     end
-    for (k = 0; k < BRH_COUNT; k = k + 1) begin : gen_brh
-      brh_alu #(.WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS), .LATENCY(BRH_LATENCY), .DEPTH(BRH_DEPTH), .SUBNORMALS(SUBNORMALS)) brh_alu (
-        .clk_i(clk_i), .rst_ni(rst_ni),
-        .task_valid_i(task_valid[BRH_SLOT + k]), .task_warp_i(task_warp[(BRH_SLOT + k)*WARP_BITS +: WARP_BITS]), .task_op_i(task_op[(BRH_SLOT + k)*5 +: 5]),
-        .task_mask_i(task_mask[(BRH_SLOT + k)*LANES +: LANES]), .task_a_i(task_a[(BRH_SLOT + k)*DATA +: DATA]), .task_b_i(task_b[(BRH_SLOT + k)*DATA +: DATA]),
-        .task_imm_i(task_imm[(BRH_SLOT + k)*32 +: 32]), .task_x_i(task_x[(BRH_SLOT + k)*5 +: 5]),
-        .task_px_i(task_px[(BRH_SLOT + k)*LANES +: LANES]), .task_pb_i(task_pb[(BRH_SLOT + k)*LANES +: LANES]),
-        .ready_o(ready[BRH_SLOT + k]), .done_valid_o(done_valid[BRH_SLOT + k]), .done_warp_o(done_warp[(BRH_SLOT + k)*WARP_BITS +: WARP_BITS]),
-        .done_data_o(done_data[(BRH_SLOT + k)*DATA +: DATA]), .done_pred_o(done_pred[(BRH_SLOT + k)*LANES +: LANES]));
-    end
-    for (k = 0; k < INT_COUNT; k = k + 1) begin : gen_int
-      int_alu #(.WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS), .LATENCY(INT_LATENCY), .DEPTH(INT_DEPTH)) int_alu (
-        .clk_i(clk_i), .rst_ni(rst_ni),
-        .task_valid_i(task_valid[INT_SLOT + k]), .task_warp_i(task_warp[(INT_SLOT + k)*WARP_BITS +: WARP_BITS]), .task_op_i(task_op[(INT_SLOT + k)*5 +: 5]),
-        .task_mask_i(task_mask[(INT_SLOT + k)*LANES +: LANES]), .task_a_i(task_a[(INT_SLOT + k)*DATA +: DATA]), .task_b_i(task_b[(INT_SLOT + k)*DATA +: DATA]),
-        .task_imm_i(task_imm[(INT_SLOT + k)*32 +: 32]), .task_x_i(task_x[(INT_SLOT + k)*5 +: 5]),
-        .task_px_i(task_px[(INT_SLOT + k)*LANES +: LANES]), .task_pb_i(task_pb[(INT_SLOT + k)*LANES +: LANES]),
-        .ready_o(ready[INT_SLOT + k]), .done_valid_o(done_valid[INT_SLOT + k]), .done_warp_o(done_warp[(INT_SLOT + k)*WARP_BITS +: WARP_BITS]),
-        .done_data_o(done_data[(INT_SLOT + k)*DATA +: DATA]), .done_pred_o(done_pred[(INT_SLOT + k)*LANES +: LANES]));
-    end
-    for (k = 0; k < FLT_COUNT; k = k + 1) begin : gen_flt
-      flt_alu #(.WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS), .LATENCY(FLT_LATENCY), .DEPTH(FLT_DEPTH), .SUBNORMALS(SUBNORMALS),
-                .FMA(FMA)) flt_alu (
-        .clk_i(clk_i), .rst_ni(rst_ni),
-        .task_valid_i(task_valid[FLT_SLOT + k]), .task_warp_i(task_warp[(FLT_SLOT + k)*WARP_BITS +: WARP_BITS]), .task_op_i(task_op[(FLT_SLOT + k)*5 +: 5]),
-        .task_mask_i(task_mask[(FLT_SLOT + k)*LANES +: LANES]), .task_a_i(task_a[(FLT_SLOT + k)*DATA +: DATA]), .task_b_i(task_b[(FLT_SLOT + k)*DATA +: DATA]),
-        .task_c_i(task_c[(FLT_SLOT + k)*DATA +: DATA]),
-        .task_imm_i(task_imm[(FLT_SLOT + k)*32 +: 32]), .task_x_i(task_x[(FLT_SLOT + k)*5 +: 5]),
-        .task_px_i(task_px[(FLT_SLOT + k)*LANES +: LANES]), .task_pb_i(task_pb[(FLT_SLOT + k)*LANES +: LANES]),
-        .ready_o(ready[FLT_SLOT + k]), .done_valid_o(done_valid[FLT_SLOT + k]), .done_warp_o(done_warp[(FLT_SLOT + k)*WARP_BITS +: WARP_BITS]),
-        .done_data_o(done_data[(FLT_SLOT + k)*DATA +: DATA]), .done_pred_o(done_pred[(FLT_SLOT + k)*LANES +: LANES]));
-    end
-    for (k = 0; k < SLW_COUNT; k = k + 1) begin : gen_slw
-      slw_alu #(.WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS), .LATENCY(SLW_LATENCY), .DEPTH(SLW_DEPTH), .SUBNORMALS(SUBNORMALS),
-                .SLOW_UNIT(SLOW_UNIT)) slw_alu (
-        .clk_i(clk_i), .rst_ni(rst_ni),
-        .task_valid_i(task_valid[SLW_SLOT + k]), .task_warp_i(task_warp[(SLW_SLOT + k)*WARP_BITS +: WARP_BITS]), .task_op_i(task_op[(SLW_SLOT + k)*5 +: 5]),
-        .task_mask_i(task_mask[(SLW_SLOT + k)*LANES +: LANES]), .task_a_i(task_a[(SLW_SLOT + k)*DATA +: DATA]), .task_b_i(task_b[(SLW_SLOT + k)*DATA +: DATA]),
-        .task_imm_i(task_imm[(SLW_SLOT + k)*32 +: 32]), .task_x_i(task_x[(SLW_SLOT + k)*5 +: 5]),
-        .task_px_i(task_px[(SLW_SLOT + k)*LANES +: LANES]), .task_pb_i(task_pb[(SLW_SLOT + k)*LANES +: LANES]),
-        .ready_o(ready[SLW_SLOT + k]), .done_valid_o(done_valid[SLW_SLOT + k]), .done_warp_o(done_warp[(SLW_SLOT + k)*WARP_BITS +: WARP_BITS]),
-        .done_data_o(done_data[(SLW_SLOT + k)*DATA +: DATA]), .done_pred_o(done_pred[(SLW_SLOT + k)*LANES +: LANES]));
-    end
+`include "alu_instances.vh"
   endgenerate
 
   mem_alu #(.WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS), .CACHE_BYTES(DCACHE_BYTES), .MSHRS(DCACHE_MSHRS)) mem_alu (

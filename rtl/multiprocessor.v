@@ -9,21 +9,7 @@ module multiprocessor #(
   parameter integer WARPS = 8,
   parameter integer LANES = 8,
   parameter integer STACK_DEPTH = 8,
-  parameter integer TID_COUNT = 1,
-  parameter integer BRH_COUNT = 1,
-  parameter integer INT_COUNT = 1,
-  parameter integer FLT_COUNT = 1,
-  parameter integer SLW_COUNT = 1,
-  parameter integer TID_LATENCY = 1,
-  parameter integer BRH_LATENCY = 1,
-  parameter integer INT_LATENCY = 1,
-  parameter integer FLT_LATENCY = 1,
-  parameter integer SLW_LATENCY = 1,
-  parameter integer TID_DEPTH = 1,
-  parameter integer BRH_DEPTH = 2,
-  parameter integer INT_DEPTH = 2,
-  parameter integer FLT_DEPTH = 3,
-  parameter integer SLW_DEPTH = 11,
+`include "alu_parameters.vh"
   parameter integer ICACHE_BYTES = 4096,
   parameter integer DCACHE_BYTES = 8192,
   parameter integer DCACHE_MSHRS = 4,
@@ -139,10 +125,9 @@ module multiprocessor #(
   generate
     for (u = 0; u < UNITS; u = u + 1) begin : gen_unit
       compute_unit #(
-        .WARPS(WARPS), .LANES(LANES), .STACK_DEPTH(STACK_DEPTH), .TID_COUNT(TID_COUNT), .BRH_COUNT(BRH_COUNT), .INT_COUNT(INT_COUNT),
-        .FLT_COUNT(FLT_COUNT), .SLW_COUNT(SLW_COUNT), .TID_LATENCY(TID_LATENCY), .BRH_LATENCY(BRH_LATENCY),
-        .INT_LATENCY(INT_LATENCY), .FLT_LATENCY(FLT_LATENCY), .SLW_LATENCY(SLW_LATENCY), .TID_DEPTH(TID_DEPTH),
-        .BRH_DEPTH(BRH_DEPTH), .INT_DEPTH(INT_DEPTH), .FLT_DEPTH(FLT_DEPTH), .SLW_DEPTH(SLW_DEPTH), .ICACHE_BYTES(ICACHE_BYTES),
+        .WARPS(WARPS), .LANES(LANES), .STACK_DEPTH(STACK_DEPTH),
+`include "alu_parameter_map.vh"
+        .ICACHE_BYTES(ICACHE_BYTES),
         .DCACHE_BYTES(DCACHE_BYTES), .DCACHE_MSHRS(DCACHE_MSHRS), .SUBNORMALS(SUBNORMALS), .SLOW_UNIT(SLOW_UNIT), .FMA(FMA),
         .WARP_BITS(WARP_BITS)
       ) compute_unit (

@@ -11,6 +11,8 @@
 #include <regex>
 #include <sstream>
 
+#include "isa/reference.hpp"
+
 namespace raypool {
 namespace {
 
@@ -20,9 +22,8 @@ using Json = nlohmann::ordered_json;
 constexpr std::array<std::string_view, 2> kSubnormalNames = {"ieee", "flush"};
 constexpr std::array<std::string_view, 4> kSlowUnitNames = {"exact", "newton2", "newton1", "newton0"};
 
-constexpr std::array<int, kUnits> kLeastDepth = {1, 2, 0, 2, 3, 11, 0};
 constexpr int kLeastFusedDepth = 5;  // of flt, whose additions and multiplications go through the fused unit
-bool is_fixed(size_t unit) { return kLeastDepth[unit] == 0; }
+bool is_fixed(size_t unit) { return kUnitTable[unit].timed_by_events(); }
 
 bool is_power_of_two(int value) { return value > 0 && (value & (value - 1)) == 0; }
 
@@ -217,7 +218,7 @@ Configuration parse_configuration(const std::string& json, const std::string& wh
 }
 
 int least_depth(const Configuration& configuration, Unit unit) {
-  return unit == Unit::Flt && configuration.fma ? kLeastFusedDepth : kLeastDepth[static_cast<size_t>(unit)];
+  return unit == Unit::Flt && configuration.fma ? kLeastFusedDepth : unit_info(unit).depth;
 }
 
 void check_configuration(const Configuration& configuration, const std::string& where) {
@@ -285,9 +286,7 @@ std::vector<std::pair<std::string, int>> verilog_parameters(const Configuration&
                                Column{"_DEPTH", &AluConfiguration::depth}}) {
     for (size_t unit = 0; unit < kUnits; ++unit) {
       if (is_fixed(unit)) continue;
-      std::string name(kUnitNames[unit]);
-      for (char& c : name) c = static_cast<char>(c - 'a' + 'A');
-      parameters.emplace_back(name + column.suffix, configuration.alus[unit].*column.value);
+      parameters.emplace_back(verilog_name(static_cast<Unit>(unit)) + column.suffix, configuration.alus[unit].*column.value);
     }
   }
   parameters.emplace_back("ICACHE_BYTES", configuration.instruction_cache_bytes);

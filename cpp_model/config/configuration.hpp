@@ -22,12 +22,19 @@ struct AluConfiguration {
   int depth = 1;    ///< pipeline stages; not used by mem and ray
 };
 
+/// One instance of each type, a task each cycle, as deep as the type's table row says.
+inline constexpr std::array<AluConfiguration, kUnits> default_alus() {
+  std::array<AluConfiguration, kUnits> alus{};
+  for (size_t unit = 0; unit < kUnits; ++unit) alus[unit].depth = kUnitTable[unit].depth;
+  return alus;
+}
+
 struct Configuration {
   std::string name = "8w8c";
   int warps = 8;
   int cores = 8;  ///< lanes, and threads in a warp
   int stack_depth = 8;
-  std::array<AluConfiguration, kUnits> alus = {{{1, 1, 1}, {1, 1, 2}, {1, 1, 2}, {1, 1, 2}, {1, 1, 3}, {1, 1, 11}, {1, 1, 2}}};
+  std::array<AluConfiguration, kUnits> alus = default_alus();
   int instruction_cache_bytes = 4096;
   int data_cache_bytes = 8192;
   int data_cache_mshrs = 4;

@@ -87,7 +87,10 @@ TEST(Configuration, WrittenAndReadAgainIsTheSame) {
   configuration.warps = 16;
   configuration.cores = 2;
   configuration.stack_depth = 5;
-  configuration.alus = {{{2, 3, 4}, {1, 2, 3}, {1, 1, 2}, {3, 4, 5}, {4, 5, 6}, {2, 11, 12}, {1, 1, 2}}};
+  for (int unit = 0; unit < kUnits; ++unit) {
+    AluConfiguration& alu = configuration.alus[static_cast<size_t>(unit)];
+    if (!kUnitTable[unit].timed_by_events()) alu = {1 + unit % 4, 2 + unit, alu.depth + 2 + unit % 3};
+  }
   configuration.instruction_cache_bytes = 1024;
   configuration.data_cache_bytes = 2048;
   configuration.data_cache_mshrs = 7;
@@ -98,7 +101,7 @@ TEST(Configuration, WrittenAndReadAgainIsTheSame) {
   const Configuration read = load_configuration(file.path());
   EXPECT_TRUE(equal(read, configuration));
   EXPECT_EQ(verilog_parameters(read), verilog_parameters(configuration));
-  EXPECT_EQ(read.alu(Unit::Slw).depth, 12);
+  EXPECT_EQ(read.alu(Unit::Slw).depth, 15);
   EXPECT_EQ(read.slow_unit, SlowUnit::Newton1);
   EXPECT_TRUE(read.fma);
 }
@@ -173,17 +176,22 @@ TEST(Configuration, FolderOfTheEnvironmentComesFirst) {
   EXPECT_EQ(load_configuration("8w8c").warps, 8);
 }
 
-TEST(Configuration, VerilogParametersAreThoseOfTheComputeUnitInOrder) {
-  // The port list is the contract: each `parameter integer NAME = VALUE` with the default configuration's value, but for derived
-  // ones.
-  std::ifstream file("rtl/compute_unit.v");
-  ASSERT_TRUE(file.good()) << "run the tests from the repository's root";
-  std::vector<std::pair<std::string, int>> declared;
+/// Appends each `parameter integer NAME = VALUE` of a module's parameter list, also of what it includes.
+void read_parameters(const std::string& path, std::vector<std::pair<std::string, int>>& declared) {
+  std::ifstream file(path);
+  ASSERT_TRUE(file.good()) << path << ": run the tests from the repository's root";
   for (std::string line; std::getline(file, line) && line.find(") (") == std::string::npos;) {
     char name[64];
     int value = 0;
     if (std::sscanf(line.c_str(), " parameter integer %63[A-Z_] = %d", name, &value) == 2) declared.emplace_back(name, value);
+    if (std::sscanf(line.c_str(), " `include \"%63[a-z_.]\"", name) == 1) read_parameters(std::string("rtl/") + name, declared);
   }
+}
+
+TEST(Configuration, VerilogParametersAreThoseOfTheComputeUnitInOrder) {
+  // The port list is the contract: parameters with the default configuration's values, but for derived ones.
+  std::vector<std::pair<std::string, int>> declared;
+  read_parameters("rtl/compute_unit.v", declared);
   const auto parameters = verilog_parameters(Configuration{});
   ASSERT_GE(declared.size(), parameters.size());
   declared.resize(parameters.size());

@@ -1,4 +1,5 @@
-// The one instruction table. Decoder, encoder, assembler, disassembler, rtl/isa.vh and docs/isa.md are derived from it.
+// The one table of ALU types and instructions. Decoder, encoder, assembler, disassembler, configuration keys, Verilog parameters,
+// rtl/*.vh and docs/isa.md are derived from it. docs/add-an-alu.md adds a type.
 //
 // Encoding of an instruction, 64 bits:
 //   63:60 unit | 59:55 operation | 54 guard negated | 53:50 guard predicate | 49:46 rd (or pd) | 45:42 ra | 41:38 rb (or pb)
@@ -6,15 +7,73 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <string_view>
 
 namespace raypool {
 
+// The ALU types, a row each in the order of their numbers.
+//   type        enumerator of Unit; its number is the unit field of an instruction
+//   name        three lower-case letters: key of the configuration, prefix of the Verilog parameters, module <name>_alu
+//   depth       least pipeline depth, which is what the function needs at speed, and the default one; 0: timed by events
+//   ports       Framework: those of docs/architecture.md, section 3; rtl/alu_instances.vh places it. Own: rtl/compute_unit.v does
+//   parameters  of the module beside the framework's, as rtl/compute_unit.v names them, separated by ", "
+//   title       for docs/isa.md
+// CORE: FunctionalCore executes the type. CLASS: a class derived from FunctionUnit does, and the ports are the framework's.
+// clang-format off
+#define RAYPOOL_UNITS(CORE, CLASS) \
+  CORE(Tid, "tid",  1, Own,       "",                       "indices, dimensions, arguments") \
+  CORE(Brh, "brh",  2, Framework, "SUBNORMALS",             "compares, predicates, control") \
+  CORE(Mem, "mem",  0, Own,       "",                       "memory") \
+  CORE(Int, "int",  2, Framework, "",                       "integer and logic") \
+  CORE(Flt, "flt",  3, Framework, "SUBNORMALS, FMA",        "single-precision float") \
+  CORE(Slw, "slw", 11, Framework, "SUBNORMALS, SLOW_UNIT",  "slow float: division and square roots") \
+  CORE(Ray, "ray",  0, Own,       "",                       "ray packages") \
+  /* The table ends here: the backslash above lets a row follow it. */
+// clang-format on
+
 /// ALU types. The value is the unit field of an instruction.
-enum class Unit : uint8_t { Tid = 0, Brh = 1, Mem = 2, Int = 3, Flt = 4, Slw = 5, Ray = 6 };
-inline constexpr int kUnits = 7;
-inline constexpr std::array<std::string_view, kUnits> kUnitNames = {"tid", "brh", "mem", "int", "flt", "slw", "ray"};
+enum class Unit : uint8_t {
+#define RAYPOOL_CORE(type, name, depth, ports, parameters, title) type,
+#define RAYPOOL_CLASS(type, name, depth, parameters, title) type,
+  RAYPOOL_UNITS(RAYPOOL_CORE, RAYPOOL_CLASS)
+#undef RAYPOOL_CORE
+#undef RAYPOOL_CLASS
+};
+
+enum class Ports : uint8_t { Framework, Own };
+
+struct UnitInfo {
+  std::string_view name;
+  int depth;
+  Ports ports;
+  std::string_view parameters;  ///< separated by ", "
+  std::string_view title;
+  bool timed_by_events() const { return depth == 0; }
+};
+
+inline constexpr UnitInfo kUnitTable[] = {
+#define RAYPOOL_CORE(type, name, depth, ports, parameters, title) {name, depth, Ports::ports, parameters, title},
+#define RAYPOOL_CLASS(type, name, depth, parameters, title) {name, depth, Ports::Framework, parameters, title},
+    RAYPOOL_UNITS(RAYPOOL_CORE, RAYPOOL_CLASS)
+#undef RAYPOOL_CORE
+#undef RAYPOOL_CLASS
+};
+
+inline constexpr int kUnits = static_cast<int>(std::size(kUnitTable));
+static_assert(kUnits <= 8, "the performance counters have room for eight ALU types");
+
+inline constexpr std::array<std::string_view, kUnits> kUnitNames = {
+#define RAYPOOL_CORE(type, name, depth, ports, parameters, title) name,
+#define RAYPOOL_CLASS(type, name, depth, parameters, title) name,
+    RAYPOOL_UNITS(RAYPOOL_CORE, RAYPOOL_CLASS)
+#undef RAYPOOL_CORE
+#undef RAYPOOL_CLASS
+};
+
+inline constexpr const UnitInfo& unit_info(Unit unit) { return kUnitTable[static_cast<size_t>(unit)]; }
 
 /// One operand in the order of the assembly text, and where it is encoded.
 enum class Operand : uint8_t {

@@ -103,6 +103,21 @@ TEST(InstructionTable, RowsHaveDistinctEncodingsAndNames) {
   }
 }
 
+TEST(UnitTable, NamesAreThreeLowerCaseLettersAndDistinct) {
+  std::set<std::string_view> names;
+  for (const UnitInfo& info : kUnitTable) {
+    EXPECT_EQ(info.name.size(), 3u) << info.name;
+    EXPECT_EQ(info.name.find_first_not_of("abcdefghijklmnopqrstuvwxyz"), std::string_view::npos) << info.name;
+    EXPECT_TRUE(names.insert(info.name).second) << info.name;
+  }
+}
+
+TEST(UnitTable, ThirdOperandsReachFltOnly) {
+  for (const InstructionInfo& info : kInstructions) {
+    EXPECT_TRUE(info.unit == Unit::Flt || !has_operand(info, Operand::Rc)) << info.mnemonic;
+  }
+}
+
 TEST(Encoding, FieldsCoverAllBitsOnce) {
   uint64_t covered = 0;
   for (const Field& each : kFields) {
@@ -251,9 +266,7 @@ TEST(Assembler, ErrorsNameLineColumnAndRemedy) {
 }
 
 TEST(Generated, CheckedInFilesAreThoseOfTheTable) {
-  EXPECT_EQ(read("rtl/isa.vh"), isa_verilog()) << "raypool isa --verilog > rtl/isa.vh";
-  EXPECT_EQ(read("rtl/isa_functions.vh"), isa_verilog_functions()) << "raypool isa --verilog-functions > rtl/isa_functions.vh";
-  EXPECT_EQ(read("docs/isa.md"), isa_markdown()) << "raypool isa --markdown > docs/isa.md";
+  for (const GeneratedFile& file : generated_files()) EXPECT_EQ(read(file.path), file.text) << "make isa";
 }
 
 TEST(Generated, ReferenceNamesEveryInstruction) {

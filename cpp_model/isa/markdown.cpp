@@ -57,10 +57,6 @@ const char* marks(const InstructionInfo& info) {
   return info.control ? "*c*" : "";
 }
 
-constexpr const char* kUnitTitles[kUnits] = {
-    "indices, dimensions, arguments", "compares, predicates, control",         "memory",      "integer and logic",
-    "single-precision float",         "slow float: division and square roots", "ray packages"};
-
 constexpr const char* kIntroduction = R"(# Instruction set
 
 Generated from the one table, `cpp_model/isa/isa.hpp`, by `raypool isa --markdown`; a test compares. Do not edit.
@@ -125,7 +121,7 @@ std::string isa_markdown() {
       "write-back. Rows marked *fma* are there in configurations with `arithmetic.fma` only.\n";
   for (int unit = 0; unit < kUnits; ++unit) {
     text += fmt::format("\n### {}: {} (unit {})\n\n| op | instruction | | meaning |\n| --- | --- | --- | --- |\n",
-                        kUnitNames[static_cast<size_t>(unit)], kUnitTitles[unit], unit);
+                        kUnitTable[unit].name, kUnitTable[unit].title, unit);
     for (const InstructionInfo& info : kInstructions) {
       if (static_cast<int>(info.unit) != unit) continue;
       text += fmt::format("| {} | `{}` | {} | {} |\n", info.operation, syntax(info), marks(info), info.meaning);

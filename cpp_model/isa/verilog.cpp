@@ -15,8 +15,6 @@ std::string upper(std::string_view text) {
   return result;
 }
 
-std::string unit_name(Unit unit) { return upper(kUnitNames[static_cast<size_t>(unit)]); }
-
 /// Case labels, one line a unit, of the rows for which `wanted` is true. `separator` stands between unit and operation.
 template <typename Wanted>
 std::string labels(Wanted wanted) {
@@ -64,6 +62,8 @@ constexpr const char* kGenerated =
 
 }  // namespace
 
+std::string verilog_name(Unit unit) { return upper(unit_info(unit).name); }
+
 std::string isa_verilog() {
   std::string text = fmt::format(fmt::runtime(kGenerated), "--verilog");
   text +=
@@ -72,11 +72,11 @@ std::string isa_verilog() {
   text += "  // A module uses some of them only.\n  /* verilator lint_off UNUSEDPARAM */\n\n";
   text += "  // units\n";
   for (int unit = 0; unit < kUnits; ++unit) {
-    text += fmt::format("  localparam [3:0] ISA_UNIT_{} = 4'd{};\n", unit_name(static_cast<Unit>(unit)), unit);
+    text += fmt::format("  localparam [3:0] ISA_UNIT_{} = 4'd{};\n", verilog_name(static_cast<Unit>(unit)), unit);
   }
   text += "\n  // operations\n";
   for (const InstructionInfo& info : kInstructions) {
-    text += fmt::format("  localparam [4:0] ISA_{}_{} = 5'd{};\n", unit_name(info.unit), upper(info.mnemonic), info.operation);
+    text += fmt::format("  localparam [4:0] ISA_{}_{} = 5'd{};\n", verilog_name(info.unit), upper(info.mnemonic), info.operation);
   }
   text += "\n  // fields of an instruction\n";
   for (const Field& each : kFields) {

@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "machine/function_unit.hpp"
+
 namespace raypool {
 namespace {
 
@@ -399,10 +401,32 @@ void FunctionalCore::execute_data(const DecodedInstruction& instruction, Warp& w
     case code(Unit::Slw, 2):
       map([mode](uint32_t x, uint32_t) { return arith::rsqrt(x, mode); });
       break;
-    default:
+    case code(Unit::Slw, 3):
       map([mode](uint32_t x, uint32_t) { return arith::rcp(x, mode); });
       break;
+
+    default:
+      execute_class(instruction, warp, rd, a, b);
+      break;
   }
+}
+
+// A type that the core does not know: lane by lane, so that rd may be a source.
+void FunctionalCore::execute_class(const DecodedInstruction& instruction, Warp& warp, uint32_t* rd, const uint32_t* a,
+                                   const uint32_t* b) {
+  const FunctionUnit& unit = *function_unit(instruction.info->unit);
+  const uint32_t px = warp.predicates[instruction.x & 15], pb = warp.predicates[instruction.rb];
+  uint32_t predicate = 0;
+  for (uint32_t mask = result_.mask; mask != 0; mask &= mask - 1) {
+    const uint32_t lane = static_cast<uint32_t>(__builtin_ctz(mask));
+    const LaneTask task = {a[lane], b[lane], instruction.immediate, instruction.x, (px >> lane & 1) != 0, (pb >> lane & 1) != 0};
+    const uint32_t value = unit.lane(instruction.info->operation, task, mode_);
+    if (instruction.writes_register) rd[lane] = value;
+    predicate |= (value & 1) << lane;
+  }
+  if (!instruction.writes_predicate) return;
+  result_.predicate = predicate;
+  if (instruction.rd != 0) warp.predicates[instruction.rd] = predicate;
 }
 
 // Loads and stores. All masked lanes are checked before any of them is served; misalignment is the first thing looked for.

@@ -149,6 +149,7 @@ class FunctionalCore {
   bool execute_memory(const DecodedInstruction& instruction, uint32_t* rd, const uint32_t* a, const uint32_t* b);
   template <int kLanes>
   bool execute_ray(const DecodedInstruction& instruction, Warp& warp, uint32_t* rd, const uint32_t* b);
+  void execute_class(const DecodedInstruction& instruction, Warp& warp, uint32_t* rd, const uint32_t* a, const uint32_t* b);
   bool execute_control(const DecodedInstruction& instruction, Warp& warp);
   bool fault(FaultCode code);
 

@@ -336,7 +336,7 @@ TEST_P(FunctionalCoreFault, IsReportedWithWarpAndPcAndStopsTheUnit) {
 
 INSTANTIATE_TEST_SUITE_P(
     All, FunctionalCoreFault,
-    testing::Values(FaultCase{"unit", {mov(1, 1), uint64_t{7} << 60}, FaultCode::IllegalInstruction, 1},
+    testing::Values(FaultCase{"unit", {mov(1, 1), uint64_t{15} << 60}, FaultCode::IllegalInstruction, 1},
                     FaultCase{"operation", {mov(1, 1), Encode("mov").field(31, 55)}, FaultCode::IllegalInstruction, 1},
                     FaultCase{
                         "without_fma", {mov(1, 1), Encode("ffma").rd(2).ra(1).rb(1).x(1)}, FaultCode::IllegalInstruction, 1},

@@ -64,6 +64,8 @@ int config_command(const ConfigOptions& options);
 /// `raypool isa`
 enum class IsaFormat { Verilog, VerilogFunctions, Markdown };
 int isa_command(IsaFormat format);
+/// `raypool isa --write`: every file that is derived from the table, in the checkout that the working directory is the root of.
+int isa_write_command();
 
 /// `raypool asm FILE`: hexadecimal words, one an instruction. `raypool disasm FILE`: back to text.
 int asm_command(const std::string& path, const std::string& out);

@@ -1,7 +1,13 @@
 // `raypool isa`
+#include <fmt/format.h>
+
 #include <cstdio>
+#include <filesystem>
 
 #include "cli/commands.hpp"
+#include "cli/output_folder.hpp"
+#include "cli/text_file.hpp"
+#include "isa/input_error.hpp"
 #include "isa/reference.hpp"
 
 namespace raypool {
@@ -11,6 +17,21 @@ int isa_command(IsaFormat format) {
                            : format == IsaFormat::VerilogFunctions ? isa_verilog_functions()
                                                                    : isa_markdown();
   std::fputs(text.c_str(), stdout);
+  return 0;
+}
+
+int isa_write_command() {
+  if (!std::filesystem::exists("cpp_model/isa/isa.hpp"))
+    throw InputError("there is no cpp_model/isa/isa.hpp here: run raypool isa --write in the root of the checkout");
+  for (const GeneratedFile& file : generated_files()) {
+    // What is right keeps its time stamp.
+    if (std::filesystem::exists(file.path) && read_text(file.path) == file.text) continue;
+    const std::filesystem::path path(file.path);
+    OutputFolder folder(path.parent_path());
+    folder.write(path.filename(), file.text);
+    folder.publish();
+    fmt::print("wrote {}\n", file.path);
+  }
   return 0;
 }
 

@@ -14,18 +14,16 @@ namespace {
 
 constexpr int kCandidates = 60;
 
-template <Unit kUnit, int AluConfiguration::*kMember>
-Factor alu_factor(const char* what, std::vector<int> values) {
-  return {fmt::format("{}.{}", kUnitNames[static_cast<size_t>(kUnit)], what), std::move(values),
-          [](Configuration& c, int value) { c.alus[static_cast<size_t>(kUnit)].*kMember = value; },
-          [](const Configuration& c) { return c.alu(kUnit).*kMember; }};
-}
-
-template <Unit kUnit>
-void add_alu(std::vector<Factor>& factors, std::vector<int> depths) {
-  factors.push_back(alu_factor<kUnit, &AluConfiguration::count>("count", {1, 2, 3, 4}));
-  factors.push_back(alu_factor<kUnit, &AluConfiguration::latency>("latency", {1, 2, 3, 16}));
-  factors.push_back(alu_factor<kUnit, &AluConfiguration::depth>("depth", std::move(depths)));
+void add_alu(std::vector<Factor>& factors, size_t unit) {
+  const auto add = [&](const char* what, int AluConfiguration::*member, std::vector<int> values) {
+    factors.push_back({fmt::format("{}.{}", kUnitNames[unit], what), std::move(values),
+                       [unit, member](Configuration& c, int value) { c.alus[unit].*member = value; },
+                       [unit, member](const Configuration& c) { return c.alus[unit].*member; }});
+  };
+  const int depth = kUnitTable[unit].depth;
+  add("count", &AluConfiguration::count, {1, 2, 3, 4});
+  add("latency", &AluConfiguration::latency, {1, 2, 3, 16});
+  add("depth", &AluConfiguration::depth, {depth, depth + 1, 32});
 }
 
 std::vector<Factor> make_factors() {
@@ -63,11 +61,8 @@ std::vector<Factor> make_factors() {
        [](Configuration& c, int v) { c.slow_unit = static_cast<SlowUnit>(v); },
        [](const Configuration& c) { return static_cast<int>(c.slow_unit); }},
   };
-  add_alu<Unit::Tid>(factors, {1, 2, 32});
-  add_alu<Unit::Brh>(factors, {2, 3, 32});
-  add_alu<Unit::Int>(factors, {2, 3, 32});
-  add_alu<Unit::Flt>(factors, {3, 4, 32});
-  add_alu<Unit::Slw>(factors, {11, 12, 32});
+  for (size_t unit = 0; unit < kUnits; ++unit)
+    if (!kUnitTable[unit].timed_by_events()) add_alu(factors, unit);
   return factors;
 }
 

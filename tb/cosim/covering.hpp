@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -14,8 +15,8 @@ namespace raypool {
 struct Factor {
   std::string name;
   std::vector<int> values;
-  void (*set)(Configuration& configuration, int value);
-  int (*get)(const Configuration& configuration);
+  std::function<void(Configuration& configuration, int value)> set;
+  std::function<int(const Configuration& configuration)> get;
 };
 const std::vector<Factor>& covering_factors();
 

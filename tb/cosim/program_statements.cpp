@@ -44,10 +44,10 @@ void ProgramStatements::body(int length, int loops, int entries) {
 
 const InstructionInfo& ProgramStatements::plain_row() {
   uint32_t total = 0;
-  for (const uint32_t weight : profile_.units) total += weight;
+  for (size_t type = 0; type < kUnits; ++type) total += profile_.weight(type);
   uint32_t pick = below(total);
   size_t unit = 0;
-  while (pick >= profile_.units[unit]) pick -= profile_.units[unit++];
+  while (pick >= profile_.weight(unit)) pick -= profile_.weight(unit++);
   for (;;) {
     const InstructionInfo& info = kInstructions[below(std::size(kInstructions))];
     if (static_cast<size_t>(info.unit) == unit && !info.control && configuration_.has(info.needs)) return info;

@@ -119,13 +119,18 @@ int run(int argc, char** argv) {
   config_app->callback([&] { code = config_command(config); });
 
   CLI::App* isa_app = app.add_subcommand("isa", "print the instruction table (default: as Markdown)");
-  bool verilog = false, functions = false, markdown = false;
+  bool verilog = false, functions = false, markdown = false, write = false;
   auto* isa_formats = isa_app->add_option_group("format");
   isa_formats->add_flag("--markdown", markdown, "docs/isa.md");
   isa_formats->add_flag("--verilog", verilog, "rtl/isa.vh: constants");
   isa_formats->add_flag("--verilog-functions", functions, "rtl/isa_functions.vh: decoding");
+  isa_formats->add_flag("--write", write, "all files that are derived from the table, in place");
   isa_formats->require_option(0, 1);
   isa_app->callback([&] {
+    if (write) {
+      code = isa_write_command();
+      return;
+    }
     code = isa_command(verilog ? IsaFormat::Verilog : functions ? IsaFormat::VerilogFunctions : IsaFormat::Markdown);
   });
 

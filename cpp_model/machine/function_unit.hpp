@@ -1,0 +1,46 @@
+// What a plain ALU computes: the golden model of a type that has a CLASS row in the table of isa.hpp. docs/add-an-alu.md adds
+// one.
+#pragma once
+
+#include <cstdint>
+
+#include "arith/arith.hpp"
+#include "isa/isa.hpp"
+
+namespace raypool {
+
+/// One lane's part of a task, as rtl/dispatcher.v hands it to the ALU.
+struct LaneTask {
+  uint32_t a = 0;          ///< register ra
+  uint32_t b = 0;          ///< register rb, or the immediate
+  uint32_t immediate = 0;  ///< the immediate, whatever b is
+  uint32_t x = 0;          ///< field x, 0 .. 31
+  bool px = false;         ///< of the predicate numbered x[3:0]
+  bool pb = false;         ///< of the predicate numbered rb
+};
+
+/// A function of the task alone: no lane sees another one, nothing is kept from task to task.
+class FunctionUnit {
+ public:
+  virtual ~FunctionUnit() = default;
+  /// The word for rd of an instruction that writes a register; of one that writes a predicate, 0 or 1. `operation` has a table
+  /// row.
+  virtual uint32_t lane(int operation, const LaneTask& task, arith::Mode mode) const = 0;
+};
+
+/// The model of a type with a CLASS row; its source file defines it, and the linker misses it otherwise.
+template <Unit kUnit>
+const FunctionUnit& unit_model();
+
+#define RAYPOOL_CORE(type, name, depth, ports, parameters, title)
+#define RAYPOOL_CLASS(type, name, depth, parameters, title) \
+  template <>                                               \
+  const FunctionUnit& unit_model<Unit::type>();
+RAYPOOL_UNITS(RAYPOOL_CORE, RAYPOOL_CLASS)
+#undef RAYPOOL_CORE
+#undef RAYPOOL_CLASS
+
+/// The model of a type; null if FunctionalCore executes it itself.
+const FunctionUnit* function_unit(Unit unit);
+
+}  // namespace raypool

@@ -1,0 +1,17 @@
+  // Generated from cpp_model/isa/isa.hpp by `raypool isa --write`; a test compares. Do not edit.
+  // Instances of each ALU type, cycles between their tasks, pipeline stages.
+  parameter integer TID_COUNT = 1,
+  parameter integer BRH_COUNT = 1,
+  parameter integer INT_COUNT = 1,
+  parameter integer FLT_COUNT = 1,
+  parameter integer SLW_COUNT = 1,
+  parameter integer TID_LATENCY = 1,
+  parameter integer BRH_LATENCY = 1,
+  parameter integer INT_LATENCY = 1,
+  parameter integer FLT_LATENCY = 1,
+  parameter integer SLW_LATENCY = 1,
+  parameter integer TID_DEPTH = 1,
+  parameter integer BRH_DEPTH = 2,
+  parameter integer INT_DEPTH = 2,
+  parameter integer FLT_DEPTH = 3,
+  parameter integer SLW_DEPTH = 11,
