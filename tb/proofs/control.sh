@@ -7,7 +7,7 @@
 #   @break FILE SED            a sed script that breaks FILE; the proof must then fail
 #   @zeros                     registers that have no reset start as 0 instead of anything
 #   @slow                      not with --quick
-# Every proof is unbounded (property-directed reachability, ABC's pdr). --quick leaves the broken copies out.
+# Every proof is unbounded (property-directed reachability, ABC's pdr); counterexamples for broken copies are found by bmc3, within 40 cycles. --quick leaves the broken copies out.
 # Exit code 1 if a proof fails, or holds for a broken copy.
 set -eu -o pipefail
 cd "$(dirname "$0")/../.."
@@ -23,7 +23,7 @@ folder=$(mktemp -d)
 exec 3>&1
 trap 'rm -rf "$folder"' EXIT
 
-# solve CHECKER PARAMETERS FILE...: sets verdict to proved, refuted or unknown, and depth to the length of the counterexample.
+# solve CHECKER PARAMETERS FILE...: runs ABC's commands in engine; sets verdict to proved, refuted or unknown, and depth to the length of the counterexample.
 solve() {
   local checker=$1 parameters=$2 parameter chparam= zeros=
   shift 2
@@ -34,7 +34,7 @@ solve() {
     async2sync; $zeros opt -fast; setundef -undriven -anyseq; setundef -anyseq; formalff -clk2ff -ff2anyinit; techmap; opt -fast; dffunmap; aigmap;
     opt_clean; setundef -undriven -anyseq; setundef -anyseq; write_aiger -I -B -zinit -no-startoffset $folder/check.aig" > "$folder/console" 2>&1 ||
     { echo "FAILED: $checker: yosys says"; tail -3 "$folder/console"; exit 1; } >&3
-  yosys-abc -c "read_aiger $folder/check.aig; fold; strash; scorr; pdr -T ${SECONDS_EACH:-600}; print_status" > "$folder/abc" 2>&1 || true
+  yosys-abc -c "read_aiger $folder/check.aig; fold; strash; $engine; print_status" > "$folder/abc" 2>&1 || true
   verdict=unknown depth=
   if grep -q '^Status = 1' "$folder/abc"; then verdict=proved
   elif grep -q '^Status = 0' "$folder/abc"; then
@@ -54,6 +54,7 @@ for name in "${names[@]}"; do
   [ ${#sets[@]} -gt 0 ] || sets=("")
   for set in "${sets[@]}"; do
     # shellcheck disable=SC2086 # a list of files
+    engine="scorr; pdr -T 600"
     { time solve "$checker" "$set" $files; } 2> "$folder/time"
     if [ $verdict = proved ]; then echo "proved: $name${set:+, $set} (pdr, $(tail -1 "$folder/time") s)"
     else
@@ -66,6 +67,7 @@ for name in "${names[@]}"; do
   [ -z "$quick" ] || continue
   broken=0
   while read -r module script; do
+    engine="bmc3 -F 40 -T 300"
     sed -E "$script" "rtl/$module.v" > "$folder/$module.v"
     ! cmp -s "rtl/$module.v" "$folder/$module.v" || { echo "FAILED: $name: '$script' changes nothing in rtl/$module.v"; failed=1; continue; }
     # shellcheck disable=SC2086 # a list of files
