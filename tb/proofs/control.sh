@@ -1,5 +1,5 @@
 #!/bin/bash
-# Proves the control logic: tb/proofs/control.sh [--quick] [NAME...]. NAME is a checker tb/proofs/control/NAME.v; without one, all of them.
+# Proves the control logic: tb/proofs/control.sh [--quick | --broken] [NAME...]. NAME is a checker tb/proofs/control/NAME.v; without one, all of them.
 # A checker is a module `check` around what it checks, with assumptions and assertions, and says in its head
 #   @modules FILE...           of rtl/, without .v
 #   @proves SENTENCE           printed when it holds, once for each
@@ -7,12 +7,15 @@
 #   @break FILE SED            a sed script that breaks FILE; the proof must then fail
 #   @zeros                     registers that have no reset start as 0 instead of anything
 #   @slow                      not with --quick
-# Every proof is unbounded (property-directed reachability, ABC's pdr); counterexamples for broken copies are found by bmc3, within 40 cycles. --quick leaves the broken copies out.
+# Every proof is unbounded (property-directed reachability, ABC's pdr); counterexamples for broken copies are found by bmc3, within 40 cycles. --quick leaves the broken copies out, --broken tries only these.
 # Exit code 1 if a proof fails, or holds for a broken copy.
 set -eu -o pipefail
 cd "$(dirname "$0")/../.."
-quick=
-[ "${1:-}" != --quick ] || { quick=1; shift; }
+quick= only_broken=
+case ${1:-} in
+  --quick) quick=1; shift ;;
+  --broken) only_broken=1; shift ;;
+esac
 for tool in yosys yosys-abc; do
   command -v $tool > /dev/null || { echo "control.sh: $tool was not found: install it (Debian package yosys)" >&2; exit 1; }
 done
@@ -53,6 +56,7 @@ for name in "${names[@]}"; do
   mapfile -t sets < <(sed -n 's/^\/\/ @parameters //p' "$checker")
   [ ${#sets[@]} -gt 0 ] || sets=("")
   for set in "${sets[@]}"; do
+    [ -z "$only_broken" ] || break
     # shellcheck disable=SC2086 # a list of files
     engine="scorr; pdr -T 600"
     { time solve "$checker" "$set" $files; } 2> "$folder/time"
@@ -63,7 +67,7 @@ for name in "${names[@]}"; do
       tail -3 "$folder/abc"
     fi
   done
-  sed -n 's/^\/\/ @proves /  - /p' "$checker"
+  [ -n "$only_broken" ] && echo "$name" || sed -n 's/^\/\/ @proves /  - /p' "$checker"
   [ -z "$quick" ] || continue
   broken=0
   while read -r module script; do
