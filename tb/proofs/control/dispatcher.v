@@ -7,7 +7,7 @@
 // @proves a busy ALU gets no task: LATENCY cycles lie between two at least; a task is done DEPTH cycles later, once, with its warp
 // @break dispatcher s/if \(ready_i\[s\]\)/if (1'b1)/
 // @break dispatcher s/want_i\[w\] && !grant_o\[w\] && instruction/want_i[w] \&\& instruction/
-// @break dispatcher s/candidates & \(~candidates \+ ONE\)/candidates \& ~(candidates - ONE)/
+// @break dispatcher s/candidates & \(~candidates \+ ONE\)/candidates \& ~(candidates >> 1)/
 // @break dispatcher s/candidates\[w\] = want_i\[w\] &&/candidates[w] =/
 // @break dispatcher s/imm_o\[k\*32 \+: 32\] <= instruction_i\[source/imm_o[k*32 +: 32] <= instruction_i[0/
 // @break alu_pipeline s/LATENCY - 2/LATENCY - 3/

@@ -9,7 +9,7 @@
 // @break unit_memory_arbiter s/response_unit_i == UNIT/response_unit_i >= UNIT/
 // @break unit_memory_arbiter s/unit_request_mask_i\[u\*4 \+: 4\]/4'hF/
 // @break port_arbiter s/locked_q \? choice_q : next/next/
-// @break round_robin s/ \| \(grant_o - ONE\)//
+// @break round_robin s/\|behind \? behind : request_i/request_i/
 `default_nettype none
 module check #(parameter UNITS = 4) (
   input wire clk_i, ready_i, response_i, input wire [1:0] response_unit_i,
