@@ -53,7 +53,7 @@ mapfile -t cpp < <(scripts/sources.sh cpp)
 check "clang-format (make format)" clang-format --dry-run -Werror "${cpp[@]}"
 
 mapfile -t python < <(scripts/sources.sh python)
-for file in "${python[@]}"; do check "python3 $file" python3 -W error -c 'import ast, sys; ast.parse(open(sys.argv[1]).read())' "$file"; done
+for file in "${python[@]}"; do check "python3 $file" python3 -W error -c 'import ast, pathlib, sys; ast.parse(pathlib.Path(sys.argv[1]).read_text())' "$file"; done
 
 for file in $(scripts/sources.sh shell); do check "bash -n $file" bash -n "$file"; done
 
