@@ -110,7 +110,7 @@ module compute_unit #(
   wire [31:0] block, blocks;
   wire waiting_launch, import_start, import_active, exporting;
   // instruction routine
-  wire [WARPS-1:0] fetch_request, fetch_grant;
+  wire [WARPS-1:0] fetch_request, fetch_first, fetch_grant;
   wire [WARPS*16-1:0] fetch_pc;
   wire fetch_valid, instruction_hit, instruction_miss, refill_done;
   wire [WARP_BITS-1:0] fetch_warp, result_warp;
@@ -158,13 +158,14 @@ module compute_unit #(
   assign idle_o = !busy_o && !waiting_launch && !import_active && !exporting && mem_idle && arbiter_idle;
 
   fetch_arbiter #(.WARPS(WARPS), .WARP_BITS(WARP_BITS)) fetch_arbiter (
-    .clk_i(clk_i), .rst_ni(rst_ni), .request_i(fetch_request), .grant_o(fetch_grant), .valid_o(fetch_valid), .warp_o(fetch_warp));
+    .clk_i(clk_i), .rst_ni(rst_ni), .request_i(fetch_request), .first_i(fetch_first),
+    .grant_o(fetch_grant), .valid_o(fetch_valid), .warp_o(fetch_warp));
 
-  instruction_cache #(.CACHE_BYTES(ICACHE_BYTES), .WARP_BITS(WARP_BITS)) instruction_cache (
+  instruction_cache #(.CACHE_BYTES(ICACHE_BYTES), .WARPS(WARPS), .WARP_BITS(WARP_BITS)) instruction_cache (
     .clk_i(clk_i), .rst_ni(rst_ni),
     .invalidate_i(argument_write_i), .lookup_valid_i(fetch_valid), .lookup_warp_i(fetch_warp), .lookup_pc_i(fetch_pc[fetch_warp*16 +: 16]),
     .hit_o(instruction_hit), .miss_o(instruction_miss), .result_warp_o(result_warp), .instruction_o(fetched),
-    .refill_done_o(refill_done), .request_valid_o(instruction_request), .request_ready_i(instruction_request_ready),
+    .refill_done_o(refill_done), .first_o(fetch_first), .request_valid_o(instruction_request), .request_ready_i(instruction_request_ready),
     .request_address_o(instruction_request_address), .response_valid_i(instruction_response),
     .response_beat_i(memory_response_beat_i), .response_data_i(memory_response_data_i));
 

@@ -1,5 +1,6 @@
 // Grants one of the requesting warps a cycle, in rotation: the search starts behind the warp granted last, so that every request is
-// granted within WARPS cycles.
+// granted within WARPS cycles, not counting those of first_i. A request of a warp in first_i is granted at once and leaves the rotation as
+// it is.
 `default_nettype none
 module fetch_arbiter #(
   parameter integer WARPS = 8,
@@ -8,15 +9,19 @@ module fetch_arbiter #(
   input  wire                 clk_i,
   input  wire                 rst_ni,
   input  wire [WARPS-1:0]     request_i,
+  input  wire [WARPS-1:0]     first_i,   // one-hot, or zero
   output wire [WARPS-1:0]     grant_o,   // one-hot, or zero without a request
   output wire                 valid_o,
   output reg  [WARP_BITS-1:0] warp_o
 );
   integer w;
+  wire [WARPS-1:0] first = request_i & first_i;
+  wire [WARPS-1:0] turn;
   assign valid_o = |request_i;
+  assign grant_o = |first ? first : turn;
 
   round_robin #(.COUNT(WARPS)) round_robin (
-    .clk_i(clk_i), .rst_ni(rst_ni), .request_i(request_i), .advance_i(1'b1), .grant_o(grant_o));
+    .clk_i(clk_i), .rst_ni(rst_ni), .request_i(request_i), .advance_i(!(|first)), .grant_o(turn));
 
   always @* begin
     warp_o = {WARP_BITS{1'b0}};

@@ -1,7 +1,9 @@
 // The L1 instruction cache: 2-way, 64-byte lines of 8 instructions, least recently used, one lookup a cycle, one fetch at a time.
 // A lookup in cycle c is answered in c+1 with hit_o and the instruction, or with miss_o. A miss begins a fetch when none is under way; lookups
 // that hit go on meanwhile. refill_done_o: every warp whose miss_o came in an earlier cycle must look up again; after a miss_o in cycle
-// c a refill_done_o always comes in a later cycle. Must be given: the beats of a line in order.
+// c a refill_done_o always comes in a later cycle. The warp whose miss began the fetch is to look up before all others (first_o): warps
+// whose lines share a set could else take a line from each other for ever before anyone has used it. Must be given: the beats of a line
+// in order.
 `default_nettype none
 module instruction_cache #(
   parameter integer WARPS = 8,
@@ -19,6 +21,7 @@ module instruction_cache #(
   output wire [WARP_BITS-1:0] result_warp_o,       // with hit_o or miss_o
   output wire [63:0]          instruction_o,       // with hit_o
   output wire                 refill_done_o,
+  output reg  [WARPS-1:0]     first_o,             // in the cycle after refill_done_o: that warp, one-hot
   // memory port, instruction side
   output wire                 request_valid_o,
   input  wire                 request_ready_i,
@@ -27,6 +30,7 @@ module instruction_cache #(
   input  wire [1:0]           response_beat_i,
   input  wire [127:0]         response_data_i
 );
+  localparam [WARPS-1:0] ONE = 1;
   localparam integer SETS = CACHE_BYTES / 128;
   localparam integer SET_BITS = $clog2(SETS);
   localparam integer TAG_BITS = 13 - SET_BITS;
@@ -86,6 +90,7 @@ module instruction_cache #(
   reg        fetch_way_q;
   reg        fetch_void_q;   // invalidated under way: the line is not entered
   reg        done_q;
+  reg [WARP_BITS-1:0] fetch_warp_q;
   wire begin_fetch = miss_o && fetch_q == FETCH_NONE;
   wire last_beat = response_valid_i && response_beat_i == 2'd3;
   wire [SET_BITS-1:0] fetch_set = fetch_line_q[SET_BITS-1:0];
@@ -98,8 +103,10 @@ module instruction_cache #(
     if (!rst_ni) begin
       fetch_q <= FETCH_NONE;
       done_q <= 1'b0;
+      first_o <= {WARPS{1'b0}};
     end else begin
       done_q <= fetch_q == FETCH_SETTLE;
+      first_o <= done_q ? ONE << fetch_warp_q : {WARPS{1'b0}};
       case (fetch_q)
         FETCH_NONE: if (miss_o) fetch_q <= FETCH_REQUEST;
         FETCH_REQUEST: if (request_ready_i) fetch_q <= FETCH_BEATS;
@@ -109,6 +116,7 @@ module instruction_cache #(
     end
     if (begin_fetch) begin
       fetch_line_q <= line_q;
+      fetch_warp_q <= warp_q;
       fetch_way_q <= older_q[set];
     end
     if (begin_fetch || invalidate_i) fetch_void_q <= invalidate_i && !begin_fetch;

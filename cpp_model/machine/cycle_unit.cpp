@@ -2,15 +2,14 @@
 
 #include <algorithm>
 
+#include "machine/bits.hpp"
+
 namespace raypool {
 namespace {
 
 constexpr uint8_t kInstructionId = 16;  // of a read of the instruction side
 constexpr uint8_t kLastBeat = 3;        // of a line
 constexpr uint64_t kAhead = 2;          // cycles from IBuf to Dispatch, and from IBuf to IArb
-
-uint32_t lowest(uint32_t bits) { return static_cast<uint32_t>(__builtin_ctz(bits)); }
-uint64_t popcount(uint32_t bits) { return static_cast<uint64_t>(__builtin_popcount(bits)); }
 
 constexpr size_t index(Unit unit) { return static_cast<size_t>(unit); }
 
@@ -42,6 +41,7 @@ void CycleUnit::reset(uint32_t program_length, uint32_t memory_limit) {
   ring_.fill(Planned{});
   active_ = fetching_ = missed_ = full_ = control_ = want_types_ = 0;
   behind_ = idle_ = ~0u;
+  first_ = 0;
   wants_.fill(0);
   mem_wants_ = ray_wants_ = 0;
   fetch_cycle_ = now_;
@@ -206,11 +206,15 @@ void CycleUnit::fetch(uint64_t until) {
     fetching_ |= joining;
     joining = 0;
     if (fetching_ == 0) continue;
-    const uint32_t behind = fetching_ & behind_;
-    const uint32_t candidates = behind != 0 ? behind : fetching_;
-    const uint32_t bit = candidates & (0u - candidates);
+    uint32_t bit = fetching_ & first_;
+    if (bit == 0) {
+      const uint32_t behind = fetching_ & behind_;
+      const uint32_t candidates = behind != 0 ? behind : fetching_;
+      bit = candidates & (0u - candidates);
+      behind_ = ~(bit | (bit - 1));
+    }
+    first_ = 0;
     lookup_warp_ = lowest(bit);
-    behind_ = ~(bit | (bit - 1));
     fetching_ &= ~bit;
     if (instruction_cache_.lookup(fetch_pc_[lookup_warp_])) {
       planned(fetch_cycle_ + 2).full |= bit;
@@ -370,7 +374,7 @@ void CycleUnit::step_all(const UnitInputs& inputs) {
   // answers are known ahead.
   const bool missed = instruction_cache_.missed() && miss_cycle_ == now_;
   if (missed || instruction_request || of_instruction || instruction_cache_.active()) {
-    uint32_t fetches_next = 0;
+    uint32_t fetches_next = 0, first_next = 0;
     if (missed) {
       missed_ |= 1u << lookup_warp_;
       ++misses_;
@@ -378,11 +382,13 @@ void CycleUnit::step_all(const UnitInputs& inputs) {
     if (instruction_cache_.refill_done()) {
       fetches_next = missed_;
       missed_ = 0;
+      first_next = 1u << instruction_cache_.fetch_warp();
     }
-    instruction_cache_.clock(missed, arbiter_free, of_instruction && inputs.memory_response.beat == kLastBeat);
+    instruction_cache_.clock(missed, lookup_warp_, arbiter_free, of_instruction && inputs.memory_response.beat == kLastBeat);
     if (!halted) fetch(now_);
     instruction_cache_.end_cycle();
     fetching_ |= fetches_next;
+    first_ = first_next;
   }
   if (!halted) fetch(instruction_cache_.busy() ? now_ : now_ + kAhead);
   if (want_types_ != 0) dispatch_ahead();

@@ -120,6 +120,7 @@ class CycleUnit final : public ComputeUnit {
   uint32_t active_ = 0;       // started and not yet exited
   uint32_t fetching_ = 0;     // stage IArb
   uint32_t behind_ = ~0u;     // behind the warp that was granted last
+  uint32_t first_ = 0;        // granted before all others in the next cycle whose grants become known
   uint64_t fetch_cycle_ = 0;  // up to it, not included, the fetch arbiter's grants are known
   uint64_t miss_cycle_ = 0;   // in which the latest lookup's miss is known, if it was one
   uint32_t lookup_warp_ = 0;

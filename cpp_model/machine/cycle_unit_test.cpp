@@ -193,5 +193,30 @@ TEST(Model, RefusesNumbersOfUnitsThatAMultiprocessorCannotHave) {
   EXPECT_THROW(make_model(make_configuration(2, 2), memory, 3), InputError);
 }
 
+// Each group of warps has its code in another line of one set of the instruction cache. Whoever's miss has fetched a line must
+// get to use it before it is replaced, whatever the memory's latency.
+TEST(CycleUnit, WarpsDoNotTakeLinesFromEachOtherForEver) {
+  constexpr uint32_t kPlaces = 32, kApart = 32;  // instructions from place to place: the two ways of a set are 64 lines
+  Configuration configuration = make_configuration(32, 1);
+  configuration.instruction_cache_bytes = 2 * kApart * 8;
+  std::vector<uint64_t> code((kPlaces + 3) * kApart, Encode("exit"));
+  size_t at = 0;
+  code[at++] = Encode("warp").rd(1);
+  code[at++] = Encode("and").rd(1).ra(1).imm(kPlaces - 1);
+  for (uint32_t place = 0; place < kPlaces; ++place) {
+    code[at++] = Encode("ieq").rd(1).ra(1).imm(place);
+    code[at++] = Encode("jany").guard(1).target((place + 3) * kApart);
+    for (uint32_t i = 0; i < 6; ++i) code[(place + 3) * kApart + i] = Encode("iadd").rd(2).ra(2).imm(1);
+  }
+  for (int latency = 1; latency < 70; ++latency) {
+    Memory memory = with_program(code);
+    CycleUnit unit(configuration, memory);
+    unit.reset(static_cast<uint32_t>(code.size()), kMemoryBytes);
+    TestChip chip(unit, memory, 1, 100, latency);
+    chip.launches.push_back(launch_of(32));
+    EXPECT_TRUE(chip.run(200000)) << "latency " << latency;
+  }
+}
+
 }  // namespace
 }  // namespace raypool

@@ -41,6 +41,7 @@ class InstructionCache {
   // Registers, as they stand in the present cycle.
   bool missed() const { return missed_; }  ///< the latest lookup, and clock() has not been told yet
   bool refill_done() const { return done_; }
+  uint32_t fetch_warp() const { return fetch_warp_; }  ///< whose miss began the latest fetch
   bool request_valid() const { return fetch_ == Fetch::Request; }
   uint32_t request_address() const { return fetch_line_ << 6; }
   /// False if clock() would change nothing without a miss, request_ready or last_beat.
@@ -48,8 +49,8 @@ class InstructionCache {
   /// A line is on its way, or a lookup has missed: the next lookups' results depend on when the line comes.
   bool busy() const { return missed_ || done_ || fetch_ != Fetch::None; }
 
-  /// `missed`: the latest lookup was one of the cycle before and missed.
-  void clock(bool missed, bool request_ready, bool last_beat) {
+  /// `missed`: the latest lookup was one of the cycle before, of `warp`, and missed.
+  void clock(bool missed, uint32_t warp, bool request_ready, bool last_beat) {
     done_ = fetch_ == Fetch::Settle;
     Fetch next = fetch_;
     switch (fetch_) {
@@ -58,6 +59,7 @@ class InstructionCache {
           Set& set = sets_[missed_line_ & set_mask_];
           next = Fetch::Request;
           fetch_line_ = missed_line_;
+          fetch_warp_ = warp;
           fetch_way_ = set.older;
           set.older ^= 1;
           changes_ = true;
@@ -97,7 +99,7 @@ class InstructionCache {
   uint32_t set_mask_;
   std::vector<Set> sets_;
   Fetch fetch_ = Fetch::None;
-  uint32_t fetch_line_ = 0, missed_line_ = 0;
+  uint32_t fetch_line_ = 0, fetch_warp_ = 0, missed_line_ = 0;
   uint8_t fetch_way_ = 0;
   bool done_ = false, changes_ = false;
   bool missed_ = false;

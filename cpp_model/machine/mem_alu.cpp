@@ -2,13 +2,9 @@
 
 #include <algorithm>
 
+#include "machine/bits.hpp"
+
 namespace raypool {
-namespace {
-
-uint32_t lowest(uint32_t bits) { return static_cast<uint32_t>(__builtin_ctz(bits)); }
-
-}  // namespace
-
 MemAlu::MemAlu(const Configuration& configuration)
     : set_mask_(static_cast<uint32_t>(configuration.data_cache_bytes) / 128 - 1),
       mshrs_(static_cast<uint32_t>(configuration.data_cache_mshrs)),

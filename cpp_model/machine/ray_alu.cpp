@@ -2,12 +2,12 @@
 
 #include <algorithm>
 
+#include "machine/bits.hpp"
+
 namespace raypool {
 namespace {
 
 constexpr uint32_t kRing = 32;  // warps at most, of which each is in the export's order once
-
-uint32_t lowest(uint32_t bits) { return static_cast<uint32_t>(__builtin_ctz(bits)); }
 
 }  // namespace
 

@@ -71,6 +71,14 @@ class Bench {
     answer.refill_done = u.refill_done_o;
     EXPECT_FALSE(answer.hit && answer.miss);
     EXPECT_EQ(answer.valid, looked_up_) << "each lookup gets one answer";
+    EXPECT_EQ(u.first_o, refilled_ ? 1u << fetch_warp_ : 0u) << "whose miss began the fetch looks up first";
+    refilled_ = answer.refill_done;
+    if (refilled_) fetch_warp_ = next_fetch_warp_;
+    fetching_ = fetching_ && !refilled_;
+    if (answer.miss && !fetching_) {
+      next_fetch_warp_ = answer.warp;
+      fetching_ = true;
+    }
     looked_up_ = warp_and_pc.has_value();
     u.lookup_valid_i = looked_up_;
     if (looked_up_) {
@@ -125,6 +133,8 @@ class Bench {
   }
   std::unique_ptr<typename Model::Unit> unit_;
   bool looked_up_ = false, held_ = false;
+  bool fetching_ = false, refilled_ = false;
+  uint32_t next_fetch_warp_ = 0, fetch_warp_ = 0;
 };
 
 template <typename Model>
