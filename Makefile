@@ -143,7 +143,7 @@ format: setup-lint ## lay out the C++ files as .clang-format says
 
 bench: setup-sim configured-OFF ## measured rates of the engines on this machine
 	@$(LOCKED) cmake --build $(BUILD) --target raypool raypool_bench
-	@for config in 4w4c 8w8c; do scripts/unit.sh "$$config"; done
+	@for config in 4w4c 8w8c 16w16c; do scripts/unit.sh "$$config"; done
 	@$(BUILD)/raypool_bench
 
 numerics: setup-sim setup-numerics program ## what each arithmetic mode does to pictures, and costs: tables, plots

@@ -1,7 +1,7 @@
 // `make bench`: how fast the engines run on this machine. Draws one fixed frame with each, best of three, and sets the Verilated
 // unit's rate beside that of the best open GPU RTL at 4 warps x 4 lanes on this class of machine. Then the units alone: what
 // the chip gave the unit in every cycle of that frame is recorded, and model and RTL are clocked through it in turn. Needs the
-// Verilated units of 4w4c and 8w8c.
+// Verilated units of 4w4c, 8w8c and 16w16c.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -115,7 +115,7 @@ int main() {
       }
     }
     fmt::print("\nthe same frame, the unit alone on its recorded ports; best of {}, in turn\n", kRepetitions);
-    for (const char* config : {"4w4c", "8w8c"}) compare_units(config);
+    for (const char* config : {"4w4c", "8w8c", "16w16c"}) compare_units(config);
     const double cycles = small["cycles"];
     const double thread_instructions = small["thread_instructions"];
     fmt::print("\nbest open GPU RTL, 4 warps x 4 lanes: {:.0f} thousand cycles/s, {:.0f} thousand thread instructions/s\n",
