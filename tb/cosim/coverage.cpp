@@ -106,7 +106,7 @@ void Coverage::together(const RetireEvent& event, size_t unit) {
   const auto type = static_cast<Unit>(unit);
   const auto per_unit = static_cast<uint32_t>(configuration_.warps);
   const uint32_t me = event.unit * per_unit + event.warp;
-  const int depth = type == Unit::Mem ? 3 : configuration_.alu(type).depth;
+  const int depth = type == Unit::Mem ? 3 : type == Unit::Ray ? 2 : configuration_.alu(type).depth;
   while (!recent_.empty() && recent_.front().cycle + 40 < now_) recent_.pop_front();
   for (auto other = recent_.rbegin(); other != recent_.rend() && other->cycle + static_cast<uint64_t>(depth) >= now_; ++other)
     if (other->warp != me && other->warp / per_unit == event.unit)
