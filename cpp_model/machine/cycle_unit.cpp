@@ -59,6 +59,7 @@ void CycleUnit::reset(uint32_t program_length, uint32_t memory_limit) {
   waited_.fill(0);
   issued_.fill(0);
   outputs_ = UnitOutputs{};
+  signals_ = outputs_.signals();
   trace_ = UnitTrace{};
   present();
 }
@@ -312,7 +313,11 @@ void CycleUnit::step(const UnitInputs& inputs) {
   slot.retired = slot.full = slot.mem_wants = slot.ray_wants = 0;
   busy_cycles_ += running_;
   advance_warps(retired);
-  fetch(now_ + kAhead);
+  // In most cycles no warp wants the instruction cache.
+  if (fetch_cycle_ == now_ + kAhead && (fetching_ | planned(fetch_cycle_).fetches) == 0)
+    ++fetch_cycle_;
+  else
+    fetch(now_ + kAhead);
   if (want_types_ != 0) dispatch_ahead();
   const bool ray_ready = ray_.ready(ray_task_);
   advance_rays(inputs, ImportKind::None);
@@ -424,8 +429,7 @@ void CycleUnit::advance_warps(uint32_t retired) {
 void CycleUnit::advance_rays(const UnitInputs& inputs, ImportKind import) {
   if (inputs.import_beat_valid) take_package_beat(inputs.import_beat);
   if (ray_task_ < 0 && !inputs.import_beat_valid && import == ImportKind::None && !ray_.active()) return;
-  const int swapped = ray_.clock({ray_task_, import, inputs.launch.threads, inputs.import_request_ready, inputs.import_beat_valid,
-                                  inputs.export_ready, inputs.frame_ready});
+  const int swapped = ray_.clock(ray_task_, import, inputs);
   ray_task_ = -1;
   if (swapped >= 0) swap(static_cast<uint32_t>(swapped));
 }
@@ -438,7 +442,7 @@ bool CycleUnit::quiet() const {
 }
 
 uint64_t CycleUnit::run(const UnitInputs& inputs, uint64_t cycles) {
-  const uint32_t before = outputs_.signals();
+  const uint32_t before = signals_;
   const bool transfers = (before & inputs.ready_signals()) != 0;
   step(inputs);
   uint64_t done = 1;
@@ -473,26 +477,34 @@ uint64_t CycleUnit::run(const UnitInputs& inputs, uint64_t cycles) {
 
 // As UnitOutputs::signals().
 uint32_t CycleUnit::signals() const {
-  const bool idle = !running_ && !waiting_ && !ray_.import_active() && !ray_.exporting() && mem_.idle() && !request_valid_;
-  return uint32_t{!waiting_ && !ray_.import_active()} | uint32_t{idle} << 1 | uint32_t{request_valid_} << 2 |
-         uint32_t{ray_.import_request_valid()} << 3 | uint32_t{ray_.export_valid()} << 4 | uint32_t{ray_.frame_valid()} << 5 |
-         uint32_t{fault_.code != FaultCode::None} << 6 | uint32_t{running_ && active_ == 0} << 8 | uint32_t{running_} << 12 |
-         uint32_t{idle} << 16;
+  const uint32_t ray = ray_.signals();
+  const bool importing = (ray & RayAlu::kImporting) != 0;
+  const bool idle =
+      !(running_ | waiting_ | request_valid_ | ((ray & (RayAlu::kImporting | RayAlu::kExporting)) != 0)) && mem_.idle();
+  return uint32_t{!(waiting_ | importing)} | (idle ? 0x10002u : 0u) | uint32_t{request_valid_} << 2 |
+         (ray & (RayAlu::kImportRequest | RayAlu::kExport | RayAlu::kFrame)) | uint32_t{fault_.code != FaultCode::None} << 6 |
+         uint32_t{running_ && active_ == 0} << 8 | uint32_t{running_} << 12;
 }
 
 void CycleUnit::present() {
   UnitOutputs& out = outputs_;
-  out.launch_ready = !waiting_ && !ray_.import_active();
-  out.kernel_done = running_ && active_ == 0 ? 1 : 0;
-  out.busy = running_ ? 1 : 0;
-  out.idle = !running_ && !waiting_ && !ray_.import_active() && !ray_.exporting() && mem_.idle() && !request_valid_;
-  out.unit_idle = out.idle ? 1 : 0;
-  out.memory_request_valid = request_valid_;
-  if (request_valid_) out.memory_request = request_;
-  out.import_request_valid = ray_.import_request_valid();
+  const uint32_t now = signals();
+  if (now != signals_) {
+    const auto is_set = [now](int bit) { return (now >> bit & 1) != 0; };
+    signals_ = now;
+    out.launch_ready = is_set(0);
+    out.idle = is_set(1);
+    out.memory_request_valid = is_set(2);
+    out.import_request_valid = is_set(3);
+    out.export_valid = is_set(4);
+    out.frame_valid = is_set(5);
+    out.kernel_done = is_set(8);
+    out.busy = is_set(12);
+    out.unit_idle = is_set(16);
+    if (is_set(6)) out.fault = fault_;
+  }
+  if (out.memory_request_valid) out.memory_request = request_;
   out.import_request_kind = ray_.import_kind();
-  out.export_valid = ray_.export_valid();
-  out.frame_valid = ray_.frame_valid();
   if (out.export_valid) {
     out.export_data = ray_.beat().data;
     out.export_last = ray_.beat().last;
@@ -500,7 +512,6 @@ void CycleUnit::present() {
     const Beat& beat = ray_.beat().data;
     out.frame = {beat[0], {beat[1], beat[2], beat[3]}};
   }
-  if (fault_.code != FaultCode::None) out.fault = fault_;
 }
 
 uint64_t CycleUnit::counter(int number) {

@@ -155,6 +155,7 @@ class CycleUnit final : public ComputeUnit {
   uint64_t busy_cycles_ = 0, instructions_ = 0, thread_instructions_ = 0, hits_ = 0, misses_ = 0;
   std::array<uint64_t, kUnits> waited_{}, issued_{};
   UnitOutputs outputs_;
+  uint32_t signals_ = 0;  // outputs_.signals()
   bool tracing_ = false;
   UnitTrace trace_;
   std::vector<Issue> issues_;

@@ -45,25 +45,29 @@ void RayAlu::reset() {
   fill_ = 0;
   beats_first_ = beats_end_ = 0;
   active_ = false;
+  signals_ = 0;
   unready_ = 0;
 }
 
-int RayAlu::clock(const Inputs& inputs) {
+int RayAlu::clock(int arriving, ImportKind import_start, const UnitInputs& inputs) {
   // The engines see the roles of this cycle, so a swap comes after them.
-  bool read_granted = slice_.valid && fill_ + landing_ != 3 && !(write_.valid && write_.set == slice_.set);
+  // Conditions that come out either way from cycle to cycle are joined without branches.
+  bool read_granted = slice_.valid & (fill_ + landing_ != 3) & !(write_.valid & (write_.set == slice_.set));
   int swap = -1;
-  if (inputs.arriving >= 0 || hold_ || result_.valid || done_ != 0 || fault_ || can() != 0)
-    swap = clock_kernel(inputs.arriving, read_granted);
-  if (write_.valid || inputs.import_beat_valid || import_active_ || inputs.import_start != ImportKind::None) clock_import(inputs);
-  if (slice_.valid || landing_ || fill_ != 0 || next_.valid || first_ != end_) clock_export(inputs, read_granted);
-  if (inputs.arriving >= 0) {
-    const Task::Kind kind = tasks_[static_cast<size_t>(inputs.arriving)].kind;
-    parked_input_ |= uint32_t{kind == Task::Kind::Input} << inputs.arriving;
-    parked_output_ |= uint32_t{kind == Task::Kind::Output} << inputs.arriving;
+  if ((arriving >= 0) | hold_ | result_.valid | fault_ | ((done_ | can()) != 0)) swap = clock_kernel(arriving, read_granted);
+  if (write_.valid | inputs.import_beat_valid | import_active_ | (import_start != ImportKind::None))
+    clock_import(import_start, inputs);
+  if (exports()) clock_export(inputs, read_granted);
+  if (arriving >= 0) {
+    const Task::Kind kind = tasks_[static_cast<size_t>(arriving)].kind;
+    parked_input_ |= uint32_t{kind == Task::Kind::Input} << arriving;
+    parked_output_ |= uint32_t{kind == Task::Kind::Output} << arriving;
   }
   if (swap >= 0) execute_swap(static_cast<uint32_t>(swap));
-  active_ = (fill_ | done_ | can() | (first_ ^ end_)) != 0 || write_.valid || slice_.valid || landing_ || result_.valid ||
-            hold_ || next_.valid || fault_ || import_moves();
+  active_ = exports() | ((done_ | can()) != 0) | write_.valid | result_.valid | hold_ | fault_ | import_moves();
+  const uint32_t offered = fill_ == 0 ? 0 : beat().frame ? kFrame : kExport;
+  signals_ = (import_request_ ? kImportRequest : 0) | offered | (import_active_ ? kImporting : 0) |
+             (((busy_ | fill_) != 0) | landing_ ? kExporting : 0);
   return swap;
 }
 
@@ -121,7 +125,7 @@ void RayAlu::execute_swap(uint32_t warp) {
   added_ = warp;
 }
 
-void RayAlu::clock_import(const Inputs& inputs) {
+void RayAlu::clock_import(ImportKind start, const UnitInputs& inputs) {
   const uint32_t warp = received_ >> lane_bits_;
   write_.valid = inputs.import_beat_valid;
   if (inputs.import_beat_valid) write_.set = roles_[warp].input;
@@ -130,7 +134,7 @@ void RayAlu::clock_import(const Inputs& inputs) {
     const bool taken = import_request_ && inputs.import_request_ready;
     requested_ += taken;
     outstanding_ += static_cast<uint32_t>(taken) - static_cast<uint32_t>(received);
-    import_request_ = requested_ != threads_ && outstanding_ != 2 && (full_ >> (requested_ >> lane_bits_) & 1) == 0;
+    import_request_ = can_request();
     if (inputs.import_beat_valid) import_beat_ = received ? 0 : import_beat_ + 1;
     if (received) {
       const bool launch_end = received_ + 1 == threads_;
@@ -139,15 +143,15 @@ void RayAlu::clock_import(const Inputs& inputs) {
       ++received_;
     }
   }
-  if (inputs.import_start != ImportKind::None) {
+  if (start != ImportKind::None) {
     import_active_ = true;
-    import_kind_ = inputs.import_start;
-    threads_ = inputs.import_threads;
+    import_kind_ = start;
+    threads_ = inputs.launch.threads;
     requested_ = received_ = import_beat_ = 0;
   }
 }
 
-void RayAlu::clock_export(const Inputs& inputs, bool granted) {
+void RayAlu::clock_export(const UnitInputs& inputs, bool granted) {
   // Beats leave, and one that was read in the cycle before joins those that wait.
   if (fill_ != 0 && (beat().frame ? inputs.frame_ready : inputs.export_ready)) {
     ++beats_first_;

@@ -20,15 +20,6 @@ class RayAlu {
     Kind kind = Kind::Input;
     bool empty = false;  ///< no lane is masked
   };
-  struct Inputs {
-    int arriving = -1;  ///< warp whose task arrives in this cycle
-    ImportKind import_start = ImportKind::None;
-    uint32_t import_threads = 0;
-    bool import_request_ready = false;
-    bool import_beat_valid = false;
-    bool export_ready = false;
-    bool frame_ready = false;
-  };
   /// A beat on its way out.
   struct OutBeat {
     bool frame = false;  ///< to the frame buffer: pixel, red, green, blue
@@ -43,7 +34,7 @@ class RayAlu {
   Task& task(uint32_t warp) { return tasks_[warp]; }
 
   // Registers, as they stand in the present cycle.
-  /// Whether a task granted in this cycle is taken; `arriving` as in Inputs.
+  /// Whether a task granted in this cycle is taken; `arriving` as for clock().
   bool ready(int arriving) const {
     if (hold_) return step_ == last_step_ && !(write_.valid && write_.set == hold_set_);
     if (arriving < 0) return true;
@@ -58,17 +49,18 @@ class RayAlu {
   bool fault() const { return fault_; }    ///< ray word above 20
   uint32_t fault_warp() const { return fault_warp_; }
   bool import_active() const { return import_active_; }
-  bool import_request_valid() const { return import_request_; }
   ImportKind import_kind() const { return import_kind_; }
-  bool exporting() const { return busy_ != 0 || landing_ || fill_ != 0; }
-  bool export_valid() const { return fill_ != 0 && !beat().frame; }
-  bool frame_valid() const { return fill_ != 0 && beat().frame; }
+  /// The valids of its ports, placed as in UnitOutputs::signals(), and kImporting, kExporting.
+  uint32_t signals() const { return signals_; }
+  static constexpr uint32_t kImportRequest = 1u << 3, kExport = 1u << 4, kFrame = 1u << 5;
+  static constexpr uint32_t kImporting = 1u << 30, kExporting = 1u << 31;
   /// The beat that is offered.
   const OutBeat& beat() const { return beats_[beats_first_ & beats_mask_]; }
 
-  /// Returns the warp whose rin, rout or rfb is executed at the end of this cycle, or -1. After an rout or rfb with a mask that
-  /// is not empty the caller adds its beats.
-  int clock(const Inputs& inputs);
+  /// `arriving`: the warp whose task arrives in this cycle, or -1; `import_start`: of the launch that is accepted in it. Returns
+  /// the warp whose rin, rout or rfb is executed at the end of this cycle, or -1. After an rout or rfb with a mask that is not
+  /// empty the caller adds its beats.
+  int clock(int arriving, ImportKind import_start, const UnitInputs& inputs);
   void add_ray(const Ray& ray);
   void add_contribution(const FrameContribution& contribution);
 
@@ -97,14 +89,15 @@ class RayAlu {
   };
 
   uint32_t can() const { return (parked_input_ & full_) | (parked_output_ & ~busy_); }
-  bool import_moves() const {
-    return import_active_ &&
-           (import_request_ || (requested_ != threads_ && outstanding_ != 2 && (full_ >> (requested_ >> lane_bits_) & 1) == 0));
+  bool import_moves() const { return import_active_ & (import_request_ | can_request()); }
+  bool can_request() const {
+    return (requested_ != threads_) & (outstanding_ != 2) & ((uint64_t{full_} >> (requested_ >> lane_bits_) & 1) == 0);
   }
+  bool exports() const { return slice_.valid | landing_ | next_.valid | ((fill_ | (first_ ^ end_)) != 0); }
   int clock_kernel(int arriving_warp, bool& read_granted);
   void execute_swap(uint32_t warp);
-  void clock_import(const Inputs& inputs);
-  void clock_export(const Inputs& inputs, bool granted);
+  void clock_import(ImportKind start, const UnitInputs& inputs);
+  void clock_export(const UnitInputs& inputs, bool granted);
   void push_beat(const OutBeat& beat) { beats_[beats_end_++ & beats_mask_] = beat; }
 
   uint32_t lane_bits_ = 0, last_lane_ = 0, last_step_ = 0;
@@ -147,6 +140,7 @@ class RayAlu {
   uint32_t added_ = 0;  // warp to which add_ray and add_contribution add
 
   bool active_ = false;
+  uint32_t signals_ = 0;
   uint64_t unready_ = 0;
 };
 
