@@ -57,6 +57,17 @@ refuses "unknown engine" "native, functional, model, rtl or lockstep" "${sim[@]}
 refuses "unknown traverser" "static" "${sim[@]}" --traverser quick
 refuses "engine without a built unit" "make unit" "${sim[@]}" --engine rtl --unit-library "$folder/none.so"
 refuses "results folder that is a file" "good.obj" "${sim[@]}" --out "$folder/good.obj"
+cosim=("$raypool" cosim --programs 2 --save "$folder/saved" --quiet)
+refuses "random programs without a built unit" "none.so.*make" "${cosim[@]}" --config 4w4c --unit-library "$folder/none.so"
+refuses "random programs, a unit that is no library" "good.obj.*cannot be loaded" "${cosim[@]}" --config 4w4c --unit-library "$folder/good.obj"
+refuses "random programs on another configuration's unit" "build it for this configuration" \
+  "${cosim[@]}" --config 2w2c --unit-library "$(echo "$(dirname "$raypool")"/units/4w4c-????????/libraypool_unit.so)"
+refuses "random programs, 3 warps" "3.*power of two from 1 to 32" "${cosim[@]}" --config "$folder/warps.json"
+refuses "program that was not saved" "none.json" "${cosim[@]}" --replay "$folder/none.json"
+if [ -e "$folder/saved" ]; then
+  failures=$((failures + 1))
+  echo "FAILED: what is wrong around the programs was saved as a program that fails: $(ls "$folder/saved")"
+fi
 refuses "waveform of an engine without one" "waveform" "${sim[@]}" --waves
 refuses "unknown option" "--help" "${sim[@]}" --colour
 refuses "unknown kernel" "saxpy" "$raypool" run sexpy

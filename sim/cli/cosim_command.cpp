@@ -53,15 +53,16 @@ class Cosim {
     return cycles;
   }
 
-  /// Why the program fails, with neither coverage nor counts; empty if it does not.
+  /// Why the program fails, with neither coverage nor counts; empty if it does not. Throws what has nothing to do with the
+  /// program.
   std::string failure(const RandomProgram& program) const {
     Memory memory = program.memory;
     try {
       run_random_program(*make_unit(engine_, memory), memory, program, program.seed, kCycleLimit);
     } catch (const LockstepDifference& difference) {
       return difference.what();
-    } catch (const InputError& error) {
-      return error.what();
+    } catch (const ProgramFailure& failure) {
+      return failure.what();
     }
     return "";
   }
@@ -129,8 +130,8 @@ void run_or_report(Cosim& cosim, const CosimOptions& options, const RandomProgra
     cycles += cosim.run(program, fmt::format("seed {}", program.seed));
   } catch (const LockstepDifference& difference) {
     report_failure(cosim, options, program, difference.what(), again, true);
-  } catch (const InputError& error) {
-    report_failure(cosim, options, program, error.what(), again, false);
+  } catch (const ProgramFailure& failure) {
+    report_failure(cosim, options, program, failure.what(), again, false);
   }
 }
 

@@ -5,8 +5,6 @@
 #include <deque>
 #include <vector>
 
-#include "isa/input_error.hpp"
-
 namespace raypool {
 namespace {
 
@@ -27,15 +25,15 @@ class RandomHost {
       const UnitOutputs& outputs = unit_.outputs();
       if (outputs.fault.code != FaultCode::None) {
         if (outputs.fault.code != program_.fault) {
-          throw InputError(fmt::format("fault {} of warp {} at PC {} in a program that must not end so",
-                                       static_cast<int>(outputs.fault.code), outputs.fault.warp, outputs.fault.pc));
+          throw ProgramFailure(fmt::format("fault {} of warp {} at PC {} in a program that must not end so",
+                                           static_cast<int>(outputs.fault.code), outputs.fault.warp, outputs.fault.pc));
         }
         if (++fault_cycles == kFaultCycles) return now_;
       }
       if (launched_ == program_.kernels.size() && outputs.idle && !outputs.busy) return now_;
       clock(outputs);
     }
-    throw InputError(fmt::format("not finished after {} cycles", cycle_limit));
+    throw ProgramFailure(fmt::format("not finished after {} cycles", cycle_limit));
   }
 
  private:

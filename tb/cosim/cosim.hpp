@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "cosim/random_program.hpp"
+#include "isa/input_error.hpp"
 #include "machine/compute_unit.hpp"
 
 namespace raypool {
@@ -16,10 +17,16 @@ class RunObserver {
   virtual void cycle(const UnitOutputs& outputs, const UnitInputs& inputs, const UnitTrace& trace) = 0;
 };
 
+/// A program that ends otherwise than it must: another fault, or no end. Of the program and the unit, not of what stands around
+/// them, so that shrinking the program makes sense.
+struct ProgramFailure : InputError {
+  using InputError::InputError;
+};
+
 /// Runs all kernels of `program` on `unit`, which must use (or be a lockstep over) `memory`, until the unit is idle, or has
 /// stopped with the fault that the program ends in. `seed` is that of the stalls and of the imported packages. Returns the
-/// cycles. Throws InputError when another fault occurs or the job has not ended after `cycle_limit` cycles; what the unit throws
-/// passes through.
+/// cycles. Throws ProgramFailure when another fault occurs or the job has not ended after `cycle_limit` cycles; what the unit
+/// throws passes through.
 uint64_t run_random_program(ComputeUnit& unit, Memory& memory, const RandomProgram& program, uint64_t seed,
                             uint64_t cycle_limit = 5'000'000, RunObserver* observer = nullptr);
 
