@@ -42,8 +42,10 @@ SEED      ?= 1
 COVERAGE  ?=
 # `make mutants`
 MUTANTS   ?= 600
+# `make numerics-long`
+THREADS   ?= 1
 # Recipes read these from the environment, so that a value with spaces or quotes stays one word.
-export CONFIG CUS SCENE SIZE DEPTH ENGINE TRAVERSER VIEW DETAIL OUT WAVES KERNEL PROGRAMS SEED COVERAGE MUTANTS
+export CONFIG CUS SCENE SIZE DEPTH ENGINE TRAVERSER VIEW DETAIL OUT WAVES KERNEL PROGRAMS SEED COVERAGE MUTANTS THREADS
 export LIBERTY CLOCK MEMORIES AGAINST RUN ONLY PLAN
 
 BUILD := build
@@ -127,10 +129,9 @@ test: setup-sim setup-test setup-synth configured-ON ## every test
 	@$(LOCKED) cmake --build $(BUILD)
 	@ctest --test-dir $(BUILD) --output-on-failure -j "$$(nproc)"
 
-numerics-long: setup-sim setup-test configured-ON ## arithmetic against its oracles: every unary input, 10^8 pairs; an hour
+numerics-long: setup-sim setup-test configured-ON ## arithmetic against its oracles: every unary input, 10^8 pairs; an hour: THREADS
 	@$(LOCKED) cmake --build $(BUILD) --target numerics_long flt_alu_test slw_alu_test small_floats_test
-	@$(BUILD)/tb/numerics_long
-	@for bench in flt_alu_test slw_alu_test small_floats_test; do $(BUILD)/tb/$$bench --gtest_filter='*Long*'; done
+	@scripts/numerics_long.sh $(BUILD) "$$THREADS"
 
 proofs: setup-lint ## formal proofs of blocks (Yosys, ABC)
 	@scripts/proofs.sh

@@ -1,5 +1,6 @@
-// Independent oracles for tests of arithmetic: the host's SSE unit (and its fused multiply-add), with MXCSR set to the mode, and
-// MPFR at 24 bits where the host has no such operation. None shares code with the model.
+// Independent oracles for tests of arithmetic: the host's SSE unit (and its fused multiply-add), with MXCSR set to the mode,
+// integers for frsqrt, and MPFR at 24 bits where the host has no such operation, or to judge another oracle. None shares code
+// with the model.
 #pragma once
 
 #include <immintrin.h>
@@ -103,6 +104,30 @@ __attribute__((noinline)) void each(const OperandBlock& in, std::vector<uint32_t
   for (size_t i = 0; i < in.size(); ++i) out[i] = function(in.a[i], in.b[i]);
 }
 
+/// frsqrt in integers. x = v * 2^(2k) with v in 1 .. 4, and r/2^24 in 1/2 .. 1 is the rounded 1/sqrt(v) exactly if (2r-1)^2 * v
+/// is below 2^50 and (2r+1)^2 * v above; an odd number above 1 divides no power of two, so there are no ties. A double only says
+/// where to begin.
+inline uint32_t inverse_root(uint32_t x, bool flush) {
+  const uint32_t sign = x & 0x80000000u, field = x >> 23 & 0xff;
+  uint64_t mantissa = x & 0x007fffffu;
+  if (field == 0 && (mantissa == 0 || flush)) return sign | 0x7f800000u;
+  if (sign != 0 || (field == 255 && mantissa != 0)) return 0x7fc00000u;
+  if (field == 255) return 0;
+  int exponent = static_cast<int>(field == 0 ? 1 : field) - 127;
+  if (field != 0) mantissa |= 0x00800000u;
+  for (; mantissa < 0x00800000u; mantissa <<= 1) --exponent;
+  if (exponent % 2 != 0) mantissa <<= 1, --exponent;
+  constexpr unsigned __int128 kOne = static_cast<unsigned __int128>(1) << (50 + 23);
+  const auto scaled_square = [&](uint64_t n) { return static_cast<unsigned __int128>(n * n) * mantissa; };
+  auto r = static_cast<uint64_t>(0x1p24 / __builtin_sqrt(static_cast<double>(mantissa) * 0x1p-23));
+  while (scaled_square(2 * r - 1) > kOne) --r;
+  while (scaled_square(2 * r + 1) < kOne) ++r;
+  // 2^24 is 1, every other r is below it and has its leading one at 2^23.
+  const int half = exponent / 2;
+  return r == 1u << 24 ? static_cast<uint32_t>(127 - half) << 23
+                       : static_cast<uint32_t>(126 - half) << 23 | (static_cast<uint32_t>(r) & 0x007fffffu);
+}
+
 /// Numbers of 24 bits in MPFR with single precision's exponents.
 class Wide {
  public:
@@ -161,7 +186,7 @@ inline void wide(Operation operation, const OperandBlock& in, bool flush, std::v
   for (size_t i = 0; i < in.size(); ++i) out[i] = numbers(operation, in.a[i], in.b[i], in.c[i], flush);
 }
 
-/// The correct results of a block. `with_mpfr`: ffma by MPFR, though the host has it.
+/// The correct results of a block. `with_mpfr`: ffma and frsqrt by MPFR, though there is another oracle.
 inline void results(Operation operation, const OperandBlock& in, bool flush, bool with_mpfr, std::vector<uint32_t>& out) {
   out.resize(in.size());
   const HostMode mode(flush);
@@ -204,9 +229,11 @@ inline void results(Operation operation, const OperandBlock& in, bool flush, boo
     case Operation::Fma:
       if (host_has_fma() && !with_mpfr) return fuse(in, out);
       break;
+    case Operation::Rsqrt:
+      if (!with_mpfr) return each(in, out, [flush](uint32_t a, uint32_t) { return inverse_root(a, flush); });
+      break;
     case Operation::Min:
     case Operation::Max:
-    case Operation::Rsqrt:
       break;
   }
   const HostMode plain(false);

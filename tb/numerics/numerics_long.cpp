@@ -1,15 +1,15 @@
 // The model of arithmetic against its oracles (cpp_model/arith/test_oracle.hpp), as far as a machine can go in minutes:
-//   numerics_long [PAIRS [STRIDE]]
+//   numerics_long [PAIRS [STRIDE [THREADS]]]
 // Unary operations over every STRIDE-th of all 2^32 inputs (default: all); binary and ternary ones over all pairs and triples of
-// special and boundary operands and over PAIRS weighted random ones (default 10^8). Prints inputs tried and errors; exit code 1
-// if there are any. The seeds are fixed, so a run can be repeated.
+// special and boundary operands and over PAIRS weighted random ones (default 10^8); THREADS is 1 unless it is given. MPFR judges
+// ffma and frsqrt once more, frsqrt over every 257th input at most. Prints inputs tried and errors; exit code 1 if there are any.
+// The seeds are fixed, so a run can be repeated.
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <array>
 #include <atomic>
 #include <chrono>
-#include <cstdio>
 #include <cstdlib>
 #include <functional>
 #include <mutex>
@@ -19,11 +19,13 @@
 
 #include "arith/test_operands.hpp"
 #include "arith/test_oracle.hpp"
+#include "numerics/long_table.hpp"
 
 namespace raypool::arith {
 namespace {
 
 constexpr size_t kBlock = 1 << 14;
+constexpr uint64_t kMpfrStride = 257;  // MPFR takes some 40 times as long as the integers do
 constexpr Operation kUnary[] = {Operation::ToInt, Operation::FromInt, Operation::Sqrt, Operation::Rcp, Operation::Rsqrt};
 constexpr Operation kBinary[] = {Operation::Add, Operation::Sub,   Operation::Mul,  Operation::Div,      Operation::Min,
                                  Operation::Max, Operation::Equal, Operation::Less, Operation::LessEqual};
@@ -31,14 +33,17 @@ constexpr Operation kBinary[] = {Operation::Add, Operation::Sub,   Operation::Mu
 struct Tally {
   std::atomic<uint64_t> inputs{0}, errors{0};
 };
-/// One an operation and mode (0 ieee, 1 flush); the last one is ffma judged by MPFR.
-std::array<std::array<Tally, 2>, kOperations + 1> tallies;
+/// One an operation and mode (0 ieee, 1 flush); behind them those judged by MPFR once more.
+std::array<std::array<Tally, 2>, 2 * kOperations> tallies;
 std::mutex output;
+unsigned threads_wanted = 1;
 
-std::string name_of(size_t index) { return index == static_cast<size_t>(kOperations) ? "ffma, MPFR" : kOperationNames[index]; }
+std::string name_of(size_t index) {
+  return index < kOperations ? kOperationNames[index] : fmt::format("{}, MPFR", kOperationNames[index - kOperations]);
+}
 
 void check(Operation operation, const OperandBlock& in, bool with_mpfr, std::vector<uint32_t>& expected) {
-  const size_t index = with_mpfr ? static_cast<size_t>(kOperations) : static_cast<size_t>(operation);
+  const size_t index = static_cast<size_t>(operation) + (with_mpfr ? kOperations : 0);
   for (const bool flush : {false, true}) {
     oracle::results(operation, in, flush, with_mpfr, expected);
     const Mode mode{flush ? Subnormals::Flush : Subnormals::Ieee, SlowUnit::Exact};
@@ -56,14 +61,14 @@ void check(Operation operation, const OperandBlock& in, bool with_mpfr, std::vec
   }
 }
 
-/// Runs part(0) .. part(parts - 1) on all processors and shows how far it is.
+/// Runs part(0) .. part(parts - 1) on as many threads as are wanted and shows how far it is.
 void run_parts(const std::string& what, uint64_t parts, const std::function<void(uint64_t)>& part) {
   const auto start = std::chrono::steady_clock::now();
   std::atomic<uint64_t> next{0}, done{0};
   const bool to_terminal = isatty(STDERR_FILENO) != 0;
   std::vector<std::thread> threads;
   const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
-  for (unsigned i = 0; i < std::max(1u, std::thread::hardware_concurrency()); ++i) {
+  for (unsigned i = 0; i < threads_wanted; ++i) {
     threads.emplace_back([&] {
       for (uint64_t number; (number = next++) < parts;) {
         part(number);
@@ -81,18 +86,17 @@ void run_parts(const std::string& what, uint64_t parts, const std::function<void
   std::fflush(stdout);
 }
 
-void unary_operations(uint64_t stride) {
+void unary_operation(Operation operation, uint64_t stride, bool with_mpfr) {
   const uint64_t inputs = ((uint64_t{1} << 32) + stride - 1) / stride;
-  for (const Operation operation : kUnary) {
-    run_parts(kOperationNames[static_cast<int>(operation)], (inputs + kBlock - 1) / kBlock, [&](uint64_t part) {
-      thread_local OperandBlock in;
-      thread_local std::vector<uint32_t> expected;
-      in.clear();
-      for (uint64_t i = part * kBlock; i < std::min(inputs, (part + 1) * kBlock); ++i)
-        in.push(static_cast<uint32_t>(i * stride), 0, 0);
-      check(operation, in, false, expected);
-    });
-  }
+  const std::string name = name_of(static_cast<size_t>(operation) + (with_mpfr ? kOperations : 0));
+  run_parts(name, (inputs + kBlock - 1) / kBlock, [&](uint64_t part) {
+    thread_local OperandBlock in;
+    thread_local std::vector<uint32_t> expected;
+    in.clear();
+    for (uint64_t i = part * kBlock; i < std::min(inputs, (part + 1) * kBlock); ++i)
+      in.push(static_cast<uint32_t>(i * stride), 0, 0);
+    check(operation, in, with_mpfr, expected);
+  });
 }
 
 void special_operands_of_all_kinds() {
@@ -131,7 +135,7 @@ uint64_t count_of(const char* text) {
   char* end = nullptr;
   const uint64_t value = std::strtoull(text, &end, 10);
   if (value == 0 || *end != '\0' || *text == '-') {
-    throw std::runtime_error(fmt::format("'{}' must be a whole number above 0; numerics_long [PAIRS [STRIDE]]", text));
+    throw std::runtime_error(fmt::format("'{}' must be a whole number above 0; numerics_long [PAIRS [STRIDE [THREADS]]]", text));
   }
   return value;
 }
@@ -139,20 +143,20 @@ uint64_t count_of(const char* text) {
 int run(int argc, char** argv) {
   const uint64_t pairs = argc > 1 ? count_of(argv[1]) : 100'000'000;
   const uint64_t stride = argc > 2 ? count_of(argv[2]) : 1;
-  std::printf("oracles: SSE%s; MPFR %s for fmin fmax frsqrt and ffma\n",
+  threads_wanted = argc > 3 ? static_cast<unsigned>(std::min<uint64_t>(count_of(argv[3]), 256)) : 1;
+  std::printf("oracles: SSE%s; integers for frsqrt; MPFR %s for fmin and fmax, and where the table says so\n",
               host_has_fma() ? " and FMA of this host" : " of this host", mpfr_get_version());
   special_operands_of_all_kinds();
   random_operands(pairs);
-  unary_operations(stride);
+  for (const Operation operation : kUnary) unary_operation(operation, stride, false);
+  unary_operation(Operation::Rsqrt, std::max(stride, kMpfrStride), true);
   uint64_t errors = 0;
-  std::printf("\n%-12s%16s%10s%16s%10s\n", "operation", "inputs, ieee", "errors", "inputs, flush", "errors");
+  std::printf("\n");
+  print_long_head();
   for (size_t i = 0; i < tallies.size(); ++i) {
-    std::printf("%-12s", name_of(i).c_str());
-    for (const Tally& tally : tallies[i]) {
-      std::printf("%16llu%10llu", static_cast<unsigned long long>(tally.inputs), static_cast<unsigned long long>(tally.errors));
-      errors += tally.errors;
-    }
-    std::printf("\n");
+    const LongCount ieee{tallies[i][0].inputs, tallies[i][0].errors}, flush{tallies[i][1].inputs, tallies[i][1].errors};
+    if (ieee.inputs > 0) print_long_row(name_of(i).c_str(), ieee, flush);
+    errors += ieee.errors + flush.errors;
   }
   std::printf("numerics_long: %llu errors\n", static_cast<unsigned long long>(errors));
   return errors == 0 ? 0 : 1;

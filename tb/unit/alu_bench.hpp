@@ -15,6 +15,7 @@
 
 #include "arith/arith.hpp"
 #include "arith/test_operands.hpp"
+#include "numerics/long_table.hpp"
 
 namespace raypool {
 
@@ -70,7 +71,9 @@ class AluBench {
     for (size_t u = 0; u < units_.size(); ++u) ASSERT_TRUE(expected_[u].empty()) << units_[u].name << " lost tasks";
   }
 
-  uint64_t compared() const { return compared_; }
+  uint64_t compared() const { return count(Subnormals::Ieee).inputs + count(Subnormals::Flush).inputs; }
+  /// Of all units of a subnormal mode.
+  const LongCount& count(Subnormals mode) const { return counts_[static_cast<size_t>(mode)]; }
 
  private:
   struct Expected {
@@ -140,8 +143,11 @@ class AluBench {
       for (int l = 0; l < kBenchLanes; ++l) {
         if (!(e.mask >> l & 1)) continue;
         const uint32_t result = top_.done_data_o[u * kBenchLanes + l];
-        ++compared_;
-        if ((result != e.result[l] || warp != e.warp) && ++failures_ <= 10) {
+        LongCount& count = counts_[static_cast<size_t>(units_[u].mode.subnormals)];
+        ++count.inputs;
+        if (result == e.result[l] && warp == e.warp) continue;
+        ++count.errors;
+        if (++failures_ <= 10) {
           ADD_FAILURE() << units_[u].name << " operation " << e.operation << " lane " << l << std::hex << ": a " << e.a[l]
                         << " b " << e.b[l] << " c " << e.c[l] << " RTL " << result << " model " << e.result[l] << std::dec
                         << ", warp " << warp << " expected " << e.warp << ", seed " << seed_;
@@ -162,7 +168,8 @@ class AluBench {
   int lanes_ = 0;      ///< used or left out in the task that is being gathered
   uint32_t mask_ = 0;  ///< of those used
   std::array<uint32_t, kBenchLanes> a_{}, b_{}, c_{};
-  uint64_t cycle_ = 0, compared_ = 0;
+  uint64_t cycle_ = 0;
+  std::array<LongCount, 2> counts_;
   int failures_ = 0;
 };
 

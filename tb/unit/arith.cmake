@@ -54,7 +54,7 @@ endif()
 
 # Narrow formats, against exact integers with all operands there are.
 add_executable(small_floats_test ${arith_unit}/small_floats_test.cpp)
-target_link_libraries(small_floats_test PRIVATE GTest::gtest_main)
+target_link_libraries(small_floats_test PRIVATE raypool_include GTest::gtest_main)
 target_include_directories(small_floats_test SYSTEM PRIVATE ${VERILATOR_ROOT}/include)
 foreach(format IN ITEMS "16 5 10" "8 4 3")
   separate_arguments(format)
@@ -66,4 +66,15 @@ foreach(format IN ITEMS "16 5 10" "8 4 3")
     TOP_MODULE small_floats PREFIX Vsmall_floats_${bits} INCLUDE_DIRS ${arith_rtl} OPT_SLOW -w OPT_FAST -O2 -w OPT_GLOBAL -O1 -w
     VERILATOR_ARGS --default-language 1364-2005 -DSYNTHESIS --output-split 10000 --output-split-cfuncs 1000 -O3 --x-assign fast --x-initial fast -GEXPONENT_BITS=${exponent} -GMANTISSA_BITS=${mantissa})
 endforeach()
-gtest_discover_tests(small_floats_test WORKING_DIRECTORY ${CMAKE_SOURCE_DIR} DISCOVERY_TIMEOUT 60 TEST_FILTER "-*Long*")
+# Products of every pair of 16-bit numbers: with the tree that hardware has, and with the simulator's product in its place.
+foreach(tree IN ITEMS "tree -DSYNTHESIS" "quick")
+  separate_arguments(tree)
+  list(POP_FRONT tree name)
+  verilate(small_floats_test SOURCES ${arith_unit}/small_products.v ${arith_rtl}/float_multiplier.v ${arith_rtl}/multiply_tree.v
+    TOP_MODULE small_products PREFIX Vsmall_products_${name} INCLUDE_DIRS ${arith_rtl} OPT_SLOW -w OPT_FAST -O3 -w OPT_GLOBAL -O1 -w
+    VERILATOR_ARGS --default-language 1364-2005 ${tree} --output-split 10000 --output-split-cfuncs 1000 -O3 --x-assign fast --x-initial fast)
+endforeach()
+verilate(small_floats_test SOURCES ${arith_rtl}/multiply_tree.v TOP_MODULE multiply_tree PREFIX Vmultiply_tree_11 OPT_SLOW -w OPT_FAST -O3 -w
+  OPT_GLOBAL -O1 -w VERILATOR_ARGS --default-language 1364-2005 -DSYNTHESIS -O3 -GA_BITS=11 -GB_BITS=11)
+# Tests named Hours run by hand.
+gtest_discover_tests(small_floats_test WORKING_DIRECTORY ${CMAKE_SOURCE_DIR} DISCOVERY_TIMEOUT 60 TEST_FILTER "-*Long*:*Hours*")

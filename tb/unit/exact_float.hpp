@@ -54,8 +54,8 @@ class ExactFloat {
   }
 
   uint32_t round(unsigned __int128 magnitude, uint32_t sign) const {
-    int top = 0;  // of the leading one
-    while (magnitude >> (top + 1) != 0) ++top;
+    const auto upper = static_cast<uint64_t>(magnitude >> 64), lower = static_cast<uint64_t>(magnitude);
+    const int top = upper != 0 ? 127 - __builtin_clzll(upper) : 63 - __builtin_clzll(lower);  // of the leading one
     // Bit `unit` weighs as much as the smallest subnormal number.
     const int unit = bias_ + m_ - 1;
     int last = top - m_;

@@ -1,5 +1,5 @@
 // Adder, multiplier and fused multiply-add are parameterised by their widths, so that narrow ones can be tried with all operands
-// there are. Against exact integers: every triple of 8-bit numbers, every pair of 16-bit ones (long).
+// there are. Against exact integers: every triple of 8-bit numbers, the product of every pair of 16-bit ones (long).
 #include <gtest/gtest.h>
 #include <verilated.h>
 
@@ -10,9 +10,13 @@
 #include <memory>
 #include <random>
 
+#include "Vmultiply_tree_11.h"
 #include "Vsmall_floats_16.h"
 #include "Vsmall_floats_8.h"
+#include "Vsmall_products_quick.h"
+#include "Vsmall_products_tree.h"
 #include "exact_float.hpp"
+#include "numerics/long_table.hpp"
 
 namespace raypool {
 namespace {
@@ -46,8 +50,9 @@ class SmallFloats {
   void finish() {
     for (int i = 0; i < 4; ++i) (*this)(0, 0, 0, false, 0);
   }
-  uint64_t compared() const { return compared_; }
-  bool failed() const { return failures_ > 0; }
+  uint64_t compared() const { return counts_[0].inputs + counts_[1].inputs; }
+  bool failed() const { return counts_[0].errors + counts_[1].errors > 0; }
+  const LongCount& count(int mode) const { return counts_[static_cast<size_t>(mode)]; }
 
  private:
   struct Due {
@@ -59,8 +64,9 @@ class SmallFloats {
   uint32_t result(uint32_t port, int mode) const { return port >> (mode * bits_) & ((1u << bits_) - 1); }
 
   void compare(const char* unit, int mode, const Due& due, uint32_t rtl, uint32_t exact) {
-    ++compared_;
-    if (rtl == exact || ++failures_ > 10) return;
+    LongCount& count = counts_[static_cast<size_t>(mode)];
+    ++count.inputs;
+    if (rtl == exact || ++count.errors > 5) return;
     ADD_FAILURE() << unit << (mode != 0 ? " flush" : " ieee") << std::hex << ": a " << due.a << " b " << due.b << " c " << due.c
                   << (due.subtract ? " subtract" : "") << ": RTL " << rtl << " exact " << exact;
   }
@@ -88,8 +94,8 @@ class SmallFloats {
   VerilatedContext context_;
   Top top_;
   std::array<Due, 8> due_{};
-  uint64_t now_ = 0, compared_ = 0;
-  int failures_ = 0;
+  uint64_t now_ = 0;
+  std::array<LongCount, 2> counts_;
 };
 using Eight = SmallFloats<Vsmall_floats_8>;
 using Sixteen = SmallFloats<Vsmall_floats_16>;
@@ -120,15 +126,70 @@ TEST(SmallFloats, RandomSixteenBitNumbersAreRight) {
   EXPECT_EQ(run.compared(), 3000000u * 6);
 }
 
-// Names with Long: in `make numerics-long` only.
-TEST(SmallFloatsLong, EveryPairOfSixteenBitNumbersIsRight) {
-  Sixteen run(5, 10);
-  for (uint32_t a = 0; a < 65536 && !run.failed(); ++a) {
-    for (uint32_t b = 0; b < 65536; ++b) run(a, b, 0, (a ^ b) % 2 != 0, Sixteen::kSum | Sixteen::kProduct);
-    if (a % 4096 == 0) std::fprintf(stderr, "%u of 65536 first operands\n", a);
+// The multipliers take nothing of their tree but the sum of its two numbers.
+TEST(SmallFloats, TheTreeMultipliesEveryPairOfElevenBitMantissas) {
+  VerilatedContext context;
+  Vmultiply_tree_11 top(&context);
+  uint64_t wrong = 0;
+  for (uint32_t a = 0; a < 2048; ++a) {
+    for (uint32_t b = 0; b < 2048; ++b) {
+      top.a_i = static_cast<uint16_t>(a), top.b_i = static_cast<uint16_t>(b);
+      top.eval();
+      wrong += ((top.sum_o + top.carry_o) & 0x3fffff) != a * b;
+    }
   }
-  run.finish();
-  std::printf("%llu results compared\n", static_cast<unsigned long long>(run.compared()));
+  top.final();
+  EXPECT_EQ(wrong, 0u);
+}
+
+/// The product of every pair of 16-bit numbers whose first one is below `end`.
+template <typename Top>
+std::array<LongCount, 2> multiply_every_pair(uint32_t end) {
+  constexpr uint32_t kLanes = 16, kBits = 16, kSteps = 65536 / kLanes;
+  const std::array<ExactFloat, 2> references{ExactFloat(5, 10, false), ExactFloat(5, 10, true)};
+  std::array<LongCount, 2> counts;
+  VerilatedContext context;
+  Top top(&context);
+  for (uint32_t i = 0; i < end * kSteps + 2; ++i) {
+    top.a_i = static_cast<uint16_t>(i / kSteps);
+    for (uint32_t l = 0; l < kLanes; l += 2) {
+      const uint32_t b = i % kSteps * kLanes + l;
+      top.b_i[l / 2] = b | (b + 1) << kBits;
+    }
+    top.clk_i = 0;
+    top.eval();
+    for (uint32_t lane = 0; i >= 2 && lane < 2 * kLanes; ++lane) {
+      const uint32_t a = (i - 2) / kSteps, b = (i - 2) % kSteps * kLanes + lane % kLanes, mode = lane / kLanes;
+      const uint32_t rtl = top.product_o[lane / 2] >> (lane % 2 * kBits) & 0xffff, exact = references[mode].mul(a, b);
+      ++counts[mode].inputs;
+      if (rtl == exact || ++counts[mode].errors > 5) continue;
+      ADD_FAILURE() << "multiplier" << (mode != 0 ? " flush" : " ieee") << std::hex << ": a " << a << " b " << b << ": RTL "
+                    << rtl << " exact " << exact;
+    }
+    top.clk_i = 1;
+    top.eval();
+    if (end == 65536 && i % (4096 * kSteps) == 0) std::fprintf(stderr, "%u of %u first operands\n", i / kSteps, end);
+  }
+  top.final();
+  EXPECT_EQ(counts[0].inputs + counts[1].inputs, uint64_t{2} * end * 65536);
+  return counts;
+}
+
+TEST(SmallFloats, ProductsAreTheSameWithAndWithoutTheTree) {
+  multiply_every_pair<Vsmall_products_quick>(3);
+  multiply_every_pair<Vsmall_products_tree>(3);
+}
+
+// Names with Long: in `make numerics-long` only.
+TEST(SmallFloatsLong, TheProductOfEveryPairOfSixteenBitNumbersIsRight) {
+  const auto counts = multiply_every_pair<Vsmall_products_quick>(65536);
+  print_long_row("RTL 16-bit multiplier, every pair", counts[0], counts[1]);
+}
+
+// Names with Hours: by hand.
+TEST(SmallFloatsHours, TheProductOfEveryPairThroughTheTreeIsRight) {
+  const auto counts = multiply_every_pair<Vsmall_products_tree>(65536);
+  print_long_row("RTL 16-bit multiplier and tree, every pair", counts[0], counts[1]);
 }
 
 TEST(SmallFloatsLong, ManyTriplesOfSixteenBitNumbersAreRight) {
@@ -139,7 +200,7 @@ TEST(SmallFloatsLong, ManyTriplesOfSixteenBitNumbersAreRight) {
     run(bits & 0xffff, bits >> 16 & 0xffff, bits >> 32 & 0xffff, false, Sixteen::kFused);
   }
   run.finish();
-  std::printf("%llu results compared\n", static_cast<unsigned long long>(run.compared()));
+  print_long_row("RTL 16-bit fused unit, random triples", run.count(0), run.count(1));
 }
 
 }  // namespace

@@ -1,0 +1,25 @@
+// The table that `make numerics-long` ends with: every program of it prints rows of this form, scripts/numerics_long.sh gathers
+// them.
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+
+namespace raypool {
+
+/// What was tried in one subnormal mode, and how much of it was wrong.
+struct LongCount {
+  uint64_t inputs = 0, errors = 0;
+};
+
+inline void print_long_head() {
+  std::printf("%-42s %16s %8s %16s %8s\n", "operation", "inputs, ieee", "errors", "inputs, flush", "errors");
+}
+inline void print_long_row(const char* what, const LongCount& ieee, const LongCount& flush) {
+  const auto number = [](uint64_t value) { return static_cast<unsigned long long>(value); };
+  std::printf("%-42s %16llu %8llu %16llu %8llu\n", what, number(ieee.inputs), number(ieee.errors), number(flush.inputs),
+              number(flush.errors));
+  std::fflush(stdout);
+}
+
+}  // namespace raypool
