@@ -42,6 +42,8 @@ SEED      ?= 1
 COVERAGE  ?=
 # `make mutants`
 MUTANTS   ?= 600
+# `make numerics`
+GATES     ?= 0
 # `make numerics-long`
 THREADS   ?= 1
 # Recipes read these from the environment, so that a value with spaces or quotes stays one word.
@@ -58,6 +60,7 @@ UNIT := scripts/unit.sh "$$CONFIG" $(WAVES_FLAG)
 # The synthesis flow; paths may be relative to this folder.
 SYNTH := PYTHONPATH=scripts python3 -m synth
 SYNTH_OPTIONS := --config "$$CONFIG" --memories "$$MEMORIES" $${LIBERTY:+--liberty "$$LIBERTY"} $${CLOCK:+--clock "$$CLOCK"}
+GATES_SETUP := $(if $(filter-out 0,$(GATES)),setup-synth)
 UNIT_OF_ENGINE := $(if $(filter rtl lockstep,$(ENGINE)),$(UNIT),true)
 
 .PHONY: help sim run cosim configurations mutants unit test lint format bench clean setup-% program configured-% numerics-long proofs synth synth-replay synth-prove growth numerics extremes isa
@@ -82,6 +85,7 @@ help: ## this list
 	@echo 'variables of make synth, synth-replay, synth-prove:  CONFIG  LIBERTY=FILE  CLOCK=NS  MEMORIES=macros|flops'
 	@echo '  make synth:  AGAINST=REPORT  RUN=REPORT_OF_SIM  POWER=1  OUT=FOLDER;  synth-replay:  BREAK=N;  synth-prove:  ONLY=BLOCKS;  growth:  PLAN=FILE'
 	@echo 'variables of make cosim:  PROGRAMS=$(PROGRAMS)  SEED=$(SEED)  CONFIG  CUS  COVERAGE=FILE.json'
+	@echo 'variables of make numerics:  GATES=1: synthesise the lanes of every mode first;  make numerics-long:  THREADS=$(THREADS)'
 	@echo 'variables of make run:  KERNEL=saxpy|matmul|FILE.asm  CONFIG  ENGINE  ARGS="--n 1000"'
 
 sim: setup-sim program ## draw a scene on the simulated chip: picture, report, figures
@@ -147,7 +151,12 @@ bench: setup-sim configured-OFF ## measured rates of the engines on this machine
 	@for config in 4w4c 8w8c 16w16c; do scripts/unit.sh "$$config"; done
 	@$(BUILD)/raypool_bench
 
-numerics: setup-sim setup-numerics program ## what each arithmetic mode does to pictures, and costs: tables, plots
+# The Slw lane does not depend on fma: its newton variants are not synthesised twice.
+numerics: setup-sim setup-numerics $(GATES_SETUP) program ## errors of each arithmetic mode, what they do to pictures, its cost: tables, plots
+	@$(RAYPOOL) errors
+	@$(if $(GATES_SETUP),for config in $$($(RAYPOOL) numerics --config 1w1c --configurations $(BUILD)/out/lanes | grep -v 'newton.-fma'); do \
+	  $(SYNTH) report --config "$$config" --memories macros > $(BUILD)/out/lanes/synth.txt || { cat $(BUILD)/out/lanes/synth.txt; exit 1; }; done)
+	@echo
 	@$(RAYPOOL) numerics
 
 extremes: setup-sim program ## hard cases in every arithmetic mode, on every engine

@@ -92,7 +92,7 @@ TradeResult measure_trade(const NumericsOptions& options, const ImageSize& size,
   for (const ArithmeticMode& mode : modes) {
     const Configuration configuration = mode.applied_to(base);
     TradeCost cost{mode, std::nullopt,
-                   read_gates(options.synthesis.empty() ? build_folder() / "synth" : fs::path(options.synthesis), configuration)};
+                   read_gates(options.synthesis.empty() ? build_folder() / "synth" : fs::path(options.synthesis), mode.mode)};
     if (progress.due()) progress.show(fmt::format("  cost: {}", mode.name));
     cost.timing = time_mode(timed, options.depth, configuration, unit_maker(Engine::Model));
     result.costs.push_back(cost);
@@ -123,12 +123,13 @@ int trade_command(const NumericsOptions& options) {
 
   out.write("numerics.json", to_json(trade, meshes, seams, scenes, rules, offsets));
   std::string files = "numerics.json";
-  const bool plots = has_gnuplot(), gates_known = !pareto_plot(trade, "").empty();
+  const bool plots = has_gnuplot();
+  const bool gates_known = std::all_of(trade.costs.begin(), trade.costs.end(), [](const TradeCost& c) { return c.gates; });
   if (plots) {
     plot(quality_plot(trade, out.temporary("quality.png").string()));
     files += ", quality.png";
   }
-  if (plots && gates_known) {
+  if (plots && !pareto_plot(trade, "").empty()) {
     plot(pareto_plot(trade, out.temporary("pareto.png").string()));
     files += ", pareto.png";
   }
@@ -137,8 +138,7 @@ int trade_command(const NumericsOptions& options) {
   fmt::print("{}\nrays aimed at shared edges and vertices\n{}\n", trade_table(trade), seam_table(meshes, seams));
   fmt::print("offset of secondary rays, against the reference, ties apart\n{}\n", offset_table(scenes, rules, offsets));
   if (!plots) fmt::print("no plots: gnuplot is missing; make numerics installs it\n");
-  if (!gates_known)
-    fmt::print("no plot of quality against gates: fewer than two modes of {} have a synthesis report\n", trade.configuration);
+  if (!gates_known) fmt::print("no gates where there is a -: make numerics GATES=1 synthesises the lanes of every mode first\n");
   fmt::print("results in {}: {}\n", fs::proximate(out.path(".")).lexically_normal().string(), files);
   const bool leak = std::any_of(seams.begin(), seams.end(), [](const WatertightCounts& counts) { return counts.leaks > 0; });
   return leak ? kFailed : 0;

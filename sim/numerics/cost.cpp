@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "chip/chip.hpp"
@@ -16,27 +19,17 @@ using Json = nlohmann::json;
 
 constexpr int kTimedSize = 32;
 
-/// The parameters on which the two ALUs' size depends, of those that the report names.
-bool fits(const Json& parameters, const Configuration& configuration) {
-  if (!parameters.is_object()) return false;
-  for (const auto& [name, value] : verilog_parameters(configuration)) {
-    const bool matters = name.find("CACHE") == std::string::npos && name != "STACK_DEPTH";
-    if (!matters) continue;
-    const auto found = parameters.find(name);
-    if (found == parameters.end() || !found->is_number() || found->get<double>() != value) return false;
+/// kGE of one lane from a report of the same parameters.
+std::optional<double> lane_kge(const Json& report, const std::string& lane, const std::map<std::string, int>& depends_on) {
+  try {
+    for (const auto& [name, value] : depends_on) {
+      // As raypool says them: texts.
+      if (report.at("parameters").at(name) != std::to_string(value)) return std::nullopt;
+    }
+    return report.at("lanes").at(lane).at("kge").get<double>();
+  } catch (const Json::exception&) {
+    return std::nullopt;  // a report of another shape
   }
-  return true;
-}
-
-/// kGE of all blocks of a name, wherever they stand; the parts of a block are in the block already.
-double block_kge(const Json& blocks, const std::string& name) {
-  double sum = 0;
-  for (const Json& row : blocks) {
-    const std::string path = row.value("block", "");
-    const std::string last = path.substr(path.rfind('/') == std::string::npos ? 0 : path.rfind('/') + 1);
-    if (last == name) sum += row.value("logic_kge", 0.0);
-  }
-  return sum;
 }
 
 }  // namespace
@@ -65,26 +58,24 @@ std::optional<ModeTiming> time_mode(const Scene& scene, int depth, const Configu
   return ModeTiming{static_cast<double>(result.cycles) / static_cast<double>(result.rays()), result.mrays_per_s};
 }
 
-std::optional<ModeGates> read_gates(const fs::path& synthesis, const Configuration& configuration) {
+std::optional<ModeGates> read_gates(const fs::path& synthesis, const arith::Mode& mode) {
   std::error_code error;
-  std::vector<fs::path> reports;
+  std::vector<std::pair<fs::file_time_type, fs::path>> reports;
   for (fs::directory_iterator entry(synthesis, error), end; !error && entry != end; entry.increment(error)) {
-    if (fs::is_regular_file(entry->path() / "report.json")) reports.push_back(entry->path() / "report.json");
+    const fs::path path = entry->path() / "report.json";
+    if (fs::is_regular_file(path)) reports.push_back({fs::last_write_time(path), path});
   }
-  std::sort(reports.begin(), reports.end());
-  for (const fs::path& path : reports) {
+  std::sort(reports.rbegin(), reports.rend());
+  const auto subnormals = static_cast<int>(mode.subnormals), slow_unit = static_cast<int>(mode.slow_unit);
+  std::optional<double> flt, slw;
+  for (const auto& [time, path] : reports) {
     std::ifstream file(path);
     const Json report = Json::parse(file, nullptr, false);
-    if (!report.is_object() || !report.contains("blocks") || !report["blocks"].is_array()) continue;
-    if (!fits(report.value("parameters", Json()), configuration)) continue;
-    try {
-      const ModeGates gates{block_kge(report["blocks"], "flt_alu"), block_kge(report["blocks"], "slw_alu")};
-      if (gates.flt_kge > 0 && gates.slw_kge > 0) return gates;
-    } catch (const Json::exception&) {
-      continue;  // a row of another shape
-    }
+    if (!flt) flt = lane_kge(report, "Flt lane", {{"SUBNORMALS", subnormals}, {"FMA", mode.fused}});
+    if (!slw) slw = lane_kge(report, "Slw lane", {{"SUBNORMALS", subnormals}, {"SLOW_UNIT", slow_unit}});
   }
-  return std::nullopt;
+  if (!flt || !slw) return std::nullopt;
+  return ModeGates{*flt, *slw};
 }
 
 }  // namespace raypool::numerics

@@ -13,8 +13,8 @@ namespace raypool::numerics {
 std::optional<ModeTiming> time_mode(const Scene& scene, int depth, const Configuration& configuration, const UnitMaker& unit);
 
 /// Looks through the report.json files in the folders of `synthesis` (scripts/synth leaves them in build/synth/<configuration>)
-/// for one of the same warps, lanes and arithmetic, and adds up its blocks named flt_alu and slw_alu. Nothing when there is none,
-/// or none that can be read.
-std::optional<ModeGates> read_gates(const std::filesystem::path& synthesis, const Configuration& configuration);
+/// for the lanes of this arithmetic, whatever unit they are in: the Flt lane depends on subnormal numbers and fma, the Slw lane
+/// on subnormal numbers and the slow unit. The newest report wins. Nothing when a lane is in none that can be read.
+std::optional<ModeGates> read_gates(const std::filesystem::path& synthesis, const arith::Mode& mode);
 
 }  // namespace raypool::numerics

@@ -71,7 +71,7 @@ struct ModeTiming {
   double cycles_per_ray = 0;
   double mrays_per_s = 0;
 };
-/// Size of the ALUs of one mode, thousand gate equivalents, from synthesis; all lanes of the unit together.
+/// Size of one lane of the Flt and one of the Slw ALU of a mode, thousand gate equivalents, from synthesis.
 struct ModeGates {
   double flt_kge = 0, slw_kge = 0;
   double total() const { return flt_kge + slw_kge; }

@@ -1,8 +1,11 @@
 // The trade as gnuplot texts.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <optional>
 
 #include "numerics/trade_report.hpp"
 
@@ -35,23 +38,89 @@ set label "8-bit rounding" at graph 1.01, first 58.9 left front
 {}
 )plot";
 
-constexpr const char* kPareto = R"plot(set terminal pngcairo size 1000,620 font ",13"
+constexpr const char* kPareto = R"plot(set terminal pngcairo size {},620 font ",13"
 set output "{}"
-$all << END
-{}END
-$front << END
-{}END
-set title "Arithmetic on {}: quality against size"
-set xlabel "Flt and Slw ALUs, all lanes, kGE (less is better)"
+set multiplot layout 1,{} title "Arithmetic on {}: quality against cost"
 set ylabel "PSNR of equal paths, {}, dB (more is better)"
 set grid
 set key bottom right
-set xrange [{}:{}]
-set offsets graph 0, graph 0, graph 0.4, graph 0.1
-plot $front using 1:2 with steps linewidth 2 linecolor "#4477aa" title "not beaten in both", \
-  $all using 1:2 with points pointtype 7 pointsize 1.6 linecolor "#4477aa" notitle, \
-  $all using 1:2:3 with labels left rotate by 55 offset char 0.3,0.7 notitle
+{}unset multiplot
 )plot";
+
+constexpr const char* kPanel = R"plot($all << END
+{0}END
+$front << END
+{1}END
+set xlabel "{2} (less is better)"
+set xrange [{3}:{4}]
+set yrange [{5}:{6}]
+plot $front using 1:2 with steps linewidth 2 linecolor "#4477aa" title "not beaten in both", \
+  $all using 1:2 with points pointtype 7 pointsize 1.4 linecolor "#4477aa" notitle, \
+  $all using 1:2:3 with labels left rotate by 60 offset char 0.2,0.6 font ",10" notitle
+)plot";
+
+/// A place in a panel, with the modes that are there.
+struct Point {
+  double cost, psnr;
+  std::vector<ArithmeticMode> modes;
+};
+
+/// "ieee flush, exact newton2": short where the modes are all combinations of some subnormal modes and slow units.
+std::string label(const std::vector<ArithmeticMode>& modes) {
+  std::vector<std::string> subnormals, units, ends;
+  std::string names;
+  const auto note = [](std::vector<std::string>& list, const std::string& text) {
+    if (std::find(list.begin(), list.end(), text) == list.end()) list.push_back(text);
+  };
+  for (const ArithmeticMode& mode : modes) {
+    const size_t first = mode.name.find('-'), second = mode.name.find('-', first + 1);
+    note(subnormals, mode.name.substr(0, first));
+    note(units, mode.name.substr(first + 1, second - first - 1));
+    note(ends, second == std::string::npos ? "" : " fma");
+    names += (names.empty() ? "" : ", ") + mode.name;
+  }
+  if (modes.size() == 1 || ends.size() != 1 || subnormals.size() * units.size() != modes.size()) return names;
+  return fmt::format("{}, {}{}", fmt::join(subnormals, " "), fmt::join(units, " "), ends.front());
+}
+
+std::string panel(const TradeResult& result, const std::string& axis,
+                  const std::function<std::optional<double>(const TradeCost&)>& cost_of) {
+  std::vector<Point> points;
+  size_t modes = 0;
+  for (const TradeCost& cost : result.costs) {
+    const std::optional<double> known = cost_of(cost);
+    for (const TradeRow& row : result.rows) {
+      // The first scene: what a far one loses by its coordinates hides what the modes lose.
+      if (!known || row.mode.name != cost.mode.name || row.scene != result.rows.front().scene) continue;
+      const double psnr = row.quality.psnr_same_paths;
+      if (!std::isfinite(psnr)) continue;
+      ++modes;
+      const auto same = std::find_if(points.begin(), points.end(), [&](const Point& p) {
+        return std::fabs(p.psnr - psnr) < kSameQuality && std::fabs(p.cost - *known) < 1e-3 * *known;
+      });
+      if (same == points.end()) {
+        points.push_back({*known, psnr, {cost.mode}});
+      } else {
+        same->modes.push_back(cost.mode);
+      }
+    }
+  }
+  if (modes < 2) return "";
+  std::sort(points.begin(), points.end(),
+            [](const Point& a, const Point& b) { return a.cost != b.cost ? a.cost < b.cost : a.psnr > b.psnr; });
+  std::string all, front;
+  double best = -INFINITY, lowest = INFINITY;
+  for (const Point& point : points) {
+    const std::string line = fmt::format("{} {} \"{}\"\n", point.cost, point.psnr, label(point.modes));
+    all += line;
+    lowest = std::min(lowest, point.psnr);
+    if (point.psnr > best + kSameQuality) front += line, best = point.psnr;
+  }
+  const double width = std::max(points.back().cost - points.front().cost, 0.02 * points.back().cost);
+  const double height = std::max(best - lowest, 1.0);
+  return fmt::format(kPanel, all, front, axis, points.front().cost - 0.06 * width, points.back().cost + 0.3 * width,
+                     lowest - 0.1 * height, best + 0.55 * height);
+}
 
 }  // namespace
 
@@ -76,33 +145,16 @@ std::string quality_plot(const TradeResult& result, const std::string& png) {
 }
 
 std::string pareto_plot(const TradeResult& result, const std::string& png) {
-  struct Point {
-    std::string modes;
-    double kge, psnr;
-  };
-  std::vector<Point> points;
-  for (const TradeCost& cost : result.costs) {
-    if (!cost.gates) continue;
-    for (const TradeRow& row : result.rows) {
-      // The first scene: what a far one loses by its coordinates hides what the modes lose.
-      if (row.mode.name != cost.mode.name || row.scene != result.rows.front().scene) continue;
-      if (std::isfinite(row.quality.psnr_same_paths))
-        points.push_back({cost.mode.name, cost.gates->total(), row.quality.psnr_same_paths});
-    }
-  }
-  if (points.size() < 2) return "";
-  std::sort(points.begin(), points.end(),
-            [](const Point& a, const Point& b) { return a.kge != b.kge ? a.kge < b.kge : a.psnr > b.psnr; });
-  std::string all, front;
-  double best = -INFINITY;
-  for (const Point& point : points) {
-    const std::string line = fmt::format("{} {} \"{}\"\n", point.kge, point.psnr, point.modes);
-    all += line;
-    if (point.psnr > best + kSameQuality) front += line, best = point.psnr;
-  }
-  const double width = std::max(points.back().kge - points.front().kge, 1.0);
-  return fmt::format(kPareto, png, all, front, result.configuration, result.rows.front().scene, points.front().kge - 0.06 * width,
-                     points.back().kge + 0.2 * width);
+  std::string panels;
+  int count = 0;
+  const auto add = [&](const std::string& text) { panels += text, count += !text.empty(); };
+  add(panel(result, "one lane of Flt and one of Slw, kGE",
+            [](const TradeCost& cost) { return cost.gates ? std::optional<double>(cost.gates->total()) : std::nullopt; }));
+  add(panel(result, "cycles a ray", [](const TradeCost& cost) {
+    return cost.timing ? std::optional<double>(cost.timing->cycles_per_ray) : std::nullopt;
+  }));
+  if (count == 0) return "";
+  return fmt::format(kPareto, 750 * count, png, count, result.configuration, result.rows.front().scene, panels);
 }
 
 }  // namespace raypool::numerics

@@ -44,10 +44,10 @@ Json to_json(const TradeResult& result) {
     Json entry = {{"mode", cost.mode.name},
                   {"cycles_per_ray", nullptr},
                   {"mrays_per_second", nullptr},
-                  {"flt_kge", nullptr},
-                  {"slw_kge", nullptr}};
+                  {"flt_lane_kge", nullptr},
+                  {"slw_lane_kge", nullptr}};
     if (cost.timing) entry["cycles_per_ray"] = cost.timing->cycles_per_ray, entry["mrays_per_second"] = cost.timing->mrays_per_s;
-    if (cost.gates) entry["flt_kge"] = cost.gates->flt_kge, entry["slw_kge"] = cost.gates->slw_kge;
+    if (cost.gates) entry["flt_lane_kge"] = cost.gates->flt_kge, entry["slw_lane_kge"] = cost.gates->slw_kge;
     json["cost"].push_back(entry);
   }
   return json;
@@ -71,8 +71,8 @@ std::string trade_table(const TradeResult& result) {
                         q.holes, q.wrong_shadows, q.nan_pixels, q.ties, decibels(q.psnr), decibels(q.psnr_same_paths),
                         share(q.off_by_one, q.pixels), share(q.off_by_more, q.pixels));
   }
-  text += fmt::format("cost on {}\n{:<22} {:>10} {:>8} {:>8} {:>8} {:>8}\n", result.configuration, "  mode", "cycles/ray",
-                      "Mrays/s", "flt kGE", "slw kGE", "sum");
+  text += fmt::format("cost on {}; kGE of one lane\n{:<22} {:>10} {:>8} {:>8} {:>8} {:>8}\n", result.configuration, "  mode",
+                      "cycles/ray", "Mrays/s", "Flt kGE", "Slw kGE", "sum");
   for (const TradeCost& cost : result.costs) {
     std::optional<double> cycles, rate, flt, slw, sum;
     if (cost.timing) cycles = cost.timing->cycles_per_ray, rate = cost.timing->mrays_per_s;

@@ -1,7 +1,9 @@
 #include "numerics/trade.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -149,39 +151,40 @@ TEST(Reference, HitsAtTheExactPlane) {
   EXPECT_NE(tracer.occluder({0, 0, 0}, {0, 0, -1}, 3.0000000001), kNoTriangle);
 }
 
-TEST(Cost, GatesComeFromTheReportOfTheSameUnit) {
+TEST(Cost, GatesComeFromReportsWithTheSameLanes) {
   namespace fs = std::filesystem;
   const fs::path folder = fs::path(testing::TempDir()) / "raypool_gates";
   fs::remove_all(folder);
-  const Configuration base = load_configuration("4w4c");
-  EXPECT_FALSE(read_gates(folder, base)) << "no folder";
+  const arith::Mode exact, coarse{Subnormals::Ieee, SlowUnit::Newton0}, fused{Subnormals::Ieee, SlowUnit::Newton0, true};
+  EXPECT_FALSE(read_gates(folder, exact)) << "no folder";
+  auto now = fs::file_time_type::clock::now();
   auto write = [&](const std::string& name, const std::string& text) {
     fs::create_directories(folder / name);
     std::ofstream(folder / name / "report.json") << text;
+    fs::last_write_time(folder / name / "report.json", now += std::chrono::seconds(1));
   };
-  write("broken", "{\"blocks\": [");
-  write("other", "{\"blocks\": 7}");
-  EXPECT_FALSE(read_gates(folder, base)) << "nothing that can be read";
-  const Configuration coarse = arithmetic_modes()[3].applied_to(base);
-  auto report = [](const Configuration& configuration, double slow) {
-    std::string parameters;
-    for (const auto& [name, value] : verilog_parameters(configuration)) {
-      parameters += (parameters.empty() ? "\"" : ", \"") + name + "\": " + std::to_string(value);
-    }
-    return "{\"parameters\": {" + parameters +
-           "}, \"blocks\": [{\"block\": \"compute_unit\", \"logic_kge\": 500}, {\"block\": \"flt_alu\", \"logic_kge\": 40.5}, "
-           "{\"block\": \"flt_alu/float_lane\", \"logic_kge\": 38}, {\"block\": \"slw_alu\", \"logic_kge\": " +
-           std::to_string(slow) + "}]}";
+  write("broken", "{\"lanes\": [");
+  write("other", "{\"lanes\": 7, \"parameters\": {\"SUBNORMALS\": \"0\", \"FMA\": \"0\"}}");
+  EXPECT_FALSE(read_gates(folder, exact)) << "nothing that can be read";
+  auto report = [](int slow_unit, int fma, double flt, double slw) {
+    return fmt::format(
+        "{{\"parameters\": {{\"WARPS\": \"1\", \"SUBNORMALS\": \"0\", \"SLOW_UNIT\": \"{}\", \"FMA\": \"{}\"}}, "
+        "\"lanes\": {{\"Flt lane\": {{\"kge\": {}}}, \"Slw lane\": {{\"kge\": {}}}}}}}",
+        slow_unit, fma, flt, slw);
   };
-  write("a", report(base, 100));
-  write("b", report(coarse, 20));
-  ASSERT_TRUE(read_gates(folder, base));
-  EXPECT_EQ(read_gates(folder, base)->flt_kge, 40.5);
-  EXPECT_EQ(read_gates(folder, base)->slw_kge, 100);
+  write("a", report(0, 0, 14.5, 47));
+  write("b", report(3, 0, 14.5, 9));
+  ASSERT_TRUE(read_gates(folder, exact));
+  EXPECT_EQ(read_gates(folder, exact)->flt_kge, 14.5);
+  EXPECT_EQ(read_gates(folder, exact)->slw_kge, 47);
   ASSERT_TRUE(read_gates(folder, coarse));
-  EXPECT_EQ(read_gates(folder, coarse)->total(), 60.5);
-  EXPECT_FALSE(read_gates(folder, arithmetic_modes()[1].applied_to(base)));
-  EXPECT_FALSE(read_gates(folder, load_configuration("8w8c")));
+  EXPECT_EQ(read_gates(folder, coarse)->total(), 23.5);
+  EXPECT_FALSE(read_gates(folder, fused)) << "no report has its Flt lane";
+  write("c", report(0, 1, 20, 46));
+  ASSERT_TRUE(read_gates(folder, fused)) << "its lanes are in two reports";
+  EXPECT_EQ(read_gates(folder, fused)->total(), 29);
+  EXPECT_EQ(read_gates(folder, exact)->slw_kge, 46) << "the newest wins";
+  EXPECT_FALSE(read_gates(folder, arithmetic_modes()[1].mode));
   fs::remove_all(folder);
 }
 
@@ -207,7 +210,14 @@ TEST(Report, UnknownCostsAreDashesAndNull) {
   result.costs[0].gates = ModeGates{1, 2};
   result.costs[1].gates = ModeGates{2, 3};
   const std::string plot = pareto_plot(result, "x.png");
+  EXPECT_EQ(plot.find("cycles"), std::string::npos) << "nothing is known of them";
   EXPECT_NE(plot.find("$front << END\n3 100 \"ieee-exact\"\nEND"), std::string::npos) << plot;
+  // Modes at one place have one label.
+  for (const size_t mode : {0, 1, 4, 5}) {
+    result.rows[mode].quality.psnr_same_paths = 100;
+    result.costs[mode].timing = ModeTiming{30, 33};
+  }
+  EXPECT_NE(pareto_plot(result, "x.png").find("$front << END\n30 100 \"ieee flush, exact newton2\"\nEND"), std::string::npos);
 }
 
 TEST(Offset, TheRuleInUseHasNoAcneAndMovesNextToNothing) {
