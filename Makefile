@@ -44,10 +44,12 @@ COVERAGE  ?=
 MUTANTS   ?= 600
 # `make numerics`
 GATES     ?= 0
+# `make extremes`
+MODE      ?= all
 # `make numerics-long`
 THREADS   ?= 1
 # Recipes read these from the environment, so that a value with spaces or quotes stays one word.
-export CONFIG CUS SCENE SIZE DEPTH ENGINE TRAVERSER VIEW DETAIL OUT WAVES KERNEL PROGRAMS SEED COVERAGE MUTANTS THREADS
+export CONFIG CUS SCENE SIZE DEPTH ENGINE TRAVERSER VIEW DETAIL OUT WAVES KERNEL PROGRAMS SEED COVERAGE MUTANTS MODE THREADS
 export LIBERTY CLOCK MEMORIES AGAINST RUN ONLY PLAN
 
 BUILD := build
@@ -85,7 +87,7 @@ help: ## this list
 	@echo 'variables of make synth, synth-replay, synth-prove:  CONFIG  LIBERTY=FILE  CLOCK=NS  MEMORIES=macros|flops'
 	@echo '  make synth:  AGAINST=REPORT  RUN=REPORT_OF_SIM  POWER=1  OUT=FOLDER;  synth-replay:  BREAK=N;  synth-prove:  ONLY=BLOCKS;  growth:  PLAN=FILE'
 	@echo 'variables of make cosim:  PROGRAMS=$(PROGRAMS)  SEED=$(SEED)  CONFIG  CUS  COVERAGE=FILE.json'
-	@echo 'variables of make numerics:  GATES=1: synthesise the lanes of every mode first;  make numerics-long:  THREADS=$(THREADS)'
+	@echo 'variables of make numerics:  GATES=1: synthesise the lanes of every mode first;  extremes:  MODE=all|ieee-exact|...;  numerics-long:  THREADS=$(THREADS)'
 	@echo 'variables of make run:  KERNEL=saxpy|matmul|FILE.asm  CONFIG  ENGINE  ARGS="--n 1000"'
 
 sim: setup-sim program ## draw a scene on the simulated chip: picture, report, figures
@@ -159,9 +161,9 @@ numerics: setup-sim setup-numerics $(GATES_SETUP) program ## errors of each arit
 	@echo
 	@$(RAYPOOL) numerics
 
-extremes: setup-sim program ## hard cases in every arithmetic mode, on every engine
-	@for config in $$($(RAYPOOL) numerics --configurations $(BUILD)/out/modes); do scripts/unit.sh "$$config"; done
-	@$(RAYPOOL) numerics --extremes
+extremes: setup-sim program ## hard cases in every arithmetic mode, on every engine: MODE
+	@for config in $$($(RAYPOOL) numerics --mode "$$MODE" --configurations $(BUILD)/out/modes); do scripts/unit.sh "$$config"; done
+	@$(RAYPOOL) numerics --mode "$$MODE" --extremes
 
 clean: ## remove build/ (pictures in build/out too)
 	@rm -rf $(BUILD)

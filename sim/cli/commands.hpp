@@ -125,6 +125,7 @@ struct NumericsOptions {
   std::string synthesis;       ///< folder of synthesis reports; empty: synth beside the executable
   std::string configurations;  ///< folder: only write a configuration file for each mode
   bool extremes = false;       ///< the catalogue of hard cases instead of the trade
+  bool catalogue = false;      ///< only its cases and what is expected
   bool quiet = false;          ///< no progress
 };
 int numerics_command(const NumericsOptions& options);

@@ -204,6 +204,17 @@ int extremes_command(const NumericsOptions& options) {
   return failed == 0 ? 0 : kFailed;
 }
 
+/// Every case of the catalogue and its expected behaviour.
+int list_extremes() {
+  std::string theme;
+  for (const ExtremeCase& extreme : extreme_cases()) {
+    if (extreme.theme != theme) fmt::print("{}\n", theme = extreme.theme);
+    fmt::print("  {:<56} {}\n", extreme.name, extreme.expected);
+  }
+  fmt::print("{} cases\n", extreme_cases().size());
+  return 0;
+}
+
 /// A configuration file for each mode, named after it.
 int write_configurations(const NumericsOptions& options) {
   const Configuration base = load_configuration(options.config);
@@ -224,6 +235,7 @@ int write_configurations(const NumericsOptions& options) {
 
 int numerics_command(const NumericsOptions& options) {
   if (!options.configurations.empty()) return write_configurations(options);
+  if (options.catalogue) return list_extremes();
   return options.extremes ? extremes_command(options) : trade_command(options);
 }
 

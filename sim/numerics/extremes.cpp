@@ -21,7 +21,8 @@ constexpr uint32_t kResultAddress = 256;
 
 bool is_nan(uint32_t bits) { return (bits & 0x7fffffffu) > 0x7f800000u; }
 
-uint32_t operate_natively(const std::string& mnemonic, uint32_t a, uint32_t b, const arith::Mode& mode) {
+uint32_t operate_natively(const std::string& mnemonic, uint32_t a, uint32_t b, uint32_t c, const arith::Mode& mode) {
+  if (mnemonic == "ffma") return arith::fma(a, b, c, mode);
   using Binary = uint32_t (*)(uint32_t, uint32_t, arith::Mode);
   static const std::map<std::string, Binary> kOperations = {
       {"fadd", arith::add},
@@ -45,14 +46,16 @@ uint32_t operate_natively(const std::string& mnemonic, uint32_t a, uint32_t b, c
   return kOperations.at(mnemonic)(a, b, mode);
 }
 
-/// One thread that computes `mnemonic` of arguments 0 and 1 and stores the result.
+/// One thread that computes `mnemonic` of arguments 0, 1 and 2 and stores the result.
 Program operation_program(const std::string& mnemonic) {
   const InstructionInfo& info = instruction(mnemonic);
-  const std::string operands = has_operand(info, Operand::B) ? "r1, r2" : "r1";
+  std::string operands = has_operand(info, Operand::B) ? "r1, r2" : "r1";
+  if (has_operand(info, Operand::Rc)) operands += ", r6";
   const std::string compute = writes_predicate(info)
                                   ? fmt::format("{} p1, {}\nmov r4, 0\nmov r3, 1\nsel r3, p1, r3, r4\n", mnemonic, operands)
                                   : fmt::format("{} r3, {}\n", mnemonic, operands);
-  return assemble(fmt::format("arg r1, 0\narg r2, 1\n{}mov r5, {}\nst [r5+0], r3\nexit\n", compute, kResultAddress), "operation");
+  return assemble(fmt::format("arg r1, 0\narg r2, 1\narg r6, 2\n{}mov r5, {}\nst [r5+0], r3\nexit\n", compute, kResultAddress),
+                  "operation");
 }
 
 /// Puts what a frame left into an order that is the same for all engines.
@@ -162,16 +165,16 @@ void require(bool condition, const std::string& otherwise) {
 ExtremeMachine::ExtremeMachine(std::string engine, const ArithmeticMode& mode, const Configuration& base, UnitMaker unit)
     : engine_(std::move(engine)), mode_(mode), configuration_(mode.applied_to(base)), unit_(std::move(unit)) {}
 
-uint32_t ExtremeMachine::operate(const std::string& mnemonic, uint32_t a, uint32_t b) const {
-  const uint32_t native = operate_natively(mnemonic, a, b, mode_.mode);
+uint32_t ExtremeMachine::operate(const std::string& mnemonic, uint32_t a, uint32_t b, uint32_t c) const {
+  const uint32_t native = operate_natively(mnemonic, a, b, c, mode_.mode);
   if (!unit_) return native;
-  const uint32_t ours = operate_on_unit(mnemonic, a, b);
+  const uint32_t ours = operate_on_unit(mnemonic, a, b, c);
   require(ours == native,
-          fmt::format("{} of {:08x} and {:08x} is {:08x}, but {:08x} on engine native", mnemonic, a, b, ours, native));
+          fmt::format("{} of {:08x}, {:08x} and {:08x} is {:08x}, but {:08x} on engine native", mnemonic, a, b, c, ours, native));
   return ours;
 }
 
-uint32_t ExtremeMachine::operate_on_unit(const std::string& mnemonic, uint32_t a, uint32_t b) const {
+uint32_t ExtremeMachine::operate_on_unit(const std::string& mnemonic, uint32_t a, uint32_t b, uint32_t c) const {
   const Program program = operation_program(mnemonic);
   Memory memory(kResultAddress + 64);
   for (uint32_t i = 0; i < program.code.size(); ++i) {
@@ -186,6 +189,7 @@ uint32_t ExtremeMachine::operate_on_unit(const std::string& mnemonic, uint32_t a
   options.program_length = static_cast<uint32_t>(program.code.size());
   options.arguments[0] = a;
   options.arguments[1] = b;
+  options.arguments[2] = c;
   options.cycle_limit = kCycleLimit;
   run_program(options);
   return memory.load(kResultAddress);

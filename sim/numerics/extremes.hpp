@@ -67,15 +67,15 @@ class ExtremeMachine {
   bool flushes() const { return mode_.mode.subnormals == Subnormals::Flush; }
   bool exact() const { return mode_.mode.slow_unit == SlowUnit::Exact; }
 
-  /// Result of one instruction, flt or slw unit or float compare (then 0 or 1), on bit patterns. Throws ExtremeFailure when it
-  /// is not engine native's.
-  uint32_t operate(const std::string& mnemonic, uint32_t a, uint32_t b = 0) const;
+  /// Result of one instruction, flt or slw unit or float compare (then 0 or 1), on bit patterns; ffma only where the mode has it.
+  /// Throws ExtremeFailure when it is not engine native's.
+  uint32_t operate(const std::string& mnemonic, uint32_t a, uint32_t b = 0, uint32_t c = 0) const;
   /// Throws ExtremeFailure when the frame does not end or is not engine native's, bit for bit; InputError for what the scene
   /// checks refuse.
   Drawing draw(const ExtremeFrame& frame) const;
 
  private:
-  uint32_t operate_on_unit(const std::string& mnemonic, uint32_t a, uint32_t b) const;
+  uint32_t operate_on_unit(const std::string& mnemonic, uint32_t a, uint32_t b, uint32_t c) const;
   Drawing draw_on_unit(const ExtremeFrame& frame) const;
 
   std::string engine_;

@@ -32,6 +32,29 @@ ExtremeCase make(const char* name, const char* expected, std::vector<Row> rows) 
           }};
 }
 
+/// a * b + c: with one rounding where the mode has ffma, with two where it has not.
+struct SumRow {
+  uint32_t a, b, c;
+  uint32_t fused_ieee, fused_flush, separate_ieee, separate_flush;
+};
+constexpr SumRow same_sum(uint32_t a, uint32_t b, uint32_t c, uint32_t result) {
+  return {a, b, c, result, result, result, result};
+}
+
+ExtremeCase make_sums(const char* name, const char* expected, std::vector<SumRow> rows) {
+  return {"arithmetic", name, expected, [rows = std::move(rows)](const ExtremeMachine& machine) {
+            const bool fused = machine.mode().mode.fused;
+            for (const SumRow& row : rows) {
+              const uint32_t with_ffma = machine.flushes() ? row.fused_flush : row.fused_ieee;
+              const uint32_t wanted = fused ? with_ffma : machine.flushes() ? row.separate_flush : row.separate_ieee;
+              const uint32_t result = fused ? machine.operate("ffma", row.a, row.b, row.c)
+                                            : machine.operate("fadd", machine.operate("fmul", row.a, row.b), row.c);
+              require(result == wanted,
+                      fmt::format("{:08x} * {:08x} + {:08x} is {:08x}, not {:08x}", row.a, row.b, row.c, result, wanted));
+            }
+          }};
+}
+
 }  // namespace
 
 std::vector<ExtremeCase> arithmetic_extremes() {
@@ -112,6 +135,20 @@ std::vector<ExtremeCase> arithmetic_extremes() {
             same("frcp", 0x7e800000, 0, kSmallestNormal),
             {"frsqrt", 0x00200000, 0, 0x5f800000, kInfinity},
             same("frsqrt", kSmallestNormal, 0, 0x5f000000)}),
+      make_sums("products with an addend, NaNs, infinities and zeros",
+                "7FC00000 for zero times infinity and unlike infinities; -0 only from -0 and -0",
+                {same_sum(kZero, kInfinity, kOne, kNan), same_sum(kMinusInfinity, kZero, kOtherNan, kNan),
+                 same_sum(kOne, kOne, kOtherNan, kNan), same_sum(kInfinity, kOne, kMinusInfinity, kNan),
+                 same_sum(kInfinity, kMinusOne, kInfinity, kNan), same_sum(kInfinity, kOne, kInfinity, kInfinity),
+                 same_sum(kOne, kOne, kMinusInfinity, kMinusInfinity), same_sum(kOne, kOne, kMinusOne, kZero),
+                 same_sum(kMinusZero, kOne, kMinusZero, kMinusZero), same_sum(kMinusZero, kOne, kZero, kZero)}),
+      make_sums("products with an addend, roundings", "one rounding with ffma, two without",
+                {{kLargest, kTwo, 0xff7fffff, kLargest, kLargest, kInfinity, kInfinity},
+                 {0x3f800001, 0x3f800001, 0xbf800002, 0x28800000, 0x28800000, kZero, kZero},
+                 {0x1a000000, 0x1a000000, kSmallest, 0x00000002, kZero, kSmallest, kZero},
+                 {kSmallestNormal, kOne, kMinusZero | (kSmallestNormal + 1), kMinusZero | kSmallest, kMinusZero,
+                  kMinusZero | kSmallest, kMinusZero},
+                 {0x00c00000, kHalf, kSmallestNormal, 0x00e00000, 0x00e00000, 0x00e00000, kSmallestNormal}}),
       make("smaller and larger", "the number beside a NaN; -0 below +0",
            {same("fmin", kOtherNan, kOne, kOne),
             same("fmax", kOne, kOtherNan, kOne),

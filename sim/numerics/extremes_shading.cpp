@@ -3,10 +3,13 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "kernel/kernels.hpp"
 #include "numerics/extreme_parts.hpp"
 #include "numerics/extremes.hpp"
+#include "numerics/reference.hpp"
+#include "scene/traversal.hpp"
 
 namespace raypool::numerics {
 namespace {
@@ -154,8 +157,8 @@ void light_next_to_a_surface(const ExtremeMachine& machine) {
   }
 }
 
-void grazing_light(const ExtremeMachine& machine) {
-  // A floor of 512 triangles and nothing else: nothing can shadow it.
+/// 512 triangles in the plane y = -1.3.
+std::vector<TriangleCorners> wide_floor() {
   std::vector<TriangleCorners> triangles;
   for (int x = -8; x < 8; ++x) {
     for (int z = -16; z < 0; ++z) {
@@ -165,6 +168,12 @@ void grazing_light(const ExtremeMachine& machine) {
       triangles.push_back({a, d, c});
     }
   }
+  return triangles;
+}
+
+void grazing_light(const ExtremeMachine& machine) {
+  // The floor and nothing else: nothing can shadow it.
+  const std::vector<TriangleCorners> triangles = wide_floor();
   for (float height : {0.01f, 0.1f, 1.0f}) {
     Scene scene = scene_of_triangles(triangles);
     scene.light.position = {33, -1.3f + height, -77};
@@ -180,6 +189,47 @@ void grazing_light(const ExtremeMachine& machine) {
     require(acne == 0, fmt::format("{} of {} shadow rays are blocked by the surface that they start from, light {} above it",
                                    acne, hits, height));
   }
+}
+
+void grazing_light_and_blocks(const ExtremeMachine& machine) {
+  // Blocks that stand in the floor; the light is below their tops, and every shadow ray grazes the floor.
+  std::vector<TriangleCorners> triangles = wide_floor();
+  for (const Vec3& middle : {Vec3{-4, -1.3f, -14}, Vec3{3, -1.3f, -22}, Vec3{9, -1.3f, -31}}) {
+    for (TriangleCorners block : cube(-1.7f, 1.7f)) {
+      for (Vec3& corner : block) corner = corner + middle;
+      triangles.push_back(block);
+    }
+  }
+  uint64_t shadows = 0, dark = 0, acne = 0, wrong = 0;
+  for (float height : {0.03f, 0.3f}) {
+    Scene scene = scene_of_triangles(triangles);
+    scene.light.position = {33, -1.3f + height, -77};
+    const Drawing drawing = machine.draw(frame_of(scene, 19, 1));
+    require_no_nan(drawing);
+    const ReferenceTracer reference(scene);
+    const Traversal traversal(scene);
+    std::map<uint32_t, TracedRay> eyes;
+    for (const TracedRay& eye : drawing.rays(false, 1)) eyes[eye.ray[word::kPixel]] = eye;
+    for (const TracedRay& shadow : drawing.rays(true, 1)) {
+      // The truth starts from the exact point, not from where the machine's ray does.
+      const RayQuery eye = to_query(eyes.at(shadow.ray[word::kPixel]).ray);
+      const Vec3d origin = eye.origin.as<double>(), direction = eye.direction.as<double>();
+      const ReferenceHit hit = reference.nearest(origin, direction, INFINITY);
+      const ReferenceShadowRay truth = shadow_ray(reference, origin, direction, hit, scene.light.position.as<double>());
+      if (truth.cosine <= 0) continue;
+      const bool lit = reference.occluder(truth.origin, truth.direction, 1) == kNoTriangle;
+      ++shadows;
+      dark += !lit;
+      if (shadow.goes_on == lit) continue;
+      Hit blocker;
+      const bool own =
+          lit && traversal.nearest(to_query(shadow.ray), blocker) && same_surface(reference, blocker.triangle, hit.triangle);
+      ++(own ? acne : wrong);
+    }
+  }
+  require(shadows > 100 && dark > 20 && shadows - dark > 20, fmt::format("of {} shadow rays {} are dark", shadows, dark));
+  require(acne == 0, fmt::format("{} of {} shadow rays are blocked by the surface that they start from", acne, shadows));
+  require(wrong <= shadows / 100, fmt::format("{} of {} shadow rays end otherwise than the reference's", wrong, shadows));
 }
 
 /// A closed box whose walls multiply light by ten thousand at each reflection.
@@ -250,6 +300,8 @@ std::vector<ExtremeCase> shading_extremes() {
       make("a light at the eye", "lights all that is seen", light_at_the_eye),
       make("a light next to a surface", "the cosine stays within 0 .. 1", light_next_to_a_surface),
       make("grazing shadow rays", "no surface shadows itself", grazing_light),
+      make("grazing shadow rays among blocks", "light and shadow as in the double-precision reference, no acne",
+           grazing_light_and_blocks),
       make("radiance that overflows", "white", overflow),
       make("infinite throughput times zero", "adds nothing", overflow_of_nothing),
       make("radiance below the frame buffer's unit", "rounded to multiples of 2^-32", faint),

@@ -4,6 +4,7 @@
 set -eu -o pipefail
 cd "$(dirname "$0")/../.."
 exponent=${1:-5} mantissa=${2:-10} adder=${FLOAT_ADDER:-rtl/float_adder.v}
+. tb/proofs/constant_zero.bash
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 for subnormals in 0 1; do
@@ -19,15 +20,6 @@ module top #(parameter EXPONENT_BITS = 5, MANTISSA_BITS = 10, SUBNORMALS = 0, BI
   assign differs = sum != exact;
 endmodule
 TOP
-  yosys -q -l "$folder/log" -p "read_verilog $folder/top.v $adder tb/proofs/exact_adder.v; chparam $parameters top; hierarchy -top top;
-    proc; flatten; opt_expr; opt_clean; techmap -map tb/proofs/without_registers.v; select -assert-none t:*dff*; opt -full; techmap; opt -fast; abc -g AND -fast;
-    opt_clean; write_aiger $folder/miter.aig" > /dev/null
-  # The one output must be constant 0.
-  yosys-abc -c "read_aiger $folder/miter.aig; fraig; dc2; fraig; iprove; print_status" > "$folder/abc" 2>&1 || true
-  if ! grep -q "UNSATISFIABLE" "$folder/abc"; then
-    echo "FAILED: float_adder ($exponent, $mantissa), SUBNORMALS $subnormals:"
-    tail -5 "$folder/abc"
-    exit 1
-  fi
-  echo "proved: float_adder with $exponent exponent and $mantissa mantissa bits, SUBNORMALS $subnormals, all operands"
+  prove_zero "$folder" "float_adder with $exponent exponent and $mantissa mantissa bits, SUBNORMALS $subnormals, all operands" \
+    "read_verilog $folder/top.v $adder tb/proofs/exact_adder.v; chparam $parameters top; hierarchy -top top"
 done

@@ -177,6 +177,7 @@ int run(int argc, char** argv) {
                            "folder for numerics.json and plots (default: out/numerics beside the program)");
   numerics_app->add_option("--synthesis", numerics.synthesis, "folder of synthesis reports (default: synth beside the program)");
   numerics_app->add_flag("--extremes", numerics.extremes, "the catalogue of hard cases, by mode and engine");
+  numerics_app->add_flag("--catalogue", numerics.catalogue, "only list those cases, with what is expected of them");
   numerics_app->add_option("--configurations", numerics.configurations,
                            "only write a configuration file of each mode into this folder");
   numerics_app->add_flag("--quiet", numerics.quiet, "no progress");

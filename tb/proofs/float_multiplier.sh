@@ -1,0 +1,40 @@
+#!/bin/bash
+# Proves rtl/float_multiplier.v, as a 16-bit multiplier (5 exponent bits, 10 of mantissa), right for all operands in both subnormal modes, in two
+# parts: its tree's two numbers add up to the product of the mantissas, and with any two numbers that add up to a product of that size in the
+# tree's place the multiplier equals tb/proofs/exact_product.v. It uses no more of the tree than the sum, modulo 2^22.
+# tb/proofs/float_multiplier.sh [EXPONENT_BITS MANTISSA_BITS]. FLOAT_MULTIPLIER and MULTIPLY_TREE name others to try.
+set -eu -o pipefail
+cd "$(dirname "$0")/../.."
+exponent=${1:-5} mantissa=${2:-10} multiplier=${FLOAT_MULTIPLIER:-rtl/float_multiplier.v} tree=${MULTIPLY_TREE:-rtl/multiply_tree.v}
+. tb/proofs/constant_zero.bash
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+bits=$((1 + exponent + mantissa)) factor=$((mantissa + 1)) product=$((2 * mantissa + 2))
+
+cat > "$folder/tree.v" <<TOP
+module top (input [$((factor-1)):0] a, b, output differs);
+  wire [$((product-1)):0] sum, carry, total = sum + carry, exact = a * b;
+  multiply_tree #(.A_BITS($factor), .B_BITS($factor)) tree (.a_i(a), .b_i(b), .sum_o(sum), .carry_o(carry));
+  assign differs = total != exact;
+endmodule
+TOP
+prove_zero "$folder" "multiply_tree of $factor x $factor bits, all operands" "read_verilog -DSYNTHESIS $folder/tree.v $tree; hierarchy -top top"
+
+for subnormals in 0 1; do
+  # The multiplier with its tree taken out: the tree's ports become its own.
+  yosys -q -l "$folder/log" -p "read_verilog -DSYNTHESIS $multiplier $tree; hierarchy -top float_multiplier -chparam EXPONENT_BITS $exponent \
+    -chparam MANTISSA_BITS $mantissa -chparam SUBNORMALS $subnormals; proc; cd float_multiplier; expose -evert t:*multiply_tree*; cd ..;
+    delete =A:hdlname=multiply_tree; rename -top cut; write_verilog -noattr $folder/cut.v" > /dev/null
+  cat > "$folder/top.v" <<TOP
+module top (input clk, input [$((bits-1)):0] a, b, input [$((product-1)):0] sum, carry, output differs);
+  wire [$((bits-1)):0] result, exact;
+  wire possible;
+  cut multiplier (.clk_i(clk), .enable_i(3'b111), .a_i(a), .b_i(b), .\tree.sum_o (sum), .\tree.carry_o (carry), .result_o(result));
+  exact_product #(.EXPONENT_BITS($exponent), .MANTISSA_BITS($mantissa), .SUBNORMALS($subnormals)) reference (
+    .a_i(a), .b_i(b), .product_i(sum + carry), .possible_o(possible), .result_o(exact));
+  assign differs = possible && result != exact;
+endmodule
+TOP
+  prove_zero "$folder" "float_multiplier with $exponent exponent and $mantissa mantissa bits, SUBNORMALS $subnormals, all operands, any tree" \
+    "read_verilog $folder/top.v $folder/cut.v tb/proofs/exact_product.v; hierarchy -top top"
+done
