@@ -103,8 +103,8 @@ cosim: setup-sim program ## random programs, hardware against model: CONFIG, CUS
 	@$(UNIT) --units "$$CUS"
 	@$(RAYPOOL) cosim --config "$$CONFIG" --units "$$CUS" --programs "$$PROGRAMS" --seed "$$SEED" $${COVERAGE:+--coverage "$$COVERAGE"}
 
-configurations: setup-sim program ## random programs on configurations with every pair of values (hours): PROGRAMS
-	@scripts/configurations.sh pairs "$$PROGRAMS"
+configurations: setup-sim program ## random programs on machines with every pair of values (hours): PROGRAMS
+	@scripts/configurations.sh all "$$PROGRAMS"
 
 mutants: setup-sim setup-lint program ## small faults put into the RTL: which does the lockstep notice? MUTANTS
 	@$(LOCKED) cmake --build $(BUILD) --target raypool_mutants

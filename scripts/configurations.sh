@@ -1,40 +1,44 @@
 #!/bin/bash
-# Walks a set of configurations, each with random programs in lockstep: scripts/configurations.sh small|pairs PROGRAMS [FOLDER]
-# small: few that compile quickly and cover every value. pairs: every pair of values, which takes hours. FOLDER (default build/configurations) gets
-# their JSON files. Goes on after a failure, prints a line for each configuration, and ends with 1 if one failed. RAYPOOL names the program.
+# Walks a set of machines, each with random programs in lockstep: scripts/configurations.sh small|all PROGRAMS [FOLDER]
+# small: every pair of parameter values that a machine of 32 threads can have. all: every pair, large machines included, which takes hours.
+# FOLDER (default build/configurations) gets the configurations and the Verilated units. Goes on after a failure, prints a line for each machine,
+# and ends with 1 if one failed. RAYPOOL names the program.
 set -eu -o pipefail
-[ $# -ge 2 ] || { echo "usage: scripts/configurations.sh small|pairs PROGRAMS [FOLDER]" >&2; exit 1; }
+[ $# -ge 2 ] || { echo "usage: scripts/configurations.sh small|all PROGRAMS [FOLDER]" >&2; exit 1; }
 cd "$(dirname "$0")/.."
 set=$1 programs=$2 folder=${3:-build/configurations}
 export RAYPOOL=${RAYPOOL:-build/raypool}
-flags=()
+flags=() quick=--quick
 case $set in
   small) ;;
-  pairs) flags=(--all-pairs) ;;
-  *) echo "configurations.sh: the set is small or pairs, not '$set'" >&2; exit 1 ;;
+  all) flags=(--all-pairs) quick= ;;
+  *) echo "configurations.sh: the set is small or all, not '$set'" >&2; exit 1 ;;
 esac
-rm -rf "${folder:?}/$set"
-"$RAYPOOL" configurations "${flags[@]}" --out "$folder/$set"
+"$RAYPOOL" configurations "${flags[@]}" --out "$folder/$set" | tail -n 1
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
 failed=() count=0
-for file in "$folder/$set"/*.json; do
-  name=$(basename "$file" .json) begin=$SECONDS
+while read -r file units <&3; do
+  name=${file%.json} begin=$SECONDS
+  file=$folder/$set/$file unit=$folder/$set/$name
+  run=("$RAYPOOL" cosim --config "$file" --units "$units" --unit-library "$unit/libraypool_unit.so" --programs "$programs" --quiet)
   count=$((count + 1))
-  if ! scripts/unit.sh "$file" > "$log" 2>&1; then
+  # Unquoted: each parameter is a word.
+  build=(scripts/verilate.sh "$unit" $quick "UNITS=$units" $("$RAYPOOL" config "$file" --verilog-parameters))
+  if ! JOBS=$(nproc) "${build[@]}" > "$log" 2>&1; then
     failed+=("$name")
     cat "$log"
-    echo "$name: does not build; again with: scripts/unit.sh $file"
+    echo "$name: does not build; again with: ${build[*]}"
     continue
   fi
   built=$((SECONDS - begin)) begin=$SECONDS
-  if "$RAYPOOL" cosim --config "$file" --programs "$programs" --quiet > "$log" 2>&1; then
-    echo "$name: $programs programs, $(grep -oE '[0-9]+ instructions' "$log" | head -n 1), $(grep -oE '[0-9]+ differences' "$log"); built in $built s, ran $((SECONDS - begin)) s"
+  if "${run[@]}" > "$log" 2>&1; then
+    echo "$name, $units units: $programs programs, $(grep -oE '[0-9]+ instructions' "$log" | head -n 1), $(grep -oE '[0-9]+ differences' "$log"); built in $built s, ran $((SECONDS - begin)) s"
   else
     failed+=("$name")
     cat "$log"
-    echo "$name: FAILED; again with: $RAYPOOL cosim --config $file --programs $programs"
+    echo "$name: FAILED; again with: ${run[*]}"
   fi
-done
-echo "$count configurations walked, ${#failed[@]} failed ${failed[*]:-}"
+done 3< "$folder/$set/list"
+echo "$count machines walked, ${#failed[@]} failed ${failed[*]:-}"
 [ ${#failed[@]} = 0 ]

@@ -1,9 +1,9 @@
 #!/bin/bash
 # Builds the Verilated multiprocessor of one set of Verilog parameters: OUTPUT_DIR/libraypool_unit.so.
-#   scripts/verilate.sh OUTPUT_DIR [--trace] [--netlist FILE]... NAME=VALUE...
+#   scripts/verilate.sh OUTPUT_DIR [--trace] [--quick] [--netlist FILE]... NAME=VALUE...
 # NAME=VALUE as `raypool config CONFIG --verilog-parameters` prints them, and UNITS=1|2|4 (default 1).
 # --netlist: files of a mapped netlist of that configuration's compute unit, which stands in for that of rtl/.
-# --trace: the unit can write waveforms (FST), and is slower. Does nothing when the library is newer than all it is made from; a build
+# --trace: the unit can write waveforms (FST), and is slower. --quick: compiled in half the time, four times slower. Does nothing when the library is newer than all it is made from; a build
 # that fails leaves the old library as it was. VERILATOR, CXX and JOBS (default 2) choose the tools and the number of compilers.
 set -eu -o pipefail
 
@@ -12,10 +12,11 @@ fail() {
   exit 1
 }
 
-[ $# -ge 1 ] || fail "usage: scripts/verilate.sh OUTPUT_DIR [--trace] [--netlist FILE]... NAME=VALUE..."
+[ $# -ge 1 ] || fail "usage: scripts/verilate.sh OUTPUT_DIR [--trace] [--quick] [--netlist FILE]... NAME=VALUE..."
 output=$1
 shift
 trace=0
+quick=0
 parameters=()
 netlist=()
 while [ $# -gt 0 ]; do
@@ -23,6 +24,8 @@ while [ $# -gt 0 ]; do
   shift
   if [ "$argument" = --trace ]; then
     trace=1
+  elif [ "$argument" = --quick ]; then
+    quick=1
   elif [ "$argument" = --netlist ]; then
     [ $# -ge 1 ] || fail "--netlist needs a file"
     netlist+=("$(realpath "$1")")
@@ -30,7 +33,7 @@ while [ $# -gt 0 ]; do
   elif [[ $argument =~ ^[A-Z][A-Z0-9_]*=[0-9]+$ ]]; then
     parameters+=("$argument")
   else
-    fail "'$argument' is neither --trace nor a Verilog parameter such as WARPS=8"
+    fail "'$argument' is neither --trace, --quick nor a Verilog parameter such as WARPS=8"
   fi
 done
 
@@ -57,6 +60,7 @@ waivers=(rtl/*.vlt)
 language=1364-2005
 what=rtl/
 optimise=(OPT_FAST=-O2 OPT_SLOW=-O1 OPT_GLOBAL=-O2)
+[ "$quick" = 0 ] || optimise=(OPT_FAST=-O0 OPT_SLOW=-O0 OPT_GLOBAL=-O2)
 # A netlist runs for seconds and compiles for minutes.
 if [ ${#netlist[@]} -gt 0 ]; then
   verilog=("${netlist[@]}")
@@ -66,7 +70,7 @@ if [ ${#netlist[@]} -gt 0 ]; then
   optimise=(OPT_FAST=-O1 OPT_SLOW=-O0 OPT_GLOBAL=-O1)
 fi
 digest=$({
-  printf '%s\n' "$version" "$compiler_version" "trace $trace" "${parameters[@]}"
+  printf '%s\n' "$version" "$compiler_version" "trace $trace quick $quick" "${parameters[@]}"
   sha256sum "${verilog[@]}" "${waivers[@]}" rtl/*.vh "${headers[@]}" "${wrapper[@]}" scripts/verilate.sh
 } | sha256sum | cut -d ' ' -f 1)
 if [ -f "$library" ] && [ "$(cat "$stamp" 2> /dev/null)" = "$digest" ]; then

@@ -108,10 +108,10 @@ struct CosimOptions {
 };
 int cosim_command(const CosimOptions& options);
 
-/// `raypool configurations`: a set of configurations that covers the parameters' values and pairs of them.
+/// `raypool configurations`: a set of machines with every pair of parameter values.
 struct ConfigurationsOptions {
-  bool all_pairs = false;  ///< else a few small ones that cover every value
-  std::string folder;      ///< gets a JSON file for each; empty: only the table is printed
+  bool all_pairs = false;  ///< large machines too; else of at most kSmallThreads
+  std::string folder;      ///< gets a JSON file for each and their list; empty: only the table is printed
 };
 int configurations_command(const ConfigurationsOptions& options);
 

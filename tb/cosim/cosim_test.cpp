@@ -177,12 +177,14 @@ TEST(Stalls, OpenAndShutAsTheirStyleSays) {
   }
 }
 
-TEST(Covering, SmallConfigurationsHaveEveryValueAndTheLongSetEveryPair) {
-  const Covered small = count_covered(small_configurations());
-  EXPECT_EQ(small.values, small.all_values);
-  for (const Configuration& configuration : small_configurations()) EXPECT_EQ(configuration.contents(), 32);
-  const Covered all = count_covered(all_pairs_configurations());
-  EXPECT_EQ(all.pairs, all.all_pairs);
+TEST(Covering, SetsHaveEveryPairThatMachinesOfTheirSizeCanHave) {
+  for (const int most_threads : {kSmallThreads, kMostThreads}) {
+    const std::vector<Machine> machines = covering_machines(most_threads);
+    for (const Machine& machine : machines) EXPECT_LE(machine.configuration.contents() * machine.units, most_threads);
+    const Covered covered = count_covered(machines, most_threads);
+    EXPECT_EQ(covered.values, covered.all_values);
+    EXPECT_EQ(covered.pairs, covered.all_pairs);
+  }
 }
 
 TEST(CoverageOfNothing, ListsEverythingAsNotCovered) {

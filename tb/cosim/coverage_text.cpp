@@ -63,6 +63,7 @@ std::vector<Coverage::Group> Coverage::groups() const {
     if (configuration_.warps == 1 && one == Event::WarpsLeftOut) continue;
     const bool one_read = configuration_.data_cache_mshrs == 1 || configuration_.contents() == 1;
     if (one_read && one == Event::OneSet) continue;
+    if (units_ > 1 && one == Event::ImportAhead) continue;  // which unit a package goes to is not seen from outside
     group(kEventTexts[event].group).items.push_back({std::string(kEventTexts[event].name), events_[event]});
   }
   Group& faults = group("faults");

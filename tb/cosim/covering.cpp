@@ -7,6 +7,7 @@
 #include <random>
 #include <set>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 
 namespace raypool {
@@ -14,56 +15,57 @@ namespace {
 
 constexpr int kCandidates = 60;
 
+// Of a depth: in all, while a smaller value counts stages beyond the least, which other parameters decide.
+constexpr int kDeepest = 32;
+
 void add_alu(std::vector<Factor>& factors, size_t unit) {
   const auto add = [&](const char* what, int AluConfiguration::*member, std::vector<int> values) {
     factors.push_back({fmt::format("{}.{}", kUnitNames[unit], what), std::move(values),
-                       [unit, member](Configuration& c, int value) { c.alus[unit].*member = value; },
-                       [unit, member](const Configuration& c) { return c.alus[unit].*member; }});
+                       [unit, member](Machine& m, int value) { m.configuration.alus[unit].*member = value; },
+                       [unit, member](const Machine& m) { return m.configuration.alus[unit].*member; }});
   };
-  const int depth = kUnitTable[unit].depth;
   add("count", &AluConfiguration::count, {1, 2, 3, 4});
   add("latency", &AluConfiguration::latency, {1, 2, 3, 16});
-  add("depth", &AluConfiguration::depth, {depth, depth + 1, 32});
+  const auto least = [unit](const Machine& m) { return least_depth(m.configuration, static_cast<Unit>(unit)); };
+  factors.push_back({fmt::format("{}.depth", kUnitNames[unit]),
+                     {0, 1, kDeepest},
+                     [unit, least](Machine& m, int v) { m.configuration.alus[unit].depth = v == kDeepest ? v : least(m) + v; },
+                     [unit, least](const Machine& m) {
+                       const int depth = m.configuration.alus[unit].depth;
+                       return depth == kDeepest ? depth : depth - least(m);
+                     }});
 }
 
+// In the order in which they are set.
 std::vector<Factor> make_factors() {
-  std::vector<Factor> factors = {
-      {"warps",
-       {1, 2, 4, 8, 16, 32},
-       [](Configuration& c, int v) { c.warps = v; },
-       [](const Configuration& c) { return c.warps; }},
-      {"cores",
-       {1, 2, 4, 8, 16, 32},
-       [](Configuration& c, int v) { c.cores = v; },
-       [](const Configuration& c) { return c.cores; }},
-      {"stack_depth",
-       {2, 3, 8, 32},
-       [](Configuration& c, int v) { c.stack_depth = v; },
-       [](const Configuration& c) { return c.stack_depth; }},
-      {"instruction_cache.bytes",
-       {512, 1024, 4096, 65536},
-       [](Configuration& c, int v) { c.instruction_cache_bytes = v; },
-       [](const Configuration& c) { return c.instruction_cache_bytes; }},
-      {"data_cache.bytes",
-       {512, 1024, 8192, 65536},
-       [](Configuration& c, int v) { c.data_cache_bytes = v; },
-       [](const Configuration& c) { return c.data_cache_bytes; }},
-      {"data_cache.mshrs",
-       {1, 2, 3, 4, 16},
-       [](Configuration& c, int v) { c.data_cache_mshrs = v; },
-       [](const Configuration& c) { return c.data_cache_mshrs; }},
-      {"subnormals",
-       {0, 1},
-       [](Configuration& c, int v) { c.subnormals = static_cast<Subnormals>(v); },
-       [](const Configuration& c) { return static_cast<int>(c.subnormals); }},
-      {"slow_unit",
-       {0, 1, 2, 3},
-       [](Configuration& c, int v) { c.slow_unit = static_cast<SlowUnit>(v); },
-       [](const Configuration& c) { return static_cast<int>(c.slow_unit); }},
+  std::vector<Factor> factors;
+  const auto add = [&](const char* name, std::vector<int> values, auto Configuration::*member) {
+    using Value = std::remove_reference_t<decltype(std::declval<Configuration>().*member)>;
+    factors.push_back({name, std::move(values), [member](Machine& m, int v) { m.configuration.*member = static_cast<Value>(v); },
+                       [member](const Machine& m) { return static_cast<int>(m.configuration.*member); }});
   };
+  add("warps", {1, 2, 4, 8, 16, 32}, &Configuration::warps);
+  add("cores", {1, 2, 4, 8, 16, 32}, &Configuration::cores);
+  factors.push_back({"units", {1, 2, 4}, [](Machine& m, int v) { m.units = v; }, [](const Machine& m) { return m.units; }});
+  for (Factor& factor : factors) factor.multiplies = true;
+  add("stack_depth", {2, 3, 8, 32}, &Configuration::stack_depth);
+  add("instruction_cache.bytes", {512, 1024, 4096, 65536}, &Configuration::instruction_cache_bytes);
+  add("data_cache.bytes", {512, 1024, 8192, 65536}, &Configuration::data_cache_bytes);
+  add("data_cache.mshrs", {1, 2, 3, 4, 16}, &Configuration::data_cache_mshrs);
+  add("subnormals", {0, 1}, &Configuration::subnormals);
+  add("slow_unit", {0, 1, 2, 3}, &Configuration::slow_unit);
+  add("fma", {0, 1}, &Configuration::fma);
   for (size_t unit = 0; unit < kUnits; ++unit)
     if (!kUnitTable[unit].timed_by_events()) add_alu(factors, unit);
   return factors;
+}
+
+/// What a value multiplies the number of threads by.
+int threads_of(const Factor& factor, int value) { return factor.multiplies ? value : 1; }
+
+/// Both values fit into a machine of so many threads.
+bool possible(const Factor& a, int i, const Factor& b, int j, int most_threads) {
+  return threads_of(a, i) * threads_of(b, j) <= most_threads;
 }
 
 /// Two factors and an index into the values of each; the first factor is the lower one.
@@ -74,30 +76,28 @@ using Row = std::vector<int>;
 
 class Search {
  public:
-  Search() {
+  explicit Search(int most_threads) : most_threads_(most_threads) {
     const auto& factors = covering_factors();
     for (size_t a = 0; a < factors.size(); ++a)
       for (size_t b = a + 1; b < factors.size(); ++b)
         for (size_t i = 0; i < factors[a].values.size(); ++i)
-          for (size_t j = 0; j < factors[b].values.size(); ++j) open_.insert({a, b, i, j});
-    for (size_t a = 0; a < factors.size(); ++a)
-      for (size_t i = 0; i < factors[a].values.size(); ++i) unused_.insert({a, i});
+          for (size_t j = 0; j < factors[b].values.size(); ++j)
+            if (possible(factors[a], factors[a].values[i], factors[b], factors[b].values[j], most_threads))
+              open_.insert({a, b, i, j});
   }
 
   bool done() const { return open_.empty(); }
 
-  /// The best of some rows that agree with `fixed`, or, if nothing is fixed, with a pair that is open.
-  Row next(const Row& fixed) {
+  /// The best of some rows that each have a pair that is open.
+  Row next() {
     Row best;
     size_t most = 0;
     for (int n = 0; n < kCandidates; ++n) {
-      Row row = fixed;
-      if (std::all_of(row.begin(), row.end(), [](int v) { return v < 0; })) {
-        auto pair = open_.begin();
-        std::advance(pair, static_cast<std::ptrdiff_t>(random_() % open_.size()));
-        row[std::get<0>(*pair)] = static_cast<int>(std::get<2>(*pair));
-        row[std::get<1>(*pair)] = static_cast<int>(std::get<3>(*pair));
-      }
+      Row row(covering_factors().size(), -1);
+      auto pair = open_.begin();
+      std::advance(pair, static_cast<std::ptrdiff_t>(random_() % open_.size()));
+      row[std::get<0>(*pair)] = static_cast<int>(std::get<2>(*pair));
+      row[std::get<1>(*pair)] = static_cast<int>(std::get<3>(*pair));
       const size_t score = fill(row);
       if (best.empty() || score > most) {
         best = row;
@@ -109,17 +109,25 @@ class Search {
   }
 
  private:
-  // A value that no row has had counts for much, so that few rows are enough for all.
-  static constexpr size_t kNewValue = 1000;
-
   size_t gain(const Row& row, size_t factor, size_t value) const {
-    size_t pairs = unused_.count({factor, value}) * kNewValue;
+    size_t pairs = 0;
     for (size_t other = 0; other < row.size(); ++other) {
       if (row[other] < 0 || other == factor) continue;
       const auto o = static_cast<size_t>(row[other]);
       pairs += other < factor ? open_.count({other, factor, o, value}) : open_.count({factor, other, value, o});
     }
     return pairs;
+  }
+
+  /// Threads that the row has with another value of a factor, so far.
+  int threads(const Row& row, size_t factor, size_t value) const {
+    int product = 1;
+    for (size_t other = 0; other < row.size(); ++other) {
+      const size_t index = other == factor ? value : static_cast<size_t>(row[other]);
+      const Factor& f = covering_factors()[other];
+      if (other == factor || row[other] >= 0) product *= threads_of(f, f.values[index]);
+    }
+    return product;
   }
 
   size_t fill(Row& row) {
@@ -131,11 +139,12 @@ class Search {
       if (row[factor] >= 0) continue;
       const size_t values = covering_factors()[factor].values.size();
       const size_t first = random_() % values;
-      size_t chosen = first, most = 0;
+      size_t chosen = 0, most = 0;  // a size's first value is 1, which always fits
       for (size_t n = 0; n < values; ++n) {
         const size_t value = (first + n) % values;
+        if (threads(row, factor, value) > most_threads_) continue;
         const size_t pairs = gain(row, factor, value);
-        if (pairs > most) chosen = value, most = pairs;
+        if (pairs > most || (most == 0 && n == 0)) chosen = value, most = pairs;
       }
       row[factor] = static_cast<int>(chosen);
       total += most;
@@ -145,25 +154,25 @@ class Search {
 
   void take(const Row& row) {
     for (size_t a = 0; a < row.size(); ++a) {
-      unused_.erase({a, static_cast<size_t>(row[a])});
       for (size_t b = a + 1; b < row.size(); ++b) open_.erase({a, b, static_cast<size_t>(row[a]), static_cast<size_t>(row[b])});
     }
   }
 
+  int most_threads_;
   std::set<Pair> open_;
-  std::set<std::pair<size_t, size_t>> unused_;
   std::mt19937 random_{1};
 };
 
-Configuration configuration_of(const Row& row, const std::string& prefix, size_t number) {
-  Configuration configuration;
+Machine machine_of(const Row& row, size_t number) {
+  Machine machine;
   for (size_t factor = 0; factor < row.size(); ++factor) {
     const Factor& f = covering_factors()[factor];
-    f.set(configuration, f.values[static_cast<size_t>(row[factor])]);
+    f.set(machine, f.values[static_cast<size_t>(row[factor])]);
   }
-  configuration.name = fmt::format("{}{:02}-{}w{}c", prefix, number, configuration.warps, configuration.cores);
+  Configuration& configuration = machine.configuration;
+  configuration.name = fmt::format("set{:02}-{}w{}c", number, configuration.warps, configuration.cores);
   check_configuration(configuration, configuration.name);
-  return configuration;
+  return machine;
 }
 
 }  // namespace
@@ -173,20 +182,21 @@ const std::vector<Factor>& covering_factors() {
   return kFactors;
 }
 
-Covered count_covered(const std::vector<Configuration>& configurations) {
+Covered count_covered(const std::vector<Machine>& machines, int most_threads) {
   const std::vector<Factor>& factors = covering_factors();
   std::set<std::pair<size_t, int>> values;
   std::set<std::tuple<size_t, size_t, int, int>> pairs;
   Covered covered;
   for (size_t a = 0; a < factors.size(); ++a) {
     covered.all_values += factors[a].values.size();
-    for (size_t b = a + 1; b < factors.size(); ++b) covered.all_pairs += factors[a].values.size() * factors[b].values.size();
+    for (size_t b = a + 1; b < factors.size(); ++b)
+      for (const int i : factors[a].values)
+        for (const int j : factors[b].values) covered.all_pairs += possible(factors[a], i, factors[b], j, most_threads) ? 1 : 0;
   }
-  for (const Configuration& configuration : configurations) {
+  for (const Machine& machine : machines) {
     for (size_t a = 0; a < factors.size(); ++a) {
-      values.insert({a, factors[a].get(configuration)});
-      for (size_t b = a + 1; b < factors.size(); ++b)
-        pairs.insert({a, b, factors[a].get(configuration), factors[b].get(configuration)});
+      values.insert({a, factors[a].get(machine)});
+      for (size_t b = a + 1; b < factors.size(); ++b) pairs.insert({a, b, factors[a].get(machine), factors[b].get(machine)});
     }
   }
   covered.values = values.size();
@@ -194,31 +204,11 @@ Covered count_covered(const std::vector<Configuration>& configurations) {
   return covered;
 }
 
-std::vector<Configuration> all_pairs_configurations() {
-  Search search;
-  std::vector<Configuration> configurations;
-  while (!search.done())
-    configurations.push_back(
-        configuration_of(search.next(Row(covering_factors().size(), -1)), "pairs", configurations.size() + 1));
-  return configurations;
-}
-
-std::vector<Configuration> small_configurations() {
-  const std::vector<Factor>& factors = covering_factors();
-  Search search;
-  std::vector<Configuration> configurations;
-  for (int warps = 0; warps < 6; ++warps) {
-    Row fixed(factors.size(), -1);
-    fixed[0] = warps;
-    fixed[1] = 5 - warps;
-    // Several large ALUs of many lanes take minutes to compile; the narrow ones show as well whether instances keep apart.
-    for (size_t factor = 0; warps < 2 && factor < factors.size(); ++factor) {
-      const std::string& name = factors[factor].name;
-      if (name == "int.count" || name == "flt.count" || name == "slw.count") fixed[factor] = 0;
-    }
-    configurations.push_back(configuration_of(search.next(fixed), "small", configurations.size() + 1));
-  }
-  return configurations;
+std::vector<Machine> covering_machines(int most_threads) {
+  Search search(most_threads);
+  std::vector<Machine> machines;
+  while (!search.done()) machines.push_back(machine_of(search.next(), machines.size() + 1));
+  return machines;
 }
 
 }  // namespace raypool

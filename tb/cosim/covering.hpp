@@ -11,26 +11,36 @@
 
 namespace raypool {
 
+/// A configuration, and how many units of it.
+struct Machine {
+  Configuration configuration;
+  int units = 1;
+};
+
 /// A parameter and the values of it that are tried: its ends and what lies between.
 struct Factor {
   std::string name;
   std::vector<int> values;
-  std::function<void(Configuration& configuration, int value)> set;
-  std::function<int(const Configuration& configuration)> get;
+  std::function<void(Machine& machine, int value)> set;
+  std::function<int(const Machine& machine)> get;
+  bool multiplies = false;  ///< the number of threads
 };
 const std::vector<Factor>& covering_factors();
 
+/// Threads, over all units, up to which a machine compiles in seconds.
+inline constexpr int kSmallThreads = 32;
+/// Threads of the largest unit.
+inline constexpr int kMostThreads = 1024;
+
 struct Covered {
   size_t values = 0, all_values = 0;
-  size_t pairs = 0, all_pairs = 0;  ///< pairs of values of two parameters
+  size_t pairs = 0, all_pairs = 0;  ///< pairs of values of two parameters that machines of so many threads can have
 };
-Covered count_covered(const std::vector<Configuration>& configurations);
+Covered count_covered(const std::vector<Machine>& machines, int most_threads);
 
-/// Every pair of values of any two parameters is in one of them. Greedy: each next one is the best of some that are put together
-/// value by value, so that each value brings most pairs that were not there. The same set every time.
-std::vector<Configuration> all_pairs_configurations();
-
-/// Six configurations of 32 threads each, which compile quickly, with every value of every parameter and as many pairs as fit.
-std::vector<Configuration> small_configurations();
+/// Every pair of values of any two parameters that a machine of at most `most_threads` threads can have is in one of them.
+/// Greedy: each next one is the best of some that are put together value by value, so that each value brings most pairs that were
+/// not there. The same set every time.
+std::vector<Machine> covering_machines(int most_threads);
 
 }  // namespace raypool

@@ -100,9 +100,9 @@ int run(int argc, char** argv) {
   cosim_app->callback([&] { code = cosim_command(cosim); });
 
   ConfigurationsOptions configurations;
-  CLI::App* configurations_app = app.add_subcommand("configurations", "a set of configurations that covers the parameters");
+  CLI::App* configurations_app = app.add_subcommand("configurations", "a set of machines with every pair of parameter values");
   configurations_app->add_flag("--all-pairs", configurations.all_pairs,
-                               "every pair of values (default: every value, small ones)");
+                               "large machines too (default: of at most 32 threads)");
   configurations_app->add_option("--out", configurations.folder, "folder that gets a JSON file for each");
   configurations_app->callback([&] { code = configurations_command(configurations); });
 
