@@ -24,6 +24,8 @@ module float_adder #(
   localparam integer STEPS = $clog2(W);     // of the normaliser: shifts by 2^(STEPS-1) .. 1
   localparam integer EARLY = STEPS - 3;     // steps 2^(STEPS-1) .. 8 are taken in stage 1
 
+  `include "ones_below.vh"
+
   // Stage 0 -> 1
   reg s1_nan_q, s1_infinite_q, s1_sign_q, s1_subtract_q;
   reg [E-1:0] s1_exponent_q;
@@ -37,7 +39,8 @@ module float_adder #(
   always @(posedge clk_i) begin
     if (enable_i[0]) begin : stage0
       reg sign_a, sign_b, swap, nan_a, nan_b, max_a, max_b;
-      reg [E-1:0] exponent_a, exponent_b, larger, smaller, distance;
+      reg [E-1:0] exponent_a, exponent_b, distance;
+      reg [E:0] ahead;
       reg [M:0] mantissa_a, mantissa_b;
       reg [A-1:0] aligned, lost;
       sign_a = a_i[BITS-1];
@@ -53,18 +56,19 @@ module float_adder #(
       s1_nan_q <= nan_a || nan_b || (max_a && max_b && sign_a != sign_b);
       s1_infinite_q <= max_a || max_b;
       swap = b_i[BITS-2:0] > a_i[BITS-2:0];
-      larger = swap ? exponent_b : exponent_a;
-      smaller = swap ? exponent_a : exponent_b;
       // A subnormal number has the exponent of the smallest normal one.
-      if (larger == {E{1'b0}}) larger = {{E-1{1'b0}}, 1'b1};
-      if (smaller == {E{1'b0}}) smaller = {{E-1{1'b0}}, 1'b1};
-      distance = larger - smaller;
+      exponent_a[0] = exponent_a[0] || exponent_a == {E{1'b0}};
+      exponent_b[0] = exponent_b[0] || exponent_b == {E{1'b0}};
+      // Both differences, so that the distance does not wait for the comparison of the mantissas.
+      ahead = {1'b0, exponent_a} - {1'b0, exponent_b};
+      distance = exponent_b - exponent_a;
+      if (!ahead[E]) distance = ahead[E-1:0];
       aligned = {swap ? mantissa_a : mantissa_b, 3'b000};
       lost = aligned & ~({A{1'b1}} << distance);
       aligned = aligned >> distance;
       s1_sign_q <= swap ? sign_b : sign_a;
       s1_subtract_q <= sign_a ^ sign_b;
-      s1_exponent_q <= larger;
+      s1_exponent_q <= ahead[E] ? exponent_b : exponent_a;
       s1_large_q <= swap ? mantissa_b : mantissa_a;
       s1_small_q <= {aligned[A-1:1], aligned[0] || lost != {A{1'b0}}};
     end
@@ -97,6 +101,7 @@ module float_adder #(
     reg [W-1:0] sum, guide;
     reg [E:0] exponent, shift;
     reg [E+M-1:0] magnitude;
+    reg [63:0] ones;
     reg round_up, sign;
     integer step;
     result_o = {BITS{1'b0}};
@@ -105,6 +110,7 @@ module float_adder #(
     exponent = {E+1{1'b0}};
     shift = {E+1{1'b0}};
     magnitude = {E+M{1'b0}};
+    ones = 64'd0;
     round_up = 1'b0;
     sign = s2_sign_q;
     if (enable_i[2]) begin
@@ -125,7 +131,8 @@ module float_adder #(
         magnitude = {{E{1'b1}}, {M{1'b0}}};
       end else begin
         // A carry out of the mantissa goes up into the exponent, to infinity too.
-        if (SUBNORMALS == 0 || sum[W-1]) magnitude = {exponent[E-1:0], sum[W-2:4]} + {{E+M-1{1'b0}}, round_up};
+        ones = ones_below({{63-E-M{1'b0}}, exponent[E-1:0], sum[W-2:4]});
+        if (SUBNORMALS == 0 || sum[W-1]) magnitude = {exponent[E-1:0], sum[W-2:4]} ^ (ones[E+M-1:0] & {E+M{round_up}});
         if (sum == {W{1'b0}} && s2_subtract_q) sign = 1'b0;
       end
       result_o = {sign, magnitude};

@@ -66,7 +66,7 @@ module float_fma #(
   wire [M:0] mantissa_b = {normal_b, (SUBNORMALS == 0 || normal_b) ? b_i[M-1:0] : {M{1'b0}}};
   wire [2*P-1:0] tree_sum, tree_carry;
   multiply_tree #(.A_BITS(P), .B_BITS(P), .OUT_BITS(2*P)) tree (
-    .a_i(mantissa_a), .b_i(mantissa_b), .sum_o(tree_sum), .carry_o(tree_carry));
+    .a_i(mantissa_a), .b_i(mantissa_b), .c_i({2*P{1'b0}}), .sum_o(tree_sum), .carry_o(tree_carry));
 
   always @(posedge clk_i) begin
     if (enable_i[0]) begin : stage0

@@ -1,5 +1,7 @@
 // Floating-point multiplier, three stages: the product as two numbers (multiply_tree), their sum with its leading one brought to the
 // top two bits, rounding.
+// The tree takes both operands as normal numbers, so that it need not wait for what the exponents say; what a subnormal one has too much is taken
+// off in the sum. The product of two subnormal ones is zero however it is rounded.
 // Operands are taken with enable_i[0]; enable_i[k] must say that stage k holds that operation k cycles later. result_o is combinational,
 // valid in stage 2, and zero while enable_i[2] is low, so that units of a lane can be ORed. Nearest even, one NaN (quiet, positive).
 // SUBNORMALS 0: IEEE; 1: subnormal operands count as zero and a result is flushed to zero when it is tiny after rounding, as in SSE.
@@ -27,12 +29,13 @@ module float_multiplier #(
   localparam [X-1:0] ONE = {{X-1{1'b0}}, 1'b1};
 
   // Stage 0 -> 1
-  reg s1_nan_q, s1_infinite_q, s1_sign_q;
+  reg s1_nan_q, s1_infinite_q, s1_zero_q, s1_sign_q;
   reg [X-1:0] s1_exponent_q;                // of a product in [1, 2), biased
   reg [STEPS-1:0] s1_shift_q;               // leading zeros of the subnormal operand
   reg [P-1:0] s1_sum_q, s1_carry_q;
+  reg [M:0] s1_less_q;                      // to be taken off the sum, M bits up
   // Stage 1 -> 2
-  reg s2_nan_q, s2_infinite_q, s2_infinite_above_q, s2_sign_q;  // above: infinite if the product is 2 or more
+  reg s2_nan_q, s2_infinite_q, s2_infinite_above_q, s2_zero_q, s2_sign_q;  // above: infinite if the product is 2 or more
   reg [X-1:0] s2_exponent_q;                // of a product in [1, 2)
   reg [F-1:0] s2_distance_q;                // shift to the right of a subnormal result; more leaves the sticky bit only
   reg [P-1:0] s2_product_q;
@@ -43,7 +46,7 @@ module float_multiplier #(
   wire [M:0] mantissa_b = {normal_b, (SUBNORMALS == 0 || normal_b) ? b_i[M-1:0] : {M{1'b0}}};
   wire [P-1:0] tree_sum, tree_carry;
   multiply_tree #(.A_BITS(M+1), .B_BITS(M+1), .OUT_BITS(P)) tree (
-    .a_i(mantissa_a), .b_i(mantissa_b), .sum_o(tree_sum), .carry_o(tree_carry));
+    .a_i({1'b1, a_i[M-1:0]}), .b_i({1'b1, b_i[M-1:0]}), .c_i({P{1'b0}}), .sum_o(tree_sum), .carry_o(tree_carry));
 
   always @(posedge clk_i) begin
     if (enable_i[0]) begin : stage0
@@ -80,11 +83,13 @@ module float_multiplier #(
       s1_exponent_q <= {2'b00, exponent_a} + {2'b00, exponent_b} - BIAS;
       s1_sum_q <= tree_sum;
       s1_carry_q <= tree_carry;
+      s1_less_q <= (SUBNORMALS != 0 || normal_a == normal_b) ? {M+1{1'b0}} : {1'b1, normal_a ? a_i[M-1:0] : b_i[M-1:0]};
+      s1_zero_q <= zero_a || zero_b || !(normal_a || normal_b);
     end
     if (enable_i[1]) begin : stage1
       reg [P-1:0] product;
       reg [X-1:0] exponent, distance;
-      product = s1_sum_q + s1_carry_q;
+      product = s1_sum_q + s1_carry_q - {1'b0, s1_less_q, {M{1'b0}}};
       s2_product_q <= (SUBNORMALS == 0) ? product << s1_shift_q : product;
       exponent = s1_exponent_q - {{X-STEPS{1'b0}}, s1_shift_q};
       distance = ONE - exponent;
@@ -93,6 +98,7 @@ module float_multiplier #(
       s2_distance_q <= distance[F-1:0];
       s2_exponent_q <= exponent;
       s2_nan_q <= s1_nan_q;
+      s2_zero_q <= s1_zero_q;
       s2_infinite_q <= s1_infinite_q || (!exponent[X-1] && (exponent[X-2] || &exponent[E-1:0]));
       s2_infinite_above_q <= s1_infinite_q || (!exponent[X-1] && (exponent[X-2] || &exponent[E-1:1]));
       s2_sign_q <= s1_sign_q;
@@ -133,7 +139,7 @@ module float_multiplier #(
       if (s2_nan_q) begin
         sign = 1'b0;
         magnitude = {2'b00, {E+1{1'b1}}, {M-1{1'b0}}};
-      end else if (s2_product_q == {P{1'b0}}) begin
+      end else if (s2_zero_q) begin
         magnitude = {X+M{1'b0}};
       end else if (s2_product_q[P-1] ? s2_infinite_above_q : s2_infinite_q) begin
         magnitude = {2'b00, {E{1'b1}}, {M{1'b0}}};

@@ -1,127 +1,134 @@
 // Correctly rounded quotient w/v, w/sqrt(v) of slow_prepare, stages 1 .. 10 of the slow unit.
-// 1: a table gives a line, 2: the line gives y, about 1/v or 1/sqrt(v), 3-5: one multiplicative step leaves an error below 2^-26 in the
+// 1: a table gives a line, 2: the line gives y, about 1/v or 1/sqrt(v), 3-6: one multiplicative step leaves an error below 2^-24 in the
 // quotient. So of the floats only the two around the middle m of the interval that the estimate lies in can be the result, and the sign of
-// w - m*v, of v - m*m (fsqrt) or of 4 - m*m*v (frsqrt) decides exactly between them. 6, 7: m*v or m*m, 8: times v, 9: the rest, 10: rounding.
+// w - m*v, of v - m*m (fsqrt) or of 4 - m*m*v (frsqrt) decides exactly between them. 7: m*v or m*m, 8: its sum, less w or v, 9: for frsqrt
+// times m, 10: the sign, rounding.
 // enable_i[k] says that stage 1 + k holds a task. result_o is combinational in stage 10 and zero while enable_i[9] is low.
 `default_nettype none
 module slow_exact (
   input  wire        clk_i,
   input  wire [9:0]  enable_i,
-  input  wire [8:0]  index_1_i,     // valid in stage 1, all others in stage 2
-  input  wire        special_i,
-  input  wire        nan_i,
-  input  wire        sign_i,
+  input  wire [8:0]  index_1_i,     // valid in stage 1
+  input  wire [17:0] offset_digits_i, // these five in stage 2
   input  wire        root_i,
   input  wire        unary_i,
-  input  wire [7:0]  exponent_i,
-  input  wire [4:0]  shift_i,
   input  wire [24:0] v_i,
   input  wire [24:0] w_i,
+  input  wire        special_3_i,   // these five in stage 3
+  input  wire        nan_3_i,
+  input  wire        sign_3_i,
+  input  wire [7:0]  exponent_3_i,
+  input  wire [4:0]  shift_3_i,
   output reg  [31:0] result_o
 );
+  `include "ones_below.vh"
+  `include "booth_digits.vh"
   // What travels with a task; registers sK_* are valid in stage K.
   localparam integer TAG_BITS = 18;
-  wire [TAG_BITS-1:0] s2_tag = {special_i, nan_i, sign_i, root_i, unary_i, exponent_i, shift_i};
+  reg s3_root_q, s3_unary_q;
+  wire [TAG_BITS-1:0] s3_tag = {special_3_i, nan_3_i, sign_3_i, s3_root_q, s3_unary_q, exponent_3_i, shift_3_i};
   localparam integer SPECIAL = 17, NAN = 16, SIGN = 15, ROOT = 14, UNARY = 13, EXPONENT = 5;
-  reg [TAG_BITS-1:0] s3_tag_q, s4_tag_q, s5_tag_q, s6_tag_q, s7_tag_q, s8_tag_q, s9_tag_q, s10_tag_q;
-  reg [24:0] s3_v_q, s4_v_q, s5_v_q, s6_v_q, s7_v_q, s8_v_q;
+  reg [TAG_BITS-1:0] s4_tag_q, s5_tag_q, s6_tag_q, s7_tag_q, s8_tag_q;
+  reg [TAG_BITS-1:EXPONENT] s9_tag_q;
+  reg [24:0] s3_v_q, s4_v_q, s5_v_q, s6_v_q, s7_v_q;
   reg [24:0] s3_w_q, s4_w_q, s5_w_q, s6_w_q, s7_w_q, s8_w_q;
 
   wire [28:0] s2_row;
   slow_line_table line_table (.clk_i(clk_i), .enable_i(enable_i[0]), .index_i(index_1_i[8:1]), .row_o(s2_row));
-  wire [10:0] s2_offset = v_i[24] ? v_i[17:7] : v_i[16:6];
+  wire [27:0] line_sum, line_carry;
+  multiply_tree #(.A_BITS(11), .B_BITS(11), .OUT_BITS(28), .ADD(1), .NEGATE(1), .CUT(8), .ENCODED(1)) line (
+    .a_i(s2_row[10:0]), .b_i(offset_digits_i), .c_i({s2_row[28:11], 10'd0}), .sum_o(line_sum), .carry_o(line_carry));
+  wire [27:0] s2_y = line_sum + line_carry;
+  wire [47:0] s2_y_digits = booth_digits({17'd0, s2_y[27:13]});
 
   reg [14:0] s3_y_q;              // 15 fraction bits
-  wire [31:0] s6_estimate;        // 30 fraction bits
-  slow_refine refine (
-    .clk_i(clk_i), .enable_i(enable_i[4:2]), .v_i(s3_v_q), .w_i(s3_w_q), .y_i(s3_y_q), .root_1_i(s4_tag_q[ROOT]),
-    .quotient_o(s6_estimate));
+  reg [23:0] s3_y_digits_q;
+  wire [31:0] s7_estimate;        // 24 fraction bits, and six that are zero
+  slow_refine #(.EXACT(1)) refine (
+    .clk_i(clk_i), .enable_i(enable_i[5:2]), .v_i(s3_v_q), .w_i(s3_w_q), .y_i(s3_y_q), .y_digits_i(s3_y_digits_q),
+    .root_1_i(s4_tag_q[ROOT]), .unary_1_i(s4_tag_q[UNARY]),
+    .root_2_i(s5_tag_q[ROOT]), .quotient_o(s7_estimate));
 
-  reg [24:0] s6_half_q;           // half a unit in the last place of the result: the lowest one of m
-  reg [24:0] s6_keep_q;           // the bits of the estimate that stay in m
-  reg [24:0] s7_m_q;              // 24 fraction bits
-  reg [49:0] s7_sum_q, s7_carry_q;  // m*v or m*m as two numbers
-  reg [23:0] s8_n_q, s9_n_q;      // the float below m
-  reg [49:0] s8_product_q;        // m*v or m*m
-  reg [52:0] s9_sum_q, s9_carry_q;  // m*v or m*m, or m*m*v, as two numbers; modulo 2^53, as what is left over is small
-  reg [52:0] s9_whole_q;
-  reg [52:0] s10_rest_q;
-  reg [30:0] s10_below_q, s10_above_q;  // the floats below and above m
+  reg [24:0] s7_half_q;           // half a unit in the last place of the result: the lowest one of m
+  reg [24:0] s7_keep_q;           // the bits of the estimate that stay in m
+  reg [24:0] s8_m_q;              // 24 fraction bits
+  reg [49:0] s8_sum_q, s8_carry_q;  // m*v or m*m as two numbers
+  reg [23:0] s9_n_q;              // the float below m
+  // m*v - w or m*m - v, signed; for frsqrt m*v. The tree's two numbers are the product only modulo 2^50.
+  reg [49:0] s9_product_q;
+  // Modulo 2^52, as what is left over is small; for frsqrt it is more than the 2^22 that are lost below 2^18.
+  localparam integer OUT = 52, CUT = 18;
+  reg [OUT-1:CUT] s10_sum_q, s10_carry_q;
+  reg s10_above_q, s10_frsqrt_q, s10_sign_q;
+  reg [30:0] s10_below_q;         // the float below m, or the special result
 
   // No true quotient is nearer to 2 than 2^-24, so the estimate is below 2 too.
-  wire [24:0] s6_m = (s6_estimate[30:6] & s6_keep_q) | s6_half_q;
-  wire [49:0] s6_sum, s6_carry;
+  wire [24:0] s7_m = (s7_estimate[30:6] & s7_keep_q) | s7_half_q;
+  wire [49:0] s7_sum, s7_carry;
   multiply_tree #(.A_BITS(25), .B_BITS(25), .OUT_BITS(50)) first_product (
-    .a_i(s6_m), .b_i(s6_tag_q[ROOT] ? s6_m : s6_v_q), .sum_o(s6_sum), .carry_o(s6_carry));
-  wire [52:0] s8_sum, s8_carry;
-  multiply_tree #(.A_BITS(50), .B_BITS(25), .OUT_BITS(53)) second_product (
-    .a_i(s8_product_q), .b_i(s8_v_q), .sum_o(s8_sum), .carry_o(s8_carry));
+    .a_i((s7_tag_q[ROOT] && !s7_tag_q[UNARY]) ? s7_m : s7_v_q), .b_i(s7_m), .c_i(50'd0), .sum_o(s7_sum), .carry_o(s7_carry));
+  wire [49:0] s8_whole = (s8_tag_q[ROOT] && s8_tag_q[UNARY]) ? 50'd0 : s8_tag_q[ROOT] ? {s8_w_q, 25'd0} : {1'b0, s8_w_q, 24'd0};
+  wire [OUT-1:0] s9_sum, s9_carry;
+  multiply_tree #(.A_BITS(50), .B_BITS(25), .OUT_BITS(OUT), .CUT(CUT)) second_product (
+    .a_i(s9_product_q), .b_i({s9_n_q, 1'b1}), .c_i({OUT{1'b0}}), .sum_o(s9_sum), .carry_o(s9_carry));
 
   always @(posedge clk_i) begin
-    if (enable_i[9:1] != 9'd0) begin
-      if (enable_i[1]) begin : stage2
-        reg [27:0] y;
-        y = {s2_row[28:11], 10'd0} - {6'd0, {11'd0, s2_row[10:0]} * {11'd0, s2_offset}};
-        s3_y_q <= y[27:13];
-        s3_tag_q <= s2_tag;
+    if (enable_i[8:1] != 8'd0) begin
+      if (enable_i[1]) begin
+        s3_y_q <= s2_y[27:13];
+        s3_y_digits_q <= s2_y_digits[23:0];
+        s3_root_q <= root_i;
+        s3_unary_q <= unary_i;
         s3_v_q <= v_i;
         s3_w_q <= w_i;
       end
-      if (enable_i[2]) begin s4_tag_q <= s3_tag_q; s4_v_q <= s3_v_q; s4_w_q <= s3_w_q; end
+      if (enable_i[2]) begin s4_tag_q <= s3_tag; s4_v_q <= s3_v_q; s4_w_q <= s3_w_q; end
       if (enable_i[3]) begin s5_tag_q <= s4_tag_q; s5_v_q <= s4_v_q; s5_w_q <= s4_w_q; end
-      if (enable_i[4]) begin
-        s6_half_q <= 25'd1 << s5_tag_q[4:0];
-        s6_keep_q <= 25'h1fffffe << s5_tag_q[4:0];
-        s6_tag_q <= s5_tag_q;
-        s6_v_q <= s5_v_q;
-        s6_w_q <= s5_w_q;
-      end
+      if (enable_i[4]) begin s6_tag_q <= s5_tag_q; s6_v_q <= s5_v_q; s6_w_q <= s5_w_q; end
       if (enable_i[5]) begin
-        s7_m_q <= s6_m;
-        s7_sum_q <= s6_sum;
-        s7_carry_q <= s6_carry;
+        s7_half_q <= 25'd1 << s6_tag_q[4:0];
+        s7_keep_q <= 25'h1fffffe << s6_tag_q[4:0];
         s7_tag_q <= s6_tag_q;
         s7_v_q <= s6_v_q;
         s7_w_q <= s6_w_q;
       end
       if (enable_i[6]) begin
-        s8_product_q <= s7_sum_q + s7_carry_q;
-        s8_n_q <= s7_m_q[24:1] >> s7_tag_q[4:0];
+        s8_m_q <= s7_m;
+        s8_sum_q <= s7_sum;
+        s8_carry_q <= s7_carry;
         s8_tag_q <= s7_tag_q;
-        s8_v_q <= s7_v_q;
         s8_w_q <= s7_w_q;
       end
       if (enable_i[7]) begin
-        if (s8_tag_q[ROOT] && s8_tag_q[UNARY]) begin
-          s9_sum_q <= s8_sum;
-          s9_carry_q <= s8_carry;
-          s9_whole_q <= 53'd0;    // 4 with 71 fraction bits
-        end else begin
-          s9_sum_q <= {3'd0, s8_product_q};
-          s9_carry_q <= 53'd0;
-          s9_whole_q <= s8_tag_q[ROOT] ? {3'd0, s8_v_q, 25'd0} : {4'd0, s8_w_q, 24'd0};
-        end
-        s9_n_q <= s8_n_q;
-        s9_tag_q <= s8_tag_q;
+        s9_product_q <= s8_sum_q + s8_carry_q - s8_whole;
+        s9_n_q <= s8_m_q[24:1] >> s8_tag_q[4:0];
+        s9_tag_q <= s8_tag_q[TAG_BITS-1:EXPONENT];
       end
       if (enable_i[8]) begin
-        s10_rest_q <= s9_whole_q - (s9_sum_q + s9_carry_q);
-        s10_below_q <= {s9_tag_q[EXPONENT +: 8], 23'd0} + {7'd0, s9_n_q};
-        s10_above_q <= {s9_tag_q[EXPONENT +: 8], 23'd1} + {7'd0, s9_n_q};
-        s10_tag_q <= s9_tag_q;
+        s10_sum_q <= s9_sum[OUT-1:CUT];
+        s10_carry_q <= s9_carry[OUT-1:CUT];
+        s10_sign_q <= s9_tag_q[SIGN];
+        s10_frsqrt_q <= s9_tag_q[ROOT] && s9_tag_q[UNARY] && !s9_tag_q[SPECIAL];
+        // Nothing is left over only when a subnormal quotient lies on m itself: then to even.
+        s10_above_q <= !s9_tag_q[SPECIAL] && (s9_product_q[49] || (s9_product_q == 50'd0 && s9_n_q[0]));
+        s10_below_q <= s9_tag_q[SPECIAL] ? {s9_tag_q[EXPONENT +: 8], s9_tag_q[NAN], 22'd0} : {s9_tag_q[EXPONENT +: 8] + {7'd0, s9_n_q[23]}, s9_n_q[22:0]};
       end
     end
   end
 
   always @* begin : stage10
+    reg [OUT-1:CUT] rest;
     reg round_up;
+    reg [63:0] ones;
     result_o = 32'd0;
+    rest = {OUT-CUT{1'b0}};
     round_up = 1'b0;
+    ones = 64'd0;
     if (enable_i[9]) begin
-      // Nothing is left over only when a subnormal quotient lies on m itself: then to even.
-      round_up = !s10_rest_q[52] && (s10_rest_q != 53'd0 || s10_below_q[0]);
-      if (s10_tag_q[SPECIAL]) result_o = {s10_tag_q[SIGN], s10_tag_q[EXPONENT +: 8], s10_tag_q[NAN], 22'd0};
-      else result_o = {s10_tag_q[SIGN], round_up ? s10_above_q : s10_below_q};
+      rest = s10_sum_q + s10_carry_q;
+      round_up = s10_frsqrt_q ? rest[OUT-1] : s10_above_q;
+      ones = ones_below({32'd0, s10_below_q});
+      result_o = {s10_sign_q, s10_below_q ^ (ones[30:0] & {31{round_up}})};
     end
   end
 endmodule

@@ -13,32 +13,28 @@ module slow_lane #(
   input  wire [31:0] b_i,
   output wire [31:0] result_o
 );
-  wire special, nan, sign, root;
+  wire root, unary, special, nan, sign;
   wire [7:0] exponent;
   wire [4:0] shift;
   wire [24:0] v, w;
   wire [8:0] index;
+  wire [17:0] offset_digits;
   wire [31:0] result;
   reg [31:0] result_q;
 
+  slow_prepare #(.SUBNORMALS(SUBNORMALS)) prepare (
+    .clk_i(clk_i), .enable_i(enable_i[2:0]), .root_i(root_i), .unary_i(unary_i), .a_i(a_i), .b_i(b_i), .index_1_o(index),
+    .offset_digits_o(offset_digits), .root_o(root), .unary_o(unary), .v_o(v), .w_o(w), .special_3_o(special), .nan_3_o(nan), .sign_3_o(sign), .exponent_3_o(exponent), .shift_3_o(shift));
+
   generate
     if (SLOW_UNIT == 0) begin : gen_exact
-      wire unary;
-      slow_prepare #(.SUBNORMALS(SUBNORMALS)) prepare (
-        .clk_i(clk_i), .enable_i(enable_i[1:0]), .root_i(root_i), .unary_i(unary_i), .a_i(a_i), .b_i(b_i), .special_o(special),
-        .nan_o(nan), .sign_o(sign), .root_o(root), .unary_o(unary), .exponent_o(exponent), .shift_o(shift), .v_o(v), .w_o(w),
-        .index_1_o(index));
       slow_exact quotient (
-        .clk_i(clk_i), .enable_i(enable_i[10:1]), .index_1_i(index), .special_i(special), .nan_i(nan), .sign_i(sign), .root_i(root), .unary_i(unary),
-        .exponent_i(exponent), .shift_i(shift), .v_i(v), .w_i(w), .result_o(result));
+        .clk_i(clk_i), .enable_i(enable_i[10:1]), .index_1_i(index), .offset_digits_i(offset_digits), .root_i(root), .unary_i(unary), .v_i(v), .w_i(w),
+        .special_3_i(special), .nan_3_i(nan), .sign_3_i(sign), .exponent_3_i(exponent), .shift_3_i(shift), .result_o(result));
     end else begin : gen_newton
-      slow_prepare #(.SUBNORMALS(SUBNORMALS)) prepare (
-        .clk_i(clk_i), .enable_i(enable_i[1:0]), .root_i(root_i), .unary_i(unary_i), .a_i(a_i), .b_i(b_i), .special_o(special),
-        .nan_o(nan), .sign_o(sign), .root_o(root), .unary_o(), .exponent_o(exponent), .shift_o(shift), .v_o(v), .w_o(w),
-        .index_1_o(index));
       slow_newton #(.STEPS(3 - SLOW_UNIT)) quotient (
-        .clk_i(clk_i), .enable_i(enable_i[10:1]), .index_1_i(index), .special_i(special), .nan_i(nan), .sign_i(sign), .root_i(root),
-        .exponent_i(exponent), .shift_i(shift), .v_i(v), .w_i(w), .result_o(result));
+        .clk_i(clk_i), .enable_i(enable_i[10:1]), .index_1_i(index), .root_i(root), .unary_i(unary), .v_i(v), .w_i(w), .special_3_i(special),
+        .nan_3_i(nan), .sign_3_i(sign), .exponent_3_i(exponent), .shift_3_i(shift), .result_o(result));
     end
   endgenerate
 

@@ -44,7 +44,7 @@ if(IVERILOG AND VVP)
     add_custom_command(OUTPUT ${program}
       COMMAND ${IVERILOG} -g2005 -Wall -I ${arith_rtl} -s arith_icarus -Parith_icarus.SUBNORMALS=${subnormals}
         -Parith_icarus.SLOW_UNIT=${slow_unit} -Parith_icarus.FMA=${fma} -o ${program} ${arith_unit}/arith_icarus.v ${sources}
-      DEPENDS ${arith_unit}/arith_icarus.v ${sources} ${arith_rtl}/isa.vh VERBATIM)
+      DEPENDS ${arith_unit}/arith_icarus.v ${sources} ${arith_rtl}/isa.vh ${arith_rtl}/booth_digits.vh ${arith_rtl}/ones_below.vh VERBATIM)
     add_custom_command(OUTPUT ${vectors} COMMAND arith_vectors ${subnormals} ${slow_unit} ${fma} 4000 > ${vectors} DEPENDS arith_vectors VERBATIM)
     add_custom_target(${replay} ALL DEPENDS ${program} ${vectors})
     add_test(NAME ${replay} COMMAND ${VVP} -n ${program} +vectors=${vectors})
@@ -74,7 +74,7 @@ foreach(tree IN ITEMS "tree -DSYNTHESIS" "quick")
     TOP_MODULE small_products PREFIX Vsmall_products_${name} INCLUDE_DIRS ${arith_rtl} OPT_SLOW -w OPT_FAST -O3 -w OPT_GLOBAL -O1 -w
     VERILATOR_ARGS --default-language 1364-2005 ${tree} --output-split 10000 --output-split-cfuncs 1000 -O3 --x-assign fast --x-initial fast)
 endforeach()
-verilate(small_floats_test SOURCES ${arith_rtl}/multiply_tree.v TOP_MODULE multiply_tree PREFIX Vmultiply_tree_11 OPT_SLOW -w OPT_FAST -O3 -w
+verilate(small_floats_test SOURCES ${arith_rtl}/multiply_tree.v TOP_MODULE multiply_tree PREFIX Vmultiply_tree_11 INCLUDE_DIRS ${arith_rtl} OPT_SLOW -w OPT_FAST -O3 -w
   OPT_GLOBAL -O1 -w VERILATOR_ARGS --default-language 1364-2005 -DSYNTHESIS -O3 -GA_BITS=11 -GB_BITS=11)
 # Tests named Hours run by hand.
 gtest_discover_tests(small_floats_test WORKING_DIRECTORY ${CMAKE_SOURCE_DIR} DISCOVERY_TIMEOUT 60 TEST_FILTER "-*Long*:*Hours*")
