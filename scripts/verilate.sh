@@ -3,7 +3,7 @@
 #   scripts/verilate.sh OUTPUT_DIR [--trace] [--quick] [--netlist FILE]... NAME=VALUE...
 # NAME=VALUE as `raypool config CONFIG --verilog-parameters` prints them, and UNITS=1|2|4 (default 1).
 # --netlist: files of a mapped netlist of that configuration's compute unit, which stands in for that of rtl/.
-# --trace: the unit can write waveforms (FST), and is slower. --quick: compiled in half the time, four times slower. Does nothing when the library is newer than all it is made from; a build
+# --trace: the unit can write waveforms (FST), and is slower. --quick: compiled in less time, slower. Does nothing when the library is newer than all it is made from; a build
 # that fails leaves the old library as it was. VERILATOR, CXX and JOBS (default 2) choose the tools and the number of compilers.
 set -eu -o pipefail
 
@@ -60,7 +60,7 @@ waivers=(rtl/*.vlt)
 language=1364-2005
 what=rtl/
 optimise=(OPT_FAST=-O2 OPT_SLOW=-O1 OPT_GLOBAL=-O2)
-[ "$quick" = 0 ] || optimise=(OPT_FAST=-O0 OPT_SLOW=-O0 OPT_GLOBAL=-O2)
+[ "$quick" = 0 ] || optimise=(OPT_FAST=-O1 OPT_SLOW=-O0 OPT_GLOBAL=-O2)
 # A netlist runs for seconds and compiles for minutes.
 if [ ${#netlist[@]} -gt 0 ]; then
   verilog=("${netlist[@]}")

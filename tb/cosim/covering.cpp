@@ -163,15 +163,19 @@ class Search {
   std::mt19937 random_{1};
 };
 
-Machine machine_of(const Row& row, size_t number) {
+Machine named(Machine machine, size_t number) {
+  Configuration& configuration = machine.configuration;
+  configuration.name = fmt::format("set{:02}-{}w{}c", number, configuration.warps, configuration.cores);
+  check_configuration(configuration, configuration.name);
+  return machine;
+}
+
+Machine machine_of(const Row& row) {
   Machine machine;
   for (size_t factor = 0; factor < row.size(); ++factor) {
     const Factor& f = covering_factors()[factor];
     f.set(machine, f.values[static_cast<size_t>(row[factor])]);
   }
-  Configuration& configuration = machine.configuration;
-  configuration.name = fmt::format("set{:02}-{}w{}c", number, configuration.warps, configuration.cores);
-  check_configuration(configuration, configuration.name);
   return machine;
 }
 
@@ -196,7 +200,10 @@ Covered count_covered(const std::vector<Machine>& machines, int most_threads) {
   for (const Machine& machine : machines) {
     for (size_t a = 0; a < factors.size(); ++a) {
       values.insert({a, factors[a].get(machine)});
-      for (size_t b = a + 1; b < factors.size(); ++b) pairs.insert({a, b, factors[a].get(machine), factors[b].get(machine)});
+      for (size_t b = a + 1; b < factors.size(); ++b) {
+        const int i = factors[a].get(machine), j = factors[b].get(machine);
+        if (possible(factors[a], i, factors[b], j, most_threads)) pairs.insert({a, b, i, j});
+      }
     }
   }
   covered.values = values.size();
@@ -207,7 +214,16 @@ Covered count_covered(const std::vector<Machine>& machines, int most_threads) {
 std::vector<Machine> covering_machines(int most_threads) {
   Search search(most_threads);
   std::vector<Machine> machines;
-  while (!search.done()) machines.push_back(machine_of(search.next(), machines.size() + 1));
+  while (!search.done()) machines.push_back(named(machine_of(search.next()), machines.size() + 1));
+  for (const Factor& factor : covering_factors()) {
+    for (const int value : factor.values) {
+      if (threads_of(factor, value) <= most_threads) continue;
+      Machine machine;
+      machine.configuration.warps = machine.configuration.cores = 1;
+      factor.set(machine, value);
+      machines.push_back(named(std::move(machine), machines.size() + 1));
+    }
+  }
   return machines;
 }
 

@@ -28,7 +28,7 @@ struct Factor {
 const std::vector<Factor>& covering_factors();
 
 /// Threads, over all units, up to which a machine compiles in seconds.
-inline constexpr int kSmallThreads = 32;
+inline constexpr int kSmallThreads = 8;
 /// Threads of the largest unit.
 inline constexpr int kMostThreads = 1024;
 
@@ -40,7 +40,7 @@ Covered count_covered(const std::vector<Machine>& machines, int most_threads);
 
 /// Every pair of values of any two parameters that a machine of at most `most_threads` threads can have is in one of them.
 /// Greedy: each next one is the best of some that are put together value by value, so that each value brings most pairs that were
-/// not there. The same set every time.
+/// not there. Then, for each value that takes more threads alone, the default ALUs with it. The same set every time.
 std::vector<Machine> covering_machines(int most_threads);
 
 }  // namespace raypool
