@@ -18,7 +18,12 @@ module top (input [$((factor-1)):0] a, b, output differs);
   assign differs = total != exact;
 endmodule
 TOP
-prove_zero "$folder" "multiply_tree of $factor x $factor bits, all operands" "read_verilog -DSYNTHESIS $folder/tree.v $tree; hierarchy -top top"
+# Two multipliers of unlike structure are hard for a SAT solver; small_floats_test tries all pairs of the 11 bits of the default.
+if [ "$factor" -le 6 ]; then
+  prove_zero "$folder" "multiply_tree of $factor x $factor bits, all operands" "read_verilog -DSYNTHESIS $folder/tree.v $tree; hierarchy -top top"
+else
+  echo "not proved: multiply_tree of $factor x $factor bits; small_floats_test tries all pairs of 11 x 11"
+fi
 
 for subnormals in 0 1; do
   # The multiplier with its tree taken out: the tree's ports become its own.
