@@ -45,7 +45,7 @@ class Cosim {
     Memory memory = program.memory;
     const std::unique_ptr<ComputeUnit> unit = make(memory, name);
     unit->trace_on();
-    coverage_.begin(program);
+    coverage_.begin();
     const uint64_t cycles =
         run_random_program(*unit, memory, program, program.seed, kCycleLimit, traced() ? &coverage_ : nullptr);
     if (traced()) coverage_.end(*unit);

@@ -18,10 +18,14 @@ class RandomHost {
       : unit_(unit), memory_(memory), program_(program), seed_(seed), stalls_(program.stalls, seed), observer_(observer) {}
 
   uint64_t run(uint64_t cycle_limit) {
-    unit_.reset(static_cast<uint32_t>(program_.program.code.size()), memory_.size());
-    for (int i = 0; i < kArguments; ++i) unit_.set_argument(i, program_.arguments[static_cast<size_t>(i)]);
+    begin();
     uint64_t fault_cycles = 0;
     for (; now_ < cycle_limit; ++now_) {
+      if (program_.restart != 0 && now_ == program_.restart) {
+        begin();
+        fault_cycles = 0;
+        if (observer_ != nullptr) observer_->restart();
+      }
       const UnitOutputs& outputs = unit_.outputs();
       if (outputs.fault.code != FaultCode::None) {
         if (outputs.fault.code != program_.fault) {
@@ -42,6 +46,16 @@ class RandomHost {
     uint64_t ready;  ///< first cycle in which it may be answered
     std::array<uint32_t, 16> words;
   };
+
+  void begin() {
+    unit_.reset(told_length(program_), told_limit(program_));
+    for (int i = 0; i < kArguments; ++i) unit_.set_argument(i, program_.arguments[static_cast<size_t>(i)]);
+    launched_ = 0;
+    offered_ = false;
+    lines_.clear();
+    beat_ = import_beat_ = 0;
+    packages_asked_ = packages_given_ = 0;
+  }
 
   bool open(Port port) const { return stalls_.open(port, now_); }
 
@@ -68,7 +82,7 @@ class RandomHost {
     inputs.launch.pc = kernel.pc;
     inputs.launch.threads = kernel.threads;
     inputs.launch.block = kernel.block;
-    inputs.launch.blocks = static_cast<uint32_t>(program_.kernels.size());
+    inputs.launch.blocks = kernel.blocks;
     inputs.launch.import = kernel.import;
     offered_ = !outputs.launch_ready;
     if (outputs.launch_ready) ++launched_;

@@ -15,6 +15,8 @@ class RunObserver {
  public:
   virtual ~RunObserver() = default;
   virtual void cycle(const UnitOutputs& outputs, const UnitInputs& inputs, const UnitTrace& trace) = 0;
+  /// The unit has been reset in the middle of the run, which begins anew.
+  virtual void restart() {}
 };
 
 /// A program that ends otherwise than it must: another fault, or no end. Of the program and the unit, not of what stands around

@@ -60,6 +60,7 @@ TEST(RandomPrograms, KeepTheirPromisesForEveryConfiguration) {
 TEST(RandomPrograms, AreTheSameForTheSameSeedAndHaveEveryProfileAndFault) {
   std::set<std::string> profiles;
   std::set<FaultCode> faults;
+  int restarts = 0, longer = 0, more_memory = 0;
   for (uint64_t seed = 1; seed <= 600; ++seed) {
     const RandomProgram a = make_random_program(configuration_of(2, 2), seed),
                         b = make_random_program(configuration_of(2, 2), seed);
@@ -67,9 +68,15 @@ TEST(RandomPrograms, AreTheSameForTheSameSeedAndHaveEveryProfileAndFault) {
     EXPECT_EQ(a.arguments, b.arguments);
     profiles.insert(a.profile);
     faults.insert(a.fault);
+    restarts += a.restart != 0 ? 1 : 0;
+    longer += told_length(a) > a.program.code.size() ? 1 : 0;
+    more_memory += told_limit(a) > a.memory_bytes ? 1 : 0;
   }
   EXPECT_EQ(profiles.size(), std::size(kProgramProfiles));
   EXPECT_EQ(faults.size(), 8u);
+  EXPECT_GT(restarts, 20);
+  EXPECT_GT(longer, 20);
+  EXPECT_GT(more_memory, 20);
 }
 
 TEST(ProgramCheck, NamesWhatBreaksTheRules) {
@@ -113,10 +120,14 @@ TEST(SavedPrograms, AreReadAsTheyWereWritten) {
     EXPECT_EQ(a.stalls.styles, b.stalls.styles);
     EXPECT_EQ(a.seed, b.seed);
     EXPECT_EQ(a.fault, b.fault);
+    EXPECT_EQ(a.program_length, b.program_length);
+    EXPECT_EQ(a.memory_limit, b.memory_limit);
+    EXPECT_EQ(a.restart, b.restart);
     ASSERT_EQ(a.kernels.size(), b.kernels.size());
     for (size_t k = 0; k < a.kernels.size(); ++k) {
       EXPECT_EQ(a.kernels[k].threads, b.kernels[k].threads);
       EXPECT_EQ(a.kernels[k].block, b.kernels[k].block);
+      EXPECT_EQ(a.kernels[k].blocks, b.kernels[k].blocks);
       EXPECT_EQ(a.kernels[k].import, b.kernels[k].import);
       EXPECT_EQ(a.kernels[k].pc, b.kernels[k].pc);
     }

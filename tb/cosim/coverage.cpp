@@ -29,7 +29,7 @@ Coverage::Coverage(const Configuration& configuration, int units)
       partial_(std::size(kInstructions)),
       depths_(static_cast<size_t>(configuration.stack_depth) + 1) {}
 
-void Coverage::begin(const RandomProgram& /*program*/) {
+void Coverage::begin() {
   now_ = 1000;  // so that "some cycles ago" is never before 0
   warps_.assign(units_ * static_cast<size_t>(configuration_.warps), Warp{});
   for (Warp& warp : warps_) {

@@ -20,7 +20,8 @@ class Coverage : public RunObserver {
   explicit Coverage(const Configuration& configuration, int units = 1);
 
   /// To be called before a program's run, which must use this observer, and after it.
-  void begin(const RandomProgram& program);
+  void begin();
+  void restart() override { begin(); }
   void cycle(const UnitOutputs& outputs, const UnitInputs& inputs, const UnitTrace& trace) override;
   void end(ComputeUnit& unit);
 

@@ -30,7 +30,7 @@ class Checker {
         touched_(memory_.size() / 4) {}
 
   std::string run(uint64_t step_limit, uint64_t& executed) {
-    core_.reset(static_cast<uint32_t>(program_.program.code.size()), program_.memory_bytes);
+    core_.reset(told_length(program_), told_limit(program_));
     for (int i = 0; i < kArguments; ++i) core_.set_argument(i, program_.arguments[static_cast<size_t>(i)]);
     for (const RandomProgram::Kernel& kernel : program_.kernels) {
       ++kernel_;
@@ -69,7 +69,7 @@ class Checker {
     command.pc = kernel.pc;
     command.threads = kernel.threads;
     command.block = kernel.block;
-    command.blocks = static_cast<uint32_t>(program_.kernels.size());
+    command.blocks = kernel.blocks;
     command.import = kernel.import;
     if (kernel.import != ImportKind::None) {
       core_.expect_import(kernel.threads);
@@ -111,7 +111,8 @@ class Checker {
     const int me = static_cast<int>(several ? kernel_ * warps_ + warp : warp);
     for (; mask != 0; mask &= mask - 1) {
       const uint32_t address = base[__builtin_ctz(mask)] + i.immediate;
-      if (address >= program_.memory_bytes) return "";  // the step will say it
+      if (address >= told_limit(program_)) return "";  // the step will say it
+      if (address >= program_.memory_bytes) return fmt::format("address {} is in no memory", address);
       if (store && address < program_.program.code.size() * 8) return "it stores into its code";
       Touched& word = touched_[address / 4];
       if (!several && word.kernel != kernel_) word = {kernel_, Touched::kNobody, Touched::kNobody};

@@ -49,6 +49,9 @@ std::string to_json(const SavedProgram& saved) {
   json["fault"] = static_cast<int>(program.fault);
   json["data_begin"] = program.data_begin;
   json["memory_bytes"] = program.memory_bytes;
+  json["program_length"] = program.program_length;
+  json["memory_limit"] = program.memory_limit;
+  json["restart"] = program.restart;
   for (const uint32_t argument : program.arguments) json["arguments"].push_back(hex(argument));
   for (size_t port = 0; port < kPorts; ++port)
     json["stalls"][std::string(kPortNames[port])] = kStallStyleNames[static_cast<size_t>(program.stalls.styles[port])];
@@ -57,6 +60,7 @@ std::string to_json(const SavedProgram& saved) {
     json["kernels"].push_back({{"pc", kernel.pc},
                                {"threads", kernel.threads},
                                {"block", hex(kernel.block)},
+                               {"blocks", hex(kernel.blocks)},
                                {"import", kImportNames[static_cast<size_t>(kernel.import)]}});
   }
   json["code"] = Json::array();
@@ -78,15 +82,20 @@ SavedProgram parse_saved_program(const std::string& text, const std::string& whe
     program.fault = static_cast<FaultCode>(json.at("fault").get<int>());
     program.data_begin = json.at("data_begin").get<uint32_t>();
     program.memory_bytes = json.at("memory_bytes").get<uint32_t>();
+    // Older files lack what follows, and mean exact limits, no restart and as many blocks as launches.
+    program.program_length = json.value("program_length", 0u);
+    program.memory_limit = json.value("memory_limit", 0u);
+    program.restart = json.value("restart", 0u);
     for (size_t i = 0; i < program.arguments.size(); ++i) program.arguments[i] = hex_word(json.at("arguments").at(i));
     for (size_t port = 0; port < kPorts; ++port) {
       const std::string style = json.at("stalls").at(std::string(kPortNames[port])).get<std::string>();
       program.stalls.styles[port] = static_cast<StallStyle>(number_of(kStallStyleNames, style));
     }
+    const std::string launches = hex(static_cast<uint32_t>(json.at("kernels").size()));
     for (const Json& kernel : json.at("kernels")) {
       program.kernels.push_back({kernel.at("threads").get<uint32_t>(), hex_word(kernel.at("block")),
                                  static_cast<ImportKind>(number_of(kImportNames, kernel.at("import").get<std::string>())),
-                                 kernel.at("pc").get<uint32_t>()});
+                                 kernel.at("pc").get<uint32_t>(), hex_word(kernel.value("blocks", launches))});
     }
     std::string code;
     for (const Json& line : json.at("code")) code += line.get<std::string>() + "\n";

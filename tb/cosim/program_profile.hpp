@@ -12,10 +12,10 @@ namespace raypool {
 /// Weights are relative; 0: never.
 struct ProgramProfile {
   std::string_view name;
-  uint32_t plain, memory, ray, loop, jump, call, far, early_exit;  ///< kinds of statements
-  std::array<uint32_t, 7> units;                                   ///< of plain instructions: tid, brh, -, int, flt, slw, -
-  uint32_t guarded_percent;                                        ///< plain instructions with a guard
-  uint32_t length_percent;                                         ///< of the length asked for
+  uint32_t plain, arithmetic, memory, ray, loop, jump, call, far, early_exit;  ///< kinds of statements
+  std::array<uint32_t, 7> units;  ///< of plain instructions: tid, brh, -, int, flt, slw, -
+  uint32_t guarded_percent;       ///< plain instructions with a guard
+  uint32_t length_percent;        ///< of the length asked for
   uint32_t most_kernels;
 
   /// A type that the mixes do not list comes as often as flt.
@@ -24,15 +24,16 @@ struct ProgramProfile {
 
 // clang-format off
 inline constexpr ProgramProfile kProgramProfiles[] = {
-  //  name        plain mem ray loop jump call far exit   tid brh  -  int flt slw -   guarded length kernels
-  {"mixed",         11,  4,  3,  1,   1,   1,  0,  0,    {1,  4,  0,  4,  3,  1, 0},   33,    100,   3},
-  {"memory",         4, 14,  0,  1,   1,   0,  0,  0,    {1,  2,  0,  4,  1,  0, 0},   33,     80,   3},
-  {"rays",           4,  2, 12,  1,   1,   0,  0,  0,    {1,  2,  0,  3,  2,  1, 0},   33,     90,   5},
-  {"control",        5,  1,  1,  5,   5,   5,  0,  1,    {1,  6,  0,  3,  1,  0, 0},   40,     70,   2},
-  {"code",           8,  1,  0,  1,   2,   3,  2,  0,    {1,  2,  0,  3,  2,  1, 0},   25,    120,   2},
-  {"hazards",       30,  2,  1,  1,   0,   0,  0,  0,    {2,  3,  0,  3,  3,  3, 0},   15,    100,   1},
-  {"launches",       6,  2,  3,  0,   1,   1,  0,  1,    {2,  2,  0,  2,  2,  1, 0},   33,     15,   8},
-  {"predicates",    12,  2,  1,  2,   3,   1,  0,  1,    {1, 12,  0,  3,  1,  0, 0},   80,     80,   2},
+  //  name        plain ari mem ray loop jump call far exit   tid brh  -  int flt slw -   guarded length kernels
+  {"mixed",         11,   1,  4,  3,  1,   1,   1,  0,  0,    {1,  4,  0,  4,  3,  1, 0},   33,    100,   3},
+  {"memory",         4,   0, 14,  0,  1,   1,   0,  0,  0,    {1,  2,  0,  4,  1,  0, 0},   33,     80,   3},
+  {"rays",           4,   0,  2, 12,  1,   1,   0,  0,  0,    {1,  2,  0,  3,  2,  1, 0},   33,     90,   5},
+  {"control",        5,   0,  1,  1,  5,   5,   5,  0,  1,    {1,  6,  0,  3,  1,  0, 0},   40,     70,   2},
+  {"code",           8,   0,  1,  0,  1,   2,   3,  2,  0,    {1,  2,  0,  3,  2,  1, 0},   25,    120,   2},
+  {"hazards",       30,   1,  2,  1,  1,   0,   0,  0,  0,    {2,  3,  0,  3,  3,  3, 0},   15,    100,   1},
+  {"launches",       6,   0,  2,  3,  0,   1,   1,  0,  1,    {2,  2,  0,  2,  2,  1, 0},   33,     15,   8},
+  {"arithmetic",     4, 16,  1,  0,  1,   0,   0,  0,  0,    {1,  3,  0,  4,  9,  9, 0},   10,    120,   1},
+  {"predicates",    12,   0,  2,  1,  2,   3,   1,  0,  1,    {1, 12,  0,  3,  1,  0, 0},   80,     80,   2},
 };
 // clang-format on
 

@@ -14,7 +14,7 @@ constexpr int kMostCalls = 40;
 void ProgramStatements::body(int length, int loops, int entries) {
   const size_t end = code_.size() + static_cast<size_t>(std::max(1, length));
   const ProgramProfile& p = profile_;
-  const uint32_t total = p.plain + p.memory + p.ray + p.loop + p.jump + p.call + p.far + p.early_exit;
+  const uint32_t total = p.plain + p.arithmetic + p.memory + p.ray + p.loop + p.jump + p.call + p.far + p.early_exit;
   while (code_.size() < end) {
     uint32_t kind = below(total);
     const auto is = [&kind](uint32_t weight) {
@@ -22,7 +22,9 @@ void ProgramStatements::body(int length, int loops, int entries) {
       kind -= weight;
       return false;
     };
-    if (is(p.memory)) {
+    if (is(p.arithmetic)) {
+      arithmetic();
+    } else if (is(p.memory)) {
       memory();
     } else if (is(p.ray)) {
       ray(loops == 0 && entries == 1 && !in_function_);
@@ -54,22 +56,67 @@ const InstructionInfo& ProgramStatements::plain_row() {
   }
 }
 
-void ProgramStatements::plain() {
+void ProgramStatements::plain(int a, int b) {
   Instruction i;
   i.info = &plain_row();
   const InstructionInfo& info = *i.info;
   if (percent(profile_.guarded_percent)) i.guard = static_cast<uint8_t>(any_predicate()), i.guard_negated = chance(2);
   i.rd = static_cast<uint8_t>(has_operand(info, Operand::Pd) ? free_predicate() : destination());
-  if (has_operand(info, Operand::Ra)) i.ra = static_cast<uint8_t>(source());
-  if (has_operand(info, Operand::B) && chance(2))
+  if (has_operand(info, Operand::Ra)) i.ra = static_cast<uint8_t>(a >= 0 ? a : source());
+  if (has_operand(info, Operand::B) && b < 0 && chance(2))
     i.b_is_immediate = true, i.immediate = value();
   else if (has_operand(info, Operand::B) || has_operand(info, Operand::Rb))
-    i.rb = static_cast<uint8_t>(source());
+    i.rb = static_cast<uint8_t>(b >= 0 ? b : source());
   if (has_operand(info, Operand::Pb)) i.rb = static_cast<uint8_t>(any_predicate());
   if (has_operand(info, Operand::Rc)) i.x = static_cast<uint8_t>(source());
   if (has_operand(info, Operand::Px)) i.x = static_cast<uint8_t>(any_predicate());
   if (has_operand(info, Operand::Argument)) i.immediate = below(kArguments);
   emit(i);
+}
+
+uint32_t ProgramStatements::related_word(uint32_t word) {
+  const auto exponent = static_cast<int>(word >> 23 & 0xff);
+  // Mantissas: any, few bits, nearly all ones.
+  const uint32_t bits = below(1u << 23);
+  const uint32_t mantissa = chance(2) ? bits : chance(2) ? bits & ~0u << below(24) : 0x7fffffu - (bits & 7);
+  const uint32_t sign = chance(2) ? 0x80000000u : 0;
+  const auto with_exponent = [&](int wanted) {
+    return sign | static_cast<uint32_t>(std::clamp(wanted, 0, 255)) << 23 | mantissa;
+  };
+  const int near = static_cast<int>(below(5)) - 2;
+  switch (below(6)) {
+    case 0:
+      return (word ^ sign) + static_cast<uint32_t>(near);
+    case 1:
+      return with_exponent(exponent + near);
+    case 2:
+      return with_exponent(exponent + static_cast<int>(below(54)) - 27);
+    case 3:  // the product overflows, or not quite
+      return with_exponent(254 + 127 - exponent + near);
+    case 4:  // ... is subnormal
+      return with_exponent(127 - exponent - static_cast<int>(below(27)) + 2);
+    default:  // the quotient, likewise
+      return with_exponent(chance(2) ? exponent - 127 + near : exponent + 126 + near + static_cast<int>(below(24)));
+  }
+}
+
+void ProgramStatements::arithmetic() {
+  const int a = destination(), b = destination();
+  const uint32_t word = value();
+  emit_immediate("mov", a, 0, word);
+  if (chance(2)) {
+    emit("lane", b);
+    emit_immediate("iadd", b, b, related_word(word));
+  } else {
+    emit_immediate("mov", b, 0, related_word(word));
+  }
+  const int operations = 2 + static_cast<int>(below(4));
+  for (int n = 0; n < operations; ++n) {
+    if (chance(2))
+      plain(a, b);
+    else
+      plain(b, a);
+  }
 }
 
 void ProgramStatements::address(bool own, uint32_t offset) {

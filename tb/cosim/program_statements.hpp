@@ -43,8 +43,12 @@ class ProgramStatements : public ProgramEmitter {
   int control_guard() { return chance(3) ? any_predicate() : 0; }
   int free_predicate() { return 1 + static_cast<int>(below(kLoopPredicate - 1)); }
   const InstructionInfo& plain_row();
-  /// One instruction that touches neither memory, rays nor control, with random operands.
-  void plain();
+  /// One instruction that touches neither memory, rays nor control, with random operands, or of registers a and b.
+  void plain(int a = -1, int b = -1);
+  /// A few of them with a pair of operands that meet: sums that cancel or need rounding, products and quotients at the ends of
+  /// the range.
+  void arithmetic();
+  uint32_t related_word(uint32_t word);
   /// r13 = an aligned address: one for all lanes, neighbours, a stride, lines of one set, or anywhere; off by -offset.
   void address(bool own, uint32_t offset);
   void memory();

@@ -10,6 +10,7 @@ namespace {
 
 constexpr uint32_t kMostDataBytes = 384 * 1024;
 constexpr uint32_t kFarLimit = 20000;
+constexpr uint32_t kLastRestart = 3000;  ///< cycle
 
 class Generator : public ProgramStatements {
  public:
@@ -25,13 +26,14 @@ class Generator : public ProgramStatements {
 
   RandomProgram make(int length) {
     choose_layout();
-    if (chance(16)) result_.fault = static_cast<FaultCode>(1 + below(7));
+    if (chance(8)) result_.fault = static_cast<FaultCode>(1 + below(7));
     const int body_length = std::max(4, length * static_cast<int>(profile_.length_percent) / 100);
-    if (chance(6)) filler(1 + below(chance(3) ? kFarLimit : 300));  // the program need not begin at 0
+    if (chance(4)) filler(1 + below(chance(3) ? kFarLimit : 300));  // the program need not begin at 0
     entry("main", body_length);
     if (profile_.most_kernels > 1 && result_.fault == FaultCode::None && chance(2)) entry("second", body_length / 2);
     result_.program.code = code_;
     choose_data();
+    choose_limits();
     choose_kernels();
     choose_stalls();
     fill_memory(result_);
@@ -70,6 +72,21 @@ class Generator : public ProgramStatements {
     result_.arguments[1] = result_.data_begin + shared_bytes_;
   }
 
+  // Limits beyond what there is: their upper bits count too. Faulty addresses and targets begin at them.
+  void choose_limits() {
+    const auto length = static_cast<uint32_t>(code_.size());
+    const uint32_t longest = std::min(0xfff0u, result_.memory_bytes / 8);
+    result_.program_length = length + (runs_out_ || !chance(3) ? 0 : below(longest - length));
+    result_.memory_limit = result_.memory_bytes + (more_memory_told_ ? (below(1u << 30) >> below(24)) * 4 : 0);
+    std::vector<uint64_t>& code = result_.program.code;
+    const auto fix = [&code](const std::vector<size_t>& places, uint32_t limit) {
+      for (const size_t at : places) code[at] = (code[at] & ~uint64_t{0xffffffff}) | static_cast<uint32_t>(code[at] + limit);
+    };
+    fix(from_length_, result_.program_length);
+    fix(from_limit_, result_.memory_limit);
+    if (chance(8)) result_.restart = 1 + below(kLastRestart);
+  }
+
   void choose_kernels() {
     const auto contents = static_cast<uint32_t>(configuration_.contents());
     const auto lanes = static_cast<uint32_t>(configuration_.cores);
@@ -91,7 +108,7 @@ class Generator : public ProgramStatements {
       const Entry& entry = entries_[below(static_cast<uint32_t>(entries_.size()))];
       const ImportKind import = !entry.import ? ImportKind::None : chance(2) ? ImportKind::Normal : ImportKind::Shadow;
       const uint32_t block = result_.units > 1 ? (value() & ~block_mask_) | k : value();
-      result_.kernels.push_back({threads, block, import, entry.pc});
+      result_.kernels.push_back({threads, block, import, entry.pc, value()});
     }
   }
 
@@ -162,7 +179,11 @@ class Generator : public ProgramStatements {
         }
       case FaultCode::PcOutsideProgram:
         runs_out_ = calls_.empty() && chance(2);
-        if (!runs_out_) emit_immediate("jany", 0, 0, 0xffffu - below(1000));
+        if (runs_out_) return;
+        if (chance(2))
+          emit_immediate("jany", 0, 0, 0xffffu - below(16));
+        else
+          from_length_.push_back(emit_immediate("jany", 0, 0, below(2)));
         return;
       case FaultCode::StackOverflow:
         emit_immediate("call", 0, 0, here() | 0xffff0000u);
@@ -172,11 +193,21 @@ class Generator : public ProgramStatements {
         return;
       case FaultCode::Misaligned:
       case FaultCode::AddressOutsideMemory: {
+        // One lane is enough; a warp whose faulty lane is left out goes on.
+        const bool some = chance(2);
+        const char* access = chance(2) ? "ld" : "st";
+        const bool last_word = some && !more_memory_told_;  // lane 0 reads it
+        if (result_.fault == FaultCode::Misaligned) {
+          emit("mov", kAddress, 0, kOwn);
+          if (some)
+            emit("lane", kAddress), emit_immediate("imul", kAddress, kAddress, 1 + below(3)),
+                emit("iadd", kAddress, kAddress, kOwn);
+          emit_immediate(access, 0, kAddress, some ? 0 : 1 + below(3));
+          return;
+        }
         emit_immediate("mov", kAddress, 0, 0);
-        const bool misaligned = result_.fault == FaultCode::Misaligned;
-        // The memory is smaller than any address with one of the bits 22 .. 31.
-        const uint32_t bad = misaligned ? 1 + below(3) + 4 * below(16) : 1u << (22 + below(10));
-        emit_immediate(chance(2) ? "ld" : "st", 0, kAddress, bad);
+        if (some) emit("lane", kAddress), emit_immediate("shl", kAddress, kAddress, 2);
+        from_limit_.push_back(emit_immediate(last_word ? "ld" : access, 0, kAddress, last_word ? 0u - 4 : 4 * below(4)));
         return;
       }
       default:
@@ -189,7 +220,9 @@ class Generator : public ProgramStatements {
   uint32_t kernels_ = 1;     ///< launches
   uint32_t block_mask_ = 1;  ///< bits of the block word that choose the kernel's words
   std::vector<Entry> entries_;
-  bool runs_out_ = false;  ///< the program ends without `exit`
+  bool more_memory_told_ = chance(3);
+  bool runs_out_ = false;                         ///< the program ends without `exit`
+  std::vector<size_t> from_length_, from_limit_;  ///< instructions whose immediate is relative to what the unit is told
 };
 
 }  // namespace
@@ -218,6 +251,12 @@ uint32_t random_word(uint64_t random) {
     }
   }
 }
+
+uint32_t told_length(const RandomProgram& program) {
+  return std::max(program.program_length, static_cast<uint32_t>(program.program.code.size()));
+}
+
+uint32_t told_limit(const RandomProgram& program) { return std::max(program.memory_limit, program.memory_bytes); }
 
 void fill_memory(RandomProgram& program) {
   program.memory = Memory(program.memory_bytes);

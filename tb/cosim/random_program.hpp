@@ -23,7 +23,8 @@ struct RandomProgram {
     uint32_t threads;
     uint32_t block;
     ImportKind import;
-    uint32_t pc = 0;  ///< entry
+    uint32_t pc = 0;      ///< entry
+    uint32_t blocks = 1;  ///< what the kernel is told of the number of blocks
   };
   std::vector<Kernel> kernels;  ///< launched one after the other
   StallPlan stalls;
@@ -32,7 +33,10 @@ struct RandomProgram {
   uint64_t seed = 0;
   std::string profile;                ///< name of the mix of instructions
   uint32_t data_begin = 0;            ///< byte address; random words from here to the end of memory
-  uint32_t memory_bytes = 0;          ///< memory limit
+  uint32_t memory_bytes = 0;          ///< size of memory
+  uint32_t program_length = 0;        ///< what the unit is told; beyond the code, if that lies there
+  uint32_t memory_limit = 0;          ///< what the unit is told; beyond memory, if that lies there
+  uint32_t restart = 0;               ///< cycle in which the unit is reset and everything begins anew; 0: never
   FaultCode fault = FaultCode::None;  ///< in which the program ends, instead of `exit`
 };
 
@@ -41,6 +45,10 @@ struct RandomProgram {
 /// of warps; program_check.hpp says exactly what a program promises. `length`: about how many instructions the body of a kernel
 /// has. `units`: of the device.
 RandomProgram make_random_program(const Configuration& configuration, uint64_t seed, int length = 120, int units = 1);
+
+/// The limits that the unit is told: never less than there is, whatever shrinking has left.
+uint32_t told_length(const RandomProgram& program);
+uint32_t told_limit(const RandomProgram& program);
 
 /// Makes `program.memory` from its code, seed and data range. To be called after a change of one of them.
 void fill_memory(RandomProgram& program);

@@ -24,6 +24,7 @@ class Shrinker {
       again |= instructions();
       again |= stalls();
       again |= threads();
+      again |= restart();
     }
     return best_;
   }
@@ -92,6 +93,13 @@ class Shrinker {
       }
     }
     return any;
+  }
+
+  bool restart() {
+    if (best_.restart == 0) return false;
+    RandomProgram program = best_;
+    program.restart = 0;
+    return attempt(std::move(program));
   }
 
   const Configuration& configuration_;

@@ -168,13 +168,17 @@ void Comparison::ray_write(const RayWriteEvent& rtl, const RayWriteEvent& model)
   counts_->ray_words += static_cast<uint64_t>(__builtin_popcount(model.mask));
 }
 
-void Comparison::outputs(const UnitOutputs& rtl, const UnitOutputs& model) const {
+void Comparison::fault(const UnitOutputs& rtl, const UnitOutputs& model) const {
   if (rtl.fault.code != model.fault.code || rtl.fault.unit != model.fault.unit || rtl.fault.warp != model.fault.warp ||
       rtl.fault.pc != model.fault.pc) {
     throw Mismatch{"the faults differ in this cycle",
                    "  RTL:   " + fault_text(rtl.fault) + "\n  model: " + fault_text(model.fault) + "\n",
                    "rtl/compute_unit.v and the block that found it", Context::Unit};
   }
+}
+
+void Comparison::outputs(const UnitOutputs& rtl, const UnitOutputs& model) const {
+  fault(rtl, model);
   if (rtl.launch_ready != model.launch_ready || rtl.kernel_done != model.kernel_done || rtl.busy != model.busy ||
       rtl.unit_idle != model.unit_idle || rtl.idle != model.idle || (rtl.launch_ready && rtl.launch_unit != model.launch_unit)) {
     throw Mismatch{"the launch outputs differ in this cycle",

@@ -22,6 +22,8 @@ class Comparison {
   void trace(const UnitTrace& rtl, const UnitTrace& model);
   /// Every output, and what goes with a valid one.
   void outputs(const UnitOutputs& rtl, const UnitOutputs& model) const;
+  /// The fault alone: what counts of a unit that has stopped.
+  void fault(const UnitOutputs& rtl, const UnitOutputs& model) const;
 
  private:
   void retirement(const RetireEvent& rtl, const RetireEvent& model);

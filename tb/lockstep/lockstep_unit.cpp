@@ -66,7 +66,10 @@ class LockstepUnitImpl : public LockstepUnit {
       count_transfers(inputs);
       rtl_->clock(inputs);
       ++counts_.cycles;
-      if (fault_seen_) return;
+      if (fault_seen_) {
+        comparison_.fault(rtl_->outputs(), model_.device->outputs());  // the first one stays
+        return;
+      }
       model_.device->clock(inputs);
       check_cycle();
     } catch (const Mismatch& mismatch) {

@@ -378,6 +378,15 @@ TEST(Lockstep, AFaultThatTheUnitMissesIsFound) {
   }
 }
 
+TEST(Lockstep, AFaultThatDoesNotStayIsFound) {
+  Fixture fixture({Encode("mov").rd(1).imm(2), Encode("ld").rd(1).ra(1), Encode("exit")});
+  fixture.launch(3, ImportKind::None);
+  EXPECT_FALSE(fixture.chip.run());
+  for (int i = 0; i < 5; ++i) fixture.chip.cycle();
+  fixture.device->alter_outputs = [](UnitOutputs& out) { out.fault.pc = 7; };
+  EXPECT_THROW(fixture.chip.cycle(), LockstepDifference);
+}
+
 TEST(Lockstep, ResetStartsAfresh) {
   Fixture fixture;
   EXPECT_EQ(fixture.report(), "");
