@@ -2,8 +2,9 @@
 # Builds the Verilated multiprocessor of one set of Verilog parameters: OUTPUT_DIR/libraypool_unit.so.
 #   scripts/verilate.sh OUTPUT_DIR [--trace] [--quick] [--netlist FILE]... NAME=VALUE...
 # NAME=VALUE as `raypool config CONFIG --verilog-parameters` prints them, and UNITS=1|2|4 (default 1).
-# --netlist: files of a mapped netlist of that configuration's compute unit, which stands in for that of rtl/.
-# --trace: the unit can write waveforms (FST), and is slower. --quick: compiled in less time, slower. Does nothing when the library is newer than all it is made from; a build
+# --netlist: Verilog that stands in for the compute unit of rtl/, and calls tb/rtl/gate_simulator.cpp.
+# --trace: the unit can write waveforms (FST), and is slower. --quick: compiled in less time, slower. Does nothing when the library is newer than
+# all it is made from; a build
 # that fails leaves the old library as it was. VERILATOR, CXX and JOBS (default 2) choose the tools and the number of compilers.
 set -eu -o pipefail
 
@@ -61,13 +62,12 @@ language=1364-2005
 what=rtl/
 optimise=(OPT_FAST=-O2 OPT_SLOW=-O1 OPT_GLOBAL=-O2)
 [ "$quick" = 0 ] || optimise=(OPT_FAST=-O1 OPT_SLOW=-O0 OPT_GLOBAL=-O2)
-# A netlist runs for seconds and compiles for minutes.
 if [ ${#netlist[@]} -gt 0 ]; then
   verilog=("${netlist[@]}")
   for file in rtl/*.v; do [ "$file" = rtl/compute_unit.v ] || verilog+=("$file"); done
   language=1800-2017
-  what="a netlist"
-  optimise=(OPT_FAST=-O1 OPT_SLOW=-O0 OPT_GLOBAL=-O1)
+  what="the shell of a netlist"
+  wrapper+=(tb/rtl/gate_simulator.cpp)
 fi
 digest=$({
   printf '%s\n' "$version" "$compiler_version" "trace $trace quick $quick" "${parameters[@]}"
@@ -99,8 +99,7 @@ options=(--cc --exe --top-module multiprocessor --Mdir "$build" -Irtl --default-
   -LDFLAGS "-shared -Wl,-Bsymbolic -Wl,-O1" -o libraypool_unit.so)
 [ "$trace" = 0 ] || options+=(--trace-fst)
 for parameter in "${parameters[@]}"; do options+=("-G$parameter"); done
-# The cells of a library name no units of time and leave pins open.
-[ ${#netlist[@]} -eq 0 ] || options+=(-Wno-lint -Wno-style -Wno-fatal --timescale 1ns/1ps --output-split 10000 --output-split-cfuncs 1000)
+[ ${#netlist[@]} -eq 0 ] || options+=(-Wno-lint -Wno-style -Wno-fatal)
 message="verilator refused the hardware description (its messages are above)"
 run "$verilator" "${options[@]}" "${waivers[@]}" "${verilog[@]}" "${wrapper[@]/#/$root/}"
 

@@ -11,38 +11,47 @@ from .errors import SynthError, say, warn
 
 
 def options_of(arguments):
-    clock = arguments.clock
-    return flow.Options(config=arguments.config, liberty=arguments.liberty or None, clock_ns=float(clock) if clock else None,
+    try:
+        clock = float(arguments.clock) if arguments.clock else None
+    except ValueError:
+        clock = 0.0
+    if clock is not None and not 0.0 < clock < 1e6:
+        raise SynthError(f"CLOCK={arguments.clock}: the period in ns")
+    return flow.Options(config=arguments.config, liberty=arguments.liberty or None, clock_ns=clock,
                         memories=arguments.memories or "macros", jobs=arguments.jobs)
 
 
+def store(result, path):
+    with open(path + ".new", "w", encoding="utf-8") as file:
+        json.dump(result, file, indent=1)
+    os.rename(path + ".new", path)
+
+
 def synth_command(arguments):
-    design = flow.open_design(options_of(arguments))
     against = report.load(arguments.against) if arguments.against else None
+    run = report.load_run(arguments.run, arguments.config) if arguments.run else None
+    design = flow.open_design(options_of(arguments))
     path = os.path.join(design.folder, "report.json")
     key = flow.digest(design)
     begin = time.time()
-    result = None
-    if os.path.exists(path):
-        with open(path, encoding="utf-8") as file:
-            kept = json.load(file)
-        if kept.get("key") == key and (kept.get("power") or not arguments.power) and (kept.get("proofs") or not arguments.prove):
-            result = kept
+    result = kept_report(path, key)
     if result is None:
         flow.synthesise(design)
         worst = timing.describe([design.endpoints[0].pin], design.verilog, design.library, design.macros, design.clock_ns,
                                 os.path.join(design.folder, "work"))[0]
-        used = power.estimate(design) if arguments.power else None
-        proofs = prove.prove(design) if arguments.prove else None
-        result = report.make(design, key, worst, used, proofs)
+        result = report.make(design, key, worst)
         result["seconds"] = round(time.time() - begin, 1)
         report.check(result)
-        with open(path + ".new", "w", encoding="utf-8") as file:
-            json.dump(result, file, indent=1)
-        os.rename(path + ".new", path)
+        store(result, path)
         plots.area_bars(result, os.path.join(design.folder, "work"), os.path.join(design.folder, "area.png"))
-    if arguments.run:
-        result["efficiency"] = report.efficiency(result, arguments.run)
+    for name, wanted, estimate in (("power", arguments.power, power.estimate), ("proofs", arguments.prove, prove.prove)):
+        if wanted and not result[name]:
+            if design.netlist is None:
+                map_as_kept(design, result)
+            result[name] = estimate(design)
+            store(result, path)
+    if run:
+        result["efficiency"] = report.efficiency(result, arguments.run, run)
     say(report.table(result, against))
     if arguments.out:
         os.makedirs(arguments.out, exist_ok=True)
@@ -55,16 +64,26 @@ def synth_command(arguments):
         (f" ({result['seconds']:.0f} s)" if time.time() - begin > 5 else " (kept)"))
 
 
-def netlist_of(arguments):
-    """The mapped netlist for the commands that work on it: that of the kept report, else one that was not timed."""
-    design = flow.open_design(options_of(arguments))
-    path = os.path.join(design.folder, "report.json")
-    kept = report.load(path) if os.path.exists(path) else {}
+def kept_report(path, key):
+    """The report of an earlier call, or None where anything that it depends on has changed."""
+    try:
+        kept = report.load(path)
+    except SynthError:
+        return None
+    return kept if kept["key"] == key else None
+
+
+def map_as_kept(design, kept):
+    """The netlist of a kept report (None: one that was not timed)."""
     flow.prepare(design)
-    if kept.get("key") == flow.digest(design):
-        names = set(kept["timing"]["mapped_for_speed"])
-        design.fast = {k.identity for k in design.kinds.values() if k.name in names}
+    names = set(kept["timing"]["mapped_for_speed"]) if kept else set()
+    design.fast = {k.identity for k in design.kinds.values() if k.name in names}
     flow.map_design(design, design.fast)
+
+
+def netlist_of(arguments):
+    design = flow.open_design(options_of(arguments))
+    map_as_kept(design, kept_report(os.path.join(design.folder, "report.json"), flow.digest(design)))
     return design
 
 
@@ -73,11 +92,15 @@ def replay_command(arguments):
 
 
 def prove_command(arguments):
-    verdicts = prove.prove(netlist_of(arguments), set(arguments.only.split(",")) if arguments.only else None)
-    if arguments.only and not verdicts:
-        raise SynthError(f"there is no block {arguments.only}")
-    proved = sum(v == "proved" for v in verdicts.values())
-    say(f"prove: {proved} of {len(verdicts)} kinds of block proved equal to their RTL")
+    only = set(arguments.only.split(",")) if arguments.only else None
+    design = flow.open_design(options_of(arguments))
+    if only:
+        flow.prepare(design)
+        known = {k.base for k in design.kinds.values() if not k.memory}
+        if not only <= known:
+            raise SynthError(f"ONLY={arguments.only}: {arguments.config} has no block {', '.join(sorted(only - known))}; it has {', '.join(sorted(known))}")
+    verdicts = prove.prove(netlist_of(arguments), only)
+    say(report.proofs_line(verdicts))
     if any(v == "different" for v in verdicts.values()):
         raise SynthError("a mapped block differs from its RTL")
 

@@ -20,6 +20,7 @@ class Kind:
     ports: dict          # name -> (direction, width)
     children: dict       # instance -> identity
     name: str = ""       # unique and fit for Verilog; the base name where that is enough
+    bits: int = 0        # at its cells' pins before mapping: how large it is
 
     def value(self, parameter):
         return int(self.parameters[parameter], 2)
@@ -75,7 +76,8 @@ def tree(parameters, folder, top="compute_unit"):
         base = module["attributes"].get("hdlname", "\\" + identity).lstrip("\\")
         ports = {n: (p["direction"], len(p["bits"])) for n, p in module["ports"].items()}
         children = {n: c["type"] for n, c in module["cells"].items() if c["type"] in modules}
-        kinds[identity] = Kind(identity, base, module.get("parameter_default_values", {}), ports, children)
+        bits = sum(len(b) for c in module["cells"].values() for b in c["connections"].values())
+        kinds[identity] = Kind(identity, base, module.get("parameter_default_values", {}), ports, children, bits=bits)
     by_base = {}
     for kind in kinds.values():
         by_base.setdefault(kind.base, []).append(kind)

@@ -87,16 +87,3 @@ def truth(text, inputs):
         except KeyError as error:
             raise SynthError(f"the Liberty function {text} has a variable {error} that is no input") from error
     return table
-
-
-def verilog(text):
-    """The function as a Verilog expression."""
-    def write(tree):
-        if isinstance(tree, int):
-            return f"1'b{tree}"
-        if isinstance(tree, str):
-            return tree
-        if tree[0] == "not":
-            return f"(~{write(tree[1])})"
-        return f"({write(tree[1])} {dict(xor='^', **{'and': '&', 'or': '|'})[tree[0]]} {write(tree[2])})"
-    return write(parse(text))

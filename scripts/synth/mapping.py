@@ -45,8 +45,19 @@ class Mapper:
         self.jobs = jobs
         self.cells = library.usable_file(os.path.join(folder, "libraries"))
         self.texts = rtl_texts()
-        self.shared = {p: t for p, t in self.texts.items() if p.endswith(".vh")}
         self.version = versions()["yosys"]
+
+    def included(self, text):
+        """The headers that a text includes, those of the headers too."""
+        found = {}
+        waiting = [text]
+        while waiting:
+            for name in re.findall(r'`include\s+"([^"]+)"', waiting.pop()):
+                path = f"rtl/{name}"
+                if path not in found:
+                    found[path] = self.texts[path]
+                    waiting.append(found[path])
+        return found
 
     def prepare_script(self, kind, result):
         """Yosys: one kind down to generic gates and library flip-flops. Its children stay blocks."""
@@ -90,7 +101,7 @@ write_json {result}
         scripts = scripts.split("\n", 1)[1].replace(ROOT, "").replace(self.folder.replace(ROOT, ""), "").replace(self.cells.replace(ROOT, ""), "")
         source = self.texts[f"rtl/{kind.base}.v"]
         parts = [self.version, self.library.digest, scripts, source,
-                 json.dumps(self.shared, sort_keys=True), str(OUTPUT_LOAD_FF), str(ACCEPTED_SHARE), str(fast),
+                 json.dumps(self.included(source), sort_keys=True), str(OUTPUT_LOAD_FF), str(ACCEPTED_SHARE), str(fast),
                  json.dumps(sorted(kind.children.items())), json.dumps(sorted(kind.parameters.items()))]
         return hashlib.sha256("\0".join(parts).encode()).hexdigest()[:24]
 
@@ -162,7 +173,7 @@ write_json {result}
         if missing:
             say(f"synth: mapping {len(missing)} of {len(kinds)} kinds of block" + (" for speed" if fast else ""))
         # The large ones first, so that the last to finish is a small one.
-        missing.sort(key=lambda k: -sum(w for _, w in k.ports.values()))
+        missing.sort(key=lambda k: -k.bits)
         with concurrent.futures.ThreadPoolExecutor(self.jobs) as pool:
             pending = {pool.submit(self.map_one, k, k.identity in fast): k for k in missing}
             for count, done in enumerate(concurrent.futures.as_completed(pending), 1):

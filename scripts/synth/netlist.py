@@ -139,22 +139,18 @@ class Netlist:
 
     # ---- Verilog
 
-    def write(self, path, extra=None, parameters=None):
-        """One Verilog file with a module for each kind; memories are left out. extra(module) gives lines put before endmodule. With
-        `parameters` it stands in for the RTL's top beside the rest of the RTL: the top takes them, and the other names get a prefix."""
+    def write(self, path):
+        """One Verilog file with a module for each kind; memories are left out."""
         with open(path, "w", encoding="utf-8") as file:
             for module in self.modules.values():
-                self._write_module(file, module, extra, parameters)
+                self._write_module(file, module)
 
-    def _write_module(self, file, module, extra, parameters):
+    def _write_module(self, file, module):
         names = module.names
-        prefix = "mapped_" if parameters else ""
-        top = module is self.modules[self.top]
 
         def text(net):
             return f"1'b{net}" if isinstance(net, str) else names[net]
-        chosen = " #(" + ", ".join(f"parameter {n} = {v}" for n, v in parameters.items()) + ")" if parameters and top else ""
-        file.write(f"module {'' if top else prefix}{module.name}{chosen} ({', '.join(p[0] for p in module.ports)});\n")
+        file.write(f"module {module.name} ({', '.join(p[0] for p in module.ports)});\n")
         for name, direction, nets in module.ports:
             width = f"[{len(nets) - 1}:0] " if len(nets) > 1 else ""
             file.write(f"  {direction} {width}{name};\n")
@@ -176,8 +172,5 @@ class Netlist:
             for port, nets in connections.items():
                 joined = ", ".join(text(n) for n in reversed(nets))
                 listed.append(f".{port}({'{' + joined + '}' if len(nets) > 1 else joined})")
-            file.write(f"  {prefix if identity in self.modules else ''}{child.name} {label} ({', '.join(listed)});\n")
-        if extra:
-            for line in extra(module):
-                file.write("  " + line + "\n")
+            file.write(f"  {child.name} {label} ({', '.join(listed)});\n")
         file.write("endmodule\n\n")

@@ -1,4 +1,4 @@
-"""Power by block: the toggles of the simulated netlist, averaged over each block, given to OpenSTA."""
+"""Power by block: the toggles of the simulated netlist, averaged over each first-level block, given to OpenSTA."""
 import math
 import os
 import re
@@ -6,14 +6,9 @@ import re
 from . import replay, timing
 from .errors import SynthError, say
 
+_CELL = re.compile(r"^\s*([\d.eE+-]+)\s+([\d.eE+-]+)\s+([\d.eE+-]+)\s+[\d.eE+-]+ \S+$", re.M)
+
 KERNEL = ["sim", "room", "--size", "8x8", "--depth", "1"]
-
-
-def below_unit(name):
-    """The path below compute_unit of a name as the simulator writes it."""
-    words = name.split(".")
-    last = max((i for i, w in enumerate(words) if w == "compute_unit"), default=0)
-    return "/".join(words[last + 1:])
 
 
 def measure(design, folder):
@@ -24,22 +19,22 @@ def measure(design, folder):
         raise SynthError("the netlist did not draw the frame whose activity was to be measured")
     toggles, accesses, cycles = {}, {}, 0
     for line in text.splitlines():
-        words = line.split()
-        if words[:1] == ["TOGGLES"]:
-            toggles[below_unit(words[1])] = (int(words[2]), int(words[4]))
-            cycles = max(cycles, int(words[3]))
-        elif words[:1] == ["ACCESSES"]:
-            accesses[below_unit(words[1]).rpartition("/")[0] if words[1].endswith(".ram") else below_unit(words[1])] = int(words[2])
+        words = (line + " ").split(" ")   # the unit itself has no path
+        if words[0] == "TOGGLES":
+            toggles[words[4]] = (int(words[1]), int(words[3]))
+            cycles = int(words[2])
+        elif words[0] == "ACCESSES":
+            accesses[words[2]] = int(words[1])
     if not toggles or not cycles:
         raise SynthError(f"the simulated netlist counted no toggles; see {folder}/sim.log")
     return toggles, accesses, cycles
 
 
 def activity(toggles, cycles, prefix):
-    """Toggles a cycle and net, averaged over all nets of the instances at or below a path."""
+    """Toggles a cycle and gate, averaged over the instances at or below a path; of the unit, "", over its own gates."""
     total = nets = 0
     for path, (count, bits) in toggles.items():
-        if path == prefix or path.startswith(prefix + "/"):
+        if path == prefix or prefix and path.startswith(prefix + "/"):
             total += count
             nets += bits
     return total / (nets * cycles) if nets else 0.0
@@ -56,26 +51,29 @@ def estimate(design):
     folder = os.path.join(design.folder, "power")
     toggles, accesses, cycles = measure(design, folder)
     top = design.netlist.modules[design.netlist.top]
-    rates = {name: activity(toggles, cycles, name) for name in top.blocks}
+    rates = {name: activity(toggles, cycles, name) for name in ["", *top.blocks]}
+    # OpenSTA gives the power of cells, of a block none: the cells of every block at or below a first-level one are listed.
     script = timing.set_up(design.verilog, design.library, design.macros, design.clock_ns)
-    for name, rate in rates.items():
-        script += (f'set_power_activity -global -activity {rate:.6f}\nset_power_activity -input -activity {rate:.6f}\n'
-                   f'puts "== {name}"\nreport_power -instances [get_cells {name}] -digits 6\n')
-    text = timing.run_sta(script, folder, "power")
     kinds = dict(design.netlist.instances())
+    for name, rate in rates.items():
+        script += f'set_power_activity -global -activity {rate:.6f}\nset_power_activity -input -activity {rate:.6f}\nputs "== {name}"\n'
+        for path, identity in kinds.items():
+            if path[:1] == ((name,) if name else ()) and identity in design.netlist.modules and design.netlist.modules[identity].gates:
+                script += f'report_power -instances [get_cells {{{"/".join(path + ("*",))}}}] -digits 6\n'
+    text = timing.run_sta(script, folder, "power")
     period_s = design.clock_ns * 1e-9
     rows = []
     for part in text.split("== ")[1:]:
-        name = part.split()[0]
-        numbers = re.search(r"^\s*([\d.eE+-]+)\s+([\d.eE+-]+)\s+([\d.eE+-]+)\s+([\d.eE+-]+)\s+" + re.escape(name) + r"\s*$", part, re.M)
-        if not numbers:
-            raise SynthError(f"OpenSTA gave no power of {name}; see {folder}/power.log")
+        name = part.split("\n", 1)[0].strip()
+        cells = [[float(n) for n in found] for found in _CELL.findall(part)]
         # OpenSTA counts the energy of a rising and a falling edge for every toggle.
-        internal, switching, leakage = float(numbers[1]) / 2, float(numbers[2]), float(numbers[3])
+        internal, switching, leakage = sum(c[0] for c in cells) / 2, sum(c[1] for c in cells), sum(c[2] for c in cells)
         joules = sum(count * memory_energy_pj(design, design.kinds[kinds[tuple(path.split("/"))]]) * 1e-12
-                     for path, count in accesses.items() if path.split("/")[0] == name and tuple(path.split("/")) in kinds)
+                     for path, count in accesses.items() if path.split("/")[0] == name)
         memory = joules / (cycles * period_s)
-        rows.append({"block": name, "activity": rates[name], "internal_w": internal, "switching_w": switching, "leakage_w": leakage,
+        if not cells and not memory:
+            raise SynthError(f"OpenSTA gave no power of {name or 'the unit'}; see {folder}/power.log")
+        rows.append({"block": name or "compute_unit", "activity": rates[name], "internal_w": internal, "switching_w": switching, "leakage_w": leakage,
                      "memory_w": memory, "total_w": internal + switching + leakage + memory})
     say(f"synth: power over {cycles} cycles of a rendered picture: {sum(r['total_w'] for r in rows):.3f} W")
     return {"kernel": " ".join(KERNEL[:4]), "cycles": cycles, "clock_ns": design.clock_ns, "blocks": rows,

@@ -1,15 +1,20 @@
-"""Runs the mapped netlist, with the library's Verilog cells, in lockstep with the golden model."""
+"""Runs the mapped netlist, with the functions of the library's Verilog cells, in lockstep with the golden model."""
+import array
 import os
 import re
 import subprocess
 
 from . import elaborate
-from .errors import SynthError, run, say
-from .function import truth, verilog
+from .errors import SynthError, need, run, say
+from .function import truth
 from .library import ROOT
 
 SCENE = ["sim", "cornell", "--size", "8x8", "--depth", "2"]
 PROGRAMS = 20
+# What joins two nets and is no cell of the library, as the first two kinds of gate.
+BUFFER, INVERTER = 0, 1
+# The ports of a memory that are not 0 when it is accessed; one read of two words is two accesses.
+ACCESSES = {"ram_1rw": ["enable_i"], "ram_1r1w": ["read_i", "write_i"], "ram_2r1w": ["read_i", "read_i", "write_mask_i"]}
 
 
 def library_modules(path):
@@ -21,78 +26,172 @@ def library_modules(path):
     return {m[1]: m[0] for m in re.finditer(r"\bmodule\s+(\w+)\b.*?\bendmodule", text, re.S)}
 
 
-def behavioural(cell):
-    """A cell from its Liberty description. Flip-flops have a clock and data alone; others are not used."""
-    pins = list(cell.pins.values())
-    lines = [f"module {cell.name} ({', '.join(p.name for p in pins)});"]
-    lines += [f"  {p.direction} {p.name};" for p in pins]
-    if cell.kind == "flop":
-        state = cell.sequential
-        if "clear" in state.attributes or "preset" in state.attributes:
-            raise SynthError(f"the netlist uses {cell.name}, a flip-flop with clear or preset, which the flow does not simulate")
-        names = state.arguments
-        clock = state.attributes["clocked_on"]
-        edge = "negedge" if "!" in clock or "'" in clock else "posedge"
-        lines.append(f"  reg {names[0]};")
-        lines.append(f"  always @({edge} {re.sub(r'[^A-Za-z0-9_]', '', clock)}) {names[0]} <= {verilog(state.attributes['next_state'])};")
-        for pin in cell.outputs():
-            lines.append(f"  assign {pin.name} = {'~' if pin.function == names[1] else ''}{names[0]};")
-    else:
-        lines += [f"  assign {p.name} = {verilog(p.function)};" for p in cell.outputs()]
-    return "\n".join(lines + ["endmodule"]) + "\n"
-
-
-def cells_file(design, path):
-    """The Verilog of every cell in use: the library's own text, and where that needs tables (UDP), which Verilator does not read, or is
-    missing, what the Liberty file says. Returns how many came from each."""
-    used = sorted({c for i in design.netlist.modules for c in design.netlist.gate_count(i)})
+def tables(design, folder):
+    """The truth table of every output of every cell in use, by (cell, output): (inputs, table, whether it is a register). From the library's own
+    Verilog; where that uses tables (UDP), which Yosys does not read, or is missing, from the Liberty file. Says how many came from each."""
+    used = [design.library.cells[c] for c in sorted({c for i in design.netlist.modules for c in design.netlist.gate_count(i)})]
     own = library_modules(design.library.verilog)
-    tables = set()
+    udp = set()
     if own:
         with open(design.library.verilog, encoding="utf-8", errors="replace") as file:
-            tables = set(re.findall(r"\bprimitive\s+(\w+)", file.read()))
-    taken = 0
-    with open(path, "w", encoding="utf-8") as file:
-        for name in used:
-            text = own.get(name)
-            if text and not any(re.search(r"\b" + t + r"\b", text) for t in tables):
-                file.write(text + "\n")
-                taken += 1
+            udp = set(re.findall(r"\bprimitive\s+(\w+)", file.read()))
+    known = {c.name for c in used if c.kind == "gate" and c.name in own and not any(re.search(rf"\b{t}\b", own[c.name]) for t in udp)}
+    evaluated = evaluate([c for c in used if c.name in known], own, folder) if known else {}
+    found = {}
+    for cell in used:
+        for pin in cell.outputs():
+            if cell.kind == "flop":
+                found[cell.name, pin.name] = flop_table(cell)
             else:
-                file.write(behavioural(design.library.cells[name]))
-    return taken, len(used) - taken
+                inputs = [p.name for p in cell.inputs()]
+                table = evaluated[cell.name, pin.name] if cell.name in known else truth(pin.function, inputs)
+                if table != truth(pin.function, inputs):
+                    raise SynthError(f"{cell.name}: the library's Verilog and its Liberty file give {pin.name} different functions")
+                found[cell.name, pin.name] = (inputs, table, False)
+            if len(found[cell.name, pin.name][0]) > 6:
+                raise SynthError(f"the netlist uses {cell.name}, which has more inputs than the replay simulates")
+    say(f"replay: {len(known)} cells as the library's Verilog has them, {len(used) - len(known)} as its Liberty file (flip-flops)")
+    return found
 
 
-def memories_file(design, path, count=False):
-    """Each memory block as an instance of the RTL's memory."""
-    with open(path, "w", encoding="utf-8") as file:
-        for kind in {k.name: k for k in design.blocks()}.values():
-            ports = ", ".join(kind.ports)
-            file.write(f"module {kind.name} ({ports});\n")
-            for name, (direction, width) in kind.ports.items():
-                file.write(f"  {direction} {f'[{width - 1}:0] ' if width > 1 else ''}{name};\n")
-            parameters = ", ".join(f".{n}({int(v, 2)})" for n, v in kind.parameters.items())
-            file.write(f"  {kind.base} #({parameters}) ram ({', '.join(f'.{p}({p})' for p in kind.ports)});\n")
-            if count:
-                enables = [p for p in kind.ports if p in ("enable_i", "read_i", "write_i", "write_mask_i") and
-                           not (kind.base == "ram_1rw" and p == "write_i")]
-                file.write("  longint unsigned accesses = 0;\n  always @(posedge clk_i) accesses <= accesses + " +
-                           " + ".join(f"64'(|{p})" for p in enables) + ";\n"
-                           "  final $display(\"ACCESSES %m %0d\", accesses);\n")
-            file.write("endmodule\n")
+def flop_table(cell):
+    """Flip-flops have a clock and data alone; others are not used."""
+    state = cell.sequential
+    clock = state.attributes["clocked_on"]
+    if "clear" in state.attributes or "preset" in state.attributes or "!" in clock or "'" in clock:
+        raise SynthError(f"the netlist uses {cell.name}, a flip-flop with clear, preset or a falling clock, which the flow does not simulate")
+    inputs = [p.name for p in cell.inputs() if p.name != clock.strip("() ")]
+    return inputs, truth(state.attributes["next_state"], inputs), True
 
 
-def counting(module):
-    """Lines that count how often a module's own nets change, once a cycle: delays and glitches are not simulated."""
-    names = [n for n in module.names.values()]
-    if not names or not any(p[0] == "clk_i" for p in module.ports):
-        return []
-    bits = len(names)
-    joined = ",".join(names)
-    return [f"wire [{bits - 1}:0] all_nets = {{{joined}}};", f"reg [{bits - 1}:0] was_nets; longint unsigned toggles = 0, cycles = 0;",
-            "always @(posedge clk_i) begin was_nets <= all_nets; cycles <= cycles + 1; "
-            "if (cycles != 0) toggles <= toggles + 64'($countones(all_nets ^ was_nets)); end",
-            f"final $display(\"TOGGLES %m %0d %0d {bits}\", toggles, cycles);"]
+def evaluate(cells, own, folder):
+    """Truth tables of cells by their Verilog, as Yosys evaluates it."""
+    source, script = os.path.join(folder, "cells.v"), os.path.join(folder, "cells.ys")
+    with open(source, "w", encoding="utf-8") as file:
+        file.write("\n".join(own[c.name] for c in cells) + "\n")
+    with open(script, "w", encoding="utf-8") as file:
+        file.write(f"read_verilog {source}\n")
+        for cell in cells:
+            for pin in cell.outputs():
+                file.write(f"cd {cell.name}\nlog == {cell.name} {pin.name}\neval -table {','.join(p.name for p in cell.inputs())} -show {pin.name}\ncd ..\n")
+    log = os.path.join(folder, "cells.log")
+    run([need("yosys", "yosys"), script], log)
+    with open(log, encoding="utf-8") as file:
+        parts = re.split(r"^== (\w+) (\w+)$", file.read(), flags=re.M)[1:]
+    found = {}
+    for cell, pin, text in zip(parts[::3], parts[1::3], parts[2::3]):
+        rows = re.findall(r"^ ((?:1'[01] +)+)\| 1'([01])$", text, re.M)
+        # The first input is the lowest bit.
+        found[cell, pin] = sum(int(value) << sum(int(b[-1]) << i for i, b in enumerate(bits.split())) for bits, value in rows)
+    return found
+
+
+def flatten(netlist, found):
+    """The whole netlist as gates between numbered nets, 0 and 1 the constants: (nets, gates as (cell, output, inputs' nets, output's net), blocks as
+    (path, first gate, last), memories as (path, kind, {port: nets}), what else joins nets as (BUFFER or INVERTER, source, sink), the top's nets)."""
+    gates, blocks, memories, joins = [], [], [], []
+    used = 2
+
+    def visit(identity, path, outside):
+        nonlocal used
+        module = netlist.modules[identity]
+        inside = {"0": 0, "1": 1}
+        for name, _, nets in sorted(module.ports, key=lambda p: p[1] == "output"):
+            for inner, outer in zip(nets, outside[name]):
+                if inside.setdefault(inner, outer) != outer:
+                    joins.append((BUFFER, inside[inner], outer))   # an input or a constant at an output, or one net at two
+        for net in module.names:
+            if net not in inside:
+                inside[net] = used
+                used += 1
+        first = len(gates)
+        for cell, pins in module.gates.values():
+            known = netlist.library.cells[cell]
+            for output in known.outputs():
+                if output.name not in pins:
+                    continue
+                sink = inside[pins[output.name]]
+                if known.kind == "flop" and output.function.strip("() ") != known.sequential.arguments[0]:
+                    joins.append((INVERTER, used, sink))
+                    sink, used = used, used + 1
+                gates.append((cell, output.name, [inside[pins[p]] for p in found[cell, output.name][0]], sink))
+        blocks.append(("/".join(path), first, len(gates)))
+        for label, (child, ports) in module.blocks.items():
+            nets = {p: [inside[n] for n in bits] for p, bits in ports.items()}
+            if child in netlist.modules:
+                visit(child, path + (label,), nets)
+            else:
+                memories.append(("/".join(path + (label,)), netlist.kinds[child], nets))
+    top = {}
+    for name, _, nets in netlist.modules[netlist.top].ports:
+        top[name] = list(range(used, used + len(nets)))
+        used += len(nets)
+    visit(netlist.top, (), top)
+    return used, gates, blocks, memories, joins, top
+
+
+def simulator(design, folder, count):
+    """Writes the netlist as tb/rtl/gate_simulator.cpp reads it, and the Verilog that stands in for the compute unit: that simulator and the
+    RTL's memories. With `count` it prints at its end how often nets changed and memories were accessed. Returns the Verilog's path."""
+    found = tables(design, folder)
+    nets, gates, blocks, memories, joins, top = flatten(design.netlist, found)
+    unit = design.kinds[design.netlist.top]
+    inputs = [(p, top[p]) for p, (direction, _) in unit.ports.items() if direction == "input" and p != "clk_i"]
+    outputs = [(p, top[p]) for p, (direction, _) in unit.ports.items() if direction == "output"]
+    lines = []
+    for place, (path, kind, connected) in enumerate(memories):
+        connections = [".clk_i(clk_i)"]
+        for port, (direction, width) in kind.ports.items():
+            if port != "clk_i":
+                name = f"ram_{place}_{port}"
+                lines.append(f"  wire [{width - 1}:0] {name};")
+                connections.append(f".{port}({name})")
+                (outputs if direction == "input" else inputs).append((name, connected.get(port, [0] * width)))
+        parameters = ", ".join(f".{n}({int(v, 2)})" for n, v in kind.parameters.items())
+        lines.append(f"  {kind.base} #({parameters}) ram_{place} ({', '.join(connections)});")
+        if count:
+            lines += [f"  longint unsigned accesses_{place} = 0;", f"  always @(posedge clk_i) accesses_{place} <= accesses_{place} + " +
+                      " + ".join(f"64'(ram_{place}_{p} != 0)" for p in ACCESSES[kind.base]) + ";",
+                      f"  final $display(\"ACCESSES %0d {path}\", accesses_{place});"]
+    data, shell = os.path.join(folder, "netlist.bin"), os.path.join(folder, "compute_unit.v")
+    entering, leaving = [[n for _, listed in ports for n in listed] for ports in (inputs, outputs)]
+    number = {place: i + 2 for i, place in enumerate(found)}
+    words = array.array("I", [nets, len(found) + 2, len(gates) + len(joins), len(entering), len(leaving), len(blocks)])
+    words.extend((1, 0, 0b10, 0, 1, 0, 0b01, 0))   # BUFFER, INVERTER
+    for sources, table, flop in found.values():
+        words.extend((len(sources), int(flop), table & 0xffffffff, table >> 32))
+    for cell, output, sources, sink in gates:
+        words.extend((number[cell, output], *sources, sink))
+    for join in joins:
+        words.extend(join)
+    words.extend(entering + leaving)
+    for path, first, last in blocks:
+        words.extend((first, last, len(path), *path.encode()))
+    with open(data, "wb") as file:
+        words.tofile(file)
+    with open(shell, "w", encoding="utf-8") as file:
+        file.write(f"module compute_unit #({', '.join(f'parameter {n} = {int(v, 2)}' for n, v in unit.parameters.items())}) ({', '.join(unit.ports)});\n")
+        for name, (direction, width) in unit.ports.items():
+            file.write(f"  {direction} [{width - 1}:0] {name};\n")
+        file.write("\n".join(lines) + f"""
+  import "DPI-C" function chandle netlist_open(input string path);
+  import "DPI-C" function void netlist_settle(input chandle netlist, input bit [{len(entering) - 1}:0] entering, output bit [{len(leaving) - 1}:0] leaving);
+  import "DPI-C" function void netlist_clock(input chandle netlist);
+  import "DPI-C" function void netlist_close(input chandle netlist, input bit report);
+  chandle netlist = netlist_open("{data}");
+  reg edges = 0;
+  reg [{len(leaving) - 1}:0] leaving;
+  wire [{len(entering) - 1}:0] entering = {{{', '.join(n for n, _ in reversed(inputs))}}};
+  always @(posedge clk_i) begin netlist_clock(netlist); edges <= ~edges; end
+  function automatic [{len(leaving) - 1}:0] settled(input bit after_edge, input bit [{len(entering) - 1}:0] values);
+    netlist_settle(netlist, values, settled);
+  endfunction
+  always @* leaving = settled(edges, entering);
+  assign {{{', '.join(n for n, _ in reversed(outputs))}}} = leaving;
+  final netlist_close(netlist, {int(count)});
+endmodule
+""")
+    return shell
 
 
 def broken(design, number, base="int_alu"):
@@ -122,18 +221,11 @@ def broken(design, number, base="int_alu"):
 
 
 def build(design, folder, count=False):
-    """Verilates the netlist; returns the shared library's path."""
+    """Builds the netlist's simulator; returns the shared library's path."""
     os.makedirs(folder, exist_ok=True)
-    netlist = os.path.join(folder, "netlist.v")
-    top = design.kinds[design.netlist.top].parameters
-    design.netlist.write(netlist, counting if count else None, {n: int(v, 2) for n, v in top.items()})
-    cells, memories = os.path.join(folder, "cells.v"), os.path.join(folder, "memories.v")
-    own, derived = cells_file(design, cells)
-    memories_file(design, memories, count)
-    say(f"replay: {own} cells from the library's Verilog, {derived} from its Liberty file (flip-flops); building the netlist's simulator")
-    options = [o for f in [netlist, cells, memories] for o in ("--netlist", f)]
+    shell = simulator(design, folder, count)
     parameters = [f"{n}={v}" for n, v in design.parameters.items()]
-    run([os.path.join(ROOT, "scripts", "verilate.sh"), folder, *options, *parameters], os.path.join(folder, "build.log"),
+    run([os.path.join(ROOT, "scripts", "verilate.sh"), folder, "--netlist", shell, *parameters], os.path.join(folder, "build.log"),
         environment={"JOBS": str(design.options.jobs)})
     return os.path.join(folder, "libraypool_unit.so")
 
@@ -159,12 +251,14 @@ def replay(design, break_number=0):
     if what:
         say(f"replay: broken on purpose: {what}")
     library = build(design, folder)
-    runs = [SCENE, ["cosim", "--programs", str(PROGRAMS), "--seed", "1"]]
+    # A failing program is shrunk into the netlist's folder: its fault is not the RTL's.
+    runs = [SCENE, ["cosim", "--programs", str(PROGRAMS), "--seed", "1", "--save", folder] + (["--no-shrink"] if what else [])]
     for arguments in runs:
         passed, text = lockstep(design, library, folder, arguments)
-        words = " ".join(arguments[:2])
+        words = arguments[0]
         if not passed and what:
-            say(f"replay: {words} noticed it: {text.strip().splitlines()[0]}")
+            said = [line.strip() for line in text.splitlines() if "differ" in line or "look at:" in line]
+            say(f"replay: {words} noticed it: " + "; ".join(said[:1] + [line for line in said if line.startswith("look at:")]))
             return
         if not passed:
             raise SynthError(f"the netlist differs from the golden model in `raypool {' '.join(arguments)}`:\n{text.strip()}")

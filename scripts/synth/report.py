@@ -8,10 +8,13 @@ from . import mapping, timing
 from .errors import SynthError
 from .library import ROOT
 
-SCHEMA = "raypool-synth-1"
+SCHEMA = "raypool-synth-2"
 THESIS_MM2 = 0.537
-# Lanes whose size has a goal: (block, goal in kGE, for which parameters).
-GOALS = [("float_lane", "Flt lane", {"SUBNORMALS": {"0": 12.0, "1": 10.5}}), ("slow_lane", "Slw lane", {"SLOW_UNIT": {"0": 28.0, "2": 15.0}})]
+# A stage should take no more than this many times the median one.
+SLOW_STAGE = 4 / 3
+# Lanes whose size has a goal in kGE: (block, name, [(parameters, goal)]), the first that fits.
+GOALS = [("float_lane", "Flt lane", [({"FMA": "1"}, 14.0), ({"SUBNORMALS": "0"}, 12.0), ({"SUBNORMALS": "1"}, 10.5)]),
+         ("slow_lane", "Slw lane", [({"SLOW_UNIT": "0"}, 28.0), ({"SLOW_UNIT": "2"}, 15.0)])]
 
 
 def scaling():
@@ -92,15 +95,16 @@ def forty_nm(design, logic_um2):
     return {**{k: round(v, 4) for k, v in result.items()}, "rule": rule["rule"]}
 
 
-def make(design, key, path, power, proofs):
-    """The report as a dictionary."""
+def make(design, key, path):
+    """The report as a dictionary; power and proofs are added when they are asked for."""
     listed, of_path = blocks(design)
     whole = listed[0]
     library, clock = design.library, design.clock_ns
     start, end, steps = path
     slack = design.endpoints[0].slack
-    delays = {b["block"]: b["delay_ns"] for b in listed if b["delay_ns"] and b["flip_flops"] and b["block"] != "compute_unit"}
-    median = statistics.median(delays.values())
+    stages = [b for b in listed if b["delay_ns"] and b["flip_flops"] and b["block"] != "compute_unit"]
+    median = statistics.median(b["delay_ns"] for b in stages)
+    slow = sorted((b for b in stages if b["delay_ns"] > median * SLOW_STAGE), key=lambda b: -b["delay_ns"])
     allowed = clock - slack
     report = {
         "schema": SCHEMA, "key": key, "config": design.options.config, "parameters": design.parameters,
@@ -116,10 +120,12 @@ def make(design, key, path, power, proofs):
                    "mhz": round(1000 / allowed, 1), "from": start, "to": end, "from_block": block_of(of_path, start + "/x"),
                    "to_block": block_of(of_path, end + "/x"),
                    "steps": [{"pin": p, "cell": c, "delay_ns": d, "at_ns": t, "block": block_of(of_path, p)} for p, c, d, t in steps],
-                   "median_delay_ns": median, "slower_than_four_thirds_of_median": sorted(b for b, d in delays.items() if d > median * 4 / 3),
+                   "median_delay_ns": round(median, 4),
+                   "slow_stages": [{"block": b["block"], "delay_ns": b["delay_ns"], "delay_fo4": round(b["delay_ns"] / design.fo4_ns, 1),
+                                    "of_median": round(b["delay_ns"] / median, 2), "endpoint": b["endpoint"]} for b in slow],
                    "mapped_for_speed": sorted(design.kinds[i].name for i in design.fast)},
         "forty_nm": {**forty_nm(design, whole["logic_um2"]), "thesis_4w4c_mm2": THESIS_MM2},
-        "lanes": lanes(design, listed), "blocks": listed, "power": power, "proofs": proofs,
+        "lanes": lanes(design, listed), "blocks": listed, "power": None, "proofs": None,
     }
     return report
 
@@ -131,9 +137,9 @@ def lanes(design, listed):
         rows = [b for b in listed if b["block"].endswith("/" + base)]
         if not rows:
             continue
-        parameter, by_value = next(iter(goals.items()))
+        goal = next((g for wanted, g in goals if wanted.items() <= design.parameters.items()), None)
         result[label] = {"kge": round(sum(r["logic_kge"] for r in rows) / sum(r["instances"] for r in rows), 2),
-                         "goal_kge": by_value.get(design.parameters.get(parameter))}
+                         "goal_kge": goal}
     return result
 
 
@@ -155,17 +161,22 @@ def check(report):
             raise SynthError(f"the blocks' {what} add up to {parts:.1f}, not to {whole[what]:.1f}")
 
 
-def efficiency(report, path):
-    """Mrays/s a mm2 and a kGE with a run's report, whose clock is that of the simulated chip."""
+def load_run(path, config):
+    """A run's report, which must be of this configuration."""
     try:
         with open(path, encoding="utf-8") as file:
             run = json.load(file)
     except (OSError, ValueError) as error:
         raise SynthError(f"RUN={path}: not a report of raypool sim ({error})") from error
-    if "mrays_per_second" not in run:
+    if not isinstance(run, dict) or "mrays_per_second" not in run:
         raise SynthError(f"RUN={path}: not a report of raypool sim (it has no mrays_per_second)")
-    if run.get("config") != os.path.splitext(os.path.basename(report["config"]))[0]:
-        raise SynthError(f"RUN={path}: drawn with configuration {run.get('config')}, but this is {report['config']}")
+    if run.get("config") != os.path.splitext(os.path.basename(config))[0]:
+        raise SynthError(f"RUN={path}: drawn with configuration {run.get('config')}, but this is {config}")
+    return run
+
+
+def efficiency(report, path, run):
+    """Mrays/s a mm2 and a kGE of a run, whose clock is that of the simulated chip."""
     units = run.get("units", 1)
     rate = run["mrays_per_second"]
     return {"run": path, "mrays_per_second": rate, "units": units, "mrays_per_second_mm2": rate / units / report["forty_nm"]["total_mm2"],
@@ -174,6 +185,12 @@ def efficiency(report, path):
 
 def number(value, places=2):
     return "-" if value is None else f"{value:.{places}f}"
+
+
+def proofs_line(verdicts):
+    rest = [f"{name} {verdict}" for name, verdict in sorted(verdicts.items()) if verdict != "proved"]
+    return (f"proofs   {len(verdicts) - len(rest)} of {len(verdicts)} kinds of block proved equal to their RTL" +
+            (f"; not: {'; '.join(rest)}" if rest else ""))
 
 
 def table(report, against=None, depth=2):
@@ -205,8 +222,9 @@ def table(report, against=None, depth=2):
               f"slowest  from {when['from_block']} ({when['from']}) to {when['to_block']} ({when['to']})"]
     missed = [b for b in report["blocks"] if b["slack_ns"] is not None and b["slack_ns"] < 0]
     lines.append("missed   " + (", ".join(f"{b['block']} {b['slack_ns']:+.3f}" for b in missed) if missed else "nothing: every block makes the clock"))
-    lines.append(f"stages   median of the blocks' slowest paths {when['median_delay_ns']:.2f} ns; more than a third slower: "
-                 + (", ".join(when["slower_than_four_thirds_of_median"]) or "none"))
+    lines.append(f"stages   median of the blocks' slowest paths {when['median_delay_ns']:.2f} ns; more than a third slower: {len(when['slow_stages']) or 'none'}")
+    lines += [f"         {b['delay_ns']:.2f} ns, {b['delay_fo4']:.1f} FO4, {b['of_median']:.2f} of the median: {b['block']}, into {b['endpoint']}"
+              for b in when["slow_stages"]]
     for label, lane in report["lanes"].items():
         goal = f", goal at most {lane['goal_kge']:g}" if lane["goal_kge"] else ""
         lines.append(f"{label:8} {lane['kge']:.2f} kGE{goal}")
@@ -215,9 +233,7 @@ def table(report, against=None, depth=2):
         lines.append(f"power    {power['total_w'] * 1000:.0f} mW at {1000 / power['clock_ns']:.0f} MHz while drawing ({power['kernel']}); the largest: " +
                      ", ".join(f"{r['block']} {r['total_w'] * 1000:.1f}" for r in sorted(power["blocks"], key=lambda r: -r["total_w"])[:6]))
     if report.get("proofs"):
-        proved = sum(v == "proved" for v in report["proofs"].values())
-        rest = {k: v for k, v in report["proofs"].items() if v != "proved"}
-        lines.append(f"proofs   {proved} of {len(report['proofs'])} kinds of block proved equal to their RTL" + (f"; {rest}" if rest else ""))
+        lines.append(proofs_line(report["proofs"]))
     if report.get("efficiency"):
         e = report["efficiency"]
         lines.append(f"speed    {e['mrays_per_second']:.2f} Mrays/s: {e['mrays_per_second_mm2']:.1f} a mm2 at 40 nm, "
@@ -233,6 +249,7 @@ def load(path):
             report = json.load(file)
     except (OSError, ValueError) as error:
         raise SynthError(f"{path}: not a synthesis report ({error})") from error
-    if report.get("schema") != SCHEMA:
-        raise SynthError(f"{path}: not a synthesis report (schema {report.get('schema')}, wanted {SCHEMA})")
+    schema = report.get("schema") if isinstance(report, dict) else None
+    if schema != SCHEMA:
+        raise SynthError(f"{path}: not a synthesis report (schema {schema}, wanted {SCHEMA})")
     return report

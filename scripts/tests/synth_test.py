@@ -1,6 +1,9 @@
 #!/usr/bin/env python3
 """The synthesis flow on small blocks: what it refuses, what it measures, what it proves. RAYPOOL names the program."""
+import ctypes
+import json
 import os
+import random
 import subprocess
 import sys
 import tempfile
@@ -37,9 +40,16 @@ class Synthesis(unittest.TestCase):
         return done.returncode, done.stderr.strip()
 
     def test_bad_input_gets_one_sentence(self):
+        run = os.path.join(self.folder, "run.json")
+        with open(run, "w", encoding="utf-8") as file:
+            json.dump({"mrays_per_second": 1.0, "config": "4w4c"}, file)
         for arguments, word in ((["report", "--liberty", "/no/such.lib"], "Liberty"), (["report", "--config", "5w5c"], "5"),
                                 (["report", "--memories", "clay", "--config", "1w1c"], "clay"),
-                                (["report", "--config", "1w1c", "--against", "/dev/null"], "/dev/null")):
+                                (["report", "--config", "1w1c", "--against", "/dev/null"], "/dev/null"),
+                                (["report", "--config", "1w1c", "--run", "/dev/null"], "RUN=/dev/null"),
+                                (["report", "--config", "1w1c", "--run", run], "4w4c"), (["report", "--config", "1w1c", "--clock", "soon"], "CLOCK=soon"),
+                                (["prove", "--config", "1w1c", "--only", "teapot"], "has no block teapot"),
+                                (["growth", "--plan", run], "not a plan")):
             code, text = self.command(*arguments)
             self.assertEqual(code, 1, text)
             self.assertIn(word, text)
@@ -79,6 +89,38 @@ class Synthesis(unittest.TestCase):
         self.assertEqual(sum(r["memory_bits"] for r in rows[1:]), rows[0]["memory_bits"])
         self.assertGreater(rows[0]["logic_um2"], 100 * design.library.nand2_area)
         report.check({**{g: {n: 0 for n in names} for g, names in report.NEEDED.items()}, "blocks": rows})
+
+    def simulate(self, design, events):
+        """The values of the mapped counter while it is given events, cycle by cycle."""
+        replay.simulator(design, self.folder, False)
+        root = subprocess.run(["verilator", "--getenv", "VERILATOR_ROOT"], capture_output=True, text=True, check=True).stdout.strip()
+        path = os.path.join(self.folder, "gates.so")
+        subprocess.run(["g++", "-std=c++17", "-shared", "-fPIC", f"-I{root}/include/vltstd", f"{ROOT}/tb/rtl/gate_simulator.cpp", "-o", path], check=True)
+        gates = ctypes.CDLL(path)
+        gates.netlist_open.restype = ctypes.c_void_p
+        unit = ctypes.c_void_p(gates.netlist_open(os.path.join(self.folder, "netlist.bin").encode()))
+        inputs, outputs, values = (ctypes.c_uint32 * 1)(), (ctypes.c_uint32 * 2)(), []
+        for cycle, event in enumerate(events):
+            inputs[0] = (cycle > 0) | event << 1
+            gates.netlist_settle(unit, inputs, outputs)
+            values.append(outputs[0] | (outputs[1] & 0xffff) << 32)
+            gates.netlist_clock(unit)
+        gates.netlist_close(unit, False)
+        return values
+
+    def test_a_netlist_is_simulated_as_its_rtl_says_and_a_swapped_cell_shows(self):
+        design = small_design(self.folder, "event_counter", {"EVENT_BITS": "6"})
+        events = [random.Random(1).randrange(64) for _ in range(2000)]
+        # Reset takes the first cycle; the carry reaches the high part a cycle later.
+        low, carry, high, expected = 0, 0, 0, []
+        for cycle, event in enumerate(events):
+            expected.append(high << 12 | low)
+            high, total = (high + carry, low + event) if cycle else (0, 0)
+            low, carry = total & 0xfff, total >> 12
+        self.assertGreater(high, 3)
+        self.assertEqual(self.simulate(design, events), expected)
+        replay.broken(design, 1, "event_counter")
+        self.assertNotEqual(self.simulate(design, events), expected)
 
     def test_a_block_is_proved_and_a_swapped_cell_noticed(self):
         design = small_design(self.folder, "fetch_arbiter", {"WARPS": "4", "WARP_BITS": "2"})
