@@ -211,7 +211,10 @@ def table(report, against=None, depth=2):
         if against:
             before = old.get(name)
             line += f" {number(before['logic_kge']) if before else '-':>11} "
-            line += f"{100 * (block['logic_kge'] / before['logic_kge'] - 1):>+7.1f}%" if before and before["logic_kge"] else f"{'new':>8}"
+            if before and before["logic_kge"]:
+                line += f"{100 * (block['logic_kge'] / before['logic_kge'] - 1):>+7.1f}%"
+            else:
+                line += f"{'-' if before else 'new':>8}"
         lines.append(line)
     lines += ["", f"area     {area['logic_kge']:.1f} kGE logic, {area['memory_kge']:.1f} kGE memory ({area['memory_bits']} bits, {report['memories']}), "
               f"{area['flip_flops']} flip-flops, {area['cells']} cells",

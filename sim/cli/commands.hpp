@@ -111,6 +111,7 @@ int cosim_command(const CosimOptions& options);
 /// `raypool configurations`: a set of machines with every pair of parameter values.
 struct ConfigurationsOptions {
   bool all_pairs = false;  ///< large machines too; else of at most kSmallThreads
+  size_t most = 0;         ///< only so many of those that bring pairs of values; 0: all
   std::string folder;      ///< gets a JSON file for each and their list; empty: only the table is printed
 };
 int configurations_command(const ConfigurationsOptions& options);

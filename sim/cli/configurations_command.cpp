@@ -12,7 +12,7 @@ namespace raypool {
 
 int configurations_command(const ConfigurationsOptions& options) {
   const int most_threads = options.all_pairs ? kMostThreads : kSmallThreads;
-  const std::vector<Machine> machines = covering_machines(most_threads);
+  const std::vector<Machine> machines = covering_machines(most_threads, options.most > 0 ? options.most : ~size_t{0});
   fmt::print("{:<16}", "configuration");
   for (const Factor& factor : covering_factors()) {
     if (factor.name.find('.') == std::string::npos || factor.name.find("cache") != std::string::npos)

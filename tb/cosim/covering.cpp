@@ -211,10 +211,11 @@ Covered count_covered(const std::vector<Machine>& machines, int most_threads) {
   return covered;
 }
 
-std::vector<Machine> covering_machines(int most_threads) {
+std::vector<Machine> covering_machines(int most_threads, size_t most_pairings) {
   Search search(most_threads);
   std::vector<Machine> machines;
-  while (!search.done()) machines.push_back(named(machine_of(search.next()), machines.size() + 1));
+  while (!search.done() && machines.size() < most_pairings)
+    machines.push_back(named(machine_of(search.next()), machines.size() + 1));
   for (const Factor& factor : covering_factors()) {
     for (const int value : factor.values) {
       if (threads_of(factor, value) <= most_threads) continue;

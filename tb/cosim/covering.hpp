@@ -40,7 +40,8 @@ Covered count_covered(const std::vector<Machine>& machines, int most_threads);
 
 /// Every pair of values of any two parameters that a machine of at most `most_threads` threads can have is in one of them.
 /// Greedy: each next one is the best of some that are put together value by value, so that each value brings most pairs that were
-/// not there. Then, for each value that takes more threads alone, the default ALUs with it. The same set every time.
-std::vector<Machine> covering_machines(int most_threads);
+/// not there. Then, for each value that takes more threads alone, the default ALUs with it. The same set every
+/// time. `most_pairings`: only so many of the first kind, which have fewer pairs.
+std::vector<Machine> covering_machines(int most_threads, size_t most_pairings = ~size_t{0});
 
 }  // namespace raypool
