@@ -1,6 +1,7 @@
 #!/bin/bash
 # Walks a set of machines, each with random programs in lockstep: scripts/configurations.sh quick|small|all PROGRAMS [FOLDER]
-# quick: every value and most pairs. small: every pair of values that a machine of 8 threads can have. all: every pair, large machines included, which takes hours.
+# quick: every value and most pairs. small: every pair of values that a machine of 8 threads can have. all: every pair, large machines included,
+# which takes hours.
 # FOLDER (default build/configurations) gets the configurations and the Verilated units. Goes on after a failure, prints a line for each machine,
 # and ends with 1 if one failed. RAYPOOL names the program.
 set -eu -o pipefail

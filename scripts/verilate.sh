@@ -4,8 +4,8 @@
 # NAME=VALUE as `raypool config CONFIG --verilog-parameters` prints them, and UNITS=1|2|4 (default 1).
 # --netlist: Verilog that stands in for the compute unit of rtl/, and calls tb/rtl/gate_simulator.cpp.
 # --trace: the unit can write waveforms (FST), and is slower. --quick: compiled in less time, slower. Does nothing when the library is newer than
-# all it is made from; a build
-# that fails leaves the old library as it was. VERILATOR, CXX and JOBS (default 2) choose the tools and the number of compilers.
+# all it is made from; a build that fails leaves the old library as it was. VERILATOR, CXX and JOBS (default 2) choose the tools and the number
+# of compilers.
 set -eu -o pipefail
 
 fail() {

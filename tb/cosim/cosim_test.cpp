@@ -188,6 +188,13 @@ TEST(Stalls, OpenAndShutAsTheirStyleSays) {
   }
 }
 
+TEST(Covering, AFewMachinesHaveEveryValue) {
+  const std::vector<Machine> machines = covering_machines(kSmallThreads, 12);
+  for (size_t i = 0; i < 12; ++i) EXPECT_LE(machines[i].configuration.contents() * machines[i].units, kSmallThreads);
+  const Covered covered = count_covered(machines, kSmallThreads);
+  EXPECT_EQ(covered.values, covered.all_values);
+}
+
 TEST(Covering, SetsHaveEveryPairThatMachinesOfTheirSizeCanHave) {
   for (const int most_threads : {kSmallThreads, kMostThreads}) {
     const std::vector<Machine> machines = covering_machines(most_threads);

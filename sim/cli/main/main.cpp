@@ -101,7 +101,7 @@ int run(int argc, char** argv) {
 
   ConfigurationsOptions configurations;
   CLI::App* configurations_app = app.add_subcommand("configurations", "a set of machines with every pair of parameter values");
-  configurations_app->add_flag("--all-pairs", configurations.all_pairs, "large machines too (default: of at most 32 threads)");
+  configurations_app->add_flag("--all-pairs", configurations.all_pairs, "large machines too (default: small ones)");
   configurations_app->add_option("--most", configurations.most, "only the first so many of those that bring pairs of values");
   configurations_app->add_option("--out", configurations.folder, "folder that gets a JSON file for each");
   configurations_app->callback([&] { code = configurations_command(configurations); });
