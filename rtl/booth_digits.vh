@@ -1,12 +1,12 @@
-// Included in a module: what multiply_tree with ENCODED takes for b, so that a register can stand between. b is extended to 32 bits by
-// zeros or by its sign. Digit i, for bits 2i+1 .. 2i-1 of b, is -2 .. 2, as {negative, two, one}; zero has neither two nor one.
-// Simulators multiply without digits (see there): for them it is b.
-function [47:0] booth_digits(input [31:0] b);
+// Included in a module: what multiply_tree with ENCODED takes for its b, so that a register can stand between. word is b extended to 32 bits by
+// zeros or by its sign. Digit i, for bits 2i+1 .. 2i-1 of the word, is -2 .. 2, as {negative, two, one}; zero has neither two nor one.
+// Simulators multiply without digits (see there): for them it is the word.
+function [47:0] booth_digits(input [31:0] word);
 `ifdef SYNTHESIS
   reg [32:0] bits;
   integer i;
   begin
-    bits = {b, 1'b0};
+    bits = {word, 1'b0};
     for (i = 0; i < 16; i = i + 1) begin
       booth_digits[3*i] = bits[2*i] ^ bits[2*i+1];
       booth_digits[3*i+1] = bits[2*i +: 3] == 3'b011 || bits[2*i +: 3] == 3'b100;
@@ -15,7 +15,7 @@ function [47:0] booth_digits(input [31:0] b);
   end
 `else
   begin
-    booth_digits = {16'd0, b};
+    booth_digits = {16'd0, word};
   end
 `endif
 endfunction

@@ -4,17 +4,19 @@
 set -u -o pipefail
 cd "$(dirname "$0")/.."
 export LC_ALL=C.UTF-8
-failed=0
+checks=0
+failed=()
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
 
 # check NAME COMMAND...: silent success; on failure, or on any output when the tool only warns, prints it and how to repeat it.
 check() {
   local name=$1; shift
+  checks=$((checks + 1))
   if "$@" > "$log" 2>&1 && ! grep -qiE 'warning|error' "$log"; then
     echo "lint: $name: clean"
   else
-    failed=1
+    failed+=("$name")
     cat "$log"
     printf 'lint: %s: NOT clean; again with:\n ' "$name"; printf ' %q' "$@"; echo
   fi
@@ -67,6 +69,12 @@ if [ ${#tidy[@]} -gt 0 ]; then
     grep -vE "^[0-9]+ warnings? (generated|treated)|^Suppressed|^Use -header-filter"; exit "${PIPESTATUS[1]}"' clang-tidy "${tidy[@]}"
 else
   echo "lint: clang-tidy: build/compile_commands.json names no file of the project; run make lint, not scripts/lint.sh" >&2
-  failed=1
+  failed+=("clang-tidy")
 fi
-exit $failed
+# The last lines are the ones that are read.
+if [ ${#failed[@]} -gt 0 ]; then
+  printf 'lint: %d of %d checks are not clean; what they say stands above:\n' "${#failed[@]}" "$checks"
+  printf '  %s\n' "${failed[@]}"
+  exit 1
+fi
+echo "lint: all $checks checks are clean"
