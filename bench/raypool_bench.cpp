@@ -5,12 +5,16 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "cli/commands.hpp"
 #include "cli/engine.hpp"
@@ -24,9 +28,14 @@ namespace fs = std::filesystem;
 constexpr double kReferenceCycles = 90e3;               ///< a second, 4 warps x 4 lanes
 constexpr double kReferenceThreadInstructions = 150e3;  ///< a second
 constexpr double kReferenceModel = 0.42e6;              ///< thread instructions a second of its cycle model
-constexpr int kRepetitions = 3;
 
-raypool::SimOptions frame_options(const char* config, const char* engine, const fs::path& folder) {
+struct BenchOptions {
+  std::vector<std::string> configurations{"4w4c", "8w8c", "16w16c"};  ///< the units alone
+  std::vector<std::string> engines{"rtl", "model"};                   ///< of the units alone
+  int repetitions = 3;
+};
+
+raypool::SimOptions frame_options(const std::string& config, const char* engine, const fs::path& folder) {
   raypool::SimOptions options;
   options.scene = "cornell";
   options.size = "128x128";
@@ -38,11 +47,11 @@ raypool::SimOptions frame_options(const char* config, const char* engine, const 
   return options;
 }
 
-Json draw(const char* config, const char* engine) {
+Json draw(const BenchOptions& bench, const char* config, const char* engine) {
   const fs::path folder = fs::temp_directory_path() / fmt::format("raypool_bench.{}", getpid());
   const raypool::SimOptions options = frame_options(config, engine, folder);
   Json best;
-  for (int i = 0; i < kRepetitions; ++i) {
+  for (int i = 0; i < bench.repetitions; ++i) {
     raypool::sim_command(options);
     const Json report = Json::parse(std::ifstream(folder / "report.json"));
     if (best.is_null() || report["simulation_seconds"] < best["simulation_seconds"]) best = report;
@@ -62,8 +71,8 @@ void print_row(const char* config, const char* engine, const Json& report) {
   std::fflush(stdout);
 }
 
-// The units alone on the frame's recorded ports.
-void compare_units(const char* config) {
+// A unit alone on the frame's recorded ports, in each engine in turn.
+void compare_units(const BenchOptions& bench, const std::string& config) {
   using raypool::ComputeUnit;
   const fs::path folder = fs::temp_directory_path() / fmt::format("raypool_bench.{}", getpid());
   raypool::bench::PortRecording recording;
@@ -74,54 +83,72 @@ void compare_units(const char* config) {
   raypool::sim_command(options);
   fs::remove_all(folder);
 
-  std::array<double, 2> best{};
-  std::array<uint64_t, 2> instructions{};
-  for (int i = 0; i < kRepetitions; ++i) {
-    for (size_t engine = 0; engine < 2; ++engine) {
-      const raypool::EngineOptions what{engine == 0 ? raypool::Engine::Rtl : raypool::Engine::Model,
-                                        raypool::load_configuration(config), "", false, 1};
+  std::vector<double> best(bench.engines.size(), std::numeric_limits<double>::infinity());
+  std::set<uint64_t> instructions;
+  for (int i = 0; i < bench.repetitions; ++i) {
+    for (size_t engine = 0; engine < bench.engines.size(); ++engine) {
+      const raypool::EngineOptions what{raypool::parse_engine(bench.engines[engine]), raypool::load_configuration(config), "",
+                                        false, 1};
       const std::unique_ptr<ComputeUnit> unit = raypool::make_unit(what, recording.memory);
       const auto begin = std::chrono::steady_clock::now();
       raypool::bench::replay(*unit, recording);
-      const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-      if (i == 0 || seconds < best[engine]) best[engine] = seconds;
-      instructions[engine] = unit->counter(raypool::counter::kThreadInstructions);
+      best[engine] = std::min(best[engine], std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+      instructions.insert(unit->counter(raypool::counter::kThreadInstructions));
     }
   }
-  if (instructions[0] != instructions[1]) throw std::runtime_error("RTL and model executed different numbers of instructions");
-  const auto cycles = static_cast<double>(recording.cycles), threads = static_cast<double>(instructions[0]);
-  for (size_t engine = 0; engine < 2; ++engine) {
-    fmt::print("{:<7} {:<11} {:>9.3f} {:>16} {:>18.1f} {:>30.1f}\n", config, engine == 0 ? "rtl" : "model", best[engine], "-",
+  if (instructions.size() != 1) throw std::runtime_error("the engines executed different numbers of instructions");
+  const auto cycles = static_cast<double>(recording.cycles), threads = static_cast<double>(*instructions.begin());
+  const auto at = [&](const std::string& engine) {
+    const auto place = std::find(bench.engines.begin(), bench.engines.end(), engine);
+    return place == bench.engines.end() ? 0.0 : best[static_cast<size_t>(place - bench.engines.begin())];
+  };
+  for (size_t engine = 0; engine < bench.engines.size(); ++engine)
+    fmt::print("{:<7} {:<11} {:>9.3f} {:>16} {:>18.1f} {:>30.1f}\n", config, bench.engines[engine], best[engine], "-",
                cycles / best[engine] / 1e3, threads / best[engine] / 1e3);
+  if (at("rtl") > 0 && at("model") > 0)
+    fmt::print(
+        "{} model against rtl, the unit alone: {:.1f} times the cycles; model against the best open GPU's cycle model: {:.0f} "
+        "times the thread instructions\n",
+        config, at("rtl") / at("model"), threads / at("model") / kReferenceModel);
+}
+
+void compare_engines(const BenchOptions& bench) {
+  fmt::print("cornell, 128x128, depth 5, the whole chip; best of {}. native uses every core, the others one.\n",
+             bench.repetitions);
+  fmt::print("config  engine        seconds  thousand rays/s  thousand cycles/s  thousand thread instructions/s\n");
+  Json small;
+  for (const char* config : {"4w4c", "8w8c"}) {
+    for (const char* engine : {"rtl", "lockstep", "model", "functional", "native"}) {
+      const Json report = draw(bench, config, engine);
+      print_row(config, engine, report);
+      if (std::string(config) == "4w4c" && std::string(engine) == "rtl") small = report["simulated_per_second"];
+    }
   }
-  fmt::print(
-      "{} model against rtl, the unit alone: {:.1f} times the cycles; model against the best open GPU's cycle model: {:.0f} "
-      "times the thread instructions\n",
-      config, best[0] / best[1], threads / best[1] / kReferenceModel);
+  const double cycles = small["cycles"];
+  const double thread_instructions = small["thread_instructions"];
+  fmt::print("best open GPU RTL, 4 warps x 4 lanes: {:.0f} thousand cycles/s, {:.0f} thousand thread instructions/s\n",
+             kReferenceCycles / 1e3, kReferenceThreadInstructions / 1e3);
+  fmt::print("raypool 4w4c rtl against it: {:.1f} times the cycles, {:.1f} times the thread instructions\n\n",
+             cycles / kReferenceCycles, thread_instructions / kReferenceThreadInstructions);
 }
 
 }  // namespace
 
-int main() {
+int main(int argc, char** argv) {
+  BenchOptions bench;
+  bool alone = false;
+  CLI::App app("How fast the engines run on this machine.");
+  app.add_flag("--alone", alone, "only the units alone, without the chip");
+  app.add_option("--config", bench.configurations, "of the units alone")->capture_default_str();
+  app.add_option("--engine", bench.engines, "of the units alone: rtl, model, lockstep")->capture_default_str();
+  app.add_option("--repetitions", bench.repetitions, "of which the best counts")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  CLI11_PARSE(app, argc, argv);
   try {
-    fmt::print("cornell, 128x128, depth 5, the whole chip; best of {}. native uses every core, the others one.\n", kRepetitions);
-    fmt::print("config  engine        seconds  thousand rays/s  thousand cycles/s  thousand thread instructions/s\n");
-    Json small;
-    for (const char* config : {"4w4c", "8w8c"}) {
-      for (const char* engine : {"rtl", "lockstep", "model", "functional", "native"}) {
-        const Json report = draw(config, engine);
-        print_row(config, engine, report);
-        if (std::string(config) == "4w4c" && std::string(engine) == "rtl") small = report["simulated_per_second"];
-      }
-    }
-    fmt::print("\nthe same frame, the unit alone on its recorded ports; best of {}, in turn\n", kRepetitions);
-    for (const char* config : {"4w4c", "8w8c", "16w16c"}) compare_units(config);
-    const double cycles = small["cycles"];
-    const double thread_instructions = small["thread_instructions"];
-    fmt::print("\nbest open GPU RTL, 4 warps x 4 lanes: {:.0f} thousand cycles/s, {:.0f} thousand thread instructions/s\n",
-               kReferenceCycles / 1e3, kReferenceThreadInstructions / 1e3);
-    fmt::print("raypool 4w4c rtl against it: {:.1f} times the cycles, {:.1f} times the thread instructions\n",
-               cycles / kReferenceCycles, thread_instructions / kReferenceThreadInstructions);
+    if (!alone) compare_engines(bench);
+    fmt::print("the same frame, the unit alone on its recorded ports; best of {}, in turn\n", bench.repetitions);
+    for (const std::string& config : bench.configurations) compare_units(bench, config);
     return 0;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "raypool_bench: %s\n", error.what());

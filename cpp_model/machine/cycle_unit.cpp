@@ -1,6 +1,7 @@
 #include "machine/cycle_unit.hpp"
 
 #include <algorithm>
+#include <cstring>
 
 #include "machine/bits.hpp"
 
@@ -52,7 +53,7 @@ void CycleUnit::reset(uint32_t program_length, uint32_t memory_limit) {
   mem_task_ = ray_task_ = -1;
   attention_ = faulty_ = false;
   request_valid_ = waiting_ = running_ = false;
-  package_words_ = package_beats_ = 0;
+  package_beats_ = 0;
   fault_ = raised_ = Fault{};
   planned_faults_.clear();
   busy_cycles_ = instructions_ = thread_instructions_ = hits_ = misses_ = 0;
@@ -61,7 +62,7 @@ void CycleUnit::reset(uint32_t program_length, uint32_t memory_limit) {
   outputs_ = UnitOutputs{};
   signals_ = outputs_.signals();
   trace_ = UnitTrace{};
-  present();
+  present(signals());
 }
 
 void CycleUnit::set_argument(int number, uint32_t value) {
@@ -73,7 +74,7 @@ void CycleUnit::set_argument(int number, uint32_t value) {
 
 void CycleUnit::clock(const UnitInputs& inputs) {
   step(inputs);
-  present();
+  present(signals());
   if (tracing_) record();
 }
 
@@ -257,11 +258,12 @@ void CycleUnit::start_kernel() {
 }
 
 void CycleUnit::take_package_beat(const Beat& beat) {
-  for (int i = 0; i < kBeatWords && package_words_ < kIntersectionWords; ++i)
-    package_[package_words_++] = beat[static_cast<size_t>(i)];
+  package_[package_beats_] = beat;
   if (++package_beats_ < kIntersectionBeats) return;
-  package_words_ = package_beats_ = 0;
-  core_.import_package(package_);
+  package_beats_ = 0;
+  Intersection package;
+  std::memcpy(package.data(), package_.data(), sizeof(package));
+  core_.import_package(package);
 }
 
 // Of several faults of warps in a cycle the lowest warp's counts.
@@ -445,14 +447,15 @@ uint64_t CycleUnit::run(const UnitInputs& inputs, uint64_t cycles) {
   const uint32_t before = signals_;
   const bool transfers = (before & inputs.ready_signals()) != 0;
   step(inputs);
+  uint32_t now = signals();
   uint64_t done = 1;
-  if (done < cycles && !transfers) {
+  if (done < cycles && !transfers && now == before) {
     UnitInputs rest;
     rest.memory_request_ready = inputs.memory_request_ready;
     rest.import_request_ready = inputs.import_request_ready;
     rest.export_ready = inputs.export_ready;
     rest.frame_ready = inputs.frame_ready;
-    while (done < cycles && signals() == before) {
+    do {
       if (quiet()) {
         // Nothing happens before the next planned event.
         uint64_t skip = 0;
@@ -465,10 +468,11 @@ uint64_t CycleUnit::run(const UnitInputs& inputs, uint64_t cycles) {
         if (done == cycles) break;
       }
       step(rest);
+      now = signals();
       ++done;
-    }
+    } while (done < cycles && now == before);
   }
-  present();
+  present(now);
   if (tracing_) record();
   return done;
 }
@@ -479,16 +483,15 @@ uint64_t CycleUnit::run(const UnitInputs& inputs, uint64_t cycles) {
 uint32_t CycleUnit::signals() const {
   const uint32_t ray = ray_.signals();
   const bool importing = (ray & RayAlu::kImporting) != 0;
-  const bool idle =
-      !(running_ | waiting_ | request_valid_ | ((ray & (RayAlu::kImporting | RayAlu::kExporting)) != 0)) && mem_.idle();
+  const bool works = running_ | waiting_ | request_valid_ | ((ray & (RayAlu::kImporting | RayAlu::kExporting)) != 0);
+  const bool idle = !works && mem_.idle();
   return uint32_t{!(waiting_ | importing)} | (idle ? 0x10002u : 0u) | uint32_t{request_valid_} << 2 |
          (ray & (RayAlu::kImportRequest | RayAlu::kExport | RayAlu::kFrame)) | uint32_t{fault_.code != FaultCode::None} << 6 |
          uint32_t{running_ && active_ == 0} << 8 | uint32_t{running_} << 12;
 }
 
-void CycleUnit::present() {
+void CycleUnit::present(uint32_t now) {
   UnitOutputs& out = outputs_;
-  const uint32_t now = signals();
   if (now != signals_) {
     const auto is_set = [now](int bit) { return (now >> bit & 1) != 0; };
     signals_ = now;

@@ -80,7 +80,7 @@ class CycleUnit final : public ComputeUnit {
   void advance_warps(uint32_t retired);
   void advance_rays(const UnitInputs& inputs, ImportKind import);
   uint32_t signals() const;
-  void present();
+  void present(uint32_t now);
   void record();
   bool quiet() const;
   void fetch(uint64_t until);
@@ -146,8 +146,8 @@ class CycleUnit final : public ComputeUnit {
   // Launch
   bool waiting_ = false, running_ = false;
   LaunchCommand waiting_launch_;
-  Intersection package_{};
-  uint32_t package_words_ = 0, package_beats_ = 0;
+  std::array<Beat, kIntersectionBeats> package_{};
+  uint32_t package_beats_ = 0;
 
   Fault fault_, raised_;
   std::vector<PlannedFault> planned_faults_;

@@ -28,46 +28,35 @@ RayAlu::RayAlu(const Configuration& configuration)
 
 void RayAlu::reset() {
   std::fill(roles_.begin(), roles_.end(), Roles{});
-  hold_ = false;
+  state_ = 0;
   step_ = 0;
-  result_ = Result{};
   done_ = 0;
-  wrote_ = fault_ = false;
+  wrote_ = false;
   parked_input_ = parked_output_ = 0;
-  import_active_ = import_request_ = false;
   outstanding_ = 0;
   full_ = 0;
-  write_ = Write{};
   first_ = end_ = busy_ = 0;
-  next_ = Next{};
-  slice_ = Slice{};
-  landing_ = false;
-  fill_ = 0;
+  waiting_ = 0;
   beats_first_ = beats_end_ = 0;
-  active_ = false;
-  signals_ = 0;
   unready_ = 0;
 }
 
 int RayAlu::clock(int arriving, ImportKind import_start, const UnitInputs& inputs) {
   // The engines see the roles of this cycle, so a swap comes after them.
   // Conditions that come out either way from cycle to cycle are joined without branches.
-  bool read_granted = slice_.valid & (fill_ + landing_ != 3) & !(write_.valid & (write_.set == slice_.set));
+  bool read_granted = is(kSlice) & (waiting_ != 3) & !writes(slice_set_);
   int swap = -1;
-  if ((arriving >= 0) | hold_ | result_.valid | fault_ | ((done_ | can()) != 0)) swap = clock_kernel(arriving, read_granted);
-  if (write_.valid | inputs.import_beat_valid | import_active_ | (import_start != ImportKind::None))
+  if ((arriving >= 0) | (((state_ & (kHold | kResult | kFault)) | done_ | can()) != 0))
+    swap = clock_kernel(arriving, read_granted);
+  if (is(kWrite | kImportMoves) | inputs.import_beat_valid | (import_start != ImportKind::None))
     clock_import(import_start, inputs);
-  if (exports()) clock_export(inputs, read_granted);
+  if (is(kExports)) clock_export(inputs, read_granted);
   if (arriving >= 0) {
     const Task::Kind kind = tasks_[static_cast<size_t>(arriving)].kind;
     parked_input_ |= uint32_t{kind == Task::Kind::Input} << arriving;
     parked_output_ |= uint32_t{kind == Task::Kind::Output} << arriving;
   }
   if (swap >= 0) execute_swap(static_cast<uint32_t>(swap));
-  active_ = exports() | ((done_ | can()) != 0) | write_.valid | result_.valid | hold_ | fault_ | import_moves();
-  const uint32_t offered = fill_ == 0 ? 0 : beat().frame ? kFrame : kExport;
-  signals_ = (import_request_ ? kImportRequest : 0) | offered | (import_active_ ? kImporting : 0) |
-             (((busy_ | fill_) != 0) | landing_ ? kExporting : 0);
   return swap;
 }
 
@@ -82,27 +71,27 @@ int RayAlu::clock_kernel(int arriving_warp, bool& read_granted) {
     hold_set_ = roles_[arriving].current;
     hold_writes_ = task->kind == Task::Kind::Write;
   }
-  const bool access = hold_ || arrives_access;
-  const bool access_granted = access && !(write_.valid && write_.set == hold_set_);
+  const bool access = is(kHold) | arrives_access;
+  const bool access_granted = access & !writes(hold_set_);
   const bool access_last = step_ == last_step_;
-  const bool result_end = result_.valid && result_.last;
-  if (access && hold_set_ == slice_.set) read_granted = false;
+  const bool result_end = is(kResult) & is(kResultLast);
+  read_granted &= !(access & (hold_set_ == slice_set_));
   const uint32_t ready_swaps = can();
   const int swap = ready_swaps != 0 && !result_end ? static_cast<int>(lowest(ready_swaps)) : -1;
 
   // Done: an access first. The result stage knows its own task, as the next one may be held by now.
   done_ = result_end ? 1u << result_warp_ : swap >= 0 ? 1u << swap : 0;
-  wrote_ = result_end && result_writes_;
-  fault_ = task != nullptr && task->kind == Task::Kind::Illegal;
+  wrote_ = result_end & result_writes_;
   fault_warp_ = arriving;
-  result_ = {access_granted, access_last};
+  state_ &= ~(kHold | kResult | kResultLast | kFault);
+  if (task != nullptr && task->kind == Task::Kind::Illegal) state_ |= kFault;
   if (access_granted) {
+    state_ |= access_last ? kResult | kResultLast : kResult | kHold;
     result_warp_ = hold_warp_;
     result_writes_ = hold_writes_;
-  }
-  if (access) {
-    hold_ = !(access_granted && access_last);
-    if (access_granted) step_ = access_last ? 0 : step_ + 1;
+    step_ = access_last ? 0 : step_ + 1;
+  } else if (access) {
+    state_ |= kHold;
   }
   return swap;
 }
@@ -114,6 +103,7 @@ void RayAlu::execute_swap(uint32_t warp) {
     parked_input_ &= ~bit;
     full_ &= ~bit;
     std::swap(roles.input, roles.current);
+    settle_import();
     return;
   }
   parked_output_ &= ~bit;
@@ -121,60 +111,64 @@ void RayAlu::execute_swap(uint32_t warp) {
   if (tasks_[warp].empty) return;
   order_[end_++ % kRing] = warp;
   busy_ |= bit;
+  state_ |= kOrder | kExporting;
   reads_[warp] = 0;
   added_ = warp;
 }
 
 void RayAlu::clock_import(ImportKind start, const UnitInputs& inputs) {
   const uint32_t warp = received_ >> lane_bits_;
-  write_.valid = inputs.import_beat_valid;
-  if (inputs.import_beat_valid) write_.set = roles_[warp].input;
-  if (import_active_) {
+  set(kWrite, inputs.import_beat_valid);
+  if (inputs.import_beat_valid) write_set_ = roles_[warp].input;
+  if (is(kImporting)) {
     const bool received = inputs.import_beat_valid && import_beat_ == kIntersectionBeats - 1;
-    const bool taken = import_request_ && inputs.import_request_ready;
+    const bool taken = is(kImportRequest) & inputs.import_request_ready;
     requested_ += taken;
     outstanding_ += static_cast<uint32_t>(taken) - static_cast<uint32_t>(received);
-    import_request_ = can_request();
+    set(kImportRequest, can_request());
     if (inputs.import_beat_valid) import_beat_ = received ? 0 : import_beat_ + 1;
     if (received) {
       const bool launch_end = received_ + 1 == threads_;
       if (launch_end || (received_ & last_lane_) == last_lane_) full_ |= 1u << warp;
-      if (launch_end) import_active_ = false;
+      if (launch_end) state_ &= ~kImporting;
       ++received_;
     }
   }
   if (start != ImportKind::None) {
-    import_active_ = true;
+    state_ |= kImporting;
     import_kind_ = start;
     threads_ = inputs.launch.threads;
     requested_ = received_ = import_beat_ = 0;
   }
+  settle_import();
 }
 
 void RayAlu::clock_export(const UnitInputs& inputs, bool granted) {
   // Beats leave, and one that was read in the cycle before joins those that wait.
-  if (fill_ != 0 && (beat().frame ? inputs.frame_ready : inputs.export_ready)) {
-    ++beats_first_;
-    --fill_;
-  }
-  fill_ += landing_;
-  landing_ = granted;
+  const uint32_t leaves = (is(kFrame) & inputs.frame_ready) | (is(kExport) & inputs.export_ready);
+  beats_first_ += leaves;
+  waiting_ += static_cast<uint32_t>(granted) - leaves;
 
   bool slice_end = false;
   if (granted) {
-    slice_end = --reads_[slice_.warp] == 0;
-    if (slice_end) busy_ &= ~(1u << slice_.warp);
+    slice_end = --reads_[slice_warp_] == 0;
+    if (slice_end) busy_ &= ~(1u << slice_warp_);
   }
-  const bool load = next_.valid && (!slice_.valid || slice_end);
-  const bool take_first = first_ != end_ && (!next_.valid || load);
-  if (load)
-    slice_ = {true, next_.warp, roles_[next_.warp].output};
-  else if (slice_end)
-    slice_.valid = false;
-  if (take_first)
-    next_ = {true, order_[first_++ % kRing]};
-  else if (load)
-    next_.valid = false;
+  const bool load = is(kNext) & (!is(kSlice) | slice_end);
+  const bool take_first = is(kOrder) & (!is(kNext) | load);
+  uint32_t state = state_ & ~(kExports | kExport | kFrame | kExporting);
+  if (load) {
+    slice_warp_ = next_warp_;
+    slice_set_ = roles_[next_warp_].output;
+  }
+  if (take_first) next_warp_ = order_[first_++ % kRing];
+  state |= load | (is(kSlice) & !slice_end) ? kSlice : 0;
+  state |= take_first | (is(kNext) & !load) ? kNext : 0;
+  state |= first_ != end_ ? kOrder : 0;
+  state |= waiting_ != 0 ? kWaiting : 0;
+  state |= (busy_ | waiting_) != 0 ? kExporting : 0;
+  state |= waiting_ == static_cast<uint32_t>(granted) ? 0 : beat().frame ? kFrame : kExport;
+  state_ = state;
 }
 
 void RayAlu::add_ray(const Ray& ray) {

@@ -36,22 +36,22 @@ class RayAlu {
   // Registers, as they stand in the present cycle.
   /// Whether a task granted in this cycle is taken; `arriving` as for clock().
   bool ready(int arriving) const {
-    if (hold_) return step_ == last_step_ && !(write_.valid && write_.set == hold_set_);
+    if (is(kHold)) return step_ == last_step_ && !writes(hold_set_);
     if (arriving < 0) return true;
     const Task::Kind kind = tasks_[static_cast<size_t>(arriving)].kind;
     const bool access = kind != Task::Kind::Input && kind != Task::Kind::Output;
-    return !(access && (last_step_ > 0 || write_.valid));
+    return !(access && (last_step_ > 0 || is(kWrite)));
   }
   /// False if clock() would change nothing: it need not be called as long as no task, no import and no beat arrives.
-  bool active() const { return active_; }
-  uint32_t done() const { return done_; }  ///< the warp whose task is done in this cycle, as a bit
-  bool wrote() const { return wrote_; }    ///< that task was an rst
-  bool fault() const { return fault_; }    ///< ray word above 20
+  bool active() const { return ((state_ & kActive) | done_ | can()) != 0; }
+  uint32_t done() const { return done_; }    ///< the warp whose task is done in this cycle, as a bit
+  bool wrote() const { return wrote_; }      ///< that task was an rst
+  bool fault() const { return is(kFault); }  ///< ray word above 20
   uint32_t fault_warp() const { return fault_warp_; }
-  bool import_active() const { return import_active_; }
+  bool import_active() const { return is(kImporting); }
   ImportKind import_kind() const { return import_kind_; }
   /// The valids of its ports, placed as in UnitOutputs::signals(), and kImporting, kExporting.
-  uint32_t signals() const { return signals_; }
+  uint32_t signals() const { return state_ & (kImportRequest | kExport | kFrame | kImporting | kExporting); }
   static constexpr uint32_t kImportRequest = 1u << 3, kExport = 1u << 4, kFrame = 1u << 5;
   static constexpr uint32_t kImporting = 1u << 30, kExporting = 1u << 31;
   /// The beat that is offered.
@@ -71,76 +71,65 @@ class RayAlu {
   struct Roles {
     uint8_t input = 0, current = 1, output = 2;
   };
-  struct Write {
-    bool valid = false;
-    uint8_t set = 0;
-  };
-  struct Result {
-    bool valid = false, last = false;
-  };
-  struct Next {
-    bool valid = false;
-    uint32_t warp = 0;
-  };
-  struct Slice {
-    bool valid = false;
-    uint32_t warp = 0;
-    uint8_t set = 0;
-  };
+  // The registers of a bit each are bits of one word, as most cycles only ask whether any of several is set.
+  static constexpr uint32_t kHold = 1u << 0, kResult = 1u << 1, kResultLast = 1u << 2, kFault = 1u << 6, kWrite = 1u << 7;
+  static constexpr uint32_t kSlice = 1u << 8, kNext = 1u << 9, kOrder = 1u << 10, kWaiting = 1u << 11;
+  static constexpr uint32_t kImportMoves = 1u << 12;
+  static constexpr uint32_t kExports = kSlice | kNext | kOrder | kWaiting;
+  static constexpr uint32_t kActive = kHold | kResult | kFault | kWrite | kExports | kImportMoves;
 
+  bool is(uint32_t flags) const { return (state_ & flags) != 0; }
+  void set(uint32_t flag, bool value) { state_ = (state_ & ~flag) | (value ? flag : 0); }
+  /// A beat that has come takes the port of this set.
+  bool writes(uint8_t number) const { return is(kWrite) & (write_set_ == number); }
   uint32_t can() const { return (parked_input_ & full_) | (parked_output_ & ~busy_); }
-  bool import_moves() const { return import_active_ & (import_request_ | can_request()); }
   bool can_request() const {
     return (requested_ != threads_) & (outstanding_ != 2) & ((uint64_t{full_} >> (requested_ >> lane_bits_) & 1) == 0);
   }
-  bool exports() const { return slice_.valid | landing_ | next_.valid | ((fill_ | (first_ ^ end_)) != 0); }
+  void settle_import() { set(kImportMoves, is(kImporting) & (is(kImportRequest) | can_request())); }
   int clock_kernel(int arriving_warp, bool& read_granted);
   void execute_swap(uint32_t warp);
   void clock_import(ImportKind start, const UnitInputs& inputs);
   void clock_export(const UnitInputs& inputs, bool granted);
   void push_beat(const OutBeat& beat) { beats_[beats_end_++ & beats_mask_] = beat; }
 
+  uint32_t state_ = 0;
   uint32_t lane_bits_ = 0, last_lane_ = 0, last_step_ = 0;
   std::vector<Task> tasks_;
   std::vector<Roles> roles_;
 
   // Access: rld and rst
-  bool hold_ = false;
   uint32_t step_ = 0;
   uint32_t hold_warp_ = 0;
   uint8_t hold_set_ = 0;
   bool hold_writes_ = false;
-  Result result_;
   uint32_t result_warp_ = 0;
   bool result_writes_ = false;
   uint32_t done_ = 0;
-  bool wrote_ = false, fault_ = false;
+  bool wrote_ = false;
   uint32_t fault_warp_ = 0;
 
   uint32_t parked_input_ = 0, parked_output_ = 0;  // warps, a bit each
 
   // Import
-  bool import_active_ = false, import_request_ = false;
   ImportKind import_kind_ = ImportKind::None;
   uint32_t threads_ = 0, requested_ = 0, received_ = 0, outstanding_ = 0, import_beat_ = 0;
   uint32_t full_ = 0;
-  Write write_;  // of the beat that came in the cycle before
+  uint8_t write_set_ = 0;  // of the beat that came in the cycle before
 
   // Export
   std::vector<uint32_t> order_;  // warps in the order of their swaps, a ring
   uint32_t first_ = 0, end_ = 0;
   uint32_t busy_ = 0;
-  Next next_;
-  Slice slice_;
+  uint32_t next_warp_ = 0;
+  uint32_t slice_warp_ = 0;
+  uint8_t slice_set_ = 0;
   std::vector<uint32_t> reads_;  // [warp] beats of its output slice that are left to be read
-  bool landing_ = false;
-  uint32_t fill_ = 0;
-  std::vector<OutBeat> beats_;  // a ring: those that wait, and behind them those not read yet
+  uint32_t waiting_ = 0;         // beats that have been read, with the one that is landing
+  std::vector<OutBeat> beats_;   // a ring: those that wait, and behind them those not read yet
   uint32_t beats_first_ = 0, beats_end_ = 0, beats_mask_ = 0;
   uint32_t added_ = 0;  // warp to which add_ray and add_contribution add
 
-  bool active_ = false;
-  uint32_t signals_ = 0;
   uint64_t unready_ = 0;
 };
 
