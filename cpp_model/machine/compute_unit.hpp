@@ -69,6 +69,14 @@ struct Fault {
   uint32_t unit = 0;
 };
 
+/// The outputs that a host acts on, as one word: the single ones by their bit, the masks by their lowest one.
+namespace signal {
+inline constexpr uint32_t kLaunchReady = 1u << 0, kIdle = 1u << 1;
+inline constexpr uint32_t kMemoryRequest = 1u << 2, kImportRequest = 1u << 3, kExport = 1u << 4, kFrame = 1u << 5;
+inline constexpr uint32_t kFault = 1u << 6;
+inline constexpr uint32_t kKernelDone = 1u << 8, kBusy = 1u << 12, kUnitIdle = 1u << 16;
+}  // namespace signal
+
 struct UnitInputs {
   bool launch_valid = false;
   LaunchCommand launch;
@@ -81,10 +89,10 @@ struct UnitInputs {
   bool export_ready = false;
   bool frame_ready = false;
 
-  /// The ready inputs, placed as in UnitOutputs::signals().
+  /// The valids whose transfers the host takes in this cycle.
   uint32_t ready_signals() const {
-    return uint32_t{memory_request_ready} << 2 | uint32_t{import_request_ready} << 3 | uint32_t{export_ready} << 4 |
-           uint32_t{frame_ready} << 5;
+    return memory_request_ready * signal::kMemoryRequest | import_request_ready * signal::kImportRequest |
+           export_ready * signal::kExport | frame_ready * signal::kFrame;
   }
 };
 
@@ -110,11 +118,11 @@ struct UnitOutputs {
   FrameContribution frame;
   Fault fault;  ///< sticky
 
-  /// The outputs that a host acts on.
   uint32_t signals() const {
-    return uint32_t{launch_ready} | uint32_t{idle} << 1 | uint32_t{memory_request_valid} << 2 |
-           uint32_t{import_request_valid} << 3 | uint32_t{export_valid} << 4 | uint32_t{frame_valid} << 5 |
-           uint32_t{fault.code != FaultCode::None} << 6 | kernel_done << 8 | busy << 12 | unit_idle << 16;
+    return launch_ready * signal::kLaunchReady | idle * signal::kIdle | memory_request_valid * signal::kMemoryRequest |
+           import_request_valid * signal::kImportRequest | export_valid * signal::kExport | frame_valid * signal::kFrame |
+           (fault.code != FaultCode::None) * signal::kFault | kernel_done * signal::kKernelDone | busy * signal::kBusy |
+           unit_idle * signal::kUnitIdle;
   }
 };
 

@@ -481,30 +481,28 @@ uint64_t CycleUnit::run(const UnitInputs& inputs, uint64_t cycles) {
 
 // As UnitOutputs::signals().
 uint32_t CycleUnit::signals() const {
-  const uint32_t ray = ray_.signals();
-  const bool importing = (ray & RayAlu::kImporting) != 0;
-  const bool works = running_ | waiting_ | request_valid_ | ((ray & (RayAlu::kImporting | RayAlu::kExporting)) != 0);
+  const bool works = running_ | waiting_ | request_valid_ | ray_.moves_rays();
   const bool idle = !works && mem_.idle();
-  return uint32_t{!(waiting_ | importing)} | (idle ? 0x10002u : 0u) | uint32_t{request_valid_} << 2 |
-         (ray & (RayAlu::kImportRequest | RayAlu::kExport | RayAlu::kFrame)) | uint32_t{fault_.code != FaultCode::None} << 6 |
-         uint32_t{running_ && active_ == 0} << 8 | uint32_t{running_} << 12;
+  return ray_.signals() | !(waiting_ | ray_.import_active()) * signal::kLaunchReady | idle * (signal::kIdle | signal::kUnitIdle) |
+         request_valid_ * signal::kMemoryRequest | (fault_.code != FaultCode::None) * signal::kFault |
+         (running_ && active_ == 0) * signal::kKernelDone | running_ * signal::kBusy;
 }
 
 void CycleUnit::present(uint32_t now) {
   UnitOutputs& out = outputs_;
   if (now != signals_) {
-    const auto is_set = [now](int bit) { return (now >> bit & 1) != 0; };
+    const auto is_set = [now](uint32_t flag) { return (now & flag) != 0; };
     signals_ = now;
-    out.launch_ready = is_set(0);
-    out.idle = is_set(1);
-    out.memory_request_valid = is_set(2);
-    out.import_request_valid = is_set(3);
-    out.export_valid = is_set(4);
-    out.frame_valid = is_set(5);
-    out.kernel_done = is_set(8);
-    out.busy = is_set(12);
-    out.unit_idle = is_set(16);
-    if (is_set(6)) out.fault = fault_;
+    out.launch_ready = is_set(signal::kLaunchReady);
+    out.idle = is_set(signal::kIdle);
+    out.memory_request_valid = is_set(signal::kMemoryRequest);
+    out.import_request_valid = is_set(signal::kImportRequest);
+    out.export_valid = is_set(signal::kExport);
+    out.frame_valid = is_set(signal::kFrame);
+    out.kernel_done = is_set(signal::kKernelDone);
+    out.busy = is_set(signal::kBusy);
+    out.unit_idle = is_set(signal::kUnitIdle);
+    if (is_set(signal::kFault)) out.fault = fault_;
   }
   if (out.memory_request_valid) out.memory_request = request_;
   out.import_request_kind = ray_.import_kind();

@@ -122,10 +122,10 @@ void RayAlu::clock_import(ImportKind start, const UnitInputs& inputs) {
   if (inputs.import_beat_valid) write_set_ = roles_[warp].input;
   if (is(kImporting)) {
     const bool received = inputs.import_beat_valid && import_beat_ == kIntersectionBeats - 1;
-    const bool taken = is(kImportRequest) & inputs.import_request_ready;
+    const bool taken = is(signal::kImportRequest) & inputs.import_request_ready;
     requested_ += taken;
     outstanding_ += static_cast<uint32_t>(taken) - static_cast<uint32_t>(received);
-    set(kImportRequest, can_request());
+    set(signal::kImportRequest, can_request());
     if (inputs.import_beat_valid) import_beat_ = received ? 0 : import_beat_ + 1;
     if (received) {
       const bool launch_end = received_ + 1 == threads_;
@@ -145,7 +145,7 @@ void RayAlu::clock_import(ImportKind start, const UnitInputs& inputs) {
 
 void RayAlu::clock_export(const UnitInputs& inputs, bool granted) {
   // Beats leave, and one that was read in the cycle before joins those that wait.
-  const uint32_t leaves = (is(kFrame) & inputs.frame_ready) | (is(kExport) & inputs.export_ready);
+  const uint32_t leaves = (is(signal::kFrame) & inputs.frame_ready) | (is(signal::kExport) & inputs.export_ready);
   beats_first_ += leaves;
   waiting_ += static_cast<uint32_t>(granted) - leaves;
 
@@ -156,7 +156,7 @@ void RayAlu::clock_export(const UnitInputs& inputs, bool granted) {
   }
   const bool load = is(kNext) & (!is(kSlice) | slice_end);
   const bool take_first = is(kOrder) & (!is(kNext) | load);
-  uint32_t state = state_ & ~(kExports | kExport | kFrame | kExporting);
+  uint32_t state = state_ & ~(kExports | signal::kExport | signal::kFrame | kExporting);
   if (load) {
     slice_warp_ = next_warp_;
     slice_set_ = roles_[next_warp_].output;
@@ -167,7 +167,7 @@ void RayAlu::clock_export(const UnitInputs& inputs, bool granted) {
   state |= first_ != end_ ? kOrder : 0;
   state |= waiting_ != 0 ? kWaiting : 0;
   state |= (busy_ | waiting_) != 0 ? kExporting : 0;
-  state |= waiting_ == static_cast<uint32_t>(granted) ? 0 : beat().frame ? kFrame : kExport;
+  state |= waiting_ == static_cast<uint32_t>(granted) ? 0 : beat().frame ? signal::kFrame : signal::kExport;
   state_ = state;
 }
 

@@ -50,10 +50,10 @@ class RayAlu {
   uint32_t fault_warp() const { return fault_warp_; }
   bool import_active() const { return is(kImporting); }
   ImportKind import_kind() const { return import_kind_; }
-  /// The valids of its ports, placed as in UnitOutputs::signals(), and kImporting, kExporting.
-  uint32_t signals() const { return state_ & (kImportRequest | kExport | kFrame | kImporting | kExporting); }
-  static constexpr uint32_t kImportRequest = 1u << 3, kExport = 1u << 4, kFrame = 1u << 5;
-  static constexpr uint32_t kImporting = 1u << 30, kExporting = 1u << 31;
+  /// The valids of its ports, as namespace signal has them.
+  uint32_t signals() const { return state_ & kPorts; }
+  /// An import is under way, or beats wait or are still to be read.
+  bool moves_rays() const { return is(kImporting | kExporting); }
   /// The beat that is offered.
   const OutBeat& beat() const { return beats_[beats_first_ & beats_mask_]; }
 
@@ -72,9 +72,10 @@ class RayAlu {
     uint8_t input = 0, current = 1, output = 2;
   };
   // The registers of a bit each are bits of one word, as most cycles only ask whether any of several is set.
-  static constexpr uint32_t kHold = 1u << 0, kResult = 1u << 1, kResultLast = 1u << 2, kFault = 1u << 6, kWrite = 1u << 7;
-  static constexpr uint32_t kSlice = 1u << 8, kNext = 1u << 9, kOrder = 1u << 10, kWaiting = 1u << 11;
-  static constexpr uint32_t kImportMoves = 1u << 12;
+  static constexpr uint32_t kPorts = signal::kImportRequest | signal::kExport | signal::kFrame;
+  static constexpr uint32_t kHold = 1u << 16, kResult = 1u << 17, kResultLast = 1u << 18, kFault = 1u << 19, kWrite = 1u << 20;
+  static constexpr uint32_t kSlice = 1u << 21, kNext = 1u << 22, kOrder = 1u << 23, kWaiting = 1u << 24;
+  static constexpr uint32_t kImportMoves = 1u << 25, kImporting = 1u << 26, kExporting = 1u << 27;
   static constexpr uint32_t kExports = kSlice | kNext | kOrder | kWaiting;
   static constexpr uint32_t kActive = kHold | kResult | kFault | kWrite | kExports | kImportMoves;
 
@@ -86,7 +87,7 @@ class RayAlu {
   bool can_request() const {
     return (requested_ != threads_) & (outstanding_ != 2) & ((uint64_t{full_} >> (requested_ >> lane_bits_) & 1) == 0);
   }
-  void settle_import() { set(kImportMoves, is(kImporting) & (is(kImportRequest) | can_request())); }
+  void settle_import() { set(kImportMoves, is(kImporting) & (is(signal::kImportRequest) | can_request())); }
   int clock_kernel(int arriving_warp, bool& read_granted);
   void execute_swap(uint32_t warp);
   void clock_import(ImportKind start, const UnitInputs& inputs);
