@@ -1,12 +1,13 @@
-// One lane of the Slw ALU: eleven stages, and the result register behind them. enable_i[k] says that stage k holds a task of this lane.
+// One lane of the Slw ALU: STAGES stages, and the result register behind them. enable_i[k] says that stage k holds a task of this lane.
 // root_i and unary_i name the operation: 00 fdiv, 10 fsqrt, 11 frsqrt, 01 frcp. SLOW_UNIT 0: exact, 1 .. 3: two, one, no Newton steps.
 `default_nettype none
 module slow_lane #(
   parameter integer SUBNORMALS = 0,
-  parameter integer SLOW_UNIT = 0
+  parameter integer SLOW_UNIT = 0,
+  parameter integer STAGES = (SLOW_UNIT <= 1) ? 11 : (SLOW_UNIT == 2) ? 8 : 6
 ) (
   input  wire        clk_i,
-  input  wire [10:0] enable_i,
+  input  wire [STAGES-1:0] enable_i,
   input  wire        root_i,
   input  wire        unary_i,
   input  wire [31:0] a_i,
@@ -29,16 +30,16 @@ module slow_lane #(
   generate
     if (SLOW_UNIT == 0) begin : gen_exact
       slow_exact quotient (
-        .clk_i(clk_i), .enable_i(enable_i[10:1]), .index_1_i(index), .offset_digits_i(offset_digits), .root_i(root), .unary_i(unary), .v_i(v), .w_i(w),
+        .clk_i(clk_i), .enable_i(enable_i[STAGES-1:1]), .index_1_i(index), .offset_digits_i(offset_digits), .root_i(root), .unary_i(unary), .v_i(v), .w_i(w),
         .special_3_i(special), .nan_3_i(nan), .sign_3_i(sign), .exponent_3_i(exponent), .shift_3_i(shift), .result_o(result));
     end else begin : gen_newton
       slow_newton #(.STEPS(3 - SLOW_UNIT)) quotient (
-        .clk_i(clk_i), .enable_i(enable_i[10:1]), .index_1_i(index), .root_i(root), .unary_i(unary), .v_i(v), .w_i(w), .special_3_i(special),
+        .clk_i(clk_i), .enable_i(enable_i[STAGES-1:1]), .index_1_i(index), .root_i(root), .unary_i(unary), .v_i(v), .w_i(w), .special_3_i(special),
         .nan_3_i(nan), .sign_3_i(sign), .exponent_3_i(exponent), .shift_3_i(shift), .result_o(result));
     end
   endgenerate
 
-  always @(posedge clk_i) if (enable_i[10]) result_q <= result;
+  always @(posedge clk_i) if (enable_i[STAGES-1]) result_q <= result;
   assign result_o = result_q;
 endmodule
 `default_nettype wire

@@ -1,6 +1,6 @@
-// Slw ALU: fdiv fsqrt frsqrt frcp in eleven stages, a new task in any of them; further stages as delay. docs/numerics.md has the rules.
-// SUBNORMALS 0: IEEE, 1: flushed. SLOW_UNIT 0: correctly rounded; 1, 2, 3: table and two, one, no Newton steps. Lanes outside the mask
-// keep what they held and are not clocked.
+// Slw ALU: fdiv fsqrt frsqrt frcp, a new task in any of its stages; further stages as delay. docs/numerics.md has the rules.
+// SUBNORMALS 0: IEEE, 1: flushed. SLOW_UNIT 0: correctly rounded, 1: table and two Newton steps, both in 11 stages; 2: one step, 8; 3: none, 6.
+// Lanes outside the mask keep what they held and are not clocked.
 `default_nettype none
 module slw_alu #(
   parameter integer WARPS = 8,
@@ -31,10 +31,10 @@ module slw_alu #(
 );
   `include "isa.vh"
 
-  localparam integer STAGES = 11;
+  localparam integer STAGES = (SLOW_UNIT <= 1) ? 11 : (SLOW_UNIT == 2) ? 8 : 6;
   generate
     if (DEPTH < STAGES) begin : gen_illegal_depth
-      slw_alu_needs_a_depth_of_at_least_11 illegal ();
+      slw_alu_needs_more_depth illegal ();
     end
     if (SUBNORMALS < 0 || SUBNORMALS > 1) begin : gen_illegal_subnormals
       slw_alu_needs_subnormals_0_or_1 illegal ();

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -23,6 +24,7 @@ constexpr std::array<std::string_view, 2> kSubnormalNames = {"ieee", "flush"};
 constexpr std::array<std::string_view, 4> kSlowUnitNames = {"exact", "newton2", "newton1", "newton0"};
 
 constexpr int kLeastFusedDepth = 5;  // of flt, whose additions and multiplications go through the fused unit
+constexpr std::array<int, 4> kLeastSlowDepths = {11, 11, 8, 6};  // of slw, by SlowUnit: each Newton step has its stages
 bool is_fixed(size_t unit) { return kUnitTable[unit].timed_by_events(); }
 
 bool is_power_of_two(int value) { return value > 0 && (value & (value - 1)) == 0; }
@@ -128,7 +130,8 @@ Configuration from_json(const Json& json, const std::string& where, const std::s
     arithmetic->boolean("fma", configuration.fma);
     arithmetic->refuse_others();
   }
-  configuration.alus[static_cast<size_t>(Unit::Flt)].depth = least_depth(configuration, Unit::Flt);
+  for (const Unit unit : {Unit::Flt, Unit::Slw})
+    configuration.alus[static_cast<size_t>(unit)].depth = least_depth(configuration, unit);
   if (auto alus = root.section("alus")) {
     for (size_t unit = 0; unit < kUnits; ++unit) {
       auto alu = alus->section(std::string(kUnitNames[unit]).c_str());
@@ -218,7 +221,9 @@ Configuration parse_configuration(const std::string& json, const std::string& wh
 }
 
 int least_depth(const Configuration& configuration, Unit unit) {
-  return unit == Unit::Flt && configuration.fma ? kLeastFusedDepth : unit_info(unit).depth;
+  if (unit == Unit::Flt && configuration.fma) return kLeastFusedDepth;
+  if (unit == Unit::Slw) return kLeastSlowDepths.at(static_cast<size_t>(configuration.slow_unit));
+  return unit_info(unit).depth;
 }
 
 void check_configuration(const Configuration& configuration, const std::string& where) {

@@ -1,5 +1,6 @@
 #include "config/configuration.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -126,6 +127,16 @@ TEST(Configuration, ErrorsNameKeyValueAndAllowedRange) {
   EXPECT_EQ(error_of(R"({"name": "a b"})"), "name is 'a b'; it must have 1 to 64 characters out of letters, digits and _ . + -");
   EXPECT_EQ(error_of(R"({"alus": 3})"), "alus must be an object in braces, not 3");
   EXPECT_EQ(error_of("[]"), "the file must be an object in braces, not []");
+}
+
+TEST(Configuration, FewerNewtonStepsMakeSlwShallower) {
+  for (const auto& [name, depth] : {std::pair{"exact", 11}, {"newton2", 11}, {"newton1", 8}, {"newton0", 6}}) {
+    const std::string arithmetic = fmt::format(R"("arithmetic": {{"slow_unit": "{}"}})", name);
+    const TemporaryFile file("{" + arithmetic + "}");
+    EXPECT_EQ(load_configuration(file.path()).alu(Unit::Slw).depth, depth);
+    EXPECT_EQ(error_of(fmt::format(R"({{"alus": {{"slw": {{"depth": {}}}}}, {}}})", depth - 1, arithmetic)),
+              fmt::format("alus.slw.depth is {}; it must be an integer from {} to 32", depth - 1, depth));
+  }
 }
 
 TEST(Configuration, FusedMultiplyAddDeepensFlt) {

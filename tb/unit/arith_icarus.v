@@ -8,7 +8,7 @@ module arith_icarus #(
   parameter integer FMA = 0
 );
   localparam integer FLT_DEPTH = (FMA != 0) ? 5 : 3;
-  localparam integer SLW_DEPTH = 11;
+  localparam integer SLW_DEPTH = (SLOW_UNIT <= 1) ? 11 : (SLOW_UNIT == 2) ? 8 : 6;
   reg clk = 1'b0;
   reg rst_n = 1'b0;
   reg flt_valid = 1'b0, slw_valid = 1'b0;

@@ -27,7 +27,11 @@ std::vector<AluUnderTest> units() {
     const auto subnormals = static_cast<Subnormals>(m / 4);
     const auto slow_unit = static_cast<SlowUnit>(m % 4);
     const std::string names[] = {"exact", "newton2", "newton1", "newton0"};
-    all.push_back({names[m % 4] + (m / 4 ? " flush" : " ieee"), {subnormals, slow_unit}, m < 6 ? 11 : 13});
+    Configuration configuration;
+    configuration.slow_unit = slow_unit;
+    all.push_back({names[m % 4] + (m / 4 ? " flush" : " ieee"),
+                   {subnormals, slow_unit},
+                   least_depth(configuration, Unit::Slw) + (m < 6 ? 0 : 2)});
   }
   return all;
 }

@@ -17,10 +17,14 @@ module slw_units #(
   output wire [8*3-1:0]        done_warp_o,
   output wire [8*LANES*32-1:0] done_data_o
 );
+  // The least depth of each mode, as the configuration has it.
+  function integer least(input integer slow_unit);
+    least = (slow_unit <= 1) ? 11 : (slow_unit == 2) ? 8 : 6;
+  endfunction
   genvar m;
   generate
     for (m = 0; m < 8; m = m + 1) begin : gen_mode
-      slw_alu #(.WARPS(8), .LANES(LANES), .LATENCY(1), .DEPTH(11 + 2*(m/6)), .SUBNORMALS(m/4), .SLOW_UNIT(m%4)) unit (
+      slw_alu #(.WARPS(8), .LANES(LANES), .LATENCY(1), .DEPTH(least(m%4) + 2*(m/6)), .SUBNORMALS(m/4), .SLOW_UNIT(m%4)) unit (
         .clk_i(clk_i), .rst_ni(rst_ni), .task_valid_i(task_valid_i), .task_warp_i(task_warp_i), .task_op_i(task_op_i),
         .task_mask_i(task_mask_i), .task_a_i(task_a_i), .task_b_i(task_b_i), .task_imm_i(32'd0), .task_x_i(5'd0),
         .task_px_i({LANES{1'b0}}), .task_pb_i({LANES{1'b0}}), .ready_o(ready_o[m]), .done_valid_o(done_valid_o[m]),
