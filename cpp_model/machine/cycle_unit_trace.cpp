@@ -1,0 +1,56 @@
+// What the trace ports of engine `model` show. Kept after trace_on() only, as it costs more than the rest of a cycle.
+#include <algorithm>
+
+#include "machine/bits.hpp"
+#include "machine/cycle_unit.hpp"
+
+namespace raypool {
+
+void CycleUnit::record_issue(uint32_t warp, const DecodedInstruction& instruction) {
+  Issue& issue = issues_[warp];
+  const auto row = [this, warp](std::vector<uint32_t>& words, uint32_t number) {
+    const uint32_t* first = core_.register_row(warp, number);
+    words.assign(first, first + lanes_);
+  };
+  issue.pc = pc_[warp];
+  issue.instruction = &instruction;
+  issue.mask = core_.thread_mask(warp, instruction);
+  row(issue.a, instruction.ra);
+  row(issue.b, instruction.rb);
+  row(issue.c, instruction.x & 15);
+  if (instruction.b_is_immediate) std::fill(issue.b.begin(), issue.b.end(), instruction.immediate);
+  issue.px = core_.predicate(warp, instruction.x & 15);
+  issue.pb = core_.predicate(warp, instruction.rb);
+  issue.predicate = 0;
+}
+
+void CycleUnit::record_result(uint32_t warp, const Step& step) {
+  Issue& issue = issues_[warp];
+  if (step.data != nullptr) issue.data.assign(step.data, step.data + lanes_);
+  issue.predicate = step.predicate;
+}
+
+// What the trace ports show in the cycle that begins.
+void CycleUnit::record() {
+  trace_.retired.clear();
+  trace_.stores.clear();
+  trace_.ray_writes.clear();
+  for (uint32_t warps = planned(now_).retired | mem_.done() | ray_.done(); warps != 0; warps &= warps - 1) {
+    const uint32_t warp = lowest(warps);
+    const Issue& issue = issues_[warp];
+    RetireEvent& event = trace_.retired.emplace_back();
+    event.warp = warp;
+    event.pc = issue.pc;
+    event.instruction = issue.instruction->encoding;
+    event.mask = issue.mask;
+    event.data = issue.data;
+    event.data.resize(static_cast<size_t>(lanes_));
+    event.predicate = issue.predicate;
+    if ((ray_.done() >> warp & 1) != 0 && ray_.wrote())
+      trace_.ray_writes.push_back({warp, issue.instruction->x, issue.mask, issue.b, 0});
+  }
+  StoreEvent store;
+  if (mem_.storing(store)) trace_.stores.push_back(store);
+}
+
+}  // namespace raypool
