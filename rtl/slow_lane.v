@@ -4,7 +4,7 @@
 module slow_lane #(
   parameter integer SUBNORMALS = 0,
   parameter integer SLOW_UNIT = 0,
-  parameter integer STAGES = (SLOW_UNIT <= 1) ? 11 : (SLOW_UNIT == 2) ? 8 : 6
+  parameter integer STAGES = 11
 ) (
   input  wire        clk_i,
   input  wire [STAGES-1:0] enable_i,
@@ -33,7 +33,7 @@ module slow_lane #(
         .clk_i(clk_i), .enable_i(enable_i[STAGES-1:1]), .index_1_i(index), .offset_digits_i(offset_digits), .root_i(root), .unary_i(unary), .v_i(v), .w_i(w),
         .special_3_i(special), .nan_3_i(nan), .sign_3_i(sign), .exponent_3_i(exponent), .shift_3_i(shift), .result_o(result));
     end else begin : gen_newton
-      slow_newton #(.STEPS(3 - SLOW_UNIT)) quotient (
+      slow_newton #(.STEPS(3 - SLOW_UNIT), .LAST(STAGES - 1)) quotient (
         .clk_i(clk_i), .enable_i(enable_i[STAGES-1:1]), .index_1_i(index), .root_i(root), .unary_i(unary), .v_i(v), .w_i(w), .special_3_i(special),
         .nan_3_i(nan), .sign_3_i(sign), .exponent_3_i(exponent), .shift_3_i(shift), .result_o(result));
     end

@@ -5,7 +5,7 @@
 `default_nettype none
 module slow_newton #(
   parameter integer STEPS = 2,
-  parameter integer LAST = (STEPS == 2) ? 10 : (STEPS == 1) ? 7 : 5
+  parameter integer LAST = 10
 ) (
   input  wire        clk_i,
   input  wire [LAST-1:0] enable_i,
@@ -27,7 +27,7 @@ module slow_newton #(
   localparam integer PRODUCT = (STEPS == 0) ? 3 : 5, ROUND = LAST - 1;
   generate
     if (STEPS < 0 || STEPS > 2 || LAST != ((STEPS == 2) ? 10 : PRODUCT + 2)) begin : gen_illegal
-      slow_newton_chooses_its_own_stages illegal ();
+      slow_newton_needs_other_stages illegal ();
     end
   endgenerate
 

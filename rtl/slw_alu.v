@@ -63,7 +63,7 @@ module slw_alu #(
         if (!rst_ni) later_q <= {STAGES-1{1'b0}};
         else if (moving) later_q <= enable[STAGES-2:0];
       end
-      slow_lane #(.SUBNORMALS(SUBNORMALS), .SLOW_UNIT(SLOW_UNIT)) lane (
+      slow_lane #(.SUBNORMALS(SUBNORMALS), .SLOW_UNIT(SLOW_UNIT), .STAGES(STAGES)) lane (
         .clk_i(clk_i), .enable_i(enable), .root_i(root), .unary_i(unary), .a_i(task_a_i[l*32 +: 32]), .b_i(task_b_i[l*32 +: 32]),
         .result_o(result[l*32 +: 32]));
     end

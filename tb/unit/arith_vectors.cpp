@@ -2,47 +2,15 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "arith/arith.hpp"
+#include "alu_model.hpp"
 #include "arith/test_operands.hpp"
 
 namespace raypool {
 namespace {
 
-uint32_t model(int unit, int operation, uint32_t a, uint32_t b, uint32_t c, arith::Mode mode) {
-  if (unit == 1) {
-    switch (operation) {
-      case 0:
-        return arith::div(a, b, mode);
-      case 1:
-        return arith::sqrt(a, mode);
-      case 2:
-        return arith::rsqrt(a, mode);
-      default:
-        return arith::rcp(a, mode);
-    }
-  }
-  switch (operation) {
-    case 0:
-      return arith::add(a, b, mode);
-    case 1:
-      return arith::sub(a, b, mode);
-    case 2:
-      return arith::mul(a, b, mode);
-    case 3:
-      return arith::min(a, b, mode);
-    case 4:
-      return arith::max(a, b, mode);
-    case 5:
-      return arith::to_int(a, mode);
-    case 6:
-      return arith::from_int(a, mode);
-    default:
-      return arith::fma(a, b, c, mode);
-  }
-}
-
 void write(int unit, int operation, uint32_t a, uint32_t b, uint32_t c, arith::Mode mode) {
-  std::printf("%x %x %08x %08x %08x %08x\n", unit, operation, a, b, c, model(unit, operation, a, b, c, mode));
+  std::printf("%x %x %08x %08x %08x %08x\n", unit, operation, a, b, c,
+              unit == 0 ? flt_model(operation, a, b, c, mode) : slw_model(operation, a, b, c, mode));
 }
 
 }  // namespace

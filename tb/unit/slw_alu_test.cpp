@@ -1,24 +1,13 @@
 // rtl/slw_alu.v in every pair of subnormal mode and slow unit against the model of arithmetic.
 #include "Vslw_units.h"
 #include "alu_bench.hpp"
+#include "alu_model.hpp"
 
 namespace raypool {
 namespace {
 
 constexpr uint64_t kSeed = 815;
 
-uint32_t model(int operation, uint32_t a, uint32_t b, uint32_t, arith::Mode mode) {
-  switch (operation) {
-    case 0:
-      return arith::div(a, b, mode);
-    case 1:
-      return arith::sqrt(a, mode);
-    case 2:
-      return arith::rsqrt(a, mode);
-    default:
-      return arith::rcp(a, mode);
-  }
-}
 constexpr int kOperations = 4;
 
 std::vector<AluUnderTest> units() {
@@ -37,7 +26,7 @@ std::vector<AluUnderTest> units() {
 }
 
 TEST(SlwAlu, EveryPairOfSpecialValuesAgreesWithTheModel) {
-  AluBench<Vslw_units> bench(units(), model, kSeed);
+  AluBench<Vslw_units> bench(units(), slw_model, kSeed);
   const std::vector<uint32_t> specials = arith::special_operands();
   for (int operation = 0; operation < kOperations; ++operation) {
     for (const uint32_t a : specials) {
@@ -49,7 +38,7 @@ TEST(SlwAlu, EveryPairOfSpecialValuesAgreesWithTheModel) {
 }
 
 TEST(SlwAlu, RandomPairsAgreeWithTheModel) {
-  AluBench<Vslw_units> bench(units(), model, kSeed);
+  AluBench<Vslw_units> bench(units(), slw_model, kSeed);
   arith::OperandSource source(kSeed);
   std::mt19937_64 random(kSeed);
   for (int i = 0; i < 400000; i += kBenchLanes) {
@@ -66,7 +55,7 @@ TEST(SlwAlu, RandomPairsAgreeWithTheModel) {
 
 TEST(SlwAlu, MantissasAllOverTheRangeAgreeWithTheModel) {
   // The exact unit's table and rounding depend on the mantissa, a root's also on whether the exponent is odd.
-  AluBench<Vslw_units> bench(units(), model, kSeed);
+  AluBench<Vslw_units> bench(units(), slw_model, kSeed);
   for (uint32_t a = 0x3f800000u; a < 0x40800000u; a += 127) {
     bench.add(2, a, 0);
   }
@@ -77,7 +66,7 @@ TEST(SlwAlu, MantissasAllOverTheRangeAgreeWithTheModel) {
 
 // Names with Long: in `make numerics-long` only.
 TEST(SlwAluLong, EveryMantissaAgreesWithTheModel) {
-  AluBench<Vslw_units> bench(units(), model, kSeed);
+  AluBench<Vslw_units> bench(units(), slw_model, kSeed);
   for (uint32_t a = 0x3f800000u; a < 0x40800000u; ++a) bench.add(1, a, 0);
   for (uint32_t a = 0x3f800000u; a < 0x40800000u; ++a) bench.add(2, a, 0);
   for (uint32_t a = 0x3f800000u; a < 0x40000000u; ++a) bench.add(3, a, 0);
@@ -86,7 +75,7 @@ TEST(SlwAluLong, EveryMantissaAgreesWithTheModel) {
 }
 
 TEST(SlwAluLong, ManyRandomQuotientsAgreeWithTheModel) {
-  AluBench<Vslw_units> bench(units(), model, kSeed + 1);
+  AluBench<Vslw_units> bench(units(), slw_model, kSeed + 1);
   arith::OperandSource source(kSeed + 1);
   for (int i = 0; i < 10000000; ++i) {
     const auto [a, b] = source.next();
@@ -98,7 +87,7 @@ TEST(SlwAluLong, ManyRandomQuotientsAgreeWithTheModel) {
 
 TEST(SlwAlu, SubnormalQuotientsOnTheMiddleGoToEven) {
   // n * 2^-149 / 2^k, whose last bits are shifted out: exact ties among them.
-  AluBench<Vslw_units> bench(units(), model, kSeed);
+  AluBench<Vslw_units> bench(units(), slw_model, kSeed);
   std::mt19937_64 random(kSeed);
   for (int k = 1; k <= 27; ++k) {
     for (int i = 0; i < 500; ++i) {
