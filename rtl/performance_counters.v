@@ -1,5 +1,6 @@
 // Counts events while a kernel runs; numbers as in cpp_model/machine/compute_unit.hpp, namespace counter.
-// The events of a cycle are taken into registers and counted in the next one; value_o includes those of the cycle before.
+// The events of a cycle are taken into registers and counted in the next one; value_o includes those of the cycle before. What many warps
+// add to is summed up first and counted a cycle later: a warp retires at least two cycles before the unit is idle, so nothing is missing then.
 `default_nettype none
 module performance_counters #(
   parameter integer WARPS = 8,
@@ -29,7 +30,10 @@ module performance_counters #(
   localparam integer LOW_BITS = 12;
   localparam integer COUNTERS = 8 + 3 * UNITS;
   localparam integer LANE_BITS = $clog2(LANES) + 1;   // of the number of a warp's lanes
+  localparam integer WARP_BITS = $clog2(WARPS) + 1;   // of the number of warps
+  localparam integer THREAD_BITS = $clog2(WARPS * LANES) + 1;
   localparam [LANE_BITS-1:0] ONE_LANE = 1;
+  localparam [WARP_BITS-1:0] ONE_WARP = 1;
 
   // ---- Events of the cycle before; none while nothing runs.
   reg running_q;
@@ -38,7 +42,7 @@ module performance_counters #(
   reg [WARPS*LANE_BITS-1:0] threads_q;                // lanes that retire, for each warp
   reg [WARPS*3-1:0] unit_q;
   reg [SLOTS-1:0] unused_q, issued_q;
-  integer w, n;
+  integer w;
 
   always @(posedge clk_i) begin
     running_q <= rst_ni && running_i;
@@ -58,23 +62,12 @@ module performance_counters #(
     end
   endfunction
   always @(posedge clk_i)
-    for (w = 0; w < WARPS; w = w + 1)
+    for (w = 0; w < WARPS; w = w + 1) begin
+      threads_q[w*LANE_BITS +: LANE_BITS] <= {LANE_BITS{1'b0}};
       if (retire_i[w]) threads_q[w*LANE_BITS +: LANE_BITS] <= lanes(retire_mask_i[w*LANES +: LANES]);
+    end
 
-  reg [5:0] instructions;
-  reg [10:0] threads;
-  always @* begin
-    instructions = 6'd0;
-    threads = 11'd0;
-    if (running_q && |retire_q)
-      for (n = 0; n < WARPS; n = n + 1)
-        if (retire_q[n]) begin
-          instructions = instructions + 6'd1;
-          threads = threads + {{11-LANE_BITS{1'b0}}, threads_q[n*LANE_BITS +: LANE_BITS]};
-        end
-  end
-
-  // How many of a type's slots are set in `slots`; how many warps wait for a type.
+  // How many of a type's slots are set in `slots`.
   function [2:0] count(input [3:0] unit, input [SLOTS-1:0] slots);
     integer s;
     begin
@@ -83,15 +76,35 @@ module performance_counters #(
         if (SLOT_UNITS[s*4 +: 4] == unit) count = count + {2'd0, slots[s]};
     end
   endfunction
-  function [5:0] queue(input [2:0] unit, input [WARPS-1:0] warps, input [WARPS*3-1:0] units);
-    integer s;
-    begin
-      queue = 6'd0;
-      if (|warps)
-        for (s = 0; s < WARPS; s = s + 1)
-          if (warps[s] && units[s*3 +: 3] == unit) queue = queue + 6'd1;
-    end
-  endfunction
+
+  // ---- Sums over the warps: of those that retire, of their threads, of those that wait for each type.
+  reg [WARP_BITS-1:0] instructions_q;
+  reg [THREAD_BITS-1:0] threads_sum_q;
+  reg [UNITS*WARP_BITS-1:0] queues_q;
+
+  always @(posedge clk_i) begin : sums
+    reg [WARP_BITS-1:0] instructions, queue;
+    reg [THREAD_BITS-1:0] threads, lanes_of_warp;
+    integer n, u;
+    instructions = {WARP_BITS{1'b0}};
+    lanes_of_warp = {THREAD_BITS{1'b0}};
+    threads = {THREAD_BITS{1'b0}};
+    if (rst_ni && running_q && |retire_q)
+      for (n = 0; n < WARPS; n = n + 1) begin
+        instructions = instructions + (ONE_WARP & {WARP_BITS{retire_q[n]}});
+        lanes_of_warp[LANE_BITS-1:0] = threads_q[n*LANE_BITS +: LANE_BITS];
+        threads = threads + lanes_of_warp;
+      end
+    instructions_q <= instructions;
+    threads_sum_q <= threads;
+    queues_q <= {UNITS*WARP_BITS{1'b0}};
+    if (rst_ni && running_q && |waiting_q)
+      for (u = 0; u < UNITS; u = u + 1) begin
+        queue = {WARP_BITS{1'b0}};
+        for (n = 0; n < WARPS; n = n + 1) queue = queue + (ONE_WARP & {WARP_BITS{waiting_q[n] && unit_q[n*3 +: 3] == u[2:0]}});
+        queues_q[u*WARP_BITS +: WARP_BITS] <= queue;
+      end
+  end
 
   // ---- Counters, in the order of their numbers: eight single ones, then rows of one a type.
   wire [COUNTERS*BITS-1:0] values;
@@ -100,20 +113,20 @@ module performance_counters #(
   generate
     for (c = 0; c < COUNTERS; c = c + 1) begin : gen_counter
       localparam integer UNIT = (c - 8) % UNITS;
-      localparam integer EVENT_BITS = (c == 2) ? 11 : (c == 1 || (c >= 8 + UNITS && c < 8 + 2 * UNITS)) ? 6 : (c >= 8) ? 3 : 1;
+      localparam integer EVENT_BITS = (c == 2) ? THREAD_BITS : (c == 1 || (c >= 8 + UNITS && c < 8 + 2 * UNITS)) ? WARP_BITS : (c >= 8) ? 3 : 1;
       wire [EVENT_BITS-1:0] events;
       if (c == 0) begin : gen_event
         assign events = running_q;
       end else if (c == 1) begin : gen_event
-        assign events = instructions;
+        assign events = instructions_q;
       end else if (c == 2) begin : gen_event
-        assign events = threads;
+        assign events = threads_sum_q;
       end else if (c < 8) begin : gen_event
         assign events = running_q && single_q[c - 3];
       end else if (c < 8 + UNITS) begin : gen_event
         assign events = running_q ? count(UNIT[3:0], unused_q) : 3'd0;
       end else if (c < 8 + 2 * UNITS) begin : gen_event
-        assign events = running_q ? queue(UNIT[2:0], waiting_q, unit_q) : 6'd0;
+        assign events = queues_q[UNIT*WARP_BITS +: WARP_BITS];
       end else begin : gen_event
         assign events = running_q ? count(UNIT[3:0], issued_q) : 3'd0;
       end
