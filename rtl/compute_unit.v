@@ -112,6 +112,7 @@ module compute_unit #(
   // instruction routine
   wire [WARPS-1:0] fetch_request, fetch_first, fetch_grant;
   wire [WARPS*16-1:0] fetch_pc;
+  reg [15:0] lookup_pc;
   wire fetch_valid, instruction_hit, instruction_miss, refill_done;
   wire [WARP_BITS-1:0] fetch_warp, result_warp;
   wire [63:0] fetched;
@@ -139,8 +140,7 @@ module compute_unit #(
   wire data_hit, data_miss, data_store, mem_idle, arbiter_idle;
   // faults
   wire [WARPS-1:0] warp_fault;
-  wire [WARPS*4-1:0] warp_fault_code;
-  wire [WARPS*16-1:0] warp_fault_pc;
+  wire [WARPS*3-1:0] warp_fault_code;
   wire mem_fault, ray_fault;
   wire [3:0] mem_fault_code, ray_fault_code;
   wire [WARP_BITS-1:0] mem_fault_warp, ray_fault_warp;
@@ -161,9 +161,17 @@ module compute_unit #(
     .clk_i(clk_i), .rst_ni(rst_ni), .request_i(fetch_request), .first_i(fetch_first),
     .grant_o(fetch_grant), .valid_o(fetch_valid), .warp_o(fetch_warp));
 
+  // By the grants, which are there before the warp's number.
+  integer g;
+  always @* begin
+    lookup_pc = 16'd0;
+    if (fetch_valid)
+      for (g = 0; g < WARPS; g = g + 1) lookup_pc = lookup_pc | (fetch_pc[g*16 +: 16] & {16{fetch_grant[g]}});
+  end
+
   instruction_cache #(.CACHE_BYTES(ICACHE_BYTES), .WARPS(WARPS), .WARP_BITS(WARP_BITS)) instruction_cache (
     .clk_i(clk_i), .rst_ni(rst_ni),
-    .invalidate_i(argument_write_i), .lookup_valid_i(fetch_valid), .lookup_warp_i(fetch_warp), .lookup_pc_i(fetch_pc[fetch_warp*16 +: 16]),
+    .invalidate_i(argument_write_i), .lookup_valid_i(fetch_valid), .lookup_warp_i(fetch_warp), .lookup_pc_i(lookup_pc),
     .hit_o(instruction_hit), .miss_o(instruction_miss), .result_warp_o(result_warp), .instruction_o(fetched),
     .refill_done_o(refill_done), .first_o(fetch_first), .request_valid_o(instruction_request), .request_ready_i(instruction_request_ready),
     .request_address_o(instruction_request_address), .response_valid_i(instruction_response),
@@ -186,7 +194,7 @@ module compute_unit #(
         .done_i(done), .done_data_i(done_data), .done_pred_i(done_pred),
         .retire_o(retire_valid_o[w]), .pc_o(retire_pc_o[w*16 +: 16]), .retire_data_o(retire_data_o[w*DATA +: DATA]),
         .retire_predicate_o(retire_predicate_o[w*LANES +: LANES]),
-        .fault_valid_o(warp_fault[w]), .fault_code_o(warp_fault_code[w*4 +: 4]), .fault_pc_o(warp_fault_pc[w*16 +: 16]));
+        .fault_valid_o(warp_fault[w]), .fault_code_o(warp_fault_code[w*3 +: 3]));
     end
   endgenerate
 
@@ -277,53 +285,50 @@ module compute_unit #(
     .data_store_i(data_store), .ready_i(ready), .grant_i(slot_grant), .waiting_i(waiting), .unit_i(wanted_unit),
     .select_i(counter_select_i), .value_o(counter_o));
 
-  // The first fault stays; of several in one cycle an ALU's wins, then the lowest warp's.
-  reg fault_q;
-  reg [3:0] fault_code_q;
-  reg [WARP_BITS-1:0] fault_warp_q;
-  reg [15:0] fault_pc_q;
-  localparam [WARPS-1:0] ONE_WARP = 1;
-  wire [WARPS-1:0] first_fault = warp_fault & (~warp_fault + ONE_WARP);
-  reg [3:0] first_code;
-  reg [WARP_BITS-1:0] first_warp;
-  reg [15:0] first_pc;
-  integer f;
-  always @* begin
-    first_code = 4'd0;
-    first_warp = {WARP_BITS{1'b0}};
-    first_pc = 16'd0;
-    if (|warp_fault)
-      for (f = 0; f < WARPS; f = f + 1) begin
-        first_code = first_code | ({4{first_fault[f]}} & warp_fault_code[f*4 +: 4]);
-        first_warp = first_warp | ({WARP_BITS{first_fault[f]}} & f[WARP_BITS-1:0]);
-        first_pc = first_pc | ({16{first_fault[f]}} & warp_fault_pc[f*16 +: 16]);
-      end
-  end
-  assign fault_valid_o = fault_q;
-  assign fault_code_o = fault_code_q;
-  assign fault_warp_o = fault_warp_q;
-  assign fault_pc_o = fault_pc_q;
+  // The first fault stays; of several in one cycle an ALU's wins, then the lowest warp's. Those of the cycle are kept and chosen from afterwards; their
+  // PCs need not be, as a warp with a fault keeps its own.
+  reg fault_q, alu_fault_q;
+  reg [3:0] alu_fault_code_q;
+  reg [WARP_BITS-1:0] alu_fault_warp_q;
+  reg [WARPS-1:0] warp_fault_q;
+  reg [WARPS*3-1:0] warp_fault_code_q;
   always @(posedge clk_i)
     if (!rst_ni) begin
       fault_q <= 1'b0;
-      fault_code_q <= 4'd0;
-      fault_warp_q <= {WARP_BITS{1'b0}};
-      fault_pc_q <= 16'd0;
-    end else if (!fault_q && (mem_fault || ray_fault || |warp_fault)) begin
-      fault_q <= 1'b1;
-      if (mem_fault) begin
-        fault_code_q <= mem_fault_code;
-        fault_warp_q <= mem_fault_warp;
-        fault_pc_q <= retire_pc_o[mem_fault_warp*16 +: 16];
-      end else if (ray_fault) begin
-        fault_code_q <= ray_fault_code;
-        fault_warp_q <= ray_fault_warp;
-        fault_pc_q <= retire_pc_o[ray_fault_warp*16 +: 16];
-      end else begin
-        fault_code_q <= first_code;
-        fault_warp_q <= first_warp;
-        fault_pc_q <= first_pc;
-      end
+    end else if (!fault_q) begin
+      fault_q <= mem_fault || ray_fault || |warp_fault;
+      alu_fault_q <= mem_fault || ray_fault;
+      alu_fault_code_q <= mem_fault ? mem_fault_code : ray_fault_code;
+      alu_fault_warp_q <= mem_fault ? mem_fault_warp : ray_fault_warp;
+      warp_fault_q <= warp_fault;
+      warp_fault_code_q <= warp_fault_code;
     end
+
+  reg [3:0] fault_code;
+  reg [WARP_BITS-1:0] fault_warp;
+  reg [15:0] fault_pc;
+  integer f;
+  always @* begin
+    fault_code = 4'd0;
+    fault_warp = {WARP_BITS{1'b0}};
+    fault_pc = 16'd0;
+    if (fault_q) begin
+      for (f = WARPS - 1; f >= 0; f = f - 1)
+        if (warp_fault_q[f]) begin
+          fault_code = {1'b0, warp_fault_code_q[f*3 +: 3]};
+          fault_warp = f[WARP_BITS-1:0];
+        end
+      if (alu_fault_q) begin
+        fault_code = alu_fault_code_q;
+        fault_warp = alu_fault_warp_q;
+      end
+      // Codes 1 and 2 are of the next instruction.
+      fault_pc = fault_code <= 4'd2 ? fetch_pc[fault_warp*16 +: 16] : retire_pc_o[fault_warp*16 +: 16];
+    end
+  end
+  assign fault_valid_o = fault_q;
+  assign fault_code_o = fault_code;
+  assign fault_warp_o = fault_warp;
+  assign fault_pc_o = fault_pc;
 endmodule
 `default_nettype wire

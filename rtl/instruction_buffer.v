@@ -29,7 +29,7 @@ module instruction_buffer #(
   output reg  [15:0] pc_o,
   output wire        writes_register_o,
   output wire        writes_predicate_o,
-  // faults, one cycle
+  // faults, one cycle; fetch_pc_o is that instruction's, from the next cycle on
   output wire        illegal_o,        // the next instruction has no table row; it is not issued
   output wire        outside_o         // its PC is not in the program
 );
@@ -72,9 +72,9 @@ module instruction_buffer #(
     end else if (active_o) begin
       case (fetch_q)
         F_STACK:
-          if (pc_valid_i && !outside_o) begin
+          if (pc_valid_i) begin
             fetch_pc_o <= pc_i;
-            fetch_q <= F_ARBITER;
+            if (!outside_o) fetch_q <= F_ARBITER;
           end
         F_ARBITER: if (fetch_grant_i) fetch_q <= F_CACHE;
         F_CACHE:

@@ -39,10 +39,9 @@ module warp #(
   output wire [15:0]               pc_o,
   output reg  [LANES*32-1:0]       retire_data_o,
   output reg  [LANES-1:0]          retire_predicate_o,
-  // faults, one cycle
+  // faults, one cycle; codes 1 and 2 are of the instruction at fetch_pc_o, 3 and 4 of that at pc_o
   output wire                      fault_valid_o,
-  output wire [3:0]                fault_code_o,
-  output wire [15:0]               fault_pc_o
+  output wire [2:0]                fault_code_o
 );
 `include "isa.vh"
   reg [LANES-1:0] launched_q;
@@ -125,7 +124,6 @@ module warp #(
   endgenerate
 
   assign fault_valid_o = illegal || outside || overflow || underflow;
-  assign fault_code_o = illegal ? 4'd1 : outside ? 4'd2 : overflow ? 4'd3 : 4'd4;
-  assign fault_pc_o = illegal ? fetch_pc_o : outside ? stack_pc : pc_o;
+  assign fault_code_o = illegal ? 3'd1 : outside ? 3'd2 : overflow ? 3'd3 : 3'd4;
 endmodule
 `default_nettype wire

@@ -6,7 +6,7 @@
 // @break instruction_buffer s/issue = ready && next_legal_q/issue = ready/
 // @break instruction_buffer s/\(data_q == D_IDLE \|\| retire_i\)/(data_q != D_READ)/
 // @break instruction_buffer s/next_control_q \? F_IDLE : F_STACK/F_STACK/
-// @break instruction_buffer s/pc_valid_i && !outside_o/pc_valid_i/
+// @break instruction_buffer s/if \(!outside_o\) fetch_q/fetch_q/
 // @break instruction_buffer s/retire_i\) && !halt_i/retire_i)/
 // @break instruction_buffer s/data_q <= D_EXECUTE/data_q <= D_WANT/
 // @break instruction_buffer s/refill_done_i \? F_ARBITER : F_MISS/F_STACK/
