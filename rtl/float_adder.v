@@ -24,6 +24,9 @@ module float_adder #(
   localparam integer STEPS = $clog2(W);     // of the normaliser: shifts by 2^(STEPS-1) .. 1
   localparam integer EARLY = STEPS - 3;     // steps 2^(STEPS-1) .. 8 are taken in stage 1
 
+  localparam [E-1:0] ONE = 1;
+  localparam [E-4:0] ONE_HIGH = 1;
+
   `include "ones_below.vh"
 
   // Stage 0 -> 1
@@ -33,7 +36,7 @@ module float_adder #(
   reg [A-1:0] s1_small_q;
   // Stage 1 -> 2
   reg s2_nan_q, s2_infinite_q, s2_sign_q, s2_subtract_q;
-  reg [E:0] s2_exponent_q;
+  reg [E-1:0] s2_exponent_q;                // of an infinite sum too large for it
   reg [W-1:0] s2_sum_q, s2_guide_q;
 
   always @(posedge clk_i) begin
@@ -74,17 +77,17 @@ module float_adder #(
     end
     if (enable_i[1]) begin : stage1
       reg [W-1:0] sum, guide;
-      reg [E:0] exponent;
+      reg [E-1:0] exponent;
       integer step;
       sum = s1_subtract_q ? {1'b0, s1_large_q, 3'b000} - {1'b0, s1_small_q} : {1'b0, s1_large_q, 3'b000} + {1'b0, s1_small_q};
       // The sum is shifted up until its leading one is at the top. The guide has a further one where the exponent would become zero.
       guide = sum | ({1'b1, {W-1{1'b0}}} >> s1_exponent_q);
-      exponent = {1'b0, s1_exponent_q} + {{E{1'b0}}, 1'b1};
+      exponent = s1_exponent_q + ONE;
       for (step = STEPS - 1; step >= STEPS - EARLY; step = step - 1) begin
         if (guide >> (W - (1 << step)) == {W{1'b0}}) begin
           guide = guide << (1 << step);
           sum = sum << (1 << step);
-          exponent = exponent - ({{E{1'b0}}, 1'b1} << step);
+          exponent = exponent - (ONE << step);
         end
       end
       s2_nan_q <= s1_nan_q;
@@ -99,7 +102,9 @@ module float_adder #(
 
   always @* begin : stage2
     reg [W-1:0] sum, guide;
-    reg [E:0] exponent, shift;
+    reg [2:0] shift;
+    reg [4:0] low;                          // three bits of the exponent, less the shift, more by a carry out of the mantissa: -7 .. 8
+    reg [E-4:0] high;                       // the others
     reg [E+M-1:0] magnitude;
     reg [63:0] ones;
     reg round_up, sign;
@@ -107,8 +112,9 @@ module float_adder #(
     result_o = {BITS{1'b0}};
     sum = s2_sum_q;
     guide = s2_guide_q;
-    exponent = {E+1{1'b0}};
-    shift = {E+1{1'b0}};
+    shift = 3'd0;
+    low = 5'd0;
+    high = {E-3{1'b0}};
     magnitude = {E+M{1'b0}};
     ones = 64'd0;
     round_up = 1'b0;
@@ -121,18 +127,21 @@ module float_adder #(
           shift[step] = 1'b1;
         end
       end
-      exponent = s2_exponent_q - shift;
       round_up = sum[3] && (sum[4] || sum[2:0] != 3'b000);
-      if (!sum[W-1]) exponent = {E+1{1'b0}};
+      // A carry out of the mantissa goes up into the exponent, to infinity too. It comes late, so what it may make of the exponent is ready before.
+      low = {2'b00, s2_exponent_q[2:0]} - {2'b00, shift} + {4'd0, &sum[W-2:3]};
+      high = s2_exponent_q[E-1:3];
+      if (low[4]) high = s2_exponent_q[E-1:3] - ONE_HIGH;
+      else if (low[3]) high = s2_exponent_q[E-1:3] + ONE_HIGH;
       if (s2_nan_q) begin
         sign = 1'b0;
         magnitude = {{E+1{1'b1}}, {M-1{1'b0}}};
-      end else if (s2_infinite_q || exponent[E] || &exponent[E-1:0]) begin
+      end else if (s2_infinite_q || (&s2_exponent_q && s2_guide_q[W-1])) begin
         magnitude = {{E{1'b1}}, {M{1'b0}}};
       end else begin
-        // A carry out of the mantissa goes up into the exponent, to infinity too.
-        ones = ones_below({{63-E-M{1'b0}}, exponent[E-1:0], sum[W-2:4]});
-        if (SUBNORMALS == 0 || sum[W-1]) magnitude = {exponent[E-1:0], sum[W-2:4]} ^ (ones[E+M-1:0] & {E+M{round_up}});
+        ones = ones_below({{63-M{1'b0}}, sum[W-2:4]});
+        if (sum[W-1]) magnitude[E+M-1:M] = {high, low[2:0]};
+        if (SUBNORMALS == 0 || sum[W-1]) magnitude[M-1:0] = sum[W-2:4] ^ (ones[M-1:0] & {M{round_up}});
         if (sum == {W{1'b0}} && s2_subtract_q) sign = 1'b0;
       end
       result_o = {sign, magnitude};
