@@ -1,21 +1,18 @@
 #include "numerics/modes.hpp"
 
-#include <algorithm>
 #include <array>
 
 namespace raypool::numerics {
 
-Configuration ArithmeticMode::applied_to(Configuration base) const {
-  base.subnormals = mode.subnormals;
-  base.slow_unit = mode.slow_unit;
-  base.fma = mode.fused;
-  if (base.fma) {
-    // What a fused unit needs at least; the check of configurations has the same number.
-    int& depth = base.alus[static_cast<size_t>(Unit::Flt)].depth;
-    depth = std::max(depth, 5);
-  }
-  if (name != arithmetic_modes().front().name) base.name += "-" + name;
-  return base;
+Configuration ArithmeticMode::applied_to(const Configuration& base) const {
+  Configuration changed = base;
+  changed.subnormals = mode.subnormals;
+  changed.slow_unit = mode.slow_unit;
+  changed.fma = mode.fused;
+  for (const Unit unit : {Unit::Flt, Unit::Slw})
+    changed.alus[static_cast<size_t>(unit)].depth += least_depth(changed, unit) - least_depth(base, unit);
+  if (name != arithmetic_modes().front().name) changed.name += "-" + name;
+  return changed;
 }
 
 const std::vector<ArithmeticMode>& arithmetic_modes() {

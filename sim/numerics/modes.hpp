@@ -13,9 +13,9 @@ struct ArithmeticMode {
   std::string name;  ///< "ieee-exact", ...: subnormals, slow unit, and "-fma" with a fused multiply-add
   arith::Mode mode;
 
-  /// `base` with this arithmetic. Its Flt ALU becomes as deep as a fused unit needs, its name gets the mode's behind it when that
-  /// is not the default one.
-  Configuration applied_to(Configuration base) const;
+  /// `base` with this arithmetic. Flt and Slw keep the stages that they have beyond what their arithmetic needs; the name gets
+  /// the mode's behind it when that is not the default one.
+  Configuration applied_to(const Configuration& base) const;
 };
 
 /// Every mode, the default one first; exact before newton2, newton1, newton0.

@@ -25,6 +25,18 @@ TradeScene& cornell() {
   return scene;
 }
 
+TEST(ArithmeticModes, AreAsDeepAsTheyNeed) {
+  Configuration deeper;
+  deeper.alus[static_cast<size_t>(Unit::Slw)].depth += 2;
+  for (const ArithmeticMode& mode : arithmetic_modes()) {
+    const Configuration plain = mode.applied_to(Configuration{});
+    for (const Unit unit : {Unit::Flt, Unit::Slw}) EXPECT_EQ(plain.alu(unit).depth, least_depth(plain, unit)) << mode.name;
+    EXPECT_EQ(mode.applied_to(deeper).alu(Unit::Slw).depth, least_depth(plain, Unit::Slw) + 2) << mode.name;
+    // What one mode has made can be taken to another.
+    EXPECT_EQ(arithmetic_modes().back().applied_to(plain).alu(Unit::Slw).depth, 6) << mode.name;
+  }
+}
+
 TEST(Trade, ExactArithmeticDrawsTheReference) {
   const Quality quality = judge_frame(cornell(), record_frame(cornell(), {}));
   EXPECT_EQ(quality.pixels, 64u * 48u);
