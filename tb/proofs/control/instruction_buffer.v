@@ -3,6 +3,8 @@
 // @proves no instruction is issued while one is under way; each one fetched is issued once, with its PC, in order; it stays until it retires
 // @proves an instruction without a table row is never issued; none that lies outside the program is fetched
 // @proves nothing is stepped while a control instruction is under way; nothing is stepped, fetched, issued or offered while halt_i
+// @proves fetch_pc_o is the PC of an instruction that is illegal or outside, from the next cycle on, as long as halt_i follows
+// @break instruction_buffer s/fetch_pc_o <= pc_i;/if (!outside_o) fetch_pc_o <= pc_i;/
 // @break instruction_buffer s/issue = ready && next_legal_q/issue = ready/
 // @break instruction_buffer s/\(data_q == D_IDLE \|\| retire_i\)/(data_q != D_READ)/
 // @break instruction_buffer s/next_control_q \? F_IDLE : F_STACK/F_STACK/
@@ -60,6 +62,13 @@ module check (
       end
       halt_q <= halt_i;
     end
+  reg fault_q = 1'b0;           // one was found, and halt_i has been there ever since
+  reg [15:0] fault_pc_q;
+  always @(posedge clk_i)
+    if (rst_n) begin
+      fault_q <= illegal || outside || (fault_q && halt_i);
+      if (illegal || outside) fault_pc_q <= illegal ? fetched_pc_q : pc_i;
+    end
   wire control = isa_control(instruction[63:60], instruction[59:55]);
   always @* begin
     assume (!pc_valid_i || step);
@@ -81,6 +90,7 @@ module check (
       assert (!(step && (read || under_way_q) && control));
       assert (!(halt_i && (step || fetch || want)));
       assert (!(halt_q && read));
+      assert (!fault_q || fetch_pc == fault_pc_q);
     end
   end
 endmodule
