@@ -12,6 +12,8 @@ from .library import ROOT
 
 # ABC sees neither clock-to-output nor set-up time: it gets this share of the period.
 LOGIC_SHARE = 0.7
+# A block on a failing path has only a part of that path: its gates are sized for this share.
+FAST_SHARE = 0.4
 # A block whose slowest logic takes no more than this share is small enough a problem to be mapped for area.
 ACCEPTED_SHARE = 0.75
 # What a block drives and is driven by is not known while it is mapped alone.
@@ -83,9 +85,9 @@ opt
 write_rtlil {result}
 """
 
-    def map_script(self, way, prepared, result):
+    def map_script(self, way, prepared, result, share=LOGIC_SHARE):
         """Yosys: the gates of a prepared kind."""
-        script = ABC_SCRIPTS[way].format(d=int(self.clock_ns * 1000 * LOGIC_SHARE))
+        script = ABC_SCRIPTS[way].format(d=int(self.clock_ns * 1000 * share))
         return f"""read_rtlil {prepared}
 abc -liberty {self.cells} -constr {self.folder}/abc.constr -script {script}
 opt_clean -purge
@@ -101,7 +103,7 @@ write_json {result}
         scripts = scripts.split("\n", 1)[1].replace(ROOT, "").replace(self.folder.replace(ROOT, ""), "").replace(self.cells.replace(ROOT, ""), "")
         source = self.texts[f"rtl/{kind.base}.v"]
         parts = [self.version, self.library.digest, scripts, source,
-                 json.dumps(self.included(source), sort_keys=True), str(OUTPUT_LOAD_FF), str(ACCEPTED_SHARE), str(fast),
+                 json.dumps(self.included(source), sort_keys=True), str(OUTPUT_LOAD_FF), str(ACCEPTED_SHARE), str(fast and FAST_SHARE),
                  json.dumps(sorted(kind.children.items())), json.dumps(sorted(kind.parameters.items()))]
         return hashlib.sha256("\0".join(parts).encode()).hexdigest()[:24]
 
@@ -126,7 +128,7 @@ write_json {result}
         best = None
         for way in ["speed"] if fast else ["area", "speed"]:
             result = f"{stem}.{way}"
-            self.yosys(self.map_script(way, prepared, result), stem)
+            self.yosys(self.map_script(way, prepared, result, FAST_SHARE if fast else LOGIC_SHARE), stem)
             with open(stem + ".yosys", encoding="utf-8", errors="replace") as file:
                 delays = re.findall(r"Delay = *([\d.]+) ps", file.read())
             delay = float(delays[-1]) if delays else 0.0
