@@ -56,13 +56,15 @@ set xrange [{3}:{4}]
 set yrange [{5}:{6}]
 plot $front using 1:2 with steps linewidth 2 linecolor "#4477aa" title "not beaten in both", \
   $all using 1:2 with points pointtype 7 pointsize 1.4 linecolor "#4477aa" notitle, \
-  $all using 1:2:3 with labels left rotate by 60 offset char 0.2,0.6 font ",10" notitle
+  $all using 1:($4 > 0 ? 1/0 : $2):3 with labels left rotate by 60 offset char 0.2,0.6 font ",9" notitle, \
+  $all using 1:($4 > 0 ? $2 : 1/0):3 with labels left rotate by -60 offset char 0.2,-0.6 font ",9" notitle
 )plot";
 
 /// A place in a panel, with the modes that are there.
 struct Point {
   double cost, psnr;
   std::vector<ArithmeticMode> modes;
+  bool below = false;  ///< where its label stands
 };
 
 /// "ieee flush, exact newton2": short where the modes are all combinations of some subnormal modes and slow units.
@@ -81,6 +83,21 @@ std::string label(const std::vector<ArithmeticMode>& modes) {
   }
   if (modes.size() == 1 || ends.size() != 1 || subnormals.size() * units.size() != modes.size()) return names;
   return fmt::format("{}, {}{}", fmt::join(subnormals, " "), fmt::join(units, " "), ends.front());
+}
+
+/// Above the point, or below it where the label of a neighbour is in the way: of points of one quality closer than `near`
+/// every other one, and what lies under another point.
+void place_labels(std::vector<Point>& points, double near) {
+  for (Point& point : points) {
+    for (const Point& other : points) {
+      if (std::fabs(point.cost - other.cost) > near) continue;
+      if (std::fabs(point.psnr - other.psnr) >= kSameQuality) {
+        point.below |= other.psnr > point.psnr && other.psnr < point.psnr + 10;
+      } else if (other.cost < point.cost) {
+        point.below = !other.below;
+      }
+    }
+  }
 }
 
 std::string panel(const TradeResult& result, const std::string& axis,
@@ -108,18 +125,19 @@ std::string panel(const TradeResult& result, const std::string& axis,
   if (modes < 2) return "";
   std::sort(points.begin(), points.end(),
             [](const Point& a, const Point& b) { return a.cost != b.cost ? a.cost < b.cost : a.psnr > b.psnr; });
+  const double width = std::max(points.back().cost - points.front().cost, 0.02 * points.back().cost);
+  place_labels(points, 0.1 * width);
   std::string all, front;
   double best = -INFINITY, lowest = INFINITY;
   for (const Point& point : points) {
-    const std::string line = fmt::format("{} {} \"{}\"\n", point.cost, point.psnr, label(point.modes));
+    const std::string line = fmt::format("{} {} \"{}\" {:d}\n", point.cost, point.psnr, label(point.modes), point.below);
     all += line;
     lowest = std::min(lowest, point.psnr);
     if (point.psnr > best + kSameQuality) front += line, best = point.psnr;
   }
-  const double width = std::max(points.back().cost - points.front().cost, 0.02 * points.back().cost);
   const double height = std::max(best - lowest, 1.0);
   return fmt::format(kPanel, all, front, axis, points.front().cost - 0.06 * width, points.back().cost + 0.3 * width,
-                     lowest - 0.1 * height, best + 0.55 * height);
+                     lowest - 0.5 * height, best + 0.75 * height);
 }
 
 }  // namespace
