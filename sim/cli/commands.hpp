@@ -97,6 +97,7 @@ struct CosimOptions {
   uint64_t programs = 100;
   uint64_t seed = 1;
   int length = 120;  ///< about how many instructions a program's body has
+  std::string mix;   ///< of instructions; empty: each seed chooses one
   bool quiet = false;
   bool shrink = true;                   ///< a program that fails is made short and saved
   std::string save = "tb/regressions";  ///< folder for it

@@ -157,10 +157,11 @@ int cosim_command(const CosimOptions& options) {
   uint64_t cycles = 0;
   Progress progress(options.quiet);
   for (uint64_t n = 0; n < options.programs; ++n) {
-    const RandomProgram program = make_random_program(cosim.configuration(), options.seed + n, options.length, options.units);
+    const RandomProgram program =
+        make_random_program(cosim.configuration(), options.seed + n, options.length, options.units, options.mix);
     run_or_report(cosim, options, program,
-                  fmt::format("raypool cosim --config {} --units {} --programs 1 --seed {} --length {}", options.config,
-                              options.units, program.seed, options.length),
+                  fmt::format("raypool cosim --config {} --units {} --programs 1 --seed {} --length {}{}", options.config,
+                              options.units, program.seed, options.length, options.mix.empty() ? "" : " --mix " + options.mix),
                   cycles);
     if (progress.due())
       progress.show(fmt::format("cosim {}: {} of {} programs, {} cycles", name, n + 1, options.programs, cycles));

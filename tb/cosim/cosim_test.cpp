@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <set>
 
 #include "cosim/coverage.hpp"
@@ -79,6 +80,42 @@ TEST(RandomPrograms, AreTheSameForTheSameSeedAndHaveEveryProfileAndFault) {
   EXPECT_GT(more_memory, 20);
 }
 
+TEST(RandomPrograms, OfTheOperandMixMeetThousandsOfPairsThatAllTypesComputeWith) {
+  const Configuration configuration = configuration_of(2, 2);
+  const RandomProgram program = make_random_program(configuration, 5, 1000, 1, "operands");
+  EXPECT_EQ(program.profile, "operands");
+  uint64_t executed = 0;
+  EXPECT_EQ(check_program(configuration, program, 1'000'000, &executed), "");
+  EXPECT_GT(executed, 10000u);
+  // The words of a pair are related: among any other words exponents are seldom so near.
+  uint64_t near = 0, pairs = 0;
+  for (uint32_t a = program.data_begin; a + 8 <= program.memory_bytes; a += 8, ++pairs) {
+    const auto first = static_cast<int>(program.memory.load(a) >> 23 & 255),
+               second = static_cast<int>(program.memory.load(a + 4) >> 23 & 255);
+    near += std::abs(first - second) <= 2 ? 1 : 0;
+  }
+  EXPECT_GT(pairs, 1000u);
+  EXPECT_GT(near * 6, pairs);
+  EXPECT_THROW(make_random_program(configuration, 1, 120, 1, "none of these"), InputError);
+}
+
+TEST(RandomPrograms, ReachAddressesWithAnyBitSet) {
+  const Configuration configuration = configuration_of(2, 2);
+  uint32_t loaded = 0, stored = 0;
+  for (uint64_t seed = 1; seed <= 400; ++seed) {
+    const RandomProgram program = make_random_program(configuration, seed);
+    for (size_t at = 1; at < program.program.code.size(); ++at) {
+      const Instruction access = unpack(program.program.code[at]), before = unpack(program.program.code[at - 1]);
+      if (access.info == nullptr || before.info == nullptr || before.info->mnemonic != "iadd" || !before.b_is_immediate) continue;
+      if (before.rd != access.ra) continue;
+      if (access.info->mnemonic == "ld") loaded |= before.immediate + access.immediate;
+      if (access.info->mnemonic == "st") stored |= before.immediate + access.immediate;
+    }
+  }
+  EXPECT_EQ(loaded >> 7, 0x7fffffffu >> 7);
+  EXPECT_EQ(stored >> 7, 0x7fffffffu >> 7);
+}
+
 TEST(ProgramCheck, NamesWhatBreaksTheRules) {
   const Configuration two = configuration_of(2, 1);
   const auto problem = [&](const std::vector<uint64_t>& code, uint32_t threads = 1) {
@@ -91,6 +128,13 @@ TEST(ProgramCheck, NamesWhatBreaksTheRules) {
   EXPECT_NE(problem({Encode("ret"), Encode("exit")}).find("fault 4"), std::string::npos);
   EXPECT_NE(problem({Encode("rin"), Encode("exit")}).find("nobody sends"), std::string::npos);
   EXPECT_NE(problem({Encode("mov").rd(1).imm(0), Encode("st").ra(1).rb(1), Encode("exit")}).find("its code"), std::string::npos);
+  RandomProgram far = program_of({Encode("mov").rd(1).imm(1u << 24), Encode("ld").rd(2).ra(1), Encode("exit")});
+  EXPECT_NE(check_program(two, far).find("fault"), std::string::npos);
+  far.memory_limit = 1u << 25;
+  EXPECT_EQ(check_program(two, far), "");
+  far.program.code[1] = Encode("st").ra(1).rb(1);
+  fill_memory(far);
+  EXPECT_NE(check_program(two, far).find("in a line for loads"), std::string::npos);
   const std::vector<uint64_t> race = {Encode("mov").rd(1).imm(2048), Encode("st").ra(1).rb(1), Encode("exit")};
   EXPECT_EQ(problem(race), "");
   EXPECT_NE(problem(race, 2).find("race at address 2048"), std::string::npos);

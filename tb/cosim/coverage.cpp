@@ -9,7 +9,6 @@ constexpr uint64_t kNever = ~uint64_t{0} / 2;
 // A store that waited for its line passes again within this many cycles of the line's last beat.
 constexpr uint64_t kReplayCycles = 12;
 constexpr uint32_t kInstructionId = 16;
-constexpr uint32_t kLineBytes = 64;
 
 /// Of a line in a unit's data cache.
 uint32_t line_key(uint32_t unit, uint32_t address) { return unit << 26 | address / kLineBytes; }

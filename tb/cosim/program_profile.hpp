@@ -3,8 +3,10 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <string_view>
 
+#include "isa/input_error.hpp"
 #include "isa/isa.hpp"
 
 namespace raypool {
@@ -12,7 +14,7 @@ namespace raypool {
 /// Weights are relative; 0: never.
 struct ProgramProfile {
   std::string_view name;
-  uint32_t plain, arithmetic, memory, ray, loop, jump, call, far, early_exit;  ///< kinds of statements
+  uint32_t plain, arithmetic, pairs, memory, ray, loop, jump, call, far, early_exit;  ///< kinds of statements
   std::array<uint32_t, 7> units;  ///< of plain instructions: tid, brh, -, int, flt, slw, -
   uint32_t guarded_percent;       ///< plain instructions with a guard
   uint32_t length_percent;        ///< of the length asked for
@@ -22,19 +24,32 @@ struct ProgramProfile {
   uint32_t weight(size_t unit) const { return unit < units.size() ? units[unit] : units[static_cast<size_t>(Unit::Flt)]; }
 };
 
+/// The mix whose programs find pairs of weighted operands (arith/test_operands.hpp) in memory.
+inline constexpr std::string_view kOperandMix = "operands";
+
 // clang-format off
 inline constexpr ProgramProfile kProgramProfiles[] = {
-  //  name        plain ari mem ray loop jump call far exit   tid brh  -  int flt slw -   guarded length kernels
-  {"mixed",         11,   1,  4,  3,  1,   1,   1,  0,  0,    {1,  4,  0,  4,  3,  1, 0},   33,    100,   3},
-  {"memory",         4,   0, 14,  0,  1,   1,   0,  0,  0,    {1,  2,  0,  4,  1,  0, 0},   33,     80,   3},
-  {"rays",           4,   0,  2, 12,  1,   1,   0,  0,  0,    {1,  2,  0,  3,  2,  1, 0},   33,     90,   5},
-  {"control",        5,   0,  1,  1,  5,   5,   5,  0,  1,    {1,  6,  0,  3,  1,  0, 0},   40,     70,   2},
-  {"code",           8,   0,  1,  0,  1,   2,   3,  2,  0,    {1,  2,  0,  3,  2,  1, 0},   25,    120,   2},
-  {"hazards",       30,   1,  2,  1,  1,   0,   0,  0,  0,    {2,  3,  0,  3,  3,  3, 0},   15,    100,   1},
-  {"launches",       6,   0,  2,  3,  0,   1,   1,  0,  1,    {2,  2,  0,  2,  2,  1, 0},   33,     15,   8},
-  {"arithmetic",     4, 16,  1,  0,  1,   0,   0,  0,  0,    {1,  3,  0,  4,  9,  9, 0},   10,    120,   1},
-  {"predicates",    12,   0,  2,  1,  2,   3,   1,  0,  1,    {1, 12,  0,  3,  1,  0, 0},   80,     80,   2},
+  //  name        plain ari prs mem ray loop jump call far exit   tid brh  -  int flt slw -   guarded length kernels
+  {"mixed",         11,   1,  0,  4,  3,  1,   1,   1,  0,  0,    {1,  4,  0,  4,  3,  1, 0},   33,    100,   3},
+  {"memory",         4,   0,  0, 14,  0,  1,   1,   0,  0,  0,    {1,  2,  0,  4,  1,  0, 0},   33,     80,   3},
+  {"rays",           4,   0,  0,  2, 12,  1,   1,   0,  0,  0,    {1,  2,  0,  3,  2,  1, 0},   33,     90,   5},
+  {"control",        5,   0,  0,  1,  1,  5,   5,   5,  0,  1,    {1,  6,  0,  3,  1,  0, 0},   40,     70,   2},
+  {"code",           8,   0,  0,  1,  0,  1,   2,   3,  2,  0,    {1,  2,  0,  3,  2,  1, 0},   25,    120,   2},
+  {"hazards",       30,   1,  0,  2,  1,  1,   0,   0,  0,  0,    {2,  3,  0,  3,  3,  3, 0},   15,    100,   1},
+  {"launches",       6,   0,  0,  2,  3,  0,   1,   1,  0,  1,    {2,  2,  0,  2,  2,  1, 0},   33,     15,   8},
+  {"arithmetic",     4, 16,  0,  1,  0,  1,   0,   0,  0,  0,    {1,  3,  0,  4,  9,  9, 0},   10,    120,   1},
+  {"predicates",    12,   0,  0,  2,  1,  2,   3,   1,  0,  1,    {1, 12,  0,  3,  1,  0, 0},   80,     80,   2},
+  {kOperandMix,      1,   0,  4,  0,  0,  0,   0,   0,  0,  0,    {1,  3,  0,  3,  7,  9, 0},    5,     20,   2},
 };
 // clang-format on
+
+/// Throws InputError when there is none of that name.
+inline const ProgramProfile& profile_named(std::string_view name) {
+  for (const ProgramProfile& profile : kProgramProfiles)
+    if (profile.name == name) return profile;
+  std::string names;
+  for (const ProgramProfile& profile : kProgramProfiles) names += (names.empty() ? "" : ", ") + std::string(profile.name);
+  throw InputError("there is no mix '" + std::string(name) + "' of random programs: take one of " + names);
+}
 
 }  // namespace raypool

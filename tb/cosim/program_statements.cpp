@@ -8,13 +8,18 @@ namespace {
 constexpr uint32_t kMostInstructions = 60000;
 constexpr uint32_t kFarJump = 20000;
 constexpr int kMostCalls = 40;
+// Programs end far below, and lanes reach twice as far as 2^31 from the least address of one.
+constexpr uint32_t kFarMemory = 1u << 22;
+constexpr uint32_t kFarLaneShifts = 20;  ///< 7 .. 26
+// Of a loop of pairs, which stays in the smallest instruction cache.
+constexpr int kLeastPairOperations = 24, kMostPairOperations = 44;
 
 }  // namespace
 
 void ProgramStatements::body(int length, int loops, int entries) {
   const size_t end = code_.size() + static_cast<size_t>(std::max(1, length));
   const ProgramProfile& p = profile_;
-  const uint32_t total = p.plain + p.arithmetic + p.memory + p.ray + p.loop + p.jump + p.call + p.far + p.early_exit;
+  const uint32_t total = p.plain + p.arithmetic + p.pairs + p.memory + p.ray + p.loop + p.jump + p.call + p.far + p.early_exit;
   while (code_.size() < end) {
     uint32_t kind = below(total);
     const auto is = [&kind](uint32_t weight) {
@@ -24,6 +29,8 @@ void ProgramStatements::body(int length, int loops, int entries) {
     };
     if (is(p.arithmetic)) {
       arithmetic();
+    } else if (is(p.pairs)) {
+      if (loops < kLoopDepth && entries < stack_depth_) pairs(loops, entries);
     } else if (is(p.memory)) {
       memory();
     } else if (is(p.ray)) {
@@ -61,7 +68,13 @@ void ProgramStatements::plain(int a, int b) {
   i.info = &plain_row();
   const InstructionInfo& info = *i.info;
   if (percent(profile_.guarded_percent)) i.guard = static_cast<uint8_t>(any_predicate()), i.guard_negated = chance(2);
-  i.rd = static_cast<uint8_t>(has_operand(info, Operand::Pd) ? free_predicate() : destination());
+  if (has_operand(info, Operand::Pd)) {
+    i.rd = static_cast<uint8_t>(free_predicate());
+  } else {
+    do {
+      i.rd = static_cast<uint8_t>(destination());
+    } while (i.rd == a || i.rd == b);
+  }
   if (has_operand(info, Operand::Ra)) i.ra = static_cast<uint8_t>(a >= 0 ? a : source());
   if (has_operand(info, Operand::B) && b < 0 && chance(2))
     i.b_is_immediate = true, i.immediate = value();
@@ -119,6 +132,34 @@ void ProgramStatements::arithmetic() {
   }
 }
 
+void ProgramStatements::pairs(int loops, int entries) {
+  const int a = kDataRegisters - 2, b = kDataRegisters - 1;
+  const int counter = kDataRegisters + loops;
+  const int going = kLoopPredicate + loops;
+  emit_immediate("mov", counter, 0, pair_rounds_);
+  emit_immediate("igt", going, counter, 0);
+  const size_t start = emit("loop", 0, 0, 0, going);
+  emit("tid", kAddress);
+  emit_immediate("imul", a, counter, static_cast<uint32_t>(configuration_.contents()));
+  emit("iadd", kAddress, kAddress, a);
+  emit_immediate("iadd", kAddress, kAddress, below(shared_bytes_));
+  emit_immediate("and", kAddress, kAddress, shared_bytes_ / 8 - 1);
+  emit_immediate("shl", kAddress, kAddress, 3);
+  emit("iadd", kAddress, kAddress, kShared);
+  emit_immediate("ld", a, kAddress, 0);
+  emit_immediate("ld", b, kAddress, 4);
+  const int operations = kLeastPairOperations + static_cast<int>(below(kMostPairOperations - kLeastPairOperations + 1));
+  for (int n = 0; n < operations; ++n) {
+    if (chance(2))
+      plain(a, b);
+    else
+      plain(b, chance(8) ? b : a);
+  }
+  emit_immediate("isub", counter, counter, 1);
+  emit_immediate("igt", going, counter, 0);
+  patch(start, here());
+}
+
 void ProgramStatements::address(bool own, uint32_t offset) {
   const uint32_t entries = own ? own_.entries : shared_bytes_ / 4;
   switch (below(6)) {
@@ -153,7 +194,33 @@ void ProgramStatements::address(bool own, uint32_t offset) {
   if (offset != 0) emit_immediate("isub", kAddress, kAddress, offset);
 }
 
+void ProgramStatements::far_memory() {
+  // What is stored there is nowhere, so loads have lines of their own, where memory reads as zero.
+  const bool store = chance(2);
+  const uint32_t line = ((below(1u << 31) >> below(8)) | kFarMemory) & ~(2 * kLineBytes - 1);
+  const uint32_t offset = chance(2) ? value() : 0;
+  emit("lane", kAddress);
+  if (chance(2)) {
+    emit_immediate("and", kAddress, kAddress, 15);
+    emit_immediate("shl", kAddress, kAddress, 2);
+  } else {
+    emit_immediate("shl", kAddress, kAddress, 7 + below(kFarLaneShifts));
+  }
+  emit_immediate("iadd", kAddress, kAddress, line + (store ? kLineBytes : 0) - offset);
+  Instruction i;
+  i.info = &instruction(store ? "st" : "ld");
+  if (chance(2)) i.guard = static_cast<uint8_t>(any_predicate()), i.guard_negated = chance(2);
+  i.ra = kAddress;
+  i.immediate = offset;
+  if (store)
+    i.rb = static_cast<uint8_t>(source());
+  else
+    i.rd = static_cast<uint8_t>(destination());
+  emit(i);
+}
+
 void ProgramStatements::memory() {
+  if (far_memory_told_ && chance(3)) return far_memory();
   const bool own = !chance(3);
   const uint32_t offset = chance(3) ? value() : 0;
   address(own, offset);

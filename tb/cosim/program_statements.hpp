@@ -26,13 +26,13 @@ class ProgramStatements : public ProgramEmitter {
   // p1 .. p12 are free, p13 .. p15 keep loops going.
   static constexpr int kLoopPredicate = 13;
 
-  ProgramStatements(const Configuration& configuration, uint64_t seed)
+  ProgramStatements(const Configuration& configuration, const ProgramProfile& profile, uint64_t seed)
       : ProgramEmitter(seed),
         configuration_(configuration),
         warps_(static_cast<uint32_t>(configuration.warps)),
         stack_depth_(configuration.stack_depth),
         instruction_cache_bytes_(static_cast<uint32_t>(configuration.instruction_cache_bytes)),
-        profile_(kProgramProfiles[seed % std::size(kProgramProfiles)]) {}
+        profile_(profile) {}
 
   /// `entries`: entries of the PC stack in use.
   void body(int length, int loops, int entries);
@@ -43,15 +43,19 @@ class ProgramStatements : public ProgramEmitter {
   int control_guard() { return chance(3) ? any_predicate() : 0; }
   int free_predicate() { return 1 + static_cast<int>(below(kLoopPredicate - 1)); }
   const InstructionInfo& plain_row();
-  /// One instruction that touches neither memory, rays nor control, with random operands, or of registers a and b.
+  /// One instruction that touches neither memory, rays nor control, with random operands, or of registers a and b, which stay.
   void plain(int a = -1, int b = -1);
   /// A few of them with a pair of operands that meet: sums that cancel or need rounding, products and quotients at the ends of
   /// the range.
   void arithmetic();
   uint32_t related_word(uint32_t word);
+  /// A loop whose threads each load another pair of operands in each round, for a few dozen instructions that compute.
+  void pairs(int loops, int entries);
   /// r13 = an aligned address: one for all lanes, neighbours, a stride, lines of one set, or anywhere; off by -offset.
   void address(bool own, uint32_t offset);
   void memory();
+  /// Loads and stores at addresses up to the told limit, far beyond what there is of memory.
+  void far_memory();
   /// At the top level the words of the current slice are known from statement to statement; elsewhere a statement writes all that
   /// it reads.
   void ray(bool top);
@@ -73,6 +77,8 @@ class ProgramStatements : public ProgramEmitter {
   ProgramProfile profile_;
   OwnWords own_;
   uint32_t shared_bytes_ = 1024;
+  uint32_t pair_rounds_ = 1;
+  bool far_memory_told_ = chance(4);
   bool import_pending_ = false;
   int written_words_ = 0;  ///< words 0 .. n-1 of the current slice are defined
 

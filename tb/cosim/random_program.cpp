@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "arith/test_operands.hpp"
 #include "cosim/program_statements.hpp"
 
 namespace raypool {
@@ -11,10 +12,13 @@ namespace {
 constexpr uint32_t kMostDataBytes = 384 * 1024;
 constexpr uint32_t kFarLimit = 20000;
 constexpr uint32_t kLastRestart = 3000;  ///< cycle
+constexpr uint32_t kLengthOfPairRound = 16;
+constexpr uint32_t kFarLimits = 1u << 20;  ///< from the end of the address space
 
 class Generator : public ProgramStatements {
  public:
-  Generator(const Configuration& configuration, uint64_t seed, int units) : ProgramStatements(configuration, seed) {
+  Generator(const Configuration& configuration, const ProgramProfile& profile, uint64_t seed, int units)
+      : ProgramStatements(configuration, profile, seed) {
     result_.seed = seed;
     result_.profile = std::string(profile_.name);
     result_.units = units;
@@ -26,6 +30,7 @@ class Generator : public ProgramStatements {
 
   RandomProgram make(int length) {
     choose_layout();
+    pair_rounds_ = 1 + static_cast<uint32_t>(length) / kLengthOfPairRound;
     if (chance(8)) result_.fault = static_cast<FaultCode>(1 + below(7));
     const int body_length = std::max(4, length * static_cast<int>(profile_.length_percent) / 100);
     if (chance(4)) filler(1 + below(chance(3) ? kFarLimit : 300));  // the program need not begin at 0
@@ -59,7 +64,7 @@ class Generator : public ProgramStatements {
     while (own_.entries > 64 && own_.entries * spread * (block_mask_ + 1) > 2 * kMostDataBytes) own_.entries /= 2;
     own_.bytes = own_.entries * spread;
     if (own_.shift == 2) own_.stride = own_.entries * 4;
-    shared_bytes_ = 1024u << below(4);
+    shared_bytes_ = (profile_.pairs > 0 ? 8192u : 1024u) << below(4);
   }
 
   void choose_data() {
@@ -78,6 +83,7 @@ class Generator : public ProgramStatements {
     const uint32_t longest = std::min(0xfff0u, result_.memory_bytes / 8);
     result_.program_length = length + (runs_out_ || !chance(3) ? 0 : below(longest - length));
     result_.memory_limit = result_.memory_bytes + (more_memory_told_ ? (below(1u << 30) >> below(24)) * 4 : 0);
+    if (far_memory_told_) result_.memory_limit = 0u - 4 * (64 + below(kFarLimits / 4));
     std::vector<uint64_t>& code = result_.program.code;
     const auto fix = [&code](const std::vector<size_t>& places, uint32_t limit) {
       for (const size_t at : places) code[at] = (code[at] & ~uint64_t{0xffffffff}) | static_cast<uint32_t>(code[at] + limit);
@@ -113,7 +119,8 @@ class Generator : public ProgramStatements {
   }
 
   void choose_stalls() {
-    const bool calm = chance(4);
+    // Arithmetic need not wait for memory.
+    const bool calm = profile_.pairs > 0 ? !chance(4) : chance(4);
     for (auto& style : result_.stalls.styles) style = calm ? StallStyle::None : static_cast<StallStyle>(below(kStallStyles));
   }
 
@@ -220,7 +227,7 @@ class Generator : public ProgramStatements {
   uint32_t kernels_ = 1;     ///< launches
   uint32_t block_mask_ = 1;  ///< bits of the block word that choose the kernel's words
   std::vector<Entry> entries_;
-  bool more_memory_told_ = chance(3);
+  bool more_memory_told_ = chance(3) || far_memory_told_;
   bool runs_out_ = false;                         ///< the program ends without `exit`
   std::vector<size_t> from_length_, from_limit_;  ///< instructions whose immediate is relative to what the unit is told
 };
@@ -265,12 +272,24 @@ void fill_memory(RandomProgram& program) {
     program.memory.store(static_cast<uint32_t>(i * 8), static_cast<uint32_t>(code[i]));
     program.memory.store(static_cast<uint32_t>(i * 8 + 4), static_cast<uint32_t>(code[i] >> 32));
   }
+  // A saved program may be of a mix that is no more.
+  if (program.profile == kOperandMix) {
+    arith::OperandSource operands(program.seed);
+    for (uint32_t a = program.data_begin; a < program.memory_bytes; a += 8) {
+      const auto [first, second] = operands.next();
+      program.memory.store(a, first);
+      program.memory.store(a + 4, second);
+    }
+    return;
+  }
   for (uint32_t a = program.data_begin; a < program.memory_bytes; a += 4)
     program.memory.store(a, random_word(mix(program.seed, 400, a)));
 }
 
-RandomProgram make_random_program(const Configuration& configuration, uint64_t seed, int length, int units) {
-  return Generator(configuration, seed, units).make(length);
+RandomProgram make_random_program(const Configuration& configuration, uint64_t seed, int length, int units,
+                                  const std::string& mix) {
+  const ProgramProfile& profile = mix.empty() ? kProgramProfiles[seed % std::size(kProgramProfiles)] : profile_named(mix);
+  return Generator(configuration, profile, seed, units).make(length);
 }
 
 }  // namespace raypool

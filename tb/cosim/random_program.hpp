@@ -14,6 +14,8 @@
 
 namespace raypool {
 
+inline constexpr uint32_t kLineBytes = 64;  ///< of a cache
+
 /// A program and what it needs around it: the job of one run.
 struct RandomProgram {
   Program program;  ///< entries "main", and "second" when there are two kernels to launch
@@ -43,8 +45,9 @@ struct RandomProgram {
 /// A program that shows one thing; the next seed shows another one. The same configuration and seed give the same program. Warps
 /// store only to words of their own and read those or words that nobody writes, so that the result does not depend on the order
 /// of warps; program_check.hpp says exactly what a program promises. `length`: about how many instructions the body of a kernel
-/// has. `units`: of the device.
-RandomProgram make_random_program(const Configuration& configuration, uint64_t seed, int length = 120, int units = 1);
+/// has. `units`: of the device. `mix`: of instructions, by name (program_profile.hpp); empty: the seed chooses it.
+RandomProgram make_random_program(const Configuration& configuration, uint64_t seed, int length = 120, int units = 1,
+                                  const std::string& mix = "");
 
 /// The limits that the unit is told: never less than there is, whatever shrinking has left.
 uint32_t told_length(const RandomProgram& program);

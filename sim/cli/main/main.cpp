@@ -89,6 +89,7 @@ int run(int argc, char** argv) {
   cosim_app->add_option("--length", cosim.length, "about how many instructions a program has, 1 to 2000")
       ->check(CLI::Range(1, 2000))
       ->capture_default_str();
+  cosim_app->add_option("--mix", cosim.mix, "one mix of instructions for all programs: mixed, memory, ..., operands");
   cosim_app->add_flag("--quiet", cosim.quiet, "no progress");
   cosim_app->add_flag("!--no-shrink", cosim.shrink, "leave a program that fails as it is");
   cosim_app->add_option("--save", cosim.save, "folder for the shrunk program")->capture_default_str();
