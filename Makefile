@@ -41,7 +41,7 @@ PROGRAMS  ?= 1000
 SEED      ?= 1
 COVERAGE  ?=
 # `make mutants`
-MUTANTS   ?= 600
+MUTANTS   ?= 500
 # `make numerics`
 GATES     ?= 0
 # `make extremes`

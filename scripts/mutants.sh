@@ -26,21 +26,30 @@ if [ "$(cat "$output/stamp" 2> /dev/null)" != "$digest" ]; then
   for parameter in $parameters; do chparam+=" -chparam ${parameter%=*} ${parameter#*=}"; done
   width=1
   while [ $((1 << width)) -le "$count" ]; do width=$((width + 1)); done
-  # The memories stay whole: faults are in what drives them. `-norom`: no table becomes one. What the language makes wider than needed (a loop's
-  # 32-bit index) is cut off first, since a fault there is none.
+  # The memories stay whole: faults are in what drives them. `-norom`: no table becomes one. Only logic that can matter gets faults: in one flat
+  # netlist Yosys takes out what an instance does not use (an operand that its ALU has no use for), and what the language makes wider than
+  # needed (a loop's 32-bit index); a choice by position is first made one of multiplexers, or bits that no position chooses would get some. Each instance has its own logic, so a fault is in one lane of one warp. A cell keeps its own place in the
+  # source, without those of the instances around it. At the end the wires are split where their drivers are, or Verilator would see loops
+  # through words whose bits depend on each other, and be four times as slow.
   cat > "$output/mutate.ys" << EOF
 read_verilog -Irtl rtl/*.v
 hierarchy -check -top compute_unit $chparam
 proc -norom
+setattr -mod -set keep_hierarchy 1 *ram_1rw *ram_1r1w *ram_2r1w
+setattr -unset src t:\$paramod* t:[a-z]*
+flatten
 opt_expr
 wreduce
+techmap -max_iter 1 t:\$shiftx t:\$shift
 opt -full
 wreduce
-opt_clean
-select -set logic *ram_1rw *ram_1r1w *ram_2r1w %u %u %n
-mutate -list $count -seed $seed -o $output/list.txt -ctrl mutant_i $width 1 @logic t:\$mem* %d
+opt -full
+cd compute_unit
+mutate -list $count -seed $seed -o $output/list.txt -ctrl mutant_i $width 1 t:\$mem* %n
+cd
 tee -q -o $output/apply.log script $output/list.txt
 delete -input compute_unit/w:mutant_i
+splitnets -driver
 opt_clean
 write_verilog -noattr $output/netlist.v
 EOF

@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "cosim/cosim.hpp"
+#include "cosim/program_profile.hpp"
 #include "lockstep/lockstep_unit.hpp"
 #include "lockstep/rtl_loader.hpp"
 
@@ -30,18 +31,19 @@ using Json = nlohmann::ordered_json;
 
 struct Options {
   std::string unit, list, config, survivors, json;
-  uint64_t programs = 60;
+  uint64_t programs = 120, long_programs = 10, operand_programs = 3;
   uint64_t seed = 1;
-  int length = 80;
+  int length = 80, long_length = 800, operand_length = 1000;
   unsigned jobs = std::max(1u, std::thread::hardware_concurrency());
   std::vector<int> only;
+  bool resume = false;
   bool verbose = false;
 };
 
 /// One fault, as Yosys' mutate describes it.
 struct Mutant {
   int number = 0;
-  std::string id;      ///< what it is: mode, module, cell, port and bit, without the names that Yosys makes up from parameters
+  std::string id;      ///< what it is: mode, port, bit, cell, without the numbers that Yosys makes up
   std::string module;  ///< of rtl/
   std::string source;  ///< file and line
 };
@@ -58,8 +60,8 @@ constexpr std::array<std::string_view, 5> kKindNames = {"survived", "difference"
 
 // A mutant that hangs must be found soon: stalls of the host are some hundred cycles long.
 constexpr uint64_t kWatchdogCycles = 4000;
-constexpr uint64_t kCycleLimit = 400'000;
-constexpr unsigned kSecondsLimit = 300;
+constexpr uint64_t kCycleLimit = 2'000'000;
+constexpr unsigned kSecondsLimit = 1800;
 
 std::string option_of(const std::string& line, const std::string& name) {
   std::smatch match;
@@ -73,23 +75,25 @@ std::vector<Mutant> read_list(const std::string& path) {
   for (std::string line; std::getline(file, line);) {
     Mutant mutant;
     mutant.number = static_cast<int>(mutants.size()) + 1;
-    // $paramod\name\PARAMETER=... and $paramod$hash\name
-    std::string module = option_of(line, "module");
-    static const std::regex kParametrised(R"(^\$paramod(\$[0-9a-f]+)?\\([a-z_0-9]+).*)");
-    mutant.module = std::regex_replace(module, kParametrised, "$2");
-    // Cells carry the place that they come from and a running number; the place is enough.
-    static const std::regex kSource(R"(-src [^ ]*?([a-z_0-9]+\.vh?):([0-9]+)\.)");
+    // Lines of rtl/*.v, the first one with a number (line 0 is a whole loop); a header's place says little of the module.
+    static const std::regex kSource(R"(-src rtl/([a-z_0-9]+)\.v:([0-9]+)\.)");
     for (auto i = std::sregex_iterator(line.begin(), line.end(), kSource); i != std::sregex_iterator(); ++i) {
-      if ((*i)[1] != mutant.module + ".v" && !mutant.source.empty()) continue;
-      mutant.source = (*i)[1].str() + ":" + (*i)[2].str();
+      if (!mutant.module.empty() && (*i)[2] == "0") continue;
+      const bool numbered = mutant.source.size() > 2 && mutant.source.substr(mutant.source.size() - 2) != ":0";
+      if (numbered) break;
+      mutant.module = (*i)[1];
+      mutant.source = mutant.module + ".v:" + (*i)[2].str();
     }
+    if (mutant.module.empty()) mutant.module = "(made by Yosys)";
+    // A cell's name: where it is in the hierarchy, what it is, its place, and a running number, which says nothing.
     std::string cell = option_of(line, "cell");
-    static const std::regex kPlaced(R"(^\$([a-z_]+)\$[^ ]*?([a-z_0-9]+\.vh?:[0-9]+)\$[0-9]+(.*)$)");
-    static const std::regex kMade(R"(^\$(auto|techmap|flatten|procmux|procdff)(\$[^$]*)*)");
-    cell = std::regex_replace(cell, kPlaced, "$1 at $2$3");
-    if (cell[0] == '$') cell = std::regex_replace(cell, std::regex(R"(\$[0-9]+)"), "").substr(1);
-    mutant.id = fmt::format("{}: {}, {}[{}] of {}", mutant.module, option_of(line, "mode"), option_of(line, "port"),
-                            option_of(line, "portbit"), cell);
+    static const std::regex kPlaced(R"(\$([a-z_]+)\$[^ $]*?([a-z_0-9]+\.vh?:[0-9]+)\$[0-9]+)");
+    static const std::regex kMade(R"(\$[^ $]*\.cc:[0-9]+:)"), kNoise(R"(^\$(flatten|auto|techmap)+|\\|\$[0-9]+|\$)");
+    cell = std::regex_replace(std::regex_replace(cell, kPlaced, "$1 at $2"), kMade, "");
+    cell = std::regex_replace(cell, kNoise, "");
+    if (cell.find(" at ") == std::string::npos && !mutant.source.empty()) cell += " at " + mutant.source;
+    mutant.id =
+        fmt::format("{}, {}[{}] of {}", option_of(line, "mode"), option_of(line, "port"), option_of(line, "portbit"), cell);
     const std::string control = option_of(line, "ctrlbit");
     if (!control.empty()) mutant.id += ", by bit " + control;
     const std::string wire = option_of(line, "wire");
@@ -99,27 +103,44 @@ std::vector<Mutant> read_list(const std::string& path) {
   return mutants;
 }
 
+/// Runs one program on the unit whose mutant is chosen; the outcome's kind and text.
+void run_program(const Options& options, const Configuration& configuration, const RandomProgram& program, Outcome& outcome) {
+  Memory memory = program.memory;
+  LockstepOptions lockstep;
+  lockstep.watchdog_cycles = kWatchdogCycles;
+  try {
+    const auto unit = make_lockstep_unit(configuration, load_rtl_unit(options.unit, configuration), memory, lockstep);
+    run_random_program(*unit, memory, program, program.seed, kCycleLimit);
+  } catch (const LockstepDifference& difference) {
+    outcome.text = difference.what();
+    outcome.kind = outcome.text.find("hang: ") != std::string::npos ? Outcome::Kind::Hang : Outcome::Kind::Difference;
+  } catch (const std::exception& error) {
+    outcome.text = error.what();
+    outcome.kind = Outcome::Kind::Stopped;
+  }
+}
+
+/// Short programs of all mixes, which notice most; then long ones, one of each mix; then long ones that meet thousands of
+/// operands.
 Outcome run_mutant(const Options& options, const Configuration& configuration, int number) {
   setenv("RAYPOOL_MUTANT", std::to_string(number).c_str(), 1);
   const auto kept = load_rtl_unit(options.unit, configuration);  // keeps the library loaded
+  struct Phase {
+    uint64_t programs;
+    int length;
+    std::string_view mix;
+  };
+  const Phase phases[] = {{options.programs, options.length, ""},
+                          {options.long_programs, options.long_length, ""},
+                          {options.operand_programs, options.operand_length, kOperandMix}};
   Outcome outcome;
-  for (uint64_t n = 0; n < options.programs; ++n) {
-    outcome.programs = n + 1;
-    const RandomProgram program = make_random_program(configuration, options.seed + n, options.length);
-    Memory memory = program.memory;
-    LockstepOptions lockstep;
-    lockstep.watchdog_cycles = kWatchdogCycles;
-    try {
-      const auto unit = make_lockstep_unit(configuration, load_rtl_unit(options.unit, configuration), memory, lockstep);
-      run_random_program(*unit, memory, program, program.seed, kCycleLimit);
-    } catch (const LockstepDifference& difference) {
-      outcome.text = difference.what();
-      outcome.kind = outcome.text.find("hang: ") != std::string::npos ? Outcome::Kind::Hang : Outcome::Kind::Difference;
-    } catch (const std::exception& error) {
-      outcome.text = error.what();
-      outcome.kind = Outcome::Kind::Stopped;
+  for (const Phase& phase : phases) {
+    for (uint64_t n = 0; n < phase.programs; ++n) {
+      ++outcome.programs;
+      run_program(options, configuration,
+                  make_random_program(configuration, options.seed + n, phase.length, 1, std::string(phase.mix)), outcome);
+      if (outcome.kind != Outcome::Kind::Survived) return outcome;
     }
-    if (outcome.kind != Outcome::Kind::Survived) break;
   }
   return outcome;
 }
@@ -182,16 +203,39 @@ std::string to_json(const Mutant& mutant, const Outcome& outcome) {
   return json.dump() + "\n";
 }
 
+/// Outcomes in the --json file of a run that was interrupted: {id of the mutant: outcome}.
+std::map<std::string, Outcome> read_outcomes(const std::string& path) {
+  std::map<std::string, Outcome> outcomes;
+  std::ifstream file(path);
+  for (std::string line; std::getline(file, line);) {
+    const Json json = Json::parse(line);
+    const auto kind = std::find(kKindNames.begin(), kKindNames.end(), json.at("outcome").get<std::string>());
+    if (kind == kKindNames.end()) throw InputError(path + ": an outcome is unknown");
+    outcomes[json.at("mutant").get<std::string>()] = {static_cast<Outcome::Kind>(kind - kKindNames.begin()),
+                                                      json.at("programs").get<uint64_t>(), json.at("text").get<std::string>()};
+  }
+  return outcomes;
+}
+
 std::vector<Outcome> run_all(const Options& options, const Configuration& configuration, const std::vector<Mutant>& mutants) {
   std::vector<Outcome> outcomes(mutants.size());
+  std::vector<size_t> todo;
+  const std::map<std::string, Outcome> known = options.resume ? read_outcomes(options.json) : std::map<std::string, Outcome>();
+  for (size_t i = 0; i < mutants.size(); ++i) {
+    const auto found = known.find(mutants[i].id);
+    if (found != known.end())
+      outcomes[i] = found->second;
+    else
+      todo.push_back(i);
+  }
   std::vector<Worker> workers;
   size_t next = 0, done = 0;
   std::ofstream file;
-  if (!options.json.empty()) file.open(options.json);
+  if (!options.json.empty()) file.open(options.json, options.resume ? std::ios::app : std::ios::out);
   auto shown = std::chrono::steady_clock::now();
-  while (done < mutants.size()) {
-    while (workers.size() < options.jobs && next < mutants.size()) {
-      workers.push_back(start(options, configuration, next, mutants[next].number));
+  while (done < todo.size()) {
+    while (workers.size() < options.jobs && next < todo.size()) {
+      workers.push_back(start(options, configuration, todo[next], mutants[todo[next]].number));
       ++next;
     }
     std::vector<pollfd> polls;
@@ -208,7 +252,7 @@ std::vector<Outcome> run_all(const Options& options, const Configuration& config
     }
     if (std::chrono::steady_clock::now() - shown < std::chrono::seconds(10)) continue;
     shown = std::chrono::steady_clock::now();
-    fmt::print(stderr, "mutants: {} of {} done\n", done, mutants.size());
+    fmt::print(stderr, "mutants: {} of {} done\n", done, todo.size());
   }
   return outcomes;
 }
@@ -294,11 +338,19 @@ int run(int argc, char** argv) {
   app.add_option("--config", options.config, "their configuration")->required();
   app.add_option("--survivors", options.survivors, "JSON file with the judged survivors, to be compared");
   app.add_option("--json", options.json, "file that gets a JSON object a line for each mutant as it ends");
-  app.add_option("--programs", options.programs, "random programs that a mutant must survive")->capture_default_str();
+  app.add_option("--programs", options.programs, "random programs of all mixes that come first")->capture_default_str();
+  app.add_option("--long-programs", options.long_programs, "then, long ones")->capture_default_str();
+  app.add_option("--operand-programs", options.operand_programs,
+                 "then, long ones of mix operands; a mutant that survives them survives")
+      ->capture_default_str();
   app.add_option("--seed", options.seed, "of the first program")->capture_default_str();
-  app.add_option("--length", options.length, "about how many instructions a program has")->capture_default_str();
+  app.add_option("--length", options.length, "about how many instructions a program of all mixes has")->capture_default_str();
+  app.add_option("--long-length", options.long_length, "of a long one")->capture_default_str();
+  app.add_option("--operand-length", options.operand_length, "of a long one of mix operands")->capture_default_str();
   app.add_option("--jobs", options.jobs, "processes")->capture_default_str();
   app.add_option("--only", options.only, "run these mutants only (numbers)");
+  app.add_flag("--resume", options.resume,
+               "take over what --json has of an interrupted run of the same unit, and run the others");
   app.add_flag("--verbose", options.verbose, "print the whole report of each difference");
   CLI11_PARSE(app, argc, argv);
 
