@@ -66,6 +66,7 @@ struct FaultProgram {
   const char* name;
   std::vector<uint64_t> code;
   FaultCode fault;
+  uint32_t pc = 0;  // of the launch
 };
 
 TEST_P(RtlUnit, ReportsTheModelsFaults) {
@@ -75,6 +76,8 @@ TEST_P(RtlUnit, ReportsTheModelsFaults) {
       {"illegal", {Encode("mov").rd(1).imm(1), uint64_t{0xf} << 60, Encode("exit")}, FaultCode::IllegalInstruction},
       {"outside", {Encode("mov").rd(1).imm(1), Encode("jany").target(99)}, FaultCode::PcOutsideProgram},
       {"end", {Encode("mov").rd(1).imm(1)}, FaultCode::PcOutsideProgram},
+      // All warps in the same cycle: the lowest counts.
+      {"launch", {Encode("exit")}, FaultCode::PcOutsideProgram, 99},
       {"overflow", {Encode("call").target(0, 99), Encode("exit")}, FaultCode::StackOverflow},
       {"underflow", {Encode("mov").rd(1).imm(1), Encode("ret"), Encode("exit")}, FaultCode::StackUnderflow},
       {"misaligned", {Encode("mov").rd(1).imm(1026), Encode("ld").rd(1).ra(1), Encode("exit")}, FaultCode::Misaligned},
@@ -91,6 +94,7 @@ TEST_P(RtlUnit, ReportsTheModelsFaults) {
     unit->reset(static_cast<uint32_t>(program.code.size()), kMemoryBytes);
     TestChip chip(*unit, memory);
     LaunchCommand command;
+    command.pc = program.pc;
     command.threads = static_cast<uint32_t>(configuration.contents());
     chip.launches.push_back(command);
     try {
