@@ -30,7 +30,7 @@ void ProgramStatements::body(int length, int loops, int entries) {
     if (is(p.arithmetic)) {
       arithmetic();
     } else if (is(p.pairs)) {
-      if (loops < kLoopDepth && entries < stack_depth_) pairs(loops, entries);
+      if (loops < kLoopDepth && entries < stack_depth_) pairs(loops);
     } else if (is(p.memory)) {
       memory();
     } else if (is(p.ray)) {
@@ -132,7 +132,7 @@ void ProgramStatements::arithmetic() {
   }
 }
 
-void ProgramStatements::pairs(int loops, int entries) {
+void ProgramStatements::pairs(int loops) {
   const int a = kDataRegisters - 2, b = kDataRegisters - 1;
   const int counter = kDataRegisters + loops;
   const int going = kLoopPredicate + loops;

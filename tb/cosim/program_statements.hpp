@@ -50,7 +50,7 @@ class ProgramStatements : public ProgramEmitter {
   void arithmetic();
   uint32_t related_word(uint32_t word);
   /// A loop whose threads each load another pair of operands in each round, for a few dozen instructions that compute.
-  void pairs(int loops, int entries);
+  void pairs(int loops);
   /// r13 = an aligned address: one for all lanes, neighbours, a stride, lines of one set, or anywhere; off by -offset.
   void address(bool own, uint32_t offset);
   void memory();
