@@ -51,21 +51,26 @@ void ProgramStatements::body(int length, int loops, int entries) {
   }
 }
 
-const InstructionInfo& ProgramStatements::plain_row() {
+size_t ProgramStatements::plain_type() {
   uint32_t total = 0;
   for (size_t type = 0; type < kUnits; ++type) total += profile_.weight(type);
   uint32_t pick = below(total);
   size_t unit = 0;
   while (pick >= profile_.weight(unit)) pick -= profile_.weight(unit++);
+  return unit;
+}
+
+const InstructionInfo& ProgramStatements::plain_row(std::optional<size_t> type) {
+  const size_t unit = type ? *type : plain_type();
   for (;;) {
     const InstructionInfo& info = kInstructions[below(std::size(kInstructions))];
     if (static_cast<size_t>(info.unit) == unit && !info.control && configuration_.has(info.needs)) return info;
   }
 }
 
-void ProgramStatements::plain(int a, int b) {
+void ProgramStatements::plain(int a, int b, std::optional<size_t> type) {
   Instruction i;
-  i.info = &plain_row();
+  i.info = &plain_row(type);
   const InstructionInfo& info = *i.info;
   if (percent(profile_.guarded_percent)) i.guard = static_cast<uint8_t>(any_predicate()), i.guard_negated = chance(2);
   if (has_operand(info, Operand::Pd)) {
@@ -149,11 +154,13 @@ void ProgramStatements::pairs(int loops) {
   emit_immediate("ld", a, kAddress, 0);
   emit_immediate("ld", b, kAddress, 4);
   const int operations = kLeastPairOperations + static_cast<int>(below(kMostPairOperations - kLeastPairOperations + 1));
+  // One type alone in half of the loops: all warps want it at once.
+  const std::optional<size_t> type = chance(2) ? std::optional(plain_type()) : std::nullopt;
   for (int n = 0; n < operations; ++n) {
     if (chance(2))
-      plain(a, b);
+      plain(a, b, type);
     else
-      plain(b, chance(8) ? b : a);
+      plain(b, chance(8) ? b : a, type);
   }
   emit_immediate("isub", counter, counter, 1);
   emit_immediate("igt", going, counter, 0);

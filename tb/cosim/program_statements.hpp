@@ -2,6 +2,8 @@
 // valid (program_check.hpp) wherever it is put.
 #pragma once
 
+#include <optional>
+
 #include "cosim/program_emitter.hpp"
 #include "cosim/program_profile.hpp"
 
@@ -42,9 +44,12 @@ class ProgramStatements : public ProgramEmitter {
   /// These instructions do what they do whatever their mask is.
   int control_guard() { return chance(3) ? any_predicate() : 0; }
   int free_predicate() { return 1 + static_cast<int>(below(kLoopPredicate - 1)); }
-  const InstructionInfo& plain_row();
-  /// One instruction that touches neither memory, rays nor control, with random operands, or of registers a and b, which stay.
-  void plain(int a = -1, int b = -1);
+  /// An ALU type, as often as the mix wants it.
+  size_t plain_type();
+  const InstructionInfo& plain_row(std::optional<size_t> type);
+  /// One instruction that touches neither memory, rays nor control, of any type or this one, with random operands, or of
+  /// registers a and b, which stay.
+  void plain(int a = -1, int b = -1, std::optional<size_t> type = std::nullopt);
   /// A few of them with a pair of operands that meet: sums that cancel or need rounding, products and quotients at the ends of
   /// the range.
   void arithmetic();

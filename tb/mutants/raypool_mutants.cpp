@@ -31,7 +31,7 @@ using Json = nlohmann::ordered_json;
 
 struct Options {
   std::string unit, list, config, survivors, json;
-  uint64_t programs = 120, long_programs = 10, operand_programs = 3;
+  uint64_t programs = 120, long_programs = 10, operand_programs = 12;
   uint64_t seed = 1;
   int length = 80, long_length = 800, operand_length = 1000;
   unsigned jobs = std::max(1u, std::thread::hardware_concurrency());
