@@ -201,6 +201,19 @@ void ProgramStatements::address(bool own, uint32_t offset) {
   if (offset != 0) emit_immediate("isub", kAddress, kAddress, offset);
 }
 
+void ProgramStatements::access(bool store, uint32_t offset) {
+  Instruction i;
+  i.info = &instruction(store ? "st" : "ld");
+  if (chance(2)) i.guard = static_cast<uint8_t>(any_predicate()), i.guard_negated = chance(2);
+  i.ra = kAddress;
+  i.immediate = offset;
+  if (store)
+    i.rb = static_cast<uint8_t>(source());
+  else
+    i.rd = static_cast<uint8_t>(destination());
+  emit(i);
+}
+
 void ProgramStatements::far_memory() {
   // What is stored there is nowhere, so loads have lines of their own, where memory reads as zero.
   const bool store = chance(2);
@@ -214,16 +227,7 @@ void ProgramStatements::far_memory() {
     emit_immediate("shl", kAddress, kAddress, 7 + below(kFarLaneShifts));
   }
   emit_immediate("iadd", kAddress, kAddress, line + (store ? kLineBytes : 0) - offset);
-  Instruction i;
-  i.info = &instruction(store ? "st" : "ld");
-  if (chance(2)) i.guard = static_cast<uint8_t>(any_predicate()), i.guard_negated = chance(2);
-  i.ra = kAddress;
-  i.immediate = offset;
-  if (store)
-    i.rb = static_cast<uint8_t>(source());
-  else
-    i.rd = static_cast<uint8_t>(destination());
-  emit(i);
+  access(store, offset);
 }
 
 void ProgramStatements::memory() {
@@ -237,17 +241,7 @@ void ProgramStatements::memory() {
     if (chance(4)) plain();
     if (chance(8) && written_words_ > 0 && !in_function_)
       emit_word("rld", static_cast<int>(below(static_cast<uint32_t>(written_words_))), destination());
-    Instruction i;
-    const bool store = own && chance(2);
-    i.info = &instruction(store ? "st" : "ld");
-    if (chance(2)) i.guard = static_cast<uint8_t>(any_predicate()), i.guard_negated = chance(2);
-    i.ra = kAddress;
-    i.immediate = offset;
-    if (store)
-      i.rb = static_cast<uint8_t>(source());
-    else
-      i.rd = static_cast<uint8_t>(destination());
-    emit(i);
+    access(own && chance(2), offset);
   }
 }
 

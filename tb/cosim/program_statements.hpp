@@ -58,6 +58,8 @@ class ProgramStatements : public ProgramEmitter {
   void pairs(int loops);
   /// r13 = an aligned address: one for all lanes, neighbours, a stride, lines of one set, or anywhere; off by -offset.
   void address(bool own, uint32_t offset);
+  /// `st` or `ld` at r13 + offset.
+  void access(bool store, uint32_t offset);
   void memory();
   /// Loads and stores at addresses up to the told limit, far beyond what there is of memory.
   void far_memory();
