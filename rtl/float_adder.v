@@ -17,13 +17,13 @@ module float_adder #(
   input  wire [BITS-1:0] b_i,
   output reg  [BITS-1:0] result_o
 );
+  `include "free_running.vh"
   localparam integer E = EXPONENT_BITS;
   localparam integer M = MANTISSA_BITS;
   localparam integer A = M + 4;             // aligned mantissa: leading bit, M bits, guard, round, sticky
   localparam integer W = M + 5;             // sum, with its carry
   localparam integer STEPS = $clog2(W);     // of the normaliser: shifts by 2^(STEPS-1) .. 1
   localparam integer EARLY = STEPS - 3;     // steps 2^(STEPS-1) .. 8 are taken in stage 1
-
   localparam [E-1:0] ONE = 1;
   localparam [E-4:0] ONE_HIGH = 1;
 
@@ -75,7 +75,7 @@ module float_adder #(
       s1_large_q <= swap ? mantissa_b : mantissa_a;
       s1_small_q <= {aligned[A-1:1], aligned[0] || lost != {A{1'b0}}};
     end
-    if (enable_i[1]) begin : stage1
+    if (`STAGE_LOADS(enable_i[1])) begin : stage1
       reg [W-1:0] sum, guide;
       reg [E-1:0] exponent;
       integer step;

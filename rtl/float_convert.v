@@ -19,7 +19,7 @@ module float_convert #(
   reg s1_sign_q, s2_sign_q, s1_saturate_q, s2_saturate_q;
   reg [4:0] s1_places_q, s2_places_q;    // rotation to the left: for 2 the digits before the point, for 3 the leading zeros
   reg [31:0] s1_value_q, s2_value_q;
-
+  `include "free_running.vh"
   always @(posedge clk_i) begin
     if (enable_i[0]) begin : stage0
       reg nan_a, nan_b, below;
@@ -45,7 +45,7 @@ module float_convert #(
       s1_places_q <= (a_i[30:23] < 8'd127 || nan_a) ? 5'd0 : a_i[27:23] + 5'd2;
       s1_saturate_q <= a_i[30:23] >= 8'd158 && !nan_a;
     end
-    if (enable_i[1]) begin : stage1
+    if (`STAGE_LOADS(enable_i[1])) begin : stage1
       reg [31:0] value, kept;
       // The lowest bit of each part does not matter: if no other one is set the number is 1 or 0.
       reg [14:0] half;

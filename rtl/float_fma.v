@@ -25,6 +25,7 @@ module float_fma #(
   input  wire            multiply_i,      // a * b: c_i is not looked at
   output reg  [BITS-1:0] result_o
 );
+  `include "free_running.vh"
   localparam integer E = EXPONENT_BITS;
   localparam integer M = MANTISSA_BITS;
   localparam integer P = M + 1;
@@ -38,7 +39,6 @@ module float_fma #(
   localparam [X-1:0] BIAS = {3'b000, {E-1{1'b1}}};
   localparam integer ABOVE = P + 3;         // from a product in [1, 2) to the top
   localparam integer LIMIT_AT_ONE = (SUBNORMALS == 0) ? 1 : 0;
-
   // Stage 0 -> 1. Tag: {nan, infinite, sign of an infinity, sign of the product, effective subtraction, no result flushed away}
   reg [3:0] s1_tag_q, s2_tag_q, s3_tag_q;
   localparam integer NAN = 3, INFINITE = 2, SIGN = 1, SUBTRACT = 0;
@@ -112,7 +112,7 @@ module float_fma #(
         s1_exponent_q <= top;
       end
     end
-    if (enable_i[1]) begin : stage1
+    if (`STAGE_LOADS(enable_i[1])) begin : stage1
       reg [W+P-1:0] aligned;
       aligned = {s1_c_q, {W{1'b0}}} >> s1_distance_q;
       s2_product_q <= s1_sum_q + s1_carry_q;
@@ -120,7 +120,7 @@ module float_fma #(
       s2_exponent_q <= s1_exponent_q;
       s2_tag_q <= s1_tag_q;
     end
-    if (enable_i[2]) begin : stage2
+    if (`STAGE_LOADS(enable_i[2])) begin : stage2
       reg [W:0] product, addend;
       product = {{P+3{1'b0}}, s2_product_q, {LOW{1'b0}}};
       addend = {1'b0, s2_addend_q} ^ {W+1{s2_tag_q[SUBTRACT]}};
@@ -128,7 +128,7 @@ module float_fma #(
       s3_exponent_q <= s2_exponent_q;
       s3_tag_q <= s2_tag_q;
     end
-    if (enable_i[3]) begin : stage3
+    if (`STAGE_LOADS(enable_i[3])) begin : stage3
       reg [W-1:0] magnitude, shifted;
       reg [X-1:0] limit;
       reg [7:0] guide;

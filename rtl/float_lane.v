@@ -21,9 +21,9 @@ module float_lane #(
   input  wire [31:0] c_i,
   output wire [31:0] result_o
 );
+  `include "free_running.vh"
   wire [31:0] converted;
   reg [31:0] result_q;
-
   float_convert #(.SUBNORMALS(SUBNORMALS)) convert (
     .clk_i(clk_i), .enable_i(convert_enable_i[2:0]), .op_i(convert_op_i), .a_i(a_i), .b_i(b_i), .result_o(converted));
 
@@ -45,8 +45,8 @@ module float_lane #(
         .clk_i(clk_i), .enable_i(enable), .a_i(a_i), .b_i(add_enable_i[0] ? 32'h3f800000 : b_i),
         .c_i(add_enable_i[0] ? {b_i[31] ^ subtract_i, b_i[30:0]} : c_i), .multiply_i(multiply_enable_i[0]), .result_o(fused));
       always @(posedge clk_i) begin
-        if (convert_enable_i[2]) s3_converted_q <= converted;
-        if (convert_enable_i[3]) s4_converted_q <= s3_converted_q;
+        if (`STAGE_LOADS(convert_enable_i[2])) s3_converted_q <= converted;
+        if (`STAGE_LOADS(convert_enable_i[3])) s4_converted_q <= s3_converted_q;
         if (enable[4] || convert_enable_i[4]) result_q <= convert_enable_i[4] ? s4_converted_q : fused;
       end
     end

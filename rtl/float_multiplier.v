@@ -18,6 +18,7 @@ module float_multiplier #(
   input  wire [BITS-1:0] b_i,
   output reg  [BITS-1:0] result_o
 );
+  `include "free_running.vh"
   localparam integer E = EXPONENT_BITS;
   localparam integer M = MANTISSA_BITS;
   localparam integer P = 2*M + 2;           // bits of the product
@@ -27,7 +28,6 @@ module float_multiplier #(
   localparam integer FAR = M + 3;
   localparam [X-1:0] BIAS = {3'b000, {E-1{1'b1}}};
   localparam [X-1:0] ONE = {{X-1{1'b0}}, 1'b1};
-
   // Stage 0 -> 1
   reg s1_nan_q, s1_infinite_q, s1_zero_q, s1_sign_q;
   reg [X-1:0] s1_exponent_q;                // of a product in [1, 2), biased
@@ -86,7 +86,7 @@ module float_multiplier #(
       s1_less_q <= (SUBNORMALS != 0 || normal_a == normal_b) ? {M+1{1'b0}} : {1'b1, normal_a ? a_i[M-1:0] : b_i[M-1:0]};
       s1_zero_q <= zero_a || zero_b || !(normal_a || normal_b);
     end
-    if (enable_i[1]) begin : stage1
+    if (`STAGE_LOADS(enable_i[1])) begin : stage1
       reg [P-1:0] product;
       reg [X-1:0] exponent, distance;
       product = s1_sum_q + s1_carry_q - {1'b0, s1_less_q, {M{1'b0}}};

@@ -21,6 +21,7 @@ module slow_exact (
   input  wire [4:0]  shift_3_i,
   output reg  [31:0] result_o
 );
+  `include "free_running.vh"
   `include "ones_below.vh"
   `include "booth_digits.vh"
   // What travels with a task; registers sK_* are valid in stage K.
@@ -32,7 +33,6 @@ module slow_exact (
   reg [TAG_BITS-1:EXPONENT] s9_tag_q;
   reg [24:0] s3_v_q, s4_v_q, s5_v_q, s6_v_q, s7_v_q;
   reg [24:0] s3_w_q, s4_w_q, s5_w_q, s6_w_q, s7_w_q, s8_w_q;
-
   wire [28:0] s2_row;
   slow_line_table line_table (.clk_i(clk_i), .enable_i(enable_i[0]), .index_i(index_1_i[8:1]), .row_o(s2_row));
   wire [27:0] line_sum, line_carry;
@@ -73,8 +73,8 @@ module slow_exact (
     .a_i(s9_product_q), .b_i({s9_n_q, 1'b1}), .c_i({OUT{1'b0}}), .sum_o(s9_sum), .carry_o(s9_carry));
 
   always @(posedge clk_i) begin
-    if (enable_i[8:1] != 8'd0) begin
-      if (enable_i[1]) begin
+    if (`STAGE_LOADS(enable_i[8:1] != 8'd0)) begin
+      if (`STAGE_LOADS(enable_i[1])) begin
         s3_y_q <= s2_y[27:13];
         s3_y_digits_q <= s2_y_digits[23:0];
         s3_root_q <= root_i;
@@ -82,29 +82,29 @@ module slow_exact (
         s3_v_q <= v_i;
         s3_w_q <= w_i;
       end
-      if (enable_i[2]) begin s4_tag_q <= s3_tag; s4_v_q <= s3_v_q; s4_w_q <= s3_w_q; end
-      if (enable_i[3]) begin s5_tag_q <= s4_tag_q; s5_v_q <= s4_v_q; s5_w_q <= s4_w_q; end
-      if (enable_i[4]) begin s6_tag_q <= s5_tag_q; s6_v_q <= s5_v_q; s6_w_q <= s5_w_q; end
-      if (enable_i[5]) begin
+      if (`STAGE_LOADS(enable_i[2])) begin s4_tag_q <= s3_tag; s4_v_q <= s3_v_q; s4_w_q <= s3_w_q; end
+      if (`STAGE_LOADS(enable_i[3])) begin s5_tag_q <= s4_tag_q; s5_v_q <= s4_v_q; s5_w_q <= s4_w_q; end
+      if (`STAGE_LOADS(enable_i[4])) begin s6_tag_q <= s5_tag_q; s6_v_q <= s5_v_q; s6_w_q <= s5_w_q; end
+      if (`STAGE_LOADS(enable_i[5])) begin
         s7_half_q <= 25'd1 << s6_tag_q[4:0];
         s7_keep_q <= 25'h1fffffe << s6_tag_q[4:0];
         s7_tag_q <= s6_tag_q;
         s7_v_q <= s6_v_q;
         s7_w_q <= s6_w_q;
       end
-      if (enable_i[6]) begin
+      if (`STAGE_LOADS(enable_i[6])) begin
         s8_m_q <= s7_m;
         s8_sum_q <= s7_sum;
         s8_carry_q <= s7_carry;
         s8_tag_q <= s7_tag_q;
         s8_w_q <= s7_w_q;
       end
-      if (enable_i[7]) begin
+      if (`STAGE_LOADS(enable_i[7])) begin
         s9_product_q <= s8_sum_q + s8_carry_q - s8_whole;
         s9_n_q <= s8_m_q[24:1] >> s8_tag_q[4:0];
         s9_tag_q <= s8_tag_q[TAG_BITS-1:EXPONENT];
       end
-      if (enable_i[8]) begin
+      if (`STAGE_LOADS(enable_i[8])) begin
         s10_sum_q <= s9_sum[OUT-1:CUT];
         s10_carry_q <= s9_carry[OUT-1:CUT];
         s10_sign_q <= s9_tag_q[SIGN];

@@ -21,6 +21,7 @@ module slow_newton #(
   input  wire [4:0]  shift_3_i,
   output reg  [31:0] result_o
 );
+  `include "free_running.vh"
   `include "ones_below.vh"
   `include "booth_digits.vh"
   // The stages that make the quotient of w and y, and that round it.
@@ -30,7 +31,6 @@ module slow_newton #(
       slow_newton_needs_other_stages illegal ();
     end
   endgenerate
-
   // What travels with a task, from stage 3 to ROUND; registers sK_* are valid in stage K.
   localparam integer TAG_BITS = 18;
   reg s3_root_q, s3_unary_q;
@@ -57,16 +57,16 @@ module slow_newton #(
   reg last_round_up_q;
 
   always @(posedge clk_i) begin
-    if (enable_i[ROUND-1:1] != {ROUND-1{1'b0}}) begin
-      if (enable_i[1]) begin
+    if (`STAGE_LOADS(enable_i[ROUND-1:1] != {ROUND-1{1'b0}})) begin
+      if (`STAGE_LOADS(enable_i[1])) begin
         s3_y_q <= {1'b1, s2_seed};
         s3_root_q <= root_i;
         s3_unary_q <= unary_i;
         s3_w_q <= w_i;
       end
       for (k = 4; k <= ROUND; k = k + 1)
-        if (enable_i[k-2]) tags_q[(k-4)*TAG_BITS +: TAG_BITS] <= tags[(k-4)*TAG_BITS +: TAG_BITS];
-      if (enable_i[ROUND-1]) begin : round
+        if (`STAGE_LOADS(enable_i[k-2])) tags_q[(k-4)*TAG_BITS +: TAG_BITS] <= tags[(k-4)*TAG_BITS +: TAG_BITS];
+      if (`STAGE_LOADS(enable_i[ROUND-1])) begin : round
         reg [30:0] nearest, kept, lost;
         // The true quotient lies in [1, 2), so the nearest number there is no worse.
         nearest = round_estimate[30:0];
@@ -106,14 +106,14 @@ module slow_newton #(
         .a_i(s4_y_q), .b_i(s4_e_q), .c_i({s4_y_q, 18'h00800}), .sum_o(y_sum), .carry_o(y_carry));
       wire [26:0] s4_y = y_sum + y_carry;
       always @(posedge clk_i) begin
-        if (enable_i[1]) s3_t_q <= t_sum + t_carry;
-        if (enable_i[2]) begin
+        if (`STAGE_LOADS(enable_i[1])) s3_t_q <= t_sum + t_carry;
+        if (`STAGE_LOADS(enable_i[2])) begin
           // 1 - p without carry: all ones below 1 minus p.
           s4_e_q <= s3_root_q ? ~s3_p[36:24] : ~s3_t_q[26:14];
           s4_y_q <= s3_y_q;
           s4_w_q <= s3_w_q;
         end
-        if (enable_i[3]) begin
+        if (`STAGE_LOADS(enable_i[3])) begin
           s5_y_q <= s4_y[26:12];
           s5_w_q <= s4_w_q;
         end
@@ -123,10 +123,10 @@ module slow_newton #(
         reg [23:0] s5_y_digits_q;
         wire [47:0] s4_y_digits = booth_digits({17'd0, s4_y[26:12]});
         always @(posedge clk_i) begin
-          if (enable_i[1]) s3_v_q <= v_i;
-          if (enable_i[2]) s4_v_q <= s3_v_q;
-          if (enable_i[3]) s5_v_q <= s4_v_q;
-          if (enable_i[3]) s5_y_digits_q <= s4_y_digits[23:0];
+          if (`STAGE_LOADS(enable_i[1])) s3_v_q <= v_i;
+          if (`STAGE_LOADS(enable_i[2])) s4_v_q <= s3_v_q;
+          if (`STAGE_LOADS(enable_i[3])) s5_v_q <= s4_v_q;
+          if (`STAGE_LOADS(enable_i[3])) s5_y_digits_q <= s4_y_digits[23:0];
         end
         slow_refine #(.EXACT(0)) refine (
           .clk_i(clk_i), .enable_i(enable_i[7:4]), .v_i(s5_v_q), .w_i(w), .y_i(y), .y_digits_i(s5_y_digits_q),
@@ -140,7 +140,7 @@ module slow_newton #(
         .a_i(w), .b_i(y), .c_i({Q_BITS{1'b0}}), .sum_o(q_sum), .carry_o(q_carry));
       wire [Q_BITS-1:0] q = q_sum + q_carry;
       reg [31:0] q_q;
-      always @(posedge clk_i) if (enable_i[PRODUCT-1]) q_q <= q[Q_BITS-1 -: 32];
+      always @(posedge clk_i) if (`STAGE_LOADS(enable_i[PRODUCT-1])) q_q <= q[Q_BITS-1 -: 32];
       assign round_estimate = q_q;
     end
   endgenerate

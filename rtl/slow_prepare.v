@@ -48,7 +48,7 @@ module slow_prepare #(
       normalised = {zeros, m};
     end
   endfunction
-
+  `include "free_running.vh"
   // Stage 0 -> 1: numerator n, divisor or radicand d: exponents, biased by 127, still without the leading zeros.
   reg s1_special_q, s1_nan_q, s1_infinite_q, s1_sign_q, s1_root_q, s1_unary_q;
   reg [7:0] s1_exponent_n_q, s1_exponent_d_q;
@@ -105,7 +105,7 @@ module slow_prepare #(
       s1_exponent_n_q <= single ? 8'd127 : {a_i[30:24], a_i[23] || a_i[30:23] == 8'd0};
       s1_exponent_d_q <= single ? {a_i[30:24], a_i[23] || a_i[30:23] == 8'd0} : {b_i[30:24], b_i[23] || b_i[30:23] == 8'd0};
     end
-    if (enable_i[1]) begin : stage1
+    if (`STAGE_LOADS(enable_i[1])) begin : stage1
       reg smaller;
       reg [9:0] exponent_n, exponent_d;
       smaller = s1_n_q < s1_d_q;
@@ -127,7 +127,7 @@ module slow_prepare #(
       else if (s1_root_q) s2_w_q <= s1_odd ? {s1_d_q, 1'b0} : {1'b0, s1_d_q};
       else s2_w_q <= smaller ? {s1_n_q, 1'b0} : {1'b0, s1_n_q};
     end
-    if (enable_i[2]) begin : stage2
+    if (`STAGE_LOADS(enable_i[2])) begin : stage2
       reg special;
       reg [9:0] exponent, below;
       // 127 + n's - d's, 63 + half, 190 - half; -half = ~half + 1.

@@ -23,6 +23,7 @@ module slow_refine #(
   input  wire        root_2_i,
   output wire [31:0] quotient_o
 );
+  `include "free_running.vh"
   `include "booth_digits.vh"
   localparam integer LESS = (EXACT != 0) ? 2 : 0;
   localparam integer N = 32 - LESS;         // of n
@@ -36,7 +37,6 @@ module slow_refine #(
   localparam integer S = 48 - 2*LESS;       // of n + n*e, 46 - 2*LESS fraction bits
   localparam integer S_CUT = (EXACT != 0) ? 11 : 0;
   localparam integer Q = (EXACT != 0) ? 24 : 30;  // fraction bits of the quotient
-
   reg [T-1:0] s1_t_q, s2_t_q;               // s2: of frsqrt 2*y
   reg [14:0] s1_y_q;
   reg [24:0] s1_w_q;
@@ -65,21 +65,21 @@ module slow_refine #(
   wire [S-1:0] quotient = s_sum + s_carry;
 
   always @(posedge clk_i) begin
-    if (enable_i[0]) begin
+    if (`STAGE_LOADS(enable_i[0])) begin
       s1_t_q <= t[38 -: T];
       s1_w_q <= w_i;
       s1_y_q <= y_i;
     end
-    if (enable_i[1]) begin
+    if (`STAGE_LOADS(enable_i[1])) begin
       s2_sum_q <= p_sum[P-1:P_CUT];
       s2_carry_q <= p_carry[P-1:P_CUT];
       s2_t_q <= (root_1_i && unary_1_i) ? {s1_y_q, {T-15{1'b0}}} : s1_t_q;
     end
-    if (enable_i[2]) begin
+    if (`STAGE_LOADS(enable_i[2])) begin
       s3_n_q <= root_2_i ? {1'b0, s2_t_q} : s2_p[P-1 -: N];
       s3_e_q <= s2_e_digits[E_DIGITS-1:0];
     end
-    if (enable_i[3]) quotient_q <= quotient[S-1 -: Q+2];
+    if (`STAGE_LOADS(enable_i[3])) quotient_q <= quotient[S-1 -: Q+2];
   end
   assign quotient_o = {quotient_q, {30-Q{1'b0}}};
 endmodule

@@ -64,7 +64,7 @@ class Mapper:
     def prepare_script(self, kind, result):
         """Yosys: one kind down to generic gates and library flip-flops. Its children stay blocks."""
         chosen = " ".join(f"-chparam {n} {constant(v)}" for n, v in sorted(kind.parameters.items()))
-        return f"""read_verilog -DSYNTHESIS -I{ROOT}/rtl {' '.join(rtl_files())}
+        return f"""read_verilog -DSYNTHESIS -DNO_CLOCK_GATES -I{ROOT}/rtl {' '.join(rtl_files())}
 hierarchy -check -top {kind.base} {chosen}
 select -set kids * A:top %d
 blackbox @kids

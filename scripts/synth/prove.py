@@ -90,7 +90,7 @@ def prove_one(design, identity, folder, cells):
     with open(stem + ".proof.v", "w", encoding="utf-8") as file:
         file.write(proof_module(design, module))
     chosen = " ".join(f"-chparam {n} {mapping.constant(v)}" for n, v in sorted(kind.parameters.items()))
-    script = f"""read_verilog -DSYNTHESIS -I{ROOT}/rtl {' '.join(rtl_files())}
+    script = f"""read_verilog -DSYNTHESIS -DNO_CLOCK_GATES -I{ROOT}/rtl {' '.join(rtl_files())}
 hierarchy -check -top {kind.base} {chosen}
 select -set kids * A:top %d
 blackbox @kids

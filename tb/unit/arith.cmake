@@ -10,7 +10,7 @@ function(arith_bench name top)
   target_include_directories(${name} SYSTEM PRIVATE ${VERILATOR_ROOT}/include)  # its headers warn
   verilate(${name} SOURCES ${arith_unit}/${top}.v ${ARGN} TOP_MODULE ${top} PREFIX V${top} INCLUDE_DIRS ${arith_rtl}
     OPT_SLOW -w OPT_FAST -O2 -w OPT_GLOBAL -O1 -w
-    VERILATOR_ARGS --default-language 1364-2005 -DSYNTHESIS --output-split 10000 --output-split-cfuncs 1000 -O3 --x-assign fast --x-initial fast)
+    VERILATOR_ARGS --default-language 1364-2005 -DSYNTHESIS -DNO_CLOCK_GATES --output-split 10000 --output-split-cfuncs 1000 -O3 --x-assign fast --x-initial fast)
   # Tests named Long run in `make numerics-long`.
   gtest_discover_tests(${name} WORKING_DIRECTORY ${CMAKE_SOURCE_DIR} DISCOVERY_TIMEOUT 60 TEST_FILTER "-*Long*")
 endfunction()
@@ -44,7 +44,7 @@ if(IVERILOG AND VVP)
     add_custom_command(OUTPUT ${program}
       COMMAND ${IVERILOG} -g2005 -Wall -I ${arith_rtl} -s arith_icarus -Parith_icarus.SUBNORMALS=${subnormals}
         -Parith_icarus.SLOW_UNIT=${slow_unit} -Parith_icarus.FMA=${fma} -o ${program} ${arith_unit}/arith_icarus.v ${sources}
-      DEPENDS ${arith_unit}/arith_icarus.v ${sources} ${arith_rtl}/isa.vh ${arith_rtl}/booth_digits.vh ${arith_rtl}/ones_below.vh VERBATIM)
+      DEPENDS ${arith_unit}/arith_icarus.v ${sources} ${arith_rtl}/isa.vh ${arith_rtl}/booth_digits.vh ${arith_rtl}/ones_below.vh ${arith_rtl}/free_running.vh VERBATIM)
     add_custom_command(OUTPUT ${vectors} COMMAND arith_vectors ${subnormals} ${slow_unit} ${fma} 4000 > ${vectors} DEPENDS arith_vectors VERBATIM)
     add_custom_target(${replay} ALL DEPENDS ${program} ${vectors})
     add_test(NAME ${replay} COMMAND ${VVP} -n ${program} +vectors=${vectors})
@@ -64,7 +64,7 @@ foreach(format IN ITEMS "16 5 10" "8 4 3")
   verilate(small_floats_test SOURCES ${arith_unit}/small_floats.v ${arith_rtl}/float_adder.v ${arith_rtl}/float_multiplier.v
       ${arith_rtl}/float_fma.v ${arith_rtl}/multiply_tree.v
     TOP_MODULE small_floats PREFIX Vsmall_floats_${bits} INCLUDE_DIRS ${arith_rtl} OPT_SLOW -w OPT_FAST -O2 -w OPT_GLOBAL -O1 -w
-    VERILATOR_ARGS --default-language 1364-2005 -DSYNTHESIS --output-split 10000 --output-split-cfuncs 1000 -O3 --x-assign fast --x-initial fast -GEXPONENT_BITS=${exponent} -GMANTISSA_BITS=${mantissa})
+    VERILATOR_ARGS --default-language 1364-2005 -DSYNTHESIS -DNO_CLOCK_GATES --output-split 10000 --output-split-cfuncs 1000 -O3 --x-assign fast --x-initial fast -GEXPONENT_BITS=${exponent} -GMANTISSA_BITS=${mantissa})
 endforeach()
 # Products of every pair of 16-bit numbers: with the tree that hardware has, and with the simulator's product in its place.
 foreach(tree IN ITEMS "tree -DSYNTHESIS" "quick")
