@@ -73,8 +73,7 @@ class Cosim {
   std::unique_ptr<ComputeUnit> make(Memory& memory, const std::string& name) {
     if (!vectors_) return make_unit(engine_, memory, name);
     const Configuration& configuration = engine_.configuration;
-    const std::string library = engine_.unit_library.empty() ? unit_library_path(configuration, false) : engine_.unit_library;
-    auto recorder = make_vector_recorder(configuration, load_rtl_unit(library, configuration), *vectors_);
+    auto recorder = make_vector_recorder(configuration, load_rtl_unit(find_unit_library(engine_), configuration), *vectors_);
     return make_lockstep_unit(configuration, std::move(recorder), memory);
   }
 

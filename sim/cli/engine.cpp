@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <filesystem>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -12,6 +14,8 @@
 #include "machine/multiprocessor.hpp"
 
 namespace raypool {
+
+namespace fs = std::filesystem;
 
 Engine parse_engine(const std::string& name) {
   if (name == "native") return Engine::Native;
@@ -28,11 +32,41 @@ std::string unit_library_path(const Configuration& configuration, bool waves, in
   for (const auto& [name, value] : verilog_parameters(configuration)) {
     for (const char c : fmt::format("{}={} ", name, value)) hash = (hash ^ static_cast<uint8_t>(c)) * 16777619u;
   }
-  const std::filesystem::path executable = std::filesystem::read_symlink("/proc/self/exe");
+  const fs::path executable = fs::read_symlink("/proc/self/exe");
   const std::string several = units == 1 ? "" : fmt::format("-{}cu", units);
   const std::string key =
       fmt::format("{}w{}c-{:08x}{}{}", configuration.warps, configuration.cores, hash, several, waves ? "-waves" : "");
   return executable.parent_path() / "units" / key / "libraypool_unit.so";
+}
+
+std::string newer_verilog(const std::string& library, const std::string& rtl) {
+  std::error_code missing;
+  const fs::file_time_type built = fs::last_write_time(library);
+  for (const fs::directory_entry& file : fs::directory_iterator(rtl, missing)) {
+    const fs::path extension = file.path().extension();
+    if ((extension == ".v" || extension == ".vh") && file.last_write_time() > built) return file.path();
+  }
+  return "";
+}
+
+std::string find_unit_library(const EngineOptions& options) {
+  const Configuration& configuration = options.configuration;
+  std::string library =
+      options.unit_library.empty() ? unit_library_path(configuration, options.waves, options.units) : options.unit_library;
+  const std::string build =
+      fmt::format("make unit CONFIG={}{}{}", configuration.name, options.units == 1 ? "" : fmt::format(" CUS={}", options.units),
+                  options.waves ? " WAVES=1" : "");
+  if (!fs::exists(library)) throw InputError(fmt::format("there is no Verilated unit '{}': build it with {}", library, build));
+
+  static std::set<std::string> checked;
+  if (options.unit_library.empty() && checked.insert(library).second) {
+    const fs::path project = fs::path(library).parent_path().parent_path().parent_path().parent_path();
+    const std::string newer = newer_verilog(library, project / "rtl");
+    if (!newer.empty())
+      fmt::print(stderr, "raypool: warning: '{}' was changed after '{}' was built: build it again with {}\n", newer, library,
+                 build);
+  }
+  return library;
 }
 
 std::unique_ptr<ComputeUnit> make_unit(const EngineOptions& options, Memory& memory, const std::string& name,
@@ -47,14 +81,7 @@ std::unique_ptr<ComputeUnit> make_unit(const EngineOptions& options, Memory& mem
   }
   if (options.engine == Engine::Model) return make_model(configuration, memory, static_cast<uint32_t>(options.units)).device;
 
-  const std::string library =
-      options.unit_library.empty() ? unit_library_path(configuration, options.waves, options.units) : options.unit_library;
-  if (!std::filesystem::exists(library)) {
-    throw InputError(fmt::format("there is no Verilated unit '{}': build it with make unit CONFIG={}{}{}", library,
-                                 configuration.name, options.units == 1 ? "" : fmt::format(" CUS={}", options.units),
-                                 options.waves ? " WAVES=1" : ""));
-  }
-  std::unique_ptr<ComputeUnit> rtl = load_rtl_unit(library, configuration, options.units);
+  std::unique_ptr<ComputeUnit> rtl = load_rtl_unit(find_unit_library(options), configuration, options.units);
   if (options.engine == Engine::Rtl) return rtl;
   LockstepOptions lockstep;
   lockstep.name = name;

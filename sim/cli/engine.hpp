@@ -32,6 +32,12 @@ struct EngineOptions {
   int units = 1;             ///< compute units of the device: 1, 2 or 4
 };
 
+/// The Verilated device that they name. Throws InputError when it is missing; says on stderr, once, if the Verilog is newer.
+std::string find_unit_library(const EngineOptions& options);
+
+/// A Verilog file in the folder `rtl` that was changed after `library`; empty if there is none, or no such folder.
+std::string newer_verilog(const std::string& library, const std::string& rtl);
+
 /// A device for the program and data in `memory`, which must outlive it: for rtl the Verilated multiprocessor, for functional and
 /// model a Multiprocessor over as many units, for lockstep both. `name` and `kernel_names` (entry PC -> name) are for the reports
 /// of a lockstep. Throws InputError when the Verilated device is missing or does not fit.

@@ -68,7 +68,7 @@ class RtlUnit : public ComputeUnit {
     top_->program_length_i = static_cast<SData>(program_length);
     top_->memory_limit_i = memory_limit;
     top_->rst_ni = 0;
-    for (int i = 0; i < 4; ++i) clock(UnitInputs{});
+    clock(UnitInputs{});
     top_->rst_ni = 1;
     clock(UnitInputs{});
   }

@@ -3,7 +3,8 @@ set(arith_rtl ${CMAKE_SOURCE_DIR}/rtl)
 set(arith_unit ${CMAKE_SOURCE_DIR}/tb/unit)
 
 # arith_bench(NAME TOP SOURCES...): the test program NAME of unit/NAME.cpp with the Verilated bench top TOP.
-# SYNTHESIS: with the multipliers that hardware has, which whole units in simulation replace by quicker ones.
+# SYNTHESIS, NO_CLOCK_GATES: with the multipliers and the pipeline registers that hardware has, in whose place whole units in simulation
+# have quicker ones.
 function(arith_bench name top)
   add_executable(${name} ${arith_unit}/${name}.cpp)
   target_link_libraries(${name} PRIVATE raypool_arith GTest::gtest_main)
