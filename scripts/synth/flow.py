@@ -157,8 +157,7 @@ def synthesise(design):
                 chosen.append(pin)
         pins = [step[0] for _, _, steps in timing.describe(chosen[:PATHS_A_ROUND], design.verilog, design.library, design.macros,
                                                            design.clock_ns, work) for step in steps]
-        mapper = mapper_of(design)
-        more = {i for i in identities_on(design, pins) if i in design.netlist.modules and mapper.can_be_faster(design.kinds[i])} - design.fast
+        more = {i for i in identities_on(design, pins) if i in design.netlist.modules} - design.fast
         if not more:
             break
         say(f"synth: slack {slack:+.3f} ns; for speed: {', '.join(sorted(design.kinds[i].name for i in more))}")

@@ -151,21 +151,9 @@ write_json {result}
         return kind
 
     def kept(self, kind, fast):
-        """The path of a kept result, or None. What was mapped for speed because nothing else met the target serves for both."""
-        usual = self.path(kind)
-        if fast and os.path.exists(usual) and self.way(usual) == "speed":
-            return usual
+        """The path of a kept result, or None."""
         path = self.path(kind, fast)
         return path if os.path.exists(path) else None
-
-    @staticmethod
-    def way(path):
-        with open(path, encoding="utf-8") as file:
-            return re.search(r'"way": "(\w+)"', file.read(200))[1]
-
-    def can_be_faster(self, kind):
-        usual = self.path(kind)
-        return os.path.exists(usual) and self.way(usual) != "speed"
 
     def map_all(self, kinds, fast=()):
         """Maps what is not kept yet; the identities in `fast` for speed. Returns the paths of the results, by identity."""
