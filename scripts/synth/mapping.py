@@ -26,12 +26,17 @@ def versions():
     return {"yosys": text.split()[1]}
 
 
-# Ways of mapping: for area, for speed. Each ends with buffers and drive strengths for the target {d}, and says its delay.
+# Ways of mapping: for area, for speed, and for few levels before that. Each ends with buffers and drive strengths for the target {d}, and says
+# its delay.
 _SIZING = "topo;buffer,-c;upsize,-D,{d};dnsize,-D,{d};stime"
 ABC_SCRIPTS = {
     "area": "+strash;dc2;dch,-f;amap,-m;" + _SIZING,
     "speed": "+strash;dch;map,-B,0.9,-D,{d};" + _SIZING,
+    "levels": "+strash;dch;if,-g;strash;dch;map,-B,0.9,-D,{d};" + _SIZING,
 }
+# In this order, until one is fast enough; of a block on a failing path all, and the fastest is taken.
+USUAL_WAYS = ["area", "speed"]
+FAST_WAYS = ["speed", "levels"]
 
 
 def constant(bits):
@@ -98,7 +103,7 @@ write_json {result}
 
     def key(self, kind, fast):
         """All that decides the result. The text of a module and what it includes; its children only by their interface."""
-        scripts = self.prepare_script(kind, "") + "".join(self.map_script(w, "", "") for w in ABC_SCRIPTS)
+        scripts = self.prepare_script(kind, "") + "".join(self.map_script(w, "", "") for w in (FAST_WAYS if fast else USUAL_WAYS))
         # Neither where the project lies nor which other files it has.
         scripts = scripts.split("\n", 1)[1].replace(ROOT, "").replace(self.folder.replace(ROOT, ""), "").replace(self.cells.replace(ROOT, ""), "")
         source = self.texts[f"rtl/{kind.base}.v"]
@@ -117,7 +122,7 @@ write_json {result}
         os.remove(stem + ".ys")
 
     def map_one(self, kind, fast):
-        """Takes the smallest way whose delay is within the accepted share of the period, else the fastest. `fast`: the fastest."""
+        """Takes the first usual way whose delay is within the accepted share of the period, else the fastest. `fast`: the fastest."""
         final = self.path(kind, fast)
         # Two runs may map the same kind at a time: each works on files of its own.
         stem = f"{final[:-len('.json')]}.{os.getpid()}"
@@ -126,7 +131,7 @@ write_json {result}
         if rtl_texts() != self.texts:
             raise SynthError("rtl/ changed while it was being mapped; run it again")
         best = None
-        for way in ["speed"] if fast else ["area", "speed"]:
+        for way in FAST_WAYS if fast else USUAL_WAYS:
             result = f"{stem}.{way}"
             self.yosys(self.map_script(way, prepared, result, FAST_SHARE if fast else LOGIC_SHARE), stem)
             with open(stem + ".yosys", encoding="utf-8", errors="replace") as file:
