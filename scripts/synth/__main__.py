@@ -76,9 +76,9 @@ def kept_report(path, key):
 def map_as_kept(design, kept):
     """The netlist of a kept report (None: one that was not timed)."""
     flow.prepare(design)
-    names = set(kept["timing"]["mapped_for_speed"]) if kept else set()
-    design.fast = {k.identity for k in design.kinds.values() if k.name in names}
-    flow.map_design(design, design.fast)
+    efforts = kept["timing"]["efforts"] if kept else {}
+    design.efforts = {k.identity: efforts[k.name] for k in design.kinds.values() if k.name in efforts}
+    flow.map_design(design)
 
 
 def netlist_of(arguments):

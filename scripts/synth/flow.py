@@ -12,7 +12,7 @@ from .netlist import Netlist
 
 BUILD = os.path.join(ROOT, "build", "synth")
 # Rounds of mapping for speed what lies on failing paths.
-CLOSURE_ROUNDS = 3
+CLOSURE_ROUNDS = 4
 # Failing end points whose paths are looked at in a round.
 PATHS_A_ROUND = 60
 
@@ -40,7 +40,7 @@ class Design:
     netlist: Netlist = None
     memory: MemoryModel = None
     endpoints: list = field(default_factory=list)
-    fast: set = field(default_factory=set)
+    efforts: dict = field(default_factory=dict)   # by kind's identity, where it is not the first
     buffers: dict = field(default_factory=dict)   # added to each kind for fan-out
 
     @property
@@ -108,10 +108,10 @@ def mapper_of(design):
     return mapping.Mapper(design.library, BUILD, design.clock_ns, design.options.jobs)
 
 
-def map_design(design, fast=()):
+def map_design(design):
     mapper = mapper_of(design)
     stay = {k.identity for k in design.blocks()}
-    paths = mapper.map_all([k for k in design.kinds.values() if k.identity not in stay], fast)
+    paths = mapper.map_all([k for k in design.kinds.values() if k.identity not in stay], design.efforts)
     design.netlist = Netlist(design.kinds, paths, design.library)
     design.buffers = fanout.repair(design.netlist)
     design.netlist.write(design.verilog)
@@ -157,11 +157,11 @@ def synthesise(design):
                 chosen.append(pin)
         pins = [step[0] for _, _, steps in timing.describe(chosen[:PATHS_A_ROUND], design.verilog, design.library, design.macros,
                                                            design.clock_ns, work) for step in steps]
-        more = {i for i in identities_on(design, pins) if i in design.netlist.modules} - design.fast
+        more = {i for i in identities_on(design, pins) if i in design.netlist.modules and design.efforts.get(i, 0) < mapping.LAST_EFFORT}
         if not more:
             break
         say(f"synth: slack {slack:+.3f} ns; for speed: {', '.join(sorted(design.kinds[i].name for i in more))}")
-        design.fast |= more
-        map_design(design, design.fast)
+        design.efforts.update({i: design.efforts.get(i, 0) + 1 for i in more})
+        map_design(design)
         slack = time_design(design, work)
     return slack

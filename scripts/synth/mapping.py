@@ -12,10 +12,12 @@ from .library import ROOT
 
 # ABC sees neither clock-to-output nor set-up time: it gets this share of the period.
 LOGIC_SHARE = 0.7
-# A block on a failing path has only a part of that path: its gates are sized for this share.
+# A block that is still on a failing path when it has been mapped for speed has only a part of that path: its gates are sized for this share.
 FAST_SHARE = 0.4
-# A block whose slowest logic takes no more than this share is small enough a problem to be mapped for area.
-ACCEPTED_SHARE = 0.75
+# A block whose slowest logic takes no more than this share is fast enough, as far as one can see while it is mapped alone.
+ACCEPTED_SHARE = 0.8
+# The limit that `map` gets in its own units, in targets.
+RELAXED = 2.15
 # What a block drives and is driven by is not known while it is mapped alone.
 OUTPUT_LOAD_FF = 30
 
@@ -26,17 +28,20 @@ def versions():
     return {"yosys": text.split()[1]}
 
 
-# Ways of mapping: for area, for speed, and for few levels before that. Each ends with buffers and drive strengths for the target {d}, and says
-# its delay.
+# Ways of mapping: for area, for speed with area won back, for speed, and for few levels before that. Each ends with buffers and drive strengths
+# for the target {d}, and says its delay. What `map` takes for a delay is some two times that: with {d} as its limit it never wins area back.
 _SIZING = "topo;buffer,-c;upsize,-D,{d};dnsize,-D,{d};stime"
 ABC_SCRIPTS = {
     "area": "+strash;dc2;dch,-f;amap,-m;" + _SIZING,
+    "balance": "+strash;dch;map,-B,0.9,-D,{relaxed};" + _SIZING,
     "speed": "+strash;dch;map,-B,0.9,-D,{d};" + _SIZING,
     "levels": "+strash;dch;if,-g;strash;dch;map,-B,0.9,-D,{d};" + _SIZING,
 }
-# In this order, until one is fast enough; of a block on a failing path all, and the fastest is taken.
-USUAL_WAYS = ["area", "speed"]
-FAST_WAYS = ["speed", "levels"]
+
+# Efforts: the first try, and what a block on a failing path gets then, one more each time. Ways in this order, until one is fast enough (of the
+# last effort all, and the fastest is taken), and the share they aim at.
+EFFORTS = [(["area", "balance", "speed"], LOGIC_SHARE), (["speed"], LOGIC_SHARE), (["speed", "levels"], FAST_SHARE)]
+LAST_EFFORT = len(EFFORTS) - 1
 
 
 def constant(bits):
@@ -92,7 +97,8 @@ write_rtlil {result}
 
     def map_script(self, way, prepared, result, share=LOGIC_SHARE):
         """Yosys: the gates of a prepared kind."""
-        script = ABC_SCRIPTS[way].format(d=int(self.clock_ns * 1000 * share))
+        target = self.clock_ns * 1000 * share
+        script = ABC_SCRIPTS[way].format(d=int(target), relaxed=int(RELAXED * target))
         return f"""read_rtlil {prepared}
 abc -liberty {self.cells} -constr {self.folder}/abc.constr -script {script}
 opt_clean -purge
@@ -101,19 +107,19 @@ check -assert
 write_json {result}
 """
 
-    def key(self, kind, fast):
+    def key(self, kind, effort):
         """All that decides the result. The text of a module and what it includes; its children only by their interface."""
-        scripts = self.prepare_script(kind, "") + "".join(self.map_script(w, "", "") for w in (FAST_WAYS if fast else USUAL_WAYS))
+        scripts = self.prepare_script(kind, "") + "".join(self.map_script(w, "", "") for w in EFFORTS[effort][0])
         # Neither where the project lies nor which other files it has.
         scripts = scripts.split("\n", 1)[1].replace(ROOT, "").replace(self.folder.replace(ROOT, ""), "").replace(self.cells.replace(ROOT, ""), "")
         source = self.texts[f"rtl/{kind.base}.v"]
         parts = [self.version, self.library.digest, scripts, source,
-                 json.dumps(self.included(source), sort_keys=True), str(OUTPUT_LOAD_FF), str(ACCEPTED_SHARE), str(fast and FAST_SHARE),
+                 json.dumps(self.included(source), sort_keys=True), str(OUTPUT_LOAD_FF), str(ACCEPTED_SHARE), str(EFFORTS[effort][1]),
                  json.dumps(sorted(kind.children.items())), json.dumps(sorted(kind.parameters.items()))]
         return hashlib.sha256("\0".join(parts).encode()).hexdigest()[:24]
 
-    def path(self, kind, fast=False):
-        return os.path.join(self.folder, f"{kind.base}-{self.key(kind, fast)}.json")
+    def path(self, kind, effort):
+        return os.path.join(self.folder, f"{kind.base}-{self.key(kind, effort)}.json")
 
     def yosys(self, script, stem):
         with open(stem + ".ys", "w", encoding="utf-8") as file:
@@ -121,9 +127,9 @@ write_json {result}
         run([need("yosys", "yosys"), "-q", "-l", stem + ".yosys", stem + ".ys"], stem + ".log")
         os.remove(stem + ".ys")
 
-    def map_one(self, kind, fast):
-        """Takes the first usual way whose delay is within the accepted share of the period, else the fastest. `fast`: the fastest."""
-        final = self.path(kind, fast)
+    def map_one(self, kind, effort):
+        """Takes the first way whose delay is within the accepted share of the period, else the fastest; of the last effort the fastest."""
+        final = self.path(kind, effort)
         # Two runs may map the same kind at a time: each works on files of its own.
         stem = f"{final[:-len('.json')]}.{os.getpid()}"
         prepared = stem + ".il"
@@ -131,15 +137,15 @@ write_json {result}
         if rtl_texts() != self.texts:
             raise SynthError("rtl/ changed while it was being mapped; run it again")
         best = None
-        for way in FAST_WAYS if fast else USUAL_WAYS:
+        for way in EFFORTS[effort][0]:
             result = f"{stem}.{way}"
-            self.yosys(self.map_script(way, prepared, result, FAST_SHARE if fast else LOGIC_SHARE), stem)
+            self.yosys(self.map_script(way, prepared, result, EFFORTS[effort][1]), stem)
             with open(stem + ".yosys", encoding="utf-8", errors="replace") as file:
                 delays = re.findall(r"Delay = *([\d.]+) ps", file.read())
             delay = float(delays[-1]) if delays else 0.0
             if best is None or delay < best[0]:
                 best = (delay, way, result)
-            if not fast and delay <= self.clock_ns * 1000 * ACCEPTED_SHARE:
+            if effort != LAST_EFFORT and delay <= self.clock_ns * 1000 * ACCEPTED_SHARE:
                 break
         with open(best[2], encoding="utf-8") as file:
             module = next(m for m in json.load(file)["modules"].values() if "top" in m["attributes"])
@@ -155,22 +161,23 @@ write_json {result}
                 os.remove(leftover)
         return kind
 
-    def kept(self, kind, fast):
+    def kept(self, kind, effort):
         """The path of a kept result, or None."""
-        path = self.path(kind, fast)
+        path = self.path(kind, effort)
         return path if os.path.exists(path) else None
 
-    def map_all(self, kinds, fast=()):
-        """Maps what is not kept yet; the identities in `fast` for speed. Returns the paths of the results, by identity."""
+    def map_all(self, kinds, efforts=None):
+        """Maps what is not kept yet; `efforts`: by identity, where it is not the first. Returns the paths of the results, by identity."""
+        efforts = efforts or {}
         with open(os.path.join(self.folder, "abc.constr"), "w", encoding="utf-8") as file:
             file.write(f"set_driving_cell {self.library.driver}\nset_load {OUTPUT_LOAD_FF} [all_outputs]\n")
-        missing = [k for k in kinds if self.kept(k, k.identity in fast) is None]
+        missing = [k for k in kinds if self.kept(k, efforts.get(k.identity, 0)) is None]
         if missing:
-            say(f"synth: mapping {len(missing)} of {len(kinds)} kinds of block" + (" for speed" if fast else ""))
+            say(f"synth: mapping {len(missing)} of {len(kinds)} kinds of block" + (" for speed" if efforts else ""))
         # The large ones first, so that the last to finish is a small one.
         missing.sort(key=lambda k: -k.bits)
         with concurrent.futures.ThreadPoolExecutor(self.jobs) as pool:
-            pending = {pool.submit(self.map_one, k, k.identity in fast): k for k in missing}
+            pending = {pool.submit(self.map_one, k, efforts.get(k.identity, 0)): k for k in missing}
             for count, done in enumerate(concurrent.futures.as_completed(pending), 1):
                 kind = pending[done]
                 try:
@@ -179,4 +186,4 @@ write_json {result}
                     pool.shutdown(cancel_futures=True)
                     raise SynthError(f"{kind.name} cannot be mapped: {error}") from error
                 say(f"synth: {count} of {len(missing)}: {kind.name}")
-        return {k.identity: self.kept(k, k.identity in fast) for k in kinds}
+        return {k.identity: self.kept(k, efforts.get(k.identity, 0)) for k in kinds}

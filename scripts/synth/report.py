@@ -123,7 +123,7 @@ def make(design, key, path):
                    "median_delay_ns": round(median, 4),
                    "slow_stages": [{"block": b["block"], "delay_ns": b["delay_ns"], "delay_fo4": round(b["delay_ns"] / design.fo4_ns, 1),
                                     "of_median": round(b["delay_ns"] / median, 2), "endpoint": b["endpoint"]} for b in slow],
-                   "mapped_for_speed": sorted(design.kinds[i].name for i in design.fast)},
+                   "efforts": {design.kinds[i].name: effort for i, effort in sorted(design.efforts.items())}},
         "forty_nm": {**forty_nm(design, whole["logic_um2"]), "thesis_4w4c_mm2": THESIS_MM2},
         "lanes": lanes(design, listed), "blocks": listed, "power": None, "proofs": None,
     }
