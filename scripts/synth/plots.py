@@ -54,7 +54,7 @@ set title "{title}"
 set xlabel "{xlabel}"
 set ylabel "kGE"
 set yrange [0:*]
-set key top left
+set key top left reverse Left
 set xtics ({', '.join(str(r[0]) for r in rows)})
 plot $data using 1:($2+$3) with linespoints ls 3 pt 7 title "all", '' using 1:2 with linespoints ls 1 pt 7 title "logic", \\
      '' using 1:3 with linespoints ls 2 pt 7 title "memory"
