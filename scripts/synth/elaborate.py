@@ -34,6 +34,15 @@ def rtl_files():
     return sorted(glob.glob(os.path.join(ROOT, "rtl", "*.v")))
 
 
+# The Verilog as it becomes hardware: Booth trees in place of products, and no clock gates (free_running.vh), as cell libraries here have none.
+DEFINES = "-DSYNTHESIS -DNO_CLOCK_GATES"
+
+
+def read_rtl():
+    """Yosys: reads all of rtl/."""
+    return f"read_verilog {DEFINES} -I{ROOT}/rtl {' '.join(rtl_files())}"
+
+
 def rtl_texts():
     """Every text the RTL is made of, by path below the project."""
     texts = {}
@@ -64,7 +73,7 @@ def tree(parameters, folder, top="compute_unit"):
     script, result = os.path.join(folder, "elaborate.ys"), os.path.join(folder, "elaborate.json")
     chosen = " ".join(f"-chparam {n} {v}" for n, v in parameters.items())
     with open(script, "w", encoding="utf-8") as file:
-        file.write(f"read_verilog -I{ROOT}/rtl {' '.join(rtl_files())}\nhierarchy -check -top {top} {chosen}\n"
+        file.write(f"{read_rtl()}\nhierarchy -check -top {top} {chosen}\n"
                    f"delete */p:*\nwrite_json {result}\n")
     run([need("yosys", "yosys"), "-q", script], os.path.join(folder, "elaborate.log"))
     with open(result, encoding="utf-8") as file:

@@ -6,7 +6,7 @@ import os
 import re
 import subprocess
 
-from .elaborate import rtl_files, rtl_texts
+from .elaborate import DEFINES, read_rtl, rtl_texts
 from .errors import SynthError, need, run, say
 from .library import ROOT
 
@@ -74,7 +74,7 @@ class Mapper:
     def prepare_script(self, kind, result):
         """Yosys: one kind down to generic gates and library flip-flops. Its children stay blocks."""
         chosen = " ".join(f"-chparam {n} {constant(v)}" for n, v in sorted(kind.parameters.items()))
-        return f"""read_verilog -DSYNTHESIS -DNO_CLOCK_GATES -I{ROOT}/rtl {' '.join(rtl_files())}
+        return f"""{read_rtl()}
 hierarchy -check -top {kind.base} {chosen}
 select -set kids * A:top %d
 blackbox @kids
@@ -113,7 +113,7 @@ write_json {result}
         # Neither where the project lies nor which other files it has.
         scripts = scripts.split("\n", 1)[1].replace(ROOT, "").replace(self.folder.replace(ROOT, ""), "").replace(self.cells.replace(ROOT, ""), "")
         source = self.texts[f"rtl/{kind.base}.v"]
-        parts = [self.version, self.library.digest, scripts, source,
+        parts = [self.version, self.library.digest, DEFINES, scripts, source,
                  json.dumps(self.included(source), sort_keys=True), str(OUTPUT_LOAD_FF), str(ACCEPTED_SHARE), str(EFFORTS[effort][1]),
                  json.dumps(sorted(kind.children.items())), json.dumps(sorted(kind.parameters.items()))]
         return hashlib.sha256("\0".join(parts).encode()).hexdigest()[:24]

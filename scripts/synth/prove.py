@@ -7,9 +7,8 @@ import re
 import subprocess
 
 from . import mapping
-from .elaborate import rtl_files, rtl_texts
+from .elaborate import DEFINES, read_rtl, rtl_texts
 from .errors import need, run, say
-from .library import ROOT
 
 SECONDS = 120
 ABC = "read_aiger {aig}; strash; scorr; dprove"
@@ -79,7 +78,7 @@ def prove_one(design, identity, folder, cells):
     text = gate_module(design, module)
     source = rtl_texts()[f"rtl/{kind.base}.v"]
     chosen = " ".join(f"-chparam {n} {mapping.constant(v)}" for n, v in sorted(kind.parameters.items()))
-    script = f"""read_verilog -DSYNTHESIS -DNO_CLOCK_GATES -I{ROOT}/rtl {' '.join(rtl_files())}
+    script = f"""{read_rtl()}
 hierarchy -check -top {kind.base} {chosen}
 select -set kids * A:top %d
 blackbox @kids
@@ -114,7 +113,7 @@ write_aiger -zinit {stem}.aig
 """
     # Not where the project lies, nor which other files it has.
     steps = script.split("\n", 1)[1].replace(folder, "").replace(cells, "")
-    key = hashlib.sha256("\0".join([source, text, steps, ABC, proof_module(design, module), json.dumps(kind.parameters, sort_keys=True), design.library.digest]).encode()).hexdigest()[:16]
+    key = hashlib.sha256("\0".join([source, text, DEFINES, steps, ABC, proof_module(design, module), json.dumps(kind.parameters, sort_keys=True), design.library.digest]).encode()).hexdigest()[:16]
     kept = stem + ".result"
     if os.path.exists(kept):
         with open(kept, encoding="utf-8") as file:

@@ -73,13 +73,13 @@ class Synthesis(unittest.TestCase):
         mapper = mapping.Mapper(library.Library(), self.folder, 4.0)
         kind = elaborate.Kind("held", "held", {}, {"e_i": ("input", 1), "d_i": ("input", 1), "q_o": ("output", 1)}, {}, "held")
         mapper.texts["rtl/held.v"] = ""
-        original = mapping.rtl_files
-        mapping.rtl_files = lambda: [path]
+        original = elaborate.rtl_files
+        elaborate.rtl_files = lambda: [path]
         try:
             with self.assertRaisesRegex(SynthError, "dlatch"):
                 mapper.map_all([kind])
         finally:
-            mapping.rtl_files = original
+            elaborate.rtl_files = original
 
     def test_memories_are_priced_and_areas_add_up(self):
         design = small_design(self.folder, "ray_memory", {"CONTENTS": "16"})
