@@ -48,6 +48,11 @@ GATES     ?= 0
 MODE      ?= all
 # `make numerics-long`
 THREADS   ?= 1
+# `make quoted`
+LONG      ?= 0
+UPDATE    ?= 0
+PAGES     ?=
+FILES     ?=
 # Recipes read these from the environment, so that a value with spaces or quotes stays one word.
 export CONFIG CUS SCENE SIZE DEPTH ENGINE TRAVERSER VIEW DETAIL OUT WAVES KERNEL PROGRAMS SEED COVERAGE MUTANTS MODE THREADS
 export LIBERTY CLOCK MEMORIES AGAINST RUN ONLY PLAN
@@ -65,7 +70,7 @@ SYNTH_OPTIONS := --config "$$CONFIG" --memories "$$MEMORIES" $${LIBERTY:+--liber
 GATES_SETUP := $(if $(filter-out 0,$(GATES)),setup-synth)
 UNIT_OF_ENGINE := $(if $(filter rtl lockstep,$(ENGINE)),$(UNIT),true)
 
-.PHONY: help sim run cosim configurations mutants unit test lint format bench clean setup-% program configured-% numerics-long proofs synth synth-replay synth-prove growth numerics extremes isa
+.PHONY: help sim run cosim configurations mutants unit test lint format bench clean setup-% program configured-% numerics-long proofs synth synth-replay synth-prove growth numerics extremes isa quoted
 
 help: ## this list
 	@echo 'raypool: a ray-tracing GPU to render on, measure, verify and synthesise'
@@ -88,6 +93,7 @@ help: ## this list
 	@echo '  make synth:  AGAINST=REPORT  RUN=REPORT_OF_SIM  POWER=1  OUT=FOLDER;  synth-replay:  BREAK=N;  synth-prove:  ONLY=BLOCKS;  growth:  PLAN=FILE'
 	@echo 'variables of make cosim:  PROGRAMS=$(PROGRAMS)  SEED=$(SEED)  CONFIG  CUS  COVERAGE=FILE.json'
 	@echo 'variables of make numerics:  GATES=1: synthesise the lanes of every mode first;  extremes:  MODE=all|ieee-exact|...;  numerics-long:  THREADS=$(THREADS)'
+	@echo 'variables of make quoted:  LONG=1: those that take long too;  UPDATE=1: write what is printed into the pages;  PAGES="docs/isa.md ...";  FILES=NAME=PATH: a file that quotes need'
 	@echo 'variables of make run:  KERNEL=saxpy|matmul|FILE.asm  CONFIG  ENGINE  ARGS="--n 1000"'
 
 sim: setup-sim program ## draw a scene on the simulated chip: picture, report, figures
@@ -138,6 +144,10 @@ test: setup-sim setup-test setup-synth configured-ON ## every test
 numerics-long: setup-sim setup-test configured-ON ## arithmetic against its oracles: every unary input, 10^8 pairs; an hour: THREADS
 	@$(LOCKED) cmake --build $(BUILD) --target numerics_long flt_alu_test slw_alu_test small_floats_test
 	@scripts/numerics_long.sh $(BUILD) "$$THREADS"
+
+quoted: setup-sim setup-test setup-synth configured-ON ## run the commands that README and docs quote, compare what they print: LONG, UPDATE, PAGES
+	@$(LOCKED) cmake --build $(BUILD)
+	@scripts/quoted_output.py $(if $(filter-out 0,$(LONG)),--long) $(if $(filter-out 0,$(UPDATE)),--update) $(foreach file,$(FILES),--file $(file)) $(PAGES)
 
 proofs: setup-lint ## formal proofs of blocks (Yosys, ABC)
 	@scripts/proofs.sh

@@ -77,15 +77,17 @@ and so is one that the configuration has not: `ffma` without `arithmetic.fma`.
 
 ## Assembly text
 
-    # a comment
-    .kernel scale              # names the entry of a kernel
-            tid   r0
-            ult   p1, r0, 100
-      @p1   shl   r1, r0, 2
-      @p1   ld    r2, [r1+256]
-      @p1   fmul  r2, r2, 0.5
-      @p1   st    [r1+256], r2
-            exit
+```asm
+# a comment
+.kernel scale              # names the entry of a kernel
+        tid   r0
+        ult   p1, r0, 100
+  @p1   shl   r1, r0, 2
+  @p1   ld    r2, [r1+256]
+  @p1   fmul  r2, r2, 0.5
+  @p1   st    [r1+256], r2
+        exit
+```
 
 One instruction a line, labels end in a colon. `@p3` before an instruction masks it with predicate p3, `@!p3` with its inverse. Where `b`
 stands, a register or an immediate is allowed. Immediates: decimal or 0x hexadecimal integers from -2147483648 to 4294967295; after a float
