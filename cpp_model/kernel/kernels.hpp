@@ -20,12 +20,17 @@ namespace raypool {
 enum class RayKernel : uint8_t {
   CastEye = 0,              ///< makes an eye ray for each pixel of a tile
   CastSecondary = 1,        ///< normal intersection -> reflection ray and shadow ray
-  CastSecondaryDirect = 2,  ///< normal intersection -> shadow ray only (primary mode)
+  CastSecondaryDirect = 2,  ///< normal intersection -> shadow ray only
   Shade = 3,                ///< shadow intersection -> contribution to the frame buffer
 };
 inline constexpr int kRayKernels = 4;
 inline constexpr std::array<std::string_view, kRayKernels> kRayKernelNames = {"cast_eye", "cast_secondary",
                                                                               "cast_secondary_direct", "shade"};
+
+/// What normal intersections are given to: the kernel without reflections at depth 1, and wherever there are none to be seen.
+constexpr RayKernel secondary_kernel(int depth, bool reflections) {
+  return depth > 1 && reflections ? RayKernel::CastSecondary : RayKernel::CastSecondaryDirect;
+}
 
 /// Argument words of the ray kernels (floats unless said otherwise). The direction through the centre of pixel (x, y) is
 /// corner + x * step_x + y * step_y.

@@ -61,10 +61,7 @@ struct Chip {
     controller.connect(device);
   }
 
-  uint64_t rays_traced() const {
-    const TraverserCounts& counts = traverser->counts();
-    return counts.eye_rays + counts.secondary_rays + counts.shadow_rays;
-  }
+  uint64_t rays_traced() const { return traverser->counts().rays.traced(); }
   std::string describe() { return controller.describe() + "; " + device.describe(); }
 
   int units;
@@ -129,18 +126,17 @@ ChipResult collect(const ChipOptions& options, const Chip& chip) {
   result.cycles = chip.clock.cycle();
   result.nanoseconds = static_cast<double>(result.cycles);
   const TraverserCounts& counts = chip.traverser->counts();
-  result.eye_rays = counts.eye_rays;
-  result.secondary_rays = counts.secondary_rays;
-  result.shadow_rays = counts.shadow_rays;
-  result.dropped_missed = counts.missed;
-  result.dropped_blocked = counts.blocked;
+  result.ray_counts = counts.rays;
   result.dropped_depth = chip.rays.dropped_depth();
   result.contributions = chip.frame.taken();
   result.held_peak = chip.controller.held_peak();
   result.kernels = chip.controller.kernels();
   if (result.timed) {
-    const auto primary = 2.0 * options.width * options.height;
-    result.mrays_per_s = ratio(1000 * (options.depth == 1 ? primary : static_cast<double>(result.rays())), result.nanoseconds);
+    const auto traced = static_cast<double>(result.rays());
+    const double thesis = options.depth == 1 ? 2.0 * options.width * options.height : traced;
+    result.mrays_per_s = ratio(1e3 * traced, result.nanoseconds);
+    result.thesis_mrays_per_s = ratio(1e3 * thesis, result.nanoseconds);
+    result.frames_per_s = ratio(1e9, result.nanoseconds);
   }
 
   result.busy_cycles = chip.device.busy_cycles();

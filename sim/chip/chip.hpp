@@ -15,6 +15,7 @@
 #include "kernel/kernels.hpp"
 #include "machine/compute_unit.hpp"
 #include "machine/memory.hpp"
+#include "scene/ray_counts.hpp"
 
 namespace raypool {
 
@@ -36,6 +37,7 @@ struct ChipOptions {
   std::array<uint32_t, kArguments> arguments{};
   int width = 0, height = 0;  ///< pixels, 1 .. 65535
   int depth = 1;              ///< 1: eye and shadow rays only; up to kLargestDepth (scene/native_renderer.hpp)
+  bool reflections = true;    ///< false: casts none, whatever the depth; the same picture where no material reflects
   RayTracer* tracer = nullptr;
   FrameSink* frame = nullptr;
 
@@ -63,17 +65,17 @@ struct ChipResult {
   uint64_t cycles = 0;  ///< of 1 ns, from reset until everything is idle
   double nanoseconds = 0;
   double wall_seconds = 0;
-  /// Thesis' figure: rays / time; primary mode (depth 1) counts an eye and a shadow ray a pixel. 0 when untimed.
-  double mrays_per_s = 0;
+  // 0 when untimed.
+  double mrays_per_s = 0;         ///< rays traced / time
+  double thesis_mrays_per_s = 0;  ///< as the thesis counts: at depth 1 an eye and a shadow ray a pixel, traced or not
+  double frames_per_s = 0;        ///< 1 / time
 
   // Rays.
-  uint64_t eye_rays = 0, secondary_rays = 0, shadow_rays = 0;  ///< traced
-  uint64_t rays() const { return eye_rays + secondary_rays + shadow_rays; }
-  uint64_t dropped_missed = 0;   ///< normal rays that hit nothing
-  uint64_t dropped_blocked = 0;  ///< shadow rays that hit something
-  uint64_t dropped_depth = 0;    ///< rays beyond the depth limit; never traced
-  uint64_t contributions = 0;    ///< to the frame buffer
-  uint32_t held_peak = 0;        ///< most unfinished pixels at a time
+  RayCounts ray_counts;
+  uint64_t rays() const { return ray_counts.traced(); }
+  uint64_t dropped_depth = 0;  ///< rays beyond the depth limit; never traced
+  uint64_t contributions = 0;  ///< to the frame buffer
+  uint32_t held_peak = 0;      ///< most unfinished pixels at a time
 
   struct Kernel {
     uint64_t launches = 0;

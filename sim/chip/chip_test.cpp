@@ -57,11 +57,11 @@ struct FrameRun {
   /// Every ray and contribution of the world, once.
   void expect_conserved(const ChipResult& result) const {
     const Expected expected(world, options.width, options.height, options.depth);
-    EXPECT_EQ(result.eye_rays, expected.eye);
-    EXPECT_EQ(result.secondary_rays, expected.secondary);
-    EXPECT_EQ(result.shadow_rays, expected.shadow);
-    EXPECT_EQ(result.dropped_missed, expected.missed);
-    EXPECT_EQ(result.dropped_blocked, expected.blocked);
+    EXPECT_EQ(result.ray_counts.eye.traced, expected.eye);
+    EXPECT_EQ(result.ray_counts.reflection.traced, expected.secondary);
+    EXPECT_EQ(result.ray_counts.shadow.traced, expected.shadow);
+    EXPECT_EQ(result.ray_counts.missed(), expected.missed);
+    EXPECT_EQ(result.ray_counts.blocked(), expected.blocked);
     EXPECT_EQ(result.dropped_depth, expected.beyond);
     EXPECT_EQ(result.contributions, expected.contributions.size());
     EXPECT_EQ(frame.contributions, expected.contributions);
@@ -201,7 +201,27 @@ TEST(Chip, CountsKernelsAndThreads) {
   EXPECT_LE(result.time_utilisation, 1);
   EXPECT_GT(result.resource_utilisation, 0.1);
   EXPECT_LE(result.resource_utilisation, 1);
-  EXPECT_DOUBLE_EQ(result.mrays_per_s, 24 * 16 * 2 * 1000.0 / static_cast<double>(result.cycles));
+}
+
+TEST(Chip, SpeedIsWhatWasTracedOverTime) {
+  for (const int depth : {1, 3}) {
+    FrameRun run(8, 8, 1, 24, 16, depth);  // a world in which some eye rays miss, and some hits cast no shadow ray
+    const ChipResult result = run.go();
+    const double per_ray = 1000 / static_cast<double>(result.cycles);
+    ASSERT_NE(result.rays(), 24u * 16 * 2);
+    EXPECT_DOUBLE_EQ(result.mrays_per_s, static_cast<double>(result.rays()) * per_ray);
+    EXPECT_DOUBLE_EQ(result.thesis_mrays_per_s, depth == 1 ? 24 * 16 * 2 * per_ray : result.mrays_per_s);
+    EXPECT_DOUBLE_EQ(result.frames_per_s, 1e9 / static_cast<double>(result.cycles));
+  }
+}
+
+TEST(Chip, CastsNoReflectionsWhereThereAreNone) {
+  FrameRun deep(8, 8, 2, 24, 16, 3), flat(8, 8, 2, 24, 16, 1);
+  deep.options.reflections = false;
+  const ChipResult result = deep.go();
+  EXPECT_EQ(result.ray_counts.reflection.traced, 0u);
+  EXPECT_EQ(result.cycles, flat.go().cycles);
+  EXPECT_EQ(result.thesis_mrays_per_s, result.mrays_per_s) << "the thesis counts pixels at depth 1 only";
 }
 
 TEST(Chip, PutsThousandPixelTilesInBandsThatThePoolsHold) {

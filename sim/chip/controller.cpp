@@ -16,7 +16,7 @@ Controller::Controller(const sc_core::sc_module_name& name, const ChipOptions& o
       rays_(rays),
       intersections_(intersections),
       ledger_(ledger),
-      secondary_(options.depth == 1 ? RayKernel::CastSecondaryDirect : RayKernel::CastSecondary),
+      secondary_(secondary_kernel(options.depth, options.reflections)),
       tile_width_(1 << tile_width_log2(options.configuration.contents())),
       given_(options.device->units()),
       ended_(options.device->units()) {

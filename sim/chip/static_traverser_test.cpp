@@ -68,8 +68,8 @@ TEST(StaticTraverser, Turns64RaysIntoIntersectionsAtTheEndOfAKernel) {
     return cycle < 5000;
   });
   EXPECT_EQ(bench.traverser.counts().batches, 1u);
-  EXPECT_EQ(bench.traverser.counts().missed, 32u);
-  EXPECT_EQ(bench.traverser.counts().eye_rays, 64u);
+  EXPECT_EQ(bench.traverser.counts().rays.missed(), 32u);
+  EXPECT_EQ(bench.traverser.counts().rays.eye.traced, 64u);
   EXPECT_EQ(bench.ledger.held(), 168u);
 }
 
@@ -126,7 +126,7 @@ TEST(StaticTraverser, KeepsRaysWithoutRoomAndTracesThemOnce) {
   EXPECT_EQ(bench.intersections.size(ImportKind::Normal), 10u);
   EXPECT_EQ(bench.rays.size(), 22u);
   EXPECT_EQ(bench.tracer.traced, 84);
-  EXPECT_EQ(bench.traverser.counts().blocked, 32u);
+  EXPECT_EQ(bench.traverser.counts().rays.blocked(), 32u);
 }
 
 }  // namespace

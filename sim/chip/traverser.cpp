@@ -7,11 +7,9 @@
 namespace raypool::chip {
 
 void Traverser::trace(PooledRay& ray) {
-  const bool shadow = (ray.ray[word::kFlags] & kShadowFlag) != 0;
-  const bool eye = (ray.ray[word::kFlags] & kDepthMask) == 1;
-  ++(shadow ? counts_.shadow_rays : eye ? counts_.eye_rays : counts_.secondary_rays);
   ray.traced = true;
   ray.goes_on = around_.tracer.trace(ray.ray, ray.intersection);
+  counts_.rays.count(ray.ray, ray.goes_on);
 }
 
 uint32_t Traverser::advance(uint32_t budget) {
@@ -27,7 +25,6 @@ uint32_t Traverser::advance(uint32_t budget) {
     const bool shadow = (ray.ray[word::kFlags] & kShadowFlag) != 0;
     const ImportKind kind = shadow ? ImportKind::Shadow : ImportKind::Normal;
     if (ray.traced && !ray.goes_on) {
-      ++(shadow ? counts_.blocked : counts_.missed);
       shadows += shadow;
       around_.ledger.ray_dropped(ray.ray[word::kPixel]);
     } else if (ray.traced && !around_.intersections.full(kind)) {

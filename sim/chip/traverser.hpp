@@ -15,6 +15,7 @@
 #include "chip/pixel_ledger.hpp"
 #include "chip/ports.hpp"
 #include "chip/ray_pool.hpp"
+#include "scene/ray_counts.hpp"
 
 namespace raypool::chip {
 
@@ -30,9 +31,8 @@ struct TraverserSurroundings {
 };
 
 struct TraverserCounts {
-  uint64_t eye_rays = 0, secondary_rays = 0, shadow_rays = 0;  ///< traced
-  uint64_t missed = 0, blocked = 0;                            ///< traced and dropped
-  uint64_t delivered = 0;                                      ///< intersections
+  RayCounts rays;
+  uint64_t delivered = 0;  ///< intersections
   uint64_t batches = 0, stall_batches = 0;
 };
 

@@ -40,16 +40,27 @@ Json lockstep_json(const LockstepCounts& counts) {
           {"frame_contributions", counts.frame_contributions}};
 }
 
+void add_rays(Json& json, const RayCounts& rays, uint64_t too_deep) {
+  const auto by_kind = [&](uint64_t RayCounts::Kind::*figure) {
+    return Json{{"eye", rays.eye.*figure}, {"reflection", rays.reflection.*figure}, {"shadow", rays.shadow.*figure}};
+  };
+  json["rays_by_kind"] = by_kind(&RayCounts::Kind::traced);
+  json["rays_without_weight"] = by_kind(&RayCounts::Kind::weightless);
+  json["rays_in_vain"] = by_kind(&RayCounts::Kind::futile);
+  json["rays_that_end"] = {{"missed", rays.missed()}, {"blocked", rays.blocked()}, {"too_deep", too_deep}};
+}
+
 void add_chip(Json& json, const ChipResult& chip) {
   json["cycles"] = timed(chip, chip.cycles);
   json["rays"] = chip.rays();
   json["mrays_per_second"] = timed(chip, chip.mrays_per_s);
+  json["mrays_per_second_thesis"] = timed(chip, chip.thesis_mrays_per_s);
+  json["frames_per_second"] = timed(chip, chip.frames_per_s);
   json["time_utilisation"] = timed(chip, chip.time_utilisation);
   json["resource_utilisation"] = chip.resource_utilisation;
   json["instructions"] = chip.instructions;
   json["thread_instructions"] = chip.thread_instructions;
-  json["rays_by_kind"] = {{"eye", chip.eye_rays}, {"reflection", chip.secondary_rays}, {"shadow", chip.shadow_rays}};
-  json["rays_that_end"] = {{"missed", chip.dropped_missed}, {"blocked", chip.dropped_blocked}, {"too_deep", chip.dropped_depth}};
+  add_rays(json, chip.ray_counts, chip.dropped_depth);
   json["contributions"] = chip.contributions;
   for (size_t i = 0; i < kRayKernels; ++i) {
     const ChipResult::Kernel& kernel = chip.kernels[i];
@@ -84,9 +95,11 @@ void add_chip(Json& json, const ChipResult& chip) {
 void add_native(Json& json, const NativeStatistics& native) {
   json["cycles"] = nullptr;
   json["rays"] = native.rays();
-  for (const char* key : {"mrays_per_second", "time_utilisation", "resource_utilisation"}) json[key] = nullptr;
-  json["rays_by_kind"] = {{"eye", native.eye_rays}, {"reflection", native.reflection_rays}, {"shadow", native.shadow_rays}};
-  json["rays_that_end"] = {{"missed", native.missed_rays}, {"blocked", native.blocked_rays}, {"too_deep", native.dropped_rays}};
+  for (const char* key :
+       {"mrays_per_second", "mrays_per_second_thesis", "frames_per_second", "time_utilisation", "resource_utilisation"}) {
+    json[key] = nullptr;
+  }
+  add_rays(json, native.ray_counts, native.dropped_rays);
   json["contributions"] = native.contributions;
   for (size_t i = 0; i < kRayKernels; ++i) {
     json["kernels"][std::string(kRayKernelNames[i])] = {{"threads", native.kernel_threads[i]}};
@@ -110,15 +123,22 @@ void kernel_table(std::string& text, const ChipResult& chip) {
   }
 }
 
+void ray_table(std::string& text, const RunRecord& record, const RayCounts& rays) {
+  line(text, "  rays        {}: {} eye, {} reflection, {} shadow", rays.traced(), rays.eye.traced, rays.reflection.traced,
+       rays.shadow.traced);
+  line(text, "    in vain   {} eye, {} reflection, {} shadow; of these had no weight: {}, {}, {}", rays.eye.futile,
+       rays.reflection.futile, rays.shadow.futile, rays.eye.weightless, rays.reflection.weightless, rays.shadow.weightless);
+  if (record.depth > 1 && !record.reflections) line(text, "    left out  reflections: no material of this scene reflects");
+}
+
 void chip_table(std::string& text, const ChipResult& chip) {
-  line(text, "  rays        {}: {} eye, {} reflection, {} shadow", chip.rays(), chip.eye_rays, chip.secondary_rays,
-       chip.shadow_rays);
   if (!chip.timed) {
     kernel_table(text, chip);
     line(text, "  work        {} warp instructions, {} thread instructions", chip.instructions, chip.thread_instructions);
     return;
   }
-  line(text, "  speed       {:.2f} Mrays/s ({} cycles at 1 GHz)", chip.mrays_per_s, chip.cycles);
+  line(text, "  speed       {:.2f} Mrays/s, {:.2f} frames/s ({} cycles at 1 GHz); as the thesis counts, {:.2f} Mrays/s",
+       chip.mrays_per_s, chip.frames_per_s, chip.cycles, chip.thesis_mrays_per_s);
   line(text, "  utilisation time {:.1f}%, resources {:.1f}%", 100 * chip.time_utilisation, 100 * chip.resource_utilisation);
   kernel_table(text, chip);
   line(text, "  ALU   utilisation  waiting      tasks");
@@ -150,6 +170,7 @@ std::string to_json(const RunRecord& record) {
   json["scene"] = {{"name", record.scene}, {"triangles", record.triangles}, {"materials", record.materials}};
   json["size"] = {{"width", record.width}, {"height", record.height}};
   json["depth"] = record.depth;
+  json["reflections"] = record.reflections;
   json["units"] = record.units;
   json["traverser"] = record.traverser;
   if (record.chip) add_chip(json, *record.chip);
@@ -168,12 +189,11 @@ std::string to_table(const RunRecord& record) {
   std::string text;
   line(text, "{}, {} triangles, {}x{}, depth {}: {} on {}, {} compute unit{}", record.scene, record.triangles, record.width,
        record.height, record.depth, record.engine, record.configuration.name, record.units, record.units == 1 ? "" : "s");
-  if (record.chip) chip_table(text, *record.chip);
-  if (record.native) {
-    const NativeStatistics& native = *record.native;
-    line(text, "  rays        {}: {} eye, {} reflection, {} shadow", native.rays(), native.eye_rays, native.reflection_rays,
-         native.shadow_rays);
+  if (record.chip) {
+    ray_table(text, record, record.chip->ray_counts);
+    chip_table(text, *record.chip);
   }
+  if (record.native) ray_table(text, record, record.native->ray_counts);
   if (record.lockstep) line(text, "  {}", to_string(*record.lockstep));
   std::string simulated;
   if (record.chip && record.chip->timed) {

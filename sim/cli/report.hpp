@@ -21,6 +21,7 @@ struct RunRecord {
   size_t triangles = 0, materials = 0;
   int width = 0, height = 0;
   int depth = 0;
+  bool reflections = false;  ///< are cast
   int units = 0;
   std::string traverser;
   std::optional<ChipResult> chip;          ///< engines with a chip

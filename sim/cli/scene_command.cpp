@@ -29,9 +29,7 @@ int scene_command(const SceneCommandOptions& options) {
   size_t degenerate = 0;
   for (size_t i = 0; i < scene.triangles.size(); ++i) degenerate += is_degenerate(scene, i) ? 1 : 0;
   size_t mirrors = 0;
-  for (const Material& material : scene.materials) {
-    mirrors += material.ks.x > 0 || material.ks.y > 0 || material.ks.z > 0 ? 1 : 0;
-  }
+  for (const Material& material : scene.materials) mirrors += material.reflects() ? 1 : 0;
   const Bounds bounds = scene.bounds();
   fmt::print("scene      {}\n", scene.name);
   fmt::print("triangles  {}, of which {} have no area; {} vertices\n", scene.triangles.size(), degenerate, scene.vertices.size());

@@ -68,6 +68,7 @@ ChipResult draw_on_chip(const SimOptions& options, const RunRecord& record, cons
   chip.width = record.width;
   chip.height = record.height;
   chip.depth = record.depth;
+  chip.reflections = record.reflections;
   chip.tracer = &scene_tracer;
   chip.frame = &sink;
   chip.traverser = record.traverser;
@@ -105,6 +106,7 @@ int sim_command(const SimOptions& options) {
   record.scene = scene.name;
   record.triangles = scene.triangles.size();
   record.materials = scene.materials.size();
+  record.reflections = record.depth > 1 && scene.reflects();
   MemoryImage image = build_memory(ray_kernel_program(record.configuration.fma), scene);
   OutputFolder out(options.out.empty() ? default_folder(options, record.configuration, size) : fs::path(options.out));
 
@@ -114,7 +116,8 @@ int sim_command(const SimOptions& options) {
     NativeOptions native;
     native.width = size.width;
     native.height = size.height;
-    native.depth = options.depth;
+    native.depth = record.depth;
+    native.reflections = record.reflections;
     native.contents = record.configuration.contents();
     native.threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
     native.mode = arith::mode_of(record.configuration);

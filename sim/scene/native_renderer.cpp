@@ -30,11 +30,7 @@ void add(TraversalCounts& sum, const TraversalCounts& part) {
 }
 
 void add(NativeStatistics& sum, const NativeStatistics& part) {
-  sum.eye_rays += part.eye_rays;
-  sum.reflection_rays += part.reflection_rays;
-  sum.shadow_rays += part.shadow_rays;
-  sum.missed_rays += part.missed_rays;
-  sum.blocked_rays += part.blocked_rays;
+  sum.ray_counts.add(part.ray_counts);
   sum.dropped_rays += part.dropped_rays;
   sum.contributions += part.contributions;
   for (size_t i = 0; i < kRayKernels; ++i) sum.kernel_threads[i] += part.kernel_threads[i];
@@ -90,18 +86,14 @@ class Worker {
       ++statistics.dropped_rays;
       return;
     }
-    ++(shadow ? statistics.shadow_rays : depth == 1 ? statistics.eye_rays : statistics.reflection_rays);
     thread_.thread = 0;
     thread_.threads = 1;
     thread_.block = 0;
     const bool goes_on = options_.trace
                              ? options_.trace(ray, thread_.input)
                              : tracer_.trace(ray, thread_.input, shadow ? &statistics.shadow_visits : &statistics.normal_visits);
-    if (!goes_on) {
-      ++(shadow ? statistics.blocked_rays : statistics.missed_rays);
-      return;
-    }
-    run(shadow ? RayKernel::Shade : options_.depth == 1 ? RayKernel::CastSecondaryDirect : RayKernel::CastSecondary);
+    statistics.ray_counts.count(ray, goes_on);
+    if (goes_on) run(shadow ? RayKernel::Shade : secondary_kernel(options_.depth, options_.reflections));
   }
 
   const Tracer& tracer_;

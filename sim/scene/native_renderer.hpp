@@ -9,6 +9,7 @@
 #include "kernel/kernels.hpp"
 #include "machine/memory.hpp"
 #include "scene/image.hpp"
+#include "scene/ray_counts.hpp"
 #include "scene/scene.hpp"
 #include "scene/traversal.hpp"
 
@@ -38,9 +39,10 @@ inline constexpr int kLargestDepth = 254;
 
 struct NativeOptions {
   int width = 512, height = 512;
-  int depth = 1;      ///< 1 .. kLargestDepth; 1: eye and shadow rays only; d: up to d - 1 reflections
-  int contents = 64;  ///< size of an eye tile in pixels, a power of two; changes no picture
-  int threads = 1;    ///< changes no picture and no count
+  int depth = 1;            ///< 1 .. kLargestDepth; 1: eye and shadow rays only; d: up to d - 1 reflections
+  bool reflections = true;  ///< false: casts none, whatever the depth; the same picture where no material reflects
+  int contents = 64;        ///< size of an eye tile in pixels, a power of two; changes no picture
+  int threads = 1;          ///< changes no picture and no count
   arith::Mode mode;
   std::function<void(RayKernel, NativeThread&)> kernel;  ///< run_native when empty
   /// Called with camera_arguments() before the frame begins, to change them; may be empty.
@@ -49,15 +51,13 @@ struct NativeOptions {
 };
 
 struct NativeStatistics {
-  uint64_t eye_rays = 0, reflection_rays = 0, shadow_rays = 0;  ///< traced
-  uint64_t missed_rays = 0;                                     ///< normal rays that hit nothing
-  uint64_t blocked_rays = 0;                                    ///< shadow rays that were blocked
-  uint64_t dropped_rays = 0;                                    ///< normal rays beyond the depth limit, not traced
-  uint64_t contributions = 0;                                   ///< added to the frame buffer
-  std::array<uint64_t, kRayKernels> kernel_threads{};           ///< threads run of each kernel
+  RayCounts ray_counts;
+  uint64_t dropped_rays = 0;                           ///< normal rays beyond the depth limit, not traced
+  uint64_t contributions = 0;                          ///< added to the frame buffer
+  std::array<uint64_t, kRayKernels> kernel_threads{};  ///< threads run of each kernel
   TraversalCounts normal_visits, shadow_visits;
 
-  uint64_t rays() const { return eye_rays + reflection_rays + shadow_rays; }
+  uint64_t rays() const { return ray_counts.traced(); }
 };
 
 /// `tracer` must have been made from `scene` with the material_base of build_memory(ray_kernel_program(), scene). Throws

@@ -106,12 +106,12 @@ TEST(NativeRenderer, CountsRaysByKindAndDepth) {
   const uint64_t pixels = 40 * 30;
   for (int depth : {1, 2, 4}) {
     const NativeStatistics s = render(scene, size(40, 30, depth)).statistics;
-    EXPECT_EQ(s.eye_rays, pixels);
-    EXPECT_EQ(s.reflection_rays, pixels * static_cast<uint64_t>(depth - 1));
+    EXPECT_EQ(s.ray_counts.eye.traced, pixels);
+    EXPECT_EQ(s.ray_counts.reflection.traced, pixels * static_cast<uint64_t>(depth - 1));
     EXPECT_EQ(s.dropped_rays, depth == 1 ? 0 : pixels);
-    EXPECT_EQ(s.missed_rays, 0u);
-    EXPECT_GT(s.shadow_rays, pixels / 2);
-    EXPECT_EQ(s.contributions, s.shadow_rays - s.blocked_rays);
+    EXPECT_EQ(s.ray_counts.missed(), 0u);
+    EXPECT_GT(s.ray_counts.shadow.traced, pixels / 2);
+    EXPECT_EQ(s.contributions, s.ray_counts.shadow.traced - s.ray_counts.blocked());
     const auto direct = static_cast<size_t>(RayKernel::CastSecondaryDirect),
                reflecting = static_cast<size_t>(RayKernel::CastSecondary);
     EXPECT_EQ(s.kernel_threads[direct], depth == 1 ? pixels : 0);
@@ -145,8 +145,8 @@ TEST(NativeRenderer, OffsetKeepsSurfacesFreeOfTheirOwnShadow) {
   scene.camera = view.camera;
   scene.light = view.light;
   const NativeStatistics s = render(scene, size(160, 160, 1)).statistics;
-  EXPECT_GT(s.shadow_rays, 4000u);
-  EXPECT_LT(static_cast<double>(s.blocked_rays), 0.002 * static_cast<double>(s.shadow_rays));
+  EXPECT_GT(s.ray_counts.shadow.traced, 4000u);
+  EXPECT_LT(static_cast<double>(s.ray_counts.blocked()), 0.002 * static_cast<double>(s.ray_counts.shadow.traced));
 }
 
 TEST(NativeRenderer, KernelsDrawWhatTheirFormulasSay) {
@@ -160,10 +160,36 @@ TEST(NativeRenderer, KernelsDrawWhatTheirFormulasSay) {
     const FrameBuffer formulas = render(scene, options).frame;
     // Rounding differs, and with it a few hits at the edge of something.
     EXPECT_GT(compare(kernels, formulas).psnr, 30) << "depth " << depth;
-    EXPECT_EQ(statistics.eye_rays, 64u * 48);
-    EXPECT_EQ(statistics.reflection_rays, 64u * 48 * static_cast<uint64_t>(depth - 1));
-    EXPECT_EQ(statistics.shadow_rays, 64u * 48 * static_cast<uint64_t>(depth)) << "one for each hit";
+    EXPECT_EQ(statistics.ray_counts.eye.traced, 64u * 48);
+    EXPECT_EQ(statistics.ray_counts.reflection.traced, 64u * 48 * static_cast<uint64_t>(depth - 1));
+    EXPECT_EQ(statistics.ray_counts.shadow.traced, 64u * 48 * static_cast<uint64_t>(depth)) << "one for each hit";
   }
+}
+
+TEST(NativeRenderer, WithoutReflectingMaterialsReflectionsChangeNothing) {
+  Scene scene = make_cornell(0.2);
+  EXPECT_TRUE(scene.reflects());
+  for (Material& material : scene.materials) material.ks = {};
+  EXPECT_FALSE(scene.reflects());
+  scene.materials.push_back({"mirror that no triangle has", {}, {1, 1, 1}});
+  EXPECT_FALSE(scene.reflects());
+
+  const MemoryImage image = build_memory(ray_kernel_program(), scene);
+  const Tracer tracer(scene, image.material_base);
+  NativeOptions options = size(48, 32, 4);
+  NativeStatistics with, without;
+  const FrameBuffer frame = render_native(scene, image, tracer, options, &with);
+  options.reflections = false;
+  EXPECT_TRUE(render_native(scene, image, tracer, options, &without) == frame);
+  const RayCounts &cast = with.ray_counts, &left = without.ray_counts;
+  EXPECT_EQ(cast.reflection.traced, 3u * 48 * 32);
+  EXPECT_EQ(cast.reflection.weightless, cast.reflection.traced);
+  EXPECT_EQ(left.reflection.traced, 0u);
+  EXPECT_EQ(left.eye.traced, 48u * 32);
+  EXPECT_EQ(left.shadow.traced, 48u * 32);
+  EXPECT_EQ(without.dropped_rays, 0u);
+  // What adds to the picture is the same.
+  EXPECT_EQ(left.shadow.traced - left.shadow.futile, cast.shadow.traced - cast.shadow.futile);
 }
 
 TEST(NativeRenderer, RefusesOptionsOutOfRange) {

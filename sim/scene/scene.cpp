@@ -45,6 +45,11 @@ Bounds Scene::bounds() const {
   return result;
 }
 
+bool Scene::reflects() const {
+  return std::any_of(triangle_materials.begin(), triangle_materials.end(),
+                     [this](uint32_t material) { return materials[material].reflects(); });
+}
+
 bool is_degenerate(const Scene& scene, size_t triangle) {
   const Vec3d a = scene.corner(triangle, 0).as<double>();
   const Vec3d normal = cross(scene.corner(triangle, 1).as<double>() - a, scene.corner(triangle, 2).as<double>() - a);

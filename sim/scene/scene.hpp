@@ -16,6 +16,8 @@ struct Material {
   std::string name;
   Vec3 kd{0.5f, 0.5f, 0.5f};  ///< diffuse
   Vec3 ks{};                  ///< mirror reflectance; zero is matt
+
+  bool reflects() const { return ks.x > 0 || ks.y > 0 || ks.z > 0; }
 };
 
 struct Camera {
@@ -48,6 +50,8 @@ struct Scene {
   const Vec3& corner(size_t triangle, int k) const { return vertices[triangles[triangle][static_cast<size_t>(k)]]; }
   /// Of the vertices that triangles use; both corners zero without triangles.
   Bounds bounds() const;
+  /// Some triangle's material does.
+  bool reflects() const;
 };
 
 /// Coordinates beyond this are refused: products of four of them must stay finite in single precision.

@@ -1,0 +1,46 @@
+#include "scene/ray_counts.hpp"
+
+#include <cstring>
+
+#include "scene/image.hpp"
+
+namespace raypool {
+namespace {
+
+/// A shadow ray carries what it adds if it is free: nothing, where the frame buffer would round it to nothing. A normal ray's
+/// throughput may still be multiplied with bright colours; only zero, negative or NaN is without effect for certain.
+bool weightless(const Ray& ray, bool shadow) {
+  for (int channel = 0; channel < 3; ++channel) {
+    float weight = 0;
+    std::memcpy(&weight, &ray[static_cast<size_t>(word::kColor + channel)], sizeof weight);
+    if (shadow ? to_fixed(weight) > 0 : weight > 0) return false;
+  }
+  return true;
+}
+
+void add(RayCounts::Kind& sum, const RayCounts::Kind& part) {
+  sum.traced += part.traced;
+  sum.ended += part.ended;
+  sum.weightless += part.weightless;
+  sum.futile += part.futile;
+}
+
+}  // namespace
+
+void RayCounts::count(const Ray& ray, bool goes_on) {
+  const bool is_shadow = (ray[word::kFlags] & kShadowFlag) != 0;
+  const bool without = weightless(ray, is_shadow);
+  Kind& kind = is_shadow ? shadow : (ray[word::kFlags] & kDepthMask) == 1 ? eye : reflection;
+  ++kind.traced;
+  kind.ended += !goes_on;
+  kind.weightless += without;
+  kind.futile += !goes_on || without;
+}
+
+void RayCounts::add(const RayCounts& other) {
+  raypool::add(eye, other.eye);
+  raypool::add(reflection, other.reflection);
+  raypool::add(shadow, other.shadow);
+}
+
+}  // namespace raypool

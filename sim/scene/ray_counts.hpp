@@ -1,0 +1,28 @@
+// What became of the rays of a frame, by kind; docs/report.md defines the figures. Every engine counts them the same way.
+#pragma once
+
+#include <cstdint>
+
+#include "machine/compute_unit.hpp"
+
+namespace raypool {
+
+struct RayCounts {
+  struct Kind {
+    uint64_t traced = 0;
+    uint64_t ended = 0;       ///< traced, and hit nothing; shadow rays: are blocked
+    uint64_t weightless = 0;  ///< traced, though nothing that they find can change the picture
+    uint64_t futile = 0;      ///< ended or weightless or both: added nothing to the picture
+  };
+  Kind eye, reflection, shadow;
+
+  /// `ray` has been traced; `goes_on` says that a kernel gets its intersection.
+  void count(const Ray& ray, bool goes_on);
+  void add(const RayCounts& other);
+
+  uint64_t traced() const { return eye.traced + reflection.traced + shadow.traced; }
+  uint64_t missed() const { return eye.ended + reflection.ended; }
+  uint64_t blocked() const { return shadow.ended; }
+};
+
+}  // namespace raypool
