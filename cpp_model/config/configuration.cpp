@@ -12,6 +12,7 @@
 #include <regex>
 #include <sstream>
 
+#include "config/data_folder.hpp"
 #include "isa/reference.hpp"
 
 namespace raypool {
@@ -186,13 +187,17 @@ std::vector<fs::path> configuration_folders() {
   std::vector<fs::path> folders;
   if (const char* folder = std::getenv("RAYPOOL_CONFIGS"); folder != nullptr && *folder != '\0') folders.emplace_back(folder);
   folders.emplace_back("configs");
+  if (const std::string installed = installed_data_folder(); !installed.empty())
+    folders.push_back(fs::path(installed) / "configs");
   folders.push_back((fs::path(__FILE__).parent_path() / ".." / ".." / "configs").lexically_normal());
   return folders;
 }
 
 }  // namespace
 
-Configuration load_configuration(const std::string& name_or_path) {
+namespace {
+
+Configuration load(const std::string& name_or_path) {
   if (fs::is_regular_file(name_or_path)) return read_file(name_or_path);
   const bool is_name = !name_or_path.empty() && name_or_path.find('/') == std::string::npos;
   if (is_name) {
@@ -214,6 +219,14 @@ Configuration load_configuration(const std::string& name_or_path) {
   throw InputError(fmt::format(
       "no configuration '{}': give the path of a JSON file, the name of a file in configs/, or NwMc for N warps of M cores",
       name_or_path));
+}
+
+}  // namespace
+
+Configuration load_configuration(const std::string& name_or_path) {
+  Configuration configuration = load(name_or_path);
+  configuration.source = name_or_path;
+  return configuration;
 }
 
 Configuration parse_configuration(const std::string& json, const std::string& where) {

@@ -31,6 +31,7 @@ inline constexpr std::array<AluConfiguration, kUnits> default_alus() {
 
 struct Configuration {
   std::string name = "8w8c";
+  std::string source;  ///< what load_configuration was given; empty: nothing
   int warps = 8;
   int cores = 8;  ///< lanes, and threads in a warp
   int stack_depth = 8;

@@ -27,6 +27,7 @@ struct SimOptions {
   int units = 1;
   double detail = 1;  ///< of a built-in scene, 0.01 .. 16
   bool waves = false;
+  bool json = false;                 ///< the report on standard output, instead of the table
   bool quiet = false;                ///< no progress, no table
   std::vector<std::string> command;  ///< the command line, for the report
   /// Puts something around the device, which works on that memory; empty: nothing. No option of the command line.
@@ -60,6 +61,14 @@ struct ConfigOptions {
   int units = 1;              ///< of which `unit_library` has so many
 };
 int config_command(const ConfigOptions& options);
+
+/// `raypool unit`: does not return when the build has begun; its exit code is the program's.
+struct UnitOptions {
+  std::string config = "8w8c";
+  int units = 1;
+  bool waves = false;
+};
+int unit_command(const UnitOptions& options);
 
 /// `raypool isa`
 enum class IsaFormat { Verilog, VerilogFunctions, Markdown };

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "cli/folders.hpp"
 #include "lockstep/rtl_loader.hpp"
 #include "machine/functional_unit.hpp"
 #include "machine/model.hpp"
@@ -32,11 +33,10 @@ std::string unit_library_path(const Configuration& configuration, bool waves, in
   for (const auto& [name, value] : verilog_parameters(configuration)) {
     for (const char c : fmt::format("{}={} ", name, value)) hash = (hash ^ static_cast<uint8_t>(c)) * 16777619u;
   }
-  const fs::path executable = fs::read_symlink("/proc/self/exe");
   const std::string several = units == 1 ? "" : fmt::format("-{}cu", units);
   const std::string key =
       fmt::format("{}w{}c-{:08x}{}{}", configuration.warps, configuration.cores, hash, several, waves ? "-waves" : "");
-  return executable.parent_path() / "units" / key / "libraypool_unit.so";
+  return units_folder() / key / "libraypool_unit.so";
 }
 
 std::string newer_verilog(const std::string& library, const std::string& rtl) {
@@ -49,19 +49,31 @@ std::string newer_verilog(const std::string& library, const std::string& rtl) {
   return "";
 }
 
+namespace {
+
+/// What a user types to have the unit: from a checkout make, of an installed program the program itself.
+std::string build_command(const EngineOptions& options) {
+  const Configuration& configuration = options.configuration;
+  const std::string& config = configuration.source.empty() ? configuration.name : configuration.source;
+  const std::string units = options.units == 1 ? "" : std::to_string(options.units);
+  if (installed())
+    return fmt::format("raypool unit --config {}{}{}", config, units.empty() ? "" : " --units " + units,
+                       options.waves ? " --waves" : "");
+  return fmt::format("make unit CONFIG={}{}{}", config, units.empty() ? "" : " CUS=" + units, options.waves ? " WAVES=1" : "");
+}
+
+}  // namespace
+
 std::string find_unit_library(const EngineOptions& options) {
   const Configuration& configuration = options.configuration;
   std::string library =
       options.unit_library.empty() ? unit_library_path(configuration, options.waves, options.units) : options.unit_library;
-  const std::string build =
-      fmt::format("make unit CONFIG={}{}{}", configuration.name, options.units == 1 ? "" : fmt::format(" CUS={}", options.units),
-                  options.waves ? " WAVES=1" : "");
+  const std::string build = build_command(options);
   if (!fs::exists(library)) throw InputError(fmt::format("there is no Verilated unit '{}': build it with {}", library, build));
 
   static std::set<std::string> checked;
   if (options.unit_library.empty() && checked.insert(library).second) {
-    const fs::path project = fs::path(library).parent_path().parent_path().parent_path().parent_path();
-    const std::string newer = newer_verilog(library, project / "rtl");
+    const std::string newer = newer_verilog(library, data_folder() / "rtl");
     if (!newer.empty())
       fmt::print(stderr, "raypool: warning: '{}' was changed after '{}' was built: build it again with {}\n", newer, library,
                  build);

@@ -19,7 +19,7 @@ enum class Engine : uint8_t { Native, Functional, Model, Rtl, Lockstep };
 /// Throws InputError naming the engines.
 Engine parse_engine(const std::string& name);
 
-/// <folder of the executable>/units/<name from the Verilog parameters>/libraypool_unit.so, where scripts/unit.sh builds it; with
+/// units_folder()/<name from the Verilog parameters>/libraypool_unit.so, where `raypool unit` builds it; with
 /// `waves` the one that can write waveforms. Of a multiprocessor of `units` units.
 std::string unit_library_path(const Configuration& configuration, bool waves, int units = 1);
 

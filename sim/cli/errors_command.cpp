@@ -3,6 +3,7 @@
 
 #include "arith/error_table.hpp"
 #include "cli/commands.hpp"
+#include "cli/exit_code.hpp"
 
 namespace raypool {
 
@@ -10,9 +11,9 @@ int errors_command(uint32_t grid) {
   const std::vector<arith::ErrorRow> rows = arith::error_table(grid);
   std::fputs(arith::to_text(rows).c_str(), stdout);
   for (const arith::ErrorRow& row : rows) {
-    if (!arith::keeps_promise(row)) return 3;
+    if (!arith::keeps_promise(row)) return kOtherFailure;
   }
-  return 0;
+  return kDone;
 }
 
 }  // namespace raypool

@@ -9,6 +9,8 @@
 
 #include "cli/commands.hpp"
 #include "cli/engine.hpp"
+#include "cli/exit_code.hpp"
+#include "cli/folders.hpp"
 #include "cli/image_size.hpp"
 #include "cli/output_folder.hpp"
 #include "cli/progress.hpp"
@@ -24,7 +26,6 @@ namespace fs = std::filesystem;
 using namespace numerics;
 
 constexpr uint64_t kSeamRays = 1'000'000;
-constexpr int kFailed = 3;  // the exit code of a promise that is not kept
 
 std::vector<ArithmeticMode> chosen_modes(const std::string& name) {
   if (name == "all") return arithmetic_modes();
@@ -35,8 +36,6 @@ std::vector<ArithmeticMode> chosen_modes(const std::string& name) {
   }
   throw InputError(fmt::format("there is no arithmetic mode '{}': use all{}", name, names));
 }
-
-fs::path build_folder() { return fs::read_symlink("/proc/self/exe").parent_path(); }
 
 UnitMaker unit_maker(Engine engine) {
   return [engine](const Configuration& configuration, Memory& memory) {
@@ -92,7 +91,8 @@ TradeResult measure_trade(const NumericsOptions& options, const ImageSize& size,
   for (const ArithmeticMode& mode : modes) {
     const Configuration configuration = mode.applied_to(base);
     TradeCost cost{mode, std::nullopt,
-                   read_gates(options.synthesis.empty() ? build_folder() / "synth" : fs::path(options.synthesis), mode.mode)};
+                   read_gates(options.synthesis.empty() ? results_folder().parent_path() / "synth" : fs::path(options.synthesis),
+                              mode.mode)};
     if (progress.due()) progress.show(fmt::format("  cost: {}", mode.name));
     cost.timing = time_mode(timed, options.depth, configuration, unit_maker(Engine::Model));
     result.costs.push_back(cost);
@@ -102,7 +102,7 @@ TradeResult measure_trade(const NumericsOptions& options, const ImageSize& size,
 
 int trade_command(const NumericsOptions& options) {
   const ImageSize size = parse_image_size(options.size);
-  OutputFolder out(options.out.empty() ? build_folder() / "out" / "numerics" : fs::path(options.out));
+  OutputFolder out(options.out.empty() ? results_folder() / "numerics" : fs::path(options.out));
   Progress progress(options.quiet);
   const TradeResult trade = measure_trade(options, size, progress);
 
@@ -141,7 +141,7 @@ int trade_command(const NumericsOptions& options) {
   if (!gates_known) fmt::print("no gates where there is a -: make numerics GATES=1 synthesises the lanes of every mode first\n");
   fmt::print("results in {}: {}\n", fs::proximate(out.path(".")).lexically_normal().string(), files);
   const bool leak = std::any_of(seams.begin(), seams.end(), [](const WatertightCounts& counts) { return counts.leaks > 0; });
-  return leak ? kFailed : 0;
+  return leak ? kOtherFailure : kDone;
 }
 
 /// One letter an engine, in the order native, functional, model, lockstep: lower case passed, X failed, - not run.
@@ -201,7 +201,7 @@ int extremes_command(const NumericsOptions& options) {
   if (!missing.empty()) {
     fmt::print("without hardware: {} of {} modes; make extremes builds their units\n", missing.size(), modes.size());
   }
-  return failed == 0 ? 0 : kFailed;
+  return failed == 0 ? kDone : kOtherFailure;
 }
 
 /// Every case of the catalogue and its expected behaviour.

@@ -10,6 +10,7 @@
 #include "chip/program_run.hpp"
 #include "cli/commands.hpp"
 #include "cli/engine.hpp"
+#include "cli/exit_code.hpp"
 #include "cli/output_folder.hpp"
 #include "cli/text_file.hpp"
 #include "isa/assembler.hpp"
@@ -256,7 +257,7 @@ int run_command(const RunOptions& options) {
   print_figures(result, job.options.configuration);
   if (!compared.empty()) fmt::print("  {}\n", compared);
   for (const PrintRange& range : ranges) print_words(job.memory, range);
-  return right ? 0 : 1;
+  return right ? kDone : kOtherFailure;
 }
 
 }  // namespace raypool

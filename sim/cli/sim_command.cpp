@@ -8,6 +8,7 @@
 #include "chip/chip.hpp"
 #include "cli/commands.hpp"
 #include "cli/engine.hpp"
+#include "cli/folders.hpp"
 #include "cli/image_size.hpp"
 #include "cli/output_folder.hpp"
 #include "cli/progress.hpp"
@@ -35,10 +36,9 @@ void check(const SimOptions& options, Engine engine) {
 }
 
 fs::path default_folder(const SimOptions& options, const Configuration& configuration, const ImageSize& size) {
-  const fs::path executable = fs::read_symlink("/proc/self/exe");
-  return executable.parent_path() / "out" /
-         fmt::format("{}-{}-{}cu-{}x{}-depth{}-{}", fs::path(options.scene).stem().string(), configuration.name, options.units,
-                     size.width, size.height, options.depth, options.engine);
+  return results_folder() / fmt::format("{}-{}-{}cu-{}x{}-depth{}-{}", fs::path(options.scene).stem().string(),
+                                        configuration.name, options.units, size.width, size.height, options.depth,
+                                        options.engine);
 }
 
 /// "62% of the pixels, ..."; an engine without time has no cycles to tell.
@@ -56,7 +56,7 @@ ChipResult draw_on_chip(const SimOptions& options, const RunRecord& record, cons
   const Program& program = ray_kernel_program(record.configuration.fma);
   SceneTracer scene_tracer(tracer);
   FrameBufferSink sink(frame);
-  Progress progress(options.quiet);
+  Progress progress(options.quiet || options.json);
 
   ChipOptions chip;
   chip.configuration = record.configuration;
@@ -150,8 +150,13 @@ int sim_command(const SimOptions& options) {
   const std::vector<uint8_t> png = encode_png(frame);
   out.write("image.png", std::string(png.begin(), png.end()));
   record.wall_seconds = whole.seconds();
-  out.write("report.json", to_json(record));
+  const std::string report = to_json(record);
+  out.write("report.json", report);
   out.publish();
+  if (options.json) {
+    fmt::print("{}", report);
+    return 0;
+  }
   if (!options.quiet) {
     fmt::print("{}  results     {}: image.png, report.json{}\n", to_table(record),
                fs::proximate(out.path(".")).lexically_normal().string(), options.waves ? ", waves.fst" : "");

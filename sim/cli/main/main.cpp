@@ -1,20 +1,27 @@
-// The command line: what each subcommand takes, what it does with errors. Exit codes: 0 done, 1 input that cannot be used or a
-// program that faults, 2 lockstep found a difference, 3 any other failure.
+// The command line: what each subcommand takes, what it does with errors.
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
 
 #include "chip/chip.hpp"
+#include "cli/about.hpp"
+#include "cli/command_description.hpp"
 #include "cli/commands.hpp"
 #include "cli/engine.hpp"
+#include "cli/exit_code.hpp"
 #include "lockstep/lockstep_unit.hpp"
 
 namespace raypool {
 namespace {
 
-constexpr int kInputFailure = 1;
-constexpr int kDifference = 2;
-constexpr int kOtherFailure = 3;
+/// The end of --help.
+std::string exit_codes() {
+  std::string text = "Exit codes:\n";
+  for (const ExitCode& row : kExitCodes) text += fmt::format("  {}  {}\n", row.code, row.meaning);
+  return text;
+}
 
 void add_config(CLI::App& app, std::string& config) {
   app.add_option("--config", config, "hardware: a name in configs/, NwMc (N warps, M cores) or a JSON file")
@@ -22,7 +29,9 @@ void add_config(CLI::App& app, std::string& config) {
 }
 
 void add_unit(CLI::App& app, std::string& engine, std::string& library) {
-  app.add_option("--engine", engine, "functional, model, rtl or lockstep; sim also native")->capture_default_str();
+  app.add_option("--engine", engine, "what stands in for the unit; native is for sim only")
+      ->type_name("native|functional|model|rtl|lockstep")
+      ->capture_default_str();
   app.add_option("--unit-library", library, "Verilated unit (default: where make unit builds it)");
 }
 
@@ -39,6 +48,9 @@ int run(int argc, char** argv) {
       "raypool");
   app.require_subcommand(1);
   app.set_help_all_flag("--help-all", "help of every command");
+  app.set_version_flag(
+      "--version", [] { return about(); }, "version, and those of the libraries");
+  app.footer(exit_codes());
   // Given twice, the later one counts: scripts put defaults first.
   app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   int code = 0;
@@ -53,6 +65,7 @@ int run(int argc, char** argv) {
   sim_app->add_option("--traverser", sim.traverser, "timing of the traverser: static")->capture_default_str();
   sim_app->add_option("--out", sim.out, "folder for the results (default: out/<what was run> beside the program)");
   sim_app->add_flag("--waves", sim.waves, "leave a waveform, waves.fst, too; rtl and lockstep only");
+  sim_app->add_flag("--json", sim.json, "the report on standard output, and nothing else there");
   sim_app->add_flag("--quiet", sim.quiet, "no progress and no table");
   sim.command.assign(argv, argv + argc);
   sim_app->callback([&] { code = sim_command(sim); });
@@ -119,6 +132,14 @@ int run(int argc, char** argv) {
       ->check(CLI::IsMember({1, 2, 4}));
   config_app->callback([&] { code = config_command(config); });
 
+  UnitOptions unit;
+  CLI::App* unit_app =
+      app.add_subcommand("unit", "build the Verilated unit that engines rtl and lockstep run (takes a minute or more)");
+  add_config(*unit_app, unit.config);
+  unit_app->add_option("--units", unit.units, "compute units: 1, 2 or 4")->check(CLI::IsMember({1, 2, 4}))->capture_default_str();
+  unit_app->add_flag("--waves", unit.waves, "one that can leave a waveform, beside the fast one");
+  unit_app->callback([&] { code = unit_command(unit); });
+
   CLI::App* isa_app = app.add_subcommand("isa", "print the instruction table (default: as Markdown)");
   bool verilog = false, functions = false, markdown = false, write = false;
   auto* isa_formats = isa_app->add_option_group("format");
@@ -183,6 +204,13 @@ int run(int argc, char** argv) {
                            "only write a configuration file of each mode into this folder");
   numerics_app->add_flag("--quiet", numerics.quiet, "no progress");
   numerics_app->callback([&] { code = numerics_command(numerics); });
+
+  std::string shell = "bash";
+  CLI::App* completion_app = app.add_subcommand("completion", "print what completes raypool's commands and options in a shell");
+  completion_app->add_option("shell", shell, "whose")->type_name("bash|zsh|fish")->capture_default_str();
+  completion_app->callback([&] { std::fputs(completion(app, shell).c_str(), stdout); });
+  CLI::App* man_app = app.add_subcommand("man", "print the man page: raypool man | man -l -");
+  man_app->callback([&] { std::fputs(man_page(app).c_str(), stdout); });
 
   try {
     app.parse(argc, argv);

@@ -1,0 +1,43 @@
+#include "cli/folders.hpp"
+
+#include <cstdlib>
+#include <string>
+
+#include "cli/commit.hpp"
+#include "cli/version.hpp"
+#include "config/data_folder.hpp"
+#include "isa/input_error.hpp"
+
+namespace raypool {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+fs::path program_folder() { return fs::read_symlink("/proc/self/exe").parent_path(); }
+
+/// As the XDG base directory specification has it: a path that is not absolute counts as none.
+fs::path cache_folder() {
+  const char* const cache = std::getenv("XDG_CACHE_HOME");
+  if (cache != nullptr && *cache == '/') return cache;
+  const char* const home = std::getenv("HOME");
+  if (home != nullptr && *home == '/') return fs::path(home) / ".cache";
+  throw InputError("there is no place for Verilated units: set XDG_CACHE_HOME to a folder of your own");
+}
+
+}  // namespace
+
+bool installed() { return !installed_data_folder().empty(); }
+
+fs::path data_folder() { return installed() ? fs::path(installed_data_folder()) : fs::path(RAYPOOL_SOURCE); }
+
+fs::path units_folder() {
+  if (!installed()) return program_folder() / "units";
+  // Units of another commit are made from other Verilog.
+  const std::string version = *kCommit == '\0' ? std::string(kVersion) : std::string(kVersion) + "-" + kCommit;
+  return cache_folder() / "raypool" / version / "units";
+}
+
+fs::path results_folder() { return installed() ? fs::path("raypool-out") : program_folder() / "out"; }
+
+}  // namespace raypool
