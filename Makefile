@@ -70,7 +70,7 @@ SYNTH_OPTIONS := --config "$$CONFIG" --memories "$$MEMORIES" $${LIBERTY:+--liber
 GATES_SETUP := $(if $(filter-out 0,$(GATES)),setup-synth)
 UNIT_OF_ENGINE := $(if $(filter rtl lockstep,$(ENGINE)),$(UNIT),true)
 
-.PHONY: help sim run cosim configurations mutants unit test lint format bench clean setup-% program configured-% numerics-long proofs synth synth-replay synth-prove growth numerics extremes isa quoted
+.PHONY: help sim run cosim configurations mutants faults unit test lint format bench clean setup-% program configured-% numerics-long proofs synth synth-replay synth-prove growth numerics extremes isa quoted
 
 help: ## this list
 	@echo 'raypool: a ray-tracing GPU to render on, measure, verify and synthesise'
@@ -117,6 +117,13 @@ mutants: setup-sim setup-lint program ## small faults put into the RTL: which do
 	@scripts/mutants.sh $(BUILD)/mutants tb/mutants/2w2c.json "$$MUTANTS" 1
 	@$(BUILD)/raypool_mutants --unit $(BUILD)/mutants/libraypool_unit.so --list $(BUILD)/mutants/list.txt --config tb/mutants/2w2c.json \
 	  --survivors tb/mutants/survivors.json --json $(BUILD)/mutants/outcomes.json
+
+faults: setup-sim setup-test configured-ON program ## a catalogue of designers' mistakes: what notices each, and where its report leads
+	@$(LOCKED) cmake --build $(BUILD) --target raypool_faults
+	@scripts/faults.sh $(BUILD)/faults
+	@scripts/configure.sh $(BUILD)/faults/benches ON -DRAYPOOL_RTL=$(CURDIR)/$(BUILD)/faults/rtl
+	@cmake --build $(BUILD)/faults/benches --target $$(grep -o '[a-z_]*_test' tb/faults/benches.json)
+	@$(BUILD)/raypool_faults $(BUILD)/faults --benches $(BUILD)/faults/benches/tb --json $(BUILD)/faults/outcomes.json
 
 isa: setup-sim program ## write what is derived from the tables of ALU types and instructions
 	@$(RAYPOOL) isa --write

@@ -16,6 +16,10 @@ set_tests_properties(verilate_2w2c_small_4cu PROPERTIES FIXTURES_SETUP unit_2w2c
 add_test(NAME cosim_2w2c_small_4cu COMMAND raypool cosim --config ${small_config} --units 4 --programs 200 --no-shrink --quiet)
 set_tests_properties(cosim_2w2c_small_4cu PROPERTIES FIXTURES_REQUIRED unit_2w2c_small_4cu TIMEOUT 300)
 
+# The catalogue of designers' mistakes fits the Verilog, and a few of them are noticed soon; `make faults` runs them all.
+add_test(NAME faults_catalogue COMMAND ${scripts}/tests/faults_test.sh ${raypool_program} $<TARGET_FILE:raypool_faults> ${CMAKE_BINARY_DIR}/faults-test)
+set_tests_properties(faults_catalogue PROPERTIES TIMEOUT 900)
+
 # Every program that has once shown a fault.
 file(GLOB regressions CONFIGURE_DEPENDS RELATIVE ${CMAKE_SOURCE_DIR}/tb/regressions ${CMAKE_SOURCE_DIR}/tb/regressions/*.json)
 foreach(regression IN LISTS regressions)

@@ -1,16 +1,10 @@
 // Runs every mutant of a unit (scripts/mutants.sh makes them) on random programs in lockstep until it differs from the model, and
 // says which were noticed. A process a mutant: what a fault does to the simulator itself stays there.
 #include <fmt/format.h>
-#include <poll.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <chrono>
-#include <csignal>
 #include <cstdlib>
-#include <cstring>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -19,14 +13,15 @@
 #include <thread>
 #include <vector>
 
-#include "cosim/cosim.hpp"
 #include "cosim/program_profile.hpp"
-#include "lockstep/lockstep_unit.hpp"
+#include "faulty/trials.hpp"
+#include "isa/input_error.hpp"
 #include "lockstep/rtl_loader.hpp"
 
 namespace raypool {
 namespace {
 
+using namespace faulty;
 using Json = nlohmann::ordered_json;
 
 struct Options {
@@ -47,21 +42,6 @@ struct Mutant {
   std::string module;  ///< of rtl/
   std::string source;  ///< file and line
 };
-
-/// How it went.
-struct Outcome {
-  enum class Kind : uint8_t { Survived, Difference, Hang, Stopped, Crashed };
-  Kind kind = Kind::Survived;
-  uint64_t programs = 0;  ///< run, the last one noticed it
-  std::string text;       ///< first line of the report
-};
-constexpr std::array<std::string_view, 5> kKindNames = {"survived", "difference", "hang", "fault or cycle limit",
-                                                        "simulator stopped"};
-
-// A mutant that hangs must be found soon: stalls of the host are some hundred cycles long.
-constexpr uint64_t kWatchdogCycles = 4000;
-constexpr uint64_t kCycleLimit = 2'000'000;
-constexpr unsigned kSecondsLimit = 1800;
 
 std::string option_of(const std::string& line, const std::string& name) {
   std::smatch match;
@@ -103,28 +83,11 @@ std::vector<Mutant> read_list(const std::string& path) {
   return mutants;
 }
 
-/// Runs one program on the unit whose mutant is chosen; the outcome's kind and text.
-void run_program(const Options& options, const Configuration& configuration, const RandomProgram& program, Outcome& outcome) {
-  Memory memory = program.memory;
-  LockstepOptions lockstep;
-  lockstep.watchdog_cycles = kWatchdogCycles;
-  try {
-    const auto unit = make_lockstep_unit(configuration, load_rtl_unit(options.unit, configuration), memory, lockstep);
-    run_random_program(*unit, memory, program, program.seed, kCycleLimit);
-  } catch (const LockstepDifference& difference) {
-    outcome.text = difference.what();
-    outcome.kind = outcome.text.find("hang: ") != std::string::npos ? Outcome::Kind::Hang : Outcome::Kind::Difference;
-  } catch (const std::exception& error) {
-    outcome.text = error.what();
-    outcome.kind = Outcome::Kind::Stopped;
-  }
-}
-
 /// Short programs of all mixes, which notice most; then long ones, one of each mix; then long ones that meet thousands of
 /// operands.
-Outcome run_mutant(const Options& options, const Configuration& configuration, int number) {
+Outcome run_mutant(const Options& options, const Machine& machine, int number, const Note& note) {
   setenv("RAYPOOL_MUTANT", std::to_string(number).c_str(), 1);
-  const auto kept = load_rtl_unit(options.unit, configuration);  // keeps the library loaded
+  const auto kept = load_rtl_unit(machine.library, machine.configuration);  // keeps the library loaded
   struct Phase {
     uint64_t programs;
     int length;
@@ -134,127 +97,24 @@ Outcome run_mutant(const Options& options, const Configuration& configuration, i
                           {options.long_programs, options.long_length, ""},
                           {options.operand_programs, options.operand_length, kOperandMix}};
   Outcome outcome;
+  outcome.by = machine.configuration.name;
   for (const Phase& phase : phases) {
     for (uint64_t n = 0; n < phase.programs; ++n) {
-      ++outcome.programs;
-      run_program(options, configuration,
-                  make_random_program(configuration, options.seed + n, phase.length, 1, std::string(phase.mix)), outcome);
+      note(++outcome.programs, outcome.by);
+      run_program(
+          machine,
+          make_random_program(machine.configuration, options.seed + n, phase.length, machine.units, std::string(phase.mix)),
+          outcome);
       if (outcome.kind != Outcome::Kind::Survived) return outcome;
     }
   }
   return outcome;
 }
 
-/// A child process that runs one mutant.
-struct Worker {
-  pid_t pid;
-  int pipe;
-  size_t mutant;
-};
-
-Worker start(const Options& options, const Configuration& configuration, size_t index, int number) {
-  int ends[2];
-  if (pipe(ends) != 0) throw std::runtime_error("no pipe");
-  std::fflush(nullptr);  // or the child would write it again
-  const pid_t pid = fork();
-  if (pid < 0) throw std::runtime_error("no process");
-  if (pid == 0) {
-    close(ends[0]);
-    alarm(kSecondsLimit);
-    if (!options.verbose) {
-      // Verilator says on both why it stops.
-      if (freopen("/dev/null", "w", stderr) == nullptr || freopen("/dev/null", "w", stdout) == nullptr) _exit(2);
-    }
-    const Outcome outcome = run_mutant(options, configuration, number);
-    const std::string text = options.verbose ? outcome.text : outcome.text.substr(0, outcome.text.find('\n'));
-    const std::string message = fmt::format("{} {} {}", static_cast<int>(outcome.kind), outcome.programs, text).substr(0, 4000);
-    if (write(ends[1], message.data(), message.size()) < 0) _exit(2);
-    _exit(0);
-  }
-  close(ends[1]);
-  return {pid, ends[0], index};
-}
-
-Outcome finish(const Worker& worker) {
-  std::string message(4096, '\0');
-  const ssize_t size = read(worker.pipe, message.data(), message.size());
-  close(worker.pipe);
-  int status = 0;
-  waitpid(worker.pid, &status, 0);
-  Outcome outcome;
-  if (size <= 0) {
-    outcome.kind = Outcome::Kind::Crashed;
-    outcome.text = WIFSIGNALED(status) ? fmt::format("signal {}", WTERMSIG(status)) : "no result";
-    return outcome;
-  }
-  message.resize(static_cast<size_t>(size));
-  char* rest = nullptr;
-  outcome.kind = static_cast<Outcome::Kind>(std::strtol(message.c_str(), &rest, 10));
-  outcome.programs = std::strtoull(rest, &rest, 10);
-  outcome.text = rest;
-  return outcome;
-}
-
-/// A line of the --json file.
-std::string to_json(const Mutant& mutant, const Outcome& outcome) {
-  const Json json = {{"number", mutant.number},      {"mutant", mutant.id},
-                     {"source", mutant.source},      {"outcome", kKindNames[static_cast<size_t>(outcome.kind)]},
-                     {"programs", outcome.programs}, {"text", outcome.text}};
-  return json.dump() + "\n";
-}
-
-/// Outcomes in the --json file of a run that was interrupted: {id of the mutant: outcome}.
-std::map<std::string, Outcome> read_outcomes(const std::string& path) {
-  std::map<std::string, Outcome> outcomes;
-  std::ifstream file(path);
-  for (std::string line; std::getline(file, line);) {
-    const Json json = Json::parse(line);
-    const auto kind = std::find(kKindNames.begin(), kKindNames.end(), json.at("outcome").get<std::string>());
-    if (kind == kKindNames.end()) throw InputError(path + ": an outcome is unknown");
-    outcomes[json.at("mutant").get<std::string>()] = {static_cast<Outcome::Kind>(kind - kKindNames.begin()),
-                                                      json.at("programs").get<uint64_t>(), json.at("text").get<std::string>()};
-  }
-  return outcomes;
-}
-
-std::vector<Outcome> run_all(const Options& options, const Configuration& configuration, const std::vector<Mutant>& mutants) {
-  std::vector<Outcome> outcomes(mutants.size());
-  std::vector<size_t> todo;
-  const std::map<std::string, Outcome> known = options.resume ? read_outcomes(options.json) : std::map<std::string, Outcome>();
-  for (size_t i = 0; i < mutants.size(); ++i) {
-    const auto found = known.find(mutants[i].id);
-    if (found != known.end())
-      outcomes[i] = found->second;
-    else
-      todo.push_back(i);
-  }
-  std::vector<Worker> workers;
-  size_t next = 0, done = 0;
-  std::ofstream file;
-  if (!options.json.empty()) file.open(options.json, options.resume ? std::ios::app : std::ios::out);
-  auto shown = std::chrono::steady_clock::now();
-  while (done < todo.size()) {
-    while (workers.size() < options.jobs && next < todo.size()) {
-      workers.push_back(start(options, configuration, todo[next], mutants[todo[next]].number));
-      ++next;
-    }
-    std::vector<pollfd> polls;
-    polls.reserve(workers.size());
-    for (const Worker& worker : workers) polls.push_back({worker.pipe, POLLIN, 0});
-    poll(polls.data(), polls.size(), 5000);
-    for (size_t i = workers.size(); i-- > 0;) {
-      if (polls[i].revents == 0) continue;
-      const size_t finished = workers[i].mutant;
-      outcomes[finished] = finish(workers[i]);
-      if (file.is_open()) file << to_json(mutants[finished], outcomes[finished]) << std::flush;
-      workers.erase(workers.begin() + static_cast<std::ptrdiff_t>(i));
-      ++done;
-    }
-    if (std::chrono::steady_clock::now() - shown < std::chrono::seconds(10)) continue;
-    shown = std::chrono::steady_clock::now();
-    fmt::print(stderr, "mutants: {} of {} done\n", done, todo.size());
-  }
-  return outcomes;
+Trial trial_of(const Options& options, const Machine& machine, const Mutant& mutant) {
+  return {mutant.id,
+          {{"number", mutant.number}, {"source", mutant.source}},
+          [&options, &machine, number = mutant.number](const Note& note) { return run_mutant(options, machine, number, note); }};
 }
 
 /// What tb/mutants/survivors.json says of a survivor.
@@ -284,7 +144,7 @@ int report(const Options& options, const std::vector<Mutant>& mutants, const std
     int all = 0, killed = 0;
   };
   std::map<std::string, Count> modules;
-  std::array<int, kKindNames.size()> kinds{};
+  std::map<Outcome::Kind, int> kinds;
   std::map<uint64_t, int> by_program;
   int equivalent = 0, open = 0;
   std::set<std::string> survivors;
@@ -292,7 +152,7 @@ int report(const Options& options, const std::vector<Mutant>& mutants, const std
     const Mutant& mutant = mutants[i];
     const Outcome& outcome = outcomes[i];
     const bool survived = outcome.kind == Outcome::Kind::Survived;
-    ++kinds[static_cast<size_t>(outcome.kind)];
+    ++kinds[outcome.kind];
     Count& count = modules[mutant.module];
     ++count.all;
     count.killed += survived ? 0 : 1;
@@ -309,10 +169,12 @@ int report(const Options& options, const std::vector<Mutant>& mutants, const std
                !known ? "NOT JUDGED" : (judged->second.equivalent ? "equivalent: " : "a gap: ") + judged->second.reason);
   }
   const auto all = static_cast<int>(mutants.size());
-  const int survived = kinds[0], killed = all - survived;
+  const int survived = kinds[Outcome::Kind::Survived], killed = all - survived;
   fmt::print("{:<24} mutants  killed\n", "module");
   for (const auto& [name, count] : modules) fmt::print("{:<24} {:>7} {:>7}\n", name, count.all, count.killed);
-  for (size_t kind = 1; kind < kinds.size(); ++kind) fmt::print("killed by {:<22} {:>5}\n", kKindNames[kind], kinds[kind]);
+  for (const Outcome::Kind kind :
+       {Outcome::Kind::Difference, Outcome::Kind::Hang, Outcome::Kind::Stopped, Outcome::Kind::Crashed})
+    fmt::print("killed by {:<22} {:>5}\n", name_of(kind), kinds[kind]);
   for (const auto& [programs, count] : by_program)
     fmt::print("killed {:<25} {:>5}\n",
                programs == ~0u ? std::string("by a later one") : fmt::format("within {} programs", programs), count);
@@ -363,11 +225,14 @@ int run(int argc, char** argv) {
     mutants = chosen;
   }
   // Without a fault there must be no difference, or every kill would be worth nothing.
-  const Worker sound = start(options, configuration, 0, 0);
-  const Outcome none = finish(sound);
+  const Machine machine{configuration, 1, options.unit};
+  const Outcome none = run_trial(trial_of(options, machine, Mutant()));
   if (none.kind != Outcome::Kind::Survived) throw InputError("without any fault the unit differs from the model: " + none.text);
   fmt::print("no fault: {} programs agree\n", none.programs);
-  const std::vector<Outcome> outcomes = run_all(options, configuration, mutants);
+  std::vector<Trial> trials;
+  trials.reserve(mutants.size());
+  for (const Mutant& mutant : mutants) trials.push_back(trial_of(options, machine, mutant));
+  const std::vector<Outcome> outcomes = run_trials(trials, {"mutants", options.json, options.resume, options.jobs});
   if (options.verbose)
     for (size_t i = 0; i < mutants.size(); ++i) fmt::print("{} {}\n{}\n", mutants[i].number, mutants[i].id, outcomes[i].text);
   return report(options, mutants, outcomes);

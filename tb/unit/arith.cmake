@@ -1,5 +1,5 @@
 # Benches of the ALU framework and of the Flt and Slw ALUs, in Verilator, and a replay of some of their results in Icarus.
-set(arith_rtl ${CMAKE_SOURCE_DIR}/rtl)
+set(arith_rtl ${RAYPOOL_RTL})
 set(arith_unit ${CMAKE_SOURCE_DIR}/tb/unit)
 
 # arith_bench(NAME TOP SOURCES...): the test program NAME of unit/NAME.cpp with the Verilated bench top TOP.

@@ -1,0 +1,96 @@
+"""Puts every mistake of tb/faults/catalogue.json into a copy of rtl/: faults.py CATALOGUE RTL OUTPUT.
+
+Each is behind its number: where the catalogue says `right`, the copy has `designer_fault == N ? wrong : right`, or an `if` of statements.
+With number 0 the copy is what rtl/ is. The number comes from the environment variable RAYPOOL_FAULT in Verilator, from +fault=N in Icarus.
+"""
+
+import json
+import re
+import shutil
+import sys
+from pathlib import Path
+
+SELECTOR = """
+  // The mistake that this module makes; 0: none.
+  reg [31:0] designer_fault;
+`ifdef VERILATOR
+  initial designer_fault = $c32("(std::getenv(\\"RAYPOOL_FAULT\\") ? std::atoi(std::getenv(\\"RAYPOOL_FAULT\\")) : 0)");
+`else
+  initial if (!$value$plusargs("fault=%d", designer_fault)) designer_fault = 32'd0;
+`endif
+"""
+
+
+class Refused(Exception):
+    """One sentence for the user."""
+
+
+def place(fault, text):
+    """Where in the file's text `right` stands: begin and end."""
+    name = f"fault {fault['number']} ({fault['file']}: {fault['mistake']})"
+    around = fault.get("at", fault["right"])
+    for what, inner, outer in (("at", around, text), ("right", fault["right"], around)):
+        if (found := outer.count(inner)) != 1:
+            where = f"in rtl/{fault['file']}" if outer is text else "in its `at`"
+            raise Refused(f"{name}: `{inner}` is {where} {found} times, not once: bring its `{what}` in the catalogue up to date")
+    if fault["wrong"] == fault["right"]:
+        raise Refused(f"{name}: `wrong` is the same as `right`")
+    begin = text.index(around) + around.index(fault["right"])
+    return begin, begin + len(fault["right"])
+
+
+def chosen(number, wrong, right):
+    """Verilog that is `wrong` for this number."""
+    if re.search(r"(;|\bend)\s*$", right):
+        return f"if (designer_fault == 32'd{number}) begin {wrong} end else begin {right} end"
+    return f"(designer_fault == 32'd{number} ? ({wrong}) : ({right}))"
+
+
+def with_faults(text, edits):
+    """The text with all edits [(begin, end, number, wrong)]; of two places one lies in the other, or they are apart."""
+    done = []
+    for begin, end, number, wrong in sorted(edits, key=lambda edit: (edit[1] - edit[0], edit[2])):
+        inside = [d for d in done if begin <= d[0] and d[1] <= end]
+        if any(d[0] < end and begin < d[1] for d in done if d not in inside):
+            raise Refused(f"fault {number}: its place is partly that of another fault")
+        right = text[begin:end]
+        for d in sorted(inside, reverse=True):
+            right = right[: d[0] - begin] + d[2] + right[d[1] - begin :]
+        done = [d for d in done if d not in inside] + [(begin, end, chosen(number, wrong, right))]
+    for begin, end, new in sorted(done, reverse=True):
+        text = text[:begin] + new + text[end:]
+    return text
+
+
+def instrument(catalogue, rtl, output):
+    faults = json.loads(catalogue.read_text())
+    numbers = [fault["number"] for fault in faults]
+    if numbers != list(range(1, len(faults) + 1)):
+        raise Refused(f"{catalogue}: the faults must be numbered from 1 on, in order")
+    texts = {path.name: path.read_text() for path in sorted(rtl.glob("*.v"))}
+    for name in sorted({fault["file"] for fault in faults}):
+        if name not in texts:
+            raise Refused(f"{catalogue}: there is no rtl/{name}")
+        text = texts[name]
+        own = [fault for fault in faults if fault["file"] == name]
+        text = with_faults(text, [(*place(fault, text), fault["number"], fault["wrong"]) for fault in own])
+        ports = re.search(r"^\);\n", text, re.MULTILINE)
+        if ports is None:
+            raise Refused(f"rtl/{name}: its port list does not end with a line `);`")
+        texts[name] = text[: ports.end()] + SELECTOR + text[ports.end() :]
+    shutil.rmtree(output, ignore_errors=True)
+    output.mkdir(parents=True)
+    for path in rtl.iterdir():
+        if path.suffix != ".v":
+            shutil.copy(path, output)
+    for name, text in texts.items():
+        (output / name).write_text(text)
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 4:
+        sys.exit("usage: faults.py CATALOGUE RTL OUTPUT")
+    try:
+        instrument(*map(Path, sys.argv[1:]))
+    except (Refused, OSError, ValueError, KeyError) as error:
+        sys.exit(f"faults.py: {error}")
