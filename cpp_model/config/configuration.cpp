@@ -13,6 +13,7 @@
 #include <sstream>
 
 #include "config/data_folder.hpp"
+#include "config/schema.hpp"
 #include "isa/reference.hpp"
 
 namespace raypool {
@@ -23,6 +24,35 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::array<std::string_view, 2> kSubnormalNames = {"ieee", "flush"};
 constexpr std::array<std::string_view, 4> kSlowUnitNames = {"exact", "newton2", "newton1", "newton0"};
+
+// What may stand under the keys of a file that hold integers: the checks and the schema are made from these rows.
+struct Range {
+  const char* key;
+  int Configuration::*value;
+  int least, greatest;
+  bool power_of_two;
+  const char* meaning;
+};
+constexpr std::array<Range, 6> kRanges = {{
+    {"warps", &Configuration::warps, 1, 32, true, "warps of a compute unit"},
+    {"cores", &Configuration::cores, 1, 32, true, "lanes of an ALU, and threads in a warp"},
+    {"stack_depth", &Configuration::stack_depth, 2, 32, false, "entries of a warp's PC stack"},
+    {"instruction_cache.bytes", &Configuration::instruction_cache_bytes, 512, 65536, true, "size"},
+    {"data_cache.bytes", &Configuration::data_cache_bytes, 512, 65536, true, "size"},
+    {"data_cache.mshrs", &Configuration::data_cache_mshrs, 1, 16, false, "miss-status holding registers"},
+}};
+struct AluRange {
+  const char* key;
+  int AluConfiguration::*value;
+  int least, greatest;
+  const char* meaning;
+};
+constexpr std::array<AluRange, 3> kAluRanges = {{
+    {"count", &AluConfiguration::count, 1, 4, "instances"},
+    {"latency", &AluConfiguration::latency, 1, 16, "cycles between new tasks"},
+    {"depth", &AluConfiguration::depth, 0, 32, "pipeline stages"},  // at least least_depth()
+}};
+constexpr const char* kNamePattern = "[A-Za-z0-9_.+-]{1,64}";
 
 constexpr int kLeastFusedDepth = 5;  // of flt, whose additions and multiplications go through the fused unit
 constexpr std::array<int, 4> kLeastSlowDepths = {11, 11, 8, 6};  // of slw, by SlowUnit: each Newton step has its stages
@@ -155,6 +185,8 @@ Configuration from_json(const Json& json, const std::string& where, const std::s
     cache->integer("mshrs", configuration.data_cache_mshrs);
     cache->refuse_others();
   }
+  std::string schema;  // which editors follow
+  root.text("$schema", schema);
   root.refuse_others();
   check_configuration(configuration, where);
   return configuration;
@@ -239,15 +271,109 @@ int least_depth(const Configuration& configuration, Unit unit) {
   return unit_info(unit).depth;
 }
 
+namespace {
+
+int least_of(const AluRange& range, const Configuration& configuration, Unit unit) {
+  return range.value == &AluConfiguration::depth ? least_depth(configuration, unit) : range.least;
+}
+
+Json schema_of(const Range& range) {
+  Json schema = {{"description", range.meaning}, {"type", "integer"}};
+  if (range.power_of_two) {
+    for (int value = range.least; value <= range.greatest; value *= 2) schema["enum"].push_back(value);
+  } else {
+    schema["minimum"] = range.least;
+    schema["maximum"] = range.greatest;
+  }
+  schema["default"] = Configuration().*range.value;
+  return schema;
+}
+
+Json object_schema(const char* description) {
+  return {{"description", description}, {"type", "object"}, {"additionalProperties", false}, {"properties", Json::object()}};
+}
+
+Json alu_schema(Unit unit) {
+  Json schema = object_schema("an ALU type");
+  if (is_fixed(static_cast<size_t>(unit))) {
+    schema["properties"]["count"] = {{"const", 1}};
+    return schema;
+  }
+  Configuration shallowest;  // what other modes ask for is said by depth_rule
+  shallowest.slow_unit = SlowUnit::Newton0;
+  for (const AluRange& range : kAluRanges) {
+    Json& entry = schema["properties"][range.key];
+    entry = {{"description", range.meaning}, {"type", "integer"}};
+    entry["minimum"] = least_of(range, shallowest, unit);
+    entry["maximum"] = range.greatest;
+  }
+  return schema;
+}
+
+/// If arithmetic.`key` is `value`, then the depth of `unit` is that configuration's; with `otherwise` also where the key is
+/// missing.
+Json depth_rule(const char* key, const Json& value, const Configuration& configuration, Unit unit, bool otherwise) {
+  const std::string name(kUnitNames[static_cast<size_t>(unit)]);
+  Json rule;
+  rule["if"]["properties"]["arithmetic"]["properties"][key]["const"] = value;
+  if (!otherwise) {
+    rule["if"]["required"] = {"arithmetic"};
+    rule["if"]["properties"]["arithmetic"]["required"] = {key};
+  }
+  rule["then"]["properties"]["alus"]["properties"][name]["properties"]["depth"]["minimum"] = least_depth(configuration, unit);
+  return rule;
+}
+
+}  // namespace
+
+std::string configuration_schema() {
+  Json schema = object_schema("hardware that raypool builds, simulates and synthesises; what is left out has its default");
+  Json& keys = schema["properties"];
+  keys["$schema"] = {{"type", "string"}};
+  keys["name"] = {{"description", "as reports name it (default: that of the file)"},
+                  {"type", "string"},
+                  {"pattern", fmt::format("^{}$", kNamePattern)}};
+  for (const Range& range : kRanges) {
+    const std::string key = range.key;
+    const size_t dot = key.find('.');
+    if (dot == std::string::npos) {
+      keys[key] = schema_of(range);
+      continue;
+    }
+    Json& section = keys[key.substr(0, dot)];
+    if (section.is_null()) section = object_schema("a cache");
+    section["properties"][key.substr(dot + 1)] = schema_of(range);
+  }
+  keys["alus"] = object_schema("ALU types");
+  for (size_t unit = 0; unit < kUnits; ++unit)
+    keys["alus"]["properties"][std::string(kUnitNames[unit])] = alu_schema(static_cast<Unit>(unit));
+  Json& arithmetic = keys["arithmetic"] = object_schema("what docs/numerics.md compares");
+  arithmetic["properties"]["subnormals"] = {{"enum", kSubnormalNames}, {"default", kSubnormalNames[0]}};
+  arithmetic["properties"]["slow_unit"] = {{"enum", kSlowUnitNames}, {"default", kSlowUnitNames[0]}};
+  arithmetic["properties"]["fma"] = {
+      {"description", "fused multiply-add: the instruction ffma"}, {"type", "boolean"}, {"default", false}};
+
+  Configuration variant;
+  for (size_t i = 0; i < kSlowUnitNames.size(); ++i) {
+    variant.slow_unit = static_cast<SlowUnit>(i);
+    schema["allOf"].push_back(depth_rule("slow_unit", kSlowUnitNames[i], variant, Unit::Slw, i == 0));
+  }
+  variant.fma = true;
+  schema["allOf"].push_back(depth_rule("fma", true, variant, Unit::Flt, false));
+  const Json head = {{"$schema", "http://json-schema.org/draft-07/schema#"}, {"title", "raypool configuration"}};
+  Json whole = head;
+  whole.update(schema);
+  return whole.dump(2) + "\n";
+}
+
 void check_configuration(const Configuration& configuration, const std::string& where) {
-  static const std::regex kName("[A-Za-z0-9_.+-]{1,64}");
+  static const std::regex kName(kNamePattern);
   if (!std::regex_match(configuration.name, kName)) {
     throw InputError(fmt::format("{}: name is '{}'; it must have 1 to 64 characters out of letters, digits and _ . + -", where,
                                  configuration.name));
   }
-  check_range(where, "warps", configuration.warps, 1, 32, true);
-  check_range(where, "cores", configuration.cores, 1, 32, true);
-  check_range(where, "stack_depth", configuration.stack_depth, 2, 32);
+  for (const Range& range : kRanges)
+    check_range(where, range.key, configuration.*range.value, range.least, range.greatest, range.power_of_two);
   for (size_t unit = 0; unit < kUnits; ++unit) {
     const AluConfiguration& alu = configuration.alus[unit];
     const std::string prefix = "alus." + std::string(kUnitNames[unit]) + ".";
@@ -256,13 +382,11 @@ void check_configuration(const Configuration& configuration, const std::string& 
       throw InputError(fmt::format("{}: {}count is {}; it must be 1, because this unit owns the {}", where, prefix, alu.count,
                                    static_cast<Unit>(unit) == Unit::Mem ? "data cache" : "ray memory"));
     }
-    check_range(where, prefix + "count", alu.count, 1, 4);
-    check_range(where, prefix + "latency", alu.latency, 1, 16);
-    check_range(where, prefix + "depth", alu.depth, least_depth(configuration, static_cast<Unit>(unit)), 32);
+    for (const AluRange& range : kAluRanges) {
+      check_range(where, prefix + range.key, alu.*range.value, least_of(range, configuration, static_cast<Unit>(unit)),
+                  range.greatest);
+    }
   }
-  check_range(where, "instruction_cache.bytes", configuration.instruction_cache_bytes, 512, 65536, true);
-  check_range(where, "data_cache.bytes", configuration.data_cache_bytes, 512, 65536, true);
-  check_range(where, "data_cache.mshrs", configuration.data_cache_mshrs, 1, 16);
   if (static_cast<size_t>(configuration.subnormals) >= kSubnormalNames.size()) {
     throw InputError(fmt::format("{}: arithmetic.subnormals must be one of {}", where, join(kSubnormalNames)));
   }

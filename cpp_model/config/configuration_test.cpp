@@ -7,6 +7,9 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+
+#include "config/schema.hpp"
 
 namespace raypool {
 namespace {
@@ -153,10 +156,23 @@ TEST(Configuration, FusedMultiplyAddDeepensFlt) {
 }
 
 TEST(Configuration, UnknownKeysAreRefusedWithTheKnownOnes) {
-  EXPECT_EQ(error_of(R"({"warp": 8})"),
-            "unknown key warp; known here: name, warps, cores, stack_depth, arithmetic, alus, instruction_cache, data_cache");
+  EXPECT_EQ(
+      error_of(R"({"warp": 8})"),
+      "unknown key warp; known here: name, warps, cores, stack_depth, arithmetic, alus, instruction_cache, data_cache, $schema");
   EXPECT_EQ(error_of(R"({"alus": {"flt": {"counts": 1}}})"), "unknown key alus.flt.counts; known here: count, latency, depth");
   EXPECT_EQ(error_of(R"({"alus": {"ray": {"depth": 2}}})"), "unknown key alus.ray.depth; known here: count");
+}
+
+TEST(Configuration, SchemaIsCheckedIn) {
+  std::ifstream file("schemas/configuration.json");
+  const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  EXPECT_EQ(text, configuration_schema()) << "make isa";
+}
+
+TEST(Configuration, SchemaForEditorsMayBeNamed) {
+  const TemporaryFile file(R"({"$schema": "../schemas/configuration.json", "warps": 4})");
+  EXPECT_EQ(load_configuration(file.path()).warps, 4);
+  EXPECT_EQ(error_of(R"({"$schema": 3})"), "$schema is 3; it must be a text in quotes");
 }
 
 TEST(Configuration, BrokenJsonIsReportedWithItsLine) {

@@ -7,6 +7,7 @@
 #include "cli/commands.hpp"
 #include "cli/output_folder.hpp"
 #include "cli/text_file.hpp"
+#include "config/schema.hpp"
 #include "isa/input_error.hpp"
 #include "isa/reference.hpp"
 
@@ -23,7 +24,9 @@ int isa_command(IsaFormat format) {
 int isa_write_command() {
   if (!std::filesystem::exists("cpp_model/isa/isa.hpp"))
     throw InputError("there is no cpp_model/isa/isa.hpp here: run raypool isa --write in the root of the checkout");
-  for (const GeneratedFile& file : generated_files()) {
+  std::vector<GeneratedFile> files = generated_files();
+  files.push_back({"schemas/configuration.json", configuration_schema()});
+  for (const GeneratedFile& file : files) {
     // What is right keeps its time stamp.
     if (std::filesystem::exists(file.path) && read_text(file.path) == file.text) continue;
     const std::filesystem::path path(file.path);

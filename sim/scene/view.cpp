@@ -172,7 +172,7 @@ View load_view(const std::string& path) {
     throw InputError(fmt::format("{}: not JSON at byte {}; correct the file", path, error.byte));
   }
   if (!json.is_object()) throw InputError(path + ": a view file must be one JSON object, {\"eye\": ...}");
-  refuse_unknown(json, {"eye", "direction", "target", "up", "fov", "light"}, path);
+  refuse_unknown(json, {"eye", "direction", "target", "up", "fov", "light", "$schema"}, path);
 
   const double far = kLargestCoordinate;
   View view;

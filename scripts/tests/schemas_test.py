@@ -1,0 +1,163 @@
+#!/usr/bin/env python3
+"""The JSON Schemas say what the program accepts and writes: scripts/tests/schemas_test.py RAYPOOL [ENGINE...]
+
+Checked-in configurations and views, and a report of each ENGINE (default: those without a Verilated unit), are valid;
+what raypool refuses the schema refuses, and what it takes the schema takes, at both ends of every range; a field of the
+report that is missing, unknown or of another kind is not valid, and each is named in docs/report.md.
+"""
+import copy
+import json
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import jsonschema
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+RAYPOOL = ""
+ENGINES = ["native", "functional", "model"]
+
+
+def read(path):
+    return json.loads(pathlib.Path(path).read_text())
+
+
+def validator(name):
+    schema = read(ROOT / "schemas" / name)
+    jsonschema.Draft7Validator.check_schema(schema)
+    for key, inner in schema["properties"].items():
+        if (other := inner.get("$ref", "")).endswith(".json"):
+            schema["properties"][key] = read(ROOT / "schemas" / other)
+    return jsonschema.Draft7Validator(schema)
+
+
+def raypool(*words):
+    return subprocess.run([RAYPOOL, *words], cwd=ROOT, capture_output=True, text=True, timeout=120, check=False)
+
+
+class Agreement(unittest.TestCase):
+    """Schema and program take and refuse the same documents."""
+
+    def check(self, name, document, command):
+        path = self.folder / "document.json"
+        path.write_text(json.dumps(document))
+        done = raypool(*[str(path) if word == "FILE" else word for word in command])
+        errors = [error.message for error in validator(name).iter_errors(document)]
+        self.assertIn(done.returncode, (0, 1), done.stderr)
+        text = f"{document}: raypool says '{done.stderr.strip()}', the schema {errors}"
+        self.assertEqual(done.returncode == 0, not errors, text)
+        return done.returncode == 0
+
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = pathlib.Path(temporary.name)
+
+    def test_configurations(self):
+        command = ("config", "FILE")
+        for path in sorted((ROOT / "configs").glob("*.json")):
+            self.assertTrue(self.check("configuration.json", read(path), command), path)
+        documents = [{"$schema": "x"}, {"$schema": 1}, [], {"name": ""}, {"name": "a b"}, {"name": "a" * 64},
+                     {"name": "a" * 65}, {"warp": 8}, {"alus": 3}, {"alus": {"box": {}}}, {"arithmetic": {"fma": 1}},
+                     {"arithmetic": {"slow_unit": "fast"}}]
+        documents += [{"warps": value} for value in (0, 1, 2, 3, 32, 64, "8", 8.5, None)]
+        documents += [{"cores": value} for value in (0, 1, 24, 32, 64)]
+        documents += [{"stack_depth": value} for value in (1, 2, 32, 33)]
+        documents += [{f"{cache}_cache": {"bytes": value}} for cache in ("instruction", "data")
+                      for value in (256, 512, 1000, 65536, 131072)]
+        documents += [{"data_cache": {"mshrs": value}} for value in (0, 1, 16, 17)] + [{"data_cache": {"lines": 1}}]
+        for alu in json.loads(raypool("config", "8w8c", "--json").stdout)["alus"]:
+            ranges = {"count": (0, 1, 2, 4, 5), "latency": (0, 1, 16, 17), "depth": (*range(14), 32, 33)}
+            documents += [{"alus": {alu: {key: value}}} for key, values in ranges.items() for value in values]
+        modes = [{"slow_unit": f"newton{steps}"} for steps in range(3)]
+        modes += [{"fma": True}, {"fma": False}, {"subnormals": "flush"}]
+        documents += [{"arithmetic": mode, "alus": {alu: {"depth": depth}}}
+                      for mode in modes for alu in ("slw", "flt") for depth in range(2, 13)]
+        taken = sum(self.check("configuration.json", document, command) for document in documents)
+        self.assertGreater(taken, 50)
+        self.assertGreater(len(documents) - taken, 50)
+
+    def test_views(self):
+        command = ("scene", "cornell", "--view", "FILE")
+        for path in sorted((ROOT / "configs" / "views").glob("*.json")):
+            self.assertTrue(self.check("view.json", read(path), command), path)
+        good = {"eye": [0, 0, 5], "target": [0, 0, 0], "light": {"position": [1, 2, 3]}}
+        changes = [{}, {"$schema": "x"}, {"up": [0, 1, 0.5]}, {"up": [0, 1]}, {"up": "y"}, {"direction": [0, 0, -1]},
+                   {"eyes": 1}, {"light": {}}, {"light": None}]
+        changes += [{"fov": value} for value in (0.9, 1, 170, 170.5, "60")]
+        changes += [{"eye": [value, 0, 5]} for value in (1e9, 1.1e9, -1e9, -1.1e9, None)]
+        changes += [{"light": {"position": [1, 2, 3], "color": [value, 1, 1]}} for value in (-1, 0, 1000, 1001)]
+        changes += [{"light": {"position": [1, 2, 3], "colour": [1, 1, 1]}}]
+        documents = [{**good, **change} for change in changes] + [[]]
+        documents += [{key: good[key] for key in good if key != left} for left in good]
+        taken = sum(self.check("view.json", document, command) for document in documents)
+        self.assertGreater(taken, 7)
+        self.assertGreater(len(documents) - taken, 14)
+
+
+class Report(unittest.TestCase):
+    """Of small runs."""
+
+    def fields(self, value, path=()):
+        if isinstance(value, dict):
+            for key, inner in value.items():
+                yield (*path, key)
+                yield from self.fields(inner, (*path, key))
+
+    def changed(self, report, path, change):
+        copied = copy.deepcopy(report)
+        inner = copied
+        for key in path[:-1]:
+            inner = inner[key]
+        change(inner, path[-1])
+        return copied
+
+    def test_reports(self):
+        valid = validator("report.json")
+        with tempfile.TemporaryDirectory() as folder:
+            for engine in ENGINES:
+                done = raypool("sim", "--scene", "cornell", "--size", "8x8", "--config", "4w4c", "--engine", engine,
+                               "--out", folder, "--json")
+                self.assertEqual(done.returncode, 0, done.stderr)
+                report = json.loads(done.stdout)
+                errors = [f"{'.'.join(map(str, error.path))}: {error.message}" for error in valid.iter_errors(report)]
+                self.assertEqual(errors, [], f"{engine}: a new field of the report belongs into schemas/report.json")
+                self.refuses_changes(valid, report)
+
+    def refuses_changes(self, valid, report):
+        names = set(report["kernels"]) | set(report.get("alus", {}))
+        for path in self.fields(report):
+            with self.subTest(engine=report["engine"], path=path):
+                other = self.changed(report, path, lambda inner, key: inner.update({key: [None]}))
+                self.assertFalse(valid.is_valid(other), "of another kind")
+                # What a configuration leaves out has its default; which kernels and ALUs there are is left open.
+                if len(path) == 1 or path[0] != "configuration" and path[-1] not in names | {"launches", "cycles"}:
+                    without = self.changed(report, path, lambda inner, key: inner.pop(key))
+                    self.assertFalse(valid.is_valid(without), "missing")
+        for path in [("x",), ("scene", "x"), ("configuration", "x"), ("rays_by_kind", "x")]:
+            more = self.changed(report, path, lambda inner, key: inner.update({key: 1}))
+            self.assertFalse(valid.is_valid(more), f"unknown {path}")
+
+    def test_docs_name_each_field(self):
+        page = (ROOT / "docs" / "report.md").read_text()
+        schema = read(ROOT / "schemas" / "report.json")
+
+        def walk(part, path):
+            for key, inner in part.get("properties", {}).items():
+                if path != ("configuration",):
+                    self.assertTrue(re.search(rf"[`.]{key}[`.]", page),
+                                    f"docs/report.md does not name {'.'.join((*path, key))}")
+                walk(inner, (*path, key))
+            if isinstance(part.get("additionalProperties"), dict):
+                walk(part["additionalProperties"], path)
+
+        walk(schema, ())
+
+
+if __name__ == "__main__":
+    RAYPOOL = str(pathlib.Path(sys.argv[1]).resolve())
+    ENGINES = sys.argv[2:] or ENGINES
+    unittest.main(argv=sys.argv[:1])
