@@ -6,14 +6,13 @@
 #include <array>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <regex>
-#include <sstream>
 
 #include "config/data_folder.hpp"
 #include "config/schema.hpp"
+#include "files/input_file.hpp"
+#include "files/json_text.hpp"
 #include "isa/reference.hpp"
 
 namespace raypool {
@@ -53,6 +52,7 @@ constexpr std::array<AluRange, 3> kAluRanges = {{
     {"depth", &AluConfiguration::depth, 0, 32, "pipeline stages"},  // at least least_depth()
 }};
 constexpr const char* kNamePattern = "[A-Za-z0-9_.+-]{1,64}";
+constexpr size_t kLongestName = 64;
 
 constexpr int kLeastFusedDepth = 5;  // of flt, whose additions and multiplications go through the fused unit
 constexpr std::array<int, 4> kLeastSlowDepths = {11, 11, 8, 6};  // of slw, by SlowUnit: each Newton step has its stages
@@ -193,25 +193,26 @@ Configuration from_json(const Json& json, const std::string& where, const std::s
 }
 
 Configuration parse(const std::string& text, const std::string& where, const std::string& name) {
-  Json json;
-  try {
-    json = Json::parse(text);
-  } catch (const Json::parse_error& error) {
-    // The library's text begins with a bracketed tag that says nothing to a user.
-    std::string reason = error.what();
-    reason = reason.substr(std::min(reason.size(), reason.find("] ") + 2));
-    throw InputError(fmt::format("{}: not valid JSON: {}", where, reason));
-  }
-  return from_json(json, where, name);
+  return from_json(parse_json(text, where), where, name);
 }
 
-Configuration read_file(const fs::path& path) {
-  const std::string where = path.string();
-  std::ifstream file(path);
-  if (!file) throw InputError(fmt::format("{}: the file cannot be read; check its permissions", where));
-  std::stringstream text;
-  text << file.rdbuf();
-  return parse(text.str(), where, path.stem().string());
+/// The name of a file without its folder and ending, with _ for what a configuration's name may not have.
+std::string name_of_file(const fs::path& path) {
+  static const std::regex kOther("[^A-Za-z0-9_.+-]");
+  return std::regex_replace(path.stem().string(), kOther, "_").substr(0, kLongestName);
+}
+
+Configuration read_configuration(const fs::path& path) {
+  return parse(read_file(path.string(), "configuration"), path.string(), name_of_file(path));
+}
+
+/// Where the project's own lie.
+std::vector<fs::path> shipped_folders() {
+  std::vector<fs::path> folders;
+  if (const std::string installed = installed_data_folder(); !installed.empty())
+    folders.push_back(fs::path(installed) / "configs");
+  folders.emplace_back(RAYPOOL_SHIPPED_CONFIGS);
+  return folders;
 }
 
 /// Folders in which a name is looked up, first match wins.
@@ -219,34 +220,56 @@ std::vector<fs::path> configuration_folders() {
   std::vector<fs::path> folders;
   if (const char* folder = std::getenv("RAYPOOL_CONFIGS"); folder != nullptr && *folder != '\0') folders.emplace_back(folder);
   folders.emplace_back("configs");
-  if (const std::string installed = installed_data_folder(); !installed.empty())
-    folders.push_back(fs::path(installed) / "configs");
-  folders.push_back((fs::path(__FILE__).parent_path() / ".." / ".." / "configs").lexically_normal());
+  for (const fs::path& folder : shipped_folders()) folders.push_back(folder);
   return folders;
 }
 
-}  // namespace
+/// The defaults with N warps and M cores, if that is what the name says.
+std::optional<Configuration> warps_and_cores(const std::string& name) {
+  static const std::regex kWarpsAndCores("([0-9]{1,4})w([0-9]{1,4})c");
+  std::smatch match;
+  if (!std::regex_match(name, match, kWarpsAndCores)) return std::nullopt;
+  Configuration configuration;
+  configuration.name = name;
+  configuration.warps = std::stoi(match[1]);
+  configuration.cores = std::stoi(match[2]);
+  check_configuration(configuration, name);
+  return configuration;
+}
 
-namespace {
+/// What everyone understands by a name: the project's own file, or NwMc.
+std::optional<Configuration> built_in(const std::string& name) {
+  for (const fs::path& folder : shipped_folders()) {
+    const fs::path path = folder / (name + ".json");
+    if (fs::is_regular_file(path)) return read_configuration(path);
+  }
+  return warps_and_cores(name);
+}
+
+/// A file of other hardware must not go by a name that has a meaning: reports and folders would pass for the other's.
+Configuration read_user_file(const fs::path& path) {
+  Configuration configuration = read_configuration(path);
+  const std::optional<Configuration> meant = built_in(configuration.name);
+  if (meant && verilog_parameters(*meant) != verilog_parameters(configuration)) {
+    throw InputError(
+        fmt::format("{}: the name '{}' stands for other hardware (raypool config {}): give this one another \"name\"",
+                    path.string(), configuration.name, configuration.name));
+  }
+  return configuration;
+}
 
 Configuration load(const std::string& name_or_path) {
-  if (fs::is_regular_file(name_or_path)) return read_file(name_or_path);
+  // A FIFO or device too, but a folder may bear the name of a configuration.
+  std::error_code none;
+  const fs::file_status status = fs::status(name_or_path, none);
+  if (fs::exists(status) && !fs::is_directory(status)) return read_user_file(name_or_path);
   const bool is_name = !name_or_path.empty() && name_or_path.find('/') == std::string::npos;
   if (is_name) {
     for (const fs::path& folder : configuration_folders()) {
       const fs::path path = folder / (name_or_path + ".json");
-      if (fs::is_regular_file(path)) return read_file(path);
+      if (fs::is_regular_file(path, none)) return read_user_file(path);
     }
-    static const std::regex kWarpsAndCores("([0-9]{1,4})w([0-9]{1,4})c");
-    std::smatch match;
-    if (std::regex_match(name_or_path, match, kWarpsAndCores)) {
-      Configuration configuration;
-      configuration.name = name_or_path;
-      configuration.warps = std::stoi(match[1]);
-      configuration.cores = std::stoi(match[2]);
-      check_configuration(configuration, name_or_path);
-      return configuration;
-    }
+    if (const std::optional<Configuration> configuration = warps_and_cores(name_or_path)) return *configuration;
   }
   throw InputError(fmt::format(
       "no configuration '{}': give the path of a JSON file, the name of a file in configs/, or NwMc for N warps of M cores",

@@ -195,12 +195,42 @@ TEST(Configuration, NameWithoutFileSaysWhatToGive) {
 }
 
 TEST(Configuration, FolderOfTheEnvironmentComesFirst) {
-  const TemporaryFile file(R"({"warps": 1, "cores": 1})", "8w8c.json");
+  const TemporaryFile file(R"({"name": "mine", "warps": 1, "cores": 1})", "8w8c.json");
   ::setenv("RAYPOOL_CONFIGS", file.folder().c_str(), 1);
   const Configuration configuration = load_configuration("8w8c");
   ::unsetenv("RAYPOOL_CONFIGS");
   EXPECT_EQ(configuration.warps, 1);
   EXPECT_EQ(load_configuration("8w8c").warps, 8);
+}
+
+TEST(Configuration, OtherHardwareMayNotGoByANameThatHasAMeaning) {
+  // The name of a file in configs/, as key or from the file's name, and NwMc.
+  for (const auto& [text, file_name] : std::vector<std::pair<std::string, std::string>>{
+           {R"({"name": "4w4c_fma", "warps": 4})", "mine.json"},
+           {R"({"warps": 2})", "8w8c.json"},
+           {R"({"name": "2w2c", "warps": 2, "cores": 2, "stack_depth": 4})", "mine.json"}}) {
+    const TemporaryFile file(text, file_name);
+    try {
+      load_configuration(file.path());
+      FAIL() << text;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("stands for other hardware"), std::string::npos) << error.what();
+    }
+  }
+  // The same hardware may.
+  const TemporaryFile same(to_json(load_configuration("4w4c_fma")), "copy.json");
+  EXPECT_EQ(load_configuration(same.path()).name, "4w4c_fma");
+}
+
+TEST(Configuration, AFileNameThatIsNoNameBecomesOne) {
+  const TemporaryFile file(R"({"warps": 2})", "caf\xe9 1.json");
+  EXPECT_EQ(load_configuration(file.path()).name, "caf__1");
+}
+
+TEST(Configuration, AKeyThatStandsTwiceIsRefused) {
+  EXPECT_EQ(error_of(R"({"warps": 2, "warps": 4})"), "the key \"warps\" stands twice in one object: keep one of them");
+  EXPECT_EQ(error_of(R"({"alus": {"int": {"count": 1}, "flt": {"count": 1, "count": 2}}})"),
+            "the key \"count\" stands twice in one object: keep one of them");
 }
 
 /// Appends each `parameter integer NAME = VALUE` of a module's parameter list, also of what it includes.

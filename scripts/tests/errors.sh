@@ -38,25 +38,32 @@ printf 'mov r1, 0x7ffffff0\nld r2, [r1+0]\nexit\n' > "$folder/load.asm"
 printf 'mov r1, 0\nnonsense r1\nexit\n' > "$folder/word.asm"
 printf 'again:\njany again\nexit\n' > "$folder/forever.asm"
 
-sim=("$raypool" sim --engine functional --size 8x8 --out "$folder/out" --quiet)
-refuses "missing OBJ" "$folder/none.obj" "${sim[@]}" --scene "$folder/none.obj"
-refuses "OBJ index out of range" "index.obj" "${sim[@]}" --scene "$folder/index.obj"
-refuses "OBJ negative index out of range" "negative.obj" "${sim[@]}" --scene "$folder/negative.obj"
-refuses "OBJ with a NaN" "nan.obj" "${sim[@]}" --scene "$folder/nan.obj"
-refuses "no such scene" "nosuchscene" "${sim[@]}" --scene nosuchscene
-refuses "missing view" "none.json" "${sim[@]}" --view "$folder/none.json"
-refuses "3 warps in a file" "warps.* 3.*power of two from 1 to 32" "${sim[@]}" --config "$folder/warps.json"
-refuses "3 warps by name" "3.*power of two from 1 to 32" "${sim[@]}" --config 3w8c
-refuses "configuration that is not JSON" "broken.json" "${sim[@]}" --config "$folder/broken.json"
-refuses "configuration with an unknown key" "wraps" "${sim[@]}" --config "$folder/unknown.json"
-refuses "size 0x0" "0x0.*1 to 16384" "${sim[@]}" --size 0x0
-refuses "size without x" "1 to 16384" "${sim[@]}" --size 64
-refuses "depth 0" "depth.*1" "${sim[@]}" --depth 0
-refuses "3 compute units" "3" "${sim[@]}" --units 3
-refuses "unknown engine" "native, functional, model, rtl or lockstep" "${sim[@]}" --engine spice
-refuses "unknown traverser" "static" "${sim[@]}" --traverser quick
-refuses "engine without a built unit" "make unit" "${sim[@]}" --engine rtl --unit-library "$folder/none.so"
-refuses "results folder that is a file" "good.obj" "${sim[@]}" --out "$folder/good.obj"
+# refuses_sim WHAT PATTERN OPTION...: of raypool sim; what the options leave open is chosen here.
+refuses_sim() {
+  local what=$1 pattern=$2 defaults=(--quiet); shift 2
+  [[ " $* " == *" --engine "* ]] || defaults+=(--engine functional)
+  [[ " $* " == *" --size "* ]] || defaults+=(--size 8x8)
+  [[ " $* " == *" --out "* ]] || defaults+=(--out "$folder/out")
+  refuses "$what" "$pattern" "$raypool" sim "${defaults[@]}" "$@"
+}
+refuses_sim "missing OBJ" "$folder/none.obj" --scene "$folder/none.obj"
+refuses_sim "OBJ index out of range" "index.obj" --scene "$folder/index.obj"
+refuses_sim "OBJ negative index out of range" "negative.obj" --scene "$folder/negative.obj"
+refuses_sim "OBJ with a NaN" "nan.obj" --scene "$folder/nan.obj"
+refuses_sim "no such scene" "nosuchscene" --scene nosuchscene
+refuses_sim "missing view" "none.json" --view "$folder/none.json"
+refuses_sim "3 warps in a file" "warps.* 3.*power of two from 1 to 32" --config "$folder/warps.json"
+refuses_sim "3 warps by name" "3.*power of two from 1 to 32" --config 3w8c
+refuses_sim "configuration that is not JSON" "broken.json" --config "$folder/broken.json"
+refuses_sim "configuration with an unknown key" "wraps" --config "$folder/unknown.json"
+refuses_sim "size 0x0" "0x0.*1 to 16384" --size 0x0
+refuses_sim "size without x" "1 to 16384" --size 64
+refuses_sim "depth 0" "depth.*1" --depth 0
+refuses_sim "3 compute units" "3" --units 3
+refuses_sim "unknown engine" "native, functional, model, rtl or lockstep" --engine spice
+refuses_sim "unknown traverser" "static" --traverser quick
+refuses_sim "engine without a built unit" "make unit" --engine rtl --unit-library "$folder/none.so"
+refuses_sim "results folder that is a file" "good.obj" --out "$folder/good.obj"
 cosim=("$raypool" cosim --programs 2 --save "$folder/saved" --quiet)
 refuses "random programs without a built unit" "none.so.*make" "${cosim[@]}" --config 4w4c --unit-library "$folder/none.so"
 refuses "random programs, a unit that is no library" "good.obj.*cannot be loaded" "${cosim[@]}" --config 4w4c --unit-library "$folder/good.obj"
@@ -68,8 +75,25 @@ if [ -e "$folder/saved" ]; then
   failures=$((failures + 1))
   echo "FAILED: what is wrong around the programs was saved as a program that fails: $(ls "$folder/saved")"
 fi
-refuses "waveform of an engine without one" "waveform" "${sim[@]}" --waves
-refuses "unknown option" "--help" "${sim[@]}" --colour
+refuses_sim "a folder as view" "view file cannot be read \(Is a directory\)" --view "$folder"
+refuses_sim "a folder as scene" "OBJ file cannot be read \(Is a directory\)" --scene "$folder"
+refuses_sim "a folder as configuration" "no configuration '$folder'" --config "$folder"
+refuses "a folder as saved program" "Is a directory" "$raypool" cosim --replay "$folder"
+refuses "a folder as program" "Is a directory" "$raypool" run "$folder"
+refuses "a folder to assemble" "Is a directory" "$raypool" asm "$folder"
+refuses "a folder to write to" "Is a directory" "$raypool" asm "$folder/forever.asm" -o "$folder"
+refuses_sim "an option given twice" "--size is given 2 times \(8x8, 9x9\)" --size 8x8 --size 9x9
+refuses_sim "a scene by place and by option" "--scene is given 2 times \(cornell, room\)" cornell --scene room
+echo '{"warps": 2, "warps": 4}' > "$folder/twice.json"
+refuses_sim "a key twice in a configuration" "twice.json: the key \"warps\" stands twice" --config "$folder/twice.json"
+echo '{"eye": [0, 0, 1], "eye": [0, 0, 2]}' > "$folder/twice.json"
+refuses_sim "a key twice in a view" "twice.json: the key \"eye\" stands twice" --view "$folder/twice.json"
+sed '0,/"seed"/ s//"seed": 1, "seed"/' tb/icarus/undefined_register.json > "$folder/twice.json"
+refuses "a key twice in a saved program" "twice.json: the key \"seed\" stands twice" "$raypool" cosim --replay "$folder/twice.json"
+echo '{"name": "8w8c", "warps": 2}' > "$folder/posing.json"
+refuses_sim "other hardware under a built-in name" "'8w8c' stands for other hardware" --config "$folder/posing.json"
+refuses_sim "waveform of an engine without one" "waveform" --waves
+refuses_sim "unknown option" "--help" --colour
 refuses "unknown kernel" "saxpy" "$raypool" run sexpy
 refuses "assembly error names line and column" "word.asm:2:" "$raypool" run "$folder/word.asm"
 
@@ -85,9 +109,9 @@ for engine in functional rtl lockstep; do
 done
 
 # What an earlier run has left survives a failed one, and nothing else is left.
-"${sim[@]}" --scene "$folder/good.obj" > "$folder/stdout" 2>&1 || { failures=$((failures + 1)); echo "FAILED: a good OBJ:"; cat "$folder/stdout"; }
+"$raypool" sim --engine functional --size 8x8 --out "$folder/out" --scene "$folder/good.obj" --quiet > "$folder/stdout" 2>&1 || { failures=$((failures + 1)); echo "FAILED: a good OBJ:"; cat "$folder/stdout"; }
 before=$(cd "$folder/out" && ls -A && cksum ./*)
-refuses "failed run over an earlier one" "nan.obj" "${sim[@]}" --scene "$folder/nan.obj"
+refuses_sim "failed run over an earlier one" "nan.obj" --scene "$folder/nan.obj"
 if [ "$before" != "$(cd "$folder/out" && ls -A && cksum ./*)" ]; then
   failures=$((failures + 1))
   echo "FAILED: a failed run changed the results of the earlier one: $(ls -lA "$folder/out")"

@@ -3,14 +3,12 @@
 #include <fmt/format.h>
 
 #include <charconv>
-#include <filesystem>
-#include <fstream>
-#include <iostream>
+#include <cstdio>
 #include <sstream>
 
 #include "cli/commands.hpp"
-#include "cli/output_folder.hpp"
 #include "cli/text_file.hpp"
+#include "files/output_files.hpp"
 #include "isa/assembler.hpp"
 #include "isa/input_error.hpp"
 
@@ -21,13 +19,10 @@ constexpr std::string_view kKernelMark = "// kernel ";
 
 void write_text(const std::string& out, const std::string& text) {
   if (out.empty()) {
-    std::cout << text;
+    std::fputs(text.c_str(), stdout);
     return;
   }
-  const std::filesystem::path path = std::filesystem::absolute(out);
-  OutputFolder folder(path.parent_path());
-  folder.write(path.filename(), text);
-  folder.publish();
+  write_file(out, text);
 }
 
 Program parse_words(const std::string& text, const std::string& name) {

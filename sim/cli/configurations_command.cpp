@@ -1,12 +1,9 @@
 // `raypool configurations`: the sets of configurations that the tests walk.
 #include <fmt/format.h>
 
-#include <filesystem>
-#include <fstream>
-
 #include "cli/commands.hpp"
+#include "cli/output_folder.hpp"
 #include "cosim/covering.hpp"
-#include "isa/input_error.hpp"
 
 namespace raypool {
 
@@ -35,20 +32,15 @@ int configurations_command(const ConfigurationsOptions& options) {
   fmt::print("{} machines of at most {} threads: {} of {} values, {} of {} pairs of values\n", machines.size(), most_threads,
              covered.values, covered.all_values, covered.pairs, covered.all_pairs);
   if (options.folder.empty()) return 0;
-  std::filesystem::create_directories(options.folder);
-  const auto write = [&](const std::string& name, const std::string& text) {
-    const std::string path = options.folder + "/" + name;
-    std::ofstream file(path);
-    file << text;
-    if (!file) throw InputError(fmt::format("{}: the file cannot be written", path));
-  };
+  OutputFolder folder(options.folder);
   std::string list;
   for (const Machine& machine : machines) {
     const std::string name = machine.configuration.name + ".json";
-    write(name, to_json(machine.configuration) + "\n");
+    folder.write(name, to_json(machine.configuration) + "\n");
     list += fmt::format("{} {}\n", name, machine.units);
   }
-  write("list", list);
+  folder.write("list", list);
+  folder.publish();
   return 0;
 }
 

@@ -1,12 +1,12 @@
 // `raypool cosim`: random programs on the Verilated unit in lockstep with the golden model.
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <fstream>
 #include <optional>
 
 #include "cli/commands.hpp"
 #include "cli/engine.hpp"
+#include "cli/output_folder.hpp"
 #include "cli/progress.hpp"
 #include "cosim/cosim.hpp"
 #include "cosim/coverage.hpp"
@@ -29,9 +29,8 @@ class Cosim {
     engine_.units = units;
     if (options.vectors.empty()) return;
     if (engine_.engine != Engine::Lockstep) throw InputError("--vectors records a lockstep: use --engine lockstep");
-    vectors_.emplace(options.vectors);
     if (units != 1) throw InputError("--vectors records a single unit");
-    if (!*vectors_) throw InputError(fmt::format("{}: the file cannot be written", options.vectors));
+    vectors_.emplace(vectors_file_.begin(options.vectors));
   }
 
   bool traced() const { return engine_.engine == Engine::Rtl || engine_.engine == Engine::Lockstep; }
@@ -39,6 +38,14 @@ class Cosim {
   const Coverage& coverage() const { return coverage_; }
   const Configuration& configuration() const { return engine_.configuration; }
   Engine engine() const { return engine_.engine; }
+
+  /// The recording gets its name.
+  void finish() {
+    if (!vectors_) return;
+    vectors_->close();
+    if (!*vectors_) throw InputError("the recording for --vectors cannot be written: is the disk full?");
+    vectors_file_.publish();
+  }
 
   /// Throws what the run throws.
   uint64_t run(const RandomProgram& program, const std::string& name) {
@@ -80,6 +87,7 @@ class Cosim {
   EngineOptions engine_;
   Coverage coverage_;
   LockstepCounts counts_;
+  OutputFiles vectors_file_;
   std::optional<std::ofstream> vectors_;
 };
 
@@ -111,12 +119,17 @@ std::string subject(const std::string& report) {
     saved.program = shrink_program(cosim.configuration(), program, fails, shrink);
     text = cosim.failure(saved.program);
     saved.note = text.substr(0, text.find('\n'));
-    const std::filesystem::path folder = options.save;
-    std::filesystem::create_directories(folder);
-    const std::string path = (folder / fmt::format("{}-seed{}.json", saved.configuration.name, saved.program.seed)).string();
-    std::ofstream(path) << to_json(saved);
-    text += fmt::format("\nshrunk from {} to {} instructions and saved; again with: raypool cosim --replay {}",
-                        program.program.code.size(), saved.program.program.code.size(), path);
+    text += fmt::format("\nshrunk from {} to {} instructions", program.program.code.size(), saved.program.program.code.size());
+    // The difference is what counts, saved or not.
+    try {
+      OutputFolder folder(options.save);
+      const std::string name = fmt::format("{}-seed{}.json", saved.configuration.name, saved.program.seed);
+      folder.write(name, to_json(saved));
+      folder.publish();
+      text += fmt::format(" and saved; again with: raypool cosim --replay {}", folder.path(name).string());
+    } catch (const InputError& error) {
+      text += fmt::format(", but not saved: {}", error.what());
+    }
   }
   text += fmt::format("\nthe whole program again: {}", again);
   if (is_difference) throw LockstepDifference(text);
@@ -147,6 +160,7 @@ int cosim_command(const CosimOptions& options) {
     const uint64_t cycles = cosim.run(saved.program, options.replay);
     fmt::print("replayed {}: {} instructions of code, {} cycles\n", options.replay, saved.program.program.code.size(), cycles);
     if (cosim.engine() == Engine::Lockstep) fmt::print("{}\n", to_string(cosim.counts()));
+    cosim.finish();
     return 0;
   }
 
@@ -171,8 +185,9 @@ int cosim_command(const CosimOptions& options) {
   if (cosim.traced()) fmt::print("{}", to_string(cosim.coverage()));
   if (!options.coverage.empty()) {
     if (!cosim.traced()) throw InputError("--coverage needs an engine with a trace: rtl or lockstep");
-    std::ofstream(options.coverage) << to_json(cosim.coverage(), name, options.programs);
+    write_file(options.coverage, to_json(cosim.coverage(), name, options.programs));
   }
+  cosim.finish();
   return 0;
 }
 

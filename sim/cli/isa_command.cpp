@@ -5,9 +5,9 @@
 #include <filesystem>
 
 #include "cli/commands.hpp"
-#include "cli/output_folder.hpp"
 #include "cli/text_file.hpp"
 #include "config/schema.hpp"
+#include "files/output_files.hpp"
 #include "isa/input_error.hpp"
 #include "isa/reference.hpp"
 
@@ -29,10 +29,7 @@ int isa_write_command() {
   for (const GeneratedFile& file : files) {
     // What is right keeps its time stamp.
     if (std::filesystem::exists(file.path) && read_text(file.path) == file.text) continue;
-    const std::filesystem::path path(file.path);
-    OutputFolder folder(path.parent_path());
-    folder.write(path.filename(), file.text);
-    folder.publish();
+    write_file(file.path, file.text);
     fmt::print("wrote {}\n", file.path);
   }
   return 0;

@@ -5,7 +5,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 
 #include "cli/commands.hpp"
 #include "cli/engine.hpp"
@@ -218,16 +217,16 @@ int list_extremes() {
 /// A configuration file for each mode, named after it.
 int write_configurations(const NumericsOptions& options) {
   const Configuration base = load_configuration(options.config);
-  fs::create_directories(options.configurations);
+  OutputFolder folder(options.configurations);
+  std::string names;
   for (const ArithmeticMode& mode : chosen_modes(options.mode)) {
     const Configuration configuration = mode.applied_to(base);
-    const fs::path path = fs::path(options.configurations) / (configuration.name + ".json");
-    std::ofstream file(path);
-    file << to_json(configuration) << '\n';
-    file.close();
-    if (!file) throw InputError(fmt::format("cannot write '{}': name another folder", path.string()));
-    fmt::print("{}\n", path.string());
+    const std::string name = configuration.name + ".json";
+    folder.write(name, to_json(configuration) + "\n");
+    names += folder.path(name).string() + "\n";
   }
+  folder.publish();
+  fmt::print("{}", names);
   return 0;
 }
 

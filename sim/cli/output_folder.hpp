@@ -1,34 +1,29 @@
-// Files that a run leaves: all of them or none, and never a half-written one.
+// The folder of the files that a run leaves: all of them or none, and never a half-written one.
 #pragma once
 
 #include <filesystem>
 #include <string>
-#include <vector>
+
+#include "files/output_files.hpp"
 
 namespace raypool {
 
-/// A folder into which files are written under temporary names. publish() gives all of them their names, replacing what earlier
-/// runs left; without it the destructor removes them, so a failed run changes nothing. Throws InputError when the folder cannot
-/// be written.
+/// OutputFiles in one folder, which is made if it is missing. publish() replaces what earlier runs left; a failed run changes
+/// nothing. Throws InputError when the folder cannot be written.
 class OutputFolder {
  public:
-  explicit OutputFolder(const std::filesystem::path& folder);
-  ~OutputFolder();
-  OutputFolder(const OutputFolder&) = delete;
-  OutputFolder& operator=(const OutputFolder&) = delete;
+  explicit OutputFolder(const std::filesystem::path& folder) : folder_(folder) { make_folder(folder_); }
 
-  /// Path to write the file `name` to before publish().
-  std::filesystem::path temporary(const std::string& name);
-  void write(const std::string& name, const std::string& content);
+  /// Path to write the file `name` to before publish(), by a writer of its own.
+  std::filesystem::path temporary(const std::string& name) { return files_.begin(path(name), true); }
+  void write(const std::string& name, const std::string& content) { files_.write(path(name), content); }
   /// Final path of a file.
   std::filesystem::path path(const std::string& name) const { return folder_ / name; }
-  void publish();
+  void publish() { files_.publish(); }
 
  private:
-  std::filesystem::path temporary_path(const std::string& name) const;
-
   std::filesystem::path folder_;
-  std::vector<std::string> names_;
+  OutputFiles files_;
 };
 
 }  // namespace raypool

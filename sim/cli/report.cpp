@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <iterator>
-#include <nlohmann/json.hpp>
 
 #include "cli/version.hpp"
+#include "files/json_text.hpp"
 
 namespace raypool {
 namespace {
@@ -182,7 +182,7 @@ std::string to_json(const RunRecord& record) {
     json["simulated_per_second"] = {{"cycles", rate(record.chip->cycles, record.simulation_seconds)},
                                     {"thread_instructions", rate(record.chip->thread_instructions, record.simulation_seconds)}};
   }
-  return json.dump(2) + "\n";
+  return to_text(json, 2) + "\n";
 }
 
 std::string to_table(const RunRecord& record) {

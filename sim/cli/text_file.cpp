@@ -1,26 +1,9 @@
 #include "cli/text_file.hpp"
 
-#include <fmt/format.h>
-
-#include <filesystem>
-#include <fstream>
-#include <iostream>
-#include <sstream>
-
-#include "config/configuration.hpp"
+#include "files/input_file.hpp"
 
 namespace raypool {
 
-std::string read_text(const std::string& path) {
-  std::ostringstream text;
-  if (path == "-") {
-    text << std::cin.rdbuf();
-    return text.str();
-  }
-  std::ifstream file(path, std::ios::binary);
-  if (!file || std::filesystem::is_directory(path)) throw InputError(fmt::format("cannot read '{}': check the path", path));
-  text << file.rdbuf();
-  return text.str();
-}
+std::string read_text(const std::string& path) { return read_file(path == "-" ? "/dev/stdin" : path, "file"); }
 
 }  // namespace raypool

@@ -2,13 +2,11 @@
 #include "scene/image.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
+#include <cstring>
 
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #define STB_IMAGE_WRITE_STATIC
@@ -17,6 +15,8 @@
 #pragma GCC diagnostic ignored "-Wunused-function"
 #include <stb/stb_image_write.h>
 #pragma GCC diagnostic pop
+
+#include "files/output_files.hpp"
 
 namespace raypool {
 namespace {
@@ -92,17 +92,7 @@ std::vector<uint8_t> encode_png(const FrameBuffer& frame) {
 
 void write_png(const FrameBuffer& frame, const std::string& path) {
   const std::vector<uint8_t> png = encode_png(frame);
-  const std::string temporary = fmt::format("{}.{}.part", path, static_cast<long>(getpid()));
-  std::ofstream file(temporary, std::ios::binary);
-  file.write(reinterpret_cast<const char*>(png.data()), static_cast<std::streamsize>(png.size()));
-  file.close();
-  std::error_code error;
-  if (file) std::filesystem::rename(temporary, path, error);
-  if (!file || error) {
-    std::error_code ignored;
-    std::filesystem::remove(temporary, ignored);
-    throw InputError(path + ": the picture cannot be written; check that its folder exists, is writable and has space");
-  }
+  write_file(path, std::string(png.begin(), png.end()));
 }
 
 ImageDifference compare(const FrameBuffer& a, const FrameBuffer& b) {

@@ -53,8 +53,7 @@ std::vector<uint8_t> to_rgb8(const FrameBuffer& frame);
 /// The PNG file's bytes: 8 bits a channel, the same for the same frame buffer.
 std::vector<uint8_t> encode_png(const FrameBuffer& frame);
 
-/// Writes beside `path` and renames, so that a PNG under this name is always complete. Throws InputError when that cannot be
-/// done.
+/// Throws InputError when it cannot be written.
 void write_png(const FrameBuffer& frame, const std::string& path);
 
 struct ImageDifference {

@@ -6,7 +6,6 @@
 #include <charconv>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <set>
 #include <sstream>
@@ -15,18 +14,12 @@
 #define TINYOBJLOADER_IMPLEMENTATION
 #include <tiny_obj_loader.h>
 
+#include "files/input_file.hpp"
+#include "files/output_files.hpp"
 #include "scene/scene.hpp"
 
 namespace raypool {
 namespace {
-
-std::string read_file(const std::string& path, const char* kind) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file || std::filesystem::is_directory(path)) {
-    throw InputError(fmt::format("{}: the {} file cannot be read; check the path", path, kind));
-  }
-  return std::string(std::istreambuf_iterator<char>(file), {});
-}
 
 /// Calls visit(line number from 1, line without its end) for every line.
 template <typename Visit>
@@ -79,7 +72,7 @@ void check_numbers(const std::string& path, size_t number, std::string_view rest
 }
 
 void check_mtl(const std::string& path) {
-  const std::string text = read_file(path, "material");
+  const std::string text = read_file(path, "material file");
   for_each_line(text, [&](size_t number, std::string_view line) {
     const std::string_view key = next_word(line);
     if (key == "Kd") check_numbers(path, number, line, "colour Kd", 0, 1000);
@@ -157,10 +150,10 @@ Vec3 to_vec3(const tinyobj::real_t* v) { return {static_cast<float>(v[0]), stati
 }  // namespace
 
 Scene load_obj(const std::string& path) {
-  if (!std::filesystem::exists(path)) {
+  if (std::error_code none; !std::filesystem::exists(path, none)) {
     throw InputError(path + ": no such scene; give cornell, room or the path of an OBJ file");
   }
-  std::string text = read_file(path, "OBJ");
+  std::string text = read_file(path, "OBJ file");
   blank_comments(text);
   check_obj(path, text);
 
@@ -209,15 +202,18 @@ Scene load_obj(const std::string& path) {
 void write_obj(const Scene& scene, const std::string& path) {
   // A blank would end the name in the mtllib line.
   std::string mtl_name = std::filesystem::path(path).stem().string() + ".mtl";
-  std::replace(mtl_name.begin(), mtl_name.end(), ' ', '_');
+  for (char& c : mtl_name) {
+    if (c >= 0 && c <= ' ') c = '_';
+  }
   const std::filesystem::path mtl_path = std::filesystem::path(path).parent_path() / mtl_name;
+  if (mtl_path == path) throw InputError(path + ": this is the name of its material file; end the OBJ file's name in .obj");
   // Names must be single words, each used once.
   std::vector<std::string> names;
   std::set<std::string> taken;
   for (const Material& material : scene.materials) {
     std::string name = material.name.empty() ? "material" : material.name;
     for (char& c : name) {
-      if (c <= ' ' || c == '#') c = '_';
+      if ((c >= 0 && c <= ' ') || c == '#') c = '_';
     }
     if (taken.count(name) != 0) name += fmt::format("_{}", names.size());
     taken.insert(name);
@@ -240,13 +236,10 @@ void write_obj(const Scene& scene, const std::string& path) {
     const auto& t = scene.triangles[i];
     fmt::format_to(std::back_inserter(obj), "f {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1);
   }
-  auto write = [](const std::string& name, const fmt::memory_buffer& buffer) {
-    std::ofstream file(name, std::ios::binary);
-    file.write(buffer.data(), static_cast<std::streamsize>(buffer.size()));
-    if (!file.flush()) throw InputError(name + ": cannot be written; check that its folder exists and is writable");
-  };
-  write(mtl_path.string(), mtl);
-  write(path, obj);
+  OutputFiles files;
+  files.write(mtl_path, fmt::to_string(mtl));
+  files.write(path, fmt::to_string(obj));
+  files.publish();
 }
 
 }  // namespace raypool

@@ -4,16 +4,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
-#include <nlohmann/json.hpp>
 
+#include "files/input_file.hpp"
+#include "files/json_text.hpp"
+#include "files/output_files.hpp"
 #include "scene/scene.hpp"
 #include "scene/traversal.hpp"
 
 namespace raypool {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 void refuse_unknown(const Json& object, const std::vector<std::string>& known, const std::string& where) {
   for (const auto& item : object.items()) {
@@ -163,14 +164,7 @@ View automatic_view(const Scene& scene) {
 }
 
 View load_view(const std::string& path) {
-  std::ifstream file(path);
-  if (!file) throw InputError(path + ": the view file cannot be read; check the path");
-  Json json;
-  try {
-    json = Json::parse(file);
-  } catch (const Json::parse_error& error) {
-    throw InputError(fmt::format("{}: not JSON at byte {}; correct the file", path, error.byte));
-  }
+  const Json json = parse_json(read_file(path, "view file"), path);
   if (!json.is_object()) throw InputError(path + ": a view file must be one JSON object, {\"eye\": ...}");
   refuse_unknown(json, {"eye", "direction", "target", "up", "fov", "light", "$schema"}, path);
 
@@ -215,9 +209,7 @@ void write_view(const View& view, const std::string& path) {
   json["up"] = to_json(view.camera.up);
   json["fov"] = view.camera.fov;
   json["light"] = {{"position", to_json(view.light.position)}, {"color", to_json(view.light.color)}};
-  std::ofstream file(path);
-  file << json.dump(2) << '\n';
-  if (!file.flush()) throw InputError(path + ": the view file cannot be written; check that its folder exists and is writable");
+  write_file(path, to_text(json, 2) + "\n");
 }
 
 }  // namespace raypool

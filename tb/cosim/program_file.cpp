@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-#include <nlohmann/json.hpp>
-#include <sstream>
+#include <array>
 
 #include "cosim/program_check.hpp"
+#include "files/input_file.hpp"
+#include "files/json_text.hpp"
 #include "isa/assembler.hpp"
 #include "isa/input_error.hpp"
 
@@ -65,14 +65,14 @@ std::string to_json(const SavedProgram& saved) {
   }
   json["code"] = Json::array();
   for (const uint64_t instruction : program.program.code) json["code"].push_back(disassemble(instruction));
-  return json.dump(1) + "\n";
+  return to_text(json, 1) + "\n";
 }
 
 SavedProgram parse_saved_program(const std::string& text, const std::string& where, bool check) {
   SavedProgram saved;
   RandomProgram& program = saved.program;
+  const Json json = parse_json(text, where);
   try {
-    const Json json = Json::parse(text);
     if (json.at("format").get<int>() != kFormat) throw InputError("its format is not " + std::to_string(kFormat));
     saved.note = json.at("note").get<std::string>();
     saved.configuration = parse_configuration(json.at("configuration").dump(), where);
@@ -101,7 +101,7 @@ SavedProgram parse_saved_program(const std::string& text, const std::string& whe
     for (const Json& line : json.at("code")) code += line.get<std::string>() + "\n";
     program.program.code = assemble(code, "code").code;
   } catch (const std::exception& error) {
-    throw InputError(fmt::format("{}: not a saved program: {}", where, error.what()));
+    throw InputError(fmt::format("{}: not a saved program: {}", where, json_reason(error)));
   }
   if (program.data_begin < program.program.code.size() * 8 || program.data_begin > program.memory_bytes ||
       program.memory_bytes > 64u << 20) {
@@ -116,11 +116,7 @@ SavedProgram parse_saved_program(const std::string& text, const std::string& whe
 }
 
 SavedProgram load_saved_program(const std::string& path, bool check) {
-  std::ifstream file(path);
-  if (!file) throw InputError(fmt::format("{}: the file cannot be read; give the path of a saved program", path));
-  std::stringstream text;
-  text << file.rdbuf();
-  return parse_saved_program(text.str(), path, check);
+  return parse_saved_program(read_file(path, "saved program"), path, check);
 }
 
 }  // namespace raypool

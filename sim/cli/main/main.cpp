@@ -1,8 +1,12 @@
 // The command line: what each subcommand takes, what it does with errors.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 
 #include "chip/chip.hpp"
@@ -42,6 +46,18 @@ void add_scene(CLI::App& app, std::string& scene, std::string& size, std::string
   app.add_option("--detail", detail, "triangles of a built-in scene, 0.01 to 16, 1 = as designed")->capture_default_str();
 }
 
+/// "--size is given 2 times (8x8, 16x16): give it once", of an option that takes one value; empty if there is none such.
+std::string given_twice(const CLI::App& app) {
+  for (const CLI::App* sub : app.get_subcommands()) {
+    for (const CLI::Option* option : sub->get_options()) {
+      const std::vector<std::string>& values = option->results();
+      if (option->get_expected_max() != 1 || values.size() < 2) continue;
+      return fmt::format("{} is given {} times ({}): give it once", option->get_name(), values.size(), fmt::join(values, ", "));
+    }
+  }
+  return "";
+}
+
 int run(int argc, char** argv) {
   CLI::App app(
       "raypool: a ray-tracing GPU to render on, measure, verify and synthesise. RAYPOOL COMMAND --help tells more of a command.",
@@ -51,8 +67,6 @@ int run(int argc, char** argv) {
   app.set_version_flag(
       "--version", [] { return about(); }, "version, and those of the libraries");
   app.footer(exit_codes());
-  // Given twice, the later one counts: scripts put defaults first.
-  app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   int code = 0;
 
   SimOptions sim;
@@ -217,29 +231,47 @@ int run(int argc, char** argv) {
   } catch (const CLI::Success& success) {
     return app.exit(success);
   } catch (const CLI::ParseError& error) {
-    std::fprintf(stderr, "raypool: %s (raypool --help shows what there is)\n", error.what());
+    const std::string twice = given_twice(app);
+    std::fprintf(stderr, "raypool: %s (raypool --help shows what there is)\n", twice.empty() ? error.what() : twice.c_str());
     return kInputFailure;
   }
   return code;
 }
 
+/// What has been printed is a result too: lost, it is an error.
+int close_output(int code) {
+  const bool lost = std::ferror(stdout) != 0;
+  int error = std::fflush(stdout) != 0 ? errno : 0;
+  // Why a write before this one failed is forgotten: one more is asked for the reason.
+  if (lost && error == 0) error = write(STDOUT_FILENO, "\n", 1) < 0 ? errno : EIO;
+  // Network file systems tell of a full disk when the file is closed; one that was closed before is none.
+  if (std::fclose(stdout) != 0 && error == 0 && errno != EBADF) error = errno;
+  if (error == 0) return code;
+  std::fprintf(stderr, "raypool: cannot write to standard output (%s): what was printed is not complete\n", std::strerror(error));
+  return code == 0 ? kInputFailure : code;
+}
+
+/// Runs a command; what it throws becomes a sentence and an exit code.
+int run_and_report(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const InputError& error) {
+    std::fprintf(stderr, "raypool: %s\n", error.what());
+    return kInputFailure;
+  } catch (const LockstepDifference& difference) {
+    std::fprintf(stderr, "raypool: %s\n", difference.what());
+    return kDifference;
+  } catch (const ChipStalled& stalled) {
+    std::fprintf(stderr, "raypool: %s\n", stalled.what());
+    return kOtherFailure;
+  } catch (const std::exception& error) {
+    if (std::ferror(stdout) != 0) return kInputFailure;  // which close_output() says
+    std::fprintf(stderr, "raypool: failed: %s\n", error.what());
+    return kOtherFailure;
+  }
+}
+
 }  // namespace
 }  // namespace raypool
 
-int main(int argc, char** argv) {
-  try {
-    return raypool::run(argc, argv);
-  } catch (const raypool::InputError& error) {
-    std::fprintf(stderr, "raypool: %s\n", error.what());
-    return raypool::kInputFailure;
-  } catch (const raypool::LockstepDifference& difference) {
-    std::fprintf(stderr, "raypool: %s\n", difference.what());
-    return raypool::kDifference;
-  } catch (const raypool::ChipStalled& stalled) {
-    std::fprintf(stderr, "raypool: %s\n", stalled.what());
-    return raypool::kOtherFailure;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "raypool: failed: %s\n", error.what());
-    return raypool::kOtherFailure;
-  }
-}
+int main(int argc, char** argv) { return raypool::close_output(raypool::run_and_report(argc, argv)); }
