@@ -1,6 +1,7 @@
 // Approximate quotient w/v, w/sqrt(v) of slow_prepare, stages 1 .. LAST of the slow unit: a table of bytes gives y, about 1/v or 1/sqrt(v).
 // STEPS 0: w*y. STEPS 1: a Newton step on y before, y + y*(1 - v*y), for a root y + y*(1 - v*y*y)/2. STEPS 2: a second one, on the quotient.
-// Then the quotient is rounded to nearest even. cpp_model/arith/arith.cpp does the same integer steps and defines the results.
+// Then the quotient is rounded to nearest even, but never to another exponent: a true quotient is not that near to 2. docs/numerics.md
+// defines the results, cpp_model/arith/arith.cpp does the same integer steps.
 // enable_i[k] says that stage 1 + k holds a task. result_o is combinational in stage LAST and zero while it holds none.
 `default_nettype none
 module slow_newton #(
@@ -152,7 +153,8 @@ module slow_newton #(
     if (enable_i[LAST-1]) begin
       ones = ones_below({32'd0, last_magnitude_q});
       if (last_tag_q[SPECIAL]) result_o = {last_tag_q[SIGN], last_tag_q[EXPONENT +: 8], last_tag_q[NAN], 22'd0};
-      else result_o = {last_tag_q[SIGN], last_magnitude_q ^ (ones[30:0] & {31{last_round_up_q}})};
+      // ones[23]: what is above a fraction of ones is the exponent.
+      else result_o = {last_tag_q[SIGN], last_magnitude_q ^ (ones[30:0] & {31{last_round_up_q && !ones[23]}})};
     end
   end
 endmodule

@@ -145,7 +145,10 @@ uint32_t newton(uint32_t a, uint32_t b, SlowOperation operation, Mode mode) {
   const uint64_t kept = quotient >> cut;
   const uint64_t tail = quotient & (2 * half - 1);
   const uint64_t magnitude = (exponent < 1 ? 0 : static_cast<uint64_t>(exponent - 1) << 23) + kept;
-  return sign | static_cast<uint32_t>(magnitude + (tail > half || (tail == half && kept & 1)));
+  // True quotients are not so near to 2 that a rounding changes the exponent; an estimate may be.
+  const bool may_carry = (magnitude & 0x007fffffu) != 0x007fffffu;
+  const bool up = tail > half || (tail == half && kept % 2 != 0);
+  return sign | static_cast<uint32_t>(magnitude + (up && may_carry ? 1 : 0));
 }
 
 uint32_t finite(uint32_t a, uint32_t b, SlowOperation operation, Mode mode) {

@@ -134,15 +134,18 @@ inline uint32_t to_int(uint32_t a, Mode) {
 inline bool equal(uint32_t a, uint32_t b, Mode mode) {  ///< false with a NaN
   return detail::to_float(detail::operand(a, mode)) == detail::to_float(detail::operand(b, mode));
 }
-inline bool less(uint32_t a, uint32_t b, Mode mode) {  ///< false with a NaN
+inline bool not_equal(uint32_t a, uint32_t b, Mode mode) { return !equal(a, b, mode); }  ///< true with a NaN
+inline bool less(uint32_t a, uint32_t b, Mode mode) {                                    ///< false with a NaN
   return detail::to_float(detail::operand(a, mode)) < detail::to_float(detail::operand(b, mode));
 }
 inline bool less_equal(uint32_t a, uint32_t b, Mode mode) {  ///< false with a NaN
   return detail::to_float(detail::operand(a, mode)) <= detail::to_float(detail::operand(b, mode));
 }
+inline bool greater(uint32_t a, uint32_t b, Mode mode) { return less(b, a, mode); }
+inline bool greater_equal(uint32_t a, uint32_t b, Mode mode) { return less_equal(b, a, mode); }
 
-// The slow unit. Exact: each correctly rounded. Newton modes: what the RTL's table and steps give (arith.cpp is their
-// definition). Zeros, infinities, NaNs and powers of four under rsqrt are exact in every mode.
+// The slow unit. Exact: each correctly rounded. Newton modes: what the RTL's table and steps give (docs/numerics.md has
+// them). Zeros, infinities, NaNs and powers of four under rsqrt are exact in every mode.
 uint32_t div(uint32_t a, uint32_t b, Mode mode);
 uint32_t sqrt(uint32_t a, Mode mode);
 uint32_t rsqrt(uint32_t a, Mode mode);  ///< one rounding; rsqrt(+-0) = +-infinity

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "arith/test_newton.hpp"
 #include "arith/test_operands.hpp"
 #include "arith/test_oracle.hpp"
 
@@ -15,8 +16,10 @@ constexpr Mode kFlush{Subnormals::Flush, SlowUnit::Exact};
 constexpr uint64_t kSeed = 20240607;
 constexpr int kPairs = 400000;
 
-constexpr Operation kBinary[] = {Operation::Add, Operation::Sub,   Operation::Mul,  Operation::Div,      Operation::Min,
-                                 Operation::Max, Operation::Equal, Operation::Less, Operation::LessEqual};
+constexpr Operation kBinary[] = {Operation::Add,  Operation::Sub,       Operation::Mul,     Operation::Div,
+                                 Operation::Min,  Operation::Max,       Operation::Equal,   Operation::NotEqual,
+                                 Operation::Less, Operation::LessEqual, Operation::Greater, Operation::GreaterEqual};
+constexpr SlowUnit kNewton[] = {SlowUnit::Newton2, SlowUnit::Newton1, SlowUnit::Newton0};
 constexpr Operation kUnary[] = {Operation::ToInt, Operation::FromInt, Operation::Sqrt, Operation::Rsqrt, Operation::Rcp};
 
 /// Every operation of the block, in both modes, against the oracle.
@@ -160,6 +163,66 @@ TEST(Arith, InverseRootIsCorrectlyRounded) {
   EXPECT_EQ(rsqrt(0x40800000u, kIeee), 0x3f000000u);
 }
 
+/// Every Newton unit in both subnormal modes: the oracle's bits, and the exponent of the exact result.
+void check_newton(Operation operation, const OperandBlock& in) {
+  for (const SlowUnit unit : kNewton) {
+    for (const bool flush : {false, true}) {
+      const Mode mode{flush ? Subnormals::Flush : Subnormals::Ieee, unit};
+      for (size_t i = 0; i < in.size(); ++i) {
+        const uint32_t ours = model(operation, in.a[i], in.b[i], 0, mode);
+        ASSERT_EQ(ours, newton_oracle::result(operation, in.a[i], in.b[i], unit, flush))
+            << std::hex << kOperationNames[static_cast<int>(operation)] << ' ' << in.a[i] << ' ' << in.b[i]
+            << (flush ? " flush" : " ieee") << " unit " << static_cast<int>(unit);
+        const uint32_t exact = model(operation, in.a[i], in.b[i], 0, flush ? kFlush : kIeee);
+        ASSERT_TRUE(newton_oracle::keeps_exponent(operation, in.a[i], in.b[i], ours, exact))
+            << std::hex << kOperationNames[static_cast<int>(operation)] << ' ' << in.a[i] << ' ' << in.b[i] << " gives " << ours
+            << " for " << exact;
+      }
+    }
+  }
+}
+
+TEST(Arith, NewtonResultsAreThoseOfTheirDefinitionAllOverTheRange) {
+  OperandBlock in;
+  for (uint64_t a = 0; a < uint64_t{1} << 32; a += 8209) in.push(static_cast<uint32_t>(a), 0, 0);
+  // Every seed, both parities, all lower bits; the largest mantissas; results at both ends.
+  for (uint32_t a = 0x3f800000u; a < 0x40800000u; a += 31) in.push(a, 0, 0);
+  for (uint32_t a = 0x407e0000u; a < 0x40800000u; ++a) in.push(a, 0, 0);
+  for (uint32_t a = 0x00000000u; a < 0x01000000u; a += 127) in.push(a, 0, 0);
+  for (uint32_t a = 0x7e000000u; a < 0x7f800000u; a += 127) in.push(a, 0, 0);
+  for (const Operation operation : {Operation::Sqrt, Operation::Rsqrt, Operation::Rcp}) check_newton(operation, in);
+}
+
+TEST(Arith, NewtonQuotientsAreThoseOfTheirDefinition) {
+  OperandSource source(kSeed);
+  OperandBlock in;
+  for (int i = 0; i < kPairs; ++i) {
+    const auto [a, b] = source.next();
+    in.push(a, b, 0);
+  }
+  for (const uint32_t a : special_operands()) {
+    for (const uint32_t b : special_operands()) in.push(a, b, 0);
+  }
+  check_newton(Operation::Div, in);
+}
+
+TEST(Arith, NewtonResultsNextToTheNextExponentStayBelowIt) {
+  OperandBlock in;
+  // Quotients 2 - 2k/d for divisors all over 1 .. 2, in the middle, below infinity, and below the smallest normal number.
+  for (uint32_t d = 64; d < 1u << 23; d += 251) {
+    for (const uint32_t k : {1u, 2u, 31u, 60u}) {
+      in.push(0x3f800000u + d - k, 0x3f800000u + d, 0);
+      in.push(0xff000000u + d - k, 0x3f000000u + d, 0);
+      in.push(0x00800000u + d - k, 0xbf800000u + d, 0);
+    }
+  }
+  check_newton(Operation::Div, in);
+  EXPECT_EQ(div(0xc1001002u, 0x0100100eu, {Subnormals::Ieee, SlowUnit::Newton1}), 0xff7fffffu);
+  EXPECT_EQ(div(0xc17fff3eu, 0x017ffffau, {Subnormals::Ieee, SlowUnit::Newton0}), 0xff7fffffu);
+  EXPECT_EQ(div(0x3f800100u, 0x3f800101u, {Subnormals::Flush, SlowUnit::Newton1}), 0x3f7fffffu);
+  EXPECT_EQ(sqrt(0x407f00ffu, {Subnormals::Flush, SlowUnit::Newton0}), 0x3fffffffu);
+}
+
 TEST(Arith, NewtonReciprocalsOfPowersOfTwoAreExactWithTwoSteps) {
   const Mode mode{Subnormals::Ieee, SlowUnit::Newton2};
   for (int field = 1; field < 254; ++field) {
@@ -170,7 +233,7 @@ TEST(Arith, NewtonReciprocalsOfPowersOfTwoAreExactWithTwoSteps) {
 }
 
 TEST(Arith, NewtonResultsOutsideTheNormalRangeKeepTheRulesOfTheMode) {
-  for (const SlowUnit unit : {SlowUnit::Newton0, SlowUnit::Newton1, SlowUnit::Newton2}) {
+  for (const SlowUnit unit : kNewton) {
     const Mode ieee{Subnormals::Ieee, unit}, flush{Subnormals::Flush, unit};
     EXPECT_EQ(div(0x7f000000u, 0x00800000u, ieee), 0x7f800000u);
     EXPECT_EQ(rcp(1u, ieee), 0x7f800000u);

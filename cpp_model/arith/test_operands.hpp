@@ -44,7 +44,7 @@ class OperandSource {
 
   std::pair<uint32_t, uint32_t> next() {
     uint32_t a = bits(), b = bits();
-    switch (random_() % 13) {
+    switch (random_() % 14) {
       case 0:  // anything
         break;
       case 1:  // special and anything
@@ -80,6 +80,14 @@ class OperandSource {
       case 11:  // product next to 2^-126, the smallest normal number, or twice that
         b = partner(a, exponent(0, range(1, 2))) + static_cast<uint32_t>(range(-2, 2));
         break;
+      case 12: {  // quotient next to a power of two, most of them below: in the middle and at both ends of the range
+        constexpr int kFields[] = {127, 255, 2, 1, 0, -1};
+        const int wanted = kFields[random_() % 6];
+        const uint32_t near = a + static_cast<uint32_t>(range(-1, 4) * (1 << range(0, 4)));
+        b = exponent(near, range(std::max(1, 128 - wanted), std::min(254, 381 - wanted)));
+        a = exponent(a, field(b) - 127 + wanted);
+        break;
+      }
       default:  // subnormal operands
         a = exponent(a, range(0, 3)), b = exponent(b, range(0, 26));
         break;

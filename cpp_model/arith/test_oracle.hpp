@@ -16,10 +16,30 @@
 
 namespace raypool::arith {
 
-enum class Operation : uint8_t { Add, Sub, Mul, Fma, Min, Max, ToInt, FromInt, Div, Sqrt, Rsqrt, Rcp, Equal, Less, LessEqual };
-inline constexpr int kOperations = 15;
-inline constexpr const char* kOperationNames[kOperations] = {"fadd", "fsub",  "fmul",   "ffma", "fmin", "fmax", "f2i", "i2f",
-                                                             "fdiv", "fsqrt", "frsqrt", "frcp", "feq",  "flt",  "fle"};
+enum class Operation : uint8_t {
+  Add,
+  Sub,
+  Mul,
+  Fma,
+  Min,
+  Max,
+  ToInt,
+  FromInt,
+  Div,
+  Sqrt,
+  Rsqrt,
+  Rcp,
+  Equal,
+  NotEqual,
+  Less,
+  LessEqual,
+  Greater,
+  GreaterEqual
+};
+inline constexpr int kOperations = 18;
+inline constexpr const char* kOperationNames[kOperations] = {"fadd", "fsub", "fmul", "ffma",  "fmin",   "fmax",
+                                                             "f2i",  "i2f",  "fdiv", "fsqrt", "frsqrt", "frcp",
+                                                             "feq",  "fne",  "flt",  "fle",   "fgt",    "fge"};
 
 /// What the model gives; a truth value as 0 or 1.
 inline uint32_t model(Operation operation, uint32_t a, uint32_t b, uint32_t c, Mode mode) {
@@ -50,10 +70,16 @@ inline uint32_t model(Operation operation, uint32_t a, uint32_t b, uint32_t c, M
       return rcp(a, mode);
     case Operation::Equal:
       return equal(a, b, mode);
+    case Operation::NotEqual:
+      return not_equal(a, b, mode);
     case Operation::Less:
       return less(a, b, mode);
     case Operation::LessEqual:
       return less_equal(a, b, mode);
+    case Operation::Greater:
+      return greater(a, b, mode);
+    case Operation::GreaterEqual:
+      return greater_equal(a, b, mode);
   }
   return 0;
 }
@@ -88,12 +114,17 @@ inline __m128 load(uint32_t bits) {
   volatile uint32_t held = bits;
   return _mm_castsi128_ps(_mm_cvtsi32_si128(static_cast<int>(held)));
 }
+inline bool not_a_number(uint32_t a) { return (a & 0x7fffffffu) > 0x7f800000u; }
 inline uint32_t canonical_bits(__m128 value) {
   volatile uint32_t bits = static_cast<uint32_t>(_mm_cvtsi128_si32(_mm_castps_si128(value)));
   const uint32_t held = bits;
-  return (held & 0x7fffffffu) > 0x7f800000u ? 0x7fc00000u : held;
+  return not_a_number(held) ? 0x7fc00000u : held;
 }
-inline bool unordered(uint32_t a, uint32_t b) { return (a & 0x7fffffffu) > 0x7f800000u || (b & 0x7fffffffu) > 0x7f800000u; }
+/// Of a compare, whose result is all ones or all zeros.
+inline uint32_t truth(__m128 mask) {
+  volatile int bits = _mm_cvtsi128_si32(_mm_castps_si128(mask));
+  return bits != 0 ? 1 : 0;
+}
 
 __attribute__((noinline, target("fma"))) inline void fuse(const OperandBlock& in, std::vector<uint32_t>& out) {
   for (size_t i = 0; i < in.size(); ++i) out[i] = canonical_bits(_mm_fmadd_ss(load(in.a[i]), load(in.b[i]), load(in.c[i])));
@@ -209,23 +240,23 @@ inline void results(Operation operation, const OperandBlock& in, bool flush, boo
     case Operation::ToInt:
       // The host's 64-bit conversion, saturated; it gives its most negative number for whatever it cannot hold.
       return each(in, out, [](uint32_t a, uint32_t) {
-        if (unordered(a, a)) return uint32_t{0};
+        if (not_a_number(a)) return uint32_t{0};
         const int64_t whole = _mm_cvttss_si64(load(a));
         if (whole == INT64_MIN) return a >> 31 ? 0x80000000u : 0x7fffffffu;
         return static_cast<uint32_t>(whole < INT32_MIN ? INT32_MIN : whole > INT32_MAX ? INT32_MAX : whole);
       });
     case Operation::Equal:
-      return each(in, out, [](uint32_t a, uint32_t b) {
-        return static_cast<uint32_t>(_mm_comieq_ss(load(a), load(b)) != 0 && !unordered(a, b));
-      });
+      return each(in, out, [](uint32_t a, uint32_t b) { return truth(_mm_cmpeq_ss(load(a), load(b))); });
+    case Operation::NotEqual:
+      return each(in, out, [](uint32_t a, uint32_t b) { return truth(_mm_cmpneq_ss(load(a), load(b))); });
     case Operation::Less:
-      return each(in, out, [](uint32_t a, uint32_t b) {
-        return static_cast<uint32_t>(_mm_comilt_ss(load(a), load(b)) != 0 && !unordered(a, b));
-      });
+      return each(in, out, [](uint32_t a, uint32_t b) { return truth(_mm_cmplt_ss(load(a), load(b))); });
     case Operation::LessEqual:
-      return each(in, out, [](uint32_t a, uint32_t b) {
-        return static_cast<uint32_t>(_mm_comile_ss(load(a), load(b)) != 0 && !unordered(a, b));
-      });
+      return each(in, out, [](uint32_t a, uint32_t b) { return truth(_mm_cmple_ss(load(a), load(b))); });
+    case Operation::Greater:
+      return each(in, out, [](uint32_t a, uint32_t b) { return truth(_mm_cmpgt_ss(load(a), load(b))); });
+    case Operation::GreaterEqual:
+      return each(in, out, [](uint32_t a, uint32_t b) { return truth(_mm_cmpge_ss(load(a), load(b))); });
     case Operation::Fma:
       if (host_has_fma() && !with_mpfr) return fuse(in, out);
       break;

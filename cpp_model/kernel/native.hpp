@@ -85,11 +85,11 @@ class NativeKernel {
     Float& operator-=(Float b) { return *this = *this - b; }
     Float& operator*=(Float b) { return *this = *this * b; }
     friend Bool operator==(Float a, Float b) { return arith::equal(a.bits, b.bits, kMode); }
-    friend Bool operator!=(Float a, Float b) { return !arith::equal(a.bits, b.bits, kMode); }
+    friend Bool operator!=(Float a, Float b) { return arith::not_equal(a.bits, b.bits, kMode); }
     friend Bool operator<(Float a, Float b) { return arith::less(a.bits, b.bits, kMode); }
     friend Bool operator<=(Float a, Float b) { return arith::less_equal(a.bits, b.bits, kMode); }
-    friend Bool operator>(Float a, Float b) { return arith::less(b.bits, a.bits, kMode); }
-    friend Bool operator>=(Float a, Float b) { return arith::less_equal(b.bits, a.bits, kMode); }
+    friend Bool operator>(Float a, Float b) { return arith::greater(a.bits, b.bits, kMode); }
+    friend Bool operator>=(Float a, Float b) { return arith::greater_equal(a.bits, b.bits, kMode); }
     friend Float min(Float a, Float b) { return of_bits(arith::min(a.bits, b.bits, kMode)); }
     friend Float max(Float a, Float b) { return of_bits(arith::max(a.bits, b.bits, kMode)); }
     friend Float abs(Float a) { return of_bits(a.bits & 0x7fffffffu); }

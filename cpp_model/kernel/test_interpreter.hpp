@@ -104,11 +104,11 @@ class Interpreter {
     if (name == "ugt") return a > b;
     if (name == "uge") return a >= b;
     if (name == "feq") return arith::equal(a, b, mode);
-    if (name == "fne") return !arith::equal(a, b, mode);
+    if (name == "fne") return arith::not_equal(a, b, mode);
     if (name == "flt") return arith::less(a, b, mode);
     if (name == "fle") return arith::less_equal(a, b, mode);
-    if (name == "fgt") return arith::less(b, a, mode);
-    if (name == "fge") return arith::less_equal(b, a, mode);
+    if (name == "fgt") return arith::greater(a, b, mode);
+    if (name == "fge") return arith::greater_equal(a, b, mode);
     if (name == "pand") return px && predicate(op.rb);
     if (name == "por") return px || predicate(op.rb);
     if (name == "pxor") return px != predicate(op.rb);

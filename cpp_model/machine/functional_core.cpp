@@ -259,15 +259,15 @@ uint32_t FunctionalCore::compare(const DecodedInstruction& instruction, const Wa
     case code(Unit::Brh, 10):
       return test([mode](uint32_t x, uint32_t y) { return arith::equal(x, y, mode); });
     case code(Unit::Brh, 11):
-      return test([mode](uint32_t x, uint32_t y) { return !arith::equal(x, y, mode); });
+      return test([mode](uint32_t x, uint32_t y) { return arith::not_equal(x, y, mode); });
     case code(Unit::Brh, 12):
       return test([mode](uint32_t x, uint32_t y) { return arith::less(x, y, mode); });
     case code(Unit::Brh, 13):
       return test([mode](uint32_t x, uint32_t y) { return arith::less_equal(x, y, mode); });
     case code(Unit::Brh, 14):
-      return test([mode](uint32_t x, uint32_t y) { return arith::less(y, x, mode); });
+      return test([mode](uint32_t x, uint32_t y) { return arith::greater(x, y, mode); });
     case code(Unit::Brh, 15):
-      return test([mode](uint32_t x, uint32_t y) { return arith::less_equal(y, x, mode); });
+      return test([mode](uint32_t x, uint32_t y) { return arith::greater_equal(x, y, mode); });
     case code(Unit::Brh, 16):
       return px & pb;
     case code(Unit::Brh, 17):

@@ -37,11 +37,11 @@ uint32_t operate_natively(const std::string& mnemonic, uint32_t a, uint32_t b, u
       {"f2i", [](uint32_t x, uint32_t, arith::Mode m) { return arith::to_int(x, m); }},
       {"i2f", [](uint32_t x, uint32_t, arith::Mode m) { return arith::from_int(x, m); }},
       {"feq", [](uint32_t x, uint32_t y, arith::Mode m) { return uint32_t{arith::equal(x, y, m)}; }},
-      {"fne", [](uint32_t x, uint32_t y, arith::Mode m) { return uint32_t{!arith::equal(x, y, m)}; }},
+      {"fne", [](uint32_t x, uint32_t y, arith::Mode m) { return uint32_t{arith::not_equal(x, y, m)}; }},
       {"flt", [](uint32_t x, uint32_t y, arith::Mode m) { return uint32_t{arith::less(x, y, m)}; }},
       {"fle", [](uint32_t x, uint32_t y, arith::Mode m) { return uint32_t{arith::less_equal(x, y, m)}; }},
-      {"fgt", [](uint32_t x, uint32_t y, arith::Mode m) { return uint32_t{arith::less(y, x, m)}; }},
-      {"fge", [](uint32_t x, uint32_t y, arith::Mode m) { return uint32_t{arith::less_equal(y, x, m)}; }},
+      {"fgt", [](uint32_t x, uint32_t y, arith::Mode m) { return uint32_t{arith::greater(x, y, m)}; }},
+      {"fge", [](uint32_t x, uint32_t y, arith::Mode m) { return uint32_t{arith::greater_equal(x, y, m)}; }},
   };
   return kOperations.at(mnemonic)(a, b, mode);
 }

@@ -1,9 +1,11 @@
-// The model of arithmetic against its oracles (cpp_model/arith/test_oracle.hpp), as far as a machine can go in minutes:
+// The model of arithmetic against its oracles (cpp_model/arith/test_oracle.hpp, test_newton.hpp), as far as a machine can go in
+// minutes:
 //   numerics_long [PAIRS [STRIDE [THREADS]]]
 // Unary operations over every STRIDE-th of all 2^32 inputs (default: all); binary and ternary ones over all pairs and triples of
 // special and boundary operands and over PAIRS weighted random ones (default 10^8); THREADS is 1 unless it is given. MPFR judges
-// ffma and frsqrt once more, frsqrt over every 257th input at most. Prints inputs tried and errors; exit code 1 if there are any.
-// The seeds are fixed, so a run can be repeated.
+// ffma and frsqrt once more, frsqrt over every 257th input at most. The Newton units: the same pairs, and of unary operations
+// every mantissa of both parities and of the results at both ends, and every 257th input. Prints inputs tried and errors; exit
+// code 1 if there are any. The seeds are fixed, so a run can be repeated.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -17,6 +19,7 @@
 #include <string>
 #include <thread>
 
+#include "arith/test_newton.hpp"
 #include "arith/test_operands.hpp"
 #include "arith/test_oracle.hpp"
 #include "numerics/long_table.hpp"
@@ -25,28 +28,50 @@ namespace raypool::arith {
 namespace {
 
 constexpr size_t kBlock = 1 << 14;
-constexpr uint64_t kMpfrStride = 257;  // MPFR takes some 40 times as long as the integers do
+constexpr uint64_t kSparse = 257;  // MPFR takes some 40 times as long as the integers do
 constexpr Operation kUnary[] = {Operation::ToInt, Operation::FromInt, Operation::Sqrt, Operation::Rcp, Operation::Rsqrt};
-constexpr Operation kBinary[] = {Operation::Add, Operation::Sub,   Operation::Mul,  Operation::Div,      Operation::Min,
-                                 Operation::Max, Operation::Equal, Operation::Less, Operation::LessEqual};
+constexpr Operation kBinary[] = {Operation::Add,  Operation::Sub,       Operation::Mul,     Operation::Div,
+                                 Operation::Min,  Operation::Max,       Operation::Equal,   Operation::NotEqual,
+                                 Operation::Less, Operation::LessEqual, Operation::Greater, Operation::GreaterEqual};
+
+/// Who judges: the first oracle of an operation, MPFR once more, or the definition of a Newton unit.
+enum class Judge : uint8_t { First, Mpfr, Newton2, Newton1, Newton0 };
+constexpr Judge kNewton[] = {Judge::Newton2, Judge::Newton1, Judge::Newton0};
+constexpr int kJudges = 5;
+constexpr const char* kJudgeNames[kJudges] = {"", ", MPFR", ", newton2", ", newton1", ", newton0"};
+constexpr SlowUnit kUnits[kJudges] = {SlowUnit::Exact, SlowUnit::Exact, SlowUnit::Newton2, SlowUnit::Newton1, SlowUnit::Newton0};
 
 struct Tally {
   std::atomic<uint64_t> inputs{0}, errors{0};
 };
-/// One an operation and mode (0 ieee, 1 flush); behind them those judged by MPFR once more.
-std::array<std::array<Tally, 2>, 2 * kOperations> tallies;
+/// One a judge, operation and mode (0 ieee, 1 flush).
+std::array<std::array<Tally, 2>, kJudges * kOperations> tallies;
 std::mutex output;
 unsigned threads_wanted = 1;
 
+size_t index_of(Operation operation, Judge judge) {
+  return static_cast<size_t>(judge) * kOperations + static_cast<size_t>(operation);
+}
 std::string name_of(size_t index) {
-  return index < kOperations ? kOperationNames[index] : fmt::format("{}, MPFR", kOperationNames[index - kOperations]);
+  return fmt::format("{}{}", kOperationNames[index % kOperations], kJudgeNames[index / kOperations]);
 }
 
-void check(Operation operation, const OperandBlock& in, bool with_mpfr, std::vector<uint32_t>& expected) {
-  const size_t index = static_cast<size_t>(operation) + (with_mpfr ? kOperations : 0);
+/// The right results. Those of a Newton unit must keep the exact result's exponent too; one that does not is none.
+void judge_block(Operation operation, const OperandBlock& in, Judge judge, bool flush, std::vector<uint32_t>& expected) {
+  const SlowUnit unit = kUnits[static_cast<size_t>(judge)];
+  oracle::results(operation, in, flush, judge == Judge::Mpfr, expected);
+  if (unit == SlowUnit::Exact) return;
+  for (size_t i = 0; i < in.size(); ++i) {
+    const uint32_t newton = newton_oracle::result(operation, in.a[i], in.b[i], unit, flush);
+    if (newton_oracle::keeps_exponent(operation, in.a[i], in.b[i], newton, expected[i])) expected[i] = newton;
+  }
+}
+
+void check(Operation operation, const OperandBlock& in, Judge judge, std::vector<uint32_t>& expected) {
+  const size_t index = index_of(operation, judge);
   for (const bool flush : {false, true}) {
-    oracle::results(operation, in, flush, with_mpfr, expected);
-    const Mode mode{flush ? Subnormals::Flush : Subnormals::Ieee, SlowUnit::Exact};
+    judge_block(operation, in, judge, flush, expected);
+    const Mode mode{flush ? Subnormals::Flush : Subnormals::Ieee, kUnits[static_cast<size_t>(judge)]};
     uint64_t errors = 0;
     for (size_t i = 0; i < in.size(); ++i) {
       const uint32_t ours = model(operation, in.a[i], in.b[i], in.c[i], mode);
@@ -86,17 +111,27 @@ void run_parts(const std::string& what, uint64_t parts, const std::function<void
   std::fflush(stdout);
 }
 
-void unary_operation(Operation operation, uint64_t stride, bool with_mpfr) {
-  const uint64_t inputs = ((uint64_t{1} << 32) + stride - 1) / stride;
-  const std::string name = name_of(static_cast<size_t>(operation) + (with_mpfr ? kOperations : 0));
-  run_parts(name, (inputs + kBlock - 1) / kBlock, [&](uint64_t part) {
+/// Inputs first, first + stride .. below end.
+void unary_operation(Operation operation, uint64_t first, uint64_t end, uint64_t stride, Judge judge) {
+  const uint64_t inputs = (end - first + stride - 1) / stride;
+  run_parts(name_of(index_of(operation, judge)), (inputs + kBlock - 1) / kBlock, [&](uint64_t part) {
     thread_local OperandBlock in;
     thread_local std::vector<uint32_t> expected;
     in.clear();
     for (uint64_t i = part * kBlock; i < std::min(inputs, (part + 1) * kBlock); ++i)
-      in.push(static_cast<uint32_t>(i * stride), 0, 0);
-    check(operation, in, with_mpfr, expected);
+      in.push(static_cast<uint32_t>(first + i * stride), 0, 0);
+    check(operation, in, judge, expected);
   });
+}
+
+constexpr uint64_t kAll = uint64_t{1} << 32;
+
+/// A Newton result's bits depend on the mantissa and, of roots, on the parity of the exponent; at the ends of the range on more.
+void unary_newton(Operation operation, uint64_t stride, Judge judge) {
+  unary_operation(operation, 0x3f800000u, 0x40800000u, stride, judge);
+  unary_operation(operation, 0x00000000u, 0x01000000u, stride, judge);
+  unary_operation(operation, 0x7e000000u, 0x80000000u, stride, judge);
+  unary_operation(operation, 0, kAll, std::max(stride, kSparse), judge);
 }
 
 void special_operands_of_all_kinds() {
@@ -105,11 +140,12 @@ void special_operands_of_all_kinds() {
     OperandBlock in;
     std::vector<uint32_t> expected;
     for (const uint32_t b : specials) in.push(specials[part], b, 0);
-    for (const Operation operation : kBinary) check(operation, in, false, expected);
+    for (const Operation operation : kBinary) check(operation, in, Judge::First, expected);
+    for (const Judge judge : kNewton) check(Operation::Div, in, judge, expected);
     for (const uint32_t b : specials) {
       in.clear();
       for (const uint32_t c : specials) in.push(specials[part], b, c);
-      check(Operation::Fma, in, false, expected);
+      check(Operation::Fma, in, Judge::First, expected);
     }
   });
 }
@@ -124,9 +160,10 @@ void random_operands(uint64_t pairs) {
       const auto [a, b] = source.next();
       in.push(a, b, source.third(a, b));
     }
-    for (const Operation operation : kBinary) check(operation, in, false, expected);
-    check(Operation::Fma, in, false, expected);
-    check(Operation::Fma, in, true, expected);
+    for (const Operation operation : kBinary) check(operation, in, Judge::First, expected);
+    for (const Judge judge : kNewton) check(Operation::Div, in, judge, expected);
+    check(Operation::Fma, in, Judge::First, expected);
+    check(Operation::Fma, in, Judge::Mpfr, expected);
   });
 }
 
@@ -144,12 +181,15 @@ int run(int argc, char** argv) {
   const uint64_t pairs = argc > 1 ? count_of(argv[1]) : 100'000'000;
   const uint64_t stride = argc > 2 ? count_of(argv[2]) : 1;
   threads_wanted = argc > 3 ? static_cast<unsigned>(std::min<uint64_t>(count_of(argv[3]), 256)) : 1;
-  std::printf("oracles: SSE%s; integers for frsqrt; MPFR %s for fmin and fmax, and where the table says so\n",
+  std::printf("oracles: SSE%s; integers for frsqrt and Newton units; MPFR %s for fmin and fmax, and where the table says so\n",
               host_has_fma() ? " and FMA of this host" : " of this host", mpfr_get_version());
   special_operands_of_all_kinds();
   random_operands(pairs);
-  for (const Operation operation : kUnary) unary_operation(operation, stride, false);
-  unary_operation(Operation::Rsqrt, std::max(stride, kMpfrStride), true);
+  for (const Operation operation : kUnary) unary_operation(operation, 0, kAll, stride, Judge::First);
+  unary_operation(Operation::Rsqrt, 0, kAll, std::max(stride, kSparse), Judge::Mpfr);
+  for (const Operation operation : {Operation::Sqrt, Operation::Rsqrt, Operation::Rcp}) {
+    for (const Judge judge : kNewton) unary_newton(operation, stride, judge);
+  }
   uint64_t errors = 0;
   std::printf("\n");
   print_long_head();

@@ -1,5 +1,5 @@
-// Drives a bench top of several ALUs (flt_units.v, slw_units.v) with the same tasks and compares every result, its warp and the
-// cycle it comes in with the model. Tasks come with random masks, warps and pauses.
+// Drives a bench top of several ALUs (flt_units.v, slw_units.v, brh_units.v) with the same tasks and compares every result, its
+// warp and the cycle it comes in with the model. Tasks come with random masks, warps and pauses.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "alu_model.hpp"
 #include "arith/arith.hpp"
 #include "arith/test_operands.hpp"
 #include "numerics/long_table.hpp"
@@ -28,18 +29,17 @@ struct AluUnderTest {
   int depth;
 };
 
-using ModelFunction = uint32_t (*)(int operation, uint32_t a, uint32_t b, uint32_t c, arith::Mode mode);
-/// Whether a unit of this mode has the operation; without it its result is not looked at.
-using HasFunction = bool (*)(int operation, arith::Mode mode);
-inline bool has_every(int, arith::Mode) { return true; }
+/// The lanes of a task whose results are looked at, of a unit of this mode.
+using ComparedFunction = uint32_t (*)(int operation, uint32_t mask, arith::Mode mode);
+inline uint32_t lanes_of_mask(int, uint32_t mask, arith::Mode) { return mask; }
 
 template <typename Top>
 class AluBench {
  public:
-  AluBench(std::vector<AluUnderTest> units, ModelFunction model, uint64_t seed, HasFunction has = has_every)
+  AluBench(std::vector<AluUnderTest> units, ModelFunction model, uint64_t seed, ComparedFunction looked_at = lanes_of_mask)
       : units_(std::move(units)),
         model_(model),
-        has_(has),
+        looked_at_(looked_at),
         seed_(seed),
         random_(seed),
         expected_(units_.size()),
@@ -56,12 +56,19 @@ class AluBench {
   void add(int operation, uint32_t a, uint32_t b, uint32_t c = 0) {
     if (lanes_ != 0 && operation != operation_) send();
     operation_ = operation;
-    if (lanes_ < kBenchLanes - 1 && random_() % 8 == 0) ++lanes_;  // a hole in the mask; the lane has old operands
+    while (lanes_ < kBenchLanes - 1 && random_() % 8 == 0) ++lanes_;  // a hole in the mask; the lane has old operands
     mask_ |= 1u << lanes_;
     a_[lanes_] = a;
     b_[lanes_] = b;
     c_[lanes_] = c;
     if (++lanes_ == kBenchLanes) send();
+  }
+
+  /// Adds a task without lanes, which must give `expected` in every lane.
+  void add_outside(int operation, uint32_t expected) {
+    if (lanes_ != 0) send();
+    operation_ = operation;
+    send(&expected);
   }
 
   /// Sends the rest and waits for all results.
@@ -83,7 +90,8 @@ class AluBench {
     std::array<uint32_t, kBenchLanes> a, b, c, result;
   };
 
-  void send() {
+  /// `everywhere`: what is expected in every lane, in place of the model's results.
+  void send(const uint32_t* everywhere = nullptr) {
     while (random_() % 4 == 0) clock();
     const uint32_t warp = random_() % 8;
     top_.task_valid_i = 1;
@@ -96,8 +104,9 @@ class AluBench {
       set_third(top_, l, c_[l], 0);
     }
     for (size_t u = 0; u < units_.size(); ++u) {
-      Expected e{cycle_ + units_[u].depth, operation_, warp, has_(operation_, units_[u].mode) ? mask_ : 0, a_, b_, c_, {}};
-      for (int l = 0; l < lanes_; ++l) e.result[l] = model_(operation_, a_[l], b_[l], c_[l], units_[u].mode);
+      Expected e{cycle_ + units_[u].depth, operation_, warp, looked_at_(operation_, mask_, units_[u].mode), a_, b_, c_, {}};
+      for (int l = 0; l < kBenchLanes; ++l) e.result[l] = model_(operation_, a_[l], b_[l], c_[l], units_[u].mode);
+      if (everywhere != nullptr) e.mask = (1u << kBenchLanes) - 1, e.result.fill(*everywhere);
       expected_[u].push_back(e);
     }
     clock();
@@ -107,13 +116,29 @@ class AluBench {
     mask_ = 0;
   }
 
-  /// The third operand, of tops that have one.
+  /// The third operand, of tops that have one; where there are predicates its lowest bits are task_px_i and task_pb_i.
   template <typename T>
   static auto set_third(T& top, int lane, uint32_t c, int) -> decltype(void(top.task_c_i[0])) {
     top.task_c_i[lane] = c;
   }
   template <typename T>
-  static void set_third(T&, int, uint32_t, long) {}
+  static auto set_third(T& top, int lane, uint32_t c, long) -> decltype(void(top.task_px_i)) {
+    const uint32_t others = ~(1u << lane);
+    top.task_px_i = (top.task_px_i & others) | (c & 1) << lane;
+    top.task_pb_i = (top.task_pb_i & others) | (c >> 1 & 1) << lane;
+  }
+  template <typename T>
+  static void set_third(T&, int, uint32_t, ...) {}
+
+  /// A result, of tops without results a predicate.
+  template <typename T>
+  static auto result_of(const T& top, size_t index, int) -> decltype(uint32_t{top.done_data_o[0]}) {
+    return top.done_data_o[index];
+  }
+  template <typename T>
+  static uint32_t result_of(const T& top, size_t index, long) {
+    return top.done_pred_o >> index & 1;
+  }
 
   void clock() {
     check();
@@ -142,7 +167,7 @@ class AluBench {
       const uint32_t warp = top_.done_warp_o >> (3 * u) & 7;
       for (int l = 0; l < kBenchLanes; ++l) {
         if (!(e.mask >> l & 1)) continue;
-        const uint32_t result = top_.done_data_o[u * kBenchLanes + l];
+        const uint32_t result = result_of(top_, u * kBenchLanes + static_cast<size_t>(l), 0);
         LongCount& count = counts_[static_cast<size_t>(units_[u].mode.subnormals)];
         ++count.inputs;
         if (result == e.result[l] && warp == e.warp) continue;
@@ -158,7 +183,7 @@ class AluBench {
 
   std::vector<AluUnderTest> units_;
   ModelFunction model_;
-  HasFunction has_;
+  ComparedFunction looked_at_;
   uint64_t seed_;
   std::mt19937_64 random_;
   std::vector<std::deque<Expected>> expected_;

@@ -1,4 +1,4 @@
-# Benches of the ALU framework and of the Flt and Slw ALUs, in Verilator, and a replay of some of their results in Icarus.
+# Benches of the ALU framework and of the Brh, Flt and Slw ALUs, in Verilator, and a replay of some of their results in Icarus.
 set(arith_rtl ${RAYPOOL_RTL})
 set(arith_unit ${CMAKE_SOURCE_DIR}/tb/unit)
 
@@ -20,6 +20,9 @@ set(arith_flt_sources ${arith_rtl}/flt_alu.v ${arith_rtl}/float_lane.v ${arith_r
   ${arith_rtl}/float_convert.v ${arith_rtl}/float_fma.v ${arith_rtl}/multiply_tree.v ${arith_rtl}/alu_pipeline.v ${arith_rtl}/alu_delay.v)
 arith_bench(flt_alu_test flt_units ${arith_flt_sources})
 
+set(arith_brh_sources ${arith_rtl}/brh_alu.v ${arith_rtl}/alu_pipeline.v ${arith_rtl}/alu_delay.v)
+arith_bench(brh_alu_test brh_units ${arith_brh_sources})
+
 set(arith_slw_sources ${arith_rtl}/slw_alu.v ${arith_rtl}/slow_lane.v ${arith_rtl}/slow_prepare.v ${arith_rtl}/slow_exact.v
   ${arith_rtl}/slow_newton.v ${arith_rtl}/slow_refine.v ${arith_rtl}/slow_line_table.v ${arith_rtl}/slow_seed_table.v ${arith_rtl}/multiply_tree.v ${arith_rtl}/alu_pipeline.v ${arith_rtl}/alu_delay.v)
 arith_bench(slw_alu_test slw_units ${arith_slw_sources})
@@ -40,7 +43,7 @@ if(IVERILOG AND VVP)
     set(replay arith_icarus_${subnormals}${slow_unit}${fma})
     set(program ${CMAKE_CURRENT_BINARY_DIR}/${replay}.vvp)
     set(vectors ${CMAKE_CURRENT_BINARY_DIR}/${replay}.txt)
-    set(sources ${arith_flt_sources} ${arith_slw_sources})
+    set(sources ${arith_brh_sources} ${arith_flt_sources} ${arith_slw_sources})
     list(REMOVE_DUPLICATES sources)
     add_custom_command(OUTPUT ${program}
       COMMAND ${IVERILOG} -g2005 -Wall -I ${arith_rtl} -s arith_icarus -Parith_icarus.SUBNORMALS=${subnormals}
