@@ -70,7 +70,7 @@ SYNTH_OPTIONS := --config "$$CONFIG" --memories "$$MEMORIES" $${LIBERTY:+--liber
 GATES_SETUP := $(if $(filter-out 0,$(GATES)),setup-synth)
 UNIT_OF_ENGINE := $(if $(filter rtl lockstep,$(ENGINE)),$(UNIT),true)
 
-.PHONY: help sim run cosim configurations mutants faults unit test lint format bench clean setup-% program configured-% numerics-long proofs synth synth-replay synth-prove growth numerics extremes isa quoted
+.PHONY: help sim run cosim configurations mutants faults unit test lint format bench clean setup-% program configured-% numerics-long proofs synth synth-replay synth-prove growth numerics extremes isa quoted package
 
 help: ## this list
 	@echo 'raypool: a ray-tracing GPU to render on, measure, verify and synthesise'
@@ -169,6 +169,11 @@ bench: setup-sim configured-OFF ## measured rates of the engines on this machine
 	@$(LOCKED) cmake --build $(BUILD) --target raypool raypool_bench
 	@for config in 4w4c 8w8c 16w16c; do scripts/unit.sh "$$config"; done
 	@$(BUILD)/raypool_bench
+
+# For any computer, so not from the build folder of this one.
+package: setup-sim setup-package ## Debian packages of program and library, in build/package
+	@mkdir -p $(BUILD)/package
+	@flock $(BUILD)/package/.lock scripts/package.sh $(BUILD)/package
 
 # The Slw lane does not depend on fma: its newton variants are not synthesised twice.
 numerics: setup-sim setup-numerics $(GATES_SETUP) program ## errors of each arithmetic mode, what they do to pictures, its cost: tables, plots

@@ -3,7 +3,7 @@
 set -eu -o pipefail
 cd "$(dirname "$0")/.."
 case $1 in
-  cpp) find cpp_model sim tb bench -name '*.cpp' -o -name '*.hpp' ;;
+  cpp) find cpp_model sim tb bench examples -name '*.cpp' -o -name '*.hpp' ;;
   verilog) find rtl -name '*.v' ;;
   shell) find scripts .ci -type f \( -name '*.sh' -o -name run \) ;;
   python) find scripts -name '*.py' ;;

@@ -207,20 +207,14 @@ Configuration read_configuration(const fs::path& path) {
 }
 
 /// Where the project's own lie.
-std::vector<fs::path> shipped_folders() {
-  std::vector<fs::path> folders;
-  if (const std::string installed = installed_data_folder(); !installed.empty())
-    folders.push_back(fs::path(installed) / "configs");
-  folders.emplace_back(RAYPOOL_SHIPPED_CONFIGS);
-  return folders;
-}
+fs::path shipped_folder() { return fs::path(data_folder()) / "configs"; }
 
 /// Folders in which a name is looked up, first match wins.
 std::vector<fs::path> configuration_folders() {
   std::vector<fs::path> folders;
   if (const char* folder = std::getenv("RAYPOOL_CONFIGS"); folder != nullptr && *folder != '\0') folders.emplace_back(folder);
   folders.emplace_back("configs");
-  for (const fs::path& folder : shipped_folders()) folders.push_back(folder);
+  folders.push_back(shipped_folder());
   return folders;
 }
 
@@ -239,10 +233,8 @@ std::optional<Configuration> warps_and_cores(const std::string& name) {
 
 /// What everyone understands by a name: the project's own file, or NwMc.
 std::optional<Configuration> built_in(const std::string& name) {
-  for (const fs::path& folder : shipped_folders()) {
-    const fs::path path = folder / (name + ".json");
-    if (fs::is_regular_file(path)) return read_configuration(path);
-  }
+  const fs::path path = shipped_folder() / (name + ".json");
+  if (fs::is_regular_file(path)) return read_configuration(path);
   return warps_and_cores(name);
 }
 

@@ -4,12 +4,22 @@
 
 namespace raypool {
 
-std::string installed_data_folder() {
-  namespace fs = std::filesystem;
+namespace fs = std::filesystem;
+
+namespace {
+
+fs::path beside_program() {
   std::error_code missing;
-  const fs::path executable = fs::read_symlink("/proc/self/exe", missing);
-  const fs::path folder = executable.parent_path().parent_path() / "share" / "raypool";
-  return fs::is_directory(folder / "configs", missing) ? folder.string() : "";
+  return fs::read_symlink("/proc/self/exe", missing).parent_path().parent_path() / "share" / "raypool";
 }
+
+}  // namespace
+
+bool installed() {
+  std::error_code missing;
+  return fs::is_directory(beside_program() / "configs", missing);
+}
+
+std::string data_folder() { return installed() ? beside_program().string() : RAYPOOL_SOURCE; }
 
 }  // namespace raypool

@@ -1,11 +1,14 @@
-// Where the files lie that belong to an installed program.
+// Where the files lie that belong to the program: configs/, rtl/, scripts/.
 #pragma once
 
 #include <string>
 
 namespace raypool {
 
-/// <prefix>/share/raypool, if the running program is <prefix>/bin/... and this folder is there; else empty, as in a build folder.
-std::string installed_data_folder();
+/// Whether the running program is an installed one: <prefix>/bin/... with <prefix>/share/raypool.
+bool installed();
+
+/// <prefix>/share/raypool of an installed program, else the checkout that this was compiled in.
+std::string data_folder();
 
 }  // namespace raypool

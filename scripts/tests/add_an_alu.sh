@@ -72,7 +72,7 @@ replace() {
 
 rm -rf "$tree"
 mkdir -p "$tree"
-cp -R CMakeLists.txt Makefile bench cmake configs cpp_model docs LICENSE rtl schemas scripts sim tb "$tree"
+cp -R CMakeLists.txt Makefile bench cmake configs cpp_model docs examples LICENSE rtl schemas scripts sim tb "$tree"
 cd "$tree"
 
 mark='' inside=no

@@ -5,7 +5,7 @@
 
 namespace raypool {
 
-/// Version, commit if known, and the libraries behind results and files; two lines.
+/// Version, commit if known, and the libraries behind results and files; two lines without an end of line.
 std::string about();
 
 }  // namespace raypool

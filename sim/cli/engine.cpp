@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cli/folders.hpp"
+#include "config/data_folder.hpp"
 #include "lockstep/rtl_loader.hpp"
 #include "machine/functional_unit.hpp"
 #include "machine/model.hpp"
@@ -73,7 +74,7 @@ std::string find_unit_library(const EngineOptions& options) {
 
   static std::set<std::string> checked;
   if (options.unit_library.empty() && checked.insert(library).second) {
-    const std::string newer = newer_verilog(library, data_folder() / "rtl");
+    const std::string newer = newer_verilog(library, fs::path(data_folder()) / "rtl");
     if (!newer.empty())
       fmt::print(stderr, "raypool: warning: '{}' was changed after '{}' was built: build it again with {}\n", newer, library,
                  build);

@@ -27,10 +27,6 @@ fs::path cache_folder() {
 
 }  // namespace
 
-bool installed() { return !installed_data_folder().empty(); }
-
-fs::path data_folder() { return installed() ? fs::path(installed_data_folder()) : fs::path(RAYPOOL_SOURCE); }
-
 fs::path units_folder() {
   if (!installed()) return program_folder() / "units";
   // Units of another commit are made from other Verilog.

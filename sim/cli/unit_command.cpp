@@ -11,6 +11,7 @@
 #include "cli/engine.hpp"
 #include "cli/folders.hpp"
 #include "config/configuration.hpp"
+#include "config/data_folder.hpp"
 
 namespace raypool {
 
@@ -37,7 +38,7 @@ int unit_command(const UnitOptions& options) {
   const fs::path folder = fs::path(unit_library_path(configuration, options.waves, options.units)).parent_path();
   make_folder(folder);
   // One build at a time in a folder: a second waits here.
-  std::vector<std::string> command = {"flock", folder / ".lock", data_folder() / "scripts" / "verilate.sh", folder};
+  std::vector<std::string> command = {"flock", folder / ".lock", fs::path(data_folder()) / "scripts" / "verilate.sh", folder};
   if (options.waves) command.emplace_back("--trace");
   command.push_back(fmt::format("UNITS={}", options.units));
   for (const auto& [name, value] : verilog_parameters(configuration)) command.push_back(fmt::format("{}={}", name, value));

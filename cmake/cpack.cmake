@@ -1,0 +1,30 @@
+# `cpack`: two Debian packages, raypool (the program) and raypool-dev (the model as a library). `make package` builds them in a folder of
+# their own, with RAYPOOL_NATIVE off, since they are for any computer.
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME raypool)
+set(CPACK_PACKAGE_CONTACT "raypool maintainers <maintainers@users.noreply.h-seed-7db6b7de.example>")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_COMPONENTS_ALL program development)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION electronics)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+# Verilated units are compiled where they are used.
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME raypool)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "verilator (>= 5.006), g++, make, zlib1g-dev")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "ccache, gnuplot-nox, gtkwave")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME raypool-dev)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SHLIBDEPS OFF)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libfmt-dev, nlohmann-json3-dev")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "cmake, g++, raypool")
+set(for "")
+if(RAYPOOL_NATIVE)
+  set(for "\nCompiled for the processor of the computer it was built on: it may not run on others.")
+endif()
+set(CPACK_DEBIAN_PROGRAM_DESCRIPTION "ray-tracing GPU to render on, measure, verify and synthesise
+A SIMT compute unit in Verilog, a cycle-exact model of it, and a chip around either that draws pictures.${for}")
+set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "golden model of raypool as a C++ library
+For find_package(raypool): the targets raypool::model and raypool::lockstep.${for}")
+include(CPack)
