@@ -20,6 +20,11 @@ DEPTH     ?= 3
 ENGINE    ?= lockstep
 TRAVERSER ?= static
 VIEW      ?=
+EYE       ?=
+LOOK_AT   ?=
+UP        ?=
+FOV       ?=
+LIGHT     ?=
 DETAIL    ?=
 OUT       ?=
 WAVES     ?= 0
@@ -54,7 +59,7 @@ UPDATE    ?= 0
 PAGES     ?=
 FILES     ?=
 # Recipes read these from the environment, so that a value with spaces or quotes stays one word.
-export CONFIG CUS SCENE SIZE DEPTH ENGINE TRAVERSER VIEW DETAIL OUT WAVES KERNEL PROGRAMS SEED COVERAGE MUTANTS MODE THREADS
+export CONFIG CUS SCENE SIZE DEPTH ENGINE TRAVERSER VIEW EYE LOOK_AT UP FOV LIGHT DETAIL OUT WAVES KERNEL PROGRAMS SEED COVERAGE MUTANTS MODE THREADS
 export LIBERTY CLOCK MEMORIES AGAINST RUN ONLY PLAN
 
 BUILD := build
@@ -64,6 +69,8 @@ LOCKED := flock $(BUILD)/.lock
 # Only engines rtl and lockstep need a Verilated device.
 WAVES_FLAG := $(if $(filter-out 0,$(WAVES)),--waves)
 UNIT := scripts/unit.sh "$$CONFIG" $(WAVES_FLAG)
+# After an equals sign a number may be negative.
+LOOK := $${EYE:+"--eye=$$EYE"} $${LOOK_AT:+"--look-at=$$LOOK_AT"} $${UP:+"--up=$$UP"} $${FOV:+"--fov=$$FOV"} $${LIGHT:+"--light=$$LIGHT"}
 # The synthesis flow; paths may be relative to this folder.
 SYNTH := PYTHONPATH=scripts python3 -m synth
 SYNTH_OPTIONS := --config "$$CONFIG" --memories "$$MEMORIES" $${LIBERTY:+--liberty "$$LIBERTY"} $${CLOCK:+--clock "$$CLOCK"}
@@ -86,6 +93,7 @@ help: ## this list
 	@echo '  CUS=1|2|4                     compute units                               $(CUS)'
 	@echo '  TRAVERSER=static              timing model of the traverser               $(TRAVERSER)'
 	@echo '  VIEW=FILE                     camera and light (JSON)                     from the scene'
+	@echo '  EYE=X,Y,Z LOOK_AT=X,Y,Z UP=X,Y,Z FOV=DEGREES LIGHT=X,Y,Z                  from the view'
 	@echo '  DETAIL=N                      triangles of a built-in scene, 0.01..16      1'
 	@echo '  OUT=FOLDER                    image.png, report.json                      build/out/...'
 	@echo '  WAVES=1                       a waveform (FST) too; ENGINE=rtl, lockstep  $(WAVES)'
@@ -99,7 +107,7 @@ help: ## this list
 sim: setup-sim program ## draw a scene on the simulated chip: picture, report, figures
 	@$(UNIT_OF_ENGINE) --units "$$CUS"
 	@$(RAYPOOL) sim --scene "$$SCENE" --config "$$CONFIG" --units "$$CUS" --size "$$SIZE" --depth "$$DEPTH" --engine "$$ENGINE" \
-	  --traverser "$$TRAVERSER" $${VIEW:+--view "$$VIEW"} $${DETAIL:+--detail "$$DETAIL"} $${OUT:+--out "$$OUT"} $(WAVES_FLAG)
+	  --traverser "$$TRAVERSER" $${VIEW:+--view "$$VIEW"} $(LOOK) $${DETAIL:+--detail "$$DETAIL"} $${OUT:+--out "$$OUT"} $(WAVES_FLAG)
 
 run: setup-sim program ## run a compute kernel, check its results, print its cycles
 	@$(UNIT_OF_ENGINE)

@@ -51,6 +51,15 @@ refuses_sim "OBJ index out of range" "index.obj" --scene "$folder/index.obj"
 refuses_sim "OBJ negative index out of range" "negative.obj" --scene "$folder/negative.obj"
 refuses_sim "OBJ with a NaN" "nan.obj" --scene "$folder/nan.obj"
 refuses_sim "no such scene" "nosuchscene" --scene nosuchscene
+refuses_sim "eye of two numbers" "--eye is '1,2'.*three numbers" --eye 1,2
+refuses_sim "eye that is no number" "--eye is '1,nan,3'.*-1e" --eye 1,nan,3
+refuses_sim "light too far away" "--light is '0,2e9,0'.*1e" --light 0,2e9,0
+refuses_sim "looking at the eye" "look at .1, 2, 3., where its eye is" --eye 1,2,3 --look-at 1,2,3
+refuses_sim "looking along up" "up is parallel" --eye 1,2,3 --look-at 1,5,3
+refuses_sim "looking along up at an OBJ" "good.obj: .*up is parallel" --scene "$folder/good.obj" --eye 1,2,3 --look-at 1,5,3
+refuses_sim "up without a direction" "up is zero" --up 0,0,0
+refuses_sim "field of view of a half-circle" "--fov is '180'.*1 to 170" --fov 180
+refuses_sim "field of view that is no number" "--fov is 'wide'" --fov wide
 refuses_sim "missing view" "none.json" --view "$folder/none.json"
 refuses_sim "3 warps in a file" "warps.* 3.*power of two from 1 to 32" --config "$folder/warps.json"
 refuses_sim "3 warps by name" "3.*power of two from 1 to 32" --config 3w8c
@@ -116,5 +125,19 @@ if [ "$before" != "$(cd "$folder/out" && ls -A && cksum ./*)" ]; then
   failures=$((failures + 1))
   echo "FAILED: a failed run changed the results of the earlier one: $(ls -lA "$folder/out")"
 fi
+
+sim=("$raypool" sim --engine functional --size 8x8 --out "$folder/out" --quiet)
+# What is drawn, but hardly as it was meant, is told.
+warns() {
+  local what=$1 pattern=$2; shift 2
+  "$@" > "$folder/stdout" 2> "$folder/stderr" && [ "$(wc -l < "$folder/stderr")" = 1 ] && grep -qE -e "^raypool: warning: .*$pattern" "$folder/stderr" && return
+  failures=$((failures + 1))
+  echo "FAILED: $what: wanted a warning that matches '$pattern', got:"
+  cat "$folder/stderr"
+}
+printf 'v 0 0 0\nv 1 1 0\nv 1 0 0\nv 0 1 0\nf 1 2 3 4\n' > "$folder/crossing.obj"
+warns "eye that sees nothing" "all black: no ray from the eye hits" "${sim[@]}" --scene "$folder/good.obj" --eye 0,0,5 --look-at 0,0,9
+warns "light behind the walls" "all black: no light reaches" "${sim[@]}" --scene cornell --light 0,1000,0
+warns "face that crosses itself" "crossing.obj:5: the face crosses itself" "${sim[@]}" --scene "$folder/crossing.obj"
 
 [ "$failures" = 0 ] || { echo "$failures cases failed"; exit 1; }

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/scene_loading.hpp"
 #include "machine/compute_unit.hpp"
 #include "machine/memory.hpp"
 
@@ -20,6 +21,7 @@ struct SimOptions {
   std::string engine = "model";
   std::string size = "320x320";
   std::string view;  ///< JSON file with camera and light; empty: the scene's own
+  ViewWords look;    ///< changes of it
   std::string out;   ///< folder; empty: out/<what was run> beside the executable
   std::string traverser = "static";
   std::string unit_library;  ///< Verilated unit; empty: unit_library_path()
@@ -90,6 +92,7 @@ int errors_command(uint32_t grid);
 struct SceneCommandOptions {
   std::string scene = "room";
   std::string view;
+  ViewWords look;
   std::string size = "320x320";
   double detail = 1;      ///< of a built-in scene, 0.01 .. 16
   std::string write_obj;  ///< path, empty: only information

@@ -168,6 +168,7 @@ std::string to_json(const RunRecord& record) {
   json["configuration"] = Json::parse(to_json(record.configuration));
   json["engine"] = record.engine;
   json["scene"] = {{"name", record.scene}, {"triangles", record.triangles}, {"materials", record.materials}};
+  json["view"] = Json::parse(to_json(record.view));
   json["size"] = {{"width", record.width}, {"height", record.height}};
   json["depth"] = record.depth;
   json["reflections"] = record.reflections;

@@ -19,6 +19,7 @@ struct RunRecord {
   Configuration configuration;
   std::string scene;
   size_t triangles = 0, materials = 0;
+  View view;
   int width = 0, height = 0;
   int depth = 0;
   bool reflections = false;  ///< are cast

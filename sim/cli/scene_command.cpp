@@ -11,7 +11,9 @@ namespace {
 
 std::string text(const Vec3& vector) { return fmt::format("{:g} {:g} {:g}", vector.x, vector.y, vector.z); }
 
-Scene load(const SceneCommandOptions& options) { return load_scene(options.scene, {options.detail, options.view}); }
+Scene load(const SceneCommandOptions& options) {
+  return load_scene_and_warn(options.scene, options.detail, options.view, options.look);
+}
 
 void print_counts(const char* kind, const HitCounts& counts, const TraversalCounts& visits) {
   const double rays = counts.rays > 0 ? static_cast<double>(counts.rays) : 1;

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "chip/chip.hpp"
+#include "cli/black_picture.hpp"
 #include "cli/commands.hpp"
 #include "cli/engine.hpp"
 #include "cli/folders.hpp"
@@ -102,10 +103,11 @@ int sim_command(const SimOptions& options) {
   record.units = options.units;
   record.traverser = options.traverser;
 
-  const Scene scene = load_scene(options.scene, {options.detail, options.view});
+  const Scene scene = load_scene_and_warn(options.scene, options.detail, options.view, options.look);
   record.scene = scene.name;
   record.triangles = scene.triangles.size();
   record.materials = scene.materials.size();
+  record.view = {scene.camera, scene.light};
   record.reflections = record.depth > 1 && scene.reflects();
   MemoryImage image = build_memory(ray_kernel_program(record.configuration.fma), scene);
   OutputFolder out(options.out.empty() ? default_folder(options, record.configuration, size) : fs::path(options.out));
@@ -153,6 +155,8 @@ int sim_command(const SimOptions& options) {
   const std::string report = to_json(record);
   out.write("report.json", report);
   out.publish();
+  const std::string black = why_black(frame, record.chip ? record.chip->ray_counts : record.native->ray_counts);
+  if (!black.empty()) std::fprintf(stderr, "raypool: warning: %s\n", black.c_str());
   if (options.json) {
     fmt::print("{}", report);
     return 0;

@@ -1,5 +1,5 @@
-// Wavefront OBJ in and out. tinyobjloader does the reading; before it, the file is scanned line by line, because tinyobjloader
-// takes malformed numbers for zero and drops faces it cannot resolve, both without a line number.
+// Wavefront OBJ in and out. tinyobjloader reads vertices and materials; before it, the file is scanned line by line, because
+// tinyobjloader takes malformed numbers for zero and drops faces it cannot resolve, both without a line number.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <iterator>
+#include <map>
 #include <set>
 #include <sstream>
 #include <string_view>
@@ -16,6 +17,7 @@
 
 #include "files/input_file.hpp"
 #include "files/output_files.hpp"
+#include "scene/polygon.hpp"
 #include "scene/scene.hpp"
 
 namespace raypool {
@@ -92,10 +94,18 @@ void blank_comments(std::string& text) {
   }
 }
 
-/// Everything of the file that tinyobjloader would swallow or misread.
-void check_obj(const std::string& path, const std::string& text) {
+/// The faces' corners, as indices of vertices from 0. tinyobjloader would fill a notch and lose corners beyond 255.
+struct Faces {
+  std::vector<uint32_t> corners;  // of all faces, one after the other
+  std::vector<size_t> begin{0};   // [face] its first corner; one more at the end
+  std::vector<size_t> lines;      // [face] of the file
+};
+
+/// Refuses everything of the file that tinyobjloader would swallow or misread.
+Faces check_obj(const std::string& path, const std::string& text) {
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
-  long vertices = 0, faces = 0, largest = 0;
+  Faces faces;
+  long vertices = 0, largest = 0;
   size_t largest_line = 0;
   for_each_line(text, [&](size_t number, std::string_view line) {
     if (line.find('\0') != std::string_view::npos)
@@ -120,9 +130,11 @@ void check_obj(const std::string& path, const std::string& text) {
                            vertices));
         }
         if (index > largest) largest = index, largest_line = number;
+        faces.corners.push_back(static_cast<uint32_t>(index > 0 ? index - 1 : vertices + index));
       }
       if (corners < 3) fail(path, number, fmt::format("a face of {} corners; give at least three", corners));
-      ++faces;
+      faces.begin.push_back(faces.corners.size());
+      faces.lines.push_back(number);
     } else if (key == "mtllib") {
       bool found = false;
       std::string names(line);
@@ -142,7 +154,35 @@ void check_obj(const std::string& path, const std::string& text) {
   if (largest > vertices) {
     fail(path, largest_line, fmt::format("vertex index {} is out of range; the file has {} vertices", largest, vertices));
   }
-  if (faces == 0) throw InputError(path + ": the file has no faces (lines that begin with f); nothing can be rendered");
+  if (faces.lines.empty()) throw InputError(path + ": the file has no faces (lines that begin with f); nothing can be rendered");
+  return faces;
+}
+
+/// One sentence for each kind of faces that cannot be drawn as they are, with the first one's line.
+void warn_of_faces(Scene& scene, const std::string& path, const std::map<PolygonShape, std::vector<size_t>>& lines) {
+  for (const auto& [shape, of_shape] : lines) {
+    const char* what = shape == PolygonShape::Bent     ? "is not flat: which triangles it becomes is a guess; give triangles"
+                       : shape == PolygonShape::NoArea ? "has no area, as all its corners are on one line: no ray hits it"
+                                                       : "crosses itself: it is filled as a fan, which may be wrong; cut it up";
+    const std::string more = of_shape.size() == 1 ? "" : fmt::format(" (as do {} more)", of_shape.size() - 1);
+    scene.warnings.push_back(fmt::format("{}:{}: the face{} {}", path, of_shape.front(), more, what));
+  }
+}
+
+/// Negative materials are none.
+void add_triangles(Scene& scene, const std::string& path, const Faces& faces, const std::vector<int>& materials) {
+  const auto grey = static_cast<uint32_t>(scene.materials.size());
+  std::map<PolygonShape, std::vector<size_t>> lines;
+  for (size_t face = 0; face < materials.size(); ++face) {
+    const size_t begin = faces.begin[face];
+    const PolygonShape shape = triangulate(scene.vertices, &faces.corners[begin], faces.begin[face + 1] - begin, scene.triangles);
+    if (shape != PolygonShape::Flat) lines[shape].push_back(faces.lines[face]);
+    scene.triangle_materials.resize(scene.triangles.size(), materials[face] < 0 ? grey : static_cast<uint32_t>(materials[face]));
+  }
+  if (std::any_of(materials.begin(), materials.end(), [](int material) { return material < 0; })) {
+    scene.materials.push_back({"default_grey", {0.5f, 0.5f, 0.5f}, {0, 0, 0}});
+  }
+  warn_of_faces(scene, path, lines);
 }
 
 Vec3 to_vec3(const tinyobj::real_t* v) { return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])}; }
@@ -155,7 +195,7 @@ Scene load_obj(const std::string& path) {
   }
   std::string text = read_file(path, "OBJ file");
   blank_comments(text);
-  check_obj(path, text);
+  const Faces faces = check_obj(path, text);
 
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
   tinyobj::attrib_t attributes;
@@ -164,7 +204,7 @@ Scene load_obj(const std::string& path) {
   std::string warning, error;
   std::istringstream stream(text);
   tinyobj::MaterialFileReader material_reader(folder.empty() ? "." : folder.string());
-  if (!tinyobj::LoadObj(&attributes, &shapes, &materials, &warning, &error, &stream, &material_reader, true, false)) {
+  if (!tinyobj::LoadObj(&attributes, &shapes, &materials, &warning, &error, &stream, &material_reader, false, false)) {
     while (!error.empty() && (error.back() == '\n' || error.back() == ' ')) error.pop_back();
     throw InputError(fmt::format("{}: not a readable OBJ file ({}); correct it", path, error));
   }
@@ -176,25 +216,16 @@ Scene load_obj(const std::string& path) {
   for (const tinyobj::material_t& material : materials) {
     scene.materials.push_back({material.name, to_vec3(material.diffuse), to_vec3(material.specular)});
   }
-  const auto grey = static_cast<uint32_t>(scene.materials.size());
-  bool grey_used = false;
+  std::vector<int> face_materials;
   for (const tinyobj::shape_t& shape : shapes) {
-    const tinyobj::mesh_t& mesh = shape.mesh;
-    for (size_t face = 0; face < mesh.material_ids.size(); ++face) {
-      std::array<uint32_t, 3> triangle{};
-      for (size_t k = 0; k < 3; ++k) triangle[k] = static_cast<uint32_t>(mesh.indices[3 * face + k].vertex_index);
-      const int material = mesh.material_ids[face];
-      grey_used |= material < 0;
-      scene.triangles.push_back(triangle);
-      scene.triangle_materials.push_back(material < 0 ? grey : static_cast<uint32_t>(material));
-    }
+    face_materials.insert(face_materials.end(), shape.mesh.material_ids.begin(), shape.mesh.material_ids.end());
   }
-  if (grey_used) scene.materials.push_back({"default_grey", {0.5f, 0.5f, 0.5f}, {0, 0, 0}});
-  if (scene.triangles.empty()) throw InputError(path + ": no face has an area that can be triangulated; nothing can be rendered");
+  if (face_materials.size() != faces.lines.size()) {
+    throw InputError(fmt::format("{}: not a readable OBJ file ({} of {} faces were read); correct it", path,
+                                 face_materials.size(), faces.lines.size()));
+  }
+  add_triangles(scene, path, faces, face_materials);
 
-  const View view = automatic_view(scene);
-  scene.camera = view.camera;
-  scene.light = view.light;
   check_scene(scene, path);
   return scene;
 }

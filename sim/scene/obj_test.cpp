@@ -69,6 +69,24 @@ TEST_F(Obj, PolygonsBecomeTriangles) {
   EXPECT_EQ(load("v 0 0 0\nv 2 0 0\nv 3 1 0\nv 1 3 0\nv -1 1 0\nf 1 2 3 4 5\n").triangles.size(), 3u);
 }
 
+TEST_F(Obj, FacesThatCannotBeDrawnAsTheyAreAreNamed) {
+  const std::string corners = "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 2 1 0\nv 0 4 0\nv 4 4 3\n";
+  EXPECT_EQ(load(corners + "f 3 4 5 1 2\nf 1 2 3 5\n").warnings, std::vector<std::string>());
+  const auto warnings = load(corners + "f 1 2 3\nf 1 3 2 5\nf 1 2 6 5\nf 1 -5 6 5\nf 1 2 2 1\n").warnings;
+  ASSERT_EQ(warnings.size(), 3u);
+  EXPECT_NE(warnings[0].find("a.obj:9: the face (as do 1 more) is not flat"), std::string::npos) << warnings[0];
+  EXPECT_NE(warnings[1].find("a.obj:11: the face has no area"), std::string::npos) << warnings[1];
+  EXPECT_NE(warnings[2].find("a.obj:8: the face crosses itself"), std::string::npos) << warnings[2];
+}
+
+TEST_F(Obj, FacesKeepTheirMaterialsWhateverTheirCorners) {
+  write("m.mtl", "newmtl a\nnewmtl b\n");
+  const Scene scene =
+      load("mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nusemtl b\nf 1 2 3 4\no x\nf 1 2 3\nusemtl a\ng y\nf -4 -3 -2 -1\n");
+  EXPECT_EQ(scene.triangle_materials, (std::vector<uint32_t>{1, 1, 1, 0, 0}));
+  EXPECT_EQ(scene.triangles[2], (std::array<uint32_t, 3>{0, 1, 2}));
+}
+
 TEST_F(Obj, AcceptsWindowsLinesRelativeIndicesAndEverySlashForm) {
   const Scene scene =
       load("# text\r\n" + kTriangle + "vt 0 0\nvn 0 0 1\r\nf -3 -2 -1\r\nf 1/1 2/1 3/1\nf 1//1 2//1 3//1\nf 1/1/1 2/1/1 3/1/1");

@@ -56,6 +56,22 @@ bool is_degenerate(const Scene& scene, size_t triangle) {
   return !(dot(normal, normal) > 0);
 }
 
+void check_camera(const Camera& camera, const std::string& where) {
+  require_usable(camera.eye, where, "the camera's eye");
+  require_usable(camera.direction, where, "the camera's direction");
+  require_usable(camera.up, where, "the camera's up");
+  const Vec3d direction = camera.direction.as<double>(), up = camera.up.as<double>();
+  if (!(length(direction) > 0))
+    throw InputError(where + ": the camera's direction is zero; give a direction or a target off the eye");
+  if (!(length(up) > 0)) throw InputError(where + ": the camera's up is zero; give for example [0, 1, 0]");
+  if (length(cross(direction, up)) <= 1e-6 * length(direction) * length(up)) {
+    throw InputError(where + ": the camera's up is parallel to its direction; choose another up");
+  }
+  if (!(camera.fov >= kLeastFov && camera.fov <= kLargestFov)) {
+    throw InputError(fmt::format("{}: fov is {}; it must lie in {} .. {} degrees", where, camera.fov, kLeastFov, kLargestFov));
+  }
+}
+
 void check_scene(const Scene& scene, const std::string& where) {
   if (scene.triangles.empty()) throw InputError(where + ": the scene has no triangles; give it at least one face");
   if (scene.triangle_materials.size() != scene.triangles.size()) {
@@ -81,20 +97,7 @@ void check_scene(const Scene& scene, const std::string& where) {
     require_colour(material.kd, where, fmt::format("Kd of material '{}'", material.name));
     require_colour(material.ks, where, fmt::format("Ks of material '{}'", material.name));
   }
-  const Camera& camera = scene.camera;
-  require_usable(camera.eye, where, "the camera's eye");
-  require_usable(camera.direction, where, "the camera's direction");
-  require_usable(camera.up, where, "the camera's up");
-  const Vec3d direction = camera.direction.as<double>(), up = camera.up.as<double>();
-  if (!(length(direction) > 0))
-    throw InputError(where + ": the camera's direction is zero; give a direction or a target off the eye");
-  if (!(length(up) > 0)) throw InputError(where + ": the camera's up is zero; give for example [0, 1, 0]");
-  if (length(cross(direction, up)) <= 1e-6 * length(direction) * length(up)) {
-    throw InputError(where + ": the camera's up is parallel to its direction; choose another up");
-  }
-  if (!(camera.fov >= 1 && camera.fov <= 170)) {
-    throw InputError(fmt::format("{}: fov is {}; it must lie in 1 .. 170 degrees", where, camera.fov));
-  }
+  check_camera(scene.camera, where);
   require_usable(scene.light.position, where, "the light's position");
   require_colour(scene.light.color, where, "the light's color");
 }
@@ -104,18 +107,21 @@ Scene load_scene(const std::string& name_or_path, const SceneOptions& options) {
     throw InputError(fmt::format("detail is {}; it must lie in 0.01 .. 16", options.detail));
   }
   Scene scene;
-  if (name_or_path == "cornell") {
-    scene = make_cornell(options.detail);
-  } else if (name_or_path == "room") {
-    scene = make_room(options.detail);
-  } else {
+  const bool built_in = name_or_path == "cornell" || name_or_path == "room";
+  if (!built_in) {
     scene = load_obj(name_or_path);
+  } else {
+    scene = name_or_path == "room" ? make_room(options.detail) : make_cornell(options.detail);
   }
-  if (!options.view.empty()) {
-    const View view = load_view(options.view);
-    scene.camera = view.camera;
-    scene.light = view.light;
+  View view{scene.camera, scene.light};
+  if (!options.view.empty()) view = load_view(options.view);
+  if (built_in || !options.view.empty()) {
+    change_view(view, options.changes);
+  } else {
+    view = automatic_view(scene, options.changes);
   }
+  scene.camera = view.camera;
+  scene.light = view.light;
   check_scene(scene, name_or_path);
   return scene;
 }

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,7 @@ struct Camera {
   Vec3 up{0, 1, 0};
   float fov = 60;  ///< vertical field of view, degrees
 };
+inline constexpr float kLeastFov = 1, kLargestFov = 170;
 
 /// Point light without fall-off.
 struct PointLight {
@@ -46,6 +48,7 @@ struct Scene {
   std::vector<Material> materials;
   Camera camera;
   PointLight light;
+  std::vector<std::string> warnings;  ///< a sentence each: what of a file could not be drawn as it is
 
   const Vec3& corner(size_t triangle, int k) const { return vertices[triangles[triangle][static_cast<size_t>(k)]]; }
   /// Of the vertices that triangles use; both corners zero without triangles.
@@ -57,14 +60,21 @@ struct Scene {
 /// Coordinates beyond this are refused: products of four of them must stay finite in single precision.
 inline constexpr float kLargestCoordinate = 1e9f;
 
-struct SceneOptions {
-  double detail = 1.0;  ///< built-in scenes: share of the full triangle count, 0.01 .. 16
-  std::string view;     ///< view file; empty: the scene's own view, or for an OBJ file one framed from its bounding box
-};
-
 struct View {
   Camera camera;
   PointLight light;
+};
+
+/// What is set replaces what a view has. An eye without look_at keeps the direction.
+struct ViewChanges {
+  std::optional<Vec3> eye, look_at, up, light;
+  std::optional<float> fov;
+};
+
+struct SceneOptions {
+  double detail = 1.0;  ///< built-in scenes: share of the full triangle count, 0.01 .. 16
+  std::string view;     ///< view file; empty: the scene's own view, or for an OBJ file automatic_view()
+  ViewChanges changes;
 };
 
 /// `name_or_path` is "cornell", "room" or the path of an OBJ file. Throws InputError.
@@ -75,8 +85,8 @@ Scene make_cornell(double detail = 1.0);
 /// Furnished meeting room, 331,000 triangles at detail 1, 36 materials that each mirror half of what they reflect diffusely.
 Scene make_room(double detail = 1.0);
 
-/// Reads Wavefront OBJ with its MTL files; polygons become triangles, faces without a material a grey one. Camera and light are
-/// framed from the bounding box. Throws InputError naming file and line.
+/// Reads Wavefront OBJ with its MTL files; polygons become triangles (scene/polygon.hpp), faces without a material a grey one.
+/// Sets no camera and no light. Throws InputError naming file and line.
 Scene load_obj(const std::string& path);
 /// Writes `path` and, beside it with the ending .mtl, its materials; load_obj reads the same triangles and materials back, bit
 /// for bit.
@@ -86,11 +96,17 @@ void write_obj(const Scene& scene, const std::string& path);
 /// range.
 View load_view(const std::string& path);
 void write_view(const View& view, const std::string& path);
+/// A view file's text.
+std::string to_json(const View& view);
+/// Throws InputError when look_at is where the eye is.
+void change_view(View& view, const ViewChanges& changes);
 
-/// A view for a scene of which nothing is known but its triangles: from inside when walls close its bounding box, else from
-/// outside.
-View automatic_view(const Scene& scene);
+/// A view for a scene of which nothing is known but its triangles, as docs/scenes.md describes; what `changes` sets is kept.
+/// Throws InputError when it cannot be used.
+View automatic_view(const Scene& scene, const ViewChanges& changes = {});
 
+/// Throws InputError when the camera cannot be used; `where` begins the sentence.
+void check_camera(const Camera& camera, const std::string& where);
 /// Throws InputError when camera, light, indices, coordinates or materials cannot be rendered; `where` begins the sentence.
 void check_scene(const Scene& scene, const std::string& where);
 

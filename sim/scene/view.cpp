@@ -158,9 +158,26 @@ View object_view(const Bounds& bounds) {
 
 }  // namespace
 
-View automatic_view(const Scene& scene) {
+View automatic_view(const Scene& scene, const ViewChanges& changes) {
   const Bounds bounds = scene.bounds();
-  return is_indoor(scene, bounds) ? indoor_view(scene, bounds) : object_view(bounds);
+  View view = is_indoor(scene, bounds) ? indoor_view(scene, bounds) : object_view(bounds);
+  change_view(view, changes);
+  return view;
+}
+
+void change_view(View& view, const ViewChanges& changes) {
+  Camera& camera = view.camera;
+  camera.eye = changes.eye.value_or(camera.eye);
+  camera.up = changes.up.value_or(camera.up);
+  camera.fov = changes.fov.value_or(camera.fov);
+  view.light.position = changes.light.value_or(view.light.position);
+  if (!changes.look_at) return;
+  if (*changes.look_at == camera.eye) {
+    throw InputError(
+        fmt::format("the camera is to look at ({}, {}, {}), where its eye is: give another point (--look-at) or eye (--eye)",
+                    camera.eye.x, camera.eye.y, camera.eye.z));
+  }
+  camera.direction = (changes.look_at->as<double>() - camera.eye.as<double>()).as<float>();
 }
 
 View load_view(const std::string& path) {
@@ -181,7 +198,7 @@ View load_view(const std::string& path) {
     view.camera.direction = (target - view.camera.eye.as<double>()).as<float>();
   }
   if (json.contains("up")) view.camera.up = read_vector(json, "up", path, -far, far);
-  if (json.contains("fov")) view.camera.fov = read_number(json["fov"], path + ": fov", 1, 170);
+  if (json.contains("fov")) view.camera.fov = read_number(json["fov"], path + ": fov", kLeastFov, kLargestFov);
   if (!json.contains("light") || !json["light"].is_object()) {
     throw InputError(path + ": light is missing; give it as {\"position\": [x, y, z], \"color\": [r, g, b]}");
   }
@@ -190,26 +207,20 @@ View load_view(const std::string& path) {
   view.light.position = read_vector(light, "position", path + ": light", -far, far);
   if (light.contains("color")) view.light.color = read_vector(light, "color", path + ": light", 0, 1000);
 
-  // Direction and up are checked with a scene of one triangle in place of the real one.
-  Scene probe;
-  probe.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-  probe.triangles = {{0, 1, 2}};
-  probe.triangle_materials = {0};
-  probe.materials.resize(1);
-  probe.camera = view.camera;
-  probe.light = view.light;
-  check_scene(probe, path);
+  check_camera(view.camera, path);
   return view;
 }
 
-void write_view(const View& view, const std::string& path) {
+std::string to_json(const View& view) {
   Json json;
   json["eye"] = to_json(view.camera.eye);
   json["direction"] = to_json(view.camera.direction);
   json["up"] = to_json(view.camera.up);
   json["fov"] = view.camera.fov;
   json["light"] = {{"position", to_json(view.light.position)}, {"color", to_json(view.light.color)}};
-  write_file(path, to_text(json, 2) + "\n");
+  return to_text(json, 2) + "\n";
 }
+
+void write_view(const View& view, const std::string& path) { write_file(path, to_json(view)); }
 
 }  // namespace raypool

@@ -39,10 +39,15 @@ void add_unit(CLI::App& app, std::string& engine, std::string& library) {
   app.add_option("--unit-library", library, "Verilated unit (default: where make unit builds it)");
 }
 
-void add_scene(CLI::App& app, std::string& scene, std::string& size, std::string& view, double& detail) {
+void add_scene(CLI::App& app, std::string& scene, std::string& size, std::string& view, ViewWords& look, double& detail) {
   app.add_option("--scene,scene", scene, "cornell, room, or the path of an OBJ")->capture_default_str();
   app.add_option("--size", size, "image, WIDTHxHEIGHT in pixels, 1 to 16384 each")->capture_default_str();
   app.add_option("--view", view, "JSON file with camera and light (default: the scene's own, or framed automatically)");
+  app.add_option("--eye", look.eye, "place of the camera, x,y,z (default, as of the next four: the view's)");
+  app.add_option("--look-at", look.look_at, "point in the middle of the picture, x,y,z");
+  app.add_option("--up", look.up, "upwards, x,y,z");
+  app.add_option("--fov", look.fov, "vertical field of view, degrees, 1 to 170");
+  app.add_option("--light", look.light, "place of the light, x,y,z");
   app.add_option("--detail", detail, "triangles of a built-in scene, 0.01 to 16, 1 = as designed")->capture_default_str();
 }
 
@@ -71,7 +76,7 @@ int run(int argc, char** argv) {
 
   SimOptions sim;
   CLI::App* sim_app = app.add_subcommand("sim", "draw a scene on the simulated chip; leaves image.png and report.json");
-  add_scene(*sim_app, sim.scene, sim.size, sim.view, sim.detail);
+  add_scene(*sim_app, sim.scene, sim.size, sim.view, sim.look, sim.detail);
   add_config(*sim_app, sim.config);
   add_unit(*sim_app, sim.engine, sim.unit_library);
   sim_app->add_option("--units", sim.units, "compute units: 1, 2 or 4")->capture_default_str();
@@ -197,7 +202,7 @@ int run(int argc, char** argv) {
   SceneCommandOptions scene;
   CLI::App* scene_app = app.add_subcommand("scene", "what a scene holds: triangles, materials, box, camera, light");
   CLI::App* hits_app = app.add_subcommand("hits", "compare our traversal's hits on a frame with Embree's");
-  for (CLI::App* sub : {scene_app, hits_app}) add_scene(*sub, scene.scene, scene.size, scene.view, scene.detail);
+  for (CLI::App* sub : {scene_app, hits_app}) add_scene(*sub, scene.scene, scene.size, scene.view, scene.look, scene.detail);
   scene_app->add_option("--write-obj", scene.write_obj, "write it as an OBJ, with its MTL beside it");
   scene_app->callback([&] { code = scene_command(scene); });
   hits_app->callback([&] { code = hits_command(scene); });

@@ -1,0 +1,65 @@
+#include "cli/scene_loading.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+namespace raypool {
+namespace {
+
+/// The whole of `text`.
+std::optional<float> number(const std::string& text) {
+  const char* const begin = text.c_str() + (text.rfind('+', 0) == 0 ? 1 : 0);
+  const char* const end = text.c_str() + text.size();
+  float value = 0;
+  const auto result = std::from_chars(begin, end, value);
+  if (result.ec != std::errc() || result.ptr != end) return std::nullopt;
+  return value;
+}
+
+std::optional<Vec3> point(const char* option, const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  Vec3 result;
+  size_t begin = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const size_t end = axis < 2 ? text.find(',', begin) : text.size();
+    const std::optional<float> value = end == std::string::npos ? std::nullopt : number(text.substr(begin, end - begin));
+    if (!value) throw InputError(fmt::format("{} is '{}': give three numbers with commas between, as in 1,2.5,-3", option, text));
+    if (!(std::fabs(*value) <= kLargestCoordinate)) {
+      throw InputError(
+          fmt::format("{} is '{}': each number must lie in {:g} .. {:g}", option, text, -kLargestCoordinate, kLargestCoordinate));
+    }
+    result[axis] = *value;
+    begin = end + 1;
+  }
+  return result;
+}
+
+}  // namespace
+
+ViewChanges parse_view_words(const ViewWords& words) {
+  ViewChanges changes;
+  changes.eye = point("--eye", words.eye);
+  changes.look_at = point("--look-at", words.look_at);
+  changes.up = point("--up", words.up);
+  changes.light = point("--light", words.light);
+  if (!words.fov.empty()) {
+    changes.fov = number(words.fov);
+    if (!changes.fov || !(*changes.fov >= kLeastFov && *changes.fov <= kLargestFov)) {
+      throw InputError(
+          fmt::format("--fov is '{}': give the vertical field of view in degrees, {} to {}", words.fov, kLeastFov, kLargestFov));
+    }
+  }
+  return changes;
+}
+
+Scene load_scene_and_warn(const std::string& scene, double detail, const std::string& view, const ViewWords& words) {
+  Scene loaded = load_scene(scene, {detail, view, parse_view_words(words)});
+  for (const std::string& warning : loaded.warnings) fmt::print(stderr, "raypool: warning: {}\n", warning);
+  return loaded;
+}
+
+}  // namespace raypool

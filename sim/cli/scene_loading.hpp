@@ -1,0 +1,22 @@
+// A scene as the command line names it: with camera and light from its words, and with what cannot be drawn told on stderr.
+#pragma once
+
+#include <string>
+
+#include "scene/scene.hpp"
+
+namespace raypool {
+
+/// Camera and light on the command line; what is empty stays as the view has it.
+struct ViewWords {
+  std::string eye, look_at, up, light;  ///< x,y,z
+  std::string fov;                      ///< degrees
+};
+
+/// Throws InputError that names the option.
+ViewChanges parse_view_words(const ViewWords& words);
+
+/// load_scene() and its warnings.
+Scene load_scene_and_warn(const std::string& scene, double detail, const std::string& view, const ViewWords& words);
+
+}  // namespace raypool
