@@ -135,6 +135,7 @@ faults: setup-sim setup-test configured-ON program ## a catalogue of designers' 
 
 isa: setup-sim program ## write what is derived from the tables of ALU types and instructions
 	@$(RAYPOOL) isa --write
+	@scripts/core.py $(RAYPOOL)
 
 unit: setup-sim program ## Verilate CUS compute units of CONFIG (WAVES=1: with waveforms)
 	@$(UNIT) --units "$$CUS"
