@@ -241,8 +241,7 @@ std::optional<Configuration> built_in(const std::string& name) {
 /// A file of other hardware must not go by a name that has a meaning: reports and folders would pass for the other's.
 Configuration read_user_file(const fs::path& path) {
   Configuration configuration = read_configuration(path);
-  const std::optional<Configuration> meant = built_in(configuration.name);
-  if (meant && verilog_parameters(*meant) != verilog_parameters(configuration)) {
+  if (built_in(configuration.name) && !is_built_in(configuration)) {
     throw InputError(
         fmt::format("{}: the name '{}' stands for other hardware (raypool config {}): give this one another \"name\"",
                     path.string(), configuration.name, configuration.name));
@@ -274,6 +273,11 @@ Configuration load_configuration(const std::string& name_or_path) {
   Configuration configuration = load(name_or_path);
   configuration.source = name_or_path;
   return configuration;
+}
+
+bool is_built_in(const Configuration& configuration) {
+  const std::optional<Configuration> meant = built_in(configuration.name);
+  return meant && verilog_parameters(*meant) == verilog_parameters(configuration);
 }
 
 Configuration parse_configuration(const std::string& json, const std::string& where) {

@@ -54,6 +54,9 @@ struct Configuration {
 /// are refused.
 Configuration load_configuration(const std::string& name_or_path);
 
+/// Whether its name alone says what it is: a file of the project, or NwMc.
+bool is_built_in(const Configuration& configuration);
+
 /// A configuration from the text of a configuration file; `where` names the source in messages.
 Configuration parse_configuration(const std::string& json, const std::string& where);
 

@@ -220,6 +220,9 @@ TEST(Configuration, OtherHardwareMayNotGoByANameThatHasAMeaning) {
   // The same hardware may.
   const TemporaryFile same(to_json(load_configuration("4w4c_fma")), "copy.json");
   EXPECT_EQ(load_configuration(same.path()).name, "4w4c_fma");
+  EXPECT_TRUE(is_built_in(load_configuration(same.path())));
+  EXPECT_TRUE(is_built_in(load_configuration("2w2c")));
+  EXPECT_FALSE(is_built_in(load_configuration("tb/mutants/2w2c.json")));
 }
 
 TEST(Configuration, AFileNameThatIsNoNameBecomesOne) {

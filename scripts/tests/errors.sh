@@ -37,6 +37,10 @@ printf 'iadd r1, r1, 1\n' > "$folder/end.asm"
 printf 'mov r1, 0x7ffffff0\nld r2, [r1+0]\nexit\n' > "$folder/load.asm"
 printf 'mov r1, 0\nnonsense r1\nexit\n' > "$folder/word.asm"
 printf 'again:\njany again\nexit\n' > "$folder/forever.asm"
+printf 'again: tid r1\njany again\nexit\n' > "$folder/spin.asm"
+printf 'mov r1, 0x402\nld r2, [r1+0]\nexit\n' > "$folder/odd.asm"
+printf 'mov r1, 0\nrin\nexit\n' > "$folder/rin.asm"
+printf 'exit\n' > "$folder/exit.asm"
 
 # refuses_sim WHAT PATTERN OPTION...: of raypool sim; what the options leave open is chosen here.
 refuses_sim() {
@@ -104,17 +108,26 @@ refuses_sim "other hardware under a built-in name" "'8w8c' stands for other hard
 refuses_sim "waveform of an engine without one" "waveform" --waves
 refuses_sim "unknown option" "--help" --colour
 refuses "unknown kernel" "saxpy" "$raypool" run sexpy
+refuses "saxpy of nothing" "--n is 0: saxpy takes a size from 1 to" "$raypool" run saxpy --n 0
+refuses "no cycles" "--cycles" "$raypool" run saxpy --cycles 0
+for range in 60000:2 252:2 0:4294967295 4294967292:2; do
+  refuses "words beyond the memory, $range" "$range goes beyond the memory of 256 bytes" "$raypool" run "$folder/exit.asm" --memory 256 --print "$range"
+done
+refuses "no words" "at least one" "$raypool" run "$folder/exit.asm" --print 0:0
+refuses "an address with a point" "address '1.5'" "$raypool" run "$folder/exit.asm" --print 1.5:1
 refuses "assembly error names line and column" "word.asm:2:" "$raypool" run "$folder/word.asm"
 
 for engine in functional rtl lockstep; do
-  # A clock of the functional engine is thousands of instructions.
-  limit=100000
-  [ "$engine" != functional ] || limit=100
-  run=("$raypool" run --config 4w4c --engine "$engine" --cycles "$limit")
+  limit=100000 unit=cycles
+  [ "$engine" != functional ] || unit=instructions
+  run=("$raypool" run --config 4w4c --engine "$engine" --cycles "$limit" --quiet)
   refuses "$engine: jump out of the program" "outside the program" "${run[@]}" "$folder/far.asm"
   refuses "$engine: program without an end" "outside the program" "${run[@]}" "$folder/end.asm"
   refuses "$engine: load out of memory" "outside the memory" "${run[@]}" "$folder/load.asm"
-  refuses "$engine: endless program" "limit of $limit cycles" "${run[@]}" "$folder/forever.asm"
+  refuses "$engine: endless program" "limit of $limit $unit" "${run[@]}" "$folder/forever.asm"
+  refuses "$engine: endless program that computes" "limit of $limit $unit" "${run[@]}" "$folder/spin.asm"
+  refuses "$engine: misaligned load names its address" "multiple of 4.*thread 0 of block 0 goes to address 0x402$" "${run[@]}" "$folder/odd.asm"
+  refuses "$engine: rin in a compute program" "PC 1: rin waits for a ray" "${run[@]}" "$folder/rin.asm"
 done
 
 # What an earlier run has left survives a failed one, and nothing else is left.

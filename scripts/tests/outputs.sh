@@ -94,4 +94,25 @@ promise "... which is read again" "$raypool" scene "$odd/"$'again\xe9.obj'
 echo '{"warps": 2}' > "$odd/"$'c\xe9.json'
 promise "and as a configuration" "$raypool" "${sim[@]}" --config "$odd/"$'c\xe9.json' --out "$odd/out"
 
+# Results that differ go to different folders, beside the program: a copy of it.
+mkdir "$folder/bin" && cp "$raypool" "$folder/bin/raypool"
+draw() { "$folder/bin/raypool" sim --engine native --size 8x8 --depth 1 "$@" > /dev/null; }
+cat > "$folder/view.json" << 'END'
+{"eye": [2.5, 2.5, 5], "direction": [0, 0, -1], "light": {"position": [2.5, 5, 2.5]}}
+END
+sed 's/2.5, 5,/2.5, 4,/' "$folder/view.json" > "$folder/out2/view.json"
+for warps in 2 4; do mkdir "$folder/$warps"; echo "{\"name\": \"mine\", \"warps\": $warps}" > "$folder/$warps/mine.json"; done
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' > "$folder/cornell.obj"
+promise "draws cornell" draw cornell
+promise "... to a folder named by it" test -d "$folder/bin/out/cornell-8w8c-1cu-8x8-depth1-native"
+promise "... in less detail" draw cornell --detail 0.5
+promise "... from a view" draw cornell --view "$folder/view.json"
+promise "... and another of that name" draw cornell --view "$folder/out2/view.json"
+promise "... on a user's hardware" draw cornell --config "$folder/2/mine.json"
+promise "... and another of that name" draw cornell --config "$folder/4/mine.json"
+promise "... and an OBJ of its name" draw "$folder/cornell.obj"
+promise "each into a folder of its own" test "$(ls "$folder/bin/out" | wc -l)" = 7
+draw "$folder/cornell.obj"
+promise "... and again into the same" test "$(ls "$folder/bin/out" | wc -l)" = 7
+
 [ "$failures" = 0 ] || { echo "$failures promises are not kept"; exit 1; }

@@ -19,15 +19,15 @@ Monitor::Monitor(const sc_core::sc_module_name& name, ChipClock& clock, MonitorO
   SC_METHOD(limit);
   sensitive << limit_;
   dont_initialize();
-  if (options_.progress) clock_.notify(show_, Phase::Ports, kProgressCycles);
+  if (options_.progress) clock_.notify(show_, Phase::Ports, progress_cycles());
   if (options_.watchdog_cycles > 0) clock_.notify(watch_, Phase::Ports, options_.watchdog_cycles);
-  if (options_.cycle_limit > 0) clock_.notify(limit_, Phase::Ports, options_.cycle_limit);
+  if (options_.cycle_limit > 0) clock_.notify(limit_, Phase::Ports, options_.timed ? options_.cycle_limit : 1);
 }
 
 void Monitor::show() {
   clock_.guard([&] {
     options_.progress();
-    clock_.notify(show_, Phase::Ports, kProgressCycles);
+    clock_.notify(show_, Phase::Ports, progress_cycles());
   });
 }
 
@@ -52,8 +52,14 @@ void Monitor::watch() {
 
 void Monitor::limit() {
   clock_.guard([&] {
-    throw ChipStalled(fmt::format("the limit of {} cycles has passed; {}", options_.cycle_limit, options_.describe()));
+    if (options_.timed || options_.retired() > options_.cycle_limit)
+      throw ChipStalled(fmt::format("{}; {}", limit_sentence(options_.cycle_limit, options_.timed), options_.describe()));
+    clock_.notify(limit_, Phase::Ports, 1);
   });
+}
+
+std::string Monitor::limit_sentence(uint64_t limit, bool timed) {
+  return fmt::format("the limit of {} {} has passed", limit, timed ? "cycles" : "instructions");
 }
 
 }  // namespace raypool::chip

@@ -12,10 +12,11 @@ namespace raypool::chip {
 
 struct MonitorOptions {
   uint64_t watchdog_cycles = 0;           ///< 0: never
-  uint64_t cycle_limit = 0;               ///< 0: none
+  uint64_t cycle_limit = 0;               ///< cycles, or instructions of an engine without time; 0: none
+  bool timed = true;                      ///< the engine has a notion of time: a cycle is not thousands of instructions
   std::function<uint64_t()> retired;      ///< instructions so far
   std::function<uint64_t()> transfers;    ///< so far
-  std::function<void()> progress;         ///< called every kProgressCycles; may be empty
+  std::function<void()> progress;         ///< called every kProgressCycles, without time every cycle; may be empty
   std::function<std::string()> describe;  ///< state, for the error
 };
 
@@ -23,6 +24,9 @@ class Monitor : public sc_core::sc_module {
  public:
   SC_HAS_PROCESS(Monitor);
   Monitor(const sc_core::sc_module_name& name, ChipClock& clock, MonitorOptions options);
+
+  /// For one sentence: what has passed.
+  static std::string limit_sentence(uint64_t limit, bool timed);
 
   static constexpr uint64_t kProgressCycles = 16384;
   /// A program may compute for long without a transfer, but not for so many watchdog periods.
@@ -32,6 +36,7 @@ class Monitor : public sc_core::sc_module {
   void show();
   void watch();
   void limit();
+  uint64_t progress_cycles() const { return options_.timed ? kProgressCycles : 1; }
 
   ChipClock& clock_;
   MonitorOptions options_;

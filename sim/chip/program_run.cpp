@@ -2,18 +2,28 @@
 
 #include <fmt/format.h>
 
+#include <optional>
+
 #include "chip/chip_clock.hpp"
 #include "chip/device_host.hpp"
 #include "chip/launcher.hpp"
 #include "chip/memory_port.hpp"
 #include "chip/monitor.hpp"
 #include "chip/simulation.hpp"
+#include "machine/decoder.hpp"
+#include "machine/functional_core.hpp"
 
 namespace raypool {
 
 namespace {
 
 using namespace chip;
+
+/// A load or store that faults.
+struct FaultingAccess {
+  Fault fault;
+  uint32_t thread, block, address;
+};
 
 /// Launches the blocks of a grid, in order.
 class Grid : public sc_core::sc_module, public Launcher {
@@ -60,9 +70,49 @@ void check(const ProgramOptions& options) {
         fmt::format("{} threads a block: configuration {} holds 1 to {}", options.threads, options.configuration.name, contents));
   }
   if (options.blocks < 1) throw InputError("0 blocks: launch at least one");
+  for (uint32_t pc = 0; pc < options.program_length; ++pc) {
+    const uint64_t word = options.memory->load(8 * pc) | static_cast<uint64_t>(options.memory->load(8 * pc + 4)) << 32;
+    const DecodedInstruction instruction = decode(word, options.configuration);
+    if (!instruction.legal() || instruction.code != instruction_code(Unit::Ray, 0)) continue;
+    throw InputError(fmt::format(
+        "PC {}: rin waits for a ray, and a compute program has no ray pools that one could come from: remove it", pc));
+  }
+}
+
+/// Blocks one after the other, each warp as far as it goes in turn: where this run faults, if it does within `instructions`.
+std::optional<FaultingAccess> run_to_fault(const ProgramOptions& options, Memory& memory, uint64_t instructions) {
+  FunctionalCore core(options.configuration, memory);
+  core.reset(options.program_length, memory.size());
+  for (int i = 0; i < kArguments; ++i) core.set_argument(i, options.arguments[static_cast<size_t>(i)]);
+  for (uint32_t block = 0; block < options.blocks; ++block) {
+    core.launch({options.entry, options.threads, block, options.blocks, ImportKind::None});
+    while (core.running()) {
+      for (uint32_t warp = 0; warp < static_cast<uint32_t>(core.warps()); ++warp) {
+        const Step& step = core.step(warp);
+        if (step.status == Step::Status::Executed && instructions-- == 0) return std::nullopt;
+        if (step.status != Step::Status::Fault) continue;
+        for (uint32_t mask = step.mask; mask != 0; mask &= mask - 1) {
+          const auto lane = static_cast<uint32_t>(__builtin_ctz(mask));
+          const uint32_t address = step.addresses[lane];
+          const bool faulty = step.fault.code == FaultCode::Misaligned ? address % 4 != 0 : address >= memory.size();
+          if (faulty) return FaultingAccess{step.fault, warp * static_cast<uint32_t>(core.lanes()) + lane, block, address};
+        }
+        return std::nullopt;
+      }
+    }
+  }
+  return std::nullopt;
 }
 
 }  // namespace
+
+std::string faulting_access(const ProgramOptions& options, Memory memory, const Fault& fault) {
+  if (fault.code != FaultCode::Misaligned && fault.code != FaultCode::AddressOutsideMemory) return "";
+  constexpr uint64_t kMostInstructions = 20'000'000;
+  const std::optional<FaultingAccess> found = run_to_fault(options, memory, kMostInstructions);
+  if (!found || found->fault.code != fault.code || found->fault.pc != fault.pc) return "";
+  return fmt::format("thread {} of block {} goes to address 0x{:x}", found->thread, found->block, found->address);
+}
 
 ProgramResult run_program(const ProgramOptions& options) {
   check(options);
@@ -79,6 +129,8 @@ ProgramResult run_program(const ProgramOptions& options) {
   MonitorOptions watch;
   watch.watchdog_cycles = options.watchdog_cycles;
   watch.cycle_limit = options.cycle_limit;
+  watch.timed = device.timed();
+  if (options.progress) watch.progress = [&] { options.progress(clock.cycle(), host.instructions()); };
   watch.retired = [&] { return host.instructions(); };
   watch.transfers = [&] { return host.transfers(); };
   watch.describe = [&] { return grid.describe(); };
@@ -86,6 +138,9 @@ ProgramResult run_program(const ProgramOptions& options) {
   grid.changed();
   simulation.run();
   clock.rethrow();
+  // Without time a program may end and pass the limit in the same cycle.
+  if (!device.timed() && options.cycle_limit > 0 && host.instructions() > options.cycle_limit)
+    throw ChipStalled(Monitor::limit_sentence(options.cycle_limit, false) + "; the program has ended since");
 
   ProgramResult result;
   result.timed = device.timed();

@@ -3,6 +3,8 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
+#include <string>
 
 #include "chip/chip.hpp"
 
@@ -18,7 +20,9 @@ struct ProgramOptions {
   uint32_t threads = 1;  ///< a block, 1 .. contents
   std::array<uint32_t, kArguments> arguments{};
   uint64_t watchdog_cycles = 100'000;
-  uint64_t cycle_limit = 0;  ///< 0: none
+  uint64_t cycle_limit = 0;  ///< cycles, or warp instructions of an engine without time; 0: none
+  /// Called now and then with the cycles and warp instructions so far; may be empty.
+  std::function<void(uint64_t cycles, uint64_t instructions)> progress;
 };
 
 struct ProgramResult {
@@ -31,5 +35,9 @@ struct ProgramResult {
 
 /// Throws InputError for options out of range and for programs that use the pools, ChipFault, ChipStalled.
 ProgramResult run_program(const ProgramOptions& options);
+
+/// "thread 3 of block 0 goes to address 0x402": the access behind a fault of run_program(options), whose units do not say it.
+/// Runs the program again, on the architecture alone, from `memory` as it was before; empty if that ends otherwise.
+std::string faulting_access(const ProgramOptions& options, Memory memory, const Fault& fault);
 
 }  // namespace raypool

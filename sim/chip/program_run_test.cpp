@@ -67,7 +67,7 @@ TEST(ProgramRun, ReportsAFault) {
 }
 
 TEST(ProgramRun, RefusesProgramsThatNeedThePools) {
-  for (const char* mnemonic : {"rout", "rfb"}) {
+  for (const char* mnemonic : {"rin", "rout", "rfb"}) {
     Bench bench({Encode(mnemonic), Encode("exit")});
     EXPECT_THROW(run_program(bench.options), InputError) << mnemonic;
   }
@@ -80,6 +80,39 @@ TEST(ProgramRun, GivesUpOnAProgramThatNeverEnds) {
   bench.options.watchdog_cycles = 0;
   bench.options.cycle_limit = 200;
   EXPECT_THROW(run_program(bench.options), ChipStalled);
+}
+
+TEST(ProgramRun, WithoutTimeTheLimitCountsInstructions) {
+  // 80 instructions a block.
+  Bench bench(number_threads());
+  bench.options.blocks = 3;
+  bench.options.arguments[0] = kResults;
+  bench.options.cycle_limit = 3 * 80;
+  EXPECT_EQ(run_program(bench.options).counters[counter::kInstructions], 3u * 80);
+  --bench.options.cycle_limit;
+  try {
+    run_program(bench.options);
+    FAIL() << "no limit";
+  } catch (const ChipStalled& stalled) {
+    EXPECT_EQ(std::string(stalled.what()).find("the limit of 239 instructions has passed"), 0u) << stalled.what();
+  }
+}
+
+TEST(ProgramRun, TellsTheAddressBehindAFault) {
+  // Thread t loads from 64 + 6 t: thread 1 is the first that is not aligned.
+  const std::vector<uint64_t> code = {Encode("tid").rd(1), Encode("imul").rd(1).ra(1).imm(6),
+                                      Encode("ld").rd(2).ra(1).plain_imm(64), Encode("exit")};
+  Bench bench(code);
+  const Memory before = bench.memory;
+  try {
+    run_program(bench.options);
+    FAIL() << "no fault";
+  } catch (const ChipFault& fault) {
+    EXPECT_EQ(faulting_access(bench.options, before, fault.fault), "thread 1 of block 0 goes to address 0x46");
+    Fault other = fault.fault;
+    other.pc = 1;
+    EXPECT_EQ(faulting_access(bench.options, before, other), "");
+  }
 }
 
 TEST(ProgramRun, RefusesSizesThatTheUnitDoesNotHold) {

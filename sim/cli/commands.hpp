@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -43,14 +44,15 @@ struct RunOptions {
   std::string config = "8w8c";
   std::string engine = "model";
   std::string unit_library;
-  uint32_t n = 0;        ///< problem size of saxpy and matmul; 0: theirs
-  uint32_t blocks = 1;   ///< assembly file only, like all below
-  uint32_t threads = 0;  ///< a block; 0: as many as the unit holds
+  std::optional<uint32_t> n;  ///< problem size of saxpy and matmul; none: theirs
+  uint32_t blocks = 1;        ///< assembly file only, like all below
+  uint32_t threads = 0;       ///< a block; 0: as many as the unit holds
   uint32_t memory_bytes = 65536;
   std::vector<std::string> arguments;  ///< integers, 0x..., or floats (with a point or exponent)
   std::vector<std::string> print;      ///< ADDRESS:COUNT words of memory to print afterwards
   std::string waves;                   ///< path of a waveform, empty: none
-  uint64_t cycle_limit = 100'000'000;
+  uint64_t cycle_limit = 100'000'000;  ///< of engine functional, which has no cycles: warp instructions
+  bool quiet = false;                  ///< no progress
 };
 int run_command(const RunOptions& options);
 

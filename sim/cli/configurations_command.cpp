@@ -15,7 +15,10 @@ int configurations_command(const ConfigurationsOptions& options) {
     if (factor.name.find('.') == std::string::npos || factor.name.find("cache") != std::string::npos)
       fmt::print(" {}", factor.name);
   }
-  fmt::print("; tid brh int flt slw as count/latency/depth\n");
+  fmt::print(";");
+  for (size_t unit = 0; unit < kUnits; ++unit)
+    if (!kUnitTable[unit].timed_by_events()) fmt::print(" {}", kUnitNames[unit]);
+  fmt::print(" as count/latency/depth\n");
   for (const Machine& machine : machines) {
     const Configuration& c = machine.configuration;
     fmt::print("{:<16}", c.name);
@@ -24,8 +27,10 @@ int configurations_command(const ConfigurationsOptions& options) {
         fmt::print(" {}", factor.get(machine));
     }
     fmt::print(";");
-    for (const Unit unit : {Unit::Tid, Unit::Brh, Unit::Int, Unit::Flt, Unit::Slw})
-      fmt::print(" {}/{}/{}", c.alu(unit).count, c.alu(unit).latency, c.alu(unit).depth);
+    for (size_t unit = 0; unit < kUnits; ++unit) {
+      const AluConfiguration& alu = c.alus[unit];
+      if (!kUnitTable[unit].timed_by_events()) fmt::print(" {}/{}/{}", alu.count, alu.latency, alu.depth);
+    }
     fmt::print("\n");
   }
   const Covered covered = count_covered(machines, most_threads);

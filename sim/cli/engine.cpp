@@ -29,11 +29,9 @@ Engine parse_engine(const std::string& name) {
 }
 
 std::string unit_library_path(const Configuration& configuration, bool waves, int units) {
-  // FNV-1a over all parameters: two configurations share a unit exactly when their Verilog is the same.
-  uint32_t hash = 2166136261u;
-  for (const auto& [name, value] : verilog_parameters(configuration)) {
-    for (const char c : fmt::format("{}={} ", name, value)) hash = (hash ^ static_cast<uint8_t>(c)) * 16777619u;
-  }
+  // Two configurations share a unit exactly when their Verilog is the same.
+  uint32_t hash = hash_of("");
+  for (const auto& [name, value] : verilog_parameters(configuration)) hash = hash_of(fmt::format("{}={} ", name, value), hash);
   const std::string several = units == 1 ? "" : fmt::format("-{}cu", units);
   const std::string key =
       fmt::format("{}w{}c-{:08x}{}{}", configuration.warps, configuration.cores, hash, several, waves ? "-waves" : "");

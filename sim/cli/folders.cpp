@@ -36,4 +36,9 @@ fs::path units_folder() {
 
 fs::path results_folder() { return installed() ? fs::path("raypool-out") : program_folder() / "out"; }
 
+uint32_t hash_of(const std::string& text, uint32_t seed) {
+  for (const char c : text) seed = (seed ^ static_cast<uint8_t>(c)) * 16777619u;
+  return seed;
+}
+
 }  // namespace raypool

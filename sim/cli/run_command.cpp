@@ -11,8 +11,9 @@
 #include "cli/commands.hpp"
 #include "cli/engine.hpp"
 #include "cli/exit_code.hpp"
-#include "cli/output_folder.hpp"
+#include "cli/progress.hpp"
 #include "cli/text_file.hpp"
+#include "files/output_files.hpp"
 #include "isa/assembler.hpp"
 #include "kernel/compute_kernels.hpp"
 
@@ -61,8 +62,9 @@ bool check_results(const Job& job, uint32_t address, const std::vector<float>& e
 }
 
 void prepare_kernel(Job& job, const RunOptions& options, uint32_t default_n, uint32_t largest_n) {
-  const uint32_t n = options.n == 0 ? default_n : options.n;
-  if (n > largest_n) throw InputError(fmt::format("{} of size {}: the largest is {}", options.kernel, n, largest_n));
+  const uint32_t n = options.n.value_or(default_n);
+  if (n < 1 || n > largest_n)
+    throw InputError(fmt::format("--n is {}: {} takes a size from 1 to {}", n, options.kernel, largest_n));
   if (options.blocks != 1 || options.threads != 0 || !options.arguments.empty()) {
     throw InputError(fmt::format("{} sets its own blocks, threads and arguments: choose its size with --n", options.kernel));
   }
@@ -147,9 +149,25 @@ PrintRange parse_print(const std::string& text) {
   const size_t colon = text.find(':');
   if (colon == std::string::npos)
     throw InputError(fmt::format("--print '{}' is not ADDRESS:WORDS: write for example 0x400:16", text));
-  const PrintRange range{parse_argument(text.substr(0, colon)), parse_argument(text.substr(colon + 1))};
+  const auto number = [&](const std::string& part, const char* what) {
+    const bool hexadecimal = part.compare(0, 2, "0x") == 0;
+    const char* const end = part.data() + part.size();
+    uint32_t value = 0;
+    const auto [stop, error] = std::from_chars(part.data() + (hexadecimal ? 2 : 0), end, value, hexadecimal ? 16 : 10);
+    if (error != std::errc{} || stop != end)
+      throw InputError(fmt::format("--print '{}': the {} '{}' is no number of 32 bits (64, 0x40)", text, what, part));
+    return value;
+  };
+  const PrintRange range{number(text.substr(0, colon), "address"), number(text.substr(colon + 1), "number of words")};
   if (range.address % 4 != 0) throw InputError(fmt::format("--print '{}': the address must be a multiple of 4", text));
+  if (range.words == 0) throw InputError(fmt::format("--print '{}': print at least one word", text));
   return range;
+}
+
+void check_in_memory(const PrintRange& range, const Memory& memory) {
+  if (range.address + 4 * uint64_t{range.words} <= memory.size()) return;
+  throw InputError(fmt::format("--print {}:{} goes beyond the memory of {} bytes: it has the words at 0 to {}", range.address,
+                               range.words, memory.size(), memory.size() / 4 * 4 - 4));
 }
 
 void prepare_assembly(Job& job, const RunOptions& options) {
@@ -157,7 +175,7 @@ void prepare_assembly(Job& job, const RunOptions& options) {
     throw InputError(
         fmt::format("there is no kernel and no file '{}': use saxpy, matmul or the path of an assembly file", options.kernel));
   }
-  if (options.n != 0) throw InputError("--n is for saxpy and matmul: give an assembly file its size with --arg");
+  if (options.n) throw InputError("--n is for saxpy and matmul: give an assembly file its size with --arg");
   if (options.arguments.size() > kArguments)
     throw InputError(fmt::format("{} arguments: there are {}", options.arguments.size(), kArguments));
   constexpr uint32_t kLargestMemory = 1u << 30;
@@ -179,7 +197,7 @@ void print_words(const Memory& memory, const PrintRange& range) {
     if (i % 8 == 0) fmt::print("{}  {:08x}:", i == 0 ? "" : "\n", range.address + 4 * i);
     fmt::print(" {:08x}", memory.load(range.address + 4 * i));
   }
-  if (range.words > 0) fmt::print("\n");
+  fmt::print("\n");
 }
 
 void print_figures(const ProgramResult& result, const Configuration& configuration) {
@@ -201,50 +219,67 @@ void print_figures(const ProgramResult& result, const Configuration& configurati
              result.memory_reads, result.memory_writes);
 }
 
+void prepare(Job& job, const RunOptions& options) {
+  job.options.configuration = load_configuration(options.config);
+  if (options.kernel == "saxpy") return prepare_saxpy(job, options);
+  if (options.kernel == "matmul") return prepare_matmul(job, options);
+  prepare_assembly(job, options);
+}
+
+ProgramResult run_job(Job& job, const RunOptions& options, ComputeUnit& unit) {
+  job.options.device = &unit;
+  job.options.memory = &job.memory;
+  job.options.cycle_limit = options.cycle_limit;
+  Progress progress(options.quiet);
+  job.options.progress = [&](uint64_t cycles, uint64_t instructions) {
+    if (!progress.due()) return;
+    const std::string time = unit.timed() ? fmt::format("{} cycles, ", cycles) : "";
+    progress.show(fmt::format("  {}{} warp instructions, {:.0f} s", time, instructions, progress.seconds()));
+  };
+  return run_program(job.options);
+}
+
+/// The sentence of a fault, with the address of a load or store.
+std::string describe(const ChipFault& fault, const RunOptions& options) {
+  Job again;
+  prepare(again, options);
+  const std::string access = faulting_access(again.options, again.memory, fault.fault);
+  return access.empty() ? fault.what() : fmt::format("{}: {}", fault.what(), access);
+}
+
 }  // namespace
 
 int run_command(const RunOptions& options) {
   Job job;
-  job.options.configuration = load_configuration(options.config);
   const Engine engine = parse_engine(options.engine);
   std::vector<PrintRange> ranges;
   for (const std::string& text : options.print) ranges.push_back(parse_print(text));
   if (!options.waves.empty() && engine == Engine::Functional)
     throw InputError("engine functional has no waveform: use rtl or lockstep");
-  if (options.kernel == "saxpy") {
-    prepare_saxpy(job, options);
-  } else if (options.kernel == "matmul") {
-    prepare_matmul(job, options);
-  } else {
-    prepare_assembly(job, options);
-  }
+  prepare(job, options);
+  for (const PrintRange& range : ranges) check_in_memory(range, job.memory);
 
   const EngineOptions unit_options{engine, job.options.configuration, options.unit_library, !options.waves.empty()};
   std::unique_ptr<ComputeUnit> unit = make_unit(unit_options, job.memory);
-  std::unique_ptr<OutputFolder> waves;
-  const std::filesystem::path waves_path =
-      options.waves.empty() ? std::filesystem::path() : std::filesystem::absolute(options.waves);
-  if (!options.waves.empty()) {
-    waves = std::make_unique<OutputFolder>(waves_path.parent_path());
-    unit->open_waveform(waves->temporary(waves_path.filename()));
-  }
+  OutputFiles waves;
+  if (!options.waves.empty()) unit->open_waveform(waves.begin(options.waves, true));
   // The waveform is wanted most when something goes wrong.
   const auto close_waves = [&] {
     unit.reset();
-    if (waves) waves->publish();
+    waves.publish();
   };
 
-  job.options.device = unit.get();
-  job.options.memory = &job.memory;
-  job.options.cycle_limit = options.cycle_limit;
   ProgramResult result;
   std::string compared;
   try {
-    result = run_program(job.options);
+    result = run_job(job, options, *unit);
     if (const auto counts = lockstep_counts(*unit)) compared = to_string(*counts);
   } catch (const ChipStalled& stalled) {
     close_waves();
     throw InputError(stalled.what());
+  } catch (const ChipFault& fault) {
+    close_waves();
+    throw InputError(describe(fault, options));
   } catch (const std::exception&) {
     close_waves();
     throw;

@@ -24,6 +24,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr double kLeastDetail = 0.01;
+
 void check(const SimOptions& options, Engine engine) {
   if (options.depth < 1 || options.depth > kLargestDepth) {
     throw InputError(fmt::format("depth is {}; it must be from 1 to {}", options.depth, kLargestDepth));
@@ -36,10 +38,42 @@ void check(const SimOptions& options, Engine engine) {
   }
 }
 
-fs::path default_folder(const SimOptions& options, const Configuration& configuration, const ImageSize& size) {
-  return results_folder() / fmt::format("{}-{}-{}cu-{}x{}-depth{}-{}", fs::path(options.scene).stem().string(),
-                                        configuration.name, options.units, size.width, size.height, options.depth,
-                                        options.engine);
+template <typename Item>
+uint32_t hash_bytes(const std::vector<Item>& items, uint32_t seed) {
+  return hash_of({reinterpret_cast<const char*>(items.data()), items.size() * sizeof(Item)}, seed);
+}
+
+/// Of what the names of scene, view and configuration may leave open: everything that is drawn, and the hardware.
+uint32_t content_hash(const Scene& scene, const Configuration& configuration) {
+  uint32_t hash = hash_bytes(scene.triangles, hash_bytes(scene.vertices, hash_of("")));
+  hash = hash_bytes(scene.triangle_materials, hash);
+  std::vector<Vec3> vectors = {scene.camera.eye, scene.camera.direction, scene.camera.up, scene.light.position,
+                               scene.light.color};
+  for (const Material& material : scene.materials) vectors.insert(vectors.end(), {material.kd, material.ks});
+  hash = hash_of(fmt::format("{}", scene.camera.fov), hash_bytes(vectors, hash));
+  for (const auto& [name, value] : verilog_parameters(configuration)) hash = hash_of(fmt::format("{}={} ", name, value), hash);
+  return hash;
+}
+
+/// A user's files may have any content: names of built-in things alone say what is drawn.
+bool names_say_all(const SimOptions& options, const Scene& scene, const Configuration& configuration) {
+  if (options.scene != "cornell" && options.scene != "room") return false;
+  const Scene own = load_scene(options.scene, {kLeastDetail, "", {}});  // its view is that of any detail
+  const bool own_view = scene.camera.eye == own.camera.eye && scene.camera.direction == own.camera.direction &&
+                        scene.camera.up == own.camera.up && scene.camera.fov == own.camera.fov &&
+                        scene.light.position == own.light.position && scene.light.color == own.light.color;
+  return own_view && is_built_in(configuration);
+}
+
+fs::path default_folder(const SimOptions& options, const Scene& scene, const Configuration& configuration,
+                        const ImageSize& size) {
+  std::string name = fs::path(options.scene).stem().string();
+  if (options.detail != 1) name += fmt::format("-detail{:g}", options.detail);
+  if (!options.view.empty()) name += "-" + fs::path(options.view).stem().string();
+  name += fmt::format("-{}-{}cu-{}x{}-depth{}-{}", configuration.name, options.units, size.width, size.height, options.depth,
+                      options.engine);
+  if (!names_say_all(options, scene, configuration)) name += fmt::format("-{:08x}", content_hash(scene, configuration));
+  return results_folder() / name;
 }
 
 /// "62% of the pixels, ..."; an engine without time has no cycles to tell.
@@ -110,7 +144,7 @@ int sim_command(const SimOptions& options) {
   record.view = {scene.camera, scene.light};
   record.reflections = record.depth > 1 && scene.reflects();
   MemoryImage image = build_memory(ray_kernel_program(record.configuration.fma), scene);
-  OutputFolder out(options.out.empty() ? default_folder(options, record.configuration, size) : fs::path(options.out));
+  OutputFolder out(options.out.empty() ? default_folder(options, scene, record.configuration, size) : fs::path(options.out));
 
   FrameBuffer frame(size.width, size.height);
   if (engine == Engine::Native) {

@@ -105,7 +105,10 @@ int run(int argc, char** argv) {
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   run_app->add_option("--waves", compute.waves, "leave a waveform (FST) in this file; rtl and lockstep only");
-  run_app->add_option("--cycles", compute.cycle_limit, "give up after this many cycles")->capture_default_str();
+  run_app->add_option("--cycles", compute.cycle_limit, "give up after this many cycles; functional: warp instructions")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  run_app->add_flag("--quiet", compute.quiet, "no progress");
   run_app->callback([&] { code = run_command(compute); });
 
   CosimOptions cosim;
