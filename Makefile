@@ -1,4 +1,4 @@
-# The front door. Every target installs what it needs, builds what it needs in build/, and keeps it. `make help` lists them.
+# The front door. Every target installs what it needs, builds what it needs in the folder BUILD, and keeps it. `make help` lists them.
 SHELL := /bin/bash
 .SHELLFLAGS := -eu -o pipefail -c
 .DEFAULT_GOAL := help
@@ -62,9 +62,14 @@ FILES     ?=
 export CONFIG CUS SCENE SIZE DEPTH ENGINE TRAVERSER VIEW EYE LOOK_AT UP FOV LIGHT DETAIL OUT WAVES KERNEL PROGRAMS SEED COVERAGE MUTANTS MODE THREADS
 export LIBERTY CLOCK MEMORIES AGAINST RUN ONLY PLAN
 
-BUILD := build
+# Everything that is made goes here; scripts read it from the environment.
+BUILD     ?= build
+export BUILD
+ifneq (,$(findstring $(space),$(BUILD)))
+  $(error BUILD=$(BUILD) contains a space, which Verilator's makefiles cannot handle: choose another folder)
+endif
 RAYPOOL := $(BUILD)/raypool
-# One build at a time in a checkout: a second make waits here.
+# One at a time in a folder: a second make waits here.
 LOCKED := flock $(BUILD)/.lock
 # Only engines rtl and lockstep need a Verilated device.
 WAVES_FLAG := $(if $(filter-out 0,$(WAVES)),--waves)
@@ -95,13 +100,14 @@ help: ## this list
 	@echo '  VIEW=FILE                     camera and light (JSON)                     from the scene'
 	@echo '  EYE=X,Y,Z LOOK_AT=X,Y,Z UP=X,Y,Z FOV=DEGREES LIGHT=X,Y,Z                  from the view'
 	@echo '  DETAIL=N                      triangles of a built-in scene, 0.01..16      1'
-	@echo '  OUT=FOLDER                    image.png, report.json                      build/out/...'
+	@echo '  OUT=FOLDER                    image.png, report.json                      $(BUILD)/out/...'
 	@echo '  WAVES=1                       a waveform (FST) too; ENGINE=rtl, lockstep  $(WAVES)'
 	@echo 'variables of make synth, synth-replay, synth-prove:  CONFIG  LIBERTY=FILE  CLOCK=NS  MEMORIES=macros|flops'
 	@echo '  make synth:  AGAINST=REPORT  RUN=REPORT_OF_SIM  POWER=1  OUT=FOLDER;  synth-replay:  BREAK=N;  synth-prove:  ONLY=BLOCKS;  growth:  PLAN=FILE'
 	@echo 'variables of make cosim:  PROGRAMS=$(PROGRAMS)  SEED=$(SEED)  CONFIG  CUS  COVERAGE=FILE.json'
 	@echo 'variables of make numerics:  GATES=1: synthesise the lanes of every mode first;  extremes:  MODE=all|ieee-exact|...;  numerics-long:  THREADS=$(THREADS)'
 	@echo 'variables of make quoted:  LONG=1: those that take long too;  UPDATE=1: write what is printed into the pages;  PAGES="docs/isa.md ...";  FILES=NAME=PATH: a file that quotes need'
+	@echo 'variable of every target:  BUILD=FOLDER: for everything that is made, $(BUILD) if not given; a checkout that cannot be written needs one'
 	@echo 'variables of make run:  KERNEL=saxpy|matmul|FILE.asm  CONFIG  ENGINE  ARGS="--n 1000"'
 
 sim: setup-sim program ## draw a scene on the simulated chip: picture, report, figures
@@ -121,16 +127,16 @@ configurations: setup-sim program ## random programs on machines with every pair
 	@scripts/configurations.sh all "$$PROGRAMS"
 
 mutants: setup-sim setup-lint program ## small faults put into the RTL: which does the lockstep notice? MUTANTS
-	@$(LOCKED) cmake --build $(BUILD) --target raypool_mutants
+	@scripts/build.sh $(BUILD) raypool_mutants
 	@scripts/mutants.sh $(BUILD)/mutants tb/mutants/2w2c.json "$$MUTANTS" 1
 	@$(BUILD)/raypool_mutants --unit $(BUILD)/mutants/libraypool_unit.so --list $(BUILD)/mutants/list.txt --config tb/mutants/2w2c.json \
 	  --survivors tb/mutants/survivors.json --json $(BUILD)/mutants/outcomes.json
 
 faults: setup-sim setup-test configured-ON program ## a catalogue of designers' mistakes: what notices each, and where its report leads
-	@$(LOCKED) cmake --build $(BUILD) --target raypool_faults
+	@scripts/build.sh $(BUILD) raypool_faults
 	@scripts/faults.sh $(BUILD)/faults
-	@scripts/configure.sh $(BUILD)/faults/benches ON -DRAYPOOL_RTL=$(CURDIR)/$(BUILD)/faults/rtl
-	@cmake --build $(BUILD)/faults/benches --target $$(grep -o '[a-z_]*_test' tb/faults/benches.json)
+	@scripts/configure.sh $(BUILD)/faults/benches ON -DRAYPOOL_RTL=$(abspath $(BUILD))/faults/rtl
+	@scripts/build.sh $(BUILD)/faults/benches $$(grep -o '[a-z_]*_test' tb/faults/benches.json)
 	@$(BUILD)/raypool_faults $(BUILD)/faults --benches $(BUILD)/faults/benches/tb --json $(BUILD)/faults/outcomes.json
 
 isa: setup-sim program ## write what is derived from the tables of ALU types and instructions
@@ -154,15 +160,15 @@ growth: setup-sim setup-synth program ## area against warps, cores, ALUs; what e
 	@$(SYNTH) growth $${PLAN:+--plan "$$PLAN"} $${OUT:+--out "$$OUT"}
 
 test: setup-sim setup-test setup-synth configured-ON ## every test
-	@$(LOCKED) cmake --build $(BUILD)
+	@scripts/build.sh $(BUILD)
 	@ctest --test-dir $(BUILD) --output-on-failure -j "$$(nproc)"
 
 numerics-long: setup-sim setup-test configured-ON ## arithmetic against its oracles: every unary input, 10^8 pairs; an hour: THREADS
-	@$(LOCKED) cmake --build $(BUILD) --target numerics_long flt_alu_test slw_alu_test small_floats_test
+	@scripts/build.sh $(BUILD) numerics_long flt_alu_test slw_alu_test small_floats_test
 	@scripts/numerics_long.sh $(BUILD) "$$THREADS"
 
 quoted: setup-sim setup-test setup-synth configured-ON ## run the commands that README and docs quote, compare what they print: LONG, UPDATE, PAGES
-	@$(LOCKED) cmake --build $(BUILD)
+	@scripts/build.sh $(BUILD)
 	@scripts/quoted_output.py $(if $(filter-out 0,$(LONG)),--long) $(if $(filter-out 0,$(UPDATE)),--update) $(foreach file,$(FILES),--file $(file)) $(PAGES)
 
 proofs: setup-lint ## formal proofs of blocks (Yosys, ABC)
@@ -175,7 +181,7 @@ format: setup-lint ## lay out the C++ files as .clang-format says
 	@scripts/sources.sh cpp | xargs clang-format -i
 
 bench: setup-sim configured-OFF ## measured rates of the engines on this machine
-	@$(LOCKED) cmake --build $(BUILD) --target raypool raypool_bench
+	@scripts/build.sh $(BUILD) raypool raypool_bench
 	@for config in 4w4c 8w8c 16w16c; do scripts/unit.sh "$$config"; done
 	@$(BUILD)/raypool_bench
 
@@ -196,7 +202,7 @@ extremes: setup-sim program ## hard cases in every arithmetic mode, on every eng
 	@for config in $$($(RAYPOOL) numerics --mode "$$MODE" --configurations $(BUILD)/out/modes); do scripts/unit.sh "$$config"; done
 	@$(RAYPOOL) numerics --mode "$$MODE" --extremes
 
-clean: ## remove build/ (pictures in build/out too)
+clean: ## remove the build folder (pictures in its out/ too)
 	@rm -rf $(BUILD)
 
 setup-%:
@@ -204,9 +210,10 @@ setup-%:
 
 # Tests are left out until a target needs them; once in, they stay in.
 configured-%:
-	@mkdir -p $(BUILD)
+	@mkdir -p $(BUILD) 2> /dev/null && [ -w $(BUILD) ] || \
+	  { echo 'make: the build folder "$(BUILD)" cannot be written: choose another one with BUILD=/path/elsewhere' >&2; exit 1; }
 	@$(LOCKED) scripts/configure.sh $(BUILD) $*
 
 program: configured-OFF
-	@[ -x $(RAYPOOL) ] || echo 'building raypool; the first time this takes a minute or two'
-	@$(LOCKED) cmake --build $(BUILD) --target raypool -- --quiet | { grep -vE 'no work to do|GLOB mismatch' || true; }
+	@[ -x $(RAYPOOL) ] || echo 'building raypool; the first time this takes some minutes'
+	@scripts/build.sh $(BUILD) raypool

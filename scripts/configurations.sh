@@ -7,8 +7,8 @@
 set -eu -o pipefail
 [ $# -ge 2 ] || { echo "usage: scripts/configurations.sh quick|small|all PROGRAMS [FOLDER]" >&2; exit 1; }
 cd "$(dirname "$0")/.."
-set=$1 programs=$2 folder=${3:-build/configurations}
-export RAYPOOL=${RAYPOOL:-build/raypool}
+set=$1 programs=$2 folder=${3:-${BUILD:-build}/configurations}
+export RAYPOOL=${RAYPOOL:-${BUILD:-build}/raypool}
 flags=() quick=--quick
 case $set in
   quick) flags=(--most 12) ;;

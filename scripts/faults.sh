@@ -12,7 +12,9 @@ root=$(cd "$(dirname "$0")/.." && pwd)
 mkdir -p "$1"
 folder=$(cd "$1" && pwd)
 shift
-raypool=$(realpath "${RAYPOOL:-$root/build/raypool}")
+build=${BUILD:-build}
+[[ $build == /* ]] || build=$root/$build
+raypool=$(realpath "${RAYPOOL:-$build/raypool}")
 cd "$root"
 
 # verilate.sh builds from the tree that it stands in: one of links, but for rtl/.

@@ -1,9 +1,11 @@
 #!/bin/bash
 # Checks the sources: Verilog in Verilator, Icarus and Yosys for several configurations, C++ layout and clang-tidy, shell syntax.
-# Prints what failed and the command that shows it again; ends with 1 if anything did. Needs build/ configured with tests.
+# Prints what failed and the command that shows it again; ends with 1 if anything did. Needs the build folder (BUILD, default build)
+# configured with tests, and keeps there how long it took.
 set -u -o pipefail
 cd "$(dirname "$0")/.."
-export LC_ALL=C.UTF-8
+export LC_ALL=C.UTF-8 build=${BUILD:-build}
+. scripts/duration.bash
 checks=0
 failed=()
 log=$(mktemp)
@@ -11,10 +13,10 @@ trap 'rm -f "$log"' EXIT
 
 # check NAME COMMAND...: silent success; on failure, or on any output when the tool only warns, prints it and how to repeat it.
 check() {
-  local name=$1; shift
+  local name=$1 begin=$SECONDS; shift
   checks=$((checks + 1))
   if "$@" > "$log" 2>&1 && ! grep -qiE 'warning|error' "$log"; then
-    echo "lint: $name: clean"
+    echo "lint: $name: clean ($((SECONDS - begin)) s)"
   else
     failed+=("$name")
     cat "$log"
@@ -34,6 +36,8 @@ verilog_configurations=(
   "WARPS=2 LANES=2 FMA=1 FLT_DEPTH=5"
 )
 mapfile -t rtl < <(scripts/sources.sh verilog)
+mapfile -t cpp < <(scripts/sources.sh cpp)
+echo "lint: ${#rtl[@]} Verilog files in ${#verilog_configurations[@]} configurations by three tools, ${#cpp[@]} C++ files by clang-format and clang-tidy, which takes most of the time; $(last_duration lint)"
 
 for parameters in "${verilog_configurations[@]}"; do
   verilator_flags=() iverilog_flags=() yosys_flags=()
@@ -51,7 +55,6 @@ for parameters in "${verilog_configurations[@]}"; do
     select -assert-none t:\$dlatch t:\$adlatch t:\$dlatchsr; check -assert"
 done
 
-mapfile -t cpp < <(scripts/sources.sh cpp)
 check "clang-format (make format)" clang-format --dry-run -Werror "${cpp[@]}"
 
 mapfile -t python < <(scripts/sources.sh python)
@@ -62,19 +65,21 @@ for file in $(scripts/sources.sh shell); do check "bash -n $file" bash -n "$file
 # clang-tidy reads each source as the build compiles it; what only the build generates (Verilated models) is left to the compiler.
 tidy=()
 for file in "${cpp[@]}"; do
-  case $file in *.cpp) grep -qF "\"$PWD/$file\"" build/compile_commands.json && tidy+=("$file") ;; esac
+  case $file in *.cpp) grep -qF "\"$PWD/$file\"" "$build/compile_commands.json" && tidy+=("$file") ;; esac
 done
 if [ ${#tidy[@]} -gt 0 ]; then
-  check "clang-tidy, ${#tidy[@]} files" bash -c 'printf "%s\0" "$@" | xargs -0 -n 1 -P "$(nproc)" clang-tidy -p build --quiet 2>&1 |
+  echo "lint: clang-tidy reads ${#tidy[@]} files, $(nproc) at a time"
+  check "clang-tidy, ${#tidy[@]} files" bash -c 'printf "%s\0" "$@" | xargs -0 -n 1 -P "$(nproc)" clang-tidy -p "$build" --quiet 2>&1 |
     grep -vE "^[0-9]+ warnings? (generated|treated)|^Suppressed|^Use -header-filter"; exit "${PIPESTATUS[1]}"' clang-tidy "${tidy[@]}"
 else
-  echo "lint: clang-tidy: build/compile_commands.json names no file of the project; run make lint, not scripts/lint.sh" >&2
+  echo "lint: clang-tidy: $build/compile_commands.json names no file of the project; run make lint, not scripts/lint.sh" >&2
   failed+=("clang-tidy")
 fi
+keep_duration lint
 # The last lines are the ones that are read.
 if [ ${#failed[@]} -gt 0 ]; then
   printf 'lint: %d of %d checks are not clean; what they say stands above:\n' "${#failed[@]}" "$checks"
   printf '  %s\n' "${failed[@]}"
   exit 1
 fi
-echo "lint: all $checks checks are clean"
+echo "lint: all $checks checks are clean, in $SECONDS s"

@@ -9,7 +9,9 @@ set -eu -o pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 mkdir -p "$1"
 output=$(cd "$1" && pwd) config=$2 count=$3 seed=$4
-raypool=$(realpath "${RAYPOOL:-$root/build/raypool}")
+build=${BUILD:-build}
+[[ $build == /* ]] || build=$root/$build
+raypool=$(realpath "${RAYPOOL:-$build/raypool}")
 command -v yosys > /dev/null || { echo "mutants.sh: yosys was not found: install it (Debian package yosys)" >&2; exit 1; }
 cd "$root"
 parameters=$("$raypool" config "$config" --verilog-parameters)

@@ -5,4 +5,4 @@
 set -eu -o pipefail
 cd "$(dirname "$0")/.."
 config=$1; shift
-"${RAYPOOL:-build/raypool}" unit --config "$config" "$@" | { grep -v 'is up to date$' || true; }
+"${RAYPOOL:-${BUILD:-build}/raypool}" unit --config "$config" "$@" | { grep -v 'is up to date$' || true; }

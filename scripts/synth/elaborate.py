@@ -53,7 +53,7 @@ def rtl_texts():
 
 
 def raypool():
-    program = os.environ.get("RAYPOOL", os.path.join(ROOT, "build", "raypool"))
+    program = os.environ.get("RAYPOOL", os.path.join(ROOT, os.environ.get("BUILD", "build"), "raypool"))
     if not os.access(program, os.X_OK):
         raise SynthError(f"{program} is not there: build it with make program")
     return program

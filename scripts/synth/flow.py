@@ -10,7 +10,7 @@ from .library import ROOT, Library
 from .memories import MemoryModel
 from .netlist import Netlist
 
-BUILD = os.path.join(ROOT, "build", "synth")
+BUILD = os.path.join(ROOT, os.environ.get("BUILD", "build"), "synth")
 # Rounds of mapping for speed what lies on failing paths.
 CLOSURE_ROUNDS = 4
 # Failing end points whose paths are looked at in a round.

@@ -1,0 +1,41 @@
+#!/bin/bash
+# The build folder can be anywhere, and nothing is written elsewhere: scripts/tests/build_folder.sh BUILD, a folder in which the program is built.
+# Where mounts are allowed (root), the checkout is made read-only around it for this test alone.
+set -u -o pipefail
+build=$(realpath "$1")
+cd "$(dirname "$0")/../.." || exit 1
+unset MAKEFLAGS MAKELEVEL MFLAGS RAYPOOL
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
+
+# A folder that nobody can make gets one sentence that names BUILD=, and make's own line.
+if make run BUILD=/proc/none > "$log" 2>&1 || [ "$(wc -l < "$log")" != 2 ] || ! grep -q 'build folder "/proc/none" cannot be written: choose another one with BUILD=' "$log"; then
+  echo "FAILED: a build folder that cannot be made:"
+  cat "$log"
+  exit 1
+fi
+echo "ok: a build folder that cannot be made"
+
+read_only() {
+  unshare --mount bash -eu -c 'root=$PWD
+    mount --bind "$0" "$0"
+    mount --bind "$root" "$root"
+    [[ $0 != "$root"/* ]] || mount --bind "$0" "$0"
+    mount -o remount,bind,ro "$root"
+    cd "$root"
+    "$@"' "$build" "$@"
+}
+if ! read_only true 2> /dev/null; then
+  echo "no read-only checkout: mounting needs root"
+  exit 0
+fi
+if read_only touch README.md 2> /dev/null; then echo "FAILED: the checkout is not read-only"; exit 1; fi
+for command in "make run KERNEL=saxpy ENGINE=functional" "make sim SCENE=cornell SIZE=8x8 ENGINE=native"; do
+  # Unquoted: words.
+  if ! read_only $command "BUILD=$build" > "$log" 2>&1; then
+    echo "FAILED: $command in a checkout that is read-only:"
+    cat "$log"
+    exit 1
+  fi
+  echo "ok: $command in a checkout that is read-only"
+done
