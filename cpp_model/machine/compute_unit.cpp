@@ -4,6 +4,11 @@
 
 namespace raypool {
 
+std::vector<Fault> ComputeUnit::faults() const {
+  const Fault& fault = outputs().fault;
+  return fault.code == FaultCode::None ? std::vector<Fault>() : std::vector<Fault>{fault};
+}
+
 void ComputeUnit::open_waveform(const std::string& path) {
   throw std::runtime_error(
       path + ": this engine writes no waveforms; use engine rtl or lockstep with a unit built by scripts/verilate.sh --trace");

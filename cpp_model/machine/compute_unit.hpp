@@ -195,6 +195,10 @@ class ComputeUnit {
     return 1;
   }
 
+  /// All faults of the cycle that had the first one; of several outputs().fault is the one that wins. A device of which only its
+  /// ports are seen knows no other.
+  virtual std::vector<Fault> faults() const;
+
   /// Trace of the current cycle. Filled only after trace_on(); costs time.
   virtual void trace_on() {}
   virtual const UnitTrace& trace() const = 0;

@@ -54,7 +54,8 @@ void CycleUnit::reset(uint32_t program_length, uint32_t memory_limit) {
   attention_ = faulty_ = false;
   request_valid_ = waiting_ = running_ = false;
   package_beats_ = 0;
-  fault_ = raised_ = Fault{};
+  fault_ = Fault{};
+  raised_.clear();
   planned_faults_.clear();
   busy_cycles_ = instructions_ = thread_instructions_ = hits_ = misses_ = 0;
   waited_.fill(0);
@@ -70,6 +71,7 @@ void CycleUnit::set_argument(int number, uint32_t value) {
   mem_.invalidate();
   instruction_cache_.invalidate();
   memory_stale_ = true;
+  clock({});  // it takes a cycle
 }
 
 void CycleUnit::clock(const UnitInputs& inputs) {
@@ -266,26 +268,37 @@ void CycleUnit::take_package_beat(const Beat& beat) {
   core_.import_package(package);
 }
 
-// Of several faults of warps in a cycle the lowest warp's counts.
 void CycleUnit::raise(const Fault& fault) {
-  if (raised_.code == FaultCode::None || fault.warp < raised_.warp) raised_ = fault;
+  if (fault_.code == FaultCode::None) raised_.push_back(fault);
   faulty_ = attention_ = true;
 }
 
-// The first fault stays; of several in one cycle an ALU's wins.
+// The first fault stays; of several in one cycle an ALU's wins, memory's before rays', then the lowest warp's.
 void CycleUnit::settle_faults(FaultCode mem_fault, uint32_t mem_warp, bool ray_fault, uint32_t ray_warp) {
+  if (fault_.code != FaultCode::None) return;
   for (const PlannedFault& planned_fault : planned_faults_) {
     if (planned_fault.cycle == now_) raise(planned_fault.fault);
   }
-  if (fault_.code == FaultCode::None) {
-    if (mem_fault != FaultCode::None)
-      fault_ = {mem_fault, mem_warp, pc_[mem_warp]};
-    else if (ray_fault)
-      fault_ = {FaultCode::RayWordOutside, ray_warp, pc_[ray_warp]};
-    else
-      fault_ = raised_;
+  std::sort(raised_.begin(), raised_.end(), [](const Fault& a, const Fault& b) { return a.warp < b.warp; });
+  if (ray_fault) raised_.insert(raised_.begin(), {FaultCode::RayWordOutside, ray_warp, pc_[ray_warp]});
+  if (mem_fault != FaultCode::None) raised_.insert(raised_.begin(), {mem_fault, mem_warp, pc_[mem_warp]});
+  if (raised_.empty()) return;
+  fault_ = raised_.front();
+  halt();
+}
+
+// From the next cycle on nothing is fetched or dispatched, but some cycles have been worked out already.
+void CycleUnit::halt() {
+  want_types_ = 0;
+  for (uint64_t cycle = now_ + 1; cycle < now_ + kRing; ++cycle) {
+    uint32_t& retired = planned(cycle).retired;
+    for (uint32_t warps = retired; warps != 0; warps &= warps - 1) {
+      const uint32_t warp = lowest(warps);
+      const uint64_t depth = slots_[static_cast<size_t>(core_.instruction_at(pc_[warp])->code >> 5)].depth;
+      if (cycle - depth > now_ + 1) retired &= ~(1u << warp);
+    }
   }
-  raised_ = Fault{};
+  if (instruction_cache_.missed() && miss_cycle_ > now_ + 1) instruction_cache_.forget_miss();
 }
 
 // Instances that are taken while no kernel runs are not counted as such.

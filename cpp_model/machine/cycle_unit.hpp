@@ -36,6 +36,7 @@ class CycleUnit final : public ComputeUnit {
   const UnitTrace& trace() const override { return trace_; }
   uint64_t counter(int number) override;
   bool timed() const override { return true; }
+  std::vector<Fault> faults() const override { return raised_; }
 
   /// The instruction that a warp has under way or has retired last, with its operands before it. Kept after trace_on() only.
   struct Issue {
@@ -97,6 +98,7 @@ class CycleUnit final : public ComputeUnit {
   void start_kernel();
   void raise(const Fault& fault);
   void settle_faults(FaultCode mem_fault, uint32_t mem_warp, bool ray_fault, uint32_t ray_warp);
+  void halt();
   void run_changes(bool running);
 
   static constexpr size_t kWarps = 32;
@@ -149,7 +151,8 @@ class CycleUnit final : public ComputeUnit {
   std::array<Beat, kIntersectionBeats> package_{};
   uint32_t package_beats_ = 0;
 
-  Fault fault_, raised_;
+  Fault fault_;
+  std::vector<Fault> raised_;  // in this cycle, or in that of fault_
   std::vector<PlannedFault> planned_faults_;
 
   uint64_t busy_cycles_ = 0, instructions_ = 0, thread_instructions_ = 0, hits_ = 0, misses_ = 0;

@@ -92,10 +92,9 @@ void FunctionalCore::reset(uint32_t program_length, uint32_t memory_limit) {
 void FunctionalCore::launch(const LaunchCommand& command) {
   if (running()) throw std::logic_error("a kernel was launched in the functional model while another one runs");
   if (!program_decoded_) {
-    program_.reserve(program_length_);
-    for (uint32_t i = 0; i < program_length_; ++i) {
-      program_.push_back(decode(uint64_t{memory_->load(8 * i + 4)} << 32 | memory_->load(8 * i), configuration_));
-    }
+    program_.resize(program_length_);
+    for (uint32_t i = 0; i < program_length_; ++i)
+      program_[i] = decode(uint64_t{memory_->load(8 * i + 4)} << 32 | memory_->load(8 * i), configuration_);
     program_decoded_ = true;
   }
   launched_ = command;

@@ -56,9 +56,13 @@ class FunctionalCore {
   /// `memory` must outlive the core.
   FunctionalCore(const Configuration& configuration, Memory& memory);
 
-  /// Stops everything, forgets imports, clears registers. The program is decoded at the next launch.
+  /// Stops everything, forgets imports, clears registers. The program is decoded at the next launch after it or after an
+  /// argument.
   void reset(uint32_t program_length, uint32_t memory_limit);
-  void set_argument(int index, uint32_t value) { arguments_[static_cast<size_t>(index)] = value; }
+  void set_argument(int index, uint32_t value) {
+    arguments_[static_cast<size_t>(index)] = value;
+    program_decoded_ = false;
+  }
 
   /// Starts a kernel; the previous one must have ended. Imports are announced apart, by expect_import.
   void launch(const LaunchCommand& command);

@@ -38,6 +38,9 @@ class InstructionCache {
     return !missed_;
   }
 
+  /// The latest lookup is not to have been.
+  void forget_miss() { missed_ = false; }
+
   // Registers, as they stand in the present cycle.
   bool missed() const { return missed_; }  ///< the latest lookup, and clock() has not been told yet
   bool refill_done() const { return done_; }

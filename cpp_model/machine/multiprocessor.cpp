@@ -16,6 +16,7 @@ void Multiprocessor::reset(uint32_t program_length, uint32_t memory_limit) {
   memory_arbiter_ = export_arbiter_ = frame_arbiter_ = fault_arbiter_ = {};
   import_arbiter_ = {};
   outputs_ = {};
+  faults_.clear();
   trace_ = {};
   present();
 }
@@ -126,8 +127,19 @@ void Multiprocessor::present() {
   }
   fault_arbiter_.present(fault);
   if (fault_arbiter_.valid()) {
+    if (outputs_.fault.code == FaultCode::None) gather_faults();
     outputs_.fault = units_[fault_arbiter_.choice()]->outputs().fault;
     outputs_.fault.unit = fault_arbiter_.choice();
+  }
+}
+
+void Multiprocessor::gather_faults() {
+  faults_.clear();
+  for (uint32_t u = 0; u < units(); ++u) {
+    for (Fault fault : units_[u]->faults()) {
+      fault.unit = u;
+      faults_.push_back(fault);
+    }
   }
 }
 

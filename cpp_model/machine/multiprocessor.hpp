@@ -26,15 +26,18 @@ class Multiprocessor : public ComputeUnit {
   const UnitTrace& trace() const override { return trace_; }
   uint64_t counter(int number) override;
   bool timed() const override;
+  std::vector<Fault> faults() const override { return faults_; }
 
  private:
   void give(const UnitInputs& inputs);
   void present();
   void gather_trace();
+  void gather_faults();
 
   std::vector<std::unique_ptr<ComputeUnit>> units_;
   std::vector<UnitInputs> inputs_;  // [unit]
   UnitOutputs outputs_;
+  std::vector<Fault> faults_;
   BlockScheduler block_scheduler_;
   PortArbiter memory_arbiter_, export_arbiter_, frame_arbiter_, fault_arbiter_;
   ImportArbiter import_arbiter_;

@@ -8,8 +8,10 @@
 namespace raypool {
 namespace {
 
-// After a fault the unit is watched a little longer: nothing more may come of it.
-constexpr uint64_t kFaultCycles = 20;
+// After a fault the unit is watched longer than anything takes that was under way: nothing else may come of it. In the end every
+// port is open, so that what could leave does.
+constexpr uint64_t kFaultCycles = 600, kStalledFaultCycles = 100;
+constexpr uint64_t kCyclesBeforeNext = 40;  ///< if there is another kernel
 
 /// Memory and pools around one unit.
 class RandomHost {
@@ -18,23 +20,33 @@ class RandomHost {
       : unit_(unit), memory_(memory), program_(program), seed_(seed), stalls_(program.stalls, seed), observer_(observer) {}
 
   uint64_t run(uint64_t cycle_limit) {
-    begin();
-    uint64_t fault_cycles = 0;
+    begin(0);
     for (; now_ < cycle_limit; ++now_) {
       if (program_.restart != 0 && now_ == program_.restart) {
-        begin();
-        fault_cycles = 0;
+        restore();
+        begin(0);
         if (observer_ != nullptr) observer_->restart();
       }
       const UnitOutputs& outputs = unit_.outputs();
       if (outputs.fault.code != FaultCode::None) {
-        if (outputs.fault.code != program_.fault) {
+        if ((program_.faults & fault_bit(outputs.fault.code)) == 0) {
           throw ProgramFailure(fmt::format("fault {} of warp {} at PC {} in a program that must not end so",
                                            static_cast<int>(outputs.fault.code), outputs.fault.warp, outputs.fault.pc));
         }
-        if (++fault_cycles == kFaultCycles) return now_;
+        if (fault_cycles_ == 0 && observer_ != nullptr) observer_->faulted(unit_.faults());
+        // What a device of one unit has taken beyond the kernel with the fault has not begun.
+        const size_t next = unit_.units() == 1 ? ended_ + 1 : launched_;
+        if (++fault_cycles_ == (next < program_.kernels.size() ? kCyclesBeforeNext : kFaultCycles)) {
+          if (next >= program_.kernels.size()) return now_;
+          begin(next);
+          if (observer_ != nullptr) observer_->restart();
+        }
       }
-      if (launched_ == program_.kernels.size() && outputs.idle && !outputs.busy) return now_;
+      ended_ += static_cast<size_t>(__builtin_popcount(outputs.kernel_done));
+      if (outputs.idle && !outputs.busy) {
+        if (launched_ == program_.kernels.size()) return now_;
+        rewrite();
+      }
       clock(outputs);
     }
     throw ProgramFailure(fmt::format("not finished after {} cycles", cycle_limit));
@@ -47,17 +59,42 @@ class RandomHost {
     std::array<uint32_t, 16> words;
   };
 
-  void begin() {
+  // As nothing had been rewritten. What has been stored stays.
+  void restore() {
+    Rewrite original;
+    for (const RandomProgram::Kernel& kernel : program_.kernels) {
+      if (!kernel.rewrite) continue;
+      for (const auto& [pc, instruction] : kernel.rewrite->code) original.code[pc] = program_.program.code[pc];
+    }
+    rewrite_memory(program_, original, memory_);
+    arguments_ = program_.arguments;
+  }
+
+  void begin(size_t kernel) {
     unit_.reset(told_length(program_), told_limit(program_));
-    for (int i = 0; i < kArguments; ++i) unit_.set_argument(i, program_.arguments[static_cast<size_t>(i)]);
-    launched_ = 0;
+    for (int i = 0; i < kArguments; ++i) unit_.set_argument(i, arguments_[static_cast<size_t>(i)]);
+    launched_ = ended_ = rewritten_ = kernel;
+    fault_cycles_ = 0;
     offered_ = false;
     lines_.clear();
     beat_ = import_beat_ = 0;
     packages_asked_ = packages_given_ = 0;
   }
 
-  bool open(Port port) const { return stalls_.open(port, now_); }
+  // The unit is idle: the next kernel finds what it is to find.
+  void rewrite() {
+    const std::optional<Rewrite>& rewrite = program_.kernels[launched_].rewrite;
+    if (!rewrite || rewritten_ == launched_ + 1) return;
+    rewritten_ = launched_ + 1;
+    rewrite_memory(program_, *rewrite, memory_);
+    for (const auto& [number, value] : rewrite->arguments) {
+      arguments_[number] = value;
+      unit_.set_argument(static_cast<int>(number), value);
+    }
+    if (observer_ != nullptr) observer_->rewritten();
+  }
+
+  bool open(Port port) const { return fault_cycles_ > kStalledFaultCycles || stalls_.open(port, now_); }
 
   void clock(const UnitOutputs& outputs) {
     UnitInputs inputs;
@@ -78,6 +115,7 @@ class RandomHost {
     // An offer stays until it is taken.
     if (launched_ == program_.kernels.size() || !(offered_ || open(Port::Launch))) return;
     const RandomProgram::Kernel& kernel = program_.kernels[launched_];
+    if (kernel.rewrite && rewritten_ != launched_ + 1) return;
     inputs.launch_valid = true;
     inputs.launch.pc = kernel.pc;
     inputs.launch.threads = kernel.threads;
@@ -141,7 +179,10 @@ class RandomHost {
   Stalls stalls_;
   RunObserver* observer_;
   uint64_t now_ = 0;
-  size_t launched_ = 0;
+  uint64_t fault_cycles_ = 0;  ///< since the fault
+  std::array<uint32_t, kArguments> arguments_ = program_.arguments;
+  size_t launched_ = 0, ended_ = 0;
+  size_t rewritten_ = 0;  ///< kernels before which it has been rewritten
   bool offered_ = false;  ///< and not taken
   std::vector<Line> lines_;
   size_t sending_ = 0;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "cosim/random_program.hpp"
 #include "isa/input_error.hpp"
@@ -17,6 +18,10 @@ class RunObserver {
   virtual void cycle(const UnitOutputs& outputs, const UnitInputs& inputs, const UnitTrace& trace) = 0;
   /// The unit has been reset in the middle of the run, which begins anew.
   virtual void restart() {}
+  /// Memory and arguments have become others, as RandomProgram::Kernel::rewrite says.
+  virtual void rewritten() {}
+  /// The first fault: all of its cycle, as ComputeUnit::faults() says, before that cycle.
+  virtual void faulted(const std::vector<Fault>& faults) { static_cast<void>(faults); }
 };
 
 /// A program that ends otherwise than it must: another fault, or no end. Of the program and the unit, not of what stands around
@@ -26,9 +31,9 @@ struct ProgramFailure : InputError {
 };
 
 /// Runs all kernels of `program` on `unit`, which must use (or be a lockstep over) `memory`, until the unit is idle, or has
-/// stopped with the fault that the program ends in. `seed` is that of the stalls and of the imported packages. Returns the
-/// cycles. Throws ProgramFailure when another fault occurs or the job has not ended after `cycle_limit` cycles; what the unit
-/// throws passes through.
+/// stopped in the last kernel with one of the faults that the program may end in. `seed` is that of the stalls and of the
+/// imported packages. Returns the cycles. Throws ProgramFailure when another fault occurs or the job has not ended after
+/// `cycle_limit` cycles; what the unit throws passes through.
 uint64_t run_random_program(ComputeUnit& unit, Memory& memory, const RandomProgram& program, uint64_t seed,
                             uint64_t cycle_limit = 5'000'000, RunObserver* observer = nullptr);
 

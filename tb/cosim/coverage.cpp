@@ -9,6 +9,7 @@ constexpr uint64_t kNever = ~uint64_t{0} / 2;
 // A store that waited for its line passes again within this many cycles of the line's last beat.
 constexpr uint64_t kReplayCycles = 12;
 constexpr uint32_t kInstructionId = 16;
+constexpr uint64_t kOpenCycles = 300;
 
 /// Of a line in a unit's data cache.
 uint32_t line_key(uint32_t unit, uint32_t address) { return unit << 26 | address / kLineBytes; }
@@ -26,7 +27,8 @@ Coverage::Coverage(const Configuration& configuration, int units)
       rows_(std::size(kInstructions)),
       empty_(std::size(kInstructions)),
       partial_(std::size(kInstructions)),
-      depths_(static_cast<size_t>(configuration.stack_depth) + 1) {}
+      depths_(static_cast<size_t>(configuration.stack_depth) + 1),
+      code_(1u << 16) {}
 
 void Coverage::begin() {
   now_ = 1000;  // so that "some cycles ago" is never before 0
@@ -45,7 +47,27 @@ void Coverage::begin() {
   moved_ = {};
   accepted_ = {};
   last_pc_ = ~0u;
-  fault_seen_ = false;
+  open_cycles_ = 0;
+  rewrites_ = 0;
+  pcs_.assign(code_.size(), false);
+}
+
+void Coverage::rewritten() {
+  ++rewrites_;
+  hit(Event::ArgumentsRewritten);
+}
+
+void Coverage::faulted(const std::vector<Fault>& faults) {
+  // Those of a unit stand together, the one that wins first.
+  const Fault* winner = nullptr;
+  for (const Fault& fault : faults) {
+    if (winner == nullptr || winner->unit != fault.unit) {
+      winner = &fault;
+      ++faults_[static_cast<size_t>(fault.code)];
+    } else {
+      ++fault_pairs_[static_cast<size_t>(winner->code)][static_cast<size_t>(fault.code)][winner->warp < fault.warp ? 1 : 0];
+    }
+  }
 }
 
 void Coverage::cycle(const UnitOutputs& outputs, const UnitInputs& inputs, const UnitTrace& trace) {
@@ -56,10 +78,17 @@ void Coverage::cycle(const UnitOutputs& outputs, const UnitInputs& inputs, const
   memory_response(inputs);
   memory_request(outputs, inputs);
   pools(outputs, inputs, trace);
-  if (outputs.fault.code != FaultCode::None && !fault_seen_) {
-    fault_seen_ = true;
-    ++faults_[static_cast<size_t>(outputs.fault.code)];
-  }
+  if (outputs.fault.code != FaultCode::None) after_fault(outputs, inputs, trace);
+}
+
+void Coverage::after_fault(const UnitOutputs& outputs, const UnitInputs& inputs, const UnitTrace& trace) {
+  if (!trace.retired.empty()) hit(Event::RetiresAfterFault);
+  if (!trace.stores.empty()) hit(Event::StoreAfterFault);
+  if (inputs.memory_response_valid && inputs.memory_response.beat == 3) hit(Event::LineAfterFault);
+  if ((outputs.export_valid && inputs.export_ready) || (outputs.frame_valid && inputs.frame_ready)) hit(Event::ExportAfterFault);
+  const bool open = inputs.memory_request_ready && inputs.import_request_ready && inputs.export_ready && inputs.frame_ready;
+  open_cycles_ = open ? open_cycles_ + 1 : 0;
+  if (open_cycles_ == kOpenCycles) hit(Event::OpenAfterFault);
 }
 
 void Coverage::end(ComputeUnit& unit) {
@@ -86,6 +115,9 @@ void Coverage::retired(const RetireEvent& event) {
   if (warp.stack.empty()) warp.stack = {{event.pc, 0xffff}};
   if (warp.stack.size() < depths_.size()) ++depths_[warp.stack.size()];
   together(event, unit);
+  code(event);
+  predicates(warp, event, instruction);
+  last_of_all(event, instruction);
   if (instruction.info->unit == Unit::Mem && instruction.info->mnemonic == "ld") loaded(warp, event, instruction);
   if (instruction.info->unit == Unit::Ray) rays(warp, event, instruction);
   if (writes_register(*instruction.info)) {
@@ -97,6 +129,50 @@ void Coverage::retired(const RetireEvent& event) {
   warp.last_unit = static_cast<int>(unit);
   warp.last_retired = now_;
   control(warp, event, instruction);
+}
+
+void Coverage::code(const RetireEvent& event) {
+  const uint32_t pc = event.pc;
+  if (pcs_[pc]) {
+    if (code_[pc] != event.instruction) hit(Event::CodeRewritten);
+    code_[pc] = event.instruction;
+    return;
+  }
+  pcs_[pc] = true;
+  code_[pc] = event.instruction;
+  for (uint32_t bit = kFirstUpperPcBit; bit < pc_bits_.size(); ++bit) {
+    pc_bits_[bit] += pc >> bit & 1;
+    if (pcs_[pc ^ 1u << bit]) ++pc_twins_[bit];
+  }
+}
+
+void Coverage::predicates(Warp& warp, const RetireEvent& event, const Instruction& instruction) {
+  const auto read = [&](uint32_t number) {
+    if ((warp.left & ~warp.written) >> number & 1) ++left_set_[number];
+  };
+  read(instruction.guard);
+  if (has_operand(*instruction.info, Operand::Px)) read(instruction.x & 15);
+  if (has_operand(*instruction.info, Operand::Pb)) read(instruction.rb);
+  if (writes_predicate(*instruction.info)) {
+    const uint32_t bit = 1u << instruction.rd;
+    warp.written |= bit;
+    warp.set = event.predicate != 0 ? warp.set | bit : warp.set & ~bit;
+  }
+  if (instruction.info->mnemonic != "exit") return;
+  warp.left = warp.set & ~1u;
+  warp.set = warp.written = 0;
+}
+
+void Coverage::last_of_all(const RetireEvent& event, const Instruction& instruction) {
+  const std::string_view name = instruction.info->mnemonic;
+  if (name == "arg" && instruction.immediate % kArguments == kArguments - 1) hit(Event::LastArgument);
+  if (event.warp + 1 != static_cast<uint32_t>(configuration_.warps) || (event.mask >> (lanes_ - 1) & 1) == 0) return;
+  if (writes_register(*instruction.info) && instruction.rd == kRegisters - 1) hit(Event::LastRegister);
+  if (writes_predicate(*instruction.info) && instruction.rd == kPredicates - 1 && (event.predicate >> (lanes_ - 1) & 1) != 0)
+    hit(Event::LastPredicate);
+  if (name == "rst" && instruction.x == kIntersectionWords - 1) hit(Event::LastWord);
+  if (name == "ld") hit(Event::LastLoad);
+  if (name == "st") hit(Event::LastStore);
 }
 
 // An instruction that retires in this cycle was in its ALU for at least the type's depth, so it was there together with all that
@@ -120,12 +196,14 @@ void Coverage::control(Warp& warp, const RetireEvent& event, const Instruction& 
   if (instruction.info->control) {
     const uint32_t low = instruction.immediate & 0xffff;
     if ((name == "jany" && event.mask != 0) || (name == "jnone" && event.mask == 0) || (name == "loop" && event.mask == 0)) {
+      if (warp.stack.size() > 1 && low > top.rpc) hit(top.loop ? Event::LoopLeft : Event::FunctionLeft);
+      if (warp.stack.size() > 1 && low < top.begin) hit(top.loop ? Event::LoopLeftBack : Event::FunctionLeftBack);
       top.pc = low;
     } else if (name == "loop") {
       top.pc = event.pc;
-      warp.stack.push_back({event.pc + 1, low});
+      warp.stack.push_back({event.pc + 1, low, event.pc + 1, true});
     } else if (name == "call") {
-      warp.stack.push_back({low, instruction.immediate >> 16});
+      warp.stack.push_back({low, instruction.immediate >> 16, low, false});
     } else if (name == "ret") {
       warp.stack.pop_back();
     } else if (name == "exit") {
@@ -148,8 +226,10 @@ void Coverage::loaded(const Warp& warp, const RetireEvent& event, const Instruct
     const uint32_t address = warp.registers[instruction.ra * lanes_ + lane] + instruction.immediate;
     if (std::find(quadwords.begin(), quadwords.begin() + count, address / 16) == quadwords.begin() + count)
       quadwords[count++] = address / 16;
+    for (uint32_t bit = kFirstUpperBit; bit < load_bits_.size(); ++bit) load_bits_[bit] += address >> bit & 1;
     const auto line = lines_.find(line_key(event.unit, address));
     if (line != lines_.end() && line->second.stored) hit(Event::StoreHit);
+    if (line != lines_.end() && line->second.rewrites < rewrites_) hit(Event::LineRewritten);
   }
   if (active > 1 && count == 1) hit(Event::OneQuadword);
   if (count > 1) hit(Event::SeveralQuadwords);
@@ -157,6 +237,7 @@ void Coverage::loaded(const Warp& warp, const RetireEvent& event, const Instruct
 }
 
 void Coverage::stored(const StoreEvent& event) {
+  for (uint32_t bit = kFirstUpperBit; bit < store_bits_.size(); ++bit) store_bits_[bit] += event.address >> bit & 1;
   const auto line = lines_.find(line_key(event.unit, event.address));
   if (line == lines_.end()) return;
   line->second.stored = true;
@@ -214,7 +295,10 @@ void Coverage::memory_request(const UnitOutputs& outputs, const UnitInputs& inpu
   hit(Event::LineFetched);
   const uint32_t unit = unit_of_id(request.id);
   Line& line = lines_[line_key(unit, request.address)];
-  if (++line.fetches > 1) hit(Event::FetchedAgain);
+  if (++line.fetches > 1)
+    hit(Event::FetchedAgain);
+  else
+    line.rewrites = rewrites_;
   line.stored = false;
   line.first_beat = kNever;
   int in_use = 0, of_set = 0;
@@ -222,6 +306,12 @@ void Coverage::memory_request(const UnitOutputs& outputs, const UnitInputs& inpu
     if (!reads_[id].valid) continue;
     ++in_use;
     if (set_of(reads_[id].address) == set_of(request.address)) ++of_set;
+    const uint32_t difference = reads_[id].address ^ request.address;
+    if (id == request.id || (difference & (difference - 1)) != 0) continue;
+    if (difference == 1u << 31)
+      hit(Event::TopBitOnTheWay);
+    else if (difference >= 1u << kFirstUpperBit)
+      hit(Event::UpperBitOnTheWay);
   }
   if (in_use == configuration_.data_cache_mshrs) hit(Event::AllRegisters);
   if (of_set > 1) hit(Event::OneSet);

@@ -22,6 +22,8 @@ class Coverage : public RunObserver {
   /// To be called before a program's run, which must use this observer, and after it.
   void begin();
   void restart() override { begin(); }
+  void rewritten() override;
+  void faulted(const std::vector<Fault>& faults) override;
   void cycle(const UnitOutputs& outputs, const UnitInputs& inputs, const UnitTrace& trace) override;
   void end(ComputeUnit& unit);
 
@@ -38,8 +40,12 @@ class Coverage : public RunObserver {
   std::vector<Group> groups() const;
 
  private:
+  static constexpr size_t kFaultCodes = 8;
+  static constexpr uint32_t kFirstUpperBit = 16, kFirstUpperPcBit = 9;
   struct Entry {
     uint32_t pc, rpc;
+    uint32_t begin = 0;
+    bool loop = false;
   };
   struct Warp {
     std::vector<Entry> stack;
@@ -48,11 +54,14 @@ class Coverage : public RunObserver {
     uint64_t last_retired = 0;        ///< cycle
     std::array<uint8_t, 3> roles{};   ///< sets that are input, current, output
     uint64_t last_export = 0;         ///< rays and contributions that had been made when it last exported
+    uint32_t set = 0, written = 0;    ///< predicates that have a lane set; that this kernel has written
+    uint32_t left = 0;                ///< ... that the kernel before has left set
   };
   struct Line {
     uint64_t fetches = 0;
     uint64_t first_beat = 0, last_beat = 0;  ///< cycles of the last fetch
     bool stored = false;                     ///< since it was fetched
+    uint32_t rewrites = 0;                   ///< before its first fetch
   };
   struct Read {
     bool valid = false;
@@ -65,11 +74,16 @@ class Coverage : public RunObserver {
     size_t unit;
   };
 
+  void fault_pairs(Group& group) const;
   void hit(Event event, uint64_t times = 1) { events_[static_cast<size_t>(event)] += times; }
   void retired(const RetireEvent& event);
   void together(const RetireEvent& event, size_t unit);
   void control(Warp& warp, const RetireEvent& event, const Instruction& instruction);
   void loaded(const Warp& warp, const RetireEvent& event, const Instruction& instruction);
+  void code(const RetireEvent& event);
+  void predicates(Warp& warp, const RetireEvent& event, const Instruction& instruction);
+  void last_of_all(const RetireEvent& event, const Instruction& instruction);
+  void after_fault(const UnitOutputs& outputs, const UnitInputs& inputs, const UnitTrace& trace);
   void rays(Warp& warp, const RetireEvent& event, const Instruction& instruction);
   void stored(const StoreEvent& event);
   void memory_request(const UnitOutputs& outputs, const UnitInputs& inputs);
@@ -86,7 +100,12 @@ class Coverage : public RunObserver {
   std::array<std::array<uint64_t, kUnits>, kUnits> after_{};     ///< [type][type of the warp's next instruction]
   std::array<std::array<uint64_t, kUnits>, kUnits> together_{};  ///< [lower type][higher type] in flight in one cycle
   std::vector<uint64_t> depths_;                                 ///< [entries on the PC stack]
-  std::array<uint64_t, 8> faults_{};
+  std::array<uint64_t, kFaultCodes> faults_{};
+  /// [code that wins][code that does not][the winner's is the lower warp] in one cycle
+  std::array<std::array<std::array<uint64_t, 2>, kFaultCodes>, kFaultCodes> fault_pairs_{};
+  std::array<uint64_t, kPredicates> left_set_{};         ///< [predicate] read, and the kernel before has left it set
+  std::array<uint64_t, 32> load_bits_{}, store_bits_{};  ///< [address bit] of loads, of stores: set
+  std::array<uint64_t, 16> pc_bits_{}, pc_twins_{};      ///< [bit] set; of a PC that differs from another one in it alone
   std::array<uint64_t, kEvents> events_{};
 
   // The program that runs.
@@ -102,7 +121,10 @@ class Coverage : public RunObserver {
   std::array<uint64_t, 3> moved_{};                   ///< last cycle in which memory request, export, frame moved
   std::array<int, kMostUnits> accepted_{};            ///< kernels that have not ended
   uint32_t last_pc_ = ~0u;
-  bool fault_seen_ = false;
+  uint64_t open_cycles_ = 0;  ///< since the fault, in a row
+  uint32_t rewrites_ = 0;
+  std::vector<bool> pcs_;       ///< that have retired
+  std::vector<uint64_t> code_;  ///< [PC] as it has retired
 };
 
 /// Several lines: how much of each group is covered, then what is not.

@@ -16,6 +16,11 @@ constexpr std::array<std::string_view, 8> kFaultNames = {"",
                                                          "address outside the memory",
                                                          "ray word outside"};
 
+template <size_t kBits>
+void bits(Coverage::Group& group, const char* what, const std::array<uint64_t, kBits>& counts, uint32_t first) {
+  for (size_t bit = first; bit < kBits; ++bit) group.items.push_back({fmt::format("bit {} {}", bit, what), counts[bit]});
+}
+
 std::string quoted(const std::string& name) { return name.find(' ') == std::string::npos ? name : '"' + name + '"'; }
 
 }  // namespace
@@ -62,13 +67,40 @@ std::vector<Coverage::Group> Coverage::groups() const {
       continue;
     if (configuration_.warps == 1 && one == Event::WarpsLeftOut) continue;
     const bool one_read = configuration_.data_cache_mshrs == 1 || configuration_.contents() == 1;
-    if (one_read && one == Event::OneSet) continue;
+    if (one_read && (one == Event::OneSet || one == Event::TopBitOnTheWay || one == Event::UpperBitOnTheWay)) continue;
     if (units_ > 1 && one == Event::ImportAhead) continue;  // which unit a package goes to is not seen from outside
     group(kEventTexts[event].group).items.push_back({std::string(kEventTexts[event].name), events_[event]});
   }
+  bits(group("upper address bits"), "of loads", load_bits_, kFirstUpperBit);
+  bits(group("upper address bits"), "of stores", store_bits_, kFirstUpperBit);
+  bits(group("upper PC bits"), "set", pc_bits_, kFirstUpperPcBit);
+  bits(group("upper PC bits"), "apart from a PC that has retired", pc_twins_, kFirstUpperPcBit);
+  Group& left = group("predicates that the kernel before left set");
+  for (size_t number = 1; number < left_set_.size(); ++number)
+    left.items.push_back({fmt::format("p{}", number), left_set_[number]});
   Group& faults = group("faults");
   for (size_t code = 1; code < faults_.size(); ++code) faults.items.push_back({std::string(kFaultNames[code]), faults_[code]});
+  if (configuration_.warps > 1) fault_pairs(group("faults in one cycle"));
   return groups;
+}
+
+// The memory ALU's wins before the ray ALU's, that before any other, and of these the lower warp's.
+void Coverage::fault_pairs(Group& group) const {
+  constexpr size_t kMemory = 5, kRay = 7;
+  const bool one_branch = configuration_.alu(Unit::Brh).count == 1;
+  const auto of_stack = [](size_t code) { return code == 3 || code == 4; };
+  for (size_t wins = 1; wins < fault_pairs_.size(); ++wins) {
+    for (size_t other = 1; other < fault_pairs_.size(); ++other) {
+      if (other >= kMemory && (wins < kMemory || wins == kRay || other != kRay)) continue;
+      if (one_branch && of_stack(wins) && of_stack(other)) continue;
+      const auto add = [&](size_t lower, const char* warp) {
+        group.items.push_back({fmt::format("{} of {} warp before {}", kFaultNames[wins], warp, kFaultNames[other]),
+                               fault_pairs_[wins][other][lower]});
+      };
+      add(1, "a lower");
+      if (wins >= kMemory) add(0, "a higher");
+    }
+  }
 }
 
 std::string to_string(const Coverage& coverage) {

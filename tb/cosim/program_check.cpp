@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <array>
+#include <unordered_map>
 #include <vector>
 
 #include "isa/encoding.hpp"
@@ -27,13 +29,13 @@ class Checker {
         lanes_(static_cast<uint32_t>(configuration.cores)),
         defined_(warps_ * kRegisters),
         slices_(warps_),
-        touched_(memory_.size() / 4) {}
+        arguments_(program.arguments) {}
 
   std::string run(uint64_t step_limit, uint64_t& executed) {
-    core_.reset(told_length(program_), told_limit(program_));
-    for (int i = 0; i < kArguments; ++i) core_.set_argument(i, program_.arguments[static_cast<size_t>(i)]);
+    reset();
     for (const RandomProgram::Kernel& kernel : program_.kernels) {
       ++kernel_;
+      if (kernel.rewrite) rewrite(*kernel.rewrite);
       launch(kernel);
       bool faulted = false;
       while (core_.running() && !faulted) {
@@ -41,11 +43,11 @@ class Checker {
         for (uint32_t warp = 0; warp < warps_ && !faulted; ++warp) {
           if (!core_.warp_running(warp)) continue;
           if (++executed > step_limit) return fmt::format("it does not end within {} instructions", step_limit);
-          const std::string problem = program_.fault == FaultCode::None ? before(warp) : "";
+          const std::string problem = program_.faults == 0 ? before(warp) : "";
           if (!problem.empty()) return fmt::format("warp {}, PC {}: {}", warp, core_.next_pc(warp), problem);
           const Step& step = core_.step(warp);
           if (step.status == Step::Status::Fault) {
-            if (step.fault.code != program_.fault)
+            if ((program_.faults & fault_bit(step.fault.code)) == 0)
               return fmt::format("warp {} ends in fault {} at PC {}", warp, static_cast<int>(step.fault.code), step.fault.pc);
             faulted = true;
           }
@@ -56,7 +58,10 @@ class Checker {
         }
         if (!progress && !faulted) return "a rin waits for packages that nobody sends";
       }
-      if (faulted) return "";
+      if (faulted) {
+        reset();
+        continue;
+      }
       for (uint32_t warp = 0; warp < warps_; ++warp)
         if (core_.slices().inputs_waiting(warp) != 0) return fmt::format("warp {} ends without a rin", warp);
     }
@@ -64,6 +69,21 @@ class Checker {
   }
 
  private:
+  void reset() {
+    core_.reset(told_length(program_), told_limit(program_));
+    for (int i = 0; i < kArguments; ++i) core_.set_argument(i, arguments_[static_cast<size_t>(i)]);
+  }
+
+  // All units are idle then, so what they have touched is forgotten.
+  void rewrite(const Rewrite& rewrite) {
+    rewrite_memory(program_, rewrite, memory_);
+    for (const auto& [number, value] : rewrite.arguments) {
+      arguments_[number] = value;
+      core_.set_argument(static_cast<int>(number), value);
+    }
+    touched_.clear();
+  }
+
   void launch(const RandomProgram::Kernel& kernel) {
     LaunchCommand command;
     command.pc = kernel.pc;
@@ -112,13 +132,8 @@ class Checker {
     for (; mask != 0; mask &= mask - 1) {
       const uint32_t address = base[__builtin_ctz(mask)] + i.immediate;
       if (address >= told_limit(program_)) return "";  // the step will say it
-      if (address >= program_.memory_bytes) {
-        // Reads as zero, and forgets what is stored there, but a cache would not.
-        if (store == ((address & kLineBytes) != 0)) continue;
-        return fmt::format("address {} is in no memory and in a line for {}", address, store ? "loads" : "stores");
-      }
       if (store && address < program_.program.code.size() * 8) return "it stores into its code";
-      Touched& word = touched_[address / 4];
+      Touched& word = touched_[address];
       if (!several && word.kernel != kernel_) word = {kernel_, Touched::kNobody, Touched::kNobody};
       const bool read_by_others = word.reader != Touched::kNobody && word.reader != me;
       const bool written_by_others = word.writer != Touched::kNobody && word.writer != me;
@@ -147,7 +162,8 @@ class Checker {
   uint32_t warps_, lanes_;
   std::vector<uint32_t> defined_;                                 ///< [warp][register], a bit a lane
   std::vector<std::array<uint32_t, kIntersectionWords>> slices_;  ///< [warp][word of the current slice], a bit a lane
-  std::vector<Touched> touched_;                                  ///< [word of memory]
+  std::unordered_map<uint32_t, Touched> touched_;                 ///< [address]
+  std::array<uint32_t, kArguments> arguments_;
   uint32_t kernel_ = 0;
 };
 
@@ -158,6 +174,13 @@ std::string check_program(const Configuration& configuration, const RandomProgra
   for (const RandomProgram::Kernel& kernel : program.kernels) {
     if (kernel.threads < 1 || kernel.threads > static_cast<uint32_t>(configuration.contents()))
       return fmt::format("a kernel has {} threads", kernel.threads);
+    if (!kernel.rewrite) continue;
+    const auto& [code, data_seed, arguments] = *kernel.rewrite;
+    static_cast<void>(data_seed);
+    if (arguments.empty()) return "memory is rewritten and no argument is";
+    if (arguments.rbegin()->first >= kArguments) return fmt::format("argument {} is rewritten", arguments.rbegin()->first);
+    if (!code.empty() && code.rbegin()->first >= program.program.code.size())
+      return fmt::format("the instruction at PC {} is rewritten, which is not there", code.rbegin()->first);
   }
   uint64_t steps = 0;
   std::string problem = Checker(configuration, program).run(step_limit, steps);

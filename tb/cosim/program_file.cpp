@@ -16,6 +16,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int kFormat = 1;
+constexpr int kFaultCodes = 8;
 constexpr std::array<std::string_view, 3> kImportNames = {"none", "normal", "shadow"};
 
 template <typename Names>
@@ -35,6 +36,40 @@ uint32_t hex_word(const Json& json) {
 
 std::string hex(uint32_t value) { return fmt::format("{:08x}", value); }
 
+// Older files have one fault, 0 for none.
+uint32_t faults_of(const Json& json) {
+  uint32_t faults = 0;
+  for (const Json& code : json.contains("fault") ? Json::array({json.at("fault")}) : json.at("faults")) {
+    const int number = code.get<int>();
+    if (number < 0 || number >= kFaultCodes) throw InputError(fmt::format("there is no fault {}", number));
+    if (number != 0) faults |= fault_bit(static_cast<FaultCode>(number));
+  }
+  return faults;
+}
+
+uint32_t number_in(const std::string& key) {
+  size_t used = 0;
+  const unsigned long value = std::stoul(key, &used);
+  if (used != key.size() || value > 0xffff) throw InputError("'" + key + "' is no number of an instruction or argument");
+  return static_cast<uint32_t>(value);
+}
+
+Json to_json(const Rewrite& rewrite) {
+  Json json = {{"code", Json::object()}, {"data_seed", rewrite.data_seed}, {"arguments", Json::object()}};
+  for (const auto& [pc, instruction] : rewrite.code) json["code"][std::to_string(pc)] = disassemble(instruction);
+  for (const auto& [number, value] : rewrite.arguments) json["arguments"][std::to_string(number)] = hex(value);
+  return json;
+}
+
+Rewrite rewrite_of(const Json& json) {
+  Rewrite rewrite;
+  for (const auto& [pc, line] : json.at("code").items())
+    rewrite.code[number_in(pc)] = assemble(line.get<std::string>() + "\n", "rewrite").code.at(0);
+  rewrite.data_seed = json.at("data_seed").get<uint64_t>();
+  for (const auto& [number, value] : json.at("arguments").items()) rewrite.arguments[number_in(number)] = hex_word(value);
+  return rewrite;
+}
+
 }  // namespace
 
 std::string to_json(const SavedProgram& saved) {
@@ -46,7 +81,9 @@ std::string to_json(const SavedProgram& saved) {
   json["units"] = program.units;
   json["seed"] = program.seed;
   json["profile"] = program.profile;
-  json["fault"] = static_cast<int>(program.fault);
+  json["faults"] = Json::array();
+  for (int code = 1; code < kFaultCodes; ++code)
+    if ((program.faults & fault_bit(static_cast<FaultCode>(code))) != 0) json["faults"].push_back(code);
   json["data_begin"] = program.data_begin;
   json["memory_bytes"] = program.memory_bytes;
   json["program_length"] = program.program_length;
@@ -62,6 +99,7 @@ std::string to_json(const SavedProgram& saved) {
                                {"block", hex(kernel.block)},
                                {"blocks", hex(kernel.blocks)},
                                {"import", kImportNames[static_cast<size_t>(kernel.import)]}});
+    if (kernel.rewrite) json["kernels"].back()["rewrite"] = to_json(*kernel.rewrite);
   }
   json["code"] = Json::array();
   for (const uint64_t instruction : program.program.code) json["code"].push_back(disassemble(instruction));
@@ -79,7 +117,7 @@ SavedProgram parse_saved_program(const std::string& text, const std::string& whe
     program.units = json.at("units").get<int>();
     program.seed = json.at("seed").get<uint64_t>();
     program.profile = json.at("profile").get<std::string>();
-    program.fault = static_cast<FaultCode>(json.at("fault").get<int>());
+    program.faults = faults_of(json);
     program.data_begin = json.at("data_begin").get<uint32_t>();
     program.memory_bytes = json.at("memory_bytes").get<uint32_t>();
     // Older files lack what follows, and mean exact limits, no restart and as many blocks as launches.
@@ -96,6 +134,7 @@ SavedProgram parse_saved_program(const std::string& text, const std::string& whe
       program.kernels.push_back({kernel.at("threads").get<uint32_t>(), hex_word(kernel.at("block")),
                                  static_cast<ImportKind>(number_of(kImportNames, kernel.at("import").get<std::string>())),
                                  kernel.at("pc").get<uint32_t>(), hex_word(kernel.value("blocks", launches))});
+      if (kernel.contains("rewrite")) program.kernels.back().rewrite = rewrite_of(kernel.at("rewrite"));
     }
     std::string code;
     for (const Json& line : json.at("code")) code += line.get<std::string>() + "\n";

@@ -26,6 +26,8 @@ struct ProgramProfile {
 
 /// The mix whose programs find pairs of weighted operands (arith/test_operands.hpp) in memory.
 inline constexpr std::string_view kOperandMix = "operands";
+/// The mix whose warps end in faults, several of them at about the same time.
+inline constexpr std::string_view kFaultMix = "faults";
 
 // clang-format off
 inline constexpr ProgramProfile kProgramProfiles[] = {
@@ -39,6 +41,7 @@ inline constexpr ProgramProfile kProgramProfiles[] = {
   {"launches",       6,   0,  0,  2,  3,  0,   1,   1,  0,  1,    {2,  2,  0,  2,  2,  1, 0},   33,     15,   8},
   {"arithmetic",     4, 16,  0,  1,  0,  1,   0,   0,  0,  0,    {1,  3,  0,  4,  9,  9, 0},   10,    120,   1},
   {"predicates",    12,   0,  0,  2,  1,  2,   3,   1,  0,  1,    {1, 12,  0,  3,  1,  0, 0},   80,     80,   2},
+  {kFaultMix,        1,   0,  0,  0,  0,  0,   0,   0,  0,  0,    {4,  0,  0,  3,  3,  1, 0},    0,    100,   1},
   {kOperandMix,      1,   0,  4,  0,  0,  0,   0,   0,  0,  0,    {1,  3,  0,  3,  7,  9, 0},    5,     20,   2},
 };
 // clang-format on

@@ -8,9 +8,10 @@ namespace {
 constexpr uint32_t kMostInstructions = 60000;
 constexpr uint32_t kFarJump = 20000;
 constexpr int kMostCalls = 40;
-// Programs end far below, and lanes reach twice as far as 2^31 from the least address of one.
-constexpr uint32_t kFarMemory = 1u << 22;
-constexpr uint32_t kFarLaneShifts = 20;  ///< 7 .. 26
+// Of a far address: a bit of it is set and one is clear from kFarBit on, so that it lies beyond any data and below the limit;
+// from kFarUpperBit on it is random; below it are the block's and the warp's bits, a bit of lines that are stored to, and the
+// word.
+constexpr uint32_t kFarBit = 22, kFarUpperBit = 17, kFarWarpBits = 5;
 // Of a loop of pairs, which stays in the smallest instruction cache.
 constexpr int kLeastPairOperations = 24, kMostPairOperations = 44;
 
@@ -89,7 +90,7 @@ void ProgramStatements::plain(int a, int b, std::optional<size_t> type) {
   if (has_operand(info, Operand::Rc)) i.x = static_cast<uint8_t>(source());
   if (has_operand(info, Operand::Px)) i.x = static_cast<uint8_t>(any_predicate());
   if (has_operand(info, Operand::Argument)) i.immediate = below(kArguments);
-  emit(i);
+  plain_at_.push_back(emit(i));
 }
 
 uint32_t ProgramStatements::related_word(uint32_t word) {
@@ -214,20 +215,52 @@ void ProgramStatements::access(bool store, uint32_t offset) {
   emit(i);
 }
 
-void ProgramStatements::far_memory() {
-  // What is stored there is nowhere, so loads have lines of their own, where memory reads as zero.
-  const bool store = chance(2);
-  const uint32_t line = ((below(1u << 31) >> below(8)) | kFarMemory) & ~(2 * kLineBytes - 1);
-  const uint32_t offset = chance(2) ? value() : 0;
-  emit("lane", kAddress);
-  if (chance(2)) {
-    emit_immediate("and", kAddress, kAddress, 15);
-    emit_immediate("shl", kAddress, kAddress, 2);
+void ProgramStatements::far_address(bool own, uint32_t spread) {
+  const int other = destination();
+  if (own) {
+    emit("block", kAddress);
+    emit_immediate("and", kAddress, kAddress, block_mask_);
+    emit_immediate("shl", kAddress, kAddress, kFarWarpBits);
+    emit("warp", other);
+    emit("iadd", kAddress, kAddress, other);
+    emit_immediate("shl", kAddress, kAddress, 7);
+    emit_immediate("iadd", kAddress, kAddress, kLineBytes);
   } else {
-    emit_immediate("shl", kAddress, kAddress, 7 + below(kFarLaneShifts));
+    emit_immediate("mov", kAddress, 0, below(1u << kFarWarpBits) << 7);
   }
-  emit_immediate("iadd", kAddress, kAddress, line + (store ? kLineBytes : 0) - offset);
-  access(store, offset);
+  const auto add = [&](const char* number, uint32_t mask, uint32_t shift) {
+    emit(number, other);
+    emit_immediate("and", other, other, mask);
+    emit_immediate("shl", other, other, shift);
+    emit("iadd", kAddress, kAddress, other);
+  };
+  add("lane", chance(2) ? 15 : 3, 2);
+  if (spread < 32) add(chance(2) ? "lane" : "warp", chance(2) ? 1 : 31, spread);
+}
+
+void ProgramStatements::far_memory() {
+  const bool own = chance(2);
+  const auto upper_bit = [this] { return chance(2) ? 31 : kFarUpperBit + below(32 - kFarUpperBit); };
+  const uint32_t spread = chance(2) ? upper_bit() : 32;
+  // What lanes or warps add must not carry, and one bit must be set and one clear so that the address lies between data and
+  // limit.
+  const uint32_t added = spread < 32 ? 31u << spread : 0;
+  uint32_t bits = ~added & (~0u << kFarBit);
+  const auto take = [&] {
+    uint32_t bit = 0;
+    do bit = 1u << (kFarBit + below(32 - kFarBit));
+    while ((bits & bit) == 0);
+    bits &= ~bit;
+    return bit;
+  };
+  const uint32_t set = take(), clear = take();
+  const uint32_t base = ((static_cast<uint32_t>(random()) & ~0u << kFarUpperBit & ~added) | set) & ~clear;
+  uint32_t flip = 0;
+  do flip = 1u << upper_bit();
+  while ((flip & (added | set | clear)) != 0);
+  far_address(own, spread);
+  const int accesses = 1 + static_cast<int>(below(4));
+  for (int n = 0; n < accesses; ++n) access(own && chance(2), base ^ (chance(2) ? flip : 0));
 }
 
 void ProgramStatements::memory() {
@@ -277,9 +310,45 @@ void ProgramStatements::rotate() {
   written_words_ = 0;
 }
 
+void ProgramStatements::begin_frame(int counter, int going, bool pad) {
+  frames_.push_back({counter, going, std::nullopt, {}});
+  if (!pad) return;
+  // A loop's pad lies in the way.
+  const size_t over = counter >= 0 ? emit("jany") : 0;
+  frames_.back().pad = here();
+  for (uint32_t n = 1 + below(3); n > 0; --n) plain();
+  frames_.back().leaves.push_back(emit("jany"));
+  if (counter >= 0) patch(over, here());
+}
+
+void ProgramStatements::end_frame() {
+  // Nothing is executed at these targets: an end reached is an end, however far beyond.
+  for (const size_t at : frames_.back().leaves) {
+    const uint32_t end = here(), most = 0xffff - end;
+    patch(at, end + (chance(4) ? 0 : chance(2) ? std::min(most, 1 + below(8)) : chance(2) ? below(most + 1) : most));
+  }
+  frames_.pop_back();
+}
+
+void ProgramStatements::leave() {
+  const Frame& frame = frames_.back();
+  if (frame.counter >= 0) {
+    emit_immediate("isub", frame.counter, frame.counter, 1, frame.going);
+    emit_immediate("igt", frame.going, frame.counter, 0);
+  }
+  Instruction i;
+  i.info = &instruction(chance(2) ? "jany" : "jnone");
+  i.guard = static_cast<uint8_t>(any_predicate());
+  i.guard_negated = chance(2);
+  if (frame.pad && chance(2)) i.immediate = *frame.pad;
+  const size_t at = emit(i);
+  if (i.immediate == 0) frames_.back().leaves.push_back(at);
+}
+
 void ProgramStatements::loop(int length, int loops, int entries) {
   const int counter = kDataRegisters + loops;
   const int going = kLoopPredicate + loops;
+  begin_frame(counter, going, chance(4));
   // Threads leave after different numbers of rounds.
   emit("lane", counter);
   emit_immediate("and", counter, counter, below(4));
@@ -291,10 +360,12 @@ void ProgramStatements::loop(int length, int loops, int entries) {
   emit_immediate("isub", counter, counter, 1, going);
   emit_immediate("igt", going, counter, 0);
   patch(start, here());
+  end_frame();
   written_words_ = 0;
 }
 
 void ProgramStatements::jump(int loops, int entries) {
+  if (!frames_.empty() && chance(2)) return leave();
   Instruction i;
   i.info = &instruction(chance(2) ? "jany" : "jnone");
   i.guard = static_cast<uint8_t>(any_predicate());
@@ -315,7 +386,14 @@ void ProgramStatements::jump(int loops, int entries) {
 void ProgramStatements::far_jump() {
   const size_t at = emit("jany");
   const uint32_t way = instruction_cache_bytes_ / 16;
-  filler(chance(8) ? below(kFarJump) : chance(2) ? way - here() % way : below(2 * way));
+  // From a PC that was executed just now to one that differs in one upper bit alone: it lies as far from the end of what has been
+  // executed as that from the twin.
+  const uint32_t twin = here() - std::min(here(), 1 + below(12));
+  const uint32_t distance = 1u << (9 + below(7));
+  if (chance(4) && (twin & distance) == 0 && twin + distance >= here())
+    filler(twin + distance - here());
+  else
+    filler(chance(8) ? below(kFarJump) : chance(2) ? way - here() % way : below(2 * way));
   patch(at, here());
 }
 
@@ -346,12 +424,14 @@ void ProgramStatements::functions() {
     const Call call = calls_.back();
     calls_.pop_back();
     if (profile_.far > 0 && chance(2)) filler(below(instruction_cache_bytes_ / 8));
+    begin_frame(-1, 0, chance(3));
     const uint32_t start = here();
     body(1 + static_cast<int>(below(8)), call.loops, call.entries + 1);
     // Deep stacks come from calls in calls.
     if (!chance(deep ? 16 : 2)) this->call(call.loops, call.entries + 1);
     if (chance(2)) emit("ret", 0, 0, 0, control_guard());
     patch(call.at, start | here() << 16);
+    end_frame();
   }
   in_function_ = false;
 }

@@ -61,14 +61,22 @@ class ProgramStatements : public ProgramEmitter {
   /// `st` or `ld` at r13 + offset.
   void access(bool store, uint32_t offset);
   void memory();
-  /// Loads and stores at addresses up to the told limit, far beyond what there is of memory.
+  /// Loads and stores at addresses up to the told limit, far beyond the program's data: in lines of the warp's own, or in lines
+  /// that nobody stores to. Addresses of the lanes, of the warps or of one access after the other differ in one upper bit.
   void far_memory();
+  /// r13 = what far addresses have below their upper bits; `spread`: an upper bit from which on lanes or warps differ, or 32.
+  void far_address(bool own, uint32_t spread);
   /// At the top level the words of the current slice are known from statement to statement; elsewhere a statement writes all that
   /// it reads.
   void ray(bool top);
   void rotate();
   void loop(int length, int loops, int entries);
   void jump(int loops, int entries);
+  /// Out of the innermost loop or function: beyond its end, or back to before its begin, and from there beyond its end.
+  void leave();
+  /// Begins and ends what leave() leaves. `pad`: code before it to which it may jump back.
+  void begin_frame(int counter, int going, bool pad);
+  void end_frame();
   /// Over instructions that are never executed, so that what follows lies in another line of the cache, or in the same set.
   void far_jump();
   void filler(uint32_t count);
@@ -86,6 +94,8 @@ class ProgramStatements : public ProgramEmitter {
   uint32_t shared_bytes_ = 1024;
   uint32_t pair_rounds_ = 1;
   bool far_memory_told_ = chance(4);
+  uint32_t block_mask_ = 1;       ///< bits of the block word that choose the kernel's words
+  std::vector<size_t> plain_at_;  ///< instructions that plain() has made: any other of its instructions could be there
   bool import_pending_ = false;
   int written_words_ = 0;  ///< words 0 .. n-1 of the current slice are defined
 
@@ -96,6 +106,13 @@ class ProgramStatements : public ProgramEmitter {
   std::vector<Call> calls_;  ///< whose functions are not there yet
 
  private:
+  /// A loop, with its registers, or a function, whose counter is -1.
+  struct Frame {
+    int counter, going;
+    std::optional<uint32_t> pad;
+    std::vector<size_t> leaves;  ///< jumps whose target lies beyond the end
+  };
+  std::vector<Frame> frames_;
   int call_sites_ = 0;
   bool in_function_ = false;
 };

@@ -13,7 +13,11 @@ constexpr uint32_t kMostDataBytes = 384 * 1024;
 constexpr uint32_t kFarLimit = 20000;
 constexpr uint32_t kLastRestart = 3000;  ///< cycle
 constexpr uint32_t kLengthOfPairRound = 16;
-constexpr uint32_t kFarLimits = 1u << 20;  ///< from the end of the address space
+constexpr uint32_t kFarLimits = 1u << 19;  ///< from the end of the address space
+constexpr uint32_t kLongestProgram = 0xfff0;
+constexpr uint32_t kLeastRaces = 16, kMostRaces = 48;
+constexpr uint32_t kEveryFault = 0xfe;
+constexpr uint32_t kLineInstructions = kLineBytes / 8;
 
 class Generator : public ProgramStatements {
  public:
@@ -24,6 +28,8 @@ class Generator : public ProgramStatements {
     result_.units = units;
     // Kernels of different units run at the same time, so that each must have words of its own.
     kernels_ = 1 + below(profile_.most_kernels + (units > 1 ? 3 * static_cast<uint32_t>(units) : 0));
+    if (profile_.name == kFaultMix) kernels_ = kLeastRaces + below(kMostRaces - kLeastRaces);
+    if (rewrites_) kernels_ = std::max(kernels_, 2u);
     if (units > 1)
       while (block_mask_ + 1 < kernels_) block_mask_ = block_mask_ * 2 + 1;
   }
@@ -31,11 +37,19 @@ class Generator : public ProgramStatements {
   RandomProgram make(int length) {
     choose_layout();
     pair_rounds_ = 1 + static_cast<uint32_t>(length) / kLengthOfPairRound;
-    if (chance(8)) result_.fault = static_cast<FaultCode>(1 + below(7));
     const int body_length = std::max(4, length * static_cast<int>(profile_.length_percent) / 100);
     if (chance(4)) filler(1 + below(chance(3) ? kFarLimit : 300));  // the program need not begin at 0
-    entry("main", body_length);
-    if (profile_.most_kernels > 1 && result_.fault == FaultCode::None && chance(2)) entry("second", body_length / 2);
+    if (profile_.name == kFaultMix) {
+      result_.program.entries["main"] = here();
+      for (uint32_t k = 0; k < kernels_; ++k) race();
+      result_.faults = kEveryFault;
+    } else {
+      if (chance(8)) fault_ = static_cast<FaultCode>(1 + below(7));
+      if (fault_ != FaultCode::None) result_.faults = fault_bit(fault_);
+      const bool second = profile_.most_kernels > 1 && fault_ == FaultCode::None && chance(2);
+      entry("main", body_length, !second);
+      if (second) entry("second", body_length / 2, true);
+    }
     result_.program.code = code_;
     choose_data();
     choose_limits();
@@ -80,7 +94,7 @@ class Generator : public ProgramStatements {
   // Limits beyond what there is: their upper bits count too. Faulty addresses and targets begin at them.
   void choose_limits() {
     const auto length = static_cast<uint32_t>(code_.size());
-    const uint32_t longest = std::min(0xfff0u, result_.memory_bytes / 8);
+    const uint32_t longest = std::max(length + 1, std::min(kLongestProgram, result_.memory_bytes / 8));
     result_.program_length = length + (runs_out_ || !chance(3) ? 0 : below(longest - length));
     result_.memory_limit = result_.memory_bytes + (more_memory_told_ ? (below(1u << 30) >> below(24)) * 4 : 0);
     if (far_memory_told_) result_.memory_limit = 0u - 4 * (64 + below(kFarLimits / 4));
@@ -94,11 +108,12 @@ class Generator : public ProgramStatements {
   }
 
   void choose_kernels() {
+    constexpr uint32_t kAllThreads = 5;
     const auto contents = static_cast<uint32_t>(configuration_.contents());
     const auto lanes = static_cast<uint32_t>(configuration_.cores);
     for (uint32_t k = 0; k < kernels_; ++k) {
       uint32_t threads = contents;
-      switch (below(6)) {
+      switch (profile_.name == kFaultMix ? kAllThreads : below(6)) {
         case 0:
           threads = 1 + below(contents);
           break;
@@ -111,16 +126,39 @@ class Generator : public ProgramStatements {
         default:
           break;
       }
-      const Entry& entry = entries_[below(static_cast<uint32_t>(entries_.size()))];
+      const auto entries = static_cast<uint32_t>(entries_.size());
+      const Entry& entry = entries_[profile_.name == kFaultMix ? k % entries : below(entries)];
       const ImportKind import = !entry.import ? ImportKind::None : chance(2) ? ImportKind::Normal : ImportKind::Shadow;
       const uint32_t block = result_.units > 1 ? (value() & ~block_mask_) | k : value();
       result_.kernels.push_back({threads, block, import, entry.pc, value()});
+      if (rewrites_ && k > 0 && !chance(3)) result_.kernels.back().rewrite = rewrite();
     }
+  }
+
+  // Data instructions become others. Where data and arguments lie stays.
+  Rewrite rewrite() {
+    Rewrite rewrite;
+    if (!chance(3)) {
+      const std::vector<size_t> places = plain_at_;
+      for (const size_t at : places) {
+        if (!chance(4)) continue;
+        plain();
+        rewrite.code[static_cast<uint32_t>(at)] = code_.back();
+        code_.pop_back();
+        plain_at_.pop_back();
+      }
+    }
+    if (!chance(3)) rewrite.data_seed = random() | 1;
+    for (uint32_t n = chance(2) ? 1 : 1 + below(kArguments); n > 0; --n) {
+      const uint32_t number = 2 + below(kArguments - 2);
+      rewrite.arguments[number] = value();
+    }
+    return rewrite;
   }
 
   void choose_stalls() {
     // Arithmetic need not wait for memory.
-    const bool calm = profile_.pairs > 0 ? !chance(4) : chance(4);
+    const bool calm = profile_.pairs > 0 || profile_.name == kFaultMix ? !chance(4) : chance(4);
     for (auto& style : result_.stalls.styles) style = calm ? StallStyle::None : static_cast<StallStyle>(below(kStallStyles));
   }
 
@@ -131,7 +169,7 @@ class Generator : public ProgramStatements {
     bool import;
   };
 
-  void entry(const char* name, int length) {
+  void entry(const char* name, int length, bool last) {
     const bool import = chance(2);
     result_.program.entries[name] = here();
     entries_.push_back({here(), import});
@@ -141,14 +179,54 @@ class Generator : public ProgramStatements {
     if (import && !chance(3)) take_import();
     body(length / 2, 0, 1);
     if (import_pending_) take_import();
-    if (result_.fault != FaultCode::None) fault();
+    if (fault_ != FaultCode::None) {
+      if (written_words_ >= kRayWords) rotate();  // what leaves may be under way when the fault comes
+      fault(fault_);
+    }
     if (runs_out_) return;
     body(length - length / 2, 0, 1);
+    for (uint32_t n = below(4); n > 0; --n) leave_predicate();
+    if (last && profile_.far > 0 && chance(6)) return far_end();
     emit("exit", 0, 0, 0, control_guard());
     functions();
   }
 
+  // At the last instructions that there can be.
+  void far_end() {
+    const size_t at = emit("jany");
+    functions();
+    const uint32_t place = kLongestProgram - 8 - below(8);
+    while (here() < place) code_.push_back(random());
+    patch(at, here());
+    for (uint32_t n = 1 + below(6); n > 0; --n) plain();
+    emit("exit");
+  }
+
+  int last_or_any_predicate() { return chance(3) ? kPredicates - 1 : 1 + static_cast<int>(below(kPredicates - 1)); }
+
+  // Set in every lane when the kernel ends, which the next one must not see.
+  void leave_predicate() {
+    const int r = source();
+    Instruction i;
+    i.info = &instruction("ieq");
+    i.rd = static_cast<uint8_t>(last_or_any_predicate());
+    i.ra = i.rb = static_cast<uint8_t>(r);
+    emit(i);
+  }
+
+  // Before the kernel has written any.
+  void read_predicate() {
+    Instruction i;
+    i.info = &instruction(chance(2) ? "por" : "pxor");
+    i.rd = static_cast<uint8_t>(free_predicate());
+    i.x = static_cast<uint8_t>(last_or_any_predicate());
+    i.rb = static_cast<uint8_t>(last_or_any_predicate());
+    if (chance(2)) i.guard = static_cast<uint8_t>(last_or_any_predicate()), i.guard_negated = true;
+    emit(i);
+  }
+
   void prologue() {
+    for (uint32_t n = below(4); n > 0; --n) read_predicate();
     for (int r = 0; r < kDataRegisters; ++r) {
       if (chance(3))
         emit("tid", r);
@@ -175,8 +253,8 @@ class Generator : public ProgramStatements {
     written_words_ = kIntersectionWords;
   }
 
-  void fault() {
-    switch (result_.fault) {
+  void fault(FaultCode code) {
+    switch (code) {
       case FaultCode::IllegalInstruction:
         for (;;) {
           const uint64_t word = random();
@@ -187,11 +265,7 @@ class Generator : public ProgramStatements {
       case FaultCode::PcOutsideProgram:
         runs_out_ = calls_.empty() && chance(2);
         if (runs_out_) return;
-        if (chance(2))
-          emit_immediate("jany", 0, 0, 0xffffu - below(16));
-        else
-          from_length_.push_back(emit_immediate("jany", 0, 0, below(2)));
-        return;
+        return jump_outside();
       case FaultCode::StackOverflow:
         emit_immediate("call", 0, 0, here() | 0xffff0000u);
         return;
@@ -204,7 +278,7 @@ class Generator : public ProgramStatements {
         const bool some = chance(2);
         const char* access = chance(2) ? "ld" : "st";
         const bool last_word = some && !more_memory_told_;  // lane 0 reads it
-        if (result_.fault == FaultCode::Misaligned) {
+        if (code == FaultCode::Misaligned) {
           emit("mov", kAddress, 0, kOwn);
           if (some)
             emit("lane", kAddress), emit_immediate("imul", kAddress, kAddress, 1 + below(3)),
@@ -223,14 +297,108 @@ class Generator : public ProgramStatements {
     }
   }
 
+  void jump_outside() {
+    if (chance(2))
+      emit_immediate("jany", 0, 0, 0xffffu - below(16));
+    else
+      from_length_.push_back(emit_immediate("jany", 0, 0, below(2)));
+  }
+
+  // ---- Faults of several warps at about the same time
+
+  // Two groups of warps, each with an arm of the program that ends in a fault of its own. Both arms lie in one line of the
+  // instruction cache, for which all warps wait, so that they begin at nearly the same time.
+  void race() {
+    entries_.push_back({here(), false});
+    const uint32_t mask = chance(2) ? warps_ - 1 : std::min(warps_ - 1, 1u);
+    const std::array<FaultCode, 2> codes = {any_fault(), any_fault()};
+    const int second = free_predicate();
+    emit_immediate("mov", 0, 0, value());
+    if (chance(2))
+      emit("lane", kOwn);
+    else
+      emit_immediate("mov", kOwn, 0, 0);
+    emit("warp", kAddress);
+    emit_immediate("and", kAddress, kAddress, mask);
+    emit_immediate("ieq", second, kAddress, below(warps_) & mask);
+    fill_stacks(codes, second);
+    while (here() % kLineInstructions != kLineInstructions - 1) emit("lane", 4);
+    const size_t branch = emit("jany", 0, 0, 0, second);
+    arm(codes[0]);
+    while (here() % kLineInstructions < kLineInstructions / 2) code_.push_back(random());
+    patch(branch, here());
+    arm(codes[1]);
+  }
+
+  FaultCode any_fault() { return static_cast<FaultCode>(1 + below(7)); }
+
+  // The stacks of a group that is to overflow; the other one's takes as long and stays empty.
+  void fill_stacks(const std::array<FaultCode, 2>& codes, int second) {
+    const auto control = [this](bool call) {
+      for (int n = 1; n < stack_depth_; ++n)
+        emit_immediate(call ? "call" : "jany", 0, 0, (here() + 1) | (call ? 0xffff0000u : 0));
+    };
+    const bool first_overflows = codes[0] == FaultCode::StackOverflow, second_overflows = codes[1] == FaultCode::StackOverflow;
+    if (first_overflows && second_overflows) return control(true);
+    if (!first_overflows && !second_overflows) return;
+    const size_t others = emit(first_overflows ? "jany" : "jnone", 0, 0, 0, second);
+    control(true);
+    const size_t join = emit("jany");
+    patch(others, here());
+    control(false);
+    patch(join, here());
+  }
+
+  void arm(FaultCode code) {
+    for (uint32_t n = below(3); n > 0; --n) {
+      static constexpr std::array<std::string_view, 3> kDelays = {"lane", "iadd", "fadd"};  // of different depths
+      emit(kDelays[below(kDelays.size())], 1);
+    }
+    race_fault(code);
+    emit("exit");
+  }
+
+  // r15 has the lane or 0.
+  void race_fault(FaultCode code) {
+    const char* access = chance(2) ? "ld" : "st";
+    if (code == FaultCode::Misaligned && chance(2))
+      emit_immediate(access, 0, kOwn, 1 + below(3));
+    else if (code == FaultCode::Misaligned || code == FaultCode::AddressOutsideMemory)
+      from_limit_.push_back(emit_immediate(access, 0, kOwn, 4 * below(4) + (code == FaultCode::Misaligned ? 1 + below(3) : 0)));
+    else if (code == FaultCode::PcOutsideProgram)
+      jump_outside();
+    else
+      fault(code);
+  }
+
   RandomProgram result_;
-  uint32_t kernels_ = 1;     ///< launches
-  uint32_t block_mask_ = 1;  ///< bits of the block word that choose the kernel's words
+  FaultCode fault_ = FaultCode::None;  ///< in which kernels of one end end
+  bool rewrites_ = chance(4);          ///< between kernels
+  uint32_t kernels_ = 1;               ///< launches
   std::vector<Entry> entries_;
   bool more_memory_told_ = chance(3) || far_memory_told_;
   bool runs_out_ = false;                         ///< the program ends without `exit`
   std::vector<size_t> from_length_, from_limit_;  ///< instructions whose immediate is relative to what the unit is told
 };
+
+void store_instruction(Memory& memory, uint32_t pc, uint64_t instruction) {
+  memory.store(pc * 8, static_cast<uint32_t>(instruction));
+  memory.store(pc * 8 + 4, static_cast<uint32_t>(instruction >> 32));
+}
+
+void fill_data(const RandomProgram& program, uint64_t seed, Memory& memory) {
+  // A saved program may be of a mix that is no more.
+  if (program.profile == kOperandMix) {
+    arith::OperandSource operands(seed);
+    for (uint32_t a = program.data_begin; a < program.memory_bytes; a += 8) {
+      const auto [first, second] = operands.next();
+      memory.store(a, first);
+      memory.store(a + 4, second);
+    }
+    return;
+  }
+  for (uint32_t a = program.data_begin; a < program.memory_bytes; a += 4) memory.store(a, random_word(mix(seed, 400, a)));
+}
 
 }  // namespace
 
@@ -267,23 +435,15 @@ uint32_t told_limit(const RandomProgram& program) { return std::max(program.memo
 
 void fill_memory(RandomProgram& program) {
   program.memory = Memory(program.memory_bytes);
+  program.memory.begin_far(program.seed);
   const std::vector<uint64_t>& code = program.program.code;
-  for (size_t i = 0; i < code.size(); ++i) {
-    program.memory.store(static_cast<uint32_t>(i * 8), static_cast<uint32_t>(code[i]));
-    program.memory.store(static_cast<uint32_t>(i * 8 + 4), static_cast<uint32_t>(code[i] >> 32));
-  }
-  // A saved program may be of a mix that is no more.
-  if (program.profile == kOperandMix) {
-    arith::OperandSource operands(program.seed);
-    for (uint32_t a = program.data_begin; a < program.memory_bytes; a += 8) {
-      const auto [first, second] = operands.next();
-      program.memory.store(a, first);
-      program.memory.store(a + 4, second);
-    }
-    return;
-  }
-  for (uint32_t a = program.data_begin; a < program.memory_bytes; a += 4)
-    program.memory.store(a, random_word(mix(program.seed, 400, a)));
+  for (size_t i = 0; i < code.size(); ++i) store_instruction(program.memory, static_cast<uint32_t>(i), code[i]);
+  fill_data(program, program.seed, program.memory);
+}
+
+void rewrite_memory(const RandomProgram& program, const Rewrite& rewrite, Memory& memory) {
+  for (const auto& [pc, instruction] : rewrite.code) store_instruction(memory, pc, instruction);
+  if (rewrite.data_seed != 0) fill_data(program, rewrite.data_seed, memory);
 }
 
 RandomProgram make_random_program(const Configuration& configuration, uint64_t seed, int length, int units,

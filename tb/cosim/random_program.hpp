@@ -4,6 +4,8 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +18,16 @@ namespace raypool {
 
 inline constexpr uint32_t kLineBytes = 64;  ///< of a cache
 
+/// What a host does between kernels, while the unit is idle: memory and arguments become others. It writes one argument at least,
+/// after which the unit must not use what its caches have of the memory.
+struct Rewrite {
+  std::map<uint32_t, uint64_t> code;       ///< [PC] instruction
+  uint64_t data_seed = 0;                  ///< the data are those of this seed; 0: they stay
+  std::map<uint32_t, uint32_t> arguments;  ///< [number] word
+};
+
+constexpr uint32_t fault_bit(FaultCode code) { return 1u << static_cast<uint32_t>(code); }
+
 /// A program and what it needs around it: the job of one run.
 struct RandomProgram {
   Program program;  ///< entries "main", and "second" when there are two kernels to launch
@@ -25,21 +37,22 @@ struct RandomProgram {
     uint32_t threads;
     uint32_t block;
     ImportKind import;
-    uint32_t pc = 0;      ///< entry
-    uint32_t blocks = 1;  ///< what the kernel is told of the number of blocks
+    uint32_t pc = 0;                      ///< entry
+    uint32_t blocks = 1;                  ///< what the kernel is told of the number of blocks
+    std::optional<Rewrite> rewrite = {};  ///< before its launch
   };
-  std::vector<Kernel> kernels;  ///< launched one after the other
+  std::vector<Kernel> kernels;  ///< launched one after the other; after a fault the unit is reset, and goes on with the next
   StallPlan stalls;
   int units = 1;  ///< compute units of the device; with several, each kernel has words of its own
 
   uint64_t seed = 0;
-  std::string profile;                ///< name of the mix of instructions
-  uint32_t data_begin = 0;            ///< byte address; random words from here to the end of memory
-  uint32_t memory_bytes = 0;          ///< size of memory
-  uint32_t program_length = 0;        ///< what the unit is told; beyond the code, if that lies there
-  uint32_t memory_limit = 0;          ///< what the unit is told; beyond memory, if that lies there
-  uint32_t restart = 0;               ///< cycle in which the unit is reset and everything begins anew; 0: never
-  FaultCode fault = FaultCode::None;  ///< in which the program ends, instead of `exit`
+  std::string profile;          ///< name of the mix of instructions
+  uint32_t data_begin = 0;      ///< byte address; random words from here to the end of memory
+  uint32_t memory_bytes = 0;    ///< size of memory
+  uint32_t program_length = 0;  ///< what the unit is told; beyond the code, if that lies there
+  uint32_t memory_limit = 0;    ///< what the unit is told; beyond memory, if that lies there
+  uint32_t restart = 0;         ///< cycle in which the unit is reset and everything begins anew; 0: never
+  uint32_t faults = 0;          ///< in one of which a kernel may end, instead of `exit`: fault_bit() of each
 };
 
 /// A program that shows one thing; the next seed shows another one. The same configuration and seed give the same program. Warps
@@ -55,6 +68,9 @@ uint32_t told_limit(const RandomProgram& program);
 
 /// Makes `program.memory` from its code, seed and data range. To be called after a change of one of them.
 void fill_memory(RandomProgram& program);
+
+/// Changes `memory` as the host does before a kernel.
+void rewrite_memory(const RandomProgram& program, const Rewrite& rewrite, Memory& memory);
 
 /// A word: small, random, or a float at one of the edges; `random` is 64 random bits.
 uint32_t random_word(uint64_t random);

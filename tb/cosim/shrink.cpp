@@ -25,6 +25,7 @@ class Shrinker {
       again |= stalls();
       again |= threads();
       again |= restart();
+      again |= rewrites();
     }
     return best_;
   }
@@ -102,6 +103,27 @@ class Shrinker {
     return attempt(std::move(program));
   }
 
+  bool rewrites() {
+    bool any = false;
+    for (size_t k = 0; k < best_.kernels.size(); ++k) {
+      if (!best_.kernels[k].rewrite) continue;
+      const auto without = [&](const auto& change) {
+        RandomProgram program = best_;
+        change(program.kernels[k].rewrite);
+        const bool done = attempt(std::move(program));
+        any |= done;
+        return done;
+      };
+      if (without([](auto& rewrite) { rewrite.reset(); })) continue;
+      if (best_.kernels[k].rewrite->data_seed != 0) without([](auto& rewrite) { rewrite->data_seed = 0; });
+      const Rewrite whole = *best_.kernels[k].rewrite;
+      for (const auto& each : whole.code) without([&](auto& rewrite) { rewrite->code.erase(each.first); });
+      for (const auto& each : whole.arguments)
+        if (best_.kernels[k].rewrite->arguments.size() > 1) without([&](auto& rewrite) { rewrite->arguments.erase(each.first); });
+    }
+    return any;
+  }
+
   const Configuration& configuration_;
   RandomProgram best_;
   const Fails& fails_;
@@ -121,18 +143,29 @@ RandomProgram without_instructions(const RandomProgram& program, size_t from, si
     return static_cast<uint32_t>(pc < from ? pc : pc < to ? from : pc - (to - from));
   };
   code.erase(code.begin() + static_cast<std::ptrdiff_t>(from), code.begin() + static_cast<std::ptrdiff_t>(to));
-  for (uint64_t& word : code) {
+  const auto move_targets = [&](uint64_t& word) {
     const Instruction i = unpack(word);
-    if (i.info == nullptr) continue;
+    if (i.info == nullptr) return;
     const bool target = has_operand(*i.info, Operand::Target), end = has_operand(*i.info, Operand::End);
-    if (!target && !end) continue;
+    if (!target && !end) return;
     // Addresses beyond the program mean "outside", not a place.
     const auto place = [&](uint32_t pc) { return pc <= program.program.code.size() ? moved(pc) : pc; };
     const uint32_t low = place(i.immediate & 0xffff), high = target && end ? place(i.immediate >> 16) : i.immediate >> 16;
     word = (word & ~uint64_t{0xffffffff}) | low | high << 16;
-  }
+  };
+  for (uint64_t& word : code) move_targets(word);
   for (auto& [name, pc] : result.program.entries) pc = moved(pc);
-  for (RandomProgram::Kernel& kernel : result.kernels) kernel.pc = moved(kernel.pc);
+  for (RandomProgram::Kernel& kernel : result.kernels) {
+    kernel.pc = moved(kernel.pc);
+    if (!kernel.rewrite) continue;
+    std::map<uint32_t, uint64_t> rewritten;
+    for (auto [pc, word] : kernel.rewrite->code) {
+      if (pc >= from && pc < to) continue;
+      move_targets(word);
+      rewritten[moved(pc)] = word;
+    }
+    kernel.rewrite->code = std::move(rewritten);
+  }
   fill_memory(result);
   return result;
 }

@@ -56,6 +56,7 @@ class LockstepUnitImpl : public LockstepUnit {
   void trace_on() override {}  // it always is
   const UnitTrace& trace() const override { return rtl_->trace(); }
   uint64_t counter(int number) override { return rtl_->counter(number); }
+  std::vector<Fault> faults() const override { return model_.device->faults(); }
   bool timed() const override { return rtl_->timed(); }
   void open_waveform(const std::string& path) override { rtl_->open_waveform(path); }
   const LockstepCounts& counts() const override { return counts_; }
@@ -66,10 +67,6 @@ class LockstepUnitImpl : public LockstepUnit {
       count_transfers(inputs);
       rtl_->clock(inputs);
       ++counts_.cycles;
-      if (fault_seen_) {
-        comparison_.fault(rtl_->outputs(), model_.device->outputs());  // the first one stays
-        return;
-      }
       model_.device->clock(inputs);
       check_cycle();
     } catch (const Mismatch& mismatch) {
@@ -134,9 +131,9 @@ class LockstepUnitImpl : public LockstepUnit {
     if (!trace.retired.empty()) last_progress_ = counts_.cycles;
     counts_.kernels += static_cast<uint64_t>(__builtin_popcount(out.kernel_done));
     if (out.fault.code != FaultCode::None) {
+      counts_.faults += fault_seen_ ? 0 : 1;
       fault_seen_ = true;
-      ++counts_.faults;
-      return;
+      return;  // it waits for a reset
     }
     if (out.idle && !was_idle_) {
       compare_counters(*rtl_, *model_.device);
@@ -240,7 +237,7 @@ class LockstepUnitImpl : public LockstepUnit {
   Model model_;
   LockstepCounts counts_;
   uint64_t kernels_started_ = 0;
-  bool fault_seen_ = false;  // both have stopped
+  bool fault_seen_ = false;  // of a unit of both, which has stopped
   bool was_idle_ = true;
   int64_t reads_ = 0;  // lines requested and not answered completely
   uint64_t last_progress_ = 0;

@@ -62,8 +62,8 @@ TEST_P(RtlMultiprocessor, AgreesWithTheArbitersInCppInEveryCycleOfRandomPrograms
   for (uint64_t seed = 1; seed <= 150; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     RandomProgram program = make_random_program(configuration(), seed, 60);
-    if (program.fault != FaultCode::None) continue;  // it would end before its last kernel
-    program.restart = 0;                             // what is counted below is counted from one reset on
+    if (program.faults != 0) continue;  // it would be reset before its last kernel
+    program.restart = 0;                // what is counted below is counted from one reset on
     std::mt19937_64 random(seed);
     const size_t distinct = program.kernels.size();
     for (size_t i = random() % (6 * units); i > 0; --i) {

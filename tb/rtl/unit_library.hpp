@@ -9,7 +9,7 @@
 namespace raypool {
 
 /// Raised when the meaning of compute_unit.hpp changes in a way that its sizes do not show.
-inline constexpr int kUnitInterfaceVersion = 2;
+inline constexpr int kUnitInterfaceVersion = 3;
 
 inline std::string unit_interface() {
   std::string text = "version " + std::to_string(kUnitInterfaceVersion) + ", sizes";
