@@ -109,7 +109,7 @@ OperandRange range_of(SlowOperation operation, Results results) {
   return operation == SlowOperation::Sqrt ? smallest_operands : largest_operands;
 }
 
-/// Exponents that bring the quotient of two numbers in 1 .. 2 to 2^126 .. 2^129, or to 2^-150 .. 2^-123; added to a and b.
+/// Exponents that bring the quotient of two numbers in 1 .. 2 to 2^125 .. 2^129, or to 2^-151 .. 2^-123; added to a and b.
 std::pair<uint32_t, uint32_t> exponents_of(Results results, uint32_t hash) {
   const int offset = static_cast<int>(hash % 32), choice = static_cast<int>(hash / 32);
   int a = 127, b = 127;
