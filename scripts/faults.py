@@ -6,7 +6,6 @@ With number 0 the copy is what rtl/ is. The number comes from the environment va
 
 import json
 import re
-import shutil
 import sys
 from pathlib import Path
 
@@ -78,13 +77,19 @@ def instrument(catalogue, rtl, output):
         if ports is None:
             raise Refused(f"rtl/{name}: its port list does not end with a line `);`")
         texts[name] = text[: ports.end()] + SELECTOR + text[ports.end() :]
-    shutil.rmtree(output, ignore_errors=True)
-    output.mkdir(parents=True)
-    for path in rtl.iterdir():
-        if path.suffix != ".v":
-            shutil.copy(path, output)
+    write_folder(output, texts | {path.name: path.read_text() for path in rtl.iterdir() if path.suffix in (".vh", ".vlt")})
+
+
+def write_folder(folder, texts):
+    """The folder has these files and no others; what is as it was is left alone, so that nothing is built again for it."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for path in folder.iterdir():
+        if path.name not in texts:
+            path.unlink()
     for name, text in texts.items():
-        (output / name).write_text(text)
+        path = folder / name
+        if not path.exists() or path.read_text() != text:
+            path.write_text(text)
 
 
 if __name__ == "__main__":
