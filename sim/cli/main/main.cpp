@@ -36,7 +36,7 @@ void add_unit(CLI::App& app, std::string& engine, std::string& library) {
   app.add_option("--engine", engine, "what stands in for the unit; native is for sim only")
       ->type_name("native|functional|model|rtl|lockstep")
       ->capture_default_str();
-  app.add_option("--unit-library", library, "Verilated unit (default: where make unit builds it)");
+  app.add_option("--unit-library", library, "Verilated unit (default: where raypool unit builds it)");
 }
 
 void add_scene(CLI::App& app, std::string& scene, std::string& size, std::string& view, ViewWords& look, double& detail) {
@@ -82,7 +82,8 @@ int run(int argc, char** argv) {
   sim_app->add_option("--units", sim.units, "compute units: 1, 2 or 4")->capture_default_str();
   sim_app->add_option("--depth", sim.depth, "1: eye and shadow rays only; up to 254: with reflections")->capture_default_str();
   sim_app->add_option("--traverser", sim.traverser, "timing of the traverser: static")->capture_default_str();
-  sim_app->add_option("--out", sim.out, "folder for the results (default: out/<what was run> beside the program)");
+  sim_app->add_option("--out", sim.out,
+                      "folder for the results (default: out/<what was run> beside the program; installed: in raypool-out)");
   sim_app->add_flag("--waves", sim.waves, "leave a waveform, waves.fst, too; rtl and lockstep only");
   sim_app->add_flag("--json", sim.json, "the report on standard output, and nothing else there");
   sim_app->add_flag("--quiet", sim.quiet, "no progress and no table");
@@ -217,8 +218,9 @@ int run(int argc, char** argv) {
   numerics_app->add_option("--mode", numerics.mode, "all, or one: ieee-exact, flush-newton1, ...")->capture_default_str();
   numerics_app->add_option("--size", numerics.size, "pictures, WIDTHxHEIGHT in pixels")->capture_default_str();
   numerics_app->add_option("--depth", numerics.depth, "of the pictures' rays")->check(CLI::Range(1, 254))->capture_default_str();
-  numerics_app->add_option("--out", numerics.out,
-                           "folder for numerics.json and plots (default: out/numerics beside the program)");
+  numerics_app->add_option(
+      "--out", numerics.out,
+      "folder for numerics.json and plots (default: out/numerics beside the program; installed: in raypool-out)");
   numerics_app->add_option("--synthesis", numerics.synthesis, "folder of synthesis reports (default: synth beside the program)");
   numerics_app->add_flag("--extremes", numerics.extremes, "the catalogue of hard cases, by mode and engine");
   numerics_app->add_flag("--catalogue", numerics.catalogue, "only list those cases, with what is expected of them");
