@@ -5,14 +5,15 @@
 #   insert: PATH, after: TEXT       the block goes behind the only line of the file that holds TEXT
 #   run            run, fails       commands that must succeed, or fail
 #   expect                          each line of the block is a line of what the last commands printed
-# and without a block: replace: PATH, OLD => NEW. Then looks at what the page does not show: the report, and a refused configuration.
+# and without a block: replace: PATH, OLD => NEW. Then looks at what the page does not show: the report, a refused
+# configuration, the set of configurations, the tests of random programs, and what Verilator warns of.
 set -eu -o pipefail
 cd "$(dirname "$0")/../.."
 root=$PWD
 mkdir -p "$1"
 folder=$(cd "$1" && pwd)
 tree=$folder/tree output=$folder/output.txt
-unset MAKEFLAGS MAKELEVEL MFLAGS RAYPOOL RAYPOOL_CONFIGS
+unset MAKEFLAGS MAKELEVEL MFLAGS BUILD RAYPOOL RAYPOOL_CONFIGS
 
 fail() {
   echo "FAILED: $*" >&2
@@ -100,4 +101,10 @@ take run 'build/raypool sim --scene cornell --size 8x8 --depth 1 --config boxes.
 grep -q '"box": *{' out/report.json || fail "out/report.json does not name the ALU box"
 take 'run, fails' "echo '{\"alus\": {\"box\": {\"depth\": 1}}}' > shallow.json; build/raypool config shallow.json"
 grep -q 'alus.box.depth is 1; it must be an integer from 2 to 32' "$output" || { cat "$output"; fail "a depth of 1 is not refused"; }
+take run 'build/raypool configurations'
+grep -q '; tid brh int flt slw box as count/latency/depth$' "$output" || { cat "$output"; fail "the set of configurations has no column for box"; }
+take run 'verilator --lint-only -Wall --default-language 1364-2005 -Irtl rtl/waivers.vlt --top-module multiprocessor rtl/*.v'
+[ ! -s "$output" ] || { cat "$output"; fail "Verilator warns of the page's module"; }
+take run 'scripts/configure.sh build ON -DRAYPOOL_UNIT_BENCHES=OFF; cmake --build build --target raypool_cosim_test'
+take run "build/tb/raypool_cosim_test --gtest_filter='RandomPrograms.*:Covering*'"
 echo "$new files, $inserted insertions, $ran runs, $expected expected lines, $replaced replacement as the page has them"

@@ -5,8 +5,9 @@ set -u -o pipefail
 build=$(realpath "$1")
 cd "$(dirname "$0")/../.." || exit 1
 unset MAKEFLAGS MAKELEVEL MFLAGS RAYPOOL
-log=$(mktemp)
-trap 'rm -f "$log"' EXIT
+folder=$(mktemp -d)
+log=$folder/log
+trap 'rm -rf "$folder"' EXIT
 
 # A folder that nobody can make gets one sentence that names BUILD=, and make's own line.
 if make run BUILD=/proc/none > "$log" 2>&1 || [ "$(wc -l < "$log")" != 2 ] || ! grep -q 'build folder "/proc/none" cannot be written: choose another one with BUILD=' "$log"; then
@@ -15,6 +16,17 @@ if make run BUILD=/proc/none > "$log" 2>&1 || [ "$(wc -l < "$log")" != 2 ] || ! 
   exit 1
 fi
 echo "ok: a build folder that cannot be made"
+
+# What compilers say is shown, and how far it is only where a line can be rewritten or time passes.
+mkdir "$folder/bin"
+printf '#!/bin/sh\nprintf "[1/2] Building a\\nx.cpp:1: error: e\\n[2/2] Linking b\\n"\nexit 1\n' > "$folder/bin/cmake"
+chmod +x "$folder/bin/cmake"
+if PATH=$folder/bin:$PATH scripts/build.sh "$folder" all 2> "$log" || [ "$(cat "$log")" != "x.cpp:1: error: e" ]; then
+  echo "FAILED: a build that fails:"
+  cat "$log"
+  exit 1
+fi
+echo "ok: a build that fails"
 
 read_only() {
   unshare --mount bash -eu -c 'root=$PWD
