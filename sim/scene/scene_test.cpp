@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "scene/mesh_builder.hpp"
+#include "scene/native_renderer.hpp"
 #include "scene/traversal.hpp"
 
 namespace raypool {
@@ -157,6 +158,98 @@ TEST(AutomaticView, LooksFromInsideARoomAndFromOutsideAtAnObject) {
   block_mesh.add_material("grey", {0.5f, 0.5f, 0.5f}, {});
   block_mesh.box({0, 0, 0}, {1, 1, 1});
   EXPECT_FALSE(inside(automatic_view(block).camera.eye, block.bounds()));
+}
+
+/// What the view shows of the scene at 48 x 48.
+NativeStatistics drawn(Scene& scene, const ViewChanges& changes, FrameBuffer& frame) {
+  const View view = automatic_view(scene, changes);
+  scene.camera = view.camera;
+  scene.light = view.light;
+  check_scene(scene, "test");
+  const MemoryImage image = build_memory(ray_kernel_program(), scene);
+  NativeOptions options;
+  options.width = options.height = 48;
+  NativeStatistics statistics;
+  frame = render_native(scene, image, Tracer(scene, image.material_base), options, &statistics);
+  return statistics;
+}
+
+TEST(AutomaticView, ShowsLitSurfacesOfWhateverThereIs) {
+  struct Case {
+    const char* name;
+    bool from_inside;
+    void (*make)(MeshBuilder&);
+  };
+  const Case cases[] = {
+      {"a triangle", false,
+       [](MeshBuilder& m) {
+         m.triangle({-1, -1, 0}, {1, -1, 0}, {0, 1, 0});
+       }},
+      {"its back", false,
+       [](MeshBuilder& m) {
+         m.triangle({-1, -1, 0}, {0, 1, 0}, {1, -1, 0});
+       }},
+      {"a ball on a floor", false,
+       [](MeshBuilder& m) {
+         m.sphere({0, 1, 0}, 1, 30);
+         m.quad({-4, 0, 4}, {4, 0, 4}, {4, 0, -4}, {-4, 0, -4});
+       }},
+      {"a room with a box in it", true,
+       [](MeshBuilder& m) {
+         m.room({0, 0, 0}, {6, 3, 5});
+         m.box({1, 0, 1}, {2, 0.9, 3});
+       }},
+      {"the same with walls that face outwards", true,
+       [](MeshBuilder& m) {
+         m.box({0, 0, 0}, {6, 3, 5});
+         m.box({1, 0, 1}, {3, 1.6, 3});
+       }},
+      {"an empty room", true,
+       [](MeshBuilder& m) {
+         m.room({0, 0, 0}, {6, 3, 5});
+       }},
+      {"a corridor", true,
+       [](MeshBuilder& m) {
+         m.room({0, 0, 0}, {2, 2.4, 28});
+         for (double z = 3.5; z < 25; z += 3.5) m.box({0, 0, z}, {0.25, 2.4, z + 0.2});
+       }},
+  };
+  for (const Case& c : cases) {
+    SCOPED_TRACE(c.name);
+    Scene scene;
+    MeshBuilder mesh(scene, 1);
+    mesh.add_material("grey", {0.5f, 0.5f, 0.5f}, {});
+    c.make(mesh);
+    FrameBuffer frame(48, 48);
+    const RayCounts rays = drawn(scene, {}, frame).ray_counts;
+    EXPECT_EQ(inside(scene.camera.eye, scene.bounds()), c.from_inside);
+    EXPECT_LT(rays.eye.ended, rays.eye.traced * (c.from_inside ? 1 : 8) / 10) << "nothing to be seen";
+    EXPECT_LT(rays.shadow.futile, rays.shadow.traced / 2) << "most of it in the dark";
+    const View again = automatic_view(scene);
+    EXPECT_EQ(again.camera.eye, scene.camera.eye);
+    EXPECT_EQ(again.light.position, scene.light.position);
+  }
+}
+
+TEST(AutomaticView, KeepsWhatIsGivenAndChoosesTheRest) {
+  Scene room = make_room(0.05);
+  FrameBuffer frame(48, 48);
+  ViewChanges changes;
+  changes.eye = Vec3{1, 1.6f, 1};
+  RayCounts rays = drawn(room, changes, frame).ray_counts;
+  EXPECT_EQ(room.camera.eye, *changes.eye);
+  EXPECT_LT(rays.shadow.futile, rays.shadow.traced / 2);
+  changes.look_at = Vec3{5, 1, 3};
+  changes.fov = 75.0f;
+  changes.light = Vec3{4, 2.5f, 3};
+  changes.up = Vec3{0, 0, 1};
+  rays = drawn(room, changes, frame).ray_counts;
+  EXPECT_EQ(room.camera.direction, (Vec3{4, -0.6f, 2}));
+  EXPECT_EQ(room.camera.fov, 75);
+  EXPECT_EQ(room.camera.up, *changes.up);
+  EXPECT_EQ(room.light.position, *changes.light);
+  changes.look_at = changes.eye;
+  EXPECT_THROW(automatic_view(room, changes), InputError);
 }
 
 class ViewFile : public ::testing::Test {
