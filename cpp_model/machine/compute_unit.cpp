@@ -9,6 +9,8 @@ std::vector<Fault> ComputeUnit::faults() const {
   return fault.code == FaultCode::None ? std::vector<Fault>() : std::vector<Fault>{fault};
 }
 
+Signal ComputeUnit::signal(const std::string& /*scope*/, const std::string& /*name*/) const { return {}; }
+
 void ComputeUnit::open_waveform(const std::string& path) {
   throw std::runtime_error(
       path + ": this engine writes no waveforms; use engine rtl or lockstep with a unit built by scripts/verilate.sh --trace");

@@ -172,6 +172,12 @@ inline constexpr int kIssued = 32;   ///< + Unit: tasks issued
 inline constexpr int kCount = 40;
 }  // namespace counter
 
+/// A signal inside Verilated RTL: where its value stands, as Verilator keeps it. No data: the engine has no such signal.
+struct Signal {
+  const void* data = nullptr;
+  uint32_t bits = 0;
+};
+
 class ComputeUnit {
  public:
   virtual ~ComputeUnit() = default;
@@ -202,6 +208,10 @@ class ComputeUnit {
   /// Trace of the current cycle. Filled only after trace_on(); costs time.
   virtual void trace_on() {}
   virtual const UnitTrace& trace() const = 0;
+
+  /// A signal of the instance `scope` (such as "gen_unit[0].compute_unit"); tb/rtl/probes.vlt lists those there are. Its data is
+  /// that of the present cycle and stays where it is.
+  virtual Signal signal(const std::string& scope, const std::string& name) const;
 
   virtual uint64_t counter(int number) = 0;  ///< see namespace counter; summed over the units
   /// False for an engine that has no notion of time; its cycles and counters of time mean nothing.

@@ -10,7 +10,6 @@ namespace {
 
 constexpr uint8_t kInstructionId = 16;  // of a read of the instruction side
 constexpr uint8_t kLastBeat = 3;        // of a line
-constexpr uint64_t kAhead = 2;          // cycles from IBuf to Dispatch, and from IBuf to IArb
 
 constexpr size_t index(Unit unit) { return static_cast<size_t>(unit); }
 
@@ -23,7 +22,8 @@ CycleUnit::CycleUnit(const Configuration& configuration, const Memory& memory)
       mem_(configuration),
       ray_(configuration),
       instruction_cache_(configuration),
-      issues_(static_cast<size_t>(configuration.warps)) {
+      issues_(static_cast<size_t>(configuration.warps)),
+      timings_(static_cast<size_t>(configuration.warps)) {
   for (size_t type = 0; type < kUnits; ++type) {
     const AluConfiguration& alu = configuration.alus[type];
     slots_[type].count = static_cast<uint32_t>(alu.count);
@@ -63,6 +63,7 @@ void CycleUnit::reset(uint32_t program_length, uint32_t memory_limit) {
   outputs_ = UnitOutputs{};
   signals_ = outputs_.signals();
   trace_ = UnitTrace{};
+  std::fill(timings_.begin(), timings_.end(), Timing{});
   present(signals());
 }
 
@@ -235,6 +236,10 @@ void CycleUnit::fetch(uint64_t until) {
 void CycleUnit::plan_fetch(uint32_t warp, uint64_t cycle, bool past_current) {
   const FunctionalCore::Fetch fetch = core_.next_fetch(warp, past_current);
   fetch_pc_[warp] = fetch.pc;
+  if (tracing_) {
+    timings_[warp].fetch_pc = fetch.pc;
+    timings_[warp].fetch_cycle = cycle + fetch.pops + 1;
+  }
   if (fetch.pc >= program_length_) {
     planned_faults_.push_back({cycle + fetch.pops, {FaultCode::PcOutsideProgram, warp, fetch.pc}});
     faulty_ = attention_ = true;

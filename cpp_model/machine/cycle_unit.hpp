@@ -55,7 +55,23 @@ class CycleUnit final : public ComputeUnit {
   bool instruction_under_way(uint32_t warp) const { return (idle_ >> warp & 1) == 0; }
   const FunctionalCore& core() const { return core_; }
 
+  // What goes on inside, for reports.
+  uint64_t now() const { return now_; }  ///< cycles clocked
+  /// When a warp's instructions get on; kept after trace_on() only.
+  struct Timing {
+    uint64_t fetch_cycle = 0;  ///< from which on it wants the instruction cache, unless the PC is outside the program
+    uint64_t want_cycle = 0;   ///< from which on issue() wants its ALU
+    uint32_t fetch_pc = 0;     ///< that it wants from the instruction cache
+  };
+  const Timing& timing(uint32_t warp) const { return timings_[warp]; }
+  bool launch_waits() const { return waiting_; }
+  uint32_t active_warps() const { return active_; }
+  const MemAlu& mem() const { return mem_; }
+  const RayAlu& ray() const { return ray_; }
+  int ray_task() const { return ray_task_; }  ///< the warp whose task arrives at the ray ALU in this cycle, or -1
+
  private:
+  static constexpr uint64_t kAhead = 2;  // cycles from IBuf to Dispatch, and from IBuf to IArb
   static constexpr uint32_t kRing = 64;  // cycles ahead for which something can be planned; the deepest ALU has 32 stages
   struct Planned {
     uint32_t retired = 0;    // warps whose instruction is done in this cycle
@@ -162,6 +178,7 @@ class CycleUnit final : public ComputeUnit {
   bool tracing_ = false;
   UnitTrace trace_;
   std::vector<Issue> issues_;
+  std::vector<Timing> timings_;
 };
 
 }  // namespace raypool

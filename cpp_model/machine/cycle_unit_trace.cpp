@@ -22,6 +22,7 @@ void CycleUnit::record_issue(uint32_t warp, const DecodedInstruction& instructio
   issue.px = core_.predicate(warp, instruction.x & 15);
   issue.pb = core_.predicate(warp, instruction.rb);
   issue.predicate = 0;
+  timings_[warp].want_cycle = now_ + kAhead;
 }
 
 void CycleUnit::record_result(uint32_t warp, const Step& step) {

@@ -50,15 +50,8 @@ void MemAlu::add_store(Task& task, uint32_t address, uint32_t value) {
   quad.mask = static_cast<uint8_t>(quad.mask | 1u << word);
 }
 
-bool MemAlu::fetching(uint32_t line) const {
-  for (uint32_t bits = busy_ & ~filled_; bits != 0; bits &= bits - 1) {
-    if (mshr_[lowest(bits)].line == line) return true;
-  }
-  return false;
-}
-
 bool MemAlu::storing(StoreEvent& event) const {
-  if (!access_.valid || !access_.any || !access_.store || fetching(access_.number >> 2)) return false;
+  if (!access_.store || !decide().accepts) return false;
   const Quadword& quad = tasks_[access_.warp].quadwords[lowest(access_.served)];
   event.warp = access_.warp;
   event.address = quad.number << 4;
@@ -67,58 +60,98 @@ bool MemAlu::storing(StoreEvent& event) const {
   return true;
 }
 
-// What becomes of the quadword in the access stage; it takes miss-status holding registers and pushes requests.
-MemAlu::Outcome MemAlu::access() {
-  Outcome outcome;
-  if (!access_.any) return outcome;
-  const uint32_t line = access_.number >> 2;
-  Set& set = set_of(line);
-  if (access_.way >= 0) set.older = static_cast<uint8_t>(access_.way == 0);
+MemAlu::Registers MemAlu::registers() const {
+  Registers r{};
+  r.pass = pass_.valid;
+  r.pass_warp = pass_.warp;
+  r.access = access_.valid;
+  r.access_warp = access_.warp;
+  r.access_quad = access_.number;
+  r.park = parking_;
+  r.done = done_ != 0;
+  r.end_warp = end_warp_;
+  r.queued = queued_;
+  r.parked = parked_;
+  r.losers = losers_;
+  r.next = next_.valid;
+  r.next_kind = static_cast<uint32_t>(next_.kind);
+  r.next_warp = next_.warp;
+  r.next_mshr = next_.mshr;
+  r.privilege = privilege_;
+  r.privilege_warp = privilege_warp_;
+  r.attempt = attempt_;
+  r.busy = busy_;
+  r.filled = filled_;
+  r.queue_count = queue_count_;
+  return r;
+}
 
-  if (!access_.store && access_.way >= 0) {
-    hits_ += access_.kind == Kind::New;
-    outcome.gone = true;
-    return outcome;
+// What becomes of the quadword in the access stage.
+MemAlu::Decision MemAlu::decide() const {
+  Decision decision;
+  if (!access_.valid || !access_.any) return decision;
+  const uint32_t line = access_.number >> 2;
+  const Set& set = set_of(line);
+  decision.access = true;
+  decision.found = access_.way >= 0;
+  if (!access_.store && decision.found) {
+    decision.hit = true;
+    return decision;
   }
   uint32_t locked = 0;
   for (uint32_t bits = busy_; bits != 0; bits &= bits - 1) {
-    Mshr& mshr = mshr_[lowest(bits)];
-    if ((filled_ >> lowest(bits) & 1) == 0 && mshr.line == line) {
-      mshr.waiters |= 1u << access_.warp;
-      misses_ += !access_.store && access_.kind == Kind::New;
-      return outcome;
+    const uint32_t number = lowest(bits);
+    const Mshr& mshr = mshr_[number];
+    if ((filled_ >> number & 1) == 0 && mshr.line == line) {
+      decision.match = true;
+      decision.mshr = number;
+      return decision;
     }
     if ((mshr.line & set_mask_) == (line & set_mask_)) locked |= 1u << mshr.way;
   }
   if (access_.store) {
+    decision.accepts = true;
+    return decision;
+  }
+  const bool allowed = !privilege_ || privilege_warp_ == access_.warp;
+  const uint32_t free = ~busy_ & ((1u << mshrs_) - 1);
+  decision.refuses = !allowed || free == 0 || locked == 3;
+  if (decision.refuses) return decision;
+  decision.allocates = true;
+  decision.mshr = lowest(free);
+  decision.way = (locked >> set.older & 1) != 0 ? 1u - set.older : set.older;
+  return decision;
+}
+
+// The access takes miss-status holding registers and pushes requests.
+MemAlu::Decision MemAlu::access() {
+  const Decision decision = decide();
+  if (!decision.access) return decision;
+  const uint32_t line = access_.number >> 2;
+  const uint32_t bit = 1u << access_.warp;
+  if (decision.found) set_of(line).older = static_cast<uint8_t>(access_.way == 0);
+  const bool first_try = !access_.store && access_.kind == Kind::New;
+  hits_ += first_try && decision.hit;
+  misses_ += first_try && !decision.hit;
+  stores_ += decision.accepts;
+  MemoryRequest request;
+  if (decision.match) {
+    mshr_[decision.mshr].waiters |= bit;
+  } else if (decision.accepts) {
     const Quadword& quad = tasks_[access_.warp].quadwords[lowest(access_.served)];
-    MemoryRequest request;
     request.write = true;
     request.address = quad.number << 4;
     request.data = quad.data;
     request.mask = quad.mask;
     push(request);
-    ++stores_;
-    outcome.gone = true;
-    return outcome;
+  } else if (decision.allocates) {
+    mshr_[decision.mshr] = {line, bit, decision.way};
+    busy_ |= 1u << decision.mshr;
+    request.address = line << 6;
+    request.id = static_cast<uint8_t>(decision.mshr);
+    push(request);
   }
-  misses_ += access_.kind == Kind::New;
-  const bool allowed = !privilege_ || privilege_warp_ == access_.warp;
-  const uint32_t free = ~busy_ & ((1u << mshrs_) - 1);
-  if (!allowed || free == 0 || locked == 3) {
-    outcome.refused = true;
-    return outcome;
-  }
-  const uint32_t number = lowest(free);
-  const uint32_t way = (locked >> set.older & 1) != 0 ? 1u - set.older : set.older;
-  mshr_[number] = {line, 1u << access_.warp, way};
-  busy_ |= 1u << number;
-  MemoryRequest request;
-  request.address = line << 6;
-  request.id = static_cast<uint8_t>(number);
-  push(request);
-  outcome.allocated = true;
-  return outcome;
+  return decision;
 }
 
 // The beat that waits is written.
@@ -211,10 +244,10 @@ void MemAlu::clock(const Inputs& inputs) {
   parking_ = false;
   bool pass_end_of_privileged = false;
   if (access_valid) {
-    const Outcome outcome = access();
-    left_ = (access_.first ? access_.left : left_) & ~(outcome.gone ? access_.served : 0);
-    refused_ = (access_.first ? access_.refused : refused_) | (outcome.refused ? access_.served : 0);
-    allocated_ = outcome.allocated || (!access_.first && allocated_);
+    const Decision outcome = access();
+    left_ = (access_.first ? access_.left : left_) & ~(outcome.gone() ? access_.served : 0);
+    refused_ = (access_.first ? access_.refused : refused_) | (outcome.refuses ? access_.served : 0);
+    allocated_ = outcome.allocates || (!access_.first && allocated_);
     end_warp_ = access_.warp;
     if (access_.last) {
       if (left_ == 0) {

@@ -66,6 +66,29 @@ class MemAlu {
   /// The quadword that is stored in this cycle, if any.
   bool storing(StoreEvent& event) const;
 
+  /// What becomes of the access of this cycle: nothing, or hit, refuses or accepts, or it joins the register `mshr` that
+  /// matches, or allocates `mshr`.
+  struct Decision {
+    bool access = false;
+    bool found = false;  ///< its line is in the cache
+    bool match = false;
+    bool hit = false, allocates = false, refuses = false, accepts = false;
+    uint32_t mshr = 0, way = 0;
+    bool gone() const { return hit || accepts; }
+  };
+  Decision decide() const;
+
+  /// Registers as the RTL names them, for reports. What belongs to a valid means something only while it is set.
+  struct Registers {
+    bool pass, access, park, done, next, privilege, attempt;
+    uint32_t pass_warp, access_warp, access_quad, end_warp;
+    uint32_t queued, parked, losers, next_kind, next_warp, next_mshr, privilege_warp;
+    uint32_t busy, filled, queue_count;
+  };
+  Registers registers() const;
+  uint32_t mshr_line(uint32_t number) const { return mshr_[number].line; }
+  uint32_t mshr_waiters(uint32_t number) const { return mshr_[number].waiters; }
+
   void clock(const Inputs& inputs);
 
   uint64_t hits() const { return hits_; }
@@ -110,15 +133,10 @@ class MemAlu {
     std::array<bool, 2> valid{};
     uint8_t older = 0;
   };
-  struct Outcome {
-    bool gone = false, refused = false, allocated = false;
-  };
-
   Quadword& quadword(Task& task, uint32_t number);
   Set& set_of(uint32_t line) { return sets_[line & set_mask_]; }
   const Set& set_of(uint32_t line) const { return sets_[line & set_mask_]; }
-  bool fetching(uint32_t line) const;
-  Outcome access();
+  Decision access();
   void push(const MemoryRequest& request) { queue_[queue_count_++] = request; }
   void refill();
   void select(Next& next);

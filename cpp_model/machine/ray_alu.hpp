@@ -67,10 +67,19 @@ class RayAlu {
   /// Cycles in which it was not ready().
   uint64_t unready() const { return unready_; }
 
- private:
+  /// Which set is a warp's input, current and output.
   struct Roles {
     uint8_t input = 0, current = 1, output = 2;
   };
+  const Roles& roles(uint32_t warp) const { return roles_[warp]; }
+  /// Registers as the RTL names them, for reports. What belongs to a valid means something only while it is set.
+  struct Registers {
+    bool hold, write;
+    uint32_t step, write_set, full, busy, parked_in, parked_out;
+  };
+  Registers registers() const { return {is(kHold), is(kWrite), step_, write_set_, full_, busy_, parked_input_, parked_output_}; }
+
+ private:
   // The registers of a bit each are bits of one word, as most cycles only ask whether any of several is set.
   static constexpr uint32_t kPorts = signal::kImportRequest | signal::kExport | signal::kFrame;
   static constexpr uint32_t kHold = 1u << 16, kResult = 1u << 17, kResultLast = 1u << 18, kFault = 1u << 19, kWrite = 1u << 20;

@@ -7,8 +7,10 @@
 namespace raypool::lockstep {
 namespace {
 
-constexpr const char* kMemoryModules = "rtl/data_cache.v, rtl/request_queue.v, rtl/mem_alu.v, rtl/memory_arbiter.v";
-constexpr const char* kRayModules = "rtl/ray_alu.v, rtl/ray_import.v, rtl/ray_export.v, rtl/ray_memory.v";
+constexpr const char* kMemoryModules = "rtl/mem_alu.v, rtl/data_cache.v, rtl/memory_arbiter.v";
+constexpr const char* kFetchModules = "rtl/instruction_cache.v, rtl/memory_arbiter.v";
+constexpr const char* kImportModules = "rtl/ray_import.v, rtl/ray_alu.v, rtl/import_arbiter.v";
+constexpr const char* kExportModules = "rtl/ray_export.v, rtl/ray_alu.v, rtl/ray_memory.v";
 constexpr const char* kLaunchModules = "rtl/launcher.v, rtl/compute_unit.v";
 
 // A row of a table of what differs.
@@ -39,6 +41,8 @@ std::string beat_rows(const Beat& rtl, const Beat& model) {
 std::string retired_line(const char* who, const RetireEvent& event) {
   return fmt::format("  {:<5} PC {:>5}: {}\n", who, event.pc, instruction_text(event.instruction));
 }
+
+bool is_fetch(const MemoryRequest& request) { return !request.write && (request.id & 31) == 16; }
 
 template <typename Event>
 bool before(const Event& a, const Event& b) {
@@ -78,20 +82,20 @@ void Comparison::trace(const UnitTrace& rtl, const UnitTrace& model) {
       rtl.stores, model.stores, [this](const auto& r, const auto& m) { store(r, m); }, other_cycle("stores", kMemoryModules));
   pair_up(
       rtl.ray_writes, model.ray_writes, [this](const auto& r, const auto& m) { ray_write(r, m); },
-      other_cycle("writes ray memory", kRayModules));
+      other_cycle("writes ray memory", "rtl/ray_alu.v"));
   pair_up(
       rtl.retired, model.retired, [this](const auto& r, const auto& m) { retirement(r, m); },
       [this](const auto& event, bool in_rtl) { only_one(event, in_rtl); });
 }
 
 void Comparison::only_one(const RetireEvent& event, bool in_rtl) const {
-  Configuration with_everything;  // as it has been executed, the machine has it
-  with_everything.fma = true;
-  const DecodedInstruction instruction = decode(event.instruction, with_everything);
+  const DecodedInstruction instruction = decode(event.instruction, configuration_);
   throw Mismatch{fmt::format("warp {} retires an instruction in this cycle in {}, and not in {}", event.warp,
                              in_rtl ? "the RTL" : "the model", in_rtl ? "the model" : "the RTL"),
                  retired_line(in_rtl ? "RTL" : "model", event),
-                 "time: rtl/fetch_arbiter.v, rtl/instruction_buffer.v, " + module_of(&instruction),
+                 instruction.legal() && unit_info(instruction.info->unit).timed_by_events()
+                     ? result_files(instruction, configuration_)
+                     : "rtl/fetch_arbiter.v, rtl/instruction_buffer.v, rtl/dispatcher.v",
                  Context::Warp,
                  event.unit,
                  event.warp};
@@ -124,13 +128,13 @@ void Comparison::retirement(const RetireEvent& rtl, const RetireEvent& model) {
       const size_t lane = static_cast<size_t>(__builtin_ctz(mask));
       if (rtl.data[lane] == model.data[lane]) continue;
       throw differs("the register result differs", lane_table(issue, lanes_, rtl.data.data(), model.data.data()),
-                    module_of(issue.instruction), Context::Instruction);
+                    result_files(*issue.instruction, configuration_), Context::Instruction);
     }
     counts_->thread_results += static_cast<uint64_t>(__builtin_popcount(model.mask));
   } else if (issue.instruction->writes_predicate) {
     if (rtl.predicate != model.predicate) {
-      throw differs("the predicate result differs", masks(rtl.predicate, model.predicate), module_of(issue.instruction),
-                    Context::Operands);
+      throw differs("the predicate result differs", masks(rtl.predicate, model.predicate),
+                    result_files(*issue.instruction, configuration_), Context::Operands);
     }
     counts_->thread_results += static_cast<uint64_t>(lanes_);
   }
@@ -173,8 +177,43 @@ void Comparison::fault(const UnitOutputs& rtl, const UnitOutputs& model) const {
       rtl.fault.pc != model.fault.pc) {
     throw Mismatch{"the faults differ in this cycle",
                    "  RTL:   " + fault_text(rtl.fault) + "\n  model: " + fault_text(model.fault) + "\n",
-                   "rtl/compute_unit.v and the block that found it", Context::Unit};
+                   "rtl/compute_unit.v, rtl/instruction_buffer.v", Context::Unit};
   }
+}
+
+// Of a side that requests nothing there is nothing to show.
+void Comparison::memory_request(const UnitOutputs& rtl, const UnitOutputs& model) {
+  const bool both = rtl.memory_request_valid && model.memory_request_valid;
+  const MemoryRequest &r = rtl.memory_request, &m = model.memory_request;
+  const bool same =
+      !both || (r.write == m.write && r.address == m.address &&
+                (r.write ? r.id >> 5 == m.id >> 5 && r.mask == m.mask && same_words(r.data, m.data, m.mask) : r.id == m.id));
+  if (rtl.memory_request_valid == model.memory_request_valid && same) return;
+
+  std::string details = row("valid", rtl.memory_request_valid, model.memory_request_valid);
+  const auto line = [&](const char* name, const std::function<std::string(const MemoryRequest&)>& text) {
+    details += row(name, rtl.memory_request_valid ? text(r) : "-", model.memory_request_valid ? text(m) : "-");
+  };
+  const auto of_write = [&](const char* name, const std::function<std::string(const MemoryRequest&)>& text) {
+    line(name, [&](const MemoryRequest& request) { return request.write ? text(request) : "-"; });
+  };
+  const bool writes = (rtl.memory_request_valid && r.write) || (model.memory_request_valid && m.write);
+  const bool fetches = (rtl.memory_request_valid && is_fetch(r)) || (model.memory_request_valid && is_fetch(m));
+  line("kind", [](const MemoryRequest& request) {
+    return std::string(request.write ? "write" : is_fetch(request) ? "read of instructions" : "read of data");
+  });
+  line("address", [](const MemoryRequest& request) { return fmt::format("{:08x}", request.address); });
+  line("id", [](const MemoryRequest& request) {
+    return request.write ? fmt::format("unit {}", unit_of_id(request.id))
+                         : fmt::format("{} (unit {})", request.id & 31, unit_of_id(request.id));
+  });
+  if (writes) {
+    of_write("mask", [](const MemoryRequest& request) { return mask_text(request.mask, kBeatWords); });
+    for (size_t i = 0; i < kBeatWords; ++i) {
+      of_write(fmt::format("word {}", i).c_str(), [i](const MemoryRequest& request) { return word_text(request.data[i]); });
+    }
+  }
+  throw Mismatch{"the memory requests differ in this cycle", details, fetches ? kFetchModules : kMemoryModules, Context::Unit};
 }
 
 void Comparison::outputs(const UnitOutputs& rtl, const UnitOutputs& model) const {
@@ -188,22 +227,7 @@ void Comparison::outputs(const UnitOutputs& rtl, const UnitOutputs& model) const
                        row("unit_idle", rtl.unit_idle, model.unit_idle) + row("idle", rtl.idle, model.idle),
                    kLaunchModules, Context::Unit};
   }
-  const MemoryRequest &r = rtl.memory_request, &m = model.memory_request;
-  const bool same_request =
-      !rtl.memory_request_valid || (r.write == m.write && r.address == m.address &&
-                                    (r.write ? r.mask == m.mask && same_words(r.data, m.data, m.mask) : r.id == m.id));
-  if (rtl.memory_request_valid != model.memory_request_valid || !same_request) {
-    std::string details = row("valid", rtl.memory_request_valid, model.memory_request_valid);
-    if (rtl.memory_request_valid && model.memory_request_valid) {
-      details +=
-          row("write", r.write, m.write) + row("address", fmt::format("{:08x}", r.address), fmt::format("{:08x}", m.address));
-      if (r.write && m.write)
-        details += row("mask", mask_text(r.mask, kBeatWords), mask_text(m.mask, kBeatWords)) + beat_rows(r.data, m.data);
-      else
-        details += row("id", int{r.id}, int{m.id});
-    }
-    throw Mismatch{"the memory requests differ in this cycle", details, kMemoryModules, Context::Unit};
-  }
+  memory_request(rtl, model);
   if (rtl.import_request_valid != model.import_request_valid ||
       (rtl.import_request_valid &&
        (rtl.import_request_kind != model.import_request_kind || rtl.import_request_unit != model.import_request_unit))) {
@@ -211,7 +235,7 @@ void Comparison::outputs(const UnitOutputs& rtl, const UnitOutputs& model) const
                    row("valid", rtl.import_request_valid, model.import_request_valid) +
                        row("kind", static_cast<int>(rtl.import_request_kind), static_cast<int>(model.import_request_kind)) +
                        row("unit", rtl.import_request_unit, model.import_request_unit),
-                   kRayModules, Context::Unit};
+                   kImportModules, Context::Unit};
   }
   if (rtl.export_valid != model.export_valid ||
       (rtl.export_valid &&
@@ -219,7 +243,7 @@ void Comparison::outputs(const UnitOutputs& rtl, const UnitOutputs& model) const
     throw Mismatch{"the exported beats differ in this cycle",
                    row("valid", rtl.export_valid, model.export_valid) + row("last", rtl.export_last, model.export_last) +
                        row("unit", rtl.export_unit, model.export_unit) + beat_rows(rtl.export_data, model.export_data),
-                   kRayModules, Context::Unit};
+                   kExportModules, Context::Unit};
   }
   if (rtl.frame_valid != model.frame_valid ||
       (rtl.frame_valid &&
@@ -228,7 +252,7 @@ void Comparison::outputs(const UnitOutputs& rtl, const UnitOutputs& model) const
                           row("pixel", word_text(rtl.frame.pixel), word_text(model.frame.pixel));
     static constexpr std::array<const char*, 3> kColors = {"red", "green", "blue"};
     for (size_t i = 0; i < 3; ++i) details += row(kColors[i], word_text(rtl.frame.rgb[i]), word_text(model.frame.rgb[i]));
-    throw Mismatch{"the frame contributions differ in this cycle", details, kRayModules, Context::Unit};
+    throw Mismatch{"the frame contributions differ in this cycle", details, kExportModules, Context::Unit};
   }
 }
 

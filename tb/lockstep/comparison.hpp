@@ -15,8 +15,9 @@ namespace raypool::lockstep {
 class Comparison {
  public:
   /// `issue` gives the model's instruction under way of a unit's warp. `counts` must outlive the comparison.
-  Comparison(int lanes, std::function<const CycleUnit::Issue&(uint32_t unit, uint32_t warp)> issue, LockstepCounts& counts)
-      : lanes_(lanes), issue_(std::move(issue)), counts_(&counts) {}
+  Comparison(const Configuration& configuration, std::function<const CycleUnit::Issue&(uint32_t unit, uint32_t warp)> issue,
+             LockstepCounts& counts)
+      : configuration_(configuration), lanes_(configuration.cores), issue_(std::move(issue)), counts_(&counts) {}
 
   /// Retirements, stores, writes of ray memory.
   void trace(const UnitTrace& rtl, const UnitTrace& model);
@@ -29,8 +30,10 @@ class Comparison {
   void retirement(const RetireEvent& rtl, const RetireEvent& model);
   void only_one(const RetireEvent& event, bool in_rtl) const;
   void store(const StoreEvent& rtl, const StoreEvent& model);
+  static void memory_request(const UnitOutputs& rtl, const UnitOutputs& model);
   void ray_write(const RayWriteEvent& rtl, const RayWriteEvent& model);
 
+  Configuration configuration_;
   int lanes_;
   std::function<const CycleUnit::Issue&(uint32_t, uint32_t)> issue_;
   LockstepCounts* counts_;

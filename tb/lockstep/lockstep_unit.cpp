@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "lockstep/comparison.hpp"
+#include "lockstep/inspection.hpp"
 #include "lockstep/text.hpp"
 #include "machine/model.hpp"
 
@@ -28,8 +29,10 @@ class LockstepUnitImpl : public LockstepUnit {
         rtl_(std::move(rtl)),
         model_(make_model(configuration, memory, rtl_->units())),
         histories_(warps_ * model_.units.size()),
+        inspection_(configuration, *rtl_, model_.units),
         comparison_(
-            lanes_, [this](uint32_t unit, uint32_t warp) -> const CycleUnit::Issue& { return model_.units[unit]->issue(warp); },
+            configuration,
+            [this](uint32_t unit, uint32_t warp) -> const CycleUnit::Issue& { return model_.units[unit]->issue(warp); },
             counts_) {
     rtl_->trace_on();
     model_.device->trace_on();
@@ -38,6 +41,7 @@ class LockstepUnitImpl : public LockstepUnit {
   void reset(uint32_t program_length, uint32_t memory_limit) override {
     rtl_->reset(program_length, memory_limit);
     model_.device->reset(program_length, memory_limit);
+    inspection_.reset(program_length);
     kernels_started_ = 0;
     fault_seen_ = false;
     was_idle_ = true;
@@ -49,6 +53,7 @@ class LockstepUnitImpl : public LockstepUnit {
   void set_argument(int index, uint32_t value) override {
     rtl_->set_argument(index, value);
     model_.device->set_argument(index, value);
+    inspection_.argument_written();
   }
 
   uint32_t units() const override { return rtl_->units(); }
@@ -60,14 +65,18 @@ class LockstepUnitImpl : public LockstepUnit {
   bool timed() const override { return rtl_->timed(); }
   void open_waveform(const std::string& path) override { rtl_->open_waveform(path); }
   const LockstepCounts& counts() const override { return counts_; }
+  std::string uninspected() const override { return inspection_.missing(); }
+  std::vector<Finding> inside() const override { return inspection_.findings(); }
 
   void clock(const UnitInputs& inputs) override {
     if (!report_.empty()) throw LockstepDifference(report_);
     try {
       count_transfers(inputs);
+      inspection_.advance(inputs);
       rtl_->clock(inputs);
       ++counts_.cycles;
       model_.device->clock(inputs);
+      inspection_.check();
       check_cycle();
     } catch (const Mismatch& mismatch) {
       counts_.differences = 1;
@@ -226,8 +235,15 @@ class LockstepUnitImpl : public LockstepUnit {
     return text + last_lines(mismatch);
   }
 
+  // At most three files, those of what was found inside before those that the kind of difference suggests.
   std::string last_lines(const Mismatch& mismatch) const {
-    return "  look at: " + mismatch.module + "\n  so far " + to_string(counts_);
+    std::string text, files;
+    for (const Finding& finding : inside()) {
+      const uint64_t ago = model_.units[0]->now() - finding.cycle;
+      text += fmt::format("  inside, {}: {}\n", ago == 0 ? "in this cycle" : fmt::format("{} cycles before", ago), finding.text);
+      files += finding.files + ", ";
+    }
+    return text + "  look at: " + first_files(files + mismatch.module, 3) + "\n  so far " + to_string(counts_);
   }
 
   LockstepOptions options_;
@@ -242,6 +258,8 @@ class LockstepUnitImpl : public LockstepUnit {
   int64_t reads_ = 0;  // lines requested and not answered completely
   uint64_t last_progress_ = 0;
   std::vector<History> histories_;  // [unit][warp]
+  Inspection inspection_;
+
   std::string report_;
   Comparison comparison_;
 };

@@ -9,8 +9,10 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "config/configuration.hpp"
+#include "lockstep/mismatch.hpp"
 #include "machine/compute_unit.hpp"
 #include "machine/memory.hpp"
 
@@ -53,6 +55,10 @@ struct LockstepDifference : std::runtime_error {
 class LockstepUnit : public ComputeUnit {
  public:
   virtual const LockstepCounts& counts() const = 0;
+  /// What was first not as it should be inside the RTL since reset(); empty as long as nothing is.
+  virtual std::vector<lockstep::Finding> inside() const = 0;
+  /// The signal for want of which the inside is not looked at; empty if it is.
+  virtual std::string uninspected() const = 0;
 };
 
 /// Wraps `rtl`, whose trace it switches on, and a golden model of the same configuration and number of units. The model reads

@@ -267,6 +267,12 @@ INSTANTIATE_TEST_SUITE_P(
         PortCase{"write_data",
                  [](UnitOutputs& out) { out.memory_request.data[1] ^= 1; },
                  {"memory requests differ", "word 1", "<-- differs", "data_cache.v"}},
+        PortCase{"write_alone",
+                 [](UnitOutputs& out) { out.memory_request_valid = out.memory_request_valid && !out.memory_request.write; },
+                 {"memory requests differ", "kind", "write", "00000400", "word 0", "-    "}},
+        PortCase{"read_alone",
+                 [](UnitOutputs& out) { out.memory_request_valid = out.memory_request_valid && out.memory_request.write; },
+                 {"memory requests differ", "read of instructions", "00000000", "16 (unit 0)", "rtl/instruction_cache.v"}},
         PortCase{"write_mask", [](UnitOutputs& out) { out.memory_request.mask &= 7; }, {"memory requests differ"}},
         PortCase{"write_address", [](UnitOutputs& out) { out.memory_request.address ^= 64; }, {"memory requests differ"}},
         PortCase{"export_data",
@@ -307,7 +313,7 @@ TEST(Lockstep, ARetirementThatComesACycleLateIsFound) {
     for (const RetireEvent& event : now) (event.pc == 6 && event.warp == 1 ? late : trace.retired).push_back(event);
   };
   expect_parts(fixture.report(),
-               {"warp 1 retires an instruction in this cycle in the model, and not in the RTL", "PC     6: and", "time:"});
+               {"warp 1 retires an instruction in this cycle in the model, and not in the RTL", "PC     6: and", "fetch_arbiter.v"});
 }
 
 TEST(Lockstep, AnOutputThatComesACycleLateIsFound) {

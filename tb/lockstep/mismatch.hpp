@@ -1,4 +1,5 @@
-// What a comparison throws when RTL and model differ; the lockstep adds where and when, and makes the report.
+// What a comparison throws when RTL and model differ, and what the inspection finds inside; the lockstep makes the report of
+// them.
 #pragma once
 
 #include <cstdint>
@@ -20,6 +21,13 @@ struct Mismatch {
   std::string module;   ///< files of rtl/ to look at
   Context context = Context::Unit;
   uint32_t unit = 0, warp = 0;  ///< meaningful unless the context is Unit
+};
+
+/// What is not as it should be inside the RTL.
+struct Finding {
+  uint64_t cycle = 0;  ///< of the model
+  std::string files;   ///< of rtl/, the likeliest first
+  std::string text;    ///< one sentence
 };
 
 }  // namespace raypool::lockstep

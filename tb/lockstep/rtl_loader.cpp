@@ -78,6 +78,7 @@ class LoadedUnit : public ComputeUnit {
   void clock(const UnitInputs& inputs) override { unit_->clock(inputs); }
   void trace_on() override { unit_->trace_on(); }
   const UnitTrace& trace() const override { return unit_->trace(); }
+  Signal signal(const std::string& scope, const std::string& name) const override { return unit_->signal(scope, name); }
   uint64_t counter(int number) override { return unit_->counter(number); }
   bool timed() const override { return unit_->timed(); }
   void open_waveform(const std::string& path) override { unit_->open_waveform(path); }

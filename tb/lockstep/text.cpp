@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
+#include <vector>
 
 #include "isa/assembler.hpp"
 
@@ -18,10 +20,38 @@ std::string mask_text(uint32_t mask, int lanes) { return fmt::format("{:0{}b}", 
 
 std::string instruction_text(uint64_t encoding) { return disassemble(encoding); }
 
-std::string module_of(const DecodedInstruction* instruction) {
-  if (instruction == nullptr || !instruction->legal()) return "rtl/instruction_buffer.v, rtl/pc_stack.v";
-  return fmt::format("rtl/{}_alu.v; if other instructions of this ALU are right, its operands: rtl/dispatcher.v, rtl/warp.v",
-                     kUnitNames[static_cast<size_t>(instruction->info->unit)]);
+std::string result_files(const DecodedInstruction& instruction, const Configuration& configuration) {
+  const std::string_view name = instruction.info->mnemonic;
+  switch (instruction.info->unit) {
+    case Unit::Flt: {
+      const bool arithmetic = name == "fadd" || name == "fsub" || name == "fmul" || name == "ffma";
+      const char* block = !arithmetic         ? "float_convert"
+                          : configuration.fma ? "float_fma"
+                          : name == "fmul"    ? "float_multiplier"
+                                              : "float_adder";
+      return fmt::format("rtl/{}.v, rtl/float_lane.v, rtl/flt_alu.v", block);
+    }
+    case Unit::Slw:
+      return fmt::format("rtl/{}.v, rtl/slow_prepare.v, rtl/slow_lane.v",
+                         configuration.slow_unit == SlowUnit::Exact ? "slow_exact" : "slow_newton");
+    case Unit::Mem:
+      return "rtl/mem_alu.v, rtl/data_cache.v";
+    case Unit::Ray:
+      return "rtl/ray_memory.v, rtl/ray_alu.v";
+    default:
+      return fmt::format("rtl/{}_alu.v", kUnitNames[static_cast<size_t>(instruction.info->unit)]);
+  }
+}
+
+std::string first_files(const std::string& files, size_t most) {
+  std::vector<std::string> kept;
+  for (size_t begin = 0; begin <= files.size() && kept.size() < most;) {
+    const size_t end = std::min(files.find(", ", begin), files.size());
+    const std::string file = files.substr(begin, end - begin);
+    if (std::find(kept.begin(), kept.end(), file) == kept.end()) kept.push_back(file);
+    begin = end + 2;
+  }
+  return fmt::format("{}", fmt::join(kept, ", "));
 }
 
 std::string fault_text(const Fault& fault) {

@@ -12,6 +12,7 @@
 #include "rtl/unit_library.hpp"
 #include "unit_parameters.h"
 #include "verilated.h"
+#include "verilated_sym_props.h"
 #if VM_TRACE
 #include "verilated_fst_c.h"
 #endif
@@ -62,6 +63,9 @@ class RtlUnit : public ComputeUnit {
     if (waveform_) waveform_->close();
 #endif
     top_->final();
+    // Its scopes leave the thread's context, which may by now be that of another unit.
+    Verilated::threadContextp(&context_);
+    top_.reset();
   }
 
   void reset(uint32_t program_length, uint32_t memory_limit) override {
@@ -129,6 +133,14 @@ class RtlUnit : public ComputeUnit {
       sum += top_->counter_o;
     }
     return sum;
+  }
+
+  Signal signal(const std::string& scope, const std::string& name) const override {
+    // Verilator's look-up is not const, though it changes nothing.
+    auto* found = const_cast<VerilatedScope*>(context_.scopeFind(("multiprocessor.multiprocessor." + scope).c_str()));
+    const VerilatedVar* variable = found == nullptr ? nullptr : found->varFind(name.c_str());
+    if (variable == nullptr) return {};
+    return {variable->datap(), static_cast<uint32_t>(variable->packed().elements())};
   }
 
   bool timed() const override { return true; }

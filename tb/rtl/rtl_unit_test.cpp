@@ -52,6 +52,8 @@ TEST_P(RtlUnit, AgreesWithTheModelOnRandomPrograms) {
     } catch (const std::exception& error) {
       FAIL() << "seed " << seed << ": " << error.what();
     }
+    EXPECT_EQ(unit->uninspected(), "");
+    for (const lockstep::Finding& finding : unit->inside()) ADD_FAILURE() << "seed " << seed << ": " << finding.text;
     sum += unit->counts();
   }
   std::cout << to_string(sum) << "\n";

@@ -1,0 +1,119 @@
+// The memory ALU with its cache, miss-status holding registers, sequencer and request queue: register by register as the model
+// has them, and what the access stage makes of them.
+#include <fmt/format.h>
+
+#include "lockstep/inspection.hpp"
+#include "machine/bits.hpp"
+
+namespace raypool::lockstep {
+
+void UnitInspection::check_memory_alu() {
+  constexpr const char* kAlu = "rtl/mem_alu.v";
+  const MemAlu& mem = model_->mem();
+  // What is idle on both sides needs no closer look.
+  if (!mem.active() && (mem_.pass_q.value() | mem_.access_valid_q.value() | sequencer_.next_valid_q.value()) == 0) {
+    expect(w_.data_request.value(), 0, kAlu, "memory ALU, request");
+    expect(w_.mem_fault.value(), 0, kAlu, "memory ALU, fault");
+    return;
+  }
+  const MemAlu::Registers r = mem.registers();
+  expect(w_.mem_fault.value(), mem.fault() != FaultCode::None, kAlu, "memory ALU, fault");
+  check_access();
+  check_miss_status();
+  check_sequencer();
+  expect(mem_.pass_q.value(), r.pass, kAlu, "memory ALU, a pass is looked up");
+  if (r.pass) expect(mem_.pass_warp_q.value(), r.pass_warp, kAlu, "memory ALU, warp of the pass");
+  expect(mem_.done_q.value(), r.done, kAlu, "memory ALU, done");
+  expect(mem_.park_q.value(), r.park, kAlu, "memory ALU, parks a warp");
+  if (r.done || r.park) expect(mem_.end_warp_q.value(), r.end_warp, kAlu, "memory ALU, warp at the end of a pass");
+  expect(mem_.queue_count.value(), r.queue_count, "rtl/request_queue.v, rtl/mem_alu.v", "memory ALU, requests that wait");
+  if (r.queue_count == 0) return;
+  const MemoryRequest& request = mem.request();
+  bool same = (w_.data_request_write.value() != 0) == request.write && w_.data_request_address.value() == request.address;
+  if (request.write) {
+    same = same && w_.data_request_mask.value() == request.mask;
+    for (uint32_t i = 0; i < kBeatWords; ++i) {
+      if ((request.mask >> i & 1) != 0) same = same && w_.data_request_data.word(i) == request.data[i];
+    }
+  } else {
+    same = same && w_.data_request_id.value() == request.id;
+  }
+  if (!same) find("rtl/mem_alu.v, rtl/request_queue.v, rtl/data_cache.v", "memory ALU: the request is another one");
+}
+
+// The access stage: its registers, and what the cache and its miss-status holding registers say to it.
+void UnitInspection::check_access() {
+  constexpr const char* kAlu = "rtl/mem_alu.v";
+  const MemAlu::Registers r = model_->mem().registers();
+  const MemAlu::Decision decision = model_->mem().decide();
+  expect(mem_.access_valid_q.value(), r.access, kAlu, "memory ALU, an access");
+  if (r.access) expect(mem_.access_warp_q.value(), r.access_warp, kAlu, "memory ALU, warp of the access");
+  expect(mem_.access.value(), decision.access, kAlu, "memory ALU, an access with lanes");
+  if (!decision.access || mem_.access.value() == 0) return;
+  expect(cache_.quad_q.value(), r.access_quad, kAlu, "memory ALU, quadword of the access");
+  const char* cache = argument_written_ ? "rtl/data_cache.v, rtl/mem_alu.v, rtl/compute_unit.v" : "rtl/data_cache.v";
+  expect(cache_.found.value(), decision.found, cache, "data cache, the line is in it");
+  if (!decision.hit)
+    expect(cache_.match.value(), decision.match, "rtl/miss_status.v, rtl/data_cache.v", "the line is being fetched");
+  if (!findings_.empty()) return;  // what follows is made from these
+  const char* status = "rtl/data_cache.v, rtl/miss_status.v";
+  expect(mem_.hit.value(), decision.hit, cache, "data cache, hit");
+  expect(mem_.accepts.value(), decision.accepts, status, "data cache, accepts the store");
+  expect(mem_.allocates.value(), decision.allocates, status, "data cache, takes a miss-status holding register");
+  expect(mem_.refuses.value(), decision.refuses, status, "data cache, refuses");
+  if (decision.allocates) {
+    expect(cache_.push_id_o.value(), decision.mshr, "rtl/miss_status.v, rtl/data_cache.v", "number of the free register");
+    expect(cache_.victim.value(), decision.way, status, "way for the line");
+  }
+  if (decision.hit) check_loaded(r.access_warp);
+}
+
+// The words that the lanes of a load get from the cache.
+void UnitInspection::check_loaded(uint32_t warp) {
+  const CycleUnit::Issue& issue = model_->issue(warp);
+  if (issue.instruction == nullptr || !issue.instruction->writes_register) return;
+  for (uint32_t lanes = mem_.access_served_q.value() & issue.mask; lanes != 0; lanes &= lanes - 1) {
+    const uint32_t lane = lowest(lanes);
+    const uint32_t word = (issue.a[lane] + issue.instruction->immediate) >> 2 & 3;
+    if (mem_.access_word_q.bits(lane * 2, 2) != word)
+      return find("rtl/mem_alu.v",
+                  fmt::format("memory ALU: lane {} takes another word of the quadword than its address says", lane));
+    if (mem_.quad_data.word(word) != issue.data[lane])
+      return find("rtl/data_cache.v, rtl/mem_alu.v", fmt::format("data cache: {:08x} for lane {}, memory has {:08x}",
+                                                                 mem_.quad_data.word(word), lane, issue.data[lane]));
+  }
+}
+
+void UnitInspection::check_miss_status() {
+  constexpr const char* kFiles = "rtl/miss_status.v, rtl/data_cache.v";
+  const MemAlu& mem = model_->mem();
+  const MemAlu::Registers r = mem.registers();
+  expect(miss_.busy_q.value(), r.busy, kFiles, "miss-status holding registers that are busy");
+  expect(miss_.filled_q.value(), r.filled, kFiles, "miss-status holding registers whose line has come");
+  for (uint32_t busy = r.busy; busy != 0; busy &= busy - 1) {
+    const uint32_t number = lowest(busy);
+    expect(miss_.line_q.bits(number * 26, 26), mem.mshr_line(number), kFiles, "miss-status holding register, line");
+    expect(miss_.waiters_q.bits(number * warps_, warps_), mem.mshr_waiters(number), kFiles,
+           "miss-status holding register, waiters");
+  }
+}
+
+void UnitInspection::check_sequencer() {
+  constexpr const char* kFiles = "rtl/memory_sequencer.v, rtl/mem_alu.v";
+  const MemAlu::Registers r = model_->mem().registers();
+  expect(sequencer_.queued_q.value(), r.queued, kFiles, "memory sequencer, new tasks");
+  expect(sequencer_.parked_q.value(), r.parked, kFiles, "memory sequencer, parked warps");
+  expect(sequencer_.loser_q.value(), r.losers, kFiles, "memory sequencer, losers");
+  expect(sequencer_.next_valid_q.value(), r.next, kFiles, "memory sequencer, a pass is prepared");
+  if (r.next) {
+    expect(sequencer_.next_kind_q.value(), r.next_kind, kFiles, "memory sequencer, kind of the pass");
+    expect(sequencer_.next_warp_q.value(), r.next_warp, kFiles, "memory sequencer, warp of the pass");
+    if (r.next_kind == 1) expect(sequencer_.next_mshr_q.value(), r.next_mshr, kFiles, "memory sequencer, register of the pass");
+  }
+  expect(sequencer_.privilege_q.value(), r.privilege, kFiles, "memory sequencer, privilege");
+  if (!r.privilege) return;
+  expect(sequencer_.privilege_warp_q.value(), r.privilege_warp, kFiles, "memory sequencer, warp with the privilege");
+  expect(sequencer_.attempt_q.value(), r.attempt, kFiles, "memory sequencer, attempt of the privileged warp");
+}
+
+}  // namespace raypool::lockstep

@@ -1,0 +1,90 @@
+// The ray ALU with its import and export engines: register by register as the model has them, and the packages that come and go.
+#include <fmt/format.h>
+
+#include "lockstep/inspection.hpp"
+#include "machine/bits.hpp"
+
+namespace raypool::lockstep {
+namespace {
+
+constexpr const char* kAlu = "rtl/ray_alu.v";
+constexpr const char* kImport = "rtl/ray_import.v, rtl/ray_alu.v, rtl/import_arbiter.v";
+constexpr const char* kExport = "rtl/ray_export.v, rtl/ray_alu.v, rtl/port_arbiter.v";
+constexpr uint32_t kLastBeat = kIntersectionBeats - 1;  // carries one word
+
+}  // namespace
+
+// Beats belong to the threads of the launch in their order.
+void UnitInspection::advance_import(const UnitTransfers& given) {
+  if (before_.import_beat && import_beat_++ == kLastBeat) {
+    import_beat_ = 0;
+    ++import_thread_;
+  }
+  if (given.launch && given.command.import != ImportKind::None) import_thread_ = import_beat_ = 0;
+}
+
+void UnitInspection::check_ray_alu() {
+  const RayAlu& ray = model_->ray();
+  const uint32_t slot = static_cast<uint32_t>(slots_.size()) - 1;  // the last type
+  // What is idle on both sides needs no closer look.
+  if (!ray.active() && !ray.moves_rays() && parked_ == 0 && model_->ray_task() < 0 && (w_.ready.value() >> slot & 1) != 0 &&
+      (ray_.hold_q.value() | ray_.busy.value() | w_.import_active.value() | w_.export_valid_o.value() | w_.ray_fault.value()) ==
+          0)
+    return;
+  const RayAlu::Registers r = ray.registers();
+  expect(w_.ray_fault.value(), ray.fault(), kAlu, "ray ALU, fault");
+  expect(ray_.hold_q.value(), r.hold, kAlu, "ray ALU, steps are left");
+  if (r.hold) expect(ray_.step_q.value(), r.step, kAlu, "ray ALU, step");
+  expect(ray_.parked_in_q.value(), r.parked_in, kAlu, "ray ALU, warps with a rin that waits");
+  expect(ray_.parked_out_q.value(), r.parked_out, kAlu, "ray ALU, warps with a rout or rfb that waits");
+  // Roles change by swaps alone.
+  const uint32_t swapping = parked_ | r.parked_in | r.parked_out;
+  parked_ = r.parked_in | r.parked_out;
+  for (uint32_t warps = swapping; warps != 0; warps &= warps - 1) {
+    const uint32_t warp = lowest(warps);
+    const RayAlu::Roles& roles = ray.roles(warp);
+    expect(ray_.input_q.bits(warp * 2, 2) | ray_.current_q.bits(warp * 2, 2) << 4 | ray_.output_q.bits(warp * 2, 2) << 8,
+           roles.input | uint32_t{roles.current} << 4 | uint32_t{roles.output} << 8, kAlu, "ray ALU, roles of a warp's slices");
+  }
+  expect(w_.ready.flag(slot), ray.ready(model_->ray_task()), kAlu, "ray ALU, ready");
+  expect(w_.done_valid.flag(slot), ray.done() != 0, kAlu, "ray ALU, done");
+  if (ray.done() != 0) expect(warp_field(w_.done_warp, slot), lowest(ray.done()), kAlu, "ray ALU, warp that is done");
+  check_import();
+  check_ray_ports();
+}
+
+void UnitInspection::check_import() {
+  const RayAlu& ray = model_->ray();
+  const RayAlu::Registers r = ray.registers();
+  expect(w_.import_active.value(), ray.import_active(), kImport, "import, packages are left");
+  expect(w_.import_request_valid_o.value(), (ray.signals() & signal::kImportRequest) != 0, kImport, "import, request");
+  expect(ray_.full.value(), r.full, kImport, "import, slices with all their packages");
+  expect(ray_.import_write.value(), r.write, kImport, "import, a beat is written");
+  if (!r.write || !before_.import_beat) return;
+  const uint32_t mask = import_beat_ == kLastBeat ? 1 : 15;
+  expect(ray_.import_set.value(), r.write_set, kImport, "import, set");
+  expect(ray_.import_thread.value(), import_thread_, kImport, "import, thread");
+  expect(ray_.import_word.value(), import_beat_ * kBeatWords, kImport, "import, word");
+  expect(ray_.import_mask.value(), mask, kImport, "import, words that are written");
+  for (uint32_t words = mask; words != 0; words &= words - 1)
+    expect(ray_.import_data.word(lowest(words)), before_.beat[lowest(words)], kImport, "import, data");
+}
+
+void UnitInspection::check_ray_ports() {
+  const RayAlu& ray = model_->ray();
+  const UnitOutputs& out = model_->outputs();
+  expect(ray_.busy.value(), ray.registers().busy, kExport, "export, slices that wait or are read");
+  expect(w_.export_valid_o.value(), out.export_valid, kExport, "export, a beat of a ray");
+  expect(w_.frame_valid_o.value(), out.frame_valid, kExport, "export, a contribution");
+  bool same = true;
+  if (out.export_valid) {
+    expect(w_.export_last_o.value(), out.export_last, kExport, "export, last beat");
+    for (uint32_t i = 0; i < kBeatWords; ++i) same = same && w_.export_data_o.word(i) == out.export_data[i];
+  } else if (out.frame_valid) {
+    same = w_.frame_pixel_o.value() == out.frame.pixel;
+    for (uint32_t i = 0; i < 3; ++i) same = same && w_.frame_color_o.word(i) == out.frame.rgb[i];
+  }
+  if (!same) find("rtl/ray_export.v, rtl/ray_memory.v, rtl/ray_alu.v", "export: other words than the slice holds");
+}
+
+}  // namespace raypool::lockstep

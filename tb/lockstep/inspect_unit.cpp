@@ -1,0 +1,469 @@
+// The instruction routine, the dispatcher, the pipelined ALUs and what joins them.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "lockstep/inspection.hpp"
+#include "lockstep/text.hpp"
+#include "machine/bits.hpp"
+
+namespace raypool::lockstep {
+namespace {
+
+constexpr uint32_t kInstructionId = 16;
+
+std::string scope_of(uint32_t unit) { return fmt::format("gen_unit[{}].compute_unit", unit); }
+
+bool is(const DecodedInstruction& instruction, Unit unit) { return instruction.info->unit == unit; }
+
+// Which operands the instruction has.
+struct Uses {
+  bool a = false, b = false, c = false, px = false, pb = false;
+  explicit Uses(const DecodedInstruction& instruction) : b(instruction.uses_b) {
+    for (const Operand operand : instruction.info->operands) {
+      a |= operand == Operand::Ra || operand == Operand::Address;
+      c |= operand == Operand::Rc;
+      px |= operand == Operand::Px;
+      pb |= operand == Operand::Pb;
+    }
+  }
+};
+
+}  // namespace
+
+UnitInspection::UnitInspection(const Configuration& configuration, const ComputeUnit& rtl, const CycleUnit& model, uint32_t unit)
+    : model_(&model),
+      configuration_(configuration),
+      warps_(static_cast<uint32_t>(configuration.warps)),
+      lanes_(static_cast<uint32_t>(configuration.cores)),
+      warp_bits_(warps_ > 1 ? lowest(warps_) : 1),
+      mshrs_(static_cast<uint32_t>(configuration.data_cache_mshrs)),
+      w_(rtl, scope_of(unit)),
+      mem_(rtl, scope_of(unit) + ".mem_alu"),
+      cache_(rtl, scope_of(unit) + ".mem_alu.u_cache"),
+      miss_(rtl, scope_of(unit) + ".mem_alu.u_cache.u_miss_status"),
+      sequencer_(rtl, scope_of(unit) + ".mem_alu.u_sequencer"),
+      ray_(rtl, scope_of(unit) + ".ray_alu"),
+      instruction_cache_(configuration) {
+  for (const std::string* missing :
+       {&w_.missing, &mem_.missing, &cache_.missing, &miss_.missing, &sequencer_.missing, &ray_.missing}) {
+    if (missing_.empty()) missing_ = *missing;
+  }
+  for (uint32_t type = 0; type < kUnits; ++type) {
+    const AluConfiguration& alu = configuration.alus[type];
+    const bool piped = !kUnitTable[type].timed_by_events();
+    for (int number = 0; number < (piped ? alu.count : 1); ++number) {
+      Slot& slot = slots_.emplace_back();
+      slot.type = type;
+      slot.piped = piped;
+      slot.latency = static_cast<uint32_t>(alu.latency);
+      slot.depth = static_cast<uint32_t>(alu.depth);
+      const uint32_t bit = 1u << (slots_.size() - 1);
+      if (piped) piped_ |= bit;
+      if (piped && slot.latency > 1) paused_ |= bit;
+    }
+  }
+}
+
+void UnitInspection::reset(uint32_t program_length) {
+  program_length_ = program_length;
+  findings_.clear();
+  stopped_ = argument_written_ = alu_fault_ = lookup_ = false;
+  fetch_turn_ = {};
+  instruction_cache_.reset();
+  requests_ = missed_ = first_ = wants_ = warp_faults_ = 0;
+  port_ = {};
+  before_ = {};
+  import_thread_ = import_beat_ = 0;
+  tasks_ = parked_ = 0;
+  launch_checked_ = false;
+  done_.fill(0);
+  for (Slot& slot : slots_) slot.ready_from = 0;
+}
+
+void UnitInspection::argument_written() {
+  instruction_cache_.invalidate();
+  argument_written_ = true;
+}
+
+void UnitInspection::find(const char* files, std::string text) {
+  const auto same = [&](const Finding& finding) { return finding.files == files; };
+  if (findings_.size() < kMostFindings && std::none_of(findings_.begin(), findings_.end(), same))
+    findings_.push_back({now_, files, std::move(text)});
+}
+
+void UnitInspection::expect(uint32_t rtl, uint32_t expected, const char* files, const char* what) {
+  if (rtl != expected) find(files, fmt::format("{}: {:x} in the RTL, {:x} by its rule (bits, hexadecimal)", what, rtl, expected));
+}
+
+void UnitInspection::advance(const UnitTransfers& given) {
+  if (stopped_ || !active()) return;
+  now_ = model_->now();
+  if (given.launch) launched_ = given.command;
+  warp_faults_ = w_.warp_fault.value();
+  alu_fault_ = w_.mem_fault.value() != 0 || w_.ray_fault.value() != 0;
+  advance_memory_port(given);
+  advance_fetch(given);
+  advance_slots();
+  advance_import(given);
+  wants_ = w_.want.value() & ~w_.grant.value();
+  before_ = given;
+}
+
+void UnitInspection::check() {
+  if (stopped_ || !active()) return;
+  now_ = model_->now();
+  // What is wrong first: registers of a block, in the order in which blocks give to each other, then what follows from them.
+  check_faults();
+  check_launch();
+  check_memory_port();
+  check_memory_alu();
+  check_ray_alu();
+  check_instruction_cache();
+  check_tasks();
+  check_done();
+  check_retired();
+  const bool faulty = w_.fault_valid_o.value() != 0 || model_->outputs().fault.code != FaultCode::None;
+  if (!faulty) {
+    check_fetch();
+    check_fetch_arbiter();
+    check_wants();
+    check_ready();
+    check_dispatch();
+  }
+  stopped_ = faulty || !findings_.empty();
+}
+
+// ---- Launch and faults
+
+void UnitInspection::check_launch() {
+  const bool running = model_->outputs().busy != 0;
+  expect(w_.waiting_launch.value(), model_->launch_waits(), "rtl/launcher.v", "a launch waits");
+  expect(w_.busy_o.value(), running, "rtl/launcher.v", "a kernel runs");
+  expect(w_.active.value(), model_->active_warps(), "rtl/instruction_buffer.v, rtl/launcher.v", "warps that run");
+  expect(w_.kernel_done_o.value(), model_->outputs().kernel_done, "rtl/launcher.v", "the kernel's end");
+  if (running && !launch_checked_) {
+    const LaunchCommand& launched = model_->core().launched();
+    if (w_.threads.value() != launched.threads || w_.block.value() != launched.block || w_.blocks.value() != launched.blocks)
+      find("rtl/launcher.v", "threads, block or blocks of the launch that runs are wrong");
+  }
+  launch_checked_ = running;
+  const bool starts = model_->launch_waits() && !running;
+  if (!starts && w_.start.value() == 0) return;
+  uint32_t warps = 0;
+  for (uint32_t warp = 0; starts && warp * lanes_ < launched_.threads; ++warp) warps |= 1u << warp;
+  expect(w_.start.value(), warps, "rtl/launcher.v", "warps that are started");
+  if (!starts) return;
+  expect(w_.start_pc.value(), launched_.pc, "rtl/launcher.v", "PC of the start");
+  for (uint32_t thread = 0; thread < warps_ * lanes_; ++thread)
+    expect(w_.start_lanes.flag(thread), thread < launched_.threads, "rtl/launcher.v", "lane that is started");
+}
+
+void UnitInspection::check_faults() {
+  const Fault& expected = model_->outputs().fault;
+  Fault rtl;
+  if (w_.fault_valid_o.value() != 0)
+    rtl = {static_cast<FaultCode>(w_.fault_code_o.value()), w_.fault_warp_o.value(), w_.fault_pc_o.value()};
+  if (rtl.code == expected.code && (rtl.code == FaultCode::None || (rtl.warp == expected.warp && rtl.pc == expected.pc))) return;
+  const FaultCode code = expected.code == FaultCode::None ? rtl.code : expected.code;
+  const bool of_alu = code >= FaultCode::Misaligned;
+  const bool raised =
+      of_alu ? alu_fault_ : (warp_faults_ >> (expected.code == FaultCode::None ? rtl.warp : expected.warp) & 1) != 0;
+  if (raised == (expected.code != FaultCode::None))
+    return find("rtl/compute_unit.v", "the fault that was raised is not the one shown");
+  const char* files = code == FaultCode::IllegalInstruction ? "rtl/instruction_buffer.v, rtl/isa_functions.vh"
+                      : code == FaultCode::PcOutsideProgram ? "rtl/instruction_buffer.v, rtl/pc_stack.v"
+                      : code <= FaultCode::StackUnderflow   ? "rtl/pc_stack.v, rtl/warp.v"
+                      : code == FaultCode::RayWordOutside   ? "rtl/ray_alu.v"
+                                                            : "rtl/mem_alu.v";
+  find(files, expected.code == FaultCode::None ? "a fault is raised that is none" : "a fault is not raised");
+}
+
+// ---- The memory port of the unit
+
+void UnitInspection::advance_memory_port(const UnitTransfers& given) {
+  Port now;
+  now.valid = w_.memory_request_valid_o.value() != 0;
+  if (now.valid && !given.request_ready) {
+    now.write = w_.memory_request_write_o.value() != 0;
+    now.address = w_.memory_request_address_o.value();
+    now.id = w_.memory_request_id_o.value();
+    now.mask = w_.memory_request_mask_o.value();
+    for (uint32_t i = 0; i < kBeatWords; ++i) now.data[i] = w_.memory_request_data_o.word(i);
+    port_ = now;
+    return;
+  }
+  port_ = {};
+  if (w_.instruction_request.value() != 0) {
+    port_.valid = true;
+    port_.address = w_.instruction_request_address.value();
+    port_.id = kInstructionId;
+  } else if (w_.data_request.value() != 0) {
+    port_.valid = true;
+    port_.write = w_.data_request_write.value() != 0;
+    port_.address = w_.data_request_address.value();
+    port_.id = w_.data_request_id.value();
+    port_.mask = w_.data_request_mask.value();
+    for (uint32_t i = 0; i < kBeatWords; ++i) port_.data[i] = w_.data_request_data.word(i);
+  }
+}
+
+void UnitInspection::check_memory_port() {
+  bool same = (w_.memory_request_valid_o.value() != 0) == port_.valid;
+  if (same && port_.valid) {
+    same = (w_.memory_request_write_o.value() != 0) == port_.write && w_.memory_request_address_o.value() == port_.address;
+    if (port_.write) {
+      same = same && w_.memory_request_mask_o.value() == port_.mask;
+      for (uint32_t i = 0; i < kBeatWords; ++i) same = same && w_.memory_request_data_o.word(i) == port_.data[i];
+    } else {
+      same = same && w_.memory_request_id_o.value() == port_.id;
+    }
+  }
+  if (!same)
+    find("rtl/memory_arbiter.v, rtl/unit_memory_arbiter.v", "the memory port shows another request than was handed to it");
+}
+
+// ---- The instruction routine
+
+void UnitInspection::advance_fetch(const UnitTransfers& given) {
+  requests_ = w_.fetch_request.value() & ~w_.fetch_grant.value();
+  const bool missed = w_.instruction_miss.value() != 0;
+  const uint32_t warp = w_.result_warp.value();
+  if (missed) missed_ |= 1u << warp;
+  first_ = 0;
+  if (w_.refill_done.value() != 0) {
+    requests_ |= missed_;
+    missed_ = 0;
+    first_ = 1u << instruction_cache_.fetch_warp();
+  }
+  const bool port_free = w_.memory_request_valid_o.value() == 0 || given.request_ready;
+  const bool last_beat = given.response && given.response_id == kInstructionId && given.response_beat == 3;
+  instruction_cache_.clock(missed, warp, port_free, last_beat);
+  lookup_ = w_.fetch_valid.value() != 0;
+  if (lookup_) {
+    lookup_warp_ = w_.fetch_warp.value();
+    lookup_pc_ = w_.lookup_pc.value();
+    lookup_hit_ = instruction_cache_.lookup(lookup_pc_);
+  }
+  instruction_cache_.end_cycle();
+}
+
+void UnitInspection::check_instruction_cache() {
+  const char* files = argument_written_ && w_.instruction_hit.value() != 0 ? "rtl/instruction_cache.v, rtl/compute_unit.v"
+                                                                           : "rtl/instruction_cache.v";
+  expect(w_.instruction_hit.value(), lookup_ && lookup_hit_, files, "instruction cache, hit");
+  expect(w_.instruction_miss.value(), lookup_ && !lookup_hit_, files, "instruction cache, miss");
+  if (lookup_) expect(w_.result_warp.value(), lookup_warp_, files, "instruction cache, warp of the result");
+  const DecodedInstruction* expected = model_->core().instruction_at(lookup_pc_);
+  if (lookup_ && lookup_hit_ && expected != nullptr &&
+      (w_.fetched.word(0) != static_cast<uint32_t>(expected->encoding) || w_.fetched.word(1) != expected->encoding >> 32))
+    find(files, fmt::format("instruction cache: {:08x}{:08x} at PC {}, memory has {:016x}", w_.fetched.word(1),
+                            w_.fetched.word(0), lookup_pc_, expected->encoding));
+  expect(w_.refill_done.value(), instruction_cache_.refill_done(), files, "instruction cache, a line has come");
+  expect(w_.fetch_first.value(), first_, files, "instruction cache, the warp to look up first");
+  expect(w_.instruction_request.value(), instruction_cache_.request_valid(), files, "instruction cache, request");
+  if (instruction_cache_.request_valid())
+    expect(w_.instruction_request_address.value(), instruction_cache_.request_address(), files, "instruction cache, address");
+}
+
+// Warps come to the fetch arbiter when the model says so, with the PC that it says, or again when a line has come.
+void UnitInspection::check_fetch() {
+  for (uint32_t warp = 0; warp < warps_; ++warp) {
+    const CycleUnit::Timing& next = model_->timing(warp);
+    if (next.fetch_cycle != now_ || next.fetch_pc >= program_length_) continue;
+    requests_ |= 1u << warp;
+    if (w_.fetch_pc.bits(warp * 16, 16) != next.fetch_pc) {
+      find("rtl/pc_stack.v, rtl/warp.v", fmt::format("warp {} fetches PC {}, after its last instruction comes {}", warp,
+                                                     w_.fetch_pc.bits(warp * 16, 16), next.fetch_pc));
+    }
+  }
+  const uint32_t rtl = w_.fetch_request.value();
+  for (uint32_t warps = rtl ^ requests_; warps != 0; warps &= warps - 1) {
+    const uint32_t warp = lowest(warps);
+    const bool early = (rtl >> warp & 1) != 0;
+    const bool stack = w_.fetch_pc.bits(warp * 16, 16) != model_->timing(warp).fetch_pc;
+    find(stack ? "rtl/pc_stack.v, rtl/instruction_buffer.v, rtl/warp.v" : "rtl/instruction_buffer.v, rtl/pc_stack.v, rtl/warp.v",
+         fmt::format("warp {} {} the instruction cache", warp, early ? "wants too early" : "does not want in time"));
+  }
+}
+
+void UnitInspection::check_fetch_arbiter() {
+  const uint32_t requests = w_.fetch_request.value();
+  if ((requests | w_.fetch_grant.value() | w_.fetch_valid.value()) == 0) return;
+  const uint32_t first = requests & w_.fetch_first.value();
+  uint32_t grant = first;
+  if (first == 0 && requests != 0) {
+    const uint32_t choice = fetch_turn_.choose(requests);
+    grant = 1u << choice;
+    fetch_turn_.advance(choice);
+  }
+  expect(w_.fetch_grant.value(), grant, "rtl/fetch_arbiter.v, rtl/round_robin.v", "fetch arbiter, grant");
+  expect(w_.fetch_valid.value(), requests != 0, "rtl/fetch_arbiter.v", "fetch arbiter, valid");
+  if (grant == 0) return;
+  expect(w_.fetch_warp.value(), lowest(grant), "rtl/fetch_arbiter.v", "fetch arbiter, warp");
+  expect(w_.lookup_pc.value(), w_.fetch_pc.bits(lowest(grant) * 16, 16), "rtl/compute_unit.v", "PC that is looked up");
+}
+
+// ---- From the instruction buffer to dispatch
+
+void UnitInspection::check_wants() {
+  for (uint32_t warp = 0; warp < warps_; ++warp) {
+    if (model_->timing(warp).want_cycle != now_) continue;
+    wants_ |= 1u << warp;
+    check_operands(warp);
+  }
+  expect(w_.want.value(), wants_, "rtl/instruction_buffer.v, rtl/warp.v", "warps that want an ALU");
+}
+
+void UnitInspection::check_operands(uint32_t warp) {
+  const CycleUnit::Issue& issue = model_->issue(warp);
+  const uint64_t encoding = issue.instruction->encoding;
+  const uint32_t low = w_.retire_instruction_o.word(warp * 2), high = w_.retire_instruction_o.word(warp * 2 + 1);
+  const uint32_t pc = w_.retire_pc_o.bits(warp * 16, 16);
+  if (pc != issue.pc || low != static_cast<uint32_t>(encoding) || high != encoding >> 32)
+    return find("rtl/instruction_buffer.v, rtl/warp.v",
+                fmt::format("warp {}: not the instruction, or not the PC, that was fetched", warp));
+  const Uses uses(*issue.instruction);
+  const auto lanes_of = [&](const Wire& wire) { return wire.bits(warp * lanes_, lanes_); };
+  const uint32_t all = lanes_ == 32 ? ~0u : (1u << lanes_) - 1;
+  const char* predicates = "rtl/predicate_file.v, rtl/warp.v";
+  expect(lanes_of(w_.retire_mask_o), issue.mask, predicates, "thread mask that was read");
+  if (uses.px) expect(lanes_of(w_.px), issue.px & all, predicates, "predicate px that was read");
+  if (uses.pb) expect(lanes_of(w_.pb), issue.pb & all, predicates, "predicate pb that was read");
+  for (uint32_t mask = issue.mask; mask != 0; mask &= mask - 1) {
+    const uint32_t lane = lowest(mask);
+    const uint32_t row = warp * lanes_ + lane;
+    const bool same = (!uses.a || w_.a.word(row) == issue.a[lane]) &&
+                      (!uses.b || issue.instruction->b_is_immediate || w_.b.word(row) == issue.b[lane]) &&
+                      (!uses.c || w_.c.word(row) == issue.c[lane]);
+    if (!same) return find("rtl/warp.v, rtl/ram_2r1w.v", fmt::format("warp {}, lane {}: a register was read wrong", warp, lane));
+  }
+}
+
+// ---- Dispatcher
+
+void UnitInspection::check_tasks() {
+  const uint32_t valid = w_.task_valid.value();
+  expect(valid, tasks_, "rtl/dispatcher.v", "slots that get a task");
+  for (uint32_t slots = valid & tasks_; slots != 0; slots &= slots - 1) check_task(lowest(slots), slots_[lowest(slots)].task);
+}
+
+void UnitInspection::check_task(uint32_t s, uint32_t warp) {
+  const CycleUnit::Issue& issue = model_->issue(warp);
+  const DecodedInstruction& instruction = *issue.instruction;
+  const Uses uses(instruction);
+  const bool has_immediate = is(instruction, Unit::Tid) || is(instruction, Unit::Mem);
+  bool same = warp_field(w_.task_warp, s) == warp && w_.task_op.bits(s * 5, 5) == (instruction.code & 31u) &&
+              w_.task_mask.bits(s * lanes_, lanes_) == issue.mask &&
+              (!has_immediate || w_.task_imm.word(s) == instruction.immediate) &&
+              (!is(instruction, Unit::Ray) || w_.task_x.bits(s * 5, 5) == instruction.x) &&
+              (!uses.px || ((w_.task_px.bits(s * lanes_, lanes_) ^ issue.px) & issue.mask) == 0) &&
+              (!uses.pb || ((w_.task_pb.bits(s * lanes_, lanes_) ^ issue.pb) & issue.mask) == 0);
+  for (uint32_t mask = issue.mask; same && mask != 0; mask &= mask - 1) {
+    const uint32_t lane = lowest(mask);
+    const uint32_t row = s * lanes_ + lane;
+    same = (!uses.a || w_.task_a.word(row) == issue.a[lane]) && (!uses.b || w_.task_b.word(row) == issue.b[lane]) &&
+           (!uses.c || w_.task_c.word(row) == issue.c[lane]);
+  }
+  if (!same) find("rtl/dispatcher.v", fmt::format("slot {}: the task is not that of warp {}", s, warp));
+}
+
+void UnitInspection::check_ready() {
+  uint32_t ready = piped_;
+  for (uint32_t slots = paused_; slots != 0; slots &= slots - 1) {
+    if (now_ < slots_[lowest(slots)].ready_from) ready &= ~(1u << lowest(slots));
+  }
+  const uint32_t wrong = (ready ^ w_.ready.value()) & piped_;
+  if (wrong != 0) {
+    const std::string files = fmt::format("rtl/alu_pipeline.v, rtl/{}_alu.v", kUnitNames[slots_[lowest(wrong)].type]);
+    find(files.c_str(), "the ALU takes its next task too early or too late");
+  }
+}
+
+// Each free instance takes the lowest warp that wants its type.
+void UnitInspection::check_dispatch() {
+  uint32_t left = w_.want.value(), granted = 0;
+  const uint32_t ready = w_.ready.value();
+  tasks_ = 0;
+  for (uint32_t s = 0; left != 0 && s < slots_.size(); ++s) {
+    if ((ready >> s & 1) == 0) continue;
+    for (uint32_t warps = left; warps != 0; warps &= warps - 1) {
+      const uint32_t warp = lowest(warps);
+      if (w_.retire_instruction_o.bits(warp * 64 + 60, 4) != slots_[s].type) continue;
+      slots_[s].task = warp;
+      left &= ~(1u << warp);
+      granted |= 1u << warp;
+      tasks_ |= 1u << s;
+      break;
+    }
+  }
+  expect(w_.grant.value(), granted, "rtl/dispatcher.v", "dispatcher, warps that are granted");
+  expect(w_.slot_grant.value(), tasks_, "rtl/dispatcher.v", "dispatcher, slots that are given a task");
+}
+
+// ---- ALUs
+
+void UnitInspection::advance_slots() {
+  done_[now_ % kRing] = 0;
+  for (uint32_t slots = w_.task_valid.value() & piped_; slots != 0; slots &= slots - 1) {
+    Slot& slot = slots_[lowest(slots)];
+    done_[(now_ + slot.depth) % kRing] |= 1u << lowest(slots);
+    slot.under_way[(now_ + slot.depth) % kRing] = static_cast<uint8_t>(warp_field(w_.task_warp, lowest(slots)));
+  }
+  for (uint32_t slots = w_.slot_grant.value() & paused_; slots != 0; slots &= slots - 1)
+    slots_[lowest(slots)].ready_from = now_ + slots_[lowest(slots)].latency;
+}
+
+void UnitInspection::check_done() {
+  const uint32_t done = w_.done_valid.value(), expected = done_[now_ % kRing];
+  for (uint32_t slots = done | expected; slots != 0; slots &= slots - 1) {
+    const uint32_t s = lowest(slots);
+    const Slot& slot = slots_[s];
+    const uint32_t warp = warp_field(w_.done_warp, s);
+    const bool in_time = ((done ^ expected) >> s & 1) == 0 && slot.under_way[now_ % kRing] == warp;
+    if (slot.piped && !in_time) {
+      const std::string files = fmt::format("rtl/alu_pipeline.v, rtl/{}_alu.v", kUnitNames[slot.type]);
+      find(files.c_str(), "the ALU is done too early or too late, or with another warp");
+    } else if (warp < warps_ && model_->issue(warp).instruction != nullptr) {
+      check_result(s, warp);
+    }
+  }
+}
+
+void UnitInspection::check_result(uint32_t s, uint32_t warp) {
+  const CycleUnit::Issue& issue = model_->issue(warp);
+  const DecodedInstruction& instruction = *issue.instruction;
+  if (instruction.code >> 5 != slots_[s].type) return;
+  bool same = true;
+  if (instruction.writes_register) {
+    for (uint32_t mask = issue.mask; same && mask != 0; mask &= mask - 1)
+      same = w_.done_data.word(s * lanes_ + lowest(mask)) == issue.data[lowest(mask)];
+  } else if (instruction.writes_predicate) {
+    same = (w_.done_pred.bits(s * lanes_, lanes_) & issue.mask) == issue.predicate;
+  } else if (instruction.info->control) {
+    const std::string_view name = instruction.info->mnemonic;
+    const bool taken = name == "jnone" ? issue.mask == 0 : (name != "jany" && name != "loop") || issue.mask != 0;
+    same = w_.done_pred.flag(s * lanes_) == taken;
+  }
+  if (!same) {
+    find(result_files(instruction, configuration_).c_str(),
+         fmt::format("warp {}: {} was given the right operands and has another result", warp, instruction.info->mnemonic));
+  }
+}
+
+void UnitInspection::check_retired() {
+  uint32_t retired = 0;
+  for (uint32_t slots = w_.done_valid.value(); slots != 0; slots &= slots - 1) {
+    const uint32_t s = lowest(slots);
+    const uint32_t warp = warp_field(w_.done_warp, s);
+    retired |= 1u << warp;
+    for (uint32_t lane = 0; lane < lanes_; ++lane) {
+      if (w_.retire_data_o.word(warp * lanes_ + lane) != w_.done_data.word(s * lanes_ + lane))
+        return find("rtl/warp.v", fmt::format("warp {} takes another result than that of its ALU", warp));
+    }
+  }
+  expect(w_.retire_valid_o.value(), retired, "rtl/warp.v, rtl/compute_unit.v", "warps that retire");
+}
+
+}  // namespace raypool::lockstep
