@@ -42,6 +42,12 @@ std::string retired_line(const char* who, const RetireEvent& event) {
   return fmt::format("  {:<5} PC {:>5}: {}\n", who, event.pc, instruction_text(event.instruction));
 }
 
+// What gives a performance counter its events.
+const char* source_of_events(int number) {
+  if (number >= counter::kUnused) return "rtl/dispatcher.v";
+  return number >= counter::kDataCacheHits ? "rtl/mem_alu.v" : "rtl/event_counter.v";
+}
+
 bool is_fetch(const MemoryRequest& request) { return !request.write && (request.id & 31) == 16; }
 
 template <typename Event>
@@ -177,7 +183,7 @@ void Comparison::fault(const UnitOutputs& rtl, const UnitOutputs& model) const {
       rtl.fault.pc != model.fault.pc) {
     throw Mismatch{"the faults differ in this cycle",
                    "  RTL:   " + fault_text(rtl.fault) + "\n  model: " + fault_text(model.fault) + "\n",
-                   "rtl/compute_unit.v, rtl/instruction_buffer.v", Context::Unit};
+                   "rtl/compute_unit.v, rtl/instruction_buffer.v, rtl/multiprocessor.v", Context::Unit};
   }
 }
 
@@ -260,7 +266,8 @@ void compare_counters(ComputeUnit& rtl, ComputeUnit& model) {
   for (int number = 0; number < counter::kCount; ++number) {
     const uint64_t r = rtl.counter(number), m = model.counter(number);
     if (r == m) continue;
-    throw Mismatch{fmt::format("performance counter {} differs", number), row("counter", r, m), "rtl/performance_counters.v",
+    throw Mismatch{fmt::format("performance counter {} differs", number), row("counter", r, m),
+                   std::string("rtl/performance_counters.v, ") + source_of_events(number) + ", rtl/multiprocessor.v",
                    Context::Unit};
   }
 }

@@ -26,7 +26,8 @@ void UnitInspection::check_memory_alu() {
   expect(mem_.done_q.value(), r.done, kAlu, "memory ALU, done");
   expect(mem_.park_q.value(), r.park, kAlu, "memory ALU, parks a warp");
   if (r.done || r.park) expect(mem_.end_warp_q.value(), r.end_warp, kAlu, "memory ALU, warp at the end of a pass");
-  expect(mem_.queue_count.value(), r.queue_count, "rtl/request_queue.v, rtl/mem_alu.v", "memory ALU, requests that wait");
+  expect(mem_.queue_count.value(), r.queue_count, "rtl/request_queue.v, rtl/mem_alu.v, rtl/memory_arbiter.v",
+         "memory ALU, requests that wait");
   if (r.queue_count == 0) return;
   const MemoryRequest& request = mem.request();
   bool same = (w_.data_request_write.value() != 0) == request.write && w_.data_request_address.value() == request.address;

@@ -77,7 +77,6 @@ void UnitInspection::reset(uint32_t program_length) {
   before_ = {};
   import_thread_ = import_beat_ = 0;
   tasks_ = parked_ = 0;
-  launch_checked_ = false;
   done_.fill(0);
   for (Slot& slot : slots_) slot.ready_from = 0;
 }
@@ -143,12 +142,11 @@ void UnitInspection::check_launch() {
   expect(w_.busy_o.value(), running, "rtl/launcher.v", "a kernel runs");
   expect(w_.active.value(), model_->active_warps(), "rtl/instruction_buffer.v, rtl/launcher.v", "warps that run");
   expect(w_.kernel_done_o.value(), model_->outputs().kernel_done, "rtl/launcher.v", "the kernel's end");
-  if (running && !launch_checked_) {
+  if (running) {
     const LaunchCommand& launched = model_->core().launched();
     if (w_.threads.value() != launched.threads || w_.block.value() != launched.block || w_.blocks.value() != launched.blocks)
       find("rtl/launcher.v", "threads, block or blocks of the launch that runs are wrong");
   }
-  launch_checked_ = running;
   const bool starts = model_->launch_waits() && !running;
   if (!starts && w_.start.value() == 0) return;
   uint32_t warps = 0;

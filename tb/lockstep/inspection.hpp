@@ -125,7 +125,6 @@ class UnitInspection {
   uint32_t piped_ = 0, paused_ = 0;     // slots that are pipelined; that need a pause between tasks
   uint32_t tasks_ = 0;                  // slots whose task register is to be valid
   std::array<uint32_t, kRing> done_{};  // [cycle % kRing] slots that are to be done
-  bool launch_checked_ = false;
   uint32_t parked_ = 0;
   uint32_t warp_faults_ = 0;  // of the cycle before
   bool alu_fault_ = false;
