@@ -312,8 +312,8 @@ TEST(Lockstep, ARetirementThatComesACycleLateIsFound) {
     late.clear();
     for (const RetireEvent& event : now) (event.pc == 6 && event.warp == 1 ? late : trace.retired).push_back(event);
   };
-  expect_parts(fixture.report(),
-               {"warp 1 retires an instruction in this cycle in the model, and not in the RTL", "PC     6: and", "fetch_arbiter.v"});
+  expect_parts(fixture.report(), {"warp 1 retires an instruction in this cycle in the model, and not in the RTL", "PC     6: and",
+                                  "fetch_arbiter.v"});
 }
 
 TEST(Lockstep, AnOutputThatComesACycleLateIsFound) {
