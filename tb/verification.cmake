@@ -13,7 +13,7 @@ set_tests_properties(cosim_4w4c_2cu PROPERTIES FIXTURES_REQUIRED unit_4w4c_2cu T
 # Four small ones: a multiprocessor of four 4w4c takes a minute to compile.
 add_test(NAME verilate_2w2c_small_4cu COMMAND ${CMAKE_COMMAND} -E env RAYPOOL=${raypool_program} ${scripts}/unit.sh ${small_config} --units 4)
 set_tests_properties(verilate_2w2c_small_4cu PROPERTIES FIXTURES_SETUP unit_2w2c_small_4cu TIMEOUT 900)
-add_test(NAME cosim_2w2c_small_4cu COMMAND raypool cosim --config ${small_config} --units 4 --programs 200 --no-shrink --quiet)
+add_test(NAME cosim_2w2c_small_4cu COMMAND raypool cosim --config ${small_config} --units 4 --programs 300 --no-shrink --quiet)
 set_tests_properties(cosim_2w2c_small_4cu PROPERTIES FIXTURES_REQUIRED unit_2w2c_small_4cu TIMEOUT 300)
 
 # The catalogue of designers' mistakes fits the Verilog, and a few of them are noticed soon; `make faults` runs them all.
@@ -30,7 +30,7 @@ endforeach()
 
 # Every parameter value, and most pairs of values that a machine of 8 threads can have.
 add_test(NAME configurations_quick
-         COMMAND ${CMAKE_COMMAND} -E env RAYPOOL=${raypool_program} ${scripts}/configurations.sh quick 20 ${CMAKE_BINARY_DIR}/configurations)
+         COMMAND ${CMAKE_COMMAND} -E env RAYPOOL=${raypool_program} ${scripts}/configurations.sh quick 40 ${CMAKE_BINARY_DIR}/configurations)
 set_tests_properties(configurations_quick PROPERTIES TIMEOUT 2400)
 
 # The same Verilog in a 4-state simulator.
