@@ -6,49 +6,35 @@
 #include "lockstep/wire.hpp"
 
 // Instance below the compute unit, and its signals.
-#define RAYPOOL_UNIT_WIRES(X)                                                                                                    \
-  X(start)                                                                                                                       \
-  X(start_pc)                                                                                                                    \
-  X(start_lanes)                                                                                                                 \
-  X(active)                                                                                                                      \
-  X(threads)                                                                                                                     \
-  X(block)                                                                                                                       \
-  X(blocks) X(waiting_launch) X(busy_o) X(kernel_done_o) X(fetch_request) X(fetch_first) X(fetch_grant) X(fetch_pc) X(lookup_pc) \
-      X(fetch_valid) X(fetch_warp) X(instruction_hit) X(instruction_miss) X(result_warp) X(fetched) X(refill_done)               \
-          X(instruction_request) X(instruction_request_address) X(want) X(grant) X(px) X(pb) X(a) X(b) X(c) X(ready)             \
-              X(slot_grant) X(task_valid) X(task_warp) X(task_op) X(task_x) X(task_imm) X(task_mask) X(task_px) X(task_pb)       \
-                  X(task_a) X(task_b) X(task_c) X(done_valid) X(done_warp) X(done_data) X(done_pred) X(data_request)             \
-                      X(data_request_write) X(data_request_address) X(data_request_data) X(data_request_mask) X(data_request_id) \
-                          X(mem_fault) X(ray_fault) X(warp_fault) X(import_active) X(memory_request_valid_o)                     \
-                              X(memory_request_write_o) X(memory_request_address_o) X(memory_request_data_o)                     \
-                                  X(memory_request_mask_o) X(memory_request_id_o) X(memory_response_valid_i)                     \
-                                      X(import_request_valid_o) X(export_valid_o) X(export_data_o) X(export_last_o)              \
-                                          X(frame_valid_o) X(frame_pixel_o) X(frame_color_o) X(launch_ready_o) X(fault_valid_o)  \
-                                              X(fault_code_o) X(fault_warp_o) X(fault_pc_o) X(retire_valid_o) X(retire_pc_o)     \
-                                                  X(retire_instruction_o) X(retire_mask_o) X(retire_data_o)
+// clang-format off
+#define RAYPOOL_UNIT_WIRES(X) \
+  X(start) X(start_pc) X(start_lanes) X(active) X(threads) X(block) X(blocks) X(waiting_launch) X(busy_o) \
+  X(kernel_done_o) X(fetch_request) X(fetch_first) X(fetch_grant) X(fetch_pc) X(lookup_pc) X(fetch_valid) \
+  X(fetch_warp) X(instruction_hit) X(instruction_miss) X(result_warp) X(fetched) X(refill_done) \
+  X(instruction_request) X(instruction_request_address) X(want) X(grant) X(px) X(pb) X(a) X(b) X(c) X(ready) \
+  X(slot_grant) X(task_valid) X(task_warp) X(task_op) X(task_x) X(task_imm) X(task_mask) X(task_px) X(task_pb) \
+  X(task_a) X(task_b) X(task_c) X(done_valid) X(done_warp) X(done_data) X(done_pred) X(data_request) \
+  X(data_request_write) X(data_request_address) X(data_request_data) X(data_request_mask) X(data_request_id) \
+  X(mem_fault) X(ray_fault) X(warp_fault) X(import_active) X(memory_request_valid_o) X(memory_request_write_o) \
+  X(memory_request_address_o) X(memory_request_data_o) X(memory_request_mask_o) X(memory_request_id_o) \
+  X(memory_response_valid_i) X(import_request_valid_o) X(export_valid_o) X(export_data_o) X(export_last_o) \
+  X(frame_valid_o) X(frame_pixel_o) X(frame_color_o) X(launch_ready_o) X(fault_valid_o) X(fault_code_o) \
+  X(fault_warp_o) X(fault_pc_o) X(retire_valid_o) X(retire_pc_o) X(retire_instruction_o) X(retire_mask_o) \
+  X(retire_data_o)
 #define RAYPOOL_MEM_WIRES(X) \
-  X(pass_q)                  \
-  X(pass_warp_q)             \
-  X(access_valid_q)          \
-  X(access_warp_q)           \
-  X(access_served_q)         \
-  X(access_word_q)           \
-  X(done_q) X(park_q) X(end_warp_q) X(access) X(hit) X(allocates) X(refuses) X(accepts) X(quad_data) X(queue_count)
-#define RAYPOOL_CACHE_WIRES(X) X(quad_q) X(found) X(match) X(victim) X(push_id_o)
-#define RAYPOOL_MISS_WIRES(X) X(busy_q) X(filled_q) X(line_q) X(waiters_q)
+  X(pass_q) X(pass_warp_q) X(access_valid_q) X(access_warp_q) X(access_served_q) X(access_word_q) X(done_q) \
+  X(park_q) X(end_warp_q) X(access) X(hit) X(allocates) X(refuses) X(accepts) X(quad_data) X(queue_count)
+#define RAYPOOL_CACHE_WIRES(X) \
+  X(quad_q) X(found) X(match) X(victim) X(push_id_o)
+#define RAYPOOL_MISS_WIRES(X) \
+  X(busy_q) X(filled_q) X(line_q) X(waiters_q)
 #define RAYPOOL_SEQUENCER_WIRES(X) \
-  X(queued_q)                      \
-  X(parked_q)                      \
-  X(loser_q) X(privilege_q) X(privilege_warp_q) X(attempt_q) X(next_valid_q) X(next_kind_q) X(next_warp_q) X(next_mshr_q)
-#define RAYPOOL_RAY_WIRES(X)                                                                                          \
-  X(input_q)                                                                                                          \
-  X(current_q)                                                                                                        \
-  X(output_q)                                                                                                         \
-  X(hold_q)                                                                                                           \
-  X(step_q)                                                                                                           \
-  X(full)                                                                                                             \
-  X(busy) X(parked_in_q) X(parked_out_q) X(import_write) X(import_set) X(import_thread) X(import_word) X(import_mask) \
-      X(import_data)
+  X(queued_q) X(parked_q) X(loser_q) X(privilege_q) X(privilege_warp_q) X(attempt_q) X(next_valid_q) \
+  X(next_kind_q) X(next_warp_q) X(next_mshr_q)
+#define RAYPOOL_RAY_WIRES(X) \
+  X(input_q) X(current_q) X(output_q) X(hold_q) X(step_q) X(full) X(busy) X(parked_in_q) X(parked_out_q) \
+  X(import_write) X(import_set) X(import_thread) X(import_word) X(import_mask) X(import_data)
+// clang-format on
 
 namespace raypool::lockstep {
 
