@@ -17,7 +17,7 @@ show() {
         if [ -n "$shown" ]; then
           printf '\r\033[K%s' "${line:0:width-1}" >&2
         elif [ "$SECONDS" -ge "$next" ]; then
-          echo "$line" >&2
+          echo "${line:0:width-1}" >&2
           next=$((SECONDS + 10))
         fi
         ;;
