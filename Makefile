@@ -82,7 +82,7 @@ SYNTH_OPTIONS := --config "$$CONFIG" --memories "$$MEMORIES" $${LIBERTY:+--liber
 GATES_SETUP := $(if $(filter-out 0,$(GATES)),setup-synth)
 UNIT_OF_ENGINE := $(if $(filter rtl lockstep,$(ENGINE)),$(UNIT),true)
 
-.PHONY: help sim run cosim configurations mutants faults unit test lint format bench clean setup-% program configured-% numerics-long proofs synth synth-replay synth-prove growth numerics extremes isa quoted package
+.PHONY: help sim run cosim configurations mutants faults unit test lint format bench clean setup-% program configured-% numerics-long proofs synth synth-replay synth-prove growth numerics extremes isa diagrams quoted package
 
 help: ## this list
 	@echo 'raypool: a ray-tracing GPU to render on, measure, verify and synthesise'
@@ -142,6 +142,9 @@ faults: setup-sim setup-test configured-ON program ## a catalogue of designers' 
 isa: setup-sim program ## write what is derived from the tables of ALU types and instructions
 	@$(RAYPOOL) isa --write
 	@scripts/core.py $(RAYPOOL)
+
+diagrams: setup-sim setup-test program ## draw docs/images/*.svg: the unit, the chip, and the stages of a run in Icarus
+	@PYTHONPATH=scripts python3 -m diagrams $(RAYPOOL) $(BUILD)/diagrams
 
 unit: setup-sim program ## Verilate CUS compute units of CONFIG (WAVES=1: with waveforms)
 	@$(UNIT) --units "$$CUS"
