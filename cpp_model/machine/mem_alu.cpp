@@ -1,37 +1,19 @@
 #include "machine/mem_alu.hpp"
 
-#include <algorithm>
-
 #include "machine/bits.hpp"
 
 namespace raypool {
-MemAlu::MemAlu(const Configuration& configuration)
-    : set_mask_(static_cast<uint32_t>(configuration.data_cache_bytes) / 128 - 1),
-      mshrs_(static_cast<uint32_t>(configuration.data_cache_mshrs)),
-      tasks_(static_cast<size_t>(configuration.warps)),
-      sets_(set_mask_ + 1) {}
 
 void MemAlu::reset() {
-  std::fill(sets_.begin(), sets_.end(), Set{});
-  busy_ = filled_ = 0;
-  pass_ = Pass{};
-  access_ = Access{};
-  next_ = Next{};
-  refill_ = Refill{};
-  parking_ = false;
-  done_ = 0;
-  fault_ = FaultCode::None;
-  queued_ = parked_ = losers_ = 0;
-  privilege_ = attempt_ = false;
-  privilege_warp_ = 0;
-  queue_count_ = 0;
+  q_ = Registers{};
+  cache_.reset();
+  sequencer_.reset();
+  requests_ = {};
   active_ = false;
   hits_ = misses_ = stores_ = unready_ = 0;
 }
 
-void MemAlu::invalidate() {
-  for (Set& set : sets_) set.valid = {};
-}
+// ---- Arrival
 
 MemAlu::Quadword& MemAlu::quadword(Task& task, uint32_t number) {
   // Neighbouring lanes mostly share the latest one.
@@ -50,286 +32,181 @@ void MemAlu::add_store(Task& task, uint32_t address, uint32_t value) {
   quad.mask = static_cast<uint8_t>(quad.mask | 1u << word);
 }
 
+// ---- What follows from the registers of a cycle
+
+MemAlu::Look MemAlu::look_up(bool response_valid) const {
+  const Pass& pass = q_.pass;
+  Look look;
+  if (!pass.valid) return look;
+  // An access cannot stall, so a lookup needs a free request entry beside that of the access of this cycle.
+  const bool room = requests_.count() < 2 || (requests_.count() == 2 && !q_.access.valid);
+  const bool store_access = q_.access.valid && q_.access.any && q_.access.store;
+  const Task& task = tasks_[pass.warp];
+  look.look = room && (task.store ? cache_.store_ready(response_valid) : cache_.load_ready(store_access));
+  look.served = pass.pending & (0u - pass.pending);
+  look.pending_after = pass.pending & ~look.served;
+  look.last = look.look && look.pending_after == 0;
+  if (look.look) look.illegal = task.fault;
+  return look;
+}
+
+MemAlu::End MemAlu::gather(const DataCache::Outcome& outcome) const {
+  const Access& access = q_.access;
+  End end;
+  if (!access.valid) return end;
+  end.access_end = access.last;
+  end.left = (access.first ? access.left : q_.left) & ~(outcome.gone() ? access.served : 0);
+  end.refused = (access.first ? access.refused : q_.refused) | (outcome.refuse ? access.served : 0);
+  end.allocated = outcome.allocate || (!access.first && q_.allocated);
+  return end;
+}
+
 bool MemAlu::storing(StoreEvent& event) const {
-  if (!access_.store || !decide().accepts) return false;
-  const Quadword& quad = tasks_[access_.warp].quadwords[lowest(access_.served)];
-  event.warp = access_.warp;
+  if (!q_.access.store || !access().accept) return false;
+  const Quadword& quad = tasks_[q_.access.warp].quadwords[lowest(q_.access.served)];
+  event.warp = q_.access.warp;
   event.address = quad.number << 4;
   event.data = quad.data;
   event.mask = quad.mask;
   return true;
 }
 
-MemAlu::Registers MemAlu::registers() const {
-  Registers r{};
-  r.pass = pass_.valid;
-  r.pass_warp = pass_.warp;
-  r.access = access_.valid;
-  r.access_warp = access_.warp;
-  r.access_quad = access_.number;
-  r.park = parking_;
-  r.done = done_ != 0;
-  r.end_warp = end_warp_;
-  r.queued = queued_;
-  r.parked = parked_;
-  r.losers = losers_;
-  r.next = next_.valid;
-  r.next_kind = static_cast<uint32_t>(next_.kind);
-  r.next_warp = next_.warp;
-  r.next_mshr = next_.mshr;
-  r.privilege = privilege_;
-  r.privilege_warp = privilege_warp_;
-  r.attempt = attempt_;
-  r.busy = busy_;
-  r.filled = filled_;
-  r.queue_count = queue_count_;
-  return r;
-}
-
-// What becomes of the quadword in the access stage.
-MemAlu::Decision MemAlu::decide() const {
-  Decision decision;
-  if (!access_.valid || !access_.any) return decision;
-  const uint32_t line = access_.number >> 2;
-  const Set& set = set_of(line);
-  decision.access = true;
-  decision.found = access_.way >= 0;
-  if (!access_.store && decision.found) {
-    decision.hit = true;
-    return decision;
-  }
-  uint32_t locked = 0;
-  for (uint32_t bits = busy_; bits != 0; bits &= bits - 1) {
-    const uint32_t number = lowest(bits);
-    const Mshr& mshr = mshr_[number];
-    if ((filled_ >> number & 1) == 0 && mshr.line == line) {
-      decision.match = true;
-      decision.mshr = number;
-      return decision;
-    }
-    if ((mshr.line & set_mask_) == (line & set_mask_)) locked |= 1u << mshr.way;
-  }
-  if (access_.store) {
-    decision.accepts = true;
-    return decision;
-  }
-  const bool allowed = !privilege_ || privilege_warp_ == access_.warp;
-  const uint32_t free = ~busy_ & ((1u << mshrs_) - 1);
-  decision.refuses = !allowed || free == 0 || locked == 3;
-  if (decision.refuses) return decision;
-  decision.allocates = true;
-  decision.mshr = lowest(free);
-  decision.way = (locked >> set.older & 1) != 0 ? 1u - set.older : set.older;
-  return decision;
-}
-
-// The access takes miss-status holding registers and pushes requests.
-MemAlu::Decision MemAlu::access() {
-  const Decision decision = decide();
-  if (!decision.access) return decision;
-  const uint32_t line = access_.number >> 2;
-  const uint32_t bit = 1u << access_.warp;
-  if (decision.found) set_of(line).older = static_cast<uint8_t>(access_.way == 0);
-  const bool first_try = !access_.store && access_.kind == Kind::New;
-  hits_ += first_try && decision.hit;
-  misses_ += first_try && !decision.hit;
-  stores_ += decision.accepts;
-  MemoryRequest request;
-  if (decision.match) {
-    mshr_[decision.mshr].waiters |= bit;
-  } else if (decision.accepts) {
-    const Quadword& quad = tasks_[access_.warp].quadwords[lowest(access_.served)];
-    request.write = true;
-    request.address = quad.number << 4;
-    request.data = quad.data;
-    request.mask = quad.mask;
-    push(request);
-  } else if (decision.allocates) {
-    mshr_[decision.mshr] = {line, bit, decision.way};
-    busy_ |= 1u << decision.mshr;
-    request.address = line << 6;
-    request.id = static_cast<uint8_t>(decision.mshr);
-    push(request);
-  }
-  return decision;
-}
-
-// The beat that waits is written.
-void MemAlu::refill() {
-  const Mshr& mshr = mshr_[refill_.mshr];
-  Set& set = set_of(mshr.line);
-  if (refill_.beat == 0) set.valid[mshr.way] = false;
-  if (refill_.beat == 3) {
-    set.valid[mshr.way] = true;
-    set.line[mshr.way] = mshr.line;
-    filled_ |= 1u << refill_.mshr;
-  }
-}
-
-// The pass that is prepared next, if one can be.
-void MemAlu::select(Next& next) {
-  for (uint32_t bits = filled_; bits != 0; bits &= bits - 1) {
-    const uint32_t waiters = mshr_[lowest(bits)].waiters & parked_;
-    if (waiters == 0) continue;
-    next = {true, Kind::Filled, lowest(waiters), lowest(bits)};
-    return;
-  }
-  if (privilege_ && attempt_ && (losers_ & parked_) >> privilege_warp_ & 1) {
-    next = {true, Kind::Loser, privilege_warp_, 0};
-  } else if (queued_ != 0) {
-    next = {true, Kind::New, lowest(queued_), 0};
-  }
-}
+// ---- The end of a cycle
 
 void MemAlu::clock(const Inputs& inputs) {
-  unready_ += queued_ != 0;
+  unready_ += !ready();
+  const MemorySequencer::Registers next = sequencer_.registers();
+  const Look look = look_up(inputs.response_valid);
+  const DataCache::Outcome outcome = access();
+  const End end = gather(outcome);
+  const bool free_after = !q_.pass.valid || look.last;
+  // A pass that continues a task brings its partial result back, so no other task's may be under way.
+  const bool take = next.next_valid && (next.next_kind == Kind::New ? free_after : !q_.pass.valid && !q_.access.valid);
+  const bool start = inputs.arriving >= 0 && free_after && !next.next_valid && sequencer_.queue_empty();
 
-  // Everything is worked out from the registers of this cycle; they change at its end, so what is still needed is kept first.
-  const bool access_valid = access_.valid;
-  const bool store_access = access_valid && access_.any && access_.store;
-  const bool load_ready = !refill_.valid && !store_access;
-  const bool store_ready = !refill_.valid && !inputs.response_valid;
-  const bool room = queue_count_ < 2 || (queue_count_ == 2 && !access_valid);
-  const bool look = pass_.valid && room && (tasks_[pass_.warp].store ? store_ready : load_ready);
-  const uint32_t served = pass_.pending & (0u - pass_.pending);
-  const uint32_t pending_after = pass_.pending & ~served;
-  const bool look_last = look && pending_after == 0;
-  const FaultCode fault = look ? tasks_[pass_.warp].fault : FaultCode::None;
-  const bool free_after = !pass_.valid || look_last;
-  const bool take = next_.valid && (next_.kind == Kind::New ? free_after : !pass_.valid && !access_valid);
-  const bool arrives = inputs.arriving >= 0;
-  const bool start = arrives && free_after && !next_.valid && queued_ == 0;
-  uint32_t finished = 0;
-  for (uint32_t bits = filled_; bits != 0; bits &= bits - 1) {
-    if (mshr_[lowest(bits)].waiters == 0) finished |= 1u << lowest(bits);
-  }
-  Next selected;
-  if (!next_.valid) select(selected);
-  const uint32_t losers = losers_;
+  clock_sequencer(inputs, end, start, take);
+  requests_.clock(inputs.request_ready);
+  if (outcome.push()) push(outcome);
+  const bool first_try = outcome.access && !q_.access.store && q_.access.kind == Kind::New;
+  hits_ += first_try && outcome.hit;
+  misses_ += first_try && !outcome.hit;
+  stores_ += outcome.accept;
+  clock_cache(inputs, look, outcome);
+  clock_end(end);
+  clock_access(look);
+  q_.fault = look.illegal;
+  q_.fault_warp = q_.pass.warp;
 
-  // The lookup belongs to the tags of this cycle. No refill beat is written in a cycle with a lookup.
-  Access lookup;
-  if (look && fault == FaultCode::None) {
-    lookup.valid = true;
-    lookup.any = pass_.pending != 0;
-    lookup.first = pass_.first;
-    lookup.last = pending_after == 0;
-    lookup.store = tasks_[pass_.warp].store;
-    lookup.kind = pass_.kind;
-    lookup.warp = pass_.warp;
-    lookup.mshr = pass_.mshr;
-    lookup.served = served;
-    lookup.left = pass_.left;
-    lookup.refused = pass_.refused;
-    if (lookup.any) {
-      lookup.number = tasks_[pass_.warp].quadwords[lowest(served)].number;
-      const uint32_t line = lookup.number >> 2;
-      const Set& set = set_of(line);
-      for (int way = 0; way < 2; ++way) {
-        if (set.valid[static_cast<size_t>(way)] && set.line[static_cast<size_t>(way)] == line) lookup.way = way;
-      }
-    }
-  }
-
-  // Requests leave before this cycle's access adds one.
-  if (queue_count_ != 0 && inputs.request_ready) {
-    --queue_count_;
-    for (uint32_t i = 0; i < queue_count_; ++i) queue_[i] = queue_[i + 1];
-  }
-
-  // Access, and the end of a pass.
-  const bool parking = parking_;
-  const uint32_t parking_warp = end_warp_;
-  done_ = 0;
-  parking_ = false;
-  bool pass_end_of_privileged = false;
-  if (access_valid) {
-    const Decision outcome = access();
-    left_ = (access_.first ? access_.left : left_) & ~(outcome.gone() ? access_.served : 0);
-    refused_ = (access_.first ? access_.refused : refused_) | (outcome.refuses ? access_.served : 0);
-    allocated_ = outcome.allocates || (!access_.first && allocated_);
-    end_warp_ = access_.warp;
-    if (access_.last) {
-      if (left_ == 0) {
-        done_ = 1u << end_warp_;
-      } else {
-        parking_ = true;
-        tasks_[end_warp_].left = left_;
-        tasks_[end_warp_].refused = refused_;
-      }
-      losers_ = (losers_ & ~(1u << end_warp_)) | (refused_ != 0 ? 1u << end_warp_ : 0);
-      if (access_.kind == Kind::Filled) mshr_[access_.mshr].waiters &= ~(1u << end_warp_);
-      pass_end_of_privileged = privilege_ && end_warp_ == privilege_warp_ && allocated_;
-    }
-  }
-  access_ = lookup;
-
-  if (refill_.valid) refill();
-  refill_ = {inputs.response_valid, inputs.response_mshr, inputs.response_beat};
-  busy_ &= ~finished;
-  filled_ &= ~finished;
-
-  // Faults drop the task.
-  fault_ = fault;
-  fault_warp_ = pass_.warp;
-
-  // What the lookup stage holds next.
   if (take) {
-    const Task& task = tasks_[next_.warp];
-    pass_.valid = pass_.first = true;
-    pass_.kind = next_.kind;
-    pass_.warp = next_.warp;
-    pass_.mshr = next_.mshr;
-    pass_.left = task.left;
-    pass_.refused = 0;
-    switch (next_.kind) {
-      case Kind::New:
-        pass_.left = pass_.pending = task.count == 32 ? ~0u : (1u << task.count) - 1;
-        break;
-      case Kind::Filled:
-        pass_.pending = 0;
-        for (uint32_t bits = task.left; bits != 0; bits &= bits - 1) {
-          if (task.quadwords[lowest(bits)].number >> 2 == mshr_[next_.mshr].line) pass_.pending |= 1u << lowest(bits);
-        }
-        pass_.refused = task.refused & ~pass_.pending;
-        break;
-      default:
-        pass_.pending = task.refused;
-        break;
-    }
-    next_.valid = false;
+    take_pass(next);
   } else if (start) {
-    const Task& task = tasks_[static_cast<size_t>(inputs.arriving)];
-    const uint32_t all = task.count == 32 ? ~0u : (1u << task.count) - 1;
-    pass_ = {true, Kind::New, static_cast<uint32_t>(inputs.arriving), 0, true, all, all, 0};
-  } else if (look) {
-    pass_.first = false;
-    pass_.pending = pending_after;
-    if (look_last || fault != FaultCode::None) pass_.valid = false;
+    start_pass(static_cast<uint32_t>(inputs.arriving));
+  } else if (look.look) {
+    q_.pass.first = false;
+    q_.pass.pending = look.pending_after;
+    if (look.last || look.illegal != FaultCode::None) q_.pass.valid = false;
   }
+  active_ = q_.pass.valid || q_.access.valid || q_.done || q_.park || requests_.valid() || q_.fault != FaultCode::None ||
+            cache_.active() || sequencer_.active();
+}
 
-  // The sequencer.
-  if (arrives && !start) queued_ |= 1u << inputs.arriving;
-  if (parking) parked_ |= 1u << parking_warp;
-  if (selected.valid) {
-    next_ = selected;
-    const uint32_t bit = 1u << selected.warp;
-    if (selected.kind == Kind::New)
-      queued_ &= ~bit;
-    else
-      parked_ &= ~bit;
-    if (selected.kind == Kind::Loser) attempt_ = false;
+void MemAlu::clock_sequencer(const Inputs& inputs, const End& end, bool start, bool take) {
+  MemorySequencer::Inputs in;
+  in.queue = inputs.arriving >= 0 && !start;
+  in.queue_warp = static_cast<uint32_t>(inputs.arriving);
+  in.park = q_.park;
+  in.park_warp = q_.end_warp;
+  in.pass_end = end.access_end;
+  in.pass_warp = q_.access.warp;
+  in.pass_refused = end.refused != 0;
+  in.pass_allocated = end.allocated;
+  in.freed = cache_.miss_status().freed();
+  in.next_take = take;
+  sequencer_.clock(in, sequencer_.select(cache_.miss_status().registers()));
+}
+
+void MemAlu::push(const DataCache::Outcome& outcome) {
+  MemoryRequest request;
+  request.address = cache_.push_quad(outcome) << 4;
+  if (outcome.accept) {
+    const Quadword& quad = tasks_[q_.access.warp].quadwords[lowest(q_.access.served)];
+    request.write = true;
+    request.data = quad.data;
+    request.mask = quad.mask;
+  } else {
+    request.id = static_cast<uint8_t>(outcome.push_id);
   }
-  if (privilege_) {
-    if (finished != 0) attempt_ = true;
-    if (pass_end_of_privileged || (losers >> privilege_warp_ & 1) == 0) privilege_ = false;
-  } else if (losers != 0) {
-    const uint32_t above = losers & ~((2u << privilege_warp_) - 1);
-    privilege_ = attempt_ = true;
-    privilege_warp_ = lowest(above != 0 ? above : losers);
+  requests_.push(request);
+}
+
+void MemAlu::clock_cache(const Inputs& inputs, const Look& look, const DataCache::Outcome& outcome) {
+  DataCache::Inputs in;
+  in.lookup = look.look && look.served != 0;
+  if (in.lookup) in.lookup_quad = tasks_[q_.pass.warp].quadwords[lowest(look.served)].number;
+  in.response_valid = inputs.response_valid;
+  in.response_id = inputs.response_id;
+  in.response_beat = inputs.response_beat;
+  in.access_warp = in.served_warp = q_.access.warp;
+  in.served = q_.access.valid && q_.access.last && q_.access.kind == Kind::Filled;
+  in.served_id = q_.access.mshr;
+  cache_.clock(in, outcome);
+}
+
+// Results gather over the accesses of a pass; after the last one the warp is done, or parked with what it has.
+void MemAlu::clock_end(const End& end) {
+  if (q_.park) {
+    tasks_[q_.end_warp].left = q_.left;
+    tasks_[q_.end_warp].refused = q_.refused;
   }
-  active_ = pass_.valid || access_.valid || done_ != 0 || parking_ || refill_.valid || next_.valid || queue_count_ != 0 ||
-            (queued_ | filled_ | losers_) != 0 || privilege_ || fault_ != FaultCode::None;
+  q_.done = end.access_end && end.left == 0;
+  q_.park = end.access_end && end.left != 0;
+  if (!q_.access.valid) return;
+  q_.end_warp = q_.access.warp;
+  q_.left = end.left;
+  q_.refused = end.refused;
+  q_.allocated = end.allocated;
+}
+
+void MemAlu::clock_access(const Look& look) {
+  const Pass& pass = q_.pass;
+  q_.access.valid = look.look && look.illegal == FaultCode::None;
+  if (!q_.access.valid) return;
+  q_.access.any = pass.pending != 0;
+  q_.access.first = pass.first;
+  q_.access.last = look.pending_after == 0;
+  q_.access.store = tasks_[pass.warp].store;
+  q_.access.kind = pass.kind;
+  q_.access.warp = pass.warp;
+  q_.access.mshr = pass.mshr;
+  q_.access.served = look.served;
+  q_.access.left = pass.left;
+  q_.access.refused = pass.refused;
+}
+
+void MemAlu::take_pass(const MemorySequencer::Registers& next) {
+  const Task& task = tasks_[next.next_warp];
+  Pass pass{true, true, next.next_kind, next.next_warp, next.next_mshr, 0, task.left, 0};
+  switch (next.next_kind) {
+    case Kind::New:
+      pass.left = pass.pending = task.mask();
+      break;
+    case Kind::Filled:
+      for (uint32_t bits = task.left; bits != 0; bits &= bits - 1) {
+        if (task.quadwords[lowest(bits)].number >> 2 == cache_.miss_status().registers().line[next.next_mshr])
+          pass.pending |= 1u << lowest(bits);
+      }
+      pass.refused = task.refused & ~pass.pending;
+      break;
+    case Kind::Loser:
+      pass.pending = task.refused;
+      break;
+  }
+  q_.pass = pass;
+}
+
+void MemAlu::start_pass(uint32_t warp) {
+  const uint32_t mask = tasks_[warp].mask();
+  q_.pass = {true, true, Kind::New, warp, 0, mask, mask, 0};
 }
 
 }  // namespace raypool

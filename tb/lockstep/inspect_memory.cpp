@@ -16,19 +16,19 @@ void UnitInspection::check_memory_alu() {
     expect(w_.mem_fault.value(), 0, kAlu, "memory ALU, fault");
     return;
   }
-  const MemAlu::Registers r = mem.registers();
+  const MemAlu::Registers& r = mem.registers();
   expect(w_.mem_fault.value(), mem.fault() != FaultCode::None, kAlu, "memory ALU, fault");
   check_access();
   check_miss_status();
   check_sequencer();
-  expect(mem_.pass_q.value(), r.pass, kAlu, "memory ALU, a pass is looked up");
-  if (r.pass) expect(mem_.pass_warp_q.value(), r.pass_warp, kAlu, "memory ALU, warp of the pass");
+  expect(mem_.pass_q.value(), r.pass.valid, kAlu, "memory ALU, a pass is looked up");
+  if (r.pass.valid) expect(mem_.pass_warp_q.value(), r.pass.warp, kAlu, "memory ALU, warp of the pass");
   expect(mem_.done_q.value(), r.done, kAlu, "memory ALU, done");
   expect(mem_.park_q.value(), r.park, kAlu, "memory ALU, parks a warp");
   if (r.done || r.park) expect(mem_.end_warp_q.value(), r.end_warp, kAlu, "memory ALU, warp at the end of a pass");
-  expect(mem_.queue_count.value(), r.queue_count, "rtl/request_queue.v, rtl/mem_alu.v, rtl/memory_arbiter.v",
+  expect(mem_.queue_count.value(), mem.requests().count(), "rtl/request_queue.v, rtl/mem_alu.v, rtl/memory_arbiter.v",
          "memory ALU, requests that wait");
-  if (r.queue_count == 0) return;
+  if (!mem.request_valid()) return;
   const MemoryRequest& request = mem.request();
   bool same = (w_.data_request_write.value() != 0) == request.write && w_.data_request_address.value() == request.address;
   if (request.write) {
@@ -45,28 +45,28 @@ void UnitInspection::check_memory_alu() {
 // The access stage: its registers, and what the cache and its miss-status holding registers say to it.
 void UnitInspection::check_access() {
   constexpr const char* kAlu = "rtl/mem_alu.v";
-  const MemAlu::Registers r = model_->mem().registers();
-  const MemAlu::Decision decision = model_->mem().decide();
-  expect(mem_.access_valid_q.value(), r.access, kAlu, "memory ALU, an access");
-  if (r.access) expect(mem_.access_warp_q.value(), r.access_warp, kAlu, "memory ALU, warp of the access");
-  expect(mem_.access.value(), decision.access, kAlu, "memory ALU, an access with lanes");
-  if (!decision.access || mem_.access.value() == 0) return;
-  expect(cache_.quad_q.value(), r.access_quad, kAlu, "memory ALU, quadword of the access");
+  const MemAlu::Access& r = model_->mem().registers().access;
+  const DataCache::Outcome outcome = model_->mem().access();
+  expect(mem_.access_valid_q.value(), r.valid, kAlu, "memory ALU, an access");
+  if (r.valid) expect(mem_.access_warp_q.value(), r.warp, kAlu, "memory ALU, warp of the access");
+  expect(mem_.access.value(), outcome.access, kAlu, "memory ALU, an access with lanes");
+  if (!outcome.access || mem_.access.value() == 0) return;
+  expect(cache_.quad_q.value(), model_->mem().cache().registers().quad, kAlu, "memory ALU, quadword of the access");
   const char* cache = argument_written_ ? "rtl/data_cache.v, rtl/mem_alu.v, rtl/compute_unit.v" : "rtl/data_cache.v";
-  expect(cache_.found.value(), decision.found, cache, "data cache, the line is in it");
-  if (!decision.hit)
-    expect(cache_.match.value(), decision.match, "rtl/miss_status.v, rtl/data_cache.v", "the line is being fetched");
+  expect(cache_.found.value(), outcome.found, cache, "data cache, the line is in it");
+  if (!outcome.hit)
+    expect(cache_.match.value(), outcome.match, "rtl/miss_status.v, rtl/data_cache.v", "the line is being fetched");
   if (!findings_.empty()) return;  // what follows is made from these
   const char* status = "rtl/data_cache.v, rtl/miss_status.v";
-  expect(mem_.hit.value(), decision.hit, cache, "data cache, hit");
-  expect(mem_.accepts.value(), decision.accepts, status, "data cache, accepts the store");
-  expect(mem_.allocates.value(), decision.allocates, status, "data cache, takes a miss-status holding register");
-  expect(mem_.refuses.value(), decision.refuses, status, "data cache, refuses");
-  if (decision.allocates) {
-    expect(cache_.push_id_o.value(), decision.mshr, "rtl/miss_status.v, rtl/data_cache.v", "number of the free register");
-    expect(cache_.victim.value(), decision.way, status, "way for the line");
+  expect(mem_.hit.value(), outcome.hit, cache, "data cache, hit");
+  expect(mem_.accepts.value(), outcome.accept, status, "data cache, accepts the store");
+  expect(mem_.allocates.value(), outcome.allocate, status, "data cache, takes a miss-status holding register");
+  expect(mem_.refuses.value(), outcome.refuse, status, "data cache, refuses");
+  if (outcome.allocate) {
+    expect(cache_.push_id_o.value(), outcome.push_id, "rtl/miss_status.v, rtl/data_cache.v", "number of the free register");
+    expect(cache_.victim.value(), outcome.victim, status, "way for the line");
   }
-  if (decision.hit) check_loaded(r.access_warp);
+  if (outcome.hit) check_loaded(r.warp);
 }
 
 // The words that the lanes of a load get from the cache.
@@ -87,29 +87,28 @@ void UnitInspection::check_loaded(uint32_t warp) {
 
 void UnitInspection::check_miss_status() {
   constexpr const char* kFiles = "rtl/miss_status.v, rtl/data_cache.v";
-  const MemAlu& mem = model_->mem();
-  const MemAlu::Registers r = mem.registers();
+  const MissStatus::Registers& r = model_->mem().cache().miss_status().registers();
   expect(miss_.busy_q.value(), r.busy, kFiles, "miss-status holding registers that are busy");
   expect(miss_.filled_q.value(), r.filled, kFiles, "miss-status holding registers whose line has come");
   for (uint32_t busy = r.busy; busy != 0; busy &= busy - 1) {
     const uint32_t number = lowest(busy);
-    expect(miss_.line_q.bits(number * 26, 26), mem.mshr_line(number), kFiles, "miss-status holding register, line");
-    expect(miss_.waiters_q.bits(number * warps_, warps_), mem.mshr_waiters(number), kFiles,
-           "miss-status holding register, waiters");
+    expect(miss_.line_q.bits(number * 26, 26), r.line[number], kFiles, "miss-status holding register, line");
+    expect(miss_.waiters_q.bits(number * warps_, warps_), r.waiters[number], kFiles, "miss-status holding register, waiters");
   }
 }
 
 void UnitInspection::check_sequencer() {
   constexpr const char* kFiles = "rtl/memory_sequencer.v, rtl/mem_alu.v";
-  const MemAlu::Registers r = model_->mem().registers();
+  const MemorySequencer::Registers& r = model_->mem().sequencer().registers();
   expect(sequencer_.queued_q.value(), r.queued, kFiles, "memory sequencer, new tasks");
   expect(sequencer_.parked_q.value(), r.parked, kFiles, "memory sequencer, parked warps");
-  expect(sequencer_.loser_q.value(), r.losers, kFiles, "memory sequencer, losers");
-  expect(sequencer_.next_valid_q.value(), r.next, kFiles, "memory sequencer, a pass is prepared");
-  if (r.next) {
-    expect(sequencer_.next_kind_q.value(), r.next_kind, kFiles, "memory sequencer, kind of the pass");
+  expect(sequencer_.loser_q.value(), r.loser, kFiles, "memory sequencer, losers");
+  expect(sequencer_.next_valid_q.value(), r.next_valid, kFiles, "memory sequencer, a pass is prepared");
+  if (r.next_valid) {
+    expect(sequencer_.next_kind_q.value(), static_cast<uint32_t>(r.next_kind), kFiles, "memory sequencer, kind of the pass");
     expect(sequencer_.next_warp_q.value(), r.next_warp, kFiles, "memory sequencer, warp of the pass");
-    if (r.next_kind == 1) expect(sequencer_.next_mshr_q.value(), r.next_mshr, kFiles, "memory sequencer, register of the pass");
+    if (r.next_kind == MemorySequencer::Kind::Filled)
+      expect(sequencer_.next_mshr_q.value(), r.next_mshr, kFiles, "memory sequencer, register of the pass");
   }
   expect(sequencer_.privilege_q.value(), r.privilege, kFiles, "memory sequencer, privilege");
   if (!r.privilege) return;
