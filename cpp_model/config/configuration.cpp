@@ -56,7 +56,7 @@ constexpr size_t kLongestName = 64;
 
 constexpr int kLeastFusedDepth = 5;  // of flt, whose additions and multiplications go through the fused unit
 constexpr std::array<int, 4> kLeastSlowDepths = {11, 11, 8, 6};  // of slw, by SlowUnit: each Newton step has its stages
-bool is_fixed(size_t unit) { return kUnitTable[unit].timed_by_events(); }
+bool is_fixed(size_t type) { return kAluTable[type].timed_by_events(); }
 
 bool is_power_of_two(int value) { return value > 0 && (value & (value - 1)) == 0; }
 
@@ -161,16 +161,16 @@ Configuration from_json(const Json& json, const std::string& where, const std::s
     arithmetic->boolean("fma", configuration.fma);
     arithmetic->refuse_others();
   }
-  for (const Unit unit : {Unit::Flt, Unit::Slw})
-    configuration.alus[static_cast<size_t>(unit)].depth = least_depth(configuration, unit);
+  for (const AluType type : {AluType::Flt, AluType::Slw})
+    configuration.alus[static_cast<size_t>(type)].depth = least_depth(configuration, type);
   if (auto alus = root.section("alus")) {
-    for (size_t unit = 0; unit < kUnits; ++unit) {
-      auto alu = alus->section(std::string(kUnitNames[unit]).c_str());
+    for (size_t type = 0; type < kAluTypes; ++type) {
+      auto alu = alus->section(std::string(kAluNames[type]).c_str());
       if (!alu) continue;
-      alu->integer("count", configuration.alus[unit].count);
-      if (!is_fixed(unit)) {
-        alu->integer("latency", configuration.alus[unit].latency);
-        alu->integer("depth", configuration.alus[unit].depth);
+      alu->integer("count", configuration.alus[type].count);
+      if (!is_fixed(type)) {
+        alu->integer("latency", configuration.alus[type].latency);
+        alu->integer("depth", configuration.alus[type].depth);
       }
       alu->refuse_others();
     }
@@ -284,16 +284,16 @@ Configuration parse_configuration(const std::string& json, const std::string& wh
   return parse(json, where, Configuration().name);
 }
 
-int least_depth(const Configuration& configuration, Unit unit) {
-  if (unit == Unit::Flt && configuration.fma) return kLeastFusedDepth;
-  if (unit == Unit::Slw) return kLeastSlowDepths.at(static_cast<size_t>(configuration.slow_unit));
-  return unit_info(unit).depth;
+int least_depth(const Configuration& configuration, AluType type) {
+  if (type == AluType::Flt && configuration.fma) return kLeastFusedDepth;
+  if (type == AluType::Slw) return kLeastSlowDepths.at(static_cast<size_t>(configuration.slow_unit));
+  return alu_info(type).depth;
 }
 
 namespace {
 
-int least_of(const AluRange& range, const Configuration& configuration, Unit unit) {
-  return range.value == &AluConfiguration::depth ? least_depth(configuration, unit) : range.least;
+int least_of(const AluRange& range, const Configuration& configuration, AluType type) {
+  return range.value == &AluConfiguration::depth ? least_depth(configuration, type) : range.least;
 }
 
 Json schema_of(const Range& range) {
@@ -312,9 +312,9 @@ Json object_schema(const char* description) {
   return {{"description", description}, {"type", "object"}, {"additionalProperties", false}, {"properties", Json::object()}};
 }
 
-Json alu_schema(Unit unit) {
+Json alu_schema(AluType type) {
   Json schema = object_schema("an ALU type");
-  if (is_fixed(static_cast<size_t>(unit))) {
+  if (is_fixed(static_cast<size_t>(type))) {
     schema["properties"]["count"] = {{"const", 1}};
     return schema;
   }
@@ -323,23 +323,23 @@ Json alu_schema(Unit unit) {
   for (const AluRange& range : kAluRanges) {
     Json& entry = schema["properties"][range.key];
     entry = {{"description", range.meaning}, {"type", "integer"}};
-    entry["minimum"] = least_of(range, shallowest, unit);
+    entry["minimum"] = least_of(range, shallowest, type);
     entry["maximum"] = range.greatest;
   }
   return schema;
 }
 
-/// If arithmetic.`key` is `value`, then the depth of `unit` is that configuration's; with `otherwise` also where the key is
+/// If arithmetic.`key` is `value`, then the depth of `type` is that configuration's; with `otherwise` also where the key is
 /// missing.
-Json depth_rule(const char* key, const Json& value, const Configuration& configuration, Unit unit, bool otherwise) {
-  const std::string name(kUnitNames[static_cast<size_t>(unit)]);
+Json depth_rule(const char* key, const Json& value, const Configuration& configuration, AluType type, bool otherwise) {
+  const std::string name(kAluNames[static_cast<size_t>(type)]);
   Json rule;
   rule["if"]["properties"]["arithmetic"]["properties"][key]["const"] = value;
   if (!otherwise) {
     rule["if"]["required"] = {"arithmetic"};
     rule["if"]["properties"]["arithmetic"]["required"] = {key};
   }
-  rule["then"]["properties"]["alus"]["properties"][name]["properties"]["depth"]["minimum"] = least_depth(configuration, unit);
+  rule["then"]["properties"]["alus"]["properties"][name]["properties"]["depth"]["minimum"] = least_depth(configuration, type);
   return rule;
 }
 
@@ -364,8 +364,8 @@ std::string configuration_schema() {
     section["properties"][key.substr(dot + 1)] = schema_of(range);
   }
   keys["alus"] = object_schema("ALU types");
-  for (size_t unit = 0; unit < kUnits; ++unit)
-    keys["alus"]["properties"][std::string(kUnitNames[unit])] = alu_schema(static_cast<Unit>(unit));
+  for (size_t type = 0; type < kAluTypes; ++type)
+    keys["alus"]["properties"][std::string(kAluNames[type])] = alu_schema(static_cast<AluType>(type));
   Json& arithmetic = keys["arithmetic"] = object_schema("what docs/numerics.md compares");
   arithmetic["properties"]["subnormals"] = {{"enum", kSubnormalNames}, {"default", kSubnormalNames[0]}};
   arithmetic["properties"]["slow_unit"] = {{"enum", kSlowUnitNames}, {"default", kSlowUnitNames[0]}};
@@ -375,10 +375,10 @@ std::string configuration_schema() {
   Configuration variant;
   for (size_t i = 0; i < kSlowUnitNames.size(); ++i) {
     variant.slow_unit = static_cast<SlowUnit>(i);
-    schema["allOf"].push_back(depth_rule("slow_unit", kSlowUnitNames[i], variant, Unit::Slw, i == 0));
+    schema["allOf"].push_back(depth_rule("slow_unit", kSlowUnitNames[i], variant, AluType::Slw, i == 0));
   }
   variant.fma = true;
-  schema["allOf"].push_back(depth_rule("fma", true, variant, Unit::Flt, false));
+  schema["allOf"].push_back(depth_rule("fma", true, variant, AluType::Flt, false));
   const Json head = {{"$schema", "http://json-schema.org/draft-07/schema#"}, {"title", "raypool configuration"}};
   Json whole = head;
   whole.update(schema);
@@ -393,16 +393,16 @@ void check_configuration(const Configuration& configuration, const std::string& 
   }
   for (const Range& range : kRanges)
     check_range(where, range.key, configuration.*range.value, range.least, range.greatest, range.power_of_two);
-  for (size_t unit = 0; unit < kUnits; ++unit) {
-    const AluConfiguration& alu = configuration.alus[unit];
-    const std::string prefix = "alus." + std::string(kUnitNames[unit]) + ".";
-    if (is_fixed(unit)) {
+  for (size_t type = 0; type < kAluTypes; ++type) {
+    const AluConfiguration& alu = configuration.alus[type];
+    const std::string prefix = "alus." + std::string(kAluNames[type]) + ".";
+    if (is_fixed(type)) {
       if (alu.count == 1) continue;
       throw InputError(fmt::format("{}: {}count is {}; it must be 1, because this unit owns the {}", where, prefix, alu.count,
-                                   static_cast<Unit>(unit) == Unit::Mem ? "data cache" : "ray memory"));
+                                   static_cast<AluType>(type) == AluType::Mem ? "data cache" : "ray memory"));
     }
     for (const AluRange& range : kAluRanges) {
-      check_range(where, prefix + range.key, alu.*range.value, least_of(range, configuration, static_cast<Unit>(unit)),
+      check_range(where, prefix + range.key, alu.*range.value, least_of(range, configuration, static_cast<AluType>(type)),
                   range.greatest);
     }
   }
@@ -420,11 +420,11 @@ std::string to_json(const Configuration& configuration) {
   json["warps"] = configuration.warps;
   json["cores"] = configuration.cores;
   json["stack_depth"] = configuration.stack_depth;
-  for (size_t unit = 0; unit < kUnits; ++unit) {
-    const AluConfiguration& alu = configuration.alus[unit];
-    Json& entry = json["alus"][std::string(kUnitNames[unit])];
+  for (size_t type = 0; type < kAluTypes; ++type) {
+    const AluConfiguration& alu = configuration.alus[type];
+    Json& entry = json["alus"][std::string(kAluNames[type])];
     entry["count"] = alu.count;
-    if (is_fixed(unit)) continue;
+    if (is_fixed(type)) continue;
     entry["latency"] = alu.latency;
     entry["depth"] = alu.depth;
   }
@@ -445,9 +445,9 @@ std::vector<std::pair<std::string, int>> verilog_parameters(const Configuration&
   };
   for (const Column& column : {Column{"_COUNT", &AluConfiguration::count}, Column{"_LATENCY", &AluConfiguration::latency},
                                Column{"_DEPTH", &AluConfiguration::depth}}) {
-    for (size_t unit = 0; unit < kUnits; ++unit) {
-      if (is_fixed(unit)) continue;
-      parameters.emplace_back(verilog_name(static_cast<Unit>(unit)) + column.suffix, configuration.alus[unit].*column.value);
+    for (size_t type = 0; type < kAluTypes; ++type) {
+      if (is_fixed(type)) continue;
+      parameters.emplace_back(verilog_name(static_cast<AluType>(type)) + column.suffix, configuration.alus[type].*column.value);
     }
   }
   parameters.emplace_back("ICACHE_BYTES", configuration.instruction_cache_bytes);

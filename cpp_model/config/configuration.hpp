@@ -23,9 +23,9 @@ struct AluConfiguration {
 };
 
 /// One instance of each type, a task each cycle, as deep as the type's table row says.
-inline constexpr std::array<AluConfiguration, kUnits> default_alus() {
-  std::array<AluConfiguration, kUnits> alus{};
-  for (size_t unit = 0; unit < kUnits; ++unit) alus[unit].depth = kUnitTable[unit].depth;
+inline constexpr std::array<AluConfiguration, kAluTypes> default_alus() {
+  std::array<AluConfiguration, kAluTypes> alus{};
+  for (size_t type = 0; type < kAluTypes; ++type) alus[type].depth = kAluTable[type].depth;
   return alus;
 }
 
@@ -35,7 +35,7 @@ struct Configuration {
   int warps = 8;
   int cores = 8;  ///< lanes, and threads in a warp
   int stack_depth = 8;
-  std::array<AluConfiguration, kUnits> alus = default_alus();
+  std::array<AluConfiguration, kAluTypes> alus = default_alus();
   int instruction_cache_bytes = 4096;
   int data_cache_bytes = 8192;
   int data_cache_mshrs = 4;
@@ -46,7 +46,7 @@ struct Configuration {
   /// Whether instructions that need the feature are legal.
   bool has(Feature feature) const { return feature == Feature::Base || fma; }
   int contents() const { return warps * cores; }
-  const AluConfiguration& alu(Unit unit) const { return alus[static_cast<size_t>(unit)]; }
+  const AluConfiguration& alu(AluType type) const { return alus[static_cast<size_t>(type)]; }
 };
 
 /// Reads a file; `name_or_path` is a path or the name of a file in the configs folder ("8w8c"). A name of the form NwMc that has
@@ -62,7 +62,7 @@ Configuration parse_configuration(const std::string& json, const std::string& wh
 
 /// Least pipeline depth of a type in this configuration: what its function needs at speed. 0: the type has neither latency nor
 /// depth to choose. flt and slw have it as their default.
-int least_depth(const Configuration& configuration, Unit unit);
+int least_depth(const Configuration& configuration, AluType type);
 
 /// Throws InputError when a value is out of its range; `where` names the source in the message.
 void check_configuration(const Configuration& configuration, const std::string& where);

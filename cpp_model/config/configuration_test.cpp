@@ -80,7 +80,7 @@ TEST(Configuration, WhatAFileDoesNotNameKeepsItsDefault) {
   Configuration expected;
   expected.name = "test";
   expected.warps = 4;
-  expected.alus[static_cast<size_t>(Unit::Flt)].count = 2;
+  expected.alus[static_cast<size_t>(AluType::Flt)].count = 2;
   expected.subnormals = Subnormals::Flush;
   EXPECT_TRUE(equal(load_configuration(file.path()), expected));
 }
@@ -91,9 +91,9 @@ TEST(Configuration, WrittenAndReadAgainIsTheSame) {
   configuration.warps = 16;
   configuration.cores = 2;
   configuration.stack_depth = 5;
-  for (int unit = 0; unit < kUnits; ++unit) {
-    AluConfiguration& alu = configuration.alus[static_cast<size_t>(unit)];
-    if (!kUnitTable[unit].timed_by_events()) alu = {1 + unit % 4, 2 + unit, alu.depth + 2 + unit % 3};
+  for (int type = 0; type < kAluTypes; ++type) {
+    AluConfiguration& alu = configuration.alus[static_cast<size_t>(type)];
+    if (!kAluTable[type].timed_by_events()) alu = {1 + type % 4, 2 + type, alu.depth + 2 + type % 3};
   }
   configuration.instruction_cache_bytes = 1024;
   configuration.data_cache_bytes = 2048;
@@ -105,7 +105,7 @@ TEST(Configuration, WrittenAndReadAgainIsTheSame) {
   const Configuration read = load_configuration(file.path());
   EXPECT_TRUE(equal(read, configuration));
   EXPECT_EQ(verilog_parameters(read), verilog_parameters(configuration));
-  EXPECT_EQ(read.alu(Unit::Slw).depth, 15);
+  EXPECT_EQ(read.alu(AluType::Slw).depth, 15);
   EXPECT_EQ(read.slow_unit, SlowUnit::Newton1);
   EXPECT_TRUE(read.fma);
 }
@@ -136,7 +136,7 @@ TEST(Configuration, FewerNewtonStepsMakeSlwShallower) {
   for (const auto& [name, depth] : {std::pair{"exact", 11}, {"newton2", 11}, {"newton1", 8}, {"newton0", 6}}) {
     const std::string arithmetic = fmt::format(R"("arithmetic": {{"slow_unit": "{}"}})", name);
     const TemporaryFile file("{" + arithmetic + "}");
-    EXPECT_EQ(load_configuration(file.path()).alu(Unit::Slw).depth, depth);
+    EXPECT_EQ(load_configuration(file.path()).alu(AluType::Slw).depth, depth);
     EXPECT_EQ(error_of(fmt::format(R"({{"alus": {{"slw": {{"depth": {}}}}}, {}}})", depth - 1, arithmetic)),
               fmt::format("alus.slw.depth is {}; it must be an integer from {} to 32", depth - 1, depth));
   }
@@ -145,9 +145,9 @@ TEST(Configuration, FewerNewtonStepsMakeSlwShallower) {
 TEST(Configuration, FusedMultiplyAddDeepensFlt) {
   const TemporaryFile file(R"({"alus": {"flt": {"count": 2}}, "arithmetic": {"fma": true}})");
   const Configuration read = load_configuration(file.path());
-  EXPECT_EQ(read.alu(Unit::Flt).depth, 5);
-  EXPECT_EQ(least_depth(read, Unit::Flt), 5);
-  EXPECT_EQ(least_depth(Configuration{}, Unit::Flt), 3);
+  EXPECT_EQ(read.alu(AluType::Flt).depth, 5);
+  EXPECT_EQ(least_depth(read, AluType::Flt), 5);
+  EXPECT_EQ(least_depth(Configuration{}, AluType::Flt), 3);
   EXPECT_TRUE(read.has(Feature::FusedMultiplyAdd));
   EXPECT_FALSE(Configuration{}.has(Feature::FusedMultiplyAdd));
   EXPECT_EQ(error_of(R"({"alus": {"flt": {"depth": 4}}, "arithmetic": {"fma": true}})"),

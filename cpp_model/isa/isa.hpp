@@ -15,15 +15,15 @@
 namespace raypool {
 
 // The ALU types, a row each in the order of their numbers.
-//   type        enumerator of Unit; its number is the unit field of an instruction
+//   type        enumerator of AluType; its number is the unit field of an instruction
 //   name        three lower-case letters: key of the configuration, prefix of the Verilog parameters, module <name>_alu
 //   depth       least pipeline depth, which is what the function needs at speed, and the default one; 0: timed by events
 //   ports       Framework: those of docs/architecture.md, section 3; rtl/alu_instances.vh places it. Own: rtl/compute_unit.v does
 //   parameters  of the module beside the framework's, as rtl/compute_unit.v names them, separated by ", "
 //   title       for docs/isa.md
-// CORE: FunctionalCore executes the type. CLASS: a class derived from FunctionUnit does, and the ports are the framework's.
+// CORE: FunctionalCore executes the type. CLASS: a class derived from AluModel does, and the ports are the framework's.
 // clang-format off
-#define RAYPOOL_UNITS(CORE, CLASS) \
+#define RAYPOOL_ALU_TYPES(CORE, CLASS) \
   CORE(Tid, "tid",  1, Own,       "",                       "indices, dimensions, arguments") \
   CORE(Brh, "brh",  2, Framework, "SUBNORMALS",             "compares, predicates, control") \
   CORE(Mem, "mem",  0, Own,       "",                       "memory") \
@@ -35,17 +35,17 @@ namespace raypool {
 // clang-format on
 
 /// ALU types. The value is the unit field of an instruction.
-enum class Unit : uint8_t {
+enum class AluType : uint8_t {
 #define RAYPOOL_CORE(type, name, depth, ports, parameters, title) type,
 #define RAYPOOL_CLASS(type, name, depth, parameters, title) type,
-  RAYPOOL_UNITS(RAYPOOL_CORE, RAYPOOL_CLASS)
+  RAYPOOL_ALU_TYPES(RAYPOOL_CORE, RAYPOOL_CLASS)
 #undef RAYPOOL_CORE
 #undef RAYPOOL_CLASS
 };
 
 enum class Ports : uint8_t { Framework, Own };
 
-struct UnitInfo {
+struct AluInfo {
   std::string_view name;
   int depth;
   Ports ports;
@@ -54,26 +54,31 @@ struct UnitInfo {
   bool timed_by_events() const { return depth == 0; }
 };
 
-inline constexpr UnitInfo kUnitTable[] = {
+inline constexpr AluInfo kAluTable[] = {
 #define RAYPOOL_CORE(type, name, depth, ports, parameters, title) {name, depth, Ports::ports, parameters, title},
 #define RAYPOOL_CLASS(type, name, depth, parameters, title) {name, depth, Ports::Framework, parameters, title},
-    RAYPOOL_UNITS(RAYPOOL_CORE, RAYPOOL_CLASS)
+    RAYPOOL_ALU_TYPES(RAYPOOL_CORE, RAYPOOL_CLASS)
 #undef RAYPOOL_CORE
 #undef RAYPOOL_CLASS
 };
 
-inline constexpr int kUnits = static_cast<int>(std::size(kUnitTable));
-static_assert(kUnits <= 8, "the performance counters have room for eight ALU types");
+inline constexpr int kAluTypes = static_cast<int>(std::size(kAluTable));
+static_assert(kAluTypes <= 8, "the performance counters have room for eight ALU types");
 
-inline constexpr std::array<std::string_view, kUnits> kUnitNames = {
+inline constexpr std::array<std::string_view, kAluTypes> kAluNames = {
 #define RAYPOOL_CORE(type, name, depth, ports, parameters, title) name,
 #define RAYPOOL_CLASS(type, name, depth, parameters, title) name,
-    RAYPOOL_UNITS(RAYPOOL_CORE, RAYPOOL_CLASS)
+    RAYPOOL_ALU_TYPES(RAYPOOL_CORE, RAYPOOL_CLASS)
 #undef RAYPOOL_CORE
 #undef RAYPOOL_CLASS
 };
 
-inline constexpr const UnitInfo& unit_info(Unit unit) { return kUnitTable[static_cast<size_t>(unit)]; }
+inline constexpr const AluInfo& alu_info(AluType type) { return kAluTable[static_cast<size_t>(type)]; }
+
+using Unit = AluType;
+inline constexpr int kUnits = kAluTypes;
+inline constexpr const auto& kUnitTable = kAluTable;
+inline constexpr const auto& kUnitNames = kAluNames;
 
 /// One operand in the order of the assembly text, and where it is encoded.
 enum class Operand : uint8_t {
@@ -104,7 +109,7 @@ enum class Feature : uint8_t {
 
 struct InstructionInfo {
   std::string_view mnemonic;
-  Unit unit;
+  AluType unit;
   uint8_t operation;  ///< 0 .. 31
   std::array<Operand, 4> operands;
   ImmediateType immediate;  ///< type of B when it is an immediate
@@ -117,9 +122,9 @@ struct InstructionInfo {
 // clang-format off
 inline constexpr InstructionInfo kInstructions[] = {
 #define RAYPOOL_ROW(mnemonic, unit, op, o0, o1, o2, o3, imm, control, meaning) \
-  {mnemonic, Unit::unit, op, {Operand::o0, Operand::o1, Operand::o2, Operand::o3}, ImmediateType::imm, control, meaning}
+  {mnemonic, AluType::unit, op, {Operand::o0, Operand::o1, Operand::o2, Operand::o3}, ImmediateType::imm, control, meaning}
 #define RAYPOOL_ROW_WITH(feature, mnemonic, unit, op, o0, o1, o2, o3, imm, control, meaning) \
-  {mnemonic, Unit::unit, op, {Operand::o0, Operand::o1, Operand::o2, Operand::o3}, ImmediateType::imm, control, meaning, \
+  {mnemonic, AluType::unit, op, {Operand::o0, Operand::o1, Operand::o2, Operand::o3}, ImmediateType::imm, control, meaning, \
    Feature::feature}
   // Tid: indices, dimensions, arguments
   RAYPOOL_ROW("tid",    Tid, 0, Rd, None, None, None, None, false, "rd = index of the thread in its block"),

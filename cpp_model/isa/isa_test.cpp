@@ -105,7 +105,7 @@ TEST(InstructionTable, RowsHaveDistinctEncodingsAndNames) {
 
 TEST(UnitTable, NamesAreThreeLowerCaseLettersAndDistinct) {
   std::set<std::string_view> names;
-  for (const UnitInfo& info : kUnitTable) {
+  for (const AluInfo& info : kAluTable) {
     EXPECT_EQ(info.name.size(), 3u) << info.name;
     EXPECT_EQ(info.name.find_first_not_of("abcdefghijklmnopqrstuvwxyz"), std::string_view::npos) << info.name;
     EXPECT_TRUE(names.insert(info.name).second) << info.name;
@@ -114,7 +114,7 @@ TEST(UnitTable, NamesAreThreeLowerCaseLettersAndDistinct) {
 
 TEST(UnitTable, ThirdOperandsReachFltOnly) {
   for (const InstructionInfo& info : kInstructions) {
-    EXPECT_TRUE(info.unit == Unit::Flt || !has_operand(info, Operand::Rc)) << info.mnemonic;
+    EXPECT_TRUE(info.unit == AluType::Flt || !has_operand(info, Operand::Rc)) << info.mnemonic;
   }
 }
 

@@ -121,11 +121,11 @@ std::string isa_markdown() {
   text +=
       "\n## Instructions\n\nRows marked *c* are control instructions: they stop the instruction routine until their "
       "write-back. Rows marked *fma* are there in configurations with `arithmetic.fma` only.\n";
-  for (int unit = 0; unit < kUnits; ++unit) {
+  for (int type = 0; type < kAluTypes; ++type) {
     text += fmt::format("\n### {}: {} (unit {})\n\n| op | instruction | | meaning |\n| --- | --- | --- | --- |\n",
-                        kUnitTable[unit].name, kUnitTable[unit].title, unit);
+                        kAluTable[type].name, kAluTable[type].title, type);
     for (const InstructionInfo& info : kInstructions) {
-      if (static_cast<int>(info.unit) != unit) continue;
+      if (static_cast<int>(info.unit) != type) continue;
       text += fmt::format("| {} | `{}` | {} | {} |\n", info.operation, syntax(info), marks(info), info.meaning);
     }
   }

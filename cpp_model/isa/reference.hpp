@@ -33,6 +33,6 @@ struct GeneratedFile {
 std::vector<GeneratedFile> generated_files();
 
 /// The type's name in upper case, as Verilog parameters and constants begin with it.
-std::string verilog_name(Unit unit);
+std::string verilog_name(AluType type);
 
 }  // namespace raypool

@@ -19,21 +19,21 @@ std::string upper(std::string_view text) {
 template <typename Wanted>
 std::string labels(Wanted wanted) {
   std::string text;
-  for (int unit = 0; unit < kUnits; ++unit) {
+  for (int type = 0; type < kAluTypes; ++type) {
     std::string line;
     std::string names;
     int in_line = 0;
     for (const InstructionInfo& info : kInstructions) {
-      if (static_cast<int>(info.unit) != unit || !wanted(info)) continue;
+      if (static_cast<int>(info.unit) != type || !wanted(info)) continue;
       if (in_line > 0) line += in_line % 16 == 0 ? ",\n        " : ", ";
       ++in_line;
-      line += fmt::format("9'd{}", unit * 32 + info.operation);
+      line += fmt::format("9'd{}", type * 32 + info.operation);
       names += fmt::format(" {}", info.mnemonic);
     }
     if (line.empty()) continue;
     // The comma that parts this unit's labels from those before it opens the line: a comment ends it.
-    text += fmt::format("        // {}:{}\n        {}{}\n", kUnitNames[static_cast<size_t>(unit)], names,
-                        text.empty() ? "" : ", ", line);
+    text += fmt::format("        // {}:{}\n        {}{}\n", kAluNames[static_cast<size_t>(type)], names, text.empty() ? "" : ", ",
+                        line);
   }
   return text;
 }
@@ -62,7 +62,7 @@ constexpr const char* kGenerated =
 
 }  // namespace
 
-std::string verilog_name(Unit unit) { return upper(unit_info(unit).name); }
+std::string verilog_name(AluType type) { return upper(alu_info(type).name); }
 
 std::string isa_verilog() {
   std::string text = fmt::format(fmt::runtime(kGenerated), "--verilog");
@@ -71,8 +71,8 @@ std::string isa_verilog() {
       "functions.\n";
   text += "  // A module uses some of them only.\n  /* verilator lint_off UNUSEDPARAM */\n\n";
   text += "  // units\n";
-  for (int unit = 0; unit < kUnits; ++unit) {
-    text += fmt::format("  localparam [3:0] ISA_UNIT_{} = 4'd{};\n", verilog_name(static_cast<Unit>(unit)), unit);
+  for (int type = 0; type < kAluTypes; ++type) {
+    text += fmt::format("  localparam [3:0] ISA_UNIT_{} = 4'd{};\n", verilog_name(static_cast<AluType>(type)), type);
   }
   text += "\n  // operations\n";
   for (const InstructionInfo& info : kInstructions) {

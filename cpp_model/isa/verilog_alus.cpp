@@ -12,17 +12,17 @@ constexpr const char* kGenerated =
 
 /// Calls function(name in upper case, table row, type) for each type.
 template <typename Function>
-void for_each_unit(Function function) {
-  for (int unit = 0; unit < kUnits; ++unit)
-    function(verilog_name(static_cast<Unit>(unit)), kUnitTable[unit], static_cast<Unit>(unit));
+void for_each_alu(Function function) {
+  for (int type = 0; type < kAluTypes; ++type)
+    function(verilog_name(static_cast<AluType>(type)), kAluTable[type], static_cast<AluType>(type));
 }
 
 /// Instances of a type, as a Verilog expression.
-std::string count_of(const std::string& name, const UnitInfo& info) { return info.timed_by_events() ? "1" : name + "_COUNT"; }
+std::string count_of(const std::string& name, const AluInfo& info) { return info.timed_by_events() ? "1" : name + "_COUNT"; }
 
-bool has_third_operand(Unit unit) {
+bool has_third_operand(AluType type) {
   for (const InstructionInfo& info : kInstructions) {
-    if (info.unit == unit && has_operand(info, Operand::Rc)) return true;
+    if (info.unit == type && has_operand(info, Operand::Rc)) return true;
   }
   return false;
 }
@@ -44,7 +44,7 @@ std::string alu_parameters_verilog() {
   std::string text =
       fmt::format("  {}  // Instances of each ALU type, cycles between their tasks, pipeline stages.\n", kGenerated);
   for (const char* what : {"COUNT", "LATENCY", "DEPTH"}) {
-    for_each_unit([&](const std::string& name, const UnitInfo& info, Unit) {
+    for_each_alu([&](const std::string& name, const AluInfo& info, AluType) {
       if (info.timed_by_events()) return;
       text += fmt::format("  parameter integer {}_{} = {},\n", name, what, *what == 'D' ? info.depth : 1);
     });
@@ -54,7 +54,7 @@ std::string alu_parameters_verilog() {
 
 std::string alu_parameter_map_verilog() {
   std::string text = fmt::format("  {}", kGenerated);
-  for_each_unit([&](const std::string& name, const UnitInfo& info, Unit) {
+  for_each_alu([&](const std::string& name, const AluInfo& info, AluType) {
     if (info.timed_by_events()) return;
     text += fmt::format("  .{0}_COUNT({0}_COUNT), .{0}_LATENCY({0}_LATENCY), .{0}_DEPTH({0}_DEPTH),\n", name);
   });
@@ -63,10 +63,10 @@ std::string alu_parameter_map_verilog() {
 
 std::string alu_slots_verilog() {
   std::string text = fmt::format("  {}", kGenerated);
-  text += fmt::format("  localparam integer UNITS = {};\n", kUnits);
+  text += fmt::format("  localparam integer UNITS = {};\n", kAluTypes);
   text += "  // ALU instances, by type in the order of the unit numbers\n";
   std::string next = "0", units, wrong;
-  for_each_unit([&](const std::string& name, const UnitInfo& info, Unit) {
+  for_each_alu([&](const std::string& name, const AluInfo& info, AluType) {
     const std::string count = count_of(name, info);
     text += fmt::format("  localparam integer {}_SLOT = {};\n", name, next);
     next = fmt::format("{}_SLOT + {}", name, count);
@@ -86,7 +86,7 @@ std::string alu_slots_verilog() {
 
 std::string alu_instances_verilog() {
   std::string text = fmt::format("    {}", kGenerated);
-  for_each_unit([&](const std::string& name, const UnitInfo& info, Unit unit) {
+  for_each_alu([&](const std::string& name, const AluInfo& info, AluType type) {
     if (info.ports != Ports::Framework) return;
     text += fmt::format(
         "    for (k = 0; k < {0}_COUNT; k = k + 1) begin : gen_{1}\n"
@@ -105,7 +105,7 @@ std::string alu_instances_verilog() {
         "        .done_data_o(done_data[({0}_SLOT + k)*DATA +: DATA]), .done_pred_o(done_pred[({0}_SLOT + k)*LANES +: LANES]));\n"
         "    end\n",
         name, info.name, further_parameters(info.parameters),
-        has_third_operand(unit) ? fmt::format("        .task_c_i(task_c[({0}_SLOT + k)*DATA +: DATA]),\n", name) : "");
+        has_third_operand(type) ? fmt::format("        .task_c_i(task_c[({0}_SLOT + k)*DATA +: DATA]),\n", name) : "");
   });
   return text;
 }

@@ -55,13 +55,14 @@ InstructionCounts count_instructions(const Program& program, const std::string& 
 
 std::string kernel_table(bool fused) {
   std::string text = fmt::format("{:<22}", "instructions");
-  for (const std::string_view unit : kUnitNames) text += fmt::format("{:>9}", unit);
+  for (const std::string_view name : kAluNames) text += fmt::format("{:>9}", name);
   text += fmt::format("{:>10}\n", "total");
   for (size_t kernel = 0; kernel < kRayKernels; ++kernel) {
     const InstructionCounts counts = count_instructions(ray_kernel_program(fused), std::string(kRayKernelNames[kernel]));
     const InstructionCounts& thesis = kThesisCounts[kernel];
     text += fmt::format("{:<22}", kRayKernelNames[kernel]);
-    for (size_t unit = 0; unit < kUnits; ++unit) text += fmt::format("{:>9}", fmt::format("{} ({})", counts[unit], thesis[unit]));
+    for (size_t type = 0; type < kAluTypes; ++type)
+      text += fmt::format("{:>9}", fmt::format("{} ({})", counts[type], thesis[type]));
     text += fmt::format("{:>10}\n", fmt::format("{} ({})", total(counts), total(thesis)));
   }
   text += "in brackets: the thesis' kernels\n";

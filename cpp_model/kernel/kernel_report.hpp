@@ -9,8 +9,8 @@
 
 namespace raypool {
 
-/// Instructions of a kernel by ALU type, index = Unit.
-using InstructionCounts = std::array<int, kUnits>;
+/// Instructions of a kernel by ALU type, index = AluType.
+using InstructionCounts = std::array<int, kAluTypes>;
 
 /// A kernel's instructions: from its entry to the next entry. Throws InputError, with the names there are, if the program has no
 /// such kernel.

@@ -44,7 +44,7 @@ bool ends_block(const Op& op) { return op.kind != Op::Kind::Instruction || op.in
 /// Needs no register: its value can be made anywhere before its use.
 bool is_leaf(const Op& op) {
   if (op.kind != Op::Kind::Instruction || !op.fresh || !writes_register(*op.info)) return false;
-  return op.info->unit == Unit::Tid || is(op, "rld") || (is(op, "mov") && op.b_is_immediate);
+  return op.info->unit == AluType::Tid || is(op, "rld") || (is(op, "mov") && op.b_is_immediate);
 }
 
 /// True if the leaf must stay before `op`.

@@ -156,7 +156,7 @@ struct UnitTrace {
   std::vector<RayWriteEvent> ray_writes;  ///< rising unit
 };
 
-/// Performance counters; the number is the RTL's counter_select_i. For those of an ALU type add the Unit's value.
+/// Performance counters; the number is the RTL's counter_select_i. For those of an ALU type add the AluType's value.
 namespace counter {
 inline constexpr int kBusyCycles = 0;          ///< cycles in which a kernel ran
 inline constexpr int kInstructions = 1;        ///< warp instructions retired
@@ -166,9 +166,9 @@ inline constexpr int kInstructionCacheMisses = 4;  ///< lookups that did not hit
 inline constexpr int kDataCacheHits = 5;           ///< quadword loads served by the cache at first try
 inline constexpr int kDataCacheMisses = 6;         ///< quadword loads that were parked
 inline constexpr int kDataCacheStores = 7;         ///< quadword stores
-inline constexpr int kUnused = 16;                 ///< + Unit: busy cycles x instances that were free for a task and got none
-inline constexpr int kWaiting = 24;  ///< + Unit: sum over busy cycles of the warps that wanted this type and were not granted
-inline constexpr int kIssued = 32;   ///< + Unit: tasks issued
+inline constexpr int kUnused = 16;                 ///< + AluType: busy cycles x instances that were free for a task and got none
+inline constexpr int kWaiting = 24;  ///< + AluType: sum over busy cycles of the warps that wanted this type and were not granted
+inline constexpr int kIssued = 32;   ///< + AluType: tasks issued
 inline constexpr int kCount = 40;
 }  // namespace counter
 

@@ -11,7 +11,7 @@ namespace {
 constexpr uint8_t kInstructionId = 16;  // of a read of the instruction side
 constexpr uint8_t kLastBeat = 3;        // of a line
 
-constexpr size_t index(Unit unit) { return static_cast<size_t>(unit); }
+constexpr size_t index(AluType type) { return static_cast<size_t>(type); }
 
 }  // namespace
 
@@ -24,7 +24,7 @@ CycleUnit::CycleUnit(const Configuration& configuration, const Memory& memory)
       instruction_cache_(configuration),
       issues_(static_cast<size_t>(configuration.warps)),
       timings_(static_cast<size_t>(configuration.warps)) {
-  for (size_t type = 0; type < kUnits; ++type) {
+  for (size_t type = 0; type < kAluTypes; ++type) {
     const AluConfiguration& alu = configuration.alus[type];
     slots_[type].count = static_cast<uint32_t>(alu.count);
     slots_[type].latency = static_cast<uint32_t>(alu.latency);
@@ -107,7 +107,7 @@ void CycleUnit::dispatch_ahead() {
 }
 
 // Mem and Ray say themselves, in the very cycle, whether they take a task.
-void CycleUnit::dispatch(uint32_t& wants, bool ready, int& task, Unit type) {
+void CycleUnit::dispatch(uint32_t& wants, bool ready, int& task, AluType type) {
   if (ready) {
     task = static_cast<int>(lowest(wants));
     wants &= wants - 1;
@@ -126,9 +126,9 @@ void CycleUnit::issue_warp(uint32_t warp) {
   idle_ &= ~bit;
   pc_[warp] = fetch_pc_[warp];
   const uint8_t type = static_cast<uint8_t>(instruction->code >> 5);
-  if (type == index(Unit::Mem)) {
+  if (type == index(AluType::Mem)) {
     planned(now_ + kAhead).mem_wants |= bit;
-  } else if (type == index(Unit::Ray)) {
+  } else if (type == index(AluType::Ray)) {
     planned(now_ + kAhead).ray_wants |= bit;
   } else {
     wants_[type] |= bit;
@@ -138,7 +138,7 @@ void CycleUnit::issue_warp(uint32_t warp) {
 
   uint32_t mask;
   bool faults = false;
-  const bool swaps = type == index(Unit::Ray) && (instruction->code & 31) < 3;
+  const bool swaps = type == index(AluType::Ray) && (instruction->code & 31) < 3;
   if (swaps) {
     mask = core_.thread_mask(warp, *instruction);
     ray_.task(warp) = {(instruction->code & 31) == 0 ? RayAlu::Task::Kind::Input : RayAlu::Task::Kind::Output, mask == 0};
@@ -146,9 +146,9 @@ void CycleUnit::issue_warp(uint32_t warp) {
     const Step& step = core_.step(warp);
     mask = step.mask;
     faults = step.status == Step::Status::Fault;
-    if (type == index(Unit::Mem)) {
+    if (type == index(AluType::Mem)) {
       begin_memory(warp, step);
-    } else if (type == index(Unit::Ray)) {
+    } else if (type == index(AluType::Ray)) {
       ray_.task(warp).kind = faults                          ? RayAlu::Task::Kind::Illegal
                              : (instruction->code & 31) == 3 ? RayAlu::Task::Kind::Read
                                                              : RayAlu::Task::Kind::Write;
@@ -341,9 +341,9 @@ void CycleUnit::step(const UnitInputs& inputs) {
   if (want_types_ != 0) dispatch_ahead();
   const bool ray_ready = ray_.ready(ray_task_);
   advance_rays(inputs, ImportKind::None);
-  if (ray_wants_ != 0) dispatch(ray_wants_, ray_ready, ray_task_, Unit::Ray);
+  if (ray_wants_ != 0) dispatch(ray_wants_, ray_ready, ray_task_, AluType::Ray);
   if (mem_wants_ != 0) {
-    dispatch(mem_wants_, true, mem_task_, Unit::Mem);
+    dispatch(mem_wants_, true, mem_task_, AluType::Mem);
     attention_ = true;
   }
   if (faulty_) settle_faults(FaultCode::None, 0, false, 0);
@@ -423,8 +423,8 @@ void CycleUnit::step_all(const UnitInputs& inputs) {
     mem_task_ = -1;
   }
   advance_rays(inputs, accepts ? inputs.launch.import : ImportKind::None);
-  if (mem_wants_ != 0 && !halted) dispatch(mem_wants_, mem_ready, mem_task_, Unit::Mem);
-  if (ray_wants_ != 0 && !halted) dispatch(ray_wants_, ray_ready, ray_task_, Unit::Ray);
+  if (mem_wants_ != 0 && !halted) dispatch(mem_wants_, mem_ready, mem_task_, AluType::Mem);
+  if (ray_wants_ != 0 && !halted) dispatch(ray_wants_, ray_ready, ray_task_, AluType::Ray);
 
   if (accepts) {
     waiting_ = true;
@@ -555,13 +555,13 @@ uint64_t CycleUnit::counter(int number) {
       break;
   }
   const size_t type = static_cast<size_t>(number & 7);
-  if (type >= kUnits) return 0;
+  if (type >= kAluTypes) return 0;
   switch (number & ~7) {
     case counter::kUnused: {
       const Slots& slots = slots_[type];
       uint64_t unready = slots.unready;
-      if (type == index(Unit::Mem)) unready = mem_.unready();
-      if (type == index(Unit::Ray)) unready = ray_.unready();
+      if (type == index(AluType::Mem)) unready = mem_.unready();
+      if (type == index(AluType::Ray)) unready = ray_.unready();
       for (uint32_t slot = 0; running_ && slot < slots.count; ++slot) {
         if (slots.free_at[slot] > now_) unready -= slots.free_at[slot] - now_;
       }

@@ -102,7 +102,7 @@ class CycleUnit final : public ComputeUnit {
   bool quiet() const;
   void fetch(uint64_t until);
   void dispatch_ahead();
-  void dispatch(uint32_t& wants, bool ready, int& task, Unit type);
+  void dispatch(uint32_t& wants, bool ready, int& task, AluType type);
   void issue_warp(uint32_t warp);
   void begin_memory(uint32_t warp, const Step& step);
   void record_issue(uint32_t warp, const DecodedInstruction& instruction);
@@ -147,14 +147,14 @@ class CycleUnit final : public ComputeUnit {
   std::array<uint32_t, kWarps> fetch_pc_{};
 
   // Data routine
-  uint32_t idle_ = ~0u;                     // no instruction under way
-  uint32_t control_ = 0;                    // the instruction under way is a control instruction
-  uint32_t want_types_ = 0;                 // pipelined types that warps want
-  std::array<uint32_t, kUnits> wants_{};    // [type] those warps
-  uint32_t mem_wants_ = 0, ray_wants_ = 0;  // warps in stage Dispatch
+  uint32_t idle_ = ~0u;                      // no instruction under way
+  uint32_t control_ = 0;                     // the instruction under way is a control instruction
+  uint32_t want_types_ = 0;                  // pipelined types that warps want
+  std::array<uint32_t, kAluTypes> wants_{};  // [type] those warps
+  uint32_t mem_wants_ = 0, ray_wants_ = 0;   // warps in stage Dispatch
   std::array<uint32_t, kWarps> pc_{};
   std::array<FaultCode, kWarps> stack_fault_{};  // [warp] of the control instruction under way
-  std::array<Slots, kUnits> slots_{};
+  std::array<Slots, kAluTypes> slots_{};
   int mem_task_ = -1, ray_task_ = -1;  // warps whose tasks arrive in this cycle
 
   // Memory arbiter
@@ -172,7 +172,7 @@ class CycleUnit final : public ComputeUnit {
   std::vector<PlannedFault> planned_faults_;
 
   uint64_t busy_cycles_ = 0, instructions_ = 0, thread_instructions_ = 0, hits_ = 0, misses_ = 0;
-  std::array<uint64_t, kUnits> waited_{}, issued_{};
+  std::array<uint64_t, kAluTypes> waited_{}, issued_{};
   UnitOutputs outputs_;
   uint32_t signals_ = 0;  // outputs_.signals()
   bool tracing_ = false;

@@ -110,7 +110,7 @@ TEST(CycleUnit, AWarpWithoutStallsIssuesEveryFourCyclesWithAnAluOfDepthOne) {
 
 TEST(CycleUnit, TheLowestWarpGoesFirstAndTheOthersAreCountedAsWaiting) {
   Configuration configuration = make_configuration(4, 1);
-  configuration.alus[static_cast<size_t>(Unit::Int)].latency = 16;
+  configuration.alus[static_cast<size_t>(AluType::Int)].latency = 16;
   const std::vector<uint64_t> code = {Encode("mov").rd(1).imm(1), Encode("exit")};
   Memory memory = with_program(code);
   CycleUnit unit(configuration, memory);
@@ -132,8 +132,8 @@ TEST(CycleUnit, TheLowestWarpGoesFirstAndTheOthersAreCountedAsWaiting) {
       EXPECT_EQ(retired[warp].second - retired[warp - 1].second, 16u);
     }
   }
-  EXPECT_GT(unit.counter(counter::kWaiting + static_cast<int>(Unit::Int)), 3u * 10);
-  EXPECT_EQ(unit.counter(counter::kIssued + static_cast<int>(Unit::Int)), 4u);
+  EXPECT_GT(unit.counter(counter::kWaiting + static_cast<int>(AluType::Int)), 3u * 10);
+  EXPECT_EQ(unit.counter(counter::kIssued + static_cast<int>(AluType::Int)), 4u);
 }
 
 // Two units, one clocked and one run; the memory answers after a fixed time, the ports are always ready.

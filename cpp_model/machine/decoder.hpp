@@ -27,8 +27,8 @@ struct DecodedInstruction {
   uint32_t end() const { return immediate >> 16; }
 };
 
-inline constexpr uint16_t instruction_code(Unit unit, int operation) {
-  return static_cast<uint16_t>(static_cast<int>(unit) * 32 + operation);
+inline constexpr uint16_t instruction_code(AluType type, int operation) {
+  return static_cast<uint16_t>(static_cast<int>(type) * 32 + operation);
 }
 
 /// Rows that need a feature which the configuration has not are illegal.

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "machine/function_unit.hpp"
+#include "machine/alu_model.hpp"
 
 namespace raypool {
 namespace {
@@ -40,7 +40,7 @@ inline uint32_t test_lanes(const uint32_t* a, const uint32_t* b, Function functi
 
 inline int32_t as_signed(uint32_t value) { return static_cast<int32_t>(value); }
 
-constexpr uint16_t code(Unit unit, int operation) { return instruction_code(unit, operation); }
+constexpr uint16_t code(AluType type, int operation) { return instruction_code(type, operation); }
 
 }  // namespace
 
@@ -166,8 +166,8 @@ const Step& FunctionalCore::step_lanes(uint32_t number) {
     b = immediate;
   }
 
-  switch (static_cast<Unit>(instruction.code >> 5)) {
-    case Unit::Brh:
+  switch (static_cast<AluType>(instruction.code >> 5)) {
+    case AluType::Brh:
       if (instruction.info->control) {
         if (!execute_control(instruction, warp)) return result;
         result.status = Step::Status::Executed;
@@ -176,10 +176,10 @@ const Step& FunctionalCore::step_lanes(uint32_t number) {
       result.predicate = compare<kLanes>(instruction, warp, a, b) & result.mask;
       if (instruction.rd != 0) warp.predicates[instruction.rd] = result.predicate;
       break;
-    case Unit::Mem:
+    case AluType::Mem:
       if (!execute_memory<kLanes>(instruction, rd, a, b)) return result;
       break;
-    case Unit::Ray:
+    case AluType::Ray:
       if (!execute_ray<kLanes>(instruction, warp, rd, b)) return result;
       break;
     default:
@@ -197,18 +197,18 @@ bool FunctionalCore::execute_control(const DecodedInstruction& instruction, Warp
   const uint32_t next = top.pc + 1;
   const bool any = result_.mask != 0;
   switch (instruction.code) {
-    case code(Unit::Brh, 24):
+    case code(AluType::Brh, 24):
       top.pc = any ? instruction.target() : next;
       return true;  // jany
-    case code(Unit::Brh, 25):
+    case code(AluType::Brh, 25):
       top.pc = !any ? instruction.target() : next;
-      return true;             // jnone
-    case code(Unit::Brh, 26):  // call
+      return true;                // jnone
+    case code(AluType::Brh, 26):  // call
       if (warp.depth == stack_depth_) return fault(FaultCode::StackOverflow);
       top.pc = next;
       warp.stack[warp.depth++] = {instruction.target(), instruction.end()};
       return true;
-    case code(Unit::Brh, 27):  // loop; its end is alone in the immediate's low half
+    case code(AluType::Brh, 27):  // loop; its end is alone in the immediate's low half
       if (!any) {
         top.pc = instruction.target();
         return true;
@@ -216,7 +216,7 @@ bool FunctionalCore::execute_control(const DecodedInstruction& instruction, Warp
       if (warp.depth == stack_depth_) return fault(FaultCode::StackOverflow);
       warp.stack[warp.depth++] = {next, instruction.target()};
       return true;
-    case code(Unit::Brh, 28):  // ret
+    case code(AluType::Brh, 28):  // ret
       if (warp.depth == 1) return fault(FaultCode::StackUnderflow);
       --warp.depth;
       return true;
@@ -235,43 +235,43 @@ uint32_t FunctionalCore::compare(const DecodedInstruction& instruction, const Wa
   const uint32_t px = warp.predicates[instruction.x & 15], pb = warp.predicates[instruction.rb];
   const auto test = [a, b](auto function) { return test_lanes<kLanes>(a, b, function); };
   switch (instruction.code) {
-    case code(Unit::Brh, 0):
+    case code(AluType::Brh, 0):
       return test([](uint32_t x, uint32_t y) { return x == y; });
-    case code(Unit::Brh, 1):
+    case code(AluType::Brh, 1):
       return test([](uint32_t x, uint32_t y) { return x != y; });
-    case code(Unit::Brh, 2):
+    case code(AluType::Brh, 2):
       return test([](uint32_t x, uint32_t y) { return as_signed(x) < as_signed(y); });
-    case code(Unit::Brh, 3):
+    case code(AluType::Brh, 3):
       return test([](uint32_t x, uint32_t y) { return as_signed(x) <= as_signed(y); });
-    case code(Unit::Brh, 4):
+    case code(AluType::Brh, 4):
       return test([](uint32_t x, uint32_t y) { return as_signed(x) > as_signed(y); });
-    case code(Unit::Brh, 5):
+    case code(AluType::Brh, 5):
       return test([](uint32_t x, uint32_t y) { return as_signed(x) >= as_signed(y); });
-    case code(Unit::Brh, 6):
+    case code(AluType::Brh, 6):
       return test([](uint32_t x, uint32_t y) { return x < y; });
-    case code(Unit::Brh, 7):
+    case code(AluType::Brh, 7):
       return test([](uint32_t x, uint32_t y) { return x <= y; });
-    case code(Unit::Brh, 8):
+    case code(AluType::Brh, 8):
       return test([](uint32_t x, uint32_t y) { return x > y; });
-    case code(Unit::Brh, 9):
+    case code(AluType::Brh, 9):
       return test([](uint32_t x, uint32_t y) { return x >= y; });
-    case code(Unit::Brh, 10):
+    case code(AluType::Brh, 10):
       return test([mode](uint32_t x, uint32_t y) { return arith::equal(x, y, mode); });
-    case code(Unit::Brh, 11):
+    case code(AluType::Brh, 11):
       return test([mode](uint32_t x, uint32_t y) { return arith::not_equal(x, y, mode); });
-    case code(Unit::Brh, 12):
+    case code(AluType::Brh, 12):
       return test([mode](uint32_t x, uint32_t y) { return arith::less(x, y, mode); });
-    case code(Unit::Brh, 13):
+    case code(AluType::Brh, 13):
       return test([mode](uint32_t x, uint32_t y) { return arith::less_equal(x, y, mode); });
-    case code(Unit::Brh, 14):
+    case code(AluType::Brh, 14):
       return test([mode](uint32_t x, uint32_t y) { return arith::greater(x, y, mode); });
-    case code(Unit::Brh, 15):
+    case code(AluType::Brh, 15):
       return test([mode](uint32_t x, uint32_t y) { return arith::greater_equal(x, y, mode); });
-    case code(Unit::Brh, 16):
+    case code(AluType::Brh, 16):
       return px & pb;
-    case code(Unit::Brh, 17):
+    case code(AluType::Brh, 17):
       return px | pb;
-    case code(Unit::Brh, 18):
+    case code(AluType::Brh, 18):
       return px ^ pb;
     default:
       return px & ~pb;  // pandn
@@ -291,71 +291,71 @@ void FunctionalCore::execute_data(const DecodedInstruction& instruction, Warp& w
     }
   };
   switch (instruction.code) {
-    case code(Unit::Tid, 0):
+    case code(AluType::Tid, 0):
       number_lanes(result_.warp * kLanes);
       break;
-    case code(Unit::Tid, 1):
+    case code(AluType::Tid, 1):
       number_lanes(0);
       break;
-    case code(Unit::Tid, 2):
+    case code(AluType::Tid, 2):
       fill(result_.warp);
       break;
-    case code(Unit::Tid, 3):
+    case code(AluType::Tid, 3):
       fill(launched_.block);
       break;
-    case code(Unit::Tid, 4):
+    case code(AluType::Tid, 4):
       fill(launched_.threads);
       break;
-    case code(Unit::Tid, 5):
+    case code(AluType::Tid, 5):
       fill(launched_.blocks);
       break;
-    case code(Unit::Tid, 6):
+    case code(AluType::Tid, 6):
       fill(arguments_[instruction.immediate % kArguments]);
       break;
 
-    case code(Unit::Int, 0):
+    case code(AluType::Int, 0):
       map([](uint32_t, uint32_t y) { return y; });
       break;
-    case code(Unit::Int, 1):
+    case code(AluType::Int, 1):
       map([](uint32_t x, uint32_t y) { return x + y; });
       break;
-    case code(Unit::Int, 2):
+    case code(AluType::Int, 2):
       map([](uint32_t x, uint32_t y) { return x - y; });
       break;
-    case code(Unit::Int, 3):
+    case code(AluType::Int, 3):
       map([](uint32_t x, uint32_t y) { return x * y; });
       break;
-    case code(Unit::Int, 4):
+    case code(AluType::Int, 4):
       map([](uint32_t x, uint32_t y) { return x & y; });
       break;
-    case code(Unit::Int, 5):
+    case code(AluType::Int, 5):
       map([](uint32_t x, uint32_t y) { return x | y; });
       break;
-    case code(Unit::Int, 6):
+    case code(AluType::Int, 6):
       map([](uint32_t x, uint32_t y) { return x ^ y; });
       break;
-    case code(Unit::Int, 7):
+    case code(AluType::Int, 7):
       map([](uint32_t x, uint32_t y) { return x << (y & 31); });
       break;
-    case code(Unit::Int, 8):
+    case code(AluType::Int, 8):
       map([](uint32_t x, uint32_t y) { return x >> (y & 31); });
       break;
-    case code(Unit::Int, 9):
+    case code(AluType::Int, 9):
       map([](uint32_t x, uint32_t y) { return static_cast<uint32_t>(as_signed(x) >> (y & 31)); });
       break;
-    case code(Unit::Int, 10):
+    case code(AluType::Int, 10):
       map([](uint32_t x, uint32_t y) { return as_signed(x) < as_signed(y) ? x : y; });
       break;
-    case code(Unit::Int, 11):
+    case code(AluType::Int, 11):
       map([](uint32_t x, uint32_t y) { return as_signed(x) < as_signed(y) ? y : x; });
       break;
-    case code(Unit::Int, 12):
+    case code(AluType::Int, 12):
       map([](uint32_t x, uint32_t y) { return x < y ? x : y; });
       break;
-    case code(Unit::Int, 13):
+    case code(AluType::Int, 13):
       map([](uint32_t x, uint32_t y) { return x < y ? y : x; });
       break;
-    case code(Unit::Int, 14): {
+    case code(AluType::Int, 14): {
       const uint32_t px = warp.predicates[instruction.x & 15];
       for (uint32_t lane = 0; lane < kLanes; ++lane) {
         if (mask >> lane & 1) rd[lane] = px >> lane & 1 ? a[lane] : b[lane];
@@ -363,44 +363,44 @@ void FunctionalCore::execute_data(const DecodedInstruction& instruction, Warp& w
       break;
     }
 
-    case code(Unit::Flt, 0):
+    case code(AluType::Flt, 0):
       map([mode](uint32_t x, uint32_t y) { return arith::add(x, y, mode); });
       break;
-    case code(Unit::Flt, 1):
+    case code(AluType::Flt, 1):
       map([mode](uint32_t x, uint32_t y) { return arith::sub(x, y, mode); });
       break;
-    case code(Unit::Flt, 2):
+    case code(AluType::Flt, 2):
       map([mode](uint32_t x, uint32_t y) { return arith::mul(x, y, mode); });
       break;
-    case code(Unit::Flt, 3):
+    case code(AluType::Flt, 3):
       map([mode](uint32_t x, uint32_t y) { return arith::min(x, y, mode); });
       break;
-    case code(Unit::Flt, 4):
+    case code(AluType::Flt, 4):
       map([mode](uint32_t x, uint32_t y) { return arith::max(x, y, mode); });
       break;
-    case code(Unit::Flt, 5):
+    case code(AluType::Flt, 5):
       map([mode](uint32_t x, uint32_t) { return arith::to_int(x, mode); });
       break;
-    case code(Unit::Flt, 6):
+    case code(AluType::Flt, 6):
       map([mode](uint32_t x, uint32_t) { return arith::from_int(x, mode); });
       break;
-    case code(Unit::Flt, 7):
+    case code(AluType::Flt, 7):
       // A masked lane sees its own operands only, so rd may be one of them.
       for (uint32_t lane = 0; lane < kLanes; ++lane) {
         if (mask >> lane & 1) rd[lane] = arith::fma(a[lane], b[lane], c[lane], mode);
       }
       break;
 
-    case code(Unit::Slw, 0):
+    case code(AluType::Slw, 0):
       map([mode](uint32_t x, uint32_t y) { return arith::div(x, y, mode); });
       break;
-    case code(Unit::Slw, 1):
+    case code(AluType::Slw, 1):
       map([mode](uint32_t x, uint32_t) { return arith::sqrt(x, mode); });
       break;
-    case code(Unit::Slw, 2):
+    case code(AluType::Slw, 2):
       map([mode](uint32_t x, uint32_t) { return arith::rsqrt(x, mode); });
       break;
-    case code(Unit::Slw, 3):
+    case code(AluType::Slw, 3):
       map([mode](uint32_t x, uint32_t) { return arith::rcp(x, mode); });
       break;
 
@@ -413,13 +413,13 @@ void FunctionalCore::execute_data(const DecodedInstruction& instruction, Warp& w
 // A type that the core does not know: lane by lane, so that rd may be a source.
 void FunctionalCore::execute_class(const DecodedInstruction& instruction, Warp& warp, uint32_t* rd, const uint32_t* a,
                                    const uint32_t* b) {
-  const FunctionUnit& unit = *function_unit(instruction.info->unit);
+  const AluModel& alu = *find_alu_model(instruction.info->unit);
   const uint32_t px = warp.predicates[instruction.x & 15], pb = warp.predicates[instruction.rb];
   uint32_t predicate = 0;
   for (uint32_t mask = result_.mask; mask != 0; mask &= mask - 1) {
     const uint32_t lane = static_cast<uint32_t>(__builtin_ctz(mask));
     const LaneTask task = {a[lane], b[lane], instruction.immediate, instruction.x, (px >> lane & 1) != 0, (pb >> lane & 1) != 0};
-    const uint32_t value = unit.lane(instruction.info->operation, task, mode_);
+    const uint32_t value = alu.lane(instruction.info->operation, task, mode_);
     if (instruction.writes_register) rd[lane] = value;
     predicate |= (value & 1) << lane;
   }
@@ -441,7 +441,7 @@ bool FunctionalCore::execute_memory(const DecodedInstruction& instruction, uint3
   }
   if (low_bits != 0) return fault(FaultCode::Misaligned);
   if (highest >= memory_limit_ && result_.mask != 0) return fault(FaultCode::AddressOutsideMemory);
-  const bool store = instruction.code == code(Unit::Mem, 1);
+  const bool store = instruction.code == code(AluType::Mem, 1);
   for (uint32_t mask = result_.mask; mask != 0; mask &= mask - 1) {
     const uint32_t lane = static_cast<uint32_t>(__builtin_ctz(mask));
     if (store) {
@@ -458,15 +458,15 @@ template <int kLanes>
 bool FunctionalCore::execute_ray(const DecodedInstruction& instruction, Warp& warp, uint32_t* rd, const uint32_t* b) {
   const uint32_t number = result_.warp;
   switch (instruction.code) {
-    case code(Unit::Ray, 0):  // rin
+    case code(AluType::Ray, 0):  // rin
       if (!slices_.input_complete(number)) {
         result_.status = Step::Status::WaitsForImport;
         return false;
       }
       slices_.swap_input(number);
       return true;
-    case code(Unit::Ray, 1):  // rout
-    case code(Unit::Ray, 2):  // rfb
+    case code(AluType::Ray, 1):  // rout
+    case code(AluType::Ray, 2):  // rfb
       if (warp.output_busy) {
         result_.status = Step::Status::WaitsForExport;
         return false;
@@ -474,7 +474,7 @@ bool FunctionalCore::execute_ray(const DecodedInstruction& instruction, Warp& wa
       slices_.swap_output(number);
       for (uint32_t mask = result_.mask; mask != 0; mask &= mask - 1) {
         const uint32_t lane = static_cast<uint32_t>(__builtin_ctz(mask));
-        if (instruction.code == code(Unit::Ray, 1)) {
+        if (instruction.code == code(AluType::Ray, 1)) {
           Ray& ray = result_.rays[result_.ray_count++];
           for (uint32_t word = 0; word < kRayWords; ++word) ray[word] = slices_.output(number, word)[lane];
         } else {
@@ -484,7 +484,7 @@ bool FunctionalCore::execute_ray(const DecodedInstruction& instruction, Warp& wa
         }
       }
       return true;
-    case code(Unit::Ray, 3):  // rld
+    case code(AluType::Ray, 3):  // rld
       if (instruction.x >= kIntersectionWords) return fault(FaultCode::RayWordOutside);
       map_lanes<kLanes>(result_.mask, rd, slices_.current(number, instruction.x), b, [](uint32_t x, uint32_t) { return x; });
       return true;

@@ -56,7 +56,7 @@ TEST(FunctionalUnit, KernelsEndInTurnWithOnePulseEach) {
   EXPECT_EQ(fixture.memory.load(1024 + 4 * 7), 0u);
   EXPECT_EQ(fixture.unit->counter(counter::kInstructions), 5u * 2 * 4);
   EXPECT_EQ(fixture.unit->counter(counter::kThreadInstructions), 5u * 7 * 4);
-  EXPECT_EQ(fixture.unit->counter(counter::kIssued + static_cast<int>(Unit::Mem)), 5u * 2);
+  EXPECT_EQ(fixture.unit->counter(counter::kIssued + static_cast<int>(AluType::Mem)), 5u * 2);
   EXPECT_FALSE(fixture.unit->timed());
 }
 

@@ -110,7 +110,7 @@ void collect_units(const ChipOptions& options, ChipResult& result) {
   result.data_cache_hits = sum(counter::kDataCacheHits);
   result.data_cache_misses = sum(counter::kDataCacheMisses);
   result.data_cache_stores = sum(counter::kDataCacheStores);
-  for (int i = 0; i < kUnits; ++i) {
+  for (int i = 0; i < kAluTypes; ++i) {
     ChipResult::Alu& alu = result.alus[static_cast<size_t>(i)];
     alu.issued = sum(counter::kIssued + i);
     if (!result.timed) continue;

@@ -92,7 +92,7 @@ struct ChipResult {
     double waiting = 0;      ///< warps that wanted this type and were not granted, averaged over busy time
     uint64_t issued = 0;     ///< tasks
   };
-  std::array<Alu, kUnits> alus{};  ///< [Unit]
+  std::array<Alu, kAluTypes> alus{};  ///< [AluType]
   uint64_t busy_cycles = 0, instructions = 0, thread_instructions = 0;
   uint64_t instruction_cache_hits = 0, instruction_cache_misses = 0;
   uint64_t data_cache_hits = 0, data_cache_misses = 0, data_cache_stores = 0;

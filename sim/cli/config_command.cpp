@@ -21,10 +21,10 @@ void print_table(const Configuration& configuration) {
              kSubnormalsNames[static_cast<size_t>(configuration.subnormals)],
              kSlowUnitNames[static_cast<size_t>(configuration.slow_unit)], configuration.fma ? "on" : "off");
   fmt::print("  ALU   instances  latency  depth\n");
-  for (size_t i = 0; i < kUnits; ++i) {
+  for (size_t i = 0; i < kAluTypes; ++i) {
     const AluConfiguration& alu = configuration.alus[i];
-    const bool timed_by_events = static_cast<Unit>(i) == Unit::Mem || static_cast<Unit>(i) == Unit::Ray;
-    fmt::print("  {}   {:>9}", kUnitNames[i], alu.count);
+    const bool timed_by_events = static_cast<AluType>(i) == AluType::Mem || static_cast<AluType>(i) == AluType::Ray;
+    fmt::print("  {}   {:>9}", kAluNames[i], alu.count);
     timed_by_events ? fmt::print("  by event\n") : fmt::print("  {:>7}  {:>5}\n", alu.latency, alu.depth);
   }
 }

@@ -16,8 +16,8 @@ int configurations_command(const ConfigurationsOptions& options) {
       fmt::print(" {}", factor.name);
   }
   fmt::print(";");
-  for (size_t unit = 0; unit < kUnits; ++unit)
-    if (!kUnitTable[unit].timed_by_events()) fmt::print(" {}", kUnitNames[unit]);
+  for (size_t type = 0; type < kAluTypes; ++type)
+    if (!kAluTable[type].timed_by_events()) fmt::print(" {}", kAluNames[type]);
   fmt::print(" as count/latency/depth\n");
   for (const Machine& machine : machines) {
     const Configuration& c = machine.configuration;
@@ -27,9 +27,9 @@ int configurations_command(const ConfigurationsOptions& options) {
         fmt::print(" {}", factor.get(machine));
     }
     fmt::print(";");
-    for (size_t unit = 0; unit < kUnits; ++unit) {
-      const AluConfiguration& alu = c.alus[unit];
-      if (!kUnitTable[unit].timed_by_events()) fmt::print(" {}/{}/{}", alu.count, alu.latency, alu.depth);
+    for (size_t type = 0; type < kAluTypes; ++type) {
+      const AluConfiguration& alu = c.alus[type];
+      if (!kAluTable[type].timed_by_events()) fmt::print(" {}/{}/{}", alu.count, alu.latency, alu.depth);
     }
     fmt::print("\n");
   }

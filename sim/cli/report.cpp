@@ -67,9 +67,9 @@ void add_chip(Json& json, const ChipResult& chip) {
     json["kernels"][std::string(kRayKernelNames[i])] = {
         {"launches", kernel.launches}, {"threads", kernel.threads}, {"cycles", timed(chip, kernel.cycles)}};
   }
-  for (size_t i = 0; i < kUnits; ++i) {
+  for (size_t i = 0; i < kAluTypes; ++i) {
     const ChipResult::Alu& alu = chip.alus[i];
-    json["alus"][std::string(kUnitNames[i])] = {
+    json["alus"][std::string(kAluNames[i])] = {
         {"utilisation", timed(chip, alu.utilisation)}, {"waiting", timed(chip, alu.waiting)}, {"issued", alu.issued}};
   }
   if (!chip.timed) return;
@@ -142,9 +142,9 @@ void chip_table(std::string& text, const ChipResult& chip) {
   line(text, "  utilisation time {:.1f}%, resources {:.1f}%", 100 * chip.time_utilisation, 100 * chip.resource_utilisation);
   kernel_table(text, chip);
   line(text, "  ALU   utilisation  waiting      tasks");
-  for (size_t i = 0; i < kUnits; ++i) {
+  for (size_t i = 0; i < kAluTypes; ++i) {
     const ChipResult::Alu& alu = chip.alus[i];
-    line(text, "    {} {:>11.1f}% {:>8.2f} {:>10}", kUnitNames[i], 100 * alu.utilisation, alu.waiting, alu.issued);
+    line(text, "    {} {:>11.1f}% {:>8.2f} {:>10}", kAluNames[i], 100 * alu.utilisation, alu.waiting, alu.issued);
   }
   line(text, "  work        {} warp instructions, {} thread instructions", chip.instructions, chip.thread_instructions);
   line(text, "  caches      instructions {:.2f}% hits of {}, data {:.2f}% hits of {}",

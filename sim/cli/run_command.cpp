@@ -208,10 +208,10 @@ void print_figures(const ProgramResult& result, const Configuration& configurati
   if (!result.timed) return;
   const auto busy = static_cast<double>(std::max<uint64_t>(1, count(counter::kBusyCycles)));
   fmt::print("  ALU   utilisation  waiting      tasks\n");
-  for (int i = 0; i < kUnits; ++i) {
+  for (int i = 0; i < kAluTypes; ++i) {
     const double unused =
         static_cast<double>(count(counter::kUnused + i)) / (busy * configuration.alus[static_cast<size_t>(i)].count);
-    fmt::print("    {} {:>11.1f}% {:>8.2f} {:>10}\n", kUnitNames[static_cast<size_t>(i)], 100 * (1 - unused),
+    fmt::print("    {} {:>11.1f}% {:>8.2f} {:>10}\n", kAluNames[static_cast<size_t>(i)], 100 * (1 - unused),
                static_cast<double>(count(counter::kWaiting + i)) / busy, count(counter::kIssued + i));
   }
   fmt::print("  data cache: {} hits, {} misses, {} stores; memory: {} lines read, {} quadwords written\n",

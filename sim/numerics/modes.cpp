@@ -9,8 +9,8 @@ Configuration ArithmeticMode::applied_to(const Configuration& base) const {
   changed.subnormals = mode.subnormals;
   changed.slow_unit = mode.slow_unit;
   changed.fma = mode.fused;
-  for (const Unit unit : {Unit::Flt, Unit::Slw})
-    changed.alus[static_cast<size_t>(unit)].depth += least_depth(changed, unit) - least_depth(base, unit);
+  for (const AluType type : {AluType::Flt, AluType::Slw})
+    changed.alus[static_cast<size_t>(type)].depth += least_depth(changed, type) - least_depth(base, type);
   if (name != arithmetic_modes().front().name) changed.name += "-" + name;
   return changed;
 }

@@ -181,8 +181,8 @@ OffsetInstructions offset_instructions() {
   kernel::add_kernel(program, "integer", [](auto& k) { kernel_integer(k); });
   auto computed = [&](const char* name) {
     const InstructionCounts counts = count_instructions(program, name);
-    return counts[static_cast<size_t>(Unit::Int)] + counts[static_cast<size_t>(Unit::Flt)] +
-           counts[static_cast<size_t>(Unit::Brh)] - 1;
+    return counts[static_cast<size_t>(AluType::Int)] + counts[static_cast<size_t>(AluType::Flt)] +
+           counts[static_cast<size_t>(AluType::Brh)] - 1;
   };
   return {computed("in_use"), computed("integer")};
 }

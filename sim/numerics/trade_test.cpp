@@ -27,13 +27,14 @@ TradeScene& cornell() {
 
 TEST(ArithmeticModes, AreAsDeepAsTheyNeed) {
   Configuration deeper;
-  deeper.alus[static_cast<size_t>(Unit::Slw)].depth += 2;
+  deeper.alus[static_cast<size_t>(AluType::Slw)].depth += 2;
   for (const ArithmeticMode& mode : arithmetic_modes()) {
     const Configuration plain = mode.applied_to(Configuration{});
-    for (const Unit unit : {Unit::Flt, Unit::Slw}) EXPECT_EQ(plain.alu(unit).depth, least_depth(plain, unit)) << mode.name;
-    EXPECT_EQ(mode.applied_to(deeper).alu(Unit::Slw).depth, least_depth(plain, Unit::Slw) + 2) << mode.name;
+    for (const AluType type : {AluType::Flt, AluType::Slw})
+      EXPECT_EQ(plain.alu(type).depth, least_depth(plain, type)) << mode.name;
+    EXPECT_EQ(mode.applied_to(deeper).alu(AluType::Slw).depth, least_depth(plain, AluType::Slw) + 2) << mode.name;
     // What one mode has made can be taken to another.
-    EXPECT_EQ(arithmetic_modes().back().applied_to(plain).alu(Unit::Slw).depth, 6) << mode.name;
+    EXPECT_EQ(arithmetic_modes().back().applied_to(plain).alu(AluType::Slw).depth, 6) << mode.name;
   }
 }
 

@@ -15,7 +15,7 @@ constexpr uint32_t kInstructionId = 16;
 
 std::string scope_of(uint32_t unit) { return fmt::format("gen_unit[{}].compute_unit", unit); }
 
-bool is(const DecodedInstruction& instruction, Unit unit) { return instruction.info->unit == unit; }
+bool is(const DecodedInstruction& instruction, AluType type) { return instruction.info->unit == type; }
 
 // Which operands the instruction has.
 struct Uses {
@@ -50,9 +50,9 @@ UnitInspection::UnitInspection(const Configuration& configuration, const Compute
        {&w_.missing, &mem_.missing, &cache_.missing, &miss_.missing, &sequencer_.missing, &ray_.missing}) {
     if (missing_.empty()) missing_ = *missing;
   }
-  for (uint32_t type = 0; type < kUnits; ++type) {
+  for (uint32_t type = 0; type < kAluTypes; ++type) {
     const AluConfiguration& alu = configuration.alus[type];
-    const bool piped = !kUnitTable[type].timed_by_events();
+    const bool piped = !kAluTable[type].timed_by_events();
     for (int number = 0; number < (piped ? alu.count : 1); ++number) {
       Slot& slot = slots_.emplace_back();
       slot.type = type;
@@ -351,11 +351,11 @@ void UnitInspection::check_task(uint32_t s, uint32_t warp) {
   const CycleUnit::Issue& issue = model_->issue(warp);
   const DecodedInstruction& instruction = *issue.instruction;
   const Uses uses(instruction);
-  const bool has_immediate = is(instruction, Unit::Tid) || is(instruction, Unit::Mem);
+  const bool has_immediate = is(instruction, AluType::Tid) || is(instruction, AluType::Mem);
   bool same = warp_field(w_.task_warp, s) == warp && w_.task_op.bits(s * 5, 5) == (instruction.code & 31u) &&
               w_.task_mask.bits(s * lanes_, lanes_) == issue.mask &&
               (!has_immediate || w_.task_imm.word(s) == instruction.immediate) &&
-              (!is(instruction, Unit::Ray) || w_.task_x.bits(s * 5, 5) == instruction.x) &&
+              (!is(instruction, AluType::Ray) || w_.task_x.bits(s * 5, 5) == instruction.x) &&
               (!uses.px || ((w_.task_px.bits(s * lanes_, lanes_) ^ issue.px) & issue.mask) == 0) &&
               (!uses.pb || ((w_.task_pb.bits(s * lanes_, lanes_) ^ issue.pb) & issue.mask) == 0);
   for (uint32_t mask = issue.mask; same && mask != 0; mask &= mask - 1) {
@@ -374,7 +374,7 @@ void UnitInspection::check_ready() {
   }
   const uint32_t wrong = (ready ^ w_.ready.value()) & piped_;
   if (wrong != 0) {
-    const std::string files = fmt::format("rtl/alu_pipeline.v, rtl/{}_alu.v", kUnitNames[slots_[lowest(wrong)].type]);
+    const std::string files = fmt::format("rtl/alu_pipeline.v, rtl/{}_alu.v", kAluNames[slots_[lowest(wrong)].type]);
     find(files.c_str(), "the ALU takes its next task too early or too late");
   }
 }
@@ -421,7 +421,7 @@ void UnitInspection::check_done() {
     const uint32_t warp = warp_field(w_.done_warp, s);
     const bool in_time = ((done ^ expected) >> s & 1) == 0 && slot.under_way[now_ % kRing] == warp;
     if (slot.piped && !in_time) {
-      const std::string files = fmt::format("rtl/alu_pipeline.v, rtl/{}_alu.v", kUnitNames[slot.type]);
+      const std::string files = fmt::format("rtl/alu_pipeline.v, rtl/{}_alu.v", kAluNames[slot.type]);
       find(files.c_str(), "the ALU is done too early or too late, or with another warp");
     } else if (warp < warps_ && model_->issue(warp).instruction != nullptr) {
       check_result(s, warp);

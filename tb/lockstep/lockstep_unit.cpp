@@ -171,7 +171,7 @@ class LockstepUnitImpl : public LockstepUnit {
       const std::string_view mnemonic = issue.instruction->info->mnemonic;
       if (!model.instruction_under_way(warp)) {
         text += "; has retired, the next one is being fetched";
-      } else if (issue.instruction->info->unit == Unit::Mem) {
+      } else if (issue.instruction->info->unit == AluType::Mem) {
         text += fmt::format("; waits for memory ({} line reads under way)", reads_);
       } else if (mnemonic == "rin") {
         text += fmt::format("; waits for import ({}; {} packages announced and not come)",
@@ -180,7 +180,7 @@ class LockstepUnitImpl : public LockstepUnit {
       } else if (mnemonic == "rout" || mnemonic == "rfb") {
         text += "; waits for its output slice to be exported";
       } else {
-        text += "; waits for dispatch or ALU " + std::string(kUnitNames[static_cast<size_t>(issue.instruction->info->unit)]);
+        text += "; waits for dispatch or ALU " + std::string(kAluNames[static_cast<size_t>(issue.instruction->info->unit)]);
       }
       text += '\n';
     }

@@ -23,7 +23,7 @@ std::string instruction_text(uint64_t encoding) { return disassemble(encoding); 
 std::string result_files(const DecodedInstruction& instruction, const Configuration& configuration) {
   const std::string_view name = instruction.info->mnemonic;
   switch (instruction.info->unit) {
-    case Unit::Flt: {
+    case AluType::Flt: {
       const bool arithmetic = name == "fadd" || name == "fsub" || name == "fmul" || name == "ffma";
       const char* block = !arithmetic         ? "float_convert"
                           : configuration.fma ? "float_fma"
@@ -31,15 +31,15 @@ std::string result_files(const DecodedInstruction& instruction, const Configurat
                                               : "float_adder";
       return fmt::format("rtl/{}.v, rtl/float_lane.v, rtl/flt_alu.v", block);
     }
-    case Unit::Slw:
+    case AluType::Slw:
       return fmt::format("rtl/{}.v, rtl/slow_prepare.v, rtl/slow_lane.v",
                          configuration.slow_unit == SlowUnit::Exact ? "slow_exact" : "slow_newton");
-    case Unit::Mem:
+    case AluType::Mem:
       return "rtl/mem_alu.v, rtl/data_cache.v";
-    case Unit::Ray:
+    case AluType::Ray:
       return "rtl/ray_memory.v, rtl/ray_alu.v";
     default:
-      return fmt::format("rtl/{}_alu.v", kUnitNames[static_cast<size_t>(instruction.info->unit)]);
+      return fmt::format("rtl/{}_alu.v", kAluNames[static_cast<size_t>(instruction.info->unit)]);
   }
 }
 

@@ -132,11 +132,11 @@ const Case kCases[] = {
      [](Configuration& c) {
        c.warps = 4, c.cores = 2, c.subnormals = Subnormals::Flush, c.slow_unit = SlowUnit::Newton1, c.stack_depth = 5,
        c.fma = true;
-       c.alus[static_cast<size_t>(Unit::Int)] = {2, 1, 4};
-       c.alus[static_cast<size_t>(Unit::Flt)] = {3, 4, 5};
-       c.alus[static_cast<size_t>(Unit::Slw)] = {1, 16, 12};
-       c.alus[static_cast<size_t>(Unit::Brh)] = {1, 2, 2};
-       c.alus[static_cast<size_t>(Unit::Tid)] = {2, 1, 1};
+       c.alus[static_cast<size_t>(AluType::Int)] = {2, 1, 4};
+       c.alus[static_cast<size_t>(AluType::Flt)] = {3, 4, 5};
+       c.alus[static_cast<size_t>(AluType::Slw)] = {1, 16, 12};
+       c.alus[static_cast<size_t>(AluType::Brh)] = {1, 2, 2};
+       c.alus[static_cast<size_t>(AluType::Tid)] = {2, 1, 1};
      }},
 };
 

@@ -20,7 +20,7 @@ std::vector<AluUnderTest> units() {
     configuration.slow_unit = slow_unit;
     all.push_back({names[m % 4] + (m / 4 ? " flush" : " ieee"),
                    {subnormals, slow_unit},
-                   least_depth(configuration, Unit::Slw) + (m < 6 ? 0 : 2)});
+                   least_depth(configuration, AluType::Slw) + (m < 6 ? 0 : 2)});
   }
   return all;
 }

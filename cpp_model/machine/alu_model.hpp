@@ -20,27 +20,27 @@ struct LaneTask {
 };
 
 /// A function of the task alone: no lane sees another one, nothing is kept from task to task.
-class FunctionUnit {
+class AluModel {
  public:
-  virtual ~FunctionUnit() = default;
+  virtual ~AluModel() = default;
   /// The word for rd of an instruction that writes a register; of one that writes a predicate, 0 or 1. `operation` has a table
   /// row.
   virtual uint32_t lane(int operation, const LaneTask& task, arith::Mode mode) const = 0;
 };
 
 /// The model of a type with a CLASS row; its source file defines it, and the linker misses it otherwise.
-template <Unit kUnit>
-const FunctionUnit& unit_model();
+template <AluType type>
+const AluModel& alu_model();
 
 #define RAYPOOL_CORE(type, name, depth, ports, parameters, title)
 #define RAYPOOL_CLASS(type, name, depth, parameters, title) \
   template <>                                               \
-  const FunctionUnit& unit_model<Unit::type>();
-RAYPOOL_UNITS(RAYPOOL_CORE, RAYPOOL_CLASS)
+  const AluModel& alu_model<AluType::type>();
+RAYPOOL_ALU_TYPES(RAYPOOL_CORE, RAYPOOL_CLASS)
 #undef RAYPOOL_CORE
 #undef RAYPOOL_CLASS
 
 /// The model of a type; null if FunctionalCore executes it itself.
-const FunctionUnit* function_unit(Unit unit);
+const AluModel* find_alu_model(AluType type);
 
 }  // namespace raypool
