@@ -1,5 +1,5 @@
 #!/bin/bash
-# Checks the sources: Verilog in Verilator, Icarus and Yosys for several configurations, C++ layout and clang-tidy, shell syntax.
+# Checks the sources: Verilog in Verilator, Icarus and Yosys for several configurations, C++ layout and clang-tidy, shell syntax; and docs/modules.md.
 # Prints what failed and the command that shows it again; ends with 1 if anything did. Needs the build folder (BUILD, default build)
 # configured with tests, and keeps there how long it took.
 set -u -o pipefail
@@ -54,6 +54,8 @@ for parameters in "${verilog_configurations[@]}"; do
     hierarchy -check -top multiprocessor ${yosys_flags[*]}; proc -noopt; flatten; opt_clean;
     select -assert-none t:\$dlatch t:\$adlatch t:\$dlatchsr; check -assert"
 done
+
+check "table of modules" scripts/module_table.py
 
 check "clang-format (make format)" clang-format --dry-run -Werror "${cpp[@]}"
 
