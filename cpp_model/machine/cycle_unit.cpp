@@ -13,6 +13,11 @@ constexpr uint8_t kLastBeat = 3;        // of a line
 
 constexpr size_t index(AluType type) { return static_cast<size_t>(type); }
 
+// Operations of the ray ALU stand in the order of these kinds.
+RayAlu::Task::Kind ray_kind(const DecodedInstruction& instruction, bool faults) {
+  return faults ? RayAlu::Task::Kind::Illegal : static_cast<RayAlu::Task::Kind>(instruction.code & 31);
+}
+
 }  // namespace
 
 CycleUnit::CycleUnit(const Configuration& configuration, const Memory& memory)
@@ -20,7 +25,7 @@ CycleUnit::CycleUnit(const Configuration& configuration, const Memory& memory)
       host_memory_(&memory),
       core_(configuration, memory_),
       mem_(configuration),
-      ray_(configuration),
+      ray_(configuration, core_.slices()),
       instruction_cache_(configuration),
       issues_(static_cast<size_t>(configuration.warps)),
       timings_(static_cast<size_t>(configuration.warps)) {
@@ -141,7 +146,7 @@ void CycleUnit::issue_warp(uint32_t warp) {
   const bool swaps = type == index(AluType::Ray) && (instruction->code & 31) < 3;
   if (swaps) {
     mask = core_.thread_mask(warp, *instruction);
-    ray_.task(warp) = {(instruction->code & 31) == 0 ? RayAlu::Task::Kind::Input : RayAlu::Task::Kind::Output, mask == 0};
+    ray_.task(warp) = {ray_kind(*instruction, false), mask};
   } else {
     const Step& step = core_.step(warp);
     mask = step.mask;
@@ -149,9 +154,7 @@ void CycleUnit::issue_warp(uint32_t warp) {
     if (type == index(AluType::Mem)) {
       begin_memory(warp, step);
     } else if (type == index(AluType::Ray)) {
-      ray_.task(warp).kind = faults                          ? RayAlu::Task::Kind::Illegal
-                             : (instruction->code & 31) == 3 ? RayAlu::Task::Kind::Read
-                                                             : RayAlu::Task::Kind::Write;
+      ray_.task(warp) = {ray_kind(*instruction, faults), mask};
     } else if (instruction->info->control) {
       control_ |= bit;
       stack_fault_[warp] = faults ? step.fault.code : FaultCode::None;
@@ -194,12 +197,6 @@ void CycleUnit::retire_control(uint32_t warps) {
       plan_fetch(warp, now_ + 1, false);
     }
   }
-}
-
-void CycleUnit::swap(uint32_t warp) {
-  const Step& step = core_.step(warp);
-  for (uint32_t i = 0; i < step.ray_count; ++i) ray_.add_ray(step.rays[i]);
-  for (uint32_t i = 0; i < step.frame_count; ++i) ray_.add_contribution(step.frame[i]);
 }
 
 // ---- The instruction routine
@@ -451,7 +448,7 @@ void CycleUnit::advance_rays(const UnitInputs& inputs, ImportKind import) {
   if (ray_task_ < 0 && !inputs.import_beat_valid && import == ImportKind::None && !ray_.active()) return;
   const int swapped = ray_.clock(ray_task_, import, inputs);
   ray_task_ = -1;
-  if (swapped >= 0) swap(static_cast<uint32_t>(swapped));
+  if (swapped >= 0) core_.step(static_cast<uint32_t>(swapped));
 }
 
 bool CycleUnit::quiet() const {

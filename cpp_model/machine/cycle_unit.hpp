@@ -109,7 +109,6 @@ class CycleUnit final : public ComputeUnit {
   void record_result(uint32_t warp, const Step& step);
   void retire_control(uint32_t warps);
   void plan_fetch(uint32_t warp, uint64_t cycle, bool past_current);
-  void swap(uint32_t warp);
   void take_package_beat(const Beat& beat);
   void start_kernel();
   void raise(const Fault& fault);

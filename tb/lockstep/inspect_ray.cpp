@@ -10,18 +10,9 @@ namespace {
 constexpr const char* kAlu = "rtl/ray_alu.v";
 constexpr const char* kImport = "rtl/ray_import.v, rtl/ray_alu.v, rtl/import_arbiter.v";
 constexpr const char* kExport = "rtl/ray_export.v, rtl/ray_alu.v, rtl/port_arbiter.v";
-constexpr uint32_t kLastBeat = kIntersectionBeats - 1;  // carries one word
+constexpr uint32_t kLastWord = kIntersectionWords - 1;  // alone in its beat
 
 }  // namespace
-
-// Beats belong to the threads of the launch in their order.
-void UnitInspection::advance_import(const UnitTransfers& given) {
-  if (before_.import_beat && import_beat_++ == kLastBeat) {
-    import_beat_ = 0;
-    ++import_thread_;
-  }
-  if (given.launch && given.command.import != ImportKind::None) import_thread_ = import_beat_ = 0;
-}
 
 void UnitInspection::check_ray_alu() {
   const RayAlu& ray = model_->ray();
@@ -31,7 +22,7 @@ void UnitInspection::check_ray_alu() {
       (ray_.hold_q.value() | ray_.busy.value() | w_.import_active.value() | w_.export_valid_o.value() | w_.ray_fault.value()) ==
           0)
     return;
-  const RayAlu::Registers r = ray.registers();
+  const RayAlu::Registers& r = ray.registers();
   expect(w_.ray_fault.value(), ray.fault(), kAlu, "ray ALU, fault");
   expect(ray_.hold_q.value(), r.hold, kAlu, "ray ALU, steps are left");
   if (r.hold) expect(ray_.step_q.value(), r.step, kAlu, "ray ALU, step");
@@ -55,16 +46,16 @@ void UnitInspection::check_ray_alu() {
 
 void UnitInspection::check_import() {
   const RayAlu& ray = model_->ray();
-  const RayAlu::Registers r = ray.registers();
-  expect(w_.import_active.value(), ray.import_active(), kImport, "import, packages are left");
-  expect(w_.import_request_valid_o.value(), (ray.signals() & signal::kImportRequest) != 0, kImport, "import, request");
+  const RayImport::Registers& r = ray.import().registers();
+  expect(w_.import_active.value(), r.active, kImport, "import, packages are left");
+  expect(w_.import_request_valid_o.value(), r.request_valid, kImport, "import, request");
   expect(ray_.full.value(), r.full, kImport, "import, slices with all their packages");
   expect(ray_.import_write.value(), r.write, kImport, "import, a beat is written");
   if (!r.write || !before_.import_beat) return;
-  const uint32_t mask = import_beat_ == kLastBeat ? 1 : 15;
+  const uint32_t mask = r.write_word == kLastWord ? 1 : 15;
   expect(ray_.import_set.value(), r.write_set, kImport, "import, set");
-  expect(ray_.import_thread.value(), import_thread_, kImport, "import, thread");
-  expect(ray_.import_word.value(), import_beat_ * kBeatWords, kImport, "import, word");
+  expect(ray_.import_thread.value(), r.write_thread, kImport, "import, thread");
+  expect(ray_.import_word.value(), r.write_word, kImport, "import, word");
   expect(ray_.import_mask.value(), mask, kImport, "import, words that are written");
   for (uint32_t words = mask; words != 0; words &= words - 1)
     expect(ray_.import_data.word(lowest(words)), before_.beat[lowest(words)], kImport, "import, data");
@@ -73,7 +64,7 @@ void UnitInspection::check_import() {
 void UnitInspection::check_ray_ports() {
   const RayAlu& ray = model_->ray();
   const UnitOutputs& out = model_->outputs();
-  expect(ray_.busy.value(), ray.registers().busy, kExport, "export, slices that wait or are read");
+  expect(ray_.busy.value(), ray.exports().registers().busy, kExport, "export, slices that wait or are read");
   expect(w_.export_valid_o.value(), out.export_valid, kExport, "export, a beat of a ray");
   expect(w_.frame_valid_o.value(), out.frame_valid, kExport, "export, a contribution");
   bool same = true;

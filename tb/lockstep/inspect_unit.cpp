@@ -75,7 +75,6 @@ void UnitInspection::reset(uint32_t program_length) {
   requests_ = missed_ = first_ = wants_ = warp_faults_ = 0;
   port_ = {};
   before_ = {};
-  import_thread_ = import_beat_ = 0;
   tasks_ = parked_ = 0;
   done_.fill(0);
   for (Slot& slot : slots_) slot.ready_from = 0;
@@ -105,7 +104,6 @@ void UnitInspection::advance(const UnitTransfers& given) {
   advance_memory_port(given);
   advance_fetch(given);
   advance_slots();
-  advance_import(given);
   wants_ = w_.want.value() & ~w_.grant.value();
   before_ = given;
 }

@@ -72,7 +72,6 @@ class UnitInspection {
   void advance_fetch(const UnitTransfers& given);
   void advance_memory_port(const UnitTransfers& given);
   void advance_slots();
-  void advance_import(const UnitTransfers& given);
   void check_launch();
   void check_memory_port();
   void check_faults();
@@ -129,7 +128,6 @@ class UnitInspection {
   uint32_t warp_faults_ = 0;  // of the cycle before
   bool alu_fault_ = false;
   UnitTransfers before_;  // what was given in the cycle before
-  uint32_t import_thread_ = 0, import_beat_ = 0;
 };
 
 /// The device: its units, and the arbiters around several of them.

@@ -1,0 +1,127 @@
+// rtl/ray_export.v, cycle by cycle: takes warps' output slices in the order in which they are pushed, reads the masked lanes'
+// packages, four words a cycle, and offers them on the ray-pool port or the frame-buffer port.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "machine/bits.hpp"
+#include "machine/compute_unit.hpp"
+#include "machine/ray_slices.hpp"
+
+namespace raypool {
+
+class RayExport {
+ public:
+  static constexpr uint32_t kPlaces = 32;  ///< warps at most, of which each is in the order once
+
+  struct Beat {
+    bool frame = false;  ///< to the frame buffer: pixel, red, green, blue
+    bool last = false;   ///< of its package
+    raypool::Beat data{};
+  };
+  struct Registers {
+    uint32_t slot = 0, busy = 0;            ///< sets of warps: place of the next mask; slices that wait or are read
+    std::array<uint8_t, kPlaces> order{};   ///< warps in the order of their pushes, a ring
+    uint32_t first = 0, end = 0;            ///< of it
+    bool next = false, next_frame = false;  ///< the slice after the one that is read
+    uint32_t next_warp = 0, next_mask = 0;
+    bool slice = false, frame = false;  ///< the slice that is read
+    uint32_t warp = 0;
+    uint8_t set = 0;
+    uint32_t lane = 0, rest = 0;  ///< lane that is read; the lanes after it
+    uint32_t beat = 0;
+    bool landing = false;       ///< a beat is on its way from the memory
+    uint32_t fill = 0;          ///< beats that wait for their port
+    Beat landing_beat;          ///< with landing
+    std::array<Beat, 3> beats;  ///< those that wait; 0 is offered
+  };
+
+  /// `slices` must outlive it.
+  explicit RayExport(const RaySlices& slices) : slices_(&slices) {}
+
+  void reset() { q_ = Registers{}; }
+  const Registers& registers() const { return q_; }
+
+  bool exporting() const { return q_.busy != 0 || q_.landing || q_.fill != 0; }
+  bool read() const { return q_.slice && q_.fill + q_.landing != 3; }
+  uint8_t read_set() const { return q_.set; }
+  bool export_valid() const { return q_.fill != 0 && !q_.beats[0].frame; }
+  bool frame_valid() const { return q_.fill != 0 && q_.beats[0].frame; }
+  const Beat& offered() const { return q_.beats[0]; }  ///< means something while one of them is valid
+  uint32_t next_warp() const { return q_.next_warp; }
+  /// False if clock() would change nothing.
+  bool moves() const { return q_.slice | q_.next | q_.landing | (q_.first != q_.end) | (q_.fill != 0); }
+
+  /// `granted`: what is read() has its set's port; `output_set`: of next_warp().
+  void clock(bool granted, uint8_t output_set, bool export_ready, bool frame_ready) {
+    // Conditions that come out either way from cycle to cycle are joined without branches.
+    send((q_.fill != 0) & (q_.beats[0].frame ? frame_ready : export_ready));
+    const bool package_end = q_.frame | (q_.beat == kRayBeats - 1);
+    const bool slice_end = granted & package_end & (q_.rest == 0);
+    const bool load = q_.next & (!q_.slice | slice_end);
+    const bool take_first = (q_.first != q_.end) & (!q_.next | load);
+    q_.landing = granted;
+    if (granted) read_beat(package_end);
+    q_.busy &= ~(uint32_t{slice_end} << q_.warp);
+    q_.slice = load | (q_.slice & !slice_end);
+    if (load) {
+      q_.frame = q_.next_frame;
+      q_.warp = q_.next_warp;
+      q_.set = output_set;
+      q_.rest = q_.next_mask;
+      next_lane();
+    } else if (granted) {
+      ++q_.beat;
+      if (package_end && !slice_end) next_lane();
+    }
+    q_.next = take_first | (q_.next & !load);
+    if (take_first) {
+      q_.next_warp = q_.order[q_.first++ % kPlaces];
+      const Mask& mask = masks_[~q_.slot >> q_.next_warp & 1][q_.next_warp];
+      q_.next_frame = mask.frame;
+      q_.next_mask = mask.lanes;
+    }
+  }
+  // With clock(), after it.
+  /// A rout or rfb has arrived: which lanes it will export where.
+  void park(uint32_t warp, bool frame, uint32_t mask) { masks_[q_.slot >> warp & 1][warp] = {frame, mask}; }
+  /// It is executed: its slice is the output from the next cycle on. The mask must not have been empty.
+  void push(uint32_t warp) {
+    q_.order[q_.end++ % kPlaces] = static_cast<uint8_t>(warp);
+    q_.slot ^= 1u << warp;
+    q_.busy |= 1u << warp;
+  }
+
+ private:
+  struct Mask {
+    bool frame = false;
+    uint32_t lanes = 0;
+  };
+
+  // Beats leave, and one that was read in the cycle before joins those that wait.
+  void send(bool sent) {
+    if (sent && --q_.fill != 0) {
+      q_.beats[0] = q_.beats[1];
+      q_.beats[1] = q_.beats[2];
+    }
+    if (q_.landing) q_.beats[q_.fill++] = q_.landing_beat;
+  }
+  void next_lane() {
+    q_.beat = 0;
+    q_.lane = lowest(q_.rest);
+    q_.rest &= q_.rest - 1;
+  }
+  void read_beat(bool last) {
+    q_.landing_beat.frame = q_.frame;
+    q_.landing_beat.last = last;
+    const uint32_t word = q_.frame ? word::kPixel : q_.beat * kBeatWords;
+    for (uint32_t i = 0; i < kBeatWords; ++i) q_.landing_beat.data[i] = slices_->output(q_.warp, word + i)[q_.lane];
+  }
+
+  const RaySlices* slices_;
+  std::array<std::array<Mask, kPlaces>, 2> masks_{};  // a warp's next rout may arrive while the one before is exported
+  Registers q_;
+};
+
+}  // namespace raypool
