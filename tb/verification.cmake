@@ -20,8 +20,9 @@ set_tests_properties(cosim_2w2c_small_4cu PROPERTIES FIXTURES_REQUIRED unit_2w2c
 add_test(NAME faults_catalogue COMMAND ${scripts}/tests/faults_test.sh ${raypool_program} $<TARGET_FILE:raypool_faults> ${CMAKE_BINARY_DIR}/faults-test)
 set_tests_properties(faults_catalogue PROPERTIES TIMEOUT 900)
 
-# docs/modules.md names every module of rtl/, and nothing that is not there.
+# docs/modules.md names every module of rtl/, and no page names what is not there.
 add_test(NAME module_table COMMAND ${scripts}/module_table.py)
+add_test(NAME page_paths COMMAND ${scripts}/page_paths.py)
 
 # Every program that has once shown a fault.
 file(GLOB regressions CONFIGURE_DEPENDS RELATIVE ${CMAKE_SOURCE_DIR}/tb/regressions ${CMAKE_SOURCE_DIR}/tb/regressions/*.json)
