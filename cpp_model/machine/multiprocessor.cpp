@@ -13,7 +13,8 @@ Multiprocessor::Multiprocessor(std::vector<std::unique_ptr<ComputeUnit>> units)
 void Multiprocessor::reset(uint32_t program_length, uint32_t memory_limit) {
   for (const auto& unit : units_) unit->reset(program_length, memory_limit);
   block_scheduler_ = {};
-  memory_arbiter_ = export_arbiter_ = frame_arbiter_ = fault_arbiter_ = {};
+  memory_arbiter_ = {};
+  export_arbiter_ = frame_arbiter_ = fault_arbiter_ = {};
   import_arbiter_ = {};
   outputs_ = {};
   faults_.clear();
@@ -49,11 +50,12 @@ void Multiprocessor::give(const UnitInputs& inputs) {
     inputs_[memory_arbiter_.choice()].memory_request_ready = inputs.memory_request_ready;
     memory_arbiter_.clock(inputs.memory_request_ready);
   }
-  if (inputs.memory_response_valid && unit_of_id(inputs.memory_response.id) < inputs_.size()) {
-    UnitInputs& unit = inputs_[unit_of_id(inputs.memory_response.id)];
+  const uint32_t response_unit = UnitMemoryArbiter::response_unit(inputs.memory_response.id);
+  if (inputs.memory_response_valid && response_unit < inputs_.size()) {
+    UnitInputs& unit = inputs_[response_unit];
     unit.memory_response_valid = true;
     unit.memory_response = inputs.memory_response;
-    unit.memory_response.id &= 31;
+    unit.memory_response.id = UnitMemoryArbiter::response_id(inputs.memory_response.id);
   }
   if (inputs.import_beat_valid && import_arbiter_.expects()) {
     UnitInputs& unit = inputs_[import_arbiter_.receiver()];
@@ -103,7 +105,7 @@ void Multiprocessor::present() {
   if (memory_arbiter_.valid()) {
     const uint32_t unit = memory_arbiter_.choice();
     outputs_.memory_request = units_[unit]->outputs().memory_request;
-    outputs_.memory_request.id = static_cast<uint8_t>(outputs_.memory_request.id | unit << 5);
+    outputs_.memory_request.id = UnitMemoryArbiter::id_of_unit(outputs_.memory_request.id, unit);
   }
   import_arbiter_.present(import);
   outputs_.import_request_valid = import_arbiter_.valid();

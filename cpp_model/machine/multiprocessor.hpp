@@ -4,8 +4,11 @@
 #include <memory>
 #include <vector>
 
-#include "machine/arbiters.hpp"
+#include "machine/block_scheduler.hpp"
 #include "machine/compute_unit.hpp"
+#include "machine/import_arbiter.hpp"
+#include "machine/port_arbiter.hpp"
+#include "machine/unit_memory_arbiter.hpp"
 
 namespace raypool {
 
@@ -39,7 +42,8 @@ class Multiprocessor : public ComputeUnit {
   UnitOutputs outputs_;
   std::vector<Fault> faults_;
   BlockScheduler block_scheduler_;
-  PortArbiter memory_arbiter_, export_arbiter_, frame_arbiter_, fault_arbiter_;
+  UnitMemoryArbiter memory_arbiter_;
+  PortArbiter export_arbiter_, frame_arbiter_, fault_arbiter_;
   ImportArbiter import_arbiter_;
   bool tracing_ = false;
   UnitTrace trace_;

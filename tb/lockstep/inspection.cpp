@@ -16,7 +16,8 @@ void Inspection::reset(uint32_t program_length) {
   for (UnitInspection& unit : units_) unit.reset(program_length);
   findings_.clear();
   block_scheduler_ = {};
-  memory_ = exports_ = frames_ = {};
+  memory_ = {};
+  exports_ = frames_ = {};
   imports_ = {};
   before_ = {};
 }

@@ -11,10 +11,13 @@
 #include "config/configuration.hpp"
 #include "lockstep/mismatch.hpp"
 #include "lockstep/unit_wires.hpp"
-#include "machine/arbiters.hpp"
+#include "machine/block_scheduler.hpp"
 #include "machine/compute_unit.hpp"
 #include "machine/cycle_unit.hpp"
+#include "machine/import_arbiter.hpp"
 #include "machine/instruction_cache.hpp"
+#include "machine/port_arbiter.hpp"
+#include "machine/unit_memory_arbiter.hpp"
 
 namespace raypool::lockstep {
 
@@ -154,7 +157,8 @@ class Inspection {
   std::vector<UnitInspection> units_;
   std::vector<Finding> findings_;
   BlockScheduler block_scheduler_;
-  PortArbiter memory_, exports_, frames_;
+  UnitMemoryArbiter memory_;
+  PortArbiter exports_, frames_;
   ImportArbiter imports_;
   UnitInputs before_;
 };
