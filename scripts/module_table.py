@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Checks the table of docs/modules.md against the project: scripts/module_table.py; exit code 1 if a row is missing or untrue.
+"""Checks docs/modules.md against the project: scripts/module_table.py; exit code 1 if a row is missing or untrue.
 
-Each module of rtl/ has one row: module, Verilog file, C++, tests, proofs. What the C++ column names is defined in a file that it
-names, and a class that is called like the module is among them. A test builds a module that holds the module, and a
-bench of the module's own is named. The proofs are those whose checkers read the module.
+Each module of rtl/ has one row: module, Verilog file, C++, tests, proofs. What the C++ column names is defined in a
+file that it names, and a class that is called like the module is among them. A test builds a module that holds the
+module, and a bench of the module's own is named. The proofs are those whose checkers read the module.
 """
 import pathlib
 import re
@@ -31,7 +31,8 @@ def instances(text, names):
 def inside(texts):
     """[module] = the modules that it holds, with those inside them, and itself. ALUs are placed by an included file."""
     placed = (ROOT / "rtl/alu_instances.vh").read_text()
-    direct = {name: instances(text + (placed if '"alu_instances.vh"' in text else ""), texts) for name, text in texts.items()}
+    whole = {name: text + (placed if '"alu_instances.vh"' in text else "") for name, text in texts.items()}
+    direct = {name: instances(text, texts) for name, text in whole.items()}
     holds = {name: {name} for name in texts}
     while True:
         grown = {name: {name}.union(*(holds[part] for part in direct[name])) for name in texts}
@@ -41,15 +42,15 @@ def inside(texts):
 
 
 def tests(holds):
-    """[test] = the modules that it builds: those of rtl/ in the Verilated classes whose headers it includes, V<top>_<variant>."""
+    """[test] = the modules of rtl/ that it builds, from the headers of Verilated classes, V<top>_<variant>.h."""
     found = {path.stem: holds["multiprocessor"] for path in (ROOT / "tb/rtl").glob("*_test.cpp")}
     tops = {**holds}
     for path in (ROOT / "tb/unit").glob("*.v"):
         tops[path.stem] = set().union(*(holds[name] for name in instances(path.read_text(), holds)))
     for path in (ROOT / "tb/unit").glob("*_test.cpp"):
         included = re.findall(r'#include "V(\w+)\.h"', path.read_text())
-        built = [max((top for top in tops if re.match(rf"{top}(_|$)", each)), key=len, default=None) for each in included]
-        found[path.stem] = set().union(*(tops[top] for top in built if top))
+        built = [[top for top in tops if re.match(rf"{top}(_|$)", each)] for each in included]
+        found[path.stem] = set().union(*(tops[max(names, key=len)] for names in built if names))
     return found
 
 
@@ -82,7 +83,8 @@ def defines(text, name):
     """Whether C++ text defines a class, a member (in its class or outside) or a function that begins a line."""
     outer, _, last = name.rpartition("::")
     if outer:
-        return f"{name}(" in text or (re.search(rf"\bclass {outer}\b", text) and re.search(rf"^  \w[^=;()]* [*&]?{last}\(", text, re.M))
+        inside_class = re.search(rf"^  \w[^=;()]* [*&]?{last}\(", text, re.M)
+        return f"{name}(" in text or (re.search(rf"\bclass {outer}\b", text) and inside_class)
     return re.search(rf"^(class|struct) {name}\b[^;]*\{{|^\w[^=;()]* {name}\(", text, re.M)
 
 

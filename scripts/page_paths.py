@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Checks that what README and docs point to is there: scripts/page_paths.py; exit code 1 if something is not.
 
-That is: the files and headings of links, and each path of the project between backquotes, in which a star stands for any letters.
-Fences and quoted output are left to the checks that run them.
+That is: the files and headings of links, and each path of the project between backquotes, in which a star stands for
+any letters. Fences and quoted output are left to the checks that run them.
 """
 import pathlib
 import re
@@ -10,8 +10,8 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGES = [ROOT / "README.md"] + sorted((ROOT / "docs").glob("*.md"))
-FOLDERS = "|".join(sorted(path.name for path in ROOT.iterdir() if path.is_dir() and not path.name.startswith((".", "build"))))
-PATH = re.compile(rf"^(?:{FOLDERS})/[\w./*+-]*$")
+FOLDERS = [path.name for path in ROOT.iterdir() if path.is_dir() and not path.name.startswith((".", "build"))]
+PATH = re.compile(rf"^(?:{'|'.join(FOLDERS)})/[\w./*+-]*$")
 MADE = {"docs/add-an-alu.md": ("box",)}   # files that the page itself makes
 
 
@@ -49,7 +49,8 @@ def main():
     for page in PAGES:
         name, text = str(page.relative_to(ROOT)), without_code(page.read_text())
         words = [word for code in re.findall(r"`([^`\n]+)`", text) for word in code.split() if PATH.match(word)]
-        found = [link_error(page, target) for target in re.findall(r"\]\(([^)\s]+)\)", text)] + [path_error(name, word) for word in words]
+        found = [link_error(page, target) for target in re.findall(r"\]\(([^)\s]+)\)", text)]
+        found += [path_error(name, word) for word in words]
         looked += len(found)
         errors += [f"{name} {error}" for error in found if error]
     for error in sorted(set(errors)):

@@ -1,7 +1,9 @@
-"""Draws the pictures of the machine into docs/images, or checks them: PYTHONPATH=scripts python3 -m diagrams RAYPOOL FOLDER [--check]
+"""Draws the pictures of the machine into docs/images, or checks them:
 
-FOLDER keeps what Icarus makes. A picture whose modules are not in rtl/ or sim/chip/ is refused. --check writes nothing and ends with 1
-if a picture would change.
+    PYTHONPATH=scripts python3 -m diagrams RAYPOOL FOLDER [--check]
+
+FOLDER keeps what Icarus makes. A picture whose modules are not in rtl/ or sim/chip/ is refused. --check writes nothing
+and ends with 1 if a picture would change.
 """
 import pathlib
 import shutil
@@ -29,7 +31,7 @@ def main(arguments):
     for name, picture in pictures(arguments[0], pathlib.Path(arguments[1]).resolve()).items():
         unknown = sorted(picture.modules - MODULES)
         if unknown:
-            raise DiagramError(f"docs/images/{name}.svg would show {', '.join(unknown)}, which rtl/ and sim/chip/ have not")
+            raise DiagramError(f"docs/images/{name}.svg would show {', '.join(unknown)}: not in rtl/ or sim/chip/")
         file, text = ROOT / f"docs/images/{name}.svg", picture.svg()
         if file.exists() and file.read_text() == text:
             continue
@@ -37,7 +39,8 @@ def main(arguments):
         if not arguments[2:]:
             file.write_text(text)
     if arguments[2:] and different:
-        print(f"diagrams: {', '.join(different)} would be drawn otherwise now; run make diagrams and look at it", file=sys.stderr)
+        names = ", ".join(different)
+        print(f"diagrams: {names} would be drawn otherwise now; run make diagrams and look at it", file=sys.stderr)
         return 1
     print(f"diagrams: {'drawn: ' + ', '.join(different) if different else 'nothing to draw'}")
     return 0

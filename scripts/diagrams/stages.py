@@ -1,4 +1,4 @@
-"""The cycle chart: in which stage each instruction of two warps is, from a run of rtl/ in Icarus (tb/icarus/stage_trace.v)."""
+"""The cycle chart: in which stage each instruction of two warps is, from a run of rtl/ in tb/icarus/stage_trace.v."""
 import pathlib
 import subprocess
 
@@ -17,7 +17,7 @@ ROUTINES = [   # stages with the module that does them
 def run(command, **options):
     result = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, **options)
     if result.returncode != 0:
-        raise DiagramError(f"{' '.join(map(str, command[:1]))} failed: {result.stderr.strip() or result.stdout.strip()}")
+        raise DiagramError(f"{command[0]} failed: {result.stderr.strip() or result.stdout.strip()}")
     return result.stdout
 
 
@@ -27,7 +27,7 @@ def trace(raypool, folder):
     words, bench = folder / "stages.hex", folder / "stage_trace.vvp"
     run([raypool, "asm", PROGRAM, "-o", words])
     verilog = sorted((ROOT / "rtl").glob("*.v"))
-    run(["iverilog", "-g2005", f"-I{ROOT / 'rtl'}", "-s", "stage_trace", "-o", bench, ROOT / "tb/icarus/stage_trace.v"] + verilog)
+    run(["iverilog", "-g2005", "-Irtl", "-s", "stage_trace", "-o", bench, "tb/icarus/stage_trace.v"] + verilog)
     events = [line.split() for line in run(["vvp", "-n", bench, f"+program={words}"]).splitlines()]
     events = [(int(e[0]), int(e[1]), e[2], int(e[3])) for e in events if len(e) == 4 and e[0].isdigit()]
     if not events:
@@ -65,8 +65,9 @@ def panel(picture, top, warp, events, cycles):
             picture.shapes.append(f'<path d="M{LEFT} {y + ROW - 0.5} H{LEFT + cycles * CELL}" class="grid"/>')
             for cycle, _, _, pc in sorted(event for event in events if event[1:3] == (warp, stage)):
                 stays = stage != "ALUEx" and (cycle + 1, warp, stage, pc) in events
-                picture.rectangle(LEFT + cycle * CELL + 1, y + 2, CELL - 2, ROW - 4, f"c{pc}{' waits' if stays else ''}", 3)
-                picture.text(LEFT + cycle * CELL + CELL / 2, y + 16, str(pc), "part", "middle")
+                x = LEFT + cycle * CELL
+                picture.rectangle(x + 1, y + 2, CELL - 2, ROW - 4, f"c{pc} waits" if stays else f"c{pc}", 3)
+                picture.text(x + CELL / 2, y + 16, str(pc), "part", "middle")
             y += ROW
     return y
 

@@ -1,7 +1,7 @@
 """A picture of boxes and wires as SVG, with a plate of its own and colours for light and dark readers.
 
-Module names stand in a font of one width, so that what would not fit its box is found here and not by the eye. Every name
-that a picture shows as a module is kept in Picture.modules.
+Module names stand in a font of one width, so that what would not fit its box is found here and not by the eye; so is a
+line that crosses words. Every name that a picture shows as a module is kept in Picture.modules.
 """
 import html
 
@@ -55,7 +55,8 @@ class Picture:
         self.rectangle(0.5, 0.5, WIDTH - 1, height - 1, "plate")
 
     def rectangle(self, x, y, width, height, kind, radius=6):
-        self.shapes.append(f'<rect x="{x:g}" y="{y:g}" width="{width:g}" height="{height:g}" rx="{radius:g}" class="{kind}"/>')
+        self.shapes.append(f'<rect x="{x:g}" y="{y:g}" width="{width:g}" height="{height:g}" rx="{radius:g}" '
+                           f'class="{kind}"/>')
 
     def text(self, x, y, words, kind="wide", anchor="start"):
         """`y` is the line on which the letters stand."""
@@ -64,7 +65,8 @@ class Picture:
         if left < 4 or left + size > WIDTH - 4 or y > self.height - 4:
             raise DiagramError(f"{self.title}: '{words}' does not fit the picture")
         self.words.append((left, y - 10, left + size, y + 2, words))
-        self.shapes.append(f'<text x="{x:g}" y="{y:g}" class="{kind}" text-anchor="{anchor}">{html.escape(words)}</text>')
+        self.shapes.append(f'<text x="{x:g}" y="{y:g}" class="{kind}" text-anchor="{anchor}">'
+                           f'{html.escape(words)}</text>')
 
     def box(self, place, name, notes=(), kind="box", parts=(), times=""):
         """A module: its name, what it holds (`parts`, modules too), notes. `place` is x, y, width, height."""
@@ -120,7 +122,8 @@ class Picture:
         for left, top, right, bottom, words in self.words:
             for x0, y0, x1, y1 in self.lines:
                 if x0 < right and x1 > left and y0 < bottom and y1 > top:
-                    raise DiagramError(f"{self.title}: the line from {x0:g}, {y0:g} to {x1:g}, {y1:g} crosses '{words}'")
+                    place = f"{x0:g}, {y0:g} to {x1:g}, {y1:g}"
+                    raise DiagramError(f"{self.title}: the line from {place} crosses '{words}'")
 
     def svg(self):
         self.check()

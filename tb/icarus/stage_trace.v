@@ -1,6 +1,6 @@
-// Prints in which stage of the two routines each warp is, cycle by cycle, read from the state registers of its instruction buffer:
-// vvp -n stage_trace.vvp +program=FILE, as `raypool asm` writes it. The program is launched twice and the second time printed, when the
-// instruction cache has it. A line is: cycle, warp, stage, PC.
+// Prints in which stage of the two routines each warp is, cycle by cycle, by the registers of its instruction buffer:
+// vvp -n stage_trace.vvp +program=FILE, as `raypool asm` writes it. The program is launched twice; what is printed is
+// the second time, when the instruction cache has it. A line is: cycle, warp, stage, PC.
 `default_nettype none
 `timescale 1ns / 1ns
 module stage_trace #(
@@ -27,8 +27,9 @@ module stage_trace #(
 
   wire kernel_done;
   compute_unit #(.WARPS(WARPS), .LANES(LANES)) unit (
-    .clk_i(clk), .rst_ni(rst_n), .program_length_i(16'd256), .memory_limit_i(32'd2048), .argument_write_i(1'b0),
-    .argument_index_i(5'd0), .argument_data_i(32'd0), .launch_valid_i(launch), .launch_pc_i(16'd0), .launch_threads_i(THREADS[10:0]),
+    .clk_i(clk), .rst_ni(rst_n), .program_length_i(16'd256), .memory_limit_i(32'd2048),
+    .argument_write_i(1'b0), .argument_index_i(5'd0), .argument_data_i(32'd0),
+    .launch_valid_i(launch), .launch_pc_i(16'd0), .launch_threads_i(THREADS[10:0]),
     .launch_block_i(32'd0), .launch_blocks_i(32'd1), .launch_import_i(2'd0), .kernel_done_o(kernel_done),
     .memory_request_valid_o(request), .memory_request_ready_i(beat[2]), .memory_request_address_o(request_address),
     .memory_request_id_o(request_id), .memory_response_valid_i(!beat[2]), .memory_response_id_i(id),
@@ -40,28 +41,23 @@ module stage_trace #(
   genvar w;
   generate
     for (w = 0; w < WARPS; w = w + 1) begin : gen_warp
+      `define BUFFER unit.gen_warp[w].warp.instruction_buffer
       always @(negedge clk)
-        if (printing && unit.gen_warp[w].warp.instruction_buffer.active_o) begin
-          case (unit.gen_warp[w].warp.instruction_buffer.fetch_q)
-            unit.gen_warp[w].warp.instruction_buffer.F_STACK:
-              if (unit.gen_warp[w].warp.pc_stack.pc_valid_o) $display("%0d %0d PCStack %0d", cycle, w, unit.gen_warp[w].warp.pc_stack.pc_o);
-            unit.gen_warp[w].warp.instruction_buffer.F_ARBITER:
-              $display("%0d %0d IArb %0d", cycle, w, unit.gen_warp[w].warp.instruction_buffer.fetch_pc_o);
-            unit.gen_warp[w].warp.instruction_buffer.F_CACHE:
-              $display("%0d %0d ICache %0d", cycle, w, unit.gen_warp[w].warp.instruction_buffer.fetch_pc_o);
-            unit.gen_warp[w].warp.instruction_buffer.F_FULL:
-              $display("%0d %0d IBuf %0d", cycle, w, unit.gen_warp[w].warp.instruction_buffer.fetch_pc_o);
+        if (printing && `BUFFER.active_o) begin
+          case (`BUFFER.fetch_q)
+            // In this stage the PC is that of the stack, unless an entry is popped.
+            `BUFFER.F_STACK: if (`BUFFER.pc_valid_i) $display("%0d %0d PCStack %0d", cycle, w, `BUFFER.pc_i);
+            `BUFFER.F_ARBITER: $display("%0d %0d IArb %0d", cycle, w, `BUFFER.fetch_pc_o);
+            `BUFFER.F_CACHE: $display("%0d %0d ICache %0d", cycle, w, `BUFFER.fetch_pc_o);
+            `BUFFER.F_FULL: $display("%0d %0d IBuf %0d", cycle, w, `BUFFER.fetch_pc_o);
             default: ;
           endcase
-          case (unit.gen_warp[w].warp.instruction_buffer.data_q)
-            unit.gen_warp[w].warp.instruction_buffer.D_READ:
-              $display("%0d %0d RegFile %0d", cycle, w, unit.gen_warp[w].warp.instruction_buffer.pc_o);
-            unit.gen_warp[w].warp.instruction_buffer.D_WANT:
-              $display("%0d %0d Dispatch %0d", cycle, w, unit.gen_warp[w].warp.instruction_buffer.pc_o);
-            unit.gen_warp[w].warp.instruction_buffer.D_EXECUTE:
-              if (unit.gen_warp[w].warp.instruction_buffer.retire_i)
-                $display("%0d %0d WriBack %0d", cycle, w, unit.gen_warp[w].warp.instruction_buffer.pc_o);
-              else $display("%0d %0d ALUEx %0d", cycle, w, unit.gen_warp[w].warp.instruction_buffer.pc_o);
+          case (`BUFFER.data_q)
+            `BUFFER.D_READ: $display("%0d %0d RegFile %0d", cycle, w, `BUFFER.pc_o);
+            `BUFFER.D_WANT: $display("%0d %0d Dispatch %0d", cycle, w, `BUFFER.pc_o);
+            `BUFFER.D_EXECUTE:
+              if (`BUFFER.retire_i) $display("%0d %0d WriBack %0d", cycle, w, `BUFFER.pc_o);
+              else $display("%0d %0d ALUEx %0d", cycle, w, `BUFFER.pc_o);
             default: ;
           endcase
         end

@@ -1,4 +1,5 @@
-# What docs/images/stages.svg shows, as two warps go through it: two instructions that take the least, one of more cycles, a control instruction.
+# What docs/images/stages.svg shows, as two warps go through it: two instructions that take the least, one of more
+# cycles, a control instruction.
 .kernel stages
         tid   r0
         lane  r1
