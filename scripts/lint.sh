@@ -56,7 +56,7 @@ for parameters in "${verilog_configurations[@]}"; do
 done
 
 check "table of modules" scripts/module_table.py
-check "links and paths of the pages" scripts/page_paths.py
+check "what the pages name" scripts/pages.py
 
 check "clang-format (make format)" clang-format --dry-run -Werror "${cpp[@]}"
 

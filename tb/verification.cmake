@@ -22,7 +22,7 @@ set_tests_properties(faults_catalogue PROPERTIES TIMEOUT 900)
 
 # docs/modules.md names every module of rtl/, and no page names what is not there.
 add_test(NAME module_table COMMAND ${scripts}/module_table.py)
-add_test(NAME page_paths COMMAND ${scripts}/page_paths.py)
+add_test(NAME pages COMMAND ${scripts}/pages.py)
 
 # Every program that has once shown a fault.
 file(GLOB regressions CONFIGURE_DEPENDS RELATIVE ${CMAKE_SOURCE_DIR}/tb/regressions ${CMAKE_SOURCE_DIR}/tb/regressions/*.json)

@@ -1,0 +1,105 @@
+#!/usr/bin/env python3
+"""Checks that what README and docs name is there: scripts/pages.py; exit code 1 if something is not.
+
+That is: the files and headings of links; and between backquotes paths of the project, in which a star stands for any
+letters, members of C++ classes (Class::member), tests (..._test) and targets of make. Fences and quoted output are left
+to the checks that run them.
+"""
+import pathlib
+import re
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+PAGES = [ROOT / "README.md"] + sorted((ROOT / "docs").glob("*.md"))
+FOLDERS = [path.name for path in ROOT.iterdir() if path.is_dir() and not path.name.startswith((".", "build"))]
+PATH = re.compile(rf"^(?:{'|'.join(FOLDERS)})/[\w./*+-]*$")
+MEMBER = re.compile(r"^([A-Z]\w+)::(\w+)$")
+TEST = re.compile(r"^[a-z_]+_test$")
+MADE = {"docs/add-an-alu.md": ("box", "Box")}   # what the page itself makes
+
+
+def without_code(text):
+    """The page without fences and quoted output, which other checks read."""
+    text = re.sub(r"^```.*?^```", "", text, flags=re.M | re.S)
+    return "\n".join(line for line in text.splitlines() if not line.startswith("    "))
+
+
+def anchor(heading):
+    """As GitHub and GitLab make it of a heading."""
+    return re.sub(r"[^\w\- ]", "", heading.strip().lower()).replace(" ", "-")
+
+
+def link_error(page, target):
+    if re.match(r"[a-z]+:", target):
+        return None
+    file, _, part = target.partition("#")
+    path = (page.parent / file).resolve() if file else page
+    if not path.exists():
+        return f"links to {target}, which is not there"
+    if part and part not in {anchor(heading) for heading in re.findall(r"^#+ (.*)$", path.read_text(), re.M)}:
+        return f"links to {target}, but there is no such heading"
+    return None
+
+
+class Project:
+    """What there is of each kind."""
+
+    def __init__(self):
+        files = [path for folder in ("cpp_model", "sim", "tb") for path in (ROOT / folder).rglob("*.[ch]pp")]
+        self.sources = [re.sub(r"//.*", "", path.read_text()) for path in files]
+        cmake = "".join(path.read_text() for path in [ROOT / "CMakeLists.txt"] + list(ROOT.glob("*/CMakeLists.txt")))
+        libraries = re.findall(r"raypool_library\((\w+)", cmake)
+        self.tests = {path.stem for path in files} | {name + "_test" for name in libraries}
+        self.targets = set(re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text(), re.M))
+
+    def has_member(self, owner, member):
+        inside = re.compile(rf"\b(?:class|struct|enum class) {owner}\b[^;]*\{{")
+        named = re.compile(rf"\b{member}\b")
+        whole = f"{owner}::{member}"
+        return any(named.search(text) and (whole in text or inside.search(text)) for text in self.sources)
+
+    def lacks(self, word):
+        """Whether a word names something that is not there; None if it names nothing of these kinds."""
+        if PATH.match(word):
+            return not any(ROOT.glob(word.rstrip("/")))
+        if MEMBER.match(word):
+            return not self.has_member(*MEMBER.match(word).groups())
+        return word not in self.tests if TEST.match(word) else None
+
+
+def words_of(text):
+    """Words between backquotes, and with `make` in front the targets."""
+    for code in re.findall(r"`([^`\n]+)`", text):
+        words = code.split()
+        yield from words
+        if words[0] == "make" and len(words) > 1 and re.match(r"^[a-z-]+$", words[1]):
+            yield "make " + words[1]
+
+
+def errors_of(page, project):
+    """What is wrong in a page; and how many links and names it has."""
+    name, text = str(page.relative_to(ROOT)), without_code(page.read_text())
+    targets = re.findall(r"\]\(([^)\s]+)\)", text)
+    errors, looked = [link_error(page, target) for target in targets], len(targets)
+    for word in words_of(text):
+        if any(made in word for made in MADE.get(name, ())):
+            continue
+        lacks = word[5:] not in project.targets if word.startswith("make ") else project.lacks(word)
+        looked += lacks is not None
+        errors.append(f"names {word}, which is not there" if lacks else None)
+    return [f"{name} {error}" for error in errors if error], looked
+
+
+def main():
+    project = Project()
+    found = [errors_of(page, project) for page in PAGES]
+    errors = sorted({error for page_errors, _ in found for error in page_errors})
+    for error in errors:
+        print(error, file=sys.stderr)
+    if not errors:
+        print(f"pages.py: {sum(looked for _, looked in found)} links and names in {len(PAGES)} pages, all there")
+    return 1 if errors else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
