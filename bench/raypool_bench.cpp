@@ -87,8 +87,8 @@ void compare_units(const BenchOptions& bench, const std::string& config) {
   std::set<uint64_t> instructions;
   for (int i = 0; i < bench.repetitions; ++i) {
     for (size_t engine = 0; engine < bench.engines.size(); ++engine) {
-      const raypool::EngineOptions what{raypool::parse_engine(bench.engines[engine]), raypool::load_configuration(config), "",
-                                        false, 1};
+      const raypool::EngineOptions what{
+          raypool::parse_engine(bench.engines[engine]), raypool::load_configuration(config), "", false, 1, 0};
       const std::unique_ptr<ComputeUnit> unit = raypool::make_unit(what, recording.memory);
       const auto begin = std::chrono::steady_clock::now();
       raypool::bench::replay(*unit, recording);

@@ -18,7 +18,10 @@ set_tests_properties(cosim_2w2c_small_4cu PROPERTIES FIXTURES_REQUIRED unit_2w2c
 
 # The catalogue of designers' mistakes fits the Verilog, and a few of them are noticed soon; `make faults` runs them all.
 add_test(NAME faults_catalogue COMMAND ${scripts}/tests/faults_test.sh ${raypool_program} $<TARGET_FILE:raypool_faults> ${CMAKE_BINARY_DIR}/faults-test)
-set_tests_properties(faults_catalogue PROPERTIES TIMEOUT 900)
+set_tests_properties(faults_catalogue PROPERTIES TIMEOUT 900 FIXTURES_SETUP faulty_2w2c)
+# Whoever meets a difference runs again with a look inside the RTL: of its mistakes.
+add_test(NAME inspected_differences COMMAND ${scripts}/tests/inspect.sh ${raypool_program} ${CMAKE_BINARY_DIR}/faults-test)
+set_tests_properties(inspected_differences PROPERTIES FIXTURES_REQUIRED faulty_2w2c TIMEOUT 300)
 
 # docs/modules.md names every module of rtl/, and no page names what is not there.
 add_test(NAME module_table COMMAND ${scripts}/module_table.py)

@@ -30,6 +30,7 @@ struct SimOptions {
   int units = 1;
   double detail = 1;  ///< of a built-in scene, 0.01 .. 16
   bool waves = false;
+  uint64_t inspect_until = 0;        ///< cycle of a difference that a look inside the RTL is to tell more of; 0: no look
   bool json = false;                 ///< the report on standard output, instead of the table
   bool quiet = false;                ///< no progress, no table
   std::vector<std::string> command;  ///< the command line, for the report
@@ -51,6 +52,7 @@ struct RunOptions {
   std::vector<std::string> arguments;  ///< integers, 0x..., or floats (with a point or exponent)
   std::vector<std::string> print;      ///< ADDRESS:COUNT words of memory to print afterwards
   std::string waves;                   ///< path of a waveform, empty: none
+  uint64_t inspect_until = 0;          ///< as of SimOptions
   uint64_t cycle_limit = 100'000'000;  ///< of engine functional, which has no cycles: warp instructions
   bool quiet = false;                  ///< no progress
 };

@@ -47,25 +47,25 @@ class Cosim {
     vectors_file_.publish();
   }
 
-  /// Throws what the run throws.
+  /// Throws what the run throws; a difference with what was wrong inside.
   uint64_t run(const RandomProgram& program, const std::string& name) {
-    Memory memory = program.memory;
-    const std::unique_ptr<ComputeUnit> unit = make(memory, name);
-    unit->trace_on();
-    coverage_.begin();
-    const uint64_t cycles =
-        run_random_program(*unit, memory, program, program.seed, kCycleLimit, traced() ? &coverage_ : nullptr);
-    if (traced()) coverage_.end(*unit);
-    if (const auto counts = lockstep_counts(*unit)) counts_ += *counts;
+    uint64_t cycles = 0;
+    inspect_differences([&](uint64_t inspect_until) { cycles = run_once(program, name, inspect_until); });
     return cycles;
   }
 
-  /// Why the program fails, with neither coverage nor counts; empty if it does not. Throws what has nothing to do with the
-  /// program.
-  std::string failure(const RandomProgram& program) const {
-    Memory memory = program.memory;
+  /// Why the program fails, with neither coverage nor counts; empty if it does not. `inspect`: say what was wrong inside, too.
+  /// Throws what has nothing to do with the program.
+  std::string failure(const RandomProgram& program, bool inspect = false) const {
+    const auto run = [&](uint64_t inspect_until) {
+      Memory memory = program.memory;
+      run_random_program(*make_unit(engine_inspecting(inspect_until), memory), memory, program, program.seed, kCycleLimit);
+    };
     try {
-      run_random_program(*make_unit(engine_, memory), memory, program, program.seed, kCycleLimit);
+      if (inspect)
+        inspect_differences(run);
+      else
+        run(0);
     } catch (const LockstepDifference& difference) {
       return difference.what();
     } catch (const ProgramFailure& failure) {
@@ -77,8 +77,26 @@ class Cosim {
  private:
   static constexpr uint64_t kCycleLimit = 5'000'000;
 
-  std::unique_ptr<ComputeUnit> make(Memory& memory, const std::string& name) {
-    if (!vectors_) return make_unit(engine_, memory, name);
+  EngineOptions engine_inspecting(uint64_t inspect_until) const {
+    EngineOptions options = engine_;
+    options.inspect_until = inspect_until;
+    return options;
+  }
+
+  uint64_t run_once(const RandomProgram& program, const std::string& name, uint64_t inspect_until) {
+    Memory memory = program.memory;
+    const std::unique_ptr<ComputeUnit> unit = make(memory, name, inspect_until);
+    unit->trace_on();
+    coverage_.begin();
+    const uint64_t cycles =
+        run_random_program(*unit, memory, program, program.seed, kCycleLimit, traced() ? &coverage_ : nullptr);
+    if (traced()) coverage_.end(*unit);
+    if (const auto counts = lockstep_counts(*unit)) counts_ += *counts;
+    return cycles;
+  }
+
+  std::unique_ptr<ComputeUnit> make(Memory& memory, const std::string& name, uint64_t inspect_until) {
+    if (!vectors_) return make_unit(engine_inspecting(inspect_until), memory, name);
     const Configuration& configuration = engine_.configuration;
     auto recorder = make_vector_recorder(configuration, load_rtl_unit(find_unit_library(engine_), configuration), *vectors_);
     return make_lockstep_unit(configuration, std::move(recorder), memory);
@@ -117,7 +135,7 @@ std::string subject(const std::string& report) {
     const std::string wanted = subject(report);
     const auto fails = [&](const RandomProgram& shorter) { return subject(cosim.failure(shorter)) == wanted; };
     saved.program = shrink_program(cosim.configuration(), program, fails, shrink);
-    text = cosim.failure(saved.program);
+    text = cosim.failure(saved.program, true);
     saved.note = text.substr(0, text.find('\n'));
     text += fmt::format("\nshrunk from {} to {} instructions", program.program.code.size(), saved.program.program.code.size());
     // The difference is what counts, saved or not.

@@ -97,6 +97,7 @@ std::unique_ptr<ComputeUnit> make_unit(const EngineOptions& options, Memory& mem
   LockstepOptions lockstep;
   lockstep.name = name;
   lockstep.kernel_names = kernel_names;
+  lockstep.inspect_until = options.waves ? kInspectAlways : options.inspect_until;
   return make_lockstep_unit(configuration, std::move(rtl), memory, lockstep);
 }
 

@@ -30,6 +30,9 @@ struct EngineOptions {
   std::string unit_library;  ///< empty: unit_library_path()
   bool waves = false;        ///< a waveform will be asked for
   int units = 1;             ///< compute units of the device: 1, 2 or 4
+  /// Of a lockstep, LockstepOptions::inspect_until. With `waves` it always looks inside: a waveform takes more time than that,
+  /// and is not written twice.
+  uint64_t inspect_until = 0;
 };
 
 /// The Verilated device that they name. Throws InputError when it is missing; says on stderr, once, if the Verilog is newer.

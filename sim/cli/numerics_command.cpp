@@ -41,6 +41,7 @@ UnitMaker unit_maker(Engine engine) {
     EngineOptions options;
     options.engine = engine;
     options.configuration = configuration;
+    options.inspect_until = kInspectAlways;
     return make_unit(options, memory);
   };
 }

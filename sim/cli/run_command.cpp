@@ -256,10 +256,12 @@ int run_command(const RunOptions& options) {
   for (const std::string& text : options.print) ranges.push_back(parse_print(text));
   if (!options.waves.empty() && engine == Engine::Functional)
     throw InputError("engine functional has no waveform: use rtl or lockstep");
+  if (options.inspect_until != 0 && engine != Engine::Lockstep) throw InputError("--inspect is for --engine lockstep");
   prepare(job, options);
   for (const PrintRange& range : ranges) check_in_memory(range, job.memory);
 
-  const EngineOptions unit_options{engine, job.options.configuration, options.unit_library, !options.waves.empty()};
+  const EngineOptions unit_options{engine, job.options.configuration, options.unit_library, !options.waves.empty(),
+                                   1,      options.inspect_until};
   std::unique_ptr<ComputeUnit> unit = make_unit(unit_options, job.memory);
   OutputFiles waves;
   if (!options.waves.empty()) unit->open_waveform(waves.begin(options.waves, true));

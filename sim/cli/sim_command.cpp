@@ -36,6 +36,7 @@ void check(const SimOptions& options, Engine engine) {
   if (options.waves && engine != Engine::Rtl && engine != Engine::Lockstep) {
     throw InputError(fmt::format("engine {} has no waveform: use rtl or lockstep, or leave waves out", options.engine));
   }
+  if (options.inspect_until != 0 && engine != Engine::Lockstep) throw InputError("--inspect is for --engine lockstep");
 }
 
 template <typename Item>
@@ -162,7 +163,8 @@ int sim_command(const SimOptions& options) {
     frame = render_native(scene, image, tracer, native, &*record.native);
     record.simulation_seconds = drawing.seconds();
   } else {
-    const EngineOptions device_options{engine, record.configuration, options.unit_library, options.waves, options.units};
+    const EngineOptions device_options{engine,        record.configuration, options.unit_library,
+                                       options.waves, options.units,        options.inspect_until};
     std::unique_ptr<ComputeUnit> device =
         make_unit(device_options, image.memory, "unit", kernel_names(ray_kernel_program(record.configuration.fma)));
     if (options.wrap) device = options.wrap(std::move(device), image.memory);

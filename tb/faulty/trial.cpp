@@ -14,13 +14,17 @@ constexpr uint64_t kCycleLimit = 2'000'000;
 }  // namespace
 
 void run_program(const Machine& machine, const RandomProgram& program, Outcome& outcome) {
-  Memory memory = program.memory;
-  LockstepOptions lockstep;
-  lockstep.watchdog_cycles = kWatchdogCycles;
-  try {
+  const auto run = [&](uint64_t inspect_until) {
+    Memory memory = program.memory;
+    LockstepOptions lockstep;
+    lockstep.watchdog_cycles = kWatchdogCycles;
+    lockstep.inspect_until = inspect_until;
     const auto unit = make_lockstep_unit(machine.configuration,
                                          load_rtl_unit(machine.library, machine.configuration, machine.units), memory, lockstep);
     run_random_program(*unit, memory, program, program.seed, kCycleLimit);
+  };
+  try {
+    inspect_differences(run);
   } catch (const LockstepDifference& difference) {
     outcome.text = difference.what();
     outcome.kind = outcome.text.find("hang: ") != std::string::npos ? Outcome::Kind::Hang : Outcome::Kind::Difference;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -23,25 +24,26 @@ class LockstepUnitImpl : public LockstepUnit {
  public:
   LockstepUnitImpl(const Configuration& configuration, std::unique_ptr<ComputeUnit> rtl, const Memory& memory,
                    const LockstepOptions& options)
-      : options_(options),
+      : configuration_(configuration),
+        options_(options),
         warps_(static_cast<uint32_t>(configuration.warps)),
         lanes_(configuration.cores),
         rtl_(std::move(rtl)),
         model_(make_model(configuration, memory, rtl_->units())),
         histories_(warps_ * model_.units.size()),
-        inspection_(configuration, *rtl_, model_.units),
         comparison_(
             configuration,
             [this](uint32_t unit, uint32_t warp) -> const CycleUnit::Issue& { return model_.units[unit]->issue(warp); },
             counts_) {
     rtl_->trace_on();
     model_.device->trace_on();
+    if (options.inspect_until != 0) inspection_.emplace(configuration, *rtl_, model_.units);
   }
 
   void reset(uint32_t program_length, uint32_t memory_limit) override {
     rtl_->reset(program_length, memory_limit);
     model_.device->reset(program_length, memory_limit);
-    inspection_.reset(program_length);
+    if (inspection_) inspection_->reset(program_length);
     kernels_started_ = 0;
     fault_seen_ = false;
     was_idle_ = true;
@@ -53,7 +55,7 @@ class LockstepUnitImpl : public LockstepUnit {
   void set_argument(int index, uint32_t value) override {
     rtl_->set_argument(index, value);
     model_.device->set_argument(index, value);
-    inspection_.argument_written();
+    if (inspection_) inspection_->argument_written();
   }
 
   uint32_t units() const override { return rtl_->units(); }
@@ -65,24 +67,27 @@ class LockstepUnitImpl : public LockstepUnit {
   bool timed() const override { return rtl_->timed(); }
   void open_waveform(const std::string& path) override { rtl_->open_waveform(path); }
   const LockstepCounts& counts() const override { return counts_; }
-  std::string uninspected() const override { return inspection_.missing(); }
-  std::vector<Finding> inside() const override { return inspection_.findings(); }
+  std::string uninspected() const override { return inspection_ ? inspection_->missing() : "not asked for"; }
+  std::vector<Finding> inside() const override { return inspection_ ? inspection_->findings() : std::vector<Finding>(); }
 
   void clock(const UnitInputs& inputs) override {
     if (!report_.empty()) throw LockstepDifference(report_);
     try {
       count_transfers(inputs);
-      inspection_.advance(inputs);
+      if (inspection_) inspection_->advance(inputs);
       rtl_->clock(inputs);
       ++counts_.cycles;
       model_.device->clock(inputs);
-      inspection_.check();
+      if (inspection_) inspection_->check();
       check_cycle();
     } catch (const Mismatch& mismatch) {
       counts_.differences = 1;
       report_ = report(mismatch);
-      throw LockstepDifference(report_);
+      throw LockstepDifference(report_, can_inspect() ? counts_.cycles : 0);
     }
+    if (inspection_ && counts_.cycles >= options_.inspect_until)
+      throw std::runtime_error(
+          fmt::format("there is no difference up to cycle {}, where this run was to find one again", options_.inspect_until));
   }
 
  private:
@@ -235,6 +240,9 @@ class LockstepUnitImpl : public LockstepUnit {
     return text + last_lines(mismatch);
   }
 
+  // Whether there is more to know than this run does.
+  bool can_inspect() const { return !inspection_ && Inspection(configuration_, *rtl_, model_.units).active(); }
+
   // At most three files, those of what was found inside before those that the kind of difference suggests.
   std::string last_lines(const Mismatch& mismatch) const {
     std::string text, files;
@@ -246,6 +254,7 @@ class LockstepUnitImpl : public LockstepUnit {
     return text + "  look at: " + first_files(files + mismatch.module, 3) + "\n  so far " + to_string(counts_);
   }
 
+  Configuration configuration_;
   LockstepOptions options_;
   uint32_t warps_;
   int lanes_;
@@ -258,13 +267,35 @@ class LockstepUnitImpl : public LockstepUnit {
   int64_t reads_ = 0;  // lines requested and not answered completely
   uint64_t last_progress_ = 0;
   std::vector<History> histories_;  // [unit][warp]
-  Inspection inspection_;
+  std::optional<Inspection> inspection_;
 
   std::string report_;
   Comparison comparison_;
 };
 
+// Its title and cycle.
+std::string first_lines(const std::string& report) { return report.substr(0, report.find(',', report.find("\n  cycle "))); }
+
 }  // namespace
+
+void inspect_differences(const std::function<void(uint64_t inspect_until)>& run) {
+  try {
+    run(0);
+  } catch (const LockstepDifference& first) {
+    if (first.inspect_until == 0) throw;
+    std::string otherwise = "without a difference";
+    try {
+      run(first.inspect_until);
+    } catch (const LockstepDifference& inspected) {
+      if (first_lines(inspected.what()) == first_lines(first.what())) throw;
+      otherwise = inspected.what();
+    } catch (const std::exception& error) {
+      otherwise = error.what();
+    }
+    throw LockstepDifference(fmt::format("{}\n  run again for a look inside, it went otherwise, which equal runs do not: {}",
+                                         first.what(), otherwise));
+  }
+}
 
 LockstepCounts& LockstepCounts::operator+=(const LockstepCounts& other) {
   cycles += other.cycles;

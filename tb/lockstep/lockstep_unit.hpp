@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <stdexcept>
@@ -22,6 +23,10 @@ struct LockstepOptions {
   uint64_t watchdog_cycles = 20000;  ///< cycles without retirement or port transfer, while busy, that count as a hang; 0 = never
   std::string name = "unit";         ///< names the device in reports
   std::map<uint32_t, std::string> kernel_names = {};  ///< entry PC -> name of the kernel, for reports
+  /// Look inside the RTL in every cycle up to this one, so that a report can name the file to look at; it takes time. It is for
+  /// finding a known difference again, inspect_differences(): a run that gets here without one ends with std::runtime_error. 0:
+  /// no look.
+  uint64_t inspect_until = 0;
 };
 
 /// What has been compared so far. A run that checked nothing shows here.
@@ -47,17 +52,29 @@ struct LockstepCounts {
 /// "lockstep: 1234 instructions (9872 thread results), ... compared, 0 differences"
 std::string to_string(const LockstepCounts& counts);
 
+/// LockstepOptions::inspect_until of a run that is to look inside for as long as it lasts.
+inline constexpr uint64_t kInspectAlways = ~uint64_t{0};
+
 /// The first difference, or a hang. what() is a report of several lines.
 struct LockstepDifference : std::runtime_error {
-  using std::runtime_error::runtime_error;
+  explicit LockstepDifference(const std::string& report, uint64_t inspect_until_cycle = 0)
+      : runtime_error(report), inspect_until(inspect_until_cycle) {}
+
+  /// LockstepOptions::inspect_until of a second run, equal but for it, whose report would say what was wrong inside. 0: none
+  /// would, as this one has, or the RTL lacks the signals.
+  uint64_t inspect_until;
 };
+
+/// Calls `run` with 0, and when it throws a difference of which a look inside would tell more, again with its inspect_until. A
+/// run must start from the same state each time. Throws the difference with the better report.
+void inspect_differences(const std::function<void(uint64_t inspect_until)>& run);
 
 class LockstepUnit : public ComputeUnit {
  public:
   virtual const LockstepCounts& counts() const = 0;
   /// What was first not as it should be inside the RTL since reset(); empty as long as nothing is.
   virtual std::vector<lockstep::Finding> inside() const = 0;
-  /// The signal for want of which the inside is not looked at; empty if it is.
+  /// Why the inside is not looked at: it was not asked for, or the signal that the RTL lacks; empty if it is.
   virtual std::string uninspected() const = 0;
 };
 

@@ -393,6 +393,48 @@ TEST(Lockstep, AFaultThatDoesNotStayIsFound) {
   EXPECT_THROW(fixture.chip.cycle(), LockstepDifference);
 }
 
+TEST(Lockstep, ARunThatIsToFindADifferenceAgainEndsWithoutOne) {
+  LockstepOptions options;
+  options.inspect_until = 30;
+  Fixture fixture(kProgram, options);
+  fixture.launch();
+  EXPECT_THROW(fixture.chip.run(20000), std::runtime_error);
+  EXPECT_EQ(fixture.unit->counts().cycles, 30u);
+}
+
+/// What comes of runs that do as `reports` says, one after another: "" is a run without a difference.
+std::string inspected(const std::vector<std::string>& reports, uint64_t first_until, const std::vector<uint64_t>& expected_runs) {
+  std::vector<uint64_t> runs;
+  std::string result;
+  try {
+    inspect_differences([&](uint64_t inspect_until) {
+      runs.push_back(inspect_until);
+      const std::string& report = reports.at(runs.size() - 1);
+      if (!report.empty()) throw LockstepDifference(report, runs.size() == 1 ? first_until : 0);
+    });
+  } catch (const LockstepDifference& difference) {
+    result = difference.what();
+    EXPECT_EQ(difference.inspect_until, 0u);
+  }
+  EXPECT_EQ(runs, expected_runs);
+  return result;
+}
+
+TEST(InspectDifferences, RunsAgainOnlyForADifferenceOfWhichMoreCanBeKnown) {
+  const std::string first = "the results differ\n  cycle 7, kernel 1\n  look at: rtl/a.v", better = first + ", rtl/b.v";
+  EXPECT_EQ(inspected({""}, 7, {0}), "");
+  EXPECT_EQ(inspected({first}, 0, {0}), first);
+  EXPECT_EQ(inspected({first, better}, 7, {0, 7}), better);
+}
+
+TEST(InspectDifferences, KeepTheFirstReportWhenTheSecondRunGoesOtherwise) {
+  const std::string first = "the results differ\n  cycle 7, kernel 1\n  look at: rtl/a.v";
+  for (const std::string second : {"", "the results differ\n  cycle 6, kernel 1\n  look at: rtl/b.v"}) {
+    const std::string result = inspected({first, second}, 7, {0, 7});
+    expect_parts(result, {first, "it went otherwise", second.empty() ? "without a difference" : second});
+  }
+}
+
 TEST(Lockstep, ResetStartsAfresh) {
   Fixture fixture;
   EXPECT_EQ(fixture.report(), "");

@@ -90,8 +90,10 @@ TEST_P(Inspected, NamesTheFileOfTheSignal) {
   for (uint64_t seed = 1; seed <= 60; ++seed) {
     const RandomProgram program = make_random_program(configuration(), seed);
     Memory memory = program.memory;
-    const auto unit = make_lockstep_unit(configuration(),
-                                         std::make_unique<TamperedUnit>(load_rtl_unit(library, configuration()), tamper), memory);
+    LockstepOptions options;
+    options.inspect_until = kInspectAlways;
+    const auto unit = make_lockstep_unit(
+        configuration(), std::make_unique<TamperedUnit>(load_rtl_unit(library, configuration()), tamper), memory, options);
     ASSERT_EQ(unit->uninspected(), "");
     run_random_program(*unit, memory, program, seed);
     const std::vector<lockstep::Finding> findings = unit->inside();
@@ -197,13 +199,21 @@ TEST_P(InspectedArbiters, AreNamed) {
   const std::string library = test::build_library(configuration(), 2);
   for (uint64_t seed = 1; seed <= 60; ++seed) {
     const RandomProgram program = make_random_program(configuration(), seed, 120, 2);
-    Memory memory = program.memory;
-    const auto unit = make_lockstep_unit(
-        configuration(), std::make_unique<AlteredUnit>(load_rtl_unit(library, configuration(), 2), GetParam().alter), memory);
-    ASSERT_EQ(unit->uninspected(), "");
-    try {
+    int runs = 0;
+    const auto run = [&](uint64_t inspect_until) {
+      ++runs;
+      Memory memory = program.memory;
+      LockstepOptions options;
+      options.inspect_until = inspect_until;
+      const auto unit = make_lockstep_unit(
+          configuration(), std::make_unique<AlteredUnit>(load_rtl_unit(library, configuration(), 2), GetParam().alter), memory,
+          options);
       run_random_program(*unit, memory, program, seed);
+    };
+    try {
+      inspect_differences(run);
     } catch (const LockstepDifference& difference) {
+      EXPECT_EQ(runs, 2);
       EXPECT_NE(std::string(difference.what()).find(std::string("look at: rtl/") + GetParam().look_at), std::string::npos)
           << difference.what();
       return;

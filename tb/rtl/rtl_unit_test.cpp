@@ -46,7 +46,9 @@ TEST_P(RtlUnit, AgreesWithTheModelOnRandomPrograms) {
   for (uint64_t seed = 1; seed <= 100; ++seed) {
     const RandomProgram program = make_random_program(configuration, seed);
     Memory memory = program.memory;
-    const auto unit = make_lockstep_unit(configuration, load_rtl_unit(library, configuration), memory);
+    LockstepOptions options;
+    options.inspect_until = kInspectAlways;
+    const auto unit = make_lockstep_unit(configuration, load_rtl_unit(library, configuration), memory, options);
     try {
       run_random_program(*unit, memory, program, seed);
     } catch (const std::exception& error) {

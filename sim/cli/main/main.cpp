@@ -15,6 +15,7 @@
 #include "cli/commands.hpp"
 #include "cli/engine.hpp"
 #include "cli/exit_code.hpp"
+#include "cli/inspecting_run.hpp"
 #include "lockstep/lockstep_unit.hpp"
 
 namespace raypool {
@@ -37,6 +38,14 @@ void add_unit(CLI::App& app, std::string& engine, std::string& library) {
       ->type_name("native|functional|model|rtl|lockstep")
       ->capture_default_str();
   app.add_option("--unit-library", library, "Verilated unit (default: where raypool unit builds it)");
+}
+
+void add_inspect(CLI::App& app, uint64_t& until) {
+  app.add_option(
+         "--inspect", until,
+         "lockstep: look inside the RTL up to this cycle, in which an earlier run met a difference; that run does it by itself")
+      ->type_name("CYCLE")
+      ->check(CLI::PositiveNumber);
 }
 
 void add_scene(CLI::App& app, std::string& scene, std::string& size, std::string& view, ViewWords& look, double& detail) {
@@ -85,6 +94,7 @@ int run(int argc, char** argv) {
   sim_app->add_option("--out", sim.out,
                       "folder for the results (default: out/<what was run> beside the program; installed: in raypool-out)");
   sim_app->add_flag("--waves", sim.waves, "leave a waveform, waves.fst, too; rtl and lockstep only");
+  add_inspect(*sim_app, sim.inspect_until);
   sim_app->add_flag("--json", sim.json, "the report on standard output, and nothing else there");
   sim_app->add_flag("--quiet", sim.quiet, "no progress and no table");
   sim.command.assign(argv, argv + argc);
@@ -106,6 +116,7 @@ int run(int argc, char** argv) {
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   run_app->add_option("--waves", compute.waves, "leave a waveform (FST) in this file; rtl and lockstep only");
+  add_inspect(*run_app, compute.inspect_until);
   run_app->add_option("--cycles", compute.cycle_limit, "give up after this many cycles; functional: warp instructions")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
@@ -269,6 +280,7 @@ int run_and_report(int argc, char** argv) {
     std::fprintf(stderr, "raypool: %s\n", error.what());
     return kInputFailure;
   } catch (const LockstepDifference& difference) {
+    if (difference.inspect_until != 0 && run_inspecting(argc, argv, difference)) return kDifference;
     std::fprintf(stderr, "raypool: %s\n", difference.what());
     return kDifference;
   } catch (const ChipStalled& stalled) {
