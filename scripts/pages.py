@@ -2,8 +2,8 @@
 """Checks that what README and docs name is there: scripts/pages.py; exit code 1 if something is not.
 
 That is: the files and headings of links; and between backquotes paths of the project, in which a star stands for any
-letters, members of C++ classes (Class::member), tests (..._test) and targets of make. Fences and quoted output are left
-to the checks that run them.
+letters, members of C++ classes (Class::member), targets of make, and what looks like an identifier: with an underscore,
+or with a capital behind a small letter. Fences and quoted output are left to the checks that run them.
 """
 import pathlib
 import re
@@ -14,8 +14,8 @@ PAGES = [ROOT / "README.md"] + sorted((ROOT / "docs").glob("*.md"))
 FOLDERS = [path.name for path in ROOT.iterdir() if path.is_dir() and not path.name.startswith((".", "build"))]
 PATH = re.compile(rf"^(?:{'|'.join(FOLDERS)})/[\w./*+-]*$")
 MEMBER = re.compile(r"^([A-Z]\w+)::(\w+)$")
-TEST = re.compile(r"^[a-z_]+_test$")
-MADE = {"docs/add-an-alu.md": ("box", "Box")}   # what the page itself makes
+IDENTIFIER = re.compile(r"^\w*(?:[a-z0-9]_[a-z0-9]|[A-Z]_[A-Z]|[a-z][A-Z])\w*$")
+MADE = {"docs/add-an-alu.md": ("box", "Box", "BOX", "near_of_b")}   # what the page itself makes
 
 
 def without_code(text):
@@ -41,6 +41,11 @@ def link_error(page, target):
     return None
 
 
+def has_identifiers(path):
+    """Not a page, a picture or this check."""
+    return path.is_file() and path.suffix not in (".md", ".svg", ".png", ".pyc") and path.name != "pages.py"
+
+
 class Project:
     """What there is of each kind."""
 
@@ -48,8 +53,10 @@ class Project:
         files = [path for folder in ("cpp_model", "sim", "tb") for path in (ROOT / folder).rglob("*.[ch]pp")]
         self.sources = [re.sub(r"//.*", "", path.read_text()) for path in files]
         cmake = "".join(path.read_text() for path in [ROOT / "CMakeLists.txt"] + list(ROOT.glob("*/CMakeLists.txt")))
-        libraries = re.findall(r"raypool_library\((\w+)", cmake)
-        self.tests = {path.stem for path in files} | {name + "_test" for name in libraries}
+        self.words = {name + "_test" for name in re.findall(r"raypool_library\((\w+)", cmake)}
+        everything = [path for name in FOLDERS for path in (ROOT / name).rglob("*")]
+        for path in filter(has_identifiers, everything + [ROOT / "CMakeLists.txt", ROOT / "Makefile"]):
+            self.words |= {path.stem} | set(re.findall(r"\w+", path.read_text(errors="replace")))
         self.targets = set(re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text(), re.M))
 
     def has_member(self, owner, member):
@@ -64,7 +71,7 @@ class Project:
             return not any(ROOT.glob(word.rstrip("/")))
         if MEMBER.match(word):
             return not self.has_member(*MEMBER.match(word).groups())
-        return word not in self.tests if TEST.match(word) else None
+        return word not in self.words if IDENTIFIER.match(word) else None
 
 
 def words_of(text):
