@@ -1,5 +1,6 @@
 #!/bin/bash
-# Checks the sources: Verilog in Verilator, Icarus and Yosys for several configurations, C++ layout and clang-tidy, shell syntax; and docs/modules.md.
+# Checks the sources: Verilog in Verilator, Icarus and Yosys for several configurations, C++ layout and clang-tidy, shell
+# syntax, and what the pages name.
 # Prints what failed and the command that shows it again; ends with 1 if anything did. Needs the build folder (BUILD, default build)
 # configured with tests, and keeps there how long it took.
 set -u -o pipefail
