@@ -5,8 +5,12 @@
 
 namespace raypool {
 
+inline constexpr uint32_t kMostWarps = 32;
+
 /// Number of the lowest member of a set that is not empty.
 inline uint32_t lowest(uint32_t set) { return static_cast<uint32_t>(__builtin_ctz(set)); }
+/// The lowest member as a set; of an empty set the empty set.
+inline uint32_t lowest_bit(uint32_t set) { return set & (0u - set); }
 inline uint64_t popcount(uint32_t set) { return static_cast<uint64_t>(__builtin_popcount(set)); }
 
 }  // namespace raypool

@@ -12,7 +12,7 @@ void CycleUnit::record_issue(uint32_t warp, const DecodedInstruction& instructio
     const uint32_t* first = core_.register_row(warp, number);
     words.assign(first, first + lanes_);
   };
-  issue.pc = pc_[warp];
+  issue.pc = buffer_.pc(warp);
   issue.instruction = &instruction;
   issue.mask = core_.thread_mask(warp, instruction);
   row(issue.a, instruction.ra);
@@ -36,7 +36,7 @@ void CycleUnit::record() {
   trace_.retired.clear();
   trace_.stores.clear();
   trace_.ray_writes.clear();
-  for (uint32_t warps = planned(now_).retired | mem_.done() | ray_.done(); warps != 0; warps &= warps - 1) {
+  for (uint32_t warps = timeline_.at(now_).done | mem_.done() | ray_.done(); warps != 0; warps &= warps - 1) {
     const uint32_t warp = lowest(warps);
     const Issue& issue = issues_[warp];
     RetireEvent& event = trace_.retired.emplace_back();

@@ -109,6 +109,7 @@ class FunctionalCore {
   /// turn.
   void expect_import(uint32_t threads) { slices_.expect_import(threads); }
   void import_package(const Intersection& package) { slices_.import_package(package); }
+  void import_beat(const Beat& beat) { slices_.import_beat(beat); }
   const RaySlices& slices() const { return slices_; }
 
   /// While true, the warp's next `rout` or `rfb` waits. Nothing else sets or clears it.

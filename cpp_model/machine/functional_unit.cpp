@@ -25,7 +25,6 @@ class FunctionalUnit : public ComputeUnit {
     core_.reset(program_length, memory_limit);
     launch_waits_ = false;
     import_ = Import{};
-    beats_ = 0;
     std::fill(reserved_.begin(), reserved_.end(), 0);
     std::fill(exporting_.begin(), exporting_.end(), 0);
     exports_.clear();
@@ -79,21 +78,11 @@ class FunctionalUnit : public ComputeUnit {
       if (import_.requested % lanes_ == 0) ++reserved_[import_.requested / lanes_];
       ++import_.requested;
     }
-    if (inputs.import_beat_valid) take_beat(inputs.import_beat);
+    if (inputs.import_beat_valid) core_.import_beat(inputs.import_beat);
     if (outputs_.export_valid && inputs.export_ready) {
       if (++export_beat_ == kRayBeats) exported();
     }
     if (outputs_.frame_valid && inputs.frame_ready) exported();
-  }
-
-  void take_beat(const Beat& beat) {
-    for (int i = 0; i < kBeatWords; ++i) {
-      const int number = beats_ * kBeatWords + i;
-      if (number < kIntersectionWords) package_[static_cast<size_t>(number)] = beat[static_cast<size_t>(i)];
-    }
-    if (++beats_ < kIntersectionBeats) return;
-    beats_ = 0;
-    core_.import_package(package_);
   }
 
   void exported() {
@@ -188,8 +177,6 @@ class FunctionalUnit : public ComputeUnit {
   bool launch_waits_ = false;
   LaunchCommand waiting_;
   Import import_;
-  Intersection package_{};
-  int beats_ = 0;                    // of the package that is arriving
   std::vector<uint32_t> reserved_;   // [warp] sets of packages requested and not yet taken by a rin
   std::vector<uint32_t> exporting_;  // [warp] rays and contributions in its output slice
   std::deque<Export> exports_;

@@ -19,6 +19,7 @@ class InstructionCache {
     sets_.assign(sets_.size(), Set{});
     fetch_ = Fetch::None;
     done_ = missed_ = changes_ = false;
+    first_ = first_next_ = 0;
   }
   /// Forgets all lines; only while no line is being fetched.
   void invalidate() {
@@ -27,8 +28,9 @@ class InstructionCache {
 
   /// A lookup, whose result comes in the next cycle: true for a hit. Between clock() and end_cycle() of its cycle; or ahead,
   /// while not busy().
-  bool lookup(uint32_t pc) {
+  bool lookup(uint32_t warp, uint32_t pc) {
     const uint32_t line = pc >> 3;
+    warp_ = warp;
     Set& set = sets_[line & set_mask_];
     const bool hit_0 = set.line[0] == line, hit_1 = set.line[1] == line;
     missed_line_ = line;
@@ -44,7 +46,13 @@ class InstructionCache {
   // Registers, as they stand in the present cycle.
   bool missed() const { return missed_; }  ///< the latest lookup, and clock() has not been told yet
   bool refill_done() const { return done_; }
-  uint32_t fetch_warp() const { return fetch_warp_; }  ///< whose miss began the latest fetch
+  uint32_t result_warp() const { return warp_; }  ///< of the latest lookup
+  /// In the first cycle with a grant after refill_done(): the warp whose miss began the fetch, as a set.
+  uint32_t take_first() {
+    const uint32_t first = first_;
+    first_ = 0;
+    return first;
+  }
   bool request_valid() const { return fetch_ == Fetch::Request; }
   uint32_t request_address() const { return fetch_line_ << 6; }
   /// False if clock() would change nothing without a miss, request_ready or last_beat.
@@ -52,8 +60,9 @@ class InstructionCache {
   /// A line is on its way, or a lookup has missed: the next lookups' results depend on when the line comes.
   bool busy() const { return missed_ || done_ || fetch_ != Fetch::None; }
 
-  /// `missed`: the latest lookup was one of the cycle before, of `warp`, and missed.
-  void clock(bool missed, uint32_t warp, bool request_ready, bool last_beat) {
+  /// `missed`: the latest lookup was one of the cycle before, and missed.
+  void clock(bool missed, bool request_ready, bool last_beat) {
+    first_next_ = uint32_t{done_} << fetch_warp_;
     done_ = fetch_ == Fetch::Settle;
     Fetch next = fetch_;
     switch (fetch_) {
@@ -62,7 +71,7 @@ class InstructionCache {
           Set& set = sets_[missed_line_ & set_mask_];
           next = Fetch::Request;
           fetch_line_ = missed_line_;
-          fetch_warp_ = warp;
+          fetch_warp_ = warp_;
           fetch_way_ = set.older;
           set.older ^= 1;
           changes_ = true;
@@ -86,6 +95,7 @@ class InstructionCache {
   }
   /// The end of a cycle with a clock(): a line that has come is valid from the next cycle on, and one that gives way is not.
   void end_cycle() {
+    first_ |= first_next_;
     if (!changes_) return;
     changes_ = false;
     sets_[fetch_line_ & set_mask_].line[fetch_way_] = fetch_ == Fetch::Settle ? fetch_line_ : kNone;
@@ -102,7 +112,8 @@ class InstructionCache {
   uint32_t set_mask_;
   std::vector<Set> sets_;
   Fetch fetch_ = Fetch::None;
-  uint32_t fetch_line_ = 0, fetch_warp_ = 0, missed_line_ = 0;
+  uint32_t warp_ = 0, fetch_line_ = 0, fetch_warp_ = 0, missed_line_ = 0;
+  uint32_t first_ = 0, first_next_ = 0;
   uint8_t fetch_way_ = 0;
   bool done_ = false, changes_ = false;
   bool missed_ = false;

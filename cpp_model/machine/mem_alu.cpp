@@ -10,13 +10,13 @@ void MemAlu::reset() {
   sequencer_.reset();
   requests_ = {};
   active_ = false;
-  hits_ = misses_ = stores_ = unready_ = 0;
 }
 
 // ---- Arrival
 
-MemAlu::Quadword& MemAlu::quadword(Task& task, uint32_t number) {
+MemAlu::Quadword& MemAlu::quadword(Task& task, uint32_t address) {
   // Neighbouring lanes mostly share the latest one.
+  const uint32_t number = address >> 4;
   for (uint32_t i = task.count; i-- > 0;) {
     if (task.quadwords[i].number == number) return task.quadwords[i];
   }
@@ -25,11 +25,22 @@ MemAlu::Quadword& MemAlu::quadword(Task& task, uint32_t number) {
   return added;
 }
 
-void MemAlu::add_store(Task& task, uint32_t address, uint32_t value) {
-  Quadword& quad = quadword(task, address >> 4);
-  const uint32_t word = address >> 2 & 3;
-  quad.data[word] = value;  // the highest lane comes last and wins
-  quad.mask = static_cast<uint8_t>(quad.mask | 1u << word);
+void MemAlu::begin(const Step& step) {
+  Task& task = tasks_[step.warp];
+  task.store = (step.instruction->code & 31) == 1;
+  task.fault = step.status == Step::Status::Fault ? step.fault.code : FaultCode::None;
+  task.count = 0;
+  if (step.store_count != 0) {
+    for (uint32_t i = 0; i < step.store_count; ++i) {
+      const Step::LaneStore& store = step.stores[i];
+      Quadword& quad = quadword(task, store.address);
+      const uint32_t word = store.address >> 2 & 3;
+      quad.data[word] = store.value;  // the highest lane comes last and wins
+      quad.mask = static_cast<uint8_t>(quad.mask | 1u << word);
+    }
+  } else {
+    for (uint32_t lanes = step.mask; lanes != 0; lanes &= lanes - 1) quadword(task, step.addresses[lowest(lanes)]);
+  }
 }
 
 // ---- What follows from the registers of a cycle
@@ -73,8 +84,7 @@ bool MemAlu::storing(StoreEvent& event) const {
 
 // ---- The end of a cycle
 
-void MemAlu::clock(const Inputs& inputs) {
-  unready_ += !ready();
+MemAlu::Events MemAlu::clock(const Inputs& inputs) {
   const MemorySequencer::Registers next = sequencer_.registers();
   const Look look = look_up(inputs.response_valid);
   const DataCache::Outcome outcome = access();
@@ -88,9 +98,7 @@ void MemAlu::clock(const Inputs& inputs) {
   requests_.clock(inputs.request_ready);
   if (outcome.push()) push(outcome);
   const bool first_try = outcome.access && !q_.access.store && q_.access.kind == Kind::New;
-  hits_ += first_try && outcome.hit;
-  misses_ += first_try && !outcome.hit;
-  stores_ += outcome.accept;
+  const Events events{first_try && outcome.hit, first_try && !outcome.hit, outcome.accept};
   clock_cache(inputs, look, outcome);
   clock_end(end);
   clock_access(look);
@@ -108,6 +116,7 @@ void MemAlu::clock(const Inputs& inputs) {
   }
   active_ = q_.pass.valid || q_.access.valid || q_.done || q_.park || requests_.valid() || q_.fault != FaultCode::None ||
             cache_.active() || sequencer_.active();
+  return events;
 }
 
 void MemAlu::clock_sequencer(const Inputs& inputs, const End& end, bool start, bool take) {

@@ -9,6 +9,7 @@
 #include "config/configuration.hpp"
 #include "machine/compute_unit.hpp"
 #include "machine/data_cache.hpp"
+#include "machine/functional_core.hpp"
 #include "machine/memory_sequencer.hpp"
 #include "machine/request_queue.hpp"
 
@@ -16,7 +17,6 @@ namespace raypool {
 
 class MemAlu {
  public:
-  static constexpr int kMaxLanes = 32;
   using Kind = MemorySequencer::Kind;
 
   /// A quadword that lanes of a task share. They are looked up together and served together, so it is the unit of all
@@ -79,11 +79,8 @@ class MemAlu {
   /// Forgets all lines; only while idle.
   void invalidate() { cache_.invalidate(); }
 
-  /// The warp's task, to be filled in before it arrives.
-  Task& task(uint32_t warp) { return tasks_[warp]; }
-  /// Adds a lane's word to the task, lanes in rising order.
-  void add_load(Task& task, uint32_t address) { quadword(task, address >> 4); }
-  void add_store(Task& task, uint32_t address, uint32_t value);
+  /// What a step of the functional core has done is the warp's task, before it arrives.
+  void begin(const Step& step);
 
   // Outputs of the present cycle.
   bool ready() const { return sequencer_.queue_empty(); }
@@ -110,13 +107,13 @@ class MemAlu {
   const MemorySequencer& sequencer() const { return sequencer_; }
   const RequestQueue<MemoryRequest>& requests() const { return requests_; }
 
-  void clock(const Inputs& inputs);
-
-  uint64_t hits() const { return hits_; }
-  uint64_t misses() const { return misses_; }
-  uint64_t stores() const { return stores_; }
-  /// Cycles in which it was not ready().
-  uint64_t unready() const { return unready_; }
+  /// Quadwords of this cycle's access, to be counted.
+  struct Events {
+    bool hit = false;   ///< load, served at first try
+    bool miss = false;  ///< load, left over at first try
+    bool store = false;
+  };
+  Events clock(const Inputs& inputs);
 
  private:
   struct Look {  // of the lookup stage in a cycle
@@ -130,7 +127,7 @@ class MemAlu {
     bool allocated = false;
   };
 
-  Quadword& quadword(Task& task, uint32_t number);
+  static Quadword& quadword(Task& task, uint32_t address);
   Look look_up(bool response_valid) const;
   End gather(const DataCache::Outcome& outcome) const;
   void clock_sequencer(const Inputs& inputs, const End& end, bool start, bool take);
@@ -147,7 +144,6 @@ class MemAlu {
   MemorySequencer sequencer_;
   RequestQueue<MemoryRequest> requests_;
   bool active_ = false;
-  uint64_t hits_ = 0, misses_ = 0, stores_ = 0, unready_ = 0;
 };
 
 }  // namespace raypool

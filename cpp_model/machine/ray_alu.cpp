@@ -20,11 +20,9 @@ void RayAlu::reset() {
   import_.reset();
   export_.reset();
   active_ = false;
-  unready_ = 0;
 }
 
 int RayAlu::clock(int arriving, ImportKind import_start, const UnitInputs& inputs) {
-  unready_ += !ready(arriving);
   const uint32_t ready_swaps = can();
   RayMemory memory;
   memory.grant(import_.registers().write, import_.registers().write_set);

@@ -7,6 +7,7 @@
 
 #include "config/configuration.hpp"
 #include "machine/compute_unit.hpp"
+#include "machine/decoder.hpp"
 #include "machine/ray_export.hpp"
 #include "machine/ray_import.hpp"
 #include "machine/ray_memory.hpp"
@@ -46,7 +47,11 @@ class RayAlu {
 
   void reset();
 
-  Task& task(uint32_t warp) { return tasks_[warp]; }
+  /// The instruction is the warp's task, before it arrives; `illegal`: the ray word is above 20.
+  void begin(uint32_t warp, const DecodedInstruction& instruction, uint32_t mask, bool illegal) {
+    // Operations stand in the order of these kinds.
+    tasks_[warp] = {illegal ? Task::Kind::Illegal : static_cast<Task::Kind>(instruction.code & 31), mask};
+  }
 
   // Outputs of the present cycle.
   /// Whether a task granted in this cycle is taken; `arriving` as for clock().
@@ -82,9 +87,6 @@ class RayAlu {
   /// the warp whose rin, rout or rfb is executed at the end of this cycle, or -1.
   int clock(int arriving, ImportKind import_start, const UnitInputs& inputs);
 
-  /// Cycles in which it was not ready().
-  uint64_t unready() const { return unready_; }
-
  private:
   uint32_t can() const { return (q_.parked_in & import_.registers().full) | (q_.parked_out & ~export_.registers().busy); }
   bool clock_access(int arriving, RayMemory& memory);
@@ -99,7 +101,6 @@ class RayAlu {
   RayImport import_;
   RayExport export_;
   bool active_ = false;
-  uint64_t unready_ = 0;
 };
 
 }  // namespace raypool

@@ -16,6 +16,7 @@ void RaySlices::reset() {
   words_.assign(warps_.size() * 3 * kIntersectionWords * lanes_, 0);
   for (Warp& warp : warps_) warp = Warp{};
   jobs_.clear();
+  beats_ = 0;
 }
 
 void RaySlices::expect_import(uint32_t threads) { jobs_.push_back({threads, 0}); }
@@ -31,6 +32,15 @@ void RaySlices::import_package(const Intersection& package) {
   for (uint32_t word = 0; word < kIntersectionWords; ++word) input.words[word * lanes_ + lane] = package[word];
   ++input.taken;
   if (++job.taken == job.threads) jobs_.pop_front();
+}
+
+void RaySlices::import_beat(const Beat& beat) {
+  package_[beats_] = beat;
+  if (++beats_ < kIntersectionBeats) return;
+  beats_ = 0;
+  Intersection package;
+  std::memcpy(package.data(), package_.data(), sizeof(package));
+  import_package(package);
 }
 
 uint32_t RaySlices::packages_expected() const {

@@ -21,6 +21,8 @@ class RaySlices {
   void expect_import(uint32_t threads);
   /// The next package. One that nobody expects is an error of the caller: std::logic_error.
   void import_package(const Intersection& package);
+  /// The next beat of one.
+  void import_beat(const Beat& beat);
   /// Packages that were announced and have not come.
   uint32_t packages_expected() const;
 
@@ -64,6 +66,8 @@ class RaySlices {
   std::vector<uint32_t> words_;  ///< [warp][slice][word][lane]
   std::vector<Warp> warps_;
   std::deque<Job> jobs_;
+  std::array<Beat, kIntersectionBeats> package_{};  ///< that is arriving
+  size_t beats_ = 0;
 };
 
 }  // namespace raypool

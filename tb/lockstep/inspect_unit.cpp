@@ -227,22 +227,21 @@ void UnitInspection::advance_fetch(const UnitTransfers& given) {
   const bool missed = w_.instruction_miss.value() != 0;
   const uint32_t warp = w_.result_warp.value();
   if (missed) missed_ |= 1u << warp;
-  first_ = 0;
   if (w_.refill_done.value() != 0) {
     requests_ |= missed_;
     missed_ = 0;
-    first_ = 1u << instruction_cache_.fetch_warp();
   }
   const bool port_free = w_.memory_request_valid_o.value() == 0 || given.request_ready;
   const bool last_beat = given.response && given.response_id == kInstructionId && given.response_beat == 3;
-  instruction_cache_.clock(missed, warp, port_free, last_beat);
+  instruction_cache_.clock(missed, port_free, last_beat);
   lookup_ = w_.fetch_valid.value() != 0;
   if (lookup_) {
     lookup_warp_ = w_.fetch_warp.value();
     lookup_pc_ = w_.lookup_pc.value();
-    lookup_hit_ = instruction_cache_.lookup(lookup_pc_);
+    lookup_hit_ = instruction_cache_.lookup(lookup_warp_, lookup_pc_);
   }
   instruction_cache_.end_cycle();
+  first_ = instruction_cache_.take_first();
 }
 
 void UnitInspection::check_instruction_cache() {

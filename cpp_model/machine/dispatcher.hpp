@@ -1,0 +1,103 @@
+// rtl/dispatcher.v: gives every free ALU instance the lowest warp that wants its type, and holds the tasks of Mem and Ray. Those
+// of the pipelined types are over before they begin: when a task is granted, the cycle in which it will be done is known.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "config/configuration.hpp"
+#include "machine/alu_pipeline.hpp"
+#include "machine/bits.hpp"
+#include "machine/performance_counters.hpp"
+#include "machine/timeline.hpp"
+
+namespace raypool {
+
+class Dispatcher {
+ public:
+  static constexpr size_t kMostInstances = 4;
+
+  explicit Dispatcher(const Configuration& configuration) {
+    for (size_t type = 0; type < kAluTypes; ++type) {
+      instances_[type] = static_cast<uint32_t>(configuration.alus[type].count);
+      pipelines_[type].fill(AluPipeline(configuration.alus[type]));
+    }
+  }
+
+  void reset() {
+    want_types_ = 0;
+    want_.fill(0);
+    task_.fill(-1);
+    for (auto& pipelines : pipelines_) {
+      for (AluPipeline& pipeline : pipelines) pipeline.reset();
+    }
+  }
+
+  uint32_t instances(size_t type) const { return instances_[type]; }
+  uint32_t depth(size_t type) const { return pipelines_[type][0].depth(); }
+  /// The warp whose task arrives at Mem or Ray in this cycle, or -1.
+  int task(AluType type) const { return task_[static_cast<size_t>(type)]; }
+  uint32_t wants(AluType type) const { return want_[static_cast<size_t>(type)]; }
+  bool wants_pipelined() const { return want_types_ != 0; }
+  bool idle() const {
+    return (want_types_ | wants(AluType::Mem) | wants(AluType::Ray)) == 0 && task(AluType::Mem) < 0 && task(AluType::Ray) < 0;
+  }
+
+  /// The warp wants a pipelined type from the cycle of the next grant_pipelined() on.
+  void want(size_t type, uint32_t warp) {
+    want_[type] |= 1u << warp;
+    want_types_ |= 1u << type;
+  }
+  /// Warps that want Mem or Ray from this cycle on.
+  void want(AluType type, uint32_t warps) { want_[static_cast<size_t>(type)] |= warps; }
+
+  /// The grants of a cycle among the pipelined types.
+  void grant_pipelined(uint64_t cycle, Timeline& timeline, PerformanceCounters& counters) {
+    for (uint32_t types = want_types_; types != 0; types &= types - 1) {
+      const uint32_t type = lowest(types);
+      uint32_t want = want_[type];
+      for (uint32_t i = 0; i < instances_[type] && want != 0; ++i) {
+        AluPipeline& pipeline = pipelines_[type][i];
+        if (!pipeline.ready(cycle)) continue;
+        timeline.at(pipeline.grant(cycle)).done |= lowest_bit(want);
+        want &= want - 1;
+        counters.unready[type] += pipeline.pause();
+        ++counters.issued[type];
+      }
+      want_[type] = want;
+      if (want == 0) want_types_ &= ~(1u << type);
+      counters.waiting[type] += popcount(want);
+    }
+  }
+  /// The grant of a cycle to Mem or Ray, which say themselves whether they take a task; some warp wants it.
+  void grant(AluType alu, bool ready, PerformanceCounters& counters) {
+    const size_t type = static_cast<size_t>(alu);
+    uint32_t& want = want_[type];
+    if (ready) {
+      task_[type] = static_cast<int>(lowest(want));
+      want &= want - 1;
+      ++counters.issued[type];
+    }
+    counters.waiting[type] += popcount(want);
+  }
+  /// The task has arrived.
+  void arrived(AluType type) { task_[static_cast<size_t>(type)] = -1; }
+  /// From the next cycle on nothing is granted.
+  void halt() { want_types_ = 0; }
+
+  /// How many cycles from this one on instances of the type are not ready, as far as is known.
+  uint64_t unready(size_t type, uint64_t cycle) const {
+    uint64_t sum = 0;
+    for (uint32_t i = 0; i < instances_[type]; ++i) sum += pipelines_[type][i].unready(cycle);
+    return sum;
+  }
+
+ private:
+  uint32_t want_types_ = 0;                 // pipelined types that warps want
+  std::array<uint32_t, kAluTypes> want_{};  // [type] those warps
+  std::array<uint32_t, kAluTypes> instances_{};
+  std::array<std::array<AluPipeline, kMostInstances>, kAluTypes> pipelines_{};
+  std::array<int, kAluTypes> task_{};  // [type] of Mem and Ray: task_valid and task_warp
+};
+
+}  // namespace raypool
