@@ -11,7 +11,8 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGES = [ROOT / "README.md"] + sorted((ROOT / "docs").glob("*.md"))
-FOLDERS = [path.name for path in ROOT.iterdir() if path.is_dir() and not path.name.startswith((".", "build"))]
+FOLDERS = ("bench", "cmake", "configs", "constraints", "cpp_model", "docs", "examples", "rtl", "schemas", "scripts", "sim",
+           "tb")
 PATH = re.compile(rf"^(?:{'|'.join(FOLDERS)})/[\w./*+-]*$")
 MEMBER = re.compile(r"^([A-Z]\w+)::(\w+)$")
 IDENTIFIER = re.compile(r"^\w*(?:[a-z0-9]_[a-z0-9]|[A-Z]_[A-Z]|[a-z][A-Z])\w*$")
