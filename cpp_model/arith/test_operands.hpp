@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <random>
@@ -44,15 +45,18 @@ class OperandSource {
 
   std::pair<uint32_t, uint32_t> next() {
     uint32_t a = bits(), b = bits();
-    switch (random_() % 14) {
+    switch (random_() % 19) {
       case 0:  // anything
         break;
       case 1:  // special and anything
-        a = specials_[random_() % specials_.size()];
+        (range(0, 1) != 0 ? a : b) = special();
         break;
-      case 2:
-        b = specials_[random_() % specials_.size()];
+      case 2: {  // both special; what is equal, or equal but for its sign, is so too
+        a = special();
+        const int same = range(0, 3);
+        b = same > 1 ? special() : a ^ static_cast<uint32_t>(same) << 31;
         break;
+      }
       case 3:  // cancellation, small shifts
         b = exponent(b, field(a) + range(-2, 2));
         break;
@@ -88,8 +92,23 @@ class OperandSource {
         a = exponent(a, field(b) - 127 + wanted);
         break;
       }
-      default:  // subnormal operands
+      case 13:  // subnormal operands
         a = exponent(a, range(0, 3)), b = exponent(b, range(0, 26));
+        break;
+      case 14:  // one bit of a fraction alone makes a NaN, a subnormal number, or the difference of two numbers
+        a = (a & 0x80000000u) | static_cast<uint32_t>(range(0, 1) * 255) << 23 | 1u << range(0, 22);
+        break;
+      case 15:
+        b = a ^ 1u << range(0, 31);
+        break;
+      case 16:
+        b = last_bit_partner(a, b);
+        break;
+      case 17:  // integers in the middle between two floats, or next to it
+        a = middle_integer(), b = middle_integer();
+        break;
+      default:
+        halfway_quotient(a, b);
         break;
     }
     return {a, b};
@@ -109,7 +128,7 @@ class OperandSource {
       case 0:
         return c;
       case 1:
-        return specials_[random_() % specials_.size()];
+        return special();
       case 2:  // the rounded product itself: what is left is its rounding error
         return product ^ 0x80000000u;
       case 3:
@@ -129,6 +148,11 @@ class OperandSource {
 
  private:
   uint32_t bits() { return static_cast<uint32_t>(random_()); }
+  uint32_t special() {
+    static constexpr uint32_t kEnds[] = {0, 1, 0x7f7fffff, 0x7f800000, 0x7fc00000};
+    if (range(0, 2) == 0) return kEnds[random_() % std::size(kEnds)] | (bits() & 0x80000000u);
+    return specials_[random_() % specials_.size()];
+  }
   int range(int low, int high) { return low + static_cast<int>(random_() % static_cast<uint64_t>(high - low + 1)); }
   static int field(uint32_t a) { return static_cast<int>(a >> 23 & 0xff); }
   static uint32_t exponent(uint32_t a, int field) {
@@ -146,6 +170,33 @@ class OperandSource {
     uint32_t bits;
     std::memcpy(&bits, &quotient, 4);
     return bits;
+  }
+  /// A factor for a, which becomes odd, so that the last bits of the product decide how it is rounded; half of the products are at
+  /// the edge of the subnormal numbers.
+  uint32_t last_bit_partner(uint32_t& a, uint32_t b) {
+    a |= 1;
+    const uint32_t odd = (a & 0x7fffffu) | 0x800000u;
+    uint32_t inverse = odd;  // modulo 2^32: right in 3 bits, and in twice as many after each step
+    for (int step = 0; step < 4; ++step) inverse *= 2 - odd * inverse;
+    static constexpr uint32_t kEnds[] = {0, 1u << 22, 1u << 23};
+    const uint32_t end = kEnds[random_() % 3] + static_cast<uint32_t>(range(-1, 1) * (1 << range(0, 3)));
+    const int wanted = range(0, 1) != 0 ? 127 - field(a) + range(-4, 2) : 254 - field(a) + range(-30, 30);
+    return exponent((b & 0x80000000u) | (end * inverse & 0x7fffffu), wanted);
+  }
+  uint32_t middle_integer() {
+    const int shift = std::max(1, range(-5, 7));  // 2^31 and more are negative
+    const uint32_t magnitude = (((bits() | 0x80000000u) & ~0xffu) >> shift) + (0x80u >> shift) + static_cast<uint32_t>(range(-1, 1));
+    return range(0, 1) != 0 ? magnitude : 0u - magnitude;
+  }
+  /// a / b is in the middle between two subnormal numbers, or next to it.
+  void halfway_quotient(uint32_t& a, uint32_t& b) {
+    const int quotient = range(0, 2047) * 2 + 1, divisor = range(1, 4095), power = range(30, 100);
+    const float dividend = std::ldexp(static_cast<float>(quotient * divisor), power - 150);
+    const float by = std::ldexp(static_cast<float>(divisor), power);
+    const uint32_t signs_a = a & 0x80000000u, signs_b = b & 0x80000000u;
+    std::memcpy(&a, &dividend, 4);
+    std::memcpy(&b, &by, 4);
+    a = (a + static_cast<uint32_t>(range(-1, 1))) | signs_a, b |= signs_b;
   }
   /// A fraction of few ones at its head and its tail, from which sums and products on the middle between two floats come.
   uint32_t few_bits(uint32_t a) {

@@ -7,6 +7,7 @@ namespace {
 
 constexpr uint32_t kMostInstructions = 60000;
 constexpr uint32_t kFarJump = 20000;
+constexpr uint32_t kMostParts = 8;  ///< power of two
 constexpr int kMostCalls = 40;
 // Of a far address: a bit of it is set and one is clear from kFarBit on, so that it lies beyond any data and below the limit;
 // from kFarUpperBit on it is random; below it are the block's and the warp's bits, a bit of lines that are stored to, and the
@@ -87,47 +88,22 @@ void ProgramStatements::plain(int a, int b, std::optional<size_t> type) {
   else if (has_operand(info, Operand::B) || has_operand(info, Operand::Rb))
     i.rb = static_cast<uint8_t>(b >= 0 ? b : source());
   if (has_operand(info, Operand::Pb)) i.rb = static_cast<uint8_t>(any_predicate());
-  if (has_operand(info, Operand::Rc)) i.x = static_cast<uint8_t>(source());
+  // A third operand that meets the product of the two.
+  if (has_operand(info, Operand::Rc)) i.x = static_cast<uint8_t>(a >= 0 && chance(2) ? (chance(2) ? a : std::max(b, 0)) : source());
   if (has_operand(info, Operand::Px)) i.x = static_cast<uint8_t>(any_predicate());
   if (has_operand(info, Operand::Argument)) i.immediate = below(kArguments);
   plain_at_.push_back(emit(i));
 }
 
-uint32_t ProgramStatements::related_word(uint32_t word) {
-  const auto exponent = static_cast<int>(word >> 23 & 0xff);
-  // Mantissas: any, few bits, nearly all ones.
-  const uint32_t bits = below(1u << 23);
-  const uint32_t mantissa = chance(2) ? bits : chance(2) ? bits & ~0u << below(24) : 0x7fffffu - (bits & 7);
-  const uint32_t sign = chance(2) ? 0x80000000u : 0;
-  const auto with_exponent = [&](int wanted) {
-    return sign | static_cast<uint32_t>(std::clamp(wanted, 0, 255)) << 23 | mantissa;
-  };
-  const int near = static_cast<int>(below(5)) - 2;
-  switch (below(6)) {
-    case 0:
-      return (word ^ sign) + static_cast<uint32_t>(near);
-    case 1:
-      return with_exponent(exponent + near);
-    case 2:
-      return with_exponent(exponent + static_cast<int>(below(54)) - 27);
-    case 3:  // the product overflows, or not quite
-      return with_exponent(254 + 127 - exponent + near);
-    case 4:  // ... is subnormal
-      return with_exponent(127 - exponent - static_cast<int>(below(27)) + 2);
-    default:  // the quotient, likewise
-      return with_exponent(chance(2) ? exponent - 127 + near : exponent + 126 + near + static_cast<int>(below(24)));
-  }
-}
-
 void ProgramStatements::arithmetic() {
   const int a = destination(), b = destination();
-  const uint32_t word = value();
-  emit_immediate("mov", a, 0, word);
+  const auto [first, second] = operands_.next();
+  emit_immediate("mov", a, 0, first);
   if (chance(2)) {
     emit("lane", b);
-    emit_immediate("iadd", b, b, related_word(word));
+    emit_immediate("iadd", b, b, second);
   } else {
-    emit_immediate("mov", b, 0, related_word(word));
+    emit_immediate("mov", b, 0, second);
   }
   const int operations = 2 + static_cast<int>(below(4));
   for (int n = 0; n < operations; ++n) {
@@ -136,6 +112,17 @@ void ProgramStatements::arithmetic() {
     else
       plain(b, a);
   }
+  if (!configuration_.has(instruction("ffma").needs)) return;
+  // The product meets an addend that goes with it.
+  Instruction i;
+  i.info = &instruction("ffma");
+  do i.x = static_cast<uint8_t>(destination());
+  while (i.x == a || i.x == b);
+  emit_immediate("mov", i.x, 0, operands_.third(first, second));
+  i.rd = static_cast<uint8_t>(destination());
+  i.ra = static_cast<uint8_t>(a);
+  i.rb = static_cast<uint8_t>(b);
+  emit(i);
 }
 
 void ProgramStatements::pairs(int loops) {
@@ -168,8 +155,7 @@ void ProgramStatements::pairs(int loops) {
   patch(start, here());
 }
 
-void ProgramStatements::address(bool own, uint32_t offset) {
-  const uint32_t entries = own ? own_.entries : shared_bytes_ / 4;
+void ProgramStatements::address(bool own, uint32_t offset, uint32_t entries) {
   switch (below(6)) {
     case 0:
       emit_immediate("mov", kAddress, 0, below(entries));
@@ -267,14 +253,20 @@ void ProgramStatements::memory() {
   if (far_memory_told_ && chance(3)) return far_memory();
   const bool own = !chance(3);
   const uint32_t offset = chance(3) ? value() : 0;
-  address(own, offset);
-  const int accesses = 1 + static_cast<int>(below(4));
+  const uint32_t entries = own ? own_.entries : shared_bytes_ / 4;
+  // Either all accesses go to the same words, or each to others of the same set of the cache, so that lines push each other out and
+  // wait for miss-status holding registers.
+  const uint32_t lines = entries / (own ? own_.way_entries : way_bytes() / 4);
+  const uint32_t parts = lines > 1 && chance(2) ? std::min(lines, kMostParts) : 1;
+  const uint32_t part_bytes = (entries / parts) << (own ? own_.shift : 2);
+  address(own, offset, entries / parts);
+  const int accesses = 1 + static_cast<int>(below(parts > 1 ? 2 * parts : 4));
   for (int n = 0; n < accesses; ++n) {
     // So that a load or store comes after every type.
-    if (chance(4)) plain();
+    if (chance(parts > 1 ? 12 : 4)) plain();
     if (chance(8) && written_words_ > 0 && !in_function_)
       emit_word("rld", static_cast<int>(below(static_cast<uint32_t>(written_words_))), destination());
-    access(own && chance(2), offset);
+    access(own && chance(2), offset + below(parts) * part_bytes);
   }
 }
 
@@ -308,6 +300,12 @@ void ProgramStatements::rotate() {
   if (chance(2)) i.guard = static_cast<uint8_t>(any_predicate()), i.guard_negated = chance(2);
   emit(i);
   written_words_ = 0;
+  if (!chance(4)) return;
+  // On to the set that is being exported, at whose words it arrives first that are read last.
+  i.guard = 0, i.guard_negated = true;
+  for (uint32_t n = 1 + below(3); n > 0; --n) emit(i);
+  for (int word = kRayWords; word > 0;) emit_word("rst", --word);
+  written_words_ = kRayWords;
 }
 
 void ProgramStatements::begin_frame(int counter, int going, bool pad) {

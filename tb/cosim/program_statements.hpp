@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "arith/test_operands.hpp"
 #include "cosim/program_emitter.hpp"
 #include "cosim/program_profile.hpp"
 
@@ -34,7 +35,8 @@ class ProgramStatements : public ProgramEmitter {
         warps_(static_cast<uint32_t>(configuration.warps)),
         stack_depth_(configuration.stack_depth),
         instruction_cache_bytes_(static_cast<uint32_t>(configuration.instruction_cache_bytes)),
-        profile_(profile) {}
+        profile_(profile),
+        operands_(seed) {}
 
   /// `entries`: entries of the PC stack in use.
   void body(int length, int loops, int entries);
@@ -53,11 +55,12 @@ class ProgramStatements : public ProgramEmitter {
   /// A few of them with a pair of operands that meet: sums that cancel or need rounding, products and quotients at the ends of
   /// the range.
   void arithmetic();
-  uint32_t related_word(uint32_t word);
   /// A loop whose threads each load another pair of operands in each round, for a few dozen instructions that compute.
   void pairs(int loops);
-  /// r13 = an aligned address: one for all lanes, neighbours, a stride, lines of one set, or anywhere; off by -offset.
-  void address(bool own, uint32_t offset);
+  uint32_t way_bytes() const { return static_cast<uint32_t>(configuration_.data_cache_bytes) / 2; }
+  /// r13 = an aligned address among the first `entries` words: one for all lanes, neighbours, a stride, lines of one set, or
+  /// anywhere; off by -offset.
+  void address(bool own, uint32_t offset, uint32_t entries);
   /// `st` or `ld` at r13 + offset.
   void access(bool store, uint32_t offset);
   void memory();
@@ -90,6 +93,7 @@ class ProgramStatements : public ProgramEmitter {
   int stack_depth_;
   uint32_t instruction_cache_bytes_;
   ProgramProfile profile_;
+  arith::OperandSource operands_;
   OwnWords own_;
   uint32_t shared_bytes_ = 1024;
   uint32_t pair_rounds_ = 1;

@@ -14,8 +14,10 @@ constexpr uint32_t kFarLimit = 20000;
 constexpr uint32_t kLastRestart = 3000;  ///< cycle
 constexpr uint32_t kLengthOfPairRound = 16;
 constexpr uint32_t kFarLimits = 1u << 19;  ///< from the end of the address space
-constexpr uint32_t kLongestProgram = 0xfff0;
-constexpr uint32_t kLeastRaces = 16, kMostRaces = 48;
+constexpr uint32_t kLongestProgram = 0xfff0, kLastPc = 0xffff, kUpperPcBit = 0x8000;
+constexpr uint32_t kLeastRaces = 32, kMostRaces = 96;
+constexpr uint32_t kLeastWalk = 8;    ///< lines
+constexpr uint32_t kMostDelays = 24, kMostShifts = 5;  ///< instructions
 constexpr uint32_t kEveryFault = 0xfe;
 constexpr uint32_t kLineInstructions = kLineBytes / 8;
 
@@ -61,7 +63,7 @@ class Generator : public ProgramStatements {
 
  private:
   void choose_layout() {
-    const uint32_t way = static_cast<uint32_t>(configuration_.data_cache_bytes) / 2;
+    const uint32_t way = way_bytes();
     uint32_t warp_bits = 0;
     while ((1u << warp_bits) < warps_) ++warp_bits;
     if (chance(2)) {
@@ -102,6 +104,11 @@ class Generator : public ProgramStatements {
     const auto fix = [&code](const std::vector<size_t>& places, uint32_t limit) {
       for (const size_t at : places) code[at] = (code[at] & ~uint64_t{0xffffffff}) | static_cast<uint32_t>(code[at] + limit);
     };
+    // Outside, though the bits below the upper one are those of a PC inside.
+    for (const size_t at : twins_) {
+      const uint32_t twin = static_cast<uint32_t>(code[at]) | kUpperPcBit;
+      code[at] = (code[at] & ~uint64_t{0xffffffff}) | (twin >= result_.program_length ? twin : kLastPc);
+    }
     fix(from_length_, result_.program_length);
     fix(from_limit_, result_.memory_limit);
     if (chance(8)) result_.restart = 1 + below(kLastRestart);
@@ -256,6 +263,7 @@ class Generator : public ProgramStatements {
   void fault(FaultCode code) {
     switch (code) {
       case FaultCode::IllegalInstruction:
+        if (chance(4) && missing_instruction()) return;
         for (;;) {
           const uint64_t word = random();
           if (find_instruction(static_cast<int>(word >> 60), static_cast<int>(word >> 55 & 31)) != nullptr) continue;
@@ -297,11 +305,28 @@ class Generator : public ProgramStatements {
     }
   }
 
+  // One that other machines have; false if this one has all.
+  bool missing_instruction() {
+    for (const InstructionInfo& info : kInstructions) {
+      if (configuration_.has(info.needs)) continue;
+      emit(info.mnemonic, destination(), source(), source());
+      return true;
+    }
+    return false;
+  }
+
   void jump_outside() {
-    if (chance(2))
-      emit_immediate("jany", 0, 0, 0xffffu - below(16));
-    else
-      from_length_.push_back(emit_immediate("jany", 0, 0, below(2)));
+    switch (below(3)) {
+      case 0:
+        emit_immediate("jany", 0, 0, kLastPc - below(16));
+        break;
+      case 1:
+        twins_.push_back(emit_immediate("jany", 0, 0, below(std::min(here() + 1, kUpperPcBit))));
+        break;
+      default:
+        from_length_.push_back(emit_immediate("jany", 0, 0, below(2)));
+        break;
+    }
   }
 
   // ---- Faults of several warps at about the same time
@@ -311,7 +336,9 @@ class Generator : public ProgramStatements {
   void race() {
     entries_.push_back({here(), false});
     const uint32_t mask = chance(2) ? warps_ - 1 : std::min(warps_ - 1, 1u);
-    const std::array<FaultCode, 2> codes = {any_fault(), any_fault()};
+    // The second group may be fetching from one line after the other when the first one's fault comes.
+    const bool walks = chance(4);
+    const std::array<FaultCode, 2> codes = {any_fault(), walks ? FaultCode::None : any_fault()};
     const int second = free_predicate();
     emit_immediate("mov", 0, 0, value());
     if (chance(2))
@@ -324,10 +351,22 @@ class Generator : public ProgramStatements {
     fill_stacks(codes, second);
     while (here() % kLineInstructions != kLineInstructions - 1) emit("lane", 4);
     const size_t branch = emit("jany", 0, 0, 0, second);
-    arm(codes[0]);
+    arm(codes[0], walks ? 1 + below(kMostDelays) : below(kMostShifts));
     while (here() % kLineInstructions < kLineInstructions / 2) code_.push_back(random());
     patch(branch, here());
-    arm(codes[1]);
+    if (walks)
+      walk();
+    else
+      arm(codes[1], below(kMostShifts));
+  }
+
+  void walk() {
+    for (uint32_t n = kLeastWalk + below(kLeastWalk); n > 0; --n) {
+      const size_t jump = emit("jany");
+      while (here() % kLineInstructions != 0) code_.push_back(random());
+      patch(jump, here());
+    }
+    emit("exit");
   }
 
   FaultCode any_fault() { return static_cast<FaultCode>(1 + below(7)); }
@@ -349,9 +388,9 @@ class Generator : public ProgramStatements {
     patch(join, here());
   }
 
-  void arm(FaultCode code) {
-    for (uint32_t n = below(3); n > 0; --n) {
-      static constexpr std::array<std::string_view, 3> kDelays = {"lane", "iadd", "fadd"};  // of different depths
+  void arm(FaultCode code, uint32_t delays) {
+    for (uint32_t n = delays; n > 0; --n) {
+      static constexpr std::array<std::string_view, 5> kDelays = {"lane", "por", "iadd", "fadd", "frcp"};  // of different depths
       emit(kDelays[below(kDelays.size())], 1);
     }
     race_fault(code);
@@ -379,6 +418,7 @@ class Generator : public ProgramStatements {
   bool more_memory_told_ = chance(3) || far_memory_told_;
   bool runs_out_ = false;                         ///< the program ends without `exit`
   std::vector<size_t> from_length_, from_limit_;  ///< instructions whose immediate is relative to what the unit is told
+  std::vector<size_t> twins_;                     ///< jumps to a PC inside the program, which get its twin outside
 };
 
 void store_instruction(Memory& memory, uint32_t pc, uint64_t instruction) {
