@@ -277,14 +277,12 @@ class Assembler {
     const std::string found = rest();
     const std::string text = number_text();
     if (text.empty()) fail(place, fmt::format("expected a register or an immediate, found {}", found));
-    // mov and sel carry either kind of number; for the others a number of the wrong kind is a slip.
-    const bool any = parts.info->mnemonic == "mov" || parts.info->mnemonic == "sel";
     const bool is_float = looks_like_float(text);
     if (parts.info->immediate == ImmediateType::Float) {
       if (!is_float && !looks_hexadecimal(text)) {
         fail(place, fmt::format("'{}' is no float; write {}.0 for the number, or 0x... for the bit pattern", text, text));
       }
-    } else if (is_float && !any) {
+    } else if (is_float && parts.info->immediate != ImmediateType::Either) {
       fail(place, fmt::format("{} takes an integer, not the float {}", parts.info->mnemonic, text));
     }
     parts.immediate = is_float ? parse_float(text, place) : parse_integer(text, place);

@@ -12,19 +12,25 @@ constexpr uint32_t take(const Field& field, uint64_t encoding) {
   return static_cast<uint32_t>(encoding >> field.lsb & ((uint64_t{1} << field.bits) - 1));
 }
 
-using Table = std::array<const InstructionInfo*, 512>;  // index: unit, then 5 bits of operation
+using Table = std::array<const InstructionInfo*, 512>;  // index: Opcode, or unit and operation of no row
 
 Table make_table() {
   Table table{};
-  for (const InstructionInfo& info : kInstructions) table[static_cast<size_t>(info.unit) << 5 | info.operation] = &info;
+  for (const InstructionInfo& info : kInstructions) table[static_cast<size_t>(info.opcode)] = &info;
   return table;
+}
+
+const Table& table() {
+  static const Table kTable = make_table();
+  return kTable;
 }
 
 }  // namespace
 
+const InstructionInfo& instruction(Opcode opcode) { return *table()[static_cast<size_t>(opcode)]; }
+
 const InstructionInfo* find_instruction(int unit, int operation) {
-  static const Table kTable = make_table();
-  return kTable[static_cast<size_t>((unit & 15) << 5 | (operation & 31))];
+  return table()[static_cast<size_t>((unit & 15) << 5 | (operation & 31))];
 }
 
 const InstructionInfo* find_instruction(std::string_view mnemonic) {
@@ -48,7 +54,7 @@ bool has_operand(const InstructionInfo& info, Operand operand) {
 }
 
 uint64_t encode(const Instruction& parts) {
-  return put(field::kUnit, static_cast<uint64_t>(parts.info->unit)) | put(field::kOperation, parts.info->operation) |
+  return put(field::kUnit, static_cast<uint64_t>(parts.info->alu())) | put(field::kOperation, parts.info->operation()) |
          put(field::kGuardNegated, parts.guard_negated ? 1 : 0) | put(field::kGuard, parts.guard) | put(field::kRd, parts.rd) |
          put(field::kRa, parts.ra) | put(field::kRb, parts.rb) | put(field::kBIsImmediate, parts.b_is_immediate ? 1 : 0) |
          put(field::kX, parts.x) | put(field::kImmediate, parts.immediate);

@@ -46,7 +46,9 @@ struct Instruction {
   uint32_t immediate = 0;
 };
 
-/// Table row of a unit and operation, null if there is none.
+/// Table row of an opcode.
+const InstructionInfo& instruction(Opcode opcode);
+/// Table row of what stands in the fields unit and operation, null if there is none.
 const InstructionInfo* find_instruction(int unit, int operation);
 /// Table row of a mnemonic, null if there is none.
 const InstructionInfo* find_instruction(std::string_view mnemonic);

@@ -99,7 +99,14 @@ enum class Operand : uint8_t {
 };
 
 /// How the immediate of operand B is written in assembly text.
-enum class ImmediateType : uint8_t { None, Integer, Float };
+enum class ImmediateType : uint8_t { None, Integer, Float, Either };
+
+/// What an instruction is to its warp beside its result.
+enum class Kind : uint8_t {
+  Plain,
+  Control,  ///< decides on the PC: stops the instruction routine until write-back
+  Swap,     ///< exchanges the ray slices of all lanes for other ones, whatever the mask; may have to wait for them
+};
 
 /// What a configuration must have for an instruction to be legal.
 enum class Feature : uint8_t {
@@ -107,104 +114,146 @@ enum class Feature : uint8_t {
   FusedMultiplyAdd,  ///< arithmetic.fma
 };
 
-struct InstructionInfo {
-  std::string_view mnemonic;
-  AluType unit;
-  uint8_t operation;  ///< 0 .. 31
-  std::array<Operand, 4> operands;
-  ImmediateType immediate;  ///< type of B when it is an immediate
-  bool control;             ///< stops the instruction routine until write-back
-  std::string_view meaning;
-  Feature needs = Feature::Base;
+// The instructions, a row each. Programs drawn at random depend on the order of the rows.
+// clang-format off
+//   name       enumerator of Opcode; in lower case the mnemonic, in upper case and behind ISA_<ALU type>_ the Verilog constant
+//   type       enumerator of AluType
+//   operation  0 .. 31, no two of a type the same
+//   operands   four of Operand, in the order of the assembly text
+//   immediate  of ImmediateType: what operand B is when it is no register
+//   kind       of Kind
+//   meaning    for docs/isa.md; behind it, if not every machine has the instruction, a Feature
+#define RAYPOOL_INSTRUCTIONS(ROW) \
+  /* Tid: indices, dimensions, arguments */ \
+  ROW(Tid,     Tid, 0,  Rd, None, None, None, None, Plain, "rd = index of the thread in its block") \
+  ROW(Lane,    Tid, 1,  Rd, None, None, None, None, Plain, "rd = lane of the thread") \
+  ROW(Warp,    Tid, 2,  Rd, None, None, None, None, Plain, "rd = warp of the thread") \
+  ROW(Block,   Tid, 3,  Rd, None, None, None, None, Plain, "rd = block word of the launch") \
+  ROW(Threads, Tid, 4,  Rd, None, None, None, None, Plain, "rd = threads in this block") \
+  ROW(Blocks,  Tid, 5,  Rd, None, None, None, None, Plain, "rd = blocks in the grid") \
+  ROW(Arg,     Tid, 6,  Rd, Argument, None, None, None, Plain, "rd = kernel argument word") \
+  /* Brh: compares into predicates (result AND mask, all lanes written), predicate logic, control */ \
+  ROW(Ieq,     Brh, 0,  Pd, Ra, B, None, Integer, Plain, "pd = ra == b") \
+  ROW(Ine,     Brh, 1,  Pd, Ra, B, None, Integer, Plain, "pd = ra != b") \
+  ROW(Ilt,     Brh, 2,  Pd, Ra, B, None, Integer, Plain, "pd = ra < b, signed") \
+  ROW(Ile,     Brh, 3,  Pd, Ra, B, None, Integer, Plain, "pd = ra <= b, signed") \
+  ROW(Igt,     Brh, 4,  Pd, Ra, B, None, Integer, Plain, "pd = ra > b, signed") \
+  ROW(Ige,     Brh, 5,  Pd, Ra, B, None, Integer, Plain, "pd = ra >= b, signed") \
+  ROW(Ult,     Brh, 6,  Pd, Ra, B, None, Integer, Plain, "pd = ra < b, unsigned") \
+  ROW(Ule,     Brh, 7,  Pd, Ra, B, None, Integer, Plain, "pd = ra <= b, unsigned") \
+  ROW(Ugt,     Brh, 8,  Pd, Ra, B, None, Integer, Plain, "pd = ra > b, unsigned") \
+  ROW(Uge,     Brh, 9,  Pd, Ra, B, None, Integer, Plain, "pd = ra >= b, unsigned") \
+  ROW(Feq,     Brh, 10, Pd, Ra, B, None, Float, Plain, "pd = ra == b; false with a NaN") \
+  ROW(Fne,     Brh, 11, Pd, Ra, B, None, Float, Plain, "pd = not (ra == b); true with a NaN") \
+  ROW(Flt,     Brh, 12, Pd, Ra, B, None, Float, Plain, "pd = ra < b; false with a NaN") \
+  ROW(Fle,     Brh, 13, Pd, Ra, B, None, Float, Plain, "pd = ra <= b; false with a NaN") \
+  ROW(Fgt,     Brh, 14, Pd, Ra, B, None, Float, Plain, "pd = ra > b; false with a NaN") \
+  ROW(Fge,     Brh, 15, Pd, Ra, B, None, Float, Plain, "pd = ra >= b; false with a NaN") \
+  ROW(Pand,    Brh, 16, Pd, Px, Pb, None, None, Plain, "pd = px and pb") \
+  ROW(Por,     Brh, 17, Pd, Px, Pb, None, None, Plain, "pd = px or pb") \
+  ROW(Pxor,    Brh, 18, Pd, Px, Pb, None, None, Plain, "pd = px xor pb") \
+  ROW(Pandn,   Brh, 19, Pd, Px, Pb, None, None, Plain, "pd = px and not pb") \
+  ROW(Jany,    Brh, 24, Target, None, None, None, None, Control, "jump if any masked lane is left") \
+  ROW(Jnone,   Brh, 25, Target, None, None, None, None, Control, "jump if no masked lane is left") \
+  ROW(Call,    Brh, 26, Target, End, None, None, None, Control, "push {PC = target, RPC = end}") \
+  ROW(Loop,    Brh, 27, End, None, None, None, None, Control, \
+      "if any masked lane is left: push {PC = next, RPC = end}, this loop runs again after it; else jump to end") \
+  ROW(Ret,     Brh, 28, None, None, None, None, None, Control, "pop the PC stack") \
+  ROW(Exit,    Brh, 29, None, None, None, None, None, Control, "end of the warp") \
+  /* Mem */ \
+  ROW(Ld,      Mem, 0,  Rd, Address, None, None, None, Plain, "rd = word at ra + immediate") \
+  ROW(St,      Mem, 1,  Address, Rb, None, None, None, Plain, "word at ra + immediate = rb") \
+  /* Int */ \
+  ROW(Mov,     Int, 0,  Rd, B, None, None, Either, Plain, "rd = b") \
+  ROW(Iadd,    Int, 1,  Rd, Ra, B, None, Integer, Plain, "rd = ra + b") \
+  ROW(Isub,    Int, 2,  Rd, Ra, B, None, Integer, Plain, "rd = ra - b") \
+  ROW(Imul,    Int, 3,  Rd, Ra, B, None, Integer, Plain, "rd = low 32 bits of ra * b") \
+  ROW(And,     Int, 4,  Rd, Ra, B, None, Integer, Plain, "rd = ra and b") \
+  ROW(Or,      Int, 5,  Rd, Ra, B, None, Integer, Plain, "rd = ra or b") \
+  ROW(Xor,     Int, 6,  Rd, Ra, B, None, Integer, Plain, "rd = ra xor b") \
+  ROW(Shl,     Int, 7,  Rd, Ra, B, None, Integer, Plain, "rd = ra << b[4:0]") \
+  ROW(Shr,     Int, 8,  Rd, Ra, B, None, Integer, Plain, "rd = ra >> b[4:0], zeros shifted in") \
+  ROW(Sar,     Int, 9,  Rd, Ra, B, None, Integer, Plain, "rd = ra >> b[4:0], sign shifted in") \
+  ROW(Imin,    Int, 10, Rd, Ra, B, None, Integer, Plain, "rd = smaller of ra and b, signed") \
+  ROW(Imax,    Int, 11, Rd, Ra, B, None, Integer, Plain, "rd = larger of ra and b, signed") \
+  ROW(Umin,    Int, 12, Rd, Ra, B, None, Integer, Plain, "rd = smaller of ra and b, unsigned") \
+  ROW(Umax,    Int, 13, Rd, Ra, B, None, Integer, Plain, "rd = larger of ra and b, unsigned") \
+  ROW(Sel,     Int, 14, Rd, Px, Ra, B, Either, Plain, "rd = px ? ra : b") \
+  /* Flt */ \
+  ROW(Fadd,    Flt, 0,  Rd, Ra, B, None, Float, Plain, "rd = ra + b") \
+  ROW(Fsub,    Flt, 1,  Rd, Ra, B, None, Float, Plain, "rd = ra - b") \
+  ROW(Fmul,    Flt, 2,  Rd, Ra, B, None, Float, Plain, "rd = ra * b") \
+  ROW(Fmin,    Flt, 3,  Rd, Ra, B, None, Float, Plain, \
+      "rd = smaller of ra and b; the number if one is a NaN; -0 < +0") \
+  ROW(Fmax,    Flt, 4,  Rd, Ra, B, None, Float, Plain, \
+      "rd = larger of ra and b; the number if one is a NaN; -0 < +0") \
+  ROW(F2i,     Flt, 5,  Rd, Ra, None, None, None, Plain, "rd = signed integer, towards zero, saturating; NaN gives 0") \
+  ROW(I2f,     Flt, 6,  Rd, Ra, None, None, None, Plain, "rd = float of signed ra") \
+  ROW(Ffma,    Flt, 7,  Rd, Ra, B, Rc, Float, Plain, "rd = ra * b + rc, one rounding", Feature::FusedMultiplyAdd) \
+  /* Slw */ \
+  ROW(Fdiv,    Slw, 0,  Rd, Ra, B, None, Float, Plain, "rd = ra / b") \
+  ROW(Fsqrt,   Slw, 1,  Rd, Ra, None, None, None, Plain, "rd = square root of ra") \
+  ROW(Frsqrt,  Slw, 2,  Rd, Ra, None, None, None, Plain, "rd = 1 / square root of ra, one rounding") \
+  ROW(Frcp,    Slw, 3,  Rd, Ra, None, None, None, Plain, "rd = 1 / ra") \
+  /* Ray */ \
+  ROW(Rin,     Ray, 0,  None, None, None, None, None, Swap, "wait for the imported packages, make them current") \
+  ROW(Rout,    Ray, 1,  None, None, None, None, None, Swap, "export masked lanes' rays to the ray pool") \
+  ROW(Rfb,     Ray, 2,  None, None, None, None, None, Swap, \
+      "export masked lanes' pixel and colour to the frame buffer") \
+  ROW(Rld,     Ray, 3,  Rd, Word, None, None, None, Plain, "rd = word of the current slice") \
+  ROW(Rst,     Ray, 4,  Word, B, None, None, Float, Plain, "word of the current slice = b") \
+  /* The table ends here: the backslash above lets a row follow it. */
+// clang-format on
+
+/// ALU type and operation of an instruction, bits 63:55 of its encoding.
+enum class Opcode : uint16_t {
+#define RAYPOOL_ROW(name, type, operation, ...) name = static_cast<int>(AluType::type) << 5 | operation,
+  RAYPOOL_INSTRUCTIONS(RAYPOOL_ROW)
+#undef RAYPOOL_ROW
 };
 
-// A table is read by its columns.
-// clang-format off
-inline constexpr InstructionInfo kInstructions[] = {
-#define RAYPOOL_ROW(mnemonic, unit, op, o0, o1, o2, o3, imm, control, meaning) \
-  {mnemonic, AluType::unit, op, {Operand::o0, Operand::o1, Operand::o2, Operand::o3}, ImmediateType::imm, control, meaning}
-#define RAYPOOL_ROW_WITH(feature, mnemonic, unit, op, o0, o1, o2, o3, imm, control, meaning) \
-  {mnemonic, AluType::unit, op, {Operand::o0, Operand::o1, Operand::o2, Operand::o3}, ImmediateType::imm, control, meaning, \
-   Feature::feature}
-  // Tid: indices, dimensions, arguments
-  RAYPOOL_ROW("tid",    Tid, 0, Rd, None, None, None, None, false, "rd = index of the thread in its block"),
-  RAYPOOL_ROW("lane",   Tid, 1, Rd, None, None, None, None, false, "rd = lane of the thread"),
-  RAYPOOL_ROW("warp",   Tid, 2, Rd, None, None, None, None, false, "rd = warp of the thread"),
-  RAYPOOL_ROW("block",  Tid, 3, Rd, None, None, None, None, false, "rd = block word of the launch"),
-  RAYPOOL_ROW("threads",Tid, 4, Rd, None, None, None, None, false, "rd = threads in this block"),
-  RAYPOOL_ROW("blocks", Tid, 5, Rd, None, None, None, None, false, "rd = blocks in the grid"),
-  RAYPOOL_ROW("arg",    Tid, 6, Rd, Argument, None, None, None, false, "rd = kernel argument word"),
-  // Brh: compares into predicates (result AND mask, all lanes written), predicate logic, control
-  RAYPOOL_ROW("ieq",  Brh, 0,  Pd, Ra, B, None, Integer, false, "pd = ra == b"),
-  RAYPOOL_ROW("ine",  Brh, 1,  Pd, Ra, B, None, Integer, false, "pd = ra != b"),
-  RAYPOOL_ROW("ilt",  Brh, 2,  Pd, Ra, B, None, Integer, false, "pd = ra < b, signed"),
-  RAYPOOL_ROW("ile",  Brh, 3,  Pd, Ra, B, None, Integer, false, "pd = ra <= b, signed"),
-  RAYPOOL_ROW("igt",  Brh, 4,  Pd, Ra, B, None, Integer, false, "pd = ra > b, signed"),
-  RAYPOOL_ROW("ige",  Brh, 5,  Pd, Ra, B, None, Integer, false, "pd = ra >= b, signed"),
-  RAYPOOL_ROW("ult",  Brh, 6,  Pd, Ra, B, None, Integer, false, "pd = ra < b, unsigned"),
-  RAYPOOL_ROW("ule",  Brh, 7,  Pd, Ra, B, None, Integer, false, "pd = ra <= b, unsigned"),
-  RAYPOOL_ROW("ugt",  Brh, 8,  Pd, Ra, B, None, Integer, false, "pd = ra > b, unsigned"),
-  RAYPOOL_ROW("uge",  Brh, 9,  Pd, Ra, B, None, Integer, false, "pd = ra >= b, unsigned"),
-  RAYPOOL_ROW("feq",  Brh, 10, Pd, Ra, B, None, Float, false, "pd = ra == b; false with a NaN"),
-  RAYPOOL_ROW("fne",  Brh, 11, Pd, Ra, B, None, Float, false, "pd = not (ra == b); true with a NaN"),
-  RAYPOOL_ROW("flt",  Brh, 12, Pd, Ra, B, None, Float, false, "pd = ra < b; false with a NaN"),
-  RAYPOOL_ROW("fle",  Brh, 13, Pd, Ra, B, None, Float, false, "pd = ra <= b; false with a NaN"),
-  RAYPOOL_ROW("fgt",  Brh, 14, Pd, Ra, B, None, Float, false, "pd = ra > b; false with a NaN"),
-  RAYPOOL_ROW("fge",  Brh, 15, Pd, Ra, B, None, Float, false, "pd = ra >= b; false with a NaN"),
-  RAYPOOL_ROW("pand", Brh, 16, Pd, Px, Pb, None, None, false, "pd = px and pb"),
-  RAYPOOL_ROW("por",  Brh, 17, Pd, Px, Pb, None, None, false, "pd = px or pb"),
-  RAYPOOL_ROW("pxor", Brh, 18, Pd, Px, Pb, None, None, false, "pd = px xor pb"),
-  RAYPOOL_ROW("pandn",Brh, 19, Pd, Px, Pb, None, None, false, "pd = px and not pb"),
-  RAYPOOL_ROW("jany", Brh, 24, Target, None, None, None, None, true, "jump if any masked lane is left"),
-  RAYPOOL_ROW("jnone",Brh, 25, Target, None, None, None, None, true, "jump if no masked lane is left"),
-  RAYPOOL_ROW("call", Brh, 26, Target, End, None, None, None, true, "push {PC = target, RPC = end}"),
-  RAYPOOL_ROW("loop", Brh, 27, End, None, None, None, None, true,
-              "if any masked lane is left: push {PC = next, RPC = end}, this loop runs again after it; else jump to end"),
-  RAYPOOL_ROW("ret",  Brh, 28, None, None, None, None, None, true, "pop the PC stack"),
-  RAYPOOL_ROW("exit", Brh, 29, None, None, None, None, None, true, "end of the warp"),
-  // Mem
-  RAYPOOL_ROW("ld",   Mem, 0, Rd, Address, None, None, None, false, "rd = word at ra + immediate"),
-  RAYPOOL_ROW("st",   Mem, 1, Address, Rb, None, None, None, false, "word at ra + immediate = rb"),
-  // Int
-  RAYPOOL_ROW("mov",  Int, 0,  Rd, B, None, None, Integer, false, "rd = b"),
-  RAYPOOL_ROW("iadd", Int, 1,  Rd, Ra, B, None, Integer, false, "rd = ra + b"),
-  RAYPOOL_ROW("isub", Int, 2,  Rd, Ra, B, None, Integer, false, "rd = ra - b"),
-  RAYPOOL_ROW("imul", Int, 3,  Rd, Ra, B, None, Integer, false, "rd = low 32 bits of ra * b"),
-  RAYPOOL_ROW("and",  Int, 4,  Rd, Ra, B, None, Integer, false, "rd = ra and b"),
-  RAYPOOL_ROW("or",   Int, 5,  Rd, Ra, B, None, Integer, false, "rd = ra or b"),
-  RAYPOOL_ROW("xor",  Int, 6,  Rd, Ra, B, None, Integer, false, "rd = ra xor b"),
-  RAYPOOL_ROW("shl",  Int, 7,  Rd, Ra, B, None, Integer, false, "rd = ra << b[4:0]"),
-  RAYPOOL_ROW("shr",  Int, 8,  Rd, Ra, B, None, Integer, false, "rd = ra >> b[4:0], zeros shifted in"),
-  RAYPOOL_ROW("sar",  Int, 9,  Rd, Ra, B, None, Integer, false, "rd = ra >> b[4:0], sign shifted in"),
-  RAYPOOL_ROW("imin", Int, 10, Rd, Ra, B, None, Integer, false, "rd = smaller of ra and b, signed"),
-  RAYPOOL_ROW("imax", Int, 11, Rd, Ra, B, None, Integer, false, "rd = larger of ra and b, signed"),
-  RAYPOOL_ROW("umin", Int, 12, Rd, Ra, B, None, Integer, false, "rd = smaller of ra and b, unsigned"),
-  RAYPOOL_ROW("umax", Int, 13, Rd, Ra, B, None, Integer, false, "rd = larger of ra and b, unsigned"),
-  RAYPOOL_ROW("sel",  Int, 14, Rd, Px, Ra, B, Integer, false, "rd = px ? ra : b"),
-  // Flt
-  RAYPOOL_ROW("fadd", Flt, 0, Rd, Ra, B, None, Float, false, "rd = ra + b"),
-  RAYPOOL_ROW("fsub", Flt, 1, Rd, Ra, B, None, Float, false, "rd = ra - b"),
-  RAYPOOL_ROW("fmul", Flt, 2, Rd, Ra, B, None, Float, false, "rd = ra * b"),
-  RAYPOOL_ROW("fmin", Flt, 3, Rd, Ra, B, None, Float, false, "rd = smaller of ra and b; the number if one is a NaN; -0 < +0"),
-  RAYPOOL_ROW("fmax", Flt, 4, Rd, Ra, B, None, Float, false, "rd = larger of ra and b; the number if one is a NaN; -0 < +0"),
-  RAYPOOL_ROW("f2i",  Flt, 5, Rd, Ra, None, None, None, false, "rd = signed integer, towards zero, saturating; NaN gives 0"),
-  RAYPOOL_ROW("i2f",  Flt, 6, Rd, Ra, None, None, None, false, "rd = float of signed ra"),
-  RAYPOOL_ROW_WITH(FusedMultiplyAdd, "ffma", Flt, 7, Rd, Ra, B, Rc, Float, false, "rd = ra * b + rc, one rounding"),
-  // Slw
-  RAYPOOL_ROW("fdiv",  Slw, 0, Rd, Ra, B, None, Float, false, "rd = ra / b"),
-  RAYPOOL_ROW("fsqrt", Slw, 1, Rd, Ra, None, None, None, false, "rd = square root of ra"),
-  RAYPOOL_ROW("frsqrt",Slw, 2, Rd, Ra, None, None, None, false, "rd = 1 / square root of ra, one rounding"),
-  RAYPOOL_ROW("frcp",  Slw, 3, Rd, Ra, None, None, None, false, "rd = 1 / ra"),
-  // Ray
-  RAYPOOL_ROW("rin",  Ray, 0, None, None, None, None, None, false, "wait for the imported packages, make them current"),
-  RAYPOOL_ROW("rout", Ray, 1, None, None, None, None, None, false, "export masked lanes' rays to the ray pool"),
-  RAYPOOL_ROW("rfb",  Ray, 2, None, None, None, None, None, false, "export masked lanes' pixel and colour to the frame buffer"),
-  RAYPOOL_ROW("rld",  Ray, 3, Rd, Word, None, None, None, false, "rd = word of the current slice"),
-  RAYPOOL_ROW("rst",  Ray, 4, Word, B, None, None, Float, false, "word of the current slice = b"),
-#undef RAYPOOL_ROW
-#undef RAYPOOL_ROW_WITH
+inline constexpr AluType alu_of(Opcode opcode) { return static_cast<AluType>(static_cast<int>(opcode) >> 5); }
+
+namespace mnemonic {
+/// The name of a row in lower case.
+template <size_t kSize>
+struct Text {
+  char text[kSize] = {};
+  constexpr explicit Text(const char (&name)[kSize]) {
+    for (size_t i = 0; i < kSize; ++i)
+      text[i] = static_cast<char>(name[i] >= 'A' && name[i] <= 'Z' ? name[i] - 'A' + 'a' : name[i]);
+  }
 };
-// clang-format on
+#define RAYPOOL_ROW(name, ...) inline constexpr Text name(#name);
+RAYPOOL_INSTRUCTIONS(RAYPOOL_ROW)
+#undef RAYPOOL_ROW
+}  // namespace mnemonic
+
+struct InstructionInfo {
+  std::string_view mnemonic;
+  Opcode opcode;
+  AluType unit;
+  std::array<Operand, 4> operands;
+  ImmediateType immediate;  ///< type of B when it is an immediate
+  Kind kind;
+  bool control;
+  std::string_view meaning;
+  Feature needs = Feature::Base;
+
+  constexpr AluType alu() const { return alu_of(opcode); }
+  /// Number within the type, 0 .. 31.
+  constexpr int operation() const { return static_cast<int>(opcode) & 31; }
+};
+
+inline constexpr InstructionInfo kInstructions[] = {
+// clang-format off
+#define RAYPOOL_ROW(name, type, number, o0, o1, o2, o3, immediate, kind, ...) \
+  {mnemonic::name.text, Opcode::name, AluType::type, {Operand::o0, Operand::o1, Operand::o2, Operand::o3}, \
+   ImmediateType::immediate, Kind::kind, Kind::kind == Kind::Control, __VA_ARGS__},
+    // clang-format on
+    RAYPOOL_INSTRUCTIONS(RAYPOOL_ROW)
+#undef RAYPOOL_ROW
+};
 
 inline constexpr int kRegisters = 16;
 inline constexpr int kPredicates = 16;

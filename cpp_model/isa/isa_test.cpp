@@ -95,15 +95,15 @@ TEST(InstructionTable, RowsHaveDistinctEncodingsAndNames) {
   std::set<std::pair<int, int>> encodings;
   std::set<std::string_view> names;
   for (const InstructionInfo& info : kInstructions) {
-    EXPECT_TRUE(encodings.emplace(static_cast<int>(info.unit), info.operation).second) << info.mnemonic;
+    EXPECT_TRUE(encodings.emplace(static_cast<int>(info.alu()), info.operation()).second) << info.mnemonic;
     EXPECT_TRUE(names.insert(info.mnemonic).second) << info.mnemonic;
-    EXPECT_LT(info.operation, 32) << info.mnemonic;
+    EXPECT_LT(info.operation(), 32) << info.mnemonic;
     EXPECT_EQ(find_instruction(info.mnemonic), &info);
-    EXPECT_EQ(find_instruction(static_cast<int>(info.unit), info.operation), &info);
+    EXPECT_EQ(find_instruction(static_cast<int>(info.alu()), info.operation()), &info);
   }
 }
 
-TEST(UnitTable, NamesAreThreeLowerCaseLettersAndDistinct) {
+TEST(AluTable, NamesAreThreeLowerCaseLettersAndDistinct) {
   std::set<std::string_view> names;
   for (const AluInfo& info : kAluTable) {
     EXPECT_EQ(info.name.size(), 3u) << info.name;
@@ -112,9 +112,9 @@ TEST(UnitTable, NamesAreThreeLowerCaseLettersAndDistinct) {
   }
 }
 
-TEST(UnitTable, ThirdOperandsReachFltOnly) {
+TEST(AluTable, ThirdOperandsReachFltOnly) {
   for (const InstructionInfo& info : kInstructions) {
-    EXPECT_TRUE(info.unit == AluType::Flt || !has_operand(info, Operand::Rc)) << info.mnemonic;
+    EXPECT_TRUE(info.alu() == AluType::Flt || !has_operand(info, Operand::Rc)) << info.mnemonic;
   }
 }
 

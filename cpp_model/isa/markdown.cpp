@@ -54,7 +54,7 @@ std::string syntax(const InstructionInfo& info) {
 
 const char* marks(const InstructionInfo& info) {
   if (info.needs == Feature::FusedMultiplyAdd) return "*fma*";
-  return info.control ? "*c*" : "";
+  return info.kind == Kind::Control ? "*c*" : "";
 }
 
 constexpr const char* kIntroduction = R"(# Instruction set
@@ -125,8 +125,8 @@ std::string isa_markdown() {
     text += fmt::format("\n### {}: {} (unit {})\n\n| op | instruction | | meaning |\n| --- | --- | --- | --- |\n",
                         kAluTable[type].name, kAluTable[type].title, type);
     for (const InstructionInfo& info : kInstructions) {
-      if (static_cast<int>(info.unit) != type) continue;
-      text += fmt::format("| {} | `{}` | {} | {} |\n", info.operation, syntax(info), marks(info), info.meaning);
+      if (static_cast<int>(info.alu()) != type) continue;
+      text += fmt::format("| {} | `{}` | {} | {} |\n", info.operation(), syntax(info), marks(info), info.meaning);
     }
   }
   return text;

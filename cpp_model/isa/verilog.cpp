@@ -24,10 +24,10 @@ std::string labels(Wanted wanted) {
     std::string names;
     int in_line = 0;
     for (const InstructionInfo& info : kInstructions) {
-      if (static_cast<int>(info.unit) != type || !wanted(info)) continue;
+      if (static_cast<int>(info.alu()) != type || !wanted(info)) continue;
       if (in_line > 0) line += in_line % 16 == 0 ? ",\n        " : ", ";
       ++in_line;
-      line += fmt::format("9'd{}", type * 32 + info.operation);
+      line += fmt::format("9'd{}", type * 32 + info.operation());
       names += fmt::format(" {}", info.mnemonic);
     }
     if (line.empty()) continue;
@@ -76,7 +76,8 @@ std::string isa_verilog() {
   }
   text += "\n  // operations\n";
   for (const InstructionInfo& info : kInstructions) {
-    text += fmt::format("  localparam [4:0] ISA_{}_{} = 5'd{};\n", verilog_name(info.unit), upper(info.mnemonic), info.operation);
+    text +=
+        fmt::format("  localparam [4:0] ISA_{}_{} = 5'd{};\n", verilog_name(info.alu()), upper(info.mnemonic), info.operation());
   }
   text += "\n  // fields of an instruction\n";
   for (const Field& each : kFields) {
@@ -114,7 +115,7 @@ std::string isa_verilog_functions() {
   text += function_of_row("isa_writes_predicate", "writes predicate pd",
                           [](const InstructionInfo& info) { return writes_predicate(info); });
   text += function_of_row("isa_control", "stops the instruction routine until its write-back",
-                          [](const InstructionInfo& info) { return info.control; });
+                          [](const InstructionInfo& info) { return info.kind == Kind::Control; });
   return text;
 }
 

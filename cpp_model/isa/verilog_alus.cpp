@@ -22,7 +22,7 @@ std::string count_of(const std::string& name, const AluInfo& info) { return info
 
 bool has_third_operand(AluType type) {
   for (const InstructionInfo& info : kInstructions) {
-    if (info.unit == type && has_operand(info, Operand::Rc)) return true;
+    if (info.alu() == type && has_operand(info, Operand::Rc)) return true;
   }
   return false;
 }

@@ -10,8 +10,6 @@ std::string to_string(const Location& location) {
   return fmt::format("{}:{}", file, location.line);
 }
 
-bool is(const Op& op, std::string_view mnemonic) { return op.info != nullptr && op.info->mnemonic == mnemonic; }
-
 Effects effects(const Op& op) {
   Effects result;
   if (op.kind != Op::Kind::Instruction) return result;
@@ -67,8 +65,8 @@ bool is_pure(const Op& op) {
 
 bool is_copy(const Op& op) {
   if (op.kind != Op::Kind::Instruction) return false;
-  if (is(op, "mov")) return !op.b_is_immediate;
-  return is(op, "pand") && op.px == op.rb && op.guard.all();
+  if (is(op, Opcode::Mov)) return !op.b_is_immediate;
+  return is(op, Opcode::Pand) && op.px == op.rb && op.guard.all();
 }
 
 }  // namespace raypool::kernel

@@ -72,6 +72,6 @@ Effects effects(const Op& op);
 bool is_pure(const Op& op);
 /// True for a copy of one register or predicate to another, in all lanes that matter.
 bool is_copy(const Op& op);
-bool is(const Op& op, std::string_view mnemonic);
+inline bool is(const Op& op, Opcode opcode) { return op.info != nullptr && op.info->opcode == opcode; }
 
 }  // namespace raypool::kernel

@@ -11,7 +11,7 @@ std::vector<std::vector<size_t>> find_successors(const Function& function) {
   for (size_t i = 0; i < ops.size(); ++i) {
     if (ops[i].kind != Op::Kind::Instruction)
       label_at[static_cast<size_t>(ops[i].label)] = i;
-    else if (is(ops[i], "loop"))
+    else if (is(ops[i], Opcode::Loop))
       loop_at[static_cast<size_t>(ops[i].label)] = i;
   }
   std::vector<std::vector<size_t>> successors(ops.size());
@@ -19,11 +19,11 @@ std::vector<std::vector<size_t>> find_successors(const Function& function) {
     const Op& op = ops[i];
     if (op.kind == Op::Kind::LoopEnd) {
       successors[i] = {loop_at[static_cast<size_t>(op.label)]};  // the loop runs again and decides
-    } else if (is(op, "loop")) {
+    } else if (is(op, Opcode::Loop)) {
       successors[i] = {i + 1, label_at[static_cast<size_t>(op.label)] + 1};
-    } else if (is(op, "jnone") || is(op, "jany")) {
+    } else if (is(op, Opcode::Jnone) || is(op, Opcode::Jany)) {
       successors[i] = {i + 1, label_at[static_cast<size_t>(op.label)]};
-    } else if (!is(op, "exit")) {
+    } else if (!is(op, Opcode::Exit)) {
       successors[i] = {i + 1};
     }
   }

@@ -1,6 +1,5 @@
 // Passes over intermediate code that make it shorter or easier to allocate. None changes what a kernel computes.
 #include <algorithm>
-#include <map>
 #include <optional>
 
 #include "kernel/compiler.hpp"
@@ -27,24 +26,63 @@ std::vector<int> find_single_definitions(const Function& function, bool predicat
   return definitions;
 }
 
-/// The instruction that gives the same result with ra and rb exchanged, null if there is none.
-const InstructionInfo* exchanged(const InstructionInfo& info) {
-  static const std::map<std::string_view, std::string_view> kExchanged = {
-      {"iadd", "iadd"}, {"imul", "imul"}, {"and", "and"},   {"or", "or"},     {"xor", "xor"},   {"imin", "imin"},
-      {"imax", "imax"}, {"umin", "umin"}, {"umax", "umax"}, {"fadd", "fadd"}, {"fmul", "fmul"}, {"fmin", "fmin"},
-      {"fmax", "fmax"}, {"ffma", "ffma"}, {"ieq", "ieq"},   {"ine", "ine"},   {"ilt", "igt"},   {"ile", "ige"},
-      {"igt", "ilt"},   {"ige", "ile"},   {"ult", "ugt"},   {"ule", "uge"},   {"ugt", "ult"},   {"uge", "ule"},
-      {"feq", "feq"},   {"fne", "fne"},   {"flt", "fgt"},   {"fle", "fge"},   {"fgt", "flt"},   {"fge", "fle"}};
-  const auto found = kExchanged.find(info.mnemonic);
-  return found == kExchanged.end() ? nullptr : &instruction(found->second);
+/// The operation that gives the same result with ra and rb exchanged, if there is one.
+std::optional<Opcode> exchanged(Opcode opcode) {
+  switch (opcode) {
+    case Opcode::Iadd:
+    case Opcode::Imul:
+    case Opcode::And:
+    case Opcode::Or:
+    case Opcode::Xor:
+    case Opcode::Imin:
+    case Opcode::Imax:
+    case Opcode::Umin:
+    case Opcode::Umax:
+    case Opcode::Fadd:
+    case Opcode::Fmul:
+    case Opcode::Fmin:
+    case Opcode::Fmax:
+    case Opcode::Ffma:
+    case Opcode::Ieq:
+    case Opcode::Ine:
+    case Opcode::Feq:
+    case Opcode::Fne:
+      return opcode;
+    case Opcode::Ilt:
+      return Opcode::Igt;
+    case Opcode::Ile:
+      return Opcode::Ige;
+    case Opcode::Igt:
+      return Opcode::Ilt;
+    case Opcode::Ige:
+      return Opcode::Ile;
+    case Opcode::Ult:
+      return Opcode::Ugt;
+    case Opcode::Ule:
+      return Opcode::Uge;
+    case Opcode::Ugt:
+      return Opcode::Ult;
+    case Opcode::Uge:
+      return Opcode::Ule;
+    case Opcode::Flt:
+      return Opcode::Fgt;
+    case Opcode::Fle:
+      return Opcode::Fge;
+    case Opcode::Fgt:
+      return Opcode::Flt;
+    case Opcode::Fge:
+      return Opcode::Fle;
+    default:
+      return std::nullopt;
+  }
 }
 
-bool ends_block(const Op& op) { return op.kind != Op::Kind::Instruction || op.info->control; }
+bool ends_block(const Op& op) { return op.kind != Op::Kind::Instruction || op.info->kind == Kind::Control; }
 
 /// Needs no register: its value can be made anywhere before its use.
 bool is_leaf(const Op& op) {
   if (op.kind != Op::Kind::Instruction || !op.fresh || !writes_register(*op.info)) return false;
-  return op.info->unit == AluType::Tid || is(op, "rld") || (is(op, "mov") && op.b_is_immediate);
+  return op.info->alu() == AluType::Tid || is(op, Opcode::Rld) || (is(op, Opcode::Mov) && op.b_is_immediate);
 }
 
 /// True if the leaf must stay before `op`.
@@ -56,8 +94,8 @@ bool blocks_leaf(const Op& leaf, const Op& op) {
   for (const int used : effect.register_uses) {
     if (used == leaf.rd) return true;
   }
-  if (!is(leaf, "rld")) return false;
-  return is(op, "rin") || is(op, "rout") || is(op, "rfb") || (is(op, "rst") && op.word == leaf.word);
+  if (!is(leaf, Opcode::Rld)) return false;
+  return op.info->kind == Kind::Swap || (is(op, Opcode::Rst) && op.word == leaf.word);
 }
 
 }  // namespace
@@ -70,14 +108,15 @@ void fold_constants(Function& function) {
     const auto constant = [&](int number) -> std::optional<uint32_t> {
       if (number == kNothing || definitions[static_cast<size_t>(number)] == kNothing) return std::nullopt;
       const Op& op = function.ops[static_cast<size_t>(definitions[static_cast<size_t>(number)])];
-      if (!is(op, "mov") || !op.b_is_immediate || !op.fresh) return std::nullopt;
+      if (!is(op, Opcode::Mov) || !op.b_is_immediate || !op.fresh) return std::nullopt;
       return op.immediate;
     };
     for (Op& op : function.ops) {
       if (op.kind != Op::Kind::Instruction || !has_operand(*op.info, Operand::B) || op.b_is_immediate) continue;
       std::optional<uint32_t> value = constant(op.rb);
-      if (!value && constant(op.ra) && exchanged(*op.info) != nullptr) {
-        op.info = exchanged(*op.info);
+      const std::optional<Opcode> other = exchanged(op.info->opcode);
+      if (!value && constant(op.ra) && other) {
+        op.info = &instruction(*other);
         std::swap(op.ra, op.rb);
         value = constant(op.rb);
       }
@@ -100,7 +139,7 @@ void fold_addresses(Function& function) {
       const int sum = definitions[static_cast<size_t>(op.ra)];
       if (sum == kNothing) continue;
       const Op& add = function.ops[static_cast<size_t>(sum)];
-      if (!is(add, "iadd") || !add.b_is_immediate || !add.fresh) continue;
+      if (!is(add, Opcode::Iadd) || !add.b_is_immediate || !add.fresh) continue;
       // The base must hold the same value at the access as at the addition: it is written once, before both.
       const int base = definitions[static_cast<size_t>(add.ra)];
       if (base == kNothing || !function.ops[static_cast<size_t>(base)].fresh) continue;
@@ -124,7 +163,7 @@ void join_conditions(Function& function) {
   std::vector<size_t> removed;
   for (size_t i = 0; i < function.ops.size(); ++i) {
     const Op& op = function.ops[i];
-    if (!is(op, "pand") || op.px == op.rb || op.px == 0 || op.rb == 0) continue;
+    if (!is(op, Opcode::Pand) || op.px == op.rb || op.px == 0 || op.rb == 0) continue;
     const int first = definitions[static_cast<size_t>(op.px)];
     const int second = definitions[static_cast<size_t>(op.rb)];
     if (first == kNothing || second == kNothing) continue;

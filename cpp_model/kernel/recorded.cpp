@@ -17,19 +17,19 @@ void check(const char* what, int number, int count, const Location& where) {
 
 int RecordedKernel::argument(int number, const Location& where) {
   check("kernel argument", number, kArguments, where);
-  const int rd = recorder_.emit_value("arg", where);
+  const int rd = recorder_.emit_value(Opcode::Arg, where);
   recorder_.last_op().immediate = static_cast<uint32_t>(number);
   return rd;
 }
 
 int RecordedKernel::load(const Int& address, int offset, const Location& where) {
-  const int rd = recorder_.emit_unary("ld", address.number(), where);
+  const int rd = recorder_.emit_unary(Opcode::Ld, address.number(), where);
   recorder_.last_op().immediate = static_cast<uint32_t>(offset);
   return rd;
 }
 
 void RecordedKernel::store_number(const Int& address, int offset, int value, const Location& where) {
-  Op& op = recorder_.emit("st", where);
+  Op& op = recorder_.emit(Opcode::St, where);
   op.ra = address.number();
   op.rb = value;
   op.immediate = static_cast<uint32_t>(offset);
@@ -37,14 +37,14 @@ void RecordedKernel::store_number(const Int& address, int offset, int value, con
 
 int RecordedKernel::word(int number, const Location& where) {
   check("ray word", number, kIntersectionWords, where);
-  const int rd = recorder_.emit_value("rld", where);
+  const int rd = recorder_.emit_value(Opcode::Rld, where);
   recorder_.last_op().word = static_cast<uint8_t>(number);
   return rd;
 }
 
 void RecordedKernel::write_word(int number, int value, const Location& where) {
   check("ray word", number, kIntersectionWords, where);
-  Op& op = recorder_.emit("rst", where);
+  Op& op = recorder_.emit(Opcode::Rst, where);
   op.rb = value;
   op.word = static_cast<uint8_t>(number);
 }

@@ -69,10 +69,10 @@ class FloatOperand {
 class Bool {
  public:
   Bool(bool literal, Location where = Location::here())
-      : number_(Recorder::active().emit_predicates(literal ? "pand" : "pxor", 0, 0, where)) {}
+      : number_(Recorder::active().emit_predicates(literal ? Opcode::Pand : Opcode::Pxor, 0, 0, where)) {}
   Bool(const Negation& value) : number_(Recorder::active().materialise(value.condition())) {}
   Bool(const Bool& other, Location where = Location::here())
-      : number_(Recorder::active().emit_predicates("pand", other.number_, other.number_, where)) {}
+      : number_(Recorder::active().emit_predicates(Opcode::Pand, other.number_, other.number_, where)) {}
   Bool(Bool&& other) noexcept : number_(other.number_) {}
   Bool& operator=(const Bool& other) {
     Recorder::active().assign_predicate(number_, other.number_, false);
@@ -146,7 +146,7 @@ class Float {
 
 inline BoolOperand::BoolOperand(const Bool& value, Location where) : condition_{value.number(), false, where} {}
 inline BoolOperand::BoolOperand(bool literal, Location where)
-    : condition_{Recorder::active().emit_predicates(literal ? "pand" : "pxor", 0, 0, where), false, where} {}
+    : condition_{Recorder::active().emit_predicates(literal ? Opcode::Pand : Opcode::Pxor, 0, 0, where), false, where} {}
 inline IntOperand::IntOperand(const Int& value, Location place) : number(value.number()), where(place) {}
 inline FloatOperand::FloatOperand(const Float& value, Location place) : number(value.number()), where(place) {}
 
@@ -154,16 +154,16 @@ inline FloatOperand::FloatOperand(const Float& value, Location place) : number(v
 inline Int int_value(int number) { return Int(Int::Number{number}); }
 inline Float float_value(int number) { return Float(Float::Number{number}); }
 template <typename Operand>
-int unary(std::string_view mnemonic, const Operand& a) {
-  return Recorder::active().emit_unary(mnemonic, a.number, a.where);
+int unary(Opcode opcode, const Operand& a) {
+  return Recorder::active().emit_unary(opcode, a.number, a.where);
 }
 template <typename Operand>
-int binary(std::string_view mnemonic, const Operand& a, const Operand& b) {
-  return Recorder::active().emit_binary(mnemonic, a.number, b.number, a.where);
+int binary(Opcode opcode, const Operand& a, const Operand& b) {
+  return Recorder::active().emit_binary(opcode, a.number, b.number, a.where);
 }
 template <typename Operand>
-Bool compare(std::string_view mnemonic, const Operand& a, const Operand& b) {
-  return Bool::of(binary(mnemonic, a, b));
+Bool compare(Opcode opcode, const Operand& a, const Operand& b) {
+  return Bool::of(binary(opcode, a, b));
 }
 
 // Conditions
@@ -174,89 +174,92 @@ inline Negation operator!(const BoolOperand& a) {
 }
 inline Bool operator&&(const BoolOperand& a, const BoolOperand& b) {
   Recorder& recorder = Recorder::active();
-  if (b.condition().negated) return Bool::of(recorder.emit_predicates("pandn", a.positive(), b.condition().predicate, a.where()));
+  if (b.condition().negated)
+    return Bool::of(recorder.emit_predicates(Opcode::Pandn, a.positive(), b.condition().predicate, a.where()));
   if (a.condition().negated)
-    return Bool::of(recorder.emit_predicates("pandn", b.condition().predicate, a.condition().predicate, a.where()));
-  return Bool::of(recorder.emit_predicates("pand", a.condition().predicate, b.condition().predicate, a.where()));
+    return Bool::of(recorder.emit_predicates(Opcode::Pandn, b.condition().predicate, a.condition().predicate, a.where()));
+  return Bool::of(recorder.emit_predicates(Opcode::Pand, a.condition().predicate, b.condition().predicate, a.where()));
 }
 inline Bool operator||(const BoolOperand& a, const BoolOperand& b) {
   const int px = a.positive();
-  return Bool::of(Recorder::active().emit_predicates("por", px, b.positive(), a.where()));
+  return Bool::of(Recorder::active().emit_predicates(Opcode::Por, px, b.positive(), a.where()));
 }
 inline Bool operator^(const BoolOperand& a, const BoolOperand& b) {
   const int px = a.positive();
-  return Bool::of(Recorder::active().emit_predicates("pxor", px, b.positive(), a.where()));
+  return Bool::of(Recorder::active().emit_predicates(Opcode::Pxor, px, b.positive(), a.where()));
 }
 
 // Integers
-inline Int operator+(const IntOperand& a, const IntOperand& b) { return int_value(binary("iadd", a, b)); }
-inline Int operator-(const IntOperand& a, const IntOperand& b) { return int_value(binary("isub", a, b)); }
-inline Int operator*(const IntOperand& a, const IntOperand& b) { return int_value(binary("imul", a, b)); }
-inline Int operator&(const IntOperand& a, const IntOperand& b) { return int_value(binary("and", a, b)); }
-inline Int operator|(const IntOperand& a, const IntOperand& b) { return int_value(binary("or", a, b)); }
-inline Int operator^(const IntOperand& a, const IntOperand& b) { return int_value(binary("xor", a, b)); }
-inline Int operator<<(const IntOperand& a, const IntOperand& b) { return int_value(binary("shl", a, b)); }
-inline Int operator>>(const IntOperand& a, const IntOperand& b) { return int_value(binary("sar", a, b)); }
-inline Int shift_right_logical(const IntOperand& a, const IntOperand& b) { return int_value(binary("shr", a, b)); }
-inline Int operator~(const IntOperand& a) { return int_value(Recorder::active().emit_immediate("xor", a.number, ~0u, a.where)); }
+inline Int operator+(const IntOperand& a, const IntOperand& b) { return int_value(binary(Opcode::Iadd, a, b)); }
+inline Int operator-(const IntOperand& a, const IntOperand& b) { return int_value(binary(Opcode::Isub, a, b)); }
+inline Int operator*(const IntOperand& a, const IntOperand& b) { return int_value(binary(Opcode::Imul, a, b)); }
+inline Int operator&(const IntOperand& a, const IntOperand& b) { return int_value(binary(Opcode::And, a, b)); }
+inline Int operator|(const IntOperand& a, const IntOperand& b) { return int_value(binary(Opcode::Or, a, b)); }
+inline Int operator^(const IntOperand& a, const IntOperand& b) { return int_value(binary(Opcode::Xor, a, b)); }
+inline Int operator<<(const IntOperand& a, const IntOperand& b) { return int_value(binary(Opcode::Shl, a, b)); }
+inline Int operator>>(const IntOperand& a, const IntOperand& b) { return int_value(binary(Opcode::Sar, a, b)); }
+inline Int shift_right_logical(const IntOperand& a, const IntOperand& b) { return int_value(binary(Opcode::Shr, a, b)); }
+inline Int operator~(const IntOperand& a) {
+  return int_value(Recorder::active().emit_immediate(Opcode::Xor, a.number, ~0u, a.where));
+}
 inline Int operator-(const IntOperand& a) {
   const int zero = Recorder::active().emit_constant(0, a.where);
-  return int_value(Recorder::active().emit_binary("isub", zero, a.number, a.where));
+  return int_value(Recorder::active().emit_binary(Opcode::Isub, zero, a.number, a.where));
 }
-inline Int min(const IntOperand& a, const IntOperand& b) { return int_value(binary("imin", a, b)); }
-inline Int max(const IntOperand& a, const IntOperand& b) { return int_value(binary("imax", a, b)); }
-inline Int min_unsigned(const IntOperand& a, const IntOperand& b) { return int_value(binary("umin", a, b)); }
-inline Int max_unsigned(const IntOperand& a, const IntOperand& b) { return int_value(binary("umax", a, b)); }
+inline Int min(const IntOperand& a, const IntOperand& b) { return int_value(binary(Opcode::Imin, a, b)); }
+inline Int max(const IntOperand& a, const IntOperand& b) { return int_value(binary(Opcode::Imax, a, b)); }
+inline Int min_unsigned(const IntOperand& a, const IntOperand& b) { return int_value(binary(Opcode::Umin, a, b)); }
+inline Int max_unsigned(const IntOperand& a, const IntOperand& b) { return int_value(binary(Opcode::Umax, a, b)); }
 inline Int select(const BoolOperand& condition, const IntOperand& a, const IntOperand& b) {
   return int_value(Recorder::active().emit_select(condition.condition(), a.number, b.number, condition.where()));
 }
-inline Bool operator==(const IntOperand& a, const IntOperand& b) { return compare("ieq", a, b); }
-inline Bool operator!=(const IntOperand& a, const IntOperand& b) { return compare("ine", a, b); }
-inline Bool operator<(const IntOperand& a, const IntOperand& b) { return compare("ilt", a, b); }
-inline Bool operator<=(const IntOperand& a, const IntOperand& b) { return compare("ile", a, b); }
-inline Bool operator>(const IntOperand& a, const IntOperand& b) { return compare("igt", a, b); }
-inline Bool operator>=(const IntOperand& a, const IntOperand& b) { return compare("ige", a, b); }
-inline Bool less_unsigned(const IntOperand& a, const IntOperand& b) { return compare("ult", a, b); }
-inline Bool less_equal_unsigned(const IntOperand& a, const IntOperand& b) { return compare("ule", a, b); }
+inline Bool operator==(const IntOperand& a, const IntOperand& b) { return compare(Opcode::Ieq, a, b); }
+inline Bool operator!=(const IntOperand& a, const IntOperand& b) { return compare(Opcode::Ine, a, b); }
+inline Bool operator<(const IntOperand& a, const IntOperand& b) { return compare(Opcode::Ilt, a, b); }
+inline Bool operator<=(const IntOperand& a, const IntOperand& b) { return compare(Opcode::Ile, a, b); }
+inline Bool operator>(const IntOperand& a, const IntOperand& b) { return compare(Opcode::Igt, a, b); }
+inline Bool operator>=(const IntOperand& a, const IntOperand& b) { return compare(Opcode::Ige, a, b); }
+inline Bool less_unsigned(const IntOperand& a, const IntOperand& b) { return compare(Opcode::Ult, a, b); }
+inline Bool less_equal_unsigned(const IntOperand& a, const IntOperand& b) { return compare(Opcode::Ule, a, b); }
 inline Int& Int::operator+=(const IntOperand& b) { return *this = IntOperand(*this, b.where) + b; }
 inline Int& Int::operator-=(const IntOperand& b) { return *this = IntOperand(*this, b.where) - b; }
 inline Int& Int::operator*=(const IntOperand& b) { return *this = IntOperand(*this, b.where) * b; }
 
 // Floats
-inline Float operator+(const FloatOperand& a, const FloatOperand& b) { return float_value(binary("fadd", a, b)); }
-inline Float operator-(const FloatOperand& a, const FloatOperand& b) { return float_value(binary("fsub", a, b)); }
-inline Float operator*(const FloatOperand& a, const FloatOperand& b) { return float_value(binary("fmul", a, b)); }
-inline Float operator/(const FloatOperand& a, const FloatOperand& b) { return float_value(binary("fdiv", a, b)); }
+inline Float operator+(const FloatOperand& a, const FloatOperand& b) { return float_value(binary(Opcode::Fadd, a, b)); }
+inline Float operator-(const FloatOperand& a, const FloatOperand& b) { return float_value(binary(Opcode::Fsub, a, b)); }
+inline Float operator*(const FloatOperand& a, const FloatOperand& b) { return float_value(binary(Opcode::Fmul, a, b)); }
+inline Float operator/(const FloatOperand& a, const FloatOperand& b) { return float_value(binary(Opcode::Fdiv, a, b)); }
 inline Float multiply_add(const FloatOperand& a, const FloatOperand& b, const FloatOperand& c) {
   return float_value(Recorder::active().emit_multiply_add(a.number, b.number, c.number, a.where));
 }
 inline Float operator-(const FloatOperand& a) {
-  return float_value(Recorder::active().emit_immediate("xor", a.number, 0x80000000u, a.where));
+  return float_value(Recorder::active().emit_immediate(Opcode::Xor, a.number, 0x80000000u, a.where));
 }
 inline Float abs(const FloatOperand& a) {
-  return float_value(Recorder::active().emit_immediate("and", a.number, 0x7fffffffu, a.where));
+  return float_value(Recorder::active().emit_immediate(Opcode::And, a.number, 0x7fffffffu, a.where));
 }
-inline Float min(const FloatOperand& a, const FloatOperand& b) { return float_value(binary("fmin", a, b)); }
-inline Float max(const FloatOperand& a, const FloatOperand& b) { return float_value(binary("fmax", a, b)); }
-inline Float sqrt(const FloatOperand& a) { return float_value(unary("fsqrt", a)); }
-inline Float rsqrt(const FloatOperand& a) { return float_value(unary("frsqrt", a)); }
-inline Float rcp(const FloatOperand& a) { return float_value(unary("frcp", a)); }
+inline Float min(const FloatOperand& a, const FloatOperand& b) { return float_value(binary(Opcode::Fmin, a, b)); }
+inline Float max(const FloatOperand& a, const FloatOperand& b) { return float_value(binary(Opcode::Fmax, a, b)); }
+inline Float sqrt(const FloatOperand& a) { return float_value(unary(Opcode::Fsqrt, a)); }
+inline Float rsqrt(const FloatOperand& a) { return float_value(unary(Opcode::Frsqrt, a)); }
+inline Float rcp(const FloatOperand& a) { return float_value(unary(Opcode::Frcp, a)); }
 inline Float select(const BoolOperand& condition, const FloatOperand& a, const FloatOperand& b) {
   return float_value(Recorder::active().emit_select(condition.condition(), a.number, b.number, condition.where()));
 }
-inline Bool operator==(const FloatOperand& a, const FloatOperand& b) { return compare("feq", a, b); }
-inline Bool operator!=(const FloatOperand& a, const FloatOperand& b) { return compare("fne", a, b); }
-inline Bool operator<(const FloatOperand& a, const FloatOperand& b) { return compare("flt", a, b); }
-inline Bool operator<=(const FloatOperand& a, const FloatOperand& b) { return compare("fle", a, b); }
-inline Bool operator>(const FloatOperand& a, const FloatOperand& b) { return compare("fgt", a, b); }
-inline Bool operator>=(const FloatOperand& a, const FloatOperand& b) { return compare("fge", a, b); }
+inline Bool operator==(const FloatOperand& a, const FloatOperand& b) { return compare(Opcode::Feq, a, b); }
+inline Bool operator!=(const FloatOperand& a, const FloatOperand& b) { return compare(Opcode::Fne, a, b); }
+inline Bool operator<(const FloatOperand& a, const FloatOperand& b) { return compare(Opcode::Flt, a, b); }
+inline Bool operator<=(const FloatOperand& a, const FloatOperand& b) { return compare(Opcode::Fle, a, b); }
+inline Bool operator>(const FloatOperand& a, const FloatOperand& b) { return compare(Opcode::Fgt, a, b); }
+inline Bool operator>=(const FloatOperand& a, const FloatOperand& b) { return compare(Opcode::Fge, a, b); }
 inline Float& Float::operator+=(const FloatOperand& b) { return *this = FloatOperand(*this, b.where) + b; }
 inline Float& Float::operator-=(const FloatOperand& b) { return *this = FloatOperand(*this, b.where) - b; }
 inline Float& Float::operator*=(const FloatOperand& b) { return *this = FloatOperand(*this, b.where) * b; }
 
 // Conversions; the `as_` ones keep the bits.
-inline Int to_int(const FloatOperand& a) { return int_value(unary("f2i", a)); }
-inline Float to_float(const IntOperand& a) { return float_value(unary("i2f", a)); }
+inline Int to_int(const FloatOperand& a) { return int_value(unary(Opcode::F2i, a)); }
+inline Float to_float(const IntOperand& a) { return float_value(unary(Opcode::I2f, a)); }
 inline Int as_int(const FloatOperand& a) { return int_value(Recorder::active().emit_copy(a.number, a.where)); }
 inline Float as_float(const IntOperand& a) { return float_value(Recorder::active().emit_copy(a.number, a.where)); }
 
@@ -272,10 +275,10 @@ class RecordedKernel {
 
   explicit RecordedKernel(Recorder& recorder) : recorder_(recorder) {}
 
-  Int thread(Location where = Location::here()) { return index("tid", where); }
-  Int block(Location where = Location::here()) { return index("block", where); }
-  Int threads(Location where = Location::here()) { return index("threads", where); }
-  Int blocks(Location where = Location::here()) { return index("blocks", where); }
+  Int thread(Location where = Location::here()) { return index(Opcode::Tid, where); }
+  Int block(Location where = Location::here()) { return index(Opcode::Block, where); }
+  Int threads(Location where = Location::here()) { return index(Opcode::Threads, where); }
+  Int blocks(Location where = Location::here()) { return index(Opcode::Blocks, where); }
   Int int_argument(int number, Location where = Location::here()) { return recorded::int_value(argument(number, where)); }
   Float float_argument(int number, Location where = Location::here()) { return recorded::float_value(argument(number, where)); }
 
@@ -292,9 +295,9 @@ class RecordedKernel {
     store_number(address, offset, value.number(), where);
   }
 
-  void ray_in(Location where = Location::here()) { recorder_.emit("rin", where); }
-  void ray_out(Location where = Location::here()) { recorder_.emit("rout", where); }
-  void frame_out(Location where = Location::here()) { recorder_.emit("rfb", where); }
+  void ray_in(Location where = Location::here()) { recorder_.emit(Opcode::Rin, where); }
+  void ray_out(Location where = Location::here()) { recorder_.emit(Opcode::Rout, where); }
+  void frame_out(Location where = Location::here()) { recorder_.emit(Opcode::Rfb, where); }
   Int int_word(int number, Location where = Location::here()) { return recorded::int_value(word(number, where)); }
   Float float_word(int number, Location where = Location::here()) { return recorded::float_value(word(number, where)); }
   void set_word(int number, const Int& value, Location where = Location::here()) { write_word(number, value.number(), where); }
@@ -324,9 +327,7 @@ class RecordedKernel {
   }
 
  private:
-  Int index(std::string_view mnemonic, const Location& where) {
-    return recorded::int_value(recorder_.emit_value(mnemonic, where));
-  }
+  Int index(Opcode opcode, const Location& where) { return recorded::int_value(recorder_.emit_value(opcode, where)); }
   int argument(int number, const Location& where);
   int load(const Int& address, int offset, const Location& where);
   void store_number(const Int& address, int offset, int value, const Location& where);

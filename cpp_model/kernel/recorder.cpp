@@ -31,7 +31,7 @@ Recorder& Recorder::active() {
 }
 
 Function Recorder::finish() {
-  emit("exit", last_);
+  emit(Opcode::Exit, last_);
   return std::move(function_);
 }
 
@@ -45,60 +45,60 @@ int Recorder::new_predicate() {
   return function_.predicates++;
 }
 
-Op& Recorder::emit(std::string_view mnemonic, const Location& where) {
+Op& Recorder::emit(Opcode opcode, const Location& where) {
   Op op;
-  op.info = &instruction(mnemonic);
+  op.info = &instruction(opcode);
   op.guard = guard_;
   op.where = last_ = where;
   function_.ops.push_back(op);
   return function_.ops.back();
 }
 
-int Recorder::emit_value(std::string_view mnemonic, const Location& where) {
-  Op& op = emit(mnemonic, where);
+int Recorder::emit_value(Opcode opcode, const Location& where) {
+  Op& op = emit(opcode, where);
   op.rd = writes_predicate(*op.info) ? new_predicate() : new_register();
   op.fresh = true;
   return op.rd;
 }
 
-int Recorder::emit_unary(std::string_view mnemonic, int ra, const Location& where) {
-  const int rd = emit_value(mnemonic, where);
+int Recorder::emit_unary(Opcode opcode, int ra, const Location& where) {
+  const int rd = emit_value(opcode, where);
   function_.ops.back().ra = ra;
   return rd;
 }
 
-int Recorder::emit_binary(std::string_view mnemonic, int ra, int rb, const Location& where) {
-  const int rd = emit_unary(mnemonic, ra, where);
+int Recorder::emit_binary(Opcode opcode, int ra, int rb, const Location& where) {
+  const int rd = emit_unary(opcode, ra, where);
   function_.ops.back().rb = rb;
   return rd;
 }
 
 int Recorder::emit_multiply_add(int a, int b, int c, const Location& where) {
-  if (!fused_) return emit_binary("fadd", emit_binary("fmul", a, b, where), c, where);
-  const int rd = emit_binary("ffma", a, b, where);
+  if (!fused_) return emit_binary(Opcode::Fadd, emit_binary(Opcode::Fmul, a, b, where), c, where);
+  const int rd = emit_binary(Opcode::Ffma, a, b, where);
   function_.ops.back().rc = c;
   return rd;
 }
 
-int Recorder::emit_immediate(std::string_view mnemonic, int ra, uint32_t immediate, const Location& where) {
-  const int rd = emit_unary(mnemonic, ra, where);
+int Recorder::emit_immediate(Opcode opcode, int ra, uint32_t immediate, const Location& where) {
+  const int rd = emit_unary(opcode, ra, where);
   function_.ops.back().b_is_immediate = true;
   function_.ops.back().immediate = immediate;
   return rd;
 }
 
-int Recorder::emit_constant(uint32_t bits, const Location& where) { return emit_immediate("mov", kNothing, bits, where); }
-int Recorder::emit_copy(int source, const Location& where) { return emit_binary("mov", kNothing, source, where); }
+int Recorder::emit_constant(uint32_t bits, const Location& where) { return emit_immediate(Opcode::Mov, kNothing, bits, where); }
+int Recorder::emit_copy(int source, const Location& where) { return emit_binary(Opcode::Mov, kNothing, source, where); }
 
-int Recorder::emit_predicates(std::string_view mnemonic, int px, int pb, const Location& where) {
-  const int pd = emit_value(mnemonic, where);
+int Recorder::emit_predicates(Opcode opcode, int px, int pb, const Location& where) {
+  const int pd = emit_value(opcode, where);
   function_.ops.back().px = px;
   function_.ops.back().rb = pb;
   return pd;
 }
 
 int Recorder::emit_select(const Condition& condition, int a, int b, const Location& where) {
-  const int rd = emit_binary("sel", condition.negated ? b : a, condition.negated ? a : b, where);
+  const int rd = emit_binary(Opcode::Sel, condition.negated ? b : a, condition.negated ? a : b, where);
   function_.ops.back().px = condition.predicate;
   return rd;
 }
@@ -132,23 +132,23 @@ void Recorder::check_unlocked(int predicate, const Location& where) const {
 void Recorder::assign_predicate(int variable, int source, bool temporary) {
   check_unlocked(variable, last_);
   if (guard_.all()) {
-    if (!temporary || !defined_last(source, true)) emit_predicates("pand", source, source, last_);
+    if (!temporary || !defined_last(source, true)) emit_predicates(Opcode::Pand, source, source, last_);
     function_.ops.back().rd = variable;
     return;
   }
   // A predicate is written in all lanes: (source in the mask) or (old value outside it).
-  const int inside = emit_predicates("pand", source, source, last_);
+  const int inside = emit_predicates(Opcode::Pand, source, source, last_);
   const Guard mask = guard_;
   guard_ = {};
-  const int outside = emit_predicates(mask.negated ? "pand" : "pandn", variable, mask.predicate, last_);
-  emit_predicates("por", inside, outside, last_);
+  const int outside = emit_predicates(mask.negated ? Opcode::Pand : Opcode::Pandn, variable, mask.predicate, last_);
+  emit_predicates(Opcode::Por, inside, outside, last_);
   function_.ops.back().rd = variable;
   guard_ = mask;
 }
 
 int Recorder::materialise(const Condition& condition) {
-  return condition.negated ? emit_predicates("pandn", 0, condition.predicate, condition.where)
-                           : emit_predicates("pand", condition.predicate, condition.predicate, condition.where);
+  return condition.negated ? emit_predicates(Opcode::Pandn, 0, condition.predicate, condition.where)
+                           : emit_predicates(Opcode::Pand, condition.predicate, condition.predicate, condition.where);
 }
 
 Guard Recorder::mask_for(const Condition& condition) {
@@ -178,12 +178,13 @@ void Recorder::close_body() {
   const Block& block = blocks_.back();
   bool swaps_slices = false;
   for (size_t i = block.first_op; i < function_.ops.size(); ++i) {
-    // These concern the whole warp: whether they happen must not depend on the data.
-    for (const char* name : {"rin", "rout", "rfb"}) swaps_slices |= is(function_.ops[i], name);
+    // That concerns the whole warp: whether it happens must not depend on the data.
+    const Op& op = function_.ops[i];
+    swaps_slices |= op.kind == Op::Kind::Instruction && op.info->kind == Kind::Swap;
   }
   if (!swaps_slices && function_.ops.size() - block.first_op >= kShortestJump) {
     Op jump;
-    jump.info = &instruction("jnone");
+    jump.info = &instruction(Opcode::Jnone);
     jump.guard = guard_;
     jump.label = function_.labels++;
     jump.where = block.where;
@@ -216,7 +217,7 @@ void Recorder::begin_loop(int condition, const Location& where) {
   block.locked = condition;
   block.where = where;
   guard_ = {condition, false};
-  Op& op = emit("loop", where);
+  Op& op = emit(Opcode::Loop, where);
   op.label = block.label = function_.labels++;
   block.first_op = function_.ops.size();
   blocks_.push_back(block);
@@ -224,7 +225,7 @@ void Recorder::begin_loop(int condition, const Location& where) {
 
 void Recorder::end_loop(int condition, bool temporary) {
   const Block block = blocks_.back();
-  if (!temporary || !defined_last(condition, true)) emit_predicates("pand", condition, condition, block.where);
+  if (!temporary || !defined_last(condition, true)) emit_predicates(Opcode::Pand, condition, condition, block.where);
   function_.ops.back().rd = block.locked;
   Op end;
   end.kind = Op::Kind::LoopEnd;

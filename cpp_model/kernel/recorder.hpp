@@ -31,18 +31,18 @@ class Recorder {
   Function finish();
 
   /// An instruction under the current mask, without operands.
-  Op& emit(std::string_view mnemonic, const Location& where);
+  Op& emit(Opcode opcode, const Location& where);
   Op& last_op() { return function_.ops.back(); }
   /// The same with a new destination; returns the destination's number.
-  int emit_value(std::string_view mnemonic, const Location& where);
-  int emit_unary(std::string_view mnemonic, int ra, const Location& where);
-  int emit_binary(std::string_view mnemonic, int ra, int rb, const Location& where);
+  int emit_value(Opcode opcode, const Location& where);
+  int emit_unary(Opcode opcode, int ra, const Location& where);
+  int emit_binary(Opcode opcode, int ra, int rb, const Location& where);
   /// a * b + c: one instruction if the machine has it, else two.
   int emit_multiply_add(int a, int b, int c, const Location& where);
-  int emit_immediate(std::string_view mnemonic, int ra, uint32_t immediate, const Location& where);
+  int emit_immediate(Opcode opcode, int ra, uint32_t immediate, const Location& where);
   int emit_constant(uint32_t bits, const Location& where);
   int emit_copy(int source, const Location& where);
-  int emit_predicates(std::string_view mnemonic, int px, int pb, const Location& where);
+  int emit_predicates(Opcode opcode, int px, int pb, const Location& where);
   int emit_select(const Condition& condition, int a, int b, const Location& where);
 
   /// variable = source, where `temporary` says that nobody else reads the source.

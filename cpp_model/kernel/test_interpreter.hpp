@@ -39,25 +39,25 @@ class Interpreter {
       while (stack.back().pc >= stack.back().rpc) stack.pop_back();
       const uint32_t pc = stack.back().pc;
       const Instruction op = unpack(program.code.at(pc));
-      const std::string_view name = op.info->mnemonic;
+      const Opcode opcode = op.info->opcode;
       mask_ = predicates_[op.guard];
       if (op.guard_negated) mask_ = ~mask_ & kAll;
       mask_ &= threads >= kLanes ? kAll : (1u << threads) - 1;
       ++stack.back().pc;
-      if (name == "exit") return;
-      if (name == "jnone" || name == "jany") {
-        if ((mask_ != 0) == (name == "jany")) stack.back().pc = op.immediate & 0xffff;
-      } else if (name == "loop") {
+      if (opcode == Opcode::Exit) return;
+      if (opcode == Opcode::Jnone || opcode == Opcode::Jany) {
+        if ((mask_ != 0) == (opcode == Opcode::Jany)) stack.back().pc = op.immediate & 0xffff;
+      } else if (opcode == Opcode::Loop) {
         const uint32_t end = op.immediate & 0xffff;
         stack.back().pc = mask_ != 0 ? pc : end;
         if (mask_ != 0) stack.push_back({pc + 1, end});
         if (stack.size() > 8) throw std::runtime_error("PC stack overflow");
-      } else if (name == "rout" || name == "rfb") {
+      } else if (opcode == Opcode::Rout || opcode == Opcode::Rfb) {
         for (uint32_t lane = 0; lane < kLanes; ++lane) {
-          if (active(lane)) send(lane, name == "rout");
+          if (active(lane)) send(lane, opcode == Opcode::Rout);
           words_[lane].fill(kernel::kUndefinedWord);
         }
-      } else if (name == "rin") {
+      } else if (opcode == Opcode::Rin) {
         words_ = input;
       } else {
         uint32_t predicate = 0;
@@ -85,7 +85,7 @@ class Interpreter {
 
   /// One lane of an instruction; returns the bit for a predicate.
   bool data(const Instruction& op, uint32_t lane) {
-    const std::string_view name = op.info->mnemonic;
+    const Opcode opcode = op.info->opcode;
     auto& reg = registers_[lane];
     const uint32_t a = reg[op.ra];
     const uint32_t b = op.b_is_immediate ? op.immediate : reg[op.rb];
@@ -93,77 +93,77 @@ class Interpreter {
     const auto sb = static_cast<int32_t>(b);
     const auto predicate = [&](int number) { return (predicates_[static_cast<size_t>(number)] >> lane & 1) != 0; };
     const bool px = predicate(op.x & 15);
-    if (name == "ieq") return a == b;
-    if (name == "ine") return a != b;
-    if (name == "ilt") return sa < sb;
-    if (name == "ile") return sa <= sb;
-    if (name == "igt") return sa > sb;
-    if (name == "ige") return sa >= sb;
-    if (name == "ult") return a < b;
-    if (name == "ule") return a <= b;
-    if (name == "ugt") return a > b;
-    if (name == "uge") return a >= b;
-    if (name == "feq") return arith::equal(a, b, mode);
-    if (name == "fne") return arith::not_equal(a, b, mode);
-    if (name == "flt") return arith::less(a, b, mode);
-    if (name == "fle") return arith::less_equal(a, b, mode);
-    if (name == "fgt") return arith::greater(a, b, mode);
-    if (name == "fge") return arith::greater_equal(a, b, mode);
-    if (name == "pand") return px && predicate(op.rb);
-    if (name == "por") return px || predicate(op.rb);
-    if (name == "pxor") return px != predicate(op.rb);
-    if (name == "pandn") return px && !predicate(op.rb);
-    if (name == "st") {
+    if (opcode == Opcode::Ieq) return a == b;
+    if (opcode == Opcode::Ine) return a != b;
+    if (opcode == Opcode::Ilt) return sa < sb;
+    if (opcode == Opcode::Ile) return sa <= sb;
+    if (opcode == Opcode::Igt) return sa > sb;
+    if (opcode == Opcode::Ige) return sa >= sb;
+    if (opcode == Opcode::Ult) return a < b;
+    if (opcode == Opcode::Ule) return a <= b;
+    if (opcode == Opcode::Ugt) return a > b;
+    if (opcode == Opcode::Uge) return a >= b;
+    if (opcode == Opcode::Feq) return arith::equal(a, b, mode);
+    if (opcode == Opcode::Fne) return arith::not_equal(a, b, mode);
+    if (opcode == Opcode::Flt) return arith::less(a, b, mode);
+    if (opcode == Opcode::Fle) return arith::less_equal(a, b, mode);
+    if (opcode == Opcode::Fgt) return arith::greater(a, b, mode);
+    if (opcode == Opcode::Fge) return arith::greater_equal(a, b, mode);
+    if (opcode == Opcode::Pand) return px && predicate(op.rb);
+    if (opcode == Opcode::Por) return px || predicate(op.rb);
+    if (opcode == Opcode::Pxor) return px != predicate(op.rb);
+    if (opcode == Opcode::Pandn) return px && !predicate(op.rb);
+    if (opcode == Opcode::St) {
       memory.store(a + op.immediate, b);
       return false;
     }
-    if (name == "rst") {
+    if (opcode == Opcode::Rst) {
       words_[lane].at(op.x) = b;
       return false;
     }
-    reg[op.rd] = value(name, op, lane, a, b, px);
+    reg[op.rd] = value(opcode, op, lane, a, b, px);
     return false;
   }
 
-  uint32_t value(std::string_view name, const Instruction& op, uint32_t lane, uint32_t a, uint32_t b, bool px) const {
+  uint32_t value(Opcode opcode, const Instruction& op, uint32_t lane, uint32_t a, uint32_t b, bool px) const {
     const auto sa = static_cast<int32_t>(a);
     const auto sb = static_cast<int32_t>(b);
-    if (name == "tid" || name == "lane") return lane;
-    if (name == "warp") return 0;
-    if (name == "block") return block;
-    if (name == "threads") return threads;
-    if (name == "blocks") return blocks;
-    if (name == "arg") return arguments.at(op.immediate);
-    if (name == "ld") return memory.load(a + op.immediate);
-    if (name == "rld") return words_[lane].at(op.x);
-    if (name == "mov") return b;
-    if (name == "iadd") return a + b;
-    if (name == "isub") return a - b;
-    if (name == "imul") return a * b;
-    if (name == "and") return a & b;
-    if (name == "or") return a | b;
-    if (name == "xor") return a ^ b;
-    if (name == "shl") return a << (b & 31);
-    if (name == "shr") return a >> (b & 31);
-    if (name == "sar") return static_cast<uint32_t>(sa >> (b & 31));
-    if (name == "imin") return sa < sb ? a : b;
-    if (name == "imax") return sa > sb ? a : b;
-    if (name == "umin") return a < b ? a : b;
-    if (name == "umax") return a > b ? a : b;
-    if (name == "sel") return px ? a : b;
-    if (name == "fadd") return arith::add(a, b, mode);
-    if (name == "fsub") return arith::sub(a, b, mode);
-    if (name == "fmul") return arith::mul(a, b, mode);
-    if (name == "ffma") return arith::fma(a, b, registers_[lane][op.x], mode);
-    if (name == "fmin") return arith::min(a, b, mode);
-    if (name == "fmax") return arith::max(a, b, mode);
-    if (name == "f2i") return arith::to_int(a, mode);
-    if (name == "i2f") return arith::from_int(a, mode);
-    if (name == "fdiv") return arith::div(a, b, mode);
-    if (name == "fsqrt") return arith::sqrt(a, mode);
-    if (name == "frsqrt") return arith::rsqrt(a, mode);
-    if (name == "frcp") return arith::rcp(a, mode);
-    throw std::runtime_error("instruction unknown to the test: " + std::string(name));
+    if (opcode == Opcode::Tid || opcode == Opcode::Lane) return lane;
+    if (opcode == Opcode::Warp) return 0;
+    if (opcode == Opcode::Block) return block;
+    if (opcode == Opcode::Threads) return threads;
+    if (opcode == Opcode::Blocks) return blocks;
+    if (opcode == Opcode::Arg) return arguments.at(op.immediate);
+    if (opcode == Opcode::Ld) return memory.load(a + op.immediate);
+    if (opcode == Opcode::Rld) return words_[lane].at(op.x);
+    if (opcode == Opcode::Mov) return b;
+    if (opcode == Opcode::Iadd) return a + b;
+    if (opcode == Opcode::Isub) return a - b;
+    if (opcode == Opcode::Imul) return a * b;
+    if (opcode == Opcode::And) return a & b;
+    if (opcode == Opcode::Or) return a | b;
+    if (opcode == Opcode::Xor) return a ^ b;
+    if (opcode == Opcode::Shl) return a << (b & 31);
+    if (opcode == Opcode::Shr) return a >> (b & 31);
+    if (opcode == Opcode::Sar) return static_cast<uint32_t>(sa >> (b & 31));
+    if (opcode == Opcode::Imin) return sa < sb ? a : b;
+    if (opcode == Opcode::Imax) return sa > sb ? a : b;
+    if (opcode == Opcode::Umin) return a < b ? a : b;
+    if (opcode == Opcode::Umax) return a > b ? a : b;
+    if (opcode == Opcode::Sel) return px ? a : b;
+    if (opcode == Opcode::Fadd) return arith::add(a, b, mode);
+    if (opcode == Opcode::Fsub) return arith::sub(a, b, mode);
+    if (opcode == Opcode::Fmul) return arith::mul(a, b, mode);
+    if (opcode == Opcode::Ffma) return arith::fma(a, b, registers_[lane][op.x], mode);
+    if (opcode == Opcode::Fmin) return arith::min(a, b, mode);
+    if (opcode == Opcode::Fmax) return arith::max(a, b, mode);
+    if (opcode == Opcode::F2i) return arith::to_int(a, mode);
+    if (opcode == Opcode::I2f) return arith::from_int(a, mode);
+    if (opcode == Opcode::Fdiv) return arith::div(a, b, mode);
+    if (opcode == Opcode::Fsqrt) return arith::sqrt(a, mode);
+    if (opcode == Opcode::Frsqrt) return arith::rsqrt(a, mode);
+    if (opcode == Opcode::Frcp) return arith::rcp(a, mode);
+    throw std::runtime_error("instruction unknown to the test: " + std::string(op.info->mnemonic));
   }
 
   std::array<std::array<uint32_t, kRegisters>, kLanes> registers_{};

@@ -23,9 +23,9 @@ struct LaneTask {
 class AluModel {
  public:
   virtual ~AluModel() = default;
-  /// The word for rd of an instruction that writes a register; of one that writes a predicate, 0 or 1. `operation` has a table
-  /// row.
-  virtual uint32_t lane(int operation, const LaneTask& task, arith::Mode mode) const = 0;
+  /// The word for rd of an instruction that writes a register; of one that writes a predicate, 0 or 1. `opcode` is of the
+  /// type.
+  virtual uint32_t lane(Opcode opcode, const LaneTask& task, arith::Mode mode) const = 0;
 };
 
 /// The model of a type with a CLASS row; its source file defines it, and the linker misses it otherwise.

@@ -11,11 +11,6 @@ constexpr uint8_t kLastBeat = 3;  // of a line
 
 constexpr size_t index(AluType type) { return static_cast<size_t>(type); }
 
-// rin, rout and rfb wait for a slice to arrive or leave; the functional core executes them when they swap.
-bool swaps(const DecodedInstruction& instruction) {
-  return instruction.info->unit == AluType::Ray && (instruction.code & 31) < 3;
-}
-
 }  // namespace
 
 CycleUnit::CycleUnit(const Configuration& configuration, const Memory& memory)
@@ -246,12 +241,13 @@ void CycleUnit::fetch(uint64_t until) {
 void CycleUnit::issue_warp(uint32_t warp) {
   const DecodedInstruction& instruction = *core_.instruction_at(buffer_.fetch_pc(warp));
   if (!instruction.legal()) return raise({FaultCode::IllegalInstruction, warp, buffer_.fetch_pc(warp)});
-  const AluType type = instruction.info->unit;
+  const AluType type = instruction.alu();
   buffer_.issue(warp);
   want(warp, type);
   if (tracing_) record_issue(warp, instruction);
 
-  const bool swap = swaps(instruction);
+  // These wait for a slice to arrive or leave; the functional core executes them when they swap.
+  const bool swap = instruction.kind == Kind::Swap;
   bool faults = false;
   uint32_t mask;
   if (swap) {
@@ -261,7 +257,7 @@ void CycleUnit::issue_warp(uint32_t warp) {
     mask = step.mask;
     faults = step.status == Step::Status::Fault;
     if (type == AluType::Mem) mem_.begin(step);
-    if (instruction.info->control) {
+    if (instruction.kind == Kind::Control) {
       buffer_.issue_control(warp);
       stack_fault_[warp] = faults ? step.fault.code : FaultCode::None;
     }
@@ -275,7 +271,7 @@ void CycleUnit::issue_warp(uint32_t warp) {
   ++counters_.single[counter::kInstructions];
   counters_.single[counter::kThreadInstructions] += popcount(mask);
   // The core's PC stays at an instruction that has not been executed; the RTL's instruction routine goes on behind it.
-  if (!instruction.info->control) plan_fetch(warp, now_ + 1, swap || faults);
+  if (instruction.kind != Kind::Control) plan_fetch(warp, now_ + 1, swap || faults);
 }
 
 void CycleUnit::want(uint32_t warp, AluType type) {
@@ -331,7 +327,7 @@ void CycleUnit::halt() {
     uint32_t& done = timeline_.at(cycle).done;
     for (uint32_t warps = done; warps != 0; warps &= warps - 1) {
       const uint32_t warp = lowest(warps);
-      const uint64_t depth = dispatcher_.depth(index(core_.instruction_at(buffer_.pc(warp))->info->unit));
+      const uint64_t depth = dispatcher_.depth(index(core_.instruction_at(buffer_.pc(warp))->alu()));
       if (cycle - depth > now_ + 1) done &= ~(1u << warp);
     }
   }

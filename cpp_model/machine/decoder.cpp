@@ -18,7 +18,8 @@ DecodedInstruction decode(uint64_t encoding, const Configuration& configuration)
   result.b_is_immediate = fields.b_is_immediate;
   result.x = fields.x;
   if (result.info == nullptr) return result;
-  result.code = instruction_code(fields.info->unit, fields.info->operation);
+  result.opcode = fields.info->opcode;
+  result.kind = fields.info->kind;
   result.uses_b = has_operand(*fields.info, Operand::B) || has_operand(*fields.info, Operand::Rb);
   result.writes_register = raypool::writes_register(*fields.info);
   result.writes_predicate = raypool::writes_predicate(*fields.info);

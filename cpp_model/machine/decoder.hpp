@@ -12,24 +12,22 @@ struct DecodedInstruction {
   uint64_t encoding = 0;
   uint32_t immediate = 0;
   const InstructionInfo* info = nullptr;  ///< null: illegal
-  uint16_t code = 0;                      ///< unit * 32 + operation of a legal one
+  Opcode opcode{};                        ///< of a legal one
   uint8_t guard = 0;                      ///< predicate number
   bool guard_negated = false;
   uint8_t rd = 0, ra = 0, rb = 0;
   uint8_t x = 0;
   bool b_is_immediate = false;
+  Kind kind = Kind::Plain;
   bool uses_b = false;  ///< has an operand B (or rb of `st`)
   bool writes_register = false;
   bool writes_predicate = false;
 
   bool legal() const { return info != nullptr; }
+  AluType alu() const { return alu_of(opcode); }
   uint32_t target() const { return immediate & 0xffffu; }
   uint32_t end() const { return immediate >> 16; }
 };
-
-inline constexpr uint16_t instruction_code(AluType type, int operation) {
-  return static_cast<uint16_t>(static_cast<int>(type) * 32 + operation);
-}
 
 /// Rows that need a feature which the configuration has not are illegal.
 DecodedInstruction decode(uint64_t encoding, const Configuration& configuration);

@@ -1,48 +1,24 @@
 #include "machine/functional_core.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <stdexcept>
 #include <string>
 
+#include "isa/encoding.hpp"
 #include "machine/alu_model.hpp"
+#include "machine/lanes.hpp"
 
 namespace raypool {
 namespace {
 
 constexpr uint32_t kFirstRpc = 0xffff;
 
-template <int kLanes>
-constexpr uint32_t kAllLanes = kLanes == 32 ? 0xffffffffu : (1u << kLanes) - 1;
-
-// rd = f(a, b) in the masked lanes. The full mask is the common case: through an array of its own, so that the compiler need not
-// care whether rd is also a source.
-template <int kLanes, typename Function>
-inline void map_lanes(uint32_t mask, uint32_t* rd, const uint32_t* a, const uint32_t* b, Function function) {
-  if (mask == kAllLanes<kLanes>) {
-    uint32_t values[kLanes];
-    for (int lane = 0; lane < kLanes; ++lane) values[lane] = function(a[lane], b[lane]);
-    std::memcpy(rd, values, sizeof(values));
-  } else {
-    for (; mask != 0; mask &= mask - 1) {
-      const int lane = __builtin_ctz(mask);
-      rd[lane] = function(a[lane], b[lane]);
-    }
-  }
-}
-
-template <int kLanes, typename Function>
-inline uint32_t test_lanes(const uint32_t* a, const uint32_t* b, Function function) {
-  uint32_t result = 0;
-  for (int lane = 0; lane < kLanes; ++lane) result |= static_cast<uint32_t>(function(a[lane], b[lane])) << lane;
-  return result;
-}
-
-inline int32_t as_signed(uint32_t value) { return static_cast<int32_t>(value); }
-
-constexpr uint16_t code(AluType type, int operation) { return instruction_code(type, operation); }
-
 }  // namespace
+
+void not_modelled(Opcode opcode) {
+  throw std::logic_error("the golden model does not execute " + std::string(instruction(opcode).mnemonic) +
+                         ": cpp_model/machine/functional_core.cpp or lanes.hpp, which has the data types, needs a case for it");
+}
 
 FunctionalCore::FunctionalCore(const Configuration& configuration, Memory& memory)
     : memory_(&memory),
@@ -127,10 +103,11 @@ bool FunctionalCore::fault(FaultCode fault_code) {
   return false;
 }
 
-template <int kLanes>
-const Step& FunctionalCore::step_lanes(uint32_t number) {
+// Finds the warp's next instruction and its mask. False if there is none: the result says why. Part of each step_lanes, whose
+// time is that of the functional engine.
+[[gnu::always_inline]] inline bool FunctionalCore::begin(uint32_t number) {
   Step& result = result_;
-  if (result.status == Step::Status::Fault) return result;
+  if (result.status == Step::Status::Fault) return false;
   Warp& warp = warps_[number];
   result.status = Step::Status::NotRunning;
   result.warp = number;
@@ -143,72 +120,91 @@ const Step& FunctionalCore::step_lanes(uint32_t number) {
   result.ray_count = 0;
   result.frame_count = 0;
   result.warp_ended = false;
-  if (!warp.running) return result;
+  if (!warp.running) return false;
 
   // PC stack: finished entries are popped, then the top PC is taken. The first entry is never finished.
   while (warp.depth > 1 && warp.stack[warp.depth - 1].pc >= warp.stack[warp.depth - 1].rpc) --warp.depth;
-  StackEntry& top = warp.stack[warp.depth - 1];
-  result.pc = top.pc;
-  if (top.pc >= program_length_) return fault(FaultCode::PcOutsideProgram), result;
-  const DecodedInstruction& instruction = program_[top.pc];
-  result.instruction = &instruction;
-  if (!instruction.legal()) return fault(FaultCode::IllegalInstruction), result;
-  result.mask = thread_mask(number, instruction);
+  result.pc = warp.stack[warp.depth - 1].pc;
+  if (result.pc >= program_length_) return fault(FaultCode::PcOutsideProgram);
+  result.instruction = &program_[result.pc];
+  if (!result.instruction->legal()) return fault(FaultCode::IllegalInstruction);
+  result.mask = thread_mask(number, *result.instruction);
+  return true;
+}
 
-  // Operands
+template <int kLanes>
+const Step& FunctionalCore::step_lanes(uint32_t number) {
+  if (!begin(number)) return result_;
+  Warp& warp = warps_[number];
+  const DecodedInstruction& instruction = *result_.instruction;
+  if (instruction.kind == Kind::Control) {
+    if (execute_control(instruction, warp)) result_.status = Step::Status::Executed;
+    return result_;
+  }
+
   uint32_t* const bank = &registers_[number * kRegisters * kLanes];
-  uint32_t* const rd = bank + instruction.rd * kLanes;
-  const uint32_t* const a = bank + instruction.ra * kLanes;
-  const uint32_t* b = bank + instruction.rb * kLanes;
+  const auto row = [bank](uint32_t reg) { return bank + reg * kLanes; };
+  Lanes<kLanes> lanes = {result_.mask, row(instruction.rd), row(instruction.ra), row(instruction.rb), row(instruction.x & 15)};
   uint32_t immediate[kLanes];
   if (instruction.b_is_immediate) {
     for (int lane = 0; lane < kLanes; ++lane) immediate[lane] = instruction.immediate;
-    b = immediate;
+    lanes.b = immediate;
   }
+  if (!execute<kLanes>(instruction, warp, lanes)) return result_;
+  if (instruction.writes_register) result_.data = lanes.rd;
+  ++warp.stack[warp.depth - 1].pc;
+  result_.status = Step::Status::Executed;
+  return result_;
+}
 
-  switch (static_cast<AluType>(instruction.code >> 5)) {
+// What is no control instruction. False if it faults or has to wait.
+template <int kLanes>
+bool FunctionalCore::execute(const DecodedInstruction& instruction, Warp& warp, const Lanes<kLanes>& lanes) {
+  const uint32_t px = warp.predicates[instruction.x & 15], pb = warp.predicates[instruction.rb];
+  switch (instruction.alu()) {
+    case AluType::Tid:
+      execute_index<kLanes>(instruction, lanes);
+      return true;
     case AluType::Brh:
-      if (instruction.info->control) {
-        if (!execute_control(instruction, warp)) return result;
-        result.status = Step::Status::Executed;
-        return result;
-      }
-      result.predicate = compare<kLanes>(instruction, warp, a, b) & result.mask;
-      if (instruction.rd != 0) warp.predicates[instruction.rd] = result.predicate;
-      break;
+      result_.predicate = compare(instruction.opcode, lanes, px, pb, mode_) & result_.mask;
+      if (instruction.rd != 0) warp.predicates[instruction.rd] = result_.predicate;
+      return true;
     case AluType::Mem:
-      if (!execute_memory<kLanes>(instruction, rd, a, b)) return result;
-      break;
+      return execute_memory<kLanes>(instruction, lanes);
+    case AluType::Int:
+      integer(instruction.opcode, lanes, px);
+      return true;
+    case AluType::Flt:
+      floating(instruction.opcode, lanes, mode_);
+      return true;
+    case AluType::Slw:
+      slow(instruction.opcode, lanes, mode_);
+      return true;
     case AluType::Ray:
-      if (!execute_ray<kLanes>(instruction, warp, rd, b)) return result;
-      break;
+      return execute_ray<kLanes>(instruction, warp, lanes);
     default:
-      execute_data<kLanes>(instruction, warp, rd, a, b, bank + (instruction.x & 15) * kLanes);
-      break;
+      execute_class(instruction, warp, lanes.rd, lanes.a, lanes.b);
+      return true;
   }
-  if (instruction.writes_register) result.data = rd;
-  ++top.pc;
-  result.status = Step::Status::Executed;
-  return result;
 }
 
 bool FunctionalCore::execute_control(const DecodedInstruction& instruction, Warp& warp) {
   StackEntry& top = warp.stack[warp.depth - 1];
   const uint32_t next = top.pc + 1;
   const bool any = result_.mask != 0;
-  switch (instruction.code) {
-    case code(AluType::Brh, 24):
+  switch (instruction.opcode) {
+    case Opcode::Jany:
       top.pc = any ? instruction.target() : next;
-      return true;  // jany
-    case code(AluType::Brh, 25):
+      return true;
+    case Opcode::Jnone:
       top.pc = !any ? instruction.target() : next;
-      return true;                // jnone
-    case code(AluType::Brh, 26):  // call
+      return true;
+    case Opcode::Call:
       if (warp.depth == stack_depth_) return fault(FaultCode::StackOverflow);
       top.pc = next;
       warp.stack[warp.depth++] = {instruction.target(), instruction.end()};
       return true;
-    case code(AluType::Brh, 27):  // loop; its end is alone in the immediate's low half
+    case Opcode::Loop:  // its end is alone in the immediate's low half
       if (!any) {
         top.pc = instruction.target();
         return true;
@@ -216,210 +212,53 @@ bool FunctionalCore::execute_control(const DecodedInstruction& instruction, Warp
       if (warp.depth == stack_depth_) return fault(FaultCode::StackOverflow);
       warp.stack[warp.depth++] = {next, instruction.target()};
       return true;
-    case code(AluType::Brh, 28):  // ret
+    case Opcode::Ret:
       if (warp.depth == 1) return fault(FaultCode::StackUnderflow);
       --warp.depth;
       return true;
-    default:  // exit
+    case Opcode::Exit:
       warp.running = false;
       --running_warps_;
       result_.warp_ended = true;
       return true;
+    default:
+      not_modelled(instruction.opcode);
   }
 }
 
 template <int kLanes>
-uint32_t FunctionalCore::compare(const DecodedInstruction& instruction, const Warp& warp, const uint32_t* a,
-                                 const uint32_t* b) const {
-  const arith::Mode mode = mode_;
-  const uint32_t px = warp.predicates[instruction.x & 15], pb = warp.predicates[instruction.rb];
-  const auto test = [a, b](auto function) { return test_lanes<kLanes>(a, b, function); };
-  switch (instruction.code) {
-    case code(AluType::Brh, 0):
-      return test([](uint32_t x, uint32_t y) { return x == y; });
-    case code(AluType::Brh, 1):
-      return test([](uint32_t x, uint32_t y) { return x != y; });
-    case code(AluType::Brh, 2):
-      return test([](uint32_t x, uint32_t y) { return as_signed(x) < as_signed(y); });
-    case code(AluType::Brh, 3):
-      return test([](uint32_t x, uint32_t y) { return as_signed(x) <= as_signed(y); });
-    case code(AluType::Brh, 4):
-      return test([](uint32_t x, uint32_t y) { return as_signed(x) > as_signed(y); });
-    case code(AluType::Brh, 5):
-      return test([](uint32_t x, uint32_t y) { return as_signed(x) >= as_signed(y); });
-    case code(AluType::Brh, 6):
-      return test([](uint32_t x, uint32_t y) { return x < y; });
-    case code(AluType::Brh, 7):
-      return test([](uint32_t x, uint32_t y) { return x <= y; });
-    case code(AluType::Brh, 8):
-      return test([](uint32_t x, uint32_t y) { return x > y; });
-    case code(AluType::Brh, 9):
-      return test([](uint32_t x, uint32_t y) { return x >= y; });
-    case code(AluType::Brh, 10):
-      return test([mode](uint32_t x, uint32_t y) { return arith::equal(x, y, mode); });
-    case code(AluType::Brh, 11):
-      return test([mode](uint32_t x, uint32_t y) { return arith::not_equal(x, y, mode); });
-    case code(AluType::Brh, 12):
-      return test([mode](uint32_t x, uint32_t y) { return arith::less(x, y, mode); });
-    case code(AluType::Brh, 13):
-      return test([mode](uint32_t x, uint32_t y) { return arith::less_equal(x, y, mode); });
-    case code(AluType::Brh, 14):
-      return test([mode](uint32_t x, uint32_t y) { return arith::greater(x, y, mode); });
-    case code(AluType::Brh, 15):
-      return test([mode](uint32_t x, uint32_t y) { return arith::greater_equal(x, y, mode); });
-    case code(AluType::Brh, 16):
-      return px & pb;
-    case code(AluType::Brh, 17):
-      return px | pb;
-    case code(AluType::Brh, 18):
-      return px ^ pb;
+void FunctionalCore::execute_index(const DecodedInstruction& instruction, const Lanes<kLanes>& lanes) {
+  const auto fill = [&lanes](uint32_t value) { lanes.map([value](uint32_t, uint32_t) { return value; }); };
+  switch (instruction.opcode) {
+    case Opcode::Tid:
+      return lanes.number(result_.warp * kLanes);
+    case Opcode::Lane:
+      return lanes.number(0);
+    case Opcode::Warp:
+      return fill(result_.warp);
+    case Opcode::Block:
+      return fill(launched_.block);
+    case Opcode::Threads:
+      return fill(launched_.threads);
+    case Opcode::Blocks:
+      return fill(launched_.blocks);
+    case Opcode::Arg:
+      return fill(arguments_[instruction.immediate % kArguments]);
     default:
-      return px & ~pb;  // pandn
-  }
-}
-
-template <int kLanes>
-void FunctionalCore::execute_data(const DecodedInstruction& instruction, Warp& warp, uint32_t* rd, const uint32_t* a,
-                                  const uint32_t* b, const uint32_t* c) {
-  const arith::Mode mode = mode_;
-  const uint32_t mask = result_.mask;
-  const auto map = [=](auto function) { map_lanes<kLanes>(mask, rd, a, b, function); };
-  const auto fill = [=](uint32_t value) { map_lanes<kLanes>(mask, rd, a, b, [value](uint32_t, uint32_t) { return value; }); };
-  const auto number_lanes = [=](uint32_t first) {
-    for (uint32_t lane = 0; lane < kLanes; ++lane) {
-      if (mask >> lane & 1) rd[lane] = first + lane;
-    }
-  };
-  switch (instruction.code) {
-    case code(AluType::Tid, 0):
-      number_lanes(result_.warp * kLanes);
-      break;
-    case code(AluType::Tid, 1):
-      number_lanes(0);
-      break;
-    case code(AluType::Tid, 2):
-      fill(result_.warp);
-      break;
-    case code(AluType::Tid, 3):
-      fill(launched_.block);
-      break;
-    case code(AluType::Tid, 4):
-      fill(launched_.threads);
-      break;
-    case code(AluType::Tid, 5):
-      fill(launched_.blocks);
-      break;
-    case code(AluType::Tid, 6):
-      fill(arguments_[instruction.immediate % kArguments]);
-      break;
-
-    case code(AluType::Int, 0):
-      map([](uint32_t, uint32_t y) { return y; });
-      break;
-    case code(AluType::Int, 1):
-      map([](uint32_t x, uint32_t y) { return x + y; });
-      break;
-    case code(AluType::Int, 2):
-      map([](uint32_t x, uint32_t y) { return x - y; });
-      break;
-    case code(AluType::Int, 3):
-      map([](uint32_t x, uint32_t y) { return x * y; });
-      break;
-    case code(AluType::Int, 4):
-      map([](uint32_t x, uint32_t y) { return x & y; });
-      break;
-    case code(AluType::Int, 5):
-      map([](uint32_t x, uint32_t y) { return x | y; });
-      break;
-    case code(AluType::Int, 6):
-      map([](uint32_t x, uint32_t y) { return x ^ y; });
-      break;
-    case code(AluType::Int, 7):
-      map([](uint32_t x, uint32_t y) { return x << (y & 31); });
-      break;
-    case code(AluType::Int, 8):
-      map([](uint32_t x, uint32_t y) { return x >> (y & 31); });
-      break;
-    case code(AluType::Int, 9):
-      map([](uint32_t x, uint32_t y) { return static_cast<uint32_t>(as_signed(x) >> (y & 31)); });
-      break;
-    case code(AluType::Int, 10):
-      map([](uint32_t x, uint32_t y) { return as_signed(x) < as_signed(y) ? x : y; });
-      break;
-    case code(AluType::Int, 11):
-      map([](uint32_t x, uint32_t y) { return as_signed(x) < as_signed(y) ? y : x; });
-      break;
-    case code(AluType::Int, 12):
-      map([](uint32_t x, uint32_t y) { return x < y ? x : y; });
-      break;
-    case code(AluType::Int, 13):
-      map([](uint32_t x, uint32_t y) { return x < y ? y : x; });
-      break;
-    case code(AluType::Int, 14): {
-      const uint32_t px = warp.predicates[instruction.x & 15];
-      for (uint32_t lane = 0; lane < kLanes; ++lane) {
-        if (mask >> lane & 1) rd[lane] = px >> lane & 1 ? a[lane] : b[lane];
-      }
-      break;
-    }
-
-    case code(AluType::Flt, 0):
-      map([mode](uint32_t x, uint32_t y) { return arith::add(x, y, mode); });
-      break;
-    case code(AluType::Flt, 1):
-      map([mode](uint32_t x, uint32_t y) { return arith::sub(x, y, mode); });
-      break;
-    case code(AluType::Flt, 2):
-      map([mode](uint32_t x, uint32_t y) { return arith::mul(x, y, mode); });
-      break;
-    case code(AluType::Flt, 3):
-      map([mode](uint32_t x, uint32_t y) { return arith::min(x, y, mode); });
-      break;
-    case code(AluType::Flt, 4):
-      map([mode](uint32_t x, uint32_t y) { return arith::max(x, y, mode); });
-      break;
-    case code(AluType::Flt, 5):
-      map([mode](uint32_t x, uint32_t) { return arith::to_int(x, mode); });
-      break;
-    case code(AluType::Flt, 6):
-      map([mode](uint32_t x, uint32_t) { return arith::from_int(x, mode); });
-      break;
-    case code(AluType::Flt, 7):
-      // A masked lane sees its own operands only, so rd may be one of them.
-      for (uint32_t lane = 0; lane < kLanes; ++lane) {
-        if (mask >> lane & 1) rd[lane] = arith::fma(a[lane], b[lane], c[lane], mode);
-      }
-      break;
-
-    case code(AluType::Slw, 0):
-      map([mode](uint32_t x, uint32_t y) { return arith::div(x, y, mode); });
-      break;
-    case code(AluType::Slw, 1):
-      map([mode](uint32_t x, uint32_t) { return arith::sqrt(x, mode); });
-      break;
-    case code(AluType::Slw, 2):
-      map([mode](uint32_t x, uint32_t) { return arith::rsqrt(x, mode); });
-      break;
-    case code(AluType::Slw, 3):
-      map([mode](uint32_t x, uint32_t) { return arith::rcp(x, mode); });
-      break;
-
-    default:
-      execute_class(instruction, warp, rd, a, b);
-      break;
+      not_modelled(instruction.opcode);
   }
 }
 
 // A type that the core does not know: lane by lane, so that rd may be a source.
 void FunctionalCore::execute_class(const DecodedInstruction& instruction, Warp& warp, uint32_t* rd, const uint32_t* a,
                                    const uint32_t* b) {
-  const AluModel& alu = *find_alu_model(instruction.info->unit);
+  const AluModel& alu = *find_alu_model(instruction.alu());
   const uint32_t px = warp.predicates[instruction.x & 15], pb = warp.predicates[instruction.rb];
   uint32_t predicate = 0;
   for (uint32_t mask = result_.mask; mask != 0; mask &= mask - 1) {
     const uint32_t lane = static_cast<uint32_t>(__builtin_ctz(mask));
     const LaneTask task = {a[lane], b[lane], instruction.immediate, instruction.x, (px >> lane & 1) != 0, (pb >> lane & 1) != 0};
-    const uint32_t value = alu.lane(instruction.info->operation, task, mode_);
+    const uint32_t value = alu.lane(instruction.opcode, task, mode_);
     if (instruction.writes_register) rd[lane] = value;
     predicate |= (value & 1) << lane;
   }
@@ -430,43 +269,46 @@ void FunctionalCore::execute_class(const DecodedInstruction& instruction, Warp& 
 
 // Loads and stores. All masked lanes are checked before any of them is served; misalignment is the first thing looked for.
 template <int kLanes>
-bool FunctionalCore::execute_memory(const DecodedInstruction& instruction, uint32_t* rd, const uint32_t* a, const uint32_t* b) {
+bool FunctionalCore::execute_memory(const DecodedInstruction& instruction, const Lanes<kLanes>& lanes) {
   uint32_t* const addresses = result_.addresses.data();
   uint32_t low_bits = 0, highest = 0;
   for (int lane = 0; lane < kLanes; ++lane) {
-    addresses[lane] = a[lane] + instruction.immediate;
+    addresses[lane] = lanes.a[lane] + instruction.immediate;
     const uint32_t used = result_.mask >> lane & 1 ? addresses[lane] : 0;
     low_bits |= used & 3;
     highest = std::max(highest, used);
   }
   if (low_bits != 0) return fault(FaultCode::Misaligned);
   if (highest >= memory_limit_ && result_.mask != 0) return fault(FaultCode::AddressOutsideMemory);
-  const bool store = instruction.code == code(AluType::Mem, 1);
+  const bool store = instruction.opcode == Opcode::St;
   for (uint32_t mask = result_.mask; mask != 0; mask &= mask - 1) {
     const uint32_t lane = static_cast<uint32_t>(__builtin_ctz(mask));
     if (store) {
-      memory_->store(addresses[lane], b[lane]);
-      result_.stores[result_.store_count++] = {lane, addresses[lane], b[lane]};
+      memory_->store(addresses[lane], lanes.b[lane]);
+      result_.stores[result_.store_count++] = {lane, addresses[lane], lanes.b[lane]};
     } else {
-      rd[lane] = memory_->load(addresses[lane]);
+      lanes.rd[lane] = memory_->load(addresses[lane]);
     }
   }
   return true;
 }
 
 template <int kLanes>
-bool FunctionalCore::execute_ray(const DecodedInstruction& instruction, Warp& warp, uint32_t* rd, const uint32_t* b) {
+bool FunctionalCore::execute_ray(const DecodedInstruction& instruction, Warp& warp, const Lanes<kLanes>& lanes) {
+  const auto copy = [mask = result_.mask](uint32_t* to, const uint32_t* from) {
+    Lanes<kLanes>{mask, to, from, from, from}.map([](uint32_t x, uint32_t) { return x; });
+  };
   const uint32_t number = result_.warp;
-  switch (instruction.code) {
-    case code(AluType::Ray, 0):  // rin
+  switch (instruction.opcode) {
+    case Opcode::Rin:
       if (!slices_.input_complete(number)) {
         result_.status = Step::Status::WaitsForImport;
         return false;
       }
       slices_.swap_input(number);
       return true;
-    case code(AluType::Ray, 1):  // rout
-    case code(AluType::Ray, 2):  // rfb
+    case Opcode::Rout:
+    case Opcode::Rfb:
       if (warp.output_busy) {
         result_.status = Step::Status::WaitsForExport;
         return false;
@@ -474,7 +316,7 @@ bool FunctionalCore::execute_ray(const DecodedInstruction& instruction, Warp& wa
       slices_.swap_output(number);
       for (uint32_t mask = result_.mask; mask != 0; mask &= mask - 1) {
         const uint32_t lane = static_cast<uint32_t>(__builtin_ctz(mask));
-        if (instruction.code == code(AluType::Ray, 1)) {
+        if (instruction.opcode == Opcode::Rout) {
           Ray& ray = result_.rays[result_.ray_count++];
           for (uint32_t word = 0; word < kRayWords; ++word) ray[word] = slices_.output(number, word)[lane];
         } else {
@@ -484,15 +326,17 @@ bool FunctionalCore::execute_ray(const DecodedInstruction& instruction, Warp& wa
         }
       }
       return true;
-    case code(AluType::Ray, 3):  // rld
+    case Opcode::Rld:
       if (instruction.x >= kIntersectionWords) return fault(FaultCode::RayWordOutside);
-      map_lanes<kLanes>(result_.mask, rd, slices_.current(number, instruction.x), b, [](uint32_t x, uint32_t) { return x; });
+      copy(lanes.rd, slices_.current(number, instruction.x));
       return true;
-    default:  // rst
+    case Opcode::Rst:
       if (instruction.x >= kIntersectionWords) return fault(FaultCode::RayWordOutside);
       result_.ray_words = slices_.current(number, instruction.x);
-      map_lanes<kLanes>(result_.mask, slices_.current(number, instruction.x), b, b, [](uint32_t x, uint32_t) { return x; });
+      copy(slices_.current(number, instruction.x), lanes.b);
       return true;
+    default:
+      not_modelled(instruction.opcode);
   }
 }
 

@@ -17,6 +17,9 @@
 
 namespace raypool {
 
+template <int kLanes>
+struct Lanes;
+
 inline constexpr int kMaxLanes = 32;
 
 /// What a call of FunctionalCore::step did. Pointers stay valid until the same warp's next step.
@@ -146,15 +149,15 @@ class FunctionalCore {
   template <int kLanes>
   const Step& step_lanes(uint32_t warp);
   template <int kLanes>
-  void execute_data(const DecodedInstruction& instruction, Warp& warp, uint32_t* rd, const uint32_t* a, const uint32_t* b,
-                    const uint32_t* c);
+  bool execute(const DecodedInstruction& instruction, Warp& warp, const Lanes<kLanes>& lanes);
   template <int kLanes>
-  uint32_t compare(const DecodedInstruction& instruction, const Warp& warp, const uint32_t* a, const uint32_t* b) const;
+  void execute_index(const DecodedInstruction& instruction, const Lanes<kLanes>& lanes);
   template <int kLanes>
-  bool execute_memory(const DecodedInstruction& instruction, uint32_t* rd, const uint32_t* a, const uint32_t* b);
+  bool execute_memory(const DecodedInstruction& instruction, const Lanes<kLanes>& lanes);
   template <int kLanes>
-  bool execute_ray(const DecodedInstruction& instruction, Warp& warp, uint32_t* rd, const uint32_t* b);
+  bool execute_ray(const DecodedInstruction& instruction, Warp& warp, const Lanes<kLanes>& lanes);
   void execute_class(const DecodedInstruction& instruction, Warp& warp, uint32_t* rd, const uint32_t* a, const uint32_t* b);
+  bool begin(uint32_t warp);
   bool execute_control(const DecodedInstruction& instruction, Warp& warp);
   bool fault(FaultCode code);
 

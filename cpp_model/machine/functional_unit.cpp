@@ -116,9 +116,9 @@ class FunctionalUnit : public ComputeUnit {
   void executed(const Step& step) {
     ++counters_[counter::kInstructions];
     counters_[counter::kThreadInstructions] += static_cast<uint64_t>(__builtin_popcount(step.mask));
-    ++counters_[counter::kIssued + static_cast<size_t>(step.instruction->code >> 5)];
+    ++counters_[counter::kIssued + static_cast<size_t>(step.instruction->alu())];
     if (tracing_) record(step);
-    if (step.instruction->code == instruction_code(AluType::Ray, 0)) --reserved_[step.warp];
+    if (step.instruction->opcode == Opcode::Rin) --reserved_[step.warp];
     const uint32_t count = step.ray_count + step.frame_count;
     if (count == 0) return;
     for (uint32_t i = 0; i < step.ray_count; ++i) exports_.push_back({step.warp, false, step.rays[i], {}});

@@ -27,7 +27,7 @@ MemAlu::Quadword& MemAlu::quadword(Task& task, uint32_t address) {
 
 void MemAlu::begin(const Step& step) {
   Task& task = tasks_[step.warp];
-  task.store = (step.instruction->code & 31) == 1;
+  task.store = step.instruction->opcode == Opcode::St;
   task.fault = step.status == Step::Status::Fault ? step.fault.code : FaultCode::None;
   task.count = 0;
   if (step.store_count != 0) {

@@ -51,13 +51,13 @@ bool RayAlu::clock_access(int arriving, RayMemory& memory) {
 
   if (arriving >= 0) {
     const Task& task = tasks_[static_cast<size_t>(arriving)];
-    q_.fault = task.kind == Task::Kind::Illegal;
+    q_.fault = task.illegal;
     q_.fault_warp = static_cast<uint32_t>(arriving);
     if (task.access() && !q_.fault) {
       q_.hold = true;
       q_.hold_warp = q_.fault_warp;
       q_.hold_set = roles_[q_.hold_warp].current;
-      q_.hold_write = task.kind == Task::Kind::Rst;
+      q_.hold_write = task.opcode == Opcode::Rst;
     }
   } else {
     q_.fault = false;
@@ -106,8 +106,8 @@ void RayAlu::swap(uint32_t warp) {
 void RayAlu::park(uint32_t warp) {
   const Task& task = tasks_[warp];
   if (task.access()) return;
-  (task.kind == Task::Kind::Rin ? q_.parked_in : q_.parked_out) |= 1u << warp;
-  if (task.kind != Task::Kind::Rin) export_.park(warp, task.kind == Task::Kind::Rfb, task.mask);
+  (task.opcode == Opcode::Rin ? q_.parked_in : q_.parked_out) |= 1u << warp;
+  if (task.opcode != Opcode::Rin) export_.park(warp, task.opcode == Opcode::Rfb, task.mask);
 }
 
 }  // namespace raypool

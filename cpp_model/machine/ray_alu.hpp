@@ -18,11 +18,11 @@ class RayAlu {
  public:
   /// A task of a warp, from its issue to its end.
   struct Task {
-    enum class Kind : uint8_t { Rin, Rout, Rfb, Rld, Rst, Illegal };  ///< Illegal: rld or rst of a word above 20
-    Kind kind = Kind::Rin;
+    Opcode opcode = Opcode::Rin;
+    bool illegal = false;  ///< rld or rst of a word above 20
     uint32_t mask = 0;
 
-    bool access() const { return kind == Kind::Rld || kind == Kind::Rst || kind == Kind::Illegal; }
+    bool access() const { return opcode == Opcode::Rld || opcode == Opcode::Rst; }
   };
   /// Which set is a warp's input, current and output.
   struct Roles {
@@ -49,8 +49,7 @@ class RayAlu {
 
   /// The instruction is the warp's task, before it arrives; `illegal`: the ray word is above 20.
   void begin(uint32_t warp, const DecodedInstruction& instruction, uint32_t mask, bool illegal) {
-    // Operations stand in the order of these kinds.
-    tasks_[warp] = {illegal ? Task::Kind::Illegal : static_cast<Task::Kind>(instruction.code & 31), mask};
+    tasks_[warp] = {instruction.opcode, illegal, mask};
   }
 
   // Outputs of the present cycle.

@@ -19,7 +19,7 @@ struct Encode {
   explicit Encode(std::string_view mnemonic) {
     for (const InstructionInfo& info : kInstructions) {
       if (info.mnemonic != mnemonic) continue;
-      bits = static_cast<uint64_t>(info.unit) << 60 | static_cast<uint64_t>(info.operation) << 55;
+      bits = static_cast<uint64_t>(info.opcode) << 55;
       return;
     }
     throw std::logic_error("no instruction " + std::string(mnemonic));

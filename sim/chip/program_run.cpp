@@ -73,7 +73,7 @@ void check(const ProgramOptions& options) {
   for (uint32_t pc = 0; pc < options.program_length; ++pc) {
     const uint64_t word = options.memory->load(8 * pc) | static_cast<uint64_t>(options.memory->load(8 * pc + 4)) << 32;
     const DecodedInstruction instruction = decode(word, options.configuration);
-    if (!instruction.legal() || instruction.code != instruction_code(AluType::Ray, 0)) continue;
+    if (!instruction.legal() || instruction.opcode != Opcode::Rin) continue;
     throw InputError(fmt::format(
         "PC {}: rin waits for a ray, and a compute program has no ray pools that one could come from: remove it", pc));
   }

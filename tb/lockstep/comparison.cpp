@@ -99,7 +99,7 @@ void Comparison::only_one(const RetireEvent& event, bool in_rtl) const {
   throw Mismatch{fmt::format("warp {} retires an instruction in this cycle in {}, and not in {}", event.warp,
                              in_rtl ? "the RTL" : "the model", in_rtl ? "the model" : "the RTL"),
                  retired_line(in_rtl ? "RTL" : "model", event),
-                 instruction.legal() && alu_info(instruction.info->unit).timed_by_events()
+                 instruction.legal() && alu_info(instruction.info->alu()).timed_by_events()
                      ? result_files(instruction, configuration_)
                      : "rtl/fetch_arbiter.v, rtl/instruction_buffer.v, rtl/dispatcher.v",
                  Context::Warp,

@@ -15,7 +15,7 @@ constexpr uint32_t kInstructionId = 16;
 
 std::string scope_of(uint32_t unit) { return fmt::format("gen_unit[{}].compute_unit", unit); }
 
-bool is(const DecodedInstruction& instruction, AluType type) { return instruction.info->unit == type; }
+bool is(const DecodedInstruction& instruction, AluType type) { return instruction.info->alu() == type; }
 
 // Which operands the instruction has.
 struct Uses {
@@ -349,12 +349,12 @@ void UnitInspection::check_task(uint32_t s, uint32_t warp) {
   const DecodedInstruction& instruction = *issue.instruction;
   const Uses uses(instruction);
   const bool has_immediate = is(instruction, AluType::Tid) || is(instruction, AluType::Mem);
-  bool same = warp_field(w_.task_warp, s) == warp && w_.task_op.bits(s * 5, 5) == (instruction.code & 31u) &&
-              w_.task_mask.bits(s * lanes_, lanes_) == issue.mask &&
-              (!has_immediate || w_.task_imm.word(s) == instruction.immediate) &&
-              (!is(instruction, AluType::Ray) || w_.task_x.bits(s * 5, 5) == instruction.x) &&
-              (!uses.px || ((w_.task_px.bits(s * lanes_, lanes_) ^ issue.px) & issue.mask) == 0) &&
-              (!uses.pb || ((w_.task_pb.bits(s * lanes_, lanes_) ^ issue.pb) & issue.mask) == 0);
+  bool same =
+      warp_field(w_.task_warp, s) == warp && w_.task_op.bits(s * 5, 5) == static_cast<uint32_t>(instruction.info->operation()) &&
+      w_.task_mask.bits(s * lanes_, lanes_) == issue.mask && (!has_immediate || w_.task_imm.word(s) == instruction.immediate) &&
+      (!is(instruction, AluType::Ray) || w_.task_x.bits(s * 5, 5) == instruction.x) &&
+      (!uses.px || ((w_.task_px.bits(s * lanes_, lanes_) ^ issue.px) & issue.mask) == 0) &&
+      (!uses.pb || ((w_.task_pb.bits(s * lanes_, lanes_) ^ issue.pb) & issue.mask) == 0);
   for (uint32_t mask = issue.mask; same && mask != 0; mask &= mask - 1) {
     const uint32_t lane = lowest(mask);
     const uint32_t row = s * lanes_ + lane;
@@ -429,16 +429,18 @@ void UnitInspection::check_done() {
 void UnitInspection::check_result(uint32_t s, uint32_t warp) {
   const CycleUnit::Issue& issue = model_->issue(warp);
   const DecodedInstruction& instruction = *issue.instruction;
-  if (instruction.code >> 5 != slots_[s].type) return;
+  if (static_cast<uint32_t>(instruction.alu()) != slots_[s].type) return;
   bool same = true;
   if (instruction.writes_register) {
     for (uint32_t mask = issue.mask; same && mask != 0; mask &= mask - 1)
       same = w_.done_data.word(s * lanes_ + lowest(mask)) == issue.data[lowest(mask)];
   } else if (instruction.writes_predicate) {
     same = (w_.done_pred.bits(s * lanes_, lanes_) & issue.mask) == issue.predicate;
-  } else if (instruction.info->control) {
-    const std::string_view name = instruction.info->mnemonic;
-    const bool taken = name == "jnone" ? issue.mask == 0 : (name != "jany" && name != "loop") || issue.mask != 0;
+  } else if (instruction.kind == Kind::Control) {
+    const bool any = issue.mask != 0;
+    const bool taken = instruction.opcode == Opcode::Jnone                                        ? !any
+                       : instruction.opcode == Opcode::Jany || instruction.opcode == Opcode::Loop ? any
+                                                                                                  : true;
     same = w_.done_pred.flag(s * lanes_) == taken;
   }
   if (!same) {

@@ -173,19 +173,19 @@ class LockstepUnitImpl : public LockstepUnit {
         continue;
       }
       text += fmt::format("PC {:>5}: {}", issue.pc, instruction_text(issue.instruction->encoding));
-      const std::string_view mnemonic = issue.instruction->info->mnemonic;
+      const DecodedInstruction& instruction = *issue.instruction;
       if (!model.instruction_under_way(warp)) {
         text += "; has retired, the next one is being fetched";
-      } else if (issue.instruction->info->unit == AluType::Mem) {
+      } else if (instruction.alu() == AluType::Mem) {
         text += fmt::format("; waits for memory ({} line reads under way)", reads_);
-      } else if (mnemonic == "rin") {
+      } else if (instruction.opcode == Opcode::Rin) {
         text += fmt::format("; waits for import ({}; {} packages announced and not come)",
                             model.core().slices().input_complete(warp) ? "its packages have come" : "its packages have not come",
                             model.core().slices().packages_expected());
-      } else if (mnemonic == "rout" || mnemonic == "rfb") {
+      } else if (instruction.kind == Kind::Swap) {
         text += "; waits for its output slice to be exported";
       } else {
-        text += "; waits for dispatch or ALU " + std::string(kAluNames[static_cast<size_t>(issue.instruction->info->unit)]);
+        text += "; waits for dispatch or ALU " + std::string(alu_info(instruction.alu()).name);
       }
       text += '\n';
     }

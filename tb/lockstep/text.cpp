@@ -21,13 +21,14 @@ std::string mask_text(uint32_t mask, int lanes) { return fmt::format("{:0{}b}", 
 std::string instruction_text(uint64_t encoding) { return disassemble(encoding); }
 
 std::string result_files(const DecodedInstruction& instruction, const Configuration& configuration) {
-  const std::string_view name = instruction.info->mnemonic;
-  switch (instruction.info->unit) {
+  switch (instruction.alu()) {
     case AluType::Flt: {
-      const bool arithmetic = name == "fadd" || name == "fsub" || name == "fmul" || name == "ffma";
+      const Opcode opcode = instruction.opcode;
+      const bool product = opcode == Opcode::Fmul;
+      const bool arithmetic = product || opcode == Opcode::Fadd || opcode == Opcode::Fsub || opcode == Opcode::Ffma;
       const char* block = !arithmetic         ? "float_convert"
                           : configuration.fma ? "float_fma"
-                          : name == "fmul"    ? "float_multiplier"
+                          : product           ? "float_multiplier"
                                               : "float_adder";
       return fmt::format("rtl/{}.v, rtl/float_lane.v, rtl/flt_alu.v", block);
     }
@@ -39,7 +40,7 @@ std::string result_files(const DecodedInstruction& instruction, const Configurat
     case AluType::Ray:
       return "rtl/ray_memory.v, rtl/ray_alu.v";
     default:
-      return fmt::format("rtl/{}_alu.v", kAluNames[static_cast<size_t>(instruction.info->unit)]);
+      return fmt::format("rtl/{}_alu.v", alu_info(instruction.alu()).name);
   }
 }
 
