@@ -13,7 +13,6 @@ STYLE = """
   .plate { fill: #ffffff; stroke: #d0d4da }
   .box { fill: #eef3fb; stroke: #44618f }
   .box.memory { fill: #f3efe3; stroke: #86702f }
-  .box.outside { fill: #f4f4f4; stroke: #777777; stroke-dasharray: 4 3 }
   .group { fill: #f9fafc; stroke: #9aa5b5 }
   .wire { fill: none; stroke: #55606e; stroke-width: 1.3 }
   .head { fill: #55606e }
@@ -29,7 +28,6 @@ DARK = """
   .plate { fill: #15191e; stroke: #3a424c }
   .box { fill: #1f2d42; stroke: #7ea2d8 }
   .box.memory { fill: #332d1a; stroke: #c2a75a }
-  .box.outside { fill: #23272c; stroke: #9a9a9a }
   .group { fill: #1a1f26; stroke: #5a6676 }
   .wire { stroke: #a9b4c1 }
   .head { fill: #a9b4c1 }
@@ -81,8 +79,7 @@ class Picture:
         top = y + (height - 17 * len(lines)) / 2 + 13
         for number, (words, line_kind) in enumerate(lines):
             self.text(x + width / 2, top + 17 * number, words, line_kind, "middle")
-        if "outside" not in kind:
-            self.modules |= {name} | {part.split(" ")[0] for part in parts}
+        self.modules |= {name} | {part.split(" ")[0] for part in parts}
 
     def group(self, place, name="", note="", copies=0):
         """A frame around boxes; `copies` frames behind it say that there are several."""
