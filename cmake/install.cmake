@@ -6,7 +6,7 @@ set(data ${CMAKE_INSTALL_DATADIR}/raypool)
 install(TARGETS raypool RUNTIME COMPONENT program)
 install(DIRECTORY configs schemas examples rtl DESTINATION ${data} COMPONENT program)
 install(PROGRAMS scripts/verilate.sh DESTINATION ${data}/scripts COMPONENT program)
-install(FILES tb/rtl/rtl_unit.cpp tb/rtl/unit_library.hpp tb/rtl/probes.vlt DESTINATION ${data}/tb/rtl COMPONENT program)
+install(FILES sim/rtl/rtl_unit.cpp sim/rtl/unit_library.hpp sim/rtl/probes.vlt DESTINATION ${data}/sim/rtl COMPONENT program)
 install(FILES cpp_model/isa/isa.hpp cpp_model/isa/input_error.hpp DESTINATION ${data}/cpp_model/isa COMPONENT program)
 install(FILES cpp_model/config/configuration.hpp DESTINATION ${data}/cpp_model/config COMPONENT program)
 install(FILES cpp_model/machine/compute_unit.hpp cpp_model/machine/compute_unit.cpp cpp_model/machine/memory.hpp cpp_model/machine/packages.hpp
@@ -27,7 +27,7 @@ foreach(library IN LISTS libraries)
 endforeach()
 install(TARGETS ${libraries} EXPORT raypool ARCHIVE COMPONENT development)
 # Among themselves the headers are included as in the checkout; users write <raypool/machine/model.hpp>.
-install(DIRECTORY cpp_model/ tb/lockstep DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/raypool COMPONENT development
+install(DIRECTORY cpp_model/ sim/lockstep DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/raypool COMPONENT development
         FILES_MATCHING PATTERN "*.hpp" PATTERN "test_*.hpp" EXCLUDE)
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/raypool)
 install(EXPORT raypool FILE raypool-targets.cmake NAMESPACE raypool:: DESTINATION ${package} COMPONENT development)

@@ -18,7 +18,7 @@ raypool=$(realpath "${RAYPOOL:-$build/raypool}")
 cd "$root"
 
 # verilate.sh builds from the tree that it stands in: one of links, but for rtl/.
-for link in cpp_model tb scripts; do ln -sfn "$root/$link" "$folder/$link"; done
+for link in cpp_model sim scripts; do ln -sfn "$root/$link" "$folder/$link"; done
 python3 scripts/faults.py tb/faults/catalogue.json rtl "$folder/rtl"
 
 "$raypool" configurations --most 12 --out "$folder/configurations" > /dev/null

@@ -19,7 +19,7 @@ parameters=$("$raypool" config "$config" --verilog-parameters)
 # verilate.sh builds from the tree that it stands in: one of links, whose rtl/ is the mutated netlist.
 tree=$output/tree
 mkdir -p "$tree/rtl"
-for folder in cpp_model tb scripts; do ln -sfn "$root/$folder" "$tree/$folder"; done
+for folder in cpp_model sim scripts; do ln -sfn "$root/$folder" "$tree/$folder"; done
 
 digest=$({ printf '%s\n' "$parameters" "$count $seed"; cat rtl/*.v rtl/*.vh scripts/mutants.sh; yosys -V; } | sha256sum | cut -d ' ' -f 1)
 if [ "$(cat "$output/stamp" 2> /dev/null)" != "$digest" ]; then

@@ -2,7 +2,7 @@
 # Builds the Verilated multiprocessor of one set of Verilog parameters: OUTPUT_DIR/libraypool_unit.so.
 #   scripts/verilate.sh OUTPUT_DIR [--trace] [--quick] [--netlist FILE]... NAME=VALUE...
 # NAME=VALUE as `raypool config CONFIG --verilog-parameters` prints them, and UNITS=1|2|4 (default 1).
-# --netlist: Verilog that stands in for the compute unit of rtl/, and calls tb/rtl/gate_simulator.cpp.
+# --netlist: Verilog that stands in for the compute unit of rtl/, and calls sim/rtl/gate_simulator.cpp.
 # --trace: the unit can write waveforms (FST), and is slower. --quick: compiled in less time, slower. Nothing is built when all it is made from
 # is as it was; a build that fails leaves the old library as it was. VERILATOR, CXX and JOBS (default 2) choose the tools and the number
 # of compilers.
@@ -54,10 +54,10 @@ stamp=$output/libraypool_unit.stamp
 # Everything the library is made from.
 cd "$root"
 shopt -s nullglob
-headers=(cpp_model/isa/isa.hpp cpp_model/config/configuration.hpp cpp_model/machine/{compute_unit,memory,packages}.hpp tb/rtl/unit_library.hpp)
-wrapper=(tb/rtl/rtl_unit.cpp cpp_model/machine/compute_unit.cpp)
+headers=(cpp_model/isa/isa.hpp cpp_model/config/configuration.hpp cpp_model/machine/{compute_unit,memory,packages}.hpp sim/rtl/unit_library.hpp)
+wrapper=(sim/rtl/rtl_unit.cpp cpp_model/machine/compute_unit.cpp)
 verilog=(rtl/*.v)
-waivers=(rtl/*.vlt tb/rtl/probes.vlt)   # and what the lockstep looks at inside
+waivers=(rtl/*.vlt sim/rtl/probes.vlt)   # and what the lockstep looks at inside
 language=1364-2005
 what=rtl/
 optimise=(OPT_FAST=-O2 OPT_SLOW=-O1 OPT_GLOBAL=-O2)
@@ -67,7 +67,7 @@ if [ ${#netlist[@]} -gt 0 ]; then
   for file in rtl/*.v; do [ "$file" = rtl/compute_unit.v ] || verilog+=("$file"); done
   language=1800-2017
   what="the shell of a netlist"
-  wrapper+=(tb/rtl/gate_simulator.cpp)
+  wrapper+=(sim/rtl/gate_simulator.cpp)
 fi
 digest=$({
   printf '%s\n' "$version" "$compiler_version" "trace $trace quick $quick" "${parameters[@]}"
@@ -96,7 +96,7 @@ printf '#define RAYPOOL_UNIT_PARAMETERS "%s"\n#define RAYPOOL_UNIT_COUNT %d\n' "
 options=(--cc --exe --top-module multiprocessor --Mdir "$build" -Irtl --default-language $language
   -O3 --x-assign fast --x-initial fast --noassert
   -CFLAGS "-std=c++17 -fPIC -fvisibility=hidden -fno-gnu-unique -fno-plt -fno-semantic-interposition"
-  -CFLAGS "-I$root/cpp_model -I$root/tb -I$build"
+  -CFLAGS "-I$root/cpp_model -I$root/sim -I$build"
   -LDFLAGS "-shared -Wl,-Bsymbolic -Wl,-O1" -o libraypool_unit.so)
 [ "$trace" = 0 ] || options+=(--trace-fst)
 for parameter in "${parameters[@]}"; do options+=("-G$parameter"); done

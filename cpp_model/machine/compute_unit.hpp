@@ -209,7 +209,7 @@ class ComputeUnit {
   virtual void trace_on() {}
   virtual const UnitTrace& trace() const = 0;
 
-  /// A signal of the instance `scope` (such as "gen_unit[0].compute_unit"); tb/rtl/probes.vlt lists those there are. Its data is
+  /// A signal of the instance `scope` (such as "gen_unit[0].compute_unit"); the list probes.vlt has those there are. Its data is
   /// that of the present cycle and stays where it is.
   virtual Signal signal(const std::string& scope, const std::string& name) const;
 

@@ -131,7 +131,7 @@ def flatten(netlist, found):
 
 
 def simulator(design, folder, count):
-    """Writes the netlist as tb/rtl/gate_simulator.cpp reads it, and the Verilog that stands in for the compute unit: that simulator and the
+    """Writes the netlist as sim/rtl/gate_simulator.cpp reads it, and the Verilog that stands in for the compute unit: that simulator and the
     RTL's memories. With `count` it prints at its end how often nets changed and memories were accessed. Returns the Verilog's path."""
     found = tables(design, folder)
     nets, gates, blocks, memories, joins, top = flatten(design.netlist, found)

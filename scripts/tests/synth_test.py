@@ -95,7 +95,7 @@ class Synthesis(unittest.TestCase):
         replay.simulator(design, self.folder, False)
         root = subprocess.run(["verilator", "--getenv", "VERILATOR_ROOT"], capture_output=True, text=True, check=True).stdout.strip()
         path = os.path.join(self.folder, "gates.so")
-        subprocess.run(["g++", "-std=c++17", "-shared", "-fPIC", f"-I{root}/include/vltstd", f"{ROOT}/tb/rtl/gate_simulator.cpp", "-o", path], check=True)
+        subprocess.run(["g++", "-std=c++17", "-shared", "-fPIC", f"-I{root}/include/vltstd", f"{ROOT}/sim/rtl/gate_simulator.cpp", "-o", path], check=True)
         gates = ctypes.CDLL(path)
         gates.netlist_open.restype = ctypes.c_void_p
         unit = ctypes.c_void_p(gates.netlist_open(os.path.join(self.folder, "netlist.bin").encode()))

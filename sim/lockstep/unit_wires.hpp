@@ -1,4 +1,4 @@
-// The signals of a compute unit that the inspection reads. tb/rtl/probes.vlt keeps them readable in the Verilated RTL.
+// The signals of a compute unit that the inspection reads. sim/rtl/probes.vlt keeps them readable in the Verilated RTL.
 #pragma once
 
 #include <string>
