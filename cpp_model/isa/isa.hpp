@@ -75,11 +75,6 @@ inline constexpr std::array<std::string_view, kAluTypes> kAluNames = {
 
 inline constexpr const AluInfo& alu_info(AluType type) { return kAluTable[static_cast<size_t>(type)]; }
 
-using Unit = AluType;
-inline constexpr int kUnits = kAluTypes;
-inline constexpr const auto& kUnitTable = kAluTable;
-inline constexpr const auto& kUnitNames = kAluNames;
-
 /// One operand in the order of the assembly text, and where it is encoded.
 enum class Operand : uint8_t {
   None,
@@ -213,6 +208,8 @@ enum class Opcode : uint16_t {
 };
 
 inline constexpr AluType alu_of(Opcode opcode) { return static_cast<AluType>(static_cast<int>(opcode) >> 5); }
+/// Number within the type, 0 .. 31.
+inline constexpr uint8_t operation_of(Opcode opcode) { return static_cast<uint8_t>(opcode) & 31; }
 
 namespace mnemonic {
 /// The name of a row in lower case.
@@ -232,24 +229,21 @@ RAYPOOL_INSTRUCTIONS(RAYPOOL_ROW)
 struct InstructionInfo {
   std::string_view mnemonic;
   Opcode opcode;
-  AluType unit;
   std::array<Operand, 4> operands;
   ImmediateType immediate;  ///< type of B when it is an immediate
   Kind kind;
-  bool control;
   std::string_view meaning;
   Feature needs = Feature::Base;
 
   constexpr AluType alu() const { return alu_of(opcode); }
-  /// Number within the type, 0 .. 31.
-  constexpr int operation() const { return static_cast<int>(opcode) & 31; }
+  constexpr uint8_t operation() const { return operation_of(opcode); }
 };
 
 inline constexpr InstructionInfo kInstructions[] = {
 // clang-format off
-#define RAYPOOL_ROW(name, type, number, o0, o1, o2, o3, immediate, kind, ...) \
-  {mnemonic::name.text, Opcode::name, AluType::type, {Operand::o0, Operand::o1, Operand::o2, Operand::o3}, \
-   ImmediateType::immediate, Kind::kind, Kind::kind == Kind::Control, __VA_ARGS__},
+#define RAYPOOL_ROW(name, type, operation, o0, o1, o2, o3, immediate, kind, ...) \
+  {mnemonic::name.text, Opcode::name, {Operand::o0, Operand::o1, Operand::o2, Operand::o3}, \
+   ImmediateType::immediate, Kind::kind, __VA_ARGS__},
     // clang-format on
     RAYPOOL_INSTRUCTIONS(RAYPOOL_ROW)
 #undef RAYPOOL_ROW

@@ -349,12 +349,12 @@ void UnitInspection::check_task(uint32_t s, uint32_t warp) {
   const DecodedInstruction& instruction = *issue.instruction;
   const Uses uses(instruction);
   const bool has_immediate = is(instruction, AluType::Tid) || is(instruction, AluType::Mem);
-  bool same =
-      warp_field(w_.task_warp, s) == warp && w_.task_op.bits(s * 5, 5) == static_cast<uint32_t>(instruction.info->operation()) &&
-      w_.task_mask.bits(s * lanes_, lanes_) == issue.mask && (!has_immediate || w_.task_imm.word(s) == instruction.immediate) &&
-      (!is(instruction, AluType::Ray) || w_.task_x.bits(s * 5, 5) == instruction.x) &&
-      (!uses.px || ((w_.task_px.bits(s * lanes_, lanes_) ^ issue.px) & issue.mask) == 0) &&
-      (!uses.pb || ((w_.task_pb.bits(s * lanes_, lanes_) ^ issue.pb) & issue.mask) == 0);
+  bool same = warp_field(w_.task_warp, s) == warp && w_.task_op.bits(s * 5, 5) == operation_of(instruction.opcode) &&
+              w_.task_mask.bits(s * lanes_, lanes_) == issue.mask &&
+              (!has_immediate || w_.task_imm.word(s) == instruction.immediate) &&
+              (!is(instruction, AluType::Ray) || w_.task_x.bits(s * 5, 5) == instruction.x) &&
+              (!uses.px || ((w_.task_px.bits(s * lanes_, lanes_) ^ issue.px) & issue.mask) == 0) &&
+              (!uses.pb || ((w_.task_pb.bits(s * lanes_, lanes_) ^ issue.pb) & issue.mask) == 0);
   for (uint32_t mask = issue.mask; same && mask != 0; mask &= mask - 1) {
     const uint32_t lane = lowest(mask);
     const uint32_t row = s * lanes_ + lane;

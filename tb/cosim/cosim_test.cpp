@@ -40,9 +40,9 @@ RandomProgram program_of(const std::vector<uint64_t>& code, uint32_t threads = 1
   return program;
 }
 
-bool contains(const RandomProgram& program, const char* mnemonic) {
+bool contains(const RandomProgram& program, Opcode opcode) {
   return std::any_of(program.program.code.begin(), program.program.code.end(),
-                     [&](uint64_t word) { return unpack(word).info == &instruction(mnemonic); });
+                     [&](uint64_t word) { return unpack(word).info == &instruction(opcode); });
 }
 
 TEST(RandomPrograms, KeepTheirPromisesForEveryConfiguration) {
@@ -115,7 +115,7 @@ class Seen : public RunObserver {
     for (const StoreEvent& store : trace.stores) stored |= store.address, not_stored |= ~store.address;
     for (const RetireEvent& event : trace.retired) {
       const Instruction instruction = unpack(event.instruction);
-      if (instruction.info == nullptr || instruction.info->mnemonic != "ld") continue;
+      if (instruction.info == nullptr || instruction.info->opcode != Opcode::Ld) continue;
       // r13 has the lane's address but for the offset; that of far lines has all its upper bits in the offset.
       loaded |= instruction.immediate, not_loaded |= ~instruction.immediate;
     }
@@ -285,11 +285,11 @@ TEST(Shrinking, LeavesTheCulpritAndAValidProgram) {
   int shrunk = 0;
   for (uint64_t seed = 1; seed <= 30; ++seed) {
     const RandomProgram program = make_random_program(configuration, seed);
-    if (program.faults != 0 || !contains(program, "fdiv")) continue;
+    if (program.faults != 0 || !contains(program, Opcode::Fdiv)) continue;
     ++shrunk;
     const RandomProgram shorter =
-        shrink_program(configuration, program, [](const RandomProgram& each) { return contains(each, "fdiv"); });
-    EXPECT_TRUE(contains(shorter, "fdiv"));
+        shrink_program(configuration, program, [](const RandomProgram& each) { return contains(each, Opcode::Fdiv); });
+    EXPECT_TRUE(contains(shorter, Opcode::Fdiv));
     EXPECT_EQ(check_program(configuration, shorter), "");
     EXPECT_LE(shorter.program.code.size(), 8u) << "seed " << seed;
     EXPECT_EQ(shorter.kernels.size(), 1u);

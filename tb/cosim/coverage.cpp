@@ -106,27 +106,28 @@ void Coverage::retired(const RetireEvent& event) {
   const Instruction instruction = unpack(event.instruction);
   if (instruction.info == nullptr || event.unit >= units_) return;
   const size_t row = row_of(instruction.info);
-  const auto unit = static_cast<size_t>(instruction.info->unit);
+  const Opcode opcode = instruction.info->opcode;
+  const auto type = static_cast<size_t>(alu_of(opcode));
   Warp& warp = warp_of(event.unit, event.warp);
   ++rows_[row];
   if (event.mask == 0) ++empty_[row];
   if (event.mask != 0 && event.mask != full_) ++partial_[row];
-  if (warp.last_unit >= 0) ++after_[static_cast<size_t>(warp.last_unit)][unit];
+  if (warp.last_type >= 0) ++after_[static_cast<size_t>(warp.last_type)][type];
   if (warp.stack.empty()) warp.stack = {{event.pc, 0xffff}};
   if (warp.stack.size() < depths_.size()) ++depths_[warp.stack.size()];
-  together(event, unit);
+  together(event, type);
   code(event);
   predicates(warp, event, instruction);
   last_of_all(event, instruction);
-  if (instruction.info->unit == Unit::Mem && instruction.info->mnemonic == "ld") loaded(warp, event, instruction);
-  if (instruction.info->unit == Unit::Ray) rays(warp, event, instruction);
+  if (opcode == Opcode::Ld) loaded(warp, event, instruction);
+  if (instruction.info->kind == Kind::Swap) swapped(warp, event, opcode);
   if (writes_register(*instruction.info)) {
     for (uint32_t mask = event.mask; mask != 0; mask &= mask - 1) {
       const auto lane = static_cast<uint32_t>(__builtin_ctz(mask));
       warp.registers[instruction.rd * lanes_ + lane] = event.data[lane];
     }
   }
-  warp.last_unit = static_cast<int>(unit);
+  warp.last_type = static_cast<int>(type);
   warp.last_retired = now_;
   control(warp, event, instruction);
 }
@@ -158,57 +159,58 @@ void Coverage::predicates(Warp& warp, const RetireEvent& event, const Instructio
     warp.written |= bit;
     warp.set = event.predicate != 0 ? warp.set | bit : warp.set & ~bit;
   }
-  if (instruction.info->mnemonic != "exit") return;
+  if (instruction.info->opcode != Opcode::Exit) return;
   warp.left = warp.set & ~1u;
   warp.set = warp.written = 0;
 }
 
 void Coverage::last_of_all(const RetireEvent& event, const Instruction& instruction) {
-  const std::string_view name = instruction.info->mnemonic;
-  if (name == "arg" && instruction.immediate % kArguments == kArguments - 1) hit(Event::LastArgument);
+  const Opcode opcode = instruction.info->opcode;
+  if (opcode == Opcode::Arg && instruction.immediate % kArguments == kArguments - 1) hit(Event::LastArgument);
   if (event.warp + 1 != static_cast<uint32_t>(configuration_.warps) || (event.mask >> (lanes_ - 1) & 1) == 0) return;
   if (writes_register(*instruction.info) && instruction.rd == kRegisters - 1) hit(Event::LastRegister);
   if (writes_predicate(*instruction.info) && instruction.rd == kPredicates - 1 && (event.predicate >> (lanes_ - 1) & 1) != 0)
     hit(Event::LastPredicate);
-  if (name == "rst" && instruction.x == kIntersectionWords - 1) hit(Event::LastWord);
-  if (name == "ld") hit(Event::LastLoad);
-  if (name == "st") hit(Event::LastStore);
+  if (opcode == Opcode::Rst && instruction.x == kIntersectionWords - 1) hit(Event::LastWord);
+  if (opcode == Opcode::Ld) hit(Event::LastLoad);
+  if (opcode == Opcode::St) hit(Event::LastStore);
 }
 
 // An instruction that retires in this cycle was in its ALU for at least the type's depth, so it was there together with all that
 // retired since.
-void Coverage::together(const RetireEvent& event, size_t unit) {
-  const auto type = static_cast<Unit>(unit);
+void Coverage::together(const RetireEvent& event, size_t type) {
+  const auto alu = static_cast<AluType>(type);
   const auto per_unit = static_cast<uint32_t>(configuration_.warps);
   const uint32_t me = event.unit * per_unit + event.warp;
-  const int depth = type == Unit::Mem ? 3 : type == Unit::Ray ? 2 : configuration_.alu(type).depth;
+  const int depth = alu == AluType::Mem ? 3 : alu == AluType::Ray ? 2 : configuration_.alu(alu).depth;
   while (!recent_.empty() && recent_.front().cycle + 40 < now_) recent_.pop_front();
   for (auto other = recent_.rbegin(); other != recent_.rend() && other->cycle + static_cast<uint64_t>(depth) >= now_; ++other)
     if (other->warp != me && other->warp / per_unit == event.unit)
-      ++together_[std::min(unit, other->unit)][std::max(unit, other->unit)];
-  recent_.push_back({now_, me, unit});
+      ++together_[std::min(type, other->type)][std::max(type, other->type)];
+  recent_.push_back({now_, me, type});
 }
 
 void Coverage::control(Warp& warp, const RetireEvent& event, const Instruction& instruction) {
-  const std::string_view name = instruction.info->mnemonic;
+  const Opcode opcode = instruction.info->opcode;
   Entry& top = warp.stack.back();
   top.pc = event.pc + 1;
-  if (instruction.info->control) {
+  if (instruction.info->kind == Kind::Control) {
     const uint32_t low = instruction.immediate & 0xffff;
-    if ((name == "jany" && event.mask != 0) || (name == "jnone" && event.mask == 0) || (name == "loop" && event.mask == 0)) {
+    const bool jumps = event.mask != 0 ? opcode == Opcode::Jany : opcode == Opcode::Jnone || opcode == Opcode::Loop;
+    if (jumps) {
       if (warp.stack.size() > 1 && low > top.rpc) hit(top.loop ? Event::LoopLeft : Event::FunctionLeft);
       if (warp.stack.size() > 1 && low < top.begin) hit(top.loop ? Event::LoopLeftBack : Event::FunctionLeftBack);
       top.pc = low;
-    } else if (name == "loop") {
+    } else if (opcode == Opcode::Loop) {
       top.pc = event.pc;
       warp.stack.push_back({event.pc + 1, low, event.pc + 1, true});
-    } else if (name == "call") {
+    } else if (opcode == Opcode::Call) {
       warp.stack.push_back({low, instruction.immediate >> 16, low, false});
-    } else if (name == "ret") {
+    } else if (opcode == Opcode::Ret) {
       warp.stack.pop_back();
-    } else if (name == "exit") {
+    } else if (opcode == Opcode::Exit) {
       warp.stack.clear();
-      warp.last_unit = -1;
+      warp.last_type = -1;
     }
   }
   while (warp.stack.size() > 1 && warp.stack.back().pc >= warp.stack.back().rpc) warp.stack.pop_back();
@@ -245,18 +247,15 @@ void Coverage::stored(const StoreEvent& event) {
   if (waited && line->second.last_beat + kReplayCycles >= now_) hit(Event::StoreAfterRefill);
 }
 
-void Coverage::rays(Warp& warp, const RetireEvent& event, const Instruction& instruction) {
-  const std::string_view name = instruction.info->mnemonic;
-  if (name == "rin") {
+void Coverage::swapped(Warp& warp, const RetireEvent& event, Opcode opcode) {
+  if (opcode == Opcode::Rin) {
     std::swap(warp.roles[0], warp.roles[1]);
-  } else if (name == "rout" || name == "rfb") {
+  } else {
     if (warp.last_export > left_[event.unit]) hit(Event::RotatedTwice);
     std::swap(warp.roles[1], warp.roles[2]);
-    hit(event.mask == 0 ? Event::NothingLeaves : name == "rout" ? Event::RayLeaves : Event::ContributionLeaves);
+    hit(event.mask == 0 ? Event::NothingLeaves : opcode == Opcode::Rout ? Event::RayLeaves : Event::ContributionLeaves);
     made_[event.unit] += static_cast<uint64_t>(__builtin_popcount(event.mask));
     if (event.mask != 0) warp.last_export = made_[event.unit];
-  } else {
-    return;
   }
   const size_t permutation = size_t{warp.roles[0]} * 2 + (warp.roles[1] > warp.roles[2] ? 1 : 0);
   ++events_[static_cast<size_t>(Event::SetPermutation0) + permutation];

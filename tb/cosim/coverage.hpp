@@ -50,7 +50,7 @@ class Coverage : public RunObserver {
   struct Warp {
     std::vector<Entry> stack;
     std::vector<uint32_t> registers;  ///< [register][lane]
-    int last_unit = -1;               ///< of the instruction before
+    int last_type = -1;               ///< of the instruction before
     uint64_t last_retired = 0;        ///< cycle
     std::array<uint8_t, 3> roles{};   ///< sets that are input, current, output
     uint64_t last_export = 0;         ///< rays and contributions that had been made when it last exported
@@ -71,20 +71,20 @@ class Coverage : public RunObserver {
   struct Recent {
     uint64_t cycle;
     uint32_t warp;
-    size_t unit;
+    size_t type;
   };
 
   void fault_pairs(Group& group) const;
   void hit(Event event, uint64_t times = 1) { events_[static_cast<size_t>(event)] += times; }
   void retired(const RetireEvent& event);
-  void together(const RetireEvent& event, size_t unit);
+  void together(const RetireEvent& event, size_t type);
   void control(Warp& warp, const RetireEvent& event, const Instruction& instruction);
   void loaded(const Warp& warp, const RetireEvent& event, const Instruction& instruction);
   void code(const RetireEvent& event);
   void predicates(Warp& warp, const RetireEvent& event, const Instruction& instruction);
   void last_of_all(const RetireEvent& event, const Instruction& instruction);
   void after_fault(const UnitOutputs& outputs, const UnitInputs& inputs, const UnitTrace& trace);
-  void rays(Warp& warp, const RetireEvent& event, const Instruction& instruction);
+  void swapped(Warp& warp, const RetireEvent& event, Opcode opcode);
   void stored(const StoreEvent& event);
   void memory_request(const UnitOutputs& outputs, const UnitInputs& inputs);
   void memory_response(const UnitInputs& inputs);
@@ -96,10 +96,10 @@ class Coverage : public RunObserver {
   Configuration configuration_;
   uint32_t units_, lanes_, full_;
   // Counts over all programs.
-  std::vector<uint64_t> rows_, empty_, partial_;                 ///< [row of the table]: retired; with no lane; with some lanes
-  std::array<std::array<uint64_t, kUnits>, kUnits> after_{};     ///< [type][type of the warp's next instruction]
-  std::array<std::array<uint64_t, kUnits>, kUnits> together_{};  ///< [lower type][higher type] in flight in one cycle
-  std::vector<uint64_t> depths_;                                 ///< [entries on the PC stack]
+  std::vector<uint64_t> rows_, empty_, partial_;  ///< [row of the table]: retired; with no lane; with some lanes
+  std::array<std::array<uint64_t, kAluTypes>, kAluTypes> after_{};     ///< [type][type of the warp's next instruction]
+  std::array<std::array<uint64_t, kAluTypes>, kAluTypes> together_{};  ///< [lower type][higher type] in flight in one cycle
+  std::vector<uint64_t> depths_;                                       ///< [entries on the PC stack]
   std::array<uint64_t, kFaultCodes> faults_{};
   /// [code that wins][code that does not][the winner's is the lower warp] in one cycle
   std::array<std::array<std::array<uint64_t, 2>, kFaultCodes>, kFaultCodes> fault_pairs_{};

@@ -49,13 +49,14 @@ std::vector<Coverage::Group> Coverage::groups() const {
   // A lane is on or off; some but not all takes two.
   if (lanes_ > 1) table("instructions with some lanes", partial_);
   Group& after = group("types one after the other in a warp");
-  for (size_t a = 0; a < kUnits; ++a)
-    for (size_t b = 0; b < kUnits; ++b) after.items.push_back({fmt::format("{}-{}", kUnitNames[a], kUnitNames[b]), after_[a][b]});
+  for (size_t a = 0; a < kAluTypes; ++a)
+    for (size_t b = 0; b < kAluTypes; ++b)
+      after.items.push_back({fmt::format("{}-{}", kAluNames[a], kAluNames[b]), after_[a][b]});
   if (configuration_.warps > 1) {
     Group& together = group("types in flight in one cycle");
-    for (size_t a = 0; a < kUnits; ++a)
-      for (size_t b = a; b < kUnits; ++b)
-        together.items.push_back({fmt::format("{}+{}", kUnitNames[a], kUnitNames[b]), together_[a][b]});
+    for (size_t a = 0; a < kAluTypes; ++a)
+      for (size_t b = a; b < kAluTypes; ++b)
+        together.items.push_back({fmt::format("{}+{}", kAluNames[a], kAluNames[b]), together_[a][b]});
   }
   Group& depths = group("PC stack entries");
   for (size_t depth = 1; depth < depths_.size(); ++depth) depths.items.push_back({std::to_string(depth), depths_[depth]});
@@ -87,7 +88,7 @@ std::vector<Coverage::Group> Coverage::groups() const {
 // The memory ALU's wins before the ray ALU's, that before any other, and of these the lower warp's.
 void Coverage::fault_pairs(Group& group) const {
   constexpr size_t kMemory = 5, kRay = 7;
-  const bool one_branch = configuration_.alu(Unit::Brh).count == 1;
+  const bool one_branch = configuration_.alu(AluType::Brh).count == 1;
   const auto of_stack = [](size_t code) { return code == 3 || code == 4; };
   for (size_t wins = 1; wins < fault_pairs_.size(); ++wins) {
     for (size_t other = 1; other < fault_pairs_.size(); ++other) {

@@ -18,20 +18,20 @@ constexpr int kCandidates = 60;
 // Of a depth: in all, while a smaller value counts stages beyond the least, which other parameters decide.
 constexpr int kDeepest = 32;
 
-void add_alu(std::vector<Factor>& factors, size_t unit) {
+void add_alu(std::vector<Factor>& factors, size_t type) {
   const auto add = [&](const char* what, int AluConfiguration::*member, std::vector<int> values) {
-    factors.push_back({fmt::format("{}.{}", kUnitNames[unit], what), std::move(values),
-                       [unit, member](Machine& m, int value) { m.configuration.alus[unit].*member = value; },
-                       [unit, member](const Machine& m) { return m.configuration.alus[unit].*member; }});
+    factors.push_back({fmt::format("{}.{}", kAluNames[type], what), std::move(values),
+                       [type, member](Machine& m, int value) { m.configuration.alus[type].*member = value; },
+                       [type, member](const Machine& m) { return m.configuration.alus[type].*member; }});
   };
   add("count", &AluConfiguration::count, {1, 2, 3, 4});
   add("latency", &AluConfiguration::latency, {1, 2, 3, 16});
-  const auto least = [unit](const Machine& m) { return least_depth(m.configuration, static_cast<Unit>(unit)); };
-  factors.push_back({fmt::format("{}.depth", kUnitNames[unit]),
+  const auto least = [type](const Machine& m) { return least_depth(m.configuration, static_cast<AluType>(type)); };
+  factors.push_back({fmt::format("{}.depth", kAluNames[type]),
                      {0, 1, kDeepest},
-                     [unit, least](Machine& m, int v) { m.configuration.alus[unit].depth = v == kDeepest ? v : least(m) + v; },
-                     [unit, least](const Machine& m) {
-                       const int depth = m.configuration.alus[unit].depth;
+                     [type, least](Machine& m, int v) { m.configuration.alus[type].depth = v == kDeepest ? v : least(m) + v; },
+                     [type, least](const Machine& m) {
+                       const int depth = m.configuration.alus[type].depth;
                        return depth == kDeepest ? depth : depth - least(m);
                      }});
 }
@@ -55,8 +55,8 @@ std::vector<Factor> make_factors() {
   add("subnormals", {0, 1}, &Configuration::subnormals);
   add("slow_unit", {0, 1, 2, 3}, &Configuration::slow_unit);
   add("fma", {0, 1}, &Configuration::fma);
-  for (size_t unit = 0; unit < kUnits; ++unit)
-    if (!kUnitTable[unit].timed_by_events()) add_alu(factors, unit);
+  for (size_t type = 0; type < kAluTypes; ++type)
+    if (!kAluTable[type].timed_by_events()) add_alu(factors, type);
   return factors;
 }
 

@@ -109,11 +109,10 @@ class Checker {
     const bool reads_b = has_operand(info, Operand::Rb) || (has_operand(info, Operand::B) && !i->b_is_immediate);
     if (reads_a && undefined(i->ra)) return fmt::format("r{} is read and was not written", i->ra);
     if (reads_b && undefined(i->rb)) return fmt::format("r{} is read and was not written", i->rb);
-    if (info.unit == Unit::Mem) return touch(warp, *i, mask);
-    if (info.unit != Unit::Ray) return "";
-    if (info.mnemonic == "rld") return read_words(warp, i->x, i->x + 1, mask);
-    if (info.mnemonic == "rout") return read_words(warp, 0, kRayWords, mask);
-    if (info.mnemonic == "rfb") return read_words(warp, word::kPixel, word::kColor + 3, mask);
+    if (i->alu() == AluType::Mem) return touch(warp, *i, mask);
+    if (i->opcode == Opcode::Rld) return read_words(warp, i->x, i->x + 1, mask);
+    if (i->opcode == Opcode::Rout) return read_words(warp, 0, kRayWords, mask);
+    if (i->opcode == Opcode::Rfb) return read_words(warp, word::kPixel, word::kColor + 3, mask);
     return "";
   }
 
@@ -126,7 +125,7 @@ class Checker {
 
   std::string touch(uint32_t warp, const DecodedInstruction& i, uint32_t mask) {
     const uint32_t* base = core_.register_row(warp, i.ra);
-    const bool store = i.info->mnemonic == "st";
+    const bool store = i.opcode == Opcode::St;
     const bool several = program_.units > 1;
     const int me = static_cast<int>(several ? kernel_ * warps_ + warp : warp);
     for (; mask != 0; mask &= mask - 1) {
@@ -147,13 +146,11 @@ class Checker {
   }
 
   void after(const Step& step) {
-    const InstructionInfo& info = *step.instruction->info;
-    if (writes_register(info)) defined_[step.warp * kRegisters + step.instruction->rd] |= step.mask;
-    if (info.unit != Unit::Ray) return;
+    const DecodedInstruction& i = *step.instruction;
+    if (i.writes_register) defined_[step.warp * kRegisters + i.rd] |= step.mask;
     auto& words = slices_[step.warp];
-    if (info.mnemonic == "rin") words.fill(~0u);
-    if (info.mnemonic == "rout" || info.mnemonic == "rfb") words.fill(0);
-    if (info.mnemonic == "rst" && step.instruction->x < kIntersectionWords) words[step.instruction->x] |= step.mask;
+    if (i.kind == Kind::Swap) words.fill(i.opcode == Opcode::Rin ? ~0u : 0);
+    if (i.opcode == Opcode::Rst && i.x < kIntersectionWords) words[i.x] |= step.mask;
   }
 
   const RandomProgram& program_;

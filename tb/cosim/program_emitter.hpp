@@ -26,18 +26,18 @@ class ProgramEmitter {
     code_.push_back(encode(i));
     return code_.size() - 1;
   }
-  size_t emit(std::string_view mnemonic, int rd = 0, int ra = 0, int rb = 0, int guard = 0) {
+  size_t emit(Opcode opcode, int rd = 0, int ra = 0, int rb = 0, int guard = 0) {
     Instruction i;
-    i.info = &instruction(mnemonic);
+    i.info = &instruction(opcode);
     i.rd = static_cast<uint8_t>(rd);
     i.ra = static_cast<uint8_t>(ra);
     i.rb = static_cast<uint8_t>(rb);
     i.guard = static_cast<uint8_t>(guard);
     return emit(i);
   }
-  size_t emit_immediate(std::string_view mnemonic, int rd, int ra, uint32_t immediate, int guard = 0) {
+  size_t emit_immediate(Opcode opcode, int rd, int ra, uint32_t immediate, int guard = 0) {
     Instruction i;
-    i.info = &instruction(mnemonic);
+    i.info = &instruction(opcode);
     i.rd = static_cast<uint8_t>(rd);
     i.ra = static_cast<uint8_t>(ra);
     i.immediate = immediate;
@@ -46,9 +46,9 @@ class ProgramEmitter {
     return emit(i);
   }
   /// Ray memory: `rld`, `rst`.
-  size_t emit_word(std::string_view mnemonic, int word, int rd = 0, int guard = 0) {
+  size_t emit_word(Opcode opcode, int word, int rd = 0, int guard = 0) {
     Instruction i;
-    i.info = &instruction(mnemonic);
+    i.info = &instruction(opcode);
     i.x = static_cast<uint8_t>(word);
     i.rd = static_cast<uint8_t>(rd);
     i.guard = static_cast<uint8_t>(guard);

@@ -55,18 +55,18 @@ void ProgramStatements::body(int length, int loops, int entries) {
 
 size_t ProgramStatements::plain_type() {
   uint32_t total = 0;
-  for (size_t type = 0; type < kUnits; ++type) total += profile_.weight(type);
+  for (size_t type = 0; type < kAluTypes; ++type) total += profile_.weight(type);
   uint32_t pick = below(total);
-  size_t unit = 0;
-  while (pick >= profile_.weight(unit)) pick -= profile_.weight(unit++);
-  return unit;
+  size_t type = 0;
+  while (pick >= profile_.weight(type)) pick -= profile_.weight(type++);
+  return type;
 }
 
 const InstructionInfo& ProgramStatements::plain_row(std::optional<size_t> type) {
-  const size_t unit = type ? *type : plain_type();
+  const size_t of = type ? *type : plain_type();
   for (;;) {
     const InstructionInfo& info = kInstructions[below(std::size(kInstructions))];
-    if (static_cast<size_t>(info.unit) == unit && !info.control && configuration_.has(info.needs)) return info;
+    if (info.alu() == static_cast<AluType>(of) && info.kind != Kind::Control && configuration_.has(info.needs)) return info;
   }
 }
 
@@ -89,7 +89,8 @@ void ProgramStatements::plain(int a, int b, std::optional<size_t> type) {
     i.rb = static_cast<uint8_t>(b >= 0 ? b : source());
   if (has_operand(info, Operand::Pb)) i.rb = static_cast<uint8_t>(any_predicate());
   // A third operand that meets the product of the two.
-  if (has_operand(info, Operand::Rc)) i.x = static_cast<uint8_t>(a >= 0 && chance(2) ? (chance(2) ? a : std::max(b, 0)) : source());
+  if (has_operand(info, Operand::Rc))
+    i.x = static_cast<uint8_t>(a >= 0 && chance(2) ? (chance(2) ? a : std::max(b, 0)) : source());
   if (has_operand(info, Operand::Px)) i.x = static_cast<uint8_t>(any_predicate());
   if (has_operand(info, Operand::Argument)) i.immediate = below(kArguments);
   plain_at_.push_back(emit(i));
@@ -98,12 +99,12 @@ void ProgramStatements::plain(int a, int b, std::optional<size_t> type) {
 void ProgramStatements::arithmetic() {
   const int a = destination(), b = destination();
   const auto [first, second] = operands_.next();
-  emit_immediate("mov", a, 0, first);
+  emit_immediate(Opcode::Mov, a, 0, first);
   if (chance(2)) {
-    emit("lane", b);
-    emit_immediate("iadd", b, b, second);
+    emit(Opcode::Lane, b);
+    emit_immediate(Opcode::Iadd, b, b, second);
   } else {
-    emit_immediate("mov", b, 0, second);
+    emit_immediate(Opcode::Mov, b, 0, second);
   }
   const int operations = 2 + static_cast<int>(below(4));
   for (int n = 0; n < operations; ++n) {
@@ -112,13 +113,13 @@ void ProgramStatements::arithmetic() {
     else
       plain(b, a);
   }
-  if (!configuration_.has(instruction("ffma").needs)) return;
+  if (!configuration_.has(instruction(Opcode::Ffma).needs)) return;
   // The product meets an addend that goes with it.
   Instruction i;
-  i.info = &instruction("ffma");
+  i.info = &instruction(Opcode::Ffma);
   do i.x = static_cast<uint8_t>(destination());
   while (i.x == a || i.x == b);
-  emit_immediate("mov", i.x, 0, operands_.third(first, second));
+  emit_immediate(Opcode::Mov, i.x, 0, operands_.third(first, second));
   i.rd = static_cast<uint8_t>(destination());
   i.ra = static_cast<uint8_t>(a);
   i.rb = static_cast<uint8_t>(b);
@@ -129,18 +130,18 @@ void ProgramStatements::pairs(int loops) {
   const int a = kDataRegisters - 2, b = kDataRegisters - 1;
   const int counter = kDataRegisters + loops;
   const int going = kLoopPredicate + loops;
-  emit_immediate("mov", counter, 0, pair_rounds_);
-  emit_immediate("igt", going, counter, 0);
-  const size_t start = emit("loop", 0, 0, 0, going);
-  emit("tid", kAddress);
-  emit_immediate("imul", a, counter, static_cast<uint32_t>(configuration_.contents()));
-  emit("iadd", kAddress, kAddress, a);
-  emit_immediate("iadd", kAddress, kAddress, below(shared_bytes_));
-  emit_immediate("and", kAddress, kAddress, shared_bytes_ / 8 - 1);
-  emit_immediate("shl", kAddress, kAddress, 3);
-  emit("iadd", kAddress, kAddress, kShared);
-  emit_immediate("ld", a, kAddress, 0);
-  emit_immediate("ld", b, kAddress, 4);
+  emit_immediate(Opcode::Mov, counter, 0, pair_rounds_);
+  emit_immediate(Opcode::Igt, going, counter, 0);
+  const size_t start = emit(Opcode::Loop, 0, 0, 0, going);
+  emit(Opcode::Tid, kAddress);
+  emit_immediate(Opcode::Imul, a, counter, static_cast<uint32_t>(configuration_.contents()));
+  emit(Opcode::Iadd, kAddress, kAddress, a);
+  emit_immediate(Opcode::Iadd, kAddress, kAddress, below(shared_bytes_));
+  emit_immediate(Opcode::And, kAddress, kAddress, shared_bytes_ / 8 - 1);
+  emit_immediate(Opcode::Shl, kAddress, kAddress, 3);
+  emit(Opcode::Iadd, kAddress, kAddress, kShared);
+  emit_immediate(Opcode::Ld, a, kAddress, 0);
+  emit_immediate(Opcode::Ld, b, kAddress, 4);
   const int operations = kLeastPairOperations + static_cast<int>(below(kMostPairOperations - kLeastPairOperations + 1));
   // One type alone in half of the loops: all warps want it at once.
   const std::optional<size_t> type = chance(2) ? std::optional(plain_type()) : std::nullopt;
@@ -150,47 +151,47 @@ void ProgramStatements::pairs(int loops) {
     else
       plain(b, chance(8) ? b : a, type);
   }
-  emit_immediate("isub", counter, counter, 1);
-  emit_immediate("igt", going, counter, 0);
+  emit_immediate(Opcode::Isub, counter, counter, 1);
+  emit_immediate(Opcode::Igt, going, counter, 0);
   patch(start, here());
 }
 
 void ProgramStatements::address(bool own, uint32_t offset, uint32_t entries) {
   switch (below(6)) {
     case 0:
-      emit_immediate("mov", kAddress, 0, below(entries));
+      emit_immediate(Opcode::Mov, kAddress, 0, below(entries));
       break;
     case 1:
-      emit("lane", kAddress);
-      emit_immediate("iadd", kAddress, kAddress, below(entries));
+      emit(Opcode::Lane, kAddress);
+      emit_immediate(Opcode::Iadd, kAddress, kAddress, below(entries));
       break;
     case 2:
-      emit("tid", kAddress);
-      emit_immediate("imul", kAddress, kAddress, 1 + below(24));
+      emit(Opcode::Tid, kAddress);
+      emit_immediate(Opcode::Imul, kAddress, kAddress, 1 + below(24));
       break;
     case 3:
     case 4:
       // A few lines that share a set.
       if (own && own_.entries >= 2 * own_.way_entries) {
-        emit_immediate(chance(2) ? "and" : "shr", kAddress, source(), 3);
-        emit_immediate("imul", kAddress, kAddress, own_.way_entries);
-        emit_immediate("iadd", kAddress, kAddress, below(2) + own_.way_entries * below(4));
+        emit_immediate(chance(2) ? Opcode::And : Opcode::Shr, kAddress, source(), 3);
+        emit_immediate(Opcode::Imul, kAddress, kAddress, own_.way_entries);
+        emit_immediate(Opcode::Iadd, kAddress, kAddress, below(2) + own_.way_entries * below(4));
         break;
       }
       [[fallthrough]];
     default:
-      emit("imul", kAddress, source(), source());
+      emit(Opcode::Imul, kAddress, source(), source());
       break;
   }
-  emit_immediate("and", kAddress, kAddress, entries - 1);
-  emit_immediate("shl", kAddress, kAddress, own ? own_.shift : 2);
-  emit("iadd", kAddress, kAddress, own ? kOwn : kShared);
-  if (offset != 0) emit_immediate("isub", kAddress, kAddress, offset);
+  emit_immediate(Opcode::And, kAddress, kAddress, entries - 1);
+  emit_immediate(Opcode::Shl, kAddress, kAddress, own ? own_.shift : 2);
+  emit(Opcode::Iadd, kAddress, kAddress, own ? kOwn : kShared);
+  if (offset != 0) emit_immediate(Opcode::Isub, kAddress, kAddress, offset);
 }
 
 void ProgramStatements::access(bool store, uint32_t offset) {
   Instruction i;
-  i.info = &instruction(store ? "st" : "ld");
+  i.info = &instruction(store ? Opcode::St : Opcode::Ld);
   if (chance(2)) i.guard = static_cast<uint8_t>(any_predicate()), i.guard_negated = chance(2);
   i.ra = kAddress;
   i.immediate = offset;
@@ -204,24 +205,24 @@ void ProgramStatements::access(bool store, uint32_t offset) {
 void ProgramStatements::far_address(bool own, uint32_t spread) {
   const int other = destination();
   if (own) {
-    emit("block", kAddress);
-    emit_immediate("and", kAddress, kAddress, block_mask_);
-    emit_immediate("shl", kAddress, kAddress, kFarWarpBits);
-    emit("warp", other);
-    emit("iadd", kAddress, kAddress, other);
-    emit_immediate("shl", kAddress, kAddress, 7);
-    emit_immediate("iadd", kAddress, kAddress, kLineBytes);
+    emit(Opcode::Block, kAddress);
+    emit_immediate(Opcode::And, kAddress, kAddress, block_mask_);
+    emit_immediate(Opcode::Shl, kAddress, kAddress, kFarWarpBits);
+    emit(Opcode::Warp, other);
+    emit(Opcode::Iadd, kAddress, kAddress, other);
+    emit_immediate(Opcode::Shl, kAddress, kAddress, 7);
+    emit_immediate(Opcode::Iadd, kAddress, kAddress, kLineBytes);
   } else {
-    emit_immediate("mov", kAddress, 0, below(1u << kFarWarpBits) << 7);
+    emit_immediate(Opcode::Mov, kAddress, 0, below(1u << kFarWarpBits) << 7);
   }
-  const auto add = [&](const char* number, uint32_t mask, uint32_t shift) {
+  const auto add = [&](Opcode number, uint32_t mask, uint32_t shift) {
     emit(number, other);
-    emit_immediate("and", other, other, mask);
-    emit_immediate("shl", other, other, shift);
-    emit("iadd", kAddress, kAddress, other);
+    emit_immediate(Opcode::And, other, other, mask);
+    emit_immediate(Opcode::Shl, other, other, shift);
+    emit(Opcode::Iadd, kAddress, kAddress, other);
   };
-  add("lane", chance(2) ? 15 : 3, 2);
-  if (spread < 32) add(chance(2) ? "lane" : "warp", chance(2) ? 1 : 31, spread);
+  add(Opcode::Lane, chance(2) ? 15 : 3, 2);
+  if (spread < 32) add(chance(2) ? Opcode::Lane : Opcode::Warp, chance(2) ? 1 : 31, spread);
 }
 
 void ProgramStatements::far_memory() {
@@ -254,8 +255,8 @@ void ProgramStatements::memory() {
   const bool own = !chance(3);
   const uint32_t offset = chance(3) ? value() : 0;
   const uint32_t entries = own ? own_.entries : shared_bytes_ / 4;
-  // Either all accesses go to the same words, or each to others of the same set of the cache, so that lines push each other out and
-  // wait for miss-status holding registers.
+  // Either all accesses go to the same words, or each to others of the same set of the cache, so that lines push each other out
+  // and wait for miss-status holding registers.
   const uint32_t lines = entries / (own ? own_.way_entries : way_bytes() / 4);
   const uint32_t parts = lines > 1 && chance(2) ? std::min(lines, kMostParts) : 1;
   const uint32_t part_bytes = (entries / parts) << (own ? own_.shift : 2);
@@ -265,7 +266,7 @@ void ProgramStatements::memory() {
     // So that a load or store comes after every type.
     if (chance(parts > 1 ? 12 : 4)) plain();
     if (chance(8) && written_words_ > 0 && !in_function_)
-      emit_word("rld", static_cast<int>(below(static_cast<uint32_t>(written_words_))), destination());
+      emit_word(Opcode::Rld, static_cast<int>(below(static_cast<uint32_t>(written_words_))), destination());
     access(own && chance(2), offset + below(parts) * part_bytes);
   }
 }
@@ -274,29 +275,29 @@ void ProgramStatements::ray(bool top) {
   if (!top) {
     if (in_function_) return plain();
     const int words = chance(2) ? kRayWords : 1 + static_cast<int>(below(kIntersectionWords));
-    for (int n = 0; n < words; ++n) emit_word("rst", n);
-    for (int n = 0; n < 2; ++n) emit_word("rld", static_cast<int>(below(static_cast<uint32_t>(words))), destination());
+    for (int n = 0; n < words; ++n) emit_word(Opcode::Rst, n);
+    for (int n = 0; n < 2; ++n) emit_word(Opcode::Rld, static_cast<int>(below(static_cast<uint32_t>(words))), destination());
     if (words >= kRayWords) rotate();
     written_words_ = 0;
     return;
   }
   if (written_words_ > 0 && chance(3)) {
-    emit_word("rld", static_cast<int>(below(static_cast<uint32_t>(written_words_))), destination(),
+    emit_word(Opcode::Rld, static_cast<int>(below(static_cast<uint32_t>(written_words_))), destination(),
               chance(2) ? any_predicate() : 0);
   } else if (written_words_ >= kRayWords && chance(2)) {
     rotate();
   } else if (written_words_ > 0 && (written_words_ == kIntersectionWords || chance(3))) {
-    emit_word("rst", static_cast<int>(below(static_cast<uint32_t>(written_words_))), 0, any_predicate());
+    emit_word(Opcode::Rst, static_cast<int>(below(static_cast<uint32_t>(written_words_))), 0, any_predicate());
   } else {
     // Words are written from 0 up, unmasked the first time, so that nothing undefined is ever read or exported.
     const int count = std::min(kIntersectionWords - written_words_, 1 + static_cast<int>(below(14)));
-    for (int n = 0; n < count; ++n) emit_word("rst", written_words_++);
+    for (int n = 0; n < count; ++n) emit_word(Opcode::Rst, written_words_++);
   }
 }
 
 void ProgramStatements::rotate() {
   Instruction i;
-  i.info = &instruction(chance(3) ? "rfb" : "rout");
+  i.info = &instruction(chance(3) ? Opcode::Rfb : Opcode::Rout);
   if (chance(2)) i.guard = static_cast<uint8_t>(any_predicate()), i.guard_negated = chance(2);
   emit(i);
   written_words_ = 0;
@@ -304,7 +305,7 @@ void ProgramStatements::rotate() {
   // On to the set that is being exported, at whose words it arrives first that are read last.
   i.guard = 0, i.guard_negated = true;
   for (uint32_t n = 1 + below(3); n > 0; --n) emit(i);
-  for (int word = kRayWords; word > 0;) emit_word("rst", --word);
+  for (int word = kRayWords; word > 0;) emit_word(Opcode::Rst, --word);
   written_words_ = kRayWords;
 }
 
@@ -312,10 +313,10 @@ void ProgramStatements::begin_frame(int counter, int going, bool pad) {
   frames_.push_back({counter, going, std::nullopt, {}});
   if (!pad) return;
   // A loop's pad lies in the way.
-  const size_t over = counter >= 0 ? emit("jany") : 0;
+  const size_t over = counter >= 0 ? emit(Opcode::Jany) : 0;
   frames_.back().pad = here();
   for (uint32_t n = 1 + below(3); n > 0; --n) plain();
-  frames_.back().leaves.push_back(emit("jany"));
+  frames_.back().leaves.push_back(emit(Opcode::Jany));
   if (counter >= 0) patch(over, here());
 }
 
@@ -331,11 +332,11 @@ void ProgramStatements::end_frame() {
 void ProgramStatements::leave() {
   const Frame& frame = frames_.back();
   if (frame.counter >= 0) {
-    emit_immediate("isub", frame.counter, frame.counter, 1, frame.going);
-    emit_immediate("igt", frame.going, frame.counter, 0);
+    emit_immediate(Opcode::Isub, frame.counter, frame.counter, 1, frame.going);
+    emit_immediate(Opcode::Igt, frame.going, frame.counter, 0);
   }
   Instruction i;
-  i.info = &instruction(chance(2) ? "jany" : "jnone");
+  i.info = &instruction(chance(2) ? Opcode::Jany : Opcode::Jnone);
   i.guard = static_cast<uint8_t>(any_predicate());
   i.guard_negated = chance(2);
   if (frame.pad && chance(2)) i.immediate = *frame.pad;
@@ -348,15 +349,15 @@ void ProgramStatements::loop(int length, int loops, int entries) {
   const int going = kLoopPredicate + loops;
   begin_frame(counter, going, chance(4));
   // Threads leave after different numbers of rounds.
-  emit("lane", counter);
-  emit_immediate("and", counter, counter, below(4));
-  emit_immediate("iadd", counter, counter, below(2));
-  emit_immediate("igt", going, counter, 0);
+  emit(Opcode::Lane, counter);
+  emit_immediate(Opcode::And, counter, counter, below(4));
+  emit_immediate(Opcode::Iadd, counter, counter, below(2));
+  emit_immediate(Opcode::Igt, going, counter, 0);
   written_words_ = 0;
-  const size_t start = emit("loop", 0, 0, 0, going);
+  const size_t start = emit(Opcode::Loop, 0, 0, 0, going);
   body(length, loops + 1, entries + 1);
-  emit_immediate("isub", counter, counter, 1, going);
-  emit_immediate("igt", going, counter, 0);
+  emit_immediate(Opcode::Isub, counter, counter, 1, going);
+  emit_immediate(Opcode::Igt, going, counter, 0);
   patch(start, here());
   end_frame();
   written_words_ = 0;
@@ -365,7 +366,7 @@ void ProgramStatements::loop(int length, int loops, int entries) {
 void ProgramStatements::jump(int loops, int entries) {
   if (!frames_.empty() && chance(2)) return leave();
   Instruction i;
-  i.info = &instruction(chance(2) ? "jany" : "jnone");
+  i.info = &instruction(chance(2) ? Opcode::Jany : Opcode::Jnone);
   i.guard = static_cast<uint8_t>(any_predicate());
   i.guard_negated = chance(2);
   const size_t at = emit(i);
@@ -382,7 +383,7 @@ void ProgramStatements::jump(int loops, int entries) {
 }
 
 void ProgramStatements::far_jump() {
-  const size_t at = emit("jany");
+  const size_t at = emit(Opcode::Jany);
   const uint32_t way = instruction_cache_bytes_ / 16;
   // From a PC that was executed just now to one that differs in one upper bit alone: it lies as far from the end of what has been
   // executed as that from the twin.
@@ -401,18 +402,18 @@ void ProgramStatements::filler(uint32_t count) {
 }
 
 void ProgramStatements::early_exit() {
-  emit("warp", kAddress);
+  emit(Opcode::Warp, kAddress);
   const int leaves = free_predicate();
-  emit_immediate(chance(2) ? "ieq" : "ult", leaves, kAddress, below(warps_));
-  const size_t at = emit("jnone", 0, 0, 0, leaves);
-  emit("exit");
+  emit_immediate(chance(2) ? Opcode::Ieq : Opcode::Ult, leaves, kAddress, below(warps_));
+  const size_t at = emit(Opcode::Jnone, 0, 0, 0, leaves);
+  emit(Opcode::Exit);
   patch(at, here());
 }
 
 void ProgramStatements::call(int loops, int entries) {
   if (entries >= stack_depth_ || call_sites_ >= kMostCalls) return;
   ++call_sites_;
-  calls_.push_back({emit("call", 0, 0, 0, control_guard()), loops, entries});
+  calls_.push_back({emit(Opcode::Call, 0, 0, 0, control_guard()), loops, entries});
 }
 
 void ProgramStatements::functions() {
@@ -427,7 +428,7 @@ void ProgramStatements::functions() {
     body(1 + static_cast<int>(below(8)), call.loops, call.entries + 1);
     // Deep stacks come from calls in calls.
     if (!chance(deep ? 16 : 2)) this->call(call.loops, call.entries + 1);
-    if (chance(2)) emit("ret", 0, 0, 0, control_guard());
+    if (chance(2)) emit(Opcode::Ret, 0, 0, 0, control_guard());
     patch(call.at, start | here() << 16);
     end_frame();
   }

@@ -16,7 +16,7 @@ constexpr uint32_t kLengthOfPairRound = 16;
 constexpr uint32_t kFarLimits = 1u << 19;  ///< from the end of the address space
 constexpr uint32_t kLongestProgram = 0xfff0, kLastPc = 0xffff, kUpperPcBit = 0x8000;
 constexpr uint32_t kLeastRaces = 32, kMostRaces = 96;
-constexpr uint32_t kLeastWalk = 8;    ///< lines
+constexpr uint32_t kLeastWalk = 8;                     ///< lines
 constexpr uint32_t kMostDelays = 24, kMostShifts = 5;  ///< instructions
 constexpr uint32_t kEveryFault = 0xfe;
 constexpr uint32_t kLineInstructions = kLineBytes / 8;
@@ -194,19 +194,19 @@ class Generator : public ProgramStatements {
     body(length - length / 2, 0, 1);
     for (uint32_t n = below(4); n > 0; --n) leave_predicate();
     if (last && profile_.far > 0 && chance(6)) return far_end();
-    emit("exit", 0, 0, 0, control_guard());
+    emit(Opcode::Exit, 0, 0, 0, control_guard());
     functions();
   }
 
   // At the last instructions that there can be.
   void far_end() {
-    const size_t at = emit("jany");
+    const size_t at = emit(Opcode::Jany);
     functions();
     const uint32_t place = kLongestProgram - 8 - below(8);
     while (here() < place) code_.push_back(random());
     patch(at, here());
     for (uint32_t n = 1 + below(6); n > 0; --n) plain();
-    emit("exit");
+    emit(Opcode::Exit);
   }
 
   int last_or_any_predicate() { return chance(3) ? kPredicates - 1 : 1 + static_cast<int>(below(kPredicates - 1)); }
@@ -215,7 +215,7 @@ class Generator : public ProgramStatements {
   void leave_predicate() {
     const int r = source();
     Instruction i;
-    i.info = &instruction("ieq");
+    i.info = &instruction(Opcode::Ieq);
     i.rd = static_cast<uint8_t>(last_or_any_predicate());
     i.ra = i.rb = static_cast<uint8_t>(r);
     emit(i);
@@ -224,7 +224,7 @@ class Generator : public ProgramStatements {
   // Before the kernel has written any.
   void read_predicate() {
     Instruction i;
-    i.info = &instruction(chance(2) ? "por" : "pxor");
+    i.info = &instruction(chance(2) ? Opcode::Por : Opcode::Pxor);
     i.rd = static_cast<uint8_t>(free_predicate());
     i.x = static_cast<uint8_t>(last_or_any_predicate());
     i.rb = static_cast<uint8_t>(last_or_any_predicate());
@@ -236,26 +236,26 @@ class Generator : public ProgramStatements {
     for (uint32_t n = below(4); n > 0; --n) read_predicate();
     for (int r = 0; r < kDataRegisters; ++r) {
       if (chance(3))
-        emit("tid", r);
+        emit(Opcode::Tid, r);
       else
-        emit_immediate("mov", r, 0, value());
+        emit_immediate(Opcode::Mov, r, 0, value());
     }
-    for (int r = kDataRegisters; r < kDataRegisters + kLoopDepth; ++r) emit_immediate("mov", r, 0, 0);
+    for (int r = kDataRegisters; r < kDataRegisters + kLoopDepth; ++r) emit_immediate(Opcode::Mov, r, 0, 0);
     // Another kernel's warp may have written the words that this one's warp gets.
-    emit("warp", kAddress);
-    if (chance(2)) emit_immediate("xor", kAddress, kAddress, below(warps_));
-    emit_immediate("imul", kAddress, kAddress, own_.stride);
-    emit_immediate("arg", kOwn, 0, 1);
-    emit("iadd", kOwn, kOwn, kAddress);
-    emit("block", kAddress);
-    emit_immediate("and", kAddress, kAddress, block_mask_);
-    emit_immediate("imul", kAddress, kAddress, own_.bytes);
-    emit("iadd", kOwn, kOwn, kAddress);
-    emit_immediate("arg", kShared, 0, 0);
+    emit(Opcode::Warp, kAddress);
+    if (chance(2)) emit_immediate(Opcode::Xor, kAddress, kAddress, below(warps_));
+    emit_immediate(Opcode::Imul, kAddress, kAddress, own_.stride);
+    emit_immediate(Opcode::Arg, kOwn, 0, 1);
+    emit(Opcode::Iadd, kOwn, kOwn, kAddress);
+    emit(Opcode::Block, kAddress);
+    emit_immediate(Opcode::And, kAddress, kAddress, block_mask_);
+    emit_immediate(Opcode::Imul, kAddress, kAddress, own_.bytes);
+    emit(Opcode::Iadd, kOwn, kOwn, kAddress);
+    emit_immediate(Opcode::Arg, kShared, 0, 0);
   }
 
   void take_import() {
-    emit("rin", 0, 0, 0, control_guard());
+    emit(Opcode::Rin, 0, 0, 0, control_guard());
     import_pending_ = false;
     written_words_ = kIntersectionWords;
   }
@@ -275,32 +275,32 @@ class Generator : public ProgramStatements {
         if (runs_out_) return;
         return jump_outside();
       case FaultCode::StackOverflow:
-        emit_immediate("call", 0, 0, here() | 0xffff0000u);
+        emit_immediate(Opcode::Call, 0, 0, here() | 0xffff0000u);
         return;
       case FaultCode::StackUnderflow:
-        emit("ret");
+        emit(Opcode::Ret);
         return;
       case FaultCode::Misaligned:
       case FaultCode::AddressOutsideMemory: {
         // One lane is enough; a warp whose faulty lane is left out goes on.
         const bool some = chance(2);
-        const char* access = chance(2) ? "ld" : "st";
+        const Opcode access = chance(2) ? Opcode::Ld : Opcode::St;
         const bool last_word = some && !more_memory_told_;  // lane 0 reads it
         if (code == FaultCode::Misaligned) {
-          emit("mov", kAddress, 0, kOwn);
+          emit(Opcode::Mov, kAddress, 0, kOwn);
           if (some)
-            emit("lane", kAddress), emit_immediate("imul", kAddress, kAddress, 1 + below(3)),
-                emit("iadd", kAddress, kAddress, kOwn);
+            emit(Opcode::Lane, kAddress), emit_immediate(Opcode::Imul, kAddress, kAddress, 1 + below(3)),
+                emit(Opcode::Iadd, kAddress, kAddress, kOwn);
           emit_immediate(access, 0, kAddress, some ? 0 : 1 + below(3));
           return;
         }
-        emit_immediate("mov", kAddress, 0, 0);
-        if (some) emit("lane", kAddress), emit_immediate("shl", kAddress, kAddress, 2);
-        from_limit_.push_back(emit_immediate(last_word ? "ld" : access, 0, kAddress, last_word ? 0u - 4 : 4 * below(4)));
+        emit_immediate(Opcode::Mov, kAddress, 0, 0);
+        if (some) emit(Opcode::Lane, kAddress), emit_immediate(Opcode::Shl, kAddress, kAddress, 2);
+        from_limit_.push_back(emit_immediate(last_word ? Opcode::Ld : access, 0, kAddress, last_word ? 0u - 4 : 4 * below(4)));
         return;
       }
       default:
-        emit_word(chance(2) ? "rld" : "rst", kIntersectionWords + static_cast<int>(below(32 - kIntersectionWords)));
+        emit_word(chance(2) ? Opcode::Rld : Opcode::Rst, kIntersectionWords + static_cast<int>(below(32 - kIntersectionWords)));
         return;
     }
   }
@@ -309,7 +309,7 @@ class Generator : public ProgramStatements {
   bool missing_instruction() {
     for (const InstructionInfo& info : kInstructions) {
       if (configuration_.has(info.needs)) continue;
-      emit(info.mnemonic, destination(), source(), source());
+      emit(info.opcode, destination(), source(), source());
       return true;
     }
     return false;
@@ -318,13 +318,13 @@ class Generator : public ProgramStatements {
   void jump_outside() {
     switch (below(3)) {
       case 0:
-        emit_immediate("jany", 0, 0, kLastPc - below(16));
+        emit_immediate(Opcode::Jany, 0, 0, kLastPc - below(16));
         break;
       case 1:
-        twins_.push_back(emit_immediate("jany", 0, 0, below(std::min(here() + 1, kUpperPcBit))));
+        twins_.push_back(emit_immediate(Opcode::Jany, 0, 0, below(std::min(here() + 1, kUpperPcBit))));
         break;
       default:
-        from_length_.push_back(emit_immediate("jany", 0, 0, below(2)));
+        from_length_.push_back(emit_immediate(Opcode::Jany, 0, 0, below(2)));
         break;
     }
   }
@@ -340,17 +340,17 @@ class Generator : public ProgramStatements {
     const bool walks = chance(4);
     const std::array<FaultCode, 2> codes = {any_fault(), walks ? FaultCode::None : any_fault()};
     const int second = free_predicate();
-    emit_immediate("mov", 0, 0, value());
+    emit_immediate(Opcode::Mov, 0, 0, value());
     if (chance(2))
-      emit("lane", kOwn);
+      emit(Opcode::Lane, kOwn);
     else
-      emit_immediate("mov", kOwn, 0, 0);
-    emit("warp", kAddress);
-    emit_immediate("and", kAddress, kAddress, mask);
-    emit_immediate("ieq", second, kAddress, below(warps_) & mask);
+      emit_immediate(Opcode::Mov, kOwn, 0, 0);
+    emit(Opcode::Warp, kAddress);
+    emit_immediate(Opcode::And, kAddress, kAddress, mask);
+    emit_immediate(Opcode::Ieq, second, kAddress, below(warps_) & mask);
     fill_stacks(codes, second);
-    while (here() % kLineInstructions != kLineInstructions - 1) emit("lane", 4);
-    const size_t branch = emit("jany", 0, 0, 0, second);
+    while (here() % kLineInstructions != kLineInstructions - 1) emit(Opcode::Lane, 4);
+    const size_t branch = emit(Opcode::Jany, 0, 0, 0, second);
     arm(codes[0], walks ? 1 + below(kMostDelays) : below(kMostShifts));
     while (here() % kLineInstructions < kLineInstructions / 2) code_.push_back(random());
     patch(branch, here());
@@ -362,11 +362,11 @@ class Generator : public ProgramStatements {
 
   void walk() {
     for (uint32_t n = kLeastWalk + below(kLeastWalk); n > 0; --n) {
-      const size_t jump = emit("jany");
+      const size_t jump = emit(Opcode::Jany);
       while (here() % kLineInstructions != 0) code_.push_back(random());
       patch(jump, here());
     }
-    emit("exit");
+    emit(Opcode::Exit);
   }
 
   FaultCode any_fault() { return static_cast<FaultCode>(1 + below(7)); }
@@ -375,14 +375,14 @@ class Generator : public ProgramStatements {
   void fill_stacks(const std::array<FaultCode, 2>& codes, int second) {
     const auto control = [this](bool call) {
       for (int n = 1; n < stack_depth_; ++n)
-        emit_immediate(call ? "call" : "jany", 0, 0, (here() + 1) | (call ? 0xffff0000u : 0));
+        emit_immediate(call ? Opcode::Call : Opcode::Jany, 0, 0, (here() + 1) | (call ? 0xffff0000u : 0));
     };
     const bool first_overflows = codes[0] == FaultCode::StackOverflow, second_overflows = codes[1] == FaultCode::StackOverflow;
     if (first_overflows && second_overflows) return control(true);
     if (!first_overflows && !second_overflows) return;
-    const size_t others = emit(first_overflows ? "jany" : "jnone", 0, 0, 0, second);
+    const size_t others = emit(first_overflows ? Opcode::Jany : Opcode::Jnone, 0, 0, 0, second);
     control(true);
-    const size_t join = emit("jany");
+    const size_t join = emit(Opcode::Jany);
     patch(others, here());
     control(false);
     patch(join, here());
@@ -390,16 +390,17 @@ class Generator : public ProgramStatements {
 
   void arm(FaultCode code, uint32_t delays) {
     for (uint32_t n = delays; n > 0; --n) {
-      static constexpr std::array<std::string_view, 5> kDelays = {"lane", "por", "iadd", "fadd", "frcp"};  // of different depths
+      static constexpr std::array<Opcode, 5> kDelays = {Opcode::Lane, Opcode::Por, Opcode::Iadd, Opcode::Fadd,
+                                                        Opcode::Frcp};  // of different depths
       emit(kDelays[below(kDelays.size())], 1);
     }
     race_fault(code);
-    emit("exit");
+    emit(Opcode::Exit);
   }
 
   // r15 has the lane or 0.
   void race_fault(FaultCode code) {
-    const char* access = chance(2) ? "ld" : "st";
+    const Opcode access = chance(2) ? Opcode::Ld : Opcode::St;
     if (code == FaultCode::Misaligned && chance(2))
       emit_immediate(access, 0, kOwn, 1 + below(3));
     else if (code == FaultCode::Misaligned || code == FaultCode::AddressOutsideMemory)

@@ -16,6 +16,7 @@
 #include "alu_model.hpp"
 #include "arith/arith.hpp"
 #include "arith/test_operands.hpp"
+#include "isa/encoding.hpp"
 #include "numerics/long_table.hpp"
 
 namespace raypool {
@@ -30,8 +31,8 @@ struct AluUnderTest {
 };
 
 /// The lanes of a task whose results are looked at, of a unit of this mode.
-using ComparedFunction = uint32_t (*)(int operation, uint32_t mask, arith::Mode mode);
-inline uint32_t lanes_of_mask(int, uint32_t mask, arith::Mode) { return mask; }
+using ComparedFunction = uint32_t (*)(Opcode opcode, uint32_t mask, arith::Mode mode);
+inline uint32_t lanes_of_mask(Opcode, uint32_t mask, arith::Mode) { return mask; }
 
 template <typename Top>
 class AluBench {
@@ -53,9 +54,9 @@ class AluBench {
   ~AluBench() { top_.final(); }
 
   /// Adds one lane's operation to the next task; a task takes operations of one kind, so a change of kind sends what is gathered.
-  void add(int operation, uint32_t a, uint32_t b, uint32_t c = 0) {
-    if (lanes_ != 0 && operation != operation_) send();
-    operation_ = operation;
+  void add(Opcode opcode, uint32_t a, uint32_t b, uint32_t c = 0) {
+    if (lanes_ != 0 && opcode != opcode_) send();
+    opcode_ = opcode;
     while (lanes_ < kBenchLanes - 1 && random_() % 8 == 0) ++lanes_;  // a hole in the mask; the lane has old operands
     mask_ |= 1u << lanes_;
     a_[lanes_] = a;
@@ -65,9 +66,9 @@ class AluBench {
   }
 
   /// Adds a task without lanes, which must give `expected` in every lane.
-  void add_outside(int operation, uint32_t expected) {
+  void add_outside(Opcode opcode, uint32_t expected) {
     if (lanes_ != 0) send();
-    operation_ = operation;
+    opcode_ = opcode;
     send(&expected);
   }
 
@@ -85,7 +86,7 @@ class AluBench {
  private:
   struct Expected {
     uint64_t cycle;
-    int operation;
+    Opcode opcode;
     uint32_t warp, mask;
     std::array<uint32_t, kBenchLanes> a, b, c, result;
   };
@@ -96,7 +97,7 @@ class AluBench {
     const uint32_t warp = random_() % 8;
     top_.task_valid_i = 1;
     top_.task_warp_i = warp;
-    top_.task_op_i = operation_;
+    top_.task_op_i = operation_of(opcode_);
     top_.task_mask_i = mask_;
     for (int l = 0; l < kBenchLanes; ++l) {
       top_.task_a_i[l] = a_[l];
@@ -104,8 +105,8 @@ class AluBench {
       set_third(top_, l, c_[l], 0);
     }
     for (size_t u = 0; u < units_.size(); ++u) {
-      Expected e{cycle_ + units_[u].depth, operation_, warp, looked_at_(operation_, mask_, units_[u].mode), a_, b_, c_, {}};
-      for (int l = 0; l < kBenchLanes; ++l) e.result[l] = model_(operation_, a_[l], b_[l], c_[l], units_[u].mode);
+      Expected e{cycle_ + units_[u].depth, opcode_, warp, looked_at_(opcode_, mask_, units_[u].mode), a_, b_, c_, {}};
+      for (int l = 0; l < kBenchLanes; ++l) e.result[l] = model_(opcode_, a_[l], b_[l], c_[l], units_[u].mode);
       if (everywhere != nullptr) e.mask = (1u << kBenchLanes) - 1, e.result.fill(*everywhere);
       expected_[u].push_back(e);
     }
@@ -173,9 +174,9 @@ class AluBench {
         if (result == e.result[l] && warp == e.warp) continue;
         ++count.errors;
         if (++failures_ <= 10) {
-          ADD_FAILURE() << units_[u].name << " operation " << e.operation << " lane " << l << std::hex << ": a " << e.a[l]
-                        << " b " << e.b[l] << " c " << e.c[l] << " RTL " << result << " model " << e.result[l] << std::dec
-                        << ", warp " << warp << " expected " << e.warp << ", seed " << seed_;
+          ADD_FAILURE() << units_[u].name << ' ' << instruction(e.opcode).mnemonic << " lane " << l << std::hex << ": a "
+                        << e.a[l] << " b " << e.b[l] << " c " << e.c[l] << " RTL " << result << " model " << e.result[l]
+                        << std::dec << ", warp " << warp << " expected " << e.warp << ", seed " << seed_;
         }
       }
     }
@@ -189,7 +190,7 @@ class AluBench {
   std::vector<std::deque<Expected>> expected_;
   VerilatedContext context_;
   Top top_;
-  int operation_ = 0;
+  Opcode opcode_{};
   int lanes_ = 0;      ///< used or left out in the task that is being gathered
   uint32_t mask_ = 0;  ///< of those used
   std::array<uint32_t, kBenchLanes> a_{}, b_{}, c_{};

@@ -7,7 +7,7 @@ set(arith_unit ${CMAKE_SOURCE_DIR}/tb/unit)
 # have quicker ones.
 function(arith_bench name top)
   add_executable(${name} ${arith_unit}/${name}.cpp)
-  target_link_libraries(${name} PRIVATE raypool_arith GTest::gtest_main)
+  target_link_libraries(${name} PRIVATE raypool_machine GTest::gtest_main)
   target_include_directories(${name} SYSTEM PRIVATE ${VERILATOR_ROOT}/include)  # its headers warn
   verilate(${name} SOURCES ${arith_unit}/${top}.v ${ARGN} TOP_MODULE ${top} PREFIX V${top} INCLUDE_DIRS ${arith_rtl}
     OPT_SLOW -w OPT_FAST -O2 -w OPT_GLOBAL -O1 -w
@@ -34,7 +34,7 @@ find_program(IVERILOG iverilog)
 find_program(VVP vvp)
 if(IVERILOG AND VVP)
   add_executable(arith_vectors ${arith_unit}/arith_vectors.cpp)
-  target_link_libraries(arith_vectors PRIVATE raypool_arith)
+  target_link_libraries(arith_vectors PRIVATE raypool_machine)
   foreach(mode IN ITEMS "0 0 0" "1 0 0" "0 1 1" "1 2 1" "0 3 0")
     separate_arguments(mode)
     list(GET mode 0 subnormals)

@@ -8,9 +8,10 @@
 namespace raypool {
 namespace {
 
-void write(int unit, int operation, uint32_t a, uint32_t b, uint32_t c, arith::Mode mode) {
+/// `alu`: as arith_icarus.v numbers them.
+void write(size_t alu, Opcode opcode, uint32_t a, uint32_t b, uint32_t c, arith::Mode mode) {
   constexpr ModelFunction kModels[] = {flt_model, slw_model, brh_model};
-  std::printf("%x %x %08x %08x %08x %08x\n", unit, operation, a, b, c, kModels[unit](operation, a, b, c, mode));
+  std::printf("%zx %x %08x %08x %08x %08x\n", alu, operation_of(opcode), a, b, c, kModels[alu](opcode, a, b, c, mode));
 }
 
 }  // namespace
@@ -24,22 +25,21 @@ int main(int argc, char** argv) {
   }
   const arith::Mode mode{static_cast<Subnormals>(std::atoi(argv[1])), static_cast<SlowUnit>(std::atoi(argv[2])),
                          std::atoi(argv[3]) != 0};
-  const unsigned operations[] = {mode.fused ? 8u : 7u, 4, 20};
+  std::vector<Opcode> opcodes[] = {opcodes_of(AluType::Flt), opcodes_of(AluType::Slw), opcodes_of(AluType::Brh)};
+  if (!mode.fused) opcodes[0].pop_back();  // ffma
   arith::OperandSource source(7);
   std::mt19937_64 random(7);
   for (int i = std::atoi(argv[4]); i > 0; --i) {
     const auto [a, b] = source.next();
-    const int unit = static_cast<int>(random() % 3);
-    write(unit, static_cast<int>(random() % operations[unit]), a, unit == 1 && random() % 2 ? b & 0x7fffffffu : b,
+    const size_t alu = random() % 3;
+    write(alu, opcodes[alu][random() % opcodes[alu].size()], a, alu == 1 && random() % 2 ? b & 0x7fffffffu : b,
           source.third(a, b), mode);
   }
   const std::vector<uint32_t> specials = arith::special_operands();
   for (const uint32_t a : specials) {
-    for (int unit = 0; unit < 3; ++unit) {
-      for (unsigned operation = 0; operation < operations[unit]; ++operation) {
-        write(unit, static_cast<int>(operation), a, specials[random() % specials.size()], specials[random() % specials.size()],
-              mode);
-      }
+    for (size_t alu = 0; alu < 3; ++alu) {
+      for (const Opcode opcode : opcodes[alu])
+        write(alu, opcode, a, specials[random() % specials.size()], specials[random() % specials.size()], mode);
     }
   }
 }

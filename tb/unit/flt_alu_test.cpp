@@ -9,9 +9,7 @@ namespace {
 
 constexpr uint64_t kSeed = 4711;
 
-constexpr int kOperations = 8;
-constexpr int kFma = 7;
-uint32_t compared(int operation, uint32_t mask, arith::Mode mode) { return operation != kFma || mode.fused ? mask : 0; }
+uint32_t compared(Opcode opcode, uint32_t mask, arith::Mode mode) { return opcode != Opcode::Ffma || mode.fused ? mask : 0; }
 
 std::vector<AluUnderTest> units() {
   return {{"ieee", {Subnormals::Ieee, SlowUnit::Exact}, 3},
@@ -23,13 +21,15 @@ std::vector<AluUnderTest> units() {
 TEST(FltAlu, EveryPairOfSpecialValuesAgreesWithTheModel) {
   AluBench<Vflt_units> bench(units(), flt_model, kSeed, compared);
   const std::vector<uint32_t> specials = arith::special_operands();
-  for (int operation = 0; operation < kFma; ++operation) {
+  const std::vector<Opcode> opcodes = opcodes_of(AluType::Flt);
+  for (const Opcode opcode : opcodes) {
+    if (opcode == Opcode::Ffma) continue;
     for (const uint32_t a : specials) {
-      for (const uint32_t b : specials) bench.add(operation, a, b);
+      for (const uint32_t b : specials) bench.add(opcode, a, b);
     }
   }
   bench.finish();
-  EXPECT_EQ(bench.compared(), 4 * kFma * specials.size() * specials.size());
+  EXPECT_EQ(bench.compared(), 4 * (opcodes.size() - 1) * specials.size() * specials.size());
 }
 
 TEST(FltAlu, TriplesOfSpecialValuesFuseAsTheModelDoes) {
@@ -39,7 +39,7 @@ TEST(FltAlu, TriplesOfSpecialValuesFuseAsTheModelDoes) {
   for (const uint32_t a : specials) {
     for (const uint32_t b : specials) {
       // Every pair with a fifth of the addends; over the pairs all of them.
-      for (size_t i = random() % 5; i < specials.size(); i += 5) bench.add(kFma, a, b, specials[i]);
+      for (size_t i = random() % 5; i < specials.size(); i += 5) bench.add(Opcode::Ffma, a, b, specials[i]);
     }
   }
   bench.finish();
@@ -51,14 +51,15 @@ TEST(FltAlu, RandomPairsAgreeWithTheModel) {
   arith::OperandSource source(kSeed);
   std::mt19937_64 random(kSeed);
   // Sums and products most of all; conversions see operands of every magnitude.
-  const int operations[] = {0, 0, 1, 2, 2, 3, 4, 5, 6, 7, 7, 7};
+  constexpr Opcode kOpcodes[] = {Opcode::Fadd, Opcode::Fadd, Opcode::Fsub, Opcode::Fmul, Opcode::Fmul, Opcode::Fmin,
+                                 Opcode::Fmax, Opcode::F2i,  Opcode::I2f,  Opcode::Ffma, Opcode::Ffma, Opcode::Ffma};
   for (int i = 0; i < 1500000; i += kBenchLanes) {
-    const int operation = operations[random() % 12];
+    const Opcode opcode = kOpcodes[random() % std::size(kOpcodes)];
     for (int l = 0; l < kBenchLanes; ++l) {
       auto [a, b] = source.next();
-      if (operation == 5 && random() % 2) a = (a & 0x807fffffu) | static_cast<uint32_t>(120 + random() % 42) << 23;
-      if (operation == 6) a = static_cast<uint32_t>(static_cast<int32_t>(a) >> random() % 32);
-      bench.add(operation, a, b, source.third(a, b));
+      if (opcode == Opcode::F2i && random() % 2) a = (a & 0x807fffffu) | static_cast<uint32_t>(120 + random() % 42) << 23;
+      if (opcode == Opcode::I2f) a = static_cast<uint32_t>(static_cast<int32_t>(a) >> random() % 32);
+      bench.add(opcode, a, b, source.third(a, b));
     }
   }
   bench.finish();
@@ -71,8 +72,8 @@ TEST(FltAluLong, ManyRandomPairsAgreeWithTheModel) {
   arith::OperandSource source(kSeed + 1);
   for (int i = 0; i < 40000000; ++i) {
     const auto [a, b] = source.next();
-    constexpr int kLongOperations[] = {0, 1, 2, kFma};
-    bench.add(kLongOperations[i / kBenchLanes % 4], a, b, source.third(a, b));
+    constexpr Opcode kLongOpcodes[] = {Opcode::Fadd, Opcode::Fsub, Opcode::Fmul, Opcode::Ffma};
+    bench.add(kLongOpcodes[i / kBenchLanes % 4], a, b, source.third(a, b));
   }
   bench.finish();
   print_long_row("RTL fadd fsub fmul ffma, random", bench.count(Subnormals::Ieee), bench.count(Subnormals::Flush));

@@ -8,8 +8,6 @@ namespace {
 
 constexpr uint64_t kSeed = 815;
 
-constexpr int kOperations = 4;
-
 std::vector<AluUnderTest> units() {
   std::vector<AluUnderTest> all;
   for (int m = 0; m < 8; ++m) {
@@ -28,25 +26,27 @@ std::vector<AluUnderTest> units() {
 TEST(SlwAlu, EveryPairOfSpecialValuesAgreesWithTheModel) {
   AluBench<Vslw_units> bench(units(), slw_model, kSeed);
   const std::vector<uint32_t> specials = arith::special_operands();
-  for (int operation = 0; operation < kOperations; ++operation) {
+  const std::vector<Opcode> opcodes = opcodes_of(AluType::Slw);
+  for (const Opcode opcode : opcodes) {
     for (const uint32_t a : specials) {
-      for (const uint32_t b : specials) bench.add(operation, a, b);
+      for (const uint32_t b : specials) bench.add(opcode, a, b);
     }
   }
   bench.finish();
-  EXPECT_EQ(bench.compared(), 8 * kOperations * specials.size() * specials.size());
+  EXPECT_EQ(bench.compared(), 8 * opcodes.size() * specials.size() * specials.size());
 }
 
 TEST(SlwAlu, RandomPairsAgreeWithTheModel) {
   AluBench<Vslw_units> bench(units(), slw_model, kSeed);
   arith::OperandSource source(kSeed);
   std::mt19937_64 random(kSeed);
+  const std::vector<Opcode> opcodes = opcodes_of(AluType::Slw);
   for (int i = 0; i < 400000; i += kBenchLanes) {
-    const int operation = random() % 3 == 0 ? 0 : static_cast<int>(random() % kOperations);
+    const Opcode opcode = random() % 3 == 0 ? Opcode::Fdiv : opcodes[random() % opcodes.size()];
     for (int l = 0; l < kBenchLanes; ++l) {
       auto [a, b] = source.next();
-      if (operation != 0 && random() % 2) a &= 0x7fffffffu;  // most roots of something positive
-      bench.add(operation, a, b);
+      if (opcode != Opcode::Fdiv && random() % 2) a &= 0x7fffffffu;  // most roots of something positive
+      bench.add(opcode, a, b);
     }
   }
   bench.finish();
@@ -57,19 +57,19 @@ TEST(SlwAlu, MantissasAllOverTheRangeAgreeWithTheModel) {
   // The exact unit's table and rounding depend on the mantissa, a root's also on whether the exponent is odd.
   AluBench<Vslw_units> bench(units(), slw_model, kSeed);
   for (uint32_t a = 0x3f800000u; a < 0x40800000u; a += 127) {
-    bench.add(2, a, 0);
+    bench.add(Opcode::Frsqrt, a, 0);
   }
-  for (uint32_t a = 0x3f800000u; a < 0x40800000u; a += 211) bench.add(1, a, 0);
-  for (uint32_t a = 0x3f800000u; a < 0x40000000u; a += 101) bench.add(3, a, 0);
+  for (uint32_t a = 0x3f800000u; a < 0x40800000u; a += 211) bench.add(Opcode::Fsqrt, a, 0);
+  for (uint32_t a = 0x3f800000u; a < 0x40000000u; a += 101) bench.add(Opcode::Frcp, a, 0);
   bench.finish();
 }
 
 // Names with Long: in `make numerics-long` only.
 TEST(SlwAluLong, EveryMantissaAgreesWithTheModel) {
   AluBench<Vslw_units> bench(units(), slw_model, kSeed);
-  for (uint32_t a = 0x3f800000u; a < 0x40800000u; ++a) bench.add(1, a, 0);
-  for (uint32_t a = 0x3f800000u; a < 0x40800000u; ++a) bench.add(2, a, 0);
-  for (uint32_t a = 0x3f800000u; a < 0x40000000u; ++a) bench.add(3, a, 0);
+  for (uint32_t a = 0x3f800000u; a < 0x40800000u; ++a) bench.add(Opcode::Fsqrt, a, 0);
+  for (uint32_t a = 0x3f800000u; a < 0x40800000u; ++a) bench.add(Opcode::Frsqrt, a, 0);
+  for (uint32_t a = 0x3f800000u; a < 0x40000000u; ++a) bench.add(Opcode::Frcp, a, 0);
   bench.finish();
   print_long_row("RTL fsqrt frsqrt frcp, every mantissa", bench.count(Subnormals::Ieee), bench.count(Subnormals::Flush));
 }
@@ -79,7 +79,7 @@ TEST(SlwAluLong, ManyRandomQuotientsAgreeWithTheModel) {
   arith::OperandSource source(kSeed + 1);
   for (int i = 0; i < 10000000; ++i) {
     const auto [a, b] = source.next();
-    bench.add(0, a, b);
+    bench.add(Opcode::Fdiv, a, b);
   }
   bench.finish();
   print_long_row("RTL fdiv, random", bench.count(Subnormals::Ieee), bench.count(Subnormals::Flush));
@@ -93,8 +93,8 @@ TEST(SlwAlu, SubnormalQuotientsOnTheMiddleGoToEven) {
     for (int i = 0; i < 500; ++i) {
       const uint32_t n =
           (static_cast<uint32_t>(random()) & 0x00ffffffu & ~((1u << random() % 24) - 1)) | static_cast<uint32_t>(i & 1) << 23;
-      bench.add(0, n, static_cast<uint32_t>(127 + k) << 23);
-      bench.add(0, n | 0x80000000u, (static_cast<uint32_t>(127 + k) << 23) + static_cast<uint32_t>(i % 3));
+      bench.add(Opcode::Fdiv, n, static_cast<uint32_t>(127 + k) << 23);
+      bench.add(Opcode::Fdiv, n | 0x80000000u, (static_cast<uint32_t>(127 + k) << 23) + static_cast<uint32_t>(i % 3));
     }
   }
   bench.finish();
