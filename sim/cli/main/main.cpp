@@ -72,191 +72,258 @@ std::string given_twice(const CLI::App& app) {
   return "";
 }
 
-int run(int argc, char** argv) {
-  CLI::App app(
+/// The commands with their options, as CLI11 takes them.
+class CommandLine {
+ public:
+  CommandLine(int argc, char** argv);
+  /// Parses, runs the command and returns its exit code.
+  int run(int argc, char** argv);
+
+ private:
+  void add_sim_command();
+  void add_run_command();
+  void add_cosim_command();
+  void add_configurations_command();
+  void add_config_command();
+  void add_unit_command();
+  void add_isa_command();
+  void add_assembly_command();
+  void add_kernels_command();
+  void add_errors_command();
+  void add_scene_command();
+  void add_numerics_command();
+  void add_descriptions_command();
+
+  CLI::App app_{
       "raypool: a ray-tracing GPU to render on, measure, verify and synthesise. RAYPOOL COMMAND --help tells more of a command.",
-      "raypool");
-  app.require_subcommand(1);
-  app.set_help_all_flag("--help-all", "help of every command");
-  app.set_version_flag(
+      "raypool"};
+  int code_ = 0;
+  SimOptions sim_;
+  RunOptions compute_;
+  CosimOptions cosim_;
+  ConfigurationsOptions configurations_;
+  ConfigOptions config_;
+  UnitOptions unit_;
+  bool verilog_ = false, functions_ = false, markdown_ = false, write_ = false;
+  std::string text_path_, text_out_;
+  std::string kernel_, kernels_config_ = "8w8c";
+  uint32_t grid_ = 4096;
+  SceneCommandOptions scene_;
+  NumericsOptions numerics_;
+  std::string shell_ = "bash";
+};
+
+CommandLine::CommandLine(int argc, char** argv) {
+  app_.require_subcommand(1);
+  app_.set_help_all_flag("--help-all", "help of every command");
+  app_.set_version_flag(
       "--version", [] { return about(); }, "version, and those of the libraries");
-  app.footer(exit_codes());
-  int code = 0;
+  app_.footer(exit_codes());
+  sim_.command.assign(argv, argv + argc);
+  add_sim_command();
+  add_run_command();
+  add_cosim_command();
+  add_configurations_command();
+  add_config_command();
+  add_unit_command();
+  add_isa_command();
+  add_assembly_command();
+  add_kernels_command();
+  add_errors_command();
+  add_scene_command();
+  add_numerics_command();
+  add_descriptions_command();
+}
 
-  SimOptions sim;
-  CLI::App* sim_app = app.add_subcommand("sim", "draw a scene on the simulated chip; leaves image.png and report.json");
-  add_scene(*sim_app, sim.scene, sim.size, sim.view, sim.look, sim.detail);
-  add_config(*sim_app, sim.config);
-  add_unit(*sim_app, sim.engine, sim.unit_library);
-  sim_app->add_option("--units", sim.units, "compute units: 1, 2 or 4")->capture_default_str();
-  sim_app->add_option("--depth", sim.depth, "1: eye and shadow rays only; up to 254: with reflections")->capture_default_str();
-  sim_app->add_option("--traverser", sim.traverser, "timing of the traverser: static")->capture_default_str();
-  sim_app->add_option("--out", sim.out,
+void CommandLine::add_sim_command() {
+  CLI::App* sim_app = app_.add_subcommand("sim", "draw a scene on the simulated chip; leaves image.png and report.json");
+  add_scene(*sim_app, sim_.scene, sim_.size, sim_.view, sim_.look, sim_.detail);
+  add_config(*sim_app, sim_.config);
+  add_unit(*sim_app, sim_.engine, sim_.unit_library);
+  sim_app->add_option("--units", sim_.units, "compute units: 1, 2 or 4")->capture_default_str();
+  sim_app->add_option("--depth", sim_.depth, "1: eye and shadow rays only; up to 254: with reflections")->capture_default_str();
+  sim_app->add_option("--traverser", sim_.traverser, "timing of the traverser: static")->capture_default_str();
+  sim_app->add_option("--out", sim_.out,
                       "folder for the results (default: out/<what was run> beside the program; installed: in raypool-out)");
-  sim_app->add_flag("--waves", sim.waves, "leave a waveform, waves.fst, too; rtl and lockstep only");
-  add_inspect(*sim_app, sim.inspect_until);
-  sim_app->add_flag("--json", sim.json, "the report on standard output, and nothing else there");
-  sim_app->add_flag("--quiet", sim.quiet, "no progress and no table");
-  sim.command.assign(argv, argv + argc);
-  sim_app->callback([&] { code = sim_command(sim); });
+  sim_app->add_flag("--waves", sim_.waves, "leave a waveform, waves.fst, too; rtl and lockstep only");
+  add_inspect(*sim_app, sim_.inspect_until);
+  sim_app->add_flag("--json", sim_.json, "the report on standard output, and nothing else there");
+  sim_app->add_flag("--quiet", sim_.quiet, "no progress and no table");
+  sim_app->callback([this] { code_ = sim_command(sim_); });
+}
 
-  RunOptions compute;
-  CLI::App* run_app = app.add_subcommand("run", "run a compute kernel on one compute unit");
-  run_app->add_option("kernel", compute.kernel, "saxpy, matmul, or the path of an assembly file")->required();
-  add_config(*run_app, compute.config);
-  add_unit(*run_app, compute.engine, compute.unit_library);
-  run_app->add_option("--n", compute.n, "size of saxpy (elements) or matmul (rows of a square matrix)");
-  run_app->add_option("--blocks", compute.blocks, "assembly file: blocks to launch")->capture_default_str();
-  run_app->add_option("--threads", compute.threads, "assembly file: threads a block (default: warps x cores)");
-  run_app->add_option("--arg", compute.arguments, "assembly file: next kernel argument; integer, 0x..., or float (with a point)")
+void CommandLine::add_run_command() {
+  CLI::App* run_app = app_.add_subcommand("run", "run a compute kernel on one compute unit");
+  run_app->add_option("kernel", compute_.kernel, "saxpy, matmul, or the path of an assembly file")->required();
+  add_config(*run_app, compute_.config);
+  add_unit(*run_app, compute_.engine, compute_.unit_library);
+  run_app->add_option("--n", compute_.n, "size of saxpy (elements) or matmul (rows of a square matrix)");
+  run_app->add_option("--blocks", compute_.blocks, "assembly file: blocks to launch")->capture_default_str();
+  run_app->add_option("--threads", compute_.threads, "assembly file: threads a block (default: warps x cores)");
+  run_app->add_option("--arg", compute_.arguments, "assembly file: next kernel argument; integer, 0x..., or float (with a point)")
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  run_app->add_option("--memory", compute.memory_bytes, "assembly file: bytes of memory, program first")->capture_default_str();
-  run_app->add_option("--print", compute.print, "assembly file: ADDRESS:WORDS of memory to print afterwards")
+  run_app->add_option("--memory", compute_.memory_bytes, "assembly file: bytes of memory, program first")->capture_default_str();
+  run_app->add_option("--print", compute_.print, "assembly file: ADDRESS:WORDS of memory to print afterwards")
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  run_app->add_option("--waves", compute.waves, "leave a waveform (FST) in this file; rtl and lockstep only");
-  add_inspect(*run_app, compute.inspect_until);
-  run_app->add_option("--cycles", compute.cycle_limit, "give up after this many cycles; functional: warp instructions")
+  run_app->add_option("--waves", compute_.waves, "leave a waveform (FST) in this file; rtl and lockstep only");
+  add_inspect(*run_app, compute_.inspect_until);
+  run_app->add_option("--cycles", compute_.cycle_limit, "give up after this many cycles; functional: warp instructions")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  run_app->add_flag("--quiet", compute.quiet, "no progress");
-  run_app->callback([&] { code = run_command(compute); });
+  run_app->add_flag("--quiet", compute_.quiet, "no progress");
+  run_app->callback([this] { code_ = run_command(compute_); });
+}
 
-  CosimOptions cosim;
+void CommandLine::add_cosim_command() {
   CLI::App* cosim_app =
-      app.add_subcommand("cosim", "random programs, with stalls on every port, in lockstep with the golden model");
-  add_config(*cosim_app, cosim.config);
-  add_unit(*cosim_app, cosim.engine, cosim.unit_library);
-  cosim_app->add_option("--units", cosim.units, "compute units: 1, 2 or 4")
+      app_.add_subcommand("cosim", "random programs, with stalls on every port, in lockstep with the golden model");
+  add_config(*cosim_app, cosim_.config);
+  add_unit(*cosim_app, cosim_.engine, cosim_.unit_library);
+  cosim_app->add_option("--units", cosim_.units, "compute units: 1, 2 or 4")
       ->check(CLI::IsMember({1, 2, 4}))
       ->capture_default_str();
-  cosim_app->add_option("--programs", cosim.programs, "how many")->capture_default_str();
-  cosim_app->add_option("--seed", cosim.seed, "of the first; the next one has the next seed")->capture_default_str();
-  cosim_app->add_option("--length", cosim.length, "about how many instructions a program has, 1 to 2000")
+  cosim_app->add_option("--programs", cosim_.programs, "how many")->capture_default_str();
+  cosim_app->add_option("--seed", cosim_.seed, "of the first; the next one has the next seed")->capture_default_str();
+  cosim_app->add_option("--length", cosim_.length, "about how many instructions a program has, 1 to 2000")
       ->check(CLI::Range(1, 2000))
       ->capture_default_str();
-  cosim_app->add_option("--mix", cosim.mix, "one mix of instructions for all programs: mixed, memory, ..., operands");
-  cosim_app->add_flag("--quiet", cosim.quiet, "no progress");
-  cosim_app->add_flag("!--no-shrink", cosim.shrink, "leave a program that fails as it is");
-  cosim_app->add_option("--save", cosim.save, "folder for the shrunk program")->capture_default_str();
-  cosim_app->add_option("--coverage", cosim.coverage, "JSON file with what was covered");
-  cosim_app->add_option("--vectors", cosim.vectors, "record every cycle in this file, for tb/icarus");
-  auto* replay = cosim_app->add_option("--replay", cosim.replay, "run a saved program instead of random ones");
-  cosim_app->add_flag("--show-config", cosim.show_configuration, "print the configuration of the saved program")->needs(replay);
-  cosim_app->add_flag("--unchecked", cosim.unchecked, "run the saved program even if it breaks the rules")->needs(replay);
-  cosim_app->callback([&] { code = cosim_command(cosim); });
+  cosim_app->add_option("--mix", cosim_.mix, "one mix of instructions for all programs: mixed, memory, ..., operands");
+  cosim_app->add_flag("--quiet", cosim_.quiet, "no progress");
+  cosim_app->add_flag("!--no-shrink", cosim_.shrink, "leave a program that fails as it is");
+  cosim_app->add_option("--save", cosim_.save, "folder for the shrunk program")->capture_default_str();
+  cosim_app->add_option("--coverage", cosim_.coverage, "JSON file with what was covered");
+  cosim_app->add_option("--vectors", cosim_.vectors, "record every cycle in this file, for tb/icarus");
+  auto* replay = cosim_app->add_option("--replay", cosim_.replay, "run a saved program instead of random ones");
+  cosim_app->add_flag("--show-config", cosim_.show_configuration, "print the configuration of the saved program")->needs(replay);
+  cosim_app->add_flag("--unchecked", cosim_.unchecked, "run the saved program even if it breaks the rules")->needs(replay);
+  cosim_app->callback([this] { code_ = cosim_command(cosim_); });
+}
 
-  ConfigurationsOptions configurations;
-  CLI::App* configurations_app = app.add_subcommand("configurations", "a set of machines with every pair of parameter values");
-  configurations_app->add_flag("--all-pairs", configurations.all_pairs, "large machines too (default: small ones)");
-  configurations_app->add_option("--most", configurations.most, "only the first so many of those that bring pairs of values");
-  configurations_app->add_option("--out", configurations.folder, "folder that gets a JSON file for each");
-  configurations_app->callback([&] { code = configurations_command(configurations); });
+void CommandLine::add_configurations_command() {
+  CLI::App* configurations_app = app_.add_subcommand("configurations", "a set of machines with every pair of parameter values");
+  configurations_app->add_flag("--all-pairs", configurations_.all_pairs, "large machines too (default: small ones)");
+  configurations_app->add_option("--most", configurations_.most, "only the first so many of those that bring pairs of values");
+  configurations_app->add_option("--out", configurations_.folder, "folder that gets a JSON file for each");
+  configurations_app->callback([this] { code_ = configurations_command(configurations_); });
+}
 
-  ConfigOptions config;
-  CLI::App* config_app = app.add_subcommand("config", "print a configuration");
-  config_app->add_option("config", config.config, "a name in configs/, NwMc or a JSON file")->capture_default_str();
+void CommandLine::add_config_command() {
+  CLI::App* config_app = app_.add_subcommand("config", "print a configuration");
+  config_app->add_option("config", config_.config, "a name in configs/, NwMc or a JSON file")->capture_default_str();
   auto* formats = config_app->add_option_group("format");
-  formats->add_flag("--json", config.json, "as a configuration file");
-  formats->add_flag("--verilog-parameters", config.verilog_parameters, "as NAME=VALUE lines for rtl/multiprocessor.v");
-  formats->add_flag("--unit-library", config.unit_library, "path of its Verilated unit");
+  formats->add_flag("--json", config_.json, "as a configuration file");
+  formats->add_flag("--verilog-parameters", config_.verilog_parameters, "as NAME=VALUE lines for rtl/multiprocessor.v");
+  formats->add_flag("--unit-library", config_.unit_library, "path of its Verilated unit");
   formats->require_option(0, 1);
-  config_app->add_option("--units", config.units, "with --unit-library: compute units, 1, 2 or 4")
+  config_app->add_option("--units", config_.units, "with --unit-library: compute units, 1, 2 or 4")
       ->check(CLI::IsMember({1, 2, 4}));
-  config_app->callback([&] { code = config_command(config); });
+  config_app->callback([this] { code_ = config_command(config_); });
+}
 
-  UnitOptions unit;
+void CommandLine::add_unit_command() {
   CLI::App* unit_app =
-      app.add_subcommand("unit", "build the Verilated unit that engines rtl and lockstep run (takes a minute or more)");
-  add_config(*unit_app, unit.config);
-  unit_app->add_option("--units", unit.units, "compute units: 1, 2 or 4")->check(CLI::IsMember({1, 2, 4}))->capture_default_str();
-  unit_app->add_flag("--waves", unit.waves, "one that can leave a waveform, beside the fast one");
-  unit_app->callback([&] { code = unit_command(unit); });
+      app_.add_subcommand("unit", "build the Verilated unit that engines rtl and lockstep run (takes a minute or more)");
+  add_config(*unit_app, unit_.config);
+  unit_app->add_option("--units", unit_.units, "compute units: 1, 2 or 4")
+      ->check(CLI::IsMember({1, 2, 4}))
+      ->capture_default_str();
+  unit_app->add_flag("--waves", unit_.waves, "one that can leave a waveform, beside the fast one");
+  unit_app->callback([this] { code_ = unit_command(unit_); });
+}
 
-  CLI::App* isa_app = app.add_subcommand("isa", "print the instruction table (default: as Markdown)");
-  bool verilog = false, functions = false, markdown = false, write = false;
+void CommandLine::add_isa_command() {
+  CLI::App* isa_app = app_.add_subcommand("isa", "print the instruction table (default: as Markdown)");
   auto* isa_formats = isa_app->add_option_group("format");
-  isa_formats->add_flag("--markdown", markdown, "docs/isa.md");
-  isa_formats->add_flag("--verilog", verilog, "rtl/isa.vh: constants");
-  isa_formats->add_flag("--verilog-functions", functions, "rtl/isa_functions.vh: decoding");
-  isa_formats->add_flag("--write", write, "all files that are derived from the table, in place");
+  isa_formats->add_flag("--markdown", markdown_, "docs/isa.md");
+  isa_formats->add_flag("--verilog", verilog_, "rtl/isa.vh: constants");
+  isa_formats->add_flag("--verilog-functions", functions_, "rtl/isa_functions.vh: decoding");
+  isa_formats->add_flag("--write", write_, "all files that are derived from the table, in place");
   isa_formats->require_option(0, 1);
-  isa_app->callback([&] {
-    if (write) {
-      code = isa_write_command();
+  isa_app->callback([this] {
+    if (write_) {
+      code_ = isa_write_command();
       return;
     }
-    code = isa_command(verilog ? IsaFormat::Verilog : functions ? IsaFormat::VerilogFunctions : IsaFormat::Markdown);
+    code_ = isa_command(verilog_ ? IsaFormat::Verilog : functions_ ? IsaFormat::VerilogFunctions : IsaFormat::Markdown);
   });
+}
 
-  std::string text_path, text_out;
-  CLI::App* asm_app = app.add_subcommand("asm", "assemble: one hexadecimal 64-bit word a line");
-  CLI::App* disasm_app = app.add_subcommand("disasm", "disassemble what asm has written");
+void CommandLine::add_assembly_command() {
+  CLI::App* asm_app = app_.add_subcommand("asm", "assemble: one hexadecimal 64-bit word a line");
+  CLI::App* disasm_app = app_.add_subcommand("disasm", "disassemble what asm has written");
   for (CLI::App* sub : {asm_app, disasm_app}) {
-    sub->add_option("file", text_path, "input, - for standard input")->required();
-    sub->add_option("--out,-o", text_out, "output (default: standard output)");
+    sub->add_option("file", text_path_, "input, - for standard input")->required();
+    sub->add_option("--out,-o", text_out_, "output (default: standard output)");
   }
-  asm_app->callback([&] { code = asm_command(text_path, text_out); });
-  disasm_app->callback([&] { code = disasm_command(text_path, text_out); });
+  asm_app->callback([this] { code_ = asm_command(text_path_, text_out_); });
+  disasm_app->callback([this] { code_ = disasm_command(text_path_, text_out_); });
+}
 
-  std::string kernel, kernels_config = "8w8c";
+void CommandLine::add_kernels_command() {
   CLI::App* kernels_app =
-      app.add_subcommand("kernels", "the ray kernels' instruction counts by ALU, or the listing of one kernel");
-  kernels_app->add_option("name", kernel, "kernel to list");
-  add_config(*kernels_app, kernels_config);
-  kernels_app->callback([&] { code = kernels_command(kernel, kernels_config); });
+      app_.add_subcommand("kernels", "the ray kernels' instruction counts by ALU, or the listing of one kernel");
+  kernels_app->add_option("name", kernel_, "kernel to list");
+  add_config(*kernels_app, kernels_config_);
+  kernels_app->callback([this] { code_ = kernels_command(kernel_, kernels_config_); });
+}
 
-  uint32_t grid = 4096;
-  CLI::App* errors_app = app.add_subcommand("errors", "measure the errors of division and roots of every slow unit, in ulp");
-  errors_app->add_option("--grid", grid, "fdiv: GRID x GRID pairs of mantissas, 2 to 32768")
+void CommandLine::add_errors_command() {
+  CLI::App* errors_app = app_.add_subcommand("errors", "measure the errors of division and roots of every slow unit, in ulp");
+  errors_app->add_option("--grid", grid_, "fdiv: GRID x GRID pairs of mantissas, 2 to 32768")
       ->check(CLI::Range(2u, 32768u))
       ->capture_default_str();
-  errors_app->callback([&] { code = errors_command(grid); });
+  errors_app->callback([this] { code_ = errors_command(grid_); });
+}
 
-  SceneCommandOptions scene;
-  CLI::App* scene_app = app.add_subcommand("scene", "what a scene holds: triangles, materials, box, camera, light");
-  CLI::App* hits_app = app.add_subcommand("hits", "compare our traversal's hits on a frame with Embree's");
-  for (CLI::App* sub : {scene_app, hits_app}) add_scene(*sub, scene.scene, scene.size, scene.view, scene.look, scene.detail);
-  scene_app->add_option("--write-obj", scene.write_obj, "write it as an OBJ, with its MTL beside it");
-  scene_app->callback([&] { code = scene_command(scene); });
-  hits_app->callback([&] { code = hits_command(scene); });
+void CommandLine::add_scene_command() {
+  CLI::App* scene_app = app_.add_subcommand("scene", "what a scene holds: triangles, materials, box, camera, light");
+  CLI::App* hits_app = app_.add_subcommand("hits", "compare our traversal's hits on a frame with Embree's");
+  for (CLI::App* sub : {scene_app, hits_app}) add_scene(*sub, scene_.scene, scene_.size, scene_.view, scene_.look, scene_.detail);
+  scene_app->add_option("--write-obj", scene_.write_obj, "write it as an OBJ, with its MTL beside it");
+  scene_app->callback([this] { code_ = scene_command(scene_); });
+  hits_app->callback([this] { code_ = hits_command(scene_); });
+}
 
-  NumericsOptions numerics;
+void CommandLine::add_numerics_command() {
   CLI::App* numerics_app =
-      app.add_subcommand("numerics", "what each arithmetic mode does to pictures, and costs; seams; offsets; extremes");
-  add_config(*numerics_app, numerics.config);
-  numerics_app->add_option("--mode", numerics.mode, "all, or one: ieee-exact, flush-newton1, ...")->capture_default_str();
-  numerics_app->add_option("--size", numerics.size, "pictures, WIDTHxHEIGHT in pixels")->capture_default_str();
-  numerics_app->add_option("--depth", numerics.depth, "of the pictures' rays")->check(CLI::Range(1, 254))->capture_default_str();
+      app_.add_subcommand("numerics", "what each arithmetic mode does to pictures, and costs; seams; offsets; extremes");
+  add_config(*numerics_app, numerics_.config);
+  numerics_app->add_option("--mode", numerics_.mode, "all, or one: ieee-exact, flush-newton1, ...")->capture_default_str();
+  numerics_app->add_option("--size", numerics_.size, "pictures, WIDTHxHEIGHT in pixels")->capture_default_str();
+  numerics_app->add_option("--depth", numerics_.depth, "of the pictures' rays")->check(CLI::Range(1, 254))->capture_default_str();
   numerics_app->add_option(
-      "--out", numerics.out,
+      "--out", numerics_.out,
       "folder for numerics.json and plots (default: out/numerics beside the program; installed: in raypool-out)");
-  numerics_app->add_option("--synthesis", numerics.synthesis, "folder of synthesis reports (default: synth beside the program)");
-  numerics_app->add_flag("--extremes", numerics.extremes, "the catalogue of hard cases, by mode and engine");
-  numerics_app->add_flag("--catalogue", numerics.catalogue, "only list those cases, with what is expected of them");
-  numerics_app->add_option("--configurations", numerics.configurations,
+  numerics_app->add_option("--synthesis", numerics_.synthesis, "folder of synthesis reports (default: synth beside the program)");
+  numerics_app->add_flag("--extremes", numerics_.extremes, "the catalogue of hard cases, by mode and engine");
+  numerics_app->add_flag("--catalogue", numerics_.catalogue, "only list those cases, with what is expected of them");
+  numerics_app->add_option("--configurations", numerics_.configurations,
                            "only write a configuration file of each mode into this folder");
-  numerics_app->add_flag("--quiet", numerics.quiet, "no progress");
-  numerics_app->callback([&] { code = numerics_command(numerics); });
+  numerics_app->add_flag("--quiet", numerics_.quiet, "no progress");
+  numerics_app->callback([this] { code_ = numerics_command(numerics_); });
+}
 
-  std::string shell = "bash";
-  CLI::App* completion_app = app.add_subcommand("completion", "print what completes raypool's commands and options in a shell");
-  completion_app->add_option("shell", shell, "whose")->type_name("bash|zsh|fish")->capture_default_str();
-  completion_app->callback([&] { std::fputs(completion(app, shell).c_str(), stdout); });
-  CLI::App* man_app = app.add_subcommand("man", "print the man page: raypool man | man -l -");
-  man_app->callback([&] { std::fputs(man_page(app).c_str(), stdout); });
+void CommandLine::add_descriptions_command() {
+  CLI::App* completion_app = app_.add_subcommand("completion", "print what completes raypool's commands and options in a shell");
+  completion_app->add_option("shell", shell_, "whose")->type_name("bash|zsh|fish")->capture_default_str();
+  completion_app->callback([this] { std::fputs(completion(app_, shell_).c_str(), stdout); });
+  CLI::App* man_app = app_.add_subcommand("man", "print the man page: raypool man | man -l -");
+  man_app->callback([this] { std::fputs(man_page(app_).c_str(), stdout); });
+}
 
+int CommandLine::run(int argc, char** argv) {
   try {
-    app.parse(argc, argv);
+    app_.parse(argc, argv);
   } catch (const CLI::Success& success) {
-    return app.exit(success);
+    return app_.exit(success);
   } catch (const CLI::ParseError& error) {
-    const std::string twice = given_twice(app);
+    const std::string twice = given_twice(app_);
     std::fprintf(stderr, "raypool: %s (raypool --help shows what there is)\n", twice.empty() ? error.what() : twice.c_str());
     return kInputFailure;
   }
-  return code;
+  return code_;
 }
 
 /// What has been printed is a result too: lost, it is an error.
@@ -275,7 +342,7 @@ int close_output(int code) {
 /// Runs a command; what it throws becomes a sentence and an exit code.
 int run_and_report(int argc, char** argv) {
   try {
-    return run(argc, argv);
+    return CommandLine(argc, argv).run(argc, argv);
   } catch (const InputError& error) {
     std::fprintf(stderr, "raypool: %s\n", error.what());
     return kInputFailure;
