@@ -202,7 +202,7 @@ void CycleUnit::start_kernel() {
 
 // The PC stack is stepped from `cycle` on: a cycle for each entry that is popped, and one for the PC that is taken.
 void CycleUnit::plan_fetch(uint32_t warp, uint64_t cycle, bool past_current) {
-  const FunctionalCore::Fetch fetch = core_.next_fetch(warp, past_current);
+  const PcStack::Fetch fetch = core_.next_fetch(warp, past_current);
   buffer_.stack_pc(warp, fetch.pc);
   if (tracing_) {
     timings_[warp].fetch_pc = fetch.pc;

@@ -6,28 +6,25 @@
 
 #include "isa/encoding.hpp"
 #include "machine/alu_model.hpp"
-#include "machine/lanes.hpp"
+#include "machine/brh_alu.hpp"
+#include "machine/flt_alu.hpp"
+#include "machine/int_alu.hpp"
+#include "machine/slw_alu.hpp"
 
 namespace raypool {
-namespace {
-
-constexpr uint32_t kFirstRpc = 0xffff;
-
-}  // namespace
 
 void not_modelled(Opcode opcode) {
   throw std::logic_error("the golden model does not execute " + std::string(instruction(opcode).mnemonic) +
-                         ": cpp_model/machine/functional_core.cpp or lanes.hpp, which has the data types, needs a case for it");
+                         ": cpp_model/machine/functional_core.cpp, or the ALU's header beside it, needs a case for it");
 }
 
 FunctionalCore::FunctionalCore(const Configuration& configuration, Memory& memory)
     : memory_(&memory),
       lanes_(configuration.cores),
-      stack_depth_(static_cast<uint32_t>(configuration.stack_depth)),
       configuration_(configuration),
       mode_(arith::mode_of(configuration)),
       registers_(static_cast<size_t>(configuration.contents() * kRegisters)),
-      warps_(static_cast<size_t>(configuration.warps)),
+      warps_(static_cast<size_t>(configuration.warps), Warp(static_cast<uint32_t>(configuration.stack_depth))),
       slices_(configuration.warps, configuration.cores) {
   switch (lanes_) {
     case 1:
@@ -59,7 +56,7 @@ void FunctionalCore::reset(uint32_t program_length, uint32_t memory_limit) {
   program_decoded_ = false;
   program_.clear();
   std::fill(registers_.begin(), registers_.end(), 0);
-  std::fill(warps_.begin(), warps_.end(), Warp{});
+  for (Warp& warp : warps_) warp.reset();
   slices_.reset();
   running_warps_ = 0;
   result_ = Step{};
@@ -82,19 +79,10 @@ void FunctionalCore::launch(const LaunchCommand& command) {
     const uint32_t threads = std::min(lanes, command.threads - first);
     warp.running = true;
     warp.launched = threads == 32 ? 0xffffffffu : (1u << threads) - 1;
-    warp.depth = 1;
-    warp.stack[0] = {command.pc, kFirstRpc};
-    warp.predicates.fill(0);
-    warp.predicates[0] = 0xffffffffu;
+    warp.pc_stack.start(command.pc);
+    warp.predicates.clear();
     ++running_warps_;
   }
-}
-
-uint32_t FunctionalCore::next_pc(uint32_t number) const {
-  const Warp& warp = warps_[number];
-  uint32_t top = warp.depth == 0 ? 0 : warp.depth - 1;
-  while (top > 0 && warp.stack[top].pc >= warp.stack[top].rpc) --top;
-  return warp.stack[top].pc;
 }
 
 bool FunctionalCore::fault(FaultCode fault_code) {
@@ -122,9 +110,8 @@ bool FunctionalCore::fault(FaultCode fault_code) {
   result.warp_ended = false;
   if (!warp.running) return false;
 
-  // PC stack: finished entries are popped, then the top PC is taken. The first entry is never finished.
-  while (warp.depth > 1 && warp.stack[warp.depth - 1].pc >= warp.stack[warp.depth - 1].rpc) --warp.depth;
-  result.pc = warp.stack[warp.depth - 1].pc;
+  warp.pc_stack.pop_finished();
+  result.pc = warp.pc_stack.pc();
   if (result.pc >= program_length_) return fault(FaultCode::PcOutsideProgram);
   result.instruction = &program_[result.pc];
   if (!result.instruction->legal()) return fault(FaultCode::IllegalInstruction);
@@ -152,7 +139,7 @@ const Step& FunctionalCore::step_lanes(uint32_t number) {
   }
   if (!execute<kLanes>(instruction, warp, lanes)) return result_;
   if (instruction.writes_register) result_.data = lanes.rd;
-  ++warp.stack[warp.depth - 1].pc;
+  warp.pc_stack.advance();
   result_.status = Step::Status::Executed;
   return result_;
 }
@@ -160,25 +147,25 @@ const Step& FunctionalCore::step_lanes(uint32_t number) {
 // What is no control instruction. False if it faults or has to wait.
 template <int kLanes>
 bool FunctionalCore::execute(const DecodedInstruction& instruction, Warp& warp, const Lanes<kLanes>& lanes) {
-  const uint32_t px = warp.predicates[instruction.x & 15], pb = warp.predicates[instruction.rb];
+  const uint32_t px = warp.predicates.read(instruction.x & 15), pb = warp.predicates.read(instruction.rb);
   switch (instruction.alu()) {
     case AluType::Tid:
-      execute_index<kLanes>(instruction, lanes);
+      tid_alu_.execute(instruction.opcode, lanes, result_.warp, instruction.immediate, launched_);
       return true;
     case AluType::Brh:
-      result_.predicate = compare(instruction.opcode, lanes, px, pb, mode_) & result_.mask;
-      if (instruction.rd != 0) warp.predicates[instruction.rd] = result_.predicate;
+      result_.predicate = BrhAlu::compare(instruction.opcode, lanes, px, pb, mode_) & result_.mask;
+      warp.predicates.write(instruction.rd, result_.predicate);
       return true;
     case AluType::Mem:
       return execute_memory<kLanes>(instruction, lanes);
     case AluType::Int:
-      integer(instruction.opcode, lanes, px);
+      IntAlu::execute(instruction.opcode, lanes, px);
       return true;
     case AluType::Flt:
-      floating(instruction.opcode, lanes, mode_);
+      FltAlu::execute(instruction.opcode, lanes, mode_);
       return true;
     case AluType::Slw:
-      slow(instruction.opcode, lanes, mode_);
+      SlwAlu::execute(instruction.opcode, lanes, mode_);
       return true;
     case AluType::Ray:
       return execute_ray<kLanes>(instruction, warp, lanes);
@@ -189,33 +176,22 @@ bool FunctionalCore::execute(const DecodedInstruction& instruction, Warp& warp, 
 }
 
 bool FunctionalCore::execute_control(const DecodedInstruction& instruction, Warp& warp) {
-  StackEntry& top = warp.stack[warp.depth - 1];
-  const uint32_t next = top.pc + 1;
-  const bool any = result_.mask != 0;
+  PcStack& stack = warp.pc_stack;
+  const uint32_t next = stack.pc() + 1;
+  const bool taken = BrhAlu::taken(instruction.opcode, result_.mask);
   switch (instruction.opcode) {
     case Opcode::Jany:
-      top.pc = any ? instruction.target() : next;
-      return true;
     case Opcode::Jnone:
-      top.pc = !any ? instruction.target() : next;
+      stack.jump(taken ? instruction.target() : next);
       return true;
     case Opcode::Call:
-      if (warp.depth == stack_depth_) return fault(FaultCode::StackOverflow);
-      top.pc = next;
-      warp.stack[warp.depth++] = {instruction.target(), instruction.end()};
-      return true;
+      return stack.push(instruction.target(), instruction.end(), next) || fault(FaultCode::StackOverflow);
     case Opcode::Loop:  // its end is alone in the immediate's low half
-      if (!any) {
-        top.pc = instruction.target();
-        return true;
-      }
-      if (warp.depth == stack_depth_) return fault(FaultCode::StackOverflow);
-      warp.stack[warp.depth++] = {next, instruction.target()};
+      if (taken) return stack.push(next, instruction.target(), stack.pc()) || fault(FaultCode::StackOverflow);
+      stack.jump(instruction.target());
       return true;
     case Opcode::Ret:
-      if (warp.depth == 1) return fault(FaultCode::StackUnderflow);
-      --warp.depth;
-      return true;
+      return stack.pop() || fault(FaultCode::StackUnderflow);
     case Opcode::Exit:
       warp.running = false;
       --running_warps_;
@@ -226,34 +202,11 @@ bool FunctionalCore::execute_control(const DecodedInstruction& instruction, Warp
   }
 }
 
-template <int kLanes>
-void FunctionalCore::execute_index(const DecodedInstruction& instruction, const Lanes<kLanes>& lanes) {
-  const auto fill = [&lanes](uint32_t value) { lanes.map([value](uint32_t, uint32_t) { return value; }); };
-  switch (instruction.opcode) {
-    case Opcode::Tid:
-      return lanes.number(result_.warp * kLanes);
-    case Opcode::Lane:
-      return lanes.number(0);
-    case Opcode::Warp:
-      return fill(result_.warp);
-    case Opcode::Block:
-      return fill(launched_.block);
-    case Opcode::Threads:
-      return fill(launched_.threads);
-    case Opcode::Blocks:
-      return fill(launched_.blocks);
-    case Opcode::Arg:
-      return fill(arguments_[instruction.immediate % kArguments]);
-    default:
-      not_modelled(instruction.opcode);
-  }
-}
-
 // A type that the core does not know: lane by lane, so that rd may be a source.
 void FunctionalCore::execute_class(const DecodedInstruction& instruction, Warp& warp, uint32_t* rd, const uint32_t* a,
                                    const uint32_t* b) {
   const AluModel& alu = *find_alu_model(instruction.alu());
-  const uint32_t px = warp.predicates[instruction.x & 15], pb = warp.predicates[instruction.rb];
+  const uint32_t px = warp.predicates.read(instruction.x & 15), pb = warp.predicates.read(instruction.rb);
   uint32_t predicate = 0;
   for (uint32_t mask = result_.mask; mask != 0; mask &= mask - 1) {
     const uint32_t lane = static_cast<uint32_t>(__builtin_ctz(mask));
@@ -264,7 +217,7 @@ void FunctionalCore::execute_class(const DecodedInstruction& instruction, Warp& 
   }
   if (!instruction.writes_predicate) return;
   result_.predicate = predicate;
-  if (instruction.rd != 0) warp.predicates[instruction.rd] = predicate;
+  warp.predicates.write(instruction.rd, predicate);
 }
 
 // Loads and stores. All masked lanes are checked before any of them is served; misalignment is the first thing looked for.

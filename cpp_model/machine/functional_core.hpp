@@ -14,6 +14,8 @@
 #include "machine/memory.hpp"
 #include "machine/packages.hpp"
 #include "machine/ray_slices.hpp"
+#include "machine/tid_alu.hpp"
+#include "machine/warp.hpp"
 
 namespace raypool {
 
@@ -63,7 +65,7 @@ class FunctionalCore {
   /// argument.
   void reset(uint32_t program_length, uint32_t memory_limit);
   void set_argument(int index, uint32_t value) {
-    arguments_[static_cast<size_t>(index)] = value;
+    tid_alu_.write_argument(index, value);
     program_decoded_ = false;
   }
 
@@ -81,31 +83,10 @@ class FunctionalCore {
   /// executed.
   void forget_fault() { result_.status = Step::Status::NotRunning; }
 
-  /// The instruction routine's next step for a warp.
-  struct Fetch {
-    uint32_t pops = 0;  ///< finished entries above the entry that is taken
-    uint32_t pc = 0;
-  };
-  /// `past_current`: as if the warp's next instruction, which must not be a control instruction, had been executed.
-  Fetch next_fetch(uint32_t warp, bool past_current) const {
-    const Warp& state = warps_[warp];
-    uint32_t top = state.depth - 1;
-    const auto finished = [&state](uint32_t entry, uint32_t pc) { return entry > 0 && pc >= state.stack[entry].rpc; };
-    // What the warp's own step pops before it executes is no step of the instruction routine any more.
-    if (past_current) {
-      while (finished(top, state.stack[top].pc)) --top;
-    }
-    Fetch fetch;
-    fetch.pc = state.stack[top].pc + (past_current ? 1 : 0);
-    while (finished(top, fetch.pc)) {
-      fetch.pc = state.stack[--top].pc;
-      ++fetch.pops;
-    }
-    return fetch;
-  }
-
-  /// PC of the warp's next instruction (after popping finished entries); the instruction there, null if outside the program.
-  uint32_t next_pc(uint32_t warp) const;
+  /// The instruction routine's next steps for a warp.
+  PcStack::Fetch next_fetch(uint32_t warp, bool past_current) const { return warps_[warp].pc_stack.fetch(past_current); }
+  /// PC of the warp's next instruction; the instruction there, null if outside the program.
+  uint32_t next_pc(uint32_t warp) const { return warps_[warp].pc_stack.next_pc(); }
   const DecodedInstruction* instruction_at(uint32_t pc) const { return pc < program_.size() ? &program_[pc] : nullptr; }
 
   /// Packages of a launch with an import kind: announce their number, then give them in order of threads. Launches are served in
@@ -125,33 +106,19 @@ class FunctionalCore {
   const uint32_t* register_row(uint32_t warp, uint32_t number) const {
     return &registers_[(warp * kRegisters + number) * lanes_];
   }
-  uint32_t predicate(uint32_t warp, uint32_t number) const { return warps_[warp].predicates[number]; }
-  uint32_t argument(uint32_t index) const { return arguments_[index % kArguments]; }
+  uint32_t predicate(uint32_t warp, uint32_t number) const { return warps_[warp].predicates.read(number); }
+  uint32_t argument(uint32_t index) const { return tid_alu_.argument(index); }
   /// Thread mask that `instruction` would have now.
   uint32_t thread_mask(uint32_t warp, const DecodedInstruction& instruction) const {
-    const uint32_t guard = warps_[warp].predicates[instruction.guard];
-    return (instruction.guard_negated ? ~guard : guard) & warps_[warp].launched;
+    const Warp& state = warps_[warp];
+    return state.predicates.mask(state.launched, instruction.guard, instruction.guard_negated);
   }
 
  private:
-  struct StackEntry {
-    uint32_t pc, rpc;
-  };
-  struct Warp {
-    bool running = false;
-    bool output_busy = false;
-    uint32_t launched = 0;  ///< lanes that have a thread
-    uint32_t depth = 0;     ///< entries on the PC stack
-    std::array<StackEntry, 32> stack{};
-    std::array<uint32_t, kPredicates> predicates{};
-  };
-
   template <int kLanes>
   const Step& step_lanes(uint32_t warp);
   template <int kLanes>
   bool execute(const DecodedInstruction& instruction, Warp& warp, const Lanes<kLanes>& lanes);
-  template <int kLanes>
-  void execute_index(const DecodedInstruction& instruction, const Lanes<kLanes>& lanes);
   template <int kLanes>
   bool execute_memory(const DecodedInstruction& instruction, const Lanes<kLanes>& lanes);
   template <int kLanes>
@@ -163,7 +130,6 @@ class FunctionalCore {
 
   Memory* memory_;
   int lanes_;
-  uint32_t stack_depth_;
   Configuration configuration_;
   arith::Mode mode_;
   uint32_t program_length_ = 0, memory_limit_ = 0;
@@ -172,7 +138,7 @@ class FunctionalCore {
   std::vector<DecodedInstruction> program_;
   std::vector<uint32_t> registers_;  ///< [warp][register][lane]
   std::vector<Warp> warps_;
-  std::array<uint32_t, kArguments> arguments_{};
+  TidAlu tid_alu_;
   RaySlices slices_;
   LaunchCommand launched_;
   uint32_t running_warps_ = 0;

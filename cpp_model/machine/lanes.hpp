@@ -1,10 +1,9 @@
-// What the data ALUs compute of the lanes of a warp, all lanes at once.
+// The lanes of an instruction of one warp, with which the ALUs' models compute all at once.
 #pragma once
 
 #include <cstdint>
 #include <cstring>
 
-#include "arith/arith.hpp"
 #include "isa/isa.hpp"
 
 namespace raypool {
@@ -56,136 +55,9 @@ struct Lanes {
   }
 };
 
-/// A row of the table without a case: names it and says where the case belongs.
+/// A row of the table without a case: names it and says where the case belongs, the ALU's header.
 [[noreturn]] void not_modelled(Opcode opcode);
 
 inline int32_t as_signed(uint32_t value) { return static_cast<int32_t>(value); }
-
-/// Brh: compares, and logic of the predicates px and pb.
-template <int kLanes>
-uint32_t compare(Opcode opcode, const Lanes<kLanes>& lanes, uint32_t px, uint32_t pb, arith::Mode mode) {
-  switch (opcode) {
-    case Opcode::Ieq:
-      return lanes.test([](uint32_t x, uint32_t y) { return x == y; });
-    case Opcode::Ine:
-      return lanes.test([](uint32_t x, uint32_t y) { return x != y; });
-    case Opcode::Ilt:
-      return lanes.test([](uint32_t x, uint32_t y) { return as_signed(x) < as_signed(y); });
-    case Opcode::Ile:
-      return lanes.test([](uint32_t x, uint32_t y) { return as_signed(x) <= as_signed(y); });
-    case Opcode::Igt:
-      return lanes.test([](uint32_t x, uint32_t y) { return as_signed(x) > as_signed(y); });
-    case Opcode::Ige:
-      return lanes.test([](uint32_t x, uint32_t y) { return as_signed(x) >= as_signed(y); });
-    case Opcode::Ult:
-      return lanes.test([](uint32_t x, uint32_t y) { return x < y; });
-    case Opcode::Ule:
-      return lanes.test([](uint32_t x, uint32_t y) { return x <= y; });
-    case Opcode::Ugt:
-      return lanes.test([](uint32_t x, uint32_t y) { return x > y; });
-    case Opcode::Uge:
-      return lanes.test([](uint32_t x, uint32_t y) { return x >= y; });
-    case Opcode::Feq:
-      return lanes.test([mode](uint32_t x, uint32_t y) { return arith::equal(x, y, mode); });
-    case Opcode::Fne:
-      return lanes.test([mode](uint32_t x, uint32_t y) { return arith::not_equal(x, y, mode); });
-    case Opcode::Flt:
-      return lanes.test([mode](uint32_t x, uint32_t y) { return arith::less(x, y, mode); });
-    case Opcode::Fle:
-      return lanes.test([mode](uint32_t x, uint32_t y) { return arith::less_equal(x, y, mode); });
-    case Opcode::Fgt:
-      return lanes.test([mode](uint32_t x, uint32_t y) { return arith::greater(x, y, mode); });
-    case Opcode::Fge:
-      return lanes.test([mode](uint32_t x, uint32_t y) { return arith::greater_equal(x, y, mode); });
-    case Opcode::Pand:
-      return px & pb;
-    case Opcode::Por:
-      return px | pb;
-    case Opcode::Pxor:
-      return px ^ pb;
-    case Opcode::Pandn:
-      return px & ~pb;
-    default:
-      not_modelled(opcode);
-  }
-}
-
-template <int kLanes>
-void integer(Opcode opcode, const Lanes<kLanes>& lanes, uint32_t px) {
-  switch (opcode) {
-    case Opcode::Mov:
-      return lanes.map([](uint32_t, uint32_t y) { return y; });
-    case Opcode::Iadd:
-      return lanes.map([](uint32_t x, uint32_t y) { return x + y; });
-    case Opcode::Isub:
-      return lanes.map([](uint32_t x, uint32_t y) { return x - y; });
-    case Opcode::Imul:
-      return lanes.map([](uint32_t x, uint32_t y) { return x * y; });
-    case Opcode::And:
-      return lanes.map([](uint32_t x, uint32_t y) { return x & y; });
-    case Opcode::Or:
-      return lanes.map([](uint32_t x, uint32_t y) { return x | y; });
-    case Opcode::Xor:
-      return lanes.map([](uint32_t x, uint32_t y) { return x ^ y; });
-    case Opcode::Shl:
-      return lanes.map([](uint32_t x, uint32_t y) { return x << (y & 31); });
-    case Opcode::Shr:
-      return lanes.map([](uint32_t x, uint32_t y) { return x >> (y & 31); });
-    case Opcode::Sar:
-      return lanes.map([](uint32_t x, uint32_t y) { return static_cast<uint32_t>(as_signed(x) >> (y & 31)); });
-    case Opcode::Imin:
-      return lanes.map([](uint32_t x, uint32_t y) { return as_signed(x) < as_signed(y) ? x : y; });
-    case Opcode::Imax:
-      return lanes.map([](uint32_t x, uint32_t y) { return as_signed(x) < as_signed(y) ? y : x; });
-    case Opcode::Umin:
-      return lanes.map([](uint32_t x, uint32_t y) { return x < y ? x : y; });
-    case Opcode::Umax:
-      return lanes.map([](uint32_t x, uint32_t y) { return x < y ? y : x; });
-    case Opcode::Sel:
-      return lanes.each([&](uint32_t lane) { return px >> lane & 1 ? lanes.a[lane] : lanes.b[lane]; });
-    default:
-      not_modelled(opcode);
-  }
-}
-
-template <int kLanes>
-void floating(Opcode opcode, const Lanes<kLanes>& lanes, arith::Mode mode) {
-  switch (opcode) {
-    case Opcode::Fadd:
-      return lanes.map([mode](uint32_t x, uint32_t y) { return arith::add(x, y, mode); });
-    case Opcode::Fsub:
-      return lanes.map([mode](uint32_t x, uint32_t y) { return arith::sub(x, y, mode); });
-    case Opcode::Fmul:
-      return lanes.map([mode](uint32_t x, uint32_t y) { return arith::mul(x, y, mode); });
-    case Opcode::Fmin:
-      return lanes.map([mode](uint32_t x, uint32_t y) { return arith::min(x, y, mode); });
-    case Opcode::Fmax:
-      return lanes.map([mode](uint32_t x, uint32_t y) { return arith::max(x, y, mode); });
-    case Opcode::F2i:
-      return lanes.map([mode](uint32_t x, uint32_t) { return arith::to_int(x, mode); });
-    case Opcode::I2f:
-      return lanes.map([mode](uint32_t x, uint32_t) { return arith::from_int(x, mode); });
-    case Opcode::Ffma:
-      return lanes.each([&](uint32_t lane) { return arith::fma(lanes.a[lane], lanes.b[lane], lanes.c[lane], mode); });
-    default:
-      not_modelled(opcode);
-  }
-}
-
-template <int kLanes>
-void slow(Opcode opcode, const Lanes<kLanes>& lanes, arith::Mode mode) {
-  switch (opcode) {
-    case Opcode::Fdiv:
-      return lanes.map([mode](uint32_t x, uint32_t y) { return arith::div(x, y, mode); });
-    case Opcode::Fsqrt:
-      return lanes.map([mode](uint32_t x, uint32_t) { return arith::sqrt(x, mode); });
-    case Opcode::Frsqrt:
-      return lanes.map([mode](uint32_t x, uint32_t) { return arith::rsqrt(x, mode); });
-    case Opcode::Frcp:
-      return lanes.map([mode](uint32_t x, uint32_t) { return arith::rcp(x, mode); });
-    default:
-      not_modelled(opcode);
-  }
-}
 
 }  // namespace raypool

@@ -1,0 +1,27 @@
+// rtl/warp.v as the architecture sees it: what a warp has besides its registers, which lie with those of all warps.
+#pragma once
+
+#include <cstdint>
+
+#include "machine/pc_stack.hpp"
+#include "machine/predicate_file.hpp"
+
+namespace raypool {
+
+struct Warp {
+  explicit Warp(uint32_t stack_depth) : pc_stack(stack_depth) {}
+  void reset() {
+    running = output_busy = false;
+    launched = 0;
+    pc_stack.start(0);
+    predicates = {};
+  }
+
+  bool running = false;      ///< started and not yet exited
+  bool output_busy = false;  ///< the next rout or rfb waits
+  uint32_t launched = 0;     ///< lanes that have a thread
+  PcStack pc_stack;
+  PredicateFile predicates;
+};
+
+}  // namespace raypool
