@@ -120,6 +120,49 @@ std::map<uint32_t, std::string> kernel_names(const Program& program) {
   return names;
 }
 
+FrameBuffer draw_natively(RunRecord& record, const Scene& scene, MemoryImage& image) {
+  const Tracer tracer(scene, image.material_base);
+  NativeOptions native;
+  native.width = record.width;
+  native.height = record.height;
+  native.depth = record.depth;
+  native.reflections = record.reflections;
+  native.contents = record.configuration.contents();
+  native.threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  native.mode = arith::mode_of(record.configuration);
+  record.native.emplace();
+  const Progress drawing(true);
+  FrameBuffer frame = render_native(scene, image, tracer, native, &*record.native);
+  record.simulation_seconds = drawing.seconds();
+  return frame;
+}
+
+FrameBuffer draw_on_unit(const SimOptions& options, Engine engine, RunRecord& record, const Scene& scene, MemoryImage& image,
+                         OutputFolder& out) {
+  const EngineOptions device_options{engine,        record.configuration, options.unit_library,
+                                     options.waves, options.units,        options.inspect_until};
+  std::unique_ptr<ComputeUnit> device =
+      make_unit(device_options, image.memory, "unit", kernel_names(ray_kernel_program(record.configuration.fma)));
+  if (options.wrap) device = options.wrap(std::move(device), image.memory);
+  if (options.waves) device->open_waveform(out.temporary("waves.fst"));
+  const Tracer tracer(scene, image.material_base);
+  FrameBuffer frame(record.width, record.height);
+  try {
+    record.chip = draw_on_chip(options, record, scene, tracer, image, *device, frame);
+  } catch (const std::exception&) {
+    // The waveform up to here is what one wants to see now.
+    device.reset();
+    if (options.waves) {
+      out.publish();
+      std::fprintf(stderr, "raypool: the waveform until then is in %s\n", out.path("").c_str());
+    }
+    throw;
+  }
+  record.simulation_seconds = record.chip->wall_seconds;
+  record.lockstep = lockstep_counts(*device);
+  return frame;
+}
+
 }  // namespace
 
 int sim_command(const SimOptions& options) {
@@ -147,43 +190,8 @@ int sim_command(const SimOptions& options) {
   MemoryImage image = build_memory(ray_kernel_program(record.configuration.fma), scene);
   OutputFolder out(options.out.empty() ? default_folder(options, scene, record.configuration, size) : fs::path(options.out));
 
-  FrameBuffer frame(size.width, size.height);
-  if (engine == Engine::Native) {
-    const Tracer tracer(scene, image.material_base);
-    NativeOptions native;
-    native.width = size.width;
-    native.height = size.height;
-    native.depth = record.depth;
-    native.reflections = record.reflections;
-    native.contents = record.configuration.contents();
-    native.threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-    native.mode = arith::mode_of(record.configuration);
-    record.native.emplace();
-    const Progress drawing(true);
-    frame = render_native(scene, image, tracer, native, &*record.native);
-    record.simulation_seconds = drawing.seconds();
-  } else {
-    const EngineOptions device_options{engine,        record.configuration, options.unit_library,
-                                       options.waves, options.units,        options.inspect_until};
-    std::unique_ptr<ComputeUnit> device =
-        make_unit(device_options, image.memory, "unit", kernel_names(ray_kernel_program(record.configuration.fma)));
-    if (options.wrap) device = options.wrap(std::move(device), image.memory);
-    if (options.waves) device->open_waveform(out.temporary("waves.fst"));
-    const Tracer tracer(scene, image.material_base);
-    try {
-      record.chip = draw_on_chip(options, record, scene, tracer, image, *device, frame);
-    } catch (const std::exception&) {
-      // The waveform up to here is what one wants to see now.
-      device.reset();
-      if (options.waves) {
-        out.publish();
-        std::fprintf(stderr, "raypool: the waveform until then is in %s\n", out.path("").c_str());
-      }
-      throw;
-    }
-    record.simulation_seconds = record.chip->wall_seconds;
-    record.lockstep = lockstep_counts(*device);
-  }
+  const FrameBuffer frame =
+      engine == Engine::Native ? draw_natively(record, scene, image) : draw_on_unit(options, engine, record, scene, image, out);
 
   const std::vector<uint8_t> png = encode_png(frame);
   out.write("image.png", std::string(png.begin(), png.end()));

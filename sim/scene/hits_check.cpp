@@ -174,84 +174,121 @@ ExactHit exact_hit(const Scene& scene, uint32_t triangle, const ExactRay& ray) {
   return result;
 }
 
-HitsReport compare_with_embree(const Scene& scene, const HitsOptions& options) {
-  const auto arguments = camera_arguments(scene, options.width, options.height, 1);
-  MemoryImage image = build_memory({}, scene);
-  const Tracer tracer(scene, image.material_base);
-  const EmbreeScene embree(scene);
-  auto run = [&](RayKernel kernel, NativeThread& thread) {
-    thread.arguments = &arguments;
-    thread.memory = &image.memory;
-    options.kernel ? options.kernel(kernel, thread) : run_native(kernel, thread);
-  };
+namespace {
 
-  // Eye rays, one a tile.
-  std::vector<Ray> rays;
-  for (int y = 0; y < options.height; ++y) {
-    for (int x = 0; x < options.width; ++x) {
+/// Both sides on the rays of one frame.
+class HitsComparison {
+ public:
+  HitsComparison(const Scene& scene, const HitsOptions& options)
+      : scene_(scene),
+        options_(options),
+        arguments_(camera_arguments(scene, options.width, options.height, 1)),
+        image_(build_memory({}, scene)),
+        tracer_(scene, image_.material_base),
+        embree_(scene) {}
+
+  HitsReport run() {
+    const std::vector<Ray> rays = eye_rays();
+    find_nearest(rays);
+    std::vector<Ray> shadow_rays;
+    for (size_t i = 0; i < rays.size(); ++i) {
+      judge_nearest(rays[i], ours_[i], theirs_[i]);
       NativeThread thread;
-      thread.block = static_cast<uint32_t>(x) | static_cast<uint32_t>(y) << 16;
-      run(RayKernel::CastEye, thread);
-      rays.insert(rays.end(), thread.rays.begin(), thread.rays.end());
+      if (!tracer_.trace(rays[i], thread.input)) continue;
+      run_kernel(RayKernel::CastSecondaryDirect, thread);
+      shadow_rays.insert(shadow_rays.end(), thread.rays.begin(), thread.rays.end());
     }
+    for (const Ray& ray : shadow_rays) compare_occlusion(ray);
+    return report_;
   }
 
-  HitsReport report;
-  std::vector<Ray> shadow_rays;
-  std::vector<HitAnswer> ours(rays.size()), theirs(rays.size());
-  auto start = std::chrono::steady_clock::now();
-  for (size_t i = 0; i < rays.size(); ++i) {
-    Hit hit;
-    ours[i].hit = tracer.traversal().nearest(to_query(rays[i]), hit, &report.primary_visits);
-    ours[i].triangle = hit.triangle;
-    ours[i].t = hit.t;
+ private:
+  void run_kernel(RayKernel kernel, NativeThread& thread) {
+    thread.arguments = &arguments_;
+    thread.memory = &image_.memory;
+    options_.kernel ? options_.kernel(kernel, thread) : run_native(kernel, thread);
   }
-  report.our_seconds += seconds_since(start);
-  start = std::chrono::steady_clock::now();
-  for (size_t i = 0; i < rays.size(); ++i) theirs[i].hit = embree.nearest(to_query(rays[i]), theirs[i].triangle, theirs[i].t);
-  report.embree_seconds += seconds_since(start);
 
-  for (size_t i = 0; i < rays.size(); ++i) {
-    ++report.primary.rays;
-    if (ours[i].hit == theirs[i].hit && (!ours[i].hit || ours[i].triangle == theirs[i].triangle)) {
-      ++report.primary.agree;
-    } else {
-      std::string line = fmt::format("eye ray of pixel ({}, {}): ours {}, Embree {}", rays[i][word::kPixel] & 0xffffu,
-                                     rays[i][word::kPixel] >> 16, describe(ours[i]), describe(theirs[i]));
-      const HitVerdict verdict = judge_hits(scene, to_query(rays[i]), ours[i], theirs[i], line);
-      settle(verdict, line, report.primary, report, options.max_explanations);
+  // One a tile.
+  std::vector<Ray> eye_rays() {
+    std::vector<Ray> rays;
+    for (int y = 0; y < options_.height; ++y) {
+      for (int x = 0; x < options_.width; ++x) {
+        NativeThread thread;
+        thread.block = static_cast<uint32_t>(x) | static_cast<uint32_t>(y) << 16;
+        run_kernel(RayKernel::CastEye, thread);
+        rays.insert(rays.end(), thread.rays.begin(), thread.rays.end());
+      }
     }
-    NativeThread thread;
-    if (!tracer.trace(rays[i], thread.input)) continue;
-    run(RayKernel::CastSecondaryDirect, thread);
-    shadow_rays.insert(shadow_rays.end(), thread.rays.begin(), thread.rays.end());
+    return rays;
+  }
+
+  void find_nearest(const std::vector<Ray>& rays) {
+    ours_.resize(rays.size());
+    theirs_.resize(rays.size());
+    auto start = std::chrono::steady_clock::now();
+    for (size_t i = 0; i < rays.size(); ++i) {
+      Hit hit;
+      ours_[i].hit = tracer_.traversal().nearest(to_query(rays[i]), hit, &report_.primary_visits);
+      ours_[i].triangle = hit.triangle;
+      ours_[i].t = hit.t;
+    }
+    report_.our_seconds += seconds_since(start);
+    start = std::chrono::steady_clock::now();
+    for (size_t i = 0; i < rays.size(); ++i)
+      theirs_[i].hit = embree_.nearest(to_query(rays[i]), theirs_[i].triangle, theirs_[i].t);
+    report_.embree_seconds += seconds_since(start);
+  }
+
+  void judge_nearest(const Ray& ray, const HitAnswer& ours, const HitAnswer& theirs) {
+    ++report_.primary.rays;
+    if (ours.hit == theirs.hit && (!ours.hit || ours.triangle == theirs.triangle)) {
+      ++report_.primary.agree;
+      return;
+    }
+    std::string line = fmt::format("eye ray of pixel ({}, {}): ours {}, Embree {}", ray[word::kPixel] & 0xffffu,
+                                   ray[word::kPixel] >> 16, describe(ours), describe(theirs));
+    const HitVerdict verdict = judge_hits(scene_, to_query(ray), ours, theirs, line);
+    settle(verdict, line, report_.primary, report_, options_.max_explanations);
   }
 
   // A blocked shadow ray names no triangle: where the sides differ, each side's nearest hit within the limit is judged.
-  for (const Ray& ray : shadow_rays) {
+  void compare_occlusion(const Ray& ray) {
     const RayQuery query = to_query(ray);
-    start = std::chrono::steady_clock::now();
+    auto start = std::chrono::steady_clock::now();
     HitAnswer our, their;
-    our.hit = tracer.traversal().occluded(query, &report.shadow_visits);
-    report.our_seconds += seconds_since(start);
+    our.hit = tracer_.traversal().occluded(query, &report_.shadow_visits);
+    report_.our_seconds += seconds_since(start);
     start = std::chrono::steady_clock::now();
-    their.hit = embree.occluded(query);
-    report.embree_seconds += seconds_since(start);
-    ++report.shadow.rays;
+    their.hit = embree_.occluded(query);
+    report_.embree_seconds += seconds_since(start);
+    ++report_.shadow.rays;
     if (our.hit == their.hit) {
-      ++report.shadow.agree;
-      continue;
+      ++report_.shadow.agree;
+      return;
     }
     Hit hit;
-    if (our.hit && tracer.traversal().nearest(query, hit)) our.triangle = hit.triangle, our.t = hit.t;
-    const bool named = !their.hit || embree.nearest(query, their.triangle, their.t);
+    if (our.hit && tracer_.traversal().nearest(query, hit)) our.triangle = hit.triangle, our.t = hit.t;
+    const bool named = !their.hit || embree_.nearest(query, their.triangle, their.t);
     std::string line = fmt::format("shadow ray of pixel ({}, {}): ours {}, Embree {}", ray[word::kPixel] & 0xffffu,
                                    ray[word::kPixel] >> 16, describe(our), named ? describe(their) : "blocked by no triangle");
     // Embree's occlusion query without a hit of its intersection query cannot be judged, nor be right.
-    const HitVerdict verdict = named ? judge_hits(scene, query, our, their, line) : HitVerdict::EmbreeWrong;
-    settle(verdict, line, report.shadow, report, options.max_explanations);
+    const HitVerdict verdict = named ? judge_hits(scene_, query, our, their, line) : HitVerdict::EmbreeWrong;
+    settle(verdict, line, report_.shadow, report_, options_.max_explanations);
   }
-  return report;
-}
+
+  const Scene& scene_;
+  const HitsOptions& options_;
+  const std::array<uint32_t, kArguments> arguments_;
+  MemoryImage image_;
+  const Tracer tracer_;
+  const EmbreeScene embree_;
+  std::vector<HitAnswer> ours_, theirs_;
+  HitsReport report_;
+};
+
+}  // namespace
+
+HitsReport compare_with_embree(const Scene& scene, const HitsOptions& options) { return HitsComparison(scene, options).run(); }
 
 }  // namespace raypool
