@@ -7,6 +7,7 @@
 #include "lockstep/inspection.hpp"
 #include "lockstep/text.hpp"
 #include "machine/bits.hpp"
+#include "machine/brh_alu.hpp"
 
 namespace raypool::lockstep {
 namespace {
@@ -437,10 +438,7 @@ void UnitInspection::check_result(uint32_t s, uint32_t warp) {
   } else if (instruction.writes_predicate) {
     same = (w_.done_pred.bits(s * lanes_, lanes_) & issue.mask) == issue.predicate;
   } else if (instruction.kind == Kind::Control) {
-    const bool any = issue.mask != 0;
-    const bool taken = instruction.opcode == Opcode::Jnone                                        ? !any
-                       : instruction.opcode == Opcode::Jany || instruction.opcode == Opcode::Loop ? any
-                                                                                                  : true;
+    const bool taken = BrhAlu::taken(instruction.opcode, issue.mask);
     same = w_.done_pred.flag(s * lanes_) == taken;
   }
   if (!same) {

@@ -5,8 +5,10 @@
 #include <vector>
 
 #include "arith/arith.hpp"
-#include "isa/isa.hpp"
-#include "machine/lanes.hpp"
+#include "isa/encoding.hpp"
+#include "machine/brh_alu.hpp"
+#include "machine/flt_alu.hpp"
+#include "machine/slw_alu.hpp"
 
 namespace raypool {
 
@@ -22,19 +24,19 @@ inline std::vector<Opcode> opcodes_of(AluType type, Kind kind = Kind::Plain) {
 
 /// Compares, and predicate logic on the bits 0 and 1 of c; control as a task with lanes decides.
 inline uint32_t brh_model(Opcode opcode, uint32_t a, uint32_t b, uint32_t c, arith::Mode mode) {
-  if (opcode >= Opcode::Jany) return opcode != Opcode::Jnone;
-  return compare(opcode, Lanes<1>{1, nullptr, &a, &b, nullptr}, c & 1, c >> 1 & 1, mode) & 1;
+  if (instruction(opcode).kind == Kind::Control) return BrhAlu::taken(opcode, 1);
+  return BrhAlu::compare(opcode, Lanes<1>{1, nullptr, &a, &b, nullptr}, c & 1, c >> 1 & 1, mode) & 1;
 }
 
 inline uint32_t flt_model(Opcode opcode, uint32_t a, uint32_t b, uint32_t c, arith::Mode mode) {
   uint32_t result = 0;
-  floating(opcode, Lanes<1>{1, &result, &a, &b, &c}, mode);
+  FltAlu::execute(opcode, Lanes<1>{1, &result, &a, &b, &c}, mode);
   return result;
 }
 
 inline uint32_t slw_model(Opcode opcode, uint32_t a, uint32_t b, uint32_t, arith::Mode mode) {
   uint32_t result = 0;
-  slow(opcode, Lanes<1>{1, &result, &a, &b, nullptr}, mode);
+  SlwAlu::execute(opcode, Lanes<1>{1, &result, &a, &b, nullptr}, mode);
   return result;
 }
 
