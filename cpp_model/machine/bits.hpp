@@ -1,7 +1,8 @@
-// Sets of warps, lanes, types as the bits of a word.
+// Sets of warps, lanes, types as the bits of a word; floats as bits.
 #pragma once
 
 #include <cstdint>
+#include <cstring>
 
 namespace raypool {
 
@@ -12,5 +13,11 @@ inline uint32_t lowest(uint32_t set) { return static_cast<uint32_t>(__builtin_ct
 /// The lowest member as a set; of an empty set the empty set.
 inline uint32_t lowest_bit(uint32_t set) { return set & (0u - set); }
 inline uint64_t popcount(uint32_t set) { return static_cast<uint64_t>(__builtin_popcount(set)); }
+
+inline uint32_t as_bits(float value) {
+  uint32_t bits = 0;
+  std::memcpy(&bits, &value, sizeof bits);
+  return bits;
+}
 
 }  // namespace raypool

@@ -6,6 +6,7 @@
 
 #include "isa/encoding.hpp"
 #include "machine/alu_model.hpp"
+#include "machine/bits.hpp"
 #include "machine/brh_alu.hpp"
 #include "machine/flt_alu.hpp"
 #include "machine/int_alu.hpp"
@@ -209,7 +210,7 @@ void FunctionalCore::execute_class(const DecodedInstruction& instruction, Warp& 
   const uint32_t px = warp.predicates.read(instruction.x & 15), pb = warp.predicates.read(instruction.rb);
   uint32_t predicate = 0;
   for (uint32_t mask = result_.mask; mask != 0; mask &= mask - 1) {
-    const uint32_t lane = static_cast<uint32_t>(__builtin_ctz(mask));
+    const uint32_t lane = lowest(mask);
     const LaneTask task = {a[lane], b[lane], instruction.immediate, instruction.x, (px >> lane & 1) != 0, (pb >> lane & 1) != 0};
     const uint32_t value = alu.lane(instruction.opcode, task, mode_);
     if (instruction.writes_register) rd[lane] = value;
@@ -235,7 +236,7 @@ bool FunctionalCore::execute_memory(const DecodedInstruction& instruction, const
   if (highest >= memory_limit_ && result_.mask != 0) return fault(FaultCode::AddressOutsideMemory);
   const bool store = instruction.opcode == Opcode::St;
   for (uint32_t mask = result_.mask; mask != 0; mask &= mask - 1) {
-    const uint32_t lane = static_cast<uint32_t>(__builtin_ctz(mask));
+    const uint32_t lane = lowest(mask);
     if (store) {
       memory_->store(addresses[lane], lanes.b[lane]);
       result_.stores[result_.store_count++] = {lane, addresses[lane], lanes.b[lane]};
@@ -268,7 +269,7 @@ bool FunctionalCore::execute_ray(const DecodedInstruction& instruction, Warp& wa
       }
       slices_.swap_output(number);
       for (uint32_t mask = result_.mask; mask != 0; mask &= mask - 1) {
-        const uint32_t lane = static_cast<uint32_t>(__builtin_ctz(mask));
+        const uint32_t lane = lowest(mask);
         if (instruction.opcode == Opcode::Rout) {
           Ray& ray = result_.rays[result_.ray_count++];
           for (uint32_t word = 0; word < kRayWords; ++word) ray[word] = slices_.output(number, word)[lane];

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "machine/bits.hpp"
 #include "machine/functional_core.hpp"
 
 namespace raypool {
@@ -115,7 +116,7 @@ class FunctionalUnit : public ComputeUnit {
 
   void executed(const Step& step) {
     ++counters_[counter::kInstructions];
-    counters_[counter::kThreadInstructions] += static_cast<uint64_t>(__builtin_popcount(step.mask));
+    counters_[counter::kThreadInstructions] += popcount(step.mask);
     ++counters_[counter::kIssued + static_cast<size_t>(step.instruction->alu())];
     if (tracing_) record(step);
     if (step.instruction->opcode == Opcode::Rin) --reserved_[step.warp];

@@ -7,6 +7,7 @@
 #include <random>
 #include <vector>
 
+#include "machine/bits.hpp"
 #include "machine/compute_unit.hpp"
 #include "machine/memory.hpp"
 
@@ -57,7 +58,7 @@ class TestChip {
     if (out.frame_valid && in.frame_ready) frame.push_back(out.frame);
     unit_->clock(in);
     ++cycles;
-    kernels_done += static_cast<uint64_t>(__builtin_popcount(unit_->outputs().kernel_done));
+    kernels_done += popcount(unit_->outputs().kernel_done);
   }
 
   /// Until all is launched and the unit has been idle for some cycles, has a fault, or `limit` cycles have passed. True if idle.

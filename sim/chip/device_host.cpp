@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "chip/chip.hpp"
+#include "machine/bits.hpp"
 
 namespace raypool::chip {
 
@@ -64,7 +65,7 @@ void DeviceHost::cycle() {
                                      : "rfb"));
   }
   report(outputs, held_up);
-  const auto busy = static_cast<uint64_t>(__builtin_popcount(outputs.busy));
+  const auto busy = popcount(outputs.busy);
   const uint64_t cycles = device_.run(inputs_, quiet_cycles(outputs));
   busy_cycles_ += busy * cycles;
   around_.clock.pass(cycles);
@@ -166,7 +167,7 @@ void DeviceHost::settle(const UnitOutputs& outputs) {
   uint32_t candidates = outputs.unit_idle & ~outputs.kernel_done & ~settled_;
   if (candidates == 0 || outputs.fault.code != FaultCode::None) return;
   for (; candidates != 0; candidates &= candidates - 1) {
-    const uint32_t unit = static_cast<uint32_t>(__builtin_ctz(candidates));
+    const uint32_t unit = lowest(candidates);
     if (given_[unit] > 0 || !around_.memory.quiet(unit)) continue;
     settled_ |= 1u << unit;
     if (around_.frame) around_.frame->ledger.unit_idle(static_cast<int>(unit));

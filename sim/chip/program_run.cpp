@@ -10,6 +10,7 @@
 #include "chip/memory_port.hpp"
 #include "chip/monitor.hpp"
 #include "chip/simulation.hpp"
+#include "machine/bits.hpp"
 #include "machine/decoder.hpp"
 #include "machine/functional_core.hpp"
 
@@ -92,7 +93,7 @@ std::optional<FaultingAccess> run_to_fault(const ProgramOptions& options, Memory
         if (step.status == Step::Status::Executed && instructions-- == 0) return std::nullopt;
         if (step.status != Step::Status::Fault) continue;
         for (uint32_t mask = step.mask; mask != 0; mask &= mask - 1) {
-          const auto lane = static_cast<uint32_t>(__builtin_ctz(mask));
+          const auto lane = lowest(mask);
           const uint32_t address = step.addresses[lane];
           const bool faulty = step.fault.code == FaultCode::Misaligned ? address % 4 != 0 : address >= memory.size();
           if (faulty) return FaultingAccess{step.fault, warp * static_cast<uint32_t>(core.lanes()) + lane, block, address};

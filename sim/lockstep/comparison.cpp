@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "lockstep/text.hpp"
+#include "machine/bits.hpp"
 
 namespace raypool::lockstep {
 namespace {
@@ -131,12 +132,12 @@ void Comparison::retirement(const RetireEvent& rtl, const RetireEvent& model) {
   ++counts_->instructions;
   if (issue.instruction->writes_register) {
     for (uint32_t mask = model.mask; mask != 0; mask &= mask - 1) {
-      const size_t lane = static_cast<size_t>(__builtin_ctz(mask));
+      const size_t lane = lowest(mask);
       if (rtl.data[lane] == model.data[lane]) continue;
       throw differs("the register result differs", lane_table(issue, lanes_, rtl.data.data(), model.data.data()),
                     result_files(*issue.instruction, configuration_), Context::Instruction);
     }
-    counts_->thread_results += static_cast<uint64_t>(__builtin_popcount(model.mask));
+    counts_->thread_results += popcount(model.mask);
   } else if (issue.instruction->writes_predicate) {
     if (rtl.predicate != model.predicate) {
       throw differs("the predicate result differs", masks(rtl.predicate, model.predicate),
@@ -156,13 +157,13 @@ void Comparison::store(const StoreEvent& rtl, const StoreEvent& model) {
         rtl.unit,
         rtl.warp};
   }
-  counts_->stores += static_cast<uint64_t>(__builtin_popcount(model.mask));
+  counts_->stores += popcount(model.mask);
 }
 
 void Comparison::ray_write(const RayWriteEvent& rtl, const RayWriteEvent& model) {
   bool same = rtl.mask == model.mask && rtl.word == model.word;
   for (uint32_t left = model.mask; same && left != 0; left &= left - 1) {
-    const size_t lane = static_cast<size_t>(__builtin_ctz(left));
+    const size_t lane = lowest(left);
     same = rtl.data[lane] == model.data[lane];
   }
   if (!same) {
@@ -175,7 +176,7 @@ void Comparison::ray_write(const RayWriteEvent& rtl, const RayWriteEvent& model)
                    rtl.unit,
                    rtl.warp};
   }
-  counts_->ray_words += static_cast<uint64_t>(__builtin_popcount(model.mask));
+  counts_->ray_words += popcount(model.mask);
 }
 
 void Comparison::fault(const UnitOutputs& rtl, const UnitOutputs& model) const {

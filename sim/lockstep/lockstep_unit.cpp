@@ -11,6 +11,7 @@
 #include "lockstep/comparison.hpp"
 #include "lockstep/inspection.hpp"
 #include "lockstep/text.hpp"
+#include "machine/bits.hpp"
 #include "machine/model.hpp"
 
 namespace raypool {
@@ -143,7 +144,7 @@ class LockstepUnitImpl : public LockstepUnit {
       history.retired[history.count++ % kHistory] = {counts_.cycles, event.pc, event.instruction};
     }
     if (!trace.retired.empty()) last_progress_ = counts_.cycles;
-    counts_.kernels += static_cast<uint64_t>(__builtin_popcount(out.kernel_done));
+    counts_.kernels += popcount(out.kernel_done);
     if (out.fault.code != FaultCode::None) {
       counts_.faults += fault_seen_ ? 0 : 1;
       fault_seen_ = true;

@@ -6,18 +6,13 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <cstring>
 #include <exception>
 #include <thread>
 
+#include "machine/bits.hpp"
+
 namespace raypool {
 namespace {
-
-uint32_t as_bits(float value) {
-  uint32_t bits = 0;
-  std::memcpy(&bits, &value, sizeof bits);
-  return bits;
-}
 
 void require_range(const char* what, int value, int low, int high) {
   if (value < low || value > high) throw InputError(fmt::format("{} is {}; it must lie in {} .. {}", what, value, low, high));

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "kernel/kernels.hpp"
+#include "machine/bits.hpp"
 #include "scene/vec.hpp"
 
 namespace raypool::reference {
@@ -14,12 +15,6 @@ inline float as_float(uint32_t bits) {
   std::memcpy(&value, &bits, sizeof value);
   return value;
 }
-inline uint32_t as_bits(float value) {
-  uint32_t bits = 0;
-  std::memcpy(&bits, &value, sizeof bits);
-  return bits;
-}
-
 template <typename Words>
 Vec3 read3(const Words& words, int first) {
   const auto i = static_cast<size_t>(first);

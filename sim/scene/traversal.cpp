@@ -6,6 +6,7 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "machine/bits.hpp"
 #include "scene/simd4.hpp"
 
 namespace raypool {
@@ -192,7 +193,7 @@ bool intersect_block(const PreparedRay& ray, const TriangleBlock& block, Candida
   const unsigned zeros = mask4((u == zero) | (v == zero) | (w == zero));
   bool found = false;
   for (unsigned lanes = ~(negative & positive) & used; lanes != 0; lanes &= lanes - 1) {
-    const auto lane = static_cast<unsigned>(__builtin_ctz(lanes));
+    const auto lane = lowest(lanes);
     double du = u[lane], dv = v[lane], dw = w[lane];
     if ((zeros >> lane & 1u) != 0) {
       // Products of floats are exact in double: the sign is that of the exact edge function.
@@ -255,7 +256,7 @@ bool traverse(const Bvh& bvh, const PreparedRay& ray, Candidate& best, Traversal
     // The nearest child must end on top: insertion sort, furthest first.
     const int base = depth;
     for (; lanes != 0; lanes &= lanes - 1) {
-      const auto lane = static_cast<unsigned>(__builtin_ctz(lanes));
+      const auto lane = lowest(lanes);
       int place = depth++;
       for (; place > base && stack[place - 1].t < entry[lane]; --place) stack[place] = stack[place - 1];
       stack[place] = {node.children[lane], entry[lane]};
@@ -285,12 +286,6 @@ float as_float(uint32_t bits) {
   float value = 0;
   std::memcpy(&value, &bits, sizeof value);
   return value;
-}
-
-uint32_t as_bits(float value) {
-  uint32_t bits = 0;
-  std::memcpy(&bits, &value, sizeof bits);
-  return bits;
 }
 
 }  // namespace

@@ -5,6 +5,8 @@
 #include <deque>
 #include <vector>
 
+#include "machine/bits.hpp"
+
 namespace raypool {
 namespace {
 
@@ -42,7 +44,7 @@ class RandomHost {
           if (observer_ != nullptr) observer_->restart();
         }
       }
-      ended_ += static_cast<size_t>(__builtin_popcount(outputs.kernel_done));
+      ended_ += popcount(outputs.kernel_done);
       if (outputs.idle && !outputs.busy) {
         if (launched_ == program_.kernels.size()) return now_;
         rewrite();

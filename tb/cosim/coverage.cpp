@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "machine/bits.hpp"
+
 namespace raypool {
 namespace {
 
@@ -123,7 +125,7 @@ void Coverage::retired(const RetireEvent& event) {
   if (instruction.info->kind == Kind::Swap) swapped(warp, event, opcode);
   if (writes_register(*instruction.info)) {
     for (uint32_t mask = event.mask; mask != 0; mask &= mask - 1) {
-      const auto lane = static_cast<uint32_t>(__builtin_ctz(mask));
+      const auto lane = lowest(mask);
       warp.registers[instruction.rd * lanes_ + lane] = event.data[lane];
     }
   }
@@ -224,7 +226,7 @@ void Coverage::loaded(const Warp& warp, const RetireEvent& event, const Instruct
   std::array<uint32_t, 32> quadwords{};
   size_t count = 0, active = 0;
   for (uint32_t mask = event.mask; mask != 0; mask &= mask - 1, ++active) {
-    const auto lane = static_cast<uint32_t>(__builtin_ctz(mask));
+    const auto lane = lowest(mask);
     const uint32_t address = warp.registers[instruction.ra * lanes_ + lane] + instruction.immediate;
     if (std::find(quadwords.begin(), quadwords.begin() + count, address / 16) == quadwords.begin() + count)
       quadwords[count++] = address / 16;
@@ -254,7 +256,7 @@ void Coverage::swapped(Warp& warp, const RetireEvent& event, Opcode opcode) {
     if (warp.last_export > left_[event.unit]) hit(Event::RotatedTwice);
     std::swap(warp.roles[1], warp.roles[2]);
     hit(event.mask == 0 ? Event::NothingLeaves : opcode == Opcode::Rout ? Event::RayLeaves : Event::ContributionLeaves);
-    made_[event.unit] += static_cast<uint64_t>(__builtin_popcount(event.mask));
+    made_[event.unit] += popcount(event.mask);
     if (event.mask != 0) warp.last_export = made_[event.unit];
   }
   const size_t permutation = size_t{warp.roles[0]} * 2 + (warp.roles[1] > warp.roles[2] ? 1 : 0);
