@@ -106,5 +106,5 @@ grep -q '; tid brh int flt slw box as count/latency/depth$' "$output" || { cat "
 take run 'verilator --lint-only -Wall --default-language 1364-2005 -Irtl rtl/waivers.vlt --top-module multiprocessor rtl/*.v'
 [ ! -s "$output" ] || { cat "$output"; fail "Verilator warns of the page's module"; }
 take run 'scripts/configure.sh build ON -DRAYPOOL_UNIT_BENCHES=OFF; cmake --build build --target raypool_cosim_test'
-take run "build/tb/raypool_cosim_test --gtest_filter='RandomPrograms.*:Covering*'"
+take run "build/sim/raypool_cosim_test --gtest_filter='RandomPrograms.*:Covering*'"
 echo "$new files, $inserted insertions, $ran runs, $expected expected lines, $replaced replacement as the page has them"

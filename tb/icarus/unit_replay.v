@@ -1,5 +1,5 @@
 // Replays a recorded program on compute_unit in a 4-state simulator: vvp -n unit_replay.vvp +vectors=FILE. A line of FILE is a cycle: inputs, outputs
-// that are expected, and which of their bits count (tb/cosim/vector_recorder.hpp writes it). An output that differs or is X in a bit that counts fails.
+// that are expected, and which of their bits count (sim/cosim/vector_recorder.hpp writes it). An output that differs or is X in a bit that counts fails.
 // The parameters of the unit come as the macro UNIT_PARAMETERS, ".WARPS(2), .LANES(2), ...", so that they need not be repeated here.
 `default_nettype none
 `timescale 1ns / 1ns
