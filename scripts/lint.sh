@@ -58,6 +58,7 @@ done
 
 check "table of modules" scripts/module_table.py
 check "what the pages name" scripts/pages.py
+check "layers of the sources" scripts/layers.py
 
 check "clang-format (make format)" clang-format --dry-run -Werror "${cpp[@]}"
 

@@ -26,6 +26,8 @@ set_tests_properties(inspected_differences PROPERTIES FIXTURES_REQUIRED faulty_2
 # docs/modules.md names every module of rtl/, and no page names what is not there.
 add_test(NAME module_table COMMAND ${scripts}/module_table.py)
 add_test(NAME pages COMMAND ${scripts}/pages.py)
+# tb stands on sim and this on cpp_model; CMakeLists.txt checks their targets.
+add_test(NAME layers COMMAND ${scripts}/layers.py)
 
 # Every program that has once shown a fault.
 file(GLOB regressions CONFIGURE_DEPENDS RELATIVE ${CMAKE_SOURCE_DIR}/tb/regressions ${CMAKE_SOURCE_DIR}/tb/regressions/*.json)
