@@ -6,8 +6,14 @@ build=$1 tests=$2
 shift 2
 cache=$build/CMakeCache.txt
 if [ -f "$cache" ] && [ -f "$build/build.ninja" ]; then
-  [ "$tests" = ON ] && grep -q '^RAYPOOL_TESTS:BOOL=OFF' "$cache" || exit 0
+  # Ninja would configure again by itself, but first build by the old rules what the configuration depends on.
+  changed=$(find CMakeLists.txt cmake cpp_model sim tb \( -name CMakeLists.txt -o -name '*.cmake' \) -newer "$build/build.ninja")
+  if [ -z "$changed" ]; then
+    [ "$tests" = ON ] && grep -q '^RAYPOOL_TESTS:BOOL=OFF' "$cache" || exit 0
+  fi
+  [ "$tests" = ON ] || tests=$(sed -n 's/^RAYPOOL_TESTS:BOOL=//p' "$cache")
 fi
 mkdir -p "$build"
 log=$build/configure.log
 cmake -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DRAYPOOL_TESTS="$tests" "$@" > "$log" 2>&1 || { cat "$log" >&2; exit 1; }
+touch "$build/build.ninja"

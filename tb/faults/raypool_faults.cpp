@@ -12,11 +12,11 @@
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <thread>
 #include <vector>
 
 #include "faulty/guilty.hpp"
+#include "faulty/judgements.hpp"
 #include "faulty/trials.hpp"
 #include "isa/input_error.hpp"
 #include "lockstep/rtl_loader.hpp"
@@ -147,13 +147,6 @@ std::vector<Bench> read_benches(const std::string& path, const std::string& fold
 }
 
 /// {mistake: why nothing notices it}
-std::map<std::string, std::string> read_survivors(const std::string& path) {
-  std::map<std::string, std::string> survivors;
-  for (const Json& entry : read_json(path))
-    survivors[entry.at("mistake").get<std::string>()] = entry.at("reason").get<std::string>();
-  return survivors;
-}
-
 /// What noticed the faults of a module, or of all.
 struct Count {
   int all = 0, cosim = 0, bench = 0, right = 0, parent = 0;
@@ -185,11 +178,9 @@ std::string outcome_text(const Outcome& outcome, const std::vector<std::string>&
 
 int report(const Options& options, const Hierarchy& hierarchy, const std::vector<Fault>& faults,
            const std::vector<Outcome>& outcomes) {
-  const std::map<std::string, std::string> known = read_survivors(options.survivors);
+  Judgements judgements(options.survivors);
   std::map<std::string, Count> modules;
   Count total;
-  int open = 0, stale = 0;
-  std::set<std::string> survivors;
   for (size_t i = 0; i < faults.size(); ++i) {
     const Outcome& outcome = outcomes[i];
     const bool by_cosim = outcome.kind != Outcome::Kind::Survived && outcome.kind != Outcome::Kind::Bench;
@@ -200,28 +191,18 @@ int report(const Options& options, const Hierarchy& hierarchy, const std::vector
     if (options.verbose && by_cosim) fmt::print("{}\n", outcome.text);
     count_outcome(outcome, verdict, modules[faults[i].file]);
     count_outcome(outcome, verdict, total);
-    if (outcome.kind != Outcome::Kind::Survived) continue;
-    survivors.insert(faults[i].mistake);
-    const auto judged = known.find(faults[i].mistake);
-    open += judged == known.end();
-    fmt::print("    {}\n", judged == known.end() ? "NOT JUDGED" : "known: " + judged->second);
+    if (outcome.kind == Outcome::Kind::Survived) fmt::print("    {}\n", judgements.survived(faults[i].mistake));
   }
   fmt::print("\n{:<24} mistakes  cosim  bench  right  parent\n", "module");
   for (const auto& [name, count] : modules)
     fmt::print("{:<24} {:>8} {:>6} {:>6} {:>6} {:>7}\n", name, count.all, count.cosim, count.bench, count.right, count.parent);
   fmt::print("killed by cosim: {}\n", percent(total.cosim, total.all));
-  fmt::print("killed by cosim or a bench: {}\n", percent(total.cosim + total.bench, total.all));
+  fmt::print("killed by cosim or a bench: {}; {} survived, of which {} are judged equivalent\n",
+             percent(total.cosim + total.bench, total.all), total.all - total.cosim - total.bench, judgements.equivalent());
   fmt::print("the report names the right file or its parent: {}, the right one {}\n",
              percent(total.right + total.parent, total.cosim), percent(total.right, total.cosim));
-  if (!options.only.empty()) return open == 0 ? 0 : 1;
-  for (const auto& [mistake, reason] : known) {
-    if (survivors.count(mistake) != 0) continue;
-    ++stale;
-    fmt::print("stale: \"{}\" is in {} and did not survive\n", mistake, options.survivors);
-  }
-  if (open == 0 && stale == 0) return 0;
-  fmt::print("{} is not up to date: {} survivors are not in it, {} entries are stale\n", options.survivors, open, stale);
-  return 1;
+  if (!options.only.empty()) return judgements.open() == 0 ? 0 : 1;
+  return judgements.up_to_date() ? 0 : 1;
 }
 
 int run(int argc, char** argv) {

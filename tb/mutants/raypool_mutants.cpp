@@ -9,11 +9,11 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <regex>
-#include <set>
 #include <thread>
 #include <vector>
 
 #include "cosim/program_profile.hpp"
+#include "faulty/judgements.hpp"
 #include "faulty/trials.hpp"
 #include "isa/input_error.hpp"
 #include "lockstep/rtl_loader.hpp"
@@ -117,37 +117,14 @@ Trial trial_of(const Options& options, const Machine& machine, const Mutant& mut
           [&options, &machine, number = mutant.number](const Note& note) { return run_mutant(options, machine, number, note); }};
 }
 
-/// What tb/mutants/survivors.json says of a survivor.
-struct Judgement {
-  bool equivalent = false;
-  std::string reason;
-};
-
-std::map<std::string, Judgement> read_judgements(const std::string& path) {
-  std::map<std::string, Judgement> judgements;
-  if (path.empty()) return judgements;
-  std::ifstream file(path);
-  if (!file) throw InputError(fmt::format("{}: the judged survivors cannot be read", path));
-  try {
-    for (const Json& entry : Json::parse(file))
-      judgements[entry.at("mutant").get<std::string>()] = {entry.at("equivalent").get<bool>(),
-                                                           entry.at("reason").get<std::string>()};
-  } catch (const nlohmann::json::exception& error) {
-    throw InputError(fmt::format("{}: not a list of {{mutant, equivalent, reason}}: {}", path, error.what()));
-  }
-  return judgements;
-}
-
 int report(const Options& options, const std::vector<Mutant>& mutants, const std::vector<Outcome>& outcomes) {
-  const std::map<std::string, Judgement> judgements = read_judgements(options.survivors);
+  Judgements judgements(options.survivors);
   struct Count {
     int all = 0, killed = 0;
   };
   std::map<std::string, Count> modules;
   std::map<Outcome::Kind, int> kinds;
   std::map<uint64_t, int> by_program;
-  int equivalent = 0, open = 0;
-  std::set<std::string> survivors;
   for (size_t i = 0; i < mutants.size(); ++i) {
     const Mutant& mutant = mutants[i];
     const Outcome& outcome = outcomes[i];
@@ -160,13 +137,8 @@ int report(const Options& options, const std::vector<Mutant>& mutants, const std
       ++by_program[outcome.programs <= 1 ? 1 : outcome.programs <= 10 ? 10 : outcome.programs <= 100 ? 100 : ~0u];
       continue;
     }
-    survivors.insert(mutant.id);
-    const auto judged = judgements.find(mutant.id);
-    const bool known = judged != judgements.end();
-    if (known && judged->second.equivalent) ++equivalent;
-    if (!known) ++open;
     fmt::print("survived: {:>4} {} ({})\n          {}\n", mutant.number, mutant.id, mutant.source,
-               !known ? "NOT JUDGED" : (judged->second.equivalent ? "equivalent: " : "a gap: ") + judged->second.reason);
+               judgements.survived(mutant.id));
   }
   const auto all = static_cast<int>(mutants.size());
   const int survived = kinds[Outcome::Kind::Survived], killed = all - survived;
@@ -179,17 +151,9 @@ int report(const Options& options, const std::vector<Mutant>& mutants, const std
     fmt::print("killed {:<25} {:>5}\n",
                programs == ~0u ? std::string("by a later one") : fmt::format("within {} programs", programs), count);
   fmt::print("mutants: {} of {} killed ({:.1f}%); {} survived, of which {} are judged equivalent: {:.1f}% of the others killed\n",
-             killed, all, 100.0 * killed / all, survived, equivalent, 100.0 * killed / (all - equivalent));
-  if (!options.only.empty()) return 0;
-  int stale = 0;
-  for (const auto& [id, judgement] : judgements) {
-    if (survivors.count(id) != 0) continue;
-    ++stale;
-    fmt::print("stale: {} is in {} and did not survive\n", id, options.survivors);
-  }
-  if (options.survivors.empty() || (open == 0 && stale == 0)) return 0;
-  fmt::print("{} is not up to date: {} survivors are not judged, {} entries are stale\n", options.survivors, open, stale);
-  return 1;
+             killed, all, 100.0 * killed / all, survived, judgements.equivalent(),
+             100.0 * killed / (all - judgements.equivalent()));
+  return !options.only.empty() || judgements.up_to_date() ? 0 : 1;
 }
 
 int run(int argc, char** argv) {
