@@ -171,8 +171,8 @@ class OperandSource {
     std::memcpy(&bits, &quotient, 4);
     return bits;
   }
-  /// A factor for a, which becomes odd, so that the last bits of the product decide how it is rounded; half of the products are at
-  /// the edge of the subnormal numbers.
+  /// A factor for a, which becomes odd, so that the last bits of the product decide how it is rounded; half of the products are
+  /// at the edge of the subnormal numbers.
   uint32_t last_bit_partner(uint32_t& a, uint32_t b) {
     a |= 1;
     const uint32_t odd = (a & 0x7fffffu) | 0x800000u;
@@ -185,7 +185,8 @@ class OperandSource {
   }
   uint32_t middle_integer() {
     const int shift = std::max(1, range(-5, 7));  // 2^31 and more are negative
-    const uint32_t magnitude = (((bits() | 0x80000000u) & ~0xffu) >> shift) + (0x80u >> shift) + static_cast<uint32_t>(range(-1, 1));
+    const uint32_t magnitude =
+        (((bits() | 0x80000000u) & ~0xffu) >> shift) + (0x80u >> shift) + static_cast<uint32_t>(range(-1, 1));
     return range(0, 1) != 0 ? magnitude : 0u - magnitude;
   }
   /// a / b is in the middle between two subnormal numbers, or next to it.
