@@ -1,8 +1,9 @@
 // Valid, warp and ready of an ALU with LATENCY cycles between tasks and DEPTH stages; it has no data path.
-// A task that arrives in cycle t (task_valid_i) is done in cycle t + DEPTH (done_valid_o, done_warp_o). stage_valid_o[k] says that the task
-// which arrived k cycles ago is in its stage k now, so the data path's register behind stage k loads when stage_valid_o[k] is high, and the
-// last one, behind stage DEPTH-1, is the done data. ready_o says that a task granted in this cycle, which arrives in the next one, is
-// taken; the dispatcher must not grant otherwise.
+// A task that arrives in cycle t (task_valid_i) is done in cycle t + DEPTH (done_valid_o, done_warp_o).
+// stage_valid_o[k] says that the task which arrived k cycles ago is in its stage k now, so the data path's
+// register behind stage k loads when stage_valid_o[k] is high, and the last one, behind stage DEPTH-1, is the
+// done data. ready_o says that a task granted in this cycle, which arrives in the next one, is taken; the
+// dispatcher must not grant otherwise.
 `default_nettype none
 module alu_pipeline #(
   parameter integer WARP_BITS = 3,

@@ -1,5 +1,6 @@
-// Gives each launch to one of 2 to 4 units that can take it: to one that runs no kernel, if there is one, otherwise to one whose waiting
-// place is free; in rotation among these. launch_ready_o and launch_unit_o do not depend on launch_valid_i.
+// Gives each launch to one of 2 to 4 units that can take it: to one that runs no kernel, if there is
+// one, otherwise to one whose waiting place is free; in rotation among these. launch_ready_o and
+// launch_unit_o do not depend on launch_valid_i.
 `default_nettype none
 module block_scheduler #(
   parameter integer UNITS = 4

@@ -1,5 +1,6 @@
-// Included in a module: what multiply_tree with ENCODED takes for its b, so that a register can stand between. word is b extended to 32 bits by
-// zeros or by its sign. Digit i, for bits 2i+1 .. 2i-1 of the word, is -2 .. 2, as {negative, two, one}; zero has neither two nor one.
+// Included in a module: what multiply_tree with ENCODED takes for its b, so that a register can stand between. word
+// is b extended to 32 bits by zeros or by its sign. Digit i, for bits 2i+1 .. 2i-1 of the word, is -2 .. 2, as
+// {negative, two, one}; zero has neither two nor one.
 // Simulators multiply without digits (see there): for them it is the word.
 function [47:0] booth_digits(input [31:0] word);
 `ifdef SYNTHESIS

@@ -1,10 +1,13 @@
-// The L1 data cache: 2-way, 64-byte lines, least recently used, write-through, no write-allocate, one quadword (16 bytes) a cycle, loads
-// that miss do not block. Tags and data are single-port memories: a cycle reads (lookup), or writes (a store that hits, a refill beat).
-// Use: a lookup in one cycle, with the ready of its kind high; in the next cycle, and only in it, its access with access_i. An access never
-// stalls, so the user must keep a free entry in its request queue for each lookup: push_o is always taken.
-// Promises: hit, refuse or accept answers an access, or none of them: then its line is being fetched, the warp is noted as a waiter, and the
-// line stays in the cache until all its waiters are served.
-// Must be given: the beats of a line in order; invalidate_i only while no access is under way and no line is being fetched.
+// The L1 data cache: 2-way, 64-byte lines, least recently used, write-through, no write-allocate, one quadword (16
+// bytes) a cycle, loads that miss do not block. Tags and data are single-port memories: a cycle reads (lookup), or
+// writes (a store that hits, a refill beat).
+// Use: a lookup in one cycle, with the ready of its kind high; in the next cycle, and only in it, its
+// access with access_i. An access never stalls, so the user must keep a free entry in its request queue for
+// each lookup: push_o is always taken.
+// Promises: hit, refuse or accept answers an access, or none of them: then its line is being fetched, the warp is noted
+// as a waiter, and the line stays in the cache until all its waiters are served.
+// Must be given: the beats of a line in order; invalidate_i only while no access is
+// under way and no line is being fetched.
 `default_nettype none
 module data_cache #(
   parameter integer WARPS = 8,
@@ -87,7 +90,8 @@ module data_cache #(
     end
   end
 
-  // The access of a store writes the data memories, so nothing else may need them then: no load reads, no refill beat writes.
+  // The access of a store writes the data memories, so nothing else may need them then:
+  // no load reads, no refill beat writes.
   assign load_ready_o = !refill_q && !(access_i && access_store_i);
   assign store_ready_o = !refill_q && !response_valid_i;
 
@@ -121,14 +125,16 @@ module data_cache #(
   wire victim = locked[older] ? !older : older;
 
   assign hit_o = access_i && !access_store_i && found;
-  assign allocate_o = access_i && !access_store_i && !found && !match && access_may_allocate_i && available && locked != 2'b11;
+  assign allocate_o = access_i && !access_store_i && !found && !match && access_may_allocate_i && available &&
+                      locked != 2'b11;
   assign refuse_o = access_i && !access_store_i && !found && !match && !allocate_o;
   assign accept_o = access_i && access_store_i && !match;
   assign push_o = accept_o || allocate_o;
   assign push_write_o = access_store_i;
   assign push_quad_o = access_store_i ? quad_q : {quad_q[27:2], 2'b00};
 
-  // A line in the cache is never being fetched: its way is valid from the last beat on, and from then its register does not match.
+  // A line in the cache is never being fetched: its way is valid from the last beat on, and
+  // from then its register does not match.
   always @(posedge clk_i) begin
     if (!rst_ni) older_q <= {SETS{1'b0}};
     else if (access_i && found) older_q[access_set] <= hit_0;
@@ -144,13 +150,14 @@ module data_cache #(
     end
   end
 
-  miss_status #(.WARPS(WARPS), .WARP_BITS(WARP_BITS), .MSHRS(MSHRS), .MSHR_BITS(MSHR_BITS), .SET_BITS(SET_BITS)) u_miss_status (
+  miss_status #(.WARPS(WARPS), .WARP_BITS(WARP_BITS), .MSHRS(MSHRS), .MSHR_BITS(MSHR_BITS),
+      .SET_BITS(SET_BITS)) u_miss_status (
     .clk_i(clk_i), .rst_ni(rst_ni),
     .access_i(access_i), .access_line_i(quad_q[27:2]), .access_warp_i(access_warp_i),
     .match_o(match), .available_o(available), .available_id_o(push_id_o), .locked_o(locked),
     .join_i(access_i && match), .allocate_i(allocate_o), .allocate_way_i(victim),
-    .fill_i(refill_q), .fill_id_i(refill_id_q), .fill_last_i(refill_last), .fill_line_o(refill_line), .fill_way_o(refill_way),
-    .served_i(served_i), .served_id_i(served_id_i), .served_warp_i(served_warp_i),
+    .fill_i(refill_q), .fill_id_i(refill_id_q), .fill_last_i(refill_last), .fill_line_o(refill_line),
+    .fill_way_o(refill_way), .served_i(served_i), .served_id_i(served_id_i), .served_warp_i(served_warp_i),
     .freed_o(freed_o), .idle_o(idle_o), .filled_o(filled_o), .line_o(line_o), .waiters_o(waiters_o)
   );
 
@@ -169,7 +176,8 @@ module data_cache #(
 
   wire read_data = lookup_i && !lookup_store_i;
   wire write_store = access_i && access_store_i;
-  wire [SET_BITS+1:0] data_address = refill_q ? {refill_set, refill_beat_q} : write_store ? quad_q[SET_BITS+1:0] : lookup_quad_i[SET_BITS+1:0];
+  wire [SET_BITS+1:0] data_address = refill_q ? {refill_set, refill_beat_q} : write_store ? quad_q[SET_BITS+1:0] :
+                                     lookup_quad_i[SET_BITS+1:0];
   wire [127:0] data_in = refill_q ? refill_data_q : access_data_i;
   wire [127:0] data_0;
   wire [127:0] data_1;

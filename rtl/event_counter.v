@@ -1,5 +1,6 @@
-// Adds up to 2^EVENT_BITS - 1 events a cycle. The carry out of the low bits is added a cycle later, so that no long carry chain stands
-// in a cycle. Promise: value_o + pending_o is the number of events up to and including this cycle's event_i.
+// Adds up to 2^EVENT_BITS - 1 events a cycle. The carry out of the low bits is added a cycle later, so
+// that no long carry chain stands in a cycle. Promise: value_o + pending_o is the number of events up to
+// and including this cycle's event_i.
 `default_nettype none
 module event_counter #(
   parameter integer BITS = 48,

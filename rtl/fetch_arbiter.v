@@ -1,6 +1,6 @@
-// Grants one of the requesting warps a cycle, in rotation: the search starts behind the warp granted last, so that every request is
-// granted within WARPS cycles, not counting those of first_i. A request of a warp in first_i is granted at once and leaves the rotation as
-// it is.
+// Grants one of the requesting warps a cycle, in rotation: the search starts behind the warp granted last, so that
+// every request is granted within WARPS cycles, not counting those of first_i. A request of a warp in first_i is
+// granted at once and leaves the rotation as it is.
 `default_nettype none
 module fetch_arbiter #(
   parameter integer WARPS = 8,

@@ -1,8 +1,9 @@
 // Floating-point adder and subtracter, three stages: align, add and begin to normalise, normalise and round.
-// Operands are taken with enable_i[0]; enable_i[k] must say that stage k holds that operation k cycles later. result_o is combinational,
-// valid in stage 2, and zero while enable_i[2] is low, so that units of a lane can be ORed. Nearest even, one NaN (quiet, positive).
-// SUBNORMALS 0: IEEE; 1: subnormal operands and results become the zero of their sign. A subnormal sum is exact, so it never depends on
-// rounding whether one is flushed.
+// Operands are taken with enable_i[0]; enable_i[k] must say that stage k holds that operation k cycles later.
+// result_o is combinational, valid in stage 2, and zero while enable_i[2] is low, so that units of a lane can be
+// ORed. Nearest even, one NaN (quiet, positive).
+// SUBNORMALS 0: IEEE; 1: subnormal operands and results become the zero of their sign. A subnormal sum is exact, so it
+// never depends on rounding whether one is flushed.
 `default_nettype none
 module float_adder #(
   parameter integer EXPONENT_BITS = 8,
@@ -79,8 +80,10 @@ module float_adder #(
       reg [W-1:0] sum, guide;
       reg [E-1:0] exponent;
       integer step;
-      sum = s1_subtract_q ? {1'b0, s1_large_q, 3'b000} - {1'b0, s1_small_q} : {1'b0, s1_large_q, 3'b000} + {1'b0, s1_small_q};
-      // The sum is shifted up until its leading one is at the top. The guide has a further one where the exponent would become zero.
+      sum = s1_subtract_q ? {1'b0, s1_large_q, 3'b000} - {1'b0, s1_small_q} :
+            {1'b0, s1_large_q, 3'b000} + {1'b0, s1_small_q};
+      // The sum is shifted up until its leading one is at the top. The guide has a further one
+      // where the exponent would become zero.
       guide = sum | ({1'b1, {W-1{1'b0}}} >> s1_exponent_q);
       exponent = s1_exponent_q + ONE;
       for (step = STEPS - 1; step >= STEPS - EARLY; step = step - 1) begin
@@ -103,7 +106,7 @@ module float_adder #(
   always @* begin : stage2
     reg [W-1:0] sum, guide;
     reg [2:0] shift;
-    reg [4:0] low;                          // three bits of the exponent, less the shift, more by a carry out of the mantissa: -7 .. 8
+    reg [4:0] low;  // three bits of the exponent, less the shift, more by a carry out of the mantissa: -7 .. 8
     reg [E-4:0] high;                       // the others
     reg [E+M-1:0] magnitude;
     reg [63:0] ones;
@@ -128,7 +131,8 @@ module float_adder #(
         end
       end
       round_up = sum[3] && (sum[4] || sum[2:0] != 3'b000);
-      // A carry out of the mantissa goes up into the exponent, to infinity too. It comes late, so what it may make of the exponent is ready before.
+      // A carry out of the mantissa goes up into the exponent, to infinity too. It comes late, so what it may
+      // make of the exponent is ready before.
       low = {2'b00, s2_exponent_q[2:0]} - {2'b00, shift} + {4'd0, &sum[W-2:3]};
       high = s2_exponent_q[E-1:3];
       if (low[4]) high = s2_exponent_q[E-1:3] - ONE_HIGH;

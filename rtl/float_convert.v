@@ -1,8 +1,10 @@
-// Conversions between single precision and 32-bit signed integers, and minimum and maximum, in three stages like the adder's and multiplier's.
-// Operands are taken with enable_i[0]; enable_i[k] must say that stage k holds that operation k cycles later. result_o is combinational,
-// valid in stage 2, and zero while enable_i[2] is low, so that units of a lane can be ORed.
-// op_i: 0 smaller, 1 larger (the number if one is a NaN, -0 below +0), 2 float to integer (towards zero, saturating, NaN gives 0),
-// 3 integer to float (nearest even). SUBNORMALS 1: minimum and maximum see, and give, subnormal operands as the zero of their sign.
+// Conversions between single precision and 32-bit signed integers, and minimum and maximum, in three
+// stages like the adder's and multiplier's.
+// Operands are taken with enable_i[0]; enable_i[k] must say that stage k holds that operation k cycles later. result_o
+// is combinational, valid in stage 2, and zero while enable_i[2] is low, so that units of a lane can be ORed.
+// op_i: 0 smaller, 1 larger (the number if one is a NaN, -0 below +0), 2 float to integer (towards zero, saturating,
+// NaN gives 0), 3 integer to float (nearest even). SUBNORMALS 1: minimum and maximum see, and give, subnormal
+// operands as the zero of their sign.
 `default_nettype none
 module float_convert #(
   parameter integer SUBNORMALS = 0
@@ -17,7 +19,7 @@ module float_convert #(
   // value: the chosen operand, a mantissa at the top of a word, or an integer's magnitude.
   reg [1:0] s1_op_q, s2_op_q;
   reg s1_sign_q, s2_sign_q, s1_saturate_q, s2_saturate_q;
-  reg [4:0] s1_places_q, s2_places_q;    // rotation to the left: for 2 the digits before the point, for 3 the leading zeros
+  reg [4:0] s1_places_q, s2_places_q;  // rotation to the left: for 2 digits before the point, for 3 leading zeros
   reg [31:0] s1_value_q, s2_value_q;
   `include "free_running.vh"
   always @(posedge clk_i) begin
@@ -64,7 +66,8 @@ module float_convert #(
         places[0] = places[1] ? !three[0] : !three[2];
       end
       if (!s1_op_q[1]) places = 5'd0;
-      // Of a number the digits before the point come to the bottom and the others are left out; the zeros above an integer may come in below.
+      // Of a number the digits before the point come to the bottom and the others are left out; the zeros
+      // above an integer may come in below.
       value = s1_value_q;
       if (places[4]) value = {value[15:0], value[31:16]};
       if (places[3]) value = {value[23:0], value[31:24]};

@@ -1,15 +1,18 @@
 // Floating-point fused multiply-add, five stages: a * b + c, rounded once.
-// 0: product as two numbers (multiply_tree), distance of c, 1: their sum; c is aligned with it, 2: addition or subtraction, 3: magnitude, the
-// leading one brought into the top eight bits, 4: to the top, rounding.
-// Operands are taken with enable_i[0]; enable_i[k] must say that stage k holds that operation k cycles later. result_o is combinational,
-// valid in stage 4, and zero while enable_i[4] is low, so that units of a lane can be ORed. Nearest even, one NaN (quiet, positive).
-// SUBNORMALS 0: IEEE; 1: subnormal operands count as zero and a result is flushed to zero when it is tiny after rounding, as in SSE.
+// 0: product as two numbers (multiply_tree), distance of c, 1: their sum; c is aligned with it, 2: addition or
+// subtraction, 3: magnitude, the leading one brought into the top eight bits, 4: to the top, rounding.
+// Operands are taken with enable_i[0]; enable_i[k] must say that stage k holds that operation k cycles later.
+// result_o is combinational, valid in stage 4, and zero while enable_i[4] is low, so that units of a lane can be
+// ORed. Nearest even, one NaN (quiet, positive).
+// SUBNORMALS 0: IEEE; 1: subnormal operands count as zero and a result is flushed to zero when
+// it is tiny after rounding, as in SSE.
 //
-// With p = MANTISSA_BITS + 1 the window has c in its top p bits when c dominates, two free bits, the product of 2p bits, and bits below it in
-// which the last one collects what is shifted out of c. Two below the product suffice: a product of fewer than 2p bits, from a
-// subnormal operand, still has p (two subnormal ones leave c alone), so where more than one leading bit cancels c has lost nothing. When c dominates
-// the product is below a quarter of its last bit, and where exactly does not matter. The exponent of the window's top is at least c's, so
-// a result needs shifting up only, and no further than to the smallest exponent.
+// With p = MANTISSA_BITS + 1 the window has c in its top p bits when c dominates, two free bits, the product of 2p
+// bits, and bits below it in which the last one collects what is shifted out of c. Two below the product suffice: a
+// product of fewer than 2p bits, from a subnormal operand, still has p (two subnormal ones leave c alone), so where
+// more than one leading bit cancels c has lost nothing. When c dominates the product is below a quarter of its last
+// bit, and where exactly does not matter. The exponent of the window's top is at least c's, so a result needs shifting
+// up only, and no further than to the smallest exponent.
 `default_nettype none
 module float_fma #(
   parameter integer EXPONENT_BITS = 8,
@@ -39,7 +42,8 @@ module float_fma #(
   localparam [X-1:0] BIAS = {3'b000, {E-1{1'b1}}};
   localparam integer ABOVE = P + 3;         // from a product in [1, 2) to the top
   localparam integer LIMIT_AT_ONE = (SUBNORMALS == 0) ? 1 : 0;
-  // Stage 0 -> 1. Tag: {nan, infinite, sign of an infinity, sign of the product, effective subtraction, no result flushed away}
+  // Stage 0 -> 1. Tag: {nan, infinite, sign of an infinity, sign of the product, effective
+  // subtraction, no result flushed away}
   reg [3:0] s1_tag_q, s2_tag_q, s3_tag_q;
   localparam integer NAN = 3, INFINITE = 2, SIGN = 1, SUBTRACT = 0;
   reg [2*P-1:0] s1_sum_q, s1_carry_q;

@@ -1,7 +1,9 @@
-// One lane of the Flt ALU and the result register behind it. FMA 0: adder, multiplier and the unit of conversions, each in three stages.
-// FMA 1: the fused unit, which adds a * 1 + b and multiplies too, in five, and the conversions, whose results wait for two more.
-// add_enable_i, multiply_enable_i, fuse_enable_i and convert_enable_i: bit 0 takes the operands into that unit, bit k says that stage k holds that
-// operation k cycles later; at most one unit is enabled in a stage.
+// One lane of the Flt ALU and the result register behind it. FMA 0: adder, multiplier and the unit
+// of conversions, each in three stages.
+// FMA 1: the fused unit, which adds a * 1 + b and multiplies too, in five, and the
+// conversions, whose results wait for two more.
+// add_enable_i, multiply_enable_i, fuse_enable_i and convert_enable_i: bit 0 takes the operands into that unit, bit k
+// says that stage k holds that operation k cycles later; at most one unit is enabled in a stage.
 // result_o is loaded at the end of the last stage and stays until the next one.
 `default_nettype none
 module float_lane #(
@@ -43,7 +45,8 @@ module float_lane #(
       reg [31:0] s3_converted_q, s4_converted_q;
       float_fma #(.EXPONENT_BITS(8), .MANTISSA_BITS(23), .SUBNORMALS(SUBNORMALS)) fma (
         .clk_i(clk_i), .enable_i(enable), .a_i(a_i), .b_i(add_enable_i[0] ? 32'h3f800000 : b_i),
-        .c_i(add_enable_i[0] ? {b_i[31] ^ subtract_i, b_i[30:0]} : c_i), .multiply_i(multiply_enable_i[0]), .result_o(fused));
+        .c_i(add_enable_i[0] ? {b_i[31] ^ subtract_i, b_i[30:0]} : c_i), .multiply_i(multiply_enable_i[0]),
+        .result_o(fused));
       always @(posedge clk_i) begin
         if (`STAGE_LOADS(convert_enable_i[2])) s3_converted_q <= converted;
         if (`STAGE_LOADS(convert_enable_i[3])) s4_converted_q <= s3_converted_q;

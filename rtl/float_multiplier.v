@@ -1,10 +1,12 @@
-// Floating-point multiplier, three stages: the product as two numbers (multiply_tree), their sum with its leading one brought to the
-// top two bits, rounding.
-// The tree takes both operands as normal numbers, so that it need not wait for what the exponents say; what a subnormal one has too much is taken
-// off in the sum. The product of two subnormal ones is zero however it is rounded.
-// Operands are taken with enable_i[0]; enable_i[k] must say that stage k holds that operation k cycles later. result_o is combinational,
-// valid in stage 2, and zero while enable_i[2] is low, so that units of a lane can be ORed. Nearest even, one NaN (quiet, positive).
-// SUBNORMALS 0: IEEE; 1: subnormal operands count as zero and a result is flushed to zero when it is tiny after rounding, as in SSE.
+// Floating-point multiplier, three stages: the product as two numbers (multiply_tree), their sum with its leading one
+// brought to the top two bits, rounding.
+// The tree takes both operands as normal numbers, so that it need not wait for what the exponents say; what a subnormal
+// one has too much is taken off in the sum. The product of two subnormal ones is zero however it is rounded.
+// Operands are taken with enable_i[0]; enable_i[k] must say that stage k holds that operation k cycles later.
+// result_o is combinational, valid in stage 2, and zero while enable_i[2] is low, so that units of a lane can be
+// ORed. Nearest even, one NaN (quiet, positive).
+// SUBNORMALS 0: IEEE; 1: subnormal operands count as zero and a result is flushed to zero when
+// it is tiny after rounding, as in SSE.
 `default_nettype none
 module float_multiplier #(
   parameter integer EXPONENT_BITS = 8,
@@ -35,7 +37,7 @@ module float_multiplier #(
   reg [P-1:0] s1_sum_q, s1_carry_q;
   reg [M:0] s1_less_q;                      // to be taken off the sum, M bits up
   // Stage 1 -> 2
-  reg s2_nan_q, s2_infinite_q, s2_infinite_above_q, s2_zero_q, s2_sign_q;  // above: infinite if the product is 2 or more
+  reg s2_nan_q, s2_infinite_q, s2_infinite_above_q, s2_zero_q, s2_sign_q;  // above: if the product is 2 or more
   reg [X-1:0] s2_exponent_q;                // of a product in [1, 2)
   reg [F-1:0] s2_distance_q;                // shift to the right of a subnormal result; more leaves the sticky bit only
   reg [P-1:0] s2_product_q;

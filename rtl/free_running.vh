@@ -1,7 +1,8 @@
-// Included in a module whose pipeline never waits: whether the data registers behind its second stage or a later one load.
-// Where no clock gates are they do in every cycle, and a bit costs two gates less than with an enable: what they take from an empty stage is read by
-// nobody, and as the registers behind the first stage keep theirs, nothing moves in an idle unit. Else, and in simulators, which are
-// quicker if they skip an empty stage: with `enable`.
+// Included in a module whose pipeline never waits: whether the data registers behind
+// its second stage or a later one load.
+// Where no clock gates are they do in every cycle, and a bit costs two gates less than with an enable: what they take
+// from an empty stage is read by nobody, and as the registers behind the first stage keep theirs, nothing moves in an
+// idle unit. Else, and in simulators, which are quicker if they skip an empty stage: with `enable`.
 `ifndef STAGE_LOADS
 `ifdef NO_CLOCK_GATES
 `define STAGE_LOADS(enable) 1'b1

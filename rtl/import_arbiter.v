@@ -1,7 +1,7 @@
-// Joins the import ports of 2 to 4 units: requests leave in rotation, a package at a time, and their beats, which come back in the order of
-// the requests, go to the units that asked.
-// Promises: at most 3 packages are requested and not yet received. Must be given: for each request taken, in order, six beats, from the
-// next cycle on.
+// Joins the import ports of 2 to 4 units: requests leave in rotation, a package at a time, and their beats, which come
+// back in the order of the requests, go to the units that asked.
+// Promises: at most 3 packages are requested and not yet received. Must be given: for each request taken, in
+// order, six beats, from the next cycle on.
 `default_nettype none
 module import_arbiter #(
   parameter integer UNITS = 4

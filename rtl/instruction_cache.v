@@ -1,9 +1,10 @@
-// The L1 instruction cache: 2-way, 64-byte lines of 8 instructions, least recently used, one lookup a cycle, one fetch at a time.
-// A lookup in cycle c is answered in c+1 with hit_o and the instruction, or with miss_o. A miss begins a fetch when none is under way; lookups
-// that hit go on meanwhile. refill_done_o: every warp whose miss_o came in an earlier cycle must look up again; after a miss_o in cycle
-// c a refill_done_o always comes in a later cycle. The warp whose miss began the fetch is to look up before all others (first_o): warps
-// whose lines share a set could else take a line from each other for ever before anyone has used it. Must be given: the beats of a line
-// in order.
+// The L1 instruction cache: 2-way, 64-byte lines of 8 instructions, least recently used, one
+// lookup a cycle, one fetch at a time.
+// A lookup in cycle c is answered in c+1 with hit_o and the instruction, or with miss_o. A miss begins a fetch when
+// none is under way; lookups that hit go on meanwhile. refill_done_o: every warp whose miss_o came in an earlier cycle
+// must look up again; after a miss_o in cycle c a refill_done_o always comes in a later cycle. The warp whose miss
+// began the fetch is to look up before all others (first_o): warps whose lines share a set could else take a line from
+// each other for ever before anyone has used it. Must be given: the beats of a line in order.
 `default_nettype none
 module instruction_cache #(
   parameter integer WARPS = 8,
@@ -79,8 +80,8 @@ module instruction_cache #(
   assign result_warp_o = warp_q;
   assign instruction_o = half_q ? pair[127:64] : pair[63:0];
 
-  // Fetch. In FETCH_SETTLE a lookup that just missed the last beat gets its answer; it must not fetch the line a second time, and
-  // refill_done_o must come after it.
+  // Fetch. In FETCH_SETTLE a lookup that just missed the last beat gets its answer; it must not fetch the line a second
+  // time, and refill_done_o must come after it.
   localparam [1:0] FETCH_NONE = 2'd0;
   localparam [1:0] FETCH_REQUEST = 2'd1;
   localparam [1:0] FETCH_BEATS = 2'd2;

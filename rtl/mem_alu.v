@@ -1,8 +1,10 @@
-// The memory ALU: loads and stores of a warp's lanes through the data cache, one quadword (16 bytes) a cycle. docs/memory.md gives it cycle
-// by cycle. A task that arrives in cycle t computes its addresses in t, looks quadword k up in t+1+k and accesses it in t+2+k; with n quadwords
-// that hit, it is done in t+2+n. Lanes whose line is absent are left over: the warp is parked and gives way to others, and passes again over
-// the lanes concerned when the line has come. Promises: an instruction with an illegal address has no effect but the fault; every task ends,
-// whatever other warps do, if the memory answers. Must be given: one task at a time of a warp; invalidate_i only while there is no task.
+// The memory ALU: loads and stores of a warp's lanes through the data cache, one quadword (16 bytes) a cycle.
+// docs/memory.md gives it cycle by cycle. A task that arrives in cycle t computes its addresses in t, looks
+// quadword k up in t+1+k and accesses it in t+2+k; with n quadwords that hit, it is done in t+2+n. Lanes whose
+// line is absent are left over: the warp is parked and gives way to others, and passes again over the lanes
+// concerned when the line has come. Promises: an instruction with an illegal address has no effect but the fault;
+// every task ends, whatever other warps do, if the memory answers. Must be given: one task at a time of a warp;
+// invalidate_i only while there is no task.
 `default_nettype none
 module mem_alu #(
   parameter integer WARPS = 8,
@@ -78,7 +80,8 @@ module mem_alu #(
   wire unused = &{1'b0, task_x_i, task_px_i, task_pb_i, response_id_i};
   assign done_pred_o = NONE;
 
-  // ---- Arrival: addresses. Word addresses are enough from here on, with one bit that says that a byte address was none.
+  // ---- Arrival: addresses. Word addresses are enough from here on, with one bit
+  // that says that a byte address was none.
   wire arrive_store = task_op_i == ISA_MEM_ST;
   reg [LANES*30-1:0] arrive_words;
   reg                arrive_misaligned;
@@ -126,7 +129,8 @@ module mem_alu #(
     .write_i(park_q), .write_address_i(end_warp_q), .write_data_i({left_q, refused_q, result_q})
   );
 
-  // ---- Lookup stage: the pass whose lanes are looked up. The lowest pending lane leads; all pending lanes of its quadword go along.
+  // ---- Lookup stage: the pass whose lanes are looked up. The lowest pending lane leads; all
+  // pending lanes of its quadword go along.
   reg                 pass_q;
   reg                 pass_first_q;       // no lookup of this pass yet
   reg [WARP_BITS-1:0] pass_warp_q;
@@ -331,21 +335,23 @@ module mem_alu #(
   wire access_end = access_valid_q && access_last_q;
   wire access_new = access && !access_store_q && access_kind_q == KIND_NEW;
 
-  data_cache #(.WARPS(WARPS), .WARP_BITS(WARP_BITS), .CACHE_BYTES(CACHE_BYTES), .MSHRS(MSHRS), .MSHR_BITS(MSHR_BITS)) u_cache (
+  data_cache #(.WARPS(WARPS), .WARP_BITS(WARP_BITS), .CACHE_BYTES(CACHE_BYTES), .MSHRS(MSHRS),
+      .MSHR_BITS(MSHR_BITS)) u_cache (
     .clk_i(clk_i), .rst_ni(rst_ni), .invalidate_i(invalidate_i),
     .load_ready_o(load_ready), .store_ready_o(store_ready),
     .lookup_i(look), .lookup_store_i(pass_store_q), .lookup_quad_i(quad),
-    .access_i(access), .access_store_i(access_store_q), .access_may_allocate_i(!privilege || privilege_warp == access_warp_q),
-    .access_warp_i(access_warp_q), .access_data_i(access_data_q), .access_mask_i(access_mask_q),
-    .hit_o(hit), .data_o(quad_data), .allocate_o(allocates), .refuse_o(refuses), .accept_o(accepts),
-    .push_o(push), .push_write_o(push_write), .push_quad_o(push_quad), .push_id_o(push_id),
-    .response_valid_i(response_valid_i), .response_id_i(response_id_i[MSHR_BITS-1:0]), .response_beat_i(response_beat_i),
-    .response_data_i(response_data_i),
+    .access_i(access), .access_store_i(access_store_q),
+    .access_may_allocate_i(!privilege || privilege_warp == access_warp_q), .access_warp_i(access_warp_q),
+    .access_data_i(access_data_q), .access_mask_i(access_mask_q), .hit_o(hit), .data_o(quad_data),
+    .allocate_o(allocates), .refuse_o(refuses), .accept_o(accepts), .push_o(push), .push_write_o(push_write),
+    .push_quad_o(push_quad), .push_id_o(push_id), .response_valid_i(response_valid_i),
+    .response_id_i(response_id_i[MSHR_BITS-1:0]), .response_beat_i(response_beat_i), .response_data_i(response_data_i),
     .served_i(access_end && access_kind_q == KIND_FILLED), .served_id_i(access_mshr_q), .served_warp_i(access_warp_q),
     .freed_o(freed), .idle_o(cache_idle), .filled_o(filled), .line_o(mshr_lines), .waiters_o(waiters)
   );
 
-  // ---- Results gather here over the accesses of a pass; after the last one the warp is done, or parked with what it has.
+  // ---- Results gather here over the accesses of a pass; after the last one the warp
+  // is done, or parked with what it has.
   wire [LANES-1:0] gone = (hit || accepts) ? access_served_q : NONE;
   wire [LANES-1:0] left_after = (access_first_q ? access_left_q : left_q) & ~gone;
   wire [LANES-1:0] refused_after = (access_first_q ? access_refused_q : refused_q) | (refuses ? access_served_q : NONE);
@@ -396,11 +402,12 @@ module mem_alu #(
     .clk_i(clk_i), .rst_ni(rst_ni),
     .queue_i(task_valid_i && !start), .queue_warp_i(task_warp_i),
     .park_i(park_q), .park_warp_i(end_warp_q),
-    .pass_end_i(access_end), .pass_warp_i(access_warp_q), .pass_refused_i(refused_after != NONE), .pass_allocated_i(allocated_after),
-    .filled_i(filled), .waiters_i(waiters), .freed_i(freed),
+    .pass_end_i(access_end), .pass_warp_i(access_warp_q), .pass_refused_i(refused_after != NONE),
+    .pass_allocated_i(allocated_after), .filled_i(filled), .waiters_i(waiters), .freed_i(freed),
     .select_o(select), .select_warp_o(select_warp),
-    .next_valid_o(next_valid), .next_kind_o(next_kind), .next_warp_o(next_warp), .next_mshr_o(next_mshr), .next_take_i(take),
-    .queue_empty_o(waiting_empty), .privilege_o(privilege), .privilege_warp_o(privilege_warp), .idle_o(sequencer_idle)
+    .next_valid_o(next_valid), .next_kind_o(next_kind), .next_warp_o(next_warp), .next_mshr_o(next_mshr),
+    .next_take_i(take), .queue_empty_o(waiting_empty), .privilege_o(privilege), .privilege_warp_o(privilege_warp),
+    .idle_o(sequencer_idle)
   );
 
   // ---- Requests, in the order of the accesses: a read leaves after every earlier store.
@@ -415,6 +422,7 @@ module mem_alu #(
   assign request_address_o = {request_quad, 4'b0000};
   assign request_id_o = {{(5-MSHR_BITS){1'b0}}, request_id};
 
-  assign idle_o = !pass_q && !access_valid_q && !done_q && !park_q && sequencer_idle && cache_idle && queue_count == 2'd0;
+  assign idle_o = !pass_q && !access_valid_q && !done_q && !park_q && sequencer_idle && cache_idle &&
+                  queue_count == 2'd0;
 endmodule
 `default_nettype wire

@@ -1,8 +1,10 @@
-// Which warp's memory task goes through the cache next: the state of every warp that has a task which is not in the pipeline. A warp is
-// queued (new, not started) or parked (lanes are left). A parked warp waits for lines in miss-status holding registers, or was refused one
-// (it is a loser), or both. One pass is prepared at a time; the order is: waiters of a line that has come, the privileged loser, new tasks.
-// Fairness: while a loser has the privilege only it may take a register. It tries when it gets the privilege and whenever a register
-// becomes free, keeps the privilege until it got one or needs none, and then the next loser, round robin, has it. So every loser takes its turn.
+// Which warp's memory task goes through the cache next: the state of every warp that has a task which is not in the
+// pipeline. A warp is queued (new, not started) or parked (lanes are left). A parked warp waits for lines in
+// miss-status holding registers, or was refused one (it is a loser), or both. One pass is prepared at a time; the order
+// is: waiters of a line that has come, the privileged loser, new tasks.
+// Fairness: while a loser has the privilege only it may take a register. It tries when it gets the privilege and
+// whenever a register becomes free, keeps the privilege until it got one or needs none, and then the next loser, round
+// robin, has it. So every loser takes its turn.
 // Must be given: a warp parks only after the end of its pass (pass_end_i), at the earliest one cycle after.
 `default_nettype none
 module memory_sequencer #(

@@ -1,6 +1,8 @@
-// Miss-status holding registers (MSHRs) of the data cache: which lines are being fetched, into which way, and which warps wait for them.
-// Promises: a line has at most one register, and a way of a set is promised to at most one register. A register is busy from its
-// allocation until all its waiters are served, so a fetched line stays in the cache until every warp that waited for it has read it.
+// Miss-status holding registers (MSHRs) of the data cache: which lines are being fetched, into which
+// way, and which warps wait for them.
+// Promises: a line has at most one register, and a way of a set is promised to at most one register. A register
+// is busy from its allocation until all its waiters are served, so a fetched line stays in the cache until every
+// warp that waited for it has read it.
 // Must be given: join_i, allocate_i only as match_o, available_o and locked_o of the same cycle allow.
 `default_nettype none
 module miss_status #(

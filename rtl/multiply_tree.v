@@ -1,11 +1,12 @@
-// Product of a and b, or c + a * b with ADD, or c - a * b with ADD and NEGATE, as two numbers whose sum, modulo 2^OUT_BITS, it is: radix-4
-// Booth digits of b, then a tree of carry-save adders. Combinational. a_i is unsigned; b_i is unsigned, or signed with B_SIGNED. OUT_BITS may be
-// less than the product has: what is not wanted costs nothing. With CUT the rows are left out below 2^CUT: the sum is less than it should be by
-// at most 2^CUT for each pair of bits of b below 2^CUT, CUT/2 of them rounded up, and how much less is not said.
+// Product of a and b, or c + a * b with ADD, or c - a * b with ADD and NEGATE, as two numbers whose sum, modulo
+// 2^OUT_BITS, it is: radix-4 Booth digits of b, then a tree of carry-save adders. Combinational. a_i is unsigned; b_i
+// is unsigned, or signed with B_SIGNED. OUT_BITS may be less than the product has: what is not wanted costs nothing.
+// With CUT the rows are left out below 2^CUT: the sum is less than it should be by at most 2^CUT for each pair of bits
+// of b below 2^CUT, CUT/2 of them rounded up, and how much less is not said.
 // With ENCODED b_i is what booth_digits made of b.
-// Digit i of b is -2 .. 2 and weighs 4^i; a row is the digit times a, inverted if the digit is negative, and the one that completes the
-// negation stands in the next row. Signs are not extended: -s*2^k = ~s*2^k - 2^k, and the sum of all the -2^k is one at the first row's
-// sign, one above each row's, and ones all the way up from the last.
+// Digit i of b is -2 .. 2 and weighs 4^i; a row is the digit times a, inverted if the digit is negative, and the one
+// that completes the negation stands in the next row. Signs are not extended: -s*2^k = ~s*2^k - 2^k, and the sum of all
+// the -2^k is one at the first row's sign, one above each row's, and ones all the way up from the last.
 `default_nettype none
 module multiply_tree #(
   parameter integer A_BITS = 24,
@@ -106,7 +107,8 @@ module multiply_tree #(
           assign rows[(2*t+1)*OUT_BITS +: OUT_BITS] = majority << 1;
         end
         if (BEFORE % 3 != 0) begin : gen_rest
-          assign rows[2*TRIPLES*OUT_BITS +: (BEFORE%3)*OUT_BITS] = gen_level[l-1].rows[3*TRIPLES*OUT_BITS +: (BEFORE%3)*OUT_BITS];
+          assign rows[2*TRIPLES*OUT_BITS +: (BEFORE%3)*OUT_BITS] =
+              gen_level[l-1].rows[3*TRIPLES*OUT_BITS +: (BEFORE%3)*OUT_BITS];
         end
       end
     end
@@ -115,8 +117,8 @@ module multiply_tree #(
   assign sum_o = gen_level[LEVELS].rows[0 +: OUT_BITS];
   assign carry_o = gen_level[LEVELS].rows[OUT_BITS +: OUT_BITS];
 `else
-  // The promise allows any two numbers. Simulators multiply much faster than they add bits up; the benches of the arithmetic units define
-  // SYNTHESIS to try the tree itself.
+  // The promise allows any two numbers. Simulators multiply much faster than they add bits up; the benches of the
+  // arithmetic units define SYNTHESIS to try the tree itself.
   wire [OUT_BITS+A_BITS-1:0] a = {{OUT_BITS{1'b0}}, a_i};
   wire [OUT_BITS+B_BITS-1:0] b = {{OUT_BITS{(B_SIGNED != 0) && b_i[B_BITS-1]}}, b_i[B_BITS-1:0]};
   wire [OUT_BITS-1:0] product = a[OUT_BITS-1:0] * b[OUT_BITS-1:0];

@@ -1,6 +1,6 @@
-// PC/RPC stack of one warp. In a step it either yields the top entry's PC and increments it, or, when that PC has reached the entry's
-// RPC, pops the entry and yields nothing. Control instructions change it at their write-back. The caller never steps and controls in
-// the same cycle. The first entry has no RPC; popping it is an underflow.
+// PC/RPC stack of one warp. In a step it either yields the top entry's PC and increments it, or, when that PC has
+// reached the entry's RPC, pops the entry and yields nothing. Control instructions change it at their write-back. The
+// caller never steps and controls in the same cycle. The first entry has no RPC; popping it is an underflow.
 `default_nettype none
 module pc_stack #(
   parameter integer DEPTH = 8
@@ -13,7 +13,7 @@ module pc_stack #(
   output wire        pc_valid_o,     // in a step: pc_o is to be fetched; else an entry was popped
   output wire [15:0] pc_o,
   input  wire        jump_i,         // top PC = target_i
-  input  wire        push_i,         // push {target_i, end_i}; the entry below keeps its PC, or gets return_i with push_return_i
+  input  wire        push_i,         // push {target_i, end_i}; with push_return_i the one below gets return_i as its PC
   input  wire        push_return_i,
   input  wire        pop_i,
   input  wire [15:0] target_i,

@@ -1,7 +1,7 @@
 // Shares a port among 2 to 4 requesters, in rotation, a package of one or more transfers at a time. Adds no cycle.
-// Promises: who is chosen keeps the port until the last transfer of its package, also while it has nothing to send, so that packages are
-// never mixed and what is offered stays stable; whoever keeps asking is served before anybody else is served twice. Valid does not
-// depend on ready.
+// Promises: who is chosen keeps the port until the last transfer of its package, also while it has nothing to send, so
+// that packages are never mixed and what is offered stays stable; whoever keeps asking is served before anybody else is
+// served twice. Valid does not depend on ready.
 // Must be given: valid_i, data_i and last_i from registers; each stays as it is while it waits.
 `default_nettype none
 module port_arbiter #(

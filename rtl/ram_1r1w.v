@@ -1,5 +1,5 @@
-// One read and one write port. The read word appears in the next cycle and stays until the next read. Reading the address that is
-// written in the same cycle gives the old word; users must not rely on either.
+// One read and one write port. The read word appears in the next cycle and stays until the next read. Reading the
+// address that is written in the same cycle gives the old word; users must not rely on either.
 `default_nettype none
 module ram_1r1w #(
   parameter integer WIDTH = 32,

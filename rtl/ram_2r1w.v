@@ -1,5 +1,6 @@
-// Two read ports (read together) and one write port with a mask of GRANULE-bit parts. The read words appear in the next cycle and stay until the
-// next read. Reading the address that is written in the same cycle gives the old word; users must not rely on either.
+// Two read ports (read together) and one write port with a mask of GRANULE-bit parts. The read words appear in the
+// next cycle and stay until the next read. Reading the address that is written in the same cycle gives the old
+// word; users must not rely on either.
 `default_nettype none
 module ram_2r1w #(
   parameter integer WIDTH = 32,

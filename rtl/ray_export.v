@@ -1,6 +1,8 @@
-// Export engine: takes warps' output slices in the order in which they are pushed, reads the masked lanes' packages in rising order, four words
-// a cycle, and offers them on the ray-pool port (words 0 .. 11, three beats) or the frame-buffer port (words 7 .. 10, one).
-// Promises: a beat every cycle as long as the port takes it and the memory grants; a slice is busy until its last word has been read.
+// Export engine: takes warps' output slices in the order in which they are pushed, reads the masked lanes' packages in
+// rising order, four words a cycle, and offers them on the ray-pool port (words 0 .. 11, three beats) or the
+// frame-buffer port (words 7 .. 10, one).
+// Promises: a beat every cycle as long as the port takes it and the memory grants; a slice is
+// busy until its last word has been read.
 // Must be given: a push after the park of the same rout or rfb, and only while the warp is not busy.
 `default_nettype none
 module ray_export #(
@@ -53,7 +55,8 @@ module ray_export #(
     end
   endfunction
 
-  // ---- Masks. A warp's next rout may arrive while the one before is exported, so each warp has two places; slot_q is that of the next one.
+  // ---- Masks. A warp's next rout may arrive while the one before is exported, so each warp has two
+  // places; slot_q is that of the next one.
   reg [WARPS-1:0] slot_q, busy_q;
   reg [PLACES*WARP_BITS-1:0] order_q;          // warps in the order of their pushes
   reg [WARP_BITS:0] first_q, end_q;            // with a bit more than a place, to tell full from empty
@@ -62,8 +65,9 @@ module ray_export #(
   wire next_frame;
   wire [LANES-1:0] next_mask;
   ram_1r1w #(.WIDTH(LANES + 1), .DEPTH(2 * PLACES)) u_masks (
-    .clk_i(clk_i), .read_i(take_first), .read_address_i({!slot_q[first_warp], first_warp}), .read_data_o({next_frame, next_mask}),
-    .write_i(park_i), .write_address_i({slot_q[park_warp_i], park_warp_i}), .write_data_i({park_frame_i, park_mask_i})
+    .clk_i(clk_i), .read_i(take_first), .read_address_i({!slot_q[first_warp], first_warp}),
+    .read_data_o({next_frame, next_mask}), .write_i(park_i), .write_address_i({slot_q[park_warp_i], park_warp_i}),
+    .write_data_i({park_frame_i, park_mask_i})
   );
 
   // ---- The slice after the one that is read: its mask is at the memory's output.

@@ -1,8 +1,9 @@
-// Import engine: requests a launch's packages, thread after thread, and writes their beats into the warps' input slices. Knows which input
-// slices hold all their packages: full_o.
-// Promises: at most two packages are requested and not yet received; one is only requested while its warp's input slice is not full; a beat is
-// written in the cycle after its arrival. Must be given: for each request taken, in order, six beats (words 4b .. 4b+3), any time after; the
-// memory's port whenever write_o is high; no start while active_o is high; take_i only for a full slice.
+// Import engine: requests a launch's packages, thread after thread, and writes their beats into the warps' input
+// slices. Knows which input slices hold all their packages: full_o.
+// Promises: at most two packages are requested and not yet received; one is only requested while its warp's input slice
+// is not full; a beat is written in the cycle after its arrival. Must be given: for each request taken, in order, six
+// beats (words 4b .. 4b+3), any time after; the memory's port whenever write_o is high; no start while active_o is
+// high; take_i only for a full slice.
 `default_nettype none
 module ray_import #(
   parameter integer WARPS = 8,
@@ -75,7 +76,8 @@ module ray_import #(
         requested_q <= requested_next;
         outstanding_q <= outstanding_next;
         // A request that waits keeps these conditions: nothing but itself changes them.
-        request_valid_o <= requested_next != threads_q && outstanding_next != 2'd2 && !full_q[request_warp[WARP_BITS-1:0]];
+        request_valid_o <= requested_next != threads_q && outstanding_next != 2'd2 &&
+                           !full_q[request_warp[WARP_BITS-1:0]];
         if (received) begin
           received_q <= received_next;
           if (launch_end) active_o <= 1'b0;

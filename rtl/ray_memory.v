@@ -1,8 +1,10 @@
-// One set of local ray memory: four 32-bit single-port banks, 21 words for each of CONTENTS threads. Word k of thread t lies in bank (t+k)%4,
-// row k*ceil(CONTENTS/4) + t/4, so that an access moves four words a cycle, either of one word for four threads or of one thread.
-// Element e (0 .. 3) of an access is word word_i + e of thread thread_i with package_i, else word word_i of thread thread_i + e; then thread_i
-// must be a multiple of 4. A cycle with write_i other than 0 writes these elements, else read_i reads all four; they appear in data_o in the
-// next cycle and stay until the next read. Words written or looked at must be 0 .. 20.
+// One set of local ray memory: four 32-bit single-port banks, 21 words for each of CONTENTS threads. Word k of
+// thread t lies in bank (t+k)%4, row k*ceil(CONTENTS/4) + t/4, so that an access moves four words a cycle, either of
+// one word for four threads or of one thread.
+// Element e (0 .. 3) of an access is word word_i + e of thread thread_i with package_i, else word word_i of
+// thread thread_i + e; then thread_i must be a multiple of 4. A cycle with write_i other than 0 writes these
+// elements, else read_i reads all four; they appear in data_o in the next cycle and stay until the next read.
+// Words written or looked at must be 0 .. 20.
 `default_nettype none
 module ray_memory #(
   parameter integer CONTENTS = 64

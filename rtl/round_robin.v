@@ -1,5 +1,5 @@
-// Chooses one of the requesters in rotation: the search starts behind the one that was chosen last, so that whoever keeps asking is
-// chosen before anybody else is chosen twice.
+// Chooses one of the requesters in rotation: the search starts behind the one that was chosen last, so that whoever
+// keeps asking is chosen before anybody else is chosen twice.
 `default_nettype none
 module round_robin #(
   parameter integer COUNT = 4

@@ -1,9 +1,10 @@
 // Correctly rounded quotient w/v, w/sqrt(v) of slow_prepare, stages 1 .. 10 of the slow unit.
-// 1: a table gives a line, 2: the line gives y, about 1/v or 1/sqrt(v), 3-6: one multiplicative step leaves an error below 2^-24 in the
-// quotient. So of the floats only the two around the middle m of the interval that the estimate lies in can be the result, and the sign of
-// w - m*v, of v - m*m (fsqrt) or of 4 - m*m*v (frsqrt) decides exactly between them. 7: m*v or m*m, 8: its sum, less w or v, 9: for frsqrt
-// times m, 10: the sign, rounding.
-// enable_i[k] says that stage 1 + k holds a task. result_o is combinational in stage 10 and zero while enable_i[9] is low.
+// 1: a table gives a line, 2: the line gives y, about 1/v or 1/sqrt(v), 3-6: one multiplicative step leaves an error
+// below 2^-24 in the quotient. So of the floats only the two around the middle m of the interval that the estimate lies
+// in can be the result, and the sign of w - m*v, of v - m*m (fsqrt) or of 4 - m*m*v (frsqrt) decides exactly between
+// them. 7: m*v or m*m, 8: its sum, less w or v, 9: for frsqrt times m, 10: the sign, rounding.
+// enable_i[k] says that stage 1 + k holds a task. result_o is combinational in stage
+// 10 and zero while enable_i[9] is low.
 `default_nettype none
 module slow_exact (
   input  wire        clk_i,
@@ -66,8 +67,10 @@ module slow_exact (
   wire [24:0] s7_m = (s7_estimate[30:6] & s7_keep_q) | s7_half_q;
   wire [49:0] s7_sum, s7_carry;
   multiply_tree #(.A_BITS(25), .B_BITS(25), .OUT_BITS(50)) first_product (
-    .a_i((s7_tag_q[ROOT] && !s7_tag_q[UNARY]) ? s7_m : s7_v_q), .b_i(s7_m), .c_i(50'd0), .sum_o(s7_sum), .carry_o(s7_carry));
-  wire [49:0] s8_whole = (s8_tag_q[ROOT] && s8_tag_q[UNARY]) ? 50'd0 : s8_tag_q[ROOT] ? {s8_w_q, 25'd0} : {1'b0, s8_w_q, 24'd0};
+    .a_i((s7_tag_q[ROOT] && !s7_tag_q[UNARY]) ? s7_m : s7_v_q), .b_i(s7_m), .c_i(50'd0), .sum_o(s7_sum),
+    .carry_o(s7_carry));
+  wire [49:0] s8_whole = (s8_tag_q[ROOT] && s8_tag_q[UNARY]) ? 50'd0 : s8_tag_q[ROOT] ? {s8_w_q, 25'd0} :
+                         {1'b0, s8_w_q, 24'd0};
   wire [OUT-1:0] s9_sum, s9_carry;
   multiply_tree #(.A_BITS(50), .B_BITS(25), .OUT_BITS(OUT), .CUT(CUT)) second_product (
     .a_i(s9_product_q), .b_i({s9_n_q, 1'b1}), .c_i({OUT{1'b0}}), .sum_o(s9_sum), .carry_o(s9_carry));
@@ -111,7 +114,8 @@ module slow_exact (
         s10_frsqrt_q <= s9_tag_q[ROOT] && s9_tag_q[UNARY] && !s9_tag_q[SPECIAL];
         // Nothing is left over only when a subnormal quotient lies on m itself: then to even.
         s10_above_q <= !s9_tag_q[SPECIAL] && (s9_product_q[49] || (s9_product_q == 50'd0 && s9_n_q[0]));
-        s10_below_q <= s9_tag_q[SPECIAL] ? {s9_tag_q[EXPONENT +: 8], s9_tag_q[NAN], 22'd0} : {s9_tag_q[EXPONENT +: 8] + {7'd0, s9_n_q[23]}, s9_n_q[22:0]};
+        s10_below_q <= s9_tag_q[SPECIAL] ? {s9_tag_q[EXPONENT +: 8], s9_tag_q[NAN], 22'd0} :
+                       {s9_tag_q[EXPONENT +: 8] + {7'd0, s9_n_q[23]}, s9_n_q[22:0]};
       end
     end
   end

@@ -1,7 +1,9 @@
-// Approximate quotient w/v, w/sqrt(v) of slow_prepare, stages 1 .. LAST of the slow unit: a table of bytes gives y, about 1/v or 1/sqrt(v).
-// STEPS 0: w*y. STEPS 1: a Newton step on y before, y + y*(1 - v*y), for a root y + y*(1 - v*y*y)/2. STEPS 2: a second one, on the quotient.
-// Then the quotient is rounded to nearest even, but never to another exponent: a true quotient is not that near to 2. docs/numerics.md
-// defines the results, cpp_model/arith/arith.cpp does the same integer steps.
+// Approximate quotient w/v, w/sqrt(v) of slow_prepare, stages 1 .. LAST of the slow unit: a table of
+// bytes gives y, about 1/v or 1/sqrt(v).
+// STEPS 0: w*y. STEPS 1: a Newton step on y before, y + y*(1 - v*y), for a root y + y*(1 - v*y*y)/2.
+// STEPS 2: a second one, on the quotient.
+// Then the quotient is rounded to nearest even, but never to another exponent: a true quotient is not that near to 2.
+// docs/numerics.md defines the results, cpp_model/arith/arith.cpp does the same integer steps.
 // enable_i[k] says that stage 1 + k holds a task. result_o is combinational in stage LAST and zero while it holds none.
 `default_nettype none
 module slow_newton #(
@@ -131,7 +133,8 @@ module slow_newton #(
         end
         slow_refine #(.EXACT(0)) refine (
           .clk_i(clk_i), .enable_i(enable_i[7:4]), .v_i(s5_v_q), .w_i(w), .y_i(y), .y_digits_i(s5_y_digits_q),
-          .root_1_i(tags[3*TAG_BITS+ROOT]), .unary_1_i(tags[3*TAG_BITS+UNARY]), .root_2_i(tags[4*TAG_BITS+ROOT]), .quotient_o(round_estimate));
+          .root_1_i(tags[3*TAG_BITS+ROOT]), .unary_1_i(tags[3*TAG_BITS+UNARY]), .root_2_i(tags[4*TAG_BITS+ROOT]),
+          .quotient_o(round_estimate));
       end
     end
     if (STEPS != 2) begin : gen_product

@@ -1,13 +1,18 @@
-// The first three stages of the slow unit: unpacks, normalises subnormal operands, finds every result that needs no computation, and turns
-// the rest into one task for the stages behind: the quotient q = w/v, or q = w/sqrt(v), which lies in [1, 2).
-// enable_i[0] takes the operands, enable_i[k] must follow k cycles later; the outputs are registers that hold from then on.
+// The first three stages of the slow unit: unpacks, normalises subnormal operands, finds every result that needs
+// no computation, and turns the rest into one task for the stages behind: the quotient q = w/v,
+// or q = w/sqrt(v), which lies in [1, 2).
+// enable_i[0] takes the operands, enable_i[k] must follow k cycles later; the outputs
+// are registers that hold from then on.
 //   fdiv: root 0 unary 0, fsqrt: root 1 unary 0, frsqrt: root 1 unary 1, frcp: root 0 unary 1
 //   index_1_o    in stage 1, for a table: {root, odd exponent, 7 bits of the mantissa of v below its leading one}
-//   offset_digits_o  in stage 2, as the next ones: what booth_digits makes of the next 11 bits, which the exact unit's table is not asked for
+//   offset_digits_o  in stage 2, as the next ones: what booth_digits makes of the next 11 bits, which the
+//                    exact unit's table is not asked for
 //   v_o, w_o     23 fraction bits; v in [1, 2), or [1, 4) for a root; w is v for fsqrt, 2 for frsqrt
 //   special_3_o  in stage 3, as all others: the result is {sign, exponent, nan, 22 zeros}
-//   else         the result is the sign and exponent * 2^23 + q, q with 23 - shift fraction bits; shift above 0: subnormal, 1 .. 24
-// SUBNORMALS 0: IEEE; 1: subnormal operands count as zero, results below the normal numbers are zero (no quotient there rounds up to one).
+//   else         the result is the sign and exponent * 2^23 + q, q with 23 - shift fraction
+//                bits; shift above 0: subnormal, 1 .. 24
+// SUBNORMALS 0: IEEE; 1: subnormal operands count as zero, results below the normal numbers are zero
+// (no quotient there rounds up to one).
 `default_nettype none
 module slow_prepare #(
   parameter integer SUBNORMALS = 0
@@ -103,7 +108,8 @@ module slow_prepare #(
       {s1_zeros_d_q, s1_d_q} <= single ? a : b;
       // A subnormal number has the exponent of the smallest normal one.
       s1_exponent_n_q <= single ? 8'd127 : {a_i[30:24], a_i[23] || a_i[30:23] == 8'd0};
-      s1_exponent_d_q <= single ? {a_i[30:24], a_i[23] || a_i[30:23] == 8'd0} : {b_i[30:24], b_i[23] || b_i[30:23] == 8'd0};
+      s1_exponent_d_q <= single ? {a_i[30:24], a_i[23] || a_i[30:23] == 8'd0} :
+                         {b_i[30:24], b_i[23] || b_i[30:23] == 8'd0};
     end
     if (`STAGE_LOADS(enable_i[1])) begin : stage1
       reg smaller;

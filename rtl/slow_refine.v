@@ -1,13 +1,17 @@
-// One multiplicative step of the slow unit in four stages: from y, about 1/v or 1/sqrt(v), the quotient w/v or w/sqrt(v).
-// With n = w*y and e = 1 - v*y, or (1 - v*y*y)/2 for a root, the quotient is n + n*e but for n*e*e (n*1.5*e*e for a root).
-// 0: t = v*y, 1: its product with y for a root, w*y for a quotient, 2: their sums give n and e (of a root n is t, or 2*y), 3: n + n*e.
+// One multiplicative step of the slow unit in four stages: from y, about 1/v or
+// 1/sqrt(v), the quotient w/v or w/sqrt(v).
+// With n = w*y and e = 1 - v*y, or (1 - v*y*y)/2 for a root, the quotient is n + n*e
+// but for n*e*e (n*1.5*e*e for a root).
+// 0: t = v*y, 1: its product with y for a root, w*y for a quotient, 2: their sums give n and e
+//    (of a root n is t, or 2*y), 3: n + n*e.
 // v, w: 23 fraction bits; y: 15, below 1; w is v for fsqrt (root, not unary) and 2 for frsqrt (root and unary).
-// EXACT 0: cut off downwards are t and n at 30 fraction bits, e at 28, the n of n*e at 18, the quotient at 30; |e| must be below 2^-12.
-// EXACT 1: for a caller that needs less. Two bits fewer each, sums lose what multiply_tree leaves out, the quotient has 24 fraction bits;
-// |e| must be below 2^-14. slow_exact.v says how far off that is.
+// EXACT 0: cut off downwards are t and n at 30 fraction bits, e at 28, the n of n*e at 18, the
+// quotient at 30; |e| must be below 2^-12.
+// EXACT 1: for a caller that needs less. Two bits fewer each, sums lose what multiply_tree leaves out, the quotient has
+// 24 fraction bits; |e| must be below 2^-14. slow_exact.v says how far off that is.
 // y_digits_i is what booth_digits makes of y.
-// enable_i[k] says that stage k holds a task; v_i, w_i, y_i and its digits are taken with enable_i[0]. root_1_i and unary_1_i belong to the task in stage 1,
-// root_2_i to that in stage 2. quotient_o is a register with 30 fraction bits.
+// enable_i[k] says that stage k holds a task; v_i, w_i, y_i and its digits are taken with enable_i[0]. root_1_i and
+// unary_1_i belong to the task in stage 1, root_2_i to that in stage 2. quotient_o is a register with 30 fraction bits.
 `default_nettype none
 module slow_refine #(
   parameter integer EXACT = 0

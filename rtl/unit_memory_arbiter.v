@@ -1,5 +1,7 @@
-// Joins the memory ports of 2 to 4 units. A request's id grows by the unit's number, and a response goes to the unit that its id names.
-// Promises: one request a cycle, in rotation (port_arbiter); requests of one unit keep their order; responses are not delayed.
+// Joins the memory ports of 2 to 4 units. A request's id grows by the unit's number, and a response
+// goes to the unit that its id names.
+// Promises: one request a cycle, in rotation (port_arbiter); requests of one unit keep
+// their order; responses are not delayed.
 `default_nettype none
 module unit_memory_arbiter #(
   parameter integer UNITS = 4
@@ -33,8 +35,9 @@ module unit_memory_arbiter #(
   generate
     for (u = 0; u < UNITS; u = u + 1) begin : gen_unit
       localparam [1:0] UNIT = u;
-      assign requests[u*WIDTH +: WIDTH] = {unit_request_write_i[u], unit_request_address_i[u*32 +: 32], unit_request_data_i[u*128 +: 128],
-                                           unit_request_mask_i[u*4 +: 4], unit_request_id_i[u*5 +: 5]};
+      assign requests[u*WIDTH +: WIDTH] = {unit_request_write_i[u], unit_request_address_i[u*32 +: 32],
+                                           unit_request_data_i[u*128 +: 128], unit_request_mask_i[u*4 +: 4],
+                                           unit_request_id_i[u*5 +: 5]};
       assign unit_response_valid_o[u] = response_valid_i && response_unit_i == UNIT;
     end
   endgenerate

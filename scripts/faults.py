@@ -24,18 +24,28 @@ class Refused(Exception):
     """One sentence for the user."""
 
 
+def places(piece, text):
+    """Where a piece of Verilog stands in a text, however either is broken into lines: all [(begin, end)]."""
+    pattern = r"\s+".join(re.escape(word) for word in piece.split())
+    return [found.span() for found in re.finditer(pattern, text)]
+
+
 def place(fault, text):
     """Where in the file's text `right` stands: begin and end."""
     name = f"fault {fault['number']} ({fault['file']}: {fault['mistake']})"
     around = fault.get("at", fault["right"])
-    for what, inner, outer in (("at", around, text), ("right", fault["right"], around)):
-        if (found := outer.count(inner)) != 1:
-            where = f"in rtl/{fault['file']}" if outer is text else "in its `at`"
-            raise Refused(f"{name}: `{inner}` is {where} {found} times, not once: bring its `{what}` in the catalogue up to date")
+    begin, end = 0, len(text)
+    for what, piece, where in (("at", around, f"in rtl/{fault['file']}"), ("right", fault["right"], "in its `at`")):
+        found = places(piece, text[begin:end])
+        if len(found) != 1:
+            raise Refused(
+                f"{name}: `{piece}` is {where} {len(found)} times, not once: "
+                f"bring its `{what}` in the catalogue up to date"
+            )
+        begin, end = begin + found[0][0], begin + found[0][1]
     if fault["wrong"] == fault["right"]:
         raise Refused(f"{name}: `wrong` is the same as `right`")
-    begin = text.index(around) + around.index(fault["right"])
-    return begin, begin + len(fault["right"])
+    return begin, end
 
 
 def chosen(number, wrong, right):

@@ -7,6 +7,7 @@
 #   @break FILE SED            a sed script that breaks FILE; the proof must then fail
 #   @zeros                     registers that have no reset start as 0 instead of anything
 #   @slow                      not with --quick
+# A sentence or a script goes on in lines that begin with `//   `.
 # Every proof is unbounded (property-directed reachability, ABC's pdr); counterexamples for broken copies are found by bmc3, within 40 cycles. --quick leaves the broken copies out, --broken tries only these.
 # Exit code 1 if a proof fails, or holds for a broken copy.
 set -eu -o pipefail
@@ -25,6 +26,15 @@ TIMEFORMAT=%U   # processor time: other work on the machine does not count
 folder=$(mktemp -d)
 exec 3>&1
 trap 'rm -rf "$folder"' EXIT
+
+# said KEY CHECKER: what the checker's head says with @KEY, one a line.
+said() {
+  awk -v key="// @$1 " '
+    function flush() { if (line != "") print line; line = "" }
+    index($0, key) == 1 { flush(); line = substr($0, length(key) + 1); next }
+    line != "" && /^\/\/   / { sub(/^\/\/ +/, ""); line = line " " $0; next }
+    { flush() }' "$2"
+}
 
 # solve CHECKER PARAMETERS FILE...: runs ABC's commands in engine; sets verdict to proved, refuted or unknown, and depth to the length of the counterexample.
 solve() {
@@ -52,8 +62,8 @@ for name in "${names[@]}"; do
   [ -f "$checker" ] || { echo "control.sh: there is no checker '$name'; see tb/proofs/control" >&2; exit 1; }
   [ -z "$quick" ] || ! grep -q '^// @slow' "$checker" || continue
   files=
-  for module in $(sed -n 's/^\/\/ @modules //p' "$checker"); do files+=" rtl/$module.v"; done
-  mapfile -t sets < <(sed -n 's/^\/\/ @parameters //p' "$checker")
+  for module in $(said modules "$checker"); do files+=" rtl/$module.v"; done
+  mapfile -t sets < <(said parameters "$checker")
   [ ${#sets[@]} -gt 0 ] || sets=("")
   for set in "${sets[@]}"; do
     [ -z "$only_broken" ] || break
@@ -67,7 +77,7 @@ for name in "${names[@]}"; do
       tail -3 "$folder/abc"
     fi
   done
-  [ -n "$only_broken" ] && echo "$name" || sed -n 's/^\/\/ @proves /  - /p' "$checker"
+  [ -n "$only_broken" ] && echo "$name" || said proves "$checker" | sed 's/^/  - /'
   [ -z "$quick" ] || continue
   broken=0
   while read -r module script; do
@@ -84,7 +94,7 @@ for name in "${names[@]}"; do
       failed=1
       echo "FAILED: $name: $verdict with rtl/$module.v broken by '$script'"
     fi
-  done < <(sed -n 's/^\/\/ @break //p' "$checker")
+  done < <(said break "$checker")
   [ $broken -gt 0 ] || { echo "FAILED: $name: no broken copy was refuted"; failed=1; }
   echo "  broken copies refuted: $broken"
 done

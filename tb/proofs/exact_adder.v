@@ -1,5 +1,6 @@
-// What a floating-point adder must give, written for proofs and not for speed: both numbers as integers in units of the smallest subnormal
-// number, their exact sum, one rounding to nearest even. Combinational. SUBNORMALS as in rtl/float_adder.v. Shares nothing with it.
+// What a floating-point adder must give, written for proofs and not for speed: both numbers as integers in units of the
+// smallest subnormal number, their exact sum, one rounding to nearest even. Combinational. SUBNORMALS as in
+// rtl/float_adder.v. Shares nothing with it.
 `default_nettype none
 module exact_adder #(
   parameter integer EXPONENT_BITS = 5,
@@ -62,7 +63,8 @@ module exact_adder #(
       kept = kept >> 1;
       last = last + 1;
     end
-    if (nan_a || nan_b || (infinite_a && infinite_b && a_i[BITS-1] != b[BITS-1])) result_o = {1'b0, {E+1{1'b1}}, {M-1{1'b0}}};
+    if (nan_a || nan_b || (infinite_a && infinite_b && a_i[BITS-1] != b[BITS-1]))
+      result_o = {1'b0, {E+1{1'b1}}, {M-1{1'b0}}};
     else if (infinite_a) result_o = a_i;
     else if (infinite_b) result_o = b;
     else if (!kept[M]) result_o = {sign, {E{1'b0}}, (SUBNORMALS != 0) ? {M{1'b0}} : kept[M-1:0]};

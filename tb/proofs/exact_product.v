@@ -1,8 +1,9 @@
-// What a floating-point multiplier must give, written for proofs and not for speed: the exact product of the mantissas as an integer, one
-// rounding to nearest even. The product comes from outside, so that nobody has to see through a multiplication: ones_i is that of the stored
-// bits with a one before each, and what a subnormal number has not is taken off. possible_o says whether the rest may be the product of the
-// two mantissas by what is known of any product, a zero for a zero and a leading one at the sum of the factors' leading ones or one
-// above. Combinational. SUBNORMALS as in rtl/float_multiplier.v. Shares nothing with it.
+// What a floating-point multiplier must give, written for proofs and not for speed: the exact product of the mantissas
+// as an integer, one rounding to nearest even. The product comes from outside, so that nobody has to see through a
+// multiplication: ones_i is that of the stored bits with a one before each, and what a subnormal number has not is
+// taken off. possible_o says whether the rest may be the product of the two mantissas by what is known of any
+// product, a zero for a zero and a leading one at the sum of the factors' leading ones or one above. Combinational.
+// SUBNORMALS as in rtl/float_multiplier.v. Shares nothing with it.
 `default_nettype none
 module exact_product #(
   parameter integer EXPONENT_BITS = 5,
@@ -20,7 +21,8 @@ module exact_product #(
   localparam integer E = EXPONENT_BITS;
   localparam integer M = MANTISSA_BITS;
   localparam integer LARGEST = (1 << E) - 1;               // exponent of infinity
-  localparam integer UNIT = (1 << (E - 1)) - 2 + M;        // the smallest subnormal number in units of its square, as a power of two
+  // The smallest subnormal number in units of its square, as a power of two.
+  localparam integer UNIT = (1 << (E - 1)) - 2 + M;
 
   function [M:0] mantissa(input [BITS-1:0] number);
     if (number[BITS-2 -: E] != {E{1'b0}}) mantissa = {1'b1, number[M-1:0]};

@@ -1,4 +1,5 @@
-// A pipeline that nothing holds up computes the same as the one with wires in place of its registers: a map for `techmap`.
+// A pipeline that nothing holds up computes the same as the one with wires in place of
+// its registers: a map for `techmap`.
 (* techmap_celltype = "$dff" *)
 module without_registers (CLK, D, Q);
   parameter WIDTH = 1;

@@ -1,6 +1,7 @@
-// Replays a vector file (written by arith_vectors) through the Flt, Slw and Brh ALUs of one configuration in Icarus: the same sources, another
-// simulator. Plus-arguments: vectors=FILE, a line a task: unit (0 Flt, 1 Slw, 2 Brh), operation, a, b, c, expected, in hexadecimal. One lane, one
-// task a cycle. Brh takes its predicates from the lowest bits of c and gives one. Prints "arith_icarus: N results agree" at the end, or the first differences and FAILED.
+// Replays a vector file (written by arith_vectors) through the Flt, Slw and Brh ALUs of one configuration in Icarus:
+// the same sources, another simulator. Plus-arguments: vectors=FILE, a line a task: unit (0 Flt, 1 Slw, 2 Brh),
+// operation, a, b, c, expected, in hexadecimal. One lane, one task a cycle. Brh takes its predicates from the lowest
+// bits of c and gives one. Prints "arith_icarus: N results agree" at the end, or the first differences and FAILED.
 `default_nettype none
 module arith_icarus #(
   parameter integer SUBNORMALS = 0,
@@ -21,18 +22,18 @@ module arith_icarus #(
   wire [31:0] flt_data, slw_data;
 
   flt_alu #(.WARPS(8), .LANES(1), .LATENCY(1), .DEPTH(FLT_DEPTH), .SUBNORMALS(SUBNORMALS), .FMA(FMA)) flt (
-    .clk_i(clk), .rst_ni(rst_n), .task_valid_i(flt_valid), .task_warp_i(warp), .task_op_i(op), .task_mask_i(1'b1), .task_a_i(a),
-    .task_b_i(b), .task_c_i(c), .task_imm_i(32'd0), .task_x_i(5'd0), .task_px_i(1'b0), .task_pb_i(1'b0), .ready_o(), .done_valid_o(flt_done),
-    .done_warp_o(flt_warp), .done_data_o(flt_data), .done_pred_o());
+    .clk_i(clk), .rst_ni(rst_n), .task_valid_i(flt_valid), .task_warp_i(warp), .task_op_i(op), .task_mask_i(1'b1),
+    .task_a_i(a), .task_b_i(b), .task_c_i(c), .task_imm_i(32'd0), .task_x_i(5'd0), .task_px_i(1'b0), .task_pb_i(1'b0),
+    .ready_o(), .done_valid_o(flt_done), .done_warp_o(flt_warp), .done_data_o(flt_data), .done_pred_o());
   slw_alu #(.WARPS(8), .LANES(1), .LATENCY(1), .DEPTH(SLW_DEPTH), .SUBNORMALS(SUBNORMALS), .SLOW_UNIT(SLOW_UNIT)) slw (
-    .clk_i(clk), .rst_ni(rst_n), .task_valid_i(slw_valid), .task_warp_i(warp), .task_op_i(op), .task_mask_i(1'b1), .task_a_i(a),
-    .task_b_i(b), .task_imm_i(32'd0), .task_x_i(5'd0), .task_px_i(1'b0), .task_pb_i(1'b0), .ready_o(), .done_valid_o(slw_done),
-    .done_warp_o(slw_warp), .done_data_o(slw_data), .done_pred_o());
+    .clk_i(clk), .rst_ni(rst_n), .task_valid_i(slw_valid), .task_warp_i(warp), .task_op_i(op), .task_mask_i(1'b1),
+    .task_a_i(a), .task_b_i(b), .task_imm_i(32'd0), .task_x_i(5'd0), .task_px_i(1'b0), .task_pb_i(1'b0), .ready_o(),
+    .done_valid_o(slw_done), .done_warp_o(slw_warp), .done_data_o(slw_data), .done_pred_o());
 
   brh_alu #(.WARPS(8), .LANES(1), .WARP_BITS(3), .LATENCY(1), .DEPTH(BRH_DEPTH), .SUBNORMALS(SUBNORMALS)) brh (
-    .clk_i(clk), .rst_ni(rst_n), .task_valid_i(brh_valid), .task_warp_i(warp), .task_op_i(op), .task_mask_i(1'b1), .task_a_i(a),
-    .task_b_i(b), .task_imm_i(32'd0), .task_x_i(5'd0), .task_px_i(c[0]), .task_pb_i(c[1]), .ready_o(), .done_valid_o(brh_done),
-    .done_warp_o(brh_warp), .done_data_o(), .done_pred_o(brh_pred));
+    .clk_i(clk), .rst_ni(rst_n), .task_valid_i(brh_valid), .task_warp_i(warp), .task_op_i(op), .task_mask_i(1'b1),
+    .task_a_i(a), .task_b_i(b), .task_imm_i(32'd0), .task_x_i(5'd0), .task_px_i(c[0]), .task_pb_i(c[1]), .ready_o(),
+    .done_valid_o(brh_done), .done_warp_o(brh_warp), .done_data_o(), .done_pred_o(brh_pred));
 
   // What is expected, beside the pipelines: entry k arrived k cycles ago.
   reg [SLW_DEPTH:0] flt_due = 0, slw_due = 0, brh_due = 0;
@@ -54,7 +55,8 @@ module arith_icarus #(
       brh_due[0] = brh_valid;
       if (flt_done !== flt_due[FLT_DEPTH] || slw_done !== slw_due[SLW_DEPTH] || brh_done !== brh_due[BRH_DEPTH]) begin
         failed = failed + 1;
-        $display("arith_icarus: done at the wrong time, flt %b slw %b brh %b, time %0d", flt_done, slw_done, brh_done, $time);
+        $display("arith_icarus: done at the wrong time, flt %b slw %b brh %b, time %0d", flt_done, slw_done, brh_done,
+                 $time);
       end
       if (flt_due[FLT_DEPTH]) compare("flt", flt_data, flt_warp, due_data[FLT_DEPTH], due_warp[FLT_DEPTH]);
       if (slw_due[SLW_DEPTH]) compare("slw", slw_data, slw_warp, due_data[SLW_DEPTH], due_warp[SLW_DEPTH]);
@@ -74,7 +76,8 @@ module arith_icarus #(
       if (data === good && from === good_from) agreed = agreed + 1;
       else begin
         failed = failed + 1;
-        if (failed < 10) $display("arith_icarus: %0s gives %h for warp %0d, expected %h for %0d", name, data, from, good, good_from);
+        if (failed < 10) $display("arith_icarus: %0s gives %h for warp %0d, expected %h for %0d", name, data, from,
+                                  good, good_from);
       end
     end
   endtask

@@ -1,5 +1,5 @@
-// Bench top: Brh ALUs fed with the same tasks. Unit m has SUBNORMALS m and the bits [m*...] of every output. The last one is deeper, so that
-// the delay behind the stages is seen too.
+// Bench top: Brh ALUs fed with the same tasks. Unit m has SUBNORMALS m and the bits [m*...] of every output. The last
+// one is deeper, so that the delay behind the stages is seen too.
 `default_nettype none
 module brh_units #(
   parameter integer LANES = 4

@@ -1,5 +1,6 @@
-// Bench top: one Flt ALU for each pair of modes, fed with the same tasks. Unit m has SUBNORMALS m % 2 and FMA m / 2, and the bits [m*...] of
-// every output. Those with odd numbers are deeper, so that the delay behind the stages is seen too.
+// Bench top: one Flt ALU for each pair of modes, fed with the same tasks. Unit m has SUBNORMALS m % 2
+// and FMA m / 2, and the bits [m*...] of every output. Those with odd numbers are deeper, so that the
+// delay behind the stages is seen too.
 `default_nettype none
 module flt_units #(
   parameter integer LANES = 4
@@ -21,11 +22,13 @@ module flt_units #(
   genvar m;
   generate
     for (m = 0; m < 4; m = m + 1) begin : gen_mode
-      flt_alu #(.WARPS(8), .LANES(LANES), .LATENCY(1), .DEPTH(3 + 2*(m/2) + 2*(m%2)), .SUBNORMALS(m%2), .FMA(m/2)) unit (
+      flt_alu #(.WARPS(8), .LANES(LANES), .LATENCY(1), .DEPTH(3 + 2*(m/2) + 2*(m%2)), .SUBNORMALS(m%2),
+          .FMA(m/2)) unit (
         .clk_i(clk_i), .rst_ni(rst_ni), .task_valid_i(task_valid_i), .task_warp_i(task_warp_i), .task_op_i(task_op_i),
-        .task_mask_i(task_mask_i), .task_a_i(task_a_i), .task_b_i(task_b_i), .task_c_i(task_c_i), .task_imm_i(32'd0), .task_x_i(5'd0),
-        .task_px_i({LANES{1'b0}}), .task_pb_i({LANES{1'b0}}), .ready_o(ready_o[m]), .done_valid_o(done_valid_o[m]),
-        .done_warp_o(done_warp_o[m*3 +: 3]), .done_data_o(done_data_o[m*LANES*32 +: LANES*32]), .done_pred_o());
+        .task_mask_i(task_mask_i), .task_a_i(task_a_i), .task_b_i(task_b_i), .task_c_i(task_c_i), .task_imm_i(32'd0),
+        .task_x_i(5'd0), .task_px_i({LANES{1'b0}}), .task_pb_i({LANES{1'b0}}), .ready_o(ready_o[m]),
+        .done_valid_o(done_valid_o[m]), .done_warp_o(done_warp_o[m*3 +: 3]),
+        .done_data_o(done_data_o[m*LANES*32 +: LANES*32]), .done_pred_o());
     end
   endgenerate
 endmodule

@@ -1,5 +1,6 @@
-// Bench top: one Slw ALU for each pair of modes, fed with the same tasks. Unit m has SUBNORMALS m / 4 and SLOW_UNIT m % 4, and the bits
-// [m*...] of every output. The last ones are deeper, so that the delay behind the stages is seen too.
+// Bench top: one Slw ALU for each pair of modes, fed with the same tasks. Unit m has SUBNORMALS m / 4
+// and SLOW_UNIT m % 4, and the bits [m*...] of every output. The last ones are deeper, so that the
+// delay behind the stages is seen too.
 `default_nettype none
 module slw_units #(
   parameter integer LANES = 4
@@ -24,7 +25,8 @@ module slw_units #(
   genvar m;
   generate
     for (m = 0; m < 8; m = m + 1) begin : gen_mode
-      slw_alu #(.WARPS(8), .LANES(LANES), .LATENCY(1), .DEPTH(least(m%4) + 2*(m/6)), .SUBNORMALS(m/4), .SLOW_UNIT(m%4)) unit (
+      slw_alu #(.WARPS(8), .LANES(LANES), .LATENCY(1), .DEPTH(least(m%4) + 2*(m/6)), .SUBNORMALS(m/4),
+          .SLOW_UNIT(m%4)) unit (
         .clk_i(clk_i), .rst_ni(rst_ni), .task_valid_i(task_valid_i), .task_warp_i(task_warp_i), .task_op_i(task_op_i),
         .task_mask_i(task_mask_i), .task_a_i(task_a_i), .task_b_i(task_b_i), .task_imm_i(32'd0), .task_x_i(5'd0),
         .task_px_i({LANES{1'b0}}), .task_pb_i({LANES{1'b0}}), .ready_o(ready_o[m]), .done_valid_o(done_valid_o[m]),

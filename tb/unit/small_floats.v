@@ -1,5 +1,5 @@
-// Bench top: adder, multiplier and fused multiply-add of a narrow format, each in both subnormal modes (mode m has the bits [m*...]), fed
-// with an operation a cycle.
+// Bench top: adder, multiplier and fused multiply-add of a narrow format, each in both subnormal modes (mode m has the
+// bits [m*...]), fed with an operation a cycle.
 `default_nettype none
 module small_floats #(
   parameter integer EXPONENT_BITS = 5,
@@ -20,7 +20,8 @@ module small_floats #(
   generate
     for (m = 0; m < 2; m = m + 1) begin : gen_mode
       float_adder #(.EXPONENT_BITS(EXPONENT_BITS), .MANTISSA_BITS(MANTISSA_BITS), .SUBNORMALS(m)) adder (
-        .clk_i(clk_i), .enable_i(3'b111), .subtract_i(subtract_i), .a_i(a_i), .b_i(b_i), .result_o(sum_o[m*BITS +: BITS]));
+        .clk_i(clk_i), .enable_i(3'b111), .subtract_i(subtract_i), .a_i(a_i), .b_i(b_i),
+        .result_o(sum_o[m*BITS +: BITS]));
       float_multiplier #(.EXPONENT_BITS(EXPONENT_BITS), .MANTISSA_BITS(MANTISSA_BITS), .SUBNORMALS(m)) multiplier (
         .clk_i(clk_i), .enable_i(3'b111), .a_i(a_i), .b_i(b_i), .result_o(product_o[m*BITS +: BITS]));
       float_fma #(.EXPONENT_BITS(EXPONENT_BITS), .MANTISSA_BITS(MANTISSA_BITS), .SUBNORMALS(m)) fma (

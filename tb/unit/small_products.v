@@ -1,5 +1,6 @@
-// Bench top: multipliers of a narrow format, LANES of them in each subnormal mode (mode m has the bits [m*LANES*BITS +: ...]), fed with one
-// first operand and LANES second ones a cycle: all pairs there are shall take minutes.
+// Bench top: multipliers of a narrow format, LANES of them in each subnormal mode (mode m has the
+// bits [m*LANES*BITS +: ...]), fed with one first operand and LANES second ones a cycle: all
+// pairs there are shall take minutes.
 `default_nettype none
 module small_products #(
   parameter integer EXPONENT_BITS = 5,

@@ -1,6 +1,8 @@
 // @modules import_arbiter port_arbiter round_robin request_queue
-// @proves a request at the pool's port is that of exactly one unit, and stays until it is taken; at most 3 packages are awaited
-// @proves the six beats of any one package go to the unit that asked for it, and to no other: nothing lost, nothing twice, order kept
+// @proves a request at the pool's port is that of exactly one unit, and stays until it is
+//   taken; at most 3 packages are awaited
+// @proves the six beats of any one package go to the unit that asked for it, and to no other:
+//   nothing lost, nothing twice, order kept
 // @proves a request that stays is taken after UNITS - 1 others at most
 // @parameters UNITS=4
 // @parameters UNITS=2
@@ -10,16 +12,17 @@
 // @break request_queue s/if \(pop\) entries_q/if (pop \&\& !push_i) entries_q/
 // @break round_robin s/\|behind \? behind : request_i/request_i/
 `default_nettype none
-module check #(parameter UNITS = 4) (input wire clk_i, ready_i, beat_i, choose_i, input wire [UNITS-1:0] request_i, input wire [UNITS*2-1:0] kind_i);
+module check #(parameter UNITS = 4) (input wire clk_i, ready_i, beat_i, choose_i, input wire [UNITS-1:0] request_i,
+                                     input wire [UNITS*2-1:0] kind_i);
   reg rst_n = 1'b0;
   always @(posedge clk_i) rst_n <= 1'b1;
   wire [UNITS-1:0] ready, beats;
   wire valid;
   wire [1:0] kind, unit;
   import_arbiter #(.UNITS(UNITS)) dut (
-    .clk_i(clk_i), .rst_ni(rst_n), .unit_request_valid_i(request_i), .unit_request_ready_o(ready), .unit_request_kind_i(kind_i),
-    .unit_beat_valid_o(beats), .request_valid_o(valid), .request_ready_i(ready_i), .request_kind_o(kind), .request_unit_o(unit),
-    .beat_valid_i(beat_i));
+    .clk_i(clk_i), .rst_ni(rst_n), .unit_request_valid_i(request_i), .unit_request_ready_o(ready),
+    .unit_request_kind_i(kind_i), .unit_beat_valid_o(beats), .request_valid_o(valid), .request_ready_i(ready_i),
+    .request_kind_o(kind), .request_unit_o(unit), .beat_valid_i(beat_i));
 
   wire taken = rst_n && valid && ready_i;
   wire beat = rst_n && beat_i;

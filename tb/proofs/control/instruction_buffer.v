@@ -1,9 +1,12 @@
 // @modules instruction_buffer
 // @zeros
-// @proves no instruction is issued while one is under way; each one fetched is issued once, with its PC, in order; it stays until it retires
+// @proves no instruction is issued while one is under way; each one fetched is issued once, with its PC,
+//   in order; it stays until it retires
 // @proves an instruction without a table row is never issued; none that lies outside the program is fetched
-// @proves nothing is stepped while a control instruction is under way; nothing is stepped, fetched, issued or offered while halt_i
-// @proves fetch_pc_o is the PC of an instruction that is illegal or outside, from the next cycle on, as long as halt_i follows
+// @proves nothing is stepped while a control instruction is under way; nothing is stepped,
+//   fetched, issued or offered while halt_i
+// @proves fetch_pc_o is the PC of an instruction that is illegal or outside, from the next
+//   cycle on, as long as halt_i follows
 // @break instruction_buffer s/fetch_pc_o <= pc_i;/if (!outside_o) fetch_pc_o <= pc_i;/
 // @break instruction_buffer s/issue = ready && next_legal_q/issue = ready/
 // @break instruction_buffer s/\(data_q == D_IDLE \|\| retire_i\)/(data_q != D_READ)/
@@ -30,11 +33,12 @@ module check (
   wire [15:0] fetch_pc, pc;
   wire [63:0] instruction;
   instruction_buffer dut (
-    .clk_i(clk_i), .rst_ni(rst_n), .start_i(start_i), .halt_i(halt_i), .active_o(active), .step_o(step), .pc_valid_i(pc_valid_i), .pc_i(pc_i),
-    .program_length_i(length), .fetch_request_o(fetch), .fetch_pc_o(fetch_pc), .fetch_grant_i(fetch_grant_i), .cache_hit_i(hit_i),
-    .cache_instruction_i(instruction_i), .refill_done_i(refill_i), .read_o(read), .want_o(want), .grant_i(grant_i), .retire_i(retire_i),
-    .instruction_o(instruction), .pc_o(pc), .writes_register_o(writes_register), .writes_predicate_o(writes_predicate),
-    .illegal_o(illegal), .outside_o(outside));
+    .clk_i(clk_i), .rst_ni(rst_n), .start_i(start_i), .halt_i(halt_i), .active_o(active), .step_o(step),
+    .pc_valid_i(pc_valid_i), .pc_i(pc_i), .program_length_i(length), .fetch_request_o(fetch), .fetch_pc_o(fetch_pc),
+    .fetch_grant_i(fetch_grant_i), .cache_hit_i(hit_i), .cache_instruction_i(instruction_i), .refill_done_i(refill_i),
+    .read_o(read), .want_o(want), .grant_i(grant_i), .retire_i(retire_i), .instruction_o(instruction), .pc_o(pc),
+    .writes_register_o(writes_register), .writes_predicate_o(writes_predicate), .illegal_o(illegal),
+    .outside_o(outside));
 
   reg stepped_q = 1'b0;         // a PC is given out, its instruction not fetched
   reg lookup_q = 1'b0;          // the cache answers in this cycle

@@ -1,15 +1,18 @@
 // @modules memory_arbiter
-// @proves takes one request a cycle at most; each leaves once, in order, with its address, data, mask and id, and stays until it is taken
+// @proves takes one request a cycle at most; each leaves once, in order, with its address, data, mask
+//   and id, and stays until it is taken
 // @proves with one fetch under way at a time, a waiting request of the data side is taken after one fetch at most
 // @proves a response goes to the side that its id names, and to no other
 // @break memory_arbiter s/free && !instruction_request_valid_i/free/
 // @break memory_arbiter s/!valid_q \|\| request_ready_i/1'b1/
-// @break memory_arbiter s/data_response_valid_o = response_valid_i && !response/data_response_valid_o = response_valid_i; wire u = response/
-// @break memory_arbiter s/data_request_ready_o = free/data_request_ready_o = !valid_q/;s/else if \(free && data/else if (!valid_q \&\& data/;s/ \|\| data_request_valid_i;/ || (data_request_valid_i \&\& !valid_q);/
+// @break memory_arbiter s/(data_response_valid_o = response_valid_i) && !response/\1; wire u = response/
+// @break memory_arbiter s/data_request_ready_o = free/data_request_ready_o = !valid_q/;s/(else if \()free/\1!valid_q/;
+//   s/\|\| (data_request_valid_i);/|| (\1 \&\& !valid_q);/
 `default_nettype none
 module check (
   input wire clk_i, fetch_i, data_i, write_i, ready_i, response_i,
-  input wire [31:0] fetch_address_i, address_i, input wire [127:0] quad_i, input wire [3:0] mask_i, input wire [4:0] id_i, response_id_i
+  input wire [31:0] fetch_address_i, address_i, input wire [127:0] quad_i, input wire [3:0] mask_i,
+  input wire [4:0] id_i, response_id_i
 );
   reg rst_n = 1'b0;
   always @(posedge clk_i) rst_n <= 1'b1;
@@ -20,12 +23,13 @@ module check (
   wire [4:0] id;
   memory_arbiter dut (
     .clk_i(clk_i), .rst_ni(rst_n),
-    .instruction_request_valid_i(fetch_i), .instruction_request_ready_o(fetch_ready), .instruction_request_address_i(fetch_address_i),
-    .instruction_response_valid_o(fetch_response),
-    .data_request_valid_i(data_i), .data_request_ready_o(data_ready), .data_request_write_i(write_i), .data_request_address_i(address_i),
-    .data_request_data_i(quad_i), .data_request_mask_i(mask_i), .data_request_id_i(id_i), .data_response_valid_o(data_response),
-    .request_valid_o(valid), .request_ready_i(ready_i), .request_write_o(write), .request_address_o(address), .request_data_o(quad),
-    .request_mask_o(mask), .request_id_o(id), .response_valid_i(response_i), .response_id_i(response_id_i), .idle_o(idle));
+    .instruction_request_valid_i(fetch_i), .instruction_request_ready_o(fetch_ready),
+    .instruction_request_address_i(fetch_address_i), .instruction_response_valid_o(fetch_response),
+    .data_request_valid_i(data_i), .data_request_ready_o(data_ready), .data_request_write_i(write_i),
+    .data_request_address_i(address_i), .data_request_data_i(quad_i), .data_request_mask_i(mask_i),
+    .data_request_id_i(id_i), .data_response_valid_o(data_response), .request_valid_o(valid), .request_ready_i(ready_i),
+    .request_write_o(write), .request_address_o(address), .request_data_o(quad), .request_mask_o(mask),
+    .request_id_o(id), .response_valid_i(response_i), .response_id_i(response_id_i), .idle_o(idle));
 
   wire fetch_taken = rst_n && fetch_i && fetch_ready;
   wire data_taken = rst_n && data_i && data_ready;

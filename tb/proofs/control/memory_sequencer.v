@@ -1,9 +1,13 @@
-// Waiters and filled lines are anything; a warp has one task at a time, which is queued or starts at once, ends its pass and then parks or is done.
+// Waiters and filled lines are anything; a warp has one task at a time, which is queued or starts at once, ends
+// its pass and then parks or is done.
 // @modules memory_sequencer
-// @proves only a warp that is queued or parked is chosen, once; none is lost: idle_o and queue_empty_o say that none is left
+// @proves only a warp that is queued or parked is chosen, once; none is lost: idle_o and
+//   queue_empty_o say that none is left
 // @proves what is ready to start stays until it is taken; something is chosen whenever something may be
-// @proves at most one warp has the privilege, a loser; it has it no longer two cycles after it took a register or is no loser
-// @proves a privileged loser that may try goes before new tasks; every loser has the privilege after WARPS - 1 others at most
+// @proves at most one warp has the privilege, a loser; it has it no longer two cycles
+//   after it took a register or is no loser
+// @proves a privileged loser that may try goes before new tasks; every loser has the
+//   privilege after WARPS - 1 others at most
 // @zeros
 // @parameters WARPS=2 WARP_BITS=1
 // @parameters WARPS=4 WARP_BITS=2
@@ -25,10 +29,11 @@ module check #(parameter WARPS = 4, WARP_BITS = 2, MSHRS = 2) (
   wire [1:0] kind;
   wire [WARP_BITS-1:0] select_warp, next_warp, holder;
   memory_sequencer #(.WARPS(WARPS), .MSHRS(MSHRS)) dut (
-    .clk_i(clk_i), .rst_ni(rst_n), .queue_i(queue_i), .queue_warp_i(queue_warp_i), .park_i(park_i), .park_warp_i(park_warp_i),
-    .pass_end_i(end_i), .pass_warp_i(end_warp_i), .pass_refused_i(refused_i), .pass_allocated_i(allocated_i), .filled_i(filled_i),
-    .waiters_i(waiters_i), .freed_i(freed_i), .select_o(select), .select_warp_o(select_warp), .next_valid_o(next), .next_kind_o(kind),
-    .next_warp_o(next_warp), .next_mshr_o(next_mshr), .next_take_i(take_i), .queue_empty_o(queue_empty), .privilege_o(privilege),
+    .clk_i(clk_i), .rst_ni(rst_n), .queue_i(queue_i), .queue_warp_i(queue_warp_i), .park_i(park_i),
+    .park_warp_i(park_warp_i), .pass_end_i(end_i), .pass_warp_i(end_warp_i), .pass_refused_i(refused_i),
+    .pass_allocated_i(allocated_i), .filled_i(filled_i), .waiters_i(waiters_i), .freed_i(freed_i), .select_o(select),
+    .select_warp_o(select_warp), .next_valid_o(next), .next_kind_o(kind), .next_warp_o(next_warp),
+    .next_mshr_o(next_mshr), .next_take_i(take_i), .queue_empty_o(queue_empty), .privilege_o(privilege),
     .privilege_warp_o(holder), .idle_o(idle));
 
   // Where each warp's task is

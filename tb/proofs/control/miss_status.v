@@ -1,9 +1,10 @@
-// The access is as data_cache makes it: it allocates only where match_o, available_o and locked_o allow, and the line of a register that is
-// filled is in the cache, so that it hits.
+// The access is as data_cache makes it: it allocates only where match_o, available_o and locked_o allow, and the line
+// of a register that is filled is in the cache, so that it hits.
 // @modules miss_status
 // @zeros
 // @proves a line has at most one register; a way of a set is promised once
-// @proves match_o, available_o, locked_o, freed_o and idle_o tell the truth; a register taken was free; a refill finds its line and way
+// @proves match_o, available_o, locked_o, freed_o and idle_o tell the truth; a register taken was
+//   free; a refill finds its line and way
 // @proves any one warp that waits is a waiter of its register until it is served, and the register is busy so long
 // @parameters MSHRS=3 WARPS=2 MSHR_BITS=2
 // @parameters MSHRS=1 WARPS=2 MSHR_BITS=1
@@ -31,9 +32,9 @@ module check #(parameter MSHRS = 3, WARPS = 2, MSHR_BITS = 2) (
   miss_status #(.WARPS(WARPS), .MSHRS(MSHRS), .SET_BITS(2)) dut (
     .clk_i(clk_i), .rst_ni(rst_n), .access_i(access_i), .access_line_i(line_i), .access_warp_i(warp_i), .match_o(match),
     .available_o(available), .available_id_o(available_id), .locked_o(locked), .join_i(join_i), .allocate_i(allocate_i),
-    .allocate_way_i(way_i), .fill_i(fill_i), .fill_id_i(fill_id_i), .fill_last_i(last_i), .fill_line_o(fill_line), .fill_way_o(fill_way),
-    .served_i(served_i), .served_id_i(served_id_i), .served_warp_i(served_warp_i), .freed_o(freed), .idle_o(idle), .filled_o(filled),
-    .line_o(lines), .waiters_o(waiters));
+    .allocate_way_i(way_i), .fill_i(fill_i), .fill_id_i(fill_id_i), .fill_last_i(last_i), .fill_line_o(fill_line),
+    .fill_way_o(fill_way), .served_i(served_i), .served_id_i(served_id_i), .served_warp_i(served_warp_i),
+    .freed_o(freed), .idle_o(idle), .filled_o(filled), .line_o(lines), .waiters_o(waiters));
 
   // What each register should hold
   reg [MSHRS-1:0] busy_q = 0, filled_q = 0, ways_q = 0;
@@ -75,7 +76,8 @@ module check #(parameter MSHRS = 3, WARPS = 2, MSHR_BITS = 2) (
     assume (!allocate_i || (access_i && !match && !in_cache && available && !locked[way_i]));
     assume (!join_i || (access_i && match));
     assume (!fill_i || (fill_id_i < MSHRS && busy_q[fill_id_i] && !filled_q[fill_id_i]));
-    assume (!served_i || (served_id_i < MSHRS && filled_q[served_id_i] && waiters_q[served_id_i*WARPS + served_warp_i]));
+    assume (!served_i || (served_id_i < MSHRS && filled_q[served_id_i] &&
+                          waiters_q[served_id_i*WARPS + served_warp_i]));
     if (rst_n) begin
       assert (!two || lines_q[one*26 +: 26] != lines_q[other*26 +: 26]);
       assert (!two || lines_q[one*26 +: 2] != lines_q[other*26 +: 2] || ways_q[one] != ways_q[other]);
@@ -86,7 +88,8 @@ module check #(parameter MSHRS = 3, WARPS = 2, MSHR_BITS = 2) (
       assert (freed == (empty != 0) && idle == (busy_q == 0) && filled == (busy_q & filled_q));
       assert (!fill_i || (fill_line == lines_q[fill_id_i*26 +: 26] && fill_way == ways_q[fill_id_i]));
       for (n = 0; n < MSHRS; n = n + 1)
-        assert (!busy_q[n] || (lines[n*26 +: 26] == lines_q[n*26 +: 26] && waiters[n*WARPS +: WARPS] == waiters_q[n*WARPS +: WARPS]));
+        assert (!busy_q[n] || (lines[n*26 +: 26] == lines_q[n*26 +: 26] &&
+                               waiters[n*WARPS +: WARPS] == waiters_q[n*WARPS +: WARPS]));
     end
   end
 endmodule

@@ -1,5 +1,6 @@
 // @modules pc_stack
-// @proves a push on the full stack raises overflow_o and changes nothing, a pop of the first entry raises underflow_o and changes nothing
+// @proves a push on the full stack raises overflow_o and changes nothing, a pop of the first entry
+//   raises underflow_o and changes nothing
 // @proves neither is raised otherwise; a step never pops the first entry; the number of entries stays within 1 .. DEPTH
 // @proves any one entry keeps its PC and RPC while others lie above it, and is what the top shows when it is the top
 // @parameters DEPTH=4
@@ -12,16 +13,17 @@
 // @break pc_stack s/pc_q\[top_q\] <= return_i/pc_q[above] <= return_i/
 `default_nettype none
 module check #(parameter DEPTH = 4) (
-  input wire clk_i, start_i, step_i, jump_i, push_i, push_return_i, pop_i, input wire [15:0] start_pc_i, target_i, end_i, return_i
+  input wire clk_i, start_i, step_i, jump_i, push_i, push_return_i, pop_i, input wire [15:0] start_pc_i, target_i,
+      end_i, return_i
 );
   reg rst_n = 1'b0, started_q = 1'b0;
   always @(posedge clk_i) rst_n <= 1'b1;
   wire pc_valid, overflow, underflow;
   wire [15:0] pc;
   pc_stack #(.DEPTH(DEPTH)) dut (
-    .clk_i(clk_i), .rst_ni(rst_n), .start_i(start_i), .start_pc_i(start_pc_i), .step_i(step_i), .pc_valid_o(pc_valid), .pc_o(pc),
-    .jump_i(jump_i), .push_i(push_i), .push_return_i(push_return_i), .pop_i(pop_i), .target_i(target_i), .end_i(end_i),
-    .return_i(return_i), .overflow_o(overflow), .underflow_o(underflow));
+    .clk_i(clk_i), .rst_ni(rst_n), .start_i(start_i), .start_pc_i(start_pc_i), .step_i(step_i), .pc_valid_o(pc_valid),
+    .pc_o(pc), .jump_i(jump_i), .push_i(push_i), .push_return_i(push_return_i), .pop_i(pop_i), .target_i(target_i),
+    .end_i(end_i), .return_i(return_i), .overflow_o(overflow), .underflow_o(underflow));
 
   (* anyconst *) wire [3:0] entry;
   reg [3:0] top_q = 0;

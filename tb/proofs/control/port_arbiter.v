@@ -2,7 +2,8 @@
 // @proves a transfer at the port is that of exactly one requester, with its data
 // @proves what is offered stays until it is taken; packages are never mixed
 // @proves the port is not idle while somebody asks and no package is under way
-// @proves whoever keeps asking is served before anybody else is served twice, after COUNT - 1 packages of others at most
+// @proves whoever keeps asking is served before anybody else is served twice, after
+//   COUNT - 1 packages of others at most
 // @parameters COUNT=4
 // @parameters COUNT=3
 // @parameters COUNT=2
@@ -12,7 +13,8 @@
 // @break port_arbiter s/number_o = n\[1:0\]/number_o = n[1:0] ^ 2'd1/
 // @break round_robin s/\|behind \? behind : request_i/request_i/
 `default_nettype none
-module check #(parameter COUNT = 4) (input wire clk_i, ready_i, input wire [COUNT-1:0] valid_i, last_i, input wire [COUNT*2-1:0] data_i);
+module check #(parameter COUNT = 4) (input wire clk_i, ready_i, input wire [COUNT-1:0] valid_i, last_i,
+                                     input wire [COUNT*2-1:0] data_i);
   reg rst_n = 1'b0, seen_q = 1'b0;
   always @(posedge clk_i) rst_n <= 1'b1;
   wire [COUNT-1:0] ready;

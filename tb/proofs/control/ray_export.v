@@ -1,8 +1,10 @@
 // Four warps of two lanes. A warp's output set stays while its slice is busy.
 // @modules ray_export ram_1r1w
 // @proves slices are read in the order of their pushes: none lost, none twice, busy_o until the last word
-// @proves of a slice exactly the masked lanes are read, in rising order: words 0, 4 and 8 for the pool, 7 for the frame buffer
-// @proves what is read is offered on its port, in order: nothing lost, nothing twice; what is offered stays until it is taken
+// @proves of a slice exactly the masked lanes are read, in rising order: words 0, 4 and 8
+//   for the pool, 7 for the frame buffer
+// @proves what is read is offered on its port, in order: nothing lost, nothing twice;
+//   what is offered stays until it is taken
 // @proves while memory and ports are willing, no more than 4 cycles pass without a read or a beat
 // @zeros
 // @slow
@@ -29,12 +31,15 @@ module check (
   wire [95:0] color;
   // Two bits of each set's quadword are enough: the lowest and the highest.
   ray_export #(.WARPS(4), .LANES(2), .WARP_BITS(2)) dut (
-    .clk_i(clk_i), .rst_ni(rst_n), .park_i(park_i), .park_warp_i(park_warp_i), .park_frame_i(frame_i), .park_mask_i(mask_i),
-    .push_i(push_i), .push_warp_i(push_warp_i), .output_set_i(sets_i), .busy_o(busy), .exporting_o(exporting), .read_o(read),
-    .read_set_o(set), .read_thread_o(thread), .read_word_o(word), .read_grant_i(grant_i),
-    .memory_data_i({memory_i[5], 126'd0, memory_i[4], memory_i[3], 126'd0, memory_i[2], memory_i[1], 126'd0, memory_i[0]}),
+    .clk_i(clk_i), .rst_ni(rst_n), .park_i(park_i), .park_warp_i(park_warp_i), .park_frame_i(frame_i),
+    .park_mask_i(mask_i), .push_i(push_i), .push_warp_i(push_warp_i), .output_set_i(sets_i), .busy_o(busy),
+    .exporting_o(exporting), .read_o(read), .read_set_o(set), .read_thread_o(thread), .read_word_o(word),
+    .read_grant_i(grant_i),
+    .memory_data_i({memory_i[5], 126'd0, memory_i[4],
+                    memory_i[3], 126'd0, memory_i[2], memory_i[1], 126'd0, memory_i[0]}),
     .export_valid_o(export_valid), .export_ready_i(export_ready_i), .export_data_o(data), .export_last_o(export_last),
-    .frame_valid_o(frame_valid), .frame_ready_i(frame_ready_i), .frame_pixel_o(pixel), .frame_color_o(color));
+    .frame_valid_o(frame_valid), .frame_ready_i(frame_ready_i),
+    .frame_pixel_o(pixel), .frame_color_o(color));
 
   wire granted = rst_n && read && grant_i;
   wire [1:0] read_warp = thread[2:1];
@@ -115,7 +120,8 @@ module check (
     if (rst_n) begin
       assert (!(tracked_q && granted && before != 0) || read_warp != slice_warp_q);
       assert (!(own && granted && rest_q != 0) || read_warp == slice_warp_q);
-      assert (!(own && read && rest_q != 0) || (thread[9:3] == 0 && thread[0] == !rest_q[0] && word == (slice_frame_q ? 7 : beat_q * 4) &&
+      assert (!(own && read && rest_q != 0) ||
+              (thread[9:3] == 0 && thread[0] == !rest_q[0] && word == (slice_frame_q ? 7 : beat_q * 4) &&
                                                 set == sets_i[slice_warp_q*2 +: 2]));
       assert (!tracked_q || busy[slice_warp_q] == (rest_q != 0));
       assert (!read || busy[read_warp]);
@@ -123,7 +129,8 @@ module check (
       assert (!(export_valid && frame_valid));
       assert (exporting == (busy != 0 || flight_q != 0));
       assert (!(beat_tracked_q && beat_before_q == 0 && (export_valid || frame_valid)) ||
-              (frame_valid == to_frame_q && data[0] == value_q[0] && data[127] == value_q[1] && (to_frame_q || export_last == last_q)));
+              (frame_valid == to_frame_q && data[0] == value_q[0] && data[127] == value_q[1] &&
+               (to_frame_q || export_last == last_q)));
       assert (data == {color, pixel});
       assert (!export_waits_q || (export_valid && offer == offer_q));
       assert (!frame_waits_q || (frame_valid && offer == offer_q));

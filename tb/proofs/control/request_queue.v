@@ -1,5 +1,6 @@
 // @modules request_queue
-// @proves loses nothing, duplicates nothing, keeps the order: any one entry comes out as it went in, after as many others as were before it
+// @proves loses nothing, duplicates nothing, keeps the order: any one entry comes out as it went in,
+//   after as many others as were before it
 // @proves count_o is what went in less what came out; what is offered stays until it is taken
 // @parameters DEPTH=3
 // @parameters DEPTH=2
@@ -15,7 +16,8 @@ module check #(parameter DEPTH = 3) (input wire clk_i, push_i, ready_i, choose_i
   wire [3:0] data;
   wire [1:0] count;
   request_queue #(.WIDTH(4), .DEPTH(DEPTH)) dut (
-    .clk_i(clk_i), .rst_ni(rst_n), .push_i(push_i), .data_i(data_i), .valid_o(valid), .ready_i(ready_i), .data_o(data), .count_o(count));
+    .clk_i(clk_i), .rst_ni(rst_n), .push_i(push_i), .data_i(data_i), .valid_o(valid), .ready_i(ready_i), .data_o(data),
+    .count_o(count));
 
   wire push = rst_n && push_i;
   wire pop = rst_n && valid && ready_i;

@@ -1,7 +1,8 @@
 // @modules unit_memory_arbiter port_arbiter round_robin
 // @zeros
 // @slow
-// @proves a request at the memory port is that of exactly one unit, unchanged, its id grown by the unit's number, and stays until it is taken
+// @proves a request at the memory port is that of exactly one unit, unchanged, its id grown by the unit's
+//   number, and stays until it is taken
 // @proves a request that stays is taken after UNITS - 1 others at most; the port is not idle while somebody asks
 // @proves a response goes to the unit that its id names, and to no other
 // @parameters UNITS=2
@@ -25,11 +26,11 @@ module check #(parameter UNITS = 4) (
   wire [3:0] mask;
   wire [6:0] id;
   unit_memory_arbiter #(.UNITS(UNITS)) dut (
-    .clk_i(clk_i), .rst_ni(rst_n), .unit_request_valid_i(valid_i), .unit_request_ready_o(ready), .unit_request_write_i(write_i),
-    .unit_request_address_i(address_i), .unit_request_data_i(quad_i), .unit_request_mask_i(mask_i), .unit_request_id_i(id_i),
-    .unit_response_valid_o(response), .request_valid_o(valid), .request_ready_i(ready_i), .request_write_o(write),
-    .request_address_o(address), .request_data_o(quad), .request_mask_o(mask), .request_id_o(id),
-    .response_valid_i(response_i), .response_unit_i(response_unit_i));
+    .clk_i(clk_i), .rst_ni(rst_n), .unit_request_valid_i(valid_i), .unit_request_ready_o(ready),
+    .unit_request_write_i(write_i), .unit_request_address_i(address_i), .unit_request_data_i(quad_i),
+    .unit_request_mask_i(mask_i), .unit_request_id_i(id_i), .unit_response_valid_o(response), .request_valid_o(valid),
+    .request_ready_i(ready_i), .request_write_o(write), .request_address_o(address), .request_data_o(quad),
+    .request_mask_o(mask), .request_id_o(id), .response_valid_i(response_i), .response_unit_i(response_unit_i));
 
   (* anyconst *) wire [1:0] waiter;
   wire [1:0] unit = id[6:5];
@@ -50,7 +51,8 @@ module check #(parameter UNITS = 4) (
   genvar g;
   generate
     for (g = 0; g < UNITS; g = g + 1) begin : gen_unit
-      assign requests[g*170 +: 170] = {write_i[g], address_i[g*32 +: 32], quad_i[g*128 +: 128], mask_i[g*4 +: 4], id_i[g*5 +: 5]};
+      assign requests[g*170 +: 170] = {write_i[g], address_i[g*32 +: 32], quad_i[g*128 +: 128], mask_i[g*4 +: 4],
+                                       id_i[g*5 +: 5]};
     end
   endgenerate
   always @(posedge clk_i) begin
