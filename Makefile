@@ -159,7 +159,7 @@ synth-replay: setup-sim setup-synth program ## run the mapped netlist in lockste
 synth-prove: setup-sim setup-synth program ## prove each mapped block equal to its RTL
 	@$(SYNTH) prove $(SYNTH_OPTIONS) $${ONLY:+--only "$$ONLY"}
 
-growth: setup-sim setup-synth program ## area against warps, cores, ALUs; what each feature costs
+growth: setup-sim setup-synth program ## area against warps, lanes, ALUs; what each feature costs
 	@$(SYNTH) growth $${PLAN:+--plan "$$PLAN"} $${OUT:+--out "$$OUT"}
 
 test: setup-sim setup-test setup-synth configured-ON ## every test

@@ -34,7 +34,7 @@ struct Range {
 };
 constexpr std::array<Range, 6> kRanges = {{
     {"warps", &Configuration::warps, 1, 32, true, "warps of a compute unit"},
-    {"cores", &Configuration::cores, 1, 32, true, "lanes of an ALU, and threads in a warp"},
+    {"lanes", &Configuration::lanes, 1, 32, true, "lanes of an ALU, and threads in a warp"},
     {"stack_depth", &Configuration::stack_depth, 2, 32, false, "entries of a warp's PC stack"},
     {"instruction_cache.bytes", &Configuration::instruction_cache_bytes, 512, 65536, true, "size"},
     {"data_cache.bytes", &Configuration::data_cache_bytes, 512, 65536, true, "size"},
@@ -129,6 +129,8 @@ class Section {
   void refuse_others() const {
     for (const auto& item : json_.items()) {
       if (std::find(known_.begin(), known_.end(), item.key()) != known_.end()) continue;
+      if (prefix_.empty() && item.key() == "cores")
+        throw InputError(fmt::format("{}: 'cores' is called 'lanes': rename the key", where_));
       throw InputError(fmt::format("{}: unknown key {}{}; known here: {}", where_, prefix_, item.key(), join(known_)));
     }
   }
@@ -152,7 +154,7 @@ Configuration from_json(const Json& json, const std::string& where, const std::s
   Section root(json, where, "");
   root.text("name", configuration.name);
   root.integer("warps", configuration.warps);
-  root.integer("cores", configuration.cores);
+  root.integer("lanes", configuration.lanes);
   root.integer("stack_depth", configuration.stack_depth);
   // First, as the depth that is not given follows it.
   if (auto arithmetic = root.section("arithmetic")) {
@@ -218,15 +220,15 @@ std::vector<fs::path> configuration_folders() {
   return folders;
 }
 
-/// The defaults with N warps and M cores, if that is what the name says.
-std::optional<Configuration> warps_and_cores(const std::string& name) {
-  static const std::regex kWarpsAndCores("([0-9]{1,4})w([0-9]{1,4})c");
+/// The defaults with N warps and M lanes, if that is what the name says.
+std::optional<Configuration> warps_and_lanes(const std::string& name) {
+  static const std::regex kWarpsAndLanes("([0-9]{1,4})w([0-9]{1,4})c");
   std::smatch match;
-  if (!std::regex_match(name, match, kWarpsAndCores)) return std::nullopt;
+  if (!std::regex_match(name, match, kWarpsAndLanes)) return std::nullopt;
   Configuration configuration;
   configuration.name = name;
   configuration.warps = std::stoi(match[1]);
-  configuration.cores = std::stoi(match[2]);
+  configuration.lanes = std::stoi(match[2]);
   check_configuration(configuration, name);
   return configuration;
 }
@@ -235,7 +237,7 @@ std::optional<Configuration> warps_and_cores(const std::string& name) {
 std::optional<Configuration> built_in(const std::string& name) {
   const fs::path path = shipped_folder() / (name + ".json");
   if (fs::is_regular_file(path)) return read_configuration(path);
-  return warps_and_cores(name);
+  return warps_and_lanes(name);
 }
 
 /// A file of other hardware must not go by a name that has a meaning: reports and folders would pass for the other's.
@@ -260,10 +262,10 @@ Configuration load(const std::string& name_or_path) {
       const fs::path path = folder / (name_or_path + ".json");
       if (fs::is_regular_file(path, none)) return read_user_file(path);
     }
-    if (const std::optional<Configuration> configuration = warps_and_cores(name_or_path)) return *configuration;
+    if (const std::optional<Configuration> configuration = warps_and_lanes(name_or_path)) return *configuration;
   }
   throw InputError(fmt::format(
-      "no configuration '{}': give the path of a JSON file, the name of a file in configs/, or NwMc for N warps of M cores",
+      "no configuration '{}': give the path of a JSON file, the name of a file in configs/, or NwMc for N warps of M lanes",
       name_or_path));
 }
 
@@ -418,7 +420,7 @@ std::string to_json(const Configuration& configuration) {
   Json json;
   json["name"] = configuration.name;
   json["warps"] = configuration.warps;
-  json["cores"] = configuration.cores;
+  json["lanes"] = configuration.lanes;
   json["stack_depth"] = configuration.stack_depth;
   for (size_t type = 0; type < kAluTypes; ++type) {
     const AluConfiguration& alu = configuration.alus[type];
@@ -438,7 +440,7 @@ std::string to_json(const Configuration& configuration) {
 
 std::vector<std::pair<std::string, int>> verilog_parameters(const Configuration& configuration) {
   std::vector<std::pair<std::string, int>> parameters = {
-      {"WARPS", configuration.warps}, {"LANES", configuration.cores}, {"STACK_DEPTH", configuration.stack_depth}};
+      {"WARPS", configuration.warps}, {"LANES", configuration.lanes}, {"STACK_DEPTH", configuration.stack_depth}};
   struct Column {
     const char* suffix;
     int AluConfiguration::*value;

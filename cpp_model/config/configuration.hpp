@@ -33,7 +33,7 @@ struct Configuration {
   std::string name = "8w8c";
   std::string source;  ///< what load_configuration was given; empty: nothing
   int warps = 8;
-  int cores = 8;  ///< lanes, and threads in a warp
+  int lanes = 8;  ///< of an ALU, and threads in a warp
   int stack_depth = 8;
   std::array<AluConfiguration, kAluTypes> alus = default_alus();
   int instruction_cache_bytes = 4096;
@@ -45,12 +45,12 @@ struct Configuration {
 
   /// Whether instructions that need the feature are legal.
   bool has(Feature feature) const { return feature == Feature::Base || fma; }
-  int contents() const { return warps * cores; }
+  int contents() const { return warps * lanes; }
   const AluConfiguration& alu(AluType type) const { return alus[static_cast<size_t>(type)]; }
 };
 
 /// Reads a file; `name_or_path` is a path or the name of a file in the configs folder ("8w8c"). A name of the form NwMc that has
-/// no file gets the defaults with N warps and M cores. Throws InputError naming file, key, value and allowed range; unknown keys
+/// no file gets the defaults with N warps and M lanes. Throws InputError naming file, key, value and allowed range; unknown keys
 /// are refused.
 Configuration load_configuration(const std::string& name_or_path);
 

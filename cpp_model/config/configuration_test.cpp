@@ -56,11 +56,11 @@ TEST(Configuration, CheckedInFilesHaveTheNameAndSizeTheyAreCalledBy) {
     const Configuration configuration = load_configuration(name);
     EXPECT_EQ(configuration.name, name);
     EXPECT_TRUE(equal(configuration, load_configuration(entry.path().string())));
-    int warps = 0, cores = 0;
+    int warps = 0, lanes = 0;
     char end = 0;
-    if (std::sscanf(name.c_str(), "%dw%dc%c", &warps, &cores, &end) == 2) {
+    if (std::sscanf(name.c_str(), "%dw%dc%c", &warps, &lanes, &end) == 2) {
       EXPECT_EQ(configuration.warps, warps);
-      EXPECT_EQ(configuration.cores, cores);
+      EXPECT_EQ(configuration.lanes, lanes);
     }
     ++files;
   }
@@ -71,7 +71,7 @@ TEST(Configuration, NameOfTheFormNwMcNeedsNoFile) {
   const Configuration configuration = load_configuration("2w16c");
   EXPECT_EQ(configuration.name, "2w16c");
   EXPECT_EQ(configuration.warps, 2);
-  EXPECT_EQ(configuration.cores, 16);
+  EXPECT_EQ(configuration.lanes, 16);
   EXPECT_EQ(configuration.contents(), 32);
 }
 
@@ -89,7 +89,7 @@ TEST(Configuration, WrittenAndReadAgainIsTheSame) {
   Configuration configuration;
   configuration.name = "odd-1.2";
   configuration.warps = 16;
-  configuration.cores = 2;
+  configuration.lanes = 2;
   configuration.stack_depth = 5;
   for (int type = 0; type < kAluTypes; ++type) {
     AluConfiguration& alu = configuration.alus[static_cast<size_t>(type)];
@@ -113,7 +113,7 @@ TEST(Configuration, WrittenAndReadAgainIsTheSame) {
 TEST(Configuration, ErrorsNameKeyValueAndAllowedRange) {
   EXPECT_EQ(error_of(R"({"warps": 3})"), "warps is 3; it must be a power of two from 1 to 32");
   EXPECT_EQ(error_of(R"({"warps": 64})"), "warps is 64; it must be a power of two from 1 to 32");
-  EXPECT_EQ(error_of(R"({"cores": 0})"), "cores is 0; it must be a power of two from 1 to 32");
+  EXPECT_EQ(error_of(R"({"lanes": 0})"), "lanes is 0; it must be a power of two from 1 to 32");
   EXPECT_EQ(error_of(R"({"stack_depth": 1})"), "stack_depth is 1; it must be an integer from 2 to 32");
   EXPECT_EQ(error_of(R"({"alus": {"slw": {"depth": 10}}})"), "alus.slw.depth is 10; it must be an integer from 11 to 32");
   EXPECT_EQ(error_of(R"({"alus": {"int": {"latency": 17}}})"), "alus.int.latency is 17; it must be an integer from 1 to 16");
@@ -158,9 +158,13 @@ TEST(Configuration, FusedMultiplyAddDeepensFlt) {
 TEST(Configuration, UnknownKeysAreRefusedWithTheKnownOnes) {
   EXPECT_EQ(
       error_of(R"({"warp": 8})"),
-      "unknown key warp; known here: name, warps, cores, stack_depth, arithmetic, alus, instruction_cache, data_cache, $schema");
+      "unknown key warp; known here: name, warps, lanes, stack_depth, arithmetic, alus, instruction_cache, data_cache, $schema");
   EXPECT_EQ(error_of(R"({"alus": {"flt": {"counts": 1}}})"), "unknown key alus.flt.counts; known here: count, latency, depth");
   EXPECT_EQ(error_of(R"({"alus": {"ray": {"depth": 2}}})"), "unknown key alus.ray.depth; known here: count");
+}
+
+TEST(Configuration, AKeyByItsOldNameIsToldTheNewOne) {
+  EXPECT_EQ(error_of(R"({"warps": 4, "cores": 2})"), "'cores' is called 'lanes': rename the key");
 }
 
 TEST(Configuration, SchemaIsCheckedIn) {
@@ -187,7 +191,7 @@ TEST(Configuration, NameWithoutFileSaysWhatToGive) {
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(),
                  "no configuration 'nonesuch': give the path of a JSON file, the name of a file in configs/, or NwMc for N warps "
-                 "of M cores");
+                 "of M lanes");
   }
   EXPECT_THROW(load_configuration(""), InputError);
   EXPECT_THROW(load_configuration("no/such/file.json"), InputError);
@@ -195,7 +199,7 @@ TEST(Configuration, NameWithoutFileSaysWhatToGive) {
 }
 
 TEST(Configuration, FolderOfTheEnvironmentComesFirst) {
-  const TemporaryFile file(R"({"name": "mine", "warps": 1, "cores": 1})", "8w8c.json");
+  const TemporaryFile file(R"({"name": "mine", "warps": 1, "lanes": 1})", "8w8c.json");
   ::setenv("RAYPOOL_CONFIGS", file.folder().c_str(), 1);
   const Configuration configuration = load_configuration("8w8c");
   ::unsetenv("RAYPOOL_CONFIGS");
@@ -208,7 +212,7 @@ TEST(Configuration, OtherHardwareMayNotGoByANameThatHasAMeaning) {
   for (const auto& [text, file_name] : std::vector<std::pair<std::string, std::string>>{
            {R"({"name": "4w4c_fma", "warps": 4})", "mine.json"},
            {R"({"warps": 2})", "8w8c.json"},
-           {R"({"name": "2w2c", "warps": 2, "cores": 2, "stack_depth": 4})", "mine.json"}}) {
+           {R"({"name": "2w2c", "warps": 2, "lanes": 2, "stack_depth": 4})", "mine.json"}}) {
     const TemporaryFile file(text, file_name);
     try {
       load_configuration(file.path());

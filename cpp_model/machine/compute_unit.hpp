@@ -23,7 +23,7 @@ enum class ImportKind : uint8_t { None = 0, Normal = 1, Shadow = 2 };
 
 struct LaunchCommand {
   uint32_t pc = 0;       ///< entry, in instructions
-  uint32_t threads = 0;  ///< 1 .. warps x cores
+  uint32_t threads = 0;  ///< 1 .. warps x lanes
   uint32_t block = 0;    ///< word that `block` reads
   uint32_t blocks = 1;   ///< word that `blocks` reads
   ImportKind import = ImportKind::None;

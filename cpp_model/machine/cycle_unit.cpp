@@ -14,7 +14,7 @@ constexpr size_t index(AluType type) { return static_cast<size_t>(type); }
 }  // namespace
 
 CycleUnit::CycleUnit(const Configuration& configuration, const Memory& memory)
-    : lanes_(configuration.cores),
+    : lanes_(configuration.lanes),
       host_memory_(&memory),
       core_(configuration, memory_),
       instruction_cache_(configuration),

@@ -16,10 +16,10 @@ using test::TestChip;
 constexpr uint32_t kMemoryBytes = 16384;
 constexpr uint32_t kData = 8192;
 
-Configuration make_configuration(int warps, int cores) {
+Configuration make_configuration(int warps, int lanes) {
   Configuration configuration;
   configuration.warps = warps;
-  configuration.cores = cores;
+  configuration.lanes = lanes;
   return configuration;
 }
 
@@ -58,8 +58,8 @@ LaunchCommand launch_of(uint32_t threads, ImportKind import = ImportKind::None) 
 }
 
 TEST(CycleUnit, LeavesWhatTheFunctionalUnitLeaves) {
-  for (const auto& [warps, cores] : {std::pair{1, 1}, {4, 4}, {8, 8}, {2, 32}}) {
-    const Configuration configuration = make_configuration(warps, cores);
+  for (const auto& [warps, lanes] : {std::pair{1, 1}, {4, 4}, {8, 8}, {2, 32}}) {
+    const Configuration configuration = make_configuration(warps, lanes);
     std::vector<std::vector<Ray>> rays;
     std::vector<Memory> memories;
     for (const bool timed : {false, true}) {

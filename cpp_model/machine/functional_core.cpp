@@ -21,12 +21,12 @@ void not_modelled(Opcode opcode) {
 
 FunctionalCore::FunctionalCore(const Configuration& configuration, Memory& memory)
     : memory_(&memory),
-      lanes_(configuration.cores),
+      lanes_(configuration.lanes),
       configuration_(configuration),
       mode_(arith::mode_of(configuration)),
       registers_(static_cast<size_t>(configuration.contents() * kRegisters)),
       warps_(static_cast<size_t>(configuration.warps), Warp(static_cast<uint32_t>(configuration.stack_depth))),
-      slices_(configuration.warps, configuration.cores) {
+      slices_(configuration.warps, configuration.lanes) {
   switch (lanes_) {
     case 1:
       step_ = &FunctionalCore::step_lanes<1>;
@@ -47,7 +47,7 @@ FunctionalCore::FunctionalCore(const Configuration& configuration, Memory& memor
       step_ = &FunctionalCore::step_lanes<32>;
       break;
     default:
-      throw InputError("cores is " + std::to_string(lanes_) + "; the functional model takes 1, 2, 4, 8, 16 or 32");
+      throw InputError("lanes is " + std::to_string(lanes_) + "; the functional model takes 1, 2, 4, 8, 16 or 32");
   }
 }
 

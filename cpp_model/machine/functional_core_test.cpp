@@ -18,7 +18,7 @@ constexpr uint32_t kMemoryBytes = 4096;
 Configuration make_configuration(int warps = 2, int lanes = 4, int stack_depth = 4) {
   Configuration configuration;
   configuration.warps = warps;
-  configuration.cores = lanes;
+  configuration.lanes = lanes;
   configuration.stack_depth = stack_depth;
   return configuration;
 }

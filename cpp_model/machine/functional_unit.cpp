@@ -18,7 +18,7 @@ class FunctionalUnit : public ComputeUnit {
  public:
   FunctionalUnit(const Configuration& configuration, Memory& memory)
       : core_(configuration, memory),
-        lanes_(static_cast<uint32_t>(configuration.cores)),
+        lanes_(static_cast<uint32_t>(configuration.lanes)),
         reserved_(static_cast<size_t>(configuration.warps)),
         exporting_(static_cast<size_t>(configuration.warps)) {}
 

@@ -28,7 +28,7 @@ struct Fixture {
   static Configuration configuration() {
     Configuration result;
     result.warps = 2;
-    result.cores = 4;
+    result.lanes = 4;
     return result;
   }
   void launch(uint32_t threads, ImportKind import = ImportKind::None, uint32_t pc = 0) {

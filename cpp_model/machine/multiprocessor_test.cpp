@@ -20,7 +20,7 @@ constexpr uint32_t kMemoryBytes = 65536;
 Configuration configuration() {
   Configuration result;
   result.warps = 2;
-  result.cores = 4;
+  result.lanes = 4;
   return result;
 }
 

@@ -8,7 +8,7 @@
 namespace raypool {
 
 RayAlu::RayAlu(const Configuration& configuration, const RaySlices& slices)
-    : last_step_(configuration.cores > 4 ? static_cast<uint32_t>(configuration.cores) / 4 - 1 : 0),
+    : last_step_(configuration.lanes > 4 ? static_cast<uint32_t>(configuration.lanes) / 4 - 1 : 0),
       tasks_(static_cast<size_t>(configuration.warps)),
       roles_(static_cast<size_t>(configuration.warps)),
       import_(configuration),

@@ -32,8 +32,8 @@ class RayImport {
   };
 
   explicit RayImport(const Configuration& configuration)
-      : lane_bits_(lowest(static_cast<uint32_t>(configuration.cores))),
-        last_lane_(static_cast<uint32_t>(configuration.cores) - 1) {}
+      : lane_bits_(lowest(static_cast<uint32_t>(configuration.lanes))),
+        last_lane_(static_cast<uint32_t>(configuration.lanes) - 1) {}
 
   void reset() { q_ = Registers{}; }
   const Registers& registers() const { return q_; }

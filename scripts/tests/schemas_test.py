@@ -64,7 +64,7 @@ class Agreement(unittest.TestCase):
                      {"name": "a" * 65}, {"warp": 8}, {"alus": 3}, {"alus": {"box": {}}}, {"arithmetic": {"fma": 1}},
                      {"arithmetic": {"slow_unit": "fast"}}]
         documents += [{"warps": value} for value in (0, 1, 2, 3, 32, 64, "8", 8.5, None)]
-        documents += [{"cores": value} for value in (0, 1, 24, 32, 64)]
+        documents += [{"lanes": value} for value in (0, 1, 24, 32, 64)] + [{"cores": 8}]
         documents += [{"stack_depth": value} for value in (1, 2, 32, 33)]
         documents += [{f"{cache}_cache": {"bytes": value}} for cache in ("instruction", "data")
                       for value in (256, 512, 1000, 65536, 131072)]

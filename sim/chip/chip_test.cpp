@@ -25,17 +25,17 @@ struct FrameRun {
   std::vector<ScriptedUnit*> units;  ///< of the device
   std::unique_ptr<ComputeUnit> device;
 
-  FrameRun(int warps, int cores, int unit_count, int width, int height, int depth, int pace = 60, uint32_t seed = 1) {
+  FrameRun(int warps, int lanes, int unit_count, int width, int height, int depth, int pace = 60, uint32_t seed = 1) {
     world.seed = seed;
     for (uint32_t i = 0; i < memory.size(); i += 4) memory.store(i, i * 2654435761u);
     options.configuration.warps = warps;
-    options.configuration.cores = cores;
+    options.configuration.lanes = lanes;
     options.width = width;
     options.height = height;
     options.depth = depth;
     std::vector<std::unique_ptr<ComputeUnit>> made;
     for (int i = 0; i < unit_count; ++i) {
-      auto unit = std::make_unique<ScriptedUnit>(world, warps * cores, pace, seed + static_cast<uint32_t>(i), memory);
+      auto unit = std::make_unique<ScriptedUnit>(world, warps * lanes, pace, seed + static_cast<uint32_t>(i), memory);
       units.push_back(unit.get());
       made.push_back(std::move(unit));
     }
@@ -73,11 +73,11 @@ struct FrameRun {
 };
 
 struct Shape {
-  int warps, cores, units;
+  int warps, lanes, units;
 };
 
 std::string shape_name(const testing::TestParamInfo<Shape>& shape) {
-  return std::to_string(shape.param.warps) + "w" + std::to_string(shape.param.cores) + "c" + std::to_string(shape.param.units) +
+  return std::to_string(shape.param.warps) + "w" + std::to_string(shape.param.lanes) + "c" + std::to_string(shape.param.units) +
          "u";
 }
 
@@ -88,7 +88,7 @@ TEST_P(EveryShape, DrawsEveryImageWithoutLosingARay) {
   const std::array<std::array<int, 3>, 6> images = {{{1, 1, 1}, {1, 1, 5}, {7, 13, 1}, {31, 17, 4}, {61, 53, 2}, {97, 3, 5}}};
   for (const auto& [width, height, depth] : images) {
     SCOPED_TRACE(testing::Message() << width << "x" << height << " depth " << depth);
-    FrameRun run(shape.warps, shape.cores, shape.units, width, height, depth);
+    FrameRun run(shape.warps, shape.lanes, shape.units, width, height, depth);
     run.expect_conserved(run.go());
   }
 }
@@ -100,7 +100,7 @@ TEST_P(EveryShape, SurvivesFullPools) {
   for (const int packages : {512, 33}) {
     for (const int rays : {512, 64, 1}) {
       SCOPED_TRACE(testing::Message() << packages << " intersections, " << rays << " rays");
-      FrameRun run(shape.warps, shape.cores, shape.units, rays == 1 ? 11 : 31, 23, 6, 30);
+      FrameRun run(shape.warps, shape.lanes, shape.units, rays == 1 ? 11 : 31, 23, 6, 30);
       run.world.misses = run.world.blocked = 0;
       run.world.shadows = run.world.mirrors = 16;
       run.options.intersection_packages = run.options.held_limit = packages;
@@ -113,7 +113,7 @@ TEST_P(EveryShape, SurvivesFullPools) {
 TEST_P(EveryShape, DrawsWithoutTheRemedyAndWithoutLaunchingAhead) {
   const Shape shape = GetParam();
   for (const bool remedy : {false, true}) {
-    FrameRun run(shape.warps, shape.cores, shape.units, 29, 23, 3);
+    FrameRun run(shape.warps, shape.lanes, shape.units, 29, 23, 3);
     run.options.window_remedy = remedy;
     run.options.launch_ahead = false;
     run.expect_conserved(run.go());

@@ -10,7 +10,7 @@ namespace raypool {
 namespace {
 
 struct Case {
-  int warps, cores, units, width, height, depth;
+  int warps, lanes, units, width, height, depth;
 };
 
 class Frame : public testing::TestWithParam<Case> {};
@@ -31,7 +31,7 @@ TEST_P(Frame, IsThatOfTheNativeRenderer) {
 
   ChipOptions options;
   options.configuration.warps = c.warps;
-  options.configuration.cores = c.cores;
+  options.configuration.lanes = c.lanes;
   Memory memory = image.memory;
   std::vector<std::unique_ptr<ComputeUnit>> units;
   for (int i = 0; i < c.units; ++i) units.push_back(make_functional_unit(options.configuration, memory));
@@ -67,7 +67,7 @@ INSTANTIATE_TEST_SUITE_P(Chip, Frame,
                          testing::Values(Case{8, 8, 1, 32, 24, 1}, Case{8, 8, 4, 67, 41, 5}, Case{1, 1, 2, 13, 7, 3},
                                          Case{2, 8, 2, 31, 29, 2}, Case{32, 32, 4, 61, 53, 4}, Case{4, 4, 1, 1, 1, 5}),
                          [](const testing::TestParamInfo<Case>& c) {
-                           return std::to_string(c.param.warps) + "w" + std::to_string(c.param.cores) + "c" +
+                           return std::to_string(c.param.warps) + "w" + std::to_string(c.param.lanes) + "c" +
                                   std::to_string(c.param.units) + "u_depth" + std::to_string(c.param.depth);
                          });
 

@@ -34,7 +34,7 @@ std::string unit_library_path(const Configuration& configuration, bool waves, in
   for (const auto& [name, value] : verilog_parameters(configuration)) hash = hash_of(fmt::format("{}={} ", name, value), hash);
   const std::string several = units == 1 ? "" : fmt::format("-{}cu", units);
   const std::string key =
-      fmt::format("{}w{}c-{:08x}{}{}", configuration.warps, configuration.cores, hash, several, waves ? "-waves" : "");
+      fmt::format("{}w{}c-{:08x}{}{}", configuration.warps, configuration.lanes, hash, several, waves ? "-waves" : "");
   return units_folder() / key / "libraypool_unit.so";
 }
 

@@ -20,10 +20,10 @@ namespace {
 
 using test::Encode;
 
-Configuration configuration_of(int warps, int cores, int stack_depth = 8) {
+Configuration configuration_of(int warps, int lanes, int stack_depth = 8) {
   Configuration configuration;
   configuration.warps = warps;
-  configuration.cores = cores;
+  configuration.lanes = lanes;
   configuration.stack_depth = stack_depth;
   return configuration;
 }

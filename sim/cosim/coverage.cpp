@@ -24,7 +24,7 @@ size_t row_of(const InstructionInfo* info) { return static_cast<size_t>(info - k
 Coverage::Coverage(const Configuration& configuration, int units)
     : configuration_(configuration),
       units_(static_cast<uint32_t>(units)),
-      lanes_(static_cast<uint32_t>(configuration.cores)),
+      lanes_(static_cast<uint32_t>(configuration.lanes)),
       full_(lanes_ == 32 ? ~0u : (1u << lanes_) - 1),
       rows_(std::size(kInstructions)),
       empty_(std::size(kInstructions)),

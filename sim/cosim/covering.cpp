@@ -45,7 +45,7 @@ std::vector<Factor> make_factors() {
                        [member](const Machine& m) { return static_cast<int>(m.configuration.*member); }});
   };
   add("warps", {1, 2, 4, 8, 16, 32}, &Configuration::warps);
-  add("cores", {1, 2, 4, 8, 16, 32}, &Configuration::cores);
+  add("lanes", {1, 2, 4, 8, 16, 32}, &Configuration::lanes);
   factors.push_back({"units", {1, 2, 4}, [](Machine& m, int v) { m.units = v; }, [](const Machine& m) { return m.units; }});
   for (Factor& factor : factors) factor.multiplies = true;
   add("stack_depth", {2, 3, 8, 32}, &Configuration::stack_depth);
@@ -165,7 +165,7 @@ class Search {
 
 Machine named(Machine machine, size_t number) {
   Configuration& configuration = machine.configuration;
-  configuration.name = fmt::format("set{:02}-{}w{}c", number, configuration.warps, configuration.cores);
+  configuration.name = fmt::format("set{:02}-{}w{}c", number, configuration.warps, configuration.lanes);
   check_configuration(configuration, configuration.name);
   return machine;
 }
@@ -220,7 +220,7 @@ std::vector<Machine> covering_machines(int most_threads, size_t most_pairings) {
     for (const int value : factor.values) {
       if (threads_of(factor, value) <= most_threads) continue;
       Machine machine;
-      machine.configuration.warps = machine.configuration.cores = 1;
+      machine.configuration.warps = machine.configuration.lanes = 1;
       factor.set(machine, value);
       machines.push_back(named(std::move(machine), machines.size() + 1));
     }

@@ -26,7 +26,7 @@ class Checker {
         memory_(program.memory),
         core_(configuration, memory_),
         warps_(static_cast<uint32_t>(configuration.warps)),
-        lanes_(static_cast<uint32_t>(configuration.cores)),
+        lanes_(static_cast<uint32_t>(configuration.lanes)),
         defined_(warps_ * kRegisters),
         slices_(warps_),
         arguments_(program.arguments) {}

@@ -117,7 +117,7 @@ class Generator : public ProgramStatements {
   void choose_kernels() {
     constexpr uint32_t kAllThreads = 5;
     const auto contents = static_cast<uint32_t>(configuration_.contents());
-    const auto lanes = static_cast<uint32_t>(configuration_.cores);
+    const auto lanes = static_cast<uint32_t>(configuration_.lanes);
     for (uint32_t k = 0; k < kernels_; ++k) {
       uint32_t threads = contents;
       switch (profile_.name == kFaultMix ? kAllThreads : below(6)) {

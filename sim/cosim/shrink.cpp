@@ -86,7 +86,7 @@ class Shrinker {
   bool threads() {
     bool any = false;
     for (size_t k = 0; k < best_.kernels.size(); ++k) {
-      for (const uint32_t threads : {1u, static_cast<uint32_t>(configuration_.cores)}) {
+      for (const uint32_t threads : {1u, static_cast<uint32_t>(configuration_.lanes)}) {
         if (best_.kernels[k].threads <= threads) continue;
         RandomProgram program = best_;
         program.kernels[k].threads = threads;

@@ -39,7 +39,7 @@ class Bus {
 class Recorder : public ComputeUnit {
  public:
   Recorder(const Configuration& configuration, std::unique_ptr<ComputeUnit> unit, std::ostream& out)
-      : unit_(std::move(unit)), out_(&out), warps_(configuration.warps), lanes_(configuration.cores), warp_bits_(1) {
+      : unit_(std::move(unit)), out_(&out), warps_(configuration.warps), lanes_(configuration.lanes), warp_bits_(1) {
     while ((1 << warp_bits_) < warps_) ++warp_bits_;
   }
 

@@ -17,7 +17,7 @@ class Comparison {
   /// `issue` gives the model's instruction under way of a unit's warp. `counts` must outlive the comparison.
   Comparison(const Configuration& configuration, std::function<const CycleUnit::Issue&(uint32_t unit, uint32_t warp)> issue,
              LockstepCounts& counts)
-      : configuration_(configuration), lanes_(configuration.cores), issue_(std::move(issue)), counts_(&counts) {}
+      : configuration_(configuration), lanes_(configuration.lanes), issue_(std::move(issue)), counts_(&counts) {}
 
   /// Retirements, stores, writes of ray memory.
   void trace(const UnitTrace& rtl, const UnitTrace& model);

@@ -37,7 +37,7 @@ UnitInspection::UnitInspection(const Configuration& configuration, const Compute
     : model_(&model),
       configuration_(configuration),
       warps_(static_cast<uint32_t>(configuration.warps)),
-      lanes_(static_cast<uint32_t>(configuration.cores)),
+      lanes_(static_cast<uint32_t>(configuration.lanes)),
       warp_bits_(warps_ > 1 ? lowest(warps_) : 1),
       mshrs_(static_cast<uint32_t>(configuration.data_cache_mshrs)),
       w_(rtl, scope_of(unit)),

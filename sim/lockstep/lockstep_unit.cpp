@@ -28,7 +28,7 @@ class LockstepUnitImpl : public LockstepUnit {
       : configuration_(configuration),
         options_(options),
         warps_(static_cast<uint32_t>(configuration.warps)),
-        lanes_(configuration.cores),
+        lanes_(configuration.lanes),
         rtl_(std::move(rtl)),
         model_(make_model(configuration, memory, rtl_->units())),
         histories_(warps_ * model_.units.size()),

@@ -21,7 +21,7 @@ constexpr uint32_t kMemoryBytes = 8192;
 Configuration make_configuration() {
   Configuration configuration;
   configuration.warps = 2;
-  configuration.cores = 4;
+  configuration.lanes = 4;
   return configuration;
 }
 

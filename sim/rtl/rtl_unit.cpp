@@ -47,7 +47,7 @@ class RtlUnit : public ComputeUnit {
  public:
   explicit RtlUnit(const Configuration& configuration)
       : warps_(static_cast<uint32_t>(configuration.warps)),
-        lanes_(static_cast<uint32_t>(configuration.cores)),
+        lanes_(static_cast<uint32_t>(configuration.lanes)),
         warp_bits_(warps_ > 1 ? static_cast<uint32_t>(__builtin_ctz(warps_)) : 1) {
 #if VM_TRACE
     context_.traceEverOn(true);

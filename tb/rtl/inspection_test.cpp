@@ -76,7 +76,7 @@ Configuration configuration() {
   Configuration configuration;
   configuration.name = "inspected";
   configuration.warps = 4;
-  configuration.cores = 2;
+  configuration.lanes = 2;
   configuration.data_cache_bytes = configuration.instruction_cache_bytes = 512;
   configuration.data_cache_mshrs = 2;
   return configuration;

@@ -25,7 +25,7 @@ using test::Encode;
 Configuration configuration() {
   Configuration result;
   result.name = "2w2c_small";
-  result.warps = result.cores = 2;
+  result.warps = result.lanes = 2;
   result.instruction_cache_bytes = result.data_cache_bytes = 512;
   result.data_cache_mshrs = 2;
   return result;

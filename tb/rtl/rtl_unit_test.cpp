@@ -128,11 +128,11 @@ const Case kCases[] = {
     {"8w8c", [](Configuration&) {}},
     {"1w1c",
      [](Configuration& c) {
-       c.warps = c.cores = 1, c.data_cache_mshrs = 1, c.data_cache_bytes = c.instruction_cache_bytes = 512;
+       c.warps = c.lanes = 1, c.data_cache_mshrs = 1, c.data_cache_bytes = c.instruction_cache_bytes = 512;
      }},
     {"4w2c_many",
      [](Configuration& c) {
-       c.warps = 4, c.cores = 2, c.subnormals = Subnormals::Flush, c.slow_unit = SlowUnit::Newton1, c.stack_depth = 5,
+       c.warps = 4, c.lanes = 2, c.subnormals = Subnormals::Flush, c.slow_unit = SlowUnit::Newton1, c.stack_depth = 5,
        c.fma = true;
        c.alus[static_cast<size_t>(AluType::Int)] = {2, 1, 4};
        c.alus[static_cast<size_t>(AluType::Flt)] = {3, 4, 5};
@@ -146,7 +146,7 @@ INSTANTIATE_TEST_SUITE_P(Configurations, RtlUnit, testing::ValuesIn(kCases),
                          [](const auto& test_case) { return std::string(test_case.param.name); });
 
 TEST(RtlUnitWaves, WritesAWaveformWhenBuiltForIt) {
-  const Case waves{"1w1c_waves", [](Configuration& c) { c.warps = c.cores = 1; }, true};
+  const Case waves{"1w1c_waves", [](Configuration& c) { c.warps = c.lanes = 1; }, true};
   const Configuration configuration = configuration_of(waves);
   const std::string path = std::string(RAYPOOL_TEST_UNITS) + "/waves.fst";
   std::filesystem::remove(path);

@@ -29,7 +29,7 @@ std::string exit_codes() {
 }
 
 void add_config(CLI::App& app, std::string& config) {
-  app.add_option("--config", config, "hardware: a name in configs/, NwMc (N warps, M cores) or a JSON file")
+  app.add_option("--config", config, "hardware: a name in configs/, NwMc (N warps, M lanes) or a JSON file")
       ->capture_default_str();
 }
 
@@ -159,7 +159,7 @@ void CommandLine::add_run_command() {
   add_unit(*run_app, compute_.engine, compute_.unit_library);
   run_app->add_option("--n", compute_.n, "size of saxpy (elements) or matmul (rows of a square matrix)");
   run_app->add_option("--blocks", compute_.blocks, "assembly file: blocks to launch")->capture_default_str();
-  run_app->add_option("--threads", compute_.threads, "assembly file: threads a block (default: warps x cores)");
+  run_app->add_option("--threads", compute_.threads, "assembly file: threads a block (default: warps x lanes)");
   run_app->add_option("--arg", compute_.arguments, "assembly file: next kernel argument; integer, 0x..., or float (with a point)")
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
