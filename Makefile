@@ -1,4 +1,5 @@
-# The front door. Every target installs what it needs, builds what it needs in the folder BUILD, and keeps it. `make help` lists them.
+# The front door. Every target installs what it needs, builds what it needs in the folder BUILD,
+# and keeps it. `make help` lists them.
 SHELL := /bin/bash
 .SHELLFLAGS := -eu -o pipefail -c
 .DEFAULT_GOAL := help
@@ -59,7 +60,8 @@ UPDATE    ?= 0
 PAGES     ?=
 FILES     ?=
 # Recipes read these from the environment, so that a value with spaces or quotes stays one word.
-export CONFIG CUS SCENE SIZE DEPTH ENGINE TRAVERSER VIEW EYE LOOK_AT UP FOV LIGHT DETAIL OUT WAVES KERNEL PROGRAMS SEED COVERAGE MUTANTS MODE THREADS
+export CONFIG CUS SCENE SIZE DEPTH ENGINE TRAVERSER VIEW EYE LOOK_AT UP FOV LIGHT DETAIL OUT WAVES
+export KERNEL PROGRAMS SEED COVERAGE MUTANTS MODE THREADS
 export LIBERTY CLOCK MEMORIES AGAINST RUN ONLY PLAN
 
 # Everything that is made goes here; scripts read it from the environment.
@@ -75,14 +77,17 @@ LOCKED := flock $(BUILD)/.lock
 WAVES_FLAG := $(if $(filter-out 0,$(WAVES)),--waves)
 UNIT := scripts/unit.sh "$$CONFIG" $(WAVES_FLAG)
 # After an equals sign a number may be negative.
-LOOK := $${EYE:+"--eye=$$EYE"} $${LOOK_AT:+"--look-at=$$LOOK_AT"} $${UP:+"--up=$$UP"} $${FOV:+"--fov=$$FOV"} $${LIGHT:+"--light=$$LIGHT"}
+LOOK := $${EYE:+"--eye=$$EYE"} $${LOOK_AT:+"--look-at=$$LOOK_AT"} $${UP:+"--up=$$UP"} \
+  $${FOV:+"--fov=$$FOV"} $${LIGHT:+"--light=$$LIGHT"}
 # The synthesis flow; paths may be relative to this folder.
 SYNTH := PYTHONPATH=scripts python3 -m synth
-SYNTH_OPTIONS := --config "$$CONFIG" --memories "$$MEMORIES" $${LIBERTY:+--liberty "$$LIBERTY"} $${CLOCK:+--clock "$$CLOCK"}
+SYNTH_OPTIONS := --config "$$CONFIG" --memories "$$MEMORIES" $${LIBERTY:+--liberty "$$LIBERTY"} \
+  $${CLOCK:+--clock "$$CLOCK"}
 GATES_SETUP := $(if $(filter-out 0,$(GATES)),setup-synth)
 UNIT_OF_ENGINE := $(if $(filter rtl lockstep,$(ENGINE)),$(UNIT),true)
 
-.PHONY: help sim run cosim configurations mutants faults unit test lint format bench clean setup-% program configured-% numerics-long proofs synth synth-replay synth-prove growth numerics extremes isa diagrams quoted package
+.PHONY: help sim run cosim configurations mutants faults unit test lint format bench clean setup-% program configured-%
+.PHONY: numerics-long proofs synth synth-replay synth-prove growth numerics extremes isa diagrams quoted package
 
 help: ## this list
 	@echo 'raypool: a ray-tracing GPU to render on, measure, verify and synthesise'
@@ -103,17 +108,22 @@ help: ## this list
 	@echo '  OUT=FOLDER                    image.png, report.json                      $(BUILD)/out/...'
 	@echo '  WAVES=1                       a waveform (FST) too; ENGINE=rtl, lockstep  $(WAVES)'
 	@echo 'variables of make synth, synth-replay, synth-prove:  CONFIG  LIBERTY=FILE  CLOCK=NS  MEMORIES=macros|flops'
-	@echo '  make synth:  AGAINST=REPORT  RUN=REPORT_OF_SIM  POWER=1  OUT=FOLDER;  synth-replay:  BREAK=N;  synth-prove:  ONLY=BLOCKS;  growth:  PLAN=FILE'
+	@echo '  make synth:  AGAINST=REPORT  RUN=REPORT_OF_SIM  POWER=1  OUT=FOLDER'
+	@echo '  synth-replay:  BREAK=N;  synth-prove:  ONLY=BLOCKS;  growth:  PLAN=FILE'
 	@echo 'variables of make cosim:  PROGRAMS=$(PROGRAMS)  SEED=$(SEED)  CONFIG  CUS  COVERAGE=FILE.json'
-	@echo 'variables of make numerics:  GATES=1: synthesise the lanes of every mode first;  extremes:  MODE=all|ieee-exact|...;  numerics-long:  THREADS=$(THREADS)'
-	@echo 'variables of make quoted:  LONG=1: those that take long too;  UPDATE=1: write what is printed into the pages;  PAGES="docs/isa.md ...";  FILES=NAME=PATH: a file that quotes need'
-	@echo 'variable of every target:  BUILD=FOLDER: for everything that is made, $(BUILD) if not given; a checkout that cannot be written needs one'
+	@echo 'variables of make numerics:  GATES=1: synthesise the lanes of every mode first'
+	@echo '  extremes:  MODE=all|ieee-exact|...;  numerics-long:  THREADS=$(THREADS)'
+	@echo 'variables of make quoted:  LONG=1: those that take long too;  UPDATE=1: write what is printed into the pages'
+	@echo '  PAGES="docs/isa.md ...";  FILES=NAME=PATH: a file that quotes need'
+	@echo 'variable of every target:  BUILD=FOLDER: for everything that is made, $(BUILD) if not given;'
+	@echo '  a checkout that cannot be written needs one'
 	@echo 'variables of make run:  KERNEL=saxpy|matmul|FILE.asm  CONFIG  ENGINE  ARGS="--n 1000"'
 
 sim: setup-sim program ## draw a scene on the simulated chip: picture, report, figures
 	@$(UNIT_OF_ENGINE) --units "$$CUS"
-	@$(RAYPOOL) sim --scene "$$SCENE" --config "$$CONFIG" --units "$$CUS" --size "$$SIZE" --depth "$$DEPTH" --engine "$$ENGINE" \
-	  --traverser "$$TRAVERSER" $${VIEW:+--view "$$VIEW"} $(LOOK) $${DETAIL:+--detail "$$DETAIL"} $${OUT:+--out "$$OUT"} $(WAVES_FLAG)
+	@$(RAYPOOL) sim --scene "$$SCENE" --config "$$CONFIG" --units "$$CUS" --size "$$SIZE" --depth "$$DEPTH" \
+	  --engine "$$ENGINE" --traverser "$$TRAVERSER" $${VIEW:+--view "$$VIEW"} $(LOOK) $${DETAIL:+--detail "$$DETAIL"} \
+	  $${OUT:+--out "$$OUT"} $(WAVES_FLAG)
 
 run: setup-sim program ## run a compute kernel, check its results, print its cycles
 	@$(UNIT_OF_ENGINE)
@@ -121,7 +131,8 @@ run: setup-sim program ## run a compute kernel, check its results, print its cyc
 
 cosim: setup-sim program ## random programs, hardware against model: CONFIG, CUS, PROGRAMS, SEED
 	@$(UNIT) --units "$$CUS"
-	@$(RAYPOOL) cosim --config "$$CONFIG" --units "$$CUS" --programs "$$PROGRAMS" --seed "$$SEED" $${COVERAGE:+--coverage "$$COVERAGE"}
+	@$(RAYPOOL) cosim --config "$$CONFIG" --units "$$CUS" --programs "$$PROGRAMS" --seed "$$SEED" \
+	  $${COVERAGE:+--coverage "$$COVERAGE"}
 
 configurations: setup-sim program ## random programs on machines with every pair of values (hours): PROGRAMS
 	@scripts/configurations.sh all "$$PROGRAMS"
@@ -129,10 +140,10 @@ configurations: setup-sim program ## random programs on machines with every pair
 mutants: setup-sim setup-lint program ## small faults put into the RTL: which does the lockstep notice? MUTANTS
 	@scripts/build.sh $(BUILD) raypool_mutants
 	@scripts/mutants.sh $(BUILD)/mutants tb/mutants/2w2c.json "$$MUTANTS" 1
-	@$(BUILD)/raypool_mutants --unit $(BUILD)/mutants/libraypool_unit.so --list $(BUILD)/mutants/list.txt --config tb/mutants/2w2c.json \
-	  --survivors tb/mutants/survivors.json --json $(BUILD)/mutants/outcomes.json
+	@$(BUILD)/raypool_mutants --unit $(BUILD)/mutants/libraypool_unit.so --list $(BUILD)/mutants/list.txt \
+	  --config tb/mutants/2w2c.json --survivors tb/mutants/survivors.json --json $(BUILD)/mutants/outcomes.json
 
-faults: setup-sim setup-test configured-ON program ## a catalogue of designers' mistakes: what notices each, and where its report leads
+faults: setup-sim setup-test configured-ON program ## designers' mistakes: what notices each, where its report leads
 	@scripts/build.sh $(BUILD) raypool_faults
 	@scripts/faults.sh $(BUILD)/faults
 	@scripts/configure.sh $(BUILD)/faults/benches ON -DRAYPOOL_RTL=$(abspath $(BUILD))/faults/rtl
@@ -166,13 +177,14 @@ test: setup-sim setup-test setup-synth configured-ON ## every test
 	@scripts/build.sh $(BUILD)
 	@ctest --test-dir $(BUILD) --output-on-failure -j "$$(nproc)"
 
-numerics-long: setup-sim setup-test configured-ON ## arithmetic against its oracles: every unary input, 10^8 pairs; an hour: THREADS
+numerics-long: setup-sim setup-test configured-ON ## arithmetic against its oracles, 10^8 pairs; an hour: THREADS
 	@scripts/build.sh $(BUILD) numerics_long flt_alu_test slw_alu_test small_floats_test
 	@scripts/numerics_long.sh $(BUILD) "$$THREADS"
 
-quoted: setup-sim setup-test setup-synth configured-ON ## run the commands that README and docs quote, compare what they print: LONG, UPDATE, PAGES
+quoted: setup-sim setup-test setup-synth configured-ON ## run what README and docs quote: LONG, UPDATE, PAGES
 	@scripts/build.sh $(BUILD)
-	@scripts/quoted_output.py $(if $(filter-out 0,$(LONG)),--long) $(if $(filter-out 0,$(UPDATE)),--update) $(foreach file,$(FILES),--file $(file)) $(PAGES)
+	@scripts/quoted_output.py $(if $(filter-out 0,$(LONG)),--long) $(if $(filter-out 0,$(UPDATE)),--update) \
+	  $(foreach file,$(FILES),--file $(file)) $(PAGES)
 
 proofs: setup-lint ## formal proofs of blocks (Yosys, ABC)
 	@scripts/proofs.sh
@@ -194,15 +206,20 @@ package: setup-sim setup-package ## Debian packages of program and library, in b
 	@flock $(BUILD)/package/.lock scripts/package.sh $(BUILD)/package
 
 # The Slw lane does not depend on fma: its newton variants are not synthesised twice.
-numerics: setup-sim setup-numerics $(GATES_SETUP) program ## errors of each arithmetic mode, what they do to pictures, its cost: tables, plots
+numerics: setup-sim setup-numerics $(GATES_SETUP) program ## errors of each arithmetic mode, what they do, its cost
 	@$(RAYPOOL) errors
-	@$(if $(GATES_SETUP),for config in $$($(RAYPOOL) numerics --config 1w1c --configurations $(BUILD)/out/lanes | grep -v 'newton.-fma'); do \
-	  $(SYNTH) report --config "$$config" --memories macros > $(BUILD)/out/lanes/synth.txt || { cat $(BUILD)/out/lanes/synth.txt; exit 1; }; done)
+	@$(if $(GATES_SETUP),lanes=$(BUILD)/out/lanes; \
+	  for config in $$($(RAYPOOL) numerics --config 1w1c --configurations "$$lanes" | grep -v 'newton.-fma'); do \
+	    $(SYNTH) report --config "$$config" --memories macros > "$$lanes/synth.txt" || \
+	      { cat "$$lanes/synth.txt"; exit 1; }; \
+	  done)
 	@echo
 	@$(RAYPOOL) numerics
 
 extremes: setup-sim program ## hard cases in every arithmetic mode, on every engine: MODE
-	@for config in $$($(RAYPOOL) numerics --mode "$$MODE" --configurations $(BUILD)/out/modes); do scripts/unit.sh "$$config"; done
+	@for config in $$($(RAYPOOL) numerics --mode "$$MODE" --configurations $(BUILD)/out/modes); do \
+	  scripts/unit.sh "$$config"; \
+	done
 	@$(RAYPOOL) numerics --mode "$$MODE" --extremes
 
 clean: ## remove the build folder (pictures in its out/ too)
@@ -214,7 +231,8 @@ setup-%:
 # Tests are left out until a target needs them; once in, they stay in.
 configured-%:
 	@mkdir -p $(BUILD) 2> /dev/null && [ -w $(BUILD) ] || \
-	  { echo 'make: the build folder "$(BUILD)" cannot be written: choose another one with BUILD=/path/elsewhere' >&2; exit 1; }
+	  { echo 'make: the build folder "$(BUILD)" cannot be written: choose another one with BUILD=/path/elsewhere' >&2; \
+	    exit 1; }
 	@$(LOCKED) scripts/configure.sh $(BUILD) $*
 
 program: configured-OFF

@@ -1,5 +1,5 @@
-# `cpack`: two Debian packages, raypool (the program) and raypool-dev (the model as a library). `make package` builds them in a folder of
-# their own, with RAYPOOL_NATIVE off, since they are for any computer.
+# `cpack`: two Debian packages, raypool (the program) and raypool-dev (the model as a library). `make package` builds
+# them in a folder of their own, with RAYPOOL_NATIVE off, since they are for any computer.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME raypool)
 set(CPACK_PACKAGE_CONTACT "raypool maintainers <maintainers@users.noreply.h-seed-7db6b7de.example>")

@@ -1,24 +1,31 @@
-# What `cmake --install` copies: component program (raypool, its data, man page, completion) and component development (the model as a
-# library). The data keep the places they have in the checkout, since scripts/verilate.sh builds units from them.
+# What `cmake --install` copies: component program (raypool, its data, man page, completion) and component
+# development (the model as a library). The data keep the places they have in the checkout, since
+# scripts/verilate.sh builds units from them.
 include(CMakePackageConfigHelpers)
 set(data ${CMAKE_INSTALL_DATADIR}/raypool)
 
 install(TARGETS raypool RUNTIME COMPONENT program)
 install(DIRECTORY configs schemas examples rtl DESTINATION ${data} COMPONENT program)
 install(PROGRAMS scripts/verilate.sh DESTINATION ${data}/scripts COMPONENT program)
-install(FILES sim/rtl/rtl_unit.cpp sim/rtl/unit_library.hpp sim/rtl/probes.vlt DESTINATION ${data}/sim/rtl COMPONENT program)
+install(FILES sim/rtl/rtl_unit.cpp sim/rtl/unit_library.hpp sim/rtl/probes.vlt DESTINATION ${data}/sim/rtl
+  COMPONENT program)
 install(FILES cpp_model/isa/isa.hpp cpp_model/isa/input_error.hpp DESTINATION ${data}/cpp_model/isa COMPONENT program)
 install(FILES cpp_model/config/configuration.hpp DESTINATION ${data}/cpp_model/config COMPONENT program)
-install(FILES cpp_model/machine/compute_unit.hpp cpp_model/machine/compute_unit.cpp cpp_model/machine/memory.hpp cpp_model/machine/packages.hpp
+install(FILES cpp_model/machine/compute_unit.hpp cpp_model/machine/compute_unit.cpp cpp_model/machine/memory.hpp
+  cpp_model/machine/packages.hpp
         DESTINATION ${data}/cpp_model/machine COMPONENT program)
 install(FILES ${CMAKE_BINARY_DIR}/share/raypool.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program)
-install(FILES ${CMAKE_BINARY_DIR}/share/raypool.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME raypool COMPONENT program)
-install(FILES ${CMAKE_BINARY_DIR}/share/raypool.zsh DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions RENAME _raypool COMPONENT program)
-install(FILES ${CMAKE_BINARY_DIR}/share/raypool.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d COMPONENT program)
+install(FILES ${CMAKE_BINARY_DIR}/share/raypool.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
+  RENAME raypool COMPONENT program)
+install(FILES ${CMAKE_BINARY_DIR}/share/raypool.zsh DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions
+  RENAME _raypool COMPONENT program)
+install(FILES ${CMAKE_BINARY_DIR}/share/raypool.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d
+  COMPONENT program)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/raypool RENAME copyright COMPONENT program)
 
 # The libraries by the names that others link them by: raypool::model brings all but the lockstep.
-set(libraries raypool_include raypool_files raypool_isa raypool_config raypool_arith raypool_kernel raypool_machine raypool_lockstep)
+set(libraries raypool_include raypool_files raypool_isa raypool_config raypool_arith raypool_kernel raypool_machine
+  raypool_lockstep)
 foreach(library IN LISTS libraries)
   string(REPLACE raypool_ "" name ${library})
   string(REPLACE machine model name ${name})
@@ -31,6 +38,8 @@ install(DIRECTORY cpp_model/ sim/lockstep DESTINATION ${CMAKE_INSTALL_INCLUDEDIR
         FILES_MATCHING PATTERN "*.hpp" PATTERN "test_*.hpp" EXCLUDE)
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/raypool)
 install(EXPORT raypool FILE raypool-targets.cmake NAMESPACE raypool:: DESTINATION ${package} COMPONENT development)
-configure_package_config_file(cmake/raypool-config.cmake.in ${CMAKE_BINARY_DIR}/raypool-config.cmake INSTALL_DESTINATION ${package})
+configure_package_config_file(cmake/raypool-config.cmake.in ${CMAKE_BINARY_DIR}/raypool-config.cmake
+  INSTALL_DESTINATION ${package})
 write_basic_package_version_file(${CMAKE_BINARY_DIR}/raypool-config-version.cmake COMPATIBILITY SameMinorVersion)
-install(FILES ${CMAKE_BINARY_DIR}/raypool-config.cmake ${CMAKE_BINARY_DIR}/raypool-config-version.cmake DESTINATION ${package} COMPONENT development)
+install(FILES ${CMAKE_BINARY_DIR}/raypool-config.cmake ${CMAKE_BINARY_DIR}/raypool-config-version.cmake
+  DESTINATION ${package} COMPONENT development)

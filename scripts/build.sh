@@ -1,6 +1,6 @@
 #!/bin/bash
-# Builds targets and says how far it is: scripts/build.sh BUILD [TARGET]... (default: all). On a terminal one line that is rewritten, elsewhere one
-# every ten seconds, on standard error. A second one in the same folder waits.
+# Builds targets and says how far it is: scripts/build.sh BUILD [TARGET]... (default: all). On a terminal one line that
+# is rewritten, elsewhere one every ten seconds, on standard error. A second one in the same folder waits.
 set -eu -o pipefail
 build=$1
 shift

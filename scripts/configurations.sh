@@ -1,9 +1,10 @@
 #!/bin/bash
-# Walks a set of machines, each with random programs in lockstep: scripts/configurations.sh quick|small|all PROGRAMS [FOLDER]
-# quick: every value and most pairs. small: every pair of values that a machine of 8 threads can have. all: every pair, large machines included,
-# which takes hours.
-# FOLDER (default build/configurations) gets the configurations and the Verilated units. Goes on after a failure, prints a line for each machine,
-# and ends with 1 if one failed. RAYPOOL names the program.
+# Walks a set of machines, each with random programs in lockstep:
+# scripts/configurations.sh quick|small|all PROGRAMS [FOLDER]
+# quick: every value and most pairs. small: every pair of values that a machine of 8 threads can have. all: every pair,
+# large machines included, which takes hours.
+# FOLDER (default build/configurations) gets the configurations and the Verilated units. Goes on after a failure,
+# prints a line for each machine, and ends with 1 if one failed. RAYPOOL names the program.
 set -eu -o pipefail
 [ $# -ge 2 ] || { echo "usage: scripts/configurations.sh quick|small|all PROGRAMS [FOLDER]" >&2; exit 1; }
 cd "$(dirname "$0")/.."
@@ -23,7 +24,8 @@ failed=() count=0
 while read -r file units <&3; do
   name=${file%.json} begin=$SECONDS
   file=$folder/$set/$file unit=$folder/$set/$name
-  run=("$RAYPOOL" cosim --config "$file" --units "$units" --unit-library "$unit/libraypool_unit.so" --programs "$programs" --quiet)
+  run=("$RAYPOOL" cosim --config "$file" --units "$units" --unit-library "$unit/libraypool_unit.so" \
+    --programs "$programs" --quiet)
   count=$((count + 1))
   # Unquoted: each parameter is a word.
   build=(scripts/verilate.sh "$unit" $quick "UNITS=$units" $("$RAYPOOL" config "$file" --verilog-parameters))
@@ -35,7 +37,8 @@ while read -r file units <&3; do
   fi
   built=$((SECONDS - begin)) begin=$SECONDS
   if "${run[@]}" > "$log" 2>&1; then
-    echo "$name, $units units: $programs programs, $(grep -oE '[0-9]+ instructions' "$log" | head -n 1), $(grep -oE '[0-9]+ differences' "$log"); built in $built s, ran $((SECONDS - begin)) s"
+    compared="$(grep -oE '[0-9]+ instructions' "$log" | head -n 1), $(grep -oE '[0-9]+ differences' "$log")"
+    echo "$name, $units units: $programs programs, $compared; built in $built s, ran $((SECONDS - begin)) s"
   else
     failed+=("$name")
     cat "$log"

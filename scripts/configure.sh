@@ -1,5 +1,6 @@
 #!/bin/bash
-# Configures the build folder: scripts/configure.sh BUILD TESTS [OPTION]..., TESTS = ON or OFF. ON once stays ON; nothing is done when it fits.
+# Configures the build folder: scripts/configure.sh BUILD TESTS [OPTION]..., TESTS = ON or OFF. ON once
+# stays ON; nothing is done when it fits.
 # OPTION: for CMake, of a folder that does not exist yet.
 set -eu -o pipefail
 build=$1 tests=$2
@@ -7,7 +8,8 @@ shift 2
 cache=$build/CMakeCache.txt
 if [ -f "$cache" ] && [ -f "$build/build.ninja" ]; then
   # Ninja would configure again by itself, but first build by the old rules what the configuration depends on.
-  changed=$(find CMakeLists.txt cmake cpp_model sim tb \( -name CMakeLists.txt -o -name '*.cmake' \) -newer "$build/build.ninja")
+  changed=$(find CMakeLists.txt cmake cpp_model sim tb \( -name CMakeLists.txt -o -name '*.cmake' \) \
+    -newer "$build/build.ninja")
   if [ -z "$changed" ]; then
     [ "$tests" = ON ] && grep -q '^RAYPOOL_TESTS:BOOL=OFF' "$cache" || exit 0
   fi
@@ -15,5 +17,6 @@ if [ -f "$cache" ] && [ -f "$build/build.ninja" ]; then
 fi
 mkdir -p "$build"
 log=$build/configure.log
-cmake -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DRAYPOOL_TESTS="$tests" "$@" > "$log" 2>&1 || { cat "$log" >&2; exit 1; }
+cmake -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DRAYPOOL_TESTS="$tests" "$@" > "$log" 2>&1 ||
+  { cat "$log" >&2; exit 1; }
 touch "$build/build.ninja"

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Writes raypool.core, the FuseSoC description of rtl/, or checks it: scripts/core.py RAYPOOL [--check]
 
-Files and parameters come from rtl/ and from the program's table; targets stand here. --check writes nothing and ends with 1 if
-the file would change.
+Files and parameters come from rtl/ and from the program's table; targets stand here. --check writes nothing and ends
+with 1 if the file would change.
 """
 import pathlib
 import re
@@ -19,7 +19,9 @@ def version():
 
 def parameters(raypool):
     """Name and default of each, in the order of rtl/multiprocessor.v."""
-    text = subprocess.run([raypool, "config", "8w8c", "--verilog-parameters"], cwd=ROOT, capture_output=True, text=True, check=True)
+    text = subprocess.run(
+        [raypool, "config", "8w8c", "--verilog-parameters"], cwd=ROOT, capture_output=True, text=True, check=True
+    )
     return [("UNITS", 1)] + [tuple(line.split("=")) for line in text.stdout.split()]
 
 

@@ -1,5 +1,6 @@
 #!/bin/bash
-# Writes man page and completion of the command line, as the program describes itself: scripts/describe.sh RAYPOOL FOLDER
+# Writes man page and completion of the command line, as the program describes
+# itself: scripts/describe.sh RAYPOOL FOLDER
 set -eu -o pipefail
 raypool=$1 folder=$2
 mkdir -p "$folder"

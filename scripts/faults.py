@@ -1,7 +1,8 @@
 """Puts every mistake of tb/faults/catalogue.json into a copy of rtl/: faults.py CATALOGUE RTL OUTPUT.
 
-Each is behind its number: where the catalogue says `right`, the copy has `designer_fault == N ? wrong : right`, or an `if` of statements.
-With number 0 the copy is what rtl/ is. The number comes from the environment variable RAYPOOL_FAULT in Verilator, from +fault=N in Icarus.
+Each is behind its number: where the catalogue says `right`, the copy has `designer_fault == N ? wrong : right`, or an
+`if` of statements. With number 0 the copy is what rtl/ is. The number comes from the environment variable RAYPOOL_FAULT
+in Verilator, from +fault=N in Icarus.
 """
 
 import json
@@ -87,11 +88,15 @@ def instrument(catalogue, rtl, output):
         if ports is None:
             raise Refused(f"rtl/{name}: its port list does not end with a line `);`")
         texts[name] = text[: ports.end()] + SELECTOR + text[ports.end() :]
-    write_folder(output, texts | {path.name: path.read_text() for path in rtl.iterdir() if path.suffix in (".vh", ".vlt")})
+    write_folder(
+        output, texts | {path.name: path.read_text() for path in rtl.iterdir() if path.suffix in (".vh", ".vlt")}
+    )
 
 
 def write_folder(folder, texts):
-    """The folder has these files and no others; what is as it was is left alone, so that nothing is built again for it."""
+    """The folder has these files and no others; what is as it was is left alone,
+    so that nothing is built again for it.
+    """
     folder.mkdir(parents=True, exist_ok=True)
     for path in folder.iterdir():
         if path.name not in texts:

@@ -1,11 +1,13 @@
 #!/bin/bash
 # Builds machines that carry every mistake of tb/faults/catalogue.json: scripts/faults.sh FOLDER [MACHINE]...
-# The environment variable RAYPOOL_FAULT selects the mistake (none: 0) of every unit made after it is set. The machines are the small one of the
-# cosim tests, as one unit and as four, and those that the test configurations_quick walks. FOLDER gets
+# The environment variable RAYPOOL_FAULT selects the mistake (none: 0) of every unit made after it is set. The
+# machines are the small one of the cosim tests, as one unit and as four, and those that the test
+# configurations_quick walks. FOLDER gets
 #   rtl/                      the Verilog with the mistakes
 #   NAME/libraypool_unit.so   a machine
 #   list                      a line for each: name, file of the configuration, units
-# MACHINE: only these, by name. RAYPOOL names the raypool program (default build/raypool). What is up to date is not built again.
+# MACHINE: only these, by name. RAYPOOL names the raypool program (default build/raypool).
+# What is up to date is not built again.
 set -eu -o pipefail
 [ $# -ge 1 ] || { echo "usage: scripts/faults.sh FOLDER [MACHINE]..." >&2; exit 1; }
 root=$(cd "$(dirname "$0")/.." && pwd)
@@ -24,14 +26,17 @@ python3 scripts/faults.py tb/faults/catalogue.json rtl "$folder/rtl"
 "$raypool" configurations --most 12 --out "$folder/configurations" > /dev/null
 small=$root/tb/mutants/2w2c.json
 machines=("2w2c $small 1" "2w2c-4cu $small 4")
-while read -r file units; do machines+=("${file%.json} $folder/configurations/$file $units"); done < "$folder/configurations/list"
+while read -r file units; do
+  machines+=("${file%.json} $folder/configurations/$file $units")
+done < "$folder/configurations/list"
 
 rm -f "$folder/list"
 for machine in "${machines[@]}"; do
   read -r name file units <<< "$machine"
   [ $# = 0 ] || [[ " $* " == *" $name "* ]] || continue
   # Unquoted: each parameter is a word.
-  JOBS=${JOBS:-$(nproc)} "$folder/scripts/verilate.sh" "$folder/$name" --quick "UNITS=$units" $("$raypool" config "$file" --verilog-parameters) |
+  JOBS=${JOBS:-$(nproc)} "$folder/scripts/verilate.sh" "$folder/$name" --quick "UNITS=$units" \
+    $("$raypool" config "$file" --verilog-parameters) |
     { grep -v 'is up to date$' || true; }
   echo "$machine" >> "$folder/list"
 done

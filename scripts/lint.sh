@@ -1,8 +1,8 @@
 #!/bin/bash
-# Checks the sources: Verilog in Verilator, Icarus and Yosys for several configurations, C++ layout and clang-tidy, shell
-# syntax, and what the pages name.
-# Prints what failed and the command that shows it again; ends with 1 if anything did. Needs the build folder (BUILD, default build)
-# configured with tests, and keeps there how long it took.
+# Checks the sources: Verilog in Verilator, Icarus and Yosys for several configurations, C++ layout and clang-tidy,
+# shell syntax, and what the pages name.
+# Prints what failed and the command that shows it again; ends with 1 if anything did. Needs the build folder (BUILD,
+# default build) configured with tests, and keeps there how long it took.
 set -u -o pipefail
 cd "$(dirname "$0")/.."
 export LC_ALL=C.UTF-8 build=${BUILD:-build}
@@ -12,7 +12,8 @@ failed=()
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
 
-# check NAME COMMAND...: silent success; on failure, or on any output when the tool only warns, prints it and how to repeat it.
+# check NAME COMMAND...: silent success; on failure, or on any output when the tool only
+# warns, prints it and how to repeat it.
 check() {
   local name=$1 begin=$SECONDS; shift
   checks=$((checks + 1))
@@ -25,7 +26,8 @@ check() {
   fi
 }
 
-# Corners of the parameter space: the smallest, the largest, narrow and wide warps, every optional mode, every number of units.
+# Corners of the parameter space: the smallest, the largest, narrow and wide warps, every
+# optional mode, every number of units.
 verilog_configurations=(
   "WARPS=8 LANES=8"
   "WARPS=4 LANES=4 SLOW_UNIT=3 BRH_LATENCY=2"
@@ -38,7 +40,8 @@ verilog_configurations=(
 )
 mapfile -t rtl < <(scripts/sources.sh verilog)
 mapfile -t cpp < <(scripts/sources.sh cpp)
-echo "lint: ${#rtl[@]} Verilog files in ${#verilog_configurations[@]} configurations by three tools, ${#cpp[@]} C++ files by clang-format and clang-tidy, which takes most of the time; $(last_duration lint)"
+echo "lint: ${#rtl[@]} Verilog files in ${#verilog_configurations[@]} configurations by three tools," \
+  "${#cpp[@]} C++ files by clang-format and clang-tidy, which takes most of the time; $(last_duration lint)"
 
 for parameters in "${verilog_configurations[@]}"; do
   verilator_flags=() iverilog_flags=() yosys_flags=()
@@ -49,7 +52,8 @@ for parameters in "${verilog_configurations[@]}"; do
   done
   check "verilator $parameters" verilator --lint-only -Wall --default-language 1364-2005 -Irtl rtl/waivers.vlt \
     "${verilator_flags[@]}" --top-module multiprocessor "${rtl[@]}"
-  check "iverilog $parameters" iverilog -g2005 -Wall -Irtl -o /dev/null "${iverilog_flags[@]}" -s multiprocessor "${rtl[@]}"
+  check "iverilog $parameters" iverilog -g2005 -Wall -Irtl -o /dev/null "${iverilog_flags[@]}" -s multiprocessor \
+    "${rtl[@]}"
   # Synthesis view, of the whole in one piece: no latch, no combinational loop, no undriven or doubly driven net.
   check "yosys $parameters" yosys -q -e '.*latch.*' -p "read_verilog -DSYNTHESIS -DNO_CLOCK_GATES -Irtl ${rtl[*]};
     hierarchy -check -top multiprocessor ${yosys_flags[*]}; proc -noopt; flatten; opt_clean;
@@ -63,21 +67,28 @@ check "layers of the sources" scripts/layers.py
 check "clang-format (make format)" clang-format --dry-run -Werror "${cpp[@]}"
 
 mapfile -t python < <(scripts/sources.sh python)
-for file in "${python[@]}"; do check "python3 $file" python3 -W error -c 'import ast, pathlib, sys; ast.parse(pathlib.Path(sys.argv[1]).read_text())' "$file"; done
+for file in "${python[@]}"; do
+  check "python3 $file" python3 -W error \
+    -c 'import ast, pathlib, sys; ast.parse(pathlib.Path(sys.argv[1]).read_text())' "$file"
+done
 
 for file in $(scripts/sources.sh shell); do check "bash -n $file" bash -n "$file"; done
 
-# clang-tidy reads each source as the build compiles it; what only the build generates (Verilated models) is left to the compiler.
+# clang-tidy reads each source as the build compiles it; what only the build generates
+# (Verilated models) is left to the compiler.
 tidy=()
 for file in "${cpp[@]}"; do
   case $file in *.cpp) grep -qF "\"$PWD/$file\"" "$build/compile_commands.json" && tidy+=("$file") ;; esac
 done
 if [ ${#tidy[@]} -gt 0 ]; then
   echo "lint: clang-tidy reads ${#tidy[@]} files, $(nproc) at a time"
-  check "clang-tidy, ${#tidy[@]} files" bash -c 'printf "%s\0" "$@" | xargs -0 -n 1 -P "$(nproc)" clang-tidy -p "$build" --quiet 2>&1 |
-    grep -vE "^[0-9]+ warnings? (generated|treated)|^Suppressed|^Use -header-filter"; exit "${PIPESTATUS[1]}"' clang-tidy "${tidy[@]}"
+  check "clang-tidy, ${#tidy[@]} files" \
+    bash -c 'printf "%s\0" "$@" | xargs -0 -n 1 -P "$(nproc)" clang-tidy -p "$build" --quiet 2>&1 |
+    grep -vE "^[0-9]+ warnings? (generated|treated)|^Suppressed|^Use -header-filter"
+    exit "${PIPESTATUS[1]}"' clang-tidy "${tidy[@]}"
 else
-  echo "lint: clang-tidy: $build/compile_commands.json names no file of the project; run make lint, not scripts/lint.sh" >&2
+  echo "lint: clang-tidy: $build/compile_commands.json names no file of the project;" \
+    "run make lint, not scripts/lint.sh" >&2
   failed+=("clang-tidy")
 fi
 keep_duration lint

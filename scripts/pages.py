@@ -11,12 +11,24 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGES = [ROOT / "README.md"] + sorted((ROOT / "docs").glob("*.md"))
-FOLDERS = ("bench", "cmake", "configs", "constraints", "cpp_model", "docs", "examples", "rtl", "schemas", "scripts", "sim",
-           "tb")
+FOLDERS = (
+    "bench",
+    "cmake",
+    "configs",
+    "constraints",
+    "cpp_model",
+    "docs",
+    "examples",
+    "rtl",
+    "schemas",
+    "scripts",
+    "sim",
+    "tb",
+)
 PATH = re.compile(rf"^(?:{'|'.join(FOLDERS)})/[\w./*+-]*$")
 MEMBER = re.compile(r"^([A-Z]\w+)::(\w+)$")
 IDENTIFIER = re.compile(r"^\w*(?:[a-z0-9]_[a-z0-9]|[A-Z]_[A-Z]|[a-z][A-Z])\w*$")
-MADE = {"docs/add-an-alu.md": ("box", "Box", "BOX", "near_of_b")}   # what the page itself makes
+MADE = {"docs/add-an-alu.md": ("box", "Box", "BOX", "near_of_b")}  # what the page itself makes
 
 
 def without_code(text):

@@ -58,12 +58,14 @@ def quotes_of(page, lines):
             inside = False
             continue
         if line.startswith(INDENT):
-            text = line[len(INDENT):]
+            text = line[len(INDENT) :]
             if text.startswith("$ "):
                 quotes.append(Quote(page, number, options, text[2:].strip()))
             elif not inside:
-                raise PageError(f"{page}:{number + 1}: an indented block begins with '$ COMMAND'; "
-                                "put anything else into a fence (```)")
+                raise PageError(
+                    f"{page}:{number + 1}: an indented block begins with '$ COMMAND'; "
+                    "put anything else into a fence (```)"
+                )
             else:
                 quote = quotes[-1]
                 quote.output += [""] * (number - quote.end) + [text]
@@ -87,11 +89,22 @@ def run(quote, files):
         command = command.replace(name, shlex.quote(path))
     environment = {name: value for name, value in os.environ.items() if not name.startswith(("MAKE", "MFLAGS"))}
     environment["PATH"] = str((ROOT / build).resolve()) + os.pathsep + environment["PATH"]
-    done = subprocess.run(["bash", "-o", "pipefail", "-c", command], cwd=ROOT, env=environment, check=False, text=True,
-                          errors="replace", stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    done = subprocess.run(
+        ["bash", "-o", "pipefail", "-c", command],
+        cwd=ROOT,
+        env=environment,
+        check=False,
+        text=True,
+        errors="replace",
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+    )
     if done.returncode != 0:
-        raise PageError(f"{quote.place()}: '{quote.command}' ends with {done.returncode}:\n"
-                        f"{done.stdout[-2000:]}{done.stderr[-2000:]}")
+        raise PageError(
+            f"{quote.place()}: '{quote.command}' ends with {done.returncode}:\n"
+            f"{done.stdout[-2000:]}{done.stderr[-2000:]}"
+        )
     printed = [line.rstrip().replace(build, "build") for line in done.stdout.splitlines()]
     while printed and not printed[-1]:
         printed.pop()
@@ -114,7 +127,7 @@ def same(quoted, printed, measured):
     at = next(number for number, line in enumerate(quoted) if omits(line))
     if not same(quoted[:at], printed[:at], measured):
         return False
-    rest = quoted[at + 1:]
+    rest = quoted[at + 1 :]
     return any(same(rest, printed[begin:], measured) for begin in range(at, len(printed) + 1))
 
 
@@ -126,7 +139,7 @@ def abridged(quoted, printed):
     if len(omitted) > 1:
         raise PageError("a quote with several '...' must be mended by hand")
     at = omitted[0]
-    return printed[:at] + [quoted[at]] + printed[len(printed) - (len(quoted) - at - 1):]
+    return printed[:at] + [quoted[at]] + printed[len(printed) - (len(quoted) - at - 1) :]
 
 
 def check_page(page, options, files):
@@ -155,7 +168,7 @@ def check_page(page, options, files):
         shown = [[comparable(line, measured) for line in text] for text in (quote.output, printed)]
         print("\n".join(difflib.unified_diff(*shown, "quoted", "printed", lineterm="", n=1)), flush=True)
     for quote, printed in reversed(updates):
-        lines[quote.begin:quote.end] = [(INDENT + line).rstrip() for line in printed]
+        lines[quote.begin : quote.end] = [(INDENT + line).rstrip() for line in printed]
     if updates:
         path.write_text("\n".join(lines), encoding="utf-8")
     return differ, ran
@@ -166,7 +179,9 @@ def main():
     parser.add_argument("pages", nargs="*", metavar="PAGE", help="default: README.md and all of docs/")
     parser.add_argument("--long", action="store_true", help="those that take long too")
     parser.add_argument("--update", action="store_true", help="write what was printed into the pages")
-    parser.add_argument("--rules", action="store_true", help="run nothing; check only that every indented block is a quote")
+    parser.add_argument(
+        "--rules", action="store_true", help="run nothing; check only that every indented block is a quote"
+    )
     parser.add_argument("--file", action="append", default=[], metavar="NAME=PATH", help="a file that quotes need")
     options = parser.parse_args()
     unknown = [page for page in options.pages if page not in PAGES]

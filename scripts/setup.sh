@@ -1,6 +1,8 @@
 #!/bin/bash
-# Installs the Debian packages of the named groups of scripts/packages.txt that are not there yet: scripts/setup.sh sim test
-# Says nothing and takes milliseconds when nothing is missing. Needs root, or sudo; else prints the line to run and ends with 1.
+# Installs the Debian packages of the named groups of scripts/packages.txt that are not there yet:
+# scripts/setup.sh sim test
+# Says nothing and takes milliseconds when nothing is missing. Needs root, or sudo; else prints the line to run and
+# ends with 1.
 set -eu -o pipefail
 cd "$(dirname "$0")/.."
 
@@ -10,14 +12,19 @@ for group in "$@"; do
   [ ${#names[@]} -gt 0 ] || { echo "setup: scripts/packages.txt has no group '$group'" >&2; exit 1; }
   wanted+=("${names[@]}")
 done
-[ ${#wanted[@]} -gt 0 ] || { echo "usage: scripts/setup.sh GROUP... (groups: $(awk '/^[a-z]/ { print $1 }' scripts/packages.txt | sort -u | paste -sd ' '))" >&2; exit 1; }
+if [ ${#wanted[@]} = 0 ]; then
+  groups=$(awk '/^[a-z]/ { print $1 }' scripts/packages.txt | sort -u | paste -sd ' ')
+  echo "usage: scripts/setup.sh GROUP... (groups: $groups)" >&2
+  exit 1
+fi
 
 if ! command -v dpkg-query > /dev/null; then
   echo "setup: this is not Debian, so nothing is installed; what is needed has these Debian names: ${wanted[*]}" >&2
   exit 0
 fi
 
-installed=$(dpkg-query -W -f='${db:Status-Abbrev} ${Package}\n' "${wanted[@]}" 2> /dev/null | awk '$1 == "ii" { print $2 }' || true)
+installed=$(dpkg-query -W -f='${db:Status-Abbrev} ${Package}\n' "${wanted[@]}" 2> /dev/null |
+  awk '$1 == "ii" { print $2 }' || true)
 mapfile -t missing < <(printf '%s\n' "${wanted[@]}" | sort -u | grep -vxF -e "${installed:-nothing}" || true)
 [ ${#missing[@]} -gt 0 ] || exit 0
 
@@ -31,12 +38,16 @@ if [ "$(id -u)" != 0 ]; then
   as_root=(sudo)
 fi
 
-# A fresh image has no package lists, an old one has lists that name files which are gone: then fetch them and try again.
-apt() { "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -qq -o DPkg::Lock::Timeout=300 -o Dpkg::Use-Pty=0 "$@"; }
+# A fresh image has no package lists, an old one has lists that name files which are
+# gone: then fetch them and try again.
+apt() {
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -qq -o DPkg::Lock::Timeout=300 -o Dpkg::Use-Pty=0 "$@"
+}
 install() { apt install -y --no-install-recommends "${missing[@]}" > "$log" 2>&1; }
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
 echo "setup: installing ${missing[*]}"
 if ! install; then
-  apt update > "$log" 2>&1 && install || { cat "$log" >&2; echo "setup: apt-get could not install: ${missing[*]}" >&2; exit 1; }
+  apt update > "$log" 2>&1 && install ||
+    { cat "$log" >&2; echo "setup: apt-get could not install: ${missing[*]}" >&2; exit 1; }
 fi

@@ -3,9 +3,9 @@
 #   scripts/verilate.sh OUTPUT_DIR [--trace] [--quick] [--netlist FILE]... NAME=VALUE...
 # NAME=VALUE as `raypool config CONFIG --verilog-parameters` prints them, and UNITS=1|2|4 (default 1).
 # --netlist: Verilog that stands in for the compute unit of rtl/, and calls sim/rtl/gate_simulator.cpp.
-# --trace: the unit can write waveforms (FST), and is slower. --quick: compiled in less time, slower. Nothing is built when all it is made from
-# is as it was; a build that fails leaves the old library as it was. VERILATOR, CXX and JOBS (default 2) choose the tools and the number
-# of compilers.
+# --trace: the unit can write waveforms (FST), and is slower. --quick: compiled in less time, slower. Nothing is built
+# when all it is made from is as it was; a build that fails leaves the old library as it was. VERILATOR, CXX and JOBS
+# (default 2) choose the tools and the number of compilers.
 set -eu -o pipefail
 
 fail() {
@@ -40,10 +40,12 @@ done
 
 verilator=${VERILATOR:-verilator}
 jobs=${JOBS:-2}
-version=$("$verilator" --version 2> /dev/null) || fail "verilator was not found: install it (Debian package verilator) or set VERILATOR to its path"
+version=$("$verilator" --version 2> /dev/null) ||
+  fail "verilator was not found: install it (Debian package verilator) or set VERILATOR to its path"
 command -v make > /dev/null || fail "make was not found: install it (Debian package make)"
 compiler=${CXX:-g++}
-compiler_version=$("$compiler" --version 2> /dev/null | head -n 1) || fail "the C++ compiler '$compiler' was not found: install g++ or set CXX"
+compiler_version=$("$compiler" --version 2> /dev/null | head -n 1) ||
+  fail "the C++ compiler '$compiler' was not found: install g++ or set CXX"
 
 mkdir -p "$output"
 output=$(cd "$output" && pwd)
@@ -54,7 +56,8 @@ stamp=$output/libraypool_unit.stamp
 # Everything the library is made from.
 cd "$root"
 shopt -s nullglob
-headers=(cpp_model/isa/isa.hpp cpp_model/config/configuration.hpp cpp_model/machine/{compute_unit,memory,packages}.hpp sim/rtl/unit_library.hpp)
+headers=(cpp_model/isa/isa.hpp cpp_model/config/configuration.hpp cpp_model/machine/{compute_unit,memory,packages}.hpp \
+  sim/rtl/unit_library.hpp)
 wrapper=(sim/rtl/rtl_unit.cpp cpp_model/machine/compute_unit.cpp)
 verilog=(rtl/*.v)
 waivers=(rtl/*.vlt sim/rtl/probes.vlt)   # and what the lockstep looks at inside
@@ -92,7 +95,8 @@ begin=$SECONDS
 echo "verilate.sh: verilating $what (${parameters[*]:-default parameters})"
 units=1
 for parameter in "${parameters[@]}"; do [ "${parameter%%=*}" != UNITS ] || units=${parameter#*=}; done
-printf '#define RAYPOOL_UNIT_PARAMETERS "%s"\n#define RAYPOOL_UNIT_COUNT %d\n' "${parameters[*]}" "$units" > "$build/unit_parameters.h"
+printf '#define RAYPOOL_UNIT_PARAMETERS "%s"\n#define RAYPOOL_UNIT_COUNT %d\n' "${parameters[*]}" "$units" \
+  > "$build/unit_parameters.h"
 options=(--cc --exe --top-module multiprocessor --Mdir "$build" -Irtl --default-language $language
   -O3 --x-assign fast --x-initial fast --noassert
   -CFLAGS "-std=c++17 -fPIC -fvisibility=hidden -fno-gnu-unique -fno-plt -fno-semantic-interposition"
@@ -108,8 +112,8 @@ echo "verilate.sh: compiling $(cat "$build"/Vmultiprocessor*.cpp | wc -l) lines 
 message="the Verilated unit does not compile (messages above)"
 launcher=
 command -v ccache > /dev/null && launcher=ccache
-run env CCACHE_BASEDIR="$build" CCACHE_NOHASHDIR=1 make -C "$build" -f Vmultiprocessor.mk -j "$jobs" CXX="$compiler" LINK="$compiler" OBJCACHE="$launcher" \
-  "${optimise[@]}" libraypool_unit.so
+run env CCACHE_BASEDIR="$build" CCACHE_NOHASHDIR=1 make -C "$build" -f Vmultiprocessor.mk -j "$jobs" CXX="$compiler" \
+  LINK="$compiler" OBJCACHE="$launcher" "${optimise[@]}" libraypool_unit.so
 
 # The stamp goes first and comes last: an interrupted move never passes for a finished one.
 rm -f "$stamp"

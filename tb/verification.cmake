@@ -1,26 +1,34 @@
-# Random programs, regressions, configurations and the second simulator, as tests. docs/verification.md tells what each is for.
+# Random programs, regressions, configurations and the second simulator, as tests.
+# docs/verification.md tells what each is for.
 set(raypool_program $<TARGET_FILE:raypool>)
 set(scripts ${CMAKE_SOURCE_DIR}/scripts)
 set(small_config ${CMAKE_SOURCE_DIR}/tb/mutants/2w2c.json)
 
 # A small unit of two warps and two lanes, for what needs many runs.
-add_test(NAME verilate_2w2c_small COMMAND ${CMAKE_COMMAND} -E env RAYPOOL=${raypool_program} ${scripts}/unit.sh ${small_config})
+add_test(NAME verilate_2w2c_small COMMAND ${CMAKE_COMMAND} -E env RAYPOOL=${raypool_program} ${scripts}/unit.sh
+  ${small_config})
 set_tests_properties(verilate_2w2c_small PROPERTIES FIXTURES_SETUP unit_2w2c_small TIMEOUT 900)
-add_test(NAME cosim_2w2c_small COMMAND raypool cosim --config ${small_config} --programs 1000 --seed 1 --no-shrink --quiet)
+add_test(NAME cosim_2w2c_small COMMAND raypool cosim --config ${small_config} --programs 1000 --seed 1
+  --no-shrink --quiet)
 set_tests_properties(cosim_2w2c_small PROPERTIES FIXTURES_REQUIRED unit_2w2c_small TIMEOUT 300)
 add_test(NAME cosim_4w4c_2cu COMMAND raypool cosim --config 4w4c --units 2 --programs 100 --no-shrink --quiet)
 set_tests_properties(cosim_4w4c_2cu PROPERTIES FIXTURES_REQUIRED unit_4w4c_2cu TIMEOUT 300)
 # Four small ones: a multiprocessor of four 4w4c takes a minute to compile.
-add_test(NAME verilate_2w2c_small_4cu COMMAND ${CMAKE_COMMAND} -E env RAYPOOL=${raypool_program} ${scripts}/unit.sh ${small_config} --units 4)
+add_test(NAME verilate_2w2c_small_4cu COMMAND ${CMAKE_COMMAND} -E env RAYPOOL=${raypool_program} ${scripts}/unit.sh
+  ${small_config} --units 4)
 set_tests_properties(verilate_2w2c_small_4cu PROPERTIES FIXTURES_SETUP unit_2w2c_small_4cu TIMEOUT 900)
-add_test(NAME cosim_2w2c_small_4cu COMMAND raypool cosim --config ${small_config} --units 4 --programs 300 --no-shrink --quiet)
+add_test(NAME cosim_2w2c_small_4cu COMMAND raypool cosim --config ${small_config} --units 4 --programs 300
+  --no-shrink --quiet)
 set_tests_properties(cosim_2w2c_small_4cu PROPERTIES FIXTURES_REQUIRED unit_2w2c_small_4cu TIMEOUT 300)
 
-# The catalogue of designers' mistakes fits the Verilog, and a few of them are noticed soon; `make faults` runs them all.
-add_test(NAME faults_catalogue COMMAND ${scripts}/tests/faults_test.sh ${raypool_program} $<TARGET_FILE:raypool_faults> ${CMAKE_BINARY_DIR}/faults-test)
+# The catalogue of designers' mistakes fits the Verilog, and a few of them are
+# noticed soon; `make faults` runs them all.
+add_test(NAME faults_catalogue COMMAND ${scripts}/tests/faults_test.sh ${raypool_program} $<TARGET_FILE:raypool_faults>
+  ${CMAKE_BINARY_DIR}/faults-test)
 set_tests_properties(faults_catalogue PROPERTIES TIMEOUT 900 FIXTURES_SETUP faulty_2w2c)
 # Whoever meets a difference runs again with a look inside the RTL: of its mistakes.
-add_test(NAME inspected_differences COMMAND ${scripts}/tests/inspect.sh ${raypool_program} ${CMAKE_BINARY_DIR}/faults-test)
+add_test(NAME inspected_differences COMMAND ${scripts}/tests/inspect.sh ${raypool_program}
+  ${CMAKE_BINARY_DIR}/faults-test)
 set_tests_properties(inspected_differences PROPERTIES FIXTURES_REQUIRED faulty_2w2c TIMEOUT 300)
 
 # docs/modules.md names every module of rtl/, and no page names what is not there.
@@ -30,28 +38,34 @@ add_test(NAME pages COMMAND ${scripts}/pages.py)
 add_test(NAME layers COMMAND ${scripts}/layers.py)
 
 # Every program that has once shown a fault.
-file(GLOB regressions CONFIGURE_DEPENDS RELATIVE ${CMAKE_SOURCE_DIR}/tb/regressions ${CMAKE_SOURCE_DIR}/tb/regressions/*.json)
+file(GLOB regressions CONFIGURE_DEPENDS RELATIVE ${CMAKE_SOURCE_DIR}/tb/regressions
+  ${CMAKE_SOURCE_DIR}/tb/regressions/*.json)
 foreach(regression IN LISTS regressions)
-  add_test(NAME regression_${regression} COMMAND ${scripts}/tests/regression.sh ${raypool_program} ${CMAKE_SOURCE_DIR}/tb/regressions/${regression}
+  add_test(NAME regression_${regression} COMMAND ${scripts}/tests/regression.sh ${raypool_program}
+    ${CMAKE_SOURCE_DIR}/tb/regressions/${regression}
                                                  ${CMAKE_BINARY_DIR}/regressions)
   set_tests_properties(regression_${regression} PROPERTIES FIXTURES_REQUIRED unit_2w2c_small TIMEOUT 900)
 endforeach()
 
 # Every parameter value, and most pairs of values that a machine of 8 threads can have.
 add_test(NAME configurations_quick
-         COMMAND ${CMAKE_COMMAND} -E env RAYPOOL=${raypool_program} ${scripts}/configurations.sh quick 40 ${CMAKE_BINARY_DIR}/configurations)
+         COMMAND ${CMAKE_COMMAND} -E env RAYPOOL=${raypool_program} ${scripts}/configurations.sh quick 40
+         ${CMAKE_BINARY_DIR}/configurations)
 set_tests_properties(configurations_quick PROPERTIES TIMEOUT 2400)
 
 # The same Verilog in a 4-state simulator.
 find_program(IVERILOG iverilog)
 if(IVERILOG)
-  add_test(NAME icarus_2w2c_small COMMAND ${scripts}/icarus.sh ${raypool_program} ${small_config} ${CMAKE_BINARY_DIR}/icarus/2w2c_small 1 2 3 4 5 6 7 8)
+  add_test(NAME icarus_2w2c_small COMMAND ${scripts}/icarus.sh ${raypool_program} ${small_config}
+    ${CMAKE_BINARY_DIR}/icarus/2w2c_small 1 2 3 4 5 6 7 8)
   set_tests_properties(icarus_2w2c_small PROPERTIES FIXTURES_REQUIRED unit_2w2c_small TIMEOUT 300)
   add_test(NAME icarus_4w4c COMMAND ${scripts}/icarus.sh ${raypool_program} 4w4c ${CMAKE_BINARY_DIR}/icarus/4w4c 1 3)
   set_tests_properties(icarus_4w4c PROPERTIES FIXTURES_REQUIRED unit_4w4c TIMEOUT 300)
   # The pictures in docs show modules that are there, and the stages that a run has now.
-  add_test(NAME diagrams COMMAND ${CMAKE_COMMAND} -E env PYTHONPATH=${scripts} python3 -m diagrams ${raypool_program} ${CMAKE_BINARY_DIR}/diagrams --check)
+  add_test(NAME diagrams COMMAND ${CMAKE_COMMAND} -E env PYTHONPATH=${scripts} python3 -m diagrams ${raypool_program}
+    ${CMAKE_BINARY_DIR}/diagrams --check)
   set_tests_properties(diagrams PROPERTIES TIMEOUT 60)
-  add_test(NAME icarus_notices_x COMMAND ${scripts}/tests/icarus_notices.sh ${raypool_program} ${CMAKE_BINARY_DIR}/icarus/notices)
+  add_test(NAME icarus_notices_x COMMAND ${scripts}/tests/icarus_notices.sh ${raypool_program}
+    ${CMAKE_BINARY_DIR}/icarus/notices)
   set_tests_properties(icarus_notices_x PROPERTIES FIXTURES_REQUIRED unit_2w2c_small TIMEOUT 300)
 endif()

@@ -26,13 +26,19 @@ def around(picture):
     picture.box((346, 20, 218, 62), "controller", ["which kernel next (policy),", "and whether it is safe"])
     picture.box((600, 20, 140, 46), "chip_clock", ["1 GHz, 4 phases"])
     picture.box((752, 20, 132, 46), "monitor", ["watchdog"])
-    picture.box((16, 271, 144, 80), "intersection_pool",
-                ["512 of each kind,", "8 cycles for one:", "6 beats of 128 bits"], "box memory")
-    picture.box((740, 303, 144, 80), "ray_pool",
-                ["512 rays,", "5 cycles for one:", "3 beats of 128 bits"], "box memory")
+    picture.box(
+        (16, 271, 144, 80),
+        "intersection_pool",
+        ["512 of each kind,", "8 cycles for one:", "6 beats of 128 bits"],
+        "box memory",
+    )
+    picture.box(
+        (740, 303, 144, 80), "ray_pool", ["512 rays,", "5 cycles for one:", "3 beats of 128 bits"], "box memory"
+    )
     picture.box((740, 180, 144, 63), "frame_port", ["one a cycle: pixel", "32, colour 96 bits"], "box memory")
-    picture.box((346, 508, 218, 62), "memory_port",
-                ["8 GB/s: a beat in 2 cycles;", "a line's last after 120"], "box memory")
+    picture.box(
+        (346, 508, 218, 62), "memory_port", ["8 GB/s: a beat in 2 cycles;", "a line's last after 120"], "box memory"
+    )
     picture.box((346, 606, 218, 62), "traverser", ["finds what rays hit; when, is", "its subclass static_traverser"])
 
 

@@ -39,14 +39,19 @@ def dispatch(picture):
     picture.text(423, 346, "want, instruction 64; grant")
     picture.wire((709, 326), (709, 352))
     picture.text(717, 346, "mask, operands")
-    picture.box((64, 352, 774, 76), "dispatcher",
-                ["every ready ALU instance is granted to the lowest warp that wants its type and has none yet; "
-                 "it latches a task:",
-                 "warp, op 5, mask LANES, a and b (and c) LANES x 32, immediate 32, x 5, px and pb LANES;",
-                 "there are 1 .. 4 instances (TID_COUNT ..) of each of the five left types"])
+    picture.box(
+        (64, 352, 774, 76),
+        "dispatcher",
+        [
+            "every ready ALU instance is granted to the lowest warp that wants its type and has none yet; "
+            "it latches a task:",
+            "warp, op 5, mask LANES, a and b (and c) LANES x 32, immediate 32, x 5, px and pb LANES;",
+            "there are 1 .. 4 instances (TID_COUNT ..) of each of the five left types",
+        ],
+    )
 
 
-ALUS = [   # left edge, width, name, modules inside, notes
+ALUS = [  # left edge, width, name, modules inside, notes
     (64, 74, "tid_alu", [], ["indices,", "arguments"]),
     (146, 74, "brh_alu", [], ["compares,", "control"]),
     (228, 74, "int_alu", [], ["integer,", "logic"]),
@@ -80,8 +85,11 @@ def ports(picture):
     picture.wire((635, 700), (635, 788), both=True)
     picture.text(627, 784, "memory request: address 32, data 128, mask 4, id 5 (valid/ready)", anchor="end")
     picture.text(627, 800, "response: beat of 128 bits, its number 2, id 5 (always taken)", anchor="end")
-    for x, y, words in [(766, 788, "import: 6 beats"), (796, 808, "export: ray, 3 beats"),
-                        (826, 828, "frame: pixel 32, colour 96")]:
+    for x, y, words in [
+        (766, 788, "import: 6 beats"),
+        (796, 808, "export: ray, 3 beats"),
+        (826, 828, "frame: pixel 32, colour 96"),
+    ]:
         picture.wire((x, 578), (x, y), both=x == 766)
         picture.text(x - 6, y - 3, words, anchor="end")
 

@@ -7,9 +7,16 @@ from .svg import DiagramError, Picture
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 PROGRAM = ROOT / "tb/icarus/stages.asm"
 LEFT, CELL, ROW = 196, 20, 22
-ROUTINES = [   # stages with the module that does them
-    ("instruction routine", [("PCStack", "pc_stack"), ("IArb", "fetch_arbiter"), ("ICache", "instruction_cache"),
-                             ("IBuf", "instruction_buffer")]),
+ROUTINES = [  # stages with the module that does them
+    (
+        "instruction routine",
+        [
+            ("PCStack", "pc_stack"),
+            ("IArb", "fetch_arbiter"),
+            ("ICache", "instruction_cache"),
+            ("IBuf", "instruction_buffer"),
+        ],
+    ),
     ("data routine", [("RegFile", "ram_2r1w"), ("Dispatch", "dispatcher"), ("ALUEx", "its ALU"), ("WriBack", "warp")]),
 ]
 

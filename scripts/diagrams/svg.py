@@ -5,9 +5,9 @@ line that crosses words. Every name that a picture shows as a module is kept in 
 """
 import html
 
-WIDTH = 900          # of every picture, in pixels at which letters have the size below
+WIDTH = 900  # of every picture, in pixels at which letters have the size below
 NAME, NOTE = 12.5, 11.5
-NAME_WIDTH, NOTE_WIDTH = 0.61 * NAME, 0.54 * NOTE   # of a letter; of notes, which are proportional, on the safe side
+NAME_WIDTH, NOTE_WIDTH = 0.61 * NAME, 0.54 * NOTE  # of a letter; of notes, which are proportional, on the safe side
 
 STYLE = """
   .plate { fill: #ffffff; stroke: #d0d4da }
@@ -49,12 +49,13 @@ class Picture:
     def __init__(self, height, title):
         self.height, self.title = height, title
         self.shapes, self.modules = [], set()
-        self.words, self.lines = [], []   # (left, top, right, bottom, words) and (x0, y0, x1, y1): none may meet
+        self.words, self.lines = [], []  # (left, top, right, bottom, words) and (x0, y0, x1, y1): none may meet
         self.rectangle(0.5, 0.5, WIDTH - 1, height - 1, "plate")
 
     def rectangle(self, x, y, width, height, kind, radius=6):
-        self.shapes.append(f'<rect x="{x:g}" y="{y:g}" width="{width:g}" height="{height:g}" rx="{radius:g}" '
-                           f'class="{kind}"/>')
+        self.shapes.append(
+            f'<rect x="{x:g}" y="{y:g}" width="{width:g}" height="{height:g}" rx="{radius:g}" ' f'class="{kind}"/>'
+        )
 
     def text(self, x, y, words, kind="wide", anchor="start"):
         """`y` is the line on which the letters stand."""
@@ -63,8 +64,9 @@ class Picture:
         if left < 4 or left + size > WIDTH - 4 or y > self.height - 4:
             raise DiagramError(f"{self.title}: '{words}' does not fit the picture")
         self.words.append((left, y - 10, left + size, y + 2, words))
-        self.shapes.append(f'<text x="{x:g}" y="{y:g}" class="{kind}" text-anchor="{anchor}">'
-                           f'{html.escape(words)}</text>')
+        self.shapes.append(
+            f'<text x="{x:g}" y="{y:g}" class="{kind}" text-anchor="{anchor}">' f"{html.escape(words)}</text>"
+        )
 
     def box(self, place, name, notes=(), kind="box", parts=(), times=""):
         """A module: its name, what it holds (`parts`, modules too), notes. `place` is x, y, width, height."""
@@ -124,6 +126,8 @@ class Picture:
 
     def svg(self):
         self.check()
-        return (f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {self.height}" width="{WIDTH}" '
-                f'height="{self.height}" role="img">\n<title>{html.escape(self.title)}</title>\n<style>{STYLE}'
-                f'@media (prefers-color-scheme: dark) {{{DARK}}}\n</style>\n' + "\n".join(self.shapes) + "\n</svg>\n")
+        return (
+            f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {self.height}" width="{WIDTH}" '
+            f'height="{self.height}" role="img">\n<title>{html.escape(self.title)}</title>\n<style>{STYLE}'
+            f"@media (prefers-color-scheme: dark) {{{DARK}}}\n</style>\n" + "\n".join(self.shapes) + "\n</svg>\n"
+        )

@@ -1,1 +1,3 @@
-"""The synthesis flow: Yosys maps, OpenSTA times, reports are made from what they say. docs/synthesis.md explains the results."""
+"""The synthesis flow: Yosys maps, OpenSTA times, reports are made from what they say.
+docs/synthesis.md explains the results.
+"""

@@ -17,8 +17,13 @@ def options_of(arguments):
         clock = 0.0
     if clock is not None and not 0.0 < clock < 1e6:
         raise SynthError(f"CLOCK={arguments.clock}: the period in ns")
-    return flow.Options(config=arguments.config, liberty=arguments.liberty or None, clock_ns=clock,
-                        memories=arguments.memories or "macros", jobs=arguments.jobs)
+    return flow.Options(
+        config=arguments.config,
+        liberty=arguments.liberty or None,
+        clock_ns=clock,
+        memories=arguments.memories or "macros",
+        jobs=arguments.jobs,
+    )
 
 
 def store(result, path):
@@ -37,14 +42,23 @@ def synth_command(arguments):
     result = kept_report(path, key)
     if result is None:
         flow.synthesise(design)
-        worst = timing.describe([design.endpoints[0].pin], design.verilog, design.library, design.macros, design.clock_ns,
-                                os.path.join(design.folder, "work"))[0]
+        worst = timing.describe(
+            [design.endpoints[0].pin],
+            design.verilog,
+            design.library,
+            design.macros,
+            design.clock_ns,
+            os.path.join(design.folder, "work"),
+        )[0]
         result = report.make(design, key, worst)
         result["seconds"] = round(time.time() - begin, 1)
         report.check(result)
         store(result, path)
         plots.area_bars(result, os.path.join(design.folder, "work"), os.path.join(design.folder, "area.png"))
-    for name, wanted, estimate in (("power", arguments.power, power.estimate), ("proofs", arguments.prove, prove.prove)):
+    for name, wanted, estimate in (
+        ("power", arguments.power, power.estimate),
+        ("proofs", arguments.prove, prove.prove),
+    ):
         if wanted and not result[name]:
             if design.netlist is None:
                 map_as_kept(design, result)
@@ -60,8 +74,10 @@ def synth_command(arguments):
         if arguments.run:
             with open(os.path.join(arguments.out, "report.json"), "w", encoding="utf-8") as file:
                 json.dump(result, file, indent=1)
-    say(f"report   {arguments.out or design.folder}/report.json, area.png, netlist.v" +
-        (f" ({result['seconds']:.0f} s)" if time.time() - begin > 5 else " (kept)"))
+    say(
+        f"report   {arguments.out or design.folder}/report.json, area.png, netlist.v"
+        + (f" ({result['seconds']:.0f} s)" if time.time() - begin > 5 else " (kept)")
+    )
 
 
 def kept_report(path, key):
@@ -98,7 +114,10 @@ def prove_command(arguments):
         flow.prepare(design)
         known = {k.base for k in design.kinds.values() if not k.memory}
         if not only <= known:
-            raise SynthError(f"ONLY={arguments.only}: {arguments.config} has no block {', '.join(sorted(only - known))}; it has {', '.join(sorted(known))}")
+            raise SynthError(
+                f"ONLY={arguments.only}: {arguments.config} has no block {', '.join(sorted(only - known))}; it has "
+                f"{', '.join(sorted(known))}"
+            )
     verdicts = prove.prove(netlist_of(arguments), only)
     say(report.proofs_line(verdicts))
     if any(v == "different" for v in verdicts.values()):
@@ -112,7 +131,12 @@ def growth_command(arguments):
 def parser():
     top = argparse.ArgumentParser(prog="synth", description="synthesis of the compute unit: area, timing, power")
     commands = top.add_subparsers(dest="command", required=True)
-    for name, function in (("report", synth_command), ("replay", replay_command), ("prove", prove_command), ("growth", growth_command)):
+    for name, function in (
+        ("report", synth_command),
+        ("replay", replay_command),
+        ("prove", prove_command),
+        ("growth", growth_command),
+    ):
         command = commands.add_parser(name)
         command.set_defaults(function=function)
         command.add_argument("--config", default="8w8c", help="as in raypool: a name, NwMc, or a JSON file")
@@ -124,10 +148,14 @@ def parser():
         if name == "report":
             command.add_argument("--against", help="an earlier report.json to compare with")
             command.add_argument("--run", help="report.json of raypool sim with this configuration: Mrays/s a mm2")
-            command.add_argument("--power", action="store_true", help="simulate the netlist and estimate power by block")
+            command.add_argument(
+                "--power", action="store_true", help="simulate the netlist and estimate power by block"
+            )
             command.add_argument("--prove", action="store_true", help="prove blocks equal to their RTL")
         if name == "replay":
-            command.add_argument("--break", dest="break_number", type=int, default=0, help="swap a cell first: must be noticed")
+            command.add_argument(
+                "--break", dest="break_number", type=int, default=0, help="swap a cell first: must be noticed"
+            )
         if name == "growth":
             command.add_argument("--plan", help="what to synthesise, instead of constraints/growth.json")
         if name == "prove":

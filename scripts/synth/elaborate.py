@@ -14,13 +14,14 @@ MEMORIES = ("ram_1rw", "ram_1r1w", "ram_2r1w")
 @dataclass
 class Kind:
     """One module with one set of parameters. `identity` is Yosys' name for it, the type of its instances."""
+
     identity: str
     base: str
-    parameters: dict     # name -> (bits as text)
-    ports: dict          # name -> (direction, width)
-    children: dict       # instance -> identity
-    name: str = ""       # unique and fit for Verilog; the base name where that is enough
-    bits: int = 0        # at its cells' pins before mapping: how large it is
+    parameters: dict  # name -> (bits as text)
+    ports: dict  # name -> (direction, width)
+    children: dict  # instance -> identity
+    name: str = ""  # unique and fit for Verilog; the base name where that is enough
+    bits: int = 0  # at its cells' pins before mapping: how large it is
 
     def value(self, parameter):
         return int(self.parameters[parameter], 2)
@@ -34,7 +35,8 @@ def rtl_files():
     return sorted(glob.glob(os.path.join(ROOT, "rtl", "*.v")))
 
 
-# The Verilog as it becomes hardware: Booth trees in place of products, and no clock gates (free_running.vh), as cell libraries here have none.
+# The Verilog as it becomes hardware: Booth trees in place of products, and no clock gates
+# (free_running.vh), as cell libraries here have none.
 DEFINES = "-DSYNTHESIS -DNO_CLOCK_GATES"
 
 
@@ -61,7 +63,9 @@ def raypool():
 
 def configuration(name):
     """The Verilog parameters of a configuration, as raypool says them."""
-    done = subprocess.run([raypool(), "config", name, "--verilog-parameters"], capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        [raypool(), "config", name, "--verilog-parameters"], capture_output=True, text=True, check=False
+    )
     if done.returncode != 0:
         raise SynthError((done.stderr or done.stdout).strip())
     return dict(line.split("=") for line in done.stdout.split())
@@ -73,8 +77,7 @@ def tree(parameters, folder, top="compute_unit"):
     script, result = os.path.join(folder, "elaborate.ys"), os.path.join(folder, "elaborate.json")
     chosen = " ".join(f"-chparam {n} {v}" for n, v in parameters.items())
     with open(script, "w", encoding="utf-8") as file:
-        file.write(f"{read_rtl()}\nhierarchy -check -top {top} {chosen}\n"
-                   f"delete */p:*\nwrite_json {result}\n")
+        file.write(f"{read_rtl()}\nhierarchy -check -top {top} {chosen}\n" f"delete */p:*\nwrite_json {result}\n")
     run([need("yosys", "yosys"), "-q", script], os.path.join(folder, "elaborate.log"))
     with open(result, encoding="utf-8") as file:
         modules = json.load(file)["modules"]
@@ -101,6 +104,9 @@ def tree(parameters, folder, top="compute_unit"):
 
 def distinguishing(kind, group):
     """A suffix from the parameters in which a module's kinds differ: _stages2_width8."""
-    parts = [f"_{n.lower()}{int(v, 2)}" for n, v in sorted(kind.parameters.items())
-             if any(other.parameters.get(n) != v for other in group)]
+    parts = [
+        f"_{n.lower()}{int(v, 2)}"
+        for n, v in sorted(kind.parameters.items())
+        if any(other.parameters.get(n) != v for other in group)
+    ]
     return "".join(parts) or "_" + kind.identity[-6:]

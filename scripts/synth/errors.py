@@ -21,8 +21,15 @@ def run(command, log, cwd=None, stdin=None, environment=None):
     """Runs a tool with its output in file `log`; a failure shows the end of that file."""
     with open(log, "w", encoding="utf-8") as out:
         source = open(stdin, encoding="utf-8") if stdin else subprocess.DEVNULL
-        done = subprocess.run(command, stdout=out, stderr=subprocess.STDOUT, stdin=source, cwd=cwd,
-                              env={**os.environ, **(environment or {})}, check=False)
+        done = subprocess.run(
+            command,
+            stdout=out,
+            stderr=subprocess.STDOUT,
+            stdin=source,
+            cwd=cwd,
+            env={**os.environ, **(environment or {})},
+            check=False,
+        )
     if done.returncode != 0:
         raise SynthError(f"{os.path.basename(command[0])} failed ({done.returncode}); the end of {log}:\n{tail(log)}")
 

@@ -11,7 +11,7 @@ class Sinks:
 
     def __init__(self, netlist, module, loads):
         library = netlist.library
-        self.of = defaultdict(list)       # net -> [(pF, place)]
+        self.of = defaultdict(list)  # net -> [(pF, place)]
         self.flop_driven, self.block_driven, self.crossing, self.clocks = set(), set(), set(), set()
         for gate, (cell_name, pins) in module.gates.items():
             cell = library.cells[cell_name]
@@ -50,7 +50,9 @@ def move(module, place, net):
 
 
 def buffer_tree(module, library, sinks, net):
-    """Puts buffers between a net and its sinks, layer by layer, until it sees little enough. Returns how many, and what it sees."""
+    """Puts buffers between a net and its sinks, layer by layer, until it sees little enough.
+    Returns how many, and what it sees.
+    """
     cell = library.cells[library.driver]
     entry, output = cell.inputs()[0].name, cell.outputs()[0].name
     entry_pf = library.pin_pf(library.driver, entry)
@@ -85,8 +87,11 @@ def repair(netlist):
     library = netlist.library
     inverter = library.cells[library.inverter].inputs()[0].name
     memory_pin = 2 * library.pin_pf(library.inverter, inverter)
-    loads = {i: {(p, b): memory_pin for p, (_, width) in k.ports.items() for b in range(width)} for i, k in netlist.kinds.items()
-             if i not in netlist.modules}
+    loads = {
+        i: {(p, b): memory_pin for p, (_, width) in k.ports.items() for b in range(width)}
+        for i, k in netlist.kinds.items()
+        if i not in netlist.modules
+    }
     added = {}
 
     def visit(identity):
@@ -96,7 +101,12 @@ def repair(netlist):
         for child, _ in module.blocks.values():
             visit(child)
         sinks = Sinks(netlist, module, loads)
-        inputs = {net: (name, i) for name, direction, nets in module.ports if direction == "input" for i, net in enumerate(nets)}
+        inputs = {
+            net: (name, i)
+            for name, direction, nets in module.ports
+            if direction == "input"
+            for i, net in enumerate(nets)
+        }
         seen, count = {}, 0
         for net in list(sinks.of):
             hanging = sinks.of[net]
@@ -108,5 +118,6 @@ def repair(netlist):
                 count += more
         loads[identity] = {place: seen.get(net, 0.0) for net, place in inputs.items()}
         added[module.name] = count
+
     visit(netlist.top)
     return added

@@ -1,4 +1,6 @@
-"""From a configuration to a timed netlist: elaborate, map, time, map the blocks on failing paths for speed, time again."""
+"""From a configuration to a timed netlist: elaborate, map, time, map the blocks on failing paths for speed,
+time again.
+"""
 import hashlib
 import json
 import os
@@ -30,6 +32,7 @@ class Options:
 @dataclass
 class Design:
     """A configuration as netlist; what the later steps need."""
+
     options: Options
     library: Library
     parameters: dict
@@ -40,8 +43,8 @@ class Design:
     netlist: Netlist = None
     memory: MemoryModel = None
     endpoints: list = field(default_factory=list)
-    efforts: dict = field(default_factory=dict)   # by kind's identity, where it is not the first
-    buffers: dict = field(default_factory=dict)   # added to each kind for fan-out
+    efforts: dict = field(default_factory=dict)  # by kind's identity, where it is not the first
+    buffers: dict = field(default_factory=dict)  # added to each kind for fan-out
 
     @property
     def verilog(self):
@@ -60,7 +63,11 @@ class Design:
 def label(options, library):
     """The folder's name: the configuration and whatever is not the default."""
     name = os.path.splitext(os.path.basename(options.config))[0]
-    parts = [name] + ([library.name] if library.name != "osu018" else []) + (["flops"] if options.memories == "flops" else [])
+    parts = (
+        [name]
+        + ([library.name] if library.name != "osu018" else [])
+        + (["flops"] if options.memories == "flops" else [])
+    )
     if options.clock_ns is not None:
         parts.append(f"{options.clock_ns:g}ns")
     return "-".join(parts)
@@ -86,8 +93,15 @@ def digest(design):
             if name.endswith((".py", ".json", ".sdc")):
                 with open(os.path.join(folder, name), encoding="utf-8") as file:
                     sources[name] = file.read()
-    parts = [sources, design.parameters, design.library.digest, mapping.versions(), timing.version(), str(design.options.clock_ns),
-             design.options.memories]
+    parts = [
+        sources,
+        design.parameters,
+        design.library.digest,
+        mapping.versions(),
+        timing.version(),
+        str(design.options.clock_ns),
+        design.options.memories,
+    ]
     return hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()[:16]
 
 
@@ -155,9 +169,18 @@ def synthesise(design):
             if name not in seen:
                 seen.add(name)
                 chosen.append(pin)
-        pins = [step[0] for _, _, steps in timing.describe(chosen[:PATHS_A_ROUND], design.verilog, design.library, design.macros,
-                                                           design.clock_ns, work) for step in steps]
-        more = {i for i in identities_on(design, pins) if i in design.netlist.modules and design.efforts.get(i, 0) < mapping.LAST_EFFORT}
+        pins = [
+            step[0]
+            for _, _, steps in timing.describe(
+                chosen[:PATHS_A_ROUND], design.verilog, design.library, design.macros, design.clock_ns, work
+            )
+            for step in steps
+        ]
+        more = {
+            i
+            for i in identities_on(design, pins)
+            if i in design.netlist.modules and design.efforts.get(i, 0) < mapping.LAST_EFFORT
+        }
         if not more:
             break
         say(f"synth: slack {slack:+.3f} ns; for speed: {', '.join(sorted(design.kinds[i].name for i in more))}")

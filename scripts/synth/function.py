@@ -62,6 +62,7 @@ def parse(text):
             take()
             value = ("or", value, both())
         return value
+
     tree = lowest()
     if place != len(tokens):
         raise SynthError(f"a Liberty function is not understood: {text}")
@@ -74,8 +75,12 @@ def value_of(tree, values):
     if isinstance(tree, str):
         return values[tree]
     parts = [value_of(t, values) for t in tree[1:]]
-    return {"not": lambda: 1 - parts[0], "xor": lambda: parts[0] ^ parts[1], "and": lambda: parts[0] & parts[1],
-            "or": lambda: parts[0] | parts[1]}[tree[0]]()
+    return {
+        "not": lambda: 1 - parts[0],
+        "xor": lambda: parts[0] ^ parts[1],
+        "and": lambda: parts[0] & parts[1],
+        "or": lambda: parts[0] | parts[1],
+    }[tree[0]]()
 
 
 def truth(text, inputs):

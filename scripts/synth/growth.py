@@ -43,8 +43,14 @@ def area_of(change, jobs):
     flow.map_design(design)
     rows, _ = report.blocks(design)
     whole = rows[0]
-    found = {"key": key, "logic_kge": whole["logic_kge"], "memory_kge": whole["memory_kge"], "flip_flops": whole["flip_flops"],
-             "memory_bits": whole["memory_bits"], "mm2": report.forty_nm(design, whole["logic_um2"])["total_mm2"]}
+    found = {
+        "key": key,
+        "logic_kge": whole["logic_kge"],
+        "memory_kge": whole["memory_kge"],
+        "flip_flops": whole["flip_flops"],
+        "memory_bits": whole["memory_bits"],
+        "mm2": report.forty_nm(design, whole["logic_um2"])["total_mm2"],
+    }
     with open(kept, "w", encoding="utf-8") as file:
         json.dump(found, file)
     return found
@@ -76,17 +82,28 @@ def grow(jobs, out, plan_path=None):
             inner[keys[-1]] = value
             found = area_of(change, jobs)
             rows.append((value, found["logic_kge"], found["memory_kge"]))
-            say(f"growth: {axis['name']} {value}: {found['logic_kge']:.1f} kGE logic, {found['memory_kge']:.1f} kGE memory, {found['mm2']:.3f} mm2")
+            say(
+                f"growth: {axis['name']} {value}: {found['logic_kge']:.1f} kGE logic, {found['memory_kge']:.1f} kGE "
+                f"memory, {found['mm2']:.3f} mm2"
+            )
         results["axes"][axis["name"]] = rows
-        plots.growth_lines(axis["title"], axis["name"], rows, out, os.path.join(out, f"growth-{axis['name'].replace(' ', '-')}.png"))
+        plots.growth_lines(
+            axis["title"], axis["name"], rows, out, os.path.join(out, f"growth-{axis['name'].replace(' ', '-')}.png")
+        )
     say(f"\n{'step':58} {'logic kGE':>10} {'memory kGE':>11} {'flip-flops':>11} {'mm2 40 nm':>10}")
     for step in plan["steps"]:
         before = area_of(merged(plan["base"], step.get("from", {})), jobs)
         after = area_of(merged(plan["base"], step["to"]), jobs)
         share = step.get("share", 1)
-        row = {"name": step["name"], **{k: (after[k] - before[k]) * share for k in ("logic_kge", "memory_kge", "flip_flops", "mm2")}}
+        row = {
+            "name": step["name"],
+            **{k: (after[k] - before[k]) * share for k in ("logic_kge", "memory_kge", "flip_flops", "mm2")},
+        }
         results["steps"].append(row)
-        say(f"{row['name']:58} {row['logic_kge']:>+10.2f} {row['memory_kge']:>+11.2f} {row['flip_flops']:>+11.0f} {row['mm2']:>+10.4f}")
+        say(
+            f"{row['name']:58} {row['logic_kge']:>+10.2f} {row['memory_kge']:>+11.2f} {row['flip_flops']:>+11.0f} "
+            f"{row['mm2']:>+10.4f}"
+        )
     with open(os.path.join(out, "growth.json"), "w", encoding="utf-8") as file:
         json.dump(results, file, indent=1)
     say(f"growth: {out}/growth.json and growth-*.png")

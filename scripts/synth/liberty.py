@@ -1,4 +1,6 @@
-"""Reads the parts of a Liberty file that the flow needs: cells, areas, pins with their capacitance and function, what is a flip-flop."""
+"""Reads the parts of a Liberty file that the flow needs: cells, areas, pins with their capacitance and function,
+what is a flip-flop.
+"""
 import re
 from dataclasses import dataclass, field
 
@@ -10,6 +12,7 @@ _TOKEN = re.compile(r'"(?:[^"\\]|\\.)*"|/\*.*?\*/|\\\n|[{}();:,]|[^\s{}();:,"]+'
 @dataclass
 class Group:
     """kind (arguments) { attributes; groups }"""
+
     kind: str
     arguments: list
     attributes: dict = field(default_factory=dict)
@@ -39,7 +42,9 @@ def parse(path):
         with open(path, encoding="utf-8", errors="replace") as file:
             tokens = list(_tokens(file.read()))
     except OSError as error:
-        raise SynthError(f"{path}: the Liberty file cannot be read ({error.strerror}); LIBERTY=path names another one") from error
+        raise SynthError(
+            f"{path}: the Liberty file cannot be read ({error.strerror}); LIBERTY=path names another one"
+        ) from error
     root = Group("file", [])
     stack, i, end = [root], 0, len(tokens)
     while i < end:
@@ -83,7 +88,7 @@ def parse(path):
 class Pin:
     name: str
     direction: str
-    capacitance: float   # in the library's unit
+    capacitance: float  # in the library's unit
     function: str
     clock: bool
 
@@ -94,8 +99,8 @@ class Cell:
     area: float
     leakage: float
     pins: dict
-    kind: str            # "gate", "flop", "latch", "other" (no function)
-    sequential: Group    # the ff or latch group, or None
+    kind: str  # "gate", "flop", "latch", "other" (no function)
+    sequential: Group  # the ff or latch group, or None
 
     def inputs(self):
         return [p for p in self.pins.values() if p.direction == "input"]
@@ -112,8 +117,13 @@ def cells(library):
         for pin in group.all("pin"):
             name = pin.arguments[0]
             capacitance = pin.number("capacitance")
-            pins[name] = Pin(name, pin.attributes.get("direction", "input"), capacitance, pin.attributes.get("function", ""),
-                             pin.attributes.get("clock", "false") == "true")
+            pins[name] = Pin(
+                name,
+                pin.attributes.get("direction", "input"),
+                capacitance,
+                pin.attributes.get("function", ""),
+                pin.attributes.get("clock", "false") == "true",
+            )
         sequential = (group.all("ff") or group.all("latch") or [None])[0]
         kind = "gate"
         if group.all("ff"):
@@ -122,8 +132,9 @@ def cells(library):
             kind = "latch"
         elif not any(p.function for p in pins.values()) or any("three_state" in p.attributes for p in group.all("pin")):
             kind = "other"
-        found[group.arguments[0]] = Cell(group.arguments[0], group.number("area"), group.number("cell_leakage_power"), pins, kind,
-                                         sequential)
+        found[group.arguments[0]] = Cell(
+            group.arguments[0], group.number("area"), group.number("cell_leakage_power"), pins, kind, sequential
+        )
     if not found:
         raise SynthError("the Liberty file has no cell")
     return found
@@ -142,5 +153,5 @@ def without_cells(text, names):
                 raise SynthError(f"the Liberty file ends inside cell {name}")
             depth += 1 if brace.group() == "{" else -1
             end = brace.end()
-        text = text[:match.start()] + text[end:]
+        text = text[: match.start()] + text[end:]
     return text

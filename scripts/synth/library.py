@@ -22,7 +22,11 @@ class Library:
         self.name = setup["name"]
         self.path = setup["liberty"]
         if not os.path.isfile(self.path):
-            hint = f": install the Debian package {setup['package']}" if "package" in setup else ": LIBERTY=path names the file"
+            hint = (
+                f": install the Debian package {setup['package']}"
+                if "package" in setup
+                else ": LIBERTY=path names the file"
+            )
             raise SynthError(f"{self.path}: no such Liberty file{hint}")
         self.verilog = setup.get("verilog")
         self.group = liberty.parse(self.path)
@@ -30,8 +34,11 @@ class Library:
         with open(self.path, encoding="utf-8", errors="replace") as file:
             self.text = file.read()
         patterns = setup.get("avoid", [])
-        self.avoided = sorted(n for n, c in self.cells.items()
-                              if c.kind in ("latch", "other") or any(fnmatch.fnmatchcase(n, p) for p in patterns))
+        self.avoided = sorted(
+            n
+            for n, c in self.cells.items()
+            if c.kind in ("latch", "other") or any(fnmatch.fnmatchcase(n, p) for p in patterns)
+        )
         self.usable = {n: c for n, c in self.cells.items() if n not in self.avoided}
         unit = self.group.attributes.get("capacitive_load_unit", ["1", "pf"])
         self.to_pf = float(unit[0]) * {"ff": 1e-3, "pf": 1.0}[unit[1].lower()]
@@ -67,7 +74,9 @@ class Library:
             outputs = cell.outputs()
             if cell.kind != "gate" or len(outputs) != 1 or len(cell.inputs()) != inputs:
                 continue
-            if truth(outputs[0].function, [p.name for p in cell.inputs()]) == table and (best is None or cell.area < best.area):
+            if truth(outputs[0].function, [p.name for p in cell.inputs()]) == table and (
+                best is None or cell.area < best.area
+            ):
                 best = cell
         if best is None:
             raise SynthError(f"{self.path}: the library has no {inputs}-input {what}; add a set-up to constraints/")

@@ -1,4 +1,6 @@
-"""Maps each kind of module once to the library's cells, with Yosys and ABC, and keeps the result under a key of all it was made from."""
+"""Maps each kind of module once to the library's cells, with Yosys and ABC,
+and keeps the result under a key of all it was made from.
+"""
 import concurrent.futures
 import hashlib
 import json
@@ -12,9 +14,11 @@ from .library import ROOT
 
 # ABC sees neither clock-to-output nor set-up time: it gets this share of the period.
 LOGIC_SHARE = 0.7
-# A block that is still on a failing path when it has been mapped for speed has only a part of that path: its gates are sized for this share.
+# A block that is still on a failing path when it has been mapped for speed has only a part of that path:
+# its gates are sized for this share.
 FAST_SHARE = 0.4
-# A block whose slowest logic takes no more than this share is fast enough, as far as one can see while it is mapped alone.
+# A block whose slowest logic takes no more than this share is fast enough, as far as
+# one can see while it is mapped alone.
 ACCEPTED_SHARE = 0.8
 # The limit that `map` gets in its own units, in targets.
 RELAXED = 2.15
@@ -28,8 +32,9 @@ def versions():
     return {"yosys": text.split()[1]}
 
 
-# Ways of mapping: for area, for speed with area won back, for speed, and for few levels before that. Each ends with buffers and drive strengths
-# for the target {d}, and says its delay. What `map` takes for a delay is some two times that: with {d} as its limit it never wins area back.
+# Ways of mapping: for area, for speed with area won back, for speed, and for few levels before that. Each ends with
+# buffers and drive strengths for the target {d}, and says its delay. What `map` takes for a delay is some two times
+# that: with {d} as its limit it never wins area back.
 _SIZING = "topo;buffer,-c;upsize,-D,{d};dnsize,-D,{d};stime"
 ABC_SCRIPTS = {
     "area": "+strash;dc2;dch,-f;amap,-m;" + _SIZING,
@@ -38,8 +43,8 @@ ABC_SCRIPTS = {
     "levels": "+strash;dch;if,-g;strash;dch;map,-B,0.9,-D,{d};" + _SIZING,
 }
 
-# Efforts: the first try, and what a block on a failing path gets then, one more each time. Ways in this order, until one is fast enough (of the
-# last effort all, and the fastest is taken), and the share they aim at.
+# Efforts: the first try, and what a block on a failing path gets then, one more each time. Ways in this order, until
+# one is fast enough (of the last effort all, and the fastest is taken), and the share they aim at.
 EFFORTS = [(["area", "balance", "speed"], LOGIC_SHARE), (["speed"], LOGIC_SHARE), (["speed", "levels"], FAST_SHARE)]
 LAST_EFFORT = len(EFFORTS) - 1
 
@@ -108,14 +113,31 @@ write_json {result}
 """
 
     def key(self, kind, effort):
-        """All that decides the result. The text of a module and what it includes; its children only by their interface."""
+        """All that decides the result. The text of a module and what it includes;
+        its children only by their interface.
+        """
         scripts = self.prepare_script(kind, "") + "".join(self.map_script(w, "", "") for w in EFFORTS[effort][0])
         # Neither where the project lies nor which other files it has.
-        scripts = scripts.split("\n", 1)[1].replace(ROOT, "").replace(self.folder.replace(ROOT, ""), "").replace(self.cells.replace(ROOT, ""), "")
+        scripts = (
+            scripts.split("\n", 1)[1]
+            .replace(ROOT, "")
+            .replace(self.folder.replace(ROOT, ""), "")
+            .replace(self.cells.replace(ROOT, ""), "")
+        )
         source = self.texts[f"rtl/{kind.base}.v"]
-        parts = [self.version, self.library.digest, DEFINES, scripts, source,
-                 json.dumps(self.included(source), sort_keys=True), str(OUTPUT_LOAD_FF), str(ACCEPTED_SHARE), str(EFFORTS[effort][1]),
-                 json.dumps(sorted(kind.children.items())), json.dumps(sorted(kind.parameters.items()))]
+        parts = [
+            self.version,
+            self.library.digest,
+            DEFINES,
+            scripts,
+            source,
+            json.dumps(self.included(source), sort_keys=True),
+            str(OUTPUT_LOAD_FF),
+            str(ACCEPTED_SHARE),
+            str(EFFORTS[effort][1]),
+            json.dumps(sorted(kind.children.items())),
+            json.dumps(sorted(kind.parameters.items())),
+        ]
         return hashlib.sha256("\0".join(parts).encode()).hexdigest()[:24]
 
     def path(self, kind, effort):
@@ -128,7 +150,9 @@ write_json {result}
         os.remove(stem + ".ys")
 
     def map_one(self, kind, effort):
-        """Takes the first way whose delay is within the accepted share of the period, else the fastest; of the last effort the fastest."""
+        """Takes the first way whose delay is within the accepted share of the period, else the fastest;
+        of the last effort the fastest.
+        """
         final = self.path(kind, effort)
         # Two runs may map the same kind at a time: each works on files of its own.
         stem = f"{final[:-len('.json')]}.{os.getpid()}"
@@ -149,10 +173,13 @@ write_json {result}
                 break
         with open(best[2], encoding="utf-8") as file:
             module = next(m for m in json.load(file)["modules"].values() if "top" in m["attributes"])
-        slim = {"way": best[1], "delay_ps": best[0],
-                "ports": {n: {"direction": p["direction"], "bits": p["bits"]} for n, p in module["ports"].items()},
-                "cells": {n: {"type": c["type"], "connections": c["connections"]} for n, c in module["cells"].items()},
-                "netnames": {n: {"bits": w["bits"]} for n, w in module["netnames"].items() if not w["hide_name"]}}
+        slim = {
+            "way": best[1],
+            "delay_ps": best[0],
+            "ports": {n: {"direction": p["direction"], "bits": p["bits"]} for n, p in module["ports"].items()},
+            "cells": {n: {"type": c["type"], "connections": c["connections"]} for n, c in module["cells"].items()},
+            "netnames": {n: {"bits": w["bits"]} for n, w in module["netnames"].items() if not w["hide_name"]},
+        }
         with open(stem + ".new", "w", encoding="utf-8") as file:
             json.dump(slim, file)
         os.rename(stem + ".new", final)
@@ -167,7 +194,9 @@ write_json {result}
         return path if os.path.exists(path) else None
 
     def map_all(self, kinds, efforts=None):
-        """Maps what is not kept yet; `efforts`: by identity, where it is not the first. Returns the paths of the results, by identity."""
+        """Maps what is not kept yet; `efforts`: by identity, where it is not the first.
+        Returns the paths of the results, by identity.
+        """
         efforts = efforts or {}
         with open(os.path.join(self.folder, "abc.constr"), "w", encoding="utf-8") as file:
             file.write(f"set_driving_cell {self.library.driver}\nset_load {OUTPUT_LOAD_FF} [all_outputs]\n")

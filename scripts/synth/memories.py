@@ -1,4 +1,6 @@
-"""What a memory block costs and how long it takes: the stated model of constraints/memories.json, and a Liberty file for the timer."""
+"""What a memory block costs and how long it takes: the stated model of constraints/memories.json,
+and a Liberty file for the timer.
+"""
 import json
 import math
 import os
@@ -12,6 +14,7 @@ PORT_KINDS = {"ram_1rw": "1rw", "ram_1r1w": "1r1w", "ram_2r1w": "2r1w"}
 @dataclass
 class Price:
     """um2 in the library of the report: as priced, and the ends of the band."""
+
     bits: int
     nominal: float
     low: float
@@ -41,8 +44,11 @@ class MemoryModel:
     def access_ns(self, kind, fo4_ns):
         """Clock to output."""
         model = self.data["access_fo4"]
-        return fo4_ns * (model["fixed"] + model["a_doubling_of_depth"] * math.log2(max(2, kind.value("DEPTH"))) +
-                         model["a_doubling_of_width"] * math.log2(max(2, kind.value("WIDTH"))))
+        return fo4_ns * (
+            model["fixed"]
+            + model["a_doubling_of_depth"] * math.log2(max(2, kind.value("DEPTH")))
+            + model["a_doubling_of_width"] * math.log2(max(2, kind.value("WIDTH")))
+        )
 
     def setup_ns(self, fo4_ns):
         return fo4_ns * self.data["setup_fo4"]
@@ -55,23 +61,28 @@ class MemoryModel:
         """Writes the timing of all memories among `kinds` as a Liberty file, in the units ns and pF."""
         inverter = self.library.cells[self.library.inverter]
         pin_pf = 2 * inverter.inputs()[0].capacitance * self.library.to_pf
-        slope = fo4_ns / (8 * inverter.inputs()[0].capacitance * self.library.to_pf)   # ns a pF, of a strong driver
+        slope = fo4_ns / (8 * inverter.inputs()[0].capacitance * self.library.to_pf)  # ns a pF, of a strong driver
         widths = sorted({w for k in kinds for _, w in k.ports.values() if w > 1})
         voltage = self.library.group.attributes.get("nom_voltage", "1.0")
         with open(path, "w", encoding="utf-8") as file:
-            file.write(f"""library(raypool_memories) {{
+            file.write(
+                f"""library(raypool_memories) {{
   delay_model : table_lookup; time_unit : "1ns"; voltage_unit : "1V"; current_unit : "1uA"; leakage_power_unit : "1nW";
-  pulling_resistance_unit : "1kohm"; capacitive_load_unit (1,pf); nom_process : 1; nom_temperature : 25; nom_voltage : {voltage};
+  pulling_resistance_unit : "1kohm"; capacitive_load_unit (1,pf); nom_process : 1; nom_temperature : 25;
+  nom_voltage : {voltage};
   operating_conditions(typical) {{ process : 1; voltage : {voltage}; temperature : 25; }}
   default_operating_conditions : typical;
   slew_upper_threshold_pct_rise : 80; slew_lower_threshold_pct_rise : 20; slew_upper_threshold_pct_fall : 80;
   slew_lower_threshold_pct_fall : 20; input_threshold_pct_rise : 50; input_threshold_pct_fall : 50;
   output_threshold_pct_rise : 50; output_threshold_pct_fall : 50;
   lu_table_template(load) {{ variable_1 : total_output_net_capacitance; index_1 ("0, 1"); }}
-""")
+"""
+            )
             for width in widths:
-                file.write(f"  type (bus{width}) {{ base_type : array; data_type : bit; bit_width : {width}; bit_from : {width - 1}; "
-                           "bit_to : 0; downto : true; }\n")
+                file.write(
+                    f"  type (bus{width}) {{ base_type : array; data_type : bit; bit_width : {width}; "
+                    f"bit_from : {width - 1}; bit_to : 0; downto : true; }}\n"
+                )
             for kind in kinds:
                 self._cell(file, kind, fo4_ns, pin_pf, slope)
             file.write("}\n")
@@ -84,14 +95,19 @@ class MemoryModel:
             if name == "clk_i":
                 file.write(f"    {head} direction : input; clock : true; capacitance : {pin_pf:.6f}; }}\n")
             elif direction == "input":
-                timing = "".join(f"timing() {{ related_pin : \"clk_i\"; timing_type : {check}_rising; rise_constraint(scalar) {{ values "
-                                 f"(\"{value:.4f}\"); }} fall_constraint(scalar) {{ values (\"{value:.4f}\"); }} }} "
-                                 for check, value in (("setup", setup), ("hold", 0.0)))
+                timing = "".join(
+                    f'timing() {{ related_pin : "clk_i"; timing_type : {check}_rising; '
+                    f'rise_constraint(scalar) {{ values ("{value:.4f}"); }} '
+                    f'fall_constraint(scalar) {{ values ("{value:.4f}"); }} }} '
+                    for check, value in (("setup", setup), ("hold", 0.0))
+                )
                 file.write(f"    {head} direction : input; capacitance : {pin_pf:.6f}; {timing}}}\n")
             else:
                 table = f'values ("{access:.4f}, {access + slope:.4f}");'
                 slew = f'values ("{fo4_ns:.4f}, {fo4_ns + slope:.4f}");'
-                file.write(f"    {head} direction : output; timing() {{ related_pin : \"clk_i\"; timing_type : rising_edge; timing_sense : "
-                           f"non_unate; cell_rise(load) {{ {table} }} cell_fall(load) {{ {table} }} rise_transition(load) {{ {slew} }} "
-                           f"fall_transition(load) {{ {slew} }} }} }}\n")
+                file.write(
+                    f'    {head} direction : output; timing() {{ related_pin : "clk_i"; timing_type : rising_edge; '
+                    f"timing_sense : non_unate; cell_rise(load) {{ {table} }} cell_fall(load) {{ {table} }} "
+                    f"rise_transition(load) {{ {slew} }} fall_transition(load) {{ {slew} }} }} }}\n"
+                )
         file.write("  }\n")

@@ -1,4 +1,6 @@
-"""The mapped netlist of a configuration: read from the kept results of mapping, measured, and written as one hierarchical Verilog file."""
+"""The mapped netlist of a configuration: read from the kept results of mapping, measured,
+and written as one hierarchical Verilog file.
+"""
 import json
 import re
 from collections import Counter
@@ -17,14 +19,15 @@ def plain(name):
 @dataclass
 class Module:
     """One kind of block as mapped. A net is an integer or one of the constants "0", "1"."""
+
     name: str
     kind: object
-    ports: list                                   # (name, direction, nets low bit first)
-    gates: dict = field(default_factory=dict)     # instance -> (library cell, {pin: net})
-    blocks: dict = field(default_factory=dict)    # instance -> (identity, {port: [nets]})
-    names: dict = field(default_factory=dict)     # net -> text in Verilog
-    originals: dict = field(default_factory=dict) # instance -> its name in the RTL
-    last: int = 0                                 # highest net number
+    ports: list  # (name, direction, nets low bit first)
+    gates: dict = field(default_factory=dict)  # instance -> (library cell, {pin: net})
+    blocks: dict = field(default_factory=dict)  # instance -> (identity, {port: [nets]})
+    names: dict = field(default_factory=dict)  # net -> text in Verilog
+    originals: dict = field(default_factory=dict)  # instance -> its name in the RTL
+    last: int = 0  # highest net number
 
     def fresh(self, stem):
         """A new net."""
@@ -52,6 +55,7 @@ class Netlist:
 
         def net(bit):
             return known[bit] if isinstance(bit, str) else bit
+
         taken = set()
         for name, port in data["ports"].items():
             nets = [net(b) for b in port["bits"]]
@@ -67,6 +71,7 @@ class Netlist:
                 candidate = f"{stem}_{count}"
             used.add(candidate)
             return candidate
+
         serial = 0
         for name, cell in data["cells"].items():
             if cell["type"] in self.kinds:
@@ -77,7 +82,10 @@ class Netlist:
                 continue
             known_cell = self.library.cells.get(cell["type"])
             if known_cell is None:
-                raise SynthError(f"{kind.name}: block {name} is a {cell['type']}, which is neither a cell of the library nor a listed memory")
+                raise SynthError(
+                    f"{kind.name}: block {name} is a {cell['type']}, which is neither a cell of the library nor a "
+                    "listed memory"
+                )
             pins = {p: net(bits[0]) for p, bits in cell["connections"].items()}
             if known_cell.kind == "flop":
                 output = known_cell.outputs()[0].name
@@ -99,7 +107,13 @@ class Netlist:
                     if not isinstance(bit, str):
                         module.names.setdefault(bit, f"{name}[{i}]" if len(nets) > 1 else name)
         used = set(taken)
-        numbers = [b for c in data["cells"].values() for bits in c["connections"].values() for b in bits if not isinstance(b, str)]
+        numbers = [
+            b
+            for c in data["cells"].values()
+            for bits in c["connections"].values()
+            for b in bits
+            if not isinstance(b, str)
+        ]
         module.last = max([*numbers, *module.names, 1])
         for name in sorted(data["netnames"], key=lambda n: (not n.endswith("_q"), "." in n, len(n), n)):
             bits = data["netnames"][name]["bits"]
@@ -150,6 +164,7 @@ class Netlist:
 
         def text(net):
             return f"1'b{net}" if isinstance(net, str) else names[net]
+
         file.write(f"module {module.name} ({', '.join(p[0] for p in module.ports)});\n")
         for name, direction, nets in module.ports:
             width = f"[{len(nets) - 1}:0] " if len(nets) > 1 else ""

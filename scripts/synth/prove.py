@@ -1,4 +1,6 @@
-"""Proves each mapped block equal to its RTL: both as and-inverter graphs, a miter, then ABC. Children are cut off at their ports."""
+"""Proves each mapped block equal to its RTL: both as and-inverter graphs, a miter, then ABC.
+Children are cut off at their ports.
+"""
 import concurrent.futures
 import hashlib
 import json
@@ -24,6 +26,7 @@ def gate_module(design, module):
 
     def text(net):
         return f"1'b{net}" if isinstance(net, str) else own[net]
+
     lines, ports, outputs = [], [], []
     for name, direction, nets in module.ports:
         ports.append(name)
@@ -49,8 +52,10 @@ def gate_module(design, module):
                     outputs.append(f"  assign {text(net)} = {bit};")
     taken = {p[0] for p in module.ports}
     wires = [n for n in own.values() if n.split("[")[0] not in taken]
-    gates = [f"  {cell} {label} ({', '.join(f'.{p}({text(n)})' for p, n in pins.items())});"
-             for label, (cell, pins) in module.gates.items()]
+    gates = [
+        f"  {cell} {label} ({', '.join(f'.{p}({text(n)})' for p, n in pins.items())});"
+        for label, (cell, pins) in module.gates.items()
+    ]
     declared = [f"  wire {', '.join(wires[i:i + 12])};" for i in range(0, len(wires), 12)]
     return "\n".join([f"module gate ({', '.join(ports)});", *lines, *declared, *outputs, *gates, "endmodule", ""])
 
@@ -59,19 +64,35 @@ def proof_module(design, module):
     """Around the miter: the first cycle is one of reset, as the encodings of state machines differ before it."""
     ports = [(n, len(nets)) for n, direction, nets in module.ports if direction == "input"]
     for label, (identity, _) in module.blocks.items():
-        ports += [(f"{module.originals[label]}.{p}", w) for p, (d, w) in design.kinds[identity].ports.items() if d == "output"]
+        ports += [
+            (f"{module.originals[label]}.{p}", w) for p, (d, w) in design.kinds[identity].ports.items() if d == "output"
+        ]
     names = {n for n, _ in ports}
     reset = {"clk_i", "rst_ni"} <= names
     lines = [f"  input {f'[{w - 1}:0] ' if w > 1 else ''}{escaped('in_' + n)};" for n, w in ports]
-    joined = [f".{escaped('in_' + n)}({escaped('in_' + n)}{'& started' if reset and n == 'rst_ni' else ''})" for n, _ in ports]
+    joined = [
+        f".{escaped('in_' + n)}({escaped('in_' + n)}{'& started' if reset and n == 'rst_ni' else ''})" for n, _ in ports
+    ]
     started = "reg started = 0; always @(posedge \\in_clk_i ) started <= 1;" if reset else "wire started = 1;"
-    return "\n".join([f"module proof ({', '.join([escaped('in_' + n) for n, _ in ports] + ['bad'])});", *lines, "  output bad;", "  wire trigger;",
-                      "  " + started, f"  miter miter ({', '.join(joined + ['.trigger(trigger)'])});",
-                      "  assign bad = trigger & started;", "endmodule", ""])
+    return "\n".join(
+        [
+            f"module proof ({', '.join([escaped('in_' + n) for n, _ in ports] + ['bad'])});",
+            *lines,
+            "  output bad;",
+            "  wire trigger;",
+            "  " + started,
+            f"  miter miter ({', '.join(joined + ['.trigger(trigger)'])});",
+            "  assign bad = trigger & started;",
+            "endmodule",
+            "",
+        ]
+    )
 
 
 def prove_one(design, identity, folder, cells):
-    """'proved', 'different', or why not. A register that only ever loads a constant counts as that constant, in the RTL too."""
+    """'proved', 'different', or why not. A register that only ever loads a constant counts as that constant,
+    in the RTL too.
+    """
     module = design.netlist.modules[identity]
     kind = module.kind
     stem = os.path.join(folder, kind.name)
@@ -113,7 +134,20 @@ write_aiger -zinit {stem}.aig
 """
     # Not where the project lies, nor which other files it has.
     steps = script.split("\n", 1)[1].replace(folder, "").replace(cells, "")
-    key = hashlib.sha256("\0".join([source, text, DEFINES, steps, ABC, proof_module(design, module), json.dumps(kind.parameters, sort_keys=True), design.library.digest]).encode()).hexdigest()[:16]
+    key = hashlib.sha256(
+        "\0".join(
+            [
+                source,
+                text,
+                DEFINES,
+                steps,
+                ABC,
+                proof_module(design, module),
+                json.dumps(kind.parameters, sort_keys=True),
+                design.library.digest,
+            ]
+        ).encode()
+    ).hexdigest()[:16]
     kept = stem + ".result"
     if os.path.exists(kept):
         with open(kept, encoding="utf-8") as file:
@@ -128,8 +162,13 @@ write_aiger -zinit {stem}.aig
         file.write(script)
     run([need("yosys", "yosys"), "-q", stem + ".ys"], stem + ".log")
     try:
-        done = subprocess.run([need("yosys-abc", "yosys"), "-q", ABC.format(aig=stem + ".aig")], capture_output=True,
-                              text=True, timeout=SECONDS, check=False)
+        done = subprocess.run(
+            [need("yosys-abc", "yosys"), "-q", ABC.format(aig=stem + ".aig")],
+            capture_output=True,
+            text=True,
+            timeout=SECONDS,
+            check=False,
+        )
         said = done.stdout + done.stderr
         if "not equivalent" in said.lower() or "was asserted" in said or re.search(r"^SATISFIABLE", said, re.M):
             verdict = "different"

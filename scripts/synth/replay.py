@@ -14,7 +14,11 @@ PROGRAMS = 20
 # What joins two nets and is no cell of the library, as the first two kinds of gate.
 BUFFER, INVERTER = 0, 1
 # The ports of a memory that are not 0 when it is accessed; one read of two words is two accesses.
-ACCESSES = {"ram_1rw": ["enable_i"], "ram_1r1w": ["read_i", "write_i"], "ram_2r1w": ["read_i", "read_i", "write_mask_i"]}
+ACCESSES = {
+    "ram_1rw": ["enable_i"],
+    "ram_1r1w": ["read_i", "write_i"],
+    "ram_2r1w": ["read_i", "read_i", "write_mask_i"],
+}
 
 
 def library_modules(path):
@@ -27,15 +31,24 @@ def library_modules(path):
 
 
 def tables(design, folder):
-    """The truth table of every output of every cell in use, by (cell, output): (inputs, table, whether it is a register). From the library's own
-    Verilog; where that uses tables (UDP), which Yosys does not read, or is missing, from the Liberty file. Says how many came from each."""
-    used = [design.library.cells[c] for c in sorted({c for i in design.netlist.modules for c in design.netlist.gate_count(i)})]
+    """The truth table of every output of every cell in use, by (cell, output): (inputs, table, whether it is a
+    register). From the library's own Verilog; where that uses tables (UDP), which Yosys does not read, or is missing,
+    from the Liberty file. Says how many came from each.
+    """
+    used = [
+        design.library.cells[c]
+        for c in sorted({c for i in design.netlist.modules for c in design.netlist.gate_count(i)})
+    ]
     own = library_modules(design.library.verilog)
     udp = set()
     if own:
         with open(design.library.verilog, encoding="utf-8", errors="replace") as file:
             udp = set(re.findall(r"\bprimitive\s+(\w+)", file.read()))
-    known = {c.name for c in used if c.kind == "gate" and c.name in own and not any(re.search(rf"\b{t}\b", own[c.name]) for t in udp)}
+    known = {
+        c.name
+        for c in used
+        if c.kind == "gate" and c.name in own and not any(re.search(rf"\b{t}\b", own[c.name]) for t in udp)
+    }
     evaluated = evaluate([c for c in used if c.name in known], own, folder) if known else {}
     found = {}
     for cell in used:
@@ -46,11 +59,16 @@ def tables(design, folder):
                 inputs = [p.name for p in cell.inputs()]
                 table = evaluated[cell.name, pin.name] if cell.name in known else truth(pin.function, inputs)
                 if table != truth(pin.function, inputs):
-                    raise SynthError(f"{cell.name}: the library's Verilog and its Liberty file give {pin.name} different functions")
+                    raise SynthError(
+                        f"{cell.name}: the library's Verilog and its Liberty file give {pin.name} different functions"
+                    )
                 found[cell.name, pin.name] = (inputs, table, False)
             if len(found[cell.name, pin.name][0]) > 6:
                 raise SynthError(f"the netlist uses {cell.name}, which has more inputs than the replay simulates")
-    say(f"replay: {len(known)} cells as the library's Verilog has them, {len(used) - len(known)} as its Liberty file (flip-flops)")
+    say(
+        f"replay: {len(known)} cells as the library's Verilog has them, {len(used) - len(known)} as its Liberty file "
+        "(flip-flops)"
+    )
     return found
 
 
@@ -59,7 +77,10 @@ def flop_table(cell):
     state = cell.sequential
     clock = state.attributes["clocked_on"]
     if "clear" in state.attributes or "preset" in state.attributes or "!" in clock or "'" in clock:
-        raise SynthError(f"the netlist uses {cell.name}, a flip-flop with clear, preset or a falling clock, which the flow does not simulate")
+        raise SynthError(
+            f"the netlist uses {cell.name}, a flip-flop with clear, preset or a falling clock, which the flow does not "
+            "simulate"
+        )
     inputs = [p.name for p in cell.inputs() if p.name != clock.strip("() ")]
     return inputs, truth(state.attributes["next_state"], inputs), True
 
@@ -73,7 +94,10 @@ def evaluate(cells, own, folder):
         file.write(f"read_verilog {source}\n")
         for cell in cells:
             for pin in cell.outputs():
-                file.write(f"cd {cell.name}\nlog == {cell.name} {pin.name}\neval -table {','.join(p.name for p in cell.inputs())} -show {pin.name}\ncd ..\n")
+                file.write(
+                    f"cd {cell.name}\nlog == {cell.name} {pin.name}\neval -table "
+                    f"{','.join(p.name for p in cell.inputs())} -show {pin.name}\ncd ..\n"
+                )
     log = os.path.join(folder, "cells.log")
     run([need("yosys", "yosys"), script], log)
     with open(log, encoding="utf-8") as file:
@@ -82,13 +106,17 @@ def evaluate(cells, own, folder):
     for cell, pin, text in zip(parts[::3], parts[1::3], parts[2::3]):
         rows = re.findall(r"^ ((?:1'[01] +)+)\| 1'([01])$", text, re.M)
         # The first input is the lowest bit.
-        found[cell, pin] = sum(int(value) << sum(int(b[-1]) << i for i, b in enumerate(bits.split())) for bits, value in rows)
+        found[cell, pin] = sum(
+            int(value) << sum(int(b[-1]) << i for i, b in enumerate(bits.split())) for bits, value in rows
+        )
     return found
 
 
 def flatten(netlist, found):
-    """The whole netlist as gates between numbered nets, 0 and 1 the constants: (nets, gates as (cell, output, inputs' nets, output's net), blocks as
-    (path, first gate, last), memories as (path, kind, {port: nets}), what else joins nets as (BUFFER or INVERTER, source, sink), the top's nets)."""
+    """The whole netlist as gates between numbered nets, 0 and 1 the constants: (nets, gates as (cell, output, inputs'
+    nets, output's net), blocks as (path, first gate, last), memories as (path, kind, {port: nets}), what else joins
+    nets as (BUFFER or INVERTER, source, sink), the top's nets).
+    """
     gates, blocks, memories, joins = [], [], [], []
     used = 2
 
@@ -99,7 +127,8 @@ def flatten(netlist, found):
         for name, _, nets in sorted(module.ports, key=lambda p: p[1] == "output"):
             for inner, outer in zip(nets, outside[name]):
                 if inside.setdefault(inner, outer) != outer:
-                    joins.append((BUFFER, inside[inner], outer))   # an input or a constant at an output, or one net at two
+                    # an input or a constant at an output, or one net at two
+                    joins.append((BUFFER, inside[inner], outer))
         for net in module.names:
             if net not in inside:
                 inside[net] = used
@@ -122,6 +151,7 @@ def flatten(netlist, found):
                 visit(child, path + (label,), nets)
             else:
                 memories.append(("/".join(path + (label,)), netlist.kinds[child], nets))
+
     top = {}
     for name, _, nets in netlist.modules[netlist.top].ports:
         top[name] = list(range(used, used + len(nets)))
@@ -131,8 +161,10 @@ def flatten(netlist, found):
 
 
 def simulator(design, folder, count):
-    """Writes the netlist as sim/rtl/gate_simulator.cpp reads it, and the Verilog that stands in for the compute unit: that simulator and the
-    RTL's memories. With `count` it prints at its end how often nets changed and memories were accessed. Returns the Verilog's path."""
+    """Writes the netlist as sim/rtl/gate_simulator.cpp reads it, and the Verilog that stands in for the compute unit:
+    that simulator and the RTL's memories. With `count` it prints at its end how often nets changed and memories were
+    accessed. Returns the Verilog's path.
+    """
     found = tables(design, folder)
     nets, gates, blocks, memories, joins, top = flatten(design.netlist, found)
     unit = design.kinds[design.netlist.top]
@@ -150,16 +182,20 @@ def simulator(design, folder, count):
         parameters = ", ".join(f".{n}({int(v, 2)})" for n, v in kind.parameters.items())
         lines.append(f"  {kind.base} #({parameters}) ram_{place} ({', '.join(connections)});")
         if count:
-            lines += [f"  longint unsigned accesses_{place} = 0;", f"  always @(posedge clk_i) accesses_{place} <= accesses_{place} + " +
-                      " + ".join(f"64'(ram_{place}_{p} != 0)" for p in ACCESSES[kind.base]) + ";",
-                      f"  final $display(\"ACCESSES %0d {path}\", accesses_{place});"]
+            lines += [
+                f"  longint unsigned accesses_{place} = 0;",
+                f"  always @(posedge clk_i) accesses_{place} <= accesses_{place} + "
+                + " + ".join(f"64'(ram_{place}_{p} != 0)" for p in ACCESSES[kind.base])
+                + ";",
+                f'  final $display("ACCESSES %0d {path}", accesses_{place});',
+            ]
     data, shell = os.path.join(folder, "netlist.bin"), os.path.join(folder, "compute_unit.v")
     entering, leaving = [[n for _, listed in ports for n in listed] for ports in (inputs, outputs)]
     number = {place: i + 2 for i, place in enumerate(found)}
     words = array.array("I", [nets, len(found) + 2, len(gates) + len(joins), len(entering), len(leaving), len(blocks)])
-    words.extend((1, 0, 0b10, 0, 1, 0, 0b01, 0))   # BUFFER, INVERTER
+    words.extend((1, 0, 0b10, 0, 1, 0, 0b01, 0))  # BUFFER, INVERTER
     for sources, table, flop in found.values():
-        words.extend((len(sources), int(flop), table & 0xffffffff, table >> 32))
+        words.extend((len(sources), int(flop), table & 0xFFFFFFFF, table >> 32))
     for cell, output, sources, sink in gates:
         words.extend((number[cell, output], *sources, sink))
     for join in joins:
@@ -170,12 +206,18 @@ def simulator(design, folder, count):
     with open(data, "wb") as file:
         words.tofile(file)
     with open(shell, "w", encoding="utf-8") as file:
-        file.write(f"module compute_unit #({', '.join(f'parameter {n} = {int(v, 2)}' for n, v in unit.parameters.items())}) ({', '.join(unit.ports)});\n")
+        file.write(
+            f"module compute_unit #({', '.join(f'parameter {n} = {int(v, 2)}' for n, v in unit.parameters.items())}) "
+            f"({', '.join(unit.ports)});\n"
+        )
         for name, (direction, width) in unit.ports.items():
             file.write(f"  {direction} [{width - 1}:0] {name};\n")
-        file.write("\n".join(lines) + f"""
+        file.write(
+            "\n".join(lines)
+            + f"""
   import "DPI-C" function chandle netlist_open(input string path);
-  import "DPI-C" function void netlist_settle(input chandle netlist, input bit [{len(entering) - 1}:0] entering, output bit [{len(leaving) - 1}:0] leaving);
+  import "DPI-C" function void netlist_settle(input chandle netlist, input bit [{len(entering) - 1}:0] entering,
+    output bit [{len(leaving) - 1}:0] leaving);
   import "DPI-C" function void netlist_clock(input chandle netlist);
   import "DPI-C" function void netlist_close(input chandle netlist, input bit report);
   chandle netlist = netlist_open("{data}");
@@ -190,12 +232,14 @@ def simulator(design, folder, count):
   assign {{{', '.join(n for n, _ in reversed(outputs))}}} = leaving;
   final netlist_close(netlist, {int(count)});
 endmodule
-""")
+"""
+        )
     return shell
 
 
 def broken(design, number, base="int_alu"):
-    """Swaps the function of one cell, for a test of the test: a gate of block `base`, chosen by `number`, that has a partner cell with
+    """Swaps the function of one cell, for a test of the test: a gate of block `base`, chosen by `number`, that has a
+    partner cell with
     the same pins and another function. Returns what was done, in words."""
     library = design.library
     partners = {}
@@ -225,14 +269,26 @@ def build(design, folder, count=False):
     os.makedirs(folder, exist_ok=True)
     shell = simulator(design, folder, count)
     parameters = [f"{n}={v}" for n, v in design.parameters.items()]
-    run([os.path.join(ROOT, "scripts", "verilate.sh"), folder, "--netlist", shell, *parameters], os.path.join(folder, "build.log"),
-        environment={"JOBS": str(design.options.jobs)})
+    run(
+        [os.path.join(ROOT, "scripts", "verilate.sh"), folder, "--netlist", shell, *parameters],
+        os.path.join(folder, "build.log"),
+        environment={"JOBS": str(design.options.jobs)},
+    )
     return os.path.join(folder, "libraypool_unit.so")
 
 
 def lockstep(design, library, folder, arguments, engine="lockstep"):
     """Runs raypool on the netlist; returns (passed, output)."""
-    command = [elaborate.raypool(), *arguments, "--config", design.options.config, "--engine", engine, "--unit-library", library]
+    command = [
+        elaborate.raypool(),
+        *arguments,
+        "--config",
+        design.options.config,
+        "--engine",
+        engine,
+        "--unit-library",
+        library,
+    ]
     if arguments[0] == "sim":
         command += ["--out", os.path.join(folder, "picture"), "--quiet"]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
@@ -240,7 +296,9 @@ def lockstep(design, library, folder, arguments, engine="lockstep"):
     with open(os.path.join(folder, arguments[0] + ".log"), "w", encoding="utf-8") as file:
         file.write(" ".join(command) + "\n" + text)
     if done.returncode not in (0, 2):
-        raise SynthError(f"raypool {arguments[0]} failed: {text.strip().splitlines()[-1] if text.strip() else done.returncode}")
+        raise SynthError(
+            f"raypool {arguments[0]} failed: {text.strip().splitlines()[-1] if text.strip() else done.returncode}"
+        )
     return done.returncode == 0, text
 
 
@@ -252,16 +310,24 @@ def replay(design, break_number=0):
         say(f"replay: broken on purpose: {what}")
     library = build(design, folder)
     # A failing program is shrunk into the netlist's folder: its fault is not the RTL's.
-    runs = [SCENE, ["cosim", "--programs", str(PROGRAMS), "--seed", "1", "--save", folder] + (["--no-shrink"] if what else [])]
+    runs = [
+        SCENE,
+        ["cosim", "--programs", str(PROGRAMS), "--seed", "1", "--save", folder] + (["--no-shrink"] if what else []),
+    ]
     for arguments in runs:
         passed, text = lockstep(design, library, folder, arguments)
         words = arguments[0]
         if not passed and what:
             said = [line.strip() for line in text.splitlines() if "differ" in line or "look at:" in line]
-            say(f"replay: {words} noticed it: " + "; ".join(said[:1] + [line for line in said if line.startswith("look at:")]))
+            say(
+                f"replay: {words} noticed it: "
+                + "; ".join(said[:1] + [line for line in said if line.startswith("look at:")])
+            )
             return
         if not passed:
-            raise SynthError(f"the netlist differs from the golden model in `raypool {' '.join(arguments)}`:\n{text.strip()}")
+            raise SynthError(
+                f"the netlist differs from the golden model in `raypool {' '.join(arguments)}`:\n{text.strip()}"
+            )
         if arguments[0] == "cosim":
             say("replay: " + " ".join(text.strip().splitlines()))
         else:

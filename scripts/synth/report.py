@@ -1,4 +1,6 @@
-"""report.json of a synthesised configuration, its table, and the comparison with an earlier one. docs/synthesis.md explains the fields."""
+"""report.json of a synthesised configuration, its table, and the comparison with an earlier one.
+docs/synthesis.md explains the fields.
+"""
 import json
 import os
 import statistics
@@ -13,8 +15,10 @@ THESIS_MM2 = 0.537
 # A stage should take no more than this many times the median one.
 SLOW_STAGE = 4 / 3
 # Lanes whose size has a goal in kGE: (block, name, [(parameters, goal)]), the first that fits.
-GOALS = [("float_lane", "Flt lane", [({"FMA": "1"}, 14.0), ({"SUBNORMALS": "0"}, 12.0), ({"SUBNORMALS": "1"}, 10.5)]),
-         ("slow_lane", "Slw lane", [({"SLOW_UNIT": "0"}, 28.0), ({"SLOW_UNIT": "2"}, 15.0)])]
+GOALS = [
+    ("float_lane", "Flt lane", [({"FMA": "1"}, 14.0), ({"SUBNORMALS": "0"}, 12.0), ({"SUBNORMALS": "1"}, 10.5)]),
+    ("slow_lane", "Slw lane", [({"SLOW_UNIT": "0"}, 28.0), ({"SLOW_UNIT": "2"}, 15.0)]),
+]
 
 
 def scaling():
@@ -34,7 +38,17 @@ def base_path(design, path):
 def blocks(design):
     """One row for each block of the hierarchy, all instances of a place together; areas include what lies below."""
     netlist, library = design.netlist, design.library
-    rows = defaultdict(lambda: {"instances": 0, "logic_um2": 0.0, "own_um2": 0.0, "memory_um2": 0.0, "flip_flops": 0, "memory_bits": 0, "cells": 0})
+    rows = defaultdict(
+        lambda: {
+            "instances": 0,
+            "logic_um2": 0.0,
+            "own_um2": 0.0,
+            "memory_um2": 0.0,
+            "flip_flops": 0,
+            "memory_bits": 0,
+            "cells": 0,
+        }
+    )
     stay = {k.identity for k in design.blocks()}
     of_path = {}
     for path, identity in netlist.instances():
@@ -46,8 +60,11 @@ def blocks(design):
             price = design.memory.price(design.kinds[identity])
             change = {"memory_um2": price.nominal, "memory_bits": price.bits}
         else:
-            change = {"logic_um2": netlist.own_area(identity), "flip_flops": netlist.own_flops(identity),
-                      "cells": sum(netlist.gate_count(identity).values())}
+            change = {
+                "logic_um2": netlist.own_area(identity),
+                "flip_flops": netlist.own_flops(identity),
+                "cells": sum(netlist.gate_count(identity).values()),
+            }
             row["own_um2"] += change["logic_um2"]
         for depth in range(len(path) + 1):
             upper = rows[base_path(design, path[:depth])]
@@ -64,10 +81,17 @@ def blocks(design):
     for name in sorted(rows, key=lambda n: (n.count("/") if n else -1, -rows[n]["logic_um2"] - rows[n]["memory_um2"])):
         row = rows[name]
         end = worst.get(name)
-        listed.append({"block": name or "compute_unit", **{k: round(v, 1) if isinstance(v, float) else v for k, v in row.items()},
-                       "logic_kge": round(library.kge(row["logic_um2"]), 3), "memory_kge": round(library.kge(row["memory_um2"]), 3),
-                       "slack_ns": end.slack if end else None, "delay_ns": round(design.clock_ns - end.slack, 4) if end else None,
-                       "endpoint": end.pin if end else None})
+        listed.append(
+            {
+                "block": name or "compute_unit",
+                **{k: round(v, 1) if isinstance(v, float) else v for k, v in row.items()},
+                "logic_kge": round(library.kge(row["logic_um2"]), 3),
+                "memory_kge": round(library.kge(row["memory_um2"]), 3),
+                "slack_ns": end.slack if end else None,
+                "delay_ns": round(design.clock_ns - end.slack, 4) if end else None,
+                "endpoint": end.pin if end else None,
+            }
+        )
     return listed, of_path
 
 
@@ -107,25 +131,63 @@ def make(design, key, path):
     slow = sorted((b for b in stages if b["delay_ns"] > median * SLOW_STAGE), key=lambda b: -b["delay_ns"])
     allowed = clock - slack
     report = {
-        "schema": SCHEMA, "key": key, "config": design.options.config, "parameters": design.parameters,
-        "library": {"name": library.name, "liberty": library.path, "nand2": library.nand2, "nand2_um2": library.nand2_area,
-                    "fo4_ns": round(design.fo4_ns, 5), "setup": os.path.basename(library.setup["file"])},
-        "tools": {**mapping.versions(), "opensta": timing.version()}, "memories": design.options.memories,
-        "area": {"logic_um2": whole["logic_um2"], "memory_um2": whole["memory_um2"], "total_um2": round(whole["logic_um2"] + whole["memory_um2"], 1),
-                 "logic_kge": whole["logic_kge"], "memory_kge": whole["memory_kge"],
-                 "total_kge": round(whole["logic_kge"] + whole["memory_kge"], 3), "flip_flops": whole["flip_flops"],
-                 "memory_bits": whole["memory_bits"], "cells": whole["cells"],
-                 "fan_out_buffers": sum(design.buffers.get(design.kinds[i].name, 0) for _, i in design.netlist.instances())},
-        "timing": {"clock_ns": clock, "slack_ns": slack, "allowed_ns": round(allowed, 4), "allowed_fo4": round(allowed / design.fo4_ns, 1),
-                   "mhz": round(1000 / allowed, 1), "from": start, "to": end, "from_block": block_of(of_path, start + "/x"),
-                   "to_block": block_of(of_path, end + "/x"),
-                   "steps": [{"pin": p, "cell": c, "delay_ns": d, "at_ns": t, "block": block_of(of_path, p)} for p, c, d, t in steps],
-                   "median_delay_ns": round(median, 4),
-                   "slow_stages": [{"block": b["block"], "delay_ns": b["delay_ns"], "delay_fo4": round(b["delay_ns"] / design.fo4_ns, 1),
-                                    "of_median": round(b["delay_ns"] / median, 2), "endpoint": b["endpoint"]} for b in slow],
-                   "efforts": {design.kinds[i].name: effort for i, effort in sorted(design.efforts.items())}},
+        "schema": SCHEMA,
+        "key": key,
+        "config": design.options.config,
+        "parameters": design.parameters,
+        "library": {
+            "name": library.name,
+            "liberty": library.path,
+            "nand2": library.nand2,
+            "nand2_um2": library.nand2_area,
+            "fo4_ns": round(design.fo4_ns, 5),
+            "setup": os.path.basename(library.setup["file"]),
+        },
+        "tools": {**mapping.versions(), "opensta": timing.version()},
+        "memories": design.options.memories,
+        "area": {
+            "logic_um2": whole["logic_um2"],
+            "memory_um2": whole["memory_um2"],
+            "total_um2": round(whole["logic_um2"] + whole["memory_um2"], 1),
+            "logic_kge": whole["logic_kge"],
+            "memory_kge": whole["memory_kge"],
+            "total_kge": round(whole["logic_kge"] + whole["memory_kge"], 3),
+            "flip_flops": whole["flip_flops"],
+            "memory_bits": whole["memory_bits"],
+            "cells": whole["cells"],
+            "fan_out_buffers": sum(design.buffers.get(design.kinds[i].name, 0) for _, i in design.netlist.instances()),
+        },
+        "timing": {
+            "clock_ns": clock,
+            "slack_ns": slack,
+            "allowed_ns": round(allowed, 4),
+            "allowed_fo4": round(allowed / design.fo4_ns, 1),
+            "mhz": round(1000 / allowed, 1),
+            "from": start,
+            "to": end,
+            "from_block": block_of(of_path, start + "/x"),
+            "to_block": block_of(of_path, end + "/x"),
+            "steps": [
+                {"pin": p, "cell": c, "delay_ns": d, "at_ns": t, "block": block_of(of_path, p)} for p, c, d, t in steps
+            ],
+            "median_delay_ns": round(median, 4),
+            "slow_stages": [
+                {
+                    "block": b["block"],
+                    "delay_ns": b["delay_ns"],
+                    "delay_fo4": round(b["delay_ns"] / design.fo4_ns, 1),
+                    "of_median": round(b["delay_ns"] / median, 2),
+                    "endpoint": b["endpoint"],
+                }
+                for b in slow
+            ],
+            "efforts": {design.kinds[i].name: effort for i, effort in sorted(design.efforts.items())},
+        },
         "forty_nm": {**forty_nm(design, whole["logic_um2"]), "thesis_4w4c_mm2": THESIS_MM2},
-        "lanes": lanes(design, listed), "blocks": listed, "power": None, "proofs": None,
+        "lanes": lanes(design, listed),
+        "blocks": listed,
+        "power": None,
+        "proofs": None,
     }
     return report
 
@@ -138,13 +200,20 @@ def lanes(design, listed):
         if not rows:
             continue
         goal = next((g for wanted, g in goals if wanted.items() <= design.parameters.items()), None)
-        result[label] = {"kge": round(sum(r["logic_kge"] for r in rows) / sum(r["instances"] for r in rows), 2),
-                         "goal_kge": goal}
+        result[label] = {
+            "kge": round(sum(r["logic_kge"] for r in rows) / sum(r["instances"] for r in rows), 2),
+            "goal_kge": goal,
+        }
     return result
 
 
-NEEDED = {"area": ["logic_um2", "logic_kge", "memory_bits", "flip_flops"], "timing": ["slack_ns", "allowed_fo4", "to_block", "steps"],
-          "forty_nm": ["total_mm2", "total_mm2_low", "total_mm2_high"], "library": ["fo4_ns", "nand2_um2"], "tools": ["yosys", "opensta"]}
+NEEDED = {
+    "area": ["logic_um2", "logic_kge", "memory_bits", "flip_flops"],
+    "timing": ["slack_ns", "allowed_fo4", "to_block", "steps"],
+    "forty_nm": ["total_mm2", "total_mm2_low", "total_mm2_high"],
+    "library": ["fo4_ns", "nand2_um2"],
+    "tools": ["yosys", "opensta"],
+}
 
 
 def check(report):
@@ -179,8 +248,13 @@ def efficiency(report, path, run):
     """Mrays/s a mm2 and a kGE of a run, whose clock is that of the simulated chip."""
     units = run.get("units", 1)
     rate = run["mrays_per_second"]
-    return {"run": path, "mrays_per_second": rate, "units": units, "mrays_per_second_mm2": rate / units / report["forty_nm"]["total_mm2"],
-            "mrays_per_second_kge": rate / units / report["area"]["total_kge"]}
+    return {
+        "run": path,
+        "mrays_per_second": rate,
+        "units": units,
+        "mrays_per_second_mm2": rate / units / report["forty_nm"]["total_mm2"],
+        "mrays_per_second_kge": rate / units / report["area"]["total_kge"],
+    }
 
 
 def number(value, places=2):
@@ -189,25 +263,33 @@ def number(value, places=2):
 
 def proofs_line(verdicts):
     rest = [f"{name} {verdict}" for name, verdict in sorted(verdicts.items()) if verdict != "proved"]
-    return (f"proofs   {len(verdicts) - len(rest)} of {len(verdicts)} kinds of block proved equal to their RTL" +
-            (f"; not: {'; '.join(rest)}" if rest else ""))
+    return f"proofs   {len(verdicts) - len(rest)} of {len(verdicts)} kinds of block proved equal to their RTL" + (
+        f"; not: {'; '.join(rest)}" if rest else ""
+    )
 
 
 def table(report, against=None, depth=2):
     """What is printed."""
     area, when, scaled = report["area"], report["timing"], report["forty_nm"]
-    lines = [f"{report['config']}  {report['library']['name']}, FO4 {report['library']['fo4_ns'] * 1000:.1f} ps, yosys {report['tools']['yosys']}, "
-             f"OpenSTA {report['tools']['opensta']}", ""]
+    lines = [
+        f"{report['config']}  {report['library']['name']}, FO4 {report['library']['fo4_ns'] * 1000:.1f} ps, yosys "
+        f"{report['tools']['yosys']}, OpenSTA {report['tools']['opensta']}",
+        "",
+    ]
     old = {b["block"]: b for b in against["blocks"]} if against else {}
-    head = f"{'block':44} {'n':>4} {'um2':>11} {'kGE':>9} {'memory kGE':>11} {'flip-flops':>11} {'memory bits':>12} {'slack ns':>9}"
+    head = f"{'block':44} {'n':>4} {'um2':>11} {'kGE':>9} {'memory kGE':>11} "
+    head += f"{'flip-flops':>11} {'memory bits':>12} {'slack ns':>9}"
     lines.append(head + (f" {'kGE before':>11} {'change':>8}" if against else ""))
     for block in report["blocks"]:
         name = block["block"]
         if name.count("/") >= depth or (block["logic_um2"] + block["memory_um2"]) < 0.0005 * area["total_um2"]:
             continue
-        line = (f"{'  ' * name.count('/') + name:44} {block['instances']:>4} {block['logic_um2']:>11.0f} {block['logic_kge']:>9.2f} "
-                f"{number(block['memory_kge']) if block['memory_bits'] else '-':>11} {block['flip_flops']:>11} {block['memory_bits'] or '-':>12} "
-                f"{number(block['slack_ns'], 3):>9}")
+        line = (
+            f"{'  ' * name.count('/') + name:44} {block['instances']:>4} {block['logic_um2']:>11.0f} "
+            f"{block['logic_kge']:>9.2f} "
+            f"{number(block['memory_kge']) if block['memory_bits'] else '-':>11} {block['flip_flops']:>11} "
+            f"{block['memory_bits'] or '-':>12} {number(block['slack_ns'], 3):>9}"
+        )
         if against:
             before = old.get(name)
             line += f" {number(before['logic_kge']) if before else '-':>11} "
@@ -216,33 +298,60 @@ def table(report, against=None, depth=2):
             else:
                 line += f"{'-' if before else 'new':>8}"
         lines.append(line)
-    lines += ["", f"area     {area['logic_kge']:.1f} kGE logic, {area['memory_kge']:.1f} kGE memory ({area['memory_bits']} bits, {report['memories']}), "
-              f"{area['flip_flops']} flip-flops, {area['cells']} cells",
-              f"40 nm    {scaled['total_mm2']:.3f} mm2 ({scaled['total_mm2_low']:.3f} to {scaled['total_mm2_high']:.3f}): logic "
-              f"{scaled['logic_mm2']:.3f}, memory {scaled['memory_mm2']:.3f}; the thesis' 4w4c: {scaled['thesis_4w4c_mm2']}",
-              f"timing   slack {when['slack_ns']:+.3f} ns at {when['clock_ns']:g} ns: {when['mhz']:.0f} MHz, {when['allowed_ns']:.2f} ns, "
-              f"{when['allowed_fo4']:.1f} FO4",
-              f"slowest  from {when['from_block']} ({when['from']}) to {when['to_block']} ({when['to']})"]
+    lines += [
+        "",
+        f"area     {area['logic_kge']:.1f} kGE logic, {area['memory_kge']:.1f} kGE memory ({area['memory_bits']} bits, "
+        f"{report['memories']}), {area['flip_flops']} flip-flops, {area['cells']} cells",
+        f"40 nm    {scaled['total_mm2']:.3f} mm2 ({scaled['total_mm2_low']:.3f} to {scaled['total_mm2_high']:.3f}): "
+        f"logic {scaled['logic_mm2']:.3f}, memory {scaled['memory_mm2']:.3f}; "
+        f"the thesis' 4w4c: {scaled['thesis_4w4c_mm2']}",
+        f"timing   slack {when['slack_ns']:+.3f} ns at {when['clock_ns']:g} ns: {when['mhz']:.0f} MHz, "
+        f"{when['allowed_ns']:.2f} ns, {when['allowed_fo4']:.1f} FO4",
+        f"slowest  from {when['from_block']} ({when['from']}) to {when['to_block']} ({when['to']})",
+    ]
     missed = [b for b in report["blocks"] if b["slack_ns"] is not None and b["slack_ns"] < 0]
-    lines.append("missed   " + (", ".join(f"{b['block']} {b['slack_ns']:+.3f}" for b in missed) if missed else "nothing: every block makes the clock"))
-    lines.append(f"stages   median of the blocks' slowest paths {when['median_delay_ns']:.2f} ns; more than a third slower: {len(when['slow_stages']) or 'none'}")
-    lines += [f"         {b['delay_ns']:.2f} ns, {b['delay_fo4']:.1f} FO4, {b['of_median']:.2f} of the median: {b['block']}, into {b['endpoint']}"
-              for b in when["slow_stages"]]
+    lines.append(
+        "missed   "
+        + (
+            ", ".join(f"{b['block']} {b['slack_ns']:+.3f}" for b in missed)
+            if missed
+            else "nothing: every block makes the clock"
+        )
+    )
+    lines.append(
+        f"stages   median of the blocks' slowest paths {when['median_delay_ns']:.2f} ns; more than a third slower: "
+        f"{len(when['slow_stages']) or 'none'}"
+    )
+    lines += [
+        f"         {b['delay_ns']:.2f} ns, {b['delay_fo4']:.1f} FO4, {b['of_median']:.2f} of the median: {b['block']}, "
+        f"into {b['endpoint']}"
+        for b in when["slow_stages"]
+    ]
     for label, lane in report["lanes"].items():
         goal = f", goal at most {lane['goal_kge']:g}" if lane["goal_kge"] else ""
         lines.append(f"{label:8} {lane['kge']:.2f} kGE{goal}")
     if report.get("power"):
         power = report["power"]
-        lines.append(f"power    {power['total_w'] * 1000:.0f} mW at {1000 / power['clock_ns']:.0f} MHz while drawing ({power['kernel']}); the largest: " +
-                     ", ".join(f"{r['block']} {r['total_w'] * 1000:.1f}" for r in sorted(power["blocks"], key=lambda r: -r["total_w"])[:6]))
+        lines.append(
+            f"power    {power['total_w'] * 1000:.0f} mW at {1000 / power['clock_ns']:.0f} MHz while drawing "
+            f"({power['kernel']}); the largest: "
+            + ", ".join(
+                f"{r['block']} {r['total_w'] * 1000:.1f}"
+                for r in sorted(power["blocks"], key=lambda r: -r["total_w"])[:6]
+            )
+        )
     if report.get("proofs"):
         lines.append(proofs_line(report["proofs"]))
     if report.get("efficiency"):
         e = report["efficiency"]
-        lines.append(f"speed    {e['mrays_per_second']:.2f} Mrays/s: {e['mrays_per_second_mm2']:.1f} a mm2 at 40 nm, "
-                     f"{e['mrays_per_second_kge']:.4f} a kGE (memories counted)")
+        lines.append(
+            f"speed    {e['mrays_per_second']:.2f} Mrays/s: {e['mrays_per_second_mm2']:.1f} a mm2 at 40 nm, "
+            f"{e['mrays_per_second_kge']:.4f} a kGE (memories counted)"
+        )
     if against:
-        lines.append(f"against  {against['config']} ({against['area']['total_kge']:.1f} kGE, {against['timing']['mhz']:.0f} MHz)")
+        lines.append(
+            f"against  {against['config']} ({against['area']['total_kge']:.1f} kGE, {against['timing']['mhz']:.0f} MHz)"
+        )
     return "\n".join(lines)
 
 

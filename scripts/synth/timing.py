@@ -20,7 +20,9 @@ def version():
 
 
 def run_sta(script, folder, name):
-    """Runs OpenSTA on the text of a script; returns what it printed. Its own errors do not end it: they are looked for."""
+    """Runs OpenSTA on the text of a script; returns what it printed.
+    Its own errors do not end it: they are looked for.
+    """
     path, log = os.path.join(folder, name + ".tcl"), os.path.join(folder, name + ".log")
     with open(path, "w", encoding="utf-8") as file:
         file.write(script + "\nexit\n")
@@ -45,16 +47,23 @@ def measure_fo4(library, folder):
     wires = [f"n{s}" for s in range(1, FO4_STAGES)] + [f"u{s}_{k}" for s in range(FO4_STAGES) for k in range(3)]
     netlist = os.path.join(folder, "fo4.v")
     with open(netlist, "w", encoding="utf-8") as file:
-        file.write(f"module fo4 (n0, n{FO4_STAGES});\n  input n0;\n  output n{FO4_STAGES};\n  wire {', '.join(wires)};\n  " +
-                   "\n  ".join(gates) + "\nendmodule\n")
-    text = run_sta(f"""read_liberty {library.path}
+        file.write(
+            f"module fo4 (n0, n{FO4_STAGES});\n  input n0;\n  output n{FO4_STAGES};\n  wire {', '.join(wires)};\n  "
+            + "\n  ".join(gates)
+            + "\nendmodule\n"
+        )
+    text = run_sta(
+        f"""read_liberty {library.path}
 read_verilog {netlist}
 link_design fo4
 create_clock -name virtual -period 100
 set_input_delay 0 -clock virtual [get_ports n0]
 set_output_delay 0 -clock virtual [get_ports n{FO4_STAGES}]
 set_input_transition 0.1 [get_ports n0]
-report_checks -path_delay max -digits 5""", folder, "fo4")
+report_checks -path_delay max -digits 5""",
+        folder,
+        "fo4",
+    )
     at = {int(m[2]): float(m[1]) for m in re.finditer(r"^\s*[\d.]+\s+([\d.]+)\s+[\^v]\s+s(\d+)/" + y, text, re.M)}
     if 3 not in at or FO4_STAGES - 3 not in at:
         raise SynthError(f"OpenSTA did not time the inverter chain of {library.inverter}; see {folder}/fo4.log")
@@ -83,13 +92,18 @@ _END = re.compile(r"^(?P<pin>\S+)\s+\(\S+\)\s+-?[\d.]+\s+-?[\d.]+\s+(?P<slack>-?
 
 def time_unit(netlist_path, library, macros, clock_ns, folder):
     """Endpoints with their slack in ns, worst first, and the text of OpenSTA's check for loops."""
-    text = run_sta(set_up(netlist_path, library, macros, clock_ns) + """
+    text = run_sta(
+        set_up(netlist_path, library, macros, clock_ns)
+        + """
 puts "== loops"
 check_setup -loops -verbose
 puts "== endpoints"
 report_checks -path_delay max -format end -group_count 1000000 -digits 4
 puts "== end"
-""", folder, "endpoints")
+""",
+        folder,
+        "endpoints",
+    )
     loops = text.split("== loops")[1].split("== endpoints")[0].strip()
     listing = text.split("== endpoints")[1].split("== end")[0]
     endpoints = []

@@ -1,6 +1,7 @@
 #!/bin/bash
 # docs/add-an-alu.md works as it stands: scripts/tests/add_an_alu.sh FOLDER
-# Copies the sources to FOLDER/tree and does what the page's marked blocks say, in their order. A comment before a block marks it:
+# Copies the sources to FOLDER/tree and does what the page's marked blocks say, in their
+# order. A comment before a block marks it:
 #   file: PATH                      the block is a new file
 #   insert: PATH, after: TEXT       the block goes behind the only line of the file that holds TEXT
 #   run            run, fails       commands that must succeed, or fail
@@ -54,7 +55,8 @@ take() {
       ;;
     expect)
       while IFS= read -r line; do
-        grep -qFx -e "$line" "$output" || { cat "$output"; fail "the page shows a line that is not in the output above: $line"; }
+        grep -qFx -e "$line" "$output" ||
+          { cat "$output"; fail "the page shows a line that is not in the output above: $line"; }
         expected=$((expected + 1))
       done < <(printf '%s' "$2")
       ;;
@@ -95,15 +97,19 @@ while IFS= read -r line; do
   fi
 done < "$root/docs/add-an-alu.md"
 [ $new -ge 3 ] && [ $inserted -ge 2 ] && [ $ran -ge 4 ] && [ $expected -ge 10 ] && [ $replaced -ge 1 ] ||
-  fail "the page lost blocks: $new files, $inserted insertions, $ran runs, $expected expected lines, $replaced replacements"
+  fail "the page lost blocks: $new files, $inserted insertions, $ran runs," \
+    "$expected expected lines, $replaced replacements"
 
 take run 'build/raypool sim --scene cornell --size 8x8 --depth 1 --config boxes.json --engine model --out out --quiet'
 grep -q '"box": *{' out/report.json || fail "out/report.json does not name the ALU box"
 take 'run, fails' "echo '{\"alus\": {\"box\": {\"depth\": 1}}}' > shallow.json; build/raypool config shallow.json"
-grep -q 'alus.box.depth is 1; it must be an integer from 2 to 32' "$output" || { cat "$output"; fail "a depth of 1 is not refused"; }
+grep -q 'alus.box.depth is 1; it must be an integer from 2 to 32' "$output" ||
+  { cat "$output"; fail "a depth of 1 is not refused"; }
 take run 'build/raypool configurations'
-grep -q '; tid brh int flt slw box as count/latency/depth$' "$output" || { cat "$output"; fail "the set of configurations has no column for box"; }
-take run 'verilator --lint-only -Wall --default-language 1364-2005 -Irtl rtl/waivers.vlt --top-module multiprocessor rtl/*.v'
+grep -q '; tid brh int flt slw box as count/latency/depth$' "$output" ||
+  { cat "$output"; fail "the set of configurations has no column for box"; }
+lint='verilator --lint-only -Wall --default-language 1364-2005'
+take run "$lint -Irtl rtl/waivers.vlt --top-module multiprocessor rtl/*.v"
 [ ! -s "$output" ] || { cat "$output"; fail "Verilator warns of the page's module"; }
 take run 'scripts/configure.sh build ON -DRAYPOOL_UNIT_BENCHES=OFF; cmake --build build --target raypool_cosim_test'
 take run "build/sim/raypool_cosim_test --gtest_filter='RandomPrograms.*:Covering*'"

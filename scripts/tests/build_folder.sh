@@ -1,5 +1,6 @@
 #!/bin/bash
-# The build folder can be anywhere, and nothing is written elsewhere: scripts/tests/build_folder.sh BUILD, a folder in which the program is built.
+# The build folder can be anywhere, and nothing is written elsewhere: scripts/tests/build_folder.sh BUILD, a
+# folder in which the program is built.
 # Where mounts are allowed (root), the checkout is made read-only around it for this test alone.
 set -u -o pipefail
 build=$(realpath "$1")
@@ -10,7 +11,8 @@ log=$folder/log
 trap 'rm -rf "$folder"' EXIT
 
 # A folder that nobody can make gets one sentence that names BUILD=, and make's own line.
-if make run BUILD=/proc/none > "$log" 2>&1 || [ "$(wc -l < "$log")" != 2 ] || ! grep -q 'build folder "/proc/none" cannot be written: choose another one with BUILD=' "$log"; then
+if make run BUILD=/proc/none > "$log" 2>&1 || [ "$(wc -l < "$log")" != 2 ] ||
+  ! grep -q 'build folder "/proc/none" cannot be written: choose another one with BUILD=' "$log"; then
   echo "FAILED: a build folder that cannot be made:"
   cat "$log"
   exit 1

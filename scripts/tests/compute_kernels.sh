@@ -1,5 +1,6 @@
 #!/bin/bash
-# saxpy, matmul and an assembly program give the results that C++ gives, on every engine: scripts/tests/compute_kernels.sh RAYPOOL CONFIG
+# saxpy, matmul and an assembly program give the results that C++ gives, on every engine:
+# scripts/tests/compute_kernels.sh RAYPOOL CONFIG
 # Needs the Verilated unit of CONFIG beside RAYPOOL.
 set -eu -o pipefail
 raypool=$(realpath "$1") config=$2
@@ -24,9 +25,10 @@ for engine in functional rtl lockstep; do
     "$raypool" run "$kernel" --config "$config" --engine "$engine" | tee "$folder/text"
     grep -qE '[1-9][0-9]* results, 0 wrong' "$folder/text"
   done
-  "$raypool" run "$folder/scale.asm" --config "$config" --engine "$engine" --blocks 2 --threads 8 --arg 3 --print 256:8 --print 320:8 \
-    > "$folder/text"
-  if [ "$(grep -cE '00000000 00000003 00000006 00000009 0000000c 0000000f 00000012 00000015' "$folder/text")" != 2 ]; then
+  "$raypool" run "$folder/scale.asm" --config "$config" --engine "$engine" --blocks 2 --threads 8 --arg 3 \
+    --print 256:8 --print 320:8 > "$folder/text"
+  wanted='00000000 00000003 00000006 00000009 0000000c 0000000f 00000012 00000015'
+  if [ "$(grep -cF "$wanted" "$folder/text")" != 2 ]; then
     echo "FAILED: wrong words from $engine:"
     cat "$folder/text"
     exit 1

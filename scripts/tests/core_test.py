@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """raypool.core describes rtl/ as it is: scripts/tests/core_test.py RAYPOOL
 
-It is what scripts/core.py writes; every file of rtl/ is in it once; its parameters are those of rtl/multiprocessor.v with
-their defaults; and Verilator, given its files, options and a value for each parameter, has nothing to complain about.
+It is what scripts/core.py writes; every file of rtl/ is in it once; its parameters are those of rtl/multiprocessor.v
+with their defaults; and Verilator, given its files, options and a value for each parameter, has nothing to complain
+about.
 """
 import pathlib
 import re
@@ -42,7 +43,9 @@ class Core(unittest.TestCase):
     def test_lists_every_file_once(self):
         rtl = sorted(str(path.relative_to(ROOT)) for path in (ROOT / "rtl").iterdir() if path.is_file())
         self.assertEqual(sorted(name for name, _ in self.files), rtl)
-        self.assertEqual([name for name, include in self.files if include], [name for name in rtl if name.endswith(".vh")])
+        self.assertEqual(
+            [name for name, include in self.files if include], [name for name in rtl if name.endswith(".vh")]
+        )
 
     def test_has_the_parameters_of_the_top(self):
         target = self.core["targets"]["default"]
@@ -59,7 +62,9 @@ class Core(unittest.TestCase):
         waivers = [name for name, _ in self.files if name.endswith(".vlt")]
         verilog = [name for name, include in self.files if not include and name not in waivers]
         command = ["verilator", "--lint-only", *tool["verilator_options"], "--top-module", target["toplevel"], "-Irtl"]
-        done = subprocess.run(command + parameters + waivers + verilog, cwd=ROOT, capture_output=True, text=True, check=False)
+        done = subprocess.run(
+            command + parameters + waivers + verilog, cwd=ROOT, capture_output=True, text=True, check=False
+        )
         self.assertEqual((done.returncode, done.stdout + done.stderr), (0, ""))
 
 

@@ -11,9 +11,11 @@ trap 'rm -rf "$folder"' EXIT
 # draw SCENE SIZE FOLDER: the picture, and what became of the rays, as every engine has it.
 draw() {
   for engine in native functional model rtl lockstep; do
-    "$raypool" sim --scene "$1" --size "$2" --config "$config" --depth "$depth" --units "$units" --engine "$engine" --out "$3/$engine" --quiet
+    "$raypool" sim --scene "$1" --size "$2" --config "$config" --depth "$depth" --units "$units" --engine "$engine" \
+      --out "$3/$engine" --quiet
     cmp "$3/native/image.png" "$3/$engine/image.png"
-    cmp <(rays "$3/native") <(rays "$3/$engine") || { echo "FAILED: $engine and native count rays differently"; exit 1; }
+    cmp <(rays "$3/native") <(rays "$3/$engine") ||
+      { echo "FAILED: $engine and native count rays differently"; exit 1; }
   done
 }
 rays() { sed -n '/^  "rays_by_kind"/,/^  "contributions"/p' "$1/report.json" | grep .; }
@@ -21,10 +23,12 @@ rays() { sed -n '/^  "rays_by_kind"/,/^  "contributions"/p' "$1/report.json" | g
 draw cornell 40x24 "$folder"
 report=$folder/lockstep/report.json
 grep -qE '"differences": 0\b' "$report" || { echo "FAILED: lockstep reports differences:"; cat "$report"; exit 1; }
-grep -qE '"instructions": [1-9][0-9]{3,}' "$report" || { echo "FAILED: lockstep compared next to nothing:"; cat "$report"; exit 1; }
+grep -qE '"instructions": [1-9][0-9]{3,}' "$report" ||
+  { echo "FAILED: lockstep compared next to nothing:"; cat "$report"; exit 1; }
 # The model takes the hardware's time, also without the hardware beside it.
 cycles() { sed -nE 's/^  "cycles": ([0-9]+),$/\1/p' "$folder/$1/report.json"; }
-[ -n "$(cycles rtl)" ] && [ "$(cycles rtl)" = "$(cycles model)" ] || { echo "FAILED: rtl took $(cycles rtl) cycles, model $(cycles model)"; exit 1; }
+[ -n "$(cycles rtl)" ] && [ "$(cycles rtl)" = "$(cycles model)" ] ||
+  { echo "FAILED: rtl took $(cycles rtl) cycles, model $(cycles model)"; exit 1; }
 # A picture of one colour would agree too: PNG squeezes it to a few dozen bytes.
 [ "$(stat -c %s "$folder/native/image.png")" -gt 400 ] || { echo "FAILED: the picture is empty"; exit 1; }
 
@@ -32,6 +36,7 @@ cycles() { sed -nE 's/^  "cycles": ([0-9]+),$/\1/p' "$folder/$1/report.json"; }
 "$raypool" scene cornell --detail 0.1 --write-obj "$folder/matt.obj" > "$folder/scene.txt"
 sed -i 's/^Ks .*/Ks 0 0 0/' "$folder/matt.mtl"
 draw "$folder/matt.obj" 16x12 "$folder/matt"
-rays "$folder/matt/lockstep" | grep -q '"reflection": 0,' || { echo "FAILED: reflections in a scene without mirrors:"; rays "$folder/matt/lockstep"; exit 1; }
+rays "$folder/matt/lockstep" | grep -q '"reflection": 0,' ||
+  { echo "FAILED: reflections in a scene without mirrors:"; rays "$folder/matt/lockstep"; exit 1; }
 "$raypool" sim --scene "$folder/matt.obj" --size 16x12 --depth 1 --engine native --out "$folder/direct" --quiet
 cmp "$folder/direct/image.png" "$folder/matt/native/image.png"

@@ -1,5 +1,6 @@
 #!/bin/bash
-# Input that cannot be used gives one clear sentence and a non-zero exit, and spoils no earlier result: scripts/tests/errors.sh RAYPOOL
+# Input that cannot be used gives one clear sentence and a non-zero exit, and spoils no earlier result:
+# scripts/tests/errors.sh RAYPOOL
 # Needs the Verilated unit of 4w4c beside RAYPOOL.
 set -u -o pipefail
 raypool=$(realpath "$1")
@@ -60,7 +61,8 @@ refuses_sim "eye that is no number" "--eye is '1,nan,3'.*-1e" --eye 1,nan,3
 refuses_sim "light too far away" "--light is '0,2e9,0'.*1e" --light 0,2e9,0
 refuses_sim "looking at the eye" "look at .1, 2, 3., where its eye is" --eye 1,2,3 --look-at 1,2,3
 refuses_sim "looking along up" "up is parallel" --eye 1,2,3 --look-at 1,5,3
-refuses_sim "looking along up at an OBJ" "good.obj: .*up is parallel" --scene "$folder/good.obj" --eye 1,2,3 --look-at 1,5,3
+refuses_sim "looking along up at an OBJ" "good.obj: .*up is parallel" --scene "$folder/good.obj" --eye 1,2,3 \
+  --look-at 1,5,3
 refuses_sim "up without a direction" "up is zero" --up 0,0,0
 refuses_sim "field of view of a half-circle" "--fov is '180'.*1 to 170" --fov 180
 refuses_sim "field of view that is no number" "--fov is 'wide'" --fov wide
@@ -78,8 +80,10 @@ refuses_sim "unknown traverser" "static" --traverser quick
 refuses_sim "engine without a built unit" "make unit" --engine rtl --unit-library "$folder/none.so"
 refuses_sim "results folder that is a file" "good.obj" --out "$folder/good.obj"
 cosim=("$raypool" cosim --programs 2 --save "$folder/saved" --quiet)
-refuses "random programs without a built unit" "none.so.*make" "${cosim[@]}" --config 4w4c --unit-library "$folder/none.so"
-refuses "random programs, a unit that is no library" "good.obj.*cannot be loaded" "${cosim[@]}" --config 4w4c --unit-library "$folder/good.obj"
+refuses "random programs without a built unit" "none.so.*make" "${cosim[@]}" --config 4w4c \
+  --unit-library "$folder/none.so"
+refuses "random programs, a unit that is no library" "good.obj.*cannot be loaded" "${cosim[@]}" --config 4w4c \
+  --unit-library "$folder/good.obj"
 refuses "random programs on another configuration's unit" "build it for this configuration" \
   "${cosim[@]}" --config 2w2c --unit-library "$(echo "$(dirname "$raypool")"/units/4w4c-????????/libraypool_unit.so)"
 refuses "random programs, 3 warps" "3.*power of two from 1 to 32" "${cosim[@]}" --config "$folder/warps.json"
@@ -102,7 +106,8 @@ refuses_sim "a key twice in a configuration" "twice.json: the key \"warps\" stan
 echo '{"eye": [0, 0, 1], "eye": [0, 0, 2]}' > "$folder/twice.json"
 refuses_sim "a key twice in a view" "twice.json: the key \"eye\" stands twice" --view "$folder/twice.json"
 sed '0,/"seed"/ s//"seed": 1, "seed"/' tb/icarus/undefined_register.json > "$folder/twice.json"
-refuses "a key twice in a saved program" "twice.json: the key \"seed\" stands twice" "$raypool" cosim --replay "$folder/twice.json"
+refuses "a key twice in a saved program" "twice.json: the key \"seed\" stands twice" "$raypool" cosim \
+  --replay "$folder/twice.json"
 echo '{"name": "8w8c", "warps": 2}' > "$folder/posing.json"
 refuses_sim "other hardware under a built-in name" "'8w8c' stands for other hardware" --config "$folder/posing.json"
 refuses_sim "waveform of an engine without one" "waveform" --waves
@@ -111,7 +116,8 @@ refuses "unknown kernel" "saxpy" "$raypool" run sexpy
 refuses "saxpy of nothing" "--n is 0: saxpy takes a size from 1 to" "$raypool" run saxpy --n 0
 refuses "no cycles" "--cycles" "$raypool" run saxpy --cycles 0
 for range in 60000:2 252:2 0:4294967295 4294967292:2; do
-  refuses "words beyond the memory, $range" "$range goes beyond the memory of 256 bytes" "$raypool" run "$folder/exit.asm" --memory 256 --print "$range"
+  refuses "words beyond the memory, $range" "$range goes beyond the memory of 256 bytes" "$raypool" run \
+    "$folder/exit.asm" --memory 256 --print "$range"
 done
 refuses "no words" "at least one" "$raypool" run "$folder/exit.asm" --print 0:0
 refuses "an address with a point" "address '1.5'" "$raypool" run "$folder/exit.asm" --print 1.5:1
@@ -126,12 +132,15 @@ for engine in functional rtl lockstep; do
   refuses "$engine: load out of memory" "outside the memory" "${run[@]}" "$folder/load.asm"
   refuses "$engine: endless program" "limit of $limit $unit" "${run[@]}" "$folder/forever.asm"
   refuses "$engine: endless program that computes" "limit of $limit $unit" "${run[@]}" "$folder/spin.asm"
-  refuses "$engine: misaligned load names its address" "multiple of 4.*thread 0 of block 0 goes to address 0x402$" "${run[@]}" "$folder/odd.asm"
+  refuses "$engine: misaligned load names its address" "multiple of 4.*thread 0 of block 0 goes to address 0x402$" \
+    "${run[@]}" "$folder/odd.asm"
   refuses "$engine: rin in a compute program" "PC 1: rin waits for a ray" "${run[@]}" "$folder/rin.asm"
 done
 
 # What an earlier run has left survives a failed one, and nothing else is left.
-"$raypool" sim --engine functional --size 8x8 --out "$folder/out" --scene "$folder/good.obj" --quiet > "$folder/stdout" 2>&1 || { failures=$((failures + 1)); echo "FAILED: a good OBJ:"; cat "$folder/stdout"; }
+"$raypool" sim --engine functional --size 8x8 --out "$folder/out" --scene "$folder/good.obj" --quiet \
+  > "$folder/stdout" 2>&1 ||
+  { failures=$((failures + 1)); echo "FAILED: a good OBJ:"; cat "$folder/stdout"; }
 before=$(cd "$folder/out" && ls -A && cksum ./*)
 refuses_sim "failed run over an earlier one" "nan.obj" --scene "$folder/nan.obj"
 if [ "$before" != "$(cd "$folder/out" && ls -A && cksum ./*)" ]; then
@@ -143,13 +152,15 @@ sim=("$raypool" sim --engine functional --size 8x8 --out "$folder/out" --quiet)
 # What is drawn, but hardly as it was meant, is told.
 warns() {
   local what=$1 pattern=$2; shift 2
-  "$@" > "$folder/stdout" 2> "$folder/stderr" && [ "$(wc -l < "$folder/stderr")" = 1 ] && grep -qE -e "^raypool: warning: .*$pattern" "$folder/stderr" && return
+  "$@" > "$folder/stdout" 2> "$folder/stderr" && [ "$(wc -l < "$folder/stderr")" = 1 ] &&
+    grep -qE -e "^raypool: warning: .*$pattern" "$folder/stderr" && return
   failures=$((failures + 1))
   echo "FAILED: $what: wanted a warning that matches '$pattern', got:"
   cat "$folder/stderr"
 }
 printf 'v 0 0 0\nv 1 1 0\nv 1 0 0\nv 0 1 0\nf 1 2 3 4\n' > "$folder/crossing.obj"
-warns "eye that sees nothing" "all black: no ray from the eye hits" "${sim[@]}" --scene "$folder/good.obj" --eye 0,0,5 --look-at 0,0,9
+warns "eye that sees nothing" "all black: no ray from the eye hits" "${sim[@]}" --scene "$folder/good.obj" --eye 0,0,5 \
+  --look-at 0,0,9
 warns "light behind the walls" "all black: no light reaches" "${sim[@]}" --scene cornell --light 0,1000,0
 warns "face that crosses itself" "crossing.obj:5: the face crosses itself" "${sim[@]}" --scene "$folder/crossing.obj"
 

@@ -1,6 +1,7 @@
 #!/bin/bash
-# The catalogue of designers' mistakes: scripts/tests/faults_test.sh RAYPOOL RAYPOOL_FAULTS FOLDER. Every mistake can be put into today's rtl/, the copy
-# with all of them is plain Verilog and agrees with the model when none is chosen, some are noticed soon, and what does not fit is refused.
+# The catalogue of designers' mistakes: scripts/tests/faults_test.sh RAYPOOL RAYPOOL_FAULTS FOLDER. Every mistake can be
+# put into today's rtl/, the copy with all of them is plain Verilog and agrees with the model when none is chosen, some
+# are noticed soon, and what does not fit is refused.
 set -u -o pipefail
 export RAYPOOL=$(realpath "$1")
 faults=$(realpath "$2") folder=$3
@@ -26,20 +27,24 @@ expect() {
 # changed SCRIPT: a copy of the catalogue that sed has changed.
 changed() {
   sed "$1" tb/faults/catalogue.json > "$folder/changed.json"
-  cmp -s tb/faults/catalogue.json "$folder/changed.json" && { failures=$((failures + 1)); echo "FAILED: '$1' changes nothing in the catalogue"; }
+  cmp -s tb/faults/catalogue.json "$folder/changed.json" &&
+    { failures=$((failures + 1)); echo "FAILED: '$1' changes nothing in the catalogue"; }
 }
 
 expect "the small machine with every mistake is built" 0 "" scripts/faults.sh "$folder" 2w2c
 expect "it is plain Verilog" 0 "" iverilog -g2005 -I"$folder/rtl" -s multiprocessor -o /dev/null "$folder"/rtl/*.v
-expect "so it is with several units and every option" 0 "" verilator --lint-only --default-language 1364-2005 -I"$folder/rtl" --top-module multiprocessor \
+expect "so it is with several units and every option" 0 "" verilator --lint-only --default-language 1364-2005 \
+  -I"$folder/rtl" --top-module multiprocessor \
   -GUNITS=4 -GWARPS=2 -GLANES=2 -GFMA=1 -GFLT_DEPTH=5 -GSUBNORMALS=1 -GSLOW_UNIT=1 "$folder"/rtl/*.vlt "$folder"/rtl/*.v
 expect "mistakes are noticed, and without one the unit agrees" 0 "no mistake: 40 programs agree" \
   "$faults" "$folder" --programs 40 --only 16 21 44 79 96
 expect "a survivor is an error" 1 "NOT JUDGED" "$faults" "$folder" --programs 1 --only 160
 changed 's/pc_i >= program_length_i/pc_i >= program_size_i/'
-expect "a mistake that does not fit is refused" 1 "fault 30 (instruction_buffer.v: The instruction behind the program's last one is let through.)" \
+expect "a mistake that does not fit is refused" 1 \
+  "fault 30 (instruction_buffer.v: The instruction behind the program's last one is let through.)" \
   python3 scripts/faults.py "$folder/changed.json" rtl "$folder/refused"
 changed 's/"number": 7/"number": 77/'
-expect "a catalogue with a number left out is refused" 1 "must be numbered" python3 scripts/faults.py "$folder/changed.json" rtl "$folder/refused"
+expect "a catalogue with a number left out is refused" 1 "must be numbered" python3 scripts/faults.py \
+  "$folder/changed.json" rtl "$folder/refused"
 
 [ "$failures" = 0 ] || { echo "$failures cases failed"; exit 1; }

@@ -1,6 +1,7 @@
 #!/bin/bash
-# Does the replay in Icarus notice what Verilator cannot: scripts/tests/icarus_notices.sh RAYPOOL FOLDER. Registers without their reset, and a program
-# that reads a register which it never wrote, must each end with an X on a named output. Needs the Verilated unit of tb/mutants/2w2c.json.
+# Does the replay in Icarus notice what Verilator cannot: scripts/tests/icarus_notices.sh RAYPOOL FOLDER. Registers
+# without their reset, and a program that reads a register which it never wrote, must each end with an X on a named
+# output. Needs the Verilated unit of tb/mutants/2w2c.json.
 set -u -o pipefail
 raypool=$(realpath "$1") folder=$2
 cd "$(dirname "$0")/../.." || exit 1
@@ -10,7 +11,8 @@ failures=0
 # notices WHAT RTL OUTPUT PROGRAM: the replay of PROGRAM on the files of RTL shows an X on OUTPUT.
 notices() {
   local what=$1 rtl=$2 output=$3 program=$4 text
-  text=$(RTL=$rtl scripts/icarus.sh "$raypool" tb/mutants/2w2c.json "$folder/run" "$program" 2>&1) && text="it passed: $text"
+  text=$(RTL=$rtl scripts/icarus.sh "$raypool" tb/mutants/2w2c.json "$folder/run" "$program" 2>&1) &&
+    text="it passed: $text"
   if grep -q "X on $output" <<< "$text"; then
     echo "ok: $what: $(grep -m 1 "X on $output" <<< "$text" | tr -s ' ')"
   else
@@ -30,7 +32,8 @@ without_reset() {
   fi
 }
 
-text=$(scripts/icarus.sh "$raypool" tb/mutants/2w2c.json "$folder/run" 1 2>&1) || { failures=$((failures + 1)); echo "FAILED: the sound unit: $text"; }
+text=$(scripts/icarus.sh "$raypool" tb/mutants/2w2c.json "$folder/run" 1 2>&1) ||
+  { failures=$((failures + 1)); echo "FAILED: the sound unit: $text"; }
 notices "a register that is read before it is written" rtl "retire_data" tb/icarus/undefined_register.json
 without_reset compute_unit.v fault_q
 notices "the fault flag without reset" "$folder/rtl" "fault_valid" 1

@@ -1,5 +1,6 @@
 #!/bin/bash
-# A difference is run again with a look inside the RTL, and the report names the file: scripts/tests/inspect.sh RAYPOOL FOLDER
+# A difference is run again with a look inside the RTL, and the report names the file:
+# scripts/tests/inspect.sh RAYPOOL FOLDER
 # FOLDER has the machine 2w2c with the designers' mistakes, as scripts/faults.sh builds it.
 set -u -o pipefail
 raypool=$(realpath "$1") machine=$(realpath "$2")/2w2c/libraypool_unit.so
@@ -10,11 +11,13 @@ failures=0
 on=(--config tb/mutants/2w2c.json --unit-library "$machine" --quiet)
 twice='raypool: lockstep difference in unit: .*, in cycle [0-9]+: running again'
 
-# differs WHAT MISTAKE PATTERN COMMAND...: with the mistake the command ends with 2, prints nothing but one report, and that matches.
+# differs WHAT MISTAKE PATTERN COMMAND...: with the mistake the command ends with 2, prints
+# nothing but one report, and that matches.
 differs() {
   local what=$1 mistake=$2 pattern=$3 code=0; shift 3
   RAYPOOL_FAULT=$mistake timeout 120 "$raypool" "$@" > "$folder/stdout" 2> "$folder/stderr" || code=$?
-  if [ "$code" = 2 ] && [ ! -s "$folder/stdout" ] && [ "$(grep -c 'look at: ' "$folder/stderr")" = 1 ] && grep -qzE -e "$pattern" "$folder/stderr"; then
+  if [ "$code" = 2 ] && [ ! -s "$folder/stdout" ] && [ "$(grep -c 'look at: ' "$folder/stderr")" = 1 ] &&
+    grep -qzE -e "$pattern" "$folder/stderr"; then
     echo "ok: $what"
   else
     failures=$((failures + 1))
@@ -29,7 +32,8 @@ differs "a compute kernel" 45 "$twice.*$arbiter" run matmul --n 6 --engine locks
 sim=(sim --scene cornell --size 16x16 --out "$folder/frame" "${on[@]}")
 "$raypool" "${sim[@]}" --engine functional || { failures=$((failures + 1)); echo "FAILED: no frame to spoil"; }
 before=$(cd "$folder/frame" && ls -A && cksum ./*)
-differs "a frame" 52 "$twice.*inside, [0-9]+ cycles before: instruction cache.*look at: rtl/instruction_cache.v" "${sim[@]}" --engine lockstep
+differs "a frame" 52 "$twice.*inside, [0-9]+ cycles before: instruction cache.*look at: rtl/instruction_cache.v" \
+  "${sim[@]}" --engine lockstep
 differs "random programs" 45 "in seed [0-9]+.*$arbiter" cosim --programs 100 --no-shrink "${on[@]}"
 differs "a shrunk program" 45 "$arbiter.*saved" cosim --programs 100 --save "$folder/saved" "${on[@]}"
 differs "a saved program" 45 "$arbiter" cosim --replay "$(echo "$folder"/saved/*.json)" --unit-library "$machine"

@@ -1,6 +1,7 @@
 #!/bin/bash
 # What is written is whole, at the place that was named, or an error: scripts/tests/outputs.sh RAYPOOL
-# A small file system that fills up is mounted where that is allowed (root); elsewhere /dev/full alone stands for a full disk.
+# A small file system that fills up is mounted where that is allowed (root); elsewhere
+# /dev/full alone stands for a full disk.
 set -u -o pipefail
 raypool=$(realpath "$1")
 cd "$(dirname "$0")/../.." || exit 1
@@ -30,7 +31,8 @@ promise() {
 full() {
   local code=0
   timeout 120 "$@" 2> "$folder/stderr" || code=$?
-  [ "$code" = 1 ] && [ "$(wc -l < "$folder/stderr")" = 1 ] && grep -q 'No space left on device' "$folder/stderr" && return
+  [ "$code" = 1 ] && [ "$(wc -l < "$folder/stderr")" = 1 ] && grep -q 'No space left on device' "$folder/stderr" &&
+    return
   echo "exit $code, and:"
   cat "$folder/stderr"
   return 1
@@ -41,9 +43,10 @@ printf '.kernel a\ntid r1\nexit\n' > "$folder/a.asm"
 "$raypool" asm "$folder/a.asm" > "$folder/a.hex"
 sim=(sim cornell --engine native --size 8x8 --depth 1)
 
-for command in --help kernels "kernels saxpy" isa "isa --verilog" "config 4w4c" "config 4w4c --json" "asm $folder/a.asm" "disasm $folder/a.hex" \
-  "scene cornell" "hits cornell --size 4x4" "errors --grid 2" configurations "numerics --catalogue" "run saxpy --n 8 --engine functional" \
-  "${sim[*]} --out $folder/out"; do
+for command in --help kernels "kernels saxpy" isa "isa --verilog" "config 4w4c" "config 4w4c --json" \
+  "asm $folder/a.asm" "disasm $folder/a.hex" \
+  "scene cornell" "hits cornell --size 4x4" "errors --grid 2" configurations "numerics --catalogue" \
+  "run saxpy --n 8 --engine functional" "${sim[*]} --out $folder/out"; do
   # Unquoted: words.
   promise "$command on a full disk is an error" printed_on_full $command
 done
@@ -74,9 +77,12 @@ mkdir "$disk"
 if [ "$(id -u)" = 0 ] && mount -t tmpfs -o size=8k none "$disk" 2> /dev/null; then
   mounted=yes
   echo earlier > "$disk/room.obj"
-  promise "scene --write-obj on a full disk is an error" full "$raypool" scene room --detail 0.02 --write-obj "$disk/room.obj"
-  promise "... and leaves the earlier file and nothing else" test "$(ls -A "$disk"; cat "$disk/room.obj")" = $'room.obj\nearlier'
-  promise "a picture on a full disk is an error" full "$raypool" sim cornell --engine native --size 256x256 --depth 1 --out "$disk/out"
+  promise "scene --write-obj on a full disk is an error" full "$raypool" scene room --detail 0.02 \
+    --write-obj "$disk/room.obj"
+  promise "... and leaves the earlier file and nothing else" test "$(ls -A "$disk"; cat "$disk/room.obj")" = \
+    $'room.obj\nearlier'
+  promise "a picture on a full disk is an error" full "$raypool" sim cornell --engine native --size 256x256 --depth 1 \
+    --out "$disk/out"
   promise "... and leaves no part of it" test -z "$(ls -A "$disk/out")"
 else
   echo "no small disk: mounting a tmpfs needs root"
@@ -87,7 +93,8 @@ odd=$folder/$'caf\xe9'
 mkdir "$odd"
 printf 'mtllib m\xe9.mtl\nusemtl caf\xe9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' > "$odd/"$'s\xe9.obj'
 printf 'newmtl caf\xe9\nKd 1 0 0\n' > "$odd/"$'m\xe9.mtl'
-promise "a scene with a name that is not UTF-8 is drawn" "$raypool" sim "$odd/"$'s\xe9.obj' --engine native --size 8x8 --out "$odd/out"
+promise "a scene with a name that is not UTF-8 is drawn" "$raypool" sim "$odd/"$'s\xe9.obj' --engine native --size 8x8 \
+  --out "$odd/out"
 promise "... and its report is UTF-8" iconv -f utf-8 -t utf-8 "$odd/out/report.json"
 promise "such a name is written as OBJ" "$raypool" scene "$odd/"$'s\xe9.obj' --write-obj "$odd/"$'again\xe9.obj'
 promise "... which is read again" "$raypool" scene "$odd/"$'again\xe9.obj'
@@ -101,7 +108,9 @@ cat > "$folder/view.json" << 'END'
 {"eye": [2.5, 2.5, 5], "direction": [0, 0, -1], "light": {"position": [2.5, 5, 2.5]}}
 END
 sed 's/2.5, 5,/2.5, 4,/' "$folder/view.json" > "$folder/out2/view.json"
-for warps in 2 4; do mkdir "$folder/$warps"; echo "{\"name\": \"mine\", \"warps\": $warps}" > "$folder/$warps/mine.json"; done
+for warps in 2 4; do
+  mkdir "$folder/$warps"; echo "{\"name\": \"mine\", \"warps\": $warps}" > "$folder/$warps/mine.json"
+done
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' > "$folder/cornell.obj"
 promise "draws cornell" draw cornell
 promise "... to a folder named by it" test -d "$folder/bin/out/cornell-8w8c-1cu-8x8-depth1-native"

@@ -28,12 +28,14 @@ raypool=$folder/prefix/bin/raypool
 draws "$raypool"
 "$raypool" --version | cmp - <("$build/raypool" --version) || fail "another version"
 gzip -dc "$folder/prefix/share/man/man1/raypool.1.gz" | cmp - <("$raypool" man) || fail "another man page"
-cmp "$folder/prefix/share/bash-completion/completions/raypool" <("$raypool" completion bash) || fail "another completion"
+cmp "$folder/prefix/share/bash-completion/completions/raypool" <("$raypool" completion bash) ||
+  fail "another completion"
 
 # Without a unit it says how to make one; with it, it runs.
 code=0
 "$raypool" sim --scene cornell --size 8x8 --config 4w4c --engine lockstep 2> "$folder/error" || code=$?
-[ "$code" = 1 ] && grep -qF "build it with raypool unit --config 4w4c" "$folder/error" || fail "no word of raypool unit: $(cat "$folder/error")"
+[ "$code" = 1 ] && grep -qF "build it with raypool unit --config 4w4c" "$folder/error" ||
+  fail "no word of raypool unit: $(cat "$folder/error")"
 unit=$("$raypool" config 4w4c --unit-library)
 [[ $unit == "$XDG_CACHE_HOME"/raypool/* ]] || fail "the unit would be $unit, not in the user's cache"
 mkdir -p "$(dirname "$unit")"
@@ -41,7 +43,8 @@ built=$(dirname "$("$build/raypool" config 4w4c --unit-library)")
 cp "$built"/libraypool_unit.{so,stamp} "$(dirname "$unit")"
 # verilate.sh takes the copied unit for its own only if every file that it is made from is installed, and the same.
 "$raypool" unit --config 4w4c > "$folder/text" || fail "raypool unit: exit code $?"
-grep -q 'is up to date$' "$folder/text" || fail "the installed sources are not those of the checkout's unit: $(cat "$folder/text")"
+grep -q 'is up to date$' "$folder/text" ||
+  fail "the installed sources are not those of the checkout's unit: $(cat "$folder/text")"
 "$raypool" sim --scene cornell --size 8x8 --config 4w4c --engine lockstep > "$folder/text"
 grep -qE 'lockstep: [1-9][0-9]* cycles.*; 0 differences' "$folder/text" || fail "no lockstep: $(cat "$folder/text")"
 
@@ -58,24 +61,34 @@ touch "$folder/file"
 refuses 'cannot write.*XDG_CACHE_HOME' env XDG_CACHE_HOME="$folder/file" "$raypool" unit --config 4w4c
 
 # find_package(raypool): the example, alone and in lockstep.
-cmake -S "$folder/prefix/share/raypool/examples/own-chip" -B "$folder/own" -G Ninja -DCMAKE_PREFIX_PATH="$folder/prefix" > "$folder/log" 2>&1 &&
-  cmake --build "$folder/own" >> "$folder/log" 2>&1 || { cat "$folder/log" >&2; fail "examples/own-chip does not build"; }
+cmake -S "$folder/prefix/share/raypool/examples/own-chip" -B "$folder/own" -G Ninja \
+  -DCMAKE_PREFIX_PATH="$folder/prefix" > "$folder/log" 2>&1 &&
+  cmake --build "$folder/own" >> "$folder/log" 2>&1 ||
+  { cat "$folder/log" >&2; fail "examples/own-chip does not build"; }
 "$folder/own/own_chip" > "$folder/text" || fail "own_chip: exit code $?"
-[ "$(grep -cE '256 roots, 0 wrong, [1-9][0-9]* cycles$' "$folder/text")" = 3 ] || fail "own_chip prints: $(cat "$folder/text")"
+[ "$(grep -cE '256 roots, 0 wrong, [1-9][0-9]* cycles$' "$folder/text")" = 3 ] ||
+  fail "own_chip prints: $(cat "$folder/text")"
 "$folder/own/own_chip" "$unit" | cmp - "$folder/text" || fail "own_chip with the Verilated unit prints something else"
 
 # The Debian packages: what they need and what they hold; unpacked, the program draws.
-cpack --config "$build/CPackConfig.cmake" -B "$folder/packages" > "$folder/log" 2>&1 || { cat "$folder/log" >&2; fail cpack; }
+cpack --config "$build/CPackConfig.cmake" -B "$folder/packages" > "$folder/log" 2>&1 ||
+  { cat "$folder/log" >&2; fail cpack; }
 program=$(echo "$folder"/packages/raypool_*.deb) library=$(echo "$folder"/packages/raypool-dev_*.deb)
 for needed in libc6 libembree3-3 libfmt9 libsystemc; do
-  dpkg-deb -f "$program" Depends | grep -qE "(^|, )$needed( |,|$)" || fail "$program does not depend on $needed: $(dpkg-deb -f "$program" Depends)"
+  dpkg-deb -f "$program" Depends | grep -qE "(^|, )$needed( |,|$)" ||
+    fail "$program does not depend on $needed: $(dpkg-deb -f "$program" Depends)"
 done
-[[ $(dpkg-deb -f "$program" Recommends) == *verilator*g++*make* ]] || fail "$program does not recommend what units are built with"
+[[ $(dpkg-deb -f "$program" Recommends) == *verilator*g++*make* ]] ||
+  fail "$program does not recommend what units are built with"
 dpkg-deb -x "$program" "$folder/unpacked"
 dpkg-deb -x "$library" "$folder/unpacked"
 draws "$folder/unpacked/usr/bin/raypool"
-diff -r "$folder/unpacked/usr/share/raypool" "$folder/prefix/share/raypool" || fail "the package has other data than cmake --install"
-diff -r "$folder/unpacked/usr/include/raypool" "$folder/prefix/include/raypool" || fail "the package has other headers than cmake --install"
-grep -qr "$root" "$folder/unpacked/usr/lib/cmake" && fail "the package names the checkout: $(grep -r "$root" "$folder/unpacked/usr/lib/cmake")"
+diff -r "$folder/unpacked/usr/share/raypool" "$folder/prefix/share/raypool" ||
+  fail "the package has other data than cmake --install"
+diff -r "$folder/unpacked/usr/include/raypool" "$folder/prefix/include/raypool" ||
+  fail "the package has other headers than cmake --install"
+grep -qr "$root" "$folder/unpacked/usr/lib/cmake" &&
+  fail "the package names the checkout: $(grep -r "$root" "$folder/unpacked/usr/lib/cmake")"
 
-echo "installed: $(find "$folder/prefix" -type f | wc -l) files; packages: $(basename "$program"), $(basename "$library")"
+files=$(find "$folder/prefix" -type f | wc -l)
+echo "installed: $files files; packages: $(basename "$program"), $(basename "$library")"

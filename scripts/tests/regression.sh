@@ -1,5 +1,6 @@
 #!/bin/bash
-# Replays one saved program in lockstep, on a Verilated unit of the configuration that it names: scripts/tests/regression.sh RAYPOOL FILE FOLDER
+# Replays one saved program in lockstep, on a Verilated unit of the configuration that it names:
+# scripts/tests/regression.sh RAYPOOL FILE FOLDER
 set -eu -o pipefail
 export RAYPOOL
 RAYPOOL=$(realpath "$1")

@@ -60,22 +60,40 @@ class Agreement(unittest.TestCase):
         command = ("config", "FILE")
         for path in sorted((ROOT / "configs").glob("*.json")):
             self.assertTrue(self.check("configuration.json", read(path), command), path)
-        documents = [{"$schema": "x"}, {"$schema": 1}, [], {"name": ""}, {"name": "a b"}, {"name": "a" * 64},
-                     {"name": "a" * 65}, {"warp": 8}, {"alus": 3}, {"alus": {"box": {}}}, {"arithmetic": {"fma": 1}},
-                     {"arithmetic": {"slow_unit": "fast"}}]
+        documents = [
+            {"$schema": "x"},
+            {"$schema": 1},
+            [],
+            {"name": ""},
+            {"name": "a b"},
+            {"name": "a" * 64},
+            {"name": "a" * 65},
+            {"warp": 8},
+            {"alus": 3},
+            {"alus": {"box": {}}},
+            {"arithmetic": {"fma": 1}},
+            {"arithmetic": {"slow_unit": "fast"}},
+        ]
         documents += [{"warps": value} for value in (0, 1, 2, 3, 32, 64, "8", 8.5, None)]
         documents += [{"lanes": value} for value in (0, 1, 24, 32, 64)] + [{"cores": 8}]
         documents += [{"stack_depth": value} for value in (1, 2, 32, 33)]
-        documents += [{f"{cache}_cache": {"bytes": value}} for cache in ("instruction", "data")
-                      for value in (256, 512, 1000, 65536, 131072)]
+        documents += [
+            {f"{cache}_cache": {"bytes": value}}
+            for cache in ("instruction", "data")
+            for value in (256, 512, 1000, 65536, 131072)
+        ]
         documents += [{"data_cache": {"mshrs": value}} for value in (0, 1, 16, 17)] + [{"data_cache": {"lines": 1}}]
         for alu in json.loads(raypool("config", "8w8c", "--json").stdout)["alus"]:
             ranges = {"count": (0, 1, 2, 4, 5), "latency": (0, 1, 16, 17), "depth": (*range(14), 32, 33)}
             documents += [{"alus": {alu: {key: value}}} for key, values in ranges.items() for value in values]
         modes = [{"slow_unit": f"newton{steps}"} for steps in range(3)]
         modes += [{"fma": True}, {"fma": False}, {"subnormals": "flush"}]
-        documents += [{"arithmetic": mode, "alus": {alu: {"depth": depth}}}
-                      for mode in modes for alu in ("slw", "flt") for depth in range(2, 13)]
+        documents += [
+            {"arithmetic": mode, "alus": {alu: {"depth": depth}}}
+            for mode in modes
+            for alu in ("slw", "flt")
+            for depth in range(2, 13)
+        ]
         taken = sum(self.check("configuration.json", document, command) for document in documents)
         self.assertGreater(taken, 50)
         self.assertGreater(len(documents) - taken, 50)
@@ -85,8 +103,17 @@ class Agreement(unittest.TestCase):
         for path in sorted((ROOT / "configs" / "views").glob("*.json")):
             self.assertTrue(self.check("view.json", read(path), command), path)
         good = {"eye": [0, 0, 5], "target": [0, 0, 0], "light": {"position": [1, 2, 3]}}
-        changes = [{}, {"$schema": "x"}, {"up": [0, 1, 0.5]}, {"up": [0, 1]}, {"up": "y"}, {"direction": [0, 0, -1]},
-                   {"eyes": 1}, {"light": {}}, {"light": None}]
+        changes = [
+            {},
+            {"$schema": "x"},
+            {"up": [0, 1, 0.5]},
+            {"up": [0, 1]},
+            {"up": "y"},
+            {"direction": [0, 0, -1]},
+            {"eyes": 1},
+            {"light": {}},
+            {"light": None},
+        ]
         changes += [{"fov": value} for value in (0.9, 1, 170, 170.5, "60")]
         changes += [{"eye": [value, 0, 5]} for value in (1e9, 1.1e9, -1e9, -1.1e9, None)]
         changes += [{"light": {"position": [1, 2, 3], "color": [value, 1, 1]}} for value in (-1, 0, 1000, 1001)]
@@ -119,8 +146,20 @@ class Report(unittest.TestCase):
         valid = validator("report.json")
         with tempfile.TemporaryDirectory() as folder:
             for engine in ENGINES:
-                done = raypool("sim", "--scene", "cornell", "--size", "8x8", "--config", "4w4c", "--engine", engine,
-                               "--out", folder, "--json")
+                done = raypool(
+                    "sim",
+                    "--scene",
+                    "cornell",
+                    "--size",
+                    "8x8",
+                    "--config",
+                    "4w4c",
+                    "--engine",
+                    engine,
+                    "--out",
+                    folder,
+                    "--json",
+                )
                 self.assertEqual(done.returncode, 0, done.stderr)
                 report = json.loads(done.stdout)
                 errors = [f"{'.'.join(map(str, error.path))}: {error.message}" for error in valid.iter_errors(report)]
@@ -148,8 +187,9 @@ class Report(unittest.TestCase):
         def walk(part, path):
             for key, inner in part.get("properties", {}).items():
                 if path != ("configuration",):
-                    self.assertTrue(re.search(rf"[`.]{key}[`.]", page),
-                                    f"docs/report.md does not name {'.'.join((*path, key))}")
+                    self.assertTrue(
+                        re.search(rf"[`.]{key}[`.]", page), f"docs/report.md does not name {'.'.join((*path, key))}"
+                    )
                 walk(inner, (*path, key))
             if isinstance(part.get("additionalProperties"), dict):
                 walk(part["additionalProperties"], path)

@@ -1,5 +1,6 @@
 #!/bin/bash
-# The program describes itself truly: version, exit codes, man page, completion, --json: scripts/tests/self_description.sh RAYPOOL
+# The program describes itself truly: version, exit codes, man page, completion, --json:
+# scripts/tests/self_description.sh RAYPOOL
 set -eu -o pipefail
 raypool=$(realpath "$1")
 cd "$(dirname "$0")/../.."
@@ -14,14 +15,18 @@ fail() {
 version=$(sed -nE 's/^project\(raypool VERSION ([0-9.]+) .*/\1/p' CMakeLists.txt)
 [ -n "$version" ] || fail "CMakeLists.txt has no project(raypool VERSION ...)"
 "$raypool" --version > "$folder/version"
-grep -qE "^raypool ${version//./\\.}( \(.+\))?$" "$folder/version" || fail "raypool --version does not begin with $version: $(cat "$folder/version")"
-grep -qE '^SystemC [0-9.]+.*Embree [0-9.]+' "$folder/version" || fail "raypool --version names no libraries: $(cat "$folder/version")"
-[ "$(sed -nE '/^## /{s/^## ([0-9.]+).*/\1/p;q}' CHANGELOG.md)" = "$version" ] || fail "the newest entry of CHANGELOG.md is not $version"
+grep -qE "^raypool ${version//./\\.}( \(.+\))?$" "$folder/version" ||
+  fail "raypool --version does not begin with $version: $(cat "$folder/version")"
+grep -qE '^SystemC [0-9.]+.*Embree [0-9.]+' "$folder/version" ||
+  fail "raypool --version names no libraries: $(cat "$folder/version")"
+[ "$(sed -nE '/^## /{s/^## ([0-9.]+).*/\1/p;q}' CHANGELOG.md)" = "$version" ] ||
+  fail "the newest entry of CHANGELOG.md is not $version"
 
 # The table of docs/package.md is that of --help.
 "$raypool" --help | sed -nE 's/^  ([0-9])  (.*)/| \1 | \2 |/p' > "$folder/codes"
 [ "$(wc -l < "$folder/codes")" -ge 4 ] || fail "raypool --help lists no exit codes"
-sed -nE '/^\| [0-9] \|/p' docs/package.md | diff "$folder/codes" - || fail "docs/package.md has other exit codes than raypool --help"
+sed -nE '/^\| [0-9] \|/p' docs/package.md | diff "$folder/codes" - ||
+  fail "docs/package.md has other exit codes than raypool --help"
 
 # What --help knows, the man page and every completion know.
 "$raypool" man > "$folder/man"
@@ -35,10 +40,13 @@ while read -r command; do
   awk -v command=".SS $command" '/^\.S[SH]/ { inside = $0 == command } inside' "$folder/text" > "$folder/section"
   for option in $("$raypool" "$command" --help | grep -oE '^ +(-[a-z],)?--[a-z-]+' | grep -oE -- '--[a-z-]+'); do
     grep -qE -e "(^|, )$option\b" "$folder/section" || fail "the man page lacks $command $option"
-    grep -qE -e "^    $command\) words='(.* )?$option[ ']" "$folder/bash" || fail "bash completion lacks $command $option"
-    awk -v command="$command)" '$1 ~ /^[a-z]+\)$/ { inside = $1 == command } inside' "$folder/zsh" | grep -qE -e "'\*?$option\[" ||
+    grep -qE -e "^    $command\) words='(.* )?$option[ ']" "$folder/bash" ||
+      fail "bash completion lacks $command $option"
+    awk -v command="$command)" '$1 ~ /^[a-z]+\)$/ { inside = $1 == command } inside' "$folder/zsh" |
+      grep -qE -e "'\*?$option\[" ||
       fail "zsh completion lacks $command $option"
-    grep -qE -e "__fish_seen_subcommand_from $command'.* -l ${option#--}( |$)" "$folder/fish" || fail "fish completion lacks $command $option"
+    grep -qE -e "__fish_seen_subcommand_from $command'.* -l ${option#--}( |$)" "$folder/fish" ||
+      fail "fish completion lacks $command $option"
     options=$((options + 1))
   done
 done < "$folder/commands"
@@ -48,7 +56,8 @@ done < "$folder/commands"
 completes() {
   local wanted=$1; shift
   local got
-  got=$(bash -c '. "$1"; shift; COMP_WORDS=(raypool "$@"); COMP_CWORD=$#; _raypool; echo "${COMPREPLY[*]}"' bash "$folder/bash" "$@")
+  got=$(bash -c '. "$1"; shift; COMP_WORDS=(raypool "$@"); COMP_CWORD=$#; _raypool; echo "${COMPREPLY[*]}"' \
+    bash "$folder/bash" "$@")
   [ "$got" = "$wanted" ] || fail "bash completes 'raypool $*' with '$got', not '$wanted'"
 }
 completes 'sim' si
@@ -56,13 +65,15 @@ completes '--engine' sim --eng
 completes 'rtl' sim --engine rt
 completes 'fish' completion fi
 if command -v groff > /dev/null; then
-  [ -z "$(groff -man -ww -z "$folder/man" 2>&1)" ] || fail "groff complains about the man page: $(groff -man -ww -z "$folder/man" 2>&1)"
+  [ -z "$(groff -man -ww -z "$folder/man" 2>&1)" ] ||
+    fail "groff complains about the man page: $(groff -man -ww -z "$folder/man" 2>&1)"
 fi
 if command -v zsh > /dev/null; then zsh -n "$folder/zsh"; fi
 if command -v fish > /dev/null; then fish -n "$folder/fish"; fi
 
 # The report and nothing else.
-"$raypool" sim --scene cornell --size 8x8 --depth 1 --engine model --out "$folder/out" --json > "$folder/json" 2> "$folder/errors"
+"$raypool" sim --scene cornell --size 8x8 --depth 1 --engine model --out "$folder/out" --json > "$folder/json" \
+  2> "$folder/errors"
 cmp "$folder/json" "$folder/out/report.json" || fail "--json is not report.json"
 [ ! -s "$folder/errors" ] || fail "--json leaves on standard error: $(cat "$folder/errors")"
 

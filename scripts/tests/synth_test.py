@@ -35,21 +35,30 @@ class Synthesis(unittest.TestCase):
         self.addCleanup(subprocess.run, ["rm", "-rf", self.folder], check=False)
 
     def command(self, *arguments):
-        done = subprocess.run([sys.executable, "-m", "synth", *arguments], capture_output=True, text=True, check=False,
-                              env={**os.environ, "PYTHONPATH": os.path.join(ROOT, "scripts")})
+        done = subprocess.run(
+            [sys.executable, "-m", "synth", *arguments],
+            capture_output=True,
+            text=True,
+            check=False,
+            env={**os.environ, "PYTHONPATH": os.path.join(ROOT, "scripts")},
+        )
         return done.returncode, done.stderr.strip()
 
     def test_bad_input_gets_one_sentence(self):
         run = os.path.join(self.folder, "run.json")
         with open(run, "w", encoding="utf-8") as file:
             json.dump({"mrays_per_second": 1.0, "config": "4w4c"}, file)
-        for arguments, word in ((["report", "--liberty", "/no/such.lib"], "Liberty"), (["report", "--config", "5w5c"], "5"),
-                                (["report", "--memories", "clay", "--config", "1w1c"], "clay"),
-                                (["report", "--config", "1w1c", "--against", "/dev/null"], "/dev/null"),
-                                (["report", "--config", "1w1c", "--run", "/dev/null"], "RUN=/dev/null"),
-                                (["report", "--config", "1w1c", "--run", run], "4w4c"), (["report", "--config", "1w1c", "--clock", "soon"], "CLOCK=soon"),
-                                (["prove", "--config", "1w1c", "--only", "teapot"], "has no block teapot"),
-                                (["growth", "--plan", run], "not a plan")):
+        for arguments, word in (
+            (["report", "--liberty", "/no/such.lib"], "Liberty"),
+            (["report", "--config", "5w5c"], "5"),
+            (["report", "--memories", "clay", "--config", "1w1c"], "clay"),
+            (["report", "--config", "1w1c", "--against", "/dev/null"], "/dev/null"),
+            (["report", "--config", "1w1c", "--run", "/dev/null"], "RUN=/dev/null"),
+            (["report", "--config", "1w1c", "--run", run], "4w4c"),
+            (["report", "--config", "1w1c", "--clock", "soon"], "CLOCK=soon"),
+            (["prove", "--config", "1w1c", "--only", "teapot"], "has no block teapot"),
+            (["growth", "--plan", run], "not a plan"),
+        ):
             code, text = self.command(*arguments)
             self.assertEqual(code, 1, text)
             self.assertIn(word, text)
@@ -69,9 +78,14 @@ class Synthesis(unittest.TestCase):
         path = os.path.join(self.folder, "rtl", "held.v")
         os.makedirs(os.path.dirname(path))
         with open(path, "w", encoding="utf-8") as file:
-            file.write("module held (input wire e_i, input wire d_i, output reg q_o);\n  always @* if (e_i) q_o = d_i;\nendmodule\n")
+            file.write(
+                "module held (input wire e_i, input wire d_i, output reg q_o);\n  always @* if (e_i) q_o = "
+                "d_i;\nendmodule\n"
+            )
         mapper = mapping.Mapper(library.Library(), self.folder, 4.0)
-        kind = elaborate.Kind("held", "held", {}, {"e_i": ("input", 1), "d_i": ("input", 1), "q_o": ("output", 1)}, {}, "held")
+        kind = elaborate.Kind(
+            "held", "held", {}, {"e_i": ("input", 1), "d_i": ("input", 1), "q_o": ("output", 1)}, {}, "held"
+        )
         mapper.texts["rtl/held.v"] = ""
         original = elaborate.rtl_files
         elaborate.rtl_files = lambda: [path]
@@ -93,9 +107,23 @@ class Synthesis(unittest.TestCase):
     def simulate(self, design, events):
         """The values of the mapped counter while it is given events, cycle by cycle."""
         replay.simulator(design, self.folder, False)
-        root = subprocess.run(["verilator", "--getenv", "VERILATOR_ROOT"], capture_output=True, text=True, check=True).stdout.strip()
+        root = subprocess.run(
+            ["verilator", "--getenv", "VERILATOR_ROOT"], capture_output=True, text=True, check=True
+        ).stdout.strip()
         path = os.path.join(self.folder, "gates.so")
-        subprocess.run(["g++", "-std=c++17", "-shared", "-fPIC", f"-I{root}/include/vltstd", f"{ROOT}/sim/rtl/gate_simulator.cpp", "-o", path], check=True)
+        subprocess.run(
+            [
+                "g++",
+                "-std=c++17",
+                "-shared",
+                "-fPIC",
+                f"-I{root}/include/vltstd",
+                f"{ROOT}/sim/rtl/gate_simulator.cpp",
+                "-o",
+                path,
+            ],
+            check=True,
+        )
         gates = ctypes.CDLL(path)
         gates.netlist_open.restype = ctypes.c_void_p
         unit = ctypes.c_void_p(gates.netlist_open(os.path.join(self.folder, "netlist.bin").encode()))
@@ -103,7 +131,7 @@ class Synthesis(unittest.TestCase):
         for cycle, event in enumerate(events):
             inputs[0] = (cycle > 0) | event << 1
             gates.netlist_settle(unit, inputs, outputs)
-            values.append(outputs[0] & 0x7fff)
+            values.append(outputs[0] & 0x7FFF)
             gates.netlist_clock(unit)
         gates.netlist_close(unit, False)
         return values
@@ -116,9 +144,9 @@ class Synthesis(unittest.TestCase):
         # Reset takes the first cycle; the carry reaches the high part a cycle later.
         low, carry, high, expected = 0, 0, 0, []
         for cycle, event in enumerate(events):
-            expected.append((high << 12 | low) & 0x7fff)
+            expected.append((high << 12 | low) & 0x7FFF)
             high, total = (high + carry, low + event) if cycle else (0, 0)
-            low, carry = total & 0xfff, total >> 12
+            low, carry = total & 0xFFF, total >> 12
         self.assertGreater(high, 8)
         self.assertEqual(self.simulate(design, events), expected)
         replay.broken(design, 1, "event_counter")

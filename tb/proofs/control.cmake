@@ -1,4 +1,5 @@
-# The quick proofs of the control logic, one test for each checker; `make proofs` runs all, and shows that each can fail.
+# The quick proofs of the control logic, one test for each checker; `make proofs`
+# runs all, and shows that each can fail.
 find_program(YOSYS yosys)
 find_program(YOSYS_ABC yosys-abc)
 if(YOSYS AND YOSYS_ABC)

@@ -1,14 +1,17 @@
 #!/bin/bash
-# Proves the control logic: tb/proofs/control.sh [--quick | --broken] [NAME...]. NAME is a checker tb/proofs/control/NAME.v; without one, all of them.
+# Proves the control logic: tb/proofs/control.sh [--quick | --broken] [NAME...]. NAME is a checker
+# tb/proofs/control/NAME.v; without one, all of them.
 # A checker is a module `check` around what it checks, with assumptions and assertions, and says in its head
 #   @modules FILE...           of rtl/, without .v
 #   @proves SENTENCE           printed when it holds, once for each
-#   @parameters NAME=VALUE...  set of parameters to prove it for; more lines are more proofs; without one, as the checker stands
+#   @parameters NAME=VALUE...  set of parameters to prove it for; more lines are more
+#                              proofs; without one, as the checker stands
 #   @break FILE SED            a sed script that breaks FILE; the proof must then fail
 #   @zeros                     registers that have no reset start as 0 instead of anything
 #   @slow                      not with --quick
 # A sentence or a script goes on in lines that begin with `//   `.
-# Every proof is unbounded (property-directed reachability, ABC's pdr); counterexamples for broken copies are found by bmc3, within 40 cycles. --quick leaves the broken copies out, --broken tries only these.
+# Every proof is unbounded (property-directed reachability, ABC's pdr); counterexamples for broken copies are found by
+# bmc3, within 40 cycles. --quick leaves the broken copies out, --broken tries only these.
 # Exit code 1 if a proof fails, or holds for a broken copy.
 set -eu -o pipefail
 cd "$(dirname "$0")/../.."
@@ -18,7 +21,8 @@ case ${1:-} in
   --broken) only_broken=1; shift ;;
 esac
 for tool in yosys yosys-abc; do
-  command -v $tool > /dev/null || { echo "control.sh: $tool was not found: install it (Debian package yosys)" >&2; exit 1; }
+  command -v $tool > /dev/null ||
+    { echo "control.sh: $tool was not found: install it (Debian package yosys)" >&2; exit 1; }
 done
 names=("$@")
 [ ${#names[@]} -gt 0 ] || for file in tb/proofs/control/*.v; do names+=("$(basename "$file" .v)"); done
@@ -36,16 +40,19 @@ said() {
     { flush() }' "$2"
 }
 
-# solve CHECKER PARAMETERS FILE...: runs ABC's commands in engine; sets verdict to proved, refuted or unknown, and depth to the length of the counterexample.
+# solve CHECKER PARAMETERS FILE...: runs ABC's commands in engine; sets verdict to proved, refuted or unknown, and depth
+# to the length of the counterexample.
 solve() {
   local checker=$1 parameters=$2 parameter chparam= zeros=
   shift 2
   for parameter in $parameters; do chparam+=" -set ${parameter%=*} ${parameter#*=}"; done
   [ -z "$chparam" ] || chparam="chparam$chparam check;"
   ! grep -q '^// @zeros' "$checker" || zeros="zinit -all;"
-  yosys -q -l "$folder/yosys" -p "read_verilog -formal -DSYNTHESIS -Irtl $checker $*; $chparam prep -top check -flatten; delete -output; memory_map;
-    async2sync; $zeros opt -fast; setundef -undriven -anyseq; setundef -anyseq; formalff -clk2ff -ff2anyinit; techmap; opt -fast; dffunmap; aigmap;
-    opt_clean; setundef -undriven -anyseq; setundef -anyseq; write_aiger -I -B -zinit -no-startoffset $folder/check.aig" > "$folder/console" 2>&1 ||
+  yosys -q -l "$folder/yosys" -p "read_verilog -formal -DSYNTHESIS -Irtl $checker $*
+    $chparam prep -top check -flatten; delete -output; memory_map; async2sync; $zeros opt -fast
+    setundef -undriven -anyseq; setundef -anyseq; formalff -clk2ff -ff2anyinit; techmap; opt -fast; dffunmap; aigmap
+    opt_clean; setundef -undriven -anyseq; setundef -anyseq
+    write_aiger -I -B -zinit -no-startoffset $folder/check.aig" > "$folder/console" 2>&1 ||
     { echo "FAILED: $checker: yosys says"; tail -3 "$folder/console"; exit 1; } >&3
   yosys-abc -c "read_aiger $folder/check.aig; fold; strash; $engine; print_status" > "$folder/abc" 2>&1 || true
   verdict=unknown depth=
@@ -83,7 +90,8 @@ for name in "${names[@]}"; do
   while read -r module script; do
     engine="bmc3 -F 40 -T 300"
     sed -E "$script" "rtl/$module.v" > "$folder/$module.v"
-    ! cmp -s "rtl/$module.v" "$folder/$module.v" || { echo "FAILED: $name: '$script' changes nothing in rtl/$module.v"; failed=1; continue; }
+    ! cmp -s "rtl/$module.v" "$folder/$module.v" ||
+      { echo "FAILED: $name: '$script' changes nothing in rtl/$module.v"; failed=1; continue; }
     # shellcheck disable=SC2086 # a list of files
     solve "$checker" "${sets[0]}" ${files/rtl\/$module.v/$folder/$module.v}
     rm "$folder/$module.v"

@@ -1,6 +1,7 @@
 #!/bin/bash
-# Proves rtl/float_adder.v, as a 16-bit adder (5 exponent bits, 10 of mantissa), equal to tb/proofs/exact_adder.v for all operands, added and
-# subtracted, in both subnormal modes: tb/proofs/float_adder.sh [EXPONENT_BITS MANTISSA_BITS]. FLOAT_ADDER names another adder to try.
+# Proves rtl/float_adder.v, as a 16-bit adder (5 exponent bits, 10 of mantissa), equal to tb/proofs/exact_adder.v for
+# all operands, added and subtracted, in both subnormal modes: tb/proofs/float_adder.sh [EXPONENT_BITS MANTISSA_BITS].
+# FLOAT_ADDER names another adder to try.
 set -eu -o pipefail
 cd "$(dirname "$0")/../.."
 exponent=${1:-5} mantissa=${2:-10} adder=${FLOAT_ADDER:-rtl/float_adder.v}
@@ -20,6 +21,7 @@ module top #(parameter EXPONENT_BITS = 5, MANTISSA_BITS = 10, SUBNORMALS = 0, BI
   assign differs = sum != exact;
 endmodule
 TOP
-  prove_zero "$folder" "float_adder with $exponent exponent and $mantissa mantissa bits, SUBNORMALS $subnormals, all operands" \
+  prove_zero "$folder" \
+    "float_adder with $exponent exponent and $mantissa mantissa bits, SUBNORMALS $subnormals, all operands" \
     "read_verilog $folder/top.v $adder tb/proofs/exact_adder.v; chparam $parameters top; hierarchy -top top"
 done

@@ -1,30 +1,34 @@
-# Benches of the ALU framework and of the Brh, Flt and Slw ALUs, in Verilator, and a replay of some of their results in Icarus.
+# Benches of the ALU framework and of the Brh, Flt and Slw ALUs, in Verilator, and a replay
+# of some of their results in Icarus.
 set(arith_rtl ${RAYPOOL_RTL})
 set(arith_unit ${CMAKE_SOURCE_DIR}/tb/unit)
 
 # arith_bench(NAME TOP SOURCES...): the test program NAME of unit/NAME.cpp with the Verilated bench top TOP.
-# SYNTHESIS, NO_CLOCK_GATES: with the multipliers and the pipeline registers that hardware has, in whose place whole units in simulation
-# have quicker ones.
+# SYNTHESIS, NO_CLOCK_GATES: with the multipliers and the pipeline registers that hardware has, in whose place whole
+# units in simulation have quicker ones.
 function(arith_bench name top)
   add_executable(${name} ${arith_unit}/${name}.cpp)
   target_link_libraries(${name} PRIVATE raypool_machine GTest::gtest_main)
   target_include_directories(${name} SYSTEM PRIVATE ${VERILATOR_ROOT}/include)  # its headers warn
   verilate(${name} SOURCES ${arith_unit}/${top}.v ${ARGN} TOP_MODULE ${top} PREFIX V${top} INCLUDE_DIRS ${arith_rtl}
     OPT_SLOW -w OPT_FAST -O2 -w OPT_GLOBAL -O1 -w
-    VERILATOR_ARGS --default-language 1364-2005 -DSYNTHESIS -DNO_CLOCK_GATES --output-split 10000 --output-split-cfuncs 1000 -O3 --x-assign fast --x-initial fast)
+    VERILATOR_ARGS --default-language 1364-2005 -DSYNTHESIS -DNO_CLOCK_GATES --output-split 10000
+    --output-split-cfuncs 1000 -O3 --x-assign fast --x-initial fast)
   # Tests named Long run in `make numerics-long`.
   gtest_discover_tests(${name} WORKING_DIRECTORY ${CMAKE_SOURCE_DIR} DISCOVERY_TIMEOUT 60 TEST_FILTER "-*Long*")
 endfunction()
 
-set(arith_flt_sources ${arith_rtl}/flt_alu.v ${arith_rtl}/float_lane.v ${arith_rtl}/float_adder.v ${arith_rtl}/float_multiplier.v
-  ${arith_rtl}/float_convert.v ${arith_rtl}/float_fma.v ${arith_rtl}/multiply_tree.v ${arith_rtl}/alu_pipeline.v ${arith_rtl}/alu_delay.v)
+set(arith_flt_sources ${arith_rtl}/flt_alu.v ${arith_rtl}/float_lane.v ${arith_rtl}/float_adder.v
+  ${arith_rtl}/float_multiplier.v ${arith_rtl}/float_convert.v ${arith_rtl}/float_fma.v ${arith_rtl}/multiply_tree.v
+  ${arith_rtl}/alu_pipeline.v ${arith_rtl}/alu_delay.v)
 arith_bench(flt_alu_test flt_units ${arith_flt_sources})
 
 set(arith_brh_sources ${arith_rtl}/brh_alu.v ${arith_rtl}/alu_pipeline.v ${arith_rtl}/alu_delay.v)
 arith_bench(brh_alu_test brh_units ${arith_brh_sources})
 
-set(arith_slw_sources ${arith_rtl}/slw_alu.v ${arith_rtl}/slow_lane.v ${arith_rtl}/slow_prepare.v ${arith_rtl}/slow_exact.v
-  ${arith_rtl}/slow_newton.v ${arith_rtl}/slow_refine.v ${arith_rtl}/slow_line_table.v ${arith_rtl}/slow_seed_table.v ${arith_rtl}/multiply_tree.v ${arith_rtl}/alu_pipeline.v ${arith_rtl}/alu_delay.v)
+set(arith_slw_sources ${arith_rtl}/slw_alu.v ${arith_rtl}/slow_lane.v ${arith_rtl}/slow_prepare.v
+  ${arith_rtl}/slow_exact.v ${arith_rtl}/slow_newton.v ${arith_rtl}/slow_refine.v ${arith_rtl}/slow_line_table.v
+  ${arith_rtl}/slow_seed_table.v ${arith_rtl}/multiply_tree.v ${arith_rtl}/alu_pipeline.v ${arith_rtl}/alu_delay.v)
 arith_bench(slw_alu_test slw_units ${arith_slw_sources})
 
 arith_bench(alu_pipeline_test pipeline_units ${arith_rtl}/alu_pipeline.v)
@@ -47,9 +51,12 @@ if(IVERILOG AND VVP)
     list(REMOVE_DUPLICATES sources)
     add_custom_command(OUTPUT ${program}
       COMMAND ${IVERILOG} -g2005 -Wall -I ${arith_rtl} -s arith_icarus -Parith_icarus.SUBNORMALS=${subnormals}
-        -Parith_icarus.SLOW_UNIT=${slow_unit} -Parith_icarus.FMA=${fma} -o ${program} ${arith_unit}/arith_icarus.v ${sources}
-      DEPENDS ${arith_unit}/arith_icarus.v ${sources} ${arith_rtl}/isa.vh ${arith_rtl}/booth_digits.vh ${arith_rtl}/ones_below.vh ${arith_rtl}/free_running.vh VERBATIM)
-    add_custom_command(OUTPUT ${vectors} COMMAND arith_vectors ${subnormals} ${slow_unit} ${fma} 4000 > ${vectors} DEPENDS arith_vectors VERBATIM)
+        -Parith_icarus.SLOW_UNIT=${slow_unit} -Parith_icarus.FMA=${fma} -o ${program} ${arith_unit}/arith_icarus.v
+          ${sources}
+      DEPENDS ${arith_unit}/arith_icarus.v ${sources} ${arith_rtl}/isa.vh ${arith_rtl}/booth_digits.vh
+        ${arith_rtl}/ones_below.vh ${arith_rtl}/free_running.vh VERBATIM)
+    add_custom_command(OUTPUT ${vectors} COMMAND arith_vectors ${subnormals} ${slow_unit} ${fma} 4000 > ${vectors}
+      DEPENDS arith_vectors VERBATIM)
     add_custom_target(${replay} ALL DEPENDS ${program} ${vectors})
     add_test(NAME ${replay} COMMAND ${VVP} -n ${program} +vectors=${vectors})
     set_tests_properties(${replay} PROPERTIES PASS_REGULAR_EXPRESSION "results agree" FAIL_REGULAR_EXPRESSION "FAILED")
@@ -65,20 +72,30 @@ foreach(format IN ITEMS "16 5 10" "8 4 3")
   list(GET format 0 bits)
   list(GET format 1 exponent)
   list(GET format 2 mantissa)
-  verilate(small_floats_test SOURCES ${arith_unit}/small_floats.v ${arith_rtl}/float_adder.v ${arith_rtl}/float_multiplier.v
+  verilate(small_floats_test SOURCES ${arith_unit}/small_floats.v ${arith_rtl}/float_adder.v
+    ${arith_rtl}/float_multiplier.v
       ${arith_rtl}/float_fma.v ${arith_rtl}/multiply_tree.v
-    TOP_MODULE small_floats PREFIX Vsmall_floats_${bits} INCLUDE_DIRS ${arith_rtl} OPT_SLOW -w OPT_FAST -O2 -w OPT_GLOBAL -O1 -w
-    VERILATOR_ARGS --default-language 1364-2005 -DSYNTHESIS -DNO_CLOCK_GATES --output-split 10000 --output-split-cfuncs 1000 -O3 --x-assign fast --x-initial fast -GEXPONENT_BITS=${exponent} -GMANTISSA_BITS=${mantissa})
+    TOP_MODULE small_floats PREFIX Vsmall_floats_${bits} INCLUDE_DIRS ${arith_rtl}
+      OPT_SLOW -w OPT_FAST -O2 -w OPT_GLOBAL -O1 -w
+    VERILATOR_ARGS --default-language 1364-2005 -DSYNTHESIS -DNO_CLOCK_GATES --output-split 10000
+      --output-split-cfuncs 1000 -O3 --x-assign fast --x-initial fast -GEXPONENT_BITS=${exponent}
+        -GMANTISSA_BITS=${mantissa})
 endforeach()
-# Products of every pair of 16-bit numbers: with the tree that hardware has, and with the simulator's product in its place.
+# Products of every pair of 16-bit numbers: with the tree that hardware has, and with
+# the simulator's product in its place.
 foreach(tree IN ITEMS "tree -DSYNTHESIS" "quick")
   separate_arguments(tree)
   list(POP_FRONT tree name)
-  verilate(small_floats_test SOURCES ${arith_unit}/small_products.v ${arith_rtl}/float_multiplier.v ${arith_rtl}/multiply_tree.v
-    TOP_MODULE small_products PREFIX Vsmall_products_${name} INCLUDE_DIRS ${arith_rtl} OPT_SLOW -w OPT_FAST -O3 -w OPT_GLOBAL -O1 -w
-    VERILATOR_ARGS --default-language 1364-2005 ${tree} --output-split 10000 --output-split-cfuncs 1000 -O3 --x-assign fast --x-initial fast)
+  verilate(small_floats_test SOURCES ${arith_unit}/small_products.v ${arith_rtl}/float_multiplier.v
+    ${arith_rtl}/multiply_tree.v
+    TOP_MODULE small_products PREFIX Vsmall_products_${name} INCLUDE_DIRS ${arith_rtl}
+    OPT_SLOW -w OPT_FAST -O3 -w OPT_GLOBAL -O1 -w
+    VERILATOR_ARGS --default-language 1364-2005 ${tree} --output-split 10000 --output-split-cfuncs 1000
+    -O3 --x-assign fast --x-initial fast)
 endforeach()
-verilate(small_floats_test SOURCES ${arith_rtl}/multiply_tree.v TOP_MODULE multiply_tree PREFIX Vmultiply_tree_11 INCLUDE_DIRS ${arith_rtl} OPT_SLOW -w OPT_FAST -O3 -w
+verilate(small_floats_test SOURCES ${arith_rtl}/multiply_tree.v TOP_MODULE multiply_tree PREFIX Vmultiply_tree_11
+  INCLUDE_DIRS ${arith_rtl} OPT_SLOW -w OPT_FAST -O3 -w
   OPT_GLOBAL -O1 -w VERILATOR_ARGS --default-language 1364-2005 -DSYNTHESIS -O3 -GA_BITS=11 -GB_BITS=11)
 # Tests named Hours run by hand.
-gtest_discover_tests(small_floats_test WORKING_DIRECTORY ${CMAKE_SOURCE_DIR} DISCOVERY_TIMEOUT 60 TEST_FILTER "-*Long*:*Hours*")
+gtest_discover_tests(small_floats_test WORKING_DIRECTORY ${CMAKE_SOURCE_DIR} DISCOVERY_TIMEOUT 60
+  TEST_FILTER "-*Long*:*Hours*")

@@ -10,7 +10,8 @@ endfunction()
 # raypool_memory_model(TARGET MODULE SUFFIX PARAMETERS...): class V<module>_<suffix>
 function(raypool_memory_model target module suffix)
   list(TRANSFORM ARGN PREPEND -G OUTPUT_VARIABLE parameters)
-  verilate(${target} SOURCES ${RAYPOOL_RTL}/${module}.v PREFIX V${module}_${suffix} TOP_MODULE ${module} OPT_SLOW -w OPT_FAST -O2 -w OPT_GLOBAL -O1 -w
+  verilate(${target} SOURCES ${RAYPOOL_RTL}/${module}.v PREFIX V${module}_${suffix} TOP_MODULE ${module}
+    OPT_SLOW -w OPT_FAST -O2 -w OPT_GLOBAL -O1 -w
     VERILATOR_ARGS -O3 --default-language 1364-2005 -y ${RAYPOOL_RTL} -I${RAYPOOL_RTL} ${parameters})
 endfunction()
 

@@ -5,7 +5,9 @@ foreach(size 1x1 2x2 1x32 4x4 8x8 32x1)
   string(REPLACE "x" ";" warps_lanes ${size})
   list(GET warps_lanes 0 warps)
   list(GET warps_lanes 1 lanes)
-  verilate(ray_alu_test SOURCES ${RAYPOOL_RTL}/ray_alu.v PREFIX Vray_alu_${size} TOP_MODULE ray_alu OPT_SLOW -w OPT_FAST -O2 -w OPT_GLOBAL -O1 -w
-    VERILATOR_ARGS -O3 --default-language 1364-2005 -y ${RAYPOOL_RTL} -I${RAYPOOL_RTL} -GWARPS=${warps} -GLANES=${lanes})
+  verilate(ray_alu_test SOURCES ${RAYPOOL_RTL}/ray_alu.v PREFIX Vray_alu_${size} TOP_MODULE ray_alu
+    OPT_SLOW -w OPT_FAST -O2 -w OPT_GLOBAL -O1 -w
+    VERILATOR_ARGS -O3 --default-language 1364-2005 -y ${RAYPOOL_RTL} -I${RAYPOOL_RTL} -GWARPS=${warps}
+    -GLANES=${lanes})
 endforeach()
 gtest_discover_tests(ray_alu_test DISCOVERY_TIMEOUT 60)
