@@ -189,7 +189,7 @@ quoted: setup-sim setup-test setup-synth configured-ON ## run what README and do
 proofs: setup-lint ## formal proofs of blocks (Yosys, ABC)
 	@scripts/proofs.sh
 
-lint: setup-sim setup-lint configured-ON ## Verilog in three tools, C++ layout and checks
+lint: setup-sim setup-lint configured-ON ## Verilog in three tools, C++ layout and checks, scripts
 	@scripts/lint.sh
 
 format: setup-lint ## lay out the C++ files as .clang-format says

@@ -27,7 +27,7 @@ while read -r file units <&3; do
   run=("$RAYPOOL" cosim --config "$file" --units "$units" --unit-library "$unit/libraypool_unit.so" \
     --programs "$programs" --quiet)
   count=$((count + 1))
-  # Unquoted: each parameter is a word.
+  # shellcheck disable=SC2206,SC2207 # each parameter is a word, and quick is an option or nothing
   build=(scripts/verilate.sh "$unit" $quick "UNITS=$units" $("$RAYPOOL" config "$file" --verilog-parameters))
   if ! JOBS=$(nproc) "${build[@]}" > "$log" 2>&1; then
     failed+=("$name")

@@ -34,7 +34,7 @@ rm -f "$folder/list"
 for machine in "${machines[@]}"; do
   read -r name file units <<< "$machine"
   [ $# = 0 ] || [[ " $* " == *" $name "* ]] || continue
-  # Unquoted: each parameter is a word.
+  # shellcheck disable=SC2046 # each parameter is a word
   JOBS=${JOBS:-$(nproc)} "$folder/scripts/verilate.sh" "$folder/$name" --quick "UNITS=$units" \
     $("$raypool" config "$file" --verilog-parameters) |
     { grep -v 'is up to date$' || true; }

@@ -1,12 +1,23 @@
 #!/bin/bash
-# Checks the sources: Verilog in Verilator, Icarus and Yosys for several configurations, C++ layout and clang-tidy,
-# shell syntax, and what the pages name.
-# Prints what failed and the command that shows it again; ends with 1 if anything did. Needs the build folder (BUILD,
-# default build) configured with tests, and keeps there how long it took.
+# Checks the sources: scripts/lint.sh [KIND]... (default: all kinds)
+#   verilog  Verilator, Icarus and Yosys, each for several configurations
+#   pages    the table of modules, what the pages name, the layers of the folders
+#   columns  no line is longer than 120 columns
+#   python   flake8 (.flake8)
+#   shell    shellcheck (.shellcheckrc)
+#   cpp      clang-format and clang-tidy; needs the build folder (BUILD, default build) configured with tests
+# Prints what failed and the command that shows it again; ends with 1 if anything did. Keeps in the build folder how
+# long all kinds took.
 set -u -o pipefail
-cd "$(dirname "$0")/.."
+cd "$(dirname "$0")/.." || exit 1
 export LC_ALL=C.UTF-8 build=${BUILD:-build}
 . scripts/duration.bash
+kinds=(verilog pages columns python shell cpp)
+for kind in "$@"; do
+  [[ " ${kinds[*]} " == *" $kind "* ]] ||
+    { echo "lint: '$kind' is no kind of check; there are ${kinds[*]}, and without one all are done" >&2; exit 1; }
+done
+chosen=("${@:-${kinds[@]}}")
 checks=0
 failed=()
 log=$(mktemp)
@@ -38,60 +49,76 @@ verilog_configurations=(
   "WARPS=2 LANES=16 INT_COUNT=2 FLT_COUNT=4 SLW_LATENCY=3 TID_DEPTH=2 SUBNORMALS=1 SLOW_UNIT=2"
   "WARPS=2 LANES=2 FMA=1 FLT_DEPTH=5"
 )
-mapfile -t rtl < <(scripts/sources.sh verilog)
-mapfile -t cpp < <(scripts/sources.sh cpp)
-echo "lint: ${#rtl[@]} Verilog files in ${#verilog_configurations[@]} configurations by three tools," \
-  "${#cpp[@]} C++ files by clang-format and clang-tidy, which takes most of the time; $(last_duration lint)"
 
-for parameters in "${verilog_configurations[@]}"; do
-  verilator_flags=() iverilog_flags=() yosys_flags=()
-  for parameter in $parameters; do
-    verilator_flags+=("-G$parameter")
-    iverilog_flags+=("-Pmultiprocessor.$parameter")
-    yosys_flags+=(-chparam "${parameter%=*}" "${parameter#*=}")
+check_verilog() {
+  local parameters parameter rtl
+  mapfile -t rtl < <(scripts/sources.sh verilog)
+  echo "lint: ${#rtl[@]} Verilog files in ${#verilog_configurations[@]} configurations by three tools"
+  for parameters in "${verilog_configurations[@]}"; do
+    local verilator_flags=() iverilog_flags=() yosys_flags=()
+    for parameter in $parameters; do
+      verilator_flags+=("-G$parameter")
+      iverilog_flags+=("-Pmultiprocessor.$parameter")
+      yosys_flags+=(-chparam "${parameter%=*}" "${parameter#*=}")
+    done
+    check "verilator $parameters" verilator --lint-only -Wall --default-language 1364-2005 -Irtl rtl/waivers.vlt \
+      "${verilator_flags[@]}" --top-module multiprocessor "${rtl[@]}"
+    check "iverilog $parameters" iverilog -g2005 -Wall -Irtl -o /dev/null "${iverilog_flags[@]}" -s multiprocessor \
+      "${rtl[@]}"
+    # Synthesis view, of the whole in one piece: no latch, no combinational loop, no undriven or doubly driven net.
+    check "yosys $parameters" yosys -q -e '.*latch.*' -p "
+      read_verilog -DSYNTHESIS -DNO_CLOCK_GATES -Irtl ${rtl[*]}
+      hierarchy -check -top multiprocessor ${yosys_flags[*]}; proc -noopt; flatten; opt_clean
+      select -assert-none t:\$dlatch t:\$adlatch t:\$dlatchsr; check -assert"
   done
-  check "verilator $parameters" verilator --lint-only -Wall --default-language 1364-2005 -Irtl rtl/waivers.vlt \
-    "${verilator_flags[@]}" --top-module multiprocessor "${rtl[@]}"
-  check "iverilog $parameters" iverilog -g2005 -Wall -Irtl -o /dev/null "${iverilog_flags[@]}" -s multiprocessor \
-    "${rtl[@]}"
-  # Synthesis view, of the whole in one piece: no latch, no combinational loop, no undriven or doubly driven net.
-  check "yosys $parameters" yosys -q -e '.*latch.*' -p "read_verilog -DSYNTHESIS -DNO_CLOCK_GATES -Irtl ${rtl[*]};
-    hierarchy -check -top multiprocessor ${yosys_flags[*]}; proc -noopt; flatten; opt_clean;
-    select -assert-none t:\$dlatch t:\$adlatch t:\$dlatchsr; check -assert"
-done
+}
 
-check "table of modules" scripts/module_table.py
-check "what the pages name" scripts/pages.py
-check "layers of the sources" scripts/layers.py
+check_pages() {
+  check "table of modules" scripts/module_table.py
+  check "what the pages name" scripts/pages.py
+  check "layers of the sources" scripts/layers.py
+}
 
-check "clang-format (make format)" clang-format --dry-run -Werror "${cpp[@]}"
+check_columns() { check "lines of at most 120 columns" scripts/columns.sh; }
 
-mapfile -t python < <(scripts/sources.sh python)
-for file in "${python[@]}"; do
-  check "python3 $file" python3 -W error \
-    -c 'import ast, pathlib, sys; ast.parse(pathlib.Path(sys.argv[1]).read_text())' "$file"
-done
+check_python() {
+  local files
+  mapfile -t files < <(scripts/sources.sh python)
+  check "flake8, ${#files[@]} files" flake8 "${files[@]}"
+}
 
-for file in $(scripts/sources.sh shell); do check "bash -n $file" bash -n "$file"; done
+check_shell() {
+  local files
+  mapfile -t files < <(scripts/sources.sh shell)
+  check "shellcheck, ${#files[@]} files" shellcheck "${files[@]}"
+}
 
-# clang-tidy reads each source as the build compiles it; what only the build generates
-# (Verilated models) is left to the compiler.
-tidy=()
-for file in "${cpp[@]}"; do
-  case $file in *.cpp) grep -qF "\"$PWD/$file\"" "$build/compile_commands.json" && tidy+=("$file") ;; esac
-done
-if [ ${#tidy[@]} -gt 0 ]; then
-  echo "lint: clang-tidy reads ${#tidy[@]} files, $(nproc) at a time"
-  check "clang-tidy, ${#tidy[@]} files" \
-    bash -c 'printf "%s\0" "$@" | xargs -0 -n 1 -P "$(nproc)" clang-tidy -p "$build" --quiet 2>&1 |
-    grep -vE "^[0-9]+ warnings? (generated|treated)|^Suppressed|^Use -header-filter"
-    exit "${PIPESTATUS[1]}"' clang-tidy "${tidy[@]}"
-else
-  echo "lint: clang-tidy: $build/compile_commands.json names no file of the project;" \
-    "run make lint, not scripts/lint.sh" >&2
-  failed+=("clang-tidy")
-fi
-keep_duration lint
+# clang-tidy reads each source as the build compiles it; what only the build generates (Verilated models) is left to
+# the compiler.
+check_cpp() {
+  local cpp file tidy=()
+  mapfile -t cpp < <(scripts/sources.sh cpp)
+  check "clang-format (make format), ${#cpp[@]} files" clang-format --dry-run -Werror "${cpp[@]}"
+  for file in "${cpp[@]}"; do
+    case $file in *.cpp) grep -qF "\"$PWD/$file\"" "$build/compile_commands.json" && tidy+=("$file") ;; esac
+  done
+  if [ ${#tidy[@]} -gt 0 ]; then
+    echo "lint: clang-tidy reads ${#tidy[@]} files, $(nproc) at a time, which takes most of the time"
+    # shellcheck disable=SC2016 # the inner shell expands them
+    check "clang-tidy, ${#tidy[@]} files" \
+      bash -c 'printf "%s\0" "$@" | xargs -0 -n 1 -P "$(nproc)" clang-tidy -p "$build" --quiet 2>&1 |
+      grep -vE "^[0-9]+ warnings? (generated|treated)|^Suppressed|^Use -header-filter"
+      exit "${PIPESTATUS[1]}"' clang-tidy "${tidy[@]}"
+  else
+    echo "lint: clang-tidy: $build/compile_commands.json names no file of the project;" \
+      "run make lint, not scripts/lint.sh" >&2
+    failed+=("clang-tidy")
+  fi
+}
+
+[ $# -gt 0 ] || echo "lint: $(last_duration lint)"
+for kind in "${chosen[@]}"; do "check_$kind"; done
+[ $# -gt 0 ] || keep_duration lint
 # The last lines are the ones that are read.
 if [ ${#failed[@]} -gt 0 ]; then
   printf 'lint: %d of %d checks are not clean; what they say stands above:\n' "${#failed[@]}" "$checks"

@@ -70,7 +70,8 @@ EOF
   # The netlist gets back the parameters, which stand for themselves now, and the number of its fault from outside.
   declarations=
   for parameter in $parameters; do declarations+="${declarations:+, }parameter $parameter"; done
-  for name in $(sed -nE '/^module/,/^\) \(/ s/^ *parameter integer ([A-Z_]+).*/\1/p' rtl/compute_unit.v); do
+  mapfile -t declared < <(sed -nE '/^module/,/^\) \(/ s/^ *parameter integer ([A-Z_]+).*/\1/p' rtl/compute_unit.v)
+  for name in "${declared[@]}"; do
     [[ " $parameters" == *[[:space:]]"$name="* ]] || declarations+=", parameter $name = 0"
   done
   {
@@ -102,5 +103,5 @@ EOF
   done
   echo "$digest" > "$output/stamp"
 fi
-# Unquoted: each parameter is a word.
+# shellcheck disable=SC2086 # each parameter is a word
 JOBS=${JOBS:-$(nproc)} "$tree/scripts/verilate.sh" "$output" UNITS=1 $parameters

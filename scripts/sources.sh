@@ -1,11 +1,19 @@
 #!/bin/bash
-# Prints the project's source files of one language, one a line: scripts/sources.sh cpp|verilog|shell|python
+# Prints the project's source files of one language, one a line: scripts/sources.sh cpp|verilog|shell|python|text
+# text: all that is read by lines of at most 120 columns.
 set -eu -o pipefail
 cd "$(dirname "$0")/.."
-case $1 in
-  cpp) find cpp_model sim tb bench examples -name '*.cpp' -o -name '*.hpp' ;;
-  verilog) find rtl -name '*.v' ;;
-  shell) find scripts .ci -type f \( -name '*.sh' -o -name run \) ;;
-  python) find scripts -name '*.py' ;;
-  *) echo "usage: scripts/sources.sh cpp|verilog|shell|python" >&2; exit 1 ;;
-esac | sort
+files() {
+  case $1 in
+    cpp) find cpp_model sim tb bench examples -name '*.cpp' -o -name '*.hpp' ;;
+    verilog) find rtl -name '*.v' ;;
+    shell) find scripts tb .ci -type f \( -name '*.sh' -o -name '*.bash' -o -name run \) ;;
+    python) find scripts -name '*.py' ;;
+    text)
+      files shell; files python
+      echo Makefile; find CMakeLists.txt cmake cpp_model sim tb examples -name CMakeLists.txt -o -name '*.cmake'
+      ;;
+    *) echo "usage: scripts/sources.sh cpp|verilog|shell|python|text" >&2; exit 1 ;;
+  esac
+}
+files "${1:-}" | sort

@@ -97,7 +97,7 @@ units=1
 for parameter in "${parameters[@]}"; do [ "${parameter%%=*}" != UNITS ] || units=${parameter#*=}; done
 printf '#define RAYPOOL_UNIT_PARAMETERS "%s"\n#define RAYPOOL_UNIT_COUNT %d\n' "${parameters[*]}" "$units" \
   > "$build/unit_parameters.h"
-options=(--cc --exe --top-module multiprocessor --Mdir "$build" -Irtl --default-language $language
+options=(--cc --exe --top-module multiprocessor --Mdir "$build" -Irtl --default-language "$language"
   -O3 --x-assign fast --x-initial fast --noassert
   -CFLAGS "-std=c++17 -fPIC -fvisibility=hidden -fno-gnu-unique -fno-plt -fno-semantic-interposition"
   -CFLAGS "-I$root/cpp_model -I$root/sim -I$build"

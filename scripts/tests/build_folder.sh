@@ -31,6 +31,7 @@ fi
 echo "ok: a build that fails"
 
 read_only() {
+  # shellcheck disable=SC2016 # the inner shell expands them
   unshare --mount bash -eu -c 'root=$PWD
     mount --bind "$0" "$0"
     mount --bind "$root" "$root"
@@ -45,7 +46,7 @@ if ! read_only true 2> /dev/null; then
 fi
 if read_only touch README.md 2> /dev/null; then echo "FAILED: the checkout is not read-only"; exit 1; fi
 for command in "make run KERNEL=saxpy ENGINE=functional" "make sim SCENE=cornell SIZE=8x8 ENGINE=native"; do
-  # Unquoted: words.
+  # shellcheck disable=SC2086 # words
   if ! read_only $command "BUILD=$build" > "$log" 2>&1; then
     echo "FAILED: $command in a checkout that is read-only:"
     cat "$log"

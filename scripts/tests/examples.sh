@@ -14,7 +14,7 @@ for file in examples/*.asm; do
   [ -n "$command" ] && [ -s "$folder/expected" ] ||
     { echo "FAILED: the head of $file has no command, or no output" >&2; exit 1; }
   for engine in functional model lockstep; do
-    # Unquoted: the command's words.
+    # shellcheck disable=SC2086 # the command's words
     "$raypool" $command --engine "$engine" > "$folder/output" ||
       { echo "FAILED: exit code $? of raypool $command --engine $engine" >&2; exit 1; }
     while IFS= read -r line; do

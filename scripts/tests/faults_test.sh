@@ -3,7 +3,8 @@
 # put into today's rtl/, the copy with all of them is plain Verilog and agrees with the model when none is chosen, some
 # are noticed soon, and what does not fit is refused.
 set -u -o pipefail
-export RAYPOOL=$(realpath "$1")
+RAYPOOL=$(realpath "$1")
+export RAYPOOL
 faults=$(realpath "$2") folder=$3
 cd "$(dirname "$0")/../.." || exit 1
 mkdir -p "$folder"

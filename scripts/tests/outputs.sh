@@ -47,7 +47,7 @@ for command in --help kernels "kernels saxpy" isa "isa --verilog" "config 4w4c" 
   "asm $folder/a.asm" "disasm $folder/a.hex" \
   "scene cornell" "hits cornell --size 4x4" "errors --grid 2" configurations "numerics --catalogue" \
   "run saxpy --n 8 --engine functional" "${sim[*]} --out $folder/out"; do
-  # Unquoted: words.
+  # shellcheck disable=SC2086 # words
   promise "$command on a full disk is an error" printed_on_full $command
 done
 
@@ -120,8 +120,8 @@ promise "... and another of that name" draw cornell --view "$folder/out2/view.js
 promise "... on a user's hardware" draw cornell --config "$folder/2/mine.json"
 promise "... and another of that name" draw cornell --config "$folder/4/mine.json"
 promise "... and an OBJ of its name" draw "$folder/cornell.obj"
-promise "each into a folder of its own" test "$(ls "$folder/bin/out" | wc -l)" = 7
+promise "each into a folder of its own" test "$(find "$folder/bin/out" -mindepth 1 -maxdepth 1 | wc -l)" = 7
 draw "$folder/cornell.obj"
-promise "... and again into the same" test "$(ls "$folder/bin/out" | wc -l)" = 7
+promise "... and again into the same" test "$(find "$folder/bin/out" -mindepth 1 -maxdepth 1 | wc -l)" = 7
 
 [ "$failures" = 0 ] || { echo "$failures promises are not kept"; exit 1; }

@@ -40,7 +40,7 @@ while read -r command; do
   awk -v command=".SS $command" '/^\.S[SH]/ { inside = $0 == command } inside' "$folder/text" > "$folder/section"
   for option in $("$raypool" "$command" --help | grep -oE '^ +(-[a-z],)?--[a-z-]+' | grep -oE -- '--[a-z-]+'); do
     grep -qE -e "(^|, )$option\b" "$folder/section" || fail "the man page lacks $command $option"
-    grep -qE -e "^    $command\) words='(.* )?$option[ ']" "$folder/bash" ||
+    grep -qE -e "^    $command\) words='(.* )?${option}[ ']" "$folder/bash" ||
       fail "bash completion lacks $command $option"
     awk -v command="$command)" '$1 ~ /^[a-z]+\)$/ { inside = $1 == command } inside' "$folder/zsh" |
       grep -qE -e "'\*?$option\[" ||
@@ -63,7 +63,7 @@ completes() {
 completes 'sim' si
 completes '--engine' sim --eng
 completes 'rtl' sim --engine rt
-completes 'fish' completion fi
+completes 'fish' completion 'fi'
 if command -v groff > /dev/null; then
   [ -z "$(groff -man -ww -z "$folder/man" 2>&1)" ] ||
     fail "groff complains about the man page: $(groff -man -ww -z "$folder/man" 2>&1)"

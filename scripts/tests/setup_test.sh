@@ -18,6 +18,7 @@ cat > "$folder/bin/apt-get" <<'END'
 echo "$*" >> "$CALLS"
 case "$* " in *install*) [ -e "$CALLS.lists" ] ;; *update*) : > "$CALLS.lists" ;; esac
 END
+# shellcheck disable=SC2016 # the script expands it
 printf '#!/bin/bash\necho "$FAKE_UID"\n' > "$folder/bin/id"
 chmod +x "$folder/bin/"*
 export CALLS=$folder/calls FAKE_UID=0

@@ -15,7 +15,7 @@
 # Exit code 1 if a proof fails, or holds for a broken copy.
 set -eu -o pipefail
 cd "$(dirname "$0")/../.."
-quick= only_broken=
+quick='' only_broken=''
 case ${1:-} in
   --quick) quick=1; shift ;;
   --broken) only_broken=1; shift ;;
@@ -43,7 +43,7 @@ said() {
 # solve CHECKER PARAMETERS FILE...: runs ABC's commands in engine; sets verdict to proved, refuted or unknown, and depth
 # to the length of the counterexample.
 solve() {
-  local checker=$1 parameters=$2 parameter chparam= zeros=
+  local checker=$1 parameters=$2 parameter chparam='' zeros=''
   shift 2
   for parameter in $parameters; do chparam+=" -set ${parameter%=*} ${parameter#*=}"; done
   [ -z "$chparam" ] || chparam="chparam$chparam check;"
@@ -74,8 +74,8 @@ for name in "${names[@]}"; do
   [ ${#sets[@]} -gt 0 ] || sets=("")
   for set in "${sets[@]}"; do
     [ -z "$only_broken" ] || break
-    # shellcheck disable=SC2086 # a list of files
     engine="scorr; pdr -T 600"
+    # shellcheck disable=SC2086 # a list of files
     { time solve "$checker" "$set" $files; } 2> "$folder/time"
     if [ $verdict = proved ]; then echo "proved: $name${set:+, $set} (pdr, $(tail -1 "$folder/time") s)"
     else

@@ -1,0 +1,41 @@
+#!/bin/bash
+# scripts/lint.sh does the kinds of checks that it is asked for, says what is wrong, and refuses a kind that it does not
+# know. Works on a copy with files that are wrong in one way each.
+set -u -o pipefail
+cd "$(dirname "$0")/../.." || exit 1
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+mkdir -p "$folder"/{scripts,.ci,rtl,cpp_model,sim,tb,bench,examples,cmake}
+cp scripts/{lint,sources,columns}.sh scripts/duration.bash "$folder/scripts/"
+cp .flake8 .shellcheckrc "$folder/"
+touch "$folder"/{Makefile,CMakeLists.txt}
+failures=0
+
+# expect WHAT STATUS TEXT KIND...: lint ends with the status, and says the text.
+expect() {
+  local what=$1 status=$2 text=$3 said ended
+  shift 3
+  said=$("$folder/scripts/lint.sh" "$@" 2>&1)
+  ended=$?
+  if [ "$ended" = "$status" ] && grep -qF -- "$text" <<< "$said"; then
+    echo "ok: $what"
+  else
+    failures=$((failures + 1))
+    echo "FAILED: $what: ended with $ended, not $status with \"$text\": $said"
+  fi
+}
+
+# shellcheck disable=SC2016 # a script to be checked
+unquoted='#!/bin/bash\nrm $1\n'
+expect "what is right is clean" 0 "all 3 checks are clean" columns python shell
+expect "a kind that there is not" 1 "'colums' is no kind of check" colums
+printf '%b' "$unquoted" > "$folder/scripts/unquoted.sh"
+expect "a word that is not quoted" 1 "SC2086" shell
+expect "... is none of Python's business" 0 "all 1 checks are clean" python
+printf 'import os\nprint(nothing)\n' > "$folder/scripts/broken.py"
+expect "a name that is not there" 1 "undefined name 'nothing'" python
+printf '# %0119d\n' 0 > "$folder/scripts/long.py"
+expect "a line of 121 columns" 1 "scripts/long.py:1:" columns
+printf '# %0115dé—²\n' 0 > "$folder/scripts/long.py"
+expect "120 columns in more bytes" 0 "all 1 checks are clean" columns
+[ "$failures" = 0 ]
