@@ -1,4 +1,5 @@
-// Compares into predicates, predicate logic, and the decision of control instructions: taken, in every lane of done_pred_o.
+// Compares into predicates, predicate logic, and the decision of control instructions: taken, in every lane of
+// done_predicate_o.
 `default_nettype none
 module brh_alu #(
   parameter integer WARPS = 8,
@@ -8,23 +9,7 @@ module brh_alu #(
   parameter integer DEPTH = 2,
   parameter integer SUBNORMALS = 0
 ) (
-  input  wire                   clk_i,
-  input  wire                   rst_ni,
-  input  wire                   task_valid_i,
-  input  wire [WARP_BITS-1:0]   task_warp_i,
-  input  wire [4:0]             task_op_i,
-  input  wire [LANES-1:0]       task_mask_i,
-  input  wire [LANES*32-1:0]    task_a_i,
-  input  wire [LANES*32-1:0]    task_b_i,
-  input  wire [31:0]            task_imm_i,
-  input  wire [4:0]             task_x_i,
-  input  wire [LANES-1:0]       task_px_i,
-  input  wire [LANES-1:0]       task_pb_i,
-  output wire                   ready_o,
-  output wire                   done_valid_o,
-  output wire [WARP_BITS-1:0]   done_warp_o,
-  output wire [LANES*32-1:0]    done_data_o,
-  output wire [LANES-1:0]       done_pred_o
+`include "alu_ports.vh"
 );
 `include "isa.vh"
   generate
@@ -85,21 +70,21 @@ module brh_alu #(
 
   always @(posedge clk_i)
     if (task_valid_i)
-      case (task_op_i)
-        ISA_BRH_PAND: result_q <= task_px_i & task_pb_i;
-        ISA_BRH_POR: result_q <= task_px_i | task_pb_i;
-        ISA_BRH_PXOR: result_q <= task_px_i ^ task_pb_i;
-        ISA_BRH_PANDN: result_q <= task_px_i & ~task_pb_i;
+      case (task_operation_i)
+        ISA_BRH_PAND: result_q <= task_predicate_x_i & task_predicate_b_i;
+        ISA_BRH_POR: result_q <= task_predicate_x_i | task_predicate_b_i;
+        ISA_BRH_PXOR: result_q <= task_predicate_x_i ^ task_predicate_b_i;
+        ISA_BRH_PANDN: result_q <= task_predicate_x_i & ~task_predicate_b_i;
         ISA_BRH_JANY, ISA_BRH_LOOP: result_q <= {LANES{|task_mask_i}};
         ISA_BRH_JNONE: result_q <= {LANES{~|task_mask_i}};
         ISA_BRH_CALL, ISA_BRH_RET, ISA_BRH_EXIT: result_q <= {LANES{1'b1}};
         default:
           for (l = 0; l < LANES; l = l + 1)
-            result_q[l] <= compare(task_op_i, task_a_i[l*32 +: 32], task_b_i[l*32 +: 32]);
+            result_q[l] <= compare(task_operation_i, task_operand_a_i[l*32 +: 32], task_operand_b_i[l*32 +: 32]);
       endcase
 
   alu_delay #(.WIDTH(LANES), .STAGES(DEPTH-1)) alu_delay (
-    .clk_i(clk_i), .valid_i(stage_valid[DEPTH-1:1]), .data_i(result_q), .data_o(done_pred_o));
+    .clk_i(clk_i), .valid_i(stage_valid[DEPTH-1:1]), .data_i(result_q), .data_o(done_predicate_o));
   assign done_data_o = {LANES*32{1'b0}};
 endmodule
 `default_nettype wire

@@ -1,4 +1,5 @@
-// One SIMT compute unit: instruction routine, data routine, ALUs, caches, ray memory, launch. docs/architecture.md describes it.
+// One SIMT compute unit: instruction routine, data routine, ALUs, caches, ray memory, launch. docs/architecture.md
+// describes it.
 // Promises: no output depends combinationally on an input; every valid/ready pair keeps its payload until taken.
 `default_nettype none
 module compute_unit #(
@@ -19,7 +20,7 @@ module compute_unit #(
   // set by the host before a launch, constant while a kernel runs
   input  wire [15:0]               program_length_i,   // instructions
   input  wire [31:0]               memory_limit_i,     // bytes
-  input  wire                      argument_write_i,   // while idle; also invalidates the caches, as memory may have changed
+  input  wire                      argument_write_i,   // while idle; invalidates the caches, too, as memory may have changed
   input  wire [4:0]                argument_index_i,
   input  wire [31:0]               argument_data_i,
   // launch
@@ -88,7 +89,7 @@ module compute_unit #(
 );
 `include "isa.vh"
   localparam integer DATA = LANES * 32;
-`include "alu_slots.vh"
+`include "alu_instance_types.vh"
 
   generate
     if (WARPS < 1 || WARPS > 32 || (WARPS & (WARPS - 1)) != 0) begin : gen_bad_warps
@@ -116,19 +117,17 @@ module compute_unit #(
   wire fetch_valid, instruction_hit, instruction_miss, refill_done;
   wire [WARP_BITS-1:0] fetch_warp, result_warp;
   wire [63:0] fetched;
-  // data routine
-  wire [WARPS-1:0] want, grant;
-  wire [WARPS*LANES-1:0] px, pb;
-  wire [WARPS*DATA-1:0] a, b, c;
-  wire [SLOTS-1:0] ready, slot_grant, task_valid, done_valid;
-  wire [SLOTS*WARP_BITS-1:0] task_warp, done_warp;
-  wire [SLOTS*5-1:0] task_op, task_x;
-  wire [SLOTS*LANES-1:0] task_mask, task_px, task_pb, done_pred;
-  wire [SLOTS*DATA-1:0] task_a, task_b, done_data;
-  wire [SLOTS*DATA-1:0] task_c;      // of Flt slots only
-  wire [SLOTS*32-1:0] task_imm;
-  wire [WARPS-1:0] waiting;
-  wire [WARPS*3-1:0] wanted_unit;
+  // data routine: what the warps offer to the dispatcher, and what ALU instances have done
+  wire [WARPS-1:0] want, grant, waiting, retire;
+  wire [WARPS*4-1:0] wanted_type;
+  wire [WARPS*64-1:0] instruction;
+  wire [WARPS*16-1:0] pc;
+  wire [WARPS*LANES-1:0] thread_mask, predicate_x, predicate_b;
+  wire [WARPS*DATA-1:0] operand_a, operand_b, operand_c;
+  wire [INSTANCES-1:0] ready, instance_grant, done_valid;
+  wire [INSTANCES*WARP_BITS-1:0] instance_warp, done_warp;
+  wire [INSTANCES*DATA-1:0] done_data;
+  wire [INSTANCES*LANES-1:0] done_predicate;
   // memory
   wire instruction_request, instruction_request_ready, instruction_response;
   wire [31:0] instruction_request_address;
@@ -173,120 +172,138 @@ module compute_unit #(
     .clk_i(clk_i), .rst_ni(rst_ni),
     .invalidate_i(argument_write_i), .lookup_valid_i(fetch_valid), .lookup_warp_i(fetch_warp), .lookup_pc_i(lookup_pc),
     .hit_o(instruction_hit), .miss_o(instruction_miss), .result_warp_o(result_warp), .instruction_o(fetched),
-    .refill_done_o(refill_done), .first_o(fetch_first), .request_valid_o(instruction_request), .request_ready_i(instruction_request_ready),
-    .request_address_o(instruction_request_address), .response_valid_i(instruction_response),
-    .response_beat_i(memory_response_beat_i), .response_data_i(memory_response_data_i));
+    .refill_done_o(refill_done), .first_o(fetch_first), .request_valid_o(instruction_request),
+    .request_ready_i(instruction_request_ready), .request_address_o(instruction_request_address),
+    .response_valid_i(instruction_response), .response_beat_i(memory_response_beat_i),
+    .response_data_i(memory_response_data_i));
 
   generate
     for (w = 0; w < WARPS; w = w + 1) begin : gen_warp
-      wire [SLOTS-1:0] done;   // the slots that have finished this warp's task
-      for (k = 0; k < SLOTS; k = k + 1) begin : gen_done
+      wire [INSTANCES-1:0] done;   // the instances that have finished this warp's task
+      for (k = 0; k < INSTANCES; k = k + 1) begin : gen_done
         assign done[k] = done_valid[k] && done_warp[k*WARP_BITS +: WARP_BITS] == w;
       end
-      warp #(.LANES(LANES), .STACK_DEPTH(STACK_DEPTH), .SLOTS(SLOTS), .FMA(FMA)) warp (
-        .clk_i(clk_i), .rst_ni(rst_ni), .start_i(start[w]), .start_pc_i(start_pc), .start_lanes_i(start_lanes[w*LANES +: LANES]),
+      warp #(.LANES(LANES), .STACK_DEPTH(STACK_DEPTH), .INSTANCES(INSTANCES), .FMA(FMA)) warp (
+        .clk_i(clk_i), .rst_ni(rst_ni), .start_i(start[w]), .start_pc_i(start_pc),
+        .start_lanes_i(start_lanes[w*LANES +: LANES]),
         .halt_i(fault_valid_o), .active_o(active[w]), .program_length_i(program_length_i),
         .fetch_request_o(fetch_request[w]), .fetch_pc_o(fetch_pc[w*16 +: 16]), .fetch_grant_i(fetch_grant[w]),
         .cache_hit_i(instruction_hit && result_warp == w), .cache_instruction_i(fetched), .refill_done_i(refill_done),
-        .want_o(want[w]), .grant_i(grant[w]), .instruction_o(retire_instruction_o[w*64 +: 64]),
-        .mask_o(retire_mask_o[w*LANES +: LANES]), .px_o(px[w*LANES +: LANES]), .pb_o(pb[w*LANES +: LANES]),
-        .a_o(a[w*DATA +: DATA]), .b_o(b[w*DATA +: DATA]), .c_o(c[w*DATA +: DATA]),
-        .done_i(done), .done_data_i(done_data), .done_pred_i(done_pred),
-        .retire_o(retire_valid_o[w]), .pc_o(retire_pc_o[w*16 +: 16]), .retire_data_o(retire_data_o[w*DATA +: DATA]),
+        .want_o(want[w]), .grant_i(grant[w]), .type_o(wanted_type[w*4 +: 4]), .instruction_o(instruction[w*64 +: 64]),
+        .mask_o(thread_mask[w*LANES +: LANES]),
+        .predicate_x_o(predicate_x[w*LANES +: LANES]), .predicate_b_o(predicate_b[w*LANES +: LANES]),
+        .operand_a_o(operand_a[w*DATA +: DATA]), .operand_b_o(operand_b[w*DATA +: DATA]),
+        .operand_c_o(operand_c[w*DATA +: DATA]),
+        .done_i(done), .done_data_i(done_data), .done_predicate_i(done_predicate),
+        .retire_o(retire[w]), .pc_o(pc[w*16 +: 16]), .retire_data_o(retire_data_o[w*DATA +: DATA]),
         .retire_predicate_o(retire_predicate_o[w*LANES +: LANES]),
         .fault_valid_o(warp_fault[w]), .fault_code_o(warp_fault_code[w*3 +: 3]));
     end
   endgenerate
 
   dispatcher #(
-    .WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS), .SLOTS(SLOTS), .SLOT_UNITS(SLOT_UNITS), .FMA(FMA)
+    .WARPS(WARPS), .WARP_BITS(WARP_BITS), .INSTANCES(INSTANCES), .INSTANCE_TYPES(INSTANCE_TYPES)
   ) dispatcher (
-    .clk_i(clk_i), .rst_ni(rst_ni), .want_i(want), .grant_o(grant), .instruction_i(retire_instruction_o), .mask_i(retire_mask_o),
-    .px_i(px), .pb_i(pb), .a_i(a), .b_i(b), .c_i(c), .ready_i(ready), .slot_grant_o(slot_grant),
-    .task_valid_o(task_valid), .task_warp_o(task_warp), .task_op_o(task_op), .task_mask_o(task_mask), .task_a_o(task_a),
-    .task_b_o(task_b), .task_c_o(task_c), .task_imm_o(task_imm), .task_x_o(task_x), .task_px_o(task_px), .task_pb_o(task_pb), .waiting_o(waiting));
+    .want_i(want), .type_i(wanted_type), .grant_o(grant), .waiting_o(waiting),
+    .ready_i(ready), .instance_grant_o(instance_grant), .instance_warp_o(instance_warp));
 
+  // Each ALU instance has a task register before it. Those with ports of their own stand here, the others in
+  // alu_instances.vh.
   generate
-    for (k = 0; k < TID_COUNT; k = k + 1) begin : gen_tid
-      tid_alu #(.WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS), .LATENCY(TID_LATENCY), .DEPTH(TID_DEPTH)) tid_alu (
-        .clk_i(clk_i), .rst_ni(rst_ni),
-        .task_valid_i(task_valid[TID_SLOT + k]), .task_warp_i(task_warp[(TID_SLOT + k)*WARP_BITS +: WARP_BITS]), .task_op_i(task_op[(TID_SLOT + k)*5 +: 5]),
-        .task_mask_i(task_mask[(TID_SLOT + k)*LANES +: LANES]), .task_a_i(task_a[(TID_SLOT + k)*DATA +: DATA]), .task_b_i(task_b[(TID_SLOT + k)*DATA +: DATA]),
-        .task_imm_i(task_imm[(TID_SLOT + k)*32 +: 32]), .task_x_i(task_x[(TID_SLOT + k)*5 +: 5]),
-        .task_px_i(task_px[(TID_SLOT + k)*LANES +: LANES]), .task_pb_i(task_pb[(TID_SLOT + k)*LANES +: LANES]),
-        .ready_o(ready[TID_SLOT + k]), .done_valid_o(done_valid[TID_SLOT + k]), .done_warp_o(done_warp[(TID_SLOT + k)*WARP_BITS +: WARP_BITS]),
-        .done_data_o(done_data[(TID_SLOT + k)*DATA +: DATA]), .done_pred_o(done_pred[(TID_SLOT + k)*LANES +: LANES]),
-        .block_i(block), .blocks_i(blocks), .threads_i(threads), .argument_write_i(argument_write_i),
-        .argument_index_i(argument_index_i), .argument_data_i(argument_data_i));
-    end
+    for (k = 0; k < INSTANCES; k = k + 1) begin : gen_alu
+      localparam [3:0] TYPE = INSTANCE_TYPES[k*4 +: 4];
+      wire task_valid;
+      wire [WARP_BITS-1:0] task_warp;
+      wire [4:0] task_operation, task_word;
+      wire [31:0] task_immediate;
+      wire [LANES-1:0] task_mask, task_predicate_x, task_predicate_b;
+      wire [DATA-1:0] task_operand_a, task_operand_b, task_operand_c;
+      task_register #(.WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS), .TYPE(TYPE), .FMA(FMA)) task_register (
+        .clk_i(clk_i), .rst_ni(rst_ni), .grant_i(instance_grant[k]), .warp_i(instance_warp[k*WARP_BITS +: WARP_BITS]),
+        .instruction_i(instruction), .mask_i(thread_mask), .predicate_x_i(predicate_x), .predicate_b_i(predicate_b),
+        .operand_a_i(operand_a), .operand_b_i(operand_b), .operand_c_i(operand_c),
+        .task_valid_o(task_valid), .task_warp_o(task_warp), .task_operation_o(task_operation), .task_mask_o(task_mask),
+        .task_operand_a_o(task_operand_a), .task_operand_b_o(task_operand_b), .task_operand_c_o(task_operand_c),
+        .task_immediate_o(task_immediate), .task_word_o(task_word),
+        .task_predicate_x_o(task_predicate_x), .task_predicate_b_o(task_predicate_b));
+
 `include "alu_instances.vh"
+      if (TYPE == ISA_TYPE_TID) begin : gen_tid
+        tid_alu #(
+          .WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS), .LATENCY(TID_LATENCY), .DEPTH(TID_DEPTH)
+        ) tid_alu (
+          .block_i(block), .blocks_i(blocks), .threads_i(threads), .argument_write_i(argument_write_i),
+          .argument_index_i(argument_index_i), .argument_data_i(argument_data_i),
+`include "alu_port_map.vh"
+        );
+      end
+      if (TYPE == ISA_TYPE_MEM) begin : gen_mem
+        mem_alu #(
+          .WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS), .CACHE_BYTES(DCACHE_BYTES), .MSHRS(DCACHE_MSHRS)
+        ) mem_alu (
+          .invalidate_i(argument_write_i), .memory_limit_i(memory_limit_i),
+          .fault_valid_o(mem_fault), .fault_code_o(mem_fault_code), .fault_warp_o(mem_fault_warp),
+          .request_valid_o(data_request), .request_ready_i(data_request_ready), .request_write_o(data_request_write),
+          .request_address_o(data_request_address), .request_data_o(data_request_data),
+          .request_mask_o(data_request_mask), .request_id_o(data_request_id), .response_valid_i(data_response),
+          .response_id_i(memory_response_id_i), .response_beat_i(memory_response_beat_i),
+          .response_data_i(memory_response_data_i), .store_trace_valid_o(store_trace_valid_o),
+          .store_trace_warp_o(store_trace_warp_o), .store_trace_address_o(store_trace_address_o),
+          .store_trace_data_o(store_trace_data_o), .store_trace_mask_o(store_trace_mask_o), .hit_o(data_hit),
+          .miss_o(data_miss), .store_o(data_store), .idle_o(mem_idle),
+`include "alu_port_map.vh"
+        );
+      end
+      if (TYPE == ISA_TYPE_RAY) begin : gen_ray
+        ray_alu #(.WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS)) ray_alu (
+          .import_start_i(import_start), .import_start_kind_i(launch_import_i),
+          .import_start_threads_i(launch_threads_i),
+          .import_active_o(import_active), .import_request_valid_o(import_request_valid_o),
+          .import_request_kind_o(import_request_kind_o), .import_request_ready_i(import_request_ready_i),
+          .import_beat_valid_i(import_beat_valid_i), .import_beat_data_i(import_beat_data_i),
+          .export_valid_o(export_valid_o), .export_ready_i(export_ready_i), .export_data_o(export_data_o),
+          .export_last_o(export_last_o), .frame_valid_o(frame_valid_o), .frame_ready_i(frame_ready_i),
+          .frame_pixel_o(frame_pixel_o), .frame_color_o(frame_color_o),
+          .ray_trace_valid_o(ray_trace_valid_o), .ray_trace_warp_o(ray_trace_warp_o),
+          .ray_trace_word_o(ray_trace_word_o), .ray_trace_mask_o(ray_trace_mask_o), .ray_trace_data_o(ray_trace_data_o),
+          .fault_valid_o(ray_fault), .fault_code_o(ray_fault_code), .fault_warp_o(ray_fault_warp),
+          .exporting_o(exporting),
+`include "alu_port_map.vh"
+        );
+      end
+    end
   endgenerate
-
-  mem_alu #(.WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS), .CACHE_BYTES(DCACHE_BYTES), .MSHRS(DCACHE_MSHRS)) mem_alu (
-    .clk_i(clk_i), .rst_ni(rst_ni),
-    .task_valid_i(task_valid[MEM_SLOT]), .task_warp_i(task_warp[(MEM_SLOT)*WARP_BITS +: WARP_BITS]), .task_op_i(task_op[(MEM_SLOT)*5 +: 5]),
-    .task_mask_i(task_mask[(MEM_SLOT)*LANES +: LANES]), .task_a_i(task_a[(MEM_SLOT)*DATA +: DATA]), .task_b_i(task_b[(MEM_SLOT)*DATA +: DATA]),
-    .task_imm_i(task_imm[(MEM_SLOT)*32 +: 32]), .task_x_i(task_x[(MEM_SLOT)*5 +: 5]),
-    .task_px_i(task_px[(MEM_SLOT)*LANES +: LANES]), .task_pb_i(task_pb[(MEM_SLOT)*LANES +: LANES]),
-    .ready_o(ready[MEM_SLOT]), .done_valid_o(done_valid[MEM_SLOT]), .done_warp_o(done_warp[(MEM_SLOT)*WARP_BITS +: WARP_BITS]),
-    .done_data_o(done_data[(MEM_SLOT)*DATA +: DATA]), .done_pred_o(done_pred[(MEM_SLOT)*LANES +: LANES]),
-    .invalidate_i(argument_write_i), .memory_limit_i(memory_limit_i),
-    .fault_valid_o(mem_fault), .fault_code_o(mem_fault_code), .fault_warp_o(mem_fault_warp),
-    .request_valid_o(data_request), .request_ready_i(data_request_ready), .request_write_o(data_request_write),
-    .request_address_o(data_request_address), .request_data_o(data_request_data), .request_mask_o(data_request_mask),
-    .request_id_o(data_request_id), .response_valid_i(data_response), .response_id_i(memory_response_id_i),
-    .response_beat_i(memory_response_beat_i), .response_data_i(memory_response_data_i),
-    .store_trace_valid_o(store_trace_valid_o), .store_trace_warp_o(store_trace_warp_o),
-    .store_trace_address_o(store_trace_address_o), .store_trace_data_o(store_trace_data_o),
-    .store_trace_mask_o(store_trace_mask_o),
-    .hit_o(data_hit), .miss_o(data_miss), .store_o(data_store), .idle_o(mem_idle));
-
-  ray_alu #(.WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS)) ray_alu (
-    .clk_i(clk_i), .rst_ni(rst_ni),
-    .task_valid_i(task_valid[RAY_SLOT]), .task_warp_i(task_warp[(RAY_SLOT)*WARP_BITS +: WARP_BITS]), .task_op_i(task_op[(RAY_SLOT)*5 +: 5]),
-    .task_mask_i(task_mask[(RAY_SLOT)*LANES +: LANES]), .task_a_i(task_a[(RAY_SLOT)*DATA +: DATA]), .task_b_i(task_b[(RAY_SLOT)*DATA +: DATA]),
-    .task_imm_i(task_imm[(RAY_SLOT)*32 +: 32]), .task_x_i(task_x[(RAY_SLOT)*5 +: 5]),
-    .task_px_i(task_px[(RAY_SLOT)*LANES +: LANES]), .task_pb_i(task_pb[(RAY_SLOT)*LANES +: LANES]),
-    .ready_o(ready[RAY_SLOT]), .done_valid_o(done_valid[RAY_SLOT]), .done_warp_o(done_warp[(RAY_SLOT)*WARP_BITS +: WARP_BITS]),
-    .done_data_o(done_data[(RAY_SLOT)*DATA +: DATA]), .done_pred_o(done_pred[(RAY_SLOT)*LANES +: LANES]),
-    .import_start_i(import_start), .import_start_kind_i(launch_import_i), .import_start_threads_i(launch_threads_i),
-    .import_active_o(import_active), .import_request_valid_o(import_request_valid_o),
-    .import_request_kind_o(import_request_kind_o), .import_request_ready_i(import_request_ready_i),
-    .import_beat_valid_i(import_beat_valid_i), .import_beat_data_i(import_beat_data_i),
-    .export_valid_o(export_valid_o), .export_ready_i(export_ready_i), .export_data_o(export_data_o), .export_last_o(export_last_o),
-    .frame_valid_o(frame_valid_o), .frame_ready_i(frame_ready_i), .frame_pixel_o(frame_pixel_o), .frame_color_o(frame_color_o),
-    .ray_trace_valid_o(ray_trace_valid_o), .ray_trace_warp_o(ray_trace_warp_o), .ray_trace_word_o(ray_trace_word_o),
-    .ray_trace_mask_o(ray_trace_mask_o), .ray_trace_data_o(ray_trace_data_o),
-    .fault_valid_o(ray_fault), .fault_code_o(ray_fault_code), .fault_warp_o(ray_fault_warp), .exporting_o(exporting));
 
   memory_arbiter memory_arbiter (
     .clk_i(clk_i), .rst_ni(rst_ni),
     .instruction_request_valid_i(instruction_request), .instruction_request_ready_o(instruction_request_ready),
     .instruction_request_address_i(instruction_request_address), .instruction_response_valid_o(instruction_response),
-    .data_request_valid_i(data_request), .data_request_ready_o(data_request_ready), .data_request_write_i(data_request_write),
-    .data_request_address_i(data_request_address), .data_request_data_i(data_request_data),
-    .data_request_mask_i(data_request_mask), .data_request_id_i(data_request_id), .data_response_valid_o(data_response),
+    .data_request_valid_i(data_request), .data_request_ready_o(data_request_ready),
+    .data_request_write_i(data_request_write), .data_request_address_i(data_request_address),
+    .data_request_data_i(data_request_data), .data_request_mask_i(data_request_mask),
+    .data_request_id_i(data_request_id), .data_response_valid_o(data_response),
     .request_valid_o(memory_request_valid_o), .request_ready_i(memory_request_ready_i),
     .request_write_o(memory_request_write_o), .request_address_o(memory_request_address_o),
     .request_data_o(memory_request_data_o), .request_mask_o(memory_request_mask_o), .request_id_o(memory_request_id_o),
     .response_valid_i(memory_response_valid_i), .response_id_i(memory_response_id_i), .idle_o(arbiter_idle));
 
-  generate
-    for (w = 0; w < WARPS; w = w + 1) begin : gen_wanted_unit
-      assign wanted_unit[w*3 +: 3] = retire_instruction_o[w*64+60 +: 3];
-    end
-  endgenerate
-
   performance_counters #(
-    .WARPS(WARPS), .LANES(LANES), .SLOTS(SLOTS), .UNITS(UNITS), .SLOT_UNITS(SLOT_UNITS)
+    .WARPS(WARPS), .LANES(LANES), .INSTANCES(INSTANCES), .ALU_TYPES(ALU_TYPES), .INSTANCE_TYPES(INSTANCE_TYPES)
   ) performance_counters (
-    .clk_i(clk_i), .rst_ni(rst_ni), .running_i(busy_o), .retire_i(retire_valid_o), .retire_mask_i(retire_mask_o),
-    .instruction_hit_i(instruction_hit), .instruction_miss_i(instruction_miss), .data_hit_i(data_hit), .data_miss_i(data_miss),
-    .data_store_i(data_store), .ready_i(ready), .grant_i(slot_grant), .waiting_i(waiting), .unit_i(wanted_unit),
+    .clk_i(clk_i), .rst_ni(rst_ni), .running_i(busy_o), .retire_i(retire), .retire_mask_i(thread_mask),
+    .instruction_hit_i(instruction_hit), .instruction_miss_i(instruction_miss),
+    .data_hit_i(data_hit), .data_miss_i(data_miss), .data_store_i(data_store),
+    .ready_i(ready), .grant_i(instance_grant), .waiting_i(waiting), .type_i(wanted_type),
     .select_i(counter_select_i), .value_o(counter_o));
 
-  // The first fault stays; of several in one cycle an ALU's wins, then the lowest warp's. Those of the cycle are kept and chosen from afterwards; their
-  // PCs need not be, as a warp with a fault keeps its own.
+  // What the trace shows of an instruction's write-back.
+  assign retire_valid_o = retire;
+  assign retire_pc_o = pc;
+  assign retire_instruction_o = instruction;
+  assign retire_mask_o = thread_mask;
+
+  // The first fault stays; of several in one cycle an ALU's wins, then the lowest warp's. Those of the cycle are kept
+  // and chosen from afterwards; their PCs need not be, as a warp with a fault keeps its own.
   reg fault_q, alu_fault_q;
   reg [3:0] alu_fault_code_q;
   reg [WARP_BITS-1:0] alu_fault_warp_q;
@@ -323,7 +340,7 @@ module compute_unit #(
         fault_warp = alu_fault_warp_q;
       end
       // Codes 1 and 2 are of the next instruction.
-      fault_pc = fault_code <= 4'd2 ? fetch_pc[fault_warp*16 +: 16] : retire_pc_o[fault_warp*16 +: 16];
+      fault_pc = fault_code <= 4'd2 ? fetch_pc[fault_warp*16 +: 16] : pc[fault_warp*16 +: 16];
     end
   end
   assign fault_valid_o = fault_q;

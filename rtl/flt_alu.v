@@ -1,5 +1,6 @@
-// Flt ALU: fadd fsub fmul fmin fmax f2i i2f in three stages, or with FMA these and ffma in five, further ones as delay. docs/numerics.md
-// has the rules of the results. SUBNORMALS 0: IEEE, 1: flushed. task_c_i: register rc, the third operand of ffma. Lanes outside the mask keep what they held. Only the unit an operation needs is clocked.
+// Flt ALU: fadd fsub fmul fmin fmax f2i i2f in three stages, or with FMA these and ffma in five, further ones as delay.
+// docs/numerics.md has the rules of the results. SUBNORMALS 0: IEEE, 1: flushed. task_operand_c_i is register rc, the
+// third operand of ffma. Lanes outside the mask keep what they held. Only the unit an operation needs is clocked.
 `default_nettype none
 module flt_alu #(
   parameter integer WARPS = 8,
@@ -10,24 +11,7 @@ module flt_alu #(
   parameter integer SUBNORMALS = 0,
   parameter integer FMA = 0
 ) (
-  input  wire                 clk_i,
-  input  wire                 rst_ni,
-  input  wire                 task_valid_i,
-  input  wire [WARP_BITS-1:0] task_warp_i,
-  input  wire [4:0]           task_op_i,
-  input  wire [LANES-1:0]     task_mask_i,
-  input  wire [LANES*32-1:0]  task_a_i,
-  input  wire [LANES*32-1:0]  task_b_i,
-  input  wire [LANES*32-1:0]  task_c_i,
-  input  wire [31:0]          task_imm_i,
-  input  wire [4:0]           task_x_i,
-  input  wire [LANES-1:0]     task_px_i,
-  input  wire [LANES-1:0]     task_pb_i,
-  output wire                 ready_o,
-  output wire                 done_valid_o,
-  output wire [WARP_BITS-1:0] done_warp_o,
-  output wire [LANES*32-1:0]  done_data_o,
-  output wire [LANES-1:0]     done_pred_o
+`include "alu_ports.vh"
 );
   `include "isa.vh"
   localparam integer STAGES = (FMA != 0) ? 5 : 3;
@@ -54,13 +38,13 @@ module flt_alu #(
 
   wire moving = |stage_valid[STAGES-1:0];
   // The unit of an operation, and what its conversion is.
-  wire add = task_valid_i && (task_op_i == ISA_FLT_FADD || task_op_i == ISA_FLT_FSUB);
-  wire multiply = task_valid_i && task_op_i == ISA_FLT_FMUL;
-  wire fuse = task_valid_i && FMA != 0 && task_op_i == ISA_FLT_FFMA;
+  wire add = task_valid_i && (task_operation_i == ISA_FLT_FADD || task_operation_i == ISA_FLT_FSUB);
+  wire multiply = task_valid_i && task_operation_i == ISA_FLT_FMUL;
+  wire fuse = task_valid_i && FMA != 0 && task_operation_i == ISA_FLT_FFMA;
   wire convert = task_valid_i && !add && !multiply && !fuse;
   reg [1:0] convert_op;
   always @* begin
-    case (task_op_i)
+    case (task_operation_i)
       ISA_FLT_FMIN: convert_op = 2'd0;
       ISA_FLT_FMAX: convert_op = 2'd1;
       ISA_FLT_F2I: convert_op = 2'd2;
@@ -92,9 +76,10 @@ module flt_alu #(
         end
       end
       float_lane #(.SUBNORMALS(SUBNORMALS), .FMA(FMA)) lane (
-        .clk_i(clk_i), .add_enable_i(add_enable), .multiply_enable_i(multiply_enable), .fuse_enable_i(fuse_enable), .convert_enable_i(convert_enable),
-        .subtract_i(task_op_i == ISA_FLT_FSUB), .convert_op_i(convert_op), .a_i(task_a_i[l*32 +: 32]), .b_i(task_b_i[l*32 +: 32]),
-        .c_i(task_c_i[l*32 +: 32]), .result_o(result[l*32 +: 32]));
+        .clk_i(clk_i), .add_enable_i(add_enable), .multiply_enable_i(multiply_enable), .fuse_enable_i(fuse_enable),
+        .convert_enable_i(convert_enable), .subtract_i(task_operation_i == ISA_FLT_FSUB), .convert_op_i(convert_op),
+        .a_i(task_operand_a_i[l*32 +: 32]), .b_i(task_operand_b_i[l*32 +: 32]), .c_i(task_operand_c_i[l*32 +: 32]),
+        .result_o(result[l*32 +: 32]));
     end
     if (DEPTH > STAGES) begin : gen_delay
       alu_delay #(.WIDTH(LANES*32), .STAGES(DEPTH-STAGES)) delay (
@@ -103,6 +88,6 @@ module flt_alu #(
       assign done_data_o = result;
     end
   endgenerate
-  assign done_pred_o = {LANES{1'b0}};
+  assign done_predicate_o = {LANES{1'b0}};
 endmodule
 `default_nettype wire

@@ -1,5 +1,5 @@
-// One warp's instruction buffer: the current instruction in the data routine, the next one in the instruction routine, and the state of
-// both. docs/architecture.md, section 3, has the cycles.
+// One warp's instruction buffer: the current instruction in the data routine, the next one in the instruction routine,
+// and the state of both. docs/architecture.md, section 3, has the cycles.
 `default_nettype none
 module instruction_buffer #(
   parameter [0:0] FMA = 1'b0           // ffma is legal
@@ -44,10 +44,9 @@ module instruction_buffer #(
   reg next_legal_q;
   reg next_control_q;
 
-  wire [3:0] unit = instruction_o[63:60];
-  wire [4:0] operation = instruction_o[59:55];
-  wire current_control = isa_control(unit, operation);
-  wire exits = unit == ISA_UNIT_BRH && operation == ISA_BRH_EXIT;
+  wire [63:0] instruction = instruction_o;
+`include "isa_fields.vh"
+  wire exits = field_type == ISA_TYPE_BRH && field_operation == ISA_BRH_EXIT;
   wire ready = fetch_q == F_FULL && (data_q == D_IDLE || retire_i) && !halt_i;
 
   assign step_o = fetch_q == F_STACK && !halt_i;
@@ -57,8 +56,8 @@ module instruction_buffer #(
   assign outside_o = step_o && pc_valid_i && pc_i >= program_length_i;
   assign read_o = data_q == D_READ;
   assign want_o = data_q == D_WANT && !halt_i;
-  assign writes_register_o = isa_writes_register(unit, operation);
-  assign writes_predicate_o = isa_writes_predicate(unit, operation);
+  assign writes_register_o = isa_writes_register(instruction);
+  assign writes_predicate_o = isa_writes_predicate(instruction);
 
   always @(posedge clk_i)
     if (!rst_ni) begin
@@ -81,7 +80,7 @@ module instruction_buffer #(
           if (cache_hit_i) begin
             next_q <= cache_instruction_i;
             next_legal_q <= isa_legal(cache_instruction_i, FMA);
-            next_control_q <= isa_control(cache_instruction_i[63:60], cache_instruction_i[59:55]);
+            next_control_q <= isa_control(cache_instruction_i);
             fetch_q <= F_FULL;
           end else begin
             fetch_q <= refill_done_i ? F_ARBITER : F_MISS;
@@ -98,7 +97,7 @@ module instruction_buffer #(
       if (retire_i) begin
         data_q <= D_IDLE;
         if (exits) active_o <= 1'b0;
-        else if (current_control) fetch_q <= F_STACK;
+        else if (isa_control(instruction)) fetch_q <= F_STACK;
       end
 
       if (issue) begin

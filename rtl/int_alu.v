@@ -1,4 +1,5 @@
-// Integer and logic operations. Stage 1: everything but the multiplication, of which it makes three partial products; stage 2 adds those.
+// Integer and logic operations. Stage 1: everything but the multiplication, of which it makes three partial products;
+// stage 2 adds those.
 `default_nettype none
 module int_alu #(
   parameter integer WARPS = 8,
@@ -7,23 +8,7 @@ module int_alu #(
   parameter integer LATENCY = 1,
   parameter integer DEPTH = 2
 ) (
-  input  wire                   clk_i,
-  input  wire                   rst_ni,
-  input  wire                   task_valid_i,
-  input  wire [WARP_BITS-1:0]   task_warp_i,
-  input  wire [4:0]             task_op_i,
-  input  wire [LANES-1:0]       task_mask_i,
-  input  wire [LANES*32-1:0]    task_a_i,
-  input  wire [LANES*32-1:0]    task_b_i,
-  input  wire [31:0]            task_imm_i,
-  input  wire [4:0]             task_x_i,
-  input  wire [LANES-1:0]       task_px_i,
-  input  wire [LANES-1:0]       task_pb_i,
-  output wire                   ready_o,
-  output wire                   done_valid_o,
-  output wire [WARP_BITS-1:0]   done_warp_o,
-  output wire [LANES*32-1:0]    done_data_o,
-  output wire [LANES-1:0]       done_pred_o
+`include "alu_ports.vh"
 );
 `include "isa.vh"
   generate
@@ -69,20 +54,22 @@ module int_alu #(
 
   always @(posedge clk_i)
     if (task_valid_i) begin
-      multiply_q <= task_op_i == ISA_INT_IMUL;
+      multiply_q <= task_operation_i == ISA_INT_IMUL;
       for (l = 0; l < LANES; l = l + 1) begin
-        low_q[l*32 +: 32] <= compute(task_op_i, task_a_i[l*32 +: 32], task_b_i[l*32 +: 32], task_px_i[l]);
-        product_q[l*32 +: 32] <= task_a_i[l*32 +: 32] * {21'd0, task_b_i[l*32 +: 11]};
-        middle_q[l*21 +: 21] <= task_a_i[l*32 +: 21] * {10'd0, task_b_i[l*32+11 +: 11]};
-        high_q[l*10 +: 10] <= task_a_i[l*32 +: 10] * task_b_i[l*32+22 +: 10];
+        low_q[l*32 +: 32] <= compute(task_operation_i, task_operand_a_i[l*32 +: 32], task_operand_b_i[l*32 +: 32],
+                                     task_predicate_x_i[l]);
+        product_q[l*32 +: 32] <= task_operand_a_i[l*32 +: 32] * {21'd0, task_operand_b_i[l*32 +: 11]};
+        middle_q[l*21 +: 21] <= task_operand_a_i[l*32 +: 21] * {10'd0, task_operand_b_i[l*32+11 +: 11]};
+        high_q[l*10 +: 10] <= task_operand_a_i[l*32 +: 10] * task_operand_b_i[l*32+22 +: 10];
       end
     end
 
   always @(posedge clk_i)
     if (stage_valid[1])
       for (l = 0; l < LANES; l = l + 1)
-        result_q[l*32 +: 32] <= multiply_q ? product_q[l*32 +: 32] + {middle_q[l*21 +: 21], 11'd0} + {high_q[l*10 +: 10], 22'd0}
-                                               : low_q[l*32 +: 32];
+        result_q[l*32 +: 32] <= multiply_q ? product_q[l*32 +: 32] + {middle_q[l*21 +: 21], 11'd0} +
+                                                 {high_q[l*10 +: 10], 22'd0}
+                                           : low_q[l*32 +: 32];
 
   generate
     if (DEPTH == 2) begin : gen_direct
@@ -92,6 +79,6 @@ module int_alu #(
         .clk_i(clk_i), .valid_i(stage_valid[DEPTH-1:2]), .data_i(result_q), .data_o(done_data_o));
     end
   endgenerate
-  assign done_pred_o = {LANES{1'b0}};
+  assign done_predicate_o = {LANES{1'b0}};
 endmodule
 `default_nettype wire

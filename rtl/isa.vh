@@ -1,16 +1,16 @@
   // Generated from cpp_model/isa/isa.hpp by `raypool isa --verilog`; a test compares. Do not edit.
-  // Constants of the instruction set. To be included inside a module body; rtl/isa_functions.vh has the decoding functions.
+  // Constants of the instruction set. To be included inside a module body; rtl/isa_functions.vh decodes.
   // A module uses some of them only.
   /* verilator lint_off UNUSEDPARAM */
 
-  // units
-  localparam [3:0] ISA_UNIT_TID = 4'd0;
-  localparam [3:0] ISA_UNIT_BRH = 4'd1;
-  localparam [3:0] ISA_UNIT_MEM = 4'd2;
-  localparam [3:0] ISA_UNIT_INT = 4'd3;
-  localparam [3:0] ISA_UNIT_FLT = 4'd4;
-  localparam [3:0] ISA_UNIT_SLW = 4'd5;
-  localparam [3:0] ISA_UNIT_RAY = 4'd6;
+  // ALU types
+  localparam [3:0] ISA_TYPE_TID = 4'd0;
+  localparam [3:0] ISA_TYPE_BRH = 4'd1;
+  localparam [3:0] ISA_TYPE_MEM = 4'd2;
+  localparam [3:0] ISA_TYPE_INT = 4'd3;
+  localparam [3:0] ISA_TYPE_FLT = 4'd4;
+  localparam [3:0] ISA_TYPE_SLW = 4'd5;
+  localparam [3:0] ISA_TYPE_RAY = 4'd6;
 
   // operations
   localparam [4:0] ISA_TID_TID = 5'd0;
@@ -81,29 +81,12 @@
   localparam [4:0] ISA_RAY_RLD = 5'd3;
   localparam [4:0] ISA_RAY_RST = 5'd4;
 
-  // fields of an instruction
-  localparam integer ISA_UNIT_LSB = 60;
-  localparam integer ISA_UNIT_BITS = 4;
-  localparam integer ISA_OP_LSB = 55;
-  localparam integer ISA_OP_BITS = 5;
-  localparam integer ISA_GUARD_NEGATED_LSB = 54;
-  localparam integer ISA_GUARD_NEGATED_BITS = 1;
-  localparam integer ISA_GUARD_LSB = 50;
-  localparam integer ISA_GUARD_BITS = 4;
-  localparam integer ISA_RD_LSB = 46;
-  localparam integer ISA_RD_BITS = 4;
-  localparam integer ISA_RA_LSB = 42;
-  localparam integer ISA_RA_BITS = 4;
-  localparam integer ISA_RB_LSB = 38;
-  localparam integer ISA_RB_BITS = 4;
-  localparam integer ISA_B_IS_IMMEDIATE_LSB = 37;
-  localparam integer ISA_B_IS_IMMEDIATE_BITS = 1;
-  localparam integer ISA_X_LSB = 32;
-  localparam integer ISA_X_BITS = 5;
-  localparam integer ISA_IMMEDIATE_LSB = 0;
-  localparam integer ISA_IMMEDIATE_BITS = 32;
-  localparam integer ISA_TARGET_LSB = 0;
-  localparam integer ISA_TARGET_BITS = 16;
-  localparam integer ISA_END_LSB = 16;
-  localparam integer ISA_END_BITS = 16;
+  // whether an ALU type looks at an operand: bit n is that of type n
+  localparam [15:0] ISA_HAS_OPERAND_A = 16'b0000000000111110;
+  localparam [15:0] ISA_HAS_OPERAND_B = 16'b0000000001111110;
+  localparam [15:0] ISA_HAS_OPERAND_C = 16'b0000000000010000;
+  localparam [15:0] ISA_HAS_IMMEDIATE = 16'b0000000000000101;
+  localparam [15:0] ISA_HAS_WORD = 16'b0000000001000000;
+  localparam [15:0] ISA_HAS_PREDICATE_X = 16'b0000000000001010;
+  localparam [15:0] ISA_HAS_PREDICATE_B = 16'b0000000000000010;
   /* verilator lint_on UNUSEDPARAM */

@@ -1,22 +1,26 @@
   // Generated from cpp_model/isa/isa.hpp by `raypool isa --verilog-functions`; a test compares. Do not edit.
   // Decoding functions of the instruction set. To be included inside a module body; they need no constants. A label is
-  // unit * 32 + operation.
+  // ALU type * 32 + operation.
 
-  // every machine has this unit and operation
+  // every machine has this instruction
   function isa_legal_op;
-    input [3:0] unit;
-    input [4:0] op;
+    /* verilator lint_off UNUSEDSIGNAL */
+    input [63:0] encoding;
+    /* verilator lint_on UNUSEDSIGNAL */
     begin
-      case ({unit, op})
+      case ({encoding[63:60], encoding[59:55]})
         // tid: tid lane warp block threads blocks arg
         9'd0, 9'd1, 9'd2, 9'd3, 9'd4, 9'd5, 9'd6
-        // brh: ieq ine ilt ile igt ige ult ule ugt uge feq fne flt fle fgt fge pand por pxor pandn jany jnone call loop ret exit
-        , 9'd32, 9'd33, 9'd34, 9'd35, 9'd36, 9'd37, 9'd38, 9'd39, 9'd40, 9'd41, 9'd42, 9'd43, 9'd44, 9'd45, 9'd46, 9'd47,
-        9'd48, 9'd49, 9'd50, 9'd51, 9'd56, 9'd57, 9'd58, 9'd59, 9'd60, 9'd61
+        // brh: ieq ine ilt ile igt ige ult ule ugt uge feq fne flt fle
+        //   fgt fge pand por pxor pandn jany jnone call loop ret exit
+        , 9'd32, 9'd33, 9'd34, 9'd35, 9'd36, 9'd37, 9'd38, 9'd39, 9'd40, 9'd41, 9'd42, 9'd43, 9'd44, 9'd45,
+        9'd46, 9'd47, 9'd48, 9'd49, 9'd50, 9'd51, 9'd56, 9'd57, 9'd58, 9'd59, 9'd60, 9'd61
         // mem: ld st
         , 9'd64, 9'd65
-        // int: mov iadd isub imul and or xor shl shr sar imin imax umin umax sel
-        , 9'd96, 9'd97, 9'd98, 9'd99, 9'd100, 9'd101, 9'd102, 9'd103, 9'd104, 9'd105, 9'd106, 9'd107, 9'd108, 9'd109, 9'd110
+        // int: mov iadd isub imul and or xor shl shr sar imin imax umin umax
+        //   sel
+        , 9'd96, 9'd97, 9'd98, 9'd99, 9'd100, 9'd101, 9'd102, 9'd103, 9'd104, 9'd105, 9'd106, 9'd107, 9'd108, 9'd109,
+        9'd110
         // flt: fadd fsub fmul fmin fmax f2i i2f
         , 9'd128, 9'd129, 9'd130, 9'd131, 9'd132, 9'd133, 9'd134
         // slw: fdiv fsqrt frsqrt frcp
@@ -29,12 +33,13 @@
     end
   endfunction
 
-  // machines with arithmetic.fma have this unit and operation
+  // machines with arithmetic.fma have this instruction
   function isa_legal_fma_op;
-    input [3:0] unit;
-    input [4:0] op;
+    /* verilator lint_off UNUSEDSIGNAL */
+    input [63:0] encoding;
+    /* verilator lint_on UNUSEDSIGNAL */
     begin
-      case ({unit, op})
+      case ({encoding[63:60], encoding[59:55]})
         // flt: ffma
         9'd135
           : isa_legal_fma_op = 1'b1;
@@ -45,29 +50,28 @@
 
   // the instruction has a table row, and the machine what it needs; fma: arithmetic.fma
   function isa_legal;
-    // Only unit and operation decide; the whole instruction is taken for the caller's convenience.
-    /* verilator lint_off UNUSEDSIGNAL */
-    input [63:0] instruction;
-    /* verilator lint_on UNUSEDSIGNAL */
+    input [63:0] encoding;
     input fma;
     begin
-      isa_legal = isa_legal_op(instruction[63:60], instruction[59:55]) ||
-                  (fma && isa_legal_fma_op(instruction[63:60], instruction[59:55]));
+      isa_legal = isa_legal_op(encoding) || (fma && isa_legal_fma_op(encoding));
     end
   endfunction
 
   // writes register rd
   function isa_writes_register;
-    input [3:0] unit;
-    input [4:0] op;
+    /* verilator lint_off UNUSEDSIGNAL */
+    input [63:0] encoding;
+    /* verilator lint_on UNUSEDSIGNAL */
     begin
-      case ({unit, op})
+      case ({encoding[63:60], encoding[59:55]})
         // tid: tid lane warp block threads blocks arg
         9'd0, 9'd1, 9'd2, 9'd3, 9'd4, 9'd5, 9'd6
         // mem: ld
         , 9'd64
-        // int: mov iadd isub imul and or xor shl shr sar imin imax umin umax sel
-        , 9'd96, 9'd97, 9'd98, 9'd99, 9'd100, 9'd101, 9'd102, 9'd103, 9'd104, 9'd105, 9'd106, 9'd107, 9'd108, 9'd109, 9'd110
+        // int: mov iadd isub imul and or xor shl shr sar imin imax umin umax
+        //   sel
+        , 9'd96, 9'd97, 9'd98, 9'd99, 9'd100, 9'd101, 9'd102, 9'd103, 9'd104, 9'd105, 9'd106, 9'd107, 9'd108, 9'd109,
+        9'd110
         // flt: fadd fsub fmul fmin fmax f2i i2f ffma
         , 9'd128, 9'd129, 9'd130, 9'd131, 9'd132, 9'd133, 9'd134, 9'd135
         // slw: fdiv fsqrt frsqrt frcp
@@ -82,13 +86,15 @@
 
   // writes predicate pd
   function isa_writes_predicate;
-    input [3:0] unit;
-    input [4:0] op;
+    /* verilator lint_off UNUSEDSIGNAL */
+    input [63:0] encoding;
+    /* verilator lint_on UNUSEDSIGNAL */
     begin
-      case ({unit, op})
-        // brh: ieq ine ilt ile igt ige ult ule ugt uge feq fne flt fle fgt fge pand por pxor pandn
-        9'd32, 9'd33, 9'd34, 9'd35, 9'd36, 9'd37, 9'd38, 9'd39, 9'd40, 9'd41, 9'd42, 9'd43, 9'd44, 9'd45, 9'd46, 9'd47,
-        9'd48, 9'd49, 9'd50, 9'd51
+      case ({encoding[63:60], encoding[59:55]})
+        // brh: ieq ine ilt ile igt ige ult ule ugt uge feq fne flt fle
+        //   fgt fge pand por pxor pandn
+        9'd32, 9'd33, 9'd34, 9'd35, 9'd36, 9'd37, 9'd38, 9'd39, 9'd40, 9'd41, 9'd42, 9'd43, 9'd44, 9'd45,
+        9'd46, 9'd47, 9'd48, 9'd49, 9'd50, 9'd51
           : isa_writes_predicate = 1'b1;
         default: isa_writes_predicate = 1'b0;
       endcase
@@ -97,10 +103,11 @@
 
   // stops the instruction routine until its write-back
   function isa_control;
-    input [3:0] unit;
-    input [4:0] op;
+    /* verilator lint_off UNUSEDSIGNAL */
+    input [63:0] encoding;
+    /* verilator lint_on UNUSEDSIGNAL */
     begin
-      case ({unit, op})
+      case ({encoding[63:60], encoding[59:55]})
         // brh: jany jnone call loop ret exit
         9'd56, 9'd57, 9'd58, 9'd59, 9'd60, 9'd61
           : isa_control = 1'b1;

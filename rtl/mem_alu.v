@@ -1,10 +1,11 @@
 // The memory ALU: loads and stores of a warp's lanes through the data cache, one quadword (16 bytes) a cycle.
-// docs/memory.md gives it cycle by cycle. A task that arrives in cycle t computes its addresses in t, looks
-// quadword k up in t+1+k and accesses it in t+2+k; with n quadwords that hit, it is done in t+2+n. Lanes whose
-// line is absent are left over: the warp is parked and gives way to others, and passes again over the lanes
-// concerned when the line has come. Promises: an instruction with an illegal address has no effect but the fault;
-// every task ends, whatever other warps do, if the memory answers. Must be given: one task at a time of a warp;
-// invalidate_i only while there is no task.
+// docs/memory.md gives it cycle by cycle. A task that arrives in cycle t computes its addresses in t, looks quadword k
+// up in t+1+k and accesses it in t+2+k; with n quadwords that hit, it is done in t+2+n. Lanes whose line is absent are
+// left over: the warp is parked and gives way to others, and passes again over the lanes concerned when the line has
+// come.
+// Promises: an instruction with an illegal address has no effect but the fault; every task ends, whatever other warps
+// do, if the memory answers.
+// Must be given: one task at a time of a warp; invalidate_i only while there is no task.
 `default_nettype none
 module mem_alu #(
   parameter integer WARPS = 8,
@@ -13,24 +14,6 @@ module mem_alu #(
   parameter integer CACHE_BYTES = 8192,
   parameter integer MSHRS = 4
 ) (
-  input  wire                   clk_i,
-  input  wire                   rst_ni,
-  // ALU framework
-  input  wire                   task_valid_i,
-  input  wire [WARP_BITS-1:0]   task_warp_i,
-  input  wire [4:0]             task_op_i,
-  input  wire [LANES-1:0]       task_mask_i,
-  input  wire [LANES*32-1:0]    task_a_i,
-  input  wire [LANES*32-1:0]    task_b_i,
-  input  wire [31:0]            task_imm_i,
-  input  wire [4:0]             task_x_i,
-  input  wire [LANES-1:0]       task_px_i,
-  input  wire [LANES-1:0]       task_pb_i,
-  output wire                   ready_o,
-  output wire                   done_valid_o,
-  output wire [WARP_BITS-1:0]   done_warp_o,
-  output wire [LANES*32-1:0]    done_data_o,
-  output wire [LANES-1:0]       done_pred_o,
   input  wire                   invalidate_i,      // one cycle: the memory may have changed
   input  wire [31:0]            memory_limit_i,    // bytes
   output wire                   fault_valid_o,     // one cycle; the task is dropped
@@ -58,7 +41,9 @@ module mem_alu #(
   output wire                   hit_o,             // a quadword load was served at first try
   output wire                   miss_o,            // a quadword load was left over at first try
   output wire                   store_o,           // a quadword was stored
-  output wire                   idle_o             // no task, and no request waits
+  output wire                   idle_o,            // no task, and no request waits
+  // ALU framework
+`include "alu_ports.vh"
 );
   `include "isa.vh"
   localparam integer MSHR_BITS = (MSHRS > 1) ? $clog2(MSHRS) : 1;
@@ -77,12 +62,12 @@ module mem_alu #(
     end
   endgenerate
 
-  wire unused = &{1'b0, task_x_i, task_px_i, task_pb_i, response_id_i};
-  assign done_pred_o = NONE;
+  wire unused = &{1'b0, response_id_i};
+  assign done_predicate_o = NONE;
 
   // ---- Arrival: addresses. Word addresses are enough from here on, with one bit
   // that says that a byte address was none.
-  wire arrive_store = task_op_i == ISA_MEM_ST;
+  wire arrive_store = task_operation_i == ISA_MEM_ST;
   reg [LANES*30-1:0] arrive_words;
   reg                arrive_misaligned;
   reg [31:0]         sum;
@@ -93,7 +78,7 @@ module mem_alu #(
     sum = 32'd0;
     if (task_valid_i)
       for (a = 0; a < LANES; a = a + 1) begin
-        sum = task_a_i[a*32 +: 32] + task_imm_i;
+        sum = task_operand_a_i[a*32 +: 32] + task_immediate_i;
         arrive_words[a*30 +: 30] = sum[31:2];
         if (task_mask_i[a] && sum[1:0] != 2'b00) arrive_misaligned = 1'b1;
       end
@@ -122,7 +107,7 @@ module mem_alu #(
   ram_1r1w #(.WIDTH(TASK_BITS), .DEPTH(WARPS)) u_task (
     .clk_i(clk_i), .read_i(select), .read_address_i(select_warp), .read_data_o(task_word),
     .write_i(task_valid_i), .write_address_i(task_warp_i),
-    .write_data_i({arrive_misaligned, arrive_store, task_mask_i, task_b_i, arrive_words})
+    .write_data_i({arrive_misaligned, arrive_store, task_mask_i, task_operand_b_i, arrive_words})
   );
   ram_1r1w #(.WIDTH(PARTIAL_BITS), .DEPTH(WARPS)) u_partial (
     .clk_i(clk_i), .read_i(select), .read_address_i(select_warp), .read_data_o(partial_word),
@@ -244,7 +229,7 @@ module mem_alu #(
       pass_left_q <= task_mask_i;
       pass_refused_q <= NONE;
       pass_words_q <= arrive_words;
-      pass_data_q <= task_b_i;
+      pass_data_q <= task_operand_b_i;
     end else if (look) begin
       pass_first_q <= 1'b0;
       pass_pending_q <= pending_after;

@@ -1,8 +1,9 @@
-// 1, 2 or 4 compute units behind one set of ports: a block scheduler, and arbiters for memory, imports, exports and frame contributions.
-// docs/multiprocessor.md gives their cycles. With one unit all of it is wires.
-// Promises: no output depends combinationally on an input (counter_o excepted, which depends on its selection); every valid/ready pair
-// keeps its payload until taken; a ray's beats are not mixed with those of another unit.
-// Must be given: what a compute unit must; beats of imports in the order of the requests, from the cycle after the request on.
+// 1, 2 or 4 compute units behind one set of ports: a block scheduler, and arbiters for memory, imports, exports and
+// frame contributions. docs/multiprocessor.md gives their cycles. With one unit all of it is wires.
+// Promises: no output depends combinationally on an input (counter_o excepted, which depends on its selection); every
+// valid/ready pair keeps its payload until taken; a ray's beats are not mixed with those of another unit.
+// Must be given: what a compute unit must; beats of imports in the order of the requests, from the cycle after the
+// request on.
 `default_nettype none
 module multiprocessor #(
   parameter integer UNITS = 1,
@@ -23,13 +24,13 @@ module multiprocessor #(
   // for every unit: set by the host before a launch, constant while a kernel runs
   input  wire [15:0]                     program_length_i,   // instructions
   input  wire [31:0]                     memory_limit_i,     // bytes
-  input  wire                            argument_write_i,   // while idle; also invalidates the caches, as memory may have changed
+  input  wire                            argument_write_i,   // while idle; invalidates the caches: memory may have changed
   input  wire [4:0]                      argument_index_i,
   input  wire [31:0]                     argument_data_i,
   // launch of one block
   input  wire                            launch_valid_i,
   output wire                            launch_ready_o,
-  output wire [1:0]                      launch_unit_o,      // that takes it in this cycle; meaningful while launch_ready_o
+  output wire [1:0]                      launch_unit_o,      // that takes it in this cycle; valid with launch_ready_o
   input  wire [15:0]                     launch_pc_i,
   input  wire [10:0]                     launch_threads_i,   // 1 .. WARPS*LANES
   input  wire [31:0]                     launch_block_i,
@@ -78,7 +79,7 @@ module multiprocessor #(
   // performance counters, docs/architecture.md
   input  wire [1:0]                      counter_unit_i,
   input  wire [5:0]                      counter_select_i,
-  output wire [63:0]                     counter_o,          // the one exception: depends on counter_unit_i and counter_select_i
+  output wire [63:0]                     counter_o,          // the exception: depends on counter_*_i
   // trace of each unit, valid in the cycle of write-back; unit 0 in the low bits
   output wire [UNITS*WARPS-1:0]          retire_valid_o,
   output wire [UNITS*WARPS*16-1:0]       retire_pc_o,
@@ -128,8 +129,8 @@ module multiprocessor #(
         .WARPS(WARPS), .LANES(LANES), .STACK_DEPTH(STACK_DEPTH),
 `include "alu_parameter_map.vh"
         .ICACHE_BYTES(ICACHE_BYTES),
-        .DCACHE_BYTES(DCACHE_BYTES), .DCACHE_MSHRS(DCACHE_MSHRS), .SUBNORMALS(SUBNORMALS), .SLOW_UNIT(SLOW_UNIT), .FMA(FMA),
-        .WARP_BITS(WARP_BITS)
+        .DCACHE_BYTES(DCACHE_BYTES), .DCACHE_MSHRS(DCACHE_MSHRS), .SUBNORMALS(SUBNORMALS), .SLOW_UNIT(SLOW_UNIT),
+        .FMA(FMA), .WARP_BITS(WARP_BITS)
       ) compute_unit (
         .clk_i(clk_i), .rst_ni(rst_ni), .program_length_i(program_length_i), .memory_limit_i(memory_limit_i),
         .argument_write_i(argument_write_i), .argument_index_i(argument_index_i), .argument_data_i(argument_data_i),
@@ -143,10 +144,10 @@ module multiprocessor #(
         .memory_response_id_i(memory_response_id_i[4:0]), .memory_response_beat_i(memory_response_beat_i),
         .memory_response_data_i(memory_response_data_i),
         .import_request_valid_o(import_valid[u]), .import_request_kind_o(import_kind[u*2 +: 2]),
-        .import_request_ready_i(import_ready[u]), .import_beat_valid_i(beat_valid[u]), .import_beat_data_i(import_beat_data_i),
-        .export_valid_o(export_valid[u]), .export_ready_i(export_ready[u]), .export_data_o(export_beat[u*129 +: 128]),
-        .export_last_o(export_last[u]), .frame_valid_o(frame_valid[u]), .frame_ready_i(frame_ready[u]),
-        .frame_pixel_o(frame[u*128 +: 32]), .frame_color_o(frame[u*128 + 32 +: 96]),
+        .import_request_ready_i(import_ready[u]), .import_beat_valid_i(beat_valid[u]),
+        .import_beat_data_i(import_beat_data_i), .export_valid_o(export_valid[u]), .export_ready_i(export_ready[u]),
+        .export_data_o(export_beat[u*129 +: 128]), .export_last_o(export_last[u]), .frame_valid_o(frame_valid[u]),
+        .frame_ready_i(frame_ready[u]), .frame_pixel_o(frame[u*128 +: 32]), .frame_color_o(frame[u*128 + 32 +: 96]),
         .fault_valid_o(fault_valid[u]), .fault_code_o(fault[u*FAULT_BITS + 16 + WARP_BITS +: 4]),
         .fault_warp_o(fault[u*FAULT_BITS + 16 +: WARP_BITS]), .fault_pc_o(fault[u*FAULT_BITS +: 16]),
         .counter_select_i(counter_select_i), .counter_o(counter[u*64 +: 64]),
@@ -155,11 +156,13 @@ module multiprocessor #(
         .retire_mask_o(retire_mask_o[u*WARPS*LANES +: WARPS*LANES]),
         .retire_data_o(retire_data_o[u*WARPS*LANES*32 +: WARPS*LANES*32]),
         .retire_predicate_o(retire_predicate_o[u*WARPS*LANES +: WARPS*LANES]),
-        .store_trace_valid_o(store_trace_valid_o[u]), .store_trace_warp_o(store_trace_warp_o[u*WARP_BITS +: WARP_BITS]),
-        .store_trace_address_o(store_trace_address_o[u*32 +: 32]), .store_trace_data_o(store_trace_data_o[u*128 +: 128]),
-        .store_trace_mask_o(store_trace_mask_o[u*4 +: 4]), .ray_trace_valid_o(ray_trace_valid_o[u]),
-        .ray_trace_warp_o(ray_trace_warp_o[u*WARP_BITS +: WARP_BITS]), .ray_trace_word_o(ray_trace_word_o[u*5 +: 5]),
-        .ray_trace_mask_o(ray_trace_mask_o[u*LANES +: LANES]), .ray_trace_data_o(ray_trace_data_o[u*LANES*32 +: LANES*32]));
+        .store_trace_valid_o(store_trace_valid_o[u]),
+        .store_trace_warp_o(store_trace_warp_o[u*WARP_BITS +: WARP_BITS]),
+        .store_trace_address_o(store_trace_address_o[u*32 +: 32]),
+        .store_trace_data_o(store_trace_data_o[u*128 +: 128]), .store_trace_mask_o(store_trace_mask_o[u*4 +: 4]),
+        .ray_trace_valid_o(ray_trace_valid_o[u]), .ray_trace_warp_o(ray_trace_warp_o[u*WARP_BITS +: WARP_BITS]),
+        .ray_trace_word_o(ray_trace_word_o[u*5 +: 5]), .ray_trace_mask_o(ray_trace_mask_o[u*LANES +: LANES]),
+        .ray_trace_data_o(ray_trace_data_o[u*LANES*32 +: LANES*32]));
       assign export_beat[u*129 + 128] = export_last[u];
     end
 
@@ -200,11 +203,12 @@ module multiprocessor #(
 
       unit_memory_arbiter #(.UNITS(UNITS)) unit_memory_arbiter (
         .clk_i(clk_i), .rst_ni(rst_ni), .unit_request_valid_i(request_valid), .unit_request_ready_o(request_ready),
-        .unit_request_write_i(request_write), .unit_request_address_i(request_address), .unit_request_data_i(request_data),
-        .unit_request_mask_i(request_mask), .unit_request_id_i(request_id), .unit_response_valid_o(response_valid),
-        .request_valid_o(memory_request_valid_o), .request_ready_i(memory_request_ready_i),
-        .request_write_o(memory_request_write_o), .request_address_o(memory_request_address_o),
-        .request_data_o(memory_request_data_o), .request_mask_o(memory_request_mask_o), .request_id_o(memory_request_id_o),
+        .unit_request_write_i(request_write), .unit_request_address_i(request_address),
+        .unit_request_data_i(request_data), .unit_request_mask_i(request_mask), .unit_request_id_i(request_id),
+        .unit_response_valid_o(response_valid), .request_valid_o(memory_request_valid_o),
+        .request_ready_i(memory_request_ready_i), .request_write_o(memory_request_write_o),
+        .request_address_o(memory_request_address_o), .request_data_o(memory_request_data_o),
+        .request_mask_o(memory_request_mask_o), .request_id_o(memory_request_id_o),
         .response_valid_i(memory_response_valid_i), .response_unit_i(memory_response_id_i[6:5]));
 
       import_arbiter #(.UNITS(UNITS)) import_arbiter (
@@ -216,19 +220,20 @@ module multiprocessor #(
       // A ray is a package of three transfers.
       port_arbiter #(.COUNT(UNITS), .WIDTH(129)) export_arbiter (
         .clk_i(clk_i), .rst_ni(rst_ni), .valid_i(export_valid), .ready_o(export_ready), .data_i(export_beat),
-        .last_i(export_last), .valid_o(export_valid_o), .ready_i(export_ready_i), .data_o({export_last_o, export_data_o}),
-        .number_o(export_unit_o));
+        .last_i(export_last), .valid_o(export_valid_o), .ready_i(export_ready_i),
+        .data_o({export_last_o, export_data_o}), .number_o(export_unit_o));
 
       port_arbiter #(.COUNT(UNITS), .WIDTH(128)) frame_arbiter (
         .clk_i(clk_i), .rst_ni(rst_ni), .valid_i(frame_valid), .ready_o(frame_ready), .data_i(frame),
-        .last_i({UNITS{1'b1}}), .valid_o(frame_valid_o), .ready_i(frame_ready_i), .data_o({frame_color_o, frame_pixel_o}),
-        .number_o(frame_unit_o));
+        .last_i({UNITS{1'b1}}), .valid_o(frame_valid_o), .ready_i(frame_ready_i),
+        .data_o({frame_color_o, frame_pixel_o}), .number_o(frame_unit_o));
 
       // Never taken: the fault that is shown first stays.
       wire [UNITS-1:0] unused;
       port_arbiter #(.COUNT(UNITS), .WIDTH(FAULT_BITS)) fault_arbiter (
         .clk_i(clk_i), .rst_ni(rst_ni), .valid_i(fault_valid), .ready_o(unused), .data_i(fault), .last_i({UNITS{1'b1}}),
-        .valid_o(fault_valid_o), .ready_i(1'b0), .data_o({fault_code_o, fault_warp_o, fault_pc_o}), .number_o(fault_unit_o));
+        .valid_o(fault_valid_o), .ready_i(1'b0), .data_o({fault_code_o, fault_warp_o, fault_pc_o}),
+        .number_o(fault_unit_o));
 
       assign counter_o = counter[counter_unit_i*64 +: 64];
     end

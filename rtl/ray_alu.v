@@ -1,31 +1,15 @@
-// The ray ALU: three sets of local ray memory, of which every warp has a slice each; the slices change roles (input, current, output) warp by
-// warp. docs/ray-alu.md has the contract and the cycles.
-// Promises: rin, rout and rfb that have to wait do not block other warps; every task of a warp sees the effects of the warp's earlier ones.
-// Must be given: one task at a time of a warp; tasks only after ready_o; for each package requested six beats, in order.
+// The ray ALU: three sets of local ray memory, of which every warp has a slice each; the slices change roles (input,
+// current, output) warp by warp. docs/ray-alu.md has the contract and the cycles.
+// Promises: rin, rout and rfb that have to wait do not block other warps; every task of a warp sees the effects of the
+// warp's earlier ones.
+// Must be given: one task at a time of a warp; tasks only after ready_o; for each package requested six beats, in
+// order.
 `default_nettype none
 module ray_alu #(
   parameter integer WARPS = 8,
   parameter integer LANES = 8,
   parameter integer WARP_BITS = (WARPS > 1) ? $clog2(WARPS) : 1
 ) (
-  input  wire                   clk_i,
-  input  wire                   rst_ni,
-  // ALU framework
-  input  wire                   task_valid_i,
-  input  wire [WARP_BITS-1:0]   task_warp_i,
-  input  wire [4:0]             task_op_i,
-  input  wire [LANES-1:0]       task_mask_i,
-  input  wire [LANES*32-1:0]    task_a_i,
-  input  wire [LANES*32-1:0]    task_b_i,
-  input  wire [31:0]            task_imm_i,
-  input  wire [4:0]             task_x_i,
-  input  wire [LANES-1:0]       task_px_i,
-  input  wire [LANES-1:0]       task_pb_i,
-  output wire                   ready_o,
-  output wire                   done_valid_o,
-  output wire [WARP_BITS-1:0]   done_warp_o,
-  output wire [LANES*32-1:0]    done_data_o,
-  output wire [LANES-1:0]       done_pred_o,
   // import of a launch: one cycle of start, not while import_active_o, which is high from the next cycle on
   input  wire                   import_start_i,
   input  wire [1:0]             import_start_kind_i,      // 0 none, 1 normal, 2 shadow
@@ -57,7 +41,9 @@ module ray_alu #(
   // one cycle; the task is dropped
   output wire                   fault_valid_o,
   output wire [3:0]             fault_code_o,
-  output wire [WARP_BITS-1:0]   fault_warp_o
+  output wire [WARP_BITS-1:0]   fault_warp_o,
+  // ALU framework
+`include "alu_ports.vh"
 );
   `include "isa.vh"
   localparam integer LANE_BITS = $clog2(LANES);
@@ -75,17 +61,15 @@ module ray_alu #(
     end
   endgenerate
 
-  wire unused = &{1'b0, task_a_i, task_imm_i, task_px_i, task_pb_i};
-
   // ---- Roles: which set is a warp's input, current and output.
   reg [WARPS*2-1:0] input_q, current_q, output_q;
 
   // ---- Arrival. A task is an access or a swap; a swap is parked.
-  wire task_access = task_op_i == ISA_RAY_RLD || task_op_i == ISA_RAY_RST;
-  wire task_legal = task_x_i <= LAST_WORD;
+  wire task_access = task_operation_i == ISA_RAY_RLD || task_operation_i == ISA_RAY_RST;
+  wire task_legal = task_word_i <= LAST_WORD;
   wire arrive_access = task_valid_i && task_access && task_legal;
   wire arrive_swap = task_valid_i && !task_access;
-  wire arrive_out = arrive_swap && task_op_i != ISA_RAY_RIN;
+  wire arrive_out = arrive_swap && task_operation_i != ISA_RAY_RIN;
   wire [1:0] task_set = current_q[task_warp_i*2 +: 2];
 
   // ---- Import has the port of its set whenever it writes.
@@ -96,7 +80,8 @@ module ray_alu #(
   wire [3:0]   import_mask;
   wire [127:0] import_data;
 
-  // ---- Access. Its first step may be made in the cycle of arrival, from the task's ports; later ones are made from what was held.
+  // ---- Access. Its first step may be made in the cycle of arrival, from the task's ports; later ones are made from
+  // what was held.
   reg                hold_q;                 // steps are left
   reg [2:0]          step_q;                 // 0 while nothing is held
   reg [WARP_BITS-1:0] hold_warp_q;
@@ -109,17 +94,18 @@ module ray_alu #(
   wire access = hold_q || arrive_access;
   wire [WARP_BITS-1:0] access_warp = hold_q ? hold_warp_q : task_warp_i;
   wire [1:0] access_set = hold_q ? hold_set_q : task_set;
-  wire [4:0] access_word = hold_q ? hold_word_q : task_x_i;
-  wire access_write = hold_q ? hold_write_q : task_op_i == ISA_RAY_RST;
+  wire [4:0] access_word = hold_q ? hold_word_q : task_word_i;
+  wire access_write = hold_q ? hold_write_q : task_operation_i == ISA_RAY_RST;
   wire access_last = step_q == LAST_STEP[2:0];
   wire access_granted = access && !(import_write && import_set == access_set);
-  wire [9:0] access_lane = ({{10-WARP_BITS{1'b0}}, access_warp} << LANE_BITS) | {5'd0, step_q, 2'b00};   // thread of the step's first lane
+  // The thread of the step's first lane
+  wire [9:0] access_lane = ({{10-WARP_BITS{1'b0}}, access_warp} << LANE_BITS) | {5'd0, step_q, 2'b00};
   wire [9:0] access_thread = {access_lane[9:2], 2'b00};
   reg [3:0] access_mask;
   reg [127:0] access_data;
 
-  // What arrives is executed at once when nothing is held after this cycle. Of an access that arrives now this only looks at what is quickly
-  // known: it has one step, and no import is in the way of any set.
+  // What arrives is executed at once when nothing is held after this cycle. Of an access that arrives now this only
+  // looks at what is quickly known: it has one step, and no import is in the way of any set.
   assign ready_o = hold_q ? access_last && !(import_write && import_set == hold_set_q)
                           : !(task_valid_i && task_access && (STEPS > 1 || import_write));
 
@@ -134,11 +120,11 @@ module ray_alu #(
     if (arrive_access) begin
       hold_warp_q <= task_warp_i;
       hold_set_q <= task_set;
-      hold_word_q <= task_x_i;
-      hold_write_q <= task_op_i == ISA_RAY_RST;
-      if (task_op_i == ISA_RAY_RST) begin
+      hold_word_q <= task_word_i;
+      hold_write_q <= task_operation_i == ISA_RAY_RST;
+      if (task_operation_i == ISA_RAY_RST) begin
         hold_mask_q <= task_mask_i;
-        hold_data_q <= task_b_i;
+        hold_data_q <= task_operand_b_i;
       end
     end
   end
@@ -182,7 +168,7 @@ module ray_alu #(
         access_data = 128'd0;
         if (access && access_write) begin
           access_mask = hold_q ? hold_mask_q[{step, 2'b00} +: 4] : task_mask_i[3:0];
-          access_data = hold_q ? hold_data_q[{step, 7'd0} +: 128] : task_b_i[127:0];
+          access_data = hold_q ? hold_data_q[{step, 7'd0} +: 128] : task_operand_b_i[127:0];
         end
       end
       always @(posedge clk_i)
@@ -203,7 +189,7 @@ module ray_alu #(
         if (access && access_write) begin
           lanes[LANES-1:0] = hold_q ? hold_mask_q : task_mask_i;
           access_mask = lanes << access_lane[1:0];
-          access_data = hold_q ? {4/LANES{hold_data_q}} : {4/LANES{task_b_i}};
+          access_data = hold_q ? {4/LANES{hold_data_q}} : {4/LANES{task_operand_b_i}};
         end
       end
       always @(posedge clk_i)
@@ -279,7 +265,7 @@ module ray_alu #(
   assign done_valid_o = done_q;
   assign done_warp_o = done_warp_q;
   assign done_data_o = done_data_q;
-  assign done_pred_o = NO_LANE;
+  assign done_predicate_o = NO_LANE;
   assign ray_trace_valid_o = trace_q;
   assign ray_trace_warp_o = done_warp_q;
   assign ray_trace_word_o = trace_word_q;
@@ -292,29 +278,30 @@ module ray_alu #(
   // ---- Engines
   ray_import #(.WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS)) ray_import (
     .clk_i(clk_i), .rst_ni(rst_ni),
-    .start_i(import_start_i), .start_kind_i(import_start_kind_i), .start_threads_i(import_start_threads_i), .active_o(import_active_o),
-    .request_valid_o(import_request_valid_o), .request_kind_o(import_request_kind_o), .request_ready_i(import_request_ready_i),
-    .beat_valid_i(import_beat_valid_i), .beat_data_i(import_beat_data_i),
-    .input_set_i(input_q), .full_o(full), .take_i(swap_in), .take_warp_i(swap_warp),
-    .write_o(import_write), .write_set_o(import_set), .write_thread_o(import_thread), .write_word_o(import_word),
-    .write_mask_o(import_mask), .write_data_o(import_data)
+    .start_i(import_start_i), .start_kind_i(import_start_kind_i), .start_threads_i(import_start_threads_i),
+    .active_o(import_active_o), .request_valid_o(import_request_valid_o), .request_kind_o(import_request_kind_o),
+    .request_ready_i(import_request_ready_i), .beat_valid_i(import_beat_valid_i), .beat_data_i(import_beat_data_i),
+    .input_set_i(input_q), .full_o(full), .take_i(swap_in), .take_warp_i(swap_warp), .write_o(import_write),
+    .write_set_o(import_set), .write_thread_o(import_thread), .write_word_o(import_word), .write_mask_o(import_mask),
+    .write_data_o(import_data)
   );
 
   wire       export_read, export_granted;
   wire [1:0] export_set;
   wire [9:0] export_thread;
   wire [4:0] export_word;
-  assign export_granted = export_read && !(import_write && import_set == export_set) && !(access && access_set == export_set);
+  assign export_granted = export_read && !(import_write && import_set == export_set) &&
+                          !(access && access_set == export_set);
 
   ray_export #(.WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS)) ray_export (
     .clk_i(clk_i), .rst_ni(rst_ni),
-    .park_i(arrive_out), .park_warp_i(task_warp_i), .park_frame_i(task_op_i == ISA_RAY_RFB), .park_mask_i(task_mask_i),
-    .push_i(swap_out && !parked_empty_q[swap_warp]), .push_warp_i(swap_warp),
-    .output_set_i(output_q), .busy_o(busy), .exporting_o(exporting_o),
-    .read_o(export_read), .read_set_o(export_set), .read_thread_o(export_thread), .read_word_o(export_word),
-    .read_grant_i(export_granted), .memory_data_i(memory_data),
-    .export_valid_o(export_valid_o), .export_ready_i(export_ready_i), .export_data_o(export_data_o), .export_last_o(export_last_o),
-    .frame_valid_o(frame_valid_o), .frame_ready_i(frame_ready_i), .frame_pixel_o(frame_pixel_o), .frame_color_o(frame_color_o)
+    .park_i(arrive_out), .park_warp_i(task_warp_i), .park_frame_i(task_operation_i == ISA_RAY_RFB),
+    .park_mask_i(task_mask_i), .push_i(swap_out && !parked_empty_q[swap_warp]), .push_warp_i(swap_warp),
+    .output_set_i(output_q), .busy_o(busy), .exporting_o(exporting_o), .read_o(export_read), .read_set_o(export_set),
+    .read_thread_o(export_thread), .read_word_o(export_word), .read_grant_i(export_granted),
+    .memory_data_i(memory_data), .export_valid_o(export_valid_o), .export_ready_i(export_ready_i),
+    .export_data_o(export_data_o), .export_last_o(export_last_o), .frame_valid_o(frame_valid_o),
+    .frame_ready_i(frame_ready_i), .frame_pixel_o(frame_pixel_o), .frame_color_o(frame_color_o)
   );
 
   // ---- The three sets. The port goes to import, then to the kernel's access, then to export.

@@ -1,6 +1,6 @@
-// Slw ALU: fdiv fsqrt frsqrt frcp, a new task in any of its stages; further stages as delay. docs/numerics.md has the rules.
-// SUBNORMALS 0: IEEE, 1: flushed. SLOW_UNIT 0: correctly rounded, 1: table and two Newton steps, both in 11 stages; 2: one step, 8; 3: none, 6.
-// Lanes outside the mask keep what they held and are not clocked.
+// Slw ALU: fdiv fsqrt frsqrt frcp, a new task in any of its stages; further stages as delay. docs/numerics.md has the
+// rules. SUBNORMALS 0: IEEE, 1: flushed. SLOW_UNIT 0: correctly rounded, 1: table and two Newton steps, both in 11
+// stages; 2: one step, 8; 3: none, 6. Lanes outside the mask keep what they held and are not clocked.
 `default_nettype none
 module slw_alu #(
   parameter integer WARPS = 8,
@@ -11,23 +11,7 @@ module slw_alu #(
   parameter integer SUBNORMALS = 0,
   parameter integer SLOW_UNIT = 0
 ) (
-  input  wire                 clk_i,
-  input  wire                 rst_ni,
-  input  wire                 task_valid_i,
-  input  wire [WARP_BITS-1:0] task_warp_i,
-  input  wire [4:0]           task_op_i,
-  input  wire [LANES-1:0]     task_mask_i,
-  input  wire [LANES*32-1:0]  task_a_i,
-  input  wire [LANES*32-1:0]  task_b_i,
-  input  wire [31:0]          task_imm_i,
-  input  wire [4:0]           task_x_i,
-  input  wire [LANES-1:0]     task_px_i,
-  input  wire [LANES-1:0]     task_pb_i,
-  output wire                 ready_o,
-  output wire                 done_valid_o,
-  output wire [WARP_BITS-1:0] done_warp_o,
-  output wire [LANES*32-1:0]  done_data_o,
-  output wire [LANES-1:0]     done_pred_o
+`include "alu_ports.vh"
 );
   `include "isa.vh"
 
@@ -50,8 +34,8 @@ module slw_alu #(
     .done_valid_o(done_valid_o), .done_warp_o(done_warp_o), .stage_valid_o(stage_valid));
 
   wire moving = |stage_valid[STAGES-1:0];
-  wire root = task_op_i == ISA_SLW_FSQRT || task_op_i == ISA_SLW_FRSQRT;
-  wire unary = task_op_i == ISA_SLW_FRSQRT || task_op_i == ISA_SLW_FRCP;
+  wire root = task_operation_i == ISA_SLW_FSQRT || task_operation_i == ISA_SLW_FRSQRT;
+  wire unary = task_operation_i == ISA_SLW_FRSQRT || task_operation_i == ISA_SLW_FRCP;
   wire [LANES*32-1:0] result;
   genvar l;
   generate
@@ -64,8 +48,8 @@ module slw_alu #(
         else if (moving) later_q <= enable[STAGES-2:0];
       end
       slow_lane #(.SUBNORMALS(SUBNORMALS), .SLOW_UNIT(SLOW_UNIT), .STAGES(STAGES)) lane (
-        .clk_i(clk_i), .enable_i(enable), .root_i(root), .unary_i(unary), .a_i(task_a_i[l*32 +: 32]), .b_i(task_b_i[l*32 +: 32]),
-        .result_o(result[l*32 +: 32]));
+        .clk_i(clk_i), .enable_i(enable), .root_i(root), .unary_i(unary), .a_i(task_operand_a_i[l*32 +: 32]),
+        .b_i(task_operand_b_i[l*32 +: 32]), .result_o(result[l*32 +: 32]));
     end
     if (DEPTH > STAGES) begin : gen_delay
       alu_delay #(.WIDTH(LANES*32), .STAGES(DEPTH-STAGES)) delay (
@@ -74,6 +58,6 @@ module slw_alu #(
       assign done_data_o = result;
     end
   endgenerate
-  assign done_pred_o = {LANES{1'b0}};
+  assign done_predicate_o = {LANES{1'b0}};
 endmodule
 `default_nettype wire

@@ -7,30 +7,15 @@ module tid_alu #(
   parameter integer LATENCY = 1,
   parameter integer DEPTH = 1
 ) (
-  input  wire                   clk_i,
-  input  wire                   rst_ni,
-  input  wire                   task_valid_i,
-  input  wire [WARP_BITS-1:0]   task_warp_i,
-  input  wire [4:0]             task_op_i,
-  input  wire [LANES-1:0]       task_mask_i,
-  input  wire [LANES*32-1:0]    task_a_i,
-  input  wire [LANES*32-1:0]    task_b_i,
-  input  wire [31:0]            task_imm_i,
-  input  wire [4:0]             task_x_i,
-  input  wire [LANES-1:0]       task_px_i,
-  input  wire [LANES-1:0]       task_pb_i,
-  output wire                   ready_o,
-  output wire                   done_valid_o,
-  output wire [WARP_BITS-1:0]   done_warp_o,
-  output wire [LANES*32-1:0]    done_data_o,
-  output wire [LANES-1:0]       done_pred_o,
   // the launch that runs, and the host's argument words
   input  wire [31:0]            block_i,
   input  wire [31:0]            blocks_i,
   input  wire [10:0]            threads_i,
   input  wire                   argument_write_i,
   input  wire [4:0]             argument_index_i,
-  input  wire [31:0]            argument_data_i
+  input  wire [31:0]            argument_data_i,
+  // ALU framework
+`include "alu_ports.vh"
 );
 `include "isa.vh"
   wire [DEPTH-1:0] stage_valid;
@@ -44,14 +29,14 @@ module tid_alu #(
     .done_valid_o(done_valid_o), .done_warp_o(done_warp_o), .stage_valid_o(stage_valid));
 
   ram_1r1w #(.WIDTH(32), .DEPTH(32)) arguments (
-    .clk_i(clk_i), .read_i(task_valid_i), .read_address_i(task_imm_i[4:0]), .read_data_o(argument),
+    .clk_i(clk_i), .read_i(task_valid_i), .read_address_i(task_immediate_i[4:0]), .read_data_o(argument),
     .write_i(argument_write_i), .write_address_i(argument_index_i), .write_data_i(argument_data_i));
 
   always @(posedge clk_i)
     if (task_valid_i) begin
-      argument_q <= task_op_i == ISA_TID_ARG;
+      argument_q <= task_operation_i == ISA_TID_ARG;
       for (l = 0; l < LANES; l = l + 1)
-        case (task_op_i)
+        case (task_operation_i)
           ISA_TID_TID: index_q[l*32 +: 32] <= {{32-WARP_BITS{1'b0}}, task_warp_i} * LANES + l;
           ISA_TID_LANE: index_q[l*32 +: 32] <= l;
           ISA_TID_WARP: index_q[l*32 +: 32] <= {{32-WARP_BITS{1'b0}}, task_warp_i};
@@ -66,9 +51,10 @@ module tid_alu #(
       assign done_data_o = argument_q ? {LANES{argument}} : index_q;
     end else begin : gen_delay
       alu_delay #(.WIDTH(LANES*32), .STAGES(DEPTH-1)) alu_delay (
-        .clk_i(clk_i), .valid_i(stage_valid[DEPTH-1:1]), .data_i(argument_q ? {LANES{argument}} : index_q), .data_o(done_data_o));
+        .clk_i(clk_i), .valid_i(stage_valid[DEPTH-1:1]), .data_i(argument_q ? {LANES{argument}} : index_q),
+        .data_o(done_data_o));
     end
   endgenerate
-  assign done_pred_o = {LANES{1'b0}};
+  assign done_predicate_o = {LANES{1'b0}};
 endmodule
 `default_nettype wire

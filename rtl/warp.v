@@ -3,7 +3,7 @@
 module warp #(
   parameter integer LANES = 8,
   parameter integer STACK_DEPTH = 8,
-  parameter integer SLOTS = 7,
+  parameter integer INSTANCES = 7,
   parameter integer FMA = 0         // reads register rc too, and issues ffma
 ) (
   input  wire                      clk_i,
@@ -24,17 +24,18 @@ module warp #(
   // dispatch
   output wire                      want_o,
   input  wire                      grant_i,
+  output wire [3:0]                type_o,
   output wire [63:0]               instruction_o,
   output wire [LANES-1:0]          mask_o,
-  output wire [LANES-1:0]          px_o,
-  output wire [LANES-1:0]          pb_o,
-  output wire [LANES*32-1:0]       a_o,
-  output wire [LANES*32-1:0]       b_o,
-  output wire [LANES*32-1:0]       c_o,
+  output wire [LANES-1:0]          predicate_x_o,
+  output wire [LANES-1:0]          predicate_b_o,
+  output wire [LANES*32-1:0]       operand_a_o,
+  output wire [LANES*32-1:0]       operand_b_o,
+  output wire [LANES*32-1:0]       operand_c_o,
   // write-back: what every ALU instance has finished in this cycle, and whether it is this warp's task
-  input  wire [SLOTS-1:0]          done_i,
-  input  wire [SLOTS*LANES*32-1:0] done_data_i,
-  input  wire [SLOTS*LANES-1:0]    done_pred_i,
+  input  wire [INSTANCES-1:0]          done_i,
+  input  wire [INSTANCES*LANES*32-1:0] done_data_i,
+  input  wire [INSTANCES*LANES-1:0]    done_predicate_i,
   output reg                       retire_o,
   output wire [15:0]               pc_o,
   output reg  [LANES*32-1:0]       retire_data_o,
@@ -50,40 +51,40 @@ module warp #(
 
   wire step, pc_valid, read, writes_register, writes_predicate, illegal, outside, overflow, underflow;
   wire [15:0] stack_pc;
-  wire [3:0] unit = instruction_o[63:60];
-  wire [4:0] operation = instruction_o[59:55];
-  wire [31:0] immediate = instruction_o[31:0];
+  wire [63:0] instruction = instruction_o;
+`include "isa_fields.vh"
+  assign type_o = field_type;
 
   // The result mux: at most one ALU instance holds this warp.
   always @* begin
     retire_o = 1'b0;
     retire_data_o = {LANES*32{1'b0}};
     retire_pred = {LANES{1'b0}};
-    for (s = 0; s < SLOTS; s = s + 1)
+    for (s = 0; s < INSTANCES; s = s + 1)
       if (done_i[s]) begin
         retire_o = 1'b1;
         retire_data_o = done_data_i[s*LANES*32 +: LANES*32];
-        retire_pred = done_pred_i[s*LANES +: LANES];
+        retire_pred = done_predicate_i[s*LANES +: LANES];
       end
     retire_predicate_o = retire_pred & mask_o;
   end
 
   // Control instructions: the branch ALU says in every lane's predicate bit whether the jump is taken.
   wire taken = retire_pred[0];
-  wire control = retire_o && unit == ISA_UNIT_BRH;
-  wire jump = control && taken && (operation == ISA_BRH_JANY || operation == ISA_BRH_JNONE);
-  wire enter = control && taken && operation == ISA_BRH_LOOP;
-  wire leave = control && !taken && operation == ISA_BRH_LOOP;
-  wire call = control && operation == ISA_BRH_CALL;
+  wire control = retire_o && field_type == ISA_TYPE_BRH;
+  wire jump = control && taken && (field_operation == ISA_BRH_JANY || field_operation == ISA_BRH_JNONE);
+  wire enter = control && taken && field_operation == ISA_BRH_LOOP;
+  wire leave = control && !taken && field_operation == ISA_BRH_LOOP;
+  wire call = control && field_operation == ISA_BRH_CALL;
 
   always @(posedge clk_i) if (start_i) launched_q <= start_lanes_i;
 
   pc_stack #(.DEPTH(STACK_DEPTH)) pc_stack (
     .clk_i(clk_i), .rst_ni(rst_ni), .start_i(start_i), .start_pc_i(start_pc_i),
     .step_i(step), .pc_valid_o(pc_valid), .pc_o(stack_pc),
-    .jump_i(jump || leave), .push_i(enter || call), .push_return_i(enter), .pop_i(control && operation == ISA_BRH_RET),
-    .target_i(enter ? pc_o + 16'd1 : immediate[15:0]), .end_i(enter ? immediate[15:0] : immediate[31:16]), .return_i(pc_o),
-    .overflow_o(overflow), .underflow_o(underflow));
+    .jump_i(jump || leave), .push_i(enter || call), .push_return_i(enter),
+    .pop_i(control && field_operation == ISA_BRH_RET), .target_i(enter ? pc_o + 16'd1 : field_target),
+    .end_i(enter ? field_target : field_end), .return_i(pc_o), .overflow_o(overflow), .underflow_o(underflow));
 
   instruction_buffer #(.FMA(FMA != 0)) instruction_buffer (
     .clk_i(clk_i), .rst_ni(rst_ni), .start_i(start_i), .halt_i(halt_i), .active_o(active_o),
@@ -91,22 +92,21 @@ module warp #(
     .fetch_request_o(fetch_request_o), .fetch_pc_o(fetch_pc_o), .fetch_grant_i(fetch_grant_i),
     .cache_hit_i(cache_hit_i), .cache_instruction_i(cache_instruction_i), .refill_done_i(refill_done_i),
     .read_o(read), .want_o(want_o), .grant_i(grant_i), .retire_i(retire_o),
-    .instruction_o(instruction_o), .pc_o(pc_o), .writes_register_o(writes_register), .writes_predicate_o(writes_predicate),
-    .illegal_o(illegal), .outside_o(outside));
+    .instruction_o(instruction_o), .pc_o(pc_o), .writes_register_o(writes_register),
+    .writes_predicate_o(writes_predicate), .illegal_o(illegal), .outside_o(outside));
 
   predicate_file #(.LANES(LANES)) predicate_file (
     .clk_i(clk_i), .clear_i(start_i), .read_i(read), .launched_i(launched_q),
-    .guard_negated_i(instruction_o[54]), .guard_i(instruction_o[53:50]),
-    .x_index_i(instruction_o[35:32]), .b_index_i(instruction_o[41:38]),
-    .mask_o(mask_o), .x_o(px_o), .b_o(pb_o),
-    .write_i(retire_o && writes_predicate), .write_index_i(instruction_o[49:46]), .write_data_i(retire_predicate_o));
+    .guard_negated_i(field_guard_negated), .guard_i(field_guard), .x_index_i(field_x[3:0]), .b_index_i(field_rb),
+    .mask_o(mask_o), .x_o(predicate_x_o), .b_o(predicate_b_o),
+    .write_i(retire_o && writes_predicate), .write_index_i(field_rd), .write_data_i(retire_predicate_o));
 
   ram_2r1w #(.WIDTH(LANES*32), .DEPTH(16), .GRANULE(32)) register_bank (
     .clk_i(clk_i), .read_i(read),
-    .read_address_a_i(instruction_o[45:42]), .read_address_b_i(instruction_o[41:38]),
-    .read_data_a_o(a_o), .read_data_b_o(b_o),
+    .read_address_a_i(field_ra), .read_address_b_i(field_rb),
+    .read_data_a_o(operand_a_o), .read_data_b_o(operand_b_o),
     .write_mask_i(retire_o && writes_register ? mask_o : {LANES{1'b0}}),
-    .write_address_i(instruction_o[49:46]), .write_data_i(retire_data_o));
+    .write_address_i(field_rd), .write_data_i(retire_data_o));
 
   // A copy of the bank gives the third operand, as memories with three read ports are rare.
   genvar l;
@@ -114,12 +114,12 @@ module warp #(
     if (FMA != 0) begin : gen_third
       for (l = 0; l < LANES; l = l + 1) begin : gen_lane
         ram_1r1w #(.WIDTH(32), .DEPTH(16)) register_copy (
-          .clk_i(clk_i), .read_i(read), .read_address_i(instruction_o[35:32]), .read_data_o(c_o[l*32 +: 32]),
-          .write_i(retire_o && writes_register && mask_o[l]), .write_address_i(instruction_o[49:46]),
+          .clk_i(clk_i), .read_i(read), .read_address_i(field_x[3:0]), .read_data_o(operand_c_o[l*32 +: 32]),
+          .write_i(retire_o && writes_register && mask_o[l]), .write_address_i(field_rd),
           .write_data_i(retire_data_o[l*32 +: 32]));
       end
     end else begin : gen_no_third
-      assign c_o = {LANES*32{1'b0}};
+      assign operand_c_o = {LANES*32{1'b0}};
     end
   endgenerate
 

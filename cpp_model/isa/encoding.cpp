@@ -12,7 +12,7 @@ constexpr uint32_t take(const Field& field, uint64_t encoding) {
   return static_cast<uint32_t>(encoding >> field.lsb & ((uint64_t{1} << field.bits) - 1));
 }
 
-using Table = std::array<const InstructionInfo*, 512>;  // index: Opcode, or unit and operation of no row
+using Table = std::array<const InstructionInfo*, 512>;  // index: Opcode, or type and operation of no row
 
 Table make_table() {
   Table table{};
@@ -29,8 +29,8 @@ const Table& table() {
 
 const InstructionInfo& instruction(Opcode opcode) { return *table()[static_cast<size_t>(opcode)]; }
 
-const InstructionInfo* find_instruction(int unit, int operation) {
-  return table()[static_cast<size_t>((unit & 15) << 5 | (operation & 31))];
+const InstructionInfo* find_instruction(int type, int operation) {
+  return table()[static_cast<size_t>((type & 15) << 5 | (operation & 31))];
 }
 
 const InstructionInfo* find_instruction(std::string_view mnemonic) {
@@ -53,8 +53,48 @@ bool has_operand(const InstructionInfo& info, Operand operand) {
   return false;
 }
 
+std::string_view task_operand_name(TaskOperand operand) {
+  switch (operand) {
+    case TaskOperand::OperandA:
+      return "operand_a";
+    case TaskOperand::OperandB:
+      return "operand_b";
+    case TaskOperand::OperandC:
+      return "operand_c";
+    case TaskOperand::Immediate:
+      return "immediate";
+    case TaskOperand::Word:
+      return "word";
+    case TaskOperand::PredicateX:
+      return "predicate_x";
+    case TaskOperand::PredicateB:
+      return "predicate_b";
+  }
+  return "";
+}
+
+bool looks_at(const InstructionInfo& info, TaskOperand operand) {
+  switch (operand) {
+    case TaskOperand::OperandA:
+      return has_operand(info, Operand::Ra) || has_operand(info, Operand::Address);
+    case TaskOperand::OperandB:
+      return has_operand(info, Operand::Rb) || has_operand(info, Operand::B);
+    case TaskOperand::OperandC:
+      return has_operand(info, Operand::Rc);
+    case TaskOperand::Immediate:
+      return has_operand(info, Operand::Address) || has_operand(info, Operand::Argument);
+    case TaskOperand::Word:
+      return has_operand(info, Operand::Word);
+    case TaskOperand::PredicateX:
+      return has_operand(info, Operand::Px);
+    case TaskOperand::PredicateB:
+      return has_operand(info, Operand::Pb);
+  }
+  return false;
+}
+
 uint64_t encode(const Instruction& parts) {
-  return put(field::kUnit, static_cast<uint64_t>(parts.info->alu())) | put(field::kOperation, parts.info->operation()) |
+  return put(field::kType, static_cast<uint64_t>(parts.info->alu())) | put(field::kOperation, parts.info->operation()) |
          put(field::kGuardNegated, parts.guard_negated ? 1 : 0) | put(field::kGuard, parts.guard) | put(field::kRd, parts.rd) |
          put(field::kRa, parts.ra) | put(field::kRb, parts.rb) | put(field::kBIsImmediate, parts.b_is_immediate ? 1 : 0) |
          put(field::kX, parts.x) | put(field::kImmediate, parts.immediate);
@@ -63,7 +103,7 @@ uint64_t encode(const Instruction& parts) {
 Instruction unpack(uint64_t encoding) {
   Instruction parts;
   parts.info =
-      find_instruction(static_cast<int>(take(field::kUnit, encoding)), static_cast<int>(take(field::kOperation, encoding)));
+      find_instruction(static_cast<int>(take(field::kType, encoding)), static_cast<int>(take(field::kOperation, encoding)));
   parts.guard_negated = take(field::kGuardNegated, encoding) != 0;
   parts.guard = static_cast<uint8_t>(take(field::kGuard, encoding));
   parts.rd = static_cast<uint8_t>(take(field::kRd, encoding));

@@ -16,8 +16,8 @@ struct Field {
 };
 
 namespace field {
-inline constexpr Field kUnit = {"unit", 60, 4};
-inline constexpr Field kOperation = {"op", 55, 5};
+inline constexpr Field kType = {"type", 60, 4};
+inline constexpr Field kOperation = {"operation", 55, 5};
 inline constexpr Field kGuardNegated = {"guard_negated", 54, 1};
 inline constexpr Field kGuard = {"guard", 50, 4};
 inline constexpr Field kRd = {"rd", 46, 4};
@@ -31,13 +31,13 @@ inline constexpr Field kEnd = {"end", 16, 16};
 }  // namespace field
 
 /// Fields from the most significant down. target and end are the halves of the immediate of `jany jnone call`.
-inline constexpr std::array<Field, 12> kFields = {field::kUnit, field::kOperation, field::kGuardNegated, field::kGuard,
+inline constexpr std::array<Field, 12> kFields = {field::kType, field::kOperation, field::kGuardNegated, field::kGuard,
                                                   field::kRd,   field::kRa,        field::kRb,           field::kBIsImmediate,
                                                   field::kX,    field::kImmediate, field::kTarget,       field::kEnd};
 
 /// An instruction in parts. Parts that its operands do not use are 0.
 struct Instruction {
-  const InstructionInfo* info = nullptr;  ///< null: no table row has this unit and operation
+  const InstructionInfo* info = nullptr;  ///< null: no table row has this type and operation
   bool guard_negated = false;
   uint8_t guard = 0;
   uint8_t rd = 0, ra = 0, rb = 0;
@@ -48,8 +48,8 @@ struct Instruction {
 
 /// Table row of an opcode.
 const InstructionInfo& instruction(Opcode opcode);
-/// Table row of what stands in the fields unit and operation, null if there is none.
-const InstructionInfo* find_instruction(int unit, int operation);
+/// Table row of what stands in the fields type and operation, null if there is none.
+const InstructionInfo* find_instruction(int type, int operation);
 /// Table row of a mnemonic, null if there is none.
 const InstructionInfo* find_instruction(std::string_view mnemonic);
 /// Table row of a mnemonic that is known to exist; throws std::logic_error otherwise.
@@ -59,6 +59,16 @@ const InstructionInfo& instruction(std::string_view mnemonic);
 bool has_operand(const InstructionInfo& info, Operand operand);
 inline bool writes_register(const InstructionInfo& info) { return has_operand(info, Operand::Rd); }
 inline bool writes_predicate(const InstructionInfo& info) { return has_operand(info, Operand::Pd); }
+
+/// What an ALU is handed with a task, beside warp, operation and mask: the task_* ports of rtl/alu_ports.vh.
+enum class TaskOperand : uint8_t { OperandA, OperandB, OperandC, Immediate, Word, PredicateX, PredicateB };
+inline constexpr std::array<TaskOperand, 7> kTaskOperands = {
+    TaskOperand::OperandA, TaskOperand::OperandB,   TaskOperand::OperandC,  TaskOperand::Immediate,
+    TaskOperand::Word,     TaskOperand::PredicateX, TaskOperand::PredicateB};
+/// As the port is called, between task_ and _i.
+std::string_view task_operand_name(TaskOperand operand);
+/// True if what the ALU does with the instruction depends on it. An immediate in place of a register is OperandB.
+bool looks_at(const InstructionInfo& info, TaskOperand operand);
 
 /// `instruction.info` must not be null.
 uint64_t encode(const Instruction& instruction);

@@ -100,7 +100,7 @@ instruction. `.word 0x...` puts any 64-bit pattern in place.
 std::string isa_markdown() {
   std::string text = kIntroduction;
   const auto meaning = [](const Field& each) -> const char* {
-    if (each.name == field::kUnit.name) return "ALU type";
+    if (each.name == field::kType.name) return "ALU type";
     if (each.name == field::kOperation.name) return "operation of that type";
     if (each.name == field::kGuardNegated.name) return "the guard predicate is inverted";
     if (each.name == field::kGuard.name) return "guard predicate";
@@ -122,7 +122,7 @@ std::string isa_markdown() {
       "\n## Instructions\n\nRows marked *c* are control instructions: they stop the instruction routine until their "
       "write-back. Rows marked *fma* are there in configurations with `arithmetic.fma` only.\n";
   for (int type = 0; type < kAluTypes; ++type) {
-    text += fmt::format("\n### {}: {} (unit {})\n\n| op | instruction | | meaning |\n| --- | --- | --- | --- |\n",
+    text += fmt::format("\n### {}: {} (type {})\n\n| op | instruction | | meaning |\n| --- | --- | --- | --- |\n",
                         kAluTable[type].name, kAluTable[type].title, type);
     for (const InstructionInfo& info : kInstructions) {
       if (static_cast<int>(info.alu()) != type) continue;

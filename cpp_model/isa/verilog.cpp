@@ -3,6 +3,7 @@
 
 #include <cctype>
 
+#include "isa/counters.hpp"
 #include "isa/encoding.hpp"
 #include "isa/reference.hpp"
 
@@ -15,7 +16,23 @@ std::string upper(std::string_view text) {
   return result;
 }
 
-/// Case labels, one line a unit, of the rows for which `wanted` is true. `separator` stands between unit and operation.
+/// BusyCycles: BUSY_CYCLES
+std::string words_in_upper_case(std::string_view name) {
+  std::string text;
+  for (const char c : name) {
+    if (c >= 'A' && c <= 'Z' && !text.empty()) text += '_';
+    text += c;
+  }
+  return upper(text);
+}
+
+/// The bits of a field of a Verilog vector.
+std::string slice(const Field& field, std::string_view vector) {
+  if (field.bits == 1) return fmt::format("{}[{}]", vector, field.lsb);
+  return fmt::format("{}[{}:{}]", vector, field.lsb + field.bits - 1, field.lsb);
+}
+
+/// Case labels, one line a type, of the rows for which `wanted` is true.
 template <typename Wanted>
 std::string labels(Wanted wanted) {
   std::string text;
@@ -25,36 +42,51 @@ std::string labels(Wanted wanted) {
     int in_line = 0;
     for (const InstructionInfo& info : kInstructions) {
       if (static_cast<int>(info.alu()) != type || !wanted(info)) continue;
-      if (in_line > 0) line += in_line % 16 == 0 ? ",\n        " : ", ";
+      if (in_line > 0) line += in_line % 14 == 0 ? ",\n        " : ", ";
+      if (in_line > 0 && in_line % 14 == 0) names += "\n        //  ";
       ++in_line;
       line += fmt::format("9'd{}", type * 32 + info.operation());
       names += fmt::format(" {}", info.mnemonic);
     }
     if (line.empty()) continue;
-    // The comma that parts this unit's labels from those before it opens the line: a comment ends it.
+    // The comma that parts this type's labels from those before it opens the line: a comment ends it.
     text += fmt::format("        // {}:{}\n        {}{}\n", kAluNames[static_cast<size_t>(type)], names, text.empty() ? "" : ", ",
                         line);
   }
   return text;
 }
 
-/// A function of unit and operation, true for the rows for which `wanted` is true.
+/// A function of ALU type and operation, true for the rows for which `wanted` is true.
 template <typename Wanted>
 std::string function_of_row(const char* name, const char* meaning, Wanted wanted) {
   return fmt::format(
       "\n  // {1}\n"
       "  function {0};\n"
-      "    input [3:0] unit;\n"
-      "    input [4:0] op;\n"
+      "    /* verilator lint_off UNUSEDSIGNAL */\n"
+      "    input [63:0] encoding;\n"
+      "    /* verilator lint_on UNUSEDSIGNAL */\n"
       "    begin\n"
-      "      case ({{unit, op}})\n"
+      "      case ({{{3}, {4}}})\n"
       "{2}"
       "          : {0} = 1'b1;\n"
       "        default: {0} = 1'b0;\n"
       "      endcase\n"
       "    end\n"
       "  endfunction\n",
-      name, meaning, labels(wanted));
+      name, meaning, labels(wanted), slice(field::kType, "encoding"), slice(field::kOperation, "encoding"));
+}
+
+/// Constants of the operands that an ALU is handed: bit n is set if an instruction of type n has the operand.
+std::string operands_of_types() {
+  std::string text = "\n  // whether an ALU type looks at an operand: bit n is that of type n\n";
+  for (const TaskOperand operand : kTaskOperands) {
+    unsigned types = 0;
+    for (const InstructionInfo& info : kInstructions) {
+      if (looks_at(info, operand)) types |= 1u << static_cast<unsigned>(info.alu());
+    }
+    text += fmt::format("  localparam [15:0] ISA_HAS_{} = 16'b{:016b};\n", upper(task_operand_name(operand)), types);
+  }
+  return text;
 }
 
 constexpr const char* kGenerated =
@@ -67,24 +99,32 @@ std::string verilog_name(AluType type) { return upper(alu_info(type).name); }
 std::string isa_verilog() {
   std::string text = fmt::format(fmt::runtime(kGenerated), "--verilog");
   text +=
-      "  // Constants of the instruction set. To be included inside a module body; rtl/isa_functions.vh has the decoding "
-      "functions.\n";
+      "  // Constants of the instruction set. To be included inside a module body; rtl/isa_functions.vh "
+      "decodes.\n";
   text += "  // A module uses some of them only.\n  /* verilator lint_off UNUSEDPARAM */\n\n";
-  text += "  // units\n";
+  text += "  // ALU types\n";
   for (int type = 0; type < kAluTypes; ++type) {
-    text += fmt::format("  localparam [3:0] ISA_UNIT_{} = 4'd{};\n", verilog_name(static_cast<AluType>(type)), type);
+    text += fmt::format("  localparam [3:0] ISA_TYPE_{} = 4'd{};\n", verilog_name(static_cast<AluType>(type)), type);
   }
   text += "\n  // operations\n";
   for (const InstructionInfo& info : kInstructions) {
     text +=
         fmt::format("  localparam [4:0] ISA_{}_{} = 5'd{};\n", verilog_name(info.alu()), upper(info.mnemonic), info.operation());
   }
-  text += "\n  // fields of an instruction\n";
-  for (const Field& each : kFields) {
-    text += fmt::format("  localparam integer ISA_{0}_LSB = {1};\n  localparam integer ISA_{0}_BITS = {2};\n", upper(each.name),
-                        each.lsb, each.bits);
-  }
+  text += operands_of_types();
   text += "  /* verilator lint_on UNUSEDPARAM */\n";
+  return text;
+}
+
+std::string isa_fields_verilog() {
+  std::string text = fmt::format(fmt::runtime(kGenerated), "--write");
+  text += "  // The fields of `instruction`, to be included behind its declaration. A module uses some of them only.\n";
+  text += "  /* verilator lint_off UNUSEDSIGNAL */\n";
+  for (const Field& each : kFields) {
+    const std::string range = each.bits == 1 ? "" : fmt::format(" [{}:0]", each.bits - 1);
+    text += fmt::format("  wire{} field_{} = {};\n", range, each.name, slice(each, "instruction"));
+  }
+  text += "  /* verilator lint_on UNUSEDSIGNAL */\n";
   return text;
 }
 
@@ -92,22 +132,18 @@ std::string isa_verilog_functions() {
   std::string text = fmt::format(fmt::runtime(kGenerated), "--verilog-functions");
   text +=
       "  // Decoding functions of the instruction set. To be included inside a module body; they need no constants. A label is\n";
-  text += "  // unit * 32 + operation.\n";
-  text += function_of_row("isa_legal_op", "every machine has this unit and operation",
+  text += "  // ALU type * 32 + operation.\n";
+  text += function_of_row("isa_legal_op", "every machine has this instruction",
                           [](const InstructionInfo& info) { return info.needs == Feature::Base; });
-  text += function_of_row("isa_legal_fma_op", "machines with arithmetic.fma have this unit and operation",
+  text += function_of_row("isa_legal_fma_op", "machines with arithmetic.fma have this instruction",
                           [](const InstructionInfo& info) { return info.needs == Feature::FusedMultiplyAdd; });
   text +=
       "\n  // the instruction has a table row, and the machine what it needs; fma: arithmetic.fma\n"
       "  function isa_legal;\n"
-      "    // Only unit and operation decide; the whole instruction is taken for the caller's convenience.\n"
-      "    /* verilator lint_off UNUSEDSIGNAL */\n"
-      "    input [63:0] instruction;\n"
-      "    /* verilator lint_on UNUSEDSIGNAL */\n"
+      "    input [63:0] encoding;\n"
       "    input fma;\n"
       "    begin\n"
-      "      isa_legal = isa_legal_op(instruction[63:60], instruction[59:55]) ||\n"
-      "                  (fma && isa_legal_fma_op(instruction[63:60], instruction[59:55]));\n"
+      "      isa_legal = isa_legal_op(encoding) || (fma && isa_legal_fma_op(encoding));\n"
       "    end\n"
       "  endfunction\n";
   text += function_of_row("isa_writes_register", "writes register rd",
@@ -116,6 +152,17 @@ std::string isa_verilog_functions() {
                           [](const InstructionInfo& info) { return writes_predicate(info); });
   text += function_of_row("isa_control", "stops the instruction routine until its write-back",
                           [](const InstructionInfo& info) { return info.kind == Kind::Control; });
+  return text;
+}
+
+std::string counters_verilog() {
+  std::string text = "  // Generated from cpp_model/isa/counters.hpp by `raypool isa --write`; a test compares. Do not edit.\n";
+  text += "  // Numbers of the performance counters; those of a row by type are of ALU type 0, and the other types' follow.\n";
+  text += "  // A module uses some of them only.\n  /* verilator lint_off UNUSEDPARAM */\n";
+  for (const CounterInfo& info : kCounters) {
+    text += fmt::format("  localparam integer COUNTER_{} = {};\n", words_in_upper_case(info.name), info.number);
+  }
+  text += "  /* verilator lint_on UNUSEDPARAM */\n";
   return text;
 }
 

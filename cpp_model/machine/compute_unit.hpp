@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "config/configuration.hpp"
+#include "isa/counters.hpp"
 #include "machine/memory.hpp"
 #include "machine/packages.hpp"
 
@@ -155,22 +156,6 @@ struct UnitTrace {
   std::vector<StoreEvent> stores;         ///< rising unit
   std::vector<RayWriteEvent> ray_writes;  ///< rising unit
 };
-
-/// Performance counters; the number is the RTL's counter_select_i. For those of an ALU type add the AluType's value.
-namespace counter {
-inline constexpr int kBusyCycles = 0;          ///< cycles in which a kernel ran
-inline constexpr int kInstructions = 1;        ///< warp instructions retired
-inline constexpr int kThreadInstructions = 2;  ///< sum of their thread masks' sizes
-inline constexpr int kInstructionCacheHits = 3;
-inline constexpr int kInstructionCacheMisses = 4;  ///< lookups that did not hit
-inline constexpr int kDataCacheHits = 5;           ///< quadword loads served by the cache at first try
-inline constexpr int kDataCacheMisses = 6;         ///< quadword loads that were parked
-inline constexpr int kDataCacheStores = 7;         ///< quadword stores
-inline constexpr int kUnused = 16;                 ///< + AluType: busy cycles x instances that were free for a task and got none
-inline constexpr int kWaiting = 24;  ///< + AluType: sum over busy cycles of the warps that wanted this type and were not granted
-inline constexpr int kIssued = 32;   ///< + AluType: tasks issued
-inline constexpr int kCount = 40;
-}  // namespace counter
 
 /// A signal inside Verilated RTL: where its value stands, as Verilator keeps it. No data: the engine has no such signal.
 struct Signal {

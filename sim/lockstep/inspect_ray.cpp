@@ -16,9 +16,9 @@ constexpr uint32_t kLastWord = kIntersectionWords - 1;  // alone in its beat
 
 void UnitInspection::check_ray_alu() {
   const RayAlu& ray = model_->ray();
-  const uint32_t slot = static_cast<uint32_t>(slots_.size()) - 1;  // the last type
+  const uint32_t instance = first_instance(configuration_, AluType::Ray);
   // What is idle on both sides needs no closer look.
-  if (!ray.active() && !ray.moves_rays() && parked_ == 0 && model_->ray_task() < 0 && (w_.ready.value() >> slot & 1) != 0 &&
+  if (!ray.active() && !ray.moves_rays() && parked_ == 0 && model_->ray_task() < 0 && (w_.ready.value() >> instance & 1) != 0 &&
       (ray_.hold_q.value() | ray_.busy.value() | w_.import_active.value() | w_.export_valid_o.value() | w_.ray_fault.value()) ==
           0)
     return;
@@ -37,9 +37,9 @@ void UnitInspection::check_ray_alu() {
     expect(ray_.input_q.bits(warp * 2, 2) | ray_.current_q.bits(warp * 2, 2) << 4 | ray_.output_q.bits(warp * 2, 2) << 8,
            roles.input | uint32_t{roles.current} << 4 | uint32_t{roles.output} << 8, kAlu, "ray ALU, roles of a warp's slices");
   }
-  expect(w_.ready.flag(slot), ray.ready(model_->ray_task()), kAlu, "ray ALU, ready");
-  expect(w_.done_valid.flag(slot), ray.done() != 0, kAlu, "ray ALU, done");
-  if (ray.done() != 0) expect(warp_field(w_.done_warp, slot), lowest(ray.done()), kAlu, "ray ALU, warp that is done");
+  expect(w_.ready.flag(instance), ray.ready(model_->ray_task()), kAlu, "ray ALU, ready");
+  expect(w_.done_valid.flag(instance), ray.done() != 0, kAlu, "ray ALU, done");
+  if (ray.done() != 0) expect(warp_field(w_.done_warp, instance), lowest(ray.done()), kAlu, "ray ALU, warp that is done");
   check_import();
   check_ray_ports();
 }

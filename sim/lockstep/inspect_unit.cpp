@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "isa/encoding.hpp"
 #include "lockstep/inspection.hpp"
 #include "lockstep/text.hpp"
 #include "machine/bits.hpp"
@@ -18,20 +19,25 @@ std::string scope_of(uint32_t unit) { return fmt::format("gen_unit[{}].compute_u
 
 bool is(const DecodedInstruction& instruction, AluType type) { return instruction.info->alu() == type; }
 
-// Which operands the instruction has.
-struct Uses {
-  bool a = false, b = false, c = false, px = false, pb = false;
-  explicit Uses(const DecodedInstruction& instruction) : b(instruction.uses_b) {
-    for (const Operand operand : instruction.info->operands) {
-      a |= operand == Operand::Ra || operand == Operand::Address;
-      c |= operand == Operand::Rc;
-      px |= operand == Operand::Px;
-      pb |= operand == Operand::Pb;
-    }
-  }
-};
+/// Instances of a type.
+uint32_t count_of(const Configuration& configuration, size_t type) {
+  return kAluTable[type].timed_by_events() ? 1 : static_cast<uint32_t>(configuration.alus[type].count);
+}
+
+std::string instance_scope(uint32_t unit, uint32_t instance) { return fmt::format("{}.gen_alu[{}]", scope_of(unit), instance); }
+
+/// The ALU of a type that a unit has one of.
+std::string alu_scope(const Configuration& configuration, uint32_t unit, AluType type) {
+  return fmt::format("{0}.gen_{1}.{1}_alu", instance_scope(unit, first_instance(configuration, type)), alu_info(type).name);
+}
 
 }  // namespace
+
+uint32_t first_instance(const Configuration& configuration, AluType type) {
+  uint32_t instance = 0;
+  for (size_t before = 0; before < static_cast<size_t>(type); ++before) instance += count_of(configuration, before);
+  return instance;
+}
 
 UnitInspection::UnitInspection(const Configuration& configuration, const ComputeUnit& rtl, const CycleUnit& model, uint32_t unit)
     : model_(&model),
@@ -41,11 +47,11 @@ UnitInspection::UnitInspection(const Configuration& configuration, const Compute
       warp_bits_(warps_ > 1 ? lowest(warps_) : 1),
       mshrs_(static_cast<uint32_t>(configuration.data_cache_mshrs)),
       w_(rtl, scope_of(unit)),
-      mem_(rtl, scope_of(unit) + ".mem_alu"),
-      cache_(rtl, scope_of(unit) + ".mem_alu.u_cache"),
-      miss_(rtl, scope_of(unit) + ".mem_alu.u_cache.u_miss_status"),
-      sequencer_(rtl, scope_of(unit) + ".mem_alu.u_sequencer"),
-      ray_(rtl, scope_of(unit) + ".ray_alu"),
+      mem_(rtl, alu_scope(configuration, unit, AluType::Mem)),
+      cache_(rtl, alu_scope(configuration, unit, AluType::Mem) + ".u_cache"),
+      miss_(rtl, alu_scope(configuration, unit, AluType::Mem) + ".u_cache.u_miss_status"),
+      sequencer_(rtl, alu_scope(configuration, unit, AluType::Mem) + ".u_sequencer"),
+      ray_(rtl, alu_scope(configuration, unit, AluType::Ray)),
       instruction_cache_(configuration) {
   for (const std::string* missing :
        {&w_.missing, &mem_.missing, &cache_.missing, &miss_.missing, &sequencer_.missing, &ray_.missing}) {
@@ -54,15 +60,17 @@ UnitInspection::UnitInspection(const Configuration& configuration, const Compute
   for (uint32_t type = 0; type < kAluTypes; ++type) {
     const AluConfiguration& alu = configuration.alus[type];
     const bool piped = !kAluTable[type].timed_by_events();
-    for (int number = 0; number < (piped ? alu.count : 1); ++number) {
-      Slot& slot = slots_.emplace_back();
-      slot.type = type;
-      slot.piped = piped;
-      slot.latency = static_cast<uint32_t>(alu.latency);
-      slot.depth = static_cast<uint32_t>(alu.depth);
-      const uint32_t bit = 1u << (slots_.size() - 1);
-      if (piped) piped_ |= bit;
-      if (piped && slot.latency > 1) paused_ |= bit;
+    for (uint32_t number = 0; number < count_of(configuration, type); ++number) {
+      const auto place = static_cast<uint32_t>(instances_.size());
+      task_.emplace_back(rtl, instance_scope(unit, place) + ".task_register");
+      if (missing_.empty()) missing_ = task_.back().missing;
+      Instance& instance = instances_.emplace_back();
+      instance.type = type;
+      instance.piped = piped;
+      instance.latency = static_cast<uint32_t>(alu.latency);
+      instance.depth = static_cast<uint32_t>(alu.depth);
+      if (piped) piped_ |= 1u << place;
+      if (piped && instance.latency > 1) paused_ |= 1u << place;
     }
   }
 }
@@ -78,7 +86,7 @@ void UnitInspection::reset(uint32_t program_length) {
   before_ = {};
   tasks_ = parked_ = 0;
   done_.fill(0);
-  for (Slot& slot : slots_) slot.ready_from = 0;
+  for (Instance& instance : instances_) instance.ready_from = 0;
 }
 
 void UnitInspection::argument_written() {
@@ -104,7 +112,7 @@ void UnitInspection::advance(const UnitTransfers& given) {
   alu_fault_ = w_.mem_fault.value() != 0 || w_.ray_fault.value() != 0;
   advance_memory_port(given);
   advance_fetch(given);
-  advance_slots();
+  advance_instances();
   wants_ = w_.want.value() & ~w_.grant.value();
   before_ = given;
 }
@@ -320,59 +328,62 @@ void UnitInspection::check_operands(uint32_t warp) {
   if (pc != issue.pc || low != static_cast<uint32_t>(encoding) || high != encoding >> 32)
     return find("rtl/instruction_buffer.v, rtl/warp.v",
                 fmt::format("warp {}: not the instruction, or not the PC, that was fetched", warp));
-  const Uses uses(*issue.instruction);
+  const auto uses = [&](TaskOperand operand) { return looks_at(*issue.instruction->info, operand); };
   const auto lanes_of = [&](const Wire& wire) { return wire.bits(warp * lanes_, lanes_); };
   const uint32_t all = lanes_ == 32 ? ~0u : (1u << lanes_) - 1;
   const char* predicates = "rtl/predicate_file.v, rtl/warp.v";
   expect(lanes_of(w_.retire_mask_o), issue.mask, predicates, "thread mask that was read");
-  if (uses.px) expect(lanes_of(w_.px), issue.px & all, predicates, "predicate px that was read");
-  if (uses.pb) expect(lanes_of(w_.pb), issue.pb & all, predicates, "predicate pb that was read");
+  if (uses(TaskOperand::PredicateX)) expect(lanes_of(w_.predicate_x), issue.px & all, predicates, "predicate px that was read");
+  if (uses(TaskOperand::PredicateB)) expect(lanes_of(w_.predicate_b), issue.pb & all, predicates, "predicate pb that was read");
   for (uint32_t mask = issue.mask; mask != 0; mask &= mask - 1) {
     const uint32_t lane = lowest(mask);
     const uint32_t row = warp * lanes_ + lane;
-    const bool same = (!uses.a || w_.a.word(row) == issue.a[lane]) &&
-                      (!uses.b || issue.instruction->b_is_immediate || w_.b.word(row) == issue.b[lane]) &&
-                      (!uses.c || w_.c.word(row) == issue.c[lane]);
+    const bool reads_b = uses(TaskOperand::OperandB) && !issue.instruction->b_is_immediate;
+    const bool same = (!uses(TaskOperand::OperandA) || w_.operand_a.word(row) == issue.a[lane]) &&
+                      (!reads_b || w_.operand_b.word(row) == issue.b[lane]) &&
+                      (!uses(TaskOperand::OperandC) || w_.operand_c.word(row) == issue.c[lane]);
     if (!same) return find("rtl/warp.v, rtl/ram_2r1w.v", fmt::format("warp {}, lane {}: a register was read wrong", warp, lane));
   }
 }
 
-// ---- Dispatcher
+// ---- Dispatcher and task registers
 
 void UnitInspection::check_tasks() {
-  const uint32_t valid = w_.task_valid.value();
-  expect(valid, tasks_, "rtl/dispatcher.v", "slots that get a task");
-  for (uint32_t slots = valid & tasks_; slots != 0; slots &= slots - 1) check_task(lowest(slots), slots_[lowest(slots)].task);
+  for (uint32_t i = 0; i < instances_.size(); ++i) {
+    const bool expected = (tasks_ >> i & 1) != 0;
+    expect(task_[i].task_valid_o.value(), expected, "rtl/task_register.v, rtl/dispatcher.v", "an instance gets a task");
+    if (expected && task_[i].task_valid_o.value() != 0) check_task(i, instances_[i].task);
+  }
 }
 
-void UnitInspection::check_task(uint32_t s, uint32_t warp) {
+void UnitInspection::check_task(uint32_t instance, uint32_t warp) {
+  const TaskWires& task = task_[instance];
   const CycleUnit::Issue& issue = model_->issue(warp);
   const DecodedInstruction& instruction = *issue.instruction;
-  const Uses uses(instruction);
-  const bool has_immediate = is(instruction, AluType::Tid) || is(instruction, AluType::Mem);
-  bool same = warp_field(w_.task_warp, s) == warp && w_.task_op.bits(s * 5, 5) == operation_of(instruction.opcode) &&
-              w_.task_mask.bits(s * lanes_, lanes_) == issue.mask &&
-              (!has_immediate || w_.task_imm.word(s) == instruction.immediate) &&
-              (!is(instruction, AluType::Ray) || w_.task_x.bits(s * 5, 5) == instruction.x) &&
-              (!uses.px || ((w_.task_px.bits(s * lanes_, lanes_) ^ issue.px) & issue.mask) == 0) &&
-              (!uses.pb || ((w_.task_pb.bits(s * lanes_, lanes_) ^ issue.pb) & issue.mask) == 0);
+  const auto unused = [&](TaskOperand operand) { return !looks_at(*instruction.info, operand); };
+  bool same = task.task_warp_o.value() == warp && task.task_operation_o.value() == operation_of(instruction.opcode) &&
+              task.task_mask_o.value() == issue.mask &&
+              (unused(TaskOperand::Immediate) || task.task_immediate_o.value() == instruction.immediate) &&
+              (unused(TaskOperand::Word) || task.task_word_o.value() == instruction.x) &&
+              (unused(TaskOperand::PredicateX) || ((task.task_predicate_x_o.value() ^ issue.px) & issue.mask) == 0) &&
+              (unused(TaskOperand::PredicateB) || ((task.task_predicate_b_o.value() ^ issue.pb) & issue.mask) == 0);
   for (uint32_t mask = issue.mask; same && mask != 0; mask &= mask - 1) {
     const uint32_t lane = lowest(mask);
-    const uint32_t row = s * lanes_ + lane;
-    same = (!uses.a || w_.task_a.word(row) == issue.a[lane]) && (!uses.b || w_.task_b.word(row) == issue.b[lane]) &&
-           (!uses.c || w_.task_c.word(row) == issue.c[lane]);
+    same = (unused(TaskOperand::OperandA) || task.task_operand_a_o.word(lane) == issue.a[lane]) &&
+           (unused(TaskOperand::OperandB) || task.task_operand_b_o.word(lane) == issue.b[lane]) &&
+           (unused(TaskOperand::OperandC) || task.task_operand_c_o.word(lane) == issue.c[lane]);
   }
-  if (!same) find("rtl/dispatcher.v", fmt::format("slot {}: the task is not that of warp {}", s, warp));
+  if (!same) find("rtl/task_register.v", fmt::format("instance {}: the task is not that of warp {}", instance, warp));
 }
 
 void UnitInspection::check_ready() {
   uint32_t ready = piped_;
-  for (uint32_t slots = paused_; slots != 0; slots &= slots - 1) {
-    if (now_ < slots_[lowest(slots)].ready_from) ready &= ~(1u << lowest(slots));
+  for (uint32_t rest = paused_; rest != 0; rest &= rest - 1) {
+    if (now_ < instances_[lowest(rest)].ready_from) ready &= ~(1u << lowest(rest));
   }
   const uint32_t wrong = (ready ^ w_.ready.value()) & piped_;
   if (wrong != 0) {
-    const std::string files = fmt::format("rtl/alu_pipeline.v, rtl/{}_alu.v", kAluNames[slots_[lowest(wrong)].type]);
+    const std::string files = fmt::format("rtl/alu_pipeline.v, rtl/{}_alu.v", kAluNames[instances_[lowest(wrong)].type]);
     find(files.c_str(), "the ALU takes its next task too early or too late");
   }
 }
@@ -382,64 +393,66 @@ void UnitInspection::check_dispatch() {
   uint32_t left = w_.want.value(), granted = 0;
   const uint32_t ready = w_.ready.value();
   tasks_ = 0;
-  for (uint32_t s = 0; left != 0 && s < slots_.size(); ++s) {
-    if ((ready >> s & 1) == 0) continue;
+  for (uint32_t i = 0; left != 0 && i < instances_.size(); ++i) {
+    if ((ready >> i & 1) == 0) continue;
     for (uint32_t warps = left; warps != 0; warps &= warps - 1) {
       const uint32_t warp = lowest(warps);
-      if (w_.retire_instruction_o.bits(warp * 64 + 60, 4) != slots_[s].type) continue;
-      slots_[s].task = warp;
+      if (w_.wanted_type.bits(warp * field::kType.bits, field::kType.bits) != instances_[i].type) continue;
+      instances_[i].task = warp;
       left &= ~(1u << warp);
       granted |= 1u << warp;
-      tasks_ |= 1u << s;
+      tasks_ |= 1u << i;
       break;
     }
   }
   expect(w_.grant.value(), granted, "rtl/dispatcher.v", "dispatcher, warps that are granted");
-  expect(w_.slot_grant.value(), tasks_, "rtl/dispatcher.v", "dispatcher, slots that are given a task");
+  expect(w_.instance_grant.value(), tasks_, "rtl/dispatcher.v", "dispatcher, instances that are given a task");
 }
 
 // ---- ALUs
 
-void UnitInspection::advance_slots() {
+void UnitInspection::advance_instances() {
   done_[now_ % kRing] = 0;
-  for (uint32_t slots = w_.task_valid.value() & piped_; slots != 0; slots &= slots - 1) {
-    Slot& slot = slots_[lowest(slots)];
-    done_[(now_ + slot.depth) % kRing] |= 1u << lowest(slots);
-    slot.under_way[(now_ + slot.depth) % kRing] = static_cast<uint8_t>(warp_field(w_.task_warp, lowest(slots)));
+  for (uint32_t rest = piped_; rest != 0; rest &= rest - 1) {
+    const TaskWires& task = task_[lowest(rest)];
+    if (task.task_valid_o.value() == 0) continue;
+    Instance& instance = instances_[lowest(rest)];
+    done_[(now_ + instance.depth) % kRing] |= 1u << lowest(rest);
+    instance.under_way[(now_ + instance.depth) % kRing] = static_cast<uint8_t>(task.task_warp_o.value());
   }
-  for (uint32_t slots = w_.slot_grant.value() & paused_; slots != 0; slots &= slots - 1)
-    slots_[lowest(slots)].ready_from = now_ + slots_[lowest(slots)].latency;
+  for (uint32_t rest = w_.instance_grant.value() & paused_; rest != 0; rest &= rest - 1)
+    instances_[lowest(rest)].ready_from = now_ + instances_[lowest(rest)].latency;
 }
 
 void UnitInspection::check_done() {
   const uint32_t done = w_.done_valid.value(), expected = done_[now_ % kRing];
-  for (uint32_t slots = done | expected; slots != 0; slots &= slots - 1) {
-    const uint32_t s = lowest(slots);
-    const Slot& slot = slots_[s];
-    const uint32_t warp = warp_field(w_.done_warp, s);
-    const bool in_time = ((done ^ expected) >> s & 1) == 0 && slot.under_way[now_ % kRing] == warp;
-    if (slot.piped && !in_time) {
-      const std::string files = fmt::format("rtl/alu_pipeline.v, rtl/{}_alu.v", kAluNames[slot.type]);
+  for (uint32_t rest = done | expected; rest != 0; rest &= rest - 1) {
+    const uint32_t i = lowest(rest);
+    const Instance& instance = instances_[i];
+    const uint32_t warp = warp_field(w_.done_warp, i);
+    const bool in_time = ((done ^ expected) >> i & 1) == 0 && instance.under_way[now_ % kRing] == warp;
+    if (instance.piped && !in_time) {
+      const std::string files = fmt::format("rtl/alu_pipeline.v, rtl/{}_alu.v", kAluNames[instance.type]);
       find(files.c_str(), "the ALU is done too early or too late, or with another warp");
     } else if (warp < warps_ && model_->issue(warp).instruction != nullptr) {
-      check_result(s, warp);
+      check_result(i, warp);
     }
   }
 }
 
-void UnitInspection::check_result(uint32_t s, uint32_t warp) {
+void UnitInspection::check_result(uint32_t instance, uint32_t warp) {
   const CycleUnit::Issue& issue = model_->issue(warp);
   const DecodedInstruction& instruction = *issue.instruction;
-  if (static_cast<uint32_t>(instruction.alu()) != slots_[s].type) return;
+  if (static_cast<uint32_t>(instruction.alu()) != instances_[instance].type) return;
   bool same = true;
   if (instruction.writes_register) {
     for (uint32_t mask = issue.mask; same && mask != 0; mask &= mask - 1)
-      same = w_.done_data.word(s * lanes_ + lowest(mask)) == issue.data[lowest(mask)];
+      same = w_.done_data.word(instance * lanes_ + lowest(mask)) == issue.data[lowest(mask)];
   } else if (instruction.writes_predicate) {
-    same = (w_.done_pred.bits(s * lanes_, lanes_) & issue.mask) == issue.predicate;
+    same = (w_.done_predicate.bits(instance * lanes_, lanes_) & issue.mask) == issue.predicate;
   } else if (instruction.kind == Kind::Control) {
     const bool taken = BrhAlu::taken(instruction.opcode, issue.mask);
-    same = w_.done_pred.flag(s * lanes_) == taken;
+    same = w_.done_predicate.flag(instance * lanes_) == taken;
   }
   if (!same) {
     find(result_files(instruction, configuration_).c_str(),
@@ -449,12 +462,12 @@ void UnitInspection::check_result(uint32_t s, uint32_t warp) {
 
 void UnitInspection::check_retired() {
   uint32_t retired = 0;
-  for (uint32_t slots = w_.done_valid.value(); slots != 0; slots &= slots - 1) {
-    const uint32_t s = lowest(slots);
-    const uint32_t warp = warp_field(w_.done_warp, s);
+  for (uint32_t rest = w_.done_valid.value(); rest != 0; rest &= rest - 1) {
+    const uint32_t i = lowest(rest);
+    const uint32_t warp = warp_field(w_.done_warp, i);
     retired |= 1u << warp;
     for (uint32_t lane = 0; lane < lanes_; ++lane) {
-      if (w_.retire_data_o.word(warp * lanes_ + lane) != w_.done_data.word(s * lanes_ + lane))
+      if (w_.retire_data_o.word(warp * lanes_ + lane) != w_.done_data.word(i * lanes_ + lane))
         return find("rtl/warp.v", fmt::format("warp {} takes another result than that of its ALU", warp));
     }
   }

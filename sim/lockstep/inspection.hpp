@@ -32,6 +32,9 @@ struct UnitTransfers {
   Beat beat{};
 };
 
+/// Number of the first ALU instance of a type: they stand by type, in the order of the types' numbers.
+uint32_t first_instance(const Configuration& configuration, AluType type);
+
 /// One compute unit.
 class UnitInspection {
  public:
@@ -53,7 +56,7 @@ class UnitInspection {
  private:
   static constexpr size_t kMostFindings = 3;
   static constexpr uint32_t kRing = 64;  // more cycles than the deepest ALU has stages
-  struct Slot {
+  struct Instance {
     uint32_t type = 0;
     bool piped = false;  // done a fixed number of cycles after its task
     uint32_t latency = 1, depth = 1;
@@ -74,7 +77,7 @@ class UnitInspection {
 
   void advance_fetch(const UnitTransfers& given);
   void advance_memory_port(const UnitTransfers& given);
-  void advance_slots();
+  void advance_instances();
   void check_launch();
   void check_memory_port();
   void check_faults();
@@ -84,11 +87,11 @@ class UnitInspection {
   void check_wants();
   void check_operands(uint32_t warp);
   void check_tasks();
-  void check_task(uint32_t slot, uint32_t warp);
+  void check_task(uint32_t instance, uint32_t warp);
   void check_ready();
   void check_dispatch();
   void check_done();
-  void check_result(uint32_t slot, uint32_t warp);
+  void check_result(uint32_t instance, uint32_t warp);
   void check_retired();
   void check_memory_alu();
   void check_access();
@@ -103,6 +106,7 @@ class UnitInspection {
   Configuration configuration_;
   uint32_t warps_, lanes_, warp_bits_, mshrs_;
   UnitWires w_;
+  std::vector<TaskWires> task_;  // [instance] its task register
   MemWires mem_;
   CacheWires cache_;
   MissWires miss_;
@@ -123,10 +127,10 @@ class UnitInspection {
   bool lookup_ = false, lookup_hit_ = false;
   uint32_t lookup_warp_ = 0, lookup_pc_ = 0;
   Port port_;
-  std::vector<Slot> slots_;
-  uint32_t piped_ = 0, paused_ = 0;     // slots that are pipelined; that need a pause between tasks
-  uint32_t tasks_ = 0;                  // slots whose task register is to be valid
-  std::array<uint32_t, kRing> done_{};  // [cycle % kRing] slots that are to be done
+  std::vector<Instance> instances_;
+  uint32_t piped_ = 0, paused_ = 0;     // instances that are pipelined; that need a pause between tasks
+  uint32_t tasks_ = 0;                  // instances whose task register is to be valid
+  std::array<uint32_t, kRing> done_{};  // [cycle % kRing] instances that are to be done
   uint32_t parked_ = 0;
   uint32_t warp_faults_ = 0;  // of the cycle before
   bool alu_fault_ = false;

@@ -104,6 +104,11 @@ TEST_P(Inspected, NamesTheFileOfTheSignal) {
   FAIL() << "nothing was found in 60 programs";
 }
 
+// ALU instances stand by type, and there is one of each.
+#define INT_INSTANCE ".gen_alu[3]"
+#define MEM_ALU ".gen_alu[2].gen_mem.mem_alu"
+#define RAY_ALU ".gen_alu[6].gen_ray.ray_alu"
+
 // What each block gives to the others.
 const Tamper kTampers[] = {
     {"", "waiting_launch", "launcher.v", 0},
@@ -119,31 +124,31 @@ const Tamper kTampers[] = {
     {"", "fetched", "instruction_cache.v"},
     {"", "refill_done", "instruction_cache.v", 2},
     {"", "want", "instruction_buffer.v"},
-    {"", "px", "predicate_file.v"},
-    {"", "a", "warp.v"},
-    {"", "slot_grant", "dispatcher.v"},
-    {"", "task_valid", "dispatcher.v"},
-    {"", "task_a", "dispatcher.v"},
+    {"", "predicate_x", "predicate_file.v"},
+    {"", "operand_a", "warp.v"},
+    {"", "instance_grant", "dispatcher.v"},
+    {INT_INSTANCE ".task_register", "task_valid_o", "task_register.v"},
+    {INT_INSTANCE ".task_register", "task_operand_a_o", "task_register.v"},
     {"", "ready", "alu_pipeline.v"},
     {"", "done_valid", "alu_pipeline.v"},
     {"", "retire_data_o", "warp.v"},
     {"", "memory_request_address_o", "memory_arbiter.v", 2},
     {"", "export_data_o", "ray_export.v", 2},
-    {".mem_alu", "pass_q", "mem_alu.v"},
-    {".mem_alu", "quad_data", "data_cache.v"},
-    {".mem_alu", "allocates", "data_cache.v", 2},
-    {".mem_alu", "queue_count", "request_queue.v", 2},
-    {".mem_alu.u_cache", "found", "data_cache.v", 2},
-    {".mem_alu.u_cache", "match", "miss_status.v", 0},
-    {".mem_alu.u_cache.u_miss_status", "busy_q", "miss_status.v", 2},
-    {".mem_alu.u_cache.u_miss_status", "waiters_q", "miss_status.v", 2},
-    {".mem_alu.u_sequencer", "parked_q", "memory_sequencer.v", 2},
-    {".mem_alu.u_sequencer", "next_valid_q", "memory_sequencer.v", 2},
-    {".ray_alu", "hold_q", "ray_alu.v", 0},
-    {".ray_alu", "parked_in_q", "ray_alu.v", 0},
-    {".ray_alu", "full", "ray_import.v", 2},
-    {".ray_alu", "import_data", "ray_import.v", 2},
-    {".ray_alu", "busy", "ray_export.v", 2},
+    {MEM_ALU, "pass_q", "mem_alu.v"},
+    {MEM_ALU, "quad_data", "data_cache.v"},
+    {MEM_ALU, "allocates", "data_cache.v", 2},
+    {MEM_ALU, "queue_count", "request_queue.v", 2},
+    {MEM_ALU ".u_cache", "found", "data_cache.v", 2},
+    {MEM_ALU ".u_cache", "match", "miss_status.v", 0},
+    {MEM_ALU ".u_cache.u_miss_status", "busy_q", "miss_status.v", 2},
+    {MEM_ALU ".u_cache.u_miss_status", "waiters_q", "miss_status.v", 2},
+    {MEM_ALU ".u_sequencer", "parked_q", "memory_sequencer.v", 2},
+    {MEM_ALU ".u_sequencer", "next_valid_q", "memory_sequencer.v", 2},
+    {RAY_ALU, "hold_q", "ray_alu.v", 0},
+    {RAY_ALU, "parked_in_q", "ray_alu.v", 0},
+    {RAY_ALU, "full", "ray_import.v", 2},
+    {RAY_ALU, "import_data", "ray_import.v", 2},
+    {RAY_ALU, "busy", "ray_export.v", 2},
 };
 
 INSTANTIATE_TEST_SUITE_P(Blocks, Inspected, testing::ValuesIn(kTampers),

@@ -97,11 +97,11 @@ class AluBench {
     const uint32_t warp = random_() % 8;
     top_.task_valid_i = 1;
     top_.task_warp_i = warp;
-    top_.task_op_i = operation_of(opcode_);
+    top_.task_operation_i = operation_of(opcode_);
     top_.task_mask_i = mask_;
     for (int l = 0; l < kBenchLanes; ++l) {
-      top_.task_a_i[l] = a_[l];
-      top_.task_b_i[l] = b_[l];
+      top_.task_operand_a_i[l] = a_[l];
+      top_.task_operand_b_i[l] = b_[l];
       set_third(top_, l, c_[l], 0);
     }
     for (size_t u = 0; u < units_.size(); ++u) {
@@ -112,21 +112,21 @@ class AluBench {
     }
     clock();
     top_.task_valid_i = 0;
-    top_.task_a_i[0] = static_cast<uint32_t>(random_());  // nobody may look at it
+    top_.task_operand_a_i[0] = static_cast<uint32_t>(random_());  // nobody may look at it
     lanes_ = 0;
     mask_ = 0;
   }
 
-  /// The third operand, of tops that have one; where there are predicates its lowest bits are task_px_i and task_pb_i.
+  /// The third operand, of tops that have one; where there are predicates its lowest bits are task_predicate_x_i and task_predicate_b_i.
   template <typename T>
-  static auto set_third(T& top, int lane, uint32_t c, int) -> decltype(void(top.task_c_i[0])) {
-    top.task_c_i[lane] = c;
+  static auto set_third(T& top, int lane, uint32_t c, int) -> decltype(void(top.task_operand_c_i[0])) {
+    top.task_operand_c_i[lane] = c;
   }
   template <typename T>
-  static auto set_third(T& top, int lane, uint32_t c, long) -> decltype(void(top.task_px_i)) {
+  static auto set_third(T& top, int lane, uint32_t c, long) -> decltype(void(top.task_predicate_x_i)) {
     const uint32_t others = ~(1u << lane);
-    top.task_px_i = (top.task_px_i & others) | (c & 1) << lane;
-    top.task_pb_i = (top.task_pb_i & others) | (c >> 1 & 1) << lane;
+    top.task_predicate_x_i = (top.task_predicate_x_i & others) | (c & 1) << lane;
+    top.task_predicate_b_i = (top.task_predicate_b_i & others) | (c >> 1 & 1) << lane;
   }
   template <typename T>
   static void set_third(T&, int, uint32_t, ...) {}
@@ -138,7 +138,7 @@ class AluBench {
   }
   template <typename T>
   static uint32_t result_of(const T& top, size_t index, long) {
-    return top.done_pred_o >> index & 1;
+    return top.done_predicate_o >> index & 1;
   }
 
   void clock() {

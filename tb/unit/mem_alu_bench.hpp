@@ -127,12 +127,12 @@ class MemAluBench {
     if (task) {
       ASSERT_TRUE(ready_) << "bench: task without ready";
       u.task_warp_i = task->warp;
-      u.task_op_i = task->store;
+      u.task_operation_i = task->store;
       u.task_mask_i = task->mask;
-      u.task_imm_i = task->immediate;
+      u.task_immediate_i = task->immediate;
       for (int lane = 0; lane < kLanes; ++lane) {
-        put(u.task_a_i, lane, task->address[lane] - task->immediate);
-        put(u.task_b_i, lane, task->data[lane]);
+        put(u.task_operand_a_i, lane, task->address[lane] - task->immediate);
+        put(u.task_operand_b_i, lane, task->data[lane]);
       }
       ASSERT_FALSE(flights[task->warp]) << "bench: warp has a task";
       if (!busy()) last_done_ = cycle;

@@ -211,11 +211,11 @@ class RayAluBench {
   void drive(const RayTask* task) {
     unit_->task_valid_i = task != nullptr;
     unit_->task_warp_i = task != nullptr ? task->warp : below(kWarps);
-    unit_->task_op_i = task != nullptr ? static_cast<uint32_t>(task->op) : below(5);
-    unit_->task_x_i = task != nullptr ? task->word : below(32);
+    unit_->task_operation_i = task != nullptr ? static_cast<uint32_t>(task->op) : below(5);
+    unit_->task_word_i = task != nullptr ? task->word : below(32);
     unit_->task_mask_i = task != nullptr ? task->mask : static_cast<uint32_t>(random()) & kAllLanes;
     for (uint32_t lane = 0; lane < kLanes; ++lane) {
-      put(unit_->task_b_i, lane,
+      put(unit_->task_operand_b_i, lane,
           task != nullptr && lane < task->data.size() ? task->data[lane] : static_cast<uint32_t>(random()));
     }
     unit_->import_start_i = start_.has_value();

@@ -73,7 +73,7 @@ module check (
       fault_q <= illegal || outside || (fault_q && halt_i);
       if (illegal || outside) fault_pc_q <= illegal ? fetched_pc_q : pc_i;
     end
-  wire control = isa_control(instruction[63:60], instruction[59:55]);
+  wire control = isa_control(instruction);
   always @* begin
     assume (!pc_valid_i || step);
     assume (!fetch_grant_i || fetch);
@@ -88,8 +88,8 @@ module check (
       assert (!(steps && stepped_q));
       assert (!(fetched && fetched_q));
       assert (!fetch || (stepped_q && fetch_pc == stepped_pc_q));
-      assert (!read || isa_legal_op(instruction[63:60], instruction[59:55]));
-      assert (!illegal || (fetched_q && !isa_legal_op(fetched_instruction_q[63:60], fetched_instruction_q[59:55])));
+      assert (!read || isa_legal_op(instruction));
+      assert (!illegal || (fetched_q && !isa_legal_op(fetched_instruction_q)));
       assert (!fetch || fetch_pc < length);
       assert (!(step && (read || under_way_q) && control));
       assert (!(halt_i && (step || fetch || want)));
