@@ -20,7 +20,7 @@ module compute_unit #(
   // set by the host before a launch, constant while a kernel runs
   input  wire [15:0]               program_length_i,   // instructions
   input  wire [31:0]               memory_limit_i,     // bytes
-  input  wire                      argument_write_i,   // while idle; invalidates the caches, too, as memory may have changed
+  input  wire                      argument_write_i,   // while idle; invalidates the caches, as memory may have changed
   input  wire [4:0]                argument_index_i,
   input  wire [31:0]               argument_data_i,
   // launch

@@ -24,7 +24,7 @@ module multiprocessor #(
   // for every unit: set by the host before a launch, constant while a kernel runs
   input  wire [15:0]                     program_length_i,   // instructions
   input  wire [31:0]                     memory_limit_i,     // bytes
-  input  wire                            argument_write_i,   // while idle; invalidates the caches: memory may have changed
+  input  wire                            argument_write_i,   // while idle; invalidates the caches
   input  wire [4:0]                      argument_index_i,
   input  wire [31:0]                     argument_data_i,
   // launch of one block

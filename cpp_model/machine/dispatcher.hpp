@@ -1,5 +1,4 @@
-// rtl/dispatcher.v: gives every free ALU instance the lowest warp that wants its type, and holds the tasks of Mem and Ray. Those
-// of the pipelined types are over before they begin: when a task is granted, the cycle in which it will be done is known.
+// rtl/dispatcher.v: gives every free ALU instance the lowest warp that wants its type, and keeps the task registers behind it.
 #pragma once
 
 #include <array>
@@ -9,6 +8,7 @@
 #include "machine/alu_pipeline.hpp"
 #include "machine/bits.hpp"
 #include "machine/performance_counters.hpp"
+#include "machine/task_register.hpp"
 #include "machine/timeline.hpp"
 
 namespace raypool {
@@ -27,7 +27,7 @@ class Dispatcher {
   void reset() {
     want_types_ = 0;
     want_.fill(0);
-    task_.fill(-1);
+    for (TaskRegister& task : task_) task.clear();
     for (auto& pipelines : pipelines_) {
       for (AluPipeline& pipeline : pipelines) pipeline.reset();
     }
@@ -36,7 +36,7 @@ class Dispatcher {
   uint32_t instances(size_t type) const { return instances_[type]; }
   uint32_t depth(size_t type) const { return pipelines_[type][0].depth(); }
   /// The warp whose task arrives at Mem or Ray in this cycle, or -1.
-  int task(AluType type) const { return task_[static_cast<size_t>(type)]; }
+  int task(AluType type) const { return task_[static_cast<size_t>(type)].warp(); }
   uint32_t wants(AluType type) const { return want_[static_cast<size_t>(type)]; }
   bool wants_pipelined() const { return want_types_ != 0; }
   bool idle() const {
@@ -74,14 +74,14 @@ class Dispatcher {
     const size_t type = static_cast<size_t>(alu);
     uint32_t& want = want_[type];
     if (ready) {
-      task_[type] = static_cast<int>(lowest(want));
+      task_[type].grant(lowest(want));
       want &= want - 1;
       ++counters.issued[type];
     }
     counters.waiting[type] += popcount(want);
   }
   /// The task has arrived.
-  void arrived(AluType type) { task_[static_cast<size_t>(type)] = -1; }
+  void arrived(AluType type) { task_[static_cast<size_t>(type)].clear(); }
   /// From the next cycle on nothing is granted.
   void halt() { want_types_ = 0; }
 
@@ -97,7 +97,7 @@ class Dispatcher {
   std::array<uint32_t, kAluTypes> want_{};  // [type] those warps
   std::array<uint32_t, kAluTypes> instances_{};
   std::array<std::array<AluPipeline, kMostInstances>, kAluTypes> pipelines_{};
-  std::array<int, kAluTypes> task_{};  // [type] of Mem and Ray: task_valid and task_warp
+  std::array<TaskRegister, kAluTypes> task_;  // [type] of Mem and Ray
 };
 
 }  // namespace raypool

@@ -17,8 +17,6 @@ constexpr uint32_t kInstructionId = 16;
 
 std::string scope_of(uint32_t unit) { return fmt::format("gen_unit[{}].compute_unit", unit); }
 
-bool is(const DecodedInstruction& instruction, AluType type) { return instruction.info->alu() == type; }
-
 /// Instances of a type.
 uint32_t count_of(const Configuration& configuration, size_t type) {
   return kAluTable[type].timed_by_events() ? 1 : static_cast<uint32_t>(configuration.alus[type].count);

@@ -1,11 +1,11 @@
-// Four warps, two instances of type 1 (numbers 0 and 2) and one of type 2, with pipelines of other latencies and depths.
-// What instance 0 is granted goes to a task register of each type, too.
+// Four warps, two instances of type 1 (numbers 0 and 2) and one of type 2, with pipelines of other latencies and
+// depths. What instance 0 is granted goes to a task register of each type, too.
 // @modules dispatcher task_register alu_pipeline
 // @zeros
 // @proves a grant goes to a warp that wants, to one instance of its type, which is ready; no warp gets two
 // @proves the lowest warp wins the lowest instance; nobody waits beside a ready one; waiting_o shows those who wait
 // @proves a task register holds of each operand that its type has what the warp that won offered, else zero
-// @proves a busy ALU gets no task: LATENCY cycles lie between two; a task is done DEPTH cycles later, once, with its warp
+// @proves a busy ALU gets no task: LATENCY cycles lie between two; a task is done DEPTH cycles later, with its warp
 // @break dispatcher s/if \(ready_i\[i\]\)/if (1'b1)/
 // @break dispatcher s/want_i\[w\] && !grant_o\[w\] && type/want_i[w] \&\& type/
 // @break dispatcher s/candidates & \(~candidates \+ ONE\)/candidates \& ~(candidates >> 1)/
