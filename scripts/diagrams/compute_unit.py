@@ -29,7 +29,7 @@ def warp(picture):
     picture.wire((415, 194), (415, 222))
     picture.text(422, 212, "PC 16")
     picture.wire((510, 246), (555, 246), (555, 171), (600, 171))
-    picture.text(516, 164, "guard, px, pb")
+    picture.text(516, 164, "guard, x, b")
     picture.wire((510, 272), (600, 272))
     picture.text(516, 288, "ra, rb, rd")
 
@@ -40,14 +40,18 @@ def dispatch(picture):
     picture.wire((709, 326), (709, 352))
     picture.text(717, 346, "mask, operands")
     picture.box(
-        (64, 352, 774, 76),
+        (64, 352, 774, 46),
         "dispatcher",
+        ["every ready ALU instance is granted to the lowest warp that wants its type and has none yet"],
+    )
+    picture.box(
+        (64, 408, 774, 60),
+        "task_register",
         [
-            "every ready ALU instance is granted to the lowest warp that wants its type and has none yet; "
-            "it latches a task:",
-            "warp, op 5, mask LANES, a and b (and c) LANES x 32, immediate 32, x 5, px and pb LANES;",
-            "there are 1 .. 4 instances (TID_COUNT ..) of each of the five left types",
+            "warp, operation 5, mask LANES, operands a and b (and c) LANES x 32, immediate 32, word 5,",
+            "predicates x and b LANES; 1 .. 4 instances (TID_COUNT ..) of each of the five left types",
         ],
+        times=" x INSTANCES",
     )
 
 
@@ -64,39 +68,39 @@ ALUS = [  # left edge, width, name, modules inside, notes
 
 def alus(picture):
     for x, width, name, parts, notes in ALUS:
-        picture.wire((x + width / 2, 428), (x + width / 2, 462), both=True)
-        picture.box((x, 462, width, 116), name, notes, "box", parts)
-        picture.line((x + 16, 578), (x + 16, 604))
-    picture.text(444, 450, "task, ready", anchor="middle")
-    picture.wire((80, 604), (866, 604), (866, 220), (846, 220))
-    picture.text(64, 622, "done, registered: valid, warp, data LANES x 32, predicate LANES; written back in that cycle")
+        picture.wire((x + width / 2, 468), (x + width / 2, 498), both=True)
+        picture.box((x, 498, width, 116), name, notes, "box", parts)
+        picture.line((x + 16, 614), (x + 16, 640))
+    picture.text(444, 486, "task, ready", anchor="middle")
+    picture.wire((80, 640), (866, 640), (866, 220), (846, 220))
+    picture.text(64, 658, "done, registered: valid, warp, data LANES x 32, predicate LANES; written back in that cycle")
 
 
 def memory(picture):
-    picture.wire((44, 306), (44, 678), (560, 678), both=True)
-    picture.text(52, 670, "line wanted by the instruction cache: address 32; back: 4 beats of 128 bits")
-    picture.wire((660, 578), (660, 654), both=True)
-    picture.text(652, 646, "lines, quadwords", anchor="end")
-    picture.box((560, 654, 150, 46), "memory_arbiter", ["instructions first"])
-    picture.box((64, 704, 262, 46), "performance_counters", ["events of all blocks, 64 bits each"])
+    picture.wire((44, 306), (44, 714), (560, 714), both=True)
+    picture.text(52, 706, "line wanted by the instruction cache: address 32; back: 4 beats of 128 bits")
+    picture.wire((660, 614), (660, 690), both=True)
+    picture.text(652, 682, "lines, quadwords", anchor="end")
+    picture.box((560, 690, 150, 46), "memory_arbiter", ["instructions first"])
+    picture.box((64, 740, 262, 46), "performance_counters", ["events of all blocks, 64 bits each"])
 
 
 def ports(picture):
-    picture.wire((635, 700), (635, 788), both=True)
-    picture.text(627, 784, "memory request: address 32, data 128, mask 4, id 5 (valid/ready)", anchor="end")
-    picture.text(627, 800, "response: beat of 128 bits, its number 2, id 5 (always taken)", anchor="end")
+    picture.wire((635, 736), (635, 824), both=True)
+    picture.text(627, 820, "memory request: address 32, data 128, mask 4, id 5 (valid/ready)", anchor="end")
+    picture.text(627, 836, "response: beat of 128 bits, its number 2, id 5 (always taken)", anchor="end")
     for x, y, words in [
-        (766, 788, "import: 6 beats"),
-        (796, 808, "export: ray, 3 beats"),
-        (826, 828, "frame: pixel 32, colour 96"),
+        (766, 824, "import: 6 beats"),
+        (796, 844, "export: ray, 3 beats"),
+        (826, 864, "frame: pixel 32, colour 96"),
     ]:
-        picture.wire((x, 578), (x, y), both=x == 766)
+        picture.wire((x, 614), (x, y), both=x == 766)
         picture.text(x - 6, y - 3, words, anchor="end")
 
 
 def draw():
-    picture = Picture(840, "raypool: the compute unit")
-    picture.group((16, 40, 868, 722))
+    picture = Picture(876, "raypool: the compute unit")
+    picture.group((16, 40, 868, 758))
     picture.text(868, 60, "compute_unit", "name", "end")
     picture.modules.add("compute_unit")
     warp(picture)
