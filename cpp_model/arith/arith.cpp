@@ -3,6 +3,9 @@
 #include "arith/arith.hpp"
 
 #include <array>
+#include <cstring>
+
+#include "bits.hpp"
 
 namespace raypool::arith {
 
@@ -84,11 +87,11 @@ uint32_t exact_inverse_root(float x) {
   // Far enough from the middle between two floats, the double's own error does not matter.
   constexpr uint64_t kBelow = (uint64_t{1} << 29) - 1, kMiddle = uint64_t{1} << 28;
   const uint64_t tail = bits & kBelow;
-  if (tail < kMiddle - 16 || tail > kMiddle + 16) return to_bits(static_cast<float>(estimate));
+  if (tail < kMiddle - 16 || tail > kMiddle + 16) return as_bits(static_cast<float>(estimate));
   // Otherwise ask whether middle^2 * x is above 1, in integers: middle has 25 bits, x 24.
   const uint64_t middle = (bits & ((uint64_t{1} << 52) - 1)) >> 28 | uint64_t{1} << 24 | 1;
   const int middle_exponent = static_cast<int>(bits >> 52) - 1023 - 24;
-  const Normalised number = normalise(to_bits(x));
+  const Normalised number = normalise(as_bits(x));
   const unsigned __int128 product = static_cast<unsigned __int128>(middle * middle) * number.mantissa;
   const int one = -(2 * middle_exponent + number.exponent - 23);  // the bit of `product` that weighs 1
   const bool above = product >= static_cast<unsigned __int128>(1) << one;
@@ -97,7 +100,7 @@ uint32_t exact_inverse_root(float x) {
 }
 
 uint32_t exact(uint32_t a, uint32_t b, SlowOperation operation, Mode mode) {
-  const float x = to_float(a), y = to_float(b);
+  const float x = as_float(a), y = as_float(b);
   switch (operation) {
     case SlowOperation::Root:
       return canonical(std::sqrt(x));
@@ -174,7 +177,7 @@ uint32_t div(uint32_t a, uint32_t b, Mode mode) {
   return quotient_of(operand(a, mode), operand(b, mode), SlowOperation::Divide, mode);
 }
 
-uint32_t rcp(uint32_t a, Mode mode) { return quotient_of(to_bits(1.0f), operand(a, mode), SlowOperation::Reciprocal, mode); }
+uint32_t rcp(uint32_t a, Mode mode) { return quotient_of(as_bits(1.0f), operand(a, mode), SlowOperation::Reciprocal, mode); }
 
 uint32_t sqrt(uint32_t a, Mode mode) {
   a = operand(a, mode);

@@ -6,8 +6,8 @@
 
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 
+#include "bits.hpp"
 #include "config/configuration.hpp"
 
 namespace raypool::arith {
@@ -35,16 +35,6 @@ inline constexpr uint32_t kSmallestNormal = 0x00800000u;
 /// A magnitude below this rounds, to 24 bits and with any exponent allowed, to less than the smallest normal number 2^-126.
 inline constexpr double kTinyLimit = 0x1p-126 - 0x1p-151;
 
-inline float to_float(uint32_t bits) {
-  float value;
-  std::memcpy(&value, &bits, 4);
-  return value;
-}
-inline uint32_t to_bits(float value) {
-  uint32_t bits;
-  std::memcpy(&bits, &value, 4);
-  return bits;
-}
 inline bool is_nan(uint32_t a) { return (a & kMagnitude) > kInfinity; }
 inline bool flushes(Mode mode) { return mode.subnormals == Subnormals::Flush; }
 /// A subnormal number becomes the zero of its sign.
@@ -52,7 +42,7 @@ inline uint32_t flushed(uint32_t a) { return (a & kInfinity) == 0 ? a & kSign : 
 /// An operand as the unit sees it.
 inline uint32_t operand(uint32_t a, Mode mode) { return flushes(mode) ? flushed(a) : a; }
 inline uint32_t canonical(float value) {
-  const uint32_t bits = to_bits(value);
+  const uint32_t bits = as_bits(value);
   return is_nan(bits) ? kQuietNan : bits;
 }
 /// Integers in the order of the numbers, -0 before +0. Not for NaNs.
@@ -79,25 +69,25 @@ inline uint32_t flush_tiny_sum(uint32_t rounded, float x, float y, float z) {
 }  // namespace detail
 
 inline uint32_t add(uint32_t a, uint32_t b, Mode mode) {
-  const uint32_t sum = detail::canonical(detail::to_float(detail::operand(a, mode)) + detail::to_float(detail::operand(b, mode)));
+  const uint32_t sum = detail::canonical(as_float(detail::operand(a, mode)) + as_float(detail::operand(b, mode)));
   return detail::operand(sum, mode);  // a subnormal sum is exact, so there is no rounding to look behind
 }
 
 inline uint32_t sub(uint32_t a, uint32_t b, Mode mode) {
-  const uint32_t sum = detail::canonical(detail::to_float(detail::operand(a, mode)) - detail::to_float(detail::operand(b, mode)));
+  const uint32_t sum = detail::canonical(as_float(detail::operand(a, mode)) - as_float(detail::operand(b, mode)));
   return detail::operand(sum, mode);
 }
 
 inline uint32_t mul(uint32_t a, uint32_t b, Mode mode) {
-  const float x = detail::to_float(detail::operand(a, mode)), y = detail::to_float(detail::operand(b, mode));
+  const float x = as_float(detail::operand(a, mode)), y = as_float(detail::operand(b, mode));
   const uint32_t product = detail::canonical(x * y);
   return detail::flushes(mode) ? detail::flush_tiny(product, double{x} * double{y}) : product;  // the double product is exact
 }
 
 /// a * b + c, rounded once.
 inline uint32_t fma(uint32_t a, uint32_t b, uint32_t c, Mode mode) {
-  const float x = detail::to_float(detail::operand(a, mode)), y = detail::to_float(detail::operand(b, mode));
-  const float z = detail::to_float(detail::operand(c, mode));
+  const float x = as_float(detail::operand(a, mode)), y = as_float(detail::operand(b, mode));
+  const float z = as_float(detail::operand(c, mode));
   const uint32_t rounded = detail::canonical(std::fma(x, y, z));
   return detail::flushes(mode) ? detail::flush_tiny_sum(rounded, x, y, z) : rounded;
 }
@@ -120,26 +110,26 @@ inline uint32_t max(uint32_t a, uint32_t b, Mode mode) {
 }
 
 /// Signed, to nearest even.
-inline uint32_t from_int(uint32_t a, Mode) { return detail::to_bits(static_cast<float>(static_cast<int32_t>(a))); }
+inline uint32_t from_int(uint32_t a, Mode) { return as_bits(static_cast<float>(static_cast<int32_t>(a))); }
 
 /// Towards zero, saturating; NaN gives 0.
 inline uint32_t to_int(uint32_t a, Mode) {
   if (detail::is_nan(a)) return 0;
-  const float value = detail::to_float(a);
+  const float value = as_float(a);
   if (value >= 0x1p31f) return 0x7fffffffu;
   if (value < -0x1p31f) return 0x80000000u;
   return static_cast<uint32_t>(static_cast<int32_t>(value));
 }
 
 inline bool equal(uint32_t a, uint32_t b, Mode mode) {  ///< false with a NaN
-  return detail::to_float(detail::operand(a, mode)) == detail::to_float(detail::operand(b, mode));
+  return as_float(detail::operand(a, mode)) == as_float(detail::operand(b, mode));
 }
 inline bool not_equal(uint32_t a, uint32_t b, Mode mode) { return !equal(a, b, mode); }  ///< true with a NaN
 inline bool less(uint32_t a, uint32_t b, Mode mode) {                                    ///< false with a NaN
-  return detail::to_float(detail::operand(a, mode)) < detail::to_float(detail::operand(b, mode));
+  return as_float(detail::operand(a, mode)) < as_float(detail::operand(b, mode));
 }
 inline bool less_equal(uint32_t a, uint32_t b, Mode mode) {  ///< false with a NaN
-  return detail::to_float(detail::operand(a, mode)) <= detail::to_float(detail::operand(b, mode));
+  return as_float(detail::operand(a, mode)) <= as_float(detail::operand(b, mode));
 }
 inline bool greater(uint32_t a, uint32_t b, Mode mode) { return less(b, a, mode); }
 inline bool greater_equal(uint32_t a, uint32_t b, Mode mode) { return less_equal(b, a, mode); }

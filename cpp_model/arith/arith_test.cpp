@@ -7,6 +7,7 @@
 #include "arith/test_newton.hpp"
 #include "arith/test_operands.hpp"
 #include "arith/test_oracle.hpp"
+#include "bits.hpp"
 
 namespace raypool::arith {
 namespace {
@@ -135,7 +136,7 @@ TEST(Arith, MinAndMaxPreferNumbersAndOrderZeros) {
 }
 
 TEST(Arith, ConversionsTruncateAndSaturate) {
-  EXPECT_EQ(to_int(detail::to_bits(-1.99f), kIeee), 0xffffffffu);
+  EXPECT_EQ(to_int(as_bits(-1.99f), kIeee), 0xffffffffu);
   EXPECT_EQ(to_int(0x4effffffu, kIeee), 0x7fffff80u);
   EXPECT_EQ(to_int(0x4f000000u, kIeee), 0x7fffffffu);
   EXPECT_EQ(to_int(0xcf000000u, kIeee), 0x80000000u);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "arith/arith.hpp"
+#include "bits.hpp"
 
 namespace raypool::arith {
 namespace {
@@ -77,9 +78,9 @@ class Measurement {
 
  private:
   void add_error(uint32_t a, uint32_t b, uint32_t result) {
-    const double exact = in_doubles(row_.operation, detail::to_float(a), detail::to_float(b));
+    const double exact = in_doubles(row_.operation, as_float(a), as_float(b));
     const int exponent = std::max(std::ilogb(exact), -126);  // subnormal numbers have the smallest normal one's unit
-    const double ulps = std::ldexp(double{detail::to_float(result)} - exact, 23 - exponent);
+    const double ulps = std::ldexp(double{as_float(result)} - exact, 23 - exponent);
     const double magnitude = std::fabs(ulps);
     if (magnitude > row_.largest_ulp) row_.largest_ulp = magnitude, row_.a = a, row_.b = b;
     row_.mean_ulp += magnitude;

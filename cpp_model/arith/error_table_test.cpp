@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "arith/arith.hpp"
+#include "bits.hpp"
 
 namespace raypool::arith {
 namespace {
@@ -32,8 +33,8 @@ TEST(ErrorTable, EveryUnitKeepsItsPromise) {
 TEST(ErrorTable, TheLargestErrorCanBeSeenAtItsOperand) {
   const ErrorRow row = measure_errors(SlowUnit::Newton1, SlowOperation::Rcp);
   const uint32_t result = rcp(row.a, {Subnormals::Ieee, SlowUnit::Newton1});
-  const double exact = 1 / double{detail::to_float(row.a)};
-  EXPECT_NEAR(std::fabs(detail::to_float(result) - exact) * 0x1p24, row.largest_ulp, 1e-3);
+  const double exact = 1 / double{as_float(row.a)};
+  EXPECT_NEAR(std::fabs(as_float(result) - exact) * 0x1p24, row.largest_ulp, 1e-3);
   EXPECT_EQ(row.inputs, uint64_t{1} << 23);
 }
 

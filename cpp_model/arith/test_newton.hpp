@@ -7,9 +7,9 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 
 #include "arith/test_oracle.hpp"
+#include "bits.hpp"
 
 namespace raypool::arith::newton_oracle {
 
@@ -106,8 +106,7 @@ inline double finite(Operation operation, double n, double d, SlowUnit unit, boo
 
 inline uint32_t result(Operation operation, uint32_t a, uint32_t b, SlowUnit unit, bool flush) {
   const auto number = [flush](uint32_t bits) {
-    float value;
-    std::memcpy(&value, &bits, 4);
+    const float value = as_float(bits);
     return flush && std::fabs(value) < 0x1p-126f ? std::copysign(0.0, value) : double{value};
   };
   const bool divides = operation == Operation::Div;
@@ -121,9 +120,7 @@ inline uint32_t result(Operation operation, uint32_t a, uint32_t b, SlowUnit uni
     value = operation == Operation::Sqrt ? divisor : n / divisor;
   }
   const auto narrow = static_cast<float>(value);
-  uint32_t bits;
-  std::memcpy(&bits, &narrow, 4);
-  return std::isnan(narrow) ? 0x7fc00000u : bits;
+  return std::isnan(narrow) ? 0x7fc00000u : as_bits(narrow);
 }
 
 /// Whether a Newton result has sign and exponent of the correctly rounded one, subnormal numbers and zero sharing one. The tie of

@@ -5,10 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <random>
 #include <utility>
 #include <vector>
+
+#include "bits.hpp"
 
 namespace raypool::arith {
 
@@ -117,12 +118,7 @@ class OperandSource {
   /// An addend for a * b: anything, special, cancelling all or nearly all of the product, at every alignment to it, or at the
   /// edge of the subnormal numbers.
   uint32_t third(uint32_t a, uint32_t b) {
-    float x, y;
-    std::memcpy(&x, &a, 4);
-    std::memcpy(&y, &b, 4);
-    const float rounded = x * y;
-    uint32_t product;
-    std::memcpy(&product, &rounded, 4);
+    const uint32_t product = as_bits(as_float(a) * as_float(b));
     const uint32_t c = bits();
     switch (random_() % 9) {
       case 0:
@@ -162,14 +158,8 @@ class OperandSource {
   }
   /// About product / a.
   static uint32_t partner(uint32_t a, uint32_t product) {
-    float x, y;
-    std::memcpy(&x, &a, 4);
-    std::memcpy(&y, &product, 4);
-    if (!(x != 0)) x = 1;
-    const float quotient = y / x;
-    uint32_t bits;
-    std::memcpy(&bits, &quotient, 4);
-    return bits;
+    const float x = as_float(a);
+    return as_bits(as_float(product) / (x != 0 ? x : 1));
   }
   /// A factor for a, which becomes odd, so that the last bits of the product decide how it is rounded; half of the products are
   /// at the edge of the subnormal numbers.
@@ -195,9 +185,7 @@ class OperandSource {
     const float dividend = std::ldexp(static_cast<float>(quotient * divisor), power - 150);
     const float by = std::ldexp(static_cast<float>(divisor), power);
     const uint32_t signs_a = a & 0x80000000u, signs_b = b & 0x80000000u;
-    std::memcpy(&a, &dividend, 4);
-    std::memcpy(&b, &by, 4);
-    a = (a + static_cast<uint32_t>(range(-1, 1))) | signs_a, b |= signs_b;
+    a = (as_bits(dividend) + static_cast<uint32_t>(range(-1, 1))) | signs_a, b = as_bits(by) | signs_b;
   }
   /// A fraction of few ones at its head and its tail, from which sums and products on the middle between two floats come.
   uint32_t few_bits(uint32_t a) {

@@ -8,11 +8,11 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <string_view>
 #include <vector>
 
 #include "arith/arith.hpp"
+#include "bits.hpp"
 
 namespace raypool::arith {
 
@@ -195,18 +195,13 @@ class Wide {
     if (!flush) mpfr_subnormalize(result_, inexact, MPFR_RNDN);
     if (mpfr_nan_p(result_)) return 0x7fc00000u;
     const bool tiny = flush && mpfr_regular_p(result_) && mpfr_get_exp(result_) < -125;
-    const float value = tiny ? (mpfr_signbit(result_) ? -0.0f : 0.0f) : mpfr_get_flt(result_, MPFR_RNDN);
-    uint32_t bits;
-    std::memcpy(&bits, &value, 4);
-    return bits;
+    return as_bits(tiny ? (mpfr_signbit(result_) ? -0.0f : 0.0f) : mpfr_get_flt(result_, MPFR_RNDN));
   }
 
  private:
   static void set(mpfr_t& wide, uint32_t bits, bool flush) {
     if (flush && (bits & 0x7f800000u) == 0) bits &= 0x80000000u;
-    float value;
-    std::memcpy(&value, &bits, 4);
-    mpfr_set_flt(wide, value, MPFR_RNDN);
+    mpfr_set_flt(wide, as_float(bits), MPFR_RNDN);
   }
 
   mpfr_t a_, b_, c_, result_;

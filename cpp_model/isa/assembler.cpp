@@ -5,11 +5,11 @@
 
 #include <cctype>
 #include <charconv>
-#include <cstring>
 #include <limits>
 #include <map>
 #include <vector>
 
+#include "bits.hpp"
 #include "isa/encoding.hpp"
 #include "isa/input_error.hpp"
 
@@ -305,9 +305,7 @@ class Assembler {
       fail(place, fmt::format("the float {} is too large or too small for single precision; write inf or 0.0", text));
     }
     if (result.ec != std::errc() || result.ptr != end) fail(place, fmt::format("'{}' is not a float", text));
-    uint32_t bits = 0;
-    std::memcpy(&bits, &value, sizeof bits);
-    return bits;
+    return as_bits(value);
   }
 
   uint32_t parse_integer(const std::string& text, const Place& place) const {

@@ -2,9 +2,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstring>
 #include <map>
 
+#include "bits.hpp"
 #include "isa/assembler.hpp"
 #include "isa/encoding.hpp"
 
@@ -16,8 +16,7 @@ constexpr uint32_t kLastRayWord = 20;
 using Labels = std::map<uint32_t, std::string>;
 
 std::string float_text(uint32_t bits) {
-  float value = 0;
-  std::memcpy(&value, &bits, sizeof value);
+  const float value = as_float(bits);
   // A tiny number is more likely an integer that goes into a ray word.
   if (std::isnan(value) || std::fpclassify(value) == FP_SUBNORMAL) return fmt::format("0x{:08x}", bits);
   if (std::isinf(value)) return value < 0 ? "-inf" : "inf";

@@ -5,6 +5,7 @@
 
 #include <stdexcept>
 
+#include "bits.hpp"
 #include "isa/assembler.hpp"
 #include "kernel/kernel_report.hpp"
 #include "kernel/test_interpreter.hpp"
@@ -109,7 +110,7 @@ TEST(KernelLanguage, ExampleOfTheDocumentRunsBothWays) {
   machine.memory = Memory(64);
   machine.arguments[0] = 5;
   machine.arguments[1] = 16;
-  for (uint32_t i = 0; i < 8; ++i) machine.memory.store(16 + 4 * i, arith::detail::to_bits(static_cast<float>(i)));
+  for (uint32_t i = 0; i < 8; ++i) machine.memory.store(16 + 4 * i, as_bits(static_cast<float>(i)));
   Memory native = machine.memory;
   machine.run(program, 0);
   for (uint32_t i = 0; i < 8; ++i) {
@@ -121,7 +122,7 @@ TEST(KernelLanguage, ExampleOfTheDocumentRunsBothWays) {
     scale(k);
   }
   for (uint32_t i = 0; i < 8; ++i) {
-    const uint32_t expected = arith::detail::to_bits(static_cast<float>(i) * (i < 5 ? 0.5f : 1.0f));
+    const uint32_t expected = as_bits(static_cast<float>(i) * (i < 5 ? 0.5f : 1.0f));
     EXPECT_EQ(machine.memory.load(16 + 4 * i), expected) << i;
     EXPECT_EQ(native.load(16 + 4 * i), expected) << i;
   }

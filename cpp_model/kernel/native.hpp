@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "arith/arith.hpp"
+#include "bits.hpp"
 #include "kernel/kernels.hpp"
 
 namespace raypool::kernel {
@@ -68,7 +69,7 @@ class NativeKernel {
 
   struct Float {
     uint32_t bits;
-    Float(float literal) : bits(arith::detail::to_bits(literal)) {}
+    Float(float literal) : bits(as_bits(literal)) {}
     static Float of_bits(uint32_t bits) {
       Float result(0.0f);
       result.bits = bits;

@@ -4,6 +4,7 @@
 
 #include <random>
 
+#include "bits.hpp"
 #include "isa/assembler.hpp"
 #include "kernel/kernel.hpp"
 #include "kernel/test_interpreter.hpp"
@@ -333,7 +334,7 @@ void compare(uint32_t seed, Outcome& outcome) {
   for (auto& package : machine.input) {
     for (size_t i = 0; i < package.size(); ++i) {
       const float value = static_cast<float>(static_cast<int>(random() % 4001) - 2000) / 256.0f;
-      package[i] = random() % 16 == 0 ? static_cast<uint32_t>(random()) : arith::detail::to_bits(value);
+      package[i] = random() % 16 == 0 ? static_cast<uint32_t>(random()) : as_bits(value);
     }
   }
   machine.mode.subnormals = seed % 2 != 0 ? Subnormals::Flush : Subnormals::Ieee;

@@ -8,6 +8,7 @@
 #include <random>
 #include <sstream>
 
+#include "bits.hpp"
 #include "kernel/compute_kernels.hpp"
 #include "kernel/kernel_report.hpp"
 #include "kernel/kernels.hpp"
@@ -17,9 +18,6 @@ namespace raypool {
 namespace {
 
 constexpr uint32_t kMaterialAddress = 256;
-
-float to_float(uint32_t bits) { return arith::detail::to_float(bits); }
-uint32_t to_bits(float value) { return arith::detail::to_bits(value); }
 
 struct Vec {
   double x, y, z;
@@ -32,14 +30,14 @@ double length(Vec a) { return std::sqrt(dot(a, a)); }
 
 template <typename Words>
 Vec get(const Words& words, int number) {
-  return {to_float(words[static_cast<size_t>(number)]), to_float(words[static_cast<size_t>(number) + 1]),
-          to_float(words[static_cast<size_t>(number) + 2])};
+  return {as_float(words[static_cast<size_t>(number)]), as_float(words[static_cast<size_t>(number) + 1]),
+          as_float(words[static_cast<size_t>(number) + 2])};
 }
 template <typename Words>
 void put(Words& words, int number, Vec v) {
-  words[static_cast<size_t>(number)] = to_bits(static_cast<float>(v.x));
-  words[static_cast<size_t>(number) + 1] = to_bits(static_cast<float>(v.y));
-  words[static_cast<size_t>(number) + 2] = to_bits(static_cast<float>(v.z));
+  words[static_cast<size_t>(number)] = as_bits(static_cast<float>(v.x));
+  words[static_cast<size_t>(number) + 1] = as_bits(static_cast<float>(v.y));
+  words[static_cast<size_t>(number) + 2] = as_bits(static_cast<float>(v.z));
 }
 void expect_near(Vec a, Vec b, double tolerance, const char* what) {
   EXPECT_LT(length(a - b), tolerance * (1 + length(b))) << what;
@@ -62,7 +60,7 @@ struct Case {
     put(arguments, argument::kStepY, 0.01 * vec());
     put(arguments, argument::kLight, 3 * vec());
     put(arguments, argument::kLightColor, {positive(), positive(), positive()});
-    arguments[argument::kOffset] = to_bits(1e-3f);
+    arguments[argument::kOffset] = as_bits(1e-3f);
     arguments[argument::kTileWidthLog2] = 3;
     arguments[argument::kTileMask] = 7;
     arguments[argument::kWidth] = 100;
@@ -74,11 +72,11 @@ struct Case {
     Intersection& hit = thread.input;
     put(hit, word::kOrigin, vec());
     put(hit, word::kDirection, vec());
-    hit[word::kLimit] = to_bits(std::numeric_limits<float>::infinity());
+    hit[word::kLimit] = as_bits(std::numeric_limits<float>::infinity());
     hit[word::kPixel] = 17u | 23u << 16;
     put(hit, word::kColor, {positive(), positive(), positive()});
     hit[word::kFlags] = 2;
-    hit[word::kDistance] = to_bits(static_cast<float>(4 * positive()));
+    hit[word::kDistance] = as_bits(static_cast<float>(4 * positive()));
     const Vec normal = vec();
     put(hit, word::kNormal, (1 / length(normal)) * normal);
     hit[word::kMaterial] = kMaterialAddress;
@@ -91,8 +89,8 @@ struct Case {
 
   Vec argument_vec(int number) const { return get(arguments, number); }
   Vec material_vec(uint32_t offset) const {
-    return {to_float(memory.load(kMaterialAddress + offset)), to_float(memory.load(kMaterialAddress + offset + 4)),
-            to_float(memory.load(kMaterialAddress + offset + 8))};
+    return {as_float(memory.load(kMaterialAddress + offset)), as_float(memory.load(kMaterialAddress + offset + 4)),
+            as_float(memory.load(kMaterialAddress + offset + 8))};
   }
 };
 
@@ -110,7 +108,7 @@ Expected expect(const Case& test) {
   Expected expected;
   expected.facing = std::fabs(projection);
   expected.origin =
-      get(hit, word::kOrigin) + to_float(hit[word::kDistance]) * direction + to_float(test.arguments[argument::kOffset]) * normal;
+      get(hit, word::kOrigin) + as_float(hit[word::kDistance]) * direction + as_float(test.arguments[argument::kOffset]) * normal;
   expected.direction = test.argument_vec(argument::kLight) - expected.origin;
   const double cosine = std::max(0.0, dot(normal, expected.direction)) / length(expected.direction);
   const Vec kd = test.material_vec(kMaterialDiffuse);
@@ -129,7 +127,7 @@ void check_shadow_ray(const Case& test, const Ray& ray) {
   expect_near(get(ray, word::kOrigin), expected.origin, 1e-5, "origin");
   expect_near(get(ray, word::kDirection), expected.direction, 1e-5, "direction");
   expect_near(get(ray, word::kColor), expected.contribution, 1e-4, "contribution");
-  EXPECT_EQ(ray[word::kLimit], to_bits(1.0f));
+  EXPECT_EQ(ray[word::kLimit], as_bits(1.0f));
   EXPECT_EQ(ray[word::kPixel], test.thread.input[word::kPixel]);
   EXPECT_EQ(ray[word::kFlags], kShadowFlag | 2u);
 }
@@ -149,7 +147,7 @@ TEST(RayKernels, CastEyeMakesTheRayThroughThePixel) {
                 test.argument_vec(argument::kCorner) + double(x) * test.argument_vec(argument::kStepX) +
                     double(y) * test.argument_vec(argument::kStepY),
                 1e-6, "direction");
-    EXPECT_EQ(ray[word::kLimit], to_bits(std::numeric_limits<float>::infinity()));
+    EXPECT_EQ(ray[word::kLimit], as_bits(std::numeric_limits<float>::infinity()));
     EXPECT_EQ(ray[word::kPixel], x | y << 16);
     expect_near(get(ray, word::kColor), {1, 1, 1}, 1e-12, "throughput");
     EXPECT_EQ(ray[word::kFlags], 1u);
@@ -188,7 +186,7 @@ TEST(RayKernels, SecondaryRaysFollowTheFormulas) {
     expect_near(get(reflection, word::kOrigin), expected.origin, 1e-5, "reflection's origin");
     expect_near(get(reflection, word::kDirection), expected.reflected, 1e-5, "reflected direction");
     expect_near(get(reflection, word::kColor), expected.throughput, 1e-6, "throughput");
-    EXPECT_EQ(reflection[word::kLimit], to_bits(std::numeric_limits<float>::infinity()));
+    EXPECT_EQ(reflection[word::kLimit], as_bits(std::numeric_limits<float>::infinity()));
     EXPECT_EQ(reflection[word::kPixel], test.thread.input[word::kPixel]);
     EXPECT_EQ(reflection[word::kFlags], 3u);
     check_shadow_ray(test, test.thread.rays[1]);
@@ -316,9 +314,9 @@ TEST(ComputeKernels, SaxpyTakesAnyNumberOfBlocksAndThreads) {
         test::Interpreter machine;
         machine.memory = Memory(4096);
         for (uint32_t address = 64; address < 4096; address += 4)
-          machine.memory.store(address, to_bits(static_cast<float>(random() % 1000) / 7.0f));
+          machine.memory.store(address, as_bits(static_cast<float>(random() % 1000) / 7.0f));
         machine.arguments[saxpy_argument::kN] = n;
-        machine.arguments[saxpy_argument::kA] = to_bits(2.5f);
+        machine.arguments[saxpy_argument::kA] = as_bits(2.5f);
         machine.arguments[saxpy_argument::kX] = x;
         machine.arguments[saxpy_argument::kY] = y;
         machine.threads = threads;
@@ -342,7 +340,7 @@ TEST(ComputeKernels, SaxpyTakesAnyNumberOfBlocksAndThreads) {
         for (uint32_t address = 64; address < 4096; address += 4) {
           uint32_t expected = before.load(address);
           if (address >= y && address < y + 4 * n)
-            expected = to_bits(2.5f * to_float(before.load(address - y + x)) + to_float(expected));
+            expected = as_bits(2.5f * as_float(before.load(address - y + x)) + as_float(expected));
           ASSERT_EQ(machine.memory.load(address), expected)
               << "n " << n << " blocks " << blocks << " threads " << threads << " at " << address;
           ASSERT_EQ(native.load(address), expected);
@@ -361,8 +359,8 @@ TEST(ComputeKernels, MatmulTakesAnyNumberOfBlocksAndThreads) {
         test::Interpreter machine;
         machine.memory = Memory(4096);
         for (uint32_t i = 0; i < n * n; ++i) {
-          machine.memory.store(a + 4 * i, to_bits(static_cast<float>(random() % 100) / 7.0f));
-          machine.memory.store(b + 4 * i, to_bits(static_cast<float>(random() % 100) / 3.0f));
+          machine.memory.store(a + 4 * i, as_bits(static_cast<float>(random() % 100) / 7.0f));
+          machine.memory.store(b + 4 * i, as_bits(static_cast<float>(random() % 100) / 3.0f));
         }
         machine.arguments[matmul_argument::kN] = n;
         machine.arguments[matmul_argument::kA] = a;
@@ -390,11 +388,11 @@ TEST(ComputeKernels, MatmulTakesAnyNumberOfBlocksAndThreads) {
             float sum = 0;
             for (uint32_t k = 0; k < n; ++k) {
               sum +=
-                  to_float(machine.memory.load(a + 4 * (row * n + k))) * to_float(machine.memory.load(b + 4 * (k * n + column)));
+                  as_float(machine.memory.load(a + 4 * (row * n + k))) * as_float(machine.memory.load(b + 4 * (k * n + column)));
             }
             const uint32_t address = c + 4 * (row * n + column);
-            ASSERT_EQ(machine.memory.load(address), to_bits(sum)) << "n " << n << " row " << row << " column " << column;
-            ASSERT_EQ(native.load(address), to_bits(sum));
+            ASSERT_EQ(machine.memory.load(address), as_bits(sum)) << "n " << n << " row " << row << " column " << column;
+            ASSERT_EQ(native.load(address), as_bits(sum));
           }
         }
         EXPECT_EQ(machine.memory.load(c + 4 * n * n), 0u);

@@ -3,9 +3,9 @@
 #pragma once
 
 #include <cstdint>
-#include <cstring>
 #include <utility>
 
+#include "bits.hpp"
 #include "kernel/recorder.hpp"
 
 namespace raypool::kernel {
@@ -14,12 +14,6 @@ namespace recorded {
 class Bool;
 class Int;
 class Float;
-
-inline uint32_t bits_of(float value) {
-  uint32_t bits;
-  std::memcpy(&bits, &value, sizeof bits);
-  return bits;
-}
 
 /// !condition, not yet computed. Use it at once: it does not follow later assignments to the condition.
 class Negation {
@@ -60,7 +54,7 @@ class FloatOperand {
  public:
   FloatOperand(const Float& value, Location place = Location::here());
   FloatOperand(float literal, Location place = Location::here())
-      : number(Recorder::active().emit_constant(bits_of(literal), place)), where(place) {}
+      : number(Recorder::active().emit_constant(as_bits(literal), place)), where(place) {}
   int number;
   Location where;
 };
@@ -120,7 +114,7 @@ class Int {
 
 class Float {
  public:
-  Float(float literal, Location where = Location::here()) : number_(Recorder::active().emit_constant(bits_of(literal), where)) {}
+  Float(float literal, Location where = Location::here()) : number_(Recorder::active().emit_constant(as_bits(literal), where)) {}
   Float(const Float& other, Location where = Location::here()) : number_(Recorder::active().emit_copy(other.number_, where)) {}
   Float(Float&& other) noexcept : number_(other.number_) {}
   Float& operator=(const Float& other) {

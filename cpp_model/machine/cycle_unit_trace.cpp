@@ -1,7 +1,7 @@
 // What the trace ports of engine `model` show. Kept after trace_on() only, as it costs more than the rest of a cycle.
 #include <algorithm>
 
-#include "machine/bits.hpp"
+#include "bits.hpp"
 #include "machine/cycle_unit.hpp"
 
 namespace raypool {

@@ -4,9 +4,9 @@
 #include <array>
 #include <cstdint>
 
+#include "bits.hpp"
 #include "config/configuration.hpp"
 #include "machine/alu_pipeline.hpp"
-#include "machine/bits.hpp"
 #include "machine/performance_counters.hpp"
 #include "machine/task_register.hpp"
 #include "machine/timeline.hpp"

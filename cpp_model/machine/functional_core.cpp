@@ -4,9 +4,9 @@
 #include <stdexcept>
 #include <string>
 
+#include "bits.hpp"
 #include "isa/encoding.hpp"
 #include "machine/alu_model.hpp"
-#include "machine/bits.hpp"
 #include "machine/brh_alu.hpp"
 #include "machine/flt_alu.hpp"
 #include "machine/int_alu.hpp"

@@ -4,13 +4,13 @@
 
 #include <map>
 
+#include "bits.hpp"
 #include "machine/test_program.hpp"
 
 namespace raypool {
 namespace {
 
 using test::Encode;
-using test::float_bits;
 using Status = Step::Status;
 
 constexpr uint32_t kMemoryBytes = 4096;
@@ -89,18 +89,18 @@ TEST(FunctionalCore, IntegerInstructionsComputeWhatTheTableSays) {
 }
 
 TEST(FunctionalCore, FloatInstructionsComputeWhatTheTableSays) {
-  const uint32_t three = float_bits(3), half = float_bits(0.5f);
-  EXPECT_EQ(binary("fadd", three, half), float_bits(3.5f));
-  EXPECT_EQ(binary("fsub", three, half), float_bits(2.5f));
-  EXPECT_EQ(binary("fmul", three, half), float_bits(1.5f));
+  const uint32_t three = as_bits(3), half = as_bits(0.5f);
+  EXPECT_EQ(binary("fadd", three, half), as_bits(3.5f));
+  EXPECT_EQ(binary("fsub", three, half), as_bits(2.5f));
+  EXPECT_EQ(binary("fmul", three, half), as_bits(1.5f));
   EXPECT_EQ(binary("fmin", three, half), half);
   EXPECT_EQ(binary("fmax", three, half), three);
-  EXPECT_EQ(binary("fdiv", three, half), float_bits(6));
-  EXPECT_EQ(binary("f2i", float_bits(-2.75f), 0), static_cast<uint32_t>(-2));
-  EXPECT_EQ(binary("i2f", static_cast<uint32_t>(-2), 0), float_bits(-2));
-  EXPECT_EQ(binary("fsqrt", float_bits(9), 0), three);
-  EXPECT_EQ(binary("frsqrt", float_bits(4), 0), half);
-  EXPECT_EQ(binary("frcp", float_bits(2), 0), half);
+  EXPECT_EQ(binary("fdiv", three, half), as_bits(6));
+  EXPECT_EQ(binary("f2i", as_bits(-2.75f), 0), static_cast<uint32_t>(-2));
+  EXPECT_EQ(binary("i2f", static_cast<uint32_t>(-2), 0), as_bits(-2));
+  EXPECT_EQ(binary("fsqrt", as_bits(9), 0), three);
+  EXPECT_EQ(binary("frsqrt", as_bits(4), 0), half);
+  EXPECT_EQ(binary("frcp", as_bits(2), 0), half);
 }
 
 TEST(FunctionalCore, ComparesGiveWhatTheTableSays) {
@@ -124,7 +124,7 @@ TEST(FunctionalCore, ComparesGiveWhatTheTableSays) {
   }
   EXPECT_TRUE(compares("ilt", 0xffffffffu, 0));
   EXPECT_FALSE(compares("ult", 0xffffffffu, 0));
-  const uint32_t one = float_bits(1), two = float_bits(2), nan = 0x7fc00000u;
+  const uint32_t one = as_bits(1), two = as_bits(2), nan = 0x7fc00000u;
   for (const Row& row : {Row{"feq", false, true, false},
                          {"fne", true, false, true},
                          {"flt", true, false, false},
@@ -269,7 +269,7 @@ TEST(FunctionalCore, LoadsAndStoresReachMemoryAndTheHighestLaneWins) {
 }
 
 TEST(FunctionalCore, RoutinesOfTheRayMemoryMoveImportsAndExports) {
-  Machine machine({Encode("rin"), Encode("rld").rd(1).x(20), Encode("rst").x(0).imm(float_bits(2.5f)), Encode("lane").rd(2),
+  Machine machine({Encode("rin"), Encode("rld").rd(1).x(20), Encode("rst").x(0).imm(as_bits(2.5f)), Encode("lane").rd(2),
                    Encode("igt").rd(1).ra(2).imm(1), Encode("rout").guard(1), Encode("rin"), Encode("rfb"), Encode("exit")});
   EXPECT_EQ(machine.core.step(0).status, Status::WaitsForImport);
   machine.core.expect_import(8);
@@ -290,7 +290,7 @@ TEST(FunctionalCore, RoutinesOfTheRayMemoryMoveImportsAndExports) {
   EXPECT_EQ(machine.reg(0, 1, 3), 420u);
   const Step& write = machine.core.step(0);
   ASSERT_NE(write.ray_words, nullptr);
-  EXPECT_EQ(write.ray_words[1], float_bits(2.5f));
+  EXPECT_EQ(write.ray_words[1], as_bits(2.5f));
   machine.core.step(0);
   machine.core.step(0);
   machine.core.set_output_busy(0, true);
@@ -298,7 +298,7 @@ TEST(FunctionalCore, RoutinesOfTheRayMemoryMoveImportsAndExports) {
   machine.core.set_output_busy(0, false);
   const Step& rout = machine.core.step(0);
   ASSERT_EQ(rout.ray_count, 2u);
-  EXPECT_EQ(rout.rays[0][0], float_bits(2.5f));
+  EXPECT_EQ(rout.rays[0][0], as_bits(2.5f));
   EXPECT_EQ(rout.rays[1][11], 411u);
   EXPECT_EQ(machine.core.step(0).status, Status::WaitsForImport);
   give(9, 3);
@@ -307,7 +307,7 @@ TEST(FunctionalCore, RoutinesOfTheRayMemoryMoveImportsAndExports) {
   ASSERT_EQ(rfb.frame_count, 4u);
   EXPECT_EQ(rfb.frame[2].pixel, 1107u);
   EXPECT_EQ(rfb.frame[2].rgb[2], 1110u);
-  EXPECT_EQ(rfb.rays[0][0], float_bits(2.5f)) << "results of an earlier step need not change";
+  EXPECT_EQ(rfb.rays[0][0], as_bits(2.5f)) << "results of an earlier step need not change";
 }
 
 TEST(FunctionalCore, APackageThatNobodyExpectsIsRefused) {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "machine/bits.hpp"
+#include "bits.hpp"
 #include "machine/functional_core.hpp"
 
 namespace raypool {

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 
-#include "machine/bits.hpp"
+#include "bits.hpp"
 
 namespace raypool {
 

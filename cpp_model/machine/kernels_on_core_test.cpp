@@ -4,6 +4,7 @@
 
 #include <random>
 
+#include "bits.hpp"
 #include "kernel/compute_kernels.hpp"
 #include "kernel/kernels.hpp"
 #include "machine/functional_core.hpp"
@@ -61,7 +62,7 @@ TEST(KernelsOnCore, RayKernelsLeaveWhatTheyLeaveNatively) {
       configuration.slow_unit = static_cast<SlowUnit>(mode >> 1 & 3);
       configuration.fma = mode >= 8;
       std::mt19937 random(static_cast<uint32_t>(mode) + 1);
-      const auto number = [&] { return test::float_bits(static_cast<float>(static_cast<int>(random() % 4001) - 2000) / 512.0f); };
+      const auto number = [&] { return as_bits(static_cast<float>(static_cast<int>(random() % 4001) - 2000) / 512.0f); };
 
       Memory memory(kMemoryBytes);
       const Program& program = ray_kernel_program(configuration.fma);
@@ -124,12 +125,12 @@ TEST(KernelsOnCore, ComputeKernelsLeaveTheMemoryTheyLeaveNatively) {
       Memory memory(kMemoryBytes);
       test::put_program(memory, program.code);
       for (uint32_t address = 4096; address < kMemoryBytes; address += 4) {
-        memory.store(address, test::float_bits(static_cast<float>(address % 977) / 16.0f));
+        memory.store(address, as_bits(static_cast<float>(address % 977) / 16.0f));
       }
       Memory native = memory;
-      const std::array<uint32_t, kArguments> arguments =
-          which == ComputeKernel::Saxpy ? std::array<uint32_t, kArguments>{300, test::float_bits(1.5f), 4096, 8192}
-                                        : std::array<uint32_t, kArguments>{11, 4096, 8192, 12288};
+      const std::array<uint32_t, kArguments> arguments = which == ComputeKernel::Saxpy
+                                                             ? std::array<uint32_t, kArguments>{300, as_bits(1.5f), 4096, 8192}
+                                                             : std::array<uint32_t, kArguments>{11, 4096, 8192, 12288};
       FunctionalCore core(configuration, memory);
       core.reset(static_cast<uint32_t>(program.code.size()), kMemoryBytes);
       for (int i = 0; i < kArguments; ++i) core.set_argument(i, arguments[static_cast<size_t>(i)]);

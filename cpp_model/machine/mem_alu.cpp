@@ -1,6 +1,6 @@
 #include "machine/mem_alu.hpp"
 
-#include "machine/bits.hpp"
+#include "bits.hpp"
 
 namespace raypool {
 

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "machine/bits.hpp"
+#include "bits.hpp"
 #include "machine/miss_status.hpp"
 
 namespace raypool {

@@ -5,8 +5,8 @@
 #include <array>
 #include <cstdint>
 
+#include "bits.hpp"
 #include "config/configuration.hpp"
-#include "machine/bits.hpp"
 
 namespace raypool {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "machine/bits.hpp"
+#include "bits.hpp"
 
 namespace raypool {
 

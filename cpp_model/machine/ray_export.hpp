@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 
-#include "machine/bits.hpp"
+#include "bits.hpp"
 #include "machine/compute_unit.hpp"
 #include "machine/ray_slices.hpp"
 

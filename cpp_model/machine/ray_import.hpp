@@ -4,8 +4,8 @@
 
 #include <cstdint>
 
+#include "bits.hpp"
 #include "config/configuration.hpp"
-#include "machine/bits.hpp"
 #include "machine/compute_unit.hpp"
 
 namespace raypool {

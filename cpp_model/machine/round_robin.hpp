@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "machine/bits.hpp"
+#include "bits.hpp"
 
 namespace raypool {
 

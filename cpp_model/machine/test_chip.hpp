@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "machine/bits.hpp"
+#include "bits.hpp"
 #include "machine/compute_unit.hpp"
 #include "machine/memory.hpp"
 

@@ -1,7 +1,6 @@
 // For tests: instructions encoded by hand from the instruction table, and programs put into memory.
 #pragma once
 
-#include <cstring>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -38,12 +37,6 @@ struct Encode {
   Encode& target(uint32_t target, uint32_t end = 0) { return field(target, 0).field(end, 16); }
   operator uint64_t() const { return bits; }
 };
-
-inline uint32_t float_bits(float value) {
-  uint32_t bits;
-  std::memcpy(&bits, &value, 4);
-  return bits;
-}
 
 inline void put_program(Memory& memory, const std::vector<uint64_t>& code) {
   memory.grow(static_cast<uint32_t>(code.size()) * 8);

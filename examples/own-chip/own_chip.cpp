@@ -3,7 +3,7 @@
 //   own_chip [UNIT_LIBRARY]    with the Verilated unit of 4w4c: hardware and model side by side, compared in every cycle
 #include <cmath>
 #include <cstdio>
-#include <cstring>
+#include <raypool/bits.hpp>
 #include <raypool/kernel/kernel.hpp>
 #include <raypool/lockstep/lockstep_unit.hpp>
 #include <raypool/lockstep/rtl_loader.hpp>
@@ -19,12 +19,6 @@ void roots(K& k) {
   k.store(k.int_argument(1) + offset, 0, sqrt(k.load_float(k.int_argument(0) + offset)));
 }
 
-uint32_t bits(float value) {
-  uint32_t word = 0;
-  std::memcpy(&word, &value, 4);
-  return word;
-}
-
 int run(const char* library, uint64_t latency) {
   const raypool::Configuration configuration = raypool::load_configuration("4w4c");
   raypool::Program program;
@@ -35,7 +29,7 @@ int run(const char* library, uint64_t latency) {
     memory.store(8 * i, static_cast<uint32_t>(program.code[i]));
     memory.store(8 * i + 4, static_cast<uint32_t>(program.code[i] >> 32));
   }
-  for (uint32_t i = 0; i < kElements; ++i) memory.store(kX + 4 * i, bits(static_cast<float>(i)));
+  for (uint32_t i = 0; i < kElements; ++i) memory.store(kX + 4 * i, raypool::as_bits(static_cast<float>(i)));
 
   std::unique_ptr<raypool::ComputeUnit> unit = std::make_unique<raypool::CycleUnit>(configuration, memory);
   if (library != nullptr)
@@ -47,7 +41,7 @@ int run(const char* library, uint64_t latency) {
   const uint64_t cycles = Chip(*unit, memory, latency).run(program.entries.at("roots"), threads, kElements / threads);
 
   int wrong = 0;
-  for (uint32_t i = 0; i < kElements; ++i) wrong += memory.load(kY + 4 * i) != bits(std::sqrt(static_cast<float>(i)));
+  for (uint32_t i = 0; i < kElements; ++i) wrong += memory.load(kY + 4 * i) != raypool::as_bits(std::sqrt(static_cast<float>(i)));
   std::printf("latency %3d: %u roots, %d wrong, %d cycles\n", static_cast<int>(latency), kElements, wrong,
               static_cast<int>(cycles));
   return wrong;

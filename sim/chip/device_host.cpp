@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "bits.hpp"
 #include "chip/chip.hpp"
-#include "machine/bits.hpp"
 
 namespace raypool::chip {
 

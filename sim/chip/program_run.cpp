@@ -4,13 +4,13 @@
 
 #include <optional>
 
+#include "bits.hpp"
 #include "chip/chip_clock.hpp"
 #include "chip/device_host.hpp"
 #include "chip/launcher.hpp"
 #include "chip/memory_port.hpp"
 #include "chip/monitor.hpp"
 #include "chip/simulation.hpp"
-#include "machine/bits.hpp"
 #include "machine/decoder.hpp"
 #include "machine/functional_core.hpp"
 

@@ -3,10 +3,10 @@
 
 #include <charconv>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 #include <memory>
 
+#include "bits.hpp"
 #include "chip/program_run.hpp"
 #include "cli/commands.hpp"
 #include "cli/engine.hpp"
@@ -29,12 +29,6 @@ struct Job {
   std::function<bool()> check;  ///< prints whether the results are right; empty: nothing to check
 };
 
-uint32_t bits(float value) {
-  uint32_t pattern = 0;
-  std::memcpy(&pattern, &value, 4);
-  return pattern;
-}
-
 /// Numbers of both signs and many magnitudes, the same in every run.
 float sample(uint32_t i) { return static_cast<float>(static_cast<int>(i * 37 % 201) - 100) / static_cast<float>(i % 13 + 3); }
 
@@ -54,8 +48,8 @@ bool check_results(const Job& job, uint32_t address, const std::vector<float>& e
   size_t wrong = 0;
   for (uint32_t i = 0; i < expected.size(); ++i) {
     const uint32_t got = job.memory.load(address + 4 * i);
-    if (got == bits(expected[i])) continue;
-    if (++wrong <= 5) fmt::print("  result {} is {:08x}; C++ gives {:08x}\n", i, got, bits(expected[i]));
+    if (got == as_bits(expected[i])) continue;
+    if (++wrong <= 5) fmt::print("  result {} is {:08x}; C++ gives {:08x}\n", i, got, as_bits(expected[i]));
   }
   fmt::print("  {} results, {} wrong\n", expected.size(), wrong);
   return wrong == 0;
@@ -88,13 +82,13 @@ void prepare_saxpy(Job& job, const RunOptions& options) {
   const float a = 2.7182817f;
   load_program(job, y + 4 * n);
   job.options.blocks = (n + job.options.threads - 1) / job.options.threads;
-  job.options.arguments[saxpy_argument::kA] = bits(a);
+  job.options.arguments[saxpy_argument::kA] = as_bits(a);
   job.options.arguments[saxpy_argument::kX] = x;
   job.options.arguments[saxpy_argument::kY] = y;
   std::vector<float> expected;
   for (uint32_t i = 0; i < n; ++i) {
-    job.memory.store(x + 4 * i, bits(sample(i)));
-    job.memory.store(y + 4 * i, bits(sample(i + n)));
+    job.memory.store(x + 4 * i, as_bits(sample(i)));
+    job.memory.store(y + 4 * i, as_bits(sample(i + n)));
     expected.push_back(multiply_add(job, a, sample(i), sample(i + n)));
   }
   job.check = [&job, y, expected] { return check_results(job, y, expected); };
@@ -112,8 +106,8 @@ void prepare_matmul(Job& job, const RunOptions& options) {
   job.options.arguments[matmul_argument::kB] = b;
   job.options.arguments[matmul_argument::kC] = c;
   for (uint32_t i = 0; i < n * n; ++i) {
-    job.memory.store(a + 4 * i, bits(sample(i)));
-    job.memory.store(b + 4 * i, bits(sample(i + 7)));
+    job.memory.store(a + 4 * i, as_bits(sample(i)));
+    job.memory.store(b + 4 * i, as_bits(sample(i + 7)));
   }
   std::vector<float> expected;
   for (uint32_t row = 0; row < n; ++row) {
@@ -137,7 +131,7 @@ uint32_t parse_argument(const std::string& text) {
   float real = 0;
   const auto [real_stop, real_error] = std::from_chars(begin, end, real);
   if (!hexadecimal && real_error == std::errc{} && real_stop == end && text.find_first_of(".einf") != std::string::npos)
-    return bits(real);
+    return as_bits(real);
   throw InputError(fmt::format("argument '{}' is neither a 32-bit integer (12, -3, 0xff) nor a float (1.5, 2e3)", text));
 }
 

@@ -5,7 +5,7 @@
 #include <deque>
 #include <vector>
 
-#include "machine/bits.hpp"
+#include "bits.hpp"
 
 namespace raypool {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "machine/bits.hpp"
+#include "bits.hpp"
 
 namespace raypool {
 namespace {

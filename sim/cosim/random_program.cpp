@@ -1,9 +1,9 @@
 #include "cosim/random_program.hpp"
 
 #include <algorithm>
-#include <cstring>
 
 #include "arith/test_operands.hpp"
+#include "bits.hpp"
 #include "cosim/program_statements.hpp"
 
 namespace raypool {
@@ -459,12 +459,8 @@ uint32_t random_word(uint64_t random) {
     case 3:
       // Near a power of two or at the ends of the range, where roundings carry and numbers become subnormal.
       return (bits & 0x80000000u) | (bits >> 8 & 0xff) << 23 | ((bits & 1) != 0 ? 0x7fffffu - (bits >> 1 & 3) : (bits >> 1 & 3));
-    default: {
-      const float f = (static_cast<float>(bits % 20001) - 10000.0F) / static_cast<float>(1U << (random >> 8 & 15));
-      uint32_t word = 0;
-      std::memcpy(&word, &f, 4);
-      return word;
-    }
+    default:
+      return as_bits((static_cast<float>(bits % 20001) - 10000.0F) / static_cast<float>(1U << (random >> 8 & 15)));
   }
 }
 

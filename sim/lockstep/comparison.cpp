@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "bits.hpp"
 #include "lockstep/text.hpp"
-#include "machine/bits.hpp"
 
 namespace raypool::lockstep {
 namespace {

@@ -2,8 +2,8 @@
 // has them, and what the access stage makes of them.
 #include <fmt/format.h>
 
+#include "bits.hpp"
 #include "lockstep/inspection.hpp"
-#include "machine/bits.hpp"
 
 namespace raypool::lockstep {
 

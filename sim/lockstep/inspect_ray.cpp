@@ -1,8 +1,8 @@
 // The ray ALU with its import and export engines: register by register as the model has them, and the packages that come and go.
 #include <fmt/format.h>
 
+#include "bits.hpp"
 #include "lockstep/inspection.hpp"
-#include "machine/bits.hpp"
 
 namespace raypool::lockstep {
 namespace {

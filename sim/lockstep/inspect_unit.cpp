@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <utility>
 
+#include "bits.hpp"
 #include "isa/encoding.hpp"
 #include "lockstep/inspection.hpp"
 #include "lockstep/text.hpp"
-#include "machine/bits.hpp"
 #include "machine/brh_alu.hpp"
 
 namespace raypool::lockstep {

@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include "bits.hpp"
 #include "lockstep/comparison.hpp"
 #include "lockstep/inspection.hpp"
 #include "lockstep/text.hpp"
-#include "machine/bits.hpp"
 #include "machine/model.hpp"
 
 namespace raypool {

@@ -3,18 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
 #include <vector>
 
+#include "bits.hpp"
 #include "isa/assembler.hpp"
 
 namespace raypool::lockstep {
 
-std::string word_text(uint32_t word) {
-  float value;
-  std::memcpy(&value, &word, 4);
-  return fmt::format("{:08x} ({:.7g})", word, value);
-}
+std::string word_text(uint32_t word) { return fmt::format("{:08x} ({:.7g})", word, as_float(word)); }
 
 std::string mask_text(uint32_t mask, int lanes) { return fmt::format("{:0{}b}", mask, lanes); }
 

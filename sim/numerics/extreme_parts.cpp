@@ -3,25 +3,13 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstring>
 
+#include "bits.hpp"
 #include "numerics/reference.hpp"
 #include "scene/hits_check.hpp"
 #include "scene/traversal.hpp"
 
 namespace raypool::numerics {
-
-float word_as_float(uint32_t word) {
-  float value = 0;
-  std::memcpy(&value, &word, sizeof value);
-  return value;
-}
-
-uint32_t float_as_word(float value) {
-  uint32_t word = 0;
-  std::memcpy(&word, &value, sizeof word);
-  return word;
-}
 
 Scene scene_of_triangles(const std::vector<TriangleCorners>& triangles) {
   Scene scene;
@@ -73,10 +61,10 @@ ExtremeFrame ray_frame(Scene scene, const Vec3& origin, const Vec3& direction) {
   frame.change_arguments = [origin, direction](std::array<uint32_t, kArguments>& arguments) {
     for (int axis = 0; axis < 3; ++axis) {
       const auto i = static_cast<size_t>(axis);
-      arguments[argument::kEye + i] = float_as_word(origin[axis]);
-      arguments[argument::kCorner + i] = float_as_word(direction[axis]);
+      arguments[argument::kEye + i] = as_bits(origin[axis]);
+      arguments[argument::kCorner + i] = as_bits(direction[axis]);
       // x + 0 * -0 is x, -0 included.
-      arguments[argument::kStepX + i] = arguments[argument::kStepY + i] = float_as_word(-0.0f);
+      arguments[argument::kStepX + i] = arguments[argument::kStepY + i] = as_bits(-0.0f);
     }
   };
   return frame;

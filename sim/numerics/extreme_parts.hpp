@@ -29,8 +29,6 @@ const TracedRay& eye_ray(const Drawing& drawing);
 /// Every vertex, the eye and the light, times `scale` plus `offset`, in double precision, rounded to float.
 Scene moved(const Scene& scene, double scale, const Vec3d& offset);
 
-float word_as_float(uint32_t word);
-uint32_t float_as_word(float value);
 bool is_lit(const FrameBuffer& frame, int x, int y);
 /// Pixels with light.
 uint64_t lit_pixels(const FrameBuffer& frame);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "bits.hpp"
 #include "numerics/extreme_parts.hpp"
 #include "numerics/extremes.hpp"
 
@@ -28,7 +29,7 @@ void require_hit(const ExtremeMachine& machine, const Scene& scene, const Vec3& 
   const Drawing drawing = shoot(machine, scene, origin, direction);
   const TracedRay& eye = eye_ray(drawing);
   require(eye.goes_on, "from " + text(origin) + " towards " + text(direction) + " nothing is hit");
-  const float ours = word_as_float(eye.intersection[word::kDistance]);
+  const float ours = as_float(eye.intersection[word::kDistance]);
   require(std::fabs(ours - t) <= 1e-6f * t,
           fmt::format("from {} towards {} t is {}, not {}", text(origin), text(direction), ours, t));
   require_right_hits(drawing, scene);
@@ -120,7 +121,7 @@ void along_a_face(const ExtremeMachine& machine) {
   const Drawing drawing = shoot(machine, scene, {-3, 0.25f, 1}, {1, 0, 0});
   require_right_hits(drawing, scene);
   if (eye_ray(drawing).goes_on) {
-    const float x = word_as_float(eye_ray(drawing).intersection[word::kNormal]);
+    const float x = as_float(eye_ray(drawing).intersection[word::kNormal]);
     require(std::fabs(x) == 1, "the face that is seen edge-on is hit");
   }
 }
@@ -144,7 +145,7 @@ void in_the_plane_of_a_triangle(const ExtremeMachine& machine) {
   const Scene tilted = scene_of_triangles({{Vec3{0, 0, 0}, Vec3{3, 1, 2}, Vec3{1, 2, 3}}});
   const Drawing drawing = shoot(machine, tilted, {-4, -3, -5}, {4, 3, 5});
   const TracedRay& eye = eye_ray(drawing);
-  const float t = word_as_float(eye.intersection[word::kDistance]);
+  const float t = as_float(eye.intersection[word::kDistance]);
   require(!eye.goes_on || (t > 0.999f && t < 1.601f),
           fmt::format("a triangle that is seen edge-on is hit at {}, outside its box", t));
 }

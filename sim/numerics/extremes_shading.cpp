@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 
+#include "bits.hpp"
 #include "kernel/kernels.hpp"
 #include "numerics/extreme_parts.hpp"
 #include "numerics/extremes.hpp"
@@ -49,8 +50,8 @@ Drawing shade_hit(const ExtremeMachine& machine, const Vec3& normal, float t, in
   frame.trace = [=](const Ray& ray, Intersection& intersection) {
     if ((ray[word::kFlags] & kShadowFlag) != 0) return true;
     if ((ray[word::kFlags] & kDepthMask) != 1) return false;
-    intersection[word::kDistance] = float_as_word(t);
-    for (int axis = 0; axis < 3; ++axis) intersection[static_cast<size_t>(word::kNormal + axis)] = float_as_word(normal[axis]);
+    intersection[word::kDistance] = as_bits(t);
+    for (int axis = 0; axis < 3; ++axis) intersection[static_cast<size_t>(word::kNormal + axis)] = as_bits(normal[axis]);
     return true;
   };
   return machine.draw(frame);

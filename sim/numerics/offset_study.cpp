@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "bits.hpp"
 #include "kernel/kernel.hpp"
 #include "kernel/kernel_report.hpp"
 #include "numerics/extreme_parts.hpp"
@@ -30,8 +31,8 @@ Vec3 integer_offset(const OffsetInput& in) {
   for (int axis = 0; axis < 3; ++axis) {
     const float p = point[axis], n = in.normal[axis];
     const auto steps = static_cast<int32_t>(kIntegerScale * n);
-    const auto bits = static_cast<int32_t>(float_as_word(p)) + (p < 0 ? -steps : steps);
-    result[axis] = std::fabs(p) < kNearOrigin ? p + kFloatScale * n : word_as_float(static_cast<uint32_t>(bits));
+    const auto bits = static_cast<int32_t>(as_bits(p)) + (p < 0 ? -steps : steps);
+    result[axis] = std::fabs(p) < kNearOrigin ? p + kFloatScale * n : as_float(static_cast<uint32_t>(bits));
   }
   return result;
 }

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
+
+#include "bits.hpp"
 
 namespace raypool::numerics {
 namespace {
@@ -15,11 +16,7 @@ constexpr double kReferenceOffset = 1e-13;
 /// A double-precision triple product of this share of its factors' lengths has a sign that can be trusted.
 constexpr double kSureShare = 1e-14;
 
-double as_double(uint32_t bits) {
-  float value = 0;
-  std::memcpy(&value, &bits, sizeof value);
-  return static_cast<double>(value);
-}
+double as_double(uint32_t bits) { return static_cast<double>(as_float(bits)); }
 
 /// d . (b x c) with the sign of the exact value.
 double volume(const Vec3d& d, const Vec3d& b, const Vec3d& c) {

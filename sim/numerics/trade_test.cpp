@@ -10,6 +10,7 @@
 #include <fstream>
 #include <limits>
 
+#include "bits.hpp"
 #include "machine/functional_unit.hpp"
 #include "numerics/cost.hpp"
 #include "numerics/extreme_parts.hpp"
@@ -88,7 +89,7 @@ TEST(TradeFinds, WrongTriangles) {
   // Eye rays that go astray by a hundredth.
   const Quality quality = with([](RayKernel which, NativeThread& thread) {
     if (which != RayKernel::CastEye) return;
-    for (Ray& ray : thread.rays) ray[word::kDirection] = float_as_word(word_as_float(ray[word::kDirection]) + 0.01f);
+    for (Ray& ray : thread.rays) ray[word::kDirection] = as_bits(as_float(ray[word::kDirection]) + 0.01f);
   });
   EXPECT_GT(quality.wrong_triangles, 50u);
   EXPECT_GT(quality.off_by_more, 50u);
@@ -97,7 +98,7 @@ TEST(TradeFinds, WrongTriangles) {
 TEST(TradeFinds, Holes) {
   const Quality quality = with([](RayKernel which, NativeThread& thread) {
     if (which != RayKernel::CastEye || thread.thread % 32 != 0) return;
-    for (Ray& ray : thread.rays) ray[word::kLimit] = float_as_word(0.5f);
+    for (Ray& ray : thread.rays) ray[word::kLimit] = as_bits(0.5f);
   });
   EXPECT_EQ(quality.holes, quality.pixels / 32);
 }
@@ -110,8 +111,8 @@ TEST(TradeFinds, WrongShadows) {
       if ((ray[word::kFlags] & kShadowFlag) == 0) continue;
       for (int axis = 0; axis < 3; ++axis) {
         const auto o = static_cast<size_t>(word::kOrigin + axis), n = static_cast<size_t>(word::kNormal + axis);
-        const float back = word_as_float(ray[o]) - 0.01f * word_as_float(thread.input[n]);
-        ray[o] = float_as_word(back);
+        const float back = as_float(ray[o]) - 0.01f * as_float(thread.input[n]);
+        ray[o] = as_bits(back);
       }
     }
   });
@@ -133,7 +134,7 @@ TEST(TradeFinds, OneStepOfEightBits) {
     if (which != RayKernel::CastSecondary) return;
     for (Ray& ray : thread.rays) {
       if ((ray[word::kFlags] & kShadowFlag) == 0) continue;
-      for (size_t i = 0; i < 3; ++i) ray[word::kColor + i] = float_as_word(word_as_float(ray[word::kColor + i]) * 1.001f);
+      for (size_t i = 0; i < 3; ++i) ray[word::kColor + i] = as_bits(as_float(ray[word::kColor + i]) * 1.001f);
     }
   });
   EXPECT_GT(quality.off_by_one, quality.pixels / 50);

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #define STB_IMAGE_WRITE_STATIC
@@ -16,6 +15,7 @@
 #include <stb/stb_image_write.h>
 #pragma GCC diagnostic pop
 
+#include "bits.hpp"
 #include "files/output_files.hpp"
 
 namespace raypool {
@@ -45,10 +45,8 @@ bool FrameBuffer::add(const FrameContribution& contribution) {
   const int x = static_cast<int>(contribution.pixel & 0xffffu), y = static_cast<int>(contribution.pixel >> 16);
   if (x >= width_ || y >= height_) return false;
   for (size_t channel = 0; channel < 3; ++channel) {
-    float value = 0;
-    std::memcpy(&value, &contribution.rgb[channel], sizeof value);
     uint64_t& accumulator = accumulators_[index(x, y) + channel];
-    accumulator = add_saturating(accumulator, to_fixed(value));
+    accumulator = add_saturating(accumulator, to_fixed(as_float(contribution.rgb[channel])));
   }
   return true;
 }

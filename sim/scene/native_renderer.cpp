@@ -9,7 +9,7 @@
 #include <exception>
 #include <thread>
 
-#include "machine/bits.hpp"
+#include "bits.hpp"
 
 namespace raypool {
 namespace {

@@ -4,13 +4,13 @@
 
 #include <cmath>
 
+#include "bits.hpp"
 #include "scene/mesh_builder.hpp"
 #include "scene/reference_kernels.hpp"
 
 namespace raypool {
 namespace {
 
-using reference::as_float;
 using reference::read3;
 
 struct Rendered {

@@ -1,7 +1,6 @@
 #include "scene/ray_counts.hpp"
 
-#include <cstring>
-
+#include "bits.hpp"
 #include "scene/image.hpp"
 
 namespace raypool {
@@ -11,8 +10,7 @@ namespace {
 /// throughput may still be multiplied with bright colours; only zero, negative or NaN is without effect for certain.
 bool weightless(const Ray& ray, bool shadow) {
   for (int channel = 0; channel < 3; ++channel) {
-    float weight = 0;
-    std::memcpy(&weight, &ray[static_cast<size_t>(word::kColor + channel)], sizeof weight);
+    const float weight = as_float(ray[static_cast<size_t>(word::kColor + channel)]);
     if (shadow ? to_fixed(weight) > 0 : weight > 0) return false;
   }
   return true;

@@ -2,19 +2,13 @@
 #pragma once
 
 #include <cmath>
-#include <cstring>
 
+#include "bits.hpp"
 #include "kernel/kernels.hpp"
-#include "machine/bits.hpp"
 #include "scene/vec.hpp"
 
 namespace raypool::reference {
 
-inline float as_float(uint32_t bits) {
-  float value = 0;
-  std::memcpy(&value, &bits, sizeof value);
-  return value;
-}
 template <typename Words>
 Vec3 read3(const Words& words, int first) {
   const auto i = static_cast<size_t>(first);

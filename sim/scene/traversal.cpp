@@ -6,7 +6,7 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "machine/bits.hpp"
+#include "bits.hpp"
 #include "scene/simd4.hpp"
 
 namespace raypool {
@@ -280,12 +280,6 @@ int tree_depth(const Bvh& bvh) {
     deepest = std::max(deepest, depth[i]);
   }
   return deepest;
-}
-
-float as_float(uint32_t bits) {
-  float value = 0;
-  std::memcpy(&value, &bits, sizeof value);
-  return value;
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <limits>
 #include <random>
 
-#include "machine/bits.hpp"
+#include "bits.hpp"
 #include "scene/mesh_builder.hpp"
 
 namespace raypool {

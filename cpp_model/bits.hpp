@@ -19,5 +19,10 @@ inline uint32_t as_bits(float value) {
   std::memcpy(&bits, &value, sizeof bits);
   return bits;
 }
+inline float as_float(uint32_t bits) {
+  float value = 0;
+  std::memcpy(&value, &bits, sizeof value);
+  return value;
+}
 
 }  // namespace raypool
