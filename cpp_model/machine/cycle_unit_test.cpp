@@ -1,6 +1,9 @@
 #include "machine/cycle_unit.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+
+#include <algorithm>
 
 #include "machine/functional_unit.hpp"
 #include "machine/model.hpp"
@@ -10,7 +13,7 @@
 namespace raypool {
 namespace {
 
-using test::Encode;
+using test::assembled;
 using test::TestChip;
 
 constexpr uint32_t kMemoryBytes = 16384;
@@ -24,25 +27,27 @@ Configuration make_configuration(int warps, int lanes) {
 }
 
 // Imports, a divergent loop over memory, slow arithmetic, exports: every block has something to do.
-const std::vector<uint64_t> kProgram = {Encode("rin"),
-                                        Encode("rld").rd(1).x(7),
-                                        Encode("tid").rd(2),
-                                        Encode("and").rd(5).ra(2).imm(3),
-                                        Encode("shl").rd(3).ra(2).imm(6),
-                                        Encode("ige").rd(1).ra(5).imm(0),
-                                        Encode("loop").guard(1).target(14),
-                                        Encode("ld").rd(4).guard(1).ra(3).plain_imm(kData),
-                                        Encode("iadd").rd(4).guard(1).ra(4).rb(5),
-                                        Encode("st").guard(1).ra(3).rb(4).plain_imm(kData),
-                                        Encode("i2f").rd(6).ra(4),
-                                        Encode("fsqrt").rd(6).ra(6),
-                                        Encode("isub").rd(5).guard(1).ra(5).imm(1),
-                                        Encode("ige").rd(1).guard(1).ra(5).imm(0),
-                                        Encode("rst").x(8).rb(6),
-                                        Encode("rout"),
-                                        Encode("rst").x(9).rb(4),
-                                        Encode("rfb"),
-                                        Encode("exit")};
+const std::vector<uint64_t> kProgram = assembled(fmt::format(R"(
+    rin
+    rld r1, 7
+    tid r2
+    and r5, r2, 3
+    shl r3, r2, 6
+    ige p1, r5, 0
+    @p1 loop 14
+    @p1 ld r4, [r3+{0}]
+    @p1 iadd r4, r4, r5
+    @p1 st [r3+{0}], r4
+    i2f r6, r4
+    fsqrt r6, r6
+    @p1 isub r5, r5, 1
+    @p1 ige p1, r5, 0
+    rst 8, r6
+    rout
+    rst 9, r4
+    rfb
+    exit)",
+                                                             kData));
 
 Memory with_program(const std::vector<uint64_t>& code) {
   Memory memory(kMemoryBytes);
@@ -89,8 +94,7 @@ TEST(CycleUnit, LeavesWhatTheFunctionalUnitLeaves) {
 
 // docs/architecture.md, section 3.
 TEST(CycleUnit, AWarpWithoutStallsIssuesEveryFourCyclesWithAnAluOfDepthOne) {
-  const std::vector<uint64_t> code = {Encode("tid").rd(1), Encode("tid").rd(2), Encode("tid").rd(3), Encode("tid").rd(4),
-                                      Encode("exit")};
+  const std::vector<uint64_t> code = assembled("tid r1; tid r2; tid r3; tid r4; exit");
   Memory memory = with_program(code);
   CycleUnit unit(make_configuration(1, 4), memory);
   unit.trace_on();
@@ -111,7 +115,7 @@ TEST(CycleUnit, AWarpWithoutStallsIssuesEveryFourCyclesWithAnAluOfDepthOne) {
 TEST(CycleUnit, TheLowestWarpGoesFirstAndTheOthersAreCountedAsWaiting) {
   Configuration configuration = make_configuration(4, 1);
   configuration.alus[static_cast<size_t>(AluType::Int)].latency = 16;
-  const std::vector<uint64_t> code = {Encode("mov").rd(1).imm(1), Encode("exit")};
+  const std::vector<uint64_t> code = assembled("mov r1, 1; exit");
   Memory memory = with_program(code);
   CycleUnit unit(configuration, memory);
   unit.trace_on();
@@ -199,15 +203,13 @@ TEST(CycleUnit, WarpsDoNotTakeLinesFromEachOtherForEver) {
   constexpr uint32_t kPlaces = 32, kApart = 32;  // instructions from place to place: the two ways of a set are 64 lines
   Configuration configuration = make_configuration(32, 1);
   configuration.instruction_cache_bytes = 2 * kApart * 8;
-  std::vector<uint64_t> code((kPlaces + 3) * kApart, Encode("exit"));
-  size_t at = 0;
-  code[at++] = Encode("warp").rd(1);
-  code[at++] = Encode("and").rd(1).ra(1).imm(kPlaces - 1);
-  for (uint32_t place = 0; place < kPlaces; ++place) {
-    code[at++] = Encode("ieq").rd(1).ra(1).imm(place);
-    code[at++] = Encode("jany").guard(1).target((place + 3) * kApart);
-    for (uint32_t i = 0; i < 6; ++i) code[(place + 3) * kApart + i] = Encode("iadd").rd(2).ra(2).imm(1);
-  }
+  std::string text = fmt::format("warp r1; and r1, r1, {};", kPlaces - 1);
+  for (uint32_t place = 0; place < kPlaces; ++place)
+    text += fmt::format("ieq p1, r1, {}; @p1 jany {};", place, (place + 3) * kApart);
+  std::vector<uint64_t> code = assembled(text);
+  code.resize((kPlaces + 3) * kApart, assembled("exit")[0]);
+  const std::vector<uint64_t> busy(6, assembled("iadd r2, r2, 1")[0]);
+  for (uint32_t place = 3; place < kPlaces + 3; ++place) std::copy(busy.begin(), busy.end(), code.begin() + place * kApart);
   for (int latency = 1; latency < 70; ++latency) {
     Memory memory = with_program(code);
     CycleUnit unit(configuration, memory);

@@ -1,5 +1,6 @@
 #include "machine/functional_core.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <map>
@@ -10,7 +11,7 @@
 namespace raypool {
 namespace {
 
-using test::Encode;
+using test::assembled;
 using Status = Step::Status;
 
 constexpr uint32_t kMemoryBytes = 4096;
@@ -50,20 +51,27 @@ struct Machine {
   uint32_t reg(uint32_t warp, uint32_t number, uint32_t lane) const { return core.register_row(warp, number)[lane]; }
 };
 
-Encode mov(uint64_t rd, uint32_t value) { return Encode("mov").rd(rd).imm(value); }
+// A program that does `body` with r1 = a and r2 = b.
+std::vector<uint64_t> with_operands(uint32_t a, uint32_t b, const std::string& body) {
+  return assembled(fmt::format("mov r1, {}; mov r2, {}; {}; exit", a, b, body));
+}
 
-// Result of `mnemonic r3, r1, r2`, with r1 = a and r2 = b; once more with b as the immediate.
+uint32_t unary(std::string_view mnemonic, uint32_t a) {
+  Machine machine(with_operands(a, 0, fmt::format("{} r3, r1", mnemonic)));
+  EXPECT_EQ(machine.run(), Status::NotRunning);
+  return machine.reg(0, 3, 2);
+}
+
+// With b in a register; once more with b as the immediate.
 uint32_t binary(std::string_view mnemonic, uint32_t a, uint32_t b) {
-  Machine machine(
-      {mov(1, a), mov(2, b), Encode(mnemonic).rd(3).ra(1).rb(2), Encode(mnemonic).rd(4).ra(1).imm(b), Encode("exit")});
+  Machine machine(with_operands(a, b, fmt::format("{0} r3, r1, r2; {0} r4, r1, 0x{1:x}", mnemonic, b)));
   EXPECT_EQ(machine.run(), Status::NotRunning);
   EXPECT_EQ(machine.reg(0, 3, 0), machine.reg(0, 4, 3)) << mnemonic;
   return machine.reg(0, 3, 2);
 }
 
 bool compares(std::string_view mnemonic, uint32_t a, uint32_t b) {
-  Machine machine(
-      {mov(1, a), mov(2, b), Encode(mnemonic).rd(3).ra(1).rb(2), Encode(mnemonic).rd(4).ra(1).imm(b), Encode("exit")});
+  Machine machine(with_operands(a, b, fmt::format("{0} p3, r1, r2; {0} p4, r1, 0x{1:x}", mnemonic, b)));
   EXPECT_EQ(machine.run(), Status::NotRunning);
   EXPECT_EQ(machine.core.predicate(0, 3), machine.core.predicate(0, 4)) << mnemonic;
   EXPECT_TRUE(machine.core.predicate(0, 3) == 0 || machine.core.predicate(0, 3) == 15) << mnemonic;
@@ -72,7 +80,7 @@ bool compares(std::string_view mnemonic, uint32_t a, uint32_t b) {
 
 TEST(FunctionalCore, IntegerInstructionsComputeWhatTheTableSays) {
   const uint32_t minus3 = static_cast<uint32_t>(-3);
-  EXPECT_EQ(binary("mov", 1, 9), 9u);
+  EXPECT_EQ(unary("mov", 9), 9u);
   EXPECT_EQ(binary("iadd", 0xffffffffu, 2), 1u);
   EXPECT_EQ(binary("isub", 2, 5), minus3);
   EXPECT_EQ(binary("imul", minus3, 7), static_cast<uint32_t>(-21));
@@ -96,11 +104,11 @@ TEST(FunctionalCore, FloatInstructionsComputeWhatTheTableSays) {
   EXPECT_EQ(binary("fmin", three, half), half);
   EXPECT_EQ(binary("fmax", three, half), three);
   EXPECT_EQ(binary("fdiv", three, half), as_bits(6));
-  EXPECT_EQ(binary("f2i", as_bits(-2.75f), 0), static_cast<uint32_t>(-2));
-  EXPECT_EQ(binary("i2f", static_cast<uint32_t>(-2), 0), as_bits(-2));
-  EXPECT_EQ(binary("fsqrt", as_bits(9), 0), three);
-  EXPECT_EQ(binary("frsqrt", as_bits(4), 0), half);
-  EXPECT_EQ(binary("frcp", as_bits(2), 0), half);
+  EXPECT_EQ(unary("f2i", as_bits(-2.75f)), static_cast<uint32_t>(-2));
+  EXPECT_EQ(unary("i2f", static_cast<uint32_t>(-2)), as_bits(-2));
+  EXPECT_EQ(unary("fsqrt", as_bits(9)), three);
+  EXPECT_EQ(unary("frsqrt", as_bits(4)), half);
+  EXPECT_EQ(unary("frcp", as_bits(2)), half);
 }
 
 TEST(FunctionalCore, ComparesGiveWhatTheTableSays) {
@@ -139,8 +147,15 @@ TEST(FunctionalCore, ComparesGiveWhatTheTableSays) {
 }
 
 TEST(FunctionalCore, IndicesDimensionsAndArgumentsAreThoseOfTheLaunch) {
-  Machine machine({Encode("tid").rd(1), Encode("lane").rd(2), Encode("warp").rd(3), Encode("block").rd(4),
-                   Encode("threads").rd(5), Encode("blocks").rd(6), Encode("arg").rd(7).plain_imm(31), Encode("exit")},
+  Machine machine(assembled(R"(
+      tid r1
+      lane r2
+      warp r3
+      block r4
+      threads r5
+      blocks r6
+      arg r7, 31
+      exit)"),
                   make_configuration(), 7);
   machine.core.set_argument(31, 1234);
   machine.run(0);
@@ -150,7 +165,7 @@ TEST(FunctionalCore, IndicesDimensionsAndArgumentsAreThoseOfTheLaunch) {
 }
 
 TEST(FunctionalCore, LanesBeyondTheLaunchAreNeverActiveAndTheirWarpsNeverStart) {
-  Machine machine({mov(1, 5), Encode("ieq").rd(1).ra(1).imm(5), Encode("exit")}, make_configuration(4, 4), 6);
+  Machine machine(assembled("mov r1, 5; ieq p1, r1, 5; exit"), make_configuration(4, 4), 6);
   EXPECT_FALSE(machine.core.warp_running(2));
   EXPECT_EQ(machine.core.step(2).status, Status::NotRunning);
   const Step& step = machine.core.step(1);
@@ -165,11 +180,14 @@ TEST(FunctionalCore, LanesBeyondTheLaunchAreNeverActiveAndTheirWarpsNeverStart) 
 }
 
 TEST(FunctionalCore, AGuardedCompareGivesResultAndMaskInAllLanesSoThatConditionsNest) {
-  Machine machine({Encode("lane").rd(1), Encode("ige").rd(1).ra(1).imm(1),                // p1 = lanes 1 2 3
-                   Encode("ieq").rd(2).ra(1).imm(0),                                      // p2 = lane 0
-                   Encode("ilt").guard(1).rd(2).ra(1).imm(3),                             // p2 = lanes 1 2; lane 0 is cleared
-                   Encode("iadd").guard(2).rd(2).ra(1).imm(100),                          // r2 in lanes 1 2
-                   Encode("iadd").guard(2, true).rd(2).ra(1).imm(200), Encode("exit")});  // r2 in lanes 0 3
+  Machine machine(assembled(R"(
+      lane r1
+      ige p1, r1, 1          # p1 = lanes 1 2 3
+      ieq p2, r1, 0          # p2 = lane 0
+      @p1 ilt p2, r1, 3      # p2 = lanes 1 2, lane 0 is cleared
+      @p2 iadd r2, r1, 100   # r2 in lanes 1 2
+      @!p2 iadd r2, r1, 200  # r2 in lanes 0 3
+      exit)"));
   machine.run();
   EXPECT_EQ(machine.core.predicate(0, 1), 14u);
   EXPECT_EQ(machine.core.predicate(0, 2), 6u);
@@ -180,10 +198,17 @@ TEST(FunctionalCore, AGuardedCompareGivesResultAndMaskInAllLanesSoThatConditions
 }
 
 TEST(FunctionalCore, PredicateLogicAndSelectUseTheTwoSources) {
-  Machine machine({Encode("lane").rd(1), Encode("and").rd(2).ra(1).imm(1), Encode("ine").rd(1).ra(2).imm(0),  // p1 = 1010
-                   Encode("ige").rd(2).ra(1).imm(2),                                                          // p2 = 1100
-                   Encode("pand").rd(3).x(1).rb(2), Encode("por").rd(4).x(1).rb(2), Encode("pxor").rd(5).x(1).rb(2),
-                   Encode("pandn").rd(6).x(1).rb(2), Encode("sel").rd(3).x(2).ra(1).imm(50), Encode("exit")});
+  Machine machine(assembled(R"(
+      lane r1
+      and r2, r1, 1
+      ine p1, r2, 0       # p1 = 1010
+      ige p2, r1, 2       # p2 = 1100
+      pand p3, p1, p2
+      por p4, p1, p2
+      pxor p5, p1, p2
+      pandn p6, p1, p2
+      sel r3, p2, r1, 50
+      exit)"));
   machine.run();
   EXPECT_EQ(machine.core.predicate(0, 3), 8u);
   EXPECT_EQ(machine.core.predicate(0, 4), 14u);
@@ -194,7 +219,7 @@ TEST(FunctionalCore, PredicateLogicAndSelectUseTheTwoSources) {
 }
 
 TEST(FunctionalCore, PredicateZeroReadsAsOnesAndIsNeverWritten) {
-  Machine machine({Encode("lane").rd(1), Encode("ilt").rd(0).ra(1).imm(0), mov(2, 9), Encode("exit")});
+  Machine machine(assembled("lane r1; ilt p0, r1, 0; mov r2, 9; exit"));
   machine.core.step(0);
   const Step& step = machine.core.step(0);
   EXPECT_EQ(step.predicate, 0u);
@@ -203,25 +228,31 @@ TEST(FunctionalCore, PredicateZeroReadsAsOnesAndIsNeverWritten) {
 }
 
 TEST(FunctionalCore, JumpsLookAtTheMaskedLanes) {
-  Machine machine({Encode("lane").rd(1), Encode("igt").rd(1).ra(1).imm(7),  // p1 = none
-                   Encode("jany").guard(1).target(6),                       // not taken
-                   Encode("jnone").guard(1).target(5),                      // taken
-                   mov(2, 1),                                               // skipped
-                   Encode("jany").target(7),                                // taken
-                   mov(2, 2),                                               // skipped
-                   mov(3, 3), Encode("exit")});
+  Machine machine(assembled(R"(
+      lane r1
+      igt p1, r1, 7  # p1 = none
+      @p1 jany 6     # not taken
+      @p1 jnone 5    # taken
+      mov r2, 1      # skipped
+      jany 7         # taken
+      mov r2, 2      # skipped
+      mov r3, 3
+      exit)"));
   machine.run();
   EXPECT_EQ(machine.reg(0, 2, 0), 0u);
   EXPECT_EQ(machine.reg(0, 3, 0), 3u);
 }
 
 TEST(FunctionalCore, ALoopRunsUntilItsMaskIsEmpty) {
-  Machine machine({Encode("lane").rd(1), Encode("igt").rd(1).ra(1).imm(0),  // p1 = lanes that have turns left
-                   Encode("loop").guard(1).target(6),                       //
-                   Encode("isub").guard(1).rd(1).ra(1).imm(1),              //
-                   Encode("iadd").guard(1).rd(2).ra(2).imm(10),             //
-                   Encode("igt").guard(1).rd(1).ra(1).imm(0),               //
-                   Encode("mov").rd(3).imm(4), Encode("exit")});
+  Machine machine(assembled(R"(
+      lane r1
+      igt p1, r1, 0        # p1 = lanes that have turns left
+      @p1 loop 6
+      @p1 isub r1, r1, 1
+      @p1 iadd r2, r2, 10
+      @p1 igt p1, r1, 0
+      mov r3, 4
+      exit)"));
   machine.run();
   for (uint32_t lane = 0; lane < 4; ++lane) EXPECT_EQ(machine.reg(0, 2, lane), 10 * lane);
   EXPECT_EQ(machine.reg(0, 3, 0), 4u);
@@ -229,31 +260,41 @@ TEST(FunctionalCore, ALoopRunsUntilItsMaskIsEmpty) {
 
 TEST(FunctionalCore, NestedLoopsAndCallsReturnToTheirPlaces) {
   // Outer loop twice, inner loop three times, a call in the inner body; r4 counts the calls.
-  Machine machine({mov(1, 2),                           // 0
-                   Encode("igt").rd(1).ra(1).imm(0),    // 1
-                   Encode("loop").guard(1).target(11),  // 2
-                   mov(2, 3),                           // 3
-                   Encode("igt").rd(2).ra(2).imm(0),    // 4
-                   Encode("loop").guard(2).target(9),   // 5
-                   Encode("call").target(13, 14),       // 6: body ends by RPC
-                   Encode("isub").rd(2).ra(2).imm(1),   // 7
-                   Encode("igt").rd(2).ra(2).imm(0),    // 8
-                   Encode("isub").rd(1).ra(1).imm(1),   // 9
-                   Encode("igt").rd(1).ra(1).imm(0),    // 10
-                   Encode("call").target(15, 100),      // 11: body ends by ret
-                   Encode("exit"),                      // 12
-                   Encode("iadd").rd(4).ra(4).imm(1),   // 13
-                   mov(4, 99),                          // 14: never reached
-                   mov(5, 7), Encode("ret"), mov(5, 99)});
+  Machine machine(assembled(R"(
+      mov r1, 2       # 0
+      igt p1, r1, 0   # 1
+      @p1 loop 11     # 2
+      mov r2, 3       # 3
+      igt p2, r2, 0   # 4
+      @p2 loop 9      # 5
+      call 13, 14     # 6: body ends by RPC
+      isub r2, r2, 1  # 7
+      igt p2, r2, 0   # 8
+      isub r1, r1, 1  # 9
+      igt p1, r1, 0   # 10
+      call 15, 100    # 11: body ends by ret
+      exit            # 12
+      iadd r4, r4, 1  # 13
+      mov r4, 99      # 14: never reached
+      mov r5, 7
+      ret
+      mov r5, 99)"));
   EXPECT_EQ(machine.run(), Status::NotRunning);
   EXPECT_EQ(machine.reg(0, 4, 0), 6u);
   EXPECT_EQ(machine.reg(0, 5, 0), 7u);
 }
 
 TEST(FunctionalCore, LoadsAndStoresReachMemoryAndTheHighestLaneWins) {
-  Machine machine({Encode("lane").rd(1), Encode("shl").rd(2).ra(1).imm(2), Encode("iadd").rd(3).ra(1).imm(40),
-                   Encode("st").ra(2).rb(3).plain_imm(1024), mov(4, 1060), Encode("st").ra(4).rb(3).plain_imm(0xfffffffcu),
-                   Encode("ld").rd(5).ra(2).plain_imm(1024), Encode("ld").rd(6).ra(4).plain_imm(0xfffffffcu), Encode("exit")});
+  Machine machine(assembled(R"(
+      lane r1
+      shl r2, r1, 2
+      iadd r3, r1, 40
+      st [r2+1024], r3
+      mov r4, 1060
+      st [r4-4], r3
+      ld r5, [r2+1024]
+      ld r6, [r4-4]
+      exit)"));
   for (int i = 0; i < 3; ++i) machine.core.step(0);
   const Step& step = machine.core.step(0);
   ASSERT_EQ(step.store_count, 4u);
@@ -269,8 +310,16 @@ TEST(FunctionalCore, LoadsAndStoresReachMemoryAndTheHighestLaneWins) {
 }
 
 TEST(FunctionalCore, RoutinesOfTheRayMemoryMoveImportsAndExports) {
-  Machine machine({Encode("rin"), Encode("rld").rd(1).x(20), Encode("rst").x(0).imm(as_bits(2.5f)), Encode("lane").rd(2),
-                   Encode("igt").rd(1).ra(2).imm(1), Encode("rout").guard(1), Encode("rin"), Encode("rfb"), Encode("exit")});
+  Machine machine(assembled(R"(
+      rin
+      rld r1, 20
+      rst 0, 2.5
+      lane r2
+      igt p1, r2, 1
+      @p1 rout
+      rin
+      rfb
+      exit)"));
   EXPECT_EQ(machine.core.step(0).status, Status::WaitsForImport);
   machine.core.expect_import(8);
   machine.core.expect_import(3);
@@ -311,7 +360,7 @@ TEST(FunctionalCore, RoutinesOfTheRayMemoryMoveImportsAndExports) {
 }
 
 TEST(FunctionalCore, APackageThatNobodyExpectsIsRefused) {
-  Machine machine({Encode("exit")});
+  Machine machine(assembled("exit"));
   EXPECT_THROW(machine.core.import_package({}), std::logic_error);
 }
 
@@ -336,34 +385,30 @@ TEST_P(FunctionalCoreFault, IsReportedWithWarpAndPcAndStopsTheUnit) {
 
 INSTANTIATE_TEST_SUITE_P(
     All, FunctionalCoreFault,
-    testing::Values(FaultCase{"unit", {mov(1, 1), uint64_t{15} << 60}, FaultCode::IllegalInstruction, 1},
-                    FaultCase{"operation", {mov(1, 1), Encode("mov").field(31, 55)}, FaultCode::IllegalInstruction, 1},
-                    FaultCase{
-                        "without_fma", {mov(1, 1), Encode("ffma").rd(2).ra(1).rb(1).x(1)}, FaultCode::IllegalInstruction, 1},
-                    FaultCase{"end", {mov(1, 1)}, FaultCode::PcOutsideProgram, 1},
-                    FaultCase{"jump", {Encode("jany").target(9)}, FaultCode::PcOutsideProgram, 9},
-                    FaultCase{"overflow", {Encode("call").target(0, 5)}, FaultCode::StackOverflow, 0},
-                    FaultCase{"loop",
-                              {mov(1, 0), Encode("loop").target(9), Encode("loop").target(9), Encode("loop").target(9)},
-                              FaultCode::StackOverflow,
-                              3},
-                    FaultCase{"underflow", {mov(1, 1), Encode("ret")}, FaultCode::StackUnderflow, 1},
-                    FaultCase{"misaligned", {mov(1, 2), Encode("ld").rd(1).ra(1)}, FaultCode::Misaligned, 1},
-                    FaultCase{"outside", {mov(1, kMemoryBytes), Encode("st").rb(1).ra(1)}, FaultCode::AddressOutsideMemory, 1},
-                    FaultCase{"read_word", {Encode("rld").rd(1).x(21)}, FaultCode::RayWordOutside, 0},
-                    FaultCase{"write_word", {Encode("rst").x(31).rb(1)}, FaultCode::RayWordOutside, 0}),
+    testing::Values(FaultCase{"unit", assembled("mov r1, 1; .word 0xf000000000000000"), FaultCode::IllegalInstruction, 1},
+                    FaultCase{"operation", assembled("mov r1, 1; .word 0x3f80000000000000"), FaultCode::IllegalInstruction, 1},
+                    FaultCase{"without_fma", assembled("mov r1, 1; ffma r2, r1, r1, r1"), FaultCode::IllegalInstruction, 1},
+                    FaultCase{"end", assembled("mov r1, 1"), FaultCode::PcOutsideProgram, 1},
+                    FaultCase{"jump", assembled("jany 9"), FaultCode::PcOutsideProgram, 9},
+                    FaultCase{"overflow", assembled("call 0, 5"), FaultCode::StackOverflow, 0},
+                    FaultCase{"loop", assembled("mov r1, 0; loop 9; loop 9; loop 9"), FaultCode::StackOverflow, 3},
+                    FaultCase{"underflow", assembled("mov r1, 1; ret"), FaultCode::StackUnderflow, 1},
+                    FaultCase{"misaligned", assembled("mov r1, 2; ld r1, [r1]"), FaultCode::Misaligned, 1},
+                    FaultCase{"outside", assembled(fmt::format("mov r1, {}; st [r1], r1", kMemoryBytes)),
+                              FaultCode::AddressOutsideMemory, 1},
+                    FaultCase{"read_word", assembled(".word 0x6180401500000000  # rld r1, 21"), FaultCode::RayWordOutside, 0},
+                    FaultCase{"write_word", assembled(".word 0x6200005f00000000  # rst 31, r1"), FaultCode::RayWordOutside, 0}),
     [](const auto& test_case) { return std::string(test_case.param.name); });
 
 TEST(FunctionalCore, AddressesOfLanesThatAreNotMaskedDoNotFault) {
-  Machine machine(
-      {mov(1, kMemoryBytes + 3), Encode("ieq").rd(1).ra(1).imm(1), Encode("ld").guard(1).rd(2).ra(1), Encode("exit")});
+  Machine machine(assembled(fmt::format("mov r1, {}; ieq p1, r1, 1; @p1 ld r2, [r1]; exit", kMemoryBytes + 3)));
   EXPECT_EQ(machine.run(), Status::NotRunning);
 }
 
 TEST(FunctionalCore, EveryNumberOfLanesComputes) {
   for (int lanes = 1; lanes <= 32; lanes *= 2) {
     for (int warps = 1; warps <= 32; warps *= 8) {
-      Machine machine({Encode("tid").rd(1), Encode("imul").rd(2).ra(1).imm(3), Encode("exit")}, make_configuration(warps, lanes));
+      Machine machine(assembled("tid r1; imul r2, r1, 3; exit"), make_configuration(warps, lanes));
       for (uint32_t warp = 0; warp < static_cast<uint32_t>(warps); ++warp) machine.run(warp);
       EXPECT_FALSE(machine.core.running());
       const uint32_t last = static_cast<uint32_t>(warps * lanes) - 1;
@@ -373,7 +418,7 @@ TEST(FunctionalCore, EveryNumberOfLanesComputes) {
 }
 
 TEST(FunctionalCore, ALaunchClearsPredicatesAndKeepsRegisters) {
-  Machine machine({mov(1, 6), Encode("ieq").rd(1).ra(1).imm(6), Encode("exit"), mov(2, 7), Encode("exit")});
+  Machine machine(assembled("mov r1, 6; ieq p1, r1, 6; exit; mov r2, 7; exit"));
   machine.run(0);
   machine.run(1);
   LaunchCommand command;

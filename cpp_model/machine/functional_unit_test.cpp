@@ -10,7 +10,7 @@
 namespace raypool {
 namespace {
 
-using test::Encode;
+using test::assembled;
 using test::TestChip;
 
 constexpr uint32_t kMemoryBytes = 8192;
@@ -41,13 +41,10 @@ struct Fixture {
 };
 
 // r1 = word 7 of the package + 1 into word 7, exported as a ray and, from the next kernel's point of view, nothing else.
-const std::vector<uint64_t> kRayProgram = {
-    Encode("rin"), Encode("rld").rd(1).x(7), Encode("iadd").rd(1).ra(1).imm(1), Encode("rst").x(7).rb(1), Encode("rout"),
-    Encode("exit")};
+const std::vector<uint64_t> kRayProgram = assembled("rin; rld r1, 7; iadd r1, r1, 1; rst 7, r1; rout; exit");
 
 TEST(FunctionalUnit, KernelsEndInTurnWithOnePulseEach) {
-  Fixture fixture(
-      {Encode("tid").rd(1), Encode("shl").rd(2).ra(1).imm(2), Encode("st").ra(2).rb(1).plain_imm(1024), Encode("exit")});
+  Fixture fixture(assembled("tid r1; shl r2, r1, 2; st [r2+1024], r1; exit"));
   EXPECT_TRUE(fixture.unit->outputs().idle);
   for (int i = 0; i < 5; ++i) fixture.launch(7);
   EXPECT_TRUE(fixture.chip.run());
@@ -61,7 +58,7 @@ TEST(FunctionalUnit, KernelsEndInTurnWithOnePulseEach) {
 }
 
 TEST(FunctionalUnit, ABusyUnitIsNotIdleAndTakesOneLaunchMore) {
-  Fixture fixture({Encode("jany").target(0)});
+  Fixture fixture(assembled("jany 0"));
   fixture.launch(8);
   fixture.launch(8);
   fixture.launch(8);
@@ -110,7 +107,7 @@ TEST(FunctionalUnit, TheNextKernelsPackagesComeWhileTheFirstOneWaits) {
 }
 
 TEST(FunctionalUnit, APackageIsNotRequestedBeforeItsSliceIsFree) {
-  Fixture fixture({Encode("jany").target(0)});
+  Fixture fixture(assembled("jany 0"));
   fixture.launch(8, ImportKind::Normal);
   fixture.launch(8, ImportKind::Normal);
   for (int i = 0; i < 200; ++i) fixture.chip.cycle();
@@ -119,8 +116,7 @@ TEST(FunctionalUnit, APackageIsNotRequestedBeforeItsSliceIsFree) {
 }
 
 TEST(FunctionalUnit, FrameContributionsCarryPixelAndColour) {
-  Fixture fixture({Encode("rin"), Encode("lane").rd(1), Encode("ige").rd(1).ra(1).imm(2), Encode("rfb").guard(1), Encode("exit")},
-                  50);
+  Fixture fixture(assembled("rin; lane r1; ige p1, r1, 2; @p1 rfb; exit"), 50);
   fixture.launch(8, ImportKind::Shadow);
   EXPECT_TRUE(fixture.chip.run());
   ASSERT_EQ(fixture.chip.frame.size(), 4u);
@@ -130,7 +126,7 @@ TEST(FunctionalUnit, FrameContributionsCarryPixelAndColour) {
 }
 
 TEST(FunctionalUnit, AFaultIsStickyAndStopsEverything) {
-  Fixture fixture({Encode("ret")});
+  Fixture fixture(assembled("ret"));
   fixture.launch(8);
   EXPECT_FALSE(fixture.chip.run());
   EXPECT_EQ(fixture.unit->outputs().fault.code, FaultCode::StackUnderflow);
@@ -143,8 +139,7 @@ TEST(FunctionalUnit, AFaultIsStickyAndStopsEverything) {
 }
 
 TEST(FunctionalUnit, TheTraceShowsAtMostOneInstructionOfAWarpInACycle) {
-  Fixture fixture({Encode("tid").rd(1), Encode("shl").rd(2).ra(1).imm(2), Encode("st").ra(2).rb(1).plain_imm(1024),
-                   Encode("rst").x(3).rb(1), Encode("exit")});
+  Fixture fixture(assembled("tid r1; shl r2, r1, 2; st [r2+1024], r1; rst 3, r1; exit"));
   fixture.unit->trace_on();
   fixture.launch(8);
   size_t retired = 0, stores = 0, ray_writes = 0;
@@ -162,7 +157,7 @@ TEST(FunctionalUnit, TheTraceShowsAtMostOneInstructionOfAWarpInACycle) {
 }
 
 TEST(FunctionalUnit, WritesNoWaveform) {
-  Fixture fixture({Encode("exit")});
+  Fixture fixture(assembled("exit"));
   EXPECT_THROW(fixture.unit->open_waveform("waves.fst"), std::runtime_error);
 }
 

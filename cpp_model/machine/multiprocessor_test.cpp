@@ -12,7 +12,7 @@
 namespace raypool {
 namespace {
 
-using test::Encode;
+using test::assembled;
 using test::TestChip;
 
 constexpr uint32_t kMemoryBytes = 65536;
@@ -49,19 +49,25 @@ struct Fixture {
 };
 
 // memory[1024 + 64 * block + 4 * thread] = block + thread
-const std::vector<uint64_t> kStoreProgram = {Encode("tid").rd(1),
-                                             Encode("block").rd(2),
-                                             Encode("iadd").rd(3).ra(1).rb(2),
-                                             Encode("shl").rd(4).ra(2).imm(6),
-                                             Encode("shl").rd(5).ra(1).imm(2),
-                                             Encode("iadd").rd(4).ra(4).rb(5),
-                                             Encode("st").ra(4).rb(3).plain_imm(1024),
-                                             Encode("exit")};
-const std::vector<uint64_t> kEndlessProgram = {Encode("jnone").guard(1).target(0), Encode("exit")};
+const std::vector<uint64_t> kStoreProgram = assembled(R"(
+    tid r1
+    block r2
+    iadd r3, r1, r2
+    shl r4, r2, 6
+    shl r5, r1, 2
+    iadd r4, r4, r5
+    st [r4+1024], r3
+    exit)");
+const std::vector<uint64_t> kEndlessProgram = assembled("@p1 jnone 0; exit");
 // Every package becomes a ray and a contribution.
-const std::vector<uint64_t> kRayProgram = {Encode("rin"),  Encode("rld").rd(1).x(7), Encode("rst").x(7).rb(1),
-                                           Encode("rout"), Encode("rst").x(7).rb(1), Encode("rfb"),
-                                           Encode("exit")};
+const std::vector<uint64_t> kRayProgram = assembled(R"(
+    rin
+    rld r1, 7
+    rst 7, r1
+    rout
+    rst 7, r1
+    rfb
+    exit)");
 
 TEST(Multiprocessor, IsOneTwoOrFourUnits) {
   Memory memory(kMemoryBytes);

@@ -1,5 +1,6 @@
 #include "chip/program_run.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "machine/functional_unit.hpp"
@@ -8,7 +9,7 @@
 namespace raypool {
 namespace {
 
-using test::Encode;
+using test::assembled;
 
 constexpr uint32_t kResults = 1024;
 
@@ -31,16 +32,17 @@ struct Bench {
 
 // word[arg0 + 4 * (block * threads + tid)] = block * threads + tid
 std::vector<uint64_t> number_threads() {
-  return {Encode("tid").rd(1),
-          Encode("block").rd(2),
-          Encode("threads").rd(3),
-          Encode("imul").rd(2).ra(2).rb(3),
-          Encode("iadd").rd(1).ra(1).rb(2),
-          Encode("shl").rd(2).ra(1).imm(2),
-          Encode("arg").rd(3).plain_imm(0),
-          Encode("iadd").rd(2).ra(2).rb(3),
-          Encode("st").ra(2).rb(1),
-          Encode("exit")};
+  return assembled(R"(
+      tid r1
+      block r2
+      threads r3
+      imul r2, r2, r3
+      iadd r1, r1, r2
+      shl r2, r1, 2
+      arg r3, 0
+      iadd r2, r2, r3
+      st [r2], r1
+      exit)");
 }
 
 TEST(ProgramRun, RunsEveryBlockOnce) {
@@ -56,7 +58,7 @@ TEST(ProgramRun, RunsEveryBlockOnce) {
 }
 
 TEST(ProgramRun, ReportsAFault) {
-  Bench bench({Encode("mov").rd(1).imm(2), Encode("ld").rd(2).ra(1), Encode("exit")});
+  Bench bench(assembled("mov r1, 2; ld r2, [r1]; exit"));
   try {
     run_program(bench.options);
     FAIL() << "no fault";
@@ -68,13 +70,13 @@ TEST(ProgramRun, ReportsAFault) {
 
 TEST(ProgramRun, RefusesProgramsThatNeedThePools) {
   for (const char* mnemonic : {"rin", "rout", "rfb"}) {
-    Bench bench({Encode(mnemonic), Encode("exit")});
+    Bench bench(assembled(fmt::format("{}; exit", mnemonic)));
     EXPECT_THROW(run_program(bench.options), InputError) << mnemonic;
   }
 }
 
 TEST(ProgramRun, GivesUpOnAProgramThatNeverEnds) {
-  Bench bench({Encode("jnone").guard(1).target(0), Encode("exit")});
+  Bench bench(assembled("@p1 jnone 0; exit"));
   bench.options.watchdog_cycles = 10;
   EXPECT_THROW(run_program(bench.options), ChipStalled);
   bench.options.watchdog_cycles = 0;
@@ -100,8 +102,7 @@ TEST(ProgramRun, WithoutTimeTheLimitCountsInstructions) {
 
 TEST(ProgramRun, TellsTheAddressBehindAFault) {
   // Thread t loads from 64 + 6 t: thread 1 is the first that is not aligned.
-  const std::vector<uint64_t> code = {Encode("tid").rd(1), Encode("imul").rd(1).ra(1).imm(6),
-                                      Encode("ld").rd(2).ra(1).plain_imm(64), Encode("exit")};
+  const std::vector<uint64_t> code = assembled("tid r1; imul r1, r1, 6; ld r2, [r1+64]; exit");
   Bench bench(code);
   const Memory before = bench.memory;
   try {

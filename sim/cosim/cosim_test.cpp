@@ -18,7 +18,7 @@
 namespace raypool {
 namespace {
 
-using test::Encode;
+using test::assembled;
 
 Configuration configuration_of(int warps, int lanes, int stack_depth = 8) {
   Configuration configuration;
@@ -170,36 +170,36 @@ TEST(ProgramCheck, NamesWhatBreaksTheRules) {
   const auto problem = [&](const std::vector<uint64_t>& code, uint32_t threads = 1) {
     return check_program(two, program_of(code, threads), 10000);
   };
-  EXPECT_EQ(problem({Encode("mov").rd(1).imm(1), Encode("exit")}), "");
-  EXPECT_NE(problem({Encode("iadd").rd(1).ra(2).imm(1), Encode("exit")}).find("r2 is read"), std::string::npos);
-  EXPECT_NE(problem({Encode("jany").target(0), Encode("exit")}).find("does not end"), std::string::npos);
-  EXPECT_NE(problem({Encode("rld").rd(1).x(3), Encode("exit")}).find("word 3"), std::string::npos);
-  EXPECT_NE(problem({Encode("ret"), Encode("exit")}).find("fault 4"), std::string::npos);
-  EXPECT_NE(problem({Encode("rin"), Encode("exit")}).find("nobody sends"), std::string::npos);
-  EXPECT_NE(problem({Encode("mov").rd(1).imm(0), Encode("st").ra(1).rb(1), Encode("exit")}).find("its code"), std::string::npos);
-  RandomProgram far = program_of({Encode("mov").rd(1).imm(1u << 24), Encode("ld").rd(2).ra(1), Encode("exit")});
+  EXPECT_EQ(problem(assembled("mov r1, 1; exit")), "");
+  EXPECT_NE(problem(assembled("iadd r1, r2, 1; exit")).find("r2 is read"), std::string::npos);
+  EXPECT_NE(problem(assembled("jany 0; exit")).find("does not end"), std::string::npos);
+  EXPECT_NE(problem(assembled("rld r1, 3; exit")).find("word 3"), std::string::npos);
+  EXPECT_NE(problem(assembled("ret; exit")).find("fault 4"), std::string::npos);
+  EXPECT_NE(problem(assembled("rin; exit")).find("nobody sends"), std::string::npos);
+  EXPECT_NE(problem(assembled("mov r1, 0; st [r1], r1; exit")).find("its code"), std::string::npos);
+  RandomProgram far = program_of(assembled("mov r1, 0x1000000; ld r2, [r1]; exit"));
   EXPECT_NE(check_program(two, far).find("fault"), std::string::npos);
   far.memory_limit = 1u << 25;
   EXPECT_EQ(check_program(two, far), "");
-  far.program.code[1] = Encode("st").ra(1).rb(1);
+  far.program.code[1] = assembled("st [r1], r1")[0];
   far.kernels.front().threads = 2;
   fill_memory(far);
   EXPECT_NE(check_program(two, far).find("race at address 16777216"), std::string::npos);
-  const std::vector<uint64_t> race = {Encode("mov").rd(1).imm(2048), Encode("st").ra(1).rb(1), Encode("exit")};
+  const std::vector<uint64_t> race = assembled("mov r1, 2048; st [r1], r1; exit");
   EXPECT_EQ(problem(race), "");
   EXPECT_NE(problem(race, 2).find("race at address 2048"), std::string::npos);
 }
 
 TEST(ProgramCheck, RunsWhatIsRewritten) {
-  RandomProgram program = program_of({Encode("mov").rd(1).imm(1), Encode("mov").rd(2).imm(1), Encode("exit")});
+  RandomProgram program = program_of(assembled("mov r1, 1; mov r2, 1; exit"));
   program.kernels.push_back(program.kernels.front());
   Rewrite rewrite;
-  rewrite.code[1] = Encode("iadd").rd(2).ra(3).imm(1);
+  rewrite.code[1] = assembled("iadd r2, r3, 1")[0];
   program.kernels[1].rewrite = rewrite;
   EXPECT_NE(check_program(configuration_of(1, 1), program).find("no argument is"), std::string::npos);
   program.kernels[1].rewrite->arguments[7] = 1;
   EXPECT_NE(check_program(configuration_of(1, 1), program).find("r3 is read"), std::string::npos);
-  program.kernels[1].rewrite->code[1] = Encode("iadd").rd(2).ra(1).imm(1);
+  program.kernels[1].rewrite->code[1] = assembled("iadd r2, r1, 1")[0];
   EXPECT_EQ(check_program(configuration_of(1, 1), program), "");
   program.kernels[1].rewrite->arguments[32] = 1;
   EXPECT_NE(check_program(configuration_of(1, 1), program).find("argument 32"), std::string::npos);
@@ -209,7 +209,7 @@ TEST(ProgramCheck, RunsWhatIsRewritten) {
 }
 
 TEST(ProgramCheck, KernelsOfSeveralUnitsMayNotShareStoredWords) {
-  RandomProgram program = program_of({Encode("mov").rd(1).imm(2048), Encode("st").ra(1).rb(1), Encode("exit")});
+  RandomProgram program = program_of(assembled("mov r1, 2048; st [r1], r1; exit"));
   program.kernels.push_back(program.kernels.front());
   EXPECT_EQ(check_program(configuration_of(1, 1), program), "");
   program.units = 2;
@@ -256,9 +256,14 @@ TEST(SavedPrograms, AreReadAsTheyWereWritten) {
 }
 
 TEST(Shrinking, MovesTargetsWithTheirInstructions) {
-  const RandomProgram program =
-      program_of({Encode("mov").rd(1).imm(1), Encode("jany").target(3), Encode("mov").rd(2).imm(2), Encode("call").target(5, 7),
-                  Encode("exit"), Encode("mov").rd(3).imm(3), Encode("ret")});
+  const RandomProgram program = program_of(assembled(R"(
+          mov r1, 1
+          jany 3
+          mov r2, 2
+          call 5, 7
+          exit
+          mov r3, 3
+          ret)"));
   const RandomProgram shorter = without_instructions(program, 2, 1);
   ASSERT_EQ(shorter.program.code.size(), 6u);
   EXPECT_EQ(unpack(shorter.program.code[1]).immediate, 2u);
@@ -267,15 +272,14 @@ TEST(Shrinking, MovesTargetsWithTheirInstructions) {
 }
 
 TEST(Shrinking, MovesWhatIsRewritten) {
-  RandomProgram program =
-      program_of({Encode("mov").rd(1).imm(1), Encode("mov").rd(2).imm(1), Encode("jany").target(3), Encode("exit")});
+  RandomProgram program = program_of(assembled("mov r1, 1; mov r2, 1; jany 3; exit"));
   Rewrite rewrite;
-  rewrite.code[1] = Encode("mov").rd(2).imm(5);
-  rewrite.code[2] = Encode("jnone").target(3);
+  rewrite.code[1] = assembled("mov r2, 5")[0];
+  rewrite.code[2] = assembled("jnone 3")[0];
   rewrite.arguments[3] = 1;
   program.kernels.front().rewrite = rewrite;
   const RandomProgram shorter = without_instructions(program, 0, 1);
-  const std::map<uint32_t, uint64_t> moved = {{0, rewrite.code[1]}, {1, Encode("jnone").target(2)}};
+  const std::map<uint32_t, uint64_t> moved = {{0, rewrite.code[1]}, {1, assembled("jnone 2")[0]}};
   EXPECT_EQ(shorter.kernels.front().rewrite->code, moved);
   EXPECT_EQ(without_instructions(program, 1, 1).kernels.front().rewrite->code.size(), 1u);
 }

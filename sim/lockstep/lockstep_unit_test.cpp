@@ -13,7 +13,7 @@
 namespace raypool {
 namespace {
 
-using test::Encode;
+using test::assembled;
 using test::TestChip;
 
 constexpr uint32_t kMemoryBytes = 8192;
@@ -63,27 +63,28 @@ class Device : public ComputeUnit {
 };
 
 // Everything a kernel can do: import, ray words, arithmetic, predicates, a loop, loads and stores, exports of both sorts.
-const std::vector<uint64_t> kProgram = {Encode("rin"),                               // 0
-                                        Encode("rld").rd(1).x(7),                    // 1
-                                        Encode("tid").rd(2),                         // 2
-                                        Encode("shl").rd(3).ra(2).imm(2),            // 3
-                                        Encode("st").ra(3).rb(1).plain_imm(1024),    // 4
-                                        Encode("ld").rd(4).ra(3).plain_imm(1024),    // 5
-                                        Encode("and").rd(5).ra(2).imm(3),            // 6
-                                        Encode("igt").rd(1).ra(5).imm(0),            // 7
-                                        Encode("loop").guard(1).target(12),          // 8
-                                        Encode("isub").guard(1).rd(5).ra(5).imm(1),  // 9
-                                        Encode("iadd").guard(1).rd(4).ra(4).imm(1),  // 10
-                                        Encode("igt").guard(1).rd(1).ra(5).imm(0),   // 11
-                                        Encode("rst").x(8).rb(4),                    // 12
-                                        Encode("ige").rd(2).ra(2).imm(2),            // 13
-                                        Encode("rout").guard(2),                     // 14
-                                        Encode("rst").x(7).rb(2),
-                                        Encode("rst").x(8).imm(1),  // 15, 16
-                                        Encode("rst").x(9).imm(2),
-                                        Encode("rst").x(10).imm(3),
-                                        Encode("rfb").guard(2),  // 19
-                                        Encode("exit")};
+const std::vector<uint64_t> kProgram = assembled(R"(
+    rin                 # 0
+    rld r1, 7           # 1
+    tid r2              # 2
+    shl r3, r2, 2       # 3
+    st [r3+1024], r1    # 4
+    ld r4, [r3+1024]    # 5
+    and r5, r2, 3       # 6
+    igt p1, r5, 0       # 7
+    @p1 loop 12         # 8
+    @p1 isub r5, r5, 1  # 9
+    @p1 iadd r4, r4, 1  # 10
+    @p1 igt p1, r5, 0   # 11
+    rst 8, r4           # 12
+    ige p2, r2, 2       # 13
+    @p2 rout            # 14
+    rst 7, r2
+    rst 8, 0x1          # 15, 16
+    rst 9, 0x2
+    rst 10, 0x3
+    @p2 rfb             # 19
+    exit)");
 
 struct Fixture {
   Memory memory;
@@ -363,7 +364,7 @@ TEST(Lockstep, AHangIsReportedWithWhatEveryWarpWaitsFor) {
 }
 
 TEST(Lockstep, FaultsThatBothReportAlikeAreNoDifference) {
-  Fixture fixture({Encode("mov").rd(1).imm(2), Encode("ld").rd(1).ra(1), Encode("mov").rd(2).imm(0), Encode("exit")});
+  Fixture fixture(assembled("mov r1, 2; ld r1, [r1]; mov r2, 0; exit"));
   fixture.launch(3, ImportKind::None);
   EXPECT_FALSE(fixture.chip.run());
   for (int i = 0; i < 50; ++i) fixture.chip.cycle();
@@ -373,7 +374,7 @@ TEST(Lockstep, FaultsThatBothReportAlikeAreNoDifference) {
 }
 
 TEST(Lockstep, AFaultThatTheUnitMissesIsFound) {
-  Fixture fixture({Encode("mov").rd(1).imm(2), Encode("ld").rd(1).ra(1), Encode("mov").rd(2).imm(0), Encode("exit")});
+  Fixture fixture(assembled("mov r1, 2; ld r1, [r1]; mov r2, 0; exit"));
   fixture.device->alter_outputs = [](UnitOutputs& out) { out.fault = {}; };
   fixture.launch(3, ImportKind::None);
   try {
@@ -385,7 +386,7 @@ TEST(Lockstep, AFaultThatTheUnitMissesIsFound) {
 }
 
 TEST(Lockstep, AFaultThatDoesNotStayIsFound) {
-  Fixture fixture({Encode("mov").rd(1).imm(2), Encode("ld").rd(1).ra(1), Encode("exit")});
+  Fixture fixture(assembled("mov r1, 2; ld r1, [r1]; exit"));
   fixture.launch(3, ImportKind::None);
   EXPECT_FALSE(fixture.chip.run());
   for (int i = 0; i < 5; ++i) fixture.chip.cycle();
@@ -444,7 +445,7 @@ TEST(Lockstep, ResetStartsAfresh) {
 }
 
 TEST(Lockstep, ArgumentsReachBoth) {
-  Fixture fixture({Encode("arg").rd(1).plain_imm(5), Encode("exit")});
+  Fixture fixture(assembled("arg r1, 5; exit"));
   fixture.unit->set_argument(5, 99);
   fixture.launch(8, ImportKind::None);
   EXPECT_TRUE(fixture.chip.run());

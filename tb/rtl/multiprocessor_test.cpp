@@ -19,8 +19,8 @@
 namespace raypool {
 namespace {
 
+using test::assembled;
 using test::ComparedDevice;
-using test::Encode;
 
 Configuration configuration() {
   Configuration result;
@@ -103,9 +103,16 @@ TEST_P(RtlMultiprocessor, AgreesWithTheArbitersInCppInEveryCycleOfRandomPrograms
 }
 
 TEST_P(RtlMultiprocessor, AgreesWhenEveryUnitWantsThePoolsAllTheTime) {
-  const std::vector<uint64_t> code = {
-      Encode("rin"), Encode("rld").rd(1).x(7),  Encode("rst").x(8).rb(1), Encode("rout"), Encode("rst").x(7).rb(1),
-      Encode("rfb"), Encode("rst").x(11).rb(1), Encode("rout"),           Encode("exit")};
+  const std::vector<uint64_t> code = assembled(R"(
+      rin
+      rld r1, 7
+      rst 8, r1
+      rout
+      rst 7, r1
+      rfb
+      rst 11, r1
+      rout
+      exit)");
   for (const int ready_percent : {100, 70, 25}) {
     SCOPED_TRACE(testing::Message() << ready_percent << "% ready");
     Memory memory(8192);
@@ -140,7 +147,7 @@ TEST_P(RtlMultiprocessor, AgreesWhenEveryUnitWantsThePoolsAllTheTime) {
 
 TEST_P(RtlMultiprocessor, ShowsTheFirstFaultAndItsUnit) {
   // The block word is an address: 0 is good, 2 misaligned.
-  const std::vector<uint64_t> code = {Encode("block").rd(1), Encode("ld").rd(2).ra(1), Encode("exit")};
+  const std::vector<uint64_t> code = assembled("block r1; ld r2, [r1]; exit");
   for (int faulty = 0; faulty < GetParam(); ++faulty) {
     SCOPED_TRACE(testing::Message() << "unit " << faulty);
     Memory memory(8192);

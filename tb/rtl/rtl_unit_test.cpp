@@ -1,4 +1,5 @@
 // The whole compute unit in RTL: Verilated for several configurations and run in lockstep with the model, on random programs.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -15,7 +16,7 @@
 namespace raypool {
 namespace {
 
-using test::Encode;
+using test::assembled;
 using test::TestChip;
 
 constexpr uint32_t kData = 32768;
@@ -77,19 +78,17 @@ TEST_P(RtlUnit, ReportsTheModelsFaults) {
   const std::string library = library_of(GetParam());
   const Configuration configuration = configuration_of(GetParam());
   const FaultProgram programs[] = {
-      {"illegal", {Encode("mov").rd(1).imm(1), uint64_t{0xf} << 60, Encode("exit")}, FaultCode::IllegalInstruction},
-      {"outside", {Encode("mov").rd(1).imm(1), Encode("jany").target(99)}, FaultCode::PcOutsideProgram},
-      {"end", {Encode("mov").rd(1).imm(1)}, FaultCode::PcOutsideProgram},
+      {"illegal", assembled("mov r1, 1; .word 0xf000000000000000; exit"), FaultCode::IllegalInstruction},
+      {"outside", assembled("mov r1, 1; jany 99"), FaultCode::PcOutsideProgram},
+      {"end", assembled("mov r1, 1"), FaultCode::PcOutsideProgram},
       // All warps in the same cycle: the lowest counts.
-      {"launch", {Encode("exit")}, FaultCode::PcOutsideProgram, 99},
-      {"overflow", {Encode("call").target(0, 99), Encode("exit")}, FaultCode::StackOverflow},
-      {"underflow", {Encode("mov").rd(1).imm(1), Encode("ret"), Encode("exit")}, FaultCode::StackUnderflow},
-      {"misaligned", {Encode("mov").rd(1).imm(1026), Encode("ld").rd(1).ra(1), Encode("exit")}, FaultCode::Misaligned},
-      {"limit",
-       {Encode("mov").rd(1).imm(kMemoryBytes), Encode("st").ra(1).rb(1), Encode("exit")},
-       FaultCode::AddressOutsideMemory},
-      {"word", {Encode("rld").rd(1).x(21), Encode("exit")}, FaultCode::RayWordOutside},
-      {"unmasked_word", {Encode("rst").guard(0, true).x(30).rb(1), Encode("exit")}, FaultCode::RayWordOutside},
+      {"launch", assembled("exit"), FaultCode::PcOutsideProgram, 99},
+      {"overflow", assembled("call 0, 99; exit"), FaultCode::StackOverflow},
+      {"underflow", assembled("mov r1, 1; ret; exit"), FaultCode::StackUnderflow},
+      {"misaligned", assembled("mov r1, 1026; ld r1, [r1]; exit"), FaultCode::Misaligned},
+      {"limit", assembled(fmt::format("mov r1, {}; st [r1], r1; exit", kMemoryBytes)), FaultCode::AddressOutsideMemory},
+      {"word", assembled(".word 0x6180401500000000  # rld r1, 21\nexit"), FaultCode::RayWordOutside},
+      {"unmasked_word", assembled(".word 0x6240005e00000000  # @!p0 rst 30, r1\nexit"), FaultCode::RayWordOutside},
   };
   for (const FaultProgram& program : programs) {
     Memory memory(kMemoryBytes);
@@ -151,7 +150,7 @@ TEST(RtlUnitWaves, WritesAWaveformWhenBuiltForIt) {
   const std::string path = std::string(RAYPOOL_TEST_UNITS) + "/waves.fst";
   std::filesystem::remove(path);
   Memory memory(kMemoryBytes);
-  test::put_program(memory, {Encode("exit")});
+  test::put_program(memory, assembled("exit"));
   {
     auto unit = load_rtl_unit(library_of(waves), configuration);
     unit->open_waveform(path);
