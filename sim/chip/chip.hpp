@@ -1,6 +1,6 @@
-// The whole chip, simulated with SystemC: ray pool, traverser, intersection pool, controller and memory port around one device of
-// 1, 2 or 4 compute units, whichever engine it is. docs/chip.md describes the blocks, their timing, and why the chip cannot lock
-// up.
+// The whole chip, simulated with SystemC: ray pool, traverser, intersection pool, controller and memory port around one
+// device of 1, 2 or 4 compute units, whichever engine it is. docs/chip.md describes the blocks, their timing, and why
+// the chip cannot lock up.
 #pragma once
 
 #include <array>
@@ -119,9 +119,12 @@ struct ChipStalled : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Draws one frame. Throws InputError for options out of range, ChipFault, ChipStalled, and whatever a unit's clock() or the
-/// tracer throws. One run at a time in a process; any number of them one after the other.
+/// Draws one frame. Throws InputError for options out of range, ChipFault, ChipStalled, and whatever a unit's clock()
+/// or the tracer throws. One run at a time in a process; any number of them one after the other.
 ChipResult run_chip(const ChipOptions& options);
+
+/// The modules of that chip, with their ports and what each is bound to: a line each.
+std::string chip_modules(const ChipOptions& options);
 
 /// One sentence: code, its meaning, unit, warp and PC.
 std::string fault_sentence(int unit, const Fault& fault);

@@ -8,14 +8,9 @@
 
 namespace raypool::chip {
 
-Controller::Controller(const sc_core::sc_module_name& name, const ChipOptions& options, ChipClock& clock, RayPool& rays,
-                       IntersectionPool& intersections, PixelLedger& ledger)
+Controller::Controller(const sc_core::sc_module_name& name, const ChipOptions& options)
     : sc_module(name),
       options_(options),
-      clock_(clock),
-      rays_(rays),
-      intersections_(intersections),
-      ledger_(ledger),
       secondary_(secondary_kernel(options.depth, options.reflections)),
       tile_width_(1 << tile_width_log2(options.configuration.contents())),
       given_(options.device->units()),
@@ -23,8 +18,11 @@ Controller::Controller(const sc_core::sc_module_name& name, const ChipOptions& o
   const int contents = options.configuration.contents();
   // A tile that would hold more pixels than allowed is cut into bands of whole rows.
   tile_height_ = std::min(contents, options.held_limit) / tile_width_;
-  const PolicySetup setup{static_cast<uint32_t>(contents), options.device->units(), rays.capacity(), intersections.capacity()};
-  policy_ = make_policy(options.policy, setup);
+  policy_ = make_policy(options.policy,
+                        {static_cast<uint32_t>(contents), options.device->units(), static_cast<uint32_t>(options.ray_packages),
+                         static_cast<uint32_t>(options.intersection_packages)});
+  decisions.bind(*this);
+  kernel_events.bind(*this);
   SC_METHOD(decide);
   sensitive << decide_;
   dont_initialize();
@@ -32,15 +30,15 @@ Controller::Controller(const sc_core::sc_module_name& name, const ChipOptions& o
 
 void Controller::accepted(int unit) {
   const auto u = static_cast<size_t>(unit);
-  given_[u].back().begins = clock_.cycle() + 1;
+  given_[u].back().begins = clock->cycle() + 1;
 }
 
 void Controller::kernel_ended(int unit) {
   const auto u = static_cast<size_t>(unit);
   const GivenKernel kernel = given_[u].front();
   given_[u].pop_front();
-  const uint64_t time = clock_.cycle() - std::max(kernel.begins, ended_[u]);
-  ended_[u] = clock_.cycle();
+  const uint64_t time = clock->cycle() - std::max(kernel.begins, ended_[u]);
+  ended_[u] = clock->cycle();
   kernels_[static_cast<size_t>(kernel.kind)].cycles += time;
   thread_time_ += static_cast<double>(time) * kernel.threads;
   thread_time_launchable_ += static_cast<double>(time) * options_.configuration.contents();
@@ -53,33 +51,33 @@ uint32_t Controller::pixels_of_next_tile() const {
 
 bool Controller::eye_possible() const {
   if (tile_y_ >= options_.height) return false;
-  if (!options_.window_remedy && ledger_.held() > 0 && round_ == 0) return false;
-  return ledger_.held() + pixels_of_next_tile() <= static_cast<uint32_t>(options_.held_limit);
+  if (!options_.window_remedy && ledger->held() > 0 && round_ == 0) return false;
+  return ledger->held() + pixels_of_next_tile() <= static_cast<uint32_t>(options_.held_limit);
 }
 
 uint32_t Controller::secondary_room() const {
-  const uint32_t limit = intersections_.capacity() + rays_.capacity() - 1;
-  const uint32_t shadows = rays_.shadow_rays() + ledger_.shadow_rays_to_come() + intersections_.available(ImportKind::Shadow);
+  const auto limit = static_cast<uint32_t>(options_.intersection_packages + options_.ray_packages - 1);
+  const uint32_t shadows = rays->shadow_rays() + ledger->shadow_rays_to_come() + intersections->available(ImportKind::Shadow);
   return shadows < limit ? limit - shadows : 0;
 }
 
 PolicyView Controller::view(bool ahead) const {
   PolicyView view;
-  view.rays = rays_.size();
-  view.normal = intersections_.available(ImportKind::Normal);
-  view.shadow = intersections_.available(ImportKind::Shadow);
+  view.rays = rays->size();
+  view.normal = intersections->available(ImportKind::Normal);
+  view.shadow = intersections->available(ImportKind::Shadow);
   view.secondary_room = secondary_room();
   view.eye_possible = eye_possible();
-  view.more_to_come = rays_.size() > 0 || ledger_.rays_to_come() > 0;
+  view.more_to_come = rays->size() > 0 || ledger->rays_to_come() > 0;
   view.ahead = ahead;
   return view;
 }
 
 void Controller::decide() {
-  clock_.guard([&] {
+  clock->guard([&] {
     if (end_if_finished()) return;
-    if (!device_->can_launch()) return;
-    const bool ahead = device_->busy(device_->next_unit());
+    if (!device->can_launch()) return;
+    const bool ahead = device->busy(device->next_unit());
     if (ahead && !options_.launch_ahead) return;
     const Choice choice = policy_->choose(view(ahead));
     if (choice.kind != Choice::Kind::Halt) launch(choice);
@@ -87,14 +85,14 @@ void Controller::decide() {
 }
 
 bool Controller::end_if_finished() {
-  if (ledger_.finished() < ledger_.pixels() || !device_->idle()) return false;
+  if (ledger->finished() < ledger->pixels() || !device->idle()) return false;
   finished_ = true;
-  clock_.stop();
+  clock->stop();
   return true;
 }
 
 void Controller::launch(const Choice& choice) {
-  const int unit = static_cast<int>(device_->next_unit());
+  const int unit = static_cast<int>(device->next_unit());
   LaunchCommand command;
   RayKernel kernel = RayKernel::CastEye;
   if (choice.kind == Choice::Kind::Eye) {
@@ -105,24 +103,24 @@ void Controller::launch(const Choice& choice) {
     command.import = shade ? ImportKind::Shadow : ImportKind::Normal;
     command.threads = choice.threads;
     kernel = shade ? RayKernel::Shade : secondary_;
-    if (choice.threads == 0 || choice.threads > intersections_.available(command.import) ||
+    if (choice.threads == 0 || choice.threads > intersections->available(command.import) ||
         choice.threads > static_cast<uint32_t>(options_.configuration.contents()) ||
         (!shade && choice.threads > secondary_room())) {
       throw std::logic_error("the policy launches a kernel of a size that is not possible now");
     }
-    intersections_.reserve(command.import, choice.threads);
-    ledger_.launched(unit, kernel, choice.threads);
+    intersections->reserve(command.import, choice.threads);
+    ledger->launched(unit, kernel, choice.threads);
   }
   command.pc = options_.entries[static_cast<size_t>(kernel)];
   ChipResult::Kernel& count = kernels_[static_cast<size_t>(kernel)];
   ++count.launches;
   count.threads += command.threads;
   given_[static_cast<size_t>(unit)].push_back({kernel, command.threads, UINT64_MAX});
-  device_->launch(command);
+  device->launch(command);
 }
 
 LaunchCommand Controller::next_tile(int unit) {
-  if (ledger_.held() == 0) round_ = static_cast<int>(device_->units());
+  if (ledger->held() == 0) round_ = static_cast<int>(device->units());
   --round_;
   std::vector<uint32_t> pixels;
   for (int y = tile_y_; y < std::min(tile_y_ + tile_height_, options_.height); ++y) {
@@ -130,8 +128,8 @@ LaunchCommand Controller::next_tile(int unit) {
       pixels.push_back(static_cast<uint32_t>(x) | static_cast<uint32_t>(y) << 16);
     }
   }
-  ledger_.eye_launched(unit, std::move(pixels));
-  held_peak_ = std::max(held_peak_, ledger_.held());
+  ledger->eye_launched(unit, std::move(pixels));
+  held_peak_ = std::max(held_peak_, ledger->held());
 
   LaunchCommand command;
   command.threads = static_cast<uint32_t>(tile_width_ * tile_height_);
@@ -146,13 +144,14 @@ LaunchCommand Controller::next_tile(int unit) {
 
 std::string Controller::describe() const {
   return fmt::format(
-      "controller: next tile at ({}, {}) of {}x{} pixels, {} pixels finished, {} held; ray pool {} of {} rays, {} of them shadow "
+      "controller: next tile at ({}, {}) of {}x{} pixels, {} pixels finished, {} held; ray pool {} of {} rays, {} of "
+      "them shadow "
       "rays, {} more may "
       "come; intersection pool {} normal and {} shadow of {} each, {} and {} of them not promised to a kernel",
-      tile_x_, tile_y_, options_.width, options_.height, ledger_.finished(), ledger_.held(), rays_.size(), rays_.capacity(),
-      rays_.shadow_rays(), ledger_.rays_to_come(), intersections_.size(ImportKind::Normal),
-      intersections_.size(ImportKind::Shadow), intersections_.capacity(), intersections_.available(ImportKind::Normal),
-      intersections_.available(ImportKind::Shadow));
+      tile_x_, tile_y_, options_.width, options_.height, ledger->finished(), ledger->held(), rays->size(), options_.ray_packages,
+      rays->shadow_rays(), ledger->rays_to_come(), intersections->size(ImportKind::Normal),
+      intersections->size(ImportKind::Shadow), options_.intersection_packages, intersections->available(ImportKind::Normal),
+      intersections->available(ImportKind::Shadow));
 }
 
 }  // namespace raypool::chip

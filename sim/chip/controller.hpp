@@ -1,10 +1,10 @@
-// The controller: cuts the image into tiles, and launches on the device what the policy proposes, as far as it is safe. Which
-// unit gets a launch is the device's choice (its block scheduler's); the controller sees it beforehand.
+// The controller: cuts the image into tiles, and launches on the device what the policy proposes, as far as it is safe.
+// Which unit gets a launch is the device's choice (its block scheduler's); the controller sees it beforehand.
 //
-// Two rules keep the chip from locking up, whatever the policy (docs/chip.md has the argument): no more pixels are held than the
-// intersection pool has places for normal intersections, and a secondary kernel starts only if all shadow rays and intersections
-// that can exist then leave at least one place of the ray pool free. It decides without delay: a kernel that it chooses in cycle
-// c is offered in c+1.
+// Two rules keep the chip from locking up, whatever the policy (docs/chip.md has the argument): no more pixels are held
+// than the intersection pool has places for normal intersections, and a secondary kernel starts only if all shadow rays
+// and intersections that can exist then leave at least one place of the ray pool free. It decides without delay: a
+// kernel that it chooses in cycle c is offered in c+1.
 #pragma once
 
 #include <array>
@@ -16,29 +16,29 @@
 #include <vector>
 
 #include "chip/chip.hpp"
-#include "chip/device_host.hpp"
-#include "chip/intersection_pool.hpp"
-#include "chip/launcher.hpp"
-#include "chip/pixel_ledger.hpp"
+#include "chip/chip_clock.hpp"
+#include "chip/interfaces.hpp"
 #include "chip/policy.hpp"
-#include "chip/ray_pool.hpp"
-#include "chip/statistics.hpp"
 
 namespace raypool::chip {
 
-class Controller : public sc_core::sc_module, public Launcher {
+class Controller : public sc_core::sc_module, public DecisionIf, public KernelEventsIf {
  public:
   SC_HAS_PROCESS(Controller);
-  /// All must outlive the controller.
-  Controller(const sc_core::sc_module_name& name, const ChipOptions& options, ChipClock& clock, RayPool& rays,
-             IntersectionPool& intersections, PixelLedger& ledger);
+  /// `options` must outlive the controller.
+  Controller(const sc_core::sc_module_name& name, const ChipOptions& options);
 
-  /// Before the run.
-  void connect(DeviceHost& device) { device_ = &device; }
+  sc_core::sc_port<TimeIf> clock{"clock"};
+  sc_core::sc_port<RayLevelIf> rays{"rays"};
+  sc_core::sc_port<IntersectionLevelIf> intersections{"intersections"};
+  sc_core::sc_port<LedgerIf> ledger{"ledger"};
+  sc_core::sc_port<LaunchIf> device{"device"};
+  sc_core::sc_export<DecisionIf> decisions{"decisions"};
+  sc_core::sc_export<KernelEventsIf> kernel_events{"kernel_events"};
 
   void accepted(int unit) override;
   void kernel_ended(int unit) override;
-  void changed() override { clock_.notify(decide_, Phase::Controller); }
+  void changed() override { clock->notify(decide_, Phase::Controller); }
 
   bool finished() const { return finished_; }
   const std::array<ChipResult::Kernel, kRayKernels>& kernels() const { return kernels_; }
@@ -57,6 +57,7 @@ class Controller : public sc_core::sc_module, public Launcher {
     uint64_t begins;  // not before this cycle
   };
 
+  void start_of_simulation() override { changed(); }
   void decide();
   bool end_if_finished();
   PolicyView view(bool ahead) const;
@@ -67,14 +68,9 @@ class Controller : public sc_core::sc_module, public Launcher {
   uint32_t pixels_of_next_tile() const;
 
   const ChipOptions& options_;
-  ChipClock& clock_;
-  RayPool& rays_;
-  IntersectionPool& intersections_;
-  PixelLedger& ledger_;
   std::unique_ptr<KernelPolicy> policy_;
   RayKernel secondary_;
   sc_core::sc_event decide_;
-  DeviceHost* device_ = nullptr;
 
   int tile_width_, tile_height_;
   int tile_x_ = 0, tile_y_ = 0;  // first pixel of the next tile

@@ -10,15 +10,11 @@
 
 namespace raypool::chip {
 
-DeviceHost::DeviceHost(const sc_core::sc_module_name& name, ComputeUnit& device, const DeviceSurroundings& surroundings)
-    : sc_module(name),
-      device_(device),
-      units_(device.units()),
-      around_(surroundings),
-      idle_before_((1u << units_) - 1),
-      settled_((1u << units_) - 1) {
-  SC_METHOD(cycles);
-  sensitive << around_.clock.tick();
+DeviceHost::DeviceHost(const sc_core::sc_module_name& name, ComputeUnit& device)
+    : sc_module(name), device_(device), units_(device.units()), idle_before_((1u << units_) - 1), settled_((1u << units_) - 1) {
+  launches.bind(*this);
+  SC_METHOD(run);
+  sensitive << next_cycle_;
   dont_initialize();
 }
 
@@ -30,60 +26,57 @@ void DeviceHost::launch(const LaunchCommand& command) {
   settled_ &= ~(1u << pending_unit_);
   if (awake_) return;
   awake_ = true;
-  around_.clock.wake();
+  clock->notify(next_cycle_, Phase::Units, 1);
 }
 
-void DeviceHost::cycles() {
-  if (!awake_) return;
-  around_.clock.guard([&] {
-    do {
-      cycle();
-    } while (awake_ && around_.clock.run_on());
+void DeviceHost::run() {
+  clock->guard([&] {
+    clock->compute_quantum();
+    for (;; clock->advance(1)) {
+      // Outputs stay as they are until the device is clocked.
+      const UnitOutputs& outputs = device_.outputs();
+      decide_inputs(outputs);
+      const uint32_t busy = outputs.busy;
+      const uint64_t cycles = device_.run(inputs_, quiet_cycles(outputs));
+      busy_cycles_ += (busy < 2 ? busy : popcount(busy)) * cycles;
+      clock->advance(cycles - 1);
+      if ((device_.outputs().unit_idle & ~settled_) != 0) settle();
+      if (!awake_) return;
+      if (clock->need_sync()) break;
+    }
+    clock->notify(next_cycle_, Phase::Units, 1);
   });
 }
 
-void DeviceHost::cycle() {
-  // Outputs stay as they are until clock(), so the reference may be kept.
-  const UnitOutputs& outputs = device_.outputs();
+// Most cycles have nothing for most of these.
+void DeviceHost::decide_inputs(const UnitOutputs& outputs) {
   if (outputs.fault.code != FaultCode::None) {
     const int unit = static_cast<int>(outputs.fault.unit);
     throw ChipFault(unit, outputs.fault, fault_sentence(unit, outputs.fault));
   }
-  inputs_.launch_valid = inputs_.import_request_ready = inputs_.import_beat_valid = inputs_.export_ready = false;
+  const uint64_t now = clock->cycle();
+  inputs_.launch_valid = false;
   if (pending_) offer_launch(outputs);
-  serve_memory(outputs);
-  bool held_up = false;
-  released_ = false;
-  if (around_.frame) {
-    serve_pools(outputs);
-    held_up = outputs.export_valid && !inputs_.export_ready && around_.frame->rays.held_up();
-  } else if (outputs.export_valid || outputs.frame_valid || outputs.import_request_valid) {
-    throw InputError(fmt::format(
-        "the program uses {}, but a compute program has no ray pools and no frame buffer: remove rin, rout and rfb from it",
-        outputs.import_request_valid ? "an import"
-        : outputs.export_valid       ? "rout"
-                                     : "rfb"));
+  serve_memory(outputs, now);
+  serve_imports(outputs, now);
+  serve_exports(outputs, now);
+  if (outputs.kernel_done != 0 || outputs.launch_ready != ready_before_ || outputs.launch_unit != next_before_ ||
+      outputs.unit_idle != idle_before_) {
+    report(outputs);
   }
-  report(outputs, held_up);
-  const auto busy = popcount(outputs.busy);
-  const uint64_t cycles = device_.run(inputs_, quiet_cycles(outputs));
-  busy_cycles_ += busy * cycles;
-  around_.clock.pass(cycles);
-  settle(device_.outputs());
-  // A pixel that is finished may allow eye rays, or have been the last one.
-  if (released_ && (can_launch() || idle())) around_.launcher.changed();
+  const bool stalls = given_in_all_ == 0 || (outputs.export_valid && !inputs_.export_ready && rays->held_up());
+  if (stalls != stalls_) report_stalls(stalls);
 }
 
-// Cycles from now on in which the device can be left alone.
+// Cycles from now on in which the device can be left alone: until somebody has something for it, or takes what it
+// offers.
 uint64_t DeviceHost::quiet_cycles(const UnitOutputs& outputs) const {
-  if (outputs.memory_request_valid || outputs.import_request_valid || outputs.export_valid || outputs.frame_valid ||
-      inputs_.launch_valid || inputs_.memory_response_valid || inputs_.import_beat_valid) {
-    return 1;
-  }
-  const uint64_t now = around_.clock.cycle();
-  uint64_t cycles = std::min(around_.clock.quiet_cycles(), around_.memory.response_due() - now);
-  if (around_.frame) cycles = std::min(cycles, around_.frame->intersections.beat_due() - now);
-  return cycles;
+  if (inputs_.launch_valid) return 1;
+  uint64_t until = std::min(memory->response_due(), intersections->beat_due());
+  if (outputs.memory_request_valid && !inputs_.memory_request_ready) until = std::min(until, memory->room_from());
+  if (outputs.import_request_valid && !inputs_.import_request_ready) until = std::min(until, intersections->request_due());
+  if (outputs.export_valid && !inputs_.export_ready) until = std::min(until, rays->beats_from());
+  return std::min(clock->quantum(), until - clock->cycle());
 }
 
 void DeviceHost::offer_launch(const UnitOutputs& outputs) {
@@ -96,86 +89,78 @@ void DeviceHost::offer_launch(const UnitOutputs& outputs) {
   }
   pending_.reset();
   ++transfers_;
-  around_.launcher.accepted(static_cast<int>(pending_unit_));
+  for (int i = 0; i < kernel_events.size(); ++i) kernel_events[i]->accepted(static_cast<int>(pending_unit_));
 }
 
-void DeviceHost::serve_memory(const UnitOutputs& outputs) {
-  inputs_.memory_request_ready = around_.memory.ready();
+void DeviceHost::serve_memory(const UnitOutputs& outputs, uint64_t now) {
+  inputs_.memory_request_ready = memory->room_from() <= now;
   if (outputs.memory_request_valid && inputs_.memory_request_ready) {
-    around_.memory.request(outputs.memory_request);
+    memory->request(outputs.memory_request);
     ++transfers_;
   }
-  inputs_.memory_response_valid = around_.memory.response(inputs_.memory_response);
+  inputs_.memory_response_valid = memory->response_due() <= now;
+  if (inputs_.memory_response_valid) memory->response(inputs_.memory_response);
 }
 
-void DeviceHost::serve_pools(const UnitOutputs& outputs) {
-  DeviceSurroundings::Frame& frame = *around_.frame;
-  const uint64_t releases = frame.ledger.releases();
-  if (outputs.import_request_valid) {
-    inputs_.import_request_ready = frame.intersections.ready();
-    if (!inputs_.import_request_ready) frame.intersections.want(outputs.import_request_unit, outputs.import_request_kind);
-  }
-  inputs_.import_beat_valid = frame.intersections.beat(inputs_.import_beat);
-  transfers_ += inputs_.import_beat_valid;
+void DeviceHost::serve_imports(const UnitOutputs& outputs, uint64_t now) {
+  inputs_.import_request_ready =
+      outputs.import_request_valid && intersections->request(outputs.import_request_unit, outputs.import_request_kind);
+  inputs_.import_beat_valid = intersections->beat_due() <= now;
+  if (!inputs_.import_beat_valid) return;
+  intersections->beat(inputs_.import_beat);
+  ++transfers_;
+}
 
-  if (outputs.export_valid) {
-    inputs_.export_ready = frame.rays.ready();
-    if (!inputs_.export_ready) {
-      frame.rays.want();
-    } else {
-      ++transfers_;
-      if (frame.rays.take(outputs.export_unit, outputs.export_data, outputs.export_last)) frame.traverser.ray_arrived();
-    }
+void DeviceHost::serve_exports(const UnitOutputs& outputs, uint64_t now) {
+  inputs_.export_ready = outputs.export_valid && rays->beats_from() <= now;
+  if (inputs_.export_ready) {
+    ++transfers_;
+    rays->take(outputs.export_unit, outputs.export_data, outputs.export_last);
+  } else if (outputs.export_valid) {
+    rays->want();
   }
-
   inputs_.frame_ready = true;
   if (outputs.frame_valid) {
-    frame.port.take(outputs.frame_unit, outputs.frame);
+    frame->take(outputs.frame_unit, outputs.frame);
     ++transfers_;
   }
-  released_ = frame.ledger.releases() != releases;
 }
 
-void DeviceHost::report(const UnitOutputs& outputs, bool held_up) {
+void DeviceHost::report(const UnitOutputs& outputs) {
   for (uint32_t done = outputs.kernel_done; done != 0; done &= done - 1) {
-    const int unit = __builtin_ctz(done);
-    if (given_[static_cast<size_t>(unit)] == 0) {
+    const uint32_t unit = lowest(done);
+    if (given_[unit] == 0) {
       throw std::runtime_error(fmt::format("compute unit {} ended a kernel that it was not given", unit));
     }
-    --given_[static_cast<size_t>(unit)];
+    --given_[unit];
     --given_in_all_;
-    around_.launcher.kernel_ended(unit);
-    if (around_.frame) {
-      around_.frame->ledger.kernel_ended(unit);
-      around_.frame->traverser.kernel_ended();
-    }
+    for (int i = 0; i < kernel_events.size(); ++i) kernel_events[i]->kernel_ended(static_cast<int>(unit));
   }
   const bool ready = outputs.launch_ready && (!ready_before_ || outputs.launch_unit != next_before_);
-  if (outputs.kernel_done != 0 || ready || (outputs.unit_idle & ~idle_before_) != 0) around_.launcher.changed();
+  if (outputs.kernel_done != 0 || ready || (outputs.unit_idle & ~idle_before_) != 0) controller->changed();
   ready_before_ = outputs.launch_ready;
   next_before_ = outputs.launch_unit;
   idle_before_ = outputs.unit_idle;
+}
 
-  const bool stalls = given_in_all_ == 0 || held_up;
-  if (stalls == stalls_) return;
+void DeviceHost::report_stalls(bool stalls) {
   stalls_ = stalls;
-  if (around_.frame) around_.frame->traverser.shader_stalls(stalls);
+  for (int i = 0; i < kernel_events.size(); ++i) kernel_events[i]->shader_stalls(stalls);
 }
 
 // Units of which nothing more is to come, and the end of the device's clock when that holds for all.
-void DeviceHost::settle(const UnitOutputs& outputs) {
+void DeviceHost::settle() {
+  const UnitOutputs& outputs = device_.outputs();
   uint32_t candidates = outputs.unit_idle & ~outputs.kernel_done & ~settled_;
   if (candidates == 0 || outputs.fault.code != FaultCode::None) return;
   for (; candidates != 0; candidates &= candidates - 1) {
     const uint32_t unit = lowest(candidates);
-    if (given_[unit] > 0 || !around_.memory.quiet(unit)) continue;
+    if (given_[unit] > 0 || !memory->quiet(unit)) continue;
     settled_ |= 1u << unit;
-    if (around_.frame) around_.frame->ledger.unit_idle(static_cast<int>(unit));
-    around_.launcher.changed();
+    for (int i = 0; i < kernel_events.size(); ++i) kernel_events[i]->unit_idle(static_cast<int>(unit));
+    controller->changed();
   }
-  if (settled_ + 1 != 1u << units_) return;
-  awake_ = false;
-  around_.clock.sleep();
+  awake_ = settled_ + 1 != 1u << units_;
 }
 
 std::string DeviceHost::describe() {
@@ -186,7 +171,7 @@ std::string DeviceHost::describe() {
                         (o.unit_idle >> unit & 1) != 0 ? "idle"
                         : (o.busy >> unit & 1) != 0    ? "running"
                                                        : "draining",
-                        given_[unit], around_.memory.quiet(unit) ? "" : ", memory response to come");
+                        given_[unit], memory->quiet(unit) ? "" : ", memory response to come");
   }
   const auto add = [&](bool shown, const char* what) {
     if (shown) ports += (ports.empty() ? "" : ", ") + std::string(what);

@@ -1,6 +1,7 @@
-// Drives the device, a compute unit or a multiprocessor of several, whichever engine it is: reads its outputs once a cycle,
-// decides its inputs from the state of the ports around it, and clocks it. A device that is idle, has nothing to launch and
-// nothing under way is not clocked until it is given a kernel.
+// Drives the device, a compute unit or a multiprocessor of several, whichever engine it is: reads its outputs once a
+// cycle, decides its inputs from the state of the ports around it, and clocks it. A device that is idle, has nothing to
+// launch and nothing under way is not clocked until it is given a kernel. Its process is temporally decoupled
+// (chip_clock.hpp).
 #pragma once
 
 #include <array>
@@ -10,48 +11,32 @@
 #include <systemc>
 
 #include "chip/chip_clock.hpp"
-#include "chip/frame_port.hpp"
-#include "chip/intersection_pool.hpp"
-#include "chip/launcher.hpp"
-#include "chip/memory_port.hpp"
-#include "chip/pixel_ledger.hpp"
-#include "chip/ray_pool.hpp"
-#include "chip/traverser.hpp"
+#include "chip/interfaces.hpp"
 #include "machine/compute_unit.hpp"
 
 namespace raypool::chip {
 
-/// What the device is connected to; all must outlive it. Compute programs have no pools, frame buffer and traverser.
-struct DeviceSurroundings {
-  ChipClock& clock;
-  MemoryPort& memory;
-  Launcher& launcher;
-  struct Frame {
-    RayPool& rays;
-    IntersectionPool& intersections;
-    FramePort& port;
-    PixelLedger& ledger;
-    Traverser& traverser;
-  };
-  std::optional<Frame> frame;
-};
-
-class DeviceHost : public sc_core::sc_module {
+class DeviceHost : public sc_core::sc_module, public LaunchIf {
  public:
   SC_HAS_PROCESS(DeviceHost);
-  /// `device` must have been reset, and outlive the host.
-  DeviceHost(const sc_core::sc_module_name& name, ComputeUnit& device, const DeviceSurroundings& surroundings);
+  /// `device` must be reset before the run, and outlive the host.
+  DeviceHost(const sc_core::sc_module_name& name, ComputeUnit& device);
 
-  uint32_t units() const { return units_; }
-  /// True if launch() may be called.
-  bool can_launch() const { return !pending_ && device_.outputs().launch_ready; }
-  /// The unit that would get the kernel; means something while can_launch().
-  uint32_t next_unit() const { return device_.outputs().launch_unit; }
-  /// True if the unit runs a kernel, or one has been given to it and not begun.
-  bool busy(uint32_t unit) const { return given_[unit] > 0; }
-  bool idle() const { return given_in_all_ == 0 && device_.outputs().idle; }
-  /// Gives next_unit() a kernel, which it sees from the next cycle on. Not in the phase of the units.
-  void launch(const LaunchCommand& command);
+  sc_core::sc_port<TimeIf> clock{"clock"};
+  sc_core::sc_port<MemoryIf> memory{"memory"};
+  sc_core::sc_port<RayExportIf> rays{"rays"};
+  sc_core::sc_port<ImportIf> intersections{"intersections"};
+  sc_core::sc_port<ContributionIf> frame{"frame"};
+  sc_core::sc_port<DecisionIf> controller{"controller"};
+  sc_core::sc_port<KernelEventsIf, 0, sc_core::SC_ZERO_OR_MORE_BOUND> kernel_events{"kernel_events"};
+  sc_core::sc_export<LaunchIf> launches{"launches"};
+
+  uint32_t units() const override { return units_; }
+  bool can_launch() const override { return !pending_ && device_.outputs().launch_ready; }
+  uint32_t next_unit() const override { return device_.outputs().launch_unit; }
+  bool busy(uint32_t unit) const override { return given_[unit] > 0; }
+  bool idle() const override { return given_in_all_ == 0 && device_.outputs().idle; }
+  void launch(const LaunchCommand& command) override;
 
   uint64_t busy_cycles() const { return busy_cycles_; }  ///< in which a kernel ran, summed over the units
   uint64_t transfers() const { return transfers_; }      ///< beats, requests, launches and contributions, for the watchdog
@@ -60,20 +45,21 @@ class DeviceHost : public sc_core::sc_module {
   std::string describe();
 
  private:
-  void cycles();
-  void cycle();
+  void run();
+  void decide_inputs(const UnitOutputs& outputs);
   void offer_launch(const UnitOutputs& outputs);
-  void serve_memory(const UnitOutputs& outputs);
-  void serve_pools(const UnitOutputs& outputs);
-  void report(const UnitOutputs& outputs, bool held_up);
-  void settle(const UnitOutputs& outputs);
-
+  void serve_memory(const UnitOutputs& outputs, uint64_t now);
+  void serve_imports(const UnitOutputs& outputs, uint64_t now);
+  void serve_exports(const UnitOutputs& outputs, uint64_t now);
+  void report(const UnitOutputs& outputs);
+  void report_stalls(bool stalls);
+  void settle();
   uint64_t quiet_cycles(const UnitOutputs& outputs) const;
 
   ComputeUnit& device_;
   UnitInputs inputs_;
   uint32_t units_;
-  DeviceSurroundings around_;
+  sc_core::sc_event next_cycle_;
   bool awake_ = false;
   bool stalls_ = true;
   bool ready_before_ = false;
@@ -84,7 +70,6 @@ class DeviceHost : public sc_core::sc_module {
   uint32_t pending_unit_ = 0;
   std::array<uint32_t, kMostUnits> given_{};  // [unit] kernels that have not ended
   uint32_t given_in_all_ = 0;
-  bool released_ = false;  // pixels, in this cycle
   uint64_t busy_cycles_ = 0, transfers_ = 0;
 };
 

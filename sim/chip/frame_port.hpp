@@ -2,27 +2,30 @@
 #pragma once
 
 #include <cstdint>
+#include <systemc>
 
-#include "chip/pixel_ledger.hpp"
+#include "chip/interfaces.hpp"
 #include "chip/ports.hpp"
 
 namespace raypool::chip {
 
-class FramePort {
+class FramePort : public sc_core::sc_module, public ContributionIf {
  public:
-  /// `ledger` and `frame` must outlive the port.
-  FramePort(PixelLedger& ledger, FrameSink& frame) : ledger_(ledger), frame_(frame) {}
+  /// `frame` must outlive the port.
+  FramePort(const sc_core::sc_module_name& name, FrameSink& frame) : sc_module(name), frame_(frame) { device.bind(*this); }
+
+  sc_core::sc_port<LedgerIf> ledger{"ledger"};
+  sc_core::sc_export<ContributionIf> device{"device"};
 
   /// Throws std::runtime_error when the contribution is of a pixel that the unit has nothing to do with.
-  void take(uint32_t unit, const FrameContribution& contribution) {
-    ledger_.contribution_exported(static_cast<int>(unit), contribution.pixel);
+  void take(uint32_t unit, const FrameContribution& contribution) override {
+    ledger->contribution_exported(static_cast<int>(unit), contribution.pixel);
     frame_.add(contribution);
     ++taken_;
   }
   uint64_t taken() const { return taken_; }
 
  private:
-  PixelLedger& ledger_;
   FrameSink& frame_;
   uint64_t taken_ = 0;
 };

@@ -1,7 +1,7 @@
 // The real kernels on the chip, engine `functional`, against the native renderer.
 #include <gtest/gtest.h>
 
-#include "chip/chip.hpp"
+#include "chip/test_real_frame.hpp"
 #include "machine/functional_unit.hpp"
 #include "machine/multiprocessor.hpp"
 #include "scene/native_renderer.hpp"
@@ -17,41 +17,20 @@ class Frame : public testing::TestWithParam<Case> {};
 
 TEST_P(Frame, IsThatOfTheNativeRenderer) {
   const Case c = GetParam();
-  const Scene scene = make_cornell();
-  const Program& program = ray_kernel_program();
-  const MemoryImage image = build_memory(program, scene);
-  const Tracer tracer(scene, image.material_base);
+  test::RealFrame run(c.warps, c.lanes, c.width, c.height, c.depth);
+  std::vector<std::unique_ptr<ComputeUnit>> units;
+  for (int i = 0; i < c.units; ++i) units.push_back(make_functional_unit(run.options.configuration, run.image.memory));
+  run.set_device(make_multiprocessor(std::move(units)));
 
   NativeOptions native;
   native.width = c.width;
   native.height = c.height;
   native.depth = c.depth;
   NativeStatistics statistics;
-  const FrameBuffer expected = render_native(scene, image, tracer, native, &statistics);
+  const FrameBuffer expected = render_native(run.scene, run.image, run.tracer, native, &statistics);
+  const ChipResult result = run_chip(run.options);
 
-  ChipOptions options;
-  options.configuration.warps = c.warps;
-  options.configuration.lanes = c.lanes;
-  Memory memory = image.memory;
-  std::vector<std::unique_ptr<ComputeUnit>> units;
-  for (int i = 0; i < c.units; ++i) units.push_back(make_functional_unit(options.configuration, memory));
-  const std::unique_ptr<ComputeUnit> device = make_multiprocessor(std::move(units));
-  options.device = device.get();
-  FrameBuffer frame(c.width, c.height);
-  FrameBufferSink sink(frame);
-  SceneTracer scene_tracer(tracer);
-  options.memory = &memory;
-  options.program_length = static_cast<uint32_t>(program.code.size());
-  for (size_t i = 0; i < kRayKernels; ++i) options.entries[i] = program.entries.at(std::string(kRayKernelNames[i]));
-  options.arguments = camera_arguments(scene, c.width, c.height, options.configuration.contents());
-  options.width = c.width;
-  options.height = c.height;
-  options.depth = c.depth;
-  options.tracer = &scene_tracer;
-  options.frame = &sink;
-  const ChipResult result = run_chip(options);
-
-  EXPECT_TRUE(frame == expected);
+  EXPECT_TRUE(run.frame == expected);
   const auto same = [](const RayCounts::Kind& a, const RayCounts::Kind& b) {
     return a.traced == b.traced && a.ended == b.ended && a.weightless == b.weightless && a.futile == b.futile;
   };

@@ -1,45 +1,60 @@
 #include "chip/intersection_pool.hpp"
 
+#include <algorithm>
+#include <stdexcept>
+
 namespace raypool::chip {
 
-IntersectionPool::IntersectionPool(const sc_core::sc_module_name& name, ChipClock& clock, PixelLedger& ledger, int capacity)
-    : sc_module(name), clock_(clock), ledger_(ledger), capacity_(static_cast<size_t>(capacity)), work_(clock, [this] {
-        serve();
-      }) {}
-
-void IntersectionPool::want(uint32_t unit, ImportKind kind) {
-  wanting_ = kind;
-  wanting_unit_ = unit;
-  const uint64_t now = clock_.cycle();
-  work_.ask(free_at_ > now ? free_at_ - now : 0);
+IntersectionPool::IntersectionPool(const sc_core::sc_module_name& name, int capacity)
+    : sc_module(name), capacity_(static_cast<size_t>(capacity)) {
+  device.bind(*this);
+  traverser.bind(*this);
+  controller.bind(*this);
 }
 
-void IntersectionPool::next_beat(Beat& beat) const {
-  const uint64_t now = clock_.cycle();
-  const auto first = static_cast<size_t>(now - granted_at_ - kPoolOverhead) * kBeatWords;
-  for (size_t i = 0; i < kBeatWords; ++i) beat[i] = first + i < kIntersectionWords ? leaving_[first + i] : 0;
+// Only this port takes packages out: once there is one of the kind, it is known when the request will be taken.
+bool IntersectionPool::request(uint32_t unit, ImportKind kind) {
+  if (wanting_ == ImportKind::None) {
+    wanting_ = kind;
+    wanting_unit_ = unit;
+    free_from_ = std::max(free_from_, clock->cycle());
+    if (!queue(kind).empty()) request_due_ = free_from_ + 1;
+  }
+  if (request_due_ != clock->cycle()) return false;
+  give();
+  return true;
 }
 
 void IntersectionPool::put(ImportKind kind, const Intersection& intersection) {
   queue(kind).push_back(intersection);
-  fill_[number(kind)].set(clock_.cycle(), size(kind));
+  fill_[number(kind)].set(clock->cycle(), size(kind));
+  if (wanting_ != kind || request_due_ != kNever) return;
+  free_from_ = std::max(free_from_, clock->cycle());
+  request_due_ = free_from_ + 1;
 }
 
-void IntersectionPool::serve() {
-  const uint64_t now = clock_.cycle();
-  if (now < free_at_) return work_.ask(free_at_ - now);
+// The package has left its queue in the cycle before.
+void IntersectionPool::give() {
   const ImportKind kind = wanting_;
-  if (kind == ImportKind::None || queue(kind).empty()) return;
-  wanting_ = ImportKind::None;
-  granted_ = true;
-  granted_at_ = now;
-  free_at_ = now + kServiceCycles;
-  leaving_ = queue(kind).front();
+  const Intersection& package = queue(kind).front();
+  std::copy(package.begin(), package.end(), leaving_.begin());
   queue(kind).pop_front();
   --reserved_[number(kind)];
   ++taken_;
-  fill_[number(kind)].set(now, size(kind));
-  ledger_.imported(static_cast<int>(wanting_unit_), leaving_[word::kPixel]);
+  fill_[number(kind)].set(request_due_ - 1, size(kind));
+  ledger->imported(static_cast<int>(wanting_unit_), leaving_[word::kPixel]);
+  free_from_ = request_due_ - 1 + kServiceCycles;
+  beat_due_ = request_due_ + 1;
+  next_beat_ = 0;
+  request_due_ = kNever;
+  wanting_ = ImportKind::None;
+}
+
+void IntersectionPool::beat(Beat& beat) {
+  if (beat_due_ != clock->cycle()) throw std::logic_error("the device was not clocked when a beat of an intersection came");
+  std::copy_n(leaving_.begin() + static_cast<std::ptrdiff_t>(next_beat_) * kBeatWords, kBeatWords, beat.begin());
+  ++next_beat_;
+  beat_due_ = next_beat_ == kIntersectionBeats ? kNever : beat_due_ + 1;
 }
 
 }  // namespace raypool::chip

@@ -1,51 +1,94 @@
 #include "chip/memory_port.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <stdexcept>
+
+#include "isa/isa.hpp"
 
 namespace raypool::chip {
 
-MemoryPort::MemoryPort(const sc_core::sc_module_name& name, ChipClock& clock, Memory& memory)
-    : sc_module(name), clock_(clock), memory_(memory), work_(clock, [this] { serve(); }) {}
+MemoryPort::MemoryPort(const sc_core::sc_module_name& name) : sc_module(name) { device.bind(*this); }
 
+// Nothing that comes later can change when and in which order requests are served: so each goes to the memory at once.
 void MemoryPort::request(const MemoryRequest& request) {
-  requests_.push_back(request);
-  ++open_[unit_of_id(request.id)];
-  const uint64_t now = clock_.cycle();
-  work_.ask(free_at_ > now ? free_at_ - now : 0);
-}
-
-bool MemoryPort::next_response(MemoryResponse& response) {
-  if (responses_.front().cycle > clock_.cycle()) return false;
-  if (responses_.front().cycle < clock_.cycle()) throw std::logic_error("the device was not clocked when a memory response came");
-  response = responses_.front().response;
-  responses_.pop_front();
-  if (response.beat == kLineBeats - 1) --open_[unit_of_id(response.id)];
-  return true;
-}
-
-void MemoryPort::serve() {
-  if (requests_.empty()) return;
-  const MemoryRequest request = requests_.front();
-  requests_.pop_front();
-  const uint64_t now = clock_.cycle();
+  const uint64_t start = std::max(free_from_, clock->cycle());
+  place_free_from_[place_] = start + 1;
+  place_ = (place_ + 1) % kMemoryQueue;
+  room_from_ = place_free_from_[place_];
   if (request.write) {
-    ++writes_;
-    --open_[unit_of_id(request.id)];
-    for (uint32_t i = 0; i < kBeatWords; ++i) {
-      if ((request.mask >> i & 1) != 0) memory_.store(request.address + 4 * i, request.data[i]);
-    }
-    free_at_ = now + kCyclesPerBeat;
+    write(request, start);
   } else {
-    ++reads_;
-    const uint64_t first = now + kReadLatency - (kLineBeats - 1) * kCyclesPerBeat;
-    for (uint32_t beat = 0; beat < kLineBeats; ++beat) {
-      MemoryResponse response{request.id, static_cast<uint8_t>(beat), {}};
-      for (uint32_t i = 0; i < kBeatWords; ++i) response.data[i] = memory_.load(request.address + 16 * beat + 4 * i);
-      responses_.push_back({first + beat * kCyclesPerBeat, response});
-    }
-    free_at_ = now + kLineBeats * kCyclesPerBeat;
+    read(request, start);
   }
-  if (!requests_.empty()) work_.ask(free_at_ - now);
+}
+
+// A write is posted: nobody waits for its end.
+void MemoryPort::write(const MemoryRequest& request, uint64_t start) {
+  ++writes_;
+  free_from_ = start + kCyclesPerBeat;
+  written_[unit_of_id(request.id)] = start + 1;
+  for (size_t i = 0; i < kBeatBytes; ++i) {
+    enable_[i] = (request.mask >> (i / 4) & 1) != 0 ? TLM_BYTE_ENABLED : TLM_BYTE_DISABLED;
+  }
+  payload_.set_byte_enable_ptr(enable_.data());
+  payload_.set_byte_enable_length(kBeatBytes);
+  Beat data = request.data;
+  transport(tlm::TLM_WRITE_COMMAND, request.address, data.data(), kBeatBytes, start);
+}
+
+void MemoryPort::read(const MemoryRequest& request, uint64_t start) {
+  ++reads_;
+  free_from_ = start + kLineBeats * kCyclesPerBeat;
+  ++reading_[unit_of_id(request.id)];
+  payload_.set_byte_enable_ptr(nullptr);
+  payload_.set_byte_enable_length(0);
+  Line line{0, request.id, 0, {}};
+  const uint64_t end = transport(tlm::TLM_READ_COMMAND, request.address, line.data.data(), kLineBytes, start);
+  // Beats are apart, and lines in order, however fast the memory is.
+  last_beat_ = std::max(end, std::max(last_beat_, start) + kLineBeats * kCyclesPerBeat);
+  line.due = last_beat_ - (kLineBeats - 1) * kCyclesPerBeat;
+  lines_.push_back(line);
+  response_due_ = lines_.front().due;
+}
+
+// Returns the cycle in which it is done.
+uint64_t MemoryPort::transport(tlm::tlm_command command, uint32_t address, void* data, uint32_t bytes, uint64_t start) {
+  payload_.set_command(command);
+  payload_.set_address(address);
+  payload_.set_data_ptr(static_cast<unsigned char*>(data));
+  payload_.set_data_length(bytes);
+  payload_.set_streaming_width(bytes);
+  payload_.set_dmi_allowed(false);
+  payload_.set_response_status(tlm::TLM_INCOMPLETE_RESPONSE);
+  sc_core::sc_time delay = clock->until(start);
+  const char* what = command == tlm::TLM_READ_COMMAND ? "read" : "write";
+  try {
+    socket->b_transport(payload_, delay);
+  } catch (const sc_core::sc_report& report) {
+    throw InputError(
+        fmt::format("the memory model fails in a {} at address 0x{:x} ({}): its b_transport must add to the delay, and not wait",
+                    what, address, report.get_msg()));
+  }
+  clock->compute_quantum();  // the memory may have notified an event of its own
+  if (payload_.is_response_error()) {
+    throw InputError(fmt::format("the memory model answers {} to a {} of {} bytes at address 0x{:x}: it must serve it",
+                                 payload_.get_response_string(), what, bytes, address));
+  }
+  return clock->cycle_after(delay);
+}
+
+void MemoryPort::response(MemoryResponse& response) {
+  Line& line = lines_.front();
+  if (line.due != clock->cycle()) throw std::logic_error("the device was not clocked when a memory response came");
+  response = {line.id, line.beat, line.data[line.beat]};
+  line.due += kCyclesPerBeat;
+  if (++line.beat == kLineBeats) {
+    --reading_[unit_of_id(line.id)];
+    lines_.pop_front();
+  }
+  response_due_ = lines_.empty() ? kNever : lines_.front().due;
 }
 
 }  // namespace raypool::chip

@@ -1,62 +1,68 @@
-// The chip's one memory port: 8 GB/s, one 128-bit beat every 2 cycles, over raypool::Memory.
+// The chip's one memory port: 8 GB/s, one 128-bit beat every 2 cycles, in front of the memory at its TLM-2.0 socket.
 //
-// A line read that is accepted in cycle a by an idle port gives its four beats in cycles a+114, a+116, a+118 and a+120. Requests
-// are pipelined: the next read follows 8 cycles later, the next write 2 cycles later. Data is read and written in the order in
-// which requests come, so a read sees every earlier write.
+// Requests are served in the order in which they come: a read keeps the port for 8 cycles, a write for 2. Each is one
+// call of b_transport, whose time begins when it is served; a read ends when its last beat is there. So with the chip's
+// own memory (fixed_latency_memory.hpp) a line read that is accepted in cycle a by an idle port gives its beats in
+// a+114 .. a+120.
 #pragma once
+
+#include <tlm_utils/simple_initiator_socket.h>
 
 #include <array>
 #include <cstdint>
 #include <deque>
 #include <systemc>
+#include <tlm>
 
 #include "chip/chip_clock.hpp"
-#include "machine/compute_unit.hpp"
-#include "machine/memory.hpp"
+#include "chip/interfaces.hpp"
 
 namespace raypool::chip {
 
-inline constexpr int kCyclesPerBeat = 2;
-inline constexpr int kLineBeats = 4;
-inline constexpr uint64_t kReadLatency = 120;  ///< cycles from accepted to last beat, idle port
-inline constexpr size_t kMemoryQueue = 8;      ///< requests that wait to be served
+inline constexpr uint64_t kCyclesPerBeat = 2;
+inline constexpr uint32_t kLineBeats = 4;
+inline constexpr uint32_t kBeatBytes = 16, kLineBytes = kLineBeats * kBeatBytes;
+inline constexpr size_t kMemoryQueue = 8;  ///< requests that wait to be served
 
-class MemoryPort : public sc_core::sc_module {
+inline constexpr unsigned kMemoryBits = 8 * kBeatBytes;  ///< width of the memory's sockets
+using MemorySocket = tlm::tlm_initiator_socket<kMemoryBits>;
+
+class MemoryPort : public sc_core::sc_module, public MemoryIf {
  public:
-  /// `clock` and `memory` must outlive the port.
-  MemoryPort(const sc_core::sc_module_name& name, ChipClock& clock, Memory& memory);
+  explicit MemoryPort(const sc_core::sc_module_name& name);
 
-  // For the device, in the phase of the units.
-  bool ready() const { return requests_.size() < kMemoryQueue; }
-  /// Takes a request; ready() must hold.
-  void request(const MemoryRequest& request);
-  /// True if a beat arrives in this cycle.
-  bool response(MemoryResponse& response) { return !responses_.empty() && next_response(response); }
-  /// Cycle of the next beat; UINT64_MAX: none is on its way.
-  uint64_t response_due() const { return responses_.empty() ? UINT64_MAX : responses_.front().cycle; }
-  /// True if nothing of compute unit `unit` is waiting or on its way.
-  bool quiet(uint32_t unit) const { return open_[unit] == 0; }
+  sc_core::sc_port<TimeIf> clock{"clock"};
+  sc_core::sc_export<MemoryIf> device{"device"};
+  tlm_utils::simple_initiator_socket<MemoryPort, kMemoryBits> socket{"socket"};
+
+  void request(const MemoryRequest& request) override;
+  void response(MemoryResponse& response) override;
+  bool quiet(uint32_t unit) const override { return reading_[unit] == 0 && clock->cycle() >= written_[unit]; }
 
   uint64_t reads() const { return reads_; }    ///< lines
   uint64_t writes() const { return writes_; }  ///< quadwords
   uint64_t busy_cycles() const { return (reads_ * kLineBeats + writes_) * kCyclesPerBeat; }
 
  private:
-  struct TimedResponse {
-    uint64_t cycle;
-    MemoryResponse response;
+  struct Line {
+    uint64_t due;  // next beat
+    uint8_t id, beat;
+    std::array<Beat, kLineBeats> data;
   };
 
-  bool next_response(MemoryResponse& response);
-  void serve();
+  void read(const MemoryRequest& request, uint64_t start);
+  void write(const MemoryRequest& request, uint64_t start);
+  uint64_t transport(tlm::tlm_command command, uint32_t address, void* data, uint32_t bytes, uint64_t start);
 
-  ChipClock& clock_;
-  Memory& memory_;
-  PortWork work_;
-  uint64_t free_at_ = 0;  // cycle in which the next request can be served
-  std::deque<MemoryRequest> requests_;
-  std::deque<TimedResponse> responses_;
-  std::array<uint32_t, kMostUnits> open_{};  // [unit] requests that wait, and reads of which a beat is to come
+  tlm::tlm_generic_payload payload_;
+  uint64_t free_from_ = 0;                                // the next request can be served
+  std::array<uint64_t, kMemoryQueue> place_free_from_{};  // a ring: of the latest requests, oldest at `place_`
+  size_t place_ = 0;
+  uint64_t last_beat_ = 0;
+  std::deque<Line> lines_;                          // on their way, in the order of their requests
+  std::array<uint32_t, kMostUnits> reading_{};      // [unit] lines of which a beat is to come
+  std::array<uint64_t, kMostUnits> written_{};      // [unit] from then on no write waits
+  std::array<unsigned char, kBeatBytes> enable_{};  // bytes of a write
   uint64_t reads_ = 0, writes_ = 0;
 };
 

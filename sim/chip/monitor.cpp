@@ -2,14 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <utility>
-
 #include "chip/chip.hpp"
 
 namespace raypool::chip {
 
-Monitor::Monitor(const sc_core::sc_module_name& name, ChipClock& clock, MonitorOptions options)
-    : sc_module(name), clock_(clock), options_(std::move(options)) {
+Monitor::Monitor(const sc_core::sc_module_name& name, const MonitorOptions& options) : sc_module(name), options_(options) {
   SC_METHOD(show);
   sensitive << show_;
   dont_initialize();
@@ -19,42 +16,46 @@ Monitor::Monitor(const sc_core::sc_module_name& name, ChipClock& clock, MonitorO
   SC_METHOD(limit);
   sensitive << limit_;
   dont_initialize();
-  if (options_.progress) clock_.notify(show_, Phase::Ports, progress_cycles());
-  if (options_.watchdog_cycles > 0) clock_.notify(watch_, Phase::Ports, options_.watchdog_cycles);
-  if (options_.cycle_limit > 0) clock_.notify(limit_, Phase::Ports, options_.timed ? options_.cycle_limit : 1);
+}
+
+void Monitor::start_of_simulation() {
+  if (options_.progress) clock->notify(show_, Phase::Monitor, progress_cycles());
+  if (options_.watchdog_cycles > 0) clock->notify(watch_, Phase::Monitor, options_.watchdog_cycles);
+  if (options_.cycle_limit > 0) clock->notify(limit_, Phase::Monitor, options_.timed ? options_.cycle_limit : 1);
 }
 
 void Monitor::show() {
-  clock_.guard([&] {
-    options_.progress();
-    clock_.notify(show_, Phase::Ports, progress_cycles());
+  clock->guard([&] {
+    watched->show_progress();
+    clock->notify(show_, Phase::Monitor, progress_cycles());
   });
 }
 
 void Monitor::watch() {
-  clock_.guard([&] {
-    const uint64_t retired = options_.retired(), transfers = options_.transfers();
+  clock->guard([&] {
+    const uint64_t retired = watched->retired(), transfers = watched->transfers();
     silent_ = transfers == transfers_ ? silent_ + 1 : 0;
     if (silent_ > 0 && retired == retired_) {
-      throw ChipStalled(fmt::format(
-          "the chip is locked up: no instruction has ended and nothing has been transferred for {} cycles, at cycle {}; {}",
-          options_.watchdog_cycles, clock_.cycle(), options_.describe()));
+      throw ChipStalled(
+          fmt::format("the chip is locked up: no instruction has ended and nothing has been transferred for {} cycles, "
+                      "at cycle {}; {}",
+                      options_.watchdog_cycles, clock->cycle(), watched->describe()));
     }
     if (silent_ >= kSilentPeriods) {
       throw ChipStalled(fmt::format("a program runs without end: nothing has been transferred for {} cycles, at cycle {}; {}",
-                                    kSilentPeriods * options_.watchdog_cycles, clock_.cycle(), options_.describe()));
+                                    kSilentPeriods * options_.watchdog_cycles, clock->cycle(), watched->describe()));
     }
     retired_ = retired;
     transfers_ = transfers;
-    clock_.notify(watch_, Phase::Ports, options_.watchdog_cycles);
+    clock->notify(watch_, Phase::Monitor, options_.watchdog_cycles);
   });
 }
 
 void Monitor::limit() {
-  clock_.guard([&] {
-    if (options_.timed || options_.retired() > options_.cycle_limit)
-      throw ChipStalled(fmt::format("{}; {}", limit_sentence(options_.cycle_limit, options_.timed), options_.describe()));
-    clock_.notify(limit_, Phase::Ports, 1);
+  clock->guard([&] {
+    if (options_.timed || watched->retired() > options_.cycle_limit)
+      throw ChipStalled(fmt::format("{}; {}", limit_sentence(options_.cycle_limit, options_.timed), watched->describe()));
+    clock->notify(limit_, Phase::Monitor, 1);
   });
 }
 

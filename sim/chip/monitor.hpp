@@ -2,28 +2,28 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <systemc>
 
 #include "chip/chip_clock.hpp"
+#include "chip/interfaces.hpp"
 
 namespace raypool::chip {
 
 struct MonitorOptions {
-  uint64_t watchdog_cycles = 0;           ///< 0: never
-  uint64_t cycle_limit = 0;               ///< cycles, or instructions of an engine without time; 0: none
-  bool timed = true;                      ///< the engine has a notion of time: a cycle is not thousands of instructions
-  std::function<uint64_t()> retired;      ///< instructions so far
-  std::function<uint64_t()> transfers;    ///< so far
-  std::function<void()> progress;         ///< called every kProgressCycles, without time every cycle; may be empty
-  std::function<std::string()> describe;  ///< state, for the error
+  uint64_t watchdog_cycles = 0;  ///< 0: never
+  uint64_t cycle_limit = 0;      ///< cycles, or instructions of an engine without time; 0: none
+  bool timed = true;             ///< the engine has a notion of time: a cycle is not thousands of instructions
+  bool progress = false;         ///< show_progress() every kProgressCycles, without time every cycle
 };
 
 class Monitor : public sc_core::sc_module {
  public:
   SC_HAS_PROCESS(Monitor);
-  Monitor(const sc_core::sc_module_name& name, ChipClock& clock, MonitorOptions options);
+  Monitor(const sc_core::sc_module_name& name, const MonitorOptions& options);
+
+  sc_core::sc_port<TimeIf> clock{"clock"};
+  sc_core::sc_port<WatchedIf> watched{"watched"};
 
   /// For one sentence: what has passed.
   static std::string limit_sentence(uint64_t limit, bool timed);
@@ -33,12 +33,12 @@ class Monitor : public sc_core::sc_module {
   static constexpr uint64_t kSilentPeriods = 100;
 
  private:
+  void start_of_simulation() override;
   void show();
   void watch();
   void limit();
   uint64_t progress_cycles() const { return options_.timed ? kProgressCycles : 1; }
 
-  ChipClock& clock_;
   MonitorOptions options_;
   sc_core::sc_event show_, watch_, limit_;
   uint64_t retired_ = 0, transfers_ = 0;

@@ -8,11 +8,15 @@
 
 namespace raypool::chip {
 
-PixelLedger::PixelLedger(int units, int width, int height)
-    : width_(static_cast<uint32_t>(width)),
+PixelLedger::PixelLedger(const sc_core::sc_module_name& name, int units, int width, int height)
+    : sc_module(name),
+      width_(static_cast<uint32_t>(width)),
       height_(static_cast<uint32_t>(height)),
       live_(static_cast<size_t>(width_) * height_),
-      kernels_(static_cast<size_t>(units)) {}
+      kernels_(static_cast<size_t>(units)) {
+  records.bind(*this);
+  kernel_events.bind(*this);
+}
 
 void PixelLedger::eye_launched(int unit, std::vector<uint32_t> pixels) {
   for (const uint32_t pixel : pixels) ++live_[index(pixel)];
@@ -35,6 +39,18 @@ void PixelLedger::launched(int unit, RayKernel kind, uint32_t threads) {
     if (kind == RayKernel::CastSecondary) kernel.normal_left = threads;
   }
   add(unit, std::move(kernel));
+}
+
+// Exports come nearly in the order of the threads: the search goes on where the last one ended.
+bool PixelLedger::Kernel::has(uint32_t pixel) {
+  const auto begin = pixels.begin(), end = pixels.end(), last = begin + static_cast<std::ptrdiff_t>(found);
+  auto place = std::find(last, end, pixel);
+  if (place == end) {
+    place = std::find(begin, last, pixel);
+    if (place == last) return false;
+  }
+  found = static_cast<size_t>(place - begin);
+  return true;
 }
 
 void PixelLedger::add(int unit, Kernel kernel) {
@@ -87,12 +103,12 @@ void PixelLedger::attribute(int unit, Export kind, uint32_t pixel) {
     const bool eye = kernel.kind == RayKernel::CastEye, shade = kernel.kind == RayKernel::Shade;
     if (eye != (kind == Export::EyeRay) || shade != (kind == Export::Contribution)) return false;
     uint32_t& left = shade ? kernel.contributions_left : kind == Export::ShadowRay ? kernel.shadow_left : kernel.normal_left;
-    if (left == 0 || std::find(kernel.pixels.begin(), kernel.pixels.end(), pixel) == kernel.pixels.end()) return false;
+    if (left == 0 || !kernel.has(pixel)) return false;
     --left;
     return true;
   };
-  // If an older kernel could have made it too, it is held to have: that can only keep pixels held for longer, never let them go
-  // early.
+  // If an older kernel could have made it too, it is held to have: that can only keep pixels held for longer, never let
+  // them go early.
   for (size_t i = 0; i < kernels.size(); ++i) {
     if (made(kernels[i])) {
       if (kind != Export::Contribution) --rays_to_come_;
@@ -120,10 +136,10 @@ void PixelLedger::release_front(int unit) {
   std::deque<Kernel>& kernels = kernels_[static_cast<size_t>(unit)];
   const Kernel kernel = std::move(kernels.front());
   kernels.pop_front();
-  ++releases_;
   rays_to_come_ -= kernel.normal_left + kernel.shadow_left;
   shadow_to_come_ -= kernel.shadow_left;
   for (const uint32_t pixel : kernel.pixels) gone(pixel);
+  for (int i = 0; i < controller.size(); ++i) controller[i]->changed();
 }
 
 void PixelLedger::gone(uint32_t pixel) {

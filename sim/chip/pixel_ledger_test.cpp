@@ -4,6 +4,8 @@
 
 #include <stdexcept>
 
+#include "chip/simulation.hpp"
+
 namespace raypool::chip {
 namespace {
 
@@ -15,7 +17,8 @@ Ray ray_of(uint32_t pixel, uint32_t flags) {
 }
 
 TEST(PixelLedger, HoldsAPixelFromItsEyeKernelUntilItsLastRayIsGone) {
-  PixelLedger ledger(1, 8, 8);
+  const Simulation simulation;
+  PixelLedger ledger("pixel_ledger", 1, 8, 8);
   ledger.eye_launched(0, {1, 2});
   EXPECT_EQ(ledger.held(), 2u);
   ledger.ray_exported(0, ray_of(1, 1), true);
@@ -46,7 +49,8 @@ TEST(PixelLedger, HoldsAPixelFromItsEyeKernelUntilItsLastRayIsGone) {
 }
 
 TEST(PixelLedger, LetsAKernelGoWhenALaterOneExports) {
-  PixelLedger ledger(1, 8, 8);
+  const Simulation simulation;
+  PixelLedger ledger("pixel_ledger", 1, 8, 8);
   ledger.eye_launched(0, {1, 2, 3, 4});
   for (uint32_t pixel = 1; pixel <= 4; ++pixel) ledger.ray_exported(0, ray_of(pixel, 1), true);
   ledger.kernel_ended(0);
@@ -67,7 +71,8 @@ TEST(PixelLedger, LetsAKernelGoWhenALaterOneExports) {
 }
 
 TEST(PixelLedger, KeepsARunningKernelOfAnIdleLookingUnit) {
-  PixelLedger ledger(1, 8, 8);
+  const Simulation simulation;
+  PixelLedger ledger("pixel_ledger", 1, 8, 8);
   ledger.eye_launched(0, {1});
   ledger.unit_idle(0);
   EXPECT_EQ(ledger.held(), 1u);
@@ -75,7 +80,8 @@ TEST(PixelLedger, KeepsARunningKernelOfAnIdleLookingUnit) {
 }
 
 TEST(PixelLedger, RefusesExportsOfAKernelThatWaitsBehindARunningOne) {
-  PixelLedger ledger(1, 8, 8);
+  const Simulation simulation;
+  PixelLedger ledger("pixel_ledger", 1, 8, 8);
   ledger.eye_launched(0, {1});
   ledger.launched(0, RayKernel::CastSecondary, 1);
   ledger.imported(0, 1);
@@ -83,7 +89,8 @@ TEST(PixelLedger, RefusesExportsOfAKernelThatWaitsBehindARunningOne) {
 }
 
 TEST(PixelLedger, RefusesExportsThatNoKernelCanHaveMade) {
-  PixelLedger ledger(2, 8, 8);
+  const Simulation simulation;
+  PixelLedger ledger("pixel_ledger", 2, 8, 8);
   ledger.eye_launched(0, {1, 2});
   EXPECT_THROW(ledger.ray_exported(0, ray_of(3, 1), true), std::runtime_error) << "pixel of no thread";
   EXPECT_THROW(ledger.ray_exported(0, ray_of(0xffffffff, 1), true), std::runtime_error) << "pixel outside";

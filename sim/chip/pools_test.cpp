@@ -3,6 +3,7 @@
 #include <array>
 
 #include "chip/intersection_pool.hpp"
+#include "chip/pixel_ledger.hpp"
 #include "chip/ray_pool.hpp"
 #include "chip/simulation.hpp"
 #include "chip/test_driver.hpp"
@@ -20,11 +21,15 @@ struct Bench {
   std::vector<uint32_t> next, beat;  // [unit] ray it exports, beat of it
 
   explicit Bench(int units, int capacity = 512, int depth = 5)
-      : ledger(units, 64, 64),
-        rays("ray_pool", clock, ledger, capacity, depth),
-        intersections("intersection_pool", clock, ledger, capacity),
+      : ledger("pixel_ledger", units, 64, 64),
+        rays("ray_pool", capacity, depth),
+        intersections("intersection_pool", capacity),
         next(static_cast<size_t>(units)),
         beat(static_cast<size_t>(units)) {
+    rays.clock(clock.now);
+    rays.ledger(ledger.records);
+    intersections.clock(clock.now);
+    intersections.ledger(ledger.records);
     for (int unit = 0; unit < units; ++unit) {
       std::vector<uint32_t> pixels;
       for (uint32_t i = 0; i < 1024; ++i) pixels.push_back(pixel(unit, i));
@@ -38,14 +43,18 @@ struct Bench {
     ray[word::kFlags] = 1;
     return ray;
   }
-  void run(std::function<bool(uint64_t)> cycle) {
-    test::Driver driver("driver", clock, std::move(cycle));
-    simulation.run();
-    clock.rethrow();
+  void run(std::function<bool(uint64_t)> cycle) { test::drive(simulation, clock, std::move(cycle)); }
+  /// True if a beat of a ray is taken in this cycle.
+  bool ready() const { return rays.beats_from() <= clock.cycle(); }
+  /// True if a beat of an intersection arrives in this cycle.
+  bool beat_of_intersection(Beat& data) {
+    if (intersections.beat_due() > clock.cycle()) return false;
+    intersections.beat(data);
+    return true;
   }
   /// The device offers the unit's next beat in this cycle. True if a ray was completed.
   bool offer(int unit) {
-    if (!rays.ready()) {
+    if (!ready()) {
       rays.want();
       return false;
     }
@@ -129,13 +138,15 @@ TEST(RayPool, DropsNormalRaysBeyondTheDepthLimitAndNoShadowRays) {
   uint32_t ray = 0, number = 0;
   bench.run([&](uint64_t cycle) {
     if (ray < made.size()) {
-      if (!bench.rays.ready()) {
+      if (!bench.ready()) {
         bench.rays.want();
       } else {
         Beat data;
         for (size_t i = 0; i < 4; ++i) data[i] = made[ray][number * 4 + i];
         const bool last = ++number == 3;
-        EXPECT_EQ(bench.rays.take(0, data, last), last && ray != 1);
+        const uint32_t before = bench.rays.size();
+        bench.rays.take(0, data, last);
+        EXPECT_EQ(bench.rays.size() - before, last && ray != 1 ? 1 : 0);
         if (last) number = 0, ++ray;
       }
     }
@@ -151,7 +162,7 @@ TEST(RayPool, DropsNormalRaysBeyondTheDepthLimitAndNoShadowRays) {
 TEST(RayPool, RefusesARayOfAWrongNumberOfBeats) {
   Bench bench(1);
   EXPECT_THROW(bench.run([&](uint64_t) {
-    if (!bench.rays.ready()) {
+    if (!bench.ready()) {
       bench.rays.want();
     } else {
       bench.rays.take(0, Beat{}, true);
@@ -180,16 +191,12 @@ TEST(IntersectionPool, GivesAPackageInEightCycles) {
       EXPECT_EQ(bench.intersections.available(ImportKind::Shadow), 0u);
     }
     Beat data;
-    if (bench.intersections.beat(data)) {
+    if (bench.beat_of_intersection(data)) {
       beats.push_back(cycle);
       words.insert(words.end(), data.begin(), data.end());
     }
     if (cycle >= 10 && taken.size() < 3) {
-      if (bench.intersections.ready()) {
-        taken.push_back(cycle);
-      } else {
-        bench.intersections.want(0, ImportKind::Shadow);
-      }
+      if (bench.intersections.request(0, ImportKind::Shadow)) taken.push_back(cycle);
     }
     return cycle < 60;
   });
@@ -212,14 +219,12 @@ TEST(IntersectionPool, KeepsTheKindsApart) {
       for (uint32_t i = 0; i < 40; ++i) bench.intersections.put(i < 20 ? ImportKind::Normal : ImportKind::Shadow, numbered(i));
     }
     Beat data;
-    if (bench.intersections.beat(data) && data[1] % 100 == 1) {
+    if (bench.beat_of_intersection(data) && data[1] % 100 == 1) {
       EXPECT_EQ(data[1] / 100 < 20, kinds[came++ % 4] == ImportKind::Normal);
     }
     if (taken == 40) return came < 40;
-    if (bench.intersections.ready()) {
+    if (bench.intersections.request(taken % 4, kinds[taken % 4])) {
       EXPECT_EQ(cycle, 2 + 8 * uint64_t{taken++});
-    } else {
-      bench.intersections.want(taken % 4, kinds[taken % 4]);
     }
     return true;
   });
@@ -234,8 +239,7 @@ TEST(IntersectionPool, LetsARequestWaitUntilItsKindComes) {
   bench.run([&](uint64_t cycle) {
     if (cycle == 1) bench.intersections.put(ImportKind::Shadow, numbered(0));
     if (cycle == 50) bench.intersections.put(ImportKind::Normal, numbered(1));
-    if (taken == 0 && bench.intersections.ready()) taken = cycle;
-    if (taken == 0) bench.intersections.want(0, ImportKind::Normal);
+    if (taken == 0 && bench.intersections.request(0, ImportKind::Normal)) taken = cycle;
     return cycle < 100;
   });
   EXPECT_EQ(taken, 51u);

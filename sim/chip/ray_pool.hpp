@@ -1,7 +1,8 @@
-// The ray pool: rays that units have exported and the traverser has not finished, oldest first, behind one 128-bit port.
+// The ray pool: rays that units have exported and the traverser has not finished, oldest first, behind one 128-bit
+// port.
 //
-// A ray costs the port 5 cycles: 2 of overhead, 3 beats. A ray offered in cycle c to an idle port moves in c+2, c+3, c+4 (later
-// if there are bubbles between its beats). A full pool serves nobody.
+// A ray costs the port 5 cycles: 2 of overhead, 3 beats. A ray offered in cycle c to an idle port moves in c+2, c+3,
+// c+4 (later if there are bubbles between its beats). A full pool serves nobody.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +10,7 @@
 #include <vector>
 
 #include "chip/chip_clock.hpp"
-#include "chip/pixel_ledger.hpp"
+#include "chip/interfaces.hpp"
 #include "chip/statistics.hpp"
 #include "machine/packages.hpp"
 
@@ -17,36 +18,27 @@ namespace raypool::chip {
 
 inline constexpr uint64_t kPoolOverhead = 2;  ///< cycles a request
 
-/// A ray in the pool. The traverser notes its result here while the result cannot leave.
-struct PooledRay {
-  Ray ray;
-  bool traced = false;
-  bool goes_on = false;       ///< as an intersection; meaningful when traced
-  Intersection intersection;  ///< meaningful when it goes on
-};
-
-class RayPool : public sc_core::sc_module {
+class RayPool : public sc_core::sc_module, public RayExportIf, public RaySourceIf, public RayLevelIf {
  public:
-  /// `clock` and `ledger` must outlive the pool. Normal rays deeper than `depth` are dropped when they arrive.
-  RayPool(const sc_core::sc_module_name& name, ChipClock& clock, PixelLedger& ledger, int capacity, int depth);
+  /// Normal rays deeper than `depth` are dropped when they arrive.
+  RayPool(const sc_core::sc_module_name& name, int capacity, int depth);
 
-  // For the device, in the phase of the units.
-  /// True if a beat is taken in this cycle.
-  bool ready() const { return granted_ && clock_.cycle() >= first_beat_; }
-  /// A beat is offered, and the pool is not ready().
-  void want();
-  /// Takes a beat of compute unit `unit`; ready() must hold. Returns true when it completes a ray that stays in the pool.
-  bool take(uint32_t unit, const Beat& beat, bool last);
-  /// True if a ray that is offered waits because there has been no room since before this cycle.
-  bool held_up() const { return !granted_ && full() && clock_.cycle() > kept_at_; }
+  sc_core::sc_port<TimeIf> clock{"clock"};
+  sc_core::sc_port<LedgerIf> ledger{"ledger"};
+  sc_core::sc_port<RayArrivalIf, 0, sc_core::SC_ZERO_OR_MORE_BOUND> arrivals{"arrivals"};
+  sc_core::sc_export<RayExportIf> device{"device"};
+  sc_core::sc_export<RaySourceIf> traverser{"traverser"};
+  sc_core::sc_export<RayLevelIf> controller{"controller"};
 
-  /// For the traverser: oldest first. After removing some, of which so many were shadow rays, call removed().
-  std::vector<PooledRay>& rays() { return rays_; }
-  const std::vector<PooledRay>& rays() const { return rays_; }
-  void removed(uint32_t shadow_rays);
+  void want() override;
+  void take(uint32_t unit, const Beat& beat, bool last) override;
+  bool held_up() const override { return beats_from() == kNever && full() && clock->cycle() > kept_at_; }
 
-  uint32_t size() const { return static_cast<uint32_t>(rays_.size()); }
-  uint32_t shadow_rays() const { return shadow_rays_; }  ///< among them
+  std::vector<PooledRay>& rays() override { return rays_; }
+  void removed(uint32_t shadow_rays) override;
+
+  uint32_t size() const override { return static_cast<uint32_t>(rays_.size()); }
+  uint32_t shadow_rays() const override { return shadow_rays_; }
   bool full() const { return rays_.size() >= capacity_; }
   uint32_t capacity() const { return static_cast<uint32_t>(capacity_); }
   uint64_t taken() const { return taken_; }  ///< rays transferred, dropped ones too
@@ -55,16 +47,12 @@ class RayPool : public sc_core::sc_module {
   const LevelStatistics& fill() const { return fill_; }
 
  private:
-  void serve();
+  void keep(bool shadow);
 
-  ChipClock& clock_;
-  PixelLedger& ledger_;
   size_t capacity_;
   uint32_t depth_;
-  PortWork work_;
-  bool wanting_ = false;  // a ray is offered
-  bool granted_ = false;
-  uint64_t granted_at_ = 0, first_beat_ = 0, free_at_ = 0, kept_at_ = 0;
+  bool wanting_ = false;  // a ray is offered, and there is no room
+  uint64_t kept_at_ = 0;
   Ray arriving_{};
   size_t beats_ = 0;
   std::vector<PooledRay> rays_;

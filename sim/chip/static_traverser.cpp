@@ -2,8 +2,8 @@
 
 namespace raypool::chip {
 
-StaticTraverser::StaticTraverser(const sc_core::sc_module_name& name, const TraverserSurroundings& surroundings)
-    : Traverser(name, surroundings) {
+StaticTraverser::StaticTraverser(const sc_core::sc_module_name& name, RayTracer& tracer, int units)
+    : Traverser(name, tracer), units_(static_cast<uint32_t>(units)) {
   SC_METHOD(end_of_kernel);
   sensitive << kernel_ended_;
   dont_initialize();
@@ -12,19 +12,19 @@ StaticTraverser::StaticTraverser(const sc_core::sc_module_name& name, const Trav
   dont_initialize();
 }
 
-void StaticTraverser::kernel_ended() {
+void StaticTraverser::kernel_ended(int /*unit*/) {
   ++kernels_;
-  around_.clock.notify(kernel_ended_, Phase::Traverser);
+  clock->notify(kernel_ended_, Phase::Traverser);
 }
 
 void StaticTraverser::shader_stalls(bool stalls) {
-  if (!stalling_ && stalls) around_.clock.notify(stall_over_, Phase::Traverser, kTraverserStallCycles);
+  if (!stalling_ && stalls) clock->notify(stall_over_, Phase::Traverser, kTraverserStallCycles);
   if (stalling_ && !stalls) stall_over_.cancel();
   stalling_ = stalls;
 }
 
 void StaticTraverser::end_of_kernel() {
-  around_.clock.guard([&] {
+  clock->guard([&] {
     counts_.batches += kernels_;
     advance(kTraverserBatch * kernels_);
     kernels_ = 0;
@@ -32,9 +32,9 @@ void StaticTraverser::end_of_kernel() {
 }
 
 void StaticTraverser::end_of_stall() {
-  around_.clock.guard([&] {
-    if (advance(kTraverserBatch * static_cast<uint32_t>(around_.units)) > 0) ++counts_.stall_batches;
-    around_.clock.notify(stall_over_, Phase::Traverser, kTraverserStallCycles);
+  clock->guard([&] {
+    if (advance(kTraverserBatch * units_) > 0) ++counts_.stall_batches;
+    clock->notify(stall_over_, Phase::Traverser, kTraverserStallCycles);
   });
 }
 

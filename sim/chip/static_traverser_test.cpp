@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "chip/intersection_pool.hpp"
+#include "chip/pixel_ledger.hpp"
+#include "chip/ray_pool.hpp"
 #include "chip/simulation.hpp"
 #include "chip/test_driver.hpp"
 
@@ -18,6 +21,12 @@ struct HalfTracer : RayTracer {
   int traced = 0;
 };
 
+/// Stands for the controller: counts how often it is told that rays have moved.
+struct Moves : DecisionIf {
+  void changed() override { ++seen; }
+  int seen = 0;
+};
+
 /// A traverser between pools that the test fills.
 struct Bench {
   Simulation simulation;
@@ -26,14 +35,25 @@ struct Bench {
   RayPool rays;
   IntersectionPool intersections;
   HalfTracer tracer;
-  int moved = 0;
+  Moves moves;
   StaticTraverser traverser;
 
   explicit Bench(int units, int capacity = 512)
-      : ledger(units, 512, 1),
-        rays("ray_pool", clock, ledger, 512, 5),
-        intersections("intersection_pool", clock, ledger, capacity),
-        traverser("traverser", {clock, rays, intersections, ledger, tracer, units, [this] { ++moved; }}) {}
+      : ledger("pixel_ledger", units, 512, 1),
+        rays("ray_pool", 512, 5),
+        intersections("intersection_pool", capacity),
+        traverser("traverser", tracer, units) {
+    rays.clock(clock.now);
+    rays.ledger(ledger.records);
+    rays.arrivals(traverser.arrivals);
+    intersections.clock(clock.now);
+    intersections.ledger(ledger.records);
+    traverser.clock(clock.now);
+    traverser.rays(rays.traverser);
+    traverser.intersections(intersections.traverser);
+    traverser.ledger(ledger.records);
+    traverser.controller(moves);
+  }
 
   /// Puts `count` rays into the pool; with kShadowFlag shadow rays.
   void fill(int count, uint32_t flags = 1) {
@@ -47,11 +67,7 @@ struct Bench {
       rays.rays().push_back(ray);
     }
   }
-  void run(std::function<bool(uint64_t)> cycle) {
-    test::Driver driver("driver", clock, std::move(cycle));
-    simulation.run();
-    clock.rethrow();
-  }
+  void run(std::function<bool(uint64_t)> cycle) { test::drive(simulation, clock, std::move(cycle)); }
 };
 
 TEST(StaticTraverser, Turns64RaysIntoIntersectionsAtTheEndOfAKernel) {
@@ -59,7 +75,7 @@ TEST(StaticTraverser, Turns64RaysIntoIntersectionsAtTheEndOfAKernel) {
   bench.run([&](uint64_t cycle) {
     if (cycle == 1) bench.fill(200);
     if (cycle == 1) bench.traverser.shader_stalls(false);
-    if (cycle == 5) bench.traverser.kernel_ended();
+    if (cycle == 5) bench.traverser.kernel_ended(0);
     EXPECT_EQ(bench.rays.size(), cycle <= 5 ? 200u : 136u);
     if (cycle == 6) {
       EXPECT_EQ(bench.rays.size(), 136u);
@@ -114,12 +130,12 @@ TEST(StaticTraverser, KeepsRaysWithoutRoomAndTracesThemOnce) {
   Bench bench(1, 10);
   bench.run([&](uint64_t cycle) {
     if (cycle == 1) bench.fill(64, 1 | kShadowFlag);
-    if (cycle == 2) bench.traverser.kernel_ended();
+    if (cycle == 2) bench.traverser.kernel_ended(0);
     if (cycle == 3) {
       EXPECT_EQ(bench.intersections.size(ImportKind::Shadow), 10u);
       EXPECT_EQ(bench.rays.size(), 22u);  // 32 are free, 10 of them found room
       bench.fill(20);                     // normal rays pass those that wait
-      bench.traverser.kernel_ended();
+      bench.traverser.kernel_ended(0);
     }
     return cycle < 10;
   });

@@ -3,8 +3,10 @@
 
 #include <functional>
 #include <systemc>
+#include <utility>
 
 #include "chip/chip_clock.hpp"
+#include "chip/simulation.hpp"
 
 namespace raypool::test {
 
@@ -12,23 +14,36 @@ class Driver : public sc_core::sc_module {
  public:
   SC_HAS_PROCESS(Driver);
   /// `cycle` is called with 1, 2, ... until it returns false, which ends the run.
-  Driver(const sc_core::sc_module_name& name, chip::ChipClock& clock, std::function<bool(uint64_t)> cycle)
-      : sc_module(name), clock_(clock), cycle_(std::move(cycle)) {
+  Driver(const sc_core::sc_module_name& name, std::function<bool(uint64_t)> cycle) : sc_module(name), cycle_(std::move(cycle)) {
     SC_METHOD(run);
-    sensitive << clock_.tick();
+    sensitive << next_cycle_;
     dont_initialize();
-    clock_.wake();
   }
 
+  sc_core::sc_port<chip::TimeIf> clock{"clock"};
+
  private:
+  void start_of_simulation() override { clock->notify(next_cycle_, chip::Phase::Units, 1); }
   void run() {
-    clock_.guard([&] {
-      if (!cycle_(clock_.cycle())) clock_.stop();
+    clock->guard([&] {
+      if (cycle_(clock->cycle())) {
+        clock->notify(next_cycle_, chip::Phase::Units, 1);
+      } else {
+        clock->stop();
+      }
     });
   }
 
-  chip::ChipClock& clock_;
   std::function<bool(uint64_t)> cycle_;
+  sc_core::sc_event next_cycle_;
 };
+
+/// Drives a bench's clock until `cycle` returns false.
+inline void drive(chip::Simulation& simulation, chip::ChipClock& clock, std::function<bool(uint64_t)> cycle) {
+  Driver driver("driver", std::move(cycle));
+  driver.clock(clock.now);
+  simulation.run();
+  clock.rethrow();
+}
 
 }  // namespace raypool::test

@@ -6,18 +6,23 @@
 
 namespace raypool::chip {
 
+Traverser::Traverser(const sc_core::sc_module_name& name, RayTracer& tracer) : sc_module(name), tracer_(tracer) {
+  kernel_events.bind(*this);
+  arrivals.bind(*this);
+}
+
 void Traverser::trace(PooledRay& ray) {
   ray.traced = true;
-  ray.goes_on = around_.tracer.trace(ray.ray, ray.intersection);
+  ray.goes_on = tracer_.trace(ray.ray, ray.intersection);
   counts_.rays.count(ray.ray, ray.goes_on);
 }
 
 uint32_t Traverser::advance(uint32_t budget) {
-  std::vector<PooledRay>& rays = around_.rays.rays();
+  std::vector<PooledRay>& pool = rays->rays();
   size_t kept = 0;
   uint32_t shadows = 0;  // that left
-  for (size_t i = 0; i < rays.size(); ++i) {
-    PooledRay& ray = rays[i];
+  for (size_t i = 0; i < pool.size(); ++i) {
+    PooledRay& ray = pool[i];
     if (!ray.traced && budget > 0) {
       --budget;
       trace(ray);
@@ -26,27 +31,27 @@ uint32_t Traverser::advance(uint32_t budget) {
     const ImportKind kind = shadow ? ImportKind::Shadow : ImportKind::Normal;
     if (ray.traced && !ray.goes_on) {
       shadows += shadow;
-      around_.ledger.ray_dropped(ray.ray[word::kPixel]);
-    } else if (ray.traced && !around_.intersections.full(kind)) {
+      ledger->ray_dropped(ray.ray[word::kPixel]);
+    } else if (ray.traced && !intersections->full(kind)) {
       ++counts_.delivered;
       shadows += shadow;
-      around_.intersections.put(kind, ray.intersection);
+      intersections->put(kind, ray.intersection);
     } else {
-      if (kept != i) rays[kept] = ray;
+      if (kept != i) pool[kept] = ray;
       ++kept;
     }
   }
-  const auto left = static_cast<uint32_t>(rays.size() - kept);
-  rays.resize(kept);
+  const auto left = static_cast<uint32_t>(pool.size() - kept);
+  pool.resize(kept);
   if (left > 0) {
-    around_.rays.removed(shadows);
-    around_.moved();
+    rays->removed(shadows);
+    controller->changed();
   }
   return left;
 }
 
-std::unique_ptr<Traverser> make_traverser(const std::string& kind, const TraverserSurroundings& surroundings) {
-  if (kind == "static") return std::make_unique<StaticTraverser>("traverser", surroundings);
+std::unique_ptr<Traverser> make_traverser(const std::string& kind, RayTracer& tracer, int units) {
+  if (kind == "static") return std::make_unique<StaticTraverser>("traverser", tracer, units);
   throw InputError(fmt::format("there is no traverser '{}': use static", kind));
 }
 

@@ -36,6 +36,9 @@ void check(const SimOptions& options, Engine engine) {
   if (options.waves && engine != Engine::Rtl && engine != Engine::Lockstep) {
     throw InputError(fmt::format("engine {} has no waveform: use rtl or lockstep, or leave waves out", options.engine));
   }
+  if (options.modules && engine == Engine::Native) {
+    throw InputError("engine native has no chip, and so no modules to print: choose another, such as model");
+  }
   if (options.inspect_until != 0 && engine != Engine::Lockstep) throw InputError("--inspect is for --engine lockstep");
 }
 
@@ -86,14 +89,20 @@ std::string progress_text(const ChipProgress& done, bool timed, double seconds) 
   return text;
 }
 
-/// The chip around `device`, for as long as a frame lasts.
-ChipResult draw_on_chip(const SimOptions& options, const RunRecord& record, const Scene& scene, const Tracer& tracer,
-                        MemoryImage& image, ComputeUnit& device, FrameBuffer& frame) {
-  const Program& program = ray_kernel_program(record.configuration.fma);
-  SceneTracer scene_tracer(tracer);
-  FrameBufferSink sink(frame);
-  Progress progress(options.quiet || options.json);
+/// What the chip draws with, for as long as a frame lasts.
+struct Surroundings {
+  Surroundings(const Scene& scene, const MemoryImage& image, int width, int height)
+      : tracer(scene, image.material_base), scene_tracer(tracer), frame(width, height), sink(frame) {}
+  const Tracer tracer;
+  SceneTracer scene_tracer;
+  FrameBuffer frame;
+  FrameBufferSink sink;
+};
 
+/// The chip around `device`.
+ChipOptions chip_options(const RunRecord& record, const Scene& scene, MemoryImage& image, ComputeUnit& device,
+                         Surroundings& around) {
+  const Program& program = ray_kernel_program(record.configuration.fma);
   ChipOptions chip;
   chip.configuration = record.configuration;
   chip.device = &device;
@@ -105,13 +114,10 @@ ChipResult draw_on_chip(const SimOptions& options, const RunRecord& record, cons
   chip.height = record.height;
   chip.depth = record.depth;
   chip.reflections = record.reflections;
-  chip.tracer = &scene_tracer;
-  chip.frame = &sink;
+  chip.tracer = &around.scene_tracer;
+  chip.frame = &around.sink;
   chip.traverser = record.traverser;
-  chip.progress = [&](const ChipProgress& done) {
-    if (progress.due()) progress.show(progress_text(done, device.timed(), progress.seconds()));
-  };
-  return run_chip(chip);
+  return chip;
 }
 
 std::map<uint32_t, std::string> kernel_names(const Program& program) {
@@ -137,18 +143,25 @@ FrameBuffer draw_natively(RunRecord& record, const Scene& scene, MemoryImage& im
   return frame;
 }
 
+std::unique_ptr<ComputeUnit> make_device(const SimOptions& options, Engine engine, const RunRecord& record, MemoryImage& image) {
+  const EngineOptions device{engine,        record.configuration, options.unit_library,
+                             options.waves, options.units,        options.inspect_until};
+  return make_unit(device, image.memory, "unit", kernel_names(ray_kernel_program(record.configuration.fma)));
+}
+
 FrameBuffer draw_on_unit(const SimOptions& options, Engine engine, RunRecord& record, const Scene& scene, MemoryImage& image,
                          OutputFolder& out) {
-  const EngineOptions device_options{engine,        record.configuration, options.unit_library,
-                                     options.waves, options.units,        options.inspect_until};
-  std::unique_ptr<ComputeUnit> device =
-      make_unit(device_options, image.memory, "unit", kernel_names(ray_kernel_program(record.configuration.fma)));
+  std::unique_ptr<ComputeUnit> device = make_device(options, engine, record, image);
   if (options.wrap) device = options.wrap(std::move(device), image.memory);
   if (options.waves) device->open_waveform(out.temporary("waves.fst"));
-  const Tracer tracer(scene, image.material_base);
-  FrameBuffer frame(record.width, record.height);
+  Surroundings around(scene, image, record.width, record.height);
+  ChipOptions chip = chip_options(record, scene, image, *device, around);
   try {
-    record.chip = draw_on_chip(options, record, scene, tracer, image, *device, frame);
+    Progress progress(options.quiet || options.json);
+    chip.progress = [&](const ChipProgress& done) {
+      if (progress.due()) progress.show(progress_text(done, device->timed(), progress.seconds()));
+    };
+    record.chip = run_chip(chip);
   } catch (const std::exception&) {
     // The waveform up to here is what one wants to see now.
     device.reset();
@@ -160,7 +173,13 @@ FrameBuffer draw_on_unit(const SimOptions& options, Engine engine, RunRecord& re
   }
   record.simulation_seconds = record.chip->wall_seconds;
   record.lockstep = lockstep_counts(*device);
-  return frame;
+  return std::move(around.frame);
+}
+
+void print_modules(const SimOptions& options, Engine engine, const RunRecord& record, const Scene& scene, MemoryImage& image) {
+  const std::unique_ptr<ComputeUnit> device = make_device(options, engine, record, image);
+  Surroundings around(scene, image, record.width, record.height);
+  fmt::print("{}", chip_modules(chip_options(record, scene, image, *device, around)));
 }
 
 }  // namespace
@@ -188,6 +207,10 @@ int sim_command(const SimOptions& options) {
   record.view = {scene.camera, scene.light};
   record.reflections = record.depth > 1 && scene.reflects();
   MemoryImage image = build_memory(ray_kernel_program(record.configuration.fma), scene);
+  if (options.modules) {
+    print_modules(options, engine, record, scene, image);
+    return 0;
+  }
   OutputFolder out(options.out.empty() ? default_folder(options, scene, record.configuration, size) : fs::path(options.out));
 
   const FrameBuffer frame =

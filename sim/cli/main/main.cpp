@@ -146,6 +146,8 @@ void CommandLine::add_sim_command() {
   sim_app->add_option("--out", sim_.out,
                       "folder for the results (default: out/<what was run> beside the program; installed: in raypool-out)");
   sim_app->add_flag("--waves", sim_.waves, "leave a waveform, waves.fst, too; rtl and lockstep only");
+  sim_app->add_flag("--modules", sim_.modules,
+                    "draw nothing: print the chip's SystemC modules, and what their ports are bound to");
   add_inspect(*sim_app, sim_.inspect_until);
   sim_app->add_flag("--json", sim_.json, "the report on standard output, and nothing else there");
   sim_app->add_flag("--quiet", sim_.quiet, "no progress and no table");

@@ -1,0 +1,114 @@
+#include "chip/chip_module.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <stdexcept>
+
+#include "scene/native_renderer.hpp"
+
+namespace raypool::chip {
+
+namespace {
+
+void require_range(const char* what, int value, int low, int high) {
+  if (value < low || value > high) throw InputError(fmt::format("{} is {}; it must lie in {} .. {}", what, value, low, high));
+}
+
+int tile_width(const ChipOptions& options) { return 1 << tile_width_log2(options.configuration.contents()); }
+
+const ChipOptions& checked(const ChipOptions& options) {
+  if (options.device == nullptr || options.memory == nullptr || options.tracer == nullptr || options.frame == nullptr) {
+    throw std::logic_error("run_chip needs device, memory, tracer and frame");
+  }
+  require_range("image width", options.width, 1, 65535);
+  require_range("image height", options.height, 1, 65535);
+  require_range("depth", options.depth, 1, kLargestDepth);
+  require_range("ray pool's packages", options.ray_packages, 1, 1 << 20);
+  require_range("intersection pool's packages", options.intersection_packages, tile_width(options), 1 << 20);
+  require_range("limit of held pixels", options.held_limit, tile_width(options), options.intersection_packages);
+  return options;
+}
+
+}  // namespace
+
+Chip::Chip(const sc_core::sc_module_name& name, const ChipOptions& options)
+    : sc_module(name),
+      options_(checked(options)),
+      ledger_("pixel_ledger", static_cast<int>(options.device->units()), options.width, options.height),
+      rays_("ray_pool", options.ray_packages, options.depth),
+      intersections_("intersection_pool", options.intersection_packages),
+      frame_("frame_port", *options.frame),
+      controller_("controller", options_),
+      traverser_(make_traverser(options.traverser, *options.tracer, static_cast<int>(options.device->units()))),
+      device_("device_host", *options.device),
+      monitor_("monitor", {options.watchdog_cycles, options.cycle_limit, true, static_cast<bool>(options.progress)}) {
+  memory_port_.clock(clock_.now);
+  memory_port_.socket.bind(memory);
+
+  rays_.clock(clock_.now);
+  rays_.ledger(ledger_.records);
+  rays_.arrivals(traverser_->arrivals);
+
+  intersections_.clock(clock_.now);
+  intersections_.ledger(ledger_.records);
+
+  frame_.ledger(ledger_.records);
+  ledger_.controller(controller_.decisions);
+
+  controller_.clock(clock_.now);
+  controller_.rays(rays_.controller);
+  controller_.intersections(intersections_.controller);
+  controller_.ledger(ledger_.records);
+  controller_.device(device_.launches);
+
+  traverser_->clock(clock_.now);
+  traverser_->rays(rays_.traverser);
+  traverser_->intersections(intersections_.traverser);
+  traverser_->ledger(ledger_.records);
+  traverser_->controller(controller_.decisions);
+
+  device_.clock(clock_.now);
+  device_.memory(memory_port_.device);
+  device_.rays(rays_.device);
+  device_.intersections(intersections_.device);
+  device_.frame(frame_.device);
+  device_.controller(controller_.decisions);
+  device_.kernel_events(controller_.kernel_events);
+  device_.kernel_events(ledger_.kernel_events);
+  device_.kernel_events(traverser_->kernel_events);
+
+  monitor_.clock(clock_.now);
+  monitor_.watched(*this);
+}
+
+void Chip::show_progress() {
+  options_.progress(
+      {static_cast<double>(ledger_.finished()) / static_cast<double>(ledger_.pixels()), clock_.cycle(), rays_traced()});
+}
+
+ChipResult Chip::draw() {
+  const auto begin = std::chrono::steady_clock::now();
+  ComputeUnit& device = *options_.device;
+  std::array<uint32_t, kArguments> arguments = options_.arguments;
+  arguments[argument::kTileWidthLog2] = static_cast<uint32_t>(tile_width_log2(options_.configuration.contents()));
+  arguments[argument::kTileMask] = static_cast<uint32_t>(tile_width(options_)) - 1;
+  arguments[argument::kWidth] = static_cast<uint32_t>(options_.width);
+  arguments[argument::kHeight] = static_cast<uint32_t>(options_.height);
+  device.reset(options_.program_length, options_.memory->size());
+  for (int i = 0; i < kArguments; ++i) device.set_argument(i, arguments[static_cast<size_t>(i)]);
+
+  sc_core::sc_start();
+  clock_.rethrow();
+  if (!controller_.finished()) {
+    throw ChipStalled(
+        fmt::format("the chip is locked up: nothing is left to happen at cycle {}; {}", clock_.cycle(), describe()));
+  }
+  if (options_.progress) show_progress();
+
+  ChipResult result = collect();
+  result.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return result;
+}
+
+}  // namespace raypool::chip

@@ -1,0 +1,60 @@
+// The chip as a SystemC module, to be bound to a memory: run_chip (chip.hpp) with a socket. docs/chip.md has an
+// example.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <systemc>
+
+#include "chip/chip.hpp"
+#include "chip/chip_clock.hpp"
+#include "chip/controller.hpp"
+#include "chip/device_host.hpp"
+#include "chip/frame_port.hpp"
+#include "chip/interfaces.hpp"
+#include "chip/intersection_pool.hpp"
+#include "chip/memory_port.hpp"
+#include "chip/monitor.hpp"
+#include "chip/pixel_ledger.hpp"
+#include "chip/ray_pool.hpp"
+#include "chip/traverser.hpp"
+
+namespace raypool::chip {
+
+/// Draws one frame, in one simulation (simulation.hpp) of its own.
+class Chip : public sc_core::sc_module, public WatchedIf {
+ public:
+  /// Throws InputError for options out of range. What they point to must outlive the chip; `options.memory` holds the
+  /// program.
+  Chip(const sc_core::sc_module_name& name, const ChipOptions& options);
+
+  MemorySocket memory{"memory"};
+
+  /// Resets the device and draws. Throws as run_chip does.
+  ChipResult draw();
+
+  uint64_t retired() override { return device_.instructions(); }
+  uint64_t transfers() override { return rays_traced() + traverser_->counts().delivered + device_.transfers(); }
+  std::string describe() override { return controller_.describe() + "; " + device_.describe(); }
+  void show_progress() override;
+
+ private:
+  uint64_t rays_traced() const { return traverser_->counts().rays.traced(); }
+  ChipResult collect() const;
+  void collect_units(ChipResult& result) const;
+  void collect_pools(ChipResult& result) const;
+
+  const ChipOptions options_;
+  ChipClock clock_{"clock"};
+  PixelLedger ledger_;
+  MemoryPort memory_port_{"memory_port"};
+  RayPool rays_;
+  IntersectionPool intersections_;
+  FramePort frame_;
+  Controller controller_;
+  std::unique_ptr<Traverser> traverser_;
+  DeviceHost device_;
+  Monitor monitor_;
+};
+
+}  // namespace raypool::chip

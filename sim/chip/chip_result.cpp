@@ -1,0 +1,79 @@
+// What a frame has come to, gathered from the modules of the chip.
+#include "chip/chip_module.hpp"
+
+namespace raypool::chip {
+
+namespace {
+
+double ratio(double part, double whole) { return whole == 0 ? 0 : part / whole; }
+double ratio(uint64_t part, uint64_t whole) { return ratio(static_cast<double>(part), static_cast<double>(whole)); }
+
+PoolFill pool_fill(const LevelStatistics& fill, uint32_t capacity, uint64_t cycles) {
+  return {capacity, fill.peak(), fill.mean(cycles)};
+}
+
+}  // namespace
+
+// Averages over the units, from their counters.
+void Chip::collect_units(ChipResult& result) const {
+  const auto sum = [&](int number) { return options_.device->counter(number); };
+  const uint64_t busy = sum(counter::kBusyCycles);
+  result.instructions = sum(counter::kInstructions);
+  result.thread_instructions = sum(counter::kThreadInstructions);
+  result.instruction_cache_hits = sum(counter::kInstructionCacheHits);
+  result.instruction_cache_misses = sum(counter::kInstructionCacheMisses);
+  result.data_cache_hits = sum(counter::kDataCacheHits);
+  result.data_cache_misses = sum(counter::kDataCacheMisses);
+  result.data_cache_stores = sum(counter::kDataCacheStores);
+  for (int i = 0; i < kAluTypes; ++i) {
+    ChipResult::Alu& alu = result.alus[static_cast<size_t>(i)];
+    alu.issued = sum(counter::kIssued + i);
+    if (!result.timed) continue;
+    const auto instances = static_cast<uint64_t>(options_.configuration.alus[static_cast<size_t>(i)].count);
+    if (busy > 0) alu.utilisation = 1 - ratio(sum(counter::kUnused + i), busy * instances);
+    alu.waiting = ratio(sum(counter::kWaiting + i), busy);
+  }
+}
+
+void Chip::collect_pools(ChipResult& result) const {
+  result.rays_pool = pool_fill(rays_.fill(), rays_.capacity(), result.cycles);
+  result.normal_pool = pool_fill(intersections_.fill(ImportKind::Normal), intersections_.capacity(), result.cycles);
+  result.shadow_pool = pool_fill(intersections_.fill(ImportKind::Shadow), intersections_.capacity(), result.cycles);
+  result.ray_port_utilisation = ratio(rays_.busy_cycles(), result.cycles);
+  result.intersection_port_utilisation = ratio(intersections_.busy_cycles(), result.cycles);
+  result.memory_port_utilisation = ratio(memory_port_.busy_cycles(), result.cycles);
+  result.memory_reads = memory_port_.reads();
+  result.memory_writes = memory_port_.writes();
+}
+
+ChipResult Chip::collect() const {
+  ChipResult result;
+  result.timed = options_.device->timed();
+  result.cycles = clock_.cycle();
+  result.nanoseconds = static_cast<double>(result.cycles);
+  const TraverserCounts& counts = traverser_->counts();
+  result.ray_counts = counts.rays;
+  result.dropped_depth = rays_.dropped_depth();
+  result.contributions = frame_.taken();
+  result.held_peak = controller_.held_peak();
+  result.kernels = controller_.kernels();
+  if (result.timed) {
+    const auto traced = static_cast<double>(result.rays());
+    const double thesis = options_.depth == 1 ? 2.0 * options_.width * options_.height : traced;
+    result.mrays_per_s = ratio(1e3 * traced, result.nanoseconds);
+    result.thesis_mrays_per_s = ratio(1e3 * thesis, result.nanoseconds);
+    result.frames_per_s = ratio(1e9, result.nanoseconds);
+  }
+
+  result.busy_cycles = device_.busy_cycles();
+  result.time_utilisation = ratio(result.busy_cycles, result.cycles * options_.device->units());
+  result.resource_utilisation = controller_.resource_utilisation();
+  collect_units(result);
+
+  collect_pools(result);
+  result.traverser_batches = counts.batches;
+  result.traverser_stall_batches = counts.stall_batches;
+  return result;
+}
+
+}  // namespace raypool::chip

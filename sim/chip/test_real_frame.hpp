@@ -1,0 +1,49 @@
+// For tests: the Cornell box drawn with the real kernels, on a device that the test chooses.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "chip/chip.hpp"
+#include "scene/image.hpp"
+#include "scene/native_renderer.hpp"
+#include "scene/scene.hpp"
+#include "scene/traversal.hpp"
+
+namespace raypool::test {
+
+struct RealFrame {
+  const Scene scene = make_cornell();
+  MemoryImage image = build_memory(ray_kernel_program(), scene);
+  const Tracer tracer{scene, image.material_base};
+  SceneTracer scene_tracer{tracer};
+  FrameBuffer frame;
+  FrameBufferSink sink{frame};
+  std::unique_ptr<ComputeUnit> device;
+  ChipOptions options;
+
+  RealFrame(int warps, int lanes, int width, int height, int depth) : frame(width, height) {
+    const Program& program = ray_kernel_program();
+    options.configuration.warps = warps;
+    options.configuration.lanes = lanes;
+    options.memory = &image.memory;
+    options.program_length = static_cast<uint32_t>(program.code.size());
+    for (size_t i = 0; i < kRayKernels; ++i) options.entries[i] = program.entries.at(std::string(kRayKernelNames[i]));
+    options.arguments = camera_arguments(scene, width, height, options.configuration.contents());
+    options.width = width;
+    options.height = height;
+    options.depth = depth;
+    options.tracer = &scene_tracer;
+    options.frame = &sink;
+  }
+  RealFrame(const RealFrame&) = delete;
+  RealFrame& operator=(const RealFrame&) = delete;
+
+  void set_device(std::unique_ptr<ComputeUnit> made) {
+    device = std::move(made);
+    options.device = device.get();
+  }
+};
+
+}  // namespace raypool::test
