@@ -19,7 +19,7 @@ class Recorder : public ComputeUnit {
     device_->reset(program_length, memory_limit);
   }
   void set_argument(int index, uint32_t value) override {
-    recording_.arguments[static_cast<size_t>(index)] = value;
+    recording_.arguments[index] = value;
     device_->set_argument(index, value);
   }
   const UnitOutputs& outputs() const override { return device_->outputs(); }
@@ -64,7 +64,7 @@ std::unique_ptr<ComputeUnit> record_ports(std::unique_ptr<ComputeUnit> device, c
 
 void replay(ComputeUnit& device, const PortRecording& recording) {
   device.reset(recording.program_length, recording.memory_limit);
-  for (int i = 0; i < kArguments; ++i) device.set_argument(i, recording.arguments[static_cast<size_t>(i)]);
+  for (int i = 0; i < kArguments; ++i) device.set_argument(i, recording.arguments[i]);
   auto launch = recording.launches.begin();
   auto response = recording.responses.begin();
   auto beat = recording.beats.begin();

@@ -100,7 +100,7 @@ void compare_units(const BenchOptions& bench, const std::string& config) {
   const auto cycles = static_cast<double>(recording.cycles), threads = static_cast<double>(*instructions.begin());
   const auto at = [&](const std::string& engine) {
     const auto place = std::find(bench.engines.begin(), bench.engines.end(), engine);
-    return place == bench.engines.end() ? 0.0 : best[static_cast<size_t>(place - bench.engines.begin())];
+    return place == bench.engines.end() ? 0.0 : best[place - bench.engines.begin()];
   };
   for (size_t engine = 0; engine < bench.engines.size(); ++engine)
     fmt::print("{:<7} {:<11} {:>9.3f} {:>16} {:>18.1f} {:>30.1f}\n", config, bench.engines[engine], best[engine], "-",

@@ -230,7 +230,7 @@ class Assembler {
         parse_address(parts);
         break;
       case Operand::Word:
-        parts.x = static_cast<uint8_t>(parse_small("ray word", kLastRayWord));
+        parts.x = parse_small("ray word", kLastRayWord);
         break;
       case Operand::Argument:
         parts.immediate |= parse_small("argument", kArguments - 1);

@@ -1,8 +1,9 @@
 #include "isa/encoding.hpp"
 
-#include <array>
 #include <stdexcept>
 #include <string>
+
+#include "enum_array.hpp"
 
 namespace raypool {
 namespace {
@@ -12,11 +13,11 @@ constexpr uint32_t take(const Field& field, uint64_t encoding) {
   return static_cast<uint32_t>(encoding >> field.lsb & ((uint64_t{1} << field.bits) - 1));
 }
 
-using Table = std::array<const InstructionInfo*, 512>;  // index: Opcode, or type and operation of no row
+using Table = EnumArray<Opcode, const InstructionInfo*, 512>;  // index: Opcode, or type and operation of no row
 
 Table make_table() {
   Table table{};
-  for (const InstructionInfo& info : kInstructions) table[static_cast<size_t>(info.opcode)] = &info;
+  for (const InstructionInfo& info : kInstructions) table[info.opcode] = &info;
   return table;
 }
 
@@ -27,11 +28,9 @@ const Table& table() {
 
 }  // namespace
 
-const InstructionInfo& instruction(Opcode opcode) { return *table()[static_cast<size_t>(opcode)]; }
+const InstructionInfo& instruction(Opcode opcode) { return *table()[opcode]; }
 
-const InstructionInfo* find_instruction(int type, int operation) {
-  return table()[static_cast<size_t>((type & 15) << 5 | (operation & 31))];
-}
+const InstructionInfo* find_instruction(int type, int operation) { return table()[(type & 15) << 5 | (operation & 31)]; }
 
 const InstructionInfo* find_instruction(std::string_view mnemonic) {
   for (const InstructionInfo& info : kInstructions) {
@@ -105,12 +104,12 @@ Instruction unpack(uint64_t encoding) {
   parts.info =
       find_instruction(static_cast<int>(take(field::kType, encoding)), static_cast<int>(take(field::kOperation, encoding)));
   parts.guard_negated = take(field::kGuardNegated, encoding) != 0;
-  parts.guard = static_cast<uint8_t>(take(field::kGuard, encoding));
-  parts.rd = static_cast<uint8_t>(take(field::kRd, encoding));
-  parts.ra = static_cast<uint8_t>(take(field::kRa, encoding));
-  parts.rb = static_cast<uint8_t>(take(field::kRb, encoding));
+  parts.guard = take(field::kGuard, encoding);
+  parts.rd = take(field::kRd, encoding);
+  parts.ra = take(field::kRa, encoding);
+  parts.rb = take(field::kRb, encoding);
   parts.b_is_immediate = take(field::kBIsImmediate, encoding) != 0;
-  parts.x = static_cast<uint8_t>(take(field::kX, encoding));
+  parts.x = take(field::kX, encoding);
   parts.immediate = take(field::kImmediate, encoding);
   return parts;
 }

@@ -12,6 +12,8 @@
 #include <iterator>
 #include <string_view>
 
+#include "enum_array.hpp"
+
 namespace raypool {
 
 // The ALU types, a row each in the order of their numbers.
@@ -65,7 +67,7 @@ inline constexpr AluInfo kAluTable[] = {
 inline constexpr int kAluTypes = static_cast<int>(std::size(kAluTable));
 static_assert(kAluTypes <= 8, "the performance counters have room for eight ALU types");
 
-inline constexpr std::array<std::string_view, kAluTypes> kAluNames = {
+inline constexpr EnumArray<AluType, std::string_view, kAluTypes> kAluNames = {
 #define RAYPOOL_CORE(type, name, depth, ports, parameters, title) name,
 #define RAYPOOL_CLASS(type, name, depth, parameters, title) name,
     RAYPOOL_ALU_TYPES(RAYPOOL_CORE, RAYPOOL_CLASS)

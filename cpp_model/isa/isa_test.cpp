@@ -43,7 +43,7 @@ uint64_t random_instruction(const InstructionInfo& info, std::mt19937_64& random
   parts.info = &info;
   if (any) return (random() & ((uint64_t{1} << field::kOperation.lsb) - 1)) | encode(parts);
   const auto below = [&](uint32_t limit) { return static_cast<uint32_t>(random() % limit); };
-  parts.guard = static_cast<uint8_t>(below(16));
+  parts.guard = below(16);
   parts.guard_negated = below(2) != 0;
   for (const Operand operand : info.operands) {
     switch (operand) {
@@ -51,21 +51,21 @@ uint64_t random_instruction(const InstructionInfo& info, std::mt19937_64& random
         break;
       case Operand::Rd:
       case Operand::Pd:
-        parts.rd = static_cast<uint8_t>(below(16));
+        parts.rd = below(16);
         break;
       case Operand::Ra:
-        parts.ra = static_cast<uint8_t>(below(16));
+        parts.ra = below(16);
         break;
       case Operand::Rb:
       case Operand::Pb:
-        parts.rb = static_cast<uint8_t>(below(16));
+        parts.rb = below(16);
         break;
       case Operand::Rc:
       case Operand::Px:
-        parts.x = static_cast<uint8_t>(below(16));
+        parts.x = below(16);
         break;
       case Operand::Word:
-        parts.x = static_cast<uint8_t>(below(21));
+        parts.x = below(21);
         break;
       case Operand::Argument:
         parts.immediate = below(32);
@@ -79,10 +79,10 @@ uint64_t random_instruction(const InstructionInfo& info, std::mt19937_64& random
         if (parts.b_is_immediate)
           parts.immediate = below(2) != 0 ? static_cast<uint32_t>(random()) : below(200) - 100;
         else
-          parts.rb = static_cast<uint8_t>(below(16));
+          parts.rb = below(16);
         break;
       case Operand::Address:
-        parts.ra = static_cast<uint8_t>(below(16));
+        parts.ra = below(16);
         parts.immediate = below(2) != 0 ? static_cast<uint32_t>(random()) : below(200) - 100;
         break;
     }

@@ -50,8 +50,7 @@ std::string labels(Wanted wanted) {
     }
     if (line.empty()) continue;
     // The comma that parts this type's labels from those before it opens the line: a comment ends it.
-    text += fmt::format("        // {}:{}\n        {}{}\n", kAluNames[static_cast<size_t>(type)], names, text.empty() ? "" : ", ",
-                        line);
+    text += fmt::format("        // {}:{}\n        {}{}\n", kAluNames[type], names, text.empty() ? "" : ", ", line);
   }
   return text;
 }

@@ -28,7 +28,7 @@ class InterferenceGraph {
       const Effects effect = effects(op);
       const int defined = predicates ? effect.predicate_defined : effect.register_defined;
       const auto mark = [&](int number) {
-        if (number != kNothing) used_[static_cast<size_t>(number)] = true;
+        if (number != kNothing) used_[number] = true;
       };
       if (predicates)
         std::for_each(std::begin(effect.predicate_uses), std::end(effect.predicate_uses), mark);
@@ -71,9 +71,9 @@ class InterferenceGraph {
     }
     // Take away nodes that are sure to find a place; if there is none, the one with the most neighbours, and hope.
     std::vector<int> order;
-    std::vector<int> degree(static_cast<size_t>(size_), 0);
+    std::vector<int> degree(size_, 0);
     for (const int node : nodes) degree[at(node)] = neighbours_[at(node)].count();
-    std::vector<bool> removed(static_cast<size_t>(size_), false);
+    std::vector<bool> removed(size_, false);
     while (order.size() < nodes.size()) {
       int best = kNothing;
       // Smaller is better: sure ones first, of these those with few neighbours; else those with many.
@@ -87,7 +87,7 @@ class InterferenceGraph {
       order.push_back(best);
       neighbours_[at(best)].for_each([&](int other) { --degree[at(other)]; });
     }
-    std::vector<int> places_of(static_cast<size_t>(size_), kNothing);
+    std::vector<int> places_of(size_, kNothing);
     for (auto node = order.rbegin(); node != order.rend(); ++node) {
       uint32_t taken = 0;
       neighbours_[at(*node)].for_each([&](int other) {
@@ -101,7 +101,7 @@ class InterferenceGraph {
       }
       places_of[at(*node)] = place;
     }
-    colours.assign(static_cast<size_t>(size_), kNothing);
+    colours.assign(size_, kNothing);
     for (int i = 0; i < size_; ++i) {
       if (used_[at(i)]) colours[at(i)] = places_of[at(find(i))];
     }

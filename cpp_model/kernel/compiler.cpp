@@ -12,8 +12,8 @@ constexpr size_t kLongestProgram = 65535;
 
 /// The instruction with machine registers; label targets are not filled in.
 Instruction with_places(const Op& op, const Allocation& places) {
-  const auto reg = [&](int number) { return static_cast<uint8_t>(places.registers[static_cast<size_t>(number)]); };
-  const auto predicate = [&](int number) { return static_cast<uint8_t>(places.predicates[static_cast<size_t>(number)]); };
+  const auto reg = [&](int number) { return static_cast<uint8_t>(places.registers[number]); };
+  const auto predicate = [&](int number) { return static_cast<uint8_t>(places.predicates[number]); };
   Instruction parts;
   parts.info = op.info;
   parts.guard = predicate(op.guard.predicate);
@@ -74,10 +74,10 @@ void compile(Function function, Program& program) {
   const auto entry = static_cast<uint32_t>(program.code.size());
   std::vector<Instruction> code;
   std::vector<std::pair<size_t, int>> jumps;  // instruction, label
-  std::vector<uint32_t> label_at(static_cast<size_t>(function.labels), 0);
+  std::vector<uint32_t> label_at(function.labels, 0);
   for (const Op& op : function.ops) {
     if (op.kind != Op::Kind::Instruction) {
-      label_at[static_cast<size_t>(op.label)] = entry + static_cast<uint32_t>(code.size());
+      label_at[op.label] = entry + static_cast<uint32_t>(code.size());
       continue;
     }
     const Instruction parts = with_places(op, places);
@@ -85,7 +85,7 @@ void compile(Function function, Program& program) {
     if (op.label != kNothing) jumps.emplace_back(code.size(), op.label);
     code.push_back(parts);
   }
-  for (const auto& [index, label] : jumps) code[index].immediate = label_at[static_cast<size_t>(label)];
+  for (const auto& [index, label] : jumps) code[index].immediate = label_at[label];
 
   if (program.code.size() + code.size() > kLongestProgram) {
     throw InputError(

@@ -2,6 +2,7 @@
 // number.
 #pragma once
 
+#include "enum_array.hpp"
 #include "isa/program.hpp"
 #include "kernel/kernels.hpp"
 
@@ -11,7 +12,7 @@ enum class ComputeKernel : uint8_t {
   Saxpy = 0,   ///< y[i] = a * x[i] + y[i] for i = 0 .. n-1
   Matmul = 1,  ///< c = a * b, matrices of n x n floats by rows; sums run over k = 0 .. n-1 in this order, from 0
 };
-inline constexpr std::array<std::string_view, 2> kComputeKernelNames = {"saxpy", "matmul"};
+inline constexpr EnumArray<ComputeKernel, std::string_view, 2> kComputeKernelNames = {"saxpy", "matmul"};
 
 /// Argument words. Addresses are of bytes, multiples of 4.
 namespace saxpy_argument {

@@ -48,7 +48,7 @@ InstructionCounts count_instructions(const Program& program, const std::string& 
   InstructionCounts counts{};
   for (const uint64_t encoding : extract_kernel(program, name).code) {
     const Instruction parts = unpack(encoding);
-    if (parts.info != nullptr) ++counts[static_cast<size_t>(parts.info->alu())];
+    if (parts.info != nullptr) ++counts[parts.info->alu()];
   }
   return counts;
 }

@@ -1,16 +1,16 @@
 // What a program's kernels consist of.
 #pragma once
 
-#include <array>
 #include <string>
 
+#include "enum_array.hpp"
 #include "isa/program.hpp"
 #include "kernel/kernels.hpp"
 
 namespace raypool {
 
 /// Instructions of a kernel by ALU type, index = AluType.
-using InstructionCounts = std::array<int, kAluTypes>;
+using InstructionCounts = EnumArray<AluType, int, kAluTypes>;
 
 /// A kernel's instructions: from its entry to the next entry. Throws InputError, with the names there are, if the program has no
 /// such kernel.

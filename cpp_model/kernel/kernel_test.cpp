@@ -204,7 +204,7 @@ TEST(KernelLanguage, SixteenValuesAtOnceFit) {
     values.reserve(32);
     for (int i = 0; i < count; ++i) values.push_back(k.float_word(i % 12) * static_cast<float>(i));
     k.ray_out();
-    for (int i = 0; i < count; ++i) k.set_word(i % 12, values[static_cast<size_t>(i)]);
+    for (int i = 0; i < count; ++i) k.set_word(i % 12, values[i]);
   };
   EXPECT_EQ(error_of([&](RecordedKernel& k) { body(k, 16); }), "no error");
   EXPECT_NE(error_of([&](RecordedKernel& k) { body(k, 17); }), "no error");
@@ -219,7 +219,7 @@ TEST(KernelLanguage, TooManyValuesAreReportedWithKernelAndLine) {
     for (int i = 0; i < 5; ++i) values.push_back(k.float_argument(i) + values[0]);
     line = __LINE__ - 1;
     k.ray_out();
-    for (int i = 0; i < 17; ++i) k.set_word(i % 12, values[static_cast<size_t>(i)]);
+    for (int i = 0; i < 17; ++i) k.set_word(i % 12, values[i]);
   });
   EXPECT_EQ(error,
             here(line) +
@@ -236,7 +236,7 @@ TEST(KernelLanguage, TooManyConditionsAreReportedWithKernelAndLine) {
       conditions.push_back(x == i);
       line = __LINE__ - 1;
     }
-    for (int i = 0; i < count; ++i) k.set_word(1, select(conditions[static_cast<size_t>(i)], Int(i), k.int_word(1)));
+    for (int i = 0; i < count; ++i) k.set_word(1, select(conditions[i], Int(i), k.int_word(1)));
   };
   EXPECT_EQ(error_of([&](RecordedKernel& k) { body(k, 15); }), "no error");
   EXPECT_EQ(error_of([&](RecordedKernel& k) { body(k, 16); }),

@@ -35,7 +35,7 @@ void run_in_mode(RayKernel which, NativeThread& thread) {
   }
 }
 
-std::string name_of(RayKernel which) { return std::string(kRayKernelNames[static_cast<size_t>(which)]); }
+std::string name_of(RayKernel which) { return std::string(kRayKernelNames[which]); }
 
 }  // namespace
 

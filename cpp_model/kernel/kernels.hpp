@@ -10,6 +10,7 @@
 
 #include "arith/arith.hpp"
 #include "config/configuration.hpp"
+#include "enum_array.hpp"
 #include "isa/isa.hpp"
 #include "isa/program.hpp"
 #include "machine/compute_unit.hpp"
@@ -24,8 +25,8 @@ enum class RayKernel : uint8_t {
   Shade = 3,                ///< shadow intersection -> contribution to the frame buffer
 };
 inline constexpr int kRayKernels = 4;
-inline constexpr std::array<std::string_view, kRayKernels> kRayKernelNames = {"cast_eye", "cast_secondary",
-                                                                              "cast_secondary_direct", "shade"};
+inline constexpr EnumArray<RayKernel, std::string_view, kRayKernels> kRayKernelNames = {"cast_eye", "cast_secondary",
+                                                                                        "cast_secondary_direct", "shade"};
 
 /// What normal intersections are given to: the kernel without reflections at depth 1, and wherever there are none to be seen.
 constexpr RayKernel secondary_kernel(int depth, bool reflections) {

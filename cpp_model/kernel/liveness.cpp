@@ -6,23 +6,23 @@ namespace {
 /// Ops that may follow each op.
 std::vector<std::vector<size_t>> find_successors(const Function& function) {
   const std::vector<Op>& ops = function.ops;
-  std::vector<size_t> label_at(static_cast<size_t>(function.labels), 0);
-  std::vector<size_t> loop_at(static_cast<size_t>(function.labels), 0);
+  std::vector<size_t> label_at(function.labels, 0);
+  std::vector<size_t> loop_at(function.labels, 0);
   for (size_t i = 0; i < ops.size(); ++i) {
     if (ops[i].kind != Op::Kind::Instruction)
-      label_at[static_cast<size_t>(ops[i].label)] = i;
+      label_at[ops[i].label] = i;
     else if (is(ops[i], Opcode::Loop))
-      loop_at[static_cast<size_t>(ops[i].label)] = i;
+      loop_at[ops[i].label] = i;
   }
   std::vector<std::vector<size_t>> successors(ops.size());
   for (size_t i = 0; i < ops.size(); ++i) {
     const Op& op = ops[i];
     if (op.kind == Op::Kind::LoopEnd) {
-      successors[i] = {loop_at[static_cast<size_t>(op.label)]};  // the loop runs again and decides
+      successors[i] = {loop_at[op.label]};  // the loop runs again and decides
     } else if (is(op, Opcode::Loop)) {
-      successors[i] = {i + 1, label_at[static_cast<size_t>(op.label)] + 1};
+      successors[i] = {i + 1, label_at[op.label] + 1};
     } else if (is(op, Opcode::Jnone) || is(op, Opcode::Jany)) {
-      successors[i] = {i + 1, label_at[static_cast<size_t>(op.label)]};
+      successors[i] = {i + 1, label_at[op.label]};
     } else if (!is(op, Opcode::Exit)) {
       successors[i] = {i + 1};
     }

@@ -108,8 +108,8 @@ class NativeKernel {
   Int block() const { return thread_.block; }
   Int threads() const { return thread_.threads; }
   Int blocks() const { return thread_.blocks; }
-  Int int_argument(int number) const { return (*thread_.arguments)[static_cast<size_t>(number)]; }
-  Float float_argument(int number) const { return Float::of_bits((*thread_.arguments)[static_cast<size_t>(number)]); }
+  Int int_argument(int number) const { return (*thread_.arguments)[number]; }
+  Float float_argument(int number) const { return Float::of_bits((*thread_.arguments)[number]); }
 
   Int load_int(Int address, int offset = 0) const { return thread_.memory->load(address.bits + static_cast<uint32_t>(offset)); }
   Float load_float(Int address, int offset = 0) const { return Float::of_bits(load_int(address, offset).bits); }
@@ -119,10 +119,10 @@ class NativeKernel {
   void store(Int address, int offset, Float value) { store(address, offset, as_int(value)); }
 
   void ray_in() { words_ = thread_.input; }
-  Int int_word(int number) const { return words_[static_cast<size_t>(number)]; }
-  Float float_word(int number) const { return Float::of_bits(words_[static_cast<size_t>(number)]); }
-  void set_word(int number, Int value) { words_[static_cast<size_t>(number)] = value.bits; }
-  void set_word(int number, Float value) { words_[static_cast<size_t>(number)] = value.bits; }
+  Int int_word(int number) const { return words_[number]; }
+  Float float_word(int number) const { return Float::of_bits(words_[number]); }
+  void set_word(int number, Int value) { words_[number] = value.bits; }
+  void set_word(int number, Float value) { words_[number] = value.bits; }
   void ray_out() {
     Ray ray;
     std::copy_n(words_.begin(), ray.size(), ray.begin());

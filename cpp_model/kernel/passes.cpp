@@ -10,7 +10,7 @@ namespace {
 
 /// For each virtual register (or predicate) its only defining op, kNothing if there are several or none.
 std::vector<int> find_single_definitions(const Function& function, bool predicates) {
-  std::vector<int> definitions(static_cast<size_t>(predicates ? function.predicates : function.registers), kNothing);
+  std::vector<int> definitions(predicates ? function.predicates : function.registers, kNothing);
   std::vector<bool> several(definitions.size(), false);
   for (size_t i = 0; i < function.ops.size(); ++i) {
     const Effects effect = effects(function.ops[i]);
@@ -106,8 +106,8 @@ void fold_constants(Function& function) {
     changed = false;
     const std::vector<int> definitions = find_single_definitions(function, false);
     const auto constant = [&](int number) -> std::optional<uint32_t> {
-      if (number == kNothing || definitions[static_cast<size_t>(number)] == kNothing) return std::nullopt;
-      const Op& op = function.ops[static_cast<size_t>(definitions[static_cast<size_t>(number)])];
+      if (number == kNothing || definitions[number] == kNothing) return std::nullopt;
+      const Op& op = function.ops[definitions[number]];
       if (!is(op, Opcode::Mov) || !op.b_is_immediate || !op.fresh) return std::nullopt;
       return op.immediate;
     };
@@ -136,13 +136,13 @@ void fold_addresses(Function& function) {
     const std::vector<int> definitions = find_single_definitions(function, false);
     for (Op& op : function.ops) {
       if (op.kind != Op::Kind::Instruction || !has_operand(*op.info, Operand::Address)) continue;
-      const int sum = definitions[static_cast<size_t>(op.ra)];
+      const int sum = definitions[op.ra];
       if (sum == kNothing) continue;
-      const Op& add = function.ops[static_cast<size_t>(sum)];
+      const Op& add = function.ops[sum];
       if (!is(add, Opcode::Iadd) || !add.b_is_immediate || !add.fresh) continue;
       // The base must hold the same value at the access as at the addition: it is written once, before both.
-      const int base = definitions[static_cast<size_t>(add.ra)];
-      if (base == kNothing || !function.ops[static_cast<size_t>(base)].fresh) continue;
+      const int base = definitions[add.ra];
+      if (base == kNothing || !function.ops[base].fresh) continue;
       op.ra = add.ra;
       op.immediate += add.immediate;
       changed = true;
@@ -153,32 +153,32 @@ void fold_addresses(Function& function) {
 void join_conditions(Function& function) {
   // c = a and (x < y): the compare, guarded by a, gives c at once, since a compare's result is ANDed with its mask.
   const std::vector<int> definitions = find_single_definitions(function, true);
-  std::vector<int> uses(static_cast<size_t>(function.predicates), 0);
+  std::vector<int> uses(function.predicates, 0);
   for (const Op& op : function.ops) {
     const Effects effect = effects(op);
     for (const int used : effect.predicate_uses) {
-      if (used != kNothing) ++uses[static_cast<size_t>(used)];
+      if (used != kNothing) ++uses[used];
     }
   }
   std::vector<size_t> removed;
   for (size_t i = 0; i < function.ops.size(); ++i) {
     const Op& op = function.ops[i];
     if (!is(op, Opcode::Pand) || op.px == op.rb || op.px == 0 || op.rb == 0) continue;
-    const int first = definitions[static_cast<size_t>(op.px)];
-    const int second = definitions[static_cast<size_t>(op.rb)];
+    const int first = definitions[op.px];
+    const int second = definitions[op.rb];
     if (first == kNothing || second == kNothing) continue;
     // Either operand may be the compare, if the other one is there before it.
     const int late = std::max(first, second);
     const int early_predicate = late == second ? op.px : op.rb;
-    const Op& early = function.ops[static_cast<size_t>(std::min(first, second))];
-    Op& compare = function.ops[static_cast<size_t>(late)];
+    const Op& early = function.ops[std::min(first, second)];
+    Op& compare = function.ops[late];
     const bool is_compare = has_operand(*compare.info, Operand::Ra);
-    if (!is_compare || !early.fresh || !compare.fresh || uses[static_cast<size_t>(compare.rd)] != 1) continue;
+    if (!is_compare || !early.fresh || !compare.fresh || uses[compare.rd] != 1) continue;
     if (!(compare.guard == op.guard) || !(early.guard == op.guard)) continue;
     // All three in one straight piece of code, in which neither the result nor the mask is written otherwise.
     bool straight = true;
     for (int k = late + 1; k < static_cast<int>(i) && straight; ++k) {
-      const Op& between = function.ops[static_cast<size_t>(k)];
+      const Op& between = function.ops[k];
       const Effects effect = effects(between);
       straight = !ends_block(between) && effect.predicate_defined != op.rd &&
                  (effect.predicate_defined == kNothing || effect.predicate_defined != op.guard.predicate);
@@ -201,7 +201,7 @@ void sink_leaves(Function& function) {
   // From the end, so that a leaf does not stop at one that moves on.
   for (size_t i = function.ops.size(); i-- > 0;) {
     const Op leaf = function.ops[i];
-    if (!is_leaf(leaf) || definitions[static_cast<size_t>(leaf.rd)] == kNothing) continue;
+    if (!is_leaf(leaf) || definitions[leaf.rd] == kNothing) continue;
     size_t place = i + 1;
     while (place < function.ops.size() && !blocks_leaf(leaf, function.ops[place])) ++place;
     const auto begin = function.ops.begin();

@@ -69,7 +69,7 @@ class RandomKernel {
     const Float& f = pick(random, floats);
     const Bool& c = bools[below(random, static_cast<uint32_t>(bools.size()))];
     const int literal = static_cast<int>(below(random, 40)) - 20;
-    const int kind = static_cast<int>(below(random, 24));
+    const int kind = below(random, 24);
     switch (kind) {
       case 0:
         return a + b;
@@ -129,7 +129,7 @@ class RandomKernel {
     const Int& i = pick(random, ints);
     const Bool& c = bools[below(random, static_cast<uint32_t>(bools.size()))];
     const float literal = static_cast<float>(below(random, 64)) * 0.25f - 8.0f;
-    const int kind = static_cast<int>(below(random, 20));
+    const int kind = below(random, 20);
     switch (kind) {
       case 0:
         return a + b;
@@ -229,7 +229,7 @@ class RandomKernel {
 
   void statement(Random& random, std::vector<Int>& ints, std::vector<Float>& floats, std::vector<Bool>& bools, int depth) {
     const uint32_t kind = below(random, depth > 0 ? 14 : 9);
-    const uint32_t seed = static_cast<uint32_t>(random());
+    const uint32_t seed = random();
     const size_t target = below(random, 60);
     if (kind < 3) {
       ints[target % ints.size()] = int_expression(random, ints, floats, bools);

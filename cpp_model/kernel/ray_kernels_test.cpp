@@ -30,14 +30,13 @@ double length(Vec a) { return std::sqrt(dot(a, a)); }
 
 template <typename Words>
 Vec get(const Words& words, int number) {
-  return {as_float(words[static_cast<size_t>(number)]), as_float(words[static_cast<size_t>(number) + 1]),
-          as_float(words[static_cast<size_t>(number) + 2])};
+  return {as_float(words[number]), as_float(words[number + 1]), as_float(words[number + 2])};
 }
 template <typename Words>
 void put(Words& words, int number, Vec v) {
-  words[static_cast<size_t>(number)] = as_bits(static_cast<float>(v.x));
-  words[static_cast<size_t>(number) + 1] = as_bits(static_cast<float>(v.y));
-  words[static_cast<size_t>(number) + 2] = as_bits(static_cast<float>(v.z));
+  words[number] = as_bits(static_cast<float>(v.x));
+  words[number + 1] = as_bits(static_cast<float>(v.y));
+  words[number + 2] = as_bits(static_cast<float>(v.z));
 }
 void expect_near(Vec a, Vec b, double tolerance, const char* what) {
   EXPECT_LT(length(a - b), tolerance * (1 + length(b))) << what;
@@ -211,7 +210,7 @@ TEST(RayKernels, LightBehindOrOnTheSurfaceContributesNothing) {
     put(test.arguments, argument::kLight, light);
     run_native(RayKernel::CastSecondaryDirect, test.thread);
     ASSERT_EQ(test.thread.rays.size(), 1u) << "a shadow ray is always cast";
-    for (int i = 0; i < 3; ++i) EXPECT_EQ(test.thread.rays[0][static_cast<size_t>(word::kColor + i)], 0u) << on_surface;
+    for (int i = 0; i < 3; ++i) EXPECT_EQ(test.thread.rays[0][word::kColor + i], 0u) << on_surface;
   }
 }
 
@@ -252,7 +251,7 @@ TEST(RayKernels, MachineCodeAgreesWithNativeInEveryMode) {
           // Also bit patterns that no renderer would send.
           if (random() % 4 == 0) machine.input[lane][random() % 18] = static_cast<uint32_t>(random());
         }
-        const std::string name(kRayKernelNames[static_cast<size_t>(which)]);
+        const std::string name(kRayKernelNames[which]);
         machine.run(ray_kernel_program(), ray_kernel_program().entries.at(name));
         for (uint32_t lane = 0; lane < test::Interpreter::kLanes; ++lane) {
           NativeThread thread;

@@ -38,7 +38,7 @@ void RecordedKernel::store_number(const Int& address, int offset, int value, con
 int RecordedKernel::word(int number, const Location& where) {
   check("ray word", number, kIntersectionWords, where);
   const int rd = recorder_.emit_value(Opcode::Rld, where);
-  recorder_.last_op().word = static_cast<uint8_t>(number);
+  recorder_.last_op().word = number;
   return rd;
 }
 
@@ -46,7 +46,7 @@ void RecordedKernel::write_word(int number, int value, const Location& where) {
   check("ray word", number, kIntersectionWords, where);
   Op& op = recorder_.emit(Opcode::Rst, where);
   op.rb = value;
-  op.word = static_cast<uint8_t>(number);
+  op.word = number;
 }
 
 }  // namespace raypool::kernel

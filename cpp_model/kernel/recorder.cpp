@@ -118,7 +118,7 @@ void Recorder::assign_register(int variable, int source, bool temporary) {
   // is left.
   Op& op = function_.ops.back();
   op.rd = variable;
-  op.fresh = register_masks_[static_cast<size_t>(variable)] == guard_;
+  op.fresh = register_masks_[variable] == guard_;
 }
 
 void Recorder::check_unlocked(int predicate, const Location& where) const {
@@ -152,7 +152,7 @@ int Recorder::materialise(const Condition& condition) {
 }
 
 Guard Recorder::mask_for(const Condition& condition) {
-  const bool inside_mask = predicate_masks_[static_cast<size_t>(condition.predicate)] == guard_;
+  const bool inside_mask = predicate_masks_[condition.predicate] == guard_;
   if (guard_.all() || (inside_mask && !condition.negated)) return {condition.predicate, condition.negated};
   return {materialise(condition), false};
 }
@@ -211,7 +211,7 @@ void Recorder::end_if() {
 
 void Recorder::begin_loop(int condition, const Location& where) {
   // The loop's predicate shrinks as threads leave; outside the mask it has to be 0 from the start.
-  if (!(predicate_masks_[static_cast<size_t>(condition)] == guard_)) condition = materialise({condition, false, where});
+  if (!(predicate_masks_[condition] == guard_)) condition = materialise({condition, false, where});
   Block block;
   block.outer = guard_;
   block.locked = condition;

@@ -91,7 +91,7 @@ class Interpreter {
     const uint32_t b = op.b_is_immediate ? op.immediate : reg[op.rb];
     const auto sa = static_cast<int32_t>(a);
     const auto sb = static_cast<int32_t>(b);
-    const auto predicate = [&](int number) { return (predicates_[static_cast<size_t>(number)] >> lane & 1) != 0; };
+    const auto predicate = [&](int number) { return (predicates_[number] >> lane & 1) != 0; };
     const bool px = predicate(op.x & 15);
     if (opcode == Opcode::Ieq) return a == b;
     if (opcode == Opcode::Ine) return a != b;

@@ -37,7 +37,7 @@ int run(const char* library, uint64_t latency) {
   unit->reset(static_cast<uint32_t>(program.code.size()), memory.size());
   unit->set_argument(0, kX);
   unit->set_argument(1, kY);
-  const uint32_t threads = static_cast<uint32_t>(configuration.contents());
+  const uint32_t threads = configuration.contents();
   const uint64_t cycles = Chip(*unit, memory, latency).run(program.entries.at("roots"), threads, kElements / threads);
 
   int wrong = 0;

@@ -195,7 +195,7 @@ void print_words(const Memory& memory, const PrintRange& range) {
 }
 
 void print_figures(const ProgramResult& result, const Configuration& configuration) {
-  const auto count = [&](int number) { return result.counters[static_cast<size_t>(number)]; };
+  const auto count = [&](int number) { return result.counters[number]; };
   if (result.timed) fmt::print("  {} cycles\n", result.cycles);
   fmt::print("  {} warp instructions, {} thread instructions\n", count(counter::kInstructions),
              count(counter::kThreadInstructions));
@@ -203,9 +203,8 @@ void print_figures(const ProgramResult& result, const Configuration& configurati
   const auto busy = static_cast<double>(std::max<uint64_t>(1, count(counter::kBusyCycles)));
   fmt::print("  ALU   utilisation  waiting      tasks\n");
   for (int i = 0; i < kAluTypes; ++i) {
-    const double unused =
-        static_cast<double>(count(counter::kUnused + i)) / (busy * configuration.alus[static_cast<size_t>(i)].count);
-    fmt::print("    {} {:>11.1f}% {:>8.2f} {:>10}\n", kAluNames[static_cast<size_t>(i)], 100 * (1 - unused),
+    const double unused = static_cast<double>(count(counter::kUnused + i)) / (busy * configuration.alus[i].count);
+    fmt::print("    {} {:>11.1f}% {:>8.2f} {:>10}\n", kAluNames[i], 100 * (1 - unused),
                static_cast<double>(count(counter::kWaiting + i)) / busy, count(counter::kIssued + i));
   }
   fmt::print("  data cache: {} hits, {} misses, {} stores; memory: {} lines read, {} quadwords written\n",

@@ -74,7 +74,7 @@ class RandomHost {
 
   void begin(size_t kernel) {
     unit_.reset(told_length(program_), told_limit(program_));
-    for (int i = 0; i < kArguments; ++i) unit_.set_argument(i, arguments_[static_cast<size_t>(i)]);
+    for (int i = 0; i < kArguments; ++i) unit_.set_argument(i, arguments_[i]);
     launched_ = ended_ = rewritten_ = kernel;
     fault_cycles_ = 0;
     offered_ = false;

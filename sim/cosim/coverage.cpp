@@ -65,9 +65,9 @@ void Coverage::faulted(const std::vector<Fault>& faults) {
   for (const Fault& fault : faults) {
     if (winner == nullptr || winner->unit != fault.unit) {
       winner = &fault;
-      ++faults_[static_cast<size_t>(fault.code)];
+      ++faults_[fault.code];
     } else {
-      ++fault_pairs_[static_cast<size_t>(winner->code)][static_cast<size_t>(fault.code)][winner->warp < fault.warp ? 1 : 0];
+      ++fault_pairs_[winner->code][fault.code][winner->warp < fault.warp ? 1 : 0];
     }
   }
 }
@@ -114,7 +114,7 @@ void Coverage::retired(const RetireEvent& event) {
   ++rows_[row];
   if (event.mask == 0) ++empty_[row];
   if (event.mask != 0 && event.mask != full_) ++partial_[row];
-  if (warp.last_type >= 0) ++after_[static_cast<size_t>(warp.last_type)][type];
+  if (warp.last_type >= 0) ++after_[warp.last_type][type];
   if (warp.stack.empty()) warp.stack = {{event.pc, 0xffff}};
   if (warp.stack.size() < depths_.size()) ++depths_[warp.stack.size()];
   together(event, type);

@@ -11,6 +11,7 @@
 
 #include "cosim/cosim.hpp"
 #include "cosim/coverage_events.hpp"
+#include "enum_array.hpp"
 #include "isa/encoding.hpp"
 
 namespace raypool {
@@ -75,7 +76,7 @@ class Coverage : public RunObserver {
   };
 
   void fault_pairs(Group& group) const;
-  void hit(Event event, uint64_t times = 1) { events_[static_cast<size_t>(event)] += times; }
+  void hit(Event event, uint64_t times = 1) { events_[event] += times; }
   void retired(const RetireEvent& event);
   void together(const RetireEvent& event, size_t type);
   void control(Warp& warp, const RetireEvent& event, const Instruction& instruction);
@@ -100,13 +101,13 @@ class Coverage : public RunObserver {
   std::array<std::array<uint64_t, kAluTypes>, kAluTypes> after_{};     ///< [type][type of the warp's next instruction]
   std::array<std::array<uint64_t, kAluTypes>, kAluTypes> together_{};  ///< [lower type][higher type] in flight in one cycle
   std::vector<uint64_t> depths_;                                       ///< [entries on the PC stack]
-  std::array<uint64_t, kFaultCodes> faults_{};
+  EnumArray<FaultCode, uint64_t, kFaultCodes> faults_{};
   /// [code that wins][code that does not][the winner's is the lower warp] in one cycle
-  std::array<std::array<std::array<uint64_t, 2>, kFaultCodes>, kFaultCodes> fault_pairs_{};
+  EnumArray<FaultCode, EnumArray<FaultCode, std::array<uint64_t, 2>, kFaultCodes>, kFaultCodes> fault_pairs_{};
   std::array<uint64_t, kPredicates> left_set_{};         ///< [predicate] read, and the kernel before has left it set
   std::array<uint64_t, 32> load_bits_{}, store_bits_{};  ///< [address bit] of loads, of stores: set
   std::array<uint64_t, 16> pc_bits_{}, pc_twins_{};      ///< [bit] set; of a PC that differs from another one in it alone
-  std::array<uint64_t, kEvents> events_{};
+  EnumArray<Event, uint64_t, kEvents> events_{};
 
   // The program that runs.
   uint64_t now_ = 0;

@@ -174,7 +174,7 @@ Machine machine_of(const Row& row) {
   Machine machine;
   for (size_t factor = 0; factor < row.size(); ++factor) {
     const Factor& f = covering_factors()[factor];
-    f.set(machine, f.values[static_cast<size_t>(row[factor])]);
+    f.set(machine, f.values[row[factor]]);
   }
   return machine;
 }

@@ -71,7 +71,7 @@ class Checker {
  private:
   void reset() {
     core_.reset(told_length(program_), told_limit(program_));
-    for (int i = 0; i < kArguments; ++i) core_.set_argument(i, arguments_[static_cast<size_t>(i)]);
+    for (int i = 0; i < kArguments; ++i) core_.set_argument(i, arguments_[i]);
   }
 
   // All units are idle then, so what they have touched is forgotten.
@@ -118,8 +118,7 @@ class Checker {
 
   std::string read_words(uint32_t warp, int from, int to, uint32_t mask) const {
     for (int n = from; n < to && n < kIntersectionWords; ++n)
-      if ((mask & ~slices_[warp][static_cast<size_t>(n)]) != 0)
-        return fmt::format("word {} of the current slice is undefined", n);
+      if ((mask & ~slices_[warp][n]) != 0) return fmt::format("word {} of the current slice is undefined", n);
     return "";
   }
 

@@ -29,19 +29,19 @@ class ProgramEmitter {
   size_t emit(Opcode opcode, int rd = 0, int ra = 0, int rb = 0, int guard = 0) {
     Instruction i;
     i.info = &instruction(opcode);
-    i.rd = static_cast<uint8_t>(rd);
-    i.ra = static_cast<uint8_t>(ra);
-    i.rb = static_cast<uint8_t>(rb);
-    i.guard = static_cast<uint8_t>(guard);
+    i.rd = rd;
+    i.ra = ra;
+    i.rb = rb;
+    i.guard = guard;
     return emit(i);
   }
   size_t emit_immediate(Opcode opcode, int rd, int ra, uint32_t immediate, int guard = 0) {
     Instruction i;
     i.info = &instruction(opcode);
-    i.rd = static_cast<uint8_t>(rd);
-    i.ra = static_cast<uint8_t>(ra);
+    i.rd = rd;
+    i.ra = ra;
     i.immediate = immediate;
-    i.guard = static_cast<uint8_t>(guard);
+    i.guard = guard;
     i.b_is_immediate = has_operand(*i.info, Operand::B);
     return emit(i);
   }
@@ -49,15 +49,15 @@ class ProgramEmitter {
   size_t emit_word(Opcode opcode, int word, int rd = 0, int guard = 0) {
     Instruction i;
     i.info = &instruction(opcode);
-    i.x = static_cast<uint8_t>(word);
-    i.rd = static_cast<uint8_t>(rd);
-    i.guard = static_cast<uint8_t>(guard);
+    i.x = word;
+    i.rd = rd;
+    i.guard = guard;
     if (has_operand(*i.info, Operand::B)) {
       if (chance(2)) {
         i.b_is_immediate = true;
         i.immediate = value();
       } else {
-        i.rb = static_cast<uint8_t>(below(16));
+        i.rb = below(16);
       }
     }
     return emit(i);

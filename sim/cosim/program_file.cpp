@@ -2,9 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <array>
-
 #include "cosim/program_check.hpp"
+#include "enum_array.hpp"
 #include "files/input_file.hpp"
 #include "files/json_text.hpp"
 #include "isa/assembler.hpp"
@@ -17,7 +16,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr int kFormat = 1;
 constexpr int kFaultCodes = 8;
-constexpr std::array<std::string_view, 3> kImportNames = {"none", "normal", "shadow"};
+constexpr EnumArray<ImportKind, std::string_view, 3> kImportNames = {"none", "normal", "shadow"};
 
 template <typename Names>
 size_t number_of(const Names& names, const std::string& name) {
@@ -91,14 +90,14 @@ std::string to_json(const SavedProgram& saved) {
   json["restart"] = program.restart;
   for (const uint32_t argument : program.arguments) json["arguments"].push_back(hex(argument));
   for (size_t port = 0; port < kPorts; ++port)
-    json["stalls"][std::string(kPortNames[port])] = kStallStyleNames[static_cast<size_t>(program.stalls.styles[port])];
+    json["stalls"][std::string(kPortNames[port])] = kStallStyleNames[program.stalls.styles[port]];
   json["kernels"] = Json::array();
   for (const RandomProgram::Kernel& kernel : program.kernels) {
     json["kernels"].push_back({{"pc", kernel.pc},
                                {"threads", kernel.threads},
                                {"block", hex(kernel.block)},
                                {"blocks", hex(kernel.blocks)},
-                               {"import", kImportNames[static_cast<size_t>(kernel.import)]}});
+                               {"import", kImportNames[kernel.import]}});
     if (kernel.rewrite) json["kernels"].back()["rewrite"] = to_json(*kernel.rewrite);
   }
   json["code"] = Json::array();

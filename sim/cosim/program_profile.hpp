@@ -1,11 +1,11 @@
 // The mixes of random programs.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
 
+#include "enum_array.hpp"
 #include "isa/input_error.hpp"
 #include "isa/isa.hpp"
 
@@ -15,13 +15,13 @@ namespace raypool {
 struct ProgramProfile {
   std::string_view name;
   uint32_t plain, arithmetic, pairs, memory, ray, loop, jump, call, far, early_exit;  ///< kinds of statements
-  std::array<uint32_t, 7> types;  ///< of plain instructions: tid, brh, -, int, flt, slw, -
-  uint32_t guarded_percent;       ///< plain instructions with a guard
-  uint32_t length_percent;        ///< of the length asked for
+  EnumArray<AluType, uint32_t, 7> types;  ///< of plain instructions: tid, brh, -, int, flt, slw, -
+  uint32_t guarded_percent;               ///< plain instructions with a guard
+  uint32_t length_percent;                ///< of the length asked for
   uint32_t most_kernels;
 
   /// A type that the mixes do not list comes as often as flt.
-  uint32_t weight(size_t type) const { return type < types.size() ? types[type] : types[static_cast<size_t>(AluType::Flt)]; }
+  uint32_t weight(size_t type) const { return type < types.size() ? types[type] : types[AluType::Flt]; }
 };
 
 /// The mix whose programs find pairs of weighted operands (arith/test_operands.hpp) in memory.

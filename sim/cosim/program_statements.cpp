@@ -74,24 +74,23 @@ void ProgramStatements::plain(int a, int b, std::optional<size_t> type) {
   Instruction i;
   i.info = &plain_row(type);
   const InstructionInfo& info = *i.info;
-  if (percent(profile_.guarded_percent)) i.guard = static_cast<uint8_t>(any_predicate()), i.guard_negated = chance(2);
+  if (percent(profile_.guarded_percent)) i.guard = any_predicate(), i.guard_negated = chance(2);
   if (has_operand(info, Operand::Pd)) {
-    i.rd = static_cast<uint8_t>(free_predicate());
+    i.rd = free_predicate();
   } else {
     do {
-      i.rd = static_cast<uint8_t>(destination());
+      i.rd = destination();
     } while (i.rd == a || i.rd == b);
   }
-  if (has_operand(info, Operand::Ra)) i.ra = static_cast<uint8_t>(a >= 0 ? a : source());
+  if (has_operand(info, Operand::Ra)) i.ra = a >= 0 ? a : source();
   if (has_operand(info, Operand::B) && b < 0 && chance(2))
     i.b_is_immediate = true, i.immediate = value();
   else if (has_operand(info, Operand::B) || has_operand(info, Operand::Rb))
-    i.rb = static_cast<uint8_t>(b >= 0 ? b : source());
-  if (has_operand(info, Operand::Pb)) i.rb = static_cast<uint8_t>(any_predicate());
+    i.rb = b >= 0 ? b : source();
+  if (has_operand(info, Operand::Pb)) i.rb = any_predicate();
   // A third operand that meets the product of the two.
-  if (has_operand(info, Operand::Rc))
-    i.x = static_cast<uint8_t>(a >= 0 && chance(2) ? (chance(2) ? a : std::max(b, 0)) : source());
-  if (has_operand(info, Operand::Px)) i.x = static_cast<uint8_t>(any_predicate());
+  if (has_operand(info, Operand::Rc)) i.x = a >= 0 && chance(2) ? (chance(2) ? a : std::max(b, 0)) : source();
+  if (has_operand(info, Operand::Px)) i.x = any_predicate();
   if (has_operand(info, Operand::Argument)) i.immediate = below(kArguments);
   plain_at_.push_back(emit(i));
 }
@@ -117,12 +116,12 @@ void ProgramStatements::arithmetic() {
   // The product meets an addend that goes with it.
   Instruction i;
   i.info = &instruction(Opcode::Ffma);
-  do i.x = static_cast<uint8_t>(destination());
+  do i.x = destination();
   while (i.x == a || i.x == b);
   emit_immediate(Opcode::Mov, i.x, 0, operands_.third(first, second));
-  i.rd = static_cast<uint8_t>(destination());
-  i.ra = static_cast<uint8_t>(a);
-  i.rb = static_cast<uint8_t>(b);
+  i.rd = destination();
+  i.ra = a;
+  i.rb = b;
   emit(i);
 }
 
@@ -192,13 +191,13 @@ void ProgramStatements::address(bool own, uint32_t offset, uint32_t entries) {
 void ProgramStatements::access(bool store, uint32_t offset) {
   Instruction i;
   i.info = &instruction(store ? Opcode::St : Opcode::Ld);
-  if (chance(2)) i.guard = static_cast<uint8_t>(any_predicate()), i.guard_negated = chance(2);
+  if (chance(2)) i.guard = any_predicate(), i.guard_negated = chance(2);
   i.ra = kAddress;
   i.immediate = offset;
   if (store)
-    i.rb = static_cast<uint8_t>(source());
+    i.rb = source();
   else
-    i.rd = static_cast<uint8_t>(destination());
+    i.rd = destination();
   emit(i);
 }
 
@@ -298,7 +297,7 @@ void ProgramStatements::ray(bool top) {
 void ProgramStatements::rotate() {
   Instruction i;
   i.info = &instruction(chance(3) ? Opcode::Rfb : Opcode::Rout);
-  if (chance(2)) i.guard = static_cast<uint8_t>(any_predicate()), i.guard_negated = chance(2);
+  if (chance(2)) i.guard = any_predicate(), i.guard_negated = chance(2);
   emit(i);
   written_words_ = 0;
   if (!chance(4)) return;
@@ -337,7 +336,7 @@ void ProgramStatements::leave() {
   }
   Instruction i;
   i.info = &instruction(chance(2) ? Opcode::Jany : Opcode::Jnone);
-  i.guard = static_cast<uint8_t>(any_predicate());
+  i.guard = any_predicate();
   i.guard_negated = chance(2);
   if (frame.pad && chance(2)) i.immediate = *frame.pad;
   const size_t at = emit(i);
@@ -367,7 +366,7 @@ void ProgramStatements::jump(int loops, int entries) {
   if (!frames_.empty() && chance(2)) return leave();
   Instruction i;
   i.info = &instruction(chance(2) ? Opcode::Jany : Opcode::Jnone);
-  i.guard = static_cast<uint8_t>(any_predicate());
+  i.guard = any_predicate();
   i.guard_negated = chance(2);
   const size_t at = emit(i);
   const int skipped = 1 + static_cast<int>(below(4));

@@ -216,8 +216,8 @@ class Generator : public ProgramStatements {
     const int r = source();
     Instruction i;
     i.info = &instruction(Opcode::Ieq);
-    i.rd = static_cast<uint8_t>(last_or_any_predicate());
-    i.ra = i.rb = static_cast<uint8_t>(r);
+    i.rd = last_or_any_predicate();
+    i.ra = i.rb = r;
     emit(i);
   }
 
@@ -225,10 +225,10 @@ class Generator : public ProgramStatements {
   void read_predicate() {
     Instruction i;
     i.info = &instruction(chance(2) ? Opcode::Por : Opcode::Pxor);
-    i.rd = static_cast<uint8_t>(free_predicate());
-    i.x = static_cast<uint8_t>(last_or_any_predicate());
-    i.rb = static_cast<uint8_t>(last_or_any_predicate());
-    if (chance(2)) i.guard = static_cast<uint8_t>(last_or_any_predicate()), i.guard_negated = true;
+    i.rd = free_predicate();
+    i.x = last_or_any_predicate();
+    i.rb = last_or_any_predicate();
+    if (chance(2)) i.guard = last_or_any_predicate(), i.guard_negated = true;
     emit(i);
   }
 

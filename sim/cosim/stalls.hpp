@@ -7,6 +7,8 @@
 #include <string>
 #include <string_view>
 
+#include "enum_array.hpp"
+
 namespace raypool {
 
 enum class Port : uint8_t {
@@ -31,12 +33,13 @@ enum class StallStyle : uint8_t {
   Moods,   ///< each of the above for a while
 };
 inline constexpr int kStallStyles = 5;
-inline constexpr std::array<std::string_view, kStallStyles> kStallStyleNames = {"none", "light", "heavy", "bursts", "moods"};
+inline constexpr EnumArray<StallStyle, std::string_view, kStallStyles> kStallStyleNames = {"none", "light", "heavy", "bursts",
+                                                                                           "moods"};
 
 struct StallPlan {
-  std::array<StallStyle, kPorts> styles{};
-  StallStyle& operator[](Port port) { return styles[static_cast<size_t>(port)]; }
-  StallStyle operator[](Port port) const { return styles[static_cast<size_t>(port)]; }
+  EnumArray<Port, StallStyle, kPorts> styles{};
+  StallStyle& operator[](Port port) { return styles[port]; }
+  StallStyle operator[](Port port) const { return styles[port]; }
 };
 
 /// 64 well mixed bits of a seed and two numbers (splitmix64's finaliser).

@@ -84,7 +84,7 @@ std::string lane_table(const CycleUnit::Issue& issue, int lanes, const uint32_t*
   };
   end_line();
   for (int lane = 0; lane < lanes; ++lane) {
-    const size_t i = static_cast<size_t>(lane);
+    const size_t i = lane;
     const bool masked = issue.mask >> lane & 1;
     text += fmt::format("  {:>4}", lane);
     if (uses_a) column(word_text(issue.a[i]));

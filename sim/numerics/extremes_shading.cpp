@@ -51,7 +51,7 @@ Drawing shade_hit(const ExtremeMachine& machine, const Vec3& normal, float t, in
     if ((ray[word::kFlags] & kShadowFlag) != 0) return true;
     if ((ray[word::kFlags] & kDepthMask) != 1) return false;
     intersection[word::kDistance] = as_bits(t);
-    for (int axis = 0; axis < 3; ++axis) intersection[static_cast<size_t>(word::kNormal + axis)] = as_bits(normal[axis]);
+    for (int axis = 0; axis < 3; ++axis) intersection[word::kNormal + axis] = as_bits(normal[axis]);
     return true;
   };
   return machine.draw(frame);

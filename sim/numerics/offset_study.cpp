@@ -182,8 +182,7 @@ OffsetInstructions offset_instructions() {
   kernel::add_kernel(program, "integer", [](auto& k) { kernel_integer(k); });
   auto computed = [&](const char* name) {
     const InstructionCounts counts = count_instructions(program, name);
-    return counts[static_cast<size_t>(AluType::Int)] + counts[static_cast<size_t>(AluType::Flt)] +
-           counts[static_cast<size_t>(AluType::Brh)] - 1;
+    return counts[AluType::Int] + counts[AluType::Flt] + counts[AluType::Brh] - 1;
   };
   return {computed("in_use"), computed("integer")};
 }

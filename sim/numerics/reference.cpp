@@ -107,8 +107,7 @@ ReferenceHit ReferenceTracer::trace(const Vec3d& origin, const Vec3d& direction,
 
 ReferenceCamera::ReferenceCamera(const std::array<uint32_t, kArguments>& arguments) {
   auto get = [&](int first) {
-    return Vec3d{as_double(arguments[static_cast<size_t>(first)]), as_double(arguments[static_cast<size_t>(first) + 1]),
-                 as_double(arguments[static_cast<size_t>(first) + 2])};
+    return Vec3d{as_double(arguments[first]), as_double(arguments[first + 1]), as_double(arguments[first + 2])};
   };
   eye = get(argument::kEye);
   corner = get(argument::kCorner);

@@ -80,7 +80,7 @@ RecordedFrame record_frame(const TradeScene& scene, const arith::Mode& mode,
     if (which == RayKernel::Shade) {
       step.lit = true;
       for (int i = 0; i < 3; ++i) {
-        if (is_nan(input[static_cast<size_t>(word::kColor + i)])) recorded.nan_pixels[pixel] = true;
+        if (is_nan(input[word::kColor + i])) recorded.nan_pixels[pixel] = true;
       }
       return;
     }
@@ -88,7 +88,7 @@ RecordedFrame record_frame(const TradeScene& scene, const arith::Mode& mode,
     step.followed = true;
     for (const Ray& ray : thread.rays) {
       if ((ray[word::kFlags] & kShadowFlag) == 0) continue;
-      for (int i = 0; i < 3; ++i) step.facing |= positive(ray[static_cast<size_t>(word::kColor + i)]);
+      for (int i = 0; i < 3; ++i) step.facing |= positive(ray[word::kColor + i]);
       if ((ray[word::kFlags] & kDepthMask) == 1) recorded.shadow_rays[pixel] = ray;
     }
   };

@@ -217,7 +217,7 @@ class RtlUnit : public ComputeUnit {
   void read_unit_trace(uint32_t u) {
     const Vmultiprocessor& top = *top_;
     for (uint32_t valid = bits(top.retire_valid_o, u * warps_, warps_); valid != 0; valid &= valid - 1) {
-      const uint32_t warp = static_cast<uint32_t>(__builtin_ctz(valid));
+      const uint32_t warp = __builtin_ctz(valid);
       const uint32_t row = u * warps_ + warp;  // of the concatenated ports
       RetireEvent& event = trace_.retired.emplace_back();
       event.unit = u;

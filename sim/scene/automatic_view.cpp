@@ -40,7 +40,7 @@ Vec3d direction(const Axes& axes, int step, double slope) {
   constexpr std::array<double, 5> kSine = {0, 0.38268343236508977, 0.70710678118654752, 0.92387953251128674, 1};
   const auto sine = [&](int s) {
     const int k = (s % 16 + 16) % 16, half = k % 8;
-    const double value = kSine[static_cast<size_t>(half <= 4 ? half : 8 - half)];
+    const double value = kSine[half <= 4 ? half : 8 - half];
     return k < 8 ? value : -value;
   };
   return normalized(axes.right * sine(step) + axes.back * sine(step + 4) + axes.up * slope);

@@ -42,7 +42,7 @@ FrameBuffer::FrameBuffer(int width, int height) : width_(width), height_(height)
 }
 
 bool FrameBuffer::add(const FrameContribution& contribution) {
-  const int x = static_cast<int>(contribution.pixel & 0xffffu), y = static_cast<int>(contribution.pixel >> 16);
+  const int x = contribution.pixel & 0xffffu, y = contribution.pixel >> 16;
   if (x >= width_ || y >= height_) return false;
   for (size_t channel = 0; channel < 3; ++channel) {
     uint64_t& accumulator = accumulators_[index(x, y) + channel];

@@ -25,7 +25,7 @@ MeshBuilder::ProfilePoint curve_at(const std::vector<MeshBuilder::ProfilePoint>&
   const double place = s * last;
   const int i = std::min(static_cast<int>(place), last - 1);
   const double f = place - i;
-  auto at = [&](int k) { return points[static_cast<size_t>(std::clamp(k, 0, last))]; };
+  auto at = [&](int k) { return points[std::clamp(k, 0, last)]; };
   auto blend = [&](double a, double b, double c, double d) {
     return 0.5 * (2 * b + (c - a) * f + (2 * a - 5 * b + 4 * c - d) * f * f + (3 * b - a - 3 * c + d) * f * f * f);
   };
@@ -125,7 +125,7 @@ void MeshBuilder::surface(int nu, int nv, bool wrap_u, bool wrap_v, const std::f
 void MeshBuilder::lathe(const std::vector<ProfilePoint>& profile, int around) {
   const int steps = static_cast<int>(profile.size()) - 1;
   surface(around, steps, true, false, [&](double s, double t) {
-    const ProfilePoint& p = profile[static_cast<size_t>(std::lround(t * steps))];
+    const ProfilePoint& p = profile[std::lround(t * steps)];
     const double angle = -2 * kPi * s;
     return Vec3d{p.radius * std::cos(angle), p.height, p.radius * std::sin(angle)};
   });

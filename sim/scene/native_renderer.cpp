@@ -69,7 +69,7 @@ class Worker {
     } else {
       run_native(kernel, thread_);
     }
-    ++statistics.kernel_threads[static_cast<size_t>(kernel)];
+    ++statistics.kernel_threads[kernel];
     pending_.insert(pending_.end(), thread_.rays.begin(), thread_.rays.end());
     for (const FrameContribution& contribution : thread_.frame) statistics.contributions += frame.add(contribution);
   }
@@ -142,7 +142,7 @@ std::array<uint32_t, kArguments> camera_arguments(const Scene& scene, int width,
   std::array<uint32_t, kArguments> arguments{};
   auto put = [&](int first, const Vec3d& v) {
     const Vec3 f = v.as<float>();
-    for (int axis = 0; axis < 3; ++axis) arguments[static_cast<size_t>(first + axis)] = as_bits(f[axis]);
+    for (int axis = 0; axis < 3; ++axis) arguments[first + axis] = as_bits(f[axis]);
   };
   const Vec3d forward = normalized(scene.camera.direction.as<double>());
   const Vec3d right = normalized(cross(forward, scene.camera.up.as<double>()));

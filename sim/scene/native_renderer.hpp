@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 
+#include "enum_array.hpp"
 #include "kernel/kernels.hpp"
 #include "machine/memory.hpp"
 #include "scene/image.hpp"
@@ -52,9 +53,9 @@ struct NativeOptions {
 
 struct NativeStatistics {
   RayCounts ray_counts;
-  uint64_t dropped_rays = 0;                           ///< normal rays beyond the depth limit, not traced
-  uint64_t contributions = 0;                          ///< added to the frame buffer
-  std::array<uint64_t, kRayKernels> kernel_threads{};  ///< threads run of each kernel
+  uint64_t dropped_rays = 0;                                     ///< normal rays beyond the depth limit, not traced
+  uint64_t contributions = 0;                                    ///< added to the frame buffer
+  EnumArray<RayKernel, uint64_t, kRayKernels> kernel_threads{};  ///< threads run of each kernel
   TraversalCounts normal_visits, shadow_visits;
 
   uint64_t rays() const { return ray_counts.traced(); }

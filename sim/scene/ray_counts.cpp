@@ -10,7 +10,7 @@ namespace {
 /// throughput may still be multiplied with bright colours; only zero, negative or NaN is without effect for certain.
 bool weightless(const Ray& ray, bool shadow) {
   for (int channel = 0; channel < 3; ++channel) {
-    const float weight = as_float(ray[static_cast<size_t>(word::kColor + channel)]);
+    const float weight = as_float(ray[word::kColor + channel]);
     if (shadow ? to_fixed(weight) > 0 : weight > 0) return false;
   }
   return true;

@@ -16,7 +16,7 @@ Vec3 read3(const Words& words, int first) {
 }
 template <typename Words>
 void write3(Words& words, int first, const Vec3& v) {
-  for (int axis = 0; axis < 3; ++axis) words[static_cast<size_t>(first + axis)] = as_bits(v[axis]);
+  for (int axis = 0; axis < 3; ++axis) words[first + axis] = as_bits(v[axis]);
 }
 
 inline Vec3 load3(const Memory& memory, uint32_t address) {

@@ -15,7 +15,7 @@ Vec3d through(const std::vector<Vec3d>& points, double s) {
   const double place = std::clamp(s, 0.0, 1.0) * last;
   const int i = std::min(static_cast<int>(place), last - 1);
   const double f = place - i;
-  auto at = [&](int k) { return points[static_cast<size_t>(std::clamp(k, 0, last))]; };
+  auto at = [&](int k) { return points[std::clamp(k, 0, last)]; };
   const Vec3d a = at(i - 1), b = at(i), c = at(i + 1), d = at(i + 2);
   return (b * 2.0 + (c - a) * f + (a * 2.0 - b * 5.0 + c * 4.0 - d) * (f * f) + (b * 3.0 - a - c * 3.0 + d) * (f * f * f)) * 0.5;
 }

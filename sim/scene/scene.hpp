@@ -50,7 +50,7 @@ struct Scene {
   PointLight light;
   std::vector<std::string> warnings;  ///< a sentence each: what of a file could not be drawn as it is
 
-  const Vec3& corner(size_t triangle, int k) const { return vertices[triangles[triangle][static_cast<size_t>(k)]]; }
+  const Vec3& corner(size_t triangle, int k) const { return vertices[triangles[triangle][k]]; }
   /// Of the vertices that triangles use; both corners zero without triangles.
   Bounds bounds() const;
   /// Some triangle's material does.

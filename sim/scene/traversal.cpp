@@ -315,10 +315,7 @@ bool Traversal::nearest_of_all(const RayQuery& query, Hit& hit) const {
 }
 
 RayQuery to_query(const Ray& ray) {
-  auto vector = [&](int first) {
-    return Vec3{as_float(ray[static_cast<size_t>(first)]), as_float(ray[static_cast<size_t>(first) + 1]),
-                as_float(ray[static_cast<size_t>(first) + 2])};
-  };
+  auto vector = [&](int first) { return Vec3{as_float(ray[first]), as_float(ray[first + 1]), as_float(ray[first + 2])}; };
   return {vector(word::kOrigin), vector(word::kDirection), as_float(ray[word::kLimit])};
 }
 
@@ -339,7 +336,7 @@ bool Tracer::trace(const Ray& ray, Intersection& intersection, TraversalCounts* 
   intersection[word::kDistance] = as_bits(hit.t);
   intersection[word::kBarycentric] = as_bits(hit.u);
   intersection[word::kBarycentric + 1] = as_bits(hit.v);
-  for (int axis = 0; axis < 3; ++axis) intersection[static_cast<size_t>(word::kNormal + axis)] = as_bits(hit.normal[axis]);
+  for (int axis = 0; axis < 3; ++axis) intersection[word::kNormal + axis] = as_bits(hit.normal[axis]);
   intersection[word::kMaterial] = material_words_[hit.triangle];
   intersection[word::kTriangle] = hit.triangle;
   return true;

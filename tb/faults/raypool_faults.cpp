@@ -15,6 +15,7 @@
 #include <thread>
 #include <vector>
 
+#include "enum_array.hpp"
 #include "faulty/guilty.hpp"
 #include "faulty/judgements.hpp"
 #include "faulty/trials.hpp"
@@ -169,11 +170,11 @@ void count_outcome(const Outcome& outcome, Verdict verdict, Count& count) {
 std::string outcome_text(const Outcome& outcome, const std::vector<std::string>& named, Verdict verdict) {
   if (outcome.kind == Outcome::Kind::Survived) return fmt::format("SURVIVED {} programs", outcome.programs);
   if (outcome.kind == Outcome::Kind::Bench) return fmt::format("killed by {}: {}", outcome.by, outcome.text);
-  static const std::array<const char*, 4> kVerdicts = {"right", "its parent", "WRONG", "NONE"};
+  static const EnumArray<Verdict, const char*, 4> kVerdicts = {"right", "its parent", "WRONG", "NONE"};
   std::string where;
   for (const std::string& name : named) where += (where.empty() ? "" : ", ") + name;
   return fmt::format("killed on {} after {} programs ({}); look at: {} ({})", outcome.by, outcome.programs, name_of(outcome.kind),
-                     where.empty() ? "-" : where, kVerdicts[static_cast<size_t>(verdict)]);
+                     where.empty() ? "-" : where, kVerdicts[verdict]);
 }
 
 int report(const Options& options, const Hierarchy& hierarchy, const std::vector<Fault>& faults,

@@ -1,13 +1,13 @@
 // Would a faulty unit be noticed? One trial runs one fault on random programs in lockstep until something differs.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
 
 #include "config/configuration.hpp"
 #include "cosim/random_program.hpp"
+#include "enum_array.hpp"
 
 namespace raypool::faulty {
 
@@ -19,9 +19,9 @@ struct Outcome {
   std::string by;         ///< what noticed it: a machine, or a bench
   std::string text;       ///< the report
 };
-inline constexpr std::array<std::string_view, 6> kKindNames = {"survived",          "difference", "hang", "fault or cycle limit",
-                                                               "simulator stopped", "bench"};
-inline std::string_view name_of(Outcome::Kind kind) { return kKindNames[static_cast<size_t>(kind)]; }
+inline constexpr EnumArray<Outcome::Kind, std::string_view, 6> kKindNames = {
+    "survived", "difference", "hang", "fault or cycle limit", "simulator stopped", "bench"};
+inline std::string_view name_of(Outcome::Kind kind) { return kKindNames[kind]; }
 
 /// Verilated units, of which an environment variable selects the fault.
 struct Machine {

@@ -185,7 +185,7 @@ int run(int argc, char** argv) {
   if (!options.only.empty()) {
     std::vector<Mutant> chosen;
     for (const int number : options.only)
-      if (number >= 1 && number <= static_cast<int>(mutants.size())) chosen.push_back(mutants[static_cast<size_t>(number) - 1]);
+      if (number >= 1 && number <= static_cast<int>(mutants.size())) chosen.push_back(mutants[number - 1]);
     mutants = chosen;
   }
   // Without a fault there must be no difference, or every kill would be worth nothing.

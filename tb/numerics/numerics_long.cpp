@@ -22,6 +22,7 @@
 #include "arith/test_newton.hpp"
 #include "arith/test_operands.hpp"
 #include "arith/test_oracle.hpp"
+#include "enum_array.hpp"
 #include "numerics/long_table.hpp"
 
 namespace raypool::arith {
@@ -39,7 +40,8 @@ enum class Judge : uint8_t { First, Mpfr, Newton2, Newton1, Newton0 };
 constexpr Judge kNewton[] = {Judge::Newton2, Judge::Newton1, Judge::Newton0};
 constexpr int kJudges = 5;
 constexpr const char* kJudgeNames[kJudges] = {"", ", MPFR", ", newton2", ", newton1", ", newton0"};
-constexpr SlowUnit kUnits[kJudges] = {SlowUnit::Exact, SlowUnit::Exact, SlowUnit::Newton2, SlowUnit::Newton1, SlowUnit::Newton0};
+constexpr EnumArray<Judge, SlowUnit, kJudges> kUnits = {SlowUnit::Exact, SlowUnit::Exact, SlowUnit::Newton2, SlowUnit::Newton1,
+                                                        SlowUnit::Newton0};
 
 struct Tally {
   std::atomic<uint64_t> inputs{0}, errors{0};
@@ -58,7 +60,7 @@ std::string name_of(size_t index) {
 
 /// The right results. Those of a Newton unit must keep the exact result's exponent too; one that does not is none.
 void judge_block(Operation operation, const OperandBlock& in, Judge judge, bool flush, std::vector<uint32_t>& expected) {
-  const SlowUnit unit = kUnits[static_cast<size_t>(judge)];
+  const SlowUnit unit = kUnits[judge];
   oracle::results(operation, in, flush, judge == Judge::Mpfr, expected);
   if (unit == SlowUnit::Exact) return;
   for (size_t i = 0; i < in.size(); ++i) {
@@ -71,7 +73,7 @@ void check(Operation operation, const OperandBlock& in, Judge judge, std::vector
   const size_t index = index_of(operation, judge);
   for (const bool flush : {false, true}) {
     judge_block(operation, in, judge, flush, expected);
-    const Mode mode{flush ? Subnormals::Flush : Subnormals::Ieee, kUnits[static_cast<size_t>(judge)]};
+    const Mode mode{flush ? Subnormals::Flush : Subnormals::Ieee, kUnits[judge]};
     uint64_t errors = 0;
     for (size_t i = 0; i < in.size(); ++i) {
       const uint32_t ours = model(operation, in.a[i], in.b[i], in.c[i], mode);

@@ -16,6 +16,7 @@
 #include "alu_model.hpp"
 #include "arith/arith.hpp"
 #include "arith/test_operands.hpp"
+#include "enum_array.hpp"
 #include "isa/encoding.hpp"
 #include "numerics/long_table.hpp"
 
@@ -81,7 +82,7 @@ class AluBench {
 
   uint64_t compared() const { return count(Subnormals::Ieee).inputs + count(Subnormals::Flush).inputs; }
   /// Of all units of a subnormal mode.
-  const LongCount& count(Subnormals mode) const { return counts_[static_cast<size_t>(mode)]; }
+  const LongCount& count(Subnormals mode) const { return counts_[mode]; }
 
  private:
   struct Expected {
@@ -117,7 +118,8 @@ class AluBench {
     mask_ = 0;
   }
 
-  /// The third operand, of tops that have one; where there are predicates its lowest bits are task_predicate_x_i and task_predicate_b_i.
+  /// The third operand, of tops that have one; where there are predicates its lowest bits are task_predicate_x_i and
+  /// task_predicate_b_i.
   template <typename T>
   static auto set_third(T& top, int lane, uint32_t c, int) -> decltype(void(top.task_operand_c_i[0])) {
     top.task_operand_c_i[lane] = c;
@@ -169,7 +171,7 @@ class AluBench {
       for (int l = 0; l < kBenchLanes; ++l) {
         if (!(e.mask >> l & 1)) continue;
         const uint32_t result = result_of(top_, u * kBenchLanes + static_cast<size_t>(l), 0);
-        LongCount& count = counts_[static_cast<size_t>(units_[u].mode.subnormals)];
+        LongCount& count = counts_[units_[u].mode.subnormals];
         ++count.inputs;
         if (result == e.result[l] && warp == e.warp) continue;
         ++count.errors;
@@ -195,7 +197,7 @@ class AluBench {
   uint32_t mask_ = 0;  ///< of those used
   std::array<uint32_t, kBenchLanes> a_{}, b_{}, c_{};
   uint64_t cycle_ = 0;
-  std::array<LongCount, 2> counts_;
+  EnumArray<Subnormals, LongCount, 2> counts_;
   int failures_ = 0;
 };
 

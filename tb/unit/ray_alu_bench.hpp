@@ -224,7 +224,7 @@ class RayAluBench {
     unit_->import_request_ready_i = request_limit > 0 && roll(odds.request);
     unit_->import_beat_valid_i = outstanding_ > 0 && roll(odds.beat);
     for (uint32_t i = 0; i < 4; ++i) {
-      uint32_t value = static_cast<uint32_t>(random());
+      uint32_t value = random();
       if (unit_->import_beat_valid_i) {
         const uint32_t word = beat_ * 4 + i;
         value = word < kWords ? package_word(launch(), received_, word) : 0;

@@ -52,7 +52,7 @@ class SmallFloats {
   }
   uint64_t compared() const { return counts_[0].inputs + counts_[1].inputs; }
   bool failed() const { return counts_[0].errors + counts_[1].errors > 0; }
-  const LongCount& count(int mode) const { return counts_[static_cast<size_t>(mode)]; }
+  const LongCount& count(int mode) const { return counts_[mode]; }
 
  private:
   struct Due {
@@ -64,7 +64,7 @@ class SmallFloats {
   uint32_t result(uint32_t port, int mode) const { return port >> (mode * bits_) & ((1u << bits_) - 1); }
 
   void compare(const char* unit, int mode, const Due& due, uint32_t rtl, uint32_t exact) {
-    LongCount& count = counts_[static_cast<size_t>(mode)];
+    LongCount& count = counts_[mode];
     ++count.inputs;
     if (rtl == exact || ++count.errors > 5) return;
     ADD_FAILURE() << unit << (mode != 0 ? " flush" : " ieee") << std::hex << ": a " << due.a << " b " << due.b << " c " << due.c
@@ -72,7 +72,7 @@ class SmallFloats {
   }
   void check_separate(const Due& due) {
     for (int mode = 0; mode < 2; ++mode) {
-      const ExactFloat& reference = references_[static_cast<size_t>(mode)];
+      const ExactFloat& reference = references_[mode];
       if (due.what & kSum) {
         compare("adder", mode, due, result(top_.sum_o, mode),
                 due.subtract ? reference.sub(due.a, due.b) : reference.add(due.a, due.b));
@@ -82,7 +82,7 @@ class SmallFloats {
   }
   void check_fused(const Due& due) {
     for (int mode = 0; mode < 2; ++mode) {
-      const ExactFloat& reference = references_[static_cast<size_t>(mode)];
+      const ExactFloat& reference = references_[mode];
       if (due.what & kFused) compare("fma", mode, due, result(top_.fused_o, mode), reference.fma(due.a, due.b, due.c));
       if (due.what & kFusedProduct)
         compare("fma as multiplier", mode, due, result(top_.fused_o, mode), reference.mul(due.a, due.b));

@@ -1,0 +1,16 @@
+// An array that has an element for each member of an enumeration, 0 to Count - 1, and is indexed by them; by numbers too.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+namespace raypool {
+
+template <typename Enum, typename T, size_t Count>
+struct EnumArray : std::array<T, Count> {
+  using std::array<T, Count>::operator[];
+  constexpr T& operator[](Enum member) { return (*this)[static_cast<size_t>(member)]; }
+  constexpr const T& operator[](Enum member) const { return (*this)[static_cast<size_t>(member)]; }
+};
+
+}  // namespace raypool
