@@ -44,6 +44,7 @@ class OperandSource {
  public:
   explicit OperandSource(uint64_t seed) : random_(seed), specials_(special_operands()) {}
 
+  // NOLINTNEXTLINE(readability-function-size): a list of kinds of pairs
   std::pair<uint32_t, uint32_t> next() {
     uint32_t a = bits(), b = bits();
     switch (random_() % 19) {

@@ -244,54 +244,64 @@ class RandomKernel {
     } else if (kind == 8) {
       floats[target % floats.size()] += pick(random, floats);
     } else if (kind < 12) {
-      // Either a new condition, or a variable of the kernel, which the body then leaves alone.
-      const bool variable = below(random, 3) == 0 && locked_ == kNone;
-      const size_t index = target % bools.size();
-      const auto then = [&] {
-        Random inner(seed);
-        statements(inner, ints, floats, bools, depth - 1);
-      };
-      const auto otherwise = [&] {
-        Random inner(seed + 1);
-        statements(inner, ints, floats, bools, depth - 1);
-      };
-      const size_t outer_locked = locked_;
-      if (variable) {
-        locked_ = index;
-        if (kind == 9)
-          k_.if_(bools[index], then);
-        else if (kind == 10)
-          k_.if_(!bools[index], then);
-        else
-          k_.if_(bools[index], then, otherwise);
-      } else {
-        const Bool condition = bool_expression(random, ints, floats, bools);
-        if (kind == 9)
-          k_.if_(condition, then);
-        else if (kind == 10)
-          k_.if_(!condition, then);
-        else
-          k_.if_(condition, then, otherwise);
-      }
-      locked_ = outer_locked;
+      condition_on(kind, target, random, seed, ints, floats, bools, depth);
     } else {
-      // Some trips, of a number that differs between threads.
-      Int left = (pick(random, ints) & 3) + static_cast<int>(below(random, 2));
-      const uint32_t form = below(random, 3);
-      Bool again = left > 1;
-      k_.while_(
-          [&]() -> Bool {
-            if (form == 0) return left > 0;
-            if (form == 1) return left > 0 && left < 4;
-            return again;
-          },
-          [&] {
-            Random inner(seed);
-            statements(inner, ints, floats, bools, depth - 1);
-            left -= 1;
-            again = left > 0;
-          });
+      some_trips(random, seed, ints, floats, bools, depth);
     }
+  }
+
+  void condition_on(uint32_t kind, size_t target, Random& random, uint32_t seed, std::vector<Int>& ints,
+                    std::vector<Float>& floats, std::vector<Bool>& bools, int depth) {
+    // Either a new condition, or a variable of the kernel, which the body then leaves alone.
+    const bool variable = below(random, 3) == 0 && locked_ == kNone;
+    const size_t index = target % bools.size();
+    const auto then = [&] {
+      Random inner(seed);
+      statements(inner, ints, floats, bools, depth - 1);
+    };
+    const auto otherwise = [&] {
+      Random inner(seed + 1);
+      statements(inner, ints, floats, bools, depth - 1);
+    };
+    const size_t outer_locked = locked_;
+    if (variable) {
+      locked_ = index;
+      if (kind == 9)
+        k_.if_(bools[index], then);
+      else if (kind == 10)
+        k_.if_(!bools[index], then);
+      else
+        k_.if_(bools[index], then, otherwise);
+    } else {
+      const Bool condition = bool_expression(random, ints, floats, bools);
+      if (kind == 9)
+        k_.if_(condition, then);
+      else if (kind == 10)
+        k_.if_(!condition, then);
+      else
+        k_.if_(condition, then, otherwise);
+    }
+    locked_ = outer_locked;
+  }
+
+  void some_trips(Random& random, uint32_t seed, std::vector<Int>& ints, std::vector<Float>& floats, std::vector<Bool>& bools,
+                  int depth) {
+    // Some trips, of a number that differs between threads.
+    Int left = (pick(random, ints) & 3) + static_cast<int>(below(random, 2));
+    const uint32_t form = below(random, 3);
+    Bool again = left > 1;
+    k_.while_(
+        [&]() -> Bool {
+          if (form == 0) return left > 0;
+          if (form == 1) return left > 0 && left < 4;
+          return again;
+        },
+        [&] {
+          Random inner(seed);
+          statements(inner, ints, floats, bools, depth - 1);
+          left -= 1;
+          again = left > 0;
+        });
   }
 
   static constexpr size_t kNone = 99;

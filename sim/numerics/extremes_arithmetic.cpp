@@ -57,6 +57,7 @@ ExtremeCase make_sums(const char* name, const char* expected, std::vector<SumRow
 
 }  // namespace
 
+// NOLINTNEXTLINE(readability-function-size): a list
 std::vector<ExtremeCase> arithmetic_extremes() {
   return {
       make("division by zero", "infinity of the signs' product",

@@ -39,6 +39,28 @@ Vec3d ReferenceTracer::normal(uint32_t triangle) const {
   return normalized(cross(scene_.corner(triangle, 1).as<double>() - a, scene_.corner(triangle, 2).as<double>() - a));
 }
 
+namespace {
+
+/// A triangle of a block, where it is hit nearer than `best`, or as near with a lower number, becomes `best`.
+void take_if_nearer(const TriangleBlock& block, unsigned lane, const Vec3d& origin, const Vec3d& direction, ReferenceHit& best) {
+  Vec3d corners[3];
+  for (int k = 0; k < 3; ++k) {
+    for (int axis = 0; axis < 3; ++axis) corners[k][axis] = static_cast<double>(block.vertices[k][axis][lane]);
+  }
+  const Vec3d a = corners[0] - origin, b = corners[1] - origin, c = corners[2] - origin;
+  const double u = volume(direction, c, b), v = volume(direction, a, c), w = volume(direction, b, a);
+  if ((u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0)) return;
+  if (u + v + w == 0) return;
+  // From the plane, not from the weights: exact for the coordinates that a plane keeps constant.
+  const Vec3d plane = cross(corners[1] - corners[0], corners[2] - corners[0]);
+  const double t = dot(plane, a) / dot(plane, direction);
+  const uint32_t triangle = block.triangles[lane];
+  if (!(t > 0) || !(t < best.t || (t == best.t && triangle < best.triangle && best.triangle != kNoTriangle))) return;
+  best = {triangle, t};
+}
+
+}  // namespace
+
 ReferenceHit ReferenceTracer::trace(const Vec3d& origin, const Vec3d& direction, double limit, bool any) const {
   ReferenceHit best;
   best.t = limit;
@@ -52,23 +74,6 @@ ReferenceHit ReferenceTracer::trace(const Vec3d& origin, const Vec3d& direction,
   }
   const double padding = 1e-15 * reach;
 
-  auto test = [&](const TriangleBlock& block, unsigned lane) {
-    Vec3d corners[3];
-    for (int k = 0; k < 3; ++k) {
-      for (int axis = 0; axis < 3; ++axis) corners[k][axis] = static_cast<double>(block.vertices[k][axis][lane]);
-    }
-    const Vec3d a = corners[0] - origin, b = corners[1] - origin, c = corners[2] - origin;
-    const double u = volume(direction, c, b), v = volume(direction, a, c), w = volume(direction, b, a);
-    if ((u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0)) return;
-    if (u + v + w == 0) return;
-    // From the plane, not from the weights: exact for the coordinates that a plane keeps constant.
-    const Vec3d plane = cross(corners[1] - corners[0], corners[2] - corners[0]);
-    const double t = dot(plane, a) / dot(plane, direction);
-    const uint32_t triangle = block.triangles[lane];
-    if (!(t > 0) || !(t < best.t || (t == best.t && triangle < best.triangle && best.triangle != kNoTriangle))) return;
-    best = {triangle, t};
-  };
-
   struct Entry {
     uint32_t child;
     double t;
@@ -80,7 +85,7 @@ ReferenceHit ReferenceTracer::trace(const Vec3d& origin, const Vec3d& direction,
     if (top.t > best.t) continue;
     if ((top.child & kLeafBit) != 0) {
       const TriangleBlock& block = bvh_.blocks[top.child & ~kLeafBit];
-      for (unsigned lane = 0; lane < block.count; ++lane) test(block, lane);
+      for (unsigned lane = 0; lane < block.count; ++lane) take_if_nearer(block, lane, origin, direction, best);
       if (any && best.triangle != kNoTriangle) return best;
       continue;
     }

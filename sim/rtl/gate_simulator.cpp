@@ -89,15 +89,7 @@ class Netlist {
       for (uint32_t length = number(); length > 0; --length) block.path += static_cast<char>(number());
       blocks_.push_back(block);
     }
-    for (const auto& list : sinks) {
-      first_sink_.push_back(static_cast<uint32_t>(sinks_.size()));
-      sinks_.insert(sinks_.end(), list.begin(), list.end());
-    }
-    first_sink_.push_back(static_cast<uint32_t>(sinks_.size()));
-    for (uint32_t gate = 0; gate < gates; ++gate) {
-      gates_[gate].first_sink = first_sink_[gate];
-      gates_[gate].last_sink = first_sink_[gate + 1];
-    }
+    join(sinks);
     input_values_.assign((inputs + 31) / 32, 0);
     find_levels();
     for (uint32_t gate = 0; gate < gates; ++gate) {
@@ -171,6 +163,19 @@ class Netlist {
     uint32_t value = 0;
     if (std::fread(&value, sizeof value, 1, file_) != 1) fail(path_, "ends too early");
     return value;
+  }
+
+  /// The sinks of every source in one list; first_sink_ says where those of a source begin.
+  void join(const std::vector<std::vector<Sink>>& sinks) {
+    for (const auto& list : sinks) {
+      first_sink_.push_back(static_cast<uint32_t>(sinks_.size()));
+      sinks_.insert(sinks_.end(), list.begin(), list.end());
+    }
+    first_sink_.push_back(static_cast<uint32_t>(sinks_.size()));
+    for (size_t gate = 0; gate < gates_.size(); ++gate) {
+      gates_[gate].first_sink = first_sink_[gate];
+      gates_[gate].last_sink = first_sink_[gate + 1];
+    }
   }
 
   // A gate's level is one more than the highest of the gates that drive it.

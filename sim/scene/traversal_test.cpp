@@ -92,13 +92,36 @@ std::vector<RayQuery> hard_rays(const Scene& scene, int count, uint32_t seed) {
   return rays;
 }
 
+struct Item {
+  uint32_t child;
+  Vec3 lower, upper;
+};
+
+/// The level of a tree above this one: four children a node, which are put behind `nodes`.
+std::vector<Item> parents_of(const std::vector<Item>& level, std::vector<BvhNode>& nodes) {
+  std::vector<Item> parents;
+  for (size_t first = 0; first < level.size(); first += 4) {
+    BvhNode node{};
+    Item parent{static_cast<uint32_t>(nodes.size()), {INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    for (size_t i = 0; i < 4; ++i) {
+      const bool used = first + i < level.size();
+      node.children[i] = used ? level[first + i].child : kNoChild;
+      for (int axis = 0; axis < 3; ++axis) {
+        node.bounds[0][axis][i] = used ? level[first + i].lower[axis] : INFINITY;
+        node.bounds[1][axis][i] = used ? level[first + i].upper[axis] : -INFINITY;
+        parent.lower[axis] = std::min(parent.lower[axis], node.bounds[0][axis][i]);
+        parent.upper[axis] = std::max(parent.upper[axis], node.bounds[1][axis][i]);
+      }
+    }
+    nodes.push_back(node);
+    parents.push_back(parent);
+  }
+  return parents;
+}
+
 /// A bad tree: triangles in random order, four a leaf, leaves in random groups of up to four.
 Bvh random_tree(const Bvh& original, uint32_t seed) {
   std::mt19937 random(seed);
-  struct Item {
-    uint32_t child;
-    Vec3 lower, upper;
-  };
   struct Loose {
     const TriangleBlock* block;
     uint32_t lane;
@@ -132,26 +155,8 @@ Bvh random_tree(const Bvh& original, uint32_t seed) {
     level.push_back(item);
   }
   std::vector<BvhNode> bottom_up;  // children before parents; turned round at the end
-  do {
-    std::vector<Item> next;
-    for (size_t first = 0; first < level.size(); first += 4) {
-      BvhNode node{};
-      Item parent{static_cast<uint32_t>(bottom_up.size()), {INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
-      for (size_t i = 0; i < 4; ++i) {
-        const bool used = first + i < level.size();
-        node.children[i] = used ? level[first + i].child : kNoChild;
-        for (int axis = 0; axis < 3; ++axis) {
-          node.bounds[0][axis][i] = used ? level[first + i].lower[axis] : INFINITY;
-          node.bounds[1][axis][i] = used ? level[first + i].upper[axis] : -INFINITY;
-          parent.lower[axis] = std::min(parent.lower[axis], node.bounds[0][axis][i]);
-          parent.upper[axis] = std::max(parent.upper[axis], node.bounds[1][axis][i]);
-        }
-      }
-      bottom_up.push_back(node);
-      next.push_back(parent);
-    }
-    level = next;
-  } while (level.size() > 1);
+  do level = parents_of(level, bottom_up);
+  while (level.size() > 1);
   const auto last = static_cast<uint32_t>(bottom_up.size() - 1);
   for (uint32_t i = 0; i <= last; ++i) {
     BvhNode node = bottom_up[last - i];

@@ -55,20 +55,38 @@ using ModelsOfSeveralWarps = ::testing::Types<RayModel<Vray_alu_2x2, 2, 2>, RayM
                                               RayModel<Vray_alu_8x8, 8, 8>, RayModel<Vray_alu_32x1, 32, 1>>;
 TYPED_TEST_SUITE(RayAluOfSeveralWarps, ModelsOfSeveralWarps, ModelName);
 
+struct RandomLaunch {
+  uint32_t kind, threads;
+};
+
+template <typename Bench>
+std::vector<RandomLaunch> random_launches(Bench& bench, uint32_t count) {
+  std::vector<RandomLaunch> launches;
+  for (uint32_t i = 0; i < count; ++i) {
+    const uint32_t threads = bench.roll(50) ? Bench::kContents : 1 + bench.below(Bench::kContents);
+    launches.push_back({bench.roll(85) ? 1 + bench.below(2) : 0, threads});
+  }
+  return launches;
+}
+
+template <typename Bench>
+void make_random(Bench& bench, RayTask& task) {
+  const uint32_t kind = bench.below(100);
+  task.op = kind < 45 ? RayOp::Rld : kind < 80 ? RayOp::Rst : kind < 90 ? RayOp::Rout : RayOp::Rfb;
+  task.word = bench.below(Bench::kWords);
+  const uint32_t shape = bench.below(10);
+  if (shape == 0) task.mask = 0;
+  if (shape > 3) task.mask &= static_cast<uint32_t>(bench.random());
+  for (uint32_t lane = 0; lane < Bench::kLanes; ++lane) task.data.push_back(static_cast<uint32_t>(bench.random()));
+}
+
 // Tasks at random for every warp over several launches, the next launch's import overlapping, with pools of the given speeds.
 template <typename Model>
 RayCounts random_run(uint32_t seed, PoolOdds odds, uint32_t task_percent, uint32_t launches) {
   using Bench = RayAluBench<Model>;
   Bench bench(seed);
   bench.odds = odds;
-  struct Kernel {
-    uint32_t kind, threads;
-  };
-  std::vector<Kernel> kernels;
-  for (uint32_t i = 0; i < launches; ++i) {
-    const uint32_t threads = bench.roll(50) ? Bench::kContents : 1 + bench.below(Bench::kContents);
-    kernels.push_back({bench.roll(85) ? 1 + bench.below(2) : 0, threads});
-  }
+  const std::vector<RandomLaunch> kernels = random_launches(bench, launches);
   struct Warp {
     uint32_t kernel = 0, before = 0, after = 0;  ///< tasks left before and after rin
     bool imported = false;
@@ -82,7 +100,7 @@ RayCounts random_run(uint32_t seed, PoolOdds odds, uint32_t task_percent, uint32
   const auto choose = [&](uint32_t number, RayTask& task) {
     Warp& warp = warps[number];
     while (warp.kernel < launches) {
-      const Kernel& kernel = kernels[warp.kernel];
+      const RandomLaunch& kernel = kernels[warp.kernel];
       const bool imports = kernel.kind != 0 && number * Bench::kLanes < kernel.threads;
       task = {number, RayOp::Rin, 0, Bench::kAllLanes, {}};
       if (warp.before == 0 && imports && !warp.imported) {
@@ -91,13 +109,7 @@ RayCounts random_run(uint32_t seed, PoolOdds odds, uint32_t task_percent, uint32
       }
       if (warp.before > 0 || warp.after > 0) {
         --(warp.before > 0 ? warp.before : warp.after);
-        const uint32_t kind = bench.below(100);
-        task.op = kind < 45 ? RayOp::Rld : kind < 80 ? RayOp::Rst : kind < 90 ? RayOp::Rout : RayOp::Rfb;
-        task.word = bench.below(Bench::kWords);
-        const uint32_t shape = bench.below(10);
-        if (shape == 0) task.mask = 0;
-        if (shape > 3) task.mask &= static_cast<uint32_t>(bench.random());
-        for (uint32_t lane = 0; lane < Bench::kLanes; ++lane) task.data.push_back(static_cast<uint32_t>(bench.random()));
+        make_random(bench, task);
         return true;
       }
       ++warp.kernel;
@@ -105,7 +117,6 @@ RayCounts random_run(uint32_t seed, PoolOdds odds, uint32_t task_percent, uint32
     }
     return false;
   };
-
   const auto work_left = [&] {
     for (const Warp& warp : warps)
       if (warp.kernel < launches) return true;
