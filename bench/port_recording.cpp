@@ -35,8 +35,9 @@ class Recorder : public ComputeUnit {
 
  private:
   void add(const UnitInputs& inputs, uint64_t cycles) {
-    const auto readies = static_cast<uint8_t>(uint32_t{inputs.memory_request_ready} | uint32_t{inputs.import_request_ready} << 1 |
-                                              uint32_t{inputs.export_ready} << 2 | uint32_t{inputs.frame_ready} << 3);
+    const auto readies =
+        static_cast<uint8_t>(uint32_t{inputs.memory_request_ready} | uint32_t{inputs.import_request_ready} << 1 |
+                             uint32_t{inputs.export_ready} << 2 | uint32_t{inputs.frame_ready} << 3);
     recording_.cycles += cycles;
     std::vector<PortRecording::Span>& spans = recording_.spans;
     const bool plain = !inputs.launch_valid && !inputs.memory_response_valid && !inputs.import_beat_valid;
@@ -44,8 +45,8 @@ class Recorder : public ComputeUnit {
       spans.back().cycles += static_cast<uint32_t>(cycles);
       return;
     }
-    spans.push_back(
-        {static_cast<uint32_t>(cycles), readies, inputs.launch_valid, inputs.memory_response_valid, inputs.import_beat_valid});
+    spans.push_back({static_cast<uint32_t>(cycles), readies, inputs.launch_valid, inputs.memory_response_valid,
+                     inputs.import_beat_valid});
     if (inputs.launch_valid) recording_.launches.push_back(inputs.launch);
     if (inputs.memory_response_valid) recording_.responses.push_back(inputs.memory_response);
     if (inputs.import_beat_valid) recording_.beats.push_back(inputs.import_beat);
@@ -58,7 +59,8 @@ class Recorder : public ComputeUnit {
 
 }  // namespace
 
-std::unique_ptr<ComputeUnit> record_ports(std::unique_ptr<ComputeUnit> device, const Memory& memory, PortRecording& recording) {
+std::unique_ptr<ComputeUnit> record_ports(std::unique_ptr<ComputeUnit> device, const Memory& memory,
+                                          PortRecording& recording) {
   return std::make_unique<Recorder>(std::move(device), memory, recording);
 }
 

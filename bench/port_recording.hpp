@@ -1,4 +1,5 @@
-// What a host gave a device in every cycle of a run, so that other engines can be clocked through the same run without the host.
+// What a host gave a device in every cycle of a run, so that other engines can be clocked
+// through the same run without the host.
 #pragma once
 
 #include <array>
@@ -31,9 +32,11 @@ struct PortRecording {
 };
 
 /// `device`, whose inputs are written to `recording`; `memory` is the host's. Both must outlive it.
-std::unique_ptr<ComputeUnit> record_ports(std::unique_ptr<ComputeUnit> device, const Memory& memory, PortRecording& recording);
+std::unique_ptr<ComputeUnit> record_ports(std::unique_ptr<ComputeUnit> device, const Memory& memory,
+                                          PortRecording& recording);
 
-/// Resets the device and clocks it through the recording. `memory`, which the device was made with, must equal the recording's.
+/// Resets the device and clocks it through the recording. `memory`, which the device was
+/// made with, must equal the recording's.
 void replay(ComputeUnit& device, const PortRecording& recording);
 
 }  // namespace raypool::bench

@@ -1,7 +1,7 @@
-// `make bench`: how fast the engines run on this machine. Draws one fixed frame with each, best of three, and sets the Verilated
-// unit's rate beside that of the best open GPU RTL at 4 warps x 4 lanes on this class of machine. Then the units alone: what
-// the chip gave the unit in every cycle of that frame is recorded, and model and RTL are clocked through it in turn. Needs the
-// Verilated units of 4w4c, 8w8c and 16w16c.
+// `make bench`: how fast the engines run on this machine. Draws one fixed frame with each, best of three, and sets the
+// Verilated unit's rate beside that of the best open GPU RTL at 4 warps x 4 lanes on this class of machine. Then the
+// units alone: what the chip gave the unit in every cycle of that frame is recorded, and model and RTL are clocked
+// through it in turn. Needs the Verilated units of 4w4c, 8w8c and 16w16c.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -92,7 +92,8 @@ void compare_units(const BenchOptions& bench, const std::string& config) {
       const std::unique_ptr<ComputeUnit> unit = raypool::make_unit(what, recording.memory);
       const auto begin = std::chrono::steady_clock::now();
       raypool::bench::replay(*unit, recording);
-      best[engine] = std::min(best[engine], std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+      best[engine] =
+          std::min(best[engine], std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
       instructions.insert(unit->counter(raypool::counter::kThreadInstructions));
     }
   }
@@ -107,7 +108,8 @@ void compare_units(const BenchOptions& bench, const std::string& config) {
                cycles / best[engine] / 1e3, threads / best[engine] / 1e3);
   if (at("rtl") > 0 && at("model") > 0)
     fmt::print(
-        "{} model against rtl, the unit alone: {:.1f} times the cycles; model against the best open GPU's cycle model: {:.0f} "
+        "{} model against rtl, the unit alone: {:.1f} times the cycles; model against the best open GPU's cycle model: "
+        "{:.0f} "
         "times the thread instructions\n",
         config, at("rtl") / at("model"), threads / at("model") / kReferenceModel);
 }

@@ -1,4 +1,5 @@
-// An array that has an element for each member of an enumeration, 0 to Count - 1, and is indexed by them; by numbers too.
+// An array that has an element for each member of an enumeration, 0 to Count - 1, and
+// is indexed by them; by numbers too.
 #pragma once
 
 #include <array>

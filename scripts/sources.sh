@@ -10,7 +10,8 @@ files() {
     shell) find scripts tb .ci -type f \( -name '*.sh' -o -name '*.bash' -o -name run \) ;;
     python) find scripts -name '*.py' ;;
     text)
-      files shell; files python
+      files cpp; files shell; files python
+      find rtl tb -name '*.v' -o -name '*.vh' -o -name '*.vlt'
       echo Makefile; find CMakeLists.txt cmake cpp_model sim tb examples -name CMakeLists.txt -o -name '*.cmake'
       ;;
     *) echo "usage: scripts/sources.sh cpp|verilog|shell|python|text" >&2; exit 1 ;;

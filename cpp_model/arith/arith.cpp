@@ -34,8 +34,8 @@ Normalised normalise(uint32_t bits) {
 }
 
 // Seeds, 8 bits s of the number (256 + s) / 512. Entry i of the reciprocal table is 1/m for the middle m of
-// 1 + i/128 .. 1 + (i+1)/128; entry 64*odd + i of the other one is 1/sqrt(m * (odd ? 2 : 1)) for the middle m of 1 + i/64 .. 1 +
-// (i+1)/64.
+// 1 + i/128 .. 1 + (i+1)/128; entry 64*odd + i of the other one is 1/sqrt(m * (odd ? 2 : 1)) for the
+// middle m of 1 + i/64 .. 1 + (i+1)/64.
 std::array<uint8_t, 128> make_reciprocal_seeds() {
   std::array<uint8_t, 128> seeds{};
   for (int i = 0; i < 128; ++i) seeds[i] = static_cast<uint8_t>(std::lround(512.0 / (1.0 + (i + 0.5) / 128)) - 256);
@@ -54,11 +54,13 @@ std::array<uint8_t, 128> make_inverse_root_seeds() {
 const std::array<uint8_t, 128> kReciprocalSeeds = make_reciprocal_seeds();
 const std::array<uint8_t, 128> kInverseRootSeeds = make_inverse_root_seeds();
 
-/// w/v, or w/sqrt(v) for a root, with 30 fraction bits. v and w have 23; the true result is in 1 .. 2, and so is this one.
+/// w/v, or w/sqrt(v) for a root, with 30 fraction bits. v and w have 23; the true
+/// result is in 1 .. 2, and so is this one.
 uint32_t newton_quotient(uint32_t v, uint32_t w, bool root, SlowUnit steps) {
   constexpr int64_t kOne = 1;
   // y: approximation of 1/v or 1/sqrt(v), first with 9 fraction bits, then with 15.
-  const uint32_t seed = root ? kInverseRootSeeds[v >> 24 ? 64 + (v >> 18 & 63) : v >> 17 & 63] : kReciprocalSeeds[v >> 16 & 127];
+  const uint32_t seed =
+      root ? kInverseRootSeeds[v >> 24 ? 64 + (v >> 18 & 63) : v >> 17 & 63] : kReciprocalSeeds[v >> 16 & 127];
   const int64_t y0 = 256 + seed;
   int64_t y = y0 << 6;
   if (steps != SlowUnit::Newton0) {
@@ -177,7 +179,9 @@ uint32_t div(uint32_t a, uint32_t b, Mode mode) {
   return quotient_of(operand(a, mode), operand(b, mode), SlowOperation::Divide, mode);
 }
 
-uint32_t rcp(uint32_t a, Mode mode) { return quotient_of(as_bits(1.0f), operand(a, mode), SlowOperation::Reciprocal, mode); }
+uint32_t rcp(uint32_t a, Mode mode) {
+  return quotient_of(as_bits(1.0f), operand(a, mode), SlowOperation::Reciprocal, mode);
+}
 
 uint32_t sqrt(uint32_t a, Mode mode) {
   a = operand(a, mode);

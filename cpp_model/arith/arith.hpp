@@ -1,7 +1,7 @@
-// Arithmetic of the Flt and Slw ALUs and of the float compares, bit for bit as the RTL does it. Values are IEEE-754 single bit
-// patterns. Round to nearest even; every NaN result is 7FC00000. docs/numerics.md has the rules. Needs the host's default
-// floating-point environment: nearest even, and neither flush-to-zero nor denormals-are-zero set in MXCSR. What the kernels use
-// most is inline and runs on the host's own unit.
+// Arithmetic of the Flt and Slw ALUs and of the float compares, bit for bit as the RTL does it. Values are IEEE-754
+// single bit patterns. Round to nearest even; every NaN result is 7FC00000. docs/numerics.md has the rules. Needs the
+// host's default floating-point environment: nearest even, and neither flush-to-zero nor denormals-are-zero set in
+// MXCSR. What the kernels use most is inline and runs on the host's own unit.
 #pragma once
 
 #include <cmath>
@@ -32,7 +32,8 @@ inline constexpr uint32_t kSign = 0x80000000u;
 inline constexpr uint32_t kMagnitude = 0x7fffffffu;
 inline constexpr uint32_t kInfinity = 0x7f800000u;  ///< also the mask of the exponent
 inline constexpr uint32_t kSmallestNormal = 0x00800000u;
-/// A magnitude below this rounds, to 24 bits and with any exponent allowed, to less than the smallest normal number 2^-126.
+/// A magnitude below this rounds, to 24 bits and with any exponent allowed, to less
+/// than the smallest normal number 2^-126.
 inline constexpr double kTinyLimit = 0x1p-126 - 0x1p-151;
 
 inline bool is_nan(uint32_t a) { return (a & kMagnitude) > kInfinity; }
@@ -47,8 +48,8 @@ inline uint32_t canonical(float value) {
 }
 /// Integers in the order of the numbers, -0 before +0. Not for NaNs.
 inline int32_t order(uint32_t a) { return static_cast<int32_t>(a & kSign ? a ^ kMagnitude : a); }
-/// The `flush` result for the correctly rounded `rounded` of the same sign; `exact` tells on which side of kTinyLimit the true
-/// value is.
+/// The `flush` result for the correctly rounded `rounded` of the same sign; `exact` tells on which
+/// side of kTinyLimit the true value is.
 inline uint32_t flush_tiny(uint32_t rounded, double exact) {
   if ((rounded & kMagnitude) == kSmallestNormal && std::fabs(exact) < kTinyLimit) return rounded & kSign;
   return flushed(rounded);
@@ -81,7 +82,8 @@ inline uint32_t sub(uint32_t a, uint32_t b, Mode mode) {
 inline uint32_t mul(uint32_t a, uint32_t b, Mode mode) {
   const float x = as_float(detail::operand(a, mode)), y = as_float(detail::operand(b, mode));
   const uint32_t product = detail::canonical(x * y);
-  return detail::flushes(mode) ? detail::flush_tiny(product, double{x} * double{y}) : product;  // the double product is exact
+  return detail::flushes(mode) ? detail::flush_tiny(product, double{x} * double{y})
+                               : product;  // the double product is exact
 }
 
 /// a * b + c, rounded once.

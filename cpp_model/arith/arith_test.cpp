@@ -1,5 +1,5 @@
-// The model of arithmetic against the host's SSE unit, whose MXCSR register is set to the mode under test, and against MPFR
-// (test_oracle.hpp), and its rules one by one.
+// The model of arithmetic against the host's SSE unit, whose MXCSR register is set to the mode under test, and against
+// MPFR (test_oracle.hpp), and its rules one by one.
 #include "arith/arith.hpp"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,8 @@ constexpr Operation kBinary[] = {Operation::Add,  Operation::Sub,       Operatio
                                  Operation::Min,  Operation::Max,       Operation::Equal,   Operation::NotEqual,
                                  Operation::Less, Operation::LessEqual, Operation::Greater, Operation::GreaterEqual};
 constexpr SlowUnit kNewton[] = {SlowUnit::Newton2, SlowUnit::Newton1, SlowUnit::Newton0};
-constexpr Operation kUnary[] = {Operation::ToInt, Operation::FromInt, Operation::Sqrt, Operation::Rsqrt, Operation::Rcp};
+constexpr Operation kUnary[] = {Operation::ToInt, Operation::FromInt, Operation::Sqrt, Operation::Rsqrt,
+                                Operation::Rcp};
 
 /// Every operation of the block, in both modes, against the oracle.
 void check(Operation operation, const OperandBlock& in, bool with_mpfr = false) {
@@ -31,8 +32,8 @@ void check(Operation operation, const OperandBlock& in, bool with_mpfr = false) 
     const Mode mode = flush ? kFlush : kIeee;
     for (size_t i = 0; i < in.size(); ++i) {
       ASSERT_EQ(model(operation, in.a[i], in.b[i], in.c[i], mode), expected[i])
-          << std::hex << kOperationNames[static_cast<int>(operation)] << ' ' << in.a[i] << ' ' << in.b[i] << ' ' << in.c[i]
-          << (flush ? " flush" : " ieee") << " seed " << std::dec << kSeed;
+          << std::hex << kOperationNames[static_cast<int>(operation)] << ' ' << in.a[i] << ' ' << in.b[i] << ' '
+          << in.c[i] << (flush ? " flush" : " ieee") << " seed " << std::dec << kSeed;
     }
   }
 }
@@ -95,21 +96,23 @@ TEST(Arith, RandomTriplesAreRoundedOnceAsMpfrDoes) {
 }
 
 TEST(Arith, TinyFusedSumsAreJudgedAfterRounding) {
-  // 2^-126 - 2^-151, the last number that rounds up to 2^-126 with 24 bits; a subnormal addend is zero under `flush`, so the
-  // product alone decides: 2^-126 times 1 - 2^-25 is no product of floats, (1 + 2^-23)(1 - 2^-23) is nearer to 1.
+  // 2^-126 - 2^-151, the last number that rounds up to 2^-126 with 24 bits; a subnormal addend is zero under
+  // `flush`, so the product alone decides: 2^-126 times 1 - 2^-25 is no product of
+  // floats, (1 + 2^-23)(1 - 2^-23) is nearer to 1.
   EXPECT_EQ(fma(0x00800001u, 0x3f7ffffeu, 0u, kFlush), 0x00800000u);
   EXPECT_EQ(fma(0x00800000u, 0x3f7fffffu, 0u, kFlush), 0u);
   EXPECT_EQ(fma(0x80ffffffu, 0x3f000000u, 0x80000000u, kFlush), 0x80000000u);
   // 2^-125 - (2^-126 + 2^-151 + ...): the sum has more than 24 bits and lies just below 2^-126.
   EXPECT_EQ(fma(0x80800001u, 0x3f800000u, 0x01000000u, kFlush), 0u);
   EXPECT_EQ(fma(0x2b800000u, 0xab000000u, 0x01000000u, kIeee), fma(0xab000000u, 0x2b800000u, 0x01000000u, kIeee));
-  EXPECT_EQ(muladd(0x3f800001u, 0x3f800001u, 0xbf800002u, kIeee), 0u);                                               // twice
-  EXPECT_EQ(muladd(0x3f800001u, 0x3f800001u, 0xbf800002u, {Subnormals::Ieee, SlowUnit::Exact, true}), 0x28800000u);  // once
+  EXPECT_EQ(muladd(0x3f800001u, 0x3f800001u, 0xbf800002u, kIeee), 0u);  // twice
+  EXPECT_EQ(muladd(0x3f800001u, 0x3f800001u, 0xbf800002u, {Subnormals::Ieee, SlowUnit::Exact, true}),
+            0x28800000u);  // once
 }
 
 TEST(Arith, TinyProductsAreJudgedAfterRounding) {
-  // All below 2^-126. The first rounds up to it at 24 bits and stays; the others have 24 bits themselves and are flushed,
-  // although IEEE rounding to a multiple of 2^-149 gives 2^-126.
+  // All below 2^-126. The first rounds up to it at 24 bits and stays; the others have 24 bits themselves and are
+  // flushed, although IEEE rounding to a multiple of 2^-149 gives 2^-126.
   const uint32_t below = 0x3f7ffffeu, next = 0x3f7fffffu, smallest = 0x00800000u;
   check_pair(0x00800001u, below);  // (1 + 2^-23)(1 - 2^-23)
   check_pair(0x00ffffffu, 0x3f000000u);
@@ -150,8 +153,8 @@ TEST(Arith, ConversionsTruncateAndSaturate) {
 }
 
 TEST(Arith, InverseRootIsCorrectlyRounded) {
-  // Every mantissa under two exponents; the rest is a power of two. One of them (403a18e3) is so near to a middle that doubles
-  // fail.
+  // Every mantissa under two exponents; the rest is a power of two. One of them (403a18e3) is so
+  // near to a middle that doubles fail.
   OperandBlock in;
   for (uint32_t x = 0x3f800000u; x < 0x40800000u; ++x) in.push(x, 0, 0);
   check(Operation::Rsqrt, in);
@@ -176,8 +179,8 @@ void check_newton(Operation operation, const OperandBlock& in) {
             << (flush ? " flush" : " ieee") << " unit " << static_cast<int>(unit);
         const uint32_t exact = model(operation, in.a[i], in.b[i], 0, flush ? kFlush : kIeee);
         ASSERT_TRUE(newton_oracle::keeps_exponent(operation, in.a[i], in.b[i], ours, exact))
-            << std::hex << kOperationNames[static_cast<int>(operation)] << ' ' << in.a[i] << ' ' << in.b[i] << " gives " << ours
-            << " for " << exact;
+            << std::hex << kOperationNames[static_cast<int>(operation)] << ' ' << in.a[i] << ' ' << in.b[i] << " gives "
+            << ours << " for " << exact;
       }
     }
   }
@@ -209,7 +212,8 @@ TEST(Arith, NewtonQuotientsAreThoseOfTheirDefinition) {
 
 TEST(Arith, NewtonResultsNextToTheNextExponentStayBelowIt) {
   OperandBlock in;
-  // Quotients 2 - 2k/d for divisors all over 1 .. 2, in the middle, below infinity, and below the smallest normal number.
+  // Quotients 2 - 2k/d for divisors all over 1 .. 2, in the middle, below infinity,
+  // and below the smallest normal number.
   for (uint32_t d = 64; d < 1u << 23; d += 251) {
     for (const uint32_t k : {1u, 2u, 31u, 60u}) {
       in.push(0x3f800000u + d - k, 0x3f800000u + d, 0);

@@ -98,7 +98,8 @@ struct OperandRange {
 };
 OperandRange range_of(SlowOperation operation, Results results) {
   constexpr uint32_t kSparse = 7;
-  const OperandRange smallest_operands{0x00000001u, 0x01000000u, kSparse}, largest_operands{0x7e000000u, 0x7f800000u, kSparse};
+  const OperandRange smallest_operands{0x00000001u, 0x01000000u, kSparse},
+      largest_operands{0x7e000000u, 0x7f800000u, kSparse};
   switch (results) {
     case Results::Middle:
       return {kOne, kOne + ((operation == SlowOperation::Rcp ? 1u : 2u) << 23), 1};
@@ -110,7 +111,8 @@ OperandRange range_of(SlowOperation operation, Results results) {
   return operation == SlowOperation::Sqrt ? smallest_operands : largest_operands;
 }
 
-/// Exponents that bring the quotient of two numbers in 1 .. 2 to 2^125 .. 2^129, or to 2^-151 .. 2^-123; added to a and b.
+/// Exponents that bring the quotient of two numbers in 1 .. 2 to 2^125 .. 2^129, or to
+/// 2^-151 .. 2^-123; added to a and b.
 std::pair<uint32_t, uint32_t> exponents_of(Results results, uint32_t hash) {
   const int offset = static_cast<int>(hash % 32), choice = static_cast<int>(hash / 32);
   int a = 127, b = 127;
@@ -165,17 +167,19 @@ bool keeps_promise(const ErrorRow& row) {
 }
 
 std::string to_text(const std::vector<ErrorRow>& rows) {
-  std::string text = fmt::format("{:<9}{:<8}{:<9}{:>9}{:>14}  {:<19}{:>12}{:>12}{:>11}{:>11}  {}\n", "unit", "op", "results",
-                                 "inputs", "largest ulp", "at", "mean ulp", "bias ulp", "rounded", "exponents", "promise");
+  std::string text =
+      fmt::format("{:<9}{:<8}{:<9}{:>9}{:>14}  {:<19}{:>12}{:>12}{:>11}{:>11}  {}\n", "unit", "op", "results", "inputs",
+                  "largest ulp", "at", "mean ulp", "bias ulp", "rounded", "exponents", "promise");
   for (const ErrorRow& row : rows) {
     const double bound = error_bound(row.slow_unit, row.operation);
     std::string at = fmt::format("{:08x}", row.a);
     if (row.operation == SlowOperation::Div) at += fmt::format(" / {:08x}", row.b);
-    text += fmt::format("{:<9}{:<8}{:<9}{:>9}{:>14.4f}  {:<19}{:>12.4f}{:>+12.4f}{:>10.4f}%{:>11}  {} {}\n",
-                        kUnitNames[static_cast<int>(row.slow_unit)], kOperationNames[static_cast<int>(row.operation)],
-                        kResultNames[static_cast<int>(row.results)], row.inputs, row.largest_ulp, at, row.mean_ulp, row.bias_ulp,
-                        100 * row.rounded, row.exponents, std::isinf(bound) ? "exponent" : fmt::format("{}", bound),
-                        keeps_promise(row) ? "kept" : "BROKEN");
+    text +=
+        fmt::format("{:<9}{:<8}{:<9}{:>9}{:>14.4f}  {:<19}{:>12.4f}{:>+12.4f}{:>10.4f}%{:>11}  {} {}\n",
+                    kUnitNames[static_cast<int>(row.slow_unit)], kOperationNames[static_cast<int>(row.operation)],
+                    kResultNames[static_cast<int>(row.results)], row.inputs, row.largest_ulp, at, row.mean_ulp,
+                    row.bias_ulp, 100 * row.rounded, row.exponents,
+                    std::isinf(bound) ? "exponent" : fmt::format("{}", bound), keeps_promise(row) ? "kept" : "BROKEN");
   }
   return text;
 }

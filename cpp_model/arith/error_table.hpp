@@ -29,20 +29,22 @@ struct ErrorRow {
   double rounded;      ///< share that is correctly rounded, 0 .. 1
 };
 
-/// Middle: frcp over every mantissa (1 .. 2), frsqrt and fsqrt over every mantissa and both parities of the exponent (1 .. 4);
-/// fdiv over `grid` x `grid` pairs of mantissas spread evenly, with varying last bits. Subnormal mode has no influence there. The
-/// others: every seventh operand with such a result, of fdiv a quarter of the pairs. A row takes some tenths of a second.
-ErrorRow measure_errors(SlowUnit slow_unit, SlowOperation operation, Results results = Results::Middle, uint32_t grid = 4096);
+/// Middle: frcp over every mantissa (1 .. 2), frsqrt and fsqrt over every mantissa and both parities of the
+/// exponent (1 .. 4); fdiv over `grid` x `grid` pairs of mantissas spread evenly, with varying last bits. Subnormal
+/// mode has no influence there. The others: every seventh operand with such a result, of fdiv a quarter of the pairs.
+/// A row takes some tenths of a second.
+ErrorRow measure_errors(SlowUnit slow_unit, SlowOperation operation, Results results = Results::Middle,
+                        uint32_t grid = 4096);
 
 /// All units, operations and ranges of results.
 std::vector<ErrorRow> error_table(uint32_t grid = 4096);
 std::string to_text(const std::vector<ErrorRow>& rows);
 
-/// The largest error that an operation of the unit may have, ulp: half for exact, 1 (division 2) for newton2; infinity for those
-/// without a promise.
+/// The largest error that an operation of the unit may have, ulp: half for exact, 1 (division 2) for newton2;
+/// infinity for those without a promise.
 double error_bound(SlowUnit slow_unit, SlowOperation operation);
-/// Whether the row's largest error is within that bound and every exponent right; doubles judge, so a millionth of a unit is
-/// theirs.
+/// Whether the row's largest error is within that bound and every exponent right; doubles judge,
+/// so a millionth of a unit is theirs.
 bool keeps_promise(const ErrorRow& row);
 
 }  // namespace raypool::arith

@@ -1,6 +1,6 @@
-// The Newton units as docs/numerics.md defines them, in fractions: the oracle of their bits. Shares nothing with the model, whose
-// integers it judges, nor with the RTL's seed table: seeds are found by comparing squares, numbers are taken apart by frexp and
-// put together by ldexp.
+// The Newton units as docs/numerics.md defines them, in fractions: the oracle of their bits. Shares nothing with the
+// model, whose integers it judges, nor with the RTL's seed table: seeds are found by comparing squares, numbers are
+// taken apart by frexp and put together by ldexp.
 #pragma once
 
 #include <algorithm>
@@ -31,8 +31,8 @@ inline Fraction operator+(Fraction a, Fraction b) {
 /// 1 - a - 2^-bits, the next number below 1 - a.
 inline Fraction just_below_one_minus(Fraction a) { return {(int64_t{1} << a.bits) - a.numerator - 1, a.bits}; }
 
-/// The nearest n/512 to 1/m in the middle m of the i-th of 128 parts of 1 .. 2; to 1/sqrt(m), of 64 parts of 1 .. 2 and of 2
-/// .. 4. As m is odd/256, or odd/128 and twice that, no n/512 and a half is met exactly.
+/// The nearest n/512 to 1/m in the middle m of the i-th of 128 parts of 1 .. 2; to 1/sqrt(m), of 64 parts of 1 .. 2 and
+/// of 2 .. 4. As m is odd/256, or odd/128 and twice that, no n/512 and a half is met exactly.
 inline Fraction nearest_seed(int i, bool root) {
   const int64_t m = root ? (2 * (i % 64) + 129) * (i < 64 ? 1 : 2) : 2 * i + 257;  // times 128, or 256
   int64_t n = 512;
@@ -80,7 +80,8 @@ inline double rounded(Fraction q, int exponent) {
   return std::ldexp(static_cast<double>(kept), exponent - 23 + below);
 }
 
-/// The result for numbers that are neither zero nor infinite nor NaN; n is 1 for frcp, of roots d alone counts and is positive.
+/// The result for numbers that are neither zero nor infinite nor NaN; n is 1 for frcp, of
+/// roots d alone counts and is positive.
 inline double finite(Operation operation, double n, double d, SlowUnit unit, bool flush) {
   const bool root = operation == Operation::Sqrt || operation == Operation::Rsqrt;
   int n_exponent = 0, d_exponent = 0;
@@ -123,8 +124,9 @@ inline uint32_t result(Operation operation, uint32_t a, uint32_t b, SlowUnit uni
   return std::isnan(narrow) ? 0x7fc00000u : as_bits(narrow);
 }
 
-/// Whether a Newton result has sign and exponent of the correctly rounded one, subnormal numbers and zero sharing one. The tie of
-/// a largest mantissa over a power of two, below the smallest normal number, becomes that in the exact unit alone.
+/// Whether a Newton result has sign and exponent of the correctly rounded one, subnormal numbers and zero
+/// sharing one. The tie of a largest mantissa over a power of two, below the smallest normal number,
+/// becomes that in the exact unit alone.
 inline bool keeps_exponent(Operation operation, uint32_t a, uint32_t b, uint32_t newton, uint32_t exact) {
   const bool tie = operation == Operation::Div && (a & 0x007fffffu) == 0x007fffffu && (b & 0x007fffffu) == 0;
   if (tie && (exact & 0x7fffffffu) == 0x00800000u) return newton >> 23 == exact >> 31 << 8;

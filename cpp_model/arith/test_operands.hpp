@@ -1,5 +1,5 @@
-// Operands for tests of arithmetic: the special values, and random pairs weighted towards cancellation, halfway cases, overflow
-// and the edge of the subnormal numbers. The same seed gives the same operands everywhere.
+// Operands for tests of arithmetic: the special values, and random pairs weighted towards cancellation, halfway cases,
+// overflow and the edge of the subnormal numbers. The same seed gives the same operands everywhere.
 #pragma once
 
 #include <algorithm>
@@ -116,8 +116,8 @@ class OperandSource {
     return {a, b};
   }
 
-  /// An addend for a * b: anything, special, cancelling all or nearly all of the product, at every alignment to it, or at the
-  /// edge of the subnormal numbers.
+  /// An addend for a * b: anything, special, cancelling all or nearly all of the product, at every alignment to it, or
+  /// at the edge of the subnormal numbers.
   uint32_t third(uint32_t a, uint32_t b) {
     const uint32_t product = as_bits(as_float(a) * as_float(b));
     const uint32_t c = bits();
@@ -162,8 +162,8 @@ class OperandSource {
     const float x = as_float(a);
     return as_bits(as_float(product) / (x != 0 ? x : 1));
   }
-  /// A factor for a, which becomes odd, so that the last bits of the product decide how it is rounded; half of the products are
-  /// at the edge of the subnormal numbers.
+  /// A factor for a, which becomes odd, so that the last bits of the product decide how it is rounded; half of the
+  /// products are at the edge of the subnormal numbers.
   uint32_t last_bit_partner(uint32_t& a, uint32_t b) {
     a |= 1;
     const uint32_t odd = (a & 0x7fffffu) | 0x800000u;
@@ -188,7 +188,8 @@ class OperandSource {
     const uint32_t signs_a = a & 0x80000000u, signs_b = b & 0x80000000u;
     a = (as_bits(dividend) + static_cast<uint32_t>(range(-1, 1))) | signs_a, b = as_bits(by) | signs_b;
   }
-  /// A fraction of few ones at its head and its tail, from which sums and products on the middle between two floats come.
+  /// A fraction of few ones at its head and its tail, from which sums and products on
+  /// the middle between two floats come.
   uint32_t few_bits(uint32_t a) {
     const uint32_t head = 0x7fffffu & ~((1u << range(8, 23)) - 1u), tail = (1u << range(0, 4)) - 1u;
     return (a & (0xff800000u | head)) | (a & tail);

@@ -1,6 +1,6 @@
-// Independent oracles for tests of arithmetic: the host's SSE unit (and its fused multiply-add), with MXCSR set to the mode,
-// integers for frsqrt, and MPFR at 24 bits where the host has no such operation, or to judge another oracle. None shares code
-// with the model.
+// Independent oracles for tests of arithmetic: the host's SSE unit (and its fused multiply-add), with MXCSR set to
+// the mode, integers for frsqrt, and MPFR at 24 bits where the host has no such operation, or to judge another
+// oracle. None shares code with the model.
 #pragma once
 
 #include <immintrin.h>
@@ -89,7 +89,9 @@ struct OperandBlock {
   std::vector<uint32_t> a, b, c;
   size_t size() const { return a.size(); }
   void clear() { a.clear(), b.clear(), c.clear(); }
-  void push(uint32_t first, uint32_t second, uint32_t third) { a.push_back(first), b.push_back(second), c.push_back(third); }
+  void push(uint32_t first, uint32_t second, uint32_t third) {
+    a.push_back(first), b.push_back(second), c.push_back(third);
+  }
 };
 
 /// False if the host has no fused multiply-add: MPFR then judges all of ffma.
@@ -127,7 +129,8 @@ inline uint32_t truth(__m128 mask) {
 }
 
 __attribute__((noinline, target("fma"))) inline void fuse(const OperandBlock& in, std::vector<uint32_t>& out) {
-  for (size_t i = 0; i < in.size(); ++i) out[i] = canonical_bits(_mm_fmadd_ss(load(in.a[i]), load(in.b[i]), load(in.c[i])));
+  for (size_t i = 0; i < in.size(); ++i)
+    out[i] = canonical_bits(_mm_fmadd_ss(load(in.a[i]), load(in.b[i]), load(in.c[i])));
 }
 
 template <typename Function>
@@ -135,9 +138,9 @@ __attribute__((noinline)) void each(const OperandBlock& in, std::vector<uint32_t
   for (size_t i = 0; i < in.size(); ++i) out[i] = function(in.a[i], in.b[i]);
 }
 
-/// frsqrt in integers. x = v * 2^(2k) with v in 1 .. 4, and r/2^24 in 1/2 .. 1 is the rounded 1/sqrt(v) exactly if (2r-1)^2 * v
-/// is below 2^50 and (2r+1)^2 * v above; an odd number above 1 divides no power of two, so there are no ties. A double only says
-/// where to begin.
+/// frsqrt in integers. x = v * 2^(2k) with v in 1 .. 4, and r/2^24 in 1/2 .. 1 is the rounded 1/sqrt(v) exactly if
+/// (2r-1)^2 * v is below 2^50 and (2r+1)^2 * v above; an odd number above 1 divides no power of two, so there are no
+/// ties. A double only says where to begin.
 inline uint32_t inverse_root(uint32_t x, bool flush) {
   const uint32_t sign = x & 0x80000000u, field = x >> 23 & 0xff;
   uint64_t mantissa = x & 0x007fffffu;
@@ -213,7 +216,8 @@ inline void wide(Operation operation, const OperandBlock& in, bool flush, std::v
 }
 
 /// The correct results of a block. `with_mpfr`: ffma and frsqrt by MPFR, though there is another oracle.
-inline void results(Operation operation, const OperandBlock& in, bool flush, bool with_mpfr, std::vector<uint32_t>& out) {
+inline void results(Operation operation, const OperandBlock& in, bool flush, bool with_mpfr,
+                    std::vector<uint32_t>& out) {
   out.resize(in.size());
   const HostMode mode(flush);
   switch (operation) {
@@ -230,8 +234,9 @@ inline void results(Operation operation, const OperandBlock& in, bool flush, boo
     case Operation::Sqrt:
       return each(in, out, [](uint32_t a, uint32_t) { return canonical_bits(_mm_sqrt_ss(load(a))); });
     case Operation::FromInt:
-      return each(in, out,
-                  [](uint32_t a, uint32_t) { return canonical_bits(_mm_cvtsi32_ss(_mm_setzero_ps(), static_cast<int>(a))); });
+      return each(in, out, [](uint32_t a, uint32_t) {
+        return canonical_bits(_mm_cvtsi32_ss(_mm_setzero_ps(), static_cast<int>(a)));
+      });
     case Operation::ToInt:
       // The host's 64-bit conversion, saturated; it gives its most negative number for whatever it cannot hold.
       return each(in, out, [](uint32_t a, uint32_t) {

@@ -89,7 +89,8 @@ class Section {
     if (found == nullptr) return;
     // Beyond int the range check would see a wrapped value.
     if (!found->is_number_integer() || found->get<double>() < -2147483648.0 || found->get<double>() > 2147483647.0) {
-      throw InputError(fmt::format("{}: {}{} is {}; it must be an integer without quotes", where_, prefix_, key, found->dump()));
+      throw InputError(
+          fmt::format("{}: {}{} is {}; it must be an integer without quotes", where_, prefix_, key, found->dump()));
     }
     value = found->get<int>();
   }
@@ -118,7 +119,8 @@ class Section {
         return;
       }
     }
-    throw InputError(fmt::format("{}: {}{} is {}; it must be one of {}", where_, prefix_, key, found->dump(), join(names)));
+    throw InputError(
+        fmt::format("{}: {}{} is {}; it must be one of {}", where_, prefix_, key, found->dump(), join(names)));
   }
   std::optional<Section> section(const char* key) {
     const Json* found = find(key);
@@ -214,7 +216,8 @@ fs::path shipped_folder() { return fs::path(data_folder()) / "configs"; }
 /// Folders in which a name is looked up, first match wins.
 std::vector<fs::path> configuration_folders() {
   std::vector<fs::path> folders;
-  if (const char* folder = std::getenv("RAYPOOL_CONFIGS"); folder != nullptr && *folder != '\0') folders.emplace_back(folder);
+  if (const char* folder = std::getenv("RAYPOOL_CONFIGS"); folder != nullptr && *folder != '\0')
+    folders.emplace_back(folder);
   folders.emplace_back("configs");
   folders.push_back(shipped_folder());
   return folders;
@@ -264,9 +267,10 @@ Configuration load(const std::string& name_or_path) {
     }
     if (const std::optional<Configuration> configuration = warps_and_lanes(name_or_path)) return *configuration;
   }
-  throw InputError(fmt::format(
-      "no configuration '{}': give the path of a JSON file, the name of a file in configs/, or NwMc for N warps of M lanes",
-      name_or_path));
+  throw InputError(
+      fmt::format("no configuration '{}': give the path of a JSON file, the name of a file in configs/, or NwMc for N "
+                  "warps of M lanes",
+                  name_or_path));
 }
 
 }  // namespace
@@ -311,7 +315,10 @@ Json schema_of(const Range& range) {
 }
 
 Json object_schema(const char* description) {
-  return {{"description", description}, {"type", "object"}, {"additionalProperties", false}, {"properties", Json::object()}};
+  return {{"description", description},
+          {"type", "object"},
+          {"additionalProperties", false},
+          {"properties", Json::object()}};
 }
 
 Json alu_schema(AluType type) {
@@ -331,8 +338,8 @@ Json alu_schema(AluType type) {
   return schema;
 }
 
-/// If arithmetic.`key` is `value`, then the depth of `type` is that configuration's; with `otherwise` also where the key is
-/// missing.
+/// If arithmetic.`key` is `value`, then the depth of `type` is that configuration's; with
+/// `otherwise` also where the key is missing.
 Json depth_rule(const char* key, const Json& value, const Configuration& configuration, AluType type, bool otherwise) {
   const std::string name(kAluNames[static_cast<size_t>(type)]);
   Json rule;
@@ -341,14 +348,16 @@ Json depth_rule(const char* key, const Json& value, const Configuration& configu
     rule["if"]["required"] = {"arithmetic"};
     rule["if"]["properties"]["arithmetic"]["required"] = {key};
   }
-  rule["then"]["properties"]["alus"]["properties"][name]["properties"]["depth"]["minimum"] = least_depth(configuration, type);
+  rule["then"]["properties"]["alus"]["properties"][name]["properties"]["depth"]["minimum"] =
+      least_depth(configuration, type);
   return rule;
 }
 
 }  // namespace
 
 std::string configuration_schema() {
-  Json schema = object_schema("hardware that raypool builds, simulates and synthesises; what is left out has its default");
+  Json schema =
+      object_schema("hardware that raypool builds, simulates and synthesises; what is left out has its default");
   Json& keys = schema["properties"];
   keys["$schema"] = {{"type", "string"}};
   keys["name"] = {{"description", "as reports name it (default: that of the file)"},
@@ -390,8 +399,8 @@ std::string configuration_schema() {
 void check_configuration(const Configuration& configuration, const std::string& where) {
   static const std::regex kName(kNamePattern);
   if (!std::regex_match(configuration.name, kName)) {
-    throw InputError(fmt::format("{}: name is '{}'; it must have 1 to 64 characters out of letters, digits and _ . + -", where,
-                                 configuration.name));
+    throw InputError(fmt::format("{}: name is '{}'; it must have 1 to 64 characters out of letters, digits and _ . + -",
+                                 where, configuration.name));
   }
   for (const Range& range : kRanges)
     check_range(where, range.key, configuration.*range.value, range.least, range.greatest, range.power_of_two);
@@ -400,12 +409,13 @@ void check_configuration(const Configuration& configuration, const std::string& 
     const std::string prefix = "alus." + std::string(kAluNames[type]) + ".";
     if (is_fixed(type)) {
       if (alu.count == 1) continue;
-      throw InputError(fmt::format("{}: {}count is {}; it must be 1, because this unit owns the {}", where, prefix, alu.count,
+      throw InputError(fmt::format("{}: {}count is {}; it must be 1, because this unit owns the {}", where, prefix,
+                                   alu.count,
                                    static_cast<AluType>(type) == AluType::Mem ? "data cache" : "ray memory"));
     }
     for (const AluRange& range : kAluRanges) {
-      check_range(where, prefix + range.key, alu.*range.value, least_of(range, configuration, static_cast<AluType>(type)),
-                  range.greatest);
+      check_range(where, prefix + range.key, alu.*range.value,
+                  least_of(range, configuration, static_cast<AluType>(type)), range.greatest);
     }
   }
   if (static_cast<size_t>(configuration.subnormals) >= kSubnormalNames.size()) {
@@ -445,11 +455,13 @@ std::vector<std::pair<std::string, int>> verilog_parameters(const Configuration&
     const char* suffix;
     int AluConfiguration::*value;
   };
-  for (const Column& column : {Column{"_COUNT", &AluConfiguration::count}, Column{"_LATENCY", &AluConfiguration::latency},
-                               Column{"_DEPTH", &AluConfiguration::depth}}) {
+  for (const Column& column :
+       {Column{"_COUNT", &AluConfiguration::count}, Column{"_LATENCY", &AluConfiguration::latency},
+        Column{"_DEPTH", &AluConfiguration::depth}}) {
     for (size_t type = 0; type < kAluTypes; ++type) {
       if (is_fixed(type)) continue;
-      parameters.emplace_back(verilog_name(static_cast<AluType>(type)) + column.suffix, configuration.alus[type].*column.value);
+      parameters.emplace_back(verilog_name(static_cast<AluType>(type)) + column.suffix,
+                              configuration.alus[type].*column.value);
     }
   }
   parameters.emplace_back("ICACHE_BYTES", configuration.instruction_cache_bytes);

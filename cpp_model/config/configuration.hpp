@@ -1,5 +1,5 @@
-// The hardware configuration: one JSON file (configs/*.json) that the models, the Verilated build, the chip and synthesis all
-// read.
+// The hardware configuration: one JSON file (configs/*.json) that the models, the Verilated
+// build, the chip and synthesis all read.
 #pragma once
 
 #include <array>
@@ -49,9 +49,9 @@ struct Configuration {
   const AluConfiguration& alu(AluType type) const { return alus[static_cast<size_t>(type)]; }
 };
 
-/// Reads a file; `name_or_path` is a path or the name of a file in the configs folder ("8w8c"). A name of the form NwMc that has
-/// no file gets the defaults with N warps and M lanes. Throws InputError naming file, key, value and allowed range; unknown keys
-/// are refused.
+/// Reads a file; `name_or_path` is a path or the name of a file in the configs folder ("8w8c"). A name of the form
+/// NwMc that has no file gets the defaults with N warps and M lanes. Throws InputError naming file, key, value and
+/// allowed range; unknown keys are refused.
 Configuration load_configuration(const std::string& name_or_path);
 
 /// Whether its name alone says what it is: a file of the project, or NwMc.
@@ -60,8 +60,8 @@ bool is_built_in(const Configuration& configuration);
 /// A configuration from the text of a configuration file; `where` names the source in messages.
 Configuration parse_configuration(const std::string& json, const std::string& where);
 
-/// Least pipeline depth of a type in this configuration: what its function needs at speed. 0: the type has neither latency nor
-/// depth to choose. flt and slw have it as their default.
+/// Least pipeline depth of a type in this configuration: what its function needs at speed. 0: the type has neither
+/// latency nor depth to choose. flt and slw have it as their default.
 int least_depth(const Configuration& configuration, AluType type);
 
 /// Throws InputError when a value is out of its range; `where` names the source in the message.

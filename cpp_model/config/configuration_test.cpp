@@ -115,8 +115,10 @@ TEST(Configuration, ErrorsNameKeyValueAndAllowedRange) {
   EXPECT_EQ(error_of(R"({"warps": 64})"), "warps is 64; it must be a power of two from 1 to 32");
   EXPECT_EQ(error_of(R"({"lanes": 0})"), "lanes is 0; it must be a power of two from 1 to 32");
   EXPECT_EQ(error_of(R"({"stack_depth": 1})"), "stack_depth is 1; it must be an integer from 2 to 32");
-  EXPECT_EQ(error_of(R"({"alus": {"slw": {"depth": 10}}})"), "alus.slw.depth is 10; it must be an integer from 11 to 32");
-  EXPECT_EQ(error_of(R"({"alus": {"int": {"latency": 17}}})"), "alus.int.latency is 17; it must be an integer from 1 to 16");
+  EXPECT_EQ(error_of(R"({"alus": {"slw": {"depth": 10}}})"),
+            "alus.slw.depth is 10; it must be an integer from 11 to 32");
+  EXPECT_EQ(error_of(R"({"alus": {"int": {"latency": 17}}})"),
+            "alus.int.latency is 17; it must be an integer from 1 to 16");
   EXPECT_EQ(error_of(R"({"alus": {"mem": {"count": 2}}})"),
             "alus.mem.count is 2; it must be 1, because this unit owns the data cache");
   EXPECT_EQ(error_of(R"({"data_cache": {"bytes": 3000}})"),
@@ -127,7 +129,8 @@ TEST(Configuration, ErrorsNameKeyValueAndAllowedRange) {
   EXPECT_EQ(error_of(R"({"warps": 4294967304})"), "warps is 4294967304; it must be an integer without quotes");
   EXPECT_EQ(error_of(R"({"arithmetic": {"slow_unit": "fast"}})"),
             "arithmetic.slow_unit is \"fast\"; it must be one of exact, newton2, newton1, newton0");
-  EXPECT_EQ(error_of(R"({"name": "a b"})"), "name is 'a b'; it must have 1 to 64 characters out of letters, digits and _ . + -");
+  EXPECT_EQ(error_of(R"({"name": "a b"})"),
+            "name is 'a b'; it must have 1 to 64 characters out of letters, digits and _ . + -");
   EXPECT_EQ(error_of(R"({"alus": 3})"), "alus must be an object in braces, not 3");
   EXPECT_EQ(error_of("[]"), "the file must be an object in braces, not []");
 }
@@ -156,10 +159,11 @@ TEST(Configuration, FusedMultiplyAddDeepensFlt) {
 }
 
 TEST(Configuration, UnknownKeysAreRefusedWithTheKnownOnes) {
-  EXPECT_EQ(
-      error_of(R"({"warp": 8})"),
-      "unknown key warp; known here: name, warps, lanes, stack_depth, arithmetic, alus, instruction_cache, data_cache, $schema");
-  EXPECT_EQ(error_of(R"({"alus": {"flt": {"counts": 1}}})"), "unknown key alus.flt.counts; known here: count, latency, depth");
+  EXPECT_EQ(error_of(R"({"warp": 8})"),
+            "unknown key warp; known here: name, warps, lanes, stack_depth, arithmetic, alus, instruction_cache, "
+            "data_cache, $schema");
+  EXPECT_EQ(error_of(R"({"alus": {"flt": {"counts": 1}}})"),
+            "unknown key alus.flt.counts; known here: count, latency, depth");
   EXPECT_EQ(error_of(R"({"alus": {"ray": {"depth": 2}}})"), "unknown key alus.ray.depth; known here: count");
 }
 
@@ -190,7 +194,8 @@ TEST(Configuration, NameWithoutFileSaysWhatToGive) {
     FAIL();
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(),
-                 "no configuration 'nonesuch': give the path of a JSON file, the name of a file in configs/, or NwMc for N warps "
+                 "no configuration 'nonesuch': give the path of a JSON file, the name of a file in configs/, or NwMc "
+                 "for N warps "
                  "of M lanes");
   }
   EXPECT_THROW(load_configuration(""), InputError);
@@ -247,8 +252,10 @@ void read_parameters(const std::string& path, std::vector<std::pair<std::string,
   for (std::string line; std::getline(file, line) && line.find(") (") == std::string::npos;) {
     char name[64];
     int value = 0;
-    if (std::sscanf(line.c_str(), " parameter integer %63[A-Z_] = %d", name, &value) == 2) declared.emplace_back(name, value);
-    if (std::sscanf(line.c_str(), " `include \"%63[a-z_.]\"", name) == 1) read_parameters(std::string("rtl/") + name, declared);
+    if (std::sscanf(line.c_str(), " parameter integer %63[A-Z_] = %d", name, &value) == 2)
+      declared.emplace_back(name, value);
+    if (std::sscanf(line.c_str(), " `include \"%63[a-z_.]\"", name) == 1)
+      read_parameters(std::string("rtl/") + name, declared);
   }
 }
 

@@ -25,7 +25,9 @@ class Files : public testing::Test {
   }
   void TearDown() override { fs::remove_all(folder_); }
   std::string content(const std::string& name) const { return read_file((folder_ / name).string(), "file"); }
-  size_t entries() const { return static_cast<size_t>(std::distance(fs::directory_iterator(folder_), fs::directory_iterator())); }
+  size_t entries() const {
+    return static_cast<size_t>(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
+  }
   template <typename Action>
   static std::string error_of(const Action& action) {
     try {
@@ -59,7 +61,8 @@ TEST_F(Files, ALinkIsFollowedAlsoToAFileThatIsNotThereYet) {
     EXPECT_EQ(content("below/target"), text);
   }
   fs::create_symlink("ring", folder_ / "ring");
-  EXPECT_NE(error_of([&] { write_file(folder_ / "ring", "text"); }).find("Too many levels of symbolic links"), std::string::npos);
+  EXPECT_NE(error_of([&] { write_file(folder_ / "ring", "text"); }).find("Too many levels of symbolic links"),
+            std::string::npos);
 }
 
 TEST_F(Files, AFifoIsWrittenThrough) {
@@ -119,7 +122,8 @@ TEST(JsonText, WhatIsNoJsonIsAnInputErrorWithoutTheLibrarysTag) {
     parse_json("{\"a\": \xe9}", "file.json");
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_EQ(std::string(error.what()).find("file.json: not valid JSON: parse error at line 1, column 7"), 0u) << error.what();
+    EXPECT_EQ(std::string(error.what()).find("file.json: not valid JSON: parse error at line 1, column 7"), 0u)
+        << error.what();
   }
 }
 

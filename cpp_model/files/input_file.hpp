@@ -5,8 +5,8 @@
 
 namespace raypool {
 
-/// The file's bytes. Throws InputError with the system's reason when it cannot be read, or is a folder; `what` names it in the
-/// sentence: "view file".
+/// The file's bytes. Throws InputError with the system's reason when it cannot be read, or is a folder; `what`
+/// names it in the sentence: "view file".
 std::string read_file(const std::string& path, const std::string& what);
 
 }  // namespace raypool

@@ -6,14 +6,15 @@
 
 namespace raypool {
 
-/// Keys stay in their order. Throws InputError, which begins with `where`, when the text is no JSON, or an object has a key
-/// twice, of which one would be lost.
+/// Keys stay in their order. Throws InputError, which begins with `where`, when the text is no JSON, or an object has a
+/// key twice, of which one would be lost.
 nlohmann::ordered_json parse_json(const std::string& text, const std::string& where);
 
 /// What a JSON library's error says, without the bracketed tag before it, which means nothing to a user.
 std::string json_reason(const std::exception& error);
 
-/// The text of a file, indented by `indent`. Names of files need not be UTF-8, as JSON must be: what is not becomes U+FFFD.
+/// The text of a file, indented by `indent`. Names of files need not be UTF-8, as JSON
+/// must be: what is not becomes U+FFFD.
 std::string to_text(const nlohmann::ordered_json& json, int indent);
 
 }  // namespace raypool

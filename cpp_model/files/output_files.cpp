@@ -19,8 +19,8 @@ namespace fs = std::filesystem;
 constexpr int kMostLinks = 40;  // as Linux
 
 [[noreturn]] void fail(const fs::path& path, int error) {
-  throw InputError(fmt::format("cannot write '{}' ({}): nothing was changed; name another file or mend it", path.string(),
-                               std::strerror(error)));
+  throw InputError(fmt::format("cannot write '{}' ({}): nothing was changed; name another file or mend it",
+                               path.string(), std::strerror(error)));
 }
 
 /// Where a path leads.
@@ -111,7 +111,8 @@ void OutputFiles::publish() {
   // What cannot be taken back comes first, as it may fail; renaming within a folder hardly does.
   for (const Stream& stream : streams_) {
     const int error = write_and_close(open_stream(stream.path), stream.content);
-    if (error != 0) throw InputError(fmt::format("cannot write to '{}' ({})", stream.path.string(), std::strerror(error)));
+    if (error != 0)
+      throw InputError(fmt::format("cannot write to '{}' ({})", stream.path.string(), std::strerror(error)));
   }
   streams_.clear();
   for (const Part& part : parts_) {
@@ -133,7 +134,8 @@ void make_folder(const fs::path& folder) {
   if (reason == 0 && !fs::is_directory(folder)) reason = ENOTDIR;
   if (reason == 0 && access(folder.c_str(), W_OK | X_OK) != 0) reason = errno;
   if (reason != 0) {
-    throw InputError(fmt::format("cannot write into folder '{}' ({}): name another one", folder.string(), std::strerror(reason)));
+    throw InputError(
+        fmt::format("cannot write into folder '{}' ({}): name another one", folder.string(), std::strerror(reason)));
   }
 }
 

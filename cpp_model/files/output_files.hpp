@@ -1,5 +1,5 @@
-// Writing of files that a user names. A regular file is written beside its place and renamed, so it is never half-written; a
-// symbolic link is followed, not replaced; a device or FIFO is written through.
+// Writing of files that a user names. A regular file is written beside its place and renamed, so it is never
+// half-written; a symbolic link is followed, not replaced; a device or FIFO is written through.
 #pragma once
 
 #include <filesystem>
@@ -8,8 +8,8 @@
 
 namespace raypool {
 
-/// Several files, all of them or none: publish() gives them their names; without it the destructor removes what has been written,
-/// and earlier files stay as they are. Throws InputError with the system's reason.
+/// Several files, all of them or none: publish() gives them their names; without it the destructor removes what has
+/// been written, and earlier files stay as they are. Throws InputError with the system's reason.
 class OutputFiles {
  public:
   OutputFiles() = default;
@@ -17,8 +17,8 @@ class OutputFiles {
   OutputFiles(const OutputFiles&) = delete;
   OutputFiles& operator=(const OutputFiles&) = delete;
 
-  /// Where to write the file that publish() names `path`: beside it, with its ending. A device or FIFO is its own place, or, with
-  /// `whole`, for writers that go back and forth in a file, refused.
+  /// Where to write the file that publish() names `path`: beside it, with its ending. A device or FIFO is its own
+  /// place, or, with `whole`, for writers that go back and forth in a file, refused.
   std::filesystem::path begin(const std::filesystem::path& path, bool whole = false);
   /// A whole file at once. A device or FIFO gets it when publish() is called.
   void write(const std::filesystem::path& path, const std::string& content);

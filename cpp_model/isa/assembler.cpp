@@ -32,7 +32,9 @@ struct Reference {
   Place place;
 };
 
-bool is_word_character(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '.' || c == '$'; }
+bool is_word_character(char c) {
+  return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '.' || c == '$';
+}
 
 class Assembler {
  public:
@@ -53,7 +55,7 @@ class Assembler {
   }
 
  private:
-  // Characters -----------------------------------------------------------------------------------------------------------------
+  // Characters ------------------------------------------------------------------------------------------------------
 
   [[noreturn]] void fail(const Place& place, const std::string& what) const {
     throw InputError(fmt::format("{}:{}:{}: {}", source_name_, place.line, place.column, what));
@@ -106,7 +108,7 @@ class Assembler {
     return std::string(line_.substr(start, position_ - start));
   }
 
-  // Lines ----------------------------------------------------------------------------------------------------------------------
+  // Lines -----------------------------------------------------------------------------------------------------------
 
   void parse_line() {
     while (!at_end()) {
@@ -196,7 +198,7 @@ class Assembler {
     append(encode(parts));
   }
 
-  // Operands -------------------------------------------------------------------------------------------------------------------
+  // Operands --------------------------------------------------------------------------------------------------------
 
   void parse_operand(Operand operand, Instruction& parts) {
     switch (operand) {
@@ -254,7 +256,8 @@ class Assembler {
     const std::string found = rest();
     const std::string name = word();
     if (name.size() < 2 || name[0] != letter || !std::isdigit(static_cast<unsigned char>(name[1]))) {
-      fail(place, fmt::format("expected a {}, found {}; {}s are {}0 to {}{}", what, found, what, letter, letter, count - 1));
+      fail(place,
+           fmt::format("expected a {}, found {}; {}s are {}0 to {}{}", what, found, what, letter, letter, count - 1));
     }
     int number = 0;
     const char* end = name.data() + name.size();
@@ -280,7 +283,8 @@ class Assembler {
     const bool is_float = looks_like_float(text);
     if (parts.info->immediate == ImmediateType::Float) {
       if (!is_float && !looks_hexadecimal(text)) {
-        fail(place, fmt::format("'{}' is no float; write {}.0 for the number, or 0x... for the bit pattern", text, text));
+        fail(place,
+             fmt::format("'{}' is no float; write {}.0 for the number, or 0x... for the bit pattern", text, text));
       }
     } else if (is_float && parts.info->immediate != ImmediateType::Either) {
       fail(place, fmt::format("{} takes an integer, not the float {}", parts.info->mnemonic, text));
@@ -319,7 +323,8 @@ class Assembler {
       fail(place, fmt::format("'{}' is not a number", text));
     }
     if (text[0] == '-') value = -value;
-    if (result.ec != std::errc() || value < std::numeric_limits<int32_t>::min() || value > std::numeric_limits<uint32_t>::max()) {
+    if (result.ec != std::errc() || value < std::numeric_limits<int32_t>::min() ||
+        value > std::numeric_limits<uint32_t>::max()) {
       fail(place, fmt::format("{} does not fit in 32 bits; integers are -2147483648 to 4294967295", text));
     }
     return static_cast<uint32_t>(value);
@@ -347,7 +352,8 @@ class Assembler {
     const Place place = here();
     const std::string found = rest();
     const std::string text = number_text();
-    if (text.empty()) fail(place, fmt::format("expected a {} number, found {}; {}s are 0 to {}", what, found, what, last));
+    if (text.empty())
+      fail(place, fmt::format("expected a {} number, found {}; {}s are 0 to {}", what, found, what, last));
     const uint32_t value = parse_integer(text, place);
     if (value > static_cast<uint32_t>(last))
       fail(place, fmt::format("there is no {} {}; {}s are 0 to {}", what, text, what, last));
@@ -365,14 +371,16 @@ class Assembler {
       return 0;
     }
     const uint32_t value = parse_integer(name, place);
-    if (value > 0xffff) fail(place, fmt::format("target {} does not fit in 16 bits; instructions are 0 to 65535", name));
+    if (value > 0xffff)
+      fail(place, fmt::format("target {} does not fit in 16 bits; instructions are 0 to 65535", name));
     return value;
   }
 
   void resolve() {
     for (const Reference& reference : references_) {
       const auto label = labels_.find(reference.label);
-      if (label == labels_.end()) fail(reference.place, fmt::format("label '{}' is not defined in this file", reference.label));
+      if (label == labels_.end())
+        fail(reference.place, fmt::format("label '{}' is not defined in this file", reference.label));
       program_.code[reference.instruction] |= static_cast<uint64_t>(label->second) << reference.lsb;
     }
   }

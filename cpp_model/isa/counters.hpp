@@ -1,5 +1,5 @@
-// The one table of performance counters. The number is what counter_select_i of the RTL asks for; rtl/counters.vh is made from
-// it.
+// The one table of performance counters. The number is what counter_select_i of the RTL asks
+// for; rtl/counters.vh is made from it.
 #pragma once
 
 #include <cstdint>

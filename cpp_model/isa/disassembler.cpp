@@ -61,7 +61,8 @@ std::string operand_text(Operand operand, const Instruction& parts, const Labels
       return fmt::format("r{}", parts.x & 15);
     case Operand::B:
       if (!parts.b_is_immediate) return fmt::format("r{}", parts.rb);
-      return parts.info->immediate == ImmediateType::Float ? float_text(parts.immediate) : integer_text(parts.immediate);
+      return parts.info->immediate == ImmediateType::Float ? float_text(parts.immediate)
+                                                           : integer_text(parts.immediate);
     case Operand::Pd:
       return fmt::format("p{}", parts.rd);
     case Operand::Px:
@@ -138,14 +139,16 @@ Instruction canonical(const Instruction& parts) {
 /// `columns`: guard and mnemonic padded, for a listing.
 std::string instruction_text(const Instruction& parts, const Labels& labels, bool columns) {
   std::string guard;
-  if (parts.guard != 0 || parts.guard_negated) guard = fmt::format("@{}p{}", parts.guard_negated ? "!" : "", parts.guard);
+  if (parts.guard != 0 || parts.guard_negated)
+    guard = fmt::format("@{}p{}", parts.guard_negated ? "!" : "", parts.guard);
   std::string operands;
   for (const Operand operand : parts.info->operands) {
     if (operand == Operand::None) continue;
     operands += (operands.empty() ? "" : ", ") + operand_text(operand, parts, labels);
   }
   if (columns) return fmt::format("{:<6}{:<8}{}", guard, parts.info->mnemonic, operands);
-  return fmt::format("{}{}{}{}{}", guard, guard.empty() ? "" : " ", parts.info->mnemonic, operands.empty() ? "" : " ", operands);
+  return fmt::format("{}{}{}{}{}", guard, guard.empty() ? "" : " ", parts.info->mnemonic, operands.empty() ? "" : " ",
+                     operands);
 }
 
 std::string text_of(uint64_t encoding, const Labels& labels, bool columns) {

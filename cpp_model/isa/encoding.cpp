@@ -8,7 +8,9 @@
 namespace raypool {
 namespace {
 
-constexpr uint64_t put(const Field& field, uint64_t value) { return (value & ((uint64_t{1} << field.bits) - 1)) << field.lsb; }
+constexpr uint64_t put(const Field& field, uint64_t value) {
+  return (value & ((uint64_t{1} << field.bits) - 1)) << field.lsb;
+}
 constexpr uint32_t take(const Field& field, uint64_t encoding) {
   return static_cast<uint32_t>(encoding >> field.lsb & ((uint64_t{1} << field.bits) - 1));
 }
@@ -30,7 +32,9 @@ const Table& table() {
 
 const InstructionInfo& instruction(Opcode opcode) { return *table()[opcode]; }
 
-const InstructionInfo* find_instruction(int type, int operation) { return table()[(type & 15) << 5 | (operation & 31)]; }
+const InstructionInfo* find_instruction(int type, int operation) {
+  return table()[(type & 15) << 5 | (operation & 31)];
+}
 
 const InstructionInfo* find_instruction(std::string_view mnemonic) {
   for (const InstructionInfo& info : kInstructions) {
@@ -94,15 +98,16 @@ bool looks_at(const InstructionInfo& info, TaskOperand operand) {
 
 uint64_t encode(const Instruction& parts) {
   return put(field::kType, static_cast<uint64_t>(parts.info->alu())) | put(field::kOperation, parts.info->operation()) |
-         put(field::kGuardNegated, parts.guard_negated ? 1 : 0) | put(field::kGuard, parts.guard) | put(field::kRd, parts.rd) |
-         put(field::kRa, parts.ra) | put(field::kRb, parts.rb) | put(field::kBIsImmediate, parts.b_is_immediate ? 1 : 0) |
-         put(field::kX, parts.x) | put(field::kImmediate, parts.immediate);
+         put(field::kGuardNegated, parts.guard_negated ? 1 : 0) | put(field::kGuard, parts.guard) |
+         put(field::kRd, parts.rd) | put(field::kRa, parts.ra) | put(field::kRb, parts.rb) |
+         put(field::kBIsImmediate, parts.b_is_immediate ? 1 : 0) | put(field::kX, parts.x) |
+         put(field::kImmediate, parts.immediate);
 }
 
 Instruction unpack(uint64_t encoding) {
   Instruction parts;
-  parts.info =
-      find_instruction(static_cast<int>(take(field::kType, encoding)), static_cast<int>(take(field::kOperation, encoding)));
+  parts.info = find_instruction(static_cast<int>(take(field::kType, encoding)),
+                                static_cast<int>(take(field::kOperation, encoding)));
   parts.guard_negated = take(field::kGuardNegated, encoding) != 0;
   parts.guard = take(field::kGuard, encoding);
   parts.rd = take(field::kRd, encoding);

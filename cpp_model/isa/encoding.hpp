@@ -31,9 +31,9 @@ inline constexpr Field kEnd = {"end", 16, 16};
 }  // namespace field
 
 /// Fields from the most significant down. target and end are the halves of the immediate of `jany jnone call`.
-inline constexpr std::array<Field, 12> kFields = {field::kType, field::kOperation, field::kGuardNegated, field::kGuard,
-                                                  field::kRd,   field::kRa,        field::kRb,           field::kBIsImmediate,
-                                                  field::kX,    field::kImmediate, field::kTarget,       field::kEnd};
+inline constexpr std::array<Field, 12> kFields = {
+    field::kType,         field::kOperation, field::kGuardNegated, field::kGuard,  field::kRd, field::kRa, field::kRb,
+    field::kBIsImmediate, field::kX,         field::kImmediate,    field::kTarget, field::kEnd};
 
 /// An instruction in parts. Parts that its operands do not use are 0.
 struct Instruction {

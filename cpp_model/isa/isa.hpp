@@ -1,9 +1,10 @@
-// The one table of ALU types and instructions. Decoder, encoder, assembler, disassembler, configuration keys, Verilog parameters,
-// rtl/*.vh and docs/isa.md are derived from it. docs/add-an-alu.md adds a type.
+// The one table of ALU types and instructions. Decoder, encoder, assembler, disassembler, configuration keys, Verilog
+// parameters, rtl/*.vh and docs/isa.md are derived from it. docs/add-an-alu.md adds a type.
 //
 // Encoding of an instruction, 64 bits:
-//   63:60 unit | 59:55 operation | 54 guard negated | 53:50 guard predicate | 49:46 rd (or pd) | 45:42 ra | 41:38 rb (or pb)
-//   37 b is the immediate | 36:32 x (predicate ps/pa, register rc, or word of a ray package) | 31:0 immediate
+//   63:60 unit | 59:55 operation | 54 guard negated | 53:50 guard predicate
+//   49:46 rd (or pd) | 45:42 ra | 41:38 rb (or pb) | 37 b is the immediate
+//   36:32 x (predicate ps/pa, register rc, or word of a ray package) | 31:0 immediate
 #pragma once
 
 #include <array>
@@ -19,8 +20,10 @@ namespace raypool {
 // The ALU types, a row each in the order of their numbers.
 //   type        enumerator of AluType; its number is the unit field of an instruction
 //   name        three lower-case letters: key of the configuration, prefix of the Verilog parameters, module <name>_alu
-//   depth       least pipeline depth, which is what the function needs at speed, and the default one; 0: timed by events
-//   ports       Framework: those of docs/architecture.md, section 3; rtl/alu_instances.vh places it. Own: rtl/compute_unit.v does
+//   depth       least pipeline depth, which is what the function needs at speed, and
+//               the default one; 0: timed by events
+//   ports       Framework: those of docs/architecture.md, section 3; rtl/alu_instances.vh
+//               places it. Own: rtl/compute_unit.v does
 //   parameters  of the module beside the framework's, as rtl/compute_unit.v names them, separated by ", "
 //   title       for docs/isa.md
 // CORE: FunctionalCore executes the type. CLASS: a class derived from AluModel does, and the ports are the framework's.
@@ -113,7 +116,8 @@ enum class Feature : uint8_t {
 
 // The instructions, a row each. Programs drawn at random depend on the order of the rows.
 // clang-format off
-//   name       enumerator of Opcode; in lower case the mnemonic, in upper case and behind ISA_<ALU type>_ the Verilog constant
+//   name       enumerator of Opcode; in lower case the mnemonic, in upper case and behind
+//              ISA_<ALU type>_ the Verilog constant
 //   type       enumerator of AluType
 //   operation  0 .. 31, no two of a type the same
 //   operands   four of Operand, in the order of the assembly text

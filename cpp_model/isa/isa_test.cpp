@@ -37,7 +37,8 @@ std::string error_of(const std::string& text) {
   return "no error";
 }
 
-/// A random instruction of a table row, its unused fields 0; or, with `any`, random in every bit beside unit and operation.
+/// A random instruction of a table row, its unused fields 0; or, with `any`, random in
+/// every bit beside unit and operation.
 uint64_t random_instruction(const InstructionInfo& info, std::mt19937_64& random, bool any) {
   Instruction parts;
   parts.info = &info;
@@ -87,7 +88,8 @@ uint64_t random_instruction(const InstructionInfo& info, std::mt19937_64& random
         break;
     }
   }
-  if (has_operand(info, Operand::Target) && has_operand(info, Operand::End)) parts.immediate = static_cast<uint32_t>(random());
+  if (has_operand(info, Operand::Target) && has_operand(info, Operand::End))
+    parts.immediate = static_cast<uint32_t>(random());
   return encode(parts);
 }
 
@@ -147,13 +149,15 @@ TEST(Encoding, IsTheOneThatIsaHppDescribes) {
                                                       uint64_t{7} << 38);
   EXPECT_EQ(assemble_one("fadd r1, r2, 1.0"),
             0x4000000000000000u | uint64_t{1} << 46 | uint64_t{2} << 42 | uint64_t{1} << 37 | 0x3f800000u);
-  EXPECT_EQ(assemble_one("rst 20, r9"), 0x6000000000000000u | uint64_t{4} << 55 | uint64_t{9} << 38 | uint64_t{20} << 32);
+  EXPECT_EQ(assemble_one("rst 20, r9"),
+            0x6000000000000000u | uint64_t{4} << 55 | uint64_t{9} << 38 | uint64_t{20} << 32);
   EXPECT_EQ(assemble_one("st [r1-4], r2"),
             0x2000000000000000u | uint64_t{1} << 55 | uint64_t{1} << 42 | uint64_t{2} << 38 | 0xfffffffcu);
   EXPECT_EQ(assemble_one("call 3, 4"), 0x1000000000000000u | uint64_t{26} << 55 | 0x00040003u);
   EXPECT_EQ(assemble_one("loop 9"), 0x1000000000000000u | uint64_t{27} << 55 | 9u);
-  EXPECT_EQ(assemble_one("sel r1, p2, r3, -1"), 0x3000000000000000u | uint64_t{14} << 55 | uint64_t{1} << 46 | uint64_t{3} << 42 |
-                                                    uint64_t{1} << 37 | uint64_t{2} << 32 | 0xffffffffu);
+  EXPECT_EQ(assemble_one("sel r1, p2, r3, -1"), 0x3000000000000000u | uint64_t{14} << 55 | uint64_t{1} << 46 |
+                                                    uint64_t{3} << 42 | uint64_t{1} << 37 | uint64_t{2} << 32 |
+                                                    0xffffffffu);
   EXPECT_EQ(assemble_one("pandn p1, p2, p3"),
             0x1000000000000000u | uint64_t{19} << 55 | uint64_t{1} << 46 | uint64_t{3} << 38 | uint64_t{2} << 32);
   EXPECT_EQ(assemble_one("arg r1, 31"), uint64_t{6} << 55 | uint64_t{1} << 46 | 31u);
@@ -243,7 +247,8 @@ TEST(Assembler, ErrorsNameLineColumnAndRemedy) {
   EXPECT_EQ(error_of("fad r1, r2, r3"), "file:1:1: unknown instruction 'fad'; docs/isa.md lists them");
   EXPECT_EQ(error_of("fadd r1, r2"), "file:1:12: expected ',' before the next operand, found the end of the line");
   EXPECT_EQ(error_of("fadd r1, r2, r3, r4"), "file:1:16: expected the end of the line, found ','");
-  EXPECT_EQ(error_of("fadd r1, r2, 2"), "file:1:14: '2' is no float; write 2.0 for the number, or 0x... for the bit pattern");
+  EXPECT_EQ(error_of("fadd r1, r2, 2"),
+            "file:1:14: '2' is no float; write 2.0 for the number, or 0x... for the bit pattern");
   EXPECT_EQ(error_of("iadd r1, r2, 2.5"), "file:1:14: iadd takes an integer, not the float 2.5");
   EXPECT_EQ(error_of("iadd r1, r2, 4294967296"),
             "file:1:14: 4294967296 does not fit in 32 bits; integers are -2147483648 to 4294967295");

@@ -61,8 +61,9 @@ constexpr const char* kIntroduction = R"(# Instruction set
 
 Generated from the one table, `cpp_model/isa/isa.hpp`, by `raypool isa --markdown`; a test compares. Do not edit.
 
-An instruction has 64 bits, data 32 bits. A thread has 16 registers r0 .. r15; a warp has 16 predicates p0 .. p15 of one bit a thread, of
-which p0 is all ones. What a mask does to each kind of result stands in [architecture.md](architecture.md), section 4.
+An instruction has 64 bits, data 32 bits. A thread has 16 registers r0 .. r15; a warp has 16 predicates p0 .. p15 of one
+bit a thread, of which p0 is all ones. What a mask does to each kind of result stands in
+[architecture.md](architecture.md), section 4.
 
 ## Encoding
 
@@ -71,9 +72,10 @@ which p0 is all ones. What a mask does to each kind of result stands in [archite
 )";
 
 constexpr const char* kText = R"(
-`target` and `end` are the halves of the immediate of `jany`, `jnone` and `call`; `loop` has its end in the low half. Fields that an instruction
-does not use are written as 0 by the assembler and ignored by the machine. An instruction whose unit and operation stand in no row below is illegal,
-and so is one that the configuration has not: `ffma` without `arithmetic.fma`.
+`target` and `end` are the halves of the immediate of `jany`, `jnone` and `call`; `loop` has its end in the low half.
+Fields that an instruction does not use are written as 0 by the assembler and ignored by the machine. An instruction
+whose unit and operation stand in no row below is illegal, and so is one that the configuration has not: `ffma` without
+`arithmetic.fma`.
 
 ## Assembly text
 
@@ -89,10 +91,11 @@ and so is one that the configuration has not: `ffma` without `arithmetic.fma`.
         exit
 ```
 
-One instruction a line, labels end in a colon. `@p3` before an instruction masks it with predicate p3, `@!p3` with its inverse. Where `b`
-stands, a register or an immediate is allowed. Immediates: decimal or 0x hexadecimal integers from -2147483648 to 4294967295; after a float
-instruction and `rst` a number with a point or an exponent, `inf`, `-inf`, or a bit pattern in 0x hexadecimal. A target is a label, or the number of an
-instruction. `.word 0x...` puts any 64-bit pattern in place.
+One instruction a line, labels end in a colon. `@p3` before an instruction masks it with predicate p3, `@!p3` with its
+inverse. Where `b` stands, a register or an immediate is allowed. Immediates: decimal or 0x hexadecimal integers from
+-2147483648 to 4294967295; after a float instruction and `rst` a number with a point or an exponent, `inf`, `-inf`, or a
+bit pattern in 0x hexadecimal. A target is a label, or the number of an instruction. `.word 0x...` puts any 64-bit
+pattern in place.
 )";
 
 }  // namespace

@@ -10,7 +10,8 @@ namespace raypool {
 
 /// rtl/isa.vh: constants, to be included inside a module body.
 std::string isa_verilog();
-/// rtl/isa_fields.vh: wires of the fields of an instruction, to be included inside a module body behind its declaration.
+/// rtl/isa_fields.vh: wires of the fields of an instruction, to be included inside a
+/// module body behind its declaration.
 std::string isa_fields_verilog();
 /// rtl/isa_functions.vh: functions, to be included inside a module body; needs no constants.
 std::string isa_verilog_functions();
@@ -23,10 +24,11 @@ std::string isa_markdown();
 std::string alu_parameters_verilog();
 /// rtl/alu_parameter_map.vh: their connections, to be included where a module with these parameters is instantiated.
 std::string alu_parameter_map_verilog();
-/// rtl/alu_instance_types.vh: how many types and instances, the type of each instance; to be included inside the body of
-/// compute_unit.
+/// rtl/alu_instance_types.vh: how many types and instances, the type of each instance; to be
+/// included inside the body of compute_unit.
 std::string alu_instance_types_verilog();
-/// rtl/alu_instances.vh: the ALUs with the framework's ports, to be included inside compute_unit's loop over the instances.
+/// rtl/alu_instances.vh: the ALUs with the framework's ports, to be included inside
+/// compute_unit's loop over the instances.
 std::string alu_instances_verilog();
 
 struct GeneratedFile {

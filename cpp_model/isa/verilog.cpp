@@ -107,8 +107,8 @@ std::string isa_verilog() {
   }
   text += "\n  // operations\n";
   for (const InstructionInfo& info : kInstructions) {
-    text +=
-        fmt::format("  localparam [4:0] ISA_{}_{} = 5'd{};\n", verilog_name(info.alu()), upper(info.mnemonic), info.operation());
+    text += fmt::format("  localparam [4:0] ISA_{}_{} = 5'd{};\n", verilog_name(info.alu()), upper(info.mnemonic),
+                        info.operation());
   }
   text += operands_of_types();
   text += "  /* verilator lint_on UNUSEDPARAM */\n";
@@ -130,7 +130,8 @@ std::string isa_fields_verilog() {
 std::string isa_verilog_functions() {
   std::string text = fmt::format(fmt::runtime(kGenerated), "--verilog-functions");
   text +=
-      "  // Decoding functions of the instruction set. To be included inside a module body; they need no constants. A label is\n";
+      "  // Decoding functions of the instruction set. To be included inside a module body; they need no constants. A "
+      "label is\n";
   text += "  // ALU type * 32 + operation.\n";
   text += function_of_row("isa_legal_op", "every machine has this instruction",
                           [](const InstructionInfo& info) { return info.needs == Feature::Base; });
@@ -155,8 +156,11 @@ std::string isa_verilog_functions() {
 }
 
 std::string counters_verilog() {
-  std::string text = "  // Generated from cpp_model/isa/counters.hpp by `raypool isa --write`; a test compares. Do not edit.\n";
-  text += "  // Numbers of the performance counters; those of a row by type are of ALU type 0, and the other types' follow.\n";
+  std::string text =
+      "  // Generated from cpp_model/isa/counters.hpp by `raypool isa --write`; a test compares. Do not edit.\n";
+  text +=
+      "  // Numbers of the performance counters; those of a row by type are of ALU type 0, and the other types' "
+      "follow.\n";
   text += "  // A module uses some of them only.\n  /* verilator lint_off UNUSEDPARAM */\n";
   for (const CounterInfo& info : kCounters) {
     text += fmt::format("  localparam integer COUNTER_{} = {};\n", words_in_upper_case(info.name), info.number);

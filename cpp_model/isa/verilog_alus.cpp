@@ -18,7 +18,9 @@ void for_each_alu(Function function) {
 }
 
 /// Instances of a type, as a Verilog expression.
-std::string count_of(const std::string& name, const AluInfo& info) { return info.timed_by_events() ? "1" : name + "_COUNT"; }
+std::string count_of(const std::string& name, const AluInfo& info) {
+  return info.timed_by_events() ? "1" : name + "_COUNT";
+}
 
 /// A row's parameters, each as `, .NAME(NAME)`.
 std::string further_parameters(std::string_view names) {
@@ -69,7 +71,8 @@ std::string alu_instance_types_verilog() {
   text += "  // The type of each instance, the first one's lowest: by type, in the order of the types' numbers.\n";
   text += fmt::format("  localparam [INSTANCES*4-1:0] INSTANCE_TYPES = {{\n    {}}};\n\n", types);
   text += fmt::format(
-      "  generate\n    if ({}) begin : gen_bad_count\n      compute_unit_counts_of_ALUs_must_be_from_1_to_4 illegal ();\n    "
+      "  generate\n    if ({}) begin : gen_bad_count\n      compute_unit_counts_of_ALUs_must_be_from_1_to_4 illegal "
+      "();\n    "
       "end\n"
       "  endgenerate\n",
       wrong);

@@ -126,8 +126,8 @@ class InterferenceGraph {
     });
     neighbours_[at(gone)] = NumberSet(size_);
   }
-  /// Briggs: fewer than `places` neighbours of the merged node have as many neighbours themselves, so colouring cannot get
-  /// harder.
+  /// Briggs: fewer than `places` neighbours of the merged node have as many neighbours
+  /// themselves, so colouring cannot get harder.
   bool is_safe(int a, int b, int places) const {
     NumberSet all = neighbours_[at(a)];
     all.merge(neighbours_[at(b)]);
@@ -166,8 +166,9 @@ class InterferenceGraph {
     if (defined == failed && begin.line == 0) begin = function.ops[i].where;
   }
   if (most > (predicates ? kPredicates - 1 : kRegisters)) {
-    throw InputError(fmt::format("{}: kernel '{}' holds {} {} at once here, but {}; compute some of them later, or again",
-                                 to_string(where), function.name, most, what, available));
+    throw InputError(
+        fmt::format("{}: kernel '{}' holds {} {} at once here, but {}; compute some of them later, or again",
+                    to_string(where), function.name, most, what, available));
   }
   throw InputError(fmt::format("{}: kernel '{}' finds no place for what begins here, and {}; let some {} end sooner",
                                to_string(begin), function.name, available, what));

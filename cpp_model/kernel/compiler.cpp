@@ -88,8 +88,8 @@ void compile(Function function, Program& program) {
   for (const auto& [index, label] : jumps) code[index].immediate = label_at[label];
 
   if (program.code.size() + code.size() > kLongestProgram) {
-    throw InputError(
-        fmt::format("kernel '{}' makes the program longer than {} instructions; divide it", function.name, kLongestProgram));
+    throw InputError(fmt::format("kernel '{}' makes the program longer than {} instructions; divide it", function.name,
+                                 kLongestProgram));
   }
   if (!program.entries.emplace(function.name, entry).second) {
     throw InputError(fmt::format("kernel '{}' is in the program twice; give one of them another name", function.name));

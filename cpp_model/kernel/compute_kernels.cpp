@@ -70,7 +70,8 @@ void run_native(ComputeKernel which, NativeThread& thread) {
     thread.mode.fused ? run_in_mode<Subnormals::Flush, true>(which, thread)
                       : run_in_mode<Subnormals::Flush, false>(which, thread);
   else
-    thread.mode.fused ? run_in_mode<Subnormals::Ieee, true>(which, thread) : run_in_mode<Subnormals::Ieee, false>(which, thread);
+    thread.mode.fused ? run_in_mode<Subnormals::Ieee, true>(which, thread)
+                      : run_in_mode<Subnormals::Ieee, false>(which, thread);
 }
 
 const Program& compute_kernel_program(bool fused) {

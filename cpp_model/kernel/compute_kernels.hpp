@@ -1,5 +1,5 @@
-// Kernels that use memory only, for `raypool run`. Any number of blocks and threads may be launched, all blocks with the same
-// number.
+// Kernels that use memory only, for `raypool run`. Any number of blocks and threads may be
+// launched, all blocks with the same number.
 #pragma once
 
 #include "enum_array.hpp"
@@ -28,7 +28,8 @@ inline constexpr int kB = 2;
 inline constexpr int kC = 3;
 }  // namespace matmul_argument
 
-/// Both kernels in one program, `fused` for machines with arithmetic.fma. Block words of the launches must be 0 .. blocks-1.
+/// Both kernels in one program, `fused` for machines with arithmetic.fma. Block words of
+/// the launches must be 0 .. blocks-1.
 const Program& compute_kernel_program(bool fused = false);
 
 /// One thread of a kernel as C++.

@@ -1,4 +1,5 @@
-// The compiler's intermediate code: machine instructions whose registers and predicates are not yet numbered as the machine's.
+// The compiler's intermediate code: machine instructions whose registers and predicates
+// are not yet numbered as the machine's.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +15,9 @@ struct Location {
   const char* file = "";
   int line = 0;
   /// As a default argument: the place of the call.
-  static constexpr Location here(const char* file = __builtin_FILE(), int line = __builtin_LINE()) { return {file, line}; }
+  static constexpr Location here(const char* file = __builtin_FILE(), int line = __builtin_LINE()) {
+    return {file, line};
+  }
 };
 /// "kernels.cpp:57"
 std::string to_string(const Location& location);
@@ -24,7 +27,9 @@ struct Guard {
   int predicate = 0;
   bool negated = false;
   bool all() const { return predicate == 0 && !negated; }
-  friend bool operator==(const Guard& a, const Guard& b) { return a.predicate == b.predicate && a.negated == b.negated; }
+  friend bool operator==(const Guard& a, const Guard& b) {
+    return a.predicate == b.predicate && a.negated == b.negated;
+  }
 };
 
 inline constexpr int kNothing = -1;

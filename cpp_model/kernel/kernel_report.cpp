@@ -9,8 +9,8 @@
 namespace raypool {
 namespace {
 
-// M.-L. Hsieh, "Ray-Pool Based Configurable Multiprocessor Design for Ray Tracing", National Taiwan University, 2015; one compute
-// unit.
+// M.-L. Hsieh, "Ray-Pool Based Configurable Multiprocessor Design for Ray Tracing", National Taiwan
+// University, 2015; one compute unit.
 constexpr std::array<InstructionCounts, kRayKernels> kThesisCounts = {
     {{2, 2, 2, 33, 24, 1, 13}, {1, 7, 4, 54, 75, 5, 45}, {1, 5, 4, 38, 33, 3, 26}, {1, 6, 3, 23, 10, 1, 10}}};
 
@@ -58,7 +58,8 @@ std::string kernel_table(bool fused) {
   for (const std::string_view name : kAluNames) text += fmt::format("{:>9}", name);
   text += fmt::format("{:>10}\n", "total");
   for (size_t kernel = 0; kernel < kRayKernels; ++kernel) {
-    const InstructionCounts counts = count_instructions(ray_kernel_program(fused), std::string(kRayKernelNames[kernel]));
+    const InstructionCounts counts =
+        count_instructions(ray_kernel_program(fused), std::string(kRayKernelNames[kernel]));
     const InstructionCounts& thesis = kThesisCounts[kernel];
     text += fmt::format("{:<22}", kRayKernelNames[kernel]);
     for (size_t type = 0; type < kAluTypes; ++type)

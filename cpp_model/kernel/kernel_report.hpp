@@ -12,8 +12,8 @@ namespace raypool {
 /// Instructions of a kernel by ALU type, index = AluType.
 using InstructionCounts = EnumArray<AluType, int, kAluTypes>;
 
-/// A kernel's instructions: from its entry to the next entry. Throws InputError, with the names there are, if the program has no
-/// such kernel.
+/// A kernel's instructions: from its entry to the next entry. Throws InputError, with the names there
+/// are, if the program has no such kernel.
 Program extract_kernel(const Program& program, const std::string& name);
 InstructionCounts count_instructions(const Program& program, const std::string& name);
 

@@ -58,7 +58,8 @@ std::string here(int line) { return "kernel_test.cpp:" + std::to_string(line); }
 TEST(KernelLanguage, ConstantsBecomeImmediates) {
   EXPECT_EQ(code_of([](RecordedKernel& k) { k.set_word(0, 2.0f * k.float_word(1)); }),
             "rld r0, 1\nfmul r0, r0, 2.0\nrst 0, r0\nexit\n");
-  EXPECT_EQ(code_of([](RecordedKernel& k) { k.set_word(0, k.int_word(1) - 3); }), "rld r0, 1\nisub r0, r0, 3\nrst 0, r0\nexit\n");
+  EXPECT_EQ(code_of([](RecordedKernel& k) { k.set_word(0, k.int_word(1) - 3); }),
+            "rld r0, 1\nisub r0, r0, 3\nrst 0, r0\nexit\n");
   EXPECT_EQ(code_of([](RecordedKernel& k) { k.set_word(0, 3 - k.int_word(1)); }),
             "mov r0, 3\nrld r1, 1\nisub r0, r0, r1\nrst 0, r0\nexit\n");
   EXPECT_EQ(code_of([](RecordedKernel& k) { k.set_word(0, Float(1.5f)); }), "rst 0, 1.5\nexit\n");
@@ -75,8 +76,10 @@ TEST(KernelLanguage, AddressesTakeConstantSums) {
 }
 
 TEST(KernelLanguage, CopiesThatNobodyChangesCostNothing) {
-  // NOLINTBEGIN(performance-unnecessary-value-param, performance-unnecessary-copy-initialization): the copies are what is tested.
-  const auto twice = [](Float x, Vector<RecordedKernel> v) { return Vector<RecordedKernel>{x * v.x, x * v.y, x * v.z}; };
+  // NOLINTBEGIN(performance-unnecessary-value-param, performance-unnecessary-copy-initialization): tested
+  const auto twice = [](Float x, Vector<RecordedKernel> v) {
+    return Vector<RecordedKernel>{x * v.x, x * v.y, x * v.z};
+  };
   const std::string code = code_of([&](RecordedKernel& k) {
     const Float x = k.float_word(0);
     const Float same = x;
@@ -221,9 +224,9 @@ TEST(KernelLanguage, TooManyValuesAreReportedWithKernelAndLine) {
     k.ray_out();
     for (int i = 0; i < 17; ++i) k.set_word(i % 12, values[i]);
   });
-  EXPECT_EQ(error,
-            here(line) +
-                ": kernel 'k' holds 17 values at once here, but a thread has 16 registers; compute some of them later, or again");
+  EXPECT_EQ(error, here(line) +
+                       ": kernel 'k' holds 17 values at once here, but a thread has 16 registers; compute some of them "
+                       "later, or again");
 }
 
 TEST(KernelLanguage, TooManyConditionsAreReportedWithKernelAndLine) {
@@ -239,10 +242,11 @@ TEST(KernelLanguage, TooManyConditionsAreReportedWithKernelAndLine) {
     for (int i = 0; i < count; ++i) k.set_word(1, select(conditions[i], Int(i), k.int_word(1)));
   };
   EXPECT_EQ(error_of([&](RecordedKernel& k) { body(k, 15); }), "no error");
-  EXPECT_EQ(error_of([&](RecordedKernel& k) { body(k, 16); }),
-            here(line) +
-                ": kernel 'k' holds 16 conditions at once here, but a warp has 15 predicates for them; compute some of them "
-                "later, or again");
+  EXPECT_EQ(
+      error_of([&](RecordedKernel& k) { body(k, 16); }),
+      here(line) +
+          ": kernel 'k' holds 16 conditions at once here, but a warp has 15 predicates for them; compute some of them "
+          "later, or again");
 }
 
 TEST(KernelLanguage, ConditionOfAnIfMayNotBeAssignedInside) {
@@ -252,8 +256,8 @@ TEST(KernelLanguage, ConditionOfAnIfMayNotBeAssignedInside) {
     line = __LINE__ + 1;
     k.if_(running, [&] { running = k.thread() < 2; });
   });
-  EXPECT_EQ(error,
-            here(line) + ": kernel 'k' assigns a condition inside the if_ of " + here(line) + " that it decides; assign a copy");
+  EXPECT_EQ(error, here(line) + ": kernel 'k' assigns a condition inside the if_ of " + here(line) +
+                       " that it decides; assign a copy");
 }
 
 TEST(KernelLanguage, NumbersOutOfRangeAreReportedWithTheirLine) {

@@ -44,13 +44,16 @@ void run_native(RayKernel which, NativeThread& thread) {
     thread.mode.fused ? run_in_mode<Subnormals::Flush, true>(which, thread)
                       : run_in_mode<Subnormals::Flush, false>(which, thread);
   else
-    thread.mode.fused ? run_in_mode<Subnormals::Ieee, true>(which, thread) : run_in_mode<Subnormals::Ieee, false>(which, thread);
+    thread.mode.fused ? run_in_mode<Subnormals::Ieee, true>(which, thread)
+                      : run_in_mode<Subnormals::Ieee, false>(which, thread);
 }
 
 const Program& ray_kernel_program(bool fused) {
   const auto build = [](bool with_fused) {
     Program program;
-    const auto add = [&](RayKernel which, const auto& body) { kernel::add_kernel(program, name_of(which), body, with_fused); };
+    const auto add = [&](RayKernel which, const auto& body) {
+      kernel::add_kernel(program, name_of(which), body, with_fused);
+    };
     add(RayKernel::CastEye, [](auto& k) { kernel::cast_eye(k); });
     add(RayKernel::CastSecondary, [](auto& k) { kernel::cast_secondary(k); });
     add(RayKernel::CastSecondaryDirect, [](auto& k) { kernel::cast_secondary_direct(k); });

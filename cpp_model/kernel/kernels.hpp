@@ -1,5 +1,5 @@
-// The ray-tracing kernels and what runs them natively. Written once in the kernel language (kernel.hpp); the same source runs as
-// C++ and compiles to machine code.
+// The ray-tracing kernels and what runs them natively. Written once in the kernel language (kernel.hpp); the same
+// source runs as C++ and compiles to machine code.
 #pragma once
 
 #include <array>
@@ -25,16 +25,17 @@ enum class RayKernel : uint8_t {
   Shade = 3,                ///< shadow intersection -> contribution to the frame buffer
 };
 inline constexpr int kRayKernels = 4;
-inline constexpr EnumArray<RayKernel, std::string_view, kRayKernels> kRayKernelNames = {"cast_eye", "cast_secondary",
-                                                                                        "cast_secondary_direct", "shade"};
+inline constexpr EnumArray<RayKernel, std::string_view, kRayKernels> kRayKernelNames = {
+    "cast_eye", "cast_secondary", "cast_secondary_direct", "shade"};
 
-/// What normal intersections are given to: the kernel without reflections at depth 1, and wherever there are none to be seen.
+/// What normal intersections are given to: the kernel without reflections at depth 1, and
+/// wherever there are none to be seen.
 constexpr RayKernel secondary_kernel(int depth, bool reflections) {
   return depth > 1 && reflections ? RayKernel::CastSecondary : RayKernel::CastSecondaryDirect;
 }
 
-/// Argument words of the ray kernels (floats unless said otherwise). The direction through the centre of pixel (x, y) is
-/// corner + x * step_x + y * step_y.
+/// Argument words of the ray kernels (floats unless said otherwise). The direction through the centre of pixel (x, y)
+/// is corner + x * step_x + y * step_y.
 namespace argument {
 inline constexpr int kEye = 0;          ///< x, y, z
 inline constexpr int kCorner = 3;       ///< x, y, z
@@ -42,9 +43,9 @@ inline constexpr int kStepX = 6;        ///< x, y, z
 inline constexpr int kStepY = 9;        ///< x, y, z
 inline constexpr int kLight = 12;       ///< position x, y, z
 inline constexpr int kLightColor = 15;  ///< red, green, blue
-inline constexpr int kOffset = 18;      ///< distance by which a secondary ray's origin leaves the surface along the normal
+inline constexpr int kOffset = 18;  ///< distance by which a secondary ray's origin leaves the surface along the normal
 inline constexpr int kTileWidthLog2 =
-    19;                               ///< integer: an eye tile is 2^this pixels wide; thread t is pixel (t & mask, t >> log2)
+    19;  ///< integer: an eye tile is 2^this pixels wide; thread t is pixel (t & mask, t >> log2)
 inline constexpr int kTileMask = 20;  ///< integer: tile width - 1
 inline constexpr int kWidth = 21;     ///< integer: image width, pixels
 inline constexpr int kHeight = 22;    ///< integer: image height, pixels
@@ -52,8 +53,8 @@ inline constexpr int kCount = 23;
 }  // namespace argument
 // CastEye is launched with block word = x of the tile's first pixel | y << 16. Pixels outside the image export nothing.
 
-/// All ray kernels in one program, `fused` for machines with arithmetic.fma. Throws InputError (with kernel and line) when
-/// registers or predicates do not suffice.
+/// All ray kernels in one program, `fused` for machines with arithmetic.fma. Throws InputError (with kernel and line)
+/// when registers or predicates do not suffice.
 const Program& ray_kernel_program(bool fused = false);
 
 /// What one thread of a kernel sees and leaves when it runs as C++.

@@ -27,7 +27,8 @@ class NumberSet {
   template <typename Visit>
   void for_each(const Visit& visit) const {
     for (size_t i = 0; i < words_.size(); ++i) {
-      for (uint64_t word = words_[i]; word != 0; word &= word - 1) visit(static_cast<int>(i * 64) + __builtin_ctzll(word));
+      for (uint64_t word = words_[i]; word != 0; word &= word - 1)
+        visit(static_cast<int>(i * 64) + __builtin_ctzll(word));
     }
   }
   int count() const {

@@ -1,5 +1,5 @@
-// The kernel language run as C++: one thread at a time, every operation with the bits the machine gives. kernel.hpp describes the
-// language.
+// The kernel language run as C++: one thread at a time, every operation with the bits the machine
+// gives. kernel.hpp describes the language.
 #pragma once
 
 #include <algorithm>
@@ -80,7 +80,9 @@ class NativeKernel {
     friend Float operator-(Float a, Float b) { return of_bits(arith::sub(a.bits, b.bits, kMode)); }
     friend Float operator*(Float a, Float b) { return of_bits(arith::mul(a.bits, b.bits, kMode)); }
     friend Float operator/(Float a, Float b) { return of_bits(arith::div(a.bits, b.bits, kMode)); }
-    friend Float multiply_add(Float a, Float b, Float c) { return of_bits(arith::muladd(a.bits, b.bits, c.bits, kMode)); }
+    friend Float multiply_add(Float a, Float b, Float c) {
+      return of_bits(arith::muladd(a.bits, b.bits, c.bits, kMode));
+    }
     friend Float operator-(Float a) { return of_bits(a.bits ^ 0x80000000u); }
     Float& operator+=(Float b) { return *this = *this + b; }
     Float& operator-=(Float b) { return *this = *this - b; }
@@ -111,7 +113,9 @@ class NativeKernel {
   Int int_argument(int number) const { return (*thread_.arguments)[number]; }
   Float float_argument(int number) const { return Float::of_bits((*thread_.arguments)[number]); }
 
-  Int load_int(Int address, int offset = 0) const { return thread_.memory->load(address.bits + static_cast<uint32_t>(offset)); }
+  Int load_int(Int address, int offset = 0) const {
+    return thread_.memory->load(address.bits + static_cast<uint32_t>(offset));
+  }
   Float load_float(Int address, int offset = 0) const { return Float::of_bits(load_int(address, offset).bits); }
   void store(Int address, int offset, Int value) {
     thread_.memory->store(address.bits + static_cast<uint32_t>(offset), value.bits);
@@ -130,7 +134,8 @@ class NativeKernel {
     words_.fill(kUndefinedWord);
   }
   void frame_out() {
-    thread_.frame.push_back({words_[word::kPixel], {words_[word::kColor], words_[word::kColor + 1], words_[word::kColor + 2]}});
+    thread_.frame.push_back(
+        {words_[word::kPixel], {words_[word::kColor], words_[word::kColor + 1], words_[word::kColor + 2]}});
     words_.fill(kUndefinedWord);
   }
 

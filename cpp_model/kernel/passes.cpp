@@ -220,8 +220,9 @@ void remove_dead(Function& function) {
     for (size_t i = 0; i < function.ops.size(); ++i) {
       const Op& op = function.ops[i];
       const Effects effect = effects(op);
-      const bool needed = (effect.register_defined != kNothing && liveness.registers_after[i].has(effect.register_defined)) ||
-                          (effect.predicate_defined != kNothing && liveness.predicates_after[i].has(effect.predicate_defined));
+      const bool needed =
+          (effect.register_defined != kNothing && liveness.registers_after[i].has(effect.register_defined)) ||
+          (effect.predicate_defined != kNothing && liveness.predicates_after[i].has(effect.predicate_defined));
       if (needed || !is_pure(op))
         kept.push_back(op);
       else

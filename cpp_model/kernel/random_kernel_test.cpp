@@ -15,8 +15,8 @@ namespace {
 constexpr uint32_t kMemoryBytes = 4096;
 constexpr int kSlotBytes = 64;  // of memory a thread
 
-/// Writes a kernel whose shape follows from the seed alone, so that it comes out the same for every K and however often a body is
-/// run.
+/// Writes a kernel whose shape follows from the seed alone, so that it comes out the same for
+/// every K and however often a body is run.
 template <typename K>
 class RandomKernel {
   using Bool = typename K::Bool;
@@ -222,12 +222,14 @@ class RandomKernel {
     }
   }
 
-  void statements(Random& random, std::vector<Int>& ints, std::vector<Float>& floats, std::vector<Bool>& bools, int depth) {
+  void statements(Random& random, std::vector<Int>& ints, std::vector<Float>& floats, std::vector<Bool>& bools,
+                  int depth) {
     const uint32_t count = 2 + below(random, 5);
     for (uint32_t s = 0; s < count; ++s) statement(random, ints, floats, bools, depth);
   }
 
-  void statement(Random& random, std::vector<Int>& ints, std::vector<Float>& floats, std::vector<Bool>& bools, int depth) {
+  void statement(Random& random, std::vector<Int>& ints, std::vector<Float>& floats, std::vector<Bool>& bools,
+                 int depth) {
     const uint32_t kind = below(random, depth > 0 ? 14 : 9);
     const uint32_t seed = random();
     const size_t target = below(random, 60);
@@ -284,8 +286,8 @@ class RandomKernel {
     locked_ = outer_locked;
   }
 
-  void some_trips(Random& random, uint32_t seed, std::vector<Int>& ints, std::vector<Float>& floats, std::vector<Bool>& bools,
-                  int depth) {
+  void some_trips(Random& random, uint32_t seed, std::vector<Int>& ints, std::vector<Float>& floats,
+                  std::vector<Bool>& bools, int depth) {
     // Some trips, of a number that differs between threads.
     Int left = (pick(random, ints) & 3) + static_cast<int>(below(random, 2));
     const uint32_t form = below(random, 3);
@@ -339,7 +341,8 @@ void compare(uint32_t seed, Outcome& outcome) {
   test::Interpreter machine;
   std::mt19937 random(seed);
   machine.memory = Memory(kMemoryBytes);
-  for (uint32_t address = 0; address < kMemoryBytes; address += 4) machine.memory.store(address, static_cast<uint32_t>(random()));
+  for (uint32_t address = 0; address < kMemoryBytes; address += 4)
+    machine.memory.store(address, static_cast<uint32_t>(random()));
   for (uint32_t& word : machine.arguments) word = static_cast<uint32_t>(random() % 100);
   for (auto& package : machine.input) {
     for (size_t i = 0; i < package.size(); ++i) {
@@ -362,15 +365,18 @@ void compare(uint32_t seed, Outcome& outcome) {
     thread.mode = machine.mode;
     thread.input = machine.input[lane];
     if (thread.mode.subnormals == Subnormals::Flush) {
-      thread.mode.fused ? run_random<Subnormals::Flush, true>(thread, seed) : run_random<Subnormals::Flush, false>(thread, seed);
+      thread.mode.fused ? run_random<Subnormals::Flush, true>(thread, seed)
+                        : run_random<Subnormals::Flush, false>(thread, seed);
     } else {
-      thread.mode.fused ? run_random<Subnormals::Ieee, true>(thread, seed) : run_random<Subnormals::Ieee, false>(thread, seed);
+      thread.mode.fused ? run_random<Subnormals::Ieee, true>(thread, seed)
+                        : run_random<Subnormals::Ieee, false>(thread, seed);
     }
     ASSERT_EQ(thread.rays, machine.rays[lane]) << "seed " << seed << ", thread " << lane << "\n" << listing(program);
   }
   for (uint32_t address = 0; address < kMemoryBytes; address += 4) {
     ASSERT_EQ(native_memory.load(address), machine.memory.load(address))
-        << "seed " << seed << ", address " << address << ", thread " << (static_cast<int>(address) - 1024) / kSlotBytes << "\n"
+        << "seed " << seed << ", address " << address << ", thread " << (static_cast<int>(address) - 1024) / kSlotBytes
+        << "\n"
         << listing(program);
   }
 }

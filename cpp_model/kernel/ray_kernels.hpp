@@ -1,4 +1,5 @@
-// The ray kernels' source. kernels.hpp says what each is for, packages.hpp what the words hold, docs/kernels.md has the formulas.
+// The ray kernels' source. kernels.hpp says what each is for, packages.hpp what the words
+// hold, docs/kernels.md has the formulas.
 #pragma once
 
 #include <limits>
@@ -33,23 +34,24 @@ void cast_eye(K& k) {
   k.if_(x < k.int_argument(argument::kWidth) && y < k.int_argument(argument::kHeight), [&] { k.ray_out(); });
 }
 
-/// What the light gives through the hit: the shadow ray's direction, from `origin` to the light, and by how much the surface
-/// faces it.
+/// What the light gives through the hit: the shadow ray's direction, from `origin` to the light,
+/// and by how much the surface faces it.
 template <typename K>
 struct Lighting {
   Vector<K> direction;
   typename K::Float cosine;  // 0 if the light is behind the surface
 };
 
-/// The package's words up to the limit are those of a normal intersection; `back` says that the ray met the normal's back side.
+/// The package's words up to the limit are those of a normal intersection; `back` says that
+/// the ray met the normal's back side.
 template <typename K>
 Lighting<K> light_hit(K& k, const Vector<K>& origin, const Vector<K>& normal, const typename K::Bool& back) {
   using Float = typename K::Float;
   const Vector<K> direction = vector_argument(k, argument::kLight) - origin;
   Float cosine = dot(normal, direction) * rsqrt(dot(direction, direction));
   k.if_(back, [&] { cosine = -cosine; });
-  // 0 * infinity, from a light that lies on the surface, becomes 0 too; the largest cosine is 1, even where the square of the
-  // distance is less than the smallest number.
+  // 0 * infinity, from a light that lies on the surface, becomes 0 too; the largest cosine is 1, even where the square
+  // of the distance is less than the smallest number.
   return {direction, min(max(cosine, 0.0f), 1.0f)};
 }
 

@@ -106,8 +106,8 @@ Expected expect(const Case& test) {
   const Vec normal = projection > 0 ? -1.0 * geometric : geometric;
   Expected expected;
   expected.facing = std::fabs(projection);
-  expected.origin =
-      get(hit, word::kOrigin) + as_float(hit[word::kDistance]) * direction + as_float(test.arguments[argument::kOffset]) * normal;
+  expected.origin = get(hit, word::kOrigin) + as_float(hit[word::kDistance]) * direction +
+                    as_float(test.arguments[argument::kOffset]) * normal;
   expected.direction = test.argument_vec(argument::kLight) - expected.origin;
   const double cosine = std::max(0.0, dot(normal, expected.direction)) / length(expected.direction);
   const Vec kd = test.material_vec(kMaterialDiffuse);
@@ -263,7 +263,8 @@ TEST(RayKernels, MachineCodeAgreesWithNativeInEveryMode) {
           thread.mode = machine.mode;
           thread.input = machine.input[lane];
           run_native(static_cast<RayKernel>(which), thread);
-          ASSERT_EQ(thread.rays, machine.rays[lane]) << name << " mode " << mode << " seed " << seed << " lane " << lane;
+          ASSERT_EQ(thread.rays, machine.rays[lane])
+              << name << " mode " << mode << " seed " << seed << " lane " << lane;
           ASSERT_EQ(thread.frame.size(), machine.frame[lane].size());
           for (size_t i = 0; i < thread.frame.size(); ++i) {
             ASSERT_EQ(thread.frame[i].pixel, machine.frame[lane][i].pixel);
@@ -386,11 +387,12 @@ TEST(ComputeKernels, MatmulTakesAnyNumberOfBlocksAndThreads) {
           for (uint32_t column = 0; column < n; ++column) {
             float sum = 0;
             for (uint32_t k = 0; k < n; ++k) {
-              sum +=
-                  as_float(machine.memory.load(a + 4 * (row * n + k))) * as_float(machine.memory.load(b + 4 * (k * n + column)));
+              sum += as_float(machine.memory.load(a + 4 * (row * n + k))) *
+                     as_float(machine.memory.load(b + 4 * (k * n + column)));
             }
             const uint32_t address = c + 4 * (row * n + column);
-            ASSERT_EQ(machine.memory.load(address), as_bits(sum)) << "n " << n << " row " << row << " column " << column;
+            ASSERT_EQ(machine.memory.load(address), as_bits(sum))
+                << "n " << n << " row " << row << " column " << column;
             ASSERT_EQ(native.load(address), as_bits(sum));
           }
         }

@@ -1,5 +1,7 @@
-// The kernel language recorded: each operation becomes an instruction of intermediate code. kernel.hpp describes the language.
-// A value owns a virtual register or predicate. Operands are taken as Float/Int/BoolOperand, which notice the source line.
+// The kernel language recorded: each operation becomes an instruction of intermediate
+// code. kernel.hpp describes the language.
+// A value owns a virtual register or predicate. Operands are taken as
+// Float/Int/BoolOperand, which notice the source line.
 #pragma once
 
 #include <cstdint>
@@ -34,7 +36,9 @@ class BoolOperand {
   const Condition& condition() const { return condition_; }
   const Location& where() const { return condition_.where; }
   /// The predicate, negated by an instruction if need be.
-  int positive() const { return condition_.negated ? Recorder::active().materialise(condition_) : condition_.predicate; }
+  int positive() const {
+    return condition_.negated ? Recorder::active().materialise(condition_) : condition_.predicate;
+  }
 
  private:
   Condition condition_;
@@ -88,8 +92,10 @@ class Bool {
 class Int {
  public:
   Int(int literal, Location where = Location::here()) : Int(static_cast<uint32_t>(literal), where) {}
-  Int(uint32_t literal, Location where = Location::here()) : number_(Recorder::active().emit_constant(literal, where)) {}
-  Int(const Int& other, Location where = Location::here()) : number_(Recorder::active().emit_copy(other.number_, where)) {}
+  Int(uint32_t literal, Location where = Location::here())
+      : number_(Recorder::active().emit_constant(literal, where)) {}
+  Int(const Int& other, Location where = Location::here())
+      : number_(Recorder::active().emit_copy(other.number_, where)) {}
   Int(Int&& other) noexcept : number_(other.number_) {}
   Int& operator=(const Int& other) {
     Recorder::active().assign_register(number_, other.number_, false);
@@ -114,8 +120,10 @@ class Int {
 
 class Float {
  public:
-  Float(float literal, Location where = Location::here()) : number_(Recorder::active().emit_constant(as_bits(literal), where)) {}
-  Float(const Float& other, Location where = Location::here()) : number_(Recorder::active().emit_copy(other.number_, where)) {}
+  Float(float literal, Location where = Location::here())
+      : number_(Recorder::active().emit_constant(as_bits(literal), where)) {}
+  Float(const Float& other, Location where = Location::here())
+      : number_(Recorder::active().emit_copy(other.number_, where)) {}
   Float(Float&& other) noexcept : number_(other.number_) {}
   Float& operator=(const Float& other) {
     Recorder::active().assign_register(number_, other.number_, false);
@@ -140,7 +148,8 @@ class Float {
 
 inline BoolOperand::BoolOperand(const Bool& value, Location where) : condition_{value.number(), false, where} {}
 inline BoolOperand::BoolOperand(bool literal, Location where)
-    : condition_{Recorder::active().emit_predicates(literal ? Opcode::Pand : Opcode::Pxor, 0, 0, where), false, where} {}
+    : condition_{Recorder::active().emit_predicates(literal ? Opcode::Pand : Opcode::Pxor, 0, 0, where), false, where} {
+}
 inline IntOperand::IntOperand(const Int& value, Location place) : number(value.number()), where(place) {}
 inline FloatOperand::FloatOperand(const Float& value, Location place) : number(value.number()), where(place) {}
 
@@ -171,7 +180,8 @@ inline Bool operator&&(const BoolOperand& a, const BoolOperand& b) {
   if (b.condition().negated)
     return Bool::of(recorder.emit_predicates(Opcode::Pandn, a.positive(), b.condition().predicate, a.where()));
   if (a.condition().negated)
-    return Bool::of(recorder.emit_predicates(Opcode::Pandn, b.condition().predicate, a.condition().predicate, a.where()));
+    return Bool::of(
+        recorder.emit_predicates(Opcode::Pandn, b.condition().predicate, a.condition().predicate, a.where()));
   return Bool::of(recorder.emit_predicates(Opcode::Pand, a.condition().predicate, b.condition().predicate, a.where()));
 }
 inline Bool operator||(const BoolOperand& a, const BoolOperand& b) {
@@ -192,7 +202,9 @@ inline Int operator|(const IntOperand& a, const IntOperand& b) { return int_valu
 inline Int operator^(const IntOperand& a, const IntOperand& b) { return int_value(binary(Opcode::Xor, a, b)); }
 inline Int operator<<(const IntOperand& a, const IntOperand& b) { return int_value(binary(Opcode::Shl, a, b)); }
 inline Int operator>>(const IntOperand& a, const IntOperand& b) { return int_value(binary(Opcode::Sar, a, b)); }
-inline Int shift_right_logical(const IntOperand& a, const IntOperand& b) { return int_value(binary(Opcode::Shr, a, b)); }
+inline Int shift_right_logical(const IntOperand& a, const IntOperand& b) {
+  return int_value(binary(Opcode::Shr, a, b));
+}
 inline Int operator~(const IntOperand& a) {
   return int_value(Recorder::active().emit_immediate(Opcode::Xor, a.number, ~0u, a.where));
 }
@@ -273,8 +285,12 @@ class RecordedKernel {
   Int block(Location where = Location::here()) { return index(Opcode::Block, where); }
   Int threads(Location where = Location::here()) { return index(Opcode::Threads, where); }
   Int blocks(Location where = Location::here()) { return index(Opcode::Blocks, where); }
-  Int int_argument(int number, Location where = Location::here()) { return recorded::int_value(argument(number, where)); }
-  Float float_argument(int number, Location where = Location::here()) { return recorded::float_value(argument(number, where)); }
+  Int int_argument(int number, Location where = Location::here()) {
+    return recorded::int_value(argument(number, where));
+  }
+  Float float_argument(int number, Location where = Location::here()) {
+    return recorded::float_value(argument(number, where));
+  }
 
   Int load_int(const Int& address, int offset = 0, Location where = Location::here()) {
     return recorded::int_value(load(address, offset, where));
@@ -294,8 +310,12 @@ class RecordedKernel {
   void frame_out(Location where = Location::here()) { recorder_.emit(Opcode::Rfb, where); }
   Int int_word(int number, Location where = Location::here()) { return recorded::int_value(word(number, where)); }
   Float float_word(int number, Location where = Location::here()) { return recorded::float_value(word(number, where)); }
-  void set_word(int number, const Int& value, Location where = Location::here()) { write_word(number, value.number(), where); }
-  void set_word(int number, const Float& value, Location where = Location::here()) { write_word(number, value.number(), where); }
+  void set_word(int number, const Int& value, Location where = Location::here()) {
+    write_word(number, value.number(), where);
+  }
+  void set_word(int number, const Float& value, Location where = Location::here()) {
+    write_word(number, value.number(), where);
+  }
 
   template <typename Then>
   void if_(const BoolOperand& condition, const Then& then) {

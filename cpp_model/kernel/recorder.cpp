@@ -11,7 +11,8 @@ namespace {
 
 thread_local Recorder* active_recorder = nullptr;
 
-// A body that no thread needs is jumped over when it has at least so many instructions: the jump costs the time of some two.
+// A body that no thread needs is jumped over when it has at least so many instructions:
+// the jump costs the time of some two.
 constexpr size_t kShortestJump = 6;
 
 }  // namespace
@@ -87,7 +88,9 @@ int Recorder::emit_immediate(Opcode opcode, int ra, uint32_t immediate, const Lo
   return rd;
 }
 
-int Recorder::emit_constant(uint32_t bits, const Location& where) { return emit_immediate(Opcode::Mov, kNothing, bits, where); }
+int Recorder::emit_constant(uint32_t bits, const Location& where) {
+  return emit_immediate(Opcode::Mov, kNothing, bits, where);
+}
 int Recorder::emit_copy(int source, const Location& where) { return emit_binary(Opcode::Mov, kNothing, source, where); }
 
 int Recorder::emit_predicates(Opcode opcode, int px, int pb, const Location& where) {
@@ -114,8 +117,8 @@ void Recorder::assign_register(int variable, int source, bool temporary) {
   if (!temporary || !defined_last(source, false)) {
     source = emit_copy(source, last_);
   }
-  // The operation that has just made the value writes the variable instead. Under the mask of the declaration nothing else of it
-  // is left.
+  // The operation that has just made the value writes the variable instead. Under the mask of the
+  // declaration nothing else of it is left.
   Op& op = function_.ops.back();
   op.rd = variable;
   op.fresh = register_masks_[variable] == guard_;
@@ -124,8 +127,9 @@ void Recorder::assign_register(int variable, int source, bool temporary) {
 void Recorder::check_unlocked(int predicate, const Location& where) const {
   for (const Block& block : blocks_) {
     if (block.locked != predicate) continue;
-    throw InputError(fmt::format("{}: kernel '{}' assigns a condition inside the if_ of {} that it decides; assign a copy",
-                                 to_string(where), function_.name, to_string(block.where)));
+    throw InputError(
+        fmt::format("{}: kernel '{}' assigns a condition inside the if_ of {} that it decides; assign a copy",
+                    to_string(where), function_.name, to_string(block.where)));
   }
 }
 

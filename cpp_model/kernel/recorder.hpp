@@ -1,4 +1,5 @@
-// Collects a kernel's operations as intermediate code while its source runs once. The value types of recorded.hpp call it.
+// Collects a kernel's operations as intermediate code while its source runs once. The
+// value types of recorded.hpp call it.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
-// What a plain ALU computes: the golden model of a type that has a CLASS row in the table of isa.hpp. docs/add-an-alu.md adds
-// one.
+// What a plain ALU computes: the golden model of a type that has a CLASS row in the table of
+// isa.hpp. docs/add-an-alu.md adds one.
 #pragma once
 
 #include <cstdint>
@@ -23,8 +23,8 @@ struct LaneTask {
 class AluModel {
  public:
   virtual ~AluModel() = default;
-  /// The word for rd of an instruction that writes a register; of one that writes a predicate, 0 or 1. `opcode` is of the
-  /// type.
+  /// The word for rd of an instruction that writes a register; of one that writes a
+  /// predicate, 0 or 1. `opcode` is of the type.
   virtual uint32_t lane(Opcode opcode, const LaneTask& task, arith::Mode mode) const = 0;
 };
 

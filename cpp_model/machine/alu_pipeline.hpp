@@ -1,5 +1,6 @@
-// rtl/alu_pipeline.v: when an ALU with `latency` cycles between tasks and `depth` stages takes its next task, and when a task is
-// done. It is all that tid_alu, brh_alu, int_alu, flt_alu and slw_alu have of time; what they compute is the functional core's.
+// rtl/alu_pipeline.v: when an ALU with `latency` cycles between tasks and `depth` stages takes its next task,
+// and when a task is done. It is all that tid_alu, brh_alu, int_alu, flt_alu and slw_alu have of time; what
+// they compute is the functional core's.
 #pragma once
 
 #include <algorithm>

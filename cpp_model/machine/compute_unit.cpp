@@ -13,7 +13,8 @@ Signal ComputeUnit::signal(const std::string& /*scope*/, const std::string& /*na
 
 void ComputeUnit::open_waveform(const std::string& path) {
   throw std::runtime_error(
-      path + ": this engine writes no waveforms; use engine rtl or lockstep with a unit built by scripts/verilate.sh --trace");
+      path +
+      ": this engine writes no waveforms; use engine rtl or lockstep with a unit built by scripts/verilate.sh --trace");
 }
 
 }  // namespace raypool

@@ -1,10 +1,12 @@
-// The compute-unit interface: one set of ports, behind which stand the functional model, the Verilated RTL and the lockstep of
-// both; and several units as one device (machine/multiprocessor.hpp), with the same ports. A device of n units numbers them from
-// 0; a single unit is number 0 of its own.
+// The compute-unit interface: one set of ports, behind which stand the functional model, the Verilated RTL and the
+// lockstep of both; and several units as one device (machine/multiprocessor.hpp), with the same ports. A device of n
+// units numbers them from 0; a single unit is number 0 of its own.
 //
-// Use, once a cycle: read outputs() (what the unit's output ports show in this cycle; they never depend on this cycle's inputs),
-// decide the inputs, call clock(inputs). A handshake transfers when both its valid and its ready are set in the same cycle.
-// docs/architecture.md and docs/multiprocessor.md give the protocols; names are those of rtl/multiprocessor.v without _i and _o.
+// Use, once a cycle: read outputs() (what the unit's output ports show in this cycle; they never depend on
+// this cycle's inputs), decide the inputs, call clock(inputs). A handshake transfers when both its valid and
+// its ready are set in the same cycle.
+// docs/architecture.md and docs/multiprocessor.md give the protocols; names are those of
+// rtl/multiprocessor.v without _i and _o.
 #pragma once
 
 #include <cstdint>
@@ -121,9 +123,9 @@ struct UnitOutputs {
 
   uint32_t signals() const {
     return launch_ready * signal::kLaunchReady | idle * signal::kIdle | memory_request_valid * signal::kMemoryRequest |
-           import_request_valid * signal::kImportRequest | export_valid * signal::kExport | frame_valid * signal::kFrame |
-           (fault.code != FaultCode::None) * signal::kFault | kernel_done * signal::kKernelDone | busy * signal::kBusy |
-           unit_idle * signal::kUnitIdle;
+           import_request_valid * signal::kImportRequest | export_valid * signal::kExport |
+           frame_valid * signal::kFrame | (fault.code != FaultCode::None) * signal::kFault |
+           kernel_done * signal::kKernelDone | busy * signal::kBusy | unit_idle * signal::kUnitIdle;
   }
 };
 
@@ -157,7 +159,8 @@ struct UnitTrace {
   std::vector<RayWriteEvent> ray_writes;  ///< rising unit
 };
 
-/// A signal inside Verilated RTL: where its value stands, as Verilator keeps it. No data: the engine has no such signal.
+/// A signal inside Verilated RTL: where its value stands, as Verilator keeps it. No
+/// data: the engine has no such signal.
 struct Signal {
   const void* data = nullptr;
   uint32_t bits = 0;
@@ -177,25 +180,25 @@ class ComputeUnit {
 
   virtual const UnitOutputs& outputs() const = 0;
   virtual void clock(const UnitInputs& inputs) = 0;
-  /// Clocks at least once and at most `cycles` times, and returns how often. Launch, response and beat are of the first cycle
-  /// only, the readies of all. It ends early when outputs().signals() is no longer what it was, or when the last cycle had a
-  /// transfer. An engine that cannot do it faster than clock() clocks once.
+  /// Clocks at least once and at most `cycles` times, and returns how often. Launch, response and beat are of the first
+  /// cycle only, the readies of all. It ends early when outputs().signals() is no longer what it was, or when the last
+  /// cycle had a transfer. An engine that cannot do it faster than clock() clocks once.
   virtual uint64_t run(const UnitInputs& inputs, uint64_t cycles) {
     static_cast<void>(cycles);
     clock(inputs);
     return 1;
   }
 
-  /// All faults of the cycle that had the first one; of several outputs().fault is the one that wins. A device of which only its
-  /// ports are seen knows no other.
+  /// All faults of the cycle that had the first one; of several outputs().fault is the one that wins. A device of which
+  /// only its ports are seen knows no other.
   virtual std::vector<Fault> faults() const;
 
   /// Trace of the current cycle. Filled only after trace_on(); costs time.
   virtual void trace_on() {}
   virtual const UnitTrace& trace() const = 0;
 
-  /// A signal of the instance `scope` (such as "gen_unit[0].compute_unit"); the list probes.vlt has those there are. Its data is
-  /// that of the present cycle and stays where it is.
+  /// A signal of the instance `scope` (such as "gen_unit[0].compute_unit"); the list probes.vlt has those there are.
+  /// Its data is that of the present cycle and stays where it is.
   virtual Signal signal(const std::string& scope, const std::string& name) const;
 
   virtual uint64_t counter(int number) = 0;  ///< see namespace counter; summed over the units

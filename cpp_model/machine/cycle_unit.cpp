@@ -66,8 +66,8 @@ void CycleUnit::clock(const UnitInputs& inputs) {
 
 // ---- One cycle
 
-// Everything is worked out from the registers of this cycle; where a block changes its own, what others need is taken first. In
-// most cycles nothing passes the memory port, and nothing starts, ends or faults.
+// Everything is worked out from the registers of this cycle; where a block changes its own, what others need is taken
+// first. In most cycles nothing passes the memory port, and nothing starts, ends or faults.
 void CycleUnit::step(const UnitInputs& inputs) {
   const bool attention = attention_ | inputs.memory_response_valid | inputs.launch_valid;
   Timeline::Cycle& due = timeline_.at(now_);
@@ -78,7 +78,8 @@ void CycleUnit::step(const UnitInputs& inputs) {
   due.done = due.full = due.want_mem = due.want_ray = 0;
   const bool mem_ready = mem_.ready();
   const bool ray_ready = ray_.ready(dispatcher_.task(AluType::Ray));
-  const AluFaults faults = faulty_ ? AluFaults{mem_.fault(), mem_.fault_warp(), ray_.fault(), ray_.fault_warp()} : AluFaults{};
+  const AluFaults faults =
+      faulty_ ? AluFaults{mem_.fault(), mem_.fault_warp(), ray_.fault(), ray_.fault_warp()} : AluFaults{};
   const bool accepts = inputs.launch_valid && launcher_.launch_ready(ray_.import_active());
   counters_.single[counter::kBusyCycles] += launcher_.running();
 
@@ -148,7 +149,8 @@ void CycleUnit::clock_instruction_cache(const UnitInputs& inputs, const MemoryPo
     ++counters_.single[counter::kInstructionCacheMisses];
   }
   const uint32_t again = instruction_cache_.refill_done() ? buffer_.refill_done() : 0;
-  instruction_cache_.clock(missed, port.instruction_ready, port.instruction_response && inputs.memory_response.beat == kLastBeat);
+  instruction_cache_.clock(missed, port.instruction_ready,
+                           port.instruction_response && inputs.memory_response.beat == kLastBeat);
   if (!halted()) fetch(now_);
   instruction_cache_.end_cycle();
   buffer_.want_cache(again);
@@ -158,8 +160,8 @@ void CycleUnit::clock_mem(const UnitInputs& inputs, const MemoryPort& port) {
   const int arriving = dispatcher_.task(AluType::Mem);
   if (arriving < 0 && !port.data_response && !mem_.active()) return;
   counters_.unready[index(AluType::Mem)] += !mem_.ready();
-  const MemAlu::Events events =
-      mem_.clock({arriving, port.data_response, inputs.memory_response.id, inputs.memory_response.beat, port.data_ready});
+  const MemAlu::Events events = mem_.clock(
+      {arriving, port.data_response, inputs.memory_response.id, inputs.memory_response.beat, port.data_ready});
   counters_.single[counter::kDataCacheHits] += events.hit;
   counters_.single[counter::kDataCacheMisses] += events.miss;
   counters_.single[counter::kDataCacheStores] += events.store;

@@ -1,9 +1,10 @@
-// Engine `model`: rtl/compute_unit.v, cycle by cycle. It joins the blocks, which are called as in the RTL and have a file each.
+// Engine `model`: rtl/compute_unit.v, cycle by cycle. It joins the blocks, which are called
+// as in the RTL and have a file each.
 //
-// An instruction is executed by the functional core when it leaves the instruction buffer (a warp has one under way at a time, so
-// nobody can tell), and from then on only its time is modelled: the cycle in which an ALU will be done is known when it is
-// dispatched, and sets of warps are bit masks. So a cycle in which nothing happens costs next to nothing, and one in which
-// something does costs that.
+// An instruction is executed by the functional core when it leaves the instruction buffer (a warp has one under way
+// at a time, so nobody can tell), and from then on only its time is modelled: the cycle in which an ALU will be done is
+// known when it is dispatched, and sets of warps are bit masks. So a cycle in which nothing happens costs next to
+// nothing, and one in which something does costs that.
 #pragma once
 
 #include <array>
@@ -27,8 +28,8 @@
 
 namespace raypool {
 
-/// Works on a copy of `memory`, which must outlive it: taken at the first launch after reset() or set_argument(). Its stores go
-/// to the copy and leave through the memory port.
+/// Works on a copy of `memory`, which must outlive it: taken at the first launch after reset() or set_argument(). Its
+/// stores go to the copy and leave through the memory port.
 class CycleUnit final : public ComputeUnit {
  public:
   CycleUnit(const Configuration& configuration, const Memory& memory);
@@ -44,7 +45,8 @@ class CycleUnit final : public ComputeUnit {
   bool timed() const override { return true; }
   std::vector<Fault> faults() const override { return raised_; }
 
-  /// The instruction that a warp has under way or has retired last, with its operands before it. Kept after trace_on() only.
+  /// The instruction that a warp has under way or has retired last, with its operands
+  /// before it. Kept after trace_on() only.
   struct Issue {
     uint32_t pc = 0;
     const DecodedInstruction* instruction = nullptr;

@@ -9,8 +9,8 @@ namespace raypool {
 bool CycleUnit::quiet() const {
   return buffer_.ready() == 0 && buffer_.fetch_request() == 0 && dispatcher_.idle() && memory_arbiter_.idle() &&
          !instruction_cache_.request_valid() && !instruction_cache_.active() &&
-         !(instruction_cache_.missed() && miss_cycle_ >= now_) && !mem_.active() && !ray_.active() && !launcher_.start() &&
-         !launcher_.kernel_done(buffer_.active()) && planned_faults_.empty();
+         !(instruction_cache_.missed() && miss_cycle_ >= now_) && !mem_.active() && !ray_.active() &&
+         !launcher_.start() && !launcher_.kernel_done(buffer_.active()) && planned_faults_.empty();
 }
 
 uint64_t CycleUnit::run(const UnitInputs& inputs, uint64_t cycles) {
@@ -87,7 +87,8 @@ void CycleUnit::present(uint32_t now) {
 uint64_t CycleUnit::counter(int number) {
   const size_t type = static_cast<size_t>(number & 7);
   if (number < counter::kUnused || type >= kAluTypes) return counters_.value(number, 0, 0);
-  return counters_.value(number, dispatcher_.instances(type), launcher_.running() ? dispatcher_.unready(type, now_) : 0);
+  return counters_.value(number, dispatcher_.instances(type),
+                         launcher_.running() ? dispatcher_.unready(type, now_) : 0);
 }
 
 }  // namespace raypool

@@ -162,7 +162,8 @@ TEST(CycleUnit, RunIsClockRepeatedUntilSomethingHappens) {
     }
     if (out.memory_request_valid && !out.memory_request.write) lines.emplace_back(now + 100, out.memory_request.id);
     if (out.import_request_valid) {
-      for (uint64_t i = 0; i < kIntersectionBeats; ++i) beats.push_back(std::max(now + 10, beats.empty() ? 0 : beats.back() + 1));
+      for (uint64_t i = 0; i < kIntersectionBeats; ++i)
+        beats.push_back(std::max(now + 10, beats.empty() ? 0 : beats.back() + 1));
     }
     if (!lines.empty() && now >= lines.front().first) {
       inputs.memory_response_valid = true;
@@ -188,7 +189,8 @@ TEST(CycleUnit, RunIsClockRepeatedUntilSomethingHappens) {
   }
   EXPECT_LT(calls, 3000u) << "run() was to skip what is quiet";
   EXPECT_GT(run.counter(counter::kInstructions), 50u);
-  for (int number = 0; number < counter::kCount; ++number) EXPECT_EQ(run.counter(number), clocked.counter(number)) << number;
+  for (int number = 0; number < counter::kCount; ++number)
+    EXPECT_EQ(run.counter(number), clocked.counter(number)) << number;
 }
 
 TEST(Model, RefusesNumbersOfUnitsThatAMultiprocessorCannotHave) {
@@ -197,8 +199,8 @@ TEST(Model, RefusesNumbersOfUnitsThatAMultiprocessorCannotHave) {
   EXPECT_THROW(make_model(make_configuration(2, 2), memory, 3), InputError);
 }
 
-// Each group of warps has its code in another line of one set of the instruction cache. Whoever's miss has fetched a line must
-// get to use it before it is replaced, whatever the memory's latency.
+// Each group of warps has its code in another line of one set of the instruction cache. Whoever's miss has fetched a
+// line must get to use it before it is replaced, whatever the memory's latency.
 TEST(CycleUnit, WarpsDoNotTakeLinesFromEachOtherForEver) {
   constexpr uint32_t kPlaces = 32, kApart = 32;  // instructions from place to place: the two ways of a set are 64 lines
   Configuration configuration = make_configuration(32, 1);
@@ -209,7 +211,8 @@ TEST(CycleUnit, WarpsDoNotTakeLinesFromEachOtherForEver) {
   std::vector<uint64_t> code = assembled(text);
   code.resize((kPlaces + 3) * kApart, assembled("exit")[0]);
   const std::vector<uint64_t> busy(6, assembled("iadd r2, r2, 1")[0]);
-  for (uint32_t place = 3; place < kPlaces + 3; ++place) std::copy(busy.begin(), busy.end(), code.begin() + place * kApart);
+  for (uint32_t place = 3; place < kPlaces + 3; ++place)
+    std::copy(busy.begin(), busy.end(), code.begin() + place * kApart);
   for (int latency = 1; latency < 70; ++latency) {
     Memory memory = with_program(code);
     CycleUnit unit(configuration, memory);

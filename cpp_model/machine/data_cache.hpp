@@ -1,5 +1,5 @@
-// rtl/data_cache.v, cycle by cycle, without data: 2-way, least recently used, write-through, no write-allocate, loads that miss
-// do not block. docs/memory.md gives the rules that both sides follow.
+// rtl/data_cache.v, cycle by cycle, without data: 2-way, least recently used, write-through, no write-allocate, loads
+// that miss do not block. docs/memory.md gives the rules that both sides follow.
 #pragma once
 
 #include <array>
@@ -24,8 +24,8 @@ class DataCache {
     bool valid = false, store = false;
     bool may_allocate = false;  ///< a miss may take an MSHR
   };
-  /// What becomes of it: nothing without an access, or one of hit, allocate, refuse and accept, or it joins the fetch that
-  /// matches.
+  /// What becomes of it: nothing without an access, or one of hit, allocate, refuse and accept,
+  /// or it joins the fetch that matches.
   struct Outcome {
     bool access = false;
     bool found = false;  ///< its line is in the cache

@@ -1,4 +1,5 @@
-// rtl/dispatcher.v: gives every free ALU instance the lowest warp that wants its type, and keeps the task registers behind it.
+// rtl/dispatcher.v: gives every free ALU instance the lowest warp that wants its type, and
+// keeps the task registers behind it.
 #pragma once
 
 #include <array>
@@ -40,7 +41,8 @@ class Dispatcher {
   uint32_t wants(AluType type) const { return want_[static_cast<size_t>(type)]; }
   bool wants_pipelined() const { return want_types_ != 0; }
   bool idle() const {
-    return (want_types_ | wants(AluType::Mem) | wants(AluType::Ray)) == 0 && task(AluType::Mem) < 0 && task(AluType::Ray) < 0;
+    return (want_types_ | wants(AluType::Mem) | wants(AluType::Ray)) == 0 && task(AluType::Mem) < 0 &&
+           task(AluType::Ray) < 0;
   }
 
   /// The warp wants a pipelined type from the cycle of the next grant_pipelined() on.

@@ -92,8 +92,8 @@ bool FunctionalCore::fault(FaultCode fault_code) {
   return false;
 }
 
-// Finds the warp's next instruction and its mask. False if there is none: the result says why. Part of each step_lanes, whose
-// time is that of the functional engine.
+// Finds the warp's next instruction and its mask. False if there is none: the result says why. Part of each step_lanes,
+// whose time is that of the functional engine.
 [[gnu::always_inline]] inline bool FunctionalCore::begin(uint32_t number) {
   Step& result = result_;
   if (result.status == Step::Status::Fault) return false;
@@ -132,7 +132,8 @@ const Step& FunctionalCore::step_lanes(uint32_t number) {
 
   uint32_t* const bank = &registers_[number * kRegisters * kLanes];
   const auto row = [bank](uint32_t reg) { return bank + reg * kLanes; };
-  Lanes<kLanes> lanes = {result_.mask, row(instruction.rd), row(instruction.ra), row(instruction.rb), row(instruction.x & 15)};
+  Lanes<kLanes> lanes = {result_.mask, row(instruction.rd), row(instruction.ra), row(instruction.rb),
+                         row(instruction.x & 15)};
   uint32_t immediate[kLanes];
   if (instruction.b_is_immediate) {
     for (int lane = 0; lane < kLanes; ++lane) immediate[lane] = instruction.immediate;
@@ -211,7 +212,8 @@ void FunctionalCore::execute_class(const DecodedInstruction& instruction, Warp& 
   uint32_t predicate = 0;
   for (uint32_t mask = result_.mask; mask != 0; mask &= mask - 1) {
     const uint32_t lane = lowest(mask);
-    const LaneTask task = {a[lane], b[lane], instruction.immediate, instruction.x, (px >> lane & 1) != 0, (pb >> lane & 1) != 0};
+    const LaneTask task = {
+        a[lane], b[lane], instruction.immediate, instruction.x, (px >> lane & 1) != 0, (pb >> lane & 1) != 0};
     const uint32_t value = alu.lane(instruction.opcode, task, mode_);
     if (instruction.writes_register) rd[lane] = value;
     predicate |= (value & 1) << lane;
@@ -221,7 +223,8 @@ void FunctionalCore::execute_class(const DecodedInstruction& instruction, Warp& 
   warp.predicates.write(instruction.rd, predicate);
 }
 
-// Loads and stores. All masked lanes are checked before any of them is served; misalignment is the first thing looked for.
+// Loads and stores. All masked lanes are checked before any of them is served;
+// misalignment is the first thing looked for.
 template <int kLanes>
 bool FunctionalCore::execute_memory(const DecodedInstruction& instruction, const Lanes<kLanes>& lanes) {
   uint32_t* const addresses = result_.addresses.data();

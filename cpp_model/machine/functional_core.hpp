@@ -1,6 +1,6 @@
-// The architecture itself: registers, predicates, PC stacks, ray slices and memory of one compute unit, without ports and without
-// time. step() executes one instruction of one warp and says everything it did. Engine `functional` runs on it, and the lockstep
-// compares with it.
+// The architecture itself: registers, predicates, PC stacks, ray slices and memory of one compute unit, without ports
+// and without time. step() executes one instruction of one warp and says everything it did. Engine `functional` runs on
+// it, and the lockstep compares with it.
 #pragma once
 
 #include <array>
@@ -42,10 +42,10 @@ struct Step {
   uint32_t pc = 0;
   const DecodedInstruction* instruction = nullptr;  ///< null if the PC is outside the program
   uint32_t mask = 0;                                ///< thread mask
-  const uint32_t* data = nullptr;               ///< instruction writes a register: one word a lane, meaningful in masked lanes
-  uint32_t predicate = 0;                       ///< instruction writes a predicate: its value
+  const uint32_t* data = nullptr;  ///< instruction writes a register: one word a lane, meaningful in masked lanes
+  uint32_t predicate = 0;          ///< instruction writes a predicate: its value
   std::array<uint32_t, kMaxLanes> addresses{};  ///< `ld`, `st`: byte address of each lane, meaningful in masked lanes
-  uint32_t store_count = 0;                     ///< `st`: masked lanes in rising order; the last store to an address wins
+  uint32_t store_count = 0;  ///< `st`: masked lanes in rising order; the last store to an address wins
   std::array<LaneStore, kMaxLanes> stores{};
   const uint32_t* ray_words = nullptr;  ///< `rst`: one word a lane, written in masked lanes
   uint32_t ray_count = 0;               ///< `rout`: rays in order
@@ -61,8 +61,8 @@ class FunctionalCore {
   /// `memory` must outlive the core.
   FunctionalCore(const Configuration& configuration, Memory& memory);
 
-  /// Stops everything, forgets imports, clears registers. The program is decoded at the next launch after it or after an
-  /// argument.
+  /// Stops everything, forgets imports, clears registers. The program is decoded at the next
+  /// launch after it or after an argument.
   void reset(uint32_t program_length, uint32_t memory_limit);
   void set_argument(int index, uint32_t value) {
     tid_alu_.write_argument(index, value);
@@ -79,18 +79,20 @@ class FunctionalCore {
   /// Executes the warp's next instruction. After a fault every call returns that fault.
   const Step& step(uint32_t warp) { return (this->*step_)(warp); }
 
-  /// After a fault: goes on as if nothing had happened. For a model whose faults take effect later than their instruction is
-  /// executed.
+  /// After a fault: goes on as if nothing had happened. For a model whose faults take effect later
+  /// than their instruction is executed.
   void forget_fault() { result_.status = Step::Status::NotRunning; }
 
   /// The instruction routine's next steps for a warp.
-  PcStack::Fetch next_fetch(uint32_t warp, bool past_current) const { return warps_[warp].pc_stack.fetch(past_current); }
+  PcStack::Fetch next_fetch(uint32_t warp, bool past_current) const {
+    return warps_[warp].pc_stack.fetch(past_current);
+  }
   /// PC of the warp's next instruction; the instruction there, null if outside the program.
   uint32_t next_pc(uint32_t warp) const { return warps_[warp].pc_stack.next_pc(); }
   const DecodedInstruction* instruction_at(uint32_t pc) const { return pc < program_.size() ? &program_[pc] : nullptr; }
 
-  /// Packages of a launch with an import kind: announce their number, then give them in order of threads. Launches are served in
-  /// turn.
+  /// Packages of a launch with an import kind: announce their number, then give them in order of
+  /// threads. Launches are served in turn.
   void expect_import(uint32_t threads) { slices_.expect_import(threads); }
   void import_package(const Intersection& package) { slices_.import_package(package); }
   void import_beat(const Beat& beat) { slices_.import_beat(beat); }
@@ -123,7 +125,8 @@ class FunctionalCore {
   bool execute_memory(const DecodedInstruction& instruction, const Lanes<kLanes>& lanes);
   template <int kLanes>
   bool execute_ray(const DecodedInstruction& instruction, Warp& warp, const Lanes<kLanes>& lanes);
-  void execute_class(const DecodedInstruction& instruction, Warp& warp, uint32_t* rd, const uint32_t* a, const uint32_t* b);
+  void execute_class(const DecodedInstruction& instruction, Warp& warp, uint32_t* rd, const uint32_t* a,
+                     const uint32_t* b);
   bool begin(uint32_t warp);
   bool execute_control(const DecodedInstruction& instruction, Warp& warp);
   bool fault(FaultCode code);

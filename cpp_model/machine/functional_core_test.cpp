@@ -385,19 +385,20 @@ TEST_P(FunctionalCoreFault, IsReportedWithWarpAndPcAndStopsTheUnit) {
 
 INSTANTIATE_TEST_SUITE_P(
     All, FunctionalCoreFault,
-    testing::Values(FaultCase{"unit", assembled("mov r1, 1; .word 0xf000000000000000"), FaultCode::IllegalInstruction, 1},
-                    FaultCase{"operation", assembled("mov r1, 1; .word 0x3f80000000000000"), FaultCode::IllegalInstruction, 1},
-                    FaultCase{"without_fma", assembled("mov r1, 1; ffma r2, r1, r1, r1"), FaultCode::IllegalInstruction, 1},
-                    FaultCase{"end", assembled("mov r1, 1"), FaultCode::PcOutsideProgram, 1},
-                    FaultCase{"jump", assembled("jany 9"), FaultCode::PcOutsideProgram, 9},
-                    FaultCase{"overflow", assembled("call 0, 5"), FaultCode::StackOverflow, 0},
-                    FaultCase{"loop", assembled("mov r1, 0; loop 9; loop 9; loop 9"), FaultCode::StackOverflow, 3},
-                    FaultCase{"underflow", assembled("mov r1, 1; ret"), FaultCode::StackUnderflow, 1},
-                    FaultCase{"misaligned", assembled("mov r1, 2; ld r1, [r1]"), FaultCode::Misaligned, 1},
-                    FaultCase{"outside", assembled(fmt::format("mov r1, {}; st [r1], r1", kMemoryBytes)),
-                              FaultCode::AddressOutsideMemory, 1},
-                    FaultCase{"read_word", assembled(".word 0x6180401500000000  # rld r1, 21"), FaultCode::RayWordOutside, 0},
-                    FaultCase{"write_word", assembled(".word 0x6200005f00000000  # rst 31, r1"), FaultCode::RayWordOutside, 0}),
+    testing::Values(
+        FaultCase{"unit", assembled("mov r1, 1; .word 0xf000000000000000"), FaultCode::IllegalInstruction, 1},
+        FaultCase{"operation", assembled("mov r1, 1; .word 0x3f80000000000000"), FaultCode::IllegalInstruction, 1},
+        FaultCase{"without_fma", assembled("mov r1, 1; ffma r2, r1, r1, r1"), FaultCode::IllegalInstruction, 1},
+        FaultCase{"end", assembled("mov r1, 1"), FaultCode::PcOutsideProgram, 1},
+        FaultCase{"jump", assembled("jany 9"), FaultCode::PcOutsideProgram, 9},
+        FaultCase{"overflow", assembled("call 0, 5"), FaultCode::StackOverflow, 0},
+        FaultCase{"loop", assembled("mov r1, 0; loop 9; loop 9; loop 9"), FaultCode::StackOverflow, 3},
+        FaultCase{"underflow", assembled("mov r1, 1; ret"), FaultCode::StackUnderflow, 1},
+        FaultCase{"misaligned", assembled("mov r1, 2; ld r1, [r1]"), FaultCode::Misaligned, 1},
+        FaultCase{"outside", assembled(fmt::format("mov r1, {}; st [r1], r1", kMemoryBytes)),
+                  FaultCode::AddressOutsideMemory, 1},
+        FaultCase{"read_word", assembled(".word 0x6180401500000000  # rld r1, 21"), FaultCode::RayWordOutside, 0},
+        FaultCase{"write_word", assembled(".word 0x6200005f00000000  # rst 31, r1"), FaultCode::RayWordOutside, 0}),
     [](const auto& test_case) { return std::string(test_case.param.name); });
 
 TEST(FunctionalCore, AddressesOfLanesThatAreNotMaskedDoNotFault) {

@@ -148,7 +148,8 @@ class FunctionalUnit : public ComputeUnit {
       quadword.mask = static_cast<uint8_t>(quadword.mask | 1u << (store.address >> 2 & 3));
     }
     if (step.ray_words != nullptr) {
-      trace_.ray_writes.push_back({step.warp, step.instruction->x, step.mask, {step.ray_words, step.ray_words + lanes_}});
+      trace_.ray_writes.push_back(
+          {step.warp, step.instruction->x, step.mask, {step.ray_words, step.ray_words + lanes_}});
     }
   }
 
@@ -166,7 +167,8 @@ class FunctionalUnit : public ComputeUnit {
     outputs_.frame_valid = !exports_.empty() && exports_.front().to_frame;
     if (outputs_.export_valid) {
       for (int i = 0; i < kBeatWords; ++i) {
-        outputs_.export_data[static_cast<size_t>(i)] = exports_.front().ray[static_cast<size_t>(export_beat_ * kBeatWords + i)];
+        outputs_.export_data[static_cast<size_t>(i)] =
+            exports_.front().ray[static_cast<size_t>(export_beat_ * kBeatWords + i)];
       }
       outputs_.export_last = export_beat_ == kRayBeats - 1;
     }

@@ -40,7 +40,8 @@ struct Fixture {
   }
 };
 
-// r1 = word 7 of the package + 1 into word 7, exported as a ray and, from the next kernel's point of view, nothing else.
+// r1 = word 7 of the package + 1 into word 7, exported as a ray and, from the next
+// kernel's point of view, nothing else.
 const std::vector<uint64_t> kRayProgram = assembled("rin; rld r1, 7; iadd r1, r1, 1; rst 7, r1; rout; exit");
 
 TEST(FunctionalUnit, KernelsEndInTurnWithOnePulseEach) {
@@ -93,7 +94,8 @@ TEST(FunctionalUnit, TheNextKernelsPackagesComeWhileTheFirstOneWaits) {
   fixture.chip.exports_ready = false;
   for (int i = 0; i < 3; ++i) fixture.launch(8, ImportKind::Normal);
   for (int i = 0; i < 400; ++i) fixture.chip.cycle();
-  // Kernel 1 has ended with its rays in the output slices, kernel 2 waits in rout, kernel 3's packages fill the input slices.
+  // Kernel 1 has ended with its rays in the output slices, kernel 2 waits in rout, kernel
+  // 3's packages fill the input slices.
   EXPECT_EQ(fixture.chip.kernels_done, 1u);
   EXPECT_EQ(fixture.chip.requests.size(), 24u);
   EXPECT_TRUE(fixture.unit->outputs().export_valid);

@@ -1,5 +1,5 @@
-// rtl/import_arbiter.v: the units' import requests in turn, and the way back of their beats. present() and clock() as those of
-// PortArbiter.
+// rtl/import_arbiter.v: the units' import requests in turn, and the way back of their beats. present()
+// and clock() as those of PortArbiter.
 #pragma once
 
 #include <cstdint>

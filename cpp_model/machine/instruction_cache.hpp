@@ -26,8 +26,8 @@ class InstructionCache {
     for (Set& set : sets_) set.line = {kNone, kNone};
   }
 
-  /// A lookup, whose result comes in the next cycle: true for a hit. Between clock() and end_cycle() of its cycle; or ahead,
-  /// while not busy().
+  /// A lookup, whose result comes in the next cycle: true for a hit. Between clock() and end_cycle() of
+  /// its cycle; or ahead, while not busy().
   bool lookup(uint32_t warp, uint32_t pc) {
     const uint32_t line = pc >> 3;
     warp_ = warp;
@@ -93,7 +93,8 @@ class InstructionCache {
     fetch_ = next;
     if (missed) missed_ = false;
   }
-  /// The end of a cycle with a clock(): a line that has come is valid from the next cycle on, and one that gives way is not.
+  /// The end of a cycle with a clock(): a line that has come is valid from the next
+  /// cycle on, and one that gives way is not.
   void end_cycle() {
     first_ |= first_next_;
     if (!changes_) return;

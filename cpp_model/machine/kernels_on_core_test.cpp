@@ -1,5 +1,5 @@
-// The compiled kernels on the functional core, of several sizes: rays, contributions and memory are those of the kernels run as
-// C++.
+// The compiled kernels on the functional core, of several sizes: rays, contributions and memory
+// are those of the kernels run as C++.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -62,7 +62,9 @@ TEST(KernelsOnCore, RayKernelsLeaveWhatTheyLeaveNatively) {
       configuration.slow_unit = static_cast<SlowUnit>(mode >> 1 & 3);
       configuration.fma = mode >= 8;
       std::mt19937 random(static_cast<uint32_t>(mode) + 1);
-      const auto number = [&] { return as_bits(static_cast<float>(static_cast<int>(random() % 4001) - 2000) / 512.0f); };
+      const auto number = [&] {
+        return as_bits(static_cast<float>(static_cast<int>(random() % 4001) - 2000) / 512.0f);
+      };
 
       Memory memory(kMemoryBytes);
       const Program& program = ray_kernel_program(configuration.fma);
@@ -84,7 +86,8 @@ TEST(KernelsOnCore, RayKernelsLeaveWhatTheyLeaveNatively) {
         command.pc = program.entries.at(std::string(kRayKernelNames[static_cast<size_t>(kernel)]));
         command.threads = static_cast<uint32_t>(std::max(1, configuration.contents() - mode % 8));
         command.block = 24u | 16u << 16;
-        if (which != RayKernel::CastEye) command.import = which == RayKernel::Shade ? ImportKind::Shadow : ImportKind::Normal;
+        if (which != RayKernel::CastEye)
+          command.import = which == RayKernel::Shade ? ImportKind::Shadow : ImportKind::Normal;
         std::vector<Intersection> packages(command.threads);
         for (Intersection& package : packages) {
           for (uint32_t& word : package) word = number();
@@ -128,9 +131,9 @@ TEST(KernelsOnCore, ComputeKernelsLeaveTheMemoryTheyLeaveNatively) {
         memory.store(address, as_bits(static_cast<float>(address % 977) / 16.0f));
       }
       Memory native = memory;
-      const std::array<uint32_t, kArguments> arguments = which == ComputeKernel::Saxpy
-                                                             ? std::array<uint32_t, kArguments>{300, as_bits(1.5f), 4096, 8192}
-                                                             : std::array<uint32_t, kArguments>{11, 4096, 8192, 12288};
+      const std::array<uint32_t, kArguments> arguments =
+          which == ComputeKernel::Saxpy ? std::array<uint32_t, kArguments>{300, as_bits(1.5f), 4096, 8192}
+                                        : std::array<uint32_t, kArguments>{11, 4096, 8192, 12288};
       FunctionalCore core(configuration, memory);
       core.reset(static_cast<uint32_t>(program.code.size()), kMemoryBytes);
       for (int i = 0; i < kArguments; ++i) core.set_argument(i, arguments[static_cast<size_t>(i)]);

@@ -17,8 +17,8 @@ struct Lanes {
   uint32_t* rd;
   const uint32_t *a, *b, *c;
 
-  /// rd = f(a, b) in the masked lanes. The full mask is the common case: through an array of its own, so that the compiler need
-  /// not care whether rd is also a source.
+  /// rd = f(a, b) in the masked lanes. The full mask is the common case: through an array of its own, so that the
+  /// compiler need not care whether rd is also a source.
   template <typename Function>
   void map(Function function) const {
     if (mask == kAll) {

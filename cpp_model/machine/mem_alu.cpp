@@ -114,8 +114,8 @@ MemAlu::Events MemAlu::clock(const Inputs& inputs) {
     q_.pass.pending = look.pending_after;
     if (look.last || look.illegal != FaultCode::None) q_.pass.valid = false;
   }
-  active_ = q_.pass.valid || q_.access.valid || q_.done || q_.park || requests_.valid() || q_.fault != FaultCode::None ||
-            cache_.active() || sequencer_.active();
+  active_ = q_.pass.valid || q_.access.valid || q_.done || q_.park || requests_.valid() ||
+            q_.fault != FaultCode::None || cache_.active() || sequencer_.active();
   return events;
 }
 

@@ -1,5 +1,6 @@
-// rtl/mem_alu.v, cycle by cycle, without data: the memory ALU around its cache, sequencer and request queue. What loads and
-// stores do to registers and memory is the functional core's; docs/memory.md gives the rules that both sides follow.
+// rtl/mem_alu.v, cycle by cycle, without data: the memory ALU around its cache, sequencer and request
+// queue. What loads and stores do to registers and memory is the functional core's; docs/memory.md
+// gives the rules that both sides follow.
 #pragma once
 
 #include <array>
@@ -73,7 +74,8 @@ class MemAlu {
     uint32_t fault_warp = 0;
   };
 
-  explicit MemAlu(const Configuration& configuration) : tasks_(static_cast<size_t>(configuration.warps)), cache_(configuration) {}
+  explicit MemAlu(const Configuration& configuration)
+      : tasks_(static_cast<size_t>(configuration.warps)), cache_(configuration) {}
 
   void reset();
   /// Forgets all lines; only while idle.
@@ -87,7 +89,8 @@ class MemAlu {
   /// False if clock() would change nothing: it need not be called as long as no task and no response arrives.
   bool active() const { return active_; }
   bool idle() const {
-    return !q_.pass.valid && !q_.access.valid && !q_.done && !q_.park && sequencer_.idle() && cache_.idle() && !requests_.valid();
+    return !q_.pass.valid && !q_.access.valid && !q_.done && !q_.park && sequencer_.idle() && cache_.idle() &&
+           !requests_.valid();
   }
   uint32_t done() const { return uint32_t{q_.done} << q_.end_warp; }  ///< the warp whose task is done, as a bit
   FaultCode fault() const { return q_.fault; }

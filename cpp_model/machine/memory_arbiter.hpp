@@ -1,4 +1,5 @@
-// rtl/memory_arbiter.v: joins the instruction side and the data side to the unit's memory port, and tells responses apart.
+// rtl/memory_arbiter.v: joins the instruction side and the data side to the unit's
+// memory port, and tells responses apart.
 #pragma once
 
 #include <cstdint>
@@ -25,8 +26,8 @@ class MemoryArbiter {
   static bool of_instruction(uint8_t response_id) { return response_id == kInstructionId; }
 
   /// The end of a cycle; `data_request` means something with `data_request_valid`.
-  void clock(bool request_ready, bool instruction_request_valid, uint32_t instruction_request_address, bool data_request_valid,
-             const MemoryRequest& data_request) {
+  void clock(bool request_ready, bool instruction_request_valid, uint32_t instruction_request_address,
+             bool data_request_valid, const MemoryRequest& data_request) {
     if (!instruction_request_ready(request_ready)) return;
     valid_ = instruction_request_valid || data_request_valid;
     if (instruction_request_valid) {

@@ -1,5 +1,5 @@
-// rtl/miss_status.v: the miss-status holding registers (MSHRs) of the data cache, that is which lines are being fetched, into
-// which way, and which warps wait for them.
+// rtl/miss_status.v: the miss-status holding registers (MSHRs) of the data cache, that is which lines are being
+// fetched, into which way, and which warps wait for them.
 #pragma once
 
 #include <array>

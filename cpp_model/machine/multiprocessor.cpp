@@ -168,7 +168,8 @@ void Multiprocessor::gather_trace() {
   for (uint32_t u = 0; u < units(); ++u) {
     const UnitTrace& trace = units_[u]->trace();
     for (const RetireEvent& event : trace.retired) {
-      trace_.retired.push_back({event.warp, event.pc, event.instruction, event.mask, lanes_of(event.data), event.predicate, u});
+      trace_.retired.push_back(
+          {event.warp, event.pc, event.instruction, event.mask, lanes_of(event.data), event.predicate, u});
     }
     for (const StoreEvent& event : trace.stores) {
       trace_.stores.push_back(event);

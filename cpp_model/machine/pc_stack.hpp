@@ -1,4 +1,5 @@
-// rtl/pc_stack.v: the PC/RPC stack of one warp. An entry whose PC has reached its RPC is finished; the first one never is.
+// rtl/pc_stack.v: the PC/RPC stack of one warp. An entry whose PC has reached its RPC
+// is finished; the first one never is.
 #pragma once
 
 #include <array>
@@ -17,7 +18,8 @@ class PcStack {
     pc_[0] = pc;
   }
 
-  // The instruction that a warp executes next. The RTL pops and counts on while it fetches, here it is done at the execution.
+  // The instruction that a warp executes next. The RTL pops and counts on while it
+  // fetches, here it is done at the execution.
   void pop_finished() {
     while (finished(top_, pc_[top_])) --top_;
   }

@@ -1,5 +1,5 @@
-// rtl/performance_counters.v: what is counted while a kernel runs. The numbers are those of namespace counter. The RTL adds
-// events one or two cycles later, which nobody sees while it is idle.
+// rtl/performance_counters.v: what is counted while a kernel runs. The numbers are those of namespace counter. The RTL
+// adds events one or two cycles later, which nobody sees while it is idle.
 #pragma once
 
 #include <array>
@@ -18,7 +18,8 @@ struct PerformanceCounters {
 
   void reset() { *this = PerformanceCounters{}; }
 
-  /// `instances`: of the number's ALU type, for those that have one; `rest`: what is in its `unready` and still to come.
+  /// `instances`: of the number's ALU type, for those that have one; `rest`: what is
+  /// in its `unready` and still to come.
   uint64_t value(int number, uint32_t instances, uint64_t rest) const {
     if (number < counter::kUnused) return single[static_cast<size_t>(number)];
     const size_t type = static_cast<size_t>(number & 7);

@@ -1,5 +1,5 @@
-// rtl/port_arbiter.v: a port that is shared package by package. In each cycle present() is told what the requesters show and says
-// what the port shows; clock() then is told what was transferred.
+// rtl/port_arbiter.v: a port that is shared package by package. In each cycle present() is told what the requesters
+// show and says what the port shows; clock() then is told what was transferred.
 #pragma once
 
 #include <cstdint>

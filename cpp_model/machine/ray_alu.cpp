@@ -26,7 +26,8 @@ int RayAlu::clock(int arriving, ImportKind import_start, const UnitInputs& input
   const uint32_t ready_swaps = can();
   RayMemory memory;
   memory.grant(import_.registers().write, import_.registers().write_set);
-  const bool result_end = (q_.hold | q_.result | q_.done | q_.fault | (arriving >= 0)) && clock_access(arriving, memory);
+  const bool result_end =
+      (q_.hold | q_.result | q_.done | q_.fault | (arriving >= 0)) && clock_access(arriving, memory);
   // The engines see the roles of this cycle, so a swap comes after them.
   clock_engines(import_start, inputs, memory);
 

@@ -1,5 +1,6 @@
-// rtl/ray_alu.v, cycle by cycle, without data: the tasks of the ray ALU, and which set is a warp's input, current and output. The
-// words of the local ray memory are the functional core's. docs/ray-alu.md gives the rules that both sides follow.
+// rtl/ray_alu.v, cycle by cycle, without data: the tasks of the ray ALU, and which set is a warp's
+// input, current and output. The words of the local ray memory are the functional core's.
+// docs/ray-alu.md gives the rules that both sides follow.
 #pragma once
 
 #include <cstdint>
@@ -82,12 +83,14 @@ class RayAlu {
   const RayImport& import() const { return import_; }
   const RayExport& exports() const { return export_; }
 
-  /// `arriving`: the warp whose task arrives in this cycle, or -1; `import_start`: of the launch that is accepted in it. Returns
-  /// the warp whose rin, rout or rfb is executed at the end of this cycle, or -1.
+  /// `arriving`: the warp whose task arrives in this cycle, or -1; `import_start`: of the launch that is accepted in
+  /// it. Returns the warp whose rin, rout or rfb is executed at the end of this cycle, or -1.
   int clock(int arriving, ImportKind import_start, const UnitInputs& inputs);
 
  private:
-  uint32_t can() const { return (q_.parked_in & import_.registers().full) | (q_.parked_out & ~export_.registers().busy); }
+  uint32_t can() const {
+    return (q_.parked_in & import_.registers().full) | (q_.parked_out & ~export_.registers().busy);
+  }
   bool clock_access(int arriving, RayMemory& memory);
   void clock_engines(ImportKind import_start, const UnitInputs& inputs, RayMemory& memory);
   void swap(uint32_t warp);

@@ -1,5 +1,5 @@
-// rtl/ray_export.v, cycle by cycle: takes warps' output slices in the order in which they are pushed, reads the masked lanes'
-// packages, four words a cycle, and offers them on the ray-pool port or the frame-buffer port.
+// rtl/ray_export.v, cycle by cycle: takes warps' output slices in the order in which they are pushed, reads the masked
+// lanes' packages, four words a cycle, and offers them on the ray-pool port or the frame-buffer port.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
-// rtl/ray_import.v, cycle by cycle, without data: requests a launch's packages, thread after thread, and writes their beats into
-// the warps' input slices.
+// rtl/ray_import.v, cycle by cycle, without data: requests a launch's packages, thread after thread, and writes their
+// beats into the warps' input slices.
 #pragma once
 
 #include <cstdint>
@@ -71,7 +71,8 @@ class RayImport {
 
  private:
   bool can_request() const {
-    return (q_.requested != q_.threads) & (q_.outstanding != 2) & ((uint64_t{q_.full} >> (q_.requested >> lane_bits_) & 1) == 0);
+    return (q_.requested != q_.threads) & (q_.outstanding != 2) &
+           ((uint64_t{q_.full} >> (q_.requested >> lane_bits_) & 1) == 0);
   }
   void receive() {
     const bool launch_end = q_.received + 1 == q_.threads;

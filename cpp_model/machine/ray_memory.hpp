@@ -1,5 +1,5 @@
-// rtl/ray_memory.v, of which a unit has three sets, as far as time goes: the one port that each of them has. The words are those
-// of RaySlices.
+// rtl/ray_memory.v, of which a unit has three sets, as far as time goes: the one port that each of them
+// has. The words are those of RaySlices.
 #pragma once
 
 #include <cstdint>

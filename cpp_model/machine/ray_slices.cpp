@@ -27,7 +27,8 @@ void RaySlices::import_package(const Intersection& package) {
   const uint32_t lane = job.taken % lanes_;
   Warp& warp = warps_[job.taken / lanes_];
   if (lane == 0)
-    warp.inputs.push_back({std::min(lanes_, job.threads - job.taken), 0, std::vector<uint32_t>(lanes_ * kIntersectionWords)});
+    warp.inputs.push_back(
+        {std::min(lanes_, job.threads - job.taken), 0, std::vector<uint32_t>(lanes_ * kIntersectionWords)});
   Input& input = warp.inputs.back();
   for (uint32_t word = 0; word < kIntersectionWords; ++word) input.words[word * lanes_ + lane] = package[word];
   ++input.taken;

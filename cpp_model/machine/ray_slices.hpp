@@ -1,5 +1,5 @@
-// Local ray memory as the architecture sees it: three slices a warp that change roles, and the packages that wait to become
-// current.
+// Local ray memory as the architecture sees it: three slices a warp that change roles, and the
+// packages that wait to become current.
 #pragma once
 
 #include <array>
@@ -27,7 +27,9 @@ class RaySlices {
   uint32_t packages_expected() const;
 
   /// True if all packages of the warp's next `rin` are there.
-  bool input_complete(uint32_t warp) const { return !warps_[warp].inputs.empty() && warps_[warp].inputs.front().complete(); }
+  bool input_complete(uint32_t warp) const {
+    return !warps_[warp].inputs.empty() && warps_[warp].inputs.front().complete();
+  }
   /// Sets of packages, complete or arriving, that wait for a `rin` of the warp.
   size_t inputs_waiting(uint32_t warp) const { return warps_[warp].inputs.size(); }
 

@@ -1,5 +1,6 @@
-// rtl/task_register.v: the task of one ALU instance, for one cycle. Of an instance timed by events; the task of a pipelined one is
-// over before it begins, as the cycle in which it will be done is known. What the RTL holds of the operands is the core's.
+// rtl/task_register.v: the task of one ALU instance, for one cycle. Of an instance timed by events; the task
+// of a pipelined one is over before it begins, as the cycle in which it will be done is known. What the RTL
+// holds of the operands is the core's.
 #pragma once
 
 #include <cstdint>

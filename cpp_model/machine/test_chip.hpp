@@ -1,5 +1,5 @@
-// For tests: the smallest chip around a compute unit, or a multiprocessor. Launches kernels, answers memory, gives packages,
-// takes rays and contributions, with randomly hesitating ports.
+// For tests: the smallest chip around a compute unit, or a multiprocessor. Launches kernels, answers memory, gives
+// packages, takes rays and contributions, with randomly hesitating ports.
 #pragma once
 
 #include <deque>
@@ -17,7 +17,11 @@ class TestChip {
  public:
   /// ready_percent: chance that a port is ready in a cycle. latency: cycles from a line read to its first beat.
   TestChip(ComputeUnit& unit, Memory& memory, uint32_t seed = 1, int ready_percent = 100, int latency = 20)
-      : unit_(&unit), memory_(&memory), random_(seed), ready_percent_(ready_percent), latency_(static_cast<uint64_t>(latency)) {}
+      : unit_(&unit),
+        memory_(&memory),
+        random_(seed),
+        ready_percent_(ready_percent),
+        latency_(static_cast<uint64_t>(latency)) {}
 
   std::deque<LaunchCommand> launches;    ///< to be launched, in order
   std::vector<Ray> rays;                 ///< exported
@@ -61,7 +65,8 @@ class TestChip {
     kernels_done += popcount(unit_->outputs().kernel_done);
   }
 
-  /// Until all is launched and the unit has been idle for some cycles, has a fault, or `limit` cycles have passed. True if idle.
+  /// Until all is launched and the unit has been idle for some cycles, has a fault, or
+  /// `limit` cycles have passed. True if idle.
   bool run(uint64_t limit = 100000) {
     for (int idle = 0; limit > 0; --limit) {
       cycle();

@@ -1,5 +1,5 @@
-// What the model knows ahead: the warps that get on in each of the next cycles. So a cycle in which nothing happens costs next to
-// nothing. No module of the RTL: there a state machine counts the cycles.
+// What the model knows ahead: the warps that get on in each of the next cycles. So a cycle in which nothing happens
+// costs next to nothing. No module of the RTL: there a state machine counts the cycles.
 #pragma once
 
 #include <array>

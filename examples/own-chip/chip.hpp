@@ -1,5 +1,5 @@
-// A chip around a compute unit: memory that answers in order after `latency` cycles, and a grid of blocks to launch. It has no
-// ray pools, so its programs use memory only.
+// A chip around a compute unit: memory that answers in order after `latency` cycles, and a grid of blocks to launch. It
+// has no ray pools, so its programs use memory only.
 #pragma once
 
 #include <deque>
@@ -8,7 +8,8 @@
 
 class Chip {
  public:
-  Chip(raypool::ComputeUnit& unit, raypool::Memory& memory, uint64_t latency) : unit_(unit), memory_(memory), latency_(latency) {}
+  Chip(raypool::ComputeUnit& unit, raypool::Memory& memory, uint64_t latency)
+      : unit_(unit), memory_(memory), latency_(latency) {}
 
   /// Runs `blocks` blocks of `threads` threads from instruction `entry` on, and returns the cycles.
   uint64_t run(uint32_t entry, uint32_t threads, uint32_t blocks) {

@@ -1,6 +1,7 @@
-// A kernel of one's own on a chip of one's own: y[i] = sqrt(x[i]) for 256 elements, and how the time grows with the memory's
-// latency.
-//   own_chip [UNIT_LIBRARY]    with the Verilated unit of 4w4c: hardware and model side by side, compared in every cycle
+// A kernel of one's own on a chip of one's own: y[i] = sqrt(x[i]) for 256 elements, and how the
+// time grows with the memory's latency.
+//   own_chip [UNIT_LIBRARY]    with the Verilated unit of 4w4c: hardware and model
+//                              side by side, compared in every cycle
 #include <cmath>
 #include <cstdio>
 #include <raypool/bits.hpp>
@@ -41,7 +42,8 @@ int run(const char* library, uint64_t latency) {
   const uint64_t cycles = Chip(*unit, memory, latency).run(program.entries.at("roots"), threads, kElements / threads);
 
   int wrong = 0;
-  for (uint32_t i = 0; i < kElements; ++i) wrong += memory.load(kY + 4 * i) != raypool::as_bits(std::sqrt(static_cast<float>(i)));
+  for (uint32_t i = 0; i < kElements; ++i)
+    wrong += memory.load(kY + 4 * i) != raypool::as_bits(std::sqrt(static_cast<float>(i)));
   std::printf("latency %3d: %u roots, %d wrong, %d cycles\n", static_cast<int>(latency), kElements, wrong,
               static_cast<int>(cycles));
   return wrong;

@@ -54,8 +54,8 @@ std::string fault_sentence(int unit, const Fault& fault) {
       meaning = "ray word above 20";
       break;
   }
-  return fmt::format("compute unit {} stopped with fault {} ({}) in warp {} at PC {}", unit, static_cast<int>(fault.code),
-                     meaning, fault.warp, fault.pc);
+  return fmt::format("compute unit {} stopped with fault {} ({}) in warp {} at PC {}", unit,
+                     static_cast<int>(fault.code), meaning, fault.warp, fault.pc);
 }
 
 ChipResult run_chip(const ChipOptions& options) { return System(options).chip.draw(); }

@@ -29,9 +29,9 @@ struct ChipProgress {
 
 struct ChipOptions {
   Configuration configuration;
-  ComputeUnit* device = nullptr;                ///< fits `configuration`; run_chip resets it and leaves its counters to be read
-  Memory* memory = nullptr;                     ///< program and materials
-  uint32_t program_length = 0;                  ///< instructions, from address 0
+  ComputeUnit* device = nullptr;  ///< fits `configuration`; run_chip resets it and leaves its counters to be read
+  Memory* memory = nullptr;       ///< program and materials
+  uint32_t program_length = 0;    ///< instructions, from address 0
   std::array<uint32_t, kRayKernels> entries{};  ///< PC of each RayKernel
   /// Words kTileWidthLog2, kTileMask, kWidth and kHeight are set by the chip, whatever they hold.
   std::array<uint32_t, kArguments> arguments{};
@@ -61,7 +61,8 @@ struct PoolFill {
 };
 
 struct ChipResult {
-  bool timed = true;    ///< false: the engine has no notion of time, and cycles and all that is made from them mean nothing
+  bool timed =
+      true;  ///< false: the engine has no notion of time, and cycles and all that is made from them mean nothing
   uint64_t cycles = 0;  ///< of 1 ns, from reset until everything is idle
   double nanoseconds = 0;
   double wall_seconds = 0;

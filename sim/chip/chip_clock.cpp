@@ -38,7 +38,8 @@ void ChipClock::compute_quantum() {
 void ChipClock::notify(sc_core::sc_event& event, Phase phase, uint64_t cycles_later) {
   const uint64_t time = systemc_time();
   const uint64_t present = std::max(time, cycle_ * kCyclePicoseconds);
-  uint64_t then = (present / kCyclePicoseconds + cycles_later) * kCyclePicoseconds + static_cast<uint64_t>(phase) * kPhase;
+  uint64_t then =
+      (present / kCyclePicoseconds + cycles_later) * kCyclePicoseconds + static_cast<uint64_t>(phase) * kPhase;
   if (then <= present) then += kCyclePicoseconds;
   quantum_end_ = std::min(quantum_end_, then / kCyclePicoseconds);
   event.notify(picoseconds(then - time));

@@ -12,7 +12,8 @@ namespace raypool::chip {
 namespace {
 
 void require_range(const char* what, int value, int low, int high) {
-  if (value < low || value > high) throw InputError(fmt::format("{} is {}; it must lie in {} .. {}", what, value, low, high));
+  if (value < low || value > high)
+    throw InputError(fmt::format("{} is {}; it must lie in {} .. {}", what, value, low, high));
 }
 
 int tile_width(const ChipOptions& options) { return 1 << tile_width_log2(options.configuration.contents()); }

@@ -77,15 +77,16 @@ struct Shape {
 };
 
 std::string shape_name(const testing::TestParamInfo<Shape>& shape) {
-  return std::to_string(shape.param.warps) + "w" + std::to_string(shape.param.lanes) + "c" + std::to_string(shape.param.units) +
-         "u";
+  return std::to_string(shape.param.warps) + "w" + std::to_string(shape.param.lanes) + "c" +
+         std::to_string(shape.param.units) + "u";
 }
 
 class EveryShape : public testing::TestWithParam<Shape> {};
 
 TEST_P(EveryShape, DrawsEveryImageWithoutLosingARay) {
   const Shape shape = GetParam();
-  const std::array<std::array<int, 3>, 6> images = {{{1, 1, 1}, {1, 1, 5}, {7, 13, 1}, {31, 17, 4}, {61, 53, 2}, {97, 3, 5}}};
+  const std::array<std::array<int, 3>, 6> images = {
+      {{1, 1, 1}, {1, 1, 5}, {7, 13, 1}, {31, 17, 4}, {61, 53, 2}, {97, 3, 5}}};
   for (const auto& [width, height, depth] : images) {
     SCOPED_TRACE(testing::Message() << width << "x" << height << " depth " << depth);
     FrameRun run(shape.warps, shape.lanes, shape.units, width, height, depth);
@@ -94,8 +95,8 @@ TEST_P(EveryShape, DrawsEveryImageWithoutLosingARay) {
 }
 
 TEST_P(EveryShape, SurvivesFullPools) {
-  // Nothing misses, everything is mirrored and lit: the most rays that can be alive. Small pools, so that they are full all the
-  // time.
+  // Nothing misses, everything is mirrored and lit: the most rays that can be alive. Small pools,
+  // so that they are full all the time.
   const Shape shape = GetParam();
   for (const int packages : {512, 33}) {
     for (const int rays : {512, 64, 1}) {
@@ -131,8 +132,8 @@ TEST(Chip, SurvivesPoolsSmallerThanAKernel) {
     for (const int rays : {512, 64, 5}) {
       for (const int packages : {16, 17, 30}) {
         for (const int width : {16, 27}) {
-          SCOPED_TRACE(testing::Message() << units << " units, " << rays << " rays, " << packages << " intersections, width "
-                                          << width);
+          SCOPED_TRACE(testing::Message()
+                       << units << " units, " << rays << " rays, " << packages << " intersections, width " << width);
           FrameRun run(8, 16, units, width, 9, 9, 30);
           run.world.misses = run.world.blocked = 0;
           run.world.shadows = run.world.mirrors = 16;
@@ -251,7 +252,8 @@ TEST(Chip, StopsOnAFaultAndSaysWhere) {
     FAIL() << "no fault";
   } catch (const ChipFault& fault) {
     EXPECT_EQ(fault.unit, 1);
-    EXPECT_STREQ(fault.what(), "compute unit 1 stopped with fault 5 (address that is not a multiple of 4) in warp 3 at PC 17");
+    EXPECT_STREQ(fault.what(),
+                 "compute unit 1 stopped with fault 5 (address that is not a multiple of 4) in warp 3 at PC 17");
   }
 }
 

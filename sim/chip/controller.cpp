@@ -18,9 +18,9 @@ Controller::Controller(const sc_core::sc_module_name& name, const ChipOptions& o
   const int contents = options.configuration.contents();
   // A tile that would hold more pixels than allowed is cut into bands of whole rows.
   tile_height_ = std::min(contents, options.held_limit) / tile_width_;
-  policy_ = make_policy(options.policy,
-                        {static_cast<uint32_t>(contents), options.device->units(), static_cast<uint32_t>(options.ray_packages),
-                         static_cast<uint32_t>(options.intersection_packages)});
+  policy_ = make_policy(options.policy, {static_cast<uint32_t>(contents), options.device->units(),
+                                         static_cast<uint32_t>(options.ray_packages),
+                                         static_cast<uint32_t>(options.intersection_packages)});
   decisions.bind(*this);
   kernel_events.bind(*this);
   SC_METHOD(decide);
@@ -45,7 +45,8 @@ void Controller::kernel_ended(int unit) {
 }
 
 uint32_t Controller::pixels_of_next_tile() const {
-  const int columns = std::min(tile_width_, options_.width - tile_x_), rows = std::min(tile_height_, options_.height - tile_y_);
+  const int columns = std::min(tile_width_, options_.width - tile_x_),
+            rows = std::min(tile_height_, options_.height - tile_y_);
   return static_cast<uint32_t>(columns * rows);
 }
 
@@ -57,7 +58,8 @@ bool Controller::eye_possible() const {
 
 uint32_t Controller::secondary_room() const {
   const auto limit = static_cast<uint32_t>(options_.intersection_packages + options_.ray_packages - 1);
-  const uint32_t shadows = rays->shadow_rays() + ledger->shadow_rays_to_come() + intersections->available(ImportKind::Shadow);
+  const uint32_t shadows =
+      rays->shadow_rays() + ledger->shadow_rays_to_come() + intersections->available(ImportKind::Shadow);
   return shadows < limit ? limit - shadows : 0;
 }
 
@@ -148,10 +150,10 @@ std::string Controller::describe() const {
       "them shadow "
       "rays, {} more may "
       "come; intersection pool {} normal and {} shadow of {} each, {} and {} of them not promised to a kernel",
-      tile_x_, tile_y_, options_.width, options_.height, ledger->finished(), ledger->held(), rays->size(), options_.ray_packages,
-      rays->shadow_rays(), ledger->rays_to_come(), intersections->size(ImportKind::Normal),
-      intersections->size(ImportKind::Shadow), options_.intersection_packages, intersections->available(ImportKind::Normal),
-      intersections->available(ImportKind::Shadow));
+      tile_x_, tile_y_, options_.width, options_.height, ledger->finished(), ledger->held(), rays->size(),
+      options_.ray_packages, rays->shadow_rays(), ledger->rays_to_come(), intersections->size(ImportKind::Normal),
+      intersections->size(ImportKind::Shadow), options_.intersection_packages,
+      intersections->available(ImportKind::Normal), intersections->available(ImportKind::Shadow));
 }
 
 }  // namespace raypool::chip

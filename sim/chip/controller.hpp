@@ -42,7 +42,9 @@ class Controller : public sc_core::sc_module, public DecisionIf, public KernelEv
 
   bool finished() const { return finished_; }
   const std::array<ChipResult::Kernel, kRayKernels>& kernels() const { return kernels_; }
-  double resource_utilisation() const { return thread_time_launchable_ == 0 ? 0 : thread_time_ / thread_time_launchable_; }
+  double resource_utilisation() const {
+    return thread_time_launchable_ == 0 ? 0 : thread_time_ / thread_time_launchable_;
+  }
   uint32_t held_peak() const { return held_peak_; }
   std::string describe() const;
 

@@ -11,7 +11,11 @@
 namespace raypool::chip {
 
 DeviceHost::DeviceHost(const sc_core::sc_module_name& name, ComputeUnit& device)
-    : sc_module(name), device_(device), units_(device.units()), idle_before_((1u << units_) - 1), settled_((1u << units_) - 1) {
+    : sc_module(name),
+      device_(device),
+      units_(device.units()),
+      idle_before_((1u << units_) - 1),
+      settled_((1u << units_) - 1) {
   launches.bind(*this);
   SC_METHOD(run);
   sensitive << next_cycle_;
@@ -74,7 +78,8 @@ uint64_t DeviceHost::quiet_cycles(const UnitOutputs& outputs) const {
   if (inputs_.launch_valid) return 1;
   uint64_t until = std::min(memory->response_due(), intersections->beat_due());
   if (outputs.memory_request_valid && !inputs_.memory_request_ready) until = std::min(until, memory->room_from());
-  if (outputs.import_request_valid && !inputs_.import_request_ready) until = std::min(until, intersections->request_due());
+  if (outputs.import_request_valid && !inputs_.import_request_ready)
+    until = std::min(until, intersections->request_due());
   if (outputs.export_valid && !inputs_.export_ready) until = std::min(until, rays->beats_from());
   return std::min(clock->quantum(), until - clock->cycle());
 }

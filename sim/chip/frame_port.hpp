@@ -12,7 +12,9 @@ namespace raypool::chip {
 class FramePort : public sc_core::sc_module, public ContributionIf {
  public:
   /// `frame` must outlive the port.
-  FramePort(const sc_core::sc_module_name& name, FrameSink& frame) : sc_module(name), frame_(frame) { device.bind(*this); }
+  FramePort(const sc_core::sc_module_name& name, FrameSink& frame) : sc_module(name), frame_(frame) {
+    device.bind(*this);
+  }
 
   sc_core::sc_port<LedgerIf> ledger{"ledger"};
   sc_core::sc_export<ContributionIf> device{"device"};

@@ -51,7 +51,8 @@ void IntersectionPool::give() {
 }
 
 void IntersectionPool::beat(Beat& beat) {
-  if (beat_due_ != clock->cycle()) throw std::logic_error("the device was not clocked when a beat of an intersection came");
+  if (beat_due_ != clock->cycle())
+    throw std::logic_error("the device was not clocked when a beat of an intersection came");
   std::copy_n(leaving_.begin() + static_cast<std::ptrdiff_t>(next_beat_) * kBeatWords, kBeatWords, beat.begin());
   ++next_beat_;
   beat_due_ = next_beat_ == kIntersectionBeats ? kNever : beat_due_ + 1;

@@ -21,7 +21,10 @@
 
 namespace raypool::chip {
 
-class IntersectionPool : public sc_core::sc_module, public ImportIf, public IntersectionSinkIf, public IntersectionLevelIf {
+class IntersectionPool : public sc_core::sc_module,
+                         public ImportIf,
+                         public IntersectionSinkIf,
+                         public IntersectionLevelIf {
  public:
   /// `capacity` packages of each kind.
   IntersectionPool(const sc_core::sc_module_name& name, int capacity);

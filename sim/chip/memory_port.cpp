@@ -67,9 +67,9 @@ uint64_t MemoryPort::transport(tlm::tlm_command command, uint32_t address, void*
   try {
     socket->b_transport(payload_, delay);
   } catch (const sc_core::sc_report& report) {
-    throw InputError(
-        fmt::format("the memory model fails in a {} at address 0x{:x} ({}): its b_transport must add to the delay, and not wait",
-                    what, address, report.get_msg()));
+    throw InputError(fmt::format(
+        "the memory model fails in a {} at address 0x{:x} ({}): its b_transport must add to the delay, and not wait",
+        what, address, report.get_msg()));
   }
   clock->compute_quantum();  // the memory may have notified an event of its own
   if (payload_.is_response_error()) {

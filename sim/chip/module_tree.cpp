@@ -22,7 +22,8 @@ namespace {
 using Objects = std::vector<sc_core::sc_object*>;
 
 std::string type_name(const std::type_index& type) {
-  const std::unique_ptr<char, decltype(&std::free)> text(abi::__cxa_demangle(type.name(), nullptr, nullptr, nullptr), std::free);
+  const std::unique_ptr<char, decltype(&std::free)> text(abi::__cxa_demangle(type.name(), nullptr, nullptr, nullptr),
+                                                         std::free);
   const std::string name = text ? text.get() : type.name();
   const size_t end = name.find('<');  // of the name without the arguments of a template
   const size_t scope = name.rfind("::", end);
@@ -47,7 +48,8 @@ class Tree {
           initiator ? static_cast<const sc_core::sc_object&>(socket->get_base_export()) : socket->get_base_port();
       halves_.insert(&other_half);
     }
-    if (const auto* target = dynamic_cast<const sc_core::sc_export_base*>(&object)) targets_.emplace(channel(*target), &object);
+    if (const auto* target = dynamic_cast<const sc_core::sc_export_base*>(&object))
+      targets_.emplace(channel(*target), &object);
     for (const sc_core::sc_object* child : object.get_child_objects()) find_targets(*child);
   }
 
@@ -83,7 +85,8 @@ class Tree {
     const auto* socket = dynamic_cast<const tlm::tlm_base_socket_if*>(&object);
     const std::string bits = socket == nullptr ? "" : fmt::format("socket, {} bits", socket->get_bus_width());
     if (const auto* port = dynamic_cast<const sc_core::sc_port_base*>(&object)) {
-      line(fmt::format("{} -> {}", socket == nullptr ? "port of " + type_name(port->get_interface_type()) : "initiator " + bits,
+      line(fmt::format("{} -> {}",
+                       socket == nullptr ? "port of " + type_name(port->get_interface_type()) : "initiator " + bits,
                        bound_to(*port)));
     } else if (const auto* target = dynamic_cast<const sc_core::sc_export_base*>(&object)) {
       line(socket == nullptr ? "export of " + type_name(target->get_interface_type()) : "target " + bits);

@@ -15,7 +15,9 @@ TEST(ModuleTree, SaysWhatEachPortIsBoundTo) {
   test::RealFrame run(2, 2, 8, 8, 1);
   run.set_device(std::make_unique<CycleUnit>(run.options.configuration, run.image.memory));
   const std::string text = chip_modules(run.options);
-  const auto has = [&](const std::string& line) { EXPECT_NE(text.find(line + "\n"), std::string::npos) << line << "\n" << text; };
+  const auto has = [&](const std::string& line) {
+    EXPECT_NE(text.find(line + "\n"), std::string::npos) << line << "\n" << text;
+  };
   has("chip                    Chip");
   has("  device_host           DeviceHost");
   has("    memory              port of MemoryIf -> chip.memory_port.device");
@@ -39,7 +41,8 @@ TEST(ModuleTree, ShowsTheMemoryThatIsBound) {
   test::BankedDram dram("dram", run.image.memory);
   chip.memory.bind(dram.socket);
   const std::string text = module_tree();
-  EXPECT_NE(text.find("  memory                initiator socket, 128 bits -> dram.socket\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("  memory                initiator socket, 128 bits -> dram.socket\n"), std::string::npos)
+      << text;
   EXPECT_NE(text.find("dram                    BankedDram\n"), std::string::npos) << text;
 }
 

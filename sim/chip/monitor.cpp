@@ -6,7 +6,8 @@
 
 namespace raypool::chip {
 
-Monitor::Monitor(const sc_core::sc_module_name& name, const MonitorOptions& options) : sc_module(name), options_(options) {
+Monitor::Monitor(const sc_core::sc_module_name& name, const MonitorOptions& options)
+    : sc_module(name), options_(options) {
   SC_METHOD(show);
   sensitive << show_;
   dont_initialize();
@@ -42,8 +43,9 @@ void Monitor::watch() {
                       options_.watchdog_cycles, clock->cycle(), watched->describe()));
     }
     if (silent_ >= kSilentPeriods) {
-      throw ChipStalled(fmt::format("a program runs without end: nothing has been transferred for {} cycles, at cycle {}; {}",
-                                    kSilentPeriods * options_.watchdog_cycles, clock->cycle(), watched->describe()));
+      throw ChipStalled(
+          fmt::format("a program runs without end: nothing has been transferred for {} cycles, at cycle {}; {}",
+                      kSilentPeriods * options_.watchdog_cycles, clock->cycle(), watched->describe()));
     }
     retired_ = retired;
     transfers_ = transfers;
@@ -54,7 +56,8 @@ void Monitor::watch() {
 void Monitor::limit() {
   clock->guard([&] {
     if (options_.timed || watched->retired() > options_.cycle_limit)
-      throw ChipStalled(fmt::format("{}; {}", limit_sentence(options_.cycle_limit, options_.timed), watched->describe()));
+      throw ChipStalled(
+          fmt::format("{}; {}", limit_sentence(options_.cycle_limit, options_.timed), watched->describe()));
     clock->notify(limit_, Phase::Monitor, 1);
   });
 }

@@ -49,7 +49,8 @@ TEST(OwnMemory, AnswersInItsOwnTime) {
     return true;
   });
   const uint64_t first = 10 + 140, second = first + 60, write = second + 140;
-  EXPECT_EQ(last_beats, (std::vector<std::pair<uint8_t, uint64_t>>{{0, first}, {1, second}, {2, second + 8}, {3, write + 140}}));
+  EXPECT_EQ(last_beats,
+            (std::vector<std::pair<uint8_t, uint64_t>>{{0, first}, {1, second}, {2, second + 8}, {3, write + 140}}));
   EXPECT_EQ(dram.row_hits, 1u);
   EXPECT_EQ(dram.row_misses, 4u);
 }
@@ -140,8 +141,9 @@ std::string refusal(std::function<void(tlm::tlm_generic_payload&)> what) {
 }
 
 TEST(OwnMemory, ThatRefusesAnAccessEndsTheRunWithASentence) {
-  EXPECT_EQ(refusal([](tlm::tlm_generic_payload& payload) { payload.set_response_status(tlm::TLM_ADDRESS_ERROR_RESPONSE); }),
-            "the memory model answers TLM_ADDRESS_ERROR_RESPONSE to a read of 64 bytes at address 0x0: it must serve it");
+  EXPECT_EQ(
+      refusal([](tlm::tlm_generic_payload& payload) { payload.set_response_status(tlm::TLM_ADDRESS_ERROR_RESPONSE); }),
+      "the memory model answers TLM_ADDRESS_ERROR_RESPONSE to a read of 64 bytes at address 0x0: it must serve it");
   EXPECT_EQ(refusal([](tlm::tlm_generic_payload&) {}).find("the memory model answers TLM_INCOMPLETE_RESPONSE"), 0u);
 }
 

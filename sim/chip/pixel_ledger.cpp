@@ -102,7 +102,9 @@ void PixelLedger::attribute(int unit, Export kind, uint32_t pixel) {
   const auto made = [&](Kernel& kernel) {
     const bool eye = kernel.kind == RayKernel::CastEye, shade = kernel.kind == RayKernel::Shade;
     if (eye != (kind == Export::EyeRay) || shade != (kind == Export::Contribution)) return false;
-    uint32_t& left = shade ? kernel.contributions_left : kind == Export::ShadowRay ? kernel.shadow_left : kernel.normal_left;
+    uint32_t& left = shade                       ? kernel.contributions_left
+                     : kind == Export::ShadowRay ? kernel.shadow_left
+                                                 : kernel.normal_left;
     if (left == 0 || !kernel.has(pixel)) return false;
     --left;
     return true;
@@ -120,14 +122,15 @@ void PixelLedger::attribute(int unit, Export kind, uint32_t pixel) {
     if (!kernels[i].ended) break;
   }
   const char* const names[] = {"an eye ray", "a secondary ray", "a shadow ray", "a contribution"};
-  throw std::runtime_error(fmt::format("compute unit {} exported {} of pixel ({}, {}) that none of its kernels can have made",
-                                       unit, names[static_cast<size_t>(kind)], pixel & 0xffff, pixel >> 16));
+  throw std::runtime_error(
+      fmt::format("compute unit {} exported {} of pixel ({}, {}) that none of its kernels can have made", unit,
+                  names[static_cast<size_t>(kind)], pixel & 0xffff, pixel >> 16));
 }
 
 void PixelLedger::release_complete(int unit) {
   const std::deque<Kernel>& kernels = kernels_[static_cast<size_t>(unit)];
-  while (!kernels.empty() && kernels.front().ended && kernels.front().normal_left == 0 && kernels.front().shadow_left == 0 &&
-         kernels.front().contributions_left == 0) {
+  while (!kernels.empty() && kernels.front().ended && kernels.front().normal_left == 0 &&
+         kernels.front().shadow_left == 0 && kernels.front().contributions_left == 0) {
     release_front(unit);
   }
 }

@@ -95,7 +95,8 @@ TEST(PixelLedger, RefusesExportsThatNoKernelCanHaveMade) {
   EXPECT_THROW(ledger.ray_exported(0, ray_of(3, 1), true), std::runtime_error) << "pixel of no thread";
   EXPECT_THROW(ledger.ray_exported(0, ray_of(0xffffffff, 1), true), std::runtime_error) << "pixel outside";
   EXPECT_THROW(ledger.ray_exported(1, ray_of(1, 1), true), std::runtime_error) << "another unit's";
-  EXPECT_THROW(ledger.ray_exported(0, ray_of(1, 1 | kShadowFlag), true), std::runtime_error) << "shadow ray of an eye kernel";
+  EXPECT_THROW(ledger.ray_exported(0, ray_of(1, 1 | kShadowFlag), true), std::runtime_error)
+      << "shadow ray of an eye kernel";
   EXPECT_THROW(ledger.contribution_exported(0, 1), std::runtime_error);
   ledger.ray_exported(0, ray_of(1, 1), true);
   ledger.ray_exported(0, ray_of(2, 1), true);

@@ -20,7 +20,8 @@ constexpr uint32_t kThesisIntersections = 8;
 ThesisPolicy::ThesisPolicy(const PolicySetup& setup) : contents_(setup.contents) {
   const uint32_t scale = std::max(1u, setup.contents / kThesisContents);
   ray_threshold_ = std::min(kThesisRays * scale * setup.units, setup.ray_capacity * 3 / 4);
-  intersection_threshold_ = std::min({kThesisIntersections * scale, setup.contents - 1, setup.intersection_capacity - 1});
+  intersection_threshold_ =
+      std::min({kThesisIntersections * scale, setup.contents - 1, setup.intersection_capacity - 1});
 }
 
 Choice ThesisPolicy::choose(const PolicyView& view) const {
@@ -48,7 +49,8 @@ Choice ThesisPolicy::choose(const PolicyView& view) const {
       choice = shade;
     }
   }
-  // A kernel that can wait is launched ahead only to import a full load; any other decision is better made when the unit is free.
+  // A kernel that can wait is launched ahead only to import a full load; any other decision
+  // is better made when the unit is free.
   if (view.ahead && choice.threads < contents_) choice = {};
   return choice;
 }

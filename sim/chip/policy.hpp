@@ -1,5 +1,5 @@
-// The controller's policy: which kernel a unit gets next. A policy only proposes; the controller sees to it that what it launches
-// is possible and safe. A new policy is a subclass and a line in make_policy.
+// The controller's policy: which kernel a unit gets next. A policy only proposes; the controller sees to it that what
+// it launches is possible and safe. A new policy is a subclass and a line in make_policy.
 #pragma once
 
 #include <cstdint>
@@ -36,8 +36,8 @@ struct Choice {
 class KernelPolicy {
  public:
   virtual ~KernelPolicy() = default;
-  /// Must be a function of `view` alone. A free unit (not `ahead`) must not halt when intersections are there, nothing is
-  /// more_to_come and no tile may be cast; nor when shadow intersections fill their pool.
+  /// Must be a function of `view` alone. A free unit (not `ahead`) must not halt when intersections are there, nothing
+  /// is more_to_come and no tile may be cast; nor when shadow intersections fill their pool.
   virtual Choice choose(const PolicyView& view) const = 0;
 };
 

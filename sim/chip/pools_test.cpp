@@ -36,7 +36,9 @@ struct Bench {
       ledger.eye_launched(unit, std::move(pixels));
     }
   }
-  static uint32_t pixel(int unit, uint32_t i) { return (static_cast<uint32_t>(unit) * 16 + i % 16) | (i / 16 % 64) << 16; }
+  static uint32_t pixel(int unit, uint32_t i) {
+    return (static_cast<uint32_t>(unit) * 16 + i % 16) | (i / 16 % 64) << 16;
+  }
   static Ray eye_ray(int unit, uint32_t i) {
     Ray ray{};
     ray[word::kPixel] = pixel(unit, i);
@@ -204,19 +206,22 @@ TEST(IntersectionPool, GivesAPackageInEightCycles) {
   ASSERT_EQ(beats.size(), 18u);
   for (size_t i = 0; i < beats.size(); ++i) EXPECT_EQ(beats[i], 12 + i / 6 * 8 + i % 6);
   for (uint32_t p = 0; p < 3; ++p) {
-    for (uint32_t i = 0; i < 24; ++i) EXPECT_EQ(words[p * 24 + i], i < kIntersectionWords ? numbered(p)[i] : 0) << p << " " << i;
+    for (uint32_t i = 0; i < 24; ++i)
+      EXPECT_EQ(words[p * 24 + i], i < kIntersectionWords ? numbered(p)[i] : 0) << p << " " << i;
   }
   EXPECT_EQ(bench.intersections.busy_cycles(), 24u);
 }
 
 TEST(IntersectionPool, KeepsTheKindsApart) {
   Bench bench(4);
-  const std::array<ImportKind, 4> kinds = {ImportKind::Normal, ImportKind::Shadow, ImportKind::Normal, ImportKind::Shadow};
+  const std::array<ImportKind, 4> kinds = {ImportKind::Normal, ImportKind::Shadow, ImportKind::Normal,
+                                           ImportKind::Shadow};
   for (int unit = 0; unit < 4; ++unit) bench.ledger.launched(unit, RayKernel::Shade, 1000);
   uint32_t taken = 0, came = 0;
   bench.run([&](uint64_t cycle) {
     if (cycle == 1) {
-      for (uint32_t i = 0; i < 40; ++i) bench.intersections.put(i < 20 ? ImportKind::Normal : ImportKind::Shadow, numbered(i));
+      for (uint32_t i = 0; i < 40; ++i)
+        bench.intersections.put(i < 20 ? ImportKind::Normal : ImportKind::Shadow, numbered(i));
     }
     Beat data;
     if (bench.beat_of_intersection(data) && data[1] % 100 == 1) {

@@ -1,5 +1,5 @@
-// What the chip needs from a scene: something that finds hits, and something that collects contributions; and both made from the
-// real ones.
+// What the chip needs from a scene: something that finds hits, and something that collects
+// contributions; and both made from the real ones.
 #pragma once
 
 #include "machine/compute_unit.hpp"
@@ -12,8 +12,8 @@ namespace raypool {
 class RayTracer {
  public:
   virtual ~RayTracer() = default;
-  /// Normal ray: true and the intersection when it hits. Shadow ray: true and an intersection with words 12-20 zero when it is
-  /// free. False: the ray leaves nothing. Words 0-11 of the intersection are the ray's.
+  /// Normal ray: true and the intersection when it hits. Shadow ray: true and an intersection with words 12-20 zero
+  /// when it is free. False: the ray leaves nothing. Words 0-11 of the intersection are the ray's.
   virtual bool trace(const Ray& ray, Intersection& intersection) = 0;
 };
 

@@ -11,11 +11,12 @@ namespace raypool::chip {
 namespace {
 
 const ProgramOptions& checked(const ProgramOptions& options) {
-  if (options.device == nullptr || options.memory == nullptr) throw std::logic_error("run_program needs a device and a memory");
+  if (options.device == nullptr || options.memory == nullptr)
+    throw std::logic_error("run_program needs a device and a memory");
   const auto contents = static_cast<uint32_t>(options.configuration.contents());
   if (options.threads < 1 || options.threads > contents) {
-    throw InputError(
-        fmt::format("{} threads a block: configuration {} holds 1 to {}", options.threads, options.configuration.name, contents));
+    throw InputError(fmt::format("{} threads a block: configuration {} holds 1 to {}", options.threads,
+                                 options.configuration.name, contents));
   }
   if (options.blocks < 1) throw InputError("0 blocks: launch at least one");
   for (uint32_t pc = 0; pc < options.program_length; ++pc) {
@@ -73,8 +74,8 @@ ProgramChip::ProgramChip(const sc_core::sc_module_name& name, const ProgramOptio
       options_(checked(options)),
       grid_("grid", options_),
       device_("device_host", *options.device),
-      monitor_("monitor",
-               {options.watchdog_cycles, options.cycle_limit, options.device->timed(), static_cast<bool>(options.progress)}) {
+      monitor_("monitor", {options.watchdog_cycles, options.cycle_limit, options.device->timed(),
+                           static_cast<bool>(options.progress)}) {
   memory_port_.clock(clock_.now);
   memory_port_.socket.bind(memory);
 
@@ -110,7 +111,8 @@ ProgramResult ProgramChip::run() {
   result.memory_reads = memory_port_.reads();
   result.memory_writes = memory_port_.writes();
   if (result.cycles > 0)
-    result.memory_port_utilisation = static_cast<double>(memory_port_.busy_cycles()) / static_cast<double>(result.cycles);
+    result.memory_port_utilisation =
+        static_cast<double>(memory_port_.busy_cycles()) / static_cast<double>(result.cycles);
   return result;
 }
 

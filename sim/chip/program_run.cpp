@@ -37,7 +37,8 @@ std::optional<FaultingAccess> run_to_fault(const ProgramOptions& options, Memory
           const auto lane = lowest(mask);
           const uint32_t address = step.addresses[lane];
           const bool faulty = step.fault.code == FaultCode::Misaligned ? address % 4 != 0 : address >= memory.size();
-          if (faulty) return FaultingAccess{step.fault, warp * static_cast<uint32_t>(core.lanes()) + lane, block, address};
+          if (faulty)
+            return FaultingAccess{step.fault, warp * static_cast<uint32_t>(core.lanes()) + lane, block, address};
         }
         return std::nullopt;
       }

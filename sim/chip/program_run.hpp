@@ -36,7 +36,8 @@ struct ProgramResult {
 /// Throws InputError for options out of range and for programs that use the pools, ChipFault, ChipStalled.
 ProgramResult run_program(const ProgramOptions& options);
 
-/// "thread 3 of block 0 goes to address 0x402": the access behind a fault of run_program(options), whose units do not say it.
+/// "thread 3 of block 0 goes to address 0x402": the access behind a fault of
+/// run_program(options), whose units do not say it.
 /// Runs the program again, on the architecture alone, from `memory` as it was before; empty if that ends otherwise.
 std::string faulting_access(const ProgramOptions& options, Memory memory, const Fault& fault);
 

@@ -26,8 +26,8 @@ void RayPool::take(uint32_t unit, const Beat& beat, bool last) {
   std::copy(beat.begin(), beat.end(), arriving_.begin() + static_cast<std::ptrdiff_t>(beats_) * kBeatWords);
   ++beats_;
   if (last != (beats_ == kRayBeats)) {
-    throw std::runtime_error(fmt::format("compute unit {} marks beat {} of a ray as {}; a ray has {} beats", unit, beats_,
-                                         last ? "its last" : "not its last", kRayBeats));
+    throw std::runtime_error(fmt::format("compute unit {} marks beat {} of a ray as {}; a ray has {} beats", unit,
+                                         beats_, last ? "its last" : "not its last", kRayBeats));
   }
   if (!last) return;
 

@@ -3,10 +3,11 @@
 #include <cstdio>
 #include <cstdlib>
 
-// libsystemc brings a main() that calls this function and therefore wants to find it, though every program here has a main() of
-// its own.
+// libsystemc brings a main() that calls this function and therefore wants to find it, though every
+// program here has a main() of its own.
 __attribute__((weak)) int sc_main(int, char**) {
-  std::fputs("this program was linked with SystemC's main() instead of its own: put the SystemC library last\n", stderr);
+  std::fputs("this program was linked with SystemC's main() instead of its own: put the SystemC library last\n",
+             stderr);
   return EXIT_FAILURE;
 }
 

@@ -1,5 +1,5 @@
-// One SystemC simulation. SystemC keeps its state in one global context and allows one run of it; this makes a context a run, so
-// that a process can make several runs one after the other.
+// One SystemC simulation. SystemC keeps its state in one global context and allows one run of it; this makes a
+// context a run, so that a process can make several runs one after the other.
 #pragma once
 
 #include <systemc>

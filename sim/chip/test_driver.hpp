@@ -14,7 +14,8 @@ class Driver : public sc_core::sc_module {
  public:
   SC_HAS_PROCESS(Driver);
   /// `cycle` is called with 1, 2, ... until it returns false, which ends the run.
-  Driver(const sc_core::sc_module_name& name, std::function<bool(uint64_t)> cycle) : sc_module(name), cycle_(std::move(cycle)) {
+  Driver(const sc_core::sc_module_name& name, std::function<bool(uint64_t)> cycle)
+      : sc_module(name), cycle_(std::move(cycle)) {
     SC_METHOD(run);
     sensitive << next_cycle_;
     dont_initialize();

@@ -1,5 +1,5 @@
-// For tests: a world whose rays hit and miss by a hash of pixel and depth, and a compute unit that plays the ray kernels in it,
-// obeying the port protocols with random delays, so that a run's every ray is known beforehand.
+// For tests: a world whose rays hit and miss by a hash of pixel and depth, and a compute unit that plays the ray
+// kernels in it, obeying the port protocols with random delays, so that a run's every ray is known beforehand.
 #pragma once
 
 #include <algorithm>
@@ -44,7 +44,8 @@ struct Expected {
 
   Expected(const World& world, int width, int height, int depth_limit) {
     for (int y = 0; y < height; ++y) {
-      for (int x = 0; x < width; ++x) follow(world, static_cast<uint32_t>(x | y << 16), static_cast<uint32_t>(depth_limit));
+      for (int x = 0; x < width; ++x)
+        follow(world, static_cast<uint32_t>(x | y << 16), static_cast<uint32_t>(depth_limit));
     }
   }
 
@@ -91,7 +92,9 @@ class WorldTracer : public RayTracer {
 
 class WorldFrame : public FrameSink {
  public:
-  void add(const FrameContribution& contribution) override { ++contributions[{contribution.pixel, contribution.rgb[0]}]; }
+  void add(const FrameContribution& contribution) override {
+    ++contributions[{contribution.pixel, contribution.rgb[0]}];
+  }
   std::map<std::pair<uint32_t, uint32_t>, int> contributions;  ///< (pixel, depth) -> how often
 };
 
@@ -192,7 +195,8 @@ class ScriptedUnit : public ComputeUnit {
       require(!reads_.empty() && reads_.front().second == in.memory_response.id, "a response that was not asked for");
       require(in.memory_response.beat == read_beat_, "beats of a line out of order");
       for (uint32_t i = 0; i < kBeatWords; ++i) {
-        require(in.memory_response.data[i] == memory_.load(reads_.front().first + read_beat_ * 16 + i * 4), "data of a line");
+        require(in.memory_response.data[i] == memory_.load(reads_.front().first + read_beat_ * 16 + i * 4),
+                "data of a line");
       }
       if (++read_beat_ == 4) {
         read_beat_ = 0;
@@ -286,7 +290,8 @@ class ScriptedUnit : public ComputeUnit {
     outputs_.export_valid = shown && !exports_.front().to_frame;
     outputs_.frame_valid = shown && exports_.front().to_frame;
     if (outputs_.export_valid) {
-      for (size_t i = 0; i < kBeatWords; ++i) outputs_.export_data[i] = exports_.front().ray[export_beat_ * kBeatWords + i];
+      for (size_t i = 0; i < kBeatWords; ++i)
+        outputs_.export_data[i] = exports_.front().ray[export_beat_ * kBeatWords + i];
       outputs_.export_last = export_beat_ + 1 == kRayBeats;
     }
     if (outputs_.frame_valid) outputs_.frame = exports_.front().frame;

@@ -14,10 +14,10 @@ namespace raypool {
 
 std::string about() {
   const std::string commit = *kCommit == '\0' ? "" : fmt::format(" ({})", kCommit);
-  return fmt::format("raypool {}{}\nSystemC {}, Embree {}, fmt {}.{}.{}, nlohmann-json {}.{}.{}, CLI11 {}; GCC {}", kVersion,
-                     commit, sc_core::sc_release(), RTC_VERSION_STRING, FMT_VERSION / 10000, FMT_VERSION / 100 % 100,
-                     FMT_VERSION % 100, NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH,
-                     CLI11_VERSION, __VERSION__);
+  return fmt::format("raypool {}{}\nSystemC {}, Embree {}, fmt {}.{}.{}, nlohmann-json {}.{}.{}, CLI11 {}; GCC {}",
+                     kVersion, commit, sc_core::sc_release(), RTC_VERSION_STRING, FMT_VERSION / 10000,
+                     FMT_VERSION / 100 % 100, FMT_VERSION % 100, NLOHMANN_JSON_VERSION_MAJOR,
+                     NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH, CLI11_VERSION, __VERSION__);
 }
 
 }  // namespace raypool

@@ -1,5 +1,5 @@
-// `raypool asm` and `raypool disasm`. The file between them holds an instruction a line, 16 hexadecimal digits, and a line "//
-// kernel NAME" before each kernel's first: what Verilog's $readmemh reads.
+// `raypool asm` and `raypool disasm`. The file between them holds an instruction a line, 16 hexadecimal digits, and a
+// line "// kernel NAME" before each kernel's first: what Verilog's $readmemh reads.
 #include <fmt/format.h>
 
 #include <charconv>
@@ -39,8 +39,9 @@ Program parse_words(const std::string& text, const std::string& name) {
     const char* const end = line.data() + line.size();
     const auto [stop, error] = std::from_chars(line.data(), end, word, 16);
     if (error != std::errc{} || stop != end) {
-      throw InputError(fmt::format(
-          "{}:{}: '{}' is not an instruction of up to 16 hexadecimal digits: give what raypool asm wrote", name, number, line));
+      throw InputError(
+          fmt::format("{}:{}: '{}' is not an instruction of up to 16 hexadecimal digits: give what raypool asm wrote",
+                      name, number, line));
     }
     program.code.push_back(word);
   }

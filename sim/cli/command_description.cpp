@@ -50,10 +50,12 @@ OptionText describe(const CLI::Option& option) {
 /// Those of option groups too, which are commands without a name.
 std::vector<OptionText> options_of(const CLI::App& app) {
   std::vector<OptionText> texts;
-  for (const CLI::Option* option : app.get_options([](const CLI::Option*) { return true; })) texts.push_back(describe(*option));
+  for (const CLI::Option* option : app.get_options([](const CLI::Option*) { return true; }))
+    texts.push_back(describe(*option));
   for (const CLI::App* group : app.get_subcommands([](const CLI::App* sub) { return sub->get_name().empty(); })) {
     for (const CLI::Option* option : group->get_options([](const CLI::Option*) { return true; }))
-      if (std::none_of(texts.begin(), texts.end(), [&](const OptionText& text) { return text.names == describe(*option).names; }))
+      if (std::none_of(texts.begin(), texts.end(),
+                       [&](const OptionText& text) { return text.names == describe(*option).names; }))
         texts.push_back(describe(*option));
   }
   return texts;
@@ -144,7 +146,8 @@ std::string zsh_arguments(const CLI::App& app) {
 std::string zsh(const CLI::App& app) {
   std::string commands, cases;
   for (const CLI::App* command : commands_of(app)) {
-    commands += "    " + shell_quoted(command->get_name() + ":" + replaced(command->get_description(), ":\\", "\\")) + "\n";
+    commands +=
+        "    " + shell_quoted(command->get_name() + ":" + replaced(command->get_description(), ":\\", "\\")) + "\n";
     cases += fmt::format("    {})\n      {} ;;\n", command->get_name(), zsh_arguments(*command));
   }
   return fmt::format(R"(#compdef raypool
@@ -171,7 +174,8 @@ std::string fish_options(const CLI::App& app, const std::string& condition) {
   std::string text;
   for (const OptionText& option : options_of(app)) {
     std::string line = fmt::format("complete -c raypool -n {}", shell_quoted(condition));
-    for (const std::string& name : option.names) line += name[1] == '-' ? " -l " + name.substr(2) : " -s " + name.substr(1);
+    for (const std::string& name : option.names)
+      line += name[1] == '-' ? " -l " + name.substr(2) : " -s " + name.substr(1);
     if (!option.names.empty() && !option.type.empty()) line += " -r";
     if (!option.values.empty()) line += fmt::format(" -f -a '{}'", fmt::join(option.values, " "));
     if (option.names.empty() && option.values.empty()) continue;
@@ -193,7 +197,8 @@ std::string fish(const CLI::App& app) {
 
 std::string roff(std::string_view text) {
   std::string result;
-  for (const char c : text) result += c == '\\' ? std::string("\\e") : c == '-' ? std::string("\\-") : std::string(1, c);
+  for (const char c : text)
+    result += c == '\\' ? std::string("\\e") : c == '-' ? std::string("\\-") : std::string(1, c);
   return !result.empty() && (result[0] == '.' || result[0] == '\'') ? "\\&" + result : result;
 }
 
@@ -225,7 +230,8 @@ std::string man_page(const CLI::App& app) {
                                  roff("raypool - a ray-tracing GPU to render on, measure, verify and synthesise"));
   text += ".SH SYNOPSIS\n.B raypool\n.I COMMAND\n.RI [ OPTIONS ]\n.SH OPTIONS\n" + roff_options(app) + ".SH COMMANDS\n";
   for (const CLI::App* command : commands_of(app))
-    text += fmt::format(".SS {}\n{}\n{}", command->get_name(), roff(command->get_description()), roff_options(*command));
+    text +=
+        fmt::format(".SS {}\n{}\n{}", command->get_name(), roff(command->get_description()), roff_options(*command));
   text += ".SH EXIT STATUS\n";
   for (const ExitCode& row : kExitCodes) text += fmt::format(".TP\n{}\n{}\n", row.code, roff(row.meaning));
   text += ".SH ENVIRONMENT\n.TP\nRAYPOOL_CONFIGS\na folder of configurations, looked up before all others\n";

@@ -1,5 +1,5 @@
-// What the subcommands of `raypool` do; main/main.cpp parses the command line into these options. Each throws InputError on input
-// that cannot be used and returns the exit code otherwise.
+// What the subcommands of `raypool` do; main/main.cpp parses the command line into these options. Each throws
+// InputError on input that cannot be used and returns the exit code otherwise.
 #pragma once
 
 #include <cstdint>
@@ -30,10 +30,10 @@ struct SimOptions {
   int units = 1;
   double detail = 1;  ///< of a built-in scene, 0.01 .. 16
   bool waves = false;
-  bool modules = false;              ///< print the modules of the chip, and draw nothing
-  uint64_t inspect_until = 0;        ///< cycle of a difference that a look inside the RTL is to tell more of; 0: no look
-  bool json = false;                 ///< the report on standard output, instead of the table
-  bool quiet = false;                ///< no progress, no table
+  bool modules = false;        ///< print the modules of the chip, and draw nothing
+  uint64_t inspect_until = 0;  ///< cycle of a difference that a look inside the RTL is to tell more of; 0: no look
+  bool json = false;           ///< the report on standard output, instead of the table
+  bool quiet = false;          ///< no progress, no table
   std::vector<std::string> command;  ///< the command line, for the report
   /// Puts something around the device, which works on that memory; empty: nothing. No option of the command line.
   std::function<std::unique_ptr<ComputeUnit>(std::unique_ptr<ComputeUnit>, const Memory&)> wrap = {};
@@ -80,7 +80,8 @@ int unit_command(const UnitOptions& options);
 /// `raypool isa`
 enum class IsaFormat { Verilog, VerilogFunctions, Markdown };
 int isa_command(IsaFormat format);
-/// `raypool isa --write`: every file that is derived from the table, in the checkout that the working directory is the root of.
+/// `raypool isa --write`: every file that is derived from the table, in the checkout that
+/// the working directory is the root of.
 int isa_write_command();
 
 /// `raypool asm FILE`: hexadecimal words, one an instruction. `raypool disasm FILE`: back to text.

@@ -13,7 +13,8 @@ constexpr const char* kSlowUnitNames[] = {"exact", "newton2", "newton1", "newton
 
 void print_table(const Configuration& configuration) {
   fmt::print("configuration {}\n", configuration.name);
-  fmt::print("  warps {}, lanes {}: {} threads at once\n", configuration.warps, configuration.lanes, configuration.contents());
+  fmt::print("  warps {}, lanes {}: {} threads at once\n", configuration.warps, configuration.lanes,
+             configuration.contents());
   fmt::print("  PC stack       {} entries a warp\n", configuration.stack_depth);
   fmt::print("  caches         instructions {} bytes, data {} bytes with {} miss-status holding registers\n",
              configuration.instruction_cache_bytes, configuration.data_cache_bytes, configuration.data_cache_mshrs);

@@ -34,8 +34,8 @@ int configurations_command(const ConfigurationsOptions& options) {
     fmt::print("\n");
   }
   const Covered covered = count_covered(machines, most_threads);
-  fmt::print("{} machines of at most {} threads: {} of {} values, {} of {} pairs of values\n", machines.size(), most_threads,
-             covered.values, covered.all_values, covered.pairs, covered.all_pairs);
+  fmt::print("{} machines of at most {} threads: {} of {} values, {} of {} pairs of values\n", machines.size(),
+             most_threads, covered.values, covered.all_values, covered.pairs, covered.all_pairs);
   if (options.folder.empty()) return 0;
   OutputFolder folder(options.folder);
   std::string list;

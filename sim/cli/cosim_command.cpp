@@ -54,12 +54,14 @@ class Cosim {
     return cycles;
   }
 
-  /// Why the program fails, with neither coverage nor counts; empty if it does not. `inspect`: say what was wrong inside, too.
+  /// Why the program fails, with neither coverage nor counts; empty if it does not.
+  /// `inspect`: say what was wrong inside, too.
   /// Throws what has nothing to do with the program.
   std::string failure(const RandomProgram& program, bool inspect = false) const {
     const auto run = [&](uint64_t inspect_until) {
       Memory memory = program.memory;
-      run_random_program(*make_unit(engine_inspecting(inspect_until), memory), memory, program, program.seed, kCycleLimit);
+      run_random_program(*make_unit(engine_inspecting(inspect_until), memory), memory, program, program.seed,
+                         kCycleLimit);
     };
     try {
       if (inspect)
@@ -98,7 +100,8 @@ class Cosim {
   std::unique_ptr<ComputeUnit> make(Memory& memory, const std::string& name, uint64_t inspect_until) {
     if (!vectors_) return make_unit(engine_inspecting(inspect_until), memory, name);
     const Configuration& configuration = engine_.configuration;
-    auto recorder = make_vector_recorder(configuration, load_rtl_unit(find_unit_library(engine_), configuration), *vectors_);
+    auto recorder =
+        make_vector_recorder(configuration, load_rtl_unit(find_unit_library(engine_), configuration), *vectors_);
     return make_lockstep_unit(configuration, std::move(recorder), memory);
   }
 
@@ -109,13 +112,13 @@ class Cosim {
   std::optional<std::ofstream> vectors_;
 };
 
-/// What a report is about: its first line without numbers, so that a shorter program that fails otherwise is not taken for the
-/// same.
+/// What a report is about: its first line without numbers, so that a shorter program that fails
+/// otherwise is not taken for the same.
 std::string subject(const std::string& report) {
   std::string text;
   const size_t begin = report.find(": ");
-  for (const char c :
-       report.substr(begin == std::string::npos ? 0 : begin, report.find('\n') - (begin == std::string::npos ? 0 : begin)))
+  for (const char c : report.substr(begin == std::string::npos ? 0 : begin,
+                                    report.find('\n') - (begin == std::string::npos ? 0 : begin)))
     if (c < '0' || c > '9') text += c;
   return text;
 }
@@ -137,7 +140,8 @@ std::string subject(const std::string& report) {
     saved.program = shrink_program(cosim.configuration(), program, fails, shrink);
     text = cosim.failure(saved.program, true);
     saved.note = text.substr(0, text.find('\n'));
-    text += fmt::format("\nshrunk from {} to {} instructions", program.program.code.size(), saved.program.program.code.size());
+    text += fmt::format("\nshrunk from {} to {} instructions", program.program.code.size(),
+                        saved.program.program.code.size());
     // The difference is what counts, saved or not.
     try {
       OutputFolder folder(options.save);
@@ -176,29 +180,31 @@ int cosim_command(const CosimOptions& options) {
     }
     Cosim cosim(options, saved.configuration, saved.program.units);
     const uint64_t cycles = cosim.run(saved.program, options.replay);
-    fmt::print("replayed {}: {} instructions of code, {} cycles\n", options.replay, saved.program.program.code.size(), cycles);
+    fmt::print("replayed {}: {} instructions of code, {} cycles\n", options.replay, saved.program.program.code.size(),
+               cycles);
     if (cosim.engine() == Engine::Lockstep) fmt::print("{}\n", to_string(cosim.counts()));
     cosim.finish();
     return 0;
   }
 
   Cosim cosim(options, load_configuration(options.config), options.units);
-  const std::string name =
-      options.units == 1 ? cosim.configuration().name : fmt::format("{} x {}", options.units, cosim.configuration().name);
+  const std::string name = options.units == 1 ? cosim.configuration().name
+                                              : fmt::format("{} x {}", options.units, cosim.configuration().name);
   uint64_t cycles = 0;
   Progress progress(options.quiet);
   for (uint64_t n = 0; n < options.programs; ++n) {
     const RandomProgram program =
         make_random_program(cosim.configuration(), options.seed + n, options.length, options.units, options.mix);
-    run_or_report(cosim, options, program,
-                  fmt::format("raypool cosim --config {} --units {} --programs 1 --seed {} --length {}{}", options.config,
-                              options.units, program.seed, options.length, options.mix.empty() ? "" : " --mix " + options.mix),
-                  cycles);
+    run_or_report(
+        cosim, options, program,
+        fmt::format("raypool cosim --config {} --units {} --programs 1 --seed {} --length {}{}", options.config,
+                    options.units, program.seed, options.length, options.mix.empty() ? "" : " --mix " + options.mix),
+        cycles);
     if (progress.due())
       progress.show(fmt::format("cosim {}: {} of {} programs, {} cycles", name, n + 1, options.programs, cycles));
   }
-  fmt::print("cosim {}: {} programs from seed {}, {} cycles in {:.1f} s\n", name, options.programs, options.seed, cycles,
-             progress.seconds());
+  fmt::print("cosim {}: {} programs from seed {}, {} cycles in {:.1f} s\n", name, options.programs, options.seed,
+             cycles, progress.seconds());
   if (cosim.engine() == Engine::Lockstep) fmt::print("{}\n", to_string(cosim.counts()));
   if (cosim.traced()) fmt::print("{}", to_string(cosim.coverage()));
   if (!options.coverage.empty()) {

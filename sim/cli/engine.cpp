@@ -31,7 +31,8 @@ Engine parse_engine(const std::string& name) {
 std::string unit_library_path(const Configuration& configuration, bool waves, int units) {
   // Two configurations share a unit exactly when their Verilog is the same.
   uint32_t hash = hash_of("");
-  for (const auto& [name, value] : verilog_parameters(configuration)) hash = hash_of(fmt::format("{}={} ", name, value), hash);
+  for (const auto& [name, value] : verilog_parameters(configuration))
+    hash = hash_of(fmt::format("{}={} ", name, value), hash);
   const std::string several = units == 1 ? "" : fmt::format("-{}cu", units);
   const std::string key =
       fmt::format("{}w{}c-{:08x}{}{}", configuration.warps, configuration.lanes, hash, several, waves ? "-waves" : "");
@@ -58,24 +59,26 @@ std::string build_command(const EngineOptions& options) {
   if (installed())
     return fmt::format("raypool unit --config {}{}{}", config, units.empty() ? "" : " --units " + units,
                        options.waves ? " --waves" : "");
-  return fmt::format("make unit CONFIG={}{}{}", config, units.empty() ? "" : " CUS=" + units, options.waves ? " WAVES=1" : "");
+  return fmt::format("make unit CONFIG={}{}{}", config, units.empty() ? "" : " CUS=" + units,
+                     options.waves ? " WAVES=1" : "");
 }
 
 }  // namespace
 
 std::string find_unit_library(const EngineOptions& options) {
   const Configuration& configuration = options.configuration;
-  std::string library =
-      options.unit_library.empty() ? unit_library_path(configuration, options.waves, options.units) : options.unit_library;
+  std::string library = options.unit_library.empty() ? unit_library_path(configuration, options.waves, options.units)
+                                                     : options.unit_library;
   const std::string build = build_command(options);
-  if (!fs::exists(library)) throw InputError(fmt::format("there is no Verilated unit '{}': build it with {}", library, build));
+  if (!fs::exists(library))
+    throw InputError(fmt::format("there is no Verilated unit '{}': build it with {}", library, build));
 
   static std::set<std::string> checked;
   if (options.unit_library.empty() && checked.insert(library).second) {
     const std::string newer = newer_verilog(library, fs::path(data_folder()) / "rtl");
     if (!newer.empty())
-      fmt::print(stderr, "raypool: warning: '{}' was changed after '{}' was built: build it again with {}\n", newer, library,
-                 build);
+      fmt::print(stderr, "raypool: warning: '{}' was changed after '{}' was built: build it again with {}\n", newer,
+                 library, build);
   }
   return library;
 }
@@ -90,7 +93,8 @@ std::unique_ptr<ComputeUnit> make_unit(const EngineOptions& options, Memory& mem
     for (int i = 0; i < options.units; ++i) units.push_back(make_functional_unit(configuration, memory));
     return make_multiprocessor(std::move(units));
   }
-  if (options.engine == Engine::Model) return make_model(configuration, memory, static_cast<uint32_t>(options.units)).device;
+  if (options.engine == Engine::Model)
+    return make_model(configuration, memory, static_cast<uint32_t>(options.units)).device;
 
   std::unique_ptr<ComputeUnit> rtl = load_rtl_unit(find_unit_library(options), configuration, options.units);
   if (options.engine == Engine::Rtl) return rtl;

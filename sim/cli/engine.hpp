@@ -30,20 +30,22 @@ struct EngineOptions {
   std::string unit_library;  ///< empty: unit_library_path()
   bool waves = false;        ///< a waveform will be asked for
   int units = 1;             ///< compute units of the device: 1, 2 or 4
-  /// Of a lockstep, LockstepOptions::inspect_until. With `waves` it always looks inside: a waveform takes more time than that,
-  /// and is not written twice.
+  /// Of a lockstep, LockstepOptions::inspect_until. With `waves` it always looks inside: a waveform takes more time
+  /// than that, and is not written twice.
   uint64_t inspect_until = 0;
 };
 
-/// The Verilated device that they name. Throws InputError when it is missing; says on stderr, once, if the Verilog is newer.
+/// The Verilated device that they name. Throws InputError when it is missing; says on
+/// stderr, once, if the Verilog is newer.
 std::string find_unit_library(const EngineOptions& options);
 
 /// A Verilog file in the folder `rtl` that was changed after `library`; empty if there is none, or no such folder.
 std::string newer_verilog(const std::string& library, const std::string& rtl);
 
-/// A device for the program and data in `memory`, which must outlive it: for rtl the Verilated multiprocessor, for functional and
-/// model a Multiprocessor over as many units, for lockstep both. `name` and `kernel_names` (entry PC -> name) are for the reports
-/// of a lockstep. Throws InputError when the Verilated device is missing or does not fit.
+/// A device for the program and data in `memory`, which must outlive it: for rtl the Verilated
+/// multiprocessor, for functional and model a Multiprocessor over as many units, for lockstep both. `name`
+/// and `kernel_names` (entry PC -> name) are for the reports of a lockstep. Throws InputError when the
+/// Verilated device is missing or does not fit.
 std::unique_ptr<ComputeUnit> make_unit(const EngineOptions& options, Memory& memory, const std::string& name = "unit",
                                        const std::map<uint32_t, std::string>& kernel_names = {});
 

@@ -16,7 +16,8 @@ TEST(NewerVerilog, IsAFileChangedAfterTheUnitWasBuilt) {
   fs::remove_all(folder);
   EXPECT_TRUE(fs::create_directories(rtl));
   const fs::path library = folder / "libraypool_unit.so";
-  for (const fs::path& file : {library, rtl / "warp.v", rtl / "isa.vh", rtl / "waivers.vlt"}) std::ofstream(file) << "x";
+  for (const fs::path& file : {library, rtl / "warp.v", rtl / "isa.vh", rtl / "waivers.vlt"})
+    std::ofstream(file) << "x";
   const auto built = fs::last_write_time(library);
   const auto change = [&](const char* file, int seconds) {
     fs::last_write_time(rtl / file, built + std::chrono::seconds(seconds));

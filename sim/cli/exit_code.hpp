@@ -1,5 +1,5 @@
-// The exit codes of `raypool`, one table: main/main.cpp returns them, --help and the man page print them, docs/package.md lists
-// them.
+// The exit codes of `raypool`, one table: main/main.cpp returns them, --help and the man page
+// print them, docs/package.md lists them.
 #pragma once
 
 #include <array>
@@ -18,7 +18,8 @@ struct ExitCode {
 inline constexpr std::array<ExitCode, 4> kExitCodes = {{
     {kDone, "done, and every check of it passed"},
     {kInputFailure,
-     "an option, a file or a program that cannot be used, an output that cannot be written; a program that faults or reaches its "
+     "an option, a file or a program that cannot be used, an output that cannot be written; a program that faults or "
+     "reaches its "
      "limit"},
     {kDifference, "the lockstep found a difference between hardware and model"},
     {kOtherFailure, "wrong results, a promise that is not kept, a chip that stalls; any other failure"},

@@ -19,8 +19,9 @@ ImageSize parse_image_size(const std::string& text) {
   }
   const auto in_range = [](int side) { return side >= 1 && side <= kLargestImageSide; };
   if (!good || !in_range(size.width) || !in_range(size.height)) {
-    throw InputError(fmt::format("size '{}' is not WIDTHxHEIGHT in pixels, each from 1 to {}: write for example 256x256", text,
-                                 kLargestImageSide));
+    throw InputError(
+        fmt::format("size '{}' is not WIDTHxHEIGHT in pixels, each from 1 to {}: write for example 256x256", text,
+                    kLargestImageSide));
   }
   return size;
 }

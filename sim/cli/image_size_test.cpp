@@ -14,8 +14,8 @@ TEST(ImageSize, WidthComesFirst) {
 }
 
 TEST(ImageSize, WhatIsNoSizeOrOutOfRangeIsRefusedWithTheRange) {
-  for (const char* text :
-       {"0x0", "0x5", "5x0", "16385x1", "1x16385", "-4x4", "4x-4", "4", "4x", "x4", "4x4x4", "4 x4", "", "99999999999x1"}) {
+  for (const char* text : {"0x0", "0x5", "5x0", "16385x1", "1x16385", "-4x4", "4x-4", "4", "4x", "x4", "4x4x4", "4 x4",
+                           "", "99999999999x1"}) {
     try {
       parse_image_size(text);
       ADD_FAILURE() << "'" << text << "' was taken";

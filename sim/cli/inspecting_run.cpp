@@ -32,7 +32,8 @@ bool run_inspecting(int argc, char** argv, const LockstepDifference& difference)
   for (int i = 2; i < argc; ++i) {
     std::error_code none;
     if (!std::filesystem::is_fifo(argv[i], none)) continue;
-    fmt::print(stderr, "raypool: '{}' can be read once only, so there is no second run with a look inside the RTL\n", argv[i]);
+    fmt::print(stderr, "raypool: '{}' can be read once only, so there is no second run with a look inside the RTL\n",
+               argv[i]);
     return false;
   }
   const std::string report = difference.what();

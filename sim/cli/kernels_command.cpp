@@ -12,7 +12,8 @@ namespace raypool {
 
 int kernels_command(const std::string& name, const std::string& config) {
   const bool fused = load_configuration(config).fma;
-  const bool compute = std::find(kComputeKernelNames.begin(), kComputeKernelNames.end(), name) != kComputeKernelNames.end();
+  const bool compute =
+      std::find(kComputeKernelNames.begin(), kComputeKernelNames.end(), name) != kComputeKernelNames.end();
   const Program& program = compute ? compute_kernel_program(fused) : ray_kernel_program(fused);
   const std::string text = name.empty() ? kernel_table(fused) : listing(extract_kernel(program, name));
   std::fputs(text.c_str(), stdout);

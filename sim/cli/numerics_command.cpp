@@ -90,9 +90,10 @@ TradeResult measure_trade(const NumericsOptions& options, const ImageSize& size,
   const Scene timed = make_cornell();
   for (const ArithmeticMode& mode : modes) {
     const Configuration configuration = mode.applied_to(base);
-    TradeCost cost{mode, std::nullopt,
-                   read_gates(options.synthesis.empty() ? results_folder().parent_path() / "synth" : fs::path(options.synthesis),
-                              mode.mode)};
+    TradeCost cost{
+        mode, std::nullopt,
+        read_gates(options.synthesis.empty() ? results_folder().parent_path() / "synth" : fs::path(options.synthesis),
+                   mode.mode)};
     if (progress.due()) progress.show(fmt::format("  cost: {}", mode.name));
     cost.timing = time_mode(timed, options.depth, configuration, unit_maker(Engine::Model));
     result.costs.push_back(cost);
@@ -124,7 +125,8 @@ int trade_command(const NumericsOptions& options) {
   out.write("numerics.json", to_json(trade, meshes, seams, scenes, rules, offsets));
   std::string files = "numerics.json";
   const bool plots = has_gnuplot();
-  const bool gates_known = std::all_of(trade.costs.begin(), trade.costs.end(), [](const TradeCost& c) { return c.gates; });
+  const bool gates_known =
+      std::all_of(trade.costs.begin(), trade.costs.end(), [](const TradeCost& c) { return c.gates; });
   if (plots) {
     plot(quality_plot(trade, out.temporary("quality.png").string()));
     files += ", quality.png";
@@ -138,9 +140,11 @@ int trade_command(const NumericsOptions& options) {
   fmt::print("{}\nrays aimed at shared edges and vertices\n{}\n", trade_table(trade), seam_table(meshes, seams));
   fmt::print("offset of secondary rays, against the reference, ties apart\n{}\n", offset_table(scenes, rules, offsets));
   if (!plots) fmt::print("no plots: gnuplot is missing; make numerics installs it\n");
-  if (!gates_known) fmt::print("no gates where there is a -: make numerics GATES=1 synthesises the lanes of every mode first\n");
+  if (!gates_known)
+    fmt::print("no gates where there is a -: make numerics GATES=1 synthesises the lanes of every mode first\n");
   fmt::print("results in {}: {}\n", fs::proximate(out.path(".")).lexically_normal().string(), files);
-  const bool leak = std::any_of(seams.begin(), seams.end(), [](const WatertightCounts& counts) { return counts.leaks > 0; });
+  const bool leak =
+      std::any_of(seams.begin(), seams.end(), [](const WatertightCounts& counts) { return counts.leaks > 0; });
   return leak ? kOtherFailure : kDone;
 }
 
@@ -163,7 +167,8 @@ int extremes_command(const NumericsOptions& options) {
   Progress progress(options.quiet);
   std::string failures;
   uint64_t checks = 0, failed = 0, on_rtl = 0;
-  fmt::print("n engine native, f functional, m model, l RTL in lockstep with the model, X failed, - no Verilated unit\n");
+  fmt::print(
+      "n engine native, f functional, m model, l RTL in lockstep with the model, X failed, - no Verilated unit\n");
   for (size_t i = 0; i < modes.size(); ++i) fmt::print("{}{} {}", i == 0 ? "modes " : ", ", i + 1, modes[i].name);
   fmt::print("\n{:<58}", "");
   for (size_t i = 0; i < modes.size(); ++i) fmt::print(" {:>4}", i + 1);
@@ -176,7 +181,8 @@ int extremes_command(const NumericsOptions& options) {
     }
     std::map<std::string, std::string> letters;
     for (const ExtremeMachine& machine : machines) {
-      if (progress.due()) progress.show(fmt::format("  {}: {}, {}", extreme.name, machine.mode().name, machine.engine()));
+      if (progress.due())
+        progress.show(fmt::format("  {}: {}, {}", extreme.name, machine.mode().name, machine.engine()));
       const std::string failure = run_extreme(extreme, machine);
       ++checks;
       on_rtl += machine.engine() == "lockstep";
@@ -196,8 +202,8 @@ int extremes_command(const NumericsOptions& options) {
     fmt::print("\n");
     std::fflush(stdout);
   }
-  fmt::print("{}{} cases, {} runs ({} on RTL in lockstep), {} failed\n", failures, extreme_cases().size(), checks, on_rtl,
-             failed);
+  fmt::print("{}{} cases, {} runs ({} on RTL in lockstep), {} failed\n", failures, extreme_cases().size(), checks,
+             on_rtl, failed);
   if (!missing.empty()) {
     fmt::print("without hardware: {} of {} modes; make extremes builds their units\n", missing.size(), modes.size());
   }

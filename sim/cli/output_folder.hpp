@@ -8,8 +8,8 @@
 
 namespace raypool {
 
-/// OutputFiles in one folder, which is made if it is missing. publish() replaces what earlier runs left; a failed run changes
-/// nothing. Throws InputError when the folder cannot be written.
+/// OutputFiles in one folder, which is made if it is missing. publish() replaces what earlier runs left; a failed run
+/// changes nothing. Throws InputError when the folder cannot be written.
 class OutputFolder {
  public:
   explicit OutputFolder(const std::filesystem::path& folder) : folder_(folder) { make_folder(folder_); }

@@ -89,14 +89,15 @@ void add_chip(Json& json, const ChipResult& chip) {
   json["memory"] = {{"line_reads", chip.memory_reads},
                     {"quadword_writes", chip.memory_writes},
                     {"port_utilisation", chip.memory_port_utilisation}};
-  json["traverser_batches"] = {{"at_kernel_end", chip.traverser_batches}, {"after_stall", chip.traverser_stall_batches}};
+  json["traverser_batches"] = {{"at_kernel_end", chip.traverser_batches},
+                               {"after_stall", chip.traverser_stall_batches}};
 }
 
 void add_native(Json& json, const NativeStatistics& native) {
   json["cycles"] = nullptr;
   json["rays"] = native.rays();
-  for (const char* key :
-       {"mrays_per_second", "mrays_per_second_thesis", "frames_per_second", "time_utilisation", "resource_utilisation"}) {
+  for (const char* key : {"mrays_per_second", "mrays_per_second_thesis", "frames_per_second", "time_utilisation",
+                          "resource_utilisation"}) {
     json[key] = nullptr;
   }
   add_rays(json, native.ray_counts, native.dropped_rays);
@@ -124,22 +125,26 @@ void kernel_table(std::string& text, const ChipResult& chip) {
 }
 
 void ray_table(std::string& text, const RunRecord& record, const RayCounts& rays) {
-  line(text, "  rays        {}: {} eye, {} reflection, {} shadow", rays.traced(), rays.eye.traced, rays.reflection.traced,
-       rays.shadow.traced);
+  line(text, "  rays        {}: {} eye, {} reflection, {} shadow", rays.traced(), rays.eye.traced,
+       rays.reflection.traced, rays.shadow.traced);
   line(text, "    in vain   {} eye, {} reflection, {} shadow; of these had no weight: {}, {}, {}", rays.eye.futile,
-       rays.reflection.futile, rays.shadow.futile, rays.eye.weightless, rays.reflection.weightless, rays.shadow.weightless);
-  if (record.depth > 1 && !record.reflections) line(text, "    left out  reflections: no material of this scene reflects");
+       rays.reflection.futile, rays.shadow.futile, rays.eye.weightless, rays.reflection.weightless,
+       rays.shadow.weightless);
+  if (record.depth > 1 && !record.reflections)
+    line(text, "    left out  reflections: no material of this scene reflects");
 }
 
 void chip_table(std::string& text, const ChipResult& chip) {
   if (!chip.timed) {
     kernel_table(text, chip);
-    line(text, "  work        {} warp instructions, {} thread instructions", chip.instructions, chip.thread_instructions);
+    line(text, "  work        {} warp instructions, {} thread instructions", chip.instructions,
+         chip.thread_instructions);
     return;
   }
   line(text, "  speed       {:.2f} Mrays/s, {:.2f} frames/s ({} cycles at 1 GHz); as the thesis counts, {:.2f} Mrays/s",
        chip.mrays_per_s, chip.frames_per_s, chip.cycles, chip.thesis_mrays_per_s);
-  line(text, "  utilisation time {:.1f}%, resources {:.1f}%", 100 * chip.time_utilisation, 100 * chip.resource_utilisation);
+  line(text, "  utilisation time {:.1f}%, resources {:.1f}%", 100 * chip.time_utilisation,
+       100 * chip.resource_utilisation);
   kernel_table(text, chip);
   line(text, "  ALU   utilisation  waiting      tasks");
   for (size_t i = 0; i < kAluTypes; ++i) {
@@ -149,9 +154,10 @@ void chip_table(std::string& text, const ChipResult& chip) {
   line(text, "  work        {} warp instructions, {} thread instructions", chip.instructions, chip.thread_instructions);
   line(text, "  caches      instructions {:.2f}% hits of {}, data {:.2f}% hits of {}",
        100 * share(chip.instruction_cache_hits, chip.instruction_cache_misses),
-       chip.instruction_cache_hits + chip.instruction_cache_misses, 100 * share(chip.data_cache_hits, chip.data_cache_misses),
-       chip.data_cache_hits + chip.data_cache_misses);
-  line(text, "  pools       rays {:.0f} of {} (peak {}), intersections {:.0f} normal (peak {}), {:.0f} shadow (peak {})",
+       chip.instruction_cache_hits + chip.instruction_cache_misses,
+       100 * share(chip.data_cache_hits, chip.data_cache_misses), chip.data_cache_hits + chip.data_cache_misses);
+  line(text,
+       "  pools       rays {:.0f} of {} (peak {}), intersections {:.0f} normal (peak {}), {:.0f} shadow (peak {})",
        chip.rays_pool.mean, chip.rays_pool.capacity, chip.rays_pool.peak, chip.normal_pool.mean, chip.normal_pool.peak,
        chip.shadow_pool.mean, chip.shadow_pool.peak);
   line(text, "  ports       rays {:.1f}%, intersections {:.1f}%, memory {:.1f}% busy", 100 * chip.ray_port_utilisation,
@@ -180,16 +186,18 @@ std::string to_json(const RunRecord& record) {
   json["wall_seconds"] = record.wall_seconds;
   json["simulation_seconds"] = record.simulation_seconds;
   if (record.chip && record.chip->timed) {
-    json["simulated_per_second"] = {{"cycles", rate(record.chip->cycles, record.simulation_seconds)},
-                                    {"thread_instructions", rate(record.chip->thread_instructions, record.simulation_seconds)}};
+    json["simulated_per_second"] = {
+        {"cycles", rate(record.chip->cycles, record.simulation_seconds)},
+        {"thread_instructions", rate(record.chip->thread_instructions, record.simulation_seconds)}};
   }
   return to_text(json, 2) + "\n";
 }
 
 std::string to_table(const RunRecord& record) {
   std::string text;
-  line(text, "{}, {} triangles, {}x{}, depth {}: {} on {}, {} compute unit{}", record.scene, record.triangles, record.width,
-       record.height, record.depth, record.engine, record.configuration.name, record.units, record.units == 1 ? "" : "s");
+  line(text, "{}, {} triangles, {}x{}, depth {}: {} on {}, {} compute unit{}", record.scene, record.triangles,
+       record.width, record.height, record.depth, record.engine, record.configuration.name, record.units,
+       record.units == 1 ? "" : "s");
   if (record.chip) {
     ray_table(text, record, record.chip->ray_counts);
     chip_table(text, *record.chip);
@@ -202,7 +210,8 @@ std::string to_table(const RunRecord& record) {
                             rate(record.chip->cycles, record.simulation_seconds) / 1e3,
                             rate(record.chip->thread_instructions, record.simulation_seconds) / 1e3);
   }
-  line(text, "  wall time   {:.1f} s, of which drawing {:.1f} s{}", record.wall_seconds, record.simulation_seconds, simulated);
+  line(text, "  wall time   {:.1f} s, of which drawing {:.1f} s{}", record.wall_seconds, record.simulation_seconds,
+       simulated);
   return text;
 }
 

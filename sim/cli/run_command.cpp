@@ -30,7 +30,9 @@ struct Job {
 };
 
 /// Numbers of both signs and many magnitudes, the same in every run.
-float sample(uint32_t i) { return static_cast<float>(static_cast<int>(i * 37 % 201) - 100) / static_cast<float>(i % 13 + 3); }
+float sample(uint32_t i) {
+  return static_cast<float>(static_cast<int>(i * 37 % 201) - 100) / static_cast<float>(i % 13 + 3);
+}
 
 void load_program(Job& job, uint32_t bytes) {
   job.memory.grow(bytes);
@@ -60,7 +62,8 @@ void prepare_kernel(Job& job, const RunOptions& options, uint32_t default_n, uin
   if (n < 1 || n > largest_n)
     throw InputError(fmt::format("--n is {}: {} takes a size from 1 to {}", n, options.kernel, largest_n));
   if (options.blocks != 1 || options.threads != 0 || !options.arguments.empty()) {
-    throw InputError(fmt::format("{} sets its own blocks, threads and arguments: choose its size with --n", options.kernel));
+    throw InputError(
+        fmt::format("{} sets its own blocks, threads and arguments: choose its size with --n", options.kernel));
   }
   job.title = fmt::format("{}, n = {}", options.kernel, n);
   job.program = compute_kernel_program(job.options.configuration.fma);
@@ -127,12 +130,14 @@ uint32_t parse_argument(const std::string& text) {
   const char* const end = text.data() + text.size();
   int64_t integer = 0;
   const auto [stop, error] = std::from_chars(begin, end, integer, hexadecimal ? 16 : 10);
-  if (error == std::errc{} && stop == end && integer >= INT32_MIN && integer <= UINT32_MAX) return static_cast<uint32_t>(integer);
+  if (error == std::errc{} && stop == end && integer >= INT32_MIN && integer <= UINT32_MAX)
+    return static_cast<uint32_t>(integer);
   float real = 0;
   const auto [real_stop, real_error] = std::from_chars(begin, end, real);
   if (!hexadecimal && real_error == std::errc{} && real_stop == end && text.find_first_of(".einf") != std::string::npos)
     return as_bits(real);
-  throw InputError(fmt::format("argument '{}' is neither a 32-bit integer (12, -3, 0xff) nor a float (1.5, 2e3)", text));
+  throw InputError(
+      fmt::format("argument '{}' is neither a 32-bit integer (12, -3, 0xff) nor a float (1.5, 2e3)", text));
 }
 
 struct PrintRange {
@@ -160,14 +165,14 @@ PrintRange parse_print(const std::string& text) {
 
 void check_in_memory(const PrintRange& range, const Memory& memory) {
   if (range.address + 4 * uint64_t{range.words} <= memory.size()) return;
-  throw InputError(fmt::format("--print {}:{} goes beyond the memory of {} bytes: it has the words at 0 to {}", range.address,
-                               range.words, memory.size(), memory.size() / 4 * 4 - 4));
+  throw InputError(fmt::format("--print {}:{} goes beyond the memory of {} bytes: it has the words at 0 to {}",
+                               range.address, range.words, memory.size(), memory.size() / 4 * 4 - 4));
 }
 
 void prepare_assembly(Job& job, const RunOptions& options) {
   if (!std::filesystem::exists(options.kernel)) {
-    throw InputError(
-        fmt::format("there is no kernel and no file '{}': use saxpy, matmul or the path of an assembly file", options.kernel));
+    throw InputError(fmt::format(
+        "there is no kernel and no file '{}': use saxpy, matmul or the path of an assembly file", options.kernel));
   }
   if (options.n) throw InputError("--n is for saxpy and matmul: give an assembly file its size with --arg");
   if (options.arguments.size() > kArguments)
@@ -177,12 +182,13 @@ void prepare_assembly(Job& job, const RunOptions& options) {
   job.program = assemble(read_text(options.kernel), options.kernel);
   const uint64_t code_bytes = 8 * job.program.code.size();
   if (options.memory_bytes < code_bytes || options.memory_bytes > kLargestMemory) {
-    throw InputError(fmt::format("memory of {} bytes: it must hold the program's {} and at most {}", options.memory_bytes,
-                                 code_bytes, kLargestMemory));
+    throw InputError(fmt::format("memory of {} bytes: it must hold the program's {} and at most {}",
+                                 options.memory_bytes, code_bytes, kLargestMemory));
   }
   load_program(job, options.memory_bytes);
   job.options.blocks = options.blocks;
-  job.options.threads = options.threads == 0 ? static_cast<uint32_t>(job.options.configuration.contents()) : options.threads;
+  job.options.threads =
+      options.threads == 0 ? static_cast<uint32_t>(job.options.configuration.contents()) : options.threads;
   for (size_t i = 0; i < options.arguments.size(); ++i) job.options.arguments[i] = parse_argument(options.arguments[i]);
 }
 

@@ -17,8 +17,8 @@ Scene load(const SceneCommandOptions& options) {
 
 void print_counts(const char* kind, const HitCounts& counts, const TraversalCounts& visits) {
   const double rays = counts.rays > 0 ? static_cast<double>(counts.rays) : 1;
-  fmt::print("{:<8} {:>10} {:>10} {:>8} {:>11} {:>13} {:>11.1f} {:>15.1f}\n", kind, counts.rays, counts.agree, counts.ties,
-             counts.ours_wrong, counts.embree_wrong, static_cast<double>(visits.nodes) / rays,
+  fmt::print("{:<8} {:>10} {:>10} {:>8} {:>11} {:>13} {:>11.1f} {:>15.1f}\n", kind, counts.rays, counts.agree,
+             counts.ties, counts.ours_wrong, counts.embree_wrong, static_cast<double>(visits.nodes) / rays,
              static_cast<double>(visits.triangles) / rays);
 }
 
@@ -34,7 +34,8 @@ int scene_command(const SceneCommandOptions& options) {
   for (const Material& material : scene.materials) mirrors += material.reflects() ? 1 : 0;
   const Bounds bounds = scene.bounds();
   fmt::print("scene      {}\n", scene.name);
-  fmt::print("triangles  {}, of which {} have no area; {} vertices\n", scene.triangles.size(), degenerate, scene.vertices.size());
+  fmt::print("triangles  {}, of which {} have no area; {} vertices\n", scene.triangles.size(), degenerate,
+             scene.vertices.size());
   fmt::print("materials  {}, of which {} reflect\n", scene.materials.size(), mirrors);
   fmt::print("box        {} .. {}\n", text(bounds.lower), text(bounds.upper));
   fmt::print("camera     eye {}, direction {}, up {}, vertical field of view {:g} degrees\n", text(scene.camera.eye),

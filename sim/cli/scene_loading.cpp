@@ -26,11 +26,13 @@ std::optional<Vec3> point(const char* option, const std::string& text) {
   size_t begin = 0;
   for (int axis = 0; axis < 3; ++axis) {
     const size_t end = axis < 2 ? text.find(',', begin) : text.size();
-    const std::optional<float> value = end == std::string::npos ? std::nullopt : number(text.substr(begin, end - begin));
-    if (!value) throw InputError(fmt::format("{} is '{}': give three numbers with commas between, as in 1,2.5,-3", option, text));
+    const std::optional<float> value =
+        end == std::string::npos ? std::nullopt : number(text.substr(begin, end - begin));
+    if (!value)
+      throw InputError(fmt::format("{} is '{}': give three numbers with commas between, as in 1,2.5,-3", option, text));
     if (!(std::fabs(*value) <= kLargestCoordinate)) {
-      throw InputError(
-          fmt::format("{} is '{}': each number must lie in {:g} .. {:g}", option, text, -kLargestCoordinate, kLargestCoordinate));
+      throw InputError(fmt::format("{} is '{}': each number must lie in {:g} .. {:g}", option, text,
+                                   -kLargestCoordinate, kLargestCoordinate));
     }
     result[axis] = *value;
     begin = end + 1;
@@ -49,8 +51,8 @@ ViewChanges parse_view_words(const ViewWords& words) {
   if (!words.fov.empty()) {
     changes.fov = number(words.fov);
     if (!changes.fov || !(*changes.fov >= kLeastFov && *changes.fov <= kLargestFov)) {
-      throw InputError(
-          fmt::format("--fov is '{}': give the vertical field of view in degrees, {} to {}", words.fov, kLeastFov, kLargestFov));
+      throw InputError(fmt::format("--fov is '{}': give the vertical field of view in degrees, {} to {}", words.fov,
+                                   kLeastFov, kLargestFov));
     }
   }
   return changes;

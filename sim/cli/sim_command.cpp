@@ -55,7 +55,8 @@ uint32_t content_hash(const Scene& scene, const Configuration& configuration) {
                                scene.light.color};
   for (const Material& material : scene.materials) vectors.insert(vectors.end(), {material.kd, material.ks});
   hash = hash_of(fmt::format("{}", scene.camera.fov), hash_bytes(vectors, hash));
-  for (const auto& [name, value] : verilog_parameters(configuration)) hash = hash_of(fmt::format("{}={} ", name, value), hash);
+  for (const auto& [name, value] : verilog_parameters(configuration))
+    hash = hash_of(fmt::format("{}={} ", name, value), hash);
   return hash;
 }
 
@@ -74,8 +75,8 @@ fs::path default_folder(const SimOptions& options, const Scene& scene, const Con
   std::string name = fs::path(options.scene).stem().string();
   if (options.detail != 1) name += fmt::format("-detail{:g}", options.detail);
   if (!options.view.empty()) name += "-" + fs::path(options.view).stem().string();
-  name += fmt::format("-{}-{}cu-{}x{}-depth{}-{}", configuration.name, options.units, size.width, size.height, options.depth,
-                      options.engine);
+  name += fmt::format("-{}-{}cu-{}x{}-depth{}-{}", configuration.name, options.units, size.width, size.height,
+                      options.depth, options.engine);
   if (!names_say_all(options, scene, configuration)) name += fmt::format("-{:08x}", content_hash(scene, configuration));
   return results_folder() / name;
 }
@@ -143,14 +144,15 @@ FrameBuffer draw_natively(RunRecord& record, const Scene& scene, MemoryImage& im
   return frame;
 }
 
-std::unique_ptr<ComputeUnit> make_device(const SimOptions& options, Engine engine, const RunRecord& record, MemoryImage& image) {
+std::unique_ptr<ComputeUnit> make_device(const SimOptions& options, Engine engine, const RunRecord& record,
+                                         MemoryImage& image) {
   const EngineOptions device{engine,        record.configuration, options.unit_library,
                              options.waves, options.units,        options.inspect_until};
   return make_unit(device, image.memory, "unit", kernel_names(ray_kernel_program(record.configuration.fma)));
 }
 
-FrameBuffer draw_on_unit(const SimOptions& options, Engine engine, RunRecord& record, const Scene& scene, MemoryImage& image,
-                         OutputFolder& out) {
+FrameBuffer draw_on_unit(const SimOptions& options, Engine engine, RunRecord& record, const Scene& scene,
+                         MemoryImage& image, OutputFolder& out) {
   std::unique_ptr<ComputeUnit> device = make_device(options, engine, record, image);
   if (options.wrap) device = options.wrap(std::move(device), image.memory);
   if (options.waves) device->open_waveform(out.temporary("waves.fst"));
@@ -176,7 +178,8 @@ FrameBuffer draw_on_unit(const SimOptions& options, Engine engine, RunRecord& re
   return std::move(around.frame);
 }
 
-void print_modules(const SimOptions& options, Engine engine, const RunRecord& record, const Scene& scene, MemoryImage& image) {
+void print_modules(const SimOptions& options, Engine engine, const RunRecord& record, const Scene& scene,
+                   MemoryImage& image) {
   const std::unique_ptr<ComputeUnit> device = make_device(options, engine, record, image);
   Surroundings around(scene, image, record.width, record.height);
   fmt::print("{}", chip_modules(chip_options(record, scene, image, *device, around)));
@@ -211,10 +214,11 @@ int sim_command(const SimOptions& options) {
     print_modules(options, engine, record, scene, image);
     return 0;
   }
-  OutputFolder out(options.out.empty() ? default_folder(options, scene, record.configuration, size) : fs::path(options.out));
+  OutputFolder out(options.out.empty() ? default_folder(options, scene, record.configuration, size)
+                                       : fs::path(options.out));
 
-  const FrameBuffer frame =
-      engine == Engine::Native ? draw_natively(record, scene, image) : draw_on_unit(options, engine, record, scene, image, out);
+  const FrameBuffer frame = engine == Engine::Native ? draw_natively(record, scene, image)
+                                                     : draw_on_unit(options, engine, record, scene, image, out);
 
   const std::vector<uint8_t> png = encode_png(frame);
   out.write("image.png", std::string(png.begin(), png.end()));

@@ -21,8 +21,9 @@ namespace {
 
 void make_folder(const fs::path& folder) {
   if (folder.string().find(' ') != std::string::npos)
-    throw InputError(fmt::format("'{}': Verilator's makefiles cannot handle a space in the path of the unit{}", folder.string(),
-                                 installed() ? ": set XDG_CACHE_HOME to a folder without one" : ": move the build folder"));
+    throw InputError(
+        fmt::format("'{}': Verilator's makefiles cannot handle a space in the path of the unit{}", folder.string(),
+                    installed() ? ": set XDG_CACHE_HOME to a folder without one" : ": move the build folder"));
   std::error_code error;
   fs::create_directories(folder, error);
   if (error || access(folder.c_str(), W_OK | X_OK) != 0)
@@ -38,10 +39,12 @@ int unit_command(const UnitOptions& options) {
   const fs::path folder = fs::path(unit_library_path(configuration, options.waves, options.units)).parent_path();
   make_folder(folder);
   // One build at a time in a folder: a second waits here.
-  std::vector<std::string> command = {"flock", folder / ".lock", fs::path(data_folder()) / "scripts" / "verilate.sh", folder};
+  std::vector<std::string> command = {"flock", folder / ".lock", fs::path(data_folder()) / "scripts" / "verilate.sh",
+                                      folder};
   if (options.waves) command.emplace_back("--trace");
   command.push_back(fmt::format("UNITS={}", options.units));
-  for (const auto& [name, value] : verilog_parameters(configuration)) command.push_back(fmt::format("{}={}", name, value));
+  for (const auto& [name, value] : verilog_parameters(configuration))
+    command.push_back(fmt::format("{}={}", name, value));
 
   setenv("JOBS", std::to_string(std::max(1u, std::thread::hardware_concurrency())).c_str(), 0);
   std::vector<char*> words;

@@ -10,8 +10,8 @@
 namespace raypool {
 namespace {
 
-// After a fault the unit is watched longer than anything takes that was under way: nothing else may come of it. In the end every
-// port is open, so that what could leave does.
+// After a fault the unit is watched longer than anything takes that was under way: nothing else may come of it. In the
+// end every port is open, so that what could leave does.
 constexpr uint64_t kFaultCycles = 600, kStalledFaultCycles = 100;
 constexpr uint64_t kCyclesBeforeNext = 40;  ///< if there is another kernel
 
@@ -19,7 +19,12 @@ constexpr uint64_t kCyclesBeforeNext = 40;  ///< if there is another kernel
 class RandomHost {
  public:
   RandomHost(ComputeUnit& unit, Memory& memory, const RandomProgram& program, uint64_t seed, RunObserver* observer)
-      : unit_(unit), memory_(memory), program_(program), seed_(seed), stalls_(program.stalls, seed), observer_(observer) {}
+      : unit_(unit),
+        memory_(memory),
+        program_(program),
+        seed_(seed),
+        stalls_(program.stalls, seed),
+        observer_(observer) {}
 
   uint64_t run(uint64_t cycle_limit) {
     begin(0);
@@ -195,8 +200,8 @@ class RandomHost {
 
 }  // namespace
 
-uint64_t run_random_program(ComputeUnit& unit, Memory& memory, const RandomProgram& program, uint64_t seed, uint64_t cycle_limit,
-                            RunObserver* observer) {
+uint64_t run_random_program(ComputeUnit& unit, Memory& memory, const RandomProgram& program, uint64_t seed,
+                            uint64_t cycle_limit, RunObserver* observer) {
   return RandomHost(unit, memory, program, seed, observer).run(cycle_limit);
 }
 

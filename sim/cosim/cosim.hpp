@@ -1,5 +1,5 @@
-// Runs random programs on a compute unit whose every port stalls at random: the memory answers late and in bursts, pools are full
-// or empty, the frame buffer waits.
+// Runs random programs on a compute unit whose every port stalls at random: the memory answers late and in bursts,
+// pools are full or empty, the frame buffer waits.
 #pragma once
 
 #include <cstdint>
@@ -24,16 +24,16 @@ class RunObserver {
   virtual void faulted(const std::vector<Fault>& faults) { static_cast<void>(faults); }
 };
 
-/// A program that ends otherwise than it must: another fault, or no end. Of the program and the unit, not of what stands around
-/// them, so that shrinking the program makes sense.
+/// A program that ends otherwise than it must: another fault, or no end. Of the program and the unit, not of what
+/// stands around them, so that shrinking the program makes sense.
 struct ProgramFailure : InputError {
   using InputError::InputError;
 };
 
-/// Runs all kernels of `program` on `unit`, which must use (or be a lockstep over) `memory`, until the unit is idle, or has
-/// stopped in the last kernel with one of the faults that the program may end in. `seed` is that of the stalls and of the
-/// imported packages. Returns the cycles. Throws ProgramFailure when another fault occurs or the job has not ended after
-/// `cycle_limit` cycles; what the unit throws passes through.
+/// Runs all kernels of `program` on `unit`, which must use (or be a lockstep over) `memory`, until the unit is idle, or
+/// has stopped in the last kernel with one of the faults that the program may end in. `seed` is that of the stalls and
+/// of the imported packages. Returns the cycles. Throws ProgramFailure when another fault occurs or the job has not
+/// ended after `cycle_limit` cycles; what the unit throws passes through.
 uint64_t run_random_program(ComputeUnit& unit, Memory& memory, const RandomProgram& program, uint64_t seed,
                             uint64_t cycle_limit = 5'000'000, RunObserver* observer = nullptr);
 

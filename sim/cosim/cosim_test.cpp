@@ -249,7 +249,8 @@ TEST(SavedPrograms, AreReadAsTheyWereWritten) {
       EXPECT_EQ(a.kernels[k].rewrite->arguments, b.kernels[k].rewrite->arguments);
     }
     ASSERT_EQ(a.memory.size(), b.memory.size());
-    for (uint32_t address = 0; address < a.memory.size(); address += 4) ASSERT_EQ(a.memory.load(address), b.memory.load(address));
+    for (uint32_t address = 0; address < a.memory.size(); address += 4)
+      ASSERT_EQ(a.memory.load(address), b.memory.load(address));
   }
   EXPECT_THROW(parse_saved_program("{}", "text"), InputError);
   EXPECT_THROW(load_saved_program("no/such/file.json"), InputError);
@@ -355,7 +356,8 @@ TEST(RandomHost, RunsEveryProgramOnTheFunctionalUnit) {
   for (uint64_t seed = 1; seed <= 40; ++seed) {
     const RandomProgram program = make_random_program(configuration, seed);
     Memory memory = program.memory;
-    EXPECT_NO_THROW(run_random_program(*make_functional_unit(configuration, memory), memory, program, seed)) << "seed " << seed;
+    EXPECT_NO_THROW(run_random_program(*make_functional_unit(configuration, memory), memory, program, seed))
+        << "seed " << seed;
   }
 }
 

@@ -87,8 +87,10 @@ void Coverage::after_fault(const UnitOutputs& outputs, const UnitInputs& inputs,
   if (!trace.retired.empty()) hit(Event::RetiresAfterFault);
   if (!trace.stores.empty()) hit(Event::StoreAfterFault);
   if (inputs.memory_response_valid && inputs.memory_response.beat == 3) hit(Event::LineAfterFault);
-  if ((outputs.export_valid && inputs.export_ready) || (outputs.frame_valid && inputs.frame_ready)) hit(Event::ExportAfterFault);
-  const bool open = inputs.memory_request_ready && inputs.import_request_ready && inputs.export_ready && inputs.frame_ready;
+  if ((outputs.export_valid && inputs.export_ready) || (outputs.frame_valid && inputs.frame_ready))
+    hit(Event::ExportAfterFault);
+  const bool open =
+      inputs.memory_request_ready && inputs.import_request_ready && inputs.export_ready && inputs.frame_ready;
   open_cycles_ = open ? open_cycles_ + 1 : 0;
   if (open_cycles_ == kOpenCycles) hit(Event::OpenAfterFault);
 }
@@ -171,22 +173,24 @@ void Coverage::last_of_all(const RetireEvent& event, const Instruction& instruct
   if (opcode == Opcode::Arg && instruction.immediate % kArguments == kArguments - 1) hit(Event::LastArgument);
   if (event.warp + 1 != static_cast<uint32_t>(configuration_.warps) || (event.mask >> (lanes_ - 1) & 1) == 0) return;
   if (writes_register(*instruction.info) && instruction.rd == kRegisters - 1) hit(Event::LastRegister);
-  if (writes_predicate(*instruction.info) && instruction.rd == kPredicates - 1 && (event.predicate >> (lanes_ - 1) & 1) != 0)
+  if (writes_predicate(*instruction.info) && instruction.rd == kPredicates - 1 &&
+      (event.predicate >> (lanes_ - 1) & 1) != 0)
     hit(Event::LastPredicate);
   if (opcode == Opcode::Rst && instruction.x == kIntersectionWords - 1) hit(Event::LastWord);
   if (opcode == Opcode::Ld) hit(Event::LastLoad);
   if (opcode == Opcode::St) hit(Event::LastStore);
 }
 
-// An instruction that retires in this cycle was in its ALU for at least the type's depth, so it was there together with all that
-// retired since.
+// An instruction that retires in this cycle was in its ALU for at least the type's depth, so it was there
+// together with all that retired since.
 void Coverage::together(const RetireEvent& event, size_t type) {
   const auto alu = static_cast<AluType>(type);
   const auto per_unit = static_cast<uint32_t>(configuration_.warps);
   const uint32_t me = event.unit * per_unit + event.warp;
   const int depth = alu == AluType::Mem ? 3 : alu == AluType::Ray ? 2 : configuration_.alu(alu).depth;
   while (!recent_.empty() && recent_.front().cycle + 40 < now_) recent_.pop_front();
-  for (auto other = recent_.rbegin(); other != recent_.rend() && other->cycle + static_cast<uint64_t>(depth) >= now_; ++other)
+  for (auto other = recent_.rbegin(); other != recent_.rend() && other->cycle + static_cast<uint64_t>(depth) >= now_;
+       ++other)
     if (other->warp != me && other->warp / per_unit == event.unit)
       ++together_[std::min(type, other->type)][std::max(type, other->type)];
   recent_.push_back({now_, me, type});
@@ -338,7 +342,8 @@ void Coverage::memory_response(const UnitInputs& inputs) {
 }
 
 void Coverage::pools(const UnitOutputs& outputs, const UnitInputs& inputs, const UnitTrace& trace) {
-  if (outputs.import_request_valid) hit(inputs.import_request_ready ? Event::ImportRequestMoves : Event::ImportRequestWaits);
+  if (outputs.import_request_valid)
+    hit(inputs.import_request_ready ? Event::ImportRequestMoves : Event::ImportRequestWaits);
   if (!outputs.import_request_valid && inputs.import_request_ready) hit(Event::ImportRequestFree);
   const auto leaves = [&](bool valid, bool ready, Event moves, uint64_t& moved) {
     const auto event = [&](size_t n) { return static_cast<Event>(static_cast<size_t>(moves) + n); };

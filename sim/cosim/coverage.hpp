@@ -1,4 +1,5 @@
-// What random programs have exercised, read from a unit's ports, trace and counters alone: nothing inside the RTL is looked at.
+// What random programs have exercised, read from a unit's ports, trace and counters alone:
+// nothing inside the RTL is looked at.
 // docs/verification.md says what each group means.
 #pragma once
 
@@ -92,21 +93,24 @@ class Coverage : public RunObserver {
   void pools(const UnitOutputs& outputs, const UnitInputs& inputs, const UnitTrace& trace);
   void launches(const UnitOutputs& outputs, const UnitInputs& inputs);
   uint32_t set_of(uint32_t address) const;
-  Warp& warp_of(uint32_t unit, uint32_t warp) { return warps_[unit * static_cast<uint32_t>(configuration_.warps) + warp]; }
+  Warp& warp_of(uint32_t unit, uint32_t warp) {
+    return warps_[unit * static_cast<uint32_t>(configuration_.warps) + warp];
+  }
 
   Configuration configuration_;
   uint32_t units_, lanes_, full_;
   // Counts over all programs.
   std::vector<uint64_t> rows_, empty_, partial_;  ///< [row of the table]: retired; with no lane; with some lanes
-  std::array<std::array<uint64_t, kAluTypes>, kAluTypes> after_{};     ///< [type][type of the warp's next instruction]
-  std::array<std::array<uint64_t, kAluTypes>, kAluTypes> together_{};  ///< [lower type][higher type] in flight in one cycle
-  std::vector<uint64_t> depths_;                                       ///< [entries on the PC stack]
+  std::array<std::array<uint64_t, kAluTypes>, kAluTypes> after_{};  ///< [type][type of the warp's next instruction]
+  std::array<std::array<uint64_t, kAluTypes>, kAluTypes>
+      together_{};                ///< [lower type][higher type] in flight in one cycle
+  std::vector<uint64_t> depths_;  ///< [entries on the PC stack]
   EnumArray<FaultCode, uint64_t, kFaultCodes> faults_{};
   /// [code that wins][code that does not][the winner's is the lower warp] in one cycle
   EnumArray<FaultCode, EnumArray<FaultCode, std::array<uint64_t, 2>, kFaultCodes>, kFaultCodes> fault_pairs_{};
   std::array<uint64_t, kPredicates> left_set_{};         ///< [predicate] read, and the kernel before has left it set
   std::array<uint64_t, 32> load_bits_{}, store_bits_{};  ///< [address bit] of loads, of stores: set
-  std::array<uint64_t, 16> pc_bits_{}, pc_twins_{};      ///< [bit] set; of a PC that differs from another one in it alone
+  std::array<uint64_t, 16> pc_bits_{}, pc_twins_{};  ///< [bit] set; of a PC that differs from another one in it alone
   EnumArray<Event, uint64_t, kEvents> events_{};
 
   // The program that runs.
@@ -118,9 +122,10 @@ class Coverage : public RunObserver {
   uint64_t reads_asked_ = 0, data_fetches_ = 0;
   uint64_t last_line_end_ = 0, last_beat_ = 0, last_import_beat_ = 0;
   int import_beat_ = 0;
-  std::array<uint64_t, kMostUnits> made_{}, left_{};  ///< rays and contributions: by rout and rfb, and those that have left
-  std::array<uint64_t, 3> moved_{};                   ///< last cycle in which memory request, export, frame moved
-  std::array<int, kMostUnits> accepted_{};            ///< kernels that have not ended
+  std::array<uint64_t, kMostUnits> made_{},
+      left_{};                              ///< rays and contributions: by rout and rfb, and those that have left
+  std::array<uint64_t, 3> moved_{};         ///< last cycle in which memory request, export, frame moved
+  std::array<int, kMostUnits> accepted_{};  ///< kernels that have not ended
   uint32_t last_pc_ = ~0u;
   uint64_t open_cycles_ = 0;  ///< since the fault, in a row
   uint32_t rewrites_ = 0;

@@ -1,4 +1,5 @@
-// Things that can happen at a unit's ports, beside what the instruction table and the configuration give: group and name of each.
+// Things that can happen at a unit's ports, beside what the instruction table and the
+// configuration give: group and name of each.
 #pragma once
 
 #include <array>

@@ -18,7 +18,8 @@ constexpr std::array<std::string_view, 8> kFaultNames = {"",
 
 template <size_t kBits>
 void bits(Coverage::Group& group, const char* what, const std::array<uint64_t, kBits>& counts, uint32_t first) {
-  for (size_t bit = first; bit < kBits; ++bit) group.items.push_back({fmt::format("bit {} {}", bit, what), counts[bit]});
+  for (size_t bit = first; bit < kBits; ++bit)
+    group.items.push_back({fmt::format("bit {} {}", bit, what), counts[bit]});
 }
 
 std::string quoted(const std::string& name) { return name.find(' ') == std::string::npos ? name : '"' + name + '"'; }
@@ -59,12 +60,13 @@ std::vector<Coverage::Group> Coverage::groups() const {
         together.items.push_back({fmt::format("{}+{}", kAluNames[a], kAluNames[b]), together_[a][b]});
   }
   Group& depths = group("PC stack entries");
-  for (size_t depth = 1; depth < depths_.size(); ++depth) depths.items.push_back({std::to_string(depth), depths_[depth]});
+  for (size_t depth = 1; depth < depths_.size(); ++depth)
+    depths.items.push_back({std::to_string(depth), depths_[depth]});
   for (size_t event = 0; event < kEvents; ++event) {
     const auto one = static_cast<Event>(event);
     // What a configuration of one warp or one lane cannot do.
-    if (lanes_ == 1 &&
-        (one == Event::OneQuadword || one == Event::SeveralQuadwords || one == Event::QuadwordALane || one == Event::PartOfWarp))
+    if (lanes_ == 1 && (one == Event::OneQuadword || one == Event::SeveralQuadwords || one == Event::QuadwordALane ||
+                        one == Event::PartOfWarp))
       continue;
     if (configuration_.warps == 1 && one == Event::WarpsLeftOut) continue;
     const bool one_read = configuration_.data_cache_mshrs == 1 || configuration_.contents() == 1;
@@ -80,7 +82,8 @@ std::vector<Coverage::Group> Coverage::groups() const {
   for (size_t number = 1; number < left_set_.size(); ++number)
     left.items.push_back({fmt::format("p{}", number), left_set_[number]});
   Group& faults = group("faults");
-  for (size_t code = 1; code < faults_.size(); ++code) faults.items.push_back({std::string(kFaultNames[code]), faults_[code]});
+  for (size_t code = 1; code < faults_.size(); ++code)
+    faults.items.push_back({std::string(kFaultNames[code]), faults_[code]});
   if (configuration_.warps > 1) fault_pairs(group("faults in one cycle"));
   return groups;
 }

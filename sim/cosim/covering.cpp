@@ -27,13 +27,14 @@ void add_alu(std::vector<Factor>& factors, size_t type) {
   add("count", &AluConfiguration::count, {1, 2, 3, 4});
   add("latency", &AluConfiguration::latency, {1, 2, 3, 16});
   const auto least = [type](const Machine& m) { return least_depth(m.configuration, static_cast<AluType>(type)); };
-  factors.push_back({fmt::format("{}.depth", kAluNames[type]),
-                     {0, 1, kDeepest},
-                     [type, least](Machine& m, int v) { m.configuration.alus[type].depth = v == kDeepest ? v : least(m) + v; },
-                     [type, least](const Machine& m) {
-                       const int depth = m.configuration.alus[type].depth;
-                       return depth == kDeepest ? depth : depth - least(m);
-                     }});
+  factors.push_back(
+      {fmt::format("{}.depth", kAluNames[type]),
+       {0, 1, kDeepest},
+       [type, least](Machine& m, int v) { m.configuration.alus[type].depth = v == kDeepest ? v : least(m) + v; },
+       [type, least](const Machine& m) {
+         const int depth = m.configuration.alus[type].depth;
+         return depth == kDeepest ? depth : depth - least(m);
+       }});
 }
 
 // In the order in which they are set.
@@ -41,12 +42,14 @@ std::vector<Factor> make_factors() {
   std::vector<Factor> factors;
   const auto add = [&](const char* name, std::vector<int> values, auto Configuration::*member) {
     using Value = std::remove_reference_t<decltype(std::declval<Configuration>().*member)>;
-    factors.push_back({name, std::move(values), [member](Machine& m, int v) { m.configuration.*member = static_cast<Value>(v); },
+    factors.push_back({name, std::move(values),
+                       [member](Machine& m, int v) { m.configuration.*member = static_cast<Value>(v); },
                        [member](const Machine& m) { return static_cast<int>(m.configuration.*member); }});
   };
   add("warps", {1, 2, 4, 8, 16, 32}, &Configuration::warps);
   add("lanes", {1, 2, 4, 8, 16, 32}, &Configuration::lanes);
-  factors.push_back({"units", {1, 2, 4}, [](Machine& m, int v) { m.units = v; }, [](const Machine& m) { return m.units; }});
+  factors.push_back(
+      {"units", {1, 2, 4}, [](Machine& m, int v) { m.units = v; }, [](const Machine& m) { return m.units; }});
   for (Factor& factor : factors) factor.multiplies = true;
   add("stack_depth", {2, 3, 8, 32}, &Configuration::stack_depth);
   add("instruction_cache.bytes", {512, 1024, 4096, 65536}, &Configuration::instruction_cache_bytes);
@@ -154,7 +157,8 @@ class Search {
 
   void take(const Row& row) {
     for (size_t a = 0; a < row.size(); ++a) {
-      for (size_t b = a + 1; b < row.size(); ++b) open_.erase({a, b, static_cast<size_t>(row[a]), static_cast<size_t>(row[b])});
+      for (size_t b = a + 1; b < row.size(); ++b)
+        open_.erase({a, b, static_cast<size_t>(row[a]), static_cast<size_t>(row[b])});
     }
   }
 
@@ -195,7 +199,8 @@ Covered count_covered(const std::vector<Machine>& machines, int most_threads) {
     covered.all_values += factors[a].values.size();
     for (size_t b = a + 1; b < factors.size(); ++b)
       for (const int i : factors[a].values)
-        for (const int j : factors[b].values) covered.all_pairs += possible(factors[a], i, factors[b], j, most_threads) ? 1 : 0;
+        for (const int j : factors[b].values)
+          covered.all_pairs += possible(factors[a], i, factors[b], j, most_threads) ? 1 : 0;
   }
   for (const Machine& machine : machines) {
     for (size_t a = 0; a < factors.size(); ++a) {

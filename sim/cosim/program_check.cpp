@@ -48,7 +48,8 @@ class Checker {
           const Step& step = core_.step(warp);
           if (step.status == Step::Status::Fault) {
             if ((program_.faults & fault_bit(step.fault.code)) == 0)
-              return fmt::format("warp {} ends in fault {} at PC {}", warp, static_cast<int>(step.fault.code), step.fault.pc);
+              return fmt::format("warp {} ends in fault {} at PC {}", warp, static_cast<int>(step.fault.code),
+                                 step.fault.pc);
             faulted = true;
           }
           if (step.status == Step::Status::Executed) {
@@ -174,7 +175,8 @@ std::string check_program(const Configuration& configuration, const RandomProgra
     const auto& [code, data_seed, arguments] = *kernel.rewrite;
     static_cast<void>(data_seed);
     if (arguments.empty()) return "memory is rewritten and no argument is";
-    if (arguments.rbegin()->first >= kArguments) return fmt::format("argument {} is rewritten", arguments.rbegin()->first);
+    if (arguments.rbegin()->first >= kArguments)
+      return fmt::format("argument {} is rewritten", arguments.rbegin()->first);
     if (!code.empty() && code.rbegin()->first >= program.program.code.size())
       return fmt::format("the instruction at PC {} is rewritten, which is not there", code.rbegin()->first);
   }

@@ -49,7 +49,8 @@ uint32_t faults_of(const Json& json) {
 uint32_t number_in(const std::string& key) {
   size_t used = 0;
   const unsigned long value = std::stoul(key, &used);
-  if (used != key.size() || value > 0xffff) throw InputError("'" + key + "' is no number of an instruction or argument");
+  if (used != key.size() || value > 0xffff)
+    throw InputError("'" + key + "' is no number of an instruction or argument");
   return static_cast<uint32_t>(value);
 }
 
@@ -65,7 +66,8 @@ Rewrite rewrite_of(const Json& json) {
   for (const auto& [pc, line] : json.at("code").items())
     rewrite.code[number_in(pc)] = assemble(line.get<std::string>() + "\n", "rewrite").code.at(0);
   rewrite.data_seed = json.at("data_seed").get<uint64_t>();
-  for (const auto& [number, value] : json.at("arguments").items()) rewrite.arguments[number_in(number)] = hex_word(value);
+  for (const auto& [number, value] : json.at("arguments").items())
+    rewrite.arguments[number_in(number)] = hex_word(value);
   return rewrite;
 }
 
@@ -130,9 +132,10 @@ SavedProgram parse_saved_program(const std::string& text, const std::string& whe
     }
     const std::string launches = hex(static_cast<uint32_t>(json.at("kernels").size()));
     for (const Json& kernel : json.at("kernels")) {
-      program.kernels.push_back({kernel.at("threads").get<uint32_t>(), hex_word(kernel.at("block")),
-                                 static_cast<ImportKind>(number_of(kImportNames, kernel.at("import").get<std::string>())),
-                                 kernel.at("pc").get<uint32_t>(), hex_word(kernel.value("blocks", launches))});
+      program.kernels.push_back(
+          {kernel.at("threads").get<uint32_t>(), hex_word(kernel.at("block")),
+           static_cast<ImportKind>(number_of(kImportNames, kernel.at("import").get<std::string>())),
+           kernel.at("pc").get<uint32_t>(), hex_word(kernel.value("blocks", launches))});
       if (kernel.contains("rewrite")) program.kernels.back().rewrite = rewrite_of(kernel.at("rewrite"));
     }
     std::string code;
@@ -143,8 +146,9 @@ SavedProgram parse_saved_program(const std::string& text, const std::string& whe
   }
   if (program.data_begin < program.program.code.size() * 8 || program.data_begin > program.memory_bytes ||
       program.memory_bytes > 64u << 20) {
-    throw InputError(fmt::format("{}: data_begin {} and memory_bytes {} do not fit the code of {} instructions (and 64 MB)",
-                                 where, program.data_begin, program.memory_bytes, program.program.code.size()));
+    throw InputError(
+        fmt::format("{}: data_begin {} and memory_bytes {} do not fit the code of {} instructions (and 64 MB)", where,
+                    program.data_begin, program.memory_bytes, program.program.code.size()));
   }
   fill_memory(program);
   if (!check) return saved;

@@ -16,8 +16,8 @@ struct SavedProgram {
 
 /// The file's text: configuration, kernels, stalls, arguments, and the code as assembly text, an instruction a line.
 std::string to_json(const SavedProgram& saved);
-/// Throws InputError naming `where` when the text is no such file, or, with `check`, the program in it breaks the promises of
-/// check_program().
+/// Throws InputError naming `where` when the text is no such file, or, with `check`, the program in it
+/// breaks the promises of check_program().
 SavedProgram parse_saved_program(const std::string& text, const std::string& where, bool check = true);
 SavedProgram load_saved_program(const std::string& path, bool check = true);
 

@@ -51,7 +51,8 @@ inline const ProgramProfile& profile_named(std::string_view name) {
   for (const ProgramProfile& profile : kProgramProfiles)
     if (profile.name == name) return profile;
   std::string names;
-  for (const ProgramProfile& profile : kProgramProfiles) names += (names.empty() ? "" : ", ") + std::string(profile.name);
+  for (const ProgramProfile& profile : kProgramProfiles)
+    names += (names.empty() ? "" : ", ") + std::string(profile.name);
   throw InputError("there is no mix '" + std::string(name) + "' of random programs: take one of " + names);
 }
 

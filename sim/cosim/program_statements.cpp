@@ -9,9 +9,9 @@ constexpr uint32_t kMostInstructions = 60000;
 constexpr uint32_t kFarJump = 20000;
 constexpr uint32_t kMostParts = 8;  ///< power of two
 constexpr int kMostCalls = 40;
-// Of a far address: a bit of it is set and one is clear from kFarBit on, so that it lies beyond any data and below the limit;
-// from kFarUpperBit on it is random; below it are the block's and the warp's bits, a bit of lines that are stored to, and the
-// word.
+// Of a far address: a bit of it is set and one is clear from kFarBit on, so that it lies beyond any data and
+// below the limit; from kFarUpperBit on it is random; below it are the block's and the warp's bits, a bit of
+// lines that are stored to, and the word.
 constexpr uint32_t kFarBit = 22, kFarUpperBit = 17, kFarWarpBits = 5;
 // Of a loop of pairs, which stays in the smallest instruction cache.
 constexpr int kLeastPairOperations = 24, kMostPairOperations = 44;
@@ -21,7 +21,8 @@ constexpr int kLeastPairOperations = 24, kMostPairOperations = 44;
 void ProgramStatements::body(int length, int loops, int entries) {
   const size_t end = code_.size() + static_cast<size_t>(std::max(1, length));
   const ProgramProfile& p = profile_;
-  const uint32_t total = p.plain + p.arithmetic + p.pairs + p.memory + p.ray + p.loop + p.jump + p.call + p.far + p.early_exit;
+  const uint32_t total =
+      p.plain + p.arithmetic + p.pairs + p.memory + p.ray + p.loop + p.jump + p.call + p.far + p.early_exit;
   while (code_.size() < end) {
     uint32_t kind = below(total);
     const auto is = [&kind](uint32_t weight) {
@@ -66,7 +67,8 @@ const InstructionInfo& ProgramStatements::plain_row(std::optional<size_t> type) 
   const size_t of = type ? *type : plain_type();
   for (;;) {
     const InstructionInfo& info = kInstructions[below(std::size(kInstructions))];
-    if (info.alu() == static_cast<AluType>(of) && info.kind != Kind::Control && configuration_.has(info.needs)) return info;
+    if (info.alu() == static_cast<AluType>(of) && info.kind != Kind::Control && configuration_.has(info.needs))
+      return info;
   }
 }
 
@@ -228,8 +230,8 @@ void ProgramStatements::far_memory() {
   const bool own = chance(2);
   const auto upper_bit = [this] { return chance(2) ? 31 : kFarUpperBit + below(32 - kFarUpperBit); };
   const uint32_t spread = chance(2) ? upper_bit() : 32;
-  // What lanes or warps add must not carry, and one bit must be set and one clear so that the address lies between data and
-  // limit.
+  // What lanes or warps add must not carry, and one bit must be set and one clear so that the
+  // address lies between data and limit.
   const uint32_t added = spread < 32 ? 31u << spread : 0;
   uint32_t bits = ~added & (~0u << kFarBit);
   const auto take = [&] {
@@ -254,8 +256,8 @@ void ProgramStatements::memory() {
   const bool own = !chance(3);
   const uint32_t offset = chance(3) ? value() : 0;
   const uint32_t entries = own ? own_.entries : shared_bytes_ / 4;
-  // Either all accesses go to the same words, or each to others of the same set of the cache, so that lines push each other out
-  // and wait for miss-status holding registers.
+  // Either all accesses go to the same words, or each to others of the same set of the cache, so that lines push each
+  // other out and wait for miss-status holding registers.
   const uint32_t lines = entries / (own ? own_.way_entries : way_bytes() / 4);
   const uint32_t parts = lines > 1 && chance(2) ? std::min(lines, kMostParts) : 1;
   const uint32_t part_bytes = (entries / parts) << (own ? own_.shift : 2);
@@ -275,7 +277,8 @@ void ProgramStatements::ray(bool top) {
     if (in_function_) return plain();
     const int words = chance(2) ? kRayWords : 1 + static_cast<int>(below(kIntersectionWords));
     for (int n = 0; n < words; ++n) emit_word(Opcode::Rst, n);
-    for (int n = 0; n < 2; ++n) emit_word(Opcode::Rld, static_cast<int>(below(static_cast<uint32_t>(words))), destination());
+    for (int n = 0; n < 2; ++n)
+      emit_word(Opcode::Rld, static_cast<int>(below(static_cast<uint32_t>(words))), destination());
     if (words >= kRayWords) rotate();
     written_words_ = 0;
     return;
@@ -384,8 +387,8 @@ void ProgramStatements::jump(int loops, int entries) {
 void ProgramStatements::far_jump() {
   const size_t at = emit(Opcode::Jany);
   const uint32_t way = instruction_cache_bytes_ / 16;
-  // From a PC that was executed just now to one that differs in one upper bit alone: it lies as far from the end of what has been
-  // executed as that from the twin.
+  // From a PC that was executed just now to one that differs in one upper bit alone: it lies as far from the end of
+  // what has been executed as that from the twin.
   const uint32_t twin = here() - std::min(here(), 1 + below(12));
   const uint32_t distance = 1u << (9 + below(7));
   if (chance(4) && (twin & distance) == 0 && twin + distance >= here())

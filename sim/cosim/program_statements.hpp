@@ -1,5 +1,5 @@
-// The middle of the generator of random programs: the statements that the body of a kernel is made of. Each leaves the program
-// valid (program_check.hpp) wherever it is put.
+// The middle of the generator of random programs: the statements that the body of a kernel is made of. Each leaves the
+// program valid (program_check.hpp) wherever it is put.
 #pragma once
 
 #include <optional>
@@ -21,8 +21,8 @@ struct OwnWords {
 
 class ProgramStatements : public ProgramEmitter {
  protected:
-  // r0 .. r9 hold data. r10 .. r12 count loops, r13 is an address, r14 the base of what is only read, r15 of the warp's own
-  // words.
+  // r0 .. r9 hold data. r10 .. r12 count loops, r13 is an address, r14 the base of what is
+  // only read, r15 of the warp's own words.
   static constexpr int kDataRegisters = 10;
   static constexpr int kLoopDepth = 3;
   static constexpr int kAddress = 13, kShared = 14, kOwn = 15;
@@ -49,28 +49,30 @@ class ProgramStatements : public ProgramEmitter {
   /// An ALU type, as often as the mix wants it.
   size_t plain_type();
   const InstructionInfo& plain_row(std::optional<size_t> type);
-  /// One instruction that touches neither memory, rays nor control, of any type or this one, with random operands, or of
-  /// registers a and b, which stay.
+  /// One instruction that touches neither memory, rays nor control, of any type or this one, with random operands,
+  /// or of registers a and b, which stay.
   void plain(int a = -1, int b = -1, std::optional<size_t> type = std::nullopt);
-  /// A few of them with a pair of operands that meet: sums that cancel or need rounding, products and quotients at the ends of
-  /// the range.
+  /// A few of them with a pair of operands that meet: sums that cancel or need rounding, products and
+  /// quotients at the ends of the range.
   void arithmetic();
   /// A loop whose threads each load another pair of operands in each round, for a few dozen instructions that compute.
   void pairs(int loops);
   uint32_t way_bytes() const { return static_cast<uint32_t>(configuration_.data_cache_bytes) / 2; }
-  /// r13 = an aligned address among the first `entries` words: one for all lanes, neighbours, a stride, lines of one set, or
-  /// anywhere; off by -offset.
+  /// r13 = an aligned address among the first `entries` words: one for all lanes, neighbours, a stride, lines of
+  /// one set, or anywhere; off by -offset.
   void address(bool own, uint32_t offset, uint32_t entries);
   /// `st` or `ld` at r13 + offset.
   void access(bool store, uint32_t offset);
   void memory();
-  /// Loads and stores at addresses up to the told limit, far beyond the program's data: in lines of the warp's own, or in lines
-  /// that nobody stores to. Addresses of the lanes, of the warps or of one access after the other differ in one upper bit.
+  /// Loads and stores at addresses up to the told limit, far beyond the program's data: in lines of the
+  /// warp's own, or in lines that nobody stores to. Addresses of the lanes, of the warps or of one access
+  /// after the other differ in one upper bit.
   void far_memory();
-  /// r13 = what far addresses have below their upper bits; `spread`: an upper bit from which on lanes or warps differ, or 32.
+  /// r13 = what far addresses have below their upper bits; `spread`: an upper bit from
+  /// which on lanes or warps differ, or 32.
   void far_address(bool own, uint32_t spread);
-  /// At the top level the words of the current slice are known from statement to statement; elsewhere a statement writes all that
-  /// it reads.
+  /// At the top level the words of the current slice are known from statement to statement; elsewhere a
+  /// statement writes all that it reads.
   void ray(bool top);
   void rotate();
   void loop(int length, int loops, int entries);
@@ -80,7 +82,8 @@ class ProgramStatements : public ProgramEmitter {
   /// Begins and ends what leave() leaves. `pad`: code before it to which it may jump back.
   void begin_frame(int counter, int going, bool pad);
   void end_frame();
-  /// Over instructions that are never executed, so that what follows lies in another line of the cache, or in the same set.
+  /// Over instructions that are never executed, so that what follows lies in another
+  /// line of the cache, or in the same set.
   void far_jump();
   void filler(uint32_t count);
   void early_exit();

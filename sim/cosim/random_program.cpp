@@ -102,7 +102,8 @@ class Generator : public ProgramStatements {
     if (far_memory_told_) result_.memory_limit = 0u - 4 * (64 + below(kFarLimits / 4));
     std::vector<uint64_t>& code = result_.program.code;
     const auto fix = [&code](const std::vector<size_t>& places, uint32_t limit) {
-      for (const size_t at : places) code[at] = (code[at] & ~uint64_t{0xffffffff}) | static_cast<uint32_t>(code[at] + limit);
+      for (const size_t at : places)
+        code[at] = (code[at] & ~uint64_t{0xffffffff}) | static_cast<uint32_t>(code[at] + limit);
     };
     // Outside, though the bits below the upper one are those of a PC inside.
     for (const size_t at : twins_) {
@@ -166,7 +167,8 @@ class Generator : public ProgramStatements {
   void choose_stalls() {
     // Arithmetic need not wait for memory.
     const bool calm = profile_.pairs > 0 || profile_.name == kFaultMix ? !chance(4) : chance(4);
-    for (auto& style : result_.stalls.styles) style = calm ? StallStyle::None : static_cast<StallStyle>(below(kStallStyles));
+    for (auto& style : result_.stalls.styles)
+      style = calm ? StallStyle::None : static_cast<StallStyle>(below(kStallStyles));
   }
 
   // ---- A kernel
@@ -296,11 +298,13 @@ class Generator : public ProgramStatements {
         }
         emit_immediate(Opcode::Mov, kAddress, 0, 0);
         if (some) emit(Opcode::Lane, kAddress), emit_immediate(Opcode::Shl, kAddress, kAddress, 2);
-        from_limit_.push_back(emit_immediate(last_word ? Opcode::Ld : access, 0, kAddress, last_word ? 0u - 4 : 4 * below(4)));
+        from_limit_.push_back(
+            emit_immediate(last_word ? Opcode::Ld : access, 0, kAddress, last_word ? 0u - 4 : 4 * below(4)));
         return;
       }
       default:
-        emit_word(chance(2) ? Opcode::Rld : Opcode::Rst, kIntersectionWords + static_cast<int>(below(32 - kIntersectionWords)));
+        emit_word(chance(2) ? Opcode::Rld : Opcode::Rst,
+                  kIntersectionWords + static_cast<int>(below(32 - kIntersectionWords)));
         return;
     }
   }
@@ -331,8 +335,8 @@ class Generator : public ProgramStatements {
 
   // ---- Faults of several warps at about the same time
 
-  // Two groups of warps, each with an arm of the program that ends in a fault of its own. Both arms lie in one line of the
-  // instruction cache, for which all warps wait, so that they begin at nearly the same time.
+  // Two groups of warps, each with an arm of the program that ends in a fault of its own. Both arms lie in one line of
+  // the instruction cache, for which all warps wait, so that they begin at nearly the same time.
   void race() {
     entries_.push_back({here(), false});
     const uint32_t mask = chance(2) ? warps_ - 1 : std::min(warps_ - 1, 1u);
@@ -377,7 +381,8 @@ class Generator : public ProgramStatements {
       for (int n = 1; n < stack_depth_; ++n)
         emit_immediate(call ? Opcode::Call : Opcode::Jany, 0, 0, (here() + 1) | (call ? 0xffff0000u : 0));
     };
-    const bool first_overflows = codes[0] == FaultCode::StackOverflow, second_overflows = codes[1] == FaultCode::StackOverflow;
+    const bool first_overflows = codes[0] == FaultCode::StackOverflow,
+               second_overflows = codes[1] == FaultCode::StackOverflow;
     if (first_overflows && second_overflows) return control(true);
     if (!first_overflows && !second_overflows) return;
     const size_t others = emit(first_overflows ? Opcode::Jany : Opcode::Jnone, 0, 0, 0, second);
@@ -404,7 +409,8 @@ class Generator : public ProgramStatements {
     if (code == FaultCode::Misaligned && chance(2))
       emit_immediate(access, 0, kOwn, 1 + below(3));
     else if (code == FaultCode::Misaligned || code == FaultCode::AddressOutsideMemory)
-      from_limit_.push_back(emit_immediate(access, 0, kOwn, 4 * below(4) + (code == FaultCode::Misaligned ? 1 + below(3) : 0)));
+      from_limit_.push_back(
+          emit_immediate(access, 0, kOwn, 4 * below(4) + (code == FaultCode::Misaligned ? 1 + below(3) : 0)));
     else if (code == FaultCode::PcOutsideProgram)
       jump_outside();
     else
@@ -438,16 +444,18 @@ void fill_data(const RandomProgram& program, uint64_t seed, Memory& memory) {
     }
     return;
   }
-  for (uint32_t a = program.data_begin; a < program.memory_bytes; a += 4) memory.store(a, random_word(mix(seed, 400, a)));
+  for (uint32_t a = program.data_begin; a < program.memory_bytes; a += 4)
+    memory.store(a, random_word(mix(seed, 400, a)));
 }
 
 }  // namespace
 
 uint32_t random_word(uint64_t random) {
-  static constexpr uint32_t kSpecial[] = {
-      0x00000000, 0x80000000, 0x3f800000, 0xbf800000, 0x7f800000, 0xff800000, 0x7fc00000, 0x7f800001, 0x00000001, 0x807fffff,
-      0x00800000, 0x80800001, 0x7f7fffff, 0xff7fffff, 0x4f000000, 0xcf000000, 0x4effffff, 0x5f000000, 0x3effffff, 0x3f000000,
-      0x4b7fffff, 0x4b800001, 0x7fffffff, 0xffffffff, 0x3f7fffff, 0x00ffffff, 0x1f800000, 0x20000000, 0x60000000, 0x34000000};
+  static constexpr uint32_t kSpecial[] = {0x00000000, 0x80000000, 0x3f800000, 0xbf800000, 0x7f800000, 0xff800000,
+                                          0x7fc00000, 0x7f800001, 0x00000001, 0x807fffff, 0x00800000, 0x80800001,
+                                          0x7f7fffff, 0xff7fffff, 0x4f000000, 0xcf000000, 0x4effffff, 0x5f000000,
+                                          0x3effffff, 0x3f000000, 0x4b7fffff, 0x4b800001, 0x7fffffff, 0xffffffff,
+                                          0x3f7fffff, 0x00ffffff, 0x1f800000, 0x20000000, 0x60000000, 0x34000000};
   const auto bits = static_cast<uint32_t>(random >> 32);
   switch (random % 6) {
     case 0:
@@ -458,7 +466,8 @@ uint32_t random_word(uint64_t random) {
       return bits;
     case 3:
       // Near a power of two or at the ends of the range, where roundings carry and numbers become subnormal.
-      return (bits & 0x80000000u) | (bits >> 8 & 0xff) << 23 | ((bits & 1) != 0 ? 0x7fffffu - (bits >> 1 & 3) : (bits >> 1 & 3));
+      return (bits & 0x80000000u) | (bits >> 8 & 0xff) << 23 |
+             ((bits & 1) != 0 ? 0x7fffffu - (bits >> 1 & 3) : (bits >> 1 & 3));
     default:
       return as_bits((static_cast<float>(bits % 20001) - 10000.0F) / static_cast<float>(1U << (random >> 8 & 15)));
   }
@@ -485,7 +494,8 @@ void rewrite_memory(const RandomProgram& program, const Rewrite& rewrite, Memory
 
 RandomProgram make_random_program(const Configuration& configuration, uint64_t seed, int length, int units,
                                   const std::string& mix) {
-  const ProgramProfile& profile = mix.empty() ? kProgramProfiles[seed % std::size(kProgramProfiles)] : profile_named(mix);
+  const ProgramProfile& profile =
+      mix.empty() ? kProgramProfiles[seed % std::size(kProgramProfiles)] : profile_named(mix);
   return Generator(configuration, profile, seed, units).make(length);
 }
 

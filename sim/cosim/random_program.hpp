@@ -1,5 +1,6 @@
-// Constrained-random programs for the lockstep: every instruction of the table, nested loops, calls, divergent predicates, loads
-// and stores with and without locality, ray memory rotation, special float values, long code, early exits, faults.
+// Constrained-random programs for the lockstep: every instruction of the table, nested loops, calls,
+// divergent predicates, loads and stores with and without locality, ray memory rotation, special float
+// values, long code, early exits, faults.
 #pragma once
 
 #include <array>
@@ -18,8 +19,8 @@ namespace raypool {
 
 inline constexpr uint32_t kLineBytes = 64;  ///< of a cache
 
-/// What a host does between kernels, while the unit is idle: memory and arguments become others. It writes one argument at least,
-/// after which the unit must not use what its caches have of the memory.
+/// What a host does between kernels, while the unit is idle: memory and arguments become others. It writes one argument
+/// at least, after which the unit must not use what its caches have of the memory.
 struct Rewrite {
   std::map<uint32_t, uint64_t> code;       ///< [PC] instruction
   uint64_t data_seed = 0;                  ///< the data are those of this seed; 0: they stay
@@ -41,7 +42,8 @@ struct RandomProgram {
     uint32_t blocks = 1;                  ///< what the kernel is told of the number of blocks
     std::optional<Rewrite> rewrite = {};  ///< before its launch
   };
-  std::vector<Kernel> kernels;  ///< launched one after the other; after a fault the unit is reset, and goes on with the next
+  std::vector<Kernel>
+      kernels;  ///< launched one after the other; after a fault the unit is reset, and goes on with the next
   StallPlan stalls;
   int units = 1;  ///< compute units of the device; with several, each kernel has words of its own
 
@@ -55,10 +57,11 @@ struct RandomProgram {
   uint32_t faults = 0;          ///< in one of which a kernel may end, instead of `exit`: fault_bit() of each
 };
 
-/// A program that shows one thing; the next seed shows another one. The same configuration and seed give the same program. Warps
-/// store only to words of their own and read those or words that nobody writes, so that the result does not depend on the order
-/// of warps; program_check.hpp says exactly what a program promises. `length`: about how many instructions the body of a kernel
-/// has. `units`: of the device. `mix`: of instructions, by name (program_profile.hpp); empty: the seed chooses it.
+/// A program that shows one thing; the next seed shows another one. The same configuration and seed give the same
+/// program. Warps store only to words of their own and read those or words that nobody writes, so that the result does
+/// not depend on the order of warps; program_check.hpp says exactly what a program promises. `length`: about how many
+/// instructions the body of a kernel has. `units`: of the device. `mix`: of instructions, by name
+/// (program_profile.hpp); empty: the seed chooses it.
 RandomProgram make_random_program(const Configuration& configuration, uint64_t seed, int length = 120, int units = 1,
                                   const std::string& mix = "");
 

@@ -119,7 +119,8 @@ class Shrinker {
       const Rewrite whole = *best_.kernels[k].rewrite;
       for (const auto& each : whole.code) without([&](auto& rewrite) { rewrite->code.erase(each.first); });
       for (const auto& each : whole.arguments)
-        if (best_.kernels[k].rewrite->arguments.size() > 1) without([&](auto& rewrite) { rewrite->arguments.erase(each.first); });
+        if (best_.kernels[k].rewrite->arguments.size() > 1)
+          without([&](auto& rewrite) { rewrite->arguments.erase(each.first); });
     }
     return any;
   }
@@ -150,7 +151,8 @@ RandomProgram without_instructions(const RandomProgram& program, size_t from, si
     if (!target && !end) return;
     // Addresses beyond the program mean "outside", not a place.
     const auto place = [&](uint32_t pc) { return pc <= program.program.code.size() ? moved(pc) : pc; };
-    const uint32_t low = place(i.immediate & 0xffff), high = target && end ? place(i.immediate >> 16) : i.immediate >> 16;
+    const uint32_t low = place(i.immediate & 0xffff),
+                   high = target && end ? place(i.immediate >> 16) : i.immediate >> 16;
     word = (word & ~uint64_t{0xffffffff}) | low | high << 16;
   };
   for (uint64_t& word : code) move_targets(word);

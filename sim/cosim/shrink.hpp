@@ -17,14 +17,14 @@ struct ShrinkOptions {
   std::function<void(size_t instructions, uint64_t runs)> progress;  ///< called after each run, may be empty
 };
 
-/// `program` must fail. The result fails too, and check_program() has nothing against it (nor is it asked to stop earlier than
-/// `program` does): every attempt is checked before it is run. Delta debugging: blocks of half the code, then of a quarter, and
-/// so on; jumps follow their targets.
+/// `program` must fail. The result fails too, and check_program() has nothing against it (nor is it asked to stop
+/// earlier than `program` does): every attempt is checked before it is run. Delta debugging: blocks of half the code,
+/// then of a quarter, and so on; jumps follow their targets.
 RandomProgram shrink_program(const Configuration& configuration, const RandomProgram& program, const Fails& fails,
                              const ShrinkOptions& options = {});
 
-/// The program without instructions from .. from+count-1: targets, ends and entries follow; one that was left out becomes the
-/// next that stays.
+/// The program without instructions from .. from+count-1: targets, ends and entries follow; one that was
+/// left out becomes the next that stays.
 RandomProgram without_instructions(const RandomProgram& program, size_t from, size_t count);
 
 }  // namespace raypool

@@ -1,5 +1,5 @@
-// How the ports of a unit hesitate under random programs. A decision depends on seed, port and cycle alone, so that making one
-// port quick leaves the decisions of all others as they were.
+// How the ports of a unit hesitate under random programs. A decision depends on seed, port and cycle alone, so that
+// making one port quick leaves the decisions of all others as they were.
 #pragma once
 
 #include <array>
@@ -23,7 +23,8 @@ enum class Port : uint8_t {
 };
 inline constexpr int kPorts = 8;
 inline constexpr std::array<std::string_view, kPorts> kPortNames = {
-    "launch", "memory_request", "memory_latency", "memory_response", "import_request", "import_beat", "export", "frame"};
+    "launch",         "memory_request", "memory_latency", "memory_response",
+    "import_request", "import_beat",    "export",         "frame"};
 
 enum class StallStyle : uint8_t {
   None,    ///< never stalls; a line takes 1 cycle
@@ -33,8 +34,8 @@ enum class StallStyle : uint8_t {
   Moods,   ///< each of the above for a while
 };
 inline constexpr int kStallStyles = 5;
-inline constexpr EnumArray<StallStyle, std::string_view, kStallStyles> kStallStyleNames = {"none", "light", "heavy", "bursts",
-                                                                                           "moods"};
+inline constexpr EnumArray<StallStyle, std::string_view, kStallStyles> kStallStyleNames = {"none", "light", "heavy",
+                                                                                           "bursts", "moods"};
 
 struct StallPlan {
   EnumArray<Port, StallStyle, kPorts> styles{};

@@ -35,7 +35,8 @@ bool same_words(const Beat& a, const Beat& b, uint32_t mask) {
 
 std::string beat_rows(const Beat& rtl, const Beat& model) {
   std::string text;
-  for (size_t i = 0; i < kBeatWords; ++i) text += row(fmt::format("word {}", i).c_str(), word_text(rtl[i]), word_text(model[i]));
+  for (size_t i = 0; i < kBeatWords; ++i)
+    text += row(fmt::format("word {}", i).c_str(), word_text(rtl[i]), word_text(model[i]));
   return text;
 }
 
@@ -86,7 +87,8 @@ void Comparison::trace(const UnitTrace& rtl, const UnitTrace& model) {
     };
   };
   pair_up(
-      rtl.stores, model.stores, [this](const auto& r, const auto& m) { store(r, m); }, other_cycle("stores", kMemoryModules));
+      rtl.stores, model.stores, [this](const auto& r, const auto& m) { store(r, m); },
+      other_cycle("stores", kMemoryModules));
   pair_up(
       rtl.ray_writes, model.ray_writes, [this](const auto& r, const auto& m) { ray_write(r, m); },
       other_cycle("writes ray memory", "rtl/ray_alu.v"));
@@ -114,8 +116,8 @@ void Comparison::retirement(const RetireEvent& rtl, const RetireEvent& model) {
   };
   const auto both = [&] { return retired_line("RTL", rtl) + retired_line("model", model); };
   if (rtl.pc != model.pc) {
-    throw differs(fmt::format("warp {} retired another PC than the model's", rtl.warp), both(), "rtl/pc_stack.v, rtl/brh_alu.v",
-                  Context::Warp);
+    throw differs(fmt::format("warp {} retired another PC than the model's", rtl.warp), both(),
+                  "rtl/pc_stack.v, rtl/brh_alu.v", Context::Warp);
   }
   if (rtl.instruction != model.instruction) {
     throw differs(fmt::format("warp {} executed another instruction than lies in memory at PC {}", rtl.warp, rtl.pc),
@@ -127,7 +129,8 @@ void Comparison::retirement(const RetireEvent& rtl, const RetireEvent& model) {
     return fmt::format("  RTL   {}\n  model {}  (lane 0 rightmost)\n", mask_text(r, lanes_), mask_text(m, lanes_));
   };
   if (rtl.mask != model.mask) {
-    throw differs("the thread mask differs", masks(rtl.mask, model.mask), "rtl/predicate_file.v, rtl/warp.v", Context::Operands);
+    throw differs("the thread mask differs", masks(rtl.mask, model.mask), "rtl/predicate_file.v, rtl/warp.v",
+                  Context::Operands);
   }
   ++counts_->instructions;
   if (issue.instruction->writes_register) {
@@ -149,13 +152,13 @@ void Comparison::retirement(const RetireEvent& rtl, const RetireEvent& model) {
 
 void Comparison::store(const StoreEvent& rtl, const StoreEvent& model) {
   if (rtl.address != model.address || rtl.mask != model.mask || !same_words(rtl.data, model.data, model.mask)) {
-    throw Mismatch{
-        "the words stored differ",
-        quadword_line("RTL", rtl.address, rtl.mask, rtl.data) + quadword_line("model", model.address, model.mask, model.data),
-        "rtl/mem_alu.v, rtl/data_cache.v",
-        Context::Operands,
-        rtl.unit,
-        rtl.warp};
+    throw Mismatch{"the words stored differ",
+                   quadword_line("RTL", rtl.address, rtl.mask, rtl.data) +
+                       quadword_line("model", model.address, model.mask, model.data),
+                   "rtl/mem_alu.v, rtl/data_cache.v",
+                   Context::Operands,
+                   rtl.unit,
+                   rtl.warp};
   }
   counts_->stores += popcount(model.mask);
 }
@@ -168,8 +171,8 @@ void Comparison::ray_write(const RayWriteEvent& rtl, const RayWriteEvent& model)
   }
   if (!same) {
     throw Mismatch{"the words written to ray memory differ",
-                   fmt::format("  RTL wrote word {} of lanes {}, the model word {} of lanes {} (lane 0 rightmost)\n", rtl.word,
-                               mask_text(rtl.mask, lanes_), model.word, mask_text(model.mask, lanes_)) +
+                   fmt::format("  RTL wrote word {} of lanes {}, the model word {} of lanes {} (lane 0 rightmost)\n",
+                               rtl.word, mask_text(rtl.mask, lanes_), model.word, mask_text(model.mask, lanes_)) +
                        lane_table(issue_(rtl.unit, rtl.warp), lanes_, rtl.data.data(), model.data.data()),
                    "rtl/ray_alu.v",
                    Context::Instruction,
@@ -193,8 +196,9 @@ void Comparison::memory_request(const UnitOutputs& rtl, const UnitOutputs& model
   const bool both = rtl.memory_request_valid && model.memory_request_valid;
   const MemoryRequest &r = rtl.memory_request, &m = model.memory_request;
   const bool same =
-      !both || (r.write == m.write && r.address == m.address &&
-                (r.write ? r.id >> 5 == m.id >> 5 && r.mask == m.mask && same_words(r.data, m.data, m.mask) : r.id == m.id));
+      !both ||
+      (r.write == m.write && r.address == m.address &&
+       (r.write ? r.id >> 5 == m.id >> 5 && r.mask == m.mask && same_words(r.data, m.data, m.mask) : r.id == m.id));
   if (rtl.memory_request_valid == model.memory_request_valid && same) return;
 
   std::string details = row("valid", rtl.memory_request_valid, model.memory_request_valid);
@@ -217,16 +221,19 @@ void Comparison::memory_request(const UnitOutputs& rtl, const UnitOutputs& model
   if (writes) {
     of_write("mask", [](const MemoryRequest& request) { return mask_text(request.mask, kBeatWords); });
     for (size_t i = 0; i < kBeatWords; ++i) {
-      of_write(fmt::format("word {}", i).c_str(), [i](const MemoryRequest& request) { return word_text(request.data[i]); });
+      of_write(fmt::format("word {}", i).c_str(),
+               [i](const MemoryRequest& request) { return word_text(request.data[i]); });
     }
   }
-  throw Mismatch{"the memory requests differ in this cycle", details, fetches ? kFetchModules : kMemoryModules, Context::Unit};
+  throw Mismatch{"the memory requests differ in this cycle", details, fetches ? kFetchModules : kMemoryModules,
+                 Context::Unit};
 }
 
 void Comparison::outputs(const UnitOutputs& rtl, const UnitOutputs& model) const {
   fault(rtl, model);
   if (rtl.launch_ready != model.launch_ready || rtl.kernel_done != model.kernel_done || rtl.busy != model.busy ||
-      rtl.unit_idle != model.unit_idle || rtl.idle != model.idle || (rtl.launch_ready && rtl.launch_unit != model.launch_unit)) {
+      rtl.unit_idle != model.unit_idle || rtl.idle != model.idle ||
+      (rtl.launch_ready && rtl.launch_unit != model.launch_unit)) {
     throw Mismatch{"the launch outputs differ in this cycle",
                    row("launch_ready", rtl.launch_ready, model.launch_ready) +
                        row("launch_unit", rtl.launch_unit, model.launch_unit) +
@@ -236,29 +243,33 @@ void Comparison::outputs(const UnitOutputs& rtl, const UnitOutputs& model) const
   }
   memory_request(rtl, model);
   if (rtl.import_request_valid != model.import_request_valid ||
-      (rtl.import_request_valid &&
-       (rtl.import_request_kind != model.import_request_kind || rtl.import_request_unit != model.import_request_unit))) {
-    throw Mismatch{"the import requests differ in this cycle",
-                   row("valid", rtl.import_request_valid, model.import_request_valid) +
-                       row("kind", static_cast<int>(rtl.import_request_kind), static_cast<int>(model.import_request_kind)) +
-                       row("unit", rtl.import_request_unit, model.import_request_unit),
-                   kImportModules, Context::Unit};
+      (rtl.import_request_valid && (rtl.import_request_kind != model.import_request_kind ||
+                                    rtl.import_request_unit != model.import_request_unit))) {
+    throw Mismatch{
+        "the import requests differ in this cycle",
+        row("valid", rtl.import_request_valid, model.import_request_valid) +
+            row("kind", static_cast<int>(rtl.import_request_kind), static_cast<int>(model.import_request_kind)) +
+            row("unit", rtl.import_request_unit, model.import_request_unit),
+        kImportModules, Context::Unit};
   }
   if (rtl.export_valid != model.export_valid ||
-      (rtl.export_valid &&
-       (rtl.export_data != model.export_data || rtl.export_last != model.export_last || rtl.export_unit != model.export_unit))) {
+      (rtl.export_valid && (rtl.export_data != model.export_data || rtl.export_last != model.export_last ||
+                            rtl.export_unit != model.export_unit))) {
     throw Mismatch{"the exported beats differ in this cycle",
-                   row("valid", rtl.export_valid, model.export_valid) + row("last", rtl.export_last, model.export_last) +
+                   row("valid", rtl.export_valid, model.export_valid) +
+                       row("last", rtl.export_last, model.export_last) +
                        row("unit", rtl.export_unit, model.export_unit) + beat_rows(rtl.export_data, model.export_data),
                    kExportModules, Context::Unit};
   }
   if (rtl.frame_valid != model.frame_valid ||
-      (rtl.frame_valid &&
-       (rtl.frame.pixel != model.frame.pixel || rtl.frame.rgb != model.frame.rgb || rtl.frame_unit != model.frame_unit))) {
-    std::string details = row("valid", rtl.frame_valid, model.frame_valid) + row("unit", rtl.frame_unit, model.frame_unit) +
+      (rtl.frame_valid && (rtl.frame.pixel != model.frame.pixel || rtl.frame.rgb != model.frame.rgb ||
+                           rtl.frame_unit != model.frame_unit))) {
+    std::string details = row("valid", rtl.frame_valid, model.frame_valid) +
+                          row("unit", rtl.frame_unit, model.frame_unit) +
                           row("pixel", word_text(rtl.frame.pixel), word_text(model.frame.pixel));
     static constexpr std::array<const char*, 3> kColors = {"red", "green", "blue"};
-    for (size_t i = 0; i < 3; ++i) details += row(kColors[i], word_text(rtl.frame.rgb[i]), word_text(model.frame.rgb[i]));
+    for (size_t i = 0; i < 3; ++i)
+      details += row(kColors[i], word_text(rtl.frame.rgb[i]), word_text(model.frame.rgb[i]));
     throw Mismatch{"the frame contributions differ in this cycle", details, kExportModules, Context::Unit};
   }
 }

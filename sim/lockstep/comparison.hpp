@@ -1,5 +1,5 @@
-// What RTL and model show in one cycle, compared: outputs, and the trace of what happened inside. A difference is thrown as
-// Mismatch.
+// What RTL and model show in one cycle, compared: outputs, and the trace of what happened inside.
+// A difference is thrown as Mismatch.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +15,8 @@ namespace raypool::lockstep {
 class Comparison {
  public:
   /// `issue` gives the model's instruction under way of a unit's warp. `counts` must outlive the comparison.
-  Comparison(const Configuration& configuration, std::function<const CycleUnit::Issue&(uint32_t unit, uint32_t warp)> issue,
-             LockstepCounts& counts)
+  Comparison(const Configuration& configuration,
+             std::function<const CycleUnit::Issue&(uint32_t unit, uint32_t warp)> issue, LockstepCounts& counts)
       : configuration_(configuration), lanes_(configuration.lanes), issue_(std::move(issue)), counts_(&counts) {}
 
   /// Retirements, stores, writes of ray memory.

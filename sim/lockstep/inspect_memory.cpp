@@ -1,5 +1,5 @@
-// The memory ALU with its cache, miss-status holding registers, sequencer and request queue: register by register as the model
-// has them, and what the access stage makes of them.
+// The memory ALU with its cache, miss-status holding registers, sequencer and request queue: register by register as
+// the model has them, and what the access stage makes of them.
 #include <fmt/format.h>
 
 #include "bits.hpp"
@@ -30,7 +30,8 @@ void UnitInspection::check_memory_alu() {
          "memory ALU, requests that wait");
   if (!mem.request_valid()) return;
   const MemoryRequest& request = mem.request();
-  bool same = (w_.data_request_write.value() != 0) == request.write && w_.data_request_address.value() == request.address;
+  bool same =
+      (w_.data_request_write.value() != 0) == request.write && w_.data_request_address.value() == request.address;
   if (request.write) {
     same = same && w_.data_request_mask.value() == request.mask;
     for (uint32_t i = 0; i < kBeatWords; ++i) {
@@ -63,7 +64,8 @@ void UnitInspection::check_access() {
   expect(mem_.allocates.value(), outcome.allocate, status, "data cache, takes a miss-status holding register");
   expect(mem_.refuses.value(), outcome.refuse, status, "data cache, refuses");
   if (outcome.allocate) {
-    expect(cache_.push_id_o.value(), outcome.push_id, "rtl/miss_status.v, rtl/data_cache.v", "number of the free register");
+    expect(cache_.push_id_o.value(), outcome.push_id, "rtl/miss_status.v, rtl/data_cache.v",
+           "number of the free register");
     expect(cache_.victim.value(), outcome.victim, status, "way for the line");
   }
   if (outcome.hit) check_loaded(r.warp);
@@ -93,7 +95,8 @@ void UnitInspection::check_miss_status() {
   for (uint32_t busy = r.busy; busy != 0; busy &= busy - 1) {
     const uint32_t number = lowest(busy);
     expect(miss_.line_q.bits(number * 26, 26), r.line[number], kFiles, "miss-status holding register, line");
-    expect(miss_.waiters_q.bits(number * warps_, warps_), r.waiters[number], kFiles, "miss-status holding register, waiters");
+    expect(miss_.waiters_q.bits(number * warps_, warps_), r.waiters[number], kFiles,
+           "miss-status holding register, waiters");
   }
 }
 
@@ -105,7 +108,8 @@ void UnitInspection::check_sequencer() {
   expect(sequencer_.loser_q.value(), r.loser, kFiles, "memory sequencer, losers");
   expect(sequencer_.next_valid_q.value(), r.next_valid, kFiles, "memory sequencer, a pass is prepared");
   if (r.next_valid) {
-    expect(sequencer_.next_kind_q.value(), static_cast<uint32_t>(r.next_kind), kFiles, "memory sequencer, kind of the pass");
+    expect(sequencer_.next_kind_q.value(), static_cast<uint32_t>(r.next_kind), kFiles,
+           "memory sequencer, kind of the pass");
     expect(sequencer_.next_warp_q.value(), r.next_warp, kFiles, "memory sequencer, warp of the pass");
     if (r.next_kind == MemorySequencer::Kind::Filled)
       expect(sequencer_.next_mshr_q.value(), r.next_mshr, kFiles, "memory sequencer, register of the pass");

@@ -1,4 +1,5 @@
-// The ray ALU with its import and export engines: register by register as the model has them, and the packages that come and go.
+// The ray ALU with its import and export engines: register by register as the model has
+// them, and the packages that come and go.
 #include <fmt/format.h>
 
 #include "bits.hpp"
@@ -18,9 +19,10 @@ void UnitInspection::check_ray_alu() {
   const RayAlu& ray = model_->ray();
   const uint32_t instance = first_instance(configuration_, AluType::Ray);
   // What is idle on both sides needs no closer look.
-  if (!ray.active() && !ray.moves_rays() && parked_ == 0 && model_->ray_task() < 0 && (w_.ready.value() >> instance & 1) != 0 &&
-      (ray_.hold_q.value() | ray_.busy.value() | w_.import_active.value() | w_.export_valid_o.value() | w_.ray_fault.value()) ==
-          0)
+  if (!ray.active() && !ray.moves_rays() && parked_ == 0 && model_->ray_task() < 0 &&
+      (w_.ready.value() >> instance & 1) != 0 &&
+      (ray_.hold_q.value() | ray_.busy.value() | w_.import_active.value() | w_.export_valid_o.value() |
+       w_.ray_fault.value()) == 0)
     return;
   const RayAlu::Registers& r = ray.registers();
   expect(w_.ray_fault.value(), ray.fault(), kAlu, "ray ALU, fault");
@@ -34,12 +36,15 @@ void UnitInspection::check_ray_alu() {
   for (uint32_t warps = swapping; warps != 0; warps &= warps - 1) {
     const uint32_t warp = lowest(warps);
     const RayAlu::Roles& roles = ray.roles(warp);
-    expect(ray_.input_q.bits(warp * 2, 2) | ray_.current_q.bits(warp * 2, 2) << 4 | ray_.output_q.bits(warp * 2, 2) << 8,
-           roles.input | uint32_t{roles.current} << 4 | uint32_t{roles.output} << 8, kAlu, "ray ALU, roles of a warp's slices");
+    expect(
+        ray_.input_q.bits(warp * 2, 2) | ray_.current_q.bits(warp * 2, 2) << 4 | ray_.output_q.bits(warp * 2, 2) << 8,
+        roles.input | uint32_t{roles.current} << 4 | uint32_t{roles.output} << 8, kAlu,
+        "ray ALU, roles of a warp's slices");
   }
   expect(w_.ready.flag(instance), ray.ready(model_->ray_task()), kAlu, "ray ALU, ready");
   expect(w_.done_valid.flag(instance), ray.done() != 0, kAlu, "ray ALU, done");
-  if (ray.done() != 0) expect(warp_field(w_.done_warp, instance), lowest(ray.done()), kAlu, "ray ALU, warp that is done");
+  if (ray.done() != 0)
+    expect(warp_field(w_.done_warp, instance), lowest(ray.done()), kAlu, "ray ALU, warp that is done");
   check_import();
   check_ray_ports();
 }

@@ -22,11 +22,14 @@ uint32_t count_of(const Configuration& configuration, size_t type) {
   return kAluTable[type].timed_by_events() ? 1 : static_cast<uint32_t>(configuration.alus[type].count);
 }
 
-std::string instance_scope(uint32_t unit, uint32_t instance) { return fmt::format("{}.gen_alu[{}]", scope_of(unit), instance); }
+std::string instance_scope(uint32_t unit, uint32_t instance) {
+  return fmt::format("{}.gen_alu[{}]", scope_of(unit), instance);
+}
 
 /// The ALU of a type that a unit has one of.
 std::string alu_scope(const Configuration& configuration, uint32_t unit, AluType type) {
-  return fmt::format("{0}.gen_{1}.{1}_alu", instance_scope(unit, first_instance(configuration, type)), alu_info(type).name);
+  return fmt::format("{0}.gen_{1}.{1}_alu", instance_scope(unit, first_instance(configuration, type)),
+                     alu_info(type).name);
 }
 
 }  // namespace
@@ -37,7 +40,8 @@ uint32_t first_instance(const Configuration& configuration, AluType type) {
   return instance;
 }
 
-UnitInspection::UnitInspection(const Configuration& configuration, const ComputeUnit& rtl, const CycleUnit& model, uint32_t unit)
+UnitInspection::UnitInspection(const Configuration& configuration, const ComputeUnit& rtl, const CycleUnit& model,
+                               uint32_t unit)
     : model_(&model),
       configuration_(configuration),
       warps_(static_cast<uint32_t>(configuration.warps)),
@@ -99,7 +103,8 @@ void UnitInspection::find(const char* files, std::string text) {
 }
 
 void UnitInspection::expect(uint32_t rtl, uint32_t expected, const char* files, const char* what) {
-  if (rtl != expected) find(files, fmt::format("{}: {:x} in the RTL, {:x} by its rule (bits, hexadecimal)", what, rtl, expected));
+  if (rtl != expected)
+    find(files, fmt::format("{}: {:x} in the RTL, {:x} by its rule (bits, hexadecimal)", what, rtl, expected));
 }
 
 void UnitInspection::advance(const UnitTransfers& given) {
@@ -118,7 +123,8 @@ void UnitInspection::advance(const UnitTransfers& given) {
 void UnitInspection::check() {
   if (stopped_ || !active()) return;
   now_ = model_->now();
-  // What is wrong first: registers of a block, in the order in which blocks give to each other, then what follows from them.
+  // What is wrong first: registers of a block, in the order in which blocks give to each
+  // other, then what follows from them.
   check_faults();
   check_launch();
   check_memory_port();
@@ -149,7 +155,8 @@ void UnitInspection::check_launch() {
   expect(w_.kernel_done_o.value(), model_->outputs().kernel_done, "rtl/launcher.v", "the kernel's end");
   if (running) {
     const LaunchCommand& launched = model_->core().launched();
-    if (w_.threads.value() != launched.threads || w_.block.value() != launched.block || w_.blocks.value() != launched.blocks)
+    if (w_.threads.value() != launched.threads || w_.block.value() != launched.block ||
+        w_.blocks.value() != launched.blocks)
       find("rtl/launcher.v", "threads, block or blocks of the launch that runs are wrong");
   }
   const bool starts = model_->launch_waits() && !running;
@@ -168,7 +175,9 @@ void UnitInspection::check_faults() {
   Fault rtl;
   if (w_.fault_valid_o.value() != 0)
     rtl = {static_cast<FaultCode>(w_.fault_code_o.value()), w_.fault_warp_o.value(), w_.fault_pc_o.value()};
-  if (rtl.code == expected.code && (rtl.code == FaultCode::None || (rtl.warp == expected.warp && rtl.pc == expected.pc))) return;
+  if (rtl.code == expected.code &&
+      (rtl.code == FaultCode::None || (rtl.warp == expected.warp && rtl.pc == expected.pc)))
+    return;
   const FaultCode code = expected.code == FaultCode::None ? rtl.code : expected.code;
   const bool of_alu = code >= FaultCode::Misaligned;
   const bool raised =
@@ -215,7 +224,8 @@ void UnitInspection::advance_memory_port(const UnitTransfers& given) {
 void UnitInspection::check_memory_port() {
   bool same = (w_.memory_request_valid_o.value() != 0) == port_.valid;
   if (same && port_.valid) {
-    same = (w_.memory_request_write_o.value() != 0) == port_.write && w_.memory_request_address_o.value() == port_.address;
+    same =
+        (w_.memory_request_write_o.value() != 0) == port_.write && w_.memory_request_address_o.value() == port_.address;
     if (port_.write) {
       same = same && w_.memory_request_mask_o.value() == port_.mask;
       for (uint32_t i = 0; i < kBeatWords; ++i) same = same && w_.memory_request_data_o.word(i) == port_.data[i];
@@ -224,7 +234,8 @@ void UnitInspection::check_memory_port() {
     }
   }
   if (!same)
-    find("rtl/memory_arbiter.v, rtl/unit_memory_arbiter.v", "the memory port shows another request than was handed to it");
+    find("rtl/memory_arbiter.v, rtl/unit_memory_arbiter.v",
+         "the memory port shows another request than was handed to it");
 }
 
 // ---- The instruction routine
@@ -252,21 +263,24 @@ void UnitInspection::advance_fetch(const UnitTransfers& given) {
 }
 
 void UnitInspection::check_instruction_cache() {
-  const char* files = argument_written_ && w_.instruction_hit.value() != 0 ? "rtl/instruction_cache.v, rtl/compute_unit.v"
-                                                                           : "rtl/instruction_cache.v";
+  const char* files = argument_written_ && w_.instruction_hit.value() != 0
+                          ? "rtl/instruction_cache.v, rtl/compute_unit.v"
+                          : "rtl/instruction_cache.v";
   expect(w_.instruction_hit.value(), lookup_ && lookup_hit_, files, "instruction cache, hit");
   expect(w_.instruction_miss.value(), lookup_ && !lookup_hit_, files, "instruction cache, miss");
   if (lookup_) expect(w_.result_warp.value(), lookup_warp_, files, "instruction cache, warp of the result");
   const DecodedInstruction* expected = model_->core().instruction_at(lookup_pc_);
   if (lookup_ && lookup_hit_ && expected != nullptr &&
-      (w_.fetched.word(0) != static_cast<uint32_t>(expected->encoding) || w_.fetched.word(1) != expected->encoding >> 32))
+      (w_.fetched.word(0) != static_cast<uint32_t>(expected->encoding) ||
+       w_.fetched.word(1) != expected->encoding >> 32))
     find(files, fmt::format("instruction cache: {:08x}{:08x} at PC {}, memory has {:016x}", w_.fetched.word(1),
                             w_.fetched.word(0), lookup_pc_, expected->encoding));
   expect(w_.refill_done.value(), instruction_cache_.refill_done(), files, "instruction cache, a line has come");
   expect(w_.fetch_first.value(), first_, files, "instruction cache, the warp to look up first");
   expect(w_.instruction_request.value(), instruction_cache_.request_valid(), files, "instruction cache, request");
   if (instruction_cache_.request_valid())
-    expect(w_.instruction_request_address.value(), instruction_cache_.request_address(), files, "instruction cache, address");
+    expect(w_.instruction_request_address.value(), instruction_cache_.request_address(), files,
+           "instruction cache, address");
 }
 
 // Warps come to the fetch arbiter when the model says so, with the PC that it says, or again when a line has come.
@@ -285,7 +299,8 @@ void UnitInspection::check_fetch() {
     const uint32_t warp = lowest(warps);
     const bool early = (rtl >> warp & 1) != 0;
     const bool stack = w_.fetch_pc.bits(warp * 16, 16) != model_->timing(warp).fetch_pc;
-    find(stack ? "rtl/pc_stack.v, rtl/instruction_buffer.v, rtl/warp.v" : "rtl/instruction_buffer.v, rtl/pc_stack.v, rtl/warp.v",
+    find(stack ? "rtl/pc_stack.v, rtl/instruction_buffer.v, rtl/warp.v"
+               : "rtl/instruction_buffer.v, rtl/pc_stack.v, rtl/warp.v",
          fmt::format("warp {} {} the instruction cache", warp, early ? "wants too early" : "does not want in time"));
   }
 }
@@ -331,8 +346,10 @@ void UnitInspection::check_operands(uint32_t warp) {
   const uint32_t all = lanes_ == 32 ? ~0u : (1u << lanes_) - 1;
   const char* predicates = "rtl/predicate_file.v, rtl/warp.v";
   expect(lanes_of(w_.retire_mask_o), issue.mask, predicates, "thread mask that was read");
-  if (uses(TaskOperand::PredicateX)) expect(lanes_of(w_.predicate_x), issue.px & all, predicates, "predicate px that was read");
-  if (uses(TaskOperand::PredicateB)) expect(lanes_of(w_.predicate_b), issue.pb & all, predicates, "predicate pb that was read");
+  if (uses(TaskOperand::PredicateX))
+    expect(lanes_of(w_.predicate_x), issue.px & all, predicates, "predicate px that was read");
+  if (uses(TaskOperand::PredicateB))
+    expect(lanes_of(w_.predicate_b), issue.pb & all, predicates, "predicate pb that was read");
   for (uint32_t mask = issue.mask; mask != 0; mask &= mask - 1) {
     const uint32_t lane = lowest(mask);
     const uint32_t row = warp * lanes_ + lane;
@@ -340,7 +357,8 @@ void UnitInspection::check_operands(uint32_t warp) {
     const bool same = (!uses(TaskOperand::OperandA) || w_.operand_a.word(row) == issue.a[lane]) &&
                       (!reads_b || w_.operand_b.word(row) == issue.b[lane]) &&
                       (!uses(TaskOperand::OperandC) || w_.operand_c.word(row) == issue.c[lane]);
-    if (!same) return find("rtl/warp.v, rtl/ram_2r1w.v", fmt::format("warp {}, lane {}: a register was read wrong", warp, lane));
+    if (!same)
+      return find("rtl/warp.v, rtl/ram_2r1w.v", fmt::format("warp {}, lane {}: a register was read wrong", warp, lane));
   }
 }
 
@@ -381,7 +399,8 @@ void UnitInspection::check_ready() {
   }
   const uint32_t wrong = (ready ^ w_.ready.value()) & piped_;
   if (wrong != 0) {
-    const std::string files = fmt::format("rtl/alu_pipeline.v, rtl/{}_alu.v", kAluNames[instances_[lowest(wrong)].type]);
+    const std::string files =
+        fmt::format("rtl/alu_pipeline.v, rtl/{}_alu.v", kAluNames[instances_[lowest(wrong)].type]);
     find(files.c_str(), "the ALU takes its next task too early or too late");
   }
 }
@@ -454,7 +473,8 @@ void UnitInspection::check_result(uint32_t instance, uint32_t warp) {
   }
   if (!same) {
     find(result_files(instruction, configuration_).c_str(),
-         fmt::format("warp {}: {} was given the right operands and has another result", warp, instruction.info->mnemonic));
+         fmt::format("warp {}: {} was given the right operands and has another result", warp,
+                     instruction.info->mnemonic));
   }
 }
 

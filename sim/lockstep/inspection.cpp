@@ -6,7 +6,8 @@
 
 namespace raypool::lockstep {
 
-Inspection::Inspection(const Configuration& configuration, const ComputeUnit& rtl, const std::vector<CycleUnit*>& models)
+Inspection::Inspection(const Configuration& configuration, const ComputeUnit& rtl,
+                       const std::vector<CycleUnit*>& models)
     : rtl_(&rtl), models_(&models) {
   units_.reserve(models.size());
   for (uint32_t u = 0; u < models.size(); ++u) units_.emplace_back(configuration, rtl, *models[u], u);
@@ -57,7 +58,8 @@ void Inspection::check() {
   if (!active()) return;
   if (units_.size() > 1) check_arbiters();
   for (uint32_t u = 0; u < units_.size(); ++u) {
-    // The ports' arbiters say which unit gets a response; a unit that gets another's would be blamed for what it does with it.
+    // The ports' arbiters say which unit gets a response; a unit that gets another's would
+    // be blamed for what it does with it.
     const bool response = before_.memory_response_valid && unit_of_id(before_.memory_response.id) == u;
     if (units_.size() > 1 && (units_[u].wires().memory_response_valid_i.value() != 0) != response)
       find("rtl/unit_memory_arbiter.v, rtl/multiprocessor.v", "a response goes to another unit than its id names");
@@ -93,13 +95,16 @@ void Inspection::check_arbiters() {
       (out.memory_request_valid && unit_of_id(out.memory_request.id) != memory_.choice()))
     find("rtl/unit_memory_arbiter.v, rtl/port_arbiter.v, rtl/round_robin.v",
          "another unit's memory request is taken than its rule says");
-  if (out.import_request_valid != imports_.valid() || (out.import_request_valid && out.import_request_unit != imports_.choice()))
+  if (out.import_request_valid != imports_.valid() ||
+      (out.import_request_valid && out.import_request_unit != imports_.choice()))
     find("rtl/import_arbiter.v, rtl/port_arbiter.v, rtl/request_queue.v",
          "another unit's import request is taken than its rule says");
   if (out.export_valid != exports_.valid() || (out.export_valid && out.export_unit != exports_.choice()))
-    find("rtl/port_arbiter.v, rtl/round_robin.v, rtl/multiprocessor.v", "another unit's ray is exported than its rule says");
+    find("rtl/port_arbiter.v, rtl/round_robin.v, rtl/multiprocessor.v",
+         "another unit's ray is exported than its rule says");
   if (out.frame_valid != frames_.valid() || (out.frame_valid && out.frame_unit != frames_.choice()))
-    find("rtl/port_arbiter.v, rtl/round_robin.v, rtl/multiprocessor.v", "another unit's contribution is sent than its rule says");
+    find("rtl/port_arbiter.v, rtl/round_robin.v, rtl/multiprocessor.v",
+         "another unit's contribution is sent than its rule says");
 }
 
 std::vector<Finding> Inspection::findings() const {

@@ -69,7 +69,9 @@ class LockstepUnitImpl : public LockstepUnit {
   void open_waveform(const std::string& path) override { rtl_->open_waveform(path); }
   const LockstepCounts& counts() const override { return counts_; }
   std::string uninspected() const override { return inspection_ ? inspection_->missing() : "not asked for"; }
-  std::vector<Finding> inside() const override { return inspection_ ? inspection_->findings() : std::vector<Finding>(); }
+  std::vector<Finding> inside() const override {
+    return inspection_ ? inspection_->findings() : std::vector<Finding>();
+  }
 
   void clock(const UnitInputs& inputs) override {
     if (!report_.empty()) throw LockstepDifference(report_);
@@ -87,8 +89,8 @@ class LockstepUnitImpl : public LockstepUnit {
       throw LockstepDifference(report_, can_inspect() ? counts_.cycles : 0);
     }
     if (inspection_ && counts_.cycles >= options_.inspect_until)
-      throw std::runtime_error(
-          fmt::format("there is no difference up to cycle {}, where this run was to find one again", options_.inspect_until));
+      throw std::runtime_error(fmt::format(
+          "there is no difference up to cycle {}, where this run was to find one again", options_.inspect_until));
   }
 
  private:
@@ -155,7 +157,8 @@ class LockstepUnitImpl : public LockstepUnit {
       ++counts_.counters;
     }
     was_idle_ = out.idle;
-    if (options_.watchdog_cycles != 0 && out.busy != 0 && counts_.cycles - last_progress_ > options_.watchdog_cycles) hang();
+    if (options_.watchdog_cycles != 0 && out.busy != 0 && counts_.cycles - last_progress_ > options_.watchdog_cycles)
+      hang();
   }
 
   // Every warp's instruction under way, and what it can be waiting for.
@@ -180,9 +183,10 @@ class LockstepUnitImpl : public LockstepUnit {
       } else if (instruction.alu() == AluType::Mem) {
         text += fmt::format("; waits for memory ({} line reads under way)", reads_);
       } else if (instruction.opcode == Opcode::Rin) {
-        text += fmt::format("; waits for import ({}; {} packages announced and not come)",
-                            model.core().slices().input_complete(warp) ? "its packages have come" : "its packages have not come",
-                            model.core().slices().packages_expected());
+        text += fmt::format(
+            "; waits for import ({}; {} packages announced and not come)",
+            model.core().slices().input_complete(warp) ? "its packages have come" : "its packages have not come",
+            model.core().slices().packages_expected());
       } else if (instruction.kind == Kind::Swap) {
         text += "; waits for its output slice to be exported";
       } else {
@@ -200,9 +204,10 @@ class LockstepUnitImpl : public LockstepUnit {
     for (uint32_t unit = 0; unit < model_.units.size(); ++unit) text += warp_lines(unit);
     throw Mismatch{
         fmt::format("hang: no instruction retired and nothing passed a port for {} cycles", options_.watchdog_cycles),
-        text + fmt::format("  ports: memory request {}; import request {}; export {}; frame {}; line reads under way {}\n",
-                           port(out.memory_request_valid), port(out.import_request_valid), port(out.export_valid),
-                           port(out.frame_valid), reads_),
+        text +
+            fmt::format("  ports: memory request {}; import request {}; export {}; frame {}; line reads under way {}\n",
+                        port(out.memory_request_valid), port(out.import_request_valid), port(out.export_valid),
+                        port(out.frame_valid), reads_),
         "RTL and model wait alike: the host that should answer, or what the warps above wait for"};
   }
 
@@ -212,21 +217,21 @@ class LockstepUnitImpl : public LockstepUnit {
       const LaunchCommand& launched = model_.units[mismatch.unit]->core().launched();
       const auto name = options_.kernel_names.find(launched.pc);
       kernel = fmt::format("kernel: {}entry PC {}, {} threads, block {}; {} launched so far",
-                           name == options_.kernel_names.end() ? "" : name->second + ", ", launched.pc, launched.threads,
-                           launched.block, kernels_started_);
+                           name == options_.kernel_names.end() ? "" : name->second + ", ", launched.pc,
+                           launched.threads, launched.block, kernels_started_);
     }
-    std::string text =
-        fmt::format("lockstep difference in {}: {}\n  cycle {}, {}\n", options_.name, mismatch.title, counts_.cycles, kernel);
+    std::string text = fmt::format("lockstep difference in {}: {}\n  cycle {}, {}\n", options_.name, mismatch.title,
+                                   counts_.cycles, kernel);
     if (mismatch.context == Context::Unit) return text + mismatch.details + last_lines(mismatch);
 
     const CycleUnit::Issue& issue = model_.units[mismatch.unit]->issue(mismatch.warp);
-    const std::string warp =
-        (model_.units.size() > 1 ? fmt::format("unit {}, ", mismatch.unit) : "") + fmt::format("warp {}", mismatch.warp);
+    const std::string warp = (model_.units.size() > 1 ? fmt::format("unit {}, ", mismatch.unit) : "") +
+                             fmt::format("warp {}", mismatch.warp);
     const bool operands = mismatch.context >= Context::Instruction && issue.instruction != nullptr;
     if (operands) {
-      text +=
-          fmt::format("  {}, PC {}: {}\n  encoding {:016x}, thread mask {} (lane 0 rightmost)\n", warp, issue.pc,
-                      instruction_text(issue.instruction->encoding), issue.instruction->encoding, mask_text(issue.mask, lanes_));
+      text += fmt::format("  {}, PC {}: {}\n  encoding {:016x}, thread mask {} (lane 0 rightmost)\n", warp, issue.pc,
+                          instruction_text(issue.instruction->encoding), issue.instruction->encoding,
+                          mask_text(issue.mask, lanes_));
     }
     text += mismatch.details;
     if (operands && mismatch.context == Context::Operands) text += lane_table(issue, lanes_, nullptr, nullptr);
@@ -249,7 +254,8 @@ class LockstepUnitImpl : public LockstepUnit {
     std::string text, files;
     for (const Finding& finding : inside()) {
       const uint64_t ago = model_.units[0]->now() - finding.cycle;
-      text += fmt::format("  inside, {}: {}\n", ago == 0 ? "in this cycle" : fmt::format("{} cycles before", ago), finding.text);
+      text += fmt::format("  inside, {}: {}\n", ago == 0 ? "in this cycle" : fmt::format("{} cycles before", ago),
+                          finding.text);
       files += finding.files + ", ";
     }
     return text + "  look at: " + first_files(files + mismatch.module, 3) + "\n  so far " + to_string(counts_);
@@ -275,7 +281,9 @@ class LockstepUnitImpl : public LockstepUnit {
 };
 
 // Its title and cycle.
-std::string first_lines(const std::string& report) { return report.substr(0, report.find(',', report.find("\n  cycle "))); }
+std::string first_lines(const std::string& report) {
+  return report.substr(0, report.find(',', report.find("\n  cycle ")));
+}
 
 }  // namespace
 
@@ -293,8 +301,8 @@ void inspect_differences(const std::function<void(uint64_t inspect_until)>& run)
     } catch (const std::exception& error) {
       otherwise = error.what();
     }
-    throw LockstepDifference(fmt::format("{}\n  run again for a look inside, it went otherwise, which equal runs do not: {}",
-                                         first.what(), otherwise));
+    throw LockstepDifference(fmt::format(
+        "{}\n  run again for a look inside, it went otherwise, which equal runs do not: {}", first.what(), otherwise));
   }
 }
 
@@ -318,11 +326,13 @@ LockstepCounts& LockstepCounts::operator+=(const LockstepCounts& other) {
 
 std::string to_string(const LockstepCounts& counts) {
   return fmt::format(
-      "lockstep: {} cycles, {} kernels, {} instructions ({} thread results), {} stored words, {} memory reads, {} memory writes, "
-      "{} ray words, {} imports, {} exports, {} frame contributions, {} times all counters, {} faults compared; {} differences",
+      "lockstep: {} cycles, {} kernels, {} instructions ({} thread results), {} stored words, {} memory reads, {} "
+      "memory writes, "
+      "{} ray words, {} imports, {} exports, {} frame contributions, {} times all counters, {} faults compared; {} "
+      "differences",
       counts.cycles, counts.kernels, counts.instructions, counts.thread_results, counts.stores, counts.memory_reads,
-      counts.memory_writes, counts.ray_words, counts.imports, counts.exports, counts.frame_contributions, counts.counters,
-      counts.faults, counts.differences);
+      counts.memory_writes, counts.ray_words, counts.imports, counts.exports, counts.frame_contributions,
+      counts.counters, counts.faults, counts.differences);
 }
 
 std::unique_ptr<LockstepUnit> make_lockstep_unit(const Configuration& configuration, std::unique_ptr<ComputeUnit> rtl,

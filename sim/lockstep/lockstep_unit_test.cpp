@@ -62,7 +62,8 @@ class Device : public ComputeUnit {
   UnitTrace trace_;
 };
 
-// Everything a kernel can do: import, ray words, arithmetic, predicates, a loop, loads and stores, exports of both sorts.
+// Everything a kernel can do: import, ray words, arithmetic, predicates, a loop,
+// loads and stores, exports of both sorts.
 const std::vector<uint64_t> kProgram = assembled(R"(
     rin                 # 0
     rld r1, 7           # 1
@@ -95,7 +96,8 @@ struct Fixture {
   explicit Fixture(const std::vector<uint64_t>& code = kProgram, LockstepOptions options = {}, int ready_percent = 60)
       : memory(with_program(code)),
         device(new Device(memory)),
-        unit(make_lockstep_unit(make_configuration(), std::unique_ptr<ComputeUnit>(device), memory, named(std::move(options)))),
+        unit(make_lockstep_unit(make_configuration(), std::unique_ptr<ComputeUnit>(device), memory,
+                                named(std::move(options)))),
         chip(*unit, memory, 7, ready_percent) {
     unit->reset(static_cast<uint32_t>(code.size()), kMemoryBytes);
   }
@@ -139,7 +141,8 @@ TEST(Lockstep, EqualUnitsShowNoDifferenceAndEverythingIsCounted) {
   EXPECT_EQ(fixture.report(), "");
   const LockstepCounts& counts = fixture.unit->counts();
   EXPECT_EQ(counts.kernels, 2u);
-  // 17 instructions outside the loop; 4 times `loop` and 3 bodies of 3 in warp 0; warp 1 has 3 threads and one turn less.
+  // 17 instructions outside the loop; 4 times `loop` and 3 bodies of 3 in warp 0;
+  // warp 1 has 3 threads and one turn less.
   EXPECT_EQ(counts.instructions, 2u * ((17 + 4 + 9) + (17 + 3 + 6)));
   EXPECT_EQ(counts.stores, 14u);
   EXPECT_EQ(counts.memory_writes, 4u);
@@ -160,8 +163,9 @@ TEST(Lockstep, AWrongRegisterResultIsReportedWithItsOperandsAndHistory) {
     }
   };
   const std::string report = fixture.report();
-  expect_parts(report, {"register result differs", "everything", "warp 1, PC 6: and", "<-- differs", "00000012", "00000002",
-                        "int_alu.v", "not in the thread mask", "2 launched so far", "before it", "immediate"});
+  expect_parts(report,
+               {"register result differs", "everything", "warp 1, PC 6: and", "<-- differs", "00000012", "00000002",
+                "int_alu.v", "not in the thread mask", "2 launched so far", "before it", "immediate"});
   EXPECT_THROW(fixture.chip.cycle(), LockstepDifference) << "a difference stays";
 }
 
@@ -200,53 +204,55 @@ TEST_P(LockstepTrace, DifferenceIsFound) {
   expect_parts(fixture.report(), GetParam().parts);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    All, LockstepTrace,
-    testing::Values(TraceCase{"pc", at(9, [](RetireEvent& event) { event.pc = 13; }), {"another PC", "PC    13", "pc_stack.v"}},
-                    TraceCase{"instruction",
-                              at(9, [](RetireEvent& event) { event.instruction ^= 1; }),
-                              {"another instruction", "instruction_cache.v"}},
-                    TraceCase{"mask",
-                              at(9, [](RetireEvent& event) { event.mask ^= 1; }),
-                              {"thread mask differs", "1111", "predicate_file.v"}},
-                    TraceCase{"predicate",
-                              at(7, [](RetireEvent& event) { event.predicate ^= 1; }),
-                              {"predicate result differs", "igt", "brh_alu.v"}},
-                    TraceCase{"lost_instruction",
-                              [](UnitTrace& trace) {
-                                if (!trace.retired.empty() && trace.retired[0].warp == 0 && trace.retired[0].pc == 3)
-                                  trace.retired.erase(trace.retired.begin());
-                              },
-                              {"in this cycle in the model, and not in the RTL", "PC     3: shl"}},
-                    TraceCase{"store_data",
-                              [](UnitTrace& trace) {
-                                for (StoreEvent& event : trace.stores) event.data[1] ^= 1;
-                              },
-                              {"words stored differ", "st", "mem_alu.v"}},
-                    TraceCase{"store_address",
-                              [](UnitTrace& trace) {
-                                for (StoreEvent& event : trace.stores) event.address += 16;
-                              },
-                              {"words stored differ", "00000410"}},
-                    TraceCase{"store_lost",
-                              [](UnitTrace& trace) { trace.stores.clear(); },
-                              {"stores in this cycle in the model, and not in the RTL", "st"}},
-                    TraceCase{"ray_data",
-                              [](UnitTrace& trace) {
-                                for (RayWriteEvent& event : trace.ray_writes) event.data[1] ^= 1;
-                              },
-                              {"words written to ray memory differ", "rst", "ray_alu.v"}},
-                    TraceCase{"ray_word",
-                              [](UnitTrace& trace) {
-                                for (RayWriteEvent& event : trace.ray_writes) event.word ^= 1;
-                              },
-                              {"words written to ray memory differ", "word 9"}},
-                    TraceCase{"ray_mask",
-                              [](UnitTrace& trace) {
-                                for (RayWriteEvent& event : trace.ray_writes) event.mask &= 7;
-                              },
-                              {"words written to ray memory differ", "0111"}}),
-    [](const auto& test_case) { return std::string(test_case.param.name); });
+INSTANTIATE_TEST_SUITE_P(All, LockstepTrace,
+                         testing::Values(TraceCase{"pc",
+                                                   at(9, [](RetireEvent& event) { event.pc = 13; }),
+                                                   {"another PC", "PC    13", "pc_stack.v"}},
+                                         TraceCase{"instruction",
+                                                   at(9, [](RetireEvent& event) { event.instruction ^= 1; }),
+                                                   {"another instruction", "instruction_cache.v"}},
+                                         TraceCase{"mask",
+                                                   at(9, [](RetireEvent& event) { event.mask ^= 1; }),
+                                                   {"thread mask differs", "1111", "predicate_file.v"}},
+                                         TraceCase{"predicate",
+                                                   at(7, [](RetireEvent& event) { event.predicate ^= 1; }),
+                                                   {"predicate result differs", "igt", "brh_alu.v"}},
+                                         TraceCase{"lost_instruction",
+                                                   [](UnitTrace& trace) {
+                                                     if (!trace.retired.empty() && trace.retired[0].warp == 0 &&
+                                                         trace.retired[0].pc == 3)
+                                                       trace.retired.erase(trace.retired.begin());
+                                                   },
+                                                   {"in this cycle in the model, and not in the RTL", "PC     3: shl"}},
+                                         TraceCase{"store_data",
+                                                   [](UnitTrace& trace) {
+                                                     for (StoreEvent& event : trace.stores) event.data[1] ^= 1;
+                                                   },
+                                                   {"words stored differ", "st", "mem_alu.v"}},
+                                         TraceCase{"store_address",
+                                                   [](UnitTrace& trace) {
+                                                     for (StoreEvent& event : trace.stores) event.address += 16;
+                                                   },
+                                                   {"words stored differ", "00000410"}},
+                                         TraceCase{"store_lost",
+                                                   [](UnitTrace& trace) { trace.stores.clear(); },
+                                                   {"stores in this cycle in the model, and not in the RTL", "st"}},
+                                         TraceCase{"ray_data",
+                                                   [](UnitTrace& trace) {
+                                                     for (RayWriteEvent& event : trace.ray_writes) event.data[1] ^= 1;
+                                                   },
+                                                   {"words written to ray memory differ", "rst", "ray_alu.v"}},
+                                         TraceCase{"ray_word",
+                                                   [](UnitTrace& trace) {
+                                                     for (RayWriteEvent& event : trace.ray_writes) event.word ^= 1;
+                                                   },
+                                                   {"words written to ray memory differ", "word 9"}},
+                                         TraceCase{"ray_mask",
+                                                   [](UnitTrace& trace) {
+                                                     for (RayWriteEvent& event : trace.ray_writes) event.mask &= 7;
+                                                   },
+                                                   {"words written to ray memory differ", "0111"}}),
+                         [](const auto& test_case) { return std::string(test_case.param.name); });
 
 struct PortCase {
   const char* name;
@@ -268,26 +274,33 @@ INSTANTIATE_TEST_SUITE_P(
         PortCase{"write_data",
                  [](UnitOutputs& out) { out.memory_request.data[1] ^= 1; },
                  {"memory requests differ", "word 1", "<-- differs", "data_cache.v"}},
-        PortCase{"write_alone",
-                 [](UnitOutputs& out) { out.memory_request_valid = out.memory_request_valid && !out.memory_request.write; },
-                 {"memory requests differ", "kind", "write", "00000400", "word 0", "-    "}},
-        PortCase{"read_alone",
-                 [](UnitOutputs& out) { out.memory_request_valid = out.memory_request_valid && out.memory_request.write; },
-                 {"memory requests differ", "read of instructions", "00000000", "16 (unit 0)", "rtl/instruction_cache.v"}},
+        PortCase{
+            "write_alone",
+            [](UnitOutputs& out) { out.memory_request_valid = out.memory_request_valid && !out.memory_request.write; },
+            {"memory requests differ", "kind", "write", "00000400", "word 0", "-    "}},
+        PortCase{
+            "read_alone",
+            [](UnitOutputs& out) { out.memory_request_valid = out.memory_request_valid && out.memory_request.write; },
+            {"memory requests differ", "read of instructions", "00000000", "16 (unit 0)", "rtl/instruction_cache.v"}},
         PortCase{"write_mask", [](UnitOutputs& out) { out.memory_request.mask &= 7; }, {"memory requests differ"}},
-        PortCase{"write_address", [](UnitOutputs& out) { out.memory_request.address ^= 64; }, {"memory requests differ"}},
+        PortCase{
+            "write_address", [](UnitOutputs& out) { out.memory_request.address ^= 64; }, {"memory requests differ"}},
         PortCase{"export_data",
                  [](UnitOutputs& out) {
                    if (out.export_last) out.export_data[0] ^= 1;
                  },
                  {"exported beats differ", "word 0", "<-- differs"}},
         PortCase{"export_last", [](UnitOutputs& out) { out.export_last = false; }, {"exported beats differ", "last"}},
-        PortCase{"frame_colour", [](UnitOutputs& out) { out.frame.rgb[1] ^= 1; }, {"frame contributions differ", "green"}},
-        PortCase{"frame_pixel", [](UnitOutputs& out) { out.frame.pixel ^= 1; }, {"frame contributions differ", "pixel"}},
+        PortCase{
+            "frame_colour", [](UnitOutputs& out) { out.frame.rgb[1] ^= 1; }, {"frame contributions differ", "green"}},
+        PortCase{
+            "frame_pixel", [](UnitOutputs& out) { out.frame.pixel ^= 1; }, {"frame contributions differ", "pixel"}},
         PortCase{"import_kind",
                  [](UnitOutputs& out) { out.import_request_kind = ImportKind::Shadow; },
                  {"import requests differ", "kind"}},
-        PortCase{"done_early", [](UnitOutputs& out) { out.kernel_done = out.busy; }, {"launch outputs differ", "kernel_done"}},
+        PortCase{"done_early",
+                 [](UnitOutputs& out) { out.kernel_done = out.busy; },
+                 {"launch outputs differ", "kernel_done"}},
         PortCase{"done_never", [](UnitOutputs& out) { out.kernel_done = 0; }, {"launch outputs differ"}},
         PortCase{"idle_early", [](UnitOutputs& out) { out.idle = true; }, {"idle"}},
         PortCase{"fault",
@@ -299,7 +312,9 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(Lockstep, ACounterThatDiffersIsFoundWhenTheUnitIsIdle) {
   Fixture fixture;
-  fixture.device->alter_counter = [](int number, uint64_t value) { return value + (number == counter::kWaiting + 3 ? 1 : 0); };
+  fixture.device->alter_counter = [](int number, uint64_t value) {
+    return value + (number == counter::kWaiting + 3 ? 1 : 0);
+  };
   expect_parts(fixture.report(), {"performance counter 27 differs", "performance_counters.v"});
 }
 
@@ -313,8 +328,8 @@ TEST(Lockstep, ARetirementThatComesACycleLateIsFound) {
     late.clear();
     for (const RetireEvent& event : now) (event.pc == 6 && event.warp == 1 ? late : trace.retired).push_back(event);
   };
-  expect_parts(fixture.report(), {"warp 1 retires an instruction in this cycle in the model, and not in the RTL", "PC     6: and",
-                                  "fetch_arbiter.v"});
+  expect_parts(fixture.report(), {"warp 1 retires an instruction in this cycle in the model, and not in the RTL",
+                                  "PC     6: and", "fetch_arbiter.v"});
 }
 
 TEST(Lockstep, AnOutputThatComesACycleLateIsFound) {
@@ -358,8 +373,8 @@ TEST(Lockstep, AHangIsReportedWithWhatEveryWarpWaitsFor) {
   Fixture fixture(kProgram, options);
   fixture.chip.imports_ready = false;
   const std::string report = fixture.report();
-  expect_parts(report,
-               {"hang", "for 100 cycles", "warp  0: PC     0: rin", "its packages have not come", "7 packages announced"});
+  expect_parts(report, {"hang", "for 100 cycles", "warp  0: PC     0: rin", "its packages have not come",
+                        "7 packages announced"});
   EXPECT_LT(fixture.unit->counts().cycles, 800u);
 }
 
@@ -404,7 +419,8 @@ TEST(Lockstep, ARunThatIsToFindADifferenceAgainEndsWithoutOne) {
 }
 
 /// What comes of runs that do as `reports` says, one after another: "" is a run without a difference.
-std::string inspected(const std::vector<std::string>& reports, uint64_t first_until, const std::vector<uint64_t>& expected_runs) {
+std::string inspected(const std::vector<std::string>& reports, uint64_t first_until,
+                      const std::vector<uint64_t>& expected_runs) {
   std::vector<uint64_t> runs;
   std::string result;
   try {

@@ -1,5 +1,5 @@
-// What a comparison throws when RTL and model differ, and what the inspection finds inside; the lockstep makes the report of
-// them.
+// What a comparison throws when RTL and model differ, and what the inspection finds inside;
+// the lockstep makes the report of them.
 #pragma once
 
 #include <cstdint>

@@ -18,8 +18,9 @@ class Library {
  public:
   explicit Library(const std::string& path) : path_(path) {
     if (!std::filesystem::exists(path)) {
-      throw InputError(path +
-                       ": there is no Verilated compute unit; build it with scripts/verilate.sh (make does it with ENGINE=rtl)");
+      throw InputError(
+          path +
+          ": there is no Verilated compute unit; build it with scripts/verilate.sh (make does it with ENGINE=rtl)");
     }
     // A path without a slash would be looked for in the system's folders.
     handle_ = dlopen(std::filesystem::absolute(path).c_str(), RTLD_NOW | RTLD_LOCAL);
@@ -90,7 +91,8 @@ class LoadedUnit : public ComputeUnit {
 
 }  // namespace
 
-std::unique_ptr<ComputeUnit> load_rtl_unit(const std::string& library_path, const Configuration& configuration, int units) {
+std::unique_ptr<ComputeUnit> load_rtl_unit(const std::string& library_path, const Configuration& configuration,
+                                           int units) {
   Library library(library_path);
   const std::string interface = library.find<UnitText>(kUnitInterfaceName)();
   if (interface != unit_interface()) {

@@ -10,10 +10,11 @@
 namespace raypool {
 
 /// The multiprocessor of `units` compute units in shared library `library_path` (OUTPUT_DIR/libraypool_unit.so of
-/// scripts/verilate.sh). Several units may come from one library, and libraries of several configurations may be loaded side by
-/// side; a library is unloaded with its last unit. Throws InputError when the library is missing, was built for other Verilog
-/// parameters than those of `configuration`, or against another version of the compute-unit interface; the message says how to
-/// build it.
-std::unique_ptr<ComputeUnit> load_rtl_unit(const std::string& library_path, const Configuration& configuration, int units = 1);
+/// scripts/verilate.sh). Several units may come from one library, and libraries of several configurations may be
+/// loaded side by side; a library is unloaded with its last unit. Throws InputError when the library is missing, was
+/// built for other Verilog parameters than those of `configuration`, or against another version of the compute-unit
+/// interface; the message says how to build it.
+std::unique_ptr<ComputeUnit> load_rtl_unit(const std::string& library_path, const Configuration& configuration,
+                                           int units = 1);
 
 }  // namespace raypool

@@ -57,8 +57,8 @@ std::string fault_text(const Fault& fault) {
       "PC stack underflow", "misaligned address",  "address outside memory", "ray word above 20"};
   const size_t code = static_cast<size_t>(fault.code);
   if (fault.code == FaultCode::None) return kNames[0];
-  return fmt::format("{} (code {}) at warp {}, PC {}", code < kNames.size() ? kNames[code] : "unknown fault", code, fault.warp,
-                     fault.pc);
+  return fmt::format("{} (code {}) at warp {}, PC {}", code < kNames.size() ? kNames[code] : "unknown fault", code,
+                     fault.warp, fault.pc);
 }
 
 std::string lane_table(const CycleUnit::Issue& issue, int lanes, const uint32_t* rtl, const uint32_t* model) {

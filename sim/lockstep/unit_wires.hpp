@@ -11,15 +11,15 @@
   X(start) X(start_pc) X(start_lanes) X(active) X(threads) X(block) X(blocks) X(waiting_launch) X(busy_o) \
   X(kernel_done_o) X(fetch_request) X(fetch_first) X(fetch_grant) X(fetch_pc) X(lookup_pc) X(fetch_valid) \
   X(fetch_warp) X(instruction_hit) X(instruction_miss) X(result_warp) X(fetched) X(refill_done) \
-  X(instruction_request) X(instruction_request_address) X(want) X(wanted_type) X(grant) X(predicate_x) X(predicate_b) X(operand_a) \
-  X(operand_b) X(operand_c) X(ready) X(instance_grant) X(done_valid) X(done_warp) X(done_data) X(done_predicate) X(data_request) \
-  X(data_request_write) X(data_request_address) X(data_request_data) X(data_request_mask) X(data_request_id) \
-  X(mem_fault) X(ray_fault) X(warp_fault) X(import_active) X(memory_request_valid_o) X(memory_request_write_o) \
-  X(memory_request_address_o) X(memory_request_data_o) X(memory_request_mask_o) X(memory_request_id_o) \
-  X(memory_response_valid_i) X(import_request_valid_o) X(export_valid_o) X(export_data_o) X(export_last_o) \
-  X(frame_valid_o) X(frame_pixel_o) X(frame_color_o) X(launch_ready_o) X(fault_valid_o) X(fault_code_o) \
-  X(fault_warp_o) X(fault_pc_o) X(retire_valid_o) X(retire_pc_o) X(retire_instruction_o) X(retire_mask_o) \
-  X(retire_data_o)
+  X(instruction_request) X(instruction_request_address) X(want) X(wanted_type) X(grant) X(predicate_x) \
+  X(predicate_b) X(operand_a) X(operand_b) X(operand_c) X(ready) X(instance_grant) X(done_valid) \
+  X(done_warp) X(done_data) X(done_predicate) X(data_request) X(data_request_write) X(data_request_address) \
+  X(data_request_data) X(data_request_mask) X(data_request_id) X(mem_fault) X(ray_fault) X(warp_fault) \
+  X(import_active) X(memory_request_valid_o) X(memory_request_write_o) X(memory_request_address_o) \
+  X(memory_request_data_o) X(memory_request_mask_o) X(memory_request_id_o) X(memory_response_valid_i) \
+  X(import_request_valid_o) X(export_valid_o) X(export_data_o) X(export_last_o) X(frame_valid_o) \
+  X(frame_pixel_o) X(frame_color_o) X(launch_ready_o) X(fault_valid_o) X(fault_code_o) X(fault_warp_o) \
+  X(fault_pc_o) X(retire_valid_o) X(retire_pc_o) X(retire_instruction_o) X(retire_mask_o) X(retire_data_o)
 #define RAYPOOL_TASK_WIRES(X) \
   X(task_valid_o) X(task_warp_o) X(task_operation_o) X(task_mask_o) X(task_operand_a_o) X(task_operand_b_o) \
   X(task_operand_c_o) X(task_immediate_o) X(task_word_o) X(task_predicate_x_o) X(task_predicate_b_o)

@@ -20,7 +20,8 @@ using Json = nlohmann::json;
 constexpr int kTimedSize = 32;
 
 /// kGE of one lane from a report of the same parameters.
-std::optional<double> lane_kge(const Json& report, const std::string& lane, const std::map<std::string, int>& depends_on) {
+std::optional<double> lane_kge(const Json& report, const std::string& lane,
+                               const std::map<std::string, int>& depends_on) {
   try {
     for (const auto& [name, value] : depends_on) {
       // As raypool says them: texts.
@@ -34,7 +35,8 @@ std::optional<double> lane_kge(const Json& report, const std::string& lane, cons
 
 }  // namespace
 
-std::optional<ModeTiming> time_mode(const Scene& scene, int depth, const Configuration& configuration, const UnitMaker& make) {
+std::optional<ModeTiming> time_mode(const Scene& scene, int depth, const Configuration& configuration,
+                                    const UnitMaker& make) {
   const Program& program = ray_kernel_program(configuration.fma);
   MemoryImage image = build_memory(program, scene);
   const Tracer tracer(scene, image.material_base);

@@ -128,9 +128,9 @@ void require_right_hits(const Drawing& drawing, const Scene& scene) {
       ours.triangle = traced.intersection[word::kTriangle];
     }
     if (ours.hit == theirs.hit && (shadow || !ours.hit || ours.triangle == theirs.triangle)) continue;
-    std::string reason =
-        fmt::format("a ray from ({}, {}, {}) towards ({}, {}, {}) has another hit than in exact arithmetic", query.origin.x,
-                    query.origin.y, query.origin.z, query.direction.x, query.direction.y, query.direction.z);
+    std::string reason = fmt::format(
+        "a ray from ({}, {}, {}) towards ({}, {}, {}) has another hit than in exact arithmetic", query.origin.x,
+        query.origin.y, query.origin.z, query.direction.x, query.direction.y, query.direction.z);
     require(judge_hits(scene, query, ours, theirs, reason) == HitVerdict::Tie, reason);
   }
 }

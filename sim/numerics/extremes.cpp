@@ -51,16 +51,18 @@ Program operation_program(const std::string& mnemonic) {
   const InstructionInfo& info = instruction(mnemonic);
   std::string operands = has_operand(info, Operand::B) ? "r1, r2" : "r1";
   if (has_operand(info, Operand::Rc)) operands += ", r6";
-  const std::string compute = writes_predicate(info)
-                                  ? fmt::format("{} p1, {}\nmov r4, 0\nmov r3, 1\nsel r3, p1, r3, r4\n", mnemonic, operands)
-                                  : fmt::format("{} r3, {}\n", mnemonic, operands);
-  return assemble(fmt::format("arg r1, 0\narg r2, 1\narg r6, 2\n{}mov r5, {}\nst [r5+0], r3\nexit\n", compute, kResultAddress),
-                  "operation");
+  const std::string compute =
+      writes_predicate(info) ? fmt::format("{} p1, {}\nmov r4, 0\nmov r3, 1\nsel r3, p1, r3, r4\n", mnemonic, operands)
+                             : fmt::format("{} r3, {}\n", mnemonic, operands);
+  return assemble(
+      fmt::format("arg r1, 0\narg r2, 1\narg r6, 2\n{}mov r5, {}\nst [r5+0], r3\nexit\n", compute, kResultAddress),
+      "operation");
 }
 
 /// Puts what a frame left into an order that is the same for all engines.
 void sort(Drawing& drawing) {
-  std::sort(drawing.traced.begin(), drawing.traced.end(), [](const TracedRay& a, const TracedRay& b) { return a.ray < b.ray; });
+  std::sort(drawing.traced.begin(), drawing.traced.end(),
+            [](const TracedRay& a, const TracedRay& b) { return a.ray < b.ray; });
   std::sort(drawing.contributions.begin(), drawing.contributions.end(),
             [](const FrameContribution& a, const FrameContribution& b) {
               return a.pixel != b.pixel ? a.pixel < b.pixel : a.rgb < b.rgb;
@@ -78,7 +80,8 @@ void require_same(const Drawing& ours, const Drawing& native) {
     return a.pixel == b.pixel && a.rgb == b.rgb;
   };
   require(ours.contributions.size() == native.contributions.size() &&
-              std::equal(ours.contributions.begin(), ours.contributions.end(), native.contributions.begin(), equal_contributions),
+              std::equal(ours.contributions.begin(), ours.contributions.end(), native.contributions.begin(),
+                         equal_contributions),
           "its contributions are not those of engine native");
   require(ours.frame == native.frame, "its picture is not that of engine native");
 }
@@ -95,7 +98,8 @@ class RecordingTracer : public RayTracer {
       intersection.fill(0);
       std::copy(ray.begin(), ray.end(), intersection.begin());
       goes_on = frame_.trace(ray, intersection);
-      intersection[word::kMaterial] = material_base_ + intersection[word::kMaterial] * static_cast<uint32_t>(kMaterialBytes);
+      intersection[word::kMaterial] =
+          material_base_ + intersection[word::kMaterial] * static_cast<uint32_t>(kMaterialBytes);
     } else {
       goes_on = tracer_.trace(ray, intersection);
     }
@@ -146,9 +150,9 @@ Drawing draw_natively(const ExtremeFrame& frame, const arith::Mode& mode) {
 }  // namespace
 
 uint64_t Drawing::nan_contributions() const {
-  return static_cast<uint64_t>(std::count_if(contributions.begin(), contributions.end(), [](const FrameContribution& c) {
-    return std::any_of(c.rgb.begin(), c.rgb.end(), is_nan);
-  }));
+  return static_cast<uint64_t>(
+      std::count_if(contributions.begin(), contributions.end(),
+                    [](const FrameContribution& c) { return std::any_of(c.rgb.begin(), c.rgb.end(), is_nan); }));
 }
 
 std::vector<TracedRay> Drawing::rays(bool shadow, uint32_t depth) const {
@@ -162,15 +166,16 @@ void require(bool condition, const std::string& otherwise) {
   if (!condition) throw ExtremeFailure(otherwise);
 }
 
-ExtremeMachine::ExtremeMachine(std::string engine, const ArithmeticMode& mode, const Configuration& base, UnitMaker unit)
+ExtremeMachine::ExtremeMachine(std::string engine, const ArithmeticMode& mode, const Configuration& base,
+                               UnitMaker unit)
     : engine_(std::move(engine)), mode_(mode), configuration_(mode.applied_to(base)), unit_(std::move(unit)) {}
 
 uint32_t ExtremeMachine::operate(const std::string& mnemonic, uint32_t a, uint32_t b, uint32_t c) const {
   const uint32_t native = operate_natively(mnemonic, a, b, c, mode_.mode);
   if (!unit_) return native;
   const uint32_t ours = operate_on_unit(mnemonic, a, b, c);
-  require(ours == native,
-          fmt::format("{} of {:08x}, {:08x} and {:08x} is {:08x}, but {:08x} on engine native", mnemonic, a, b, c, ours, native));
+  require(ours == native, fmt::format("{} of {:08x}, {:08x} and {:08x} is {:08x}, but {:08x} on engine native",
+                                      mnemonic, a, b, c, ours, native));
   return ours;
 }
 
@@ -232,7 +237,8 @@ Drawing ExtremeMachine::draw_on_unit(const ExtremeFrame& frame) const {
 const std::vector<ExtremeCase>& extreme_cases() {
   static const std::vector<ExtremeCase> kCases = [] {
     std::vector<ExtremeCase> all;
-    for (auto* theme : {arithmetic_extremes, ray_extremes, triangle_extremes, scene_extremes, shading_extremes, image_extremes}) {
+    for (auto* theme :
+         {arithmetic_extremes, ray_extremes, triangle_extremes, scene_extremes, shading_extremes, image_extremes}) {
       const std::vector<ExtremeCase> cases = theme();
       all.insert(all.end(), cases.begin(), cases.end());
     }

@@ -1,8 +1,8 @@
-// A catalogue of hard cases, each with the behaviour that is defined for it, and the machine that they are run on: one arithmetic
-// mode on one engine. The rule for all: no hang, no NaN in a picture, and every engine gives the same bits.
+// A catalogue of hard cases, each with the behaviour that is defined for it, and the machine that they are run on: one
+// arithmetic mode on one engine. The rule for all: no hang, no NaN in a picture, and every engine gives the same bits.
 //
-// A case checks what happened on its machine. ExtremeMachine itself checks the rule: every drawing and every operation of another
-// engine is compared with engine native's, and a frame that does not end is a failure.
+// A case checks what happened on its machine. ExtremeMachine itself checks the rule: every drawing and every operation
+// of another engine is compared with engine native's, and a frame that does not end is a failure.
 #pragma once
 
 #include <array>
@@ -26,7 +26,8 @@ struct ExtremeFrame {
   Scene scene;
   int width = 1, height = 1, depth = 2;
   std::function<void(std::array<uint32_t, kArguments>&)> change_arguments;  ///< may be empty
-  /// Takes the place of the scene's tracer; may be empty. Intersections name materials by their number in word kMaterial.
+  /// Takes the place of the scene's tracer; may be empty. Intersections name
+  /// materials by their number in word kMaterial.
   std::function<bool(const Ray&, Intersection&)> trace;
 };
 
@@ -67,11 +68,12 @@ class ExtremeMachine {
   bool flushes() const { return mode_.mode.subnormals == Subnormals::Flush; }
   bool exact() const { return mode_.mode.slow_unit == SlowUnit::Exact; }
 
-  /// Result of one instruction, flt or slw unit or float compare (then 0 or 1), on bit patterns; ffma only where the mode has it.
+  /// Result of one instruction, flt or slw unit or float compare (then 0 or 1), on bit
+  /// patterns; ffma only where the mode has it.
   /// Throws ExtremeFailure when it is not engine native's.
   uint32_t operate(const std::string& mnemonic, uint32_t a, uint32_t b = 0, uint32_t c = 0) const;
-  /// Throws ExtremeFailure when the frame does not end or is not engine native's, bit for bit; InputError for what the scene
-  /// checks refuse.
+  /// Throws ExtremeFailure when the frame does not end or is not engine native's, bit for bit;
+  /// InputError for what the scene checks refuse.
   Drawing draw(const ExtremeFrame& frame) const;
 
  private:

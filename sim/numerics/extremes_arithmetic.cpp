@@ -19,15 +19,17 @@ struct Row {
   uint32_t a, b;
   uint32_t ieee, flush;
 };
-constexpr Row same(const char* mnemonic, uint32_t a, uint32_t b, uint32_t result) { return {mnemonic, a, b, result, result}; }
+constexpr Row same(const char* mnemonic, uint32_t a, uint32_t b, uint32_t result) {
+  return {mnemonic, a, b, result, result};
+}
 
 ExtremeCase make(const char* name, const char* expected, std::vector<Row> rows) {
   return {"arithmetic", name, expected, [rows = std::move(rows)](const ExtremeMachine& machine) {
             for (const Row& row : rows) {
               const uint32_t wanted = machine.flushes() ? row.flush : row.ieee;
               const uint32_t result = machine.operate(row.mnemonic, row.a, row.b);
-              require(result == wanted,
-                      fmt::format("{} of {:08x} and {:08x} is {:08x}, not {:08x}", row.mnemonic, row.a, row.b, result, wanted));
+              require(result == wanted, fmt::format("{} of {:08x} and {:08x} is {:08x}, not {:08x}", row.mnemonic,
+                                                    row.a, row.b, result, wanted));
             }
           }};
 }
@@ -49,8 +51,8 @@ ExtremeCase make_sums(const char* name, const char* expected, std::vector<SumRow
               const uint32_t wanted = fused ? with_ffma : machine.flushes() ? row.separate_flush : row.separate_ieee;
               const uint32_t result = fused ? machine.operate("ffma", row.a, row.b, row.c)
                                             : machine.operate("fadd", machine.operate("fmul", row.a, row.b), row.c);
-              require(result == wanted,
-                      fmt::format("{:08x} * {:08x} + {:08x} is {:08x}, not {:08x}", row.a, row.b, row.c, result, wanted));
+              require(result == wanted, fmt::format("{:08x} * {:08x} + {:08x} is {:08x}, not {:08x}", row.a, row.b,
+                                                    row.c, result, wanted));
             }
           }};
 }
@@ -66,8 +68,9 @@ std::vector<ExtremeCase> arithmetic_extremes() {
             same("frcp", kZero, 0, kInfinity), same("frcp", kMinusZero, 0, kMinusInfinity)}),
       make("division of zero", "zero of the signs' product; by zero or NaN 7FC00000",
            {same("fdiv", kZero, kOne, kZero), same("fdiv", kZero, kMinusOne, kMinusZero),
-            same("fdiv", kMinusZero, kOne, kMinusZero), same("fdiv", kZero, kInfinity, kZero), same("fdiv", kZero, kZero, kNan),
-            same("fdiv", kMinusZero, kZero, kNan), same("fdiv", kZero, kOtherNan, kNan)}),
+            same("fdiv", kMinusZero, kOne, kMinusZero), same("fdiv", kZero, kInfinity, kZero),
+            same("fdiv", kZero, kZero, kNan), same("fdiv", kMinusZero, kZero, kNan),
+            same("fdiv", kZero, kOtherNan, kNan)}),
       make("division of and by infinity", "zero or infinity; infinity by infinity 7FC00000",
            {same("fdiv", kOne, kInfinity, kZero), same("fdiv", kOne, kMinusInfinity, kMinusZero),
             same("fdiv", kInfinity, kMinusOne, kMinusInfinity), same("fdiv", kInfinity, kMinusInfinity, kNan),
@@ -88,7 +91,8 @@ std::vector<ExtremeCase> arithmetic_extremes() {
       make("roots of zeros and infinity", "fsqrt(-0) = -0, frsqrt(-0) = -infinity",
            {same("fsqrt", kMinusZero, 0, kMinusZero), same("fsqrt", kZero, 0, kZero),
             same("frsqrt", kMinusZero, 0, kMinusInfinity), same("frsqrt", kZero, 0, kInfinity),
-            same("fsqrt", kInfinity, 0, kInfinity), same("frsqrt", kInfinity, 0, kZero), same("fsqrt", kOtherNan, 0, kNan)}),
+            same("fsqrt", kInfinity, 0, kInfinity), same("frsqrt", kInfinity, 0, kZero),
+            same("fsqrt", kOtherNan, 0, kNan)}),
       make("infinity minus infinity", "7FC00000",
            {same("fsub", kInfinity, kInfinity, kNan), same("fadd", kInfinity, kMinusInfinity, kNan),
             same("fadd", kMinusInfinity, kInfinity, kNan), same("fadd", kInfinity, kInfinity, kInfinity),
@@ -109,8 +113,9 @@ std::vector<ExtremeCase> arithmetic_extremes() {
             same("fmul", 0xff7fffff, kTwo, kMinusInfinity)}),
       make("conversion to integer out of range", "80000000 or 7FFFFFFF; NaN 0",
            {same("f2i", 0x4f000000, 0, 0x7fffffff), same("f2i", 0x4effffff, 0, 0x7fffff80),
-            same("f2i", 0xcf000000, 0, 0x80000000), same("f2i", 0xcf000001, 0, 0x80000000), same("f2i", kInfinity, 0, 0x7fffffff),
-            same("f2i", kMinusInfinity, 0, 0x80000000), same("f2i", kNan, 0, 0), same("f2i", kOtherNan, 0, 0)}),
+            same("f2i", 0xcf000000, 0, 0x80000000), same("f2i", 0xcf000001, 0, 0x80000000),
+            same("f2i", kInfinity, 0, 0x7fffffff), same("f2i", kMinusInfinity, 0, 0x80000000), same("f2i", kNan, 0, 0),
+            same("f2i", kOtherNan, 0, 0)}),
       make("conversion to integer near zero", "towards zero; no negative zero",
            {same("f2i", kMinusZero, 0, 0), same("f2i", 0x3f7fffff, 0, 0), same("f2i", 0xbf7fffff, 0, 0),
             same("f2i", kSmallest, 0, 0), same("f2i", kMinusOne, 0, 0xffffffff)}),
@@ -129,7 +134,8 @@ std::vector<ExtremeCase> arithmetic_extremes() {
             same("fmul", 0x3f000001, 0x00fffffe, kSmallestNormal),
             {"fmul", kSmallest, kHalf, kZero, kZero},
             {"fmul", kSmallest, 0x3f000001, kSmallest, kZero}}),
-      make("the smallest normal's neighbours, reciprocals and roots", "subnormal operands are numbers; flushed, they are zeros",
+      make("the smallest normal's neighbours, reciprocals and roots",
+           "subnormal operands are numbers; flushed, they are zeros",
            {{"frcp", 0x7f000000, 0, 0x00400000, kZero},
             {"frcp", 0x00400000, 0, 0x7f000000, kInfinity},
             same("frcp", 0x00200000, 0, kInfinity),

@@ -22,9 +22,9 @@ ExtremeCase make(const char* name, const char* expected, std::vector<std::pair<i
               std::set<uint32_t> pixels;
               for (const TracedRay& eye : drawing.rays(false, 1)) pixels.insert(eye.ray[word::kPixel]);
               const auto wanted = static_cast<uint64_t>(width) * static_cast<uint64_t>(height);
-              require(
-                  pixels.size() == wanted && drawing.rays(false, 1).size() == wanted,
-                  fmt::format("{} x {}: {} eye rays for {} pixels", width, height, drawing.rays(false, 1).size(), pixels.size()));
+              require(pixels.size() == wanted && drawing.rays(false, 1).size() == wanted,
+                      fmt::format("{} x {}: {} eye rays for {} pixels", width, height, drawing.rays(false, 1).size(),
+                                  pixels.size()));
               require(lit_pixels(drawing.frame) == wanted, fmt::format("{} x {}: a pixel is dark", width, height));
             }
           }};

@@ -25,7 +25,8 @@ Drawing shoot(const ExtremeMachine& machine, const Scene& scene, const Vec3& ori
 std::string text(const Vec3& v) { return fmt::format("({}, {}, {})", v.x, v.y, v.z); }
 
 /// The ray must hit at `t`, as it does in exact arithmetic.
-void require_hit(const ExtremeMachine& machine, const Scene& scene, const Vec3& origin, const Vec3& direction, float t) {
+void require_hit(const ExtremeMachine& machine, const Scene& scene, const Vec3& origin, const Vec3& direction,
+                 float t) {
   const Drawing drawing = shoot(machine, scene, origin, direction);
   const TracedRay& eye = eye_ray(drawing);
   require(eye.goes_on, "from " + text(origin) + " towards " + text(direction) + " nothing is hit");
@@ -51,7 +52,8 @@ void zero_components(const ExtremeMachine& machine) {
         direction[axis] = towards;
         direction[(axis + 1) % 3] = (signs & 1) != 0 ? -0.0f : 0.0f;
         direction[(axis + 2) % 3] = (signs & 2) != 0 ? -0.0f : 0.0f;
-        require_hit(machine, closed_cube(), {0.25f, 0.125f, -0.5f}, direction, 1 - towards * Vec3{0.25f, 0.125f, -0.5f}[axis]);
+        require_hit(machine, closed_cube(), {0.25f, 0.125f, -0.5f}, direction,
+                    1 - towards * Vec3{0.25f, 0.125f, -0.5f}[axis]);
       }
     }
   }
@@ -99,8 +101,8 @@ void tiny_direction(const ExtremeMachine& machine) {
 }
 
 void on_a_slab_plane(const ExtremeMachine& machine) {
-  // The origin lies in the plane of a face of the inner cube, and of its box, outside that face; the ray runs along the plane, or
-  // leaves it.
+  // The origin lies in the plane of a face of the inner cube, and of its box, outside that face; the ray
+  // runs along the plane, or leaves it.
   std::vector<TriangleCorners> triangles = cube(-4, 4);
   const auto inner = cube(-1, 1);
   triangles.insert(triangles.end(), inner.begin(), inner.end());
@@ -116,7 +118,8 @@ void on_a_slab_plane(const ExtremeMachine& machine) {
 }
 
 void along_a_face(const ExtremeMachine& machine) {
-  // Within the face's plane from outside: the face is seen edge-on and not hit; the side faces end in the plane and may be.
+  // Within the face's plane from outside: the face is seen edge-on and not hit; the
+  // side faces end in the plane and may be.
   const Scene scene = scene_of_triangles(cube(-1, 1));
   const Drawing drawing = shoot(machine, scene, {-3, 0.25f, 1}, {1, 0, 0});
   require_right_hits(drawing, scene);

@@ -35,8 +35,8 @@ ExtremeFrame frame_of(Scene scene, int size, int depth = 2) {
   return frame;
 }
 
-/// One pixel whose eye ray hits at `t` with `normal`; its reflection hits nothing, its shadow ray is free. With `light`,
-/// secondary rays start at the hit itself.
+/// One pixel whose eye ray hits at `t` with `normal`; its reflection hits nothing, its shadow ray is free. With
+/// `light`, secondary rays start at the hit itself.
 Drawing shade_hit(const ExtremeMachine& machine, const Vec3& normal, float t, int depth, const Vec3* light = nullptr) {
   ExtremeFrame frame = ray_frame(scene_of_triangles(square(1, -2)), {0, 0, 0}, {0.25f, 0.125f, -1});
   if (light != nullptr) {
@@ -75,7 +75,8 @@ void subnormal_normals(const ExtremeMachine& machine) {
       require(lit_pixels(drawing.frame) == 0, "a surface almost without a direction is lit");
     }
     // One subnormal component changes nothing.
-    const Drawing plain = shade_hit(machine, {0, 0, 1}, 2, depth), almost = shade_hit(machine, {0, 1e-45f, 1}, 2, depth);
+    const Drawing plain = shade_hit(machine, {0, 0, 1}, 2, depth),
+                  almost = shade_hit(machine, {0, 1e-45f, 1}, 2, depth);
     require(lit_pixels(plain.frame) == 1 && plain.frame == almost.frame,
             "a subnormal component of the normal changes the picture");
   }
@@ -101,10 +102,12 @@ void light_on_a_surface(const ExtremeMachine& machine) {
 }
 
 void light_at_the_point(const ExtremeMachine& machine) {
-  // The way to the light is zero: 0 times the infinite reciprocal of its length. An ulp before it, the cosine is about 1.
+  // The way to the light is zero: 0 times the infinite reciprocal of its length. An
+  // ulp before it, the cosine is about 1.
   const Vec3 at{0.5f, 0.25f, -2}, before{0.5f, 0.25f, -2 + 0x1p-22f};
   for (int depth : {1, 2}) {
-    const Drawing dark = shade_hit(machine, {0, 0, 1}, 2, depth, &at), lit = shade_hit(machine, {0, 0, 1}, 2, depth, &before);
+    const Drawing dark = shade_hit(machine, {0, 0, 1}, 2, depth, &at),
+                  lit = shade_hit(machine, {0, 0, 1}, 2, depth, &before);
     require_no_nan(dark);
     require_no_nan(lit);
     require(lit_pixels(dark.frame) == 0, "a light in the very point lights it");
@@ -134,7 +137,8 @@ void light_inside(const ExtremeMachine& machine) {
     const Drawing drawing = machine.draw(frame_of(scene, 13));
     require_no_nan(drawing);
     require_right_hits(drawing, scene);
-    require(lit_pixels(drawing.frame) == 0, fmt::format("{} pixels see a light that is walled in", lit_pixels(drawing.frame)));
+    require(lit_pixels(drawing.frame) == 0,
+            fmt::format("{} pixels see a light that is walled in", lit_pixels(drawing.frame)));
   }
 }
 
@@ -153,7 +157,8 @@ void light_next_to_a_surface(const ExtremeMachine& machine) {
     const Drawing drawing = machine.draw(frame_of(scene, 11));
     require_no_nan(drawing);
     for (int y = 0; y < 11; ++y) {
-      for (int x = 0; x < 11; ++x) require(drawing.frame.linear(x, y, 0) <= 1, "a matt surface shines brighter than its light");
+      for (int x = 0; x < 11; ++x)
+        require(drawing.frame.linear(x, y, 0) <= 1, "a matt surface shines brighter than its light");
     }
   }
 }
@@ -187,8 +192,9 @@ void grazing_light(const ExtremeMachine& machine) {
       hits += !shadow && traced.goes_on;
     }
     require(hits > 60, "the floor is not seen");
-    require(acne == 0, fmt::format("{} of {} shadow rays are blocked by the surface that they start from, light {} above it",
-                                   acne, hits, height));
+    require(acne == 0,
+            fmt::format("{} of {} shadow rays are blocked by the surface that they start from, light {} above it", acne,
+                        hits, height));
   }
 }
 
@@ -223,14 +229,17 @@ void grazing_light_and_blocks(const ExtremeMachine& machine) {
       dark += !lit;
       if (shadow.goes_on == lit) continue;
       Hit blocker;
-      const bool own =
-          lit && traversal.nearest(to_query(shadow.ray), blocker) && same_surface(reference, blocker.triangle, hit.triangle);
+      const bool own = lit && traversal.nearest(to_query(shadow.ray), blocker) &&
+                       same_surface(reference, blocker.triangle, hit.triangle);
       ++(own ? acne : wrong);
     }
   }
-  require(shadows > 100 && dark > 20 && shadows - dark > 20, fmt::format("of {} shadow rays {} are dark", shadows, dark));
-  require(acne == 0, fmt::format("{} of {} shadow rays are blocked by the surface that they start from", acne, shadows));
-  require(wrong <= shadows / 100, fmt::format("{} of {} shadow rays end otherwise than the reference's", wrong, shadows));
+  require(shadows > 100 && dark > 20 && shadows - dark > 20,
+          fmt::format("of {} shadow rays {} are dark", shadows, dark));
+  require(acne == 0,
+          fmt::format("{} of {} shadow rays are blocked by the surface that they start from", acne, shadows));
+  require(wrong <= shadows / 100,
+          fmt::format("{} of {} shadow rays end otherwise than the reference's", wrong, shadows));
 }
 
 /// A closed box whose walls multiply light by ten thousand at each reflection.
@@ -240,7 +249,8 @@ Scene shining_box(float diffuse) {
   scene.materials[0].ks = {1000, 1000, 1000};
   scene.light.color = {1000, 1000, 1000};
   scene.light.position = {0.5f, 0.25f, 0.125f};
-  scene.camera = {{0.1f, 0.2f, 0.3f}, {0.1f, -0.23f, -1}, {0, 1, 0}, 60};  // off the symmetry: no ray meets an edge of the box
+  scene.camera = {
+      {0.1f, 0.2f, 0.3f}, {0.1f, -0.23f, -1}, {0, 1, 0}, 60};  // off the symmetry: no ray meets an edge of the box
   return scene;
 }
 

@@ -1,4 +1,5 @@
-// Every case of the catalogue on engines native and functional, in every mode. scripts/tests/extremes.sh has the hardware.
+// Every case of the catalogue on engines native and functional, in every mode.
+// scripts/tests/extremes.sh has the hardware.
 #include "numerics/extremes.hpp"
 
 #include <gtest/gtest.h>
@@ -25,7 +26,9 @@ class Extremes : public testing::TestWithParam<ArithmeticMode> {
 
 TEST_P(Extremes, AreDefinedOnEngineNative) { run_all({"native", GetParam(), small_unit()}); }
 
-TEST_P(Extremes, AreTheSameOnEngineFunctional) { run_all({"functional", GetParam(), small_unit(), make_functional_unit}); }
+TEST_P(Extremes, AreTheSameOnEngineFunctional) {
+  run_all({"functional", GetParam(), small_unit(), make_functional_unit});
+}
 
 INSTANTIATE_TEST_SUITE_P(Modes, Extremes, testing::ValuesIn(arithmetic_modes()), [](const auto& instance) {
   std::string name = instance.param.name;

@@ -69,8 +69,8 @@ void slivers(const ExtremeMachine& machine) {
 }
 
 void coplanar(const ExtremeMachine& machine) {
-  // The same two triangles ten times, in two windings, before and behind which others lie; then the list in other orders, which
-  // give other trees. Where several lie at the same t, the lowest index wins.
+  // The same two triangles ten times, in two windings, before and behind which others lie; then the list in other
+  // orders, which give other trees. Where several lie at the same t, the lowest index wins.
   const auto near = square(1, -2);
   std::vector<TriangleCorners> triangles;
   for (int i = 0; i < 10; ++i) {
@@ -82,7 +82,8 @@ void coplanar(const ExtremeMachine& machine) {
   std::mt19937 random(7);
   for (int order = 0; order < 5; ++order) {
     const Scene scene = scene_of_triangles(triangles);
-    for (const Vec3& target : {Vec3{0.5f, -0.25f, -2}, Vec3{-0.5f, 0.25f, -2}, Vec3{0.25f, 0.25f, -2}, Vec3{-1, -1, -2}}) {
+    for (const Vec3& target :
+         {Vec3{0.5f, -0.25f, -2}, Vec3{-0.5f, 0.25f, -2}, Vec3{0.25f, 0.25f, -2}, Vec3{-1, -1, -2}}) {
       uint32_t lowest = 0;
       auto holds = [&](const TriangleCorners& t) {
         // Above the diagonal, below it, or on it.
@@ -149,7 +150,8 @@ void closed_mesh(const ExtremeMachine& machine) {
   for (const Vec3& origin : {Vec3{0, 0, 0}, Vec3{0.3f, -0.2f, 0.1f}, Vec3{-0.99f, 0.5f, 0.98f}}) {
     for (int i = 0; i < 27; ++i) {
       if (i == 13) continue;
-      const Vec3 target{static_cast<float>(i % 3 - 1), static_cast<float>(i / 3 % 3 - 1), static_cast<float>(i / 9 - 1)};
+      const Vec3 target{static_cast<float>(i % 3 - 1), static_cast<float>(i / 3 % 3 - 1),
+                        static_cast<float>(i / 9 - 1)};
       const Drawing drawing = machine.draw(ray_frame(scene, origin, target - origin));
       require_no_nan(drawing);
       require(eye_ray(drawing).goes_on,

@@ -13,8 +13,8 @@ struct ArithmeticMode {
   std::string name;  ///< "ieee-exact", ...: subnormals, slow unit, and "-fma" with a fused multiply-add
   arith::Mode mode;
 
-  /// `base` with this arithmetic. Flt and Slw keep the stages that they have beyond what their arithmetic needs; the name gets
-  /// the mode's behind it when that is not the default one.
+  /// `base` with this arithmetic. Flt and Slw keep the stages that they have beyond what their arithmetic needs; the
+  /// name gets the mode's behind it when that is not the default one.
   Configuration applied_to(const Configuration& base) const;
 };
 

@@ -43,7 +43,8 @@ void kernel_in_use(K& k) {
   using Float = typename K::Float;
   k.ray_in();
   for (int axis = 0; axis < 3; ++axis) {
-    const Float p = k.float_word(word::kOrigin + axis) + k.float_word(word::kDistance) * k.float_word(word::kDirection + axis);
+    const Float p =
+        k.float_word(word::kOrigin + axis) + k.float_word(word::kDistance) * k.float_word(word::kDirection + axis);
     k.set_word(word::kOrigin + axis, p + k.float_argument(argument::kOffset) * k.float_word(word::kNormal + axis));
   }
   k.ray_out();
@@ -54,7 +55,8 @@ void kernel_integer(K& k) {
   using Float = typename K::Float;
   k.ray_in();
   for (int axis = 0; axis < 3; ++axis) {
-    const Float p = k.float_word(word::kOrigin + axis) + k.float_word(word::kDistance) * k.float_word(word::kDirection + axis);
+    const Float p =
+        k.float_word(word::kOrigin + axis) + k.float_word(word::kDistance) * k.float_word(word::kDirection + axis);
     const Float n = k.float_word(word::kNormal + axis);
     Int steps = to_int(n * kIntegerScale);
     k.if_(p < 0.0f, [&] { steps = -steps; });
@@ -74,7 +76,8 @@ struct Hitpoint {
   uint32_t blocker;
 };
 
-std::vector<Hitpoint> hitpoints(const Scene& scene, const Traversal& traversal, const ReferenceTracer& reference, int size) {
+std::vector<Hitpoint> hitpoints(const Scene& scene, const Traversal& traversal, const ReferenceTracer& reference,
+                                int size) {
   const auto arguments = camera_arguments(scene, size, size, 1);
   const ReferenceCamera camera(arguments);
   std::vector<Hitpoint> points;
@@ -94,8 +97,8 @@ std::vector<Hitpoint> hitpoints(const Scene& scene, const Traversal& traversal, 
   return points;
 }
 
-void judge_shadow(const ReferenceTracer& reference, const Traversal& traversal, const Hitpoint& point, const Vec3& origin,
-                  OffsetCounts& counts) {
+void judge_shadow(const ReferenceTracer& reference, const Traversal& traversal, const Hitpoint& point,
+                  const Vec3& origin, OffsetCounts& counts) {
   ++counts.shadow_rays;
   const Scene& scene = reference.scene();
   Hit blocker;
@@ -108,7 +111,8 @@ void judge_shadow(const ReferenceTracer& reference, const Traversal& traversal, 
   }
   std::string reason;
   const HitAnswer ours{blocked, blocker.triangle, 0}, theirs{!blocked, point.blocker, 0};
-  if (judge_hits(scene, {point.shadow.origin, point.shadow.direction, 1}, ours, theirs, reason) == HitVerdict::Tie) return;
+  if (judge_hits(scene, {point.shadow.origin, point.shadow.direction, 1}, ours, theirs, reason) == HitVerdict::Tie)
+    return;
   ++(blocked ? counts.moved : counts.leaks);
 }
 
@@ -118,11 +122,12 @@ std::vector<OffsetRule> offset_rules() {
   std::vector<OffsetRule> rules;
   rules.push_back({"none", [](const OffsetInput& in) { return along(in, 0); }});
   for (float distance : {1e-5f, 1e-4f, 1e-3f}) {
-    rules.push_back({fmt::format("fixed {:.0e} m", distance), [distance](const OffsetInput& in) { return along(in, distance); }});
+    rules.push_back(
+        {fmt::format("fixed {:.0e} m", distance), [distance](const OffsetInput& in) { return along(in, distance); }});
   }
   for (float share : {1e-7f, 1e-6f, 3e-6f, 1e-5f, 3e-5f, 1e-4f}) {
-    rules.push_back(
-        {fmt::format("{:.0e} of diagonal", share), [share](const OffsetInput& in) { return along(in, share * in.diagonal); }});
+    rules.push_back({fmt::format("{:.0e} of diagonal", share),
+                     [share](const OffsetInput& in) { return along(in, share * in.diagonal); }});
   }
   rules.push_back({"in use", [](const OffsetInput& in) {
                      const double offset = std::max(kOffsetShare * static_cast<double>(in.diagonal),
@@ -168,8 +173,8 @@ std::vector<OffsetCounts> study_offsets(const Scene& scene, const std::vector<Of
       const Vec3 reflected = point.eye.direction - point.normal * (2 * dot(point.normal, point.eye.direction));
       Hit hit;
       ++counts.reflections;
-      counts.self_hits +=
-          traversal.nearest({origin, reflected, INFINITY}, hit) && same_surface(reference, hit.triangle, point.hit.triangle);
+      counts.self_hits += traversal.nearest({origin, reflected, INFINITY}, hit) &&
+                          same_surface(reference, hit.triangle, point.hit.triangle);
     }
     results.push_back(counts);
   }

@@ -1,4 +1,5 @@
-// By how much the origin of a secondary ray should leave its surface: rules compared on near, far, small and large scenes.
+// By how much the origin of a secondary ray should leave its surface: rules compared
+// on near, far, small and large scenes.
 #pragma once
 
 #include <cstdint>
@@ -22,16 +23,17 @@ struct OffsetRule {
   std::string name;
   std::function<Vec3(const OffsetInput&)> origin;
 };
-/// None; fixed distances; shares of the scene's diagonal; the machine's rule (camera_arguments()); and the integer offset along
-/// the normal (Waechter and Binder, "A Fast and Robust Method for Avoiding Self-Intersection", Ray Tracing Gems, 2019, chapter
-/// 6).
+/// None; fixed distances; shares of the scene's diagonal; the machine's rule (camera_arguments()); and the
+/// integer offset along the normal (Waechter and Binder, "A Fast and Robust Method for Avoiding
+/// Self-Intersection", Ray Tracing Gems, 2019, chapter 6).
 std::vector<OffsetRule> offset_rules();
 
 struct OffsetScene {
   std::string name;
   Scene scene;
 };
-/// Near: the built-in scenes as they are. Small and large: cornell at 1e-3 and 1e3. Far: cornell moved by 100 m and by 10 km.
+/// Near: the built-in scenes as they are. Small and large: cornell at 1e-3 and 1e3. Far:
+/// cornell moved by 100 m and by 10 km.
 std::vector<OffsetScene> offset_scenes();
 
 /// Shadow and reflection rays of the primary hits of a picture, against the reference, ties apart.

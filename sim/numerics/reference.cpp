@@ -10,8 +10,8 @@ namespace {
 
 using Quad = __float128;
 
-/// Of the largest coordinate or diagonal; a hit point in double precision is off by some 1e-15 of it, along a grazing ray by
-/// more.
+/// Of the largest coordinate or diagonal; a hit point in double precision is off by some 1e-15
+/// of it, along a grazing ray by more.
 constexpr double kReferenceOffset = 1e-13;
 /// A double-precision triple product of this share of its factors' lengths has a sign that can be trusted.
 constexpr double kSureShare = 1e-14;
@@ -42,7 +42,8 @@ Vec3d ReferenceTracer::normal(uint32_t triangle) const {
 namespace {
 
 /// A triangle of a block, where it is hit nearer than `best`, or as near with a lower number, becomes `best`.
-void take_if_nearer(const TriangleBlock& block, unsigned lane, const Vec3d& origin, const Vec3d& direction, ReferenceHit& best) {
+void take_if_nearer(const TriangleBlock& block, unsigned lane, const Vec3d& origin, const Vec3d& direction,
+                    ReferenceHit& best) {
   Vec3d corners[3];
   for (int k = 0; k < 3; ++k) {
     for (int axis = 0; axis < 3; ++axis) corners[k][axis] = static_cast<double>(block.vertices[k][axis][lane]);
@@ -122,8 +123,8 @@ ReferenceCamera::ReferenceCamera(const std::array<uint32_t, kArguments>& argumen
   light_color = get(argument::kLightColor);
 }
 
-ReferenceShadowRay shadow_ray(const ReferenceTracer& tracer, const Vec3d& origin, const Vec3d& direction, const ReferenceHit& hit,
-                              const Vec3d& light) {
+ReferenceShadowRay shadow_ray(const ReferenceTracer& tracer, const Vec3d& origin, const Vec3d& direction,
+                              const ReferenceHit& hit, const Vec3d& light) {
   Vec3d normal = tracer.normal(hit.triangle);
   if (dot(normal, direction) > 0) normal = normal * -1.0;
   const Vec3d point = origin + direction * hit.t;
@@ -173,8 +174,8 @@ PathImage render_reference(const ReferenceTracer& tracer, const std::array<uint3
         step.facing = shadow.cosine > 0;
         step.lit = step.facing && tracer.occluder(shadow.origin, shadow.direction, 1) == kNoTriangle;
         if (step.lit) {
-          image.color[pixel] =
-              image.color[pixel] + scaled(scaled(throughput, material.kd.as<double>()), camera.light_color) * shadow.cosine;
+          image.color[pixel] = image.color[pixel] +
+                               scaled(scaled(throughput, material.kd.as<double>()), camera.light_color) * shadow.cosine;
         }
         const Vec3d normal = tracer.normal(hit.triangle);
         origin = shadow.origin;

@@ -1,7 +1,8 @@
-// What the picture ought to be: the ray tracer of the kernels in double precision, on the same inputs as the machine has: float
-// vertices, float material records, float kernel arguments. Which triangle a ray hits is decided in double precision, and in
-// 113-bit arithmetic where double cannot tell the side of an edge. Secondary rays start on the surface itself, but for an offset
-// a billion times smaller than the machine's, so no surface shadows itself and no shadow is moved.
+// What the picture ought to be: the ray tracer of the kernels in double precision, on the same inputs as the
+// machine has: float vertices, float material records, float kernel arguments. Which triangle a ray hits is
+// decided in double precision, and in 113-bit arithmetic where double cannot tell the side of an edge. Secondary
+// rays start on the surface itself, but for an offset a billion times smaller than the machine's, so no surface
+// shadows itself and no shadow is moved.
 #pragma once
 
 #include <array>
@@ -80,22 +81,25 @@ struct ReferenceCamera {
   explicit ReferenceCamera(const std::array<uint32_t, kArguments>& arguments);
   Vec3d eye, corner, step_x, step_y, light, light_color;
 
-  Vec3d direction(int x, int y) const { return corner + step_x * static_cast<double>(x) + step_y * static_cast<double>(y); }
+  Vec3d direction(int x, int y) const {
+    return corner + step_x * static_cast<double>(x) + step_y * static_cast<double>(y);
+  }
 };
 
 /// A shadow ray from the point `t` along a ray that hits `triangle`: from the surface, to the light (t = 1).
 struct ReferenceShadowRay {
   Vec3d origin, direction;
-  double cosine = 0;  ///< of the angle between the normal on the ray's side and the direction; not above 0: the light is behind
+  double cosine =
+      0;  ///< of the angle between the normal on the ray's side and the direction; not above 0: the light is behind
 };
-ReferenceShadowRay shadow_ray(const ReferenceTracer& tracer, const Vec3d& origin, const Vec3d& direction, const ReferenceHit& hit,
-                              const Vec3d& light);
+ReferenceShadowRay shadow_ray(const ReferenceTracer& tracer, const Vec3d& origin, const Vec3d& direction,
+                              const ReferenceHit& hit, const Vec3d& light);
 
 /// The triangle itself, or one in its plane: no shadow ray from the one is blocked by the other.
 bool same_surface(const ReferenceTracer& tracer, uint32_t a, uint32_t b);
 
-/// Draws width x height pixels with up to depth - 1 reflections (depth 1 .. 254). `progress`, if not empty, is called now and
-/// then with the share done.
+/// Draws width x height pixels with up to depth - 1 reflections (depth 1 .. 254). `progress`, if not empty, is
+/// called now and then with the share done.
 PathImage render_reference(const ReferenceTracer& tracer, const std::array<uint32_t, kArguments>& arguments, int width,
                            int height, int depth, const std::function<void(double)>& progress = nullptr);
 

@@ -23,7 +23,8 @@ double decibels(double squares, uint64_t values) {
 }
 
 /// Judges the shadow of a primary hit that both have: true when the machine's answer is wrong, false for a tie.
-bool shadow_is_wrong(const TradeScene& scene, const PathStep& ours, const PathStep& truth, int x, int y, const Ray& machine_ray) {
+bool shadow_is_wrong(const TradeScene& scene, const PathStep& ours, const PathStep& truth, int x, int y,
+                     const Ray& machine_ray) {
   const ReferenceCamera camera(scene.arguments);
   const Vec3d direction = camera.direction(x, y);
   const ReferenceHit hit = scene.reference_tracer.nearest(camera.eye, direction, INFINITY);
@@ -61,7 +62,10 @@ void TradeScene::draw_reference(const std::function<void(double)>& progress) {
 }
 
 RecordedFrame::RecordedFrame(int width, int height, int depth)
-    : frame(width, height), paths(width, height, depth), shadow_rays(paths.color.size()), nan_pixels(paths.color.size()) {}
+    : frame(width, height),
+      paths(width, height, depth),
+      shadow_rays(paths.color.size()),
+      nan_pixels(paths.color.size()) {}
 
 RecordedFrame record_frame(const TradeScene& scene, const arith::Mode& mode,
                            const std::function<void(RayKernel, NativeThread&)>& kernel) {
@@ -117,7 +121,8 @@ Quality judge_frame(const TradeScene& scene, const RecordedFrame& drawn) {
           judge_hits(scene.scene, {camera.eye, camera.direction(x, y), INFINITY}, our_answer, reference_answer, reason);
       ++(verdict == HitVerdict::Tie ? quality.ties : our_answer.hit ? quality.wrong_triangles : quality.holes);
     } else if (reference.facing && ours.lit != reference.lit) {
-      ++(shadow_is_wrong(scene, ours, reference, x, y, drawn.shadow_rays[pixel]) ? quality.wrong_shadows : quality.ties);
+      ++(shadow_is_wrong(scene, ours, reference, x, y, drawn.shadow_rays[pixel]) ? quality.wrong_shadows
+                                                                                 : quality.ties);
     }
 
     bool same = true;

@@ -46,23 +46,25 @@ struct RecordedFrame {
   std::vector<bool> nan_pixels;  ///< [pixel] a contribution had a NaN
 };
 
-/// The frame by engine native; pictures of all engines are the same, bit for bit. `kernel` replaces run_native, for tests.
+/// The frame by engine native; pictures of all engines are the same, bit for bit.
+/// `kernel` replaces run_native, for tests.
 RecordedFrame record_frame(const TradeScene& scene, const arith::Mode& mode,
                            const std::function<void(RayKernel, NativeThread&)>& kernel = nullptr);
 
 /// Counts of pixels, but for the decibels.
 struct Quality {
   uint64_t pixels = 0;
-  uint64_t ties = 0;             ///< primary hits and shadows that differ where single precision cannot tell; wrong nowhere below
-  uint64_t wrong_triangles = 0;  ///< the primary ray hits another triangle than the reference's, or one where there is none
-  uint64_t holes = 0;            ///< the primary ray hits nothing where the reference hits
-  uint64_t wrong_shadows = 0;    ///< at the same primary hit: light or shadow where the reference has the other
-  uint64_t nan_pixels = 0;       ///< a contribution had a NaN
-  uint64_t same_paths = 0;       ///< every hit and shadow as in the reference
-  double psnr = 0;               ///< of linear values before they become 8 bits, peak 1, dB; infinity when equal
-  double psnr_same_paths = 0;    ///< over the pixels of the same paths: what arithmetic alone does to the colours
-  uint64_t off_by_one = 0;       ///< largest 8-bit difference of the three channels is 1
-  uint64_t off_by_more = 0;      ///< 2 or more
+  uint64_t ties = 0;  ///< primary hits and shadows that differ where single precision cannot tell; wrong nowhere below
+  uint64_t wrong_triangles =
+      0;               ///< the primary ray hits another triangle than the reference's, or one where there is none
+  uint64_t holes = 0;  ///< the primary ray hits nothing where the reference hits
+  uint64_t wrong_shadows = 0;  ///< at the same primary hit: light or shadow where the reference has the other
+  uint64_t nan_pixels = 0;     ///< a contribution had a NaN
+  uint64_t same_paths = 0;     ///< every hit and shadow as in the reference
+  double psnr = 0;             ///< of linear values before they become 8 bits, peak 1, dB; infinity when equal
+  double psnr_same_paths = 0;  ///< over the pixels of the same paths: what arithmetic alone does to the colours
+  uint64_t off_by_one = 0;     ///< largest 8-bit difference of the three channels is 1
+  uint64_t off_by_more = 0;    ///< 2 or more
 };
 Quality judge_frame(const TradeScene& scene, const RecordedFrame& drawn);
 

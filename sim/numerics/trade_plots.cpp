@@ -63,8 +63,8 @@ struct Point {
   const ArithmeticMode* mode;
 };
 
-/// How a mode is drawn: colour and size by slow unit, the better the larger, so that several at one place show as rings; filled
-/// with subnormals, open without; a triangle with a fused multiply-add.
+/// How a mode is drawn: colour and size by slow unit, the better the larger, so that several at one place show as
+/// rings; filled with subnormals, open without; a triangle with a fused multiply-add.
 std::string style(const ArithmeticMode& mode) {
   static constexpr const char* kColors[] = {"#4477aa", "#66aa55", "#ddaa33", "#bb5566"};
   const bool flush = mode.mode.subnormals == Subnormals::Flush;
@@ -82,15 +82,16 @@ std::string panel(const TradeResult& result, const std::string& axis,
     for (const TradeRow& row : result.rows) {
       // The first scene: what a far one loses by its coordinates hides what the modes lose.
       if (!known || row.mode.name != cost.mode.name || row.scene != result.rows.front().scene) continue;
-      if (std::isfinite(row.quality.psnr_same_paths)) points.push_back({*known, row.quality.psnr_same_paths, &cost.mode});
+      if (std::isfinite(row.quality.psnr_same_paths))
+        points.push_back({*known, row.quality.psnr_same_paths, &cost.mode});
     }
   }
   if (points.size() < 2) return "";
   std::string all, plots;
   for (size_t i = 0; i < points.size(); ++i) {
     all += fmt::format("{} {}\n", points[i].cost, points[i].psnr);
-    plots += fmt::format(", \\\n  $all every ::{0}::{0} using 1:2 with points {1} title \"{2}\"", i, style(*points[i].mode),
-                         points[i].mode->name);
+    plots += fmt::format(", \\\n  $all every ::{0}::{0} using 1:2 with points {1} title \"{2}\"", i,
+                         style(*points[i].mode), points[i].mode->name);
   }
   std::sort(points.begin(), points.end(),
             [](const Point& a, const Point& b) { return a.cost != b.cost ? a.cost < b.cost : a.psnr > b.psnr; });
@@ -125,7 +126,8 @@ std::string quality_plot(const TradeResult& result, const std::string& png) {
     data += '\n';
   }
   for (size_t i = 0; i < scenes.size(); ++i) {
-    plots += fmt::format("{}$data using {}{} title \"{}\"", i == 0 ? "plot " : ", ", i + 2, i == 0 ? ":xtic(1)" : "", scenes[i]);
+    plots += fmt::format("{}$data using {}{} title \"{}\"", i == 0 ? "plot " : ", ", i + 2, i == 0 ? ":xtic(1)" : "",
+                         scenes[i]);
   }
   return fmt::format(kQuality, png, data, plots);
 }
@@ -134,8 +136,9 @@ std::string pareto_plot(const TradeResult& result, const std::string& png) {
   std::string panels;
   int count = 0;
   const auto add = [&](const std::string& text) { panels += text, count += !text.empty(); };
-  add(panel(result, "one lane of Flt and one of Slw, kGE",
-            [](const TradeCost& cost) { return cost.gates ? std::optional<double>(cost.gates->total()) : std::nullopt; }));
+  add(panel(result, "one lane of Flt and one of Slw, kGE", [](const TradeCost& cost) {
+    return cost.gates ? std::optional<double>(cost.gates->total()) : std::nullopt;
+  }));
   add(panel(result, "cycles a ray", [](const TradeCost& cost) {
     return cost.timing ? std::optional<double>(cost.timing->cycles_per_ray) : std::nullopt;
   }));

@@ -46,7 +46,8 @@ Json to_json(const TradeResult& result) {
                   {"mrays_per_second", nullptr},
                   {"flt_lane_kge", nullptr},
                   {"slw_lane_kge", nullptr}};
-    if (cost.timing) entry["cycles_per_ray"] = cost.timing->cycles_per_ray, entry["mrays_per_second"] = cost.timing->mrays_per_s;
+    if (cost.timing)
+      entry["cycles_per_ray"] = cost.timing->cycles_per_ray, entry["mrays_per_second"] = cost.timing->mrays_per_s;
     if (cost.gates) entry["flt_lane_kge"] = cost.gates->flt_kge, entry["slw_lane_kge"] = cost.gates->slw_kge;
     json["cost"].push_back(entry);
   }
@@ -62,17 +63,18 @@ std::string trade_table(const TradeResult& result) {
     const Quality& q = row.quality;
     if (row.scene != scene) {
       scene = row.scene;
-      text += fmt::format("{}, {} pixels\n{:<22} {:>5} {:>9} {:>5} {:>7} {:>4} {:>7} {:>8} {:>8} {:>7}\n", scene, q.pixels,
-                          "  mode", "wrong", "holes", "wrong", "NaN", "ties", "PSNR", "of equal", "off by 1", "by 2+");
       text +=
-          fmt::format("{:<22} {:>5} {:>9} {:>5} {:>7} {:>4} {:>7} {:>8}\n", "", "hits", "", "shad.", "pixels", "", "dB", "paths");
+          fmt::format("{}, {} pixels\n{:<22} {:>5} {:>9} {:>5} {:>7} {:>4} {:>7} {:>8} {:>8} {:>7}\n", scene, q.pixels,
+                      "  mode", "wrong", "holes", "wrong", "NaN", "ties", "PSNR", "of equal", "off by 1", "by 2+");
+      text += fmt::format("{:<22} {:>5} {:>9} {:>5} {:>7} {:>4} {:>7} {:>8}\n", "", "hits", "", "shad.", "pixels", "",
+                          "dB", "paths");
     }
-    text += fmt::format("  {:<20} {:>5} {:>9} {:>5} {:>7} {:>4} {:>7} {:>8} {:>8} {:>7}\n", row.mode.name, q.wrong_triangles,
-                        q.holes, q.wrong_shadows, q.nan_pixels, q.ties, decibels(q.psnr), decibels(q.psnr_same_paths),
-                        share(q.off_by_one, q.pixels), share(q.off_by_more, q.pixels));
+    text += fmt::format("  {:<20} {:>5} {:>9} {:>5} {:>7} {:>4} {:>7} {:>8} {:>8} {:>7}\n", row.mode.name,
+                        q.wrong_triangles, q.holes, q.wrong_shadows, q.nan_pixels, q.ties, decibels(q.psnr),
+                        decibels(q.psnr_same_paths), share(q.off_by_one, q.pixels), share(q.off_by_more, q.pixels));
   }
-  text += fmt::format("cost on {}; kGE of one lane\n{:<22} {:>10} {:>8} {:>8} {:>8} {:>8}\n", result.configuration, "  mode",
-                      "cycles/ray", "Mrays/s", "Flt kGE", "Slw kGE", "sum");
+  text += fmt::format("cost on {}; kGE of one lane\n{:<22} {:>10} {:>8} {:>8} {:>8} {:>8}\n", result.configuration,
+                      "  mode", "cycles/ray", "Mrays/s", "Flt kGE", "Slw kGE", "sum");
   for (const TradeCost& cost : result.costs) {
     std::optional<double> cycles, rate, flt, slw, sum;
     if (cost.timing) cycles = cost.timing->cycles_per_ray, rate = cost.timing->mrays_per_s;
@@ -85,8 +87,8 @@ std::string trade_table(const TradeResult& result) {
 
 std::string offset_table(const std::vector<OffsetScene>& scenes, const std::vector<OffsetRule>& rules,
                          const std::vector<std::vector<OffsetCounts>>& counts) {
-  std::string text = fmt::format("{:<18} {:<18} {:>8} {:>6} {:>6} {:>6} {:>10}\n", "scene", "offset", "shadows", "acne", "moved",
-                                 "leaks", "self hits");
+  std::string text = fmt::format("{:<18} {:<18} {:>8} {:>6} {:>6} {:>6} {:>10}\n", "scene", "offset", "shadows", "acne",
+                                 "moved", "leaks", "self hits");
   for (size_t s = 0; s < scenes.size(); ++s) {
     for (size_t r = 0; r < rules.size(); ++r) {
       const OffsetCounts& c = counts[s][r];
@@ -95,12 +97,13 @@ std::string offset_table(const std::vector<OffsetScene>& scenes, const std::vect
     }
   }
   const OffsetInstructions instructions = offset_instructions();
-  return text + fmt::format("instructions for the origin: in use {}, integer {}\n", instructions.in_use, instructions.integer);
+  return text +
+         fmt::format("instructions for the origin: in use {}, integer {}\n", instructions.in_use, instructions.integer);
 }
 
 std::string seam_table(const std::vector<WatertightMesh>& meshes, const std::vector<WatertightCounts>& counts) {
-  std::string text =
-      fmt::format("{:<20} {:>9} {:>9} {:>9} {:>9} {:>6}\n", "mesh", "triangles", "at edges", "vertices", "rays", "leaks");
+  std::string text = fmt::format("{:<20} {:>9} {:>9} {:>9} {:>9} {:>6}\n", "mesh", "triangles", "at edges", "vertices",
+                                 "rays", "leaks");
   WatertightCounts sum;
   for (size_t i = 0; i < meshes.size(); ++i) {
     text += fmt::format("{:<20} {:>9} {:>9} {:>9} {:>9} {:>6}\n", meshes[i].name, meshes[i].scene.triangles.size(),

@@ -24,8 +24,9 @@ std::string to_json(const TradeResult& result, const std::vector<WatertightMesh>
 
 /// gnuplot text that draws the quality of each mode, one group of bars a scene, into `png`.
 std::string quality_plot(const TradeResult& result, const std::string& png);
-/// gnuplot text that draws quality against gates, and against cycles, into `png`, with the modes that no other mode beats in both
-/// joined by a line; what is known of fewer than two modes is left out, and the text is empty when nothing remains.
+/// gnuplot text that draws quality against gates, and against cycles, into `png`, with the modes that no
+/// other mode beats in both joined by a line; what is known of fewer than two modes is left out, and the
+/// text is empty when nothing remains.
 std::string pareto_plot(const TradeResult& result, const std::string& png);
 
 }  // namespace raypool::numerics

@@ -169,7 +169,8 @@ TEST(Cost, GatesComeFromReportsWithTheSameLanes) {
   namespace fs = std::filesystem;
   const fs::path folder = fs::path(testing::TempDir()) / "raypool_gates";
   fs::remove_all(folder);
-  const arith::Mode exact, coarse{Subnormals::Ieee, SlowUnit::Newton0}, fused{Subnormals::Ieee, SlowUnit::Newton0, true};
+  const arith::Mode exact, coarse{Subnormals::Ieee, SlowUnit::Newton0},
+      fused{Subnormals::Ieee, SlowUnit::Newton0, true};
   EXPECT_FALSE(read_gates(folder, exact)) << "no folder";
   auto now = fs::file_time_type::clock::now();
   auto write = [&](const std::string& name, const std::string& text) {
@@ -214,7 +215,8 @@ TEST(Report, UnknownCostsAreDashesAndNull) {
     result.rows.back().quality.pixels = 100;
     result.costs.push_back({mode, std::nullopt, std::nullopt});
   }
-  EXPECT_NE(trade_table(result).find("ieee-exact                    -        -        -        -        -"), std::string::npos)
+  EXPECT_NE(trade_table(result).find("ieee-exact                    -        -        -        -        -"),
+            std::string::npos)
       << trade_table(result);
   EXPECT_NE(to_json(result, {}, {}, {}, {}, {}).find("\"cycles_per_ray\": null"), std::string::npos);
   EXPECT_EQ(pareto_plot(result, "x.png"), "");

@@ -95,7 +95,8 @@ std::vector<Edge> shared_edges(const Scene& scene) {
   }
   std::vector<Edge> edges;
   for (const auto& [edge, triangles] : count) {
-    if (triangles == 2 && rim.count(edge.first) == 0 && rim.count(edge.second) == 0) edges.push_back({edge.first, edge.second});
+    if (triangles == 2 && rim.count(edge.first) == 0 && rim.count(edge.second) == 0)
+      edges.push_back({edge.first, edge.second});
   }
   return edges;
 }
@@ -107,7 +108,9 @@ std::vector<WatertightMesh> watertight_meshes() {
           ball("needles 1000 to 1", {0.1, 0.2, 0.3}, {0.01, 10, 0.02}, 96), star(), terrain()};
 }
 
-WatertightCounts aim_at_seams(const WatertightMesh& mesh, uint64_t rays) { return aim_at_seams(mesh, mesh.scene, rays); }
+WatertightCounts aim_at_seams(const WatertightMesh& mesh, uint64_t rays) {
+  return aim_at_seams(mesh, mesh.scene, rays);
+}
 
 WatertightCounts aim_at_seams(const WatertightMesh& mesh, const Scene& cast_at, uint64_t rays) {
   const Scene& scene = mesh.scene;

@@ -21,8 +21,8 @@ std::vector<WatertightMesh> watertight_meshes();
 struct WatertightCounts {
   uint64_t rays = 0;
   uint64_t edges = 0, vertices = 0;  ///< aimed at
-  uint64_t on_seam = 0;              ///< of every 64th ray: passes an edge nearer than 1e-6 of the triangle, by exact arithmetic
-  uint64_t leaks = 0;                ///< that hit nothing, or only something beyond the aim by more than 1e-3 of its distance
+  uint64_t on_seam = 0;  ///< of every 64th ray: passes an edge nearer than 1e-6 of the triangle, by exact arithmetic
+  uint64_t leaks = 0;    ///< that hit nothing, or only something beyond the aim by more than 1e-3 of its distance
 };
 /// Casts `rays` rays at the mesh, as nearest-hit and as shadow rays, reproducibly.
 WatertightCounts aim_at_seams(const WatertightMesh& mesh, uint64_t rays);

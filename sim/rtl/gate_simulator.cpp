@@ -1,6 +1,6 @@
-// The gates of a mapped netlist, simulated without being compiled: a Verilog shell in place of the compute unit calls these
-// functions. Two-valued, registers begin with 0, no delays. A gate is a truth table; only gates with a changed input are looked
-// at, level by level, so that each changes at most once while the netlist settles.
+// The gates of a mapped netlist, simulated without being compiled: a Verilog shell in place of the compute unit calls
+// these functions. Two-valued, registers begin with 0, no delays. A gate is a truth table; only gates with a changed
+// input are looked at, level by level, so that each changes at most once while the netlist settles.
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -40,14 +40,15 @@ struct Block {
 
 class Netlist {
  public:
-  // The file is what scripts/synth/replay.py writes: a header of counts, cells with their tables, gates, and the nets at the
-  // border.
+  // The file is what scripts/synth/replay.py writes: a header of counts, cells with their
+  // tables, gates, and the nets at the border.
   explicit Netlist(const char* path) {
     std::unique_ptr<FILE, int (*)(FILE*)> file(std::fopen(path, "rb"), std::fclose);
     if (!file) fail(path, "cannot be read");
     file_ = file.get();
     path_ = path;
-    const uint32_t nets = number(), cells = number(), gates = number(), inputs = number(), outputs = number(), blocks = number();
+    const uint32_t nets = number(), cells = number(), gates = number(), inputs = number(), outputs = number(),
+                   blocks = number();
     std::vector<Cell> kinds(cells);
     for (Cell& kind : kinds) {
       kind = {number(), number() != 0, 0};
@@ -142,8 +143,8 @@ class Netlist {
     for (const Block& block : blocks_) {
       uint64_t toggles = 0;
       for (uint32_t gate = block.first; gate < block.last; ++gate) toggles += gates_[gate].toggles;
-      std::printf("TOGGLES %llu %llu %u %s\n", static_cast<unsigned long long>(toggles), static_cast<unsigned long long>(cycles_),
-                  block.last - block.first, block.path.c_str());
+      std::printf("TOGGLES %llu %llu %u %s\n", static_cast<unsigned long long>(toggles),
+                  static_cast<unsigned long long>(cycles_), block.last - block.first, block.path.c_str());
     }
   }
 

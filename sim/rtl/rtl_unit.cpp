@@ -1,6 +1,6 @@
 // Engine `rtl`: the Verilated rtl/multiprocessor.v, of one unit or several, behind the compute-unit interface.
-// scripts/verilate.sh compiles it into a shared library. A clock is two evaluations of the model and the copying of the narrow
-// outputs; wide ports are read only while they are valid, the trace only after trace_on().
+// scripts/verilate.sh compiles it into a shared library. A clock is two evaluations of the model and the copying of the
+// narrow outputs; wide ports are read only while they are valid, the trace only after trace_on().
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -152,8 +152,8 @@ class RtlUnit : public ComputeUnit {
     waveform_->open(path.c_str());
     if (!waveform_->isOpen()) throw std::runtime_error(path + ": the waveform cannot be written there");
 #else
-    throw std::runtime_error(path +
-                             ": this unit was built without waveforms; build it with scripts/verilate.sh OUTPUT_DIR --trace ...");
+    throw std::runtime_error(
+        path + ": this unit was built without waveforms; build it with scripts/verilate.sh OUTPUT_DIR --trace ...");
 #endif
   }
 

@@ -1,5 +1,5 @@
-// What a shared library with a Verilated multiprocessor exports, and how its loader knows that both were compiled from the same
-// interface.
+// What a shared library with a Verilated multiprocessor exports, and how its loader knows that both
+// were compiled from the same interface.
 #pragma once
 
 #include <string>

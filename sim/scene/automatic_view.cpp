@@ -1,6 +1,6 @@
-// A view of triangles of which nothing is known: cameras around them and, where they enclose something, among them are tried with
-// a few rays each, and the one that shows most is taken; then lights. docs/scenes.md describes the rule. Nothing here depends on
-// the machine: no thread, no clock, and scores are rounded before they are compared.
+// A view of triangles of which nothing is known: cameras around them and, where they enclose something, among them are
+// tried with a few rays each, and the one that shows most is taken; then lights. docs/scenes.md describes the rule.
+// Nothing here depends on the machine: no thread, no clock, and scores are rounded before they are compared.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,9 +14,9 @@ namespace raypool {
 namespace {
 
 constexpr double kInsideFov = 60, kOutsideFov = 40;
-constexpr double kNear = 1.0;           // of the box's middle side: what is nearer counts less, down to nothing at the eye
-constexpr double kBackSide = 0.5;       // what a surface's back counts, its front being 1
-constexpr double kAmong = 0.85;         // what a view from among the triangles counts: less of the whole is in it
+constexpr double kNear = 1.0;      // of the box's middle side: what is nearer counts less, down to nothing at the eye
+constexpr double kBackSide = 0.5;  // what a surface's back counts, its front being 1
+constexpr double kAmong = 0.85;    // what a view from among the triangles counts: less of the whole is in it
 constexpr double kLeastEnclosed = 0.7;  // of the directions from a place among the triangles
 constexpr double kLeastContent = 0.08;  // of what places see: surfaces that are hidden from outside on either side
 constexpr double kLeastFront = 0.9;     // of what places see, in a box with nothing in it
@@ -76,7 +76,8 @@ class Viewfinder {
     for (const int axis : {0, 1, 2}) {
       if (std::fabs(axes_.up[axis]) > std::fabs(axes_.up[vertical_])) vertical_ = axis;
     }
-    const double largest = std::max({extent_.x, extent_.y, extent_.z}), least = std::min({extent_.x, extent_.y, extent_.z});
+    const double largest = std::max({extent_.x, extent_.y, extent_.z}),
+                 least = std::min({extent_.x, extent_.y, extent_.z});
     near_ = std::max(kNear * (extent_.x + extent_.y + extent_.z - largest - least), 1e-3 * diagonal_);
     const int a = (vertical_ + 1) % 3, b = (vertical_ + 2) % 3;
     along_ = extent_[a] >= extent_[b] ? a : b;
@@ -141,11 +142,12 @@ class Viewfinder {
 
   /// In float, which hides that the libraries' tangents differ in the last place.
   static double half_height(float fov) {
-    return static_cast<double>(static_cast<float>(std::tan(static_cast<double>(fov) * 0.5 * 3.14159265358979323846 / 180)));
+    return static_cast<double>(
+        static_cast<float>(std::tan(static_cast<double>(fov) * 0.5 * 3.14159265358979323846 / 180)));
   }
 
-  /// How much there is to see: the share of the picture that shows something, and into how many kinds of surface (by direction,
-  /// distance and material) it falls, as an entropy.
+  /// How much there is to see: the share of the picture that shows something, and into how many kinds of surface (by
+  /// direction, distance and material) it falls, as an entropy.
   double score(const Camera& camera, int n) const {
     std::map<std::tuple<long, long, long, int, uint32_t>, int> kinds;
     double covered = 0;
@@ -171,7 +173,8 @@ class Viewfinder {
     const Vec3d right = normalized(cross(axes_.up, from)), up = cross(from, right);
     double distance = 0;
     for (const auto& triangle : scene_.triangles) {
-      const Vec3d p = scene_.vertices[triangle[0]].as<double>() - target, q = scene_.vertices[triangle[1]].as<double>() - target,
+      const Vec3d p = scene_.vertices[triangle[0]].as<double>() - target,
+                  q = scene_.vertices[triangle[1]].as<double>() - target,
                   r = scene_.vertices[triangle[2]].as<double>() - target;
       for (const Vec3d& v : {p, q, r}) {
         distance = std::max(distance, std::max(std::fabs(dot(v, right)), std::fabs(dot(v, up))) / half + dot(v, from));
@@ -193,8 +196,8 @@ class Viewfinder {
     }
   }
 
-  /// Places among the triangles with triangles around them; empty when that is but the inside of something solid, where the
-  /// surfaces' other sides are all that is seen from outside.
+  /// Places among the triangles with triangles around them; empty when that is but the inside of something solid, where
+  /// the surfaces' other sides are all that is seen from outside.
   std::vector<Vec3d> places_inside() const {
     const std::vector<Vec3d> around = all_around();
     std::vector<Vec3d> places;
@@ -211,7 +214,8 @@ class Viewfinder {
             free &= sample.distance > 0.005 * diagonal_;
             samples.push_back(sample);
           }
-          if (!free || static_cast<double>(samples.size()) < kLeastEnclosed * static_cast<double>(around.size())) continue;
+          if (!free || static_cast<double>(samples.size()) < kLeastEnclosed * static_cast<double>(around.size()))
+            continue;
           places.push_back(eye);
           for (const Sample& sample : samples) {
             ++seen;
@@ -259,13 +263,15 @@ class Viewfinder {
     return walls >= 5;
   }
 
-  void add_from(const Vec3d& eye, double fov, std::initializer_list<double> slopes, std::vector<Candidate>& candidates) const {
+  void add_from(const Vec3d& eye, double fov, std::initializer_list<double> slopes,
+                std::vector<Candidate>& candidates) const {
     if (changes_.look_at) {
       candidates.push_back({camera(eye, changes_.look_at->as<double>() - eye, fov), kAmong});
       return;
     }
     for (const double slope : slopes) {
-      for (int step = 0; step < 16; ++step) candidates.push_back({camera(eye, direction(axes_, step, slope), fov), kAmong});
+      for (int step = 0; step < 16; ++step)
+        candidates.push_back({camera(eye, direction(axes_, step, slope), fov), kAmong});
     }
   }
 
@@ -312,7 +318,8 @@ class Viewfinder {
     return result;
   }
 
-  /// Over the viewer's shoulders, as long as that lights most of what is seen; else the best of these and of places in the box.
+  /// Over the viewer's shoulders, as long as that lights most of what is seen; else the
+  /// best of these and of places in the box.
   Vec3 light(const Camera& camera) const {
     const std::vector<Sample> samples = look(camera, 24);
     const Vec3d forward = camera.direction.as<double>(), centre = lower_ + extent_ * 0.5;
@@ -326,7 +333,8 @@ class Viewfinder {
       return found.share >= kLitEnough;
     };
     if (!inside(camera.eye.as<double>())) {
-      for (const Vec3d& from : {Vec3d{0.6, 0.9, 0.8}, Vec3d{-0.6, 0.9, 0.8}, Vec3d{0.2, 1.2, 0.4}, Vec3d{0.3, 0.3, 1.2}}) {
+      for (const Vec3d& from :
+           {Vec3d{0.6, 0.9, 0.8}, Vec3d{-0.6, 0.9, 0.8}, Vec3d{0.2, 1.2, 0.4}, Vec3d{0.3, 0.3, 1.2}}) {
         const Vec3d place = centre + normalized(right * from.x + axes_.up * from.y + back * from.z) * (2 * diagonal_);
         if (consider(place)) return place.as<float>();
       }

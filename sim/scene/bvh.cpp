@@ -27,7 +27,8 @@ void* create_node(RTCThreadLocalAllocator allocator, unsigned count, void*) {
 }
 
 void set_children(void* pointer, void** children, unsigned count, void*) {
-  for (unsigned i = 0; i < count; ++i) static_cast<BuildNode*>(pointer)->children[i] = static_cast<BuildNode*>(children[i]);
+  for (unsigned i = 0; i < count; ++i)
+    static_cast<BuildNode*>(pointer)->children[i] = static_cast<BuildNode*>(children[i]);
 }
 
 void set_bounds(void* pointer, const RTCBounds** bounds, unsigned count, void*) {

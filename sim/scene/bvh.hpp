@@ -14,7 +14,8 @@ inline constexpr int kBvhWidth = 4;
 inline constexpr uint32_t kNoChild = 0xffffffffu;
 inline constexpr uint32_t kLeafBit = 0x80000000u;  ///< a child with this bit is triangle block `child & ~kLeafBit`
 
-/// 128 bytes: the boxes of four children and where they are. Unused children have an empty box and kNoChild, and come last.
+/// 128 bytes: the boxes of four children and where they are. Unused children have an
+/// empty box and kNoChild, and come last.
 struct alignas(64) BvhNode {
   /// [0] lower, [1] upper; x, y, z; child. An axis of the four boxes is one SIMD load.
   float bounds[2][3][kBvhWidth];
@@ -23,7 +24,8 @@ struct alignas(64) BvhNode {
 };
 static_assert(sizeof(BvhNode) == 128);
 
-/// A leaf: up to four triangles, axis by axis. Unused places repeat vertex 0 of the first triangle, so that no ray hits them.
+/// A leaf: up to four triangles, axis by axis. Unused places repeat vertex 0 of the first
+/// triangle, so that no ray hits them.
 struct alignas(64) TriangleBlock {
   float vertices[3][3][kBvhWidth];  ///< corner; x, y, z; triangle
   uint32_t triangles[kBvhWidth];    ///< index in the scene, kNoChild when unused

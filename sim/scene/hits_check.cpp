@@ -14,7 +14,8 @@
 namespace raypool {
 namespace {
 
-// Differences and products of three floats fit in 113 bits unless their magnitudes lie far apart, so signs come out exact.
+// Differences and products of three floats fit in 113 bits unless their magnitudes lie
+// far apart, so signs come out exact.
 using Quad = __float128;
 
 /// Nearer to an edge than this share of the triangle is on it, however near and large the triangle is.
@@ -98,7 +99,8 @@ std::string describe(const ExactHit& exact) {
   return fmt::format("{}, t {:.12g}, margin {:.3g}", names[static_cast<int>(exact.passage)], exact.t, exact.margin);
 }
 
-void settle(HitVerdict verdict, const std::string& line, HitCounts& counts, HitsReport& report, size_t max_explanations) {
+void settle(HitVerdict verdict, const std::string& line, HitCounts& counts, HitsReport& report,
+            size_t max_explanations) {
   if (verdict == HitVerdict::Tie) {
     ++counts.ties;
     return;
@@ -162,15 +164,18 @@ ExactHit exact_hit(const Scene& scene, uint32_t triangle, const ExactRay& ray) {
   }
   result.margin = static_cast<double>(std::min(u / sum, std::min(v / sum, w / sum)));
   result.t = static_cast<double>(dot(normal, a) / dot(normal, direction));
-  // How far single precision can move the ray, as a share of the triangle: its coordinates' rounding against its smallest height,
-  // seen along the ray.
+  // How far single precision can move the ray, as a share of the triangle: its coordinates' rounding against its
+  // smallest height, seen along the ray.
   double reach = 0, longest = 0;
-  for (const Vector3<Quad>& corner : {a, b, c}) reach = std::max(reach, std::sqrt(static_cast<double>(dot(corner, corner))));
+  for (const Vector3<Quad>& corner : {a, b, c})
+    reach = std::max(reach, std::sqrt(static_cast<double>(dot(corner, corner))));
   for (const Vector3<Quad>& edge : {b - a, c - b, a - c})
     longest = std::max(longest, std::sqrt(static_cast<double>(dot(edge, edge))));
   const double seen_height = std::fabs(static_cast<double>(sum)) / direction_length / longest;
   const double border = std::max(kBorder, 4 * 0x1p-24 * reach / seen_height);
-  result.passage = result.margin > border ? Passage::Inside : result.margin >= -border ? Passage::Border : Passage::Outside;
+  result.passage = result.margin > border     ? Passage::Inside
+                   : result.margin >= -border ? Passage::Border
+                                              : Passage::Outside;
   return result;
 }
 
@@ -270,8 +275,9 @@ class HitsComparison {
     Hit hit;
     if (our.hit && tracer_.traversal().nearest(query, hit)) our.triangle = hit.triangle, our.t = hit.t;
     const bool named = !their.hit || embree_.nearest(query, their.triangle, their.t);
-    std::string line = fmt::format("shadow ray of pixel ({}, {}): ours {}, Embree {}", ray[word::kPixel] & 0xffffu,
-                                   ray[word::kPixel] >> 16, describe(our), named ? describe(their) : "blocked by no triangle");
+    std::string line =
+        fmt::format("shadow ray of pixel ({}, {}): ours {}, Embree {}", ray[word::kPixel] & 0xffffu,
+                    ray[word::kPixel] >> 16, describe(our), named ? describe(their) : "blocked by no triangle");
     // Embree's occlusion query without a hit of its intersection query cannot be judged, nor be right.
     const HitVerdict verdict = named ? judge_hits(scene_, query, our, their, line) : HitVerdict::EmbreeWrong;
     settle(verdict, line, report_.shadow, report_, options_.max_explanations);
@@ -289,6 +295,8 @@ class HitsComparison {
 
 }  // namespace
 
-HitsReport compare_with_embree(const Scene& scene, const HitsOptions& options) { return HitsComparison(scene, options).run(); }
+HitsReport compare_with_embree(const Scene& scene, const HitsOptions& options) {
+  return HitsComparison(scene, options).run();
+}
 
 }  // namespace raypool

@@ -12,7 +12,8 @@
 
 namespace raypool {
 
-/// Where a ray passes a triangle, computed without rounding errors that matter (113-bit arithmetic on the float inputs).
+/// Where a ray passes a triangle, computed without rounding errors that matter
+/// (113-bit arithmetic on the float inputs).
 enum class Passage : uint8_t {
   Inside,  ///< well inside the triangle
   Border,  ///< on an edge, or nearer to it than single precision can tell
@@ -29,7 +30,8 @@ struct ExactRay {
   Vec3d origin, direction;  ///< direction of any length
   double limit = INFINITY;  ///< hits with 0 < t < limit count
 
-  ExactRay(const Vec3d& from, const Vec3d& towards, double largest_t) : origin(from), direction(towards), limit(largest_t) {}
+  ExactRay(const Vec3d& from, const Vec3d& towards, double largest_t)
+      : origin(from), direction(towards), limit(largest_t) {}
   ExactRay(const RayQuery& ray)
       : origin(ray.origin.as<double>()), direction(ray.direction.as<double>()), limit(static_cast<double>(ray.limit)) {}
 };
@@ -50,8 +52,8 @@ HitVerdict judge_hits(const Scene& scene, const ExactRay& ray, const HitAnswer& 
 struct HitCounts {
   uint64_t rays = 0;
   uint64_t agree = 0;  ///< the same triangle, or both miss; shadow rays: both free or both blocked
-  uint64_t ties =
-      0;  ///< both answers are right: equal t (shared edge, coplanar duplicate), or a border either side of which is right
+  uint64_t ties = 0;  ///< both answers are right: equal t (shared edge, coplanar duplicate), or a border either side of
+                      ///< which is right
   uint64_t ours_wrong = 0;
   uint64_t embree_wrong = 0;
 };
@@ -70,8 +72,8 @@ struct HitsOptions {
   std::function<void(RayKernel, NativeThread&)> kernel;  ///< makes the rays; run_native when empty
 };
 
-/// Traces the scene's view: eye rays and the shadow rays that follow from our hits, with our traversal and with rtcIntersect1 and
-/// rtcOccluded1 of a robust Embree scene.
+/// Traces the scene's view: eye rays and the shadow rays that follow from our hits, with our traversal and with
+/// rtcIntersect1 and rtcOccluded1 of a robust Embree scene.
 HitsReport compare_with_embree(const Scene& scene, const HitsOptions& options);
 
 }  // namespace raypool

@@ -28,8 +28,8 @@ uint64_t add_saturating(uint64_t a, uint64_t b) { return a + b < a ? UINT64_MAX 
 uint64_t to_fixed(float contribution) {
   if (!(contribution > 0)) return 0;
   if (contribution >= 0x1p32f) return UINT64_MAX;
-  // Exact but for the rounding asked for: a float of 2^-8 and more is a whole number of units, and a smaller one plus a half is
-  // exact.
+  // Exact but for the rounding asked for: a float of 2^-8 and more is a whole number of units,
+  // and a smaller one plus a half is exact.
   const double units = static_cast<double>(contribution) * 0x1p32;
   return static_cast<uint64_t>(units < 0x1p40 ? units + 0.5 : units);
 }
@@ -52,8 +52,10 @@ bool FrameBuffer::add(const FrameContribution& contribution) {
 }
 
 void FrameBuffer::add(const FrameBuffer& other) {
-  if (width_ != other.width_ || height_ != other.height_) throw InputError("frame buffers of different size cannot be added");
-  for (size_t i = 0; i < accumulators_.size(); ++i) accumulators_[i] = add_saturating(accumulators_[i], other.accumulators_[i]);
+  if (width_ != other.width_ || height_ != other.height_)
+    throw InputError("frame buffers of different size cannot be added");
+  for (size_t i = 0; i < accumulators_.size(); ++i)
+    accumulators_[i] = add_saturating(accumulators_[i], other.accumulators_[i]);
 }
 
 uint8_t to_srgb8(double linear) {
@@ -94,7 +96,8 @@ void write_png(const FrameBuffer& frame, const std::string& path) {
 }
 
 ImageDifference compare(const FrameBuffer& a, const FrameBuffer& b) {
-  if (a.width() != b.width() || a.height() != b.height()) throw InputError("pictures of different size cannot be compared");
+  if (a.width() != b.width() || a.height() != b.height())
+    throw InputError("pictures of different size cannot be compared");
   ImageDifference result;
   for (int y = 0; y < a.height(); ++y) {
     for (int x = 0; x < a.width(); ++x) {

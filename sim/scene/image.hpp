@@ -10,8 +10,9 @@
 
 namespace raypool {
 
-/// A contribution as the frame buffer adds it: unsigned fixed point, unit 2^-32. NaN and everything not above zero give 0; the
-/// rest is rounded to the nearest unit, halves up; values of 2^32 and more, and infinity, give the largest number.
+/// A contribution as the frame buffer adds it: unsigned fixed point, unit 2^-32. NaN and everything
+/// not above zero give 0; the rest is rounded to the nearest unit, halves up; values of 2^32 and more,
+/// and infinity, give the largest number.
 uint64_t to_fixed(float contribution);
 
 /// Width x height pixels of three 64-bit accumulators that saturate. Addition of non-negative numbers that saturates is
@@ -38,7 +39,9 @@ class FrameBuffer {
   }
 
  private:
-  size_t index(int x, int y) const { return 3 * (static_cast<size_t>(y) * static_cast<size_t>(width_) + static_cast<size_t>(x)); }
+  size_t index(int x, int y) const {
+    return 3 * (static_cast<size_t>(y) * static_cast<size_t>(width_) + static_cast<size_t>(x));
+  }
 
   int width_, height_;
   std::vector<uint64_t> accumulators_;

@@ -93,7 +93,8 @@ void MeshBuilder::quad(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec
 
 void MeshBuilder::box(const Vec3d& l, const Vec3d& u) {
   uint32_t v[8];
-  for (int i = 0; i < 8; ++i) v[i] = vertex({(i & 1) != 0 ? u.x : l.x, (i & 2) != 0 ? u.y : l.y, (i & 4) != 0 ? u.z : l.z});
+  for (int i = 0; i < 8; ++i)
+    v[i] = vertex({(i & 1) != 0 ? u.x : l.x, (i & 2) != 0 ? u.y : l.y, (i & 4) != 0 ? u.z : l.z});
   const int sides[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
   for (const auto& s : sides) {
     index(v[s[0]], v[s[1]], v[s[2]]);
@@ -139,7 +140,9 @@ void MeshBuilder::smooth_lathe(const std::vector<ProfilePoint>& profile, int aro
   lathe(points, around);
 }
 
-void MeshBuilder::sphere(const Vec3d& centre, double radius, int around) { cushion(centre, {radius, radius, radius}, 1, around); }
+void MeshBuilder::sphere(const Vec3d& centre, double radius, int around) {
+  cushion(centre, {radius, radius, radius}, 1, around);
+}
 
 void MeshBuilder::cylinder(const Vec3d& from, const Vec3d& to, double radius, int around) {
   const Vec3d axis = normalized(to - from);

@@ -1,4 +1,5 @@
-// Shapes for the built-in scenes. Everything is a function of its arguments; nothing is random but what a fixed seed gives.
+// Shapes for the built-in scenes. Everything is a function of its arguments; nothing is
+// random but what a fixed seed gives.
 #pragma once
 
 #include <cstdint>
@@ -48,8 +49,9 @@ class MeshBuilder {
   /// Inside out: the walls of a room.
   void room(const Vec3d& lower, const Vec3d& upper);
 
-  /// point(s, t) for s and t in 0 .. 1, nu by nv quads. A wrapped direction shares its last points with its first. Seen from the
-  /// side to which ds x dt points, triangles are counter-clockwise; those that collapse to a line are left out.
+  /// point(s, t) for s and t in 0 .. 1, nu by nv quads. A wrapped direction shares its last points
+  /// with its first. Seen from the side to which ds x dt points, triangles are counter-clockwise;
+  /// those that collapse to a line are left out.
   void surface(int nu, int nv, bool wrap_u, bool wrap_v, const std::function<Vec3d(double, double)>& point);
 
   struct ProfilePoint {

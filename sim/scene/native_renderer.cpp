@@ -15,7 +15,8 @@ namespace raypool {
 namespace {
 
 void require_range(const char* what, int value, int low, int high) {
-  if (value < low || value > high) throw InputError(fmt::format("{} is {}; it must lie in {} .. {}", what, value, low, high));
+  if (value < low || value > high)
+    throw InputError(fmt::format("{} is {}; it must lie in {} .. {}", what, value, low, high));
 }
 
 void add(TraversalCounts& sum, const TraversalCounts& part) {
@@ -36,7 +37,8 @@ void add(NativeStatistics& sum, const NativeStatistics& part) {
 /// One worker: its own picture and counts.
 class Worker {
  public:
-  Worker(const std::array<uint32_t, kArguments>& arguments, Memory& memory, const Tracer& tracer, const NativeOptions& options)
+  Worker(const std::array<uint32_t, kArguments>& arguments, Memory& memory, const Tracer& tracer,
+         const NativeOptions& options)
       : frame(options.width, options.height), tracer_(tracer), options_(options) {
     thread_.arguments = &arguments;
     thread_.memory = &memory;
@@ -84,9 +86,9 @@ class Worker {
     thread_.thread = 0;
     thread_.threads = 1;
     thread_.block = 0;
-    const bool goes_on = options_.trace
-                             ? options_.trace(ray, thread_.input)
-                             : tracer_.trace(ray, thread_.input, shadow ? &statistics.shadow_visits : &statistics.normal_visits);
+    const bool goes_on = options_.trace ? options_.trace(ray, thread_.input)
+                                        : tracer_.trace(ray, thread_.input,
+                                                        shadow ? &statistics.shadow_visits : &statistics.normal_visits);
     statistics.ray_counts.count(ray, goes_on);
     if (goes_on) run(shadow ? RayKernel::Shade : secondary_kernel(options_.depth, options_.reflections));
   }
@@ -166,8 +168,8 @@ std::array<uint32_t, kArguments> camera_arguments(const Scene& scene, int width,
   return arguments;
 }
 
-FrameBuffer render_native(const Scene& scene, const MemoryImage& image, const Tracer& tracer, const NativeOptions& options,
-                          NativeStatistics* statistics) {
+FrameBuffer render_native(const Scene& scene, const MemoryImage& image, const Tracer& tracer,
+                          const NativeOptions& options, NativeStatistics* statistics) {
   require_range("depth", options.depth, 1, kLargestDepth);
   require_range("threads", options.threads, 1, 256);
   require_range("contents", options.contents, 1, 1024);

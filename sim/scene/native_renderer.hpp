@@ -1,5 +1,5 @@
-// Engine `native`: the kernels as C++, every pixel in turn, no machine and no time. Also what all engines need to start a frame:
-// the memory image and the kernel arguments.
+// Engine `native`: the kernels as C++, every pixel in turn, no machine and no time. Also what all engines need to
+// start a frame: the memory image and the kernel arguments.
 #pragma once
 
 #include <array>
@@ -27,8 +27,9 @@ MemoryImage build_memory(const Program& program, const Scene& scene);
 /// log2 of an eye tile's width for `contents` threads (a power of two): tiles are square or twice as wide as high.
 int tile_width_log2(int contents);
 
-/// A secondary ray's origin leaves its surface by this share of the diagonal of the scene's bounding box (docs/scenes.md has the
-/// measurement), but by no less than this share of the largest coordinate of box and eye: eight of its units in the last place.
+/// A secondary ray's origin leaves its surface by this share of the diagonal of the scene's bounding box
+/// (docs/scenes.md has the measurement), but by no less than this share of the largest coordinate of box and eye:
+/// eight of its units in the last place.
 inline constexpr double kOffsetShare = 1e-5;
 inline constexpr double kLeastOffset = 1e-6;
 
@@ -61,9 +62,9 @@ struct NativeStatistics {
   uint64_t rays() const { return ray_counts.traced(); }
 };
 
-/// `tracer` must have been made from `scene` with the material_base of build_memory(ray_kernel_program(), scene). Throws
-/// InputError when an option is out of its range.
-FrameBuffer render_native(const Scene& scene, const MemoryImage& image, const Tracer& tracer, const NativeOptions& options,
-                          NativeStatistics* statistics = nullptr);
+/// `tracer` must have been made from `scene` with the material_base of build_memory(ray_kernel_program(), scene).
+/// Throws InputError when an option is out of its range.
+FrameBuffer render_native(const Scene& scene, const MemoryImage& image, const Tracer& tracer,
+                          const NativeOptions& options, NativeStatistics* statistics = nullptr);
 
 }  // namespace raypool

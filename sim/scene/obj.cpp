@@ -1,5 +1,5 @@
-// Wavefront OBJ in and out. tinyobjloader reads vertices and materials; before it, the file is scanned line by line, because
-// tinyobjloader takes malformed numbers for zero and drops faces it cannot resolve, both without a line number.
+// Wavefront OBJ in and out. tinyobjloader reads vertices and materials; before it, the file is scanned line by line,
+// because tinyobjloader takes malformed numbers for zero and drops faces it cannot resolve, both without a line number.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -52,7 +52,8 @@ bool read_float(std::string_view word, float& value) {
   if (!word.empty() && word.front() == '+') word.remove_prefix(1);
   const auto result = std::from_chars(word.data(), word.data() + word.size(), value);
   // Both the too large (becomes infinite) and the too small (harmless) are out of range.
-  if (result.ec == std::errc::result_out_of_range) value = static_cast<float>(std::strtod(std::string(word).c_str(), nullptr));
+  if (result.ec == std::errc::result_out_of_range)
+    value = static_cast<float>(std::strtod(std::string(word).c_str(), nullptr));
   return result.ec != std::errc::invalid_argument && result.ptr == word.data() + word.size();
 }
 
@@ -60,12 +61,14 @@ bool read_float(std::string_view word, float& value) {
   throw InputError(fmt::format("{}:{}: {}", path, line, message));
 }
 
-void check_numbers(const std::string& path, size_t number, std::string_view rest, const char* what, float low, float high) {
+void check_numbers(const std::string& path, size_t number, std::string_view rest, const char* what, float low,
+                   float high) {
   for (int i = 0; i < 3; ++i) {
     const std::string_view word = next_word(rest);
     float value = 0;
     if (word.empty()) fail(path, number, fmt::format("{} has {} numbers; give three", what, i));
-    if (!read_float(word, value)) fail(path, number, fmt::format("'{}' in {} is not a number; give three numbers", word, what));
+    if (!read_float(word, value))
+      fail(path, number, fmt::format("'{}' in {} is not a number; give three numbers", word, what));
     if (!(value >= low && value <= high)) {
       fail(path, number,
            fmt::format("{} has {}, which is not in {:g} .. {:g}; correct or rescale the file", what, word, low, high));
@@ -82,8 +85,8 @@ void check_mtl(const std::string& path) {
   });
 }
 
-/// Comments behind vertices and faces become blanks: tinyobjloader takes them for indices. In lines with longer keywords the
-/// character may belong to a name.
+/// Comments behind vertices and faces become blanks: tinyobjloader takes them for indices. In lines with longer
+/// keywords the character may belong to a name.
 void blank_comments(std::string& text) {
   for (size_t place = text.find('#'); place != std::string::npos; place = text.find('#', place + 1)) {
     const size_t before = place == 0 ? std::string::npos : text.rfind('\n', place - 1);
@@ -110,7 +113,8 @@ Faces check_obj(const std::string& path, const std::string& text) {
   for_each_line(text, [&](size_t number, std::string_view line) {
     if (line.find('\0') != std::string_view::npos)
       fail(path, number, "a zero byte: this is not an OBJ text file; check the path");
-    if (!line.empty() && line.back() == '\\') fail(path, number, "line continuation by '\\' is not supported; join the lines");
+    if (!line.empty() && line.back() == '\\')
+      fail(path, number, "line continuation by '\\' is not supported; join the lines");
     const std::string_view key = next_word(line);
     if (key == "v") {
       check_numbers(path, number, line, "vertex", -kLargestCoordinate, kLargestCoordinate);
@@ -145,25 +149,29 @@ Faces check_obj(const std::string& path, const std::string& text) {
       }
       if (!found) {
         fail(path, number,
-             fmt::format("material file{} is not in '{}'; put it there, under a name without blanks, or remove the line (faces "
-                         "are grey then)",
-                         names, folder.empty() ? "." : folder.string()));
+             fmt::format(
+                 "material file{} is not in '{}'; put it there, under a name without blanks, or remove the line (faces "
+                 "are grey then)",
+                 names, folder.empty() ? "." : folder.string()));
       }
     }
   });
   if (largest > vertices) {
-    fail(path, largest_line, fmt::format("vertex index {} is out of range; the file has {} vertices", largest, vertices));
+    fail(path, largest_line,
+         fmt::format("vertex index {} is out of range; the file has {} vertices", largest, vertices));
   }
-  if (faces.lines.empty()) throw InputError(path + ": the file has no faces (lines that begin with f); nothing can be rendered");
+  if (faces.lines.empty())
+    throw InputError(path + ": the file has no faces (lines that begin with f); nothing can be rendered");
   return faces;
 }
 
 /// One sentence for each kind of faces that cannot be drawn as they are, with the first one's line.
 void warn_of_faces(Scene& scene, const std::string& path, const std::map<PolygonShape, std::vector<size_t>>& lines) {
   for (const auto& [shape, of_shape] : lines) {
-    const char* what = shape == PolygonShape::Bent     ? "is not flat: which triangles it becomes is a guess; give triangles"
-                       : shape == PolygonShape::NoArea ? "has no area, as all its corners are on one line: no ray hits it"
-                                                       : "crosses itself: it is filled as a fan, which may be wrong; cut it up";
+    const char* what =
+        shape == PolygonShape::Bent     ? "is not flat: which triangles it becomes is a guess; give triangles"
+        : shape == PolygonShape::NoArea ? "has no area, as all its corners are on one line: no ray hits it"
+                                        : "crosses itself: it is filled as a fan, which may be wrong; cut it up";
     const std::string more = of_shape.size() == 1 ? "" : fmt::format(" (as do {} more)", of_shape.size() - 1);
     scene.warnings.push_back(fmt::format("{}:{}: the face{} {}", path, of_shape.front(), more, what));
   }
@@ -175,9 +183,11 @@ void add_triangles(Scene& scene, const std::string& path, const Faces& faces, co
   std::map<PolygonShape, std::vector<size_t>> lines;
   for (size_t face = 0; face < materials.size(); ++face) {
     const size_t begin = faces.begin[face];
-    const PolygonShape shape = triangulate(scene.vertices, &faces.corners[begin], faces.begin[face + 1] - begin, scene.triangles);
+    const PolygonShape shape =
+        triangulate(scene.vertices, &faces.corners[begin], faces.begin[face + 1] - begin, scene.triangles);
     if (shape != PolygonShape::Flat) lines[shape].push_back(faces.lines[face]);
-    scene.triangle_materials.resize(scene.triangles.size(), materials[face] < 0 ? grey : static_cast<uint32_t>(materials[face]));
+    scene.triangle_materials.resize(scene.triangles.size(),
+                                    materials[face] < 0 ? grey : static_cast<uint32_t>(materials[face]));
   }
   if (std::any_of(materials.begin(), materials.end(), [](int material) { return material < 0; })) {
     scene.materials.push_back({"default_grey", {0.5f, 0.5f, 0.5f}, {0, 0, 0}});
@@ -185,7 +195,9 @@ void add_triangles(Scene& scene, const std::string& path, const Faces& faces, co
   warn_of_faces(scene, path, lines);
 }
 
-Vec3 to_vec3(const tinyobj::real_t* v) { return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])}; }
+Vec3 to_vec3(const tinyobj::real_t* v) {
+  return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
+}
 
 }  // namespace
 
@@ -237,7 +249,8 @@ void write_obj(const Scene& scene, const std::string& path) {
     if (c >= 0 && c <= ' ') c = '_';
   }
   const std::filesystem::path mtl_path = std::filesystem::path(path).parent_path() / mtl_name;
-  if (mtl_path == path) throw InputError(path + ": this is the name of its material file; end the OBJ file's name in .obj");
+  if (mtl_path == path)
+    throw InputError(path + ": this is the name of its material file; end the OBJ file's name in .obj");
   // Names must be single words, each used once.
   std::vector<std::string> names;
   std::set<std::string> taken;
@@ -254,11 +267,11 @@ void write_obj(const Scene& scene, const std::string& path) {
   fmt::memory_buffer mtl, obj;
   for (size_t i = 0; i < names.size(); ++i) {
     const Material& m = scene.materials[i];
-    fmt::format_to(std::back_inserter(mtl), "newmtl {}\nKd {} {} {}\nKs {} {} {}\n", names[i], m.kd.x, m.kd.y, m.kd.z, m.ks.x,
-                   m.ks.y, m.ks.z);
+    fmt::format_to(std::back_inserter(mtl), "newmtl {}\nKd {} {} {}\nKs {} {} {}\n", names[i], m.kd.x, m.kd.y, m.kd.z,
+                   m.ks.x, m.ks.y, m.ks.z);
   }
-  fmt::format_to(std::back_inserter(obj), "# {}: {} vertices, {} triangles\nmtllib {}\n", scene.name, scene.vertices.size(),
-                 scene.triangles.size(), mtl_name);
+  fmt::format_to(std::back_inserter(obj), "# {}: {} vertices, {} triangles\nmtllib {}\n", scene.name,
+                 scene.vertices.size(), scene.triangles.size(), mtl_name);
   for (const Vec3& v : scene.vertices) fmt::format_to(std::back_inserter(obj), "v {} {} {}\n", v.x, v.y, v.z);
   for (size_t i = 0; i < scene.triangles.size(); ++i) {
     if (i == 0 || scene.triangle_materials[i] != scene.triangle_materials[i - 1]) {

@@ -12,7 +12,8 @@ namespace {
 class Obj : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder_ = ::testing::TempDir() + "raypool_obj_test_" + ::testing::UnitTest::GetInstance()->current_test_info()->name();
+    folder_ =
+        ::testing::TempDir() + "raypool_obj_test_" + ::testing::UnitTest::GetInstance()->current_test_info()->name();
     std::filesystem::create_directories(folder_);
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
@@ -81,15 +82,16 @@ TEST_F(Obj, FacesThatCannotBeDrawnAsTheyAreAreNamed) {
 
 TEST_F(Obj, FacesKeepTheirMaterialsWhateverTheirCorners) {
   write("m.mtl", "newmtl a\nnewmtl b\n");
-  const Scene scene =
-      load("mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nusemtl b\nf 1 2 3 4\no x\nf 1 2 3\nusemtl a\ng y\nf -4 -3 -2 -1\n");
+  const Scene scene = load(
+      "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nusemtl b\nf 1 2 3 4\no x\nf 1 2 3\nusemtl a\ng y\nf -4 -3 -2 "
+      "-1\n");
   EXPECT_EQ(scene.triangle_materials, (std::vector<uint32_t>{1, 1, 1, 0, 0}));
   EXPECT_EQ(scene.triangles[2], (std::array<uint32_t, 3>{0, 1, 2}));
 }
 
 TEST_F(Obj, AcceptsWindowsLinesRelativeIndicesAndEverySlashForm) {
-  const Scene scene =
-      load("# text\r\n" + kTriangle + "vt 0 0\nvn 0 0 1\r\nf -3 -2 -1\r\nf 1/1 2/1 3/1\nf 1//1 2//1 3//1\nf 1/1/1 2/1/1 3/1/1");
+  const Scene scene = load("# text\r\n" + kTriangle +
+                           "vt 0 0\nvn 0 0 1\r\nf -3 -2 -1\r\nf 1/1 2/1 3/1\nf 1//1 2//1 3//1\nf 1/1/1 2/1/1 3/1/1");
   EXPECT_EQ(scene.triangles.size(), 4u);
   for (const auto& triangle : scene.triangles) EXPECT_EQ(triangle, (std::array<uint32_t, 3>{0, 1, 2}));
 }

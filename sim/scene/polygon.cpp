@@ -25,7 +25,9 @@ struct Point {
 };
 
 /// Twice the signed area.
-double area(const Point& a, const Point& b, const Point& c) { return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x); }
+double area(const Point& a, const Point& b, const Point& c) {
+  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
 
 struct Face {
   Vec3d normal;               // by Newell's formula: its length is twice the enclosed area
@@ -40,7 +42,8 @@ Face measure(const std::vector<Vec3>& vertices, const uint32_t* corners, size_t 
   const Vec3d first = vertices[corners[0]].as<double>();
   Vec3d mean;
   for (size_t i = 0; i < count; ++i) {
-    const Vec3d a = vertices[corners[i]].as<double>() - first, b = vertices[corners[(i + 1) % count]].as<double>() - first;
+    const Vec3d a = vertices[corners[i]].as<double>() - first,
+                b = vertices[corners[(i + 1) % count]].as<double>() - first;
     face.normal = face.normal + cross(a, b);
     face.size = std::max(face.size, length(a));
     mean = mean + a * (1.0 / static_cast<double>(count));
@@ -56,7 +59,8 @@ Face measure(const std::vector<Vec3>& vertices, const uint32_t* corners, size_t 
   for (const int other : {1, 2}) {
     if (std::fabs(n[other]) > std::fabs(n[axis])) axis = other;
   }
-  // Seen from the side to which the normal points, corners go counter-clockwise: the axes change places when it points down.
+  // Seen from the side to which the normal points, corners go counter-clockwise: the
+  // axes change places when it points down.
   const int x = n[axis] > 0 ? (axis + 1) % 3 : (axis + 2) % 3, y = n[axis] > 0 ? (axis + 2) % 3 : (axis + 1) % 3;
   for (size_t i = 0; i < count; ++i) {
     const Vec3d p = vertices[corners[i]].as<double>();
@@ -105,7 +109,8 @@ class Geos {
       const Point& p = outline[i % outline.size()];
       GEOSCoordSeq_setXY_r(context_, ring, static_cast<unsigned>(i), p.x, p.y);
     }
-    const Geometry polygon = own(GEOSGeom_createPolygon_r(context_, GEOSGeom_createLinearRing_r(context_, ring), nullptr, 0));
+    const Geometry polygon =
+        own(GEOSGeom_createPolygon_r(context_, GEOSGeom_createLinearRing_r(context_, ring), nullptr, 0));
     std::vector<std::array<Point, 3>> triangles;
     if (!polygon) return triangles;
     const Geometry all = own(GEOSConstrainedDelaunayTriangulation_r(context_, polygon.get()));
@@ -165,7 +170,8 @@ bool on_one_line(const std::vector<Vec3>& vertices, const uint32_t* corners, siz
 
 }  // namespace
 
-PolygonShape triangulate(const std::vector<Vec3>& vertices, const uint32_t* corners, size_t count, Triangles& triangles) {
+PolygonShape triangulate(const std::vector<Vec3>& vertices, const uint32_t* corners, size_t count,
+                         Triangles& triangles) {
   if (count == 3) {
     fan(corners, count, triangles);
     return PolygonShape::Flat;

@@ -11,7 +11,7 @@ namespace raypool {
 
 enum class PolygonShape : uint8_t {
   Flat,
-  Bent,      ///< a corner is off the others' plane by more than a hundredth of the face's size: which triangles is a guess
+  Bent,  ///< a corner is off the others' plane by more than a hundredth of the face's size: which triangles is a guess
   NoArea,    ///< all corners on one line; its triangles have no area either
   Crossing,  ///< the outline crosses itself and encloses nothing definite; it becomes a fan from its first corner
 };

@@ -6,8 +6,9 @@
 namespace raypool {
 namespace {
 
-/// A shadow ray carries what it adds if it is free: nothing, where the frame buffer would round it to nothing. A normal ray's
-/// throughput may still be multiplied with bright colours; only zero, negative or NaN is without effect for certain.
+/// A shadow ray carries what it adds if it is free: nothing, where the frame buffer would round it to
+/// nothing. A normal ray's throughput may still be multiplied with bright colours; only zero, negative
+/// or NaN is without effect for certain.
 bool weightless(const Ray& ray, bool shadow) {
   for (int channel = 0; channel < 3; ++channel) {
     const float weight = as_float(ray[word::kColor + channel]);

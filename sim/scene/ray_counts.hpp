@@ -1,4 +1,5 @@
-// What became of the rays of a frame, by kind; docs/report.md defines the figures. Every engine counts them the same way.
+// What became of the rays of a frame, by kind; docs/report.md defines the figures.
+// Every engine counts them the same way.
 #pragma once
 
 #include <cstdint>

@@ -84,8 +84,9 @@ inline void run(RayKernel kernel, NativeThread& thread) {
     case RayKernel::CastSecondaryDirect:
       return cast_secondary(thread, false);
     case RayKernel::Shade:
-      thread.frame.push_back({thread.input[word::kPixel],
-                              {thread.input[word::kColor], thread.input[word::kColor + 1], thread.input[word::kColor + 2]}});
+      thread.frame.push_back(
+          {thread.input[word::kPixel],
+           {thread.input[word::kColor], thread.input[word::kColor + 1], thread.input[word::kColor + 2]}});
   }
 }
 

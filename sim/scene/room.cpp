@@ -9,7 +9,8 @@ namespace {
 
 using room::Palette;
 
-// Metres: x along the table, away from the far wall with the screen; z from the window wall. The floor's upper side is y = 0.
+// Metres: x along the table, away from the far wall with the screen; z from the window
+// wall. The floor's upper side is y = 0.
 constexpr double kLength = 9.6, kHeight = 3.1, kWidth = 6.4;
 constexpr double kTableX = 4.35, kTableZ = 3.0;
 
@@ -146,7 +147,8 @@ void add_tabletop(MeshBuilder& mesh, const Palette& palette) {
   for (int i = 0; i < 5; ++i) {
     for (int side = 0; side < 2; ++side) {
       const double x = kTableX - 1.72 + 0.86 * i, outward = side == 0 ? -1 : 1, turn = side == 0 ? 180 : 0;
-      mesh.place(Transform::move({x + outward * 0.24, top, kTableZ + outward * 0.38}) * Transform::turn_y(random.next(0, 360)));
+      mesh.place(Transform::move({x + outward * 0.24, top, kTableZ + outward * 0.38}) *
+                 Transform::turn_y(random.next(0, 360)));
       room::add_cup(mesh, palette);
       mesh.place(Transform::move({x, top, kTableZ + outward * 0.50}) * Transform::turn_y(turn + random.next(-12, 12)));
       if ((i + side) % 2 == 0) {

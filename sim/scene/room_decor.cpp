@@ -15,17 +15,21 @@ void add_pendant(MeshBuilder& mesh, const Palette& palette, double cord) {
   const int around = mesh.segments(64, 10), along = mesh.segments(24, 5);
   mesh.use(palette.brass);
   mesh.lathe({{0, -0.03}, {0.06, -0.03}, {0.06, 0}, {0, 0}}, mesh.segments(24, 8));
-  mesh.smooth_lathe({{0.235, -cord - 0.25}, {0.225, -cord - 0.17}, {0.16, -cord - 0.07}, {0.05, -cord - 0.02}, {0.0, -cord}},
-                    around, along);
+  mesh.smooth_lathe(
+      {{0.235, -cord - 0.25}, {0.225, -cord - 0.17}, {0.16, -cord - 0.07}, {0.05, -cord - 0.02}, {0.0, -cord}}, around,
+      along);
   mesh.tube(
       [&](double s) {
         return Vec3d{0.233 * std::cos(2 * kPi * s), -cord - 0.25, 0.233 * std::sin(2 * kPi * s)};
       },
       0.007, around, mesh.segments(8, 4), true);
   mesh.use(palette.frame);
-  mesh.smooth_lathe(
-      {{0.0, -cord - 0.012}, {0.045, -cord - 0.03}, {0.15, -cord - 0.08}, {0.216, -cord - 0.175}, {0.228, -cord - 0.25}}, around,
-      along);
+  mesh.smooth_lathe({{0.0, -cord - 0.012},
+                     {0.045, -cord - 0.03},
+                     {0.15, -cord - 0.08},
+                     {0.216, -cord - 0.175},
+                     {0.228, -cord - 0.25}},
+                    around, along);
   mesh.use(palette.glow);
   mesh.sphere({0, -cord - 0.17, 0}, 0.07, mesh.segments(24, 8));
   mesh.use(palette.plastic);
@@ -34,7 +38,8 @@ void add_pendant(MeshBuilder& mesh, const Palette& palette, double cord) {
 
 void add_floor_lamp(MeshBuilder& mesh, const Palette& palette) {
   mesh.use(palette.brass);
-  mesh.smooth_lathe({{0, 0}, {0.16, 0}, {0.165, 0.012}, {0.14, 0.025}, {0.02, 0.04}}, mesh.segments(40, 8), mesh.segments(12, 4));
+  mesh.smooth_lathe({{0, 0}, {0.16, 0}, {0.165, 0.012}, {0.14, 0.025}, {0.02, 0.04}}, mesh.segments(40, 8),
+                    mesh.segments(12, 4));
   mesh.cylinder({0, 0.03, 0}, {0, 1.5, 0}, 0.012, mesh.segments(12, 5));
   mesh.use(palette.porcelain);
   // A pleated shade.
@@ -48,8 +53,9 @@ void add_plant(MeshBuilder& mesh, const Palette& palette, uint64_t seed, int lea
   Sequence random(seed);
   const int around = mesh.segments(48, 8);
   mesh.use(pot);
-  mesh.smooth_lathe({{0, 0}, {0.13, 0}, {0.15, 0.02}, {0.19, 0.20}, {0.215, 0.38}, {0.205, 0.40}, {0.19, 0.36}, {0.185, 0.33}},
-                    around, mesh.segments(28, 7));
+  mesh.smooth_lathe(
+      {{0, 0}, {0.13, 0}, {0.15, 0.02}, {0.19, 0.20}, {0.215, 0.38}, {0.205, 0.40}, {0.19, 0.36}, {0.185, 0.33}},
+      around, mesh.segments(28, 7));
   mesh.use(palette.soil);
   mesh.smooth_lathe({{0.188, 0.345}, {0.10, 0.36}, {0, 0.365}}, around, 4);
   const int nu = mesh.segments(6, 2), nv = mesh.segments(12, 3);
@@ -64,8 +70,8 @@ void add_plant(MeshBuilder& mesh, const Palette& palette, uint64_t seed, int lea
     const Vec3d out{std::cos(angle), 0, std::sin(angle)}, side{-out.z, 0, out.x};
     const Vec3d foot = out * 0.05 + Vec3d{0, 0.34, 0}, top = out * reach + Vec3d{0, 0.36 + rise, 0};
     mesh.use(palette.leaf);
-    mesh.tube([&](double s) { return foot + (top - foot) * s - out * (0.5 * reach * s * (1 - s)); }, 0.006, mesh.segments(4, 2),
-              mesh.segments(5, 3));
+    mesh.tube([&](double s) { return foot + (top - foot) * s - out * (0.5 * reach * s * (1 - s)); }, 0.006,
+              mesh.segments(4, 2), mesh.segments(5, 3));
     mesh.use(random.next(0, 1) < 0.4 ? palette.leaf_light : palette.leaf);
     mesh.surface(nu, nv, false, false, [&](double s, double t) {
       const double across = 2 * s - 1, width = half * std::pow(std::sin(kPi * std::pow(t, 0.75)), 0.8);

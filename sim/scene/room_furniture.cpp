@@ -17,7 +17,9 @@ Vec3d through(const std::vector<Vec3d>& points, double s) {
   const double f = place - i;
   auto at = [&](int k) { return points[std::clamp(k, 0, last)]; };
   const Vec3d a = at(i - 1), b = at(i), c = at(i + 1), d = at(i + 2);
-  return (b * 2.0 + (c - a) * f + (a * 2.0 - b * 5.0 + c * 4.0 - d) * (f * f) + (b * 3.0 - a - c * 3.0 + d) * (f * f * f)) * 0.5;
+  return (b * 2.0 + (c - a) * f + (a * 2.0 - b * 5.0 + c * 4.0 - d) * (f * f) +
+          (b * 3.0 - a - c * 3.0 + d) * (f * f * f)) *
+         0.5;
 }
 
 }  // namespace
@@ -28,7 +30,11 @@ void add_chair(MeshBuilder& mesh, const Palette& palette) {
   for (int leg = 0; leg < 5; ++leg) {
     mesh.place(at * Transform::turn_y(72.0 * leg + 36));
     mesh.use(palette.chrome);
-    mesh.tube([](double s) { return Vec3d{0.02 + 0.28 * s, 0.115 - 0.045 * s * s, 0}; }, 0.017, mesh.segments(8, 2), ring);
+    mesh.tube(
+        [](double s) {
+          return Vec3d{0.02 + 0.28 * s, 0.115 - 0.045 * s * s, 0};
+        },
+        0.017, mesh.segments(8, 2), ring);
     mesh.use(palette.plastic);
     mesh.cushion({0.30, 0.032, 0}, {0.030, 0.032, 0.022}, 0.8, mesh.segments(12, 6));
   }
@@ -88,8 +94,8 @@ void add_table(MeshBuilder& mesh, const Palette& palette) {
     mesh.smooth_lathe({{0.13, 0.03}, {0.085, 0.14}, {0.075, 0.35}, {0.09, 0.55}, {0.20, 0.675}}, mesh.segments(48, 8),
                       mesh.segments(24, 4));
     mesh.use(palette.chrome);
-    mesh.smooth_lathe({{0, 0}, {0.36, 0}, {0.37, 0.012}, {0.34, 0.028}, {0.16, 0.045}, {0.12, 0.06}}, mesh.segments(64, 8),
-                      mesh.segments(16, 5));
+    mesh.smooth_lathe({{0, 0}, {0.36, 0}, {0.37, 0.012}, {0.34, 0.028}, {0.16, 0.045}, {0.12, 0.06}},
+                      mesh.segments(64, 8), mesh.segments(16, 5));
   }
   mesh.place(at);
 }
@@ -125,7 +131,8 @@ void add_bookshelf(MeshBuilder& mesh, const Palette& palette, uint64_t seed) {
           return Vec3d{x + thick / 2 - thick / 2 * std::cos(angle), 0, front + 0.4 * thick * std::sin(angle)};
         };
         mesh.surface(spine + 2, 3, false, false, [&](double s, double t) {
-          const int column = static_cast<int>(std::lround(s * (spine + 2))), level = static_cast<int>(std::lround(t * 3));
+          const int column = static_cast<int>(std::lround(s * (spine + 2))),
+                    level = static_cast<int>(std::lround(t * 3));
           Vec3d p = outline(std::clamp((column - 1.0) / spine, 0.0, 1.0));
           if (column == 0 || column == spine + 2) p.z = front - deep;
           if (level == 0 || level == 3) p.x = x + thick / 2, p.z = std::min(p.z, front);

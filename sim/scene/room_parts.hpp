@@ -1,5 +1,5 @@
-// The parts of the built-in meeting room. Each function adds one thing at the builder's transform: y up, standing on y = 0,
-// metres.
+// The parts of the built-in meeting room. Each function adds one thing at the builder's
+// transform: y up, standing on y = 0, metres.
 #pragma once
 
 #include "scene/mesh_builder.hpp"
@@ -8,10 +8,11 @@ namespace raypool::room {
 
 /// Material numbers of the room.
 struct Palette {
-  uint32_t wall, ceiling, oak, oak_dark, oak_light, rug, rug_border, table, table_edge, fabric, shell, chrome, plastic, shelf;
+  uint32_t wall, ceiling, oak, oak_dark, oak_light, rug, rug_border, table, table_edge, fabric, shell, chrome, plastic,
+      shelf;
   uint32_t books[5];
-  uint32_t leaf, leaf_light, soil, ceramic, terracotta, brass, glow, curtain, sky, frame, screen, paper, silver, porcelain,
-      bottle, sofa, accent;
+  uint32_t leaf, leaf_light, soil, ceramic, terracotta, brass, glow, curtain, sky, frame, screen, paper, silver,
+      porcelain, bottle, sofa, accent;
 };
 inline constexpr int kMaterials = 36;
 
@@ -30,9 +31,9 @@ void add_pendant(MeshBuilder& mesh, const Palette& palette, double cord);  ///< 
 void add_floor_lamp(MeshBuilder& mesh, const Palette& palette);
 void add_plant(MeshBuilder& mesh, const Palette& palette, uint64_t seed, int leaves, double height, uint32_t pot);
 void add_curtain(MeshBuilder& mesh, const Palette& palette, double width, double height,
-                 double phase);                                                             ///< hangs in the plane z = 0
-void add_window(MeshBuilder& mesh, const Palette& palette, double width, double height);    ///< in the plane z = 0
-void add_screen(MeshBuilder& mesh, const Palette& palette);                                 ///< 2.4 x 1.35, centre at 0
+                 double phase);                                                           ///< hangs in the plane z = 0
+void add_window(MeshBuilder& mesh, const Palette& palette, double width, double height);  ///< in the plane z = 0
+void add_screen(MeshBuilder& mesh, const Palette& palette);                               ///< 2.4 x 1.35, centre at 0
 void add_painting(MeshBuilder& mesh, const Palette& palette, double width, double height);  ///< centre at 0
 void add_clock(MeshBuilder& mesh, const Palette& palette);                                  ///< centre at 0
 void add_knot(MeshBuilder& mesh, const Palette& palette);                                   ///< sculpture on a plinth

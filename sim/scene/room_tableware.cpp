@@ -14,11 +14,17 @@ constexpr double kPi = 3.14159265358979323846;
 void add_cup(MeshBuilder& mesh, const Palette& palette) {
   const int around = mesh.segments(32, 8);
   mesh.use(palette.porcelain);
-  mesh.smooth_lathe({{0, 0}, {0.045, 0.0}, {0.07, 0.012}, {0.078, 0.018}, {0.068, 0.016}, {0.03, 0.008}, {0, 0.008}}, around,
-                    mesh.segments(14, 6));
-  mesh.smooth_lathe(
-      {{0, 0.01}, {0.024, 0.01}, {0.030, 0.022}, {0.040, 0.05}, {0.043, 0.078}, {0.0405, 0.078}, {0.037, 0.05}, {0.033, 0.035}},
-      around, mesh.segments(20, 7));
+  mesh.smooth_lathe({{0, 0}, {0.045, 0.0}, {0.07, 0.012}, {0.078, 0.018}, {0.068, 0.016}, {0.03, 0.008}, {0, 0.008}},
+                    around, mesh.segments(14, 6));
+  mesh.smooth_lathe({{0, 0.01},
+                     {0.024, 0.01},
+                     {0.030, 0.022},
+                     {0.040, 0.05},
+                     {0.043, 0.078},
+                     {0.0405, 0.078},
+                     {0.037, 0.05},
+                     {0.033, 0.035}},
+                    around, mesh.segments(20, 7));
   mesh.tube(
       [](double s) {
         return Vec3d{0.038 + 0.026 * std::sin(kPi * s), 0.048 - 0.020 * std::cos(kPi * s), 0};
@@ -30,16 +36,18 @@ void add_cup(MeshBuilder& mesh, const Palette& palette) {
 
 void add_carafe(MeshBuilder& mesh, const Palette& palette) {
   mesh.use(palette.bottle);
-  mesh.smooth_lathe({{0, 0}, {0.055, 0}, {0.064, 0.01}, {0.066, 0.08}, {0.05, 0.15}, {0.026, 0.2}, {0.024, 0.24}, {0.032, 0.27}},
-                    mesh.segments(40, 8), mesh.segments(30, 8));
+  mesh.smooth_lathe(
+      {{0, 0}, {0.055, 0}, {0.064, 0.01}, {0.066, 0.08}, {0.05, 0.15}, {0.026, 0.2}, {0.024, 0.24}, {0.032, 0.27}},
+      mesh.segments(40, 8), mesh.segments(30, 8));
   mesh.use(palette.chrome);
   mesh.sphere({0, 0.283, 0}, 0.027, mesh.segments(24, 8));
 }
 
 void add_bowl(MeshBuilder& mesh, const Palette& palette) {
   mesh.use(palette.ceramic);
-  mesh.smooth_lathe({{0, 0}, {0.07, 0}, {0.075, 0.012}, {0.13, 0.045}, {0.17, 0.085}, {0.164, 0.088}, {0.12, 0.055}, {0, 0.03}},
-                    mesh.segments(64, 10), mesh.segments(28, 7));
+  mesh.smooth_lathe(
+      {{0, 0}, {0.07, 0}, {0.075, 0.012}, {0.13, 0.045}, {0.17, 0.085}, {0.164, 0.088}, {0.12, 0.055}, {0, 0.03}},
+      mesh.segments(64, 10), mesh.segments(28, 7));
   const double fruit[6][3] = {{0.06, 0.085, 0.02},  {-0.055, 0.085, 0.045}, {-0.02, 0.085, -0.065},
                               {0.085, 0.09, -0.06}, {0.0, 0.145, 0.0},      {0.01, 0.088, 0.095}};
   const uint32_t colours[6] = {palette.accent,   palette.leaf_light, palette.books[4],

@@ -11,15 +11,16 @@ namespace {
 
 bool usable(const Vec3& v) {
   // A NaN fails every comparison.
-  return std::fabs(v.x) <= kLargestCoordinate && std::fabs(v.y) <= kLargestCoordinate && std::fabs(v.z) <= kLargestCoordinate;
+  return std::fabs(v.x) <= kLargestCoordinate && std::fabs(v.y) <= kLargestCoordinate &&
+         std::fabs(v.z) <= kLargestCoordinate;
 }
 
 std::string text(const Vec3& v) { return fmt::format("({}, {}, {})", v.x, v.y, v.z); }
 
 void require_usable(const Vec3& v, const std::string& where, const char* what) {
   if (!usable(v)) {
-    throw InputError(fmt::format("{}: {} is {}; each component must be a number of at most {:g} in magnitude", where, what,
-                                 text(v), kLargestCoordinate));
+    throw InputError(fmt::format("{}: {} is {}; each component must be a number of at most {:g} in magnitude", where,
+                                 what, text(v), kLargestCoordinate));
   }
 }
 
@@ -68,7 +69,8 @@ void check_camera(const Camera& camera, const std::string& where) {
     throw InputError(where + ": the camera's up is parallel to its direction; choose another up");
   }
   if (!(camera.fov >= kLeastFov && camera.fov <= kLargestFov)) {
-    throw InputError(fmt::format("{}: fov is {}; it must lie in {} .. {} degrees", where, camera.fov, kLeastFov, kLargestFov));
+    throw InputError(
+        fmt::format("{}: fov is {}; it must lie in {} .. {} degrees", where, camera.fov, kLeastFov, kLargestFov));
   }
 }
 
@@ -84,8 +86,8 @@ void check_scene(const Scene& scene, const std::string& where) {
   for (size_t i = 0; i < scene.triangles.size(); ++i) {
     for (uint32_t index : scene.triangles[i]) {
       if (index >= scene.vertices.size()) {
-        throw InputError(fmt::format("{}: triangle {} names vertex {}, but there are {}; correct the index", where, i, index,
-                                     scene.vertices.size()));
+        throw InputError(fmt::format("{}: triangle {} names vertex {}, but there are {}; correct the index", where, i,
+                                     index, scene.vertices.size()));
       }
     }
     if (scene.triangle_materials[i] >= scene.materials.size()) {

@@ -82,18 +82,20 @@ Scene load_scene(const std::string& name_or_path, const SceneOptions& options = 
 
 /// Closed box of 5.5 m with two blocks, one of them a mirror, camera and light inside.
 Scene make_cornell(double detail = 1.0);
-/// Furnished meeting room, 331,000 triangles at detail 1, 36 materials that each mirror half of what they reflect diffusely.
+/// Furnished meeting room, 331,000 triangles at detail 1, 36 materials that each mirror
+/// half of what they reflect diffusely.
 Scene make_room(double detail = 1.0);
 
-/// Reads Wavefront OBJ with its MTL files; polygons become triangles (scene/polygon.hpp), faces without a material a grey one.
+/// Reads Wavefront OBJ with its MTL files; polygons become triangles (scene/polygon.hpp),
+/// faces without a material a grey one.
 /// Sets no camera and no light. Throws InputError naming file and line.
 Scene load_obj(const std::string& path);
-/// Writes `path` and, beside it with the ending .mtl, its materials; load_obj reads the same triangles and materials back, bit
-/// for bit.
+/// Writes `path` and, beside it with the ending .mtl, its materials; load_obj reads the same
+/// triangles and materials back, bit for bit.
 void write_obj(const Scene& scene, const std::string& path);
 
-/// Reads a view file (JSON): eye, direction or target, up, fov, light {position, color}. Throws InputError naming file, key and
-/// range.
+/// Reads a view file (JSON): eye, direction or target, up, fov, light {position, color}. Throws
+/// InputError naming file, key and range.
 View load_view(const std::string& path);
 void write_view(const View& view, const std::string& path);
 /// A view file's text.
@@ -101,13 +103,15 @@ std::string to_json(const View& view);
 /// Throws InputError when look_at is where the eye is.
 void change_view(View& view, const ViewChanges& changes);
 
-/// A view for a scene of which nothing is known but its triangles, as docs/scenes.md describes; what `changes` sets is kept.
+/// A view for a scene of which nothing is known but its triangles, as docs/scenes.md
+/// describes; what `changes` sets is kept.
 /// Throws InputError when it cannot be used.
 View automatic_view(const Scene& scene, const ViewChanges& changes = {});
 
 /// Throws InputError when the camera cannot be used; `where` begins the sentence.
 void check_camera(const Camera& camera, const std::string& where);
-/// Throws InputError when camera, light, indices, coordinates or materials cannot be rendered; `where` begins the sentence.
+/// Throws InputError when camera, light, indices, coordinates or materials cannot be
+/// rendered; `where` begins the sentence.
 void check_scene(const Scene& scene, const std::string& where);
 
 /// True when the triangle has no area, so that no ray hits it.

@@ -60,7 +60,8 @@ TEST(BuiltInScenes, NothingSticksThroughTheWallsOfTheRoom) {
 TEST(BuiltInScenes, AreTheSameEveryTimeAndScaleWithDetail) {
   const Scene a = make_room(0.2), b = make_room(0.2), half = make_room(0.5), full = make_room(1);
   EXPECT_EQ(a.triangles, b.triangles);
-  EXPECT_TRUE(a.vertices.size() == b.vertices.size() && std::equal(a.vertices.begin(), a.vertices.end(), b.vertices.begin()));
+  EXPECT_TRUE(a.vertices.size() == b.vertices.size() &&
+              std::equal(a.vertices.begin(), a.vertices.end(), b.vertices.begin()));
   EXPECT_LT(a.triangles.size(), half.triangles.size());
   EXPECT_NEAR(static_cast<double>(half.triangles.size()) / static_cast<double>(full.triangles.size()), 0.5, 0.08);
   SceneOptions options;
@@ -73,7 +74,9 @@ TEST(BuiltInScenes, AreTheSameEveryTimeAndScaleWithDetail) {
 double signed_volume(const Scene& scene) {
   double volume = 0;
   for (size_t i = 0; i < scene.triangles.size(); ++i) {
-    volume += dot(scene.corner(i, 0).as<double>(), cross(scene.corner(i, 1).as<double>(), scene.corner(i, 2).as<double>())) / 6;
+    volume +=
+        dot(scene.corner(i, 0).as<double>(), cross(scene.corner(i, 1).as<double>(), scene.corner(i, 2).as<double>())) /
+        6;
   }
   return volume;
 }
@@ -255,8 +258,8 @@ TEST(AutomaticView, KeepsWhatIsGivenAndChoosesTheRest) {
 class ViewFile : public ::testing::Test {
  protected:
   // Tests may run side by side: each has its own file.
-  std::string path_ =
-      ::testing::TempDir() + "raypool_view_test_" + ::testing::UnitTest::GetInstance()->current_test_info()->name() + ".json";
+  std::string path_ = ::testing::TempDir() + "raypool_view_test_" +
+                      ::testing::UnitTest::GetInstance()->current_test_info()->name() + ".json";
   void TearDown() override { std::filesystem::remove(path_); }
   std::string error_of(const std::string& text) {
     std::ofstream(path_) << text;
@@ -292,10 +295,13 @@ TEST_F(ViewFile, ReadsBackWhatWasWritten) {
 TEST_F(ViewFile, ErrorsNameTheKey) {
   const std::string light = R"("light": {"position": [0, 1, 0]})";
   EXPECT_EQ(error_of("{\"eye\": [0, 0, 0], \"target\": [0, 0, -1], " + light + "}"), "");
-  EXPECT_NE(error_of("{\"eye\": [0, 0, 0], \"target\": [0, 0, 0], " + light + "}").find("direction"), std::string::npos);
+  EXPECT_NE(error_of("{\"eye\": [0, 0, 0], \"target\": [0, 0, 0], " + light + "}").find("direction"),
+            std::string::npos);
   EXPECT_NE(error_of("{\"eye\": [0, 0], \"target\": [0, 0, -1], " + light + "}").find("eye"), std::string::npos);
-  EXPECT_NE(error_of("{\"eye\": [0, 0, 1e30], \"target\": [0, 0, -1], " + light + "}").find("eye[2]"), std::string::npos);
-  EXPECT_NE(error_of("{\"eye\": [0, 0, 0], \"direction\": [0, 2, 0], " + light + "}").find("parallel"), std::string::npos);
+  EXPECT_NE(error_of("{\"eye\": [0, 0, 1e30], \"target\": [0, 0, -1], " + light + "}").find("eye[2]"),
+            std::string::npos);
+  EXPECT_NE(error_of("{\"eye\": [0, 0, 0], \"direction\": [0, 2, 0], " + light + "}").find("parallel"),
+            std::string::npos);
   EXPECT_NE(error_of("{\"eye\": [0, 0, 0], \"direction\": [0, 0, 1], \"fov\": 180, " + light + "}").find("fov"),
             std::string::npos);
   EXPECT_NE(error_of("{\"eye\": [0, 0, 0], \"direction\": [0, 0, 1], \"fow\": 60, " + light + "}").find("fow"),

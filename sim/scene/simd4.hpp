@@ -1,5 +1,5 @@
-// Four floats at a time. Vector extensions of GCC and Clang give the operators; what they lack is below, for SSE and for any
-// other machine. Every operation rounds as its scalar form does.
+// Four floats at a time. Vector extensions of GCC and Clang give the operators; what they lack is below, for SSE and
+// for any other machine. Every operation rounds as its scalar form does.
 #pragma once
 
 #include <cstring>

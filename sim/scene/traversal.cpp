@@ -14,14 +14,15 @@ namespace {
 
 constexpr int kMaxDepth = 80;
 constexpr float kUlp = 1.1920929e-7f;  // 2^-23
-constexpr float kPadding = 8 * kUlp;   // of the largest distance; the triangle test and the slabs err by less than half of it
+constexpr float kPadding =
+    8 * kUlp;  // of the largest distance; the triangle test and the slabs err by less than half of it
 constexpr float kNearScale = 1 - 4 * kUlp;  // t of a slab carries three roundings
 constexpr float kFarScale = 1 + 4 * kUlp;
 constexpr double kCancelled = 0x1p-10;     // what is left of a sum is a smaller share of its terms than this
 constexpr float kLargestDistance = 1e18f;  // products of two distances stay finite
 
-/// A ray with all that boxes and triangles ask of it. Its direction is scaled by a power of two so that the largest component
-/// lies in 1 .. 2; times t_scale, internal t is the ray's.
+/// A ray with all that boxes and triangles ask of it. Its direction is scaled by a power of two so that the largest
+/// component lies in 1 .. 2; times t_scale, internal t is the ray's.
 struct PreparedRay {
   bool valid = false;
   float origin[3];
@@ -55,7 +56,8 @@ PreparedRay prepare(const RayQuery& query, const Bounds& bounds) {
   ray.limit = query.limit;
   const double internal_limit = static_cast<double>(query.limit) / ray.t_scale;
   ray.internal_limit = static_cast<float>(internal_limit);
-  if (static_cast<double>(ray.internal_limit) < internal_limit) ray.internal_limit = std::nextafter(ray.internal_limit, INFINITY);
+  if (static_cast<double>(ray.internal_limit) < internal_limit)
+    ray.internal_limit = std::nextafter(ray.internal_limit, INFINITY);
 
   const double padding = static_cast<double>(kPadding) * static_cast<double>(distance);
   double* const direction = ray.direction;
@@ -141,7 +143,8 @@ double plane_t(const PreparedRay& ray, const TriangleBlock& block, unsigned lane
   Vec3d corners[3];
   for (int corner = 0; corner < 3; ++corner) {
     for (int axis = 0; axis < 3; ++axis) {
-      corners[corner][axis] = static_cast<double>(block.vertices[corner][axis][lane]) - static_cast<double>(ray.origin[axis]);
+      corners[corner][axis] =
+          static_cast<double>(block.vertices[corner][axis][lane]) - static_cast<double>(ray.origin[axis]);
     }
   }
   const Vec3d normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
@@ -149,7 +152,8 @@ double plane_t(const PreparedRay& ray, const TriangleBlock& block, unsigned lane
 }
 
 /// Finishes a triangle whose edge functions agree in sign; true when it becomes the candidate.
-bool accept(const PreparedRay& ray, const TriangleBlock& block, unsigned lane, double u, double v, double w, Candidate& best) {
+bool accept(const PreparedRay& ray, const TriangleBlock& block, unsigned lane, double u, double v, double w,
+            Candidate& best) {
   const double determinant = u + v + w;
   if (determinant == 0) return false;
   double z[3];
@@ -158,8 +162,8 @@ bool accept(const PreparedRay& ray, const TriangleBlock& block, unsigned lane, d
   }
   const double sum = u * z[0] + v * z[1] + w * z[2];
   double exact_t = sum / determinant * ray.inverse_z;
-  // Near the plane, compared with the triangle's size, the edge functions' roundings would decide on which side of it the ray
-  // begins: a triangle of 1e9 would be met or not met at random, and a surface could shadow itself.
+  // Near the plane, compared with the triangle's size, the edge functions' roundings would decide on which side of it
+  // the ray begins: a triangle of 1e9 would be met or not met at random, and a surface could shadow itself.
   if (std::fabs(sum) < kCancelled * (std::fabs(u * z[0]) + std::fabs(v * z[1]) + std::fabs(w * z[2]))) {
     exact_t = plane_t(ray, block, lane);
   }
@@ -189,7 +193,8 @@ bool intersect_block(const PreparedRay& ray, const TriangleBlock& block, Candida
   const Float4 w = x[1] * y[0] - y[1] * x[0];
   const Float4 zero = splat4(0);
   const unsigned used = (1u << block.count) - 1;
-  const unsigned negative = mask4((u < zero) | (v < zero) | (w < zero)), positive = mask4((u > zero) | (v > zero) | (w > zero));
+  const unsigned negative = mask4((u < zero) | (v < zero) | (w < zero)),
+                 positive = mask4((u > zero) | (v > zero) | (w > zero));
   const unsigned zeros = mask4((u == zero) | (v == zero) | (w == zero));
   bool found = false;
   for (unsigned lanes = ~(negative & positive) & used; lanes != 0; lanes &= lanes - 1) {
@@ -287,7 +292,8 @@ int tree_depth(const Bvh& bvh) {
 Traversal::Traversal(const Scene& scene) { set_bvh(build_bvh(scene)); }
 
 void Traversal::set_bvh(Bvh bvh) {
-  if (tree_depth(bvh) > kMaxDepth) throw std::runtime_error("the bounding volume hierarchy is deeper than the traversal's stack");
+  if (tree_depth(bvh) > kMaxDepth)
+    throw std::runtime_error("the bounding volume hierarchy is deeper than the traversal's stack");
   bvh_ = std::move(bvh);
 }
 
@@ -315,7 +321,9 @@ bool Traversal::nearest_of_all(const RayQuery& query, Hit& hit) const {
 }
 
 RayQuery to_query(const Ray& ray) {
-  auto vector = [&](int first) { return Vec3{as_float(ray[first]), as_float(ray[first + 1]), as_float(ray[first + 2])}; };
+  auto vector = [&](int first) {
+    return Vec3{as_float(ray[first]), as_float(ray[first + 1]), as_float(ray[first + 2])};
+  };
   return {vector(word::kOrigin), vector(word::kDirection), as_float(ray[word::kLimit])};
 }
 

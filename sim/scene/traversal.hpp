@@ -1,11 +1,11 @@
-// Which triangle a ray hits. The answer is a function of ray and triangles alone: the nearest hit, at exactly equal t the lowest
-// triangle index, whatever the tree, the order of its nodes or the machine. No ray slips between triangles that share an edge or
-// a vertex.
+// Which triangle a ray hits. The answer is a function of ray and triangles alone: the nearest hit, at exactly
+// equal t the lowest triangle index, whatever the tree, the order of its nodes or the machine. No ray slips between
+// triangles that share an edge or a vertex.
 //
-// How that is kept: a triangle's hit is decided by Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection" (JCGT 2013) in
-// single precision, zero edge functions in double; its t is then held within the t-interval of the triangle's own padded box. The
-// box test is monotone in the box, operation by operation, so that every box around the triangle has an interval that contains
-// this t, and no ancestor can be pruned while its t may still win.
+// How that is kept: a triangle's hit is decided by Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection" (JCGT
+// 2013) in single precision, zero edge functions in double; its t is then held within the t-interval of the triangle's
+// own padded box. The box test is monotone in the box, operation by operation, so that every box around the triangle
+// has an interval that contains this t, and no ancestor can be pruned while its t may still win.
 #pragma once
 
 #include <cstdint>
@@ -38,8 +38,8 @@ struct RayQuery {
   float limit;     ///< hits with 0 < t < limit count
 };
 
-/// A direction that is zero, infinite or NaN, an origin that is not finite or further than 1e18 from the scene, and a limit that
-/// is NaN or not above zero hit nothing.
+/// A direction that is zero, infinite or NaN, an origin that is not finite or further than 1e18 from the scene, and a
+/// limit that is NaN or not above zero hit nothing.
 class Traversal {
  public:
   explicit Traversal(const Scene& scene);
@@ -64,9 +64,10 @@ class Tracer {
   /// Material words are material_base + 32 * the triangle's material index. Keeps nothing of `scene`.
   explicit Tracer(const Scene& scene, uint32_t material_base = 0);
 
-  /// Normal ray: true and the intersection when it hits, false when it misses. Shadow ray: false when it is blocked; true when it
-  /// is free, with words 12 .. 20 of the intersection zero. Words 0 .. 11 are the ray's.
-  bool trace(const Ray& ray, Intersection& intersection, TraversalCounts* counts = nullptr, VisitList* visits = nullptr) const;
+  /// Normal ray: true and the intersection when it hits, false when it misses. Shadow ray: false when it is blocked;
+  /// true when it is free, with words 12 .. 20 of the intersection zero. Words 0 .. 11 are the ray's.
+  bool trace(const Ray& ray, Intersection& intersection, TraversalCounts* counts = nullptr,
+             VisitList* visits = nullptr) const;
 
   const Traversal& traversal() const { return traversal_; }
 

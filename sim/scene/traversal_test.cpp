@@ -43,8 +43,8 @@ Scene ball(const Vec3d& centre, int around) {
   return scene;
 }
 
-/// Rays that are hard to get right: through vertices, along edges, in the planes of triangles and boxes, axis-parallel, and plain
-/// ones.
+/// Rays that are hard to get right: through vertices, along edges, in the planes of triangles and
+/// boxes, axis-parallel, and plain ones.
 std::vector<RayQuery> hard_rays(const Scene& scene, int count, uint32_t seed) {
   std::mt19937 random(seed);
   const Bounds bounds = scene.bounds();
@@ -137,8 +137,9 @@ Bvh random_tree(const Bvh& original, uint32_t seed) {
   for (size_t first = 0; first < loose.size(); first += 4) {
     TriangleBlock block{};
     block.count = static_cast<uint32_t>(std::min<size_t>(4, loose.size() - first));
-    Item item{
-        static_cast<uint32_t>(tree.blocks.size()) | kLeafBit, {INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    Item item{static_cast<uint32_t>(tree.blocks.size()) | kLeafBit,
+              {INFINITY, INFINITY, INFINITY},
+              {-INFINITY, -INFINITY, -INFINITY}};
     for (uint32_t lane = 0; lane < 4; ++lane) {
       const Loose& from = loose[first + std::min(lane, block.count - 1)];
       block.triangles[lane] = lane < block.count ? from.block->triangles[from.lane] : kNoChild;
@@ -176,8 +177,8 @@ TEST(Watertight, NoRayLeavesAClosedMesh) {
     std::mt19937 random(3);
     std::uniform_real_distribution<double> offset(-0.5, 0.5);
     for (int round = 0; round < 12; ++round) {
-      const Vec3 origin =
-          round == 0 ? centre.as<float>() : (centre + Vec3d{offset(random), offset(random), offset(random)}).as<float>();
+      const Vec3 origin = round == 0 ? centre.as<float>()
+                                     : (centre + Vec3d{offset(random), offset(random), offset(random)}).as<float>();
       auto shoot = [&](const Vec3& target) {
         Hit hit;
         ++rays;
@@ -282,11 +283,13 @@ TEST(Traversal, AnswerDoesNotDependOnTheTree) {
 }
 
 TEST(Traversal, AnswerDoesNotDependOnTheTreeForNeedlesSeenEdgeOn) {
-  // Long, thin triangles whose plane holds the ray but for rounding: their t is noise, and must be the same noise in every tree.
+  // Long, thin triangles whose plane holds the ray but for rounding: their t is noise, and
+  // must be the same noise in every tree.
   for (uint32_t seed = 1; seed <= 4; ++seed) {
     std::mt19937 random(seed);
     auto uniform = [&](float low, float high) { return std::uniform_real_distribution<float>(low, high)(random); };
-    const Vec3 direction{uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)}, side{uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)};
+    const Vec3 direction{uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)},
+        side{uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)};
     std::vector<std::array<Vec3, 3>> needles;
     for (int i = 0; i < 1500; ++i) {
       auto in_plane = [&] { return direction * uniform(0, 4) + side * uniform(-1, 1); };
@@ -302,8 +305,8 @@ TEST(Traversal, AnswerDoesNotDependOnTheTreeForNeedlesSeenEdgeOn) {
       Hit a, b;
       const bool found = good.nearest(ray, a);
       ASSERT_EQ(found, bad.nearest(ray, b)) << "seed " << seed << " ray " << i;
-      ASSERT_TRUE(!found || same(a, b)) << "seed " << seed << " ray " << i << ": " << a.triangle << " at " << a.t << ", "
-                                        << b.triangle << " at " << b.t;
+      ASSERT_TRUE(!found || same(a, b)) << "seed " << seed << " ray " << i << ": " << a.triangle << " at " << a.t
+                                        << ", " << b.triangle << " at " << b.t;
       ASSERT_EQ(good.occluded(ray), found);
       hits += found;
     }
@@ -391,7 +394,8 @@ TEST(Traversal, StrangeRaysHaveADefinedAnswer) {
   EXPECT_TRUE(misses({eye, {0, 0, -1}, kNan}));
   EXPECT_TRUE(misses({eye, {0, 0, -1}, 0}));
   EXPECT_TRUE(misses({eye, {0, 0, -1}, -1}));
-  // The length of a direction changes nothing but t, down to denormal and up to the largest numbers; nor does the sign of a zero.
+  // The length of a direction changes nothing but t, down to denormal and up to the largest
+  // numbers; nor does the sign of a zero.
   ASSERT_TRUE(traversal.nearest({eye, {0.1f, 0.2f, -1}, kInfinity}, hit));
   const Hit plain = hit;
   for (float scale : {0x1p-100f, 0x1p-20f, 0x1p60f, 0x1p126f}) {
@@ -424,7 +428,8 @@ TEST(Traversal, LimitIsExclusiveAtBothEnds) {
 }
 
 TEST(Traversal, HitCarriesPointBarycentricsAndNormal) {
-  const Scene scene = scene_of({{Vec3{0, 0, 2}, Vec3{4, 0, 2}, Vec3{0, 4, 2}}, {Vec3{0, 0, 3}, Vec3{0, 4, 3}, Vec3{4, 0, 3}}});
+  const Scene scene =
+      scene_of({{Vec3{0, 0, 2}, Vec3{4, 0, 2}, Vec3{0, 4, 2}}, {Vec3{0, 0, 3}, Vec3{0, 4, 3}, Vec3{4, 0, 3}}});
   const Traversal traversal(scene);
   Hit hit;
   ASSERT_TRUE(traversal.nearest({{1, 2, 0}, {0, 0, 0.5f}, kInfinity}, hit));
@@ -444,7 +449,8 @@ TEST(Traversal, ASceneWithoutAreaIsNeverHit) {
 }
 
 TEST(Tracer, FillsPackagesAsTheChipWantsThem) {
-  Scene scene = scene_of({{Vec3{-9, -9, 2}, Vec3{9, -9, 2}, Vec3{0, 9, 2}}, {Vec3{-9, -9, 4}, Vec3{9, -9, 4}, Vec3{0, 9, 4}}});
+  Scene scene =
+      scene_of({{Vec3{-9, -9, 2}, Vec3{9, -9, 2}, Vec3{0, 9, 2}}, {Vec3{-9, -9, 4}, Vec3{9, -9, 4}, Vec3{0, 9, 4}}});
   scene.materials.resize(8);
   scene.triangle_materials = {5, 7};
   const Tracer tracer(scene, 0x1000);

@@ -54,9 +54,9 @@ void change_view(View& view, const ViewChanges& changes) {
   view.light.position = changes.light.value_or(view.light.position);
   if (!changes.look_at) return;
   if (*changes.look_at == camera.eye) {
-    throw InputError(
-        fmt::format("the camera is to look at ({}, {}, {}), where its eye is: give another point (--look-at) or eye (--eye)",
-                    camera.eye.x, camera.eye.y, camera.eye.z));
+    throw InputError(fmt::format(
+        "the camera is to look at ({}, {}, {}), where its eye is: give another point (--look-at) or eye (--eye)",
+        camera.eye.x, camera.eye.y, camera.eye.z));
   }
   camera.direction = (changes.look_at->as<double>() - camera.eye.as<double>()).as<float>();
 }

@@ -1,6 +1,6 @@
-// Runs every mistake of tb/faults/catalogue.json (scripts/faults.sh builds the machines that make them) on random programs in
-// lockstep, then, if none notices, on the benches of single blocks; says what noticed each, and where the report sends its
-// reader.
+// Runs every mistake of tb/faults/catalogue.json (scripts/faults.sh builds the machines that make them) on
+// random programs in lockstep, then, if none notices, on the benches of single blocks; says what noticed each,
+// and where the report sends its reader.
 #include <fmt/format.h>
 #include <sys/wait.h>
 
@@ -71,11 +71,13 @@ std::vector<Fault> read_catalogue(const std::string& path) {
   return faults;
 }
 
-/// The folder that scripts/faults.sh has filled: `list` has a line for each machine, its configuration's file and its units.
+/// The folder that scripts/faults.sh has filled: `list` has a line for each machine, its
+/// configuration's file and its units.
 std::vector<Machine> read_machines(const std::string& folder) {
   std::ifstream list(folder + "/list");
   if (!list)
-    throw InputError(fmt::format("{}/list cannot be read: build the machines with scripts/faults.sh {}", folder, folder));
+    throw InputError(
+        fmt::format("{}/list cannot be read: build the machines with scripts/faults.sh {}", folder, folder));
   std::vector<Machine> machines;
   std::string name, file;
   int units = 1;
@@ -92,7 +94,8 @@ std::string name_of_machine(const Machine& machine) {
 // About how many instructions a program has: as many as in `raypool cosim`.
 constexpr int kLength = 120;
 
-/// The first machine, which is quick, runs some programs; then all take turns. Each goes on with the seeds where it was.
+/// The first machine, which is quick, runs some programs; then all take turns. Each
+/// goes on with the seeds where it was.
 Outcome run_fault(const Options& options, const std::vector<Machine>& machines, int number, const Note& note) {
   setenv("RAYPOOL_FAULT", std::to_string(number).c_str(), 1);
   std::vector<std::unique_ptr<ComputeUnit>> kept;  // keeps the libraries loaded
@@ -114,7 +117,8 @@ Outcome run_fault(const Options& options, const std::vector<Machine>& machines, 
 }
 
 /// Benches that have the module, until one fails: its name, and its first line that says so.
-Outcome run_benches(const std::vector<Bench>& benches, const Hierarchy& hierarchy, const std::string& file, Outcome outcome) {
+Outcome run_benches(const std::vector<Bench>& benches, const Hierarchy& hierarchy, const std::string& file,
+                    Outcome outcome) {
   const std::string module = file.substr(0, file.rfind('.'));
   for (const Bench& bench : benches) {
     const auto has = [&](const std::string& top) { return hierarchy.contains(top, module); };
@@ -124,7 +128,8 @@ Outcome run_benches(const std::vector<Bench>& benches, const Hierarchy& hierarch
     std::string failed;
     std::array<char, 500> line;
     while (std::fgets(line.data(), line.size(), printed) != nullptr)
-      if (failed.empty() && std::string_view(line.data()).find("FAILED") != std::string_view::npos) failed = line.data();
+      if (failed.empty() && std::string_view(line.data()).find("FAILED") != std::string_view::npos)
+        failed = line.data();
     const int status = pclose(printed);
     if (status == 0) continue;
     outcome.kind = Outcome::Kind::Bench;
@@ -173,8 +178,8 @@ std::string outcome_text(const Outcome& outcome, const std::vector<std::string>&
   static const EnumArray<Verdict, const char*, 4> kVerdicts = {"right", "its parent", "WRONG", "NONE"};
   std::string where;
   for (const std::string& name : named) where += (where.empty() ? "" : ", ") + name;
-  return fmt::format("killed on {} after {} programs ({}); look at: {} ({})", outcome.by, outcome.programs, name_of(outcome.kind),
-                     where.empty() ? "-" : where, kVerdicts[verdict]);
+  return fmt::format("killed on {} after {} programs ({}); look at: {} ({})", outcome.by, outcome.programs,
+                     name_of(outcome.kind), where.empty() ? "-" : where, kVerdicts[verdict]);
 }
 
 int report(const Options& options, const Hierarchy& hierarchy, const std::vector<Fault>& faults,
@@ -196,10 +201,12 @@ int report(const Options& options, const Hierarchy& hierarchy, const std::vector
   }
   fmt::print("\n{:<24} mistakes  cosim  bench  right  parent\n", "module");
   for (const auto& [name, count] : modules)
-    fmt::print("{:<24} {:>8} {:>6} {:>6} {:>6} {:>7}\n", name, count.all, count.cosim, count.bench, count.right, count.parent);
+    fmt::print("{:<24} {:>8} {:>6} {:>6} {:>6} {:>7}\n", name, count.all, count.cosim, count.bench, count.right,
+               count.parent);
   fmt::print("killed by cosim: {}\n", percent(total.cosim, total.all));
   fmt::print("killed by cosim or a bench: {}; {} survived, of which {} are judged equivalent\n",
-             percent(total.cosim + total.bench, total.all), total.all - total.cosim - total.bench, judgements.equivalent());
+             percent(total.cosim + total.bench, total.all), total.all - total.cosim - total.bench,
+             judgements.equivalent());
   fmt::print("the report names the right file or its parent: {}, the right one {}\n",
              percent(total.right + total.parent, total.cosim), percent(total.right, total.cosim));
   if (!options.only.empty()) return judgements.open() == 0 ? 0 : 1;
@@ -211,14 +218,16 @@ int run(int argc, char** argv) {
   CLI::App app("Runs designers' mistakes on random programs in lockstep and on the benches of single blocks.");
   app.add_option("folder", options.folder, "where scripts/faults.sh has built the machines")->required();
   app.add_option("--catalogue", options.catalogue, "the mistakes")->capture_default_str();
-  app.add_option("--survivors", options.survivors, "JSON file with the known survivors and why they are")->capture_default_str();
+  app.add_option("--survivors", options.survivors, "JSON file with the known survivors and why they are")
+      ->capture_default_str();
   app.add_option("--rtl", options.rtl, "folder of the Verilog: which module has which")->capture_default_str();
   app.add_option("--benches", options.benches,
                  "folder with benches built from the Verilog with the mistakes; without, none is run");
   app.add_option("--bench-list", options.bench_list, "JSON file with the benches")->capture_default_str();
   app.add_option("--json", options.json, "file that gets a JSON object a line for each mistake as it ends");
   app.add_option("--programs", options.programs, "random programs that a survivor has survived")->capture_default_str();
-  app.add_option("--first", options.first, "programs of the first machine, before all take turns")->capture_default_str();
+  app.add_option("--first", options.first, "programs of the first machine, before all take turns")
+      ->capture_default_str();
   app.add_option("--turn", options.turn, "programs of a machine's turn")->capture_default_str();
   app.add_option("--seed", options.seed, "of the first program of each machine")->capture_default_str();
   app.add_option("--jobs", options.jobs, "processes")->capture_default_str();
@@ -230,7 +239,9 @@ int run(int argc, char** argv) {
 
   std::vector<Fault> faults = read_catalogue(options.catalogue);
   if (!options.only.empty()) {
-    const auto left_out = [&](const Fault& f) { return std::count(options.only.begin(), options.only.end(), f.number) == 0; };
+    const auto left_out = [&](const Fault& f) {
+      return std::count(options.only.begin(), options.only.end(), f.number) == 0;
+    };
     faults.erase(std::remove_if(faults.begin(), faults.end(), left_out), faults.end());
   }
   const std::vector<Machine> machines = read_machines(options.folder);
@@ -247,7 +258,8 @@ int run(int argc, char** argv) {
   };
   // Without a mistake there must be no difference, or every kill would be worth nothing.
   const Outcome none = run_trial(trial_of(Fault(), true));
-  if (none.kind != Outcome::Kind::Survived) throw InputError("without any mistake the units differ from the model: " + none.text);
+  if (none.kind != Outcome::Kind::Survived)
+    throw InputError("without any mistake the units differ from the model: " + none.text);
   fmt::print("no mistake: {} programs agree\n", none.programs);
   std::fflush(stdout);
   std::vector<Trial> trials;

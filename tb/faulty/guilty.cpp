@@ -29,7 +29,8 @@ Hierarchy::Hierarchy(const std::string& rtl_folder) {
     if (entry.path().extension() == ".v") modules[entry.path().stem()] = read_text(entry.path());
     if (entry.path().extension() == ".vh") headers[entry.path().filename()] = read_text(entry.path());
   }
-  static const std::regex kInstance(R"(\n *([a-z_0-9]+) (#\(|[a-z_0-9]+ \())"), kInclude(R"re(`include "([a-z_0-9]+\.vh)")re");
+  static const std::regex kInstance(R"(\n *([a-z_0-9]+) (#\(|[a-z_0-9]+ \())"),
+      kInclude(R"re(`include "([a-z_0-9]+\.vh)")re");
   for (const auto& [name, text] : modules) {
     std::string whole = text;
     for (auto i = std::sregex_iterator(text.begin(), text.end(), kInclude); i != std::sregex_iterator(); ++i)
@@ -60,7 +61,8 @@ std::vector<std::string> files_named(const std::string& report) {
   static const std::regex kFile(R"(rtl/([a-z_0-9]+\.vh?))");
   std::vector<std::string> files;
   for (auto i = std::sregex_iterator(clause.begin(), clause.end(), kFile); i != std::sregex_iterator(); ++i)
-    if (files.size() < kMostNamed && std::find(files.begin(), files.end(), (*i)[1]) == files.end()) files.push_back((*i)[1]);
+    if (files.size() < kMostNamed && std::find(files.begin(), files.end(), (*i)[1]) == files.end())
+      files.push_back((*i)[1]);
   return files;
 }
 
@@ -68,8 +70,9 @@ Verdict judge(const Hierarchy& hierarchy, const std::vector<std::string>& named,
   if (named.empty()) return Verdict::None;
   if (std::find(named.begin(), named.end(), file) != named.end()) return Verdict::Right;
   const std::set<std::string>& parents = hierarchy.parents(file.substr(0, file.rfind('.')));
-  const bool parent = std::any_of(named.begin(), named.end(),
-                                  [&](const std::string& name) { return parents.count(name.substr(0, name.rfind('.'))) != 0; });
+  const bool parent = std::any_of(named.begin(), named.end(), [&](const std::string& name) {
+    return parents.count(name.substr(0, name.rfind('.'))) != 0;
+  });
   return parent ? Verdict::Parent : Verdict::Wrong;
 }
 

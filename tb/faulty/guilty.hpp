@@ -21,8 +21,8 @@ class Hierarchy {
   std::map<std::string, std::set<std::string>> parents_;
 };
 
-/// Files that the report's `look at` names first, without folder: before the first semicolon, and at most three. What a simulator
-/// says when it stops counts too.
+/// Files that the report's `look at` names first, without folder: before the first semicolon, and at most three. What a
+/// simulator says when it stops counts too.
 std::vector<std::string> files_named(const std::string& report);
 
 enum class Verdict { Right, Parent, Wrong, None };

@@ -17,7 +17,8 @@ TEST(FilesNamed, AreThoseBeforeTheFirstSemicolonAndAtMostThree) {
 }
 
 TEST(FilesNamed, AreWhatTheSimulatorSaysWhenItStops) {
-  EXPECT_EQ(files_named("signal 6: %Error: rtl/data_cache.v:203: Verilog $stop"), std::vector<std::string>{"data_cache.v"});
+  EXPECT_EQ(files_named("signal 6: %Error: rtl/data_cache.v:203: Verilog $stop"),
+            std::vector<std::string>{"data_cache.v"});
 }
 
 TEST(Hierarchy, IsThatOfTheVerilog) {
@@ -25,7 +26,8 @@ TEST(Hierarchy, IsThatOfTheVerilog) {
   EXPECT_EQ(hierarchy.parents("event_counter"), std::set<std::string>{"performance_counters"});
   EXPECT_EQ(hierarchy.parents("data_cache"), std::set<std::string>{"mem_alu"});
   EXPECT_EQ(hierarchy.parents("int_alu"), std::set<std::string>{"compute_unit"}) << "instantiated in an included file";
-  EXPECT_EQ(hierarchy.parents("round_robin"), (std::set<std::string>{"block_scheduler", "fetch_arbiter", "port_arbiter"}));
+  EXPECT_EQ(hierarchy.parents("round_robin"),
+            (std::set<std::string>{"block_scheduler", "fetch_arbiter", "port_arbiter"}));
   EXPECT_TRUE(hierarchy.parents("multiprocessor").empty());
   EXPECT_TRUE(hierarchy.contains("mem_alu", "ram_1rw"));
   EXPECT_FALSE(hierarchy.contains("ray_alu", "miss_status"));

@@ -15,7 +15,8 @@ struct Judgement {
 
 class Judgements {
  public:
-  /// `path`: a JSON list of {"survivor", "equivalent", "reason"}; empty: nothing is judged, nor asked for. Throws InputError.
+  /// `path`: a JSON list of {"survivor", "equivalent", "reason"}; empty: nothing is
+  /// judged, nor asked for. Throws InputError.
   explicit Judgements(const std::string& path);
 
   /// Counts a survivor of this run, and says what is known of it: "equivalent: ...", "a gap: ...", or "NOT JUDGED".

@@ -19,8 +19,8 @@ void run_program(const Machine& machine, const RandomProgram& program, Outcome& 
     LockstepOptions lockstep;
     lockstep.watchdog_cycles = kWatchdogCycles;
     lockstep.inspect_until = inspect_until;
-    const auto unit = make_lockstep_unit(machine.configuration,
-                                         load_rtl_unit(machine.library, machine.configuration, machine.units), memory, lockstep);
+    const auto unit = make_lockstep_unit(
+        machine.configuration, load_rtl_unit(machine.library, machine.configuration, machine.units), memory, lockstep);
     run_random_program(*unit, memory, program, program.seed, kCycleLimit);
   };
   try {

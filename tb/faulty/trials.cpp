@@ -135,7 +135,8 @@ std::map<std::string, Outcome> read_outcomes(const std::string& path) {
   return outcomes;
 }
 
-/// Says now and then how far it is. Time left: as the trials so far took, which is too little while long ones are under way.
+/// Says now and then how far it is. Time left: as the trials so far took, which is too
+/// little while long ones are under way.
 class Progress {
  public:
   Progress(std::string what, size_t all) : what_(std::move(what)), all_(all) {}
@@ -159,7 +160,8 @@ class Progress {
 std::vector<Outcome> run_trials(const std::vector<Trial>& trials, const TrialOptions& options) {
   std::vector<Outcome> outcomes(trials.size());
   std::vector<size_t> todo;
-  const std::map<std::string, Outcome> known = options.resume ? read_outcomes(options.json) : std::map<std::string, Outcome>();
+  const std::map<std::string, Outcome> known =
+      options.resume ? read_outcomes(options.json) : std::map<std::string, Outcome>();
   for (size_t i = 0; i < trials.size(); ++i) {
     const auto found = known.find(trials[i].id);
     if (found != known.end())

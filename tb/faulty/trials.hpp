@@ -1,5 +1,5 @@
-// Runs trials side by side, a process each: what a fault does to the simulator itself stays there. Outcomes are written as they
-// come, so that an interrupted run can be continued.
+// Runs trials side by side, a process each: what a fault does to the simulator itself stays there. Outcomes are written
+// as they come, so that an interrupted run can be continued.
 #pragma once
 
 #include <functional>
@@ -11,7 +11,8 @@
 
 namespace raypool::faulty {
 
-/// Tells, before a program begins, how many there will have been and on what it runs; known also when the process then dies.
+/// Tells, before a program begins, how many there will have been and on what it runs;
+/// known also when the process then dies.
 using Note = std::function<void(uint64_t programs, std::string_view by)>;
 
 struct Trial {

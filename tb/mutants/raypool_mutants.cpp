@@ -1,5 +1,5 @@
-// Runs every mutant of a unit (scripts/mutants.sh makes them) on random programs in lockstep until it differs from the model, and
-// says which were noticed. A process a mutant: what a fault does to the simulator itself stays there.
+// Runs every mutant of a unit (scripts/mutants.sh makes them) on random programs in lockstep until it differs from the
+// model, and says which were noticed. A process a mutant: what a fault does to the simulator itself stays there.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -50,12 +50,14 @@ std::string option_of(const std::string& line, const std::string& name) {
 
 std::vector<Mutant> read_list(const std::string& path) {
   std::ifstream file(path);
-  if (!file) throw InputError(fmt::format("{}: the list of mutants cannot be read; make it with scripts/mutants.sh", path));
+  if (!file)
+    throw InputError(fmt::format("{}: the list of mutants cannot be read; make it with scripts/mutants.sh", path));
   std::vector<Mutant> mutants;
   for (std::string line; std::getline(file, line);) {
     Mutant mutant;
     mutant.number = static_cast<int>(mutants.size()) + 1;
-    // Lines of rtl/*.v, the first one with a number (line 0 is a whole loop); a header's place says little of the module.
+    // Lines of rtl/*.v, the first one with a number (line 0 is a whole loop); a
+    // header's place says little of the module.
     static const std::regex kSource(R"(-src rtl/([a-z_0-9]+)\.v:([0-9]+)\.)");
     for (auto i = std::sregex_iterator(line.begin(), line.end(), kSource); i != std::sregex_iterator(); ++i) {
       if (!mutant.module.empty() && (*i)[2] == "0") continue;
@@ -72,8 +74,8 @@ std::vector<Mutant> read_list(const std::string& path) {
     cell = std::regex_replace(std::regex_replace(cell, kPlaced, "$1 at $2"), kMade, "");
     cell = std::regex_replace(cell, kNoise, "");
     if (cell.find(" at ") == std::string::npos && !mutant.source.empty()) cell += " at " + mutant.source;
-    mutant.id =
-        fmt::format("{}, {}[{}] of {}", option_of(line, "mode"), option_of(line, "port"), option_of(line, "portbit"), cell);
+    mutant.id = fmt::format("{}, {}[{}] of {}", option_of(line, "mode"), option_of(line, "port"),
+                            option_of(line, "portbit"), cell);
     const std::string control = option_of(line, "ctrlbit");
     if (!control.empty()) mutant.id += ", by bit " + control;
     const std::string wire = option_of(line, "wire");
@@ -83,8 +85,8 @@ std::vector<Mutant> read_list(const std::string& path) {
   return mutants;
 }
 
-/// Short programs of all mixes, which notice most; then long ones, one of each mix; then long ones that meet thousands of
-/// operands.
+/// Short programs of all mixes, which notice most; then long ones, one of each mix; then long
+/// ones that meet thousands of operands.
 Outcome run_mutant(const Options& options, const Machine& machine, int number, const Note& note) {
   setenv("RAYPOOL_MUTANT", std::to_string(number).c_str(), 1);
   const auto kept = load_rtl_unit(machine.library, machine.configuration);  // keeps the library loaded
@@ -101,10 +103,10 @@ Outcome run_mutant(const Options& options, const Machine& machine, int number, c
   for (const Phase& phase : phases) {
     for (uint64_t n = 0; n < phase.programs; ++n) {
       note(++outcome.programs, outcome.by);
-      run_program(
-          machine,
-          make_random_program(machine.configuration, options.seed + n, phase.length, machine.units, std::string(phase.mix)),
-          outcome);
+      run_program(machine,
+                  make_random_program(machine.configuration, options.seed + n, phase.length, machine.units,
+                                      std::string(phase.mix)),
+                  outcome);
       if (outcome.kind != Outcome::Kind::Survived) return outcome;
     }
   }
@@ -114,7 +116,9 @@ Outcome run_mutant(const Options& options, const Machine& machine, int number, c
 Trial trial_of(const Options& options, const Machine& machine, const Mutant& mutant) {
   return {mutant.id,
           {{"number", mutant.number}, {"source", mutant.source}},
-          [&options, &machine, number = mutant.number](const Note& note) { return run_mutant(options, machine, number, note); }};
+          [&options, &machine, number = mutant.number](const Note& note) {
+            return run_mutant(options, machine, number, note);
+          }};
 }
 
 int report(const Options& options, const std::vector<Mutant>& mutants, const std::vector<Outcome>& outcomes) {
@@ -150,9 +154,11 @@ int report(const Options& options, const std::vector<Mutant>& mutants, const std
   for (const auto& [programs, count] : by_program)
     fmt::print("killed {:<25} {:>5}\n",
                programs == ~0u ? std::string("by a later one") : fmt::format("within {} programs", programs), count);
-  fmt::print("mutants: {} of {} killed ({:.1f}%); {} survived, of which {} are judged equivalent: {:.1f}% of the others killed\n",
-             killed, all, 100.0 * killed / all, survived, judgements.equivalent(),
-             100.0 * killed / (all - judgements.equivalent()));
+  fmt::print(
+      "mutants: {} of {} killed ({:.1f}%); {} survived, of which {} are judged equivalent: {:.1f}% of the others "
+      "killed\n",
+      killed, all, 100.0 * killed / all, survived, judgements.equivalent(),
+      100.0 * killed / (all - judgements.equivalent()));
   return !options.only.empty() || judgements.up_to_date() ? 0 : 1;
 }
 
@@ -170,7 +176,8 @@ int run(int argc, char** argv) {
                  "then, long ones of mix operands; a mutant that survives them survives")
       ->capture_default_str();
   app.add_option("--seed", options.seed, "of the first program")->capture_default_str();
-  app.add_option("--length", options.length, "about how many instructions a program of all mixes has")->capture_default_str();
+  app.add_option("--length", options.length, "about how many instructions a program of all mixes has")
+      ->capture_default_str();
   app.add_option("--long-length", options.long_length, "of a long one")->capture_default_str();
   app.add_option("--operand-length", options.operand_length, "of a long one of mix operands")->capture_default_str();
   app.add_option("--jobs", options.jobs, "processes")->capture_default_str();
@@ -191,14 +198,16 @@ int run(int argc, char** argv) {
   // Without a fault there must be no difference, or every kill would be worth nothing.
   const Machine machine{configuration, 1, options.unit};
   const Outcome none = run_trial(trial_of(options, machine, Mutant()));
-  if (none.kind != Outcome::Kind::Survived) throw InputError("without any fault the unit differs from the model: " + none.text);
+  if (none.kind != Outcome::Kind::Survived)
+    throw InputError("without any fault the unit differs from the model: " + none.text);
   fmt::print("no fault: {} programs agree\n", none.programs);
   std::vector<Trial> trials;
   trials.reserve(mutants.size());
   for (const Mutant& mutant : mutants) trials.push_back(trial_of(options, machine, mutant));
   const std::vector<Outcome> outcomes = run_trials(trials, {"mutants", options.json, options.resume, options.jobs});
   if (options.verbose)
-    for (size_t i = 0; i < mutants.size(); ++i) fmt::print("{} {}\n{}\n", mutants[i].number, mutants[i].id, outcomes[i].text);
+    for (size_t i = 0; i < mutants.size(); ++i)
+      fmt::print("{} {}\n{}\n", mutants[i].number, mutants[i].id, outcomes[i].text);
   return report(options, mutants, outcomes);
 }
 

@@ -1,5 +1,5 @@
-// The table that `make numerics-long` ends with: every program of it prints rows of this form, scripts/numerics_long.sh gathers
-// them.
+// The table that `make numerics-long` ends with: every program of it prints rows of this form,
+// scripts/numerics_long.sh gathers them.
 #pragma once
 
 #include <cstdint>

@@ -1,11 +1,11 @@
-// The model of arithmetic against its oracles (cpp_model/arith/test_oracle.hpp, test_newton.hpp), as far as a machine can go in
-// minutes:
+// The model of arithmetic against its oracles (cpp_model/arith/test_oracle.hpp, test_newton.hpp), as
+// far as a machine can go in minutes:
 //   numerics_long [PAIRS [STRIDE [THREADS]]]
-// Unary operations over every STRIDE-th of all 2^32 inputs (default: all); binary and ternary ones over all pairs and triples of
-// special and boundary operands and over PAIRS weighted random ones (default 10^8); THREADS is 1 unless it is given. MPFR judges
-// ffma and frsqrt once more, frsqrt over every 257th input at most. The Newton units: the same pairs, and of unary operations
-// every mantissa of both parities and of the results at both ends, and every 257th input. Prints inputs tried and errors; exit
-// code 1 if there are any. The seeds are fixed, so a run can be repeated.
+// Unary operations over every STRIDE-th of all 2^32 inputs (default: all); binary and ternary ones over all pairs and
+// triples of special and boundary operands and over PAIRS weighted random ones (default 10^8); THREADS is 1 unless it
+// is given. MPFR judges ffma and frsqrt once more, frsqrt over every 257th input at most. The Newton units: the same
+// pairs, and of unary operations every mantissa of both parities and of the results at both ends, and every 257th
+// input. Prints inputs tried and errors; exit code 1 if there are any. The seeds are fixed, so a run can be repeated.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -30,7 +30,8 @@ namespace {
 
 constexpr size_t kBlock = 1 << 14;
 constexpr uint64_t kSparse = 257;  // MPFR takes some 40 times as long as the integers do
-constexpr Operation kUnary[] = {Operation::ToInt, Operation::FromInt, Operation::Sqrt, Operation::Rcp, Operation::Rsqrt};
+constexpr Operation kUnary[] = {Operation::ToInt, Operation::FromInt, Operation::Sqrt, Operation::Rcp,
+                                Operation::Rsqrt};
 constexpr Operation kBinary[] = {Operation::Add,  Operation::Sub,       Operation::Mul,     Operation::Div,
                                  Operation::Min,  Operation::Max,       Operation::Equal,   Operation::NotEqual,
                                  Operation::Less, Operation::LessEqual, Operation::Greater, Operation::GreaterEqual};
@@ -40,8 +41,8 @@ enum class Judge : uint8_t { First, Mpfr, Newton2, Newton1, Newton0 };
 constexpr Judge kNewton[] = {Judge::Newton2, Judge::Newton1, Judge::Newton0};
 constexpr int kJudges = 5;
 constexpr const char* kJudgeNames[kJudges] = {"", ", MPFR", ", newton2", ", newton1", ", newton0"};
-constexpr EnumArray<Judge, SlowUnit, kJudges> kUnits = {SlowUnit::Exact, SlowUnit::Exact, SlowUnit::Newton2, SlowUnit::Newton1,
-                                                        SlowUnit::Newton0};
+constexpr EnumArray<Judge, SlowUnit, kJudges> kUnits = {SlowUnit::Exact, SlowUnit::Exact, SlowUnit::Newton2,
+                                                        SlowUnit::Newton1, SlowUnit::Newton0};
 
 struct Tally {
   std::atomic<uint64_t> inputs{0}, errors{0};
@@ -59,7 +60,8 @@ std::string name_of(size_t index) {
 }
 
 /// The right results. Those of a Newton unit must keep the exact result's exponent too; one that does not is none.
-void judge_block(Operation operation, const OperandBlock& in, Judge judge, bool flush, std::vector<uint32_t>& expected) {
+void judge_block(Operation operation, const OperandBlock& in, Judge judge, bool flush,
+                 std::vector<uint32_t>& expected) {
   const SlowUnit unit = kUnits[judge];
   oracle::results(operation, in, flush, judge == Judge::Mpfr, expected);
   if (unit == SlowUnit::Exact) return;
@@ -128,7 +130,8 @@ void unary_operation(Operation operation, uint64_t first, uint64_t end, uint64_t
 
 constexpr uint64_t kAll = uint64_t{1} << 32;
 
-/// A Newton result's bits depend on the mantissa and, of roots, on the parity of the exponent; at the ends of the range on more.
+/// A Newton result's bits depend on the mantissa and, of roots, on the parity of the
+/// exponent; at the ends of the range on more.
 void unary_newton(Operation operation, uint64_t stride, Judge judge) {
   unary_operation(operation, 0x3f800000u, 0x40800000u, stride, judge);
   unary_operation(operation, 0x00000000u, 0x01000000u, stride, judge);
@@ -174,7 +177,8 @@ uint64_t count_of(const char* text) {
   char* end = nullptr;
   const uint64_t value = std::strtoull(text, &end, 10);
   if (value == 0 || *end != '\0' || *text == '-') {
-    throw std::runtime_error(fmt::format("'{}' must be a whole number above 0; numerics_long [PAIRS [STRIDE [THREADS]]]", text));
+    throw std::runtime_error(
+        fmt::format("'{}' must be a whole number above 0; numerics_long [PAIRS [STRIDE [THREADS]]]", text));
   }
   return value;
 }
@@ -183,8 +187,9 @@ int run(int argc, char** argv) {
   const uint64_t pairs = argc > 1 ? count_of(argv[1]) : 100'000'000;
   const uint64_t stride = argc > 2 ? count_of(argv[2]) : 1;
   threads_wanted = argc > 3 ? static_cast<unsigned>(std::min<uint64_t>(count_of(argv[3]), 256)) : 1;
-  std::printf("oracles: SSE%s; integers for frsqrt and Newton units; MPFR %s for fmin and fmax, and where the table says so\n",
-              host_has_fma() ? " and FMA of this host" : " of this host", mpfr_get_version());
+  std::printf(
+      "oracles: SSE%s; integers for frsqrt and Newton units; MPFR %s for fmin and fmax, and where the table says so\n",
+      host_has_fma() ? " and FMA of this host" : " of this host", mpfr_get_version());
   special_operands_of_all_kinds();
   random_operands(pairs);
   for (const Operation operation : kUnary) unary_operation(operation, 0, kAll, stride, Judge::First);

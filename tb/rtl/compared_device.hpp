@@ -1,5 +1,5 @@
-// For tests: two devices behind one set of ports, given the same inputs; what they show must be equal in every cycle. And the
-// promises that a device of several units makes at its ports.
+// For tests: two devices behind one set of ports, given the same inputs; what they show must be equal in every cycle.
+// And the promises that a device of several units makes at its ports.
 #pragma once
 
 #include <fmt/format.h>
@@ -64,14 +64,16 @@ inline std::string difference(const UnitTrace& a, const UnitTrace& b) {
   if (a.ray_writes.size() != b.ray_writes.size()) return "ray_trace_valid";
   for (size_t i = 0; i < a.ray_writes.size(); ++i) {
     const RayWriteEvent &x = a.ray_writes[i], &y = b.ray_writes[i];
-    if (x.unit != y.unit || x.warp != y.warp || x.word != y.word || x.mask != y.mask || x.data != y.data) return "ray_trace";
+    if (x.unit != y.unit || x.warp != y.warp || x.word != y.word || x.mask != y.mask || x.data != y.data)
+      return "ray_trace";
   }
   return "";
 }
 
 /// What passed the ports, by unit.
 struct PortCounts {
-  std::array<uint64_t, kMostUnits> launches{}, kernels{}, reads{}, writes{}, imports{}, rays{}, contributions{}, retired{};
+  std::array<uint64_t, kMostUnits> launches{}, kernels{}, reads{}, writes{}, imports{}, rays{}, contributions{},
+      retired{};
 };
 
 /// clock(), reset() and set_argument() throw std::runtime_error at the first difference or broken promise.
@@ -122,7 +124,9 @@ class ComparedDevice : public ComputeUnit {
   uint64_t cycles = 0;
 
  private:
-  [[noreturn]] void fail(const std::string& what) const { throw std::runtime_error(fmt::format("cycle {}: {}", cycles, what)); }
+  [[noreturn]] void fail(const std::string& what) const {
+    throw std::runtime_error(fmt::format("cycle {}: {}", cycles, what));
+  }
 
   void compare() const {
     std::string name = difference(first_->outputs(), second_->outputs());

@@ -1,5 +1,5 @@
-// Reports lead to the place: RTL of which one signal inside, or one output, is altered is found out, and the report names the
-// file that makes it.
+// Reports lead to the place: RTL of which one signal inside, or one output, is altered is found out, and the
+// report names the file that makes it.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -23,7 +23,8 @@ struct Tamper {
   uint32_t from = 20;
 };
 
-/// RTL that shows the lockstep another value of one signal. Its outputs stay right: nothing but the inspection can notice.
+/// RTL that shows the lockstep another value of one signal. Its outputs stay right:
+/// nothing but the inspection can notice.
 class TamperedUnit : public ComputeUnit {
  public:
   TamperedUnit(std::unique_ptr<ComputeUnit> unit, const Tamper& tamper) : unit_(std::move(unit)), tamper_(tamper) {
@@ -93,12 +94,14 @@ TEST_P(Inspected, NamesTheFileOfTheSignal) {
     LockstepOptions options;
     options.inspect_until = kInspectAlways;
     const auto unit = make_lockstep_unit(
-        configuration(), std::make_unique<TamperedUnit>(load_rtl_unit(library, configuration()), tamper), memory, options);
+        configuration(), std::make_unique<TamperedUnit>(load_rtl_unit(library, configuration()), tamper), memory,
+        options);
     ASSERT_EQ(unit->uninspected(), "");
     run_random_program(*unit, memory, program, seed);
     const std::vector<lockstep::Finding> findings = unit->inside();
     if (findings.empty()) continue;
-    EXPECT_EQ(findings[0].files.substr(0, findings[0].files.find(',')), std::string("rtl/") + tamper.file) << findings[0].text;
+    EXPECT_EQ(findings[0].files.substr(0, findings[0].files.find(',')), std::string("rtl/") + tamper.file)
+        << findings[0].text;
     return;
   }
   FAIL() << "nothing was found in 60 programs";
@@ -211,15 +214,16 @@ TEST_P(InspectedArbiters, AreNamed) {
       LockstepOptions options;
       options.inspect_until = inspect_until;
       const auto unit = make_lockstep_unit(
-          configuration(), std::make_unique<AlteredUnit>(load_rtl_unit(library, configuration(), 2), GetParam().alter), memory,
-          options);
+          configuration(), std::make_unique<AlteredUnit>(load_rtl_unit(library, configuration(), 2), GetParam().alter),
+          memory, options);
       run_random_program(*unit, memory, program, seed);
     };
     try {
       inspect_differences(run);
     } catch (const LockstepDifference& difference) {
       EXPECT_EQ(runs, 2);
-      EXPECT_NE(std::string(difference.what()).find(std::string("look at: rtl/") + GetParam().look_at), std::string::npos)
+      EXPECT_NE(std::string(difference.what()).find(std::string("look at: rtl/") + GetParam().look_at),
+                std::string::npos)
           << difference.what();
       return;
     }
@@ -230,7 +234,8 @@ TEST_P(InspectedArbiters, AreNamed) {
 INSTANTIATE_TEST_SUITE_P(
     All, InspectedArbiters,
     testing::Values(Alteration{"launch", [](UnitOutputs& out) { out.launch_unit ^= 1; }, "block_scheduler.v"},
-                    Alteration{"memory", [](UnitOutputs& out) { out.memory_request.id ^= 32; }, "unit_memory_arbiter.v"},
+                    Alteration{"memory", [](UnitOutputs& out) { out.memory_request.id ^= 32; },
+                               "unit_memory_arbiter.v"},
                     Alteration{"import", [](UnitOutputs& out) { out.import_request_unit ^= 1; }, "import_arbiter.v"},
                     Alteration{"ray", [](UnitOutputs& out) { out.export_unit ^= 1; }, "port_arbiter.v"},
                     Alteration{"frame", [](UnitOutputs& out) { out.frame_unit ^= 1; }, "port_arbiter.v"}),

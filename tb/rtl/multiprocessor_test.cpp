@@ -1,5 +1,5 @@
-// rtl/multiprocessor.v against its C++ counterpart: the Verilated multiprocessor of n units and a Multiprocessor over n Verilated
-// single units are given the same inputs, and must show the same outputs in every cycle.
+// rtl/multiprocessor.v against its C++ counterpart: the Verilated multiprocessor of n units and a Multiprocessor over n
+// Verilated single units are given the same inputs, and must show the same outputs in every cycle.
 #include "machine/multiprocessor.hpp"
 
 #include <gtest/gtest.h>
@@ -89,9 +89,10 @@ TEST_P(RtlMultiprocessor, AgreesWithTheArbitersInCppInEveryCycleOfRandomPrograms
     add(total.imports, counts.imports), add(total.rays, counts.rays), add(total.contributions, counts.contributions);
     add(total.retired, counts.retired);
   }
-  std::cout << units << " units: " << kernels << " kernels, " << cycles << " cycles, " << sum(total.retired) << " instructions, "
-            << sum(total.reads) << " reads, " << sum(total.writes) << " writes, " << sum(total.imports) << " imports, "
-            << sum(total.rays) << " rays, " << sum(total.contributions) << " contributions; 0 differences\n";
+  std::cout << units << " units: " << kernels << " kernels, " << cycles << " cycles, " << sum(total.retired)
+            << " instructions, " << sum(total.reads) << " reads, " << sum(total.writes) << " writes, "
+            << sum(total.imports) << " imports, " << sum(total.rays) << " rays, " << sum(total.contributions)
+            << " contributions; 0 differences\n";
   for (size_t u = 0; u < units; ++u) {
     EXPECT_GT(total.launches[u], kernels / units / 2) << "unit " << u;
     EXPECT_GT(total.reads[u], 500u) << "unit " << u;

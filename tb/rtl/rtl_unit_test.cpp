@@ -1,4 +1,5 @@
-// The whole compute unit in RTL: Verilated for several configurations and run in lockstep with the model, on random programs.
+// The whole compute unit in RTL: Verilated for several configurations and run in lockstep
+// with the model, on random programs.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -36,7 +37,9 @@ Configuration configuration_of(const Case& test_case) {
   return configuration;
 }
 
-std::string library_of(const Case& test_case) { return test::build_library(configuration_of(test_case), 1, test_case.waves); }
+std::string library_of(const Case& test_case) {
+  return test::build_library(configuration_of(test_case), 1, test_case.waves);
+}
 
 class RtlUnit : public testing::TestWithParam<Case> {};
 

@@ -1,5 +1,5 @@
-// Drives a bench top of several ALUs (flt_units.v, slw_units.v, brh_units.v) with the same tasks and compares every result, its
-// warp and the cycle it comes in with the model. Tasks come with random masks, warps and pauses.
+// Drives a bench top of several ALUs (flt_units.v, slw_units.v, brh_units.v) with the same tasks and compares every
+// result, its warp and the cycle it comes in with the model. Tasks come with random masks, warps and pauses.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -38,7 +38,8 @@ inline uint32_t lanes_of_mask(Opcode, uint32_t mask, arith::Mode) { return mask;
 template <typename Top>
 class AluBench {
  public:
-  AluBench(std::vector<AluUnderTest> units, ModelFunction model, uint64_t seed, ComparedFunction looked_at = lanes_of_mask)
+  AluBench(std::vector<AluUnderTest> units, ModelFunction model, uint64_t seed,
+           ComparedFunction looked_at = lanes_of_mask)
       : units_(std::move(units)),
         model_(model),
         looked_at_(looked_at),
@@ -54,7 +55,8 @@ class AluBench {
   }
   ~AluBench() { top_.final(); }
 
-  /// Adds one lane's operation to the next task; a task takes operations of one kind, so a change of kind sends what is gathered.
+  /// Adds one lane's operation to the next task; a task takes operations of one kind, so a
+  /// change of kind sends what is gathered.
   void add(Opcode opcode, uint32_t a, uint32_t b, uint32_t c = 0) {
     if (lanes_ != 0 && opcode != opcode_) send();
     opcode_ = opcode;
@@ -176,9 +178,9 @@ class AluBench {
         if (result == e.result[l] && warp == e.warp) continue;
         ++count.errors;
         if (++failures_ <= 10) {
-          ADD_FAILURE() << units_[u].name << ' ' << instruction(e.opcode).mnemonic << " lane " << l << std::hex << ": a "
-                        << e.a[l] << " b " << e.b[l] << " c " << e.c[l] << " RTL " << result << " model " << e.result[l]
-                        << std::dec << ", warp " << warp << " expected " << e.warp << ", seed " << seed_;
+          ADD_FAILURE() << units_[u].name << ' ' << instruction(e.opcode).mnemonic << " lane " << l << std::hex
+                        << ": a " << e.a[l] << " b " << e.b[l] << " c " << e.c[l] << " RTL " << result << " model "
+                        << e.result[l] << std::dec << ", warp " << warp << " expected " << e.warp << ", seed " << seed_;
         }
       }
     }

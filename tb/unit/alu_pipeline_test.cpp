@@ -17,8 +17,8 @@ constexpr int kLatency[kPipelines] = {1, 2, 3, 1, 16};
 constexpr int kDepth[kPipelines] = {1, 2, 3, 11, 32};
 constexpr uint64_t kSeed = 99;
 
-/// Runs all pipelines for a while; a task is wanted in one of `every` cycles. Checks every output in every cycle, and counts the
-/// tasks.
+/// Runs all pipelines for a while; a task is wanted in one of `every` cycles. Checks every output
+/// in every cycle, and counts the tasks.
 std::array<int, kPipelines> run(int cycles, unsigned every) {
   VerilatedContext context;
   Vpipeline_units top(&context);
@@ -57,8 +57,8 @@ std::array<int, kPipelines> run(int cycles, unsigned every) {
     top.task_valid_i = valid;
     top.task_warp_i = warps;
     top.eval();
-    const uint32_t stages[kPipelines] = {top.stage_valid_0_o, top.stage_valid_1_o, top.stage_valid_2_o, top.stage_valid_3_o,
-                                         top.stage_valid_4_o};
+    const uint32_t stages[kPipelines] = {top.stage_valid_0_o, top.stage_valid_1_o, top.stage_valid_2_o,
+                                         top.stage_valid_3_o, top.stage_valid_4_o};
     for (int p = 0; p < kPipelines; ++p) {
       for (int k = 0; k < kDepth[p]; ++k) EXPECT_EQ(stages[p] >> k & 1, arrived[p].count(cycle - k)) << p << ' ' << k;
       const auto done = arrived[p].find(cycle - kDepth[p]);
@@ -67,7 +67,8 @@ std::array<int, kPipelines> run(int cycles, unsigned every) {
         EXPECT_EQ(top.done_warp_o >> (5 * p) & 31, done->second);
       }
       const bool ready = top.ready_o >> p & 1;
-      EXPECT_EQ(ready, cycle + 1 - last[p] >= kLatency[p]) << "pipeline " << p << " cycle " << cycle << " seed " << kSeed;
+      EXPECT_EQ(ready, cycle + 1 - last[p] >= kLatency[p])
+          << "pipeline " << p << " cycle " << cycle << " seed " << kSeed;
       granted[p] = ready && random() % every == 0;
     }
     tick();

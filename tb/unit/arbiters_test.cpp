@@ -1,5 +1,5 @@
-// What port_arbiter, import_arbiter and block_scheduler promise, under random traffic: nothing is lost, mixed up or changed while
-// it waits, and nobody starves.
+// What port_arbiter, import_arbiter and block_scheduler promise, under random traffic: nothing is lost, mixed up or
+// changed while it waits, and nobody starves.
 #include <gtest/gtest.h>
 #include <verilated.h>
 
@@ -57,7 +57,8 @@ class PortArbiter : public testing::Test {};
 using Ports = testing::Types<Port2, Port4>;
 TYPED_TEST_SUITE(PortArbiter, Ports);
 
-// A requester sends packages of 1 to 3 words, {requester, number of the word}, with gaps between the words of a package too.
+// A requester sends packages of 1 to 3 words, {requester, number of the word}, with gaps
+// between the words of a package too.
 struct Requester {
   uint32_t sent = 0;  // words
   int left = 0;       // words of its package
@@ -83,7 +84,8 @@ TYPED_TEST(PortArbiter, KeepsPackagesTogetherInTurnAndLosesNothing) {
       uint64_t data = 0;
       for (uint32_t r = 0; r < kCount; ++r) {
         Requester& requester = requesters[r];
-        if (requester.left == 0 && (crowded || bench.one_of(6))) requester.left = 1 + static_cast<int>(bench.random() % 3);
+        if (requester.left == 0 && (crowded || bench.one_of(6)))
+          requester.left = 1 + static_cast<int>(bench.random() % 3);
         if (requester.gap > 0) --requester.gap;
         if (requester.left == 0 || requester.gap > 0) continue;
         valid |= 1u << r;

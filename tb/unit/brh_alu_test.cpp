@@ -1,4 +1,5 @@
-// rtl/brh_alu.v in both subnormal modes against the model of arithmetic: compares, predicate logic, decisions of control.
+// rtl/brh_alu.v in both subnormal modes against the model of arithmetic: compares,
+// predicate logic, decisions of control.
 #include "Vbrh_units.h"
 #include "alu_bench.hpp"
 #include "alu_model.hpp"

@@ -1,13 +1,13 @@
-// Exact reference of a * b + c for narrow formats, in 128-bit integers: for up to 5 exponent and 10 mantissa bits no digit is
-// lost, and the only rounding is the one at the end. Shares nothing with the RTL or the model of arithmetic.
+// Exact reference of a * b + c for narrow formats, in 128-bit integers: for up to 5 exponent and 10 mantissa bits no
+// digit is lost, and the only rounding is the one at the end. Shares nothing with the RTL or the model of arithmetic.
 #pragma once
 
 #include <cstdint>
 
 namespace raypool {
 
-/// Bits of a number: sign, exponent, mantissa. `flush`: subnormal operands count as zero and results that are tiny after rounding
-/// to the mantissa's bits become the zero of their sign.
+/// Bits of a number: sign, exponent, mantissa. `flush`: subnormal operands count as zero and results that are tiny
+/// after rounding to the mantissa's bits become the zero of their sign.
 class ExactFloat {
  public:
   ExactFloat(int exponent_bits, int mantissa_bits, bool flush)

@@ -9,7 +9,9 @@ namespace {
 
 constexpr uint64_t kSeed = 4711;
 
-uint32_t compared(Opcode opcode, uint32_t mask, arith::Mode mode) { return opcode != Opcode::Ffma || mode.fused ? mask : 0; }
+uint32_t compared(Opcode opcode, uint32_t mask, arith::Mode mode) {
+  return opcode != Opcode::Ffma || mode.fused ? mask : 0;
+}
 
 std::vector<AluUnderTest> units() {
   return {{"ieee", {Subnormals::Ieee, SlowUnit::Exact}, 3},
@@ -57,7 +59,8 @@ TEST(FltAlu, RandomPairsAgreeWithTheModel) {
     const Opcode opcode = kOpcodes[random() % std::size(kOpcodes)];
     for (int l = 0; l < kBenchLanes; ++l) {
       auto [a, b] = source.next();
-      if (opcode == Opcode::F2i && random() % 2) a = (a & 0x807fffffu) | static_cast<uint32_t>(120 + random() % 42) << 23;
+      if (opcode == Opcode::F2i && random() % 2)
+        a = (a & 0x807fffffu) | static_cast<uint32_t>(120 + random() % 42) << 23;
       if (opcode == Opcode::I2f) a = static_cast<uint32_t>(static_cast<int32_t>(a) >> random() % 32);
       bench.add(opcode, a, b, source.third(a, b));
     }

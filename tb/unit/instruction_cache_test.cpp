@@ -1,4 +1,5 @@
-// The instruction cache, in several sizes: a small core of warps looks up, waits for refills as the contract says, and compares.
+// The instruction cache, in several sizes: a small core of warps looks up, waits for refills
+// as the contract says, and compares.
 #include <gtest/gtest.h>
 #include <verilated.h>
 
@@ -253,7 +254,8 @@ TYPED_TEST(InstructionCache, RandomWarpsGetTheirInstructions) {
           ASSERT_EQ(warp.pc, looking_pc);
           ASSERT_EQ(answer.instruction, bench.stored(warp.pc)) << "pc " << warp.pc << " cycle " << bench.cycle;
           warp.since = bench.cycle;
-          warp.pc = bench.random() % 4 ? (warp.pc + 1) % (lines * 8) : static_cast<uint32_t>(bench.random() % (lines * 8));
+          warp.pc =
+              bench.random() % 4 ? (warp.pc + 1) % (lines * 8) : static_cast<uint32_t>(bench.random() % (lines * 8));
         }
       }
       if (lookup) looking_pc = lookup->second;

@@ -1,5 +1,6 @@
-// A memory for unit benches, at the end of a memory port: takes requests when it likes and answers late, in any order of the
-// lines, with gaps and interleaved beats. As the port demands, a read sees every write taken before it and none taken after it.
+// A memory for unit benches, at the end of a memory port: takes requests when it likes and answers late, in
+// any order of the lines, with gaps and interleaved beats. As the port demands, a read sees every write
+// taken before it and none taken after it.
 #pragma once
 
 #include <array>
@@ -42,7 +43,8 @@ class LineMemory {
     Line line;
     line.id = id;
     line.address = address;
-    line.due = cycle + static_cast<uint64_t>(behaviour.latency) + random_() % static_cast<uint32_t>(behaviour.jitter + 1);
+    line.due =
+        cycle + static_cast<uint64_t>(behaviour.latency) + random_() % static_cast<uint32_t>(behaviour.jitter + 1);
     for (uint32_t i = 0; i < 16; ++i) line.data[i] = word(address + 4 * i);
     lines_.push_back(line);
     ++reads_;

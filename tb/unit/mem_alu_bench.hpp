@@ -1,6 +1,7 @@
-// Drives a Verilated mem_alu and checks everything that is promised in every cycle: each result against the history of the
-// stores, stores at the port against the store trace, reads against the rules of miss-status holding registers, stable payloads,
-// bounded time. MODEL is a struct with the Verilated class as Unit and the parameters kWarps, kLanes, kBytes, kMshrs.
+// Drives a Verilated mem_alu and checks everything that is promised in every cycle: each result against the
+// history of the stores, stores at the port against the store trace, reads against the rules of miss-status
+// holding registers, stable payloads, bounded time. MODEL is a struct with the Verilated class as Unit and the
+// parameters kWarps, kLanes, kBytes, kMshrs.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -117,7 +118,8 @@ class MemAluBench {
     return quads;
   }
 
-  /// One cycle; the task arrives in it. Throws in the cycle after a fatal failure, so that no test goes on with a broken unit.
+  /// One cycle; the task arrives in it. Throws in the cycle after a fatal failure, so that
+  /// no test goes on with a broken unit.
   void step(const MemTask* task = nullptr) {
     if (::testing::Test::HasFatalFailure()) throw std::runtime_error("the bench stops at its first fatal failure");
     ASSERT_LT(cycle - last_done_, kPatience) << "hang: no task has been done for a long time";
@@ -239,11 +241,11 @@ class MemAluBench {
   uint64_t outputs() {
     const auto& u = *unit_;
     uint64_t sum = 0;
-    for (uint64_t value :
-         {uint64_t{u.ready_o}, uint64_t{u.done_valid_o}, uint64_t{u.done_warp_o}, uint64_t{u.fault_valid_o},
-          uint64_t{u.request_valid_o}, uint64_t{u.request_write_o}, uint64_t{u.request_address_o}, uint64_t{u.request_mask_o},
-          uint64_t{u.request_id_o}, uint64_t{u.store_trace_valid_o}, uint64_t{u.store_trace_address_o}, uint64_t{u.hit_o},
-          uint64_t{u.miss_o}, uint64_t{u.store_o}, uint64_t{u.idle_o}})
+    for (uint64_t value : {uint64_t{u.ready_o}, uint64_t{u.done_valid_o}, uint64_t{u.done_warp_o},
+                           uint64_t{u.fault_valid_o}, uint64_t{u.request_valid_o}, uint64_t{u.request_write_o},
+                           uint64_t{u.request_address_o}, uint64_t{u.request_mask_o}, uint64_t{u.request_id_o},
+                           uint64_t{u.store_trace_valid_o}, uint64_t{u.store_trace_address_o}, uint64_t{u.hit_o},
+                           uint64_t{u.miss_o}, uint64_t{u.store_o}, uint64_t{u.idle_o}})
       sum = sum * 0x9e3779b97f4a7c15u + value;
     for (int lane = 0; lane < kLanes; ++lane) sum = sum * 31 + get(u.done_data_o, lane);
     return sum;
@@ -283,8 +285,8 @@ class MemAluBench {
       if (flight->task.store || !(flight->task.mask >> lane & 1)) continue;
       ASSERT_TRUE(may_load(flight->task.address[lane], result.data[lane], flight->start))
           << "warp " << warp << " lane " << lane << " loaded " << std::hex << result.data[lane] << " from "
-          << flight->task.address[lane] << ", which held " << history_[flight->task.address[lane] / 4].back().value << std::dec
-          << ", cycle " << cycle;
+          << flight->task.address[lane] << ", which held " << history_[flight->task.address[lane] / 4].back().value
+          << std::dec << ", cycle " << cycle;
     }
     ASSERT_TRUE(flight->stores.empty()) << "a store is done before all its quadwords are, cycle " << cycle;
     flight.reset();

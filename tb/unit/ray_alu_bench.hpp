@@ -1,7 +1,7 @@
-// Drives a Verilated ray_alu between pools of random speed and checks in every cycle what docs/ray-alu.md promises: every word
-// read, every ray and frame contribution (order, lanes, content), which package goes to which thread, the rules of requests,
-// stable payloads, the trace, exporting_o and import_active_o to the cycle, bounded time. What the unit breaks is thrown, with
-// cycle and seed. MODEL is a struct with the Verilated class as Unit and kWarps, kLanes.
+// Drives a Verilated ray_alu between pools of random speed and checks in every cycle what docs/ray-alu.md promises:
+// every word read, every ray and frame contribution (order, lanes, content), which package goes to which thread, the
+// rules of requests, stable payloads, the trace, exporting_o and import_active_o to the cycle, bounded time. What the
+// unit breaks is thrown, with cycle and seed. MODEL is a struct with the Verilated class as Unit and kWarps, kLanes.
 #pragma once
 
 #include <verilated.h>
@@ -80,8 +80,8 @@ class RayAluBench {
   uint64_t request_limit = ~uint64_t{0};  ///< requests that the pool still takes
   uint64_t faults = 0;
   uint32_t fault_warp = 0;
-  std::vector<uint64_t> beat_cycles;                           ///< cycles in which a beat of a ray or a contribution left
-  std::array<uint64_t, Model::kWarps> duration{};              ///< of the warp's last task, from arrival to done
+  std::vector<uint64_t> beat_cycles;               ///< cycles in which a beat of a ray or a contribution left
+  std::array<uint64_t, Model::kWarps> duration{};  ///< of the warp's last task, from arrival to done
   std::array<std::vector<uint32_t>, Model::kWarps> read_data;  ///< of the warp's last rld, a lane
 
   uint32_t below(uint32_t bound) { return static_cast<uint32_t>(random() % bound); }
@@ -193,7 +193,8 @@ class RayAluBench {
   template <typename T>
   static void put(T& port, uint32_t index, uint32_t value) {
     if constexpr (std::is_integral_v<T>) {
-      port = static_cast<T>((uint64_t{port} & ~(uint64_t{0xffffffffu} << (32 * index))) | uint64_t{value} << (32 * index));
+      port =
+          static_cast<T>((uint64_t{port} & ~(uint64_t{0xffffffffu} << (32 * index))) | uint64_t{value} << (32 * index));
     } else {
       port[index] = value;
     }
@@ -262,7 +263,8 @@ class RayAluBench {
     flights_[warp].reset();
     Slices& slices = slices_[warp];
     check(traced == (task.op == RayOp::Rst), "the ray trace does not come with the rst's end, and it alone");
-    check(duration[warp] >= (task.op == RayOp::Rld || task.op == RayOp::Rst ? kAccessCycles : kSwapCycles), "done too early");
+    check(duration[warp] >= (task.op == RayOp::Rld || task.op == RayOp::Rst ? kAccessCycles : kSwapCycles),
+          "done too early");
     if (task.op == RayOp::Rld || task.op == RayOp::Rst) check(task.word < kWords, "a word above 20 was accessed");
     Set& current = slices.sets[slices.current];
     switch (task.op) {
@@ -288,7 +290,8 @@ class RayAluBench {
         break;
       case RayOp::Rst:
         ++counts.writes;
-        check(unit_->ray_trace_warp_o == warp && unit_->ray_trace_word_o == task.word && unit_->ray_trace_mask_o == task.mask,
+        check(unit_->ray_trace_warp_o == warp && unit_->ray_trace_word_o == task.word &&
+                  unit_->ray_trace_mask_o == task.mask,
               "the ray trace names another warp, word or mask");
         for (uint32_t lane = 0; lane < kLanes; ++lane) {
           if (!(task.mask >> lane & 1)) continue;
@@ -331,8 +334,8 @@ class RayAluBench {
     last_event_ = cycle;
   }
 
-  // The package whose last beat arrives in this cycle is in the input slice from now on. Requests taken now have beats from the
-  // next cycle.
+  // The package whose last beat arrives in this cycle is in the input slice from now on. Requests taken
+  // now have beats from the next cycle.
   void take_beat() {
     if (unit_->import_beat_valid_i) {
       last_event_ = cycle;

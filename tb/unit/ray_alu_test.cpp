@@ -1,5 +1,5 @@
-// The promises of rtl/ray_alu.v (docs/ray-alu.md), for narrow and wide warps. RayAluBench checks most of them in every cycle of
-// every test.
+// The promises of rtl/ray_alu.v (docs/ray-alu.md), for narrow and wide warps. RayAluBench checks most
+// of them in every cycle of every test.
 #include <gtest/gtest.h>
 
 #include "Vray_alu_1x1.h"
@@ -18,8 +18,9 @@ struct RayModel {
   using Unit = U;
   static constexpr uint32_t kWarps = W, kLanes = L;
 };
-using Models = ::testing::Types<RayModel<Vray_alu_1x1, 1, 1>, RayModel<Vray_alu_2x2, 2, 2>, RayModel<Vray_alu_1x32, 1, 32>,
-                                RayModel<Vray_alu_4x4, 4, 4>, RayModel<Vray_alu_8x8, 8, 8>, RayModel<Vray_alu_32x1, 32, 1>>;
+using Models =
+    ::testing::Types<RayModel<Vray_alu_1x1, 1, 1>, RayModel<Vray_alu_2x2, 2, 2>, RayModel<Vray_alu_1x32, 1, 32>,
+                     RayModel<Vray_alu_4x4, 4, 4>, RayModel<Vray_alu_8x8, 8, 8>, RayModel<Vray_alu_32x1, 32, 1>>;
 struct ModelName {
   template <typename Model>
   static std::string GetName(int) {
@@ -38,7 +39,8 @@ class RayAlu : public ::testing::Test {
   /// rst of a value that names warp, word and lane.
   static RayTask store(uint32_t warp, uint32_t word, uint32_t mask = Driver::kAllLanes) {
     RayTask result{warp, RayOp::Rst, word, mask, {}};
-    for (uint32_t lane = 0; lane < Driver::kLanes; ++lane) result.data.push_back(warp << 16 | word << 8 | lane | 0x5a000000u);
+    for (uint32_t lane = 0; lane < Driver::kLanes; ++lane)
+      result.data.push_back(warp << 16 | word << 8 | lane | 0x5a000000u);
     return result;
   }
   /// Stores words 0 .. 11 of a warp.
@@ -80,7 +82,8 @@ void make_random(Bench& bench, RayTask& task) {
   for (uint32_t lane = 0; lane < Bench::kLanes; ++lane) task.data.push_back(static_cast<uint32_t>(bench.random()));
 }
 
-// Tasks at random for every warp over several launches, the next launch's import overlapping, with pools of the given speeds.
+// Tasks at random for every warp over several launches, the next launch's import
+// overlapping, with pools of the given speeds.
 template <typename Model>
 RayCounts random_run(uint32_t seed, PoolOdds odds, uint32_t task_percent, uint32_t launches) {
   using Bench = RayAluBench<Model>;
@@ -93,7 +96,9 @@ RayCounts random_run(uint32_t seed, PoolOdds odds, uint32_t task_percent, uint32
   };
   std::vector<Warp> warps(Bench::kWarps);
   uint32_t started = 0;
-  const auto begin = [&](Warp& warp) { warp = {warp.kernel, bench.roll(50) ? 0 : bench.below(4), bench.below(20), false}; };
+  const auto begin = [&](Warp& warp) {
+    warp = {warp.kernel, bench.roll(50) ? 0 : bench.below(4), bench.below(20), false};
+  };
   for (Warp& warp : warps) begin(warp);
 
   // The warp's next task, if it has one.
@@ -211,7 +216,8 @@ TYPED_TEST(RayAlu, AStoreWritesTheMaskedLanesOnly) {
     for (const uint32_t word : {0u, 9u, 20u}) bench.run(this->store(warp, word));
   }
   for (uint32_t mask = 0; mask < 16; ++mask) {
-    const uint32_t warp = mask % Bench::kWarps, wide = mask * 0x11111111u & Bench::kAllLanes, word = mask % 2 == 0 ? 9 : 20;
+    const uint32_t warp = mask % Bench::kWarps, wide = mask * 0x11111111u & Bench::kAllLanes,
+                   word = mask % 2 == 0 ? 9 : 20;
     RayTask store = this->store(warp, word, wide);
     for (uint32_t& value : store.data) value += 0x01000000u * (mask + 1);
     bench.run(store);

@@ -71,7 +71,8 @@ TEST(SlwAluLong, EveryMantissaAgreesWithTheModel) {
   for (uint32_t a = 0x3f800000u; a < 0x40800000u; ++a) bench.add(Opcode::Frsqrt, a, 0);
   for (uint32_t a = 0x3f800000u; a < 0x40000000u; ++a) bench.add(Opcode::Frcp, a, 0);
   bench.finish();
-  print_long_row("RTL fsqrt frsqrt frcp, every mantissa", bench.count(Subnormals::Ieee), bench.count(Subnormals::Flush));
+  print_long_row("RTL fsqrt frsqrt frcp, every mantissa", bench.count(Subnormals::Ieee),
+                 bench.count(Subnormals::Flush));
 }
 
 TEST(SlwAluLong, ManyRandomQuotientsAgreeWithTheModel) {
@@ -91,8 +92,8 @@ TEST(SlwAlu, SubnormalQuotientsOnTheMiddleGoToEven) {
   std::mt19937_64 random(kSeed);
   for (int k = 1; k <= 27; ++k) {
     for (int i = 0; i < 500; ++i) {
-      const uint32_t n =
-          (static_cast<uint32_t>(random()) & 0x00ffffffu & ~((1u << random() % 24) - 1)) | static_cast<uint32_t>(i & 1) << 23;
+      const uint32_t n = (static_cast<uint32_t>(random()) & 0x00ffffffu & ~((1u << random() % 24) - 1)) |
+                         static_cast<uint32_t>(i & 1) << 23;
       bench.add(Opcode::Fdiv, n, static_cast<uint32_t>(127 + k) << 23);
       bench.add(Opcode::Fdiv, n | 0x80000000u, (static_cast<uint32_t>(127 + k) << 23) + static_cast<uint32_t>(i % 3));
     }

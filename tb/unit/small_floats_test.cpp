@@ -1,5 +1,6 @@
-// Adder, multiplier and fused multiply-add are parameterised by their widths, so that narrow ones can be tried with all operands
-// there are. Against exact integers: every triple of 8-bit numbers, the product of every pair of 16-bit ones (long).
+// Adder, multiplier and fused multiply-add are parameterised by their widths, so that narrow ones can be
+// tried with all operands there are. Against exact integers: every triple of 8-bit numbers, the product
+// of every pair of 16-bit ones (long).
 #include <gtest/gtest.h>
 #include <verilated.h>
 
@@ -67,8 +68,8 @@ class SmallFloats {
     LongCount& count = counts_[mode];
     ++count.inputs;
     if (rtl == exact || ++count.errors > 5) return;
-    ADD_FAILURE() << unit << (mode != 0 ? " flush" : " ieee") << std::hex << ": a " << due.a << " b " << due.b << " c " << due.c
-                  << (due.subtract ? " subtract" : "") << ": RTL " << rtl << " exact " << exact;
+    ADD_FAILURE() << unit << (mode != 0 ? " flush" : " ieee") << std::hex << ": a " << due.a << " b " << due.b << " c "
+                  << due.c << (due.subtract ? " subtract" : "") << ": RTL " << rtl << " exact " << exact;
   }
   void check_separate(const Due& due) {
     for (int mode = 0; mode < 2; ++mode) {
@@ -77,7 +78,8 @@ class SmallFloats {
         compare("adder", mode, due, result(top_.sum_o, mode),
                 due.subtract ? reference.sub(due.a, due.b) : reference.add(due.a, due.b));
       }
-      if (due.what & kProduct) compare("multiplier", mode, due, result(top_.product_o, mode), reference.mul(due.a, due.b));
+      if (due.what & kProduct)
+        compare("multiplier", mode, due, result(top_.product_o, mode), reference.mul(due.a, due.b));
     }
   }
   void check_fused(const Due& due) {
@@ -104,7 +106,8 @@ TEST(SmallFloats, EveryTripleOfEightBitNumbersIsRight) {
   Eight run(4, 3);
   for (uint32_t a = 0; a < 256; ++a) {
     for (uint32_t b = 0; b < 256; ++b) {
-      for (const bool subtract : {false, true}) run(a, b, 0, subtract, Eight::kSum | Eight::kProduct | Eight::kFusedProduct);
+      for (const bool subtract : {false, true})
+        run(a, b, 0, subtract, Eight::kSum | Eight::kProduct | Eight::kFusedProduct);
       for (uint32_t c = 0; c < 256; ++c) run(a, b, c, false, Eight::kFused);
     }
     if (run.failed()) break;
@@ -163,8 +166,8 @@ std::array<LongCount, 2> multiply_every_pair(uint32_t end) {
       const uint32_t rtl = top.product_o[lane / 2] >> (lane % 2 * kBits) & 0xffff, exact = references[mode].mul(a, b);
       ++counts[mode].inputs;
       if (rtl == exact || ++counts[mode].errors > 5) continue;
-      ADD_FAILURE() << "multiplier" << (mode != 0 ? " flush" : " ieee") << std::hex << ": a " << a << " b " << b << ": RTL "
-                    << rtl << " exact " << exact;
+      ADD_FAILURE() << "multiplier" << (mode != 0 ? " flush" : " ieee") << std::hex << ": a " << a << " b " << b
+                    << ": RTL " << rtl << " exact " << exact;
     }
     top.clk_i = 1;
     top.eval();

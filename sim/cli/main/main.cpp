@@ -41,14 +41,15 @@ void add_unit(CLI::App& app, std::string& engine, std::string& library) {
 }
 
 void add_inspect(CLI::App& app, uint64_t& until) {
-  app.add_option(
-         "--inspect", until,
-         "lockstep: look inside the RTL up to this cycle, in which an earlier run met a difference; that run does it by itself")
+  app.add_option("--inspect", until,
+                 "lockstep: look inside the RTL up to this cycle, in which an earlier run met a difference; that run "
+                 "does it by itself")
       ->type_name("CYCLE")
       ->check(CLI::PositiveNumber);
 }
 
-void add_scene(CLI::App& app, std::string& scene, std::string& size, std::string& view, ViewWords& look, double& detail) {
+void add_scene(CLI::App& app, std::string& scene, std::string& size, std::string& view, ViewWords& look,
+               double& detail) {
   app.add_option("--scene,scene", scene, "cornell, room, or the path of an OBJ")->capture_default_str();
   app.add_option("--size", size, "image, WIDTHxHEIGHT in pixels, 1 to 16384 each")->capture_default_str();
   app.add_option("--view", view, "JSON file with camera and light (default: the scene's own, or framed automatically)");
@@ -57,16 +58,19 @@ void add_scene(CLI::App& app, std::string& scene, std::string& size, std::string
   app.add_option("--up", look.up, "upwards, x,y,z");
   app.add_option("--fov", look.fov, "vertical field of view, degrees, 1 to 170");
   app.add_option("--light", look.light, "place of the light, x,y,z");
-  app.add_option("--detail", detail, "triangles of a built-in scene, 0.01 to 16, 1 = as designed")->capture_default_str();
+  app.add_option("--detail", detail, "triangles of a built-in scene, 0.01 to 16, 1 = as designed")
+      ->capture_default_str();
 }
 
-/// "--size is given 2 times (8x8, 16x16): give it once", of an option that takes one value; empty if there is none such.
+/// "--size is given 2 times (8x8, 16x16): give it once", of an option that takes one
+/// value; empty if there is none such.
 std::string given_twice(const CLI::App& app) {
   for (const CLI::App* sub : app.get_subcommands()) {
     for (const CLI::Option* option : sub->get_options()) {
       const std::vector<std::string>& values = option->results();
       if (option->get_expected_max() != 1 || values.size() < 2) continue;
-      return fmt::format("{} is given {} times ({}): give it once", option->get_name(), values.size(), fmt::join(values, ", "));
+      return fmt::format("{} is given {} times ({}): give it once", option->get_name(), values.size(),
+                         fmt::join(values, ", "));
     }
   }
   return "";
@@ -95,7 +99,8 @@ class CommandLine {
   void add_descriptions_command();
 
   CLI::App app_{
-      "raypool: a ray-tracing GPU to render on, measure, verify and synthesise. RAYPOOL COMMAND --help tells more of a command.",
+      "raypool: a ray-tracing GPU to render on, measure, verify and synthesise. RAYPOOL COMMAND --help tells more of a "
+      "command.",
       "raypool"};
   int code_ = 0;
   SimOptions sim_;
@@ -136,15 +141,18 @@ CommandLine::CommandLine(int argc, char** argv) {
 }
 
 void CommandLine::add_sim_command() {
-  CLI::App* sim_app = app_.add_subcommand("sim", "draw a scene on the simulated chip; leaves image.png and report.json");
+  CLI::App* sim_app =
+      app_.add_subcommand("sim", "draw a scene on the simulated chip; leaves image.png and report.json");
   add_scene(*sim_app, sim_.scene, sim_.size, sim_.view, sim_.look, sim_.detail);
   add_config(*sim_app, sim_.config);
   add_unit(*sim_app, sim_.engine, sim_.unit_library);
   sim_app->add_option("--units", sim_.units, "compute units: 1, 2 or 4")->capture_default_str();
-  sim_app->add_option("--depth", sim_.depth, "1: eye and shadow rays only; up to 254: with reflections")->capture_default_str();
+  sim_app->add_option("--depth", sim_.depth, "1: eye and shadow rays only; up to 254: with reflections")
+      ->capture_default_str();
   sim_app->add_option("--traverser", sim_.traverser, "timing of the traverser: static")->capture_default_str();
-  sim_app->add_option("--out", sim_.out,
-                      "folder for the results (default: out/<what was run> beside the program; installed: in raypool-out)");
+  sim_app->add_option(
+      "--out", sim_.out,
+      "folder for the results (default: out/<what was run> beside the program; installed: in raypool-out)");
   sim_app->add_flag("--waves", sim_.waves, "leave a waveform, waves.fst, too; rtl and lockstep only");
   sim_app->add_flag("--modules", sim_.modules,
                     "draw nothing: print the chip's SystemC modules, and what their ports are bound to");
@@ -162,10 +170,13 @@ void CommandLine::add_run_command() {
   run_app->add_option("--n", compute_.n, "size of saxpy (elements) or matmul (rows of a square matrix)");
   run_app->add_option("--blocks", compute_.blocks, "assembly file: blocks to launch")->capture_default_str();
   run_app->add_option("--threads", compute_.threads, "assembly file: threads a block (default: warps x lanes)");
-  run_app->add_option("--arg", compute_.arguments, "assembly file: next kernel argument; integer, 0x..., or float (with a point)")
+  run_app
+      ->add_option("--arg", compute_.arguments,
+                   "assembly file: next kernel argument; integer, 0x..., or float (with a point)")
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  run_app->add_option("--memory", compute_.memory_bytes, "assembly file: bytes of memory, program first")->capture_default_str();
+  run_app->add_option("--memory", compute_.memory_bytes, "assembly file: bytes of memory, program first")
+      ->capture_default_str();
   run_app->add_option("--print", compute_.print, "assembly file: ADDRESS:WORDS of memory to print afterwards")
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
@@ -198,15 +209,19 @@ void CommandLine::add_cosim_command() {
   cosim_app->add_option("--coverage", cosim_.coverage, "JSON file with what was covered");
   cosim_app->add_option("--vectors", cosim_.vectors, "record every cycle in this file, for tb/icarus");
   auto* replay = cosim_app->add_option("--replay", cosim_.replay, "run a saved program instead of random ones");
-  cosim_app->add_flag("--show-config", cosim_.show_configuration, "print the configuration of the saved program")->needs(replay);
-  cosim_app->add_flag("--unchecked", cosim_.unchecked, "run the saved program even if it breaks the rules")->needs(replay);
+  cosim_app->add_flag("--show-config", cosim_.show_configuration, "print the configuration of the saved program")
+      ->needs(replay);
+  cosim_app->add_flag("--unchecked", cosim_.unchecked, "run the saved program even if it breaks the rules")
+      ->needs(replay);
   cosim_app->callback([this] { code_ = cosim_command(cosim_); });
 }
 
 void CommandLine::add_configurations_command() {
-  CLI::App* configurations_app = app_.add_subcommand("configurations", "a set of machines with every pair of parameter values");
+  CLI::App* configurations_app =
+      app_.add_subcommand("configurations", "a set of machines with every pair of parameter values");
   configurations_app->add_flag("--all-pairs", configurations_.all_pairs, "large machines too (default: small ones)");
-  configurations_app->add_option("--most", configurations_.most, "only the first so many of those that bring pairs of values");
+  configurations_app->add_option("--most", configurations_.most,
+                                 "only the first so many of those that bring pairs of values");
   configurations_app->add_option("--out", configurations_.folder, "folder that gets a JSON file for each");
   configurations_app->callback([this] { code_ = configurations_command(configurations_); });
 }
@@ -225,8 +240,8 @@ void CommandLine::add_config_command() {
 }
 
 void CommandLine::add_unit_command() {
-  CLI::App* unit_app =
-      app_.add_subcommand("unit", "build the Verilated unit that engines rtl and lockstep run (takes a minute or more)");
+  CLI::App* unit_app = app_.add_subcommand(
+      "unit", "build the Verilated unit that engines rtl and lockstep run (takes a minute or more)");
   add_config(*unit_app, unit_.config);
   unit_app->add_option("--units", unit_.units, "compute units: 1, 2 or 4")
       ->check(CLI::IsMember({1, 2, 4}))
@@ -272,7 +287,8 @@ void CommandLine::add_kernels_command() {
 }
 
 void CommandLine::add_errors_command() {
-  CLI::App* errors_app = app_.add_subcommand("errors", "measure the errors of division and roots of every slow unit, in ulp");
+  CLI::App* errors_app =
+      app_.add_subcommand("errors", "measure the errors of division and roots of every slow unit, in ulp");
   errors_app->add_option("--grid", grid_, "fdiv: GRID x GRID pairs of mantissas, 2 to 32768")
       ->check(CLI::Range(2u, 32768u))
       ->capture_default_str();
@@ -282,23 +298,28 @@ void CommandLine::add_errors_command() {
 void CommandLine::add_scene_command() {
   CLI::App* scene_app = app_.add_subcommand("scene", "what a scene holds: triangles, materials, box, camera, light");
   CLI::App* hits_app = app_.add_subcommand("hits", "compare our traversal's hits on a frame with Embree's");
-  for (CLI::App* sub : {scene_app, hits_app}) add_scene(*sub, scene_.scene, scene_.size, scene_.view, scene_.look, scene_.detail);
+  for (CLI::App* sub : {scene_app, hits_app})
+    add_scene(*sub, scene_.scene, scene_.size, scene_.view, scene_.look, scene_.detail);
   scene_app->add_option("--write-obj", scene_.write_obj, "write it as an OBJ, with its MTL beside it");
   scene_app->callback([this] { code_ = scene_command(scene_); });
   hits_app->callback([this] { code_ = hits_command(scene_); });
 }
 
 void CommandLine::add_numerics_command() {
-  CLI::App* numerics_app =
-      app_.add_subcommand("numerics", "what each arithmetic mode does to pictures, and costs; seams; offsets; extremes");
+  CLI::App* numerics_app = app_.add_subcommand(
+      "numerics", "what each arithmetic mode does to pictures, and costs; seams; offsets; extremes");
   add_config(*numerics_app, numerics_.config);
-  numerics_app->add_option("--mode", numerics_.mode, "all, or one: ieee-exact, flush-newton1, ...")->capture_default_str();
+  numerics_app->add_option("--mode", numerics_.mode, "all, or one: ieee-exact, flush-newton1, ...")
+      ->capture_default_str();
   numerics_app->add_option("--size", numerics_.size, "pictures, WIDTHxHEIGHT in pixels")->capture_default_str();
-  numerics_app->add_option("--depth", numerics_.depth, "of the pictures' rays")->check(CLI::Range(1, 254))->capture_default_str();
+  numerics_app->add_option("--depth", numerics_.depth, "of the pictures' rays")
+      ->check(CLI::Range(1, 254))
+      ->capture_default_str();
   numerics_app->add_option(
       "--out", numerics_.out,
       "folder for numerics.json and plots (default: out/numerics beside the program; installed: in raypool-out)");
-  numerics_app->add_option("--synthesis", numerics_.synthesis, "folder of synthesis reports (default: synth beside the program)");
+  numerics_app->add_option("--synthesis", numerics_.synthesis,
+                           "folder of synthesis reports (default: synth beside the program)");
   numerics_app->add_flag("--extremes", numerics_.extremes, "the catalogue of hard cases, by mode and engine");
   numerics_app->add_flag("--catalogue", numerics_.catalogue, "only list those cases, with what is expected of them");
   numerics_app->add_option("--configurations", numerics_.configurations,
@@ -308,7 +329,8 @@ void CommandLine::add_numerics_command() {
 }
 
 void CommandLine::add_descriptions_command() {
-  CLI::App* completion_app = app_.add_subcommand("completion", "print what completes raypool's commands and options in a shell");
+  CLI::App* completion_app =
+      app_.add_subcommand("completion", "print what completes raypool's commands and options in a shell");
   completion_app->add_option("shell", shell_, "whose")->type_name("bash|zsh|fish")->capture_default_str();
   completion_app->callback([this] { std::fputs(completion(app_, shell_).c_str(), stdout); });
   CLI::App* man_app = app_.add_subcommand("man", "print the man page: raypool man | man -l -");
@@ -322,7 +344,8 @@ int CommandLine::run(int argc, char** argv) {
     return app_.exit(success);
   } catch (const CLI::ParseError& error) {
     const std::string twice = given_twice(app_);
-    std::fprintf(stderr, "raypool: %s (raypool --help shows what there is)\n", twice.empty() ? error.what() : twice.c_str());
+    std::fprintf(stderr, "raypool: %s (raypool --help shows what there is)\n",
+                 twice.empty() ? error.what() : twice.c_str());
     return kInputFailure;
   }
   return code_;
@@ -337,7 +360,8 @@ int close_output(int code) {
   // Network file systems tell of a full disk when the file is closed; one that was closed before is none.
   if (std::fclose(stdout) != 0 && error == 0 && errno != EBADF) error = errno;
   if (error == 0) return code;
-  std::fprintf(stderr, "raypool: cannot write to standard output (%s): what was printed is not complete\n", std::strerror(error));
+  std::fprintf(stderr, "raypool: cannot write to standard output (%s): what was printed is not complete\n",
+               std::strerror(error));
   return code == 0 ? kInputFailure : code;
 }
 
