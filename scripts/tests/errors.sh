@@ -76,6 +76,7 @@ refuses_sim "size without x" "1 to 16384" --size 64
 refuses_sim "depth 0" "depth.*1" --depth 0
 refuses_sim "3 compute units" "3" --units 3
 refuses_sim "unknown engine" "native, functional, model, rtl or lockstep" --engine spice
+refuses_sim "modules of the engine that has no chip" "engine native has no chip" --engine native --modules
 refuses_sim "unknown traverser" "static" --traverser quick
 refuses_sim "engine without a built unit" "make unit" --engine rtl --unit-library "$folder/none.so"
 refuses_sim "results folder that is a file" "good.obj" --out "$folder/good.obj"

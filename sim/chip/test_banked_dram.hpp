@@ -35,7 +35,7 @@ class BankedDram : public sc_core::sc_module {
     const bool hit = bank.row == row;
     ++(hit ? row_hits : row_misses);
     bank.row = row;
-    const sc_core::sc_time now = sc_core::sc_time_stamp();  // the access begins `delay` later
+    const sc_core::sc_time& now = sc_core::sc_time_stamp();  // the access begins `delay` later
     bank.free_at = std::max(now + delay, bank.free_at) + sc_core::sc_time(hit ? 60 : 140, sc_core::SC_NS);
     delay = bank.free_at - now;
   }
