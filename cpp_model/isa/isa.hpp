@@ -2,7 +2,7 @@
 // parameters, rtl/*.vh and docs/isa.md are derived from it. docs/add-an-alu.md adds a type.
 //
 // Encoding of an instruction, 64 bits:
-//   63:60 unit | 59:55 operation | 54 guard negated | 53:50 guard predicate
+//   63:60 type | 59:55 operation | 54 guard negated | 53:50 guard predicate
 //   49:46 rd (or pd) | 45:42 ra | 41:38 rb (or pb) | 37 b is the immediate
 //   36:32 x (predicate ps/pa, register rc, or word of a ray package) | 31:0 immediate
 #pragma once
