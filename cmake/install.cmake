@@ -10,7 +10,8 @@ install(PROGRAMS scripts/verilate.sh DESTINATION ${data}/scripts COMPONENT progr
 install(FILES sim/rtl/rtl_unit.cpp sim/rtl/unit_library.hpp sim/rtl/probes.vlt DESTINATION ${data}/sim/rtl
   COMPONENT program)
 install(FILES cpp_model/isa/isa.hpp cpp_model/isa/input_error.hpp DESTINATION ${data}/cpp_model/isa COMPONENT program)
-install(FILES cpp_model/config/configuration.hpp DESTINATION ${data}/cpp_model/config COMPONENT program)
+install(FILES cpp_model/config/configuration.hpp cpp_model/config/parameters.hpp
+        DESTINATION ${data}/cpp_model/config COMPONENT program)
 install(FILES cpp_model/machine/compute_unit.hpp cpp_model/machine/compute_unit.cpp cpp_model/machine/memory.hpp
   cpp_model/machine/packages.hpp
         DESTINATION ${data}/cpp_model/machine COMPONENT program)

@@ -10,13 +10,3 @@
     {1{ISA_TYPE_MEM}},
     {BRH_COUNT{ISA_TYPE_BRH}},
     {TID_COUNT{ISA_TYPE_TID}}};
-
-  generate
-    if (TID_COUNT < 1 || TID_COUNT > 4 ||
-        BRH_COUNT < 1 || BRH_COUNT > 4 ||
-        INT_COUNT < 1 || INT_COUNT > 4 ||
-        FLT_COUNT < 1 || FLT_COUNT > 4 ||
-        SLW_COUNT < 1 || SLW_COUNT > 4) begin : gen_bad_count
-      compute_unit_counts_of_ALUs_must_be_from_1_to_4 illegal ();
-    end
-  endgenerate

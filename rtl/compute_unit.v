@@ -3,16 +3,7 @@
 // Promises: no output depends combinationally on an input; every valid/ready pair keeps its payload until taken.
 `default_nettype none
 module compute_unit #(
-  parameter integer WARPS = 8,
-  parameter integer LANES = 8,
-  parameter integer STACK_DEPTH = 8,
-`include "alu_parameters.vh"
-  parameter integer ICACHE_BYTES = 4096,
-  parameter integer DCACHE_BYTES = 8192,
-  parameter integer DCACHE_MSHRS = 4,
-  parameter integer SUBNORMALS = 0,
-  parameter integer SLOW_UNIT = 0,
-  parameter integer FMA = 0,
+`include "unit_parameters.vh"
   parameter integer WARP_BITS = (WARPS > 1) ? $clog2(WARPS) : 1
 ) (
   input  wire                      clk_i,
@@ -91,17 +82,7 @@ module compute_unit #(
   localparam integer DATA = LANES * 32;
 `include "alu_instance_types.vh"
 
-  generate
-    if (WARPS < 1 || WARPS > 32 || (WARPS & (WARPS - 1)) != 0) begin : gen_bad_warps
-      compute_unit_WARPS_must_be_a_power_of_two_from_1_to_32 illegal ();
-    end
-    if (LANES < 1 || LANES > 32 || (LANES & (LANES - 1)) != 0) begin : gen_bad_lanes
-      compute_unit_LANES_must_be_a_power_of_two_from_1_to_32 illegal ();
-    end
-    if (STACK_DEPTH < 2 || STACK_DEPTH > 32) begin : gen_bad_stack
-      compute_unit_STACK_DEPTH_must_be_from_2_to_32 illegal ();
-    end
-  endgenerate
+`include "unit_parameter_checks.vh"
 
   // launch
   wire [WARPS-1:0] start, active;
@@ -168,7 +149,10 @@ module compute_unit #(
       for (g = 0; g < WARPS; g = g + 1) lookup_pc = lookup_pc | (fetch_pc[g*16 +: 16] & {16{fetch_grant[g]}});
   end
 
-  instruction_cache #(.CACHE_BYTES(ICACHE_BYTES), .WARPS(WARPS), .WARP_BITS(WARP_BITS)) instruction_cache (
+  instruction_cache #(
+`include "instruction_cache_parameter_map.vh"
+    .WARPS(WARPS), .WARP_BITS(WARP_BITS)
+  ) instruction_cache (
     .clk_i(clk_i), .rst_ni(rst_ni),
     .invalidate_i(argument_write_i), .lookup_valid_i(fetch_valid), .lookup_warp_i(fetch_warp), .lookup_pc_i(lookup_pc),
     .hit_o(instruction_hit), .miss_o(instruction_miss), .result_warp_o(result_warp), .instruction_o(fetched),
@@ -239,7 +223,8 @@ module compute_unit #(
       end
       if (TYPE == ISA_TYPE_MEM) begin : gen_mem
         mem_alu #(
-          .WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS), .CACHE_BYTES(DCACHE_BYTES), .MSHRS(DCACHE_MSHRS)
+`include "data_cache_parameter_map.vh"
+          .WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS)
         ) mem_alu (
           .invalidate_i(argument_write_i), .memory_limit_i(memory_limit_i),
           .fault_valid_o(mem_fault), .fault_code_o(mem_fault_code), .fault_warp_o(mem_fault_warp),

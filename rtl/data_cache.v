@@ -10,11 +10,10 @@
 // under way and no line is being fetched.
 `default_nettype none
 module data_cache #(
+`include "data_cache_parameters.vh"
   parameter integer WARPS = 8,
   parameter integer WARP_BITS = (WARPS > 1) ? $clog2(WARPS) : 1,
-  parameter integer CACHE_BYTES = 8192,
-  parameter integer MSHRS = 4,
-  parameter integer MSHR_BITS = (MSHRS > 1) ? $clog2(MSHRS) : 1
+  parameter integer MSHR_BITS = (DATA_CACHE_MSHRS > 1) ? $clog2(DATA_CACHE_MSHRS) : 1
 ) (
   input  wire                   clk_i,
   input  wire                   rst_ni,
@@ -53,22 +52,15 @@ module data_cache #(
   input  wire [WARP_BITS-1:0]   served_warp_i,
   output wire                   freed_o,
   output wire                   idle_o,
-  output wire [MSHRS-1:0]       filled_o,
-  output wire [MSHRS*26-1:0]    line_o,
-  output wire [MSHRS*WARPS-1:0] waiters_o
+  output wire [DATA_CACHE_MSHRS-1:0]       filled_o,
+  output wire [DATA_CACHE_MSHRS*26-1:0]    line_o,
+  output wire [DATA_CACHE_MSHRS*WARPS-1:0] waiters_o
 );
-  localparam integer SETS = CACHE_BYTES / 128;
+  localparam integer SETS = DATA_CACHE_BYTES / 128;
   localparam integer SET_BITS = $clog2(SETS);
   localparam integer TAG_BITS = 26 - SET_BITS;
 
-  generate
-    if (CACHE_BYTES < 512 || CACHE_BYTES > 65536 || (CACHE_BYTES & (CACHE_BYTES - 1)) != 0) begin : gen_illegal_bytes
-      data_cache_bytes_must_be_a_power_of_two_from_512_to_65536 illegal ();
-    end
-    if (MSHRS < 1 || MSHRS > 16) begin : gen_illegal_mshrs
-      data_cache_mshrs_must_be_from_1_to_16 illegal ();
-    end
-  endgenerate
+`include "data_cache_parameter_checks.vh"
 
   // Refill beats wait one cycle here; then they own the memories.
   reg                 refill_q;
@@ -150,7 +142,7 @@ module data_cache #(
     end
   end
 
-  miss_status #(.WARPS(WARPS), .WARP_BITS(WARP_BITS), .MSHRS(MSHRS), .MSHR_BITS(MSHR_BITS),
+  miss_status #(.WARPS(WARPS), .WARP_BITS(WARP_BITS), .MSHRS(DATA_CACHE_MSHRS), .MSHR_BITS(MSHR_BITS),
       .SET_BITS(SET_BITS)) u_miss_status (
     .clk_i(clk_i), .rst_ni(rst_ni),
     .access_i(access_i), .access_line_i(quad_q[27:2]), .access_warp_i(access_warp_i),

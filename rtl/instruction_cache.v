@@ -7,9 +7,9 @@
 // each other for ever before anyone has used it. Must be given: the beats of a line in order.
 `default_nettype none
 module instruction_cache #(
+`include "instruction_cache_parameters.vh"
   parameter integer WARPS = 8,
-  parameter integer WARP_BITS = (WARPS > 1) ? $clog2(WARPS) : 1,
-  parameter integer CACHE_BYTES = 4096
+  parameter integer WARP_BITS = (WARPS > 1) ? $clog2(WARPS) : 1
 ) (
   input  wire                 clk_i,
   input  wire                 rst_ni,
@@ -32,18 +32,11 @@ module instruction_cache #(
   input  wire [127:0]         response_data_i
 );
   localparam [WARPS-1:0] ONE = 1;
-  localparam integer SETS = CACHE_BYTES / 128;
+  localparam integer SETS = INSTRUCTION_CACHE_BYTES / 128;
   localparam integer SET_BITS = $clog2(SETS);
   localparam integer TAG_BITS = 13 - SET_BITS;
 
-  generate
-    if (WARPS < 1 || WARPS > 32 || (WARPS & (WARPS - 1)) != 0) begin : gen_illegal_warps
-      instruction_cache_warps_must_be_a_power_of_two_from_1_to_32 illegal ();
-    end
-    if (CACHE_BYTES < 512 || CACHE_BYTES > 65536 || (CACHE_BYTES & (CACHE_BYTES - 1)) != 0) begin : gen_illegal_bytes
-      instruction_cache_bytes_must_be_a_power_of_two_from_512_to_65536 illegal ();
-    end
-  endgenerate
+`include "instruction_cache_parameter_checks.vh"
 
   reg [SETS-1:0] valid_0_q;
   reg [SETS-1:0] valid_1_q;

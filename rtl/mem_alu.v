@@ -8,11 +8,10 @@
 // Must be given: one task at a time of a warp; invalidate_i only while there is no task.
 `default_nettype none
 module mem_alu #(
+`include "data_cache_parameters.vh"
   parameter integer WARPS = 8,
   parameter integer LANES = 8,
-  parameter integer WARP_BITS = (WARPS > 1) ? $clog2(WARPS) : 1,
-  parameter integer CACHE_BYTES = 8192,
-  parameter integer MSHRS = 4
+  parameter integer WARP_BITS = (WARPS > 1) ? $clog2(WARPS) : 1
 ) (
   input  wire                   invalidate_i,      // one cycle: the memory may have changed
   input  wire [31:0]            memory_limit_i,    // bytes
@@ -46,21 +45,12 @@ module mem_alu #(
 `include "alu_ports.vh"
 );
   `include "isa.vh"
-  localparam integer MSHR_BITS = (MSHRS > 1) ? $clog2(MSHRS) : 1;
+  localparam integer MSHR_BITS = (DATA_CACHE_MSHRS > 1) ? $clog2(DATA_CACHE_MSHRS) : 1;
   // Kinds of pass. The third, 2, goes over the lanes that were refused a miss-status holding register.
   localparam [1:0] KIND_NEW = 2'd0;      // first pass, over all lanes of the mask
   localparam [1:0] KIND_FILLED = 2'd1;   // over the lanes of a line that has come
   localparam [LANES-1:0] ONE = 1;
   localparam [LANES-1:0] NONE = 0;
-
-  generate
-    if (WARPS < 1 || WARPS > 32 || (WARPS & (WARPS - 1)) != 0) begin : gen_illegal_warps
-      mem_alu_warps_must_be_a_power_of_two_from_1_to_32 illegal ();
-    end
-    if (LANES < 1 || LANES > 32 || (LANES & (LANES - 1)) != 0) begin : gen_illegal_lanes
-      mem_alu_lanes_must_be_a_power_of_two_from_1_to_32 illegal ();
-    end
-  endgenerate
 
   wire unused = &{1'b0, response_id_i};
   assign done_predicate_o = NONE;
@@ -183,7 +173,7 @@ module mem_alu #(
   wire start = task_valid_i && free_after && !next_valid && waiting_empty;
   assign ready_o = waiting_empty;
 
-  wire [MSHRS*26-1:0] mshr_lines;
+  wire [DATA_CACHE_MSHRS*26-1:0] mshr_lines;
   reg [25:0]      next_line;
   reg [LANES-1:0] next_pending;
   integer n;
@@ -193,7 +183,7 @@ module mem_alu #(
     if (take) begin
       next_pending = next_kind == KIND_NEW ? kept_mask : kept_refused;
       if (next_kind == KIND_FILLED) begin
-        for (n = 0; n < MSHRS; n = n + 1)
+        for (n = 0; n < DATA_CACHE_MSHRS; n = n + 1)
           if (next_mshr == n[MSHR_BITS-1:0]) next_line = mshr_lines[n*26 +: 26];
         for (n = 0; n < LANES; n = n + 1) next_pending[n] = kept_left[n] && kept_words[n*30+4 +: 26] == next_line;
       end
@@ -313,15 +303,17 @@ module mem_alu #(
   wire [127:0]         quad_data;
   wire [27:0]          push_quad;
   wire [MSHR_BITS-1:0] push_id;
-  wire [MSHRS-1:0]       filled;
-  wire [MSHRS*WARPS-1:0] waiters;
+  wire [DATA_CACHE_MSHRS-1:0] filled;
+  wire [DATA_CACHE_MSHRS*WARPS-1:0] waiters;
   wire                   freed;
   wire                   cache_idle;
   wire access_end = access_valid_q && access_last_q;
   wire access_new = access && !access_store_q && access_kind_q == KIND_NEW;
 
-  data_cache #(.WARPS(WARPS), .WARP_BITS(WARP_BITS), .CACHE_BYTES(CACHE_BYTES), .MSHRS(MSHRS),
-      .MSHR_BITS(MSHR_BITS)) u_cache (
+  data_cache #(
+`include "data_cache_parameter_map.vh"
+    .WARPS(WARPS), .WARP_BITS(WARP_BITS), .MSHR_BITS(MSHR_BITS)
+  ) u_cache (
     .clk_i(clk_i), .rst_ni(rst_ni), .invalidate_i(invalidate_i),
     .load_ready_o(load_ready), .store_ready_o(store_ready),
     .lookup_i(look), .lookup_store_i(pass_store_q), .lookup_quad_i(quad),
@@ -383,7 +375,9 @@ module mem_alu #(
   assign store_trace_data_o = access_data_q;
   assign store_trace_mask_o = access_mask_q;
 
-  memory_sequencer #(.WARPS(WARPS), .WARP_BITS(WARP_BITS), .MSHRS(MSHRS), .MSHR_BITS(MSHR_BITS)) u_sequencer (
+  memory_sequencer #(
+    .WARPS(WARPS), .WARP_BITS(WARP_BITS), .MSHRS(DATA_CACHE_MSHRS), .MSHR_BITS(MSHR_BITS)
+  ) u_sequencer (
     .clk_i(clk_i), .rst_ni(rst_ni),
     .queue_i(task_valid_i && !start), .queue_warp_i(task_warp_i),
     .park_i(park_q), .park_warp_i(end_warp_q),

@@ -7,16 +7,7 @@
 `default_nettype none
 module multiprocessor #(
   parameter integer UNITS = 1,
-  parameter integer WARPS = 8,
-  parameter integer LANES = 8,
-  parameter integer STACK_DEPTH = 8,
-`include "alu_parameters.vh"
-  parameter integer ICACHE_BYTES = 4096,
-  parameter integer DCACHE_BYTES = 8192,
-  parameter integer DCACHE_MSHRS = 4,
-  parameter integer SUBNORMALS = 0,
-  parameter integer SLOW_UNIT = 0,
-  parameter integer FMA = 0,
+`include "unit_parameters.vh"
   parameter integer WARP_BITS = (WARPS > 1) ? $clog2(WARPS) : 1
 ) (
   input  wire                            clk_i,
@@ -126,11 +117,8 @@ module multiprocessor #(
   generate
     for (u = 0; u < UNITS; u = u + 1) begin : gen_unit
       compute_unit #(
-        .WARPS(WARPS), .LANES(LANES), .STACK_DEPTH(STACK_DEPTH),
-`include "alu_parameter_map.vh"
-        .ICACHE_BYTES(ICACHE_BYTES),
-        .DCACHE_BYTES(DCACHE_BYTES), .DCACHE_MSHRS(DCACHE_MSHRS), .SUBNORMALS(SUBNORMALS), .SLOW_UNIT(SLOW_UNIT),
-        .FMA(FMA), .WARP_BITS(WARP_BITS)
+`include "unit_parameter_map.vh"
+        .WARP_BITS(WARP_BITS)
       ) compute_unit (
         .clk_i(clk_i), .rst_ni(rst_ni), .program_length_i(program_length_i), .memory_limit_i(memory_limit_i),
         .argument_write_i(argument_write_i), .argument_index_i(argument_index_i), .argument_data_i(argument_data_i),

@@ -52,15 +52,6 @@ module ray_alu #(
   localparam [4:0] LAST_WORD = 5'd20;
   localparam [LANES-1:0] NO_LANE = 0;
 
-  generate
-    if (WARPS < 1 || WARPS > 32 || (WARPS & (WARPS - 1)) != 0) begin : gen_illegal_warps
-      ray_alu_warps_must_be_a_power_of_two_from_1_to_32 illegal ();
-    end
-    if (LANES < 1 || LANES > 32 || (LANES & (LANES - 1)) != 0) begin : gen_illegal_lanes
-      ray_alu_lanes_must_be_a_power_of_two_from_1_to_32 illegal ();
-    end
-  endgenerate
-
   // ---- Roles: which set is a warp's input, current and output.
   reg [WARPS*2-1:0] input_q, current_q, output_q;
 

@@ -56,7 +56,8 @@ stamp=$output/libraypool_unit.stamp
 # Everything the library is made from.
 cd "$root"
 shopt -s nullglob
-headers=(cpp_model/isa/isa.hpp cpp_model/config/configuration.hpp cpp_model/machine/{compute_unit,memory,packages}.hpp \
+headers=(cpp_model/isa/isa.hpp cpp_model/config/{configuration,parameters}.hpp \
+  cpp_model/machine/{compute_unit,memory,packages}.hpp \
   sim/rtl/unit_library.hpp)
 wrapper=(sim/rtl/rtl_unit.cpp cpp_model/machine/compute_unit.cpp)
 verilog=(rtl/*.v)

@@ -1,25 +1,24 @@
-// The hardware configuration: one JSON file (configs/*.json) that the models, the Verilated
-// build, the chip and synthesis all read.
+// The hardware configuration: one JSON file (configs/*.json) that the models, the Verilated build, the chip and
+// synthesis all read.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
+#include "config/parameters.hpp"
 #include "isa/input_error.hpp"
 #include "isa/isa.hpp"
 
 namespace raypool {
 
-enum class Subnormals : uint8_t { Ieee = 0, Flush = 1 };
-enum class SlowUnit : uint8_t { Exact = 0, Newton2 = 1, Newton1 = 2, Newton0 = 3 };
-
 struct AluConfiguration {
-  int count = 1;    ///< instances
-  int latency = 1;  ///< cycles between new tasks; not used by mem and ray
-  int depth = 1;    ///< pipeline stages; not used by mem and ray
+#define RAYPOOL_ROW(name, value, ...) int name = value;
+  RAYPOOL_ALU_PARAMETERS(RAYPOOL_ROW)
+#undef RAYPOOL_ROW
 };
 
 /// One instance of each type, a task each cycle, as deep as the type's table row says.
@@ -29,19 +28,18 @@ inline constexpr std::array<AluConfiguration, kAluTypes> default_alus() {
   return alus;
 }
 
+/// What the name of a configuration looks like, as a regular expression.
+inline constexpr const char* kNamePattern = "[A-Za-z0-9_.+-]{1,64}";
+
 struct Configuration {
   std::string name = "8w8c";
-  std::string source;  ///< what load_configuration was given; empty: nothing
-  int warps = 8;
-  int lanes = 8;  ///< of an ALU, and threads in a warp
-  int stack_depth = 8;
-  std::array<AluConfiguration, kAluTypes> alus = default_alus();
-  int instruction_cache_bytes = 4096;
-  int data_cache_bytes = 8192;
-  int data_cache_mshrs = 4;
-  Subnormals subnormals = Subnormals::Ieee;
-  SlowUnit slow_unit = SlowUnit::Exact;
-  bool fma = false;  ///< fused multiply-add: the instruction ffma, used by kernels; flt then has 5 stages at least
+  std::string source;                                             ///< what load_configuration was given; empty: nothing
+  std::array<AluConfiguration, kAluTypes> alus = default_alus();  ///< latency and depth: not of mem and ray
+#define RAYPOOL_UNIT(name, type, value, ...) type name = value;
+#define RAYPOOL_PART(part, name, type, value, ...) type part##_##name = value;
+  RAYPOOL_PARAMETERS(RAYPOOL_UNIT, RAYPOOL_PART, RAYPOOL_UNIT)
+#undef RAYPOOL_UNIT
+#undef RAYPOOL_PART
 
   /// Whether instructions that need the feature are legal.
   bool has(Feature feature) const { return feature == Feature::Base || fma; }
@@ -69,7 +67,7 @@ void check_configuration(const Configuration& configuration, const std::string& 
 
 std::string to_json(const Configuration& configuration);
 
-/// Parameters of rtl/compute_unit.v, in the order of docs/architecture.md: {"WARPS", 8}, ...
+/// Parameters of rtl/compute_unit.v in their order: {"WARPS", 8}, ...
 std::vector<std::pair<std::string, int>> verilog_parameters(const Configuration& configuration);
 
 }  // namespace raypool

@@ -10,8 +10,8 @@ namespace raypool {
 
 /// rtl/isa.vh: constants, to be included inside a module body.
 std::string isa_verilog();
-/// rtl/isa_fields.vh: wires of the fields of an instruction, to be included inside a
-/// module body behind its declaration.
+/// rtl/isa_fields.vh: wires of the fields of an instruction, to be included inside a module body behind its
+/// declaration.
 std::string isa_fields_verilog();
 /// rtl/isa_functions.vh: functions, to be included inside a module body; needs no constants.
 std::string isa_verilog_functions();
@@ -20,15 +20,11 @@ std::string counters_verilog();
 /// docs/isa.md
 std::string isa_markdown();
 
-/// rtl/alu_parameters.vh: COUNT, LATENCY and DEPTH of each ALU type that has them, to be included in a parameter list.
-std::string alu_parameters_verilog();
-/// rtl/alu_parameter_map.vh: their connections, to be included where a module with these parameters is instantiated.
-std::string alu_parameter_map_verilog();
-/// rtl/alu_instance_types.vh: how many types and instances, the type of each instance; to be
-/// included inside the body of compute_unit.
+/// rtl/alu_instance_types.vh: how many types and instances, the type of each instance; to be included inside the body
+/// of compute_unit.
 std::string alu_instance_types_verilog();
-/// rtl/alu_instances.vh: the ALUs with the framework's ports, to be included inside
-/// compute_unit's loop over the instances.
+/// rtl/alu_instances.vh: the ALUs with the framework's ports, to be included inside compute_unit's loop over the
+/// instances.
 std::string alu_instances_verilog();
 
 struct GeneratedFile {
@@ -40,5 +36,7 @@ std::vector<GeneratedFile> generated_files();
 
 /// The type's name in upper case, as Verilog parameters and constants begin with it.
 std::string verilog_name(AluType type);
+/// Upper case.
+std::string upper(std::string_view text);
 
 }  // namespace raypool

@@ -10,12 +10,6 @@
 namespace raypool {
 namespace {
 
-std::string upper(std::string_view text) {
-  std::string result(text);
-  for (char& c : result) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-  return result;
-}
-
 /// BusyCycles: BUSY_CYCLES
 std::string words_in_upper_case(std::string_view name) {
   std::string text;
@@ -92,6 +86,12 @@ constexpr const char* kGenerated =
     "  // Generated from cpp_model/isa/isa.hpp by `raypool isa {}`; a test compares. Do not edit.\n";
 
 }  // namespace
+
+std::string upper(std::string_view text) {
+  std::string result(text);
+  for (char& c : result) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return result;
+}
 
 std::string verilog_name(AluType type) { return upper(alu_info(type).name); }
 

@@ -1,4 +1,4 @@
-// Writes what rtl/compute_unit.v and rtl/multiprocessor.v include for the ALU types: parameters, instances.
+// Writes what rtl/compute_unit.v includes for the ALU types: their instances.
 #include <fmt/format.h>
 
 #include "isa/encoding.hpp"
@@ -35,47 +35,18 @@ std::string further_parameters(std::string_view names) {
 
 }  // namespace
 
-std::string alu_parameters_verilog() {
-  std::string text =
-      fmt::format("  {}  // Instances of each ALU type, cycles between their tasks, pipeline stages.\n", kGenerated);
-  for (const char* what : {"COUNT", "LATENCY", "DEPTH"}) {
-    for_each_alu([&](const std::string& name, const AluInfo& info, AluType) {
-      if (info.timed_by_events()) return;
-      text += fmt::format("  parameter integer {}_{} = {},\n", name, what, *what == 'D' ? info.depth : 1);
-    });
-  }
-  return text;
-}
-
-std::string alu_parameter_map_verilog() {
-  std::string text = fmt::format("  {}", kGenerated);
-  for_each_alu([&](const std::string& name, const AluInfo& info, AluType) {
-    if (info.timed_by_events()) return;
-    text += fmt::format("  .{0}_COUNT({0}_COUNT), .{0}_LATENCY({0}_LATENCY), .{0}_DEPTH({0}_DEPTH),\n", name);
-  });
-  return text;
-}
-
 std::string alu_instance_types_verilog() {
   std::string text = fmt::format("  {}", kGenerated);
   text += fmt::format("  localparam integer ALU_TYPES = {};\n", kAluTypes);
-  std::string instances, types, wrong;
+  std::string instances, types;
   for_each_alu([&](const std::string& name, const AluInfo& info, AluType) {
     const std::string count = count_of(name, info);
     instances += fmt::format("{}{}", instances.empty() ? "" : " + ", count);
     types = fmt::format("{{{}{{ISA_TYPE_{}}}}}{}{}", count, name, types.empty() ? "" : ",\n    ", types);
-    if (!info.timed_by_events())
-      wrong += fmt::format("{0}{1}_COUNT < 1 || {1}_COUNT > 4", wrong.empty() ? "" : " ||\n        ", name);
   });
   text += fmt::format("  localparam integer INSTANCES = {};\n", instances);
   text += "  // The type of each instance, the first one's lowest: by type, in the order of the types' numbers.\n";
-  text += fmt::format("  localparam [INSTANCES*4-1:0] INSTANCE_TYPES = {{\n    {}}};\n\n", types);
-  text += fmt::format(
-      "  generate\n    if ({}) begin : gen_bad_count\n      compute_unit_counts_of_ALUs_must_be_from_1_to_4 illegal "
-      "();\n    "
-      "end\n"
-      "  endgenerate\n",
-      wrong);
+  text += fmt::format("  localparam [INSTANCES*4-1:0] INSTANCE_TYPES = {{\n    {}}};\n", types);
   return text;
 }
 
@@ -102,8 +73,6 @@ std::vector<GeneratedFile> generated_files() {
           {"rtl/isa_fields.vh", isa_fields_verilog()},
           {"rtl/isa_functions.vh", isa_verilog_functions()},
           {"rtl/counters.vh", counters_verilog()},
-          {"rtl/alu_parameters.vh", alu_parameters_verilog()},
-          {"rtl/alu_parameter_map.vh", alu_parameter_map_verilog()},
           {"rtl/alu_instance_types.vh", alu_instance_types_verilog()},
           {"rtl/alu_instances.vh", alu_instances_verilog()},
           {"docs/isa.md", isa_markdown()}};

@@ -7,7 +7,8 @@ def launch_and_fetch(picture):
     picture.text(124, 28, "launch: PC 16, threads 11, block 32, blocks 32, import 2 (valid/ready)")
     picture.box((32, 58, 168, 46), "launcher", ["one launch may wait"])
     picture.box((32, 150, 168, 46), "fetch_arbiter", ["round_robin, 1 a cycle"])
-    picture.box((32, 244, 168, 62), "instruction_cache", ["2 ways, 64-byte lines", "ICACHE_BYTES"], "box memory")
+    picture.box((32, 244, 168, 62), "instruction_cache", ["2 ways, 64-byte lines", "instruction_cache.bytes"],
+                "box memory")
     picture.modules.add("round_robin")
     picture.wire((200, 81), (330, 81), (330, 118))
     picture.text(338, 86, "start, PC 16, lanes")

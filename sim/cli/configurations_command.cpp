@@ -12,8 +12,7 @@ int configurations_command(const ConfigurationsOptions& options) {
   const std::vector<Machine> machines = covering_machines(most_threads, options.most > 0 ? options.most : ~size_t{0});
   fmt::print("{:<16}", "configuration");
   for (const Factor& factor : covering_factors()) {
-    if (factor.name.find('.') == std::string::npos || factor.name.find("cache") != std::string::npos)
-      fmt::print(" {}", factor.name);
+    if (!factor.of_alu) fmt::print(" {}", factor.name);
   }
   fmt::print(";");
   for (size_t type = 0; type < kAluTypes; ++type)
@@ -23,8 +22,7 @@ int configurations_command(const ConfigurationsOptions& options) {
     const Configuration& c = machine.configuration;
     fmt::print("{:<16}", c.name);
     for (const Factor& factor : covering_factors()) {
-      if (factor.name.find('.') == std::string::npos || factor.name.find("cache") != std::string::npos)
-        fmt::print(" {}", factor.get(machine));
+      if (!factor.of_alu) fmt::print(" {}", factor.get(machine));
     }
     fmt::print(";");
     for (size_t type = 0; type < kAluTypes; ++type) {

@@ -3,10 +3,11 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <utility>
 
 #include "cli/commands.hpp"
 #include "cli/text_file.hpp"
-#include "config/schema.hpp"
+#include "config/reference.hpp"
 #include "files/output_files.hpp"
 #include "isa/input_error.hpp"
 #include "isa/reference.hpp"
@@ -25,7 +26,7 @@ int isa_write_command() {
   if (!std::filesystem::exists("cpp_model/isa/isa.hpp"))
     throw InputError("there is no cpp_model/isa/isa.hpp here: run raypool isa --write in the root of the checkout");
   std::vector<GeneratedFile> files = generated_files();
-  files.push_back({"schemas/configuration.json", configuration_schema()});
+  for (GeneratedFile& file : generated_parameter_files()) files.push_back(std::move(file));
   for (const GeneratedFile& file : files) {
     // What is right keeps its time stamp.
     if (std::filesystem::exists(file.path) && read_text(file.path) == file.text) continue;

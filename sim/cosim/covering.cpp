@@ -7,59 +7,62 @@
 #include <random>
 #include <set>
 #include <tuple>
-#include <type_traits>
 #include <utility>
+
+#include "config/parameter_table.hpp"
 
 namespace raypool {
 namespace {
 
 constexpr int kCandidates = 60;
 
-// Of a depth: in all, while a smaller value counts stages beyond the least, which other parameters decide.
-constexpr int kDeepest = 32;
+std::vector<int> values_of(const Tried& tried) { return {tried.values.begin(), tried.values.begin() + tried.count}; }
 
-void add_alu(std::vector<Factor>& factors, size_t type) {
-  const auto add = [&](const char* what, int AluConfiguration::*member, std::vector<int> values) {
-    factors.push_back({fmt::format("{}.{}", kAluNames[type], what), std::move(values),
-                       [type, member](Machine& m, int value) { m.configuration.alus[type].*member = value; },
-                       [type, member](const Machine& m) { return m.configuration.alus[type].*member; }});
-  };
-  add("count", &AluConfiguration::count, {1, 2, 3, 4});
-  add("latency", &AluConfiguration::latency, {1, 2, 3, 16});
-  const auto least = [type](const Machine& m) { return least_depth(m.configuration, static_cast<AluType>(type)); };
-  factors.push_back(
-      {fmt::format("{}.depth", kAluNames[type]),
-       {0, 1, kDeepest},
-       [type, least](Machine& m, int v) { m.configuration.alus[type].depth = v == kDeepest ? v : least(m) + v; },
-       [type, least](const Machine& m) {
-         const int depth = m.configuration.alus[type].depth;
-         return depth == kDeepest ? depth : depth - least(m);
-       }});
+Factor factor_of(const Parameter& parameter) {
+  std::vector<int> values = values_of(parameter.tried);
+  if (values.empty()) values = values_of(parameter.range);
+  return {path_of(parameter), std::move(values), [&parameter](Machine& m, int v) { parameter.set(m.configuration, v); },
+          [&parameter](const Machine& m) { return parameter.get(m.configuration); }};
 }
 
-// In the order in which they are set.
+Factor factor_of(const AluParameter& parameter, size_t type) {
+  const auto member = parameter.value;
+  Factor factor{fmt::format("{}.{}", kAluNames[type], parameter.key), values_of(parameter.tried),
+                [type, member](Machine& m, int value) { m.configuration.alus[type].*member = value; },
+                [type, member](const Machine& m) { return m.configuration.alus[type].*member; }};
+  factor.of_alu = true;
+  if (member != &AluConfiguration::depth) return factor;
+  // The greatest is the depth; a smaller value counts stages beyond the least, which other parameters decide.
+  const int deepest = parameter.range.greatest;
+  const auto least = [type](const Machine& m) { return least_depth(m.configuration, static_cast<AluType>(type)); };
+  factor.set = [type, deepest, least](Machine& m, int value) {
+    m.configuration.alus[type].depth = value == deepest ? value : least(m) + value;
+  };
+  factor.get = [type, deepest, least](const Machine& m) {
+    const int depth = m.configuration.alus[type].depth;
+    return depth == deepest ? depth : depth - least(m);
+  };
+  return factor;
+}
+
+// In the order in which they are set: a depth behind the modes that decide its least.
 std::vector<Factor> make_factors() {
   std::vector<Factor> factors;
-  const auto add = [&](const char* name, std::vector<int> values, auto Configuration::*member) {
-    using Value = std::remove_reference_t<decltype(std::declval<Configuration>().*member)>;
-    factors.push_back({name, std::move(values),
-                       [member](Machine& m, int v) { m.configuration.*member = static_cast<Value>(v); },
-                       [member](const Machine& m) { return static_cast<int>(m.configuration.*member); }});
+  const auto put = [&factors](bool in_section) {
+    for (const Parameter& parameter : parameter::kAll)
+      if (parameter.section.empty() != in_section) factors.push_back(factor_of(parameter));
   };
-  add("warps", {1, 2, 4, 8, 16, 32}, &Configuration::warps);
-  add("lanes", {1, 2, 4, 8, 16, 32}, &Configuration::lanes);
-  factors.push_back(
+  put(false);
+  put(true);
+  factors.insert(
+      factors.begin() + 2,
       {"units", {1, 2, 4}, [](Machine& m, int v) { m.units = v; }, [](const Machine& m) { return m.units; }});
-  for (Factor& factor : factors) factor.multiplies = true;
-  add("stack_depth", {2, 3, 8, 32}, &Configuration::stack_depth);
-  add("instruction_cache.bytes", {512, 1024, 4096, 65536}, &Configuration::instruction_cache_bytes);
-  add("data_cache.bytes", {512, 1024, 8192, 65536}, &Configuration::data_cache_bytes);
-  add("data_cache.mshrs", {1, 2, 3, 4, 16}, &Configuration::data_cache_mshrs);
-  add("subnormals", {0, 1}, &Configuration::subnormals);
-  add("slow_unit", {0, 1, 2, 3}, &Configuration::slow_unit);
-  add("fma", {0, 1}, &Configuration::fma);
-  for (size_t type = 0; type < kAluTypes; ++type)
-    if (!kAluTable[type].timed_by_events()) add_alu(factors, type);
+  for (Factor& factor : factors)
+    factor.multiplies = factor.name == "warps" || factor.name == "lanes" || factor.name == "units";
+  for (size_t type = 0; type < kAluTypes; ++type) {
+    for (const AluParameter& parameter : parameter::kOfAlu)
+      if (!kAluTable[type].timed_by_events()) factors.push_back(factor_of(parameter, type));
+  }
   return factors;
 }
 

@@ -1,5 +1,5 @@
-// Sets of configurations that cover the parameters of docs/architecture.md, section 2: every
-// value that matters, and pairs of values.
+// Sets of configurations that cover the parameters of docs/parameters.md: every value that matters, and pairs of
+// values.
 #pragma once
 
 #include <cstdint>
@@ -24,6 +24,7 @@ struct Factor {
   std::function<void(Machine& machine, int value)> set;
   std::function<int(const Machine& machine)> get;
   bool multiplies = false;  ///< the number of threads
+  bool of_alu = false;
 };
 const std::vector<Factor>& covering_factors();
 
@@ -38,11 +39,10 @@ struct Covered {
 };
 Covered count_covered(const std::vector<Machine>& machines, int most_threads);
 
-/// Every pair of values of any two parameters that a machine of at most `most_threads`
-/// threads can have is in one of them.
-/// Greedy: each next one is the best of some that are put together value by value, so that each value brings most pairs
-/// that were not there. Then, for each value that takes more threads alone, the default ALUs with it. The same set
-/// every time. `most_pairings`: only so many of the first kind, which have fewer pairs.
+/// Every pair of values of any two parameters that a machine of at most `most_threads` threads can have is in one of
+/// them. Greedy: each next one is the best of some that are put together value by value, so that each value brings most
+/// pairs that were not there. Then, for each value that takes more threads alone, the default ALUs with it. The same
+/// set every time. `most_pairings`: only so many of the first kind, which have fewer pairs.
 std::vector<Machine> covering_machines(int most_threads, size_t most_pairings = ~size_t{0});
 
 }  // namespace raypool

@@ -121,7 +121,7 @@ TEST_P(RtlUnit, ALibraryOfOtherParametersIsRefused) {
     load_rtl_unit(library, other);
     FAIL() << "it was loaded";
   } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("DCACHE_MSHRS"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("DATA_CACHE_MSHRS"), std::string::npos) << error.what();
   }
   EXPECT_THROW(load_rtl_unit("no/such/library.so", other), InputError);
 }

@@ -1,5 +1,7 @@
-  // Generated from cpp_model/isa/isa.hpp by `raypool isa --write`; a test compares. Do not edit.
-  // Instances of each ALU type, cycles between their tasks, pipeline stages.
+  // Generated from cpp_model/config/parameters.hpp by `raypool isa --write`; a test compares. Do not edit.
+  parameter integer WARPS = 8,
+  parameter integer LANES = 8,
+  parameter integer STACK_DEPTH = 8,
   parameter integer TID_COUNT = 1,
   parameter integer BRH_COUNT = 1,
   parameter integer INT_COUNT = 1,
@@ -15,3 +17,9 @@
   parameter integer INT_DEPTH = 2,
   parameter integer FLT_DEPTH = 3,
   parameter integer SLW_DEPTH = 11,
+  parameter integer INSTRUCTION_CACHE_BYTES = 4096,
+  parameter integer DATA_CACHE_BYTES = 8192,
+  parameter integer DATA_CACHE_MSHRS = 4,
+  parameter integer SUBNORMALS = 0,
+  parameter integer SLOW_UNIT = 0,
+  parameter integer FMA = 0,

@@ -1,0 +1,88 @@
+// Writes docs/parameters.md.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "config/parameter_table.hpp"
+#include "config/reference.hpp"
+
+namespace raypool {
+namespace {
+
+constexpr const char* kIntroduction = R"(# Parameters
+
+Generated from the one table, `cpp_model/config/parameters.hpp`, by `raypool isa --write`; a test compares. Do not edit.
+
+A configuration is a JSON file: one in `configs/`, or your own. What it leaves out has its default;
+`raypool config FILE` prints all of it. [where.md](where.md#a-parameter-from-json-to-its-module) shows a parameter's
+way to the module that uses it, and adds one.
+
+| in the file | in the Verilog | values | default | what it is |
+| --- | --- | --- | --- | --- |
+)";
+
+constexpr const char* kAlus = R"(
+Each ALU type but mem and ray, which stand once and are timed by events, has three more, the least depth being also
+the default:
+
+| in the file | in the Verilog | values | default | what it is |
+| --- | --- | --- | --- | --- |
+)";
+
+constexpr const char* kDepths = R"(
+| ALU type | least depth |
+| --- | --- |
+)";
+
+std::string values_text(const Parameter& parameter) {
+  const Range& range = parameter.range;
+  switch (range.form) {
+    case Range::Form::Integer:
+      return fmt::format("{} .. {}", range.least, range.greatest);
+    case Range::Form::PowerOfTwo:
+      return fmt::format("{}, {}, {} .. {}", range.least, 2 * range.least, 4 * range.least, range.greatest);
+    case Range::Form::Name:
+    case Range::Form::OnOff:
+      break;
+  }
+  std::vector<std::string> values;
+  for (const int value : values_of(range))
+    values.push_back(fmt::format("{} = {}", json_of(parameter, value).dump(), value));
+  return fmt::format("{}", fmt::join(values, ", "));
+}
+
+}  // namespace
+
+std::string parameters_markdown() {
+  std::string text = kIntroduction;
+  const Configuration defaults;
+  for (const Parameter& parameter : parameter::kAll) {
+    text += fmt::format("| {} | {} | {} | {} | {} |\n", path_of(parameter), verilog_name(parameter),
+                        values_text(parameter), text_of(parameter, parameter.get(defaults)), parameter.meaning);
+  }
+  text += kAlus;
+  for (const AluParameter& parameter : parameter::kOfAlu) {
+    const bool depth = parameter.value == &AluConfiguration::depth;
+    text += fmt::format("| alus.int.{} ... | {} ... | {} .. {} | {} | {} |\n", parameter.key,
+                        verilog_name(AluType::Int, parameter), depth ? "least" : std::to_string(parameter.range.least),
+                        parameter.range.greatest,
+                        depth ? "the least" : std::to_string(AluConfiguration().*parameter.value), parameter.meaning);
+  }
+  text += kDepths;
+  for (int type = 0; type < kAluTypes; ++type) {
+    const auto alu = static_cast<AluType>(type);
+    if (alu_info(alu).timed_by_events()) continue;
+    for (const AluParameter& parameter : parameter::kOfAlu) {
+      if (parameter.value != &AluConfiguration::depth) continue;
+      text += fmt::format("| {} | {}", kAluNames[static_cast<size_t>(type)], range_of(parameter, alu).least);
+    }
+    for (const DepthRule& rule : depth_rules()) {
+      if (rule.type != alu) continue;
+      text +=
+          fmt::format("; {} with {} {}", rule.least, path_of(*rule.parameter), text_of(*rule.parameter, rule.value));
+    }
+    text += " |\n";
+  }
+  return text;
+}
+
+}  // namespace raypool

@@ -1,0 +1,115 @@
+#include "config/parameter_table.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "isa/reference.hpp"
+
+namespace raypool {
+
+std::string path_of(const Parameter& parameter) {
+  return fmt::format("{}{}{}", parameter.section, parameter.section.empty() ? "" : ".", parameter.key);
+}
+
+std::string verilog_name(const Parameter& parameter) { return upper(parameter.name); }
+
+std::string verilog_name(AluType type, const AluParameter& parameter) {
+  return fmt::format("{}_{}", verilog_name(type), upper(parameter.key));
+}
+
+std::vector<std::string_view> sections() {
+  std::vector<std::string_view> names;
+  for (const Parameter& parameter : parameter::kAll) {
+    if (!parameter.section.empty() && (names.empty() || names.back() != parameter.section))
+      names.push_back(parameter.section);
+  }
+  return names;
+}
+
+bool applies(const AluParameter& parameter, AluType type) {
+  return parameter.value == &AluConfiguration::count || !alu_info(type).timed_by_events();
+}
+
+Range range_of(const AluParameter& parameter, AluType type, const Configuration& configuration) {
+  Range range = parameter.range;
+  if (parameter.value == &AluConfiguration::depth) range.least = least_depth(configuration, type);
+  return range;
+}
+
+namespace {
+
+/// What a type's depth must be with each value of a parameter, the others being as by default.
+std::vector<DepthRule> depths(const Parameter& parameter, AluType type) {
+  std::vector<DepthRule> rules;
+  for (const int value : values_of(parameter.range)) {
+    Configuration configuration;
+    parameter.set(configuration, value);
+    rules.push_back({&parameter, value, type, least_depth(configuration, type)});
+  }
+  return rules;
+}
+
+bool shallower(const DepthRule& a, const DepthRule& b) { return a.least < b.least; }
+
+}  // namespace
+
+Range range_of(const AluParameter& parameter, AluType type) {
+  Range range = range_of(parameter, type, Configuration());
+  if (parameter.value != &AluConfiguration::depth) return range;
+  for (const Parameter& each : parameter::kAll)
+    for (const DepthRule& rule : depths(each, type)) range.least = std::min(range.least, rule.least);
+  return range;
+}
+
+std::vector<DepthRule> depth_rules() {
+  std::vector<DepthRule> rules;
+  for (const Parameter& parameter : parameter::kAll) {
+    for (int type = 0; type < kAluTypes; ++type) {
+      const std::vector<DepthRule> all = depths(parameter, static_cast<AluType>(type));
+      const DepthRule& least = *std::min_element(all.begin(), all.end(), shallower);
+      for (const DepthRule& rule : all)
+        if (shallower(least, rule)) rules.push_back(rule);
+    }
+  }
+  return rules;
+}
+
+std::vector<std::string_view> names_of(const Range& range) {
+  return {range.names.begin(), range.names.begin() + range.greatest + 1};
+}
+
+std::vector<int> values_of(const Range& range) {
+  std::vector<int> values;
+  for (int value = range.least; value <= range.greatest; ++value)
+    if (range.has(value)) values.push_back(value);
+  return values;
+}
+
+std::string text_of(const Range& range) {
+  switch (range.form) {
+    case Range::Form::Integer:
+      return fmt::format("an integer from {} to {}", range.least, range.greatest);
+    case Range::Form::PowerOfTwo:
+      return fmt::format("a power of two from {} to {}", range.least, range.greatest);
+    case Range::Form::Name:
+      return fmt::format("one of {}", fmt::join(names_of(range), ", "));
+    case Range::Form::OnOff:
+      break;
+  }
+  return "true or false";
+}
+
+nlohmann::ordered_json json_of(const Parameter& parameter, int value) {
+  if (parameter.range.form == Range::Form::Name) return parameter.range.names.at(static_cast<size_t>(value));
+  if (parameter.range.form == Range::Form::OnOff) return value != 0;
+  return value;
+}
+
+std::string text_of(const Parameter& parameter, int value) {
+  const nlohmann::ordered_json json = json_of(parameter, value);
+  return json.is_string() ? json.get<std::string>() : json.dump();
+}
+
+}  // namespace raypool

@@ -1,0 +1,3 @@
+  // Generated from cpp_model/config/parameters.hpp by `raypool isa --write`; a test compares. Do not edit.
+  .DATA_CACHE_BYTES(DATA_CACHE_BYTES),
+  .DATA_CACHE_MSHRS(DATA_CACHE_MSHRS),

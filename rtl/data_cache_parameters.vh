@@ -1,0 +1,3 @@
+  // Generated from cpp_model/config/parameters.hpp by `raypool isa --write`; a test compares. Do not edit.
+  parameter integer DATA_CACHE_BYTES = 8192,
+  parameter integer DATA_CACHE_MSHRS = 4,

@@ -1,0 +1,2 @@
+  // Generated from cpp_model/config/parameters.hpp by `raypool isa --write`; a test compares. Do not edit.
+  .INSTRUCTION_CACHE_BYTES(INSTRUCTION_CACHE_BYTES),
