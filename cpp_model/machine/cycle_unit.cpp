@@ -47,6 +47,7 @@ void CycleUnit::reset(uint32_t program_length, uint32_t memory_limit) {
   signals_ = outputs_.signals();
   trace_ = UnitTrace{};
   std::fill(timings_.begin(), timings_.end(), Timing{});
+  rest_signals_ = signals_but_rays();
   present(signals());
 }
 
@@ -70,6 +71,7 @@ void CycleUnit::clock(const UnitInputs& inputs) {
 // first. In most cycles nothing passes the memory port, and nothing starts, ends or faults.
 void CycleUnit::step(const UnitInputs& inputs) {
   const bool attention = attention_ | inputs.memory_response_valid | inputs.launch_valid;
+  const bool stopped = halted();
   Timeline::Cycle& due = timeline_.at(now_);
   buffer_.cache_hit(due.full);
   dispatcher_.want(AluType::Mem, due.want_mem);
@@ -90,16 +92,16 @@ void CycleUnit::step(const UnitInputs& inputs) {
   }
   // Write-back and the next instructions. Who retires in this cycle may issue in it.
   if (const uint32_t control = buffer_.retire(retired); control != 0) retire_control(control);
-  if (!halted()) {
+  if (!stopped) {
     for (uint32_t warps = buffer_.ready(); warps != 0; warps &= warps - 1) issue_warp(lowest(warps));
   }
   if (attention) clock_instruction_cache(inputs, port);
-  if (!halted()) fetch(instruction_cache_.busy() ? now_ : now_ + kAhead);
+  if (!stopped) fetch(instruction_cache_.busy() ? now_ : now_ + kAhead);
   if (dispatcher_.wants_pipelined()) dispatcher_.grant_pipelined(now_ + kAhead, timeline_, counters_);
   if (attention) clock_mem(inputs, port);
-  clock_ray(inputs, accepts ? inputs.launch.import : ImportKind::None);
-  if (dispatcher_.wants(AluType::Ray) != 0 && !halted()) dispatcher_.grant(AluType::Ray, ray_ready, counters_);
-  if (dispatcher_.wants(AluType::Mem) != 0 && !halted()) {
+  clock_ray(inputs, accepts ? inputs.launch.import : ImportKind::None, ray_ready);
+  if (dispatcher_.wants(AluType::Ray) != 0 && !stopped) dispatcher_.grant(AluType::Ray, ray_ready, counters_);
+  if (dispatcher_.wants(AluType::Mem) != 0 && !stopped) {
     dispatcher_.grant(AluType::Mem, mem_ready, counters_);
     attention_ = true;
   }
@@ -110,6 +112,7 @@ void CycleUnit::step(const UnitInputs& inputs) {
   if (faulty_) settle_faults(faults);
   if (attention) attention_ = needs_attention();
   ++now_;
+  if (attention | attention_) rest_signals_ = signals_but_rays();
 }
 
 bool CycleUnit::needs_attention() const {
@@ -168,11 +171,11 @@ void CycleUnit::clock_mem(const UnitInputs& inputs, const MemoryPort& port) {
   dispatcher_.arrived(AluType::Mem);
 }
 
-void CycleUnit::clock_ray(const UnitInputs& inputs, ImportKind import) {
+void CycleUnit::clock_ray(const UnitInputs& inputs, ImportKind import, bool ready) {
   if (inputs.import_beat_valid) core_.import_beat(inputs.import_beat);
   const int arriving = dispatcher_.task(AluType::Ray);
   if (arriving < 0 && !inputs.import_beat_valid && import == ImportKind::None && !ray_.active()) return;
-  counters_.unready[index(AluType::Ray)] += !ray_.ready(arriving);
+  counters_.unready[index(AluType::Ray)] += !ready;
   const int swapped = ray_.clock(arriving, import, inputs);
   if (swapped >= 0) core_.step(static_cast<uint32_t>(swapped));
   dispatcher_.arrived(AluType::Ray);

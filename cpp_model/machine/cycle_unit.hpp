@@ -105,7 +105,7 @@ class CycleUnit final : public ComputeUnit {
   void clock_launcher();
   void clock_instruction_cache(const UnitInputs& inputs, const MemoryPort& port);
   void clock_mem(const UnitInputs& inputs, const MemoryPort& port);
-  void clock_ray(const UnitInputs& inputs, ImportKind import);
+  void clock_ray(const UnitInputs& inputs, ImportKind import, bool ready);
   void count_pauses(bool running);
   // Warps
   void start_kernel();
@@ -121,6 +121,7 @@ class CycleUnit final : public ComputeUnit {
   // Ports
   bool quiet() const;
   uint32_t signals() const;
+  uint32_t signals_but_rays() const;
   void present(uint32_t now);
   void record();
   void record_issue(uint32_t warp, const DecodedInstruction& instruction);
@@ -156,7 +157,8 @@ class CycleUnit final : public ComputeUnit {
   std::array<FaultCode, kMostWarps> stack_fault_{};  // [warp] of the control instruction under way
 
   UnitOutputs outputs_;
-  uint32_t signals_ = 0;  // outputs_.signals()
+  uint32_t signals_ = 0;       // outputs_.signals()
+  uint32_t rest_signals_ = 0;  // signals_but_rays()
   bool tracing_ = false;
   UnitTrace trace_;
   std::vector<Issue> issues_;

@@ -47,14 +47,20 @@ uint64_t CycleUnit::run(const UnitInputs& inputs, uint64_t cycles) {
   return done;
 }
 
-// As UnitOutputs::signals().
-uint32_t CycleUnit::signals() const {
-  const bool works = launcher_.running() | launcher_.waiting() | !memory_arbiter_.idle() | ray_.moves_rays();
+// As UnitOutputs::signals(), if no ray moved.
+uint32_t CycleUnit::signals_but_rays() const {
+  const bool works = launcher_.running() | launcher_.waiting() | !memory_arbiter_.idle();
   const bool idle = !works && mem_.idle();
-  return ray_.signals() | launcher_.launch_ready(ray_.import_active()) * signal::kLaunchReady |
-         idle * (signal::kIdle | signal::kUnitIdle) | memory_arbiter_.request_valid() * signal::kMemoryRequest |
-         halted() * signal::kFault | launcher_.kernel_done(buffer_.active()) * signal::kKernelDone |
-         launcher_.running() * signal::kBusy;
+  return launcher_.launch_ready(false) * signal::kLaunchReady | idle * (signal::kIdle | signal::kUnitIdle) |
+         memory_arbiter_.request_valid() * signal::kMemoryRequest | halted() * signal::kFault |
+         launcher_.kernel_done(buffer_.active()) * signal::kKernelDone | launcher_.running() * signal::kBusy;
+}
+
+// As UnitOutputs::signals(). Of all blocks only the ray ALU changes its part in a cycle that needs no attention.
+uint32_t CycleUnit::signals() const {
+  uint32_t hidden = ray_.import_active() * signal::kLaunchReady;
+  if (ray_.moves_rays()) hidden |= signal::kIdle | signal::kUnitIdle;
+  return (rest_signals_ & ~hidden) | ray_.signals();
 }
 
 void CycleUnit::present(uint32_t now) {

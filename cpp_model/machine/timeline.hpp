@@ -13,7 +13,7 @@ class Timeline {
   static constexpr uint32_t kCycles = 64;
 
   /// Sets of warps.
-  struct Cycle {
+  struct alignas(32) Cycle {
     uint32_t done = 0;      ///< a pipelined ALU is done with their instruction in this cycle
     uint32_t fetch = 0;     ///< they want the instruction cache from this cycle on
     uint32_t full = 0;      ///< their next instruction is in the buffer from this cycle on
