@@ -32,9 +32,9 @@ class RayExport {
     uint32_t lane = 0, rest = 0;  ///< lane that is read; the lanes after it
     uint32_t beat = 0;
     bool landing = false;       ///< a beat is on its way from the memory
-    uint32_t fill = 0;          ///< beats that wait for their port
-    Beat landing_beat;          ///< with landing
-    std::array<Beat, 3> beats;  ///< those that wait; 0 is offered
+    uint32_t fill = 0;          ///< beats that wait for their port, three at most
+    uint32_t offered = 0;       ///< place of the one that is offered; the others, and the one on its way, follow it
+    std::array<Beat, 4> beats;  ///< a ring, where the RTL moves them up
   };
 
   /// `slices` must outlive it.
@@ -46,9 +46,9 @@ class RayExport {
   bool exporting() const { return q_.busy != 0 || q_.landing || q_.fill != 0; }
   bool read() const { return q_.slice && q_.fill + q_.landing != 3; }
   uint8_t read_set() const { return q_.set; }
-  bool export_valid() const { return q_.fill != 0 && !q_.beats[0].frame; }
-  bool frame_valid() const { return q_.fill != 0 && q_.beats[0].frame; }
-  const Beat& offered() const { return q_.beats[0]; }  ///< means something while one of them is valid
+  bool export_valid() const { return q_.fill != 0 && !offered().frame; }
+  bool frame_valid() const { return q_.fill != 0 && offered().frame; }
+  const Beat& offered() const { return q_.beats[q_.offered]; }  ///< means something while one of them is valid
   uint32_t next_warp() const { return q_.next_warp; }
   /// False if clock() would change nothing.
   bool moves() const { return q_.slice | q_.next | q_.landing | (q_.first != q_.end) | (q_.fill != 0); }
@@ -56,7 +56,7 @@ class RayExport {
   /// `granted`: what is read() has its set's port; `output_set`: of next_warp().
   void clock(bool granted, uint8_t output_set, bool export_ready, bool frame_ready) {
     // Conditions that come out either way from cycle to cycle are joined without branches.
-    send((q_.fill != 0) & (q_.beats[0].frame ? frame_ready : export_ready));
+    send((q_.fill != 0) & (offered().frame ? frame_ready : export_ready));
     const bool package_end = q_.frame | (q_.beat == kRayBeats - 1);
     const bool slice_end = granted & package_end & (q_.rest == 0);
     const bool load = q_.next & (!q_.slice | slice_end);
@@ -101,22 +101,21 @@ class RayExport {
 
   // Beats leave, and one that was read in the cycle before joins those that wait.
   void send(bool sent) {
-    if (sent && --q_.fill != 0) {
-      q_.beats[0] = q_.beats[1];
-      q_.beats[1] = q_.beats[2];
-    }
-    if (q_.landing) q_.beats[q_.fill++] = q_.landing_beat;
+    q_.offered = (q_.offered + sent) % 4;
+    q_.fill += uint32_t{q_.landing} - uint32_t{sent};
   }
   void next_lane() {
     q_.beat = 0;
     q_.lane = lowest(q_.rest);
     q_.rest &= q_.rest - 1;
   }
+  // Behind those that wait: send() has counted the one that landed in this cycle.
   void read_beat(bool last) {
-    q_.landing_beat.frame = q_.frame;
-    q_.landing_beat.last = last;
+    Beat& beat = q_.beats[(q_.offered + q_.fill) % 4];
+    beat.frame = q_.frame;
+    beat.last = last;
     const uint32_t word = q_.frame ? word::kPixel : q_.beat * kBeatWords;
-    for (uint32_t i = 0; i < kBeatWords; ++i) q_.landing_beat.data[i] = slices_->output(q_.warp, word + i)[q_.lane];
+    beat.data = slices_->output_beat(q_.warp, word, q_.lane);
   }
 
   const RaySlices* slices_;

@@ -41,6 +41,11 @@ class RaySlices {
   /// Word `word` of all lanes of a slice.
   uint32_t* current(uint32_t warp, uint32_t word) { return row(warp, warps_[warp].current, word); }
   const uint32_t* output(uint32_t warp, uint32_t word) const { return row(warp, warps_[warp].output, word); }
+  /// Four words of one lane, from `word` on.
+  Beat output_beat(uint32_t warp, uint32_t word, uint32_t lane) const {
+    const uint32_t* from = row(warp, warps_[warp].output, word) + lane;
+    return {from[0], from[lanes_], from[2 * lanes_], from[3 * lanes_]};
+  }
 
  private:
   struct Input {
