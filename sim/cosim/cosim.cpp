@@ -98,7 +98,6 @@ class RandomHost {
       arguments_[number] = value;
       unit_.set_argument(static_cast<int>(number), value);
     }
-    if (observer_ != nullptr) observer_->rewritten();
   }
 
   bool open(Port port) const { return fault_cycles_ > kStalledFaultCycles || stalls_.open(port, now_); }

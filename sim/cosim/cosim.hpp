@@ -18,8 +18,6 @@ class RunObserver {
   virtual void cycle(const UnitOutputs& outputs, const UnitInputs& inputs, const UnitTrace& trace) = 0;
   /// The unit has been reset in the middle of the run, which begins anew.
   virtual void restart() {}
-  /// Memory and arguments have become others, as RandomProgram::Kernel::rewrite says.
-  virtual void rewritten() {}
   /// The first fault: all of its cycle, as ComputeUnit::faults() says, before that cycle.
   virtual void faulted(const std::vector<Fault>& faults) { static_cast<void>(faults); }
 };

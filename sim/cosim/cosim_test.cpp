@@ -2,8 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
+#include <optional>
 #include <set>
+#include <string>
 
 #include "cosim/coverage.hpp"
 #include "cosim/covering.hpp"
@@ -349,6 +352,76 @@ TEST(CoverageOfNothing, ListsEverythingAsNotCovered) {
   }
   EXPECT_GT(items, 300u);
   EXPECT_NE(to_string(coverage).find("NOT covered: tid, lane"), std::string::npos);
+}
+
+uint64_t count(const Coverage& coverage, const std::string& name) {
+  for (const Coverage::Group& group : coverage.groups())
+    for (const Coverage::Item& item : group.items)
+      if (item.name == name) return item.count;
+  throw InputError("there is no item '" + name + "'");
+}
+
+/// What rewritten programs cover, each after `change`.
+template <typename Change>
+Coverage rewriting_after(Change change) {
+  const Configuration configuration = configuration_of(2, 2);
+  Coverage coverage(configuration);
+  for (uint64_t seed = 1; seed <= 300; ++seed) {
+    RandomProgram program = make_random_program(configuration, seed, 120, 1, "launches");
+    bool rewritten = false;
+    for (RandomProgram::Kernel& kernel : program.kernels) {
+      if (!kernel.rewrite) continue;
+      rewritten = true;
+      change(program, kernel.rewrite);
+    }
+    if (!rewritten) continue;
+    Memory memory = program.memory;
+    const auto unit = make_functional_unit(configuration, memory);
+    unit->trace_on();
+    coverage.begin();
+    run_random_program(*unit, memory, program, seed, 5'000'000, &coverage);
+  }
+  return coverage;
+}
+
+TEST(CoverageOfRewriting, IsMissingWithoutWhatTheHostRewrites) {
+  const std::string argument = "an argument is read that was another one before";
+  const std::string code = "an instruction retires that was another one before";
+  const std::string data = "a word is loaded that was another one before";
+  const auto all = [&](const Coverage& coverage) {
+    return std::array<bool, 3>{count(coverage, argument) > 0, count(coverage, code) > 0, count(coverage, data) > 0};
+  };
+  using Covered = std::array<bool, 3>;
+  using Rewritten = std::optional<Rewrite>;
+  EXPECT_EQ(all(rewriting_after([](const RandomProgram&, Rewritten&) {})), (Covered{true, true, true}));
+  EXPECT_EQ(all(rewriting_after([](const RandomProgram&, Rewritten& rewrite) { rewrite.reset(); })),
+            (Covered{false, false, false}));
+  EXPECT_EQ(all(rewriting_after([](const RandomProgram& program, Rewritten& rewrite) {
+              for (auto& [number, value] : rewrite->arguments) value = program.arguments[number];
+            })),
+            (Covered{false, true, true}));
+  EXPECT_EQ(all(rewriting_after([](const RandomProgram&, Rewritten& rewrite) { rewrite->code.clear(); })),
+            (Covered{true, false, true}));
+  EXPECT_EQ(all(rewriting_after([](const RandomProgram&, Rewritten& rewrite) { rewrite->data_seed = 0; })),
+            (Covered{true, true, false}));
+}
+
+TEST(CoverageOfPcs, TakesATwinOutsideForOneOnlyIfTheOtherBitsLieInside) {
+  Coverage coverage(configuration_of(2, 2));
+  coverage.begin();
+  UnitTrace trace;
+  RetireEvent event;
+  event.pc = 7;
+  event.instruction = assembled("exit")[0];
+  event.mask = 1;
+  trace.retired = {event};
+  coverage.cycle(UnitOutputs{}, UnitInputs{}, trace);
+  const std::string name = "a PC outside that lies inside but for bit 15";
+  for (const uint32_t pc : {0xffffu, 0x8008u, 8u}) coverage.faulted({{FaultCode::PcOutsideProgram, 0, pc}});
+  coverage.faulted({{FaultCode::IllegalInstruction, 0, 0x8007}});
+  EXPECT_EQ(count(coverage, name), 0u);
+  coverage.faulted({{FaultCode::PcOutsideProgram, 0, 0x8007}});
+  EXPECT_EQ(count(coverage, name), 1u);
 }
 
 TEST(RandomHost, RunsEveryProgramOnTheFunctionalUnit) {

@@ -12,6 +12,7 @@ constexpr uint64_t kNever = ~uint64_t{0} / 2;
 constexpr uint64_t kReplayCycles = 12;
 constexpr uint32_t kInstructionId = 16;
 constexpr uint64_t kOpenCycles = 300;
+constexpr uint32_t kLastPcBit = 1u << 15;
 
 /// Of a line in a unit's data cache.
 uint32_t line_key(uint32_t unit, uint32_t address) { return unit << 26 | address / kLineBytes; }
@@ -50,13 +51,9 @@ void Coverage::begin() {
   accepted_ = {};
   last_pc_ = ~0u;
   open_cycles_ = 0;
-  rewrites_ = 0;
+  arguments_ = {};
+  words_.clear();
   pcs_.assign(code_.size(), false);
-}
-
-void Coverage::rewritten() {
-  ++rewrites_;
-  hit(Event::ArgumentsRewritten);
 }
 
 void Coverage::faulted(const std::vector<Fault>& faults) {
@@ -66,6 +63,10 @@ void Coverage::faulted(const std::vector<Fault>& faults) {
     if (winner == nullptr || winner->unit != fault.unit) {
       winner = &fault;
       ++faults_[fault.code];
+      // What has retired beyond it says that the twin is inside.
+      const bool outside = fault.code == FaultCode::PcOutsideProgram && fault.pc >= kLastPcBit;
+      if (outside && std::find(pcs_.begin() + (fault.pc ^ kLastPcBit), pcs_.end(), true) != pcs_.end())
+        hit(Event::TwinInside);
     } else {
       ++fault_pairs_[winner->code][fault.code][winner->warp < fault.warp ? 1 : 0];
     }
@@ -123,6 +124,7 @@ void Coverage::retired(const RetireEvent& event) {
   code(event);
   predicates(warp, event, instruction);
   last_of_all(event, instruction);
+  if (opcode == Opcode::Arg) argument(event, instruction);
   if (opcode == Opcode::Ld) loaded(warp, event, instruction);
   if (instruction.info->kind == Kind::Swap) swapped(warp, event, opcode);
   if (writes_register(*instruction.info)) {
@@ -149,6 +151,14 @@ void Coverage::code(const RetireEvent& event) {
     pc_bits_[bit] += pc >> bit & 1;
     if (pcs_[pc ^ 1u << bit]) ++pc_twins_[bit];
   }
+}
+
+void Coverage::argument(const RetireEvent& event, const Instruction& instruction) {
+  if (event.mask == 0) return;
+  const uint32_t value = event.data[lowest(event.mask)];
+  std::optional<uint32_t>& before = arguments_[instruction.immediate % kArguments];
+  if (before && *before != value) hit(Event::ArgumentRewritten);
+  before = value;
 }
 
 void Coverage::predicates(Warp& warp, const RetireEvent& event, const Instruction& instruction) {
@@ -237,7 +247,9 @@ void Coverage::loaded(const Warp& warp, const RetireEvent& event, const Instruct
     for (uint32_t bit = kFirstUpperBit; bit < load_bits_.size(); ++bit) load_bits_[bit] += address >> bit & 1;
     const auto line = lines_.find(line_key(event.unit, address));
     if (line != lines_.end() && line->second.stored) hit(Event::StoreHit);
-    if (line != lines_.end() && line->second.rewrites < rewrites_) hit(Event::LineRewritten);
+    const auto [word, first] = words_.emplace(address, event.data[lane]);
+    if (!first && word->second != event.data[lane]) hit(Event::WordRewritten);
+    word->second = event.data[lane];
   }
   if (active > 1 && count == 1) hit(Event::OneQuadword);
   if (count > 1) hit(Event::SeveralQuadwords);
@@ -246,6 +258,8 @@ void Coverage::loaded(const Warp& warp, const RetireEvent& event, const Instruct
 
 void Coverage::stored(const StoreEvent& event) {
   for (uint32_t bit = kFirstUpperBit; bit < store_bits_.size(); ++bit) store_bits_[bit] += event.address >> bit & 1;
+  for (uint32_t word = 0; word < kBeatWords; ++word)
+    if ((event.mask >> word & 1) != 0) words_.erase(event.address + 4 * word);
   const auto line = lines_.find(line_key(event.unit, event.address));
   if (line == lines_.end()) return;
   line->second.stored = true;
@@ -300,10 +314,7 @@ void Coverage::memory_request(const UnitOutputs& outputs, const UnitInputs& inpu
   hit(Event::LineFetched);
   const uint32_t unit = unit_of_id(request.id);
   Line& line = lines_[line_key(unit, request.address)];
-  if (++line.fetches > 1)
-    hit(Event::FetchedAgain);
-  else
-    line.rewrites = rewrites_;
+  if (++line.fetches > 1) hit(Event::FetchedAgain);
   line.stored = false;
   line.first_beat = kNever;
   int in_use = 0, of_set = 0;

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -24,7 +25,6 @@ class Coverage : public RunObserver {
   /// To be called before a program's run, which must use this observer, and after it.
   void begin();
   void restart() override { begin(); }
-  void rewritten() override;
   void faulted(const std::vector<Fault>& faults) override;
   void cycle(const UnitOutputs& outputs, const UnitInputs& inputs, const UnitTrace& trace) override;
   void end(ComputeUnit& unit);
@@ -63,7 +63,6 @@ class Coverage : public RunObserver {
     uint64_t fetches = 0;
     uint64_t first_beat = 0, last_beat = 0;  ///< cycles of the last fetch
     bool stored = false;                     ///< since it was fetched
-    uint32_t rewrites = 0;                   ///< before its first fetch
   };
   struct Read {
     bool valid = false;
@@ -83,6 +82,7 @@ class Coverage : public RunObserver {
   void control(Warp& warp, const RetireEvent& event, const Instruction& instruction);
   void loaded(const Warp& warp, const RetireEvent& event, const Instruction& instruction);
   void code(const RetireEvent& event);
+  void argument(const RetireEvent& event, const Instruction& instruction);
   void predicates(Warp& warp, const RetireEvent& event, const Instruction& instruction);
   void last_of_all(const RetireEvent& event, const Instruction& instruction);
   void after_fault(const UnitOutputs& outputs, const UnitInputs& inputs, const UnitTrace& trace);
@@ -127,10 +127,11 @@ class Coverage : public RunObserver {
   std::array<uint64_t, 3> moved_{};         ///< last cycle in which memory request, export, frame moved
   std::array<int, kMostUnits> accepted_{};  ///< kernels that have not ended
   uint32_t last_pc_ = ~0u;
-  uint64_t open_cycles_ = 0;  ///< since the fault, in a row
-  uint32_t rewrites_ = 0;
-  std::vector<bool> pcs_;       ///< that have retired
-  std::vector<uint64_t> code_;  ///< [PC] as it has retired
+  uint64_t open_cycles_ = 0;                                     ///< since the fault, in a row
+  std::array<std::optional<uint32_t>, kArguments> arguments_{};  ///< as they have been read
+  std::unordered_map<uint32_t, uint32_t> words_;                 ///< [address] as loaded, and not stored since
+  std::vector<bool> pcs_;                                        ///< that have retired
+  std::vector<uint64_t> code_;                                   ///< [PC] as it has retired
 };
 
 /// Several lines: how much of each group is covered, then what is not.

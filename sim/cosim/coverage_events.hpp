@@ -65,9 +65,9 @@ enum class Event : size_t {
   FrameWaits,
   FrameFree,
   FrameTwice,
-  ArgumentsRewritten,
+  ArgumentRewritten,
   CodeRewritten,
-  LineRewritten,
+  WordRewritten,
   LoopLeft,
   LoopLeftBack,
   FunctionLeft,
@@ -85,6 +85,7 @@ enum class Event : size_t {
   LineAfterFault,
   ExportAfterFault,
   OpenAfterFault,
+  TwinInside,
   Count,
 };
 inline constexpr size_t kEvents = static_cast<size_t>(Event::Count);
@@ -150,9 +151,9 @@ inline constexpr std::array<EventText, kEvents> kEventTexts = {{
     {"stalls", "frame: waits"},
     {"stalls", "frame: ready, nothing to send"},
     {"stalls", "frame: taken in two cycles in a row"},
-    {"memory rewritten", "arguments are written between kernels"},
+    {"memory rewritten", "an argument is read that was another one before"},
     {"memory rewritten", "an instruction retires that was another one before"},
-    {"memory rewritten", "a load of a line that was fetched before"},
+    {"memory rewritten", "a word is loaded that was another one before"},
     {"PC stack left", "from a loop beyond its end"},
     {"PC stack left", "from a loop to before its begin"},
     {"PC stack left", "from a function beyond its end"},
@@ -170,6 +171,7 @@ inline constexpr std::array<EventText, kEvents> kEventTexts = {{
     {"after a fault", "a line comes"},
     {"after a fault", "a ray or contribution leaves"},
     {"after a fault", "every port is open for 300 cycles"},
+    {"upper PC bits", "a PC outside that lies inside but for bit 15"},
 }};
 
 }  // namespace raypool
