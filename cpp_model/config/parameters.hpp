@@ -15,8 +15,7 @@ enum class SlowUnit : uint8_t { Exact = 0, Newton2 = 1, Newton1 = 2, Newton0 = 3
 
 // A row: [part,] name, type in C++, default, values it may have, values that tests try, what it is.
 //   UNIT(name, ...)        of the whole unit: `name` in configuration files and in C++, NAME in the Verilog
-//   PART(part, name, ...)  of one part: `part.name` in files, part_name in C++, PART_NAME in the Verilog; modules of
-//   the part
+//   PART(part, name, ...)  of one part: `part.name` in files, part_name in C++, PART_NAME in the Verilog. Its modules
 //                          include part_parameters.vh, and whoever instantiates them part_parameter_map.vh
 //   ARITHMETIC(name, ...)  a mode of the arithmetic: `arithmetic.name` in files, name in C++, NAME in the Verilog
 // clang-format off
