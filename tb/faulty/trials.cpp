@@ -121,16 +121,17 @@ std::string to_json(const Trial& trial, const Outcome& outcome) {
   return json.dump() + "\n";
 }
 
-std::map<std::string, Outcome> read_outcomes(const std::string& path) {
-  std::map<std::string, Outcome> outcomes;
+/// [id] its outcomes: trials that nothing tells apart share one.
+std::map<std::string, std::vector<Outcome>> read_outcomes(const std::string& path) {
+  std::map<std::string, std::vector<Outcome>> outcomes;
   std::ifstream file(path);
   for (std::string line; std::getline(file, line);) {
     const Json json = Json::parse(line);
     const auto kind = std::find(kKindNames.begin(), kKindNames.end(), json.at("outcome").get<std::string>());
     if (kind == kKindNames.end()) throw InputError(path + ": an outcome is unknown");
-    outcomes[json.at("id").get<std::string>()] = {static_cast<Outcome::Kind>(kind - kKindNames.begin()),
-                                                  json.at("programs").get<uint64_t>(), json.at("by").get<std::string>(),
-                                                  json.at("text").get<std::string>()};
+    outcomes[json.at("id").get<std::string>()].push_back(
+        {static_cast<Outcome::Kind>(kind - kKindNames.begin()), json.at("programs").get<uint64_t>(),
+         json.at("by").get<std::string>(), json.at("text").get<std::string>()});
   }
   return outcomes;
 }
@@ -160,14 +161,16 @@ class Progress {
 std::vector<Outcome> run_trials(const std::vector<Trial>& trials, const TrialOptions& options) {
   std::vector<Outcome> outcomes(trials.size());
   std::vector<size_t> todo;
-  const std::map<std::string, Outcome> known =
-      options.resume ? read_outcomes(options.json) : std::map<std::string, Outcome>();
+  std::map<std::string, std::vector<Outcome>> known;
+  if (options.resume) known = read_outcomes(options.json);
   for (size_t i = 0; i < trials.size(); ++i) {
     const auto found = known.find(trials[i].id);
-    if (found != known.end())
-      outcomes[i] = found->second;
-    else
+    if (found == known.end() || found->second.empty()) {
       todo.push_back(i);
+      continue;
+    }
+    outcomes[i] = found->second.back();
+    found->second.pop_back();
   }
   std::ofstream file;
   if (!options.json.empty()) file.open(options.json, options.resume ? std::ios::app : std::ios::out);
