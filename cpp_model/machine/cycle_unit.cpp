@@ -40,6 +40,7 @@ void CycleUnit::reset(uint32_t program_length, uint32_t memory_limit) {
   timeline_.reset();
   fetch_cycle_ = now_;
   attention_ = faulty_ = false;
+  alu_faults_ = {};
   fault_ = Fault{};
   raised_.clear();
   planned_faults_.clear();
@@ -80,8 +81,7 @@ void CycleUnit::step(const UnitInputs& inputs) {
   due.done = due.full = due.want_mem = due.want_ray = 0;
   const bool mem_ready = mem_.ready();
   const bool ray_ready = ray_.ready(dispatcher_.task(AluType::Ray));
-  const AluFaults faults =
-      faulty_ ? AluFaults{mem_.fault(), mem_.fault_warp(), ray_.fault(), ray_.fault_warp()} : AluFaults{};
+  if (faulty_) alu_faults_ = {mem_.fault(), mem_.fault_warp(), ray_.fault(), ray_.fault_warp()};
   const bool accepts = inputs.launch_valid && launcher_.launch_ready(ray_.import_active());
   counters_.single[counter::kBusyCycles] += launcher_.running();
 
@@ -96,7 +96,7 @@ void CycleUnit::step(const UnitInputs& inputs) {
     for (uint32_t warps = buffer_.ready(); warps != 0; warps &= warps - 1) issue_warp(lowest(warps));
   }
   if (attention) clock_instruction_cache(inputs, port);
-  if (!stopped) fetch(instruction_cache_.busy() ? now_ : now_ + kAhead);
+  if (!stopped) fetch(attention && instruction_cache_.busy() ? now_ : now_ + kAhead);
   if (dispatcher_.wants_pipelined()) dispatcher_.grant_pipelined(now_ + kAhead, timeline_, counters_);
   if (attention) clock_mem(inputs, port);
   clock_ray(inputs, accepts ? inputs.launch.import : ImportKind::None, ray_ready);
@@ -109,7 +109,7 @@ void CycleUnit::step(const UnitInputs& inputs) {
     launcher_.accept(inputs.launch);
     if (inputs.launch.import != ImportKind::None) core_.expect_import(inputs.launch.threads);
   }
-  if (faulty_) settle_faults(faults);
+  if (faulty_) settle_faults();
   if (attention) attention_ = needs_attention();
   ++now_;
   if (attention | attention_) rest_signals_ = signals_but_rays();
@@ -171,7 +171,7 @@ void CycleUnit::clock_mem(const UnitInputs& inputs, const MemoryPort& port) {
   dispatcher_.arrived(AluType::Mem);
 }
 
-void CycleUnit::clock_ray(const UnitInputs& inputs, ImportKind import, bool ready) {
+[[gnu::always_inline]] inline void CycleUnit::clock_ray(const UnitInputs& inputs, ImportKind import, bool ready) {
   if (inputs.import_beat_valid) core_.import_beat(inputs.import_beat);
   const int arriving = dispatcher_.task(AluType::Ray);
   if (arriving < 0 && !inputs.import_beat_valid && import == ImportKind::None && !ray_.active()) return;
@@ -221,8 +221,9 @@ void CycleUnit::plan_fetch(uint32_t warp, uint64_t cycle, bool past_current) {
   }
 }
 
-// The fetch arbiter's grants of the cycles up to `until`, and what the cache says to them.
-void CycleUnit::fetch(uint64_t until) {
+// The fetch arbiter's grants of the cycles up to `until`, and what the cache says to them. Part of step(), whose time
+// is that of the engine; so is clock_ray.
+[[gnu::always_inline]] inline void CycleUnit::fetch(uint64_t until) {
   for (; fetch_cycle_ <= until; ++fetch_cycle_) {
     uint32_t& joining = timeline_.at(fetch_cycle_).fetch;
     const uint32_t requests = buffer_.fetch_request() | joining;
@@ -312,8 +313,9 @@ void CycleUnit::raise(const Fault& fault) {
 }
 
 // The first fault stays; of several in one cycle an ALU's wins, memory's before rays', then the lowest warp's.
-void CycleUnit::settle_faults(const AluFaults& alu) {
+void CycleUnit::settle_faults() {
   if (halted()) return;
+  const AluFaults& alu = alu_faults_;
   for (const PlannedFault& planned_fault : planned_faults_) {
     if (planned_fault.cycle == now_) raise(planned_fault.fault);
   }

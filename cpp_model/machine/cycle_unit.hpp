@@ -116,7 +116,7 @@ class CycleUnit final : public ComputeUnit {
   void retire_control(uint32_t warps);
   // Faults
   void raise(const Fault& fault);
-  void settle_faults(const AluFaults& alu);
+  void settle_faults();
   void halt();
   // Ports
   bool quiet() const;
@@ -150,7 +150,8 @@ class CycleUnit final : public ComputeUnit {
   uint64_t fetch_cycle_ = 0;  // up to it, not included, the fetch arbiter's grants are known
   uint64_t miss_cycle_ = 0;   // in which the latest lookup's miss is known, if it was one
 
-  bool faulty_ = false;  // an instruction has faulted since the reset
+  bool faulty_ = false;   // an instruction has faulted since the reset
+  AluFaults alu_faults_;  // of this cycle, once faulty_
   Fault fault_;
   std::vector<Fault> raised_;                        // in this cycle, or in that of fault_
   std::vector<PlannedFault> planned_faults_;         // of PCs outside the program

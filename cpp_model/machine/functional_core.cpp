@@ -56,6 +56,7 @@ void FunctionalCore::reset(uint32_t program_length, uint32_t memory_limit) {
   memory_limit_ = memory_limit;
   program_decoded_ = false;
   program_.clear();
+  decoded_ = 0;
   std::fill(registers_.begin(), registers_.end(), 0);
   for (Warp& warp : warps_) warp.reset();
   slices_.reset();
@@ -70,6 +71,7 @@ void FunctionalCore::launch(const LaunchCommand& command) {
     for (uint32_t i = 0; i < program_length_; ++i)
       program_[i] = decode(uint64_t{memory_->load(8 * i + 4)} << 32 | memory_->load(8 * i), configuration_);
     program_decoded_ = true;
+    decoded_ = program_length_;
   }
   launched_ = command;
   const uint32_t lanes = static_cast<uint32_t>(lanes_);
@@ -102,10 +104,10 @@ bool FunctionalCore::fault(FaultCode fault_code) {
   result.warp = number;
   result.instruction = nullptr;
   result.mask = 0;
-  result.data = nullptr;
   result.predicate = 0;
-  result.store_count = 0;
+  result.data = nullptr;
   result.ray_words = nullptr;
+  result.store_count = 0;
   result.ray_count = 0;
   result.frame_count = 0;
   result.warp_ended = false;

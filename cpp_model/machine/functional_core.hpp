@@ -38,22 +38,23 @@ struct Step {
   };
 
   Status status = Status::NotRunning;
+  bool warp_ended = false;  ///< `exit`
   uint32_t warp = 0;
   uint32_t pc = 0;
-  const DecodedInstruction* instruction = nullptr;  ///< null if the PC is outside the program
   uint32_t mask = 0;                                ///< thread mask
-  const uint32_t* data = nullptr;  ///< instruction writes a register: one word a lane, meaningful in masked lanes
-  uint32_t predicate = 0;          ///< instruction writes a predicate: its value
-  std::array<uint32_t, kMaxLanes> addresses{};  ///< `ld`, `st`: byte address of each lane, meaningful in masked lanes
-  uint32_t store_count = 0;  ///< `st`: masked lanes in rising order; the last store to an address wins
-  std::array<LaneStore, kMaxLanes> stores{};
+  uint32_t predicate = 0;                           ///< instruction writes a predicate: its value
+  const DecodedInstruction* instruction = nullptr;  ///< null if the PC is outside the program
+  const uint32_t* data = nullptr;       ///< instruction writes a register: one word a lane, meaningful in masked lanes
   const uint32_t* ray_words = nullptr;  ///< `rst`: one word a lane, written in masked lanes
-  uint32_t ray_count = 0;               ///< `rout`: rays in order
-  std::array<Ray, kMaxLanes> rays{};
-  uint32_t frame_count = 0;  ///< `rfb`: contributions in order
-  std::array<FrameContribution, kMaxLanes> frame{};
-  bool warp_ended = false;  ///< `exit`
+  uint32_t store_count = 0;             ///< of stores
+  uint32_t ray_count = 0;               ///< of rays
+  uint32_t frame_count = 0;             ///< of frame
   Fault fault;
+  // Behind what every step writes, as these are large.
+  std::array<uint32_t, kMaxLanes> addresses{};  ///< `ld`, `st`: byte address of each lane, meaningful in masked lanes
+  std::array<LaneStore, kMaxLanes> stores{};    ///< `st`: masked lanes in rising order; the last to an address wins
+  std::array<Ray, kMaxLanes> rays{};            ///< `rout`: rays in order
+  std::array<FrameContribution, kMaxLanes> frame{};  ///< `rfb`: contributions in order
 };
 
 class FunctionalCore {
@@ -89,7 +90,7 @@ class FunctionalCore {
   }
   /// PC of the warp's next instruction; the instruction there, null if outside the program.
   uint32_t next_pc(uint32_t warp) const { return warps_[warp].pc_stack.next_pc(); }
-  const DecodedInstruction* instruction_at(uint32_t pc) const { return pc < program_.size() ? &program_[pc] : nullptr; }
+  const DecodedInstruction* instruction_at(uint32_t pc) const { return pc < decoded_ ? &program_[pc] : nullptr; }
 
   /// Packages of a launch with an import kind: announce their number, then give them in order of
   /// threads. Launches are served in turn.
@@ -137,6 +138,7 @@ class FunctionalCore {
   arith::Mode mode_;
   uint32_t program_length_ = 0, memory_limit_ = 0;
   bool program_decoded_ = false;
+  uint32_t decoded_ = 0;  ///< program_.size(), which would cost a division
   const Step& (FunctionalCore::*step_)(uint32_t) = nullptr;
   std::vector<DecodedInstruction> program_;
   std::vector<uint32_t> registers_;  ///< [warp][register][lane]

@@ -55,33 +55,12 @@ class RayExport {
 
   /// `granted`: what is read() has its set's port; `output_set`: of next_warp().
   void clock(bool granted, uint8_t output_set, bool export_ready, bool frame_ready) {
-    // Conditions that come out either way from cycle to cycle are joined without branches.
     send((q_.fill != 0) & (offered().frame ? frame_ready : export_ready));
-    const bool package_end = q_.frame | (q_.beat == kRayBeats - 1);
-    const bool slice_end = granted & package_end & (q_.rest == 0);
-    const bool load = q_.next & (!q_.slice | slice_end);
-    const bool take_first = (q_.first != q_.end) & (!q_.next | load);
     q_.landing = granted;
-    if (granted) read_beat(package_end);
-    q_.busy &= ~(uint32_t{slice_end} << q_.warp);
-    q_.slice = load | (q_.slice & !slice_end);
-    if (load) {
-      q_.frame = q_.next_frame;
-      q_.warp = q_.next_warp;
-      q_.set = output_set;
-      q_.rest = q_.next_mask;
-      next_lane();
-    } else if (granted) {
-      ++q_.beat;
-      if (package_end && !slice_end) next_lane();
-    }
-    q_.next = take_first | (q_.next & !load);
-    if (take_first) {
-      q_.next_warp = q_.order[q_.first++ % kPlaces];
-      const Mask& mask = masks_[~q_.slot >> q_.next_warp & 1][q_.next_warp];
-      q_.next_frame = mask.frame;
-      q_.next_mask = mask.lanes;
-    }
+    if (granted) read_beat();
+    // The slice after it, and the one after that.
+    if (q_.next && !q_.slice) load(output_set);
+    if (!q_.next && q_.first != q_.end) take_first();
   }
   // With clock(), after it.
   /// A rout or rfb has arrived: which lanes it will export where.
@@ -110,12 +89,35 @@ class RayExport {
     q_.rest &= q_.rest - 1;
   }
   // Behind those that wait: send() has counted the one that landed in this cycle.
-  void read_beat(bool last) {
+  void read_beat() {
     Beat& beat = q_.beats[(q_.offered + q_.fill) % 4];
     beat.frame = q_.frame;
-    beat.last = last;
-    const uint32_t word = q_.frame ? word::kPixel : q_.beat * kBeatWords;
-    beat.data = slices_->output_beat(q_.warp, word, q_.lane);
+    beat.last = q_.frame || q_.beat == kRayBeats - 1;
+    beat.data = slices_->output_beat(q_.warp, q_.frame ? word::kPixel : q_.beat * kBeatWords, q_.lane);
+    if (!beat.last) {
+      ++q_.beat;
+    } else if (q_.rest != 0) {
+      next_lane();
+    } else {
+      q_.slice = false;
+      q_.busy &= ~(1u << q_.warp);
+    }
+  }
+  void load(uint8_t set) {
+    q_.next = false;
+    q_.slice = true;
+    q_.frame = q_.next_frame;
+    q_.warp = q_.next_warp;
+    q_.set = set;
+    q_.rest = q_.next_mask;
+    next_lane();
+  }
+  void take_first() {
+    q_.next = true;
+    q_.next_warp = q_.order[q_.first++ % kPlaces];
+    const Mask& mask = masks_[~q_.slot >> q_.next_warp & 1][q_.next_warp];
+    q_.next_frame = mask.frame;
+    q_.next_mask = mask.lanes;
   }
 
   const RaySlices* slices_;

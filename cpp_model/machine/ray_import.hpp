@@ -43,18 +43,14 @@ class RayImport {
   bool moves() const { return q_.write | (q_.active & (q_.request_valid | can_request())); }
 
   void clock(const Inputs& in) {
-    const bool taken = q_.request_valid && in.request_ready;
-    const bool received = in.beat_valid && q_.beat == kIntersectionBeats - 1;
-    q_.write = in.beat_valid;
-    if (in.beat_valid) {
-      q_.write_set = in.input_set;
-      q_.write_thread = q_.received;
-      q_.write_word = static_cast<uint32_t>(q_.beat * kBeatWords);
-      q_.beat = received ? 0 : q_.beat + 1;
-    }
+    const bool received = in.beat_valid && beat(in.input_set);
+    if (!in.beat_valid) q_.write = false;
     if (q_.active) {
-      q_.requested += taken;
-      q_.outstanding += uint32_t{taken} - uint32_t{received};
+      if (q_.request_valid && in.request_ready) {
+        ++q_.requested;
+        ++q_.outstanding;
+      }
+      if (received) --q_.outstanding;
       q_.request_valid = can_request();
       if (received) receive();
     }
@@ -73,6 +69,16 @@ class RayImport {
   bool can_request() const {
     return (q_.requested != q_.threads) & (q_.outstanding != 2) &
            ((uint64_t{q_.full} >> (q_.requested >> lane_bits_) & 1) == 0);
+  }
+  /// A beat comes, which is written in the next cycle; true for the last one of its package.
+  bool beat(uint8_t set) {
+    q_.write = true;
+    q_.write_set = set;
+    q_.write_thread = q_.received;
+    q_.write_word = static_cast<uint32_t>(q_.beat * kBeatWords);
+    if (++q_.beat < kIntersectionBeats) return false;
+    q_.beat = 0;
+    return true;
   }
   void receive() {
     const bool launch_end = q_.received + 1 == q_.threads;

@@ -16,32 +16,41 @@ void RaySlices::reset() {
   words_.assign(warps_.size() * 3 * kIntersectionWords * lanes_, 0);
   for (Warp& warp : warps_) warp = Warp{};
   jobs_.clear();
-  beats_ = 0;
+  arriving_beat_ = 0;
 }
 
 void RaySlices::expect_import(uint32_t threads) { jobs_.push_back({threads, 0}); }
 
-void RaySlices::import_package(const Intersection& package) {
+// A package begins to arrive.
+void RaySlices::package_start() {
   if (jobs_.empty()) throw std::logic_error("an import package came that no launch has asked for");
-  Job& job = jobs_.front();
-  const uint32_t lane = job.taken % lanes_;
-  Warp& warp = warps_[job.taken / lanes_];
-  if (lane == 0)
-    warp.inputs.push_back(
-        {std::min(lanes_, job.threads - job.taken), 0, std::vector<uint32_t>(lanes_ * kIntersectionWords)});
-  Input& input = warp.inputs.back();
-  for (uint32_t word = 0; word < kIntersectionWords; ++word) input.words[word * lanes_ + lane] = package[word];
+  const Job& job = jobs_.front();
+  arriving_warp_ = job.taken / lanes_;
+  if (job.taken % lanes_ != 0) return;
+  warps_[arriving_warp_].inputs.push_back(
+      {std::min(lanes_, job.threads - job.taken), 0, std::vector<uint32_t>(kIntersectionBeats * kBeatWords * lanes_)});
+}
+
+void RaySlices::package_end(Input& input) {
   ++input.taken;
-  if (++job.taken == job.threads) jobs_.pop_front();
+  if (++jobs_.front().taken == jobs_.front().threads) jobs_.pop_front();
+}
+
+void RaySlices::import_package(const Intersection& package) {
+  package_start();
+  Input& input = warps_[arriving_warp_].inputs.back();
+  for (uint32_t word = 0; word < kIntersectionWords; ++word) input.words[word * lanes_ + input.taken] = package[word];
+  package_end(input);
 }
 
 void RaySlices::import_beat(const Beat& beat) {
-  package_[beats_] = beat;
-  if (++beats_ < kIntersectionBeats) return;
-  beats_ = 0;
-  Intersection package;
-  std::memcpy(package.data(), package_.data(), sizeof(package));
-  import_package(package);
+  if (arriving_beat_ == 0) package_start();
+  Input& input = warps_[arriving_warp_].inputs.back();
+  uint32_t* word = &input.words[arriving_beat_ * kBeatWords * lanes_ + input.taken];
+  for (uint32_t i = 0; i < kBeatWords; ++i, word += lanes_) *word = beat[i];
+  if (++arriving_beat_ < kIntersectionBeats) return;
+  arriving_beat_ = 0;
+  package_end(input);
 }
 
 uint32_t RaySlices::packages_expected() const {

@@ -51,7 +51,7 @@ class RaySlices {
   struct Input {
     uint32_t lanes = 0;  ///< packages it will hold
     uint32_t taken = 0;
-    std::vector<uint32_t> words;  ///< [word][lane]
+    std::vector<uint32_t> words;  ///< [word][lane], with the zeros of the last beat
     bool complete() const { return taken == lanes; }
   };
   struct Warp {
@@ -61,6 +61,9 @@ class RaySlices {
   struct Job {
     uint32_t threads, taken;
   };
+
+  void package_start();
+  void package_end(Input& input);
 
   uint32_t* row(uint32_t warp, uint32_t slice, uint32_t word) {
     return &words_[((warp * 3 + slice) * kIntersectionWords + word) * lanes_];
@@ -73,8 +76,7 @@ class RaySlices {
   std::vector<uint32_t> words_;  ///< [warp][slice][word][lane]
   std::vector<Warp> warps_;
   std::deque<Job> jobs_;
-  std::array<Beat, kIntersectionBeats> package_{};  ///< that is arriving
-  size_t beats_ = 0;
+  uint32_t arriving_warp_ = 0, arriving_beat_ = 0;  ///< of the package that arrives
 };
 
 }  // namespace raypool
