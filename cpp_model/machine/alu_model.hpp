@@ -11,12 +11,12 @@ namespace raypool {
 
 /// One lane's part of a task, as rtl/dispatcher.v hands it to the ALU.
 struct LaneTask {
-  uint32_t a = 0;          ///< register ra
-  uint32_t b = 0;          ///< register rb, or the immediate
-  uint32_t immediate = 0;  ///< the immediate, whatever b is
-  uint32_t x = 0;          ///< field x, 0 .. 31
-  bool px = false;         ///< of the predicate numbered x[3:0]
-  bool pb = false;         ///< of the predicate numbered rb
+  uint32_t operand_a = 0;    ///< register ra
+  uint32_t operand_b = 0;    ///< register rb, or the immediate
+  uint32_t immediate = 0;    ///< the immediate, whatever operand_b is
+  uint32_t word = 0;         ///< field x, 0 .. 31
+  bool predicate_x = false;  ///< of the predicate numbered x[3:0]
+  bool predicate_b = false;  ///< of the predicate numbered rb
 };
 
 /// A function of the task alone: no lane sees another one, nothing is kept from task to task.

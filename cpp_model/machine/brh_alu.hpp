@@ -11,7 +11,8 @@ namespace raypool {
 struct BrhAlu {
   /// Compares, and logic of the predicates px and pb.
   template <int kLanes>
-  static uint32_t compare(Opcode opcode, const Lanes<kLanes>& lanes, uint32_t px, uint32_t pb, arith::Mode mode) {
+  static uint32_t compare(Opcode opcode, const Lanes<kLanes>& lanes, uint32_t predicate_x, uint32_t predicate_b,
+                          arith::Mode mode) {
     switch (opcode) {
       case Opcode::Ieq:
         return lanes.test([](uint32_t x, uint32_t y) { return x == y; });
@@ -46,13 +47,13 @@ struct BrhAlu {
       case Opcode::Fge:
         return lanes.test([mode](uint32_t x, uint32_t y) { return arith::greater_equal(x, y, mode); });
       case Opcode::Pand:
-        return px & pb;
+        return predicate_x & predicate_b;
       case Opcode::Por:
-        return px | pb;
+        return predicate_x | predicate_b;
       case Opcode::Pxor:
-        return px ^ pb;
+        return predicate_x ^ predicate_b;
       case Opcode::Pandn:
-        return px & ~pb;
+        return predicate_x & ~predicate_b;
       default:
         not_modelled(opcode);
     }

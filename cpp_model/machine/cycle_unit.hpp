@@ -51,8 +51,9 @@ class CycleUnit final : public ComputeUnit {
     uint32_t pc = 0;
     const DecodedInstruction* instruction = nullptr;
     uint32_t mask = 0;
-    std::vector<uint32_t> a, b, c;  ///< one word a lane; c: register rc of instructions that have it
-    uint32_t px = 0, pb = 0;
+    /// A word a lane; operand_c: register rc of instructions that have it.
+    std::vector<uint32_t> operand_a, operand_b, operand_c;
+    uint32_t predicate_x = 0, predicate_b = 0;
     std::vector<uint32_t> data;  ///< result, one word a lane
     uint32_t predicate = 0;
   };

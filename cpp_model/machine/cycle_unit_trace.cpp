@@ -15,12 +15,12 @@ void CycleUnit::record_issue(uint32_t warp, const DecodedInstruction& instructio
   issue.pc = buffer_.pc(warp);
   issue.instruction = &instruction;
   issue.mask = core_.thread_mask(warp, instruction);
-  row(issue.a, instruction.ra);
-  row(issue.b, instruction.rb);
-  row(issue.c, instruction.x & 15);
-  if (instruction.b_is_immediate) std::fill(issue.b.begin(), issue.b.end(), instruction.immediate);
-  issue.px = core_.predicate(warp, instruction.x & 15);
-  issue.pb = core_.predicate(warp, instruction.rb);
+  row(issue.operand_a, instruction.ra);
+  row(issue.operand_b, instruction.rb);
+  row(issue.operand_c, instruction.x & 15);
+  if (instruction.b_is_immediate) std::fill(issue.operand_b.begin(), issue.operand_b.end(), instruction.immediate);
+  issue.predicate_x = core_.predicate(warp, instruction.x & 15);
+  issue.predicate_b = core_.predicate(warp, instruction.rb);
   issue.predicate = 0;
   timings_[warp].want_cycle = now_ + kAhead;
 }
@@ -48,7 +48,7 @@ void CycleUnit::record() {
     event.data.resize(static_cast<size_t>(lanes_));
     event.predicate = issue.predicate;
     if ((ray_.done() >> warp & 1) != 0 && ray_.wrote())
-      trace_.ray_writes.push_back({warp, issue.instruction->x, issue.mask, issue.b, 0});
+      trace_.ray_writes.push_back({warp, issue.instruction->x, issue.mask, issue.operand_b, 0});
   }
   StoreEvent store;
   if (mem_.storing(store)) trace_.stores.push_back(store);

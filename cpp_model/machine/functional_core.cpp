@@ -151,19 +151,20 @@ const Step& FunctionalCore::step_lanes(uint32_t number) {
 // What is no control instruction. False if it faults or has to wait.
 template <int kLanes>
 bool FunctionalCore::execute(const DecodedInstruction& instruction, Warp& warp, const Lanes<kLanes>& lanes) {
-  const uint32_t px = warp.predicates.read(instruction.x & 15), pb = warp.predicates.read(instruction.rb);
+  const uint32_t predicate_x = warp.predicates.read(instruction.x & 15);
+  const uint32_t predicate_b = warp.predicates.read(instruction.rb);
   switch (instruction.alu()) {
     case AluType::Tid:
       tid_alu_.execute(instruction.opcode, lanes, result_.warp, instruction.immediate, launched_);
       return true;
     case AluType::Brh:
-      result_.predicate = BrhAlu::compare(instruction.opcode, lanes, px, pb, mode_) & result_.mask;
+      result_.predicate = BrhAlu::compare(instruction.opcode, lanes, predicate_x, predicate_b, mode_) & result_.mask;
       warp.predicates.write(instruction.rd, result_.predicate);
       return true;
     case AluType::Mem:
       return execute_memory<kLanes>(instruction, lanes);
     case AluType::Int:
-      IntAlu::execute(instruction.opcode, lanes, px);
+      IntAlu::execute(instruction.opcode, lanes, predicate_x);
       return true;
     case AluType::Flt:
       FltAlu::execute(instruction.opcode, lanes, mode_);
@@ -210,12 +211,17 @@ bool FunctionalCore::execute_control(const DecodedInstruction& instruction, Warp
 void FunctionalCore::execute_class(const DecodedInstruction& instruction, Warp& warp, uint32_t* rd, const uint32_t* a,
                                    const uint32_t* b) {
   const AluModel& alu = *find_alu_model(instruction.alu());
-  const uint32_t px = warp.predicates.read(instruction.x & 15), pb = warp.predicates.read(instruction.rb);
+  const uint32_t predicate_x = warp.predicates.read(instruction.x & 15);
+  const uint32_t predicate_b = warp.predicates.read(instruction.rb);
   uint32_t predicate = 0;
   for (uint32_t mask = result_.mask; mask != 0; mask &= mask - 1) {
     const uint32_t lane = lowest(mask);
-    const LaneTask task = {
-        a[lane], b[lane], instruction.immediate, instruction.x, (px >> lane & 1) != 0, (pb >> lane & 1) != 0};
+    const LaneTask task = {a[lane],
+                           b[lane],
+                           instruction.immediate,
+                           instruction.x,
+                           (predicate_x >> lane & 1) != 0,
+                           (predicate_b >> lane & 1) != 0};
     const uint32_t value = alu.lane(instruction.opcode, task, mode_);
     if (instruction.writes_register) rd[lane] = value;
     predicate |= (value & 1) << lane;

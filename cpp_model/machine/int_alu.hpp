@@ -9,7 +9,7 @@ namespace raypool {
 
 struct IntAlu {
   template <int kLanes>
-  static void execute(Opcode opcode, const Lanes<kLanes>& lanes, uint32_t px) {
+  static void execute(Opcode opcode, const Lanes<kLanes>& lanes, uint32_t predicate_x) {
     switch (opcode) {
       case Opcode::Mov:
         return lanes.map([](uint32_t, uint32_t y) { return y; });
@@ -40,7 +40,7 @@ struct IntAlu {
       case Opcode::Umax:
         return lanes.map([](uint32_t x, uint32_t y) { return x < y ? y : x; });
       case Opcode::Sel:
-        return lanes.each([&](uint32_t lane) { return px >> lane & 1 ? lanes.a[lane] : lanes.b[lane]; });
+        return lanes.each([&](uint32_t lane) { return predicate_x >> lane & 1 ? lanes.a[lane] : lanes.b[lane]; });
       default:
         not_modelled(opcode);
     }

@@ -9,21 +9,8 @@ faults=$(realpath "$2") folder=$3
 cd "$(dirname "$0")/../.." || exit 1
 mkdir -p "$folder"
 folder=$(realpath "$folder")
-failures=0
-
-# expect WHAT STATUS TEXT COMMAND...: the command ends with the status, and says the text.
-expect() {
-  local what=$1 status=$2 text=$3 said ended
-  shift 3
-  said=$("$@" 2>&1)
-  ended=$?
-  if [ "$ended" = "$status" ] && grep -qF -- "$text" <<< "$said"; then
-    echo "ok: $what"
-  else
-    failures=$((failures + 1))
-    echo "FAILED: $what: ended with $ended, not $status with \"$text\": $said"
-  fi
-}
+# shellcheck source=scripts/tests/expect.bash
+. scripts/tests/expect.bash
 
 # changed SCRIPT: a copy of the catalogue that sed has changed.
 changed() {

@@ -9,33 +9,21 @@ mkdir -p "$folder"/{scripts,.ci,rtl,cpp_model,sim,tb,bench,examples,cmake}
 cp scripts/{lint,sources,columns}.sh scripts/duration.bash "$folder/scripts/"
 cp .flake8 .shellcheckrc "$folder/"
 touch "$folder"/{Makefile,CMakeLists.txt}
-failures=0
-
-# expect WHAT STATUS TEXT KIND...: lint ends with the status, and says the text.
-expect() {
-  local what=$1 status=$2 text=$3 said ended
-  shift 3
-  said=$("$folder/scripts/lint.sh" "$@" 2>&1)
-  ended=$?
-  if [ "$ended" = "$status" ] && grep -qF -- "$text" <<< "$said"; then
-    echo "ok: $what"
-  else
-    failures=$((failures + 1))
-    echo "FAILED: $what: ended with $ended, not $status with \"$text\": $said"
-  fi
-}
+# shellcheck source=scripts/tests/expect.bash
+. scripts/tests/expect.bash
+lint() { "$folder/scripts/lint.sh" "$@"; }
 
 # shellcheck disable=SC2016 # a script to be checked
 unquoted='#!/bin/bash\nrm $1\n'
-expect "what is right is clean" 0 "all 3 checks are clean" columns python shell
-expect "a kind that there is not" 1 "'colums' is no kind of check" colums
+expect "what is right is clean" 0 "all 3 checks are clean" lint columns python shell
+expect "a kind that there is not" 1 "'colums' is no kind of check" lint colums
 printf '%b' "$unquoted" > "$folder/scripts/unquoted.sh"
-expect "a word that is not quoted" 1 "SC2086" shell
-expect "... is none of Python's business" 0 "all 1 checks are clean" python
+expect "a word that is not quoted" 1 "SC2086" lint shell
+expect "... is none of Python's business" 0 "all 1 checks are clean" lint python
 printf 'import os\nprint(nothing)\n' > "$folder/scripts/broken.py"
-expect "a name that is not there" 1 "undefined name 'nothing'" python
+expect "a name that is not there" 1 "undefined name 'nothing'" lint python
 printf '# %0119d\n' 0 > "$folder/scripts/long.py"
-expect "a line of 121 columns" 1 "scripts/long.py:1:" columns
+expect "a line of 121 columns" 1 "scripts/long.py:1:" lint columns
 printf '# %0115dé—²\n' 0 > "$folder/scripts/long.py"
-expect "120 columns in more bytes" 0 "all 1 checks are clean" columns
+expect "120 columns in more bytes" 0 "all 1 checks are clean" lint columns
 [ "$failures" = 0 ]

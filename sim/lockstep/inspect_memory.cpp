@@ -77,7 +77,7 @@ void UnitInspection::check_loaded(uint32_t warp) {
   if (issue.instruction == nullptr || !issue.instruction->writes_register) return;
   for (uint32_t lanes = mem_.access_served_q.value() & issue.mask; lanes != 0; lanes &= lanes - 1) {
     const uint32_t lane = lowest(lanes);
-    const uint32_t word = (issue.a[lane] + issue.instruction->immediate) >> 2 & 3;
+    const uint32_t word = (issue.operand_a[lane] + issue.instruction->immediate) >> 2 & 3;
     if (mem_.access_word_q.bits(lane * 2, 2) != word)
       return find("rtl/mem_alu.v",
                   fmt::format("memory ALU: lane {} takes another word of the quadword than its address says", lane));

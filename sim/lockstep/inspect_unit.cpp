@@ -347,16 +347,16 @@ void UnitInspection::check_operands(uint32_t warp) {
   const char* predicates = "rtl/predicate_file.v, rtl/warp.v";
   expect(lanes_of(w_.retire_mask_o), issue.mask, predicates, "thread mask that was read");
   if (uses(TaskOperand::PredicateX))
-    expect(lanes_of(w_.predicate_x), issue.px & all, predicates, "predicate px that was read");
+    expect(lanes_of(w_.predicate_x), issue.predicate_x & all, predicates, "predicate px that was read");
   if (uses(TaskOperand::PredicateB))
-    expect(lanes_of(w_.predicate_b), issue.pb & all, predicates, "predicate pb that was read");
+    expect(lanes_of(w_.predicate_b), issue.predicate_b & all, predicates, "predicate pb that was read");
   for (uint32_t mask = issue.mask; mask != 0; mask &= mask - 1) {
     const uint32_t lane = lowest(mask);
     const uint32_t row = warp * lanes_ + lane;
     const bool reads_b = uses(TaskOperand::OperandB) && !issue.instruction->b_is_immediate;
-    const bool same = (!uses(TaskOperand::OperandA) || w_.operand_a.word(row) == issue.a[lane]) &&
-                      (!reads_b || w_.operand_b.word(row) == issue.b[lane]) &&
-                      (!uses(TaskOperand::OperandC) || w_.operand_c.word(row) == issue.c[lane]);
+    const bool same = (!uses(TaskOperand::OperandA) || w_.operand_a.word(row) == issue.operand_a[lane]) &&
+                      (!reads_b || w_.operand_b.word(row) == issue.operand_b[lane]) &&
+                      (!uses(TaskOperand::OperandC) || w_.operand_c.word(row) == issue.operand_c[lane]);
     if (!same)
       return find("rtl/warp.v, rtl/ram_2r1w.v", fmt::format("warp {}, lane {}: a register was read wrong", warp, lane));
   }
@@ -377,17 +377,18 @@ void UnitInspection::check_task(uint32_t instance, uint32_t warp) {
   const CycleUnit::Issue& issue = model_->issue(warp);
   const DecodedInstruction& instruction = *issue.instruction;
   const auto unused = [&](TaskOperand operand) { return !looks_at(*instruction.info, operand); };
-  bool same = task.task_warp_o.value() == warp && task.task_operation_o.value() == operation_of(instruction.opcode) &&
-              task.task_mask_o.value() == issue.mask &&
-              (unused(TaskOperand::Immediate) || task.task_immediate_o.value() == instruction.immediate) &&
-              (unused(TaskOperand::Word) || task.task_word_o.value() == instruction.x) &&
-              (unused(TaskOperand::PredicateX) || ((task.task_predicate_x_o.value() ^ issue.px) & issue.mask) == 0) &&
-              (unused(TaskOperand::PredicateB) || ((task.task_predicate_b_o.value() ^ issue.pb) & issue.mask) == 0);
+  bool same =
+      task.task_warp_o.value() == warp && task.task_operation_o.value() == operation_of(instruction.opcode) &&
+      task.task_mask_o.value() == issue.mask &&
+      (unused(TaskOperand::Immediate) || task.task_immediate_o.value() == instruction.immediate) &&
+      (unused(TaskOperand::Word) || task.task_word_o.value() == instruction.x) &&
+      (unused(TaskOperand::PredicateX) || ((task.task_predicate_x_o.value() ^ issue.predicate_x) & issue.mask) == 0) &&
+      (unused(TaskOperand::PredicateB) || ((task.task_predicate_b_o.value() ^ issue.predicate_b) & issue.mask) == 0);
   for (uint32_t mask = issue.mask; same && mask != 0; mask &= mask - 1) {
     const uint32_t lane = lowest(mask);
-    same = (unused(TaskOperand::OperandA) || task.task_operand_a_o.word(lane) == issue.a[lane]) &&
-           (unused(TaskOperand::OperandB) || task.task_operand_b_o.word(lane) == issue.b[lane]) &&
-           (unused(TaskOperand::OperandC) || task.task_operand_c_o.word(lane) == issue.c[lane]);
+    same = (unused(TaskOperand::OperandA) || task.task_operand_a_o.word(lane) == issue.operand_a[lane]) &&
+           (unused(TaskOperand::OperandB) || task.task_operand_b_o.word(lane) == issue.operand_b[lane]) &&
+           (unused(TaskOperand::OperandC) || task.task_operand_c_o.word(lane) == issue.operand_c[lane]);
   }
   if (!same) find("rtl/task_register.v", fmt::format("instance {}: the task is not that of warp {}", instance, warp));
 }

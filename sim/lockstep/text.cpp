@@ -87,11 +87,11 @@ std::string lane_table(const CycleUnit::Issue& issue, int lanes, const uint32_t*
     const size_t i = lane;
     const bool masked = issue.mask >> lane & 1;
     text += fmt::format("  {:>4}", lane);
-    if (uses_a) column(word_text(issue.a[i]));
-    if (instruction.uses_b) column(word_text(issue.b[i]));
-    if (uses_c) column(word_text(issue.c[i]));
-    if (uses_px) column(std::to_string(issue.px >> lane & 1));
-    if (uses_pb) column(std::to_string(issue.pb >> lane & 1));
+    if (uses_a) column(word_text(issue.operand_a[i]));
+    if (instruction.uses_b) column(word_text(issue.operand_b[i]));
+    if (uses_c) column(word_text(issue.operand_c[i]));
+    if (uses_px) column(std::to_string(issue.predicate_x >> lane & 1));
+    if (uses_pb) column(std::to_string(issue.predicate_b >> lane & 1));
     if (!masked) {
       text += "  not in the thread mask";
     } else if (rtl != nullptr) {
