@@ -53,14 +53,20 @@ Result run(FunctionalCore& core, const LaunchCommand& command, const std::vector
   return result;
 }
 
+// One of 16 modes of arithmetic.
+Configuration configuration_in_mode(const char* name, int mode) {
+  Configuration configuration = load_configuration(name);
+  configuration.subnormals = static_cast<Subnormals>(mode & 1);
+  configuration.slow_unit = static_cast<SlowUnit>(mode >> 1 & 3);
+  configuration.fma = mode >= 8;
+  return configuration;
+}
+
 TEST(KernelsOnCore, RayKernelsLeaveWhatTheyLeaveNatively) {
   for (const char* name : kConfigurations) {
     for (int mode = 0; mode < 16; ++mode) {
       SCOPED_TRACE(std::string(name) + " mode " + std::to_string(mode));
-      Configuration configuration = load_configuration(name);
-      configuration.subnormals = static_cast<Subnormals>(mode & 1);
-      configuration.slow_unit = static_cast<SlowUnit>(mode >> 1 & 3);
-      configuration.fma = mode >= 8;
+      const Configuration configuration = configuration_in_mode(name, mode);
       std::mt19937 random(static_cast<uint32_t>(mode) + 1);
       const auto number = [&] {
         return as_bits(static_cast<float>(static_cast<int>(random() % 4001) - 2000) / 512.0f);

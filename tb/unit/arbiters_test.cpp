@@ -67,84 +67,112 @@ struct Requester {
   bool begun = false;
 };
 
+// Requesters in front of an arbiter, and what has to come out behind it.
+template <typename Port>
+class PortArbiterBench {
+ public:
+  static constexpr uint32_t kCount = Port::kCount;
+  explicit PortArbiterBench(uint32_t seed) : bench_(seed) {}
+
+  /// One cycle. `crowded`: everybody always.
+  void clock(bool crowded) {
+    show(crowded);
+    // Valid does not depend on ready.
+    unit_.ready_i = 0;
+    unit_.eval();
+    const bool shown = unit_.valid_o;
+    ASSERT_EQ(unit_.ready_o, 0u);
+    unit_.ready_i = crowded || !bench_.one_of(3);
+    unit_.eval();
+    ASSERT_EQ(unit_.valid_o, shown);
+    ASSERT_NO_FATAL_FAILURE(check_offer());
+    ASSERT_EQ(unit_.ready_o & valid_, unit_.valid_o && unit_.ready_i ? 1u << number_ : 0u);
+    if (unit_.valid_o && unit_.ready_i) {
+      ASSERT_NO_FATAL_FAILURE(take(crowded));
+    }
+    bench_.clock();
+  }
+  uint32_t packages() const { return packages_; }
+  uint32_t received(uint32_t requester) const { return received_[requester]; }
+
+ private:
+  void show(bool crowded) {
+    uint32_t last = 0;
+    uint64_t data = 0;
+    valid_ = 0;
+    for (uint32_t r = 0; r < kCount; ++r) {
+      Requester& requester = requesters_[r];
+      if (requester.left == 0 && (crowded || bench_.one_of(6))) {
+        requester.left = 1 + static_cast<int>(bench_.random() % 3);
+      }
+      if (requester.gap > 0) --requester.gap;
+      if (requester.left == 0 || requester.gap > 0) continue;
+      valid_ |= 1u << r;
+      last |= uint32_t{requester.left == 1} << r;
+      data |= uint64_t{r << 14 | (requester.sent & 0x3fff)} << 16 * r;
+    }
+    unit_.valid_i = valid_;
+    unit_.last_i = last;
+    unit_.data_i = data;
+  }
+  void check_offer() {
+    if (waits_) {
+      ASSERT_TRUE(unit_.valid_o) << "what waits was withdrawn";
+      ASSERT_EQ(unit_.data_o, offered_) << "what waits was changed";
+      ASSERT_EQ(unit_.number_o, number_);
+    }
+    if (owner_ < 0) {
+      ASSERT_EQ(unit_.valid_o, valid_ != 0);
+    }
+    waits_ = unit_.valid_o && !unit_.ready_i;
+    offered_ = unit_.data_o;
+    number_ = unit_.number_o;
+    if (!unit_.valid_o) return;
+    ASSERT_TRUE(valid_ >> number_ & 1);
+    ASSERT_EQ(offered_ >> 14, number_);
+    if (owner_ >= 0) {
+      ASSERT_EQ(number_, static_cast<uint32_t>(owner_)) << "two packages are mixed";
+    }
+    owner_ = static_cast<int>(number_);
+    requesters_[number_].begun = true;
+  }
+  void take(bool crowded) {
+    Requester& requester = requesters_[number_];
+    ASSERT_EQ(offered_ & 0x3fff, received_[number_]++ & 0x3fff) << "a word is lost or doubled";
+    ++requester.sent;
+    if (--requester.left == 0) {
+      owner_ = -1;
+      ++packages_;
+      requester.begun = false;
+      requester.waited = 0;
+      ASSERT_NO_FATAL_FAILURE(others_wait());
+    }
+    if (!crowded && bench_.one_of(4)) requester.gap = 1 + static_cast<int>(bench_.random() % 3);
+  }
+  void others_wait() {
+    for (uint32_t r = 0; r < kCount; ++r) {
+      if (r != number_ && (valid_ >> r & 1) != 0 && !requesters_[r].begun) {
+        ASSERT_LT(++requesters_[r].waited, static_cast<int>(kCount)) << "requester " << r << " starves";
+      }
+    }
+  }
+
+  Clocked<typename Port::Unit> bench_;
+  typename Port::Unit& unit_ = bench_.u;
+  std::array<Requester, kCount> requesters_;
+  std::array<uint32_t, kCount> received_{};
+  int owner_ = -1;      // of the package under way at the port
+  bool waits_ = false;  // what was offered in the last cycle was not taken
+  uint32_t valid_ = 0, offered_ = 0, number_ = 0, packages_ = 0;
+};
+
 TYPED_TEST(PortArbiter, KeepsPackagesTogetherInTurnAndLosesNothing) {
-  constexpr uint32_t kCount = TypeParam::kCount;
   for (uint32_t seed = 1; seed <= 8; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
-    Clocked<typename TypeParam::Unit> bench(seed);
-    auto& u = bench.u;
-    std::array<Requester, kCount> requesters;
-    std::array<uint32_t, kCount> received{};
-    int owner = -1;      // of the package under way at the port
-    bool waits = false;  // what was offered in the last cycle was not taken
-    uint32_t offered = 0, number = 0, packages = 0;
-    for (int cycle = 0; cycle < 6000; ++cycle) {
-      const bool crowded = cycle > 3000;  // everybody always
-      uint32_t valid = 0, last = 0;
-      uint64_t data = 0;
-      for (uint32_t r = 0; r < kCount; ++r) {
-        Requester& requester = requesters[r];
-        if (requester.left == 0 && (crowded || bench.one_of(6)))
-          requester.left = 1 + static_cast<int>(bench.random() % 3);
-        if (requester.gap > 0) --requester.gap;
-        if (requester.left == 0 || requester.gap > 0) continue;
-        valid |= 1u << r;
-        last |= uint32_t{requester.left == 1} << r;
-        data |= uint64_t{r << 14 | (requester.sent & 0x3fff)} << 16 * r;
-      }
-      u.valid_i = valid;
-      u.last_i = last;
-      u.data_i = data;
-      // Valid does not depend on ready.
-      u.ready_i = 0;
-      u.eval();
-      const bool shown = u.valid_o;
-      ASSERT_EQ(u.ready_o, 0u);
-      u.ready_i = crowded || !bench.one_of(3);
-      u.eval();
-      ASSERT_EQ(u.valid_o, shown);
-      if (waits) {
-        ASSERT_TRUE(u.valid_o) << "what waits was withdrawn";
-        ASSERT_EQ(u.data_o, offered) << "what waits was changed";
-        ASSERT_EQ(u.number_o, number);
-      }
-      if (owner < 0) {
-        ASSERT_EQ(u.valid_o, valid != 0);
-      }
-      waits = u.valid_o && !u.ready_i;
-      offered = u.data_o;
-      number = u.number_o;
-      if (u.valid_o) {
-        ASSERT_TRUE(valid >> number & 1);
-        ASSERT_EQ(offered >> 14, number);
-        if (owner >= 0) {
-          ASSERT_EQ(number, static_cast<uint32_t>(owner)) << "two packages are mixed";
-        }
-        owner = static_cast<int>(number);
-        requesters[number].begun = true;
-      }
-      ASSERT_EQ(u.ready_o & valid, u.valid_o && u.ready_i ? 1u << number : 0u);
-      if (u.valid_o && u.ready_i) {
-        Requester& requester = requesters[number];
-        ASSERT_EQ(offered & 0x3fff, received[number]++ & 0x3fff) << "a word is lost or doubled";
-        ++requester.sent;
-        if (--requester.left == 0) {
-          owner = -1;
-          ++packages;
-          requester.begun = false;
-          requester.waited = 0;
-          for (uint32_t r = 0; r < kCount; ++r) {
-            if (r != number && (valid >> r & 1) != 0 && !requesters[r].begun) {
-              ASSERT_LT(++requesters[r].waited, static_cast<int>(kCount)) << "requester " << r << " starves";
-            }
-          }
-        }
-        if (!crowded && bench.one_of(4)) requester.gap = 1 + static_cast<int>(bench.random() % 3);
-      }
-      bench.clock();
-    }
-    EXPECT_GT(packages, 1500u);
-    for (uint32_t r = 0; r < kCount; ++r) EXPECT_GT(received[r], 1000u / kCount) << r;
+    PortArbiterBench<TypeParam> bench(seed);
+    for (int cycle = 0; cycle < 6000; ++cycle) ASSERT_NO_FATAL_FAILURE(bench.clock(cycle > 3000));
+    EXPECT_GT(bench.packages(), 1500u);
+    for (uint32_t r = 0; r < TypeParam::kCount; ++r) EXPECT_GT(bench.received(r), 1000u / TypeParam::kCount) << r;
   }
 }
 
