@@ -36,8 +36,9 @@ def around(picture):
         (740, 303, 144, 80), "ray_pool", ["512 rays,", "5 cycles for one:", "3 beats of 128 bits"], "box memory"
     )
     picture.box((740, 180, 144, 63), "frame_port", ["one a cycle: pixel", "32, colour 96 bits"], "box memory")
+    picture.box((346, 508, 218, 46), "memory_port", ["8 GB/s: a beat in 2 cycles"], "box memory")
     picture.box(
-        (346, 508, 218, 62), "memory_port", ["8 GB/s: a beat in 2 cycles;", "a line's last after 120"], "box memory"
+        (604, 508, 190, 62), "fixed_latency_memory", ["a line's last beat after 120;", "bind another one there"], "box memory"
     )
     picture.box((346, 606, 218, 62), "traverser", ["finds what rays hit; when, is", "its subclass static_traverser"])
 
@@ -50,7 +51,9 @@ def between(picture):
     picture.wire((684, 283), (728, 283), (728, 211), (740, 211), both=True)
     picture.wire((684, 343), (740, 343), both=True)
     picture.wire((455, 436), (455, 508), both=True)
-    picture.text(463, 492, "id 7: unit 2, id of the unit 5")
+    picture.wire((564, 531), (604, 531), both=True)
+    picture.text(584, 500, "TLM-2.0 socket", anchor="middle")
+    picture.text(447, 492, "id 7: unit 2, id of the unit 5", anchor="end")
     picture.wire((812, 383), (812, 637), (564, 637))
     picture.text(804, 629, "oldest first", anchor="end")
     picture.wire((346, 637), (88, 637), (88, 351))
