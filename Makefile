@@ -181,7 +181,7 @@ numerics-long: setup-sim setup-test configured-ON ## arithmetic against its orac
 	@scripts/build.sh $(BUILD) numerics_long flt_alu_test slw_alu_test small_floats_test
 	@scripts/numerics_long.sh $(BUILD) "$$THREADS"
 
-quoted: setup-sim setup-test setup-synth configured-ON ## run what README and docs quote: LONG, UPDATE, PAGES
+quoted: setup-sim setup-test setup-synth setup-quoted configured-ON ## run what README and docs quote: LONG, UPDATE, PAGES
 	@scripts/build.sh $(BUILD)
 	@scripts/quoted_output.py $(if $(filter-out 0,$(LONG)),--long) $(if $(filter-out 0,$(UPDATE)),--update) \
 	  $(foreach file,$(FILES),--file $(file)) $(PAGES)
