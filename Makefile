@@ -23,6 +23,7 @@ TRAVERSER ?= static
 VIEW      ?=
 EYE       ?=
 LOOK_AT   ?=
+CAMERA    ?=
 UP        ?=
 FOV       ?=
 LIGHT     ?=
@@ -60,7 +61,7 @@ UPDATE    ?= 0
 PAGES     ?=
 FILES     ?=
 # Recipes read these from the environment, so that a value with spaces or quotes stays one word.
-export CONFIG CUS SCENE SIZE DEPTH ENGINE TRAVERSER VIEW EYE LOOK_AT UP FOV LIGHT DETAIL OUT WAVES
+export CONFIG CUS SCENE SIZE DEPTH ENGINE TRAVERSER VIEW CAMERA EYE LOOK_AT UP FOV LIGHT DETAIL OUT WAVES
 export KERNEL PROGRAMS SEED COVERAGE MUTANTS MODE THREADS
 export LIBERTY CLOCK MEMORIES AGAINST RUN ONLY PLAN
 
@@ -77,7 +78,7 @@ LOCKED := flock $(BUILD)/.lock
 WAVES_FLAG := $(if $(filter-out 0,$(WAVES)),--waves)
 UNIT := scripts/unit.sh "$$CONFIG" $(WAVES_FLAG)
 # After an equals sign a number may be negative.
-LOOK := $${EYE:+"--eye=$$EYE"} $${LOOK_AT:+"--look-at=$$LOOK_AT"} $${UP:+"--up=$$UP"} \
+LOOK := $${CAMERA:+"--camera=$$CAMERA"} $${EYE:+"--eye=$$EYE"} $${LOOK_AT:+"--look-at=$$LOOK_AT"} $${UP:+"--up=$$UP"} \
   $${FOV:+"--fov=$$FOV"} $${LIGHT:+"--light=$$LIGHT"}
 # The synthesis flow; paths may be relative to this folder.
 SYNTH := PYTHONPATH=scripts python3 -m synth
@@ -95,7 +96,7 @@ help: ## this list
 	@sed -nE 's/^([a-z-]+):.*## (.*)/  make \1\t\2/p' $(firstword $(MAKEFILE_LIST)) | expand -t 22
 	@echo
 	@echo 'variables of make sim                                                    default'
-	@echo '  SCENE=cornell|room|FILE.obj   what is drawn                               $(SCENE)'
+	@echo '  SCENE=cornell|room|FILE       what is drawn; .obj, .gltf, .glb, .ply      $(SCENE)'
 	@echo '  CONFIG=4w4c|8w8c|...|FILE     hardware: configs/*.json, NwMc or a file    $(CONFIG)'
 	@echo '  ENGINE=native|functional|model|rtl|lockstep  what stands in for the unit  $(ENGINE)'
 	@echo '  SIZE=WxH                      pixels, 1..16384 each                       $(SIZE)'
@@ -103,6 +104,7 @@ help: ## this list
 	@echo '  CUS=1|2|4                     compute units                               $(CUS)'
 	@echo '  TRAVERSER=static              timing model of the traverser               $(TRAVERSER)'
 	@echo '  VIEW=FILE                     camera and light (JSON)                     from the scene'
+	@echo '  CAMERA=NAME                   of a glTF file                              its first'
 	@echo '  EYE=X,Y,Z LOOK_AT=X,Y,Z UP=X,Y,Z FOV=DEGREES LIGHT=X,Y,Z                  from the view'
 	@echo '  DETAIL=N                      triangles of a built-in scene, 0.01..16      1'
 	@echo '  OUT=FOLDER                    image.png, report.json                      $(BUILD)/out/...'

@@ -28,7 +28,7 @@ Json parse_json(const std::string& text, const std::string& where) {
   };
   try {
     return Json::parse(text, look);
-  } catch (const Json::parse_error& error) {
+  } catch (const Json::exception& error) {
     throw InputError(fmt::format("{}: not valid JSON: {}", where, json_reason(error)));
   }
 }

@@ -30,6 +30,8 @@ printf '%s\nf 1 2 9\n' "$triangle" > "$folder/index.obj"
 printf '%s\nf 1 2 -9\n' "$triangle" > "$folder/negative.obj"
 printf 'v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n' > "$folder/nan.obj"
 printf '%s\nf 1 2 3\n' "$triangle" > "$folder/good.obj"
+: > "$folder/empty.ply"
+printf 'glTF\x02\0\0\0' > "$folder/cut.glb"
 echo '{"warps": 3}' > "$folder/warps.json"
 echo '{"warps": ' > "$folder/broken.json"
 echo '{"wraps": 8}' > "$folder/unknown.json"
@@ -56,6 +58,10 @@ refuses_sim "OBJ index out of range" "index.obj" --scene "$folder/index.obj"
 refuses_sim "OBJ negative index out of range" "negative.obj" --scene "$folder/negative.obj"
 refuses_sim "OBJ with a NaN" "nan.obj" --scene "$folder/nan.obj"
 refuses_sim "no such scene" "nosuchscene" --scene nosuchscene
+refuses_sim "scene of an unknown format" "warps.json: .* \.obj, \.gltf, \.glb or \.ply" --scene "$folder/warps.json"
+refuses_sim "empty PLY" "empty.ply: the file is empty" --scene "$folder/empty.ply"
+refuses_sim "cut-off glTF" "cut.glb: the file is cut off" --scene "$folder/cut.glb"
+refuses_sim "named camera of a scene without" "--camera is for glTF" --scene "$folder/good.obj" --camera Front
 refuses_sim "eye of two numbers" "--eye is '1,2'.*three numbers" --eye 1,2
 refuses_sim "eye that is no number" "--eye is '1,nan,3'.*-1e" --eye 1,nan,3
 refuses_sim "light too far away" "--light is '0,2e9,0'.*1e" --light 0,2e9,0
@@ -94,7 +100,7 @@ if [ -e "$folder/saved" ]; then
   echo "FAILED: what is wrong around the programs was saved as a program that fails: $(ls "$folder/saved")"
 fi
 refuses_sim "a folder as view" "view file cannot be read \(Is a directory\)" --view "$folder"
-refuses_sim "a folder as scene" "OBJ file cannot be read \(Is a directory\)" --scene "$folder"
+refuses_sim "a folder as scene" "a scene cannot be read from this; give cornell, room" --scene "$folder"
 refuses_sim "a folder as configuration" "no configuration '$folder'" --config "$folder"
 refuses "a folder as saved program" "Is a directory" "$raypool" cosim --replay "$folder"
 refuses "a folder as program" "Is a directory" "$raypool" run "$folder"

@@ -74,7 +74,7 @@ cmake -S "$folder/prefix/share/raypool/examples/own-chip" -B "$folder/own" -G Ni
 cpack --config "$build/CPackConfig.cmake" -B "$folder/packages" > "$folder/log" 2>&1 ||
   { cat "$folder/log" >&2; fail cpack; }
 program=$(echo "$folder"/packages/raypool_*.deb) library=$(echo "$folder"/packages/raypool-dev_*.deb)
-for needed in libc6 libembree3-3 libfmt9 libsystemc; do
+for needed in libassimp5 libc6 libembree3-3 libfmt9 libsystemc; do
   dpkg-deb -f "$program" Depends | grep -qE "(^|, )$needed( |,|$)" ||
     fail "$program does not depend on $needed: $(dpkg-deb -f "$program" Depends)"
 done

@@ -17,7 +17,7 @@ namespace raypool {
 
 /// `raypool sim`
 struct SimOptions {
-  std::string scene = "room";  ///< built-in name or path of an OBJ
+  std::string scene = "room";  ///< built-in name or path of a scene file
   std::string config = "8w8c";
   std::string engine = "model";
   std::string size = "320x320";

@@ -1,5 +1,8 @@
 // `raypool scene` and `raypool hits`
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <vector>
 
 #include "cli/commands.hpp"
 #include "cli/image_size.hpp"
@@ -38,6 +41,11 @@ int scene_command(const SceneCommandOptions& options) {
              scene.vertices.size());
   fmt::print("materials  {}, of which {} reflect\n", scene.materials.size(), mirrors);
   fmt::print("box        {} .. {}\n", text(bounds.lower), text(bounds.upper));
+  if (!scene.cameras.empty()) {
+    const std::vector<std::string> others(scene.cameras.begin() + 1, scene.cameras.end());
+    fmt::print("cameras    '{}'{}{}\n", scene.cameras.front(),
+               others.empty() ? "" : "; with --camera: ", fmt::join(others, ", "));
+  }
   fmt::print("camera     eye {}, direction {}, up {}, vertical field of view {:g} degrees\n", text(scene.camera.eye),
              text(scene.camera.direction), text(scene.camera.up), scene.camera.fov);
   fmt::print("light      position {}, colour {}\n", text(scene.light.position), text(scene.light.color));

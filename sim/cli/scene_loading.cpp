@@ -59,7 +59,7 @@ ViewChanges parse_view_words(const ViewWords& words) {
 }
 
 Scene load_scene_and_warn(const std::string& scene, double detail, const std::string& view, const ViewWords& words) {
-  Scene loaded = load_scene(scene, {detail, view, parse_view_words(words)});
+  Scene loaded = load_scene(scene, {detail, view, parse_view_words(words), words.camera});
   for (const std::string& warning : loaded.warnings) fmt::print(stderr, "raypool: warning: {}\n", warning);
   return loaded;
 }

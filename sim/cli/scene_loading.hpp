@@ -12,6 +12,7 @@ namespace raypool {
 struct ViewWords {
   std::string eye, look_at, up, light;  ///< x,y,z
   std::string fov;                      ///< degrees
+  std::string camera;                   ///< of a glTF file, by name
 };
 
 /// Throws InputError that names the option.

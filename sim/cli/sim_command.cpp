@@ -63,7 +63,7 @@ uint32_t content_hash(const Scene& scene, const Configuration& configuration) {
 /// A user's files may have any content: names of built-in things alone say what is drawn.
 bool names_say_all(const SimOptions& options, const Scene& scene, const Configuration& configuration) {
   if (options.scene != "cornell" && options.scene != "room") return false;
-  const Scene own = load_scene(options.scene, {kLeastDetail, "", {}});  // its view is that of any detail
+  const Scene own = load_scene(options.scene, {kLeastDetail, "", {}, ""});  // its view is that of any detail
   const bool own_view = scene.camera.eye == own.camera.eye && scene.camera.direction == own.camera.direction &&
                         scene.camera.up == own.camera.up && scene.camera.fov == own.camera.fov &&
                         scene.light.position == own.light.position && scene.light.color == own.light.color;

@@ -165,18 +165,6 @@ Faces check_obj(const std::string& path, const std::string& text) {
   return faces;
 }
 
-/// One sentence for each kind of faces that cannot be drawn as they are, with the first one's line.
-void warn_of_faces(Scene& scene, const std::string& path, const std::map<PolygonShape, std::vector<size_t>>& lines) {
-  for (const auto& [shape, of_shape] : lines) {
-    const char* what =
-        shape == PolygonShape::Bent     ? "is not flat: which triangles it becomes is a guess; give triangles"
-        : shape == PolygonShape::NoArea ? "has no area, as all its corners are on one line: no ray hits it"
-                                        : "crosses itself: it is filled as a fan, which may be wrong; cut it up";
-    const std::string more = of_shape.size() == 1 ? "" : fmt::format(" (as do {} more)", of_shape.size() - 1);
-    scene.warnings.push_back(fmt::format("{}:{}: the face{} {}", path, of_shape.front(), more, what));
-  }
-}
-
 /// Negative materials are none.
 void add_triangles(Scene& scene, const std::string& path, const Faces& faces, const std::vector<int>& materials) {
   const auto grey = static_cast<uint32_t>(scene.materials.size());
@@ -192,7 +180,7 @@ void add_triangles(Scene& scene, const std::string& path, const Faces& faces, co
   if (std::any_of(materials.begin(), materials.end(), [](int material) { return material < 0; })) {
     scene.materials.push_back({"default_grey", {0.5f, 0.5f, 0.5f}, {0, 0, 0}});
   }
-  warn_of_faces(scene, path, lines);
+  warn_of_faces(scene.warnings, lines, [&](size_t line) { return fmt::format("{}:{}: the face", path, line); });
 }
 
 Vec3 to_vec3(const tinyobj::real_t* v) {
@@ -202,9 +190,6 @@ Vec3 to_vec3(const tinyobj::real_t* v) {
 }  // namespace
 
 Scene load_obj(const std::string& path) {
-  if (std::error_code none; !std::filesystem::exists(path, none)) {
-    throw InputError(path + ": no such scene; give cornell, room or the path of an OBJ file");
-  }
   std::string text = read_file(path, "OBJ file");
   blank_comments(text);
   const Faces faces = check_obj(path, text);

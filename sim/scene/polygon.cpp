@@ -1,11 +1,10 @@
 #include "scene/polygon.hpp"
 
+#include <fmt/format.h>
 #include <geos_c.h>
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <map>
 #include <memory>
 #include <utility>
 
@@ -185,6 +184,18 @@ PolygonShape triangulate(const std::vector<Vec3>& vertices, const uint32_t* corn
   if (!face.points.empty() && cut_outline(face.points, face.twice_area, corners, triangles)) return shape;
   fan(corners, count, triangles);
   return on_one_line(vertices, corners, count, face.size) ? PolygonShape::NoArea : PolygonShape::Crossing;
+}
+
+void warn_of_faces(std::vector<std::string>& warnings, const std::map<PolygonShape, std::vector<size_t>>& faces,
+                   const std::function<std::string(size_t)>& name) {
+  for (const auto& [shape, of_shape] : faces) {
+    const char* what =
+        shape == PolygonShape::Bent     ? "is not flat: which triangles it becomes is a guess; give triangles"
+        : shape == PolygonShape::NoArea ? "has no area, as all its corners are on one line: no ray hits it"
+                                        : "crosses itself: it is filled as a fan, which may be wrong; cut it up";
+    const std::string more = of_shape.size() == 1 ? "" : fmt::format(" (as do {} more)", of_shape.size() - 1);
+    warnings.push_back(fmt::format("{}{} {}", name(of_shape.front()), more, what));
+  }
 }
 
 }  // namespace raypool

@@ -4,7 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <filesystem>
+
+#include "scene/scene_file.hpp"
 
 namespace raypool {
 namespace {
@@ -104,28 +108,79 @@ void check_scene(const Scene& scene, const std::string& where) {
   require_colour(scene.light.color, where, "the light's color");
 }
 
+namespace {
+
+constexpr const char* kScenes = "cornell, room, or the path of a .obj, .gltf, .glb or .ply file";
+
+SceneFile load_file(const std::string& path, const std::string& camera) {
+  if (std::error_code none; !std::filesystem::exists(path, none))
+    throw InputError(fmt::format("{}: no such scene; give {}", path, kScenes));
+  std::string ending = std::filesystem::path(path).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (ending == ".gltf" || ending == ".glb") return load_gltf(path, camera);
+  SceneFile file;
+  if (ending == ".obj") {
+    file.scene = load_obj(path);
+  } else if (ending == ".ply") {
+    file.scene = load_ply(path);
+  } else {
+    throw InputError(fmt::format("{}: a scene cannot be read from this; give {}", path, kScenes));
+  }
+  if (!camera.empty()) throw InputError(fmt::format("{}: --camera is for glTF files; leave it out", path));
+  return file;
+}
+
+/// With what the file does not say chosen to go with the rest.
+View view_of_file(const SceneFile& file, ViewChanges changes) {
+  if (!changes.light && file.light) changes.light = file.light->position;
+  View view;
+  if (file.camera) {
+    view.camera = *file.camera;
+    change_view(view, changes);
+  } else {
+    if (!changes.up) changes.up = file.up;
+    view = automatic_view(file.scene, changes);
+  }
+  if (file.camera && !changes.light) {
+    // The point looked at is as far away as the scene is large, so that it keeps the direction.
+    const Camera& camera = view.camera;
+    const auto far = static_cast<double>(std::max(file.scene.bounds().diagonal(), 1.0f));
+    const Vec3d point = camera.eye.as<double>() + normalized(camera.direction.as<double>()) * far;
+    view.light = automatic_view(file.scene, {camera.eye, point.as<float>(), camera.up, {}, camera.fov}).light;
+  }
+  if (file.light) view.light.color = file.light->color;
+  return view;
+}
+
+}  // namespace
+
 Scene load_scene(const std::string& name_or_path, const SceneOptions& options) {
   if (!(options.detail >= 0.01 && options.detail <= 16)) {
     throw InputError(fmt::format("detail is {}; it must lie in 0.01 .. 16", options.detail));
   }
-  Scene scene;
   const bool built_in = name_or_path == "cornell" || name_or_path == "room";
+  if (!options.camera.empty() && !options.view.empty())
+    throw InputError("a view file has its own camera: give --view or --camera, not both");
+  if (!options.camera.empty() && built_in)
+    throw InputError(fmt::format("{}: --camera is for glTF files; leave it out", name_or_path));
+  SceneFile file;
   if (!built_in) {
-    scene = load_obj(name_or_path);
+    file = load_file(name_or_path, options.camera);
   } else {
-    scene = name_or_path == "room" ? make_room(options.detail) : make_cornell(options.detail);
+    file.scene = name_or_path == "room" ? make_room(options.detail) : make_cornell(options.detail);
   }
+  Scene& scene = file.scene;
   View view{scene.camera, scene.light};
   if (!options.view.empty()) view = load_view(options.view);
   if (built_in || !options.view.empty()) {
     change_view(view, options.changes);
   } else {
-    view = automatic_view(scene, options.changes);
+    view = view_of_file(file, options.changes);
   }
   scene.camera = view.camera;
   scene.light = view.light;
   check_scene(scene, name_or_path);
-  return scene;
+  return std::move(scene);
 }
 
 }  // namespace raypool

@@ -1,4 +1,4 @@
-// What is rendered: triangles, materials, one camera, one point light; the built-in scenes, OBJ files and view files.
+// What is rendered: triangles, materials, one camera, one point light; the built-in scenes, scene files and view files.
 // docs/scenes.md describes the formats.
 #pragma once
 
@@ -48,6 +48,7 @@ struct Scene {
   std::vector<Material> materials;
   Camera camera;
   PointLight light;
+  std::vector<std::string> cameras;   ///< names of those a file has, the one that is looked through first
   std::vector<std::string> warnings;  ///< a sentence each: what of a file could not be drawn as it is
 
   const Vec3& corner(size_t triangle, int k) const { return vertices[triangles[triangle][k]]; }
@@ -73,11 +74,12 @@ struct ViewChanges {
 
 struct SceneOptions {
   double detail = 1.0;  ///< built-in scenes: share of the full triangle count, 0.01 .. 16
-  std::string view;     ///< view file; empty: the scene's own view, or for an OBJ file automatic_view()
+  std::string view;     ///< view file; empty: the scene's own camera and light, or for a file without automatic_view()
   ViewChanges changes;
+  std::string camera;  ///< of a glTF file, by name; empty: its first one
 };
 
-/// `name_or_path` is "cornell", "room" or the path of an OBJ file. Throws InputError.
+/// `name_or_path` is "cornell", "room" or the path of a file, whose ending says its format. Throws InputError.
 Scene load_scene(const std::string& name_or_path, const SceneOptions& options = {});
 
 /// Closed box of 5.5 m with two blocks, one of them a mirror, camera and light inside.

@@ -50,9 +50,11 @@ void add_inspect(CLI::App& app, uint64_t& until) {
 
 void add_scene(CLI::App& app, std::string& scene, std::string& size, std::string& view, ViewWords& look,
                double& detail) {
-  app.add_option("--scene,scene", scene, "cornell, room, or the path of an OBJ")->capture_default_str();
+  app.add_option("--scene,scene", scene, "cornell, room, or the path of a .obj, .gltf, .glb or .ply file")
+      ->capture_default_str();
   app.add_option("--size", size, "image, WIDTHxHEIGHT in pixels, 1 to 16384 each")->capture_default_str();
   app.add_option("--view", view, "JSON file with camera and light (default: the scene's own, or framed automatically)");
+  app.add_option("--camera", look.camera, "camera of a glTF file, by its name or its node's (default: the first one)");
   app.add_option("--eye", look.eye, "place of the camera, x,y,z (default, as of the next four: the view's)");
   app.add_option("--look-at", look.look_at, "point in the middle of the picture, x,y,z");
   app.add_option("--up", look.up, "upwards, x,y,z");

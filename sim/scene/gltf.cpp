@@ -1,0 +1,234 @@
+// glTF files as scenes: Assimp decodes the geometry that read_gltf_document() has checked, and here meshes are put
+// where the nodes have them, with the camera and the light.
+#include <assimp/MemoryIOWrapper.h>
+#include <assimp/scene.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <assimp/IOSystem.hpp>
+#include <assimp/Importer.hpp>
+#include <charconv>
+#include <cstring>
+#include <filesystem>
+#include <utility>
+
+#include "scene/gltf_document.hpp"
+#include "scene/mesh_builder.hpp"
+#include "scene/scene_file.hpp"
+
+namespace raypool {
+namespace {
+
+constexpr const char* kGeometryName = "geometry.gltf";
+constexpr double kDistantLight = 100;  // diagonals of the box, from which a point lights as a direction does
+
+/// The number that is all of `text`.
+std::optional<size_t> number_in(const aiString& text) {
+  size_t value = 0;
+  const char* const end = text.C_Str() + text.length;
+  const auto result = std::from_chars(text.C_Str(), end, value);
+  return result.ec == std::errc() && result.ptr == end ? std::optional(value) : std::nullopt;
+}
+
+/// What Assimp may open: the document's geometry and its buffers, all in memory.
+class GltfMemory : public Assimp::IOSystem {
+ public:
+  GltfMemory(const GltfFile& file, const GltfDocument& document) : file_(file), document_(document) {}
+
+  bool Exists(const char* name) const override { return find(name) != nullptr; }
+  char getOsSeparator() const override { return '/'; }
+  Assimp::IOStream* Open(const char* name, const char*) override {
+    const std::string* bytes = find(name);
+    if (bytes == nullptr) return nullptr;
+    return new Assimp::MemoryIOStream(reinterpret_cast<const uint8_t*>(bytes->data()), bytes->size());
+  }
+  void Close(Assimp::IOStream* stream) override { delete stream; }
+
+ private:
+  const std::string* find(const char* name) const {
+    if (std::strcmp(name, kGeometryName) == 0) return &document_.geometry;
+    const std::optional<size_t> index = number_in(aiString(name));
+    const auto found = index ? file_.buffers().find(*index) : file_.buffers().end();
+    return found == file_.buffers().end() ? nullptr : &found->second;
+  }
+
+  const GltfFile& file_;
+  const GltfDocument& document_;
+};
+
+Transform to_transform(const aiMatrix4x4& m) {
+  return {{m.a1, m.b1, m.c1}, {m.a2, m.b2, m.c2}, {m.a3, m.b3, m.c3}, {m.a4, m.b4, m.c4}};
+}
+
+/// A node with a camera or a light, and where it is.
+struct Placed {
+  size_t index;
+  std::string node;
+  Transform transform;
+};
+
+/// Of all nodes together.
+struct Assembly {
+  Scene scene;
+  std::vector<Placed> cameras, lights;
+};
+
+class Assembler {
+ public:
+  Assembler(const aiScene& source, const GltfDocument& document, Assembly& result)
+      : source_(source), document_(document), result_(result) {}
+
+  void add(const aiNode& node, const Transform& above) {
+    const Transform here = above * to_transform(node.mTransformation);
+    for (unsigned i = 0; i < node.mNumMeshes; ++i) add(*source_.mMeshes[node.mMeshes[i]], here);
+    // The root above several nodes is Assimp's own, without a number.
+    if (const std::optional<size_t> number = number_in(node.mName)) {
+      const GltfNode& content = document_.nodes.at(*number);
+      if (content.camera) result_.cameras.push_back({*content.camera, content.name, here});
+      if (content.light) result_.lights.push_back({*content.light, content.name, here});
+    }
+    for (unsigned i = 0; i < node.mNumChildren; ++i) add(*node.mChildren[i], here);
+  }
+
+ private:
+  void add(const aiMesh& mesh, const Transform& here) {
+    Scene& scene = result_.scene;
+    const auto first = static_cast<uint32_t>(scene.vertices.size());
+    for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
+      const aiVector3D& v = mesh.mVertices[i];
+      scene.vertices.push_back(here({v.x, v.y, v.z}).as<float>());
+    }
+    // A mirrored mesh is wound the other way round.
+    const bool mirrored = dot(cross(here.x, here.y), here.z) < 0;
+    const uint32_t material = material_of(mesh);
+    for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
+      const unsigned* corners = mesh.mFaces[i].mIndices;
+      scene.triangles.push_back(
+          {first + corners[0], first + corners[mirrored ? 2 : 1], first + corners[mirrored ? 1 : 2]});
+      scene.triangle_materials.push_back(material);
+    }
+  }
+
+  /// Meshes without one get the grey of other formats, behind the file's own.
+  uint32_t material_of(const aiMesh& mesh) {
+    const std::optional<size_t> own = number_in(source_.mMaterials[mesh.mMaterialIndex]->GetName());
+    std::vector<Material>& materials = result_.scene.materials;
+    if (own) return static_cast<uint32_t>(*own);
+    if (materials.size() == document_.materials.size()) materials.push_back({"default_grey", {0.5f, 0.5f, 0.5f}, {}});
+    return static_cast<uint32_t>(materials.size() - 1);
+  }
+
+  const aiScene& source_;
+  const GltfDocument& document_;
+  Assembly& result_;
+};
+
+Assembly assemble(const GltfFile& file, const GltfDocument& document) {
+  Assimp::Importer importer;
+  importer.SetIOHandler(new GltfMemory(file, document));
+  const aiScene* source = importer.ReadFile(kGeometryName, 0);
+  if (source == nullptr) {
+    throw InputError(
+        fmt::format("{}: not a readable glTF file ({}); export it again", file.path(), importer.GetErrorString()));
+  }
+  Assembly result;
+  result.scene.name = std::filesystem::path(file.path()).stem().string();
+  result.scene.materials = document.materials;
+  Assembler(*source, document, result).add(*source->mRootNode, {});
+  return result;
+}
+
+std::string name_of(const std::string& own, const std::string& node, const char* kind, size_t index) {
+  return !own.empty() ? own : !node.empty() ? node : fmt::format("{}_{}", kind, index);
+}
+
+/// The camera that is asked for, or the first one that is ours too; none: the file has none such.
+std::optional<Camera> choose_camera(const std::string& path, const std::string& wanted, const GltfDocument& document,
+                                    const Assembly& assembly, Scene& scene) {
+  const Placed* chosen = nullptr;
+  size_t orthographic = 0;
+  std::vector<std::string> names;
+  for (const Placed& placed : assembly.cameras) {
+    const GltfCamera& camera = document.cameras[placed.index];
+    const std::string name = name_of(camera.name, placed.node, "camera", placed.index);
+    names.push_back(name);
+    const bool is_wanted = name == wanted || placed.node == wanted;
+    if (!camera.fov) ++orthographic;
+    if (!wanted.empty() && is_wanted && !camera.fov)
+      throw InputError(fmt::format("{}: camera '{}' is orthographic, which ours is not; choose another", path, wanted));
+    if (chosen == nullptr && camera.fov && (wanted.empty() || is_wanted)) {
+      chosen = &placed;
+      scene.cameras.insert(scene.cameras.begin(), name);
+    } else {
+      scene.cameras.push_back(name);
+    }
+  }
+  if (chosen == nullptr && !wanted.empty()) {
+    throw InputError(names.empty() ? fmt::format("{}: there is no camera in it; leave --camera '{}' out", path, wanted)
+                                   : fmt::format("{}: there is no camera '{}' in it; its cameras are {}", path, wanted,
+                                                 fmt::join(names, ", ")));
+  }
+  if (chosen == nullptr) {
+    scene.cameras.clear();
+    if (orthographic > 0) {
+      scene.warnings.push_back(fmt::format("{}: {} orthographic, which ours is not: the view is chosen automatically",
+                                           path, orthographic == 1 ? "the camera is" : "all cameras are"));
+    }
+    return std::nullopt;
+  }
+  const Transform& at = chosen->transform;
+  Camera camera{at.origin.as<float>(), (at.z * -1.0).as<float>(), at.y.as<float>(),
+                *document.cameras[chosen->index].fov};
+  check_camera(camera, fmt::format("{}: camera '{}'", path, scene.cameras.front()));
+  return camera;
+}
+
+/// The first point light, or else the first spot, or else the first directional one.
+std::optional<PointLight> choose_light(const std::string& path, const GltfDocument& document, const Assembly& assembly,
+                                       Scene& scene) {
+  const Placed* chosen = nullptr;
+  for (const char* type : {"point", "spot", "directional"}) {
+    for (const Placed& placed : assembly.lights) {
+      if (chosen == nullptr && document.lights[placed.index].type == type) chosen = &placed;
+    }
+  }
+  if (chosen == nullptr) return std::nullopt;
+  const GltfLight& light = document.lights[chosen->index];
+  Vec3d position = chosen->transform.origin;
+  std::string lost = fmt::format("fall-off and intensity ({:g})", light.intensity);
+  if (light.type == "spot") lost += " and cone";
+  if (light.type == "directional") {
+    const Bounds bounds = scene.bounds();
+    const Vec3d backwards = chosen->transform.z;
+    if (!(length(backwards) > 0)) throw InputError(path + ": the node of a directional light has a scale of zero");
+    position = (bounds.lower.as<double>() + bounds.upper.as<double>()) * 0.5 +
+               normalized(backwards) * (kDistantLight * static_cast<double>(bounds.diagonal()));
+    lost = fmt::format("intensity ({:g})", light.intensity);
+  }
+  scene.warnings.push_back(fmt::format(
+      "{}: the light is '{}' ({}), as a point with its colour: its {} {} not used{}", path,
+      name_of(light.name, chosen->node, "light", chosen->index), light.type, lost,
+      light.type == "directional" ? "is" : "are",
+      assembly.lights.size() > 1 ? fmt::format(", nor are {} more lights", assembly.lights.size() - 1) : ""));
+  return PointLight{position.as<float>(), light.color};
+}
+
+}  // namespace
+
+SceneFile load_gltf(const std::string& path, const std::string& camera) {
+  GltfFile file(path);
+  const GltfDocument document = read_gltf_document(file);
+  Assembly assembly = assemble(file, document);
+  SceneFile result;
+  result.scene = std::move(assembly.scene);
+  result.scene.warnings = document.warnings;
+  result.up = Vec3{0, 1, 0};
+  check_scene(result.scene, path);
+  weld_vertices(result.scene);
+  result.camera = choose_camera(path, camera, document, assembly, result.scene);
+  result.light = choose_light(path, document, assembly, result.scene);
+  return result;
+}
+
+}  // namespace raypool

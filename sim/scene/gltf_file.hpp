@@ -1,0 +1,40 @@
+// A glTF file as it lies on disk: its JSON text, in .glb with a binary chunk behind it, and the buffers that it names.
+#pragma once
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+
+#include "scene/json_place.hpp"
+
+namespace raypool {
+
+class GltfFile {
+ public:
+  /// Text or binary, as the first bytes say. Throws InputError.
+  explicit GltfFile(const std::string& path);
+  GltfFile(const GltfFile&) = delete;
+  GltfFile& operator=(const GltfFile&) = delete;
+
+  const std::string& path() const { return path_; }
+  JsonPlace root() const { return {json_, path_}; }
+  /// The bytes of a buffer, whose place in the document is given: from a file beside this one, a data URI or the binary
+  /// chunk. Its byteLength, and kPadding zeros, so that there is a whole stride for the last of interleaved elements.
+  const std::string& buffer(const JsonPlace& place, size_t index);
+  /// Of those that have been asked for.
+  const std::map<size_t, std::string>& buffers() const { return buffers_; }
+  static constexpr size_t kPadding = 256;
+
+ private:
+  std::string read_binary(const std::string& bytes);
+  std::string read_external(const std::string& uri, const JsonPlace& place) const;
+
+  std::string path_;
+  JsonPlace::Json json_;
+  bool has_chunk_ = false;
+  std::string chunk_;
+  std::map<size_t, std::string> buffers_;
+};
+
+}  // namespace raypool

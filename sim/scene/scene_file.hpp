@@ -1,0 +1,28 @@
+// Readers of scene files that may bring their own camera and light. docs/scenes.md describes what they read.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "scene/scene.hpp"
+
+namespace raypool {
+
+struct SceneFile {
+  Scene scene;  ///< its camera and light mean nothing
+  std::optional<Camera> camera;
+  std::optional<PointLight> light;
+  std::optional<Vec3> up;  ///< as the format says
+};
+
+/// glTF 2.0, text or binary. `camera`: name of a camera or of its node; empty: the first one that can be used.
+/// Throws InputError.
+SceneFile load_gltf(const std::string& path, const std::string& camera = "");
+
+/// PLY, text or binary. Throws InputError naming file and place.
+Scene load_ply(const std::string& path);
+
+/// Vertices at the same place become one, in the order in which triangles use them; those that none uses are left out.
+void weld_vertices(Scene& scene);
+
+}  // namespace raypool
