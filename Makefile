@@ -19,7 +19,8 @@ SCENE     ?= room
 SIZE      ?= 320x320
 DEPTH     ?= 3
 ENGINE    ?= lockstep
-TRAVERSER ?= static
+TRAVERSER ?=
+SET       ?=
 VIEW      ?=
 EYE       ?=
 LOOK_AT   ?=
@@ -61,7 +62,7 @@ UPDATE    ?= 0
 PAGES     ?=
 FILES     ?=
 # Recipes read these from the environment, so that a value with spaces or quotes stays one word.
-export CONFIG CUS SCENE SIZE DEPTH ENGINE TRAVERSER VIEW CAMERA EYE LOOK_AT UP FOV LIGHT DETAIL OUT WAVES
+export CONFIG SET CUS SCENE SIZE DEPTH ENGINE TRAVERSER VIEW CAMERA EYE LOOK_AT UP FOV LIGHT DETAIL OUT WAVES
 export KERNEL PROGRAMS SEED COVERAGE MUTANTS MODE THREADS
 export LIBERTY CLOCK MEMORIES AGAINST RUN ONLY PLAN
 
@@ -76,13 +77,14 @@ RAYPOOL := $(BUILD)/raypool
 LOCKED := flock $(BUILD)/.lock
 # Only engines rtl and lockstep need a Verilated device.
 WAVES_FLAG := $(if $(filter-out 0,$(WAVES)),--waves)
-UNIT := scripts/unit.sh "$$CONFIG" $(WAVES_FLAG)
+SET_FIELDS := $${SET:+--set "$$SET"}
+UNIT := scripts/unit.sh "$$CONFIG" $(SET_FIELDS) $(WAVES_FLAG)
 # After an equals sign a number may be negative.
 LOOK := $${CAMERA:+"--camera=$$CAMERA"} $${EYE:+"--eye=$$EYE"} $${LOOK_AT:+"--look-at=$$LOOK_AT"} $${UP:+"--up=$$UP"} \
   $${FOV:+"--fov=$$FOV"} $${LIGHT:+"--light=$$LIGHT"}
 # The synthesis flow; paths may be relative to this folder.
 SYNTH := PYTHONPATH=scripts python3 -m synth
-SYNTH_OPTIONS := --config "$$CONFIG" --memories "$$MEMORIES" $${LIBERTY:+--liberty "$$LIBERTY"} \
+SYNTH_OPTIONS := --config "$$CONFIG" $(SET_FIELDS) --memories "$$MEMORIES" $${LIBERTY:+--liberty "$$LIBERTY"} \
   $${CLOCK:+--clock "$$CLOCK"}
 GATES_SETUP := $(if $(filter-out 0,$(GATES)),setup-synth)
 UNIT_OF_ENGINE := $(if $(filter rtl lockstep,$(ENGINE)),$(UNIT),true)
@@ -102,39 +104,40 @@ help: ## this list
 	@echo '  SIZE=WxH                      pixels, 1..16384 each                       $(SIZE)'
 	@echo '  DEPTH=N                       1: eye and shadow rays; more: reflections   $(DEPTH)'
 	@echo '  CUS=1|2|4                     compute units                               $(CUS)'
-	@echo '  TRAVERSER=static              timing model of the traverser               $(TRAVERSER)'
+	@echo '  SET="FIELD=VALUE ..."         change fields of CONFIG, chip.ray_pool.size=256 (raypool config prints all)'
+	@echo '  TRAVERSER=static              timing model of the traverser               from CONFIG'
 	@echo '  VIEW=FILE                     camera and light (JSON)                     from the scene'
 	@echo '  CAMERA=NAME                   of a glTF file                              its first'
 	@echo '  EYE=X,Y,Z LOOK_AT=X,Y,Z UP=X,Y,Z FOV=DEGREES LIGHT=X,Y,Z                  from the view'
 	@echo '  DETAIL=N                      triangles of a built-in scene, 0.01..16      1'
 	@echo '  OUT=FOLDER                    image.png, report.json                      $(BUILD)/out/...'
 	@echo '  WAVES=1                       a waveform (FST) too; ENGINE=rtl, lockstep  $(WAVES)'
-	@echo 'variables of make synth, synth-replay, synth-prove:  CONFIG  LIBERTY=FILE  CLOCK=NS  MEMORIES=macros|flops'
+	@echo 'variables of make synth, synth-replay, synth-prove:  CONFIG  SET  LIBERTY=FILE  CLOCK=NS  MEMORIES=macros|flops'
 	@echo '  make synth:  AGAINST=REPORT  RUN=REPORT_OF_SIM  POWER=1  OUT=FOLDER'
 	@echo '  synth-replay:  BREAK=N;  synth-prove:  ONLY=BLOCKS;  growth:  PLAN=FILE'
-	@echo 'variables of make cosim:  PROGRAMS=$(PROGRAMS)  SEED=$(SEED)  CONFIG  CUS  COVERAGE=FILE.json'
+	@echo 'variables of make cosim:  PROGRAMS=$(PROGRAMS)  SEED=$(SEED)  CONFIG  SET  CUS  COVERAGE=FILE.json'
 	@echo 'variables of make numerics:  GATES=1: synthesise the lanes of every mode first'
 	@echo '  extremes:  MODE=all|ieee-exact|...;  numerics-long:  THREADS=$(THREADS)'
 	@echo 'variables of make quoted:  LONG=1: those that take long too;  UPDATE=1: write what is printed into the pages'
 	@echo '  PAGES="docs/isa.md ...";  FILES=NAME=PATH: a file that quotes need'
 	@echo 'variable of every target:  BUILD=FOLDER: for everything that is made, $(BUILD) if not given;'
 	@echo '  a checkout that cannot be written needs one'
-	@echo 'variables of make run:  KERNEL=saxpy|matmul|FILE.asm  CONFIG  ENGINE  ARGS="--n 1000"'
+	@echo 'variables of make run:  KERNEL=saxpy|matmul|FILE.asm  CONFIG  SET  ENGINE  ARGS="--n 1000"'
 
 sim: setup-sim program ## draw a scene on the simulated chip: picture, report, figures
 	@$(UNIT_OF_ENGINE) --units "$$CUS"
 	@$(RAYPOOL) sim --scene "$$SCENE" --config "$$CONFIG" --units "$$CUS" --size "$$SIZE" --depth "$$DEPTH" \
-	  --engine "$$ENGINE" --traverser "$$TRAVERSER" $${VIEW:+--view "$$VIEW"} $(LOOK) $${DETAIL:+--detail "$$DETAIL"} \
-	  $${OUT:+--out "$$OUT"} $(WAVES_FLAG)
+	  --engine "$$ENGINE" $(SET_FIELDS) $${TRAVERSER:+--traverser "$$TRAVERSER"} $${VIEW:+--view "$$VIEW"} $(LOOK) \
+	  $${DETAIL:+--detail "$$DETAIL"} $${OUT:+--out "$$OUT"} $(WAVES_FLAG)
 
 run: setup-sim program ## run a compute kernel, check its results, print its cycles
 	@$(UNIT_OF_ENGINE)
-	@$(RAYPOOL) run "$$KERNEL" --config "$$CONFIG" --engine "$$ENGINE" $(ARGS)
+	@$(RAYPOOL) run "$$KERNEL" --config "$$CONFIG" $(SET_FIELDS) --engine "$$ENGINE" $(ARGS)
 
 cosim: setup-sim program ## random programs, hardware against model: CONFIG, CUS, PROGRAMS, SEED
 	@$(UNIT) --units "$$CUS"
-	@$(RAYPOOL) cosim --config "$$CONFIG" --units "$$CUS" --programs "$$PROGRAMS" --seed "$$SEED" \
-	  $${COVERAGE:+--coverage "$$COVERAGE"}
+	@$(RAYPOOL) cosim --config "$$CONFIG" $(SET_FIELDS) --units "$$CUS" --programs "$$PROGRAMS" \
+	  --seed "$$SEED" $${COVERAGE:+--coverage "$$COVERAGE"}
 
 configurations: setup-sim program ## random programs on machines with every pair of values (hours): PROGRAMS
 	@scripts/configurations.sh all "$$PROGRAMS"

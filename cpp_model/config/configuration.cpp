@@ -13,6 +13,7 @@
 
 #include "config/data_folder.hpp"
 #include "config/parameter_table.hpp"
+#include "config/settings.hpp"
 #include "files/input_file.hpp"
 #include "files/json_text.hpp"
 
@@ -23,6 +24,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr size_t kLongestName = 64;
+constexpr std::string_view kChip = "chip";  // the object of a file
 
 constexpr int kLeastFusedDepth = 5;  // of flt, whose additions and multiplications go through the fused unit
 constexpr std::array<int, 4> kLeastSlowDepths = {11, 11, 8, 6};  // of slw, by SlowUnit: each Newton step has its stages
@@ -123,9 +125,25 @@ class Section {
   std::vector<std::string> known_;
 };
 
-void read_section(Section& section, std::string_view name, Configuration& configuration) {
-  for (const Parameter& parameter : parameter::kAll)
+template <size_t count>
+void read_section(Section& section, const Parameter (&rows)[count], std::string_view name,
+                  Configuration& configuration) {
+  for (const Parameter& parameter : rows)
     if (parameter.section == name) section.read(parameter, configuration);
+}
+
+/// What is not said of the chip follows what is: as many pixels are held as the intersection pool has room for.
+void read_chip(Section& chip, Configuration& configuration) {
+  for (const std::string_view name : chip_sections()) {
+    if (name == kChip) continue;
+    auto part = chip.section(name.substr(kChip.size() + 1));
+    if (!part) continue;
+    read_section(*part, parameter::kOfChip, name, configuration);
+    part->refuse_others();
+  }
+  configuration.chip.held_limit = configuration.chip.intersection_pool_size;
+  read_section(chip, parameter::kOfChip, kChip, configuration);
+  chip.refuse_others();
 }
 
 Configuration from_json(const Json& json, const std::string& where, const std::string& name) {
@@ -133,12 +151,12 @@ Configuration from_json(const Json& json, const std::string& where, const std::s
   configuration.name = name;
   Section root(json, where, "");
   root.text("name", configuration.name);
-  read_section(root, "", configuration);
+  read_section(root, parameter::kAll, "", configuration);
   // Before the ALUs, as the depth that is not given follows the arithmetic.
   for (const std::string_view name_of_section : sections()) {
     auto section = root.section(name_of_section);
     if (!section) continue;
-    read_section(*section, name_of_section, configuration);
+    read_section(*section, parameter::kAll, name_of_section, configuration);
     section->refuse_others();
   }
   for (const AluType type : {AluType::Flt, AluType::Slw})
@@ -154,15 +172,12 @@ Configuration from_json(const Json& json, const std::string& where, const std::s
     }
     alus->refuse_others();
   }
+  if (auto chip = root.section(kChip)) read_chip(*chip, configuration);
   std::string schema;  // which editors follow
   root.text("$schema", schema);
   root.refuse_others();
   check_configuration(configuration, where);
   return configuration;
-}
-
-Configuration parse(const std::string& text, const std::string& where, const std::string& name) {
-  return from_json(parse_json(text, where), where, name);
 }
 
 /// The name of a file without its folder and ending, with _ for what a configuration's name may not have.
@@ -171,8 +186,16 @@ std::string name_of_file(const fs::path& path) {
   return std::regex_replace(path.stem().string(), kOther, "_").substr(0, kLongestName);
 }
 
-Configuration read_configuration(const fs::path& path) {
-  return parse(read_file(path.string(), "configuration"), path.string(), name_of_file(path));
+/// What a configuration is made of.
+struct Source {
+  Json json;
+  std::string where, name;  ///< of which messages speak; which it has unless it says another
+};
+
+Configuration made_of(const Source& source) { return from_json(source.json, source.where, source.name); }
+
+Source source_of(const fs::path& path) {
+  return {parse_json(read_file(path.string(), "configuration"), path.string()), path.string(), name_of_file(path)};
 }
 
 /// Where the project's own lie.
@@ -189,48 +212,41 @@ std::vector<fs::path> configuration_folders() {
 }
 
 /// The defaults with N warps and M lanes, if that is what the name says.
-std::optional<Configuration> warps_and_lanes(const std::string& name) {
+std::optional<Source> warps_and_lanes(const std::string& name) {
   static const std::regex kWarpsAndLanes("([0-9]{1,4})w([0-9]{1,4})c");
   std::smatch match;
   if (!std::regex_match(name, match, kWarpsAndLanes)) return std::nullopt;
-  Configuration configuration;
-  configuration.name = name;
-  configuration.warps = std::stoi(match[1]);
-  configuration.lanes = std::stoi(match[2]);
-  check_configuration(configuration, name);
-  return configuration;
+  return Source{{{"warps", std::stoi(match[1])}, {"lanes", std::stoi(match[2])}}, name, name};
 }
 
 /// What everyone understands by a name: the project's own file, or NwMc.
 std::optional<Configuration> built_in(const std::string& name) {
   const fs::path path = shipped_folder() / (name + ".json");
-  if (fs::is_regular_file(path)) return read_configuration(path);
-  return warps_and_lanes(name);
+  if (fs::is_regular_file(path)) return made_of(source_of(path));
+  const std::optional<Source> source = warps_and_lanes(name);
+  return source ? std::optional(made_of(*source)) : std::nullopt;
 }
 
-/// A file of other hardware must not go by a name that has a meaning: reports and folders would pass for the other's.
-Configuration read_user_file(const fs::path& path) {
-  Configuration configuration = read_configuration(path);
-  if (built_in(configuration.name) && !is_built_in(configuration)) {
-    throw InputError(
-        fmt::format("{}: the name '{}' stands for other hardware (raypool config {}): give this one another \"name\"",
-                    path.string(), configuration.name, configuration.name));
-  }
-  return configuration;
+/// Other hardware must not go by a name that has a meaning: reports and folders would pass for the other's.
+void check_name(const Configuration& configuration, const std::string& where) {
+  if (!built_in(configuration.name) || is_built_in(configuration)) return;
+  throw InputError(
+      fmt::format("{}: the name '{}' stands for other hardware (raypool config {}): give this one another \"name\"",
+                  where, configuration.name, configuration.name));
 }
 
-Configuration load(const std::string& name_or_path) {
+Source find_source(const std::string& name_or_path) {
   // A FIFO or device too, but a folder may bear the name of a configuration.
   std::error_code none;
   const fs::file_status status = fs::status(name_or_path, none);
-  if (fs::exists(status) && !fs::is_directory(status)) return read_user_file(name_or_path);
+  if (fs::exists(status) && !fs::is_directory(status)) return source_of(name_or_path);
   const bool is_name = !name_or_path.empty() && name_or_path.find('/') == std::string::npos;
   if (is_name) {
     for (const fs::path& folder : configuration_folders()) {
       const fs::path path = folder / (name_or_path + ".json");
-      if (fs::is_regular_file(path, none)) return read_user_file(path);
+      if (fs::is_regular_file(path, none)) return source_of(path);
     }
-    if (const std::optional<Configuration> configuration = warps_and_lanes(name_or_path)) return *configuration;
+    if (const std::optional<Source> source = warps_and_lanes(name_or_path)) return *source;
   }
   throw InputError(
       fmt::format("no configuration '{}': give the path of a JSON file, the name of a file in configs/, or NwMc for N "
@@ -238,21 +254,55 @@ Configuration load(const std::string& name_or_path) {
                   name_or_path));
 }
 
+/// "8w8c+alus.flt.count-2": the name of a machine of which fields have been set, unless they had these values.
+std::string name_with(const Configuration& base, const Configuration& changed, const std::vector<std::string>& set) {
+  const Json before = Json::parse(to_json(base)), after = Json::parse(to_json(changed));
+  std::string name = base.name;
+  int changes = 0;
+  for (const std::string& path : paths_set(set)) {
+    const std::string value = value_text(after, path);
+    if (value == value_text(before, path)) continue;
+    name += fmt::format("+{}-{}", path, value);
+    ++changes;
+  }
+  if (name.size() <= kLongestName) return name;
+  const std::string end = fmt::format("+{}_changes", changes);
+  return base.name.substr(0, kLongestName - end.size()) + end;
+}
+
+Configuration changed(const Source& source, const Configuration& base, const std::vector<std::string>& set) {
+  Source other = source;
+  other.where += fmt::format(" with --set {}", fmt::join(set, " "));
+  set_fields(other.json, set);
+  Configuration configuration = made_of(other);
+  const std::vector<std::string> paths = paths_set(set);
+  if (std::find(paths.begin(), paths.end(), "name") == paths.end())
+    configuration.name = name_with(base, configuration, set);
+  check_name(configuration, other.where);
+  return configuration;
+}
+
 }  // namespace
 
-Configuration load_configuration(const std::string& name_or_path) {
-  Configuration configuration = load(name_or_path);
+Configuration load_configuration(const std::string& name_or_path, const std::vector<std::string>& set) {
+  const Source source = find_source(name_or_path);
+  Configuration configuration = made_of(source);
+  check_name(configuration, source.where);
+  if (!set.empty()) configuration = changed(source, configuration, set);
   configuration.source = name_or_path;
+  configuration.set = set;
   return configuration;
 }
 
 bool is_built_in(const Configuration& configuration) {
-  const std::optional<Configuration> meant = built_in(configuration.name);
-  return meant && verilog_parameters(*meant) == verilog_parameters(configuration);
+  std::optional<Configuration> meant = built_in(configuration.name);
+  if (!meant) return false;
+  meant->name = configuration.name;
+  return to_json(*meant) == to_json(configuration);
 }
 
 Configuration parse_configuration(const std::string& json, const std::string& where) {
-  return parse(json, where, Configuration().name);
+  return from_json(parse_json(json, where), where, Configuration().name);
 }
 
 int least_depth(const Configuration& configuration, AluType type) {
@@ -260,6 +310,36 @@ int least_depth(const Configuration& configuration, AluType type) {
   if (type == AluType::Slw) return kLeastSlowDepths.at(static_cast<size_t>(configuration.slow_unit));
   return alu_info(type).depth;
 }
+
+int tile_width_log2(int contents) {
+  int log2 = 0;
+  while ((1 << log2) < contents) ++log2;
+  return (log2 + 1) / 2;
+}
+
+namespace {
+
+/// A row of an eye tile is held at once, and what is held must find room in the intersection pool.
+void check_chip(const Configuration& configuration, const std::string& where) {
+  for (const Parameter& parameter : parameter::kOfChip)
+    check_range(where, path_of(parameter), parameter.get(configuration), parameter.range);
+  const int width = 1 << tile_width_log2(configuration.contents());
+  const ChipConfiguration& chip = configuration.chip;
+  if (chip.intersection_pool_size < width) {
+    throw InputError(
+        fmt::format("{}: chip.intersection_pool.size is {}; with {} contents it must be at least {}, the "
+                    "width of a tile",
+                    where, chip.intersection_pool_size, configuration.contents(), width));
+  }
+  if (chip.held_limit < width || chip.held_limit > chip.intersection_pool_size) {
+    throw InputError(
+        fmt::format("{}: chip.held_limit is {}; it must be from {}, the width of a tile of {} contents, to "
+                    "{}, which is chip.intersection_pool.size",
+                    where, chip.held_limit, width, configuration.contents(), chip.intersection_pool_size));
+  }
+}
+
+}  // namespace
 
 void check_configuration(const Configuration& configuration, const std::string& where) {
   static const std::regex kName(kNamePattern);
@@ -283,35 +363,48 @@ void check_configuration(const Configuration& configuration, const std::string& 
                   range_of(parameter, static_cast<AluType>(type), configuration));
     }
   }
+  check_chip(configuration, where);
 }
+
+namespace {
+
+template <size_t count>
+void put(Json& object, const Parameter (&rows)[count], std::string_view section, const Configuration& configuration) {
+  for (const Parameter& parameter : rows)
+    if (parameter.section == section)
+      object[std::string(parameter.key)] = json_of(parameter, parameter.get(configuration));
+}
+
+}  // namespace
 
 std::string to_json(const Configuration& configuration) {
   Json json;
   json["name"] = configuration.name;
-  const auto put = [&](Json& object, std::string_view section) {
-    for (const Parameter& parameter : parameter::kAll)
-      if (parameter.section == section)
-        object[std::string(parameter.key)] = json_of(parameter, parameter.get(configuration));
-  };
-  put(json, "");
+  put(json, parameter::kAll, "", configuration);
   for (size_t type = 0; type < kAluTypes; ++type) {
     Json& entry = json["alus"][std::string(kAluNames[type])];
     for (const AluParameter& parameter : parameter::kOfAlu)
       if (applies(parameter, static_cast<AluType>(type)))
         entry[std::string(parameter.key)] = configuration.alus[type].*parameter.value;
   }
-  for (const std::string_view section : sections()) put(json[std::string(section)], section);
+  for (const std::string_view section : sections())
+    put(json[std::string(section)], parameter::kAll, section, configuration);
+  Json& chip = json[std::string(kChip)];
+  for (const std::string_view section : chip_sections()) {
+    Json& object = section == kChip ? chip : chip[std::string(section.substr(kChip.size() + 1))];
+    put(object, parameter::kOfChip, section, configuration);
+  }
   return json.dump(2);
 }
 
 std::vector<std::pair<std::string, int>> verilog_parameters(const Configuration& configuration) {
   std::vector<std::pair<std::string, int>> parameters;
-  const auto put = [&](bool in_section) {
+  const auto add = [&](bool in_section) {
     for (const Parameter& parameter : parameter::kAll)
       if (parameter.section.empty() != in_section)
         parameters.emplace_back(verilog_name(parameter), parameter.get(configuration));
   };
-  put(false);
+  add(false);
   for (const AluParameter& parameter : parameter::kOfAlu) {
     for (size_t type = 0; type < kAluTypes; ++type) {
       if (kAluTable[type].timed_by_events()) continue;
@@ -319,7 +412,7 @@ std::vector<std::pair<std::string, int>> verilog_parameters(const Configuration&
                               configuration.alus[type].*parameter.value);
     }
   }
-  put(true);
+  add(true);
   return parameters;
 }
 

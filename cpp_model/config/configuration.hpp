@@ -1,5 +1,5 @@
-// The hardware configuration: one JSON file (configs/*.json) that the models, the Verilated build, the chip and
-// synthesis all read.
+// The configuration: one machine, from one JSON file (configs/*.json) that the models, the Verilated build, the chip
+// and synthesis all read.
 #pragma once
 
 #include <array>
@@ -21,6 +21,15 @@ struct AluConfiguration {
 #undef RAYPOOL_ROW
 };
 
+/// The chip around the unit; its defaults are the thesis' chip.
+struct ChipConfiguration {
+#define RAYPOOL_CHIP(name, type, value, ...) type name = value;
+#define RAYPOOL_PART(part, name, type, value, ...) type part##_##name = value;
+  RAYPOOL_CHIP_PARAMETERS(RAYPOOL_CHIP, RAYPOOL_PART)
+#undef RAYPOOL_CHIP
+#undef RAYPOOL_PART
+};
+
 /// One instance of each type, a task each cycle, as deep as the type's table row says.
 inline constexpr std::array<AluConfiguration, kAluTypes> default_alus() {
   std::array<AluConfiguration, kAluTypes> alus{};
@@ -31,15 +40,20 @@ inline constexpr std::array<AluConfiguration, kAluTypes> default_alus() {
 /// What the name of a configuration looks like, as a regular expression.
 inline constexpr const char* kNamePattern = "[A-Za-z0-9_.+-]{1,64}";
 
+/// log2 of an eye tile's width for `contents` threads (a power of two): tiles are square or twice as wide as high.
+int tile_width_log2(int contents);
+
 struct Configuration {
   std::string name = "8w8c";
   std::string source;                                             ///< what load_configuration was given; empty: nothing
+  std::vector<std::string> set;                                   ///< likewise
   std::array<AluConfiguration, kAluTypes> alus = default_alus();  ///< latency and depth: not of mem and ray
 #define RAYPOOL_UNIT(name, type, value, ...) type name = value;
 #define RAYPOOL_PART(part, name, type, value, ...) type part##_##name = value;
   RAYPOOL_PARAMETERS(RAYPOOL_UNIT, RAYPOOL_PART, RAYPOOL_UNIT)
 #undef RAYPOOL_UNIT
 #undef RAYPOOL_PART
+  ChipConfiguration chip;
 
   /// Whether instructions that need the feature are legal.
   bool has(Feature feature) const { return feature == Feature::Base || fma; }
@@ -50,7 +64,9 @@ struct Configuration {
 /// Reads a file; `name_or_path` is a path or the name of a file in the configs folder ("8w8c"). A name of the form
 /// NwMc that has no file gets the defaults with N warps and M lanes. Throws InputError naming file, key, value and
 /// allowed range; unknown keys are refused.
-Configuration load_configuration(const std::string& name_or_path);
+/// `set`: fields to change, "data_cache.bytes=4096" (config/settings.hpp); the configuration's name then tells them,
+/// unless they set it.
+Configuration load_configuration(const std::string& name_or_path, const std::vector<std::string>& set = {});
 
 /// Whether its name alone says what it is: a file of the project, or NwMc.
 bool is_built_in(const Configuration& configuration);

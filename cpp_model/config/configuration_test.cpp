@@ -104,6 +104,10 @@ TEST(Configuration, WrittenAndReadAgainIsTheSame) {
   configuration.subnormals = Subnormals::Flush;
   configuration.slow_unit = SlowUnit::Newton1;
   configuration.fma = true;
+  configuration.chip.ray_pool_size = 100;
+  configuration.chip.held_limit = 77;
+  configuration.chip.window_remedy = false;
+  configuration.chip.memory_latency = 60;
   const TemporaryFile file(to_json(configuration));
   const Configuration read = load_configuration(file.path());
   EXPECT_TRUE(equal(read, configuration));
@@ -134,8 +138,40 @@ TEST(Configuration, ErrorsNameKeyValueAndAllowedRange) {
             "arithmetic.slow_unit is \"fast\"; it must be one of exact, newton2, newton1, newton0");
   EXPECT_EQ(error_of(R"({"name": "a b"})"),
             "name is 'a b'; it must have 1 to 64 characters out of letters, digits and _ . + -");
+  EXPECT_EQ(error_of(R"({"chip": {"ray_pool": {"size": 0}}})"),
+            "chip.ray_pool.size is 0; it must be an integer from 1 to 1048576");
+  EXPECT_EQ(error_of(R"({"chip": {"policy": "magic"}})"),
+            "chip.policy is \"magic\"; it must be " + text_of(parameter::kOfChip[0].range));
+  EXPECT_EQ(error_of(R"({"chip": {"memory": 5}})"), "chip.memory must be an object in braces, not 5");
   EXPECT_EQ(error_of(R"({"alus": 3})"), "alus must be an object in braces, not 3");
   EXPECT_EQ(error_of("[]"), "the file must be an object in braces, not []");
+}
+
+TEST(Configuration, TheChipHoldsAsManyPixelsAsTheIntersectionPoolUnlessToldOtherwise) {
+  const auto held = [](const std::string& chip) {
+    const TemporaryFile file(R"({"chip": )" + chip + "}");
+    return load_configuration(file.path()).chip.held_limit;
+  };
+  EXPECT_EQ(Configuration().chip.held_limit, Configuration().chip.intersection_pool_size);
+  EXPECT_EQ(held(R"({"intersection_pool": {"size": 100}})"), 100);
+  EXPECT_EQ(held(R"({"intersection_pool": {"size": 100}, "held_limit": 50})"), 50);
+  EXPECT_EQ(error_of(R"({"chip": {"held_limit": 513}})"),
+            "chip.held_limit is 513; it must be from 8, the width of a tile of 64 contents, to 512, which is "
+            "chip.intersection_pool.size");
+  EXPECT_EQ(error_of(R"({"chip": {"held_limit": 7}})"),
+            "chip.held_limit is 7; it must be from 8, the width of a tile of 64 contents, to 512, which is "
+            "chip.intersection_pool.size");
+  EXPECT_EQ(error_of(R"({"warps": 32, "lanes": 32, "chip": {"intersection_pool": {"size": 31}}})"),
+            "chip.intersection_pool.size is 31; with 1024 contents it must be at least 32, the width of a tile");
+}
+
+TEST(Configuration, TheChipIsPartOfTheMachineAndNotOfItsVerilog) {
+  const TemporaryFile file(R"({"chip": {"ray_pool": {"size": 100}}})");
+  const Configuration configuration = load_configuration(file.path());
+  EXPECT_EQ(verilog_parameters(configuration), verilog_parameters(Configuration()));
+  EXPECT_FALSE(equal(configuration, Configuration()));
+  const TemporaryFile taken(R"({"name": "8w8c", "chip": {"ray_pool": {"size": 100}}})", "other.json");
+  EXPECT_THROW(load_configuration(taken.path()), InputError) << "another chip under a name that has a meaning";
 }
 
 TEST(Configuration, FewerNewtonStepsMakeSlwShallower) {
@@ -165,7 +201,7 @@ TEST(Configuration, UnknownKeysAreRefusedWithTheKnownOnes) {
   EXPECT_EQ(
       error_of(R"({"warp": 8})"),
       "unknown key warp; known here: name, warps, lanes, stack_depth, instruction_cache, data_cache, arithmetic, alus, "
-      "$schema");
+      "chip, $schema");
   EXPECT_EQ(error_of(R"({"alus": {"flt": {"counts": 1}}})"),
             "unknown key alus.flt.counts; known here: count, latency, depth");
   EXPECT_EQ(error_of(R"({"alus": {"ray": {"depth": 2}}})"), "unknown key alus.ray.depth; known here: count");
@@ -173,6 +209,11 @@ TEST(Configuration, UnknownKeysAreRefusedWithTheKnownOnes) {
 
 TEST(Configuration, AKeyByItsOldNameIsToldTheNewOne) {
   EXPECT_EQ(error_of(R"({"warps": 4, "cores": 2})"), "'cores' is called 'lanes': rename the key");
+}
+
+TEST(TileWidth, IsHalfTheContentsRoundedUp) {
+  const int expected[][2] = {{1, 0}, {2, 1}, {4, 1}, {8, 2}, {16, 2}, {32, 3}, {64, 3}, {128, 4}, {1024, 5}};
+  for (const auto& pair : expected) EXPECT_EQ(tile_width_log2(pair[0]), pair[1]) << pair[0];
 }
 
 TEST(Generated, CheckedInFilesAreThoseOfTheTableOfParameters) {
@@ -192,6 +233,19 @@ TEST(Parameters, HaveTheSameNameInFilesAndVerilog) {
     EXPECT_EQ(parameter.name, path);
     EXPECT_EQ(verilog_name(parameter), upper(path));
     EXPECT_TRUE(names.insert(verilog_name(parameter)).second) << path << " stands twice";
+  }
+}
+
+TEST(Parameters, TheChipsHaveTheSameNameInFilesAndCpp) {
+  std::set<std::string> names;
+  for (const Parameter& parameter : parameter::kOfChip) {
+    std::string path = path_of(parameter);
+    ASSERT_EQ(path.rfind("chip.", 0), 0u) << path;
+    path = path.substr(5);
+    std::replace(path.begin(), path.end(), '.', '_');
+    EXPECT_EQ(parameter.name, path);
+    EXPECT_TRUE(names.insert(path).second) << path << " stands twice";
+    EXPECT_TRUE(parameter.range.has(parameter.get(Configuration()))) << path;
   }
 }
 

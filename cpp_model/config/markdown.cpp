@@ -20,6 +20,19 @@ way to the module that uses it, and adds one.
 | --- | --- | --- | --- | --- |
 )";
 
+constexpr const char* kChip = R"(
+What stands around the unit, which [chip.md](chip.md) describes, has its own. None of them is in the Verilog, so
+machines that differ in nothing else share a Verilated unit. The defaults are the thesis' chip.
+
+| in the file | values | default | what it is |
+| --- | --- | --- | --- |
+)";
+
+constexpr const char* kChipRules = R"(
+A row of an eye tile, 2^ceil(k/2) pixels for 2^k contents, must fit into `chip.held_limit`, and that into
+`chip.intersection_pool.size`, which is its default.
+)";
+
 constexpr const char* kAlus = R"(
 Each ALU type but mem and ray, which stand once and are timed by events, has three more, the least depth being also
 the default:
@@ -33,7 +46,8 @@ constexpr const char* kDepths = R"(
 | --- | --- |
 )";
 
-std::string values_text(const Parameter& parameter) {
+/// `in_verilog`: with the number by which the Verilog knows a name.
+std::string values_text(const Parameter& parameter, bool in_verilog) {
   const Range& range = parameter.range;
   switch (range.form) {
     case Range::Form::Integer:
@@ -45,8 +59,10 @@ std::string values_text(const Parameter& parameter) {
       break;
   }
   std::vector<std::string> values;
-  for (const int value : values_of(range))
-    values.push_back(fmt::format("{} = {}", json_of(parameter, value).dump(), value));
+  for (const int value : values_of(range)) {
+    const std::string text = json_of(parameter, value).dump();
+    values.push_back(in_verilog ? fmt::format("{} = {}", text, value) : text);
+  }
   return fmt::format("{}", fmt::join(values, ", "));
 }
 
@@ -57,7 +73,7 @@ std::string parameters_markdown() {
   const Configuration defaults;
   for (const Parameter& parameter : parameter::kAll) {
     text += fmt::format("| {} | {} | {} | {} | {} |\n", path_of(parameter), verilog_name(parameter),
-                        values_text(parameter), text_of(parameter, parameter.get(defaults)), parameter.meaning);
+                        values_text(parameter, true), text_of(parameter, parameter.get(defaults)), parameter.meaning);
   }
   text += kAlus;
   for (const AluParameter& parameter : parameter::kOfAlu) {
@@ -82,7 +98,12 @@ std::string parameters_markdown() {
     }
     text += " |\n";
   }
-  return text;
+  text += kChip;
+  for (const Parameter& parameter : parameter::kOfChip) {
+    text += fmt::format("| {} | {} | {} | {} |\n", path_of(parameter), values_text(parameter, false),
+                        text_of(parameter, parameter.get(defaults)), parameter.meaning);
+  }
+  return text + kChipRules;
 }
 
 }  // namespace raypool

@@ -19,14 +19,23 @@ std::string verilog_name(AluType type, const AluParameter& parameter) {
   return fmt::format("{}_{}", verilog_name(type), upper(parameter.key));
 }
 
-std::vector<std::string_view> sections() {
+namespace {
+
+template <size_t count>
+std::vector<std::string_view> sections_of(const Parameter (&rows)[count]) {
   std::vector<std::string_view> names;
-  for (const Parameter& parameter : parameter::kAll) {
+  for (const Parameter& parameter : rows) {
     if (!parameter.section.empty() && (names.empty() || names.back() != parameter.section))
       names.push_back(parameter.section);
   }
   return names;
 }
+
+}  // namespace
+
+std::vector<std::string_view> sections() { return sections_of(parameter::kAll); }
+
+std::vector<std::string_view> chip_sections() { return sections_of(parameter::kOfChip); }
 
 bool applies(const AluParameter& parameter, AluType type) {
   return parameter.value == &AluConfiguration::count || !alu_info(type).timed_by_events();

@@ -12,9 +12,9 @@ namespace raypool {
 
 /// A row of the table. Values are integers here, as in the Verilog.
 struct Parameter {
-  std::string_view section;  ///< the object of a file in which it stands; empty: the file itself
+  std::string_view section;  ///< the object of a file in which it stands, "chip.memory"; empty: the file itself
   std::string_view key;      ///< in that object
-  std::string_view name;     ///< in C++; in upper case in the Verilog
+  std::string_view name;     ///< in C++; in upper case in the Verilog, where the chip has none
   bool of_part;              ///< modules of the part `section` take it
   int (*get)(const Configuration& configuration);
   void (*set)(Configuration& configuration, int value);
@@ -49,6 +49,22 @@ inline constexpr Parameter kAll[] = {
 #undef RAYPOOL_ROW
 };
 
+/// Of the chip.
+inline constexpr Parameter kOfChip[] = {
+// clang-format off
+#define RAYPOOL_ROW(section, key, name, type, range, meaning) \
+  {section, key, #name, false, [](const Configuration& c) { return static_cast<int>(c.chip.name); }, \
+   [](Configuration& c, int value) { c.chip.name = static_cast<type>(value); }, range, all(), meaning},
+#define RAYPOOL_CHIP(name, type, value, ...) RAYPOOL_ROW("chip", #name, name, type, __VA_ARGS__)
+#define RAYPOOL_PART(part, name, type, value, ...) \
+  RAYPOOL_ROW("chip." #part, #name, part##_##name, type, __VA_ARGS__)
+    // clang-format on
+    RAYPOOL_CHIP_PARAMETERS(RAYPOOL_CHIP, RAYPOOL_PART)
+#undef RAYPOOL_PART
+#undef RAYPOOL_CHIP
+#undef RAYPOOL_ROW
+};
+
 inline constexpr AluParameter kOfAlu[] = {
 #define RAYPOOL_ROW(name, value, range, tried, meaning) {#name, &AluConfiguration::name, range, tried, meaning},
     RAYPOOL_ALU_PARAMETERS(RAYPOOL_ROW)
@@ -62,8 +78,10 @@ std::string path_of(const Parameter& parameter);
 std::string verilog_name(const Parameter& parameter);
 std::string verilog_name(AluType type, const AluParameter& parameter);
 
-/// The objects of a file that hold parameters, in the order of the table.
+/// The objects of a file that hold parameters of the unit, in the order of the table.
 std::vector<std::string_view> sections();
+/// Those of its chip: "chip", "chip.memory", ...
+std::vector<std::string_view> chip_sections();
 
 /// Whether the type has it: those that are timed by events stand once, and have no other.
 bool applies(const AluParameter& parameter, AluType type);

@@ -1,6 +1,6 @@
-// The one table of a machine's parameters. Members of Configuration, what a configuration file may say and its schema,
-// docs/parameters.md, parameter lists of the Verilog and their checks, raypool.core and the configurations that tests
-// walk are derived from it. docs/where.md adds a parameter.
+// The one table of a machine's parameters: of the compute unit, and of the chip around it. Members of Configuration,
+// what a configuration file may say and its schema, docs/parameters.md, parameter lists of the Verilog and their
+// checks, raypool.core and the configurations that tests walk are derived from it. docs/where.md adds a parameter.
 #pragma once
 
 #include <array>
@@ -12,6 +12,9 @@ namespace raypool {
 
 enum class Subnormals : uint8_t { Ieee = 0, Flush = 1 };
 enum class SlowUnit : uint8_t { Exact = 0, Newton2 = 1, Newton1 = 2, Newton0 = 3 };
+/// What chooses the next kernel, and what times the traverser. Each name has its class in sim/chip/.
+enum class PolicyName : uint8_t { Thesis = 0 };
+enum class TraverserName : uint8_t { Static = 0 };
 
 // A row: [part,] name, type in C++, default, values it may have, values that tests try, what it is.
 //   UNIT(name, ...)        of the whole unit: `name` in configuration files and in C++, NAME in the Verilog
@@ -34,6 +37,35 @@ enum class SlowUnit : uint8_t { Exact = 0, Newton2 = 1, Newton1 = 2, Newton0 = 3
   ARITHMETIC(fma, bool, false, on_or_off(), all(), "fused multiply-add: the instruction ffma") \
   /* The table ends here: the backslash above lets a row follow it. */
 
+// The chip around the unit: nothing of it is in the Verilog.
+//   CHIP(name, ...)              `chip.name` in files, chip.name in C++
+//   CHIP_PART(part, name, ...)   `chip.part.name` in files, chip.part_name in C++
+// A beat is 128 bits, the width of the unit's ports: so 2 cycles a beat is a port of half that width.
+#define RAYPOOL_CHIP_PARAMETERS(CHIP, CHIP_PART) \
+  CHIP(policy, PolicyName, PolicyName::Thesis, names("thesis"), "what chooses the next kernel") \
+  CHIP(window_remedy, bool, true, on_or_off(), "eye rays of further tiles are cast while earlier ones are under way") \
+  CHIP(launch_ahead, bool, true, on_or_off(), "a full kernel is launched behind a running one") \
+  CHIP(held_limit, int, 512, integers(1, 1 << 20), "unfinished pixels at a time") \
+  CHIP(traverser, TraverserName, TraverserName::Static, names("static"), "timing of the traverser") \
+  CHIP_PART(thresholds, rays, int, 48, integers(0, 1 << 20), \
+            "rays in the ray pool above which no more are cast, for 64 contents and one unit") \
+  CHIP_PART(thresholds, intersections, int, 8, integers(0, 1 << 20), \
+            "intersections above which a kernel takes some, for 64 contents") \
+  CHIP_PART(static_traverser, batch, int, 64, integers(1, 4096), "rays traced when a kernel ends, or after a stall") \
+  CHIP_PART(static_traverser, stall_cycles, int, 1000, integers(1, 1 << 20), \
+            "cycles in which the shader stalls until a batch is traced") \
+  CHIP_PART(ray_pool, size, int, 512, integers(1, 1 << 20), "rays that it holds") \
+  CHIP_PART(ray_pool, overhead, int, 2, integers(1, 64), "cycles that its port takes for a ray besides the 3 beats") \
+  CHIP_PART(ray_pool, cycles_per_beat, int, 1, integers(1, 64), "cycles of its port for a beat of 128 bits") \
+  CHIP_PART(intersection_pool, size, int, 512, integers(1, 1 << 20), "intersections of each kind that it holds") \
+  CHIP_PART(intersection_pool, overhead, int, 2, integers(1, 64), \
+            "cycles that its port takes for an intersection besides the 6 beats") \
+  CHIP_PART(intersection_pool, cycles_per_beat, int, 1, integers(1, 64), "cycles of its port for a beat of 128 bits") \
+  CHIP_PART(memory, latency, int, 120, integers(1, 10000), "cycles from a read's service to its last beat") \
+  CHIP_PART(memory, cycles_per_beat, int, 2, integers(1, 64), "cycles of its port for a beat of 128 bits") \
+  CHIP_PART(memory, queue, int, 8, integers(1, 64), "requests that wait at its port") \
+  /* The table ends here: the backslash above lets a row follow it. */
+
 // What each ALU type has, but for mem and ray, which stand once and are timed by events: `alus.int.count` in files,
 // alu(AluType::Int).count in C++, INT_COUNT in the Verilog. A depth begins at least_depth(), which is also its default.
 #define RAYPOOL_ALU_PARAMETERS(ROW) \
@@ -48,7 +80,7 @@ struct Range {
   enum class Form : uint8_t { Integer, PowerOfTwo, Name, OnOff };
   Form form;
   int least, greatest;
-  std::array<std::string_view, 4> names{};  ///< of 0, 1, ... of form Name
+  std::array<std::string_view, 8> names{};  ///< of 0, 1, ... of form Name
 
   constexpr bool has(int value) const {
     return value >= least && value <= greatest && (form != Form::PowerOfTwo || (value & (value - 1)) == 0);

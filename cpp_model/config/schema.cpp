@@ -38,13 +38,27 @@ Json object_schema(const std::string& description) {
           {"properties", Json::object()}};
 }
 
-Json schema_of_section(std::string_view section) {
-  std::string words(section);
+/// `key`: of the object; `section`: the one of the table that its rows name.
+template <size_t count>
+Json schema_of_section(std::string_view key, const Parameter (&rows)[count], std::string_view section) {
+  std::string words(key);
   for (char& c : words)
     if (c == '_') c = ' ';
   Json schema = object_schema("of the " + words);
-  for (const Parameter& parameter : parameter::kAll)
+  for (const Parameter& parameter : rows)
     if (parameter.section == section) schema["properties"][std::string(parameter.key)] = schema_of(parameter);
+  return schema;
+}
+
+Json schema_of_chip() {
+  const std::vector<std::string_view> sections = chip_sections();
+  const std::string_view chip = sections.front();
+  Json schema = schema_of_section(chip, parameter::kOfChip, chip);
+  for (const std::string_view section : sections) {
+    if (section == chip) continue;
+    const std::string_view key = section.substr(chip.size() + 1);
+    schema["properties"][std::string(key)] = schema_of_section(key, parameter::kOfChip, section);
+  }
   return schema;
 }
 
@@ -92,7 +106,9 @@ std::string configuration_schema() {
   keys["alus"] = object_schema("ALU types");
   for (size_t type = 0; type < kAluTypes; ++type)
     keys["alus"]["properties"][std::string(kAluNames[type])] = alu_schema(static_cast<AluType>(type));
-  for (const std::string_view section : sections()) keys[std::string(section)] = schema_of_section(section);
+  for (const std::string_view section : sections())
+    keys[std::string(section)] = schema_of_section(section, parameter::kAll, section);
+  keys[std::string(chip_sections().front())] = schema_of_chip();
 
   for (const DepthRule& rule : depth_rules()) schema["allOf"].push_back(schema_of(rule));
   Json whole = {{"$schema", "http://json-schema.org/draft-07/schema#"}, {"title", "raypool configuration"}};

@@ -6,8 +6,13 @@ import shutil
 import sys
 import time
 
-from . import flow, growth, plots, power, prove, replay, report, timing
+from . import elaborate, flow, growth, plots, power, prove, replay, report, timing
 from .errors import SynthError, say, warn
+
+
+def config_of(arguments):
+    folder = os.path.join(flow.BUILD, "configurations")
+    return elaborate.with_fields(arguments.config, arguments.set, folder) if arguments.set else arguments.config
 
 
 def options_of(arguments):
@@ -18,7 +23,7 @@ def options_of(arguments):
     if clock is not None and not 0.0 < clock < 1e6:
         raise SynthError(f"CLOCK={arguments.clock}: the period in ns")
     return flow.Options(
-        config=arguments.config,
+        config=config_of(arguments),
         liberty=arguments.liberty or None,
         clock_ns=clock,
         memories=arguments.memories or "macros",
@@ -34,8 +39,9 @@ def store(result, path):
 
 def synth_command(arguments):
     against = report.load(arguments.against) if arguments.against else None
-    run = report.load_run(arguments.run, arguments.config) if arguments.run else None
-    design = flow.open_design(options_of(arguments))
+    options = options_of(arguments)
+    run = report.load_run(arguments.run, options.config) if arguments.run else None
+    design = flow.open_design(options)
     path = os.path.join(design.folder, "report.json")
     key = flow.digest(design)
     begin = time.time()
@@ -140,6 +146,7 @@ def parser():
         command = commands.add_parser(name)
         command.set_defaults(function=function)
         command.add_argument("--config", default="8w8c", help="as in raypool: a name, NwMc, or a JSON file")
+        command.add_argument("--set", action="append", metavar="FIELD=VALUE", help="change fields of it, as in raypool")
         command.add_argument("--liberty", help="cell library instead of the default one")
         command.add_argument("--clock", help="ns; default from the library's set-up")
         command.add_argument("--memories", help="macros (default) or flops")

@@ -61,14 +61,28 @@ def raypool():
     return program
 
 
-def configuration(name):
-    """The Verilog parameters of a configuration, as raypool says them."""
-    done = subprocess.run(
-        [raypool(), "config", name, "--verilog-parameters"], capture_output=True, text=True, check=False
-    )
+def ask(*arguments):
+    """What raypool config prints."""
+    done = subprocess.run([raypool(), "config", *arguments], capture_output=True, text=True, check=False)
     if done.returncode != 0:
         raise SynthError((done.stderr or done.stdout).strip())
-    return dict(line.split("=") for line in done.stdout.split())
+    return done.stdout
+
+
+def configuration(name):
+    """The Verilog parameters of a configuration, as raypool says them."""
+    return dict(line.split("=") for line in ask(name, "--verilog-parameters").split())
+
+
+def with_fields(name, fields, folder):
+    """A file of the configuration with these fields set, under the name that raypool gives it."""
+    text = ask(name, *(word for field in fields for word in ("--set", field)), "--json")
+    os.makedirs(folder, exist_ok=True)
+    path = os.path.join(folder, json.loads(text)["name"] + ".json")
+    with open(path + ".new", "w", encoding="utf-8") as file:
+        file.write(text)
+    os.rename(path + ".new", path)
+    return path
 
 
 def tree(parameters, folder, top="compute_unit"):

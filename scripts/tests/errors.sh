@@ -83,7 +83,15 @@ refuses_sim "depth 0" "depth.*1" --depth 0
 refuses_sim "3 compute units" "3" --units 3
 refuses_sim "unknown engine" "native, functional, model, rtl or lockstep" --engine spice
 refuses_sim "modules of the engine that has no chip" "engine native has no chip" --engine native --modules
-refuses_sim "unknown traverser" "static" --traverser quick
+refuses_sim "unknown traverser" "chip.traverser must be one of static" --traverser quick
+refuses_sim "unknown policy" "chip.policy must be one of thesis" --set chip.policy=magic
+refuses_sim "unknown field" "no field 'flt.count'; near to it are alus.flt.count" --set flt.count=2
+refuses_sim "value of another type" "warps must be a power of two" --set warps=eight
+refuses_sim "set value out of range" "8w8c.json with --set warps=3: warps is 3" --set warps=3
+refuses_sim "field without a value" "write FIELD=VALUE" --set warps
+refuses_sim "impossible chip" "chip.held_limit is 513" --set chip.held_limit=513
+refuses_sim "--set for a unit that is not built" "make unit CONFIG=4w4c SET=\"stack_depth=5\"" --engine rtl \
+  --config 4w4c --set stack_depth=5
 refuses_sim "engine without a built unit" "make unit" --engine rtl --unit-library "$folder/none.so"
 refuses_sim "results folder that is a file" "good.obj" --out "$folder/good.obj"
 cosim=("$raypool" cosim --programs 2 --save "$folder/saved" --quiet)

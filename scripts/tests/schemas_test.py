@@ -82,6 +82,11 @@ class Agreement(unittest.TestCase):
             for cache in ("instruction", "data")
             for value in (256, 512, 1000, 65536, 131072)
         ]
+        documents += [{"chip": chip} for chip in (3, {}, {"pool": 1}, {"ray_pool": 3}, {"ray_pool": {"bytes": 1}})]
+        documents += [{"chip": {"policy": value}} for value in ("thesis", "magic", 0)]
+        documents += [{"chip": {"window_remedy": value}} for value in (True, False, 0, "true")]
+        documents += [{"chip": {"ray_pool": {"size": value}}} for value in (0, 1, 1 << 20, (1 << 20) + 1, "1", 1.5)]
+        documents += [{"chip": {"memory": {"latency": value}}} for value in (0, 1, 10000, 10001)]
         documents += [{"data_cache": {"mshrs": value}} for value in (0, 1, 16, 17)] + [{"data_cache": {"lines": 1}}]
         for alu in json.loads(raypool("config", "8w8c", "--json").stdout)["alus"]:
             ranges = {"count": (0, 1, 2, 4, 5), "latency": (0, 1, 16, 17), "depth": (*range(14), 32, 33)}

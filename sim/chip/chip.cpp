@@ -15,7 +15,8 @@ namespace {
 
 /// The chip with its own memory.
 struct System {
-  explicit System(const ChipOptions& options) : chip("chip", options), memory("memory", *options.memory) {
+  explicit System(const ChipOptions& options)
+      : chip("chip", options), memory("memory", *options.memory, options.configuration.chip.memory_latency) {
     chip.memory.bind(memory.socket);
   }
 

@@ -19,8 +19,6 @@
 
 namespace raypool {
 
-inline constexpr int kPoolPackages = 512;  ///< rays, and intersections of each kind, that the pools hold
-
 struct ChipProgress {
   double pixels_done = 0;  ///< share of the image's pixels of which no ray is left, 0 .. 1
   uint64_t cycles = 0;
@@ -28,7 +26,7 @@ struct ChipProgress {
 };
 
 struct ChipOptions {
-  Configuration configuration;
+  Configuration configuration;    ///< of the unit and of the chip
   ComputeUnit* device = nullptr;  ///< fits `configuration`; run_chip resets it and leaves its counters to be read
   Memory* memory = nullptr;       ///< program and materials
   uint32_t program_length = 0;    ///< instructions, from address 0
@@ -41,13 +39,6 @@ struct ChipOptions {
   RayTracer* tracer = nullptr;
   FrameSink* frame = nullptr;
 
-  std::string traverser = "static";  ///< timing of the traverser
-  std::string policy = "thesis";     ///< which kernel the controller launches next
-  bool window_remedy = true;         ///< false: eye rays only when every earlier one is finished
-  bool launch_ahead = true;          ///< false: a unit's next kernel is launched only when the previous one has ended
-  int held_limit = kPoolPackages;    ///< unfinished pixels at a time, from a tile's width to intersection_packages
-  int ray_packages = kPoolPackages;
-  int intersection_packages = kPoolPackages;          ///< of each kind
   std::function<void(const ChipProgress&)> progress;  ///< called now and then, and at the end
   uint64_t watchdog_cycles = 100'000;  ///< this long without a retired instruction or a transfer is an error; 0: never
   uint64_t cycle_limit = 0;            ///< give up after this many cycles; 0: never

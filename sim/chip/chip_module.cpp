@@ -25,9 +25,7 @@ const ChipOptions& checked(const ChipOptions& options) {
   require_range("image width", options.width, 1, 65535);
   require_range("image height", options.height, 1, 65535);
   require_range("depth", options.depth, 1, kLargestDepth);
-  require_range("ray pool's packages", options.ray_packages, 1, 1 << 20);
-  require_range("intersection pool's packages", options.intersection_packages, tile_width(options), 1 << 20);
-  require_range("limit of held pixels", options.held_limit, tile_width(options), options.intersection_packages);
+  check_configuration(options.configuration, "configuration " + options.configuration.name);
   return options;
 }
 
@@ -37,11 +35,13 @@ Chip::Chip(const sc_core::sc_module_name& name, const ChipOptions& options)
     : sc_module(name),
       options_(checked(options)),
       ledger_("pixel_ledger", static_cast<int>(options.device->units()), options.width, options.height),
-      rays_("ray_pool", options.ray_packages, options.depth),
-      intersections_("intersection_pool", options.intersection_packages),
+      memory_port_("memory_port", options.configuration.chip),
+      rays_("ray_pool", options.configuration.chip, options.depth),
+      intersections_("intersection_pool", options.configuration.chip),
       frame_("frame_port", *options.frame),
       controller_("controller", options_),
-      traverser_(make_traverser(options.traverser, *options.tracer, static_cast<int>(options.device->units()))),
+      traverser_(
+          make_traverser(options.configuration.chip, *options.tracer, static_cast<int>(options.device->units()))),
       device_("device_host", *options.device),
       monitor_("monitor", {options.watchdog_cycles, options.cycle_limit, true, static_cast<bool>(options.progress)}) {
   memory_port_.clock(clock_.now);

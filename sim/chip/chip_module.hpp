@@ -47,7 +47,7 @@ class Chip : public sc_core::sc_module, public WatchedIf {
   const ChipOptions options_;
   ChipClock clock_{"clock"};
   PixelLedger ledger_;
-  MemoryPort memory_port_{"memory_port"};
+  MemoryPort memory_port_;
   RayPool rays_;
   IntersectionPool intersections_;
   FramePort frame_;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "chip/test_scripted_unit.hpp"
@@ -65,7 +66,7 @@ struct FrameRun {
     EXPECT_EQ(result.dropped_depth, expected.beyond);
     EXPECT_EQ(result.contributions, expected.contributions.size());
     EXPECT_EQ(frame.contributions, expected.contributions);
-    EXPECT_LE(result.held_peak, static_cast<uint32_t>(options.held_limit));
+    EXPECT_LE(result.held_peak, static_cast<uint32_t>(options.configuration.chip.held_limit));
     EXPECT_LE(result.rays_pool.peak, result.rays_pool.capacity);
     EXPECT_LE(result.normal_pool.peak, result.normal_pool.capacity);
     EXPECT_LE(result.shadow_pool.peak, result.shadow_pool.capacity);
@@ -104,8 +105,8 @@ TEST_P(EveryShape, SurvivesFullPools) {
       FrameRun run(shape.warps, shape.lanes, shape.units, rays == 1 ? 11 : 31, 23, 6, 30);
       run.world.misses = run.world.blocked = 0;
       run.world.shadows = run.world.mirrors = 16;
-      run.options.intersection_packages = run.options.held_limit = packages;
-      run.options.ray_packages = rays;
+      run.options.configuration.chip.intersection_pool_size = run.options.configuration.chip.held_limit = packages;
+      run.options.configuration.chip.ray_pool_size = rays;
       run.expect_conserved(run.go());
     }
   }
@@ -115,8 +116,8 @@ TEST_P(EveryShape, DrawsWithoutTheRemedyAndWithoutLaunchingAhead) {
   const Shape shape = GetParam();
   for (const bool remedy : {false, true}) {
     FrameRun run(shape.warps, shape.lanes, shape.units, 29, 23, 3);
-    run.options.window_remedy = remedy;
-    run.options.launch_ahead = false;
+    run.options.configuration.chip.window_remedy = remedy;
+    run.options.configuration.chip.launch_ahead = false;
     run.expect_conserved(run.go());
   }
 }
@@ -126,6 +127,24 @@ INSTANTIATE_TEST_SUITE_P(Chip, EveryShape,
                                          Shape{4, 4, 4}, Shape{1, 2, 4}, Shape{8, 8, 1}, Shape{8, 8, 2}, Shape{8, 8, 4},
                                          Shape{16, 32, 2}, Shape{32, 32, 1}, Shape{32, 32, 2}, Shape{32, 32, 4}),
                          shape_name);
+
+TEST_P(EveryShape, DrawsWithAnyPortsThresholdsAndBatches) {
+  const Shape shape = GetParam();
+  for (const auto& [overhead, per_beat] : {std::pair{1, 1}, {1, 2}, {7, 3}}) {
+    for (const int threshold : {0, 1, 1000}) {
+      SCOPED_TRACE(testing::Message() << overhead << " cycles, " << per_beat << " a beat, thresholds " << threshold);
+      FrameRun run(shape.warps, shape.lanes, shape.units, 19, 11, 4);
+      ChipConfiguration& chip = run.options.configuration.chip;
+      chip.ray_pool_overhead = chip.intersection_pool_overhead = overhead;
+      chip.ray_pool_cycles_per_beat = chip.intersection_pool_cycles_per_beat = per_beat;
+      chip.memory_cycles_per_beat = per_beat;
+      chip.thresholds_rays = chip.thresholds_intersections = threshold;
+      chip.static_traverser_batch = 1 + std::min(threshold, 100);
+      chip.static_traverser_stall_cycles = 10;
+      run.expect_conserved(run.go());
+    }
+  }
+}
 
 TEST(Chip, SurvivesPoolsSmallerThanAKernel) {
   for (const int units : {1, 2, 4}) {
@@ -137,8 +156,8 @@ TEST(Chip, SurvivesPoolsSmallerThanAKernel) {
           FrameRun run(8, 16, units, width, 9, 9, 30);
           run.world.misses = run.world.blocked = 0;
           run.world.shadows = run.world.mirrors = 16;
-          run.options.intersection_packages = run.options.held_limit = packages;
-          run.options.ray_packages = rays;
+          run.options.configuration.chip.intersection_pool_size = run.options.configuration.chip.held_limit = packages;
+          run.options.configuration.chip.ray_pool_size = rays;
           run.expect_conserved(run.go());
         }
       }
@@ -168,7 +187,7 @@ TEST(Chip, GivesTheSameResultTwice) {
 TEST(Chip, TakesRaysFromTheWindowWithTheRemedy) {
   const auto cycles = [](bool remedy) {
     FrameRun run(8, 8, 1, 64, 64, 1, 200);
-    run.options.window_remedy = remedy;
+    run.options.configuration.chip.window_remedy = remedy;
     return run.go().cycles;
   };
   EXPECT_LT(cycles(true), cycles(false));
@@ -176,7 +195,8 @@ TEST(Chip, TakesRaysFromTheWindowWithTheRemedy) {
 
 TEST(Chip, HoldsNoMorePixelsThanAllowed) {
   FrameRun run(8, 8, 2, 96, 96, 3);
-  run.options.held_limit = 100;  // one tile of 64, and another as soon as 28 pixels of it are finished
+  run.options.configuration.chip.held_limit =
+      100;  // one tile of 64, and another as soon as 28 pixels of it are finished
   const ChipResult result = run.go();
   run.expect_conserved(result);
   EXPECT_GE(result.held_peak, 64u);
@@ -296,10 +316,8 @@ TEST(Chip, RefusesOptionsOutOfRange) {
   refuses([](FrameRun& run) { run.options.height = 65536; }, "height");
   refuses([](FrameRun& run) { run.options.depth = 0; }, "depth");
   refuses([](FrameRun& run) { run.options.depth = 255; }, "depth");
-  refuses([](FrameRun& run) { run.options.traverser = "magic"; }, "traverser");
-  refuses([](FrameRun& run) { run.options.policy = "magic"; }, "policy");
-  refuses([](FrameRun& run) { run.options.held_limit = 7; }, "held limit below a tile's width");
-  refuses([](FrameRun& run) { run.options.held_limit = 513; }, "held limit above the pool");
+  refuses([](FrameRun& run) { run.options.configuration.chip.held_limit = 7; }, "held limit below a tile's width");
+  refuses([](FrameRun& run) { run.options.configuration.chip.held_limit = 513; }, "held limit above the pool");
 }
 
 }  // namespace

@@ -11,16 +11,19 @@ namespace raypool::chip {
 Controller::Controller(const sc_core::sc_module_name& name, const ChipOptions& options)
     : sc_module(name),
       options_(options),
+      chip_(options.configuration.chip),
       secondary_(secondary_kernel(options.depth, options.reflections)),
       tile_width_(1 << tile_width_log2(options.configuration.contents())),
       given_(options.device->units()),
       ended_(options.device->units()) {
   const int contents = options.configuration.contents();
   // A tile that would hold more pixels than allowed is cut into bands of whole rows.
-  tile_height_ = std::min(contents, options.held_limit) / tile_width_;
-  policy_ = make_policy(options.policy, {static_cast<uint32_t>(contents), options.device->units(),
-                                         static_cast<uint32_t>(options.ray_packages),
-                                         static_cast<uint32_t>(options.intersection_packages)});
+  tile_height_ = std::min(contents, chip_.held_limit) / tile_width_;
+  policy_ =
+      make_policy(chip_.policy,
+                  {static_cast<uint32_t>(contents), options.device->units(), static_cast<uint32_t>(chip_.ray_pool_size),
+                   static_cast<uint32_t>(chip_.intersection_pool_size), static_cast<uint32_t>(chip_.thresholds_rays),
+                   static_cast<uint32_t>(chip_.thresholds_intersections)});
   decisions.bind(*this);
   kernel_events.bind(*this);
   SC_METHOD(decide);
@@ -52,12 +55,12 @@ uint32_t Controller::pixels_of_next_tile() const {
 
 bool Controller::eye_possible() const {
   if (tile_y_ >= options_.height) return false;
-  if (!options_.window_remedy && ledger->held() > 0 && round_ == 0) return false;
-  return ledger->held() + pixels_of_next_tile() <= static_cast<uint32_t>(options_.held_limit);
+  if (!chip_.window_remedy && ledger->held() > 0 && round_ == 0) return false;
+  return ledger->held() + pixels_of_next_tile() <= static_cast<uint32_t>(chip_.held_limit);
 }
 
 uint32_t Controller::secondary_room() const {
-  const auto limit = static_cast<uint32_t>(options_.intersection_packages + options_.ray_packages - 1);
+  const auto limit = static_cast<uint32_t>(chip_.intersection_pool_size + chip_.ray_pool_size - 1);
   const uint32_t shadows =
       rays->shadow_rays() + ledger->shadow_rays_to_come() + intersections->available(ImportKind::Shadow);
   return shadows < limit ? limit - shadows : 0;
@@ -80,7 +83,7 @@ void Controller::decide() {
     if (end_if_finished()) return;
     if (!device->can_launch()) return;
     const bool ahead = device->busy(device->next_unit());
-    if (ahead && !options_.launch_ahead) return;
+    if (ahead && !chip_.launch_ahead) return;
     const Choice choice = policy_->choose(view(ahead));
     if (choice.kind != Choice::Kind::Halt) launch(choice);
   });
@@ -151,8 +154,8 @@ std::string Controller::describe() const {
       "rays, {} more may "
       "come; intersection pool {} normal and {} shadow of {} each, {} and {} of them not promised to a kernel",
       tile_x_, tile_y_, options_.width, options_.height, ledger->finished(), ledger->held(), rays->size(),
-      options_.ray_packages, rays->shadow_rays(), ledger->rays_to_come(), intersections->size(ImportKind::Normal),
-      intersections->size(ImportKind::Shadow), options_.intersection_packages,
+      chip_.ray_pool_size, rays->shadow_rays(), ledger->rays_to_come(), intersections->size(ImportKind::Normal),
+      intersections->size(ImportKind::Shadow), chip_.intersection_pool_size,
       intersections->available(ImportKind::Normal), intersections->available(ImportKind::Shadow));
 }
 

@@ -70,6 +70,7 @@ class Controller : public sc_core::sc_module, public DecisionIf, public KernelEv
   uint32_t pixels_of_next_tile() const;
 
   const ChipOptions& options_;
+  const ChipConfiguration& chip_;
   std::unique_ptr<KernelPolicy> policy_;
   RayKernel secondary_;
   sc_core::sc_event decide_;

@@ -1,5 +1,5 @@
-// The memory that a chip has unless another one is bound to its socket: whatever it is asked, a read is over 120 cycles
-// later.
+// The memory that a chip has unless another one is bound to its socket: whatever it is asked, a read is over so many
+// cycles later.
 #pragma once
 
 #include <tlm_utils/simple_target_socket.h>
@@ -12,12 +12,10 @@
 
 namespace raypool::chip {
 
-inline constexpr uint64_t kReadLatency = 120;  ///< cycles from served to last beat
-
 class FixedLatencyMemory : public sc_core::sc_module {
  public:
-  /// `memory` must outlive it.
-  FixedLatencyMemory(const sc_core::sc_module_name& name, Memory& memory);
+  /// `memory` must outlive it. `latency`: cycles from served to last beat.
+  FixedLatencyMemory(const sc_core::sc_module_name& name, Memory& memory, int latency);
 
   tlm_utils::simple_target_socket<FixedLatencyMemory, kMemoryBits> socket{"socket"};
 

@@ -38,8 +38,8 @@ class MemoryIf : virtual public sc_core::sc_interface {
 /// The ray pool's port, for the device.
 class RayExportIf : virtual public sc_core::sc_interface {
  public:
-  /// Cycle from which on beats of a ray are taken, one a cycle; kNever: not while nobody wants to give one, or the pool
-  /// is full.
+  /// Cycle from which on the next beat of a ray is taken; kNever: not while nobody wants to give one, or the pool is
+  /// full.
   uint64_t beats_from() const { return beats_from_; }
   /// A beat is offered that is not taken in this cycle. May be said again.
   virtual void want() = 0;

@@ -5,8 +5,12 @@
 
 namespace raypool::chip {
 
-IntersectionPool::IntersectionPool(const sc_core::sc_module_name& name, int capacity)
-    : sc_module(name), capacity_(static_cast<size_t>(capacity)) {
+IntersectionPool::IntersectionPool(const sc_core::sc_module_name& name, const ChipConfiguration& chip)
+    : sc_module(name),
+      capacity_(static_cast<size_t>(chip.intersection_pool_size)),
+      cycles_per_beat_(static_cast<uint64_t>(chip.intersection_pool_cycles_per_beat)),
+      service_cycles_(static_cast<uint64_t>(chip.intersection_pool_overhead) + kIntersectionBeats * cycles_per_beat_),
+      request_cycles_(static_cast<uint64_t>(std::max(1, chip.intersection_pool_overhead - 1))) {
   device.bind(*this);
   traverser.bind(*this);
   controller.bind(*this);
@@ -18,7 +22,7 @@ bool IntersectionPool::request(uint32_t unit, ImportKind kind) {
     wanting_ = kind;
     wanting_unit_ = unit;
     free_from_ = std::max(free_from_, clock->cycle());
-    if (!queue(kind).empty()) request_due_ = free_from_ + 1;
+    if (!queue(kind).empty()) request_due_ = free_from_ + request_cycles_;
   }
   if (request_due_ != clock->cycle()) return false;
   give();
@@ -30,7 +34,7 @@ void IntersectionPool::put(ImportKind kind, const Intersection& intersection) {
   fill_[number(kind)].set(clock->cycle(), size(kind));
   if (wanting_ != kind || request_due_ != kNever) return;
   free_from_ = std::max(free_from_, clock->cycle());
-  request_due_ = free_from_ + 1;
+  request_due_ = free_from_ + request_cycles_;
 }
 
 // The package has left its queue in the cycle before.
@@ -43,7 +47,7 @@ void IntersectionPool::give() {
   ++taken_;
   fill_[number(kind)].set(request_due_ - 1, size(kind));
   ledger->imported(static_cast<int>(wanting_unit_), leaving_[word::kPixel]);
-  free_from_ = request_due_ - 1 + kServiceCycles;
+  free_from_ = request_due_ - request_cycles_ + service_cycles_;
   beat_due_ = request_due_ + 1;
   next_beat_ = 0;
   request_due_ = kNever;
@@ -55,7 +59,7 @@ void IntersectionPool::beat(Beat& beat) {
     throw std::logic_error("the device was not clocked when a beat of an intersection came");
   std::copy_n(leaving_.begin() + static_cast<std::ptrdiff_t>(next_beat_) * kBeatWords, kBeatWords, beat.begin());
   ++next_beat_;
-  beat_due_ = next_beat_ == kIntersectionBeats ? kNever : beat_due_ + 1;
+  beat_due_ = next_beat_ == kIntersectionBeats ? kNever : beat_due_ + cycles_per_beat_;
 }
 
 }  // namespace raypool::chip

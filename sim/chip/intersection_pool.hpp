@@ -1,8 +1,9 @@
 // The intersection pool: intersections of normal and of shadow rays, a queue for each kind, behind one 128-bit port.
 //
-// An intersection costs the port 8 cycles: 2 for the request, 6 beats. A request in cycle c to an idle port is taken in
-// c+1, and the beats move in c+2 .. c+7. The oldest package of the kind goes first. Its place is free as soon as its
-// request is taken (the port keeps it in a register of its own).
+// An intersection costs the port its overhead and 6 beats: 8 cycles, as the thesis has it. There a request in cycle c
+// to an idle port is taken in c+1, and the beats move in c+2 .. c+7. With less overhead, 1, a request is taken while
+// the beats before it end; with more it is taken later. The oldest package of the kind goes first. Its place is free as
+// soon as its request is taken (the port keeps it in a register of its own).
 //
 // Whoever launches a kernel reserves its packages at once, so that available() never promises the same package twice.
 #pragma once
@@ -14,8 +15,8 @@
 
 #include "chip/chip_clock.hpp"
 #include "chip/interfaces.hpp"
-#include "chip/ray_pool.hpp"
 #include "chip/statistics.hpp"
+#include "config/configuration.hpp"
 #include "machine/compute_unit.hpp"
 #include "machine/packages.hpp"
 
@@ -26,8 +27,7 @@ class IntersectionPool : public sc_core::sc_module,
                          public IntersectionSinkIf,
                          public IntersectionLevelIf {
  public:
-  /// `capacity` packages of each kind.
-  IntersectionPool(const sc_core::sc_module_name& name, int capacity);
+  IntersectionPool(const sc_core::sc_module_name& name, const ChipConfiguration& chip);
 
   sc_core::sc_port<TimeIf> clock{"clock"};
   sc_core::sc_port<LedgerIf> ledger{"ledger"};
@@ -47,18 +47,19 @@ class IntersectionPool : public sc_core::sc_module,
   uint32_t size(ImportKind kind) const override { return static_cast<uint32_t>(queue(kind).size()); }
   uint32_t capacity() const { return static_cast<uint32_t>(capacity_); }
   uint64_t taken() const { return taken_; }  ///< packages given to units
-  uint64_t busy_cycles() const { return taken_ * kServiceCycles; }
+  uint64_t busy_cycles() const { return taken_ * service_cycles_; }
   const LevelStatistics& fill(ImportKind kind) const { return fill_[number(kind)]; }
 
  private:
-  static constexpr uint64_t kServiceCycles = kPoolOverhead + kIntersectionBeats;
-
   static size_t number(ImportKind kind) { return kind == ImportKind::Shadow ? 1 : 0; }
   std::deque<Intersection>& queue(ImportKind kind) { return queues_[number(kind)]; }
   const std::deque<Intersection>& queue(ImportKind kind) const { return queues_[number(kind)]; }
   void give();
 
-  size_t capacity_;
+  size_t capacity_;  // of each kind
+  uint64_t cycles_per_beat_;
+  uint64_t service_cycles_;  // that a package keeps the port
+  uint64_t request_cycles_;  // from a request's turn until it is taken
   std::array<std::deque<Intersection>, 2> queues_;
   std::array<uint32_t, 2> reserved_{};
   ImportKind wanting_ = ImportKind::None;  // a package of this kind

@@ -9,13 +9,18 @@
 
 namespace raypool::chip {
 
-MemoryPort::MemoryPort(const sc_core::sc_module_name& name) : sc_module(name) { device.bind(*this); }
+MemoryPort::MemoryPort(const sc_core::sc_module_name& name, const ChipConfiguration& chip)
+    : sc_module(name),
+      cycles_per_beat_(static_cast<uint64_t>(chip.memory_cycles_per_beat)),
+      place_free_from_(static_cast<size_t>(chip.memory_queue)) {
+  device.bind(*this);
+}
 
 // Nothing that comes later can change when and in which order requests are served: so each goes to the memory at once.
 void MemoryPort::request(const MemoryRequest& request) {
   const uint64_t start = std::max(free_from_, clock->cycle());
   place_free_from_[place_] = start + 1;
-  place_ = (place_ + 1) % kMemoryQueue;
+  place_ = (place_ + 1) % place_free_from_.size();
   room_from_ = place_free_from_[place_];
   if (request.write) {
     write(request, start);
@@ -27,7 +32,7 @@ void MemoryPort::request(const MemoryRequest& request) {
 // A write is posted: nobody waits for its end.
 void MemoryPort::write(const MemoryRequest& request, uint64_t start) {
   ++writes_;
-  free_from_ = start + kCyclesPerBeat;
+  free_from_ = start + cycles_per_beat_;
   written_[unit_of_id(request.id)] = start + 1;
   for (size_t i = 0; i < kBeatBytes; ++i) {
     enable_[i] = (request.mask >> (i / 4) & 1) != 0 ? TLM_BYTE_ENABLED : TLM_BYTE_DISABLED;
@@ -40,15 +45,15 @@ void MemoryPort::write(const MemoryRequest& request, uint64_t start) {
 
 void MemoryPort::read(const MemoryRequest& request, uint64_t start) {
   ++reads_;
-  free_from_ = start + kLineBeats * kCyclesPerBeat;
+  free_from_ = start + kLineBeats * cycles_per_beat_;
   ++reading_[unit_of_id(request.id)];
   payload_.set_byte_enable_ptr(nullptr);
   payload_.set_byte_enable_length(0);
   Line line{0, request.id, 0, {}};
   const uint64_t end = transport(tlm::TLM_READ_COMMAND, request.address, line.data.data(), kLineBytes, start);
   // Beats are apart, and lines in order, however fast the memory is.
-  last_beat_ = std::max(end, std::max(last_beat_, start) + kLineBeats * kCyclesPerBeat);
-  line.due = last_beat_ - (kLineBeats - 1) * kCyclesPerBeat;
+  last_beat_ = std::max(end, std::max(last_beat_, start) + kLineBeats * cycles_per_beat_);
+  line.due = last_beat_ - (kLineBeats - 1) * cycles_per_beat_;
   lines_.push_back(line);
   response_due_ = lines_.front().due;
 }
@@ -83,7 +88,7 @@ void MemoryPort::response(MemoryResponse& response) {
   Line& line = lines_.front();
   if (line.due != clock->cycle()) throw std::logic_error("the device was not clocked when a memory response came");
   response = {line.id, line.beat, line.data[line.beat]};
-  line.due += kCyclesPerBeat;
+  line.due += cycles_per_beat_;
   if (++line.beat == kLineBeats) {
     --reading_[unit_of_id(line.id)];
     lines_.pop_front();

@@ -1,6 +1,7 @@
-// The chip's one memory port: 8 GB/s, one 128-bit beat every 2 cycles, in front of the memory at its TLM-2.0 socket.
+// The chip's one memory port in front of the memory at its TLM-2.0 socket: as the thesis has it 8 GB/s, one 128-bit
+// beat every 2 cycles.
 //
-// Requests are served in the order in which they come: a read keeps the port for 8 cycles, a write for 2. Each is one
+// Requests are served in the order in which they come: a read keeps the port for 4 beats, a write for one. Each is one
 // call of b_transport, whose time begins when it is served; a read ends when its last beat is there. So with the chip's
 // own memory (fixed_latency_memory.hpp) a line read that is accepted in cycle a by an idle port gives its beats in
 // a+114 .. a+120.
@@ -13,23 +14,23 @@
 #include <deque>
 #include <systemc>
 #include <tlm>
+#include <vector>
 
 #include "chip/chip_clock.hpp"
 #include "chip/interfaces.hpp"
+#include "config/configuration.hpp"
 
 namespace raypool::chip {
 
-inline constexpr uint64_t kCyclesPerBeat = 2;
 inline constexpr uint32_t kLineBeats = 4;
 inline constexpr uint32_t kBeatBytes = 16, kLineBytes = kLineBeats * kBeatBytes;
-inline constexpr size_t kMemoryQueue = 8;  ///< requests that wait to be served
 
 inline constexpr unsigned kMemoryBits = 8 * kBeatBytes;  ///< width of the memory's sockets
 using MemorySocket = tlm::tlm_initiator_socket<kMemoryBits>;
 
 class MemoryPort : public sc_core::sc_module, public MemoryIf {
  public:
-  explicit MemoryPort(const sc_core::sc_module_name& name);
+  MemoryPort(const sc_core::sc_module_name& name, const ChipConfiguration& chip);
 
   sc_core::sc_port<TimeIf> clock{"clock"};
   sc_core::sc_export<MemoryIf> device{"device"};
@@ -41,7 +42,7 @@ class MemoryPort : public sc_core::sc_module, public MemoryIf {
 
   uint64_t reads() const { return reads_; }    ///< lines
   uint64_t writes() const { return writes_; }  ///< quadwords
-  uint64_t busy_cycles() const { return (reads_ * kLineBeats + writes_) * kCyclesPerBeat; }
+  uint64_t busy_cycles() const { return (reads_ * kLineBeats + writes_) * cycles_per_beat_; }
 
  private:
   struct Line {
@@ -54,9 +55,10 @@ class MemoryPort : public sc_core::sc_module, public MemoryIf {
   void write(const MemoryRequest& request, uint64_t start);
   uint64_t transport(tlm::tlm_command command, uint32_t address, void* data, uint32_t bytes, uint64_t start);
 
+  uint64_t cycles_per_beat_;
   tlm::tlm_generic_payload payload_;
-  uint64_t free_from_ = 0;                                // the next request can be served
-  std::array<uint64_t, kMemoryQueue> place_free_from_{};  // a ring: of the latest requests, oldest at `place_`
+  uint64_t free_from_ = 0;                 // the next request can be served
+  std::vector<uint64_t> place_free_from_;  // a ring: of the latest requests that may wait, oldest at `place_`
   size_t place_ = 0;
   uint64_t last_beat_ = 0;
   std::deque<Line> lines_;                          // on their way, in the order of their requests

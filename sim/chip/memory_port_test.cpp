@@ -13,10 +13,11 @@ struct Bench {
   Simulation simulation;
   ChipClock clock{"clock"};
   Memory memory{65536};
-  MemoryPort port{"memory_port"};
-  FixedLatencyMemory target{"memory", memory};
+  MemoryPort port;
+  FixedLatencyMemory target;
 
-  Bench() {
+  explicit Bench(const ChipConfiguration& chip = {})
+      : port("memory_port", chip), target("memory", memory, chip.memory_latency) {
     port.clock(clock.now);
     port.socket.bind(target.socket);
     for (uint32_t i = 0; i < memory.size(); i += 4) memory.store(i, i * 2654435761u);
@@ -51,6 +52,29 @@ TEST(MemoryPort, GivesALineInFourBeatsThatEndAfter120Cycles) {
   EXPECT_EQ(bench.port.reads(), 1u);
   EXPECT_EQ(bench.port.busy_cycles(), 8u);
   EXPECT_TRUE(bench.port.quiet(0));
+}
+
+TEST(MemoryPort, TakesLatencyBeatsAndQueueAsTheChipSays) {
+  ChipConfiguration chip;
+  chip.memory_latency = 40;
+  chip.memory_cycles_per_beat = 3;
+  chip.memory_queue = 2;
+  Bench bench(chip);
+  std::vector<uint64_t> beats;
+  bench.run([&](uint64_t cycle) {
+    if (cycle == 10) {
+      bench.port.request(read_of(128));
+      EXPECT_TRUE(bench.ready());
+      bench.port.request(read_of(192));
+      EXPECT_FALSE(bench.ready());
+    }
+    EXPECT_TRUE(cycle != 11 || bench.ready()) << "the first is served in cycle 10";
+    MemoryResponse response;
+    if (bench.response(response)) beats.push_back(cycle - 10);
+    return cycle < 100;
+  });
+  EXPECT_EQ(beats, (std::vector<uint64_t>{31, 34, 37, 40, 43, 46, 49, 52}));
+  EXPECT_EQ(bench.port.busy_cycles(), 24u);
 }
 
 TEST(MemoryPort, MovesEightGigabytesASecond) {
@@ -108,7 +132,7 @@ TEST(MemoryPort, HoldsEightWaitingRequests) {
   Bench bench;
   bench.run([&](uint64_t cycle) {
     if (cycle == 1) {
-      for (size_t i = 0; i < kMemoryQueue; ++i) {
+      for (int i = 0; i < 8; ++i) {
         EXPECT_TRUE(bench.ready());
         bench.port.request(read_of(0));
       }

@@ -28,7 +28,7 @@ ChipResult draw(test::RealFrame& run) {
 TEST(OwnMemory, AnswersInItsOwnTime) {
   Simulation simulation;
   ChipClock clock("clock");
-  MemoryPort port("memory_port");
+  MemoryPort port("memory_port", {});
   Memory memory(65536);
   BankedDram dram("dram", memory);
   port.clock(clock.now);

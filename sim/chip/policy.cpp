@@ -1,27 +1,21 @@
 #include "chip/policy.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-
-#include "config/configuration.hpp"
+#include <stdexcept>
 
 namespace raypool::chip {
 
 namespace {
 
-// The thesis' thresholds, made for 64 contents.
-constexpr uint32_t kThesisContents = 64;
-constexpr uint32_t kThesisRays = 48;
-constexpr uint32_t kThesisIntersections = 8;
+constexpr uint32_t kThesisContents = 64;  // for which thresholds are given
 
 }  // namespace
 
 ThesisPolicy::ThesisPolicy(const PolicySetup& setup) : contents_(setup.contents) {
   const uint32_t scale = std::max(1u, setup.contents / kThesisContents);
-  ray_threshold_ = std::min(kThesisRays * scale * setup.units, setup.ray_capacity * 3 / 4);
+  ray_threshold_ = std::min(setup.ray_threshold * scale * setup.units, setup.ray_capacity * 3 / 4);
   intersection_threshold_ =
-      std::min({kThesisIntersections * scale, setup.contents - 1, setup.intersection_capacity - 1});
+      std::min({setup.intersection_threshold * scale, setup.contents - 1, setup.intersection_capacity - 1});
 }
 
 Choice ThesisPolicy::choose(const PolicyView& view) const {
@@ -55,9 +49,12 @@ Choice ThesisPolicy::choose(const PolicyView& view) const {
   return choice;
 }
 
-std::unique_ptr<KernelPolicy> make_policy(const std::string& name, const PolicySetup& setup) {
-  if (name == "thesis") return std::make_unique<ThesisPolicy>(setup);
-  throw InputError(fmt::format("there is no policy '{}': use thesis", name));
+std::unique_ptr<KernelPolicy> make_policy(PolicyName name, const PolicySetup& setup) {
+  switch (name) {
+    case PolicyName::Thesis:
+      return std::make_unique<ThesisPolicy>(setup);
+  }
+  throw std::logic_error("a policy without a class");
 }
 
 }  // namespace raypool::chip

@@ -1,10 +1,12 @@
 // The controller's policy: which kernel a unit gets next. A policy only proposes; the controller sees to it that what
-// it launches is possible and safe. A new policy is a subclass and a line in make_policy.
+// it launches is possible and safe. A new policy is a subclass, its name in config/parameters.hpp (PolicyName, and the
+// row of chip.policy), and a line in make_policy.
 #pragma once
 
 #include <cstdint>
 #include <memory>
-#include <string>
+
+#include "config/parameters.hpp"
 
 namespace raypool::chip {
 
@@ -14,6 +16,8 @@ struct PolicySetup {
   uint32_t units = 1;
   uint32_t ray_capacity = 512;           ///< packages
   uint32_t intersection_capacity = 512;  ///< of each kind
+  uint32_t ray_threshold = 48;           ///< chip.thresholds.rays
+  uint32_t intersection_threshold = 8;   ///< chip.thresholds.intersections
 };
 
 /// What a policy sees when a unit can take a kernel.
@@ -56,7 +60,6 @@ class ThesisPolicy : public KernelPolicy {
   uint32_t intersection_threshold_;  // above it there is work for a kernel that consumes
 };
 
-/// `name`: "thesis". Throws InputError.
-std::unique_ptr<KernelPolicy> make_policy(const std::string& name, const PolicySetup& setup);
+std::unique_ptr<KernelPolicy> make_policy(PolicyName name, const PolicySetup& setup);
 
 }  // namespace raypool::chip

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "config/configuration.hpp"
+#include "config/parameter_table.hpp"
 
 namespace raypool::chip {
 namespace {
@@ -73,6 +74,9 @@ TEST(ThesisPolicy, ScalesItsThresholds) {
   EXPECT_EQ(thresholds(128, 2), std::make_pair(192u, 16u));
   EXPECT_EQ(thresholds(1024, 4), std::make_pair(384u, 128u));
   EXPECT_EQ(ThesisPolicy({128, 1, 512, 16}).intersection_threshold(), 15u);
+  EXPECT_EQ(ThesisPolicy({64, 1, 512, 512, 7, 3}).ray_threshold(), 7u);
+  EXPECT_EQ(ThesisPolicy({128, 2, 512, 512, 7, 3}).ray_threshold(), 28u);
+  EXPECT_EQ(ThesisPolicy({128, 2, 512, 512, 7, 3}).intersection_threshold(), 6u);
 }
 
 TEST(ThesisPolicy, NeverProposesWhatIsImpossibleAndNeverHaltsForGood) {
@@ -108,7 +112,15 @@ TEST(ThesisPolicy, NeverProposesWhatIsImpossibleAndNeverHaltsForGood) {
   }
 }
 
-TEST(Policy, RefusesAnUnknownName) { EXPECT_THROW(make_policy("magic", {}), InputError); }
+TEST(Policy, EveryNameOfTheTableHasAClass) {
+  for (const Parameter& parameter : parameter::kOfChip) {
+    if (path_of(parameter) != "chip.policy") continue;
+    for (const int name : values_of(parameter.range))
+      EXPECT_TRUE(make_policy(static_cast<PolicyName>(name), {})) << name;
+    return;
+  }
+  FAIL() << "no row";
+}
 
 }  // namespace
 }  // namespace raypool::chip

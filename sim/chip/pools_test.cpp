@@ -11,6 +11,12 @@
 namespace raypool::chip {
 namespace {
 
+ChipConfiguration chip_of(int capacity) {
+  ChipConfiguration chip;
+  chip.ray_pool_size = chip.intersection_pool_size = capacity;
+  return chip;
+}
+
 /// Both pools, and units that the test plays. Each unit casts pixels of a 64x64 image, its own columns.
 struct Bench {
   Simulation simulation;
@@ -20,10 +26,11 @@ struct Bench {
   IntersectionPool intersections;
   std::vector<uint32_t> next, beat;  // [unit] ray it exports, beat of it
 
-  explicit Bench(int units, int capacity = 512, int depth = 5)
+  explicit Bench(int units, int capacity = 512, int depth = 5) : Bench(units, chip_of(capacity), depth) {}
+  Bench(int units, const ChipConfiguration& chip, int depth)
       : ledger("pixel_ledger", units, 64, 64),
-        rays("ray_pool", capacity, depth),
-        intersections("intersection_pool", capacity),
+        rays("ray_pool", chip, depth),
+        intersections("intersection_pool", chip),
         next(static_cast<size_t>(units)),
         beat(static_cast<size_t>(units)) {
     rays.clock(clock.now);
@@ -85,6 +92,25 @@ TEST(RayPool, TakesARayInFiveCycles) {
   EXPECT_EQ(bench.rays.size(), 20u);
   EXPECT_EQ(bench.rays.busy_cycles(), 100u);
   for (uint32_t i = 0; i < 20; ++i) EXPECT_EQ(bench.rays.rays()[i].ray, Bench::eye_ray(0, i));
+}
+
+TEST(RayPool, TakesOverheadAndBeatsAsLongAsTheChipSays) {
+  for (const auto& [overhead, per_beat] : {std::pair{1, 1}, {2, 2}, {5, 3}}) {
+    ChipConfiguration chip;
+    chip.ray_pool_overhead = overhead;
+    chip.ray_pool_cycles_per_beat = per_beat;
+    Bench bench(1, chip, 5);
+    const auto service = static_cast<uint64_t>(overhead + 3 * per_beat);
+    std::vector<uint64_t> completed;
+    bench.run([&](uint64_t cycle) {
+      if (cycle >= 10 && bench.offer(0)) completed.push_back(cycle);
+      return completed.size() < 20;
+    });
+    for (size_t i = 0; i < completed.size(); ++i)
+      EXPECT_EQ(completed[i], 10 + service * (i + 1) - static_cast<uint64_t>(per_beat)) << overhead << per_beat;
+    EXPECT_EQ(bench.rays.busy_cycles(), 20 * service);
+    for (uint32_t i = 0; i < 20; ++i) EXPECT_EQ(bench.rays.rays()[i].ray, Bench::eye_ray(0, i));
+  }
 }
 
 TEST(RayPool, TakesARayOfAnyUnitInFiveCycles) {
@@ -210,6 +236,36 @@ TEST(IntersectionPool, GivesAPackageInEightCycles) {
       EXPECT_EQ(words[p * 24 + i], i < kIntersectionWords ? numbered(p)[i] : 0) << p << " " << i;
   }
   EXPECT_EQ(bench.intersections.busy_cycles(), 24u);
+}
+
+TEST(IntersectionPool, TakesOverheadAndBeatsAsLongAsTheChipSays) {
+  for (const auto& [overhead, per_beat] : {std::pair{1, 1}, {2, 2}, {5, 3}}) {
+    ChipConfiguration chip;
+    chip.intersection_pool_overhead = overhead;
+    chip.intersection_pool_cycles_per_beat = per_beat;
+    Bench bench(1, chip, 5);
+    bench.ledger.launched(0, RayKernel::Shade, 3);
+    const auto service = static_cast<uint64_t>(overhead + 6 * per_beat), wait = std::max(1ul, overhead - 1ul);
+    std::vector<uint64_t> taken, beats;
+    std::vector<uint32_t> words;
+    bench.run([&](uint64_t cycle) {
+      for (uint32_t i = 0; cycle == 1 && i < 3; ++i) bench.intersections.put(ImportKind::Shadow, numbered(i));
+      Beat data;
+      if (bench.beat_of_intersection(data)) {
+        beats.push_back(cycle);
+        words.insert(words.end(), data.begin(), data.end());
+      }
+      if (cycle >= 10 && taken.size() < 3 && bench.intersections.request(0, ImportKind::Shadow)) taken.push_back(cycle);
+      return cycle < 200;
+    });
+    EXPECT_EQ(taken, (std::vector<uint64_t>{10 + wait, 10 + wait + service, 10 + wait + 2 * service}));
+    ASSERT_EQ(beats.size(), 18u);
+    for (size_t i = 0; i < beats.size(); ++i)
+      EXPECT_EQ(beats[i], taken[i / 6] + 1 + i % 6 * static_cast<uint64_t>(per_beat)) << overhead << per_beat;
+    for (uint32_t i = 0; i < 72; ++i)
+      EXPECT_EQ(words[i], i % 24 < kIntersectionWords ? numbered(i / 24)[i % 24] : 0) << i;
+    EXPECT_EQ(bench.intersections.busy_cycles(), 3 * service);
+  }
 }
 
 TEST(IntersectionPool, KeepsTheKindsApart) {

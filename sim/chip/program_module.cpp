@@ -72,6 +72,7 @@ void NoFrame::take(uint32_t, const FrameContribution&) { refuse("rfb"); }
 ProgramChip::ProgramChip(const sc_core::sc_module_name& name, const ProgramOptions& options)
     : sc_module(name),
       options_(checked(options)),
+      memory_port_("memory_port", options.configuration.chip),
       grid_("grid", options_),
       device_("device_host", *options.device),
       monitor_("monitor", {options.watchdog_cycles, options.cycle_limit, options.device->timed(),

@@ -75,7 +75,7 @@ class ProgramChip : public sc_core::sc_module, public WatchedIf {
  private:
   const ProgramOptions options_;
   ChipClock clock_{"clock"};
-  MemoryPort memory_port_{"memory_port"};
+  MemoryPort memory_port_;
   NoFrame no_frame_{"no_frame"};
   Grid grid_;
   DeviceHost device_;

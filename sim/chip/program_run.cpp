@@ -60,7 +60,7 @@ std::string faulting_access(const ProgramOptions& options, Memory memory, const 
 ProgramResult run_program(const ProgramOptions& options) {
   chip::Simulation simulation;
   chip::ProgramChip chip("chip", options);
-  chip::FixedLatencyMemory memory("memory", *options.memory);
+  chip::FixedLatencyMemory memory("memory", *options.memory, options.configuration.chip.memory_latency);
   chip.memory.bind(memory.socket);
   return chip.run();
 }

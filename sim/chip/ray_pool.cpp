@@ -7,8 +7,12 @@
 
 namespace raypool::chip {
 
-RayPool::RayPool(const sc_core::sc_module_name& name, int capacity, int depth)
-    : sc_module(name), capacity_(static_cast<size_t>(capacity)), depth_(static_cast<uint32_t>(depth)) {
+RayPool::RayPool(const sc_core::sc_module_name& name, const ChipConfiguration& chip, int depth)
+    : sc_module(name),
+      capacity_(static_cast<size_t>(chip.ray_pool_size)),
+      overhead_(static_cast<uint64_t>(chip.ray_pool_overhead)),
+      cycles_per_beat_(static_cast<uint64_t>(chip.ray_pool_cycles_per_beat)),
+      depth_(static_cast<uint32_t>(depth)) {
   rays_.reserve(capacity_);
   device.bind(*this);
   traverser.bind(*this);
@@ -19,7 +23,9 @@ RayPool::RayPool(const sc_core::sc_module_name& name, int capacity, int depth)
 void RayPool::want() {
   if (beats_from_ != kNever) return;
   wanting_ = full();
-  if (!wanting_) beats_from_ = clock->cycle() + kPoolOverhead;
+  if (wanting_) return;
+  begun_ = std::max(clock->cycle(), free_from_);
+  beats_from_ = begun_ + overhead_;
 }
 
 void RayPool::take(uint32_t unit, const Beat& beat, bool last) {
@@ -29,10 +35,13 @@ void RayPool::take(uint32_t unit, const Beat& beat, bool last) {
     throw std::runtime_error(fmt::format("compute unit {} marks beat {} of a ray as {}; a ray has {} beats", unit,
                                          beats_, last ? "its last" : "not its last", kRayBeats));
   }
-  if (!last) return;
-
+  free_from_ = clock->cycle() + cycles_per_beat_;
+  if (!last) {
+    beats_from_ = free_from_;
+    return;
+  }
   beats_ = 0;
-  busy_cycles_ += clock->cycle() + 1 - (beats_from_ - kPoolOverhead);
+  busy_cycles_ += free_from_ - begun_;
   beats_from_ = kNever;
   ++taken_;
   const bool shadow = (arriving_[word::kFlags] & kShadowFlag) != 0;

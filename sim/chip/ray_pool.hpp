@@ -1,8 +1,8 @@
 // The ray pool: rays that units have exported and the traverser has not finished, oldest first, behind one 128-bit
 // port.
 //
-// A ray costs the port 5 cycles: 2 of overhead, 3 beats. A ray offered in cycle c to an idle port moves in c+2, c+3,
-// c+4 (later if there are bubbles between its beats). A full pool serves nobody.
+// A ray costs the port its overhead and 3 beats: 5 cycles, as the thesis has it. There a ray offered in cycle c to an
+// idle port moves in c+2, c+3, c+4 (later if there are bubbles between its beats). A full pool serves nobody.
 #pragma once
 
 #include <cstdint>
@@ -12,16 +12,15 @@
 #include "chip/chip_clock.hpp"
 #include "chip/interfaces.hpp"
 #include "chip/statistics.hpp"
+#include "config/configuration.hpp"
 #include "machine/packages.hpp"
 
 namespace raypool::chip {
 
-inline constexpr uint64_t kPoolOverhead = 2;  ///< cycles a request
-
 class RayPool : public sc_core::sc_module, public RayExportIf, public RaySourceIf, public RayLevelIf {
  public:
   /// Normal rays deeper than `depth` are dropped when they arrive.
-  RayPool(const sc_core::sc_module_name& name, int capacity, int depth);
+  RayPool(const sc_core::sc_module_name& name, const ChipConfiguration& chip, int depth);
 
   sc_core::sc_port<TimeIf> clock{"clock"};
   sc_core::sc_port<LedgerIf> ledger{"ledger"};
@@ -50,8 +49,11 @@ class RayPool : public sc_core::sc_module, public RayExportIf, public RaySourceI
   void keep(bool shadow);
 
   size_t capacity_;
+  uint64_t overhead_, cycles_per_beat_;
   uint32_t depth_;
-  bool wanting_ = false;  // a ray is offered, and there is no room
+  uint64_t begun_ = 0;      // cycle in which the ray that arrives was
+  uint64_t free_from_ = 0;  // the next one may be
+  bool wanting_ = false;    // a ray is offered, and there is no room
   uint64_t kept_at_ = 0;
   Ray arriving_{};
   size_t beats_ = 0;

@@ -2,8 +2,12 @@
 
 namespace raypool::chip {
 
-StaticTraverser::StaticTraverser(const sc_core::sc_module_name& name, RayTracer& tracer, int units)
-    : Traverser(name, tracer), units_(static_cast<uint32_t>(units)) {
+StaticTraverser::StaticTraverser(const sc_core::sc_module_name& name, RayTracer& tracer, int units,
+                                 const ChipConfiguration& chip)
+    : Traverser(name, tracer),
+      units_(static_cast<uint32_t>(units)),
+      batch_(static_cast<uint32_t>(chip.static_traverser_batch)),
+      stall_cycles_(static_cast<uint64_t>(chip.static_traverser_stall_cycles)) {
   SC_METHOD(end_of_kernel);
   sensitive << kernel_ended_;
   dont_initialize();
@@ -18,7 +22,7 @@ void StaticTraverser::kernel_ended(int /*unit*/) {
 }
 
 void StaticTraverser::shader_stalls(bool stalls) {
-  if (!stalling_ && stalls) clock->notify(stall_over_, Phase::Traverser, kTraverserStallCycles);
+  if (!stalling_ && stalls) clock->notify(stall_over_, Phase::Traverser, stall_cycles_);
   if (stalling_ && !stalls) stall_over_.cancel();
   stalling_ = stalls;
 }
@@ -26,15 +30,15 @@ void StaticTraverser::shader_stalls(bool stalls) {
 void StaticTraverser::end_of_kernel() {
   clock->guard([&] {
     counts_.batches += kernels_;
-    advance(kTraverserBatch * kernels_);
+    advance(batch_ * kernels_);
     kernels_ = 0;
   });
 }
 
 void StaticTraverser::end_of_stall() {
   clock->guard([&] {
-    if (advance(kTraverserBatch * units_) > 0) ++counts_.stall_batches;
-    clock->notify(stall_over_, Phase::Traverser, kTraverserStallCycles);
+    if (advance(batch_ * units_) > 0) ++counts_.stall_batches;
+    clock->notify(stall_over_, Phase::Traverser, stall_cycles_);
   });
 }
 

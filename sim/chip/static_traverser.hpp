@@ -1,20 +1,17 @@
-// The thesis' traverser: its speed is a constant, whatever the rays. 64 rays become intersections at the end of every
-// kernel, on whichever unit; and 64 a unit after every 1000 ns in which the shader stalls, that is, in which no unit
-// has a kernel or a ray waits for room in the ray pool.
+// The thesis' traverser: its speed is a constant, whatever the rays. A batch of rays (64) becomes intersections at the
+// end of every kernel, on whichever unit; and a batch a unit whenever the shader has stalled for so long (1000 ns),
+// that is, when no unit has a kernel or a ray waits for room in the ray pool.
 #pragma once
 
 #include "chip/traverser.hpp"
 
 namespace raypool::chip {
 
-inline constexpr uint32_t kTraverserBatch = 64;  ///< rays
-inline constexpr uint64_t kTraverserStallCycles = 1000;
-
 class StaticTraverser : public Traverser {
  public:
   SC_HAS_PROCESS(StaticTraverser);
   /// Beside a device of so many units.
-  StaticTraverser(const sc_core::sc_module_name& name, RayTracer& tracer, int units);
+  StaticTraverser(const sc_core::sc_module_name& name, RayTracer& tracer, int units, const ChipConfiguration& chip);
 
   void kernel_ended(int unit) override;
   void shader_stalls(bool stalls) override;
@@ -24,6 +21,8 @@ class StaticTraverser : public Traverser {
   void end_of_stall();
 
   uint32_t units_;
+  uint32_t batch_;  // rays
+  uint64_t stall_cycles_;
   sc_core::sc_event kernel_ended_, stall_over_;
   uint32_t kernels_ = 0;  // that ended in this cycle
   bool stalling_ = true;

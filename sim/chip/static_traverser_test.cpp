@@ -27,6 +27,12 @@ struct Moves : DecisionIf {
   int seen = 0;
 };
 
+ChipConfiguration chip_of(int intersections) {
+  ChipConfiguration chip;
+  chip.intersection_pool_size = intersections;
+  return chip;
+}
+
 /// A traverser between pools that the test fills.
 struct Bench {
   Simulation simulation;
@@ -38,11 +44,12 @@ struct Bench {
   Moves moves;
   StaticTraverser traverser;
 
-  explicit Bench(int units, int capacity = 512)
+  explicit Bench(int units, int capacity = 512) : Bench(units, chip_of(capacity)) {}
+  Bench(int units, const ChipConfiguration& chip)
       : ledger("pixel_ledger", units, 512, 1),
-        rays("ray_pool", 512, 5),
-        intersections("intersection_pool", capacity),
-        traverser("traverser", tracer, units) {
+        rays("ray_pool", {}, 5),
+        intersections("intersection_pool", chip),
+        traverser("traverser", tracer, units, chip) {
     rays.clock(clock.now);
     rays.ledger(ledger.records);
     rays.arrivals(traverser.arrivals);
@@ -87,6 +94,23 @@ TEST(StaticTraverser, Turns64RaysIntoIntersectionsAtTheEndOfAKernel) {
   EXPECT_EQ(bench.traverser.counts().rays.missed(), 32u);
   EXPECT_EQ(bench.traverser.counts().rays.eye.traced, 64u);
   EXPECT_EQ(bench.ledger.held(), 168u);
+}
+
+TEST(StaticTraverser, TakesBatchAndStallAsTheChipSays) {
+  ChipConfiguration chip;
+  chip.static_traverser_batch = 10;
+  chip.static_traverser_stall_cycles = 300;
+  Bench bench(2, chip);
+  bench.run([&](uint64_t cycle) {
+    if (cycle == 1) {
+      bench.fill(100);
+      bench.traverser.shader_stalls(false);
+    }
+    if (cycle == 5) bench.traverser.kernel_ended(0);
+    if (cycle == 50) bench.traverser.shader_stalls(true);
+    EXPECT_EQ(bench.rays.size(), cycle <= 5 ? 100u : cycle <= 350 ? 90u : 70u) << cycle;
+    return cycle < 500;
+  });
 }
 
 TEST(StaticTraverser, Turns64RaysAUnitIntoIntersectionsAfter1000CyclesOfStall) {

@@ -1,6 +1,6 @@
 #include "chip/traverser.hpp"
 
-#include <fmt/format.h>
+#include <stdexcept>
 
 #include "chip/static_traverser.hpp"
 
@@ -50,9 +50,12 @@ uint32_t Traverser::advance(uint32_t budget) {
   return left;
 }
 
-std::unique_ptr<Traverser> make_traverser(const std::string& kind, RayTracer& tracer, int units) {
-  if (kind == "static") return std::make_unique<StaticTraverser>("traverser", tracer, units);
-  throw InputError(fmt::format("there is no traverser '{}': use static", kind));
+std::unique_ptr<Traverser> make_traverser(const ChipConfiguration& chip, RayTracer& tracer, int units) {
+  switch (chip.traverser) {
+    case TraverserName::Static:
+      return std::make_unique<StaticTraverser>("traverser", tracer, units, chip);
+  }
+  throw std::logic_error("a traverser without a class");
 }
 
 }  // namespace raypool::chip

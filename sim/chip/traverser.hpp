@@ -5,12 +5,12 @@
 
 #include <cstdint>
 #include <memory>
-#include <string>
 #include <systemc>
 
 #include "chip/chip_clock.hpp"
 #include "chip/interfaces.hpp"
 #include "chip/ports.hpp"
+#include "config/configuration.hpp"
 #include "scene/ray_counts.hpp"
 
 namespace raypool::chip {
@@ -51,7 +51,7 @@ class Traverser : public sc_core::sc_module, public KernelEventsIf, public RayAr
   RayTracer& tracer_;
 };
 
-/// `kind`: "static". Throws InputError.
-std::unique_ptr<Traverser> make_traverser(const std::string& kind, RayTracer& tracer, int units);
+/// The one that `chip.traverser` names.
+std::unique_ptr<Traverser> make_traverser(const ChipConfiguration& chip, RayTracer& tracer, int units);
 
 }  // namespace raypool::chip

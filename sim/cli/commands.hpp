@@ -19,12 +19,13 @@ namespace raypool {
 struct SimOptions {
   std::string scene = "room";  ///< built-in name or path of a scene file
   std::string config = "8w8c";
+  std::vector<std::string> set;  ///< fields of the configuration to change, "warps=4"
   std::string engine = "model";
   std::string size = "320x320";
-  std::string view;  ///< JSON file with camera and light; empty: the scene's own
-  ViewWords look;    ///< changes of it
-  std::string out;   ///< folder; empty: out/<what was run> beside the executable
-  std::string traverser = "static";
+  std::string view;          ///< JSON file with camera and light; empty: the scene's own
+  ViewWords look;            ///< changes of it
+  std::string out;           ///< folder; empty: out/<what was run> beside the executable
+  std::string traverser;     ///< chip.traverser; empty: as the configuration says
   std::string unit_library;  ///< Verilated unit; empty: unit_library_path()
   int depth = 3;
   int units = 1;
@@ -44,6 +45,7 @@ int sim_command(const SimOptions& options);
 struct RunOptions {
   std::string kernel;  ///< saxpy, matmul or path of an assembly file
   std::string config = "8w8c";
+  std::vector<std::string> set;  ///< fields of the configuration to change, "warps=4"
   std::string engine = "model";
   std::string unit_library;
   std::optional<uint32_t> n;  ///< problem size of saxpy and matmul; none: theirs
@@ -62,6 +64,7 @@ int run_command(const RunOptions& options);
 /// `raypool config`
 struct ConfigOptions {
   std::string config = "8w8c";
+  std::vector<std::string> set;  ///< fields of the configuration to change, "warps=4"
   bool verilog_parameters = false;
   bool json = false;
   bool unit_library = false;  ///< path of the Verilated unit
@@ -72,6 +75,7 @@ int config_command(const ConfigOptions& options);
 /// `raypool unit`: does not return when the build has begun; its exit code is the program's.
 struct UnitOptions {
   std::string config = "8w8c";
+  std::vector<std::string> set;  ///< fields of the configuration to change, "warps=4"
   int units = 1;
   bool waves = false;
 };
@@ -89,7 +93,7 @@ int asm_command(const std::string& path, const std::string& out);
 int disasm_command(const std::string& path, const std::string& out);
 
 /// `raypool kernels [NAME]`: counts by ALU, or the listing of one kernel, as compiled for a configuration.
-int kernels_command(const std::string& name, const std::string& config);
+int kernels_command(const std::string& name, const std::string& config, const std::vector<std::string>& set);
 
 /// `raypool errors`: measured errors of the slow unit. Exit code 3 if one breaks its promise.
 int errors_command(uint32_t grid);
@@ -109,6 +113,7 @@ int hits_command(const SceneCommandOptions& options);
 /// `raypool cosim`: random programs, each with its own seed: seed, seed + 1, ...
 struct CosimOptions {
   std::string config = "8w8c";
+  std::vector<std::string> set;  ///< fields of the configuration to change, "warps=4"
   std::string engine = "lockstep";
   std::string unit_library;
   int units = 1;  ///< compute units of the device
@@ -138,7 +143,8 @@ int configurations_command(const ConfigurationsOptions& options);
 /// `raypool numerics`
 struct NumericsOptions {
   std::string config = "4w4c";  ///< the base, to which each mode's arithmetic is applied
-  std::string mode = "all";     ///< or one of numerics::arithmetic_modes()
+  std::vector<std::string> set;
+  std::string mode = "all";  ///< or one of numerics::arithmetic_modes()
   std::string size = "256x256";
   int depth = 3;
   std::string out;             ///< folder; empty: out/numerics beside the executable

@@ -8,12 +8,14 @@
 namespace raypool {
 namespace {
 
+void print_row(const Parameter& parameter, const Configuration& configuration, int width) {
+  fmt::print("  {:<{}} {:>7}  {}\n", path_of(parameter), width, text_of(parameter, parameter.get(configuration)),
+             parameter.meaning);
+}
+
 void print_table(const Configuration& configuration) {
   fmt::print("configuration {}, {} threads at once\n", configuration.name, configuration.contents());
-  for (const Parameter& parameter : parameter::kAll) {
-    fmt::print("  {:<23} {:>7}  {}\n", path_of(parameter), text_of(parameter, parameter.get(configuration)),
-               parameter.meaning);
-  }
+  for (const Parameter& parameter : parameter::kAll) print_row(parameter, configuration, 23);
   fmt::print("  ALU   instances  latency  depth\n");
   for (size_t i = 0; i < kAluTypes; ++i) {
     const AluConfiguration& alu = configuration.alus[i];
@@ -21,12 +23,13 @@ void print_table(const Configuration& configuration) {
     fmt::print("  {}   {:>9}", kAluNames[i], alu.count);
     timed_by_events ? fmt::print("  by event\n") : fmt::print("  {:>7}  {:>5}\n", alu.latency, alu.depth);
   }
+  for (const Parameter& parameter : parameter::kOfChip) print_row(parameter, configuration, 38);
 }
 
 }  // namespace
 
 int config_command(const ConfigOptions& options) {
-  const Configuration configuration = load_configuration(options.config);
+  const Configuration configuration = load_configuration(options.config, options.set);
   if (options.json) {
     fmt::print("{}\n", to_json(configuration));
   } else if (options.verilog_parameters) {

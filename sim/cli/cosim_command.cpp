@@ -187,7 +187,7 @@ int cosim_command(const CosimOptions& options) {
     return 0;
   }
 
-  Cosim cosim(options, load_configuration(options.config), options.units);
+  Cosim cosim(options, load_configuration(options.config, options.set), options.units);
   const std::string name = options.units == 1 ? cosim.configuration().name
                                               : fmt::format("{} x {}", options.units, cosim.configuration().name);
   uint64_t cycles = 0;
@@ -195,11 +195,11 @@ int cosim_command(const CosimOptions& options) {
   for (uint64_t n = 0; n < options.programs; ++n) {
     const RandomProgram program =
         make_random_program(cosim.configuration(), options.seed + n, options.length, options.units, options.mix);
-    run_or_report(
-        cosim, options, program,
-        fmt::format("raypool cosim --config {} --units {} --programs 1 --seed {} --length {}{}", options.config,
-                    options.units, program.seed, options.length, options.mix.empty() ? "" : " --mix " + options.mix),
-        cycles);
+    run_or_report(cosim, options, program,
+                  fmt::format("raypool cosim {} --units {} --programs 1 --seed {} --length {}{}",
+                              config_options(cosim.configuration()), options.units, program.seed, options.length,
+                              options.mix.empty() ? "" : " --mix " + options.mix),
+                  cycles);
     if (progress.due())
       progress.show(fmt::format("cosim {}: {} of {} programs, {} cycles", name, n + 1, options.programs, cycles));
   }

@@ -1,6 +1,7 @@
 #include "cli/engine.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cstdio>
 #include <filesystem>
@@ -51,19 +52,30 @@ std::string newer_verilog(const std::string& library, const std::string& rtl) {
 
 namespace {
 
+std::string source_of(const Configuration& configuration) {
+  return configuration.source.empty() ? configuration.name : configuration.source;
+}
+
 /// What a user types to have the unit: from a checkout make, of an installed program the program itself.
 std::string build_command(const EngineOptions& options) {
   const Configuration& configuration = options.configuration;
-  const std::string& config = configuration.source.empty() ? configuration.name : configuration.source;
   const std::string units = options.units == 1 ? "" : std::to_string(options.units);
   if (installed())
-    return fmt::format("raypool unit --config {}{}{}", config, units.empty() ? "" : " --units " + units,
+    return fmt::format("raypool unit {}{}{}", config_options(configuration), units.empty() ? "" : " --units " + units,
                        options.waves ? " --waves" : "");
-  return fmt::format("make unit CONFIG={}{}{}", config, units.empty() ? "" : " CUS=" + units,
+  const std::string set =
+      configuration.set.empty() ? "" : fmt::format(" SET=\"{}\"", fmt::join(configuration.set, " "));
+  return fmt::format("make unit CONFIG={}{}{}{}", source_of(configuration), set, units.empty() ? "" : " CUS=" + units,
                      options.waves ? " WAVES=1" : "");
 }
 
 }  // namespace
+
+std::string config_options(const Configuration& configuration) {
+  std::string text = "--config " + source_of(configuration);
+  if (!configuration.set.empty()) text += fmt::format(" --set \"{}\"", fmt::join(configuration.set, " "));
+  return text;
+}
 
 std::string find_unit_library(const EngineOptions& options) {
   const Configuration& configuration = options.configuration;

@@ -23,6 +23,9 @@ Engine parse_engine(const std::string& name);
 /// `waves` the one that can write waveforms. Of a multiprocessor of `units` units.
 std::string unit_library_path(const Configuration& configuration, bool waves, int units = 1);
 
+/// "--config 8w8c", and "--set ..." if fields of it were set: what names this configuration to a command.
+std::string config_options(const Configuration& configuration);
+
 /// What it takes to make a compute unit, or a multiprocessor.
 struct EngineOptions {
   Engine engine = Engine::Functional;  ///< not Native, which has no unit

@@ -10,8 +10,8 @@
 
 namespace raypool {
 
-int kernels_command(const std::string& name, const std::string& config) {
-  const bool fused = load_configuration(config).fma;
+int kernels_command(const std::string& name, const std::string& config, const std::vector<std::string>& set) {
+  const bool fused = load_configuration(config, set).fma;
   const bool compute =
       std::find(kComputeKernelNames.begin(), kComputeKernelNames.end(), name) != kComputeKernelNames.end();
   const Program& program = compute ? compute_kernel_program(fused) : ray_kernel_program(fused);

@@ -72,7 +72,7 @@ std::vector<NamedScene> trade_scenes() {
 }
 
 TradeResult measure_trade(const NumericsOptions& options, const ImageSize& size, Progress& progress) {
-  const Configuration base = load_configuration(options.config);
+  const Configuration base = load_configuration(options.config, options.set);
   const std::vector<ArithmeticMode> modes = chosen_modes(options.mode);
   TradeResult result;
   result.configuration = base.name;
@@ -150,7 +150,7 @@ int trade_command(const NumericsOptions& options) {
 
 /// One letter an engine, in the order native, functional, model, lockstep: lower case passed, X failed, - not run.
 int extremes_command(const NumericsOptions& options) {
-  const Configuration base = load_configuration(options.config);
+  const Configuration base = load_configuration(options.config, options.set);
   const std::vector<ArithmeticMode> modes = chosen_modes(options.mode);
   std::vector<ExtremeMachine> machines;
   std::vector<std::string> missing;
@@ -223,7 +223,7 @@ int list_extremes() {
 
 /// A configuration file for each mode, named after it.
 int write_configurations(const NumericsOptions& options) {
-  const Configuration base = load_configuration(options.config);
+  const Configuration base = load_configuration(options.config, options.set);
   OutputFolder folder(options.configurations);
   std::string names;
   for (const ArithmeticMode& mode : chosen_modes(options.mode)) {

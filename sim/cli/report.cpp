@@ -171,7 +171,8 @@ std::string to_json(const RunRecord& record) {
   json["raypool"] = kVersion;
   json["command"] = record.command;
   json["config"] = record.configuration.name;
-  json["configuration"] = Json::parse(to_json(record.configuration));
+  const Json configuration = Json::parse(to_json(record.configuration));
+  json["configuration"] = configuration;
   json["engine"] = record.engine;
   json["scene"] = {{"name", record.scene}, {"triangles", record.triangles}, {"materials", record.materials}};
   json["view"] = Json::parse(to_json(record.view));
@@ -179,7 +180,7 @@ std::string to_json(const RunRecord& record) {
   json["depth"] = record.depth;
   json["reflections"] = record.reflections;
   json["units"] = record.units;
-  json["traverser"] = record.traverser;
+  json["traverser"] = configuration["chip"]["traverser"];
   if (record.chip) add_chip(json, *record.chip);
   if (record.native) add_native(json, *record.native);
   if (record.lockstep) json["lockstep"] = lockstep_json(*record.lockstep);

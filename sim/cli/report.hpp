@@ -24,7 +24,6 @@ struct RunRecord {
   int depth = 0;
   bool reflections = false;  ///< are cast
   int units = 0;
-  std::string traverser;
   std::optional<ChipResult> chip;          ///< engines with a chip
   std::optional<NativeStatistics> native;  ///< engine native
   std::optional<LockstepCounts> lockstep;  ///< engine lockstep

@@ -219,7 +219,7 @@ void print_figures(const ProgramResult& result, const Configuration& configurati
 }
 
 void prepare(Job& job, const RunOptions& options) {
-  job.options.configuration = load_configuration(options.config);
+  job.options.configuration = load_configuration(options.config, options.set);
   if (options.kernel == "saxpy") return prepare_saxpy(job, options);
   if (options.kernel == "matmul") return prepare_matmul(job, options);
   prepare_assembly(job, options);

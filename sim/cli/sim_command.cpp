@@ -55,9 +55,9 @@ uint32_t content_hash(const Scene& scene, const Configuration& configuration) {
                                scene.light.color};
   for (const Material& material : scene.materials) vectors.insert(vectors.end(), {material.kd, material.ks});
   hash = hash_of(fmt::format("{}", scene.camera.fov), hash_bytes(vectors, hash));
-  for (const auto& [name, value] : verilog_parameters(configuration))
-    hash = hash_of(fmt::format("{}={} ", name, value), hash);
-  return hash;
+  Configuration nameless = configuration;
+  nameless.name.clear();
+  return hash_of(to_json(nameless), hash);
 }
 
 /// A user's files may have any content: names of built-in things alone say what is drawn.
@@ -117,7 +117,6 @@ ChipOptions chip_options(const RunRecord& record, const Scene& scene, MemoryImag
   chip.reflections = record.reflections;
   chip.tracer = &around.scene_tracer;
   chip.frame = &around.sink;
-  chip.traverser = record.traverser;
   return chip;
 }
 
@@ -196,12 +195,13 @@ int sim_command(const SimOptions& options) {
   RunRecord record;
   record.command = options.command;
   record.engine = options.engine;
-  record.configuration = load_configuration(options.config);
+  std::vector<std::string> set = options.set;
+  if (!options.traverser.empty()) set.push_back("chip.traverser=" + options.traverser);
+  record.configuration = load_configuration(options.config, set);
   record.width = size.width;
   record.height = size.height;
   record.depth = options.depth;
   record.units = options.units;
-  record.traverser = options.traverser;
 
   const Scene scene = load_scene_and_warn(options.scene, options.detail, options.view, options.look);
   record.scene = scene.name;

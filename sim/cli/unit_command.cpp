@@ -35,7 +35,7 @@ void make_folder(const fs::path& folder) {
 }  // namespace
 
 int unit_command(const UnitOptions& options) {
-  const Configuration configuration = load_configuration(options.config);
+  const Configuration configuration = load_configuration(options.config, options.set);
   const fs::path folder = fs::path(unit_library_path(configuration, options.waves, options.units)).parent_path();
   make_folder(folder);
   // One build at a time in a folder: a second waits here.

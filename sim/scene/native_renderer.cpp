@@ -132,12 +132,6 @@ MemoryImage build_memory(const Program& program, const Scene& scene) {
   return image;
 }
 
-int tile_width_log2(int contents) {
-  int log2 = 0;
-  while ((1 << log2) < contents) ++log2;
-  return (log2 + 1) / 2;
-}
-
 std::array<uint32_t, kArguments> camera_arguments(const Scene& scene, int width, int height, int contents) {
   require_range("image width", width, 1, 65535);
   require_range("image height", height, 1, 65535);

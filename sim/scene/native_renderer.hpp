@@ -24,9 +24,6 @@ struct MemoryImage {
 /// Throws InputError when it would not fit in 32-bit addresses.
 MemoryImage build_memory(const Program& program, const Scene& scene);
 
-/// log2 of an eye tile's width for `contents` threads (a power of two): tiles are square or twice as wide as high.
-int tile_width_log2(int contents);
-
 /// A secondary ray's origin leaves its surface by this share of the diagonal of the scene's bounding box
 /// (docs/scenes.md has the measurement), but by no less than this share of the largest coordinate of box and eye:
 /// eight of its units in the last place.

@@ -79,11 +79,6 @@ TEST(CameraArguments, SpanTheFieldOfView) {
   EXPECT_THROW(camera_arguments(scene, 10, 65536, 64), InputError);
 }
 
-TEST(TileWidth, IsHalfTheContentsRoundedUp) {
-  const int expected[][2] = {{1, 0}, {2, 1}, {4, 1}, {8, 2}, {16, 2}, {32, 3}, {64, 3}, {128, 4}, {1024, 5}};
-  for (const auto& pair : expected) EXPECT_EQ(tile_width_log2(pair[0]), pair[1]) << pair[0];
-}
-
 TEST(NativeRenderer, PictureDoesNotDependOnThreadsOrTiles) {
   const Scene scene = make_cornell(0.2);
   NativeOptions options = size(61, 43, 4);

@@ -28,9 +28,17 @@ std::string exit_codes() {
   return text;
 }
 
-void add_config(CLI::App& app, std::string& config) {
-  app.add_option("--config", config, "hardware: a name in configs/, NwMc (N warps, M lanes) or a JSON file")
+void add_set(CLI::App& app, std::vector<std::string>& set) {
+  app.add_option("--set", set, "change a field of the configuration, alus.flt.count=2 or chip.ray_pool.size=256")
+      ->type_name("FIELD=VALUE")
+      ->allow_extra_args(false)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+void add_config(CLI::App& app, std::string& config, std::vector<std::string>& set) {
+  app.add_option("--config", config, "machine: a name in configs/, NwMc (N warps, M lanes) or a JSON file")
       ->capture_default_str();
+  add_set(app, set);
 }
 
 void add_unit(CLI::App& app, std::string& engine, std::string& library) {
@@ -114,6 +122,7 @@ class CommandLine {
   bool verilog_ = false, functions_ = false, markdown_ = false, write_ = false;
   std::string text_path_, text_out_;
   std::string kernel_, kernels_config_ = "8w8c";
+  std::vector<std::string> kernels_set_;
   uint32_t grid_ = 4096;
   SceneCommandOptions scene_;
   NumericsOptions numerics_;
@@ -146,12 +155,12 @@ void CommandLine::add_sim_command() {
   CLI::App* sim_app =
       app_.add_subcommand("sim", "draw a scene on the simulated chip; leaves image.png and report.json");
   add_scene(*sim_app, sim_.scene, sim_.size, sim_.view, sim_.look, sim_.detail);
-  add_config(*sim_app, sim_.config);
+  add_config(*sim_app, sim_.config, sim_.set);
   add_unit(*sim_app, sim_.engine, sim_.unit_library);
   sim_app->add_option("--units", sim_.units, "compute units: 1, 2 or 4")->capture_default_str();
   sim_app->add_option("--depth", sim_.depth, "1: eye and shadow rays only; up to 254: with reflections")
       ->capture_default_str();
-  sim_app->add_option("--traverser", sim_.traverser, "timing of the traverser: static")->capture_default_str();
+  sim_app->add_option("--traverser", sim_.traverser, "as --set chip.traverser=NAME");
   sim_app->add_option(
       "--out", sim_.out,
       "folder for the results (default: out/<what was run> beside the program; installed: in raypool-out)");
@@ -167,7 +176,7 @@ void CommandLine::add_sim_command() {
 void CommandLine::add_run_command() {
   CLI::App* run_app = app_.add_subcommand("run", "run a compute kernel on one compute unit");
   run_app->add_option("kernel", compute_.kernel, "saxpy, matmul, or the path of an assembly file")->required();
-  add_config(*run_app, compute_.config);
+  add_config(*run_app, compute_.config, compute_.set);
   add_unit(*run_app, compute_.engine, compute_.unit_library);
   run_app->add_option("--n", compute_.n, "size of saxpy (elements) or matmul (rows of a square matrix)");
   run_app->add_option("--blocks", compute_.blocks, "assembly file: blocks to launch")->capture_default_str();
@@ -194,7 +203,7 @@ void CommandLine::add_run_command() {
 void CommandLine::add_cosim_command() {
   CLI::App* cosim_app =
       app_.add_subcommand("cosim", "random programs, with stalls on every port, in lockstep with the golden model");
-  add_config(*cosim_app, cosim_.config);
+  add_config(*cosim_app, cosim_.config, cosim_.set);
   add_unit(*cosim_app, cosim_.engine, cosim_.unit_library);
   cosim_app->add_option("--units", cosim_.units, "compute units: 1, 2 or 4")
       ->check(CLI::IsMember({1, 2, 4}))
@@ -231,6 +240,7 @@ void CommandLine::add_configurations_command() {
 void CommandLine::add_config_command() {
   CLI::App* config_app = app_.add_subcommand("config", "print a configuration");
   config_app->add_option("config", config_.config, "a name in configs/, NwMc or a JSON file")->capture_default_str();
+  add_set(*config_app, config_.set);
   auto* formats = config_app->add_option_group("format");
   formats->add_flag("--json", config_.json, "as a configuration file");
   formats->add_flag("--verilog-parameters", config_.verilog_parameters, "as NAME=VALUE lines for rtl/multiprocessor.v");
@@ -244,7 +254,7 @@ void CommandLine::add_config_command() {
 void CommandLine::add_unit_command() {
   CLI::App* unit_app = app_.add_subcommand(
       "unit", "build the Verilated unit that engines rtl and lockstep run (takes a minute or more)");
-  add_config(*unit_app, unit_.config);
+  add_config(*unit_app, unit_.config, unit_.set);
   unit_app->add_option("--units", unit_.units, "compute units: 1, 2 or 4")
       ->check(CLI::IsMember({1, 2, 4}))
       ->capture_default_str();
@@ -284,8 +294,8 @@ void CommandLine::add_kernels_command() {
   CLI::App* kernels_app =
       app_.add_subcommand("kernels", "the ray kernels' instruction counts by ALU, or the listing of one kernel");
   kernels_app->add_option("name", kernel_, "kernel to list");
-  add_config(*kernels_app, kernels_config_);
-  kernels_app->callback([this] { code_ = kernels_command(kernel_, kernels_config_); });
+  add_config(*kernels_app, kernels_config_, kernels_set_);
+  kernels_app->callback([this] { code_ = kernels_command(kernel_, kernels_config_, kernels_set_); });
 }
 
 void CommandLine::add_errors_command() {
@@ -310,7 +320,7 @@ void CommandLine::add_scene_command() {
 void CommandLine::add_numerics_command() {
   CLI::App* numerics_app = app_.add_subcommand(
       "numerics", "what each arithmetic mode does to pictures, and costs; seams; offsets; extremes");
-  add_config(*numerics_app, numerics_.config);
+  add_config(*numerics_app, numerics_.config, numerics_.set);
   numerics_app->add_option("--mode", numerics_.mode, "all, or one: ieee-exact, flush-newton1, ...")
       ->capture_default_str();
   numerics_app->add_option("--size", numerics_.size, "pictures, WIDTHxHEIGHT in pixels")->capture_default_str();

@@ -1,0 +1,145 @@
+#include "config/settings.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <numeric>
+#include <sstream>
+
+namespace raypool {
+
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+constexpr const char* kName = "name";
+constexpr size_t kNearest = 3;  // fields that a sentence names
+
+struct Assignment {
+  std::string path, value;
+};
+
+/// How many letters must be changed, added or taken away to make `b` of `a`.
+size_t distance(std::string_view a, std::string_view b) {
+  std::vector<size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), size_t{0});
+  for (size_t i = 0; i < a.size(); ++i) {
+    size_t corner = row[0]++;
+    for (size_t j = 0; j < b.size(); ++j)
+      corner = std::exchange(row[j + 1], std::min({corner + (a[i] != b[j]), row[j] + 1, row[j + 1] + 1}));
+  }
+  return row[b.size()];
+}
+
+/// Of a path that may lack its beginning.
+size_t distance_of_path(const std::string& given, const std::string& path) {
+  size_t least = distance(given, path);
+  for (size_t dot = path.find('.'); dot != std::string::npos; dot = path.find('.', dot + 1))
+    least = std::min(least, 1 + distance(given, std::string_view(path).substr(dot + 1)));
+  // Of a group all fields are near.
+  return path.compare(0, given.size() + 1, given + ".") == 0 ? 0 : least;
+}
+
+[[noreturn]] void refuse_unknown(const std::string& path) {
+  std::vector<std::string> names = {kName};
+  for (const Field& field : fields()) names.push_back(field.path);
+  std::stable_sort(names.begin(), names.end(), [&](const std::string& a, const std::string& b) {
+    return distance_of_path(path, a) < distance_of_path(path, b);
+  });
+  names.resize(kNearest);
+  throw InputError(fmt::format("--set: there is no field '{}'; near to it are {}; raypool config prints all", path,
+                               fmt::join(names, ", ")));
+}
+
+std::vector<Assignment> assignments(const std::vector<std::string>& texts) {
+  std::vector<Assignment> all;
+  for (const std::string& text : texts) {
+    std::istringstream words(text);
+    for (std::string word; words >> word;) {
+      const size_t sign = word.find('=');
+      if (sign == std::string::npos)
+        throw InputError(fmt::format("--set {}: write FIELD=VALUE, such as data_cache.bytes=4096", word));
+      all.push_back({word.substr(0, sign), word.substr(sign + 1)});
+    }
+  }
+  return all;
+}
+
+Json parse_value(const Field& field, const std::string& text) {
+  int number = 0;
+  const char* const end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, number);
+  switch (field.range.form) {
+    case Range::Form::Integer:
+    case Range::Form::PowerOfTwo:
+      if (!text.empty() && error == std::errc() && rest == end) return number;
+      break;
+    case Range::Form::OnOff:
+      if (text == "true" || text == "false") return text == "true";
+      break;
+    case Range::Form::Name: {
+      const std::vector<std::string_view> names = names_of(field.range);
+      if (std::find(names.begin(), names.end(), text) != names.end()) return text;
+      break;
+    }
+  }
+  throw InputError(fmt::format("--set {}={}: {} must be {}", field.path, text, field.path, text_of(field.range)));
+}
+
+Json::json_pointer pointer(std::string path) {
+  std::replace(path.begin(), path.end(), '.', '/');
+  return Json::json_pointer("/" + path);
+}
+
+}  // namespace
+
+std::vector<Field> fields() {
+  std::vector<Field> all;
+  for (const Parameter& parameter : parameter::kAll) all.push_back({path_of(parameter), parameter.range});
+  for (int type = 0; type < kAluTypes; ++type) {
+    const auto alu = static_cast<AluType>(type);
+    for (const AluParameter& parameter : parameter::kOfAlu) {
+      if (!applies(parameter, alu)) continue;
+      Range range = range_of(parameter, alu);
+      if (alu_info(alu).timed_by_events()) range.greatest = range.least;
+      all.push_back({fmt::format("alus.{}.{}", alu_info(alu).name, parameter.key), range});
+    }
+  }
+  for (const Parameter& parameter : parameter::kOfChip) all.push_back({path_of(parameter), parameter.range});
+  return all;
+}
+
+void set_fields(Json& json, const std::vector<std::string>& texts) {
+  const std::vector<Field> all = fields();
+  for (const Assignment& assignment : assignments(texts)) {
+    if (assignment.path == kName) {
+      json[kName] = assignment.value;
+      continue;
+    }
+    const auto field =
+        std::find_if(all.begin(), all.end(), [&](const Field& each) { return each.path == assignment.path; });
+    if (field == all.end()) refuse_unknown(assignment.path);
+    json[pointer(field->path)] = parse_value(*field, assignment.value);
+  }
+}
+
+std::vector<std::string> paths_set(const std::vector<std::string>& texts) {
+  const std::vector<Assignment> given = assignments(texts);
+  std::vector<std::string> paths;
+  const auto add = [&](const std::string& path) {
+    if (std::any_of(given.begin(), given.end(), [&](const Assignment& each) { return each.path == path; }))
+      paths.push_back(path);
+  };
+  add(kName);
+  for (const Field& field : fields()) add(field.path);
+  return paths;
+}
+
+std::string value_text(const Json& configuration, const std::string& path) {
+  const Json& value = configuration.at(pointer(path));
+  return value.is_string() ? value.get<std::string>() : value.dump();
+}
+
+}  // namespace raypool

@@ -1,0 +1,94 @@
+#include "config/settings.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+namespace raypool {
+namespace {
+
+std::string error_of(const std::vector<std::string>& set, const std::string& config = "8w2c") {
+  try {
+    load_configuration(config, set);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(Settings, ChangeAnyFieldOfUnitAndChip) {
+  const Configuration changed =
+      load_configuration("4w4c", {"alus.flt.count=2", "arithmetic.fma=true chip.ray_pool.size=100", "warps=8"});
+  EXPECT_EQ(changed.alu(AluType::Flt).count, 2);
+  EXPECT_TRUE(changed.fma);
+  EXPECT_EQ(changed.chip.ray_pool_size, 100);
+  EXPECT_EQ(changed.warps, 8);
+  EXPECT_EQ(changed.lanes, 4);
+}
+
+TEST(Settings, ReachEveryFieldThatAFileHolds) {
+  // Each is set to another value where it has one, and that value must be what the machine then prints.
+  for (const Field& field : fields()) {
+    const nlohmann::ordered_json before = nlohmann::ordered_json::parse(to_json(Configuration()));
+    const std::string value = value_text(before, field.path);
+    const std::string other = field.range.form == Range::Form::OnOff  ? (value == "true" ? "false" : "true")
+                              : field.range.form == Range::Form::Name ? std::string(names_of(field.range).back())
+                              : field.path == "chip.held_limit"       ? "100"
+                                                                      : std::to_string(field.range.greatest);
+    const Configuration changed = load_configuration("8w8c", {field.path + "=" + other});
+    EXPECT_EQ(value_text(nlohmann::ordered_json::parse(to_json(changed)), field.path), other) << field.path;
+    EXPECT_EQ(changed.name == "8w8c", other == value) << field.path;
+  }
+}
+
+TEST(Settings, WhatFollowsAFieldFollowsIt) {
+  EXPECT_EQ(load_configuration("8w8c", {"arithmetic.slow_unit=newton1"}).alu(AluType::Slw).depth, 8);
+  EXPECT_EQ(load_configuration("8w8c", {"chip.intersection_pool.size=64"}).chip.held_limit, 64);
+}
+
+TEST(Settings, TheNameTellsWhatWasChanged) {
+  const auto name = [](const std::vector<std::string>& set) { return load_configuration("8w8c", set).name; };
+  EXPECT_EQ(name({"alus.flt.count=2", "warps=4"}), "8w8c+warps-4+alus.flt.count-2");
+  EXPECT_EQ(name({"warps=4", "alus.flt.count=2", "warps=2"}), "8w8c+warps-2+alus.flt.count-2");
+  EXPECT_EQ(name({"chip.window_remedy=false"}), "8w8c+chip.window_remedy-false");
+  EXPECT_EQ(name({"warps=8"}), "8w8c") << "nothing is changed";
+  EXPECT_EQ(name({"name=mine", "warps=4"}), "mine");
+  EXPECT_EQ(name({"alus.flt.count=2 alus.int.count=2 alus.slw.count=2 warps=4 lanes=4"}), "8w8c+5_changes");
+  EXPECT_EQ(error_of({"name=4w4c"}).find("8w2c with --set name=4w4c: the name '4w4c' stands for other hardware"), 0u);
+}
+
+TEST(Settings, OnlyTheUnitsFieldsAskForAnotherVerilatedUnit) {
+  const auto verilog = [](const std::string& set) { return verilog_parameters(load_configuration("8w8c", {set})); };
+  EXPECT_EQ(verilog("chip.ray_pool.size=100"), verilog_parameters(Configuration()));
+  EXPECT_NE(verilog("data_cache.bytes=4096"), verilog_parameters(Configuration()));
+}
+
+TEST(Settings, AnUnknownFieldNamesTheNearest) {
+  EXPECT_EQ(error_of({"flt.count=2"}).find("--set: there is no field 'flt.count'; near to it are alus.flt.count, "), 0u)
+      << error_of({"flt.count=2"});
+  EXPECT_NE(error_of({"slow_unit=exact"}).find("near to it are arithmetic.slow_unit, "), std::string::npos);
+  EXPECT_NE(error_of({"data_cache.size=512"}).find("data_cache.bytes"), std::string::npos);
+  EXPECT_NE(error_of({"chip.memory=5"}).find("chip.memory.latency, chip.memory.cycles_per_beat, chip.memory.queue"),
+            std::string::npos)
+      << error_of({"chip.memory=5"});
+}
+
+TEST(Settings, AValueThatCannotBeIsOneSentence) {
+  EXPECT_EQ(error_of({"warps=eight"}), "--set warps=eight: warps must be a power of two from 1 to 32");
+  EXPECT_EQ(error_of({"warps="}), "--set warps=: warps must be a power of two from 1 to 32");
+  EXPECT_EQ(error_of({"warps=8.5"}), "--set warps=8.5: warps must be a power of two from 1 to 32");
+  EXPECT_EQ(error_of({"stack_depth=99999999999"}),
+            "--set stack_depth=99999999999: stack_depth must be an integer from 2 to 32");
+  EXPECT_EQ(error_of({"arithmetic.fma=1"}), "--set arithmetic.fma=1: arithmetic.fma must be true or false");
+  EXPECT_EQ(error_of({"warps"}), "--set warps: write FIELD=VALUE, such as data_cache.bytes=4096");
+  EXPECT_EQ(error_of({"warps=3"}), "8w2c with --set warps=3: warps is 3; it must be a power of two from 1 to 32");
+  EXPECT_EQ(error_of({"arithmetic.slow_unit=fast"}),
+            "--set arithmetic.slow_unit=fast: arithmetic.slow_unit must be one of exact, newton2, newton1, newton0");
+  EXPECT_EQ(error_of({"arithmetic.slow_unit=\xff"}).find("--set arithmetic.slow_unit="), 0u);
+  EXPECT_EQ(
+      error_of({"alus.mem.count=2"}),
+      "8w2c with --set alus.mem.count=2: alus.mem.count is 2; it must be 1, because this unit owns the data cache");
+}
+
+}  // namespace
+}  // namespace raypool
