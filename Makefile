@@ -31,6 +31,9 @@ LIGHT     ?=
 DETAIL    ?=
 OUT       ?=
 WAVES     ?= 0
+# `make compare`
+A         ?=
+B         ?=
 # `make run`
 KERNEL    ?= saxpy
 ARGS      ?=
@@ -63,7 +66,7 @@ PAGES     ?=
 FILES     ?=
 # Recipes read these from the environment, so that a value with spaces or quotes stays one word.
 export CONFIG SET CUS SCENE SIZE DEPTH ENGINE TRAVERSER VIEW CAMERA EYE LOOK_AT UP FOV LIGHT DETAIL OUT WAVES
-export KERNEL PROGRAMS SEED COVERAGE MUTANTS MODE THREADS
+export A B KERNEL PROGRAMS SEED COVERAGE MUTANTS MODE THREADS
 export LIBERTY CLOCK MEMORIES AGAINST RUN ONLY PLAN
 
 # Everything that is made goes here; scripts read it from the environment.
@@ -89,7 +92,7 @@ SYNTH_OPTIONS := --config "$$CONFIG" $(SET_FIELDS) --memories "$$MEMORIES" $${LI
 GATES_SETUP := $(if $(filter-out 0,$(GATES)),setup-synth)
 UNIT_OF_ENGINE := $(if $(filter rtl lockstep,$(ENGINE)),$(UNIT),true)
 
-.PHONY: help sim run cosim configurations mutants faults unit test lint format bench clean setup-% program configured-%
+.PHONY: help sim compare run cosim configurations mutants faults unit test lint format bench clean setup-% program configured-%
 .PHONY: numerics-long proofs synth synth-replay synth-prove growth numerics extremes isa diagrams quoted package
 
 help: ## this list
@@ -129,6 +132,9 @@ sim: setup-sim program ## draw a scene on the simulated chip: picture, report, f
 	@$(RAYPOOL) sim --scene "$$SCENE" --config "$$CONFIG" --units "$$CUS" --size "$$SIZE" --depth "$$DEPTH" \
 	  --engine "$$ENGINE" $(SET_FIELDS) $${TRAVERSER:+--traverser "$$TRAVERSER"} $${VIEW:+--view "$$VIEW"} $(LOOK) \
 	  $${DETAIL:+--detail "$$DETAIL"} $${OUT:+--out "$$OUT"} $(WAVES_FLAG)
+
+compare: setup-sim program ## two runs beside each other: A=FOLDER_OR_REPORT B=...
+	@$(RAYPOOL) compare "$$A" "$$B"
 
 run: setup-sim program ## run a compute kernel, check its results, print its cycles
 	@$(UNIT_OF_ENGINE)

@@ -92,6 +92,9 @@ refuses_sim "field without a value" "write FIELD=VALUE" --set warps
 refuses_sim "impossible chip" "chip.held_limit is 513" --set chip.held_limit=513
 refuses_sim "--set for a unit that is not built" "make unit CONFIG=4w4c SET=\"stack_depth=5\"" --engine rtl \
   --config 4w4c --set stack_depth=5
+refuses "compare without a report" "none.json" "$raypool" compare "$folder"/{none,none}.json
+refuses "compare with broken JSON" "broken.json: not valid JSON" "$raypool" compare "$folder"/{broken,broken}.json
+refuses "compare with foreign JSON" "warps.json: not a report" "$raypool" compare "$folder"/{warps,warps}.json
 refuses_sim "engine without a built unit" "make unit" --engine rtl --unit-library "$folder/none.so"
 refuses_sim "results folder that is a file" "good.obj" --out "$folder/good.obj"
 cosim=("$raypool" cosim --programs 2 --save "$folder/saved" --quiet)

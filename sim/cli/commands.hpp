@@ -41,6 +41,14 @@ struct SimOptions {
 };
 int sim_command(const SimOptions& options);
 
+/// `raypool compare`
+struct CompareOptions {
+  std::string a, b;                    ///< reports of raypool sim, or their folders
+  std::vector<std::string> synthesis;  ///< reports of synthesis, or folders of them; empty: synth beside the program
+  bool json = false;
+};
+int compare_command(const CompareOptions& options);
+
 /// `raypool run`
 struct RunOptions {
   std::string kernel;  ///< saxpy, matmul or path of an assembly file

@@ -95,6 +95,7 @@ class CommandLine {
 
  private:
   void add_sim_command();
+  void add_compare_command();
   void add_run_command();
   void add_cosim_command();
   void add_configurations_command();
@@ -114,6 +115,7 @@ class CommandLine {
       "raypool"};
   int code_ = 0;
   SimOptions sim_;
+  CompareOptions compare_;
   RunOptions compute_;
   CosimOptions cosim_;
   ConfigurationsOptions configurations_;
@@ -137,6 +139,7 @@ CommandLine::CommandLine(int argc, char** argv) {
   app_.footer(exit_codes());
   sim_.command.assign(argv, argv + argc);
   add_sim_command();
+  add_compare_command();
   add_run_command();
   add_cosim_command();
   add_configurations_command();
@@ -171,6 +174,21 @@ void CommandLine::add_sim_command() {
   sim_app->add_flag("--json", sim_.json, "the report on standard output, and nothing else there");
   sim_app->add_flag("--quiet", sim_.quiet, "no progress and no table");
   sim_app->callback([this] { code_ = sim_command(sim_); });
+}
+
+void CommandLine::add_compare_command() {
+  CLI::App* compare_app =
+      app_.add_subcommand("compare", "two reports of sim: what differs in the set-up, and what that did");
+  compare_app->add_option("a", compare_.a, "report.json, or the folder it is in")->required();
+  compare_app->add_option("b", compare_.b, "another")->required();
+  compare_app
+      ->add_option(
+          "--synthesis", compare_.synthesis,
+          "report of make synth, or a folder of such folders, for the area (default: synth beside the program)")
+      ->allow_extra_args(false)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  compare_app->add_flag("--json", compare_.json, "all of it as JSON");
+  compare_app->callback([this] { code_ = compare_command(compare_); });
 }
 
 void CommandLine::add_run_command() {

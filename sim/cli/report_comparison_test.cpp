@@ -1,0 +1,190 @@
+#include "cli/report_comparison.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include "config/configuration.hpp"
+#include "isa/input_error.hpp"
+#include "scene/image.hpp"
+
+namespace raypool {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+/// A folder of reports, gone after the test.
+class Folder {
+ public:
+  Folder() : path_(fs::temp_directory_path() / ("raypool_comparison_test_" + std::to_string(::getpid()))) {
+    fs::create_directories(path_);
+  }
+  ~Folder() { fs::remove_all(path_); }
+
+  std::string write(const std::string& name, const std::string& text) const {
+    fs::create_directories((path_ / name).parent_path());
+    std::ofstream(path_ / name) << text;
+    return (path_ / name).string();
+  }
+  std::string path(const std::string& name) const { return (path_ / name).string(); }
+
+ private:
+  fs::path path_;
+};
+
+Json report_of(const Configuration& configuration, uint64_t cycles, double flt) {
+  return {{"raypool", "0.1.0"},
+          {"command", {"raypool", "sim"}},
+          {"config", configuration.name},
+          {"configuration", Json::parse(to_json(configuration))},
+          {"engine", "model"},
+          {"scene", {{"name", "room"}, {"triangles", 10}, {"materials", 2}}},
+          {"size", {{"width", 2}, {"height", 1}}},
+          {"depth", 1},
+          {"units", 2},
+          {"cycles", cycles},
+          {"rays", 100},
+          {"mrays_per_second", 1e5 / static_cast<double>(cycles)},
+          {"alus", {{"flt", {{"utilisation", flt}}}}},
+          {"wall_seconds", static_cast<double>(cycles)}};
+}
+
+Json row_of(const Json& rows, const std::string& field) {
+  for (const Json& row : rows)
+    if (row["field"] == field) return row;
+  return nullptr;
+}
+
+std::string error_of(const std::string& path) {
+  try {
+    load_report(path);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(ReportComparison, SaysWhatDiffersAndWhatThatDid) {
+  const Folder folder;
+  const Configuration other = load_configuration("8w8c", {"alus.flt.count=2", "chip.ray_pool.size=100"});
+  folder.write("a/report.json", report_of(Configuration(), 1000, 0.5).dump());
+  folder.write("b/report.json", report_of(other, 800, 0.25).dump());
+  const Json comparison = compare_reports(load_report(folder.path("a")), load_report(folder.path("b/report.json")), {});
+  const Json& set_up = comparison["set_up"];
+  EXPECT_EQ(set_up.size(), 3u) << set_up.dump(2);
+  EXPECT_EQ(row_of(set_up, "configuration.alus.flt.count")["a"], 1);
+  EXPECT_EQ(row_of(set_up, "configuration.alus.flt.count")["b"], 2);
+  EXPECT_EQ(row_of(set_up, "configuration.chip.ray_pool.size")["b"], 100);
+  EXPECT_EQ(row_of(set_up, "configuration.name")["b"], other.name);
+
+  const Json& results = comparison["results"];
+  EXPECT_NEAR(row_of(results, "cycles")["change"].get<double>(), -0.2, 1e-9);
+  EXPECT_NEAR(row_of(results, "mrays_per_second")["change"].get<double>(), 0.25, 1e-9);
+  EXPECT_EQ(row_of(results, "alus.flt.utilisation")["b"], 0.25);
+  EXPECT_TRUE(row_of(results, "wall_seconds").is_null()) << "what this computer did is no result";
+
+  const std::string table = comparison_table(comparison);
+  EXPECT_NE(table.find("-20.0%"), std::string::npos) << table;
+  EXPECT_NE(table.find("-25.0 points"), std::string::npos) << table;
+  EXPECT_NE(table.find("picture   not compared: there is no " + folder.path("a/image.png")), std::string::npos)
+      << table;
+}
+
+TEST(ReportComparison, OfTheSameRunTwiceFindsNothing) {
+  const Folder folder;
+  folder.write("a/report.json", report_of(Configuration(), 1000, 0.5).dump());
+  const Report report = load_report(folder.path("a"));
+  const Json comparison = compare_reports(report, report, {});
+  EXPECT_TRUE(comparison["set_up"].empty());
+  for (const Json& row : comparison["results"]) EXPECT_EQ(row["a"], row["b"]);
+  EXPECT_NE(comparison_table(comparison).find("set-up    the same"), std::string::npos);
+}
+
+TEST(ReportComparison, AReportWithoutAChipHadTheDefaultOne) {
+  const Folder folder;
+  Json before = report_of(Configuration(), 1000, 0.5);
+  before["configuration"].erase("chip");
+  folder.write("a/report.json", before.dump());
+  folder.write("b/report.json", report_of(load_configuration("8w8c", {"chip.memory.latency=60"}), 1000, 0.5).dump());
+  const Json comparison = compare_reports(load_report(folder.path("a")), load_report(folder.path("b")), {});
+  EXPECT_EQ(comparison["set_up"].size(), 2u) << comparison["set_up"].dump(2);
+  EXPECT_EQ(row_of(comparison["set_up"], "configuration.chip.memory.latency")["a"], 120);
+}
+
+TEST(ReportComparison, WhatOneReportLacksIsNull) {
+  const Folder folder;
+  Json untimed = report_of(Configuration(), 1000, 0.5);
+  untimed["cycles"] = nullptr;
+  untimed.erase("alus");
+  folder.write("a/report.json", untimed.dump());
+  folder.write("b/report.json", report_of(Configuration(), 1000, 0.5).dump());
+  const Json comparison = compare_reports(load_report(folder.path("a")), load_report(folder.path("b")), {});
+  EXPECT_TRUE(row_of(comparison["results"], "cycles")["a"].is_null());
+  EXPECT_TRUE(row_of(comparison["results"], "cycles")["change"].is_null());
+  EXPECT_EQ(row_of(comparison["results"], "alus.flt.utilisation")["b"], 0.5);
+  EXPECT_FALSE(comparison_table(comparison).empty());
+}
+
+TEST(ReportComparison, CountsThePixelsThatDiffer) {
+  const Folder folder;
+  const auto draw = [&](const std::string& name, float second) {
+    folder.write(name + "/report.json", report_of(Configuration(), 1000, 0.5).dump());
+    FrameBuffer frame(2, 1);
+    FrameContribution pixel{};
+    pixel.pixel = 1;
+    uint32_t bits = 0;
+    std::memcpy(&bits, &second, 4);
+    pixel.rgb = {bits, 0, 0};
+    frame.add(pixel);
+    write_png(frame, folder.path(name + "/image.png"));
+    return load_report(folder.path(name));
+  };
+  const Report a = draw("a", 0), b = draw("b", 1);
+  const Json picture = compare_reports(a, b, {})["picture"];
+  EXPECT_EQ(picture["pixels"], 2);
+  EXPECT_EQ(picture["differ"], 1);
+  EXPECT_EQ(picture["largest_difference"], 255);
+  EXPECT_NEAR(picture["mean_difference"].get<double>(), 255.0 / 6, 1e-9);
+  EXPECT_EQ(compare_reports(a, a, {})["picture"]["differ"], 0);
+}
+
+TEST(ReportComparison, TakesTheAreaOfTheSameVerilog) {
+  const Folder folder;
+  Json synthesis = {{"memories", "macros"}, {"area", {{"total_kge", 100.0}}}, {"forty_nm", {{"total_mm2", 0.5}}}};
+  for (const auto& [name, value] : verilog_parameters(Configuration()))
+    synthesis["parameters"][name] = std::to_string(value);
+  folder.write("synth/8w8c/report.json", synthesis.dump());
+  folder.write("synth/broken/report.json", "{");
+  folder.write("a/report.json", report_of(load_configuration("8w8c", {"chip.ray_pool.size=7"}), 1000, 0.5).dump());
+  folder.write("b/report.json", report_of(load_configuration("8w8c", {"warps=4"}), 1000, 0.5).dump());
+  const Report a = load_report(folder.path("a")), b = load_report(folder.path("b"));
+  const Json area = compare_reports(a, b, {folder.path("synth")})["area"];
+  EXPECT_EQ(area["a"]["mm2"], 1.0) << "two units";
+  EXPECT_EQ(area["a"]["kge"], 200.0);
+  EXPECT_EQ(area["a"]["mrays_per_second_mm2"], 100.0);
+  EXPECT_TRUE(area["b"].is_null());
+  EXPECT_THROW(compare_reports(a, b, {folder.path("synth/broken/report.json")}), InputError);
+  EXPECT_THROW(compare_reports(a, b, {folder.path("a/report.json")}), InputError) << "no report of synthesis";
+}
+
+TEST(ReportComparison, WhatIsNoReportIsOneSentence) {
+  const Folder folder;
+  EXPECT_EQ(
+      error_of(folder.write("broken.json", "{\"raypool\": ")).find(folder.path("broken.json") + ": not valid JSON"),
+      0u);
+  for (const char* text : {"3", "[]", "{}", R"({"raypool": 3})", R"({"name": "8w8c"})"}) {
+    EXPECT_EQ(error_of(folder.write("foreign.json", text)),
+              folder.path("foreign.json") + ": not a report of raypool sim: it has no 'raypool' as those have");
+  }
+  Json cut = report_of(Configuration(), 1000, 0.5);
+  cut["units"] = "two";
+  EXPECT_NE(error_of(folder.write("cut.json", cut.dump())).find("it has no 'units'"), std::string::npos);
+  EXPECT_NE(error_of(folder.path("none")).find("none"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace raypool
