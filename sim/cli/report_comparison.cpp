@@ -208,6 +208,7 @@ Json area(const Report& report, const std::vector<SynthesisReport>& synthesis) {
 }  // namespace
 
 Report load_report(const std::string& path) {
+  if (path.empty()) throw InputError("compare takes two reports of raypool sim, or the folders that they are in");
   std::error_code none;
   Report report{fs::is_directory(path, none) ? (fs::path(path) / "report.json").string() : path, {}};
   report.json = read_json(report.path, "report");

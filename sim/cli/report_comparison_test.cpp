@@ -184,6 +184,7 @@ TEST(ReportComparison, WhatIsNoReportIsOneSentence) {
   cut["units"] = "two";
   EXPECT_NE(error_of(folder.write("cut.json", cut.dump())).find("it has no 'units'"), std::string::npos);
   EXPECT_NE(error_of(folder.path("none")).find("none"), std::string::npos);
+  EXPECT_EQ(error_of(""), "compare takes two reports of raypool sim, or the folders that they are in");
 }
 
 }  // namespace
