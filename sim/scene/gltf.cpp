@@ -3,7 +3,6 @@
 #include <assimp/MemoryIOWrapper.h>
 #include <assimp/scene.h>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <assimp/IOSystem.hpp>
@@ -148,11 +147,11 @@ std::optional<Camera> choose_camera(const std::string& path, const std::string& 
                                     const Assembly& assembly, Scene& scene) {
   const Placed* chosen = nullptr;
   size_t orthographic = 0;
-  std::vector<std::string> names;
+  std::string names;
   for (const Placed& placed : assembly.cameras) {
     const GltfCamera& camera = document.cameras[placed.index];
     const std::string name = name_of(camera.name, placed.node, "camera", placed.index);
-    names.push_back(name);
+    names += (names.empty() ? "" : ", ") + name;
     const bool is_wanted = name == wanted || placed.node == wanted;
     if (!camera.fov) ++orthographic;
     if (!wanted.empty() && is_wanted && !camera.fov)
@@ -165,9 +164,9 @@ std::optional<Camera> choose_camera(const std::string& path, const std::string& 
     }
   }
   if (chosen == nullptr && !wanted.empty()) {
-    throw InputError(names.empty() ? fmt::format("{}: there is no camera in it; leave --camera '{}' out", path, wanted)
-                                   : fmt::format("{}: there is no camera '{}' in it; its cameras are {}", path, wanted,
-                                                 fmt::join(names, ", ")));
+    throw InputError(names.empty()
+                         ? fmt::format("{}: there is no camera in it; leave --camera '{}' out", path, wanted)
+                         : fmt::format("{}: there is no camera '{}' in it; its cameras are {}", path, wanted, names));
   }
   if (chosen == nullptr) {
     scene.cameras.clear();

@@ -129,8 +129,8 @@ const std::string& GltfFile::buffer(const JsonPlace& place, size_t index) {
   const std::optional<JsonPlace> uri = place.find("uri");
   std::string bytes;
   if (uri) {
-    const bool data = uri->text().compare(0, 5, "data:") == 0;
-    bytes = data ? decode_data_uri(uri->text(), *uri) : read_external(uri->text(), *uri);
+    const std::string text = uri->text();
+    bytes = text.compare(0, 5, "data:") == 0 ? decode_data_uri(text, *uri) : read_external(text, *uri);
   } else if (index == 0 && has_chunk_) {
     bytes.swap(chunk_);
   } else {

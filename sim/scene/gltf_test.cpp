@@ -197,16 +197,17 @@ TEST_F(Gltf, VerticesAtOnePlaceBecomeOne) {
 TEST_F(Gltf, StripsFansAndInterleavedPositionsAreRead) {
   Document document;
   const std::vector<Vec3> square = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
-  // Positions behind a normal each; the last one ends with the view.
+  const size_t fan = document.add_indices<uint8_t>({0, 1, 3, 2}), both = document.add_indices<uint32_t>({0, 1, 2, 3});
+  // Positions behind a normal each; the last one ends with the view, and with the buffer.
+  const size_t begin = document.bytes.size();
   for (const Vec3& p : square) {
     for (const Vec3& v : {Vec3{0, 0, 1}, p}) {
       for (int axis = 0; axis < 3; ++axis) append(document.bytes, v[axis]);
     }
   }
-  const size_t positions = document.add_accessor(4, 5126, "VEC3", 0);
-  document.json["bufferViews"][0]["byteStride"] = 24;
-  document.json["accessors"][0]["byteOffset"] = 12;
-  const size_t fan = document.add_indices<uint8_t>({0, 1, 3, 2}), both = document.add_indices<uint32_t>({0, 1, 2, 3});
+  const size_t positions = document.add_accessor(4, 5126, "VEC3", begin);
+  document.json["bufferViews"][positions]["byteStride"] = 24;
+  document.json["accessors"][positions]["byteOffset"] = 12;
   const Json attributes = {{"POSITION", positions}};
   document.json["meshes"] = {{{"primitives",
                                {{{"attributes", attributes}, {"indices", both}, {"mode", 5}},
@@ -297,6 +298,32 @@ TEST_F(Gltf, WordsOfTheCommandLineChangeTheViewOfTheFile) {
   EXPECT_THROW(load_scene("cornell", {1, "", {}, "Side"}), InputError);
 }
 
+Document with_lights(const std::vector<std::string>& types) {
+  Document document = triangle();
+  Json& lights = document.json["extensions"]["KHR_lights_punctual"]["lights"];
+  for (const std::string& type : types) {
+    const auto place = static_cast<double>(lights.size());
+    document.json["nodes"].push_back({{"translation", {place, 3, 4}},
+                                      {"rotation", {std::sqrt(0.5), 0, 0, std::sqrt(0.5)}},  // -z to y
+                                      {"name", "lamp" + std::to_string(lights.size())},
+                                      {"extensions", {{"KHR_lights_punctual", {{"light", lights.size()}}}}}});
+    lights.push_back({{"type", type}, {"color", {1, 0.5, 0.25}}, {"intensity", 40}});
+  }
+  return document;
+}
+
+TEST_F(Gltf, ASceneIsSeenThroughItsCameraInItsLight) {
+  Document document = with_lights({"point"});
+  document.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 1}}}}};
+  const double half = std::sqrt(0.5);
+  document.json["nodes"].push_back({{"camera", 0}, {"translation", {1, 0, 5}}, {"rotation", {0, 0, half, half}}});
+  const Scene seen = load_scene(write("a.gltf", document.text()));
+  expect_near(seen.camera.direction, {0, 0, -1});
+  expect_near(seen.camera.up, {-1, 0, 0});
+  EXPECT_EQ(seen.light.position, (Vec3{0, 3, 4}));
+  EXPECT_EQ(seen.light.color, (Vec3{1, 0.5f, 0.25f}));
+}
+
 TEST_F(Gltf, WithoutCameraTheViewIsChosenAndWithoutLightOneThatLights) {
   EXPECT_FALSE(load(triangle()).camera);
   for (const Document& document : {triangle(), with_cameras()}) {
@@ -317,20 +344,6 @@ TEST_F(Gltf, AnOrthographicCameraAloneIsTold) {
   EXPECT_FALSE(file.camera);
   EXPECT_EQ(warnings(file.scene), std::vector<std::string>{"a.gltf: the camera is orthographic, which ours is not: the "
                                                            "view is chosen automatically"});
-}
-
-Document with_lights(const std::vector<std::string>& types) {
-  Document document = triangle();
-  Json& lights = document.json["extensions"]["KHR_lights_punctual"]["lights"];
-  for (const std::string& type : types) {
-    const auto place = static_cast<double>(lights.size());
-    document.json["nodes"].push_back({{"translation", {place, 3, 4}},
-                                      {"rotation", {std::sqrt(0.5), 0, 0, std::sqrt(0.5)}},  // -z to y
-                                      {"name", "lamp" + std::to_string(lights.size())},
-                                      {"extensions", {{"KHR_lights_punctual", {{"light", lights.size()}}}}}});
-    lights.push_back({{"type", type}, {"color", {1, 0.5, 0.25}}, {"intensity", 40}});
-  }
-  return document;
 }
 
 TEST_F(Gltf, OnePointLightIsOursAndTheOthersAreTold) {
@@ -394,6 +407,9 @@ TEST_F(Gltf, BrokenFilesAreRefusedWithTheirPlace) {
   Document document = good;
   const std::string whole = glb(good.finished(), good.bytes);
   for (size_t size = 1; size < whole.size(); ++size) expect_refusal_of(whole.substr(0, size), "");
+  std::string longer = whole;  // its last chunk says 48 bytes, of which there are 44
+  longer[whole.size() - 44 - 8] = 48;
+  expect_refusal_of(longer, "the file is cut off");
   const auto broken = [&](const std::string& pointer, const Json& value, const std::string& part) {
     document = good;
     document.json[Json::json_pointer(pointer)] = value;
@@ -469,10 +485,22 @@ TEST_F(Gltf, NodesWithoutEndAreRefused) {
   }
   document.json["scenes"] = {{{"nodes", {0}}}};
   expect_refusal(document, "more than 1000 nodes above it");
-  // As many as there may be triangles.
-  document = triangle();
-  document.json["accessors"][0]["count"] = 1;
   expect_refusal_of(std::string(200000, '['), "not valid JSON");
+}
+
+TEST_F(Gltf, AMeshInTooManyPlacesIsRefused) {
+  Document document;
+  const size_t positions = document.add_positions(kCorners);
+  const size_t indices = document.add_indices(std::vector<uint8_t>(900'000, 0));
+  document.json["meshes"] = {{{"primitives", {{{"attributes", {{"POSITION", positions}}}, {"indices", indices}}}}}};
+  for (int i = 0; i < 334; ++i) document.json["nodes"].push_back({{"mesh", 0}});
+  expect_refusal(document, "nodes[333] brings the scene to 100200000 triangles; 100000000 are the most");
+}
+
+TEST_F(Gltf, NamesDoNotSpoilALineOfOutput) {
+  Document document = with_cameras();
+  document.json["cameras"][2]["name"] = "Si\n\x1b[1mde";
+  EXPECT_EQ(load(document).scene.cameras[2], "Si  [1mde");
 }
 
 TEST_F(Gltf, TheEndingSaysTheFormat) {

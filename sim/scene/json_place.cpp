@@ -66,9 +66,13 @@ double JsonPlace::number(double least, double largest) const {
   refuse(fmt::format("a number in {:g} .. {:g}", least, largest));
 }
 
-const std::string& JsonPlace::text() const {
+std::string JsonPlace::text() const {
   if (!json_->is_string()) refuse("a text, \"...\"");
-  return json_->get_ref<const std::string&>();
+  auto text = json_->get<std::string>();
+  for (char& c : text) {
+    if ((c >= 0 && c < ' ') || c == '\x7f') c = ' ';
+  }
+  return text;
 }
 
 }  // namespace raypool

@@ -27,7 +27,8 @@ class JsonPlace {
 
   uint64_t whole(uint64_t least, uint64_t largest) const;
   double number(double least, double largest) const;
-  const std::string& text() const;
+  /// Control characters, which would spoil a line of output, become blanks.
+  std::string text() const;
 
   const std::string& where() const { return where_; }
   [[noreturn]] void fail(const std::string& message) const;
