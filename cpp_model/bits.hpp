@@ -1,4 +1,4 @@
-// Sets of warps, lanes, types as the bits of a word; floats as bits.
+// Sets of warps, lanes, types as the bits of a word; floats as bits; sizes as words.
 #pragma once
 
 #include <cstdint>
@@ -13,6 +13,12 @@ inline uint32_t lowest(uint32_t set) { return static_cast<uint32_t>(__builtin_ct
 /// The lowest member as a set; of an empty set the empty set.
 inline uint32_t lowest_bit(uint32_t set) { return set & (0u - set); }
 inline uint64_t popcount(uint32_t set) { return static_cast<uint64_t>(__builtin_popcount(set)); }
+
+/// Elements of a container: of code, memory, lanes there are never more than a word counts.
+template <typename Container>
+uint32_t size32(const Container& container) {
+  return static_cast<uint32_t>(container.size());
+}
 
 inline uint32_t as_bits(float value) {
   uint32_t bits = 0;

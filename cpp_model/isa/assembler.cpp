@@ -147,7 +147,7 @@ class Assembler {
   void define_label(const std::string& name, const Place& place) {
     if (std::isdigit(static_cast<unsigned char>(name[0])))
       fail(place, fmt::format("label '{}' begins with a digit; labels begin with a letter", name));
-    if (!labels_.emplace(name, static_cast<uint32_t>(program_.code.size())).second) {
+    if (!labels_.emplace(name, size32(program_.code)).second) {
       fail(place, fmt::format("label '{}' is defined twice; give one of them another name", name));
     }
   }
@@ -159,7 +159,7 @@ class Assembler {
     if (name.empty()) fail(place, fmt::format("expected the kernel's name, found {}", rest()));
     finish_line();
     define_label(name, place);
-    program_.entries[name] = static_cast<uint32_t>(program_.code.size());
+    program_.entries[name] = size32(program_.code);
   }
 
   uint64_t parse_bits() {

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "bits.hpp"
 #include "isa/input_error.hpp"
 
 namespace raypool::kernel {
@@ -71,13 +72,13 @@ void compile(Function function, Program& program) {
   remove_dead(function);
   const Allocation places = allocate(function);
 
-  const auto entry = static_cast<uint32_t>(program.code.size());
+  const auto entry = size32(program.code);
   std::vector<Instruction> code;
   std::vector<std::pair<size_t, int>> jumps;  // instruction, label
   std::vector<uint32_t> label_at(function.labels, 0);
   for (const Op& op : function.ops) {
     if (op.kind != Op::Kind::Instruction) {
-      label_at[op.label] = entry + static_cast<uint32_t>(code.size());
+      label_at[op.label] = entry + size32(code);
       continue;
     }
     const Instruction parts = with_places(op, places);

@@ -4,6 +4,7 @@
 
 #include <numeric>
 
+#include "bits.hpp"
 #include "isa/encoding.hpp"
 
 namespace raypool {
@@ -26,7 +27,7 @@ Program extract_kernel(const Program& program, const std::string& name) {
     throw InputError(fmt::format("there is no kernel '{}'; there are {}", name, names));
   }
   const uint32_t begin = found->second;
-  auto end = static_cast<uint32_t>(program.code.size());
+  auto end = size32(program.code);
   for (const auto& [other, entry] : program.entries) {
     if (entry > begin) end = std::min(end, entry);
   }

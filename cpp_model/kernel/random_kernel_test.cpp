@@ -2,12 +2,11 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <random>
-
 #include "bits.hpp"
 #include "isa/assembler.hpp"
 #include "kernel/kernel.hpp"
 #include "kernel/test_interpreter.hpp"
+#include "random.hpp"
 
 namespace raypool::kernel {
 namespace {
@@ -22,7 +21,6 @@ class RandomKernel {
   using Bool = typename K::Bool;
   using Int = typename K::Int;
   using Float = typename K::Float;
-  using Random = std::mt19937;
 
  public:
   RandomKernel(K& k, uint32_t seed) : k_(k), seed_(seed), slot_((k.thread() << 6) + 1024) {}
@@ -54,12 +52,8 @@ class RandomKernel {
  private:
   static uint32_t below(Random& random, uint32_t limit) { return static_cast<uint32_t>(random() % limit); }
 
-  const Int& pick(Random& random, const std::vector<Int>& from) {
-    return from[below(random, static_cast<uint32_t>(from.size()))];
-  }
-  const Float& pick(Random& random, const std::vector<Float>& from) {
-    return from[below(random, static_cast<uint32_t>(from.size()))];
-  }
+  const Int& pick(Random& random, const std::vector<Int>& from) { return from[below(random, size32(from))]; }
+  const Float& pick(Random& random, const std::vector<Float>& from) { return from[below(random, size32(from))]; }
 
   // Operands of an operator are computed in statements of their own: C++ leaves the order within an expression open.
   Int int_expression(Random& random, const std::vector<Int>& ints, const std::vector<Float>& floats,
@@ -67,7 +61,7 @@ class RandomKernel {
     const Int& a = pick(random, ints);
     const Int& b = pick(random, ints);
     const Float& f = pick(random, floats);
-    const Bool& c = bools[below(random, static_cast<uint32_t>(bools.size()))];
+    const Bool& c = bools[below(random, size32(bools))];
     const int literal = static_cast<int>(below(random, 40)) - 20;
     const int kind = below(random, 24);
     switch (kind) {
@@ -127,7 +121,7 @@ class RandomKernel {
     const Float& a = pick(random, floats);
     const Float& b = pick(random, floats);
     const Int& i = pick(random, ints);
-    const Bool& c = bools[below(random, static_cast<uint32_t>(bools.size()))];
+    const Bool& c = bools[below(random, size32(bools))];
     const float literal = static_cast<float>(below(random, 64)) * 0.25f - 8.0f;
     const int kind = below(random, 20);
     switch (kind) {
@@ -180,8 +174,8 @@ class RandomKernel {
     const Int& j = pick(random, ints);
     const Float& f = pick(random, floats);
     const Float& g = pick(random, floats);
-    const Bool& c = bools[below(random, static_cast<uint32_t>(bools.size()))];
-    const Bool& d = bools[below(random, static_cast<uint32_t>(bools.size()))];
+    const Bool& c = bools[below(random, size32(bools))];
+    const Bool& d = bools[below(random, size32(bools))];
     switch (below(random, 18)) {
       case 0:
         return i == j;
@@ -339,15 +333,14 @@ void compare(uint32_t seed, Outcome& outcome) {
   ASSERT_EQ(assemble(listing(program), "listing").code, program.code) << "seed " << seed;
 
   test::Interpreter machine;
-  std::mt19937 random(seed);
+  Random random(seed);
   machine.memory = Memory(kMemoryBytes);
-  for (uint32_t address = 0; address < kMemoryBytes; address += 4)
-    machine.memory.store(address, static_cast<uint32_t>(random()));
+  for (uint32_t address = 0; address < kMemoryBytes; address += 4) machine.memory.store(address, random());
   for (uint32_t& word : machine.arguments) word = static_cast<uint32_t>(random() % 100);
   for (auto& package : machine.input) {
     for (size_t i = 0; i < package.size(); ++i) {
       const float value = static_cast<float>(static_cast<int>(random() % 4001) - 2000) / 256.0f;
-      package[i] = random() % 16 == 0 ? static_cast<uint32_t>(random()) : as_bits(value);
+      package[i] = random() % 16 == 0 ? random() : as_bits(value);
     }
   }
   machine.mode.subnormals = seed % 2 != 0 ? Subnormals::Flush : Subnormals::Ieee;

@@ -13,6 +13,7 @@
 #include "kernel/kernel_report.hpp"
 #include "kernel/kernels.hpp"
 #include "kernel/test_interpreter.hpp"
+#include "random.hpp"
 
 namespace raypool {
 namespace {
@@ -49,7 +50,7 @@ struct Case {
   NativeThread thread;
 
   explicit Case(uint32_t seed) {
-    std::mt19937 random(seed);
+    Random random(seed);
     const auto number = [&] { return std::uniform_real_distribution<double>(-4, 4)(random); };
     const auto positive = [&] { return std::uniform_real_distribution<double>(0.05, 1)(random); };
     const auto vec = [&] { return Vec{number(), number(), number()}; };
@@ -245,11 +246,11 @@ TEST(RayKernels, MachineCodeAgreesWithNativeInEveryMode) {
         machine.memory = base.memory;
         machine.arguments = base.arguments;
         machine.block = 96u | 49u << 16;
-        std::mt19937 random(seed);
+        Random random(seed);
         for (uint32_t lane = 0; lane < test::Interpreter::kLanes; ++lane) {
           machine.input[lane] = Case(1000 * seed + lane).thread.input;
           // Also bit patterns that no renderer would send.
-          if (random() % 4 == 0) machine.input[lane][random() % 18] = static_cast<uint32_t>(random());
+          if (random() % 4 == 0) machine.input[lane][random() % 18] = random();
         }
         const std::string name(kRayKernelNames[which]);
         machine.run(ray_kernel_program(), ray_kernel_program().entries.at(name));
@@ -309,7 +310,7 @@ TEST(ComputeKernels, SaxpyTakesAnyNumberOfBlocksAndThreads) {
   for (const uint32_t n : {0u, 1u, 7u, 8u, 100u}) {
     for (const uint32_t blocks : {1u, 3u}) {
       for (const uint32_t threads : {1u, 5u, 8u}) {
-        std::mt19937 random(n);
+        Random random(n);
         const uint32_t x = 64, y = 2048;
         test::Interpreter machine;
         machine.memory = Memory(4096);
@@ -354,7 +355,7 @@ TEST(ComputeKernels, MatmulTakesAnyNumberOfBlocksAndThreads) {
   for (const uint32_t n : {1u, 3u, 9u}) {
     for (const uint32_t blocks : {1u, 4u}) {
       for (const uint32_t threads : {1u, 8u}) {
-        std::mt19937 random(n);
+        Random random(n);
         const uint32_t a = 64, b = 1024, c = 2048;
         test::Interpreter machine;
         machine.memory = Memory(4096);

@@ -1,18 +1,18 @@
 #include "machine/alu_model.hpp"
 
-#include <array>
+#include "enum_array.hpp"
 
 namespace raypool {
 
 const AluModel* find_alu_model(AluType type) {
-  static const std::array<const AluModel*, kAluTypes> kModels = {
+  static const EnumArray<AluType, const AluModel*, kAluTypes> kModels = {
 #define RAYPOOL_CORE(type, name, depth, ports, parameters, title) nullptr,
 #define RAYPOOL_CLASS(type, name, depth, parameters, title) &alu_model<AluType::type>(),
       RAYPOOL_ALU_TYPES(RAYPOOL_CORE, RAYPOOL_CLASS)
 #undef RAYPOOL_CORE
 #undef RAYPOOL_CLASS
   };
-  return kModels[static_cast<size_t>(type)];
+  return kModels[type];
 }
 
 }  // namespace raypool

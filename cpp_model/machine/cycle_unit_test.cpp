@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "bits.hpp"
 #include "machine/functional_unit.hpp"
 #include "machine/model.hpp"
 #include "machine/test_chip.hpp"
@@ -75,7 +76,7 @@ TEST(CycleUnit, LeavesWhatTheFunctionalUnitLeaves) {
       } else {
         unit = make_functional_unit(configuration, memory);
       }
-      unit->reset(static_cast<uint32_t>(kProgram.size()), kMemoryBytes);
+      unit->reset(size32(kProgram), kMemoryBytes);
       TestChip chip(*unit, memory, 3, 70);
       for (int i = 0; i < 3; ++i)
         chip.launches.push_back(launch_of(static_cast<uint32_t>(configuration.contents()), ImportKind::Normal));
@@ -98,7 +99,7 @@ TEST(CycleUnit, AWarpWithoutStallsIssuesEveryFourCyclesWithAnAluOfDepthOne) {
   Memory memory = with_program(code);
   CycleUnit unit(make_configuration(1, 4), memory);
   unit.trace_on();
-  unit.reset(static_cast<uint32_t>(code.size()), kMemoryBytes);
+  unit.reset(size32(code), kMemoryBytes);
   TestChip chip(unit, memory);
   chip.launches.push_back(launch_of(4));
   std::vector<uint64_t> retired;
@@ -119,7 +120,7 @@ TEST(CycleUnit, TheLowestWarpGoesFirstAndTheOthersAreCountedAsWaiting) {
   Memory memory = with_program(code);
   CycleUnit unit(configuration, memory);
   unit.trace_on();
-  unit.reset(static_cast<uint32_t>(code.size()), kMemoryBytes);
+  unit.reset(size32(code), kMemoryBytes);
   TestChip chip(unit, memory);
   chip.launches.push_back(launch_of(4));
   std::vector<std::pair<uint32_t, uint64_t>> retired;
@@ -145,7 +146,7 @@ TEST(CycleUnit, RunIsClockRepeatedUntilSomethingHappens) {
   const Configuration configuration = make_configuration(4, 4);
   Memory memory = with_program(kProgram);
   CycleUnit clocked(configuration, memory), run(configuration, memory);
-  for (CycleUnit* unit : {&clocked, &run}) unit->reset(static_cast<uint32_t>(kProgram.size()), kMemoryBytes);
+  for (CycleUnit* unit : {&clocked, &run}) unit->reset(size32(kProgram), kMemoryBytes);
   UnitInputs ready;
   ready.memory_request_ready = ready.import_request_ready = ready.export_ready = ready.frame_ready = true;
   std::deque<std::pair<uint64_t, uint8_t>> lines;
@@ -216,7 +217,7 @@ TEST(CycleUnit, WarpsDoNotTakeLinesFromEachOtherForEver) {
   for (int latency = 1; latency < 70; ++latency) {
     Memory memory = with_program(code);
     CycleUnit unit(configuration, memory);
-    unit.reset(static_cast<uint32_t>(code.size()), kMemoryBytes);
+    unit.reset(size32(code), kMemoryBytes);
     TestChip chip(unit, memory, 1, 100, latency);
     chip.launches.push_back(launch_of(32));
     EXPECT_TRUE(chip.run(200000)) << "latency " << latency;

@@ -7,6 +7,7 @@
 
 #include "bits.hpp"
 #include "config/configuration.hpp"
+#include "enum_array.hpp"
 #include "machine/alu_pipeline.hpp"
 #include "machine/performance_counters.hpp"
 #include "machine/task_register.hpp"
@@ -37,8 +38,8 @@ class Dispatcher {
   uint32_t instances(size_t type) const { return instances_[type]; }
   uint32_t depth(size_t type) const { return pipelines_[type][0].depth(); }
   /// The warp whose task arrives at Mem or Ray in this cycle, or -1.
-  int task(AluType type) const { return task_[static_cast<size_t>(type)].warp(); }
-  uint32_t wants(AluType type) const { return want_[static_cast<size_t>(type)]; }
+  int task(AluType type) const { return task_[type].warp(); }
+  uint32_t wants(AluType type) const { return want_[type]; }
   bool wants_pipelined() const { return want_types_ != 0; }
   bool idle() const {
     return (want_types_ | wants(AluType::Mem) | wants(AluType::Ray)) == 0 && task(AluType::Mem) < 0 &&
@@ -51,7 +52,7 @@ class Dispatcher {
     want_types_ |= 1u << type;
   }
   /// Warps that want Mem or Ray from this cycle on.
-  void want(AluType type, uint32_t warps) { want_[static_cast<size_t>(type)] |= warps; }
+  void want(AluType type, uint32_t warps) { want_[type] |= warps; }
 
   /// The grants of a cycle among the pipelined types.
   void grant_pipelined(uint64_t cycle, Timeline& timeline, PerformanceCounters& counters) {
@@ -83,7 +84,7 @@ class Dispatcher {
     counters.waiting[type] += popcount(want);
   }
   /// The task has arrived.
-  void arrived(AluType type) { task_[static_cast<size_t>(type)].clear(); }
+  void arrived(AluType type) { task_[type].clear(); }
   /// From the next cycle on nothing is granted.
   void halt() { want_types_ = 0; }
 
@@ -95,11 +96,11 @@ class Dispatcher {
   }
 
  private:
-  uint32_t want_types_ = 0;                 // pipelined types that warps want
-  std::array<uint32_t, kAluTypes> want_{};  // [type] those warps
+  uint32_t want_types_ = 0;                         // pipelined types that warps want
+  EnumArray<AluType, uint32_t, kAluTypes> want_{};  // [type] those warps
   std::array<uint32_t, kAluTypes> instances_{};
   std::array<std::array<AluPipeline, kMostInstances>, kAluTypes> pipelines_{};
-  std::array<TaskRegister, kAluTypes> task_;  // [type] of Mem and Ray
+  EnumArray<AluType, TaskRegister, kAluTypes> task_;  // [type] of Mem and Ray
 };
 
 }  // namespace raypool

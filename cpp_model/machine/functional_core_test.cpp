@@ -32,7 +32,7 @@ struct Machine {
                    uint32_t threads = 0)
       : core(configuration, memory) {
     test::put_program(memory, code);
-    core.reset(static_cast<uint32_t>(code.size()), kMemoryBytes);
+    core.reset(size32(code), kMemoryBytes);
     LaunchCommand command;
     command.threads = threads == 0 ? static_cast<uint32_t>(configuration.contents()) : threads;
     command.block = 77;

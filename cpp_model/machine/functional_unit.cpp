@@ -167,8 +167,7 @@ class FunctionalUnit : public ComputeUnit {
     outputs_.frame_valid = !exports_.empty() && exports_.front().to_frame;
     if (outputs_.export_valid) {
       for (int i = 0; i < kBeatWords; ++i) {
-        outputs_.export_data[static_cast<size_t>(i)] =
-            exports_.front().ray[static_cast<size_t>(export_beat_ * kBeatWords + i)];
+        outputs_.export_data[i] = exports_.front().ray[export_beat_ * kBeatWords + i];
       }
       outputs_.export_last = export_beat_ == kRayBeats - 1;
     }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "bits.hpp"
 #include "machine/test_chip.hpp"
 #include "machine/test_program.hpp"
 
@@ -23,7 +24,7 @@ struct Fixture {
   explicit Fixture(const std::vector<uint64_t>& code, int ready_percent = 100, uint32_t seed = 1)
       : unit(make_functional_unit(configuration(), memory)), chip(*unit, memory, seed, ready_percent) {
     test::put_program(memory, code);
-    unit->reset(static_cast<uint32_t>(code.size()), kMemoryBytes);
+    unit->reset(size32(code), kMemoryBytes);
   }
   static Configuration configuration() {
     Configuration result;

@@ -2,13 +2,12 @@
 // are those of the kernels run as C++.
 #include <gtest/gtest.h>
 
-#include <random>
-
 #include "bits.hpp"
 #include "kernel/compute_kernels.hpp"
 #include "kernel/kernels.hpp"
 #include "machine/functional_core.hpp"
 #include "machine/test_program.hpp"
+#include "random.hpp"
 
 namespace raypool {
 namespace {
@@ -67,7 +66,7 @@ TEST(KernelsOnCore, RayKernelsLeaveWhatTheyLeaveNatively) {
     for (int mode = 0; mode < 16; ++mode) {
       SCOPED_TRACE(std::string(name) + " mode " + std::to_string(mode));
       const Configuration configuration = configuration_in_mode(name, mode);
-      std::mt19937 random(static_cast<uint32_t>(mode) + 1);
+      Random random(static_cast<uint32_t>(mode) + 1);
       const auto number = [&] {
         return as_bits(static_cast<float>(static_cast<int>(random() % 4001) - 2000) / 512.0f);
       };
@@ -77,19 +76,19 @@ TEST(KernelsOnCore, RayKernelsLeaveWhatTheyLeaveNatively) {
       test::put_program(memory, program.code);
       for (uint32_t i = 0; i < 8; ++i) memory.store(kMaterial + 4 * i, number());
       FunctionalCore core(configuration, memory);
-      core.reset(static_cast<uint32_t>(program.code.size()), kMemoryBytes);
+      core.reset(size32(program.code), kMemoryBytes);
       std::array<uint32_t, kArguments> arguments{};
       for (uint32_t& word : arguments) word = number();
       arguments[argument::kTileWidthLog2] = 3;
       arguments[argument::kTileMask] = 7;
       arguments[argument::kWidth] = 30;
       arguments[argument::kHeight] = 20;
-      for (int i = 0; i < kArguments; ++i) core.set_argument(i, arguments[static_cast<size_t>(i)]);
+      for (int i = 0; i < kArguments; ++i) core.set_argument(i, arguments[i]);
 
       for (int kernel = 0; kernel < kRayKernels; ++kernel) {
         const auto which = static_cast<RayKernel>(kernel);
         LaunchCommand command;
-        command.pc = program.entries.at(std::string(kRayKernelNames[static_cast<size_t>(kernel)]));
+        command.pc = program.entries.at(std::string(kRayKernelNames[kernel]));
         command.threads = static_cast<uint32_t>(std::max(1, configuration.contents() - mode % 8));
         command.block = 24u | 16u << 16;
         if (which != RayKernel::CastEye)
@@ -111,7 +110,7 @@ TEST(KernelsOnCore, RayKernelsLeaveWhatTheyLeaveNatively) {
           thread.mode = arith::mode_of(configuration);
           thread.input = packages[t];
           run_native(which, thread);
-          ASSERT_EQ(result.rays[t], thread.rays) << kRayKernelNames[static_cast<size_t>(kernel)] << ", thread " << t;
+          ASSERT_EQ(result.rays[t], thread.rays) << kRayKernelNames[kernel] << ", thread " << t;
           ASSERT_EQ(result.frame[t].size(), thread.frame.size());
           for (size_t i = 0; i < thread.frame.size(); ++i) {
             ASSERT_EQ(result.frame[t][i].pixel, thread.frame[i].pixel);
@@ -126,7 +125,7 @@ TEST(KernelsOnCore, RayKernelsLeaveWhatTheyLeaveNatively) {
 TEST(KernelsOnCore, ComputeKernelsLeaveTheMemoryTheyLeaveNatively) {
   for (const char* name : kConfigurations) {
     for (const ComputeKernel which : {ComputeKernel::Saxpy, ComputeKernel::Matmul}) {
-      const std::string kernel(kComputeKernelNames[static_cast<size_t>(which)]);
+      const std::string kernel(kComputeKernelNames[which]);
       SCOPED_TRACE(name + (" " + kernel));
       Configuration configuration = load_configuration(name);
       configuration.fma = configuration.warps == 4;
@@ -141,8 +140,8 @@ TEST(KernelsOnCore, ComputeKernelsLeaveTheMemoryTheyLeaveNatively) {
           which == ComputeKernel::Saxpy ? std::array<uint32_t, kArguments>{300, as_bits(1.5f), 4096, 8192}
                                         : std::array<uint32_t, kArguments>{11, 4096, 8192, 12288};
       FunctionalCore core(configuration, memory);
-      core.reset(static_cast<uint32_t>(program.code.size()), kMemoryBytes);
-      for (int i = 0; i < kArguments; ++i) core.set_argument(i, arguments[static_cast<size_t>(i)]);
+      core.reset(size32(program.code), kMemoryBytes);
+      for (int i = 0; i < kArguments; ++i) core.set_argument(i, arguments[i]);
       LaunchCommand command;
       command.pc = program.entries.at(kernel);
       command.threads = static_cast<uint32_t>(configuration.contents());

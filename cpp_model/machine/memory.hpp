@@ -6,13 +6,15 @@
 #include <unordered_map>
 #include <vector>
 
+#include "bits.hpp"
+
 namespace raypool {
 
 class Memory {
  public:
   explicit Memory(uint32_t bytes = 0) : bytes_(bytes, 0) {}
 
-  uint32_t size() const { return static_cast<uint32_t>(bytes_.size()); }
+  uint32_t size() const { return size32(bytes_); }
   /// Grows to hold `bytes`; new bytes are zero.
   void grow(uint32_t bytes) {
     if (bytes > size()) bytes_.resize(bytes, 0);

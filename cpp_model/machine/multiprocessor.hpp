@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "bits.hpp"
 #include "machine/block_scheduler.hpp"
 #include "machine/compute_unit.hpp"
 #include "machine/import_arbiter.hpp"
@@ -19,7 +20,7 @@ class Multiprocessor : public ComputeUnit {
   /// 2 to kMostUnits single units of one configuration.
   explicit Multiprocessor(std::vector<std::unique_ptr<ComputeUnit>> units);
 
-  uint32_t units() const override { return static_cast<uint32_t>(units_.size()); }
+  uint32_t units() const override { return size32(units_); }
 
   void reset(uint32_t program_length, uint32_t memory_limit) override;
   void set_argument(int index, uint32_t value) override;

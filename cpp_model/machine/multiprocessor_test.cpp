@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 
+#include "bits.hpp"
 #include "machine/functional_unit.hpp"
 #include "machine/test_chip.hpp"
 #include "machine/test_program.hpp"
@@ -32,7 +33,7 @@ struct Fixture {
   Fixture(size_t units, const std::vector<uint64_t>& code, int ready_percent = 100)
       : device(make(units, memory)), chip(*device, memory, 1, ready_percent) {
     test::put_program(memory, code);
-    device->reset(static_cast<uint32_t>(code.size()), kMemoryBytes);
+    device->reset(size32(code), kMemoryBytes);
   }
   static std::unique_ptr<ComputeUnit> make(size_t count, Memory& memory) {
     std::vector<std::unique_ptr<ComputeUnit>> units;
@@ -160,7 +161,7 @@ TEST(Multiprocessor, ResetForgetsWhatWasUnderWay) {
   for (uint32_t i = 0; i < 4; ++i) fixture.launch(8, i, ImportKind::Normal);
   for (int i = 0; i < 200; ++i) fixture.chip.cycle();
   EXPECT_TRUE(fixture.device->outputs().export_valid);
-  fixture.device->reset(static_cast<uint32_t>(kRayProgram.size()), kMemoryBytes);
+  fixture.device->reset(size32(kRayProgram), kMemoryBytes);
   const UnitOutputs& out = fixture.device->outputs();
   EXPECT_TRUE(out.idle && out.launch_ready);
   EXPECT_FALSE(out.export_valid || out.frame_valid || out.import_request_valid || out.memory_request_valid);

@@ -21,7 +21,7 @@ struct PerformanceCounters {
   /// `instances`: of the number's ALU type, for those that have one; `rest`: what is
   /// in its `unready` and still to come.
   uint64_t value(int number, uint32_t instances, uint64_t rest) const {
-    if (number < counter::kUnused) return single[static_cast<size_t>(number)];
+    if (number < counter::kUnused) return single[number];
     const size_t type = static_cast<size_t>(number & 7);
     if (type >= kAluTypes) return 0;
     switch (number & ~7) {

@@ -60,7 +60,7 @@ class RayAlu {
   bool ready(int arriving) const {
     const bool write = import_.registers().write;
     if (q_.hold) return q_.step == last_step_ && !(write && import_.registers().write_set == q_.hold_set);
-    return arriving < 0 || !(tasks_[static_cast<size_t>(arriving)].access() && (last_step_ > 0 || write));
+    return arriving < 0 || !(tasks_[arriving].access() && (last_step_ > 0 || write));
   }
   /// False if clock() would change nothing: it need not be called as long as no task, no import and no beat arrives.
   bool active() const { return next_.access | (next_.swaps != 0) | next_.import | next_.exports; }
@@ -153,7 +153,7 @@ inline bool RayAlu::clock_access(int arriving, RayMemory& memory) {
   q_.done_warp = q_.hold_warp;
 
   if (arriving >= 0) {
-    const Task& task = tasks_[static_cast<size_t>(arriving)];
+    const Task& task = tasks_[arriving];
     q_.fault = task.illegal;
     q_.fault_warp = static_cast<uint32_t>(arriving);
     if (task.access() && !q_.fault) {

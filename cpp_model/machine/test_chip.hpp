@@ -4,12 +4,12 @@
 
 #include <deque>
 #include <functional>
-#include <random>
 #include <vector>
 
 #include "bits.hpp"
 #include "machine/compute_unit.hpp"
 #include "machine/memory.hpp"
+#include "random.hpp"
 
 namespace raypool::test {
 
@@ -126,14 +126,14 @@ class TestChip {
       }
     }
     if (out.import_request_valid && in.import_request_ready) {
-      packages_.push_back(package(static_cast<uint32_t>(requests.size())));
+      packages_.push_back(package(size32(requests)));
       requests.push_back(out.import_request_kind);
     }
   }
 
   ComputeUnit* unit_;
   Memory* memory_;
-  std::mt19937 random_;
+  Random random_;
   int ready_percent_;
   uint64_t latency_;
   std::deque<Line> lines_;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "bits.hpp"
 #include "isa/assembler.hpp"
 #include "machine/memory.hpp"
 
@@ -17,7 +18,7 @@ inline std::vector<uint64_t> assembled(std::string text) {
 }
 
 inline void put_program(Memory& memory, const std::vector<uint64_t>& code) {
-  memory.grow(static_cast<uint32_t>(code.size()) * 8);
+  memory.grow(size32(code) * 8);
   for (size_t i = 0; i < code.size(); ++i) {
     memory.store(static_cast<uint32_t>(8 * i), static_cast<uint32_t>(code[i]));
     memory.store(static_cast<uint32_t>(8 * i + 4), static_cast<uint32_t>(code[i] >> 32));

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "config/parameter_table.hpp"
+#include "random.hpp"
 
 namespace raypool {
 namespace {
@@ -167,7 +168,7 @@ class Search {
 
   int most_threads_;
   std::set<Pair> open_;
-  std::mt19937 random_{1};
+  Random random_{1};
 };
 
 Machine named(Machine machine, size_t number) {

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "bits.hpp"
 #include "cosim/random_program.hpp"
 #include "isa/encoding.hpp"
 
@@ -63,7 +64,7 @@ class ProgramEmitter {
     return emit(i);
   }
   void patch(size_t at, uint32_t immediate) { code_[at] = (code_[at] & ~uint64_t{0xffffffff}) | immediate; }
-  uint32_t here() const { return static_cast<uint32_t>(code_.size()); }
+  uint32_t here() const { return size32(code_); }
 
   std::vector<uint64_t> code_;
 

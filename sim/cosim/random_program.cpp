@@ -85,7 +85,7 @@ class Generator : public ProgramStatements {
 
   void choose_data() {
     // A gap, so that addresses have other upper bits in every program.
-    const uint32_t code_bytes = static_cast<uint32_t>(code_.size()) * 8;
+    const uint32_t code_bytes = size32(code_) * 8;
     result_.data_begin = (code_bytes + 63) / 64 * 64 + (chance(4) ? below(1u << (6 + below(9))) * 64u : 0);
     result_.memory_bytes = result_.data_begin + shared_bytes_ + own_.bytes * (1 + block_mask_);
     for (auto& word : result_.arguments) word = value();
@@ -95,7 +95,7 @@ class Generator : public ProgramStatements {
 
   // Limits beyond what there is: their upper bits count too. Faulty addresses and targets begin at them.
   void choose_limits() {
-    const auto length = static_cast<uint32_t>(code_.size());
+    const auto length = size32(code_);
     const uint32_t longest = std::max(length + 1, std::min(kLongestProgram, result_.memory_bytes / 8));
     result_.program_length = length + (runs_out_ || !chance(3) ? 0 : below(longest - length));
     result_.memory_limit = result_.memory_bytes + (more_memory_told_ ? (below(1u << 30) >> below(24)) * 4 : 0);
@@ -134,7 +134,7 @@ class Generator : public ProgramStatements {
         default:
           break;
       }
-      const auto entries = static_cast<uint32_t>(entries_.size());
+      const auto entries = size32(entries_);
       const Entry& entry = entries_[profile_.name == kFaultMix ? k % entries : below(entries)];
       const ImportKind import = !entry.import ? ImportKind::None : chance(2) ? ImportKind::Normal : ImportKind::Shadow;
       const uint32_t block = result_.units > 1 ? (value() & ~block_mask_) | k : value();
@@ -151,7 +151,7 @@ class Generator : public ProgramStatements {
       for (const size_t at : places) {
         if (!chance(4)) continue;
         plain();
-        rewrite.code[static_cast<uint32_t>(at)] = code_.back();
+        rewrite.code[at] = code_.back();
         code_.pop_back();
         plain_at_.pop_back();
       }
@@ -474,7 +474,7 @@ uint32_t random_word(uint64_t random) {
 }
 
 uint32_t told_length(const RandomProgram& program) {
-  return std::max(program.program_length, static_cast<uint32_t>(program.program.code.size()));
+  return std::max(program.program_length, size32(program.program.code));
 }
 
 uint32_t told_limit(const RandomProgram& program) { return std::max(program.memory_limit, program.memory_bytes); }

@@ -63,7 +63,7 @@ UnitInspection::UnitInspection(const Configuration& configuration, const Compute
     const AluConfiguration& alu = configuration.alus[type];
     const bool piped = !kAluTable[type].timed_by_events();
     for (uint32_t number = 0; number < count_of(configuration, type); ++number) {
-      const auto place = static_cast<uint32_t>(instances_.size());
+      const auto place = size32(instances_);
       task_.emplace_back(rtl, instance_scope(unit, place) + ".task_register");
       if (missing_.empty()) missing_ = task_.back().missing;
       Instance& instance = instances_.emplace_back();

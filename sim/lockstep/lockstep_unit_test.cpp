@@ -6,6 +6,7 @@
 #include <functional>
 #include <iostream>
 
+#include "bits.hpp"
 #include "machine/cycle_unit.hpp"
 #include "machine/test_chip.hpp"
 #include "machine/test_program.hpp"
@@ -99,7 +100,7 @@ struct Fixture {
         unit(make_lockstep_unit(make_configuration(), std::unique_ptr<ComputeUnit>(device), memory,
                                 named(std::move(options)))),
         chip(*unit, memory, 7, ready_percent) {
-    unit->reset(static_cast<uint32_t>(code.size()), kMemoryBytes);
+    unit->reset(size32(code), kMemoryBytes);
   }
   static Memory with_program(const std::vector<uint64_t>& code) {
     Memory result(kMemoryBytes);
@@ -455,7 +456,7 @@ TEST(InspectDifferences, KeepTheFirstReportWhenTheSecondRunGoesOtherwise) {
 TEST(Lockstep, ResetStartsAfresh) {
   Fixture fixture;
   EXPECT_EQ(fixture.report(), "");
-  fixture.unit->reset(static_cast<uint32_t>(kProgram.size()), kMemoryBytes);
+  fixture.unit->reset(size32(kProgram), kMemoryBytes);
   EXPECT_EQ(fixture.report(), "");
   EXPECT_EQ(fixture.unit->counts().kernels, 4u);
 }

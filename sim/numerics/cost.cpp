@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "bits.hpp"
 #include "chip/chip.hpp"
 #include "scene/native_renderer.hpp"
 
@@ -48,7 +49,7 @@ std::optional<ModeTiming> time_mode(const Scene& scene, int depth, const Configu
   chip.configuration = configuration;
   chip.device = unit.get();
   chip.memory = &image.memory;
-  chip.program_length = static_cast<uint32_t>(program.code.size());
+  chip.program_length = size32(program.code);
   for (size_t i = 0; i < kRayKernels; ++i) chip.entries[i] = program.entries.at(std::string(kRayKernelNames[i]));
   chip.arguments = camera_arguments(scene, kTimedSize, kTimedSize, configuration.contents());
   chip.width = chip.height = kTimedSize;

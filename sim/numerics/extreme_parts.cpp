@@ -16,7 +16,7 @@ Scene scene_of_triangles(const std::vector<TriangleCorners>& triangles) {
   scene.name = "extreme";
   scene.materials.push_back({"grey", {0.5f, 0.5f, 0.5f}, {0.5f, 0.5f, 0.5f}});
   for (const TriangleCorners& triangle : triangles) {
-    const auto first = static_cast<uint32_t>(scene.vertices.size());
+    const auto first = size32(scene.vertices);
     scene.vertices.insert(scene.vertices.end(), triangle.begin(), triangle.end());
     scene.triangles.push_back({first, first + 1, first + 2});
     scene.triangle_materials.push_back(0);

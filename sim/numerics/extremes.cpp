@@ -7,6 +7,7 @@
 #include <iterator>
 #include <map>
 
+#include "bits.hpp"
 #include "chip/chip.hpp"
 #include "chip/program_run.hpp"
 #include "isa/assembler.hpp"
@@ -191,7 +192,7 @@ uint32_t ExtremeMachine::operate_on_unit(const std::string& mnemonic, uint32_t a
   options.configuration = configuration_;
   options.device = unit.get();
   options.memory = &memory;
-  options.program_length = static_cast<uint32_t>(program.code.size());
+  options.program_length = size32(program.code);
   options.arguments[0] = a;
   options.arguments[1] = b;
   options.arguments[2] = c;
@@ -219,7 +220,7 @@ Drawing ExtremeMachine::draw_on_unit(const ExtremeFrame& frame) const {
   chip.configuration = configuration_;
   chip.device = unit.get();
   chip.memory = &image.memory;
-  chip.program_length = static_cast<uint32_t>(program.code.size());
+  chip.program_length = size32(program.code);
   for (size_t i = 0; i < kRayKernels; ++i) chip.entries[i] = program.entries.at(std::string(kRayKernelNames[i]));
   chip.arguments = camera_arguments(frame.scene, frame.width, frame.height, configuration_.contents());
   if (frame.change_arguments) frame.change_arguments(chip.arguments);

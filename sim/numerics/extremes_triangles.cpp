@@ -8,6 +8,7 @@
 
 #include "numerics/extreme_parts.hpp"
 #include "numerics/extremes.hpp"
+#include "random.hpp"
 
 namespace raypool::numerics {
 namespace {
@@ -79,7 +80,7 @@ void coplanar(const ExtremeMachine& machine) {
     triangles.push_back({Vec3{-1, -1, -3 - static_cast<float>(i)}, Vec3{1, -1, -3 - static_cast<float>(i)},
                          Vec3{0, 1, -3 - static_cast<float>(i)}});
   }
-  std::mt19937 random(7);
+  Random random(7);
   for (int order = 0; order < 5; ++order) {
     const Scene scene = scene_of_triangles(triangles);
     for (const Vec3& target :

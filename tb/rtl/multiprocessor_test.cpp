@@ -8,6 +8,7 @@
 #include <numeric>
 #include <random>
 
+#include "bits.hpp"
 #include "cosim/cosim.hpp"
 #include "cosim/random_program.hpp"
 #include "lockstep/rtl_loader.hpp"
@@ -119,7 +120,7 @@ TEST_P(RtlMultiprocessor, AgreesWhenEveryUnitWantsThePoolsAllTheTime) {
     Memory memory(8192);
     test::put_program(memory, code);
     const std::unique_ptr<ComparedDevice> compared = device();
-    compared->reset(static_cast<uint32_t>(code.size()), memory.size());
+    compared->reset(size32(code), memory.size());
     test::TestChip chip(*compared, memory, 1, ready_percent);
     const int launches = 60 * GetParam();
     for (int i = 0; i < launches; ++i) {
@@ -154,7 +155,7 @@ TEST_P(RtlMultiprocessor, ShowsTheFirstFaultAndItsUnit) {
     Memory memory(8192);
     test::put_program(memory, code);
     const std::unique_ptr<ComparedDevice> compared = device();
-    compared->reset(static_cast<uint32_t>(code.size()), memory.size());
+    compared->reset(size32(code), memory.size());
     test::TestChip chip(*compared, memory);
     for (int i = 0; i < GetParam(); ++i) {
       LaunchCommand command;

@@ -7,6 +7,7 @@
 #include <functional>
 #include <iostream>
 
+#include "bits.hpp"
 #include "cosim/cosim.hpp"
 #include "lockstep/lockstep_unit.hpp"
 #include "lockstep/rtl_loader.hpp"
@@ -97,7 +98,7 @@ TEST_P(RtlUnit, ReportsTheModelsFaults) {
     Memory memory(kMemoryBytes);
     test::put_program(memory, program.code);
     auto unit = make_lockstep_unit(configuration, load_rtl_unit(library, configuration), memory);
-    unit->reset(static_cast<uint32_t>(program.code.size()), kMemoryBytes);
+    unit->reset(size32(program.code), kMemoryBytes);
     TestChip chip(*unit, memory);
     LaunchCommand command;
     command.pc = program.pc;
