@@ -64,9 +64,14 @@ LONG      ?= 0
 UPDATE    ?= 0
 PAGES     ?=
 FILES     ?=
+# `make sweep`
+EXPERIMENT ?=
+WHERE     ?= here
+JOBS      ?=
 # Recipes read these from the environment, so that a value with spaces or quotes stays one word.
 export CONFIG SET CUS SCENE SIZE DEPTH ENGINE TRAVERSER VIEW CAMERA EYE LOOK_AT UP FOV LIGHT DETAIL OUT WAVES
 export A B KERNEL PROGRAMS SEED COVERAGE MUTANTS MODE THREADS
+export EXPERIMENT WHERE JOBS
 export LIBERTY CLOCK MEMORIES AGAINST RUN ONLY PLAN
 
 # Everything that is made goes here; scripts read it from the environment.
@@ -89,11 +94,13 @@ LOOK := $${CAMERA:+"--camera=$$CAMERA"} $${EYE:+"--eye=$$EYE"} $${LOOK_AT:+"--lo
 SYNTH := PYTHONPATH=scripts python3 -m synth
 SYNTH_OPTIONS := --config "$$CONFIG" $(SET_FIELDS) --memories "$$MEMORIES" $${LIBERTY:+--liberty "$$LIBERTY"} \
   $${CLOCK:+--clock "$$CLOCK"}
+SWEEP := RAYPOOL="$(abspath $(RAYPOOL))" PYTHONPATH=scripts python3 -m sweep
+SWEEP_SETUP := setup-sweep $(if $(filter slurm,$(WHERE)),setup-slurm)
 GATES_SETUP := $(if $(filter-out 0,$(GATES)),setup-synth)
 UNIT_OF_ENGINE := $(if $(filter rtl lockstep,$(ENGINE)),$(UNIT),true)
 
 .PHONY: help sim compare run cosim configurations mutants faults unit test lint format bench clean setup-% program configured-%
-.PHONY: numerics-long proofs synth synth-replay synth-prove growth numerics extremes isa diagrams quoted package
+.PHONY: numerics-long proofs synth synth-replay synth-prove growth numerics extremes isa diagrams quoted package sweep
 
 help: ## this list
 	@echo 'raypool: a ray-tracing GPU to render on, measure, verify and synthesise'
@@ -115,6 +122,7 @@ help: ## this list
 	@echo '  DETAIL=N                      triangles of a built-in scene, 0.01..16      1'
 	@echo '  OUT=FOLDER                    image.png, report.json                      $(BUILD)/out/...'
 	@echo '  WAVES=1                       a waveform (FST) too; ENGINE=rtl, lockstep  $(WAVES)'
+	@echo 'variables of make sweep:  EXPERIMENT=FILE.json  OUT=FOLDER  WHERE=here|slurm  JOBS=N: points at a time'
 	@echo 'variables of make synth, synth-replay, synth-prove:  CONFIG  SET  LIBERTY=FILE  CLOCK=NS  MEMORIES=macros|flops'
 	@echo '  make synth:  AGAINST=REPORT  RUN=REPORT_OF_SIM  POWER=1  OUT=FOLDER'
 	@echo '  synth-replay:  BREAK=N;  synth-prove:  ONLY=BLOCKS;  growth:  PLAN=FILE'
@@ -167,6 +175,10 @@ isa: setup-sim program ## write what is derived from the tables of ALU types and
 
 diagrams: setup-sim setup-test program ## draw docs/images/*.svg: the unit, the chip, and the stages of a run in Icarus
 	@PYTHONPATH=scripts python3 -m diagrams $(RAYPOOL) $(BUILD)/diagrams
+
+sweep: setup-sim $(SWEEP_SETUP) program ## all points of EXPERIMENT (docs/sweeps.md)
+	@[ -n "$$EXPERIMENT" ] || { echo 'make sweep: say which, EXPERIMENT=configs/experiments/caches.json' >&2; exit 1; }
+	@$(SWEEP) "$$EXPERIMENT" --where "$$WHERE" $${OUT:+--out "$$OUT"} $${JOBS:+--jobs "$$JOBS"}
 
 unit: setup-sim program ## Verilate CUS compute units of CONFIG (WAVES=1: with waveforms)
 	@$(UNIT) --units "$$CUS"
