@@ -99,7 +99,8 @@ SWEEP_SETUP := setup-sweep $(if $(filter slurm,$(WHERE)),setup-slurm)
 GATES_SETUP := $(if $(filter-out 0,$(GATES)),setup-synth)
 UNIT_OF_ENGINE := $(if $(filter rtl lockstep,$(ENGINE)),$(UNIT),true)
 
-.PHONY: help sim compare run cosim configurations mutants faults unit test lint format bench clean setup-% program configured-%
+.PHONY: help sim compare run cosim configurations mutants faults unit test lint format bench clean
+.PHONY: setup-% program configured-%
 .PHONY: numerics-long proofs synth synth-replay synth-prove growth numerics extremes isa diagrams quoted package sweep
 
 help: ## this list
@@ -204,7 +205,7 @@ numerics-long: setup-sim setup-test configured-ON ## arithmetic against its orac
 	@scripts/build.sh $(BUILD) numerics_long flt_alu_test slw_alu_test small_floats_test
 	@scripts/numerics_long.sh $(BUILD) "$$THREADS"
 
-quoted: setup-sim setup-test setup-synth setup-quoted configured-ON ## run what README and docs quote: LONG, UPDATE, PAGES
+quoted: setup-sim setup-test setup-synth setup-quoted configured-ON ## run what the pages quote: LONG, UPDATE, PAGES
 	@scripts/build.sh $(BUILD)
 	@scripts/quoted_output.py $(if $(filter-out 0,$(LONG)),--long) $(if $(filter-out 0,$(UPDATE)),--update) \
 	  $(foreach file,$(FILES),--file $(file)) $(PAGES)

@@ -1,6 +1,6 @@
 #!/bin/bash
-# Prints the project's source files of one language, one a line: scripts/sources.sh cpp|verilog|shell|python|text
-# text: all that is read by lines of at most 120 columns.
+# Prints the project's source files of one language, one a line: scripts/sources.sh cpp|verilog|shell|python|text|pages
+# text: all but the pages that is read by lines of at most 120 columns.
 set -eu -o pipefail
 cd "$(dirname "$0")/.."
 files() {
@@ -14,7 +14,8 @@ files() {
       find rtl tb -name '*.v' -o -name '*.vh' -o -name '*.vlt'
       echo Makefile; find CMakeLists.txt cmake cpp_model sim tb examples -name CMakeLists.txt -o -name '*.cmake'
       ;;
-    *) echo "usage: scripts/sources.sh cpp|verilog|shell|python|text" >&2; exit 1 ;;
+    pages) find README.md CHANGELOG.md docs examples -name '*.md' ;;
+    *) echo "usage: scripts/sources.sh cpp|verilog|shell|python|text|pages" >&2; exit 1 ;;
   esac
 }
 files "${1:-}" | sort

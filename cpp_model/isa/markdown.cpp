@@ -123,7 +123,7 @@ std::string isa_markdown() {
   text += kText;
   text +=
       "\n## Instructions\n\nRows marked *c* are control instructions: they stop the instruction routine until their "
-      "write-back. Rows marked *fma* are there in configurations with `arithmetic.fma` only.\n";
+      "write-back.\nRows marked *fma* are there in configurations with `arithmetic.fma` only.\n";
   for (int type = 0; type < kAluTypes; ++type) {
     text += fmt::format("\n### {}: {} (type {})\n\n| op | instruction | | meaning |\n| --- | --- | --- | --- |\n",
                         kAluTable[type].name, kAluTable[type].title, type);

@@ -38,7 +38,10 @@ def around(picture):
     picture.box((740, 180, 144, 63), "frame_port", ["one a cycle: pixel", "32, colour 96 bits"], "box memory")
     picture.box((346, 508, 218, 46), "memory_port", ["8 GB/s: a beat in 2 cycles"], "box memory")
     picture.box(
-        (604, 508, 190, 62), "fixed_latency_memory", ["a line's last beat after 120;", "bind another one there"], "box memory"
+        (604, 508, 190, 62),
+        "fixed_latency_memory",
+        ["a line's last beat after 120;", "bind another one there"],
+        "box memory",
     )
     picture.box((346, 606, 218, 62), "traverser", ["finds what rays hit; when, is", "its subclass static_traverser"])
 

@@ -5,10 +5,10 @@ set -u -o pipefail
 cd "$(dirname "$0")/../.." || exit 1
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-mkdir -p "$folder"/{scripts,.ci,rtl,cpp_model,sim,tb,bench,examples,cmake}
+mkdir -p "$folder"/{scripts,.ci,rtl,cpp_model,sim,tb,bench,examples,cmake,docs}
 cp scripts/{lint,sources,columns}.sh scripts/duration.bash "$folder/scripts/"
 cp .flake8 .shellcheckrc "$folder/"
-touch "$folder"/{Makefile,CMakeLists.txt}
+touch "$folder"/{Makefile,CMakeLists.txt,README.md,CHANGELOG.md}
 # shellcheck source=scripts/tests/expect.bash
 . scripts/tests/expect.bash
 lint() { "$folder/scripts/lint.sh" "$@"; }
@@ -26,4 +26,8 @@ printf '# %0119d\n' 0 > "$folder/scripts/long.py"
 expect "a line of 121 columns" 1 "scripts/long.py:1:" lint columns
 printf '# %0115dé—²\n' 0 > "$folder/scripts/long.py"
 expect "120 columns in more bytes" 0 "all 1 checks are clean" lint columns
+printf '| %0119d |\n\n    $ %0119d\n' 0 0 > "$folder/docs/page.md"
+expect "a row and an output as long as they are" 0 "all 1 checks are clean" lint columns
+printf '%0121d\n' 0 >> "$folder/docs/page.md"
+expect "a sentence of 121 columns" 1 "docs/page.md:4:" lint columns
 [ "$failures" = 0 ]
