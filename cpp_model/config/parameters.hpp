@@ -13,7 +13,7 @@ namespace raypool {
 enum class Subnormals : uint8_t { Ieee = 0, Flush = 1 };
 enum class SlowUnit : uint8_t { Exact = 0, Newton2 = 1, Newton1 = 2, Newton0 = 3 };
 /// What chooses the next kernel, and what times the traverser. Each name has its class in sim/chip/.
-enum class PolicyName : uint8_t { Thesis = 0 };
+enum class PolicyName : uint8_t { Thesis = 0, Fill = 1 };
 enum class TraverserName : uint8_t { Static = 0 };
 
 // A row: [part,] name, type in C++, default, values it may have, values that tests try, what it is.
@@ -42,7 +42,7 @@ enum class TraverserName : uint8_t { Static = 0 };
 //   CHIP_PART(part, name, ...)   `chip.part.name` in files, chip.part_name in C++
 // A beat is 128 bits, the width of the unit's ports: so 2 cycles a beat is a port of half that width.
 #define RAYPOOL_CHIP_PARAMETERS(CHIP, CHIP_PART) \
-  CHIP(policy, PolicyName, PolicyName::Thesis, names("thesis"), "what chooses the next kernel") \
+  CHIP(policy, PolicyName, PolicyName::Thesis, names("thesis", "fill"), "what chooses the next kernel") \
   CHIP(window_remedy, bool, true, on_or_off(), "eye rays of further tiles are cast while earlier ones are under way") \
   CHIP(launch_ahead, bool, true, on_or_off(), "a full kernel is launched behind a running one") \
   CHIP(held_limit, int, 512, integers(1, 1 << 20), "unfinished pixels at a time") \

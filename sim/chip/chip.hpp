@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "chip/policy.hpp"
 #include "chip/ports.hpp"
 #include "config/configuration.hpp"
 #include "isa/isa.hpp"
@@ -39,6 +40,7 @@ struct ChipOptions {
   RayTracer* tracer = nullptr;
   FrameSink* frame = nullptr;
 
+  chip::PolicyMaker own_policy;                       ///< makes one of the caller's own, in place of the one named
   std::function<void(const ChipProgress&)> progress;  ///< called now and then, and at the end
   uint64_t watchdog_cycles = 100'000;  ///< this long without a retired instruction or a transfer is an error; 0: never
   uint64_t cycle_limit = 0;            ///< give up after this many cycles; 0: never

@@ -19,11 +19,15 @@ Controller::Controller(const sc_core::sc_module_name& name, const ChipOptions& o
   const int contents = options.configuration.contents();
   // A tile that would hold more pixels than allowed is cut into bands of whole rows.
   tile_height_ = std::min(contents, chip_.held_limit) / tile_width_;
-  policy_ =
-      make_policy(chip_.policy,
-                  {static_cast<uint32_t>(contents), options.device->units(), static_cast<uint32_t>(chip_.ray_pool_size),
-                   static_cast<uint32_t>(chip_.intersection_pool_size), static_cast<uint32_t>(chip_.thresholds_rays),
-                   static_cast<uint32_t>(chip_.thresholds_intersections)});
+  const PolicySetup setup{static_cast<uint32_t>(contents),
+                          options.device->units(),
+                          static_cast<uint32_t>(chip_.ray_pool_size),
+                          static_cast<uint32_t>(chip_.intersection_pool_size),
+                          static_cast<uint32_t>(chip_.thresholds_rays),
+                          static_cast<uint32_t>(chip_.thresholds_intersections),
+                          static_cast<uint32_t>(chip_.static_traverser_batch),
+                          secondary_ == RayKernel::CastSecondary ? 2u : 1u};
+  policy_ = options.own_policy ? options.own_policy(setup) : make_policy(chip_.policy, setup);
   decisions.bind(*this);
   kernel_events.bind(*this);
   SC_METHOD(decide);
@@ -72,6 +76,11 @@ PolicyView Controller::view(bool ahead) const {
   view.normal = intersections->available(ImportKind::Normal);
   view.shadow = intersections->available(ImportKind::Shadow);
   view.secondary_room = secondary_room();
+  view.rays_to_come = ledger->rays_to_come();
+  for (const ImportKind kind : {ImportKind::Normal, ImportKind::Shadow}) {
+    view.promised += intersections->size(kind) - intersections->available(kind);
+  }
+  for (const auto& given : given_) view.kernels += static_cast<uint32_t>(given.size());
   view.eye_possible = eye_possible();
   view.more_to_come = rays->size() > 0 || ledger->rays_to_come() > 0;
   view.ahead = ahead;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "chip/fill_policy.hpp"
+
 namespace raypool::chip {
 
 namespace {
@@ -53,6 +55,8 @@ std::unique_ptr<KernelPolicy> make_policy(PolicyName name, const PolicySetup& se
   switch (name) {
     case PolicyName::Thesis:
       return std::make_unique<ThesisPolicy>(setup);
+    case PolicyName::Fill:
+      return std::make_unique<FillPolicy>(setup);
   }
   throw std::logic_error("a policy without a class");
 }

@@ -1,4 +1,4 @@
-// For tests: the Cornell box drawn with the real kernels, on a device that the test chooses.
+// For tests: the Cornell box, or another scene, drawn with the real kernels, on a device that the test chooses.
 #pragma once
 
 #include <memory>
@@ -14,7 +14,7 @@
 namespace raypool::test {
 
 struct RealFrame {
-  const Scene scene = make_cornell();
+  const Scene scene;
   MemoryImage image = build_memory(ray_kernel_program(), scene);
   const Tracer tracer{scene, image.material_base};
   SceneTracer scene_tracer{tracer};
@@ -23,7 +23,8 @@ struct RealFrame {
   std::unique_ptr<ComputeUnit> device;
   ChipOptions options;
 
-  RealFrame(int warps, int lanes, int width, int height, int depth) : frame(width, height) {
+  RealFrame(int warps, int lanes, int width, int height, int depth, Scene drawn = make_cornell())
+      : scene(std::move(drawn)), frame(width, height) {
     const Program& program = ray_kernel_program();
     options.configuration.warps = warps;
     options.configuration.lanes = lanes;
