@@ -44,7 +44,7 @@ enum class TraverserName : uint8_t { Static = 0 };
 #define RAYPOOL_CHIP_PARAMETERS(CHIP, CHIP_PART) \
   CHIP(policy, PolicyName, PolicyName::Thesis, names("thesis", "fill"), "what chooses the next kernel") \
   CHIP(window_remedy, bool, true, on_or_off(), "eye rays of further tiles are cast while earlier ones are under way") \
-  CHIP(launch_ahead, bool, true, on_or_off(), "a full kernel is launched behind a running one") \
+  CHIP(launch_ahead, bool, true, on_or_off(), "a kernel is launched behind a running one, if it is worth it") \
   CHIP(held_limit, int, 512, integers(1, 1 << 20), "unfinished pixels at a time") \
   CHIP(traverser, TraverserName, TraverserName::Static, names("static"), "timing of the traverser") \
   CHIP_PART(thresholds, rays, int, 48, integers(0, 1 << 20), \

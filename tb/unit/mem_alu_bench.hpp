@@ -11,11 +11,11 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <random>
 #include <stdexcept>
 #include <vector>
 
 #include "line_memory.hpp"
-#include "random.hpp"
 
 namespace raypool::bench {
 
@@ -83,7 +83,7 @@ class MemAluBench {
   ~MemAluBench() { unit_->final(); }
 
   LineMemory memory;
-  Random random;
+  std::mt19937 random;
   uint64_t cycle = 0;
   uint64_t hits = 0, misses = 0, stores = 0, faults = 0, longest = 0, writes_at_port = 0;
   uint64_t expected_loads = 0, expected_stores = 0;
@@ -222,8 +222,8 @@ class MemAluBench {
     const auto crowded = [&] { return below(lines) * kWayBytes + below(sets * 16) * 4; };
     static constexpr uint32_t kStrides[] = {0, 4, 4, 8, 16, 20, 64, kWayBytes, kWayBytes + 64};
     MemTask task = strided(warp, static_cast<int>(below(100)) < store_percent, crowded(), kStrides[below(9)]);
-    task.immediate = below(2) ? 0 : random();
-    if (below(8) != 0) task.mask = random() & kLaneMask;
+    task.immediate = below(2) ? 0 : static_cast<uint32_t>(random());
+    if (below(8) != 0) task.mask = static_cast<uint32_t>(random()) & kLaneMask;
     const bool scattered = below(3) == 0;
     for (auto& address : task.address) {
       if (scattered) address = crowded();

@@ -11,13 +11,11 @@
 #include <deque>
 #include <memory>
 #include <optional>
+#include <random>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
 #include <vector>
-
-#include "bits.hpp"
-#include "random.hpp"
 
 namespace raypool::bench {
 
@@ -75,7 +73,7 @@ class RayAluBench {
   }
   ~RayAluBench() { unit_->final(); }
 
-  Random random;
+  std::mt19937 random;
   PoolOdds odds;
   RayCounts counts;
   uint64_t cycle = 0;
@@ -216,9 +214,10 @@ class RayAluBench {
     unit_->task_warp_i = task != nullptr ? task->warp : below(kWarps);
     unit_->task_operation_i = task != nullptr ? static_cast<uint32_t>(task->op) : below(5);
     unit_->task_word_i = task != nullptr ? task->word : below(32);
-    unit_->task_mask_i = task != nullptr ? task->mask : random() & kAllLanes;
+    unit_->task_mask_i = task != nullptr ? task->mask : static_cast<uint32_t>(random()) & kAllLanes;
     for (uint32_t lane = 0; lane < kLanes; ++lane) {
-      put(unit_->task_operand_b_i, lane, task != nullptr && lane < task->data.size() ? task->data[lane] : random());
+      put(unit_->task_operand_b_i, lane,
+          task != nullptr && lane < task->data.size() ? task->data[lane] : static_cast<uint32_t>(random()));
     }
     unit_->import_start_i = start_.has_value();
     unit_->import_start_kind_i = start_ ? start_->kind : below(4);
@@ -237,7 +236,7 @@ class RayAluBench {
     unit_->frame_ready_i = roll(odds.frame);
   }
 
-  uint32_t launch() const { return size32(launches_) - 1; }
+  uint32_t launch() const { return static_cast<uint32_t>(launches_.size()) - 1; }
 
   void check_fault() {
     if (!unit_->fault_valid_o) return;
