@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "bits.hpp"
 #include "svdpi.h"
 
 namespace {
@@ -170,10 +169,10 @@ class Netlist {
   /// The sinks of every source in one list; first_sink_ says where those of a source begin.
   void join(const std::vector<std::vector<Sink>>& sinks) {
     for (const auto& list : sinks) {
-      first_sink_.push_back(size32(sinks_));
+      first_sink_.push_back(static_cast<uint32_t>(sinks_.size()));
       sinks_.insert(sinks_.end(), list.begin(), list.end());
     }
-    first_sink_.push_back(size32(sinks_));
+    first_sink_.push_back(static_cast<uint32_t>(sinks_.size()));
     for (size_t gate = 0; gate < gates_.size(); ++gate) {
       gates_[gate].first_sink = first_sink_[gate];
       gates_[gate].last_sink = first_sink_[gate + 1];
