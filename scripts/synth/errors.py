@@ -45,3 +45,8 @@ def say(text):
 
 def warn(text):
     print(text, file=sys.stderr, flush=True)
+
+
+def progress(text):
+    """What is being done: not part of what a command prints."""
+    warn(text)

@@ -7,7 +7,7 @@ import os
 from dataclasses import dataclass, field
 
 from . import elaborate, fanout, mapping, timing
-from .errors import SynthError, say
+from .errors import SynthError, progress
 from .library import ROOT, Library
 from .memories import MemoryModel
 from .netlist import Netlist
@@ -157,7 +157,7 @@ def synthesise(design):
     work = prepare(design)
     map_design(design)
     slack = time_design(design, work)
-    say(f"synth: {design.options.config}: slack {slack:+.3f} ns at {design.clock_ns:g} ns")
+    progress(f"synth: {design.options.config}: slack {slack:+.3f} ns at {design.clock_ns:g} ns")
     for _ in range(CLOSURE_ROUNDS):
         if slack >= 0:
             break
@@ -183,7 +183,7 @@ def synthesise(design):
         }
         if not more:
             break
-        say(f"synth: slack {slack:+.3f} ns; for speed: {', '.join(sorted(design.kinds[i].name for i in more))}")
+        progress(f"synth: slack {slack:+.3f} ns; for speed: {', '.join(sorted(design.kinds[i].name for i in more))}")
         design.efforts.update({i: design.efforts.get(i, 0) + 1 for i in more})
         map_design(design)
         slack = time_design(design, work)

@@ -9,7 +9,7 @@ import re
 import subprocess
 
 from .elaborate import DEFINES, read_rtl, rtl_texts
-from .errors import SynthError, need, run, say
+from .errors import SynthError, need, run, progress
 from .library import ROOT
 
 # ABC sees neither clock-to-output nor set-up time: it gets this share of the period.
@@ -202,7 +202,8 @@ write_json {result}
             file.write(f"set_driving_cell {self.library.driver}\nset_load {OUTPUT_LOAD_FF} [all_outputs]\n")
         missing = [k for k in kinds if self.kept(k, efforts.get(k.identity, 0)) is None]
         if missing:
-            say(f"synth: mapping {len(missing)} of {len(kinds)} kinds of block" + (" for speed" if efforts else ""))
+            speed = " for speed" if efforts else ""
+            progress(f"synth: mapping {len(missing)} of {len(kinds)} kinds of block{speed}")
         # The large ones first, so that the last to finish is a small one.
         missing.sort(key=lambda k: -k.bits)
         with concurrent.futures.ThreadPoolExecutor(self.jobs) as pool:
@@ -214,5 +215,5 @@ write_json {result}
                 except SynthError as error:
                     pool.shutdown(cancel_futures=True)
                     raise SynthError(f"{kind.name} cannot be mapped: {error}") from error
-                say(f"synth: {count} of {len(missing)}: {kind.name}")
+                progress(f"synth: {count} of {len(missing)}: {kind.name}")
         return {k.identity: self.kept(k, efforts.get(k.identity, 0)) for k in kinds}

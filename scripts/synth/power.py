@@ -4,7 +4,7 @@ import os
 import re
 
 from . import replay, timing
-from .errors import SynthError, say
+from .errors import SynthError, progress
 
 _CELL = re.compile(r"^\s*([\d.eE+-]+)\s+([\d.eE+-]+)\s+([\d.eE+-]+)\s+[\d.eE+-]+ \S+$", re.M)
 
@@ -97,7 +97,7 @@ def estimate(design):
                 "total_w": internal + switching + leakage + memory,
             }
         )
-    say(f"synth: power over {cycles} cycles of a rendered picture: {sum(r['total_w'] for r in rows):.3f} W")
+    progress(f"synth: power over {cycles} cycles of a rendered picture: {sum(r['total_w'] for r in rows):.3f} W")
     return {
         "kernel": " ".join(KERNEL[:4]),
         "cycles": cycles,

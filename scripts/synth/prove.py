@@ -10,7 +10,7 @@ import subprocess
 
 from . import mapping
 from .elaborate import DEFINES, read_rtl, rtl_texts
-from .errors import need, run, say
+from .errors import need, run, progress
 
 SECONDS = 120
 ABC = "read_aiger {aig}; strash; scorr; dprove"
@@ -195,5 +195,5 @@ def prove(design, only=None):
         for done in concurrent.futures.as_completed(pending):
             name = design.kinds[pending[done]].name
             verdicts[name] = done.result()
-            say(f"prove: {name}: {verdicts[name]}")
+            progress(f"prove: {name}: {verdicts[name]}")
     return verdicts
