@@ -74,7 +74,7 @@ def sweep(arguments):
     plan = Plan(experiment, len(os.sched_getaffinity(0)), progress)
     progress.clear()
     name = os.path.splitext(os.path.basename(arguments.experiment))[0]
-    store = Store(arguments.out or os.path.join(raypool.ROOT, os.environ.get("BUILD", "build"), "sweeps", name))
+    store = Store(arguments.out or os.path.join(raypool.BUILD, "sweeps", name))
     if arguments.check:
         list_points(store, plan)
         return 0

@@ -6,6 +6,7 @@ import os
 
 import jsonschema
 
+from . import scenes
 from .errors import SweepError, nearest
 from .raypool import ROOT
 
@@ -21,7 +22,6 @@ RUN_FIELDS = {
     "units": 1,
     "engine": "model",
 }
-BUILT_IN_SCENES = ("cornell", "room")
 
 
 class Experiment:
@@ -36,6 +36,7 @@ class Experiment:
         self.product = self.document.get("product", {})
         self.listed = self.document.get("points", [{}])
         self.filter = self.document.get("filter")
+        self.scene_source = self.document.get("scene_source")
         self.area = self.document.get("area", False)
         self.check_fields(settable)
         number = len(self.listed) * math.prod(len(values) for values in self.product.values())
@@ -70,10 +71,14 @@ class Experiment:
         """With all run fields; files named relative to the experiment's file."""
         point = {**RUN_FIELDS, **given}
         folder = os.path.dirname(os.path.abspath(self.path))
-        for field in ("scene", "view", "config"):
+        if point["scene"] not in scenes.BUILT_IN:
+            try:
+                point["scene"] = scenes.find(str(point["scene"]), folder)
+            except SweepError as error:
+                raise SweepError(f"{self.path}: {error}") from error
+        for field in ("view", "config"):
             value = str(point[field])
             is_file = {
-                "scene": value not in BUILT_IN_SCENES,
                 "view": value != "",
                 "config": value.endswith(".json") or "/" in value,
             }[field]

@@ -5,7 +5,7 @@ import json
 import os
 from concurrent import futures
 
-from . import area, raypool
+from . import area, raypool, scenes
 from .errors import SweepError
 from .experiment import RUN_FIELDS, short, text
 from .expression import Filter
@@ -98,6 +98,8 @@ class Plan:
     def check_scenes(self):
         def check(planned):
             point = planned.point
+            if point["scene"] not in scenes.BUILT_IN and not os.path.isfile(point["scene"]):
+                raise SweepError(scenes.missing(point["scene"], self.experiment.scene_source))
             view = ["--view", point["view"]] if point["view"] else []
             raypool.ask("scene", point["scene"], *view, "--detail", text(point["detail"]))
 
@@ -189,7 +191,7 @@ class Plan:
                 words.append(f"--{field}={text(point[field])}")
         files = []
         if os.path.isfile(point["scene"]):
-            files += raypool.files_of_scene(point["scene"])
+            files += scenes.files_of(point["scene"])
         files += [point["view"]] if point["view"] else []
         files += [planned.unit] if planned.unit else []
         words += [f"--unit-library={planned.unit}"] if planned.unit else []

@@ -1,4 +1,4 @@
-"""What the program is asked: fields, machines, scenes. Its sentences are the user's."""
+"""What the program is asked: fields, machines. Its sentences are the user's."""
 import hashlib
 import json
 import os
@@ -7,7 +7,8 @@ import subprocess
 from .errors import SweepError
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-PROGRAM = os.environ.get("RAYPOOL") or os.path.join(ROOT, os.environ.get("BUILD", "build"), "raypool")
+BUILD = os.path.join(ROOT, os.environ.get("BUILD", "build"))
+PROGRAM = os.environ.get("RAYPOOL") or os.path.join(BUILD, "raypool")
 VERILATED = ("rtl", "lockstep")
 
 
@@ -61,20 +62,3 @@ def machine(config, settings):
 
 def settable_fields():
     return set(flat(machine("8w8c", {}))) - {"name"}
-
-
-def files_of_scene(scene):
-    """The scene's file and those that it names: materials of an OBJ, buffers of a glTF."""
-    folder = os.path.dirname(scene)
-    others = []
-    if scene.lower().endswith(".obj"):
-        with open(scene, encoding="utf-8", errors="replace") as file:
-            for line in file:
-                if line.startswith("mtllib"):
-                    # A name with spaces is one name, or several names.
-                    others += [line[6:].strip(), *line.split()[1:]]
-    elif scene.lower().endswith(".gltf"):
-        with open(scene, encoding="utf-8", errors="replace") as file:
-            others = [part.get("uri", "data:") for part in json.load(file).get("buffers", [])]
-    paths = [os.path.join(folder, each) for each in others if not each.startswith("data:")]
-    return [scene, *sorted({path for path in paths if os.path.isfile(path)})]

@@ -5,6 +5,7 @@ What is wrong with an experiment is said before anything runs; a sweep that is k
 running one twice; a failed point does not stop the others; what a result depends on is in its key."""
 import csv
 import json
+import lzma
 import os
 import pathlib
 import signal
@@ -13,11 +14,13 @@ import sys
 import tempfile
 import time
 import unittest
+import unittest.mock
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 RAYPOOL = ""
 sys.path.insert(0, str(ROOT / "scripts"))
 TINY = {"scene": "cornell", "detail": 0.01, "size": "8x8", "depth": 1, "config": "1w1c", "engine": "functional"}
+HALL = "mtllib colours.mtl\nusemtl red\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
 # Stands in for the program: does what it does, but for the points that the test has made special.
 WRAPPER = """#!/bin/bash
 # {version}
@@ -79,6 +82,10 @@ class SweepTest(unittest.TestCase):
 
     def environment(self):
         return {**os.environ, "PYTHONPATH": str(ROOT / "scripts"), "RAYPOOL": str(self.program)}
+
+    def scenes_here_and_there(self):
+        places = {"SCENES": f"{self.folder}/here:{self.folder}/there", "BUILD": str(self.folder / "build")}
+        return unittest.mock.patch.dict(os.environ, places)
 
     def write(self, document):
         text = document if isinstance(document, str) else json.dumps(document)
@@ -169,6 +176,14 @@ class Refusals(SweepTest):
                 place = "point 1 " if good == value else "point 2 "
                 self.refuses(document, place, f"{field}=", *words)
 
+    def test_a_scene_that_is_not_part_of_the_project(self):
+        with self.scenes_here_and_there():
+            document = {"base": {**TINY, "scene": "hall.obj"}, "scene_source": "ask the caretaker"}
+            self.refuses(document, "hall.obj", "/here", "/there", "ask the caretaker", "SCENES=FOLDER")
+            (self.folder / "there").mkdir()
+            (self.folder / "there/hall.obj.xz").write_bytes(b"this is not packed")
+            self.refuses(document, "hall.obj.xz", "cannot be unpacked")
+
     def test_too_many_points(self):
         ten = list(range(1, 11))
         fields = ["depth", "warps", "lanes", "stack_depth", "chip.held_limit", "chip.memory.latency"]
@@ -243,7 +258,7 @@ class Runs(SweepTest):
     def test_what_a_result_depends_on_runs_again(self):
         scene, view = self.folder / "scene.obj", self.folder / "view.json"
         (self.folder / "colours.mtl").write_text("newmtl red\nKd 1 0 0\n")
-        scene.write_text("mtllib colours.mtl\nusemtl red\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+        scene.write_text(HALL)
         view.write_text('{"eye": [0.3, 0.3, 2], "target": [0.3, 0.3, 0], "light": {"position": [0, 0, 3]}}')
         document = {"base": {**TINY, "engine": "model", "scene": "scene.obj", "view": "view.json"}}
         changes = [
@@ -261,6 +276,26 @@ class Runs(SweepTest):
             self.assertEqual(len(self.starts()), number)
             self.run_sweep(document)
             self.assertEqual(len(self.starts()), number)
+
+    def test_scenes_are_found_and_unpacked(self):
+        (self.folder / "there").mkdir()
+        (self.folder / "there/hall.obj.xz").write_bytes(lzma.compress(HALL.encode()))
+        (self.folder / "there/colours.mtl").write_text("newmtl red\nKd 1 0 0\n")
+        with self.scenes_here_and_there():
+            document = {"base": {**TINY, "scene": "hall.obj"}}
+            self.run_sweep(document)
+            self.run_sweep(document)
+            self.assertEqual(len(self.starts()), 1)
+            # Another file of that name in the same place is another scene, and so are other colours.
+            (self.folder / "there/colours.mtl").write_text("newmtl red\nKd 0 1 0\n")
+            self.run_sweep(document)
+            (self.folder / "there/hall.obj.xz").write_bytes(lzma.compress((HALL + "f 1 3 2\n").encode()))
+            self.run_sweep(document)
+            self.assertEqual(len(self.starts()), 3)
+            # One beside the experiment is nearer.
+            (self.folder / "hall.obj").write_text(HALL.replace("mtllib colours.mtl\n", ""))
+            self.run_sweep(document)
+            self.assertEqual(len(self.starts()), 4)
 
     def test_filter_and_tables(self):
         document = {
