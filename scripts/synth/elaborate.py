@@ -79,9 +79,10 @@ def with_fields(name, fields, folder):
     text = ask(name, *(word for field in fields for word in ("--set", field)), "--json")
     os.makedirs(folder, exist_ok=True)
     path = os.path.join(folder, json.loads(text)["name"] + ".json")
-    with open(path + ".new", "w", encoding="utf-8") as file:
+    new = f"{path}.{os.getpid()}"
+    with open(new, "w", encoding="utf-8") as file:
         file.write(text)
-    os.rename(path + ".new", path)
+    os.rename(new, path)
     return path
 
 

@@ -1,6 +1,7 @@
 """From a configuration to a timed netlist: elaborate, map, time, map the blocks on failing paths for speed,
 time again.
 """
+import fcntl
 import hashlib
 import json
 import os
@@ -17,6 +18,8 @@ BUILD = os.path.join(ROOT, os.environ.get("BUILD", "build"), "synth")
 CLOSURE_ROUNDS = 4
 # Failing end points whose paths are looked at in a round.
 PATHS_A_ROUND = 60
+# The lock file of each folder that this program works in.
+LOCKS = {}
 
 
 @dataclass
@@ -81,7 +84,23 @@ def open_design(options):
     parameters = elaborate.configuration(options.config)
     folder = options.out or os.path.join(BUILD, label(options, library))
     os.makedirs(folder, exist_ok=True)
+    lock(folder)
     return Design(options, library, parameters, folder)
+
+
+def lock(folder):
+    """Until this program ends nobody else has the folder: two would write over each other's netlist. Who has waited
+    finds the report of the one before."""
+    folder = os.path.realpath(folder)
+    if folder in LOCKS:
+        return
+    file = open(os.path.join(folder, ".lock"), "a", encoding="utf-8")
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        progress(f"synth: waiting for another synthesis in {folder}")
+        fcntl.flock(file, fcntl.LOCK_EX)
+    LOCKS[folder] = file
 
 
 def digest(design):

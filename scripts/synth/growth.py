@@ -29,8 +29,10 @@ def area_of(change, jobs):
     os.makedirs(folder, exist_ok=True)
     name = named(change)
     path = os.path.join(folder, name + ".json")
-    with open(path, "w", encoding="utf-8") as file:
+    new = f"{path}.{os.getpid()}"
+    with open(new, "w", encoding="utf-8") as file:
         json.dump({"name": name, **change}, file)
+    os.rename(new, path)
     design = flow.open_design(flow.Options(config=path, jobs=jobs, out=os.path.join(folder, name)))
     key = flow.digest(design)
     kept = os.path.join(design.folder, "area.json")

@@ -61,6 +61,7 @@ class Mapper:
         self.clock_ns = clock_ns
         self.jobs = jobs
         self.cells = library.usable_file(os.path.join(folder, "libraries"))
+        self.constraints = self.cells.removesuffix(".lib") + ".constr"
         self.texts = rtl_texts()
         self.version = versions()["yosys"]
 
@@ -105,7 +106,7 @@ write_rtlil {result}
         target = self.clock_ns * 1000 * share
         script = ABC_SCRIPTS[way].format(d=int(target), relaxed=int(RELAXED * target))
         return f"""read_rtlil {prepared}
-abc -liberty {self.cells} -constr {self.folder}/abc.constr -script {script}
+abc -liberty {self.cells} -constr {self.constraints} -script {script}
 opt_clean -purge
 read_liberty -lib -ignore_miss_func {self.cells}
 check -assert
@@ -121,7 +122,7 @@ write_json {result}
         scripts = (
             scripts.split("\n", 1)[1]
             .replace(ROOT, "")
-            .replace(self.folder.replace(ROOT, ""), "")
+            .replace(self.constraints.replace(ROOT, ""), "/abc.constr")
             .replace(self.cells.replace(ROOT, ""), "")
         )
         source = self.texts[f"rtl/{kind.base}.v"]
@@ -198,8 +199,10 @@ write_json {result}
         Returns the paths of the results, by identity.
         """
         efforts = efforts or {}
-        with open(os.path.join(self.folder, "abc.constr"), "w", encoding="utf-8") as file:
+        new = f"{self.constraints}.{os.getpid()}"
+        with open(new, "w", encoding="utf-8") as file:
             file.write(f"set_driving_cell {self.library.driver}\nset_load {OUTPUT_LOAD_FF} [all_outputs]\n")
+        os.rename(new, self.constraints)
         missing = [k for k in kinds if self.kept(k, efforts.get(k.identity, 0)) is None]
         if missing:
             speed = " for speed" if efforts else ""

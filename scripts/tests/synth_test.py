@@ -4,6 +4,7 @@ import ctypes
 import json
 import os
 import random
+import select
 import subprocess
 import sys
 import tempfile
@@ -63,6 +64,32 @@ class Synthesis(unittest.TestCase):
             self.assertEqual(code, 1, text)
             self.assertIn(word, text)
             self.assertNotIn("Traceback", text)
+
+    def test_two_in_one_folder_take_turns(self):
+        opens = (
+            "import sys; from synth import flow; flow.open_design(flow.Options(config='1w1c', out=sys.argv[1])); "
+            "print('open', flush=True); sys.stdin.read()"
+        )
+
+        def start():
+            return subprocess.Popen(
+                [sys.executable, "-c", opens, self.folder], text=True, stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE, env={**os.environ, "PYTHONPATH": os.path.join(ROOT, "scripts")},
+            )  # fmt: skip
+
+        with start() as first, start() as second:
+            both = {first.stdout: (first, second), second.stdout: (second, first)}
+            ready = select.select(list(both), [], [], 60)[0]
+            self.assertEqual(len(ready), 1)
+            has, waits = both[ready[0]]
+            ready = select.select([waits.stdout, waits.stderr], [], [], 60)[0]
+            self.assertEqual(ready, [waits.stderr])
+            self.assertIn("waiting for another synthesis", waits.stderr.readline())
+            self.assertFalse(select.select([waits.stdout], [], [], 0.5)[0])
+            # However it ends.
+            has.kill()
+            self.assertEqual(waits.stdout.readline(), "open\n")
+            waits.stdin.close()
 
     def test_cell_functions_and_fo4(self):
         lib = library.Library()
