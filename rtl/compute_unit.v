@@ -85,7 +85,7 @@ module compute_unit #(
 `include "unit_parameter_checks.vh"
 
   // launch
-  wire [WARPS-1:0] start, active;
+  wire [WARPS-1:0] start, active, launched;
   wire [15:0] start_pc;
   wire [WARPS*LANES-1:0] start_lanes;
   wire [10:0] threads;
@@ -99,7 +99,7 @@ module compute_unit #(
   wire [WARP_BITS-1:0] fetch_warp, result_warp;
   wire [63:0] fetched;
   // data routine: what the warps offer to the dispatcher, and what ALU instances have done
-  wire [WARPS-1:0] want, grant, waiting, retire;
+  wire [WARPS-1:0] want, grant, waiting, retire, fetching, executing, import_wait, export_wait;
   wire [WARPS*4-1:0] wanted_type;
   wire [WARPS*64-1:0] instruction;
   wire [WARPS*16-1:0] pc;
@@ -133,7 +133,7 @@ module compute_unit #(
     .launch_threads_i(launch_threads_i), .launch_block_i(launch_block_i), .launch_blocks_i(launch_blocks_i),
     .launch_import_i(launch_import_i), .import_start_o(import_start), .import_active_i(import_active),
     .start_o(start), .start_pc_o(start_pc), .start_lanes_o(start_lanes), .active_i(active),
-    .threads_o(threads), .block_o(block), .blocks_o(blocks),
+    .launched_o(launched), .threads_o(threads), .block_o(block), .blocks_o(blocks),
     .kernel_done_o(kernel_done_o), .running_o(busy_o), .waiting_o(waiting_launch));
   assign idle_o = !busy_o && !waiting_launch && !import_active && !exporting && mem_idle && arbiter_idle;
 
@@ -180,7 +180,8 @@ module compute_unit #(
         .operand_c_o(operand_c[w*DATA +: DATA]),
         .done_i(done), .done_data_i(done_data), .done_predicate_i(done_predicate),
         .retire_o(retire[w]), .pc_o(pc[w*16 +: 16]), .retire_data_o(retire_data_o[w*DATA +: DATA]),
-        .retire_predicate_o(retire_predicate_o[w*LANES +: LANES]),
+        .retire_predicate_o(retire_predicate_o[w*LANES +: LANES]), .fetching_o(fetching[w]),
+        .executing_o(executing[w]),
         .fault_valid_o(warp_fault[w]), .fault_code_o(warp_fault_code[w*3 +: 3]));
     end
   endgenerate
@@ -252,7 +253,7 @@ module compute_unit #(
           .ray_trace_valid_o(ray_trace_valid_o), .ray_trace_warp_o(ray_trace_warp_o),
           .ray_trace_word_o(ray_trace_word_o), .ray_trace_mask_o(ray_trace_mask_o), .ray_trace_data_o(ray_trace_data_o),
           .fault_valid_o(ray_fault), .fault_code_o(ray_fault_code), .fault_warp_o(ray_fault_warp),
-          .exporting_o(exporting),
+          .exporting_o(exporting), .import_wait_o(import_wait), .export_wait_o(export_wait),
 `include "alu_port_map.vh"
         );
       end
@@ -279,6 +280,8 @@ module compute_unit #(
     .instruction_hit_i(instruction_hit), .instruction_miss_i(instruction_miss),
     .data_hit_i(data_hit), .data_miss_i(data_miss), .data_store_i(data_store),
     .ready_i(ready), .grant_i(instance_grant), .waiting_i(waiting), .type_i(wanted_type),
+    .launched_i(launched), .active_i(active), .fetching_i(fetching), .executing_i(executing),
+    .import_wait_i(import_wait), .export_wait_i(export_wait),
     .select_i(counter_select_i), .value_o(counter_o));
 
   // What the trace shows of an instruction's write-back.

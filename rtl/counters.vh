@@ -10,6 +10,13 @@
   localparam integer COUNTER_DATA_CACHE_HITS = 5;
   localparam integer COUNTER_DATA_CACHE_MISSES = 6;
   localparam integer COUNTER_DATA_CACHE_STORES = 7;
+  localparam integer COUNTER_WARPS_NOT_LAUNCHED = 8;
+  localparam integer COUNTER_WARPS_ENDED = 9;
+  localparam integer COUNTER_WARPS_FETCHING = 10;
+  localparam integer COUNTER_WARPS_IN_MEM = 11;
+  localparam integer COUNTER_WARPS_IN_RAY = 12;
+  localparam integer COUNTER_WARPS_IMPORTING = 13;
+  localparam integer COUNTER_WARPS_EXPORTING = 14;
   localparam integer COUNTER_UNUSED = 16;
   localparam integer COUNTER_WAITING = 24;
   localparam integer COUNTER_ISSUED = 32;

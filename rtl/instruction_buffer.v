@@ -29,6 +29,9 @@ module instruction_buffer #(
   output reg  [15:0] pc_o,
   output wire        writes_register_o,
   output wire        writes_predicate_o,
+  // for the performance counters: no instruction is under way; an ALU has it
+  output wire        fetching_o,
+  output wire        executing_o,
   // faults, one cycle; fetch_pc_o is that instruction's, from the next cycle on
   output wire        illegal_o,        // the next instruction has no table row; it is not issued
   output wire        outside_o         // its PC is not in the program
@@ -56,6 +59,8 @@ module instruction_buffer #(
   assign outside_o = step_o && pc_valid_i && pc_i >= program_length_i;
   assign read_o = data_q == D_READ;
   assign want_o = data_q == D_WANT && !halt_i;
+  assign fetching_o = active_o && data_q == D_IDLE;
+  assign executing_o = data_q == D_EXECUTE;
   assign writes_register_o = isa_writes_register(instruction);
   assign writes_predicate_o = isa_writes_predicate(instruction);
 

@@ -22,6 +22,7 @@ module launcher #(
   output wire [WARPS*LANES-1:0] start_lanes_o,
   input  wire [WARPS-1:0]       active_i,
   // the launch that runs
+  output wire [WARPS-1:0]       launched_o,     // has threads of it
   output reg  [10:0]            threads_o,
   output reg  [31:0]            block_o,
   output reg  [31:0]            blocks_o,
@@ -49,7 +50,9 @@ module launcher #(
       assign start_lanes_o[t] = THREAD < threads_q;
     end
     for (t = 0; t < WARPS; t = t + 1) begin : gen_warp
+      localparam integer FIRST_THREAD = t * LANES;
       assign start_o[t] = start && start_lanes_o[t*LANES];
+      assign launched_o[t] = threads_o > FIRST_THREAD[10:0];
     end
   endgenerate
 

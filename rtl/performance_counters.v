@@ -23,14 +23,22 @@ module performance_counters #(
   input  wire [INSTANCES-1:0]       ready_i,
   input  wire [INSTANCES-1:0]       grant_i,
   input  wire [WARPS-1:0]       waiting_i,        // warps that wanted an ALU and got none
-  input  wire [WARPS*4-1:0]     type_i,           // which each of them wants; there are eight at most
+  input  wire [WARPS*4-1:0]     type_i,           // of each warp's instruction; there are eight at most
+  input  wire [WARPS-1:0]       launched_i,       // the launch has threads for them
+  input  wire [WARPS-1:0]       active_i,
+  input  wire [WARPS-1:0]       fetching_i,
+  input  wire [WARPS-1:0]       executing_i,
+  input  wire [WARPS-1:0]       import_wait_i,    // of those that execute
+  input  wire [WARPS-1:0]       export_wait_i,
   input  wire [5:0]             select_i,
   output wire [63:0]            value_o
 );
 `include "counters.vh"
+`include "isa.vh"
   localparam integer BITS = 48;
   localparam integer LOW_BITS = 12;
-  localparam integer SINGLES = COUNTER_DATA_CACHE_STORES + 1;
+  localparam integer STATES = COUNTER_WARPS_NOT_LAUNCHED;   // the first of the counters of warps in a state
+  localparam integer SINGLES = COUNTER_WARPS_EXPORTING + 1;
   localparam integer COUNTERS = SINGLES + 3 * ALU_TYPES;
   localparam integer LANE_BITS = $clog2(LANES) + 1;   // of the number of a warp's lanes
   localparam integer WARP_BITS = $clog2(WARPS) + 1;   // of the number of warps
@@ -69,6 +77,32 @@ module performance_counters #(
       threads_q[w*LANE_BITS +: LANE_BITS] <= {LANE_BITS{1'b0}};
       if (retire_i[w]) threads_q[w*LANE_BITS +: LANE_BITS] <= lanes(retire_mask_i[w*LANES +: LANES]);
     end
+
+  // ---- Which warps are in which state, in the order of the counters; with those that wait for an ALU, those that are
+  // granted one and those that read registers, which is a cycle of each task, they are all.
+  reg [WARPS-1:0] in_mem, in_ray;
+  reg [(SINGLES-STATES)*WARPS-1:0] states_q;
+  integer v;
+  always @* begin
+    in_mem = {WARPS{1'b0}};
+    in_ray = {WARPS{1'b0}};
+    for (v = 0; v < WARPS; v = v + 1) begin
+      in_mem[v] = executing_i[v] && type_i[v*4 +: 4] == ISA_TYPE_MEM;
+      in_ray[v] = executing_i[v] && type_i[v*4 +: 4] == ISA_TYPE_RAY;
+    end
+  end
+  always @(posedge clk_i)
+    states_q <= !(rst_ni && running_i) ? {(SINGLES-STATES)*WARPS{1'b0}}
+                : {export_wait_i, import_wait_i, in_ray & ~import_wait_i & ~export_wait_i, in_mem, fetching_i,
+                   launched_i & ~active_i, ~launched_i};
+
+  function [WARP_BITS-1:0] warps(input [WARPS-1:0] state);   // that are in it
+    integer n;
+    begin
+      warps = {WARP_BITS{1'b0}};
+      for (n = 0; n < WARPS; n = n + 1) if (state[n]) warps = warps + ONE_WARP;
+    end
+  endfunction
 
   // How many of a type's instances are set.
   function [2:0] count(input [3:0] alu_type, input [INSTANCES-1:0] instances);
@@ -129,7 +163,8 @@ module performance_counters #(
       localparam integer ROW = (c < SINGLES) ? -1 : (c - SINGLES) / ALU_TYPES;
       localparam integer TYPE = (c - SINGLES) % ALU_TYPES;
       localparam integer EVENT_BITS = (c == COUNTER_THREAD_INSTRUCTIONS) ? THREAD_BITS
-                                      : (c == COUNTER_INSTRUCTIONS || ROW == 1) ? WARP_BITS : (ROW >= 0) ? 3 : 1;
+                                      : (c == COUNTER_INSTRUCTIONS || (c >= STATES && ROW < 0) || ROW == 1) ? WARP_BITS
+                                      : (ROW >= 0) ? 3 : 1;
       wire [EVENT_BITS-1:0] events;
       if (c == COUNTER_BUSY_CYCLES) begin : gen_event
         assign events = running_q;
@@ -137,6 +172,8 @@ module performance_counters #(
         assign events = instructions_q;
       end else if (c == COUNTER_THREAD_INSTRUCTIONS) begin : gen_event
         assign events = threads_sum_q;
+      end else if (c >= STATES && c < SINGLES) begin : gen_event
+        assign events = warps(states_q[(c-STATES)*WARPS +: WARPS]);
       end else if (c < SINGLES) begin : gen_event
         assign events = running_q && single_q[c - COUNTER_INSTRUCTION_CACHE_HITS];
       end else if (ROW == 0) begin : gen_event

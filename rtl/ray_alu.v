@@ -32,6 +32,9 @@ module ray_alu #(
   output wire [31:0]            frame_pixel_o,
   output wire [95:0]            frame_color_o,
   output wire                   exporting_o,              // something waits to be exported
+  // for the performance counters: rin without its package; rout or rfb behind one that is still being exported
+  output wire [WARPS-1:0]       import_wait_o,
+  output wire [WARPS-1:0]       export_wait_o,
   // trace: one cycle for each rst, that of its done_valid_o
   output wire                   ray_trace_valid_o,
   output wire [WARP_BITS-1:0]   ray_trace_warp_o,
@@ -192,6 +195,8 @@ module ray_alu #(
   reg [WARPS-1:0] parked_in_q, parked_out_q, parked_empty_q;   // rin; rout or rfb; whose mask is empty
   wire [WARPS-1:0] full, busy;
   wire [WARPS-1:0] can = (parked_in_q & full) | (parked_out_q & ~busy);
+  assign import_wait_o = parked_in_q & ~full;
+  assign export_wait_o = parked_out_q & busy;
   wire swap = |can && !result_end;
   reg [WARP_BITS-1:0] swap_warp;
   integer w;

@@ -40,6 +40,9 @@ module warp #(
   output wire [15:0]               pc_o,
   output reg  [LANES*32-1:0]       retire_data_o,
   output reg  [LANES-1:0]          retire_predicate_o,
+  // for the performance counters
+  output wire                      fetching_o,
+  output wire                      executing_o,
   // faults, one cycle; codes 1 and 2 are of the instruction at fetch_pc_o, 3 and 4 of that at pc_o
   output wire                      fault_valid_o,
   output wire [2:0]                fault_code_o
@@ -93,7 +96,8 @@ module warp #(
     .cache_hit_i(cache_hit_i), .cache_instruction_i(cache_instruction_i), .refill_done_i(refill_done_i),
     .read_o(read), .want_o(want_o), .grant_i(grant_i), .retire_i(retire_o),
     .instruction_o(instruction_o), .pc_o(pc_o), .writes_register_o(writes_register),
-    .writes_predicate_o(writes_predicate), .illegal_o(illegal), .outside_o(outside));
+    .writes_predicate_o(writes_predicate), .fetching_o(fetching_o), .executing_o(executing_o), .illegal_o(illegal),
+    .outside_o(outside));
 
   predicate_file #(.LANES(LANES)) predicate_file (
     .clk_i(clk_i), .clear_i(start_i), .read_i(read), .launched_i(launched_q),

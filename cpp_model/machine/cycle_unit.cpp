@@ -14,7 +14,8 @@ constexpr size_t index(AluType type) { return static_cast<size_t>(type); }
 }  // namespace
 
 CycleUnit::CycleUnit(const Configuration& configuration, const Memory& memory)
-    : lanes_(configuration.lanes),
+    : warps_(static_cast<uint32_t>(configuration.warps)),
+      lanes_(static_cast<uint32_t>(configuration.lanes)),
       host_memory_(&memory),
       core_(configuration, memory_),
       instruction_cache_(configuration),
@@ -38,7 +39,7 @@ void CycleUnit::reset(uint32_t program_length, uint32_t memory_limit) {
   memory_arbiter_.reset();
   counters_.reset();
   timeline_.reset();
-  fetch_cycle_ = now_;
+  fetch_cycle_ = ray_counted_ = now_;
   attention_ = faulty_ = false;
   alu_faults_ = {};
   fault_ = Fault{};
@@ -91,7 +92,12 @@ void CycleUnit::step(const UnitInputs& inputs) {
     clock_launcher();
   }
   // Write-back and the next instructions. Who retires in this cycle may issue in it.
-  if (const uint32_t control = buffer_.retire(retired); control != 0) retire_control(control);
+  if (retired != 0) {
+    counters_.enter(counter::kWarpsFetching, now_ + 1, popcount(retired));
+    counters_.leave(counter::kWarpsInMem, now_ + 1, mem_.done() != 0);
+    counters_.leave(counter::kWarpsInRay, now_ + 1, ray_.done() != 0);
+    if (const uint32_t control = buffer_.retire(retired); control != 0) retire_control(control);
+  }
   if (!stopped) {
     for (uint32_t warps = buffer_.ready(); warps != 0; warps &= warps - 1) issue_warp(lowest(warps));
   }
@@ -100,9 +106,13 @@ void CycleUnit::step(const UnitInputs& inputs) {
   if (dispatcher_.wants_pipelined()) dispatcher_.grant_pipelined(now_ + kAhead, timeline_, counters_);
   if (attention) clock_mem(inputs, port);
   clock_ray(inputs, accepts ? inputs.launch.import : ImportKind::None, ray_ready);
-  if (dispatcher_.wants(AluType::Ray) != 0 && !stopped) dispatcher_.grant(AluType::Ray, ray_ready, counters_);
+  if (dispatcher_.wants(AluType::Ray) != 0 && !stopped) {
+    dispatcher_.grant(AluType::Ray, ray_ready, counters_);
+    counters_.enter(counter::kWarpsInRay, now_ + 1, ray_ready);
+  }
   if (dispatcher_.wants(AluType::Mem) != 0 && !stopped) {
     dispatcher_.grant(AluType::Mem, mem_ready, counters_);
+    counters_.enter(counter::kWarpsInMem, now_ + 1, mem_ready);
     attention_ = true;
   }
   if (accepts) {
@@ -134,12 +144,15 @@ CycleUnit::MemoryPort CycleUnit::clock_memory_arbiter(const UnitInputs& inputs) 
 
 void CycleUnit::clock_launcher() {
   if (launcher_.start()) {
-    start_kernel();
     launcher_.begin();
+    start_kernel();
     count_pauses(true);
+    counters_.enter(counter::kWarpsNotLaunched, now_ + 1, warps_ - launched_warps());
   } else if (launcher_.kernel_done(buffer_.active())) {
     launcher_.end();
     count_pauses(false);
+    counters_.leave(counter::kWarpsNotLaunched, now_ + 1, warps_ - launched_warps());
+    counters_.leave(counter::kWarpsEnded, now_ + 1, launched_warps());
   }
 }
 
@@ -176,9 +189,21 @@ void CycleUnit::clock_mem(const UnitInputs& inputs, const MemoryPort& port) {
   const int arriving = dispatcher_.task(AluType::Ray);
   if (arriving < 0 && !inputs.import_beat_valid && import == ImportKind::None && !ray_.active()) return;
   counters_.unready[index(AluType::Ray)] += !ready;
+  count_ray_waits();
   const int swapped = ray_.clock(arriving, import, inputs);
   if (swapped >= 0) core_.step(static_cast<uint32_t>(swapped));
   dispatcher_.arrived(AluType::Ray);
+}
+
+// Of the cycles up to this one since the last call, in which the ray ALU had nothing to do but wait.
+void CycleUnit::count_ray_waits() {
+  const uint64_t cycles = now_ + 1 - ray_counted_;
+  ray_counted_ = now_ + 1;
+  if (!ray_.parked()) return;
+  const uint64_t imports = popcount(ray_.import_wait()) * cycles, exports = popcount(ray_.export_wait()) * cycles;
+  counters_.single[counter::kWarpsImporting] += imports;
+  counters_.single[counter::kWarpsExporting] += exports;
+  counters_.single[counter::kWarpsInRay] -= imports + exports;
 }
 
 // Instances that are taken while no kernel runs are not counted as such.
@@ -198,8 +223,8 @@ void CycleUnit::start_kernel() {
   }
   const LaunchCommand& launch = launcher_.registers().launch;
   core_.launch(launch);
-  const uint32_t lanes = static_cast<uint32_t>(lanes_);
-  for (uint32_t warp = 0; warp * lanes < launch.threads; ++warp) {
+  counters_.enter(counter::kWarpsFetching, now_ + 1, launched_warps());
+  for (uint32_t warp = 0; warp < launched_warps(); ++warp) {
     buffer_.start(warp);
     plan_fetch(warp, now_ + 1, false);
   }
@@ -249,6 +274,7 @@ void CycleUnit::issue_warp(uint32_t warp) {
   if (!instruction.legal()) return raise({FaultCode::IllegalInstruction, warp, buffer_.fetch_pc(warp)});
   const AluType type = instruction.alu();
   buffer_.issue(warp);
+  counters_.leave(counter::kWarpsFetching, now_ + 1, 1);
   want(warp, type);
   if (tracing_) record_issue(warp, instruction);
 
@@ -298,6 +324,8 @@ void CycleUnit::retire_control(uint32_t warps) {
       raise({stack_fault_[warp], warp, buffer_.pc(warp)});
     } else if (!core_.warp_running(warp)) {
       buffer_.exit(warp);
+      counters_.leave(counter::kWarpsFetching, now_ + 1, 1);
+      counters_.enter(counter::kWarpsEnded, now_ + 1, 1);
       attention_ = true;
     } else {
       plan_fetch(warp, now_ + 1, false);

@@ -107,7 +107,9 @@ class CycleUnit final : public ComputeUnit {
   void clock_instruction_cache(const UnitInputs& inputs, const MemoryPort& port);
   void clock_mem(const UnitInputs& inputs, const MemoryPort& port);
   void clock_ray(const UnitInputs& inputs, ImportKind import, bool ready);
+  void count_ray_waits();
   void count_pauses(bool running);
+  uint32_t launched_warps() const { return (launcher_.registers().threads + lanes_ - 1) / lanes_; }
   // Warps
   void start_kernel();
   void plan_fetch(uint32_t warp, uint64_t cycle, bool past_current);
@@ -128,7 +130,7 @@ class CycleUnit final : public ComputeUnit {
   void record_issue(uint32_t warp, const DecodedInstruction& instruction);
   void record_result(uint32_t warp, const Step& step);
 
-  int lanes_;
+  uint32_t warps_, lanes_;
   const Memory* host_memory_;
   Memory memory_;
   bool memory_stale_ = true;
@@ -150,6 +152,7 @@ class CycleUnit final : public ComputeUnit {
   bool attention_ = false;    // the next cycle has more to do than warps, pipelined ALUs and the ray ALU
   uint64_t fetch_cycle_ = 0;  // up to it, not included, the fetch arbiter's grants are known
   uint64_t miss_cycle_ = 0;   // in which the latest lookup's miss is known, if it was one
+  uint64_t ray_counted_ = 0;  // up to it, not included, the ray ALU's waiting warps are counted
 
   bool faulty_ = false;   // an instruction has faulted since the reset
   AluFaults alu_faults_;  // of this cycle, once faulty_

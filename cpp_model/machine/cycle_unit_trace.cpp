@@ -45,7 +45,7 @@ void CycleUnit::record() {
     event.instruction = issue.instruction->encoding;
     event.mask = issue.mask;
     event.data = issue.data;
-    event.data.resize(static_cast<size_t>(lanes_));
+    event.data.resize(lanes_);
     event.predicate = issue.predicate;
     if ((ray_.done() >> warp & 1) != 0 && ray_.wrote())
       trace_.ray_writes.push_back({warp, issue.instruction->x, issue.mask, issue.operand_b, 0});

@@ -13,6 +13,7 @@ class Launcher {
     bool pending = false;  ///< a launch waits
     bool running = false;
     LaunchCommand launch;  ///< with pending: pc, threads, block, blocks, and the kind of its import
+    uint32_t threads = 0;  ///< of the launch that runs or ran last
   };
 
   void reset() { q_ = Registers{}; }
@@ -33,6 +34,7 @@ class Launcher {
   void begin() {
     q_.pending = false;
     q_.running = true;
+    q_.threads = q_.launch.threads;
   }
   void end() { q_.running = false; }
 

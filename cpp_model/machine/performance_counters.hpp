@@ -18,6 +18,11 @@ struct PerformanceCounters {
 
   void reset() { *this = PerformanceCounters{}; }
 
+  /// Warps are in the state that counter `number` counts from `cycle` on, or no longer: their cycles are counted when
+  /// they leave, so such a counter holds while no kernel runs.
+  void enter(int number, uint64_t cycle, uint64_t warps) { single[number] -= warps * cycle; }
+  void leave(int number, uint64_t cycle, uint64_t warps) { single[number] += warps * cycle; }
+
   /// `instances`: of the number's ALU type, for those that have one; `rest`: what is
   /// in its `unready` and still to come.
   uint64_t value(int number, uint32_t instances, uint64_t rest) const {

@@ -72,6 +72,10 @@ class RayAlu {
   ImportKind import_kind() const { return import_.registers().request_kind; }
   /// An import is under way, or beats wait or are still to be read.
   bool moves_rays() const { return import_active() || export_.exporting(); }
+  /// Whether a rin, rout or rfb waits, and those that wait for a package, or for the one before to leave.
+  bool parked() const { return (q_.parked_in | q_.parked_out) != 0; }
+  uint32_t import_wait() const { return q_.parked_in & ~import_.registers().full; }
+  uint32_t export_wait() const { return q_.parked_out & export_.registers().busy; }
   /// The valids of its ports, as namespace signal has them.
   uint32_t signals() const {
     return import_.registers().request_valid * signal::kImportRequest | export_.export_valid() * signal::kExport |

@@ -34,7 +34,10 @@ without_reset() {
 
 text=$(scripts/icarus.sh "$raypool" tb/mutants/2w2c.json "$folder/run" 1 2>&1) ||
   { failures=$((failures + 1)); echo "FAILED: the sound unit: $text"; }
-notices "a register that is read before it is written" rtl "retire_data" tb/icarus/undefined_register.json
+undefined=tb/icarus/undefined_register.json
+"$raypool" cosim --replay $undefined --unchecked --show-config > "$folder/undefined.json"
+RAYPOOL=$raypool scripts/unit.sh "$folder/undefined.json"
+notices "a register that is read before it is written" rtl "retire_data" $undefined
 without_reset compute_unit.v fault_q
 notices "the fault flag without reset" "$folder/rtl" "fault_valid" 1
 without_reset launcher.v running_o

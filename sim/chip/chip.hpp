@@ -16,6 +16,7 @@
 #include "kernel/kernels.hpp"
 #include "machine/compute_unit.hpp"
 #include "machine/memory.hpp"
+#include "machine/warp_cycles.hpp"
 #include "scene/ray_counts.hpp"
 
 namespace raypool {
@@ -44,6 +45,12 @@ struct ChipOptions {
   std::function<void(const ChipProgress&)> progress;  ///< called now and then, and at the end
   uint64_t watchdog_cycles = 100'000;  ///< this long without a retired instruction or a transfer is an error; 0: never
   uint64_t cycle_limit = 0;            ///< give up after this many cycles; 0: never
+};
+
+/// What bounds a run: the Mrays/s at which this would be busy in every cycle, everything else being as it was.
+struct Ceiling {
+  std::string name;
+  double mrays_per_s;
 };
 
 /// The fill of a pool over the run.
@@ -88,6 +95,9 @@ struct ChipResult {
   };
   std::array<Alu, kAluTypes> alus{};  ///< [AluType]
   uint64_t busy_cycles = 0, instructions = 0, thread_instructions = 0;
+  WarpCycles warp_cycles;
+  uint64_t warp_cycles_without_kernel = 0;
+  std::vector<Ceiling> ceilings;  ///< the lowest first; of what was busy at all
   uint64_t instruction_cache_hits = 0, instruction_cache_misses = 0;
   uint64_t data_cache_hits = 0, data_cache_misses = 0, data_cache_stores = 0;
 

@@ -43,6 +43,7 @@ class Chip : public sc_core::sc_module, public WatchedIf {
   ChipResult collect() const;
   void collect_units(ChipResult& result) const;
   void collect_pools(ChipResult& result) const;
+  void collect_ceilings(ChipResult& result) const;
 
   const ChipOptions options_;
   ChipClock clock_{"clock"};

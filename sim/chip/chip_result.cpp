@@ -1,9 +1,16 @@
 // What a frame has come to, gathered from the modules of the chip.
+#include <algorithm>
+
 #include "chip/chip_module.hpp"
 
 namespace raypool::chip {
 
 namespace {
+
+// A warp that always has a thread and waits for nobody: its instructions one after the other.
+uint64_t own_cycles(const WarpCycles& cycles) {
+  return cycles.fetch + cycles.registers + cycles.issued + cycles.executing_sum();
+}
 
 double ratio(double part, double whole) { return whole == 0 ? 0 : part / whole; }
 double ratio(uint64_t part, uint64_t whole) { return ratio(static_cast<double>(part), static_cast<double>(whole)); }
@@ -46,6 +53,28 @@ void Chip::collect_pools(ChipResult& result) const {
   result.memory_writes = memory_port_.writes();
 }
 
+// Of each resource: as often as it was busy in the cycles that there were, so many times the speed it would bear.
+void Chip::collect_ceilings(ChipResult& result) const {
+  const auto add = [&](std::string name, uint64_t busy, uint64_t cycles) {
+    if (busy > 0 && cycles > 0) result.ceilings.push_back({std::move(name), result.mrays_per_s * ratio(cycles, busy)});
+  };
+  const auto units = static_cast<uint64_t>(options_.device->units());
+  add("issue", result.instruction_cache_hits + result.instruction_cache_misses, result.cycles * units);
+  for (int type = 0; type < kAluTypes; ++type) {
+    const auto instances = static_cast<uint64_t>(options_.configuration.alus[type].count);
+    const uint64_t unused = options_.device->counter(counter::kUnused + type);
+    add(std::string(kAluNames[type]), result.busy_cycles * instances - unused, result.cycles * units * instances);
+  }
+  add("ray_port", rays_.busy_cycles(), result.cycles);
+  add("intersection_port", intersections_.busy_cycles(), result.cycles);
+  add("frame_port", frame_.taken(), result.cycles);
+  add("memory_port", memory_port_.busy_cycles(), result.cycles);
+  add("traverser", result.rays(), traverser_->counts().most_rays);
+  add("latency", own_cycles(result.warp_cycles), result.warp_cycles.busy + result.warp_cycles_without_kernel);
+  std::sort(result.ceilings.begin(), result.ceilings.end(),
+            [](const Ceiling& a, const Ceiling& b) { return a.mrays_per_s < b.mrays_per_s; });
+}
+
 ChipResult Chip::collect() const {
   ChipResult result;
   result.timed = options_.device->timed();
@@ -71,6 +100,13 @@ ChipResult Chip::collect() const {
   collect_units(result);
 
   collect_pools(result);
+  if (result.timed) {
+    result.warp_cycles = warp_cycles(options_.configuration, *options_.device);
+    result.warp_cycles_without_kernel =
+        result.cycles * static_cast<uint64_t>(options_.device->units() * options_.configuration.warps) -
+        result.warp_cycles.busy;
+    collect_ceilings(result);
+  }
   result.traverser_batches = counts.batches;
   result.traverser_stall_batches = counts.stall_batches;
   return result;

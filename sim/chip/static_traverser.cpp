@@ -30,6 +30,7 @@ void StaticTraverser::shader_stalls(bool stalls) {
 void StaticTraverser::end_of_kernel() {
   clock->guard([&] {
     counts_.batches += kernels_;
+    counts_.most_rays += batch_ * kernels_;
     advance(batch_ * kernels_);
     kernels_ = 0;
   });
@@ -37,6 +38,7 @@ void StaticTraverser::end_of_kernel() {
 
 void StaticTraverser::end_of_stall() {
   clock->guard([&] {
+    counts_.most_rays += batch_ * units_;
     if (advance(batch_ * units_) > 0) ++counts_.stall_batches;
     clock->notify(stall_over_, Phase::Traverser, stall_cycles_);
   });

@@ -19,6 +19,7 @@ struct TraverserCounts {
   RayCounts rays;
   uint64_t delivered = 0;  ///< intersections
   uint64_t batches = 0, stall_batches = 0;
+  uint64_t most_rays = 0;  ///< that could have been traced by now, had there always been some; 0: no limit
 };
 
 class Traverser : public sc_core::sc_module, public KernelEventsIf, public RayArrivalIf {

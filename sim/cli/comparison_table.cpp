@@ -19,6 +19,9 @@ constexpr std::array kAlways = {"cycles", "rays", "mrays_per_second", "frames_pe
 constexpr std::array kWhenDifferent = {"mrays_per_second_thesis",
                                        "time_utilisation",
                                        "resource_utilisation",
+                                       "ceilings.lowest",
+                                       "ceilings.reached",
+                                       "warp_cycles.",
                                        "kernels.",
                                        "alus.",
                                        "caches.",
@@ -38,7 +41,9 @@ bool ends_with(const std::string& text, std::string_view end) {
   return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-bool is_share(const std::string& field) { return ends_with(field, "utilisation") || ends_with(field, "hit_rate"); }
+bool is_share(const std::string& field) {
+  return ends_with(field, "utilisation") || ends_with(field, "hit_rate") || ends_with(field, "reached");
+}
 
 std::string figure(const std::string& field, const Json& value) {
   if (value.is_null()) return "-";

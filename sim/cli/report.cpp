@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iterator>
+#include <string_view>
 
 #include "cli/version.hpp"
 #include "files/json_text.hpp"
@@ -50,6 +52,44 @@ void add_rays(Json& json, const RayCounts& rays, uint64_t too_deep) {
   json["rays_that_end"] = {{"missed", rays.missed()}, {"blocked", rays.blocked()}, {"too_deep", too_deep}};
 }
 
+Json by_type(const EnumArray<AluType, uint64_t, kAluTypes>& figures) {
+  Json json;
+  for (size_t i = 0; i < kAluTypes; ++i) json[std::string(kAluNames[i])] = figures[i];
+  return json;
+}
+
+Json warp_cycles_json(const ChipResult& chip) {
+  const WarpCycles& cycles = chip.warp_cycles;
+  return {{"all", cycles.busy + chip.warp_cycles_without_kernel},
+          {"without_kernel", chip.warp_cycles_without_kernel},
+          {"not_launched", cycles.not_launched},
+          {"ended", cycles.ended},
+          {"fetch", cycles.fetch},
+          {"registers", cycles.registers},
+          {"issued", cycles.issued},
+          {"import", cycles.imports},
+          {"export", cycles.exports},
+          {"waiting", by_type(cycles.waiting)},
+          {"executing", by_type(cycles.executing)}};
+}
+
+Json ceilings_json(const ChipResult& chip) {
+  const auto ceiling = [&](std::string_view name) {
+    for (const Ceiling& one : chip.ceilings) {
+      if (one.name == name) return Json(one.mrays_per_s);
+    }
+    return Json(nullptr);
+  };
+  Json json = {{"issue", ceiling("issue")}};
+  for (const std::string_view name : kAluNames) json["alus"][std::string(name)] = ceiling(name);
+  for (const char* name : {"ray_port", "intersection_port", "frame_port", "memory_port", "traverser", "latency"})
+    json[name] = ceiling(name);
+  const bool any = !chip.ceilings.empty();
+  json["lowest"] = any ? Json(chip.ceilings.front().name) : Json(nullptr);
+  json["reached"] = any ? Json(chip.mrays_per_s / chip.ceilings.front().mrays_per_s) : Json(nullptr);
+  return json;
+}
+
 void add_chip(Json& json, const ChipResult& chip) {
   json["cycles"] = timed(chip, chip.cycles);
   json["rays"] = chip.rays();
@@ -73,6 +113,8 @@ void add_chip(Json& json, const ChipResult& chip) {
         {"utilisation", timed(chip, alu.utilisation)}, {"waiting", timed(chip, alu.waiting)}, {"issued", alu.issued}};
   }
   if (!chip.timed) return;
+  json["warp_cycles"] = warp_cycles_json(chip);
+  json["ceilings"] = ceilings_json(chip);
   json["caches"]["instruction"] = {{"hits", chip.instruction_cache_hits},
                                    {"misses", chip.instruction_cache_misses},
                                    {"hit_rate", share(chip.instruction_cache_hits, chip.instruction_cache_misses)}};
@@ -134,6 +176,42 @@ void ray_table(std::string& text, const RunRecord& record, const RayCounts& rays
     line(text, "    left out  reflections: no material of this scene reflects");
 }
 
+// Where the warps' cycles went, in shares of all.
+void warp_table(std::string& text, const ChipResult& chip) {
+  const WarpCycles& cycles = chip.warp_cycles;
+  const auto all = static_cast<double>(cycles.busy + chip.warp_cycles_without_kernel);
+  const auto percent = [&](uint64_t part) {
+    return fmt::format("{:.1f}%", all == 0 ? 0 : 100 * static_cast<double>(part) / all);
+  };
+  // The types that have more than 0.05%
+  const auto types = [&](const EnumArray<AluType, uint64_t, kAluTypes>& figures) {
+    std::string list;
+    for (size_t i = 0; i < kAluTypes; ++i) {
+      if (const std::string share = percent(figures[i]); share != "0.0%")
+        list += fmt::format("{}{} {}", list.empty() ? "" : ", ", kAluNames[i], share);
+    }
+    return list.empty() ? list : " (" + list + ")";
+  };
+  line(text, "  warps       fetch {}, registers {}, issued {}, executing {}{}", percent(cycles.fetch),
+       percent(cycles.registers), percent(cycles.issued), percent(cycles.executing_sum()), types(cycles.executing));
+  line(text, "    waiting   for an ALU {}{}, import {}, export {}", percent(cycles.waiting_sum()),
+       types(cycles.waiting), percent(cycles.imports), percent(cycles.exports));
+  line(text, "    empty     ended {}, not launched {}, without a kernel {}", percent(cycles.ended),
+       percent(cycles.not_launched), percent(chip.warp_cycles_without_kernel));
+}
+
+// The lowest ceilings, and how far it is to the first.
+void ceiling_line(std::string& text, const ChipResult& chip) {
+  constexpr size_t kShown = 5;
+  if (chip.ceilings.empty()) return;
+  const Ceiling& lowest = chip.ceilings.front();
+  std::string others;
+  for (size_t i = 1; i < std::min(kShown, chip.ceilings.size()); ++i)
+    others += fmt::format("{} {} {:.1f}", i == 1 ? ";" : ",", chip.ceilings[i].name, chip.ceilings[i].mrays_per_s);
+  line(text, "  ceilings    {} {:.1f} Mrays/s, of which {:.1f}% is reached{}", lowest.name, lowest.mrays_per_s,
+       100 * chip.mrays_per_s / lowest.mrays_per_s, others);
+}
+
 void chip_table(std::string& text, const ChipResult& chip) {
   if (!chip.timed) {
     kernel_table(text, chip);
@@ -151,6 +229,8 @@ void chip_table(std::string& text, const ChipResult& chip) {
     const ChipResult::Alu& alu = chip.alus[i];
     line(text, "    {} {:>11.1f}% {:>8.2f} {:>10}", kAluNames[i], 100 * alu.utilisation, alu.waiting, alu.issued);
   }
+  warp_table(text, chip);
+  ceiling_line(text, chip);
   line(text, "  work        {} warp instructions, {} thread instructions", chip.instructions, chip.thread_instructions);
   line(text, "  caches      instructions {:.2f}% hits of {}, data {:.2f}% hits of {}",
        100 * share(chip.instruction_cache_hits, chip.instruction_cache_misses),

@@ -4,6 +4,7 @@
 
 #include "bits.hpp"
 #include "lockstep/text.hpp"
+#include "machine/warp_cycles.hpp"
 
 namespace raypool::lockstep {
 namespace {
@@ -47,6 +48,9 @@ std::string retired_line(const char* who, const RetireEvent& event) {
 // What gives a performance counter its events.
 const char* source_of_events(int number) {
   if (number >= counter::kUnused) return "rtl/dispatcher.v";
+  if (number >= counter::kWarpsImporting) return "rtl/ray_alu.v";
+  if (number == counter::kWarpsNotLaunched) return "rtl/launcher.v";
+  if (number >= counter::kWarpsEnded) return "rtl/instruction_buffer.v";
   return number >= counter::kDataCacheHits ? "rtl/mem_alu.v" : "rtl/event_counter.v";
 }
 
@@ -274,7 +278,7 @@ void Comparison::outputs(const UnitOutputs& rtl, const UnitOutputs& model) const
   }
 }
 
-void compare_counters(ComputeUnit& rtl, ComputeUnit& model) {
+void compare_counters(const Configuration& configuration, ComputeUnit& rtl, ComputeUnit& model) {
   for (int number = 0; number < counter::kCount; ++number) {
     const uint64_t r = rtl.counter(number), m = model.counter(number);
     if (r == m) continue;
@@ -282,6 +286,10 @@ void compare_counters(ComputeUnit& rtl, ComputeUnit& model) {
                    std::string("rtl/performance_counters.v, ") + source_of_events(number) + ", rtl/multiprocessor.v",
                    Context::Unit};
   }
+  const WarpCycles cycles = warp_cycles(configuration, rtl);
+  if (cycles.sum() == cycles.busy) return;
+  throw Mismatch{"the warps' states do not sum up to their cycles", row("cycles", cycles.sum(), cycles.busy),
+                 "rtl/performance_counters.v, cpp_model/machine/warp_cycles.cpp", Context::Unit};
 }
 
 }  // namespace raypool::lockstep

@@ -39,7 +39,7 @@ class Comparison {
   LockstepCounts* counts_;
 };
 
-/// Counter by counter; only while both are idle.
-void compare_counters(ComputeUnit& rtl, ComputeUnit& model);
+/// Counter by counter, and that every cycle of every warp is accounted for; only while both are idle.
+void compare_counters(const Configuration& configuration, ComputeUnit& rtl, ComputeUnit& model);
 
 }  // namespace raypool::lockstep

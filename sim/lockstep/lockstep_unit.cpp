@@ -153,7 +153,7 @@ class LockstepUnitImpl : public LockstepUnit {
       return;  // it waits for a reset
     }
     if (out.idle && !was_idle_) {
-      compare_counters(*rtl_, *model_.device);
+      compare_counters(configuration_, *rtl_, *model_.device);
       ++counts_.counters;
     }
     was_idle_ = out.idle;

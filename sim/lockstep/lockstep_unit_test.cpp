@@ -7,6 +7,7 @@
 #include <iostream>
 
 #include "bits.hpp"
+#include "lockstep/comparison.hpp"
 #include "machine/cycle_unit.hpp"
 #include "machine/test_chip.hpp"
 #include "machine/test_program.hpp"
@@ -317,6 +318,18 @@ TEST(Lockstep, ACounterThatDiffersIsFoundWhenTheUnitIsIdle) {
     return value + (number == counter::kWaiting + 3 ? 1 : 0);
   };
   expect_parts(fixture.report(), {"performance counter 27 differs", "performance_counters.v"});
+}
+
+TEST(Lockstep, ACycleThatBothSidesForgetIsFoundWhenTheUnitIsIdle) {
+  const Memory memory(65536);
+  Device device(memory);
+  device.alter_counter = [](int number, uint64_t value) { return value + (number == counter::kBusyCycles ? 1 : 0); };
+  try {
+    lockstep::compare_counters(make_configuration(), device, device);
+    FAIL() << "a busy cycle in which no warp was in any state";
+  } catch (const lockstep::Mismatch& mismatch) {
+    EXPECT_EQ(mismatch.title, "the warps' states do not sum up to their cycles");
+  }
 }
 
 TEST(Lockstep, ARetirementThatComesACycleLateIsFound) {
