@@ -69,10 +69,12 @@ EXPERIMENT ?=
 WHERE     ?= here
 JOBS      ?=
 SCENES    ?=
+# `make report`
+FROM      ?=
 # Recipes read these from the environment, so that a value with spaces or quotes stays one word.
 export CONFIG SET CUS SCENE SIZE DEPTH ENGINE TRAVERSER VIEW CAMERA EYE LOOK_AT UP FOV LIGHT DETAIL OUT WAVES
 export A B KERNEL PROGRAMS SEED COVERAGE MUTANTS MODE THREADS
-export EXPERIMENT WHERE JOBS SCENES
+export FROM EXPERIMENT WHERE JOBS SCENES
 export LIBERTY CLOCK MEMORIES AGAINST RUN ONLY PLAN
 
 # Everything that is made goes here; scripts read it from the environment.
@@ -97,12 +99,16 @@ SYNTH_OPTIONS := --config "$$CONFIG" $(SET_FIELDS) --memories "$$MEMORIES" $${LI
   $${CLOCK:+--clock "$$CLOCK"}
 SWEEP := RAYPOOL="$(abspath $(RAYPOOL))" PYTHONPATH=scripts python3 -m sweep
 SWEEP_SETUP := setup-sweep $(if $(filter slurm,$(WHERE)),setup-slurm)
+# The modules of Debian's packages are those of Debian's Python, whatever stands first in PATH.
+PYTHON := $(or $(wildcard /usr/bin/python3),python3)
+REPORT := RAYPOOL="$(abspath $(RAYPOOL))" PYTHONPATH=scripts $(PYTHON) -m report
 GATES_SETUP := $(if $(filter-out 0,$(GATES)),setup-synth)
 UNIT_OF_ENGINE := $(if $(filter rtl lockstep,$(ENGINE)),$(UNIT),true)
 
 .PHONY: help sim compare run cosim configurations mutants faults unit test lint format bench clean
 .PHONY: setup-% program configured-%
 .PHONY: numerics-long proofs synth synth-replay synth-prove growth numerics extremes isa diagrams quoted package sweep
+.PHONY: report
 
 help: ## this list
 	@echo 'raypool: a ray-tracing GPU to render on, measure, verify and synthesise'
@@ -126,6 +132,7 @@ help: ## this list
 	@echo '  WAVES=1                       a waveform (FST) too; ENGINE=rtl, lockstep  $(WAVES)'
 	@echo 'variables of make sweep:  EXPERIMENT=FILE.json  OUT=FOLDER  WHERE=here|slurm  JOBS=N: points at a time'
 	@echo '  SCENES=FOLDER:FOLDER: where scenes are that are not part of the project'
+	@echo 'variables of make report:  FROM="FOLDER ...": sweeps, runs, synthesis reports or folders of them  OUT=FOLDER'
 	@echo 'variables of make synth, synth-replay, synth-prove:  CONFIG  SET  LIBERTY=FILE  CLOCK=NS  MEMORIES=macros|flops'
 	@echo '  make synth:  AGAINST=REPORT  RUN=REPORT_OF_SIM  POWER=1  OUT=FOLDER'
 	@echo '  synth-replay:  BREAK=N;  synth-prove:  ONLY=BLOCKS;  growth:  PLAN=FILE'
@@ -182,6 +189,9 @@ diagrams: setup-sim setup-test program ## draw docs/images/*.svg: the unit, the 
 sweep: setup-sim $(SWEEP_SETUP) program ## all points of EXPERIMENT (docs/sweeps.md)
 	@[ -n "$$EXPERIMENT" ] || { echo 'make sweep: say which, EXPERIMENT=configs/experiments/caches.json' >&2; exit 1; }
 	@$(SWEEP) "$$EXPERIMENT" --where "$$WHERE" $${OUT:+--out "$$OUT"} $${JOBS:+--jobs "$$JOBS"}
+
+report: setup-sim setup-report program ## sweeps, runs and synthesis reports as one page: FROM, OUT (docs/page.md)
+	@$(REPORT) $${FROM:+--from $$FROM} $${OUT:+--out "$$OUT"}
 
 unit: setup-sim program ## Verilate CUS compute units of CONFIG (WAVES=1: with waveforms)
 	@$(UNIT) --units "$$CUS"

@@ -3,6 +3,7 @@ in which order points ran, so that they are the same byte for byte wherever they
 import csv
 import io
 import json
+import os
 
 from .experiment import short
 from .raypool import flat
@@ -64,6 +65,7 @@ def write(store, plan):
         store.path("table.json"),
         {
             "title": experiment.title,
+            "experiment": short(os.path.abspath(experiment.path)),
             "swept": experiment.swept,
             "base": experiment.base,
             "filter": experiment.filter,

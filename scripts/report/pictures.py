@@ -1,0 +1,127 @@
+"""The pictures that were drawn, each once, and beside them Embree's own: that of engine native, with exact arithmetic
+where there is one."""
+import base64
+import json
+import shlex
+
+from sweep import raypool
+from sweep.errors import SweepError
+from sweep.raypool import digest_of_file
+
+from .point import differing, labels, near
+
+# So that the page stays one that opens.
+MOST_BYTES = 24_000_000
+EXACT = {"arithmetic.subnormals": "ieee", "arithmetic.slow_unit": "exact", "arithmetic.fma": False}
+
+
+class Picture:
+    """`points` drew it; `native` is the point it is compared with, None where there is none."""
+
+    def __init__(self, points, native):
+        self.points, self.native = points, native
+        self.point = points[0]
+        self.comparison = None
+        self.data = None
+
+    @property
+    def size(self):
+        return self.point.report["size"]
+
+    @property
+    def differ(self):
+        return self.comparison["differ"] if self.comparison and self.comparison.get("compared") else None
+
+    @property
+    def native_command(self):
+        """That would draw Embree's own."""
+        words = shlex.split(self.point.command)
+        words = [word for word in words if not word.startswith("--set=chip.")]
+        for place, word in enumerate(words):
+            if word.startswith("--engine="):
+                words[place] = "--engine=native"
+                break
+            if word == "--engine" and place + 1 < len(words):
+                words[place + 1] = "native"
+                break
+        else:
+            words += ["--engine", "native"]
+        return "build/" + shlex.join(words)
+
+
+def scene_key(point):
+    return tuple(str(point[name]) for name in ("scene", "view", "size", "depth"))
+
+
+def compare(a, b):
+    """What `raypool compare` says of two points' pictures."""
+    try:
+        return json.loads(raypool.ask("compare", a.folder, b.folder, "--json"))["picture"]
+    except SweepError as error:
+        return {"compared": False, "reason": str(error)}
+
+
+def natives_of(points):
+    """{scene: point} of engine native; exact arithmetic is preferred."""
+    found = {}
+    for point in points:
+        if point["engine"] == "native" and point.picture:
+            kept = found.setdefault(scene_key(point), point)
+            if not is_exact(kept) and is_exact(point):
+                found[scene_key(point)] = point
+    return found
+
+
+def is_exact(point):
+    return all(point[name] == value for name, value in EXACT.items())
+
+
+def collect(points, notes):
+    """[[Picture]]: those of one scene, view, size and depth together, Embree's own first if it is there."""
+    natives = natives_of(points)
+    scenes = {}
+    for point in points:
+        if point.picture:
+            try:
+                digest = digest_of_file(point.picture)
+            except OSError as error:
+                notes.append(f"{near(point.picture)} cannot be read ({error.strerror})")
+                continue
+            scenes.setdefault(scene_key(point), {}).setdefault(digest, []).append(point)
+    used, found = 0, []
+    for key, by_digest in scenes.items():
+        native = natives.get(key)
+        pictures = [Picture(members, native) for members in by_digest.values()]
+        pictures.sort(key=lambda picture: native not in picture.points)
+        shown = []
+        for picture in pictures:
+            with open(picture.point.picture, "rb") as file:
+                data = file.read()
+            if used + len(data) > MOST_BYTES:
+                notes.append(f"{near(picture.point.picture)}, as the page has {MOST_BYTES // 10**6} MB of pictures: "
+                             "make report FROM= with fewer folders shows it")
+                continue
+            used += len(data)
+            picture.data = base64.b64encode(data).decode()
+            if native is not None:
+                picture.comparison = compare(native, picture.point)
+            shown.append(picture)
+        if shown:
+            found.append(shown)
+    return found
+
+
+def engines_and_machines(picture):
+    """Who drew it, in words."""
+    engines = ", ".join(dict.fromkeys(point["engine"] for point in picture.points))
+    machines = list(dict.fromkeys(point.machine for point in picture.points))
+    more = f" and {len(machines) - 3} more machines" if len(machines) > 3 else ""
+    return f"engine {engines}; {', '.join(machines[:3])}{more}"
+
+
+def arithmetic_label(pictures):
+    """What tells these pictures from each other, if anything chosen does."""
+    points = [picture.point for picture in pictures]
+    names = [name for name in differing(points) if name.startswith("arithmetic.")]
+    every = {name for point in points for name in point.fields}
+    return labels(points, *(every - set(names))) if names else [""] * len(pictures)
