@@ -48,7 +48,7 @@ std::string retired_line(const char* who, const RetireEvent& event) {
 // What gives a performance counter its events.
 const char* source_of_events(int number) {
   if (number >= counter::kUnused) return "rtl/dispatcher.v";
-  if (number >= counter::kWarpsImporting) return "rtl/ray_alu.v";
+  if (number >= counter::kWarpsInRay) return "rtl/ray_alu.v";
   if (number == counter::kWarpsNotLaunched) return "rtl/launcher.v";
   if (number >= counter::kWarpsEnded) return "rtl/instruction_buffer.v";
   return number >= counter::kDataCacheHits ? "rtl/mem_alu.v" : "rtl/event_counter.v";
