@@ -56,14 +56,21 @@ class Plan:
         results = {}
         with futures.ThreadPoolExecutor(self.jobs) as pool:
             waiting = {key: pool.submit(action, group[0]) for key, group in groups.items()}
-            for done, (key, future) in enumerate(waiting.items(), 1):
-                try:
-                    results[key] = future.result()
-                except SweepError as error:
-                    pool.shutdown(cancel_futures=True)
-                    raise self.error(groups[key][0], error) from error
-                self.progress.show(f"  {what}: {done} of {len(groups)}")
+            try:
+                for done, (key, future) in enumerate(waiting.items(), 1):
+                    results[key] = self.result(future, groups[key][0])
+                    self.progress.show(f"  {what}: {done} of {len(groups)}")
+            except BaseException:
+                # An interrupt does not wait for what has not begun, nor does an error.
+                pool.shutdown(wait=False, cancel_futures=True)
+                raise
         return {planned: results[key] for key, group in groups.items() for planned in group}
+
+    def result(self, future, planned):
+        try:
+            return future.result()
+        except SweepError as error:
+            raise self.error(planned, error) from error
 
     def error(self, planned, error):
         shown = self.experiment.shown(planned.point)
@@ -93,7 +100,7 @@ class Plan:
                 words = words[:-2] if field == "detail" else words
                 raypool.ask(*words, f"--{field}={value}")
 
-            self.each_once(f"{field}s checked", lambda planned, field=field: text(planned.point[field]), check)
+            self.each_once(f"values of {field} checked", lambda planned, field=field: text(planned.point[field]), check)
 
     def check_scenes(self):
         def check(planned):

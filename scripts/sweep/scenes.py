@@ -41,10 +41,10 @@ def find(scene, beside):
 
 def missing(scene, source):
     """The sentence about one that is nowhere."""
-    places = " nor in ".join([os.path.relpath(os.path.dirname(scene)) + "/", *map(os.path.relpath, folders())])
-    name = os.path.basename(scene)
+    places = (os.path.dirname(scene), *folders())
+    shown = " nor in ".join(min(place, os.path.relpath(place), key=len) for place in places)
     more = f"; {source}" if source else ""
-    return f"{name} is neither in {places}{more}; with SCENES=FOLDER it is looked for there"
+    return f"{os.path.basename(scene)} is neither in {shown}{more}; with SCENES=FOLDER it is looked for there"
 
 
 def unpacked(packed):

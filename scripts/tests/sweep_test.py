@@ -26,6 +26,7 @@ WRAPPER = """#!/bin/bash
 # {version}
 out=${{!#}}
 case "$1 $* " in
+  "config "*--json*) echo >> {folder}/machines ;;&
   "sim "*--modules*) ;;
   "sim "*--depth=13*) [ -e {folder}/works ] || {{ echo 'raypool: depth 13 brings bad luck' >&2; exit 3; }} ;;
   "sim "*--depth=7*)
@@ -315,6 +316,27 @@ class Runs(SweepTest):
             self.assertEqual(float(line["alus.flt.utilisation"]), report["alus"]["flt"]["utilisation"])
             self.assertEqual(report["configuration"]["warps"], row["warps"])
             self.assertNotIn("wall_seconds", row)
+
+    def test_every_engine_is_a_point(self):
+        engines = ["native", "functional", "model", "rtl", "lockstep"]
+        self.run_sweep({"base": {**TINY, "config": "4w4c", "depth": 2}, "product": {"engine": engines}})
+        rows = self.rows()
+        self.assertEqual([row["engine"] for row in rows], engines)
+        self.assertEqual(len({row["picture"] for row in rows}), 1)
+        self.assertEqual([row["cycles"] for row in rows[:2]], [None, None])
+        self.assertEqual(len({row["cycles"] for row in rows[2:]}), 1)
+        self.assertGreater(rows[2]["cycles"], 0)
+        self.assertGreater(rows[4]["lockstep.instructions"], 0)
+
+    def test_an_interrupt_while_machines_are_checked_does_not_wait_for_the_rest(self):
+        self.write({"base": TINY, "product": {"chip.memory.latency": list(range(1, 1001))}})
+        calls = self.folder / "machines"
+        sweep = self.start()
+        self.until(lambda: calls.exists() and len(calls.read_text()) > 5, "no machine is checked")
+        sweep.send_signal(signal.SIGINT)
+        self.assertEqual(sweep.wait(), 130)
+        self.assertLess(len(calls.read_text()), 500)
+        self.assertFalse(self.out.exists())
 
     def test_two_in_one_folder_are_refused(self):
         self.write({"base": TINY, "product": {"depth": [7]}})
