@@ -55,7 +55,7 @@ def figure(sweep):
         return number(value(point)), "" if point is first else change(value(first), value(point))
 
     def row(point):
-        own = "(first)" if point is first else said(first, point)
+        own = f"{point.machine} (first)" if point is first else said(first, point)
         return [own, *(cell(value, point) for _, value in columns),
                 "" if point is first else picture_words(first, point)]
 

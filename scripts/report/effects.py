@@ -47,11 +47,11 @@ def first(found):
     return found[0]
 
 
-def families(groups, *more):
+def families(groups):
     """Groups that make one figure: of the same scene, depth and chip."""
     found = {}
     for group in groups:
-        found.setdefault((group[0].version, group[0].key("warps", "lanes", "units", *more)), []).append(group)
+        found.setdefault((group[0].version, group[0].key("warps", "lanes", "units")), []).append(group)
     return list(found.values())
 
 
@@ -70,7 +70,6 @@ def in_sixes(family):
 
 def effect_figure(field, groups, title):
     """A row for each group, a mark for each value of the field."""
-    groups = groups[:MOST_ROWS]
     order = values([point for group in groups for point in group], field)
     names = group_names(groups, field)
     plot, places, _ = rows_plot(names)
@@ -91,22 +90,25 @@ def effect_figure(field, groups, title):
     def said(gain):
         _, name, group = gain
         before, after = group[0], group[-1]
-        return (f"from {short_field(field, before[field])} to {short_field(field, after[field])} {name} goes from "
-                f"{number(before.rate)} to {number(after.rate)} Mrays/s ({change(before.rate, after.rate)})")
+        return (f"{name}: {number(before.rate)} Mrays/s with {short_field(field, before[field])}, {number(after.rate)} "
+                f"with {short_field(field, after[field])} ({change(before.rate, after.rate)})")
 
     best, worst = max(gains, key=first), min(gains, key=first)
     sentence = said(best) + ("; " + said(worst) if worst is not best else "") + "."
     keys = [Key(*styles[value], short_field(field, value)) for value in order]
     points = [point for group in groups for point in group]
     panel = Panel(title, plot, "Mrays/s. " + "; ".join(described) + ".", keys)
-    return Figure(f"{title}: {common(points)}", sentence[0].upper() + sentence[1:], points, [panel])
+    return Figure(f"{title}: {common(points)}", sentence, points, [panel])
 
 
 def effect_figures(points, field, title):
     by_family = {}
     for group in grouped(points, field):
-        by_family.setdefault((group[0].version, group[0].key("warps", "lanes", field)), []).append(group)
-    return [effect_figure(field, family, title) for family in by_family.values()]
+        key = group[0].version, group[0].key("warps", "lanes", "units", field)
+        by_family.setdefault(key, []).append(group)
+    parts = [family[begin:begin + MOST_ROWS] for family in by_family.values()
+             for begin in range(0, len(family), MOST_ROWS)]
+    return [effect_figure(field, part, title) for part in parts]
 
 
 def policies_section(points):

@@ -46,7 +46,7 @@ class Section:
 
 
 MOST_FIGURES = 16
-MOST_ROWS = 32
+MOST_ROWS = 48
 
 
 def number(value):

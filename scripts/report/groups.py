@@ -12,6 +12,7 @@ def grouped(points, *fields):
 
 
 def values(points, field):
-    """Of a field, in order."""
-    found = {point[field] for point in points}
-    return sorted(found, key=lambda value: (isinstance(value, str), value))
+    """Of a field: numbers in order, all else as it comes."""
+    found = list(dict.fromkeys(point[field] for point in points))
+    numbers = all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in found)
+    return sorted(found) if numbers else found

@@ -36,7 +36,7 @@ class Picture:
     def native_command(self):
         """That would draw Embree's own."""
         words = shlex.split(self.point.command)
-        words = [word for word in words if not word.startswith("--set=chip.")]
+        words = [word for word in words if not word.startswith("--set=")]
         for place, word in enumerate(words):
             if word.startswith("--engine="):
                 words[place] = "--engine=native"

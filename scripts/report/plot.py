@@ -72,6 +72,7 @@ class Plot:
                 ElementTree.SubElement(group, f"{{{SVG}}}title").text = words
                 group.insert(0, group[-1])
                 del group[-1]
+        _unwrap(root)
         _describe(root, number, title, description)
         return _serialised(root)
 
@@ -113,6 +114,16 @@ def _colours(root):
                 element.set("style", style + "; " + element.attrib.get("style", ""))
         if element.tag == f"{{{SVG}}}text" and "fill:" not in element.attrib.get("style", ""):
             element.set("style", element.attrib.get("style", "") + "; fill: var(--ink)")
+
+
+def _unwrap(parent):
+    """Groups that say nothing of their own go, which is half of the text."""
+    children = []
+    for child in parent:
+        _unwrap(child)
+        plain = child.tag == f"{{{SVG}}}g" and not child.attrib and not any(c.tag.endswith("title") for c in child)
+        children += list(child) if plain else [child]
+    parent[:] = children
 
 
 def _describe(root, number, title, description):

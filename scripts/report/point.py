@@ -127,11 +127,11 @@ def text(value):
 def labels(points, *without):
     """A name for each point, of the fields in which it differs from others: '8w4c, depth 3'."""
     names = differing(points, *without)
-    shape = [name for name in ("warps", "lanes") if name in names]
+    shape = {"warps", "lanes"} & set(names)
     found = []
     for point in points:
-        parts = [point.shape] if len(shape) == 2 or not names else []
-        parts += [short_field(name, point[name]) for name in names if not (len(shape) == 2 and name in shape)]
+        parts = [point.shape] if shape or not names else []
+        parts += [short_field(name, point[name]) for name in names if name not in shape]
         found.append(", ".join(parts))
     return found
 

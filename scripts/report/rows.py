@@ -1,4 +1,6 @@
 """Figures with a row for each point: use of the ALUs, waiting, where the cycles of warps went, and ceilings."""
+from matplotlib import ticker
+
 from .figure import MOST_ROWS, Figure, Key, Panel, Section, number, percent
 from .groups import grouped
 from .plot import Plot
@@ -8,11 +10,11 @@ from .style import ALUS, MARKS, alu_colour, colour
 ROW = 17
 # Of `warp_cycles`, beside those of ALUs: field, colour, words; in the order of a bar, work first, idle last.
 WORK = [("issued", "issued", "issued")]
-STEPS = [("registers", "registers", "reads operands"), ("fetch", "fetch", "waits for instruction")]
+STEPS = [("registers", "registers", "reading operands"), ("fetch", "fetch", "waiting for an instruction")]
 REST = [
     ("import", "import", "import"),
     ("export", "export", "export"),
-    ("ended", "idle1", "has ended, others run"),
+    ("ended", "idle1", "ended, others run"),
     ("not_launched", "idle2", "kernel not full"),
     ("without_kernel", "idle3", "without kernel"),
 ]
@@ -36,7 +38,7 @@ def rows_plot(names):
     """A plot with a row for each name, first at the top; the places of the rows, and the height of a bar. Long names
     stand above their row."""
     above = max(map(len, names)) > 9
-    height = ROW * (1.9 if above else 1)
+    height = ROW * (2 if above else 1)
     plot = Plot(height=64 + height * len(names))
     places = [float(-place) for place in range(len(names))]
     axes = plot.axes
@@ -48,7 +50,7 @@ def rows_plot(names):
     axes.tick_params(axis="y", pad=9)
     if above:
         for place, name in zip(places, names):
-            axes.annotate(name, (0, place), (0, 9), xycoords=("axes fraction", "data"), textcoords="offset points",
+            axes.annotate(name, (0, place), (0, 6.5), xycoords=("axes fraction", "data"), textcoords="offset points",
                           fontsize=10, color=colour("muted"))
     return plot, places, 0.42 if above else 0.72
 
@@ -120,7 +122,7 @@ def segments(points):
                 for field, name, words in fields]
 
     found = {}
-    for group, kind, words in (("executing", "-", "own result, {}"), ("waiting", "/", "waits for {}")):
+    for group, kind, words in (("executing", "-", "executing: {}"), ("waiting", "/", "waiting: {}")):
         alus = dict.fromkeys(alu for point in points for alu in point.report["warp_cycles"][group])
         alus = [alu for alu in ALUS if alu in alus] + [alu for alu in alus if alu not in ALUS]
         seen = [alu for alu in alus if any(part(group, alu)(p.report["warp_cycles"]) >= LEAST_SHARE for p in points)]
@@ -166,8 +168,8 @@ def cycles_figure(points):
 
 def cycles_section(points):
     points = [point for point in points if point.report.get("warp_cycles")]
-    intro = ("Every cycle of every warp is in one part; together they are 100%. \"Own result\": what the warp has "
-             "given to an ALU is under way there. \"Waits for\": it wanted this ALU and did not get it.")
+    intro = ("Every cycle of every warp is in one part; together they are 100%. Executing: what the warp has given "
+             "to an ALU is under way there. Waiting: it wanted this ALU and did not get it.")
     missing = ("No report here has warp_cycles; make sim ENGINE=model with this version leaves one that has, and "
                "a sweep that is started again too.")
     return Section("cycles", "Where the cycles went", intro, [cycles_figure(s) for s in row_sets(points)], missing)
@@ -181,6 +183,8 @@ def ceilings_of(point):
     return {**{name: rate for name, rate in others.items() if rate}, **alus}
 
 
+# Ceilings this many times as high as the highest that binds are not drawn.
+FARTHEST = 8
 OTHER_CEILINGS = {
     "issue": "issued", "latency": "fetch", "ray_port": "export", "intersection_port": "import", "frame_port": "other",
     "memory_port": "s3", "traverser": "s5",
@@ -200,8 +204,9 @@ def ceilings_figure(points):
     plot, places, _ = rows_plot(names)
     axes = plot.axes
     seen, described = {}, []
+    most = FARTHEST * max(min(ceilings_of(point).values(), default=point.rate) for point in points)
     for point, place, name in zip(points, places, names):
-        ceilings = ceilings_of(point)
+        ceilings = {ceiling: rate for ceiling, rate in ceilings_of(point).items() if rate <= most}
         lowest = str(point.report["ceilings"].get("lowest"))
         limit = min(ceilings.values()) if ceilings else point.rate
         axes.plot([point.rate, limit], [place, place], color=colour("ink"), linewidth=2.2, zorder=2)
@@ -212,6 +217,8 @@ def ceilings_figure(points):
         plot.mark(point.rate, place, "ink", "o", f"{name}: {number(point.rate)} Mrays/s", hollow=True, size=7)
         described.append(f"{name}: {number(point.rate)} of {number(limit)} Mrays/s that {lowest} allows")
     axes.set_xscale("log")
+    axes.xaxis.set_major_formatter(ticker.FuncFormatter(lambda value, _: f"{value:,.10g}"))
+    axes.xaxis.set_minor_formatter(ticker.NullFormatter())
     axes.set_xlabel("Mrays/s (each step is ten times the one before)")
     reached = [point.rate / min(ceilings_of(point).values(), default=point.rate) for point in points]
     best, worst = reached.index(max(reached)), reached.index(min(reached))
@@ -221,6 +228,7 @@ def ceilings_figure(points):
                    if len(points) > 1 else "."))
     keys = [Key("ink", "o", "reached", hollow=True)]
     keys += [Key(*seen[name], name.replace("_", " ")) for name in [*OTHER_CEILINGS, *alus_of(points)] if name in seen]
+    described.append(f"What allows more than {number(most)} Mrays/s is not drawn")
     panel = Panel("Reached, and what each resource alone would allow", plot, "; ".join(described) + ".", keys)
     return Figure(f"Ceilings: {common(points)}", sentence, points, [panel])
 

@@ -122,7 +122,7 @@ class Sources:
             error = min(errors, key=lambda error: (len(error.absolute_path), str(error.absolute_path)))
             where = ".".join(map(str, error.absolute_path))
             raise Broken(f"{near(path)} is not a report of this version of raypool sim: {where + ': ' if where else ''}"
-                         f"{error.message[:100]}")
+                         f"{error.message[:100]}; run it again")
         return document
 
     @property

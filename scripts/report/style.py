@@ -25,15 +25,15 @@ COLOURS = {
     "registers": ("#adb5bd", "#59616b"),
     "import": ("#7a4a2b", "#c08a66"),
     "export": ("#b08968", "#8f6a4c"),
-    "idle1": ("#dfe3e8", "#30363d"),
-    "idle2": ("#e9ecf0", "#282d34"),
-    "idle3": ("#f2f4f6", "#21262c"),
-    "s1": ("#55a3bd", "#e4f3f9"),
-    "s2": ("#3c8aa8", "#bfe1ee"),
-    "s3": ("#2b7191", "#98cde2"),
-    "s4": ("#1e5878", "#73b5d1"),
-    "s5": ("#15405e", "#559bbb"),
-    "s6": ("#0c2840", "#3f829f"),
+    "idle1": ("#c6cdd5", "#3b434d"),
+    "idle2": ("#d9dee4", "#2f363e"),
+    "idle3": ("#ebeef1", "#242a31"),
+    "s1": ("#55a3bd", "#3f829f"),
+    "s2": ("#3c8aa8", "#559bbb"),
+    "s3": ("#2b7191", "#73b5d1"),
+    "s4": ("#1e5878", "#98cde2"),
+    "s5": ("#15405e", "#bfe1ee"),
+    "s6": ("#0c2840", "#e4f3f9"),
 }
 ALUS = ("int", "flt", "slw", "mem", "ray", "brh", "tid")
 # Of an ALU, and of a place in an ordered series.
@@ -48,7 +48,7 @@ def colour(name):
 
 
 def series(count):
-    """(colour, mark) for each place of an ordered series, from pale to dark; beyond six they begin again."""
+    """(colour, mark) for each place of an ordered series, from faint to strong; beyond six they begin again."""
     shown = min(count, len(SHADES))
     step = (len(SHADES) - 1) / max(1, shown - 1)
     return [(SHADES[round(place % shown * step)], SERIES_MARKS[place % len(SERIES_MARKS)]) for place in range(count)]
