@@ -93,7 +93,6 @@ void CycleUnit::step(const UnitInputs& inputs) {
   }
   // Write-back and the next instructions. Who retires in this cycle may issue in it.
   if (retired != 0) {
-    counters_.enter(counter::kWarpsFetching, now_ + 1, popcount(retired));
     counters_.leave(counter::kWarpsInMem, now_ + 1, mem_.done() != 0);
     counters_.leave(counter::kWarpsInRay, now_ + 1, ray_.done() != 0);
     if (const uint32_t control = buffer_.retire(retired); control != 0) retire_control(control);
@@ -223,7 +222,6 @@ void CycleUnit::start_kernel() {
   }
   const LaunchCommand& launch = launcher_.registers().launch;
   core_.launch(launch);
-  counters_.enter(counter::kWarpsFetching, now_ + 1, launched_warps());
   for (uint32_t warp = 0; warp < launched_warps(); ++warp) {
     buffer_.start(warp);
     plan_fetch(warp, now_ + 1, false);
@@ -274,7 +272,6 @@ void CycleUnit::issue_warp(uint32_t warp) {
   if (!instruction.legal()) return raise({FaultCode::IllegalInstruction, warp, buffer_.fetch_pc(warp)});
   const AluType type = instruction.alu();
   buffer_.issue(warp);
-  counters_.leave(counter::kWarpsFetching, now_ + 1, 1);
   want(warp, type);
   if (tracing_) record_issue(warp, instruction);
 
@@ -324,7 +321,6 @@ void CycleUnit::retire_control(uint32_t warps) {
       raise({stack_fault_[warp], warp, buffer_.pc(warp)});
     } else if (!core_.warp_running(warp)) {
       buffer_.exit(warp);
-      counters_.leave(counter::kWarpsFetching, now_ + 1, 1);
       counters_.enter(counter::kWarpsEnded, now_ + 1, 1);
       attention_ = true;
     } else {

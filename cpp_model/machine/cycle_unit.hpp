@@ -109,6 +109,7 @@ class CycleUnit final : public ComputeUnit {
   void clock_ray(const UnitInputs& inputs, ImportKind import, bool ready);
   void count_ray_waits();
   void count_pauses(bool running);
+  uint64_t fetching() const;
   uint32_t launched_warps() const { return (launcher_.registers().threads + lanes_ - 1) / lanes_; }
   // Warps
   void start_kernel();

@@ -90,7 +90,22 @@ void CycleUnit::present(uint32_t now) {
   }
 }
 
+// The RTL counts these; here they are what is left of the busy cycles of all warps.
+uint64_t CycleUnit::fetching() const {
+  using namespace counter;
+  uint64_t others = 0;
+  for (int state = kWarpsNotLaunched; state <= kWarpsExporting; ++state)
+    others += state == kWarpsFetching ? 0 : counters_.single[state];
+  for (size_t type = 0; type < kAluTypes; ++type) {
+    // A cycle in which operands are read, one of the grant, and those on the way through a pipeline.
+    const uint64_t a_task = 2 + (kAluTable[type].timed_by_events() ? 0 : dispatcher_.depth(type) + 1);
+    others += counters_.waiting[type] + a_task * counters_.issued[type];
+  }
+  return warps_ * counters_.single[kBusyCycles] - others;
+}
+
 uint64_t CycleUnit::counter(int number) {
+  if (number == counter::kWarpsFetching) return fetching();
   const size_t type = static_cast<size_t>(number & 7);
   if (number < counter::kUnused || type >= kAluTypes) return counters_.value(number, 0, 0);
   return counters_.value(number, dispatcher_.instances(type),
