@@ -42,7 +42,7 @@ def report_failures(store, plan):
     failed = [planned for planned in plan.points if not store.finished(planned.key)]
     for planned in failed:
         reason = store.failure(planned.key)
-        place = store.path("failed", planned.key, "log.txt") if reason else store.path("snakemake.log")
+        place = store.path("failed", planned.key) if reason else store.path("snakemake.log")
         print(
             f"sweep: point {planned.number} ({plan.experiment.shown(planned.point)}) failed: "
             f"{reason or 'it was not run to its end'} ({near(place)})",

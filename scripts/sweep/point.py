@@ -27,6 +27,9 @@ def end_with_parent():
 
 def run(job, folder):
     """Runs raypool into `folder`; returns the sentence of a failure or None."""
+    failure = changed(job)
+    if failure is not None:
+        return failure
     with open(os.path.join(folder, "log.txt"), "w", encoding="utf-8") as log:
         command = [job["program"], *job["arguments"], "--quiet", "--out", folder]
         done = subprocess.run(
@@ -37,14 +40,18 @@ def run(job, folder):
     if done.returncode != 0:
         with open(os.path.join(folder, "log.txt"), encoding="utf-8", errors="replace") as log:
             return sentence(log.read(), done.returncode)
-    return changed(job, folder)
+    return changed(job) or other_machine(job, folder)
 
 
-def changed(job, folder):
+def changed(job):
     """A result that is not of what the key stands for must not be kept under it."""
     for path, digest in job["digests"].items():
         if digest_of_file(path) != digest:
             return f"{path} was changed while the sweep was running: start it again"
+    return None
+
+
+def other_machine(job, folder):
     with open(os.path.join(folder, "report.json"), encoding="utf-8") as file:
         if json.load(file)["configuration"] != job["machine"]:
             return f"configuration {job['machine']['name']} was changed while the sweep was running: start it again"

@@ -8,6 +8,7 @@ import json
 import lzma
 import os
 import pathlib
+import shutil
 import signal
 import subprocess
 import sys
@@ -297,6 +298,17 @@ class Runs(SweepTest):
             (self.folder / "hall.obj").write_text(HALL.replace("mtllib colours.mtl\n", ""))
             self.run_sweep(document)
             self.assertEqual(len(self.starts()), 4)
+
+    def test_a_point_whose_program_was_changed_meanwhile_does_not_run(self):
+        self.run_sweep({"base": TINY})
+        (key,) = self.finished()
+        shutil.rmtree(self.out / "points" / key)
+        self.wrap("second")
+        command = [sys.executable, "-m", "sweep.point", self.out, key]
+        self.assertEqual(subprocess.run(command, env=self.environment(), check=False).returncode, 1)
+        self.assertIn("was changed while the sweep was running", (self.out / "failed" / key / "error.txt").read_text())
+        self.assertFalse((self.out / "failed" / key / "log.txt").exists())
+        self.assertFalse(self.finished())
 
     def test_filter_and_tables(self):
         document = {
