@@ -1,6 +1,7 @@
 """python3 -m sweep EXPERIMENT, with scripts/ as the folder of modules. `make sweep` calls it."""
 import argparse
 import os
+import re
 import sys
 
 from . import engine, raypool, table
@@ -27,15 +28,17 @@ def parser():
     options.add_argument("experiment", help="JSON file, as schemas/experiment.json says")
     options.add_argument("--out", help="folder of points and tables (default: build/sweeps/ and the experiment's name)")
     options.add_argument("--where", choices=("here", "slurm"), default="here", help="who runs points (default: here)")
-    options.add_argument("--jobs", type=int, help=f"points at a time (default: a core each; slurm: {SLURM_JOBS})")
+    options.add_argument("--jobs", help=f"points at a time (default: a core each; slurm: {SLURM_JOBS})")
     options.add_argument("--check", action="store_true", help="check all of it, list the points, and run nothing")
     return options
 
 
 def jobs_of(arguments):
-    if arguments.jobs is not None and not 1 <= arguments.jobs <= 10000:
+    if arguments.jobs is None:
+        return SLURM_JOBS if arguments.where == "slurm" else len(os.sched_getaffinity(0))
+    if not re.fullmatch(r"0*[1-9]\d{0,3}|0*10000", arguments.jobs):
         raise SweepError(f"JOBS={arguments.jobs}: points at a time, from 1 to 10000")
-    return arguments.jobs or (SLURM_JOBS if arguments.where == "slurm" else len(os.sched_getaffinity(0)))
+    return int(arguments.jobs)
 
 
 def report_failures(store, plan):

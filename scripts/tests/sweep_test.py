@@ -186,6 +186,12 @@ class Refusals(SweepTest):
             (self.folder / "there/hall.obj.xz").write_bytes(b"this is not packed")
             self.refuses(document, "hall.obj.xz", "cannot be unpacked")
 
+    def test_jobs(self):
+        for jobs in ("0", "-1", "10001", "two", "1.5", ""):
+            done = self.run_sweep({"base": TINY}, f"--jobs={jobs}", code=1)
+            self.assertEqual(done.stderr, f"sweep: JOBS={jobs}: points at a time, from 1 to 10000\n")
+        self.assertFalse(self.out.exists())
+
     def test_too_many_points(self):
         ten = list(range(1, 11))
         fields = ["depth", "warps", "lanes", "stack_depth", "chip.held_limit", "chip.memory.latency"]
