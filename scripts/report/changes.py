@@ -34,7 +34,7 @@ def picture_words(first, point):
 
 def sentence(first, point):
     """In words, for the last point: what it gains or loses."""
-    words = f"{said(first, point)}: {change(first.rate, point.rate)} Mrays/s"
+    words = f"With {said(first, point)}: {change(first.rate, point.rate)} Mrays/s"
     if first.area_mm2 and point.area_mm2:
         gain = change(first.rate / first.area_mm2, point.rate / point.area_mm2)
         words += f", {change(first.area_mm2, point.area_mm2)} area, {gain} Mrays/s for the area"
@@ -59,8 +59,7 @@ def figure(sweep):
         return [own, *(cell(value, point) for _, value in columns),
                 "" if point is first else picture_words(first, point)]
 
-    words = sentence(first, points[-1])
-    return Figure(f"{sweep.title}: {common(points)}", words[0].upper() + words[1:], points,
+    return Figure(f"{sweep.title}: {common(points)}", sentence(first, points[-1]), points,
                   tables=[Table("Against the first point", heads, [row(point) for point in points])])
 
 

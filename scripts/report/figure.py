@@ -1,5 +1,7 @@
 """What sections consist of: figures, each of one or more plots, and tables; with what the page says below them."""
 
+from .point import differing, short_field
+
 
 class Key:
     """One line of a legend: a `mark` as Matplotlib names it, or a patch of a bar: '', '/' hatched, '-' pale."""
@@ -39,10 +41,23 @@ class Section:
     def __init__(self, name, title, intro, figures, missing):
         self.name, self.title, self.intro, self.figures, self.missing = name, title, intro, figures, missing
         self.notes = []
+        tell_apart(figures)
         if len(figures) > MOST_FIGURES:
             self.notes.append(f"{len(figures) - MOST_FIGURES} more figures of this kind could be made: "
                               "make report FROM= with fewer folders shows them.")
             self.figures = figures[:MOST_FIGURES]
+
+
+def tell_apart(figures):
+    """Figures of one title get what differs between them behind it."""
+    alike = {}
+    for figure in figures:
+        alike.setdefault(figure.title, []).append(figure)
+    for group in alike.values():
+        firsts = [figure.points[0] for figure in group]
+        names = differing(firsts, "warps", "lanes", "units")
+        for figure, point in zip(group, firsts):
+            figure.title += "".join(", " + short_field(name, point[name]) for name in names)
 
 
 MOST_FIGURES = 16

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from .style import VARIABLES, colour
 
 # Pixels at which letters have their size; a phone shows a plot a little smaller, a wide page a little larger.
-WIDTH = 380
+WIDTH = 350
 LETTERS = 11
 SVG = "http://www.w3.org/2000/svg"
 LINK = "{http://www.w3.org/1999/xlink}href"

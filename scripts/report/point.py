@@ -49,7 +49,7 @@ class Point:
         }
 
     def __getitem__(self, field):
-        return self.fields.get(field)
+        return self["warps"] * self["lanes"] if field == "contents" else self.fields.get(field)
 
     @property
     def machine(self):

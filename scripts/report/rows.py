@@ -38,7 +38,7 @@ def rows_plot(names):
     """A plot with a row for each name, first at the top; the places of the rows, and the height of a bar. Long names
     stand above their row."""
     above = max(map(len, names)) > 9
-    height = ROW * (2 if above else 1)
+    height = ROW * (2.1 if above else 1)
     plot = Plot(height=64 + height * len(names))
     places = [float(-place) for place in range(len(names))]
     axes = plot.axes
@@ -50,7 +50,7 @@ def rows_plot(names):
     axes.tick_params(axis="y", pad=9)
     if above:
         for place, name in zip(places, names):
-            axes.annotate(name, (0, place), (0, 6.5), xycoords=("axes fraction", "data"), textcoords="offset points",
+            axes.annotate(name, (0, place), (0, 8), xycoords=("axes fraction", "data"), textcoords="offset points",
                           fontsize=10, color=colour("muted"))
     return plot, places, 0.42 if above else 0.72
 
@@ -93,7 +93,7 @@ def alus_figure(points):
     names = {id(point): name for point, name in zip(points, labels(points))}
     busy, alu, share = extreme(points, "utilisation")
     waits, wanted, count = extreme(points, "waiting")
-    sentence = (f"The busiest is {alu} of {names[id(busy)]}, at work {percent(share)} of the time; the most waited for "
+    sentence = (f"The busiest is {alu} of {names[id(busy)]}, at work {percent(share)} of busy time; the most waited for "
                 f"is {wanted} of {names[id(waits)]}, by {number(count)} warps in the mean.")
     return Figure(f"ALUs: {common(points)}", sentence, points, [
         dots("Utilisation of each ALU", points, "utilisation", "% of busy time", 100),
@@ -217,9 +217,10 @@ def ceilings_figure(points):
         plot.mark(point.rate, place, "ink", "o", f"{name}: {number(point.rate)} Mrays/s", hollow=True, size=7)
         described.append(f"{name}: {number(point.rate)} of {number(limit)} Mrays/s that {lowest} allows")
     axes.set_xscale("log")
+    axes.xaxis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5)))
     axes.xaxis.set_major_formatter(ticker.FuncFormatter(lambda value, _: f"{value:,.10g}"))
     axes.xaxis.set_minor_formatter(ticker.NullFormatter())
-    axes.set_xlabel("Mrays/s (each step is ten times the one before)")
+    axes.set_xlabel("Mrays/s, logarithmic")
     reached = [point.rate / min(ceilings_of(point).values(), default=point.rate) for point in points]
     best, worst = reached.index(max(reached)), reached.index(min(reached))
     sentence = (f"{names[best]} reaches {percent(reached[best], 0)} of its lowest ceiling "

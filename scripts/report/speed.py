@@ -29,7 +29,7 @@ def curves(title, points, axis, line, axis_words, rate):
         axes.plot([point[axis] for point in members], [rate(point) for point in members], color=colour(name), zorder=2)
         for point in members:
             plot.mark(point[axis], rate(point), name, mark, f"{point.shape}: {number(rate(point))} {axis_words[1]}")
-        word = f"{value} {line if value != 1 else line[:-1]}"
+        word = f"{value} {line if value != 1 or line == 'contents' else line[:-1]}"
         keys.append(Key(name, mark, word))
         described.append(word + ": " + ", ".join(f"{number(rate(point))} at {point[axis]}" for point in members))
     axes.set_xscale("log", base=2)
@@ -55,10 +55,13 @@ def figure(points):
     sentence = (f"The fastest is {best.shape} with {number(best.rate)} Mrays/s; for each core {thrifty.shape} does "
                 f"most, {number(per_core(thrifty))} Mrays/s, where {best.shape} does {number(per_core(best))}.")
     cores = "cores (lanes of a unit)"
+    # Splits of the same contents belong together; else machines that have the other number in common.
+    splits = len(values(points, "contents")) < min(len(values(points, field)) for field in ("warps", "lanes"))
+    lines = ("contents", "contents") if splits else ("warps", "lanes")
     return Figure(f"Speed: {common(points)}", sentence, points, [
-        curves("Speed against cores", points, "lanes", "warps", (cores, "Mrays/s"), rate),
-        curves("Speed against warps", points, "warps", "lanes", ("warps", "Mrays/s"), rate),
-        curves("Speed for each core", points, "lanes", "warps", (cores, "Mrays/s for each core"), per_core),
+        curves("Speed against cores", points, "lanes", lines[0], (cores, "Mrays/s"), rate),
+        curves("Speed against warps", points, "warps", lines[1], ("warps", "Mrays/s"), rate),
+        curves("Speed for each core", points, "lanes", lines[0], (cores, "Mrays/s for each core"), per_core),
     ])
 
 
