@@ -5,7 +5,6 @@ from .point import common, labels
 from .style import colour
 
 RUN = ("scene", "view", "size", "depth")
-MOST_NAMES = 7
 AREA_MISSING = ("No area is known for two of the machines here: make synth CONFIG=8w8c for each of them, or "
                 '"area": true in an experiment.')
 POWER_MISSING = "No power is known for two of the machines here: make synth CONFIG=4w4c POWER=1 for each of them."
@@ -21,19 +20,17 @@ def front(places):
     return found
 
 
-def name_front(plot, places, names, chosen):
-    """As many names as there is room for, each beside its mark."""
+def number_front(plot, places, best):
+    """Numbers beside the marks of the front, where there is room; the list below the plot has all."""
     renderer = plot.figure.canvas.get_renderer()
     plot.figure.draw_without_rendering()
     taken = []
-    for place in sorted(chosen, key=lambda place: -places[place][1])[:MOST_NAMES]:
-        for shift, side in (((7, 4), "left"), ((-7, 4), "right"), ((7, -13), "left"), ((-7, -13), "right")):
-            note = plot.axes.annotate(names[place], places[place], shift, textcoords="offset points", ha=side,
-                                      fontsize=LETTERS - 1)
+    for count, place in enumerate(best, 1):
+        for shift, side in (((-5, 5), "right"), ((5, -13), "left")):
+            note = plot.axes.annotate(str(count), places[place], shift, textcoords="offset points", ha=side,
+                                      fontsize=LETTERS - 1, zorder=4)
             box = note.get_window_extent(renderer)
-            inside = plot.axes.get_window_extent(renderer)
-            if (not any(box.overlaps(other) for other in taken) and box.x0 >= inside.x0 and box.x1 <= inside.x1 + 4
-                    and box.y1 <= inside.y1 + 10 and box.y0 >= inside.y0):
+            if not any(box.overlaps(other) for other in taken):
                 taken.append(box)
                 break
             note.remove()
@@ -49,18 +46,18 @@ def scatter(title, points, axes_words, place_of):
     plot.axes.step([x for x, _ in steps], [y for _, y in steps], where="post", color=colour("accent"), zorder=2)
     for place, ((x, y), name) in enumerate(zip(places, names)):
         words = f"{name}: {number(y)} {axes_words[1]} at {number(x)} {axes_words[0]}"
-        kind = ("accent", "o") if place in best else ("muted", "o")
-        plot.mark(x, y, *kind, words, hollow=place not in best)
+        plot.mark(x, y, "accent" if place in best else "muted", "o", words, hollow=place not in best)
     plot.axes.set_xlim(left=0)
     plot.axes.set_ylim(0, 1.12 * max(y for _, y in places))
     plot.axes.set_xlabel(axes_words[0])
     plot.axes.set_ylabel(axes_words[1])
-    name_front(plot, places, names, best)
-    described = "; ".join(f"{names[place]} {number(places[place][1])} at {number(places[place][0])}" for place in best)
-    description = f"{axes_words[1]} against {axes_words[0]}. On the front: {described}. {len(points)} machines in all."
+    number_front(plot, places, best)
+    listed = [f"{names[place]}: {number(places[place][1])} at {number(places[place][0])}" for place in best]
+    description = (f"{axes_words[1]} against {axes_words[0]}. On the front: {'; '.join(listed)}. "
+                   f"{len(points)} machines in all.")
     keys = [Key("accent", "o", "on the front: no other is at least as good in both"),
             Key("muted", "o", "others", hollow=True)]
-    return Panel(title, plot, description, keys), best, names
+    return Panel(title, plot, description, keys, listed), best, names
 
 
 def runs_alike(points):

@@ -11,10 +11,11 @@ class Key:
 
 
 class Panel:
-    """A plot with its heading, the numbers in words, and its legend."""
+    """A plot with its heading, the numbers in words, its legend, and what numbers in the plot stand for."""
 
-    def __init__(self, title, plot, description, keys=()):
-        self.title, self.plot, self.description, self.keys = title, plot, description, list(keys)
+    def __init__(self, title, plot, description, keys=(), listed=()):
+        self.title, self.plot, self.description = title, plot, description
+        self.keys, self.listed = list(keys), list(listed)
         self.svg = None
 
 

@@ -33,6 +33,11 @@ class Picture:
         return self.comparison["differ"] if self.comparison and self.comparison.get("compared") else None
 
     @property
+    def is_ours(self):
+        """Machines drew it, and not only the native engine."""
+        return any(point["engine"] != "native" for point in self.points)
+
+    @property
     def native_command(self):
         """That would draw Embree's own."""
         words = shlex.split(self.point.command)

@@ -375,7 +375,7 @@ class Figures(ReportTest):
         self.assertIn(f"{differ} pixel", text)
         self.assertTrue((pictures[0] == pictures[2]).all())
         self.assertEqual(text.count("<img "), 2)
-        self.assertIn("Embree's own</b>, and the same 1 more time", text)
+        self.assertIn("Embree's own</b>, and ours, the same in every pixel", text)
 
     def test_the_question_has_its_answer(self):
         self.synthesis("8w8c", ["8w8c"], 0.6)
