@@ -93,7 +93,7 @@ class Plan:
             def check(planned, field=field):
                 value = text(planned.point[field])
                 # The native engine has no chip to print, and a Verilated one may have to be built.
-                if field == "engine" and value in ("native", *raypool.VERILATED):
+                if field == "engine" and value in ("native", "embree", *raypool.VERILATED):
                     return
                 words = ["sim", "cornell", "--modules", "--engine", "model", "--detail", "0.01"]
                 words = [word for word in words if field != "engine" or word not in ("--engine", "model")]

@@ -81,7 +81,7 @@ refuses_sim "size 0x0" "0x0.*1 to 16384" --size 0x0
 refuses_sim "size without x" "1 to 16384" --size 64
 refuses_sim "depth 0" "depth.*1" --depth 0
 refuses_sim "3 compute units" "3" --units 3
-refuses_sim "unknown engine" "native, functional, model, rtl or lockstep" --engine spice
+refuses_sim "unknown engine" "native, embree, functional, model, rtl or lockstep" --engine spice
 refuses_sim "modules of the engine that has no chip" "engine native has no chip" --engine native --modules
 refuses_sim "unknown traverser" "chip.traverser must be one of static" --traverser quick
 refuses_sim "unknown policy" "chip.policy must be one of thesis" --set chip.policy=magic
@@ -103,7 +103,7 @@ refuses "random programs without a built unit" "none.so.*make" "${cosim[@]}" --c
 refuses "random programs, a unit that is no library" "good.obj.*cannot be loaded" "${cosim[@]}" --config 4w4c \
   --unit-library "$folder/good.obj"
 refuses "random programs on another configuration's unit" "build it for this configuration" \
-  "${cosim[@]}" --config 2w2c --unit-library "$(echo "$(dirname "$raypool")"/units/4w4c-????????/libraypool_unit.so)"
+  "${cosim[@]}" --config 2w2c --unit-library "$(echo "$(dirname "$raypool")"/units/4w4c-????????/libraypool_unit.so | cut -d' ' -f 1)"
 refuses "random programs, 3 warps" "3.*power of two from 1 to 32" "${cosim[@]}" --config "$folder/warps.json"
 refuses "program that was not saved" "none.json" "${cosim[@]}" --replay "$folder/none.json"
 if [ -e "$folder/saved" ]; then

@@ -14,7 +14,10 @@
 
 namespace raypool {
 
-enum class Engine : uint8_t { Native, Functional, Model, Rtl, Lockstep };
+enum class Engine : uint8_t { Native, Embree, Functional, Model, Rtl, Lockstep };
+
+/// No machine: the kernels as C++.
+constexpr bool without_unit(Engine engine) { return engine == Engine::Native || engine == Engine::Embree; }
 
 /// Throws InputError naming the engines.
 Engine parse_engine(const std::string& name);
@@ -28,7 +31,7 @@ std::string config_options(const Configuration& configuration);
 
 /// What it takes to make a compute unit, or a multiprocessor.
 struct EngineOptions {
-  Engine engine = Engine::Functional;  ///< not Native, which has no unit
+  Engine engine = Engine::Functional;  ///< one with a unit
   Configuration configuration;
   std::string unit_library;  ///< empty: unit_library_path()
   bool waves = false;        ///< a waveform will be asked for

@@ -14,6 +14,7 @@
 #include "cli/output_folder.hpp"
 #include "cli/progress.hpp"
 #include "cli/report.hpp"
+#include "scene/embree_scene.hpp"
 #include "scene/image.hpp"
 #include "scene/native_renderer.hpp"
 #include "scene/scene.hpp"
@@ -36,8 +37,9 @@ void check(const SimOptions& options, Engine engine) {
   if (options.waves && engine != Engine::Rtl && engine != Engine::Lockstep) {
     throw InputError(fmt::format("engine {} has no waveform: use rtl or lockstep, or leave waves out", options.engine));
   }
-  if (options.modules && engine == Engine::Native) {
-    throw InputError("engine native has no chip, and so no modules to print: choose another, such as model");
+  if (options.modules && without_unit(engine)) {
+    throw InputError(fmt::format("engine {} has no chip, and so no modules to print: choose another, such as model",
+                                 options.engine));
   }
   if (options.inspect_until != 0 && engine != Engine::Lockstep) throw InputError("--inspect is for --engine lockstep");
 }
@@ -126,8 +128,9 @@ std::map<uint32_t, std::string> kernel_names(const Program& program) {
   return names;
 }
 
-FrameBuffer draw_natively(RunRecord& record, const Scene& scene, MemoryImage& image) {
+FrameBuffer draw_natively(Engine engine, RunRecord& record, const Scene& scene, MemoryImage& image) {
   const Tracer tracer(scene, image.material_base);
+  std::optional<EmbreeTracer> embree;
   NativeOptions native;
   native.width = record.width;
   native.height = record.height;
@@ -136,6 +139,10 @@ FrameBuffer draw_natively(RunRecord& record, const Scene& scene, MemoryImage& im
   native.contents = record.configuration.contents();
   native.threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   native.mode = arith::mode_of(record.configuration);
+  if (engine == Engine::Embree) {
+    embree.emplace(scene, tracer);
+    native.trace = [&](const Ray& ray, Intersection& hit) { return embree->trace(ray, hit); };
+  }
   record.native.emplace();
   const Progress drawing(true);
   FrameBuffer frame = render_native(scene, image, tracer, native, &*record.native);
@@ -217,8 +224,8 @@ int sim_command(const SimOptions& options) {
   OutputFolder out(options.out.empty() ? default_folder(options, scene, record.configuration, size)
                                        : fs::path(options.out));
 
-  const FrameBuffer frame = engine == Engine::Native ? draw_natively(record, scene, image)
-                                                     : draw_on_unit(options, engine, record, scene, image, out);
+  const FrameBuffer frame = without_unit(engine) ? draw_natively(engine, record, scene, image)
+                                                 : draw_on_unit(options, engine, record, scene, image, out);
 
   const std::vector<uint8_t> png = encode_png(frame);
   out.write("image.png", std::string(png.begin(), png.end()));

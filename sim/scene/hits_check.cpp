@@ -1,7 +1,6 @@
 // Comparison with Embree, and the exact judge.
 #include "scene/hits_check.hpp"
 
-#include <embree3/rtcore.h>
 #include <fmt/format.h>
 
 #include <chrono>
@@ -9,6 +8,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "scene/embree_scene.hpp"
 #include "scene/native_renderer.hpp"
 
 namespace raypool {
@@ -27,68 +27,6 @@ template <typename T>
 Vector3<Quad> quad(const Vector3<T>& v) {
   return v.template as<Quad>();
 }
-
-class EmbreeScene {
- public:
-  explicit EmbreeScene(const Scene& scene) : device_(rtcNewDevice("threads=1")) {
-    if (device_ == nullptr) throw std::runtime_error("Embree cannot be started; check its installation");
-    scene_ = rtcNewScene(device_);
-    rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
-    rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_HIGH);
-    RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                                 3 * sizeof(float), scene.vertices.size()));
-    for (const Vec3& v : scene.vertices) *vertices++ = v.x, *vertices++ = v.y, *vertices++ = v.z;
-    auto* indices = static_cast<uint32_t*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                                                   3 * sizeof(uint32_t), scene.triangles.size()));
-    for (const auto& triangle : scene.triangles) {
-      for (uint32_t index : triangle) *indices++ = index;
-    }
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(scene_, geometry);
-    rtcReleaseGeometry(geometry);
-    rtcCommitScene(scene_);
-  }
-  EmbreeScene(const EmbreeScene&) = delete;
-  EmbreeScene& operator=(const EmbreeScene&) = delete;
-  ~EmbreeScene() {
-    rtcReleaseScene(scene_);
-    rtcReleaseDevice(device_);
-  }
-
-  bool nearest(const RayQuery& query, uint32_t& triangle, float& t) const {
-    RTCRayHit hit{};
-    set(hit.ray, query);
-    hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcIntersect1(scene_, &context, &hit);
-    triangle = hit.hit.primID;
-    t = hit.ray.tfar;
-    return hit.hit.geomID != RTC_INVALID_GEOMETRY_ID;
-  }
-
-  bool occluded(const RayQuery& query) const {
-    RTCRay ray{};
-    set(ray, query);
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcOccluded1(scene_, &context, &ray);
-    return ray.tfar < 0;
-  }
-
- private:
-  static void set(RTCRay& ray, const RayQuery& query) {
-    ray.org_x = query.origin.x, ray.org_y = query.origin.y, ray.org_z = query.origin.z;
-    ray.dir_x = query.direction.x, ray.dir_y = query.direction.y, ray.dir_z = query.direction.z;
-    ray.tnear = 0;
-    ray.tfar = query.limit;
-    ray.mask = 0xffffffffu;
-  }
-
-  RTCDevice device_;
-  RTCScene scene_;
-};
 
 std::string describe(const HitAnswer& answer) {
   return answer.hit ? fmt::format("triangle {} at t {:.9g}", answer.triangle, answer.t) : "no hit";
@@ -240,9 +178,14 @@ class HitsComparison {
     }
     report_.our_seconds += seconds_since(start);
     start = std::chrono::steady_clock::now();
-    for (size_t i = 0; i < rays.size(); ++i)
-      theirs_[i].hit = embree_.nearest(to_query(rays[i]), theirs_[i].triangle, theirs_[i].t);
+    for (size_t i = 0; i < rays.size(); ++i) theirs_[i] = embree_answer(to_query(rays[i]));
     report_.embree_seconds += seconds_since(start);
+  }
+
+  HitAnswer embree_answer(const RayQuery& query) const {
+    Hit hit;
+    const bool found = embree_.nearest(query, hit);
+    return {found, hit.triangle, hit.t};
   }
 
   void judge_nearest(const Ray& ray, const HitAnswer& ours, const HitAnswer& theirs) {
@@ -274,7 +217,7 @@ class HitsComparison {
     }
     Hit hit;
     if (our.hit && tracer_.traversal().nearest(query, hit)) our.triangle = hit.triangle, our.t = hit.t;
-    const bool named = !their.hit || embree_.nearest(query, their.triangle, their.t);
+    const bool named = !their.hit || (their = embree_answer(query)).hit;
     std::string line =
         fmt::format("shadow ray of pixel ({}, {}): ours {}, Embree {}", ray[word::kPixel] & 0xffffu,
                     ray[word::kPixel] >> 16, describe(our), named ? describe(their) : "blocked by no triangle");

@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 
 #include "bits.hpp"
+#include "scene/embree_scene.hpp"
 #include "scene/mesh_builder.hpp"
 #include "scene/reference_kernels.hpp"
 
@@ -33,6 +35,27 @@ NativeOptions size(int width, int height, int depth) {
   options.height = height;
   options.depth = depth;
   return options;
+}
+
+// Where two surfaces meet, or a ray grazes one, either answer may be right; nowhere else.
+TEST(NativeRenderer, DrawsWithEmbreesHitsWhatItDrawsWithOurs) {
+  const Scene scene = make_room(0.05);
+  const MemoryImage image = build_memory({}, scene);
+  const Tracer tracer(scene, image.material_base);
+  const EmbreeTracer embree(scene, tracer);
+  NativeOptions options = size(96, 72, 3);
+  const FrameBuffer ours = render(scene, options).frame;
+  uint64_t asked = 0;
+  options.trace = [&](const Ray& ray, Intersection& hit) {
+    ++asked;
+    return embree.trace(ray, hit);
+  };
+  const Rendered theirs = render(scene, options);
+  EXPECT_EQ(asked, theirs.statistics.rays());
+  const std::vector<uint8_t> a = to_rgb8(ours), b = to_rgb8(theirs.frame);
+  int differ = 0;
+  for (size_t i = 0; i < a.size(); ++i) differ += std::abs(a[i] - b[i]) > 2;
+  EXPECT_LT(differ, 20);
 }
 
 TEST(MemoryImage, HoldsProgramAndAlignedMaterials) {

@@ -52,6 +52,11 @@ struct Scene {
   std::vector<std::string> warnings;  ///< a sentence each: what of a file could not be drawn as it is
 
   const Vec3& corner(size_t triangle, int k) const { return vertices[triangles[triangle][k]]; }
+  /// Of unit length, on the side from which the corners turn left.
+  Vec3 normal(size_t triangle) const {
+    const Vec3d a = corner(triangle, 0).as<double>();
+    return normalized(cross(corner(triangle, 1).as<double>() - a, corner(triangle, 2).as<double>() - a)).as<float>();
+  }
   /// Of the vertices that triangles use; both corners zero without triangles.
   Bounds bounds() const;
   /// Some triangle's material does.

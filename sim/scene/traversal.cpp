@@ -334,19 +334,30 @@ Tracer::Tracer(const Scene& scene, uint32_t material_base) : traversal_(scene) {
   }
 }
 
-bool Tracer::trace(const Ray& ray, Intersection& intersection, TraversalCounts* counts, VisitList* visits) const {
-  const RayQuery query = to_query(ray);
+void Tracer::pass_on(const Ray& ray, Intersection& intersection) {
   intersection.fill(0);
   std::copy(ray.begin(), ray.end(), intersection.begin());
-  if ((ray[word::kFlags] & kShadowFlag) != 0) return !traversal_.occluded(query, counts, visits);
-  Hit hit;
-  if (!traversal_.nearest(query, hit, counts, visits)) return false;
+}
+
+void Tracer::meet(const Ray& ray, const Hit& hit, Intersection& intersection) const {
+  pass_on(ray, intersection);
   intersection[word::kDistance] = as_bits(hit.t);
   intersection[word::kBarycentric] = as_bits(hit.u);
   intersection[word::kBarycentric + 1] = as_bits(hit.v);
   for (int axis = 0; axis < 3; ++axis) intersection[word::kNormal + axis] = as_bits(hit.normal[axis]);
   intersection[word::kMaterial] = material_words_[hit.triangle];
   intersection[word::kTriangle] = hit.triangle;
+}
+
+bool Tracer::trace(const Ray& ray, Intersection& intersection, TraversalCounts* counts, VisitList* visits) const {
+  const RayQuery query = to_query(ray);
+  if ((ray[word::kFlags] & kShadowFlag) != 0) {
+    pass_on(ray, intersection);
+    return !traversal_.occluded(query, counts, visits);
+  }
+  Hit hit;
+  if (!traversal_.nearest(query, hit, counts, visits)) return false;
+  meet(ray, hit, intersection);
   return true;
 }
 

@@ -69,6 +69,11 @@ class Tracer {
   bool trace(const Ray& ray, Intersection& intersection, TraversalCounts* counts = nullptr,
              VisitList* visits = nullptr) const;
 
+  /// Words 0 .. 11 are the ray's, the others zero.
+  static void pass_on(const Ray& ray, Intersection& intersection);
+  /// What a hit of the ray becomes.
+  void meet(const Ray& ray, const Hit& hit, Intersection& intersection) const;
+
   const Traversal& traversal() const { return traversal_; }
 
  private:

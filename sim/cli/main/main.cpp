@@ -42,8 +42,9 @@ void add_config(CLI::App& app, std::string& config, std::vector<std::string>& se
 }
 
 void add_unit(CLI::App& app, std::string& engine, std::string& library) {
-  app.add_option("--engine", engine, "what stands in for the unit; native is for sim only")
-      ->type_name("native|functional|model|rtl|lockstep")
+  app.add_option("--engine", engine,
+                 "what stands in for the unit; native and embree, the reference picture, are for sim only")
+      ->type_name("native|embree|functional|model|rtl|lockstep")
       ->capture_default_str();
   app.add_option("--unit-library", library, "Verilated unit (default: where raypool unit builds it)");
 }

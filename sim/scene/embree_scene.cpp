@@ -1,0 +1,79 @@
+#include "scene/embree_scene.hpp"
+
+#include <stdexcept>
+
+namespace raypool {
+namespace {
+
+void set(RTCRay& ray, const RayQuery& query) {
+  ray.org_x = query.origin.x, ray.org_y = query.origin.y, ray.org_z = query.origin.z;
+  ray.dir_x = query.direction.x, ray.dir_y = query.direction.y, ray.dir_z = query.direction.z;
+  ray.tnear = 0;
+  ray.tfar = query.limit;
+  ray.mask = 0xffffffffu;
+}
+
+}  // namespace
+
+EmbreeScene::EmbreeScene(const Scene& scene) : device_(rtcNewDevice("threads=1")) {
+  if (device_ == nullptr) throw std::runtime_error("Embree cannot be started; check its installation");
+  scene_ = rtcNewScene(device_);
+  rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_HIGH);
+  RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                               3 * sizeof(float), scene.vertices.size()));
+  for (const Vec3& v : scene.vertices) *vertices++ = v.x, *vertices++ = v.y, *vertices++ = v.z;
+  auto* indices = static_cast<uint32_t*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                                                 3 * sizeof(uint32_t), scene.triangles.size()));
+  for (const auto& triangle : scene.triangles) {
+    for (uint32_t index : triangle) *indices++ = index;
+  }
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(scene_, geometry);
+  rtcReleaseGeometry(geometry);
+  rtcCommitScene(scene_);
+}
+
+EmbreeScene::~EmbreeScene() {
+  rtcReleaseScene(scene_);
+  rtcReleaseDevice(device_);
+}
+
+bool EmbreeScene::nearest(const RayQuery& query, Hit& hit) const {
+  RTCRayHit found{};
+  set(found.ray, query);
+  found.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(scene_, &context, &found);
+  hit.triangle = found.hit.primID;
+  hit.t = found.ray.tfar;
+  hit.u = found.hit.u;
+  hit.v = found.hit.v;
+  return found.hit.geomID != RTC_INVALID_GEOMETRY_ID;
+}
+
+bool EmbreeScene::occluded(const RayQuery& query) const {
+  RTCRay ray{};
+  set(ray, query);
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded1(scene_, &context, &ray);
+  return ray.tfar < 0;
+}
+
+bool EmbreeTracer::trace(const Ray& ray, Intersection& intersection) const {
+  const RayQuery query = to_query(ray);
+  if ((ray[word::kFlags] & kShadowFlag) != 0) {
+    tracer_.pass_on(ray, intersection);
+    return !embree_.occluded(query);
+  }
+  Hit hit;
+  if (!embree_.nearest(query, hit)) return false;
+  hit.normal = scene_.normal(hit.triangle);
+  tracer_.meet(ray, hit, intersection);
+  return true;
+}
+
+}  // namespace raypool
