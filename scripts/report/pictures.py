@@ -1,4 +1,4 @@
-"""The pictures that were drawn, each once, and beside them Embree's own: that of engine native, with exact arithmetic
+"""The pictures that were drawn, each once, and beside them Embree's own: that of engine embree, with exact arithmetic
 where there is one."""
 import base64
 import json
@@ -16,10 +16,10 @@ EXACT = {"arithmetic.subnormals": "ieee", "arithmetic.slow_unit": "exact", "arit
 
 
 class Picture:
-    """`points` drew it; `native` is the point it is compared with, None where there is none."""
+    """`points` drew it; `reference` is the point it is compared with, None where there is none."""
 
-    def __init__(self, points, native):
-        self.points, self.native = points, native
+    def __init__(self, points, reference):
+        self.points, self.reference = points, reference
         self.point = points[0]
         self.comparison = None
         self.data = None
@@ -34,23 +34,23 @@ class Picture:
 
     @property
     def is_ours(self):
-        """Machines drew it, and not only the native engine."""
-        return any(point["engine"] != "native" for point in self.points)
+        """Machines drew it, and not Embree alone."""
+        return any(point["engine"] != "embree" for point in self.points)
 
     @property
-    def native_command(self):
+    def reference_command(self):
         """That would draw Embree's own."""
         words = shlex.split(self.point.command)
         words = [word for word in words if not word.startswith("--set=")]
         for place, word in enumerate(words):
             if word.startswith("--engine="):
-                words[place] = "--engine=native"
+                words[place] = "--engine=embree"
                 break
             if word == "--engine" and place + 1 < len(words):
-                words[place + 1] = "native"
+                words[place + 1] = "embree"
                 break
         else:
-            words += ["--engine", "native"]
+            words += ["--engine", "embree"]
         return "build/" + shlex.join(words)
 
 
@@ -66,11 +66,11 @@ def compare(a, b):
         return {"compared": False, "reason": str(error)}
 
 
-def natives_of(points):
-    """{scene: point} of engine native; exact arithmetic is preferred."""
+def references_of(points):
+    """{scene: point} of engine embree; exact arithmetic is preferred."""
     found = {}
     for point in points:
-        if point["engine"] == "native" and point.picture:
+        if point["engine"] == "embree" and point.picture:
             kept = found.setdefault(scene_key(point), point)
             if not is_exact(kept) and is_exact(point):
                 found[scene_key(point)] = point
@@ -83,7 +83,7 @@ def is_exact(point):
 
 def collect(points, notes):
     """[[Picture]]: those of one scene, view, size and depth together, Embree's own first if it is there."""
-    natives = natives_of(points)
+    references = references_of(points)
     scenes = {}
     for point in points:
         if point.picture:
@@ -95,9 +95,9 @@ def collect(points, notes):
             scenes.setdefault(scene_key(point), {}).setdefault(digest, []).append(point)
     used, found = 0, []
     for key, by_digest in scenes.items():
-        native = natives.get(key)
-        pictures = [Picture(members, native) for members in by_digest.values()]
-        pictures.sort(key=lambda picture: native not in picture.points)
+        reference = references.get(key)
+        pictures = [Picture(members, reference) for members in by_digest.values()]
+        pictures.sort(key=lambda picture: reference not in picture.points)
         shown = []
         for picture in pictures:
             with open(picture.point.picture, "rb") as file:
@@ -108,8 +108,8 @@ def collect(points, notes):
                 continue
             used += len(data)
             picture.data = base64.b64encode(data).decode()
-            if native is not None:
-                picture.comparison = compare(native, picture.point)
+            if reference is not None:
+                picture.comparison = compare(reference, picture.point)
             shown.append(picture)
         if shown:
             found.append(shown)

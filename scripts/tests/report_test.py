@@ -26,7 +26,7 @@ EXPERIMENTS = {
     "shapes": {"title": "shapes & <units>", "base": TINY,
                "product": {"warps": [1, 2], "lanes": [1, 4], "units": [1, 2], "chip.policy": ["thesis", "fill"]}},
     "question": {"base": {**TINY, "size": "64x64"}, "points": [
-        {}, {"alus.flt.count": 2, "data_cache.bytes": 4096, "arithmetic.slow_unit": "newton1"}, {"engine": "native"}]},
+        {}, {"alus.flt.count": 2, "data_cache.bytes": 4096, "arithmetic.slow_unit": "newton1"}, {"engine": "embree"}]},
     "depth": {"base": TINY, "product": {"depth": [1, 3]}},
 }  # fmt: skip
 
@@ -228,7 +228,7 @@ class Page(ReportTest):
             self.assertLessEqual(set(named), targets)
             for path in re.findall(r"configs/[\w/]+\.json", words[1]):
                 self.assertTrue((ROOT / path).exists(), path)
-        self.assertIn("--engine native", self.section(page, "pictures"))
+        self.assertIn("--engine embree", self.section(page, "pictures"))
 
 
 class Refusals(ReportTest):
