@@ -93,7 +93,8 @@ def names_in(scene):
     return [name for name in names if not name.startswith("data:")]
 
 
+@functools.lru_cache(maxsize=None)
 def files_of(scene):
     """The scene's file and those that it names."""
     paths = {os.path.join(os.path.dirname(scene), name) for name in names_in(scene)}
-    return [scene, *sorted(path for path in paths if os.path.isfile(path))]
+    return (scene, *sorted(path for path in paths if os.path.isfile(path)))
