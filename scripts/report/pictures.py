@@ -12,6 +12,7 @@ from .point import differing, labels, near
 
 # So that the page stays one that opens.
 MOST_BYTES = 24_000_000
+PNG_END = b"IEND\xaeB`\x82"
 EXACT = {"arithmetic.subnormals": "ieee", "arithmetic.slow_unit": "exact", "arithmetic.fma": False}
 
 
@@ -102,6 +103,9 @@ def collect(points, notes):
         for picture in pictures:
             with open(picture.point.picture, "rb") as file:
                 data = file.read()
+            if not data.endswith(PNG_END):
+                notes.append(f"{near(picture.point.picture)} is no whole PNG file: run its report's command again")
+                continue
             if used + len(data) > MOST_BYTES:
                 notes.append(f"{near(picture.point.picture)}, as the page has {MOST_BYTES // 10**6} MB of pictures: "
                              "make report FROM= with fewer folders shows it")

@@ -151,7 +151,7 @@ class Page(ReportTest):
             self.assertIn(name, reader.sections)
         ids = set(reader.ids())
         for tag, attributes in reader.elements:
-            self.assertNotIn(tag, ("link-stylesheet", "iframe", "object", "embed"))
+            self.assertNotIn(tag, ("iframe", "object", "embed"))
             for name in ("href", "src", "aria-labelledby", "for"):
                 for word in attributes.get(name, "").split():
                     if name in ("href", "src"):
@@ -262,17 +262,19 @@ class Refusals(ReportTest):
         third = self.reports("question")[0][0].parent
         (third / "point.json").write_text("{}")
         (self.folder / "sweeps/depth/table.json").unlink()
+        picture = self.reports("question")[2][0].parent / "image.png"
+        picture.write_bytes(picture.read_bytes()[:100])
         runs = self.folder / "sweeps/odd"
         runs.mkdir()
         (runs / "report.json").write_text('{"schema": "raypool-synth-1"}')
         done = self.run_report(self.folder / "sweeps")
         lines = done.stderr.splitlines()
-        self.assertEqual(len(lines), 5, done.stderr)
+        self.assertEqual(len(lines), 6, done.stderr)
         for word in ("not valid JSON", "cycles: 'many'", "point.json", "has points and no table.json",
-                     "another version of make synth"):
+                     "another version of make synth", "no whole PNG"):
             self.assertEqual(sum(word in line for line in lines), 1, word)
         page = (self.folder / "page/index.html").read_text()
-        self.assertEqual(page.count("Left out: "), 5)
+        self.assertEqual(page.count("Left out: "), 6)
         self.assertEqual(page.count('<tr id="point-'), 16 - 2 + 3 - 1)
 
     def test_a_page_that_cannot_be_written_leaves_the_old_one(self):
