@@ -68,37 +68,50 @@ def in_sixes(family):
     return [family[begin:begin + len(SERIES_MARKS)] for begin in range(0, len(family), len(SERIES_MARKS))]
 
 
-def effect_figure(field, groups, title):
-    """A row for each group, a mark for each value of the field."""
-    order = values([point for group in groups for point in group], field)
+def effect_panel(field, groups, title, styles, most):
+    """A row for each group, a mark for each value of the field; the axis ends at `most`."""
     names = group_names(groups, field)
     plot, places, _ = rows_plot(names)
-    styles = dict(zip(order, series(len(order))))
-    described, gains = [], []
+    described = []
     for group, place, name in zip(groups, places, names):
-        group = sorted(group, key=lambda point: order.index(point[field]))
         rates = [point.rate for point in group]
         plot.axes.plot([min(rates), max(rates)], [place, place], color=colour("line"), linewidth=2.2, zorder=2)
         for point in group:
-            plot.mark(point.rate, place, *styles[point[field]], f"{name}, {short_field(field, point[field])}: "
-                      f"{number(point.rate)} Mrays/s")
-        described.append(f"{name}: " + ", ".join(f"{p[field]} {number(p.rate)}" for p in group))
-        gains.append((group[-1].rate / group[0].rate, name, group))
-    plot.axes.set_xlim(left=0)
+            words = f"{name}, {short_field(field, point[field])}: {number(point.rate)} Mrays/s"
+            plot.mark(point.rate, place, *styles[point[field]], words)
+        described.append(f"{name}: " + ", ".join(f"{point[field]} {number(point.rate)}" for point in group))
+    plot.axes.set_xlim(0, most)
     plot.axes.set_xlabel("Mrays/s")
+    keys = [Key(*style, short_field(field, value)) for value, style in styles.items()]
+    return Panel(title, plot, "Mrays/s. " + "; ".join(described) + ".", keys)
 
-    def said(gain):
-        _, name, group = gain
-        before, after = group[0], group[-1]
+
+def effect_figure(field, groups, title):
+    """A plot for each number of units."""
+    order = values([point for group in groups for point in group], field)
+    styles = dict(zip(order, series(len(order))))
+    groups = [sorted(group, key=lambda point: order.index(point[field])) for group in groups]
+    # One scale, so that plots compare.
+    most = 1.04 * max(point.rate for group in groups for point in group)
+    panels = []
+    for units in values([group[0] for group in groups], "units"):
+        members = [group for group in groups if group[0]["units"] == units]
+        panels.append(effect_panel(field, members, f"{title}, {short_field('units', units)}", styles, most))
+
+    def gain(found):
+        _, group = found
+        return group[-1].rate / group[0].rate
+
+    def said(found):
+        name, (before, *_, after) = found
         return (f"{name}: {number(before.rate)} Mrays/s with {short_field(field, before[field])}, {number(after.rate)} "
                 f"with {short_field(field, after[field])} ({change(before.rate, after.rate)})")
 
-    best, worst = max(gains, key=first), min(gains, key=first)
+    named = list(zip(group_names(groups, field), groups))
+    best, worst = max(named, key=gain), min(named, key=gain)
     sentence = said(best) + ("; " + said(worst) if worst is not best else "") + "."
-    keys = [Key(*styles[value], short_field(field, value)) for value in order]
     points = [point for group in groups for point in group]
-    panel = Panel(title, plot, "Mrays/s. " + "; ".join(described) + ".", keys)
-    return Figure(f"{title}: {common(points)}", sentence, points, [panel])
+    return Figure(f"{title}: {common(points)}", sentence, points, panels)
 
 
 def effect_figures(points, field, title):
