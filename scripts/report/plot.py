@@ -68,10 +68,9 @@ class Plot:
         for group in root.iter(f"{{{SVG}}}g"):
             words = self.tips.get(group.attrib.pop("id", ""))
             if words:
-                # Over all else: what is under the pointer is the mark, not its parts.
-                ElementTree.SubElement(group, f"{{{SVG}}}title").text = words
-                group.insert(0, group[-1])
-                del group[-1]
+                title_of_mark = ElementTree.Element(f"{{{SVG}}}title")
+                title_of_mark.text = words
+                group.insert(0, title_of_mark)
         _unwrap(root)
         _describe(root, number, title, description)
         return _serialised(root)

@@ -55,9 +55,14 @@ def rows_plot(names):
     return plot, places, 0.42 if above else 0.72
 
 
-def alus_of(points):
-    found = dict.fromkeys(alu for point in points for alu in point.report["alus"])
+def in_order(alus):
+    """Each once, as all figures have them; those that a user has added at the end."""
+    found = dict.fromkeys(alus)
     return [alu for alu in ALUS if alu in found] + [alu for alu in found if alu not in ALUS]
+
+
+def alus_of(points):
+    return in_order(alu for point in points for alu in point.report["alus"])
 
 
 def dots(title, points, field, words, scale):
@@ -123,8 +128,7 @@ def segments(points):
 
     found = {}
     for group, kind, words in (("executing", "-", "executing: {}"), ("waiting", "/", "waiting: {}")):
-        alus = dict.fromkeys(alu for point in points for alu in point.report["warp_cycles"][group])
-        alus = [alu for alu in ALUS if alu in alus] + [alu for alu in alus if alu not in ALUS]
+        alus = in_order(alu for point in points for alu in point.report["warp_cycles"][group])
         seen = [alu for alu in alus if any(part(group, alu)(p.report["warp_cycles"]) >= LEAST_SHARE for p in points)]
         found[group] = [(words.format(alu), alu_colour(alu), kind, part(group, alu)) for alu in seen]
         unseen = [alu for alu in alus if alu not in seen]
