@@ -18,7 +18,7 @@ class Recorder : public ComputeUnit {
     recording_.memory_limit = memory_limit;
     device_->reset(program_length, memory_limit);
   }
-  void set_argument(int index, uint32_t value) override {
+  void set_argument(uint32_t index, uint32_t value) override {
     recording_.arguments[index] = value;
     device_->set_argument(index, value);
   }

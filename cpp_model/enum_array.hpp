@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <type_traits>
 
 namespace raypool {
 
@@ -13,5 +14,19 @@ struct EnumArray : std::array<T, Count> {
   constexpr T& operator[](Enum member) { return (*this)[static_cast<size_t>(member)]; }
   constexpr const T& operator[](Enum member) const { return (*this)[static_cast<size_t>(member)]; }
 };
+
+/// The number of a member.
+template <typename Enum>
+constexpr std::underlying_type_t<Enum> to_underlying(Enum member) {
+  return static_cast<std::underlying_type_t<Enum>>(member);
+}
+
+/// The first `Count` members of an enumeration, to go through.
+template <typename Enum, size_t Count>
+constexpr std::array<Enum, Count> members() {
+  std::array<Enum, Count> all{};
+  for (size_t i = 0; i < Count; ++i) all[i] = static_cast<Enum>(i);
+  return all;
+}
 
 }  // namespace raypool

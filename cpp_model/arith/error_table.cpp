@@ -176,8 +176,8 @@ std::string to_text(const std::vector<ErrorRow>& rows) {
     if (row.operation == SlowOperation::Div) at += fmt::format(" / {:08x}", row.b);
     text +=
         fmt::format("{:<9}{:<8}{:<9}{:>9}{:>14.4f}  {:<19}{:>12.4f}{:>+12.4f}{:>10.4f}%{:>11}  {} {}\n",
-                    kUnitNames[static_cast<int>(row.slow_unit)], kOperationNames[static_cast<int>(row.operation)],
-                    kResultNames[static_cast<int>(row.results)], row.inputs, row.largest_ulp, at, row.mean_ulp,
+                    kUnitNames[to_underlying(row.slow_unit)], kOperationNames[to_underlying(row.operation)],
+                    kResultNames[to_underlying(row.results)], row.inputs, row.largest_ulp, at, row.mean_ulp,
                     row.bias_ulp, 100 * row.rounded, row.exponents,
                     std::isinf(bound) ? "exponent" : fmt::format("{}", bound), keeps_promise(row) ? "kept" : "BROKEN");
   }

@@ -26,9 +26,10 @@ using Json = nlohmann::ordered_json;
 constexpr size_t kLongestName = 64;
 constexpr std::string_view kChip = "chip";  // the object of a file
 
-constexpr int kLeastFusedDepth = 5;  // of flt, whose additions and multiplications go through the fused unit
-constexpr std::array<int, 4> kLeastSlowDepths = {11, 11, 8, 6};  // of slw, by SlowUnit: each Newton step has its stages
+constexpr uint32_t kLeastFusedDepth = 5;  // of flt, whose additions and multiplications go through the fused unit
+constexpr EnumArray<SlowUnit, uint32_t, 4> kLeastSlowDepths = {11, 11, 8, 6};  // of slw: Newton steps have stages
 
+/// Of a parameter a negative value is here what it was in the file.
 void check_range(const std::string& where, const std::string& key, int value, const Range& range) {
   if (!range.has(value))
     throw InputError(fmt::format("{}: {} is {}; it must be {}", where, key, value, text_of(range)));
@@ -44,15 +45,15 @@ class Section {
     throw InputError(fmt::format("{}: {} must be an object in braces, not {}", where_, what, json_.dump()));
   }
 
-  void integer(std::string_view key, int& value) {
+  std::optional<int> integer(std::string_view key) {
     const Json* found = find(key);
-    if (found == nullptr) return;
+    if (found == nullptr) return std::nullopt;
     // Beyond int the range check would see a wrapped value.
     if (!found->is_number_integer() || found->get<double>() < -2147483648.0 || found->get<double>() > 2147483647.0) {
       throw InputError(
           fmt::format("{}: {}{} is {}; it must be an integer without quotes", where_, prefix_, key, found->dump()));
     }
-    value = found->get<int>();
+    return found->get<int>();
   }
   /// The value of a parameter, if it is there.
   void read(const Parameter& parameter, Configuration& configuration) {
@@ -60,7 +61,7 @@ class Section {
     switch (parameter.range.form) {
       case Range::Form::Integer:
       case Range::Form::PowerOfTwo:
-        integer(parameter.key, value);
+        value = integer(parameter.key).value_or(value);
         break;
       case Range::Form::Name:
         choice(parameter, value);
@@ -160,14 +161,16 @@ Configuration from_json(const Json& json, const std::string& where, const std::s
     section->refuse_others();
   }
   for (const AluType type : {AluType::Flt, AluType::Slw})
-    configuration.alus[static_cast<size_t>(type)].depth = least_depth(configuration, type);
+    configuration.alus[type].depth = least_depth(configuration, type);
   if (auto alus = root.section("alus")) {
-    for (size_t type = 0; type < kAluTypes; ++type) {
+    for (const AluType type : kEveryAluType) {
       auto alu = alus->section(kAluNames[type]);
       if (!alu) continue;
       for (const AluParameter& parameter : parameter::kOfAlu)
-        if (applies(parameter, static_cast<AluType>(type)))
-          alu->integer(parameter.key, configuration.alus[type].*parameter.value);
+        if (applies(parameter, type)) {
+          uint32_t& value = configuration.alus[type].*parameter.value;
+          value = alu->integer(parameter.key).value_or(value);
+        }
       alu->refuse_others();
     }
     alus->refuse_others();
@@ -305,15 +308,15 @@ Configuration parse_configuration(const std::string& json, const std::string& wh
   return from_json(parse_json(json, where), where, Configuration().name);
 }
 
-int least_depth(const Configuration& configuration, AluType type) {
+uint32_t least_depth(const Configuration& configuration, AluType type) {
   if (type == AluType::Flt && configuration.fma) return kLeastFusedDepth;
-  if (type == AluType::Slw) return kLeastSlowDepths.at(static_cast<size_t>(configuration.slow_unit));
+  if (type == AluType::Slw) return kLeastSlowDepths[configuration.slow_unit];
   return alu_info(type).depth;
 }
 
-int tile_width_log2(int contents) {
-  int log2 = 0;
-  while ((1 << log2) < contents) ++log2;
+uint32_t tile_width_log2(uint32_t contents) {
+  uint32_t log2 = 0;
+  while ((1u << log2) < contents) ++log2;
   return (log2 + 1) / 2;
 }
 
@@ -323,7 +326,7 @@ namespace {
 void check_chip(const Configuration& configuration, const std::string& where) {
   for (const Parameter& parameter : parameter::kOfChip)
     check_range(where, path_of(parameter), parameter.get(configuration), parameter.range);
-  const int width = 1 << tile_width_log2(configuration.contents());
+  const uint32_t width = 1u << tile_width_log2(configuration.contents());
   const ChipConfiguration& chip = configuration.chip;
   if (chip.intersection_pool_size < width) {
     throw InputError(
@@ -349,18 +352,17 @@ void check_configuration(const Configuration& configuration, const std::string& 
   }
   for (const Parameter& parameter : parameter::kAll)
     check_range(where, path_of(parameter), parameter.get(configuration), parameter.range);
-  for (size_t type = 0; type < kAluTypes; ++type) {
+  for (const AluType type : kEveryAluType) {
     const AluConfiguration& alu = configuration.alus[type];
     const std::string prefix = fmt::format("alus.{}.", kAluNames[type]);
-    if (kAluTable[type].timed_by_events()) {
+    if (alu_info(type).timed_by_events()) {
       if (alu.count == 1) continue;
       throw InputError(fmt::format("{}: {}count is {}; it must be 1, because this unit owns the {}", where, prefix,
-                                   alu.count,
-                                   static_cast<AluType>(type) == AluType::Mem ? "data cache" : "ray memory"));
+                                   alu.count, type == AluType::Mem ? "data cache" : "ray memory"));
     }
     for (const AluParameter& parameter : parameter::kOfAlu) {
       check_range(where, prefix + std::string(parameter.key), alu.*parameter.value,
-                  range_of(parameter, static_cast<AluType>(type), configuration));
+                  range_of(parameter, type, configuration));
     }
   }
   check_chip(configuration, where);
@@ -381,11 +383,10 @@ std::string to_json(const Configuration& configuration) {
   Json json;
   json["name"] = configuration.name;
   put(json, parameter::kAll, "", configuration);
-  for (size_t type = 0; type < kAluTypes; ++type) {
+  for (const AluType type : kEveryAluType) {
     Json& entry = json["alus"][std::string(kAluNames[type])];
     for (const AluParameter& parameter : parameter::kOfAlu)
-      if (applies(parameter, static_cast<AluType>(type)))
-        entry[std::string(parameter.key)] = configuration.alus[type].*parameter.value;
+      if (applies(parameter, type)) entry[std::string(parameter.key)] = configuration.alus[type].*parameter.value;
   }
   for (const std::string_view section : sections())
     put(json[std::string(section)], parameter::kAll, section, configuration);
@@ -406,10 +407,9 @@ std::vector<std::pair<std::string, int>> verilog_parameters(const Configuration&
   };
   add(false);
   for (const AluParameter& parameter : parameter::kOfAlu) {
-    for (size_t type = 0; type < kAluTypes; ++type) {
-      if (kAluTable[type].timed_by_events()) continue;
-      parameters.emplace_back(verilog_name(static_cast<AluType>(type), parameter),
-                              configuration.alus[type].*parameter.value);
+    for (const AluType type : kEveryAluType) {
+      if (alu_info(type).timed_by_events()) continue;
+      parameters.emplace_back(verilog_name(type, parameter), configuration.alus[type].*parameter.value);
     }
   }
   add(true);

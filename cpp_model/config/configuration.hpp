@@ -10,13 +10,14 @@
 #include <vector>
 
 #include "config/parameters.hpp"
+#include "enum_array.hpp"
 #include "isa/input_error.hpp"
 #include "isa/isa.hpp"
 
 namespace raypool {
 
 struct AluConfiguration {
-#define RAYPOOL_ROW(name, value, ...) int name = value;
+#define RAYPOOL_ROW(name, value, ...) uint32_t name = value;
   RAYPOOL_ALU_PARAMETERS(RAYPOOL_ROW)
 #undef RAYPOOL_ROW
 };
@@ -31,9 +32,9 @@ struct ChipConfiguration {
 };
 
 /// One instance of each type, a task each cycle, as deep as the type's table row says.
-inline constexpr std::array<AluConfiguration, kAluTypes> default_alus() {
-  std::array<AluConfiguration, kAluTypes> alus{};
-  for (size_t type = 0; type < kAluTypes; ++type) alus[type].depth = kAluTable[type].depth;
+inline constexpr EnumArray<AluType, AluConfiguration, kAluTypes> default_alus() {
+  EnumArray<AluType, AluConfiguration, kAluTypes> alus{};
+  for (const AluType type : kEveryAluType) alus[type].depth = kAluTable[type].depth;
   return alus;
 }
 
@@ -41,13 +42,13 @@ inline constexpr std::array<AluConfiguration, kAluTypes> default_alus() {
 inline constexpr const char* kNamePattern = "[A-Za-z0-9_.+-]{1,64}";
 
 /// log2 of an eye tile's width for `contents` threads (a power of two): tiles are square or twice as wide as high.
-int tile_width_log2(int contents);
+uint32_t tile_width_log2(uint32_t contents);
 
 struct Configuration {
   std::string name = "8w8c";
-  std::string source;                                             ///< what load_configuration was given; empty: nothing
-  std::vector<std::string> set;                                   ///< likewise
-  std::array<AluConfiguration, kAluTypes> alus = default_alus();  ///< latency and depth: not of mem and ray
+  std::string source;            ///< what load_configuration was given; empty: nothing
+  std::vector<std::string> set;  ///< likewise
+  EnumArray<AluType, AluConfiguration, kAluTypes> alus = default_alus();  ///< latency and depth: not of mem and ray
 #define RAYPOOL_UNIT(name, type, value, ...) type name = value;
 #define RAYPOOL_PART(part, name, type, value, ...) type part##_##name = value;
   RAYPOOL_PARAMETERS(RAYPOOL_UNIT, RAYPOOL_PART, RAYPOOL_UNIT)
@@ -57,8 +58,8 @@ struct Configuration {
 
   /// Whether instructions that need the feature are legal.
   bool has(Feature feature) const { return feature == Feature::Base || fma; }
-  int contents() const { return warps * lanes; }
-  const AluConfiguration& alu(AluType type) const { return alus[static_cast<size_t>(type)]; }
+  uint32_t contents() const { return warps * lanes; }
+  const AluConfiguration& alu(AluType type) const { return alus[type]; }
 };
 
 /// Reads a file; `name_or_path` is a path or the name of a file in the configs folder ("8w8c"). A name of the form
@@ -76,7 +77,7 @@ Configuration parse_configuration(const std::string& json, const std::string& wh
 
 /// Least pipeline depth of a type in this configuration: what its function needs at speed. 0: the type has neither
 /// latency nor depth to choose. flt and slw have it as their default.
-int least_depth(const Configuration& configuration, AluType type);
+uint32_t least_depth(const Configuration& configuration, AluType type);
 
 /// Throws InputError when a value is out of its range; `where` names the source in the message.
 void check_configuration(const Configuration& configuration, const std::string& where);

@@ -83,7 +83,7 @@ TEST(Configuration, WhatAFileDoesNotNameKeepsItsDefault) {
   Configuration expected;
   expected.name = "test";
   expected.warps = 4;
-  expected.alus[static_cast<size_t>(AluType::Flt)].count = 2;
+  expected.alus[AluType::Flt].count = 2;
   expected.subnormals = Subnormals::Flush;
   EXPECT_TRUE(equal(load_configuration(file.path()), expected));
 }
@@ -94,8 +94,8 @@ TEST(Configuration, WrittenAndReadAgainIsTheSame) {
   configuration.warps = 16;
   configuration.lanes = 2;
   configuration.stack_depth = 5;
-  for (int type = 0; type < kAluTypes; ++type) {
-    AluConfiguration& alu = configuration.alus[static_cast<size_t>(type)];
+  for (uint32_t type = 0; type < kAluTypes; ++type) {
+    AluConfiguration& alu = configuration.alus[type];
     if (!kAluTable[type].timed_by_events()) alu = {1 + type % 4, 2 + type, alu.depth + 2 + type % 3};
   }
   configuration.instruction_cache_bytes = 1024;

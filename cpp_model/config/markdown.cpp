@@ -84,12 +84,11 @@ std::string parameters_markdown() {
                         depth ? "the least" : std::to_string(AluConfiguration().*parameter.value), parameter.meaning);
   }
   text += kDepths;
-  for (int type = 0; type < kAluTypes; ++type) {
-    const auto alu = static_cast<AluType>(type);
+  for (const AluType alu : kEveryAluType) {
     if (alu_info(alu).timed_by_events()) continue;
     for (const AluParameter& parameter : parameter::kOfAlu) {
       if (parameter.value != &AluConfiguration::depth) continue;
-      text += fmt::format("| {} | {}", kAluNames[static_cast<size_t>(type)], range_of(parameter, alu).least);
+      text += fmt::format("| {} | {}", kAluNames[alu], range_of(parameter, alu).least);
     }
     for (const DepthRule& rule : depth_rules()) {
       if (rule.type != alu) continue;

@@ -68,15 +68,15 @@ Range range_of(const AluParameter& parameter, AluType type) {
   Range range = range_of(parameter, type, Configuration());
   if (parameter.value != &AluConfiguration::depth) return range;
   for (const Parameter& each : parameter::kAll)
-    for (const DepthRule& rule : depths(each, type)) range.least = std::min(range.least, rule.least);
+    for (const DepthRule& rule : depths(each, type)) range.least = std::min<int>(range.least, rule.least);
   return range;
 }
 
 std::vector<DepthRule> depth_rules() {
   std::vector<DepthRule> rules;
   for (const Parameter& parameter : parameter::kAll) {
-    for (int type = 0; type < kAluTypes; ++type) {
-      const std::vector<DepthRule> all = depths(parameter, static_cast<AluType>(type));
+    for (const AluType type : kEveryAluType) {
+      const std::vector<DepthRule> all = depths(parameter, type);
       const DepthRule& least = *std::min_element(all.begin(), all.end(), shallower);
       for (const DepthRule& rule : all)
         if (shallower(least, rule)) rules.push_back(rule);
@@ -111,7 +111,7 @@ std::string text_of(const Range& range) {
 }
 
 nlohmann::ordered_json json_of(const Parameter& parameter, int value) {
-  if (parameter.range.form == Range::Form::Name) return parameter.range.names.at(static_cast<size_t>(value));
+  if (parameter.range.form == Range::Form::Name) return parameter.range.names.at(value);
   if (parameter.range.form == Range::Form::OnOff) return value != 0;
   return value;
 }

@@ -26,7 +26,7 @@ struct Parameter {
 /// A row of the table of what each ALU type has.
 struct AluParameter {
   std::string_view key;
-  int AluConfiguration::*value;
+  uint32_t AluConfiguration::*value;
   Range range;
   Tried tried;
   std::string_view meaning;
@@ -95,7 +95,7 @@ struct DepthRule {
   const Parameter* parameter;
   int value;
   AluType type;
-  int least;
+  uint32_t least;
 };
 std::vector<DepthRule> depth_rules();
 

@@ -23,12 +23,12 @@ enum class TraverserName : uint8_t { Static = 0 };
 //   ARITHMETIC(name, ...)  a mode of the arithmetic: `arithmetic.name` in files, name in C++, NAME in the Verilog
 // clang-format off
 #define RAYPOOL_PARAMETERS(UNIT, PART, ARITHMETIC) \
-  UNIT(warps, int, 8, powers_of_two(1, 32), tried(1, 2, 4, 8, 16, 32), "warps of a compute unit") \
-  UNIT(lanes, int, 8, powers_of_two(1, 32), tried(1, 2, 4, 8, 16, 32), "lanes of an ALU, and threads in a warp") \
-  UNIT(stack_depth, int, 8, integers(2, 32), tried(2, 3, 8, 32), "entries of a warp's PC stack") \
-  PART(instruction_cache, bytes, int, 4096, powers_of_two(512, 65536), tried(512, 1024, 4096, 65536), "size") \
-  PART(data_cache, bytes, int, 8192, powers_of_two(512, 65536), tried(512, 1024, 8192, 65536), "size") \
-  PART(data_cache, mshrs, int, 4, integers(1, 16), tried(1, 2, 3, 4, 16), \
+  UNIT(warps, uint32_t, 8, powers_of_two(1, 32), tried(1, 2, 4, 8, 16, 32), "warps of a compute unit") \
+  UNIT(lanes, uint32_t, 8, powers_of_two(1, 32), tried(1, 2, 4, 8, 16, 32), "lanes of an ALU, and threads in a warp") \
+  UNIT(stack_depth, uint32_t, 8, integers(2, 32), tried(2, 3, 8, 32), "entries of a warp's PC stack") \
+  PART(instruction_cache, bytes, uint32_t, 4096, powers_of_two(512, 65536), tried(512, 1024, 4096, 65536), "size") \
+  PART(data_cache, bytes, uint32_t, 8192, powers_of_two(512, 65536), tried(512, 1024, 8192, 65536), "size") \
+  PART(data_cache, mshrs, uint32_t, 4, integers(1, 16), tried(1, 2, 3, 4, 16), \
        "miss-status holding registers: lines that may be on their way at once") \
   ARITHMETIC(subnormals, Subnormals, Subnormals::Ieee, names("ieee", "flush"), all(), \
              "subnormal numbers: as IEEE 754 says, or zero") \
@@ -45,25 +45,28 @@ enum class TraverserName : uint8_t { Static = 0 };
   CHIP(policy, PolicyName, PolicyName::Thesis, names("thesis", "fill"), "what chooses the next kernel") \
   CHIP(window_remedy, bool, true, on_or_off(), "eye rays of further tiles are cast while earlier ones are under way") \
   CHIP(launch_ahead, bool, true, on_or_off(), "a kernel is launched behind a running one, if it is worth it") \
-  CHIP(held_limit, int, 512, integers(1, 1 << 20), "unfinished pixels at a time") \
+  CHIP(held_limit, uint32_t, 512, integers(1, 1 << 20), "unfinished pixels at a time") \
   CHIP(traverser, TraverserName, TraverserName::Static, names("static"), "timing of the traverser") \
-  CHIP_PART(thresholds, rays, int, 48, integers(0, 1 << 20), \
+  CHIP_PART(thresholds, rays, uint32_t, 48, integers(0, 1 << 20), \
             "rays in the ray pool above which no more are cast, for 64 contents and one unit") \
-  CHIP_PART(thresholds, intersections, int, 8, integers(0, 1 << 20), \
+  CHIP_PART(thresholds, intersections, uint32_t, 8, integers(0, 1 << 20), \
             "intersections above which a kernel takes some, for 64 contents") \
-  CHIP_PART(static_traverser, batch, int, 64, integers(1, 4096), "rays traced when a kernel ends, or after a stall") \
-  CHIP_PART(static_traverser, stall_cycles, int, 1000, integers(1, 1 << 20), \
+  CHIP_PART(static_traverser, batch, uint32_t, 64, integers(1, 4096), \
+            "rays traced when a kernel ends, or after a stall") \
+  CHIP_PART(static_traverser, stall_cycles, uint32_t, 1000, integers(1, 1 << 20), \
             "cycles in which the shader stalls until a batch is traced") \
-  CHIP_PART(ray_pool, size, int, 512, integers(1, 1 << 20), "rays that it holds") \
-  CHIP_PART(ray_pool, overhead, int, 2, integers(1, 64), "cycles that its port takes for a ray besides the 3 beats") \
-  CHIP_PART(ray_pool, cycles_per_beat, int, 1, integers(1, 64), "cycles of its port for a beat of 128 bits") \
-  CHIP_PART(intersection_pool, size, int, 512, integers(1, 1 << 20), "intersections of each kind that it holds") \
-  CHIP_PART(intersection_pool, overhead, int, 2, integers(1, 64), \
+  CHIP_PART(ray_pool, size, uint32_t, 512, integers(1, 1 << 20), "rays that it holds") \
+  CHIP_PART(ray_pool, overhead, uint32_t, 2, integers(1, 64), \
+            "cycles that its port takes for a ray besides the 3 beats") \
+  CHIP_PART(ray_pool, cycles_per_beat, uint32_t, 1, integers(1, 64), "cycles of its port for a beat of 128 bits") \
+  CHIP_PART(intersection_pool, size, uint32_t, 512, integers(1, 1 << 20), "intersections of each kind that it holds") \
+  CHIP_PART(intersection_pool, overhead, uint32_t, 2, integers(1, 64), \
             "cycles that its port takes for an intersection besides the 6 beats") \
-  CHIP_PART(intersection_pool, cycles_per_beat, int, 1, integers(1, 64), "cycles of its port for a beat of 128 bits") \
-  CHIP_PART(memory, latency, int, 120, integers(1, 10000), "cycles from a read's service to its last beat") \
-  CHIP_PART(memory, cycles_per_beat, int, 2, integers(1, 64), "cycles of its port for a beat of 128 bits") \
-  CHIP_PART(memory, queue, int, 8, integers(1, 64), "requests that wait at its port") \
+  CHIP_PART(intersection_pool, cycles_per_beat, uint32_t, 1, integers(1, 64), \
+            "cycles of its port for a beat of 128 bits") \
+  CHIP_PART(memory, latency, uint32_t, 120, integers(1, 10000), "cycles from a read's service to its last beat") \
+  CHIP_PART(memory, cycles_per_beat, uint32_t, 2, integers(1, 64), "cycles of its port for a beat of 128 bits") \
+  CHIP_PART(memory, queue, uint32_t, 8, integers(1, 64), "requests that wait at its port") \
   /* The table ends here: the backslash above lets a row follow it. */
 
 // What each ALU type has, but for mem and ray, which stand once and are timed by events: `alus.int.count` in files,
@@ -100,7 +103,7 @@ inline constexpr Range powers_of_two(int least, int greatest) { return {Range::F
 inline constexpr Range on_or_off() { return {Range::Form::OnOff, 0, 1}; }
 template <typename... Names>
 constexpr Range names(Names... of_values) {
-  return {Range::Form::Name, 0, static_cast<int>(sizeof...(Names)) - 1, {of_values...}};
+  return {Range::Form::Name, 0, int{sizeof...(Names)} - 1, {of_values...}};
 }
 
 inline constexpr Tried all() { return {}; }

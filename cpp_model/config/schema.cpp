@@ -104,8 +104,7 @@ std::string configuration_schema() {
   for (const Parameter& parameter : parameter::kAll)
     if (parameter.section.empty()) keys[std::string(parameter.key)] = schema_of(parameter);
   keys["alus"] = object_schema("ALU types");
-  for (size_t type = 0; type < kAluTypes; ++type)
-    keys["alus"]["properties"][std::string(kAluNames[type])] = alu_schema(static_cast<AluType>(type));
+  for (const AluType type : kEveryAluType) keys["alus"]["properties"][std::string(kAluNames[type])] = alu_schema(type);
   for (const std::string_view section : sections())
     keys[std::string(section)] = schema_of_section(section, parameter::kAll, section);
   keys[std::string(chip_sections().front())] = schema_of_chip();

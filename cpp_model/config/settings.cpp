@@ -98,8 +98,7 @@ Json::json_pointer pointer(std::string path) {
 std::vector<Field> fields() {
   std::vector<Field> all;
   for (const Parameter& parameter : parameter::kAll) all.push_back({path_of(parameter), parameter.range});
-  for (int type = 0; type < kAluTypes; ++type) {
-    const auto alu = static_cast<AluType>(type);
+  for (const AluType alu : kEveryAluType) {
     for (const AluParameter& parameter : parameter::kOfAlu) {
       if (!applies(parameter, alu)) continue;
       Range range = range_of(parameter, alu);

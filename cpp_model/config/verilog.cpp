@@ -40,8 +40,7 @@ std::string unit_checks() {
   for (const Parameter& parameter : parameter::kAll)
     if (!parameter.of_part) checks += check(verilog_name(parameter), parameter.range);
   for (const AluParameter& parameter : parameter::kOfAlu) {
-    for (int type = 0; type < kAluTypes; ++type) {
-      const auto alu = static_cast<AluType>(type);
+    for (const AluType alu : kEveryAluType) {
       if (!alu_info(alu).timed_by_events()) checks += check(verilog_name(alu, parameter), range_of(parameter, alu));
     }
   }

@@ -52,23 +52,31 @@ enum class Ports : uint8_t { Framework, Own };
 
 struct AluInfo {
   std::string_view name;
-  int depth;
+  uint32_t depth;
   Ports ports;
   std::string_view parameters;  ///< separated by ", "
   std::string_view title;
   bool timed_by_events() const { return depth == 0; }
 };
 
-inline constexpr AluInfo kAluTable[] = {
-#define RAYPOOL_CORE(type, name, depth, ports, parameters, title) {name, depth, Ports::ports, parameters, title},
-#define RAYPOOL_CLASS(type, name, depth, parameters, title) {name, depth, Ports::Framework, parameters, title},
+inline constexpr AluType kEveryAluType[] = {
+#define RAYPOOL_CORE(type, name, depth, ports, parameters, title) AluType::type,
+#define RAYPOOL_CLASS(type, name, depth, parameters, title) AluType::type,
     RAYPOOL_ALU_TYPES(RAYPOOL_CORE, RAYPOOL_CLASS)
 #undef RAYPOOL_CORE
 #undef RAYPOOL_CLASS
 };
 
-inline constexpr int kAluTypes = static_cast<int>(std::size(kAluTable));
+inline constexpr int kAluTypes = std::size(kEveryAluType);
 static_assert(kAluTypes <= 8, "the performance counters have room for eight ALU types");
+
+inline constexpr EnumArray<AluType, AluInfo, kAluTypes> kAluTable = {{{
+#define RAYPOOL_CORE(type, name, depth, ports, parameters, title) {name, depth, Ports::ports, parameters, title},
+#define RAYPOOL_CLASS(type, name, depth, parameters, title) {name, depth, Ports::Framework, parameters, title},
+    RAYPOOL_ALU_TYPES(RAYPOOL_CORE, RAYPOOL_CLASS)
+#undef RAYPOOL_CORE
+#undef RAYPOOL_CLASS
+}}};
 
 inline constexpr EnumArray<AluType, std::string_view, kAluTypes> kAluNames = {
 #define RAYPOOL_CORE(type, name, depth, ports, parameters, title) name,
@@ -78,7 +86,7 @@ inline constexpr EnumArray<AluType, std::string_view, kAluTypes> kAluNames = {
 #undef RAYPOOL_CLASS
 };
 
-inline constexpr const AluInfo& alu_info(AluType type) { return kAluTable[static_cast<size_t>(type)]; }
+inline constexpr const AluInfo& alu_info(AluType type) { return kAluTable[type]; }
 
 /// One operand in the order of the assembly text, and where it is encoded.
 enum class Operand : uint8_t {
@@ -208,14 +216,14 @@ enum class Feature : uint8_t {
 
 /// ALU type and operation of an instruction, bits 63:55 of its encoding.
 enum class Opcode : uint16_t {
-#define RAYPOOL_ROW(name, type, operation, ...) name = static_cast<int>(AluType::type) << 5 | operation,
+#define RAYPOOL_ROW(name, type, operation, ...) name = to_underlying(AluType::type) << 5 | operation,
   RAYPOOL_INSTRUCTIONS(RAYPOOL_ROW)
 #undef RAYPOOL_ROW
 };
 
-inline constexpr AluType alu_of(Opcode opcode) { return static_cast<AluType>(static_cast<int>(opcode) >> 5); }
+inline constexpr AluType alu_of(Opcode opcode) { return static_cast<AluType>(to_underlying(opcode) >> 5); }
 /// Number within the type, 0 .. 31.
-inline constexpr uint8_t operation_of(Opcode opcode) { return static_cast<uint8_t>(opcode) & 31; }
+inline constexpr uint8_t operation_of(Opcode opcode) { return to_underlying(opcode) & 31; }
 
 namespace mnemonic {
 /// The name of a row in lower case.
@@ -223,8 +231,9 @@ template <size_t kSize>
 struct Text {
   char text[kSize] = {};
   constexpr explicit Text(const char (&name)[kSize]) {
-    for (size_t i = 0; i < kSize; ++i)
-      text[i] = static_cast<char>(name[i] >= 'A' && name[i] <= 'Z' ? name[i] - 'A' + 'a' : name[i]);
+    for (size_t i = 0; i < kSize; ++i) text[i] = name[i];
+    for (char& c : text)
+      if (c >= 'A' && c <= 'Z') c += 'a' - 'A';
   }
 };
 #define RAYPOOL_ROW(name, ...) inline constexpr Text name(#name);

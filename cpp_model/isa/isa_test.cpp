@@ -97,11 +97,11 @@ TEST(InstructionTable, RowsHaveDistinctEncodingsAndNames) {
   std::set<std::pair<int, int>> encodings;
   std::set<std::string_view> names;
   for (const InstructionInfo& info : kInstructions) {
-    EXPECT_TRUE(encodings.emplace(static_cast<int>(info.alu()), info.operation()).second) << info.mnemonic;
+    EXPECT_TRUE(encodings.emplace(to_underlying(info.alu()), info.operation()).second) << info.mnemonic;
     EXPECT_TRUE(names.insert(info.mnemonic).second) << info.mnemonic;
     EXPECT_LT(info.operation(), 32) << info.mnemonic;
     EXPECT_EQ(find_instruction(info.mnemonic), &info);
-    EXPECT_EQ(find_instruction(static_cast<int>(info.alu()), info.operation()), &info);
+    EXPECT_EQ(find_instruction(to_underlying(info.alu()), info.operation()), &info);
   }
 }
 

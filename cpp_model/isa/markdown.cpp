@@ -124,11 +124,11 @@ std::string isa_markdown() {
   text +=
       "\n## Instructions\n\nRows marked *c* are control instructions: they stop the instruction routine until their "
       "write-back.\nRows marked *fma* are there in configurations with `arithmetic.fma` only.\n";
-  for (int type = 0; type < kAluTypes; ++type) {
+  for (const AluType type : kEveryAluType) {
     text += fmt::format("\n### {}: {} (type {})\n\n| op | instruction | | meaning |\n| --- | --- | --- | --- |\n",
-                        kAluTable[type].name, kAluTable[type].title, type);
+                        alu_info(type).name, alu_info(type).title, to_underlying(type));
     for (const InstructionInfo& info : kInstructions) {
-      if (static_cast<int>(info.alu()) != type) continue;
+      if (info.alu() != type) continue;
       text += fmt::format("| {} | `{}` | {} | {} |\n", info.operation(), syntax(info), marks(info), info.meaning);
     }
   }

@@ -1,6 +1,7 @@
 // Writes the two Verilog files of the instruction set.
 #include <fmt/format.h>
 
+#include <bitset>
 #include <cctype>
 
 #include "isa/counters.hpp"
@@ -30,16 +31,16 @@ std::string slice(const Field& field, std::string_view vector) {
 template <typename Wanted>
 std::string labels(Wanted wanted) {
   std::string text;
-  for (int type = 0; type < kAluTypes; ++type) {
+  for (const AluType type : kEveryAluType) {
     std::string line;
     std::string names;
     int in_line = 0;
     for (const InstructionInfo& info : kInstructions) {
-      if (static_cast<int>(info.alu()) != type || !wanted(info)) continue;
+      if (info.alu() != type || !wanted(info)) continue;
       if (in_line > 0) line += in_line % 14 == 0 ? ",\n        " : ", ";
       if (in_line > 0 && in_line % 14 == 0) names += "\n        //  ";
       ++in_line;
-      line += fmt::format("9'd{}", type * 32 + info.operation());
+      line += fmt::format("9'd{}", to_underlying(info.opcode));
       names += fmt::format(" {}", info.mnemonic);
     }
     if (line.empty()) continue;
@@ -73,11 +74,11 @@ std::string function_of_row(const char* name, const char* meaning, Wanted wanted
 std::string operands_of_types() {
   std::string text = "\n  // whether an ALU type looks at an operand: bit n is that of type n\n";
   for (const TaskOperand operand : kTaskOperands) {
-    unsigned types = 0;
-    for (const InstructionInfo& info : kInstructions) {
-      if (looks_at(info, operand)) types |= 1u << static_cast<unsigned>(info.alu());
-    }
-    text += fmt::format("  localparam [15:0] ISA_HAS_{} = 16'b{:016b};\n", upper(task_operand_name(operand)), types);
+    std::bitset<16> types;
+    for (const InstructionInfo& info : kInstructions)
+      if (looks_at(info, operand)) types.set(to_underlying(info.alu()));
+    text +=
+        fmt::format("  localparam [15:0] ISA_HAS_{} = 16'b{};\n", upper(task_operand_name(operand)), types.to_string());
   }
   return text;
 }
@@ -89,7 +90,8 @@ constexpr const char* kGenerated =
 
 std::string upper(std::string_view text) {
   std::string result(text);
-  for (char& c : result) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  for (char& c : result)
+    if (c >= 'a' && c <= 'z') c += 'A' - 'a';
   return result;
 }
 
@@ -102,9 +104,8 @@ std::string isa_verilog() {
       "decodes.\n";
   text += "  // A module uses some of them only.\n  /* verilator lint_off UNUSEDPARAM */\n\n";
   text += "  // ALU types\n";
-  for (int type = 0; type < kAluTypes; ++type) {
-    text += fmt::format("  localparam [3:0] ISA_TYPE_{} = 4'd{};\n", verilog_name(static_cast<AluType>(type)), type);
-  }
+  for (const AluType type : kEveryAluType)
+    text += fmt::format("  localparam [3:0] ISA_TYPE_{} = 4'd{};\n", verilog_name(type), to_underlying(type));
   text += "\n  // operations\n";
   for (const InstructionInfo& info : kInstructions) {
     text += fmt::format("  localparam [4:0] ISA_{}_{} = 5'd{};\n", verilog_name(info.alu()), upper(info.mnemonic),

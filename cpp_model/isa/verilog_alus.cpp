@@ -10,11 +10,10 @@ namespace {
 constexpr const char* kGenerated =
     "// Generated from cpp_model/isa/isa.hpp by `raypool isa --write`; a test compares. Do not edit.\n";
 
-/// Calls function(name in upper case, table row, type) for each type.
+/// Calls function(name in upper case, table row) for each type.
 template <typename Function>
 void for_each_alu(Function function) {
-  for (int type = 0; type < kAluTypes; ++type)
-    function(verilog_name(static_cast<AluType>(type)), kAluTable[type], static_cast<AluType>(type));
+  for (const AluType type : kEveryAluType) function(verilog_name(type), alu_info(type));
 }
 
 /// Instances of a type, as a Verilog expression.
@@ -39,7 +38,7 @@ std::string alu_instance_types_verilog() {
   std::string text = fmt::format("  {}", kGenerated);
   text += fmt::format("  localparam integer ALU_TYPES = {};\n", kAluTypes);
   std::string instances, types;
-  for_each_alu([&](const std::string& name, const AluInfo& info, AluType) {
+  for_each_alu([&](const std::string& name, const AluInfo& info) {
     const std::string count = count_of(name, info);
     instances += fmt::format("{}{}", instances.empty() ? "" : " + ", count);
     types = fmt::format("{{{}{{ISA_TYPE_{}}}}}{}{}", count, name, types.empty() ? "" : ",\n    ", types);
@@ -52,7 +51,7 @@ std::string alu_instance_types_verilog() {
 
 std::string alu_instances_verilog() {
   std::string text = fmt::format("      {}", kGenerated);
-  for_each_alu([&](const std::string& name, const AluInfo& info, AluType) {
+  for_each_alu([&](const std::string& name, const AluInfo& info) {
     if (info.ports != Ports::Framework) return;
     text += fmt::format(
         "      if (TYPE == ISA_TYPE_{0}) begin : gen_{1}\n"

@@ -16,7 +16,7 @@ std::vector<int> find_single_definitions(const Function& function, bool predicat
     const Effects effect = effects(function.ops[i]);
     const int defined = predicates ? effect.predicate_defined : effect.register_defined;
     if (defined == kNothing) continue;
-    const auto number = static_cast<size_t>(defined);
+    const size_t number = defined;
     if (definitions[number] != kNothing) several[number] = true;
     definitions[number] = static_cast<int>(i);
   }
@@ -192,7 +192,7 @@ void join_conditions(Function& function) {
     removed.push_back(i);
   }
   for (auto index = removed.rbegin(); index != removed.rend(); ++index) {
-    function.ops.erase(function.ops.begin() + static_cast<std::ptrdiff_t>(*index));
+    function.ops.erase(function.ops.begin() + *index);
   }
 }
 
@@ -205,8 +205,7 @@ void sink_leaves(Function& function) {
     size_t place = i + 1;
     while (place < function.ops.size() && !blocks_leaf(leaf, function.ops[place])) ++place;
     const auto begin = function.ops.begin();
-    std::rotate(begin + static_cast<std::ptrdiff_t>(i), begin + static_cast<std::ptrdiff_t>(i + 1),
-                begin + static_cast<std::ptrdiff_t>(place));
+    std::rotate(begin + i, begin + i + 1, begin + place);
   }
 }
 

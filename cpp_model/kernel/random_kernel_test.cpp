@@ -104,13 +104,13 @@ class RandomKernel {
       case 18:
         return as_int(f);
       case 19:
-        return k_.load_int(slot_, 4 * static_cast<int>(below(random, 8)));
+        return k_.load_int(slot_, 4 * below(random, 8));
       case 20:
-        return k_.load_int(slot_ + 4 * static_cast<int>(below(random, 4)), 16);
+        return k_.load_int(slot_ + 4 * below(random, 4), 16);
       case 21:
         return a;
       case 22:
-        return k_.int_word(static_cast<int>(below(random, 21)));
+        return k_.int_word(below(random, 21));
       default:
         return literal;
     }
@@ -122,7 +122,7 @@ class RandomKernel {
     const Float& b = pick(random, floats);
     const Int& i = pick(random, ints);
     const Bool& c = bools[below(random, size32(bools))];
-    const float literal = static_cast<float>(below(random, 64)) * 0.25f - 8.0f;
+    const float literal = below(random, 64) * 0.25f - 8.0f;
     const int kind = below(random, 20);
     switch (kind) {
       case 0:
@@ -236,7 +236,7 @@ class RandomKernel {
       if (index != locked_) bools[index] = bool_expression(random, ints, floats, bools);
     } else if (kind == 7) {
       const Float value = float_expression(random, ints, floats, bools);
-      k_.store(slot_, 4 * static_cast<int>(below(random, 8)), value);
+      k_.store(slot_, 4 * below(random, 8), value);
     } else if (kind == 8) {
       floats[target % floats.size()] += pick(random, floats);
     } else if (kind < 12) {
@@ -283,7 +283,7 @@ class RandomKernel {
   void some_trips(Random& random, uint32_t seed, std::vector<Int>& ints, std::vector<Float>& floats,
                   std::vector<Bool>& bools, int depth) {
     // Some trips, of a number that differs between threads.
-    Int left = (pick(random, ints) & 3) + static_cast<int>(below(random, 2));
+    Int left = (pick(random, ints) & 3) + below(random, 2);
     const uint32_t form = below(random, 3);
     Bool again = left > 1;
     k_.while_(
@@ -339,7 +339,7 @@ void compare(uint32_t seed, Outcome& outcome) {
   for (uint32_t& word : machine.arguments) word = static_cast<uint32_t>(random() % 100);
   for (auto& package : machine.input) {
     for (size_t i = 0; i < package.size(); ++i) {
-      const float value = static_cast<float>(static_cast<int>(random() % 4001) - 2000) / 256.0f;
+      const float value = (static_cast<int>(random() % 4001) - 2000) / 256.0f;
       package[i] = random() % 16 == 0 ? random() : as_bits(value);
     }
   }

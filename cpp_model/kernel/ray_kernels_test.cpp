@@ -315,7 +315,7 @@ TEST(ComputeKernels, SaxpyTakesAnyNumberOfBlocksAndThreads) {
         test::Interpreter machine;
         machine.memory = Memory(4096);
         for (uint32_t address = 64; address < 4096; address += 4)
-          machine.memory.store(address, as_bits(static_cast<float>(random() % 1000) / 7.0f));
+          machine.memory.store(address, as_bits((random() % 1000) / 7.0f));
         machine.arguments[saxpy_argument::kN] = n;
         machine.arguments[saxpy_argument::kA] = as_bits(2.5f);
         machine.arguments[saxpy_argument::kX] = x;
@@ -360,8 +360,8 @@ TEST(ComputeKernels, MatmulTakesAnyNumberOfBlocksAndThreads) {
         test::Interpreter machine;
         machine.memory = Memory(4096);
         for (uint32_t i = 0; i < n * n; ++i) {
-          machine.memory.store(a + 4 * i, as_bits(static_cast<float>(random() % 100) / 7.0f));
-          machine.memory.store(b + 4 * i, as_bits(static_cast<float>(random() % 100) / 3.0f));
+          machine.memory.store(a + 4 * i, as_bits((random() % 100) / 7.0f));
+          machine.memory.store(b + 4 * i, as_bits((random() % 100) / 3.0f));
         }
         machine.arguments[matmul_argument::kN] = n;
         machine.arguments[matmul_argument::kA] = a;

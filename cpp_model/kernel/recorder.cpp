@@ -192,7 +192,7 @@ void Recorder::close_body() {
     jump.guard = guard_;
     jump.label = function_.labels++;
     jump.where = block.where;
-    function_.ops.insert(function_.ops.begin() + static_cast<std::ptrdiff_t>(block.first_op), jump);
+    function_.ops.insert(function_.ops.begin() + block.first_op, jump);
     Op label;
     label.kind = Op::Kind::Label;
     label.label = jump.label;

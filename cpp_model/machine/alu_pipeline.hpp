@@ -13,8 +13,7 @@ namespace raypool {
 class AluPipeline {
  public:
   AluPipeline() = default;
-  explicit AluPipeline(const AluConfiguration& alu)
-      : latency_(static_cast<uint32_t>(alu.latency)), depth_(static_cast<uint32_t>(alu.depth)) {}
+  explicit AluPipeline(const AluConfiguration& alu) : latency_(alu.latency), depth_(alu.depth) {}
 
   void reset() { ready_from_ = 0; }
 

@@ -176,7 +176,7 @@ class ComputeUnit {
   /// Reset, then set what stays for a program: its length (instructions), the memory's size (bytes).
   virtual void reset(uint32_t program_length, uint32_t memory_limit) = 0;
   /// Writes argument word `index` (0 .. 31). Only while idle.
-  virtual void set_argument(int index, uint32_t value) = 0;
+  virtual void set_argument(uint32_t index, uint32_t value) = 0;
 
   virtual const UnitOutputs& outputs() const = 0;
   virtual void clock(const UnitInputs& inputs) = 0;

@@ -53,7 +53,7 @@ void CycleUnit::reset(uint32_t program_length, uint32_t memory_limit) {
   present(signals());
 }
 
-void CycleUnit::set_argument(int number, uint32_t value) {
+void CycleUnit::set_argument(uint32_t number, uint32_t value) {
   core_.set_argument(number, value);
   mem_.invalidate();
   instruction_cache_.invalidate();

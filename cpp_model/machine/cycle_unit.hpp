@@ -35,7 +35,7 @@ class CycleUnit final : public ComputeUnit {
   CycleUnit(const Configuration& configuration, const Memory& memory);
 
   void reset(uint32_t program_length, uint32_t memory_limit) override;
-  void set_argument(int index, uint32_t value) override;
+  void set_argument(uint32_t index, uint32_t value) override;
   const UnitOutputs& outputs() const override { return outputs_; }
   void clock(const UnitInputs& inputs) override;
   uint64_t run(const UnitInputs& inputs, uint64_t cycles) override;

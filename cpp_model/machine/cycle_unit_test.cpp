@@ -20,7 +20,7 @@ using test::TestChip;
 constexpr uint32_t kMemoryBytes = 16384;
 constexpr uint32_t kData = 8192;
 
-Configuration make_configuration(int warps, int lanes) {
+Configuration make_configuration(uint32_t warps, uint32_t lanes) {
   Configuration configuration;
   configuration.warps = warps;
   configuration.lanes = lanes;
@@ -115,7 +115,7 @@ TEST(CycleUnit, AWarpWithoutStallsIssuesEveryFourCyclesWithAnAluOfDepthOne) {
 
 TEST(CycleUnit, TheLowestWarpGoesFirstAndTheOthersAreCountedAsWaiting) {
   Configuration configuration = make_configuration(4, 1);
-  configuration.alus[static_cast<size_t>(AluType::Int)].latency = 16;
+  configuration.alus[AluType::Int].latency = 16;
   const std::vector<uint64_t> code = assembled("mov r1, 1; exit");
   Memory memory = with_program(code);
   CycleUnit unit(configuration, memory);

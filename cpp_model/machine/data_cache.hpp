@@ -48,7 +48,7 @@ class DataCache {
   };
 
   explicit DataCache(const Configuration& configuration)
-      : set_mask_(static_cast<uint32_t>(configuration.data_cache_bytes) / 128 - 1),
+      : set_mask_(configuration.data_cache_bytes / 128 - 1),
         sets_(set_mask_ + 1),
         miss_status_(configuration, set_mask_) {}
 

@@ -24,8 +24,8 @@ FunctionalCore::FunctionalCore(const Configuration& configuration, Memory& memor
       lanes_(configuration.lanes),
       configuration_(configuration),
       mode_(arith::mode_of(configuration)),
-      registers_(static_cast<size_t>(configuration.contents() * kRegisters)),
-      warps_(static_cast<size_t>(configuration.warps), Warp(static_cast<uint32_t>(configuration.stack_depth))),
+      registers_(configuration.contents() * kRegisters),
+      warps_(configuration.warps, Warp(configuration.stack_depth)),
       slices_(configuration.warps, configuration.lanes) {
   switch (lanes_) {
     case 1:
@@ -74,12 +74,11 @@ void FunctionalCore::launch(const LaunchCommand& command) {
     decoded_ = program_length_;
   }
   launched_ = command;
-  const uint32_t lanes = static_cast<uint32_t>(lanes_);
   for (uint32_t number = 0; number < warps_.size(); ++number) {
     Warp& warp = warps_[number];
-    const uint32_t first = number * lanes;
+    const uint32_t first = number * lanes_;
     if (first >= command.threads) break;
-    const uint32_t threads = std::min(lanes, command.threads - first);
+    const uint32_t threads = std::min(lanes_, command.threads - first);
     warp.running = true;
     warp.launched = threads == 32 ? 0xffffffffu : (1u << threads) - 1;
     warp.pc_stack.start(command.pc);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "arith/arith.hpp"
+#include "bits.hpp"
 #include "config/configuration.hpp"
 #include "machine/compute_unit.hpp"
 #include "machine/decoder.hpp"
@@ -65,7 +66,7 @@ class FunctionalCore {
   /// Stops everything, forgets imports, clears registers. The program is decoded at the next
   /// launch after it or after an argument.
   void reset(uint32_t program_length, uint32_t memory_limit);
-  void set_argument(int index, uint32_t value) {
+  void set_argument(uint32_t index, uint32_t value) {
     tid_alu_.write_argument(index, value);
     program_decoded_ = false;
   }
@@ -102,8 +103,8 @@ class FunctionalCore {
   /// While true, the warp's next `rout` or `rfb` waits. Nothing else sets or clears it.
   void set_output_busy(uint32_t warp, bool busy) { warps_[warp].output_busy = busy; }
 
-  int warps() const { return static_cast<int>(warps_.size()); }
-  int lanes() const { return lanes_; }
+  uint32_t warps() const { return size32(warps_); }
+  uint32_t lanes() const { return lanes_; }
   const Memory& memory() const { return *memory_; }
   /// One word a lane.
   const uint32_t* register_row(uint32_t warp, uint32_t number) const {
@@ -133,7 +134,7 @@ class FunctionalCore {
   bool fault(FaultCode code);
 
   Memory* memory_;
-  int lanes_;
+  uint32_t lanes_;
   Configuration configuration_;
   arith::Mode mode_;
   uint32_t program_length_ = 0, memory_limit_ = 0;

@@ -16,7 +16,7 @@ using Status = Step::Status;
 
 constexpr uint32_t kMemoryBytes = 4096;
 
-Configuration make_configuration(int warps = 2, int lanes = 4, int stack_depth = 4) {
+Configuration make_configuration(uint32_t warps = 2, uint32_t lanes = 4, uint32_t stack_depth = 4) {
   Configuration configuration;
   configuration.warps = warps;
   configuration.lanes = lanes;
@@ -34,7 +34,7 @@ struct Machine {
     test::put_program(memory, code);
     core.reset(size32(code), kMemoryBytes);
     LaunchCommand command;
-    command.threads = threads == 0 ? static_cast<uint32_t>(configuration.contents()) : threads;
+    command.threads = threads == 0 ? configuration.contents() : threads;
     command.block = 77;
     command.blocks = 5;
     core.launch(command);
@@ -407,13 +407,13 @@ TEST(FunctionalCore, AddressesOfLanesThatAreNotMaskedDoNotFault) {
 }
 
 TEST(FunctionalCore, EveryNumberOfLanesComputes) {
-  for (int lanes = 1; lanes <= 32; lanes *= 2) {
-    for (int warps = 1; warps <= 32; warps *= 8) {
+  for (uint32_t lanes = 1; lanes <= 32; lanes *= 2) {
+    for (uint32_t warps = 1; warps <= 32; warps *= 8) {
       Machine machine(assembled("tid r1; imul r2, r1, 3; exit"), make_configuration(warps, lanes));
-      for (uint32_t warp = 0; warp < static_cast<uint32_t>(warps); ++warp) machine.run(warp);
+      for (uint32_t warp = 0; warp < warps; ++warp) machine.run(warp);
       EXPECT_FALSE(machine.core.running());
-      const uint32_t last = static_cast<uint32_t>(warps * lanes) - 1;
-      EXPECT_EQ(machine.reg(static_cast<uint32_t>(warps) - 1, 2, static_cast<uint32_t>(lanes) - 1), 3 * last);
+      const uint32_t last = warps * lanes - 1;
+      EXPECT_EQ(machine.reg(warps - 1, 2, lanes - 1), 3 * last);
     }
   }
 }

@@ -36,7 +36,7 @@ class FunctionalUnit : public ComputeUnit {
     present();
   }
 
-  void set_argument(int index, uint32_t value) override { core_.set_argument(index, value); }
+  void set_argument(uint32_t index, uint32_t value) override { core_.set_argument(index, value); }
   const UnitOutputs& outputs() const override { return outputs_; }
   void trace_on() override { tracing_ = true; }
   const UnitTrace& trace() const override { return trace_; }

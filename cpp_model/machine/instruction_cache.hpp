@@ -13,7 +13,7 @@ namespace raypool {
 class InstructionCache {
  public:
   explicit InstructionCache(const Configuration& configuration)
-      : set_mask_(static_cast<uint32_t>(configuration.instruction_cache_bytes) / 128 - 1), sets_(set_mask_ + 1) {}
+      : set_mask_(configuration.instruction_cache_bytes / 128 - 1), sets_(set_mask_ + 1) {}
 
   void reset() {
     sets_.assign(sets_.size(), Set{});

@@ -33,16 +33,16 @@ Result run(FunctionalCore& core, const LaunchCommand& command, const std::vector
     for (const Intersection& package : packages) core.import_package(package);
   }
   for (int turn = 0; core.running() && turn < 100000; ++turn) {
-    for (uint32_t warp = 0; warp < static_cast<uint32_t>(core.warps()); ++warp) {
+    for (uint32_t warp = 0; warp < core.warps(); ++warp) {
       const Step& step = core.step(warp);
       if (step.status == Step::Status::Fault) {
-        ADD_FAILURE() << "fault " << static_cast<int>(step.fault.code) << " at " << step.fault.pc;
+        ADD_FAILURE() << "fault " << to_underlying(step.fault.code) << " at " << step.fault.pc;
         return result;
       }
       uint32_t ray = 0, contribution = 0;
-      for (uint32_t lane = 0; lane < static_cast<uint32_t>(core.lanes()); ++lane) {
+      for (uint32_t lane = 0; lane < core.lanes(); ++lane) {
         if ((step.mask >> lane & 1) == 0 || step.status != Step::Status::Executed) continue;
-        const uint32_t thread = warp * static_cast<uint32_t>(core.lanes()) + lane;
+        const uint32_t thread = warp * core.lanes() + lane;
         if (ray < step.ray_count) result.rays[thread].push_back(step.rays[ray++]);
         if (contribution < step.frame_count) result.frame[thread].push_back(step.frame[contribution++]);
       }
@@ -67,9 +67,7 @@ TEST(KernelsOnCore, RayKernelsLeaveWhatTheyLeaveNatively) {
       SCOPED_TRACE(std::string(name) + " mode " + std::to_string(mode));
       const Configuration configuration = configuration_in_mode(name, mode);
       Random random(static_cast<uint32_t>(mode) + 1);
-      const auto number = [&] {
-        return as_bits(static_cast<float>(static_cast<int>(random() % 4001) - 2000) / 512.0f);
-      };
+      const auto number = [&] { return as_bits((static_cast<int>(random() % 4001) - 2000) / 512.0f); };
 
       Memory memory(kMemoryBytes);
       const Program& program = ray_kernel_program(configuration.fma);
@@ -89,7 +87,8 @@ TEST(KernelsOnCore, RayKernelsLeaveWhatTheyLeaveNatively) {
         const auto which = static_cast<RayKernel>(kernel);
         LaunchCommand command;
         command.pc = program.entries.at(std::string(kRayKernelNames[kernel]));
-        command.threads = static_cast<uint32_t>(std::max(1, configuration.contents() - mode % 8));
+        command.threads =
+            std::max(1u, configuration.contents() - std::min<uint32_t>(configuration.contents(), mode % 8));
         command.block = 24u | 16u << 16;
         if (which != RayKernel::CastEye)
           command.import = which == RayKernel::Shade ? ImportKind::Shadow : ImportKind::Normal;
@@ -133,7 +132,7 @@ TEST(KernelsOnCore, ComputeKernelsLeaveTheMemoryTheyLeaveNatively) {
       Memory memory(kMemoryBytes);
       test::put_program(memory, program.code);
       for (uint32_t address = 4096; address < kMemoryBytes; address += 4) {
-        memory.store(address, as_bits(static_cast<float>(address % 977) / 16.0f));
+        memory.store(address, as_bits((address % 977) / 16.0f));
       }
       Memory native = memory;
       const std::array<uint32_t, kArguments> arguments =
@@ -144,7 +143,7 @@ TEST(KernelsOnCore, ComputeKernelsLeaveTheMemoryTheyLeaveNatively) {
       for (int i = 0; i < kArguments; ++i) core.set_argument(i, arguments[i]);
       LaunchCommand command;
       command.pc = program.entries.at(kernel);
-      command.threads = static_cast<uint32_t>(configuration.contents());
+      command.threads = configuration.contents();
       command.blocks = 3;
       for (command.block = 0; command.block < command.blocks; ++command.block) {
         run(core, command, {});

@@ -74,8 +74,7 @@ class MemAlu {
     uint32_t fault_warp = 0;
   };
 
-  explicit MemAlu(const Configuration& configuration)
-      : tasks_(static_cast<size_t>(configuration.warps)), cache_(configuration) {}
+  explicit MemAlu(const Configuration& configuration) : tasks_(configuration.warps), cache_(configuration) {}
 
   void reset();
   /// Forgets all lines; only while idle.

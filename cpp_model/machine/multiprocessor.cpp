@@ -22,7 +22,7 @@ void Multiprocessor::reset(uint32_t program_length, uint32_t memory_limit) {
   present();
 }
 
-void Multiprocessor::set_argument(int index, uint32_t value) {
+void Multiprocessor::set_argument(uint32_t index, uint32_t value) {
   for (const auto& unit : units_) unit->set_argument(index, value);
   present();
 }

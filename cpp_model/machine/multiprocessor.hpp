@@ -23,7 +23,7 @@ class Multiprocessor : public ComputeUnit {
   uint32_t units() const override { return size32(units_); }
 
   void reset(uint32_t program_length, uint32_t memory_limit) override;
-  void set_argument(int index, uint32_t value) override;
+  void set_argument(uint32_t index, uint32_t value) override;
   const UnitOutputs& outputs() const override { return outputs_; }
   void clock(const UnitInputs& inputs) override;
   void trace_on() override;

@@ -32,8 +32,7 @@ class RayImport {
   };
 
   explicit RayImport(const Configuration& configuration)
-      : lane_bits_(lowest(static_cast<uint32_t>(configuration.lanes))),
-        last_lane_(static_cast<uint32_t>(configuration.lanes) - 1) {}
+      : lane_bits_(lowest(configuration.lanes)), last_lane_(configuration.lanes - 1) {}
 
   void reset() { q_ = Registers{}; }
   const Registers& registers() const { return q_; }

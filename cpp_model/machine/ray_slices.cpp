@@ -7,8 +7,8 @@
 
 namespace raypool {
 
-RaySlices::RaySlices(int warps, int lanes) : lanes_(static_cast<uint32_t>(lanes)) {
-  warps_.resize(static_cast<size_t>(warps));
+RaySlices::RaySlices(uint32_t warps, uint32_t lanes) : lanes_(lanes) {
+  warps_.resize(warps);
   reset();
 }
 

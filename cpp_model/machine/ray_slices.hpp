@@ -14,7 +14,7 @@ namespace raypool {
 
 class RaySlices {
  public:
-  RaySlices(int warps, int lanes);
+  RaySlices(uint32_t warps, uint32_t lanes);
   void reset();
 
   /// A launch will import packages for `threads` threads; they go to warps in order once earlier launches have theirs.

@@ -12,7 +12,7 @@ namespace raypool {
 class TidAlu {
  public:
   /// Only while idle.
-  void write_argument(int index, uint32_t data) { arguments_[index] = data; }
+  void write_argument(uint32_t index, uint32_t data) { arguments_[index] = data; }
   uint32_t argument(uint32_t index) const { return arguments_[index % kArguments]; }
 
   /// `launched`: the launch that runs.

@@ -27,7 +27,7 @@ struct System {
 
 }  // namespace
 
-std::string fault_sentence(int unit, const Fault& fault) {
+std::string fault_sentence(uint32_t unit, const Fault& fault) {
   const char* meaning = "of an unknown kind";
   switch (fault.code) {
     case FaultCode::None:
@@ -55,8 +55,8 @@ std::string fault_sentence(int unit, const Fault& fault) {
       meaning = "ray word above 20";
       break;
   }
-  return fmt::format("compute unit {} stopped with fault {} ({}) in warp {} at PC {}", unit,
-                     static_cast<int>(fault.code), meaning, fault.warp, fault.pc);
+  return fmt::format("compute unit {} stopped with fault {} ({}) in warp {} at PC {}", unit, to_underlying(fault.code),
+                     meaning, fault.warp, fault.pc);
 }
 
 ChipResult run_chip(const ChipOptions& options) { return System(options).chip.draw(); }

@@ -32,12 +32,12 @@ struct ChipOptions {
   ComputeUnit* device = nullptr;  ///< fits `configuration`; run_chip resets it and leaves its counters to be read
   Memory* memory = nullptr;       ///< program and materials
   uint32_t program_length = 0;    ///< instructions, from address 0
-  std::array<uint32_t, kRayKernels> entries{};  ///< PC of each RayKernel
+  EnumArray<RayKernel, uint32_t, kRayKernels> entries{};  ///< PC of each
   /// Words kTileWidthLog2, kTileMask, kWidth and kHeight are set by the chip, whatever they hold.
   std::array<uint32_t, kArguments> arguments{};
-  int width = 0, height = 0;  ///< pixels, 1 .. 65535
-  int depth = 1;              ///< 1: eye and shadow rays only; up to kLargestDepth (scene/native_renderer.hpp)
-  bool reflections = true;    ///< false: casts none, whatever the depth; the same picture where no material reflects
+  uint32_t width = 0, height = 0;  ///< pixels, 1 .. 65535
+  uint32_t depth = 1;              ///< 1: eye and shadow rays only; up to kLargestDepth (scene/native_renderer.hpp)
+  bool reflections = true;  ///< false: casts none, whatever the depth; the same picture where no material reflects
   RayTracer* tracer = nullptr;
   FrameSink* frame = nullptr;
 
@@ -83,7 +83,7 @@ struct ChipResult {
     uint64_t threads = 0;  ///< launched
     uint64_t cycles = 0;   ///< running, summed over the units
   };
-  std::array<Kernel, kRayKernels> kernels{};  ///< [RayKernel]
+  EnumArray<RayKernel, Kernel, kRayKernels> kernels{};
 
   // The multiprocessor: averages over the units. Shares are 0 .. 1.
   double time_utilisation = 0;      ///< busy time / total time
@@ -93,7 +93,7 @@ struct ChipResult {
     double waiting = 0;      ///< warps that wanted this type and were not granted, averaged over busy time
     uint64_t issued = 0;     ///< tasks
   };
-  std::array<Alu, kAluTypes> alus{};  ///< [AluType]
+  EnumArray<AluType, Alu, kAluTypes> alus{};
   uint64_t busy_cycles = 0, instructions = 0, thread_instructions = 0;
   WarpCycles warp_cycles;
   uint64_t warp_cycles_without_kernel = 0;
@@ -112,9 +112,9 @@ struct ChipResult {
 
 /// A unit stopped with a fault. what() says which, where, and what it means.
 struct ChipFault : InputError {
-  ChipFault(int unit_number, const Fault& what_fault, const std::string& message)
+  ChipFault(uint32_t unit_number, const Fault& what_fault, const std::string& message)
       : InputError(message), unit(unit_number), fault(what_fault) {}
-  int unit;
+  uint32_t unit;
   Fault fault;
 };
 
@@ -131,6 +131,6 @@ ChipResult run_chip(const ChipOptions& options);
 std::string chip_modules(const ChipOptions& options);
 
 /// One sentence: code, its meaning, unit, warp and PC.
-std::string fault_sentence(int unit, const Fault& fault);
+std::string fault_sentence(uint32_t unit, const Fault& fault);
 
 }  // namespace raypool

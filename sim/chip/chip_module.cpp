@@ -16,7 +16,7 @@ void require_range(const char* what, int value, int low, int high) {
     throw InputError(fmt::format("{} is {}; it must lie in {} .. {}", what, value, low, high));
 }
 
-int tile_width(const ChipOptions& options) { return 1 << tile_width_log2(options.configuration.contents()); }
+uint32_t tile_width(const ChipOptions& options) { return 1u << tile_width_log2(options.configuration.contents()); }
 
 const ChipOptions& checked(const ChipOptions& options) {
   if (options.device == nullptr || options.memory == nullptr || options.tracer == nullptr || options.frame == nullptr) {
@@ -34,16 +34,15 @@ const ChipOptions& checked(const ChipOptions& options) {
 Chip::Chip(const sc_core::sc_module_name& name, const ChipOptions& options)
     : sc_module(name),
       options_(checked(options)),
-      ledger_("pixel_ledger", static_cast<int>(options.device->units()), options.width, options.height),
+      ledger_("pixel_ledger", options.device->units(), options.width, options.height),
       memory_port_("memory_port", options.configuration.chip),
       rays_("ray_pool", options.configuration.chip, options.depth),
       intersections_("intersection_pool", options.configuration.chip),
       frame_("frame_port", *options.frame),
       controller_("controller", options_),
-      traverser_(
-          make_traverser(options.configuration.chip, *options.tracer, static_cast<int>(options.device->units()))),
+      traverser_(make_traverser(options.configuration.chip, *options.tracer, options.device->units())),
       device_("device_host", *options.device),
-      monitor_("monitor", {options.watchdog_cycles, options.cycle_limit, true, static_cast<bool>(options.progress)}) {
+      monitor_("monitor", {options.watchdog_cycles, options.cycle_limit, true, options.progress != nullptr}) {
   memory_port_.clock(clock_.now);
   memory_port_.socket.bind(memory);
 
@@ -84,20 +83,19 @@ Chip::Chip(const sc_core::sc_module_name& name, const ChipOptions& options)
 }
 
 void Chip::show_progress() {
-  options_.progress(
-      {static_cast<double>(ledger_.finished()) / static_cast<double>(ledger_.pixels()), clock_.cycle(), rays_traced()});
+  options_.progress({static_cast<double>(ledger_.finished()) / ledger_.pixels(), clock_.cycle(), rays_traced()});
 }
 
 ChipResult Chip::draw() {
   const auto begin = std::chrono::steady_clock::now();
   ComputeUnit& device = *options_.device;
   std::array<uint32_t, kArguments> arguments = options_.arguments;
-  arguments[argument::kTileWidthLog2] = static_cast<uint32_t>(tile_width_log2(options_.configuration.contents()));
-  arguments[argument::kTileMask] = static_cast<uint32_t>(tile_width(options_)) - 1;
-  arguments[argument::kWidth] = static_cast<uint32_t>(options_.width);
-  arguments[argument::kHeight] = static_cast<uint32_t>(options_.height);
+  arguments[argument::kTileWidthLog2] = tile_width_log2(options_.configuration.contents());
+  arguments[argument::kTileMask] = tile_width(options_) - 1;
+  arguments[argument::kWidth] = options_.width;
+  arguments[argument::kHeight] = options_.height;
   device.reset(options_.program_length, options_.memory->size());
-  for (int i = 0; i < kArguments; ++i) device.set_argument(i, arguments[static_cast<size_t>(i)]);
+  for (uint32_t i = 0; i < kArguments; ++i) device.set_argument(i, arguments[i]);
 
   sc_core::sc_start();
   clock_.rethrow();

@@ -12,7 +12,7 @@ namespace {
 using test::FrameRun;
 
 struct Shape {
-  int warps, lanes, units;
+  uint32_t warps, lanes, units;
 };
 
 std::string shape_name(const testing::TestParamInfo<Shape>& shape) {
@@ -85,7 +85,7 @@ TEST_P(EveryShape, DrawsWithAnyPortsThresholdsAndBatches) {
 }
 
 TEST(Chip, SurvivesPoolsSmallerThanAKernel) {
-  for (const int units : {1, 2, 4}) {
+  for (const uint32_t units : {1, 2, 4}) {
     for (const int rays : {512, 64, 5}) {
       for (const int packages : {16, 17, 30}) {
         for (const int width : {16, 27}) {
@@ -147,11 +147,11 @@ TEST(Chip, CountsKernelsAndThreads) {
   run.world.shadows = 16;
   const ChipResult result = run.go();
   const auto& kernels = result.kernels;
-  EXPECT_EQ(kernels[static_cast<size_t>(RayKernel::CastEye)].launches, 6u);
-  EXPECT_EQ(kernels[static_cast<size_t>(RayKernel::CastEye)].threads, 384u);
-  EXPECT_EQ(kernels[static_cast<size_t>(RayKernel::CastSecondary)].launches, 0u);
-  EXPECT_EQ(kernels[static_cast<size_t>(RayKernel::CastSecondaryDirect)].threads, 384u);
-  EXPECT_EQ(kernels[static_cast<size_t>(RayKernel::Shade)].threads, 384u);
+  EXPECT_EQ(kernels[RayKernel::CastEye].launches, 6u);
+  EXPECT_EQ(kernels[RayKernel::CastEye].threads, 384u);
+  EXPECT_EQ(kernels[RayKernel::CastSecondary].launches, 0u);
+  EXPECT_EQ(kernels[RayKernel::CastSecondaryDirect].threads, 384u);
+  EXPECT_EQ(kernels[RayKernel::Shade].threads, 384u);
   uint64_t cycles = 0;
   for (const auto& kernel : kernels) cycles += kernel.cycles;
   EXPECT_GE(cycles, result.busy_cycles);

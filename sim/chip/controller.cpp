@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "bits.hpp"
 #include "scene/native_renderer.hpp"
 
 namespace raypool::chip {
@@ -12,20 +13,22 @@ Controller::Controller(const sc_core::sc_module_name& name, const ChipOptions& o
     : sc_module(name),
       options_(options),
       chip_(options.configuration.chip),
+      width_(options.width),
+      height_(options.height),
       secondary_(secondary_kernel(options.depth, options.reflections)),
-      tile_width_(1 << tile_width_log2(options.configuration.contents())),
+      tile_width_(1u << tile_width_log2(options.configuration.contents())),
       given_(options.device->units()),
       ended_(options.device->units()) {
-  const int contents = options.configuration.contents();
+  const uint32_t contents = options.configuration.contents();
   // A tile that would hold more pixels than allowed is cut into bands of whole rows.
   tile_height_ = std::min(contents, chip_.held_limit) / tile_width_;
-  const PolicySetup setup{static_cast<uint32_t>(contents),
+  const PolicySetup setup{contents,
                           options.device->units(),
-                          static_cast<uint32_t>(chip_.ray_pool_size),
-                          static_cast<uint32_t>(chip_.intersection_pool_size),
-                          static_cast<uint32_t>(chip_.thresholds_rays),
-                          static_cast<uint32_t>(chip_.thresholds_intersections),
-                          static_cast<uint32_t>(chip_.static_traverser_batch),
+                          chip_.ray_pool_size,
+                          chip_.intersection_pool_size,
+                          chip_.thresholds_rays,
+                          chip_.thresholds_intersections,
+                          chip_.static_traverser_batch,
                           secondary_ == RayKernel::CastSecondary ? 2u : 1u};
   policy_ = options.own_policy ? options.own_policy(setup) : make_policy(chip_.policy, setup);
   decisions.bind(*this);
@@ -35,36 +38,31 @@ Controller::Controller(const sc_core::sc_module_name& name, const ChipOptions& o
   dont_initialize();
 }
 
-void Controller::accepted(int unit) {
-  const auto u = static_cast<size_t>(unit);
-  given_[u].back().begins = clock->cycle() + 1;
-}
+void Controller::accepted(uint32_t unit) { given_[unit].back().begins = clock->cycle() + 1; }
 
-void Controller::kernel_ended(int unit) {
-  const auto u = static_cast<size_t>(unit);
-  const GivenKernel kernel = given_[u].front();
-  given_[u].pop_front();
-  const uint64_t time = clock->cycle() - std::max(kernel.begins, ended_[u]);
-  ended_[u] = clock->cycle();
-  kernels_[static_cast<size_t>(kernel.kind)].cycles += time;
+void Controller::kernel_ended(uint32_t unit) {
+  const GivenKernel kernel = given_[unit].front();
+  given_[unit].pop_front();
+  const uint64_t time = clock->cycle() - std::max(kernel.begins, ended_[unit]);
+  ended_[unit] = clock->cycle();
+  kernels_[kernel.kind].cycles += time;
   thread_time_ += static_cast<double>(time) * kernel.threads;
   thread_time_launchable_ += static_cast<double>(time) * options_.configuration.contents();
 }
 
 uint32_t Controller::pixels_of_next_tile() const {
-  const int columns = std::min(tile_width_, options_.width - tile_x_),
-            rows = std::min(tile_height_, options_.height - tile_y_);
-  return static_cast<uint32_t>(columns * rows);
+  const uint32_t columns = std::min(tile_width_, width_ - tile_x_), rows = std::min(tile_height_, height_ - tile_y_);
+  return columns * rows;
 }
 
 bool Controller::eye_possible() const {
-  if (tile_y_ >= options_.height) return false;
+  if (tile_y_ >= height_) return false;
   if (!chip_.window_remedy && ledger->held() > 0 && round_ == 0) return false;
-  return ledger->held() + pixels_of_next_tile() <= static_cast<uint32_t>(chip_.held_limit);
+  return ledger->held() + pixels_of_next_tile() <= chip_.held_limit;
 }
 
 uint32_t Controller::secondary_room() const {
-  const auto limit = static_cast<uint32_t>(chip_.intersection_pool_size + chip_.ray_pool_size - 1);
+  const uint32_t limit = chip_.intersection_pool_size + chip_.ray_pool_size - 1;
   const uint32_t shadows =
       rays->shadow_rays() + ledger->shadow_rays_to_come() + intersections->available(ImportKind::Shadow);
   return shadows < limit ? limit - shadows : 0;
@@ -80,7 +78,7 @@ PolicyView Controller::view(bool ahead) const {
   for (const ImportKind kind : {ImportKind::Normal, ImportKind::Shadow}) {
     view.promised += intersections->size(kind) - intersections->available(kind);
   }
-  for (const auto& given : given_) view.kernels += static_cast<uint32_t>(given.size());
+  for (const auto& given : given_) view.kernels += size32(given);
   view.eye_possible = eye_possible();
   view.more_to_come = rays->size() > 0 || ledger->rays_to_come() > 0;
   view.ahead = ahead;
@@ -106,7 +104,7 @@ bool Controller::end_if_finished() {
 }
 
 void Controller::launch(const Choice& choice) {
-  const int unit = static_cast<int>(device->next_unit());
+  const uint32_t unit = device->next_unit();
   LaunchCommand command;
   RayKernel kernel = RayKernel::CastEye;
   if (choice.kind == Choice::Kind::Eye) {
@@ -118,38 +116,34 @@ void Controller::launch(const Choice& choice) {
     command.threads = choice.threads;
     kernel = shade ? RayKernel::Shade : secondary_;
     if (choice.threads == 0 || choice.threads > intersections->available(command.import) ||
-        choice.threads > static_cast<uint32_t>(options_.configuration.contents()) ||
-        (!shade && choice.threads > secondary_room())) {
+        choice.threads > options_.configuration.contents() || (!shade && choice.threads > secondary_room())) {
       throw std::logic_error("the policy launches a kernel of a size that is not possible now");
     }
     intersections->reserve(command.import, choice.threads);
     ledger->launched(unit, kernel, choice.threads);
   }
-  command.pc = options_.entries[static_cast<size_t>(kernel)];
-  ChipResult::Kernel& count = kernels_[static_cast<size_t>(kernel)];
+  command.pc = options_.entries[kernel];
+  ChipResult::Kernel& count = kernels_[kernel];
   ++count.launches;
   count.threads += command.threads;
-  given_[static_cast<size_t>(unit)].push_back({kernel, command.threads, UINT64_MAX});
+  given_[unit].push_back({kernel, command.threads, UINT64_MAX});
   device->launch(command);
 }
 
-LaunchCommand Controller::next_tile(int unit) {
-  if (ledger->held() == 0) round_ = static_cast<int>(device->units());
+LaunchCommand Controller::next_tile(uint32_t unit) {
+  if (ledger->held() == 0) round_ = device->units();
   --round_;
   std::vector<uint32_t> pixels;
-  for (int y = tile_y_; y < std::min(tile_y_ + tile_height_, options_.height); ++y) {
-    for (int x = tile_x_; x < std::min(tile_x_ + tile_width_, options_.width); ++x) {
-      pixels.push_back(static_cast<uint32_t>(x) | static_cast<uint32_t>(y) << 16);
-    }
-  }
+  for (uint32_t y = tile_y_; y < std::min(tile_y_ + tile_height_, height_); ++y)
+    for (uint32_t x = tile_x_; x < std::min(tile_x_ + tile_width_, width_); ++x) pixels.push_back(x | y << 16);
   ledger->eye_launched(unit, std::move(pixels));
   held_peak_ = std::max(held_peak_, ledger->held());
 
   LaunchCommand command;
-  command.threads = static_cast<uint32_t>(tile_width_ * tile_height_);
-  command.block = static_cast<uint32_t>(tile_x_) | static_cast<uint32_t>(tile_y_) << 16;
+  command.threads = tile_width_ * tile_height_;
+  command.block = tile_x_ | tile_y_ << 16;
   tile_x_ += tile_width_;
-  if (tile_x_ >= options_.width) {
+  if (tile_x_ >= width_) {
     tile_x_ = 0;
     tile_y_ += tile_height_;
   }
@@ -162,8 +156,8 @@ std::string Controller::describe() const {
       "them shadow "
       "rays, {} more may "
       "come; intersection pool {} normal and {} shadow of {} each, {} and {} of them not promised to a kernel",
-      tile_x_, tile_y_, options_.width, options_.height, ledger->finished(), ledger->held(), rays->size(),
-      chip_.ray_pool_size, rays->shadow_rays(), ledger->rays_to_come(), intersections->size(ImportKind::Normal),
+      tile_x_, tile_y_, width_, height_, ledger->finished(), ledger->held(), rays->size(), chip_.ray_pool_size,
+      rays->shadow_rays(), ledger->rays_to_come(), intersections->size(ImportKind::Normal),
       intersections->size(ImportKind::Shadow), chip_.intersection_pool_size,
       intersections->available(ImportKind::Normal), intersections->available(ImportKind::Shadow));
 }

@@ -36,12 +36,12 @@ class Controller : public sc_core::sc_module, public DecisionIf, public KernelEv
   sc_core::sc_export<DecisionIf> decisions{"decisions"};
   sc_core::sc_export<KernelEventsIf> kernel_events{"kernel_events"};
 
-  void accepted(int unit) override;
-  void kernel_ended(int unit) override;
+  void accepted(uint32_t unit) override;
+  void kernel_ended(uint32_t unit) override;
   void changed() override { clock->notify(decide_, Phase::Controller); }
 
   bool finished() const { return finished_; }
-  const std::array<ChipResult::Kernel, kRayKernels>& kernels() const { return kernels_; }
+  const EnumArray<RayKernel, ChipResult::Kernel, kRayKernels>& kernels() const { return kernels_; }
   double resource_utilisation() const {
     return thread_time_launchable_ == 0 ? 0 : thread_time_ / thread_time_launchable_;
   }
@@ -49,8 +49,8 @@ class Controller : public sc_core::sc_module, public DecisionIf, public KernelEv
   std::string describe() const;
 
   /// Pixels of an eye tile: tile_width_log2(contents) gives its width; its height is what fits with the held limit.
-  int tile_width() const { return tile_width_; }
-  int tile_height() const { return tile_height_; }
+  uint32_t tile_width() const { return tile_width_; }
+  uint32_t tile_height() const { return tile_height_; }
 
  private:
   struct GivenKernel {
@@ -66,24 +66,25 @@ class Controller : public sc_core::sc_module, public DecisionIf, public KernelEv
   bool eye_possible() const;
   uint32_t secondary_room() const;
   void launch(const Choice& choice);
-  LaunchCommand next_tile(int unit);
+  LaunchCommand next_tile(uint32_t unit);
   uint32_t pixels_of_next_tile() const;
 
   const ChipOptions& options_;
   const ChipConfiguration& chip_;
+  const uint32_t width_, height_;  // of the image
   std::unique_ptr<KernelPolicy> policy_;
   RayKernel secondary_;
   sc_core::sc_event decide_;
 
-  int tile_width_, tile_height_;
-  int tile_x_ = 0, tile_y_ = 0;  // first pixel of the next tile
-  int round_ = 0;                // tiles that may be cast before all held pixels are finished; without the remedy only
+  uint32_t tile_width_, tile_height_;
+  uint32_t tile_x_ = 0, tile_y_ = 0;  // first pixel of the next tile
+  int round_ = 0;  // tiles that may be cast before all held pixels are finished; without the remedy only
 
   bool finished_ = false;
   uint32_t held_peak_ = 0;
   std::vector<std::deque<GivenKernel>> given_;  // [unit] not ended, oldest first
   std::vector<uint64_t> ended_;                 // [unit] cycle in which the last one ended
-  std::array<ChipResult::Kernel, kRayKernels> kernels_{};
+  EnumArray<RayKernel, ChipResult::Kernel, kRayKernels> kernels_{};
   double thread_time_ = 0, thread_time_launchable_ = 0;
 };
 

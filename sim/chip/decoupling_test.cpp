@@ -30,7 +30,7 @@ class Counted : public ComputeUnit {
  public:
   explicit Counted(std::unique_ptr<ComputeUnit> device) : device_(std::move(device)) {}
   void reset(uint32_t program_length, uint32_t memory_limit) override { device_->reset(program_length, memory_limit); }
-  void set_argument(int index, uint32_t value) override { device_->set_argument(index, value); }
+  void set_argument(uint32_t index, uint32_t value) override { device_->set_argument(index, value); }
   const UnitOutputs& outputs() const override { return device_->outputs(); }
   void clock(const UnitInputs& inputs) override { device_->clock(inputs); }
   uint64_t run(const UnitInputs& inputs, uint64_t cycles) override {

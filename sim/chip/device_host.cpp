@@ -55,7 +55,7 @@ void DeviceHost::run() {
 // Most cycles have nothing for most of these.
 void DeviceHost::decide_inputs(const UnitOutputs& outputs) {
   if (outputs.fault.code != FaultCode::None) {
-    const int unit = static_cast<int>(outputs.fault.unit);
+    const uint32_t unit = outputs.fault.unit;
     throw ChipFault(unit, outputs.fault, fault_sentence(unit, outputs.fault));
   }
   const uint64_t now = clock->cycle();
@@ -94,7 +94,7 @@ void DeviceHost::offer_launch(const UnitOutputs& outputs) {
   }
   pending_.reset();
   ++transfers_;
-  for (int i = 0; i < kernel_events.size(); ++i) kernel_events[i]->accepted(static_cast<int>(pending_unit_));
+  for (int i = 0; i < kernel_events.size(); ++i) kernel_events[i]->accepted(pending_unit_);
 }
 
 void DeviceHost::serve_memory(const UnitOutputs& outputs, uint64_t now) {
@@ -139,7 +139,7 @@ void DeviceHost::report(const UnitOutputs& outputs) {
     }
     --given_[unit];
     --given_in_all_;
-    for (int i = 0; i < kernel_events.size(); ++i) kernel_events[i]->kernel_ended(static_cast<int>(unit));
+    for (int i = 0; i < kernel_events.size(); ++i) kernel_events[i]->kernel_ended(unit);
   }
   const bool ready = outputs.launch_ready && (!ready_before_ || outputs.launch_unit != next_before_);
   if (outputs.kernel_done != 0 || ready || (outputs.unit_idle & ~idle_before_) != 0) controller->changed();
@@ -162,7 +162,7 @@ void DeviceHost::settle() {
     const uint32_t unit = lowest(candidates);
     if (given_[unit] > 0 || !memory->quiet(unit)) continue;
     settled_ |= 1u << unit;
-    for (int i = 0; i < kernel_events.size(); ++i) kernel_events[i]->unit_idle(static_cast<int>(unit));
+    for (int i = 0; i < kernel_events.size(); ++i) kernel_events[i]->unit_idle(unit);
     controller->changed();
   }
   awake_ = settled_ + 1 != 1u << units_;

@@ -4,10 +4,8 @@
 
 namespace raypool::chip {
 
-FixedLatencyMemory::FixedLatencyMemory(const sc_core::sc_module_name& name, Memory& memory, int latency)
-    : sc_module(name),
-      memory_(memory),
-      latency_(sc_core::sc_time::from_value(static_cast<uint64_t>(latency) * kCyclePicoseconds)) {
+FixedLatencyMemory::FixedLatencyMemory(const sc_core::sc_module_name& name, Memory& memory, uint64_t latency)
+    : sc_module(name), memory_(memory), latency_(sc_core::sc_time::from_value(latency * kCyclePicoseconds)) {
   socket.register_b_transport(this, &FixedLatencyMemory::b_transport);
 }
 

@@ -15,7 +15,7 @@ namespace raypool::chip {
 class FixedLatencyMemory : public sc_core::sc_module {
  public:
   /// `memory` must outlive it. `latency`: cycles from served to last beat.
-  FixedLatencyMemory(const sc_core::sc_module_name& name, Memory& memory, int latency);
+  FixedLatencyMemory(const sc_core::sc_module_name& name, Memory& memory, uint64_t latency);
 
   tlm_utils::simple_target_socket<FixedLatencyMemory, kMemoryBits> socket{"socket"};
 

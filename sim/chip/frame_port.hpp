@@ -21,7 +21,7 @@ class FramePort : public sc_core::sc_module, public ContributionIf {
 
   /// Throws std::runtime_error when the contribution is of a pixel that the unit has nothing to do with.
   void take(uint32_t unit, const FrameContribution& contribution) override {
-    ledger->contribution_exported(static_cast<int>(unit), contribution.pixel);
+    ledger->contribution_exported(unit, contribution.pixel);
     frame_.add(contribution);
     ++taken_;
   }

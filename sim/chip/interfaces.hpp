@@ -100,10 +100,10 @@ class DecisionIf : virtual public sc_core::sc_interface {
 class KernelEventsIf : virtual public sc_core::sc_interface {
  public:
   /// The unit has accepted the kernel it was given.
-  virtual void accepted(int /*unit*/) {}
-  virtual void kernel_ended(int unit) = 0;
+  virtual void accepted(uint32_t /*unit*/) {}
+  virtual void kernel_ended(uint32_t unit) = 0;
   /// The unit is idle: whatever its kernels exported has been seen.
-  virtual void unit_idle(int /*unit*/) {}
+  virtual void unit_idle(uint32_t /*unit*/) {}
   /// The shader begins or ceases to stall: no unit has a kernel, or a ray waits for room in the ray pool. It stalls at
   /// first.
   virtual void shader_stalls(bool /*stalls*/) {}
@@ -163,15 +163,15 @@ class LedgerIf : virtual public sc_core::sc_interface {
  public:
   /// A kernel is going to be launched. CastEye: `pixels` are those of its tile that lie in the image, and are held from
   /// now on.
-  virtual void eye_launched(int unit, std::vector<uint32_t> pixels) = 0;
+  virtual void eye_launched(uint32_t unit, std::vector<uint32_t> pixels) = 0;
   /// Another kernel: its threads' pixels come with their packages.
-  virtual void launched(int unit, RayKernel kernel, uint32_t threads) = 0;
+  virtual void launched(uint32_t unit, RayKernel kernel, uint32_t threads) = 0;
   /// A package goes to the unit: to its oldest kernel that still misses some.
-  virtual void imported(int unit, uint32_t pixel) = 0;
+  virtual void imported(uint32_t unit, uint32_t pixel) = 0;
   /// A ray left the unit, and holds its pixel from now on if it is `kept`. Throws std::runtime_error when no kernel of
   /// the unit can have made it.
-  virtual void ray_exported(int unit, const Ray& ray, bool kept) = 0;
-  virtual void contribution_exported(int unit, uint32_t pixel) = 0;
+  virtual void ray_exported(uint32_t unit, const Ray& ray, bool kept) = 0;
+  virtual void contribution_exported(uint32_t unit, uint32_t pixel) = 0;
   /// A ray that was kept is gone without leaving an intersection.
   virtual void ray_dropped(uint32_t pixel) = 0;
 

@@ -7,10 +7,10 @@ namespace raypool::chip {
 
 IntersectionPool::IntersectionPool(const sc_core::sc_module_name& name, const ChipConfiguration& chip)
     : sc_module(name),
-      capacity_(static_cast<size_t>(chip.intersection_pool_size)),
-      cycles_per_beat_(static_cast<uint64_t>(chip.intersection_pool_cycles_per_beat)),
-      service_cycles_(static_cast<uint64_t>(chip.intersection_pool_overhead) + kIntersectionBeats * cycles_per_beat_),
-      request_cycles_(static_cast<uint64_t>(std::max(1, chip.intersection_pool_overhead - 1))) {
+      capacity_(chip.intersection_pool_size),
+      cycles_per_beat_(chip.intersection_pool_cycles_per_beat),
+      service_cycles_(chip.intersection_pool_overhead + kIntersectionBeats * cycles_per_beat_),
+      request_cycles_(std::max(2u, chip.intersection_pool_overhead) - 1) {
   device.bind(*this);
   traverser.bind(*this);
   controller.bind(*this);
@@ -46,7 +46,7 @@ void IntersectionPool::give() {
   --reserved_[number(kind)];
   ++taken_;
   fill_[number(kind)].set(request_due_ - 1, size(kind));
-  ledger->imported(static_cast<int>(wanting_unit_), leaving_[word::kPixel]);
+  ledger->imported(wanting_unit_, leaving_[word::kPixel]);
   free_from_ = request_due_ - request_cycles_ + service_cycles_;
   beat_due_ = request_due_ + 1;
   next_beat_ = 0;
@@ -57,7 +57,7 @@ void IntersectionPool::give() {
 void IntersectionPool::beat(Beat& beat) {
   if (beat_due_ != clock->cycle())
     throw std::logic_error("the device was not clocked when a beat of an intersection came");
-  std::copy_n(leaving_.begin() + static_cast<std::ptrdiff_t>(next_beat_) * kBeatWords, kBeatWords, beat.begin());
+  std::copy_n(&leaving_[next_beat_ * kBeatWords], kBeatWords, beat.begin());
   ++next_beat_;
   beat_due_ = next_beat_ == kIntersectionBeats ? kNever : beat_due_ + cycles_per_beat_;
 }

@@ -44,8 +44,8 @@ class IntersectionPool : public sc_core::sc_module,
   uint32_t available(ImportKind kind) const override { return size(kind) - reserved_[number(kind)]; }
   void reserve(ImportKind kind, uint32_t count) override { reserved_[number(kind)] += count; }
 
-  uint32_t size(ImportKind kind) const override { return static_cast<uint32_t>(queue(kind).size()); }
-  uint32_t capacity() const { return static_cast<uint32_t>(capacity_); }
+  uint32_t size(ImportKind kind) const override { return size32(queue(kind)); }
+  uint32_t capacity() const { return capacity_; }
   uint64_t taken() const { return taken_; }  ///< packages given to units
   uint64_t busy_cycles() const { return taken_ * service_cycles_; }
   const LevelStatistics& fill(ImportKind kind) const { return fill_[number(kind)]; }

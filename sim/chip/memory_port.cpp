@@ -10,9 +10,7 @@
 namespace raypool::chip {
 
 MemoryPort::MemoryPort(const sc_core::sc_module_name& name, const ChipConfiguration& chip)
-    : sc_module(name),
-      cycles_per_beat_(static_cast<uint64_t>(chip.memory_cycles_per_beat)),
-      place_free_from_(static_cast<size_t>(chip.memory_queue)) {
+    : sc_module(name), cycles_per_beat_(chip.memory_cycles_per_beat), place_free_from_(chip.memory_queue) {
   device.bind(*this);
 }
 

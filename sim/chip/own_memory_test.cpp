@@ -79,7 +79,7 @@ struct Saxpy {
       memory.store(kX + 4 * i, as_bits(static_cast<float>(i)));
       memory.store(kY + 4 * i, as_bits(0.5f));
     }
-    options.program_length = static_cast<uint32_t>(program.code.size());
+    options.program_length = size32(program.code);
     options.entry = program.entries.at("saxpy");
     options.arguments[saxpy_argument::kN] = kElements;
     options.arguments[saxpy_argument::kA] = as_bits(1);

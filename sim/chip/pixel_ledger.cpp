@@ -6,28 +6,26 @@
 #include <stdexcept>
 #include <utility>
 
+#include "bits.hpp"
+
 namespace raypool::chip {
 
-PixelLedger::PixelLedger(const sc_core::sc_module_name& name, int units, int width, int height)
-    : sc_module(name),
-      width_(static_cast<uint32_t>(width)),
-      height_(static_cast<uint32_t>(height)),
-      live_(static_cast<size_t>(width_) * height_),
-      kernels_(static_cast<size_t>(units)) {
+PixelLedger::PixelLedger(const sc_core::sc_module_name& name, uint32_t units, uint32_t width, uint32_t height)
+    : sc_module(name), width_(width), height_(height), live_(pixels()), kernels_(units) {
   records.bind(*this);
   kernel_events.bind(*this);
 }
 
-void PixelLedger::eye_launched(int unit, std::vector<uint32_t> pixels) {
+void PixelLedger::eye_launched(uint32_t unit, std::vector<uint32_t> pixels) {
   for (const uint32_t pixel : pixels) ++live_[index(pixel)];
-  held_ += static_cast<uint32_t>(pixels.size());
+  held_ += size32(pixels);
   Kernel kernel;
-  kernel.normal_left = static_cast<uint32_t>(pixels.size());
+  kernel.normal_left = size32(pixels);
   kernel.pixels = std::move(pixels);
   add(unit, std::move(kernel));
 }
 
-void PixelLedger::launched(int unit, RayKernel kind, uint32_t threads) {
+void PixelLedger::launched(uint32_t unit, RayKernel kind, uint32_t threads) {
   Kernel kernel;
   kernel.kind = kind;
   kernel.imports_left = threads;
@@ -43,24 +41,24 @@ void PixelLedger::launched(int unit, RayKernel kind, uint32_t threads) {
 
 // Exports come nearly in the order of the threads: the search goes on where the last one ended.
 bool PixelLedger::Kernel::has(uint32_t pixel) {
-  const auto begin = pixels.begin(), end = pixels.end(), last = begin + static_cast<std::ptrdiff_t>(found);
+  const auto begin = pixels.begin(), end = pixels.end(), last = begin + found;
   auto place = std::find(last, end, pixel);
   if (place == end) {
     place = std::find(begin, last, pixel);
     if (place == last) return false;
   }
-  found = static_cast<size_t>(place - begin);
+  found = place - begin;
   return true;
 }
 
-void PixelLedger::add(int unit, Kernel kernel) {
+void PixelLedger::add(uint32_t unit, Kernel kernel) {
   rays_to_come_ += kernel.normal_left + kernel.shadow_left;
   shadow_to_come_ += kernel.shadow_left;
-  kernels_[static_cast<size_t>(unit)].push_back(std::move(kernel));
+  kernels_[unit].push_back(std::move(kernel));
 }
 
-void PixelLedger::imported(int unit, uint32_t pixel) {
-  for (Kernel& kernel : kernels_[static_cast<size_t>(unit)]) {
+void PixelLedger::imported(uint32_t unit, uint32_t pixel) {
+  for (Kernel& kernel : kernels_[unit]) {
     if (kernel.imports_left == 0) continue;
     --kernel.imports_left;
     kernel.pixels.push_back(pixel);
@@ -69,8 +67,8 @@ void PixelLedger::imported(int unit, uint32_t pixel) {
   throw std::runtime_error(fmt::format("compute unit {} imports a package that no kernel of it has asked for", unit));
 }
 
-void PixelLedger::kernel_ended(int unit) {
-  for (Kernel& kernel : kernels_[static_cast<size_t>(unit)]) {
+void PixelLedger::kernel_ended(uint32_t unit) {
+  for (Kernel& kernel : kernels_[unit]) {
     if (kernel.ended) continue;
     kernel.ended = true;
     release_complete(unit);
@@ -79,12 +77,12 @@ void PixelLedger::kernel_ended(int unit) {
   throw std::runtime_error(fmt::format("compute unit {} says that a kernel has ended, but none was launched", unit));
 }
 
-void PixelLedger::unit_idle(int unit) {
-  const std::deque<Kernel>& kernels = kernels_[static_cast<size_t>(unit)];
+void PixelLedger::unit_idle(uint32_t unit) {
+  const std::deque<Kernel>& kernels = kernels_[unit];
   while (!kernels.empty() && kernels.front().ended) release_front(unit);
 }
 
-void PixelLedger::ray_exported(int unit, const Ray& ray, bool kept) {
+void PixelLedger::ray_exported(uint32_t unit, const Ray& ray, bool kept) {
   const uint32_t pixel = ray[word::kPixel];
   // Before attribute(), which may let the thread that made the ray go.
   if (kept && inside(pixel)) ++live_[index(pixel)];
@@ -95,10 +93,10 @@ void PixelLedger::ray_exported(int unit, const Ray& ray, bool kept) {
   attribute(unit, kind, pixel);
 }
 
-void PixelLedger::contribution_exported(int unit, uint32_t pixel) { attribute(unit, Export::Contribution, pixel); }
+void PixelLedger::contribution_exported(uint32_t unit, uint32_t pixel) { attribute(unit, Export::Contribution, pixel); }
 
-void PixelLedger::attribute(int unit, Export kind, uint32_t pixel) {
-  std::deque<Kernel>& kernels = kernels_[static_cast<size_t>(unit)];
+void PixelLedger::attribute(uint32_t unit, Export kind, uint32_t pixel) {
+  std::deque<Kernel>& kernels = kernels_[unit];
   const auto made = [&](Kernel& kernel) {
     const bool eye = kernel.kind == RayKernel::CastEye, shade = kernel.kind == RayKernel::Shade;
     if (eye != (kind == Export::EyeRay) || shade != (kind == Export::Contribution)) return false;
@@ -121,22 +119,22 @@ void PixelLedger::attribute(int unit, Export kind, uint32_t pixel) {
     }
     if (!kernels[i].ended) break;
   }
-  const char* const names[] = {"an eye ray", "a secondary ray", "a shadow ray", "a contribution"};
+  const EnumArray<Export, const char*, 4> names = {"an eye ray", "a secondary ray", "a shadow ray", "a contribution"};
   throw std::runtime_error(
       fmt::format("compute unit {} exported {} of pixel ({}, {}) that none of its kernels can have made", unit,
-                  names[static_cast<size_t>(kind)], pixel & 0xffff, pixel >> 16));
+                  names[kind], pixel & 0xffff, pixel >> 16));
 }
 
-void PixelLedger::release_complete(int unit) {
-  const std::deque<Kernel>& kernels = kernels_[static_cast<size_t>(unit)];
+void PixelLedger::release_complete(uint32_t unit) {
+  const std::deque<Kernel>& kernels = kernels_[unit];
   while (!kernels.empty() && kernels.front().ended && kernels.front().normal_left == 0 &&
          kernels.front().shadow_left == 0 && kernels.front().contributions_left == 0) {
     release_front(unit);
   }
 }
 
-void PixelLedger::release_front(int unit) {
-  std::deque<Kernel>& kernels = kernels_[static_cast<size_t>(unit)];
+void PixelLedger::release_front(uint32_t unit) {
+  std::deque<Kernel>& kernels = kernels_[unit];
   const Kernel kernel = std::move(kernels.front());
   kernels.pop_front();
   rays_to_come_ -= kernel.normal_left + kernel.shadow_left;

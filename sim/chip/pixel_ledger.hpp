@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "chip/interfaces.hpp"
+#include "enum_array.hpp"
 #include "kernel/kernels.hpp"
 #include "machine/packages.hpp"
 
@@ -21,22 +22,22 @@ namespace raypool::chip {
 
 class PixelLedger : public sc_core::sc_module, public LedgerIf, public KernelEventsIf {
  public:
-  PixelLedger(const sc_core::sc_module_name& name, int units, int width, int height);
+  PixelLedger(const sc_core::sc_module_name& name, uint32_t units, uint32_t width, uint32_t height);
 
   /// Is told when a kernel goes off record: held() or the rays to come may have fallen.
   sc_core::sc_port<DecisionIf, 0, sc_core::SC_ZERO_OR_MORE_BOUND> controller{"controller"};
   sc_core::sc_export<LedgerIf> records{"records"};
   sc_core::sc_export<KernelEventsIf> kernel_events{"kernel_events"};
 
-  void eye_launched(int unit, std::vector<uint32_t> pixels) override;
-  void launched(int unit, RayKernel kernel, uint32_t threads) override;
-  void imported(int unit, uint32_t pixel) override;
+  void eye_launched(uint32_t unit, std::vector<uint32_t> pixels) override;
+  void launched(uint32_t unit, RayKernel kernel, uint32_t threads) override;
+  void imported(uint32_t unit, uint32_t pixel) override;
   /// All warps of the unit's oldest unfinished kernel have ended.
-  void kernel_ended(int unit) override;
-  void unit_idle(int unit) override;
+  void kernel_ended(uint32_t unit) override;
+  void unit_idle(uint32_t unit) override;
 
-  void ray_exported(int unit, const Ray& ray, bool kept) override;
-  void contribution_exported(int unit, uint32_t pixel) override;
+  void ray_exported(uint32_t unit, const Ray& ray, bool kept) override;
+  void contribution_exported(uint32_t unit, uint32_t pixel) override;
   void ray_dropped(uint32_t pixel) override { gone(pixel); }
 
   uint32_t held() const override { return held_; }
@@ -55,17 +56,17 @@ class PixelLedger : public sc_core::sc_module, public LedgerIf, public KernelEve
     std::vector<uint32_t> pixels;               // of its threads, as they are known
     uint32_t normal_left = 0, shadow_left = 0;  // rays it may still export
     uint32_t contributions_left = 0;
-    size_t found = 0;  // in `pixels`, the latest
+    std::ptrdiff_t found = 0;  // in `pixels`, the latest
   };
   enum class Export : uint8_t { EyeRay, SecondaryRay, ShadowRay, Contribution };
 
   bool inside(uint32_t pixel) const { return (pixel & 0xffff) < width_ && (pixel >> 16) < height_; }
-  size_t index(uint32_t pixel) const { return static_cast<size_t>(pixel >> 16) * width_ + (pixel & 0xffff); }
+  size_t index(uint32_t pixel) const { return size_t{pixel >> 16} * width_ + (pixel & 0xffff); }
   void gone(uint32_t pixel);
-  void attribute(int unit, Export kind, uint32_t pixel);
-  void add(int unit, Kernel kernel);
-  void release_front(int unit);
-  void release_complete(int unit);
+  void attribute(uint32_t unit, Export kind, uint32_t pixel);
+  void add(uint32_t unit, Kernel kernel);
+  void release_front(uint32_t unit);
+  void release_complete(uint32_t unit);
 
   uint32_t width_, height_;
   std::vector<uint16_t> live_;               // [pixel] rays, intersections and threads

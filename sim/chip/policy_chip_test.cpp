@@ -68,7 +68,7 @@ class EveryPolicy : public testing::TestWithParam<Policy> {
 
 TEST_P(EveryPolicy, DrawsEveryImageWithoutLosingARay) {
   for (const auto& [warps, lanes] : {std::pair{1, 1}, {4, 4}, {8, 8}, {16, 16}, {32, 32}}) {
-    for (const int units : {1, 2, 4}) {
+    for (const uint32_t units : {1, 2, 4}) {
       for (const auto& [width, height, depth] : {std::array{1, 1, 1}, {31, 17, 1}, {41, 33, 4}, {7, 3, 254}}) {
         SCOPED_TRACE(testing::Message() << warps << "w" << lanes << "c, " << units << " units, " << width << "x"
                                         << height << " depth " << depth);
@@ -83,7 +83,7 @@ TEST_P(EveryPolicy, DrawsEveryImageWithoutLosingARay) {
 TEST_P(EveryPolicy, SurvivesFullPools) {
   // Nothing misses, everything is mirrored and lit: the most rays that can be alive.
   for (const auto& [warps, lanes] : {std::pair{2, 2}, {8, 8}, {8, 32}}) {
-    for (const int units : {1, 4}) {
+    for (const uint32_t units : {1, 4}) {
       for (const int packages : {512, 33, 16}) {
         for (const int rays : {512, 64, 5, 1}) {
           SCOPED_TRACE(testing::Message() << warps << "w" << lanes << "c, " << units << " units, " << packages
@@ -140,7 +140,7 @@ TEST_P(EveryPolicy, DrawsThePictureOfTheNativeRenderer) {
                                         << units << " units, " << width << "x" << height << " depth " << depth);
         test::RealFrame run(warps, lanes, width, height, depth, scene);
         choose(run.options);
-        run.set_device(make_model(run.options.configuration, run.image.memory, static_cast<uint32_t>(units)).device);
+        run.set_device(make_model(run.options.configuration, run.image.memory, units).device);
         NativeOptions native;
         native.width = width;
         native.height = height;

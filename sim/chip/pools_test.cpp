@@ -26,27 +26,26 @@ struct Bench {
   IntersectionPool intersections;
   std::vector<uint32_t> next, beat;  // [unit] ray it exports, beat of it
 
-  explicit Bench(int units, int capacity = 512, int depth = 5) : Bench(units, chip_of(capacity), depth) {}
-  Bench(int units, const ChipConfiguration& chip, int depth)
+  explicit Bench(uint32_t units, uint32_t capacity = 512, uint32_t depth = 5)
+      : Bench(units, chip_of(capacity), depth) {}
+  Bench(uint32_t units, const ChipConfiguration& chip, uint32_t depth)
       : ledger("pixel_ledger", units, 64, 64),
         rays("ray_pool", chip, depth),
         intersections("intersection_pool", chip),
-        next(static_cast<size_t>(units)),
-        beat(static_cast<size_t>(units)) {
+        next(units),
+        beat(units) {
     rays.clock(clock.now);
     rays.ledger(ledger.records);
     intersections.clock(clock.now);
     intersections.ledger(ledger.records);
-    for (int unit = 0; unit < units; ++unit) {
+    for (uint32_t unit = 0; unit < units; ++unit) {
       std::vector<uint32_t> pixels;
       for (uint32_t i = 0; i < 1024; ++i) pixels.push_back(pixel(unit, i));
       ledger.eye_launched(unit, std::move(pixels));
     }
   }
-  static uint32_t pixel(int unit, uint32_t i) {
-    return (static_cast<uint32_t>(unit) * 16 + i % 16) | (i / 16 % 64) << 16;
-  }
-  static Ray eye_ray(int unit, uint32_t i) {
+  static uint32_t pixel(uint32_t unit, uint32_t i) { return (unit * 16 + i % 16) | (i / 16 % 64) << 16; }
+  static Ray eye_ray(uint32_t unit, uint32_t i) {
     Ray ray{};
     ray[word::kPixel] = pixel(unit, i);
     ray[word::kFlags] = 1;
@@ -62,17 +61,17 @@ struct Bench {
     return true;
   }
   /// The device offers the unit's next beat in this cycle. True if a ray was completed.
-  bool offer(int unit) {
+  bool offer(uint32_t unit) {
     if (!ready()) {
       rays.want();
       return false;
     }
-    const auto u = static_cast<size_t>(unit);
+    const auto u = unit;
     const Ray ray = eye_ray(unit, next[u]);
     Beat data;
     for (size_t i = 0; i < 4; ++i) data[i] = ray[beat[u] * 4 + i];
     const bool last = ++beat[u] == 3;
-    rays.take(static_cast<uint32_t>(unit), data, last);
+    rays.take(unit, data, last);
     if (last) {
       beat[u] = 0;
       ++next[u];
@@ -100,14 +99,14 @@ TEST(RayPool, TakesOverheadAndBeatsAsLongAsTheChipSays) {
     chip.ray_pool_overhead = overhead;
     chip.ray_pool_cycles_per_beat = per_beat;
     Bench bench(1, chip, 5);
-    const auto service = static_cast<uint64_t>(overhead + 3 * per_beat);
+    const uint64_t service = overhead + 3 * per_beat;
     std::vector<uint64_t> completed;
     bench.run([&](uint64_t cycle) {
       if (cycle >= 10 && bench.offer(0)) completed.push_back(cycle);
       return completed.size() < 20;
     });
     for (size_t i = 0; i < completed.size(); ++i)
-      EXPECT_EQ(completed[i], 10 + service * (i + 1) - static_cast<uint64_t>(per_beat)) << overhead << per_beat;
+      EXPECT_EQ(completed[i], 10 + service * (i + 1) - per_beat) << overhead << per_beat;
     EXPECT_EQ(bench.rays.busy_cycles(), 20 * service);
     for (uint32_t i = 0; i < 20; ++i) EXPECT_EQ(bench.rays.rays()[i].ray, Bench::eye_ray(0, i));
   }
@@ -124,7 +123,7 @@ TEST(RayPool, TakesARayOfAnyUnitInFiveCycles) {
   });
   ASSERT_EQ(bench.rays.size(), 40u);
   for (int i = 0; i < 40; ++i) {
-    EXPECT_EQ(bench.rays.rays()[static_cast<size_t>(i)].ray, Bench::eye_ray(i % 4, static_cast<uint32_t>(i / 4)));
+    EXPECT_EQ(bench.rays.rays()[i].ray, Bench::eye_ray(i % 4, static_cast<uint32_t>(i / 4)));
   }
 }
 
@@ -245,7 +244,7 @@ TEST(IntersectionPool, TakesOverheadAndBeatsAsLongAsTheChipSays) {
     chip.intersection_pool_cycles_per_beat = per_beat;
     Bench bench(1, chip, 5);
     bench.ledger.launched(0, RayKernel::Shade, 3);
-    const auto service = static_cast<uint64_t>(overhead + 6 * per_beat), wait = std::max(1ul, overhead - 1ul);
+    const uint64_t service = overhead + 6 * per_beat, wait = std::max(1ul, overhead - 1ul);
     std::vector<uint64_t> taken, beats;
     std::vector<uint32_t> words;
     bench.run([&](uint64_t cycle) {
@@ -261,7 +260,7 @@ TEST(IntersectionPool, TakesOverheadAndBeatsAsLongAsTheChipSays) {
     EXPECT_EQ(taken, (std::vector<uint64_t>{10 + wait, 10 + wait + service, 10 + wait + 2 * service}));
     ASSERT_EQ(beats.size(), 18u);
     for (size_t i = 0; i < beats.size(); ++i)
-      EXPECT_EQ(beats[i], taken[i / 6] + 1 + i % 6 * static_cast<uint64_t>(per_beat)) << overhead << per_beat;
+      EXPECT_EQ(beats[i], taken[i / 6] + 1 + i % 6 * per_beat) << overhead << per_beat;
     for (uint32_t i = 0; i < 72; ++i)
       EXPECT_EQ(words[i], i % 24 < kIntersectionWords ? numbered(i / 24)[i % 24] : 0) << i;
     EXPECT_EQ(bench.intersections.busy_cycles(), 3 * service);
@@ -272,7 +271,7 @@ TEST(IntersectionPool, KeepsTheKindsApart) {
   Bench bench(4);
   const std::array<ImportKind, 4> kinds = {ImportKind::Normal, ImportKind::Shadow, ImportKind::Normal,
                                            ImportKind::Shadow};
-  for (int unit = 0; unit < 4; ++unit) bench.ledger.launched(unit, RayKernel::Shade, 1000);
+  for (uint32_t unit = 0; unit < 4; ++unit) bench.ledger.launched(unit, RayKernel::Shade, 1000);
   uint32_t taken = 0, came = 0;
   bench.run([&](uint64_t cycle) {
     if (cycle == 1) {

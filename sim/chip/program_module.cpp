@@ -13,14 +13,14 @@ namespace {
 const ProgramOptions& checked(const ProgramOptions& options) {
   if (options.device == nullptr || options.memory == nullptr)
     throw std::logic_error("run_program needs a device and a memory");
-  const auto contents = static_cast<uint32_t>(options.configuration.contents());
+  const auto contents = options.configuration.contents();
   if (options.threads < 1 || options.threads > contents) {
     throw InputError(fmt::format("{} threads a block: configuration {} holds 1 to {}", options.threads,
                                  options.configuration.name, contents));
   }
   if (options.blocks < 1) throw InputError("0 blocks: launch at least one");
   for (uint32_t pc = 0; pc < options.program_length; ++pc) {
-    const uint64_t word = options.memory->load(8 * pc) | static_cast<uint64_t>(options.memory->load(8 * pc + 4)) << 32;
+    const uint64_t word = options.memory->load(8 * pc) | uint64_t{options.memory->load(8 * pc + 4)} << 32;
     const DecodedInstruction instruction = decode(word, options.configuration);
     if (!instruction.legal() || instruction.opcode != Opcode::Rin) continue;
     throw InputError(fmt::format(
@@ -75,8 +75,8 @@ ProgramChip::ProgramChip(const sc_core::sc_module_name& name, const ProgramOptio
       memory_port_("memory_port", options.configuration.chip),
       grid_("grid", options_),
       device_("device_host", *options.device),
-      monitor_("monitor", {options.watchdog_cycles, options.cycle_limit, options.device->timed(),
-                           static_cast<bool>(options.progress)}) {
+      monitor_("monitor",
+               {options.watchdog_cycles, options.cycle_limit, options.device->timed(), options.progress != nullptr}) {
   memory_port_.clock(clock_.now);
   memory_port_.socket.bind(memory);
 
@@ -97,7 +97,7 @@ ProgramChip::ProgramChip(const sc_core::sc_module_name& name, const ProgramOptio
 ProgramResult ProgramChip::run() {
   ComputeUnit& device = *options_.device;
   device.reset(options_.program_length, options_.memory->size());
-  for (int i = 0; i < kArguments; ++i) device.set_argument(i, options_.arguments[static_cast<size_t>(i)]);
+  for (uint32_t i = 0; i < kArguments; ++i) device.set_argument(i, options_.arguments[i]);
 
   sc_core::sc_start();
   clock_.rethrow();
@@ -108,12 +108,11 @@ ProgramResult ProgramChip::run() {
   ProgramResult result;
   result.timed = device.timed();
   result.cycles = clock_.cycle();
-  for (int i = 0; i < counter::kCount; ++i) result.counters[static_cast<size_t>(i)] = device.counter(i);
+  for (int i = 0; i < counter::kCount; ++i) result.counters[i] = device.counter(i);
   result.memory_reads = memory_port_.reads();
   result.memory_writes = memory_port_.writes();
   if (result.cycles > 0)
-    result.memory_port_utilisation =
-        static_cast<double>(memory_port_.busy_cycles()) / static_cast<double>(result.cycles);
+    result.memory_port_utilisation = static_cast<double>(memory_port_.busy_cycles()) / result.cycles;
   return result;
 }
 

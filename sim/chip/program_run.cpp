@@ -25,11 +25,11 @@ struct FaultingAccess {
 std::optional<FaultingAccess> run_to_fault(const ProgramOptions& options, Memory& memory, uint64_t instructions) {
   FunctionalCore core(options.configuration, memory);
   core.reset(options.program_length, memory.size());
-  for (int i = 0; i < kArguments; ++i) core.set_argument(i, options.arguments[static_cast<size_t>(i)]);
+  for (uint32_t i = 0; i < kArguments; ++i) core.set_argument(i, options.arguments[i]);
   for (uint32_t block = 0; block < options.blocks; ++block) {
     core.launch({options.entry, options.threads, block, options.blocks, ImportKind::None});
     while (core.running()) {
-      for (uint32_t warp = 0; warp < static_cast<uint32_t>(core.warps()); ++warp) {
+      for (uint32_t warp = 0; warp < core.warps(); ++warp) {
         const Step& step = core.step(warp);
         if (step.status == Step::Status::Executed && instructions-- == 0) return std::nullopt;
         if (step.status != Step::Status::Fault) continue;
@@ -37,8 +37,7 @@ std::optional<FaultingAccess> run_to_fault(const ProgramOptions& options, Memory
           const auto lane = lowest(mask);
           const uint32_t address = step.addresses[lane];
           const bool faulty = step.fault.code == FaultCode::Misaligned ? address % 4 != 0 : address >= memory.size();
-          if (faulty)
-            return FaultingAccess{step.fault, warp * static_cast<uint32_t>(core.lanes()) + lane, block, address};
+          if (faulty) return FaultingAccess{step.fault, warp * core.lanes() + lane, block, address};
         }
         return std::nullopt;
       }

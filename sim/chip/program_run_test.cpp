@@ -25,7 +25,7 @@ struct Bench {
     options.configuration = configuration;
     options.device = unit.get();
     options.memory = &memory;
-    options.program_length = static_cast<uint32_t>(code.size());
+    options.program_length = size32(code);
     options.threads = 64;
   }
 };

@@ -7,12 +7,12 @@
 
 namespace raypool::chip {
 
-RayPool::RayPool(const sc_core::sc_module_name& name, const ChipConfiguration& chip, int depth)
+RayPool::RayPool(const sc_core::sc_module_name& name, const ChipConfiguration& chip, uint32_t depth)
     : sc_module(name),
-      capacity_(static_cast<size_t>(chip.ray_pool_size)),
-      overhead_(static_cast<uint64_t>(chip.ray_pool_overhead)),
-      cycles_per_beat_(static_cast<uint64_t>(chip.ray_pool_cycles_per_beat)),
-      depth_(static_cast<uint32_t>(depth)) {
+      capacity_(chip.ray_pool_size),
+      overhead_(chip.ray_pool_overhead),
+      cycles_per_beat_(chip.ray_pool_cycles_per_beat),
+      depth_(depth) {
   rays_.reserve(capacity_);
   device.bind(*this);
   traverser.bind(*this);
@@ -29,7 +29,7 @@ void RayPool::want() {
 }
 
 void RayPool::take(uint32_t unit, const Beat& beat, bool last) {
-  std::copy(beat.begin(), beat.end(), arriving_.begin() + static_cast<std::ptrdiff_t>(beats_) * kBeatWords);
+  std::copy(beat.begin(), beat.end(), &arriving_[beats_ * kBeatWords]);
   ++beats_;
   if (last != (beats_ == kRayBeats)) {
     throw std::runtime_error(fmt::format("compute unit {} marks beat {} of a ray as {}; a ray has {} beats", unit,
@@ -46,7 +46,7 @@ void RayPool::take(uint32_t unit, const Beat& beat, bool last) {
   ++taken_;
   const bool shadow = (arriving_[word::kFlags] & kShadowFlag) != 0;
   const bool kept = shadow || (arriving_[word::kFlags] & kDepthMask) <= depth_;
-  ledger->ray_exported(static_cast<int>(unit), arriving_, kept);
+  ledger->ray_exported(unit, arriving_, kept);
   if (kept) {
     keep(shadow);
   } else {

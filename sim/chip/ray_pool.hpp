@@ -20,7 +20,7 @@ namespace raypool::chip {
 class RayPool : public sc_core::sc_module, public RayExportIf, public RaySourceIf, public RayLevelIf {
  public:
   /// Normal rays deeper than `depth` are dropped when they arrive.
-  RayPool(const sc_core::sc_module_name& name, const ChipConfiguration& chip, int depth);
+  RayPool(const sc_core::sc_module_name& name, const ChipConfiguration& chip, uint32_t depth);
 
   sc_core::sc_port<TimeIf> clock{"clock"};
   sc_core::sc_port<LedgerIf> ledger{"ledger"};
@@ -36,10 +36,10 @@ class RayPool : public sc_core::sc_module, public RayExportIf, public RaySourceI
   std::vector<PooledRay>& rays() override { return rays_; }
   void removed(uint32_t shadow_rays) override;
 
-  uint32_t size() const override { return static_cast<uint32_t>(rays_.size()); }
+  uint32_t size() const override { return size32(rays_); }
   uint32_t shadow_rays() const override { return shadow_rays_; }
   bool full() const { return rays_.size() >= capacity_; }
-  uint32_t capacity() const { return static_cast<uint32_t>(capacity_); }
+  uint32_t capacity() const { return capacity_; }
   uint64_t taken() const { return taken_; }  ///< rays transferred, dropped ones too
   uint64_t dropped_depth() const { return dropped_depth_; }
   uint64_t busy_cycles() const { return busy_cycles_; }  ///< of the port

@@ -2,12 +2,12 @@
 
 namespace raypool::chip {
 
-StaticTraverser::StaticTraverser(const sc_core::sc_module_name& name, RayTracer& tracer, int units,
+StaticTraverser::StaticTraverser(const sc_core::sc_module_name& name, RayTracer& tracer, uint32_t units,
                                  const ChipConfiguration& chip)
     : Traverser(name, tracer),
-      units_(static_cast<uint32_t>(units)),
-      batch_(static_cast<uint32_t>(chip.static_traverser_batch)),
-      stall_cycles_(static_cast<uint64_t>(chip.static_traverser_stall_cycles)) {
+      units_(units),
+      batch_(chip.static_traverser_batch),
+      stall_cycles_(chip.static_traverser_stall_cycles) {
   SC_METHOD(end_of_kernel);
   sensitive << kernel_ended_;
   dont_initialize();
@@ -16,7 +16,7 @@ StaticTraverser::StaticTraverser(const sc_core::sc_module_name& name, RayTracer&
   dont_initialize();
 }
 
-void StaticTraverser::kernel_ended(int /*unit*/) {
+void StaticTraverser::kernel_ended(uint32_t /*unit*/) {
   ++kernels_;
   clock->notify(kernel_ended_, Phase::Traverser);
 }

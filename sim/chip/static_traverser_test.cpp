@@ -44,8 +44,8 @@ struct Bench {
   Moves moves;
   StaticTraverser traverser;
 
-  explicit Bench(int units, int capacity = 512) : Bench(units, chip_of(capacity)) {}
-  Bench(int units, const ChipConfiguration& chip)
+  explicit Bench(uint32_t units, int capacity = 512) : Bench(units, chip_of(capacity)) {}
+  Bench(uint32_t units, const ChipConfiguration& chip)
       : ledger("pixel_ledger", units, 512, 1),
         rays("ray_pool", {}, 5),
         intersections("intersection_pool", chip),
@@ -114,7 +114,7 @@ TEST(StaticTraverser, TakesBatchAndStallAsTheChipSays) {
 }
 
 TEST(StaticTraverser, Turns64RaysAUnitIntoIntersectionsAfter1000CyclesOfStall) {
-  for (const int units : {1, 2, 4}) {
+  for (const uint32_t units : {1, 2, 4}) {
     Bench bench(units);
     std::vector<std::pair<uint64_t, uint32_t>> steps;  // cycle in which it is first seen, rays left
     bench.run([&](uint64_t cycle) {

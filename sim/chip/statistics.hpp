@@ -17,9 +17,7 @@ class LevelStatistics {
   }
   uint32_t peak() const { return peak_; }
   /// Over cycles 0 .. end.
-  double mean(uint64_t end) const {
-    return end == 0 ? 0 : static_cast<double>(area_ + (end - since_) * level_) / static_cast<double>(end);
-  }
+  double mean(uint64_t end) const { return end == 0 ? 0 : static_cast<double>(area_ + (end - since_) * level_) / end; }
 
  private:
   uint64_t area_ = 0, since_ = 0;

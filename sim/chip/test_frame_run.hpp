@@ -21,7 +21,8 @@ struct FrameRun {
   std::vector<ScriptedUnit*> units;  ///< of the device
   std::unique_ptr<ComputeUnit> device;
 
-  FrameRun(int warps, int lanes, int unit_count, int width, int height, int depth, int pace = 60, uint32_t seed = 1) {
+  FrameRun(uint32_t warps, uint32_t lanes, uint32_t unit_count, uint32_t width, uint32_t height, uint32_t depth,
+           int pace = 60, uint32_t seed = 1) {
     world.seed = seed;
     for (uint32_t i = 0; i < memory.size(); i += 4) memory.store(i, i * 2654435761u);
     options.configuration.warps = warps;
@@ -30,8 +31,8 @@ struct FrameRun {
     options.height = height;
     options.depth = depth;
     std::vector<std::unique_ptr<ComputeUnit>> made;
-    for (int i = 0; i < unit_count; ++i) {
-      auto unit = std::make_unique<ScriptedUnit>(world, warps * lanes, pace, seed + static_cast<uint32_t>(i), memory);
+    for (uint32_t i = 0; i < unit_count; ++i) {
+      auto unit = std::make_unique<ScriptedUnit>(world, warps * lanes, pace, seed + i, memory);
       units.push_back(unit.get());
       made.push_back(std::move(unit));
     }
@@ -61,7 +62,7 @@ struct FrameRun {
     EXPECT_EQ(result.dropped_depth, expected.beyond);
     EXPECT_EQ(result.contributions, expected.contributions.size());
     EXPECT_EQ(frame.contributions, expected.contributions);
-    EXPECT_LE(result.held_peak, static_cast<uint32_t>(options.configuration.chip.held_limit));
+    EXPECT_LE(result.held_peak, options.configuration.chip.held_limit);
     EXPECT_LE(result.rays_pool.peak, result.rays_pool.capacity);
     EXPECT_LE(result.normal_pool.peak, result.normal_pool.capacity);
     EXPECT_LE(result.shadow_pool.peak, result.shadow_pool.capacity);

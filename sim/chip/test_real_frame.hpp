@@ -23,13 +23,14 @@ struct RealFrame {
   std::unique_ptr<ComputeUnit> device;
   ChipOptions options;
 
-  RealFrame(int warps, int lanes, int width, int height, int depth, Scene drawn = make_cornell())
+  RealFrame(uint32_t warps, uint32_t lanes, uint32_t width, uint32_t height, uint32_t depth,
+            Scene drawn = make_cornell())
       : scene(std::move(drawn)), frame(width, height) {
     const Program& program = ray_kernel_program();
     options.configuration.warps = warps;
     options.configuration.lanes = lanes;
     options.memory = &image.memory;
-    options.program_length = static_cast<uint32_t>(program.code.size());
+    options.program_length = size32(program.code);
     for (size_t i = 0; i < kRayKernels; ++i) options.entries[i] = program.entries.at(std::string(kRayKernelNames[i]));
     options.arguments = camera_arguments(scene, width, height, options.configuration.contents());
     options.width = width;

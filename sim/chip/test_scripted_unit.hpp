@@ -99,16 +99,16 @@ class WorldFrame : public FrameSink {
 };
 
 /// Entries of the scripted kernels: the PC is the RayKernel's number.
-inline constexpr std::array<uint32_t, kRayKernels> kScriptedEntries = {0, 1, 2, 3};
+inline constexpr EnumArray<RayKernel, uint32_t, kRayKernels> kScriptedEntries = {0, 1, 2, 3};
 
 class ScriptedUnit : public ComputeUnit {
  public:
   /// `pace`: kernels compute for up to so many cycles. Reads lines of `memory` meanwhile, and checks them.
-  ScriptedUnit(const World& world, int contents, int pace, uint32_t seed, const Memory& memory)
-      : world_(world), contents_(static_cast<uint32_t>(contents)), pace_(pace), random_(seed), memory_(memory) {}
+  ScriptedUnit(const World& world, uint32_t contents, int pace, uint32_t seed, const Memory& memory)
+      : world_(world), contents_(contents), pace_(pace), random_(seed), memory_(memory) {}
 
   void reset(uint32_t, uint32_t) override { present(); }
-  void set_argument(int index, uint32_t value) override { arguments_.at(static_cast<size_t>(index)) = value; }
+  void set_argument(uint32_t index, uint32_t value) override { arguments_.at(index) = value; }
   const UnitOutputs& outputs() const override { return outputs_; }
   const UnitTrace& trace() const override { return trace_; }
   uint64_t counter(int number) override {
@@ -230,8 +230,8 @@ class ScriptedUnit : public ComputeUnit {
           if (arrived_.size() < kernel.command.threads) return;
           require(expected_.front() == kernel.command.threads, "order of imports");
           expected_.pop_front();
-          current_.assign(arrived_.begin(), arrived_.begin() + static_cast<std::ptrdiff_t>(kernel.command.threads));
-          arrived_.erase(arrived_.begin(), arrived_.begin() + static_cast<std::ptrdiff_t>(kernel.command.threads));
+          current_.assign(arrived_.begin(), arrived_.begin() + kernel.command.threads);
+          arrived_.erase(arrived_.begin(), arrived_.begin() + kernel.command.threads);
         }
         break;
       case 1:

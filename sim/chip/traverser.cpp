@@ -50,7 +50,7 @@ uint32_t Traverser::advance(uint32_t budget) {
   return left;
 }
 
-std::unique_ptr<Traverser> make_traverser(const ChipConfiguration& chip, RayTracer& tracer, int units) {
+std::unique_ptr<Traverser> make_traverser(const ChipConfiguration& chip, RayTracer& tracer, uint32_t units) {
   switch (chip.traverser) {
     case TraverserName::Static:
       return std::make_unique<StaticTraverser>("traverser", tracer, units, chip);

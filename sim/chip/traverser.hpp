@@ -53,6 +53,6 @@ class Traverser : public sc_core::sc_module, public KernelEventsIf, public RayAr
 };
 
 /// The one that `chip.traverser` names.
-std::unique_ptr<Traverser> make_traverser(const ChipConfiguration& chip, RayTracer& tracer, int units);
+std::unique_ptr<Traverser> make_traverser(const ChipConfiguration& chip, RayTracer& tracer, uint32_t units);
 
 }  // namespace raypool::chip

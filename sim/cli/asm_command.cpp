@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <sstream>
 
+#include "bits.hpp"
 #include "cli/commands.hpp"
 #include "cli/text_file.hpp"
 #include "files/output_files.hpp"
@@ -31,7 +32,7 @@ Program parse_words(const std::string& text, const std::string& name) {
   std::string line;
   for (int number = 1; std::getline(lines, line); ++number) {
     if (line.compare(0, kKernelMark.size(), kKernelMark) == 0) {
-      program.entries[line.substr(kKernelMark.size())] = static_cast<uint32_t>(program.code.size());
+      program.entries[line.substr(kKernelMark.size())] = size32(program.code);
       continue;
     }
     if (line.empty()) continue;

@@ -40,10 +40,10 @@ void load_program(Job& job, uint32_t bytes) {
     job.memory.store(8 * i, static_cast<uint32_t>(job.program.code[i]));
     job.memory.store(8 * i + 4, static_cast<uint32_t>(job.program.code[i] >> 32));
   }
-  job.options.program_length = static_cast<uint32_t>(job.program.code.size());
+  job.options.program_length = size32(job.program.code);
 }
 
-uint32_t first_data(const Program& program) { return (static_cast<uint32_t>(program.code.size()) * 8 + 63) / 64 * 64; }
+uint32_t first_data(const Program& program) { return (size32(program.code) * 8 + 63) / 64 * 64; }
 
 /// Compares `expected` with the words from `address` on.
 bool check_results(const Job& job, uint32_t address, const std::vector<float>& expected) {
@@ -68,7 +68,7 @@ void prepare_kernel(Job& job, const RunOptions& options, uint32_t default_n, uin
   job.title = fmt::format("{}, n = {}", options.kernel, n);
   job.program = compute_kernel_program(job.options.configuration.fma);
   job.options.entry = job.program.entries.at(options.kernel);
-  job.options.threads = static_cast<uint32_t>(job.options.configuration.contents());
+  job.options.threads = job.options.configuration.contents();
   job.options.arguments[saxpy_argument::kN] = n;
 }
 
@@ -187,8 +187,7 @@ void prepare_assembly(Job& job, const RunOptions& options) {
   }
   load_program(job, options.memory_bytes);
   job.options.blocks = options.blocks;
-  job.options.threads =
-      options.threads == 0 ? static_cast<uint32_t>(job.options.configuration.contents()) : options.threads;
+  job.options.threads = options.threads == 0 ? job.options.configuration.contents() : options.threads;
   for (size_t i = 0; i < options.arguments.size(); ++i) job.options.arguments[i] = parse_argument(options.arguments[i]);
 }
 
@@ -206,7 +205,7 @@ void print_figures(const ProgramResult& result, const Configuration& configurati
   fmt::print("  {} warp instructions, {} thread instructions\n", count(counter::kInstructions),
              count(counter::kThreadInstructions));
   if (!result.timed) return;
-  const auto busy = static_cast<double>(std::max<uint64_t>(1, count(counter::kBusyCycles)));
+  const double busy = std::max<uint64_t>(1, count(counter::kBusyCycles));
   fmt::print("  ALU   utilisation  waiting      tasks\n");
   for (int i = 0; i < kAluTypes; ++i) {
     const double unused = static_cast<double>(count(counter::kUnused + i)) / (busy * configuration.alus[i].count);

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <thread>
 
+#include "bits.hpp"
 #include "chip/chip.hpp"
 #include "cli/black_picture.hpp"
 #include "cli/commands.hpp"
@@ -110,7 +111,7 @@ ChipOptions chip_options(const RunRecord& record, const Scene& scene, MemoryImag
   chip.configuration = record.configuration;
   chip.device = &device;
   chip.memory = &image.memory;
-  chip.program_length = static_cast<uint32_t>(program.code.size());
+  chip.program_length = size32(program.code);
   for (size_t i = 0; i < kRayKernels; ++i) chip.entries[i] = program.entries.at(std::string(kRayKernelNames[i]));
   chip.arguments = camera_arguments(scene, record.width, record.height, record.configuration.contents());
   chip.width = record.width;
@@ -137,7 +138,7 @@ FrameBuffer draw_natively(Engine engine, RunRecord& record, const Scene& scene, 
   native.depth = record.depth;
   native.reflections = record.reflections;
   native.contents = record.configuration.contents();
-  native.threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  native.threads = std::max(1u, std::thread::hardware_concurrency());
   native.mode = arith::mode_of(record.configuration);
   if (engine == Engine::Embree) {
     embree.emplace(scene, tracer);

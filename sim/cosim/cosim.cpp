@@ -38,7 +38,7 @@ class RandomHost {
       if (outputs.fault.code != FaultCode::None) {
         if ((program_.faults & fault_bit(outputs.fault.code)) == 0) {
           throw ProgramFailure(fmt::format("fault {} of warp {} at PC {} in a program that must not end so",
-                                           static_cast<int>(outputs.fault.code), outputs.fault.warp, outputs.fault.pc));
+                                           to_underlying(outputs.fault.code), outputs.fault.warp, outputs.fault.pc));
         }
         if (fault_cycles_ == 0 && observer_ != nullptr) observer_->faulted(unit_.faults());
         // What a device of one unit has taken beyond the kernel with the fault has not begun.
@@ -163,7 +163,7 @@ class RandomHost {
     for (size_t i = 0; i < kBeatWords; ++i) inputs.memory_response.data[i] = line.words[beat_ * size_t{kBeatWords} + i];
     if (++beat_ < 4) return;
     beat_ = 0;
-    lines_.erase(lines_.begin() + static_cast<std::ptrdiff_t>(sending_));
+    lines_.erase(lines_.begin() + sending_);
   }
 
   void give_package(UnitInputs& inputs) {

@@ -25,17 +25,17 @@ size_t row_of(const InstructionInfo* info) { return static_cast<size_t>(info - k
 Coverage::Coverage(const Configuration& configuration, int units)
     : configuration_(configuration),
       units_(static_cast<uint32_t>(units)),
-      lanes_(static_cast<uint32_t>(configuration.lanes)),
+      lanes_(configuration.lanes),
       full_(lanes_ == 32 ? ~0u : (1u << lanes_) - 1),
       rows_(std::size(kInstructions)),
       empty_(std::size(kInstructions)),
       partial_(std::size(kInstructions)),
-      depths_(static_cast<size_t>(configuration.stack_depth) + 1),
+      depths_(configuration.stack_depth + 1),
       code_(1u << 16) {}
 
 void Coverage::begin() {
   now_ = 1000;  // so that "some cycles ago" is never before 0
-  warps_.assign(units_ * static_cast<size_t>(configuration_.warps), Warp{});
+  warps_.assign(units_ * configuration_.warps, Warp{});
   for (Warp& warp : warps_) {
     warp.registers.assign(size_t{kRegisters} * lanes_, 0);
     warp.roles = {0, 1, 2};
@@ -112,7 +112,7 @@ void Coverage::retired(const RetireEvent& event) {
   if (instruction.info == nullptr || event.unit >= units_) return;
   const size_t row = row_of(instruction.info);
   const Opcode opcode = instruction.info->opcode;
-  const auto type = static_cast<size_t>(alu_of(opcode));
+  const size_t type = to_underlying(alu_of(opcode));
   Warp& warp = warp_of(event.unit, event.warp);
   ++rows_[row];
   if (event.mask == 0) ++empty_[row];
@@ -181,7 +181,7 @@ void Coverage::predicates(Warp& warp, const RetireEvent& event, const Instructio
 void Coverage::last_of_all(const RetireEvent& event, const Instruction& instruction) {
   const Opcode opcode = instruction.info->opcode;
   if (opcode == Opcode::Arg && instruction.immediate % kArguments == kArguments - 1) hit(Event::LastArgument);
-  if (event.warp + 1 != static_cast<uint32_t>(configuration_.warps) || (event.mask >> (lanes_ - 1) & 1) == 0) return;
+  if (event.warp + 1 != configuration_.warps || (event.mask >> (lanes_ - 1) & 1) == 0) return;
   if (writes_register(*instruction.info) && instruction.rd == kRegisters - 1) hit(Event::LastRegister);
   if (writes_predicate(*instruction.info) && instruction.rd == kPredicates - 1 &&
       (event.predicate >> (lanes_ - 1) & 1) != 0)
@@ -195,7 +195,7 @@ void Coverage::last_of_all(const RetireEvent& event, const Instruction& instruct
 // together with all that retired since.
 void Coverage::together(const RetireEvent& event, size_t type) {
   const auto alu = static_cast<AluType>(type);
-  const auto per_unit = static_cast<uint32_t>(configuration_.warps);
+  const auto per_unit = configuration_.warps;
   const uint32_t me = event.unit * per_unit + event.warp;
   const int depth = alu == AluType::Mem ? 3 : alu == AluType::Ray ? 2 : configuration_.alu(alu).depth;
   while (!recent_.empty() && recent_.front().cycle + 40 < now_) recent_.pop_front();
@@ -233,7 +233,7 @@ void Coverage::control(Warp& warp, const RetireEvent& event, const Instruction& 
 }
 
 uint32_t Coverage::set_of(uint32_t address) const {
-  return address / kLineBytes % (static_cast<uint32_t>(configuration_.data_cache_bytes) / (2 * kLineBytes));
+  return address / kLineBytes % (configuration_.data_cache_bytes / (2 * kLineBytes));
 }
 
 void Coverage::loaded(const Warp& warp, const RetireEvent& event, const Instruction& instruction) {
@@ -278,7 +278,7 @@ void Coverage::swapped(Warp& warp, const RetireEvent& event, Opcode opcode) {
     if (event.mask != 0) warp.last_export = made_[event.unit];
   }
   const size_t permutation = size_t{warp.roles[0]} * 2 + (warp.roles[1] > warp.roles[2] ? 1 : 0);
-  ++events_[static_cast<size_t>(Event::SetPermutation0) + permutation];
+  ++events_[to_underlying(Event::SetPermutation0) + permutation];
 }
 
 void Coverage::launches(const UnitOutputs& outputs, const UnitInputs& inputs) {
@@ -287,10 +287,10 @@ void Coverage::launches(const UnitOutputs& outputs, const UnitInputs& inputs) {
   if (!outputs.launch_ready) return hit(Event::LaunchWaits);
   const uint32_t threads = inputs.launch.threads;
   if ((outputs.busy >> outputs.launch_unit & 1) != 0) hit(Event::LaunchQueued);
-  if (threads == static_cast<uint32_t>(configuration_.contents())) hit(Event::FullBlock);
+  if (threads == configuration_.contents()) hit(Event::FullBlock);
   if (threads == 1) hit(Event::OneThread);
   if (threads % lanes_ != 0) hit(Event::PartOfWarp);
-  if ((threads + lanes_ - 1) / lanes_ < static_cast<uint32_t>(configuration_.warps)) hit(Event::WarpsLeftOut);
+  if ((threads + lanes_ - 1) / lanes_ < configuration_.warps) hit(Event::WarpsLeftOut);
   if (last_pc_ != ~0u && last_pc_ != inputs.launch.pc) hit(Event::OtherKernelNext);
   last_pc_ = inputs.launch.pc;
   ++accepted_[outputs.launch_unit];
@@ -317,7 +317,7 @@ void Coverage::memory_request(const UnitOutputs& outputs, const UnitInputs& inpu
   if (++line.fetches > 1) hit(Event::FetchedAgain);
   line.stored = false;
   line.first_beat = kNever;
-  int in_use = 0, of_set = 0;
+  uint32_t in_use = 0, of_set = 0;
   for (uint32_t id = unit * 32; id < unit * 32 + kInstructionId; ++id) {
     if (!reads_[id].valid) continue;
     ++in_use;

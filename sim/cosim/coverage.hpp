@@ -93,9 +93,7 @@ class Coverage : public RunObserver {
   void pools(const UnitOutputs& outputs, const UnitInputs& inputs, const UnitTrace& trace);
   void launches(const UnitOutputs& outputs, const UnitInputs& inputs);
   uint32_t set_of(uint32_t address) const;
-  Warp& warp_of(uint32_t unit, uint32_t warp) {
-    return warps_[unit * static_cast<uint32_t>(configuration_.warps) + warp];
-  }
+  Warp& warp_of(uint32_t unit, uint32_t warp) { return warps_[unit * configuration_.warps + warp]; }
 
   Configuration configuration_;
   uint32_t units_, lanes_, full_;

@@ -88,7 +88,7 @@ enum class Event : size_t {
   TwinInside,
   Count,
 };
-inline constexpr size_t kEvents = static_cast<size_t>(Event::Count);
+inline constexpr size_t kEvents = to_underlying(Event::Count);
 
 struct EventText {
   std::string_view group, name;

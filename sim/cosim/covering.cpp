@@ -120,7 +120,7 @@ class Search {
     size_t pairs = 0;
     for (size_t other = 0; other < row.size(); ++other) {
       if (row[other] < 0 || other == factor) continue;
-      const auto o = static_cast<size_t>(row[other]);
+      const size_t o = row[other];
       pairs += other < factor ? open_.count({other, factor, o, value}) : open_.count({factor, other, value, o});
     }
     return pairs;

@@ -25,8 +25,8 @@ class Checker {
       : program_(program),
         memory_(program.memory),
         core_(configuration, memory_),
-        warps_(static_cast<uint32_t>(configuration.warps)),
-        lanes_(static_cast<uint32_t>(configuration.lanes)),
+        warps_(configuration.warps),
+        lanes_(configuration.lanes),
         defined_(warps_ * kRegisters),
         slices_(warps_),
         arguments_(program.arguments) {}
@@ -48,7 +48,7 @@ class Checker {
           const Step& step = core_.step(warp);
           if (step.status == Step::Status::Fault) {
             if ((program_.faults & fault_bit(step.fault.code)) == 0)
-              return fmt::format("warp {} ends in fault {} at PC {}", warp, static_cast<int>(step.fault.code),
+              return fmt::format("warp {} ends in fault {} at PC {}", warp, to_underlying(step.fault.code),
                                  step.fault.pc);
             faulted = true;
           }
@@ -169,7 +169,7 @@ class Checker {
 std::string check_program(const Configuration& configuration, const RandomProgram& program, uint64_t step_limit,
                           uint64_t* executed) {
   for (const RandomProgram::Kernel& kernel : program.kernels) {
-    if (kernel.threads < 1 || kernel.threads > static_cast<uint32_t>(configuration.contents()))
+    if (kernel.threads < 1 || kernel.threads > configuration.contents())
       return fmt::format("a kernel has {} threads", kernel.threads);
     if (!kernel.rewrite) continue;
     const auto& [code, data_seed, arguments] = *kernel.rewrite;

@@ -107,7 +107,7 @@ void ProgramStatements::arithmetic() {
   } else {
     emit_immediate(Opcode::Mov, b, 0, second);
   }
-  const int operations = 2 + static_cast<int>(below(4));
+  const int operations = 2 + below(4);
   for (int n = 0; n < operations; ++n) {
     if (chance(2))
       plain(a, b);
@@ -135,7 +135,7 @@ void ProgramStatements::pairs(int loops) {
   emit_immediate(Opcode::Igt, going, counter, 0);
   const size_t start = emit(Opcode::Loop, 0, 0, 0, going);
   emit(Opcode::Tid, kAddress);
-  emit_immediate(Opcode::Imul, a, counter, static_cast<uint32_t>(configuration_.contents()));
+  emit_immediate(Opcode::Imul, a, counter, configuration_.contents());
   emit(Opcode::Iadd, kAddress, kAddress, a);
   emit_immediate(Opcode::Iadd, kAddress, kAddress, below(shared_bytes_));
   emit_immediate(Opcode::And, kAddress, kAddress, shared_bytes_ / 8 - 1);
@@ -143,7 +143,7 @@ void ProgramStatements::pairs(int loops) {
   emit(Opcode::Iadd, kAddress, kAddress, kShared);
   emit_immediate(Opcode::Ld, a, kAddress, 0);
   emit_immediate(Opcode::Ld, b, kAddress, 4);
-  const int operations = kLeastPairOperations + static_cast<int>(below(kMostPairOperations - kLeastPairOperations + 1));
+  const int operations = kLeastPairOperations + below(kMostPairOperations - kLeastPairOperations + 1);
   // One type alone in half of the loops: all warps want it at once.
   const std::optional<size_t> type = chance(2) ? std::optional(plain_type()) : std::nullopt;
   for (int n = 0; n < operations; ++n) {
@@ -247,7 +247,7 @@ void ProgramStatements::far_memory() {
   do flip = 1u << upper_bit();
   while ((flip & (added | set | clear)) != 0);
   far_address(own, spread);
-  const int accesses = 1 + static_cast<int>(below(4));
+  const int accesses = 1 + below(4);
   for (int n = 0; n < accesses; ++n) access(own && chance(2), base ^ (chance(2) ? flip : 0));
 }
 
@@ -262,12 +262,12 @@ void ProgramStatements::memory() {
   const uint32_t parts = lines > 1 && chance(2) ? std::min(lines, kMostParts) : 1;
   const uint32_t part_bytes = (entries / parts) << (own ? own_.shift : 2);
   address(own, offset, entries / parts);
-  const int accesses = 1 + static_cast<int>(below(parts > 1 ? 2 * parts : 4));
+  const int accesses = 1 + below(parts > 1 ? 2 * parts : 4);
   for (int n = 0; n < accesses; ++n) {
     // So that a load or store comes after every type.
     if (chance(parts > 1 ? 12 : 4)) plain();
     if (chance(8) && written_words_ > 0 && !in_function_)
-      emit_word(Opcode::Rld, static_cast<int>(below(static_cast<uint32_t>(written_words_))), destination());
+      emit_word(Opcode::Rld, below(static_cast<uint32_t>(written_words_)), destination());
     access(own && chance(2), offset + below(parts) * part_bytes);
   }
 }
@@ -277,22 +277,21 @@ void ProgramStatements::ray(bool top) {
     if (in_function_) return plain();
     const int words = chance(2) ? kRayWords : 1 + static_cast<int>(below(kIntersectionWords));
     for (int n = 0; n < words; ++n) emit_word(Opcode::Rst, n);
-    for (int n = 0; n < 2; ++n)
-      emit_word(Opcode::Rld, static_cast<int>(below(static_cast<uint32_t>(words))), destination());
+    for (int n = 0; n < 2; ++n) emit_word(Opcode::Rld, below(static_cast<uint32_t>(words)), destination());
     if (words >= kRayWords) rotate();
     written_words_ = 0;
     return;
   }
   if (written_words_ > 0 && chance(3)) {
-    emit_word(Opcode::Rld, static_cast<int>(below(static_cast<uint32_t>(written_words_))), destination(),
+    emit_word(Opcode::Rld, below(static_cast<uint32_t>(written_words_)), destination(),
               chance(2) ? any_predicate() : 0);
   } else if (written_words_ >= kRayWords && chance(2)) {
     rotate();
   } else if (written_words_ > 0 && (written_words_ == kIntersectionWords || chance(3))) {
-    emit_word(Opcode::Rst, static_cast<int>(below(static_cast<uint32_t>(written_words_))), 0, any_predicate());
+    emit_word(Opcode::Rst, below(static_cast<uint32_t>(written_words_)), 0, any_predicate());
   } else {
     // Words are written from 0 up, unmasked the first time, so that nothing undefined is ever read or exported.
-    const int count = std::min(kIntersectionWords - written_words_, 1 + static_cast<int>(below(14)));
+    const int count = std::min<int>(kIntersectionWords - written_words_, 1 + below(14));
     for (int n = 0; n < count; ++n) emit_word(Opcode::Rst, written_words_++);
   }
 }
@@ -372,7 +371,7 @@ void ProgramStatements::jump(int loops, int entries) {
   i.guard = any_predicate();
   i.guard_negated = chance(2);
   const size_t at = emit(i);
-  const int skipped = 1 + static_cast<int>(below(4));
+  const int skipped = 1 + below(4);
   for (int n = 0; n < skipped; ++n) {
     if (chance(4))
       memory();
@@ -427,7 +426,7 @@ void ProgramStatements::functions() {
     if (profile_.far > 0 && chance(2)) filler(below(instruction_cache_bytes_ / 8));
     begin_frame(-1, 0, chance(3));
     const uint32_t start = here();
-    body(1 + static_cast<int>(below(8)), call.loops, call.entries + 1);
+    body(1 + below(8), call.loops, call.entries + 1);
     // Deep stacks come from calls in calls.
     if (!chance(deep ? 16 : 2)) this->call(call.loops, call.entries + 1);
     if (chance(2)) emit(Opcode::Ret, 0, 0, 0, control_guard());

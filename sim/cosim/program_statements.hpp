@@ -32,20 +32,20 @@ class ProgramStatements : public ProgramEmitter {
   ProgramStatements(const Configuration& configuration, const ProgramProfile& profile, uint64_t seed)
       : ProgramEmitter(seed),
         configuration_(configuration),
-        warps_(static_cast<uint32_t>(configuration.warps)),
+        warps_(configuration.warps),
         stack_depth_(configuration.stack_depth),
-        instruction_cache_bytes_(static_cast<uint32_t>(configuration.instruction_cache_bytes)),
+        instruction_cache_bytes_(configuration.instruction_cache_bytes),
         profile_(profile),
         operands_(seed) {}
 
   /// `entries`: entries of the PC stack in use.
   void body(int length, int loops, int entries);
-  int source() { return static_cast<int>(below(16)); }
-  int destination() { return static_cast<int>(below(kDataRegisters)); }
-  int any_predicate() { return static_cast<int>(below(16)); }
+  int source() { return below(16); }
+  int destination() { return below(kDataRegisters); }
+  int any_predicate() { return below(16); }
   /// These instructions do what they do whatever their mask is.
   int control_guard() { return chance(3) ? any_predicate() : 0; }
-  int free_predicate() { return 1 + static_cast<int>(below(kLoopPredicate - 1)); }
+  int free_predicate() { return 1 + below(kLoopPredicate - 1); }
   /// An ALU type, as often as the mix wants it.
   size_t plain_type();
   const InstructionInfo& plain_row(std::optional<size_t> type);
@@ -57,7 +57,7 @@ class ProgramStatements : public ProgramEmitter {
   void arithmetic();
   /// A loop whose threads each load another pair of operands in each round, for a few dozen instructions that compute.
   void pairs(int loops);
-  uint32_t way_bytes() const { return static_cast<uint32_t>(configuration_.data_cache_bytes) / 2; }
+  uint32_t way_bytes() const { return configuration_.data_cache_bytes / 2; }
   /// r13 = an aligned address among the first `entries` words: one for all lanes, neighbours, a stride, lines of
   /// one set, or anywhere; off by -offset.
   void address(bool own, uint32_t offset, uint32_t entries);

@@ -117,8 +117,8 @@ class Generator : public ProgramStatements {
 
   void choose_kernels() {
     constexpr uint32_t kAllThreads = 5;
-    const auto contents = static_cast<uint32_t>(configuration_.contents());
-    const auto lanes = static_cast<uint32_t>(configuration_.lanes);
+    const auto contents = configuration_.contents();
+    const auto lanes = configuration_.lanes;
     for (uint32_t k = 0; k < kernels_; ++k) {
       uint32_t threads = contents;
       switch (profile_.name == kFaultMix ? kAllThreads : below(6)) {
@@ -211,7 +211,7 @@ class Generator : public ProgramStatements {
     emit(Opcode::Exit);
   }
 
-  int last_or_any_predicate() { return chance(3) ? kPredicates - 1 : 1 + static_cast<int>(below(kPredicates - 1)); }
+  int last_or_any_predicate() { return chance(3) ? kPredicates - 1 : 1 + below(kPredicates - 1); }
 
   // Set in every lane when the kernel ends, which the next one must not see.
   void leave_predicate() {
@@ -303,8 +303,7 @@ class Generator : public ProgramStatements {
         return;
       }
       default:
-        emit_word(chance(2) ? Opcode::Rld : Opcode::Rst,
-                  kIntersectionWords + static_cast<int>(below(32 - kIntersectionWords)));
+        emit_word(chance(2) ? Opcode::Rld : Opcode::Rst, kIntersectionWords + below(32 - kIntersectionWords));
         return;
     }
   }

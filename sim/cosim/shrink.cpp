@@ -50,7 +50,7 @@ class Shrinker {
     bool any = false;
     for (size_t k = 0; k < best_.kernels.size() && best_.kernels.size() > 1;) {
       RandomProgram program = best_;
-      program.kernels.erase(program.kernels.begin() + static_cast<std::ptrdiff_t>(k));
+      program.kernels.erase(program.kernels.begin() + k);
       if (attempt(std::move(program)))
         any = true;
       else
@@ -86,7 +86,7 @@ class Shrinker {
   bool threads() {
     bool any = false;
     for (size_t k = 0; k < best_.kernels.size(); ++k) {
-      for (const uint32_t threads : {1u, static_cast<uint32_t>(configuration_.lanes)}) {
+      for (const uint32_t threads : {1u, configuration_.lanes}) {
         if (best_.kernels[k].threads <= threads) continue;
         RandomProgram program = best_;
         program.kernels[k].threads = threads;
@@ -143,7 +143,7 @@ RandomProgram without_instructions(const RandomProgram& program, size_t from, si
   const auto moved = [from, to](uint32_t pc) {
     return static_cast<uint32_t>(pc < from ? pc : pc < to ? from : pc - (to - from));
   };
-  code.erase(code.begin() + static_cast<std::ptrdiff_t>(from), code.begin() + static_cast<std::ptrdiff_t>(to));
+  code.erase(code.begin() + from, code.begin() + to);
   const auto move_targets = [&](uint64_t& word) {
     const Instruction i = unpack(word);
     if (i.info == nullptr) return;

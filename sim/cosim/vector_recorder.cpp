@@ -51,7 +51,7 @@ class Recorder : public ComputeUnit {
     record(UnitInputs{}, Cycle::Unchecked, -1, 0);
     unit_->reset(program_length, memory_limit);
   }
-  void set_argument(int index, uint32_t value) override {
+  void set_argument(uint32_t index, uint32_t value) override {
     record(UnitInputs{}, Cycle::Checked, index, value);
     unit_->set_argument(index, value);
   }
@@ -81,7 +81,7 @@ class Recorder : public ComputeUnit {
     bus_.put(in.launch.threads, 11);
     bus_.put(in.launch.block, 32);
     bus_.put(in.launch.blocks, 32);
-    bus_.put(static_cast<uint64_t>(in.launch.import), 2);
+    bus_.put(to_underlying(in.launch.import), 2);
     bus_.put(in.memory_request_ready ? 1 : 0, 1);
     bus_.put(in.memory_response_valid ? 1 : 0, 1);
     bus_.put(in.memory_response.id, 5);
@@ -123,7 +123,7 @@ class Recorder : public ComputeUnit {
     field(out.memory_request.mask, 4, write);
     field(out.memory_request.id, 5, request && !write);
     field(out.import_request_valid ? 1 : 0, 1, on);
-    field(static_cast<uint64_t>(out.import_request_kind), 2, on && out.import_request_valid);
+    field(to_underlying(out.import_request_kind), 2, on && out.import_request_valid);
     field(out.export_valid ? 1 : 0, 1, on);
     words(out.export_data, on && out.export_valid ? 15 : 0);
     field(out.export_last ? 1 : 0, 1, on && out.export_valid);
@@ -132,7 +132,7 @@ class Recorder : public ComputeUnit {
     for (size_t i = 3; i-- > 0;) field(out.frame.rgb[i], 32, on && out.frame_valid);
     const bool fault = out.fault.code != FaultCode::None;
     field(fault ? 1 : 0, 1, on);
-    field(static_cast<uint64_t>(out.fault.code), 4, on && fault);
+    field(to_underlying(out.fault.code), 4, on && fault);
     field(out.fault.warp, warp_bits_, on && fault);
     field(out.fault.pc, 16, on && fault);
     for (int warp = warps_ - 1; warp >= 0; --warp) retirement(static_cast<uint32_t>(warp), on);
@@ -151,7 +151,7 @@ class Recorder : public ComputeUnit {
     field(ray != nullptr ? ray->word : 0, 5, on && ray != nullptr);
     field(ray != nullptr ? ray->mask : 0, lanes_, on && ray != nullptr);
     for (int lane = lanes_ - 1; lane >= 0; --lane) {
-      const auto l = static_cast<size_t>(lane);
+      const size_t l = lane;
       field(ray != nullptr ? ray->data[l] : 0, 32, on && ray != nullptr && (ray->mask >> lane & 1) != 0);
     }
   }
@@ -169,7 +169,7 @@ class Recorder : public ComputeUnit {
     field(event != nullptr ? event->instruction : 0, 64, valid);
     field(event != nullptr ? event->mask : 0, lanes_, valid);
     for (int lane = lanes_ - 1; lane >= 0; --lane) {
-      const auto l = static_cast<size_t>(lane);
+      const size_t l = lane;
       field(event != nullptr ? event->data[l] : 0, 32, data && (event->mask >> lane & 1) != 0);
     }
     field(event != nullptr ? event->predicate : 0, lanes_, predicate);

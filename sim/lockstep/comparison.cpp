@@ -249,12 +249,11 @@ void Comparison::outputs(const UnitOutputs& rtl, const UnitOutputs& model) const
   if (rtl.import_request_valid != model.import_request_valid ||
       (rtl.import_request_valid && (rtl.import_request_kind != model.import_request_kind ||
                                     rtl.import_request_unit != model.import_request_unit))) {
-    throw Mismatch{
-        "the import requests differ in this cycle",
-        row("valid", rtl.import_request_valid, model.import_request_valid) +
-            row("kind", static_cast<int>(rtl.import_request_kind), static_cast<int>(model.import_request_kind)) +
-            row("unit", rtl.import_request_unit, model.import_request_unit),
-        kImportModules, Context::Unit};
+    throw Mismatch{"the import requests differ in this cycle",
+                   row("valid", rtl.import_request_valid, model.import_request_valid) +
+                       row("kind", to_underlying(rtl.import_request_kind), to_underlying(model.import_request_kind)) +
+                       row("unit", rtl.import_request_unit, model.import_request_unit),
+                   kImportModules, Context::Unit};
   }
   if (rtl.export_valid != model.export_valid ||
       (rtl.export_valid && (rtl.export_data != model.export_data || rtl.export_last != model.export_last ||

@@ -19,7 +19,7 @@ std::string scope_of(uint32_t unit) { return fmt::format("gen_unit[{}].compute_u
 
 /// Instances of a type.
 uint32_t count_of(const Configuration& configuration, size_t type) {
-  return kAluTable[type].timed_by_events() ? 1 : static_cast<uint32_t>(configuration.alus[type].count);
+  return kAluTable[type].timed_by_events() ? 1 : configuration.alus[type].count;
 }
 
 std::string instance_scope(uint32_t unit, uint32_t instance) {
@@ -44,10 +44,10 @@ UnitInspection::UnitInspection(const Configuration& configuration, const Compute
                                uint32_t unit)
     : model_(&model),
       configuration_(configuration),
-      warps_(static_cast<uint32_t>(configuration.warps)),
-      lanes_(static_cast<uint32_t>(configuration.lanes)),
+      warps_(configuration.warps),
+      lanes_(configuration.lanes),
       warp_bits_(warps_ > 1 ? lowest(warps_) : 1),
-      mshrs_(static_cast<uint32_t>(configuration.data_cache_mshrs)),
+      mshrs_(configuration.data_cache_mshrs),
       w_(rtl, scope_of(unit)),
       mem_(rtl, alu_scope(configuration, unit, AluType::Mem)),
       cache_(rtl, alu_scope(configuration, unit, AluType::Mem) + ".u_cache"),
@@ -69,8 +69,8 @@ UnitInspection::UnitInspection(const Configuration& configuration, const Compute
       Instance& instance = instances_.emplace_back();
       instance.type = type;
       instance.piped = piped;
-      instance.latency = static_cast<uint32_t>(alu.latency);
-      instance.depth = static_cast<uint32_t>(alu.depth);
+      instance.latency = alu.latency;
+      instance.depth = alu.depth;
       if (piped) piped_ |= 1u << place;
       if (piped && instance.latency > 1) paused_ |= 1u << place;
     }
@@ -461,7 +461,7 @@ void UnitInspection::check_done() {
 void UnitInspection::check_result(uint32_t instance, uint32_t warp) {
   const CycleUnit::Issue& issue = model_->issue(warp);
   const DecodedInstruction& instruction = *issue.instruction;
-  if (static_cast<uint32_t>(instruction.alu()) != instances_[instance].type) return;
+  if (to_underlying(instruction.alu()) != instances_[instance].type) return;
   bool same = true;
   if (instruction.writes_register) {
     for (uint32_t mask = issue.mask; same && mask != 0; mask &= mask - 1)

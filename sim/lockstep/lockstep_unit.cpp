@@ -27,7 +27,7 @@ class LockstepUnitImpl : public LockstepUnit {
                    const LockstepOptions& options)
       : configuration_(configuration),
         options_(options),
-        warps_(static_cast<uint32_t>(configuration.warps)),
+        warps_(configuration.warps),
         lanes_(configuration.lanes),
         rtl_(std::move(rtl)),
         model_(make_model(configuration, memory, rtl_->units())),
@@ -53,7 +53,7 @@ class LockstepUnitImpl : public LockstepUnit {
     for (History& history : histories_) history.count = 0;
   }
 
-  void set_argument(int index, uint32_t value) override {
+  void set_argument(uint32_t index, uint32_t value) override {
     rtl_->set_argument(index, value);
     model_.device->set_argument(index, value);
     if (inspection_) inspection_->argument_written();

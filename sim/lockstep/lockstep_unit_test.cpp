@@ -41,7 +41,7 @@ class Device : public ComputeUnit {
     unit_.reset(program_length, memory_limit);
     update();
   }
-  void set_argument(int index, uint32_t value) override { unit_.set_argument(index, value); }
+  void set_argument(uint32_t index, uint32_t value) override { unit_.set_argument(index, value); }
   const UnitOutputs& outputs() const override { return outputs_; }
   void clock(const UnitInputs& inputs) override {
     unit_.clock(alter_inputs(inputs));

@@ -74,7 +74,7 @@ class LoadedUnit : public ComputeUnit {
 
   uint32_t units() const override { return unit_->units(); }
   void reset(uint32_t program_length, uint32_t memory_limit) override { unit_->reset(program_length, memory_limit); }
-  void set_argument(int index, uint32_t value) override { unit_->set_argument(index, value); }
+  void set_argument(uint32_t index, uint32_t value) override { unit_->set_argument(index, value); }
   const UnitOutputs& outputs() const override { return unit_->outputs(); }
   void clock(const UnitInputs& inputs) override { unit_->clock(inputs); }
   void trace_on() override { unit_->trace_on(); }

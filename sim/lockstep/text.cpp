@@ -55,7 +55,7 @@ std::string fault_text(const Fault& fault) {
   static constexpr std::array<const char*, 8> kNames = {
       "no fault",           "illegal instruction", "PC outside the program", "PC stack overflow",
       "PC stack underflow", "misaligned address",  "address outside memory", "ray word above 20"};
-  const size_t code = static_cast<size_t>(fault.code);
+  const size_t code = to_underlying(fault.code);
   if (fault.code == FaultCode::None) return kNames[0];
   return fmt::format("{} (code {}) at warp {}, PC {}", code < kNames.size() ? kNames[code] : "unknown fault", code,
                      fault.warp, fault.pc);

@@ -58,7 +58,7 @@ std::optional<ModeTiming> time_mode(const Scene& scene, int depth, const Configu
   chip.frame = &sink;
   const ChipResult result = run_chip(chip);
   if (!result.timed || result.rays() == 0) return std::nullopt;
-  return ModeTiming{static_cast<double>(result.cycles) / static_cast<double>(result.rays()), result.mrays_per_s};
+  return ModeTiming{static_cast<double>(result.cycles) / result.rays(), result.mrays_per_s};
 }
 
 std::optional<ModeGates> read_gates(const fs::path& synthesis, const arith::Mode& mode) {
@@ -69,7 +69,7 @@ std::optional<ModeGates> read_gates(const fs::path& synthesis, const arith::Mode
     if (fs::is_regular_file(path)) reports.push_back({fs::last_write_time(path), path});
   }
   std::sort(reports.rbegin(), reports.rend());
-  const auto subnormals = static_cast<int>(mode.subnormals), slow_unit = static_cast<int>(mode.slow_unit);
+  const auto subnormals = to_underlying(mode.subnormals), slow_unit = to_underlying(mode.slow_unit);
   std::optional<double> flt, slw;
   for (const auto& [time, path] : reports) {
     std::ifstream file(path);

@@ -60,7 +60,7 @@ ExtremeFrame ray_frame(Scene scene, const Vec3& origin, const Vec3& direction) {
   frame.scene = std::move(scene);
   frame.change_arguments = [origin, direction](std::array<uint32_t, kArguments>& arguments) {
     for (int axis = 0; axis < 3; ++axis) {
-      const auto i = static_cast<size_t>(axis);
+      const size_t i = axis;
       arguments[argument::kEye + i] = as_bits(origin[axis]);
       arguments[argument::kCorner + i] = as_bits(direction[axis]);
       // x + 0 * -0 is x, -0 included.
@@ -92,8 +92,8 @@ bool is_lit(const FrameBuffer& frame, int x, int y) {
 
 uint64_t lit_pixels(const FrameBuffer& frame) {
   uint64_t count = 0;
-  for (int y = 0; y < frame.height(); ++y) {
-    for (int x = 0; x < frame.width(); ++x) count += is_lit(frame, x, y);
+  for (uint32_t y = 0; y < frame.height(); ++y) {
+    for (uint32_t x = 0; x < frame.width(); ++x) count += is_lit(frame, x, y);
   }
   return count;
 }

@@ -172,7 +172,7 @@ void edges_and_vertices(const ExtremeMachine& machine) {
   std::vector<TriangleCorners> triangles;
   for (int x = -2; x < 2; ++x) {
     for (int y = -2; y < 2; ++y) {
-      const auto u = static_cast<float>(x), v = static_cast<float>(y);
+      const float u = x, v = y;
       const Vec3 a{u, v, -3}, b{u + 1, v, -3}, c{u + 1, v + 1, -3}, d{u, v + 1, -3};
       triangles.push_back({a, b, c});
       triangles.push_back({a, c, d});
@@ -181,7 +181,7 @@ void edges_and_vertices(const ExtremeMachine& machine) {
   const Scene scene = scene_of_triangles(triangles);
   for (int x = -4; x <= 4; x += 1) {
     for (int y = -4; y <= 4; y += 2) {
-      const auto u = static_cast<float>(x) * 0.5f, v = static_cast<float>(y) * 0.5f;
+      const auto u = x * 0.5f, v = y * 0.5f;
       const Drawing straight = shoot(machine, scene, {u, v, 0}, {0, 0, -1});
       require(eye_ray(straight).goes_on, fmt::format("a ray falls through the mesh at ({}, {})", u, v));
       if (std::abs(x) == 4 || std::abs(y) == 4) continue;

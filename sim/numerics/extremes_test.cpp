@@ -71,7 +71,7 @@ TEST(ExtremeCatalogue, AFrameThatDoesNotEndFails) {
   class Deaf : public ComputeUnit {
    public:
     void reset(uint32_t, uint32_t) override {}
-    void set_argument(int, uint32_t) override {}
+    void set_argument(uint32_t, uint32_t) override {}
     const UnitOutputs& outputs() const override { return outputs_; }
     void clock(const UnitInputs&) override {}
     const UnitTrace& trace() const override { return trace_; }

@@ -53,14 +53,14 @@ void slivers(const ExtremeMachine& machine) {
   // A fan of 1e6 to 1: 1000 long, 0.001 wide; half of them subdivided along their length, so that needles meet needles.
   std::vector<TriangleCorners> triangles;
   for (int i = -20; i < 20; ++i) {
-    const float y = 0.001f * static_cast<float>(i), next = 0.001f * static_cast<float>(i + 1);
+    const float y = 0.001f * i, next = 0.001f * (i + 1);
     triangles.push_back({Vec3{-500, y, -2}, Vec3{500, y, -2}, Vec3{500, next, -2}});
     triangles.push_back({Vec3{-500, y, -2}, Vec3{500, next, -2}, Vec3{-500, next, -2}});
   }
   const Scene scene = scene_of_triangles(triangles);
   for (float x : {-400.0f, -1.0f, 0.0f, 3.0f, 499.0f}) {
     for (int step = -38; step <= 38; step += 5) {
-      const Vec3 target{x, 0.0005f * static_cast<float>(step), -2};
+      const Vec3 target{x, 0.0005f * step, -2};
       const Drawing drawing = machine.draw(ray_frame(scene, {0, 0, 0}, target));
       require_no_nan(drawing);
       require(eye_ray(drawing).goes_on, fmt::format("a ray falls between the slivers at ({}, {})", target.x, target.y));
@@ -133,12 +133,12 @@ void tiny_triangles(const ExtremeMachine& machine) {
   // Smaller than a unit in the last place of the distance: hit or not, but the same everywhere and never a NaN.
   std::vector<TriangleCorners> triangles;
   for (int i = 0; i < 8; ++i) {
-    const float x = 0.125f * static_cast<float>(i), d = std::ldexp(1.0f, -20 - 4 * i);
+    const float x = 0.125f * i, d = std::ldexp(1.0f, -20 - 4 * i);
     triangles.push_back({Vec3{x, 0, -1}, Vec3{x + d, 0, -1}, Vec3{x, d, -1}});
   }
   const Scene scene = scene_of_triangles(triangles + square(2, -2));
   for (int i = 0; i < 8; ++i) {
-    const Drawing drawing = machine.draw(ray_frame(scene, {0, 0, 0}, {0.125f * static_cast<float>(i), 0, -1}));
+    const Drawing drawing = machine.draw(ray_frame(scene, {0, 0, 0}, {0.125f * i, 0, -1}));
     require_no_nan(drawing);
     require(eye_ray(drawing).goes_on, "neither the tiny triangle nor the wall behind it is hit");
     require_right_hits(drawing, scene);

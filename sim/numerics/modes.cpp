@@ -10,7 +10,7 @@ Configuration ArithmeticMode::applied_to(const Configuration& base) const {
   changed.slow_unit = mode.slow_unit;
   changed.fma = mode.fused;
   for (const AluType type : {AluType::Flt, AluType::Slw})
-    changed.alus[static_cast<size_t>(type)].depth += least_depth(changed, type) - least_depth(base, type);
+    changed.alus[type].depth += least_depth(changed, type) - least_depth(base, type);
   if (name != arithmetic_modes().front().name) changed.name += "-" + name;
   return changed;
 }

@@ -68,10 +68,10 @@ struct Point {
 std::string style(const ArithmeticMode& mode) {
   static constexpr const char* kColors[] = {"#4477aa", "#66aa55", "#ddaa33", "#bb5566"};
   const bool flush = mode.mode.subnormals == Subnormals::Flush;
-  const auto unit = static_cast<size_t>(mode.mode.slow_unit);
+  const size_t unit = to_underlying(mode.mode.slow_unit);
   const int shape = (mode.mode.fused ? 9 : 7) - (flush ? 1 : 0);
   return fmt::format("pointtype {} pointsize {:.1f} linewidth 2 linecolor \"{}\"", shape,
-                     (flush ? 3.0 : 2.0) - 0.35 * static_cast<double>(unit), kColors[unit]);
+                     (flush ? 3.0 : 2.0) - 0.35 * unit, kColors[unit]);
 }
 
 std::string panel(const TradeResult& result, const std::string& axis,

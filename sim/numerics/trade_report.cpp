@@ -18,7 +18,7 @@ std::string number(const std::optional<double>& value, const char* format) {
 std::string decibels(double value) { return std::isfinite(value) ? fmt::format("{:.1f}", value) : "equal"; }
 
 std::string share(uint64_t part, uint64_t whole) {
-  return fmt::format("{:.2f}%", 100 * static_cast<double>(part) / static_cast<double>(whole));
+  return fmt::format("{:.2f}%", 100 * static_cast<double>(part) / whole);
 }
 
 Json to_json(const TradeResult& result) {

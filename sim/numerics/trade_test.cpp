@@ -28,7 +28,7 @@ TradeScene& cornell() {
 
 TEST(ArithmeticModes, AreAsDeepAsTheyNeed) {
   Configuration deeper;
-  deeper.alus[static_cast<size_t>(AluType::Slw)].depth += 2;
+  deeper.alus[AluType::Slw].depth += 2;
   for (const ArithmeticMode& mode : arithmetic_modes()) {
     const Configuration plain = mode.applied_to(Configuration{});
     for (const AluType type : {AluType::Flt, AluType::Slw})

@@ -65,8 +65,7 @@ WatertightMesh terrain() {
   builder.surface(64, 64, false, false, [](double s, double t) {
     return Vec3d{200 * s - 100, 3 * std::sin(17 * s) * std::cos(13 * t), 200 * t - 100};
   });
-  for (int i = 0; i < 4; ++i)
-    mesh.origins.push_back({-30.3f + 20.1f * static_cast<float>(i), 150, 11.7f * static_cast<float>(i)});
+  for (int i = 0; i < 4; ++i) mesh.origins.push_back({-30.3f + 20.1f * i, 150, 11.7f * i});
   return mesh;
 }
 

@@ -46,8 +46,8 @@ inline void write_beat(Port& port, const Beat& beat) {
 class RtlUnit : public ComputeUnit {
  public:
   explicit RtlUnit(const Configuration& configuration)
-      : warps_(static_cast<uint32_t>(configuration.warps)),
-        lanes_(static_cast<uint32_t>(configuration.lanes)),
+      : warps_(configuration.warps),
+        lanes_(configuration.lanes),
         warp_bits_(warps_ > 1 ? static_cast<uint32_t>(__builtin_ctz(warps_)) : 1) {
 #if VM_TRACE
     context_.traceEverOn(true);
@@ -77,7 +77,7 @@ class RtlUnit : public ComputeUnit {
     clock(UnitInputs{});
   }
 
-  void set_argument(int index, uint32_t value) override {
+  void set_argument(uint32_t index, uint32_t value) override {
     top_->argument_write_i = 1;
     top_->argument_index_i = static_cast<CData>(index);
     top_->argument_data_i = value;

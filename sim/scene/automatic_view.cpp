@@ -142,8 +142,7 @@ class Viewfinder {
 
   /// In float, which hides that the libraries' tangents differ in the last place.
   static double half_height(float fov) {
-    return static_cast<double>(
-        static_cast<float>(std::tan(static_cast<double>(fov) * 0.5 * 3.14159265358979323846 / 180)));
+    return static_cast<double>(static_cast<float>(std::tan(fov * 0.5 * 3.14159265358979323846 / 180)));
   }
 
   /// How much there is to see: the share of the picture that shows something, and into how many kinds of surface (by
@@ -250,7 +249,7 @@ class Viewfinder {
       const Vec3d area = cross(q - p, r - p) * 0.5;
       for (int axis = 0; axis < 3; ++axis) {
         const double low = std::min({p[axis], q[axis], r[axis]}), high = std::max({p[axis], q[axis], r[axis]});
-        const auto side = static_cast<size_t>(2 * axis);
+        const size_t side = 2 * axis;
         if (high <= 0.03 * extent_[axis]) covered[side] += std::fabs(area[axis]);
         if (low >= 0.97 * extent_[axis]) covered[side + 1] += std::fabs(area[axis]);
       }

@@ -8,6 +8,8 @@
 #include <new>
 #include <stdexcept>
 
+#include "bits.hpp"
+
 namespace raypool {
 namespace {
 
@@ -49,7 +51,7 @@ class Flattener {
 
   uint32_t flatten(const BuildNode& node) {
     if (node.leaf) return add_block(node) | kLeafBit;
-    const auto index = static_cast<uint32_t>(bvh_.nodes.size());
+    const auto index = size32(bvh_.nodes);
     bvh_.nodes.push_back(empty_node());
     for (uint32_t i = 0; i < node.count; ++i) {
       const uint32_t child = flatten(*node.children[i]);

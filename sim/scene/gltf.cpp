@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "bits.hpp"
 #include "scene/gltf_document.hpp"
 #include "scene/mesh_builder.hpp"
 #include "scene/scene_file.hpp"
@@ -93,7 +94,7 @@ class Assembler {
  private:
   void add(const aiMesh& mesh, const Transform& here) {
     Scene& scene = result_.scene;
-    const auto first = static_cast<uint32_t>(scene.vertices.size());
+    const auto first = size32(scene.vertices);
     for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
       const aiVector3D& v = mesh.mVertices[i];
       scene.vertices.push_back(here({v.x, v.y, v.z}).as<float>());

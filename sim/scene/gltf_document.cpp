@@ -87,7 +87,7 @@ Elements Geometry::elements(const JsonPlace& accessor, size_t components, const 
   if (known != known_.end()) return known->second;
   if (accessor.find("sparse")) accessor.fail("is sparse, which is not read; export the file without sparse accessors");
   const JsonPlace type = accessor.at("componentType");
-  const auto component = static_cast<int>(type.whole(0, 65535));
+  const int component = type.whole(0, 65535);
   if (std::find(types.begin(), types.end(), component) == types.end() ||
       accessor.at("type").text() != (components == 3 ? "VEC3" : "SCALAR")) {
     type.fail(components == 3 ? "must be 5126 and the type VEC3: positions are three floats each; export them as such"

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "bits.hpp"
 #include "scene/file_fixture.hpp"
 #include "scene/scene_file.hpp"
 
@@ -29,9 +30,9 @@ std::string glb(const Json& json, std::string binary) {
   binary.resize((binary.size() + 3) / 4 * 4, '\0');
   append(bytes, uint32_t{2});
   append(bytes, static_cast<uint32_t>(12 + 8 + text.size() + 8 + binary.size()));
-  append(bytes, static_cast<uint32_t>(text.size()));
+  append(bytes, size32(text));
   bytes += "JSON" + text;
-  append(bytes, static_cast<uint32_t>(binary.size()));
+  append(bytes, size32(binary));
   return bytes + std::string("BIN\0", 4) + binary;
 }
 
@@ -302,7 +303,7 @@ Document with_lights(const std::vector<std::string>& types) {
   Document document = triangle();
   Json& lights = document.json["extensions"]["KHR_lights_punctual"]["lights"];
   for (const std::string& type : types) {
-    const auto place = static_cast<double>(lights.size());
+    const double place = lights.size();
     document.json["nodes"].push_back({{"translation", {place, 3, 4}},
                                       {"rotation", {std::sqrt(0.5), 0, 0, std::sqrt(0.5)}},  // -z to y
                                       {"name", "lamp" + std::to_string(lights.size())},

@@ -30,19 +30,19 @@ uint64_t to_fixed(float contribution) {
   if (contribution >= 0x1p32f) return UINT64_MAX;
   // Exact but for the rounding asked for: a float of 2^-8 and more is a whole number of units,
   // and a smaller one plus a half is exact.
-  const double units = static_cast<double>(contribution) * 0x1p32;
+  const double units = contribution * 0x1p32;
   return static_cast<uint64_t>(units < 0x1p40 ? units + 0.5 : units);
 }
 
-FrameBuffer::FrameBuffer(int width, int height) : width_(width), height_(height) {
+FrameBuffer::FrameBuffer(uint32_t width, uint32_t height) : width_(width), height_(height) {
   if (width < 1 || width > 65535 || height < 1 || height > 65535) {
     throw InputError(fmt::format("image size {} x {}: width and height must lie in 1 .. 65535 pixels", width, height));
   }
-  accumulators_.assign(3 * static_cast<size_t>(width) * static_cast<size_t>(height), 0);
+  accumulators_.assign(3 * size_t{width} * height, 0);
 }
 
 bool FrameBuffer::add(const FrameContribution& contribution) {
-  const int x = contribution.pixel & 0xffffu, y = contribution.pixel >> 16;
+  const uint32_t x = contribution.pixel & 0xffffu, y = contribution.pixel >> 16;
   if (x >= width_ || y >= height_) return false;
   for (size_t channel = 0; channel < 3; ++channel) {
     uint64_t& accumulator = accumulators_[index(x, y) + channel];
@@ -67,10 +67,10 @@ uint8_t to_srgb8(double linear) {
 
 std::vector<uint8_t> to_rgb8(const FrameBuffer& frame) {
   std::vector<uint8_t> bytes;
-  bytes.reserve(3 * static_cast<size_t>(frame.width()) * static_cast<size_t>(frame.height()));
-  for (int y = 0; y < frame.height(); ++y) {
-    for (int x = 0; x < frame.width(); ++x) {
-      for (int channel = 0; channel < 3; ++channel) bytes.push_back(to_srgb8(frame.linear(x, y, channel)));
+  bytes.reserve(3 * size_t{frame.width()} * frame.height());
+  for (uint32_t y = 0; y < frame.height(); ++y) {
+    for (uint32_t x = 0; x < frame.width(); ++x) {
+      for (uint32_t channel = 0; channel < 3; ++channel) bytes.push_back(to_srgb8(frame.linear(x, y, channel)));
     }
   }
   return bytes;
@@ -99,21 +99,21 @@ ImageDifference compare(const FrameBuffer& a, const FrameBuffer& b) {
   if (a.width() != b.width() || a.height() != b.height())
     throw InputError("pictures of different size cannot be compared");
   ImageDifference result;
-  for (int y = 0; y < a.height(); ++y) {
-    for (int x = 0; x < a.width(); ++x) {
+  for (uint32_t y = 0; y < a.height(); ++y) {
+    for (uint32_t x = 0; x < a.width(); ++x) {
       bool differs = false;
-      for (int channel = 0; channel < 3; ++channel) differs |= a.raw(x, y, channel) != b.raw(x, y, channel);
+      for (uint32_t channel = 0; channel < 3; ++channel) differs |= a.raw(x, y, channel) != b.raw(x, y, channel);
       result.pixels += differs;
     }
   }
   const std::vector<uint8_t> pa = to_rgb8(a), pb = to_rgb8(b);
   double squares = 0;
   for (size_t i = 0; i < pa.size(); ++i) {
-    const int difference = std::abs(static_cast<int>(pa[i]) - static_cast<int>(pb[i]));
+    const int difference = std::abs(pa[i] - pb[i]);
     result.largest = std::max(result.largest, difference);
-    squares += static_cast<double>(difference) * difference;
+    squares += difference * difference;
   }
-  result.psnr = squares == 0 ? INFINITY : 10 * std::log10(255.0 * 255.0 * static_cast<double>(pa.size()) / squares);
+  result.psnr = squares == 0 ? INFINITY : 10 * std::log10(255.0 * 255.0 * pa.size() / squares);
   return result;
 }
 

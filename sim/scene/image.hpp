@@ -20,10 +20,10 @@ uint64_t to_fixed(float contribution);
 class FrameBuffer {
  public:
   /// Throws InputError unless both lie in 1 .. 65535.
-  FrameBuffer(int width, int height);
+  FrameBuffer(uint32_t width, uint32_t height);
 
-  int width() const { return width_; }
-  int height() const { return height_; }
+  uint32_t width() const { return width_; }
+  uint32_t height() const { return height_; }
 
   /// x to the right, y downwards, both from 0. Returns false, and adds nothing, when the pixel lies outside.
   bool add(const FrameContribution& contribution);
@@ -31,19 +31,17 @@ class FrameBuffer {
   void add(const FrameBuffer& other);
 
   /// Channel 0 .. 2, in units of 2^-32.
-  uint64_t raw(int x, int y, int channel) const { return accumulators_[index(x, y) + static_cast<size_t>(channel)]; }
-  double linear(int x, int y, int channel) const { return static_cast<double>(raw(x, y, channel)) * 0x1p-32; }
+  uint64_t raw(uint32_t x, uint32_t y, uint32_t channel) const { return accumulators_[index(x, y) + channel]; }
+  double linear(uint32_t x, uint32_t y, uint32_t channel) const { return raw(x, y, channel) * 0x1p-32; }
 
   bool operator==(const FrameBuffer& other) const {
     return width_ == other.width_ && height_ == other.height_ && accumulators_ == other.accumulators_;
   }
 
  private:
-  size_t index(int x, int y) const {
-    return 3 * (static_cast<size_t>(y) * static_cast<size_t>(width_) + static_cast<size_t>(x));
-  }
+  size_t index(uint32_t x, uint32_t y) const { return 3 * (size_t{y} * width_ + x); }
 
-  int width_, height_;
+  uint32_t width_, height_;
   std::vector<uint64_t> accumulators_;
 };
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bits.hpp"
+
 namespace raypool {
 namespace {
 
@@ -110,7 +112,7 @@ void MeshBuilder::room(const Vec3d& lower, const Vec3d& upper) {
 
 void MeshBuilder::surface(int nu, int nv, bool wrap_u, bool wrap_v, const std::function<Vec3d(double, double)>& point) {
   const int columns = wrap_u ? nu : nu + 1, rows = wrap_v ? nv : nv + 1;
-  const auto first = static_cast<uint32_t>(scene_.vertices.size());
+  const auto first = size32(scene_.vertices);
   for (int j = 0; j < rows; ++j) {
     for (int i = 0; i < columns; ++i) vertex(point(static_cast<double>(i) / nu, static_cast<double>(j) / nv));
   }
@@ -174,7 +176,7 @@ void MeshBuilder::tube(const std::function<Vec3d(double)>& path, double radius, 
   const int caps = closed ? 0 : 2, rows = along + 2 * caps;
   surface(around, rows, true, closed, [&](double s, double t) {
     const int row = static_cast<int>(std::lround(t * rows)) - caps;
-    const auto i = static_cast<size_t>(std::clamp(row, 0, along));
+    const size_t i = std::clamp(row, 0, along);
     const double beyond = row < 0 ? row : row > along ? row - along : 0;  // -2 .. 2 in the caps
     const double cap_angle = beyond / std::max(caps, 1) * 0.5 * kPi;
     const double angle = 2 * kPi * s - turn * static_cast<double>(i) / along;

@@ -45,11 +45,11 @@ class Worker {
     thread_.mode = options.mode;
   }
 
-  void render_tile(int x, int y) {
-    for (int i = 0; i < options_.contents; ++i) {
-      thread_.thread = static_cast<uint32_t>(i);
-      thread_.threads = static_cast<uint32_t>(options_.contents);
-      thread_.block = static_cast<uint32_t>(x) | static_cast<uint32_t>(y) << 16;
+  void render_tile(uint32_t x, uint32_t y) {
+    for (uint32_t i = 0; i < options_.contents; ++i) {
+      thread_.thread = i;
+      thread_.threads = options_.contents;
+      thread_.block = x | y << 16;
       run(RayKernel::CastEye);
       while (!pending_.empty()) {
         const Ray ray = pending_.back();
@@ -79,7 +79,7 @@ class Worker {
   void follow(const Ray& ray) {
     const bool shadow = (ray[word::kFlags] & kShadowFlag) != 0;
     const uint32_t depth = ray[word::kFlags] & kDepthMask;
-    if (!shadow && depth > static_cast<uint32_t>(options_.depth)) {
+    if (!shadow && depth > options_.depth) {
       ++statistics.dropped_rays;
       return;
     }
@@ -112,8 +112,8 @@ float offset(const Scene& scene) {
 
 MemoryImage build_memory(const Program& program, const Scene& scene) {
   auto round_up = [](uint64_t bytes) { return (bytes + 63) / 64 * 64; };
-  const uint64_t base = round_up(8 * static_cast<uint64_t>(program.code.size()));
-  const uint64_t size = round_up(base + kMaterialBytes * static_cast<uint64_t>(scene.materials.size()));
+  const uint64_t base = round_up(8 * program.code.size());
+  const uint64_t size = round_up(base + kMaterialBytes * scene.materials.size());
   if (size > UINT32_MAX)
     throw InputError(fmt::format("{}: {} materials do not fit in the memory", scene.name, scene.materials.size()));
   MemoryImage image{Memory(static_cast<uint32_t>(size)), static_cast<uint32_t>(base)};
@@ -123,8 +123,8 @@ MemoryImage build_memory(const Program& program, const Scene& scene) {
   }
   for (uint32_t i = 0; i < scene.materials.size(); ++i) {
     const uint32_t record = image.material_base + i * kMaterialBytes;
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto offset = static_cast<uint32_t>(4 * axis);
+    for (uint32_t axis = 0; axis < 3; ++axis) {
+      const uint32_t offset = 4 * axis;
       image.memory.store(record + kMaterialDiffuse + offset, as_bits(scene.materials[i].kd[axis]));
       image.memory.store(record + kMaterialReflectance + offset, as_bits(scene.materials[i].ks[axis]));
     }
@@ -132,7 +132,8 @@ MemoryImage build_memory(const Program& program, const Scene& scene) {
   return image;
 }
 
-std::array<uint32_t, kArguments> camera_arguments(const Scene& scene, int width, int height, int contents) {
+std::array<uint32_t, kArguments> camera_arguments(const Scene& scene, uint32_t width, uint32_t height,
+                                                  uint32_t contents) {
   require_range("image width", width, 1, 65535);
   require_range("image height", height, 1, 65535);
   std::array<uint32_t, kArguments> arguments{};
@@ -144,21 +145,21 @@ std::array<uint32_t, kArguments> camera_arguments(const Scene& scene, int width,
   const Vec3d right = normalized(cross(forward, scene.camera.up.as<double>()));
   const Vec3d up = cross(right, forward);
   const double pi = 3.14159265358979323846;
-  const double half_height = std::tan(static_cast<double>(scene.camera.fov) * 0.5 * pi / 180);
+  const double half_height = std::tan(scene.camera.fov * 0.5 * pi / 180);
   const double pixel = 2 * half_height / height;  // pixels are square
   const Vec3d step_x = right * pixel, step_y = up * -pixel;
   put(argument::kEye, scene.camera.eye.as<double>());
-  put(argument::kCorner, forward + step_x * (0.5 * (1 - width)) + step_y * (0.5 * (1 - height)));
+  put(argument::kCorner, forward + step_x * (0.5 * (1.0 - width)) + step_y * (0.5 * (1.0 - height)));
   put(argument::kStepX, step_x);
   put(argument::kStepY, step_y);
   put(argument::kLight, scene.light.position.as<double>());
   put(argument::kLightColor, scene.light.color.as<double>());
   arguments[argument::kOffset] = as_bits(offset(scene));
-  const int log2 = tile_width_log2(contents);
-  arguments[argument::kTileWidthLog2] = static_cast<uint32_t>(log2);
+  const uint32_t log2 = tile_width_log2(contents);
+  arguments[argument::kTileWidthLog2] = log2;
   arguments[argument::kTileMask] = (1u << log2) - 1;
-  arguments[argument::kWidth] = static_cast<uint32_t>(width);
-  arguments[argument::kHeight] = static_cast<uint32_t>(height);
+  arguments[argument::kWidth] = width;
+  arguments[argument::kHeight] = height;
   return arguments;
 }
 
@@ -172,18 +173,18 @@ FrameBuffer render_native(const Scene& scene, const MemoryImage& image, const Tr
   }
   auto arguments = camera_arguments(scene, options.width, options.height, options.contents);
   if (options.change_arguments) options.change_arguments(arguments);
-  const int tile_width = 1 << tile_width_log2(options.contents), tile_height = options.contents / tile_width;
+  const uint32_t tile_width = 1u << tile_width_log2(options.contents), tile_height = options.contents / tile_width;
   Memory memory = image.memory;
 
   // Rows of tiles are handed out one at a time. Who gets which does not matter: pictures and counts are sums.
-  const auto workers_count = static_cast<size_t>(options.threads);
+  const size_t workers_count = options.threads;
   std::vector<Worker> workers(workers_count, Worker(arguments, memory, tracer, options));
   std::vector<std::exception_ptr> errors(workers_count);
-  std::atomic<int> next_row{0};
+  std::atomic<uint32_t> next_row{0};
   auto work = [&](size_t index) {
     try {
-      for (int y = tile_height * next_row++; y < options.height; y = tile_height * next_row++) {
-        for (int x = 0; x < options.width; x += tile_width) workers[index].render_tile(x, y);
+      for (uint32_t y = tile_height * next_row++; y < options.height; y = tile_height * next_row++) {
+        for (uint32_t x = 0; x < options.width; x += tile_width) workers[index].render_tile(x, y);
       }
     } catch (...) {
       errors[index] = std::current_exception();

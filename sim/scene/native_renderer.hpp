@@ -31,17 +31,18 @@ inline constexpr double kOffsetShare = 1e-5;
 inline constexpr double kLeastOffset = 1e-6;
 
 /// The kernel arguments of a frame (namespace argument). Throws InputError unless width and height lie in 1 .. 65535.
-std::array<uint32_t, kArguments> camera_arguments(const Scene& scene, int width, int height, int contents);
+std::array<uint32_t, kArguments> camera_arguments(const Scene& scene, uint32_t width, uint32_t height,
+                                                  uint32_t contents);
 
 /// A package's depth has 8 bits, and a reflection of the last depth must still be seen as beyond it.
 inline constexpr int kLargestDepth = 254;
 
 struct NativeOptions {
-  int width = 512, height = 512;
-  int depth = 1;            ///< 1 .. kLargestDepth; 1: eye and shadow rays only; d: up to d - 1 reflections
+  uint32_t width = 512, height = 512;
+  uint32_t depth = 1;       ///< 1 .. kLargestDepth; 1: eye and shadow rays only; d: up to d - 1 reflections
   bool reflections = true;  ///< false: casts none, whatever the depth; the same picture where no material reflects
-  int contents = 64;        ///< size of an eye tile in pixels, a power of two; changes no picture
-  int threads = 1;          ///< changes no picture and no count
+  uint32_t contents = 64;   ///< size of an eye tile in pixels, a power of two; changes no picture
+  uint32_t threads = 1;     ///< changes no picture and no count
   arith::Mode mode;
   std::function<void(RayKernel, NativeThread&)> kernel;  ///< run_native when empty
   /// Called with camera_arguments() before the frame begins, to change them; may be empty.

@@ -130,8 +130,8 @@ TEST(NativeRenderer, CountsRaysByKindAndDepth) {
     EXPECT_EQ(s.ray_counts.missed(), 0u);
     EXPECT_GT(s.ray_counts.shadow.traced, pixels / 2);
     EXPECT_EQ(s.contributions, s.ray_counts.shadow.traced - s.ray_counts.blocked());
-    const auto direct = static_cast<size_t>(RayKernel::CastSecondaryDirect),
-               reflecting = static_cast<size_t>(RayKernel::CastSecondary);
+    const auto direct = to_underlying(RayKernel::CastSecondaryDirect),
+               reflecting = to_underlying(RayKernel::CastSecondary);
     EXPECT_EQ(s.kernel_threads[direct], depth == 1 ? pixels : 0);
     EXPECT_EQ(s.kernel_threads[reflecting], depth == 1 ? 0 : pixels * static_cast<uint64_t>(depth));
     EXPECT_GT(s.normal_visits.nodes, pixels);
@@ -164,7 +164,7 @@ TEST(NativeRenderer, OffsetKeepsSurfacesFreeOfTheirOwnShadow) {
   scene.light = view.light;
   const NativeStatistics s = render(scene, size(160, 160, 1)).statistics;
   EXPECT_GT(s.ray_counts.shadow.traced, 4000u);
-  EXPECT_LT(static_cast<double>(s.ray_counts.blocked()), 0.002 * static_cast<double>(s.ray_counts.shadow.traced));
+  EXPECT_LT(static_cast<double>(s.ray_counts.blocked()), 0.002 * s.ray_counts.shadow.traced);
 }
 
 TEST(NativeRenderer, KernelsDrawWhatTheirFormulasSay) {

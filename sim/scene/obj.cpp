@@ -15,6 +15,7 @@
 #define TINYOBJLOADER_IMPLEMENTATION
 #include <tiny_obj_loader.h>
 
+#include "bits.hpp"
 #include "files/input_file.hpp"
 #include "files/output_files.hpp"
 #include "scene/polygon.hpp"
@@ -167,7 +168,7 @@ Faces check_obj(const std::string& path, const std::string& text) {
 
 /// Negative materials are none.
 void add_triangles(Scene& scene, const std::string& path, const Faces& faces, const std::vector<int>& materials) {
-  const auto grey = static_cast<uint32_t>(scene.materials.size());
+  const auto grey = size32(scene.materials);
   std::map<PolygonShape, std::vector<size_t>> lines;
   for (size_t face = 0; face < materials.size(); ++face) {
     const size_t begin = faces.begin[face];

@@ -51,7 +51,7 @@ PictureDifference difference_of(const Picture& a, const Picture& b) {
     result.differ += largest > 0;
     result.largest = std::max(result.largest, largest);
   }
-  result.mean = a.rgb.empty() ? 0 : static_cast<double>(sum) / static_cast<double>(a.rgb.size());
+  result.mean = a.rgb.empty() ? 0 : static_cast<double>(sum) / a.rgb.size();
   return result;
 }
 

@@ -11,6 +11,8 @@
 #include <map>
 #include <string_view>
 
+#include "bits.hpp"
+#include "enum_array.hpp"
 #include "files/input_file.hpp"
 #include "scene/polygon.hpp"
 #include "scene/scene_file.hpp"
@@ -21,9 +23,9 @@ namespace {
 enum class Format : uint8_t { Text, LittleEndian, BigEndian };
 
 enum class Type : uint8_t { Int8, Uint8, Int16, Uint16, Int32, Uint32, Float, Double };
-constexpr std::array<size_t, 8> kBytes = {1, 1, 2, 2, 4, 4, 4, 8};
+constexpr EnumArray<Type, size_t, 8> kBytes = {1, 1, 2, 2, 4, 4, 4, 8};
 /// What the value 1 of a colour is: the largest number of an integer type.
-constexpr std::array<double, 8> kWhite = {127, 255, 32767, 65535, 2147483647, 4294967295, 1, 1};
+constexpr EnumArray<Type, double, 8> kWhite = {127, 255, 32767, 65535, 2147483647, 4294967295, 1, 1};
 
 struct Property {
   std::string name;
@@ -188,7 +190,7 @@ class Values {
     if (word.empty() && place_ >= data_.size()) cut_off();
     if (word.empty()) fail("has fewer values than the header says");
     if (!read_all(word, value)) fail(fmt::format("has '{}', which is not a number", word.substr(0, 20)));
-    return type == Type::Float ? static_cast<double>(static_cast<float>(value)) : value;
+    return type == Type::Float ? static_cast<float>(value) : value;
   }
 
   [[noreturn]] void fail(const std::string& message) const {
@@ -208,7 +210,7 @@ class Values {
     throw InputError(fmt::format("{}: the file is cut off in {} {}; copy or export it again", path_, *what_, number_));
   }
   double binary(Type type) {
-    const size_t size = kBytes[static_cast<size_t>(type)];
+    const size_t size = kBytes[type];
     if (data_.size() - place_ < size) cut_off();
     uint64_t bits = 0;
     for (size_t i = 0; i < size; ++i) {
@@ -223,19 +225,15 @@ class Values {
         return static_cast<int16_t>(bits);
       case Type::Int32:
         return static_cast<int32_t>(bits);
-      case Type::Float: {
-        float value = 0;
-        const auto word = static_cast<uint32_t>(bits);
-        std::memcpy(&value, &word, sizeof value);
-        return static_cast<double>(value);
-      }
+      case Type::Float:
+        return as_float(static_cast<uint32_t>(bits));
       case Type::Double: {
         double value = 0;
         std::memcpy(&value, &bits, sizeof value);
         return value;
       }
       default:
-        return static_cast<double>(bits);
+        return bits;
     }
   }
 
@@ -324,14 +322,14 @@ class PlyReader {
       read_element(element, number, values);
       Vec3d p, c;
       for (int i = 0; i < 3; ++i) {
-        p[i] = values[static_cast<size_t>(place[static_cast<size_t>(i)])][0];
-        if (!(std::fabs(p[i]) <= static_cast<double>(kLargestCoordinate))) {
+        p[i] = values[place[i]][0];
+        if (!(std::fabs(p[i]) <= kLargestCoordinate)) {
           values_.fail(fmt::format("has the coordinate {}, which is not in {:g} .. {:g}", p[i], -kLargestCoordinate,
                                    kLargestCoordinate));
         }
         if (!coloured) continue;
-        const auto channel = static_cast<size_t>(colour[static_cast<size_t>(i)]);
-        c[i] = values[channel][0] / kWhite[static_cast<size_t>(element.properties[channel].type)];
+        const size_t channel = colour[i];
+        c[i] = values[channel][0] / kWhite[element.properties[channel].type];
         if (!(c[i] >= 0 && c[i] <= 1)) values_.fail(fmt::format("has the colour {}", values[channel][0]));
       }
       scene_.vertices.push_back(p.as<float>());
@@ -351,13 +349,13 @@ class PlyReader {
     for (uint64_t number = 0; number < element.count; ++number) {
       read_element(element, number, values);
       corners.clear();
-      for (const double index : values[static_cast<size_t>(list)]) {
+      for (const double index : values[list]) {
         if (element.name == "tristrips" && index == -1) {
           add_strip(corners);
           corners.clear();
           continue;
         }
-        if (!(index >= 0 && index < static_cast<double>(scene_.vertices.size()) && index == std::floor(index))) {
+        if (!(index >= 0 && index < scene_.vertices.size() && index == std::floor(index))) {
           values_.fail(fmt::format("names vertex {}, which is out of range: {} vertices stand before it", index,
                                    scene_.vertices.size()));
         }
@@ -394,16 +392,14 @@ class PlyReader {
     for (int i = 0; i < 3 && !colours_.empty(); ++i) {
       double sum = 0;
       for (const uint32_t corner : corners) sum += colours_[corner][i];
-      colour[static_cast<size_t>(i)] =
-          static_cast<int>(std::lround(kSteps * sum / static_cast<double>(corners.size())));
+      colour[i] = static_cast<int>(std::lround(kSteps * sum / static_cast<double>(corners.size())));
     }
-    const auto added = materials_.emplace(colour, static_cast<uint32_t>(scene_.materials.size()));
+    const auto added = materials_.emplace(colour, size32(scene_.materials));
     if (!added.second) return added.first->second;
     Material material{"default_grey", {0.5f, 0.5f, 0.5f}, {}};
     if (!colours_.empty()) {
       material.name = fmt::format("colour_{:x}{:x}{:x}", colour[0], colour[1], colour[2]);
-      for (int i = 0; i < 3; ++i)
-        material.kd[i] = static_cast<float>(srgb_to_linear(colour[static_cast<size_t>(i)] / kSteps));
+      for (int i = 0; i < 3; ++i) material.kd[i] = static_cast<float>(srgb_to_linear(colour[i] / kSteps));
     }
     scene_.materials.push_back(material);
     return added.first->second;

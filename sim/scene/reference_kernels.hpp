@@ -11,7 +11,7 @@ namespace raypool::reference {
 
 template <typename Words>
 Vec3 read3(const Words& words, int first) {
-  const auto i = static_cast<size_t>(first);
+  const size_t i = first;
   return {as_float(words[i]), as_float(words[i + 1]), as_float(words[i + 2])};
 }
 template <typename Words>

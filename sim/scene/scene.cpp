@@ -144,7 +144,7 @@ View view_of_file(const SceneFile& file, ViewChanges changes) {
   if (file.camera && !changes.light) {
     // The point looked at is as far away as the scene is large, so that it keeps the direction.
     const Camera& camera = view.camera;
-    const auto far = static_cast<double>(std::max(file.scene.bounds().diagonal(), 1.0f));
+    const double far = std::max(file.scene.bounds().diagonal(), 1.0f);
     const Vec3d point = camera.eye.as<double>() + normalized(camera.direction.as<double>()) * far;
     view.light = automatic_view(file.scene, {camera.eye, point.as<float>(), camera.up, {}, camera.fov}).light;
   }

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "bits.hpp"
 #include "scene/mesh_builder.hpp"
 #include "scene/native_renderer.hpp"
 #include "scene/traversal.hpp"
@@ -63,7 +64,7 @@ TEST(BuiltInScenes, AreTheSameEveryTimeAndScaleWithDetail) {
   EXPECT_TRUE(a.vertices.size() == b.vertices.size() &&
               std::equal(a.vertices.begin(), a.vertices.end(), b.vertices.begin()));
   EXPECT_LT(a.triangles.size(), half.triangles.size());
-  EXPECT_NEAR(static_cast<double>(half.triangles.size()) / static_cast<double>(full.triangles.size()), 0.5, 0.08);
+  EXPECT_NEAR(static_cast<double>(half.triangles.size()) / full.triangles.size(), 0.5, 0.08);
   SceneOptions options;
   for (double bad : {0.0, -1.0, 100.0, std::nan("")}) {
     options.detail = bad;
@@ -127,7 +128,7 @@ TEST(MeshBuilder, AClosedTubeJoinsWithoutATwist) {
 TEST(Indices, OutsideTheSceneAreRefused) {
   Scene scene = make_cornell(0.05);
   EXPECT_NO_THROW(check_scene(scene, "test"));
-  scene.triangles[3][1] = static_cast<uint32_t>(scene.vertices.size());
+  scene.triangles[3][1] = size32(scene.vertices);
   EXPECT_THROW(check_scene(scene, "test"), InputError);
   scene = make_cornell(0.05);
   scene.triangle_materials[2] = 99;

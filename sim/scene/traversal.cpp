@@ -59,7 +59,7 @@ PreparedRay prepare(const RayQuery& query, const Bounds& bounds) {
   if (static_cast<double>(ray.internal_limit) < internal_limit)
     ray.internal_limit = std::nextafter(ray.internal_limit, INFINITY);
 
-  const double padding = static_cast<double>(kPadding) * static_cast<double>(distance);
+  const double padding = static_cast<double>(kPadding) * distance;
   double* const direction = ray.direction;
   for (int axis = 0; axis < 3; ++axis) {
     const double o = query.origin[axis];
@@ -143,8 +143,7 @@ double plane_t(const PreparedRay& ray, const TriangleBlock& block, unsigned lane
   Vec3d corners[3];
   for (int corner = 0; corner < 3; ++corner) {
     for (int axis = 0; axis < 3; ++axis) {
-      corners[corner][axis] =
-          static_cast<double>(block.vertices[corner][axis][lane]) - static_cast<double>(ray.origin[axis]);
+      corners[corner][axis] = static_cast<double>(block.vertices[corner][axis][lane]) - ray.origin[axis];
     }
   }
   const Vec3d normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
@@ -158,7 +157,7 @@ bool accept(const PreparedRay& ray, const TriangleBlock& block, unsigned lane, d
   if (determinant == 0) return false;
   double z[3];
   for (int corner = 0; corner < 3; ++corner) {
-    z[corner] = static_cast<double>(block.vertices[corner][ray.kz][lane]) - static_cast<double>(ray.origin[ray.kz]);
+    z[corner] = static_cast<double>(block.vertices[corner][ray.kz][lane]) - ray.origin[ray.kz];
   }
   const double sum = u * z[0] + v * z[1] + w * z[2];
   double exact_t = sum / determinant * ray.inverse_z;
@@ -203,8 +202,7 @@ bool intersect_block(const PreparedRay& ray, const TriangleBlock& block, Candida
     if ((zeros >> lane & 1u) != 0) {
       // Products of floats are exact in double: the sign is that of the exact edge function.
       auto edge = [&](int a, int b) {
-        return static_cast<double>(x[a][lane]) * static_cast<double>(y[b][lane]) -
-               static_cast<double>(y[a][lane]) * static_cast<double>(x[b][lane]);
+        return static_cast<double>(x[a][lane]) * y[b][lane] - static_cast<double>(y[a][lane]) * x[b][lane];
       };
       du = edge(2, 1), dv = edge(0, 2), dw = edge(1, 0);
       if ((du < 0 || dv < 0 || dw < 0) && (du > 0 || dv > 0 || dw > 0)) continue;

@@ -26,7 +26,7 @@ Scene scene_of(const std::vector<std::array<Vec3, 3>>& triangles) {
   Scene scene;
   scene.materials.resize(1);
   for (const auto& triangle : triangles) {
-    const auto first = static_cast<uint32_t>(scene.vertices.size());
+    const auto first = size32(scene.vertices);
     scene.vertices.insert(scene.vertices.end(), triangle.begin(), triangle.end());
     scene.triangles.push_back({first, first + 1, first + 2});
     scene.triangle_materials.push_back(0);
@@ -102,7 +102,7 @@ std::vector<Item> parents_of(const std::vector<Item>& level, std::vector<BvhNode
   std::vector<Item> parents;
   for (size_t first = 0; first < level.size(); first += 4) {
     BvhNode node{};
-    Item parent{static_cast<uint32_t>(nodes.size()), {INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    Item parent{size32(nodes), {INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
     for (size_t i = 0; i < 4; ++i) {
       const bool used = first + i < level.size();
       node.children[i] = used ? level[first + i].child : kNoChild;
@@ -137,9 +137,7 @@ Bvh random_tree(const Bvh& original, uint32_t seed) {
   for (size_t first = 0; first < loose.size(); first += 4) {
     TriangleBlock block{};
     block.count = static_cast<uint32_t>(std::min<size_t>(4, loose.size() - first));
-    Item item{static_cast<uint32_t>(tree.blocks.size()) | kLeafBit,
-              {INFINITY, INFINITY, INFINITY},
-              {-INFINITY, -INFINITY, -INFINITY}};
+    Item item{size32(tree.blocks) | kLeafBit, {INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
     for (uint32_t lane = 0; lane < 4; ++lane) {
       const Loose& from = loose[first + std::min(lane, block.count - 1)];
       block.triangles[lane] = lane < block.count ? from.block->triangles[from.lane] : kNoChild;
@@ -209,7 +207,7 @@ TEST(Watertight, AxisParallelRaysThroughAGridOfSharedEdgesHit) {
   for (int x = 0; x <= 32; ++x) {
     for (int y = 0; y <= 32; ++y) {
       Hit hit;
-      const Vec3 origin{static_cast<float>(x) * 0.5f, static_cast<float>(y) * 0.5f, 0};
+      const Vec3 origin{x * 0.5f, y * 0.5f, 0};
       ASSERT_TRUE(traversal.nearest({origin, {0, 0, 1}, kInfinity}, hit)) << x << " " << y;
       EXPECT_EQ(hit.t, 2);
       EXPECT_TRUE(traversal.nearest({origin, {-0.0f, 0.0f, 0.25f}, kInfinity}, hit));
@@ -322,8 +320,7 @@ TEST(Traversal, EdgesAreDecidedExactly) {
   for (int i = 0; i < 20000; ++i) {
     // An edge that passes the axis within rounding, and a third corner well to its left.
     const Vec3 b{uniform(0.5f, 1), uniform(0.5f, 1), 3}, c{b.x * -0.7f, b.y * -0.7f, 3}, a{-1, 2, 3};
-    const double exact =
-        static_cast<double>(b.x) * static_cast<double>(c.y) - static_cast<double>(b.y) * static_cast<double>(c.x);
+    const double exact = static_cast<double>(b.x) * c.y - static_cast<double>(b.y) * c.x;
     const float in_float = b.x * c.y - b.y * c.x;
     zero_in_float += in_float == 0 && exact != 0;
     Hit hit;

@@ -2,6 +2,7 @@
 #include <cstring>
 #include <unordered_map>
 
+#include "bits.hpp"
 #include "scene/scene_file.hpp"
 
 namespace raypool {
@@ -28,7 +29,7 @@ void weld_vertices(Scene& scene) {
   std::vector<Vec3> vertices;
   for (auto& triangle : scene.triangles) {
     for (uint32_t& index : triangle) {
-      const auto added = known.emplace(scene.vertices[index], static_cast<uint32_t>(vertices.size()));
+      const auto added = known.emplace(scene.vertices[index], size32(vertices));
       if (added.second) vertices.push_back(scene.vertices[index]);
       index = added.first->second;
     }

@@ -147,7 +147,7 @@ class Progress {
     shown_ = now;
     const double spent = std::chrono::duration<double>(now - begin_).count();
     fmt::print(stderr, "{}: {} of {} done, about {:.0f} s left\n", what_, done, all_,
-               spent * static_cast<double>(all_ - done) / static_cast<double>(done));
+               spent * static_cast<double>(all_ - done) / done);
   }
 
  private:
@@ -190,7 +190,7 @@ std::vector<Outcome> run_trials(const std::vector<Trial>& trials, const TrialOpt
       const size_t finished = workers[i].trial;
       outcomes[finished] = finish(workers[i]);
       if (file.is_open()) file << to_json(trials[finished], outcomes[finished]) << std::flush;
-      workers.erase(workers.begin() + static_cast<std::ptrdiff_t>(i));
+      workers.erase(workers.begin() + i);
       ++done;
     }
     progress.show(done);

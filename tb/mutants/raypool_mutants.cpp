@@ -144,7 +144,7 @@ int report(const Options& options, const std::vector<Mutant>& mutants, const std
     fmt::print("survived: {:>4} {} ({})\n          {}\n", mutant.number, mutant.id, mutant.source,
                judgements.survived(mutant.id));
   }
-  const auto all = static_cast<int>(mutants.size());
+  const int all = mutants.size();
   const int survived = kinds[Outcome::Kind::Survived], killed = all - survived;
   fmt::print("{:<24} mutants  killed\n", "module");
   for (const auto& [name, count] : modules) fmt::print("{:<24} {:>7} {:>7}\n", name, count.all, count.killed);

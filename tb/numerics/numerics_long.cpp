@@ -103,8 +103,7 @@ void run_parts(const std::string& what, uint64_t parts, const std::function<void
         part(number);
         const uint64_t finished = ++done;
         if (to_terminal && finished % std::max<uint64_t>(1, parts / 100) == 0) {
-          std::fprintf(stderr, "\r%-24s %3.0f%%  %.0f s ", what.c_str(),
-                       100.0 * static_cast<double>(finished) / static_cast<double>(parts), seconds());
+          std::fprintf(stderr, "\r%-24s %3.0f%%  %.0f s ", what.c_str(), 100.0 * finished / parts, seconds());
         }
       }
     });

@@ -93,7 +93,7 @@ class ComparedDevice : public ComputeUnit {
     beats_ = 0;
     compare();
   }
-  void set_argument(int index, uint32_t value) override {
+  void set_argument(uint32_t index, uint32_t value) override {
     first_->set_argument(index, value);
     second_->set_argument(index, value);
     compare();

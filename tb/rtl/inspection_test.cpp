@@ -37,7 +37,7 @@ class TamperedUnit : public ComputeUnit {
     unit_->reset(program_length, memory_limit);
     copy();
   }
-  void set_argument(int index, uint32_t value) override {
+  void set_argument(uint32_t index, uint32_t value) override {
     unit_->set_argument(index, value);
     copy();
   }
@@ -169,7 +169,7 @@ class AlteredUnit : public ComputeUnit {
     unit_->reset(program_length, memory_limit);
     show();
   }
-  void set_argument(int index, uint32_t value) override {
+  void set_argument(uint32_t index, uint32_t value) override {
     unit_->set_argument(index, value);
     show();
   }

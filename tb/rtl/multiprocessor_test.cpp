@@ -54,7 +54,7 @@ uint64_t sum(const std::array<uint64_t, kMostUnits>& counts) {
 }
 
 TEST_P(RtlMultiprocessor, AgreesWithTheArbitersInCppInEveryCycleOfRandomPrograms) {
-  const auto units = static_cast<size_t>(GetParam());
+  const size_t units = GetParam();
   test::PortCounts total;
   uint64_t cycles = 0, kernels = 0;
   const auto add = [&](auto& to, const auto& from) {
@@ -69,7 +69,7 @@ TEST_P(RtlMultiprocessor, AgreesWithTheArbitersInCppInEveryCycleOfRandomPrograms
     const size_t distinct = program.kernels.size();
     for (size_t i = random() % (6 * units); i > 0; --i) {
       RandomProgram::Kernel kernel = program.kernels[random() % distinct];
-      kernel.threads = 1 + static_cast<uint32_t>(random() % static_cast<uint64_t>(configuration().contents()));
+      kernel.threads = 1 + static_cast<uint32_t>(random() % configuration().contents());
       program.kernels.push_back(kernel);
     }
     Memory memory = program.memory;

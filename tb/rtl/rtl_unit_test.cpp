@@ -102,7 +102,7 @@ TEST_P(RtlUnit, ReportsTheModelsFaults) {
     TestChip chip(*unit, memory);
     LaunchCommand command;
     command.pc = program.pc;
-    command.threads = static_cast<uint32_t>(configuration.contents());
+    command.threads = configuration.contents();
     chip.launches.push_back(command);
     try {
       EXPECT_FALSE(chip.run(20000)) << program.name;
@@ -137,11 +137,11 @@ const Case kCases[] = {
      [](Configuration& c) {
        c.warps = 4, c.lanes = 2, c.subnormals = Subnormals::Flush, c.slow_unit = SlowUnit::Newton1, c.stack_depth = 5,
        c.fma = true;
-       c.alus[static_cast<size_t>(AluType::Int)] = {2, 1, 4};
-       c.alus[static_cast<size_t>(AluType::Flt)] = {3, 4, 5};
-       c.alus[static_cast<size_t>(AluType::Slw)] = {1, 16, 12};
-       c.alus[static_cast<size_t>(AluType::Brh)] = {1, 2, 2};
-       c.alus[static_cast<size_t>(AluType::Tid)] = {2, 1, 1};
+       c.alus[AluType::Int] = {2, 1, 4};
+       c.alus[AluType::Flt] = {3, 4, 5};
+       c.alus[AluType::Slw] = {1, 16, 12};
+       c.alus[AluType::Brh] = {1, 2, 2};
+       c.alus[AluType::Tid] = {2, 1, 1};
      }},
 };
 

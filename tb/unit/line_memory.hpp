@@ -64,7 +64,7 @@ class LineMemory {
     beat.id = line.id;
     beat.beat = line.next;
     for (uint32_t i = 0; i < 4; ++i) beat.data[i] = line.data[line.next * 4 + i];
-    if (++line.next == 4) lines_.erase(lines_.begin() + static_cast<std::ptrdiff_t>(which));
+    if (++line.next == 4) lines_.erase(lines_.begin() + which);
     return beat;
   }
 
