@@ -21,12 +21,4 @@ constexpr std::underlying_type_t<Enum> to_underlying(Enum member) {
   return static_cast<std::underlying_type_t<Enum>>(member);
 }
 
-/// The first `Count` members of an enumeration, to go through.
-template <typename Enum, size_t Count>
-constexpr std::array<Enum, Count> members() {
-  std::array<Enum, Count> all{};
-  for (size_t i = 0; i < Count; ++i) all[i] = static_cast<Enum>(i);
-  return all;
-}
-
 }  // namespace raypool

@@ -28,7 +28,7 @@ inline constexpr int kBenchLanes = 4;  ///< parameter LANES of the tops
 struct AluUnderTest {
   std::string name;
   arith::Mode mode;
-  int depth;
+  uint32_t depth;
 };
 
 /// The lanes of a task whose results are looked at, of a unit of this mode.
