@@ -15,6 +15,8 @@ enum class SlowUnit : uint8_t { Exact = 0, Newton2 = 1, Newton1 = 2, Newton0 = 3
 /// What chooses the next kernel, and what times the traverser. Each name has its class in sim/chip/.
 enum class PolicyName : uint8_t { Thesis = 0, Fill = 1 };
 enum class TraverserName : uint8_t { Static = 0 };
+/// What becomes of a shadow ray that reaches the light: an intersection, for the kernel `shade`, or a contribution.
+enum class Shading : uint8_t { Kernel = 0, Traverser = 1 };
 
 // A row: [part,] name, type in C++, default, values it may have, values that tests try, what it is.
 //   UNIT(name, ...)        of the whole unit: `name` in configuration files and in C++, NAME in the Verilog
@@ -47,6 +49,8 @@ enum class TraverserName : uint8_t { Static = 0 };
   CHIP(launch_ahead, bool, true, on_or_off(), "a kernel is launched behind a running one, if it is worth it") \
   CHIP(held_limit, uint32_t, 512, integers(1, 1 << 20), "unfinished pixels at a time") \
   CHIP(traverser, TraverserName, TraverserName::Static, names("static"), "timing of the traverser") \
+  CHIP(shading, Shading, Shading::Kernel, names("kernel", "traverser"), \
+       "who adds shadow rays that reach the light to the frame buffer: the kernel shade, or the traverser itself") \
   CHIP_PART(thresholds, rays, uint32_t, 48, integers(0, 1 << 20), \
             "rays in the ray pool above which no more are cast, for 64 contents and one unit") \
   CHIP_PART(thresholds, intersections, uint32_t, 8, integers(0, 1 << 20), \
@@ -59,11 +63,15 @@ enum class TraverserName : uint8_t { Static = 0 };
   CHIP_PART(ray_pool, overhead, uint32_t, 2, integers(1, 64), \
             "cycles that its port takes for a ray besides the 3 beats") \
   CHIP_PART(ray_pool, cycles_per_beat, uint32_t, 1, integers(1, 64), "cycles of its port for a beat of 128 bits") \
+  CHIP_PART(ray_pool, pipelined, bool, false, on_or_off(), \
+            "the overhead for the next ray runs while the beats of the last one move") \
   CHIP_PART(intersection_pool, size, uint32_t, 512, integers(1, 1 << 20), "intersections of each kind that it holds") \
   CHIP_PART(intersection_pool, overhead, uint32_t, 2, integers(1, 64), \
             "cycles that its port takes for an intersection besides the 6 beats") \
   CHIP_PART(intersection_pool, cycles_per_beat, uint32_t, 1, integers(1, 64), \
             "cycles of its port for a beat of 128 bits") \
+  CHIP_PART(intersection_pool, pipelined, bool, false, on_or_off(), \
+            "the overhead for the next intersection runs while the beats of the last one move") \
   CHIP_PART(memory, latency, uint32_t, 120, integers(1, 10000), "cycles from a read's service to its last beat") \
   CHIP_PART(memory, cycles_per_beat, uint32_t, 2, integers(1, 64), "cycles of its port for a beat of 128 bits") \
   CHIP_PART(memory, queue, uint32_t, 8, integers(1, 64), "requests that wait at its port") \

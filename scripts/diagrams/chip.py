@@ -59,6 +59,8 @@ def between(picture):
     picture.text(447, 492, "id 7: unit 2, id of the unit 5", anchor="end")
     picture.wire((812, 383), (812, 637), (564, 637))
     picture.text(804, 629, "oldest first", anchor="end")
+    picture.wire((564, 653), (892, 653), (892, 211), (884, 211))
+    picture.text(804, 668, "contributions, if it shades", anchor="end")
     picture.wire((346, 637), (88, 637), (88, 351))
     picture.text(96, 629, "what may go on, if there is room")
 

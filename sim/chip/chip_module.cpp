@@ -53,6 +53,7 @@ Chip::Chip(const sc_core::sc_module_name& name, const ChipOptions& options)
   intersections_.clock(clock_.now);
   intersections_.ledger(ledger_.records);
 
+  frame_.clock(clock_.now);
   frame_.ledger(ledger_.records);
   ledger_.controller(controller_.decisions);
 
@@ -65,6 +66,7 @@ Chip::Chip(const sc_core::sc_module_name& name, const ChipOptions& options)
   traverser_->clock(clock_.now);
   traverser_->rays(rays_.traverser);
   traverser_->intersections(intersections_.traverser);
+  traverser_->frame(frame_.traverser);
   traverser_->ledger(ledger_.records);
   traverser_->controller(controller_.decisions);
 

@@ -50,6 +50,26 @@ TEST_P(EveryShape, SurvivesFullPools) {
   }
 }
 
+TEST_P(EveryShape, SurvivesFullPoolsWhenTheTraverserShades) {
+  const Shape shape = GetParam();
+  for (const int packages : {512, 33}) {
+    for (const int rays : {512, 64, 1}) {
+      SCOPED_TRACE(testing::Message() << packages << " intersections, " << rays << " rays");
+      FrameRun run(shape.warps, shape.lanes, shape.units, rays == 1 ? 11 : 31, 23, 6, 30);
+      run.world.misses = 0;
+      run.world.shadows = run.world.mirrors = 16;
+      ChipConfiguration& chip = run.options.configuration.chip;
+      chip.intersection_pool_size = chip.held_limit = packages;
+      chip.ray_pool_size = rays;
+      chip.shading = Shading::Traverser;
+      const ChipResult result = run.go();
+      run.expect_conserved(result);
+      EXPECT_EQ(result.kernels[RayKernel::Shade].launches, 0u);
+      EXPECT_EQ(result.shadow_pool.peak, 0u);
+    }
+  }
+}
+
 TEST_P(EveryShape, DrawsWithoutTheRemedyAndWithoutLaunchingAhead) {
   const Shape shape = GetParam();
   for (const bool remedy : {false, true}) {
@@ -75,6 +95,7 @@ TEST_P(EveryShape, DrawsWithAnyPortsThresholdsAndBatches) {
       ChipConfiguration& chip = run.options.configuration.chip;
       chip.ray_pool_overhead = chip.intersection_pool_overhead = overhead;
       chip.ray_pool_cycles_per_beat = chip.intersection_pool_cycles_per_beat = per_beat;
+      chip.ray_pool_pipelined = chip.intersection_pool_pipelined = threshold == 1;
       chip.memory_cycles_per_beat = per_beat;
       chip.thresholds_rays = chip.thresholds_intersections = threshold;
       chip.static_traverser_batch = 1 + std::min(threshold, 100);

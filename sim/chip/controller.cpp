@@ -62,6 +62,8 @@ bool Controller::eye_possible() const {
 }
 
 uint32_t Controller::secondary_room() const {
+  // No shadow ray ever waits for room.
+  if (chip_.shading == Shading::Traverser) return options_.configuration.contents();
   const uint32_t limit = chip_.intersection_pool_size + chip_.ray_pool_size - 1;
   const uint32_t shadows =
       rays->shadow_rays() + ledger->shadow_rays_to_come() + intersections->available(ImportKind::Shadow);

@@ -74,7 +74,8 @@ struct LookingMemory : sc_core::sc_module {
 };
 
 struct Drawn {
-  explicit Drawn(bool decoupled) : run(4, 4, 31, 17, 3) {
+  Drawn(bool decoupled, const ChipConfiguration& around) : run(4, 4, 31, 17, 3) {
+    run.options.configuration.chip = around;
     auto counted = std::make_unique<Counted>(std::make_unique<CycleUnit>(run.options.configuration, run.image.memory));
     unit = counted.get();
     run.set_device(std::move(counted));
@@ -96,8 +97,8 @@ struct Drawn {
   std::vector<uint64_t> seen;  ///< by the memory
 };
 
-TEST(TemporalDecoupling, ChangesNoCycleAndNoFigure) {
-  const Drawn ahead(true), stepped(false);
+void expect_the_same_both_ways(const ChipConfiguration& around) {
+  const Drawn ahead(true, around), stepped(false, around);
   EXPECT_LT(ahead.unit->runs, stepped.unit->runs / 2);   // it did run ahead,
   EXPECT_EQ(stepped.unit->runs, stepped.unit->clocked);  // and did not
   EXPECT_FALSE(ahead.seen.empty());
@@ -117,6 +118,16 @@ TEST(TemporalDecoupling, ChangesNoCycleAndNoFigure) {
   EXPECT_EQ(a.ray_port_utilisation, b.ray_port_utilisation);
   EXPECT_EQ(a.memory_reads, b.memory_reads);
   for (size_t i = 0; i < a.alus.size(); ++i) EXPECT_EQ(a.alus[i].waiting, b.alus[i].waiting) << i;
+}
+
+TEST(TemporalDecoupling, ChangesNoCycleAndNoFigure) { expect_the_same_both_ways({}); }
+
+TEST(TemporalDecoupling, ChangesNothingWithPipelinedPortsAndATraverserThatShades) {
+  ChipConfiguration around;
+  around.policy = PolicyName::Fill;
+  around.shading = Shading::Traverser;
+  around.ray_pool_pipelined = around.intersection_pool_pipelined = true;
+  expect_the_same_both_ways(around);
 }
 
 }  // namespace

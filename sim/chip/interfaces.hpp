@@ -74,6 +74,13 @@ class ContributionIf : virtual public sc_core::sc_interface {
   virtual void take(uint32_t unit, const FrameContribution& contribution) = 0;
 };
 
+/// The frame buffer's port, for the traverser: units, whose phase is earlier, go first.
+class DirectContributionIf : virtual public sc_core::sc_interface {
+ public:
+  /// False if the port has taken a contribution in this cycle already, and does not take this one.
+  virtual bool offer(const FrameContribution& contribution) = 0;
+};
+
 /// The device, for who launches kernels on it.
 class LaunchIf : virtual public sc_core::sc_interface {
  public:
@@ -172,7 +179,7 @@ class LedgerIf : virtual public sc_core::sc_interface {
   /// the unit can have made it.
   virtual void ray_exported(uint32_t unit, const Ray& ray, bool kept) = 0;
   virtual void contribution_exported(uint32_t unit, uint32_t pixel) = 0;
-  /// A ray that was kept is gone without leaving an intersection.
+  /// A ray that was kept is gone without leaving an intersection: it added to the picture, or nothing.
   virtual void ray_dropped(uint32_t pixel) = 0;
 
   virtual uint32_t held() const = 0;

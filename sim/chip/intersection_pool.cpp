@@ -9,7 +9,10 @@ IntersectionPool::IntersectionPool(const sc_core::sc_module_name& name, const Ch
     : sc_module(name),
       capacity_(chip.intersection_pool_size),
       cycles_per_beat_(chip.intersection_pool_cycles_per_beat),
-      service_cycles_(chip.intersection_pool_overhead + kIntersectionBeats * cycles_per_beat_),
+      pipelined_(chip.intersection_pool_pipelined),
+      service_cycles_(pipelined_
+                          ? std::max<uint64_t>(chip.intersection_pool_overhead, kIntersectionBeats * cycles_per_beat_)
+                          : chip.intersection_pool_overhead + kIntersectionBeats * cycles_per_beat_),
       request_cycles_(std::max(2u, chip.intersection_pool_overhead) - 1) {
   device.bind(*this);
   traverser.bind(*this);
@@ -21,8 +24,7 @@ bool IntersectionPool::request(uint32_t unit, ImportKind kind) {
   if (wanting_ == ImportKind::None) {
     wanting_ = kind;
     wanting_unit_ = unit;
-    free_from_ = std::max(free_from_, clock->cycle());
-    if (!queue(kind).empty()) request_due_ = free_from_ + request_cycles_;
+    if (!queue(kind).empty()) request_due_ = due();
   }
   if (request_due_ != clock->cycle()) return false;
   give();
@@ -33,23 +35,30 @@ void IntersectionPool::put(ImportKind kind, const Intersection& intersection) {
   queue(kind).push_back(intersection);
   fill_[number(kind)].set(clock->cycle(), size(kind));
   if (wanting_ != kind || request_due_ != kNever) return;
+  request_due_ = due();
+}
+
+uint64_t IntersectionPool::due() {
   free_from_ = std::max(free_from_, clock->cycle());
-  request_due_ = free_from_ + request_cycles_;
+  return std::max(free_from_ + request_cycles_, register_from_);
 }
 
 // The package has left its queue in the cycle before.
 void IntersectionPool::give() {
   const ImportKind kind = wanting_;
   const Intersection& package = queue(kind).front();
-  std::copy(package.begin(), package.end(), leaving_.begin());
+  Leaving& leaving = leaving_.emplace_back();
+  std::copy(package.begin(), package.end(), leaving.words.begin());
   queue(kind).pop_front();
   --reserved_[number(kind)];
   ++taken_;
   fill_[number(kind)].set(request_due_ - 1, size(kind));
-  ledger->imported(wanting_unit_, leaving_[word::kPixel]);
-  free_from_ = request_due_ - request_cycles_ + service_cycles_;
-  beat_due_ = request_due_ + 1;
-  next_beat_ = 0;
+  ledger->imported(wanting_unit_, leaving.words[word::kPixel]);
+  leaving.first_beat = std::max(request_due_ + 1, beats_from_);
+  beats_from_ = leaving.first_beat + kIntersectionBeats * cycles_per_beat_;
+  register_from_ = leaving.first_beat;
+  free_from_ = pipelined_ ? request_due_ + 1 : request_due_ - request_cycles_ + service_cycles_;
+  if (leaving_.size() == 1) beat_due_ = leaving.first_beat;
   request_due_ = kNever;
   wanting_ = ImportKind::None;
 }
@@ -57,9 +66,14 @@ void IntersectionPool::give() {
 void IntersectionPool::beat(Beat& beat) {
   if (beat_due_ != clock->cycle())
     throw std::logic_error("the device was not clocked when a beat of an intersection came");
-  std::copy_n(&leaving_[next_beat_ * kBeatWords], kBeatWords, beat.begin());
-  ++next_beat_;
-  beat_due_ = next_beat_ == kIntersectionBeats ? kNever : beat_due_ + cycles_per_beat_;
+  std::copy_n(&leaving_.front().words[next_beat_ * kBeatWords], kBeatWords, beat.begin());
+  if (++next_beat_ < kIntersectionBeats) {
+    beat_due_ += cycles_per_beat_;
+    return;
+  }
+  next_beat_ = 0;
+  leaving_.pop_front();
+  beat_due_ = leaving_.empty() ? kNever : leaving_.front().first_beat;
 }
 
 }  // namespace raypool::chip

@@ -3,7 +3,8 @@
 // An intersection costs the port its overhead and 6 beats: 8 cycles, as the thesis has it. There a request in cycle c
 // to an idle port is taken in c+1, and the beats move in c+2 .. c+7. With less overhead, 1, a request is taken while
 // the beats before it end; with more it is taken later. The oldest package of the kind goes first. Its place is free as
-// soon as its request is taken (the port keeps it in a register of its own).
+// soon as its request is taken (the port keeps it in a register of its own). A pipelined port has two of these: it
+// takes the next request while the beats of the last package move, and then its beats follow at once.
 //
 // Whoever launches a kernel reserves its packages at once, so that available() never promises the same package twice.
 #pragma once
@@ -55,18 +56,28 @@ class IntersectionPool : public sc_core::sc_module,
   std::deque<Intersection>& queue(ImportKind kind) { return queues_[number(kind)]; }
   const std::deque<Intersection>& queue(ImportKind kind) const { return queues_[number(kind)]; }
   void give();
+  /// When the request that waits will be taken, if its turn begins in this cycle or as soon as the port is free.
+  uint64_t due();
+
+  struct Leaving {
+    uint64_t first_beat;                                          // its cycle
+    std::array<uint32_t, kIntersectionBeats * kBeatWords> words;  // the last beat ends with zeros
+  };
 
   size_t capacity_;  // of each kind
   uint64_t cycles_per_beat_;
+  bool pipelined_;
   uint64_t service_cycles_;  // that a package keeps the port
   uint64_t request_cycles_;  // from a request's turn until it is taken
   std::array<std::deque<Intersection>, 2> queues_;
   std::array<uint32_t, 2> reserved_{};
   ImportKind wanting_ = ImportKind::None;  // a package of this kind
   uint32_t wanting_unit_ = 0;
-  uint64_t free_from_ = 0;                                           // the next request can be served
-  std::array<uint32_t, kIntersectionBeats * kBeatWords> leaving_{};  // the last beat ends with zeros
-  size_t next_beat_ = 0;
+  uint64_t free_from_ = 0;       // the next request can be served
+  uint64_t register_from_ = 0;   // the register for the next package is free
+  uint64_t beats_from_ = 0;      // its first beat may move
+  std::deque<Leaving> leaving_;  // taken, and not gone
+  size_t next_beat_ = 0;         // of the oldest
   uint64_t taken_ = 0;
   std::array<LevelStatistics, 2> fill_;
 };

@@ -95,6 +95,7 @@ TEST_P(EveryPolicy, SurvivesFullPools) {
           ChipConfiguration& around = run.options.configuration.chip;
           around.intersection_pool_size = around.held_limit = packages;
           around.ray_pool_size = rays;
+          around.shading = rays == 64 || packages == 16 ? Shading::Traverser : Shading::Kernel;
           run.expect_conserved(run.go());
         }
       }
@@ -140,6 +141,7 @@ TEST_P(EveryPolicy, DrawsThePictureOfTheNativeRenderer) {
                                         << units << " units, " << width << "x" << height << " depth " << depth);
         test::RealFrame run(warps, lanes, width, height, depth, scene);
         choose(run.options);
+        run.options.configuration.chip.shading = width == 23 ? Shading::Traverser : Shading::Kernel;
         run.set_device(make_model(run.options.configuration, run.image.memory, units).device);
         NativeOptions native;
         native.width = width;

@@ -112,6 +112,46 @@ TEST(RayPool, TakesOverheadAndBeatsAsLongAsTheChipSays) {
   }
 }
 
+TEST(RayPool, HidesTheOverheadBehindTheBeatsOfTheRayBeforeWhenPipelined) {
+  for (const auto& [overhead, per_beat] : {std::pair{2, 1}, {1, 1}, {3, 1}, {5, 1}, {4, 2}}) {
+    ChipConfiguration chip;
+    chip.ray_pool_overhead = overhead;
+    chip.ray_pool_cycles_per_beat = per_beat;
+    chip.ray_pool_pipelined = true;
+    Bench bench(1, chip, 5);
+    const uint64_t service = std::max(overhead, 3 * per_beat);
+    std::vector<uint64_t> completed;
+    bench.run([&](uint64_t cycle) {
+      const bool pause = completed.size() == 10 && cycle < 500;  // the eleventh comes to an idle port
+      if (cycle >= 10 && !pause && bench.offer(0)) completed.push_back(cycle);
+      return completed.size() < 20;
+    });
+    for (size_t i = 0; i < completed.size(); ++i) {
+      const uint64_t begin = i < 10 ? 10 + overhead + service * i : 500 + service * (i - 10);
+      EXPECT_EQ(completed[i], begin + 2 * per_beat) << overhead << per_beat << ", ray " << i;
+    }
+    EXPECT_EQ(bench.rays.busy_cycles(), overhead + 20 * service);
+    for (uint32_t i = 0; i < 20; ++i) EXPECT_EQ(bench.rays.rays()[i].ray, Bench::eye_ray(0, i));
+  }
+}
+
+TEST(RayPool, FindsNoPlaceAheadWhileFull) {
+  ChipConfiguration chip = chip_of(2);
+  chip.ray_pool_pipelined = true;
+  Bench bench(1, chip, 5);
+  std::vector<uint64_t> completed;
+  bench.run([&](uint64_t cycle) {
+    if (bench.offer(0)) completed.push_back(cycle);
+    if (cycle == 100) {
+      EXPECT_TRUE(bench.rays.held_up());
+      bench.rays.rays().erase(bench.rays.rays().begin());
+      bench.rays.removed(0);
+    }
+    return cycle < 200;
+  });
+  EXPECT_EQ(completed, (std::vector<uint64_t>{1 + 4, 1 + 7, 104}));
+}
+
 TEST(RayPool, TakesARayOfAnyUnitInFiveCycles) {
   Bench bench(4);
   int completed = 0;
@@ -264,6 +304,43 @@ TEST(IntersectionPool, TakesOverheadAndBeatsAsLongAsTheChipSays) {
     for (uint32_t i = 0; i < 72; ++i)
       EXPECT_EQ(words[i], i % 24 < kIntersectionWords ? numbered(i / 24)[i % 24] : 0) << i;
     EXPECT_EQ(bench.intersections.busy_cycles(), 3 * service);
+  }
+}
+
+TEST(IntersectionPool, HidesTheOverheadBehindTheBeatsBeforeWhenPipelined) {
+  // A unit has two requests on their way at most, and sees a cycle later that one has come; several have more.
+  for (const auto& [overhead, per_beat] : {std::pair{2, 1}, {1, 1}, {6, 1}, {9, 1}, {2, 2}, {13, 2}}) {
+    for (const uint32_t most : {2u, 8u}) {
+      ChipConfiguration chip;
+      chip.intersection_pool_overhead = overhead;
+      chip.intersection_pool_cycles_per_beat = per_beat;
+      chip.intersection_pool_pipelined = true;
+      Bench bench(1, chip, 5);
+      constexpr uint32_t kPackages = 12;
+      bench.ledger.launched(0, RayKernel::Shade, kPackages);
+      const uint64_t service = std::max(overhead, 6 * per_beat), wait = std::max(1ul, overhead - 1ul);
+      uint32_t taken = 0;
+      std::vector<uint64_t> beats;
+      std::vector<uint32_t> words;
+      bench.run([&](uint64_t cycle) {
+        for (uint32_t i = 0; cycle == 1 && i < kPackages; ++i) bench.intersections.put(ImportKind::Shadow, numbered(i));
+        const auto come = static_cast<uint32_t>(beats.size() / 6);
+        EXPECT_LE(taken - come, 2u) << "a register for the package that moves, and one for the next";
+        const bool asks = cycle >= 10 && taken < kPackages && taken - come < most;
+        if (asks && bench.intersections.request(0, ImportKind::Shadow)) ++taken;
+        Beat data;
+        if (bench.beat_of_intersection(data)) {
+          beats.push_back(cycle);
+          words.insert(words.end(), data.begin(), data.end());
+        }
+        return beats.size() < kPackages * 6;
+      });
+      for (size_t i = 0; i < beats.size(); ++i)
+        EXPECT_EQ(beats[i], 11 + wait + i / 6 * service + i % 6 * per_beat) << overhead << per_beat << most << " " << i;
+      for (uint32_t i = 0; i < words.size(); ++i)
+        EXPECT_EQ(words[i], i % 24 < kIntersectionWords ? numbered(i / 24)[i % 24] : 0) << i;
+      EXPECT_EQ(bench.intersections.busy_cycles(), kPackages * service);
+    }
   }
 }
 

@@ -12,6 +12,7 @@ RayPool::RayPool(const sc_core::sc_module_name& name, const ChipConfiguration& c
       capacity_(chip.ray_pool_size),
       overhead_(chip.ray_pool_overhead),
       cycles_per_beat_(chip.ray_pool_cycles_per_beat),
+      pipelined_(chip.ray_pool_pipelined),
       depth_(depth) {
   rays_.reserve(capacity_);
   device.bind(*this);
@@ -29,6 +30,8 @@ void RayPool::want() {
 }
 
 void RayPool::take(uint32_t unit, const Beat& beat, bool last) {
+  if (beats_ == 0) first_beat_ = clock->cycle();
+  if (beats_ == 0 && ahead_) begun_ = first_beat_;
   std::copy(beat.begin(), beat.end(), &arriving_[beats_ * kBeatWords]);
   ++beats_;
   if (last != (beats_ == kRayBeats)) {
@@ -41,6 +44,7 @@ void RayPool::take(uint32_t unit, const Beat& beat, bool last) {
     return;
   }
   beats_ = 0;
+  if (pipelined_) free_from_ = std::max(free_from_, first_beat_ + overhead_);
   busy_cycles_ += free_from_ - begun_;
   beats_from_ = kNever;
   ++taken_;
@@ -52,6 +56,8 @@ void RayPool::take(uint32_t unit, const Beat& beat, bool last) {
   } else {
     ++dropped_depth_;
   }
+  ahead_ = pipelined_ && !full();
+  if (ahead_) beats_from_ = free_from_;
 }
 
 void RayPool::keep(bool shadow) {

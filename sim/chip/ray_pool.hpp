@@ -3,6 +3,7 @@
 //
 // A ray costs the port its overhead and 3 beats: 5 cycles, as the thesis has it. There a ray offered in cycle c to an
 // idle port moves in c+2, c+3, c+4 (later if there are bubbles between its beats). A full pool serves nobody.
+// A pipelined port finds the next ray's place while the last one's beats move, if there is room by then.
 #pragma once
 
 #include <cstdint>
@@ -50,10 +51,13 @@ class RayPool : public sc_core::sc_module, public RayExportIf, public RaySourceI
 
   size_t capacity_;
   uint64_t overhead_, cycles_per_beat_;
+  bool pipelined_;
   uint32_t depth_;
-  uint64_t begun_ = 0;      // cycle in which the ray that arrives was
-  uint64_t free_from_ = 0;  // the next one may be
-  bool wanting_ = false;    // a ray is offered, and there is no room
+  uint64_t begun_ = 0;       // cycle in which the ray that arrives was
+  uint64_t first_beat_ = 0;  // its
+  bool ahead_ = false;       // its overhead has run before it was begun
+  uint64_t free_from_ = 0;   // the next one may be
+  bool wanting_ = false;     // a ray is offered, and there is no room
   uint64_t kept_at_ = 0;
   Ray arriving_{};
   size_t beats_ = 0;

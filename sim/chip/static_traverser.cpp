@@ -4,7 +4,7 @@ namespace raypool::chip {
 
 StaticTraverser::StaticTraverser(const sc_core::sc_module_name& name, RayTracer& tracer, uint32_t units,
                                  const ChipConfiguration& chip)
-    : Traverser(name, tracer),
+    : Traverser(name, tracer, chip),
       units_(units),
       batch_(chip.static_traverser_batch),
       stall_cycles_(chip.static_traverser_stall_cycles) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "chip/frame_port.hpp"
 #include "chip/intersection_pool.hpp"
 #include "chip/pixel_ledger.hpp"
 #include "chip/ray_pool.hpp"
@@ -19,6 +20,11 @@ struct HalfTracer : RayTracer {
     return (ray[word::kPixel] & 1) == 0;
   }
   int traced = 0;
+};
+
+struct Counted : FrameSink {
+  void add(const FrameContribution& contribution) override { pixels.push_back(contribution.pixel); }
+  std::vector<uint32_t> pixels;
 };
 
 /// Stands for the controller: counts how often it is told that rays have moved.
@@ -41,6 +47,8 @@ struct Bench {
   RayPool rays;
   IntersectionPool intersections;
   HalfTracer tracer;
+  Counted picture;
+  FramePort frame;
   Moves moves;
   StaticTraverser traverser;
 
@@ -49,15 +57,19 @@ struct Bench {
       : ledger("pixel_ledger", units, 512, 1),
         rays("ray_pool", {}, 5),
         intersections("intersection_pool", chip),
+        frame("frame_port", picture),
         traverser("traverser", tracer, units, chip) {
     rays.clock(clock.now);
     rays.ledger(ledger.records);
     rays.arrivals(traverser.arrivals);
     intersections.clock(clock.now);
     intersections.ledger(ledger.records);
+    frame.clock(clock.now);
+    frame.ledger(ledger.records);
     traverser.clock(clock.now);
     traverser.rays(rays.traverser);
     traverser.intersections(intersections.traverser);
+    traverser.frame(frame.traverser);
     traverser.ledger(ledger.records);
     traverser.controller(moves);
   }
@@ -167,6 +179,27 @@ TEST(StaticTraverser, KeepsRaysWithoutRoomAndTracesThemOnce) {
   EXPECT_EQ(bench.rays.size(), 22u);
   EXPECT_EQ(bench.tracer.traced, 84);
   EXPECT_EQ(bench.traverser.counts().rays.blocked(), 32u);
+}
+
+TEST(StaticTraverser, AddsOneShadowRayACycleToThePictureAUnitsContributionFirst) {
+  ChipConfiguration chip;
+  chip.shading = Shading::Traverser;
+  Bench bench(2, chip);
+  bench.ledger.launched(1, RayKernel::Shade, 1);
+  bench.ledger.imported(1, 400);
+  std::vector<uint32_t> left;  // rays in the pool at the beginning of cycles 3, 4, ...
+  bench.run([&](uint64_t cycle) {
+    if (cycle == 1) bench.fill(8, 1 | kShadowFlag);  // 4 reach the light
+    if (cycle == 2) bench.traverser.kernel_ended(0);
+    if (cycle == 3) bench.frame.take(1, {400, {}});
+    if (cycle > 2) left.push_back(bench.rays.size());
+    return cycle < 8;
+  });
+  EXPECT_EQ(left, (std::vector<uint32_t>{3, 3, 2, 1, 0, 0}));
+  EXPECT_EQ(bench.picture.pixels, (std::vector<uint32_t>{0, 400, 2, 4, 6}));
+  EXPECT_EQ(bench.intersections.size(ImportKind::Shadow), 0u);
+  EXPECT_EQ(bench.ledger.held(), 0u);
+  EXPECT_EQ(bench.traverser.counts().delivered, 4u);
 }
 
 }  // namespace

@@ -256,6 +256,7 @@ class ScriptedUnit : public ComputeUnit {
       Ray made{};
       made[word::kPixel] = pixel;
       made[word::kFlags] = flags;
+      made[word::kColor] = flags & kDepthMask;
       exports_.push_back({false, made, {}});
     };
     if (kernel == RayKernel::CastEye) {

@@ -1,6 +1,8 @@
 // The traverser: takes rays from the ray pool, finds what they hit, puts intersections into the intersection pool. A
-// ray whose destination has no room stays in the ray pool. What it finds is the scene's business (RayTracer); when it
-// happens is that of the timing model, of which a subclass of Traverser makes one.
+// ray whose destination has no room stays in the ray pool. With chip.shading `traverser` a shadow ray that reaches the
+// light becomes a contribution: it stays in the ray pool until the frame buffer's port takes it. What the traverser
+// finds is the scene's business (RayTracer); when it happens is that of the timing model, of which a subclass of
+// Traverser makes one.
 #pragma once
 
 #include <cstdint>
@@ -17,16 +19,18 @@ namespace raypool::chip {
 
 struct TraverserCounts {
   RayCounts rays;
-  uint64_t delivered = 0;  ///< intersections
+  uint64_t delivered = 0;  ///< intersections, and contributions
   uint64_t batches = 0, stall_batches = 0;
   uint64_t most_rays = 0;  ///< that could have been traced by now, had there always been some; 0: no limit
 };
 
 class Traverser : public sc_core::sc_module, public KernelEventsIf, public RayArrivalIf {
  public:
+  SC_HAS_PROCESS(Traverser);
   sc_core::sc_port<TimeIf> clock{"clock"};
   sc_core::sc_port<RaySourceIf> rays{"rays"};
   sc_core::sc_port<IntersectionSinkIf> intersections{"intersections"};
+  sc_core::sc_port<DirectContributionIf> frame{"frame"};
   sc_core::sc_port<LedgerIf> ledger{"ledger"};
   sc_core::sc_port<DecisionIf> controller{"controller"};
   sc_core::sc_export<KernelEventsIf> kernel_events{"kernel_events"};
@@ -38,7 +42,7 @@ class Traverser : public sc_core::sc_module, public KernelEventsIf, public RayAr
 
  protected:
   /// `tracer` must outlive it.
-  Traverser(const sc_core::sc_module_name& name, RayTracer& tracer);
+  Traverser(const sc_core::sc_module_name& name, RayTracer& tracer, const ChipConfiguration& chip);
 
   /// Traces up to `budget` rays, oldest first, and delivers or drops every traced ray that finds room. Returns how many
   /// left the pool.
@@ -48,8 +52,13 @@ class Traverser : public sc_core::sc_module, public KernelEventsIf, public RayAr
 
  private:
   void trace(PooledRay& ray);
+  bool deliver(const PooledRay& ray, bool shadow);
+  bool contribute(const Ray& ray);
+  void next_contribution();
 
   RayTracer& tracer_;
+  bool contributes_;  // shadow rays that reach the light leave contributions
+  sc_core::sc_event frame_free_;
 };
 
 /// The one that `chip.traverser` names.
