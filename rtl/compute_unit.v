@@ -101,7 +101,8 @@ module compute_unit #(
   // data routine: what the warps offer to the dispatcher, and what ALU instances have done
   wire [WARPS-1:0] want, grant, waiting, retire, fetching, executing, import_wait, export_wait;
   wire [WARPS*4-1:0] wanted_type;
-  wire [WARPS*64-1:0] instruction;
+  wire [WARPS*64-1:0] instruction, task_of;
+  wire [WARPS-1:0] overlaps;
   wire [WARPS*16-1:0] pc;
   wire [WARPS*LANES-1:0] thread_mask, predicate_x, predicate_b;
   wire [WARPS*DATA-1:0] operand_a, operand_b, operand_c;
@@ -167,13 +168,14 @@ module compute_unit #(
       for (k = 0; k < INSTANCES; k = k + 1) begin : gen_done
         assign done[k] = done_valid[k] && done_warp[k*WARP_BITS +: WARP_BITS] == w;
       end
-      warp #(.LANES(LANES), .STACK_DEPTH(STACK_DEPTH), .INSTANCES(INSTANCES), .FMA(FMA)) warp (
+      warp #(.LANES(LANES), .STACK_DEPTH(STACK_DEPTH), .INSTANCES(INSTANCES), .FMA(FMA), .TRIPLES(TRIPLES)) warp (
         .clk_i(clk_i), .rst_ni(rst_ni), .start_i(start[w]), .start_pc_i(start_pc),
         .start_lanes_i(start_lanes[w*LANES +: LANES]),
         .halt_i(fault_valid_o), .active_o(active[w]), .program_length_i(program_length_i),
         .fetch_request_o(fetch_request[w]), .fetch_pc_o(fetch_pc[w*16 +: 16]), .fetch_grant_i(fetch_grant[w]),
         .cache_hit_i(instruction_hit && result_warp == w), .cache_instruction_i(fetched), .refill_done_i(refill_done),
         .want_o(want[w]), .grant_i(grant[w]), .type_o(wanted_type[w*4 +: 4]), .instruction_o(instruction[w*64 +: 64]),
+        .task_o(task_of[w*64 +: 64]), .overlaps_o(overlaps[w]),
         .mask_o(thread_mask[w*LANES +: LANES]),
         .predicate_x_o(predicate_x[w*LANES +: LANES]), .predicate_b_o(predicate_b[w*LANES +: LANES]),
         .operand_a_o(operand_a[w*DATA +: DATA]), .operand_b_o(operand_b[w*DATA +: DATA]),
@@ -205,7 +207,7 @@ module compute_unit #(
       wire [DATA-1:0] task_operand_a, task_operand_b, task_operand_c;
       task_register #(.WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS), .TYPE(TYPE), .FMA(FMA)) task_register (
         .clk_i(clk_i), .rst_ni(rst_ni), .grant_i(instance_grant[k]), .warp_i(instance_warp[k*WARP_BITS +: WARP_BITS]),
-        .instruction_i(instruction), .mask_i(thread_mask), .predicate_x_i(predicate_x), .predicate_b_i(predicate_b),
+        .instruction_i(task_of), .mask_i(thread_mask), .predicate_x_i(predicate_x), .predicate_b_i(predicate_b),
         .operand_a_i(operand_a), .operand_b_i(operand_b), .operand_c_i(operand_c),
         .task_valid_o(task_valid), .task_warp_o(task_warp), .task_operation_o(task_operation), .task_mask_o(task_mask),
         .task_operand_a_o(task_operand_a), .task_operand_b_o(task_operand_b), .task_operand_c_o(task_operand_c),
@@ -274,13 +276,14 @@ module compute_unit #(
     .response_valid_i(memory_response_valid_i), .response_id_i(memory_response_id_i), .idle_o(arbiter_idle));
 
   performance_counters #(
-    .WARPS(WARPS), .LANES(LANES), .INSTANCES(INSTANCES), .ALU_TYPES(ALU_TYPES), .INSTANCE_TYPES(INSTANCE_TYPES)
+    .WARPS(WARPS), .LANES(LANES), .INSTANCES(INSTANCES), .ALU_TYPES(ALU_TYPES), .INSTANCE_TYPES(INSTANCE_TYPES),
+    .TRIPLES(TRIPLES)
   ) performance_counters (
     .clk_i(clk_i), .rst_ni(rst_ni), .running_i(busy_o), .retire_i(retire), .retire_mask_i(thread_mask),
     .instruction_hit_i(instruction_hit), .instruction_miss_i(instruction_miss),
     .data_hit_i(data_hit), .data_miss_i(data_miss), .data_store_i(data_store),
     .ready_i(ready), .grant_i(instance_grant), .waiting_i(waiting), .type_i(wanted_type),
-    .launched_i(launched), .active_i(active), .fetching_i(fetching), .executing_i(executing),
+    .launched_i(launched), .active_i(active), .fetching_i(fetching), .executing_i(executing), .overlapping_i(overlaps & grant),
     .import_wait_i(import_wait), .export_wait_i(export_wait),
     .select_i(counter_select_i), .value_o(counter_o));
 

@@ -17,6 +17,7 @@
   localparam integer COUNTER_WARPS_IN_RAY = 12;
   localparam integer COUNTER_WARPS_IMPORTING = 13;
   localparam integer COUNTER_WARPS_EXPORTING = 14;
+  localparam integer COUNTER_FLT_OVERLAPPED = 15;
   localparam integer COUNTER_UNUSED = 16;
   localparam integer COUNTER_WAITING = 24;
   localparam integer COUNTER_ISSUED = 32;

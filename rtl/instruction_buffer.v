@@ -2,7 +2,8 @@
 // and the state of both. docs/architecture.md, section 3, has the cycles.
 `default_nettype none
 module instruction_buffer #(
-  parameter [0:0] FMA = 1'b0           // ffma is legal
+  parameter [0:0] FMA = 1'b0,          // ffma is legal
+  parameter [0:0] TRIPLES = 1'b0       // triples are legal
 ) (
   input  wire        clk_i,
   input  wire        rst_ni,
@@ -24,8 +25,12 @@ module instruction_buffer #(
   output wire        read_o,           // RegFile
   output wire        want_o,           // Dispatch
   input  wire        grant_i,
-  input  wire        retire_i,         // WriBack
+  input  wire        done_i,           // WriBack; of a triple, of each element
   output reg  [63:0] instruction_o,
+  output wire        triple_o,
+  output wire [1:0]  read_element_o,   // of a triple, which is read and dispatched; else 0
+  output wire [1:0]  done_element_o,   // of a triple, which is done next; else 0
+  output wire        overlaps_o,       // once this element has its ALU, the next one is read at once
   output reg  [15:0] pc_o,
   output wire        writes_register_o,
   output wire        writes_predicate_o,
@@ -50,7 +55,8 @@ module instruction_buffer #(
   wire [63:0] instruction = instruction_o;
 `include "isa_fields.vh"
   wire exits = field_type == ISA_TYPE_BRH && field_operation == ISA_BRH_EXIT;
-  wire ready = fetch_q == F_FULL && (data_q == D_IDLE || retire_i) && !halt_i;
+  wire retire;   // done, and no element is left
+  wire ready = fetch_q == F_FULL && (data_q == D_IDLE || retire) && !halt_i;
 
   assign step_o = fetch_q == F_STACK && !halt_i;
   assign fetch_request_o = fetch_q == F_ARBITER && !halt_i;
@@ -84,7 +90,7 @@ module instruction_buffer #(
         F_CACHE:
           if (cache_hit_i) begin
             next_q <= cache_instruction_i;
-            next_legal_q <= isa_legal(cache_instruction_i, FMA);
+            next_legal_q <= isa_legal(cache_instruction_i, FMA, TRIPLES);
             next_control_q <= isa_control(cache_instruction_i);
             fetch_q <= F_FULL;
           end else begin
@@ -96,10 +102,11 @@ module instruction_buffer #(
 
       case (data_q)
         D_READ: data_q <= D_WANT;
-        D_WANT: if (grant_i) data_q <= D_EXECUTE;
+        D_WANT: if (grant_i) data_q <= overlaps_o ? D_READ : D_EXECUTE;
         default: ;
       endcase
-      if (retire_i) begin
+      if (next_after_done) data_q <= D_READ;
+      if (retire) begin
         data_q <= D_IDLE;
         if (exits) active_o <= 1'b0;
         else if (isa_control(instruction)) fetch_q <= F_STACK;
@@ -112,5 +119,43 @@ module instruction_buffer #(
         fetch_q <= next_control_q ? F_IDLE : F_STACK;
       end
     end
+
+  // ---- Triples. Loads wait for each other, as the memory ALU has one task of a warp at a time; so do arguments, and
+  // floats of which one reads what an earlier one has written. Of other floats, and accesses to ray memory, the next
+  // element is read when the one before has its ALU; they are done in order.
+  wire next_after_done;
+  generate
+    if (TRIPLES != 1'b0) begin : gen_triples
+      reg triple_q, waits_q;
+      reg [1:0] read_element_q, done_element_q;
+      wire next_triple = isa_triple(next_q);
+      wire next_waits = next_q[63:60] == ISA_TYPE_FLT ? isa_elements_depend(next_q) : next_q[63:60] != ISA_TYPE_RAY;
+      wire last_read = !triple_q || read_element_q == 2'd2;
+      wire last_done = !triple_q || done_element_q == 2'd2;
+      always @(posedge clk_i)
+        if (issue) begin
+          triple_q <= next_triple;
+          waits_q <= next_waits;
+          read_element_q <= 2'd0;
+          done_element_q <= 2'd0;
+        end else begin
+          if (next_after_done || (overlaps_o && want_o && grant_i)) read_element_q <= read_element_q + 2'd1;
+          if (done_i && !last_done) done_element_q <= done_element_q + 2'd1;
+        end
+      assign triple_o = triple_q;
+      assign read_element_o = read_element_q;
+      assign done_element_o = done_element_q;
+      assign overlaps_o = !last_read && !waits_q;
+      assign next_after_done = done_i && !last_done && waits_q;
+      assign retire = done_i && last_done;
+    end else begin : gen_no_triples
+      assign triple_o = 1'b0;
+      assign read_element_o = 2'd0;
+      assign done_element_o = 2'd0;
+      assign overlaps_o = 1'b0;
+      assign next_after_done = 1'b0;
+      assign retire = done_i;
+    end
+  endgenerate
 endmodule
 `default_nettype wire

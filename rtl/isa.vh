@@ -80,6 +80,16 @@
   localparam [4:0] ISA_RAY_RFB = 5'd2;
   localparam [4:0] ISA_RAY_RLD = 5'd3;
   localparam [4:0] ISA_RAY_RST = 5'd4;
+  localparam [4:0] ISA_FLT_FADD3 = 5'd16;
+  localparam [4:0] ISA_FLT_FSUB3 = 5'd17;
+  localparam [4:0] ISA_FLT_FMUL3 = 5'd18;
+  localparam [4:0] ISA_FLT_FMUL3S = 5'd26;
+  localparam [4:0] ISA_FLT_FFMA3 = 5'd23;
+  localparam [4:0] ISA_FLT_FFMA3S = 5'd31;
+  localparam [4:0] ISA_TID_ARG3 = 5'd22;
+  localparam [4:0] ISA_MEM_LD3 = 5'd16;
+  localparam [4:0] ISA_RAY_RLD3 = 5'd19;
+  localparam [4:0] ISA_RAY_RST3 = 5'd20;
 
   // whether an ALU type looks at an operand: bit n is that of type n
   localparam [15:0] ISA_HAS_OPERAND_A = 16'b0000000000111110;

@@ -48,12 +48,104 @@
     end
   endfunction
 
-  // the instruction has a table row, and the machine what it needs; fma: arithmetic.fma
+  // machines with triples have this instruction
+  function isa_legal_triple_op;
+    /* verilator lint_off UNUSEDSIGNAL */
+    input [63:0] encoding;
+    /* verilator lint_on UNUSEDSIGNAL */
+    begin
+      case ({encoding[63:60], encoding[59:55]})
+        // tid: arg3
+        9'd22
+        // mem: ld3
+        , 9'd80
+        // flt: fadd3 fsub3 fmul3 fmul3s
+        , 9'd144, 9'd145, 9'd146, 9'd154
+        // ray: rld3 rst3
+        , 9'd211, 9'd212
+          : isa_legal_triple_op = 1'b1;
+        default: isa_legal_triple_op = 1'b0;
+      endcase
+    end
+  endfunction
+
+  // machines with both have this instruction
+  function isa_legal_fused_triple_op;
+    /* verilator lint_off UNUSEDSIGNAL */
+    input [63:0] encoding;
+    /* verilator lint_on UNUSEDSIGNAL */
+    begin
+      case ({encoding[63:60], encoding[59:55]})
+        // flt: ffma3 ffma3s
+        9'd151, 9'd159
+          : isa_legal_fused_triple_op = 1'b1;
+        default: isa_legal_fused_triple_op = 1'b0;
+      endcase
+    end
+  endfunction
+
+  // the instruction accesses three words of a ray package
+  function isa_triple_of_words;
+    /* verilator lint_off UNUSEDSIGNAL */
+    input [63:0] encoding;
+    /* verilator lint_on UNUSEDSIGNAL */
+    begin
+      case ({encoding[63:60], encoding[59:55]})
+        // ray: rld3 rst3
+        9'd211, 9'd212
+          : isa_triple_of_words = 1'b1;
+        default: isa_triple_of_words = 1'b0;
+      endcase
+    end
+  endfunction
+
+  // the instruction has a table row, and the machine what it needs; fma: arithmetic.fma. A triple's words are all there
   function isa_legal;
     input [63:0] encoding;
     input fma;
+    input triples;
     begin
-      isa_legal = isa_legal_op(encoding) || (fma && isa_legal_fma_op(encoding));
+      isa_legal = isa_legal_op(encoding) || (fma && isa_legal_fma_op(encoding)) ||
+                  (triples && isa_legal_triple_op(encoding) &&
+                   !(isa_triple_of_words(encoding) && encoding[36:32] > 5'd18)) ||
+                  (fma && triples && isa_legal_fused_triple_op(encoding));
+    end
+  endfunction
+
+  // the instruction does three
+  function isa_triple;
+    /* verilator lint_off UNUSEDSIGNAL */
+    input [63:0] encoding;
+    /* verilator lint_on UNUSEDSIGNAL */
+    begin
+      case ({encoding[63:60], encoding[59:55]})
+        // tid: arg3
+        9'd22
+        // mem: ld3
+        , 9'd80
+        // flt: fadd3 fsub3 fmul3 fmul3s ffma3 ffma3s
+        , 9'd144, 9'd145, 9'd146, 9'd154, 9'd151, 9'd159
+        // ray: rld3 rst3
+        , 9'd211, 9'd212
+          : isa_triple = 1'b1;
+        default: isa_triple = 1'b0;
+      endcase
+    end
+  endfunction
+
+  // an element of this float triple reads what an earlier one has written
+  function isa_elements_depend;
+    /* verilator lint_off UNUSEDSIGNAL */
+    input [63:0] encoding;
+    /* verilator lint_on UNUSEDSIGNAL */
+    reg [3:0] a, b, c;
+    begin
+      a = encoding[49:46] - encoding[45:42];
+      b = encoding[49:46] - encoding[41:38];
+      c = encoding[49:46] - encoding[35:32];
+      isa_elements_depend = (encoding[58] ? a == 4'd0 || a == 4'd15 : a == 4'd1 || a == 4'd2) ||
+                            (!encoding[37] && (b == 4'd1 || b == 4'd2)) ||
+                            (encoding[57:55] == 3'd7 && (c == 4'd1 || c == 4'd2));
     end
   endfunction
 
@@ -64,20 +156,20 @@
     /* verilator lint_on UNUSEDSIGNAL */
     begin
       case ({encoding[63:60], encoding[59:55]})
-        // tid: tid lane warp block threads blocks arg
-        9'd0, 9'd1, 9'd2, 9'd3, 9'd4, 9'd5, 9'd6
-        // mem: ld
-        , 9'd64
+        // tid: tid lane warp block threads blocks arg arg3
+        9'd0, 9'd1, 9'd2, 9'd3, 9'd4, 9'd5, 9'd6, 9'd22
+        // mem: ld ld3
+        , 9'd64, 9'd80
         // int: mov iadd isub imul and or xor shl shr sar imin imax umin umax
         //   sel
         , 9'd96, 9'd97, 9'd98, 9'd99, 9'd100, 9'd101, 9'd102, 9'd103, 9'd104, 9'd105, 9'd106, 9'd107, 9'd108, 9'd109,
         9'd110
-        // flt: fadd fsub fmul fmin fmax f2i i2f ffma
-        , 9'd128, 9'd129, 9'd130, 9'd131, 9'd132, 9'd133, 9'd134, 9'd135
+        // flt: fadd fsub fmul fmin fmax f2i i2f ffma fadd3 fsub3 fmul3 fmul3s ffma3 ffma3s
+        , 9'd128, 9'd129, 9'd130, 9'd131, 9'd132, 9'd133, 9'd134, 9'd135, 9'd144, 9'd145, 9'd146, 9'd154, 9'd151, 9'd159
         // slw: fdiv fsqrt frsqrt frcp
         , 9'd160, 9'd161, 9'd162, 9'd163
-        // ray: rld
-        , 9'd195
+        // ray: rld rld3
+        , 9'd195, 9'd211
           : isa_writes_register = 1'b1;
         default: isa_writes_register = 1'b0;
       endcase

@@ -8,7 +8,8 @@ module performance_counters #(
   parameter integer LANES = 8,
   parameter integer INSTANCES = 7,
   parameter integer ALU_TYPES = 7,
-  parameter [INSTANCES*4-1:0] INSTANCE_TYPES = 28'h6543210
+  parameter [INSTANCES*4-1:0] INSTANCE_TYPES = 28'h6543210,
+  parameter integer TRIPLES = 0
 ) (
   input  wire                   clk_i,
   input  wire                   rst_ni,
@@ -28,6 +29,7 @@ module performance_counters #(
   input  wire [WARPS-1:0]       active_i,
   input  wire [WARPS-1:0]       fetching_i,
   input  wire [WARPS-1:0]       executing_i,
+  input  wire [WARPS-1:0]       overlapping_i,    // given an ALU, and read the next element of a triple at once
   input  wire [WARPS-1:0]       import_wait_i,    // of those that execute
   input  wire [WARPS-1:0]       export_wait_i,
   input  wire [5:0]             select_i,
@@ -38,7 +40,8 @@ module performance_counters #(
   localparam integer BITS = 48;
   localparam integer LOW_BITS = 12;
   localparam integer STATES = COUNTER_WARPS_NOT_LAUNCHED;   // the first of the counters of warps in a state
-  localparam integer SINGLES = COUNTER_WARPS_EXPORTING + 1;
+  localparam integer SINGLES = COUNTER_FLT_OVERLAPPED + 1;
+  localparam integer STATE_COUNTERS = SINGLES - STATES;
   localparam integer COUNTERS = SINGLES + 3 * ALU_TYPES;
   localparam integer LANE_BITS = $clog2(LANES) + 1;   // of the number of a warp's lanes
   localparam integer WARP_BITS = $clog2(WARPS) + 1;   // of the number of warps
@@ -80,20 +83,22 @@ module performance_counters #(
 
   // ---- Which warps are in which state, in the order of the counters; with those that wait for an ALU, those that are
   // granted one and those that read registers, which is a cycle of each task, they are all.
-  reg [WARPS-1:0] in_mem, in_ray;
-  reg [(SINGLES-STATES)*WARPS-1:0] states_q;
+  reg [WARPS-1:0] in_mem, in_ray, in_overlap;
+  reg [STATE_COUNTERS*WARPS-1:0] states_q;
   integer v;
   always @* begin
     in_mem = {WARPS{1'b0}};
     in_ray = {WARPS{1'b0}};
+    in_overlap = {WARPS{1'b0}};
     for (v = 0; v < WARPS; v = v + 1) begin
       in_mem[v] = executing_i[v] && type_i[v*4 +: 4] == ISA_TYPE_MEM;
       in_ray[v] = executing_i[v] && type_i[v*4 +: 4] == ISA_TYPE_RAY;
+      in_overlap[v] = overlapping_i[v] && type_i[v*4 +: 4] == ISA_TYPE_FLT;
     end
   end
   always @(posedge clk_i)
-    states_q <= !(rst_ni && running_i) ? {(SINGLES-STATES)*WARPS{1'b0}}
-                : {export_wait_i, import_wait_i, in_ray & ~import_wait_i & ~export_wait_i, in_mem, fetching_i,
+    states_q <= !(rst_ni && running_i) ? {STATE_COUNTERS*WARPS{1'b0}}
+                : {in_overlap, export_wait_i, import_wait_i, in_ray & ~import_wait_i & ~export_wait_i, in_mem, fetching_i,
                    launched_i & ~active_i, ~launched_i};
 
   function [WARP_BITS-1:0] warps(input [WARPS-1:0] state);   // that are in it
@@ -165,27 +170,33 @@ module performance_counters #(
       localparam integer EVENT_BITS = (c == COUNTER_THREAD_INSTRUCTIONS) ? THREAD_BITS
                                       : (c == COUNTER_INSTRUCTIONS || (c >= STATES && ROW < 0) || ROW == 1) ? WARP_BITS
                                       : (ROW >= 0) ? 3 : 1;
-      wire [EVENT_BITS-1:0] events;
-      if (c == COUNTER_BUSY_CYCLES) begin : gen_event
-        assign events = running_q;
-      end else if (c == COUNTER_INSTRUCTIONS) begin : gen_event
-        assign events = instructions_q;
-      end else if (c == COUNTER_THREAD_INSTRUCTIONS) begin : gen_event
-        assign events = threads_sum_q;
-      end else if (c >= STATES && c < SINGLES) begin : gen_event
-        assign events = warps(states_q[(c-STATES)*WARPS +: WARPS]);
-      end else if (c < SINGLES) begin : gen_event
-        assign events = running_q && single_q[c - COUNTER_INSTRUCTION_CACHE_HITS];
-      end else if (ROW == 0) begin : gen_event
-        assign events = running_q ? count(TYPE[3:0], unused_q) : 3'd0;
-      end else if (ROW == 1) begin : gen_event
-        assign events = queues_q[TYPE*WARP_BITS +: WARP_BITS];
-      end else begin : gen_event
-        assign events = running_q ? count(TYPE[3:0], issued_q) : 3'd0;
+      if (c == COUNTER_FLT_OVERLAPPED && TRIPLES == 0) begin : gen_nothing
+        wire unused = &{1'b0, states_q[(c-STATES)*WARPS +: WARPS]};
+        assign values[c*BITS +: BITS] = {BITS{1'b0}};
+        assign pendings[c*(LOW_BITS+1) +: LOW_BITS+1] = {LOW_BITS+1{1'b0}};
+      end else begin : gen_events
+        wire [EVENT_BITS-1:0] events;
+        if (c == COUNTER_BUSY_CYCLES) begin : gen_event
+          assign events = running_q;
+        end else if (c == COUNTER_INSTRUCTIONS) begin : gen_event
+          assign events = instructions_q;
+        end else if (c == COUNTER_THREAD_INSTRUCTIONS) begin : gen_event
+          assign events = threads_sum_q;
+        end else if (c >= STATES && c < SINGLES) begin : gen_event
+          assign events = warps(states_q[(c-STATES)*WARPS +: WARPS]);
+        end else if (c < SINGLES) begin : gen_event
+          assign events = running_q && single_q[c - COUNTER_INSTRUCTION_CACHE_HITS];
+        end else if (ROW == 0) begin : gen_event
+          assign events = running_q ? count(TYPE[3:0], unused_q) : 3'd0;
+        end else if (ROW == 1) begin : gen_event
+          assign events = queues_q[TYPE*WARP_BITS +: WARP_BITS];
+        end else begin : gen_event
+          assign events = running_q ? count(TYPE[3:0], issued_q) : 3'd0;
+        end
+        event_counter #(.BITS(BITS), .LOW_BITS(LOW_BITS), .EVENT_BITS(EVENT_BITS)) event_counter (
+          .clk_i(clk_i), .rst_ni(rst_ni), .event_i(events),
+          .value_o(values[c*BITS +: BITS]), .pending_o(pendings[c*(LOW_BITS+1) +: LOW_BITS+1]));
       end
-      event_counter #(.BITS(BITS), .LOW_BITS(LOW_BITS), .EVENT_BITS(EVENT_BITS)) event_counter (
-        .clk_i(clk_i), .rst_ni(rst_ni), .event_i(events),
-        .value_o(values[c*BITS +: BITS]), .pending_o(pendings[c*(LOW_BITS+1) +: LOW_BITS+1]));
     end
   endgenerate
 

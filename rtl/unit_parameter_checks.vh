@@ -11,6 +11,9 @@
     if (STACK_DEPTH < 2 || STACK_DEPTH > 32) begin : gen_bad_STACK_DEPTH
       STACK_DEPTH_must_be_an_integer_from_2_to_32 illegal ();
     end
+    if (TRIPLES < 0 || TRIPLES > 1) begin : gen_bad_TRIPLES
+      TRIPLES_must_be_an_integer_from_0_to_1 illegal ();
+    end
     if (SUBNORMALS < 0 || SUBNORMALS > 1) begin : gen_bad_SUBNORMALS
       SUBNORMALS_must_be_an_integer_from_0_to_1 illegal ();
     end

@@ -4,7 +4,8 @@ module warp #(
   parameter integer LANES = 8,
   parameter integer STACK_DEPTH = 8,
   parameter integer INSTANCES = 7,
-  parameter integer FMA = 0         // reads register rc too, and issues ffma
+  parameter integer FMA = 0,        // reads register rc too, and issues ffma
+  parameter integer TRIPLES = 0     // issues triples
 ) (
   input  wire                      clk_i,
   input  wire                      rst_ni,
@@ -26,6 +27,8 @@ module warp #(
   input  wire                      grant_i,
   output wire [3:0]                type_o,
   output wire [63:0]               instruction_o,
+  output wire [63:0]               task_o,          // the same, or the element of a triple that is dispatched
+  output wire                      overlaps_o,      // it is followed by another one at once
   output wire [LANES-1:0]          mask_o,
   output wire [LANES-1:0]          predicate_x_o,
   output wire [LANES-1:0]          predicate_b_o,
@@ -55,6 +58,8 @@ module warp #(
   wire step, pc_valid, read, writes_register, writes_predicate, illegal, outside, overflow, underflow;
   wire [15:0] stack_pc;
   wire [63:0] instruction = instruction_o;
+  wire triple;
+  wire [1:0] read_element, done_element;
 `include "isa_fields.vh"
   assign type_o = field_type;
 
@@ -89,15 +94,38 @@ module warp #(
     .pop_i(control && field_operation == ISA_BRH_RET), .target_i(enter ? pc_o + 16'd1 : field_target),
     .end_i(enter ? field_target : field_end), .return_i(pc_o), .overflow_o(overflow), .underflow_o(underflow));
 
-  instruction_buffer #(.FMA(FMA != 0)) instruction_buffer (
+  instruction_buffer #(.FMA(FMA != 0), .TRIPLES(TRIPLES != 0)) instruction_buffer (
     .clk_i(clk_i), .rst_ni(rst_ni), .start_i(start_i), .halt_i(halt_i), .active_o(active_o),
     .step_o(step), .pc_valid_i(pc_valid), .pc_i(stack_pc), .program_length_i(program_length_i),
     .fetch_request_o(fetch_request_o), .fetch_pc_o(fetch_pc_o), .fetch_grant_i(fetch_grant_i),
     .cache_hit_i(cache_hit_i), .cache_instruction_i(cache_instruction_i), .refill_done_i(refill_done_i),
-    .read_o(read), .want_o(want_o), .grant_i(grant_i), .retire_i(retire_o),
-    .instruction_o(instruction_o), .pc_o(pc_o), .writes_register_o(writes_register),
+    .read_o(read), .want_o(want_o), .grant_i(grant_i), .done_i(retire_o),
+    .instruction_o(instruction_o), .triple_o(triple), .read_element_o(read_element), .done_element_o(done_element),
+    .overlaps_o(overlaps_o), .pc_o(pc_o), .writes_register_o(writes_register),
     .writes_predicate_o(writes_predicate), .fetching_o(fetching_o), .executing_o(executing_o), .illegal_o(illegal),
     .outside_o(outside));
+
+  // ---- The element of a triple: what of its numbers moves on, and the operation that it has alone.
+  wire one_ra;
+  wire [3:0] task_ra = field_ra + (one_ra ? 4'd0 : {2'd0, read_element});
+  wire [3:0] written = field_rd + {2'd0, done_element};
+  generate
+    if (TRIPLES != 0) begin : gen_triples
+      wire address = field_type == ISA_TYPE_MEM;
+      wire argument = field_type == ISA_TYPE_TID;
+      wire word = field_type == ISA_TYPE_RAY;
+      assign one_ra = (triple && field_operation[3]) || address;
+      assign task_o = {field_type, triple ? {2'd0, field_operation[2:0]} : field_operation, instruction[54:37],
+                       word ? field_x + {3'd0, read_element} : field_x, instruction[31:5],
+                       argument ? instruction[4:0] + {3'd0, read_element}
+                       : address ? {instruction[4], instruction[3:2] | read_element, instruction[1:0]}
+                       : instruction[4:0]};
+    end else begin : gen_no_triples
+      wire unused = triple;
+      assign one_ra = 1'b0;
+      assign task_o = instruction_o;
+    end
+  endgenerate
 
   predicate_file #(.LANES(LANES)) predicate_file (
     .clk_i(clk_i), .clear_i(start_i), .read_i(read), .launched_i(launched_q),
@@ -107,10 +135,10 @@ module warp #(
 
   ram_2r1w #(.WIDTH(LANES*32), .DEPTH(16), .GRANULE(32)) register_bank (
     .clk_i(clk_i), .read_i(read),
-    .read_address_a_i(field_ra), .read_address_b_i(field_rb),
+    .read_address_a_i(task_ra), .read_address_b_i(field_rb + {2'd0, read_element}),
     .read_data_a_o(operand_a_o), .read_data_b_o(operand_b_o),
     .write_mask_i(retire_o && writes_register ? mask_o : {LANES{1'b0}}),
-    .write_address_i(field_rd), .write_data_i(retire_data_o));
+    .write_address_i(written), .write_data_i(retire_data_o));
 
   // A copy of the bank gives the third operand, as memories with three read ports are rare.
   genvar l;
@@ -118,8 +146,8 @@ module warp #(
     if (FMA != 0) begin : gen_third
       for (l = 0; l < LANES; l = l + 1) begin : gen_lane
         ram_1r1w #(.WIDTH(32), .DEPTH(16)) register_copy (
-          .clk_i(clk_i), .read_i(read), .read_address_i(field_x[3:0]), .read_data_o(operand_c_o[l*32 +: 32]),
-          .write_i(retire_o && writes_register && mask_o[l]), .write_address_i(field_rd),
+          .clk_i(clk_i), .read_i(read), .read_address_i(field_x[3:0] + {2'd0, read_element}), .read_data_o(operand_c_o[l*32 +: 32]),
+          .write_i(retire_o && writes_register && mask_o[l]), .write_address_i(written),
           .write_data_i(retire_data_o[l*32 +: 32]));
       end
     end else begin : gen_no_third

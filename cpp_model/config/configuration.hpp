@@ -57,7 +57,18 @@ struct Configuration {
   ChipConfiguration chip;
 
   /// Whether instructions that need the feature are legal.
-  bool has(Feature feature) const { return feature == Feature::Base || fma; }
+  bool has(Feature feature) const {
+    switch (feature) {
+      case Feature::FusedMultiplyAdd:
+        return fma;
+      case Feature::Triples:
+        return triples;
+      case Feature::FusedTriples:
+        return fma && triples;
+      default:
+        return true;
+    }
+  }
   uint32_t contents() const { return warps * lanes; }
   const AluConfiguration& alu(AluType type) const { return alus[type]; }
 };

@@ -27,6 +27,7 @@ namespace raypool {
   SINGLE(WarpsInRay,             12, "of those whose task Ray has, importing and exporting ones not counted") \
   SINGLE(WarpsImporting,         13, "of those whose rin waits for a package that has not arrived") \
   SINGLE(WarpsExporting,         14, "of those whose rout or rfb waits for the one before to leave") \
+  SINGLE(FltOverlapped,          15, "tasks of Flt behind which the next of their triple was read at once") \
   BY_TYPE(Unused,                16, "busy cycles x instances that were free for a task and got none") \
   BY_TYPE(Waiting,               24, "sum over busy cycles of the warps that wanted this type and were not granted") \
   BY_TYPE(Issued,                32, "tasks issued")

@@ -96,6 +96,55 @@ bool looks_at(const InstructionInfo& info, TaskOperand operand) {
   return false;
 }
 
+namespace {
+
+constexpr uint8_t kTriple = 16, kOneRa = 8, kElementOperation = 7;  // of a triple's operation
+
+bool moves_on(const InstructionInfo& triple, Operand operand) {
+  return has_operand(triple, operand) && !(operand == Operand::Ra && has_one_ra(triple));
+}
+
+uint8_t register_of(uint8_t first, int element) { return static_cast<uint8_t>((first + element) % kRegisters); }
+
+}  // namespace
+
+bool has_one_ra(const InstructionInfo& triple) { return is_triple(triple) && (triple.operation() & kOneRa) != 0; }
+
+const InstructionInfo* find_triple(const InstructionInfo& element, bool one_ra) {
+  if (element.operation() > kElementOperation) return nullptr;
+  const InstructionInfo* found =
+      find_instruction(static_cast<int>(element.alu()), element.operation() | kTriple | (one_ra ? kOneRa : 0));
+  return found != nullptr && is_triple(*found) ? found : nullptr;
+}
+
+Instruction element(const Instruction& triple, int number) {
+  const InstructionInfo& info = *triple.info;
+  Instruction result = triple;
+  result.info = find_instruction(static_cast<int>(info.alu()), info.operation() & kElementOperation);
+  if (moves_on(info, Operand::Rd)) result.rd = register_of(triple.rd, number);
+  if (moves_on(info, Operand::Ra)) result.ra = register_of(triple.ra, number);
+  if (moves_on(info, Operand::B) && !triple.b_is_immediate) result.rb = register_of(triple.rb, number);
+  if (moves_on(info, Operand::Rc)) result.x = register_of(triple.x, number);
+  if (moves_on(info, Operand::Word)) result.x = static_cast<uint8_t>(triple.x + number);
+  if (moves_on(info, Operand::Argument)) result.immediate = triple.immediate + static_cast<uint32_t>(number);
+  if (moves_on(info, Operand::Address)) result.immediate = triple.immediate | static_cast<uint32_t>(4 * number);
+  return result;
+}
+
+bool elements_depend(const Instruction& triple) {
+  const InstructionInfo& info = *triple.info;
+  for (int earlier = 0; earlier < kElements; ++earlier) {
+    const uint8_t written = element(triple, earlier).rd;
+    for (int later = earlier + 1; later < kElements; ++later) {
+      const Instruction reader = element(triple, later);
+      if (has_operand(info, Operand::Ra) && reader.ra == written) return true;
+      if (has_operand(info, Operand::B) && !reader.b_is_immediate && reader.rb == written) return true;
+      if (has_operand(info, Operand::Rc) && reader.x % kRegisters == written) return true;
+    }
+  }
+  return false;
+}
+
 uint64_t encode(const Instruction& parts) {
   return put(field::kType, static_cast<uint64_t>(parts.info->alu())) | put(field::kOperation, parts.info->operation()) |
          put(field::kGuardNegated, parts.guard_negated ? 1 : 0) | put(field::kGuard, parts.guard) |

@@ -70,6 +70,22 @@ std::string_view task_operand_name(TaskOperand operand);
 /// True if what the ALU does with the instruction depends on it. An immediate in place of a register is OperandB.
 bool looks_at(const InstructionInfo& info, TaskOperand operand);
 
+/// An instruction that does three, its elements.
+inline constexpr int kElements = 3;
+constexpr bool is_triple(const InstructionInfo& info) {
+  return info.needs == Feature::Triples || info.needs == Feature::FusedTriples;
+}
+/// The instruction that element 0 .. 2 of a triple is.
+Instruction element(const Instruction& triple, int number);
+/// The triple whose elements are such instructions, with one register ra for all or not; null: there is none.
+const InstructionInfo* find_triple(const InstructionInfo& element, bool one_ra);
+/// All elements of the triple have the same register ra.
+bool has_one_ra(const InstructionInfo& triple);
+/// The triple reads in an element what an earlier one has written: its elements must wait for each other.
+bool elements_depend(const Instruction& triple);
+/// The last word of a ray package that a triple may begin with.
+inline constexpr int kLastTripleWord = kPackageWords - kElements;
+
 /// `instruction.info` must not be null.
 uint64_t encode(const Instruction& instruction);
 /// All fields as they are encoded, also those that the row does not use.

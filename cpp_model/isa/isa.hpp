@@ -120,6 +120,8 @@ enum class Kind : uint8_t {
 enum class Feature : uint8_t {
   Base,              ///< nothing: every machine has the instruction
   FusedMultiplyAdd,  ///< arithmetic.fma
+  Triples,           ///< triples
+  FusedTriples,      ///< both
 };
 
 // The instructions, a row each. Programs drawn at random depend on the order of the rows.
@@ -211,6 +213,21 @@ enum class Feature : uint8_t {
       "export masked lanes' pixel and colour to the frame buffer") \
   ROW(Rld,     Ray, 3,  Rd, Word, None, None, None, Plain, "rd = word of the current slice") \
   ROW(Rst,     Ray, 4,  Word, B, None, None, Float, Plain, "word of the current slice = b") \
+  /* Triples: three instructions, their elements, in one. Of element e (0, 1, 2) every register number is e higher, */ \
+  /* modulo 16, and so are ray word and argument; an address is 4 e further; an immediate in place of b is the same */ \
+  /* for all. Bit 4 of the operation marks them, bit 3 that ra is the same register for all; bits 2:0 are the */ \
+  /* element's operation. */ \
+  ROW(Fadd3,   Flt, 16, Rd, Ra, B, None, Float, Plain, "fadd, three times", Feature::Triples) \
+  ROW(Fsub3,   Flt, 17, Rd, Ra, B, None, Float, Plain, "fsub, three times", Feature::Triples) \
+  ROW(Fmul3,   Flt, 18, Rd, Ra, B, None, Float, Plain, "fmul, three times", Feature::Triples) \
+  ROW(Fmul3s,  Flt, 26, Rd, Ra, B, None, Float, Plain, "fmul, three times, with one ra", Feature::Triples) \
+  ROW(Ffma3,   Flt, 23, Rd, Ra, B, Rc, Float, Plain, "ffma, three times", Feature::FusedTriples) \
+  ROW(Ffma3s,  Flt, 31, Rd, Ra, B, Rc, Float, Plain, "ffma, three times, with one ra", Feature::FusedTriples) \
+  ROW(Arg3,    Tid, 22, Rd, Argument, None, None, None, Plain, "arg, three times", Feature::Triples) \
+  ROW(Ld3,     Mem, 16, Rd, Address, None, None, None, Plain, \
+      "ld, three times; bits 3:2 of the offset are 0, and become the element's number", Feature::Triples) \
+  ROW(Rld3,    Ray, 19, Rd, Word, None, None, None, Plain, "rld, three times", Feature::Triples) \
+  ROW(Rst3,    Ray, 20, Word, B, None, None, Float, Plain, "rst, three times", Feature::Triples) \
   /* The table ends here: the backslash above lets a row follow it. */
 // clang-format on
 
@@ -264,8 +281,17 @@ inline constexpr InstructionInfo kInstructions[] = {
 #undef RAYPOOL_ROW
 };
 
+/// Rows that are no triples, which stand behind them.
+inline constexpr size_t kSingles = [] {
+  size_t rows = 0;
+  for (const InstructionInfo& info : kInstructions)
+    rows += info.needs != Feature::Triples && info.needs != Feature::FusedTriples ? 1 : 0;
+  return rows;
+}();
+
 inline constexpr int kRegisters = 16;
 inline constexpr int kPredicates = 16;
 inline constexpr int kArguments = 32;
+inline constexpr int kPackageWords = 21;  ///< of a slice of ray memory, a thread
 
 }  // namespace raypool

@@ -54,6 +54,8 @@ std::string syntax(const InstructionInfo& info) {
 
 const char* marks(const InstructionInfo& info) {
   if (info.needs == Feature::FusedMultiplyAdd) return "*fma*";
+  if (info.needs == Feature::Triples) return "*t*";
+  if (info.needs == Feature::FusedTriples) return "*t fma*";
   return info.kind == Kind::Control ? "*c*" : "";
 }
 

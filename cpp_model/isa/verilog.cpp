@@ -83,6 +83,30 @@ std::string operands_of_types() {
   return text;
 }
 
+/// Written and read in elements of a float triple: rd + i and r + j with i < j, or r for all elements.
+std::string elements_depend_verilog() {
+  return fmt::format(
+      "\n  // an element of this float triple reads what an earlier one has written\n"
+      "  function isa_elements_depend;\n"
+      "    /* verilator lint_off UNUSEDSIGNAL */\n"
+      "    input [63:0] encoding;\n"
+      "    /* verilator lint_on UNUSEDSIGNAL */\n"
+      "    reg [3:0] a, b, c;\n"
+      "    begin\n"
+      "      a = {0} - {1};\n"
+      "      b = {0} - {2};\n"
+      "      c = {0} - {3};\n"
+      "      isa_elements_depend = ({4} ? a == 4'd0 || a == 4'd15 : a == 4'd1 || a == 4'd2) ||\n"
+      "                            (!{5} && (b == 4'd1 || b == 4'd2)) ||\n"
+      "                            ({6} == 3'd{7} && (c == 4'd1 || c == 4'd2));\n"
+      "    end\n"
+      "  endfunction\n",
+      slice(field::kRd, "encoding"), slice(field::kRa, "encoding"), slice(field::kRb, "encoding"),
+      fmt::format("encoding[{}:{}]", field::kX.lsb + 3, field::kX.lsb),
+      fmt::format("encoding[{}]", field::kOperation.lsb + 3), slice(field::kBIsImmediate, "encoding"),
+      fmt::format("encoding[{}:{}]", field::kOperation.lsb + 2, field::kOperation.lsb), operation_of(Opcode::Ffma));
+}
+
 constexpr const char* kGenerated =
     "  // Generated from cpp_model/isa/isa.hpp by `raypool isa {}`; a test compares. Do not edit.\n";
 
@@ -138,15 +162,32 @@ std::string isa_verilog_functions() {
                           [](const InstructionInfo& info) { return info.needs == Feature::Base; });
   text += function_of_row("isa_legal_fma_op", "machines with arithmetic.fma have this instruction",
                           [](const InstructionInfo& info) { return info.needs == Feature::FusedMultiplyAdd; });
+  text += function_of_row("isa_legal_triple_op", "machines with triples have this instruction",
+                          [](const InstructionInfo& info) { return info.needs == Feature::Triples; });
+  text += function_of_row("isa_legal_fused_triple_op", "machines with both have this instruction",
+                          [](const InstructionInfo& info) { return info.needs == Feature::FusedTriples; });
   text +=
-      "\n  // the instruction has a table row, and the machine what it needs; fma: arithmetic.fma\n"
+      function_of_row("isa_triple_of_words", "the instruction accesses three words of a ray package",
+                      [](const InstructionInfo& info) { return is_triple(info) && has_operand(info, Operand::Word); });
+  text += fmt::format(
+      "\n  // the instruction has a table row, and the machine what it needs; fma: arithmetic.fma. A triple's words "
+      "are "
+      "all there\n"
       "  function isa_legal;\n"
       "    input [63:0] encoding;\n"
       "    input fma;\n"
+      "    input triples;\n"
       "    begin\n"
-      "      isa_legal = isa_legal_op(encoding) || (fma && isa_legal_fma_op(encoding));\n"
+      "      isa_legal = isa_legal_op(encoding) || (fma && isa_legal_fma_op(encoding)) ||\n"
+      "                  (triples && isa_legal_triple_op(encoding) &&\n"
+      "                   !(isa_triple_of_words(encoding) && {} > 5'd{})) ||\n"
+      "                  (fma && triples && isa_legal_fused_triple_op(encoding));\n"
       "    end\n"
-      "  endfunction\n";
+      "  endfunction\n",
+      slice(field::kX, "encoding"), kLastTripleWord);
+  text += function_of_row("isa_triple", "the instruction does three",
+                          [](const InstructionInfo& info) { return is_triple(info); });
+  text += elements_depend_verilog();
   text += function_of_row("isa_writes_register", "writes register rd",
                           [](const InstructionInfo& info) { return writes_register(info); });
   text += function_of_row("isa_writes_predicate", "writes predicate pd",

@@ -38,9 +38,14 @@ class InterferenceGraph {
       if (defined == kNothing) continue;
       const int copied = is_copy(op) ? op.rb : kNothing;
       const NumberSet& live = predicates ? liveness.predicates_after[i] : liveness.registers_after[i];
-      live.for_each([&](int other) {
-        if (other != defined && other != copied) connect(defined, other);
-      });
+      const int count = predicates ? 1 : effect.registers_defined;
+      for (int e = 0; e < count; ++e) {
+        mark(defined + e);
+        live.for_each([&](int other) {
+          if (other != defined + e && other != copied) connect(defined + e, other);
+        });
+      }
+      if (count > 1) keep_elements_apart(op);
       if (copied != kNothing && copied != defined) copies_.emplace_back(defined, copied);
     }
     if (predicates) used_[0] = false;  // p0 has its place
@@ -55,6 +60,7 @@ class InterferenceGraph {
         const int first = find(a);
         const int second = find(b);
         if (first == second || neighbours_[at(first)].has(second)) continue;
+        if (in_group(first) || in_group(second)) continue;
         if (!used_[at(first)] || !used_[at(second)]) continue;
         if (mode == Coalescing::Safe && !is_safe(first, second, places)) continue;
         merge(first, second);
@@ -63,11 +69,59 @@ class InterferenceGraph {
     }
   }
 
-  /// A place 0 .. places-1 for each number; false, with the number that found none, if they do not suffice.
+  /// These and the two behind each get places in a row.
+  void group(const std::vector<int>& firsts) {
+    for (const int first : firsts)
+      if (used_[at(first)] || used_[at(first + 1)] || used_[at(first + 2)]) groups_.push_back(first);
+  }
+
+  /// A place 0 .. places-1 for each number; false, with the number that found none, if they do not suffice. Groups come
+  /// first, as they are hard to place; of their places many are tried until the others find some too.
   bool colour(int places, std::vector<int>& colours, int& failed) {
+    std::vector<int> by_degree = groups_, from_the_end(groups_.rbegin(), groups_.rend());
+    const auto degree = [&](int first) {
+      int sum = 0;
+      for (int e = 0; e < kElements; ++e) sum += neighbours_[at(first + e)].count();
+      return sum;
+    };
+    std::stable_sort(by_degree.begin(), by_degree.end(), [&](int a, int b) { return degree(a) > degree(b); });
+    for (const std::vector<int>& order : {by_degree, groups_, from_the_end}) {
+      std::vector<int> places_of(size_, kNothing);
+      int attempts = kMostAttempts;
+      if (place_groups(order, 0, places, places_of, attempts, colours, failed)) return true;
+    }
+    return false;
+  }
+
+ private:
+  static constexpr int kMostAttempts = 400;
+
+  bool place_groups(const std::vector<int>& order, size_t index, int places, std::vector<int>& places_of, int& attempts,
+                    std::vector<int>& colours, int& failed) {
+    if (index == order.size()) {
+      --attempts;
+      return colour_singles(places, places_of, colours, failed);
+    }
+    const int first = order[index];
+    for (int n = 0; n < places && attempts > 0; ++n) {
+      const int place = n * kElements % places;  // 0, 3, .. 15, 2, 5, ..: every place once, with few gaps
+      bool fits = true;
+      for (int e = 0; e < kElements && fits; ++e)
+        fits = (taken_for(first + e, places_of) >> (place + e) % places & 1) == 0;
+      if (!fits) continue;
+      for (int e = 0; e < kElements; ++e) places_of[at(first + e)] = (place + e) % places;
+      if (place_groups(order, index + 1, places, places_of, attempts, colours, failed)) return true;
+      for (int e = 0; e < kElements; ++e) places_of[at(first + e)] = kNothing;
+    }
+    failed = first;
+    --attempts;
+    return false;
+  }
+
+  bool colour_singles(int places, std::vector<int> places_of, std::vector<int>& colours, int& failed) {
     std::vector<int> nodes;
     for (int i = 0; i < size_; ++i) {
-      if (used_[at(i)] && find(i) == i) nodes.push_back(i);
+      if (used_[at(i)] && find(i) == i && !in_group(i)) nodes.push_back(i);
     }
     // Take away nodes that are sure to find a place; if there is none, the one with the most neighbours, and hope.
     std::vector<int> order;
@@ -87,12 +141,8 @@ class InterferenceGraph {
       order.push_back(best);
       neighbours_[at(best)].for_each([&](int other) { --degree[at(other)]; });
     }
-    std::vector<int> places_of(size_, kNothing);
     for (auto node = order.rbegin(); node != order.rend(); ++node) {
-      uint32_t taken = 0;
-      neighbours_[at(*node)].for_each([&](int other) {
-        if (places_of[at(other)] != kNothing) taken |= 1u << places_of[at(other)];
-      });
+      const uint32_t taken = taken_for(*node, places_of);
       int place = 0;
       while (place < places && (taken >> place & 1) != 0) ++place;
       if (place == places) {
@@ -108,7 +158,31 @@ class InterferenceGraph {
     return true;
   }
 
- private:
+  bool in_group(int number) const {
+    return std::any_of(groups_.begin(), groups_.end(),
+                       [&](int first) { return number >= first && number < first + kElements; });
+  }
+  uint32_t taken_for(int node, const std::vector<int>& places_of) const {
+    uint32_t taken = 0;
+    neighbours_[at(node)].for_each([&](int other) {
+      if (places_of[at(other)] != kNothing) taken |= 1u << places_of[at(other)];
+    });
+    return taken;
+  }
+  // An element must not write what a later one reads.
+  void keep_elements_apart(const Op& op) {
+    for (int earlier = 0; earlier < kElements; ++earlier) {
+      for (int later = earlier + 1; later < kElements; ++later) {
+        const auto apart = [&](int number) {
+          if (number != kNothing && number != op.rd + earlier) connect(op.rd + earlier, number);
+        };
+        if (has_operand(*op.info, Operand::Ra)) apart(has_one_ra(*op.info) ? op.ra : op.ra + later);
+        if (has_operand(*op.info, Operand::Address)) apart(op.ra);
+        if (has_operand(*op.info, Operand::B) && !op.b_is_immediate) apart(op.rb + later);
+        if (has_operand(*op.info, Operand::Rc)) apart(op.rc + later);
+      }
+    }
+  }
   static size_t at(int number) { return static_cast<size_t>(number); }
   int find(int number) {
     while (representative_[at(number)] != number) number = representative_[at(number)];
@@ -144,6 +218,7 @@ class InterferenceGraph {
   std::vector<int> representative_;
   std::vector<bool> used_;
   std::vector<std::pair<int, int>> copies_;
+  std::vector<int> groups_;  // first numbers
 };
 
 [[noreturn]] void fail(const Function& function, const Liveness& liveness, bool predicates, int failed) {
@@ -174,28 +249,42 @@ class InterferenceGraph {
                                to_string(begin), function.name, available, what));
 }
 
-std::vector<int> allocate_kind(const Function& function, const Liveness& liveness, bool predicates) {
+/// False, with the number that found no place.
+bool allocate_kind(const Function& function, const Liveness& liveness, bool predicates, std::vector<int>& colours,
+                   int& failed) {
   const int places = predicates ? kPredicates - 1 : kRegisters;
-  std::vector<int> colours;
-  int failed = kNothing;
   for (const Coalescing mode : {Coalescing::All, Coalescing::Safe, Coalescing::None}) {
     InterferenceGraph graph(function, liveness, predicates);
+    if (!predicates) graph.group(function.groups);
     graph.coalesce(mode, places);
     if (!graph.colour(places, colours, failed)) continue;
     if (predicates) {
       for (int& place : colours) place = place == kNothing ? kNothing : place + 1;
       colours[0] = 0;
     }
-    return colours;
+    return true;
   }
-  fail(function, liveness, predicates, failed);
+  return false;
 }
 
 }  // namespace
 
 Allocation allocate(const Function& function) {
   const Liveness liveness = find_liveness(function);
-  return {allocate_kind(function, liveness, false), allocate_kind(function, liveness, true)};
+  Allocation found;
+  for (const bool predicates : {false, true}) {
+    int failed = kNothing;
+    if (!allocate_kind(function, liveness, predicates, predicates ? found.predicates : found.registers, failed))
+      fail(function, liveness, predicates, failed);
+  }
+  return found;
+}
+
+bool has_places(const Function& function) {
+  const Liveness liveness = find_liveness(function);
+  std::vector<int> places;
+  int failed = kNothing;
+  return allocate_kind(function, liveness, false, places, failed);
 }
 
 }  // namespace raypool::kernel

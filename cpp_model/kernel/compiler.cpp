@@ -3,8 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <climits>
+
 #include "bits.hpp"
 #include "isa/input_error.hpp"
+#include "kernel/triples.hpp"
 
 namespace raypool::kernel {
 namespace {
@@ -61,15 +64,26 @@ Instruction with_places(const Op& op, const Allocation& places) {
 /// A copy of a register or predicate to itself.
 bool does_nothing(const Op& op, const Instruction& parts) { return is_copy(op) && parts.rd == parts.rb; }
 
+/// As many triples as registers suffice for.
+Function with_triples(const Function& function) {
+  for (int most = INT_MAX;;) {
+    Function formed = function;
+    most = form_triples(formed, most);
+    if (most == 0 || has_places(formed)) return formed;
+    --most;
+  }
+}
+
 }  // namespace
 
-void compile(Function function, Program& program) {
+void compile(Function function, Program& program, const KernelTarget& target) {
   fold_constants(function);
   fold_addresses(function);
   remove_dead(function);
   join_conditions(function);
   sink_leaves(function);
   remove_dead(function);
+  if (target.triples) function = with_triples(function);
   const Allocation places = allocate(function);
 
   const auto entry = size32(program.code);

@@ -6,6 +6,7 @@
 #include "isa/program.hpp"
 #include "kernel/intermediate.hpp"
 #include "kernel/recorded.hpp"
+#include "kernel/target.hpp"
 
 namespace raypool::kernel {
 
@@ -24,16 +25,19 @@ struct Allocation {
 /// Throws InputError with kernel and source line when 16 registers or 15 predicates do not suffice.
 Allocation allocate(const Function& function);
 
-/// Appends the kernel to the program, under its name.
-void compile(Function function, Program& program);
+/// Whether 16 registers suffice.
+bool has_places(const Function& function);
 
-/// Records and compiles a kernel: `body` is called with a RecordedKernel. `fused`: for machines with arithmetic.fma.
+/// Appends the kernel to the program, under its name.
+void compile(Function function, Program& program, const KernelTarget& target = {});
+
+/// Records and compiles a kernel: `body` is called with a RecordedKernel.
 template <typename Body>
-void add_kernel(Program& program, const std::string& name, const Body& body, bool fused = false) {
-  Recorder recorder(name, fused);
+void add_kernel(Program& program, const std::string& name, const Body& body, const KernelTarget& target = {}) {
+  Recorder recorder(name, target.fma);
   RecordedKernel kernel(recorder);
   body(kernel);
-  compile(recorder.finish(), program);
+  compile(recorder.finish(), program, target);
 }
 
 }  // namespace raypool::kernel

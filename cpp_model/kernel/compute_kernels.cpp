@@ -74,17 +74,15 @@ void run_native(ComputeKernel which, NativeThread& thread) {
                       : run_in_mode<Subnormals::Ieee, false>(which, thread);
 }
 
-const Program& compute_kernel_program(bool fused) {
-  const auto build = [](bool with_fused) {
+const Program& compute_kernel_program(const KernelTarget& target) {
+  return program_for(target, [](const KernelTarget& each) {
     Program program;
     kernel::add_kernel(
-        program, std::string(kComputeKernelNames[0]), [](auto& k) { saxpy(k); }, with_fused);
+        program, std::string(kComputeKernelNames[0]), [](auto& k) { saxpy(k); }, each);
     kernel::add_kernel(
-        program, std::string(kComputeKernelNames[1]), [](auto& k) { matmul(k); }, with_fused);
+        program, std::string(kComputeKernelNames[1]), [](auto& k) { matmul(k); }, each);
     return program;
-  };
-  static const Program kPlain = build(false), kFused = build(true);
-  return fused ? kFused : kPlain;
+  });
 }
 
 }  // namespace raypool

@@ -28,9 +28,9 @@ inline constexpr int kB = 2;
 inline constexpr int kC = 3;
 }  // namespace matmul_argument
 
-/// Both kernels in one program, `fused` for machines with arithmetic.fma. Block words of
+/// Both kernels in one program, for such machines. Block words of
 /// the launches must be 0 .. blocks-1.
-const Program& compute_kernel_program(bool fused = false);
+const Program& compute_kernel_program(const KernelTarget& target = {});
 
 /// One thread of a kernel as C++.
 void run_native(ComputeKernel which, NativeThread& thread);

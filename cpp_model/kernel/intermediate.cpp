@@ -13,10 +13,12 @@ std::string to_string(const Location& location) {
 Effects effects(const Op& op) {
   Effects result;
   if (op.kind != Op::Kind::Instruction) return result;
-  int registers = 0;
+  size_t registers = 0;
   int predicates = 0;
-  const auto use_register = [&](int number) {
-    if (number != kNothing) result.register_uses[registers++] = number;
+  const int count = elements(op);
+  const auto use_register = [&](int number, bool moves_on = true) {
+    for (int e = 0; number != kNothing && e < (moves_on ? count : 1); ++e)
+      result.register_uses[registers++] = number + e;
   };
   const auto use_predicate = [&](int number) {
     if (number > 0) result.predicate_uses[predicates++] = number;
@@ -25,8 +27,10 @@ Effects effects(const Op& op) {
   for (const Operand operand : op.info->operands) {
     switch (operand) {
       case Operand::Ra:
+        use_register(op.ra, !has_one_ra(*op.info));
+        break;
       case Operand::Address:
-        use_register(op.ra);
+        use_register(op.ra, false);
         break;
       case Operand::B:
         if (!op.b_is_immediate) use_register(op.rb);
@@ -45,6 +49,7 @@ Effects effects(const Op& op) {
         break;
       case Operand::Rd:
         result.register_defined = op.rd;
+        result.registers_defined = count;
         break;
       case Operand::Pd:
         result.predicate_defined = op.rd;

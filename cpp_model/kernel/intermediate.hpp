@@ -2,6 +2,7 @@
 // are not yet numbered as the machine's.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -60,16 +61,21 @@ struct Function {
   int registers = 0;
   int predicates = 1;
   int labels = 0;
+  /// First registers of groups of three that get places in a row.
+  std::vector<int> groups;
 };
 
 /// What an op reads and writes. Predicate p0 is left out.
 struct Effects {
-  int register_uses[4] = {kNothing, kNothing, kNothing, kNothing};
+  std::array<int, 3 * kElements + 1> register_uses;
   int predicate_uses[4] = {kNothing, kNothing, kNothing, kNothing};
   int register_defined = kNothing;
+  int registers_defined = 0;  ///< how many from it on
   int predicate_defined = kNothing;
   /// The defined register's old value lives on in some lanes; it is then among the uses.
   bool partial = false;
+
+  Effects() { register_uses.fill(kNothing); }
 };
 Effects effects(const Op& op);
 
@@ -77,6 +83,8 @@ Effects effects(const Op& op);
 bool is_pure(const Op& op);
 /// True for a copy of one register or predicate to another, in all lanes that matter.
 bool is_copy(const Op& op);
+/// How many instructions an op is: 3 of a triple.
+inline int elements(const Op& op) { return op.info != nullptr && is_triple(*op.info) ? kElements : 1; }
 inline bool is(const Op& op, Opcode opcode) { return op.info != nullptr && op.info->opcode == opcode; }
 
 }  // namespace raypool::kernel

@@ -54,13 +54,13 @@ InstructionCounts count_instructions(const Program& program, const std::string& 
   return counts;
 }
 
-std::string kernel_table(bool fused) {
+std::string kernel_table(const KernelTarget& target) {
   std::string text = fmt::format("{:<22}", "instructions");
   for (const std::string_view name : kAluNames) text += fmt::format("{:>9}", name);
   text += fmt::format("{:>10}\n", "total");
   for (size_t kernel = 0; kernel < kRayKernels; ++kernel) {
     const InstructionCounts counts =
-        count_instructions(ray_kernel_program(fused), std::string(kRayKernelNames[kernel]));
+        count_instructions(ray_kernel_program(target), std::string(kRayKernelNames[kernel]));
     const InstructionCounts& thesis = kThesisCounts[kernel];
     text += fmt::format("{:<22}", kRayKernelNames[kernel]);
     for (size_t type = 0; type < kAluTypes; ++type)

@@ -18,7 +18,7 @@ Program extract_kernel(const Program& program, const std::string& name);
 InstructionCounts count_instructions(const Program& program, const std::string& name);
 
 /// The ray kernels by ALU beside those of the thesis this machine starts from, as text with fixed columns.
-/// `fused`: of machines with arithmetic.fma.
-std::string kernel_table(bool fused = false);
+/// Of such machines.
+std::string kernel_table(const KernelTarget& target = {});
 
 }  // namespace raypool

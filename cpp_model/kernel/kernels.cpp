@@ -48,20 +48,18 @@ void run_native(RayKernel which, NativeThread& thread) {
                       : run_in_mode<Subnormals::Ieee, false>(which, thread);
 }
 
-const Program& ray_kernel_program(bool fused) {
-  const auto build = [](bool with_fused) {
+const Program& ray_kernel_program(const KernelTarget& target) {
+  return program_for(target, [](const KernelTarget& each) {
     Program program;
     const auto add = [&](RayKernel which, const auto& body) {
-      kernel::add_kernel(program, name_of(which), body, with_fused);
+      kernel::add_kernel(program, name_of(which), body, each);
     };
     add(RayKernel::CastEye, [](auto& k) { kernel::cast_eye(k); });
     add(RayKernel::CastSecondary, [](auto& k) { kernel::cast_secondary(k); });
     add(RayKernel::CastSecondaryDirect, [](auto& k) { kernel::cast_secondary_direct(k); });
     add(RayKernel::Shade, [](auto& k) { kernel::shade(k); });
     return program;
-  };
-  static const Program kPlain = build(false), kFused = build(true);
-  return fused ? kFused : kPlain;
+  });
 }
 
 }  // namespace raypool

@@ -13,6 +13,7 @@
 #include "enum_array.hpp"
 #include "isa/isa.hpp"
 #include "isa/program.hpp"
+#include "kernel/target.hpp"
 #include "machine/compute_unit.hpp"
 
 namespace raypool {
@@ -53,9 +54,9 @@ inline constexpr int kCount = 23;
 }  // namespace argument
 // CastEye is launched with block word = x of the tile's first pixel | y << 16. Pixels outside the image export nothing.
 
-/// All ray kernels in one program, `fused` for machines with arithmetic.fma. Throws InputError (with kernel and line)
+/// All ray kernels in one program, for such machines. Throws InputError (with kernel and line)
 /// when registers or predicates do not suffice.
-const Program& ray_kernel_program(bool fused = false);
+const Program& ray_kernel_program(const KernelTarget& target = {});
 
 /// What one thread of a kernel sees and leaves when it runs as C++.
 struct NativeThread {

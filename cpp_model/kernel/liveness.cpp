@@ -52,7 +52,7 @@ Liveness find_liveness(const Function& function) {
       const Effects effect = effects(function.ops[i]);
       NumberSet registers_before = registers;
       NumberSet predicates_before = predicates;
-      if (effect.register_defined != kNothing) registers_before.erase(effect.register_defined);
+      for (int e = 0; e < effect.registers_defined; ++e) registers_before.erase(effect.register_defined + e);
       if (effect.predicate_defined != kNothing) predicates_before.erase(effect.predicate_defined);
       for (const int used : effect.register_uses) {
         if (used != kNothing) registers_before.insert(used);

@@ -324,7 +324,8 @@ void compare(uint32_t seed, Outcome& outcome) {
   program.code.assign(seed % 5, 0);  // entries are not always 0
   try {
     add_kernel(
-        program, "random", [&](RecordedKernel& k) { RandomKernel<RecordedKernel>(k, seed).run(); }, fused);
+        program, "random", [&](RecordedKernel& k) { RandomKernel<RecordedKernel>(k, seed).run(); },
+        KernelTarget(fused, false));
   } catch (const InputError& error) {
     ++outcome.refused;
     return;

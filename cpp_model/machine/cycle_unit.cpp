@@ -22,7 +22,7 @@ CycleUnit::CycleUnit(const Configuration& configuration, const Memory& memory)
       dispatcher_(configuration),
       mem_(configuration),
       ray_(configuration, core_.slices()),
-      issues_(static_cast<size_t>(configuration.warps)),
+      issues_(static_cast<size_t>(configuration.warps), std::deque<Issue>(1)),
       timings_(static_cast<size_t>(configuration.warps)) {}
 
 void CycleUnit::reset(uint32_t program_length, uint32_t memory_limit) {
@@ -48,7 +48,9 @@ void CycleUnit::reset(uint32_t program_length, uint32_t memory_limit) {
   outputs_ = UnitOutputs{};
   signals_ = outputs_.signals();
   trace_ = UnitTrace{};
+  triples_ = followed_ = 0;
   std::fill(timings_.begin(), timings_.end(), Timing{});
+  std::fill(issues_.begin(), issues_.end(), std::deque<Issue>(1));
   rest_signals_ = signals_but_rays();
   present(signals());
 }
@@ -78,8 +80,9 @@ void CycleUnit::step(const UnitInputs& inputs) {
   buffer_.cache_hit(due.full);
   dispatcher_.want(AluType::Mem, due.want_mem);
   dispatcher_.want(AluType::Ray, due.want_ray);
-  const uint32_t retired = due.done | mem_.done() | ray_.done();
-  due.done = due.full = due.want_mem = due.want_ray = 0;
+  uint32_t retired = due.done | mem_.done() | ray_.done();
+  const uint32_t again = due.again;
+  due.done = due.full = due.want_mem = due.want_ray = due.part = due.again = 0;
   const bool mem_ready = mem_.ready();
   const bool ray_ready = ray_.ready(dispatcher_.task(AluType::Ray));
   if (faulty_) alu_faults_ = {mem_.fault(), mem_.fault_warp(), ray_.fault(), ray_.fault_warp()};
@@ -93,22 +96,24 @@ void CycleUnit::step(const UnitInputs& inputs) {
   }
   // Write-back and the next instructions. Who retires in this cycle may issue in it.
   if (retired != 0) {
+    if ((retired & triples_) != 0) retired = end_elements(retired);
     counters_.leave(counter::kWarpsInMem, now_ + 1, mem_.done() != 0);
-    counters_.leave(counter::kWarpsInRay, now_ + 1, ray_.done() != 0);
+    counters_.leave(counter::kWarpsInRay, now_ + 1, (ray_.done() & retired) != 0);
     if (const uint32_t control = buffer_.retire(retired); control != 0) retire_control(control);
   }
   if (!stopped) {
     for (uint32_t warps = buffer_.ready(); warps != 0; warps &= warps - 1) issue_warp(lowest(warps));
+    if (again != 0) {
+      dispatcher_.want_again(again);
+      if (tracing_) record_next_want(again);
+    }
   }
   if (attention) clock_instruction_cache(inputs, port);
   if (!stopped) fetch(attention && instruction_cache_.busy() ? now_ : now_ + kAhead);
   if (dispatcher_.wants_pipelined()) dispatcher_.grant_pipelined(now_ + kAhead, timeline_, counters_);
   if (attention) clock_mem(inputs, port);
   clock_ray(inputs, accepts ? inputs.launch.import : ImportKind::None, ray_ready);
-  if (dispatcher_.wants(AluType::Ray) != 0 && !stopped) {
-    dispatcher_.grant(AluType::Ray, ray_ready, counters_);
-    counters_.enter(counter::kWarpsInRay, now_ + 1, ray_ready);
-  }
+  if (dispatcher_.wants(AluType::Ray) != 0 && !stopped) grant_ray(ray_ready);
   if (dispatcher_.wants(AluType::Mem) != 0 && !stopped) {
     dispatcher_.grant(AluType::Mem, mem_ready, counters_);
     counters_.enter(counter::kWarpsInMem, now_ + 1, mem_ready);
@@ -270,10 +275,8 @@ void CycleUnit::plan_fetch(uint32_t warp, uint64_t cycle, bool past_current) {
 void CycleUnit::issue_warp(uint32_t warp) {
   const DecodedInstruction& instruction = *core_.instruction_at(buffer_.fetch_pc(warp));
   if (!instruction.legal()) return raise({FaultCode::IllegalInstruction, warp, buffer_.fetch_pc(warp)});
-  const AluType type = instruction.alu();
   buffer_.issue(warp);
-  want(warp, type);
-  if (tracing_) record_issue(warp, instruction);
+  want(warp, instruction);
 
   // These wait for a slice to arrive or leave; the functional core executes them when they swap.
   const bool swap = instruction.kind == Kind::Swap;
@@ -281,36 +284,94 @@ void CycleUnit::issue_warp(uint32_t warp) {
   uint32_t mask;
   if (swap) {
     mask = core_.thread_mask(warp, instruction);
+    if (tracing_) record_issue(warp, instruction);
+    ++counters_.single[counter::kInstructions];
+    counters_.single[counter::kThreadInstructions] += popcount(mask);
   } else {
-    const Step& step = core_.step(warp);
+    const Step& step = execute(warp, instruction);
     mask = step.mask;
     faults = step.status == Step::Status::Fault;
-    if (type == AluType::Mem) mem_.begin(step);
     if (instruction.kind == Kind::Control) {
       buffer_.issue_control(warp);
       stack_fault_[warp] = faults ? step.fault.code : FaultCode::None;
     }
-    if (tracing_) record_result(warp, step);
-    if (faults) {
-      core_.forget_fault();
-      faulty_ = attention_ = true;
-    }
+    if (faults) forget_fault();
+    // Loads may fault, each at its own time; of the other triples no element can tell when it is executed.
+    if (instruction.alu() != AluType::Mem)
+      for (const DecodedInstruction* next = instruction.next; next != nullptr; next = next->next) execute(warp, *next);
   }
-  if (type == AluType::Ray) ray_.begin(warp, instruction, mask, faults);
-  ++counters_.single[counter::kInstructions];
-  counters_.single[counter::kThreadInstructions] += popcount(mask);
+  if (instruction.alu() == AluType::Ray) ray_.begin(warp, instruction, mask, faults);
   // The core's PC stays at an instruction that has not been executed; the RTL's instruction routine goes on behind it.
-  if (instruction.kind != Kind::Control) plan_fetch(warp, now_ + 1, swap || faults);
+  if (instruction.kind != Kind::Control) plan_fetch(warp, now_ + 1, swap || faults || core_.in_triple(warp));
 }
 
-void CycleUnit::want(uint32_t warp, AluType type) {
-  if (type == AluType::Mem) {
-    timeline_.at(now_ + kAhead).want_mem |= 1u << warp;
-  } else if (type == AluType::Ray) {
-    timeline_.at(now_ + kAhead).want_ray |= 1u << warp;
-  } else {
+inline const Step& CycleUnit::execute(uint32_t warp, const DecodedInstruction& instruction) {
+  if (tracing_) record_issue(warp, instruction);
+  const Step& step = core_.step(warp);
+  if (instruction.alu() == AluType::Mem) mem_.begin(step);
+  if (tracing_) record_result(warp, step);
+  ++counters_.single[counter::kInstructions];
+  counters_.single[counter::kThreadInstructions] += popcount(step.mask);
+  return step;
+}
+
+// What faults takes effect later: when its ALU finds it, or when it retires.
+void CycleUnit::forget_fault() {
+  core_.forget_fault();
+  faulty_ = attention_ = true;
+}
+
+void CycleUnit::want(uint32_t warp, const DecodedInstruction& instruction) {
+  const AluType type = instruction.alu();
+  const uint32_t bit = 1u << warp;
+  if (tracing_) timings_[warp].want_cycle = now_ + kAhead;
+  if (type == AluType::Mem || type == AluType::Ray) {
+    Timeline::Cycle& cycle = timeline_.at(now_ + kAhead);
+    (type == AluType::Mem ? cycle.want_mem : cycle.want_ray) |= bit;
+    if (instruction.next == nullptr) return;
+    triples_ |= bit;
+    followed_ |= type == AluType::Ray ? bit : 0;
+    wants_left_[warp] = dones_left_[warp] = kElements - 1;
+  } else if (instruction.next == nullptr) {
     dispatcher_.want(index(type), warp);
+  } else {
+    dispatcher_.want_triple(index(type), warp, type != AluType::Flt || instruction.elements_depend);
   }
+}
+
+// ---- Triples of Mem and Ray. Those of other types are the dispatcher's.
+
+// Of the warps whose tasks are done, those whose instruction is.
+uint32_t CycleUnit::end_elements(uint32_t warps) {
+  for (uint32_t triples = warps & triples_; triples != 0; triples &= triples - 1) {
+    const uint32_t warp = lowest(triples);
+    const uint32_t bit = 1u << warp;
+    if (dones_left_[warp] == 0) {
+      triples_ &= ~bit;
+      continue;
+    }
+    --dones_left_[warp];
+    warps &= ~bit;
+    if ((mem_.done() & bit) != 0) next_load(warp);
+  }
+  return warps;
+}
+
+// A load waits for the one before.
+void CycleUnit::next_load(uint32_t warp) {
+  if (execute(warp, *core_.next_instruction(warp)).status == Step::Status::Fault) forget_fault();
+  timeline_.at(now_ + kAhead).want_mem |= 1u << warp;
+  if (tracing_) timings_[warp].want_cycle = now_ + kAhead;
+}
+
+// An access to ray memory is read while the one before is made.
+void CycleUnit::grant_ray(bool ready) {
+  const uint32_t bit = lowest_bit(dispatcher_.wants(AluType::Ray));
+  dispatcher_.grant(AluType::Ray, ready, counters_);
+  if (!ready || (followed_ & bit) == 0) return counters_.enter(counter::kWarpsInRay, now_ + 1, ready);
+  timeline_.at(now_ + kAhead).want_ray |= bit;
+  if (--wants_left_[lowest(bit)] == 0) followed_ &= ~bit;
+  if (tracing_) record_next_want(bit);
 }
 
 // Only when a control instruction retires does the instruction routine go on.
@@ -355,11 +416,13 @@ void CycleUnit::settle_faults() {
 void CycleUnit::halt() {
   dispatcher_.halt();
   for (uint64_t cycle = now_ + 1; cycle < now_ + Timeline::kCycles; ++cycle) {
-    uint32_t& done = timeline_.at(cycle).done;
-    for (uint32_t warps = done; warps != 0; warps &= warps - 1) {
+    Timeline::Cycle& due = timeline_.at(cycle);
+    for (uint32_t warps = due.done | due.part; warps != 0; warps &= warps - 1) {
       const uint32_t warp = lowest(warps);
       const uint64_t depth = dispatcher_.depth(index(core_.instruction_at(buffer_.pc(warp))->alu()));
-      if (cycle - depth > now_ + 1) done &= ~(1u << warp);
+      if (cycle - depth <= now_ + 1) continue;
+      due.done &= ~(1u << warp);
+      due.part &= ~(1u << warp);
     }
   }
   if (instruction_cache_.missed() && miss_cycle_ > now_ + 1) instruction_cache_.forget_miss();

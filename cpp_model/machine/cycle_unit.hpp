@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cstdint>
+#include <deque>
 #include <vector>
 
 #include "config/configuration.hpp"
@@ -45,8 +46,8 @@ class CycleUnit final : public ComputeUnit {
   bool timed() const override { return true; }
   std::vector<Fault> faults() const override { return raised_; }
 
-  /// The instruction that a warp has under way or has retired last, with its operands
-  /// before it. Kept after trace_on() only.
+  /// The instruction that a warp has under way or has retired last, of a triple the oldest such element, with its
+  /// operands before it. Kept after trace_on() only.
   struct Issue {
     uint32_t pc = 0;
     const DecodedInstruction* instruction = nullptr;
@@ -56,8 +57,11 @@ class CycleUnit final : public ComputeUnit {
     uint32_t predicate_x = 0, predicate_b = 0;
     std::vector<uint32_t> data;  ///< result, one word a lane
     uint32_t predicate = 0;
+    bool retired = true;
   };
-  const Issue& issue(uint32_t warp) const { return issues_[warp]; }
+  const Issue& issue(uint32_t warp) const { return issues_[warp].front(); }
+  /// The one that wants its ALU from timing(warp).want_cycle on.
+  const Issue& wanting(uint32_t warp) const { return issues_[warp][timings_[warp].wanting]; }
   /// The warp has been started and has not executed `exit`.
   bool warp_active(uint32_t warp) const { return (buffer_.active() >> warp & 1) != 0; }
   /// issue(warp) has not retired.
@@ -69,7 +73,8 @@ class CycleUnit final : public ComputeUnit {
   /// When a warp's instructions get on; kept after trace_on() only.
   struct Timing {
     uint64_t fetch_cycle = 0;  ///< from which on it wants the instruction cache, unless the PC is outside the program
-    uint64_t want_cycle = 0;   ///< from which on issue() wants its ALU
+    uint64_t want_cycle = 0;   ///< from which on wanting() wants its ALU
+    size_t wanting = 0;        ///< its place in issues_
     uint32_t fetch_pc = 0;     ///< that it wants from the instruction cache
   };
   const Timing& timing(uint32_t warp) const { return timings_[warp]; }
@@ -116,7 +121,12 @@ class CycleUnit final : public ComputeUnit {
   void plan_fetch(uint32_t warp, uint64_t cycle, bool past_current);
   void fetch(uint64_t until);
   void issue_warp(uint32_t warp);
-  void want(uint32_t warp, AluType type);
+  const Step& execute(uint32_t warp, const DecodedInstruction& instruction);
+  void forget_fault();
+  void want(uint32_t warp, const DecodedInstruction& instruction);
+  uint32_t end_elements(uint32_t warps);
+  void next_load(uint32_t warp);
+  void grant_ray(bool ready);
   void retire_control(uint32_t warps);
   // Faults
   void raise(const Fault& fault);
@@ -128,6 +138,7 @@ class CycleUnit final : public ComputeUnit {
   uint32_t signals_but_rays() const;
   void present(uint32_t now);
   void record();
+  void record_next_want(uint32_t warps);
   void record_issue(uint32_t warp, const DecodedInstruction& instruction);
   void record_result(uint32_t warp, const Step& step);
 
@@ -161,13 +172,16 @@ class CycleUnit final : public ComputeUnit {
   std::vector<Fault> raised_;                        // in this cycle, or in that of fault_
   std::vector<PlannedFault> planned_faults_;         // of PCs outside the program
   std::array<FaultCode, kMostWarps> stack_fault_{};  // [warp] of the control instruction under way
+  // Triples of Mem and Ray: warps that have one, and what is left of it behind the element that is wanted, or done.
+  uint32_t triples_ = 0, followed_ = 0;
+  std::array<uint8_t, kMostWarps> wants_left_{}, dones_left_{};
 
   UnitOutputs outputs_;
   uint32_t signals_ = 0;       // outputs_.signals()
   uint32_t rest_signals_ = 0;  // signals_but_rays()
   bool tracing_ = false;
   UnitTrace trace_;
-  std::vector<Issue> issues_;
+  std::vector<std::deque<Issue>> issues_;  // [warp], the oldest in front; never empty
   std::vector<Timing> timings_;
 };
 

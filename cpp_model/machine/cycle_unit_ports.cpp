@@ -101,6 +101,7 @@ uint64_t CycleUnit::fetching() const {
     const uint64_t a_task = 2 + (kAluTable[type].timed_by_events() ? 0 : dispatcher_.depth(type) + 1);
     others += counters_.waiting[type] + a_task * counters_.issued[type];
   }
+  others -= (dispatcher_.depth(static_cast<size_t>(AluType::Flt)) + 1) * counters_.single[kFltOverlapped];
   return warps_ * counters_.single[kBusyCycles] - others;
 }
 

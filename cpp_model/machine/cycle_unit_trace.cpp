@@ -1,5 +1,6 @@
 // What the trace ports of engine `model` show. Kept after trace_on() only, as it costs more than the rest of a cycle.
 #include <algorithm>
+#include <utility>
 
 #include "bits.hpp"
 #include "machine/cycle_unit.hpp"
@@ -7,7 +8,16 @@
 namespace raypool {
 
 void CycleUnit::record_issue(uint32_t warp, const DecodedInstruction& instruction) {
-  Issue& issue = issues_[warp];
+  std::deque<Issue>& issues = issues_[warp];
+  if (issues.front().retired) {
+    timings_[warp].wanting = 0;
+    issues.push_back(std::move(issues.front()));  // its vectors are used again
+    issues.pop_front();
+  } else {
+    issues.emplace_back();
+  }
+  Issue& issue = issues.back();
+  issue.retired = false;
   const auto row = [this, warp](std::vector<uint32_t>& words, uint32_t number) {
     const uint32_t* first = core_.register_row(warp, number);
     words.assign(first, first + lanes_);
@@ -22,11 +32,18 @@ void CycleUnit::record_issue(uint32_t warp, const DecodedInstruction& instructio
   issue.predicate_x = core_.predicate(warp, instruction.x & 15);
   issue.predicate_b = core_.predicate(warp, instruction.rb);
   issue.predicate = 0;
-  timings_[warp].want_cycle = now_ + kAhead;
+}
+
+// They read the operands of the next element, and want an ALU for it in two cycles.
+void CycleUnit::record_next_want(uint32_t warps) {
+  for (; warps != 0; warps &= warps - 1) {
+    timings_[lowest(warps)].want_cycle = now_ + kAhead;
+    ++timings_[lowest(warps)].wanting;
+  }
 }
 
 void CycleUnit::record_result(uint32_t warp, const Step& step) {
-  Issue& issue = issues_[warp];
+  Issue& issue = issues_[warp].back();
   if (step.data != nullptr) issue.data.assign(step.data, step.data + lanes_);
   issue.predicate = step.predicate;
 }
@@ -36,9 +53,15 @@ void CycleUnit::record() {
   trace_.retired.clear();
   trace_.stores.clear();
   trace_.ray_writes.clear();
-  for (uint32_t warps = timeline_.at(now_).done | mem_.done() | ray_.done(); warps != 0; warps &= warps - 1) {
+  const Timeline::Cycle& due = timeline_.at(now_);
+  for (uint32_t warps = due.done | due.part | mem_.done() | ray_.done(); warps != 0; warps &= warps - 1) {
     const uint32_t warp = lowest(warps);
-    const Issue& issue = issues_[warp];
+    if (issues_[warp].front().retired) {  // an element of a triple, and the next is done
+      issues_[warp].pop_front();
+      --timings_[warp].wanting;
+    }
+    Issue& issue = issues_[warp].front();
+    issue.retired = true;
     RetireEvent& event = trace_.retired.emplace_back();
     event.warp = warp;
     event.pc = issue.pc;

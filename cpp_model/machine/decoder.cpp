@@ -4,12 +4,31 @@
 
 namespace raypool {
 
-DecodedInstruction decode(uint64_t encoding, const Configuration& configuration) {
+namespace {
+
+bool is_legal(const Instruction& fields, const Configuration& configuration) {
+  if (fields.info == nullptr || !configuration.has(fields.info->needs)) return false;
+  return !(is_triple(*fields.info) && has_operand(*fields.info, Operand::Word) && fields.x > kLastTripleWord);
+}
+
+}  // namespace
+
+int elements(uint64_t encoding, const Configuration& configuration) {
   const Instruction fields = unpack(encoding);
+  return is_legal(fields, configuration) && is_triple(*fields.info) ? kElements : 1;
+}
+
+DecodedInstruction decode(uint64_t encoding, const Configuration& configuration, int element) {
+  Instruction fields = unpack(encoding);
   DecodedInstruction result;
+  const bool legal = is_legal(fields, configuration);
+  if (legal && is_triple(*fields.info)) {
+    result.elements_depend = elements_depend(fields);
+    fields = raypool::element(fields, element);
+  }
   result.encoding = encoding;
   result.immediate = fields.immediate;
-  result.info = fields.info != nullptr && configuration.has(fields.info->needs) ? fields.info : nullptr;
+  result.info = legal ? fields.info : nullptr;
   result.guard = fields.guard;
   result.guard_negated = fields.guard_negated;
   result.rd = fields.rd;

@@ -8,6 +8,7 @@
 #include "bits.hpp"
 #include "config/configuration.hpp"
 #include "enum_array.hpp"
+#include "isa/encoding.hpp"
 #include "machine/alu_pipeline.hpp"
 #include "machine/performance_counters.hpp"
 #include "machine/task_register.hpp"
@@ -29,6 +30,7 @@ class Dispatcher {
   void reset() {
     want_types_ = 0;
     want_.fill(0);
+    followed_ = 0;
     for (TaskRegister& task : task_) task.clear();
     for (auto& pipelines : pipelines_) {
       for (AluPipeline& pipeline : pipelines) pipeline.reset();
@@ -51,6 +53,16 @@ class Dispatcher {
     want_[type] |= 1u << warp;
     want_types_ |= 1u << type;
   }
+  /// As want(), the first element of a triple; `depend`: its elements wait for each other.
+  void want_triple(size_t type, uint32_t warp, bool depend) {
+    want(type, warp);
+    followed_ |= 1u << warp;
+    triples_[warp] = {static_cast<uint8_t>(type), kElements - 1, depend};
+  }
+  /// The next element of these warps' triples.
+  void want_again(uint32_t warps) {
+    for (; warps != 0; warps &= warps - 1) want(triples_[lowest(warps)].type, lowest(warps));
+  }
   /// Warps that want Mem or Ray from this cycle on.
   void want(AluType type, uint32_t warps) { want_[type] |= warps; }
 
@@ -62,7 +74,11 @@ class Dispatcher {
       for (uint32_t i = 0; i < instances_[type] && want != 0; ++i) {
         AluPipeline& pipeline = pipelines_[type][i];
         if (!pipeline.ready(cycle)) continue;
-        timeline.at(pipeline.grant(cycle)).done |= lowest_bit(want);
+        const uint64_t done = pipeline.grant(cycle);
+        if ((followed_ & lowest_bit(want)) == 0)
+          timeline.at(done).done |= lowest_bit(want);
+        else
+          grant_element(lowest(want), cycle, done, timeline, counters);
         want &= want - 1;
         counters.unready[type] += pipeline.pause();
         ++counters.issued[type];
@@ -96,11 +112,26 @@ class Dispatcher {
   }
 
  private:
+  struct Triple {
+    uint8_t type = 0, left = 0;  // elements behind the one that is wanted
+    bool depend = false;
+  };
+
+  void grant_element(uint32_t warp, uint64_t cycle, uint64_t done, Timeline& timeline, PerformanceCounters& counters) {
+    Triple& triple = triples_[warp];
+    timeline.at(done).part |= 1u << warp;
+    timeline.at(triple.depend ? done : cycle).again |= 1u << warp;
+    counters.single[counter::kFltOverlapped] += !triple.depend;
+    if (--triple.left == 0) followed_ &= ~(1u << warp);
+  }
+
   uint32_t want_types_ = 0;                         // pipelined types that warps want
   EnumArray<AluType, uint32_t, kAluTypes> want_{};  // [type] those warps
   std::array<uint32_t, kAluTypes> instances_{};
   std::array<std::array<AluPipeline, kMostInstances>, kAluTypes> pipelines_{};
   EnumArray<AluType, TaskRegister, kAluTypes> task_;  // [type] of Mem and Ray
+  uint32_t followed_ = 0;                             // warps whose task is followed by the next element of its triple
+  std::array<Triple, kMostWarps> triples_{};          // [warp] of pipelined types
 };
 
 }  // namespace raypool

@@ -68,8 +68,7 @@ void FunctionalCore::launch(const LaunchCommand& command) {
   if (running()) throw std::logic_error("a kernel was launched in the functional model while another one runs");
   if (!program_decoded_) {
     program_.resize(program_length_);
-    for (uint32_t i = 0; i < program_length_; ++i)
-      program_[i] = decode(uint64_t{memory_->load(8 * i + 4)} << 32 | memory_->load(8 * i), configuration_);
+    decode_program();
     program_decoded_ = true;
     decoded_ = program_length_;
   }
@@ -80,10 +79,24 @@ void FunctionalCore::launch(const LaunchCommand& command) {
     if (first >= command.threads) break;
     const uint32_t threads = std::min(lanes_, command.threads - first);
     warp.running = true;
+    warp.element = nullptr;
     warp.launched = threads == 32 ? 0xffffffffu : (1u << threads) - 1;
     warp.pc_stack.start(command.pc);
     warp.predicates.clear();
     ++running_warps_;
+  }
+}
+
+void FunctionalCore::decode_program() {
+  elements_.clear();
+  for (uint32_t i = 0; i < program_length_; ++i) {
+    const uint64_t encoding = uint64_t{memory_->load(8 * i + 4)} << 32 | memory_->load(8 * i);
+    program_[i] = decode(encoding, configuration_);
+    DecodedInstruction* last = &program_[i];
+    for (int e = 1; e < elements(encoding, configuration_); ++e) {
+      last->next = &elements_.emplace_back(decode(encoding, configuration_, e));
+      last = &elements_.back();
+    }
   }
 }
 
@@ -115,7 +128,7 @@ bool FunctionalCore::fault(FaultCode fault_code) {
   warp.pc_stack.pop_finished();
   result.pc = warp.pc_stack.pc();
   if (result.pc >= program_length_) return fault(FaultCode::PcOutsideProgram);
-  result.instruction = &program_[result.pc];
+  result.instruction = warp.element != nullptr ? warp.element : &program_[result.pc];
   if (!result.instruction->legal()) return fault(FaultCode::IllegalInstruction);
   result.mask = thread_mask(number, *result.instruction);
   return true;
@@ -142,7 +155,8 @@ const Step& FunctionalCore::step_lanes(uint32_t number) {
   }
   if (!execute<kLanes>(instruction, warp, lanes)) return result_;
   if (instruction.writes_register) result_.data = lanes.rd;
-  warp.pc_stack.advance();
+  warp.element = instruction.next;
+  if (warp.element == nullptr) warp.pc_stack.advance();
   result_.status = Step::Status::Executed;
   return result_;
 }

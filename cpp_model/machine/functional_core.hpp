@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <deque>
 #include <vector>
 
 #include "arith/arith.hpp"
@@ -78,7 +79,8 @@ class FunctionalCore {
   bool warp_running(uint32_t warp) const { return warps_[warp].running; }
   const LaunchCommand& launched() const { return launched_; }
 
-  /// Executes the warp's next instruction. After a fault every call returns that fault.
+  /// Executes the warp's next instruction, or the next element of a triple. After a fault every call returns that
+  /// fault.
   const Step& step(uint32_t warp) { return (this->*step_)(warp); }
 
   /// After a fault: goes on as if nothing had happened. For a model whose faults take effect later
@@ -92,6 +94,14 @@ class FunctionalCore {
   /// PC of the warp's next instruction; the instruction there, null if outside the program.
   uint32_t next_pc(uint32_t warp) const { return warps_[warp].pc_stack.next_pc(); }
   const DecodedInstruction* instruction_at(uint32_t pc) const { return pc < decoded_ ? &program_[pc] : nullptr; }
+  /// What step() executes next; null if the PC is outside the program.
+  const DecodedInstruction* next_instruction(uint32_t warp) const {
+    const DecodedInstruction* element = warps_[warp].element;
+    return element != nullptr ? element : instruction_at(next_pc(warp));
+  }
+
+  /// An element of a triple has been executed, and not the last.
+  bool in_triple(uint32_t warp) const { return warps_[warp].element != nullptr; }
 
   /// Packages of a launch with an import kind: announce their number, then give them in order of
   /// threads. Launches are served in turn.
@@ -129,6 +139,7 @@ class FunctionalCore {
   bool execute_ray(const DecodedInstruction& instruction, Warp& warp, const Lanes<kLanes>& lanes);
   void execute_class(const DecodedInstruction& instruction, Warp& warp, uint32_t* rd, const uint32_t* a,
                      const uint32_t* b);
+  void decode_program();
   bool begin(uint32_t warp);
   bool execute_control(const DecodedInstruction& instruction, Warp& warp);
   bool fault(FaultCode code);
@@ -142,7 +153,8 @@ class FunctionalCore {
   uint32_t decoded_ = 0;  ///< program_.size(), which would cost a division
   const Step& (FunctionalCore::*step_)(uint32_t) = nullptr;
   std::vector<DecodedInstruction> program_;
-  std::vector<uint32_t> registers_;  ///< [warp][register][lane]
+  std::deque<DecodedInstruction> elements_;  ///< of its triples, but for their first
+  std::vector<uint32_t> registers_;          ///< [warp][register][lane]
   std::vector<Warp> warps_;
   TidAlu tid_alu_;
   RaySlices slices_;

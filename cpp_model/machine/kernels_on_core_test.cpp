@@ -70,7 +70,7 @@ TEST(KernelsOnCore, RayKernelsLeaveWhatTheyLeaveNatively) {
       const auto number = [&] { return as_bits((static_cast<int>(random() % 4001) - 2000) / 512.0f); };
 
       Memory memory(kMemoryBytes);
-      const Program& program = ray_kernel_program(configuration.fma);
+      const Program& program = ray_kernel_program(KernelTarget(configuration));
       test::put_program(memory, program.code);
       for (uint32_t i = 0; i < 8; ++i) memory.store(kMaterial + 4 * i, number());
       FunctionalCore core(configuration, memory);
@@ -128,7 +128,7 @@ TEST(KernelsOnCore, ComputeKernelsLeaveTheMemoryTheyLeaveNatively) {
       SCOPED_TRACE(name + (" " + kernel));
       Configuration configuration = load_configuration(name);
       configuration.fma = configuration.warps == 4;
-      const Program& program = compute_kernel_program(configuration.fma);
+      const Program& program = compute_kernel_program(KernelTarget(configuration));
       Memory memory(kMemoryBytes);
       test::put_program(memory, program.code);
       for (uint32_t address = 4096; address < kMemoryBytes; address += 4) {

@@ -4,11 +4,13 @@
 #include <array>
 #include <cstdint>
 
+#include "isa/isa.hpp"
+
 namespace raypool {
 
-inline constexpr int kRayWords = 12;           ///< 48 bytes
-inline constexpr int kIntersectionWords = 21;  ///< 84 bytes
-inline constexpr int kBeatWords = 4;           ///< 128 bits, one cycle of any pool or memory port
+inline constexpr int kRayWords = 12;                      ///< 48 bytes
+inline constexpr int kIntersectionWords = kPackageWords;  ///< 84 bytes
+inline constexpr int kBeatWords = 4;                      ///< 128 bits, one cycle of any pool or memory port
 inline constexpr int kRayBeats = 3;
 inline constexpr int kIntersectionBeats = 6;  ///< the last one carries word 20 and zeros
 

@@ -19,7 +19,9 @@ class Timeline {
     uint32_t full = 0;      ///< their next instruction is in the buffer from this cycle on
     uint32_t want_mem = 0;  ///< they want the memory ALU from this cycle on
     uint32_t want_ray = 0;
-    bool any() const { return (done | fetch | full | want_mem | want_ray) != 0; }
+    uint32_t part = 0;   ///< a pipelined ALU is done with an element of their triple that is not the last
+    uint32_t again = 0;  ///< they begin to read the operands of the next element for one in the cycle after this
+    bool any() const { return (done | fetch | full | want_mem | want_ray | part | again) != 0; }
   };
 
   void reset() { ring_.fill(Cycle{}); }

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "machine/decoder.hpp"
 #include "machine/pc_stack.hpp"
 #include "machine/predicate_file.hpp"
 
@@ -13,6 +14,7 @@ struct Warp {
   void reset() {
     running = output_busy = false;
     launched = 0;
+    element = nullptr;
     pc_stack.start(0);
     predicates = {};
   }
@@ -20,6 +22,8 @@ struct Warp {
   bool running = false;      ///< started and not yet exited
   bool output_busy = false;  ///< the next rout or rfb waits
   uint32_t launched = 0;     ///< lanes that have a thread
+  /// The element of a triple that is next; null: the first of the instruction at the PC.
+  const DecodedInstruction* element = nullptr;
   PcStack pc_stack;
   PredicateFile predicates;
 };

@@ -18,6 +18,8 @@ WarpCycles warp_cycles(const Configuration& configuration, ComputeUnit& device) 
     // A task arrives in the cycle after it is granted, and takes as many as the pipeline has stages.
     cycles.executing[type] = issued * (1 + static_cast<uint64_t>(configuration.alus[type].depth));
   }
+  cycles.executing[AluType::Flt] -=
+      count(counter::kFltOverlapped) * (1 + static_cast<uint64_t>(configuration.alus[AluType::Flt].depth));
   cycles.executing[AluType::Mem] = count(counter::kWarpsInMem);
   cycles.executing[AluType::Ray] = count(counter::kWarpsInRay);
   cycles.registers = cycles.issued;  // one cycle of each instruction

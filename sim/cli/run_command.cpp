@@ -66,7 +66,7 @@ void prepare_kernel(Job& job, const RunOptions& options, uint32_t default_n, uin
         fmt::format("{} sets its own blocks, threads and arguments: choose its size with --n", options.kernel));
   }
   job.title = fmt::format("{}, n = {}", options.kernel, n);
-  job.program = compute_kernel_program(job.options.configuration.fma);
+  job.program = compute_kernel_program(KernelTarget(job.options.configuration));
   job.options.entry = job.program.entries.at(options.kernel);
   job.options.threads = job.options.configuration.contents();
   job.options.arguments[saxpy_argument::kN] = n;

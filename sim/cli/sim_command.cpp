@@ -106,7 +106,7 @@ struct Surroundings {
 /// The chip around `device`.
 ChipOptions chip_options(const RunRecord& record, const Scene& scene, MemoryImage& image, ComputeUnit& device,
                          Surroundings& around) {
-  const Program& program = ray_kernel_program(record.configuration.fma);
+  const Program& program = ray_kernel_program(KernelTarget(record.configuration));
   ChipOptions chip;
   chip.configuration = record.configuration;
   chip.device = &device;
@@ -155,7 +155,7 @@ std::unique_ptr<ComputeUnit> make_device(const SimOptions& options, Engine engin
                                          MemoryImage& image) {
   const EngineOptions device{engine,        record.configuration, options.unit_library,
                              options.waves, options.units,        options.inspect_until};
-  return make_unit(device, image.memory, "unit", kernel_names(ray_kernel_program(record.configuration.fma)));
+  return make_unit(device, image.memory, "unit", kernel_names(ray_kernel_program(KernelTarget(record.configuration))));
 }
 
 FrameBuffer draw_on_unit(const SimOptions& options, Engine engine, RunRecord& record, const Scene& scene,
@@ -217,7 +217,7 @@ int sim_command(const SimOptions& options) {
   record.materials = scene.materials.size();
   record.view = {scene.camera, scene.light};
   record.reflections = record.depth > 1 && scene.reflects();
-  MemoryImage image = build_memory(ray_kernel_program(record.configuration.fma), scene);
+  MemoryImage image = build_memory(ray_kernel_program(KernelTarget(record.configuration)), scene);
   if (options.modules) {
     print_modules(options, engine, record, scene, image);
     return 0;

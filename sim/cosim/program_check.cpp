@@ -101,7 +101,7 @@ class Checker {
 
   // Is what the warp's next instruction reads defined, and may it touch that memory?
   std::string before(uint32_t warp) {
-    const DecodedInstruction* i = core_.instruction_at(core_.next_pc(warp));
+    const DecodedInstruction* i = core_.next_instruction(warp);
     if (i == nullptr || !i->legal()) return "";  // the step will say it
     const uint32_t mask = core_.thread_mask(warp, *i);
     const InstructionInfo& info = *i->info;

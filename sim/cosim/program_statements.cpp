@@ -66,13 +66,46 @@ size_t ProgramStatements::plain_type() {
 const InstructionInfo& ProgramStatements::plain_row(std::optional<size_t> type) {
   const size_t of = type ? *type : plain_type();
   for (;;) {
-    const InstructionInfo& info = kInstructions[below(std::size(kInstructions))];
+    const InstructionInfo& info = kInstructions[below(kSingles)];
     if (info.alu() == static_cast<AluType>(of) && info.kind != Kind::Control && configuration_.has(info.needs))
       return info;
   }
 }
 
+void ProgramStatements::triple(int a, int b) {
+  static constexpr Opcode kTriples[] = {Opcode::Fadd3, Opcode::Fsub3, Opcode::Fmul3, Opcode::Fmul3s,
+                                        Opcode::Arg3,  Opcode::Ffma3, Opcode::Ffma3s};
+  const uint32_t count = configuration_.fma ? std::size(kTriples) : std::size(kTriples) - 2;
+  Instruction i;
+  i.info = &instruction(kTriples[below(count)]);
+  if (percent(profile_.guarded_percent)) i.guard = any_predicate(), i.guard_negated = chance(2);
+  i.rd = destination_of_three(a, b);
+  if (i.info->opcode == Opcode::Arg3) {
+    i.immediate = below(kArguments);
+  } else {
+    // Near the destination: in some an element reads what an earlier one has written.
+    const auto near = [&] { return chance(2) ? source() : (i.rd + kRegisters - 3 + below(7)) % kRegisters; };
+    i.ra = near();
+    if (chance(3))
+      i.b_is_immediate = true, i.immediate = value();
+    else
+      i.rb = near();
+    if (has_operand(*i.info, Operand::Rc)) i.x = near();
+  }
+  plain_at_.push_back(emit(i));
+}
+
+int ProgramStatements::destination_of_three(int a, int b) {
+  for (;;) {
+    const int first = below(kDataRegisters - kElements + 1);
+    const auto among = [first](int number) { return number >= first && number < first + kElements; };
+    if (!among(a) && !among(b)) return first;
+  }
+}
+
 void ProgramStatements::plain(int a, int b, std::optional<size_t> type) {
+  const bool float_or_any = !type || *type == static_cast<size_t>(AluType::Flt);
+  if (configuration_.triples && float_or_any && chance(4)) return triple(a, b);
   Instruction i;
   i.info = &plain_row(type);
   const InstructionInfo& info = *i.info;
@@ -157,7 +190,7 @@ void ProgramStatements::pairs(int loops) {
   patch(start, here());
 }
 
-void ProgramStatements::address(bool own, uint32_t offset, uint32_t entries) {
+void ProgramStatements::address(bool own, uint32_t offset, uint32_t entries, bool of_four) {
   switch (below(6)) {
     case 0:
       emit_immediate(Opcode::Mov, kAddress, 0, below(entries));
@@ -184,22 +217,23 @@ void ProgramStatements::address(bool own, uint32_t offset, uint32_t entries) {
       emit(Opcode::Imul, kAddress, source(), source());
       break;
   }
-  emit_immediate(Opcode::And, kAddress, kAddress, entries - 1);
+  emit_immediate(Opcode::And, kAddress, kAddress, (entries - 1) & (of_four ? ~3u : ~0u));
   emit_immediate(Opcode::Shl, kAddress, kAddress, own ? own_.shift : 2);
   emit(Opcode::Iadd, kAddress, kAddress, own ? kOwn : kShared);
   if (offset != 0) emit_immediate(Opcode::Isub, kAddress, kAddress, offset);
 }
 
-void ProgramStatements::access(bool store, uint32_t offset) {
+void ProgramStatements::access(bool store, uint32_t offset, bool of_four) {
   Instruction i;
-  i.info = &instruction(store ? Opcode::St : Opcode::Ld);
+  const bool three = of_four && !store && chance(2);
+  i.info = &instruction(store ? Opcode::St : three ? Opcode::Ld3 : Opcode::Ld);
   if (chance(2)) i.guard = any_predicate(), i.guard_negated = chance(2);
   i.ra = kAddress;
   i.immediate = offset;
   if (store)
     i.rb = source();
   else
-    i.rd = destination();
+    i.rd = three ? destination_of_three(-1, -1) : destination();
   emit(i);
 }
 
@@ -261,14 +295,15 @@ void ProgramStatements::memory() {
   const uint32_t lines = entries / (own ? own_.way_entries : way_bytes() / 4);
   const uint32_t parts = lines > 1 && chance(2) ? std::min(lines, kMostParts) : 1;
   const uint32_t part_bytes = (entries / parts) << (own ? own_.shift : 2);
-  address(own, offset, entries / parts);
+  const bool of_four = configuration_.triples && (!own || own_.shift == 2) && entries / parts >= 4 && chance(2);
+  address(own, offset, entries / parts, of_four);
   const int accesses = 1 + below(parts > 1 ? 2 * parts : 4);
   for (int n = 0; n < accesses; ++n) {
     // So that a load or store comes after every type.
     if (chance(parts > 1 ? 12 : 4)) plain();
     if (chance(8) && written_words_ > 0 && !in_function_)
       emit_word(Opcode::Rld, below(static_cast<uint32_t>(written_words_)), destination());
-    access(own && chance(2), offset + below(parts) * part_bytes);
+    access(own && chance(2), offset + below(parts) * part_bytes, of_four);
   }
 }
 
@@ -276,24 +311,42 @@ void ProgramStatements::ray(bool top) {
   if (!top) {
     if (in_function_) return plain();
     const int words = chance(2) ? kRayWords : 1 + static_cast<int>(below(kIntersectionWords));
-    for (int n = 0; n < words; ++n) emit_word(Opcode::Rst, n);
+    for (int n = 0; n < words;) n += store_words(n, words - n);
     for (int n = 0; n < 2; ++n) emit_word(Opcode::Rld, below(static_cast<uint32_t>(words)), destination());
     if (words >= kRayWords) rotate();
     written_words_ = 0;
     return;
   }
   if (written_words_ > 0 && chance(3)) {
-    emit_word(Opcode::Rld, below(static_cast<uint32_t>(written_words_)), destination(),
-              chance(2) ? any_predicate() : 0);
+    load_word(chance(2) ? any_predicate() : 0);
   } else if (written_words_ >= kRayWords && chance(2)) {
     rotate();
   } else if (written_words_ > 0 && (written_words_ == kIntersectionWords || chance(3))) {
-    emit_word(Opcode::Rst, below(static_cast<uint32_t>(written_words_)), 0, any_predicate());
+    const auto words = static_cast<uint32_t>(written_words_);
+    if (configuration_.triples && words >= kElements && chance(2))
+      emit_word(Opcode::Rst3, below(words - kElements + 1), 0, any_predicate());
+    else
+      emit_word(Opcode::Rst, below(words), 0, any_predicate());
   } else {
     // Words are written from 0 up, unmasked the first time, so that nothing undefined is ever read or exported.
     const int count = std::min<int>(kIntersectionWords - written_words_, 1 + below(14));
-    for (int n = 0; n < count; ++n) emit_word(Opcode::Rst, written_words_++);
+    for (const int end = written_words_ + count; written_words_ < end;)
+      written_words_ += store_words(written_words_, end - written_words_);
   }
+}
+
+void ProgramStatements::load_word(int guard) {
+  const auto words = static_cast<uint32_t>(written_words_);
+  if (configuration_.triples && words >= kElements && chance(2))
+    emit_word(Opcode::Rld3, below(words - kElements + 1), destination_of_three(-1, -1), guard);
+  else
+    emit_word(Opcode::Rld, below(words), destination(), guard);
+}
+
+int ProgramStatements::store_words(int word, int left) {
+  const bool three = configuration_.triples && left >= kElements && chance(2);
+  emit_word(three ? Opcode::Rst3 : Opcode::Rst, word);
+  return three ? kElements : 1;
 }
 
 void ProgramStatements::rotate() {

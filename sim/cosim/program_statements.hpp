@@ -52,6 +52,10 @@ class ProgramStatements : public ProgramEmitter {
   /// One instruction that touches neither memory, rays nor control, of any type or this one, with random operands,
   /// or of registers a and b, which stay.
   void plain(int a = -1, int b = -1, std::optional<size_t> type = std::nullopt);
+  /// A triple in its place, of floats or arguments; its elements may depend on each other.
+  void triple(int a, int b);
+  /// First of three registers for data, among which a and b are not.
+  int destination_of_three(int a, int b);
   /// A few of them with a pair of operands that meet: sums that cancel or need rounding, products and
   /// quotients at the ends of the range.
   void arithmetic();
@@ -59,10 +63,10 @@ class ProgramStatements : public ProgramEmitter {
   void pairs(int loops);
   uint32_t way_bytes() const { return configuration_.data_cache_bytes / 2; }
   /// r13 = an aligned address among the first `entries` words: one for all lanes, neighbours, a stride, lines of
-  /// one set, or anywhere; off by -offset.
-  void address(bool own, uint32_t offset, uint32_t entries);
-  /// `st` or `ld` at r13 + offset.
-  void access(bool store, uint32_t offset);
+  /// one set, or anywhere; off by -offset. `of_four`: the first of four that lie in a quadword's order.
+  void address(bool own, uint32_t offset, uint32_t entries, bool of_four = false);
+  /// `st` or `ld` at r13 + offset; `of_four`: or ld3.
+  void access(bool store, uint32_t offset, bool of_four = false);
   void memory();
   /// Loads and stores at addresses up to the told limit, far beyond the program's data: in lines of the
   /// warp's own, or in lines that nobody stores to. Addresses of the lanes, of the warps or of one access
@@ -74,6 +78,9 @@ class ProgramStatements : public ProgramEmitter {
   /// At the top level the words of the current slice are known from statement to statement; elsewhere a
   /// statement writes all that it reads.
   void ray(bool top);
+  void load_word(int guard);
+  /// Word `word`, or with triples, three words of which `left` may be written; returns how many.
+  int store_words(int word, int left);
   void rotate();
   void loop(int length, int loops, int entries);
   void jump(int loops, int entries);

@@ -195,6 +195,7 @@ class Generator : public ProgramStatements {
     if (runs_out_) return;
     body(length - length / 2, 0, 1);
     for (uint32_t n = below(4); n > 0; --n) leave_predicate();
+    if (configuration_.triples && chance(2)) last_triple();
     if (last && profile_.far > 0 && chance(6)) return far_end();
     emit(Opcode::Exit, 0, 0, 0, control_guard());
     functions();
@@ -221,6 +222,16 @@ class Generator : public ProgramStatements {
     i.rd = last_or_any_predicate();
     i.ra = i.rb = r;
     emit(i);
+  }
+
+  // Its last register is followed by the first, which nobody needs any more.
+  void last_triple() {
+    Instruction i;
+    i.info = &instruction(chance(2) ? Opcode::Fmul3 : Opcode::Arg3);
+    i.rd = kRegisters - 2 + below(2);
+    if (i.info->opcode == Opcode::Fmul3) i.ra = source(), i.rb = source();
+    emit(i);
+    emit(Opcode::Iadd, 2, 0, 1);
   }
 
   // Before the kernel has written any.
@@ -266,6 +277,10 @@ class Generator : public ProgramStatements {
     switch (code) {
       case FaultCode::IllegalInstruction:
         if (chance(4) && missing_instruction()) return;
+        if (configuration_.triples && chance(4)) {
+          emit_word(chance(2) ? Opcode::Rld3 : Opcode::Rst3, kLastTripleWord + 1 + below(31 - kLastTripleWord));
+          return;
+        }
         for (;;) {
           const uint64_t word = random();
           if (find_instruction(static_cast<int>(word >> 60), static_cast<int>(word >> 55 & 31)) != nullptr) continue;
@@ -286,7 +301,8 @@ class Generator : public ProgramStatements {
       case FaultCode::AddressOutsideMemory: {
         // One lane is enough; a warp whose faulty lane is left out goes on.
         const bool some = chance(2);
-        const Opcode access = chance(2) ? Opcode::Ld : Opcode::St;
+        const bool three = configuration_.triples && chance(2);
+        const Opcode access = three ? Opcode::Ld3 : chance(2) ? Opcode::Ld : Opcode::St;
         const bool last_word = some && !more_memory_told_;  // lane 0 reads it
         if (code == FaultCode::Misaligned) {
           emit(Opcode::Mov, kAddress, 0, kOwn);

@@ -334,7 +334,7 @@ void UnitInspection::check_wants() {
 }
 
 void UnitInspection::check_operands(uint32_t warp) {
-  const CycleUnit::Issue& issue = model_->issue(warp);
+  const CycleUnit::Issue& issue = model_->wanting(warp);
   const uint64_t encoding = issue.instruction->encoding;
   const uint32_t low = w_.retire_instruction_o.word(warp * 2), high = w_.retire_instruction_o.word(warp * 2 + 1);
   const uint32_t pc = w_.retire_pc_o.bits(warp * 16, 16);
@@ -368,13 +368,12 @@ void UnitInspection::check_tasks() {
   for (uint32_t i = 0; i < instances_.size(); ++i) {
     const bool expected = (tasks_ >> i & 1) != 0;
     expect(task_[i].task_valid_o.value(), expected, "rtl/task_register.v, rtl/dispatcher.v", "an instance gets a task");
-    if (expected && task_[i].task_valid_o.value() != 0) check_task(i, instances_[i].task);
+    if (expected && task_[i].task_valid_o.value() != 0) check_task(i, instances_[i].task, *instances_[i].issue);
   }
 }
 
-void UnitInspection::check_task(uint32_t instance, uint32_t warp) {
+void UnitInspection::check_task(uint32_t instance, uint32_t warp, const CycleUnit::Issue& issue) {
   const TaskWires& task = task_[instance];
-  const CycleUnit::Issue& issue = model_->issue(warp);
   const DecodedInstruction& instruction = *issue.instruction;
   const auto unused = [&](TaskOperand operand) { return !looks_at(*instruction.info, operand); };
   bool same =
@@ -417,6 +416,7 @@ void UnitInspection::check_dispatch() {
       const uint32_t warp = lowest(warps);
       if (w_.wanted_type.bits(warp * field::kType.bits, field::kType.bits) != instances_[i].type) continue;
       instances_[i].task = warp;
+      instances_[i].issue = &model_->wanting(warp);
       left &= ~(1u << warp);
       granted |= 1u << warp;
       tasks_ |= 1u << i;

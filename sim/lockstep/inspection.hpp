@@ -60,9 +60,10 @@ class UnitInspection {
     uint32_t type = 0;
     bool piped = false;  // done a fixed number of cycles after its task
     uint32_t latency = 1, depth = 1;
-    uint64_t ready_from = 0;                 // cycle
-    uint32_t task = 0;                       // warp whose task is to be in the task register
-    std::array<uint8_t, kRing> under_way{};  // [cycle % kRing] warp that is to be done
+    uint64_t ready_from = 0;                  // cycle
+    uint32_t task = 0;                        // warp whose task is to be in the task register
+    const CycleUnit::Issue* issue = nullptr;  // that task
+    std::array<uint8_t, kRing> under_way{};   // [cycle % kRing] warp that is to be done
   };
   struct Port {  // what the memory port is to show
     bool valid = false, write = false;
@@ -87,7 +88,7 @@ class UnitInspection {
   void check_wants();
   void check_operands(uint32_t warp);
   void check_tasks();
-  void check_task(uint32_t instance, uint32_t warp);
+  void check_task(uint32_t instance, uint32_t warp, const CycleUnit::Issue& issue);
   void check_ready();
   void check_dispatch();
   void check_done();

@@ -38,7 +38,7 @@ std::optional<double> lane_kge(const Json& report, const std::string& lane,
 
 std::optional<ModeTiming> time_mode(const Scene& scene, int depth, const Configuration& configuration,
                                     const UnitMaker& make) {
-  const Program& program = ray_kernel_program(configuration.fma);
+  const Program& program = ray_kernel_program(KernelTarget(configuration));
   MemoryImage image = build_memory(program, scene);
   const Tracer tracer(scene, image.material_base);
   SceneTracer scene_tracer(tracer);

@@ -130,7 +130,7 @@ class RecordingSink : public FrameSink {
 
 Drawing draw_natively(const ExtremeFrame& frame, const arith::Mode& mode) {
   Drawing drawing{FrameBuffer(frame.width, frame.height), {}, {}};
-  const MemoryImage image = build_memory(ray_kernel_program(mode.fused), frame.scene);
+  const MemoryImage image = build_memory(ray_kernel_program({mode.fused, false}), frame.scene);
   RecordingTracer tracer(frame, image.material_base, drawing.traced);
   NativeOptions options;
   options.width = frame.width;
@@ -211,7 +211,7 @@ Drawing ExtremeMachine::draw(const ExtremeFrame& frame) const {
 
 Drawing ExtremeMachine::draw_on_unit(const ExtremeFrame& frame) const {
   Drawing drawing{FrameBuffer(frame.width, frame.height), {}, {}};
-  const Program& program = ray_kernel_program(configuration_.fma);
+  const Program& program = ray_kernel_program(KernelTarget(configuration_));
   MemoryImage image = build_memory(program, frame.scene);
   RecordingTracer tracer(frame, image.material_base, drawing.traced);
   RecordingSink sink(drawing);

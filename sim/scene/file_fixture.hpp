@@ -71,7 +71,7 @@ inline std::vector<Vec3> corners_of(const Scene& scene) {
 
 /// What the native engine draws, as PNG.
 inline std::vector<uint8_t> picture_of(const Scene& scene) {
-  const MemoryImage image = build_memory(ray_kernel_program(false), scene);
+  const MemoryImage image = build_memory(ray_kernel_program(), scene);
   const Tracer tracer(scene, image.material_base);
   NativeOptions options;
   options.width = 48;
