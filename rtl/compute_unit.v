@@ -88,8 +88,9 @@ module compute_unit #(
   wire [WARPS-1:0] start, active, launched;
   wire [15:0] start_pc;
   wire [WARPS*LANES-1:0] start_lanes;
-  wire [10:0] threads;
-  wire [31:0] block, blocks;
+  wire [WARPS-1:0] launch_place;   // which of the launches that run is each warp's
+  wire [2*11-1:0] threads;
+  wire [2*32-1:0] block, blocks;
   wire waiting_launch, import_start, import_active, exporting;
   // instruction routine
   wire [WARPS-1:0] fetch_request, fetch_first, fetch_grant;
@@ -128,13 +129,13 @@ module compute_unit #(
 
   genvar w, k;
 
-  launcher #(.WARPS(WARPS), .LANES(LANES)) launcher (
+  launcher #(.WARPS(WARPS), .LANES(LANES), .OVERLAP(KERNEL_OVERLAP)) launcher (
     .clk_i(clk_i), .rst_ni(rst_ni),
     .launch_valid_i(launch_valid_i), .launch_ready_o(launch_ready_o), .launch_pc_i(launch_pc_i),
     .launch_threads_i(launch_threads_i), .launch_block_i(launch_block_i), .launch_blocks_i(launch_blocks_i),
     .launch_import_i(launch_import_i), .import_start_o(import_start), .import_active_i(import_active),
-    .start_o(start), .start_pc_o(start_pc), .start_lanes_o(start_lanes), .active_i(active),
-    .launched_o(launched), .threads_o(threads), .block_o(block), .blocks_o(blocks),
+    .halt_i(fault_valid_o), .start_o(start), .start_pc_o(start_pc), .start_lanes_o(start_lanes), .active_i(active),
+    .launched_o(launched), .place_o(launch_place), .threads_o(threads), .block_o(block), .blocks_o(blocks),
     .kernel_done_o(kernel_done_o), .running_o(busy_o), .waiting_o(waiting_launch));
   assign idle_o = !busy_o && !waiting_launch && !import_active && !exporting && mem_idle && arbiter_idle;
 
@@ -216,10 +217,12 @@ module compute_unit #(
 
 `include "alu_instances.vh"
       if (TYPE == ISA_TYPE_TID) begin : gen_tid
+        wire task_place = KERNEL_OVERLAP != 0 && launch_place[task_warp];
         tid_alu #(
           .WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS), .LATENCY(TID_LATENCY), .DEPTH(TID_DEPTH)
         ) tid_alu (
-          .block_i(block), .blocks_i(blocks), .threads_i(threads), .argument_write_i(argument_write_i),
+          .block_i(task_place ? block[63:32] : block[31:0]), .blocks_i(task_place ? blocks[63:32] : blocks[31:0]),
+          .threads_i(task_place ? threads[21:11] : threads[10:0]), .argument_write_i(argument_write_i),
           .argument_index_i(argument_index_i), .argument_data_i(argument_data_i),
 `include "alu_port_map.vh"
         );

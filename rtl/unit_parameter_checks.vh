@@ -14,6 +14,9 @@
     if (TRIPLES < 0 || TRIPLES > 1) begin : gen_bad_TRIPLES
       TRIPLES_must_be_an_integer_from_0_to_1 illegal ();
     end
+    if (KERNEL_OVERLAP < 0 || KERNEL_OVERLAP > 1) begin : gen_bad_KERNEL_OVERLAP
+      KERNEL_OVERLAP_must_be_an_integer_from_0_to_1 illegal ();
+    end
     if (SUBNORMALS < 0 || SUBNORMALS > 1) begin : gen_bad_SUBNORMALS
       SUBNORMALS_must_be_an_integer_from_0_to_1 illegal ();
     end

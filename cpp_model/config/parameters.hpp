@@ -29,6 +29,8 @@ enum class Shading : uint8_t { Kernel = 0, Traverser = 1 };
   UNIT(lanes, uint32_t, 8, powers_of_two(1, 32), tried(1, 2, 4, 8, 16, 32), "lanes of an ALU, and threads in a warp") \
   UNIT(stack_depth, uint32_t, 8, integers(2, 32), tried(2, 3, 8, 32), "entries of a warp's PC stack") \
   UNIT(triples, bool, false, on_or_off(), all(), "instructions that do three in one: rld3, ffma3 and others") \
+  UNIT(kernel_overlap, bool, false, on_or_off(), all(), \
+       "a warp that has ended goes on with the next kernel while others still run the one before") \
   PART(instruction_cache, bytes, uint32_t, 4096, powers_of_two(512, 65536), tried(512, 1024, 4096, 65536), "size") \
   PART(data_cache, bytes, uint32_t, 8192, powers_of_two(512, 65536), tried(512, 1024, 8192, 65536), "size") \
   PART(data_cache, mshrs, uint32_t, 4, integers(1, 16), tried(1, 2, 3, 4, 16), \

@@ -18,6 +18,7 @@ CycleUnit::CycleUnit(const Configuration& configuration, const Memory& memory)
       lanes_(static_cast<uint32_t>(configuration.lanes)),
       host_memory_(&memory),
       core_(configuration, memory_),
+      launcher_(configuration),
       instruction_cache_(configuration),
       dispatcher_(configuration),
       mem_(configuration),
@@ -49,6 +50,7 @@ void CycleUnit::reset(uint32_t program_length, uint32_t memory_limit) {
   signals_ = outputs_.signals();
   trace_ = UnitTrace{};
   triples_ = followed_ = 0;
+  not_launched_ = ended_ = 0;
   std::fill(timings_.begin(), timings_.end(), Timing{});
   std::fill(issues_.begin(), issues_.end(), std::deque<Issue>(1));
   rest_signals_ = signals_but_rays();
@@ -125,13 +127,14 @@ void CycleUnit::step(const UnitInputs& inputs) {
   }
   if (faulty_) settle_faults();
   if (attention) attention_ = needs_attention();
+  if (attention | attention_) count_states();
   ++now_;
   if (attention | attention_) rest_signals_ = signals_but_rays();
 }
 
 bool CycleUnit::needs_attention() const {
   return faulty_ || !memory_arbiter_.idle() || instruction_cache_.busy() || mem_.active() ||
-         dispatcher_.task(AluType::Mem) >= 0 || launcher_.start() || launcher_.kernel_done(buffer_.active());
+         dispatcher_.task(AluType::Mem) >= 0 || launcher_.acts(buffer_.active(), halted());
 }
 
 CycleUnit::MemoryPort CycleUnit::clock_memory_arbiter(const UnitInputs& inputs) {
@@ -147,17 +150,26 @@ CycleUnit::MemoryPort CycleUnit::clock_memory_arbiter(const UnitInputs& inputs) 
 }
 
 void CycleUnit::clock_launcher() {
-  if (launcher_.start()) {
-    launcher_.begin();
-    start_kernel();
-    count_pauses(true);
-    counters_.enter(counter::kWarpsNotLaunched, now_ + 1, warps_ - launched_warps());
-  } else if (launcher_.kernel_done(buffer_.active())) {
-    launcher_.end();
-    count_pauses(false);
-    counters_.leave(counter::kWarpsNotLaunched, now_ + 1, warps_ - launched_warps());
-    counters_.leave(counter::kWarpsEnded, now_ + 1, launched_warps());
-  }
+  const uint32_t active = buffer_.active();
+  if (!launcher_.acts(active, halted())) return;
+  const bool ran = launcher_.running();
+  const uint32_t starts = launcher_.starts(active, halted());
+  if (starts != 0) start_warps(starts, launcher_.start_launch());
+  launcher_.clock(active, halted());
+  if (launcher_.running() != ran) count_pauses(!ran);
+}
+
+// Warps without an instruction, from the next cycle on.
+void CycleUnit::count_states() {
+  const uint32_t active = buffer_.active(), launched = launcher_.launched(active);
+  const auto count = [this](int number, uint32_t& before, uint32_t now) {
+    counters_.leave(number, now_ + 1, popcount(before & ~now));
+    counters_.enter(number, now_ + 1, popcount(now & ~before));
+    before = now;
+  };
+  const uint32_t running = launcher_.running() ? launcher_.all() : 0;
+  count(counter::kWarpsNotLaunched, not_launched_, running & ~launched);
+  count(counter::kWarpsEnded, ended_, running & launched & ~active);
 }
 
 // While a line is on its way, lookups are made in their own cycle: what has missed asks again when the line has come.
@@ -220,14 +232,15 @@ void CycleUnit::count_pauses(bool running) {
 
 // ---- Warps
 
-void CycleUnit::start_kernel() {
+void CycleUnit::start_warps(uint32_t warps, const LaunchCommand& launch) {
   if (memory_stale_) {
     memory_ = *host_memory_;
     memory_stale_ = false;
   }
-  const LaunchCommand& launch = launcher_.registers().launch;
-  core_.launch(launch);
-  for (uint32_t warp = 0; warp < launched_warps(); ++warp) {
+  core_.prepare();
+  for (; warps != 0; warps &= warps - 1) {
+    const uint32_t warp = lowest(warps);
+    core_.start(warp, launch);
     buffer_.start(warp);
     plan_fetch(warp, now_ + 1, false);
   }
@@ -382,7 +395,6 @@ void CycleUnit::retire_control(uint32_t warps) {
       raise({stack_fault_[warp], warp, buffer_.pc(warp)});
     } else if (!core_.warp_running(warp)) {
       buffer_.exit(warp);
-      counters_.enter(counter::kWarpsEnded, now_ + 1, 1);
       attention_ = true;
     } else {
       plan_fetch(warp, now_ + 1, false);

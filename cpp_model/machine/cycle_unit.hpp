@@ -78,7 +78,8 @@ class CycleUnit final : public ComputeUnit {
     uint32_t fetch_pc = 0;     ///< that it wants from the instruction cache
   };
   const Timing& timing(uint32_t warp) const { return timings_[warp]; }
-  bool launch_waits() const { return launcher_.waiting(); }
+  const Launcher& launcher() const { return launcher_; }
+  bool halted() const { return fault_.code != FaultCode::None; }  ///< by a fault
   uint32_t active_warps() const { return buffer_.active(); }
   const MemAlu& mem() const { return mem_; }
   const RayAlu& ray() const { return ray_; }
@@ -105,19 +106,18 @@ class CycleUnit final : public ComputeUnit {
 
   // A cycle
   void step(const UnitInputs& inputs);
-  bool halted() const { return fault_.code != FaultCode::None; }
   bool needs_attention() const;
   MemoryPort clock_memory_arbiter(const UnitInputs& inputs);
   void clock_launcher();
+  void count_states();
   void clock_instruction_cache(const UnitInputs& inputs, const MemoryPort& port);
   void clock_mem(const UnitInputs& inputs, const MemoryPort& port);
   void clock_ray(const UnitInputs& inputs, ImportKind import, bool ready);
   void count_ray_waits();
   void count_pauses(bool running);
   uint64_t fetching() const;
-  uint32_t launched_warps() const { return (launcher_.registers().threads + lanes_ - 1) / lanes_; }
   // Warps
-  void start_kernel();
+  void start_warps(uint32_t warps, const LaunchCommand& launch);
   void plan_fetch(uint32_t warp, uint64_t cycle, bool past_current);
   void fetch(uint64_t until);
   void issue_warp(uint32_t warp);
@@ -165,6 +165,9 @@ class CycleUnit final : public ComputeUnit {
   uint64_t fetch_cycle_ = 0;  // up to it, not included, the fetch arbiter's grants are known
   uint64_t miss_cycle_ = 0;   // in which the latest lookup's miss is known, if it was one
   uint64_t ray_counted_ = 0;  // up to it, not included, the ray ALU's waiting warps are counted
+
+  // Warps that are counted as not launched, and as having ended.
+  uint32_t not_launched_ = 0, ended_ = 0;
 
   bool faulty_ = false;   // an instruction has faulted since the reset
   AluFaults alu_faults_;  // of this cycle, once faulty_

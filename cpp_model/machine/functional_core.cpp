@@ -66,25 +66,29 @@ void FunctionalCore::reset(uint32_t program_length, uint32_t memory_limit) {
 
 void FunctionalCore::launch(const LaunchCommand& command) {
   if (running()) throw std::logic_error("a kernel was launched in the functional model while another one runs");
+  prepare();
+  for (uint32_t warp = 0; warp < warps_.size() && warp * lanes_ < command.threads; ++warp) start(warp, command);
+}
+
+void FunctionalCore::prepare() {
   if (!program_decoded_) {
     program_.resize(program_length_);
     decode_program();
     program_decoded_ = true;
     decoded_ = program_length_;
   }
-  launched_ = command;
-  for (uint32_t number = 0; number < warps_.size(); ++number) {
-    Warp& warp = warps_[number];
-    const uint32_t first = number * lanes_;
-    if (first >= command.threads) break;
-    const uint32_t threads = std::min(lanes_, command.threads - first);
-    warp.running = true;
-    warp.element = nullptr;
-    warp.launched = threads == 32 ? 0xffffffffu : (1u << threads) - 1;
-    warp.pc_stack.start(command.pc);
-    warp.predicates.clear();
-    ++running_warps_;
-  }
+}
+
+void FunctionalCore::start(uint32_t number, const LaunchCommand& command) {
+  Warp& warp = warps_[number];
+  const uint32_t threads = std::min(lanes_, command.threads - number * lanes_);
+  warp.running = true;
+  warp.element = nullptr;
+  warp.launch = command;
+  warp.launched = threads == 32 ? 0xffffffffu : (1u << threads) - 1;
+  warp.pc_stack.start(command.pc);
+  warp.predicates.clear();
+  ++running_warps_;
 }
 
 void FunctionalCore::decode_program() {
@@ -168,7 +172,7 @@ bool FunctionalCore::execute(const DecodedInstruction& instruction, Warp& warp, 
   const uint32_t predicate_b = warp.predicates.read(instruction.rb);
   switch (instruction.alu()) {
     case AluType::Tid:
-      tid_alu_.execute(instruction.opcode, lanes, result_.warp, instruction.immediate, launched_);
+      tid_alu_.execute(instruction.opcode, lanes, result_.warp, instruction.immediate, warp.launch);
       return true;
     case AluType::Brh:
       result_.predicate = BrhAlu::compare(instruction.opcode, lanes, predicate_x, predicate_b, mode_) & result_.mask;

@@ -74,10 +74,15 @@ class FunctionalCore {
 
   /// Starts a kernel; the previous one must have ended. Imports are announced apart, by expect_import.
   void launch(const LaunchCommand& command);
+  /// Or warp by warp: before its first one the program is decoded.
+  void prepare();
+  /// Starts a warp, which must have ended, for its threads of the launch.
+  void start(uint32_t warp, const LaunchCommand& command);
   /// True while a warp of the kernel has not executed `exit`. A fault stops a kernel without ending it.
   bool running() const { return running_warps_ > 0; }
   bool warp_running(uint32_t warp) const { return warps_[warp].running; }
-  const LaunchCommand& launched() const { return launched_; }
+  /// The launch that a warp was started for last.
+  const LaunchCommand& launched(uint32_t warp) const { return warps_[warp].launch; }
 
   /// Executes the warp's next instruction, or the next element of a triple. After a fault every call returns that
   /// fault.
@@ -158,7 +163,6 @@ class FunctionalCore {
   std::vector<Warp> warps_;
   TidAlu tid_alu_;
   RaySlices slices_;
-  LaunchCommand launched_;
   uint32_t running_warps_ = 0;
   Step result_;
 };

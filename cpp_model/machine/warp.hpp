@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "machine/compute_unit.hpp"
 #include "machine/decoder.hpp"
 #include "machine/pc_stack.hpp"
 #include "machine/predicate_file.hpp"
@@ -21,6 +22,7 @@ struct Warp {
 
   bool running = false;      ///< started and not yet exited
   bool output_busy = false;  ///< the next rout or rfb waits
+  LaunchCommand launch;      ///< that it was started for last
   uint32_t launched = 0;     ///< lanes that have a thread
   /// The element of a triple that is next; null: the first of the instruction at the PC.
   const DecodedInstruction* element = nullptr;

@@ -34,7 +34,8 @@ const ChipOptions& checked(const ChipOptions& options) {
 Chip::Chip(const sc_core::sc_module_name& name, const ChipOptions& options)
     : sc_module(name),
       options_(checked(options)),
-      ledger_("pixel_ledger", options.device->units(), options.width, options.height),
+      ledger_("pixel_ledger", options.device->units(), options.width, options.height,
+              options.configuration.kernel_overlap),
       memory_port_("memory_port", options.configuration.chip),
       rays_("ray_pool", options.configuration.chip, options.depth),
       intersections_("intersection_pool", options.configuration.chip),

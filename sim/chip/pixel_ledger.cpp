@@ -10,8 +10,9 @@
 
 namespace raypool::chip {
 
-PixelLedger::PixelLedger(const sc_core::sc_module_name& name, uint32_t units, uint32_t width, uint32_t height)
-    : sc_module(name), width_(width), height_(height), live_(pixels()), kernels_(units) {
+PixelLedger::PixelLedger(const sc_core::sc_module_name& name, uint32_t units, uint32_t width, uint32_t height,
+                         bool overlap)
+    : sc_module(name), width_(width), height_(height), together_(overlap ? 2 : 1), live_(pixels()), kernels_(units) {
   records.bind(*this);
   kernel_events.bind(*this);
 }
@@ -21,7 +22,8 @@ void PixelLedger::eye_launched(uint32_t unit, std::vector<uint32_t> pixels) {
   held_ += size32(pixels);
   Kernel kernel;
   kernel.normal_left = size32(pixels);
-  kernel.pixels = std::move(pixels);
+  kernel.may_export = kNormalRay;
+  for (const uint32_t pixel : pixels) kernel.add(pixel);
   add(unit, std::move(kernel));
 }
 
@@ -32,23 +34,36 @@ void PixelLedger::launched(uint32_t unit, RayKernel kind, uint32_t threads) {
   kernel.pixels.reserve(threads);
   if (kind == RayKernel::Shade) {
     kernel.contributions_left = threads;
+    kernel.may_export = kContribution;
   } else {
     kernel.shadow_left = threads;
-    if (kind == RayKernel::CastSecondary) kernel.normal_left = threads;
+    kernel.may_export = kShadowRay;
+    if (kind == RayKernel::CastSecondary) {
+      kernel.normal_left = threads;
+      kernel.may_export |= kNormalRay;
+    }
   }
   add(unit, std::move(kernel));
 }
 
 // Exports come nearly in the order of the threads: the search goes on where the last one ended.
-bool PixelLedger::Kernel::has(uint32_t pixel) {
-  const auto begin = pixels.begin(), end = pixels.end(), last = begin + found;
-  auto place = std::find(last, end, pixel);
-  if (place == end) {
-    place = std::find(begin, last, pixel);
-    if (place == last) return false;
-  }
-  found = place - begin;
-  return true;
+bool PixelLedger::Kernel::exports(uint32_t pixel, uint8_t what) {
+  const auto find = [&](size_t from, size_t to) {
+    for (size_t i = from; i < to; ++i) {
+      if (pixels[i] != pixel || (exports_left[i] & what) == 0) continue;
+      exports_left[i] = static_cast<uint8_t>(exports_left[i] & ~what);
+      found = i;
+      return true;
+    }
+    return false;
+  };
+  const size_t last = found;
+  return find(last, pixels.size()) || find(0, std::min(last, pixels.size()));
+}
+
+void PixelLedger::Kernel::add(uint32_t pixel) {
+  pixels.push_back(pixel);
+  exports_left.push_back(may_export);
 }
 
 void PixelLedger::add(uint32_t unit, Kernel kernel) {
@@ -61,7 +76,7 @@ void PixelLedger::imported(uint32_t unit, uint32_t pixel) {
   for (Kernel& kernel : kernels_[unit]) {
     if (kernel.imports_left == 0) continue;
     --kernel.imports_left;
-    kernel.pixels.push_back(pixel);
+    kernel.add(pixel);
     return;
   }
   throw std::runtime_error(fmt::format("compute unit {} imports a package that no kernel of it has asked for", unit));
@@ -100,24 +115,25 @@ void PixelLedger::attribute(uint32_t unit, Export kind, uint32_t pixel) {
   const auto made = [&](Kernel& kernel) {
     const bool eye = kernel.kind == RayKernel::CastEye, shade = kernel.kind == RayKernel::Shade;
     if (eye != (kind == Export::EyeRay) || shade != (kind == Export::Contribution)) return false;
-    uint32_t& left = shade                       ? kernel.contributions_left
-                     : kind == Export::ShadowRay ? kernel.shadow_left
-                                                 : kernel.normal_left;
-    if (left == 0 || !kernel.has(pixel)) return false;
-    --left;
+    const uint8_t what = shade ? kContribution : kind == Export::ShadowRay ? kShadowRay : kNormalRay;
+    if (!kernel.exports(pixel, what)) return false;
+    --(what == kContribution ? kernel.contributions_left
+       : what == kShadowRay  ? kernel.shadow_left
+                             : kernel.normal_left);
     return true;
   };
   // If an older kernel could have made it too, it is held to have: that can only keep pixels held for longer, never let
   // them go early.
+  uint32_t running = 0;
   for (size_t i = 0; i < kernels.size(); ++i) {
     if (made(kernels[i])) {
       if (kind != Export::Contribution) --rays_to_come_;
       if (kind == Export::ShadowRay) --shadow_to_come_;
-      for (; i > 0; --i) release_front(unit);
+      for (; i >= together_; --i) release_front(unit);
       release_complete(unit);
       return;
     }
-    if (!kernels[i].ended) break;
+    if (!kernels[i].ended && ++running == together_) break;
   }
   const EnumArray<Export, const char*, 4> names = {"an eye ray", "a secondary ray", "a shadow ray", "a contribution"};
   throw std::runtime_error(

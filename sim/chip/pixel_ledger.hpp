@@ -4,8 +4,9 @@
 //
 // What a thread has exported shows only at the unit's ports, some time after its kernel has ended. So every kernel of a
 // unit stays on record until all its exports have provably been seen: as many as it can make, or the first export of a
-// later kernel (exports leave in order), or the unit idle. Until then its threads hold their pixels. The count is never
-// too low, and right whenever the units are idle.
+// later kernel (exports leave in order; with kernel_overlap, of the kernel after the next, which begins when this one
+// has ended), or the unit idle. Until then its threads hold their pixels. The count is never too low, and right
+// whenever the units are idle.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +23,9 @@ namespace raypool::chip {
 
 class PixelLedger : public sc_core::sc_module, public LedgerIf, public KernelEventsIf {
  public:
-  PixelLedger(const sc_core::sc_module_name& name, uint32_t units, uint32_t width, uint32_t height);
+  /// `overlap`: two kernels of a unit may run.
+  PixelLedger(const sc_core::sc_module_name& name, uint32_t units, uint32_t width, uint32_t height,
+              bool overlap = false);
 
   /// Is told when a kernel goes off record: held() or the rays to come may have fallen.
   sc_core::sc_port<DecisionIf, 0, sc_core::SC_ZERO_OR_MORE_BOUND> controller{"controller"};
@@ -48,16 +51,21 @@ class PixelLedger : public sc_core::sc_module, public LedgerIf, public KernelEve
 
  private:
   struct Kernel {
-    bool has(uint32_t pixel);
+    void add(uint32_t pixel);
+    /// One of the pixel's threads may still export this, and has now.
+    bool exports(uint32_t pixel, uint8_t what);
 
     RayKernel kind = RayKernel::CastEye;
     uint32_t imports_left = 0;
     bool ended = false;
+    uint8_t may_export = 0;                     // a thread; bits as below
     std::vector<uint32_t> pixels;               // of its threads, as they are known
+    std::vector<uint8_t> exports_left;          // of each thread
     uint32_t normal_left = 0, shadow_left = 0;  // rays it may still export
     uint32_t contributions_left = 0;
-    std::ptrdiff_t found = 0;  // in `pixels`, the latest
+    size_t found = 0;  // in `pixels`, the latest
   };
+  static constexpr uint8_t kNormalRay = 1, kShadowRay = 2, kContribution = 4;
   enum class Export : uint8_t { EyeRay, SecondaryRay, ShadowRay, Contribution };
 
   bool inside(uint32_t pixel) const { return (pixel & 0xffff) < width_ && (pixel >> 16) < height_; }
@@ -69,6 +77,7 @@ class PixelLedger : public sc_core::sc_module, public LedgerIf, public KernelEve
   void release_complete(uint32_t unit);
 
   uint32_t width_, height_;
+  uint32_t together_;                        // kernels of a unit that may run
   std::vector<uint16_t> live_;               // [pixel] rays, intersections and threads
   std::vector<std::deque<Kernel>> kernels_;  // [unit], oldest first
   uint32_t held_ = 0;

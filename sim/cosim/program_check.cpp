@@ -27,6 +27,7 @@ class Checker {
         core_(configuration, memory_),
         warps_(configuration.warps),
         lanes_(configuration.lanes),
+        overlap_(configuration.kernel_overlap),
         defined_(warps_ * kRegisters),
         slices_(warps_),
         arguments_(program.arguments) {}
@@ -126,7 +127,7 @@ class Checker {
   std::string touch(uint32_t warp, const DecodedInstruction& i, uint32_t mask) {
     const uint32_t* base = core_.register_row(warp, i.ra);
     const bool store = i.opcode == Opcode::St;
-    const bool several = program_.units > 1;
+    const bool several = program_.units > 1 || overlap_;
     const int me = static_cast<int>(several ? kernel_ * warps_ + warp : warp);
     for (; mask != 0; mask &= mask - 1) {
       const uint32_t address = base[__builtin_ctz(mask)] + i.immediate;
@@ -157,6 +158,7 @@ class Checker {
   Memory memory_;
   FunctionalCore core_;
   uint32_t warps_, lanes_;
+  bool overlap_;
   std::vector<uint32_t> defined_;                                 ///< [warp][register], a bit a lane
   std::vector<std::array<uint32_t, kIntersectionWords>> slices_;  ///< [warp][word of the current slice], a bit a lane
   std::unordered_map<uint32_t, Touched> touched_;                 ///< [address]

@@ -28,11 +28,12 @@ class Generator : public ProgramStatements {
     result_.seed = seed;
     result_.profile = std::string(profile_.name);
     result_.units = units;
-    // Kernels of different units run at the same time, so that each must have words of its own.
-    kernels_ = 1 + below(profile_.most_kernels + (units > 1 ? 3 * static_cast<uint32_t>(units) : 0));
+    // Kernels that run at the same time must have words of their own each.
+    together_ = units > 1 || configuration.kernel_overlap;
+    kernels_ = 1 + below(profile_.most_kernels + (together_ ? 3 * static_cast<uint32_t>(units) : 0));
     if (profile_.name == kFaultMix) kernels_ = kLeastRaces + below(kMostRaces - kLeastRaces);
     if (rewrites_) kernels_ = std::max(kernels_, 2u);
-    if (units > 1)
+    if (together_)
       while (block_mask_ + 1 < kernels_) block_mask_ = block_mask_ * 2 + 1;
   }
 
@@ -137,7 +138,7 @@ class Generator : public ProgramStatements {
       const auto entries = size32(entries_);
       const Entry& entry = entries_[profile_.name == kFaultMix ? k % entries : below(entries)];
       const ImportKind import = !entry.import ? ImportKind::None : chance(2) ? ImportKind::Normal : ImportKind::Shadow;
-      const uint32_t block = result_.units > 1 ? (value() & ~block_mask_) | k : value();
+      const uint32_t block = together_ ? (value() & ~block_mask_) | k : value();
       result_.kernels.push_back({threads, block, import, entry.pc, value()});
       if (rewrites_ && k > 0 && !chance(3)) result_.kernels.back().rewrite = rewrite();
     }
@@ -435,6 +436,7 @@ class Generator : public ProgramStatements {
   RandomProgram result_;
   FaultCode fault_ = FaultCode::None;  ///< in which kernels of one end end
   bool rewrites_ = chance(4);          ///< between kernels
+  bool together_ = false;              ///< kernels may run at the same time
   uint32_t kernels_ = 1;               ///< launches
   std::vector<Entry> entries_;
   bool more_memory_told_ = chance(3) || far_memory_told_;

@@ -110,7 +110,6 @@ void UnitInspection::expect(uint32_t rtl, uint32_t expected, const char* files, 
 void UnitInspection::advance(const UnitTransfers& given) {
   if (stopped_ || !active()) return;
   now_ = model_->now();
-  if (given.launch) launched_ = given.command;
   warp_faults_ = w_.warp_fault.value();
   alu_fault_ = w_.mem_fault.value() != 0 || w_.ray_fault.value() != 0;
   advance_memory_port(given);
@@ -149,25 +148,24 @@ void UnitInspection::check() {
 
 void UnitInspection::check_launch() {
   const bool running = model_->outputs().busy != 0;
-  expect(w_.waiting_launch.value(), model_->launch_waits(), "rtl/launcher.v", "a launch waits");
+  expect(w_.waiting_launch.value(), model_->launcher().waiting(), "rtl/launcher.v", "a launch waits");
   expect(w_.busy_o.value(), running, "rtl/launcher.v", "a kernel runs");
   expect(w_.active.value(), model_->active_warps(), "rtl/instruction_buffer.v, rtl/launcher.v", "warps that run");
   expect(w_.kernel_done_o.value(), model_->outputs().kernel_done, "rtl/launcher.v", "the kernel's end");
   if (running) {
-    const LaunchCommand& launched = model_->core().launched();
-    if (w_.threads.value() != launched.threads || w_.block.value() != launched.block ||
-        w_.blocks.value() != launched.blocks)
+    const LaunchCommand& launched = model_->launcher().newest();
+    const uint32_t place = model_->launcher().registers().newest;
+    if (w_.threads.bits(11 * place, 11) != launched.threads || w_.block.bits(32 * place, 32) != launched.block ||
+        w_.blocks.bits(32 * place, 32) != launched.blocks)
       find("rtl/launcher.v", "threads, block or blocks of the launch that runs are wrong");
   }
-  const bool starts = model_->launch_waits() && !running;
-  if (!starts && w_.start.value() == 0) return;
-  uint32_t warps = 0;
-  for (uint32_t warp = 0; starts && warp * lanes_ < launched_.threads; ++warp) warps |= 1u << warp;
+  const uint32_t warps = model_->launcher().starts(model_->active_warps(), model_->halted());
   expect(w_.start.value(), warps, "rtl/launcher.v", "warps that are started");
-  if (!starts) return;
-  expect(w_.start_pc.value(), launched_.pc, "rtl/launcher.v", "PC of the start");
+  if (warps == 0) return;
+  const LaunchCommand& started = model_->launcher().start_launch();
+  expect(w_.start_pc.value(), started.pc, "rtl/launcher.v", "PC of the start");
   for (uint32_t thread = 0; thread < warps_ * lanes_; ++thread)
-    expect(w_.start_lanes.flag(thread), thread < launched_.threads, "rtl/launcher.v", "lane that is started");
+    expect(w_.start_lanes.flag(thread), thread < started.threads, "rtl/launcher.v", "lane that is started");
 }
 
 void UnitInspection::check_faults() {

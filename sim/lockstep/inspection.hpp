@@ -121,7 +121,6 @@ class UnitInspection {
   uint32_t program_length_ = 0;
 
   // What is to be in this cycle.
-  LaunchCommand launched_;
   RoundRobin fetch_turn_;
   InstructionCache instruction_cache_;
   uint32_t requests_ = 0, missed_ = 0, first_ = 0, wants_ = 0;

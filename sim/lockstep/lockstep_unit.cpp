@@ -214,7 +214,7 @@ class LockstepUnitImpl : public LockstepUnit {
   std::string report(const Mismatch& mismatch) const {
     std::string kernel = "before the first kernel";
     if (kernels_started_ > 0) {
-      const LaunchCommand& launched = model_.units[mismatch.unit]->core().launched();
+      const LaunchCommand& launched = model_.units[mismatch.unit]->launcher().newest();
       const auto name = options_.kernel_names.find(launched.pc);
       kernel = fmt::format("kernel: {}entry PC {}, {} threads, block {}; {} launched so far",
                            name == options_.kernel_names.end() ? "" : name->second + ", ", launched.pc,
