@@ -89,6 +89,8 @@ module compute_unit #(
   wire [15:0] start_pc;
   wire [WARPS*LANES-1:0] start_lanes;
   wire [WARPS-1:0] launch_place;   // which of the launches that run is each warp's
+  wire [WARPS-1:0] older;          // warps in the older one of two kernels
+  reg  [WARPS-1:0] older_q, first_q;
   wire [2*11-1:0] threads;
   wire [2*32-1:0] block, blocks;
   wire waiting_launch, import_start, import_active, exporting;
@@ -135,7 +137,7 @@ module compute_unit #(
     .launch_threads_i(launch_threads_i), .launch_block_i(launch_block_i), .launch_blocks_i(launch_blocks_i),
     .launch_import_i(launch_import_i), .import_start_o(import_start), .import_active_i(import_active),
     .halt_i(fault_valid_o), .start_o(start), .start_pc_o(start_pc), .start_lanes_o(start_lanes), .active_i(active),
-    .launched_o(launched), .place_o(launch_place), .threads_o(threads), .block_o(block), .blocks_o(blocks),
+    .launched_o(launched), .place_o(launch_place), .older_o(older), .threads_o(threads), .block_o(block), .blocks_o(blocks),
     .kernel_done_o(kernel_done_o), .running_o(busy_o), .waiting_o(waiting_launch));
   assign idle_o = !busy_o && !waiting_launch && !import_active && !exporting && mem_idle && arbiter_idle;
 
@@ -189,10 +191,18 @@ module compute_unit #(
     end
   endgenerate
 
+  // The older kernel's warps go first, so that it ends and the next one can begin. Two cycles late: who is granted then
+  // has been in that kernel for at least as long.
+  always @(posedge clk_i) begin
+    older_q <= KERNEL_OVERLAP != 0 && rst_ni ? older : {WARPS{1'b0}};
+    first_q <= older_q;
+  end
+
   dispatcher #(
-    .WARPS(WARPS), .WARP_BITS(WARP_BITS), .INSTANCES(INSTANCES), .INSTANCE_TYPES(INSTANCE_TYPES)
+    .WARPS(WARPS), .WARP_BITS(WARP_BITS), .INSTANCES(INSTANCES), .INSTANCE_TYPES(INSTANCE_TYPES),
+    .OVERLAP(KERNEL_OVERLAP)
   ) dispatcher (
-    .want_i(want), .type_i(wanted_type), .grant_o(grant), .waiting_o(waiting),
+    .want_i(want), .type_i(wanted_type), .first_i(first_q), .grant_o(grant), .waiting_o(waiting),
     .ready_i(ready), .instance_grant_o(instance_grant), .instance_warp_o(instance_warp));
 
   // Each ALU instance has a task register before it. Those with ports of their own stand here, the others in

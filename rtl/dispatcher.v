@@ -1,16 +1,18 @@
 // Each cycle, gives every free ALU instance the lowest-numbered warp that wants its type and was given none yet. Never
 // grants an instance that is not ready, nor a warp twice. What the warp offers is taken over by the instance's task
-// register.
+// register. With OVERLAP, warps in first_i go before all others.
 `default_nettype none
 module dispatcher #(
   parameter integer WARPS = 8,
   parameter integer WARP_BITS = 3,
   parameter integer INSTANCES = 7,
-  parameter [INSTANCES*4-1:0] INSTANCE_TYPES = 28'h6543210
+  parameter [INSTANCES*4-1:0] INSTANCE_TYPES = 28'h6543210,
+  parameter integer OVERLAP = 0
 ) (
   // warps
   input  wire [WARPS-1:0]               want_i,
   input  wire [WARPS*4-1:0]             type_i,           // which each of them wants
+  input  wire [WARPS-1:0]               first_i,
   output reg  [WARPS-1:0]               grant_o,
   output wire [WARPS-1:0]               waiting_o,        // those that want and are granted none
   // instances
@@ -19,6 +21,7 @@ module dispatcher #(
   output reg  [INSTANCES*WARP_BITS-1:0] instance_warp_o
 );
   localparam [WARPS-1:0] ONE = 1;
+  wire [WARPS-1:0] first = OVERLAP != 0 ? first_i : {WARPS{1'b0}};
   reg [WARPS-1:0] candidates, winner;
   integer i, w;
 
@@ -33,6 +36,7 @@ module dispatcher #(
         if (ready_i[i]) begin
           for (w = 0; w < WARPS; w = w + 1)
             candidates[w] = want_i[w] && !grant_o[w] && type_i[w*4 +: 4] == INSTANCE_TYPES[i*4 +: 4];
+          if (|(candidates & first)) candidates = candidates & first;
           winner = candidates & (~candidates + ONE);
           grant_o = grant_o | winner;
           instance_grant_o[i] = |candidates;

@@ -28,6 +28,7 @@ module launcher #(
   // the launches that run
   output wire [WARPS-1:0]       launched_o,     // has threads of one of them
   output wire [WARPS-1:0]       place_o,        // of each warp's launch below
+  output wire [WARPS-1:0]       older_o,        // in the older one of two that run
   output wire [2*11-1:0]        threads_o,
   output wire [2*32-1:0]        block_o,
   output wire [2*32-1:0]        blocks_o,
@@ -89,6 +90,7 @@ module launcher #(
       assign start_pc_o = pc_q;
       assign launched_o = has;
       assign place_o = {WARPS{1'b0}};
+      assign older_o = {WARPS{1'b0}};
       assign threads_o = {11'd0, running_threads_q};
       assign block_o = {32'd0, running_block_q};
       assign blocks_o = {32'd0, running_blocks_q};
@@ -123,6 +125,7 @@ module launcher #(
       assign start_o = running_o && !halt_i ? has & ~started_q & ~active_i : {WARPS{1'b0}};
       assign launched_o = has | active_i;
       assign place_o = warp_place_q;
+      assign older_o = ~of_newest & {WARPS{older_q}};
       assign threads_o = place_threads_q;
       assign block_o = place_block_q;
       assign blocks_o = place_blocks_q;

@@ -51,6 +51,7 @@ void CycleUnit::reset(uint32_t program_length, uint32_t memory_limit) {
   trace_ = UnitTrace{};
   triples_ = followed_ = 0;
   not_launched_ = ended_ = 0;
+  older_ = {};
   std::fill(timings_.begin(), timings_.end(), Timing{});
   std::fill(issues_.begin(), issues_.end(), std::deque<Issue>(1));
   rest_signals_ = signals_but_rays();
@@ -91,6 +92,8 @@ void CycleUnit::step(const UnitInputs& inputs) {
   const bool accepts = inputs.launch_valid && launcher_.launch_ready(ray_.import_active());
   counters_.single[counter::kBusyCycles] += launcher_.running();
 
+  older_ = {launcher_.older(), older_[0], older_[1]};
+
   MemoryPort port;
   if (attention) {
     port = clock_memory_arbiter(inputs);
@@ -112,12 +115,12 @@ void CycleUnit::step(const UnitInputs& inputs) {
   }
   if (attention) clock_instruction_cache(inputs, port);
   if (!stopped) fetch(attention && instruction_cache_.busy() ? now_ : now_ + kAhead);
-  if (dispatcher_.wants_pipelined()) dispatcher_.grant_pipelined(now_ + kAhead, timeline_, counters_);
+  if (dispatcher_.wants_pipelined()) dispatcher_.grant_pipelined(now_ + kAhead, older_[0], timeline_, counters_);
   if (attention) clock_mem(inputs, port);
   clock_ray(inputs, accepts ? inputs.launch.import : ImportKind::None, ray_ready);
   if (dispatcher_.wants(AluType::Ray) != 0 && !stopped) grant_ray(ray_ready);
   if (dispatcher_.wants(AluType::Mem) != 0 && !stopped) {
-    dispatcher_.grant(AluType::Mem, mem_ready, counters_);
+    dispatcher_.grant(AluType::Mem, mem_ready, older_[kAhead], counters_);
     counters_.enter(counter::kWarpsInMem, now_ + 1, mem_ready);
     attention_ = true;
   }
@@ -379,8 +382,8 @@ void CycleUnit::next_load(uint32_t warp) {
 
 // An access to ray memory is read while the one before is made.
 void CycleUnit::grant_ray(bool ready) {
-  const uint32_t bit = lowest_bit(dispatcher_.wants(AluType::Ray));
-  dispatcher_.grant(AluType::Ray, ready, counters_);
+  const uint32_t bit = Dispatcher::winner(dispatcher_.wants(AluType::Ray), older_[kAhead]);
+  dispatcher_.grant(AluType::Ray, ready, older_[kAhead], counters_);
   if (!ready || (followed_ & bit) == 0) return counters_.enter(counter::kWarpsInRay, now_ + 1, ready);
   timeline_.at(now_ + kAhead).want_ray |= bit;
   if (--wants_left_[lowest(bit)] == 0) followed_ &= ~bit;

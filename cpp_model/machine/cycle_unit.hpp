@@ -81,6 +81,8 @@ class CycleUnit final : public ComputeUnit {
   const Launcher& launcher() const { return launcher_; }
   bool halted() const { return fault_.code != FaultCode::None; }  ///< by a fault
   uint32_t active_warps() const { return buffer_.active(); }
+  /// Warps that go first when ALUs are given in the cycle that begins.
+  uint32_t first_warps() const { return older_[1]; }
   const MemAlu& mem() const { return mem_; }
   const RayAlu& ray() const { return ray_; }
   int ray_task() const {
@@ -166,6 +168,7 @@ class CycleUnit final : public ComputeUnit {
   uint64_t miss_cycle_ = 0;   // in which the latest lookup's miss is known, if it was one
   uint64_t ray_counted_ = 0;  // up to it, not included, the ray ALU's waiting warps are counted
 
+  std::array<uint32_t, 3> older_{};  // launcher_.older() of this cycle and the two before; in front, of this
   // Warps that are counted as not launched, and as having ended.
   uint32_t not_launched_ = 0, ended_ = 0;
 

@@ -32,6 +32,8 @@ uint64_t CycleUnit::run(const UnitInputs& inputs, uint64_t cycles) {
         while (skip < Timeline::kCycles && done + skip < cycles && !timeline_.at(now_ + skip).any()) ++skip;
         if (skip == Timeline::kCycles) skip = cycles - done;
         now_ += skip;
+        for (uint64_t i = 0; i < std::min<uint64_t>(skip, older_.size()); ++i)
+          older_ = {launcher_.older(), older_[0], older_[1]};
         fetch_cycle_ = std::max(fetch_cycle_, now_);
         counters_.single[counter::kBusyCycles] += launcher_.running() ? skip : 0;
         done += skip;

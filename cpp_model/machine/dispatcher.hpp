@@ -1,5 +1,5 @@
-// rtl/dispatcher.v: gives every free ALU instance the lowest warp that wants its type, and
-// keeps the task registers behind it.
+// rtl/dispatcher.v: gives every free ALU instance the lowest warp that wants its type, of those that go first if there
+// are some, and keeps the task registers behind it.
 #pragma once
 
 #include <array>
@@ -67,7 +67,7 @@ class Dispatcher {
   void want(AluType type, uint32_t warps) { want_[type] |= warps; }
 
   /// The grants of a cycle among the pipelined types.
-  void grant_pipelined(uint64_t cycle, Timeline& timeline, PerformanceCounters& counters) {
+  void grant_pipelined(uint64_t cycle, uint32_t first, Timeline& timeline, PerformanceCounters& counters) {
     for (uint32_t types = want_types_; types != 0; types &= types - 1) {
       const uint32_t type = lowest(types);
       uint32_t want = want_[type];
@@ -75,11 +75,12 @@ class Dispatcher {
         AluPipeline& pipeline = pipelines_[type][i];
         if (!pipeline.ready(cycle)) continue;
         const uint64_t done = pipeline.grant(cycle);
-        if ((followed_ & lowest_bit(want)) == 0)
-          timeline.at(done).done |= lowest_bit(want);
+        const uint32_t bit = winner(want, first);
+        if ((followed_ & bit) == 0)
+          timeline.at(done).done |= bit;
         else
-          grant_element(lowest(want), cycle, done, timeline, counters);
-        want &= want - 1;
+          grant_element(lowest(bit), cycle, done, timeline, counters);
+        want &= ~bit;
         counters.unready[type] += pipeline.pause();
         ++counters.issued[type];
       }
@@ -88,13 +89,18 @@ class Dispatcher {
       counters.waiting[type] += popcount(want);
     }
   }
+  /// Of the warps that want the same, who gets it, as a bit.
+  static uint32_t winner(uint32_t want, uint32_t first) {
+    return lowest_bit((want & first) != 0 ? want & first : want);
+  }
   /// The grant of a cycle to Mem or Ray, which say themselves whether they take a task; some warp wants it.
-  void grant(AluType alu, bool ready, PerformanceCounters& counters) {
+  void grant(AluType alu, bool ready, uint32_t first, PerformanceCounters& counters) {
     const size_t type = static_cast<size_t>(alu);
     uint32_t& want = want_[type];
     if (ready) {
-      task_[type].grant(lowest(want));
-      want &= want - 1;
+      const uint32_t bit = winner(want, first);
+      task_[type].grant(lowest(bit));
+      want &= ~bit;
       ++counters.issued[type];
     }
     counters.waiting[type] += popcount(want);

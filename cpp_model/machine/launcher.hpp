@@ -58,6 +58,8 @@ class Launcher {
   /// Warps that have threads of a launch that runs.
   uint32_t launched(uint32_t active) const { return overlap_ ? has() | active : has(); }
   uint32_t all() const { return all_; }
+  /// Warps in the older one of two kernels.
+  uint32_t older() const { return q_.older ? ~q_.of_newest : 0; }
   /// The launch that began last.
   const LaunchCommand& newest() const { return q_.places[q_.newest]; }
 

@@ -410,8 +410,10 @@ void UnitInspection::check_dispatch() {
   tasks_ = 0;
   for (uint32_t i = 0; left != 0 && i < instances_.size(); ++i) {
     if ((ready >> i & 1) == 0) continue;
-    for (uint32_t warps = left; warps != 0; warps &= warps - 1) {
-      const uint32_t warp = lowest(warps);
+    const uint32_t first = model_->first_warps();
+    for (uint32_t n = 0; n < 2 * warps_; ++n) {  // those that go first, then the others
+      const uint32_t warp = n % warps_;
+      if ((left >> warp & 1) == 0 || ((first >> warp & 1) != 0) != (n < warps_)) continue;
       if (w_.wanted_type.bits(warp * field::kType.bits, field::kType.bits) != instances_[i].type) continue;
       instances_[i].task = warp;
       instances_[i].issue = &model_->wanting(warp);
