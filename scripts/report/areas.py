@@ -21,11 +21,12 @@ def parameters_of(unit):
 
 
 def find_areas(points, synthesis):
-    """Gives points power, and their area if their sweep has not. Of several reports the last with power, else the
-    last."""
-    known = {}
+    """Gives points power, their area if their sweep has not, and the clock that each library allows. Of several reports
+    the last with power, else the last."""
+    known, clocks = {}, {}
     for report in synthesis:
         identity = json.dumps(report["parameters"], sort_keys=True)
+        clocks.setdefault(identity, {})[report["library"]["name"]] = 1000 / report["timing"]["allowed_ns"]
         if identity not in known or report.get("power") or not known[identity].get("power"):
             known[identity] = report
     if not known:
@@ -35,9 +36,11 @@ def find_areas(points, synthesis):
         unit = {name: value for name, value in point.report["configuration"].items() if name not in ("chip", "name")}
         key = json.dumps(unit, sort_keys=True)
         if key not in asked:
-            asked[key] = known.get(json.dumps(parameters_of(unit), sort_keys=True))
-        if asked[key]:
-            take(point, asked[key])
+            identity = json.dumps(parameters_of(unit), sort_keys=True)
+            asked[key] = known.get(identity), clocks.get(identity, {})
+        report, point.clocks = asked[key]
+        if report:
+            take(point, report)
 
 
 def take(point, report):

@@ -38,6 +38,7 @@ class Point:
         self.area_mm2 = self.row.get("area_mm2")
         self.kge = self.row.get("kge")
         self.watts = self.watts_mhz = self.watts_library = None
+        self.clocks = {}  # MHz that each library allows
         machine = {name: value for name, value in flat(report["configuration"]).items() if name != "name"}
         size = report["size"]
         self.fields = {

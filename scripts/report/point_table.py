@@ -42,6 +42,15 @@ def field(name):
     return value
 
 
+def at_clock_of(library):
+    """Mrays/s at the clock that a library allows; a run's own count a clock of 1 GHz."""
+    def value(point):
+        mhz = point.clocks.get(library)
+        return point.rate * mhz / 1000 if mhz and point.rate is not None else None
+
+    return value
+
+
 def columns(points):
     fixed = [
         Column("no", lambda point: point.number),
@@ -54,6 +63,8 @@ def columns(points):
         Column("warps", field("warps")),
         Column("lanes", field("lanes")),
         Column("Mrays/s", lambda point: point.rate, number),
+        *(Column(f"Mrays/s {library}", at_clock_of(library), number)
+          for library in sorted({library for point in points for library in point.clocks})),
         Column("cycles", lambda point: point.report["cycles"], number),
         Column("rays", lambda point: point.report["rays"], number),
         Column("time%", report_share("time_utilisation")),

@@ -138,6 +138,7 @@ def is_synthesis(document):
             value = value.get(name) if isinstance(value, dict) else None
         return isinstance(value, (int, float)) and value > 0
 
-    found = number("area", "total_kge") and number("timing", "clock_ns") and number("forty_nm", "total_mm2")
+    clock = number("timing", "clock_ns") and number("timing", "allowed_ns")
+    found = clock and number("area", "total_kge") and number("forty_nm", "total_mm2")
     powered = not document.get("power") or number("power", "total_w")
     return isinstance(document.get("parameters"), dict) and found and powered

@@ -132,7 +132,8 @@ class ReportTest(unittest.TestCase):
         words = [RAYPOOL, "config", *machine, "--verilog-parameters"]
         lines = subprocess.run(words, capture_output=True, text=True, check=True).stdout.splitlines()
         document = {"schema": "raypool-synth-2", "config": name, "parameters": dict(line.split("=") for line in lines),
-                    "area": {"total_kge": 1000 * mm2}, "forty_nm": {"total_mm2": mm2}, "timing": {"clock_ns": 4},
+                    "area": {"total_kge": 1000 * mm2}, "forty_nm": {"total_mm2": mm2},
+                    "timing": {"clock_ns": 4, "allowed_ns": 3.2},
                     "library": {"name": "osu018"}, "power": {"total_w": power} if power else None}  # fmt: skip
         place = self.folder / "synth" / name
         place.mkdir(parents=True)
@@ -344,12 +345,16 @@ class Figures(ReportTest):
         done = self.run_report(self.folder / "sweeps", self.folder / "synth")
         self.assertIn("2 synthesis reports", done.stdout)
         page = (self.folder / "page/index.html").read_text()
-        tables = {}
+        tables, clocks = {}, 0
         heads = re.findall(r'data-head="([^"]+)"', page)
         for row in re.findall(r'<tr id="point-\d+">(.*?)</tr>', page):
             cells = re.findall(r'<td(?: data-v="([^"]*)")?>(?:<a[^>]*>)?([^<]*)', row)
             found = {head: raw or shown for head, (raw, shown) in zip(heads, cells)}
+            if "–" not in (found["Mrays/s"], found["Mrays/s osu018"]):
+                self.assertAlmostEqual(float(found["Mrays/s osu018"]), 0.3125 * float(found["Mrays/s"]))
+                clocks += 1
             tables.setdefault((found["warps"], found["lanes"], found["units"]), set()).add((found["mm2"], found["W"]))
+        self.assertGreater(clocks, 1)
         self.assertEqual(tables["1", "1", "2"], {("0.4", "0.2")})
         self.assertEqual(tables["2", "4", "1"], {("0.7", "–")})
         self.assertEqual(tables["1", "4", "1"], {("–", "–")})
