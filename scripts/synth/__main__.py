@@ -147,9 +147,9 @@ def parser():
         command.set_defaults(function=function)
         command.add_argument("--config", default="8w8c", help="as in raypool: a name, NwMc, or a JSON file")
         command.add_argument("--set", action="append", metavar="FIELD=VALUE", help="change fields of it, as in raypool")
-        command.add_argument("--liberty", help="cell library instead of the default one")
+        command.add_argument("--liberty", help="Liberty file of other cells; a set-up's name: where it is")
         command.add_argument("--clock", help="ns; default from the library's set-up")
-        command.add_argument("--memories", help="macros (default) or flops")
+        command.add_argument("--memories", help="macros (default), flops, or a folder of macros' Liberty files")
         command.add_argument("--jobs", type=int, default=os.cpu_count() or 2)
         command.add_argument("--out", help="folder for the results")
         if name == "report":

@@ -35,14 +35,16 @@ def rtl_files():
     return sorted(glob.glob(os.path.join(ROOT, "rtl", "*.v")))
 
 
-# The Verilog as it becomes hardware: Booth trees in place of products, and no clock gates
-# (free_running.vh), as cell libraries here have none.
-DEFINES = "-DSYNTHESIS -DNO_CLOCK_GATES"
+def defines(gated):
+    """The Verilog as it becomes hardware: Booth trees in place of products; free_running.vh tells what clock gates
+    change.
+    """
+    return "-DSYNTHESIS" if gated else "-DSYNTHESIS -DNO_CLOCK_GATES"
 
 
-def read_rtl():
-    """Yosys: reads all of rtl/."""
-    return f"read_verilog {DEFINES} -I{ROOT}/rtl {' '.join(rtl_files())}"
+def read_rtl(gated):
+    """Yosys: reads all of rtl/, for cells with clock gates or without."""
+    return f"read_verilog {defines(gated)} -I{ROOT}/rtl {' '.join(rtl_files())}"
 
 
 def rtl_texts():
@@ -86,13 +88,13 @@ def with_fields(name, fields, folder):
     return path
 
 
-def tree(parameters, folder, top="compute_unit"):
+def tree(parameters, folder, top="compute_unit", gated=False):
     """All kinds of module from `top` down, by identity; that of the top is its name."""
     os.makedirs(folder, exist_ok=True)
     script, result = os.path.join(folder, "elaborate.ys"), os.path.join(folder, "elaborate.json")
     chosen = " ".join(f"-chparam {n} {v}" for n, v in parameters.items())
     with open(script, "w", encoding="utf-8") as file:
-        file.write(f"{read_rtl()}\nhierarchy -check -top {top} {chosen}\n" f"delete */p:*\nwrite_json {result}\n")
+        file.write(f"{read_rtl(gated)}\nhierarchy -check -top {top} {chosen}\n" f"delete */p:*\nwrite_json {result}\n")
     run([need("yosys", "yosys"), "-q", script], os.path.join(folder, "elaborate.log"))
     with open(result, encoding="utf-8") as file:
         modules = json.load(file)["modules"]

@@ -1,10 +1,6 @@
 """Buffers the nets that ABC cannot see whole: those that cross a block's border, and those that a flip-flop drives."""
 from collections import defaultdict
 
-# pF that a driver may see directly, and that a buffer may drive. A net within the first is left alone.
-DIRECT_PF = 0.06
-CLUSTER_PF = 0.12
-
 
 class Sinks:
     """What hangs on the nets of one module."""
@@ -57,10 +53,10 @@ def buffer_tree(module, library, sinks, net):
     entry, output = cell.inputs()[0].name, cell.outputs()[0].name
     entry_pf = library.pin_pf(library.driver, entry)
     added = 0
-    while sum(pf for pf, _ in sinks) > DIRECT_PF and len(sinks) > 1:
+    while sum(pf for pf, _ in sinks) > library.loads_pf["direct"] and len(sinks) > 1:
         clusters, current, load = [], [], 0.0
         for sink in sorted(sinks, key=lambda s: str(s[1])):
-            if current and load + sink[0] > CLUSTER_PF:
+            if current and load + sink[0] > library.loads_pf["cluster"]:
                 clusters.append(current)
                 current, load = [], 0.0
             current.append(sink)

@@ -1,19 +1,19 @@
 """From a configuration to a timed netlist: elaborate, map, time, map the blocks on failing paths for speed,
 time again.
 """
+import dataclasses
 import fcntl
 import hashlib
 import json
 import os
 from dataclasses import dataclass, field
 
-from . import elaborate, fanout, mapping, timing
+from . import elaborate, fanout, macros, mapping, timing
 from .errors import SynthError, progress
-from .library import ROOT, Library
+from .library import BUILD, ROOT, Library
 from .memories import MemoryModel
 from .netlist import Netlist
 
-BUILD = os.path.join(ROOT, os.environ.get("BUILD", "build"), "synth")
 # Rounds of mapping for speed what lies on failing paths.
 CLOSURE_ROUNDS = 4
 # Failing end points whose paths are looked at in a round.
@@ -69,7 +69,7 @@ def label(options, library):
     parts = (
         [name]
         + ([library.name] if library.name != "osu018" else [])
-        + (["flops"] if options.memories == "flops" else [])
+        + ([os.path.basename(options.memories.rstrip("/"))] if options.memories != "macros" else [])
     )
     if options.clock_ns is not None:
         parts.append(f"{options.clock_ns:g}ns")
@@ -78,14 +78,15 @@ def label(options, library):
 
 def open_design(options):
     """Checks the input; nothing is synthesised yet."""
-    if options.memories not in ("macros", "flops"):
-        raise SynthError(f"MEMORIES={options.memories}: macros or flops")
+    if options.memories not in ("macros", "flops") and not os.path.isdir(options.memories):
+        raise SynthError(f"MEMORIES={options.memories}: macros, flops, or a folder with Liberty files of memory macros")
     library = Library(options.liberty)
     parameters = elaborate.configuration(options.config)
     folder = options.out or os.path.join(BUILD, label(options, library))
     os.makedirs(folder, exist_ok=True)
     lock(folder)
-    return Design(options, library, parameters, folder)
+    listed = macros.read(options.memories) if os.path.isdir(options.memories) else []
+    return Design(options, library, parameters, folder, memory=MemoryModel(library, listed))
 
 
 def lock(folder):
@@ -107,6 +108,7 @@ def digest(design):
     """Everything a report depends on."""
     sources = dict(elaborate.rtl_texts())
     here = os.path.dirname(os.path.abspath(__file__))
+    # Of libraries' set-ups that of this one, in the library's digest.
     for folder in (here, os.path.join(ROOT, "constraints")):
         for name in sorted(os.listdir(folder)):
             if name.endswith((".py", ".json", ".sdc")):
@@ -120,6 +122,7 @@ def digest(design):
         timing.version(),
         str(design.options.clock_ns),
         design.options.memories,
+        [dataclasses.astuple(macro) for macro in design.memory.listed],
     ]
     return hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()[:16]
 
@@ -132,8 +135,7 @@ def prepare(design):
     # A library that says nothing else gets the default library's clock, counted in its own FO4.
     default = 40.0 * design.fo4_ns
     design.clock_ns = design.options.clock_ns or design.library.setup.get("clock_ns") or round(default, 3)
-    design.kinds = elaborate.tree(design.parameters, work)
-    design.memory = MemoryModel(design.library)
+    design.kinds = elaborate.tree(design.parameters, work, gated=bool(design.library.clock_gate))
     return work
 
 

@@ -36,15 +36,9 @@ def _tokens(text):
         yield token[1:-1] if token.startswith('"') else token
 
 
-def parse(path):
-    """The library group of a Liberty file."""
-    try:
-        with open(path, encoding="utf-8", errors="replace") as file:
-            tokens = list(_tokens(file.read()))
-    except OSError as error:
-        raise SynthError(
-            f"{path}: the Liberty file cannot be read ({error.strerror}); LIBERTY=path names another one"
-        ) from error
+def parse(text, path):
+    """The library group in the text of a Liberty file; its path is for messages."""
+    tokens = list(_tokens(text))
     root = Group("file", [])
     stack, i, end = [root], 0, len(tokens)
     while i < end:
@@ -58,7 +52,8 @@ def parse(path):
             i += 1
         elif i + 1 < end and tokens[i + 1] == ":":
             value, i = [], i + 2
-            while i < end and tokens[i] not in (";", "}"):
+            # Some files leave out the semicolon: what follows begins with a name and a colon or a parenthesis.
+            while i < end and tokens[i] not in (";", "}") and not (value and tokens[i + 1 : i + 2] in ([":"], ["("])):
                 value.append(tokens[i])
                 i += 1
             stack[-1].attributes[token] = " ".join(value)
@@ -91,6 +86,7 @@ class Pin:
     capacitance: float  # in the library's unit
     function: str
     clock: bool
+    gate: str  # of a clock gate: "clock", "enable", "test" or "output"
 
 
 @dataclass
@@ -99,7 +95,7 @@ class Cell:
     area: float
     leakage: float
     pins: dict
-    kind: str  # "gate", "flop", "latch", "other" (no function)
+    kind: str  # "gate", "flop", "latch", "clock_gate", "other" (no function)
     sequential: Group  # the ff or latch group, or None
 
     def inputs(self):
@@ -107,6 +103,19 @@ class Cell:
 
     def outputs(self):
         return [p for p in self.pins.values() if p.direction == "output"]
+
+    def shows_state(self, pin):
+        """Whether an output of a flip-flop is its state; else it is the inverse."""
+        return self.pins[pin].function.strip("() ") == self.sequential.arguments[0]
+
+
+# What Liberty calls the pins of a clock gate.
+GATE_PINS = [
+    ("clock", "clock_gate_clock_pin"),
+    ("enable", "clock_gate_enable_pin"),
+    ("test", "clock_gate_test_pin"),
+    ("output", "clock_gate_out_pin"),
+]
 
 
 def cells(library):
@@ -117,16 +126,20 @@ def cells(library):
         for pin in group.all("pin"):
             name = pin.arguments[0]
             capacitance = pin.number("capacitance")
+            gate = next((role for role, mark in GATE_PINS if pin.attributes.get(mark) == "true"), "")
             pins[name] = Pin(
                 name,
                 pin.attributes.get("direction", "input"),
                 capacitance,
                 pin.attributes.get("function", ""),
-                pin.attributes.get("clock", "false") == "true",
+                pin.attributes.get("clock", "false") == "true" or gate == "clock",
+                gate,
             )
         sequential = (group.all("ff") or group.all("latch") or [None])[0]
         kind = "gate"
-        if group.all("ff"):
+        if group.attributes.get("clock_gating_integrated_cell", "").startswith("latch_posedge"):
+            kind = "clock_gate"
+        elif group.all("ff"):
             kind = "flop"
         elif group.all("latch") or group.all("statetable"):
             kind = "latch"

@@ -8,9 +8,10 @@ import os
 import re
 import subprocess
 
-from .elaborate import DEFINES, read_rtl, rtl_texts
+from . import clock_gates
+from .elaborate import defines, read_rtl, rtl_texts
 from .errors import SynthError, need, run, progress
-from .library import ROOT
+from .library import ROOT, keep
 
 # ABC sees neither clock-to-output nor set-up time: it gets this share of the period.
 LOGIC_SHARE = 0.7
@@ -22,8 +23,6 @@ FAST_SHARE = 0.4
 ACCEPTED_SHARE = 0.8
 # The limit that `map` gets in its own units, in targets.
 RELAXED = 2.15
-# What a block drives and is driven by is not known while it is mapped alone.
-OUTPUT_LOAD_FF = 30
 
 
 def versions():
@@ -43,10 +42,20 @@ ABC_SCRIPTS = {
     "levels": "+strash;dch;if,-g;strash;dch;map,-B,0.9,-D,{d};" + _SIZING,
 }
 
-# Efforts: the first try, and what a block on a failing path gets then, one more each time. Ways in this order, until
-# one is fast enough (of the last effort all, and the fastest is taken), and the share they aim at.
-EFFORTS = [(["area", "balance", "speed"], LOGIC_SHARE), (["speed"], LOGIC_SHARE), (["speed", "levels"], FAST_SHARE)]
-LAST_EFFORT = len(EFFORTS) - 1
+LAST_EFFORT = 2
+
+
+def efforts_of(library):
+    """The first try, and what a block on a failing path gets then, one more each time. Ways in this order, until one is
+    fast enough (of the last effort all, and the fastest is taken), and the share they aim at. The second is the
+    set-up's: in most libraries area won back for a shorter target is both smaller and faster than speed alone.
+    """
+    again = library.setup.get("again", {"way": "balance", "share": 0.5})
+    return [
+        (["area", "balance", "speed"], LOGIC_SHARE),
+        ([again["way"]], again["share"]),
+        (["speed", "levels"], FAST_SHARE),
+    ]
 
 
 def constant(bits):
@@ -62,8 +71,21 @@ class Mapper:
         self.jobs = jobs
         self.cells = library.usable_file(os.path.join(folder, "libraries"))
         self.constraints = self.cells.removesuffix(".lib") + ".constr"
+        self.output_load = f"{1000 * library.loads_pf['output']:.4g}"
+        self.gated = bool(library.clock_gate)
+        self.efforts = efforts_of(library)
+        self.gating = self.gating_script()
         self.texts = rtl_texts()
         self.version = versions()["yosys"]
+
+    def gating_script(self):
+        """Yosys: clock gates into a kind, one for each enable; nothing where the library has none."""
+        text = clock_gates.map_text(self.library)
+        if not text:
+            return ""
+        path = keep(self.cells.removesuffix(".lib") + f"-gates{hashlib.sha256(text.encode()).hexdigest()[:8]}.v", text)
+        merge = f"opt_expr\nopt_merge\nopt_merge -share_all t:{self.library.clock_gate}\nopt_clean"
+        return f"techmap -map {path}\n{merge}\n"
 
     def included(self, text):
         """The headers that a text includes, those of the headers too."""
@@ -80,7 +102,7 @@ class Mapper:
     def prepare_script(self, kind, result):
         """Yosys: one kind down to generic gates and library flip-flops. Its children stay blocks."""
         chosen = " ".join(f"-chparam {n} {constant(v)}" for n, v in sorted(kind.parameters.items()))
-        return f"""{read_rtl()}
+        return f"""{read_rtl(self.gated)}
 hierarchy -check -top {kind.base} {chosen}
 select -set kids * A:top %d
 blackbox @kids
@@ -93,7 +115,7 @@ synth -run coarse:fine -noabc
 opt -fast -full
 memory_map
 opt -undriven -fine
-techmap
+{self.gating}techmap
 opt -fast
 select -assert-none t:$_DLATCH_* t:$_DLATCHSR_*
 dfflibmap -liberty {self.cells}
@@ -117,25 +139,25 @@ write_json {result}
         """All that decides the result. The text of a module and what it includes;
         its children only by their interface.
         """
-        scripts = self.prepare_script(kind, "") + "".join(self.map_script(w, "", "") for w in EFFORTS[effort][0])
+        scripts = self.prepare_script(kind, "") + "".join(self.map_script(w, "", "") for w in self.efforts[effort][0])
         # Neither where the project lies nor which other files it has.
         scripts = (
             scripts.split("\n", 1)[1]
             .replace(ROOT, "")
             .replace(self.constraints.replace(ROOT, ""), "/abc.constr")
-            .replace(self.cells.replace(ROOT, ""), "")
+            .replace(self.cells.replace(ROOT, "").removesuffix(".lib"), "")
         )
         source = self.texts[f"rtl/{kind.base}.v"]
         parts = [
             self.version,
             self.library.digest,
-            DEFINES,
+            defines(self.gated),
             scripts,
             source,
             json.dumps(self.included(source), sort_keys=True),
-            str(OUTPUT_LOAD_FF),
+            self.output_load,
             str(ACCEPTED_SHARE),
-            str(EFFORTS[effort][1]),
+            str(self.efforts[effort][1]),
             json.dumps(sorted(kind.children.items())),
             json.dumps(sorted(kind.parameters.items())),
         ]
@@ -162,9 +184,9 @@ write_json {result}
         if rtl_texts() != self.texts:
             raise SynthError("rtl/ changed while it was being mapped; run it again")
         best = None
-        for way in EFFORTS[effort][0]:
+        for way in self.efforts[effort][0]:
             result = f"{stem}.{way}"
-            self.yosys(self.map_script(way, prepared, result, EFFORTS[effort][1]), stem)
+            self.yosys(self.map_script(way, prepared, result, self.efforts[effort][1]), stem)
             with open(stem + ".yosys", encoding="utf-8", errors="replace") as file:
                 delays = re.findall(r"Delay = *([\d.]+) ps", file.read())
             delay = float(delays[-1]) if delays else 0.0
@@ -201,7 +223,7 @@ write_json {result}
         efforts = efforts or {}
         new = f"{self.constraints}.{os.getpid()}"
         with open(new, "w", encoding="utf-8") as file:
-            file.write(f"set_driving_cell {self.library.driver}\nset_load {OUTPUT_LOAD_FF} [all_outputs]\n")
+            file.write(f"set_driving_cell {self.library.driver}\nset_load {self.output_load} [all_outputs]\n")
         os.rename(new, self.constraints)
         missing = [k for k in kinds if self.kept(k, efforts.get(k.identity, 0)) is None]
         if missing:

@@ -6,6 +6,7 @@ import math
 import os
 from dataclasses import dataclass
 
+from . import macros
 from .library import ROOT
 
 PORT_KINDS = {"ram_1rw": "1rw", "ram_1r1w": "1r1w", "ram_2r1w": "2r1w"}
@@ -22,12 +23,15 @@ class Price:
 
 
 class MemoryModel:
-    """Prices are those of a 45 nm macro; another library pays as many NAND2 gates for a bit."""
+    """Prices are those of a 45 nm macro, another library pays as many NAND2 gates for a bit; but where a listed macro
+    fits (of one port), it has its own area and times.
+    """
 
-    def __init__(self, library):
+    def __init__(self, library, listed=()):
         with open(os.path.join(ROOT, "constraints", "memories.json"), encoding="utf-8") as file:
             self.data = json.load(file)
         self.library = library
+        self.listed = listed
         self.scale = library.nand2_area / self.data["reference_nand2_um2"]
 
     def price_at_reference(self, kind):
@@ -37,12 +41,22 @@ class MemoryModel:
         small = 1 + self.data["periphery"] / math.sqrt(bits)
         return bits, bits * entry["um2_a_bit"] * small, bits * entry["low"], bits * entry["high"]
 
+    def macro(self, kind):
+        """The listed macro that a memory is made of, or None."""
+        return macros.fitting(self.listed, kind.value("WIDTH"), kind.value("DEPTH")) if kind.base == "ram_1rw" else None
+
     def price(self, kind):
         bits, nominal, low, high = self.price_at_reference(kind)
+        macro = self.macro(kind)
+        if macro:
+            return Price(bits, macro.area, macro.area, macro.area)
         return Price(bits, nominal * self.scale, low * self.scale, high * self.scale)
 
     def access_ns(self, kind, fo4_ns):
         """Clock to output."""
+        macro = self.macro(kind)
+        if macro:
+            return macro.access_ns
         model = self.data["access_fo4"]
         return fo4_ns * (
             model["fixed"]
@@ -50,8 +64,9 @@ class MemoryModel:
             + model["a_doubling_of_width"] * math.log2(max(2, kind.value("WIDTH")))
         )
 
-    def setup_ns(self, fo4_ns):
-        return fo4_ns * self.data["setup_fo4"]
+    def setup_ns(self, kind, fo4_ns):
+        macro = self.macro(kind)
+        return macro.setup_ns if macro else fo4_ns * self.data["setup_fo4"]
 
     def energy_pj(self, kind):
         """Of one access, at the reference node."""
@@ -88,7 +103,7 @@ class MemoryModel:
             file.write("}\n")
 
     def _cell(self, file, kind, fo4_ns, pin_pf, slope):
-        access, setup = self.access_ns(kind, fo4_ns), self.setup_ns(fo4_ns)
+        access, setup = self.access_ns(kind, fo4_ns), self.setup_ns(kind, fo4_ns)
         file.write(f"  cell({kind.name}) {{ area : {self.price(kind).nominal:.1f}; interface_timing : true;\n")
         for name, (direction, width) in kind.ports.items():
             head = f"pin({name}) {{" if width == 1 else f"bus({name}) {{ bus_type : bus{width};"

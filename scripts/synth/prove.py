@@ -8,8 +8,8 @@ import os
 import re
 import subprocess
 
-from . import mapping
-from .elaborate import DEFINES, read_rtl, rtl_texts
+from . import clock_gates, mapping
+from .elaborate import defines, read_rtl, rtl_texts
 from .errors import need, run, progress
 
 SECONDS = 120
@@ -52,12 +52,29 @@ def gate_module(design, module):
                     outputs.append(f"  assign {text(net)} = {bit};")
     taken = {p[0] for p in module.ports}
     wires = [n for n in own.values() if n.split("[")[0] not in taken]
-    gates = [
-        f"  {cell} {label} ({', '.join(f'.{p}({text(n)})' for p, n in pins.items())});"
-        for label, (cell, pins) in module.gates.items()
-    ]
+    gates = gate_lines(design.library, module, text)
     declared = [f"  wire {', '.join(wires[i:i + 12])};" for i in range(0, len(wires), 12)]
     return "\n".join([f"module gate ({', '.join(ports)});", *lines, *declared, *outputs, *gates, "endmodule", ""])
+
+
+def gate_lines(library, module, text):
+    """The cells of a block; a register behind a clock gate as one that keeps its value by a multiplexer."""
+    behind = clock_gates.enables(library, module)
+    lines = []
+    for label, (name, pins) in module.gates.items():
+        cell = library.cells[name]
+        if cell.kind == "clock_gate":
+            continue
+        words = {p: text(n) for p, n in pins.items()}
+        if cell.kind == "flop" and pins[clock_gates.flop_clock(cell)] in behind:
+            clock, enable = behind[pins[clock_gates.flop_clock(cell)]]
+            words[clock_gates.flop_clock(cell)] = text(clock)
+            output = next(p.name for p in cell.outputs() if p.name in pins)
+            state = words[output] if cell.shows_state(output) else f"~{words[output]}"
+            data = cell.sequential.attributes["next_state"].strip("() ")
+            words[data] = f"{text(enable)} ? {words[data]} : {state}"
+        lines.append(f"  {name} {label} ({', '.join(f'.{p}({w})' for p, w in words.items())});")
+    return lines
 
 
 def proof_module(design, module):
@@ -95,11 +112,12 @@ def prove_one(design, identity, folder, cells):
     """
     module = design.netlist.modules[identity]
     kind = module.kind
+    gated = bool(design.library.clock_gate)
     stem = os.path.join(folder, kind.name)
     text = gate_module(design, module)
     source = rtl_texts()[f"rtl/{kind.base}.v"]
     chosen = " ".join(f"-chparam {n} {mapping.constant(v)}" for n, v in sorted(kind.parameters.items()))
-    script = f"""{read_rtl()}
+    script = f"""{read_rtl(gated)}
 hierarchy -check -top {kind.base} {chosen}
 select -set kids * A:top %d
 blackbox @kids
@@ -139,7 +157,7 @@ write_aiger -zinit {stem}.aig
             [
                 source,
                 text,
-                DEFINES,
+                defines(gated),
                 steps,
                 ABC,
                 proof_module(design, module),

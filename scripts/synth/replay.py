@@ -4,7 +4,7 @@ import os
 import re
 import subprocess
 
-from . import elaborate
+from . import clock_gates, elaborate
 from .errors import SynthError, need, run, say
 from .function import truth
 from .library import ROOT
@@ -13,6 +13,8 @@ SCENE = ["sim", "cornell", "--size", "8x8", "--depth", "2"]
 PROGRAMS = 20
 # What joins two nets and is no cell of the library, as the first two kinds of gate.
 BUFFER, INVERTER = 0, 1
+# Stands for the clock gate before a register: (data, enable, state) to what the register holds next.
+ENABLED = (("data", "enable", "state"), 0b10111000, False)
 # The ports of a memory that are not 0 when it is accessed; one read of two words is two accesses.
 ACCESSES = {
     "ram_1rw": ["enable_i"],
@@ -53,7 +55,9 @@ def tables(design, folder):
     found = {}
     for cell in used:
         for pin in cell.outputs():
-            if cell.kind == "flop":
+            if cell.kind == "clock_gate":
+                found[cell.name, pin.name] = ENABLED
+            elif cell.kind == "flop":
                 found[cell.name, pin.name] = flop_table(cell)
             else:
                 inputs = [p.name for p in cell.inputs()]
@@ -73,16 +77,29 @@ def tables(design, folder):
 
 
 def flop_table(cell):
-    """Flip-flops have a clock and data alone; others are not used."""
+    """Flip-flops have a clock and data, and some a clear or preset that is never active; others are not used."""
     state = cell.sequential
-    clock = state.attributes["clocked_on"]
-    if "clear" in state.attributes or "preset" in state.attributes or "!" in clock or "'" in clock:
+    clock = clock_gates.flop_clock(cell)
+    if "!" in clock or "'" in clock:
         raise SynthError(
-            f"the netlist uses {cell.name}, a flip-flop with clear, preset or a falling clock, which the flow does not "
-            "simulate"
+            f"the netlist uses {cell.name}, a flip-flop with a falling clock, which the flow does not simulate"
         )
-    inputs = [p.name for p in cell.inputs() if p.name != clock.strip("() ")]
+    inputs = [p.name for p in cell.inputs() if p.name != clock]
     return inputs, truth(state.attributes["next_state"], inputs), True
+
+
+def check_never_forced(cell, pins):
+    """A clear or preset is connected to a constant that leaves the register alone."""
+    for word in ("clear", "preset"):
+        function = cell.sequential.attributes.get(word)
+        if not function:
+            continue
+        names = [p.name for p in cell.inputs() if p.name in re.findall(r"\w+", function)]
+        constants = [pins[n] for n in names]
+        if any(not isinstance(c, str) for c in constants) or (
+            truth(function, names) >> sum(int(c) << i for i, c in enumerate(constants)) & 1
+        ):
+            raise SynthError(f"the netlist uses the {word} of {cell.name}, which the flow does not simulate")
 
 
 def evaluate(cells, own, folder):
@@ -117,6 +134,7 @@ def flatten(netlist, found):
     nets, output's net), blocks as (path, first gate, last), memories as (path, kind, {port: nets}), what else joins
     nets as (BUFFER or INVERTER, source, sink), the top's nets).
     """
+    library = netlist.library
     gates, blocks, memories, joins = [], [], [], []
     used = 2
 
@@ -134,16 +152,26 @@ def flatten(netlist, found):
                 inside[net] = used
                 used += 1
         first = len(gates)
+        behind = clock_gates.enables(library, module)
         for cell, pins in module.gates.values():
-            known = netlist.library.cells[cell]
+            known = library.cells[cell]
             for output in known.outputs():
-                if output.name not in pins:
+                if output.name not in pins or known.kind == "clock_gate":
                     continue
                 sink = inside[pins[output.name]]
-                if known.kind == "flop" and output.function.strip("() ") != known.sequential.arguments[0]:
-                    joins.append((INVERTER, used, sink))
-                    sink, used = used, used + 1
-                gates.append((cell, output.name, [inside[pins[p]] for p in found[cell, output.name][0]], sink))
+                sources = {p: inside[pins[p]] for p in found[cell, output.name][0]}
+                if known.kind == "flop":
+                    check_never_forced(known, pins)
+                    if not known.shows_state(output.name):
+                        joins.append((INVERTER, used, sink))
+                        sink, used = used, used + 1
+                    gate = behind.get(pins[clock_gates.flop_clock(known)])
+                    if gate:
+                        data = known.sequential.attributes["next_state"].strip("() ")
+                        enabled = [sources[data], inside[gate[1]], sink]
+                        sources[data], used = used, used + 1
+                        gates.append((library.clock_gate, library.gate_output, enabled, sources[data]))
+                gates.append((cell, output.name, list(sources.values()), sink))
         blocks.append(("/".join(path), first, len(gates)))
         for label, (child, ports) in module.blocks.items():
             nets = {p: [inside[n] for n in bits] for p, bits in ports.items()}

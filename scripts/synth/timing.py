@@ -53,7 +53,7 @@ def measure_fo4(library, folder):
             + "\nendmodule\n"
         )
     text = run_sta(
-        f"""read_liberty {library.path}
+        f"""read_liberty {library.whole_file()}
 read_verilog {netlist}
 link_design fo4
 create_clock -name virtual -period 100
@@ -78,7 +78,7 @@ class Endpoint:
 
 def set_up(netlist_path, library, macros, clock_ns):
     macro = f"read_liberty {macros}\n" if macros else ""
-    return f"""read_liberty {library.path}
+    return f"""read_liberty {library.whole_file()}
 {macro}read_verilog {netlist_path}
 link_design compute_unit
 set raypool_clock_ns {clock_ns}

@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
 """The synthesis flow on small blocks: what it refuses, what it measures, what it proves. RAYPOOL names the program."""
 import ctypes
+import fnmatch
+import gzip
 import json
 import os
 import random
@@ -9,20 +11,47 @@ import subprocess
 import sys
 import tempfile
 import unittest
+from collections import Counter
+from unittest import mock
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 sys.path.insert(0, os.path.join(ROOT, "scripts"))
 
-from synth import elaborate, flow, function, library, mapping, netlist, prove, replay, report, timing  # noqa: E402
+from synth import clock_gates, elaborate, flow, function, library, macros, mapping, netlist  # noqa: E402
+from synth import prove, replay, report, timing  # noqa: E402
 from synth.errors import SynthError  # noqa: E402
 from synth.memories import MemoryModel  # noqa: E402
 
+# A clock gate as cell libraries have them, for one that has none.
+CLOCK_GATE = """cell (ICG) {
+  area : 112; clock_gating_integrated_cell : "latch_posedge_precontrol";
+  statetable ("CK E", "held") { table : "L L : - : L, L H : - : H, H - : - : N"; }
+  pin (held) { direction : internal; internal_node : "held"; }
+  pin (CK) { direction : input; clock_gate_clock_pin : true; capacitance : 0.02; }
+  pin (E) { direction : input; clock_gate_enable_pin : true; capacitance : 0.01; }
+  pin (SE) { direction : input; clock_gate_test_pin : true; capacitance : 0.01; }
+  pin (GCK) { direction : output; clock_gate_out_pin : true; state_function : "CK & held"; }
+}
+"""
+# One port; the semicolon after `when` is missing in files that are in use.
+MACRO = """library (of_a_memory) { time_unit : "1ns"; cell (sram_64x20) {
+  area : 4000; memory () { type : ram; address_width : 6; word_width : 20; }
+  pin (CLK) { direction : input; clock : true; }
+  bus (A) { direction : input; timing () { timing_type : setup_rising; related_pin : "CLK"; when : "(E)"
+    rise_constraint (t) { values ("0.1, 0.2, 0.3", "0.2, 0.35, 0.4", "0.5, 0.6, 0.7"); } } }
+  bus (TEST) { direction : input; timing () { timing_type : setup_rising; related_pin : "CLK_TEST";
+    rise_constraint (t) { values ("9"); } } }
+  bus (Q) { direction : output; timing () { related_pin : "CLK"; timing_type : rising_edge;
+    cell_rise (t) { values ("1.5"); } cell_fall (t) { values ("1.25"); } } }
+} }
+"""
 
-def small_design(folder, top, parameters):
+
+def small_design(folder, top, parameters, lib=None):
     """One block mapped alone, as a design."""
-    lib = library.Library()
+    lib = lib or library.Library()
     design = flow.Design(flow.Options(config=top), lib, {}, folder, 4.0, 0.1)
-    design.kinds = elaborate.tree(parameters, folder, top)
+    design.kinds = elaborate.tree(parameters, folder, top, gated=bool(lib.clock_gate))
     design.memory = MemoryModel(lib)
     mapper = mapping.Mapper(lib, folder, 4.0, 2)
     paths = mapper.map_all([k for k in design.kinds.values() if not k.memory])
@@ -34,6 +63,24 @@ class Synthesis(unittest.TestCase):
     def setUp(self):
         self.folder = tempfile.mkdtemp()
         self.addCleanup(subprocess.run, ["rm", "-rf", self.folder], check=False)
+
+    def written(self, name, text):
+        path = os.path.join(self.folder, name)
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(text)
+        return path
+
+    def gated_library(self):
+        """The default library with a clock gate, packed, by a set-up of its own."""
+        known = library.setups()
+        text = library.Library().text.replace("(osu018_stdcells)", "(with_a_gate)", 1)
+        place = text.rindex("}")
+        path = os.path.join(self.folder, "gated.lib.gz")
+        with gzip.open(path, "wt") as file:
+            file.write(text[:place] + CLOCK_GATE + text[place:])
+        setup = {**known[library.DEFAULT], "matches": "with_a_gate", "clock_gate": "ICG"}
+        with mock.patch.object(library, "setups", lambda: {**known, "gated": setup}):
+            return library.Library(path)
 
     def command(self, *arguments):
         done = subprocess.run(
@@ -49,8 +96,13 @@ class Synthesis(unittest.TestCase):
         run = os.path.join(self.folder, "run.json")
         with open(run, "w", encoding="utf-8") as file:
             json.dump({"mrays_per_second": 1.0, "config": "4w4c"}, file)
+        self.written("run.json.gz", "not packed")
         for arguments, word in (
-            (["report", "--liberty", "/no/such.lib"], "Liberty"),
+            (["report", "--liberty", "/no/such.lib"], "no such Liberty file; LIBERTY=NAME says where"),
+            (["report", "--liberty", "sg13g2"], "IHP-Open-PDK"),
+            (["report", "--liberty", "/dev/null"], "not a Liberty file"),
+            (["report", "--liberty", run + ".gz"], "cannot be read"),
+            (["report", "--memories", self.folder, "--config", "1w1c"], "no Liberty file (*.lib, *.lib.gz) of a"),
             (["report", "--config", "5w5c"], "5"),
             (["report", "--memories", "clay", "--config", "1w1c"], "clay"),
             (["report", "--config", "1w1c", "--against", "/dev/null"], "/dev/null"),
@@ -64,6 +116,23 @@ class Synthesis(unittest.TestCase):
             self.assertEqual(code, 1, text)
             self.assertIn(word, text)
             self.assertNotIn("Traceback", text)
+            self.assertEqual(text.count("\n"), 0, text)
+
+    def test_set_ups_are_complete_and_their_cells_must_be_there(self):
+        known = library.setups()
+        self.assertLessEqual({"osu018", "sky130hd", "sg13g2", "nangate45"}, set(known))
+        fields = {"matches", "where", "nand2", "inverter", "driver", "avoid"}
+        optional = {"liberty", "verilog", "clock_ns", "clock_gate", "loads_ff", "again"}
+        inverter = "library (LIBRARY) { cell (INV) { area : 1; pin (A) { direction : input; capacitance : 1; } "
+        inverter += 'pin (Y) { direction : output; function : "!A"; } } }'
+        for name, setup in known.items():
+            self.assertLessEqual(fields, set(setup), name)
+            self.assertLessEqual(set(setup), fields | optional, name)
+            for cell in (setup["nand2"], setup["inverter"], setup["driver"], setup.get("clock_gate", "")):
+                self.assertFalse([p for p in setup["avoid"] if fnmatch.fnmatchcase(cell, p)], cell)
+            path = self.written("other.lib", inverter.replace("LIBRARY", setup["matches"].replace("*", "x")))
+            with self.assertRaisesRegex(SynthError, f"{name}.json: the library {path} has no cell {setup['nand2']}"):
+                library.Library(path)
 
     def test_two_in_one_folder_take_turns(self):
         opens = (
@@ -131,8 +200,33 @@ class Synthesis(unittest.TestCase):
         self.assertGreater(rows[0]["logic_um2"], 100 * design.library.nand2_area)
         report.check({**{g: {n: 0 for n in names} for g, names in report.NEEDED.items()}, "blocks": rows})
 
-    def simulate(self, design, events):
-        """The values of the mapped counter while it is given events, cycle by cycle."""
+    def test_memory_macros_have_their_own_price_and_times(self):
+        self.written("sram.lib", MACRO)
+        listed = macros.read(self.folder)
+        self.assertEqual(listed, [macros.Macro("sram_64x20", 64, 20, 4000.0, 1.5, 0.35)])
+        lib = library.Library()
+        model = MemoryModel(lib, listed)
+
+        def ram(base, width, depth):
+            return elaborate.Kind("", base, {"WIDTH": f"{width:b}", "DEPTH": f"{depth:b}"}, {}, {})
+
+        fits, other = ram("ram_1rw", 18, 40), MemoryModel(lib)
+        self.assertEqual((model.price(fits).nominal, model.access_ns(fits, 0.1)), (4000.0, 1.5))
+        self.assertEqual(model.setup_ns(fits, 0.1), 0.35)
+        # Too wide, too deep, mostly empty, of two ports.
+        for kind in (ram("ram_1rw", 21, 64), ram("ram_1rw", 20, 65), ram("ram_1rw", 20, 31), ram("ram_1r1w", 20, 64)):
+            self.assertEqual(model.price(kind), other.price(kind))
+            self.assertEqual(model.access_ns(kind, 0.1), other.access_ns(kind, 0.1))
+            self.assertEqual(model.setup_ns(kind, 0.1), other.setup_ns(kind, 0.1))
+
+    def test_a_rate_is_given_at_the_clock_that_the_library_allows(self):
+        made = {"timing": {"mhz": 250.0}, "forty_nm": {"total_mm2": 0.5}, "area": {"total_kge": 400.0}}
+        found = report.efficiency(made, "run", {"mrays_per_second": 60.0, "units": 2})
+        self.assertEqual((found["mrays_per_second"], found["mrays_per_second_allowed"]), (60.0, 15.0))
+        self.assertEqual(found["mrays_per_second_mm2"], 60.0)
+
+    def simulated(self, design, cycles):
+        """What the outputs of a mapped block are while it is given inputs, cycle by cycle; the first port lowest."""
         replay.simulator(design, self.folder, False)
         root = subprocess.run(
             ["verilator", "--getenv", "VERILATOR_ROOT"], capture_output=True, text=True, check=True
@@ -154,14 +248,24 @@ class Synthesis(unittest.TestCase):
         gates = ctypes.CDLL(path)
         gates.netlist_open.restype = ctypes.c_void_p
         unit = ctypes.c_void_p(gates.netlist_open(os.path.join(self.folder, "netlist.bin").encode()))
-        inputs, outputs, values = (ctypes.c_uint32 * 1)(), (ctypes.c_uint32 * 1)(), []
-        for cycle, event in enumerate(events):
-            inputs[0] = (cycle > 0) | event << 1
+        bits = Counter({"input": -1})  # the clock is none
+        for direction, width in design.kinds[design.netlist.top].ports.values():
+            bits[direction] += width
+        inputs, outputs = ((ctypes.c_uint32 * ((bits[way] + 31) // 32))() for way in ("input", "output"))
+        values = []
+        for given in cycles:
+            for place in range(len(inputs)):
+                inputs[place] = (given & (1 << bits["input"]) - 1) >> (32 * place) & 0xFFFFFFFF
             gates.netlist_settle(unit, inputs, outputs)
-            values.append(outputs[0] & 0x7FFF)
+            values.append(sum(word << (32 * place) for place, word in enumerate(outputs)))
             gates.netlist_clock(unit)
         gates.netlist_close(unit, False)
         return values
+
+    def simulate(self, design, events):
+        """The values of the mapped counter while it is given events, cycle by cycle."""
+        cycles = [(cycle > 0) | event << 1 for cycle, event in enumerate(events)]
+        return [outputs & 0x7FFF for outputs in self.simulated(design, cycles)]
 
     def test_a_netlist_is_simulated_as_its_rtl_says_and_a_swapped_cell_shows(self):
         # Few enough bits that every one of them changes, so that no cell can be swapped unseen.
@@ -178,6 +282,29 @@ class Synthesis(unittest.TestCase):
         self.assertEqual(self.simulate(design, events), expected)
         replay.broken(design, 1, "event_counter")
         self.assertNotEqual(self.simulate(design, events), expected)
+
+    def test_clock_gates_load_registers_when_their_enables_say_so(self):
+        lib = self.gated_library()
+        # Its set-up is for this library alone.
+        self.assertEqual((lib.name, lib.clock_gate, library.Library().clock_gate), ("gated", "ICG", None))
+        chosen = {"WARPS": "2", "LANES": "1", "WARP_BITS": "1", "TYPE": "4"}
+        gated = small_design(self.folder, "task_register", chosen, lib)
+        plain = small_design(self.folder, "task_register", chosen)
+        module = gated.netlist.modules["task_register"]
+        self.assertGreater(len(clock_gates.enables(lib, module)), 0)
+        self.assertLess(gated.netlist.own_area("task_register"), plain.netlist.own_area("task_register"))
+        self.assertEqual(set(prove.prove(gated).values()), {"proved"})
+        numbers = random.Random(1)
+        # The first cycle is one of reset, at the lowest bit.
+        cycles = [numbers.getrandbits(384) & ~1 | (cycle > 0) for cycle in range(1000)]
+        values = self.simulated(plain, cycles)
+        self.assertGreater(len(set(values)), 100)
+        self.assertEqual(self.simulated(gated, cycles)[2:], values[2:])
+        # Gates that are always open.
+        for _, pins in [gate for gate in module.gates.values() if gate[0] == "ICG"]:
+            pins["E"] = "1"
+        self.assertNotEqual(self.simulated(gated, cycles)[2:], values[2:])
+        self.assertEqual(set(prove.prove(gated).values()), {"different"})
 
     def test_a_block_is_proved_and_a_swapped_cell_noticed(self):
         design = small_design(self.folder, "fetch_arbiter", {"WARPS": "4", "WARP_BITS": "2"})
