@@ -214,19 +214,31 @@ std::vector<fs::path> configuration_folders() {
   return folders;
 }
 
-/// The defaults with N warps and M lanes, if that is what the name says.
-std::optional<Source> warps_and_lanes(const std::string& name) {
-  static const std::regex kWarpsAndLanes("([0-9]{1,4})w([0-9]{1,4})c");
+/// N warps and M lanes, if that is what the name says, of the defaults (NwMc) or of a file in one of the folders
+/// (best_NwMc: of best.json).
+std::optional<Source> warps_and_lanes(const std::string& name, const std::vector<fs::path>& folders) {
+  static const std::regex kWarpsAndLanes("(?:([A-Za-z][A-Za-z0-9]*)_)?([0-9]{1,4})w([0-9]{1,4})c");
   std::smatch match;
   if (!std::regex_match(name, match, kWarpsAndLanes)) return std::nullopt;
-  return Source{{{"warps", std::stoi(match[1])}, {"lanes", std::stoi(match[2])}}, name, name};
+  Source source{Json::object(), name, name};
+  if (match[1].matched) {
+    const auto file = [&](const fs::path& folder) { return folder / (match[1].str() + ".json"); };
+    const auto folder = std::find_if(folders.begin(), folders.end(),
+                                     [&](const fs::path& each) { return fs::is_regular_file(file(each)); });
+    if (folder == folders.end()) return std::nullopt;
+    source = source_of(file(*folder));
+    source.json["name"] = name;
+  }
+  source.json["warps"] = std::stoi(match[2]);
+  source.json["lanes"] = std::stoi(match[3]);
+  return source;
 }
 
-/// What everyone understands by a name: the project's own file, or NwMc.
+/// What everyone understands by a name: the project's own file, NwMc, or such a file's.
 std::optional<Configuration> built_in(const std::string& name) {
   const fs::path path = shipped_folder() / (name + ".json");
   if (fs::is_regular_file(path)) return made_of(source_of(path));
-  const std::optional<Source> source = warps_and_lanes(name);
+  const std::optional<Source> source = warps_and_lanes(name, {shipped_folder()});
   return source ? std::optional(made_of(*source)) : std::nullopt;
 }
 
@@ -249,12 +261,12 @@ Source find_source(const std::string& name_or_path) {
       const fs::path path = folder / (name_or_path + ".json");
       if (fs::is_regular_file(path, none)) return source_of(path);
     }
-    if (const std::optional<Source> source = warps_and_lanes(name_or_path)) return *source;
+    if (const std::optional<Source> source = warps_and_lanes(name_or_path, configuration_folders())) return *source;
   }
-  throw InputError(
-      fmt::format("no configuration '{}': give the path of a JSON file, the name of a file in configs/, or NwMc for N "
-                  "warps of M lanes",
-                  name_or_path));
+  throw InputError(fmt::format(
+      "no configuration '{}': give the path of a JSON file, the name of a file in configs/, NwMc for N warps "
+      "of M lanes, or best_NwMc",
+      name_or_path));
 }
 
 /// "8w8c+alus.flt.count-2": the name of a machine of which fields have been set, unless they had these values.
