@@ -43,6 +43,7 @@ CYCLES = """set style histogram rowstacked
 set boxwidth 0.8
 set yrange [0:100]
 set key outside right center reverse Left invert
+set xtics rotate by -45
 set multiplot layout 2,1
 set ylabel 'policy thesis, %'
 plot {thesis}
