@@ -137,7 +137,8 @@ module compute_unit #(
     .launch_threads_i(launch_threads_i), .launch_block_i(launch_block_i), .launch_blocks_i(launch_blocks_i),
     .launch_import_i(launch_import_i), .import_start_o(import_start), .import_active_i(import_active),
     .halt_i(fault_valid_o), .start_o(start), .start_pc_o(start_pc), .start_lanes_o(start_lanes), .active_i(active),
-    .launched_o(launched), .place_o(launch_place), .older_o(older), .threads_o(threads), .block_o(block), .blocks_o(blocks),
+    .launched_o(launched), .place_o(launch_place), .older_o(older), .threads_o(threads), .block_o(block),
+    .blocks_o(blocks),
     .kernel_done_o(kernel_done_o), .running_o(busy_o), .waiting_o(waiting_launch));
   assign idle_o = !busy_o && !waiting_launch && !import_active && !exporting && mem_idle && arbiter_idle;
 
@@ -296,7 +297,8 @@ module compute_unit #(
     .instruction_hit_i(instruction_hit), .instruction_miss_i(instruction_miss),
     .data_hit_i(data_hit), .data_miss_i(data_miss), .data_store_i(data_store),
     .ready_i(ready), .grant_i(instance_grant), .waiting_i(waiting), .type_i(wanted_type),
-    .launched_i(launched), .active_i(active), .fetching_i(fetching), .executing_i(executing), .overlapping_i(overlaps & grant),
+    .launched_i(launched), .active_i(active), .fetching_i(fetching), .executing_i(executing),
+    .overlapping_i(overlaps & grant),
     .import_wait_i(import_wait), .export_wait_i(export_wait),
     .select_i(counter_select_i), .value_o(counter_o));
 

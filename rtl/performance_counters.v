@@ -98,8 +98,8 @@ module performance_counters #(
   end
   always @(posedge clk_i)
     states_q <= !(rst_ni && running_i) ? {STATE_COUNTERS*WARPS{1'b0}}
-                : {in_overlap, export_wait_i, import_wait_i, in_ray & ~import_wait_i & ~export_wait_i, in_mem, fetching_i,
-                   launched_i & ~active_i, ~launched_i};
+                : {in_overlap, export_wait_i, import_wait_i, in_ray & ~import_wait_i & ~export_wait_i, in_mem,
+                   fetching_i, launched_i & ~active_i, ~launched_i};
 
   function [WARP_BITS-1:0] warps(input [WARPS-1:0] state);   // that are in it
     integer n;

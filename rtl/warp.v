@@ -146,7 +146,8 @@ module warp #(
     if (FMA != 0) begin : gen_third
       for (l = 0; l < LANES; l = l + 1) begin : gen_lane
         ram_1r1w #(.WIDTH(32), .DEPTH(16)) register_copy (
-          .clk_i(clk_i), .read_i(read), .read_address_i(field_x[3:0] + {2'd0, read_element}), .read_data_o(operand_c_o[l*32 +: 32]),
+          .clk_i(clk_i), .read_i(read), .read_address_i(field_x[3:0] + {2'd0, read_element}),
+          .read_data_o(operand_c_o[l*32 +: 32]),
           .write_i(retire_o && writes_register && mask_o[l]), .write_address_i(written),
           .write_data_i(retire_data_o[l*32 +: 32]));
       end
