@@ -1,7 +1,7 @@
 #!/bin/bash
 # Builds machines that carry every mistake of tb/faults/catalogue.json: scripts/faults.sh FOLDER [MACHINE]...
 # The environment variable RAYPOOL_FAULT selects the mistake (none: 0) of every unit made after it is set. The
-# machines are the small one of the cosim tests, as one unit and as four, and those that the test
+# machines are the small one of the cosim tests, as one unit, with triples and as four units, and those that the test
 # configurations_quick walks. FOLDER gets
 #   rtl/                      the Verilog with the mistakes
 #   NAME/libraypool_unit.so   a machine
@@ -25,7 +25,7 @@ python3 scripts/faults.py tb/faults/catalogue.json rtl "$folder/rtl"
 
 "$raypool" configurations --most 12 --out "$folder/configurations" > /dev/null
 small=$root/tb/mutants/2w2c.json
-machines=("2w2c $small 1" "2w2c-4cu $small 4")
+machines=("2w2c $small 1" "2w2c-triples ${small%.json}_triples.json 1" "2w2c-4cu $small 4")
 while read -r file units; do
   machines+=("${file%.json} $folder/configurations/$file $units")
 done < "$folder/configurations/list"

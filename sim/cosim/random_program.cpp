@@ -327,12 +327,12 @@ class Generator : public ProgramStatements {
 
   // One that other machines have; false if this one has all.
   bool missing_instruction() {
-    for (const InstructionInfo& info : kInstructions) {
-      if (configuration_.has(info.needs)) continue;
-      emit(info.opcode, destination(), source(), source());
-      return true;
-    }
-    return false;
+    std::vector<Opcode> missing;
+    for (const InstructionInfo& info : kInstructions)
+      if (!configuration_.has(info.needs)) missing.push_back(info.opcode);
+    if (missing.empty()) return false;
+    emit(missing[below(size32(missing))], destination(), source(), source());
+    return true;
   }
 
   void jump_outside() {

@@ -387,7 +387,11 @@ void UnitInspection::check_task(uint32_t instance, uint32_t warp, const CycleUni
            (unused(TaskOperand::OperandB) || task.task_operand_b_o.word(lane) == issue.operand_b[lane]) &&
            (unused(TaskOperand::OperandC) || task.task_operand_c_o.word(lane) == issue.operand_c[lane]);
   }
-  if (!same) find("rtl/task_register.v", fmt::format("instance {}: the task is not that of warp {}", instance, warp));
+  if (same) return;
+  // Of a triple the warp works out the element.
+  const bool triple = is_triple(*unpack(instruction.encoding).info);
+  find(triple ? "rtl/task_register.v, rtl/warp.v" : "rtl/task_register.v",
+       fmt::format("instance {}: the task is not that of warp {}", instance, warp));
 }
 
 void UnitInspection::check_ready() {
