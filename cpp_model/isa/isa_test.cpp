@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <fstream>
 #include <random>
 #include <set>
@@ -161,6 +162,76 @@ TEST(Encoding, IsTheOneThatIsaHppDescribes) {
   EXPECT_EQ(assemble_one("pandn p1, p2, p3"),
             0x1000000000000000u | uint64_t{19} << 55 | uint64_t{1} << 46 | uint64_t{3} << 38 | uint64_t{2} << 32);
   EXPECT_EQ(assemble_one("arg r1, 31"), uint64_t{6} << 55 | uint64_t{1} << 46 | 31u);
+}
+
+std::vector<std::string> elements_of(const std::string& triple) {
+  std::vector<std::string> text;
+  for (int e = 0; e < kElements; ++e) text.push_back(disassemble(encode(element(unpack(assemble_one(triple)), e))));
+  return text;
+}
+
+TEST(Triples, ElementsAreTheInstructionsThatIsaMdDescribes) {
+  using Text = std::vector<std::string>;
+  EXPECT_EQ(elements_of("fadd3 r1, r4, r7"), (Text{"fadd r1, r4, r7", "fadd r2, r5, r8", "fadd r3, r6, r9"}));
+  EXPECT_EQ(elements_of("@!p3 fsub3 r14, r15, 1.0"),
+            (Text{"@!p3 fsub r14, r15, 1.0", "@!p3 fsub r15, r0, 1.0", "@!p3 fsub r0, r1, 1.0"}));
+  EXPECT_EQ(elements_of("fmul3 r1, r1, r15"), (Text{"fmul r1, r1, r15", "fmul r2, r2, r0", "fmul r3, r3, r1"}));
+  EXPECT_EQ(elements_of("fmul3s r1, r4, r7"), (Text{"fmul r1, r4, r7", "fmul r2, r4, r8", "fmul r3, r4, r9"}));
+  EXPECT_EQ(elements_of("ffma3 r1, r4, r7, r14"),
+            (Text{"ffma r1, r4, r7, r14", "ffma r2, r5, r8, r15", "ffma r3, r6, r9, r0"}));
+  EXPECT_EQ(elements_of("ffma3s r1, r15, 0.5, r10"),
+            (Text{"ffma r1, r15, 0.5, r10", "ffma r2, r15, 0.5, r11", "ffma r3, r15, 0.5, r12"}));
+  EXPECT_EQ(elements_of("arg3 r13, 4"), (Text{"arg r13, 4", "arg r14, 5", "arg r15, 6"}));
+  EXPECT_EQ(elements_of("ld3 r2, [r2+32]"), (Text{"ld r2, [r2+32]", "ld r3, [r2+36]", "ld r4, [r2+40]"}));
+  EXPECT_EQ(elements_of("rld3 r15, 18"), (Text{"rld r15, 18", "rld r0, 19", "rld r1, 20"}));
+  EXPECT_EQ(elements_of("rst3 8, r14"), (Text{"rst 8, r14", "rst 9, r15", "rst 10, r0"}));
+  EXPECT_EQ(elements_of("rst3 0, 2.5"), (Text{"rst 0, 2.5", "rst 1, 2.5", "rst 2, 2.5"}));
+}
+
+TEST(Triples, OfAnInstructionIsFoundByItsElement) {
+  int found = 0;
+  for (const InstructionInfo& info : kInstructions) {
+    for (const bool one_ra : {false, true}) {
+      const InstructionInfo* triple = find_triple(info, one_ra);
+      if (triple == nullptr) continue;
+      ++found;
+      EXPECT_EQ(triple->mnemonic, std::string(info.mnemonic) + (one_ra ? "3s" : "3"));
+      EXPECT_EQ(has_one_ra(*triple), one_ra);
+      EXPECT_EQ(element(Instruction{triple}, 2).info, &info);
+    }
+  }
+  EXPECT_EQ(found, static_cast<int>(std::size(kInstructions) - kSingles));
+}
+
+/// Whether one of the elements, executed one after the other, reads a register that an earlier one has written.
+bool reads_what_was_written(const Instruction& triple, bool one_ra) {
+  std::array<bool, kRegisters> written{};
+  const bool has_rc = has_operand(*triple.info, Operand::Rc);
+  for (int e = 0; e < 3; ++e) {
+    if (written[(triple.ra + (one_ra ? 0 : e)) % 16]) return true;
+    if (!triple.b_is_immediate && written[(triple.rb + e) % 16]) return true;
+    if (has_rc && written[(triple.x + e) % 16]) return true;
+    written[(triple.rd + e) % 16] = true;
+  }
+  return false;
+}
+
+TEST(Triples, ElementsDependWhenOneReadsWhatAnEarlierOneHasWritten) {
+  int depend = 0, free = 0;
+  for (const char* name : {"fadd3", "fmul3s", "ffma3", "ffma3s"}) {
+    Instruction triple;
+    triple.info = find_instruction(name);
+    const bool one_ra = std::string_view(name).back() == 's';
+    for (uint32_t n = 0; n < 1u << 17; ++n) {
+      triple.rd = n & 15, triple.ra = n >> 4 & 15, triple.rb = n >> 8 & 15, triple.x = n >> 12 & 15;
+      triple.b_is_immediate = n >> 16 != 0;
+      const bool expected = reads_what_was_written(triple, one_ra);
+      ASSERT_EQ(elements_depend(triple), expected) << disassemble(encode(triple));
+      ++(expected ? depend : free);
+    }
+  }
+  EXPECT_GT(depend, 100000);
+  EXPECT_GT(free, 100000);
 }
 
 TEST(Assembler, DisassembledInstructionsAssembleToThemselves) {

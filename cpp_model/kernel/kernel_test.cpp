@@ -29,17 +29,17 @@ using Int = RecordedKernel::Int;
 using Float = RecordedKernel::Float;
 
 template <typename Body>
-Program compiled(const Body& body) {
+Program compiled(const Body& body, const KernelTarget& target = {}) {
   Program program;
-  add_kernel(program, "k", body);
+  add_kernel(program, "k", body, target);
   return program;
 }
 
 /// Assembly text of a kernel, one instruction a line.
 template <typename Body>
-std::string code_of(const Body& body) {
+std::string code_of(const Body& body, const KernelTarget& target = {}) {
   std::string text;
-  for (const uint64_t encoding : compiled(body).code) text += disassemble(encoding) + "\n";
+  for (const uint64_t encoding : compiled(body, target).code) text += disassemble(encoding) + "\n";
   return text;
 }
 
@@ -283,6 +283,122 @@ TEST(KernelLanguage, KernelsOfAProgramHaveDifferentNames) {
   Program program;
   add_kernel(program, "same", [](RecordedKernel&) {});
   EXPECT_THROW(add_kernel(program, "same", [](RecordedKernel&) {}), InputError);
+}
+
+constexpr int kTripleWords = 96;
+const KernelTarget kTriples(false, true), kFusedTriples(true, true);
+
+/// What a kernel leaves in memory, of which it gets random words, arguments and packages.
+template <typename Body>
+std::vector<uint32_t> left_by(const Body& body, const KernelTarget& target) {
+  test::Interpreter machine;
+  machine.memory = Memory(4 * kTripleWords);
+  machine.mode.fused = target.fma;
+  for (uint32_t i = 0; i < kTripleWords; ++i)
+    machine.memory.store(4 * i, as_bits(1.5f + static_cast<float>(i * i % 37)));
+  for (auto& package : machine.input)
+    for (uint32_t i = 0; i < package.size(); ++i) package[i] = as_bits(0.25f + static_cast<float>(i * 7 % 11));
+  machine.arguments.fill(0);
+  machine.run(compiled(body, target), 0);
+  std::vector<uint32_t> left;
+  for (uint32_t i = 0; i < kTripleWords; ++i) left.push_back(machine.memory.load(4 * i));
+  for (const auto& rays : machine.rays)
+    for (const Ray& ray : rays) left.insert(left.end(), ray.begin(), ray.end());
+  return left;
+}
+
+int count_of(const std::string& code, const std::string& what) {
+  int count = 0;
+  for (size_t at = code.find(what); at != std::string::npos; at = code.find(what, at + 1)) ++count;
+  return count;
+}
+
+TEST(KernelTriples, WhatIsDoneToThreeComponentsIsOneInstruction) {
+  const auto body = [](RecordedKernel& k) {
+    const Vector<RecordedKernel> v = vector_word(k, 3), w = vector_argument(k, 4);
+    set_vector_word(k, 0, k.float_word(6) * (v + w));
+  };
+  const std::string code = code_of(body, kTriples);
+  for (const char* triple : {"rld3 ", "arg3 ", "fadd3 ", "fmul3s ", "rst3 "})
+    EXPECT_EQ(count_of(code, triple), 1) << code;
+  EXPECT_EQ(count_of(code, "\n"), 7) << code;  // and rld, exit
+  EXPECT_EQ(count_of(code_of(body), "3 r"), 0);
+  const auto fused = [](RecordedKernel& k) {
+    const Vector<RecordedKernel> v = vector_word(k, 3), w = vector_word(k, 0);
+    const Float f = k.float_word(6);
+    set_vector_word(k, 0, {multiply_add(f, v.x, w.x), multiply_add(f, v.y, w.y), multiply_add(f, v.z, w.z)});
+  };
+  EXPECT_EQ(count_of(code_of(fused, kFusedTriples), "ffma3s "), 1) << code_of(fused, kFusedTriples);
+}
+
+TEST(KernelTriples, OnlyWordsInAQuadwordAreLoadedByOne) {
+  const auto load = [](RecordedKernel& k, int offset) {
+    const Vector<RecordedKernel> v = vector_load(k, k.int_argument(0), offset);
+    set_vector_word(k, 0, v);
+  };
+  EXPECT_EQ(count_of(code_of([&](RecordedKernel& k) { load(k, 16); }, kTriples), "ld3 "), 1);
+  EXPECT_EQ(count_of(code_of([&](RecordedKernel& k) { load(k, 20); }, kTriples), "ld3 "), 0);
+}
+
+TEST(KernelTriples, WhatOrderForbidsStaysThreeInstructions) {
+  // The second word is read from memory that the first has written.
+  const auto body = [](RecordedKernel& k) {
+    const Int base = k.int_argument(0);
+    const Float x = k.load_float(base, 16);
+    k.store(base, 20, x);
+    const Float y = k.load_float(base, 20);
+    k.store(base, 24, y);
+    const Float z = k.load_float(base, 24);
+    k.store(base, 28, z);
+  };
+  EXPECT_EQ(count_of(code_of(body, kTriples), "ld3 "), 0) << code_of(body, kTriples);
+  EXPECT_EQ(left_by(body, kTriples), left_by(body, {}));
+}
+
+// Five triples and the address are all registers. Of each one then becomes free, which are six, but no three in a row.
+TEST(KernelTriples, WithoutRegistersInARowThereAreFewer) {
+  const auto body = [](RecordedKernel& k) {
+    const Int base = k.int_argument(0);
+    std::vector<Vector<RecordedKernel>> vectors;
+    vectors.reserve(6);
+    for (int i = 0; i < 5; ++i) vectors.push_back(vector_load(k, base, 16 * i));
+    for (int i = 0; i < 5; ++i) k.store(base, 256 + 4 * i, vectors[i].x);
+    vectors.push_back(vector_load(k, base, 80));
+    k.store(base, 300, vectors[5].x);
+    for (int i = 0; i < 6; ++i) {
+      k.store(base, 304 + 8 * i, vectors[i].y);
+      k.store(base, 308 + 8 * i, vectors[i].z);
+    }
+  };
+  const std::string code = code_of(body, kTriples);
+  EXPECT_EQ(count_of(code, "ld3 "), 5) << code;
+  EXPECT_EQ(count_of(code, "ld r"), 3) << code;
+  EXPECT_EQ(left_by(body, kTriples), left_by(body, {}));
+}
+
+TEST(KernelTriples, CopiesInALoopKeepTheValueOfTheRoundBefore) {
+  const auto body = [](RecordedKernel& k) {
+    k.ray_in();
+    Vector<RecordedKernel> v = vector_word(k, 0);
+    Vector<RecordedKernel> before = vector_word(k, 3), sum = vector_word(k, 6);
+    Int left = k.thread() & 3;
+    k.while_([&] { return left > 0; },
+             [&] {
+               const Vector<RecordedKernel> current = v;
+               v = v + before;
+               before = current;
+               const Vector<RecordedKernel> loaded = vector_load(k, left << 4, 32), same = loaded;
+               sum = sum + 0.5f * same + current;
+               left -= 1;
+             });
+    set_vector_word(k, 0, v);
+    set_vector_word(k, 3, before);
+    set_vector_word(k, 6, sum);
+    for (int word = 9; word < 12; ++word) k.set_word(word, left);
+    k.ray_out();
+  };
+  EXPECT_GT(count_of(code_of(body, kTriples), "3 "), 0);
+  EXPECT_EQ(left_by(body, kTriples), left_by(body, {}));
 }
 
 TEST(KernelReport, ExtractedKernelIsTheOneCompiledAlone) {

@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "bits.hpp"
 #include "isa/assembler.hpp"
 #include "kernel/kernel.hpp"
@@ -39,6 +41,7 @@ class RandomKernel {
     for (int i = 0; i < 4; ++i) floats.push_back(k_.float_word(i));
     bools.push_back(ints[0] < 4);
     bools.push_back(floats[0] > floats[1]);
+    if (seed_ % 4 >= 2) vectors(random, floats);
     statements(random, ints, floats, bools, 3);
     for (size_t i = 0; i < ints.size(); ++i) k_.set_word(static_cast<int>(i), ints[i]);
     for (size_t i = 0; i < floats.size(); ++i) k_.set_word(static_cast<int>(4 + i), floats[i]);
@@ -54,6 +57,42 @@ class RandomKernel {
 
   const Int& pick(Random& random, const std::vector<Int>& from) { return from[below(random, size32(from))]; }
   const Float& pick(Random& random, const std::vector<Float>& from) { return from[below(random, size32(from))]; }
+
+  // What triples are made of; their components end among the floats.
+  void vectors(Random& random, std::vector<Float>& floats) {
+    Vector<K> v = vector_word(k_, 0), w = vector_word(k_, static_cast<int>(below(random, 19)));
+    const Vector<K> loaded = vector_load(k_, slot_, 16 * below(random, 3));
+    const uint32_t count = 1 + below(random, 4);
+    for (uint32_t n = 0; n < count; ++n) {
+      const Float& scale = pick(random, floats);
+      switch (below(random, 7)) {
+        case 0:
+          v = v + w;
+          break;
+        case 1:
+          v = w - v;
+          break;
+        case 2:
+          v = scale * w;
+          break;
+        case 3:
+          w = v * loaded;
+          break;
+        case 4:
+          w = Vector<K>{multiply_add(scale, v.x, w.x), multiply_add(scale, v.y, w.y), multiply_add(scale, v.z, w.z)};
+          break;
+        case 5:
+          v = Vector<K>{v.y, v.z, v.x};
+          break;
+        default:
+          w = Vector<K>{w.x * 0.5f, w.y * 0.5f, w.z * 0.5f};
+          break;
+      }
+    }
+    set_vector_word(k_, 12, v);
+    floats[0] = v.x, floats[1] = v.y, floats[2] = v.z;
+    floats[3] = dot(v, w);
+  }
 
   // Operands of an operator are computed in statements of their own: C++ leaves the order within an expression open.
   Int int_expression(Random& random, const std::vector<Int>& ints, const std::vector<Float>& floats,
@@ -310,7 +349,23 @@ class RandomKernel {
 struct Outcome {
   int compiled = 0;
   int refused = 0;
+  int triples = 0;  // that the kernels have
 };
+
+Program compiled(uint32_t seed, const KernelTarget& target) {
+  Program program;
+  program.code.assign(seed % 5, 0);  // entries are not always 0
+  add_kernel(
+      program, "random", [&](RecordedKernel& k) { RandomKernel<RecordedKernel>(k, seed).run(); }, target);
+  return program;
+}
+
+int triples_of(const Program& program) {
+  return static_cast<int>(std::count_if(program.code.begin(), program.code.end(), [](uint64_t encoding) {
+    const Instruction op = unpack(encoding);
+    return op.info != nullptr && is_triple(*op.info);
+  }));
+}
 
 template <Subnormals kSubnormals, bool kFused>
 void run_random(NativeThread& thread, uint32_t seed) {
@@ -319,18 +374,19 @@ void run_random(NativeThread& thread, uint32_t seed) {
 }
 
 void compare(uint32_t seed, Outcome& outcome) {
-  const bool fused = seed % 3 == 0;
+  const bool fused = seed % 3 == 0, triples = seed % 4 >= 2;
   Program program;
-  program.code.assign(seed % 5, 0);  // entries are not always 0
   try {
-    add_kernel(
-        program, "random", [&](RecordedKernel& k) { RandomKernel<RecordedKernel>(k, seed).run(); },
-        KernelTarget(fused, false));
+    program = compiled(seed, KernelTarget(fused, triples));
   } catch (const InputError& error) {
     ++outcome.refused;
+    // Registers that suffice without triples suffice with them.
+    ASSERT_THROW(compiled(seed, KernelTarget(fused, false)), InputError) << "seed " << seed << ": " << error.what();
     return;
   }
   ++outcome.compiled;
+  outcome.triples += triples_of(program);
+  ASSERT_TRUE(triples || triples_of(program) == 0) << "seed " << seed;
   ASSERT_EQ(assemble(listing(program), "listing").code, program.code) << "seed " << seed;
 
   test::Interpreter machine;
@@ -382,6 +438,7 @@ TEST(RandomKernel, MachineCodeLeavesWhatTheSourceRunAsCppLeaves) {
   }
   // Large ones may need more registers than there are; but a compiler that gives up easily would show here.
   EXPECT_GT(outcome.compiled, 1350) << outcome.refused << " refused";
+  EXPECT_GT(outcome.triples, 400);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <stdexcept>
+#include <string_view>
 #include <vector>
 
 #include "arith/arith.hpp"
@@ -61,8 +62,11 @@ class Interpreter {
         words_ = input;
       } else {
         uint32_t predicate = 0;
-        for (uint32_t lane = 0; lane < kLanes; ++lane) {
-          if (active(lane) && data(op, lane)) predicate |= 1u << lane;
+        for (int e = 0; e < (is_triple(*op.info) ? 3 : 1); ++e) {
+          const Instruction element = is_triple(*op.info) ? element_of(op, e) : op;
+          for (uint32_t lane = 0; lane < kLanes; ++lane) {
+            if (active(lane) && data(element, lane)) predicate |= 1u << lane;
+          }
         }
         if (writes_predicate(*op.info) && op.rd != 0) predicates_[op.rd] = predicate;
       }
@@ -71,6 +75,22 @@ class Interpreter {
   }
 
  private:
+  static Instruction element_of(const Instruction& triple, int e) {
+    const std::string_view name = triple.info->mnemonic;
+    const bool one_ra = name.back() == 's';
+    const AluType type = triple.info->alu();
+    const auto next = [e](uint8_t number) { return static_cast<uint8_t>((number + e) % 16); };
+    Instruction op = triple;
+    op.info = find_instruction(name.substr(0, name.size() - (one_ra ? 2 : 1)));
+    op.rd = next(triple.rd);
+    if (!one_ra && type != AluType::Mem) op.ra = next(triple.ra);
+    op.rb = next(triple.rb);
+    op.x = type == AluType::Ray ? static_cast<uint8_t>(triple.x + e) : next(triple.x);
+    if (type == AluType::Tid) op.immediate += e;
+    if (type == AluType::Mem) op.immediate += 4 * e;
+    return op;
+  }
+
   bool active(uint32_t lane) const { return (mask_ >> lane & 1) != 0; }
 
   void send(uint32_t lane, bool to_pool) {

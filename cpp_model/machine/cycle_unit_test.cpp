@@ -113,6 +113,52 @@ TEST(CycleUnit, AWarpWithoutStallsIssuesEveryFourCyclesWithAnAluOfDepthOne) {
   EXPECT_EQ(retired[4] - retired[3], 5u);
 }
 
+/// Cycles in which what stands between two instructions without stalls is written back, counted from its issue;
+/// one warp, whose lines are in the instruction cache.
+std::vector<uint64_t> written_back(const std::string& text, uint32_t lanes, bool overlaps, uint32_t flt_depth = 3) {
+  Configuration configuration = make_configuration(1, lanes);
+  configuration.triples = configuration.fma = true;
+  configuration.alus[AluType::Flt].depth = flt_depth;
+  // The loop's first round brings the lines.
+  const std::vector<uint64_t> code =
+      assembled("mov r0, 1024; mov r15, 2; igt p1, r15, 0; @p1 loop 10; isub r15, r15, 1; igt p1, r15, 0; tid r14; " +
+                text + "; tid r14; tid r14; exit");
+  Memory memory = with_program(code);
+  CycleUnit unit(configuration, memory);
+  unit.trace_on();
+  unit.reset(size32(code), kMemoryBytes);
+  TestChip chip(unit, memory);
+  chip.launches.push_back(launch_of(lanes));
+  std::vector<uint64_t> cycles;
+  uint64_t begin = 0;
+  for (int i = 0; i < 600; ++i) {
+    chip.cycle();
+    for (const RetireEvent& event : unit.trace().retired) {
+      if (event.pc == 6) begin = chip.cycles, cycles.clear();
+      if (event.pc == 7) cycles.push_back(chip.cycles - begin);
+      if (event.pc == 8) cycles.push_back(chip.cycles - begin);
+    }
+  }
+  EXPECT_EQ(unit.counter(counter::kFltOverlapped), overlaps ? 4u : 0u) << text;  // 2 of each round
+  return cycles;
+}
+
+// docs/architecture.md, section 3. The last is a `tid` behind it, which takes 4.
+TEST(CycleUnit, ATripleTakesTheCyclesThatArchitectureMdTells) {
+  using Cycles = std::vector<uint64_t>;
+  EXPECT_EQ(written_back("ffma r1, r4, r7, r10", 4, false), (Cycles{6, 10}));
+  EXPECT_EQ(written_back("ffma3 r1, r4, r7, r10", 4, true), (Cycles{6, 8, 10, 14}));
+  EXPECT_EQ(written_back("ffma3 r1, r2, r7, r10", 4, true), (Cycles{6, 8, 10, 14}));
+  EXPECT_EQ(written_back("ffma3 r2, r1, r7, r10", 4, false), (Cycles{6, 12, 18, 22}));
+  EXPECT_EQ(written_back("ffma3 r1, r4, r7, r10", 4, true, 5), (Cycles{8, 10, 12, 16}));
+  EXPECT_EQ(written_back("fmul3s r1, r1, r7", 4, false), (Cycles{6, 12, 18, 22}));
+  EXPECT_EQ(written_back("arg3 r1, 0", 4, false), (Cycles{4, 8, 12, 16}));
+  EXPECT_EQ(written_back("rld3 r1, 0", 4, false), (Cycles{5, 7, 9, 13}));
+  EXPECT_EQ(written_back("rst3 0, r1", 8, false), (Cycles{6, 8, 10, 14}));
+  EXPECT_EQ(written_back("rld3 r1, 0", 16, false), (Cycles{8, 12, 16, 20}));
+  EXPECT_EQ(written_back("ld3 r1, [r0]", 4, false), (Cycles{6, 12, 18, 22}));
+}
+
 TEST(CycleUnit, TheLowestWarpGoesFirstAndTheOthersAreCountedAsWaiting) {
   Configuration configuration = make_configuration(4, 1);
   configuration.alus[AluType::Int].latency = 16;

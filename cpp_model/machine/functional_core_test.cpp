@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <random>
 
 #include "bits.hpp"
+#include "isa/encoding.hpp"
 #include "machine/test_program.hpp"
 
 namespace raypool {
@@ -400,6 +402,96 @@ INSTANTIATE_TEST_SUITE_P(
         FaultCase{"read_word", assembled(".word 0x6180401500000000  # rld r1, 21"), FaultCode::RayWordOutside, 0},
         FaultCase{"write_word", assembled(".word 0x6200005f00000000  # rst 31, r1"), FaultCode::RayWordOutside, 0}),
     [](const auto& test_case) { return std::string(test_case.param.name); });
+
+Configuration with_triples(bool fma) {
+  Configuration configuration = make_configuration();
+  configuration.triples = true;
+  configuration.fma = fma;
+  return configuration;
+}
+
+TEST(FunctionalCore, TriplesThatTheMachineHasNotAreIllegal) {
+  const Configuration fused = with_triples(true), triples = with_triples(false);
+  Configuration fma = make_configuration();
+  fma.fma = true;
+  const auto first_fault = [](const std::string& text, const Configuration& configuration) {
+    Machine machine(assembled(text + "; exit"), configuration);
+    return machine.run() == Status::Fault ? machine.core.step(0).fault.code : FaultCode::None;
+  };
+  for (const char* text : {"fadd3 r1, r4, r7", "arg3 r1, 0", "ld3 r1, [r0]", "rld3 r1, 18", "rst3 18, r1"}) {
+    EXPECT_EQ(first_fault(text, triples), FaultCode::None) << text;
+    EXPECT_EQ(first_fault(text, fma), FaultCode::IllegalInstruction) << text;
+  }
+  EXPECT_EQ(first_fault("ffma3 r1, r4, r7, r1", fused), FaultCode::None);
+  EXPECT_EQ(first_fault("ffma3 r1, r4, r7, r1", triples), FaultCode::IllegalInstruction);
+  EXPECT_EQ(first_fault("ffma3s r1, r4, r7, r1", fma), FaultCode::IllegalInstruction);
+  // Of three words the last would be outside.
+  for (const char* text : {"rld3 r1, 19", "rst3 20, r1", ".word 0x6a0000df00000000  # rst3 31, r3"})
+    EXPECT_EQ(first_fault(text, triples), FaultCode::IllegalInstruction) << text;
+}
+
+constexpr uint32_t kTable = 2048;
+
+/// All that a program leaves: how it ended, registers and the ray words of both warps.
+std::vector<uint32_t> left_by(const std::vector<uint64_t>& code) {
+  Machine machine(code, with_triples(true));
+  for (uint32_t address = kTable; address < kMemoryBytes; address += 4)
+    machine.memory.store(address, address * 2654435761u);
+  std::vector<uint32_t> left;
+  for (const uint32_t warp : {0u, 1u}) {
+    // A load may have overwritten its own address.
+    left.push_back(to_underlying(machine.run(warp)));
+    for (uint32_t number = 0; number < kRegisters; ++number)
+      for (uint32_t lane = 0; lane < 4; ++lane) left.push_back(machine.reg(warp, number, lane));
+  }
+  return left;
+}
+
+TEST(FunctionalCore, ATripleLeavesWhatItsThreeElementsLeave) {
+  // r0 .. r15 differ between lanes and are aligned addresses; so are all words of the slice.
+  std::string prologue = "tid r0; ieq p1, r0, 2; ilt p2, r0, 6";
+  for (int n = 15; n >= 0; --n) prologue += fmt::format("; imul r{0}, r0, {1}; iadd r{0}, r{0}, {2}", n, 4 * n, 16 * n);
+  for (int n = 0; n < 21; ++n) prologue += fmt::format("; rst {}, r{}", n, n % 16);
+  std::string epilogue;
+  for (int n = 0; n < 8; ++n) epilogue += fmt::format("rld r{0}, {0}; ", n);
+  std::mt19937 random(1);
+  const auto below = [&random](uint32_t limit) { return static_cast<uint8_t>(random() % limit); };
+  for (size_t row = kSingles; row < std::size(kInstructions); ++row) {
+    for (int i = 0; i < 60; ++i) {
+      Instruction triple;
+      triple.info = &kInstructions[row];
+      triple.guard = below(3), triple.guard_negated = triple.guard != 0 && below(2) != 0;
+      triple.rd = below(16), triple.ra = below(16), triple.rb = below(16);
+      if (has_operand(*triple.info, Operand::Rc)) triple.x = below(16);
+      if (has_operand(*triple.info, Operand::Word)) triple.x = below(6);
+      if (has_operand(*triple.info, Operand::Argument)) triple.immediate = below(32);
+      if (has_operand(*triple.info, Operand::Address)) triple.immediate = kTable + below(8) * 16;
+      if (has_operand(*triple.info, Operand::B) && below(3) == 0)
+        triple.b_is_immediate = true, triple.immediate = random();
+      const auto program = [&](const std::vector<uint64_t>& middle) {
+        std::vector<uint64_t> code = assembled(prologue);
+        code.insert(code.end(), middle.begin(), middle.end());
+        const std::vector<uint64_t> end =
+            assembled(has_operand(*triple.info, Operand::Rd) ? "exit" : epilogue + "exit");
+        code.insert(code.end(), end.begin(), end.end());
+        return code;
+      };
+      ASSERT_EQ(left_by(program({encode(triple)})),
+                left_by(program({encode(element(triple, 0)), encode(element(triple, 1)), encode(element(triple, 2))})))
+          << disassemble(encode(triple));
+    }
+  }
+}
+
+TEST(FunctionalCore, ALoadOfATripleThatFaultsLeavesTheOnesBefore) {
+  Machine machine(assembled(fmt::format("mov r0, {}; ld3 r1, [r0]; exit", kMemoryBytes - 8)), with_triples(false));
+  for (uint32_t e = 0; e < 3; ++e) machine.memory.store(kMemoryBytes - 12 + 4 * e, 70 + e);
+  EXPECT_EQ(machine.run(), Status::Fault);
+  EXPECT_EQ(machine.core.step(0).fault.code, FaultCode::AddressOutsideMemory);
+  EXPECT_EQ(machine.core.step(0).fault.pc, 1u);
+  EXPECT_EQ(machine.reg(0, 1, 0), 71u);
+  EXPECT_EQ(machine.reg(0, 2, 0), 72u);
+}
 
 TEST(FunctionalCore, AddressesOfLanesThatAreNotMaskedDoNotFault) {
   Machine machine(assembled(fmt::format("mov r1, {}; ieq p1, r1, 1; @p1 ld r2, [r1]; exit", kMemoryBytes + 3)));
