@@ -211,6 +211,21 @@ TEST(Configuration, AKeyByItsOldNameIsToldTheNewOne) {
   EXPECT_EQ(error_of(R"({"warps": 4, "cores": 2})"), "'cores' is called 'lanes': rename the key");
 }
 
+TEST(Configuration, APresetsNameMayEndInWarpsAndLanes) {
+  const Configuration best = load_configuration("best_4w2c"), thesis = load_configuration("4w2c");
+  EXPECT_EQ(best.name, "best_4w2c");
+  EXPECT_EQ(best.warps, 4u);
+  EXPECT_EQ(best.lanes, 2u);
+  EXPECT_TRUE(best.triples && best.kernel_overlap);
+  EXPECT_EQ(best.chip.policy, PolicyName::Fill);
+  EXPECT_FALSE(thesis.triples || thesis.kernel_overlap);
+  EXPECT_TRUE(is_built_in(best));
+  EXPECT_FALSE(is_built_in(load_configuration("best_4w2c", {"triples=false", "name=other"})));
+  EXPECT_THROW(load_configuration("best_4w2c", {"triples=false", "name=best_4w2c"}), InputError);
+  EXPECT_THROW(load_configuration("best_3w2c"), InputError);
+  EXPECT_THROW(load_configuration("nonesuch_4w2c"), InputError);
+}
+
 TEST(TileWidth, IsHalfTheContentsRoundedUp) {
   const int expected[][2] = {{1, 0}, {2, 1}, {4, 1}, {8, 2}, {16, 2}, {32, 3}, {64, 3}, {128, 4}, {1024, 5}};
   for (const auto& pair : expected) EXPECT_EQ(tile_width_log2(pair[0]), pair[1]) << pair[0];
@@ -278,10 +293,10 @@ TEST(Configuration, NameWithoutFileSaysWhatToGive) {
     load_configuration("nonesuch");
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(),
-                 "no configuration 'nonesuch': give the path of a JSON file, the name of a file in configs/, or NwMc "
-                 "for N warps "
-                 "of M lanes");
+    EXPECT_STREQ(
+        error.what(),
+        "no configuration 'nonesuch': give the path of a JSON file, the name of a file in configs/, NwMc for N "
+        "warps of M lanes, or best_NwMc");
   }
   EXPECT_THROW(load_configuration(""), InputError);
   EXPECT_THROW(load_configuration("no/such/file.json"), InputError);

@@ -18,7 +18,7 @@ using ModelFunction = uint32_t (*)(Opcode opcode, uint32_t a, uint32_t b, uint32
 inline std::vector<Opcode> opcodes_of(AluType type, Kind kind = Kind::Plain) {
   std::vector<Opcode> opcodes;
   for (const InstructionInfo& info : kInstructions)
-    if (info.alu() == type && info.kind == kind) opcodes.push_back(info.opcode);
+    if (info.alu() == type && info.kind == kind && !is_triple(info)) opcodes.push_back(info.opcode);
   return opcodes;
 }
 
