@@ -77,7 +77,22 @@ constexpr const char* kText = R"(
 `target` and `end` are the halves of the immediate of `jany`, `jnone` and `call`; `loop` has its end in the low half.
 Fields that an instruction does not use are written as 0 by the assembler and ignored by the machine. An instruction
 whose unit and operation stand in no row below is illegal, and so is one that the configuration has not: `ffma` without
-`arithmetic.fma`.
+`arithmetic.fma`, a triple without `triples`, and `ffma3` and `ffma3s` without both.
+
+## Triples
+
+A triple is three instructions, its elements 0, 1 and 2, which leave what the three leave if they are executed one after
+the other, under one guard. Of element e
+
+- every register number is e higher, modulo 16: behind r15 comes r0. With an `s` at the end of the name all elements
+  have the same ra, and so have those of `ld3`, whose ra is an address;
+- an immediate in place of b is the same for all;
+- the ray word of `rld3` and `rst3` is e higher. One above 18 is illegal, as the last word would be outside;
+- the argument of `arg3` is e higher;
+- bits 3:2 of the offset of `ld3` should be 0: they are ORed with e.
+
+Bit 4 of the operation marks a triple, bit 3 that ra is one for all; bits 2:0 are the element's operation. What a triple
+takes in cycles is in [architecture.md](architecture.md), section 3.
 
 ## Assembly text
 
@@ -125,7 +140,9 @@ std::string isa_markdown() {
   text += kText;
   text +=
       "\n## Instructions\n\nRows marked *c* are control instructions: they stop the instruction routine until their "
-      "write-back.\nRows marked *fma* are there in configurations with `arithmetic.fma` only.\n";
+      "write-back.\nRows marked *fma* are there in configurations with `arithmetic.fma` only, those marked *t* with "
+      "`triples` "
+      "only,\nthose marked *t fma* with both only.\n";
   for (const AluType type : kEveryAluType) {
     text += fmt::format("\n### {}: {} (type {})\n\n| op | instruction | | meaning |\n| --- | --- | --- | --- |\n",
                         alu_info(type).name, alu_info(type).title, to_underlying(type));

@@ -387,8 +387,8 @@ TEST(KernelTriples, CopiesInALoopKeepTheValueOfTheRoundBefore) {
                const Vector<RecordedKernel> current = v;
                v = v + before;
                before = current;
-               const Vector<RecordedKernel> loaded = vector_load(k, left << 4, 32), same = loaded;
-               sum = sum + 0.5f * same + current;
+               const Vector<RecordedKernel> loaded = vector_load(k, left << 4, 32);
+               sum = sum + 0.5f * loaded + current;
                left -= 1;
              });
     set_vector_word(k, 0, v);
