@@ -14,7 +14,7 @@ enum class Subnormals : uint8_t { Ieee = 0, Flush = 1 };
 enum class SlowUnit : uint8_t { Exact = 0, Newton2 = 1, Newton1 = 2, Newton0 = 3 };
 /// What chooses the next kernel, and what times the traverser. Each name has its class in sim/chip/.
 enum class PolicyName : uint8_t { Thesis = 0, Fill = 1 };
-enum class TraverserName : uint8_t { Static = 0 };
+enum class TraverserName : uint8_t { Static = 0, Modelled = 1 };
 /// What becomes of a shadow ray that reaches the light: an intersection, for the kernel `shade`, or a contribution.
 enum class Shading : uint8_t { Kernel = 0, Traverser = 1 };
 
@@ -51,7 +51,7 @@ enum class Shading : uint8_t { Kernel = 0, Traverser = 1 };
   CHIP(window_remedy, bool, true, on_or_off(), "eye rays of further tiles are cast while earlier ones are under way") \
   CHIP(launch_ahead, bool, true, on_or_off(), "a kernel is launched behind a running one, if it is worth it") \
   CHIP(held_limit, uint32_t, 512, integers(1, 1 << 20), "unfinished pixels at a time") \
-  CHIP(traverser, TraverserName, TraverserName::Static, names("static"), "timing of the traverser") \
+  CHIP(traverser, TraverserName, TraverserName::Static, names("static", "modelled"), "timing of the traverser") \
   CHIP(shading, Shading, Shading::Kernel, names("kernel", "traverser"), \
        "who adds shadow rays that reach the light to the frame buffer: the kernel shade, or the traverser itself") \
   CHIP_PART(thresholds, rays, uint32_t, 48, integers(0, 1 << 20), \
@@ -62,6 +62,38 @@ enum class Shading : uint8_t { Kernel = 0, Traverser = 1 };
             "rays traced when a kernel ends, or after a stall") \
   CHIP_PART(static_traverser, stall_cycles, uint32_t, 1000, integers(1, 1 << 20), \
             "cycles in which the shader stalls until a batch is traced") \
+  CHIP_PART(modelled_traverser, rays, uint32_t, 128, integers(1, 1024), "rays in flight") \
+  CHIP_PART(modelled_traverser, setup_latency, uint32_t, 16, integers(1, 64), \
+            "cycles in which a ray is prepared; one begins in a cycle") \
+  CHIP_PART(modelled_traverser, box_pipes, uint32_t, 4, integers(1, 32), \
+            "nodes, four boxes each, whose test begins in a cycle") \
+  CHIP_PART(modelled_traverser, box_latency, uint32_t, 8, integers(1, 64), "cycles of a node's test") \
+  CHIP_PART(modelled_traverser, triangle_pipes, uint32_t, 2, integers(1, 32), \
+            "triangles whose test begins in a cycle") \
+  CHIP_PART(modelled_traverser, triangle_latency, uint32_t, 16, integers(1, 64), "cycles of a triangle's test") \
+  CHIP_PART(modelled_traverser, finish_latency, uint32_t, 16, integers(1, 64), \
+            "cycles in which a hit is completed; one begins in a cycle") \
+  CHIP_PART(modelled_traverser, stack_entries, uint32_t, 12, integers(8, 64), \
+            "entries of 8 bytes that a ray's stack keeps; older ones go to the memory, four at a time") \
+  CHIP_PART(modelled_traverser, cache_latency, uint32_t, 2, integers(1, 16), \
+            "cycles from a cache's lookup to its data") \
+  CHIP_PART(modelled_traverser, cache_banks, uint32_t, 8, powers_of_two(1, 32), \
+            "banks of each cache: a line each in a cycle, for all who want that line") \
+  CHIP_PART(modelled_traverser, node_cache_bytes, uint32_t, 65536, powers_of_two(1024, 1 << 24), \
+            "size, in lines of 64 bytes") \
+  CHIP_PART(modelled_traverser, node_cache_ways, uint32_t, 4, powers_of_two(1, 16), "lines of a set") \
+  CHIP_PART(modelled_traverser, node_cache_mshrs, uint32_t, 16, integers(1, 64), \
+            "lines that may be on their way at once") \
+  CHIP_PART(modelled_traverser, triangle_cache_bytes, uint32_t, 65536, powers_of_two(1024, 1 << 24), \
+            "size, in lines of 64 bytes") \
+  CHIP_PART(modelled_traverser, triangle_cache_ways, uint32_t, 4, powers_of_two(1, 16), "lines of a set") \
+  CHIP_PART(modelled_traverser, triangle_cache_mshrs, uint32_t, 16, integers(1, 64), \
+            "lines that may be on their way at once") \
+  CHIP_PART(modelled_traverser, memory_banks, uint32_t, 16, powers_of_two(1, 64), \
+            "banks of the memory, each with a row open") \
+  CHIP_PART(modelled_traverser, memory_row_bytes, uint32_t, 2048, powers_of_two(64, 65536), "size of a row") \
+  CHIP_PART(modelled_traverser, memory_row_miss, uint32_t, 30, integers(0, 1000), \
+            "cycles by which a line of a row that is not open comes later") \
   CHIP_PART(ray_pool, size, uint32_t, 512, integers(1, 1 << 20), "rays that it holds") \
   CHIP_PART(ray_pool, overhead, uint32_t, 2, integers(1, 64), \
             "cycles that its port takes for a ray besides the 3 beats") \

@@ -191,10 +191,11 @@ def ceilings_of(point):
 FARTHEST = 8
 OTHER_CEILINGS = {
     "issue": "issued", "latency": "fetch", "ray_port": "export", "intersection_port": "import", "frame_port": "other",
-    "memory_port": "s3", "traverser": "s5",
+    "memory_port": "s3", "traverser": "s5", "box_pipes": "s5", "triangle_pipes": "s5", "rays_in_flight": "s5",
 }  # fmt: skip
 CEILING_MARKS = {"issue": "|", "latency": "x", "ray_port": "<", "intersection_port": ">", "frame_port": "d",
-                 "memory_port": "h", "traverser": "p"}  # fmt: skip
+                 "memory_port": "h", "traverser": "p",
+                 "box_pipes": "s", "triangle_pipes": "^", "rays_in_flight": "*"}  # fmt: skip
 
 
 def ceiling_style(name):

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,7 @@
 #include "machine/memory.hpp"
 #include "machine/warp_cycles.hpp"
 #include "scene/ray_counts.hpp"
+#include "traverser/work.hpp"
 
 namespace raypool {
 
@@ -108,6 +110,8 @@ struct ChipResult {
   uint64_t memory_writes = 0;            ///< quadwords of 16 bytes
   uint64_t traverser_batches = 0;        ///< at a kernel's end
   uint64_t traverser_stall_batches = 0;  ///< after a stall of the shader
+
+  std::optional<TraverserWork> traversal;  ///< of a traverser with a machine inside
 };
 
 /// A unit stopped with a fault. what() says which, where, and what it means.

@@ -46,6 +46,7 @@ Chip::Chip(const sc_core::sc_module_name& name, const ChipOptions& options)
       monitor_("monitor", {options.watchdog_cycles, options.cycle_limit, true, options.progress != nullptr}) {
   memory_port_.clock(clock_.now);
   memory_port_.socket.bind(memory);
+  memory_port_.others(traverser_->memory_user);
 
   rays_.clock(clock_.now);
   rays_.ledger(ledger_.records);
@@ -53,6 +54,7 @@ Chip::Chip(const sc_core::sc_module_name& name, const ChipOptions& options)
 
   intersections_.clock(clock_.now);
   intersections_.ledger(ledger_.records);
+  intersections_.room(traverser_->room);
 
   frame_.clock(clock_.now);
   frame_.ledger(ledger_.records);
@@ -70,6 +72,7 @@ Chip::Chip(const sc_core::sc_module_name& name, const ChipOptions& options)
   traverser_->frame(frame_.traverser);
   traverser_->ledger(ledger_.records);
   traverser_->controller(controller_.decisions);
+  traverser_->memory(memory_port_.turns);
 
   device_.clock(clock_.now);
   device_.memory(memory_port_.device);

@@ -70,6 +70,12 @@ void Chip::collect_ceilings(ChipResult& result) const {
   add("frame_port", frame_.taken(), result.cycles);
   add("memory_port", memory_port_.busy_cycles(), result.cycles);
   add("traverser", result.rays(), traverser_->counts().most_rays);
+  if (result.traversal) {
+    const ChipConfiguration& chip = options_.configuration.chip;
+    add("box_pipes", result.traversal->boxes.tests, result.cycles * chip.modelled_traverser_box_pipes);
+    add("triangle_pipes", result.traversal->triangles.tests, result.cycles * chip.modelled_traverser_triangle_pipes);
+    add("rays_in_flight", result.traversal->ray_cycles, result.cycles * chip.modelled_traverser_rays);
+  }
   add("latency", own_cycles(result.warp_cycles), result.warp_cycles.busy + result.warp_cycles_without_kernel);
   std::sort(result.ceilings.begin(), result.ceilings.end(),
             [](const Ceiling& a, const Ceiling& b) { return a.mrays_per_s < b.mrays_per_s; });
@@ -100,6 +106,7 @@ ChipResult Chip::collect() const {
   collect_units(result);
 
   collect_pools(result);
+  result.traversal = traverser_->work();
   if (result.timed) {
     result.warp_cycles = warp_cycles(options_.configuration, *options_.device);
     result.warp_cycles_without_kernel =

@@ -4,26 +4,12 @@
 #include "chip/chip_module.hpp"
 #include "chip/fixed_latency_memory.hpp"
 #include "chip/simulation.hpp"
+#include "chip/test_metronome.hpp"
 #include "chip/test_real_frame.hpp"
 #include "machine/cycle_unit.hpp"
 
 namespace raypool::chip {
 namespace {
-
-/// Has an event in every cycle, so that every quantum is one cycle.
-struct Metronome : sc_core::sc_module {
-  SC_HAS_PROCESS(Metronome);
-  explicit Metronome(const sc_core::sc_module_name& name) : sc_module(name) {
-    SC_METHOD(beat);
-    sensitive << next_;
-  }
-  void beat() {
-    ++beats;
-    next_.notify(1, sc_core::SC_NS);
-  }
-  sc_core::sc_event next_;
-  uint64_t beats = 0;
-};
 
 /// Counts how often the device is asked to run.
 class Counted : public ComputeUnit {
@@ -83,8 +69,8 @@ struct Drawn {
     Chip chip("chip", run.options);
     LookingMemory memory("memory", run.image.memory, *unit);
     chip.memory.bind(memory.socket);
-    std::unique_ptr<Metronome> metronome;
-    if (!decoupled) metronome = std::make_unique<Metronome>("metronome");
+    std::unique_ptr<test::Metronome> metronome;
+    if (!decoupled) metronome = std::make_unique<test::Metronome>("metronome");
     result = chip.draw();
     seen = memory.seen;
     if (!decoupled) {

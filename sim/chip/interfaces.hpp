@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <list>
 #include <string>
 #include <systemc>
 #include <vector>
@@ -33,6 +34,23 @@ class MemoryIf : virtual public sc_core::sc_interface {
 
  protected:
   uint64_t room_from_ = 0, response_due_ = kNever;
+};
+
+/// The memory port, for the traverser, whose lines take turns with the device's requests: who asks first goes first.
+class MemoryTurnsIf : virtual public sc_core::sc_interface {
+ public:
+  /// Keeps the port for so many beats as soon as it is free, not before `cycle`. Returns the first cycle. Calls come in
+  /// the order of their cycles.
+  virtual uint64_t turn(uint64_t cycle, uint32_t beats) = 0;
+  /// Of a line that begins then and could end then: the cycle of its last beat, behind those of the lines before.
+  virtual uint64_t line(uint64_t start, uint64_t end) = 0;
+};
+
+/// Who uses the memory port beside the device, and may be behind it in time.
+class MemoryUserIf : virtual public sc_core::sc_interface {
+ public:
+  /// The device is going to make a request in this cycle: takes all turns of earlier ones.
+  virtual void catch_up(uint64_t cycle) = 0;
 };
 
 /// The ray pool's port, for the device.
@@ -126,11 +144,13 @@ struct PooledRay {
   Intersection intersection;  ///< meaningful when it goes on
 };
 
+using PooledRays = std::list<PooledRay>;
+
 /// The ray pool, for the traverser.
 class RaySourceIf : virtual public sc_core::sc_interface {
  public:
   /// Oldest first. After removing some, of which so many were shadow rays, call removed().
-  virtual std::vector<PooledRay>& rays() = 0;
+  virtual PooledRays& rays() = 0;
   virtual void removed(uint32_t shadow_rays) = 0;
 };
 
@@ -138,6 +158,12 @@ class RaySourceIf : virtual public sc_core::sc_interface {
 class RayArrivalIf : virtual public sc_core::sc_interface {
  public:
   virtual void ray_arrived() = 0;
+};
+
+/// Who is told when the intersection pool has given a package away, in the phase of the units.
+class RoomIf : virtual public sc_core::sc_interface {
+ public:
+  virtual void room_made(ImportKind kind) = 0;
 };
 
 /// The ray pool, for the controller.

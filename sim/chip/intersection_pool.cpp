@@ -61,6 +61,7 @@ void IntersectionPool::give() {
   if (leaving_.size() == 1) beat_due_ = leaving.first_beat;
   request_due_ = kNever;
   wanting_ = ImportKind::None;
+  for (int i = 0; i < room.size(); ++i) room[i]->room_made(kind);
 }
 
 void IntersectionPool::beat(Beat& beat) {

@@ -32,6 +32,7 @@ class IntersectionPool : public sc_core::sc_module,
 
   sc_core::sc_port<TimeIf> clock{"clock"};
   sc_core::sc_port<LedgerIf> ledger{"ledger"};
+  sc_core::sc_port<RoomIf, 0, sc_core::SC_ZERO_OR_MORE_BOUND> room{"room"};
   sc_core::sc_export<ImportIf> device{"device"};
   sc_core::sc_export<IntersectionSinkIf> traverser{"traverser"};
   sc_core::sc_export<IntersectionLevelIf> controller{"controller"};

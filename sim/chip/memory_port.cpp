@@ -12,10 +12,12 @@ namespace raypool::chip {
 MemoryPort::MemoryPort(const sc_core::sc_module_name& name, const ChipConfiguration& chip)
     : sc_module(name), cycles_per_beat_(chip.memory_cycles_per_beat), place_free_from_(chip.memory_queue) {
   device.bind(*this);
+  turns.bind(*this);
 }
 
 // Nothing that comes later can change when and in which order requests are served: so each goes to the memory at once.
 void MemoryPort::request(const MemoryRequest& request) {
+  for (int i = 0; i < others.size(); ++i) others[i]->catch_up(clock->cycle());
   const uint64_t start = std::max(free_from_, clock->cycle());
   place_free_from_[place_] = start + 1;
   place_ = (place_ + 1) % place_free_from_.size();
@@ -49,11 +51,22 @@ void MemoryPort::read(const MemoryRequest& request, uint64_t start) {
   payload_.set_byte_enable_length(0);
   Line line{0, request.id, 0, {}};
   const uint64_t end = transport(tlm::TLM_READ_COMMAND, request.address, line.data.data(), kLineBytes, start);
-  // Beats are apart, and lines in order, however fast the memory is.
-  last_beat_ = std::max(end, std::max(last_beat_, start) + kLineBeats * cycles_per_beat_);
-  line.due = last_beat_ - (kLineBeats - 1) * cycles_per_beat_;
+  line.due = this->line(start, end) - (kLineBeats - 1) * cycles_per_beat_;
   lines_.push_back(line);
   response_due_ = lines_.front().due;
+}
+
+uint64_t MemoryPort::turn(uint64_t cycle, uint32_t beats) {
+  const uint64_t start = std::max(free_from_, cycle);
+  free_from_ = start + beats * cycles_per_beat_;
+  other_beats_ += beats;
+  return start;
+}
+
+// Beats are apart, and lines in order, however fast the memory is.
+uint64_t MemoryPort::line(uint64_t start, uint64_t end) {
+  last_beat_ = std::max(end, std::max(last_beat_, start) + kLineBeats * cycles_per_beat_);
+  return last_beat_;
 }
 
 // Returns the cycle in which it is done.

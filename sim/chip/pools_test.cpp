@@ -51,6 +51,7 @@ struct Bench {
     ray[word::kFlags] = 1;
     return ray;
   }
+  const Ray& ray(size_t i) { return std::next(rays.rays().begin(), static_cast<std::ptrdiff_t>(i))->ray; }
   void run(std::function<bool(uint64_t)> cycle) { test::drive(simulation, clock, std::move(cycle)); }
   /// True if a beat of a ray is taken in this cycle.
   bool ready() const { return rays.beats_from() <= clock.cycle(); }
@@ -90,7 +91,7 @@ TEST(RayPool, TakesARayInFiveCycles) {
   for (size_t i = 0; i < completed.size(); ++i) EXPECT_EQ(completed[i], 10 + 4 + 5 * i);
   EXPECT_EQ(bench.rays.size(), 20u);
   EXPECT_EQ(bench.rays.busy_cycles(), 100u);
-  for (uint32_t i = 0; i < 20; ++i) EXPECT_EQ(bench.rays.rays()[i].ray, Bench::eye_ray(0, i));
+  for (uint32_t i = 0; i < 20; ++i) EXPECT_EQ(bench.ray(i), Bench::eye_ray(0, i));
 }
 
 TEST(RayPool, TakesOverheadAndBeatsAsLongAsTheChipSays) {
@@ -108,7 +109,7 @@ TEST(RayPool, TakesOverheadAndBeatsAsLongAsTheChipSays) {
     for (size_t i = 0; i < completed.size(); ++i)
       EXPECT_EQ(completed[i], 10 + service * (i + 1) - per_beat) << overhead << per_beat;
     EXPECT_EQ(bench.rays.busy_cycles(), 20 * service);
-    for (uint32_t i = 0; i < 20; ++i) EXPECT_EQ(bench.rays.rays()[i].ray, Bench::eye_ray(0, i));
+    for (uint32_t i = 0; i < 20; ++i) EXPECT_EQ(bench.ray(i), Bench::eye_ray(0, i));
   }
 }
 
@@ -131,7 +132,7 @@ TEST(RayPool, HidesTheOverheadBehindTheBeatsOfTheRayBeforeWhenPipelined) {
       EXPECT_EQ(completed[i], begin + 2 * per_beat) << overhead << per_beat << ", ray " << i;
     }
     EXPECT_EQ(bench.rays.busy_cycles(), overhead + 20 * service);
-    for (uint32_t i = 0; i < 20; ++i) EXPECT_EQ(bench.rays.rays()[i].ray, Bench::eye_ray(0, i));
+    for (uint32_t i = 0; i < 20; ++i) EXPECT_EQ(bench.ray(i), Bench::eye_ray(0, i));
   }
 }
 
@@ -163,7 +164,7 @@ TEST(RayPool, TakesARayOfAnyUnitInFiveCycles) {
   });
   ASSERT_EQ(bench.rays.size(), 40u);
   for (int i = 0; i < 40; ++i) {
-    EXPECT_EQ(bench.rays.rays()[i].ray, Bench::eye_ray(i % 4, static_cast<uint32_t>(i / 4)));
+    EXPECT_EQ(bench.ray(i), Bench::eye_ray(i % 4, static_cast<uint32_t>(i / 4)));
   }
 }
 
@@ -223,7 +224,7 @@ TEST(RayPool, DropsNormalRaysBeyondTheDepthLimitAndNoShadowRays) {
   EXPECT_EQ(bench.rays.dropped_depth(), 1u);
   ASSERT_EQ(bench.rays.size(), 3u);
   EXPECT_EQ(bench.rays.shadow_rays(), 2u);
-  EXPECT_EQ(bench.rays.rays()[1].ray, made[2]);
+  EXPECT_EQ(bench.ray(1), made[2]);
 }
 
 TEST(RayPool, RefusesARayOfAWrongNumberOfBeats) {

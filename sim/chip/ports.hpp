@@ -15,6 +15,10 @@ class RayTracer {
   /// Normal ray: true and the intersection when it hits. Shadow ray: true and an intersection with words 12-20 zero
   /// when it is free. False: the ray leaves nothing. Words 0-11 of the intersection are the ray's.
   virtual bool trace(const Ray& ray, Intersection& intersection) = 0;
+  /// The same, and what the ray visits on its way. One that walks no tree visits nothing.
+  virtual bool follow(const Ray& ray, Intersection& intersection, VisitList& /*visits*/) {
+    return trace(ray, intersection);
+  }
 };
 
 class FrameSink {
@@ -29,6 +33,9 @@ class SceneTracer : public RayTracer {
   /// `tracer` must outlive this.
   explicit SceneTracer(const Tracer& tracer) : tracer_(tracer) {}
   bool trace(const Ray& ray, Intersection& intersection) override { return tracer_.trace(ray, intersection); }
+  bool follow(const Ray& ray, Intersection& intersection, VisitList& visits) override {
+    return tracer_.trace(ray, intersection, nullptr, &visits);
+  }
 
  private:
   const Tracer& tracer_;

@@ -14,7 +14,6 @@ RayPool::RayPool(const sc_core::sc_module_name& name, const ChipConfiguration& c
       cycles_per_beat_(chip.ray_pool_cycles_per_beat),
       pipelined_(chip.ray_pool_pipelined),
       depth_(depth) {
-  rays_.reserve(capacity_);
   device.bind(*this);
   traverser.bind(*this);
   controller.bind(*this);

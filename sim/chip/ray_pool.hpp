@@ -8,7 +8,6 @@
 
 #include <cstdint>
 #include <systemc>
-#include <vector>
 
 #include "chip/chip_clock.hpp"
 #include "chip/interfaces.hpp"
@@ -34,7 +33,7 @@ class RayPool : public sc_core::sc_module, public RayExportIf, public RaySourceI
   void take(uint32_t unit, const Beat& beat, bool last) override;
   bool held_up() const override { return beats_from() == kNever && full() && clock->cycle() > kept_at_; }
 
-  std::vector<PooledRay>& rays() override { return rays_; }
+  PooledRays& rays() override { return rays_; }
   void removed(uint32_t shadow_rays) override;
 
   uint32_t size() const override { return size32(rays_); }
@@ -61,7 +60,7 @@ class RayPool : public sc_core::sc_module, public RayExportIf, public RaySourceI
   uint64_t kept_at_ = 0;
   Ray arriving_{};
   size_t beats_ = 0;
-  std::vector<PooledRay> rays_;
+  PooledRays rays_;
   uint32_t shadow_rays_ = 0;
   uint64_t taken_ = 0, dropped_depth_ = 0, busy_cycles_ = 0;
   LevelStatistics fill_;

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "chip/chip.hpp"
+#include "traverser/test_visits.hpp"
 
 namespace raypool::test {
 
@@ -84,6 +85,11 @@ class WorldTracer : public RayTracer {
     if ((ray[word::kFlags] & kShadowFlag) != 0) return !world_.is_blocked(pixel, depth);
     intersection[word::kTriangle] = pixel ^ depth;
     return world_.hit(pixel, depth);
+  }
+  bool follow(const Ray& ray, Intersection& intersection, VisitList& visits) override {
+    std::mt19937 random(ray[word::kPixel] * 31 + ray[word::kFlags]);
+    visits = random_visits(random, 12, 100);
+    return trace(ray, intersection);
   }
 
  private:

@@ -3,14 +3,21 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "chip/modelled_traverser.hpp"
 #include "chip/static_traverser.hpp"
 
 namespace raypool::chip {
+
+ImportKind kind_of(const PooledRay& ray) {
+  return (ray.ray[word::kFlags] & kShadowFlag) != 0 ? ImportKind::Shadow : ImportKind::Normal;
+}
 
 Traverser::Traverser(const sc_core::sc_module_name& name, RayTracer& tracer, const ChipConfiguration& chip)
     : sc_module(name), tracer_(tracer), contributes_(chip.shading == Shading::Traverser) {
   kernel_events.bind(*this);
   arrivals.bind(*this);
+  room.bind(*this);
+  memory_user.bind(*this);
   SC_METHOD(next_contribution);
   sensitive << frame_free_;
   dont_initialize();
@@ -22,10 +29,15 @@ void Traverser::trace(PooledRay& ray) {
   counts_.rays.count(ray.ray, ray.goes_on);
 }
 
+void Traverser::follow(PooledRay& ray, VisitList& visits) {
+  ray.goes_on = tracer_.follow(ray.ray, ray.intersection, visits);
+  counts_.rays.count(ray.ray, ray.goes_on);
+}
+
 // True if the result of the ray, which goes on, has left.
-bool Traverser::deliver(const PooledRay& ray, bool shadow) {
-  if (shadow && contributes_) return contribute(ray.ray);
-  const ImportKind kind = shadow ? ImportKind::Shadow : ImportKind::Normal;
+bool Traverser::deliver(const PooledRay& ray) {
+  const ImportKind kind = kind_of(ray);
+  if (kind == ImportKind::Shadow && contributes_) return contribute(ray.ray);
   if (intersections->full(kind)) return false;
   intersections->put(kind, ray.intersection);
   return true;
@@ -44,44 +56,51 @@ bool Traverser::contribute(const Ray& ray) {
 }
 
 void Traverser::next_contribution() {
-  clock->guard([&] { advance(0); });
+  clock->guard([&] { deliver_traced(); });
+}
+
+bool Traverser::leave(const PooledRay& ray) {
+  if (ray.goes_on) {
+    const bool delivered = deliver(ray);
+    counts_.delivered += delivered;
+    return delivered;
+  }
+  ledger->ray_dropped(ray.ray[word::kPixel]);
+  return true;
+}
+
+void Traverser::left(uint32_t count, uint32_t shadow_rays) {
+  if (count == 0) return;
+  rays->removed(shadow_rays);
+  controller->changed();
 }
 
 uint32_t Traverser::advance(uint32_t budget) {
-  std::vector<PooledRay>& pool = rays->rays();
-  size_t kept = 0;
-  uint32_t shadows = 0;  // that left
-  for (size_t i = 0; i < pool.size(); ++i) {
-    PooledRay& ray = pool[i];
-    if (!ray.traced && budget > 0) {
+  PooledRays& pool = rays->rays();
+  uint32_t count = 0, shadow_rays = 0;
+  for (auto ray = pool.begin(); ray != pool.end();) {
+    if (!ray->traced && budget > 0) {
       --budget;
-      trace(ray);
+      trace(*ray);
     }
-    const bool shadow = (ray.ray[word::kFlags] & kShadowFlag) != 0;
-    if (ray.traced && !ray.goes_on) {
-      shadows += shadow;
-      ledger->ray_dropped(ray.ray[word::kPixel]);
-    } else if (ray.traced && deliver(ray, shadow)) {
-      ++counts_.delivered;
-      shadows += shadow;
+    if (ray->traced && leave(*ray)) {
+      ++count;
+      shadow_rays += kind_of(*ray) == ImportKind::Shadow;
+      ray = pool.erase(ray);
     } else {
-      if (kept != i) pool[kept] = ray;
-      ++kept;
+      ++ray;
     }
   }
-  const auto left = static_cast<uint32_t>(pool.size() - kept);
-  pool.resize(kept);
-  if (left > 0) {
-    rays->removed(shadows);
-    controller->changed();
-  }
-  return left;
+  left(count, shadow_rays);
+  return count;
 }
 
 std::unique_ptr<Traverser> make_traverser(const ChipConfiguration& chip, RayTracer& tracer, uint32_t units) {
   switch (chip.traverser) {
     case TraverserName::Static:
       return std::make_unique<StaticTraverser>("traverser", tracer, units, chip);
+    case TraverserName::Modelled:
+      return std::make_unique<ModelledTraverser>("traverser", tracer, chip);
   }
   throw std::logic_error("a traverser without a class");
 }

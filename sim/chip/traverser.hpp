@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <systemc>
 
 #include "chip/chip_clock.hpp"
@@ -14,8 +15,12 @@
 #include "chip/ports.hpp"
 #include "config/configuration.hpp"
 #include "scene/ray_counts.hpp"
+#include "traverser/work.hpp"
 
 namespace raypool::chip {
+
+/// Of the intersection that it becomes.
+ImportKind kind_of(const PooledRay& ray);
 
 struct TraverserCounts {
   RayCounts rays;
@@ -24,7 +29,11 @@ struct TraverserCounts {
   uint64_t most_rays = 0;  ///< that could have been traced by now, had there always been some; 0: no limit
 };
 
-class Traverser : public sc_core::sc_module, public KernelEventsIf, public RayArrivalIf {
+class Traverser : public sc_core::sc_module,
+                  public KernelEventsIf,
+                  public RayArrivalIf,
+                  public RoomIf,
+                  public MemoryUserIf {
  public:
   SC_HAS_PROCESS(Traverser);
   sc_core::sc_port<TimeIf> clock{"clock"};
@@ -33,12 +42,19 @@ class Traverser : public sc_core::sc_module, public KernelEventsIf, public RayAr
   sc_core::sc_port<DirectContributionIf> frame{"frame"};
   sc_core::sc_port<LedgerIf> ledger{"ledger"};
   sc_core::sc_port<DecisionIf> controller{"controller"};
+  sc_core::sc_port<MemoryTurnsIf, 1, sc_core::SC_ZERO_OR_MORE_BOUND> memory{"memory"};
   sc_core::sc_export<KernelEventsIf> kernel_events{"kernel_events"};
   sc_core::sc_export<RayArrivalIf> arrivals{"arrivals"};
+  sc_core::sc_export<RoomIf> room{"room"};
+  sc_core::sc_export<MemoryUserIf> memory_user{"memory_user"};
 
   void ray_arrived() override {}
+  void room_made(ImportKind /*kind*/) override {}
+  void catch_up(uint64_t /*cycle*/) override {}
 
   const TraverserCounts& counts() const { return counts_; }
+  /// What a traverser with a machine inside has done.
+  virtual std::optional<TraverserWork> work() const { return {}; }
 
  protected:
   /// `tracer` must outlive it.
@@ -47,12 +63,21 @@ class Traverser : public sc_core::sc_module, public KernelEventsIf, public RayAr
   /// Traces up to `budget` rays, oldest first, and delivers or drops every traced ray that finds room. Returns how many
   /// left the pool.
   uint32_t advance(uint32_t budget);
+  /// Finds what the ray hits, and what it visits on its way. It is not yet traced.
+  void follow(PooledRay& ray, VisitList& visits);
+  /// Delivers or drops a ray of which is known what it hits. False, if there is no room for what it becomes; else it
+  /// must be erased from the pool, and left() be told.
+  bool leave(const PooledRay& ray);
+  /// So many rays have been erased, of which so many were shadow rays.
+  void left(uint32_t count, uint32_t shadow_rays);
+  /// The frame buffer's port, which a traced ray did not get, is free.
+  virtual void deliver_traced() { advance(0); }
 
   TraverserCounts counts_;
 
  private:
   void trace(PooledRay& ray);
-  bool deliver(const PooledRay& ray, bool shadow);
+  bool deliver(const PooledRay& ray);
   bool contribute(const Ray& ray);
   void next_contribution();
 

@@ -27,7 +27,8 @@ constexpr std::array kWhenDifferent = {"mrays_per_second_thesis",
                                        "caches.",
                                        "pools.",
                                        "memory.",
-                                       "traverser_batches."};
+                                       "traverser_batches.",
+                                       "traversal."};
 
 constexpr size_t kLongestValue = 30;  // characters of a column
 

@@ -18,6 +18,12 @@ double share(uint64_t part, uint64_t rest) {
   return part + rest == 0 ? 0 : static_cast<double>(part) / static_cast<double>(part + rest);
 }
 
+double ratio(uint64_t part, uint64_t whole) {
+  return whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole);
+}
+
+double hit_rate(const CacheWork& cache) { return share(cache.hits, cache.misses + cache.joined); }
+
 double rate(uint64_t count, double seconds) { return seconds > 0 ? static_cast<double>(count) / seconds : 0; }
 
 /// A figure that only an engine with a notion of time has.
@@ -82,15 +88,48 @@ Json ceilings_json(const ChipResult& chip) {
   };
   Json json = {{"issue", ceiling("issue")}};
   for (const std::string_view name : kAluNames) json["alus"][std::string(name)] = ceiling(name);
-  for (const char* name : {"ray_port", "intersection_port", "frame_port", "memory_port", "traverser", "latency"})
+  for (const char* name : {"ray_port", "intersection_port", "frame_port", "memory_port", "traverser", "box_pipes",
+                           "triangle_pipes", "rays_in_flight", "latency"}) {
     json[name] = ceiling(name);
+  }
   const bool any = !chip.ceilings.empty();
   json["lowest"] = any ? Json(chip.ceilings.front().name) : Json(nullptr);
   json["reached"] = any ? Json(chip.mrays_per_s / chip.ceilings.front().mrays_per_s) : Json(nullptr);
   return json;
 }
 
-void add_chip(Json& json, const ChipResult& chip) {
+Json cache_json(const CacheWork& cache) {
+  return {{"hits", cache.hits}, {"misses", cache.misses}, {"joined", cache.joined}, {"hit_rate", hit_rate(cache)}};
+}
+
+Json pipes_json(const PipeWork& pipes, uint64_t count, uint64_t cycles) {
+  return {{"tests", pipes.tests},
+          {"utilisation", ratio(pipes.tests, count * cycles)},
+          {"waiting", ratio(pipes.waiting, cycles)}};
+}
+
+Json traversal_json(const TraverserWork& work, const ChipConfiguration& machine, uint64_t cycles) {
+  return {{"nodes_a_ray", ratio(work.boxes.tests, work.rays)},
+          {"leaves_a_ray", ratio(work.leaves, work.rays)},
+          {"triangles_a_ray", ratio(work.triangles.tests, work.rays)},
+          {"bytes_a_ray", ratio(work.bytes(), work.rays)},
+          {"rays_in_flight",
+           {{"capacity", machine.modelled_traverser_rays},
+            {"peak", work.most_rays},
+            {"mean", ratio(work.ray_cycles, cycles)}}},
+          {"box_pipes", pipes_json(work.boxes, machine.modelled_traverser_box_pipes, cycles)},
+          {"triangle_pipes", pipes_json(work.triangles, machine.modelled_traverser_triangle_pipes, cycles)},
+          {"node_cache", cache_json(work.node_cache)},
+          {"triangle_cache", cache_json(work.triangle_cache)},
+          {"stacks", {{"deepest", work.deepest_stack}, {"spills", work.stack_spills}, {"fills", work.stack_fills}}},
+          {"memory",
+           {{"line_reads", work.memory_lines},
+            {"quadword_writes", work.memory_quadwords},
+            {"row_hits", work.row_hits},
+            {"row_misses", work.row_misses}}}};
+}
+
+void add_chip(Json& json, const ChipResult& chip, const ChipConfiguration& machine) {
   json["cycles"] = timed(chip, chip.cycles);
   json["rays"] = chip.rays();
   json["mrays_per_second"] = timed(chip, chip.mrays_per_s);
@@ -131,8 +170,12 @@ void add_chip(Json& json, const ChipResult& chip) {
   json["memory"] = {{"line_reads", chip.memory_reads},
                     {"quadword_writes", chip.memory_writes},
                     {"port_utilisation", chip.memory_port_utilisation}};
-  json["traverser_batches"] = {{"at_kernel_end", chip.traverser_batches},
-                               {"after_stall", chip.traverser_stall_batches}};
+  if (chip.traversal) {
+    json["traversal"] = traversal_json(*chip.traversal, machine, chip.cycles);
+  } else {
+    json["traverser_batches"] = {{"at_kernel_end", chip.traverser_batches},
+                                 {"after_stall", chip.traverser_stall_batches}};
+  }
 }
 
 void add_native(Json& json, const NativeStatistics& native) {
@@ -212,7 +255,22 @@ void ceiling_line(std::string& text, const ChipResult& chip) {
        100 * chip.mrays_per_s / lowest.mrays_per_s, others);
 }
 
-void chip_table(std::string& text, const ChipResult& chip) {
+void traversal_table(std::string& text, const TraverserWork& work, uint64_t cycles, const ChipConfiguration& machine) {
+  const auto busy = [&](const PipeWork& pipes, uint64_t count) { return 100 * ratio(pipes.tests, count * cycles); };
+  line(text,
+       "  traverser   {:.1f} nodes, {:.1f} triangles and {:.1f} bytes a ray; {:.0f} of {} rays in flight (peak {})",
+       ratio(work.boxes.tests, work.rays), ratio(work.triangles.tests, work.rays), ratio(work.bytes(), work.rays),
+       ratio(work.ray_cycles, cycles), machine.modelled_traverser_rays, work.most_rays);
+  line(text,
+       "    pipes     boxes {:.1f}%, triangles {:.1f}% busy; stacks up to {} deep, {} blocks of them to the memory",
+       busy(work.boxes, machine.modelled_traverser_box_pipes),
+       busy(work.triangles, machine.modelled_traverser_triangle_pipes), work.deepest_stack, work.stack_spills);
+  line(text, "    caches    nodes {:.1f}% hits, triangles {:.1f}% hits; memory {:.1f}% in the open row",
+       100 * hit_rate(work.node_cache), 100 * hit_rate(work.triangle_cache),
+       100 * share(work.row_hits, work.row_misses));
+}
+
+void chip_table(std::string& text, const ChipResult& chip, const ChipConfiguration& machine) {
   if (!chip.timed) {
     kernel_table(text, chip);
     line(text, "  work        {} warp instructions, {} thread instructions", chip.instructions,
@@ -240,6 +298,7 @@ void chip_table(std::string& text, const ChipResult& chip) {
        "  pools       rays {:.0f} of {} (peak {}), intersections {:.0f} normal (peak {}), {:.0f} shadow (peak {})",
        chip.rays_pool.mean, chip.rays_pool.capacity, chip.rays_pool.peak, chip.normal_pool.mean, chip.normal_pool.peak,
        chip.shadow_pool.mean, chip.shadow_pool.peak);
+  if (chip.traversal) traversal_table(text, *chip.traversal, chip.cycles, machine);
   line(text, "  ports       rays {:.1f}%, intersections {:.1f}%, memory {:.1f}% busy", 100 * chip.ray_port_utilisation,
        100 * chip.intersection_port_utilisation, 100 * chip.memory_port_utilisation);
 }
@@ -261,7 +320,7 @@ std::string to_json(const RunRecord& record) {
   json["reflections"] = record.reflections;
   json["units"] = record.units;
   json["traverser"] = configuration["chip"]["traverser"];
-  if (record.chip) add_chip(json, *record.chip);
+  if (record.chip) add_chip(json, *record.chip, record.configuration.chip);
   if (record.native) add_native(json, *record.native);
   if (record.lockstep) json["lockstep"] = lockstep_json(*record.lockstep);
   json["wall_seconds"] = record.wall_seconds;
@@ -281,7 +340,7 @@ std::string to_table(const RunRecord& record) {
        record.units == 1 ? "" : "s");
   if (record.chip) {
     ray_table(text, record, record.chip->ray_counts);
-    chip_table(text, *record.chip);
+    chip_table(text, *record.chip, record.configuration.chip);
   }
   if (record.native) ray_table(text, record, record.native->ray_counts);
   if (record.lockstep) line(text, "  {}", to_string(*record.lockstep));

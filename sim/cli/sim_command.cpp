@@ -93,10 +93,18 @@ std::string progress_text(const ChipProgress& done, bool timed, double seconds) 
   return text;
 }
 
+/// The modelled traverser's nodes are of 64 bytes. No picture depends on it.
+Tracer::Nodes nodes_of(const ChipConfiguration& chip) {
+  return chip.traverser == TraverserName::Modelled ? Tracer::Nodes::Compressed : Tracer::Nodes::Exact;
+}
+
 /// What the chip draws with, for as long as a frame lasts.
 struct Surroundings {
-  Surroundings(const Scene& scene, const MemoryImage& image, int width, int height)
-      : tracer(scene, image.material_base), scene_tracer(tracer), frame(width, height), sink(frame) {}
+  Surroundings(const Scene& scene, const MemoryImage& image, const RunRecord& record)
+      : tracer(scene, image.material_base, nodes_of(record.configuration.chip)),
+        scene_tracer(tracer),
+        frame(record.width, record.height),
+        sink(frame) {}
   const Tracer tracer;
   SceneTracer scene_tracer;
   FrameBuffer frame;
@@ -163,7 +171,7 @@ FrameBuffer draw_on_unit(const SimOptions& options, Engine engine, RunRecord& re
   std::unique_ptr<ComputeUnit> device = make_device(options, engine, record, image);
   if (options.wrap) device = options.wrap(std::move(device), image.memory);
   if (options.waves) device->open_waveform(out.temporary("waves.fst"));
-  Surroundings around(scene, image, record.width, record.height);
+  Surroundings around(scene, image, record);
   ChipOptions chip = chip_options(record, scene, image, *device, around);
   try {
     Progress progress(options.quiet || options.json);
@@ -188,7 +196,7 @@ FrameBuffer draw_on_unit(const SimOptions& options, Engine engine, RunRecord& re
 void print_modules(const SimOptions& options, Engine engine, const RunRecord& record, const Scene& scene,
                    MemoryImage& image) {
   const std::unique_ptr<ComputeUnit> device = make_device(options, engine, record, image);
-  Surroundings around(scene, image, record.width, record.height);
+  Surroundings around(scene, image, record);
   fmt::print("{}", chip_modules(chip_options(record, scene, image, *device, around)));
 }
 

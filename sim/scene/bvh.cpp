@@ -90,6 +90,7 @@ class Flattener {
   uint32_t add_block(const BuildNode& leaf) {
     TriangleBlock block{};
     block.count = leaf.count;
+    block.first = bvh_.blocks.empty() ? 0 : bvh_.blocks.back().first + bvh_.blocks.back().count;
     for (uint32_t i = 0; i < kBvhWidth; ++i) {
       const bool used = i < leaf.count;
       block.triangles[i] = used ? leaf.triangles[i] : kNoChild;

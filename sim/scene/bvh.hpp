@@ -30,7 +30,8 @@ struct alignas(64) TriangleBlock {
   float vertices[3][3][kBvhWidth];  ///< corner; x, y, z; triangle
   uint32_t triangles[kBvhWidth];    ///< index in the scene, kNoChild when unused
   uint32_t count;
-  uint32_t padding[7];
+  uint32_t first;  ///< triangles in the blocks before it
+  uint32_t padding[6];
 };
 static_assert(sizeof(TriangleBlock) == 192);
 

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "bits.hpp"
+#include "scene/compressed_node.hpp"
 #include "scene/simd4.hpp"
 
 namespace raypool {
@@ -242,10 +243,13 @@ bool traverse(const Bvh& bvh, const PreparedRay& ray, Candidate& best, Traversal
   stack[depth++] = {0, 0};
   while (depth > 0) {
     const Entry top = stack[--depth];
-    if (top.t > best.t) continue;
-    if (visits != nullptr) visits->push_back(top.child);
+    if (top.t > best.t) {
+      if (visits != nullptr) ++visits->back().discarded;
+      continue;
+    }
     if ((top.child & kLeafBit) != 0) {
       const TriangleBlock& block = bvh.blocks[top.child & ~kLeafBit];
+      if (visits != nullptr) visits->push_back({block.first, static_cast<uint8_t>(block.count), 0, 0});
       ++blocks;
       triangles += block.count;
       found |= intersect_block(ray, block, best);
@@ -256,6 +260,7 @@ bool traverse(const Bvh& bvh, const PreparedRay& ray, Candidate& best, Traversal
     ++nodes;
     float entry[kBvhWidth];
     unsigned lanes = intersect_boxes(ray, box_ray, node, best.t, entry);
+    if (visits != nullptr) visits->push_back({top.child, 0, static_cast<uint8_t>(popcount(lanes)), 0});
     // The nearest child must end on top: insertion sort, furthest first.
     const int base = depth;
     for (; lanes != 0; lanes &= lanes - 1) {
@@ -288,6 +293,10 @@ int tree_depth(const Bvh& bvh) {
 }  // namespace
 
 Traversal::Traversal(const Scene& scene) { set_bvh(build_bvh(scene)); }
+
+void Traversal::compress_nodes() {
+  for (BvhNode& node : bvh_.nodes) node = decompress(compress(node));
+}
 
 void Traversal::set_bvh(Bvh bvh) {
   if (tree_depth(bvh) > kMaxDepth)
@@ -325,7 +334,8 @@ RayQuery to_query(const Ray& ray) {
   return {vector(word::kOrigin), vector(word::kDirection), as_float(ray[word::kLimit])};
 }
 
-Tracer::Tracer(const Scene& scene, uint32_t material_base) : traversal_(scene) {
+Tracer::Tracer(const Scene& scene, uint32_t material_base, Nodes nodes) : traversal_(scene) {
+  if (nodes == Nodes::Compressed) traversal_.compress_nodes();
   material_words_.reserve(scene.triangles.size());
   for (uint32_t material : scene.triangle_materials) {
     material_words_.push_back(material_base + material * static_cast<uint32_t>(kMaterialBytes));

@@ -29,8 +29,20 @@ struct TraversalCounts {
   uint64_t blocks = 0;     ///< leaves
   uint64_t triangles = 0;  ///< triangles in them
 };
-/// Nodes and leaves in the order of visit; a leaf has kLeafBit. They are appended to.
-using VisitList = std::vector<uint32_t>;
+/// What a ray does at a node, whose four boxes it tests, or at a leaf, all of whose triangles it tests.
+struct Visit {
+  uint32_t place = 0;     ///< number of the node; of the leaf's first triangle, counted leaf by leaf
+  uint8_t triangles = 0;  ///< of the leaf; 0: a node
+  uint8_t children = 0;   ///< of the node that the ray meets: it goes on with the nearest, the others wait on the stack
+  uint16_t discarded = 0;  ///< taken from the stack then, and found to lie behind the best hit
+
+  bool operator==(const Visit& other) const {
+    return place == other.place && triangles == other.triangles && children == other.children &&
+           discarded == other.discarded;
+  }
+};
+/// Visits in their order. They are appended to.
+using VisitList = std::vector<Visit>;
 
 struct RayQuery {
   Vec3 origin;
@@ -51,6 +63,8 @@ class Traversal {
   bool nearest_of_all(const RayQuery& ray, Hit& hit) const;
 
   const Bvh& bvh() const { return bvh_; }
+  /// Makes every box what a node of 64 bytes has of it (compressed_node.hpp): no answer changes, visits do.
+  void compress_nodes();
   /// Replaces the tree by another over the same triangles; no answer changes. For tests.
   void set_bvh(Bvh bvh);
 
@@ -61,8 +75,11 @@ class Traversal {
 /// The traverser of the chip and of the native renderer: packages in, packages out. Safe to use from several threads.
 class Tracer {
  public:
+  /// Of the tree that it walks: boxes as they are, or those of nodes of 64 bytes. No answer depends on it.
+  enum class Nodes : uint8_t { Exact, Compressed };
+
   /// Material words are material_base + 32 * the triangle's material index. Keeps nothing of `scene`.
-  explicit Tracer(const Scene& scene, uint32_t material_base = 0);
+  explicit Tracer(const Scene& scene, uint32_t material_base = 0, Nodes nodes = Nodes::Exact);
 
   /// Normal ray: true and the intersection when it hits, false when it misses. Shadow ray: false when it is blocked;
   /// true when it is free, with words 12 .. 20 of the intersection zero. Words 0 .. 11 are the ray's.

@@ -268,6 +268,7 @@ TEST(Traversal, AnswerDoesNotDependOnTheTree) {
     for (uint32_t seed : {1u, 2u, 3u}) {
       Traversal bad(scene);
       bad.set_bvh(random_tree(good.bvh(), seed));
+      if (seed == 2) bad.compress_nodes();
       for (const RayQuery& ray : hard_rays(scene, 6000, seed)) {
         Hit a, b;
         const bool found = good.nearest(ray, a);
@@ -275,6 +276,56 @@ TEST(Traversal, AnswerDoesNotDependOnTheTree) {
         ASSERT_TRUE(!found || same(a, b)) << "seed " << seed;
         ASSERT_EQ(good.occluded(ray), found);
         ASSERT_EQ(bad.occluded(ray), found);
+      }
+    }
+  }
+}
+
+TEST(Traversal, AnswerIsTheSameWithCompressedNodes) {
+  const Scene scene = make_room(0.05);
+  const Traversal exact(scene);
+  Traversal compressed(scene);
+  compressed.compress_nodes();
+  TraversalCounts exact_counts, compressed_counts;
+  for (const RayQuery& ray : hard_rays(scene, 20000, 11)) {
+    Hit a, b;
+    const bool found = exact.nearest(ray, a, &exact_counts);
+    ASSERT_EQ(found, compressed.nearest(ray, b, &compressed_counts));
+    ASSERT_TRUE(!found || same(a, b));
+    ASSERT_EQ(compressed.occluded(ray), found);
+  }
+  EXPECT_GT(compressed_counts.nodes, exact_counts.nodes);
+  EXPECT_LT(compressed_counts.nodes, exact_counts.nodes * 11 / 10);
+}
+
+TEST(Traversal, VisitsSayWhatTheStackDoes) {
+  const Scene scene = make_room(0.05);
+  const Traversal traversal(scene);
+  for (const RayQuery& ray : hard_rays(scene, 3000, 12)) {
+    for (const bool any : {false, true}) {
+      Hit hit;
+      TraversalCounts counts;
+      VisitList visits;
+      const bool found =
+          any ? traversal.occluded(ray, &counts, &visits) : traversal.nearest(ray, hit, &counts, &visits);
+      uint64_t nodes = 0, leaves = 0, triangles = 0;
+      int64_t stack = 1;  // the root
+      for (const Visit& visit : visits) {
+        --stack;  // it has been taken
+        ASSERT_GE(stack, 0);
+        nodes += visit.triangles == 0;
+        leaves += visit.triangles > 0;
+        triangles += visit.triangles;
+        ASSERT_TRUE(visit.children == 0 || visit.discarded == 0) << "the nearest child lies before the best hit";
+        stack += visit.children - visit.discarded;
+      }
+      EXPECT_EQ(nodes, counts.nodes);
+      EXPECT_EQ(leaves, counts.blocks);
+      EXPECT_EQ(triangles, counts.triangles);
+      if (any && found) {
+        EXPECT_GT(visits.back().triangles, 0) << "it ends with the leaf of its blocker";
+      } else if (!visits.empty()) {
+        EXPECT_EQ(stack, 0);
       }
     }
   }

@@ -1,0 +1,94 @@
+#include "chip/modelled_traverser.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <stdexcept>
+
+namespace raypool::chip {
+
+ModelledTraverser::ModelledTraverser(const sc_core::sc_module_name& name, RayTracer& tracer,
+                                     const ChipConfiguration& chip)
+    : Traverser(name, tracer, chip), core_(chip, *this), in_flight_(chip.modelled_traverser_rays) {
+  SC_METHOD(step);
+  sensitive << step_;
+  dont_initialize();
+}
+
+void ModelledTraverser::ray_arrived() {
+  untaken_.push_back(clock->cycle());
+  clock->notify(step_, Phase::Traverser, core_.least_latency());
+}
+
+void ModelledTraverser::room_made(ImportKind kind) {
+  if (!held_back(kind).empty()) clock->notify(step_, Phase::Traverser);
+}
+
+void ModelledTraverser::catch_up(uint64_t cycle) {
+  if (simulate(cycle - 1)) throw std::logic_error("a ray left the traverser sooner than it could");
+}
+
+bool ModelledTraverser::simulate(uint64_t to) {
+  while (now_ < to) {
+    uint64_t next = core_.next();
+    if (core_.ready() && !untaken_.empty()) next = std::min(next, untaken_.front());
+    next = std::max(next, now_ + 1);
+    if (next > to) break;
+    now_ = next;
+    core_.clock(now_);
+    const bool done = core_.valid();
+    if (done) ray_done();
+    if (core_.ready() && !untaken_.empty() && untaken_.front() <= now_) take_ray();
+    if (done) return true;
+  }
+  now_ = std::max(now_, to);
+  return false;
+}
+
+// The oldest that has not entered.
+void ModelledTraverser::take_ray() {
+  const auto ray = std::prev(rays->rays().end(), static_cast<std::ptrdiff_t>(untaken_.size()));
+  untaken_.pop_front();
+  visits_.clear();
+  follow(*ray, visits_);
+  in_flight_[core_.push(visits_)] = ray;
+}
+
+// One that leaves nothing needs no room.
+void ModelledTraverser::ray_done() {
+  const PooledRays::iterator ray = in_flight_[core_.slot()];
+  const ImportKind kind = kind_of(*ray);
+  if ((ray->goes_on && !held_back(kind).empty()) || !leave(*ray)) {
+    held_back(kind).push_back(ray);
+    return;
+  }
+  rays->rays().erase(ray);
+  left(1, kind == ImportKind::Shadow ? 1 : 0);
+}
+
+void ModelledTraverser::deliver_traced() {
+  for (const ImportKind kind : {ImportKind::Normal, ImportKind::Shadow}) {
+    uint32_t count = 0;
+    for (auto& waiting = held_back(kind); !waiting.empty() && leave(*waiting.front()); waiting.pop_front()) {
+      ++count;
+      rays->rays().erase(waiting.front());
+    }
+    left(count, kind == ImportKind::Shadow ? count : 0);
+  }
+}
+
+void ModelledTraverser::step() {
+  clock->guard([&] {
+    if (simulate(clock->cycle()) && now_ != clock->cycle())
+      throw std::logic_error("a ray left the traverser sooner than it could");
+    deliver_traced();
+    wake_again();
+  });
+}
+
+void ModelledTraverser::wake_again() {
+  uint64_t next = core_.earliest_done(now_);
+  if (!untaken_.empty()) next = std::min(next, now_ + 1 + core_.least_latency());
+  if (next != kNever) clock->notify(step_, Phase::Traverser, next - now_);
+}
+
+}  // namespace raypool::chip

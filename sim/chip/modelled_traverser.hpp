@@ -1,0 +1,57 @@
+// A traverser with a machine inside (traverser/core.hpp): a ray enters as soon as one in flight has left, and leaves
+// when its tests have been made. It keeps its place in the ray pool meanwhile, and until there is room for what it
+// becomes.
+//
+// The machine is behind the device in time: it is clocked as far as is needed, when a ray may leave it, or when the
+// device takes a turn at the memory port that both share. How early a ray can leave is known from what it has still to
+// visit, so the device can run ahead until then.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "chip/traverser.hpp"
+#include "traverser/core.hpp"
+
+namespace raypool::chip {
+
+class ModelledTraverser : public Traverser, private traverser::MemoryTurns {
+ public:
+  SC_HAS_PROCESS(ModelledTraverser);
+  ModelledTraverser(const sc_core::sc_module_name& name, RayTracer& tracer, const ChipConfiguration& chip);
+
+  void ray_arrived() override;
+  void room_made(ImportKind kind) override;
+  void kernel_ended(uint32_t /*unit*/) override {}
+  void catch_up(uint64_t cycle) override;
+  std::optional<TraverserWork> work() const override { return core_.work(); }
+
+ private:
+  uint64_t turn(uint64_t cycle, uint32_t beats) override { return memory->turn(cycle, beats); }
+  uint64_t line(uint64_t start, uint64_t end) override { return memory->line(start, end); }
+
+  void step();
+  /// Clocks the machine up to this cycle, or until a ray leaves it. True if one does.
+  bool simulate(uint64_t to);
+  void take_ray();
+  void ray_done();
+  void deliver_traced() override;
+  void wake_again();
+  /// Rays that are done, and without room for what they become.
+  std::deque<PooledRays::iterator>& held_back(ImportKind kind) {
+    return held_back_[kind == ImportKind::Shadow ? 1 : 0];
+  }
+
+  traverser::Core core_;
+  sc_core::sc_event step_;
+  uint64_t now_ = 0;              // the machine's time
+  std::deque<uint64_t> untaken_;  // cycles in which rays arrived that have not entered: the youngest of the pool
+  std::vector<PooledRays::iterator> in_flight_;  // [slot of the machine]
+  std::array<std::deque<PooledRays::iterator>, 2> held_back_;
+  VisitList visits_;
+};
+
+}  // namespace raypool::chip

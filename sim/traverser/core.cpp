@@ -1,0 +1,248 @@
+#include "traverser/core.hpp"
+
+#include <algorithm>
+
+namespace raypool::traverser {
+
+namespace {
+
+constexpr uint32_t kLineBytes = 64, kTriangleBytes = 48;
+
+/// A leaf's triangles lie one behind the other, so that some share a line, and some lie in two.
+uint32_t first_line(const Visit& leaf) {
+  return static_cast<uint32_t>(uint64_t{leaf.place} * kTriangleBytes / kLineBytes);
+}
+uint32_t lines(const Visit& visit) {
+  if (visit.triangles == 0) return 1;
+  const uint64_t end = (uint64_t{visit.place} + visit.triangles) * kTriangleBytes;
+  return static_cast<uint32_t>((end - 1) / kLineBytes) - first_line(visit) + 1;
+}
+/// Triangles of the leaf that end in this line.
+uint32_t triangles_of(const Visit& leaf, uint32_t line) {
+  const uint64_t line_end = (uint64_t{first_line(leaf)} + line + 1) * kLineBytes;
+  const auto complete = [&](uint64_t end) {
+    return std::clamp<uint64_t>(end / kTriangleBytes, leaf.place, uint64_t{leaf.place} + leaf.triangles);
+  };
+  return static_cast<uint32_t>(complete(line_end) - complete(line_end - kLineBytes));
+}
+
+/// Entries that are taken from the stack after a visit: those that lie too far, and that of the next visit.
+uint32_t pops(const VisitList& visits, size_t visit) {
+  const Visit& present = visits[visit];
+  return present.discarded + (visit + 1 < visits.size() && present.children == 0 ? 1u : 0u);
+}
+
+FetchUnit::Setup node_fetch(const ChipConfiguration& chip) {
+  return {chip.modelled_traverser_box_pipes,       chip.modelled_traverser_cache_latency,
+          chip.modelled_traverser_cache_banks,     chip.modelled_traverser_node_cache_bytes,
+          chip.modelled_traverser_node_cache_ways, chip.modelled_traverser_node_cache_mshrs};
+}
+
+FetchUnit::Setup triangle_fetch(const ChipConfiguration& chip) {
+  return {chip.modelled_traverser_triangle_pipes,      chip.modelled_traverser_cache_latency,
+          chip.modelled_traverser_cache_banks,         chip.modelled_traverser_triangle_cache_bytes,
+          chip.modelled_traverser_triangle_cache_ways, chip.modelled_traverser_triangle_cache_mshrs};
+}
+
+}  // namespace
+
+Core::Core(const ChipConfiguration& chip, MemoryTurns& turns)
+    : cache_latency_(chip.modelled_traverser_cache_latency),
+      box_latency_(chip.modelled_traverser_box_latency),
+      triangle_latency_(chip.modelled_traverser_triangle_latency),
+      memory_latency_(chip.memory_latency),
+      slots_(chip.modelled_traverser_rays),
+      setup_(chip.modelled_traverser_setup_latency),
+      nodes_(node_fetch(chip)),
+      triangles_(triangle_fetch(chip)),
+      box_pipes_(chip.modelled_traverser_box_pipes, chip.modelled_traverser_box_latency),
+      triangle_pipes_(chip.modelled_traverser_triangle_pipes, chip.modelled_traverser_triangle_latency),
+      stacks_(chip.modelled_traverser_rays, chip.modelled_traverser_stack_entries),
+      memory_(chip, turns),
+      finish_(chip.modelled_traverser_finish_latency) {
+  for (uint32_t slot = 0; slot < slots_.size(); ++slot) free_.push_back(slot);
+}
+
+// From the first lookup until the last result.
+uint64_t Core::least(const Visit& visit) const {
+  const uint32_t count = lines(visit);
+  return count * cache_latency_ + (count - 1) + (visit.triangles == 0 ? box_latency_ : triangle_latency_);
+}
+
+uint32_t Core::push(const VisitList& visits) {
+  const uint32_t index = free_.front();
+  free_.pop_front();
+  work_.ray_cycles += (cycle_ - since_) * in_flight_;
+  since_ = cycle_;
+  ++work_.rays;
+  work_.most_rays = std::max(work_.most_rays, ++in_flight_);
+  Slot& slot = slots_[index];
+  slot.taken = true;
+  slot.wanted = false;
+  slot.visit = slot.line = 0;
+  slot.visits = visits;
+  stacks_.clear(index);
+  slot.rest = finish_.latency();
+  for (size_t i = 0; i < visits.size(); ++i) slot.rest += least(visits[i]) + std::max(1u, pops(visits, i));
+  slot.earliest = cycle_ + setup_.latency() + slot.rest;
+  if (!visits.empty()) --slot.rest;  // the first lookup is in the cycle after
+  setup_.push(cycle_, index);
+  return index;
+}
+
+// The blocks from the far end on: what one gives in a cycle, the next takes in that cycle.
+void Core::clock(uint64_t cycle) {
+  cycle_ = cycle;
+  take_lines();
+  stacks_.clock();
+  for (const uint32_t slot : stacks_.done()) go_on(slot);
+  take_results(box_pipes_);
+  take_results(triangle_pipes_);
+  take_prepared();
+  take_data(nodes_, box_pipes_);
+  take_data(triangles_, triangle_pipes_);
+  box_pipes_.clock(cycle);
+  triangle_pipes_.clock(cycle);
+  if (box_pipes_.ready(nodes_.on_the_way())) nodes_.clock(cycle, *this);
+  if (triangle_pipes_.ready(triangles_.on_the_way())) triangles_.clock(cycle, *this);
+  memory_.clock(cycle, nodes_, triangles_, stacks_, *this);
+  finish();
+}
+
+void Core::take_lines() {
+  while (memory_.valid(cycle_)) {
+    const TreeMemory::Returned returned = memory_.take();
+    switch (returned.source) {
+      case TreeMemory::Source::Nodes:
+        nodes_.fill(returned.which);
+        break;
+      case TreeMemory::Source::Triangles:
+        triangles_.fill(returned.which);
+        break;
+      case TreeMemory::Source::Stacks:
+        stacks_.filled(returned.which);
+        break;
+    }
+  }
+}
+
+void Core::take_prepared() {
+  while (setup_.valid(cycle_)) {
+    const uint32_t slot = setup_.take();
+    if (slots_[slot].visits.empty()) {
+      done_.push_back(slot);
+    } else {
+      want(slot);
+    }
+  }
+}
+
+void Core::take_data(FetchUnit& fetch, TestPipes& pipes) {
+  while (fetch.valid(cycle_)) {
+    const Fetch data = fetch.take();
+    for (uint32_t i = 0; i < data.tests; ++i) pipes.push(data.slot);
+    if (data.last) continue;
+    ++slots_[data.slot].line;
+    want(data.slot);
+  }
+}
+
+void Core::take_results(TestPipes& pipes) {
+  while (pipes.valid(cycle_)) {
+    const uint32_t slot = pipes.take();
+    if (--slots_[slot].tests == 0) visited(slot);
+  }
+}
+
+// A leaf's lines are wanted one after the other: a triangle may need two.
+void Core::want(uint32_t index) {
+  Slot& slot = slots_[index];
+  const Visit& visit = slot.visits[slot.visit];
+  const bool node = visit.triangles == 0;
+  if (slot.line == 0) {
+    slot.tests = node ? 1 : visit.triangles;
+    if (!node) ++work_.leaves;
+  } else {
+    slot.rest -= cache_latency_ + 1;
+  }
+  slot.wanted = true;
+  slot.earliest = cycle_ + 1 + slot.rest;
+  if (node) {
+    nodes_.push(cycle_, {index, visit.place, 1, true});
+  } else {
+    triangles_.push(
+        cycle_, {index, first_line(visit) + slot.line, triangles_of(visit, slot.line), slot.line + 1 == lines(visit)});
+  }
+}
+
+// `rest` was counted from a lookup that hits.
+void Core::looked_up(uint32_t index, uint64_t due) {
+  Slot& slot = slots_[index];
+  slot.wanted = false;
+  if (due == kNever) due = cycle_ + memory_latency_;
+  slot.earliest = due - cache_latency_ + slot.rest;
+}
+
+void Core::visited(uint32_t index) {
+  Slot& slot = slots_[index];
+  const Visit& visit = slot.visits[slot.visit];
+  if (visit.children > 1) stacks_.push(index, visit.children - 1u);
+  const uint32_t taken = pops(slot.visits, slot.visit);
+  // What has been of this visit: its last line, its tests, and what is taken from the stack.
+  slot.rest -= cache_latency_ + (visit.triangles == 0 ? box_latency_ : triangle_latency_) + std::max(1u, taken);
+  if (taken == 0 || stacks_.pop(index, taken)) go_on(index);
+}
+
+void Core::go_on(uint32_t index) {
+  Slot& slot = slots_[index];
+  slot.line = 0;
+  if (++slot.visit < slot.visits.size()) {
+    want(index);
+  } else {
+    done_.push_back(index);
+  }
+}
+
+void Core::finish() {
+  if (!done_.empty()) {
+    finish_.push(cycle_, done_.front());
+    done_.pop_front();
+  }
+  finished_ = finish_.valid(cycle_);
+  if (!finished_) return;
+  slot_ = finish_.take();
+  slots_[slot_].taken = false;
+  free_.push_back(slot_);
+  work_.ray_cycles += (cycle_ - since_) * in_flight_--;
+  since_ = cycle_;
+}
+
+uint64_t Core::next() const {
+  if (!done_.empty()) return cycle_ + 1;
+  return std::min({setup_.next(), nodes_.next(cycle_), triangles_.next(cycle_), box_pipes_.next(cycle_),
+                   triangle_pipes_.next(cycle_), stacks_.next(cycle_), memory_.next(), finish_.next()});
+}
+
+uint64_t Core::earliest_done(uint64_t now) const {
+  uint64_t earliest = kNever;
+  for (const Slot& slot : slots_) {
+    if (!slot.taken) continue;
+    earliest = std::min(earliest, slot.wanted ? std::max(slot.earliest, now + 1 + slot.rest) : slot.earliest);
+  }
+  return std::max(earliest, now + 1);
+}
+
+TraverserWork Core::work() const {
+  TraverserWork work = work_;
+  work.boxes = box_pipes_.work();
+  work.triangles = triangle_pipes_.work();
+  work.node_cache = nodes_.work();
+  work.triangle_cache = triangles_.work();
+  work.deepest_stack = stacks_.deepest();
+  work.stack_spills = stacks_.spills();
+  work.stack_fills = stacks_.fills();
+  memory_.add_to(work);
+  return work;
+}
+
+}  // namespace raypool::traverser

@@ -1,0 +1,93 @@
+// The traverser as a machine: rays in flight, each of which does one thing after another, and the blocks that all of
+// them share. A ray is prepared; then, visit for visit, the lines of a node or leaf are fetched, its tests go through
+// the pipes, and its stack says where it goes on; in the end its hit is completed.
+//
+// What a ray visits is known when it enters (VisitList). Since it does one visit after the other, the order cannot
+// depend on the other rays, and only the time is left to be found.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <vector>
+
+#include "config/configuration.hpp"
+#include "scene/traversal.hpp"
+#include "traverser/delay_line.hpp"
+#include "traverser/fetch_unit.hpp"
+#include "traverser/ray_stacks.hpp"
+#include "traverser/test_pipes.hpp"
+#include "traverser/tree_memory.hpp"
+#include "traverser/work.hpp"
+
+namespace raypool::traverser {
+
+class Core : private LookupListener {
+ public:
+  /// `turns` must outlive it.
+  Core(const ChipConfiguration& chip, MemoryTurns& turns);
+
+  /// A ray may enter, one in a cycle.
+  bool ready() const { return !free_.empty(); }
+  /// A ray enters in the cycle of the last clock(). Returns its slot.
+  uint32_t push(const VisitList& visits);
+
+  /// A cycle, after all earlier ones in which something happens: see next().
+  void clock(uint64_t cycle);
+  /// A ray is done in the cycle of the last clock(): its slot is free again.
+  bool valid() const { return finished_; }
+  uint32_t slot() const { return slot_; }
+
+  /// The next cycle in which anything can happen, if no ray enters.
+  uint64_t next() const;
+  /// The first cycle after `now`, up to which it has been clocked, in which a ray can be done, if none enters.
+  uint64_t earliest_done(uint64_t now) const;
+  /// Cycles that a ray takes at least.
+  uint64_t least_latency() const { return setup_.latency() + finish_.latency(); }
+
+  TraverserWork work() const;
+
+ private:
+  struct Slot {
+    bool taken = false;
+    bool wanted = false;    // waits for a lookup
+    uint32_t visit = 0;     // the present one
+    uint32_t line = 0;      // of it
+    uint32_t tests = 0;     // of it, whose result is to come
+    uint64_t rest = 0;      // cycles at least, from the lookup until it is done
+    uint64_t earliest = 0;  // cycle in which it can be done
+    VisitList visits;
+  };
+
+  void looked_up(uint32_t slot, uint64_t due) override;
+  void take_lines();
+  void take_prepared();
+  void take_data(FetchUnit& fetch, TestPipes& pipes);
+  void take_results(TestPipes& pipes);
+  /// The ray begins its present visit, or a further line of it.
+  void want(uint32_t slot);
+  void visited(uint32_t slot);
+  void go_on(uint32_t slot);
+  void finish();
+  uint64_t least(const Visit& visit) const;
+
+  const uint64_t cache_latency_, box_latency_, triangle_latency_, memory_latency_;
+  std::vector<Slot> slots_;
+  std::deque<uint32_t> free_;
+  uint32_t in_flight_ = 0;
+  uint64_t cycle_ = 0;
+
+  DelayLine<uint32_t> setup_;
+  FetchUnit nodes_, triangles_;
+  TestPipes box_pipes_, triangle_pipes_;
+  RayStacks stacks_;
+  TreeMemory memory_;
+  std::deque<uint32_t> done_;  // visited everything
+  DelayLine<uint32_t> finish_;
+  bool finished_ = false;
+  uint32_t slot_ = 0;
+
+  uint64_t since_ = 0;  // cycle up to which ray_cycles are counted
+  TraverserWork work_;
+};
+
+}  // namespace raypool::traverser

@@ -1,0 +1,73 @@
+// The way to a cache: lines that rays want, in their order, looked up so many in a cycle, as far as the cache's banks
+// allow; and those that have come. A bank gives one line in a cycle, to all who want it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <vector>
+
+#include "traverser/delay_line.hpp"
+#include "traverser/line_cache.hpp"
+
+namespace raypool::traverser {
+
+/// Is told what a lookup came to, so that it knows how soon a ray can be done.
+class LookupListener {
+ public:
+  virtual ~LookupListener() = default;
+  /// The data comes in cycle `due`; kNever: that is not known.
+  virtual void looked_up(uint32_t slot, uint64_t due) = 0;
+};
+
+class FetchUnit {
+ public:
+  struct Setup {
+    uint32_t lookups;  ///< in a cycle
+    uint32_t latency;
+    uint32_t banks;
+    uint32_t bytes, ways, mshrs;
+  };
+  explicit FetchUnit(const Setup& setup);
+
+  /// A line is wanted, from the next cycle on.
+  void push(uint64_t cycle, const Fetch& fetch) { wanted_.push_back({cycle + 1, fetch}); }
+  /// Lookups; who takes the data must be ready for them.
+  void clock(uint64_t cycle, LookupListener& listener);
+  size_t on_the_way() const { return hits_.size(); }
+
+  /// Data has come.
+  bool valid(uint64_t cycle) const { return !filled_.empty() || hits_.valid(cycle); }
+  Fetch take();
+
+  // To the memory.
+  bool request_valid() const { return !requests_.empty(); }
+  uint32_t take_request();
+  /// The line that was requested will come then.
+  void promise(uint32_t line, uint64_t cycle, LookupListener& listener);
+  void fill(uint32_t line);
+
+  uint64_t next(uint64_t cycle) const;
+  const CacheWork& work() const { return cache_.work(); }
+
+ private:
+  struct Wanted {
+    uint64_t from;
+    Fetch fetch;
+  };
+  struct Bank {
+    uint64_t cycle = kNever;  // in which it gave
+    uint32_t line = 0;        // this one
+  };
+  bool bank_free(uint64_t cycle, uint32_t line);
+
+  Setup setup_;
+  LineCache cache_;
+  std::deque<Wanted> wanted_;
+  DelayLine<Fetch> hits_;
+  std::deque<Fetch> filled_;
+  std::deque<uint32_t> requests_;
+  std::vector<Bank> banks_;
+};
+
+}  // namespace raypool::traverser

@@ -1,0 +1,56 @@
+#include "traverser/line_cache.hpp"
+
+#include <gtest/gtest.h>
+
+namespace raypool::traverser {
+namespace {
+
+using Answer = LineCache::Answer;
+
+Fetch of(uint32_t slot, uint32_t line) { return {slot, line, 1, true}; }
+
+TEST(LineCache, GivesALineToWhoWaitedForIt) {
+  LineCache cache(1024, 2, 2);
+  EXPECT_EQ(cache.lookup(of(0, 5)), Answer::Missed);
+  EXPECT_EQ(cache.lookup(of(1, 5)), Answer::Joined);
+  EXPECT_EQ(cache.lookup(of(2, 6)), Answer::Missed);
+  EXPECT_EQ(cache.lookup(of(3, 7)), Answer::Busy) << "there are two registers";
+  const std::vector<Fetch> first = cache.fill(5);
+  ASSERT_EQ(first.size(), 2u);
+  EXPECT_EQ(first[0].slot, 0u);
+  EXPECT_EQ(first[1].slot, 1u);
+  EXPECT_EQ(cache.lookup(of(4, 5)), Answer::Hit);
+  EXPECT_EQ(cache.lookup(of(3, 7)), Answer::Missed);
+  EXPECT_EQ(cache.work().hits, 1u);
+  EXPECT_EQ(cache.work().misses, 3u);
+  EXPECT_EQ(cache.work().joined, 1u);
+}
+
+TEST(LineCache, TheLeastRecentlyUsedLineOfTheSetGoes) {
+  LineCache cache(1024, 2, 4);  // 8 sets
+  for (const uint32_t line : {3u, 11u}) {
+    cache.lookup(of(0, line));
+    cache.fill(line);
+  }
+  EXPECT_EQ(cache.lookup(of(0, 3)), Answer::Hit);
+  cache.lookup(of(0, 19));
+  cache.fill(19);
+  EXPECT_EQ(cache.lookup(of(0, 3)), Answer::Hit);
+  EXPECT_EQ(cache.lookup(of(0, 19)), Answer::Hit);
+  EXPECT_EQ(cache.lookup(of(0, 11)), Answer::Missed);
+}
+
+TEST(LineCache, KeepsAsManyLinesAsItHasBytes) {
+  for (const uint32_t bytes : {1024u, 4096u}) {
+    LineCache cache(bytes, 4, 1);
+    for (uint32_t line = 0; line < bytes / 64; ++line) {
+      cache.lookup(of(0, line));
+      cache.fill(line);
+    }
+    for (uint32_t line = 0; line < bytes / 64; ++line) EXPECT_EQ(cache.lookup(of(0, line)), Answer::Hit);
+    EXPECT_EQ(cache.lookup(of(0, bytes / 64)), Answer::Missed);
+  }
+}
+
+}  // namespace
+}  // namespace raypool::traverser

@@ -1,0 +1,47 @@
+// Pipes of one kind, for nodes or for triangles: a queue of tests whose data is there, of which each pipe begins one in
+// a cycle, and the pipes.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+
+#include "traverser/delay_line.hpp"
+#include "traverser/work.hpp"
+
+namespace raypool::traverser {
+
+class TestPipes {
+ public:
+  TestPipes(uint32_t pipes, uint32_t latency) : pipes_(pipes), line_(latency) {}
+
+  /// There is room for what so many lookups bring. What the memory brings comes in any case, out of the registers.
+  bool ready(size_t on_the_way) const { return queue_.size() + on_the_way < kQueue * pipes_; }
+  /// A test of the ray in `slot`.
+  void push(uint32_t slot) { queue_.push_back(slot); }
+
+  void clock(uint64_t cycle) {
+    for (uint32_t i = 0; i < pipes_ && !queue_.empty(); ++i) {
+      line_.push(cycle, queue_.front());
+      queue_.pop_front();
+      ++work_.tests;
+    }
+    work_.waiting += queue_.size();
+  }
+
+  /// A test's result is there, that of the ray in take().
+  bool valid(uint64_t cycle) const { return line_.valid(cycle); }
+  uint32_t take() { return line_.take(); }
+
+  uint64_t next(uint64_t cycle) const { return queue_.empty() ? line_.next() : cycle + 1; }
+  const PipeWork& work() const { return work_; }
+
+ private:
+  static constexpr size_t kQueue = 4;  // places, for each pipe
+  uint32_t pipes_;
+  std::deque<uint32_t> queue_;
+  DelayLine<uint32_t> line_;
+  PipeWork work_;
+};
+
+}  // namespace raypool::traverser
