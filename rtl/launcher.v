@@ -1,5 +1,5 @@
 // Takes launches: one may wait while a kernel runs. Starts the warps, notices the end of the kernel.
-// With OVERLAP a launch begins as soon as no more than one kernel runs, and all warps of that one have started: each of
+// With OVERLAP a launch begins as soon as no more than one kernel runs; all warps of that one have started then. Each of
 // its warps starts when it has ended in the kernel before. So two kernels may run; the older one ends first.
 `default_nettype none
 module launcher #(
@@ -117,7 +117,7 @@ module launcher #(
       wire all_started = (started_q | ~has) == {WARPS{1'b1}};
       wire newest_done = running_o && all_started && active_i == {WARPS{1'b0}};
       wire older_done = older_q && (active_i & ~of_newest) == {WARPS{1'b0}};
-      assign begins = pending_q && !halt_i && !older_q && (!running_o || all_started);
+      assign begins = pending_q && !halt_i && !older_q;
       assign kernel_done_o = older_q ? older_done : newest_done;
       assign still_runs = older_q;
       assign start_threads = newest_q ? place_threads_q[21:11] : place_threads_q[10:0];

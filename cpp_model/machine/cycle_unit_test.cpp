@@ -10,6 +10,7 @@
 #include "machine/model.hpp"
 #include "machine/test_chip.hpp"
 #include "machine/test_program.hpp"
+#include "machine/warp_cycles.hpp"
 
 namespace raypool {
 namespace {
@@ -188,6 +189,105 @@ TEST(CycleUnit, TheLowestWarpGoesFirstAndTheOthersAreCountedAsWaiting) {
 }
 
 // Two units, one clocked and one run; the memory answers after a fixed time, the ports are always ready.
+// Two launches of which every thread stores its index, the threads of its launch and its block; warp 0 of each takes
+// longer than the others.
+TEST(CycleUnit, WarpsOfTwoKernelsRunAtTheSameTimeEachWithItsOwnLaunch) {
+  Configuration configuration = make_configuration(4, 2);
+  configuration.kernel_overlap = true;
+  const std::vector<uint64_t> code = assembled(fmt::format(R"(
+    tid r1
+    threads r2
+    block r3
+    blocks r6
+    ilt p1, r1, 2
+    mov r4, 30
+    @p1 loop 10
+    @p1 isub r4, r4, 1
+    @p1 ige p1, r4, 1
+    or r4, r4, r4
+    shl r5, r3, 3
+    iadd r5, r5, r1
+    shl r5, r5, 4
+    st [r5+{0}], r1
+    st [r5+{1}], r2
+    st [r5+{2}], r3
+    st [r5+{3}], r6
+    exit)",
+                                                           kData, kData + 4, kData + 8, kData + 12));
+  Memory memory = with_program(code);
+  CycleUnit unit(configuration, memory);
+  unit.trace_on();
+  unit.reset(size32(code), kMemoryBytes);
+  TestChip chip(unit, memory);
+  chip.launches = {launch_of(8), launch_of(7), launch_of(8)};
+  for (uint32_t n = 0; n < chip.launches.size(); ++n) {
+    chip.launches[n].block = n;
+    chip.launches[n].blocks = 10 + n;
+  }
+  // [warp] when its exit has retired, and when its next instruction has
+  std::vector<std::vector<uint64_t>> exits(4), begins(4);
+  std::vector<uint64_t> done;
+  uint64_t kernels = 0;
+  while (chip.kernels_done < 3 && chip.cycles < 20000) {
+    chip.cycle();
+    for (const RetireEvent& event : unit.trace().retired) {
+      if (event.pc == 0) begins[event.warp].push_back(chip.cycles);
+      if (event.pc == size32(code) - 1) exits[event.warp].push_back(chip.cycles);
+    }
+    if (chip.kernels_done > kernels) done.push_back(chip.cycles);
+    kernels = chip.kernels_done;
+  }
+  ASSERT_EQ(done.size(), 3u);
+  for (uint32_t warp = 0; warp < 4; ++warp) {
+    ASSERT_EQ(begins[warp].size(), 3u) << warp;
+    ASSERT_EQ(exits[warp].size(), 3u) << warp;
+  }
+  EXPECT_LT(begins[3][1], exits[0][0]) << "beside the kernel before";
+  EXPECT_LT(exits[3][1], done[0]) << "and through before that one is";
+  EXPECT_GT(begins[3][2], done[0]) << "but never three kernels";
+  EXPECT_LT(begins[3][2], done[1]);
+  for (uint32_t block = 0; block < 3; ++block) {
+    const uint32_t threads = block == 1 ? 7 : 8;
+    for (uint32_t thread = 0; thread < 8; ++thread) {
+      const uint32_t address = kData + 16 * (8 * block + thread);
+      const bool there = thread < threads;
+      EXPECT_EQ(memory.load(address), there ? thread : 0) << block << ", " << thread;
+      EXPECT_EQ(memory.load(address + 4), there ? threads : 0) << block << ", " << thread;
+      EXPECT_EQ(memory.load(address + 8), there ? block : 0) << block << ", " << thread;
+      EXPECT_EQ(memory.load(address + 12), there ? 10 + block : 0) << block << ", " << thread;
+    }
+  }
+  const WarpCycles cycles = warp_cycles(configuration, unit);
+  EXPECT_EQ(cycles.sum(), cycles.busy);
+  EXPECT_GT(cycles.busy, 0u);
+}
+
+// docs/architecture.md, section 3.
+TEST(CycleUnit, AWarpThatHasEndedIsStartedInTheNextCycle) {
+  std::vector<uint64_t> between;
+  for (const bool overlap : {false, true}) {
+    Configuration configuration = make_configuration(1, 1);
+    configuration.kernel_overlap = overlap;
+    const std::vector<uint64_t> code = assembled("tid r1; exit");
+    Memory memory = with_program(code);
+    CycleUnit unit(configuration, memory);
+    unit.trace_on();
+    unit.reset(size32(code), kMemoryBytes);
+    TestChip chip(unit, memory);
+    chip.launches = {launch_of(1), launch_of(1), launch_of(1)};
+    uint64_t exited = 0;
+    while (chip.kernels_done < 3 && chip.cycles < 1000) {
+      chip.cycle();
+      for (const RetireEvent& event : unit.trace().retired) {
+        if (event.pc == 0 && exited != 0) between.push_back(chip.cycles - exited);
+        if (event.pc == 1) exited = chip.cycles;
+      }
+    }
+  }
+  ASSERT_EQ(between.size(), 4u);
+  for (size_t i : {0, 1}) EXPECT_EQ(between[2 + i], between[i] - 1);
+}
+
 TEST(CycleUnit, RunIsClockRepeatedUntilSomethingHappens) {
   const Configuration configuration = make_configuration(4, 4);
   Memory memory = with_program(kProgram);

@@ -39,7 +39,7 @@ class Launcher {
   /// The launch that waits runs from the next cycle on.
   bool begins(bool halted) const {
     if (!overlap_) return q_.pending && !q_.running;
-    return q_.pending && !halted && !q_.older && (!q_.running || all_started());
+    return q_.pending && !halted && !q_.older;
   }
   /// Warps that are started, and for which launch.
   uint32_t starts(uint32_t active, bool halted) const {

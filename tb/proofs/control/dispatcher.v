@@ -4,12 +4,18 @@
 // @zeros
 // @proves a grant goes to a warp that wants, to one instance of its type, which is ready; no warp gets two
 // @proves the lowest warp wins the lowest instance; nobody waits beside a ready one; waiting_o shows those who wait
+// @proves with OVERLAP, of the warps that want a type those in first_i are served before all others; without it first_i
+//   changes nothing
 // @proves a task register holds of each operand that its type has what the warp that won offered, else zero
 // @proves a busy ALU gets no task: LATENCY cycles lie between two; a task is done DEPTH cycles later, with its warp
+// @parameters OVERLAP=1
+// @parameters OVERLAP=0
 // @break dispatcher s/if \(ready_i\[i\]\)/if (1'b1)/
 // @break dispatcher s/want_i\[w\] && !grant_o\[w\] && type/want_i[w] \&\& type/
 // @break dispatcher s/candidates & \(~candidates \+ ONE\)/candidates \& ~(candidates >> 1)/
 // @break dispatcher s/candidates\[w\] = want_i\[w\] &&/candidates[w] =/
+// @break dispatcher s/candidates = candidates & first/candidates = candidates/
+// @break dispatcher s/\|\(candidates & first\)/|first/
 // @break task_register s/ISA_HAS_IMMEDIATE\[TYPE\] \? field_immediate/ISA_HAS_IMMEDIATE[TYPE] ? instruction_i[31:0]/
 // @break task_register s/operand_c_i\[warp_i\*DATA/operand_c_i[0*DATA/
 // @break task_register s/predicate_b_o <= ISA_HAS_PREDICATE_B/predicate_b_o <= ISA_HAS_PREDICATE_X/
@@ -17,8 +23,8 @@
 // @break alu_pipeline s/LATENCY - 2/LATENCY - 3/
 // @break alu_pipeline s/if \(\|stage_valid_o\)/if (task_valid_i)/
 `default_nettype none
-module check (
-  input wire clk_i, input wire [3:0] want_i, input wire [255:0] instruction_i, input wire [3:0] mask_i, x_i, b_i,
+module check #(parameter OVERLAP = 1) (
+  input wire clk_i, input wire [3:0] want_i, first_i, input wire [255:0] instruction_i, input wire [3:0] mask_i, x_i, b_i,
   input wire [127:0] operand_a_i, operand_b_i, operand_c_i
 );
 `include "isa.vh"
@@ -30,17 +36,19 @@ module check (
   wire [3:0] grant, waiting;
   wire [2:0] ready, instance_grant, valid, done;
   wire [5:0] instance_warp, warp, done_warp;
-  dispatcher #(.WARPS(4), .WARP_BITS(2), .INSTANCES(3), .INSTANCE_TYPES(TYPES)) dut (
-    .want_i(want_i), .type_i(types), .grant_o(grant), .waiting_o(waiting),
+  dispatcher #(.WARPS(4), .WARP_BITS(2), .INSTANCES(3), .INSTANCE_TYPES(TYPES), .OVERLAP(OVERLAP)) dut (
+    .want_i(want_i), .type_i(types), .first_i(first_i), .grant_o(grant), .waiting_o(waiting),
     .ready_i(ready), .instance_grant_o(instance_grant), .instance_warp_o(instance_warp));
 
+  wire [3:0] first = OVERLAP ? first_i : 0;
   // The cycle before
-  reg [3:0] want_q = 0, grant_q = 0, mask_q, x_q, b_q;
+  reg [3:0] want_q = 0, grant_q = 0, first_q = 0, mask_q, x_q, b_q;
   reg [2:0] instance_grant_q = 0;
   reg [255:0] instruction_q;
   reg [127:0] operand_a_q, operand_b_q, operand_c_q;
   always @(posedge clk_i) begin
     want_q <= want_i;
+    first_q <= first;
     grant_q <= rst_n ? grant : 0;
     instance_grant_q <= rst_n ? instance_grant : 0;
     {mask_q, x_q, b_q, instruction_q} <= {mask_i, x_i, b_i, instruction_i};
@@ -49,6 +57,9 @@ module check (
   (* anyconst *) wire [1:0] low;
   (* anyconst *) wire [1:0] high;
   wire same = types[low*4 +: 4] == types[high*4 +: 4];
+  // Which of the two goes before the other
+  wire high_goes = first[high] && !first[low];
+  wire low_goes = !high_goes;
 
   genvar s, t;
   generate
@@ -126,8 +137,10 @@ module check (
               instance_grant[0] + instance_grant[1] + instance_grant[2] + 3'd0);
       assert (!(valid[0] && valid[1] && warp[1:0] == warp[3:2]));
       assert (!(valid[1] && valid[2] && warp[3:2] == warp[5:4]));
-      assert (!(valid[0] && valid[2]) || warp[1:0] < warp[5:4]);
-      assert (!(grant[high] && same && want_i[low]) || grant[low]);
+      if (valid[0] && valid[2])
+        assert (first_q[warp[1:0]] == first_q[warp[5:4]] ? warp[1:0] < warp[5:4] : first_q[warp[1:0]]);
+      assert (!(grant[high] && same && want_i[low] && low_goes) || grant[low]);
+      assert (!(grant[low] && same && want_i[high] && high_goes) || grant[high]);
       assert (waiting == (want_i & ~grant));
     end
   end
