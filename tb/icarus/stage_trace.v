@@ -56,7 +56,7 @@ module stage_trace #(
             `BUFFER.D_READ: $display("%0d %0d RegFile %0d", cycle, w, `BUFFER.pc_o);
             `BUFFER.D_WANT: $display("%0d %0d Dispatch %0d", cycle, w, `BUFFER.pc_o);
             `BUFFER.D_EXECUTE:
-              if (`BUFFER.retire_i) $display("%0d %0d WriBack %0d", cycle, w, `BUFFER.pc_o);
+              if (`BUFFER.done_i) $display("%0d %0d WriBack %0d", cycle, w, `BUFFER.pc_o);
               else $display("%0d %0d ALUEx %0d", cycle, w, `BUFFER.pc_o);
             default: ;
           endcase
