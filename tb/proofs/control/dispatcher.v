@@ -24,8 +24,8 @@
 // @break alu_pipeline s/if \(\|stage_valid_o\)/if (task_valid_i)/
 `default_nettype none
 module check #(parameter OVERLAP = 1) (
-  input wire clk_i, input wire [3:0] want_i, first_i, input wire [255:0] instruction_i, input wire [3:0] mask_i, x_i, b_i,
-  input wire [127:0] operand_a_i, operand_b_i, operand_c_i
+  input wire clk_i, input wire [3:0] want_i, first_i, input wire [255:0] instruction_i,
+  input wire [3:0] mask_i, x_i, b_i, input wire [127:0] operand_a_i, operand_b_i, operand_c_i
 );
 `include "isa.vh"
   localparam [11:0] TYPES = 12'h121;
