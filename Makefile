@@ -117,7 +117,7 @@ help: ## this list
 	@echo
 	@echo 'variables of make sim                                                    default'
 	@echo '  SCENE=cornell|room|FILE       what is drawn; .obj, .gltf, .glb, .ply      $(SCENE)'
-	@echo '  CONFIG=4w4c|8w8c|...|FILE     hardware: configs/*.json, NwMc or a file    $(CONFIG)'
+	@echo '  CONFIG=4w4c|8w8c|...|FILE     hardware: configs/*.json, [best_]NwMc, file $(CONFIG)'
 	@echo '  ENGINE=native|embree|functional|model|rtl|lockstep  what stands in for the unit  $(ENGINE)'
 	@echo '  SIZE=WxH                      pixels, 1..16384 each                       $(SIZE)'
 	@echo '  DEPTH=N                       1: eye and shadow rays; more: reflections   $(DEPTH)'

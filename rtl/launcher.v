@@ -1,6 +1,6 @@
 // Takes launches: one may wait while a kernel runs. Starts the warps, notices the end of the kernel.
-// With OVERLAP a launch begins as soon as no more than one kernel runs; all warps of that one have started then. Each of
-// its warps starts when it has ended in the kernel before. So two kernels may run; the older one ends first.
+// With OVERLAP a launch begins as soon as no more than one kernel runs, whose warps have all started then. Each of its
+// warps starts when it has ended in the kernel before. So two kernels may run; the older one ends first.
 `default_nettype none
 module launcher #(
   parameter integer WARPS = 8,
