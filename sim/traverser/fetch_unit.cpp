@@ -31,7 +31,7 @@ void FetchUnit::clock(uint64_t cycle, LookupListener& listener) {
       continue;
     }
     ++lookups;
-    const LineCache::Answer answer = cache_.lookup(wanted.fetch);
+    const LineCache::Answer answer = cache_.lookup(wanted.fetch, cycle + setup_.latency);
     if (answer == LineCache::Answer::Busy) {
       ++i;
       continue;

@@ -23,7 +23,7 @@ LineCache::Mshr* LineCache::find(uint32_t line) {
   return nullptr;
 }
 
-LineCache::Answer LineCache::lookup(const Fetch& fetch) {
+LineCache::Answer LineCache::lookup(const Fetch& fetch, uint64_t by) {
   ++lookups_;
   Way* const way = set(fetch.line);
   for (uint32_t i = 0; i < ways_a_set_; ++i) {
@@ -33,6 +33,10 @@ LineCache::Answer LineCache::lookup(const Fetch& fetch) {
     return Answer::Hit;
   }
   if (Mshr* const mshr = find(fetch.line); mshr != nullptr) {
+    if (mshr->due <= by) {
+      ++work_.joined;
+      return Answer::Hit;
+    }
     mshr->waiting.push_back(fetch);
     ++work_.joined;
     return Answer::Joined;

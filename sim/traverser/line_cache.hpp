@@ -29,7 +29,8 @@ class LineCache {
 
   LineCache(uint32_t bytes, uint32_t ways, uint32_t mshrs);
 
-  Answer lookup(const Fetch& fetch);
+  /// A line that comes by the cycle `by`, in which a line that is there would be read, is a hit too.
+  Answer lookup(const Fetch& fetch, uint64_t by = 0);
   /// The line has come: who waited for it, oldest first.
   std::vector<Fetch> fill(uint32_t line);
   /// When it will come, once that is known.

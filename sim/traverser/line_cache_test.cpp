@@ -26,6 +26,18 @@ TEST(LineCache, GivesALineToWhoWaitedForIt) {
   EXPECT_EQ(cache.work().joined, 1u);
 }
 
+TEST(LineCache, ALookupTakesItsTimeAlsoWhereTheLineIsAboutToCome) {
+  LineCache cache(1024, 2, 2);
+  EXPECT_EQ(cache.lookup(of(0, 5), 12), Answer::Missed);
+  EXPECT_EQ(cache.lookup(of(1, 5), 12), Answer::Joined) << "nobody knows when it comes";
+  cache.promise(5, 130);
+  EXPECT_EQ(cache.lookup(of(2, 5), 129), Answer::Joined);
+  EXPECT_EQ(cache.lookup(of(3, 5), 130), Answer::Hit);
+  EXPECT_EQ(cache.lookup(of(4, 5), 131), Answer::Hit);
+  EXPECT_EQ(cache.fill(5).size(), 3u);
+  EXPECT_EQ(cache.work().joined, 4u);
+}
+
 TEST(LineCache, TheLeastRecentlyUsedLineOfTheSetGoes) {
   LineCache cache(1024, 2, 4);  // 8 sets
   for (const uint32_t line : {3u, 11u}) {
