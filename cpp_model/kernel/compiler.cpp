@@ -69,7 +69,8 @@ Function with_triples(const Function& function) {
   for (int most = INT_MAX;;) {
     Function formed = function;
     most = form_triples(formed, most);
-    if (most == 0 || has_places(formed)) return formed;
+    if (most == 0) return function;
+    if (has_places(formed)) return formed;
     --most;
   }
 }

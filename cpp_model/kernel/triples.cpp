@@ -290,9 +290,6 @@ class Segment {
   const std::vector<bool>& written_once_;
   std::vector<bool> in_triple_;
   std::vector<Triple> triples_;
-
- public:
-  Segment(const Segment&) = default;
 };
 
 bool parts_threads(const Op& op) { return op.kind != Op::Kind::Instruction || op.info->kind == Kind::Control; }
