@@ -257,7 +257,9 @@ module compute_unit #(
         );
       end
       if (TYPE == ISA_TYPE_RAY) begin : gen_ray
-        ray_alu #(.WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS)) ray_alu (
+        ray_alu #(
+          .WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS), .WIDE_RAY_MEMORY(WIDE_RAY_MEMORY)
+        ) ray_alu (
           .import_start_i(import_start), .import_start_kind_i(launch_import_i),
           .import_start_threads_i(launch_threads_i),
           .import_active_o(import_active), .import_request_valid_o(import_request_valid_o),

@@ -8,7 +8,8 @@
 module ray_alu #(
   parameter integer WARPS = 8,
   parameter integer LANES = 8,
-  parameter integer WARP_BITS = (WARPS > 1) ? $clog2(WARPS) : 1
+  parameter integer WARP_BITS = (WARPS > 1) ? $clog2(WARPS) : 1,
+  parameter integer WIDE_RAY_MEMORY = 0   // rld and rst move all lanes a cycle, else four
 ) (
   // import of a launch: one cycle of start, not while import_active_o, which is high from the next cycle on
   input  wire                   import_start_i,
@@ -50,7 +51,9 @@ module ray_alu #(
 );
   `include "isa.vh"
   localparam integer LANE_BITS = $clog2(LANES);
-  localparam integer STEPS = (LANES > 4) ? LANES / 4 : 1;   // port cycles of an access: rld, rst
+  localparam integer BANKS = (WIDE_RAY_MEMORY != 0 && LANES > 4) ? LANES : 4;   // of a set
+  localparam integer BANK_BITS = $clog2(BANKS);
+  localparam integer STEPS = (LANES > BANKS) ? LANES / BANKS : 1;   // port cycles of an access: rld, rst
   localparam integer LAST_STEP = STEPS - 1;
   localparam [4:0] LAST_WORD = 5'd20;
   localparam [LANES-1:0] NO_LANE = 0;
@@ -94,9 +97,9 @@ module ray_alu #(
   wire access_granted = access && !(import_write && import_set == access_set);
   // The thread of the step's first lane
   wire [9:0] access_lane = ({{10-WARP_BITS{1'b0}}, access_warp} << LANE_BITS) | {5'd0, step_q, 2'b00};
-  wire [9:0] access_thread = {access_lane[9:2], 2'b00};
-  reg [3:0] access_mask;
-  reg [127:0] access_data;
+  wire [9:0] access_thread = {access_lane[9:BANK_BITS], {BANK_BITS{1'b0}}};
+  reg [BANKS-1:0] access_mask;
+  reg [BANKS*32-1:0] access_data;
 
   // What arrives is executed at once when nothing is held after this cycle. Of an access that arrives now this only
   // looks at what is quickly known: it has one step, and no import is in the way of any set.
@@ -126,18 +129,18 @@ module ray_alu #(
   // ---- Result: the cycle after a step. The held task is still that of the step.
   reg result_q, result_last_q;
   reg [2:0] result_step_q;
-  reg [4*32-1:0] result_read;
+  reg [BANKS*32-1:0] result_read;
   reg [LANES*32-1:0] done_data_q;
-  wire [3*128-1:0] memory_data;
+  wire [3*BANKS*32-1:0] memory_data;
   wire result_end = result_q && result_last_q;
 
   always @* begin
-    result_read = memory_data[127:0];
+    result_read = memory_data[0 +: BANKS*32];
     if (result_q)
       case (hold_set_q)
-        2'd0: result_read = memory_data[127:0];
-        2'd1: result_read = memory_data[255:128];
-        default: result_read = memory_data[383:256];
+        2'd0: result_read = memory_data[0 +: BANKS*32];
+        2'd1: result_read = memory_data[BANKS*32 +: BANKS*32];
+        default: result_read = memory_data[2*BANKS*32 +: BANKS*32];
       endcase
   end
 
@@ -171,19 +174,19 @@ module ray_alu #(
           else if (result_last_q) done_data_q <= hold_data_q;
         end
     end else begin : gen_narrow
-      // Several warps may share four threads: the element's number is the lower bits of the thread's.
+      // Several warps may share a row of threads: the element's number is the lower bits of the thread's.
       wire [9:0] hold_lane = {{10-WARP_BITS{1'b0}}, hold_warp_q} << LANE_BITS;
-      wire [127:0] elements = result_read >> {hold_lane[1:0], 5'd0};
+      wire [BANKS*32-1:0] elements = result_read >> {hold_lane[BANK_BITS-1:0], 5'd0};
       wire unused_narrow = &{1'b0, hold_lane, elements, result_step_q};
-      reg [3:0] lanes;
+      reg [BANKS-1:0] lanes;
       always @* begin
-        lanes = 4'd0;
-        access_mask = 4'd0;
-        access_data = 128'd0;
+        lanes = {BANKS{1'b0}};
+        access_mask = {BANKS{1'b0}};
+        access_data = {BANKS{32'd0}};
         if (access && access_write) begin
           lanes[LANES-1:0] = hold_q ? hold_mask_q : task_mask_i;
-          access_mask = lanes << access_lane[1:0];
-          access_data = hold_q ? {4/LANES{hold_data_q}} : {4/LANES{task_operand_b_i}};
+          access_mask = lanes << access_lane[BANK_BITS-1:0];
+          access_data = hold_q ? {BANKS/LANES{hold_data_q}} : {BANKS/LANES{task_operand_b_i}};
         end
       end
       always @(posedge clk_i)
@@ -282,6 +285,16 @@ module ray_alu #(
     .write_data_o(import_data)
   );
 
+  // As elements of an access to a set
+  reg [BANKS-1:0] import_banks;
+  reg [BANKS*32-1:0] import_elements;
+  always @* begin
+    import_banks = {BANKS{1'b0}};
+    import_banks[3:0] = import_mask;
+    import_elements = {BANKS/4{import_data}};
+  end
+
+  wire [3*128-1:0] package_data;
   wire       export_read, export_granted;
   wire [1:0] export_set;
   wire [9:0] export_thread;
@@ -295,12 +308,13 @@ module ray_alu #(
     .park_mask_i(task_mask_i), .push_i(swap_out && !parked_empty_q[swap_warp]), .push_warp_i(swap_warp),
     .output_set_i(output_q), .busy_o(busy), .exporting_o(exporting_o), .read_o(export_read), .read_set_o(export_set),
     .read_thread_o(export_thread), .read_word_o(export_word), .read_grant_i(export_granted),
-    .memory_data_i(memory_data), .export_valid_o(export_valid_o), .export_ready_i(export_ready_i),
+    .memory_data_i(package_data), .export_valid_o(export_valid_o), .export_ready_i(export_ready_i),
     .export_data_o(export_data_o), .export_last_o(export_last_o), .frame_valid_o(frame_valid_o),
     .frame_ready_i(frame_ready_i), .frame_pixel_o(frame_pixel_o), .frame_color_o(frame_color_o)
   );
 
-  // ---- The three sets. The port goes to import, then to the kernel's access, then to export.
+  // ---- The three sets. The port goes to import, then to the kernel's access, then to export. Of a package's access
+  // only the first four elements count.
   genvar s;
   generate
     for (s = 0; s < 3; s = s + 1) begin : gen_set
@@ -308,13 +322,14 @@ module ray_alu #(
       wire by_import = import_write && import_set == SET;
       wire by_access = access && access_set == SET && !by_import;
       wire by_export = export_read && export_set == SET && !by_import && !by_access;
-      ray_memory #(.CONTENTS(WARPS * LANES)) ray_memory (
+      ray_memory #(.CONTENTS(WARPS * LANES), .BANKS(BANKS)) ray_memory (
         .clk_i(clk_i), .read_i((by_access && !access_write) || by_export),
-        .write_i(by_import ? import_mask : by_access ? access_mask : 4'd0), .package_i(by_import || by_export),
+        .write_i(by_import ? import_banks : by_access ? access_mask : {BANKS{1'b0}}), .package_i(by_import || by_export),
         .thread_i(by_import ? import_thread : by_access ? access_thread : export_thread),
         .word_i(by_import ? import_word : by_access ? access_word : export_word),
-        .data_i(by_import ? import_data : access_data), .data_o(memory_data[s*128 +: 128])
+        .data_i(by_import ? import_elements : access_data), .data_o(memory_data[s*BANKS*32 +: BANKS*32])
       );
+      assign package_data[s*128 +: 128] = memory_data[s*BANKS*32 +: 128];
     end
   endgenerate
 endmodule

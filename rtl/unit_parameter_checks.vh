@@ -17,6 +17,9 @@
     if (KERNEL_OVERLAP < 0 || KERNEL_OVERLAP > 1) begin : gen_bad_KERNEL_OVERLAP
       KERNEL_OVERLAP_must_be_an_integer_from_0_to_1 illegal ();
     end
+    if (WIDE_RAY_MEMORY < 0 || WIDE_RAY_MEMORY > 1) begin : gen_bad_WIDE_RAY_MEMORY
+      WIDE_RAY_MEMORY_must_be_an_integer_from_0_to_1 illegal ();
+    end
     if (SUBNORMALS < 0 || SUBNORMALS > 1) begin : gen_bad_SUBNORMALS
       SUBNORMALS_must_be_an_integer_from_0_to_1 illegal ();
     end

@@ -70,6 +70,8 @@ struct Configuration {
     }
   }
   uint32_t contents() const { return warps * lanes; }
+  /// Cycles in which an rld or rst has the port of its set: of four lanes each, or of all.
+  uint32_t ray_access_cycles() const { return wide_ray_memory || lanes <= 4 ? 1 : lanes / 4; }
   const AluConfiguration& alu(AluType type) const { return alus[type]; }
 };
 

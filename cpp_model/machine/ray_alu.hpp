@@ -117,7 +117,7 @@ class RayAlu {
 // Inline, as they are part of every cycle of the engine.
 
 inline RayAlu::RayAlu(const Configuration& configuration, const RaySlices& slices)
-    : last_step_(configuration.lanes > 4 ? static_cast<uint32_t>(configuration.lanes) / 4 - 1 : 0),
+    : last_step_(configuration.ray_access_cycles() - 1),
       import_(configuration),
       export_(slices) {}
 

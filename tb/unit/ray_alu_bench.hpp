@@ -1,7 +1,8 @@
 // Drives a Verilated ray_alu between pools of random speed and checks in every cycle what docs/ray-alu.md promises:
 // every word read, every ray and frame contribution (order, lanes, content), which package goes to which thread, the
 // rules of requests, stable payloads, the trace, exporting_o and import_active_o to the cycle, bounded time. What the
-// unit breaks is thrown, with cycle and seed. MODEL is a struct with the Verilated class as Unit and kWarps, kLanes.
+// unit breaks is thrown, with cycle and seed. MODEL is a struct with the Verilated class as Unit and kWarps, kLanes,
+// kWide.
 #pragma once
 
 #include <verilated.h>
@@ -48,8 +49,8 @@ class RayAluBench {
   static constexpr uint32_t kContents = kLanes * kWarps;
   static constexpr uint32_t kAllLanes = static_cast<uint32_t>((uint64_t{1} << kLanes) - 1);
   static constexpr uint32_t kWords = 21;
-  static constexpr uint64_t kSteps = kLanes > 4 ? kLanes / 4 : 1;  ///< port cycles of an access
-  static constexpr uint64_t kAccessCycles = kSteps + 1;            ///< from arrival to done, without a conflict
+  static constexpr uint64_t kSteps = kLanes > 4 && !Model::kWide ? kLanes / 4 : 1;  ///< port cycles of an access
+  static constexpr uint64_t kAccessCycles = kSteps + 1;  ///< from arrival to done, without a conflict
   static constexpr uint64_t kSwapCycles = 2;
   static constexpr uint64_t kPatience = 20000;  ///< cycles without an event after which the unit counts as hanging
 

@@ -4,7 +4,9 @@
 
 #include "Vray_alu_1x1.h"
 #include "Vray_alu_1x32.h"
+#include "Vray_alu_1x32_wide.h"
 #include "Vray_alu_2x2.h"
+#include "Vray_alu_2x8_wide.h"
 #include "Vray_alu_32x1.h"
 #include "Vray_alu_4x4.h"
 #include "Vray_alu_8x8.h"
@@ -13,18 +15,20 @@
 namespace raypool::bench {
 namespace {
 
-template <typename U, uint32_t W, uint32_t L>
+template <typename U, uint32_t W, uint32_t L, bool Wide = false>
 struct RayModel {
   using Unit = U;
   static constexpr uint32_t kWarps = W, kLanes = L;
+  static constexpr bool kWide = Wide;  ///< rld and rst move all lanes a cycle
 };
 using Models =
     ::testing::Types<RayModel<Vray_alu_1x1, 1, 1>, RayModel<Vray_alu_2x2, 2, 2>, RayModel<Vray_alu_1x32, 1, 32>,
-                     RayModel<Vray_alu_4x4, 4, 4>, RayModel<Vray_alu_8x8, 8, 8>, RayModel<Vray_alu_32x1, 32, 1>>;
+                     RayModel<Vray_alu_4x4, 4, 4>, RayModel<Vray_alu_8x8, 8, 8>, RayModel<Vray_alu_32x1, 32, 1>,
+                     RayModel<Vray_alu_2x8_wide, 2, 8, true>, RayModel<Vray_alu_1x32_wide, 1, 32, true>>;
 struct ModelName {
   template <typename Model>
   static std::string GetName(int) {
-    return std::to_string(Model::kWarps) + "x" + std::to_string(Model::kLanes);
+    return std::to_string(Model::kWarps) + "x" + std::to_string(Model::kLanes) + (Model::kWide ? "_wide" : "");
   }
 };
 
@@ -53,8 +57,9 @@ TYPED_TEST_SUITE(RayAlu, Models, ModelName);
 // What needs a second warp.
 template <typename Model>
 class RayAluOfSeveralWarps : public RayAlu<Model> {};
-using ModelsOfSeveralWarps = ::testing::Types<RayModel<Vray_alu_2x2, 2, 2>, RayModel<Vray_alu_4x4, 4, 4>,
-                                              RayModel<Vray_alu_8x8, 8, 8>, RayModel<Vray_alu_32x1, 32, 1>>;
+using ModelsOfSeveralWarps =
+    ::testing::Types<RayModel<Vray_alu_2x2, 2, 2>, RayModel<Vray_alu_4x4, 4, 4>, RayModel<Vray_alu_8x8, 8, 8>,
+                     RayModel<Vray_alu_32x1, 32, 1>, RayModel<Vray_alu_2x8_wide, 2, 8, true>>;
 TYPED_TEST_SUITE(RayAluOfSeveralWarps, ModelsOfSeveralWarps, ModelName);
 
 struct RandomLaunch {
