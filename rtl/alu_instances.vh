@@ -26,7 +26,7 @@
       if (TYPE == ISA_TYPE_SLW) begin : gen_slw
         slw_alu #(
           .WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS), .LATENCY(SLW_LATENCY),
-          .DEPTH(SLW_DEPTH), .SUBNORMALS(SUBNORMALS), .SLOW_UNIT(SLOW_UNIT)
+          .DEPTH(SLW_DEPTH), .SUBNORMALS(SUBNORMALS), .SLOW_UNIT(SLOW_UNIT), .SLOW_LANES(SLOW_LANES)
         ) slw_alu (
 `include "alu_port_map.vh"
         );

@@ -1,6 +1,8 @@
 // Slw ALU: fdiv fsqrt frsqrt frcp, a new task in any of its stages; further stages as delay. docs/numerics.md has the
 // rules. SUBNORMALS 0: IEEE, 1: flushed. SLOW_UNIT 0: correctly rounded, 1: table and two Newton steps, both in 11
 // stages; 2: one step, 8; 3: none, 6. Lanes outside the mask keep what they held and are not clocked.
+// With SLOW_LANES below LANES there are so many lanes only. They take a task group after group, the lowest lanes first,
+// which makes LANES / SLOW_LANES - 1 cycles more than DEPTH, and as many between tasks; the task's operands must stay.
 `default_nettype none
 module slw_alu #(
   parameter integer WARPS = 8,
@@ -9,13 +11,19 @@ module slw_alu #(
   parameter integer LATENCY = 1,
   parameter integer DEPTH = 11,
   parameter integer SUBNORMALS = 0,
-  parameter integer SLOW_UNIT = 0
+  parameter integer SLOW_UNIT = 0,
+  parameter integer SLOW_LANES = 32
 ) (
 `include "alu_ports.vh"
 );
   `include "isa.vh"
 
   localparam integer STAGES = (SLOW_UNIT <= 1) ? 11 : (SLOW_UNIT == 2) ? 8 : 6;
+  localparam integer GROUP = (SLOW_LANES < LANES) ? SLOW_LANES : LANES;   // lanes
+  localparam integer GROUPS = LANES / GROUP;
+  localparam integer DELAY = DEPTH - STAGES;
+  localparam integer TASK_LATENCY = (LATENCY > GROUPS) ? LATENCY : GROUPS;
+  localparam integer TASK_DEPTH = DEPTH + GROUPS - 1;
   generate
     if (DEPTH < STAGES) begin : gen_illegal_depth
       slw_alu_needs_more_depth illegal ();
@@ -28,34 +36,68 @@ module slw_alu #(
     end
   endgenerate
 
-  wire [DEPTH-1:0] stage_valid;
-  alu_pipeline #(.WARP_BITS(WARP_BITS), .LATENCY(LATENCY), .DEPTH(DEPTH)) pipeline (
+  wire [TASK_DEPTH-1:0] stage_valid;
+  alu_pipeline #(.WARP_BITS(WARP_BITS), .LATENCY(TASK_LATENCY), .DEPTH(TASK_DEPTH)) pipeline (
     .clk_i(clk_i), .rst_ni(rst_ni), .task_valid_i(task_valid_i), .task_warp_i(task_warp_i), .ready_o(ready_o),
     .done_valid_o(done_valid_o), .done_warp_o(done_warp_o), .stage_valid_o(stage_valid));
 
-  wire moving = |stage_valid[STAGES-1:0];
+  // ---- The group that enters in this cycle
+  wire [GROUP*32-1:0] operand_a, operand_b;
+  wire [GROUP-1:0] entering;   // lanes
+  generate
+    if (GROUPS == 1) begin : gen_whole
+      assign operand_a = task_operand_a_i;
+      assign operand_b = task_operand_b_i;
+      assign entering = {GROUP{task_valid_i}} & task_mask_i;
+    end else begin : gen_groups
+      localparam integer GROUP_BITS = $clog2(GROUPS);
+      localparam [GROUP_BITS-1:0] NEXT = 1;
+      wire enters = |stage_valid[GROUPS-1:0];
+      reg [GROUP_BITS-1:0] group_q;   // 0 before a task: it counts round
+      always @(posedge clk_i)
+        if (!rst_ni) group_q <= {GROUP_BITS{1'b0}};
+        else if (enters) group_q <= group_q + NEXT;
+      assign operand_a = task_operand_a_i[group_q*(GROUP*32) +: GROUP*32];
+      assign operand_b = task_operand_b_i[group_q*(GROUP*32) +: GROUP*32];
+      assign entering = {GROUP{enters}} & task_mask_i[group_q*GROUP +: GROUP];
+    end
+  endgenerate
+
+  // ---- The lanes. While a group is in its stages its task has not been done.
+  wire moving = |stage_valid[STAGES+GROUPS-2:0];
   wire root = task_operation_i == ISA_SLW_FSQRT || task_operation_i == ISA_SLW_FRSQRT;
   wire unary = task_operation_i == ISA_SLW_FRSQRT || task_operation_i == ISA_SLW_FRCP;
-  wire [LANES*32-1:0] result;
-  genvar l;
+  wire [GROUP*32-1:0] result, delayed;
+  genvar l, s;
   generate
-    for (l = 0; l < LANES; l = l + 1) begin : gen_lane
+    for (l = 0; l < GROUP; l = l + 1) begin : gen_lane
       // Whether each stage holds a task of this lane.
       reg [STAGES-2:0] later_q;
-      wire [STAGES-1:0] enable = {later_q, task_valid_i && task_mask_i[l]};
+      wire [STAGES-1:0] enable = {later_q, entering[l]};
       always @(posedge clk_i) begin
         if (!rst_ni) later_q <= {STAGES-1{1'b0}};
         else if (moving) later_q <= enable[STAGES-2:0];
       end
       slow_lane #(.SUBNORMALS(SUBNORMALS), .SLOW_UNIT(SLOW_UNIT), .STAGES(STAGES)) lane (
-        .clk_i(clk_i), .enable_i(enable), .root_i(root), .unary_i(unary), .a_i(task_operand_a_i[l*32 +: 32]),
-        .b_i(task_operand_b_i[l*32 +: 32]), .result_o(result[l*32 +: 32]));
+        .clk_i(clk_i), .enable_i(enable), .root_i(root), .unary_i(unary), .a_i(operand_a[l*32 +: 32]),
+        .b_i(operand_b[l*32 +: 32]), .result_o(result[l*32 +: 32]));
     end
-    if (DEPTH > STAGES) begin : gen_delay
-      alu_delay #(.WIDTH(LANES*32), .STAGES(DEPTH-STAGES)) delay (
-        .clk_i(clk_i), .valid_i(stage_valid[DEPTH-1:STAGES]), .data_i(result), .data_o(done_data_o));
+    if (DELAY > 0) begin : gen_delay
+      wire [DELAY-1:0] holds;   // a stage of the delay takes a group
+      for (s = 0; s < DELAY; s = s + 1) begin : gen_stage
+        assign holds[s] = |stage_valid[STAGES+s +: GROUPS];
+      end
+      alu_delay #(.WIDTH(GROUP*32), .STAGES(DELAY)) delay (
+        .clk_i(clk_i), .valid_i(holds), .data_i(result), .data_o(delayed));
     end else begin : gen_direct
-      assign done_data_o = result;
+      assign delayed = result;
+    end
+    // The groups before the last one wait for it.
+    assign done_data_o[(GROUPS-1)*GROUP*32 +: GROUP*32] = delayed;
+    for (s = 0; s < GROUPS - 1; s = s + 1) begin : gen_early
+      reg [GROUP*32-1:0] data_q;
+      always @(posedge clk_i) if (stage_valid[DEPTH+s]) data_q <= delayed;
+      assign done_data_o[s*GROUP*32 +: GROUP*32] = data_q;
     end
   endgenerate
   assign done_predicate_o = {LANES{1'b0}};

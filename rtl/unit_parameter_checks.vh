@@ -20,6 +20,10 @@
     if (WIDE_RAY_MEMORY < 0 || WIDE_RAY_MEMORY > 1) begin : gen_bad_WIDE_RAY_MEMORY
       WIDE_RAY_MEMORY_must_be_an_integer_from_0_to_1 illegal ();
     end
+    if (SLOW_LANES < 1 || SLOW_LANES > 32 ||
+        (SLOW_LANES & (SLOW_LANES - 1)) != 0) begin : gen_bad_SLOW_LANES
+      SLOW_LANES_must_be_a_power_of_two_from_1_to_32 illegal ();
+    end
     if (SUBNORMALS < 0 || SUBNORMALS > 1) begin : gen_bad_SUBNORMALS
       SUBNORMALS_must_be_an_integer_from_0_to_1 illegal ();
     end

@@ -2,6 +2,7 @@
 // and synthesis all read.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <string>
@@ -73,6 +74,16 @@ struct Configuration {
   /// Cycles in which an rld or rst has the port of its set: of four lanes each, or of all.
   uint32_t ray_access_cycles() const { return wide_ray_memory || lanes <= 4 ? 1 : lanes / 4; }
   const AluConfiguration& alu(AluType type) const { return alus[type]; }
+  /// Groups of lanes that a task of slw is executed in, a cycle behind each other: 1 .. 32.
+  uint32_t slow_groups() const { return slow_lanes < lanes ? lanes / slow_lanes : 1; }
+  /// What alu() says of a group of lanes, for a whole task.
+  AluConfiguration task_of(AluType type) const {
+    AluConfiguration task = alus[type];
+    if (type != AluType::Slw) return task;
+    task.latency = std::max(task.latency, slow_groups());
+    task.depth += slow_groups() - 1;
+    return task;
+  }
 };
 
 /// Reads a file; `name_or_path` is a path or the name of a file in the configs folder ("8w8c"). A name of the form

@@ -33,6 +33,8 @@ enum class Shading : uint8_t { Kernel = 0, Traverser = 1 };
        "a warp that has ended goes on with the next kernel while others still run the one before") \
   UNIT(wide_ray_memory, bool, false, on_or_off(), all(), \
        "rld and rst move a word of all lanes in a cycle, where a warp has more than four") \
+  UNIT(slow_lanes, uint32_t, 32, powers_of_two(1, 32), tried(1, 2, 32), \
+       "lanes of an instance of slw at most: with fewer than the unit has, a task takes them one group after another") \
   PART(instruction_cache, bytes, uint32_t, 4096, powers_of_two(512, 65536), tried(512, 1024, 4096, 65536), "size") \
   PART(data_cache, bytes, uint32_t, 8192, powers_of_two(512, 65536), tried(512, 1024, 8192, 65536), "size") \
   PART(data_cache, mshrs, uint32_t, 4, integers(1, 16), tried(1, 2, 3, 4, 16), \

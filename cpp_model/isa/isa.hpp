@@ -34,7 +34,7 @@ namespace raypool {
   CORE(Mem, "mem",  0, Own,       "",                       "memory") \
   CORE(Int, "int",  2, Framework, "",                       "integer and logic") \
   CORE(Flt, "flt",  3, Framework, "SUBNORMALS, FMA",        "single-precision float") \
-  CORE(Slw, "slw", 11, Framework, "SUBNORMALS, SLOW_UNIT",  "slow float: division and square roots") \
+  CORE(Slw, "slw", 11, Framework, "SUBNORMALS, SLOW_UNIT, SLOW_LANES", "slow float: division and square roots") \
   CORE(Ray, "ray",  0, Own,       "",                       "ray packages") \
   /* The table ends here: the backslash above lets a row follow it. */
 // clang-format on

@@ -23,7 +23,7 @@ class Dispatcher {
   explicit Dispatcher(const Configuration& configuration) {
     for (size_t type = 0; type < kAluTypes; ++type) {
       instances_[type] = static_cast<uint32_t>(configuration.alus[type].count);
-      pipelines_[type].fill(AluPipeline(configuration.alus[type]));
+      pipelines_[type].fill(AluPipeline(configuration.task_of(static_cast<AluType>(type))));
     }
   }
 

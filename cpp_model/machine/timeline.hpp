@@ -9,8 +9,8 @@ namespace raypool {
 
 class Timeline {
  public:
-  /// Cycles ahead for which something can be known; the deepest ALU has 32 stages.
-  static constexpr uint32_t kCycles = 64;
+  /// Cycles ahead for which something can be known; a task of the deepest ALU, slw, takes 63.
+  static constexpr uint32_t kCycles = 128;
 
   /// Sets of warps.
   struct alignas(32) Cycle {

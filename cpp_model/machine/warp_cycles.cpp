@@ -16,7 +16,7 @@ WarpCycles warp_cycles(const Configuration& configuration, ComputeUnit& device) 
     cycles.issued += issued;
     cycles.waiting[type] = count(counter::kWaiting + type);
     // A task arrives in the cycle after it is granted, and takes as many as the pipeline has stages.
-    cycles.executing[type] = issued * (1 + static_cast<uint64_t>(configuration.alus[type].depth));
+    cycles.executing[type] = issued * (1 + static_cast<uint64_t>(configuration.task_of(static_cast<AluType>(type)).depth));
   }
   cycles.executing[AluType::Flt] -=
       count(counter::kFltOverlapped) * (1 + static_cast<uint64_t>(configuration.alus[AluType::Flt].depth));

@@ -197,8 +197,8 @@ void Coverage::together(const RetireEvent& event, size_t type) {
   const auto alu = static_cast<AluType>(type);
   const auto per_unit = configuration_.warps;
   const uint32_t me = event.unit * per_unit + event.warp;
-  const int depth = alu == AluType::Mem ? 3 : alu == AluType::Ray ? 2 : configuration_.alu(alu).depth;
-  while (!recent_.empty() && recent_.front().cycle + 40 < now_) recent_.pop_front();
+  const int depth = alu == AluType::Mem ? 3 : alu == AluType::Ray ? 2 : configuration_.task_of(alu).depth;
+  while (!recent_.empty() && recent_.front().cycle + 64 < now_) recent_.pop_front();
   for (auto other = recent_.rbegin(); other != recent_.rend() && other->cycle + static_cast<uint64_t>(depth) >= now_;
        ++other)
     if (other->warp != me && other->warp / per_unit == event.unit)

@@ -60,7 +60,7 @@ UnitInspection::UnitInspection(const Configuration& configuration, const Compute
     if (missing_.empty()) missing_ = *missing;
   }
   for (uint32_t type = 0; type < kAluTypes; ++type) {
-    const AluConfiguration& alu = configuration.alus[type];
+    const AluConfiguration alu = configuration.task_of(static_cast<AluType>(type));
     const bool piped = !kAluTable[type].timed_by_events();
     for (uint32_t number = 0; number < count_of(configuration, type); ++number) {
       const auto place = size32(instances_);

@@ -1,5 +1,6 @@
 // Drives a bench top of several ALUs (flt_units.v, slw_units.v, brh_units.v) with the same tasks and compares every
-// result, its warp and the cycle it comes in with the model. Tasks come with random masks, warps and pauses.
+// result, its warp and the cycle it comes in with the model. Tasks come with random masks, warps and pauses, as often
+// as the slowest of the ALUs takes them.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -9,6 +10,7 @@
 #include <cstdint>
 #include <deque>
 #include <memory>
+#include <optional>
 #include <random>
 #include <string>
 #include <vector>
@@ -29,6 +31,7 @@ struct AluUnderTest {
   std::string name;
   arith::Mode mode;
   uint32_t depth;
+  uint32_t latency = 1;
 };
 
 /// The lanes of a task whose results are looked at, of a unit of this mode.
@@ -96,7 +99,7 @@ class AluBench {
 
   /// `everywhere`: what is expected in every lane, in place of the model's results.
   void send(const uint32_t* everywhere = nullptr) {
-    while (random_() % 4 == 0) clock();
+    while (random_() % 4 == 0 || !all_ready()) clock();
     const uint32_t warp = random_() % 8;
     top_.task_valid_i = 1;
     top_.task_warp_i = warp;
@@ -113,8 +116,10 @@ class AluBench {
       if (everywhere != nullptr) e.mask = (1u << kBenchLanes) - 1, e.result.fill(*everywhere);
       expected_[u].push_back(e);
     }
+    sent_ = cycle_;
     clock();
     top_.task_valid_i = 0;
+    while (!all_ready()) clock();
     top_.task_operand_a_i[0] = static_cast<uint32_t>(random_());  // nobody may look at it
     lanes_ = 0;
     mask_ = 0;
@@ -145,7 +150,17 @@ class AluBench {
     return top.done_predicate_o >> index & 1;
   }
 
+  /// Whether a task granted in this cycle, which arrives in the next one, is taken.
+  bool takes_next(const AluUnderTest& unit) const { return !sent_ || cycle_ + 1 >= *sent_ + unit.latency; }
+  /// Whether a task may arrive in this cycle.
+  bool all_ready() const {
+    for (const AluUnderTest& unit : units_)
+      if (sent_ && cycle_ < *sent_ + unit.latency) return false;
+    return true;
+  }
+
   void clock() {
+    top_.eval();  // ready_o depends on the task's valid
     check();
     tick();
     ++cycle_;
@@ -162,9 +177,11 @@ class AluBench {
     for (size_t u = 0; u < units_.size(); ++u) {
       const bool done = top_.done_valid_o >> u & 1;
       const bool due = !expected_[u].empty() && expected_[u].front().cycle == cycle_;
-      if (done != due || !(top_.ready_o >> u & 1)) {
+      const bool ready = top_.ready_o >> u & 1;
+      if (done != due || ready != takes_next(units_[u])) {
         if (++failures_ <= 10)
-          ADD_FAILURE() << units_[u].name << ": done " << done << ", expected " << due << ", cycle " << cycle_;
+          ADD_FAILURE() << units_[u].name << ": done " << done << ", expected " << due << "; ready " << ready
+                        << ", cycle " << cycle_;
       }
       if (!due) continue;
       const Expected e = expected_[u].front();
@@ -199,6 +216,7 @@ class AluBench {
   uint32_t mask_ = 0;  ///< of those used
   std::array<uint32_t, kBenchLanes> a_{}, b_{}, c_{};
   uint64_t cycle_ = 0;
+  std::optional<uint64_t> sent_;  ///< when the last task arrived
   EnumArray<Subnormals, LongCount, 2> counts_;
   int failures_ = 0;
 };

@@ -3,6 +3,14 @@
 set(arith_rtl ${RAYPOOL_RTL})
 set(arith_unit ${CMAKE_SOURCE_DIR}/tb/unit)
 
+# arith_top(NAME TOP SOURCES...): a bench top of the test program NAME.
+function(arith_top name top)
+  verilate(${name} SOURCES ${arith_unit}/${top}.v ${ARGN} TOP_MODULE ${top} PREFIX V${top} INCLUDE_DIRS ${arith_rtl}
+    OPT_SLOW -w OPT_FAST -O2 -w OPT_GLOBAL -O1 -w
+    VERILATOR_ARGS --default-language 1364-2005 -DSYNTHESIS -DNO_CLOCK_GATES --output-split 10000
+    --output-split-cfuncs 1000 -O3 --x-assign fast --x-initial fast)
+endfunction()
+
 # arith_bench(NAME TOP SOURCES...): the test program NAME of unit/NAME.cpp with the Verilated bench top TOP.
 # SYNTHESIS, NO_CLOCK_GATES: with the multipliers and the pipeline registers that hardware has, in whose place whole
 # units in simulation have quicker ones.
@@ -10,10 +18,7 @@ function(arith_bench name top)
   add_executable(${name} ${arith_unit}/${name}.cpp)
   target_link_libraries(${name} PRIVATE raypool_machine GTest::gtest_main)
   target_include_directories(${name} SYSTEM PRIVATE ${VERILATOR_ROOT}/include)  # its headers warn
-  verilate(${name} SOURCES ${arith_unit}/${top}.v ${ARGN} TOP_MODULE ${top} PREFIX V${top} INCLUDE_DIRS ${arith_rtl}
-    OPT_SLOW -w OPT_FAST -O2 -w OPT_GLOBAL -O1 -w
-    VERILATOR_ARGS --default-language 1364-2005 -DSYNTHESIS -DNO_CLOCK_GATES --output-split 10000
-    --output-split-cfuncs 1000 -O3 --x-assign fast --x-initial fast)
+  arith_top(${name} ${top} ${ARGN})
   # Tests named Long run in `make numerics-long`.
   gtest_discover_tests(${name} WORKING_DIRECTORY ${CMAKE_SOURCE_DIR} DISCOVERY_TIMEOUT 60 TEST_FILTER "-*Long*")
 endfunction()
@@ -30,6 +35,7 @@ set(arith_slw_sources ${arith_rtl}/slw_alu.v ${arith_rtl}/slow_lane.v ${arith_rt
   ${arith_rtl}/slow_exact.v ${arith_rtl}/slow_newton.v ${arith_rtl}/slow_refine.v ${arith_rtl}/slow_line_table.v
   ${arith_rtl}/slow_seed_table.v ${arith_rtl}/multiply_tree.v ${arith_rtl}/alu_pipeline.v ${arith_rtl}/alu_delay.v)
 arith_bench(slw_alu_test slw_units ${arith_slw_sources})
+arith_top(slw_alu_test slw_group_units ${arith_slw_sources})
 
 arith_bench(alu_pipeline_test pipeline_units ${arith_rtl}/alu_pipeline.v)
 

@@ -1,4 +1,5 @@
 // rtl/slw_alu.v in every pair of subnormal mode and slow unit against the model of arithmetic.
+#include "Vslw_group_units.h"
 #include "Vslw_units.h"
 #include "alu_bench.hpp"
 #include "alu_model.hpp"
@@ -21,6 +22,37 @@ std::vector<AluUnderTest> units() {
                    least_depth(configuration, AluType::Slw) + (m < 6 ? 0 : 2)});
   }
   return all;
+}
+
+/// With fewer lanes than a task has: as slw_group_units.v has them.
+std::vector<AluUnderTest> group_units() {
+  std::vector<AluUnderTest> all;
+  for (uint32_t u = 0; u < 4; ++u) {
+    Configuration configuration;
+    configuration.lanes = kBenchLanes;
+    configuration.slow_unit = u % 2 == 0 ? SlowUnit::Exact : SlowUnit::Newton0;
+    configuration.slow_lanes = 1 + u / 2;
+    configuration.alus[AluType::Slw] = {1, u == 2 ? 3u : 1u, least_depth(configuration, AluType::Slw) + u};
+    const AluConfiguration task = configuration.task_of(AluType::Slw);
+    all.push_back({"unit " + std::to_string(u), {Subnormals::Ieee, configuration.slow_unit}, task.depth, task.latency});
+  }
+  return all;
+}
+
+TEST(SlwAlu, GroupsOfLanesGiveWhatAllLanesGive) {
+  AluBench<Vslw_group_units> bench(group_units(), slw_model, kSeed);
+  arith::OperandSource source(kSeed);
+  std::mt19937_64 random(kSeed);
+  const std::vector<Opcode> opcodes = opcodes_of(AluType::Slw);
+  for (int i = 0; i < 20000; i += kBenchLanes) {
+    const Opcode opcode = opcodes[random() % opcodes.size()];
+    for (int l = 0; l < kBenchLanes; ++l) {
+      const auto [a, b] = source.next();
+      bench.add(opcode, a, b);
+    }
+  }
+  bench.finish();
+  EXPECT_GE(bench.compared(), 80000u);
 }
 
 TEST(SlwAlu, EveryPairOfSpecialValuesAgreesWithTheModel) {
