@@ -74,8 +74,8 @@ module ray_alu #(
   wire [1:0]   import_set;
   wire [9:0]   import_thread;
   wire [4:0]   import_word;
-  wire [3:0]   import_mask;
-  wire [127:0] import_data;
+  wire [7:0]   import_mask;
+  wire [255:0] import_data;
 
   // ---- Access. Its first step may be made in the cycle of arrival, from the task's ports; later ones are made from
   // what was held.
@@ -275,7 +275,7 @@ module ray_alu #(
   assign fault_warp_o = fault_warp_q;
 
   // ---- Engines
-  ray_import #(.WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS)) ray_import (
+  ray_import #(.WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS), .WIDE(BANKS > 4)) ray_import (
     .clk_i(clk_i), .rst_ni(rst_ni),
     .start_i(import_start_i), .start_kind_i(import_start_kind_i), .start_threads_i(import_start_threads_i),
     .active_o(import_active_o), .request_valid_o(import_request_valid_o), .request_kind_o(import_request_kind_o),
@@ -286,12 +286,14 @@ module ray_alu #(
   );
 
   // As elements of an access to a set
+  localparam integer IMPORTED = (BANKS > 4) ? 8 : 4;   // words a cycle
+  wire unused_import = &{1'b0, import_mask, import_data};   // the upper half, if it is not written
   reg [BANKS-1:0] import_banks;
   reg [BANKS*32-1:0] import_elements;
   always @* begin
     import_banks = {BANKS{1'b0}};
-    import_banks[3:0] = import_mask;
-    import_elements = {BANKS/4{import_data}};
+    import_banks[IMPORTED-1:0] = import_mask[IMPORTED-1:0];
+    import_elements = {BANKS/IMPORTED{import_data[IMPORTED*32-1:0]}};
   end
 
   wire [3*128-1:0] package_data;

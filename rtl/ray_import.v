@@ -1,14 +1,16 @@
 // Import engine: requests a launch's packages, thread after thread, and writes their beats into the warps' input
 // slices. Knows which input slices hold all their packages: full_o.
 // Promises: at most two packages are requested and not yet received; one is only requested while its warp's input slice
-// is not full; a beat is written in the cycle after its arrival. Must be given: for each request taken, in order, six
+// is not full; a beat is written in the cycle after its arrival, or with WIDE together with the next one of its package:
+// each write takes the memory's port from whoever else wants it. Must be given: for each request taken, in order, six
 // beats (words 4b .. 4b+3), any time after; the memory's port whenever write_o is high; no start while active_o is
 // high; take_i only for a full slice.
 `default_nettype none
 module ray_import #(
   parameter integer WARPS = 8,
   parameter integer LANES = 8,
-  parameter integer WARP_BITS = 3
+  parameter integer WARP_BITS = 3,
+  parameter [0:0] WIDE = 1'b0           // two beats are written at a time
 ) (
   input  wire                 clk_i,
   input  wire                 rst_ni,
@@ -31,8 +33,8 @@ module ray_import #(
   output reg  [1:0]           write_set_o,
   output reg  [9:0]           write_thread_o,
   output reg  [4:0]           write_word_o,
-  output reg  [3:0]           write_mask_o,
-  output reg  [127:0]         write_data_o
+  output reg  [7:0]           write_mask_o,
+  output reg  [255:0]         write_data_o       // without WIDE the upper half is 0
 );
   localparam integer LANE_BITS = $clog2(LANES);
   localparam integer LAST_LANE = LANES - 1;
@@ -41,11 +43,14 @@ module ray_import #(
   reg [10:0] threads_q, requested_q, received_q;
   reg [1:0] outstanding_q;
   reg [2:0] beat_q;
+  wire second = WIDE && beat_q[0];         // of the beats that are written together
+  wire last = beat_q == LAST_BEAT;
+  wire [3:0] mask = last ? 4'b0001 : 4'b1111;   // of the beat's words
   reg [WARPS-1:0] full_q;
   assign full_o = full_q;
 
   wire taken = request_valid_o && request_ready_i;
-  wire received = beat_valid_i && beat_q == LAST_BEAT;
+  wire received = beat_valid_i && last;
   wire [10:0] requested_next = requested_q + {10'd0, taken};
   wire [10:0] received_next = received_q + 11'd1;
   wire [1:0] outstanding_next = outstanding_q + {1'b0, taken} - {1'b0, received};
@@ -86,15 +91,21 @@ module ray_import #(
       end
       if (take_i) full_q[take_warp_i] <= 1'b0;
 
-      write_o <= beat_valid_i;
+      write_o <= beat_valid_i && (!WIDE || second || last);
       if (beat_valid_i) begin
         beat_q <= received ? 3'd0 : beat_q + 3'd1;
         write_set_o <= input_set_i[receive_warp[WARP_BITS-1:0]*2 +: 2];
         write_thread_o <= received_q[9:0];
-        write_word_o <= {beat_q, 2'b00};
-        write_mask_o <= beat_q == LAST_BEAT ? 4'b0001 : 4'b1111;
-        write_data_o <= beat_data_i;
+        write_word_o <= {beat_q[2:1], beat_q[0] && !WIDE, 2'b00};
+        write_mask_o <= second ? {mask, 4'b1111} : {4'b0000, mask};
       end
+    end
+
+  always @(posedge clk_i)
+    if (beat_valid_i) begin
+      if (!second) write_data_o[127:0] <= beat_data_i;
+      if (!WIDE) write_data_o[255:128] <= 128'd0;
+      else if (second) write_data_o[255:128] <= beat_data_i;
     end
 endmodule
 `default_nettype wire

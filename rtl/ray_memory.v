@@ -1,10 +1,10 @@
 // One set of local ray memory: BANKS 32-bit single-port banks, 21 words for each of CONTENTS threads. Word k of thread t
 // lies in bank (t+k)%BANKS, row k*ceil(CONTENTS/BANKS) + t/BANKS, so that an access moves one word of BANKS threads a
-// cycle, or four words of one thread.
-// Element e of an access is word word_i + e of thread thread_i with package_i (e below 4), else word word_i of thread
-// thread_i + e (e below BANKS); then thread_i must be a multiple of BANKS. A cycle with write_i other than 0 writes
-// these elements, else read_i reads all of them; they appear in data_o in the next cycle and stay until the next read.
-// Words written or looked at must be 0 .. 20.
+// cycle, or words of one thread: four are read, as many as eight written.
+// Element e of an access is word word_i + e of thread thread_i with package_i (e below 4, or 8 of a write with so many
+// BANKS), else word word_i of thread thread_i + e (e below BANKS); then thread_i must be a multiple of BANKS. A cycle
+// with write_i other than 0 writes these elements, else read_i reads all of them; they appear in data_o in the next
+// cycle and stay until the next read. Words written or looked at must be 0 .. 20.
 `default_nettype none
 module ray_memory #(
   parameter integer CONTENTS = 64,
@@ -20,6 +20,7 @@ module ray_memory #(
   output wire [BANKS*32-1:0] data_o
 );
   localparam integer BANK_BITS = $clog2(BANKS);
+  localparam integer PACKAGE_BITS = (BANKS > 4) ? 3 : 2;   // of an element's number in a package
   localparam integer COLUMNS = (CONTENTS > BANKS) ? CONTENTS / BANKS : 1;
   localparam integer COLUMN_BITS = $clog2(COLUMNS);
   localparam integer DEPTH = 21 * COLUMNS;
@@ -39,15 +40,15 @@ module ray_memory #(
     for (b = 0; b < BANKS; b = b + 1) begin : gen_bank
       localparam [BANK_BITS-1:0] BANK = b;
       wire [BANK_BITS-1:0] element = BANK - shift;
-      wire [4:0] word = package_i ? word_i + {3'd0, element[1:0]} : word_i;
+      wire [4:0] word = package_i ? word_i + {{5-PACKAGE_BITS{1'b0}}, element[PACKAGE_BITS-1:0]} : word_i;
       wire [12:0] row = ({8'd0, word} << COLUMN_BITS) | {3'd0, column};
       wire write = write_i[element];
-      wire element_of_access;
-      if (BANKS > 4) assign element_of_access = !package_i || element[BANK_BITS-1:2] == 0;
-      else assign element_of_access = 1'b1;
+      wire read;
+      if (BANKS > 4) assign read = reading && (!package_i || element[BANK_BITS-1:2] == 0);
+      else assign read = reading;
       wire unused = &{1'b0, row};   // a small set leaves the upper bits
       ram_1rw #(.WIDTH(32), .DEPTH(DEPTH)) u_bank (
-        .clk_i(clk_i), .enable_i(write || (reading && element_of_access)), .write_i(write),
+        .clk_i(clk_i), .enable_i(write || read), .write_i(write),
         .address_i(row[ADDRESS_BITS-1:0]), .data_i(data_i[{element, 5'd0} +: 32]), .data_o(bank_read[b*32 +: 32])
       );
       wire [BANK_BITS-1:0] from = BANK + shift_q;   // of element b

@@ -2,6 +2,7 @@
 // beats into the warps' input slices.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "bits.hpp"
@@ -19,9 +20,10 @@ class RayImport {
     uint32_t threads = 0, requested = 0, received = 0, outstanding = 0;  ///< packages
     int beat = 0;
     uint32_t full = 0;   ///< warps whose input slice has all its packages
-    bool write = false;  ///< the beat that came in the cycle before is written
+    bool write = false;  ///< the beat that came in the cycle before is written, and the one that waited for it
     uint8_t write_set = 0;
     uint32_t write_thread = 0, write_word = 0;
+    uint32_t write_words = 0;  ///< from write_word on, with a beat that waits for the next one
   };
   struct Inputs {
     ImportKind start_kind = ImportKind::None;
@@ -32,7 +34,9 @@ class RayImport {
   };
 
   explicit RayImport(const Configuration& configuration)
-      : lane_bits_(lowest(configuration.lanes)), last_lane_(configuration.lanes - 1) {}
+      : lane_bits_(lowest(configuration.lanes)),
+        last_lane_(configuration.lanes - 1),
+        wide_(configuration.wide_ray_memory && configuration.lanes > 4) {}
 
   void reset() { q_ = Registers{}; }
   const Registers& registers() const { return q_; }
@@ -69,12 +73,16 @@ class RayImport {
     return (q_.requested != q_.threads) & (q_.outstanding != 2) &
            ((uint64_t{q_.full} >> (q_.requested >> lane_bits_) & 1) == 0);
   }
-  /// A beat comes, which is written in the next cycle; true for the last one of its package.
+  /// A beat comes, which is written in the next cycle, or together with the one after it; true for the last one of its
+  /// package.
   bool beat(uint8_t set) {
-    q_.write = true;
+    const int waited = wide_ ? q_.beat % 2 : 0;
+    q_.write = !wide_ || waited != 0 || q_.beat == kIntersectionBeats - 1;
     q_.write_set = set;
     q_.write_thread = q_.received;
-    q_.write_word = static_cast<uint32_t>(q_.beat * kBeatWords);
+    const int word = (q_.beat - waited) * kBeatWords;
+    q_.write_word = static_cast<uint32_t>(word);
+    q_.write_words = static_cast<uint32_t>(std::min((waited + 1) * kBeatWords, kIntersectionWords - word));
     if (++q_.beat < kIntersectionBeats) return false;
     q_.beat = 0;
     return true;
@@ -88,6 +96,7 @@ class RayImport {
   }
 
   uint32_t lane_bits_, last_lane_;
+  bool wide_;  // two beats are written at a time
   Registers q_;
 };
 
