@@ -326,7 +326,8 @@ module ray_alu #(
       wire by_export = export_read && export_set == SET && !by_import && !by_access;
       ray_memory #(.CONTENTS(WARPS * LANES), .BANKS(BANKS)) ray_memory (
         .clk_i(clk_i), .read_i((by_access && !access_write) || by_export),
-        .write_i(by_import ? import_banks : by_access ? access_mask : {BANKS{1'b0}}), .package_i(by_import || by_export),
+        .write_i(by_import ? import_banks : by_access ? access_mask : {BANKS{1'b0}}),
+        .package_i(by_import || by_export),
         .thread_i(by_import ? import_thread : by_access ? access_thread : export_thread),
         .word_i(by_import ? import_word : by_access ? access_word : export_word),
         .data_i(by_import ? import_elements : access_data), .data_o(memory_data[s*BANKS*32 +: BANKS*32])

@@ -1,6 +1,6 @@
-// One set of local ray memory: BANKS 32-bit single-port banks, 21 words for each of CONTENTS threads. Word k of thread t
-// lies in bank (t+k)%BANKS, row k*ceil(CONTENTS/BANKS) + t/BANKS, so that an access moves one word of BANKS threads a
-// cycle, or words of one thread: four are read, as many as eight written.
+// One set of local ray memory: BANKS 32-bit single-port banks, 21 words for each of CONTENTS threads. Word k of thread
+// t lies in bank (t+k)%BANKS, row k*ceil(CONTENTS/BANKS) + t/BANKS, so that an access moves one word of BANKS threads
+// a cycle, or words of one thread: four are read, as many as eight written.
 // Element e of an access is word word_i + e of thread thread_i with package_i (e below 4, or 8 of a write with so many
 // BANKS), else word word_i of thread thread_i + e (e below BANKS); then thread_i must be a multiple of BANKS. A cycle
 // with write_i other than 0 writes these elements, else read_i reads all of them; they appear in data_o in the next

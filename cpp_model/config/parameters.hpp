@@ -32,7 +32,7 @@ enum class Shading : uint8_t { Kernel = 0, Traverser = 1 };
   UNIT(kernel_overlap, bool, false, on_or_off(), all(), \
        "a warp that has ended goes on with the next kernel while others still run the one before") \
   UNIT(wide_ray_memory, bool, false, on_or_off(), all(), \
-       "rld and rst move a word of all lanes in a cycle, an import eight words, where a warp has more than four lanes") \
+       "with more than four lanes: rld and rst move a word of all of them in a cycle, an import eight words") \
   UNIT(slow_lanes, uint32_t, 32, powers_of_two(1, 32), tried(1, 2, 32), \
        "lanes of an instance of slw at most: with fewer than the unit has, a task takes them one group after another") \
   PART(instruction_cache, bytes, uint32_t, 4096, powers_of_two(512, 65536), tried(512, 1024, 4096, 65536), "size") \

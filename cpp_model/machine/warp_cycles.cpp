@@ -16,7 +16,8 @@ WarpCycles warp_cycles(const Configuration& configuration, ComputeUnit& device) 
     cycles.issued += issued;
     cycles.waiting[type] = count(counter::kWaiting + type);
     // A task arrives in the cycle after it is granted, and takes as many as the pipeline has stages.
-    cycles.executing[type] = issued * (1 + static_cast<uint64_t>(configuration.task_of(static_cast<AluType>(type)).depth));
+    const AluConfiguration alu = configuration.task_of(static_cast<AluType>(type));
+    cycles.executing[type] = issued * (1 + static_cast<uint64_t>(alu.depth));
   }
   cycles.executing[AluType::Flt] -=
       count(counter::kFltOverlapped) * (1 + static_cast<uint64_t>(configuration.alus[AluType::Flt].depth));
