@@ -1,5 +1,6 @@
 // Bench top: Slw ALUs with fewer lanes than a task has, fed with the same tasks. Units 0 and 1 have one lane, 2 and 3
-// two; 0 and 2 are exact, the others without Newton steps. Unit u has u stages of delay, and 2 takes a task in three cycles.
+// two; 0 and 2 are exact, the others without Newton steps. Unit u has u stages of delay, and 2 takes a task in three
+// cycles.
 `default_nettype none
 module slw_group_units #(
   parameter integer LANES = 4
