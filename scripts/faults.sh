@@ -1,8 +1,8 @@
 #!/bin/bash
 # Builds machines that carry every mistake of tb/faults/catalogue.json: scripts/faults.sh FOLDER [MACHINE]...
-# The environment variable RAYPOOL_FAULT selects the mistake (none: 0) of every unit made after it is set. The
-# machines are the small one of the cosim tests, as one unit, with triples and as four units, and those that the test
-# configurations_quick walks. FOLDER gets
+# The environment variable RAYPOOL_FAULT selects the mistake (none: 0) of every unit made after it is set. The machines
+# are the small one of the cosim tests, as one unit and as four, one with all features of `best`, and those that the
+# test configurations_quick walks. FOLDER gets
 #   rtl/                      the Verilog with the mistakes
 #   NAME/libraypool_unit.so   a machine
 #   list                      a line for each: name, file of the configuration, units
@@ -25,7 +25,7 @@ python3 scripts/faults.py tb/faults/catalogue.json rtl "$folder/rtl"
 
 "$raypool" configurations --most 12 --out "$folder/configurations" > /dev/null
 small=$root/tb/mutants/2w2c.json
-machines=("2w2c $small 1" "2w2c-triples ${small%.json}_triples.json 1" "2w2c-4cu $small 4")
+machines=("2w2c $small 1" "2w8c-best ${small%2w2c.json}2w8c_best.json 1" "2w2c-4cu $small 4")
 while read -r file units; do
   machines+=("${file%.json} $folder/configurations/$file $units")
 done < "$folder/configurations/list"

@@ -11,14 +11,14 @@ set_tests_properties(verilate_2w2c_small PROPERTIES FIXTURES_SETUP unit_2w2c_sma
 add_test(NAME cosim_2w2c_small COMMAND raypool cosim --config ${small_config} --programs 1000 --seed 1
   --no-shrink --quiet)
 set_tests_properties(cosim_2w2c_small PROPERTIES FIXTURES_REQUIRED unit_2w2c_small TIMEOUT 300)
-# The same unit with triples and arithmetic.fma, of which there are triples too.
-set(triples_config ${CMAKE_SOURCE_DIR}/tb/mutants/2w2c_triples.json)
-add_test(NAME verilate_2w2c_triples COMMAND ${CMAKE_COMMAND} -E env RAYPOOL=${raypool_program} ${scripts}/unit.sh
-  ${triples_config})
-set_tests_properties(verilate_2w2c_triples PROPERTIES FIXTURES_SETUP unit_2w2c_triples TIMEOUT 900)
-add_test(NAME cosim_2w2c_triples COMMAND raypool cosim --config ${triples_config} --programs 500 --seed 1
+# A small one with all features of best, and arithmetic.fma, of which there are triples too.
+set(best_config ${CMAKE_SOURCE_DIR}/tb/mutants/2w8c_best.json)
+add_test(NAME verilate_2w8c_best_small COMMAND ${CMAKE_COMMAND} -E env RAYPOOL=${raypool_program} ${scripts}/unit.sh
+  ${best_config})
+set_tests_properties(verilate_2w8c_best_small PROPERTIES FIXTURES_SETUP unit_2w8c_best_small TIMEOUT 900)
+add_test(NAME cosim_2w8c_best_small COMMAND raypool cosim --config ${best_config} --programs 300 --seed 1
   --no-shrink --quiet)
-set_tests_properties(cosim_2w2c_triples PROPERTIES FIXTURES_REQUIRED unit_2w2c_triples TIMEOUT 300)
+set_tests_properties(cosim_2w8c_best_small PROPERTIES FIXTURES_REQUIRED unit_2w8c_best_small TIMEOUT 300)
 add_test(NAME cosim_4w4c_2cu COMMAND raypool cosim --config 4w4c --units 2 --programs 100 --no-shrink --quiet)
 set_tests_properties(cosim_4w4c_2cu PROPERTIES FIXTURES_REQUIRED unit_4w4c_2cu TIMEOUT 300)
 # Four small ones: a multiprocessor of four 4w4c takes a minute to compile.

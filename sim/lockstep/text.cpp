@@ -29,8 +29,10 @@ std::string result_files(const DecodedInstruction& instruction, const Configurat
       return fmt::format("rtl/{}.v, rtl/float_lane.v, rtl/flt_alu.v", block);
     }
     case AluType::Slw:
-      return fmt::format("rtl/{}.v, rtl/slow_prepare.v, rtl/slow_lane.v",
-                         configuration.slow_unit == SlowUnit::Exact ? "slow_exact" : "slow_newton");
+      // Of fewer lanes than a task has, the ALU itself says which take what, and when.
+      return fmt::format("rtl/{}.v, rtl/slow_prepare.v, rtl/{}.v",
+                         configuration.slow_unit == SlowUnit::Exact ? "slow_exact" : "slow_newton",
+                         configuration.slow_groups() > 1 ? "slw_alu" : "slow_lane");
     case AluType::Mem:
       return "rtl/mem_alu.v, rtl/data_cache.v";
     case AluType::Ray:
