@@ -58,6 +58,7 @@ enum class Shading : uint8_t { Kernel = 0, Traverser = 1 };
   CHIP(traverser, TraverserName, TraverserName::Static, names("static", "modelled"), "timing of the traverser") \
   CHIP(shading, Shading, Shading::Kernel, names("kernel", "traverser"), \
        "who adds shadow rays that reach the light to the frame buffer: the kernel shade, or the traverser itself") \
+  CHIP(culling, bool, false, on_or_off(), "rays that cannot add to the picture are left out") \
   CHIP_PART(thresholds, rays, uint32_t, 48, integers(0, 1 << 20), \
             "rays in the ray pool above which no more are cast, for 64 contents and one unit") \
   CHIP_PART(thresholds, intersections, uint32_t, 8, integers(0, 1 << 20), \

@@ -35,7 +35,7 @@ void compile(Function function, Program& program, const KernelTarget& target = {
 template <typename Body>
 void add_kernel(Program& program, const std::string& name, const Body& body, const KernelTarget& target = {}) {
   Recorder recorder(name, target.fma);
-  RecordedKernel kernel(recorder);
+  RecordedKernel kernel(recorder, target.culling);
   body(kernel);
   compile(recorder.finish(), program, target);
 }

@@ -64,6 +64,7 @@ struct NativeThread {
   const std::array<uint32_t, kArguments>* arguments = nullptr;
   Memory* memory = nullptr;
   arith::Mode mode;
+  bool culling = false;                  ///< chip.culling
   Intersection input{};                  ///< what `rin` makes current
   std::vector<Ray> rays;                 ///< what `rout` exported, in order
   std::vector<FrameContribution> frame;  ///< what `rfb` exported, in order

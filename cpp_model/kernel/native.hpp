@@ -106,6 +106,7 @@ class NativeKernel {
 
   explicit NativeKernel(NativeThread& thread) : thread_(thread) { words_.fill(kUndefinedWord); }
 
+  bool culling() const { return thread_.culling; }
   Int thread() const { return thread_.thread; }
   Int block() const { return thread_.block; }
   Int threads() const { return thread_.threads; }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 
 #include "kernel/kernel.hpp"
 #include "kernel/kernels.hpp"
@@ -39,7 +40,8 @@ void cast_eye(K& k) {
 template <typename K>
 struct Lighting {
   Vector<K> direction;
-  typename K::Float cosine;  // 0 if the light is behind the surface
+  typename K::Float cosine;               // 0 if the light is behind the surface; but with culling
+  std::optional<typename K::Bool> lit{};  // with culling: whether it is not behind
 };
 
 /// The package's words up to the limit are those of a normal intersection; `back` says that
@@ -50,9 +52,21 @@ Lighting<K> light_hit(K& k, const Vector<K>& origin, const Vector<K>& normal, co
   const Vector<K> direction = vector_argument(k, argument::kLight) - origin;
   Float cosine = dot(normal, direction) * rsqrt(dot(direction, direction));
   k.if_(back, [&] { cosine = -cosine; });
-  // 0 * infinity, from a light that lies on the surface, becomes 0 too; the largest cosine is 1, even where the square
-  // of the distance is less than the smallest number.
-  return {direction, min(max(cosine, 0.0f), 1.0f)};
+  // 0 * infinity, from a light that lies on the surface, is not lit, or becomes 0 too; the largest cosine is 1, even
+  // where the square of the distance is less than the smallest number.
+  if (!k.culling()) return {direction, min(max(cosine, 0.0f), 1.0f)};
+  const typename K::Bool lit = cosine > 0.0f;
+  return {direction, min(cosine, 1.0f), lit};
+}
+
+/// The slice holds the shadow ray: it leaves, but for where it is known to add nothing.
+template <typename K>
+void shadow_ray_out(K& k, const Lighting<K>& light) {
+  if (light.lit) {
+    k.if_(*light.lit, [&] { k.ray_out(); });
+  } else {
+    k.ray_out();
+  }
 }
 
 /// Where secondary rays begin: at the hit, moved off the surface to the side from which the ray came.
@@ -90,7 +104,7 @@ void cast_secondary_direct(K& k) {
   }
   k.set_word(word::kLimit, Float(1.0f));
   k.set_word(word::kFlags, k.int_word(word::kFlags) | kShadowFlag);
-  k.ray_out();
+  shadow_ray_out(k, light);
 }
 
 template <typename K>
@@ -110,13 +124,17 @@ void cast_secondary(K& k) {
   set_vector_word(k, word::kDirection,
                   {multiply_add(minus_twice, normal.x, direction.x), multiply_add(minus_twice, normal.y, direction.y),
                    multiply_add(minus_twice, normal.z, direction.z)});
-  const Lighting<K> light = light_hit(k, origin, normal, back);
+  // With culling the light is looked at later, so that more time lies between the two rays of a warp: the first one has
+  // left when the second one is there.
+  std::optional<Lighting<K>> light;
+  if (!k.culling()) light = light_hit(k, origin, normal, back);
   const Int material = k.int_word(word::kMaterial);
   const auto contribution = [&](int i) {
     const Float throughput = k.float_word(word::kColor + i);
     k.set_word(word::kColor + i, throughput * k.load_float(material, kMaterialReflectance + 4 * i));
+    if (!light) return throughput * k.load_float(material, kMaterialDiffuse + 4 * i);
     return throughput * k.load_float(material, kMaterialDiffuse + 4 * i) *
-           (light.cosine * k.float_argument(argument::kLightColor + i));
+           (light->cosine * k.float_argument(argument::kLightColor + i));
   };
   const Float red = contribution(0);
   const Float green = contribution(1);
@@ -128,14 +146,26 @@ void cast_secondary(K& k) {
 
   // The slice that is current now holds nothing of this thread's: all twelve words are written.
   set_vector_word(k, word::kOrigin, origin);
-  set_vector_word(k, word::kDirection, light.direction);
+  if (!light) {
+    // What is known goes first, and leaves its registers to the light.
+    k.set_word(word::kPixel, pixel);
+    k.set_word(word::kFlags, flags | kShadowFlag);
+    light = light_hit(k, origin, normal, back);
+  }
+  set_vector_word(k, word::kDirection, light->direction);
   k.set_word(word::kLimit, Float(1.0f));
-  k.set_word(word::kPixel, pixel);
-  k.set_word(word::kColor, red);
-  k.set_word(word::kColor + 1, green);
-  k.set_word(word::kColor + 2, blue);
-  k.set_word(word::kFlags, flags | kShadowFlag);
-  k.ray_out();
+  if (k.culling()) {
+    k.set_word(word::kColor, red * (light->cosine * k.float_argument(argument::kLightColor)));
+    k.set_word(word::kColor + 1, green * (light->cosine * k.float_argument(argument::kLightColor + 1)));
+    k.set_word(word::kColor + 2, blue * (light->cosine * k.float_argument(argument::kLightColor + 2)));
+  } else {
+    k.set_word(word::kPixel, pixel);
+    k.set_word(word::kColor, red);
+    k.set_word(word::kColor + 1, green);
+    k.set_word(word::kColor + 2, blue);
+    k.set_word(word::kFlags, flags | kShadowFlag);
+  }
+  shadow_ray_out(k, *light);
 }
 
 template <typename K>

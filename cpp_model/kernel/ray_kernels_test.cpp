@@ -210,9 +210,34 @@ TEST(RayKernels, LightBehindOrOnTheSurfaceContributesNothing) {
     }
     put(test.arguments, argument::kLight, light);
     run_native(RayKernel::CastSecondaryDirect, test.thread);
-    ASSERT_EQ(test.thread.rays.size(), 1u) << "a shadow ray is always cast";
+    ASSERT_EQ(test.thread.rays.size(), 1u) << "without culling a shadow ray is always cast";
     for (int i = 0; i < 3; ++i) EXPECT_EQ(test.thread.rays[0][word::kColor + i], 0u) << on_surface;
+    test.thread.rays.clear();
+    test.thread.culling = true;
+    run_native(RayKernel::CastSecondaryDirect, test.thread);
+    EXPECT_TRUE(test.thread.rays.empty()) << on_surface;
   }
+}
+
+TEST(RayKernels, CullingLeavesOutShadowRaysAwayFromTheLightAndNoOthers) {
+  int left_out = 0, cast = 0;
+  for (uint32_t seed = 1; seed <= 300; ++seed) {
+    for (const RayKernel which : {RayKernel::CastSecondary, RayKernel::CastSecondaryDirect}) {
+      Case all(seed), some(seed);
+      some.thread.culling = true;
+      run_native(which, all.thread);
+      run_native(which, some.thread);
+      std::vector<Ray> expected;
+      for (const Ray& ray : all.thread.rays) {
+        if ((ray[word::kFlags] & kShadowFlag) == 0 || !is_black(ray)) expected.push_back(ray);
+      }
+      EXPECT_EQ(some.thread.rays, expected) << seed;
+      left_out += static_cast<int>(all.thread.rays.size() - expected.size());
+      cast += static_cast<int>(expected.size());
+    }
+  }
+  EXPECT_GT(left_out, 50);
+  EXPECT_GT(cast, 500);
 }
 
 TEST(RayKernels, ShadeAddsTheContributionToItsPixel) {
@@ -238,6 +263,8 @@ TEST(RayKernels, EveryWordOfARayIsWritten) {
 TEST(RayKernels, MachineCodeAgreesWithNativeInEveryMode) {
   int rays = 0;
   for (int mode = 0; mode < 8; ++mode) {
+    const bool culling = mode % 3 == 0;
+    const Program& program = ray_kernel_program({false, false, culling});
     for (int which = 0; which < kRayKernels; ++which) {
       for (uint32_t seed = 1; seed <= 40; ++seed) {
         Case base(seed);
@@ -253,7 +280,7 @@ TEST(RayKernels, MachineCodeAgreesWithNativeInEveryMode) {
           if (random() % 4 == 0) machine.input[lane][random() % 18] = random();
         }
         const std::string name(kRayKernelNames[which]);
-        machine.run(ray_kernel_program(), ray_kernel_program().entries.at(name));
+        machine.run(program, program.entries.at(name));
         for (uint32_t lane = 0; lane < test::Interpreter::kLanes; ++lane) {
           NativeThread thread;
           thread.thread = lane;
@@ -262,6 +289,7 @@ TEST(RayKernels, MachineCodeAgreesWithNativeInEveryMode) {
           thread.arguments = &machine.arguments;
           thread.memory = &base.memory;
           thread.mode = machine.mode;
+          thread.culling = culling;
           thread.input = machine.input[lane];
           run_native(static_cast<RayKernel>(which), thread);
           ASSERT_EQ(thread.rays, machine.rays[lane])

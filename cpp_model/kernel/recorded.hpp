@@ -279,7 +279,9 @@ class RecordedKernel {
   using Float = recorded::Float;
   using BoolOperand = recorded::BoolOperand;
 
-  explicit RecordedKernel(Recorder& recorder) : recorder_(recorder) {}
+  explicit RecordedKernel(Recorder& recorder, bool culling = false) : recorder_(recorder), culling_(culling) {}
+
+  bool culling() const { return culling_; }
 
   Int thread(Location where = Location::here()) { return index(Opcode::Tid, where); }
   Int block(Location where = Location::here()) { return index(Opcode::Block, where); }
@@ -349,6 +351,7 @@ class RecordedKernel {
   void write_word(int number, int value, const Location& where);
 
   Recorder& recorder_;
+  bool culling_;
 };
 
 }  // namespace raypool::kernel

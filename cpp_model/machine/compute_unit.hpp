@@ -22,7 +22,8 @@ namespace raypool {
 
 inline constexpr uint32_t kMostUnits = 4;  ///< compute units of a device: 1, 2 or 4
 
-enum class ImportKind : uint8_t { None = 0, Normal = 1, Shadow = 2 };
+enum class ImportKind : uint8_t { None = 0, Normal = 1, Shadow = 2, Direct = 3 };
+inline constexpr size_t kImportKinds = 4;
 
 struct LaunchCommand {
   uint32_t pc = 0;       ///< entry, in instructions

@@ -58,6 +58,7 @@ Configuration configuration_in_mode(const char* name, int mode) {
   configuration.subnormals = static_cast<Subnormals>(mode & 1);
   configuration.slow_unit = static_cast<SlowUnit>(mode >> 1 & 3);
   configuration.fma = mode >= 8;
+  configuration.chip.culling = mode % 3 == 0;
   return configuration;
 }
 
@@ -107,6 +108,7 @@ TEST(KernelsOnCore, RayKernelsLeaveWhatTheyLeaveNatively) {
           thread.arguments = &arguments;
           thread.memory = &memory;
           thread.mode = arith::mode_of(configuration);
+          thread.culling = configuration.chip.culling;
           thread.input = packages[t];
           run_native(which, thread);
           ASSERT_EQ(result.rays[t], thread.rays) << kRayKernelNames[kernel] << ", thread " << t;

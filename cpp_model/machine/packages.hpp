@@ -36,6 +36,11 @@ using Ray = std::array<uint32_t, kRayWords>;
 using Intersection = std::array<uint32_t, kIntersectionWords>;
 using Beat = std::array<uint32_t, kBeatWords>;
 
+/// Whether a ray's weight is zero in each channel: whatever it finds adds nothing to the picture.
+inline bool is_black(const Ray& ray) {
+  return ((ray[word::kColor] | ray[word::kColor + 1] | ray[word::kColor + 2]) & 0x7fffffffu) == 0;
+}
+
 /// Material record in memory: diffuse r, g, b, 0, reflectance r, g, b, 0 (floats).
 inline constexpr int kMaterialBytes = 32;
 inline constexpr int kMaterialDiffuse = 0;       ///< byte offset

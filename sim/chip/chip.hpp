@@ -76,7 +76,7 @@ struct ChipResult {
   // Rays.
   RayCounts ray_counts;
   uint64_t rays() const { return ray_counts.traced(); }
-  uint64_t dropped_depth = 0;  ///< rays beyond the depth limit; never traced
+  uint64_t dropped_depth = 0;  ///< rays beyond the depth limit; never traced, with chip.culling never cast
   uint64_t contributions = 0;  ///< to the frame buffer
   uint32_t held_peak = 0;      ///< most unfinished pixels at a time
 
@@ -104,7 +104,7 @@ struct ChipResult {
   uint64_t data_cache_hits = 0, data_cache_misses = 0, data_cache_stores = 0;
 
   // Pools and ports. A port's utilisation is the share of time in which it serves a request.
-  PoolFill rays_pool, normal_pool, shadow_pool;
+  PoolFill rays_pool, normal_pool, shadow_pool, direct_pool;
   double ray_port_utilisation = 0, intersection_port_utilisation = 0, memory_port_utilisation = 0;
   uint64_t memory_reads = 0;             ///< lines of 64 bytes
   uint64_t memory_writes = 0;            ///< quadwords of 16 bytes

@@ -41,7 +41,8 @@ Chip::Chip(const sc_core::sc_module_name& name, const ChipOptions& options)
       intersections_("intersection_pool", options.configuration.chip),
       frame_("frame_port", *options.frame),
       controller_("controller", options_),
-      traverser_(make_traverser(options.configuration.chip, *options.tracer, options.device->units())),
+      traverser_(make_traverser({*options.tracer, options.configuration.chip, options.device->units(), options.depth,
+                                 secondary_kernel(options.depth, options.reflections) == RayKernel::CastSecondary})),
       device_("device_host", *options.device),
       monitor_("monitor", {options.watchdog_cycles, options.cycle_limit, true, options.progress != nullptr}) {
   memory_port_.clock(clock_.now);

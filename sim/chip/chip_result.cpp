@@ -46,6 +46,7 @@ void Chip::collect_pools(ChipResult& result) const {
   result.rays_pool = pool_fill(rays_.fill(), rays_.capacity(), result.cycles);
   result.normal_pool = pool_fill(intersections_.fill(ImportKind::Normal), intersections_.capacity(), result.cycles);
   result.shadow_pool = pool_fill(intersections_.fill(ImportKind::Shadow), intersections_.capacity(), result.cycles);
+  result.direct_pool = pool_fill(intersections_.fill(ImportKind::Direct), intersections_.capacity(), result.cycles);
   result.ray_port_utilisation = ratio(rays_.busy_cycles(), result.cycles);
   result.intersection_port_utilisation = ratio(intersections_.busy_cycles(), result.cycles);
   result.memory_port_utilisation = ratio(memory_port_.busy_cycles(), result.cycles);
@@ -88,10 +89,13 @@ ChipResult Chip::collect() const {
   result.nanoseconds = static_cast<double>(result.cycles);
   const TraverserCounts& counts = traverser_->counts();
   result.ray_counts = counts.rays;
-  result.dropped_depth = rays_.dropped_depth();
+  result.dropped_depth = rays_.dropped_depth() + counts.deepest;
   result.contributions = frame_.taken();
   result.held_peak = controller_.held_peak();
   result.kernels = controller_.kernels();
+  result.ray_counts.count_left_out(
+      result.kernels[RayKernel::CastSecondary].threads + result.kernels[RayKernel::CastSecondaryDirect].threads,
+      secondary_kernel(options_.depth, options_.reflections) == RayKernel::CastSecondary, result.dropped_depth);
   if (result.timed) {
     const auto traced = static_cast<double>(result.rays());
     const double thesis = options_.depth == 1 ? 2.0 * options_.width * options_.height : traced;

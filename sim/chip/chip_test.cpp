@@ -70,6 +70,33 @@ TEST_P(EveryShape, SurvivesFullPoolsWhenTheTraverserShades) {
   }
 }
 
+// Threads make fewer rays than the controller has kept places for, or some that the ray pool drops; hits go apart.
+TEST_P(EveryShape, SurvivesFullPoolsWhenRaysAreLeftOut) {
+  const Shape shape = GetParam();
+  for (const bool black : {false, true}) {
+    for (const int rays : {512, 64, 1}) {
+      SCOPED_TRACE(testing::Message() << rays << " rays" << (black ? ", black ones" : ""));
+      FrameRun run(shape.warps, shape.lanes, shape.units, rays == 1 ? 11 : 31, 23, 6, 30);
+      run.world = {1, 0, 0, 9, rays == 64 ? 16 : 13, black};
+      ChipConfiguration& chip = run.options.configuration.chip;
+      chip.culling = true;
+      chip.intersection_pool_size = chip.held_limit = rays == 512 ? 512 : 33;
+      chip.ray_pool_size = rays;
+      chip.policy = black ? PolicyName::Fill : PolicyName::Thesis;
+      chip.shading = rays == 64 ? Shading::Traverser : Shading::Kernel;
+      const ChipResult result = run.go();
+      run.expect_conserved(result);
+      const RayCounts& counts = result.ray_counts;
+      const uint64_t hits = counts.eye.traced + counts.reflection.traced;
+      EXPECT_EQ(counts.shadow.left_out, hits - counts.shadow.traced);
+      EXPECT_EQ(counts.reflection.left_out, hits - result.dropped_depth - counts.reflection.traced);
+      EXPECT_GT(counts.shadow.left_out, 0u);
+      EXPECT_EQ(counts.reflection.left_out == 0, rays == 64);
+      EXPECT_GT(result.kernels[RayKernel::CastSecondaryDirect].threads, 0u);
+    }
+  }
+}
+
 TEST_P(EveryShape, DrawsWithoutTheRemedyAndWithoutLaunchingAhead) {
   const Shape shape = GetParam();
   for (const bool remedy : {false, true}) {

@@ -70,14 +70,19 @@ uint32_t Controller::secondary_room() const {
   return shadows < limit ? limit - shadows : 0;
 }
 
+ImportKind Controller::secondary_import() const {
+  const bool direct = intersections->available(ImportKind::Direct) > intersections->available(ImportKind::Normal);
+  return direct ? ImportKind::Direct : ImportKind::Normal;
+}
+
 PolicyView Controller::view(bool ahead) const {
   PolicyView view;
   view.rays = rays->size();
-  view.normal = intersections->available(ImportKind::Normal);
+  view.normal = intersections->available(secondary_import());
   view.shadow = intersections->available(ImportKind::Shadow);
   view.secondary_room = secondary_room();
   view.rays_to_come = ledger->rays_to_come();
-  for (const ImportKind kind : {ImportKind::Normal, ImportKind::Shadow}) {
+  for (const ImportKind kind : {ImportKind::Normal, ImportKind::Shadow, ImportKind::Direct}) {
     view.promised += intersections->size(kind) - intersections->available(kind);
   }
   for (const auto& given : given_) view.kernels += size32(given);
@@ -114,9 +119,11 @@ void Controller::launch(const Choice& choice) {
     command = next_tile(unit);
   } else {
     const bool shade = choice.kind == Choice::Kind::Shade;
-    command.import = shade ? ImportKind::Shadow : ImportKind::Normal;
+    command.import = shade ? ImportKind::Shadow : secondary_import();
     command.threads = choice.threads;
-    kernel = shade ? RayKernel::Shade : secondary_;
+    kernel = shade                                  ? RayKernel::Shade
+             : command.import == ImportKind::Direct ? RayKernel::CastSecondaryDirect
+                                                    : secondary_;
     if (choice.threads == 0 || choice.threads > intersections->available(command.import) ||
         choice.threads > options_.configuration.contents() || (!shade && choice.threads > secondary_room())) {
       throw std::logic_error("the policy launches a kernel of a size that is not possible now");

@@ -65,6 +65,8 @@ class Controller : public sc_core::sc_module, public DecisionIf, public KernelEv
   PolicyView view(bool ahead) const;
   bool eye_possible() const;
   uint32_t secondary_room() const;
+  /// Which normal intersections a secondary kernel would take: those of which there are more.
+  ImportKind secondary_import() const;
   void launch(const Choice& choice);
   LaunchCommand next_tile(uint32_t unit);
   uint32_t pixels_of_next_tile() const;

@@ -42,6 +42,59 @@ TEST_P(Frame, IsThatOfTheNativeRenderer) {
   EXPECT_FALSE(result.timed);
 }
 
+struct Drawn {
+  FrameBuffer frame;
+  RayCounts rays;
+  uint64_t too_deep;
+};
+
+Drawn draw_on_chip(const Scene& scene, uint32_t depth, bool culling) {
+  test::RealFrame run(4, 4, 32, 24, depth, scene, culling);
+  run.set_device(make_functional_unit(run.options.configuration, run.image.memory));
+  const ChipResult result = run_chip(run.options);
+  return {run.frame, result.ray_counts, result.dropped_depth};
+}
+
+Drawn draw_natively(const Scene& scene, uint32_t depth, bool culling) {
+  const MemoryImage image = build_memory(ray_kernel_program(), scene);
+  NativeOptions native;
+  native.width = 32;
+  native.height = 24;
+  native.depth = depth;
+  native.culling = culling;
+  NativeStatistics statistics;
+  const FrameBuffer frame = render_native(scene, image, Tracer(scene, image.material_base), native, &statistics);
+  return {frame, statistics.ray_counts, statistics.dropped_rays};
+}
+
+TEST(Culling, LeavesOutRaysWithoutWeightAndChangesNoPicture) {
+  Scene black = make_cornell();
+  black.light.color = {0, 0, 0};
+  Scene mirrors = make_cornell();
+  for (Material& material : mirrors.materials) material.kd = {0, 0, 0}, material.ks = {0.5f, 0, 0};
+  for (const Scene& scene : {make_cornell(), make_room(0.2), black, mirrors}) {
+    for (const uint32_t depth : {1, 2, 5}) {
+      SCOPED_TRACE(testing::Message() << scene.name << " depth " << depth);
+      const Drawn all = draw_natively(scene, depth, false), chip = draw_on_chip(scene, depth, true);
+      const Drawn native = draw_natively(scene, depth, true);
+      EXPECT_TRUE(chip.frame == all.frame);
+      EXPECT_TRUE(native.frame == all.frame);
+      EXPECT_EQ(chip.too_deep, native.too_deep);
+      EXPECT_EQ(all.rays.shadow.left_out + all.rays.reflection.left_out, 0u);
+      for (const auto kind : {&RayCounts::eye, &RayCounts::reflection, &RayCounts::shadow}) {
+        EXPECT_EQ((chip.rays.*kind).traced, (native.rays.*kind).traced);
+        EXPECT_EQ((chip.rays.*kind).left_out, (native.rays.*kind).left_out);
+        EXPECT_EQ((chip.rays.*kind).weightless, 0u);
+        // What had a weight is traced as before.
+        EXPECT_EQ((chip.rays.*kind).traced, (all.rays.*kind).traced - (all.rays.*kind).weightless);
+      }
+      EXPECT_GT(chip.rays.shadow.left_out, 0u);
+      if (depth > 1) continue;
+      EXPECT_EQ(chip.rays.shadow.left_out, all.rays.shadow.weightless);
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Chip, Frame,
                          testing::Values(Case{8, 8, 1, 32, 24, 1}, Case{8, 8, 4, 67, 41, 5}, Case{1, 1, 2, 13, 7, 3},
                                          Case{2, 8, 2, 31, 29, 2}, Case{32, 32, 4, 61, 53, 4}, Case{4, 4, 1, 1, 1, 5}),

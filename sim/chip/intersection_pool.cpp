@@ -33,7 +33,7 @@ bool IntersectionPool::request(uint32_t unit, ImportKind kind) {
 
 void IntersectionPool::put(ImportKind kind, const Intersection& intersection) {
   queue(kind).push_back(intersection);
-  fill_[number(kind)].set(clock->cycle(), size(kind));
+  fill_[kind].set(clock->cycle(), size(kind));
   if (wanting_ != kind || request_due_ != kNever) return;
   request_due_ = due();
 }
@@ -50,9 +50,9 @@ void IntersectionPool::give() {
   Leaving& leaving = leaving_.emplace_back();
   std::copy(package.begin(), package.end(), leaving.words.begin());
   queue(kind).pop_front();
-  --reserved_[number(kind)];
+  --reserved_[kind];
   ++taken_;
-  fill_[number(kind)].set(request_due_ - 1, size(kind));
+  fill_[kind].set(request_due_ - 1, size(kind));
   ledger->imported(wanting_unit_, leaving.words[word::kPixel]);
   leaving.first_beat = std::max(request_due_ + 1, beats_from_);
   beats_from_ = leaving.first_beat + kIntersectionBeats * cycles_per_beat_;

@@ -1,4 +1,5 @@
-// The intersection pool: intersections of normal and of shadow rays, a queue for each kind, behind one 128-bit port.
+// The intersection pool: intersections of normal and of shadow rays, and with chip.culling those of normal rays that
+// need no reflection apart, a queue for each kind, behind one 128-bit port.
 //
 // An intersection costs the port its overhead and 6 beats: 8 cycles, as the thesis has it. There a request in cycle c
 // to an idle port is taken in c+1, and the beats move in c+2 .. c+7. With less overhead, 1, a request is taken while
@@ -18,6 +19,7 @@
 #include "chip/interfaces.hpp"
 #include "chip/statistics.hpp"
 #include "config/configuration.hpp"
+#include "enum_array.hpp"
 #include "machine/compute_unit.hpp"
 #include "machine/packages.hpp"
 
@@ -43,19 +45,18 @@ class IntersectionPool : public sc_core::sc_module,
   bool full(ImportKind kind) const override { return queue(kind).size() >= capacity_; }
   void put(ImportKind kind, const Intersection& intersection) override;
 
-  uint32_t available(ImportKind kind) const override { return size(kind) - reserved_[number(kind)]; }
-  void reserve(ImportKind kind, uint32_t count) override { reserved_[number(kind)] += count; }
+  uint32_t available(ImportKind kind) const override { return size(kind) - reserved_[kind]; }
+  void reserve(ImportKind kind, uint32_t count) override { reserved_[kind] += count; }
 
   uint32_t size(ImportKind kind) const override { return size32(queue(kind)); }
   uint32_t capacity() const { return capacity_; }
   uint64_t taken() const { return taken_; }  ///< packages given to units
   uint64_t busy_cycles() const { return taken_ * service_cycles_; }
-  const LevelStatistics& fill(ImportKind kind) const { return fill_[number(kind)]; }
+  const LevelStatistics& fill(ImportKind kind) const { return fill_[kind]; }
 
  private:
-  static size_t number(ImportKind kind) { return kind == ImportKind::Shadow ? 1 : 0; }
-  std::deque<Intersection>& queue(ImportKind kind) { return queues_[number(kind)]; }
-  const std::deque<Intersection>& queue(ImportKind kind) const { return queues_[number(kind)]; }
+  std::deque<Intersection>& queue(ImportKind kind) { return queues_[kind]; }
+  const std::deque<Intersection>& queue(ImportKind kind) const { return queues_[kind]; }
   void give();
   /// When the request that waits will be taken, if its turn begins in this cycle or as soon as the port is free.
   uint64_t due();
@@ -70,8 +71,8 @@ class IntersectionPool : public sc_core::sc_module,
   bool pipelined_;
   uint64_t service_cycles_;  // that a package keeps the port
   uint64_t request_cycles_;  // from a request's turn until it is taken
-  std::array<std::deque<Intersection>, 2> queues_;
-  std::array<uint32_t, 2> reserved_{};
+  EnumArray<ImportKind, std::deque<Intersection>, kImportKinds> queues_;
+  EnumArray<ImportKind, uint32_t, kImportKinds> reserved_{};
   ImportKind wanting_ = ImportKind::None;  // a package of this kind
   uint32_t wanting_unit_ = 0;
   uint64_t free_from_ = 0;       // the next request can be served
@@ -80,7 +81,7 @@ class IntersectionPool : public sc_core::sc_module,
   std::deque<Leaving> leaving_;  // taken, and not gone
   size_t next_beat_ = 0;         // of the oldest
   uint64_t taken_ = 0;
-  std::array<LevelStatistics, 2> fill_;
+  EnumArray<ImportKind, LevelStatistics, kImportKinds> fill_;
 };
 
 }  // namespace raypool::chip

@@ -6,9 +6,8 @@
 
 namespace raypool::chip {
 
-ModelledTraverser::ModelledTraverser(const sc_core::sc_module_name& name, RayTracer& tracer,
-                                     const ChipConfiguration& chip)
-    : Traverser(name, tracer, chip), core_(chip, *this), in_flight_(chip.modelled_traverser_rays) {
+ModelledTraverser::ModelledTraverser(const sc_core::sc_module_name& name, const Tracing& tracing)
+    : Traverser(name, tracing), core_(tracing.chip, *this), in_flight_(tracing.chip.modelled_traverser_rays) {
   SC_METHOD(step);
   sensitive << step_;
   dont_initialize();
@@ -20,7 +19,7 @@ void ModelledTraverser::ray_arrived() {
 }
 
 void ModelledTraverser::room_made(ImportKind kind) {
-  if (!held_back(kind).empty()) clock->notify(step_, Phase::Traverser);
+  if (!held_back_[kind].empty()) clock->notify(step_, Phase::Traverser);
 }
 
 void ModelledTraverser::catch_up(uint64_t cycle) {
@@ -56,19 +55,20 @@ void ModelledTraverser::take_ray() {
 // One that leaves nothing needs no room.
 void ModelledTraverser::ray_done() {
   const PooledRays::iterator ray = in_flight_[core_.slot()];
-  const ImportKind kind = kind_of(*ray);
-  if ((ray->goes_on && !held_back(kind).empty()) || !leave(*ray)) {
-    held_back(kind).push_back(ray);
+  auto& waiting = held_back_[kind_of(*ray)];
+  if ((ray->goes_on && !waiting.empty()) || !leave(*ray)) {
+    waiting.push_back(ray);
     return;
   }
+  const bool shadow = is_shadow(ray->ray);
   rays->rays().erase(ray);
-  left(1, kind == ImportKind::Shadow ? 1 : 0);
+  left(1, shadow ? 1 : 0);
 }
 
 void ModelledTraverser::deliver_traced() {
-  for (const ImportKind kind : {ImportKind::Normal, ImportKind::Shadow}) {
+  for (const ImportKind kind : {ImportKind::Normal, ImportKind::Shadow, ImportKind::Direct}) {
     uint32_t count = 0;
-    for (auto& waiting = held_back(kind); !waiting.empty() && leave(*waiting.front()); waiting.pop_front()) {
+    for (auto& waiting = held_back_[kind]; !waiting.empty() && leave(*waiting.front()); waiting.pop_front()) {
       ++count;
       rays->rays().erase(waiting.front());
     }

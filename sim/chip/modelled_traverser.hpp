@@ -7,13 +7,13 @@
 // visit, so the device can run ahead until then.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <deque>
 #include <optional>
 #include <vector>
 
 #include "chip/traverser.hpp"
+#include "enum_array.hpp"
 #include "traverser/core.hpp"
 
 namespace raypool::chip {
@@ -21,7 +21,7 @@ namespace raypool::chip {
 class ModelledTraverser : public Traverser, private traverser::MemoryTurns {
  public:
   SC_HAS_PROCESS(ModelledTraverser);
-  ModelledTraverser(const sc_core::sc_module_name& name, RayTracer& tracer, const ChipConfiguration& chip);
+  ModelledTraverser(const sc_core::sc_module_name& name, const Tracing& tracing);
 
   void ray_arrived() override;
   void room_made(ImportKind kind) override;
@@ -40,17 +40,14 @@ class ModelledTraverser : public Traverser, private traverser::MemoryTurns {
   void ray_done();
   void deliver_traced() override;
   void wake_again();
-  /// Rays that are done, and without room for what they become.
-  std::deque<PooledRays::iterator>& held_back(ImportKind kind) {
-    return held_back_[kind == ImportKind::Shadow ? 1 : 0];
-  }
 
   traverser::Core core_;
   sc_core::sc_event step_;
   uint64_t now_ = 0;              // the machine's time
   std::deque<uint64_t> untaken_;  // cycles in which rays arrived that have not entered: the youngest of the pool
   std::vector<PooledRays::iterator> in_flight_;  // [slot of the machine]
-  std::array<std::deque<PooledRays::iterator>, 2> held_back_;
+  /// Rays that are done, and without room for what they become.
+  EnumArray<ImportKind, std::deque<PooledRays::iterator>, kImportKinds> held_back_;
   VisitList visits_;
 };
 

@@ -227,6 +227,42 @@ TEST(RayPool, DropsNormalRaysBeyondTheDepthLimitAndNoShadowRays) {
   EXPECT_EQ(bench.ray(1), made[2]);
 }
 
+// One after the other at an idle port: how many of them stay.
+uint32_t kept_of(bool culling, const std::vector<std::array<float, 3>>& weights) {
+  ChipConfiguration chip;
+  chip.culling = culling;
+  Bench bench(1, chip, 5);
+  uint32_t ray = 0, number = 0;
+  bench.run([&](uint64_t cycle) {
+    if (ray == weights.size()) return false;
+    if (!bench.ready()) {
+      bench.rays.want();
+      return cycle < 200;
+    }
+    Ray made = Bench::eye_ray(0, ray);
+    for (size_t i = 0; i < 3; ++i) made[word::kColor + i] = as_bits(weights[ray][i]);
+    Beat data;
+    std::copy_n(&made[number * 4], 4, data.begin());
+    bench.rays.take(0, data, number == 2);
+    if (++number == 3) number = 0, ++ray;
+    return cycle < 200;
+  });
+  EXPECT_EQ(bench.rays.taken(), weights.size());
+  EXPECT_EQ(bench.rays.dropped_depth(), 0u);
+  EXPECT_EQ(bench.ledger.rays_to_come(), 1024 - weights.size());  // whether they stay or not
+  return bench.rays.size();
+}
+
+TEST(RayPool, DropsRaysWithoutWeightAndNoneWithTheLeastWeight) {
+  const float least = std::numeric_limits<float>::denorm_min();
+  const std::vector<std::array<float, 3>> black = {{0, 0, 0}, {0, -0.0f, 0}};
+  const std::vector<std::array<float, 3>> others = {
+      {least, 0, 0}, {0, 1, 0}, {0, 0, least}, {NAN, 0, 0}, {-least, 0, 0}};
+  EXPECT_EQ(kept_of(true, black), 0u);
+  EXPECT_EQ(kept_of(false, black), 2u);
+  EXPECT_EQ(kept_of(true, others), 5u);
+}
+
 TEST(RayPool, RefusesARayOfAWrongNumberOfBeats) {
   Bench bench(1);
   EXPECT_THROW(bench.run([&](uint64_t) {

@@ -19,6 +19,8 @@ class RayTracer {
   virtual bool follow(const Ray& ray, Intersection& intersection, VisitList& /*visits*/) {
     return trace(ray, intersection);
   }
+  /// False if what a normal ray hit reflects nothing. One that knows no materials says true.
+  virtual bool reflects(const Intersection& /*intersection*/) const { return true; }
 };
 
 class FrameSink {
@@ -35,6 +37,9 @@ class SceneTracer : public RayTracer {
   bool trace(const Ray& ray, Intersection& intersection) override { return tracer_.trace(ray, intersection); }
   bool follow(const Ray& ray, Intersection& intersection, VisitList& visits) override {
     return tracer_.trace(ray, intersection, nullptr, &visits);
+  }
+  bool reflects(const Intersection& intersection) const override {
+    return tracer_.reflects(intersection[word::kMaterial]);
   }
 
  private:

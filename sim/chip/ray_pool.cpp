@@ -13,6 +13,7 @@ RayPool::RayPool(const sc_core::sc_module_name& name, const ChipConfiguration& c
       overhead_(chip.ray_pool_overhead),
       cycles_per_beat_(chip.ray_pool_cycles_per_beat),
       pipelined_(chip.ray_pool_pipelined),
+      culling_(chip.culling),
       depth_(depth) {
   device.bind(*this);
   traverser.bind(*this);
@@ -48,13 +49,11 @@ void RayPool::take(uint32_t unit, const Beat& beat, bool last) {
   beats_from_ = kNever;
   ++taken_;
   const bool shadow = (arriving_[word::kFlags] & kShadowFlag) != 0;
-  const bool kept = shadow || (arriving_[word::kFlags] & kDepthMask) <= depth_;
+  const bool deep = !shadow && (arriving_[word::kFlags] & kDepthMask) > depth_;
+  const bool kept = !deep && !(culling_ && is_black(arriving_));
   ledger->ray_exported(unit, arriving_, kept);
-  if (kept) {
-    keep(shadow);
-  } else {
-    ++dropped_depth_;
-  }
+  if (kept) keep(shadow);
+  dropped_depth_ += deep;
   ahead_ = pipelined_ && !full();
   if (ahead_) beats_from_ = free_from_;
 }

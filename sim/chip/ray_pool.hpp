@@ -19,7 +19,7 @@ namespace raypool::chip {
 
 class RayPool : public sc_core::sc_module, public RayExportIf, public RaySourceIf, public RayLevelIf {
  public:
-  /// Normal rays deeper than `depth` are dropped when they arrive.
+  /// Normal rays deeper than `depth` are dropped when they arrive; with chip.culling, so are rays without weight.
   RayPool(const sc_core::sc_module_name& name, const ChipConfiguration& chip, uint32_t depth);
 
   sc_core::sc_port<TimeIf> clock{"clock"};
@@ -51,6 +51,7 @@ class RayPool : public sc_core::sc_module, public RayExportIf, public RaySourceI
   size_t capacity_;
   uint64_t overhead_, cycles_per_beat_;
   bool pipelined_;
+  bool culling_;
   uint32_t depth_;
   uint64_t begun_ = 0;       // cycle in which the ray that arrives was
   uint64_t first_beat_ = 0;  // its

@@ -2,12 +2,11 @@
 
 namespace raypool::chip {
 
-StaticTraverser::StaticTraverser(const sc_core::sc_module_name& name, RayTracer& tracer, uint32_t units,
-                                 const ChipConfiguration& chip)
-    : Traverser(name, tracer, chip),
-      units_(units),
-      batch_(chip.static_traverser_batch),
-      stall_cycles_(chip.static_traverser_stall_cycles) {
+StaticTraverser::StaticTraverser(const sc_core::sc_module_name& name, const Tracing& tracing)
+    : Traverser(name, tracing),
+      units_(tracing.units),
+      batch_(tracing.chip.static_traverser_batch),
+      stall_cycles_(tracing.chip.static_traverser_stall_cycles) {
   SC_METHOD(end_of_kernel);
   sensitive << kernel_ended_;
   dont_initialize();

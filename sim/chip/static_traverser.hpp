@@ -11,8 +11,7 @@ class StaticTraverser : public Traverser {
  public:
   SC_HAS_PROCESS(StaticTraverser);
   /// Beside a device of so many units.
-  StaticTraverser(const sc_core::sc_module_name& name, RayTracer& tracer, uint32_t units,
-                  const ChipConfiguration& chip);
+  StaticTraverser(const sc_core::sc_module_name& name, const Tracing& tracing);
 
   void kernel_ended(uint32_t unit) override;
   void shader_stalls(bool stalls) override;

@@ -59,13 +59,15 @@ struct FrameRun {
     EXPECT_EQ(result.ray_counts.shadow.traced, expected.shadow);
     EXPECT_EQ(result.ray_counts.missed(), expected.missed);
     EXPECT_EQ(result.ray_counts.blocked(), expected.blocked);
-    EXPECT_EQ(result.dropped_depth, expected.beyond);
+    const ChipConfiguration& chip = options.configuration.chip;
+    EXPECT_EQ(result.dropped_depth, chip.culling ? expected.deepest : expected.beyond);
     EXPECT_EQ(result.contributions, expected.contributions.size());
     EXPECT_EQ(frame.contributions, expected.contributions);
-    EXPECT_LE(result.held_peak, options.configuration.chip.held_limit);
+    EXPECT_LE(result.held_peak, chip.held_limit);
     EXPECT_LE(result.rays_pool.peak, result.rays_pool.capacity);
     EXPECT_LE(result.normal_pool.peak, result.normal_pool.capacity);
     EXPECT_LE(result.shadow_pool.peak, result.shadow_pool.capacity);
+    EXPECT_LE(result.direct_pool.peak, result.direct_pool.capacity);
   }
 };
 

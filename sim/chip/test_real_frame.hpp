@@ -15,7 +15,8 @@ namespace raypool::test {
 
 struct RealFrame {
   const Scene scene;
-  MemoryImage image = build_memory(ray_kernel_program(), scene);
+  const Program& program;
+  MemoryImage image = build_memory(program, scene);
   const Tracer tracer{scene, image.material_base};
   SceneTracer scene_tracer{tracer};
   FrameBuffer frame;
@@ -24,9 +25,9 @@ struct RealFrame {
   ChipOptions options;
 
   RealFrame(uint32_t warps, uint32_t lanes, uint32_t width, uint32_t height, uint32_t depth,
-            Scene drawn = make_cornell())
-      : scene(std::move(drawn)), frame(width, height) {
-    const Program& program = ray_kernel_program();
+            Scene drawn = make_cornell(), bool culling = false)
+      : scene(std::move(drawn)), program(ray_kernel_program({false, false, culling})), frame(width, height) {
+    options.configuration.chip.culling = culling;
     options.configuration.warps = warps;
     options.configuration.lanes = lanes;
     options.memory = &image.memory;

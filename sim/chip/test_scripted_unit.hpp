@@ -21,10 +21,11 @@ namespace raypool::test {
 /// What happens to the rays of a pixel.
 struct World {
   uint32_t seed = 1;
-  int misses = 6;    ///< of 16 normal rays
-  int blocked = 4;   ///< of 16 shadow rays
-  int shadows = 14;  ///< of 16 hits that make a shadow ray
-  int mirrors = 10;  ///< of 16 hits that make a reflection
+  int misses = 6;      ///< of 16 normal rays
+  int blocked = 4;     ///< of 16 shadow rays
+  int shadows = 14;    ///< of 16 hits that make a shadow ray
+  int mirrors = 10;    ///< of 16 hits that make a reflection
+  bool black = false;  ///< the rays that a hit does not make are exported too, without weight
 
   int roll(uint32_t pixel, uint32_t depth, uint32_t what) const {
     uint32_t h = seed * 0x9e3779b1u ^ pixel * 0x85ebca6bu ^ depth * 0xc2b2ae35u ^ what * 0x27d4eb2fu;
@@ -41,6 +42,7 @@ struct World {
 /// A frame of the world, counted without a machine.
 struct Expected {
   uint64_t eye = 0, secondary = 0, shadow = 0, missed = 0, blocked = 0, beyond = 0;
+  uint64_t deepest = 0;  ///< hits of rays whose reflections, made or not, are beyond
   std::map<std::pair<uint32_t, uint32_t>, int> contributions;  ///< (pixel, depth) -> how often
 
   Expected(const World& world, int width, int height, int depth_limit) {
@@ -62,6 +64,7 @@ struct Expected {
         ++missed;
         return;
       }
+      deepest += depth == limit && limit > 1;
       if (world.makes_shadow(pixel, depth)) {
         ++shadow;
         if (world.is_blocked(pixel, depth)) {
@@ -85,6 +88,9 @@ class WorldTracer : public RayTracer {
     if ((ray[word::kFlags] & kShadowFlag) != 0) return !world_.is_blocked(pixel, depth);
     intersection[word::kTriangle] = pixel ^ depth;
     return world_.hit(pixel, depth);
+  }
+  bool reflects(const Intersection& hit) const override {
+    return world_.makes_reflection(hit[word::kPixel], hit[word::kFlags] & kDepthMask);
   }
   bool follow(const Ray& ray, Intersection& intersection, VisitList& visits) override {
     std::mt19937 random(ray[word::kPixel] * 31 + ray[word::kFlags]);
@@ -258,11 +264,11 @@ class ScriptedUnit : public ComputeUnit {
 
   void make(const LaunchCommand& command, bool first) {
     const auto kernel = static_cast<RayKernel>(command.pc);
-    const auto ray = [&](uint32_t pixel, uint32_t flags) {
+    const auto ray = [&](uint32_t pixel, uint32_t flags, bool black = false) {
       Ray made{};
       made[word::kPixel] = pixel;
       made[word::kFlags] = flags;
-      made[word::kColor] = flags & kDepthMask;
+      made[word::kColor] = black ? 0 : flags & kDepthMask;
       exports_.push_back({false, made, {}});
     };
     if (kernel == RayKernel::CastEye) {
@@ -279,9 +285,11 @@ class ScriptedUnit : public ComputeUnit {
       if (kernel == RayKernel::Shade) {
         if (first) exports_.push_back({true, {}, {pixel, {depth, 0, 0}}});
       } else if (!first) {
-        if (world_.makes_shadow(pixel, depth)) ray(pixel, depth | kShadowFlag);
+        const bool made = world_.makes_shadow(pixel, depth);
+        if (made || world_.black) ray(pixel, depth | kShadowFlag, !made);
       } else if (kernel == RayKernel::CastSecondary) {
-        if (world_.makes_reflection(pixel, depth)) ray(pixel, depth + 1);
+        const bool made = world_.makes_reflection(pixel, depth);
+        if (made || world_.black) ray(pixel, depth + 1, !made);
       }
     }
   }

@@ -8,12 +8,12 @@
 
 namespace raypool::chip {
 
-ImportKind kind_of(const PooledRay& ray) {
-  return (ray.ray[word::kFlags] & kShadowFlag) != 0 ? ImportKind::Shadow : ImportKind::Normal;
-}
-
-Traverser::Traverser(const sc_core::sc_module_name& name, RayTracer& tracer, const ChipConfiguration& chip)
-    : sc_module(name), tracer_(tracer), contributes_(chip.shading == Shading::Traverser) {
+Traverser::Traverser(const sc_core::sc_module_name& name, const Tracing& tracing)
+    : sc_module(name),
+      tracer_(tracing.tracer),
+      contributes_(tracing.chip.shading == Shading::Traverser),
+      sorts_(tracing.chip.culling && tracing.reflections),
+      depth_(tracing.depth) {
   kernel_events.bind(*this);
   arrivals.bind(*this);
   room.bind(*this);
@@ -21,6 +21,12 @@ Traverser::Traverser(const sc_core::sc_module_name& name, RayTracer& tracer, con
   SC_METHOD(next_contribution);
   sensitive << frame_free_;
   dont_initialize();
+}
+
+ImportKind Traverser::kind_of(const PooledRay& ray) const {
+  if (is_shadow(ray.ray)) return ImportKind::Shadow;
+  const bool reflects = (ray.ray[word::kFlags] & kDepthMask) < depth_ && tracer_.reflects(ray.intersection);
+  return sorts_ && !reflects ? ImportKind::Direct : ImportKind::Normal;
 }
 
 void Traverser::trace(PooledRay& ray) {
@@ -39,6 +45,7 @@ bool Traverser::deliver(const PooledRay& ray) {
   const ImportKind kind = kind_of(ray);
   if (kind == ImportKind::Shadow && contributes_) return contribute(ray.ray);
   if (intersections->full(kind)) return false;
+  counts_.deepest += kind == ImportKind::Direct && (ray.ray[word::kFlags] & kDepthMask) == depth_;
   intersections->put(kind, ray.intersection);
   return true;
 }
@@ -85,7 +92,7 @@ uint32_t Traverser::advance(uint32_t budget) {
     }
     if (ray->traced && leave(*ray)) {
       ++count;
-      shadow_rays += kind_of(*ray) == ImportKind::Shadow;
+      shadow_rays += is_shadow(ray->ray);
       ray = pool.erase(ray);
     } else {
       ++ray;
@@ -95,12 +102,12 @@ uint32_t Traverser::advance(uint32_t budget) {
   return count;
 }
 
-std::unique_ptr<Traverser> make_traverser(const ChipConfiguration& chip, RayTracer& tracer, uint32_t units) {
-  switch (chip.traverser) {
+std::unique_ptr<Traverser> make_traverser(const Tracing& tracing) {
+  switch (tracing.chip.traverser) {
     case TraverserName::Static:
-      return std::make_unique<StaticTraverser>("traverser", tracer, units, chip);
+      return std::make_unique<StaticTraverser>("traverser", tracing);
     case TraverserName::Modelled:
-      return std::make_unique<ModelledTraverser>("traverser", tracer, chip);
+      return std::make_unique<ModelledTraverser>("traverser", tracing);
   }
   throw std::logic_error("a traverser without a class");
 }

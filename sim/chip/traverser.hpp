@@ -19,14 +19,23 @@
 
 namespace raypool::chip {
 
-/// Of the intersection that it becomes.
-ImportKind kind_of(const PooledRay& ray);
+inline bool is_shadow(const Ray& ray) { return (ray[word::kFlags] & kShadowFlag) != 0; }
 
 struct TraverserCounts {
   RayCounts rays;
   uint64_t delivered = 0;  ///< intersections, and contributions
+  uint64_t deepest = 0;    ///< of these, apart because the reflection would be too deep
   uint64_t batches = 0, stall_batches = 0;
   uint64_t most_rays = 0;  ///< that could have been traced by now, had there always been some; 0: no limit
+};
+
+/// What every traverser works on.
+struct Tracing {
+  RayTracer& tracer;  ///< must outlive it
+  const ChipConfiguration& chip;
+  uint32_t units;
+  uint32_t depth;    ///< the largest of a normal ray
+  bool reflections;  ///< normal intersections are given to a kernel that casts some
 };
 
 class Traverser : public sc_core::sc_module,
@@ -57,8 +66,7 @@ class Traverser : public sc_core::sc_module,
   virtual std::optional<TraverserWork> work() const { return {}; }
 
  protected:
-  /// `tracer` must outlive it.
-  Traverser(const sc_core::sc_module_name& name, RayTracer& tracer, const ChipConfiguration& chip);
+  Traverser(const sc_core::sc_module_name& name, const Tracing& tracing);
 
   /// Traces up to `budget` rays, oldest first, and delivers or drops every traced ray that finds room. Returns how many
   /// left the pool.
@@ -70,6 +78,8 @@ class Traverser : public sc_core::sc_module,
   bool leave(const PooledRay& ray);
   /// So many rays have been erased, of which so many were shadow rays.
   void left(uint32_t count, uint32_t shadow_rays);
+  /// What a traced ray that goes on becomes. Direct: with culling, a hit whose reflection could not add to the picture.
+  ImportKind kind_of(const PooledRay& ray) const;
   /// The frame buffer's port, which a traced ray did not get, is free.
   virtual void deliver_traced() { advance(0); }
 
@@ -83,10 +93,12 @@ class Traverser : public sc_core::sc_module,
 
   RayTracer& tracer_;
   bool contributes_;  // shadow rays that reach the light leave contributions
+  bool sorts_;        // hits that need no reflection are kept apart
+  uint32_t depth_;
   sc_core::sc_event frame_free_;
 };
 
 /// The one that `chip.traverser` names.
-std::unique_ptr<Traverser> make_traverser(const ChipConfiguration& chip, RayTracer& tracer, uint32_t units);
+std::unique_ptr<Traverser> make_traverser(const Tracing& tracing);
 
 }  // namespace raypool::chip

@@ -55,6 +55,7 @@ void add_rays(Json& json, const RayCounts& rays, uint64_t too_deep) {
   json["rays_by_kind"] = by_kind(&RayCounts::Kind::traced);
   json["rays_without_weight"] = by_kind(&RayCounts::Kind::weightless);
   json["rays_in_vain"] = by_kind(&RayCounts::Kind::futile);
+  json["rays_left_out"] = by_kind(&RayCounts::Kind::left_out);
   json["rays_that_end"] = {{"missed", rays.missed()}, {"blocked", rays.blocked()}, {"too_deep", too_deep}};
 }
 
@@ -164,6 +165,7 @@ void add_chip(Json& json, const ChipResult& chip, const ChipConfiguration& machi
   json["pools"] = {{"rays", pool_json(chip.rays_pool)},
                    {"normal_intersections", pool_json(chip.normal_pool)},
                    {"shadow_intersections", pool_json(chip.shadow_pool)},
+                   {"direct_intersections", pool_json(chip.direct_pool)},
                    {"unfinished_pixels_peak", chip.held_peak},
                    {"ray_port_utilisation", chip.ray_port_utilisation},
                    {"intersection_port_utilisation", chip.intersection_port_utilisation}};
@@ -217,6 +219,9 @@ void ray_table(std::string& text, const RunRecord& record, const RayCounts& rays
        rays.shadow.weightless);
   if (record.depth > 1 && !record.reflections)
     line(text, "    left out  reflections: no material of this scene reflects");
+  if (rays.reflection.left_out + rays.shadow.left_out > 0)
+    line(text, "    left out  {} reflection, {} shadow: they could not add to the picture", rays.reflection.left_out,
+         rays.shadow.left_out);
 }
 
 // Where the warps' cycles went, in shares of all.

@@ -148,6 +148,7 @@ FrameBuffer draw_natively(Engine engine, RunRecord& record, const Scene& scene, 
   native.contents = record.configuration.contents();
   native.threads = std::max(1u, std::thread::hardware_concurrency());
   native.mode = arith::mode_of(record.configuration);
+  native.culling = record.configuration.chip.culling;
   if (engine == Engine::Embree) {
     embree.emplace(scene, tracer);
     native.trace = [&](const Ray& ray, Intersection& hit) { return embree->trace(ray, hit); };

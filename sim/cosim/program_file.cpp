@@ -16,7 +16,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr int kFormat = 1;
 constexpr int kFaultCodes = 8;
-constexpr EnumArray<ImportKind, std::string_view, 3> kImportNames = {"none", "normal", "shadow"};
+constexpr EnumArray<ImportKind, std::string_view, kImportKinds> kImportNames = {"none", "normal", "shadow", "direct"};
 
 template <typename Names>
 size_t number_of(const Names& names, const std::string& name) {

@@ -137,7 +137,7 @@ class Generator : public ProgramStatements {
       }
       const auto entries = size32(entries_);
       const Entry& entry = entries_[profile_.name == kFaultMix ? k % entries : below(entries)];
-      const ImportKind import = !entry.import ? ImportKind::None : chance(2) ? ImportKind::Normal : ImportKind::Shadow;
+      const ImportKind import = !entry.import ? ImportKind::None : static_cast<ImportKind>(1 + below(kImportKinds - 1));
       const uint32_t block = together_ ? (value() & ~block_mask_) | k : value();
       result_.kernels.push_back({threads, block, import, entry.pc, value()});
       if (rewrites_ && k > 0 && !chance(3)) result_.kernels.back().rewrite = rewrite();

@@ -43,6 +43,7 @@ class Worker {
     thread_.arguments = &arguments;
     thread_.memory = &memory;
     thread_.mode = options.mode;
+    thread_.culling = options.culling;
   }
 
   void render_tile(uint32_t x, uint32_t y) {
@@ -83,6 +84,7 @@ class Worker {
       ++statistics.dropped_rays;
       return;
     }
+    if (options_.culling && is_black(ray)) return;
     thread_.thread = 0;
     thread_.threads = 1;
     thread_.block = 0;
@@ -90,7 +92,16 @@ class Worker {
                                         : tracer_.trace(ray, thread_.input,
                                                         shadow ? &statistics.shadow_visits : &statistics.normal_visits);
     statistics.ray_counts.count(ray, goes_on);
-    if (goes_on) run(shadow ? RayKernel::Shade : secondary_kernel(options_.depth, options_.reflections));
+    if (goes_on) run(shadow ? RayKernel::Shade : secondary(depth));
+  }
+
+  // Of the hit of a ray of this depth, which is the thread's input.
+  RayKernel secondary(uint32_t depth) {
+    const RayKernel kernel = secondary_kernel(options_.depth, options_.reflections);
+    if (kernel == RayKernel::CastSecondaryDirect || !options_.culling) return kernel;
+    const bool deepest = depth == options_.depth;
+    statistics.dropped_rays += deepest;
+    return deepest || !tracer_.reflects(thread_.input[word::kMaterial]) ? RayKernel::CastSecondaryDirect : kernel;
   }
 
   const Tracer& tracer_;
@@ -204,6 +215,9 @@ FrameBuffer render_native(const Scene& scene, const MemoryImage& image, const Tr
     frame.add(workers[i].frame);
     add(sum, workers[i].statistics);
   }
+  sum.ray_counts.count_left_out(
+      sum.kernel_threads[RayKernel::CastSecondary] + sum.kernel_threads[RayKernel::CastSecondaryDirect],
+      secondary_kernel(options.depth, options.reflections) == RayKernel::CastSecondary, sum.dropped_rays);
   if (statistics != nullptr) *statistics = sum;
   return frame;
 }

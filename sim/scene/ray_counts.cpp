@@ -42,4 +42,9 @@ void RayCounts::add(const RayCounts& other) {
   raypool::add(shadow, other.shadow);
 }
 
+void RayCounts::count_left_out(uint64_t hits, bool reflections, uint64_t too_deep) {
+  shadow.left_out = hits - shadow.traced;
+  reflection.left_out = reflections ? hits - too_deep - reflection.traced : 0;
+}
+
 }  // namespace raypool

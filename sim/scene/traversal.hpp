@@ -91,11 +91,16 @@ class Tracer {
   /// What a hit of the ray becomes.
   void meet(const Ray& ray, const Hit& hit, Intersection& intersection) const;
 
+  /// Whether the material of this word of an intersection reflects.
+  bool reflects(uint32_t material) const { return reflecting_[(material - material_base_) / kMaterialBytes]; }
+
   const Traversal& traversal() const { return traversal_; }
 
  private:
   Traversal traversal_;
+  uint32_t material_base_;
   std::vector<uint32_t> material_words_;  ///< one a triangle
+  std::vector<bool> reflecting_;          ///< one a material
 };
 
 /// Words 0 .. 6 of a ray.
