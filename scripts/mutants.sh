@@ -1,17 +1,19 @@
 #!/bin/bash
-# Builds the mutants: scripts/mutants.sh OUTPUT_DIR CONFIG COUNT SEED. Yosys puts COUNT small faults into
+# Builds the mutants: scripts/mutants.sh OUTPUT_DIR CONFIG COUNT SEED [FILE]... Yosys puts COUNT small faults into
 # the compute unit of CONFIG, all into one netlist, in which a number selects the fault that is active
-# (none: 0). Afterwards OUTPUT_DIR has
+# (none: 0). With FILEs of rtl/, by name, only what these describe gets any. Afterwards OUTPUT_DIR has
 #   list.txt              the faults, one a line, numbered from 1: what Yosys' `mutate -list`
 #                         says, with cell and source location
 #   libraypool_unit.so    the Verilated unit; the environment variable RAYPOOL_MUTANT selects the
 #                         fault of every unit made after it is set
 # RAYPOOL names the raypool program (default build/raypool). Nothing is done when all is newer than rtl/.
 set -eu -o pipefail
-[ $# = 4 ] || { echo "usage: scripts/mutants.sh OUTPUT_DIR CONFIG COUNT SEED" >&2; exit 1; }
+[ $# -ge 4 ] || { echo "usage: scripts/mutants.sh OUTPUT_DIR CONFIG COUNT SEED [FILE]..." >&2; exit 1; }
 root=$(cd "$(dirname "$0")/.." && pwd)
 mkdir -p "$1"
 output=$(cd "$1" && pwd) config=$2 count=$3 seed=$4
+shift 4
+files=("$@")
 build=${BUILD:-build}
 [[ $build == /* ]] || build=$root/$build
 raypool=$(realpath "${RAYPOOL:-$build/raypool}")
@@ -19,14 +21,21 @@ command -v yosys > /dev/null ||
   { echo "mutants.sh: yosys was not found: install it (Debian package yosys)" >&2; exit 1; }
 cd "$root"
 parameters=$("$raypool" config "$config" --verilog-parameters)
+chosen='*'
+for i in "${!files[@]}"; do
+  [ -f "rtl/${files[$i]}" ] || { echo "mutants.sh: there is no rtl/${files[$i]}: name files of rtl/" >&2; exit 1; }
+  [ "$i" = 0 ] && chosen= || chosen+=' '
+  chosen+="a:src=*rtl/${files[$i]}:*"
+  [ "$i" = 0 ] || chosen+=' %u'
+done
 
 # verilate.sh builds from the tree that it stands in: one of links, whose rtl/ is the mutated netlist.
 tree=$output/tree
 mkdir -p "$tree/rtl"
 for folder in cpp_model sim scripts; do ln -sfn "$root/$folder" "$tree/$folder"; done
 
-digest=$({ printf '%s\n' "$parameters" "$count $seed"; cat rtl/*.v rtl/*.vh scripts/mutants.sh; yosys -V; } |
-  sha256sum | cut -d ' ' -f 1)
+digest=$({ printf '%s\n' "$parameters" "$count $seed ${files[*]}"; cat rtl/*.v rtl/*.vh scripts/mutants.sh; yosys -V
+} | sha256sum | cut -d ' ' -f 1)
 if [ "$(cat "$output/stamp" 2> /dev/null)" != "$digest" ]; then
   rm -f "$tree"/rtl/*
   chparam=
@@ -54,7 +63,7 @@ opt -full
 wreduce
 opt -full
 cd compute_unit
-mutate -list $count -seed $seed -o $output/list.txt -ctrl mutant_i $width 1 t:\$mem* %n
+mutate -list $count -seed $seed -o $output/list.txt -ctrl mutant_i $width 1 $chosen t:\$mem* %d
 cd
 tee -q -o $output/apply.log script $output/list.txt
 delete -input compute_unit/w:mutant_i

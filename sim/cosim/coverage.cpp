@@ -49,6 +49,9 @@ void Coverage::begin() {
   made_ = left_ = {};
   moved_ = {};
   accepted_ = {};
+  launched_.clear();
+  ended_ = 0;
+  last_slow_.reset();
   last_pc_ = ~0u;
   open_cycles_ = 0;
   arguments_ = {};
@@ -63,6 +66,10 @@ void Coverage::faulted(const std::vector<Fault>& faults) {
     if (winner == nullptr || winner->unit != fault.unit) {
       winner = &fault;
       ++faults_[fault.code];
+      const Warp& warp = warp_of(fault.unit, fault.warp);
+      if (warp.element > 0 && fault.pc == warp.last_pc) hit(Event::FaultInTriple);
+      if (warp.inside && launched_.size() > ended_ + 1)
+        hit(warp.kernel == ended_ ? Event::FaultInOlder : Event::FaultInNewer);
       // What has retired beyond it says that the twin is inside.
       const bool outside = fault.code == FaultCode::PcOutsideProgram && fault.pc >= kLastPcBit;
       if (outside && std::find(pcs_.begin() + (fault.pc ^ kLastPcBit), pcs_.end(), true) != pcs_.end())
@@ -76,8 +83,9 @@ void Coverage::faulted(const std::vector<Fault>& faults) {
 void Coverage::cycle(const UnitOutputs& outputs, const UnitInputs& inputs, const UnitTrace& trace) {
   ++now_;
   for (const StoreEvent& event : trace.stores) stored(event);
-  for (const RetireEvent& event : trace.retired) retired(event);
   launches(outputs, inputs);
+  for (const RetireEvent& event : trace.retired) retired(event);
+  if (units_ == 1) overlap(trace);
   memory_response(inputs);
   memory_request(outputs, inputs);
   pools(outputs, inputs, trace);
@@ -101,6 +109,7 @@ void Coverage::end(ComputeUnit& unit) {
   hit(Event::LoadHit, unit.counter(counter::kDataCacheHits));
   hit(Event::LoadMiss, misses);
   hit(Event::Store, unit.counter(counter::kDataCacheStores));
+  hit(Event::ElementsOverlap, unit.counter(counter::kFltOverlapped));
   hit(Event::InstructionHit, unit.counter(counter::kInstructionCacheHits));
   hit(Event::InstructionMiss, unit.counter(counter::kInstructionCacheMisses));
   // Every fetch is of one quadword that missed; the others used its line.
@@ -119,6 +128,9 @@ void Coverage::retired(const RetireEvent& event) {
   if (event.mask != 0 && event.mask != full_) ++partial_[row];
   if (warp.last_type >= 0) ++after_[warp.last_type][type];
   if (warp.stack.empty()) warp.stack = {{event.pc, 0xffff}};
+  if (!warp.inside) enter_kernel(warp, event.warp);
+  triple(warp, event, instruction);
+  if (type == to_underlying(AluType::Slw)) slow(event);
   if (warp.stack.size() < depths_.size()) ++depths_[warp.stack.size()];
   together(event, type);
   code(event);
@@ -136,6 +148,47 @@ void Coverage::retired(const RetireEvent& event) {
   warp.last_type = static_cast<int>(type);
   warp.last_retired = now_;
   control(warp, event, instruction);
+}
+
+// Each element retires, with the instruction that it is an element of.
+void Coverage::triple(Warp& warp, const RetireEvent& event, const Instruction& instruction) {
+  warp.last_pc = event.pc;
+  if (!is_triple(*instruction.info)) {
+    warp.element = 0;
+    return;
+  }
+  warp.element = (warp.element + 1) % kElements;
+  if (warp.element == 0 && elements_depend(instruction)) hit(Event::ElementsDepend);
+}
+
+// Groups enter in consecutive cycles, and a task retires as long after its last group as any other.
+void Coverage::slow(const RetireEvent& event) {
+  const uint32_t groups = configuration_.slow_groups();
+  const uint32_t first = full_ >> (lanes_ - lanes_ / groups);
+  if (event.mask != 0 && (event.mask & first) == 0) hit(Event::FirstGroupMasked);
+  if (last_slow_ && last_slow_->cycle + groups == now_ && last_slow_->warp / configuration_.warps == event.unit)
+    hit(Event::GroupsInARow);
+  last_slow_ = Recent{now_, event.unit * configuration_.warps + event.warp, to_underlying(AluType::Slw)};
+}
+
+// A warp takes part in the launches that have threads for it, one after the other.
+void Coverage::enter_kernel(Warp& warp, uint32_t number) {
+  while (warp.kernel < launched_.size() && launched_[warp.kernel] <= number * lanes_) ++warp.kernel;
+  warp.inside = warp.kernel < launched_.size();
+}
+
+// Kernels end in the order of their launches.
+void Coverage::overlap(const UnitTrace& trace) {
+  uint32_t older = 0, newer = 0;  // warps that retire something
+  for (const RetireEvent& event : trace.retired) {
+    const Warp& warp = warp_of(event.unit, event.warp);
+    if (warp.inside) (warp.kernel > ended_ ? newer : older) |= 1u << event.warp;
+  }
+  if (newer == 0) return;
+  hit(Event::NewerRetires);
+  if (older != 0) hit(Event::BothRetire);
+  for (uint32_t w = lowest(newer) + 1; w < configuration_.warps; ++w)
+    if (warps_[w].inside && warps_[w].kernel == ended_) hit(Event::OlderIsHigher);
 }
 
 void Coverage::code(const RetireEvent& event) {
@@ -227,6 +280,8 @@ void Coverage::control(Warp& warp, const RetireEvent& event, const Instruction& 
     } else if (opcode == Opcode::Exit) {
       warp.stack.clear();
       warp.last_type = -1;
+      warp.inside = false;
+      ++warp.kernel;
     }
   }
   while (warp.stack.size() > 1 && warp.stack.back().pc >= warp.stack.back().rpc) warp.stack.pop_back();
@@ -283,6 +338,8 @@ void Coverage::swapped(Warp& warp, const RetireEvent& event, Opcode opcode) {
 
 void Coverage::launches(const UnitOutputs& outputs, const UnitInputs& inputs) {
   for (uint32_t unit = 0; unit < units_; ++unit) accepted_[unit] -= static_cast<int>(outputs.kernel_done >> unit & 1);
+  if (units_ == 1) ended_ += outputs.kernel_done & 1;
+  if (units_ == 1 && accepted_[0] > 2) hit(Event::ThirdWaits);
   if (!inputs.launch_valid) return;
   if (!outputs.launch_ready) return hit(Event::LaunchWaits);
   const uint32_t threads = inputs.launch.threads;
@@ -293,6 +350,7 @@ void Coverage::launches(const UnitOutputs& outputs, const UnitInputs& inputs) {
   if ((threads + lanes_ - 1) / lanes_ < configuration_.warps) hit(Event::WarpsLeftOut);
   if (last_pc_ != ~0u && last_pc_ != inputs.launch.pc) hit(Event::OtherKernelNext);
   last_pc_ = inputs.launch.pc;
+  if (units_ == 1) launched_.push_back(threads);
   ++accepted_[outputs.launch_unit];
 }
 

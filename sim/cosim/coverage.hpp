@@ -58,6 +58,10 @@ class Coverage : public RunObserver {
     uint64_t last_export = 0;         ///< rays and contributions that had been made when it last exported
     uint32_t set = 0, written = 0;    ///< predicates that have a lane set; that this kernel has written
     uint32_t left = 0;                ///< ... that the kernel before has left set
+    uint32_t last_pc = 0;
+    int element = 0;      ///< of a triple that retires next
+    uint64_t kernel = 0;  ///< launches before the one that it is in, of those since the unit's reset
+    bool inside = false;  ///< that kernel
   };
   struct Line {
     uint64_t fetches = 0;
@@ -75,6 +79,7 @@ class Coverage : public RunObserver {
     size_t type;
   };
 
+  bool possible(Event one) const;
   void fault_pairs(Group& group) const;
   void hit(Event event, uint64_t times = 1) { events_[event] += times; }
   void retired(const RetireEvent& event);
@@ -85,6 +90,10 @@ class Coverage : public RunObserver {
   void argument(const RetireEvent& event, const Instruction& instruction);
   void predicates(Warp& warp, const RetireEvent& event, const Instruction& instruction);
   void last_of_all(const RetireEvent& event, const Instruction& instruction);
+  void triple(Warp& warp, const RetireEvent& event, const Instruction& instruction);
+  void slow(const RetireEvent& event);
+  void enter_kernel(Warp& warp, uint32_t number);
+  void overlap(const UnitTrace& trace);
   void after_fault(const UnitOutputs& outputs, const UnitInputs& inputs, const UnitTrace& trace);
   void swapped(Warp& warp, const RetireEvent& event, Opcode opcode);
   void stored(const StoreEvent& event);
@@ -124,6 +133,9 @@ class Coverage : public RunObserver {
       left_{};                              ///< rays and contributions: by rout and rfb, and those that have left
   std::array<uint64_t, 3> moved_{};         ///< last cycle in which memory request, export, frame moved
   std::array<int, kMostUnits> accepted_{};  ///< kernels that have not ended
+  std::vector<uint32_t> launched_;          ///< threads of each launch; of one unit
+  uint64_t ended_ = 0;                      ///< of these
+  std::optional<Recent> last_slow_;         ///< the last one that retired
   uint32_t last_pc_ = ~0u;
   uint64_t open_cycles_ = 0;                                     ///< since the fault, in a row
   std::array<std::optional<uint32_t>, kArguments> arguments_{};  ///< as they have been read

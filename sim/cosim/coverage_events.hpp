@@ -86,6 +86,17 @@ enum class Event : size_t {
   ExportAfterFault,
   OpenAfterFault,
   TwinInside,
+  ElementsOverlap,
+  ElementsDepend,
+  FaultInTriple,
+  NewerRetires,
+  BothRetire,
+  OlderIsHigher,
+  ThirdWaits,
+  FaultInOlder,
+  FaultInNewer,
+  GroupsInARow,
+  FirstGroupMasked,
   Count,
 };
 inline constexpr size_t kEvents = to_underlying(Event::Count);
@@ -172,6 +183,17 @@ inline constexpr std::array<EventText, kEvents> kEventTexts = {{
     {"after a fault", "a ray or contribution leaves"},
     {"after a fault", "every port is open for 300 cycles"},
     {"upper PC bits", "a PC outside that lies inside but for bit 15"},
+    {"triples", "an element of a float is read while the one before is executed"},
+    {"triples", "elements that wait for what the one before writes"},
+    {"triples", "a fault behind the first element"},
+    {"kernel overlap", "a warp retires in the newer of two kernels"},
+    {"kernel overlap", "warps of both kernels retire in one cycle"},
+    {"kernel overlap", "a warp retires in the newer one while one of a higher number is in the older one"},
+    {"kernel overlap", "a launch waits while two kernels run"},
+    {"kernel overlap", "a fault of a warp in the older of two kernels"},
+    {"kernel overlap", "a fault of a warp in the newer of two kernels"},
+    {"slow lanes", "the groups of a task behind those of another one, without a cycle between them"},
+    {"slow lanes", "the first group of lanes is masked, a later one is not"},
 }};
 
 }  // namespace raypool

@@ -32,6 +32,23 @@ size_t Coverage::Group::covered() const {
   return count;
 }
 
+// What a configuration of one warp or one lane cannot do, or one without the feature.
+bool Coverage::possible(Event one) const {
+  const bool one_lane = one == Event::OneQuadword || one == Event::SeveralQuadwords || one == Event::QuadwordALane ||
+                        one == Event::PartOfWarp;
+  if (lanes_ == 1 && one_lane) return false;
+  const bool two_warps = one == Event::WarpsLeftOut || one == Event::NewerRetires || one == Event::BothRetire ||
+                         one == Event::OlderIsHigher || one == Event::FaultInNewer || one == Event::GroupsInARow;
+  if (configuration_.warps == 1 && two_warps) return false;
+  const bool one_read = configuration_.data_cache_mshrs == 1 || configuration_.contents() == 1;
+  if (one_read && (one == Event::OneSet || one == Event::TopBitOnTheWay || one == Event::UpperBitOnTheWay))
+    return false;
+  if (one >= Event::ElementsOverlap && one <= Event::FaultInTriple) return configuration_.triples;
+  if (one >= Event::NewerRetires && one <= Event::FaultInNewer) return units_ == 1 && configuration_.kernel_overlap;
+  if (one >= Event::GroupsInARow) return configuration_.slow_groups() > 1;
+  return units_ == 1 || one != Event::ImportAhead;  // which unit a package goes to is not seen from outside
+}
+
 std::vector<Coverage::Group> Coverage::groups() const {
   std::vector<Group> groups;
   const auto group = [&](std::string_view name) -> Group& {
@@ -64,14 +81,7 @@ std::vector<Coverage::Group> Coverage::groups() const {
     depths.items.push_back({std::to_string(depth), depths_[depth]});
   for (size_t event = 0; event < kEvents; ++event) {
     const auto one = static_cast<Event>(event);
-    // What a configuration of one warp or one lane cannot do.
-    if (lanes_ == 1 && (one == Event::OneQuadword || one == Event::SeveralQuadwords || one == Event::QuadwordALane ||
-                        one == Event::PartOfWarp))
-      continue;
-    if (configuration_.warps == 1 && one == Event::WarpsLeftOut) continue;
-    const bool one_read = configuration_.data_cache_mshrs == 1 || configuration_.contents() == 1;
-    if (one_read && (one == Event::OneSet || one == Event::TopBitOnTheWay || one == Event::UpperBitOnTheWay)) continue;
-    if (units_ > 1 && one == Event::ImportAhead) continue;  // which unit a package goes to is not seen from outside
+    if (!possible(one)) continue;
     group(kEventTexts[event].group).items.push_back({std::string(kEventTexts[event].name), events_[event]});
   }
   bits(group("upper address bits"), "of loads", load_bits_, kFirstUpperBit);

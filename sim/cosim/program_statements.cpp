@@ -49,6 +49,7 @@ void ProgramStatements::body(int length, int loops, int entries) {
     } else if (is(p.early_exit)) {
       if (!import_pending_ && !in_function_) early_exit();
     } else {
+      if (configuration_.slow_groups() > 1 && chance(6)) some_groups();
       plain();
     }
   }
@@ -70,6 +71,19 @@ const InstructionInfo& ProgramStatements::plain_row(std::optional<size_t> type) 
     if (info.alu() == static_cast<AluType>(of) && info.kind != Kind::Control && configuration_.has(info.needs))
       return info;
   }
+}
+
+void ProgramStatements::some_groups() {
+  const int lane = destination();
+  Instruction i;
+  i.info = &instruction(chance(2) ? Opcode::Ult : Opcode::Uge);
+  i.rd = free_predicate();
+  i.ra = lane;
+  i.b_is_immediate = true;
+  i.immediate = 1 + below(configuration_.lanes - 1);
+  emit(Opcode::Lane, lane);
+  emit(i);
+  emit(plain_row(to_underlying(AluType::Slw)).opcode, destination(), source(), source(), i.rd);
 }
 
 void ProgramStatements::triple(int a, int b) {

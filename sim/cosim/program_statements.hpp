@@ -52,6 +52,8 @@ class ProgramStatements : public ProgramEmitter {
   /// One instruction that touches neither memory, rays nor control, of any type or this one, with random operands,
   /// or of registers a and b, which stay.
   void plain(int a = -1, int b = -1, std::optional<size_t> type = std::nullopt);
+  /// An instruction of slw for the first or the last lanes: whole groups have none.
+  void some_groups();
   /// A triple in its place, of floats or arguments; its elements may depend on each other.
   void triple(int a, int b);
   /// First of three registers for data, among which a and b are not.

@@ -101,6 +101,8 @@ class Generator : public ProgramStatements {
     result_.program_length = length + (runs_out_ || !chance(3) ? 0 : below(longest - length));
     result_.memory_limit = result_.memory_bytes + (more_memory_told_ ? (below(1u << 30) >> below(24)) * 4 : 0);
     if (far_memory_told_) result_.memory_limit = 0u - 4 * (64 + below(kFarLimits / 4));
+    // Between two elements of a triple.
+    if (!across_limit_.empty()) result_.memory_limit = (result_.memory_limit & ~15u) + 4 * (1 + below(kElements - 1));
     std::vector<uint64_t>& code = result_.program.code;
     const auto fix = [&code](const std::vector<size_t>& places, uint32_t limit) {
       for (const size_t at : places)
@@ -113,6 +115,7 @@ class Generator : public ProgramStatements {
     }
     fix(from_length_, result_.program_length);
     fix(from_limit_, result_.memory_limit);
+    fix(across_limit_, result_.memory_limit & ~15u);
     if (chance(8)) result_.restart = 1 + below(kLastRestart);
   }
 
@@ -313,6 +316,7 @@ class Generator : public ProgramStatements {
           emit_immediate(access, 0, kAddress, some ? 0 : 1 + below(3));
           return;
         }
+        if (three && far_memory_told_ && chance(2)) return across_limit();
         emit_immediate(Opcode::Mov, kAddress, 0, 0);
         if (some) emit(Opcode::Lane, kAddress), emit_immediate(Opcode::Shl, kAddress, kAddress, 2);
         from_limit_.push_back(
@@ -323,6 +327,12 @@ class Generator : public ProgramStatements {
         emit_word(chance(2) ? Opcode::Rld : Opcode::Rst, kIntersectionWords + below(32 - kIntersectionWords));
         return;
     }
+  }
+
+  // The first element of the triple is loaded.
+  void across_limit() {
+    emit_immediate(Opcode::Mov, kAddress, 0, 0);
+    across_limit_.push_back(emit_immediate(Opcode::Ld3, 0, kAddress, 0));
   }
 
   // One that other machines have; false if this one has all.
@@ -422,7 +432,9 @@ class Generator : public ProgramStatements {
   // r15 has the lane or 0.
   void race_fault(FaultCode code) {
     const Opcode access = chance(2) ? Opcode::Ld : Opcode::St;
-    if (code == FaultCode::Misaligned && chance(2))
+    if (code == FaultCode::AddressOutsideMemory && configuration_.triples && far_memory_told_ && chance(2))
+      across_limit();
+    else if (code == FaultCode::Misaligned && chance(2))
       emit_immediate(access, 0, kOwn, 1 + below(3));
     else if (code == FaultCode::Misaligned || code == FaultCode::AddressOutsideMemory)
       from_limit_.push_back(
@@ -441,6 +453,7 @@ class Generator : public ProgramStatements {
   std::vector<Entry> entries_;
   bool more_memory_told_ = chance(3) || far_memory_told_;
   bool runs_out_ = false;                         ///< the program ends without `exit`
+  std::vector<size_t> across_limit_;              ///< ld3 of which a later element lies beyond the memory
   std::vector<size_t> from_length_, from_limit_;  ///< instructions whose immediate is relative to what the unit is told
   std::vector<size_t> twins_;                     ///< jumps to a PC inside the program, which get its twin outside
 };
