@@ -1,7 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 
+#include "bits.hpp"
 #include "chip/intersection_pool.hpp"
 #include "chip/pixel_ledger.hpp"
 #include "chip/ray_pool.hpp"
