@@ -14,6 +14,7 @@ enum class Subnormals : uint8_t { Ieee = 0, Flush = 1 };
 enum class SlowUnit : uint8_t { Exact = 0, Newton2 = 1, Newton1 = 2, Newton0 = 3 };
 /// What chooses the next kernel, and what times the traverser. Each name has its class in sim/chip/.
 enum class PolicyName : uint8_t { Thesis = 0, Fill = 1 };
+enum class TileOrder : uint8_t { Rows = 0, Hilbert = 1 };
 enum class TraverserName : uint8_t { Static = 0, Modelled = 1 };
 /// What becomes of a shadow ray that reaches the light: an intersection, for the kernel `shade`, or a contribution.
 enum class Shading : uint8_t { Kernel = 0, Traverser = 1 };
@@ -67,6 +68,8 @@ enum class Shading : uint8_t { Kernel = 0, Traverser = 1 };
             "rays traced when a kernel ends, or after a stall") \
   CHIP_PART(static_traverser, stall_cycles, uint32_t, 1000, integers(1, 1 << 20), \
             "cycles in which the shader stalls until a batch is traced") \
+  CHIP_PART(modelled_traverser, tile_order, TileOrder, TileOrder::Rows, names("rows", "hilbert"), \
+            "order in which tiles are cast for it: rows from the top, or along a Hilbert curve, each beside the last") \
   CHIP_PART(modelled_traverser, rays, uint32_t, 128, integers(1, 1024), "rays in flight") \
   CHIP_PART(modelled_traverser, setup_latency, uint32_t, 16, integers(1, 64), \
             "cycles in which a ray is prepared; one begins in a cycle") \

@@ -9,6 +9,15 @@
 
 namespace raypool::chip {
 
+namespace {
+
+// The traverser of constant speed has no caches that the order could serve.
+TileOrder tile_order(const ChipConfiguration& chip) {
+  return chip.traverser == TraverserName::Modelled ? chip.modelled_traverser_tile_order : TileOrder::Rows;
+}
+
+}  // namespace
+
 Controller::Controller(const sc_core::sc_module_name& name, const ChipOptions& options)
     : sc_module(name),
       options_(options),
@@ -17,11 +26,13 @@ Controller::Controller(const sc_core::sc_module_name& name, const ChipOptions& o
       height_(options.height),
       secondary_(secondary_kernel(options.depth, options.reflections)),
       tile_width_(1u << tile_width_log2(options.configuration.contents())),
+      // A tile that would hold more pixels than allowed is cut into bands of whole rows.
+      tile_height_(std::min(options.configuration.contents(), chip_.held_limit) / tile_width_),
+      next_tile_(tile_order(chip_), (width_ + tile_width_ - 1) / tile_width_,
+                 (height_ + tile_height_ - 1) / tile_height_),
       given_(options.device->units()),
       ended_(options.device->units()) {
   const uint32_t contents = options.configuration.contents();
-  // A tile that would hold more pixels than allowed is cut into bands of whole rows.
-  tile_height_ = std::min(contents, chip_.held_limit) / tile_width_;
   const PolicySetup setup{contents,
                           options.device->units(),
                           chip_.ray_pool_size,
@@ -51,12 +62,12 @@ void Controller::kernel_ended(uint32_t unit) {
 }
 
 uint32_t Controller::pixels_of_next_tile() const {
-  const uint32_t columns = std::min(tile_width_, width_ - tile_x_), rows = std::min(tile_height_, height_ - tile_y_);
+  const uint32_t columns = std::min(tile_width_, width_ - tile_x()), rows = std::min(tile_height_, height_ - tile_y());
   return columns * rows;
 }
 
 bool Controller::eye_possible() const {
-  if (tile_y_ >= height_) return false;
+  if (next_tile_.at_end()) return false;
   if (!chip_.window_remedy && ledger->held() > 0 && round_ == 0) return false;
   return ledger->held() + pixels_of_next_tile() <= chip_.held_limit;
 }
@@ -143,19 +154,16 @@ LaunchCommand Controller::next_tile(uint32_t unit) {
   if (ledger->held() == 0) round_ = device->units();
   --round_;
   std::vector<uint32_t> pixels;
-  for (uint32_t y = tile_y_; y < std::min(tile_y_ + tile_height_, height_); ++y)
-    for (uint32_t x = tile_x_; x < std::min(tile_x_ + tile_width_, width_); ++x) pixels.push_back(x | y << 16);
+  const uint32_t left = tile_x(), top = tile_y();
+  for (uint32_t y = top; y < std::min(top + tile_height_, height_); ++y)
+    for (uint32_t x = left; x < std::min(left + tile_width_, width_); ++x) pixels.push_back(x | y << 16);
   ledger->eye_launched(unit, std::move(pixels));
   held_peak_ = std::max(held_peak_, ledger->held());
 
   LaunchCommand command;
   command.threads = tile_width_ * tile_height_;
-  command.block = tile_x_ | tile_y_ << 16;
-  tile_x_ += tile_width_;
-  if (tile_x_ >= width_) {
-    tile_x_ = 0;
-    tile_y_ += tile_height_;
-  }
+  command.block = left | top << 16;
+  next_tile_.next();
   return command;
 }
 
@@ -165,7 +173,7 @@ std::string Controller::describe() const {
       "them shadow "
       "rays, {} more may "
       "come; intersection pool {} normal and {} shadow of {} each, {} and {} of them not promised to a kernel",
-      tile_x_, tile_y_, width_, height_, ledger->finished(), ledger->held(), rays->size(), chip_.ray_pool_size,
+      tile_x(), tile_y(), width_, height_, ledger->finished(), ledger->held(), rays->size(), chip_.ray_pool_size,
       rays->shadow_rays(), ledger->rays_to_come(), intersections->size(ImportKind::Normal),
       intersections->size(ImportKind::Shadow), chip_.intersection_pool_size,
       intersections->available(ImportKind::Normal), intersections->available(ImportKind::Shadow));

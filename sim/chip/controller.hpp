@@ -19,6 +19,7 @@
 #include "chip/chip_clock.hpp"
 #include "chip/interfaces.hpp"
 #include "chip/policy.hpp"
+#include "chip/tile_walk.hpp"
 
 namespace raypool::chip {
 
@@ -69,6 +70,8 @@ class Controller : public sc_core::sc_module, public DecisionIf, public KernelEv
   ImportKind secondary_import() const;
   void launch(const Choice& choice);
   LaunchCommand next_tile(uint32_t unit);
+  uint32_t tile_x() const { return next_tile_.column() * tile_width_; }
+  uint32_t tile_y() const { return next_tile_.row() * tile_height_; }
   uint32_t pixels_of_next_tile() const;
 
   const ChipOptions& options_;
@@ -79,7 +82,7 @@ class Controller : public sc_core::sc_module, public DecisionIf, public KernelEv
   sc_core::sc_event decide_;
 
   uint32_t tile_width_, tile_height_;
-  uint32_t tile_x_ = 0, tile_y_ = 0;  // first pixel of the next tile
+  TileWalk next_tile_;
   int round_ = 0;  // tiles that may be cast before all held pixels are finished; without the remedy only
 
   bool finished_ = false;

@@ -74,6 +74,8 @@ TEST_P(EveryPolicy, DrawsEveryImageWithoutLosingARay) {
                                         << height << " depth " << depth);
         FrameRun run(warps, lanes, units, width, height, depth);
         choose(run.options);
+        run.options.configuration.chip.traverser = units == 2 ? TraverserName::Modelled : TraverserName::Static;
+        run.options.configuration.chip.modelled_traverser_tile_order = TileOrder::Hilbert;
         run.expect_conserved(run.go());
       }
     }

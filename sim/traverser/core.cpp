@@ -6,7 +6,7 @@ namespace raypool::traverser {
 
 namespace {
 
-constexpr uint32_t kLineBytes = 64, kTriangleBytes = 48;
+constexpr uint32_t kLineBytes = 64, kTriangleBytes = 44;
 
 /// A leaf's triangles lie one behind the other, so that some share a line, and some lie in two.
 uint32_t first_line(const Visit& leaf) {
@@ -141,7 +141,7 @@ void Core::take_data(FetchUnit& fetch, TestPipes& pipes) {
   while (fetch.valid(cycle_)) {
     const Fetch data = fetch.take();
     for (uint32_t i = 0; i < data.tests; ++i) pipes.push(data.slot);
-    if (data.last) continue;
+    if (data.more == 0) continue;
     ++slots_[data.slot].line;
     want(data.slot);
   }
@@ -168,10 +168,10 @@ void Core::want(uint32_t index) {
   slot.wanted = true;
   slot.earliest = cycle_ + 1 + slot.rest;
   if (node) {
-    nodes_.push(cycle_, {index, visit.place, 1, true});
+    nodes_.push(cycle_, {index, visit.place, 1, 0});
   } else {
     triangles_.push(
-        cycle_, {index, first_line(visit) + slot.line, triangles_of(visit, slot.line), slot.line + 1 == lines(visit)});
+        cycle_, {index, first_line(visit) + slot.line, triangles_of(visit, slot.line), lines(visit) - slot.line - 1});
   }
 }
 

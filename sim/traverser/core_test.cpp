@@ -76,7 +76,7 @@ TEST(TraverserCore, ANodeIsLookedUpTestedAndLeft) {
 }
 
 TEST(TraverserCore, ALeafsLinesComeOneAfterTheOtherAndAllItsTrianglesAreTested) {
-  // Triangles 1, 2 and 3 are bytes 48 .. 191: lines 0, 1 and 2. The first line completes none of them.
+  // Triangles 1, 2 and 3 are bytes 44 .. 175: lines 0, 1 and 2. The first line completes none of them.
   const VisitList leaf{{0, 0, 1, 0}, {1, 3, 0, 0}};
   std::vector<VisitList> rays(800);
   rays.front() = leaf;
@@ -88,6 +88,20 @@ TEST(TraverserCore, ALeafsLinesComeOneAfterTheOtherAndAllItsTrianglesAreTested) 
   EXPECT_EQ(result.work.triangle_cache.misses, 3u);
   EXPECT_EQ(result.work.triangle_cache.hits, 3u);
   EXPECT_EQ(result.work.leaves, 2u);
+}
+
+TEST(TraverserCore, WhenALineOfALeafMissesThoseBehindItAreRequestedToo) {
+  // Lines 0, 1 and 2 come 8 cycles apart, 100 after the first was requested; the last gives the last triangle's test.
+  ChipConfiguration chip = quick();
+  chip.memory_cycles_per_beat = 2;
+  chip.modelled_traverser_triangle_pipes = 1;
+  const uint64_t requested = 1 + 5 + 1, last = requested + 100 + 2 * 8, tests = 1 + 11;
+  const uint64_t done = trace_all(chip, {{{1, 3, 0, 0}}}).done[0];
+  EXPECT_GE(done, last + tests + 3 - 1);
+  EXPECT_LE(done, last + tests + 3 + 3) << "three latencies one after the other would be 200 more";
+  // Without registers for them they come one after the other.
+  chip.modelled_traverser_triangle_cache_mshrs = 1;
+  EXPECT_GT(trace_all(chip, {{{1, 3, 0, 0}}}).done[0], requested + 3 * 100);
 }
 
 TEST(TraverserCore, EntriesThatLieTooFarTakeACycleEach) {

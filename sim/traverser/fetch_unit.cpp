@@ -20,8 +20,19 @@ bool FetchUnit::bank_free(uint64_t cycle, uint32_t line) {
   return true;
 }
 
-void FetchUnit::clock(uint64_t cycle, LookupListener& listener) {
+// They go first: the ray that needs them is the one that has waited longest. One for which no register is free is
+// dropped; the ray will ask for it.
+uint32_t FetchUnit::prefetch(uint64_t cycle) {
   uint32_t lookups = 0;
+  for (; lookups < setup_.lookups && !ahead_.empty() && bank_free(cycle, ahead_.front()); ++lookups) {
+    if (cache_.prefetch(ahead_.front())) requests_.push_back(ahead_.front());
+    ahead_.pop_front();
+  }
+  return lookups;
+}
+
+void FetchUnit::clock(uint64_t cycle, LookupListener& listener) {
+  uint32_t lookups = prefetch(cycle);
   size_t window = std::min<size_t>(wanted_.size(), kWindow * setup_.lookups);
   for (size_t i = 0; i < window && lookups < setup_.lookups;) {
     const Wanted wanted = wanted_[i];
@@ -39,7 +50,10 @@ void FetchUnit::clock(uint64_t cycle, LookupListener& listener) {
     wanted_.erase(wanted_.begin() + static_cast<std::ptrdiff_t>(i));
     --window;
     if (answer == LineCache::Answer::Hit) hits_.push(cycle, wanted.fetch);
-    if (answer == LineCache::Answer::Missed) requests_.push_back(wanted.fetch.line);
+    if (answer == LineCache::Answer::Missed) {
+      requests_.push_back(wanted.fetch.line);
+      for (uint32_t line = 1; line <= wanted.fetch.more; ++line) ahead_.push_back(wanted.fetch.line + line);
+    }
     listener.looked_up(wanted.fetch.slot,
                        answer == LineCache::Answer::Hit ? cycle + setup_.latency : cache_.promised(wanted.fetch.line));
   }
@@ -68,7 +82,7 @@ void FetchUnit::fill(uint32_t line) {
 }
 
 uint64_t FetchUnit::next(uint64_t cycle) const {
-  return wanted_.empty() && requests_.empty() && filled_.empty() ? hits_.next() : cycle + 1;
+  return wanted_.empty() && ahead_.empty() && requests_.empty() && filled_.empty() ? hits_.next() : cycle + 1;
 }
 
 }  // namespace raypool::traverser

@@ -60,10 +60,13 @@ class FetchUnit {
     uint32_t line = 0;        // this one
   };
   bool bank_free(uint64_t cycle, uint32_t line);
+  /// Looks up lines behind those that missed. Returns how many lookups that took.
+  uint32_t prefetch(uint64_t cycle);
 
   Setup setup_;
   LineCache cache_;
   std::deque<Wanted> wanted_;
+  std::deque<uint32_t> ahead_;  // lines to prefetch
   DelayLine<Fetch> hits_;
   std::deque<Fetch> filled_;
   std::deque<uint32_t> requests_;

@@ -23,12 +23,31 @@ LineCache::Mshr* LineCache::find(uint32_t line) {
   return nullptr;
 }
 
+LineCache::Way* LineCache::find_way(uint32_t line) {
+  Way* const way = set(line);
+  for (uint32_t i = 0; i < ways_a_set_; ++i) {
+    if (way[i].used != 0 && way[i].line == line) return &way[i];
+  }
+  return nullptr;
+}
+
+LineCache::Mshr* LineCache::miss(uint32_t line) {
+  for (Mshr& mshr : mshrs_) {
+    if (mshr.taken) continue;
+    mshr.taken = true;
+    mshr.line = line;
+    mshr.due = kNever;
+    mshr.waiting.clear();
+    ++work_.misses;
+    return &mshr;
+  }
+  return nullptr;
+}
+
 LineCache::Answer LineCache::lookup(const Fetch& fetch, uint64_t by) {
   ++lookups_;
-  Way* const way = set(fetch.line);
-  for (uint32_t i = 0; i < ways_a_set_; ++i) {
-    if (way[i].used == 0 || way[i].line != fetch.line) continue;
-    way[i].used = lookups_;
+  if (Way* const way = find_way(fetch.line); way != nullptr) {
+    way->used = lookups_;
     ++work_.hits;
     return Answer::Hit;
   }
@@ -41,16 +60,14 @@ LineCache::Answer LineCache::lookup(const Fetch& fetch, uint64_t by) {
     ++work_.joined;
     return Answer::Joined;
   }
-  for (Mshr& mshr : mshrs_) {
-    if (mshr.taken) continue;
-    mshr.taken = true;
-    mshr.line = fetch.line;
-    mshr.due = kNever;
-    mshr.waiting.assign(1, fetch);
-    ++work_.misses;
-    return Answer::Missed;
-  }
-  return Answer::Busy;
+  Mshr* const mshr = miss(fetch.line);
+  if (mshr == nullptr) return Answer::Busy;
+  mshr->waiting.push_back(fetch);
+  return Answer::Missed;
+}
+
+bool LineCache::prefetch(uint32_t line) {
+  return find_way(line) == nullptr && find(line) == nullptr && miss(line) != nullptr;
 }
 
 std::vector<Fetch> LineCache::fill(uint32_t line) {

@@ -15,7 +15,7 @@ struct Fetch {
   uint32_t slot = 0;   ///< of the ray
   uint32_t line = 0;   ///< number, 64 bytes each
   uint32_t tests = 0;  ///< that can begin with it
-  bool last = true;    ///< line of the visit
+  uint32_t more = 0;   ///< lines of the visit behind this one
 };
 
 class LineCache {
@@ -31,6 +31,8 @@ class LineCache {
 
   /// A line that comes by the cycle `by`, in which a line that is there would be read, is a hit too.
   Answer lookup(const Fetch& fetch, uint64_t by = 0);
+  /// A line that somebody will ask for soon. True if it must be requested: it is not there, and a register is free.
+  bool prefetch(uint32_t line);
   /// The line has come: who waited for it, oldest first.
   std::vector<Fetch> fill(uint32_t line);
   /// When it will come, once that is known.
@@ -53,6 +55,9 @@ class LineCache {
     std::vector<Fetch> waiting;
   };
   Mshr* find(uint32_t line);
+  Way* find_way(uint32_t line);
+  /// A free register takes the line. Null if there is none.
+  Mshr* miss(uint32_t line);
   Way* set(uint32_t line) { return &ways_[(line & (sets_ - 1)) * ways_a_set_]; }
 
   uint32_t ways_a_set_, sets_;

@@ -7,7 +7,7 @@ namespace {
 
 using Answer = LineCache::Answer;
 
-Fetch of(uint32_t slot, uint32_t line) { return {slot, line, 1, true}; }
+Fetch of(uint32_t slot, uint32_t line) { return {slot, line, 1, 0}; }
 
 TEST(LineCache, GivesALineToWhoWaitedForIt) {
   LineCache cache(1024, 2, 2);
@@ -36,6 +36,21 @@ TEST(LineCache, ALookupTakesItsTimeAlsoWhereTheLineIsAboutToCome) {
   EXPECT_EQ(cache.lookup(of(4, 5), 131), Answer::Hit);
   EXPECT_EQ(cache.fill(5).size(), 3u);
   EXPECT_EQ(cache.work().joined, 4u);
+}
+
+TEST(LineCache, ALineMayComeBeforeSomebodyAsksForIt) {
+  LineCache cache(1024, 2, 1);
+  EXPECT_TRUE(cache.prefetch(5));
+  EXPECT_FALSE(cache.prefetch(5)) << "it is on its way";
+  EXPECT_FALSE(cache.prefetch(6)) << "no register is free";
+  EXPECT_EQ(cache.lookup(of(0, 5)), Answer::Joined);
+  EXPECT_EQ(cache.fill(5).size(), 1u);
+  EXPECT_FALSE(cache.prefetch(5)) << "it is there";
+  EXPECT_TRUE(cache.prefetch(6));
+  EXPECT_TRUE(cache.fill(6).empty()) << "nobody waits";
+  EXPECT_EQ(cache.lookup(of(0, 6)), Answer::Hit);
+  EXPECT_EQ(cache.work().misses, 2u);
+  EXPECT_EQ(cache.work().joined, 1u);
 }
 
 TEST(LineCache, TheLeastRecentlyUsedLineOfTheSetGoes) {

@@ -16,7 +16,7 @@ struct Bench {
   explicit Bench(const ChipConfiguration& chip) : port(2), memory(chip, port), nodes(setup()), triangles(setup()) {}
   static FetchUnit::Setup setup() { return {4, 1, 32, 1 << 20, 1, 64}; }
 
-  static void want(FetchUnit& fetch, uint32_t line) { fetch.push(0, {0, line, 1, true}); }
+  static void want(FetchUnit& fetch, uint32_t line) { fetch.push(0, {0, line, 1, 0}); }
   /// The cycles in which lines come, in their order, and what they are.
   std::vector<std::pair<uint64_t, uint32_t>> run() {
     std::vector<std::pair<uint64_t, uint32_t>> came;
