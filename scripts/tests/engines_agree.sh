@@ -8,11 +8,11 @@ cd "$(dirname "$0")/../.."
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 
-# draw SCENE SIZE FOLDER: the picture, and what became of the rays, as every engine has it.
+# draw SCENE SIZE FOLDER [TRAVERSER]: the picture, and what became of the rays, as every engine has it.
 draw() {
   for engine in native functional model rtl lockstep; do
     "$raypool" sim --scene "$1" --size "$2" --config "$config" --depth "$depth" --units "$units" --engine "$engine" \
-      --out "$3/$engine" --quiet
+      --traverser "${4:-static}" --out "$3/$engine" --quiet
     cmp "$3/native/image.png" "$3/$engine/image.png"
     cmp <(rays "$3/native") <(rays "$3/$engine") ||
       { echo "FAILED: $engine and native count rays differently"; exit 1; }
@@ -20,17 +20,27 @@ draw() {
 }
 rays() { sed -n '/^  "rays_by_kind"/,/^  "contributions"/p' "$1/report.json" | grep .; }
 
-draw cornell 40x24 "$folder"
-report=$folder/lockstep/report.json
-grep -qE '"differences": 0\b' "$report" || { echo "FAILED: lockstep reports differences:"; cat "$report"; exit 1; }
-grep -qE '"instructions": [1-9][0-9]{3,}' "$report" ||
-  { echo "FAILED: lockstep compared next to nothing:"; cat "$report"; exit 1; }
-# The model takes the hardware's time, also without the hardware beside it.
-cycles() { sed -nE 's/^  "cycles": ([0-9]+),$/\1/p' "$folder/$1/report.json"; }
-[ -n "$(cycles rtl)" ] && [ "$(cycles rtl)" = "$(cycles model)" ] ||
-  { echo "FAILED: rtl took $(cycles rtl) cycles, model $(cycles model)"; exit 1; }
-# A picture of one colour would agree too: PNG squeezes it to a few dozen bytes.
-[ "$(stat -c %s "$folder/native/image.png")" -gt 400 ] || { echo "FAILED: the picture is empty"; exit 1; }
+# agrees FOLDER: what was drawn there is not empty, and hardware and model took the same cycles for the same.
+agrees() {
+  local report=$1/lockstep/report.json
+  grep -qE '"differences": 0\b' "$report" || { echo "FAILED: lockstep reports differences:"; cat "$report"; exit 1; }
+  grep -qE '"instructions": [1-9][0-9]{3,}' "$report" ||
+    { echo "FAILED: lockstep compared next to nothing:"; cat "$report"; exit 1; }
+  # The model takes the hardware's time, also without the hardware beside it.
+  [ -n "$(cycles "$1/rtl")" ] && [ "$(cycles "$1/rtl")" = "$(cycles "$1/model")" ] ||
+    { echo "FAILED: rtl took $(cycles "$1/rtl") cycles, model $(cycles "$1/model")"; exit 1; }
+  # A picture of one colour would agree too: PNG squeezes it to a few dozen bytes.
+  [ "$(stat -c %s "$1/native/image.png")" -gt 400 ] || { echo "FAILED: the picture is empty"; exit 1; }
+}
+cycles() { sed -nE 's/^  "cycles": ([0-9]+),$/\1/p' "$1/report.json"; }
+
+for traverser in static modelled; do
+  draw cornell 40x24 "$folder/$traverser" "$traverser"
+  agrees "$folder/$traverser"
+done
+cmp "$folder/static/native/image.png" "$folder/modelled/native/image.png"
+[ "$(cycles "$folder/static/model")" != "$(cycles "$folder/modelled/model")" ] ||
+  { echo "FAILED: both traversers take the same time"; exit 1; }
 
 # Where nothing reflects, no reflection is cast, and the picture is that of depth 1.
 "$raypool" scene cornell --detail 0.1 --write-obj "$folder/matt.obj" > "$folder/scene.txt"
