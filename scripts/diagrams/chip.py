@@ -43,7 +43,7 @@ def around(picture):
         ["a line's last beat after 120;", "bind another one there"],
         "box memory",
     )
-    picture.box((346, 606, 218, 62), "traverser", ["finds what rays hit; when, is", "its subclass static_traverser"])
+    picture.box((346, 606, 218, 62), "traverser", ["finds what rays hit; when, say", "static_ or modelled_traverser"])
 
 
 def between(picture):
@@ -55,6 +55,8 @@ def between(picture):
     picture.wire((684, 343), (740, 343), both=True)
     picture.wire((455, 436), (455, 508), both=True)
     picture.wire((564, 531), (604, 531), both=True)
+    picture.wire((455, 606), (455, 554), both=True)
+    picture.text(463, 584, "lines of the tree, if modelled")
     picture.text(584, 500, "TLM-2.0 socket", anchor="middle")
     picture.text(447, 492, "id 7: unit 2, id of the unit 5", anchor="end")
     picture.wire((812, 383), (812, 637), (564, 637))

@@ -1,0 +1,93 @@
+#!/usr/bin/env python3
+"""Prints what binds the modelled traverser, from the table of a sweep over configs/experiments/traverser.json. For each
+change of a machine it says what the ceilings of the machine without the change predict, and what was measured."""
+import json
+import os
+import sys
+
+PART = "chip.modelled_traverser."
+BEAT = "chip.memory.cycles_per_beat"
+CACHES = (PART + "node_cache_bytes", PART + "triangle_cache_bytes")
+PLACE = ("scene", "detail", "view", "size", "depth", "units")
+
+
+def ceilings(row):
+    """Of what works: places for rays are taken for as long as the rays wait for the others."""
+    return {name: row[name] for name in row if name.startswith("ceilings.") and isinstance(row[name], (int, float))
+            and name not in ("ceilings.reached", "ceilings.rays_in_flight")}  # fmt: skip
+
+
+def cache(row):
+    return sum(row[name] for name in CACHES)
+
+
+def lowest(values):
+    name = min(values, key=values.get)
+    return name.split(".", 1)[1], values[name]
+
+
+def predicted(base, row):
+    """The lowest ceiling of `base` when those that the change touches are moved by as much as it moves them."""
+    moved = ceilings(base)
+    moved["ceilings.box_pipes"] *= row[PART + "box_pipes"] / base[PART + "box_pipes"]
+    moved["ceilings.memory_port"] *= base[BEAT] / row[BEAT]
+    if cache(row) != cache(base):  # what a cache lets through is measured, not known beforehand
+        moved["ceilings.memory_port"] *= base["traversal.bytes_a_ray"] / row["traversal.bytes_a_ray"]
+    return lowest(moved)
+
+
+def line(*cells):
+    print("{:<11}{:>6}{:>6}  {:<33}{:<17}{:<20}{:>8}{:>9}".format(*cells))
+
+
+def change(new, old):
+    return f"{new / old - 1:+.1%}"
+
+
+def differs(row, base):
+    return [name for name in (PART + "box_pipes", BEAT) if row[name] != base[name]] + (
+        ["caches"] if cache(row) != cache(base) else []
+    )
+
+
+def label(row):
+    return f"{row[PART + 'box_pipes']} box, {cache(row) // 1024} KB, {16 / row[BEAT]:.1f} GB/s"
+
+
+def show(rows):
+    for row in rows:
+        place = [os.path.basename(row["scene"]).split(".")[0], str(row["depth"]), str(row["units"])]
+        if row["chip.traverser"] == "static":
+            line(*place, "static", bound(row), "", "", f"{row['mrays_per_second']:.1f}")
+            continue
+        bases = [base for base in rows if base["chip.traverser"] == "modelled" and len(differs(row, base)) == 1
+                 and smaller_change(base, row)]  # fmt: skip
+        line(*place, label(row), bound(row), "", "", f"{row['mrays_per_second']:.1f}")
+        for base in bases:
+            name, after = predicted(base, row)
+            before = lowest(ceilings(base))[1]
+            line("", "", "", f"  from {label(base)}", "", f"to {name} {after:.0f}",
+                 change(after, before), change(row["mrays_per_second"], base["mrays_per_second"]))  # fmt: skip
+
+
+def smaller_change(base, row):
+    """Twice the pipes, half the cache, a tenth of the bandwidth."""
+    return (row[PART + "box_pipes"] == 2 * base[PART + "box_pipes"] or 2 * cache(row) == cache(base)
+            or row[BEAT] == 10 * base[BEAT])  # fmt: skip
+
+
+def bound(row):
+    name, value = lowest(ceilings(row))
+    return f"{name} {value:.0f}"
+
+
+def main():
+    with open(sys.argv[1] + "/table.json", encoding="utf-8") as file:
+        rows = json.load(file)["rows"]
+    line("scene", "depth", "units", "machine", "lowest ceiling", "ceilings predict", "", "measured")
+    places = list(dict.fromkeys(tuple(row.get(name) for name in PLACE) for row in rows))
+    for place in places:
+        show([row for row in rows if tuple(row.get(name) for name in PLACE) == place])
+
+
+main()
