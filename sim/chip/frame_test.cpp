@@ -46,13 +46,14 @@ struct Drawn {
   FrameBuffer frame;
   RayCounts rays;
   uint64_t too_deep;
+  uint64_t reflecting = 0;  ///< threads of the kernel that casts a reflection
 };
 
 Drawn draw_on_chip(const Scene& scene, uint32_t depth, bool culling) {
   test::RealFrame run(4, 4, 32, 24, depth, scene, culling);
   run.set_device(make_functional_unit(run.options.configuration, run.image.memory));
   const ChipResult result = run_chip(run.options);
-  return {run.frame, result.ray_counts, result.dropped_depth};
+  return {run.frame, result.ray_counts, result.dropped_depth, result.kernels[RayKernel::CastSecondary].threads};
 }
 
 Drawn draw_natively(const Scene& scene, uint32_t depth, bool culling) {
@@ -93,6 +94,17 @@ TEST(Culling, LeavesOutRaysWithoutWeightAndChangesNoPicture) {
       EXPECT_EQ(chip.rays.shadow.left_out, all.rays.shadow.weightless);
     }
   }
+}
+
+TEST(Culling, GivesHitsThatReflectNothingTheShorterKernel) {
+  Scene scene = make_cornell();
+  scene.materials.front().ks = {0.5f, 0.5f, 0.5f};
+  for (size_t i = 1; i < scene.materials.size(); ++i) scene.materials[i].ks = {0, 0, 0};
+  const Drawn all = draw_on_chip(scene, 3, false), culled = draw_on_chip(scene, 3, true);
+  EXPECT_TRUE(culled.frame == all.frame);
+  EXPECT_GT(culled.reflecting, 0u);
+  EXPECT_EQ(culled.reflecting, culled.rays.reflection.traced);
+  EXPECT_LT(culled.reflecting, all.reflecting / 2);
 }
 
 INSTANTIATE_TEST_SUITE_P(Chip, Frame,
