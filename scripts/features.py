@@ -16,6 +16,7 @@ RUN_FIELDS = ("config", "depth", "units")
 COLOURS = ("#2f5d8a", "#6f9bc8", "#c9824a", "#e3b48f")
 WAY = """set style data linespoints
 set pointsize 1.2
+set bmargin 8
 set ylabel 'Mrays/s'
 set yrange [0:*]
 set xrange [-0.3:{last}.3]
@@ -45,8 +46,8 @@ def load(path):
 def change(row, other, fields):
     """What `row` has that `other` has not: 'triples=false'. What two parts have alike is told once, without them."""
     new = [(field, json.dumps(row[field]).strip('"')) for field in fields if row[field] != other[field]]
-    ends = [field.split(".")[-1] for field, _ in new]
-    words = [f"{end if ends.count(end) > 1 else field.removeprefix('chip.')}={value}"
+    ends = [f"{field.split('.')[-1]}={value}" for field, value in new]
+    words = [end if ends.count(end) > 1 else f"{field.removeprefix('chip.')}={value}"
              for (field, value), end in zip(new, ends)]
     return ", ".join(dict.fromkeys(words))
 
