@@ -102,7 +102,7 @@ refuses "random programs without a built unit" "none.so.*make" "${cosim[@]}" --c
   --unit-library "$folder/none.so"
 refuses "random programs, a unit that is no library" "good.obj.*cannot be loaded" "${cosim[@]}" --config 4w4c \
   --unit-library "$folder/good.obj"
-another=$(echo "$(dirname "$raypool")"/units/4w4c-????????/libraypool_unit.so | cut -d' ' -f 1)
+another=$("$raypool" config 4w4c --unit-library)
 refuses "random programs on another configuration's unit" "build it for this configuration" \
   "${cosim[@]}" --config 2w2c --unit-library "$another"
 refuses "random programs, 3 warps" "3.*power of two from 1 to 32" "${cosim[@]}" --config "$folder/warps.json"
