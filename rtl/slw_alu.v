@@ -41,27 +41,25 @@ module slw_alu #(
     .clk_i(clk_i), .rst_ni(rst_ni), .task_valid_i(task_valid_i), .task_warp_i(task_warp_i), .ready_o(ready_o),
     .done_valid_o(done_valid_o), .done_warp_o(done_warp_o), .stage_valid_o(stage_valid));
 
-  // ---- The group that enters in this cycle
-  wire [GROUP*32-1:0] operand_a, operand_b;
-  wire [GROUP-1:0] entering;   // lanes
-  generate
-    if (GROUPS == 1) begin : gen_whole
-      assign operand_a = task_operand_a_i;
-      assign operand_b = task_operand_b_i;
-      assign entering = {GROUP{task_valid_i}} & task_mask_i;
-    end else begin : gen_groups
-      localparam integer GROUP_BITS = $clog2(GROUPS);
-      localparam [GROUP_BITS-1:0] NEXT = 1;
-      wire enters = |stage_valid[GROUPS-1:0];
-      reg [GROUP_BITS-1:0] group_q;   // 0 before a task: it counts round
-      always @(posedge clk_i)
-        if (!rst_ni) group_q <= {GROUP_BITS{1'b0}};
-        else if (enters) group_q <= group_q + NEXT;
-      assign operand_a = task_operand_a_i[group_q*(GROUP*32) +: GROUP*32];
-      assign operand_b = task_operand_b_i[group_q*(GROUP*32) +: GROUP*32];
-      assign entering = {GROUP{enters}} & task_mask_i[group_q*GROUP +: GROUP];
+  // ---- The group that enters in this cycle: g of the task that arrived g cycles ago, which is one task at most.
+  reg [GROUP*32-1:0] operand_a, operand_b;
+  reg [GROUP-1:0] entering;   // lanes
+  integer g;
+  always @* begin
+    operand_a = task_operand_a_i[GROUP*32-1:0];
+    operand_b = task_operand_b_i[GROUP*32-1:0];
+    entering = {GROUP{stage_valid[0]}} & task_mask_i[GROUP-1:0];
+    if (GROUPS > 1) begin
+      operand_a = {GROUP{32'd0}};
+      operand_b = {GROUP{32'd0}};
+      entering = {GROUP{1'b0}};
+      for (g = 0; g < GROUPS; g = g + 1) begin
+        operand_a = operand_a | ({GROUP*32{stage_valid[g]}} & task_operand_a_i[g*GROUP*32 +: GROUP*32]);
+        operand_b = operand_b | ({GROUP*32{stage_valid[g]}} & task_operand_b_i[g*GROUP*32 +: GROUP*32]);
+        entering = entering | ({GROUP{stage_valid[g]}} & task_mask_i[g*GROUP +: GROUP]);
+      end
     end
-  endgenerate
+  end
 
   // ---- The lanes. While a group is in its stages its task has not been done.
   wire moving = |stage_valid[STAGES+GROUPS-2:0];
