@@ -117,9 +117,7 @@ class RayAlu {
 // Inline, as they are part of every cycle of the engine.
 
 inline RayAlu::RayAlu(const Configuration& configuration, const RaySlices& slices)
-    : last_step_(configuration.ray_access_cycles() - 1),
-      import_(configuration),
-      export_(slices) {}
+    : last_step_(configuration.ray_access_cycles() - 1), import_(configuration), export_(slices) {}
 
 inline void RayAlu::reset() {
   roles_.fill(Roles{});
