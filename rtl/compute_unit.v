@@ -172,7 +172,10 @@ module compute_unit #(
       for (k = 0; k < INSTANCES; k = k + 1) begin : gen_done
         assign done[k] = done_valid[k] && done_warp[k*WARP_BITS +: WARP_BITS] == w;
       end
-      warp #(.LANES(LANES), .STACK_DEPTH(STACK_DEPTH), .INSTANCES(INSTANCES), .FMA(FMA), .TRIPLES(TRIPLES)) warp (
+      warp #(
+        .LANES(LANES), .STACK_DEPTH(STACK_DEPTH), .INSTANCES(INSTANCES), .INSTANCE_TYPES(INSTANCE_TYPES), .FMA(FMA),
+        .TRIPLES(TRIPLES)
+      ) warp (
         .clk_i(clk_i), .rst_ni(rst_ni), .start_i(start[w]), .start_pc_i(start_pc),
         .start_lanes_i(start_lanes[w*LANES +: LANES]),
         .halt_i(fault_valid_o), .active_o(active[w]), .program_length_i(program_length_i),

@@ -4,6 +4,7 @@ module warp #(
   parameter integer LANES = 8,
   parameter integer STACK_DEPTH = 8,
   parameter integer INSTANCES = 7,
+  parameter [INSTANCES*4-1:0] INSTANCE_TYPES = 28'h6543210,
   parameter integer FMA = 0,        // reads register rc too, and issues ffma
   parameter integer TRIPLES = 0     // issues triples
 ) (
@@ -53,7 +54,7 @@ module warp #(
 `include "isa.vh"
   reg [LANES-1:0] launched_q;
   reg [LANES-1:0] retire_pred;
-  integer s;
+  integer s, n;
 
   wire step, pc_valid, read, writes_register, writes_predicate, illegal, outside, overflow, underflow;
   wire [15:0] stack_pc;
@@ -77,9 +78,18 @@ module warp #(
     retire_predicate_o = retire_pred & mask_o;
   end
 
-  // Control instructions: the branch ALU says in every lane's predicate bit whether the jump is taken.
-  wire taken = retire_pred[0];
-  wire control = retire_o && field_type == ISA_TYPE_BRH;
+  // Control instructions: the branch ALU says in every lane's predicate bit whether the jump is taken. Only its done
+  // counts, so that the way to the PC stack leads through no other ALU's.
+  reg control, taken;
+  always @* begin
+    control = 1'b0;
+    taken = 1'b0;
+    for (n = 0; n < INSTANCES; n = n + 1)
+      if (INSTANCE_TYPES[n*4 +: 4] == ISA_TYPE_BRH && done_i[n]) begin
+        control = 1'b1;
+        taken = done_predicate_i[n*LANES];
+      end
+  end
   wire jump = control && taken && (field_operation == ISA_BRH_JANY || field_operation == ISA_BRH_JNONE);
   wire enter = control && taken && field_operation == ISA_BRH_LOOP;
   wire leave = control && !taken && field_operation == ISA_BRH_LOOP;
