@@ -3,7 +3,7 @@
 features_area.json leaves:
 
     scripts/features.py alone TABLE.json              each feature alone and last: cycles
-    scripts/features.py area TABLE.json               each feature last: area
+    scripts/features.py area TABLE.json               each feature last: area and power
     scripts/features.py way TABLE.json [PICTURE.png]  one feature after another, and as a plot
 """
 import json
@@ -92,8 +92,9 @@ def show_area(path):
         more = 100 * (row["area_mm2"] / plain["area_mm2"] - 1)
         speed = row["mrays_per_second"]
         lines.append([what, f"{row['kge']:.1f}", f"{row['area_mm2']:.3f}", "" if row is plain else f"{more:+.1f}",
-                      f"{speed:.1f}", f"{speed / row['area_mm2']:.0f}"])
-    show(["machine", "kGE", "mm2", "%", "Mrays/s", "a mm2"], lines)
+                      f"{row['power_mw']:.0f}" if "power_mw" in row else "-", f"{speed:.1f}",
+                      f"{speed / row['area_mm2']:.0f}"])
+    show(["machine", "kGE", "mm2", "%", "mW", "Mrays/s", "a mm2"], lines)
 
 
 def steps(rows, fields):

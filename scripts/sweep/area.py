@@ -1,4 +1,4 @@
-"""The area of a point's units, by the project's own synthesis, which keeps what it has once made."""
+"""The area and power of a point's units, by the project's own synthesis, which keeps what it has once made."""
 import json
 import os
 import subprocess
@@ -12,30 +12,36 @@ from .errors import SweepError
 class Areas:
     """Synthesises each distinct unit once."""
 
-    def __init__(self, progress):
+    def __init__(self, progress, power):
         self.progress = progress
+        self.power = power
         self.known = {}
 
     def of(self, planned):
-        """{"area_mm2", "kge"} of all units of the point, at 40 nm."""
+        """{"area_mm2", "kge"} of all units of the point, at 40 nm; with power "power_mw", at the clock of the
+        library.
+        """
         settings = {field: value for field, value in planned.settings.items() if not field.startswith("chip.")}
         config = planned.point["config"]
         identity = raypool.ask_config(config, settings, "--verilog-parameters")
         if identity not in self.known:
             self.progress.show(f"  synthesis of unit {len(self.known) + 1}, {planned.machine['name']}: a new one takes "
                                "minutes", now=True)
-            self.known[identity] = synthesise(raypool.machine_words(config, settings))
+            self.known[identity] = synthesise(raypool.machine_words(config, settings), self.power)
         units = int(planned.point["units"])
         return {name: round(units * value, 6) for name, value in self.known[identity].items()}
 
 
-def synthesise(words):
+def synthesise(words, power):
     environment = {**os.environ, "PYTHONPATH": os.path.join(raypool.ROOT, "scripts"), "RAYPOOL": raypool.PROGRAM}
     with tempfile.TemporaryDirectory() as folder:
-        command = [sys.executable, "-m", "synth", "report", *words, "--out", folder]
+        command = [sys.executable, "-m", "synth", "report", *words, "--out", folder, *(["--power"] if power else [])]
         done = subprocess.run(command, cwd=raypool.ROOT, env=environment, capture_output=True, text=True, check=False)
         if done.returncode != 0:
             raise SweepError("the synthesis failed: " + raypool.sentence(done.stderr, done.returncode))
         with open(os.path.join(folder, "report.json"), encoding="utf-8") as file:
             report = json.load(file)
-    return {"area_mm2": report["forty_nm"]["total_mm2"], "kge": report["area"]["total_kge"]}
+    measured = {"area_mm2": report["forty_nm"]["total_mm2"], "kge": report["area"]["total_kge"]}
+    if power:
+        measured["power_mw"] = 1000 * report["power"]["total_w"]
+    return measured

@@ -38,6 +38,9 @@ class Experiment:
         self.filter = self.document.get("filter")
         self.scene_source = self.document.get("scene_source")
         self.area = self.document.get("area", False)
+        self.power = self.document.get("power", False)
+        if self.power and not self.area:
+            raise SweepError(f"{path}: power is of synthesised units: it needs \"area\": true")
         self.check_fields(settable)
         number = len(self.listed) * math.prod(len(values) for values in self.product.values())
         if number > MOST_POINTS:

@@ -134,7 +134,7 @@ class Plan:
             except SweepError as error:
                 raise SweepError(f"{experiment.path}: {error}") from error
         if experiment.area or (condition and condition.names & set(AREA)):
-            areas = area.Areas(self.progress)
+            areas = area.Areas(self.progress, experiment.power)
             for planned in self.points:
                 try:
                     planned.area = areas.of(planned)

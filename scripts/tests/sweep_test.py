@@ -215,6 +215,9 @@ class Refusals(SweepTest):
             with self.subTest(filter=text):
                 self.refuses({"base": TINY, "filter": text}, *words)
 
+    def test_power_is_of_synthesised_units(self):
+        self.refuses({"base": TINY, "power": True}, '"area": true')
+
 
 class Runs(SweepTest):
     def test_a_killed_sweep_goes_on_where_it_was(self):
