@@ -1,6 +1,11 @@
 #!/usr/bin/env python3
-"""Prints what binds the modelled traverser, from the table of a sweep over configs/experiments/traverser.json. For each
-change of a machine it says what the ceilings of the machine without the change predict, and what was measured."""
+"""Tables of docs/traverser.md, of the folder that a sweep leaves:
+
+    scripts/traverser_table.py binds build/sweeps/traverser    what binds the modelled traverser: for each change of a
+                                                               machine what the ceilings of the machine without it
+                                                               predict, and what was measured
+    scripts/traverser_table.py nodes build/sweeps/nodes        compressed nodes against exact ones
+"""
 import json
 import os
 import sys
@@ -81,13 +86,31 @@ def bound(row):
     return f"{name} {value:.0f}"
 
 
-def main():
-    with open(sys.argv[1] + "/table.json", encoding="utf-8") as file:
-        rows = json.load(file)["rows"]
+def binds(rows):
     line("scene", "depth", "units", "machine", "lowest ceiling", "ceilings predict", "", "measured")
     places = list(dict.fromkeys(tuple(row.get(name) for name in PLACE) for row in rows))
     for place in places:
         show([row for row in rows if tuple(row.get(name) for name in PLACE) == place])
+
+
+def nodes(rows):
+    columns = "{:>5}{:>6}  {:<11}{:>11}{:>11}{:>12}{:>10}{:>12}{:>9}"
+    print(columns.format("depth", "units", "nodes", "cache, KB", "nodes/ray", "bytes/ray", "node hits", "memory port",
+                         "Mrays/s"))  # fmt: skip
+    for row in rows:
+        kilobytes = "+".join(str(row[name] // 1024) for name in CACHES)
+        print(columns.format(row["depth"], row["units"], row[PART + "nodes"], kilobytes,
+                             f"{row['traversal.nodes_a_ray']:.2f}", f"{row['traversal.bytes_a_ray']:.1f}",
+                             f"{row['traversal.node_cache.hit_rate']:.1%}", f"{row['memory.port_utilisation']:.1%}",
+                             f"{row['mrays_per_second']:.1f}"))  # fmt: skip
+
+
+def main():
+    tables = {"binds": binds, "nodes": nodes}
+    if len(sys.argv) != 3 or sys.argv[1] not in tables:
+        sys.exit(__doc__.strip())
+    with open(sys.argv[2] + "/table.json", encoding="utf-8") as file:
+        tables[sys.argv[1]](json.load(file)["rows"])
 
 
 main()

@@ -352,6 +352,13 @@ void check_chip(const Configuration& configuration, const std::string& where) {
                     "{}, which is chip.intersection_pool.size",
                     where, chip.held_limit, width, configuration.contents(), chip.intersection_pool_size));
   }
+  const uint32_t node = node_bytes(chip.modelled_traverser_nodes), ways = chip.modelled_traverser_node_cache_ways;
+  if (chip.modelled_traverser_node_cache_bytes < ways * node) {
+    throw InputError(
+        fmt::format("{}: chip.modelled_traverser.node_cache_bytes is {}; with {} ways of nodes of {} bytes it must be "
+                    "at least {}",
+                    where, chip.modelled_traverser_node_cache_bytes, ways, node, ways * node));
+  }
 }
 
 }  // namespace

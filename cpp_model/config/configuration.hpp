@@ -45,6 +45,9 @@ inline constexpr const char* kNamePattern = "[A-Za-z0-9_.+-]{1,64}";
 /// log2 of an eye tile's width for `contents` threads (a power of two): tiles are square or twice as wide as high.
 uint32_t tile_width_log2(uint32_t contents);
 
+/// Of a node of four children in the modelled traverser's memory: a line of its node cache.
+constexpr uint32_t node_bytes(NodeFormat nodes) { return nodes == NodeFormat::Compressed ? 64 : 128; }
+
 struct Configuration {
   std::string name = "8w8c";
   std::string source;            ///< what load_configuration was given; empty: nothing

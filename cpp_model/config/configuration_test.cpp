@@ -165,6 +165,20 @@ TEST(Configuration, TheChipHoldsAsManyPixelsAsTheIntersectionPoolUnlessToldOther
             "chip.intersection_pool.size is 31; with 1024 contents it must be at least 32, the width of a tile");
 }
 
+TEST(Configuration, TheNodeCacheHasASetAtLeast) {
+  const auto chip = [](const std::string& nodes, int bytes) {
+    return R"({"chip": {"modelled_traverser": {"nodes": ")" + nodes +
+           R"(", "node_cache_ways": 16, "node_cache_bytes": )" + std::to_string(bytes) + "}}}";
+  };
+  EXPECT_EQ(error_of(chip("exact", 1024)),
+            "chip.modelled_traverser.node_cache_bytes is 1024; with 16 ways of nodes of 128 bytes it must be at least "
+            "2048");
+  for (const auto& [nodes, bytes] : {std::pair("compressed", 1024), std::pair("exact", 2048)}) {
+    const TemporaryFile file(chip(nodes, bytes));
+    EXPECT_EQ(load_configuration(file.path()).chip.modelled_traverser_node_cache_bytes, static_cast<uint32_t>(bytes));
+  }
+}
+
 TEST(Configuration, TheChipIsPartOfTheMachineAndNotOfItsVerilog) {
   const TemporaryFile file(R"({"chip": {"ray_pool": {"size": 100}}})");
   const Configuration configuration = load_configuration(file.path());

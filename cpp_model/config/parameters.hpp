@@ -15,6 +15,8 @@ enum class SlowUnit : uint8_t { Exact = 0, Newton2 = 1, Newton1 = 2, Newton0 = 3
 /// What chooses the next kernel, and what times the traverser. Each name has its class in sim/chip/.
 enum class PolicyName : uint8_t { Thesis = 0, Fill = 1 };
 enum class TileOrder : uint8_t { Rows = 0, Hilbert = 1 };
+/// How the modelled traverser keeps the boxes of a node: as numbers on a grid of the node, or as the floats they are.
+enum class NodeFormat : uint8_t { Compressed = 0, Exact = 1 };
 enum class TraverserName : uint8_t { Static = 0, Modelled = 1 };
 /// What becomes of a shadow ray that reaches the light: an intersection, for the kernel `shade`, or a contribution.
 enum class Shading : uint8_t { Kernel = 0, Traverser = 1 };
@@ -70,6 +72,8 @@ enum class Shading : uint8_t { Kernel = 0, Traverser = 1 };
             "cycles in which the shader stalls until a batch is traced") \
   CHIP_PART(modelled_traverser, tile_order, TileOrder, TileOrder::Rows, names("rows", "hilbert"), \
             "order in which tiles are cast for it: rows from the top, or along a Hilbert curve, each beside the last") \
+  CHIP_PART(modelled_traverser, nodes, NodeFormat, NodeFormat::Compressed, names("compressed", "exact"), \
+            "nodes of 64 bytes, with planes of 8 bits on a grid rounded outwards, or of 128, with boxes as they are") \
   CHIP_PART(modelled_traverser, rays, uint32_t, 128, integers(1, 1024), "rays in flight") \
   CHIP_PART(modelled_traverser, setup_latency, uint32_t, 16, integers(1, 64), \
             "cycles in which a ray is prepared; one begins in a cycle") \
@@ -88,7 +92,7 @@ enum class Shading : uint8_t { Kernel = 0, Traverser = 1 };
   CHIP_PART(modelled_traverser, cache_banks, uint32_t, 8, powers_of_two(1, 32), \
             "banks of each cache: a line each in a cycle, for all who want that line") \
   CHIP_PART(modelled_traverser, node_cache_bytes, uint32_t, 65536, powers_of_two(1024, 1 << 24), \
-            "size, in lines of 64 bytes") \
+            "size, in lines of a node") \
   CHIP_PART(modelled_traverser, node_cache_ways, uint32_t, 4, powers_of_two(1, 16), "lines of a set") \
   CHIP_PART(modelled_traverser, node_cache_mshrs, uint32_t, 16, integers(1, 64), \
             "lines that may be on their way at once") \

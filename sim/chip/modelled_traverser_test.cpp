@@ -53,10 +53,8 @@ class NotingTracer : public RayTracer {
 struct Drawn {
   Drawn(const Scene& scene, TraverserName traverser, uint32_t units, uint32_t depth,
         const std::function<void(ChipConfiguration&)>& change = {}, bool stepped = false)
-      : run(4, 4, 31, 17, depth, scene) {
-    run.options.configuration.chip.traverser = traverser;
+      : run(4, 4, 31, 17, depth, scene), walked(scene, run.image.material_base, configure(traverser, change)) {
     run.options.tracer = &tracer;
-    if (change) change(run.options.configuration.chip);
     run.set_device(device_of(run, units));
     Simulation simulation;
     Chip chip("chip", run.options);
@@ -66,19 +64,36 @@ struct Drawn {
     if (stepped) metronome = std::make_unique<test::Metronome>("metronome");
     result = chip.draw();
   }
+  /// Returns the nodes of the tree that is walked.
+  NodeFormat configure(TraverserName traverser, const std::function<void(ChipConfiguration&)>& change) {
+    ChipConfiguration& chip = run.options.configuration.chip;
+    chip.traverser = traverser;
+    if (change) change(chip);
+    return traverser == TraverserName::Modelled ? chip.modelled_traverser_nodes : NodeFormat::Exact;
+  }
   test::RealFrame run;
-  NotingTracer tracer{run.scene_tracer};
+  const Tracer walked;
+  SceneTracer scene_tracer{walked};
+  NotingTracer tracer{scene_tracer};
   ChipResult result;
 };
 
-TEST(ModelledTraverser, EveryHitAndThePictureAreThoseOfTheStaticOne) {
+TEST(ModelledTraverser, EveryHitAndThePictureAreThoseOfTheStaticOneWhateverTheNodes) {
   for (const Scene& scene : {make_cornell(0.3), make_room(0.02)}) {
     for (const uint32_t units : {1, 4}) {
-      const Drawn fixed(scene, TraverserName::Static, units, 3), modelled(scene, TraverserName::Modelled, units, 3);
-      EXPECT_TRUE(fixed.run.frame == modelled.run.frame);
-      EXPECT_EQ(fixed.tracer.noted, modelled.tracer.noted);
+      const Drawn fixed(scene, TraverserName::Static, units, 3);
       EXPECT_GT(fixed.tracer.noted.size(), 1000u);
-      EXPECT_NE(fixed.result.cycles, modelled.result.cycles);
+      std::map<NodeFormat, TraverserWork> work;
+      for (const NodeFormat nodes : {NodeFormat::Compressed, NodeFormat::Exact}) {
+        const Drawn modelled(scene, TraverserName::Modelled, units, 3,
+                             [&](ChipConfiguration& chip) { chip.modelled_traverser_nodes = nodes; });
+        EXPECT_TRUE(fixed.run.frame == modelled.run.frame);
+        EXPECT_EQ(fixed.tracer.noted, modelled.tracer.noted);
+        EXPECT_NE(fixed.result.cycles, modelled.result.cycles);
+        work[nodes] = *modelled.result.traversal;
+      }
+      EXPECT_LT(work[NodeFormat::Exact].boxes.tests, work[NodeFormat::Compressed].boxes.tests);
+      EXPECT_GT(work[NodeFormat::Exact].bytes(), work[NodeFormat::Compressed].bytes());
     }
   }
 }

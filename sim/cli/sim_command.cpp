@@ -93,9 +93,9 @@ std::string progress_text(const ChipProgress& done, bool timed, double seconds) 
   return text;
 }
 
-/// The modelled traverser's nodes are of 64 bytes. No picture depends on it.
-Tracer::Nodes nodes_of(const ChipConfiguration& chip) {
-  return chip.traverser == TraverserName::Modelled ? Tracer::Nodes::Compressed : Tracer::Nodes::Exact;
+/// Of the tree that is walked. No picture depends on it.
+NodeFormat nodes_of(const ChipConfiguration& chip) {
+  return chip.traverser == TraverserName::Modelled ? chip.modelled_traverser_nodes : NodeFormat::Exact;
 }
 
 /// What the chip draws with, for as long as a frame lasts.

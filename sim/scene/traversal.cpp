@@ -334,9 +334,9 @@ RayQuery to_query(const Ray& ray) {
   return {vector(word::kOrigin), vector(word::kDirection), as_float(ray[word::kLimit])};
 }
 
-Tracer::Tracer(const Scene& scene, uint32_t material_base, Nodes nodes)
+Tracer::Tracer(const Scene& scene, uint32_t material_base, NodeFormat nodes)
     : traversal_(scene), material_base_(material_base) {
-  if (nodes == Nodes::Compressed) traversal_.compress_nodes();
+  if (nodes == NodeFormat::Compressed) traversal_.compress_nodes();
   material_words_.reserve(scene.triangles.size());
   for (uint32_t material : scene.triangle_materials) {
     material_words_.push_back(material_base + material * static_cast<uint32_t>(kMaterialBytes));

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "config/parameters.hpp"
 #include "machine/compute_unit.hpp"
 #include "scene/bvh.hpp"
 
@@ -75,11 +76,9 @@ class Traversal {
 /// The traverser of the chip and of the native renderer: packages in, packages out. Safe to use from several threads.
 class Tracer {
  public:
-  /// Of the tree that it walks: boxes as they are, or those of nodes of 64 bytes. No answer depends on it.
-  enum class Nodes : uint8_t { Exact, Compressed };
-
-  /// Material words are material_base + 32 * the triangle's material index. Keeps nothing of `scene`.
-  explicit Tracer(const Scene& scene, uint32_t material_base = 0, Nodes nodes = Nodes::Exact);
+  /// Material words are material_base + 32 * the triangle's material index. `nodes`: of the tree that it walks; no
+  /// answer depends on it. Keeps nothing of `scene`.
+  explicit Tracer(const Scene& scene, uint32_t material_base = 0, NodeFormat nodes = NodeFormat::Exact);
 
   /// Normal ray: true and the intersection when it hits, false when it misses. Shadow ray: false when it is blocked;
   /// true when it is free, with words 12 .. 20 of the intersection zero. Words 0 .. 11 are the ray's.

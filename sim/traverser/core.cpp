@@ -2,11 +2,15 @@
 
 #include <algorithm>
 
+#include "scene/compressed_node.hpp"
+
 namespace raypool::traverser {
 
 namespace {
 
 constexpr uint32_t kLineBytes = 64, kTriangleBytes = 44;
+static_assert(sizeof(CompressedNode) == node_bytes(NodeFormat::Compressed));
+static_assert(sizeof(BvhNode) == node_bytes(NodeFormat::Exact));
 
 /// A leaf's triangles lie one behind the other, so that some share a line, and some lie in two.
 uint32_t first_line(const Visit& leaf) {
@@ -32,15 +36,19 @@ uint32_t pops(const VisitList& visits, size_t visit) {
   return present.discarded + (visit + 1 < visits.size() && present.children == 0 ? 1u : 0u);
 }
 
+// A node is a line of its cache, whose banks are as wide.
 FetchUnit::Setup node_fetch(const ChipConfiguration& chip) {
-  return {chip.modelled_traverser_box_pipes,       chip.modelled_traverser_cache_latency,
-          chip.modelled_traverser_cache_banks,     chip.modelled_traverser_node_cache_bytes,
-          chip.modelled_traverser_node_cache_ways, chip.modelled_traverser_node_cache_mshrs};
+  return {chip.modelled_traverser_box_pipes,
+          chip.modelled_traverser_cache_latency,
+          chip.modelled_traverser_cache_banks,
+          chip.modelled_traverser_node_cache_bytes / node_bytes(chip.modelled_traverser_nodes),
+          chip.modelled_traverser_node_cache_ways,
+          chip.modelled_traverser_node_cache_mshrs};
 }
 
 FetchUnit::Setup triangle_fetch(const ChipConfiguration& chip) {
   return {chip.modelled_traverser_triangle_pipes,      chip.modelled_traverser_cache_latency,
-          chip.modelled_traverser_cache_banks,         chip.modelled_traverser_triangle_cache_bytes,
+          chip.modelled_traverser_cache_banks,         chip.modelled_traverser_triangle_cache_bytes / kLineBytes,
           chip.modelled_traverser_triangle_cache_ways, chip.modelled_traverser_triangle_cache_mshrs};
 }
 

@@ -130,6 +130,8 @@ ChipConfiguration any_machine(std::mt19937& random) {
   chip.modelled_traverser_stack_entries = roll(8, 12);
   chip.modelled_traverser_node_cache_bytes = chip.modelled_traverser_triangle_cache_bytes = 1024u << roll(0, 3);
   chip.modelled_traverser_node_cache_ways = chip.modelled_traverser_triangle_cache_ways = 1u << roll(0, 4);
+  chip.modelled_traverser_nodes = static_cast<NodeFormat>(roll(0, 1));
+  chip.modelled_traverser_node_cache_bytes *= node_bytes(chip.modelled_traverser_nodes) / 64;
   chip.modelled_traverser_node_cache_mshrs = roll(1, 4);
   chip.modelled_traverser_triangle_cache_mshrs = roll(1, 4);
   chip.modelled_traverser_memory_row_miss = roll(0, 60);
@@ -162,7 +164,8 @@ TEST(TraverserCore, MakesEveryTestOnceAndNeedsNoCycleInWhichNothingHappens) {
     EXPECT_EQ(work.leaves, leaves);
     EXPECT_EQ(work.triangles.tests, triangles);
     EXPECT_EQ(work.node_cache.hits + work.node_cache.misses + work.node_cache.joined, nodes);
-    EXPECT_EQ(work.memory_lines, work.node_cache.misses + work.triangle_cache.misses + work.stack_fills);
+    const uint32_t node_lines = node_bytes(chip.modelled_traverser_nodes) / 64;
+    EXPECT_EQ(work.memory_lines, node_lines * work.node_cache.misses + work.triangle_cache.misses + work.stack_fills);
     EXPECT_EQ(work.memory_quadwords, 2 * work.stack_spills);
     EXPECT_EQ(work.row_hits + work.row_misses, work.memory_lines + work.stack_spills);
     EXPECT_LE(work.most_rays, chip.modelled_traverser_rays);
@@ -173,7 +176,7 @@ TEST(TraverserCore, MakesEveryTestOnceAndNeedsNoCycleInWhichNothingHappens) {
 /// Rays through a room.
 const std::vector<VisitList>& room_rays() {
   static const std::vector<VisitList> rays = [] {
-    const Tracer tracer(make_room(0.1), 0, Tracer::Nodes::Compressed);
+    const Tracer tracer(make_room(0.1), 0, NodeFormat::Compressed);
     std::vector<VisitList> all;
     for (int y = 0; y < 60; ++y) {
       for (int x = 0; x < 60; ++x) {
@@ -242,6 +245,32 @@ TEST(TraverserCore, HalfTheCacheReadsMoreAndIsSlowerWhereTheMemoryBinds) {
   const double bytes = static_cast<double>(half.work.bytes()) / static_cast<double>(whole.work.bytes());
   EXPECT_GT(bytes, 1.1);
   EXPECT_NEAR(static_cast<double>(half.cycles) / static_cast<double>(whole.cycles), bytes, 0.1 * bytes);
+}
+
+TEST(TraverserCore, AnExactNodeIsOneLookupAndTakesTwoLinesOfItsCache) {
+  ChipConfiguration chip = quick();
+  chip.modelled_traverser_nodes = NodeFormat::Exact;
+  chip.memory_cycles_per_beat = 2;
+  // As ANodeIsLookedUpTestedAndLeft, but the second line comes 8 cycles later.
+  std::vector<VisitList> rays(300);
+  rays.front() = {kNode};
+  rays.push_back({kNode});
+  const Outcome one = trace_all(chip, rays);
+  EXPECT_EQ(one.done.front(), 114 + 8 + 3u);
+  EXPECT_EQ(one.done.back(), 301 + 5 + 1 + 2 + 7 + 3u);
+  EXPECT_EQ(one.work.bytes(), 128u);
+
+  // 16 nodes, one after the other and again: they fit in 1 KB if they are compressed, and in 2 KB if not.
+  const auto misses = [&](NodeFormat nodes, uint32_t bytes) {
+    chip.modelled_traverser_nodes = nodes;
+    chip.modelled_traverser_node_cache_bytes = bytes;
+    VisitList visits;
+    for (uint32_t i = 0; i < 32; ++i) visits.push_back({i % 16, 0, 1, 0});
+    return trace_all(chip, {visits}).work.node_cache.misses;
+  };
+  EXPECT_EQ(misses(NodeFormat::Compressed, 1024), 16u);
+  EXPECT_EQ(misses(NodeFormat::Exact, 1024), 32u);
+  EXPECT_EQ(misses(NodeFormat::Exact, 2048), 16u);
 }
 
 TEST(TraverserCore, MoreRaysInFlightHideTheLatencyWhereNothingElseBinds) {

@@ -11,7 +11,7 @@ constexpr size_t kWindow = 2;  // oldest places of the queue that are looked at,
 }  // namespace
 
 FetchUnit::FetchUnit(const Setup& setup)
-    : setup_(setup), cache_(setup.bytes, setup.ways, setup.mshrs), hits_(setup.latency), banks_(setup.banks) {}
+    : setup_(setup), cache_(setup.lines, setup.ways, setup.mshrs), hits_(setup.latency), banks_(setup.banks) {}
 
 bool FetchUnit::bank_free(uint64_t cycle, uint32_t line) {
   Bank& bank = banks_[line & (setup_.banks - 1)];

@@ -26,7 +26,7 @@ class FetchUnit {
     uint32_t lookups;  ///< in a cycle
     uint32_t latency;
     uint32_t banks;
-    uint32_t bytes, ways, mshrs;
+    uint32_t lines, ways, mshrs;
   };
   explicit FetchUnit(const Setup& setup);
 

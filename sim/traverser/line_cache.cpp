@@ -7,14 +7,8 @@
 
 namespace raypool::traverser {
 
-namespace {
-
-constexpr uint32_t kLineBytes = 64;
-
-}  // namespace
-
-LineCache::LineCache(uint32_t bytes, uint32_t ways, uint32_t mshrs)
-    : ways_a_set_(ways), sets_(bytes / (kLineBytes * ways)), ways_(bytes / kLineBytes), mshrs_(mshrs) {}
+LineCache::LineCache(uint32_t lines, uint32_t ways, uint32_t mshrs)
+    : ways_a_set_(ways), sets_(lines / ways), ways_(lines), mshrs_(mshrs) {}
 
 LineCache::Mshr* LineCache::find(uint32_t line) {
   for (Mshr& mshr : mshrs_) {

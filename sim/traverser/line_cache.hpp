@@ -1,6 +1,6 @@
-// Tags and miss-status holding registers of a cache of 64-byte lines, read only: the least recently used line goes. Who
-// misses waits in the line's register and gets the line's data when it comes, whatever becomes of the line in the
-// cache: so nobody is overtaken for ever.
+// Tags and miss-status holding registers of a cache, read only: the least recently used line goes. Who misses waits in
+// the line's register and gets the line's data when it comes, whatever becomes of the line in the cache: so nobody is
+// overtaken for ever.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ namespace raypool::traverser {
 /// A line of the tree, for a ray.
 struct Fetch {
   uint32_t slot = 0;   ///< of the ray
-  uint32_t line = 0;   ///< number, 64 bytes each
+  uint32_t line = 0;   ///< number
   uint32_t tests = 0;  ///< that can begin with it
   uint32_t more = 0;   ///< lines of the visit behind this one
 };
@@ -27,7 +27,7 @@ class LineCache {
     Busy,    ///< a miss, and no register is free: ask again
   };
 
-  LineCache(uint32_t bytes, uint32_t ways, uint32_t mshrs);
+  LineCache(uint32_t lines, uint32_t ways, uint32_t mshrs);
 
   /// A line that comes by the cycle `by`, in which a line that is there would be read, is a hit too.
   Answer lookup(const Fetch& fetch, uint64_t by = 0);

@@ -10,7 +10,7 @@ using Answer = LineCache::Answer;
 Fetch of(uint32_t slot, uint32_t line) { return {slot, line, 1, 0}; }
 
 TEST(LineCache, GivesALineToWhoWaitedForIt) {
-  LineCache cache(1024, 2, 2);
+  LineCache cache(16, 2, 2);
   EXPECT_EQ(cache.lookup(of(0, 5)), Answer::Missed);
   EXPECT_EQ(cache.lookup(of(1, 5)), Answer::Joined);
   EXPECT_EQ(cache.lookup(of(2, 6)), Answer::Missed);
@@ -27,7 +27,7 @@ TEST(LineCache, GivesALineToWhoWaitedForIt) {
 }
 
 TEST(LineCache, ALookupTakesItsTimeAlsoWhereTheLineIsAboutToCome) {
-  LineCache cache(1024, 2, 2);
+  LineCache cache(16, 2, 2);
   EXPECT_EQ(cache.lookup(of(0, 5), 12), Answer::Missed);
   EXPECT_EQ(cache.lookup(of(1, 5), 12), Answer::Joined) << "nobody knows when it comes";
   cache.promise(5, 130);
@@ -39,7 +39,7 @@ TEST(LineCache, ALookupTakesItsTimeAlsoWhereTheLineIsAboutToCome) {
 }
 
 TEST(LineCache, ALineMayComeBeforeSomebodyAsksForIt) {
-  LineCache cache(1024, 2, 1);
+  LineCache cache(16, 2, 1);
   EXPECT_TRUE(cache.prefetch(5));
   EXPECT_FALSE(cache.prefetch(5)) << "it is on its way";
   EXPECT_FALSE(cache.prefetch(6)) << "no register is free";
@@ -54,7 +54,7 @@ TEST(LineCache, ALineMayComeBeforeSomebodyAsksForIt) {
 }
 
 TEST(LineCache, TheLeastRecentlyUsedLineOfTheSetGoes) {
-  LineCache cache(1024, 2, 4);  // 8 sets
+  LineCache cache(16, 2, 4);  // 8 sets
   for (const uint32_t line : {3u, 11u}) {
     cache.lookup(of(0, line));
     cache.fill(line);
@@ -67,15 +67,15 @@ TEST(LineCache, TheLeastRecentlyUsedLineOfTheSetGoes) {
   EXPECT_EQ(cache.lookup(of(0, 11)), Answer::Missed);
 }
 
-TEST(LineCache, KeepsAsManyLinesAsItHasBytes) {
-  for (const uint32_t bytes : {1024u, 4096u}) {
-    LineCache cache(bytes, 4, 1);
-    for (uint32_t line = 0; line < bytes / 64; ++line) {
+TEST(LineCache, KeepsAsManyLinesAsItHas) {
+  for (const uint32_t lines : {16u, 64u}) {
+    LineCache cache(lines, 4, 1);
+    for (uint32_t line = 0; line < lines; ++line) {
       cache.lookup(of(0, line));
       cache.fill(line);
     }
-    for (uint32_t line = 0; line < bytes / 64; ++line) EXPECT_EQ(cache.lookup(of(0, line)), Answer::Hit);
-    EXPECT_EQ(cache.lookup(of(0, bytes / 64)), Answer::Missed);
+    for (uint32_t line = 0; line < lines; ++line) EXPECT_EQ(cache.lookup(of(0, line)), Answer::Hit);
+    EXPECT_EQ(cache.lookup(of(0, lines)), Answer::Missed);
   }
 }
 

@@ -18,6 +18,7 @@ TreeMemory::TreeMemory(const ChipConfiguration& chip, MemoryTurns& turns)
       latency_(chip.memory_latency),
       row_miss_(chip.modelled_traverser_memory_row_miss),
       lines_a_row_(chip.modelled_traverser_memory_row_bytes / kLineBytes),
+      lines_a_node_(node_bytes(chip.modelled_traverser_nodes) / kLineBytes),
       banks_(chip.modelled_traverser_memory_banks) {}
 
 uint64_t TreeMemory::access(uint64_t line, uint64_t start) {
@@ -30,10 +31,13 @@ uint64_t TreeMemory::access(uint64_t line, uint64_t start) {
   return bank.free_from;
 }
 
-uint64_t TreeMemory::read(uint64_t cycle, uint64_t line, Returned returned) {
-  ++reads_;
-  const uint64_t start = turns_.turn(cycle, kLineBeats);
-  const uint64_t due = turns_.line(start, access(line, start) + latency_);
+uint64_t TreeMemory::read(uint64_t cycle, uint64_t line, uint64_t lines, Returned returned) {
+  uint64_t due = 0;
+  for (const uint64_t end = line + lines; line < end; ++line) {
+    ++reads_;
+    const uint64_t start = turns_.turn(cycle, kLineBeats);
+    due = turns_.line(start, access(line, start) + latency_);
+  }
   lines_.push_back({due, returned});
   return due;
 }
@@ -45,7 +49,7 @@ void TreeMemory::serve_stack(uint64_t cycle, const RayStacks::Request& request) 
     quadwords_ += kSpillBeats;
     access(line, turns_.turn(cycle, kSpillBeats));
   } else {
-    read(cycle, line, {Source::Stacks, request.slot});
+    read(cycle, line, 1, {Source::Stacks, request.slot});
   }
 }
 
@@ -60,7 +64,9 @@ void TreeMemory::clock(uint64_t cycle, FetchUnit& nodes, FetchUnit& triangles, R
       serve_stack(cycle, stacks.take_request());
     } else {
       const uint32_t line = fetch.take_request();
-      fetch.promise(line, read(cycle, (source == Source::Triangles ? kTriangles : 0) + line, {source, line}), listener);
+      const uint64_t due = source == Source::Nodes ? read(cycle, line * lines_a_node_, lines_a_node_, {source, line})
+                                                   : read(cycle, kTriangles + line, 1, {source, line});
+      fetch.promise(line, due, listener);
     }
     return;
   }

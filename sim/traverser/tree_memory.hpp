@@ -56,11 +56,12 @@ class TreeMemory {
     uint64_t row = kNever, free_from = 0;
   };
   uint64_t access(uint64_t line, uint64_t start);
-  uint64_t read(uint64_t cycle, uint64_t line, Returned returned);
+  /// Lines one behind the other, which come together.
+  uint64_t read(uint64_t cycle, uint64_t line, uint64_t lines, Returned returned);
   void serve_stack(uint64_t cycle, const RayStacks::Request& request);
 
   MemoryTurns& turns_;
-  uint64_t latency_, row_miss_, lines_a_row_;
+  uint64_t latency_, row_miss_, lines_a_row_, lines_a_node_;
   std::vector<Bank> banks_;
   std::deque<Line> lines_;
   uint32_t next_source_ = 0;

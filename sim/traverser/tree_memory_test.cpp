@@ -14,7 +14,7 @@ struct Nobody : LookupListener {
 /// The memory between fetch units whose every lookup misses.
 struct Bench {
   explicit Bench(const ChipConfiguration& chip) : port(2), memory(chip, port), nodes(setup()), triangles(setup()) {}
-  static FetchUnit::Setup setup() { return {4, 1, 32, 1 << 20, 1, 64}; }
+  static FetchUnit::Setup setup() { return {4, 1, 32, 1 << 14, 1, 64}; }
 
   static void want(FetchUnit& fetch, uint32_t line) { fetch.push(0, {0, line, 1, 0}); }
   /// The cycles in which lines come, in their order, and what they are.
@@ -59,6 +59,24 @@ TEST(TreeMemory, ALineOfTheOpenRowComesAfterTheLatencyAnotherLater) {
   EXPECT_EQ(work.row_misses, 1u);
   EXPECT_EQ(work.memory_lines, 2u);
   EXPECT_EQ(bench.port.beats(), 8u);
+}
+
+TEST(TreeMemory, AnExactNodeIsTwoLinesThatComeTogether) {
+  ChipConfiguration chip = chip_of(4);
+  chip.modelled_traverser_nodes = NodeFormat::Exact;
+  Bench bench(chip);
+  Bench::want(bench.nodes, 0);
+  Bench::want(bench.nodes, 1);
+  Bench::want(bench.triangles, 4);
+  // Each has a bank of its own. A line keeps the port for 8 cycles, so the triangles' comes 8 behind the first node's,
+  // whose turn was before, and the two of the second node 8 and 16 behind that.
+  EXPECT_EQ(bench.run(), (Came{{159, 0}, {167, 4}, {183, 1}}));
+  TraverserWork work;
+  bench.memory.add_to(work);
+  EXPECT_EQ(work.row_hits, 2u);
+  EXPECT_EQ(work.row_misses, 3u);
+  EXPECT_EQ(work.memory_lines, 5u);
+  EXPECT_EQ(bench.port.beats(), 5 * 4u);
 }
 
 TEST(TreeMemory, RowsOfOneBankAreOpenedOneAfterTheOther) {
