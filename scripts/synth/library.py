@@ -76,6 +76,8 @@ class Library:
         unit = self.group.attributes.get("capacitive_load_unit", ["1", "pf"])
         self.to_pf = float(unit[0]) * {"ff": 1e-3, "pf": 1.0}[unit[1].lower()]
         self.nand2_area = self.cells[self.nand2].area
+        # What OpenSTA puts on every net unasked; ABC puts nothing there.
+        self.wire_load = self.group.attributes.get("default_wire_load", "")
         inverter_pf = self.pin_pf(self.inverter, self.cells[self.inverter].inputs()[0].name)
         self.loads_pf = {
             **{place: pins * inverter_pf for place, pins in LOADS.items()},

@@ -140,6 +140,11 @@ class Netlist:
         """um2 of the cells directly in a kind of block."""
         return sum(self.library.cells[c].area * n for c, n in self.gate_count(identity).items())
 
+    def own_clocked_area(self, identity):
+        """um2 of its flip-flops and clock gates."""
+        count, cells = self.gate_count(identity), self.library.cells
+        return sum(cells[c].area * n for c, n in count.items() if cells[c].kind in ("flop", "clock_gate"))
+
     def own_flops(self, identity):
         return sum(n for c, n in self.gate_count(identity).items() if self.library.cells[c].kind == "flop")
 

@@ -45,6 +45,7 @@ def blocks(design):
             "instances": 0,
             "logic_um2": 0.0,
             "own_um2": 0.0,
+            "clocked_um2": 0.0,
             "memory_um2": 0.0,
             "flip_flops": 0,
             "memory_bits": 0,
@@ -64,6 +65,7 @@ def blocks(design):
         else:
             change = {
                 "logic_um2": netlist.own_area(identity),
+                "clocked_um2": netlist.own_clocked_area(identity),
                 "flip_flops": netlist.own_flops(identity),
                 "cells": sum(netlist.gate_count(identity).values()),
             }
@@ -143,6 +145,7 @@ def make(design, key, path):
             "nand2": library.nand2,
             "nand2_um2": library.nand2_area,
             "fo4_ns": round(design.fo4_ns, 5),
+            "wire_load": library.wire_load,
             "setup": f"{library.name}.json" if library.setup else "",
         },
         "tools": {**mapping.versions(), "opensta": timing.version()},
@@ -152,6 +155,7 @@ def make(design, key, path):
             "memory_um2": whole["memory_um2"],
             "total_um2": round(whole["logic_um2"] + whole["memory_um2"], 1),
             "logic_kge": whole["logic_kge"],
+            "clocked_kge": round(library.kge(whole["clocked_um2"]), 3),
             "memory_kge": whole["memory_kge"],
             "total_kge": round(whole["logic_kge"] + whole["memory_kge"], 3),
             "flip_flops": whole["flip_flops"],
@@ -210,10 +214,10 @@ def lanes(design, listed):
 
 
 NEEDED = {
-    "area": ["logic_um2", "logic_kge", "memory_bits", "flip_flops"],
+    "area": ["logic_um2", "logic_kge", "clocked_kge", "memory_bits", "flip_flops"],
     "timing": ["slack_ns", "allowed_fo4", "to_block", "steps"],
     "forty_nm": ["total_mm2", "total_mm2_low", "total_mm2_high"],
-    "library": ["fo4_ns", "nand2_um2"],
+    "library": ["fo4_ns", "nand2_um2", "wire_load"],
     "tools": ["yosys", "opensta"],
 }
 
@@ -274,8 +278,10 @@ def proofs_line(verdicts):
 def table(report, against=None, depth=2):
     """What is printed."""
     area, when, scaled = report["area"], report["timing"], report["forty_nm"]
+    cells = report["library"]
+    wires = f" with its wire load {cells['wire_load']}" if cells["wire_load"] else ""
     lines = [
-        f"{report['config']}  {report['library']['name']}, FO4 {report['library']['fo4_ns'] * 1000:.1f} ps, yosys "
+        f"{report['config']}  {cells['name']}, FO4 {cells['fo4_ns'] * 1000:.1f} ps{wires}, yosys "
         f"{report['tools']['yosys']}, OpenSTA {report['tools']['opensta']}",
         "",
     ]
@@ -305,6 +311,8 @@ def table(report, against=None, depth=2):
         "",
         f"area     {area['logic_kge']:.1f} kGE logic, {area['memory_kge']:.1f} kGE memory ({area['memory_bits']} bits, "
         f"{report['memories']}), {area['flip_flops']} flip-flops, {area['cells']} cells",
+        f"gates    {area['logic_kge'] - area['clocked_kge']:.1f} kGE combinational, {area['clocked_kge']:.1f} kGE "
+        "flip-flops and clock gates",
         f"40 nm    {scaled['total_mm2']:.3f} mm2 ({scaled['total_mm2_low']:.3f} to {scaled['total_mm2_high']:.3f}): "
         f"logic {scaled['logic_mm2']:.3f}, memory {scaled['memory_mm2']:.3f}; "
         f"the thesis' 4w4c: {scaled['thesis_4w4c_mm2']}",

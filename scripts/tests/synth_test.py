@@ -169,6 +169,12 @@ class Synthesis(unittest.TestCase):
         self.assertNotIn("LATCH", lib.usable)
         fo4 = timing.measure_fo4(lib, self.folder)
         self.assertTrue(0.03 < fo4 < 0.3, fo4)
+        wires = 'wire_load ("long") { capacitance : 0.001; resistance : 0; slope : 10; fanout_length (1, 10); } '
+        wires += 'default_wire_load : "long"; '
+        place = lib.text.index("lu_table_template")
+        wired = library.Library(self.written("wired.lib", lib.text[:place] + wires + lib.text[place:]))
+        self.assertEqual((lib.wire_load, wired.wire_load), ("", "long"))
+        self.assertGreater(timing.measure_fo4(wired, self.folder), 1.2 * fo4)
 
     def test_a_latch_is_refused(self):
         path = os.path.join(self.folder, "rtl", "held.v")
@@ -291,7 +297,11 @@ class Synthesis(unittest.TestCase):
         gated = small_design(self.folder, "task_register", chosen, lib)
         plain = small_design(self.folder, "task_register", chosen)
         module = gated.netlist.modules["task_register"]
-        self.assertGreater(len(clock_gates.enables(lib, module)), 0)
+        gates = len(clock_gates.enables(lib, module))
+        self.assertGreater(gates, 0)
+        # The library has one flip-flop.
+        whole = report.blocks(gated)[0][0]
+        self.assertEqual(whole["clocked_um2"], whole["flip_flops"] * lib.cells["DFFPOSX1"].area + gates * 112)
         self.assertLess(gated.netlist.own_area("task_register"), plain.netlist.own_area("task_register"))
         self.assertEqual(set(prove.prove(gated).values()), {"proved"})
         numbers = random.Random(1)
