@@ -173,6 +173,17 @@ def identities_on(design, pins):
     return found
 
 
+def next_effort(design, identities):
+    """Which of these kinds of block are mapped with one effort more. The last one only where all have had the others:
+    it costs most, and often one block alone is what a path lacks.
+    """
+    for limit in (mapping.FAST_EFFORT, mapping.LAST_EFFORT):
+        more = {i for i in identities if i in design.netlist.modules and design.efforts.get(i, 0) < limit}
+        if more:
+            return more
+    return set()
+
+
 def synthesise(design):
     """The whole of it. design.netlist and design.endpoints hold the result."""
     work = prepare(design)
@@ -197,11 +208,7 @@ def synthesise(design):
             )
             for step in steps
         ]
-        more = {
-            i
-            for i in identities_on(design, pins)
-            if i in design.netlist.modules and design.efforts.get(i, 0) < mapping.LAST_EFFORT
-        }
+        more = next_effort(design, identities_on(design, pins))
         if not more:
             break
         progress(f"synth: slack {slack:+.3f} ns; for speed: {', '.join(sorted(design.kinds[i].name for i in more))}")

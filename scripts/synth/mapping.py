@@ -16,8 +16,9 @@ from .library import ROOT, keep
 # ABC sees neither clock-to-output nor set-up time: it gets this share of the period.
 LOGIC_SHARE = 0.7
 # A block that is still on a failing path when it has been mapped for speed has only a part of that path:
-# its gates are sized for this share.
+# its gates are sized for this share, and for the other one where that is not enough.
 FAST_SHARE = 0.4
+LAST_SHARE = 0.3
 # A block whose slowest logic takes no more than this share is fast enough, as far as
 # one can see while it is mapped alone.
 ACCEPTED_SHARE = 0.8
@@ -42,12 +43,14 @@ ABC_SCRIPTS = {
     "levels": "+strash;dch;if,-g;strash;dch;map,-B,0.9,-D,{d};" + _SIZING,
 }
 
-LAST_EFFORT = 2
+# From this effort on every way is tried and the fastest taken.
+FAST_EFFORT = 2
+LAST_EFFORT = 3
 
 
 def efforts_of(library):
     """The first try, and what a block on a failing path gets then, one more each time. Ways in this order, until one is
-    fast enough (of the last effort all, and the fastest is taken), and the share they aim at. The second is the
+    fast enough (of the fast efforts all, and the fastest is taken), and the share they aim at. The second is the
     set-up's: in most libraries area won back for a shorter target is both smaller and faster than speed alone.
     """
     again = library.setup.get("again", {"way": "balance", "share": 0.5})
@@ -55,6 +58,7 @@ def efforts_of(library):
         (["area", "balance", "speed"], LOGIC_SHARE),
         ([again["way"]], again["share"]),
         (["speed", "levels"], FAST_SHARE),
+        (["speed", "levels"], LAST_SHARE),
     ]
 
 
@@ -174,7 +178,7 @@ write_json {result}
 
     def map_one(self, kind, effort):
         """Takes the first way whose delay is within the accepted share of the period, else the fastest;
-        of the last effort the fastest.
+        of a fast effort the fastest.
         """
         final = self.path(kind, effort)
         # Two runs may map the same kind at a time: each works on files of its own.
@@ -192,7 +196,7 @@ write_json {result}
             delay = float(delays[-1]) if delays else 0.0
             if best is None or delay < best[0]:
                 best = (delay, way, result)
-            if effort != LAST_EFFORT and delay <= self.clock_ns * 1000 * ACCEPTED_SHARE:
+            if effort < FAST_EFFORT and delay <= self.clock_ns * 1000 * ACCEPTED_SHARE:
                 break
         with open(best[2], encoding="utf-8") as file:
             module = next(m for m in json.load(file)["modules"].values() if "top" in m["attributes"])
