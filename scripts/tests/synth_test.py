@@ -176,6 +176,19 @@ class Synthesis(unittest.TestCase):
         self.assertEqual((lib.wire_load, wired.wire_load), ("", "long"))
         self.assertGreater(timing.measure_fo4(wired, self.folder), 1.2 * fo4)
 
+    def test_the_last_effort_waits_for_the_others(self):
+        def chosen(**efforts):
+            design = flow.Design(None, None, {}, "", efforts=efforts)
+            design.netlist = mock.Mock(modules=["a", "b"])
+            return flow.next_effort(design, {"a", "b", "memory"})
+
+        self.assertEqual(chosen(), {"a", "b"})
+        self.assertEqual(chosen(a=2, b=1), {"b"})
+        self.assertEqual(chosen(a=2, b=2), {"a", "b"})
+        self.assertEqual(chosen(a=3, b=2), {"b"})
+        self.assertEqual(chosen(a=3, b=3), set())
+        self.assertEqual(len(mapping.efforts_of(library.Library())), mapping.LAST_EFFORT + 1)
+
     def test_a_latch_is_refused(self):
         path = os.path.join(self.folder, "rtl", "held.v")
         os.makedirs(os.path.dirname(path))
