@@ -136,7 +136,7 @@ module compute_unit #(
     .launch_valid_i(launch_valid_i), .launch_ready_o(launch_ready_o), .launch_pc_i(launch_pc_i),
     .launch_threads_i(launch_threads_i), .launch_block_i(launch_block_i), .launch_blocks_i(launch_blocks_i),
     .launch_import_i(launch_import_i), .import_start_o(import_start), .import_active_i(import_active),
-    .halt_i(fault_valid_o), .start_o(start), .start_pc_o(start_pc), .start_lanes_o(start_lanes), .active_i(active),
+    .start_o(start), .start_pc_o(start_pc), .start_lanes_o(start_lanes), .active_i(active),
     .launched_o(launched), .place_o(launch_place), .older_o(older), .threads_o(threads), .block_o(block),
     .blocks_o(blocks),
     .kernel_done_o(kernel_done_o), .running_o(busy_o), .waiting_o(waiting_launch));

@@ -20,7 +20,6 @@ module launcher #(
   output wire                   import_start_o,
   input  wire                   import_active_i,
   // warps
-  input  wire                   halt_i,         // a fault anywhere: with OVERLAP nothing is started
   output wire [WARPS-1:0]       start_o,
   output wire [15:0]            start_pc_o,
   output wire [WARPS*LANES-1:0] start_lanes_o,
@@ -82,7 +81,6 @@ module launcher #(
     if (OVERLAP == 0) begin : gen_one
       reg [10:0] running_threads_q;
       reg [31:0] running_block_q, running_blocks_q;
-      wire unused = halt_i;
       assign begins = pending_q && !running_o;
       assign still_runs = 1'b0;
       assign kernel_done_o = running_o && active_i == {WARPS{1'b0}};
@@ -117,12 +115,12 @@ module launcher #(
       wire all_started = (started_q | ~has) == {WARPS{1'b1}};
       wire newest_done = running_o && all_started && active_i == {WARPS{1'b0}};
       wire older_done = older_q && (active_i & ~of_newest) == {WARPS{1'b0}};
-      assign begins = pending_q && !halt_i && !older_q;
+      assign begins = pending_q && !older_q;
       assign kernel_done_o = older_q ? older_done : newest_done;
       assign still_runs = older_q;
       assign start_threads = newest_q ? place_threads_q[21:11] : place_threads_q[10:0];
       assign start_pc_o = newest_pc_q;
-      assign start_o = running_o && !halt_i ? has & ~started_q & ~active_i : {WARPS{1'b0}};
+      assign start_o = running_o ? has & ~started_q & ~active_i : {WARPS{1'b0}};
       assign launched_o = has | active_i;
       assign place_o = warp_place_q;
       assign older_o = ~of_newest & {WARPS{older_q}};

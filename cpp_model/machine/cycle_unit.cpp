@@ -137,7 +137,7 @@ void CycleUnit::step(const UnitInputs& inputs) {
 
 bool CycleUnit::needs_attention() const {
   return faulty_ || !memory_arbiter_.idle() || instruction_cache_.busy() || mem_.active() ||
-         dispatcher_.task(AluType::Mem) >= 0 || launcher_.acts(buffer_.active(), halted());
+         dispatcher_.task(AluType::Mem) >= 0 || launcher_.acts(buffer_.active());
 }
 
 CycleUnit::MemoryPort CycleUnit::clock_memory_arbiter(const UnitInputs& inputs) {
@@ -154,11 +154,11 @@ CycleUnit::MemoryPort CycleUnit::clock_memory_arbiter(const UnitInputs& inputs) 
 
 void CycleUnit::clock_launcher() {
   const uint32_t active = buffer_.active();
-  if (!launcher_.acts(active, halted())) return;
+  if (!launcher_.acts(active)) return;
   const bool ran = launcher_.running();
-  const uint32_t starts = launcher_.starts(active, halted());
+  const uint32_t starts = launcher_.starts(active);
   if (starts != 0) start_warps(starts, launcher_.start_launch());
-  launcher_.clock(active, halted());
+  launcher_.clock(active);
   if (launcher_.running() != ran) count_pauses(!ran);
 }
 

@@ -10,7 +10,7 @@ bool CycleUnit::quiet() const {
   return buffer_.ready() == 0 && buffer_.fetch_request() == 0 && dispatcher_.idle() && memory_arbiter_.idle() &&
          !instruction_cache_.request_valid() && !instruction_cache_.active() &&
          !(instruction_cache_.missed() && miss_cycle_ >= now_) && !mem_.active() && !ray_.active() &&
-         !launcher_.acts(buffer_.active(), halted()) && planned_faults_.empty();
+         !launcher_.acts(buffer_.active()) && planned_faults_.empty();
 }
 
 uint64_t CycleUnit::run(const UnitInputs& inputs, uint64_t cycles) {

@@ -32,19 +32,16 @@ class Launcher {
   void reset() { q_ = Registers{}; }
   const Registers& registers() const { return q_; }
 
-  // Outputs of the present cycle; `active`: warps that run; `halted`: by a fault.
+  // Outputs of the present cycle; `active`: warps that run.
   bool launch_ready(bool import_active) const { return !(q_.pending | import_active); }
   bool waiting() const { return q_.pending; }
   bool running() const { return q_.running; }
   /// The launch that waits runs from the next cycle on.
-  bool begins(bool halted) const {
-    if (!overlap_) return q_.pending && !q_.running;
-    return q_.pending && !halted && !q_.older;
-  }
+  bool begins() const { return q_.pending && !(overlap_ ? q_.older : q_.running); }
   /// Warps that are started, and for which launch.
-  uint32_t starts(uint32_t active, bool halted) const {
-    if (!overlap_) return begins(halted) ? warps_of(q_.launch) : 0;
-    return q_.running && !halted ? has() & ~q_.started & ~active : 0;
+  uint32_t starts(uint32_t active) const {
+    if (!overlap_) return begins() ? warps_of(q_.launch) : 0;
+    return q_.running ? has() & ~q_.started & ~active : 0;
   }
   const LaunchCommand& start_launch() const { return overlap_ ? newest() : q_.launch; }
   bool kernel_done(uint32_t active) const {
@@ -52,9 +49,7 @@ class Launcher {
     return q_.running && active == 0 && (!overlap_ || all_started());
   }
   /// Something changes at the end of the cycle.
-  bool acts(uint32_t active, bool halted) const {
-    return begins(halted) || kernel_done(active) || (overlap_ && starts(active, halted) != 0);
-  }
+  bool acts(uint32_t active) const { return begins() || kernel_done(active) || (overlap_ && starts(active) != 0); }
   /// Warps that have threads of a launch that runs.
   uint32_t launched(uint32_t active) const { return overlap_ ? has() | active : has(); }
   uint32_t all() const { return all_; }
@@ -68,9 +63,9 @@ class Launcher {
     q_.pending = true;
     q_.launch = launch;
   }
-  void clock(uint32_t active, bool halted) {
-    const bool begin = begins(halted), done = kernel_done(active);
-    const uint32_t starting = overlap_ ? starts(active, halted) : 0;
+  void clock(uint32_t active) {
+    const bool begin = begins(), done = kernel_done(active);
+    const uint32_t starting = overlap_ ? starts(active) : 0;
     q_.started |= starting;
     q_.of_newest |= starting;
     if (begin) {

@@ -21,10 +21,10 @@ class Warps {
 
   /// A cycle; warps in `end` run no longer in the next one. Returns those that were started.
   uint32_t cycle(uint32_t end = 0) {
-    const uint32_t starts = launcher.starts(active, halted);
+    const uint32_t starts = launcher.starts(active);
     started_pc = launcher.start_launch().pc;
     done = launcher.kernel_done(active);
-    launcher.clock(active, halted);
+    launcher.clock(active);
     active = (active & ~end) | starts;
     return starts;
   }
@@ -39,7 +39,7 @@ class Warps {
 
   Launcher launcher;
   uint32_t active = 0, started_pc = 0;
-  bool done = false, halted = false;
+  bool done = false;
 };
 
 TEST(Launcher, AWarpThatHasEndedGoesOnWithTheNextKernelWhileOthersRunTheOneBefore) {
@@ -92,19 +92,6 @@ TEST(Launcher, AThirdLaunchWaitsUntilTheOlderKernelHasEnded) {
   EXPECT_FALSE(warps.launcher.waiting());
   EXPECT_EQ(warps.cycle(), 0b1111u);
   EXPECT_EQ(warps.started_pc, 30u);
-}
-
-TEST(Launcher, AfterAFaultNothingIsStarted) {
-  Warps warps(true);
-  warps.launch(10, 8);
-  warps.cycle();
-  warps.cycle();
-  warps.launch(20, 8);
-  warps.cycle();
-  warps.cycle(0b0011);
-  warps.halted = true;
-  for (int i = 0; i < 3; ++i) EXPECT_EQ(warps.cycle(), 0u);
-  EXPECT_EQ(warps.active, 0b1100u);
 }
 
 TEST(Launcher, WithoutOverlapTheNextKernelStartsWhenTheOneBeforeHasEnded) {

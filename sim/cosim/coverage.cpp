@@ -12,6 +12,8 @@ constexpr uint64_t kNever = ~uint64_t{0} / 2;
 constexpr uint64_t kReplayCycles = 12;
 constexpr uint32_t kInstructionId = 16;
 constexpr uint64_t kOpenCycles = 300;
+// An access that waits for a package's words retires as many cycles after these came.
+constexpr uint64_t kPackageCycles = 4;
 constexpr uint32_t kLastPcBit = 1u << 15;
 
 /// Of a line in a unit's data cache.
@@ -46,6 +48,8 @@ void Coverage::begin() {
   data_fetches_ = 0;
   last_line_end_ = last_beat_ = last_import_beat_ = 0;
   import_beat_ = 0;
+  import_thread_ = 0;
+  set_written_ = {};
   made_ = left_ = {};
   moved_ = {};
   accepted_ = {};
@@ -138,7 +142,10 @@ void Coverage::retired(const RetireEvent& event) {
   last_of_all(event, instruction);
   if (opcode == Opcode::Arg) argument(event, instruction);
   if (opcode == Opcode::Ld) loaded(warp, event, instruction);
-  if (instruction.info->kind == Kind::Swap) swapped(warp, event, opcode);
+  if (instruction.info->kind == Kind::Swap)
+    swapped(warp, event, opcode);
+  else if (type == to_underlying(AluType::Ray) && set_written_[warp.roles[1]] + kPackageCycles >= now_)
+    hit(Event::PackageIntoSet);
   if (writes_register(*instruction.info)) {
     for (uint32_t mask = event.mask; mask != 0; mask &= mask - 1) {
       const auto lane = lowest(mask);
@@ -351,6 +358,7 @@ void Coverage::launches(const UnitOutputs& outputs, const UnitInputs& inputs) {
   if (last_pc_ != ~0u && last_pc_ != inputs.launch.pc) hit(Event::OtherKernelNext);
   last_pc_ = inputs.launch.pc;
   if (units_ == 1) launched_.push_back(threads);
+  if (inputs.launch.import != ImportKind::None) import_thread_ = 0;
   ++accepted_[outputs.launch_unit];
 }
 
@@ -436,7 +444,9 @@ void Coverage::pools(const UnitOutputs& outputs, const UnitInputs& inputs, const
   if (import_beat_ > 0 && last_import_beat_ + 1 != now_) hit(Event::ImportGap);
   if (import_beat_ == 0 && last_import_beat_ + 1 == now_) hit(Event::ImportTwice);
   last_import_beat_ = now_;
+  if (units_ == 1) set_written_[warps_[import_thread_ / lanes_].roles[0]] = now_;
   import_beat_ = (import_beat_ + 1) % kIntersectionBeats;
+  if (import_beat_ == 0) ++import_thread_;
 }
 
 }  // namespace raypool

@@ -129,6 +129,8 @@ class Coverage : public RunObserver {
   uint64_t reads_asked_ = 0, data_fetches_ = 0;
   uint64_t last_line_end_ = 0, last_beat_ = 0, last_import_beat_ = 0;
   int import_beat_ = 0;
+  uint32_t import_thread_ = 0;             ///< whose package comes; of one unit
+  std::array<uint64_t, 3> set_written_{};  ///< last beat of a package for the set
   std::array<uint64_t, kMostUnits> made_{},
       left_{};                              ///< rays and contributions: by rout and rfb, and those that have left
   std::array<uint64_t, 3> moved_{};         ///< last cycle in which memory request, export, frame moved

@@ -97,6 +97,7 @@ enum class Event : size_t {
   FaultInNewer,
   GroupsInARow,
   FirstGroupMasked,
+  PackageIntoSet,
   Count,
 };
 inline constexpr size_t kEvents = to_underlying(Event::Count);
@@ -194,6 +195,7 @@ inline constexpr std::array<EventText, kEvents> kEventTexts = {{
     {"kernel overlap", "a fault of a warp in the newer of two kernels"},
     {"slow lanes", "the groups of a task behind those of another one, without a cycle between them"},
     {"slow lanes", "the first group of lanes is masked, a later one is not"},
+    {"wide ray memory", "a package is written to the set of an rld or rst, just before that retires"},
 }};
 
 }  // namespace raypool

@@ -38,13 +38,15 @@ bool Coverage::possible(Event one) const {
                         one == Event::PartOfWarp;
   if (lanes_ == 1 && one_lane) return false;
   const bool two_warps = one == Event::WarpsLeftOut || one == Event::NewerRetires || one == Event::BothRetire ||
-                         one == Event::OlderIsHigher || one == Event::FaultInNewer || one == Event::GroupsInARow;
+                         one == Event::OlderIsHigher || one == Event::FaultInNewer || one == Event::GroupsInARow ||
+                         one == Event::PackageIntoSet;
   if (configuration_.warps == 1 && two_warps) return false;
   const bool one_read = configuration_.data_cache_mshrs == 1 || configuration_.contents() == 1;
   if (one_read && (one == Event::OneSet || one == Event::TopBitOnTheWay || one == Event::UpperBitOnTheWay))
     return false;
   if (one >= Event::ElementsOverlap && one <= Event::FaultInTriple) return configuration_.triples;
   if (one >= Event::NewerRetires && one <= Event::FaultInNewer) return units_ == 1 && configuration_.kernel_overlap;
+  if (one == Event::PackageIntoSet) return units_ == 1 && configuration_.wide_ray_memory && lanes_ > 4;
   if (one >= Event::GroupsInARow) return configuration_.slow_groups() > 1;
   return units_ == 1 || one != Event::ImportAhead;  // which unit a package goes to is not seen from outside
 }

@@ -275,6 +275,15 @@ class Generator : public ProgramStatements {
     emit(Opcode::Rin, 0, 0, 0, control_guard());
     import_pending_ = false;
     written_words_ = kIntersectionWords;
+    // Packages of other warps are still coming, into a set that this one uses.
+    if (configuration_.wide_ray_memory && chance(2)) {
+      for (uint32_t n = 4 + below(12); n > 0; --n) {
+        if (chance(2))
+          load_word(0);
+        else
+          emit_word(Opcode::Rst, below(kIntersectionWords), 0, any_predicate());
+      }
+    }
   }
 
   void fault(FaultCode code) {

@@ -159,7 +159,7 @@ void UnitInspection::check_launch() {
         w_.blocks.bits(32 * place, 32) != launched.blocks)
       find("rtl/launcher.v", "threads, block or blocks of the launch that runs are wrong");
   }
-  const uint32_t warps = model_->launcher().starts(model_->active_warps(), model_->halted());
+  const uint32_t warps = model_->launcher().starts(model_->active_warps());
   expect(w_.start.value(), warps, "rtl/launcher.v", "warps that are started");
   if (warps == 0) return;
   const LaunchCommand& started = model_->launcher().start_launch();

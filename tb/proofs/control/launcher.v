@@ -3,7 +3,7 @@
 // @modules launcher
 // @zeros
 // @proves a warp is started only while it is inactive, for the launch that began last, with its PC and lanes, and only
-//   if it has threads of it; not twice for one launch, nor, with OVERLAP, after a fault
+//   if it has threads of it; not twice for one launch
 // @proves a launch's kernel is done only when each warp that has threads of it was started once and has ended
 // @proves kernels are done in the order of the launches, once each; without OVERLAP one runs at most, with it two
 // @proves threads, block and blocks at the place of a warp that runs are those of the launch it was started for;
@@ -14,7 +14,7 @@
 // @parameters OVERLAP=0
 // @break launcher s/has & ~started_q & ~active_i/has \& ~started_q/
 // @break launcher s/has & ~started_q & ~active_i/has \& ~active_i/
-// @break launcher s/!halt_i && !older_q/!halt_i/
+// @break launcher s/pending_q && !older_q/pending_q/
 // @break launcher s/newest_q <= !newest_q/newest_q <= newest_q/
 // @break launcher s/older_q \? older_done : newest_done/newest_done/
 // @break launcher s/running_o && all_started && active_i ==/running_o \&\& active_i ==/
@@ -23,17 +23,15 @@
 // @break launcher s/if \(start_o\[w\]\) warp_place_q/if (!start_o[w]) warp_place_q/
 // @break launcher s/place_block_q\[63:32\] <= block_q/place_block_q[31:0] <= block_q/
 // @break launcher s/older_o = ~of_newest/older_o = of_newest/
-// @break launcher s/pending_q && !halt_i && /pending_q \&\& /
 `default_nettype none
 module check #(parameter OVERLAP = 1) (
-  input wire clk_i, launch_valid_i, import_active_i, halt_now_i, input wire [3:0] pc_i, threads_i, end_i,
+  input wire clk_i, launch_valid_i, import_active_i, input wire [3:0] pc_i, threads_i, end_i,
   input wire [1:0] import_i
 );
   localparam integer WARPS = 4, LANES = 2;
   reg rst_n = 1'b0;
   always @(posedge clk_i) rst_n <= 1'b1;
   reg [3:0] active_q = 0;
-  reg halt_q = 1'b0;
   wire ready, import_start, done, running, waiting;
   wire [3:0] start, launched, place, older;
   wire [15:0] start_pc;
@@ -45,7 +43,7 @@ module check #(parameter OVERLAP = 1) (
     .clk_i(clk_i), .rst_ni(rst_n), .launch_valid_i(launch_valid_i), .launch_ready_o(ready),
     .launch_pc_i({12'd0, pc_i}), .launch_threads_i({7'd0, threads_i}), .launch_block_i({28'd1, pc_i}),
     .launch_blocks_i({28'd2, pc_i}), .launch_import_i(import_i), .import_start_o(import_start),
-    .import_active_i(import_active_i), .halt_i(halt_q), .start_o(start), .start_pc_o(start_pc),
+    .import_active_i(import_active_i), .start_o(start), .start_pc_o(start_pc),
     .start_lanes_o(start_lanes), .active_i(active_q), .launched_o(launched), .place_o(place), .older_o(older),
     .threads_o(threads), .block_o(block), .blocks_o(blocks), .kernel_done_o(done), .running_o(running),
     .waiting_o(waiting));
@@ -66,13 +64,12 @@ module check #(parameter OVERLAP = 1) (
   wire [3:0] newest_warps = warps_of(newest_threads), newest_started = second ? started1_q : started0_q;
   wire all_started = started0_q == warps_of(threads0_q);
   // The launch that waits has to run in the next cycle
-  wire must_begin = waiting && (OVERLAP ? !halt_q && !second : runs == 0);
+  wire must_begin = waiting && (OVERLAP ? !second : runs == 0);
   reg must_q = 1'b0;
   wire [3:0] started0 = started0_q | (second ? 4'd0 : start), started1 = started1_q | (second ? start : 4'd0);
   always @(posedge clk_i)
     if (rst_n) begin
       active_q <= (active_q & ~end_i) | start;
-      halt_q <= halt_q || halt_now_i;
       must_q <= must_begin;
       count_q <= count_q + accept - done;
       if (done) begin
@@ -104,9 +101,9 @@ module check #(parameter OVERLAP = 1) (
       assert (count_q >= waiting && runs <= (OVERLAP ? 2 : 1) && running == (runs != 0));
       assert (done == (running && all_started && (active_q & ~second_q) == 0));
       assert (!must_q || !waiting);
-      if (OVERLAP && running && !halt_q && newest_warps[w] && !newest_started[w]) assert (start[w] || active_q[w]);
+      if (OVERLAP && running && newest_warps[w] && !newest_started[w]) assert (start[w] || active_q[w]);
       if (start[w]) begin
-        assert (!active_q[w] && newest_warps[w] && (OVERLAP == 0 || (running && !halt_q)));
+        assert (!active_q[w] && newest_warps[w] && (OVERLAP == 0 || running));
         assert (!newest_started[w]);
         assert (start_pc == newest_pc);
         assert (start_lanes[2*w] == (newest_threads > 2 * w) && start_lanes[2*w+1] == (newest_threads > 2 * w + 1));
