@@ -174,7 +174,7 @@ module compute_unit #(
       end
       warp #(
         .LANES(LANES), .STACK_DEPTH(STACK_DEPTH), .INSTANCES(INSTANCES), .INSTANCE_TYPES(INSTANCE_TYPES), .FMA(FMA),
-        .TRIPLES(TRIPLES)
+        .TRIPLES(TRIPLES), .INTERSECTION_WORDS(INTERSECTION_WORDS)
       ) warp (
         .clk_i(clk_i), .rst_ni(rst_ni), .start_i(start[w]), .start_pc_i(start_pc),
         .start_lanes_i(start_lanes[w*LANES +: LANES]),
@@ -261,7 +261,8 @@ module compute_unit #(
       end
       if (TYPE == ISA_TYPE_RAY) begin : gen_ray
         ray_alu #(
-          .WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS), .WIDE_RAY_MEMORY(WIDE_RAY_MEMORY)
+          .WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS), .INTERSECTION_WORDS(INTERSECTION_WORDS),
+          .WIDE_RAY_MEMORY(WIDE_RAY_MEMORY)
         ) ray_alu (
           .import_start_i(import_start), .import_start_kind_i(launch_import_i),
           .import_start_threads_i(launch_threads_i),

@@ -1,10 +1,11 @@
 // Joins the import ports of 2 to 4 units: requests leave in rotation, a package at a time, and their beats, which come
 // back in the order of the requests, go to the units that asked.
 // Promises: at most 3 packages are requested and not yet received. Must be given: for each request taken, in
-// order, six beats, from the next cycle on.
+// order, as many beats as INTERSECTION_WORDS need, from the next cycle on.
 `default_nettype none
 module import_arbiter #(
-  parameter integer UNITS = 4
+  parameter integer UNITS = 4,
+  parameter integer INTERSECTION_WORDS = 21
 ) (
   input  wire               clk_i,
   input  wire               rst_ni,
@@ -21,7 +22,7 @@ module import_arbiter #(
   input  wire               beat_valid_i
 );
   localparam integer PLACES = 3;
-  localparam [2:0] LAST_BEAT = 3'd5;
+  localparam integer LAST_BEAT = (INTERSECTION_WORDS + 3) / 4 - 1;
 
   // The units whose packages are to come, in order; no request leaves while the queue is full.
   wire expected;
@@ -34,7 +35,7 @@ module import_arbiter #(
 
   reg [2:0] beat_q;
   wire beat = beat_valid_i && expected;
-  wire package_end = beat && beat_q == LAST_BEAT;
+  wire package_end = beat && beat_q == LAST_BEAT[2:0];
   request_queue #(.WIDTH(2), .DEPTH(PLACES)) order (
     .clk_i(clk_i), .rst_ni(rst_ni), .push_i(request_valid_o && request_ready_i), .data_i(request_unit_o),
     .valid_o(expected), .ready_i(package_end), .data_o(receiver), .count_o(count));

@@ -3,7 +3,8 @@
 `default_nettype none
 module instruction_buffer #(
   parameter [0:0] FMA = 1'b0,          // ffma is legal
-  parameter [0:0] TRIPLES = 1'b0       // triples are legal
+  parameter [0:0] TRIPLES = 1'b0,      // triples are legal
+  parameter integer INTERSECTION_WORDS = 21   // among so many words
 ) (
   input  wire        clk_i,
   input  wire        rst_ni,
@@ -90,7 +91,7 @@ module instruction_buffer #(
         F_CACHE:
           if (cache_hit_i) begin
             next_q <= cache_instruction_i;
-            next_legal_q <= isa_legal(cache_instruction_i, FMA, TRIPLES);
+            next_legal_q <= isa_legal(cache_instruction_i, FMA, TRIPLES, INTERSECTION_WORDS[4:0]);
             next_control_q <= isa_control(cache_instruction_i);
             fetch_q <= F_FULL;
           end else begin

@@ -99,15 +99,17 @@
     end
   endfunction
 
-  // the instruction has a table row, and the machine what it needs; fma: arithmetic.fma. A triple's words are all there
+  // the instruction has a table row, and the machine what it needs; fma: arithmetic.fma. A triple's words are
+  // all there, in packages of package_words
   function isa_legal;
     input [63:0] encoding;
     input fma;
     input triples;
+    input [4:0] package_words;
     begin
       isa_legal = isa_legal_op(encoding) || (fma && isa_legal_fma_op(encoding)) ||
                   (triples && isa_legal_triple_op(encoding) &&
-                   !(isa_triple_of_words(encoding) && encoding[36:32] > 5'd18)) ||
+                   !(isa_triple_of_words(encoding) && encoding[36:32] > package_words - 5'd3)) ||
                   (fma && triples && isa_legal_fused_triple_op(encoding));
     end
   endfunction

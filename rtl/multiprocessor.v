@@ -199,7 +199,7 @@ module multiprocessor #(
         .request_mask_o(memory_request_mask_o), .request_id_o(memory_request_id_o),
         .response_valid_i(memory_response_valid_i), .response_unit_i(memory_response_id_i[6:5]));
 
-      import_arbiter #(.UNITS(UNITS)) import_arbiter (
+      import_arbiter #(.UNITS(UNITS), .INTERSECTION_WORDS(INTERSECTION_WORDS)) import_arbiter (
         .clk_i(clk_i), .rst_ni(rst_ni), .unit_request_valid_i(import_valid), .unit_request_ready_o(import_ready),
         .unit_request_kind_i(import_kind), .unit_beat_valid_o(beat_valid), .request_valid_o(import_request_valid_o),
         .request_ready_i(import_request_ready_i), .request_kind_o(import_request_kind_o),

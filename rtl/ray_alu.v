@@ -2,13 +2,14 @@
 // current, output) warp by warp. docs/ray-alu.md has the contract and the cycles.
 // Promises: rin, rout and rfb that have to wait do not block other warps; every task of a warp sees the effects of the
 // warp's earlier ones.
-// Must be given: one task at a time of a warp; tasks only after ready_o; for each package requested six beats, in
+// Must be given: one task at a time of a warp; tasks only after ready_o; for each package requested its beats, in
 // order.
 `default_nettype none
 module ray_alu #(
   parameter integer WARPS = 8,
   parameter integer LANES = 8,
   parameter integer WARP_BITS = (WARPS > 1) ? $clog2(WARPS) : 1,
+  parameter integer INTERSECTION_WORDS = 21,
   parameter integer WIDE_RAY_MEMORY = 0   // rld and rst move all lanes a cycle, else four
 ) (
   // import of a launch: one cycle of start, not while import_active_o, which is high from the next cycle on
@@ -55,7 +56,7 @@ module ray_alu #(
   localparam integer BANK_BITS = $clog2(BANKS);
   localparam integer STEPS = (LANES > BANKS) ? LANES / BANKS : 1;   // port cycles of an access: rld, rst
   localparam integer LAST_STEP = STEPS - 1;
-  localparam [4:0] LAST_WORD = 5'd20;
+  localparam integer LAST_WORD = INTERSECTION_WORDS - 1;
   localparam [LANES-1:0] NO_LANE = 0;
 
   // ---- Roles: which set is a warp's input, current and output.
@@ -63,7 +64,7 @@ module ray_alu #(
 
   // ---- Arrival. A task is an access or a swap; a swap is parked.
   wire task_access = task_operation_i == ISA_RAY_RLD || task_operation_i == ISA_RAY_RST;
-  wire task_legal = task_word_i <= LAST_WORD;
+  wire task_legal = task_word_i <= LAST_WORD[4:0];
   wire arrive_access = task_valid_i && task_access && task_legal;
   wire arrive_swap = task_valid_i && !task_access;
   wire arrive_out = arrive_swap && task_operation_i != ISA_RAY_RIN;
@@ -275,7 +276,9 @@ module ray_alu #(
   assign fault_warp_o = fault_warp_q;
 
   // ---- Engines
-  ray_import #(.WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS), .WIDE(BANKS > 4)) ray_import (
+  ray_import #(
+    .WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS), .INTERSECTION_WORDS(INTERSECTION_WORDS), .WIDE(BANKS > 4)
+  ) ray_import (
     .clk_i(clk_i), .rst_ni(rst_ni),
     .start_i(import_start_i), .start_kind_i(import_start_kind_i), .start_threads_i(import_start_threads_i),
     .active_o(import_active_o), .request_valid_o(import_request_valid_o), .request_kind_o(import_request_kind_o),
@@ -324,7 +327,7 @@ module ray_alu #(
       wire by_import = import_write && import_set == SET;
       wire by_access = access && access_set == SET && !by_import;
       wire by_export = export_read && export_set == SET && !by_import && !by_access;
-      ray_memory #(.CONTENTS(WARPS * LANES), .BANKS(BANKS)) ray_memory (
+      ray_memory #(.CONTENTS(WARPS * LANES), .WORDS(INTERSECTION_WORDS), .BANKS(BANKS)) ray_memory (
         .clk_i(clk_i), .read_i((by_access && !access_write) || by_export),
         .write_i(by_import ? import_banks : by_access ? access_mask : {BANKS{1'b0}}),
         .package_i(by_import || by_export),

@@ -3,13 +3,15 @@
 // Promises: at most two packages are requested and not yet received; one is only requested while its warp's input slice
 // is not full; a beat is written in the cycle after its arrival, or with WIDE together with the next one of its
 // package: each write takes the memory's port from whoever else wants it.
-// Must be given: for each request taken, in order, six beats (words 4b .. 4b+3), any time after; the memory's port
-// whenever write_o is high; no start while active_o is high; take_i only for a full slice.
+// Must be given: for each request taken, in order, as many beats as INTERSECTION_WORDS need (words 4b ..
+// 4b+3), any time after; the memory's port whenever write_o is high; no start while active_o is high; take_i only for a
+// full slice.
 `default_nettype none
 module ray_import #(
   parameter integer WARPS = 8,
   parameter integer LANES = 8,
   parameter integer WARP_BITS = 3,
+  parameter integer INTERSECTION_WORDS = 21,
   parameter [0:0] WIDE = 1'b0           // two beats are written at a time
 ) (
   input  wire                 clk_i,
@@ -38,14 +40,16 @@ module ray_import #(
 );
   localparam integer LANE_BITS = $clog2(LANES);
   localparam integer LAST_LANE = LANES - 1;
-  localparam [2:0] LAST_BEAT = 3'd5;   // carries word 20 alone
+  localparam integer BEATS = (INTERSECTION_WORDS + 3) / 4;
+  localparam integer LAST_BEAT = BEATS - 1;
+  localparam [3:0] LAST_MASK = 4'b1111 >> (4 * BEATS - INTERSECTION_WORDS);   // the words that it carries
 
   reg [10:0] threads_q, requested_q, received_q;
   reg [1:0] outstanding_q;
   reg [2:0] beat_q;
   wire second = WIDE && beat_q[0];         // of the beats that are written together
-  wire last = beat_q == LAST_BEAT;
-  wire [3:0] mask = last ? 4'b0001 : 4'b1111;   // of the beat's words
+  wire last = beat_q == LAST_BEAT[2:0];
+  wire [3:0] mask = last ? LAST_MASK : 4'b1111;   // of the beat's words
   reg [WARPS-1:0] full_q;
   assign full_o = full_q;
 

@@ -1,13 +1,14 @@
-// One set of local ray memory: BANKS 32-bit single-port banks, 21 words for each of CONTENTS threads. Word k of thread
-// t lies in bank (t+k)%BANKS, row k*ceil(CONTENTS/BANKS) + t/BANKS, so that an access moves one word of BANKS threads
-// a cycle, or words of one thread: four are read, as many as eight written.
+// One set of local ray memory: BANKS 32-bit single-port banks, WORDS words for each of CONTENTS threads. Word k of
+// thread t lies in bank (t+k)%BANKS, row k*ceil(CONTENTS/BANKS) + t/BANKS, so that an access moves one word of BANKS
+// threads a cycle, or words of one thread: four are read, as many as eight written.
 // Element e of an access is word word_i + e of thread thread_i with package_i (e below 4, or 8 of a write with so many
 // BANKS), else word word_i of thread thread_i + e (e below BANKS); then thread_i must be a multiple of BANKS. A cycle
 // with write_i other than 0 writes these elements, else read_i reads all of them; they appear in data_o in the next
-// cycle and stay until the next read. Words written or looked at must be 0 .. 20.
+// cycle and stay until the next read. Words written or looked at must be 0 .. WORDS-1.
 `default_nettype none
 module ray_memory #(
   parameter integer CONTENTS = 64,
+  parameter integer WORDS = 21,
   parameter integer BANKS = 4          // 4, 8, 16 or 32; more than 4 only with as many CONTENTS at least
 ) (
   input  wire                clk_i,
@@ -23,7 +24,7 @@ module ray_memory #(
   localparam integer PACKAGE_BITS = (BANKS > 4) ? 3 : 2;   // of an element's number in a package
   localparam integer COLUMNS = (CONTENTS > BANKS) ? CONTENTS / BANKS : 1;
   localparam integer COLUMN_BITS = $clog2(COLUMNS);
-  localparam integer DEPTH = 21 * COLUMNS;
+  localparam integer DEPTH = WORDS * COLUMNS;
   localparam integer ADDRESS_BITS = $clog2(DEPTH);
 
   // Element e is in bank (e + shift) % BANKS.

@@ -6,6 +6,7 @@
   parameter integer KERNEL_OVERLAP = 0,
   parameter integer WIDE_RAY_MEMORY = 0,
   parameter integer SLOW_LANES = 32,
+  parameter integer INTERSECTION_WORDS = 21,
   parameter integer TID_COUNT = 1,
   parameter integer BRH_COUNT = 1,
   parameter integer INT_COUNT = 1,

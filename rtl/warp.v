@@ -6,7 +6,8 @@ module warp #(
   parameter integer INSTANCES = 7,
   parameter [INSTANCES*4-1:0] INSTANCE_TYPES = 28'h6543210,
   parameter integer FMA = 0,        // reads register rc too, and issues ffma
-  parameter integer TRIPLES = 0     // issues triples
+  parameter integer TRIPLES = 0,    // issues triples
+  parameter integer INTERSECTION_WORDS = 21
 ) (
   input  wire                      clk_i,
   input  wire                      rst_ni,
@@ -104,7 +105,9 @@ module warp #(
     .pop_i(control && field_operation == ISA_BRH_RET), .target_i(enter ? pc_o + 16'd1 : field_target),
     .end_i(enter ? field_target : field_end), .return_i(pc_o), .overflow_o(overflow), .underflow_o(underflow));
 
-  instruction_buffer #(.FMA(FMA != 0), .TRIPLES(TRIPLES != 0)) instruction_buffer (
+  instruction_buffer #(
+    .FMA(FMA != 0), .TRIPLES(TRIPLES != 0), .INTERSECTION_WORDS(INTERSECTION_WORDS)
+  ) instruction_buffer (
     .clk_i(clk_i), .rst_ni(rst_ni), .start_i(start_i), .halt_i(halt_i), .active_o(active_o),
     .step_o(step), .pc_valid_i(pc_valid), .pc_i(stack_pc), .program_length_i(program_length_i),
     .fetch_request_o(fetch_request_o), .fetch_pc_o(fetch_pc_o), .fetch_grant_i(fetch_grant_i),

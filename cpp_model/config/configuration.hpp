@@ -76,6 +76,8 @@ struct Configuration {
   uint32_t contents() const { return warps * lanes; }
   /// Cycles in which an rld or rst has the port of its set: of four lanes each, or of all.
   uint32_t ray_access_cycles() const { return wide_ray_memory || lanes <= 4 ? 1 : lanes / 4; }
+  /// Of 128 bits, for an intersection.
+  uint32_t intersection_beats() const { return (intersection_words + 3) / 4; }
   const AluConfiguration& alu(AluType type) const { return alus[type]; }
   /// Groups of lanes that a task of slw is executed in, a cycle behind each other: 1 .. 32.
   uint32_t slow_groups() const { return slow_lanes < lanes ? lanes / slow_lanes : 1; }

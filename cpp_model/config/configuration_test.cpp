@@ -214,7 +214,7 @@ TEST(Configuration, FusedMultiplyAddDeepensFlt) {
 TEST(Configuration, UnknownKeysAreRefusedWithTheKnownOnes) {
   EXPECT_EQ(error_of(R"({"warp": 8})"),
             "unknown key warp; known here: name, warps, lanes, stack_depth, triples, kernel_overlap, wide_ray_memory, "
-            "slow_lanes, instruction_cache, data_cache, arithmetic, alus, chip, $schema");
+            "slow_lanes, intersection_words, instruction_cache, data_cache, arithmetic, alus, chip, $schema");
   EXPECT_EQ(error_of(R"({"alus": {"flt": {"counts": 1}}})"),
             "unknown key alus.flt.counts; known here: count, latency, depth");
   EXPECT_EQ(error_of(R"({"alus": {"ray": {"depth": 2}}})"), "unknown key alus.ray.depth; known here: count");

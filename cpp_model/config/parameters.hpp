@@ -38,6 +38,8 @@ enum class Shading : uint8_t { Kernel = 0, Traverser = 1 };
        "with more than four lanes: rld and rst move a word of all of them in a cycle, an import eight words") \
   UNIT(slow_lanes, uint32_t, 32, powers_of_two(1, 32), tried(1, 2, 32), \
        "lanes of an instance of slw at most: with fewer than the unit has, a task takes them one group after another") \
+  UNIT(intersection_words, uint32_t, 21, integers(12, 21), tried(12, 16, 21), \
+       "words of an intersection on its port and in ray memory: 21, or those that the kernels need") \
   PART(instruction_cache, bytes, uint32_t, 4096, powers_of_two(512, 65536), tried(512, 1024, 4096, 65536), "size") \
   PART(data_cache, bytes, uint32_t, 8192, powers_of_two(512, 65536), tried(512, 1024, 8192, 65536), "size") \
   PART(data_cache, mshrs, uint32_t, 4, integers(1, 16), tried(1, 2, 3, 4, 16), \
@@ -114,7 +116,7 @@ enum class Shading : uint8_t { Kernel = 0, Traverser = 1 };
             "the overhead for the next ray runs while the beats of the last one move") \
   CHIP_PART(intersection_pool, size, uint32_t, 512, integers(1, 1 << 20), "intersections of each kind that it holds") \
   CHIP_PART(intersection_pool, overhead, uint32_t, 2, integers(1, 64), \
-            "cycles that its port takes for an intersection besides the 6 beats") \
+            "cycles that its port takes for an intersection besides the beats") \
   CHIP_PART(intersection_pool, cycles_per_beat, uint32_t, 1, integers(1, 64), \
             "cycles of its port for a beat of 128 bits") \
   CHIP_PART(intersection_pool, pipelined, bool, false, on_or_off(), \

@@ -83,8 +83,8 @@ const InstructionInfo* find_triple(const InstructionInfo& element, bool one_ra);
 bool has_one_ra(const InstructionInfo& triple);
 /// The triple reads in an element what an earlier one has written: its elements must wait for each other.
 bool elements_depend(const Instruction& triple);
-/// The last word of a ray package that a triple may begin with.
-inline constexpr int kLastTripleWord = kPackageWords - kElements;
+/// The last word that a triple may begin with, of packages of so many words.
+constexpr uint32_t last_triple_word(uint32_t package_words) { return package_words - kElements; }
 
 /// `instruction.info` must not be null.
 uint64_t encode(const Instruction& instruction);

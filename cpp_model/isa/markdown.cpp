@@ -87,7 +87,8 @@ the other, under one guard. Of element e
 - every register number is e higher, modulo 16: behind r15 comes r0. With an `s` at the end of the name all elements
   have the same ra, and so have those of `ld3`, whose ra is an address;
 - an immediate in place of b is the same for all;
-- the ray word of `rld3` and `rst3` is e higher. One above 18 is illegal, as the last word would be outside;
+- the ray word of `rld3` and `rst3` is e higher. One above 18, or `intersection_words` - 3, is illegal, as the last
+  word would be outside;
 - the argument of `arg3` is e higher;
 - bits 3:2 of the offset of `ld3` should be 0: they are ORed with e.
 

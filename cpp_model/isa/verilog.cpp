@@ -171,20 +171,21 @@ std::string isa_verilog_functions() {
                       [](const InstructionInfo& info) { return is_triple(info) && has_operand(info, Operand::Word); });
   text += fmt::format(
       "\n  // the instruction has a table row, and the machine what it needs; fma: arithmetic.fma. A triple's words "
-      "are "
-      "all there\n"
+      "are\n"
+      "  // all there, in packages of package_words\n"
       "  function isa_legal;\n"
       "    input [63:0] encoding;\n"
       "    input fma;\n"
       "    input triples;\n"
+      "    input [4:0] package_words;\n"
       "    begin\n"
       "      isa_legal = isa_legal_op(encoding) || (fma && isa_legal_fma_op(encoding)) ||\n"
       "                  (triples && isa_legal_triple_op(encoding) &&\n"
-      "                   !(isa_triple_of_words(encoding) && {} > 5'd{})) ||\n"
+      "                   !(isa_triple_of_words(encoding) && {} > package_words - 5'd{})) ||\n"
       "                  (fma && triples && isa_legal_fused_triple_op(encoding));\n"
       "    end\n"
       "  endfunction\n",
-      slice(field::kX, "encoding"), kLastTripleWord);
+      slice(field::kX, "encoding"), kElements);
   text += function_of_row("isa_triple", "the instruction does three",
                           [](const InstructionInfo& info) { return is_triple(info); });
   text += elements_depend_verilog();

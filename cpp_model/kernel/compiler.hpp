@@ -31,13 +31,21 @@ bool has_places(const Function& function);
 /// Appends the kernel to the program, under its name.
 void compile(Function function, Program& program, const KernelTarget& target = {});
 
-/// Records and compiles a kernel: `body` is called with a RecordedKernel.
+/// Records a kernel: `body` is called with a RecordedKernel. `layout`: of what the kernel imports.
 template <typename Body>
-void add_kernel(Program& program, const std::string& name, const Body& body, const KernelTarget& target = {}) {
+Function record_kernel(const std::string& name, const Body& body, const KernelTarget& target = {},
+                       const RecordLayout& layout = {}) {
   Recorder recorder(name, target.fma);
-  RecordedKernel kernel(recorder, target.culling);
+  RecordedKernel kernel(recorder, target.culling, layout);
   body(kernel);
-  compile(recorder.finish(), program, target);
+  return recorder.finish();
+}
+
+/// Records and compiles it.
+template <typename Body>
+void add_kernel(Program& program, const std::string& name, const Body& body, const KernelTarget& target = {},
+                const RecordLayout& layout = {}) {
+  compile(record_kernel(name, body, target, layout), program, target);
 }
 
 }  // namespace raypool::kernel

@@ -15,6 +15,7 @@
 #include "isa/program.hpp"
 #include "kernel/target.hpp"
 #include "machine/compute_unit.hpp"
+#include "machine/packages.hpp"
 
 namespace raypool {
 
@@ -57,6 +58,8 @@ inline constexpr int kCount = 23;
 /// All ray kernels in one program, for such machines. Throws InputError (with kernel and line)
 /// when registers or predicates do not suffice.
 const Program& ray_kernel_program(const KernelTarget& target = {});
+/// Of the intersections that they import. Throws InputError when the configuration's have too few words.
+RecordLayout ray_record_layout(const Configuration& configuration);
 
 /// What one thread of a kernel sees and leaves when it runs as C++.
 struct NativeThread {

@@ -107,8 +107,9 @@ void cast_secondary_direct(K& k) {
   shadow_ray_out(k, light);
 }
 
+/// `limit_missing`: the package has no limit, so that the reflection ray needs its own.
 template <typename K>
-void cast_secondary(K& k) {
+void cast_secondary(K& k, bool limit_missing = false) {
   using Int = typename K::Int;
   using Float = typename K::Float;
   using Bool = typename K::Bool;
@@ -142,6 +143,7 @@ void cast_secondary(K& k) {
   const Int pixel = k.int_word(word::kPixel);
   const Int flags = k.int_word(word::kFlags);
   k.set_word(word::kFlags, flags + 1);
+  if (limit_missing) k.set_word(word::kLimit, Float(std::numeric_limits<float>::infinity()));
   k.ray_out();
 
   // The slice that is current now holds nothing of this thread's: all twelve words are written.

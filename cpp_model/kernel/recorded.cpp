@@ -35,18 +35,27 @@ void RecordedKernel::store_number(const Int& address, int offset, int value, con
   op.immediate = static_cast<uint32_t>(offset);
 }
 
-int RecordedKernel::word(int number, const Location& where) {
+// A ray's words are exported from their own places, whatever is imported there.
+uint8_t RecordedKernel::place(int number, const Location& where) const {
   check("ray word", number, kIntersectionWords, where);
+  const uint8_t place = number < kRayWords ? static_cast<uint8_t>(number) : layout_.place[number];
+  if (place == RecordLayout::kAbsent)
+    throw InputError(fmt::format("{}: ray word {} is not in the compact record", to_string(where), number));
+  return place;
+}
+
+int RecordedKernel::word(int number, const Location& where) {
+  const uint8_t at = place(number, where);
   const int rd = recorder_.emit_value(Opcode::Rld, where);
-  recorder_.last_op().word = number;
+  recorder_.last_op().word = at;
   return rd;
 }
 
 void RecordedKernel::write_word(int number, int value, const Location& where) {
-  check("ray word", number, kIntersectionWords, where);
+  const uint8_t at = place(number, where);
   Op& op = recorder_.emit(Opcode::Rst, where);
   op.rb = value;
-  op.word = number;
+  op.word = at;
 }
 
 }  // namespace raypool::kernel

@@ -9,6 +9,7 @@
 
 #include "bits.hpp"
 #include "kernel/recorder.hpp"
+#include "machine/packages.hpp"
 
 namespace raypool::kernel {
 namespace recorded {
@@ -279,7 +280,9 @@ class RecordedKernel {
   using Float = recorded::Float;
   using BoolOperand = recorded::BoolOperand;
 
-  explicit RecordedKernel(Recorder& recorder, bool culling = false) : recorder_(recorder), culling_(culling) {}
+  /// `layout`: of what the kernel imports.
+  explicit RecordedKernel(Recorder& recorder, bool culling = false, const RecordLayout& layout = {})
+      : recorder_(recorder), culling_(culling), layout_(layout) {}
 
   bool culling() const { return culling_; }
 
@@ -347,11 +350,13 @@ class RecordedKernel {
   int argument(int number, const Location& where);
   int load(const Int& address, int offset, const Location& where);
   void store_number(const Int& address, int offset, int value, const Location& where);
+  uint8_t place(int number, const Location& where) const;
   int word(int number, const Location& where);
   void write_word(int number, int value, const Location& where);
 
   Recorder& recorder_;
   bool culling_;
+  RecordLayout layout_;
 };
 
 }  // namespace raypool::kernel

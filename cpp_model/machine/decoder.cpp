@@ -8,7 +8,8 @@ namespace {
 
 bool is_legal(const Instruction& fields, const Configuration& configuration) {
   if (fields.info == nullptr || !configuration.has(fields.info->needs)) return false;
-  return !(is_triple(*fields.info) && has_operand(*fields.info, Operand::Word) && fields.x > kLastTripleWord);
+  return !(is_triple(*fields.info) && has_operand(*fields.info, Operand::Word) &&
+           fields.x > last_triple_word(configuration.intersection_words));
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ FunctionalCore::FunctionalCore(const Configuration& configuration, Memory& memor
       mode_(arith::mode_of(configuration)),
       registers_(configuration.contents() * kRegisters),
       warps_(configuration.warps, Warp(configuration.stack_depth)),
-      slices_(configuration.warps, configuration.lanes) {
+      slices_(configuration.warps, configuration.lanes, configuration.intersection_words) {
   switch (lanes_) {
     case 1:
       step_ = &FunctionalCore::step_lanes<1>;
@@ -309,11 +309,11 @@ bool FunctionalCore::execute_ray(const DecodedInstruction& instruction, Warp& wa
       }
       return true;
     case Opcode::Rld:
-      if (instruction.x >= kIntersectionWords) return fault(FaultCode::RayWordOutside);
+      if (instruction.x >= configuration_.intersection_words) return fault(FaultCode::RayWordOutside);
       copy(lanes.rd, slices_.current(number, instruction.x));
       return true;
     case Opcode::Rst:
-      if (instruction.x >= kIntersectionWords) return fault(FaultCode::RayWordOutside);
+      if (instruction.x >= configuration_.intersection_words) return fault(FaultCode::RayWordOutside);
       result_.ray_words = slices_.current(number, instruction.x);
       copy(slices_.current(number, instruction.x), lanes.b);
       return true;

@@ -428,6 +428,12 @@ TEST(FunctionalCore, TriplesThatTheMachineHasNotAreIllegal) {
   // Of three words the last would be outside.
   for (const char* text : {"rld3 r1, 19", "rst3 20, r1", ".word 0x6a0000df00000000  # rst3 31, r3"})
     EXPECT_EQ(first_fault(text, triples), FaultCode::IllegalInstruction) << text;
+  Configuration compact = triples;
+  compact.intersection_words = 16;
+  for (const char* text : {"rld3 r1, 13", "rst3 13, r1"})
+    EXPECT_EQ(first_fault(text, compact), FaultCode::None) << text;
+  for (const char* text : {"rld3 r1, 14", "rst3 18, r1"})
+    EXPECT_EQ(first_fault(text, compact), FaultCode::IllegalInstruction) << text;
 }
 
 constexpr uint32_t kTable = 2048;

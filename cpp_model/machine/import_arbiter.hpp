@@ -12,6 +12,9 @@ namespace raypool {
 
 class ImportArbiter {
  public:
+  /// `beats`: of a package.
+  explicit ImportArbiter(int beats = kIntersectionBeats) : beats_(beats) {}
+
   void present(uint32_t valids) { port_.present(order_.count() < kPlaces ? valids : 0); }
   bool valid() const { return port_.valid(); }
   uint32_t choice() const { return port_.choice(); }
@@ -22,7 +25,7 @@ class ImportArbiter {
   /// `beat`: one arrives in this cycle.
   void clock(bool ready, bool beat) {
     const bool request = port_.valid() && ready;
-    const bool package_end = beat && expects() && beat_ == kIntersectionBeats - 1;
+    const bool package_end = beat && expects() && beat_ == beats_ - 1;
     if (beat && expects()) beat_ = package_end ? 0 : beat_ + 1;
     port_.clock(ready);
     order_.clock(package_end);
@@ -34,7 +37,7 @@ class ImportArbiter {
 
   PortArbiter port_;
   RequestQueue<uint8_t, kPlaces> order_;  // units whose packages are to come
-  int beat_ = 0;
+  int beats_, beat_ = 0;
 };
 
 }  // namespace raypool

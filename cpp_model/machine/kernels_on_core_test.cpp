@@ -52,12 +52,14 @@ Result run(FunctionalCore& core, const LaunchCommand& command, const std::vector
   return result;
 }
 
-// One of 16 modes of arithmetic.
+// One of 16 modes of arithmetic, on some with triples, on some with compact records.
 Configuration configuration_in_mode(const char* name, int mode) {
   Configuration configuration = load_configuration(name);
   configuration.subnormals = static_cast<Subnormals>(mode & 1);
   configuration.slow_unit = static_cast<SlowUnit>(mode >> 1 & 3);
   configuration.fma = mode >= 8;
+  configuration.triples = mode % 2 == 1;
+  if (mode % 3 == 2) configuration.intersection_words = 16;
   configuration.chip.culling = mode % 3 == 0;
   return configuration;
 }
@@ -72,6 +74,7 @@ TEST(KernelsOnCore, RayKernelsLeaveWhatTheyLeaveNatively) {
 
       Memory memory(kMemoryBytes);
       const Program& program = ray_kernel_program(KernelTarget(configuration));
+      const RecordLayout layout = ray_record_layout(configuration);
       test::put_program(memory, program.code);
       for (uint32_t i = 0; i < 8; ++i) memory.store(kMaterial + 4 * i, number());
       FunctionalCore core(configuration, memory);
@@ -98,8 +101,13 @@ TEST(KernelsOnCore, RayKernelsLeaveWhatTheyLeaveNatively) {
           for (uint32_t& word : package) word = number();
           package[word::kFlags] = random() % 8;
           package[word::kMaterial] = kMaterial;
+          // What a compact record lacks.
+          if (layout.words < kIntersectionWords)
+            package[word::kLimit] = as_bits(std::numeric_limits<float>::infinity());
         }
-        const Result result = run(core, command, packages);
+        std::vector<Intersection> records;
+        for (const Intersection& package : packages) records.push_back(packed(package, layout));
+        const Result result = run(core, command, records);
         for (uint32_t t = 0; t < command.threads; ++t) {
           NativeThread thread;
           thread.thread = t;

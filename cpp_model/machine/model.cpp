@@ -14,7 +14,7 @@ Model make_model(const Configuration& configuration, const Memory& memory, uint3
     model.units.push_back(part.get());
     parts.push_back(std::move(part));
   }
-  model.device = make_multiprocessor(std::move(parts));
+  model.device = make_multiprocessor(std::move(parts), static_cast<int>(configuration.intersection_beats()));
   return model;
 }
 

@@ -7,15 +7,18 @@
 
 namespace raypool {
 
-Multiprocessor::Multiprocessor(std::vector<std::unique_ptr<ComputeUnit>> units)
-    : units_(std::move(units)), inputs_(units_.size()) {}
+Multiprocessor::Multiprocessor(std::vector<std::unique_ptr<ComputeUnit>> units, int intersection_beats)
+    : units_(std::move(units)),
+      inputs_(units_.size()),
+      intersection_beats_(intersection_beats),
+      import_arbiter_(intersection_beats) {}
 
 void Multiprocessor::reset(uint32_t program_length, uint32_t memory_limit) {
   for (const auto& unit : units_) unit->reset(program_length, memory_limit);
   block_scheduler_ = {};
   memory_arbiter_ = {};
   export_arbiter_ = frame_arbiter_ = fault_arbiter_ = {};
-  import_arbiter_ = {};
+  import_arbiter_ = ImportArbiter(intersection_beats_);
   outputs_ = {};
   faults_.clear();
   trace_ = {};
@@ -191,12 +194,13 @@ bool Multiprocessor::timed() const {
   return std::all_of(units_.begin(), units_.end(), [](const auto& unit) { return unit->timed(); });
 }
 
-std::unique_ptr<ComputeUnit> make_multiprocessor(std::vector<std::unique_ptr<ComputeUnit>> units) {
+std::unique_ptr<ComputeUnit> make_multiprocessor(std::vector<std::unique_ptr<ComputeUnit>> units,
+                                                 int intersection_beats) {
   if (units.size() == 1) return std::move(units.front());
   if (units.size() != 2 && units.size() != kMostUnits) {
     throw InputError(fmt::format("{} compute units: there must be 1, 2 or 4", units.size()));
   }
-  return std::make_unique<Multiprocessor>(std::move(units));
+  return std::make_unique<Multiprocessor>(std::move(units), intersection_beats);
 }
 
 }  // namespace raypool

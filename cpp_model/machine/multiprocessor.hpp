@@ -17,8 +17,8 @@ namespace raypool {
 /// as its units do. A clock costs a clock of each unit and some tests; payloads are copied only while they are valid.
 class Multiprocessor : public ComputeUnit {
  public:
-  /// 2 to kMostUnits single units of one configuration.
-  explicit Multiprocessor(std::vector<std::unique_ptr<ComputeUnit>> units);
+  /// 2 to kMostUnits single units of one configuration, whose intersections have so many beats.
+  Multiprocessor(std::vector<std::unique_ptr<ComputeUnit>> units, int intersection_beats);
 
   uint32_t units() const override { return size32(units_); }
 
@@ -45,13 +45,16 @@ class Multiprocessor : public ComputeUnit {
   BlockScheduler block_scheduler_;
   UnitMemoryArbiter memory_arbiter_;
   PortArbiter export_arbiter_, frame_arbiter_, fault_arbiter_;
+  int intersection_beats_;
   ImportArbiter import_arbiter_;
   bool tracing_ = false;
   UnitTrace trace_;
   std::vector<std::vector<uint32_t>> spare_;  // lanes of past events, so that a traced cycle allocates nothing
 };
 
-/// One device of 1, 2 or 4 units: a single one is returned as it is. Throws InputError for other numbers.
-std::unique_ptr<ComputeUnit> make_multiprocessor(std::vector<std::unique_ptr<ComputeUnit>> units);
+/// One device of 1, 2 or 4 units of one configuration, whose intersections have so many beats: a single one is returned
+/// as it is. Throws InputError for other numbers.
+std::unique_ptr<ComputeUnit> make_multiprocessor(std::vector<std::unique_ptr<ComputeUnit>> units,
+                                                 int intersection_beats = kIntersectionBeats);
 
 }  // namespace raypool

@@ -12,7 +12,7 @@ inline constexpr int kRayWords = 12;                      ///< 48 bytes
 inline constexpr int kIntersectionWords = kPackageWords;  ///< 84 bytes
 inline constexpr int kBeatWords = 4;                      ///< 128 bits, one cycle of any pool or memory port
 inline constexpr int kRayBeats = 3;
-inline constexpr int kIntersectionBeats = 6;  ///< the last one carries word 20 and zeros
+inline constexpr int kIntersectionBeats = 6;  ///< of a whole one: the last carries word 20 and zeros
 
 /// Word numbers; a ray has words 0-11, an intersection is its ray followed by words 12-20.
 namespace word {
@@ -35,6 +35,23 @@ inline constexpr uint32_t kDepthMask = 0xffu;
 using Ray = std::array<uint32_t, kRayWords>;
 using Intersection = std::array<uint32_t, kIntersectionWords>;
 using Beat = std::array<uint32_t, kBeatWords>;
+
+/// How an intersection travels, and lies in ray memory: whole, or as a compact record, which has the words that kernels
+/// need.
+struct RecordLayout {
+  static constexpr uint8_t kAbsent = 255;
+  uint32_t words = kIntersectionWords;  ///< of the record
+  std::array<uint8_t, kIntersectionWords> place = {0,  1,  2,  3,  4,  5,  6,  7,  8,  9, 10,
+                                                   11, 12, 13, 14, 15, 16, 17, 18, 19, 20};  ///< [word] in the record
+};
+
+/// The record of an intersection, and zeros.
+inline Intersection packed(const Intersection& intersection, const RecordLayout& layout) {
+  Intersection record{};
+  for (size_t word = 0; word < intersection.size(); ++word)
+    if (layout.place[word] != RecordLayout::kAbsent) record[layout.place[word]] = intersection[word];
+  return record;
+}
 
 /// Whether a ray's weight is zero in each channel: whatever it finds adds nothing to the picture.
 inline bool is_black(const Ray& ray) {

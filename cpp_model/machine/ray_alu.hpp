@@ -22,7 +22,7 @@ class RayAlu {
   /// A task of a warp, from its issue to its end.
   struct Task {
     Opcode opcode = Opcode::Rin;
-    bool illegal = false;  ///< rld or rst of a word above 20
+    bool illegal = false;  ///< rld or rst of a word that an intersection has not
     uint32_t mask = 0;
 
     bool access() const { return opcode == Opcode::Rld || opcode == Opcode::Rst; }
@@ -41,7 +41,7 @@ class RayAlu {
     uint32_t parked_in = 0, parked_out = 0;    ///< warps with a rin; with a rout or rfb
     bool done = false, trace = false;          ///< trace: the task that is done is an rst
     uint32_t done_warp = 0;
-    bool fault = false;  ///< ray word above 20
+    bool fault = false;  ///< ray word that an intersection has not
     uint32_t fault_warp = 0;
   };
 
@@ -50,7 +50,7 @@ class RayAlu {
 
   void reset();
 
-  /// The instruction is the warp's task, before it arrives; `illegal`: the ray word is above 20.
+  /// The instruction is the warp's task, before it arrives; `illegal`: an intersection has not the ray word.
   void begin(uint32_t warp, const DecodedInstruction& instruction, uint32_t mask, bool illegal) {
     tasks_[warp] = {instruction.opcode, illegal, mask};
   }

@@ -36,7 +36,9 @@ class RayImport {
   explicit RayImport(const Configuration& configuration)
       : lane_bits_(lowest(configuration.lanes)),
         last_lane_(configuration.lanes - 1),
-        wide_(configuration.wide_ray_memory && configuration.lanes > 4) {}
+        wide_(configuration.wide_ray_memory && configuration.lanes > 4),
+        words_(static_cast<int>(configuration.intersection_words)),
+        beats_(static_cast<int>(configuration.intersection_beats())) {}
 
   void reset() { q_ = Registers{}; }
   const Registers& registers() const { return q_; }
@@ -77,13 +79,13 @@ class RayImport {
   /// package.
   bool beat(uint8_t set) {
     const int waited = wide_ ? q_.beat % 2 : 0;
-    q_.write = !wide_ || waited != 0 || q_.beat == kIntersectionBeats - 1;
+    q_.write = !wide_ || waited != 0 || q_.beat == beats_ - 1;
     q_.write_set = set;
     q_.write_thread = q_.received;
     const int word = (q_.beat - waited) * kBeatWords;
     q_.write_word = static_cast<uint32_t>(word);
-    q_.write_words = static_cast<uint32_t>(std::min((waited + 1) * kBeatWords, kIntersectionWords - word));
-    if (++q_.beat < kIntersectionBeats) return false;
+    q_.write_words = static_cast<uint32_t>(std::min((waited + 1) * kBeatWords, words_ - word));
+    if (++q_.beat < beats_) return false;
     q_.beat = 0;
     return true;
   }
@@ -96,7 +98,8 @@ class RayImport {
   }
 
   uint32_t lane_bits_, last_lane_;
-  bool wide_;  // two beats are written at a time
+  bool wide_;          // two beats are written at a time
+  int words_, beats_;  // of a package
   Registers q_;
 };
 

@@ -7,13 +7,14 @@
 
 namespace raypool {
 
-RaySlices::RaySlices(uint32_t warps, uint32_t lanes) : lanes_(lanes) {
+RaySlices::RaySlices(uint32_t warps, uint32_t lanes, uint32_t words)
+    : lanes_(lanes), word_count_(words), beats_((words + kBeatWords - 1) / kBeatWords) {
   warps_.resize(warps);
   reset();
 }
 
 void RaySlices::reset() {
-  words_.assign(warps_.size() * 3 * kIntersectionWords * lanes_, 0);
+  words_.assign(warps_.size() * 3 * word_count_ * lanes_, 0);
   for (Warp& warp : warps_) warp = Warp{};
   jobs_.clear();
   arriving_beat_ = 0;
@@ -28,7 +29,7 @@ void RaySlices::package_start() {
   arriving_warp_ = job.taken / lanes_;
   if (job.taken % lanes_ != 0) return;
   warps_[arriving_warp_].inputs.push_back(
-      {std::min(lanes_, job.threads - job.taken), 0, std::vector<uint32_t>(kIntersectionBeats * kBeatWords * lanes_)});
+      {std::min(lanes_, job.threads - job.taken), 0, std::vector<uint32_t>(beats_ * kBeatWords * lanes_)});
 }
 
 void RaySlices::package_end(Input& input) {
@@ -39,7 +40,7 @@ void RaySlices::package_end(Input& input) {
 void RaySlices::import_package(const Intersection& package) {
   package_start();
   Input& input = warps_[arriving_warp_].inputs.back();
-  for (uint32_t word = 0; word < kIntersectionWords; ++word) input.words[word * lanes_ + input.taken] = package[word];
+  for (uint32_t word = 0; word < word_count_; ++word) input.words[word * lanes_ + input.taken] = package[word];
   package_end(input);
 }
 
@@ -48,7 +49,7 @@ void RaySlices::import_beat(const Beat& beat) {
   Input& input = warps_[arriving_warp_].inputs.back();
   uint32_t* word = &input.words[arriving_beat_ * kBeatWords * lanes_ + input.taken];
   for (uint32_t i = 0; i < kBeatWords; ++i, word += lanes_) *word = beat[i];
-  if (++arriving_beat_ < kIntersectionBeats) return;
+  if (++arriving_beat_ < beats_) return;
   arriving_beat_ = 0;
   package_end(input);
 }
@@ -63,7 +64,7 @@ void RaySlices::swap_input(uint32_t number) {
   Warp& warp = warps_[number];
   const Input& input = warp.inputs.front();
   // Lanes without a package keep what the slice held, as in the RTL.
-  for (uint32_t word = 0; word < kIntersectionWords; ++word) {
+  for (uint32_t word = 0; word < word_count_; ++word) {
     std::memcpy(row(number, warp.input, word), &input.words[word * lanes_], input.lanes * sizeof(uint32_t));
   }
   warp.inputs.pop_front();

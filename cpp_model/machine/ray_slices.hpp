@@ -14,7 +14,8 @@ namespace raypool {
 
 class RaySlices {
  public:
-  RaySlices(uint32_t warps, uint32_t lanes);
+  /// Of slices with so many words a thread, which are those of a package.
+  RaySlices(uint32_t warps, uint32_t lanes, uint32_t words = kIntersectionWords);
   void reset();
 
   /// A launch will import packages for `threads` threads; they go to warps in order once earlier launches have theirs.
@@ -66,13 +67,14 @@ class RaySlices {
   void package_end(Input& input);
 
   uint32_t* row(uint32_t warp, uint32_t slice, uint32_t word) {
-    return &words_[((warp * 3 + slice) * kIntersectionWords + word) * lanes_];
+    return &words_[((warp * 3 + slice) * word_count_ + word) * lanes_];
   }
   const uint32_t* row(uint32_t warp, uint32_t slice, uint32_t word) const {
-    return &words_[((warp * 3 + slice) * kIntersectionWords + word) * lanes_];
+    return &words_[((warp * 3 + slice) * word_count_ + word) * lanes_];
   }
 
-  uint32_t lanes_;
+  uint32_t lanes_, word_count_;
+  uint32_t beats_;               ///< of a package
   std::vector<uint32_t> words_;  ///< [warp][slice][word][lane]
   std::vector<Warp> warps_;
   std::deque<Job> jobs_;

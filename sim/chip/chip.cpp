@@ -52,7 +52,7 @@ std::string fault_sentence(uint32_t unit, const Fault& fault) {
       meaning = "address outside the memory";
       break;
     case FaultCode::RayWordOutside:
-      meaning = "ray word above 20";
+      meaning = "ray word that an intersection has not";
       break;
   }
   return fmt::format("compute unit {} stopped with fault {} ({}) in warp {} at PC {}", unit, to_underlying(fault.code),

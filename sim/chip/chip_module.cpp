@@ -26,6 +26,8 @@ const ChipOptions& checked(const ChipOptions& options) {
   require_range("image height", options.height, 1, 65535);
   require_range("depth", options.depth, 1, kLargestDepth);
   check_configuration(options.configuration, "configuration " + options.configuration.name);
+  if (options.layout.words != options.configuration.intersection_words)
+    throw std::logic_error("the program imports records of another size than the configuration has");
   return options;
 }
 
@@ -38,7 +40,7 @@ Chip::Chip(const sc_core::sc_module_name& name, const ChipOptions& options)
               options.configuration.kernel_overlap),
       memory_port_("memory_port", options.configuration.chip),
       rays_("ray_pool", options.configuration.chip, options.depth),
-      intersections_("intersection_pool", options.configuration.chip),
+      intersections_("intersection_pool", options.configuration.chip, options.layout),
       frame_("frame_port", *options.frame),
       controller_("controller", options_),
       traverser_(make_traverser({*options.tracer, options.configuration.chip, options.device->units(), options.depth,

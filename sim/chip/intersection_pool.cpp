@@ -5,14 +5,16 @@
 
 namespace raypool::chip {
 
-IntersectionPool::IntersectionPool(const sc_core::sc_module_name& name, const ChipConfiguration& chip)
+IntersectionPool::IntersectionPool(const sc_core::sc_module_name& name, const ChipConfiguration& chip,
+                                   const RecordLayout& layout)
     : sc_module(name),
       capacity_(chip.intersection_pool_size),
+      layout_(layout),
+      beats_((layout.words + kBeatWords - 1) / kBeatWords),
       cycles_per_beat_(chip.intersection_pool_cycles_per_beat),
       pipelined_(chip.intersection_pool_pipelined),
-      service_cycles_(pipelined_
-                          ? std::max<uint64_t>(chip.intersection_pool_overhead, kIntersectionBeats * cycles_per_beat_)
-                          : chip.intersection_pool_overhead + kIntersectionBeats * cycles_per_beat_),
+      service_cycles_(pipelined_ ? std::max<uint64_t>(chip.intersection_pool_overhead, beats_ * cycles_per_beat_)
+                                 : chip.intersection_pool_overhead + beats_ * cycles_per_beat_),
       request_cycles_(std::max(2u, chip.intersection_pool_overhead) - 1) {
   device.bind(*this);
   traverser.bind(*this);
@@ -48,14 +50,15 @@ void IntersectionPool::give() {
   const ImportKind kind = wanting_;
   const Intersection& package = queue(kind).front();
   Leaving& leaving = leaving_.emplace_back();
-  std::copy(package.begin(), package.end(), leaving.words.begin());
+  const Intersection record = packed(package, layout_);
+  std::copy(record.begin(), record.end(), leaving.words.begin());
+  ledger->imported(wanting_unit_, package[word::kPixel]);
   queue(kind).pop_front();
   --reserved_[kind];
   ++taken_;
   fill_[kind].set(request_due_ - 1, size(kind));
-  ledger->imported(wanting_unit_, leaving.words[word::kPixel]);
   leaving.first_beat = std::max(request_due_ + 1, beats_from_);
-  beats_from_ = leaving.first_beat + kIntersectionBeats * cycles_per_beat_;
+  beats_from_ = leaving.first_beat + beats_ * cycles_per_beat_;
   register_from_ = leaving.first_beat;
   free_from_ = pipelined_ ? request_due_ + 1 : request_due_ - request_cycles_ + service_cycles_;
   if (leaving_.size() == 1) beat_due_ = leaving.first_beat;
@@ -68,7 +71,7 @@ void IntersectionPool::beat(Beat& beat) {
   if (beat_due_ != clock->cycle())
     throw std::logic_error("the device was not clocked when a beat of an intersection came");
   std::copy_n(&leaving_.front().words[next_beat_ * kBeatWords], kBeatWords, beat.begin());
-  if (++next_beat_ < kIntersectionBeats) {
+  if (++next_beat_ < beats_) {
     beat_due_ += cycles_per_beat_;
     return;
   }

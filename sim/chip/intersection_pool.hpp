@@ -1,11 +1,12 @@
 // The intersection pool: intersections of normal and of shadow rays, and with chip.culling those of normal rays that
 // need no reflection apart, a queue for each kind, behind one 128-bit port.
 //
-// An intersection costs the port its overhead and 6 beats: 8 cycles, as the thesis has it. There a request in cycle c
-// to an idle port is taken in c+1, and the beats move in c+2 .. c+7. With less overhead, 1, a request is taken while
-// the beats before it end; with more it is taken later. The oldest package of the kind goes first. Its place is free as
-// soon as its request is taken (the port keeps it in a register of its own). A pipelined port has two of these: it
-// takes the next request while the beats of the last package move, and then its beats follow at once.
+// A whole intersection costs the port its overhead and 6 beats: 8 cycles, as the thesis has it. There a request in
+// cycle c to an idle port is taken in c+1, and the beats move in c+2 .. c+7; a compact record has fewer beats. With
+// less overhead, 1, a request is taken while the beats before it end; with more it is taken later. The oldest package
+// of the kind goes first. Its place is free as soon as its request is taken (the port keeps it in a register of its
+// own). A pipelined port has two of these: it takes the next request while the beats of the last package move, and then
+// its beats follow at once.
 //
 // Whoever launches a kernel reserves its packages at once, so that available() never promises the same package twice.
 #pragma once
@@ -30,7 +31,8 @@ class IntersectionPool : public sc_core::sc_module,
                          public IntersectionSinkIf,
                          public IntersectionLevelIf {
  public:
-  IntersectionPool(const sc_core::sc_module_name& name, const ChipConfiguration& chip);
+  /// `layout`: of the records that leave.
+  IntersectionPool(const sc_core::sc_module_name& name, const ChipConfiguration& chip, const RecordLayout& layout = {});
 
   sc_core::sc_port<TimeIf> clock{"clock"};
   sc_core::sc_port<LedgerIf> ledger{"ledger"};
@@ -67,6 +69,8 @@ class IntersectionPool : public sc_core::sc_module,
   };
 
   size_t capacity_;  // of each kind
+  RecordLayout layout_;
+  size_t beats_;  // of a record
   uint64_t cycles_per_beat_;
   bool pipelined_;
   uint64_t service_cycles_;  // that a package keeps the port

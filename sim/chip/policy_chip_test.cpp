@@ -141,7 +141,7 @@ TEST_P(EveryPolicy, DrawsThePictureOfTheNativeRenderer) {
       for (const auto& [width, height, depth] : {std::array{37, 29, 1}, {23, 17, 5}, {1, 1, 254}}) {
         SCOPED_TRACE(testing::Message() << scene.triangles.size() << " triangles, " << warps << "w" << lanes << "c, "
                                         << units << " units, " << width << "x" << height << " depth " << depth);
-        test::RealFrame run(warps, lanes, width, height, depth, scene);
+        test::RealFrame run(warps, lanes, width, height, depth, scene, false, units == 1 ? kIntersectionWords : 16);
         choose(run.options);
         run.options.configuration.chip.shading = width == 23 ? Shading::Traverser : Shading::Kernel;
         run.set_device(make_model(run.options.configuration, run.image.memory, units).device);

@@ -385,6 +385,42 @@ TEST(IntersectionPool, HidesTheOverheadBehindTheBeatsBeforeWhenPipelined) {
   }
 }
 
+TEST(IntersectionPool, GivesTheCompactRecordOfAPackage) {
+  RecordLayout layout;
+  layout.words = 14;
+  layout.place.fill(RecordLayout::kAbsent);
+  layout.place[word::kPixel] = word::kPixel;
+  layout.place[word::kMaterial] = 13;
+  layout.place[word::kDistance] = word::kLimit;
+  Simulation simulation;
+  ChipClock clock("clock");
+  PixelLedger ledger("pixel_ledger", 1, 64, 64);
+  IntersectionPool pool("intersection_pool", {}, layout);
+  pool.clock(clock.now);
+  pool.ledger(ledger.records);
+  ledger.launched(0, RayKernel::CastSecondary, 2);
+  std::vector<uint64_t> beats;
+  std::vector<uint32_t> words;
+  test::drive(simulation, clock, [&](uint64_t cycle) {
+    for (uint32_t i = 1; cycle == 1 && i <= 2; ++i) pool.put(ImportKind::Normal, numbered(i));
+    if (cycle >= 10 && pool.taken() < 2) pool.request(0, ImportKind::Normal);
+    if (pool.beat_due() <= cycle) {
+      Beat data;
+      pool.beat(data);
+      beats.push_back(cycle);
+      words.insert(words.end(), data.begin(), data.end());
+    }
+    return cycle < 60;
+  });
+  EXPECT_EQ(beats, (std::vector<uint64_t>{12, 13, 14, 15, 18, 19, 20, 21}));
+  ASSERT_EQ(words.size(), 32u);
+  for (uint32_t i = 0; i < 32; ++i) {
+    const uint32_t package = 100 * (1 + i / 16), word = i % 16;
+    EXPECT_EQ(words[i], word == word::kLimit ? package + word::kDistance : word == 13 ? package + word::kMaterial : 0);
+  }
+  EXPECT_EQ(pool.busy_cycles(), 12u);
+}
+
 TEST(IntersectionPool, KeepsTheKindsApart) {
   Bench bench(4);
   const std::array<ImportKind, 4> kinds = {ImportKind::Normal, ImportKind::Shadow, ImportKind::Normal,

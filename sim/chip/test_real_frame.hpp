@@ -14,6 +14,7 @@
 namespace raypool::test {
 
 struct RealFrame {
+  const Configuration configuration;
   const Scene scene;
   const Program& program;
   MemoryImage image = build_memory(program, scene);
@@ -25,11 +26,13 @@ struct RealFrame {
   ChipOptions options;
 
   RealFrame(uint32_t warps, uint32_t lanes, uint32_t width, uint32_t height, uint32_t depth,
-            Scene drawn = make_cornell(), bool culling = false)
-      : scene(std::move(drawn)), program(ray_kernel_program({false, false, culling})), frame(width, height) {
-    options.configuration.chip.culling = culling;
-    options.configuration.warps = warps;
-    options.configuration.lanes = lanes;
+            Scene drawn = make_cornell(), bool culling = false, uint32_t intersection_words = kIntersectionWords)
+      : configuration(machine(warps, lanes, intersection_words, culling)),
+        scene(std::move(drawn)),
+        program(ray_kernel_program(KernelTarget(configuration))),
+        frame(width, height) {
+    options.configuration = configuration;
+    options.layout = ray_record_layout(configuration);
     options.memory = &image.memory;
     options.program_length = size32(program.code);
     for (size_t i = 0; i < kRayKernels; ++i) options.entries[i] = program.entries.at(std::string(kRayKernelNames[i]));
@@ -46,6 +49,16 @@ struct RealFrame {
   void set_device(std::unique_ptr<ComputeUnit> made) {
     device = std::move(made);
     options.device = device.get();
+  }
+
+ private:
+  static Configuration machine(uint32_t warps, uint32_t lanes, uint32_t intersection_words, bool culling) {
+    Configuration configuration;
+    configuration.chip.culling = culling;
+    configuration.warps = warps;
+    configuration.lanes = lanes;
+    configuration.intersection_words = intersection_words;
+    return configuration;
   }
 };
 

@@ -105,7 +105,7 @@ std::unique_ptr<ComputeUnit> make_unit(const EngineOptions& options, Memory& mem
   if (options.engine == Engine::Functional) {
     std::vector<std::unique_ptr<ComputeUnit>> units;
     for (int i = 0; i < options.units; ++i) units.push_back(make_functional_unit(configuration, memory));
-    return make_multiprocessor(std::move(units));
+    return make_multiprocessor(std::move(units), static_cast<int>(configuration.intersection_beats()));
   }
   if (options.engine == Engine::Model)
     return make_model(configuration, memory, static_cast<uint32_t>(options.units)).device;

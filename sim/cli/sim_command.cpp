@@ -121,6 +121,7 @@ ChipOptions chip_options(const RunRecord& record, const Scene& scene, MemoryImag
   chip.memory = &image.memory;
   chip.program_length = size32(program.code);
   for (size_t i = 0; i < kRayKernels; ++i) chip.entries[i] = program.entries.at(std::string(kRayKernelNames[i]));
+  chip.layout = ray_record_layout(record.configuration);
   chip.arguments = camera_arguments(scene, record.width, record.height, record.configuration.contents());
   chip.width = record.width;
   chip.height = record.height;

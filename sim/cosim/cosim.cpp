@@ -171,9 +171,10 @@ class RandomHost {
     inputs.import_beat_valid = true;
     for (size_t i = 0; i < kBeatWords; ++i) {
       const size_t word = import_beat_ * size_t{kBeatWords} + i;
-      inputs.import_beat[i] = word < kIntersectionWords ? random_word(mix(seed_, 600 + word, packages_given_)) : 0;
+      inputs.import_beat[i] =
+          word < program_.intersection_words ? random_word(mix(seed_, 600 + word, packages_given_)) : 0;
     }
-    if (++import_beat_ < kIntersectionBeats) return;
+    if (++import_beat_ * kBeatWords < program_.intersection_words) return;
     import_beat_ = 0;
     ++packages_given_;
   }
@@ -194,7 +195,7 @@ class RandomHost {
   size_t sending_ = 0;
   int beat_ = 0;  ///< of lines_[sending_]
   uint64_t packages_asked_ = 0, packages_given_ = 0;
-  int import_beat_ = 0;
+  uint32_t import_beat_ = 0;
 };
 
 }  // namespace

@@ -246,7 +246,7 @@ void Coverage::last_of_all(const RetireEvent& event, const Instruction& instruct
   if (writes_predicate(*instruction.info) && instruction.rd == kPredicates - 1 &&
       (event.predicate >> (lanes_ - 1) & 1) != 0)
     hit(Event::LastPredicate);
-  if (opcode == Opcode::Rst && instruction.x == kIntersectionWords - 1) hit(Event::LastWord);
+  if (opcode == Opcode::Rst && instruction.x + 1u == configuration_.intersection_words) hit(Event::LastWord);
   if (opcode == Opcode::Ld) hit(Event::LastLoad);
   if (opcode == Opcode::St) hit(Event::LastStore);
 }
@@ -444,8 +444,10 @@ void Coverage::pools(const UnitOutputs& outputs, const UnitInputs& inputs, const
   if (import_beat_ > 0 && last_import_beat_ + 1 != now_) hit(Event::ImportGap);
   if (import_beat_ == 0 && last_import_beat_ + 1 == now_) hit(Event::ImportTwice);
   last_import_beat_ = now_;
-  if (units_ == 1) set_written_[warps_[import_thread_ / lanes_].roles[0]] = now_;
-  import_beat_ = (import_beat_ + 1) % kIntersectionBeats;
+  // An engine without time takes a launch while packages of the one before still come.
+  const size_t importing = import_thread_ / lanes_;
+  if (units_ == 1 && importing < warps_.size()) set_written_[warps_[importing].roles[0]] = now_;
+  import_beat_ = (import_beat_ + 1) % configuration_.intersection_beats();
   if (import_beat_ == 0) ++import_thread_;
 }
 

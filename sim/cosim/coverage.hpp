@@ -128,7 +128,7 @@ class Coverage : public RunObserver {
   std::array<Read, 32 * kMostUnits> reads_{};  ///< [id]; 16 of each unit is its instruction cache
   uint64_t reads_asked_ = 0, data_fetches_ = 0;
   uint64_t last_line_end_ = 0, last_beat_ = 0, last_import_beat_ = 0;
-  int import_beat_ = 0;
+  uint32_t import_beat_ = 0;
   uint32_t import_thread_ = 0;             ///< whose package comes; of one unit
   std::array<uint64_t, 3> set_written_{};  ///< last beat of a package for the set
   std::array<uint64_t, kMostUnits> made_{},

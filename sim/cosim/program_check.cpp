@@ -28,6 +28,7 @@ class Checker {
         warps_(configuration.warps),
         lanes_(configuration.lanes),
         overlap_(configuration.kernel_overlap),
+        intersection_words_(configuration.intersection_words),
         defined_(warps_ * kRegisters),
         slices_(warps_),
         arguments_(program.arguments) {}
@@ -119,7 +120,7 @@ class Checker {
   }
 
   std::string read_words(uint32_t warp, int from, int to, uint32_t mask) const {
-    for (int n = from; n < to && n < kIntersectionWords; ++n)
+    for (int n = from; n < to && static_cast<uint32_t>(n) < intersection_words_; ++n)
       if ((mask & ~slices_[warp][n]) != 0) return fmt::format("word {} of the current slice is undefined", n);
     return "";
   }
@@ -151,7 +152,7 @@ class Checker {
     if (i.writes_register) defined_[step.warp * kRegisters + i.rd] |= step.mask;
     auto& words = slices_[step.warp];
     if (i.kind == Kind::Swap) words.fill(i.opcode == Opcode::Rin ? ~0u : 0);
-    if (i.opcode == Opcode::Rst && i.x < kIntersectionWords) words[i.x] |= step.mask;
+    if (i.opcode == Opcode::Rst && i.x < intersection_words_) words[i.x] |= step.mask;
   }
 
   const RandomProgram& program_;
@@ -159,6 +160,7 @@ class Checker {
   FunctionalCore core_;
   uint32_t warps_, lanes_;
   bool overlap_;
+  uint32_t intersection_words_;
   std::vector<uint32_t> defined_;                                 ///< [warp][register], a bit a lane
   std::vector<std::array<uint32_t, kIntersectionWords>> slices_;  ///< [warp][word of the current slice], a bit a lane
   std::unordered_map<uint32_t, Touched> touched_;                 ///< [address]

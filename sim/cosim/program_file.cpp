@@ -116,6 +116,7 @@ SavedProgram parse_saved_program(const std::string& text, const std::string& whe
     saved.note = json.at("note").get<std::string>();
     saved.configuration = parse_configuration(json.at("configuration").dump(), where);
     program.units = json.at("units").get<int>();
+    program.intersection_words = saved.configuration.intersection_words;
     program.seed = json.at("seed").get<uint64_t>();
     program.profile = json.at("profile").get<std::string>();
     program.faults = faults_of(json);

@@ -324,7 +324,7 @@ void ProgramStatements::memory() {
 void ProgramStatements::ray(bool top) {
   if (!top) {
     if (in_function_) return plain();
-    const int words = chance(2) ? kRayWords : 1 + static_cast<int>(below(kIntersectionWords));
+    const int words = chance(2) ? kRayWords : 1 + static_cast<int>(below(intersection_words_));
     for (int n = 0; n < words;) n += store_words(n, words - n);
     for (int n = 0; n < 2; ++n) emit_word(Opcode::Rld, below(static_cast<uint32_t>(words)), destination());
     if (words >= kRayWords) rotate();
@@ -335,7 +335,7 @@ void ProgramStatements::ray(bool top) {
     load_word(chance(2) ? any_predicate() : 0);
   } else if (written_words_ >= kRayWords && chance(2)) {
     rotate();
-  } else if (written_words_ > 0 && (written_words_ == kIntersectionWords || chance(3))) {
+  } else if (written_words_ > 0 && (written_words_ == static_cast<int>(intersection_words_) || chance(3))) {
     const auto words = static_cast<uint32_t>(written_words_);
     if (configuration_.triples && words >= kElements && chance(2))
       emit_word(Opcode::Rst3, below(words - kElements + 1), 0, any_predicate());
@@ -343,7 +343,7 @@ void ProgramStatements::ray(bool top) {
       emit_word(Opcode::Rst, below(words), 0, any_predicate());
   } else {
     // Words are written from 0 up, unmasked the first time, so that nothing undefined is ever read or exported.
-    const int count = std::min<int>(kIntersectionWords - written_words_, 1 + below(14));
+    const int count = std::min<int>(static_cast<int>(intersection_words_) - written_words_, 1 + below(14));
     for (const int end = written_words_ + count; written_words_ < end;)
       written_words_ += store_words(written_words_, end - written_words_);
   }

@@ -34,6 +34,7 @@ class ProgramStatements : public ProgramEmitter {
         configuration_(configuration),
         warps_(configuration.warps),
         stack_depth_(configuration.stack_depth),
+        intersection_words_(configuration.intersection_words),
         instruction_cache_bytes_(configuration.instruction_cache_bytes),
         profile_(profile),
         operands_(seed) {}
@@ -103,6 +104,7 @@ class ProgramStatements : public ProgramEmitter {
   Configuration configuration_;
   uint32_t warps_;
   int stack_depth_;
+  uint32_t intersection_words_;
   uint32_t instruction_cache_bytes_;
   ProgramProfile profile_;
   arith::OperandSource operands_;

@@ -28,6 +28,7 @@ class Generator : public ProgramStatements {
     result_.seed = seed;
     result_.profile = std::string(profile_.name);
     result_.units = units;
+    result_.intersection_words = intersection_words_;
     // Kernels that run at the same time must have words of their own each.
     together_ = units > 1 || configuration.kernel_overlap;
     kernels_ = 1 + below(profile_.most_kernels + (together_ ? 3 * static_cast<uint32_t>(units) : 0));
@@ -274,14 +275,14 @@ class Generator : public ProgramStatements {
   void take_import() {
     emit(Opcode::Rin, 0, 0, 0, control_guard());
     import_pending_ = false;
-    written_words_ = kIntersectionWords;
+    written_words_ = static_cast<int>(intersection_words_);
     // Packages of other warps are still coming, into a set that this one uses.
     if (configuration_.wide_ray_memory && chance(2)) {
       for (uint32_t n = 4 + below(12); n > 0; --n) {
         if (chance(2))
           load_word(0);
         else
-          emit_word(Opcode::Rst, below(kIntersectionWords), 0, any_predicate());
+          emit_word(Opcode::Rst, below(intersection_words_), 0, any_predicate());
       }
     }
   }
@@ -291,7 +292,8 @@ class Generator : public ProgramStatements {
       case FaultCode::IllegalInstruction:
         if (chance(4) && missing_instruction()) return;
         if (configuration_.triples && chance(4)) {
-          emit_word(chance(2) ? Opcode::Rld3 : Opcode::Rst3, kLastTripleWord + 1 + below(31 - kLastTripleWord));
+          const uint32_t outside = last_triple_word(intersection_words_) + 1;
+          emit_word(chance(2) ? Opcode::Rld3 : Opcode::Rst3, outside + below(chance(2) ? 1 : 32 - outside));
           return;
         }
         for (;;) {
@@ -333,7 +335,7 @@ class Generator : public ProgramStatements {
         return;
       }
       default:
-        emit_word(chance(2) ? Opcode::Rld : Opcode::Rst, kIntersectionWords + below(32 - kIntersectionWords));
+        emit_word(chance(2) ? Opcode::Rld : Opcode::Rst, intersection_words_ + below(32 - intersection_words_));
         return;
     }
   }

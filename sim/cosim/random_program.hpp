@@ -46,6 +46,7 @@ struct RandomProgram {
       kernels;  ///< launched one after the other; after a fault the unit is reset, and goes on with the next
   StallPlan stalls;
   int units = 1;  ///< compute units of the device; with several, each kernel has words of its own
+  uint32_t intersection_words = kIntersectionWords;  ///< of the machine: what is imported has as many
 
   uint64_t seed = 0;
   std::string profile;          ///< name of the mix of instructions

@@ -8,7 +8,7 @@ namespace raypool::lockstep {
 
 Inspection::Inspection(const Configuration& configuration, const ComputeUnit& rtl,
                        const std::vector<CycleUnit*>& models)
-    : rtl_(&rtl), models_(&models) {
+    : rtl_(&rtl), models_(&models), intersection_beats_(static_cast<int>(configuration.intersection_beats())) {
   units_.reserve(models.size());
   for (uint32_t u = 0; u < models.size(); ++u) units_.emplace_back(configuration, rtl, *models[u], u);
 }
@@ -19,7 +19,7 @@ void Inspection::reset(uint32_t program_length) {
   block_scheduler_ = {};
   memory_ = {};
   exports_ = frames_ = {};
-  imports_ = {};
+  imports_ = ImportArbiter(intersection_beats_);
   before_ = {};
 }
 

@@ -163,6 +163,7 @@ class Inspection {
   BlockScheduler block_scheduler_;
   UnitMemoryArbiter memory_;
   PortArbiter exports_, frames_;
+  int intersection_beats_;
   ImportArbiter imports_;
   UnitInputs before_;
 };

@@ -51,6 +51,7 @@ std::optional<ModeTiming> time_mode(const Scene& scene, int depth, const Configu
   chip.memory = &image.memory;
   chip.program_length = size32(program.code);
   for (size_t i = 0; i < kRayKernels; ++i) chip.entries[i] = program.entries.at(std::string(kRayKernelNames[i]));
+  chip.layout = ray_record_layout(configuration);
   chip.arguments = camera_arguments(scene, kTimedSize, kTimedSize, configuration.contents());
   chip.width = chip.height = kTimedSize;
   chip.depth = depth;

@@ -222,6 +222,7 @@ Drawing ExtremeMachine::draw_on_unit(const ExtremeFrame& frame) const {
   chip.memory = &image.memory;
   chip.program_length = size32(program.code);
   for (size_t i = 0; i < kRayKernels; ++i) chip.entries[i] = program.entries.at(std::string(kRayKernelNames[i]));
+  chip.layout = ray_record_layout(configuration_);
   chip.arguments = camera_arguments(frame.scene, frame.width, frame.height, configuration_.contents());
   if (frame.change_arguments) frame.change_arguments(chip.arguments);
   chip.width = frame.width;

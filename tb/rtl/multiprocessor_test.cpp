@@ -42,8 +42,9 @@ class RtlMultiprocessor : public testing::TestWithParam<int> {
   std::unique_ptr<ComparedDevice> device() const {
     std::vector<std::unique_ptr<ComputeUnit>> units;
     for (int i = 0; i < GetParam(); ++i) units.push_back(load_rtl_unit(single_, configuration()));
-    return std::make_unique<ComparedDevice>(load_rtl_unit(several_, configuration(), GetParam()),
-                                            make_multiprocessor(std::move(units)));
+    return std::make_unique<ComparedDevice>(
+        load_rtl_unit(several_, configuration(), GetParam()),
+        make_multiprocessor(std::move(units), static_cast<int>(configuration().intersection_beats())));
   }
 
   std::string single_, several_;

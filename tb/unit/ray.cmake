@@ -1,12 +1,16 @@
-# Bench of the ray ALU for narrow and wide warps: class Vray_alu_<warps>x<lanes>, and with ray memory as wide as the
-# lanes: Vray_alu_<warps>x<lanes>_wide.
+# Bench of the ray ALU for narrow and wide warps: class Vray_alu_<warps>x<lanes>, with compact records of some words
+# Vray_alu_<warps>x<lanes>_<words>words, and with ray memory as wide as the lanes also _wide.
 add_executable(ray_alu_test ${CMAKE_CURRENT_LIST_DIR}/ray_alu_test.cpp)
 target_link_libraries(ray_alu_test PRIVATE GTest::gtest_main)
-foreach(size 1x1 2x2 1x32 4x4 8x8 32x1 2x8_wide 1x32_wide)
-  string(REGEX MATCH "^([0-9]+)x([0-9]+)(_wide)?$" size ${size})
+foreach(size 1x1 2x2 1x32 4x4 8x8 32x1 2x8_wide 1x32_wide 2x2_12words 8x8_16words 2x8_18words_wide)
+  string(REGEX MATCH "^([0-9]+)x([0-9]+)(_([0-9]+)words)?(_wide)?$" size ${size})
   set(warps ${CMAKE_MATCH_1})
   set(lanes ${CMAKE_MATCH_2})
-  if(CMAKE_MATCH_3)
+  set(words 21)
+  if(CMAKE_MATCH_4)
+    set(words ${CMAKE_MATCH_4})
+  endif()
+  if(CMAKE_MATCH_5)
     set(wide 1)
   else()
     set(wide 0)
@@ -14,6 +18,6 @@ foreach(size 1x1 2x2 1x32 4x4 8x8 32x1 2x8_wide 1x32_wide)
   verilate(ray_alu_test SOURCES ${RAYPOOL_RTL}/ray_alu.v PREFIX Vray_alu_${size} TOP_MODULE ray_alu
     OPT_SLOW -w OPT_FAST -O2 -w OPT_GLOBAL -O1 -w
     VERILATOR_ARGS -O3 --default-language 1364-2005 -y ${RAYPOOL_RTL} -I${RAYPOOL_RTL} -GWARPS=${warps}
-    -GLANES=${lanes} -GWIDE_RAY_MEMORY=${wide})
+    -GLANES=${lanes} -GWIDE_RAY_MEMORY=${wide} -GINTERSECTION_WORDS=${words})
 endforeach()
 gtest_discover_tests(ray_alu_test DISCOVERY_TIMEOUT 60)

@@ -2,7 +2,7 @@
 // every word read, every ray and frame contribution (order, lanes, content), which package goes to which thread, the
 // rules of requests, stable payloads, the trace, exporting_o and import_active_o to the cycle, bounded time. What the
 // unit breaks is thrown, with cycle and seed. MODEL is a struct with the Verilated class as Unit and kWarps, kLanes,
-// kWide.
+// kWide, kWords.
 #pragma once
 
 #include <verilated.h>
@@ -48,7 +48,8 @@ class RayAluBench {
   static constexpr uint32_t kWarps = Model::kWarps;
   static constexpr uint32_t kContents = kLanes * kWarps;
   static constexpr uint32_t kAllLanes = static_cast<uint32_t>((uint64_t{1} << kLanes) - 1);
-  static constexpr uint32_t kWords = 21;
+  static constexpr uint32_t kWords = Model::kWords;  ///< of an intersection
+  static constexpr uint32_t kBeats = (kWords + 3) / 4;
   static constexpr uint64_t kSteps = kLanes > 4 && !Model::kWide ? kLanes / 4 : 1;  ///< port cycles of an access
   static constexpr uint64_t kAccessCycles = kSteps + 1;  ///< from arrival to done, without a conflict
   static constexpr uint64_t kSwapCycles = 2;
@@ -245,7 +246,7 @@ class RayAluBench {
     check(unit_->fault_code_o == 7, "the fault's code is not 7");
     const auto& flight = flights_[fault_warp];
     check(flight && (flight->task.op == RayOp::Rld || flight->task.op == RayOp::Rst) && flight->task.word >= kWords,
-          "a fault without a word above 20");
+          "a fault at a word that an intersection has");
     check(flight->start + 1 == cycle, "the fault is not in the cycle after arrival");
     ++faults;
   }
@@ -266,7 +267,8 @@ class RayAluBench {
     check(traced == (task.op == RayOp::Rst), "the ray trace does not come with the rst's end, and it alone");
     check(duration[warp] >= (task.op == RayOp::Rld || task.op == RayOp::Rst ? kAccessCycles : kSwapCycles),
           "done too early");
-    if (task.op == RayOp::Rld || task.op == RayOp::Rst) check(task.word < kWords, "a word above 20 was accessed");
+    if (task.op == RayOp::Rld || task.op == RayOp::Rst)
+      check(task.word < kWords, "a word that an intersection has not was accessed");
     Set& current = slices.sets[slices.current];
     switch (task.op) {
       case RayOp::Rin:
@@ -340,7 +342,7 @@ class RayAluBench {
   void take_beat() {
     if (unit_->import_beat_valid_i) {
       last_event_ = cycle;
-      if (++beat_ == 6) {
+      if (++beat_ == kBeats) {
         beat_ = 0;
         Slices& slices = slices_[received_ / kLanes];
         for (uint32_t word = 0; word < kWords; ++word) {

@@ -120,8 +120,8 @@ module check #(parameter [0:0] TRIPLES = 1'b1) (
       assert (!(steps && stepped_q));
       assert (!(fetched && fetched_q));
       assert (!fetch || (stepped_q && fetch_pc == stepped_pc_q));
-      assert (!read || isa_legal(instruction, 1'b0, TRIPLES));
-      assert (!illegal || (fetched_q && !isa_legal(fetched_instruction_q, 1'b0, TRIPLES)));
+      assert (!read || isa_legal(instruction, 1'b0, TRIPLES, 5'd21));
+      assert (!illegal || (fetched_q && !isa_legal(fetched_instruction_q, 1'b0, TRIPLES, 5'd21)));
       assert (!fetch || fetch_pc < length);
       assert (!(step && (read || reads_q != 2'd0) && control));
       assert (!(halt_i && (step || fetch || want)));

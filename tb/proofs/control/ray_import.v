@@ -7,6 +7,8 @@
 // @proves a slice is full from its last package on until it is taken; the import ends with the launch's last package
 // @parameters WIDE=1
 // @parameters WIDE=0
+// @parameters WIDE=1 WORDS=18
+// @parameters WIDE=0 WORDS=16
 // @break ray_import s/outstanding_next != 2'd2/outstanding_q != 2'd2/
 // @break ray_import s/!full_q\[request_warp/!full_q[receive_warp/
 // @break ray_import s/requested_next != threads_q/requested_q != threads_q/
@@ -20,11 +22,12 @@
 // @break ray_import s/if \(launch_end\) active_o <= 1'b0;/if (slice_end) active_o <= 1'b0;/
 // @break ray_import s/if \(take_i\) full_q\[take_warp_i\]/if (take_i) full_q[0]/
 `default_nettype none
-module check #(parameter [0:0] WIDE = 1'b1) (
+module check #(parameter [0:0] WIDE = 1'b1, parameter integer WORDS = 21) (
   input wire clk_i, start_i, request_ready_i, beat_valid_i, take_i, take_warp_i, input wire [1:0] start_kind_i,
   input wire [2:0] start_threads_i, input wire [3:0] beat_i, input_set_i
 );
-  localparam [2:0] LAST_BEAT = 3'd5;
+  localparam [2:0] LAST_BEAT = (WORDS + 3) / 4 - 1;
+  localparam [3:0] LAST_WORDS = 4'b1111 >> ((4 - WORDS % 4) % 4);
   reg rst_n = 1'b0;
   always @(posedge clk_i) rst_n <= 1'b1;
 
@@ -34,7 +37,7 @@ module check #(parameter [0:0] WIDE = 1'b1) (
   wire [4:0] write_word;
   wire [7:0] write_mask;
   wire [255:0] write_data;
-  ray_import #(.WARPS(2), .LANES(2), .WARP_BITS(1), .WIDE(WIDE)) dut (
+  ray_import #(.WARPS(2), .LANES(2), .WARP_BITS(1), .INTERSECTION_WORDS(WORDS), .WIDE(WIDE)) dut (
     .clk_i(clk_i), .rst_ni(rst_n), .start_i(start_i), .start_kind_i(start_kind_i),
     .start_threads_i({8'd0, start_threads_i}), .active_o(active), .request_valid_o(request_valid),
     .request_kind_o(request_kind), .request_ready_i(request_ready_i), .beat_valid_i(beat_valid_i),
@@ -78,7 +81,7 @@ module check #(parameter [0:0] WIDE = 1'b1) (
   reg [1:0] set_q, thread_q;
   reg [3:0] bits_q, before_q;
   always @(posedge clk_i) begin
-    due_q <= beat_valid_i && rst_n && (!WIDE || beat_q[0]);
+    due_q <= beat_valid_i && rst_n && (!WIDE || beat_q[0] || beat_q == LAST_BEAT);
     if (beat_valid_i) begin
       number_q <= beat_q;
       thread_q <= received_q[1:0];
@@ -89,7 +92,7 @@ module check #(parameter [0:0] WIDE = 1'b1) (
   end
   wire [3:0] low = {write_data[96], write_data[64], write_data[32], write_data[0]};
   wire [3:0] high = {write_data[224], write_data[192], write_data[160], write_data[128]};
-  wire [3:0] words = number_q == LAST_BEAT ? 4'b0001 : 4'b1111;
+  wire [3:0] words = number_q == LAST_BEAT ? LAST_WORDS : 4'b1111;
 
   always @* begin
     assume (rst_n || !(start_i || beat_valid_i || take_i));
@@ -107,8 +110,8 @@ module check #(parameter [0:0] WIDE = 1'b1) (
       if (due_q) begin
         assert (write_set == set_q && write_thread == {8'd0, thread_q});
         assert (write_word == (WIDE ? {number_q[2:1], 3'b000} : {number_q, 2'b00}));
-        assert (write_mask == (WIDE ? {words, 4'b1111} : {4'b0000, words}));
-        assert (WIDE ? high == bits_q && low == before_q : low == bits_q);
+        assert (write_mask == (WIDE && number_q[0] ? {words, 4'b1111} : {4'b0000, words}));
+        assert (WIDE && number_q[0] ? high == bits_q && low == before_q : low == bits_q);
       end
     end
   end
