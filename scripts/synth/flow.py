@@ -1,11 +1,12 @@
 """From a configuration to a timed netlist: elaborate, map, time, map the blocks on failing paths for speed,
-time again.
+time again; in the end win area back where speed was not needed.
 """
 import dataclasses
 import fcntl
 import hashlib
 import json
 import os
+from collections import Counter
 from dataclasses import dataclass, field
 
 from . import elaborate, fanout, macros, mapping, timing
@@ -18,6 +19,8 @@ from .netlist import Netlist
 CLOSURE_ROUNDS = 4
 # Failing end points whose paths are looked at in a round.
 PATHS_A_ROUND = 60
+# What a kind of block must save to be tried with a lower effort again, as a share of all logic.
+WORTH_TRYING = 0.0005
 # The lock file of each folder that this program works in.
 LOCKS = {}
 
@@ -184,6 +187,55 @@ def next_effort(design, identities):
     return set()
 
 
+def lower_efforts(design, mapper):
+    """What would save area and is fast enough alone: [(um2 of all its instances, identity, effort)], the most first."""
+    netlist = design.netlist
+    places = Counter(identity for _, identity in netlist.instances() if identity in netlist.modules)
+    slower = {}
+    for identity in places:
+        kind, effort = design.kinds[identity], design.efforts.get(identity, 0)
+        # The first effort is area alone where that was fast enough.
+        small = mapper.result(kind, 0)["way"] == "area"
+        slower[identity] = [*range(effort), *([] if small else [mapping.AREA_EFFORT])]
+    late = [i for i, efforts in slower.items() if mapping.AREA_EFFORT in efforts]
+    mapper.map_all([design.kinds[i] for i in late], dict.fromkeys(late, mapping.AREA_EFFORT))
+    worth = WORTH_TRYING * sum(netlist.own_area(i) * n for i, n in places.items())
+    found = []
+    for identity, efforts in slower.items():
+        kind = design.kinds[identity]
+        now = mapper.area(kind, design.efforts.get(identity, 0))
+        for effort in efforts:
+            saved = (now - mapper.area(kind, effort)) * places[identity]
+            if saved > worth and mapper.result(kind, effort)["delay_ps"] < 1000 * design.clock_ns:
+                found.append((saved, identity, effort))
+    return sorted(found, reverse=True)
+
+
+def win_back(design, work, slack):
+    """Gives blocks a lower effort where the whole is as fast without the higher one: the first effort looks at a block
+    alone, and a round for speed takes all that lies on a failing path, whether it had to be faster or another one had.
+    """
+    needed = min(slack, 0.0)
+    done = {}
+    for saved, identity, effort in lower_efforts(design, mapper_of(design)):
+        if identity in done:
+            continue
+        before = design.efforts.get(identity, 0)
+        design.efforts[identity] = effort
+        map_design(design)
+        reached = time_design(design, work)
+        name, kge = design.kinds[identity].name, design.library.kge(saved)
+        if reached >= needed:
+            done[identity] = effort
+            progress(f"synth: slack {reached:+.3f} ns; {kge:.2f} kGE won back: {name}")
+        else:
+            design.efforts[identity] = before
+            progress(f"synth: slack {reached:+.3f} ns; {kge:.2f} kGE needed for speed: {name}")
+    design.efforts = {i: effort for i, effort in design.efforts.items() if effort}
+    map_design(design)
+    return time_design(design, work)
+
+
 def synthesise(design):
     """The whole of it. design.netlist and design.endpoints hold the result."""
     work = prepare(design)
@@ -215,4 +267,4 @@ def synthesise(design):
         design.efforts.update({i: design.efforts.get(i, 0) + 1 for i in more})
         map_design(design)
         slack = time_design(design, work)
-    return slack
+    return win_back(design, work, slack)

@@ -46,6 +46,8 @@ ABC_SCRIPTS = {
 # From this effort on every way is tried and the fastest taken.
 FAST_EFFORT = 2
 LAST_EFFORT = 3
+# Area however slow: only for blocks that turn out to have the time, when the whole has been timed.
+AREA_EFFORT = 4
 
 
 def efforts_of(library):
@@ -59,6 +61,7 @@ def efforts_of(library):
         ([again["way"]], again["share"]),
         (["speed", "levels"], FAST_SHARE),
         (["speed", "levels"], LAST_SHARE),
+        (["area"], LOGIC_SHARE),
     ]
 
 
@@ -214,6 +217,16 @@ write_json {result}
             if os.path.exists(leftover):
                 os.remove(leftover)
         return kind
+
+    def result(self, kind, effort):
+        """A kept result: its way, its delay and its cells."""
+        with open(self.path(kind, effort), encoding="utf-8") as file:
+            return json.load(file)
+
+    def area(self, kind, effort):
+        """um2 of the cells of a kept result, before large nets get buffers."""
+        types = [cell["type"] for cell in self.result(kind, effort)["cells"].values()]
+        return sum(self.library.cells[t].area for t in types if t in self.library.cells)
 
     def kept(self, kind, effort):
         """The path of a kept result, or None."""

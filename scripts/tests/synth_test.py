@@ -187,7 +187,50 @@ class Synthesis(unittest.TestCase):
         self.assertEqual(chosen(a=2, b=2), {"a", "b"})
         self.assertEqual(chosen(a=3, b=2), {"b"})
         self.assertEqual(chosen(a=3, b=3), set())
-        self.assertEqual(len(mapping.efforts_of(library.Library())), mapping.LAST_EFFORT + 1)
+        self.assertEqual(len(mapping.efforts_of(library.Library())), mapping.AREA_EFFORT + 1)
+        self.assertEqual(mapping.AREA_EFFORT, mapping.LAST_EFFORT + 1)
+
+    def won_back(self, efforts, slack_of):
+        """The efforts that are left when area has been won back, of two kinds that were mapped in every way, one of
+        them with three instances; `slack_of`: what the clock leaves with given efforts.
+        """
+        area = {"a": [50, 60, 70, 90, 50], "b": [31, 32, 33, 34, 28]}
+        late = {"a": [], "b": [mapping.AREA_EFFORT]}
+        way = {"a": "area", "b": "balance"}
+        mapper = mock.Mock()
+        mapper.area = lambda kind, effort: area[kind.name][effort]
+        mapper.result = lambda kind, effort: {
+            "way": way[kind.name],
+            "delay_ps": 4100 if effort in late[kind.name] else 3000,
+        }
+        design = flow.Design(mock.Mock(), library.Library(), {}, "", 4.0, efforts=efforts)
+        design.kinds = {name: mock.Mock() for name in area}
+        for name, kind in design.kinds.items():
+            kind.name = name
+        design.netlist = mock.Mock(modules=["a", "b"])
+        design.netlist.instances.return_value = [((), "a"), (("x",), "b"), (("y",), "b"), (("z",), "b")]
+        design.netlist.own_area = lambda identity: area[identity][design.efforts.get(identity, 0)]
+        tried = []
+
+        def time_design(_design, _work):
+            tried.append(dict(design.efforts))
+            return slack_of(design.efforts)
+
+        with mock.patch.multiple(flow, mapper_of=lambda _: mapper, map_design=mock.Mock(), time_design=time_design):
+            slack = flow.win_back(design, "", slack_of(efforts))
+            self.assertEqual(slack, slack_of(design.efforts))
+        return design.efforts, tried
+
+    def test_area_is_won_back_where_the_clock_allows(self):
+        # All the time there is: both as small as they can be; area alone of `b` is too slow in itself.
+        left, tried = self.won_back({"a": 3, "b": 2}, lambda efforts: 0.5)
+        self.assertEqual((left, tried), ({}, [{"a": 0, "b": 2}, {"a": 0, "b": 0}, {}]))
+        # `a` needs one effort, and is tried without any first, as that saves most.
+        left, tried = self.won_back({"a": 3, "b": 2}, lambda efforts: 0.1 if efforts.get("a", 0) >= 1 else -0.1)
+        self.assertEqual((left, tried[:2]), ({"a": 1}, [{"a": 0, "b": 2}, {"a": 1, "b": 2}]))
+        # A unit that is too slow anyhow does not get slower.
+        self.assertEqual(self.won_back({"a": 1}, lambda efforts: -0.3 if efforts.get("a") else -0.31)[0], {"a": 1})
+        self.assertEqual(self.won_back({"a": 1}, lambda efforts: -0.3)[0], {})
 
     def test_a_latch_is_refused(self):
         path = os.path.join(self.folder, "rtl", "held.v")
