@@ -14,6 +14,7 @@ ModelledTraverser::ModelledTraverser(const sc_core::sc_module_name& name, const 
 }
 
 void ModelledTraverser::ray_arrived() {
+  if (untaken_.empty()) next_ray_ = std::prev(rays->rays().end());
   untaken_.push_back(clock->cycle());
   clock->notify(step_, Phase::Traverser, core_.least_latency());
 }
@@ -45,7 +46,7 @@ bool ModelledTraverser::simulate(uint64_t to) {
 
 // The oldest that has not entered.
 void ModelledTraverser::take_ray() {
-  const auto ray = std::prev(rays->rays().end(), static_cast<std::ptrdiff_t>(untaken_.size()));
+  const auto ray = next_ray_++;
   untaken_.pop_front();
   visits_.clear();
   follow(*ray, visits_);

@@ -43,8 +43,9 @@ class ModelledTraverser : public Traverser, private traverser::MemoryTurns {
 
   traverser::Core core_;
   sc_core::sc_event step_;
-  uint64_t now_ = 0;              // the machine's time
-  std::deque<uint64_t> untaken_;  // cycles in which rays arrived that have not entered: the youngest of the pool
+  uint64_t now_ = 0;               // the machine's time
+  std::deque<uint64_t> untaken_;   // cycles in which rays arrived that have not entered: the youngest of the pool
+  PooledRays::iterator next_ray_;  // the oldest of them, if there are any
   std::vector<PooledRays::iterator> in_flight_;  // [slot of the machine]
   /// Rays that are done, and without room for what they become.
   EnumArray<ImportKind, std::deque<PooledRays::iterator>, kImportKinds> held_back_;

@@ -31,32 +31,48 @@ uint32_t FetchUnit::prefetch(uint64_t cycle) {
   return lookups;
 }
 
-void FetchUnit::clock(uint64_t cycle, LookupListener& listener) {
-  uint32_t lookups = prefetch(cycle);
-  size_t window = std::min<size_t>(wanted_.size(), kWindow * setup_.lookups);
-  for (size_t i = 0; i < window && lookups < setup_.lookups;) {
-    const Wanted wanted = wanted_[i];
-    if (wanted.from > cycle) break;
-    if (!bank_free(cycle, wanted.fetch.line)) {
-      ++i;
-      continue;
-    }
-    ++lookups;
-    const LineCache::Answer answer = cache_.lookup(wanted.fetch, cycle + setup_.latency);
-    if (answer == LineCache::Answer::Busy) {
-      ++i;
-      continue;
-    }
-    wanted_.erase(wanted_.begin() + static_cast<std::ptrdiff_t>(i));
-    --window;
-    if (answer == LineCache::Answer::Hit) hits_.push(cycle, wanted.fetch);
-    if (answer == LineCache::Answer::Missed) {
-      requests_.push_back(wanted.fetch.line);
-      for (uint32_t line = 1; line <= wanted.fetch.more; ++line) ahead_.push_back(wanted.fetch.line + line);
-    }
-    listener.looked_up(wanted.fetch.slot,
-                       answer == LineCache::Answer::Hit ? cycle + setup_.latency : cache_.promised(wanted.fetch.line));
+bool FetchUnit::look_up(uint64_t cycle, Wanted& wanted, LookupListener& listener) {
+  if (wanted.refused == cache_.fills()) return false;
+  const Fetch& fetch = wanted.fetch;
+  const LineCache::Answer answer = cache_.lookup(fetch, cycle + setup_.latency);
+  if (answer == LineCache::Answer::Busy) {
+    wanted.refused = cache_.fills();
+    return false;
   }
+  if (answer == LineCache::Answer::Hit) hits_.push(cycle, fetch);
+  if (answer == LineCache::Answer::Missed) {
+    requests_.push_back(fetch.line);
+    for (uint32_t line = 1; line <= fetch.more; ++line) ahead_.push_back(fetch.line + line);
+  }
+  listener.looked_up(fetch.slot,
+                     answer == LineCache::Answer::Hit ? cycle + setup_.latency : cache_.promised(fetch.line));
+  return true;
+}
+
+void FetchUnit::clock(uint64_t cycle, LookupListener& listener) {
+  if (stuck_) return;
+  uint32_t lookups = prefetch(cycle);
+  stuck_ = lookups == 0;
+  const size_t window = std::min<size_t>(wanted_.size(), kWindow * setup_.lookups);
+  size_t kept = 0, place = 0;
+  for (; place < window && lookups < setup_.lookups; ++place) {
+    Wanted& wanted = wanted_[place];
+    if (wanted.from > cycle) {
+      stuck_ = false;
+      break;
+    }
+    if (bank_free(cycle, wanted.fetch.line)) {
+      ++lookups;
+      if (look_up(cycle, wanted, listener)) continue;
+    }
+    if (kept != place) wanted_[kept] = wanted;
+    ++kept;
+  }
+  if (kept == place) return;
+  // Those that stay, of those that were looked at, stand at the front: they move to the others.
+  stuck_ = false;
+  const auto from = wanted_.begin() + static_cast<std::ptrdiff_t>(kept);
+  wanted_.erase(from, wanted_.begin() + static_cast<std::ptrdiff_t>(place));
 }
 
 Fetch FetchUnit::take() {
@@ -78,11 +94,13 @@ void FetchUnit::promise(uint32_t line, uint64_t cycle, LookupListener& listener)
 }
 
 void FetchUnit::fill(uint32_t line) {
+  stuck_ = false;
   for (const Fetch& fetch : cache_.fill(line)) filled_.push_back(fetch);
 }
 
 uint64_t FetchUnit::next(uint64_t cycle) const {
-  return wanted_.empty() && ahead_.empty() && requests_.empty() && filled_.empty() ? hits_.next() : cycle + 1;
+  const bool asks = !stuck_ && !(wanted_.empty() && ahead_.empty());
+  return asks || !requests_.empty() || !filled_.empty() ? cycle + 1 : hits_.next();
 }
 
 }  // namespace raypool::traverser

@@ -31,7 +31,10 @@ class FetchUnit {
   explicit FetchUnit(const Setup& setup);
 
   /// A line is wanted, from the next cycle on.
-  void push(uint64_t cycle, const Fetch& fetch) { wanted_.push_back({cycle + 1, fetch}); }
+  void push(uint64_t cycle, const Fetch& fetch) {
+    wanted_.push_back({cycle + 1, kNever, fetch});
+    stuck_ = false;
+  }
   /// Lookups; who takes the data must be ready for them.
   void clock(uint64_t cycle, LookupListener& listener);
   size_t on_the_way() const { return hits_.size(); }
@@ -53,6 +56,7 @@ class FetchUnit {
  private:
   struct Wanted {
     uint64_t from;
+    uint64_t refused;  // found no register free when so many lines had come; kNever: not yet
     Fetch fetch;
   };
   struct Bank {
@@ -62,10 +66,13 @@ class FetchUnit {
   bool bank_free(uint64_t cycle, uint32_t line);
   /// Looks up lines behind those that missed. Returns how many lookups that took.
   uint32_t prefetch(uint64_t cycle);
+  /// Answers this one. True if it need not ask again.
+  bool look_up(uint64_t cycle, Wanted& wanted, LookupListener& listener);
 
   Setup setup_;
   LineCache cache_;
   std::deque<Wanted> wanted_;
+  bool stuck_ = false;          // no lookup will come to more than in the last cycle, until a line comes or is wanted
   std::deque<uint32_t> ahead_;  // lines to prefetch
   DelayLine<Fetch> hits_;
   std::deque<Fetch> filled_;

@@ -8,50 +8,50 @@
 namespace raypool::traverser {
 
 LineCache::LineCache(uint32_t lines, uint32_t ways, uint32_t mshrs)
-    : ways_a_set_(ways), sets_(lines / ways), ways_(lines), mshrs_(mshrs) {}
-
-LineCache::Mshr* LineCache::find(uint32_t line) {
-  for (Mshr& mshr : mshrs_) {
-    if (mshr.taken && mshr.line == line) return &mshr;
-  }
-  return nullptr;
+    : ways_a_set_(ways), sets_(lines / ways), tags_(lines), used_(lines), mshrs_(mshrs) {
+  size_t buckets = 1;
+  while (buckets < 4 * mshrs_.size()) buckets *= 2;
+  buckets_.resize(buckets);
+  for (Mshr& mshr : mshrs_) mshr.next = std::exchange(free_, &mshr);
 }
 
-LineCache::Way* LineCache::find_way(uint32_t line) {
-  Way* const way = set(line);
-  for (uint32_t i = 0; i < ways_a_set_; ++i) {
-    if (way[i].used != 0 && way[i].line == line) return &way[i];
+LineCache::Mshr* LineCache::find(uint32_t line) {
+  Mshr* mshr = bucket(line);
+  while (mshr != nullptr && mshr->line != line) mshr = mshr->next;
+  return mshr;
+}
+
+size_t LineCache::find_way(uint32_t line) const {
+  const size_t first = set(line);
+  for (size_t way = first; way < first + ways_a_set_; ++way) {
+    if (tags_[way] == line && used_[way] != 0) return way;
   }
-  return nullptr;
+  return kNone;
 }
 
 LineCache::Mshr* LineCache::miss(uint32_t line) {
-  for (Mshr& mshr : mshrs_) {
-    if (mshr.taken) continue;
-    mshr.taken = true;
-    mshr.line = line;
-    mshr.due = kNever;
-    mshr.waiting.clear();
-    ++work_.misses;
-    return &mshr;
-  }
-  return nullptr;
+  Mshr* const mshr = free_;
+  if (mshr == nullptr) return nullptr;
+  free_ = mshr->next;
+  mshr->next = std::exchange(bucket(line), mshr);
+  mshr->line = line;
+  mshr->due = kNever;
+  mshr->waiting.clear();
+  ++work_.misses;
+  return mshr;
 }
 
 LineCache::Answer LineCache::lookup(const Fetch& fetch, uint64_t by) {
   ++lookups_;
-  if (Way* const way = find_way(fetch.line); way != nullptr) {
-    way->used = lookups_;
+  if (const size_t way = find_way(fetch.line); way != kNone) {
+    used_[way] = lookups_;
     ++work_.hits;
     return Answer::Hit;
   }
   if (Mshr* const mshr = find(fetch.line); mshr != nullptr) {
-    if (mshr->due <= by) {
-      ++work_.joined;
-      return Answer::Hit;
-    }
-    mshr->waiting.push_back(fetch);
     ++work_.joined;
+    if (mshr->due <= by) return Answer::Hit;
+    mshr->waiting.push_back(fetch);
     return Answer::Joined;
   }
   Mshr* const mshr = miss(fetch.line);
@@ -61,17 +61,21 @@ LineCache::Answer LineCache::lookup(const Fetch& fetch, uint64_t by) {
 }
 
 bool LineCache::prefetch(uint32_t line) {
-  return find_way(line) == nullptr && find(line) == nullptr && miss(line) != nullptr;
+  return find_way(line) == kNone && find(line) == nullptr && miss(line) != nullptr;
 }
 
 std::vector<Fetch> LineCache::fill(uint32_t line) {
-  Mshr& mshr = *find(line);
-  mshr.taken = false;
-  Way* const way = set(line);
-  Way* const oldest =
-      std::min_element(way, way + ways_a_set_, [](const Way& a, const Way& b) { return a.used < b.used; });
-  *oldest = {line, ++lookups_};
-  return std::exchange(mshr.waiting, {});
+  ++fills_;
+  Mshr** place = &bucket(line);
+  while ((*place)->line != line) place = &(*place)->next;
+  Mshr* const mshr = *place;
+  *place = mshr->next;
+  mshr->next = std::exchange(free_, mshr);
+  const auto first = used_.begin() + static_cast<std::ptrdiff_t>(set(line));
+  const auto oldest = std::min_element(first, first + ways_a_set_);
+  *oldest = ++lookups_;
+  tags_[static_cast<size_t>(oldest - used_.begin())] = line;
+  return std::exchange(mshr->waiting, {});
 }
 
 }  // namespace raypool::traverser

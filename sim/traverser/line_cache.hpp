@@ -3,6 +3,7 @@
 // overtaken for ever.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -28,6 +29,8 @@ class LineCache {
   };
 
   LineCache(uint32_t lines, uint32_t ways, uint32_t mshrs);
+  LineCache(const LineCache&) = delete;  // its registers point at each other
+  LineCache& operator=(const LineCache&) = delete;
 
   /// A line that comes by the cycle `by`, in which a line that is there would be read, is a hit too.
   Answer lookup(const Fetch& fetch, uint64_t by = 0);
@@ -41,29 +44,34 @@ class LineCache {
   uint64_t promised(uint32_t line) { return find(line)->due; }
   const std::vector<Fetch>& waiting(uint32_t line) { return find(line)->waiting; }
 
+  /// Lines that have come. Who was told Busy will be told so again until there is another one.
+  uint64_t fills() const { return fills_; }
   const CacheWork& work() const { return work_; }
 
  private:
-  struct Way {
-    uint32_t line;
-    uint64_t used;  // 0: empty
-  };
   struct Mshr {
-    bool taken = false;
     uint32_t line = 0;
     uint64_t due = 0;
+    Mshr* next = nullptr;  // of its bucket, or free
     std::vector<Fetch> waiting;
   };
+  /// Null: no register has the line.
   Mshr* find(uint32_t line);
-  Way* find_way(uint32_t line);
+  /// Its place in used_, or kNone.
+  size_t find_way(uint32_t line) const;
   /// A free register takes the line. Null if there is none.
   Mshr* miss(uint32_t line);
-  Way* set(uint32_t line) { return &ways_[(line & (sets_ - 1)) * ways_a_set_]; }
+  size_t set(uint32_t line) const { return size_t{line & (sets_ - 1)} * ways_a_set_; }
+  Mshr*& bucket(uint32_t line) { return buckets_[line & (buckets_.size() - 1)]; }
 
+  static constexpr size_t kNone = SIZE_MAX;
   uint32_t ways_a_set_, sets_;
-  std::vector<Way> ways_;
+  std::vector<uint32_t> tags_;  // [set][way], apart from used_: they are searched in every lookup
+  std::vector<uint64_t> used_;  // [set][way]; 0: empty
   std::vector<Mshr> mshrs_;
-  uint64_t lookups_ = 0;
+  std::vector<Mshr*> buckets_;  // taken registers, by their line's last bits
+  Mshr* free_ = nullptr;
+  uint64_t lookups_ = 0, fills_ = 0;
   CacheWork work_;
 };
 
