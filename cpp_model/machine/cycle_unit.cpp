@@ -184,7 +184,7 @@ void CycleUnit::clock_instruction_cache(const UnitInputs& inputs, const MemoryPo
     ++counters_.single[counter::kInstructionCacheMisses];
   }
   const uint32_t again = instruction_cache_.refill_done() ? buffer_.refill_done() : 0;
-  instruction_cache_.clock(missed, port.instruction_ready,
+  instruction_cache_.clock(now_, missed, port.instruction_ready,
                            port.instruction_response && inputs.memory_response.beat == kLastBeat);
   if (!halted()) fetch(now_);
   instruction_cache_.end_cycle();
@@ -274,7 +274,7 @@ void CycleUnit::plan_fetch(uint32_t warp, uint64_t cycle, bool past_current) {
     if (requests == 0) continue;
     buffer_.want_cache(joining);
     joining = 0;
-    const uint32_t warp = fetch_arbiter_.grant(requests, instruction_cache_.take_first());
+    const uint32_t warp = fetch_arbiter_.grant(requests, instruction_cache_.first(fetch_cycle_));
     buffer_.fetch_grant(1u << warp);
     if (instruction_cache_.lookup(warp, buffer_.fetch_pc(warp))) {
       timeline_.at(fetch_cycle_ + 2).full |= 1u << warp;

@@ -19,7 +19,7 @@ class InstructionCache {
     sets_.assign(sets_.size(), Set{});
     fetch_ = Fetch::None;
     done_ = missed_ = changes_ = false;
-    first_ = first_next_ = 0;
+    first_cycle_ = kNever;
   }
   /// Forgets all lines; only while no line is being fetched.
   void invalidate() {
@@ -47,12 +47,9 @@ class InstructionCache {
   bool missed() const { return missed_; }  ///< the latest lookup, and clock() has not been told yet
   bool refill_done() const { return done_; }
   uint32_t result_warp() const { return warp_; }  ///< of the latest lookup
-  /// In the first cycle with a grant after refill_done(): the warp whose miss began the fetch, as a set.
-  uint32_t take_first() {
-    const uint32_t first = first_;
-    first_ = 0;
-    return first;
-  }
+  /// In the cycle after refill_done(): the warp whose miss began the fetch, as a set. If it does not ask then, it
+  /// waits its turn: it has had the line already.
+  uint32_t first(uint64_t cycle) const { return cycle == first_cycle_ ? first_ : 0; }
   bool request_valid() const { return fetch_ == Fetch::Request; }
   uint32_t request_address() const { return fetch_line_ << 6; }
   /// False if clock() would change nothing without a miss, request_ready or last_beat.
@@ -61,8 +58,11 @@ class InstructionCache {
   bool busy() const { return missed_ || done_ || fetch_ != Fetch::None; }
 
   /// `missed`: the latest lookup was one of the cycle before, and missed.
-  void clock(bool missed, bool request_ready, bool last_beat) {
-    first_next_ = uint32_t{done_} << fetch_warp_;
+  void clock(uint64_t cycle, bool missed, bool request_ready, bool last_beat) {
+    if (done_) {
+      first_ = 1u << fetch_warp_;
+      first_cycle_ = cycle + 1;
+    }
     done_ = fetch_ == Fetch::Settle;
     Fetch next = fetch_;
     switch (fetch_) {
@@ -96,7 +96,6 @@ class InstructionCache {
   /// The end of a cycle with a clock(): a line that has come is valid from the next
   /// cycle on, and one that gives way is not.
   void end_cycle() {
-    first_ |= first_next_;
     if (!changes_) return;
     changes_ = false;
     sets_[fetch_line_ & set_mask_].line[fetch_way_] = fetch_ == Fetch::Settle ? fetch_line_ : kNone;
@@ -104,6 +103,7 @@ class InstructionCache {
 
  private:
   static constexpr uint32_t kNone = ~0u;  // no line
+  static constexpr uint64_t kNever = ~uint64_t{0};
   enum class Fetch : uint8_t { None, Request, Beats, Settle };
   struct Set {
     std::array<uint32_t, 2> line{kNone, kNone};
@@ -114,7 +114,8 @@ class InstructionCache {
   std::vector<Set> sets_;
   Fetch fetch_ = Fetch::None;
   uint32_t warp_ = 0, fetch_line_ = 0, fetch_warp_ = 0, missed_line_ = 0;
-  uint32_t first_ = 0, first_next_ = 0;
+  uint64_t first_cycle_ = kNever;
+  uint32_t first_ = 0;
   uint8_t fetch_way_ = 0;
   bool done_ = false, changes_ = false;
   bool missed_ = false;

@@ -249,7 +249,7 @@ void UnitInspection::advance_fetch(const UnitTransfers& given) {
   }
   const bool port_free = w_.memory_request_valid_o.value() == 0 || given.request_ready;
   const bool last_beat = given.response && given.response_id == kInstructionId && given.response_beat == 3;
-  instruction_cache_.clock(missed, port_free, last_beat);
+  instruction_cache_.clock(now_, missed, port_free, last_beat);
   lookup_ = w_.fetch_valid.value() != 0;
   if (lookup_) {
     lookup_warp_ = w_.fetch_warp.value();
@@ -257,7 +257,7 @@ void UnitInspection::advance_fetch(const UnitTransfers& given) {
     lookup_hit_ = instruction_cache_.lookup(lookup_warp_, lookup_pc_);
   }
   instruction_cache_.end_cycle();
-  first_ = instruction_cache_.take_first();
+  first_ = instruction_cache_.first(now_ + 1);
 }
 
 void UnitInspection::check_instruction_cache() {
