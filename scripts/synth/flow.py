@@ -187,8 +187,23 @@ def next_effort(design, identities):
     return set()
 
 
+def on_failing_paths(design, work, needed=0.0):
+    """The kinds of block on paths that have less slack."""
+    # Lanes fail alike: one end point of each name is enough.
+    seen, chosen = set(), []
+    for end in design.endpoints:
+        name = "".join(c for c in end.pin if not c.isdigit())
+        if end.slack < needed and name not in seen:
+            seen.add(name)
+            chosen.append(end.pin)
+    paths = timing.describe(
+        chosen[:PATHS_A_ROUND], design.verilog, design.library, design.macros, design.clock_ns, work
+    )
+    return identities_on(design, [step[0] for _, _, steps in paths for step in steps])
+
+
 def lower_efforts(design, mapper):
-    """What would save area and is fast enough alone: [(um2 of all its instances, identity, effort)], the most first."""
+    """What would save area and is fast enough alone: the efforts of each kind of block, what saves most first."""
     netlist = design.netlist
     places = Counter(identity for _, identity in netlist.instances() if identity in netlist.modules)
     slower = {}
@@ -200,38 +215,43 @@ def lower_efforts(design, mapper):
     late = [i for i, efforts in slower.items() if mapping.AREA_EFFORT in efforts]
     mapper.map_all([design.kinds[i] for i in late], dict.fromkeys(late, mapping.AREA_EFFORT))
     worth = WORTH_TRYING * sum(netlist.own_area(i) * n for i, n in places.items())
-    found = []
+    found = {}
     for identity, efforts in slower.items():
         kind = design.kinds[identity]
         now = mapper.area(kind, design.efforts.get(identity, 0))
-        for effort in efforts:
-            saved = (now - mapper.area(kind, effort)) * places[identity]
-            if saved > worth and mapper.result(kind, effort)["delay_ps"] < 1000 * design.clock_ns:
-                found.append((saved, identity, effort))
-    return sorted(found, reverse=True)
+        saved = {e: (now - mapper.area(kind, e)) * places[identity] for e in efforts}
+        fast = [
+            e for e in efforts if saved[e] > worth and mapper.result(kind, e)["delay_ps"] < 1000 * design.clock_ns
+        ]
+        if fast:
+            found[identity] = sorted(fast, key=lambda e: -saved[e])
+    return found
 
 
 def win_back(design, work, slack):
-    """Gives blocks a lower effort where the whole is as fast without the higher one: the first effort looks at a block
+    """Gives blocks lower efforts where the whole is as fast without the higher ones: the first effort looks at a block
     alone, and a round for speed takes all that lies on a failing path, whether it had to be faster or another one had.
+    All get their lowest effort at once; then those on failing paths the next one, in the end the one they had.
     """
     needed = min(slack, 0.0)
-    done = {}
-    for saved, identity, effort in lower_efforts(design, mapper_of(design)):
-        if identity in done:
-            continue
-        before = design.efforts.get(identity, 0)
-        design.efforts[identity] = effort
+    before = {i: design.efforts.get(i, 0) for i in design.netlist.modules}
+    lower = lower_efforts(design, mapper_of(design))
+    if not lower:
+        return slack
+    while lower:
+        design.efforts.update({i: efforts[0] for i, efforts in lower.items()})
         map_design(design)
         reached = time_design(design, work)
-        name, kge = design.kinds[identity].name, design.library.kge(saved)
+        names = ", ".join(sorted(design.kinds[i].name for i in lower))
+        progress(f"synth: slack {reached:+.3f} ns; for area: {names}")
         if reached >= needed:
-            done[identity] = effort
-            progress(f"synth: slack {reached:+.3f} ns; {kge:.2f} kGE won back: {name}")
-        else:
-            design.efforts[identity] = before
-            progress(f"synth: slack {reached:+.3f} ns; {kge:.2f} kGE needed for speed: {name}")
-    design.efforts = {i: effort for i, effort in design.efforts.items() if effort}
+            design.efforts = {i: effort for i, effort in design.efforts.items() if effort}
+            return reached
+        for identity in on_failing_paths(design, work, needed) & set(lower) or set(lower):
+            design.efforts[identity] = before[identity]
+            del lower[identity][0]
+        lower = {i: efforts for i, efforts in lower.items() if efforts}
+    design.efforts = {i: effort for i, effort in before.items() if effort}
     map_design(design)
     return time_design(design, work)
 
@@ -245,22 +265,7 @@ def synthesise(design):
     for _ in range(CLOSURE_ROUNDS):
         if slack >= 0:
             break
-        failing = [e.pin for e in design.endpoints if e.slack < 0]
-        # Lanes fail alike: one end point of each name is enough.
-        seen, chosen = set(), []
-        for pin in failing:
-            name = "".join(c for c in pin if not c.isdigit())
-            if name not in seen:
-                seen.add(name)
-                chosen.append(pin)
-        pins = [
-            step[0]
-            for _, _, steps in timing.describe(
-                chosen[:PATHS_A_ROUND], design.verilog, design.library, design.macros, design.clock_ns, work
-            )
-            for step in steps
-        ]
-        more = next_effort(design, identities_on(design, pins))
+        more = next_effort(design, on_failing_paths(design, work))
         if not more:
             break
         progress(f"synth: slack {slack:+.3f} ns; for speed: {', '.join(sorted(design.kinds[i].name for i in more))}")
