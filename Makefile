@@ -31,6 +31,7 @@ LIGHT     ?=
 DETAIL    ?=
 OUT       ?=
 WAVES     ?= 0
+TRACE     ?= 0
 # `make compare`
 A         ?=
 B         ?=
@@ -72,7 +73,7 @@ SCENES    ?=
 # `make report`
 FROM      ?=
 # Recipes read these from the environment, so that a value with spaces or quotes stays one word.
-export CONFIG SET CUS SCENE SIZE DEPTH ENGINE TRAVERSER VIEW CAMERA EYE LOOK_AT UP FOV LIGHT DETAIL OUT WAVES
+export CONFIG SET CUS SCENE SIZE DEPTH ENGINE TRAVERSER VIEW CAMERA EYE LOOK_AT UP FOV LIGHT DETAIL OUT WAVES TRACE
 export A B KERNEL PROGRAMS SEED COVERAGE MUTANTS MODE THREADS
 export FROM EXPERIMENT WHERE JOBS SCENES
 export LIBERTY CLOCK MEMORIES AGAINST RUN ONLY PLAN
@@ -88,6 +89,7 @@ RAYPOOL := $(BUILD)/raypool
 LOCKED := flock $(BUILD)/.lock
 # Only engines rtl and lockstep need a Verilated device.
 WAVES_FLAG := $(if $(filter-out 0,$(WAVES)),--waves)
+TRACE_FLAG := $(if $(filter-out 0,$(TRACE)),--trace $(if $(filter 1,$(TRACE)),:,"$$TRACE"))
 SET_FIELDS := $${SET:+--set "$$SET"}
 UNIT := scripts/unit.sh "$$CONFIG" $(SET_FIELDS) $(WAVES_FLAG)
 # After an equals sign a number may be negative.
@@ -130,6 +132,8 @@ help: ## this list
 	@echo '  DETAIL=N                      triangles of a built-in scene, 0.01..16      1'
 	@echo '  OUT=FOLDER                    image.png, report.json                      $(BUILD)/out/...'
 	@echo '  WAVES=1                       a waveform (FST) too; ENGINE=rtl, lockstep  $(WAVES)'
+	@echo '  TRACE=FROM:CYCLES|pixel:X,Y   what happens then, for Perfetto, Konata and make report;'
+	@echo '                                1: 0:20000; ENGINE=model                    $(TRACE)'
 	@echo 'variables of make sweep:  EXPERIMENT=FILE.json  OUT=FOLDER  WHERE=here|slurm  JOBS=N: points at a time'
 	@echo '  SCENES=FOLDER:FOLDER: where scenes are that are not part of the project'
 	@echo 'variables of make report:  FROM="FOLDER ...": sweeps, runs, synthesis reports or folders of them  OUT=FOLDER'
@@ -150,7 +154,7 @@ sim: setup-sim program ## draw a scene on the simulated chip: picture, report, f
 	@$(UNIT_OF_ENGINE) --units "$$CUS"
 	@$(RAYPOOL) sim --scene "$$SCENE" --config "$$CONFIG" --units "$$CUS" --size "$$SIZE" --depth "$$DEPTH" \
 	  --engine "$$ENGINE" $(SET_FIELDS) $${TRAVERSER:+--traverser "$$TRAVERSER"} $${VIEW:+--view "$$VIEW"} $(LOOK) \
-	  $${DETAIL:+--detail "$$DETAIL"} $${OUT:+--out "$$OUT"} $(WAVES_FLAG)
+	  $${DETAIL:+--detail "$$DETAIL"} $${OUT:+--out "$$OUT"} $(WAVES_FLAG) $(TRACE_FLAG)
 
 compare: setup-sim program ## two runs beside each other: A=FOLDER_OR_REPORT B=...
 	@$(RAYPOOL) compare "$$A" "$$B"

@@ -139,6 +139,10 @@ struct RetireEvent {
   std::vector<uint32_t> data;  ///< one word a lane; meaningful in masked lanes when the instruction writes a register
   uint32_t predicate = 0;      ///< value written when the instruction writes a predicate
   uint32_t unit = 0;
+  /// Engine `model` only: cycles before this one in which the warp began to want the instruction from the cache, in
+  /// which it left the buffer, and in which an ALU was given to it; of a triple, those of this element.
+  uint64_t wanted = 0, issued = 0, granted = 0;
+  bool last = true;  ///< no element of the same triple is to come; engine `model` only
 };
 struct StoreEvent {
   uint32_t warp = 0;
@@ -196,6 +200,8 @@ class ComputeUnit {
 
   /// Trace of the current cycle. Filled only after trace_on(); costs time.
   virtual void trace_on() {}
+  /// No more of it is wanted until a reset.
+  virtual void trace_off() {}
   virtual const UnitTrace& trace() const = 0;
 
   /// A signal of the instance `scope` (such as "gen_unit[0].compute_unit"); the list probes.vlt has those there are.

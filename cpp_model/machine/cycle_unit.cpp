@@ -120,6 +120,7 @@ void CycleUnit::step(const UnitInputs& inputs) {
   clock_ray(inputs, accepts ? inputs.launch.import : ImportKind::None, ray_ready);
   if (dispatcher_.wants(AluType::Ray) != 0 && !stopped) grant_ray(ray_ready);
   if (dispatcher_.wants(AluType::Mem) != 0 && !stopped) {
+    if (tracing_ && mem_ready) record_grant(AluType::Mem);
     dispatcher_.grant(AluType::Mem, mem_ready, older_[kAhead], counters_);
     counters_.enter(counter::kWarpsInMem, now_ + 1, mem_ready);
     attention_ = true;
@@ -383,6 +384,7 @@ void CycleUnit::next_load(uint32_t warp) {
 // An access to ray memory is read while the one before is made.
 void CycleUnit::grant_ray(bool ready) {
   const uint32_t bit = Dispatcher::winner(dispatcher_.wants(AluType::Ray), older_[kAhead]);
+  if (tracing_ && ready) record_grant(AluType::Ray);
   dispatcher_.grant(AluType::Ray, ready, older_[kAhead], counters_);
   if (!ready || (followed_ & bit) == 0) return counters_.enter(counter::kWarpsInRay, now_ + 1, ready);
   timeline_.at(now_ + kAhead).want_ray |= bit;

@@ -41,6 +41,7 @@ class CycleUnit final : public ComputeUnit {
   void clock(const UnitInputs& inputs) override;
   uint64_t run(const UnitInputs& inputs, uint64_t cycles) override;
   void trace_on() override { tracing_ = true; }
+  void trace_off() override { tracing_ = false; }
   const UnitTrace& trace() const override { return trace_; }
   uint64_t counter(int number) override;
   bool timed() const override { return true; }
@@ -58,6 +59,7 @@ class CycleUnit final : public ComputeUnit {
     std::vector<uint32_t> data;  ///< result, one word a lane
     uint32_t predicate = 0;
     bool retired = true;
+    uint64_t wanted = 0, issued = 0, granted = 0;  ///< cycles, as in RetireEvent; granted of Mem and Ray only
   };
   const Issue& issue(uint32_t warp) const { return issues_[warp].front(); }
   /// The one that wants its ALU from timing(warp).want_cycle on.
@@ -141,6 +143,7 @@ class CycleUnit final : public ComputeUnit {
   void present(uint32_t now);
   void record();
   void record_next_want(uint32_t warps);
+  void record_grant(AluType type);
   void record_issue(uint32_t warp, const DecodedInstruction& instruction);
   void record_result(uint32_t warp, const Step& step);
 

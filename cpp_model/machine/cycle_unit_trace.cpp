@@ -32,6 +32,14 @@ void CycleUnit::record_issue(uint32_t warp, const DecodedInstruction& instructio
   issue.predicate_x = core_.predicate(warp, instruction.x & 15);
   issue.predicate_b = core_.predicate(warp, instruction.rb);
   issue.predicate = 0;
+  issue.wanted = timings_[warp].fetch_cycle;
+  issue.issued = now_;
+}
+
+// The warp that is about to be given the ALU.
+void CycleUnit::record_grant(AluType type) {
+  const uint32_t warp = lowest(Dispatcher::winner(dispatcher_.wants(type), older_[kAhead]));
+  issues_[warp][timings_[warp].wanting].granted = now_;
 }
 
 // They read the operands of the next element, and want an ALU for it in two cycles.
@@ -70,6 +78,13 @@ void CycleUnit::record() {
     event.data = issue.data;
     event.data.resize(lanes_);
     event.predicate = issue.predicate;
+    const AluType alu = issue.instruction->alu();
+    const bool pipelined = alu != AluType::Mem && alu != AluType::Ray;
+    event.wanted = now_ - issue.wanted;
+    event.issued = now_ - issue.issued;
+    // A pipelined ALU has the task in the cycle after the grant.
+    event.granted = pipelined ? dispatcher_.depth(to_underlying(alu)) + 1 : now_ - issue.granted;
+    event.last = issue.instruction->next == nullptr;
     if ((ray_.done() >> warp & 1) != 0 && ray_.wrote())
       trace_.ray_writes.push_back({warp, issue.instruction->x, issue.mask, issue.operand_b, 0});
   }

@@ -153,6 +153,11 @@ void Multiprocessor::trace_on() {
   for (const auto& unit : units_) unit->trace_on();
 }
 
+void Multiprocessor::trace_off() {
+  tracing_ = false;
+  for (const auto& unit : units_) unit->trace_off();
+}
+
 void Multiprocessor::gather_trace() {
   const auto lanes_of = [&](const std::vector<uint32_t>& data) {
     std::vector<uint32_t> lanes;
@@ -171,8 +176,8 @@ void Multiprocessor::gather_trace() {
   for (uint32_t u = 0; u < units(); ++u) {
     const UnitTrace& trace = units_[u]->trace();
     for (const RetireEvent& event : trace.retired) {
-      trace_.retired.push_back(
-          {event.warp, event.pc, event.instruction, event.mask, lanes_of(event.data), event.predicate, u});
+      trace_.retired.push_back({event.warp, event.pc, event.instruction, event.mask, lanes_of(event.data),
+                                event.predicate, u, event.wanted, event.issued, event.granted, event.last});
     }
     for (const StoreEvent& event : trace.stores) {
       trace_.stores.push_back(event);

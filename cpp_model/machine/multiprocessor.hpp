@@ -27,6 +27,7 @@ class Multiprocessor : public ComputeUnit {
   const UnitOutputs& outputs() const override { return outputs_; }
   void clock(const UnitInputs& inputs) override;
   void trace_on() override;
+  void trace_off() override;
   const UnitTrace& trace() const override { return trace_; }
   uint64_t counter(int number) override;
   bool timed() const override;

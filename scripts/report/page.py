@@ -7,7 +7,7 @@ import jinja2
 import markupsafe
 from matplotlib.markers import MarkerStyle
 
-from . import area, changes, effects, pictures, point_table, published, rows, speed, style
+from . import area, changes, effects, pictures, point_table, published, rows, speed, style, trace
 from .point import near
 
 TEMPLATES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "templates")
@@ -80,6 +80,7 @@ def render(sources, folders):
     figures = draw(sections)
     notes = list(sources.notes)
     drawn = pictures.collect(points, notes)
+    traces = trace.collect(points, notes)
     columns = point_table.columns(points) if points else []
     environment = jinja2.Environment(loader=jinja2.FileSystemLoader(TEMPLATES), autoescape=True, trim_blocks=True,
                                      lstrip_blocks=True, undefined=jinja2.StrictUndefined, keep_trailing_newline=True)
@@ -89,7 +90,8 @@ def render(sources, folders):
         code=lambda value: json.dumps(value), several=several_words)
     page = environment.get_template("page.html").render(
         variables=markupsafe.Markup(style.css()), sections=sections, sources=sources, points=points, notes=notes,
-        pictures=drawn, columns=columns, rows=point_table.rows(points, columns), machines=point_table.machines(points),
+        pictures=drawn, traces=traces, alus=style.ALUS, columns=columns,
+        rows=point_table.rows(points, columns), machines=point_table.machines(points),
         command=f"make report FROM={shlex.quote(' '.join(near(folder) for folder in folders))}",
         versions=versions_of(points))
     return page, figures, notes

@@ -130,6 +130,9 @@ refuses "a key twice in a saved program" "twice.json: the key \"seed\" stands tw
 echo '{"name": "8w8c", "warps": 2}' > "$folder/posing.json"
 refuses_sim "other hardware under a built-in name" "'8w8c' stands for other hardware" --config "$folder/posing.json"
 refuses_sim "waveform of an engine without one" "waveform" --waves
+refuses_sim "trace of an engine without one" "leaves no trace" --trace :
+refuses_sim "window of a trace that is none" "FROM:CYCLES" --engine model --trace 5:0
+refuses_sim "trace around a pixel outside" "numbered from 0" --engine model --trace pixel:4000,0
 refuses_sim "unknown option" "--help" --colour
 refuses "unknown kernel" "saxpy" "$raypool" run sexpy
 refuses "saxpy of nothing" "--n is 0: saxpy takes a size from 1 to" "$raypool" run saxpy --n 0

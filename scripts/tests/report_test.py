@@ -19,7 +19,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 RAYPOOL = ""
 sys.path.insert(0, str(ROOT / "scripts"))
 SECTIONS = ("changes", "published", "speed", "alus", "cycles", "ceilings", "units", "policies", "fields", "area",
-            "power", "pictures", "points", "machines")  # fmt: skip
+            "power", "pictures", "work", "points", "machines")  # fmt: skip
 VOID = {"meta", "link", "br", "img", "input", "hr", "path", "use", "rect"}
 TINY = {"scene": "cornell", "detail": 0.01, "size": "16x16", "depth": 2, "engine": "model"}
 EXPERIMENTS = {
@@ -126,6 +126,16 @@ class ReportTest(unittest.TestCase):
     def section(self, page, name):
         begin = page.index(f'<section id="{name}">')
         return page[begin : page.index("</section>", begin)]
+
+    def traced(self):
+        """The folder of a run with a trace."""
+        folder = self.folder / "runs" / "traced"
+        done = subprocess.run(
+            [RAYPOOL, "sim", "--scene=cornell", "--detail=0.01", "--size=8x8", "--depth=2", "--engine=model",
+             "--units=2", "--config=best_2w2c", "--trace=:", "--quiet", f"--out={folder}"],
+            capture_output=True, text=True, check=False)  # fmt: skip
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return folder
 
     def synthesis(self, name, machine, mm2, power=None):
         """What make synth leaves, of a unit of the machine's parameters."""
@@ -382,6 +392,32 @@ class Figures(ReportTest):
         self.assertEqual(text.count("<img "), 2)
         self.assertIn("Embree's own</b>, and ours, the same in every pixel", text)
 
+    def test_a_trace_is_drawn(self):
+        folder = self.traced()
+        section = self.section(self.page(folder.parent), "work")
+        data = json.loads(re.search(r'<script type="application/json" id="trace-1">(.*?)</script>', section)[1])
+        events = json.loads((folder / "trace.json").read_text())["traceEvents"]
+        instructions = [event for event in events if "instruction" in event.get("args", {})]
+        warps = [track for track in data["tracks"] if not track["port"]]
+        self.assertEqual([track["name"] for track in warps],
+                         [f"unit {unit} warp {warp}" for unit in range(2) for warp in range(2)])
+        self.assertGreater(len(instructions), 100)
+        self.assertEqual(sum(len(track["spans"]) for track in warps), len(instructions))
+        first = next(event for event in instructions if event["pid"] == 1 and event["tid"] == 0)
+        issued, granted, retired, alu, text, wanted, threads = warps[0]["spans"][0]
+        self.assertEqual([issued, granted, retired - issued, wanted, threads],
+                         [first["ts"], first["args"]["granted"], first["dur"], first["args"]["wanted"],
+                          first["args"]["threads"]])  # fmt: skip
+        self.assertEqual(data["texts"][text], f"{first['args']['pc']}: {first['args']['instruction']}")
+        self.assertEqual(["int", "flt", "slw", "mem", "ray", "brh", "tid"][alu], first["name"])
+        self.assertEqual({data["texts"][kernel[2]] for track in warps for kernel in track["kernels"]},
+                         {"cast_eye", "cast_secondary", "cast_secondary_direct"} & set(data["texts"]))
+        # A broken one is named, and the run stays.
+        (folder / "trace.json").write_text('{"traceEvents": []}')
+        page = self.page(folder.parent)
+        self.assertIn("traced/trace.json is not a trace", page)
+        self.assertIn("TRACE=1 leaves one", self.section(page, "work"))
+
     def test_the_question_has_its_answer(self):
         self.synthesis("8w8c", ["8w8c"], 0.6)
         self.synthesis("other", ["8w8c", "--set=alus.flt.count=2", "--set=data_cache.bytes=4096",
@@ -478,6 +514,26 @@ class Browser(ReportTest):
                 known = [float(value) for value in found["cycles"] if value is not None]
                 self.assertEqual(known, sorted(known, reverse=True))
                 self.assertEqual(found["cycles"][len(known) :], [None] * (21 - len(known)))
+
+    def test_a_trace_moves(self):
+        path = self.folder / "traced.html"
+        press = """<script>window.addEventListener("load", () => {
+          document.querySelector('[data-do="in"]').click();
+          const canvas = document.querySelector(".drawing canvas");
+          canvas.dispatchEvent(new PointerEvent("pointermove", { clientX: canvas.getBoundingClientRect().left + 400,
+            clientY: canvas.getBoundingClientRect().top + 30, bubbles: true }));
+          const shown = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data;
+          document.body.dataset.colours = new Set(new Uint32Array(shown.buffer)).size;
+        });</script>"""
+        path.write_text(self.page(self.traced().parent).replace("</body>", press + "</body>", 1))
+        for width in (360, 1440):
+            with self.subTest(width=width):
+                document, console, urls = self.dump(path, width)
+                self.assertEqual(console, [])
+                self.assertEqual({url for url in urls if not url.startswith(("file:", "data:"))}, set())
+                self.assertRegex(document, r"<output>150 cycles from [0-9,]+</output>")
+                self.assertRegex(document, r'<p class="under" aria-live="polite">unit 0 warp 0, cycle [0-9,]+: ')
+                self.assertGreater(int(re.search(r'data-colours="(\d+)"', document)[1]), 5)
 
 
 if __name__ == "__main__":

@@ -31,6 +31,7 @@ struct SimOptions {
   int units = 1;
   double detail = 1;  ///< of a built-in scene, 0.01 .. 16
   bool waves = false;
+  std::string trace;           ///< window of cycles (trace::parse_window()); empty: no trace
   bool modules = false;        ///< print the modules of the chip, and draw nothing
   uint64_t inspect_until = 0;  ///< cycle of a difference that a look inside the RTL is to tell more of; 0: no look
   bool json = false;           ///< the report on standard output, instead of the table

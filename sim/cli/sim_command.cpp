@@ -20,6 +20,7 @@
 #include "scene/native_renderer.hpp"
 #include "scene/scene.hpp"
 #include "scene/traversal.hpp"
+#include "trace/trace_recorder.hpp"
 
 namespace raypool {
 namespace {
@@ -41,6 +42,9 @@ void check(const SimOptions& options, Engine engine) {
   if (options.modules && without_unit(engine)) {
     throw InputError(fmt::format("engine {} has no chip, and so no modules to print: choose another, such as model",
                                  options.engine));
+  }
+  if (!options.trace.empty() && engine != Engine::Model) {
+    throw InputError(fmt::format("engine {} leaves no trace: use model, or leave trace out", options.engine));
   }
   if (options.inspect_until != 0 && engine != Engine::Lockstep) throw InputError("--inspect is for --engine lockstep");
 }
@@ -168,11 +172,36 @@ std::unique_ptr<ComputeUnit> make_device(const SimOptions& options, Engine engin
   return make_unit(device, image.memory, "unit", kernel_names(ray_kernel_program(KernelTarget(record.configuration))));
 }
 
+/// The window that is asked for, in a picture of this size.
+trace::Window trace_window(const SimOptions& options, const RunRecord& record) {
+  const trace::Window window = trace::parse_window(options.trace);
+  if (window.pixel && ((*window.pixel & 0xffff) >= record.width || *window.pixel >> 16 >= record.height)) {
+    throw InputError(fmt::format("--trace {}: the picture has {}x{} pixels, numbered from 0", options.trace,
+                                 record.width, record.height));
+  }
+  return window;
+}
+
+void write_trace(const SimOptions& options, const trace::MachineTrace& trace, OutputFolder& out) {
+  if (trace.instructions.empty()) {
+    std::fprintf(stderr, "raypool: warning: no instruction was executed in the window --trace %s\n",
+                 options.trace.c_str());
+  }
+  out.write("trace.json", trace::to_trace_events(trace));
+  out.write("trace.kanata", trace::to_kanata(trace));
+}
+
 FrameBuffer draw_on_unit(const SimOptions& options, Engine engine, RunRecord& record, const Scene& scene,
                          MemoryImage& image, OutputFolder& out) {
   std::unique_ptr<ComputeUnit> device = make_device(options, engine, record, image);
   if (options.wrap) device = options.wrap(std::move(device), image.memory);
   if (options.waves) device->open_waveform(out.temporary("waves.fst"));
+  trace::MachineTrace trace;
+  if (!options.trace.empty()) {
+    trace.kernels = kernel_names(ray_kernel_program(KernelTarget(record.configuration)));
+    device = std::make_unique<trace::TraceRecorder>(std::move(device), record.configuration,
+                                                    trace_window(options, record), trace);
+  }
   Surroundings around(scene, image, record);
   ChipOptions chip = chip_options(record, scene, image, *device, around);
   try {
@@ -192,6 +221,8 @@ FrameBuffer draw_on_unit(const SimOptions& options, Engine engine, RunRecord& re
   }
   record.simulation_seconds = record.chip->wall_seconds;
   record.lockstep = lockstep_counts(*device);
+  device.reset();
+  if (!options.trace.empty()) write_trace(options, trace, out);
   return std::move(around.frame);
 }
 
@@ -252,7 +283,10 @@ int sim_command(const SimOptions& options) {
   }
   if (!options.quiet) {
     fmt::print("{}  results     {}: image.png, report.json{}\n", to_table(record),
-               fs::proximate(out.path(".")).lexically_normal().string(), options.waves ? ", waves.fst" : "");
+               fs::proximate(out.path(".")).lexically_normal().string(),
+               options.waves            ? ", waves.fst"
+               : !options.trace.empty() ? ", trace.json, trace.kanata"
+                                        : "");
   }
   return 0;
 }

@@ -168,6 +168,10 @@ void CommandLine::add_sim_command() {
   sim_app->add_option(
       "--out", sim_.out,
       "folder for the results (default: out/<what was run> beside the program; installed: in raypool-out)");
+  sim_app->add_option(
+      "--trace", sim_.trace,
+      "FROM:CYCLES or pixel:X,Y:CYCLES, : for 0:20000; leave what happens in this window too, trace.json "
+      "for Perfetto and trace.kanata for Konata; model only");
   sim_app->add_flag("--waves", sim_.waves, "leave a waveform, waves.fst, too; rtl and lockstep only");
   sim_app->add_flag("--modules", sim_.modules,
                     "draw nothing: print the chip's SystemC modules, and what their ports are bound to");
