@@ -5,8 +5,8 @@ import os
 from .point import near
 from .style import ALUS
 
-# Instructions of a page, so that it stays one that opens.
-MOST_INSTRUCTIONS = 100_000
+# Instructions and transfers of a page, so that it stays one that opens.
+MOST_BARS = 100_000
 
 
 class Broken(Exception):
@@ -14,7 +14,7 @@ class Broken(Exception):
 
 
 class Trace:
-    """`data` is what the drawing gets, as JSON text: script.js says how it is laid out."""
+    """`data` is what the drawing gets, as JSON text: trace.js says how it is laid out."""
 
     def __init__(self, point, path):
         self.point = point
@@ -27,7 +27,8 @@ class Trace:
             tracks = self.tracks(document["traceEvents"])
         except (OSError, ValueError, KeyError, TypeError) as error:
             raise Broken(f"{near(path)} is not a trace of make sim TRACE=1 ({error})") from error
-        self.instructions = sum(len(track["spans"]) for track in tracks)
+        self.instructions = sum(len(track["spans"]) for track in tracks if not track["port"])
+        self.bars = sum(len(track["spans"]) for track in tracks)
         self.data = json.dumps({"from": self.first, "to": self.last, "texts": self.texts, "tracks": tracks},
                                separators=(",", ":")).replace("<", "\\u003c")
 
@@ -87,10 +88,10 @@ def collect(points, notes):
         except Broken as broken:
             notes.append(str(broken))
             continue
-        if used + trace.instructions > MOST_INSTRUCTIONS:
-            notes.append(f"{near(path)}, as the page has {MOST_INSTRUCTIONS:,} instructions of traces: a shorter "
+        if used + trace.bars > MOST_BARS:
+            notes.append(f"{near(path)}, as the page has {MOST_BARS:,} instructions and transfers of traces: a shorter "
                          "window (TRACE=FROM:CYCLES) or make report FROM= with fewer folders shows it")
             continue
-        used += trace.instructions
+        used += trace.bars
         found.append(trace)
     return found

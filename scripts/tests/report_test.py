@@ -403,6 +403,7 @@ class Figures(ReportTest):
                          [f"unit {unit} warp {warp}" for unit in range(2) for warp in range(2)])
         self.assertGreater(len(instructions), 100)
         self.assertEqual(sum(len(track["spans"]) for track in warps), len(instructions))
+        self.assertIn(f", {len(instructions):,} instructions.</figcaption>", section)
         first = next(event for event in instructions if event["pid"] == 1 and event["tid"] == 0)
         issued, granted, retired, alu, text, wanted, threads = warps[0]["spans"][0]
         self.assertEqual([issued, granted, retired - issued, wanted, threads],
