@@ -29,8 +29,9 @@ class Trace:
             raise Broken(f"{near(path)} is not a trace of make sim TRACE=1 ({error})") from error
         self.instructions = sum(len(track["spans"]) for track in tracks if not track["port"])
         self.bars = sum(len(track["spans"]) for track in tracks)
-        self.data = json.dumps({"from": self.first, "to": self.last, "texts": self.texts, "tracks": tracks},
-                               separators=(",", ":")).replace("<", "\\u003c")
+        self.data = json.dumps(
+            {"from": self.first, "to": self.last, "alus": ALUS, "texts": self.texts, "tracks": tracks},
+            separators=(",", ":")).replace("<", "\\u003c")
 
     def tracks(self, events):
         """Those of a unit's warps, then the ports'."""

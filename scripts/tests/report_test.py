@@ -410,7 +410,7 @@ class Figures(ReportTest):
                          [first["ts"], first["args"]["granted"], first["dur"], first["args"]["wanted"],
                           first["args"]["threads"]])  # fmt: skip
         self.assertEqual(data["texts"][text], f"{first['args']['pc']}: {first['args']['instruction']}")
-        self.assertEqual(["int", "flt", "slw", "mem", "ray", "brh", "tid"][alu], first["name"])
+        self.assertEqual(data["alus"][alu], first["name"])
         self.assertEqual({data["texts"][kernel[2]] for track in warps for kernel in track["kernels"]},
                          {"cast_eye", "cast_secondary", "cast_secondary_direct"} & set(data["texts"]))
         # A broken one is named, and the run stays.

@@ -13,7 +13,7 @@
 
 namespace raypool::trace {
 
-inline constexpr uint64_t kMostCycles = 1'000'000;  ///< of a window: some 200 bytes an instruction
+inline constexpr uint64_t kMostCycles = 1'000'000;  ///< of a window: some 300 bytes an instruction
 
 struct Window {
   uint64_t from = 0;

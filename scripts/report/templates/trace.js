@@ -1,7 +1,6 @@
-/* A trace: {from, to, texts, tracks: [{name, port, spans, kernels}]}. A span of a warp is [issued, granted, retired,
-   ALU, text, wanted, threads], of a port [from, to, waits, text, unit]; a kernel is [from, to, text]. */
+/* A trace: {from, to, alus, texts, tracks: [{name, port, spans, kernels}]}. A span of a warp is [issued, granted,
+   retired, ALU, text, wanted, threads], of a port [from, to, waits, text, unit]; a kernel is [from, to, text]. */
 (function () {
-  const ALUS = ["int", "flt", "slw", "mem", "ray", "brh", "tid"];
   const ROW = 20, BAR = 12, HEAD = 22, LEFT = 128, LEAST = 20;
 
   const draw = (place) => {
@@ -78,8 +77,8 @@
         for (let i = begin(spans, 2, first); i < spans.length && spans[i][0] < first + cycles; ++i) {
           const [issued, granted, retired, alu] = spans[i];
           bar(issued, granted, y + 4, BAR, colour("paper"), 1);
-          bar(issued, granted, y + 4, BAR, colour(ALUS[alu]), .4);
-          bar(granted, retired, y + 4, BAR, colour(ALUS[alu]), 1);
+          bar(issued, granted, y + 4, BAR, colour(trace.alus[alu]), .4);
+          bar(granted, retired, y + 4, BAR, colour(trace.alus[alu]), 1);
         }
       });
       said.textContent = Math.round(cycles).toLocaleString("en") + " cycles from " +
@@ -111,7 +110,7 @@
       const runs = kernel && kernel[0] <= cycle ? trace.texts[kernel[2]] : "no kernel";
       if (!span || span[0] > cycle) return where + runs + (kernel && kernel[0] <= cycle ? ", waits for its next instruction" : "");
       const [issued, granted, retired, alu, text, wanted, threads] = span;
-      return where + runs + ", " + trace.texts[text] + " (" + ALUS[alu] + ", " + plural(threads, "thread") + "): " +
+      return where + runs + ", " + trace.texts[text] + " (" + trace.alus[alu] + ", " + plural(threads, "thread") + "): " +
         plural(Math.max(0, issued - wanted), "cycle") + " to be fetched, " + plural(granted - issued, "cycle") +
         " to get the ALU, " + plural(retired - granted, "cycle") + " in it";
     };
