@@ -231,7 +231,7 @@ class Page(ReportTest):
         subprocess.run([RAYPOOL, *words, "--out", str(out)], check=True)
         page = self.page(out)
         targets = set(re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text(), re.M))
-        for name in SECTIONS[:-3]:
+        for name in set(SECTIONS) - {"pictures", "points", "machines"}:  # which every run fills
             words = re.search(r'<p class="missing">([^<]*)</p>', self.section(page, name))
             self.assertIsNotNone(words, name)
             named = re.findall(r"make ([a-z-]+)", words[1])
