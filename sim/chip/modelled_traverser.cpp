@@ -53,12 +53,12 @@ void ModelledTraverser::take_ray() {
   in_flight_[core_.push(visits_)] = ray;
 }
 
-// One that leaves nothing needs no room.
+// One that leaves nothing needs no room, and is of no kind.
 void ModelledTraverser::ray_done() {
   const PooledRays::iterator ray = in_flight_[core_.slot()];
-  auto& waiting = held_back_[kind_of(*ray)];
-  if ((ray->goes_on && !waiting.empty()) || !leave(*ray)) {
-    waiting.push_back(ray);
+  auto* const waiting = ray->goes_on ? &held_back_[kind_of(*ray)] : nullptr;
+  if ((waiting != nullptr && !waiting->empty()) || !leave(*ray)) {
+    waiting->push_back(ray);
     return;
   }
   const bool shadow = is_shadow(ray->ray);

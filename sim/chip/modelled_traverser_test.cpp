@@ -39,6 +39,7 @@ class NotingTracer : public RayTracer {
     ended_at_blockers += !goes_on && (ray[word::kFlags] & kShadowFlag) != 0 && visits.back().triangles > 0;
     return note(ray, intersection, goes_on);
   }
+  bool reflects(const Intersection& hit) const override { return tracer_.reflects(hit); }
   std::map<Ray, std::pair<bool, Intersection>> noted;
   uint64_t nodes = 0, triangles = 0, ended_at_blockers = 0;
 

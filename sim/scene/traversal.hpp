@@ -90,8 +90,9 @@ class Tracer {
   /// What a hit of the ray becomes.
   void meet(const Ray& ray, const Hit& hit, Intersection& intersection) const;
 
-  /// Whether the material of this word of an intersection reflects.
-  bool reflects(uint32_t material) const { return reflecting_[(material - material_base_) / kMaterialBytes]; }
+  /// Whether the material of this word of an intersection reflects. Throws std::out_of_range if it is no material's:
+  /// what a ray that hits nothing leaves is no intersection.
+  bool reflects(uint32_t material) const { return reflecting_.at((material - material_base_) / kMaterialBytes); }
 
   const Traversal& traversal() const { return traversal_; }
 
