@@ -32,6 +32,9 @@ DETAIL    ?=
 OUT       ?=
 WAVES     ?= 0
 TRACE     ?= 0
+# `make fidelity`
+LEVELS    ?=
+RUNS      ?= 1
 # `make compare`
 A         ?=
 B         ?=
@@ -75,7 +78,7 @@ FROM      ?=
 # Recipes read these from the environment, so that a value with spaces or quotes stays one word.
 export CONFIG SET CUS SCENE SIZE DEPTH ENGINE TRAVERSER VIEW CAMERA EYE LOOK_AT UP FOV LIGHT DETAIL OUT WAVES TRACE
 export A B KERNEL PROGRAMS SEED COVERAGE MUTANTS MODE THREADS
-export FROM EXPERIMENT WHERE JOBS SCENES
+export FROM EXPERIMENT WHERE JOBS SCENES LEVELS RUNS
 export LIBERTY CLOCK MEMORIES AGAINST RUN ONLY PLAN
 
 # Everything that is made goes here; scripts read it from the environment.
@@ -95,6 +98,9 @@ UNIT := scripts/unit.sh "$$CONFIG" $(SET_FIELDS) $(WAVES_FLAG)
 # After an equals sign a number may be negative.
 LOOK := $${CAMERA:+"--camera=$$CAMERA"} $${EYE:+"--eye=$$EYE"} $${LOOK_AT:+"--look-at=$$LOOK_AT"} $${UP:+"--up=$$UP"} \
   $${FOV:+"--fov=$$FOV"} $${LIGHT:+"--light=$$LIGHT"}
+# The frame that is drawn, whatever draws it.
+FRAME := --scene "$$SCENE" --config "$$CONFIG" --units "$$CUS" --size "$$SIZE" --depth "$$DEPTH" $(SET_FIELDS) \
+  $${TRAVERSER:+--traverser "$$TRAVERSER"} $${VIEW:+--view "$$VIEW"} $(LOOK) $${DETAIL:+--detail "$$DETAIL"}
 # The synthesis flow; paths may be relative to this folder.
 SYNTH := PYTHONPATH=scripts python3 -m synth
 SYNTH_OPTIONS := --config "$$CONFIG" $(SET_FIELDS) --memories "$$MEMORIES" $${LIBERTY:+--liberty "$$LIBERTY"} \
@@ -107,7 +113,7 @@ REPORT := RAYPOOL="$(abspath $(RAYPOOL))" PYTHONPATH=scripts $(PYTHON) -m report
 GATES_SETUP := $(if $(filter-out 0,$(GATES)),setup-synth)
 UNIT_OF_ENGINE := $(if $(filter rtl lockstep,$(ENGINE)),$(UNIT),true)
 
-.PHONY: help sim compare run cosim configurations mutants faults unit test lint format bench clean
+.PHONY: help sim fidelity compare run cosim configurations mutants faults unit test lint format bench clean
 .PHONY: setup-% program configured-%
 .PHONY: numerics-long proofs synth synth-replay synth-prove growth numerics extremes isa diagrams quoted package sweep
 .PHONY: report
@@ -134,6 +140,8 @@ help: ## this list
 	@echo '  WAVES=1                       a waveform (FST) too; ENGINE=rtl, lockstep  $(WAVES)'
 	@echo '  TRACE=FROM:CYCLES|pixel:X,Y   what happens then, for Perfetto, Konata and make report;'
 	@echo '                                1: 0:20000; ENGINE=model                    $(TRACE)'
+	@echo 'variables of make fidelity:  those of the frame, from SCENE to DETAIL, and OUT=FOLDER'
+	@echo '  LEVELS="native model ...": only these; all if not given  RUNS=N: times that each draws, $(RUNS) if not given'
 	@echo 'variables of make sweep:  EXPERIMENT=FILE.json  OUT=FOLDER  WHERE=here|slurm  JOBS=N: points at a time'
 	@echo '  SCENES=FOLDER:FOLDER: where scenes are that are not part of the project'
 	@echo 'variables of make report:  FROM="FOLDER ...": sweeps, runs, synthesis reports or folders of them  OUT=FOLDER'
@@ -152,9 +160,10 @@ help: ## this list
 
 sim: setup-sim program ## draw a scene on the simulated chip: picture, report, figures
 	@$(UNIT_OF_ENGINE) --units "$$CUS"
-	@$(RAYPOOL) sim --scene "$$SCENE" --config "$$CONFIG" --units "$$CUS" --size "$$SIZE" --depth "$$DEPTH" \
-	  --engine "$$ENGINE" $(SET_FIELDS) $${TRAVERSER:+--traverser "$$TRAVERSER"} $${VIEW:+--view "$$VIEW"} $(LOOK) \
-	  $${DETAIL:+--detail "$$DETAIL"} $${OUT:+--out "$$OUT"} $(WAVES_FLAG) $(TRACE_FLAG)
+	@$(RAYPOOL) sim $(FRAME) --engine "$$ENGINE" $${OUT:+--out "$$OUT"} $(WAVES_FLAG) $(TRACE_FLAG)
+
+fidelity: setup-sim setup-fidelity program ## a frame at every level of simulation, speed against error: LEVELS, RUNS
+	@scripts/fidelity.py $(FRAME) $${LEVELS:+--levels "$$LEVELS"} --runs "$$RUNS" $${OUT:+--out "$$OUT"}
 
 compare: setup-sim program ## two runs beside each other: A=FOLDER_OR_REPORT B=...
 	@$(RAYPOOL) compare "$$A" "$$B"

@@ -1,14 +1,17 @@
 #!/usr/bin/env python3
 """The JSON Schemas say what the program accepts and writes: scripts/tests/schemas_test.py RAYPOOL [ENGINE...]
 
-Checked-in configurations and views, and a report of each ENGINE (default: those without a Verilated unit), are valid;
-what raypool refuses the schema refuses, and what it takes the schema takes, at both ends of every range; a field of the
-report that is missing, unknown or of another kind is not valid, and each is named in docs/report.md.
+Checked-in configurations and views, a report of each ENGINE (default: those without a Verilated unit), and what
+scripts/fidelity.py leaves of them, are valid; what raypool refuses the schema refuses, and what it takes the schema
+takes, at both ends of every range; a field of the report or of fidelity.json that is missing, unknown or of another
+kind is not valid, and each is named in its page of docs/.
 """
 import copy
 import json
+import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -17,6 +20,9 @@ import unittest
 import jsonschema
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+sys.path.insert(0, str(ROOT / "scripts"))
+import fidelity  # noqa: E402
+
 RAYPOOL = ""
 ENGINES = ["native", "functional", "model"]
 
@@ -130,14 +136,15 @@ class Agreement(unittest.TestCase):
         self.assertGreater(len(documents) - taken, 14)
 
 
-class Report(unittest.TestCase):
-    """Of small runs."""
+class Written(unittest.TestCase):
+    """What the schema of a written document must notice."""
 
     def fields(self, value, path=()):
-        if isinstance(value, dict):
-            for key, inner in value.items():
-                yield (*path, key)
-                yield from self.fields(inner, (*path, key))
+        for key, inner in value.items() if isinstance(value, dict) else ():
+            yield (*path, key)
+            yield from self.fields(inner, (*path, key))
+        for key, inner in enumerate(value) if isinstance(value, list) else ():
+            yield from self.fields(inner, (*path, key))
 
     def changed(self, report, path, change):
         copied = copy.deepcopy(report)
@@ -146,6 +153,42 @@ class Report(unittest.TestCase):
             inner = inner[key]
         change(inner, path[-1])
         return copied
+
+    def refuses(self, valid, document, required, unknown):
+        """Each field of another kind, each one that `required` says missing, and the `unknown` ones."""
+        for path in self.fields(document):
+            with self.subTest(path=path):
+                other = self.changed(document, path, lambda inner, key: inner.update({key: [None]}))
+                self.assertFalse(valid.is_valid(other), "of another kind")
+                if required(path):
+                    without = self.changed(document, path, lambda inner, key: inner.pop(key))
+                    self.assertFalse(valid.is_valid(without), "missing")
+        for path in unknown:
+            more = self.changed(document, path, lambda inner, key: inner.update({key: 1}))
+            self.assertFalse(valid.is_valid(more), f"unknown {path}")
+
+    def names_each_field(self, page, schema):
+        text = (ROOT / "docs" / page).read_text()
+        found = read(ROOT / "schemas" / schema)
+
+        def walk(part, path):
+            if "$ref" in part and part["$ref"].startswith("#/definitions/"):
+                part = found["definitions"][part["$ref"].split("/")[-1]]
+            for key, inner in part.get("properties", {}).items():
+                if path != ("configuration",):
+                    self.assertTrue(
+                        re.search(rf"[`.]{key}[`.]", text), f"docs/{page} does not name {'.'.join((*path, key))}"
+                    )
+                walk(inner, (*path, key))
+            for inner in (part.get("additionalProperties"), part.get("items")):
+                if isinstance(inner, dict):
+                    walk(inner, path)
+
+        walk(found, ())
+
+
+class Report(Written):
+    """Of small runs."""
 
     def test_reports(self):
         valid = validator("report.json")
@@ -173,33 +216,37 @@ class Report(unittest.TestCase):
 
     def refuses_changes(self, valid, report):
         names = set(report["kernels"]) | set(report.get("alus", {}))
-        for path in self.fields(report):
-            with self.subTest(engine=report["engine"], path=path):
-                other = self.changed(report, path, lambda inner, key: inner.update({key: [None]}))
-                self.assertFalse(valid.is_valid(other), "of another kind")
-                # What a configuration leaves out has its default; which kernels and ALUs there are is left open.
-                if len(path) == 1 or path[0] != "configuration" and path[-1] not in names | {"launches", "cycles"}:
-                    without = self.changed(report, path, lambda inner, key: inner.pop(key))
-                    self.assertFalse(valid.is_valid(without), "missing")
-        for path in [("x",), ("scene", "x"), ("configuration", "x"), ("rays_by_kind", "x")]:
-            more = self.changed(report, path, lambda inner, key: inner.update({key: 1}))
-            self.assertFalse(valid.is_valid(more), f"unknown {path}")
+
+        def required(path):  # what a configuration leaves out has its default; kernels and ALUs are left open
+            return len(path) == 1 or path[0] != "configuration" and path[-1] not in names | {"launches", "cycles"}
+
+        self.refuses(valid, report, required, [("x",), ("scene", "x"), ("configuration", "x"), ("rays_by_kind", "x")])
 
     def test_docs_name_each_field(self):
-        page = (ROOT / "docs" / "report.md").read_text()
-        schema = read(ROOT / "schemas" / "report.json")
+        self.names_each_field("report.md", "report.json")
 
-        def walk(part, path):
-            for key, inner in part.get("properties", {}).items():
-                if path != ("configuration",):
-                    self.assertTrue(
-                        re.search(rf"[`.]{key}[`.]", page), f"docs/report.md does not name {'.'.join((*path, key))}"
-                    )
-                walk(inner, (*path, key))
-            if isinstance(part.get("additionalProperties"), dict):
-                walk(part["additionalProperties"], path)
 
-        walk(schema, ())
+class Fidelity(Written):
+    """Of a small frame at the levels that are among the engines."""
+
+    @unittest.skipIf(shutil.which("gnuplot") is None, "gnuplot was not found")
+    def test_fidelity(self):
+        valid = validator("fidelity.json")
+        levels = [level.name for level in fidelity.LEVELS if level.name in ENGINES]
+        with tempfile.TemporaryDirectory() as folder:
+            command = [ROOT / "scripts/fidelity.py", "--scene", "cornell", "--size", "8x8", "--config", "4w4c",
+                       "--levels", ",".join(levels), "--out", folder]  # fmt: skip
+            done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=120, check=False,
+                                  env={**os.environ, "RAYPOOL": RAYPOOL})
+            self.assertEqual(done.returncode, 0, done.stderr)
+            document = read(folder + "/fidelity.json")
+        self.assertEqual([error.message for error in valid.iter_errors(document)], [])
+        self.assertEqual([row["level"] for row in document["levels"]], levels)
+        self.refuses(valid, document, lambda path: path[-2:-1] not in (("alus",), ("ports",)),
+                     [("x",), ("scene", "x"), ("levels", 0, "x"), ("levels", 0, "picture", "x")])
+
+    def test_docs_name_each_field(self):
+        self.names_each_field("speed-and-accuracy.md", "fidelity.json")
 
 
 if __name__ == "__main__":
