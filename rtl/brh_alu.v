@@ -7,7 +7,8 @@ module brh_alu #(
   parameter integer WARP_BITS = 3,
   parameter integer LATENCY = 1,
   parameter integer DEPTH = 2,
-  parameter integer SUBNORMALS = 0
+  parameter integer SUBNORMALS = 0,
+  parameter integer SIGNIFICAND = 24   // of a float, whose bits below are not looked at
 ) (
 `include "alu_ports.vh"
 );
@@ -25,27 +26,31 @@ module brh_alu #(
     .clk_i(clk_i), .rst_ni(rst_ni), .task_valid_i(task_valid_i), .task_warp_i(task_warp_i), .ready_o(ready_o),
     .done_valid_o(done_valid_o), .done_warp_o(done_warp_o), .stage_valid_o(stage_valid));
 
+  localparam integer D = 24 - SIGNIFICAND;
   // Zero, also where subnormals are flushed.
-  function is_zero(input [31:0] v);
-    is_zero = v[30:23] == 8'd0 && (SUBNORMALS != 0 || v[22:0] == 23'd0);
+  function is_zero(input [31:D] v);
+    is_zero = v[30:23] == 8'd0 && (SUBNORMALS != 0 || v[22:D] == {23-D{1'b0}});
   endfunction
-  function is_nan(input [31:0] v);
-    is_nan = v[30:23] == 8'hff && v[22:0] != 23'd0;
+  function is_nan(input [31:D] v);
+    is_nan = v[30:23] == 8'hff && v[22:D] != {23-D{1'b0}};
   endfunction
 
   function compare(input [4:0] op, input [31:0] a, input [31:0] b);
     reg equal, less, signed_less, float_equal, float_less, ordered;
+    reg [31:D] x, y;                        // as floats
     begin
+      x = a[31:D];
+      y = b[31:D];
       equal = a == b;
       less = a < b;
       signed_less = (a[31] != b[31]) ? a[31] : less;
-      ordered = !is_nan(a) && !is_nan(b);
-      float_equal = ordered && ((is_zero(a) && is_zero(b)) || equal);
+      ordered = !is_nan(x) && !is_nan(y);
+      float_equal = ordered && ((is_zero(x) && is_zero(y)) || x == y);
       // Magnitudes order like integers; a flushed or signed zero equals any other zero.
-      if (is_zero(a)) float_less = !is_zero(b) && !b[31];
-      else if (is_zero(b)) float_less = a[31];
-      else if (a[31] != b[31]) float_less = a[31];
-      else float_less = a[31] ? (b < a) : less;
+      if (is_zero(x)) float_less = !is_zero(y) && !y[31];
+      else if (is_zero(y)) float_less = x[31];
+      else if (x[31] != y[31]) float_less = x[31];
+      else float_less = x[31] ? (y < x) : (x < y);
       float_less = float_less && ordered;
       case (op)
         ISA_BRH_IEQ: compare = equal;

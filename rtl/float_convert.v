@@ -4,10 +4,12 @@
 // is combinational, valid in stage 2, and zero while enable_i[2] is low, so that units of a lane can be ORed.
 // op_i: 0 smaller, 1 larger (the number if one is a NaN, -0 below +0), 2 float to integer (towards zero, saturating,
 // NaN gives 0), 3 integer to float (nearest even). SUBNORMALS 1: minimum and maximum see, and give, subnormal
-// operands as the zero of their sign.
+// operands as the zero of their sign. SIGNIFICAND below 24: what a word has below so many bits is not looked at, and
+// zero in a float.
 `default_nettype none
 module float_convert #(
-  parameter integer SUBNORMALS = 0
+  parameter integer SUBNORMALS = 0,
+  parameter integer SIGNIFICAND = 24
 ) (
   input  wire        clk_i,
   input  wire [2:0]  enable_i,
@@ -22,24 +24,28 @@ module float_convert #(
   reg [4:0] s1_places_q, s2_places_q;  // rotation to the left: for 2 digits before the point, for 3 leading zeros
   reg [31:0] s1_value_q, s2_value_q;
   `include "free_running.vh"
+  localparam integer D = 24 - SIGNIFICAND;
+  localparam [31:0] KEPT = 32'hffffffff << D;
+  wire [31:0] float_a = a_i & KEPT;
+  wire [31:0] float_b = b_i & KEPT;
   always @(posedge clk_i) begin
     if (enable_i[0]) begin : stage0
       reg nan_a, nan_b, below;
       reg [31:0] a, b;
       s1_op_q <= op_i;
       s1_sign_q <= a_i[31];
-      nan_a = &a_i[30:23] && a_i[22:0] != 23'd0;
-      nan_b = &b_i[30:23] && b_i[22:0] != 23'd0;
-      a = a_i;
-      b = b_i;
+      a = float_a;
+      b = float_b;
+      nan_a = &a[30:23] && a[22:0] != 23'd0;
+      nan_b = &b[30:23] && b[22:0] != 23'd0;
       if (SUBNORMALS != 0 && a[30:23] == 8'd0) a[22:0] = 23'd0;
       if (SUBNORMALS != 0 && b[30:23] == 8'd0) b[22:0] = 23'd0;
-      below = {!a[31], a[30:0] ^ {31{a[31]}}} < {!b[31], b[30:0] ^ {31{b[31]}}};
+      below = {!a[31], a[30:D] ^ {31-D{a[31]}}} < {!b[31], b[30:D] ^ {31-D{b[31]}}};
       if (!op_i[1]) begin
         if (nan_a && nan_b) s1_value_q <= 32'h7fc00000;
         else s1_value_q <= (nan_b || (!nan_a && below != op_i[0])) ? a : b;
       end else if (!op_i[0]) begin
-        s1_value_q <= {1'b1, a_i[22:0], 8'd0};
+        s1_value_q <= {1'b1, float_a[22:0], 8'd0};
       end else begin
         s1_value_q <= (a_i ^ {32{a_i[31]}}) + {31'd0, a_i[31]};
       end
@@ -85,9 +91,10 @@ module float_convert #(
 
   always @* begin : stage2
     reg [31:0] value;
-    reg increment;
+    reg up, increment;                      // to the next float, to the next integer
     result_o = 32'd0;
     value = s2_value_q;
+    up = 1'b0;
     increment = 1'b0;
     if (enable_i[2]) begin
       if (s2_op_q == 2'd2) begin
@@ -96,10 +103,10 @@ module float_convert #(
       end
       if (s2_op_q == 2'd3) begin
         // No leading one: zero.
-        value = s2_value_q[31] ? {1'b0, 8'd158 - {3'd0, s2_places_q}, s2_value_q[30:8]} : 32'd0;
-        increment = s2_value_q[7] && (s2_value_q[8] || s2_value_q[6:0] != 7'd0);
+        value = s2_value_q[31] ? {1'b0, 8'd158 - {3'd0, s2_places_q}, s2_value_q[30:8]} & KEPT : 32'd0;
+        up = s2_value_q[7+D] && (s2_value_q[8+D] || s2_value_q[6+D:0] != {7+D{1'b0}});
       end
-      result_o = value + {31'd0, increment};
+      result_o = value + ({31'd0, up} << D) + {31'd0, increment};
       if (s2_op_q == 2'd3 && s2_value_q[31]) result_o[31] = s2_sign_q;
       if (s2_op_q == 2'd2 && s2_saturate_q) result_o = {s2_sign_q, {31{!s2_sign_q}}};
     end

@@ -5,9 +5,11 @@
 // add_enable_i, multiply_enable_i, fuse_enable_i and convert_enable_i: bit 0 takes the operands into that unit, bit k
 // says that stage k holds that operation k cycles later; at most one unit is enabled in a stage.
 // result_o is loaded at the end of the last stage and stays until the next one.
+// SIGNIFICAND below 24: the units have so many bits; what a word has below them is not looked at, and zero in results.
 `default_nettype none
 module float_lane #(
   parameter integer SUBNORMALS = 0,
+  parameter integer SIGNIFICAND = 24,
   parameter integer FMA = 0,
   parameter integer STAGES = (FMA != 0) ? 5 : 3
 ) (
@@ -24,33 +26,46 @@ module float_lane #(
   output wire [31:0] result_o
 );
   `include "free_running.vh"
+  localparam integer M = SIGNIFICAND - 1;   // stored bits of a mantissa
+  localparam integer D = 23 - M;            // bits of a word that it lacks
   wire [31:0] converted;
-  reg [31:0] result_q;
-  float_convert #(.SUBNORMALS(SUBNORMALS)) convert (
+  reg [31:0] computed, result_q;            // computed: by the other units
+  float_convert #(.SUBNORMALS(SUBNORMALS), .SIGNIFICAND(SIGNIFICAND)) convert (
     .clk_i(clk_i), .enable_i(convert_enable_i[2:0]), .op_i(convert_op_i), .a_i(a_i), .b_i(b_i), .result_o(converted));
 
   generate
     if (FMA == 0) begin : gen_separate
-      wire [31:0] sum, product;
-      float_adder #(.EXPONENT_BITS(8), .MANTISSA_BITS(23), .SUBNORMALS(SUBNORMALS)) adder (
-        .clk_i(clk_i), .enable_i(add_enable_i[2:0]), .subtract_i(subtract_i), .a_i(a_i), .b_i(b_i), .result_o(sum));
-      float_multiplier #(.EXPONENT_BITS(8), .MANTISSA_BITS(23), .SUBNORMALS(SUBNORMALS)) multiplier (
-        .clk_i(clk_i), .enable_i(multiply_enable_i[2:0]), .a_i(a_i), .b_i(b_i), .result_o(product));
+      wire [31:D] sum, product;
+      float_adder #(.EXPONENT_BITS(8), .MANTISSA_BITS(M), .SUBNORMALS(SUBNORMALS)) adder (
+        .clk_i(clk_i), .enable_i(add_enable_i[2:0]), .subtract_i(subtract_i), .a_i(a_i[31:D]), .b_i(b_i[31:D]),
+        .result_o(sum));
+      float_multiplier #(.EXPONENT_BITS(8), .MANTISSA_BITS(M), .SUBNORMALS(SUBNORMALS)) multiplier (
+        .clk_i(clk_i), .enable_i(multiply_enable_i[2:0]), .a_i(a_i[31:D]), .b_i(b_i[31:D]), .result_o(product));
+      always @* begin
+        computed = 32'd0;
+        computed[31:D] = sum | product;
+      end
       always @(posedge clk_i) begin
-        if (add_enable_i[2] || multiply_enable_i[2] || convert_enable_i[2]) result_q <= sum | product | converted;
+        if (add_enable_i[2] || multiply_enable_i[2] || convert_enable_i[2]) result_q <= computed | converted;
       end
     end else begin : gen_fused
       wire [4:0] enable = add_enable_i | multiply_enable_i | fuse_enable_i;
-      wire [31:0] fused;
+      wire [31:D] fused;
+      localparam [31:0] ONE = 32'h3f800000;
+      wire [31:D] addend = add_enable_i[0] ? {b_i[31] ^ subtract_i, b_i[30:D]} : c_i[31:D];
+      wire [31:D] factor = add_enable_i[0] ? ONE[31:D] : b_i[31:D];
       reg [31:0] s3_converted_q, s4_converted_q;
-      float_fma #(.EXPONENT_BITS(8), .MANTISSA_BITS(23), .SUBNORMALS(SUBNORMALS)) fma (
-        .clk_i(clk_i), .enable_i(enable), .a_i(a_i), .b_i(add_enable_i[0] ? 32'h3f800000 : b_i),
-        .c_i(add_enable_i[0] ? {b_i[31] ^ subtract_i, b_i[30:0]} : c_i), .multiply_i(multiply_enable_i[0]),
-        .result_o(fused));
+      float_fma #(.EXPONENT_BITS(8), .MANTISSA_BITS(M), .SUBNORMALS(SUBNORMALS)) fma (
+        .clk_i(clk_i), .enable_i(enable), .a_i(a_i[31:D]), .b_i(factor), .c_i(addend),
+        .multiply_i(multiply_enable_i[0]), .result_o(fused));
+      always @* begin
+        computed = 32'd0;
+        computed[31:D] = fused;
+      end
       always @(posedge clk_i) begin
         if (`STAGE_LOADS(convert_enable_i[2])) s3_converted_q <= converted;
         if (`STAGE_LOADS(convert_enable_i[3])) s4_converted_q <= s3_converted_q;
-        if (enable[4] || convert_enable_i[4]) result_q <= convert_enable_i[4] ? s4_converted_q : fused;
+        if (enable[4] || convert_enable_i[4]) result_q <= convert_enable_i[4] ? s4_converted_q : computed;
       end
     end
   endgenerate

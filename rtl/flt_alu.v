@@ -1,6 +1,7 @@
 // Flt ALU: fadd fsub fmul fmin fmax f2i i2f in three stages, or with FMA these and ffma in five, further ones as delay.
-// docs/numerics.md has the rules of the results. SUBNORMALS 0: IEEE, 1: flushed. task_operand_c_i is register rc, the
-// third operand of ffma. Lanes outside the mask keep what they held. Only the unit an operation needs is clocked.
+// docs/numerics.md has the rules of the results. SUBNORMALS 0: IEEE, 1: flushed. SIGNIFICAND: bits of a float's
+// significand, with its leading one. task_operand_c_i is register rc, the third operand of ffma. Lanes outside the mask
+// keep what they held. Only the unit an operation needs is clocked.
 `default_nettype none
 module flt_alu #(
   parameter integer WARPS = 8,
@@ -9,6 +10,7 @@ module flt_alu #(
   parameter integer LATENCY = 1,
   parameter integer DEPTH = 3,
   parameter integer SUBNORMALS = 0,
+  parameter integer SIGNIFICAND = 24,
   parameter integer FMA = 0
 ) (
 `include "alu_ports.vh"
@@ -28,6 +30,9 @@ module flt_alu #(
     end
     if (SUBNORMALS < 0 || SUBNORMALS > 1) begin : gen_illegal_subnormals
       flt_alu_needs_subnormals_0_or_1 illegal ();
+    end
+    if (SIGNIFICAND < 11 || SIGNIFICAND > 24) begin : gen_illegal_significand
+      flt_alu_needs_a_significand_of_11_to_24 illegal ();
     end
   endgenerate
 
@@ -75,7 +80,7 @@ module flt_alu #(
           convert_later_q <= convert_enable[STAGES-2:0];
         end
       end
-      float_lane #(.SUBNORMALS(SUBNORMALS), .FMA(FMA)) lane (
+      float_lane #(.SUBNORMALS(SUBNORMALS), .SIGNIFICAND(SIGNIFICAND), .FMA(FMA)) lane (
         .clk_i(clk_i), .add_enable_i(add_enable), .multiply_enable_i(multiply_enable), .fuse_enable_i(fuse_enable),
         .convert_enable_i(convert_enable), .subtract_i(task_operation_i == ISA_FLT_FSUB), .convert_op_i(convert_op),
         .a_i(task_operand_a_i[l*32 +: 32]), .b_i(task_operand_b_i[l*32 +: 32]), .c_i(task_operand_c_i[l*32 +: 32]),

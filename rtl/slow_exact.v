@@ -3,10 +3,14 @@
 // below 2^-24 in the quotient. So of the floats only the two around the middle m of the interval that the estimate lies
 // in can be the result, and the sign of w - m*v, of v - m*m (fsqrt) or of 4 - m*m*v (frsqrt) decides exactly between
 // them. 7: m*v or m*m, 8: its sum, less w or v, 9: for frsqrt times m, 10: the sign, rounding.
+// With a SIGNIFICAND of p bits, 24 here, the error must be below 2^-p, m has one bit more than a float, and 3 * p - 1
+// fraction bits of m*m*v decide.
 // enable_i[k] says that stage 1 + k holds a task. result_o is combinational in stage
 // 10 and zero while enable_i[9] is low.
 `default_nettype none
-module slow_exact (
+module slow_exact #(
+  parameter integer SIGNIFICAND = 24
+) (
   input  wire        clk_i,
   input  wire [9:0]  enable_i,
   input  wire [8:0]  index_1_i,     // valid in stage 1
@@ -25,6 +29,8 @@ module slow_exact (
   `include "free_running.vh"
   `include "ones_below.vh"
   `include "booth_digits.vh"
+  localparam integer P = SIGNIFICAND;
+  localparam integer D = 24 - P;
   // What travels with a task; registers sK_* are valid in stage K.
   localparam integer TAG_BITS = 18;
   reg s3_root_q, s3_unary_q;
@@ -32,8 +38,8 @@ module slow_exact (
   localparam integer SPECIAL = 17, NAN = 16, SIGN = 15, ROOT = 14, UNARY = 13, EXPONENT = 5;
   reg [TAG_BITS-1:0] s4_tag_q, s5_tag_q, s6_tag_q, s7_tag_q, s8_tag_q;
   reg [TAG_BITS-1:EXPONENT] s9_tag_q;
-  reg [24:0] s3_v_q, s4_v_q, s5_v_q, s6_v_q, s7_v_q;
-  reg [24:0] s3_w_q, s4_w_q, s5_w_q, s6_w_q, s7_w_q, s8_w_q;
+  reg [P:0] s3_v_q, s4_v_q, s5_v_q, s6_v_q, s7_v_q;   // P - 1 fraction bits
+  reg [P:0] s3_w_q, s4_w_q, s5_w_q, s6_w_q, s7_w_q, s8_w_q;
   wire [28:0] s2_row;
   slow_line_table line_table (.clk_i(clk_i), .enable_i(enable_i[0]), .index_i(index_1_i[8:1]), .row_o(s2_row));
   wire [27:0] line_sum, line_carry;
@@ -44,35 +50,40 @@ module slow_exact (
 
   reg [14:0] s3_y_q;              // 15 fraction bits
   reg [23:0] s3_y_digits_q;
-  wire [31:0] s7_estimate;        // 24 fraction bits, and six that are zero
-  slow_refine #(.EXACT(1)) refine (
-    .clk_i(clk_i), .enable_i(enable_i[5:2]), .v_i(s3_v_q), .w_i(s3_w_q), .y_i(s3_y_q), .y_digits_i(s3_y_digits_q),
+  wire [31:0] s7_estimate;        // 24 fraction bits or less, and zeros
+  wire [25:0] s3_v = {s3_v_q, {D+1{1'b0}}};
+  wire [25:0] s3_w = {s3_w_q, {D+1{1'b0}}};
+  slow_refine #(.EXACT(1), .LESS((D < 8) ? D : 8)) refine (
+    .clk_i(clk_i), .enable_i(enable_i[5:2]), .v_i(s3_v[25:1]), .w_i(s3_w[25:1]), .y_i(s3_y_q),
+    .y_digits_i(s3_y_digits_q),
     .root_1_i(s4_tag_q[ROOT]), .unary_1_i(s4_tag_q[UNARY]),
     .root_2_i(s5_tag_q[ROOT]), .quotient_o(s7_estimate));
 
-  reg [24:0] s7_half_q;           // half a unit in the last place of the result: the lowest one of m
-  reg [24:0] s7_keep_q;           // the bits of the estimate that stay in m
-  reg [24:0] s8_m_q;              // 24 fraction bits
-  reg [49:0] s8_sum_q, s8_carry_q;  // m*v or m*m as two numbers
-  reg [23:0] s9_n_q;              // the float below m
-  // m*v - w or m*m - v, signed; for frsqrt m*v. The tree's two numbers are the product only modulo 2^50.
-  reg [49:0] s9_product_q;
-  // Modulo 2^52, as what is left over is small; for frsqrt it is more than the 2^22 that are lost below 2^18.
-  localparam integer OUT = 52, CUT = 18;
+  reg [P:0] s7_half_q;            // half a unit in the last place of the result: the lowest one of m
+  reg [P:0] s7_keep_q;            // the bits of the estimate that stay in m
+  reg [P:0] s8_m_q;               // P fraction bits
+  localparam integer F = 2*P + 2; // bits of m*v and m*m
+  reg [F-1:0] s8_sum_q, s8_carry_q;  // m*v or m*m as two numbers
+  reg [P-1:0] s9_n_q;             // the float below m
+  // m*v - w or m*m - v, signed; for frsqrt m*v. The tree's two numbers are the product only modulo 2^F.
+  reg [F-1:0] s9_product_q;
+  // Modulo 2^52, of 24 bits, as what is left over is small; for frsqrt it is more than the 2^22 that are lost below
+  // 2^18. slw_alu_test goes through every v of every significand.
+  localparam integer OUT = 2*P + 4, CUT = P - 6;
   reg [OUT-1:CUT] s10_sum_q, s10_carry_q;
   reg s10_above_q, s10_frsqrt_q, s10_sign_q;
-  reg [30:0] s10_below_q;         // the float below m, or the special result
+  reg [P+6:0] s10_below_q;        // the float below m, or the special result
 
   // No true quotient is nearer to 2 than 2^-24, so the estimate is below 2 too.
-  wire [24:0] s7_m = (s7_estimate[30:6] & s7_keep_q) | s7_half_q;
-  wire [49:0] s7_sum, s7_carry;
-  multiply_tree #(.A_BITS(25), .B_BITS(25), .OUT_BITS(50)) first_product (
-    .a_i((s7_tag_q[ROOT] && !s7_tag_q[UNARY]) ? s7_m : s7_v_q), .b_i(s7_m), .c_i(50'd0), .sum_o(s7_sum),
+  wire [P:0] s7_m = (s7_estimate[30 -: P+1] & s7_keep_q) | s7_half_q;
+  wire [F-1:0] s7_sum, s7_carry;
+  multiply_tree #(.A_BITS(P+1), .B_BITS(P+1), .OUT_BITS(F)) first_product (
+    .a_i((s7_tag_q[ROOT] && !s7_tag_q[UNARY]) ? s7_m : s7_v_q), .b_i(s7_m), .c_i({F{1'b0}}), .sum_o(s7_sum),
     .carry_o(s7_carry));
-  wire [49:0] s8_whole = (s8_tag_q[ROOT] && s8_tag_q[UNARY]) ? 50'd0 : s8_tag_q[ROOT] ? {s8_w_q, 25'd0} :
-                         {1'b0, s8_w_q, 24'd0};
+  wire [F-1:0] s8_whole = (s8_tag_q[ROOT] && s8_tag_q[UNARY]) ? {F{1'b0}} : s8_tag_q[ROOT] ? {s8_w_q, {P+1{1'b0}}} :
+                          {1'b0, s8_w_q, {P{1'b0}}};
   wire [OUT-1:0] s9_sum, s9_carry;
-  multiply_tree #(.A_BITS(50), .B_BITS(25), .OUT_BITS(OUT), .CUT(CUT)) second_product (
+  multiply_tree #(.A_BITS(F), .B_BITS(P+1), .OUT_BITS(OUT), .CUT(CUT)) second_product (
     .a_i(s9_product_q), .b_i({s9_n_q, 1'b1}), .c_i({OUT{1'b0}}), .sum_o(s9_sum), .carry_o(s9_carry));
 
   always @(posedge clk_i) begin
@@ -82,15 +93,15 @@ module slow_exact (
         s3_y_digits_q <= s2_y_digits[23:0];
         s3_root_q <= root_i;
         s3_unary_q <= unary_i;
-        s3_v_q <= v_i;
-        s3_w_q <= w_i;
+        s3_v_q <= v_i[24:D];
+        s3_w_q <= w_i[24:D];
       end
       if (`STAGE_LOADS(enable_i[2])) begin s4_tag_q <= s3_tag; s4_v_q <= s3_v_q; s4_w_q <= s3_w_q; end
       if (`STAGE_LOADS(enable_i[3])) begin s5_tag_q <= s4_tag_q; s5_v_q <= s4_v_q; s5_w_q <= s4_w_q; end
       if (`STAGE_LOADS(enable_i[4])) begin s6_tag_q <= s5_tag_q; s6_v_q <= s5_v_q; s6_w_q <= s5_w_q; end
       if (`STAGE_LOADS(enable_i[5])) begin
-        s7_half_q <= 25'd1 << s6_tag_q[4:0];
-        s7_keep_q <= 25'h1fffffe << s6_tag_q[4:0];
+        s7_half_q <= {{P{1'b0}}, 1'b1} << s6_tag_q[4:0];
+        s7_keep_q <= {{P{1'b1}}, 1'b0} << s6_tag_q[4:0];
         s7_tag_q <= s6_tag_q;
         s7_v_q <= s6_v_q;
         s7_w_q <= s6_w_q;
@@ -104,7 +115,7 @@ module slow_exact (
       end
       if (`STAGE_LOADS(enable_i[7])) begin
         s9_product_q <= s8_sum_q + s8_carry_q - s8_whole;
-        s9_n_q <= s8_m_q[24:1] >> s8_tag_q[4:0];
+        s9_n_q <= s8_m_q[P:1] >> s8_tag_q[4:0];
         s9_tag_q <= s8_tag_q[TAG_BITS-1:EXPONENT];
       end
       if (`STAGE_LOADS(enable_i[8])) begin
@@ -113,9 +124,9 @@ module slow_exact (
         s10_sign_q <= s9_tag_q[SIGN];
         s10_frsqrt_q <= s9_tag_q[ROOT] && s9_tag_q[UNARY] && !s9_tag_q[SPECIAL];
         // Nothing is left over only when a subnormal quotient lies on m itself: then to even.
-        s10_above_q <= !s9_tag_q[SPECIAL] && (s9_product_q[49] || (s9_product_q == 50'd0 && s9_n_q[0]));
-        s10_below_q <= s9_tag_q[SPECIAL] ? {s9_tag_q[EXPONENT +: 8], s9_tag_q[NAN], 22'd0} :
-                       {s9_tag_q[EXPONENT +: 8] + {7'd0, s9_n_q[23]}, s9_n_q[22:0]};
+        s10_above_q <= !s9_tag_q[SPECIAL] && (s9_product_q[F-1] || (s9_product_q == {F{1'b0}} && s9_n_q[0]));
+        s10_below_q <= s9_tag_q[SPECIAL] ? {s9_tag_q[EXPONENT +: 8], s9_tag_q[NAN], {P-2{1'b0}}} :
+                       {s9_tag_q[EXPONENT +: 8] + {7'd0, s9_n_q[P-1]}, s9_n_q[P-2:0]};
       end
     end
   end
@@ -131,8 +142,8 @@ module slow_exact (
     if (enable_i[9]) begin
       rest = s10_sum_q + s10_carry_q;
       round_up = s10_frsqrt_q ? rest[OUT-1] : s10_above_q;
-      ones = ones_below({32'd0, s10_below_q});
-      result_o = {s10_sign_q, s10_below_q ^ (ones[30:0] & {31{round_up}})};
+      ones = ones_below({{56-P{1'b0}}, s10_below_q});
+      result_o[31 -: P+8] = {s10_sign_q, s10_below_q ^ (ones[P+6:0] & {P+7{round_up}})};
     end
   end
 endmodule

@@ -7,6 +7,7 @@
 // enable_i[k] says that stage 1 + k holds a task. result_o is combinational in stage LAST and zero while it holds none.
 `default_nettype none
 module slow_newton #(
+  parameter integer SIGNIFICAND = 24,
   parameter integer STEPS = 2,
   parameter integer LAST = 10
 ) (
@@ -37,6 +38,7 @@ module slow_newton #(
   // What travels with a task, from stage 3 to ROUND; registers sK_* are valid in stage K.
   localparam integer TAG_BITS = 18;
   reg s3_root_q, s3_unary_q;
+  localparam integer P = SIGNIFICAND;
   localparam integer UNARY = 17, SPECIAL = 16, NAN = 15, SIGN = 14, ROOT = 13, EXPONENT = 5;
   reg [(ROUND-3)*TAG_BITS-1:0] tags_q;  // of stages 4 .. ROUND
   wire [(ROUND-2)*TAG_BITS-1:0] tags =
@@ -56,7 +58,7 @@ module slow_newton #(
   wire [24:0] w;                  // of stage PRODUCT, as y
   wire [Y_BITS-1:0] y;            // Y_BITS fraction bits
   wire [31:0] round_estimate;     // 30 fraction bits
-  reg [30:0] last_magnitude_q;
+  reg [P+6:0] last_magnitude_q;   // exponent and P - 1 bits
   reg last_round_up_q;
 
   always @(posedge clk_i) begin
@@ -77,8 +79,8 @@ module slow_newton #(
         else if (!round_estimate[30]) nearest = 31'h40000000;
         kept = nearest >> round_tag[4:0];
         lost = nearest & ~(31'h7fffffff << round_tag[4:0]);
-        last_magnitude_q <= {round_tag[EXPONENT +: 8] + {7'd0, kept[30]}, kept[29:7]};
-        last_round_up_q <= kept[6] && (kept[7] || kept[5:0] != 6'd0 || lost != 31'd0);
+        last_magnitude_q <= {round_tag[EXPONENT +: 8] + {7'd0, kept[30]}, kept[29 -: P-1]};
+        last_round_up_q <= kept[30-P] && (kept[31-P] || kept[29-P:0] != {30-P{1'b0}} || lost != 31'd0);
         last_tag_q <= round_tag[SPECIAL:0];
       end
     end
@@ -151,13 +153,16 @@ module slow_newton #(
 
   always @* begin : last
     reg [63:0] ones;
+    reg [P+6:0] rounded;
     result_o = 32'd0;
     ones = 64'd0;
+    rounded = {P+7{1'b0}};
     if (enable_i[LAST-1]) begin
-      ones = ones_below({32'd0, last_magnitude_q});
+      ones = ones_below({{56-P{1'b0}}, last_magnitude_q});
+      // ones[P-1]: what is above a fraction of ones is the exponent.
+      rounded = last_magnitude_q ^ (ones[P+6:0] & {P+7{last_round_up_q && !ones[P-1]}});
       if (last_tag_q[SPECIAL]) result_o = {last_tag_q[SIGN], last_tag_q[EXPONENT +: 8], last_tag_q[NAN], 22'd0};
-      // ones[23]: what is above a fraction of ones is the exponent.
-      else result_o = {last_tag_q[SIGN], last_magnitude_q ^ (ones[30:0] & {31{last_round_up_q && !ones[23]}})};
+      else result_o[31 -: P+8] = {last_tag_q[SIGN], rounded};
     end
   end
 endmodule

@@ -11,11 +11,14 @@
 //   special_3_o  in stage 3, as all others: the result is {sign, exponent, nan, 22 zeros}
 //   else         the result is the sign and exponent * 2^23 + q, q with 23 - shift fraction
 //                bits; shift above 0: subnormal, 1 .. 24
+// With a SIGNIFICAND of p bits, 24 here, what an operand has below them is not looked at, v and w have p - 1 fraction
+// bits and zeros below, and q has p - 1 - shift, shift 0 .. p.
 // SUBNORMALS 0: IEEE; 1: subnormal operands count as zero, results below the normal numbers are zero
 // (no quotient there rounds up to one).
 `default_nettype none
 module slow_prepare #(
-  parameter integer SUBNORMALS = 0
+  parameter integer SUBNORMALS = 0,
+  parameter integer SIGNIFICAND = 24
 ) (
   input  wire        clk_i,
   input  wire [2:0]  enable_i,
@@ -36,6 +39,10 @@ module slow_prepare #(
   output wire [4:0]  shift_3_o
 );
   `include "booth_digits.vh"
+  localparam [31:0] KEPT = 32'hffffffff << (24 - SIGNIFICAND);
+  localparam [9:0] LAST_SHIFT = SIGNIFICAND[9:0];
+  wire [31:0] float_a = a_i & KEPT;
+  wire [31:0] float_b = b_i & KEPT;
   // A number brought to the top: {leading zeros, 24 bits}.
   function [28:0] normalised(input [23:0] mantissa);
     reg [23:0] m;
@@ -77,12 +84,12 @@ module slow_prepare #(
       reg single, zero_a, zero_b, zero_n, zero_d, max_a, max_b, max_n, max_d, nan_a, nan_b, nan, infinite;
       reg [28:0] a, b;
       single = root_i || unary_i;               // a_i is the divisor or radicand, and n is 1
-      max_a = &a_i[30:23];
-      max_b = &b_i[30:23];
-      zero_a = a_i[30:23] == 8'd0 && (SUBNORMALS != 0 || a_i[22:0] == 23'd0);
-      zero_b = b_i[30:23] == 8'd0 && (SUBNORMALS != 0 || b_i[22:0] == 23'd0);
-      nan_a = max_a && a_i[22:0] != 23'd0;
-      nan_b = max_b && b_i[22:0] != 23'd0;
+      max_a = &float_a[30:23];
+      max_b = &float_b[30:23];
+      zero_a = float_a[30:23] == 8'd0 && (SUBNORMALS != 0 || float_a[22:0] == 23'd0);
+      zero_b = float_b[30:23] == 8'd0 && (SUBNORMALS != 0 || float_b[22:0] == 23'd0);
+      nan_a = max_a && float_a[22:0] != 23'd0;
+      nan_b = max_b && float_b[22:0] != 23'd0;
       max_n = max_a && !single;
       zero_n = zero_a && !single;
       max_d = single ? max_a : max_b;
@@ -90,7 +97,7 @@ module slow_prepare #(
       nan = nan_a || (nan_b && !single);
       infinite = 1'b0;
       if (root_i) begin
-        if (a_i[31] && !zero_d) nan = 1'b1;
+        if (float_a[31] && !zero_d) nan = 1'b1;
         infinite = unary_i ? zero_d : max_d;
       end else begin
         if ((max_n && max_d) || (zero_n && zero_d)) nan = 1'b1;
@@ -99,17 +106,17 @@ module slow_prepare #(
       s1_special_q <= nan || max_n || max_d || zero_n || zero_d;
       s1_nan_q <= nan;
       s1_infinite_q <= infinite;
-      s1_sign_q <= !nan && (a_i[31] ^ (b_i[31] && !single));
+      s1_sign_q <= !nan && (float_a[31] ^ (float_b[31] && !single));
       s1_root_q <= root_i;
       s1_unary_q <= unary_i;
-      a = normalised({a_i[30:23] != 8'd0, a_i[22:0]});
-      b = normalised({b_i[30:23] != 8'd0, b_i[22:0]});
+      a = normalised({float_a[30:23] != 8'd0, float_a[22:0]});
+      b = normalised({float_b[30:23] != 8'd0, float_b[22:0]});
       {s1_zeros_n_q, s1_n_q} <= single ? {5'd0, 24'h800000} : a;
       {s1_zeros_d_q, s1_d_q} <= single ? a : b;
       // A subnormal number has the exponent of the smallest normal one.
-      s1_exponent_n_q <= single ? 8'd127 : {a_i[30:24], a_i[23] || a_i[30:23] == 8'd0};
-      s1_exponent_d_q <= single ? {a_i[30:24], a_i[23] || a_i[30:23] == 8'd0} :
-                         {b_i[30:24], b_i[23] || b_i[30:23] == 8'd0};
+      s1_exponent_n_q <= single ? 8'd127 : {float_a[30:24], float_a[23] || float_a[30:23] == 8'd0};
+      s1_exponent_d_q <= single ? {float_a[30:24], float_a[23] || float_a[30:23] == 8'd0} :
+                         {float_b[30:24], float_b[23] || float_b[30:23] == 8'd0};
     end
     if (`STAGE_LOADS(enable_i[1])) begin : stage1
       reg smaller;
@@ -152,7 +159,7 @@ module slow_prepare #(
         special = 1'b1;
         s3_exponent_q <= 8'hff;
       end else if (exponent[9] || exponent == 10'd0) begin
-        special = SUBNORMALS != 0 || below > 10'd24;
+        special = SUBNORMALS != 0 || below > LAST_SHIFT;
         s3_exponent_q <= 8'd0;
         if (SUBNORMALS == 0) s3_shift_q <= below[4:0];
       end else begin

@@ -7,14 +7,15 @@
 // v, w: 23 fraction bits; y: 15, below 1; w is v for fsqrt (root, not unary) and 2 for frsqrt (root and unary).
 // EXACT 0: cut off downwards are t and n at 30 fraction bits, e at 28, the n of n*e at 18, the
 // quotient at 30; |e| must be below 2^-12.
-// EXACT 1: for a caller that needs less. Two bits fewer each, sums lose what multiply_tree leaves out, the quotient has
-// 24 fraction bits; |e| must be below 2^-14. slow_exact.v says how far off that is.
+// EXACT 1: for a caller that needs less. 2 + LESS bits fewer each, sums lose what multiply_tree leaves out, the quotient
+// has 24 - LESS fraction bits; |e| must be below 2^-14. slow_exact.v says how far off that is. LESS 0 .. 8.
 // y_digits_i is what booth_digits makes of y.
 // enable_i[k] says that stage k holds a task; v_i, w_i, y_i and its digits are taken with enable_i[0]. root_1_i and
 // unary_1_i belong to the task in stage 1, root_2_i to that in stage 2. quotient_o is a register with 30 fraction bits.
 `default_nettype none
 module slow_refine #(
-  parameter integer EXACT = 0
+  parameter integer EXACT = 0,
+  parameter integer LESS = 0
 ) (
   input  wire        clk_i,
   input  wire [3:0]  enable_i,
@@ -29,18 +30,18 @@ module slow_refine #(
 );
   `include "free_running.vh"
   `include "booth_digits.vh"
-  localparam integer LESS = (EXACT != 0) ? 2 : 0;
-  localparam integer N = 32 - LESS;         // of n
-  localparam integer T = 31 - LESS;         // of t
-  localparam integer E = (EXACT != 0) ? 13 : 17;
+  localparam integer FEWER = (EXACT != 0) ? 2 + LESS : 0;
+  localparam integer N = 32 - FEWER;        // of n
+  localparam integer T = 31 - FEWER;        // of t
+  localparam integer E = (EXACT != 0) ? 13 - LESS : 17;
   localparam integer E_DIGITS = 3 * ((E + 1) / 2);
-  localparam integer H = 20 - LESS;         // of the n in n*e
+  localparam integer H = 20 - FEWER;        // of the n in n*e
   localparam integer P = N + 15;            // of x*y
-  localparam integer T_CUT = (EXACT != 0) ? 8 : 0;
+  localparam integer T_CUT = (EXACT != 0) ? 8 + LESS : 0;
   localparam integer P_CUT = (EXACT != 0) ? 13 : 0;
-  localparam integer S = 48 - 2*LESS;       // of n + n*e, 46 - 2*LESS fraction bits
-  localparam integer S_CUT = (EXACT != 0) ? 11 : 0;
-  localparam integer Q = (EXACT != 0) ? 24 : 30;  // fraction bits of the quotient
+  localparam integer S = 48 - 2*FEWER;      // of n + n*e, 46 - 2*FEWER fraction bits
+  localparam integer S_CUT = (EXACT != 0) ? 11 - LESS : 0;
+  localparam integer Q = (EXACT != 0) ? 24 - LESS : 30;  // fraction bits of the quotient
   reg [T-1:0] s1_t_q, s2_t_q;               // s2: of frsqrt 2*y
   reg [14:0] s1_y_q;
   reg [24:0] s1_w_q;
@@ -54,12 +55,13 @@ module slow_refine #(
     .a_i(v_i), .b_i(y_digits_i), .c_i(39'd0), .sum_o(t_sum), .carry_o(t_carry));
   wire [38:0] t = t_sum + t_carry;
 
-  wire [N-1:0] s1_x = root_1_i ? {1'b0, s1_t_q} : {s1_w_q, {N-25{1'b0}}};
+  wire [31:0] s1_w = {s1_w_q, 7'd0};
+  wire [N-1:0] s1_x = root_1_i ? {1'b0, s1_t_q} : s1_w[31 -: N];
   wire [P-1:0] p_sum, p_carry;
   multiply_tree #(.A_BITS(N), .B_BITS(15), .OUT_BITS(P), .CUT(P_CUT)) p_tree (
     .a_i(s1_x), .b_i(s1_y_q), .c_i({P{1'b0}}), .sum_o(p_sum), .carry_o(p_carry));
   wire [P-1:P_CUT] s2_p = s2_sum_q + s2_carry_q;
-  // 1 - p without carry: all ones below 1 minus p. p has 45 - LESS fraction bits, t 30 - LESS.
+  // 1 - p without carry: all ones below 1 minus p. p has 45 - FEWER fraction bits, t 30 - FEWER.
   wire [E-1:0] s2_e = root_2_i ? ~s2_p[18 +: E] : ~s2_t_q[2 +: E];
   wire [47:0] s2_e_digits = booth_digits({{32-E{s2_e[E-1]}}, s2_e});
 

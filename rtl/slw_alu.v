@@ -1,6 +1,7 @@
 // Slw ALU: fdiv fsqrt frsqrt frcp, a new task in any of its stages; further stages as delay. docs/numerics.md has the
-// rules. SUBNORMALS 0: IEEE, 1: flushed. SLOW_UNIT 0: correctly rounded, 1: table and two Newton steps, both in 11
-// stages; 2: one step, 8; 3: none, 6. Lanes outside the mask keep what they held and are not clocked.
+// rules. SUBNORMALS 0: IEEE, 1: flushed. SIGNIFICAND: bits of a float's significand, with its leading one. SLOW_UNIT 0:
+// correctly rounded, 1: table and two Newton steps, both in 11 stages; 2: one step, 8; 3: none, 6. Lanes outside the
+// mask keep what they held and are not clocked.
 // With SLOW_LANES below LANES there are so many lanes only. They take a task group after group, the lowest lanes first,
 // which makes LANES / SLOW_LANES - 1 cycles more than DEPTH, and as many between tasks; the task's operands must stay.
 `default_nettype none
@@ -11,6 +12,7 @@ module slw_alu #(
   parameter integer LATENCY = 1,
   parameter integer DEPTH = 11,
   parameter integer SUBNORMALS = 0,
+  parameter integer SIGNIFICAND = 24,
   parameter integer SLOW_UNIT = 0,
   parameter integer SLOW_LANES = 32
 ) (
@@ -30,6 +32,9 @@ module slw_alu #(
     end
     if (SUBNORMALS < 0 || SUBNORMALS > 1) begin : gen_illegal_subnormals
       slw_alu_needs_subnormals_0_or_1 illegal ();
+    end
+    if (SIGNIFICAND < 11 || SIGNIFICAND > 24) begin : gen_illegal_significand
+      slw_alu_needs_a_significand_of_11_to_24 illegal ();
     end
     if (SLOW_UNIT < 0 || SLOW_UNIT > 3) begin : gen_illegal_slow_unit
       slw_alu_needs_slow_unit_0_to_3 illegal ();
@@ -76,7 +81,7 @@ module slw_alu #(
         if (!rst_ni) later_q <= {STAGES-1{1'b0}};
         else if (moving) later_q <= enable[STAGES-2:0];
       end
-      slow_lane #(.SUBNORMALS(SUBNORMALS), .SLOW_UNIT(SLOW_UNIT), .STAGES(STAGES)) lane (
+      slow_lane #(.SUBNORMALS(SUBNORMALS), .SIGNIFICAND(SIGNIFICAND), .SLOW_UNIT(SLOW_UNIT), .STAGES(STAGES)) lane (
         .clk_i(clk_i), .enable_i(enable), .root_i(root), .unary_i(unary), .a_i(operand_a[l*32 +: 32]),
         .b_i(operand_b[l*32 +: 32]), .result_o(result[l*32 +: 32]));
     end

@@ -30,6 +30,9 @@
     if (SUBNORMALS < 0 || SUBNORMALS > 1) begin : gen_bad_SUBNORMALS
       SUBNORMALS_must_be_an_integer_from_0_to_1 illegal ();
     end
+    if (SIGNIFICAND < 11 || SIGNIFICAND > 24) begin : gen_bad_SIGNIFICAND
+      SIGNIFICAND_must_be_an_integer_from_11_to_24 illegal ();
+    end
     if (SLOW_UNIT < 0 || SLOW_UNIT > 3) begin : gen_bad_SLOW_UNIT
       SLOW_UNIT_must_be_an_integer_from_0_to_3 illegal ();
     end

@@ -26,5 +26,6 @@
   parameter integer DATA_CACHE_BYTES = 8192,
   parameter integer DATA_CACHE_MSHRS = 4,
   parameter integer SUBNORMALS = 0,
+  parameter integer SIGNIFICAND = 24,
   parameter integer SLOW_UNIT = 0,
   parameter integer FMA = 0,

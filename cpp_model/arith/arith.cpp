@@ -103,6 +103,12 @@ uint32_t exact_inverse_root(float x) {
 
 uint32_t exact(uint32_t a, uint32_t b, SlowOperation operation, Mode mode) {
   const float x = as_float(a), y = as_float(b);
+  if (mode.narrow()) {
+    // No inverse root is so near to a middle that the two roundings of its double matter: raypool_arith_test goes
+    // through all of them.
+    if (operation == SlowOperation::InverseRoot) return narrowed(1 / std::sqrt(double{x}), mode);
+    return narrowed(operation == SlowOperation::Root ? std::sqrt(double{x}) : double{x} / double{y}, mode);
+  }
   switch (operation) {
     case SlowOperation::Root:
       return canonical(std::sqrt(x));
@@ -142,18 +148,20 @@ uint32_t newton(uint32_t a, uint32_t b, SlowOperation operation, Mode mode) {
     exponent = 127 + n.exponent - d.exponent - smaller;
   }
   if (exponent >= 255) return sign | kInfinity;
-  if (exponent < (flushes(mode) ? 1 : -23)) return sign;
+  const int below = 24 - static_cast<int>(mode.significand);  // bits of a word that a float lacks
+  if (exponent < (flushes(mode) ? 1 : below - 23)) return sign;
   const uint32_t quotient = newton_quotient(v, w, is_root(operation), mode.slow_unit);
-  // Round to nearest even at bit 7, or further up for a subnormal result.
-  const int cut = 7 + (exponent < 1 ? 1 - exponent : 0);
+  // Round to nearest even at bit 7, or further up for a subnormal result or a shorter significand.
+  const int cut = 7 + below + (exponent < 1 ? 1 - exponent : 0);
   const uint64_t half = uint64_t{1} << (cut - 1);
   const uint64_t kept = quotient >> cut;
   const uint64_t tail = quotient & (2 * half - 1);
-  const uint64_t magnitude = (exponent < 1 ? 0 : static_cast<uint64_t>(exponent - 1) << 23) + kept;
+  const uint64_t magnitude = (exponent < 1 ? 0 : static_cast<uint64_t>(exponent - 1) << (23 - below)) + kept;
   // True quotients are not so near to 2 that a rounding changes the exponent; an estimate may be.
-  const bool may_carry = (magnitude & 0x007fffffu) != 0x007fffffu;
+  const uint64_t fraction = 0x007fffffu >> below;
+  const bool may_carry = (magnitude & fraction) != fraction;
   const bool up = tail > half || (tail == half && kept % 2 != 0);
-  return sign | static_cast<uint32_t>(magnitude + (up && may_carry ? 1 : 0));
+  return sign | static_cast<uint32_t>(magnitude + (up && may_carry ? 1 : 0)) << below;
 }
 
 uint32_t finite(uint32_t a, uint32_t b, SlowOperation operation, Mode mode) {
@@ -174,6 +182,43 @@ uint32_t quotient_of(uint32_t a, uint32_t b, SlowOperation operation, Mode mode)
 }
 
 }  // namespace
+
+uint32_t detail::narrowed(double value, Mode mode) {
+  if (std::isnan(value)) return kQuietNan;
+  uint64_t bits;
+  std::memcpy(&bits, &value, 8);
+  const auto sign = static_cast<uint32_t>(bits >> 63) << 31;
+  const int exponent = static_cast<int>(bits >> 52 & 0x7ff) - 1023;
+  if (exponent > 127) return sign | kInfinity;
+  const auto significand = static_cast<int>(mode.significand);
+  const bool tiny = exponent < -126;
+  // The last bits of 53 are rounded away; more of them where the numbers end.
+  const int cut = 53 - significand + (tiny && !flushes(mode) ? -126 - exponent : 0);
+  if (cut > 53) return sign;
+  const uint64_t mantissa = (bits & ((uint64_t{1} << 52) - 1)) | uint64_t{1} << 52;
+  const uint64_t half = uint64_t{1} << (cut - 1), tail = mantissa & (2 * half - 1);
+  uint64_t kept = mantissa >> cut;
+  if (tail > half || (tail == half && kept % 2 != 0)) ++kept;
+  const auto aligned = static_cast<uint32_t>(kept << (kFullSignificand - mode.significand));
+  if (!tiny) return sign | ((static_cast<uint32_t>(exponent + 126) << 23) + aligned);  // the leading one adds to it
+  if (!flushes(mode)) return sign | aligned;
+  return exponent == -127 && aligned == 2 * kSmallestNormal ? sign | kSmallestNormal : sign;
+}
+
+uint32_t detail::narrowed_sum(float x, float y, float z, Mode mode) {
+  const double product = double{x} * double{y}, addend = z;  // exact
+  double sum = product + addend;
+  if (std::isfinite(sum)) {
+    // Knuth's two-sum gives what the addition lost. A sum that lost anything is made odd, as it lies between an even
+    // and an odd number (Boldo and Melquiond, Emulation of FMA and correctly rounded sums, 2008).
+    const double virtual_addend = sum - product;
+    const double rest = (product - (sum - virtual_addend)) + (addend - virtual_addend);
+    uint64_t bits;
+    std::memcpy(&bits, &sum, 8);
+    if (rest != 0 && bits % 2 == 0) sum = std::nextafter(sum, rest > 0 ? INFINITY : -INFINITY);
+  }
+  return narrowed(sum, mode);
+}
 
 uint32_t div(uint32_t a, uint32_t b, Mode mode) {
   return quotient_of(operand(a, mode), operand(b, mode), SlowOperation::Divide, mode);

@@ -12,16 +12,22 @@
 
 namespace raypool::arith {
 
+inline constexpr uint32_t kFullSignificand = 24;   ///< single precision's
+inline constexpr uint32_t kLeastSignificand = 11;  ///< half precision's
+
 /// The modes that change results.
 struct Mode {
   Subnormals subnormals = Subnormals::Ieee;
   SlowUnit slow_unit = SlowUnit::Exact;
-  bool fused = false;  ///< the machine has a fused multiply-add; muladd() uses it
+  bool fused = false;                       ///< the machine has a fused multiply-add; muladd() uses it
+  uint32_t significand = kFullSignificand;  ///< bits with the leading one, 11 .. 24
+
+  bool narrow() const { return significand != kFullSignificand; }
 };
 
 /// The mode of a machine.
 inline Mode mode_of(const Configuration& configuration) {
-  return {configuration.subnormals, configuration.slow_unit, configuration.fma};
+  return {configuration.subnormals, configuration.slow_unit, configuration.fma, configuration.significand};
 }
 
 inline constexpr uint32_t kQuietNan = 0x7fc00000u;
@@ -40,8 +46,11 @@ inline bool is_nan(uint32_t a) { return (a & kMagnitude) > kInfinity; }
 inline bool flushes(Mode mode) { return mode.subnormals == Subnormals::Flush; }
 /// A subnormal number becomes the zero of its sign.
 inline uint32_t flushed(uint32_t a) { return (a & kInfinity) == 0 ? a & kSign : a; }
-/// An operand as the unit sees it.
-inline uint32_t operand(uint32_t a, Mode mode) { return flushes(mode) ? flushed(a) : a; }
+/// An operand as the unit sees it: what is below its significand counts as zero.
+inline uint32_t operand(uint32_t a, Mode mode) {
+  a &= ~uint32_t{0} << (kFullSignificand - mode.significand);
+  return flushes(mode) ? flushed(a) : a;
+}
 inline uint32_t canonical(float value) {
   const uint32_t bits = as_bits(value);
   return is_nan(bits) ? kQuietNan : bits;
@@ -67,20 +76,32 @@ inline uint32_t flush_tiny_sum(uint32_t rounded, float x, float y, float z) {
   return magnitude < kTinyLimit || (magnitude == kTinyLimit && beyond < 0) ? rounded & kSign : rounded;
 }
 
+/// `value` with a significand of less than 24 bits, rounded to nearest even; subnormal numbers as the mode has them.
+/// Of sums, products, quotients and roots the host's double is enough, although it is rounded too: it has two bits more
+/// than twice as many (Figueroa, When is double rounding innocuous?, 1995).
+uint32_t narrowed(double value, Mode mode);
+/// x * y + z, rounded once, likewise.
+uint32_t narrowed_sum(float x, float y, float z, Mode mode);
+
 }  // namespace detail
 
 inline uint32_t add(uint32_t a, uint32_t b, Mode mode) {
-  const uint32_t sum = detail::canonical(as_float(detail::operand(a, mode)) + as_float(detail::operand(b, mode)));
+  const float x = as_float(detail::operand(a, mode)), y = as_float(detail::operand(b, mode));
+  if (mode.narrow()) return detail::narrowed(double{x} + double{y}, mode);
+  const uint32_t sum = detail::canonical(x + y);
   return detail::operand(sum, mode);  // a subnormal sum is exact, so there is no rounding to look behind
 }
 
 inline uint32_t sub(uint32_t a, uint32_t b, Mode mode) {
-  const uint32_t sum = detail::canonical(as_float(detail::operand(a, mode)) - as_float(detail::operand(b, mode)));
+  const float x = as_float(detail::operand(a, mode)), y = as_float(detail::operand(b, mode));
+  if (mode.narrow()) return detail::narrowed(double{x} - double{y}, mode);
+  const uint32_t sum = detail::canonical(x - y);
   return detail::operand(sum, mode);
 }
 
 inline uint32_t mul(uint32_t a, uint32_t b, Mode mode) {
   const float x = as_float(detail::operand(a, mode)), y = as_float(detail::operand(b, mode));
+  if (mode.narrow()) return detail::narrowed(double{x} * double{y}, mode);
   const uint32_t product = detail::canonical(x * y);
   return detail::flushes(mode) ? detail::flush_tiny(product, double{x} * double{y})
                                : product;  // the double product is exact
@@ -90,6 +111,7 @@ inline uint32_t mul(uint32_t a, uint32_t b, Mode mode) {
 inline uint32_t fma(uint32_t a, uint32_t b, uint32_t c, Mode mode) {
   const float x = as_float(detail::operand(a, mode)), y = as_float(detail::operand(b, mode));
   const float z = as_float(detail::operand(c, mode));
+  if (mode.narrow()) return detail::narrowed_sum(x, y, z, mode);
   const uint32_t rounded = detail::canonical(std::fma(x, y, z));
   return detail::flushes(mode) ? detail::flush_tiny_sum(rounded, x, y, z) : rounded;
 }
@@ -100,22 +122,26 @@ inline uint32_t muladd(uint32_t a, uint32_t b, uint32_t c, Mode mode) {
 }
 
 inline uint32_t min(uint32_t a, uint32_t b, Mode mode) {
-  if (detail::is_nan(a)) return detail::is_nan(b) ? kQuietNan : detail::operand(b, mode);
   a = detail::operand(a, mode), b = detail::operand(b, mode);
+  if (detail::is_nan(a)) return detail::is_nan(b) ? kQuietNan : b;
   return detail::is_nan(b) || detail::order(a) <= detail::order(b) ? a : b;
 }
 
 inline uint32_t max(uint32_t a, uint32_t b, Mode mode) {
-  if (detail::is_nan(a)) return detail::is_nan(b) ? kQuietNan : detail::operand(b, mode);
   a = detail::operand(a, mode), b = detail::operand(b, mode);
+  if (detail::is_nan(a)) return detail::is_nan(b) ? kQuietNan : b;
   return detail::is_nan(b) || detail::order(a) >= detail::order(b) ? a : b;
 }
 
 /// Signed, to nearest even.
-inline uint32_t from_int(uint32_t a, Mode) { return as_bits(static_cast<float>(static_cast<int32_t>(a))); }
+inline uint32_t from_int(uint32_t a, Mode mode) {
+  const auto value = static_cast<int32_t>(a);
+  return mode.narrow() ? detail::narrowed(value, mode) : as_bits(static_cast<float>(value));
+}
 
 /// Towards zero, saturating; NaN gives 0.
-inline uint32_t to_int(uint32_t a, Mode) {
+inline uint32_t to_int(uint32_t a, Mode mode) {
+  a = detail::operand(a, mode);
   if (detail::is_nan(a)) return 0;
   const float value = as_float(a);
   if (value >= 0x1p31f) return 0x7fffffffu;

@@ -167,18 +167,78 @@ TEST(Arith, InverseRootIsCorrectlyRounded) {
   EXPECT_EQ(rsqrt(0x40800000u, kIeee), 0x3f000000u);
 }
 
+/// Every operation of the block with shorter significands, in both modes, against the oracle.
+void check_narrow(Operation operation, const OperandBlock& in, uint32_t significand) {
+  std::vector<uint32_t> expected;
+  for (const Subnormals subnormals : {Subnormals::Ieee, Subnormals::Flush}) {
+    const Mode mode{subnormals, SlowUnit::Exact, false, significand};
+    oracle::narrow_results(operation, in, subnormals == Subnormals::Flush, significand, expected);
+    for (size_t i = 0; i < in.size(); ++i) {
+      ASSERT_EQ(model(operation, in.a[i], in.b[i], in.c[i], mode), expected[i])
+          << std::hex << kOperationNames[static_cast<int>(operation)] << ' ' << in.a[i] << ' ' << in.b[i] << ' '
+          << in.c[i] << (subnormals == Subnormals::Flush ? " flush" : " ieee") << std::dec << " significand "
+          << significand << " seed " << kSeed;
+    }
+  }
+}
+
+class ArithOfSignificand : public testing::TestWithParam<uint32_t> {};
+INSTANTIATE_TEST_SUITE_P(Bits, ArithOfSignificand, testing::Range(11u, 24u));
+
+TEST_P(ArithOfSignificand, SpecialValuesGiveWhatMpfrGives) {
+  const std::vector<uint32_t> specials = special_operands(GetParam());
+  OperandBlock in;
+  for (const uint32_t a : specials) {
+    for (const uint32_t b : specials) in.push(a, b, specials[in.size() % 53]);
+  }
+  for (const Operation operation : kBinary) check_narrow(operation, in, GetParam());
+  for (const Operation operation : kUnary) check_narrow(operation, in, GetParam());
+  check_narrow(Operation::Fma, in, GetParam());
+}
+
+TEST_P(ArithOfSignificand, RandomOperandsGiveWhatMpfrGives) {
+  OperandSource source(kSeed, GetParam());
+  OperandBlock in;
+  for (int i = 0; i < kPairs / 8; ++i) {
+    const auto [a, b] = source.next();
+    in.push(a, b, source.third(a, b));
+  }
+  for (const Operation operation : kBinary) check_narrow(operation, in, GetParam());
+  for (const Operation operation : kUnary) check_narrow(operation, in, GetParam());
+  check_narrow(Operation::Fma, in, GetParam());
+}
+
+TEST_P(ArithOfSignificand, EveryInverseRootIsCorrectlyRounded) {
+  OperandBlock in;
+  for (uint32_t x = 0x3f800000u; x < 0x40800000u; x += 1u << (24 - GetParam())) in.push(x, 0, 0);
+  check_narrow(Operation::Rsqrt, in, GetParam());
+}
+
+TEST(Arith, WhatIsBelowTheSignificandIsNotThere) {
+  const Mode mode{Subnormals::Ieee, SlowUnit::Exact, false, 11};
+  EXPECT_EQ(add(0x3f801fffu, 0u, mode), 0x3f800000u);
+  EXPECT_EQ(max(0x3f801fffu, 0x3f800000u, mode), 0x3f800000u);
+  EXPECT_TRUE(equal(0x3f801fffu, 0x3f800000u, mode));
+  EXPECT_EQ(mul(0x7f800001u, 0x3f800000u, mode), 0x7f800000u);  // a NaN only by what is not there
+  EXPECT_EQ(add(0x00001fffu, 0u, mode), 0u);
+  EXPECT_EQ(from_int(0x00000801u, mode), 0x45000000u);  // a tie, to even
+  EXPECT_EQ(div(0x3f800000u, 0x40400000u, mode), 0x3eaaa000u);
+}
+
 /// Every Newton unit in both subnormal modes: the oracle's bits, and the exponent of the exact result.
-void check_newton(Operation operation, const OperandBlock& in) {
+void check_newton(Operation operation, const OperandBlock& in, uint32_t significand = 24) {
   for (const SlowUnit unit : kNewton) {
     for (const bool flush : {false, true}) {
-      const Mode mode{flush ? Subnormals::Flush : Subnormals::Ieee, unit};
+      const Mode mode{flush ? Subnormals::Flush : Subnormals::Ieee, unit, false, significand};
+      const Mode exact_mode{mode.subnormals, SlowUnit::Exact, false, significand};
       for (size_t i = 0; i < in.size(); ++i) {
         const uint32_t ours = model(operation, in.a[i], in.b[i], 0, mode);
-        ASSERT_EQ(ours, newton_oracle::result(operation, in.a[i], in.b[i], unit, flush))
+        ASSERT_EQ(ours, newton_oracle::result(operation, in.a[i], in.b[i], unit, flush, significand))
             << std::hex << kOperationNames[static_cast<int>(operation)] << ' ' << in.a[i] << ' ' << in.b[i]
-            << (flush ? " flush" : " ieee") << " unit " << static_cast<int>(unit);
-        const uint32_t exact = model(operation, in.a[i], in.b[i], 0, flush ? kFlush : kIeee);
-        ASSERT_TRUE(newton_oracle::keeps_exponent(operation, in.a[i], in.b[i], ours, exact))
+            << (flush ? " flush" : " ieee") << " unit " << static_cast<int>(unit) << std::dec << " significand "
+            << significand;
+        const uint32_t exact = model(operation, in.a[i], in.b[i], 0, exact_mode);
+        ASSERT_TRUE(newton_oracle::keeps_exponent(operation, in.a[i], in.b[i], ours, exact, significand))
             << std::hex << kOperationNames[static_cast<int>(operation)] << ' ' << in.a[i] << ' ' << in.b[i] << " gives "
             << ours << " for " << exact;
       }
@@ -195,6 +255,23 @@ TEST(Arith, NewtonResultsAreThoseOfTheirDefinitionAllOverTheRange) {
   for (uint32_t a = 0x00000000u; a < 0x01000000u; a += 127) in.push(a, 0, 0);
   for (uint32_t a = 0x7e000000u; a < 0x7f800000u; a += 127) in.push(a, 0, 0);
   for (const Operation operation : {Operation::Sqrt, Operation::Rsqrt, Operation::Rcp}) check_newton(operation, in);
+}
+
+TEST_P(ArithOfSignificand, NewtonResultsAreThoseOfTheirDefinition) {
+  OperandSource source(kSeed, GetParam());
+  OperandBlock in;
+  for (const uint32_t a : special_operands(GetParam())) {
+    for (const uint32_t b : special_operands()) in.push(a, b, 0);
+  }
+  for (int i = 0; i < kPairs / 16; ++i) {
+    const auto [a, b] = source.next();
+    in.push(a, b, 0);
+  }
+  check_newton(Operation::Div, in, GetParam());
+  for (uint32_t a = 0x3f800000u; a < 0x40800000u; a += 251) in.push(a, 0, 0);
+  for (uint64_t a = 0; a < uint64_t{1} << 32; a += 65521) in.push(static_cast<uint32_t>(a), 0, 0);
+  for (const Operation operation : {Operation::Sqrt, Operation::Rsqrt, Operation::Rcp})
+    check_newton(operation, in, GetParam());
 }
 
 TEST(Arith, NewtonQuotientsAreThoseOfTheirDefinition) {

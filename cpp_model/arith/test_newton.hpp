@@ -67,22 +67,24 @@ inline Fraction estimate(Fraction v, Fraction w, bool root, SlowUnit unit) {
   return (n + n.floor(18) * e.floor(28)).floor(30);
 }
 
-/// q * 2^exponent rounded to nearest even, at 2^-149 or above, and never to another exponent.
-inline double rounded(Fraction q, int exponent) {
+/// q * 2^exponent rounded to nearest even, to the significand and to what subnormal numbers there are with it, and
+/// never to another exponent.
+inline double rounded(Fraction q, int exponent, int significand) {
   if (q.numerator < int64_t{1} << 30) q.numerator = int64_t{1} << 30;
   if (q.numerator >= int64_t{2} << 30) q.numerator = (int64_t{2} << 30) - 1;
   const int below = std::min(std::max(0, -126 - exponent), 30);  // the normal numbers
-  const int lost = 7 + below;
+  const int lost = 31 - significand + below;
   int64_t kept = q.numerator >> lost;
   const int64_t rest = q.numerator - (kept << lost), half = int64_t{1} << (lost - 1);
-  const bool next_exponent = kept + 1 == 1 << 24 || kept + 1 == 1 << 23;  // normal numbers follow upon subnormal ones
+  const bool next_exponent =
+      kept + 1 == 1 << significand || kept + 1 == 1 << (significand - 1);  // normal numbers follow upon subnormal ones
   if ((rest > half || (rest == half && kept % 2 != 0)) && !next_exponent) ++kept;
-  return std::ldexp(static_cast<double>(kept), exponent - 23 + below);
+  return std::ldexp(static_cast<double>(kept), exponent + 1 - significand + below);
 }
 
 /// The result for numbers that are neither zero nor infinite nor NaN; n is 1 for frcp, of
 /// roots d alone counts and is positive.
-inline double finite(Operation operation, double n, double d, SlowUnit unit, bool flush) {
+inline double finite(Operation operation, double n, double d, SlowUnit unit, bool flush, int significand) {
   const bool root = operation == Operation::Sqrt || operation == Operation::Rsqrt;
   int n_exponent = 0, d_exponent = 0;
   const auto mantissa = [](double x, int& exponent) {  // 1 .. 2
@@ -102,12 +104,12 @@ inline double finite(Operation operation, double n, double d, SlowUnit unit, boo
   }
   const double sign = !root && std::signbit(n) != std::signbit(d) ? -1.0 : 1.0;
   if (flush && exponent < -126) return sign * 0.0;
-  return sign * rounded(estimate(v, w, root, unit), exponent);
+  return sign * rounded(estimate(v, w, root, unit), exponent, significand);
 }
 
-inline uint32_t result(Operation operation, uint32_t a, uint32_t b, SlowUnit unit, bool flush) {
-  const auto number = [flush](uint32_t bits) {
-    const float value = as_float(bits);
+inline uint32_t result(Operation operation, uint32_t a, uint32_t b, SlowUnit unit, bool flush, uint32_t significand) {
+  const auto number = [flush, significand](uint32_t bits) {
+    const float value = as_float(bits >> (24 - significand) << (24 - significand));
     return flush && std::fabs(value) < 0x1p-126f ? std::copysign(0.0, value) : double{value};
   };
   const bool divides = operation == Operation::Div;
@@ -115,7 +117,7 @@ inline uint32_t result(Operation operation, uint32_t a, uint32_t b, SlowUnit uni
   const bool root = operation == Operation::Sqrt || operation == Operation::Rsqrt;
   double value = 0;
   if (std::isnormal(n) && std::isnormal(d) && !(root && d < 0)) {  // a double: every float but zero is normal
-    value = finite(operation, n, d, unit, flush);
+    value = finite(operation, n, d, unit, flush, static_cast<int>(significand));
   } else {
     const double divisor = root ? std::sqrt(d) : d;
     value = operation == Operation::Sqrt ? divisor : n / divisor;
@@ -127,8 +129,10 @@ inline uint32_t result(Operation operation, uint32_t a, uint32_t b, SlowUnit uni
 /// Whether a Newton result has sign and exponent of the correctly rounded one, subnormal numbers and zero
 /// sharing one. The tie of a largest mantissa over a power of two, below the smallest normal number,
 /// becomes that in the exact unit alone.
-inline bool keeps_exponent(Operation operation, uint32_t a, uint32_t b, uint32_t newton, uint32_t exact) {
-  const bool tie = operation == Operation::Div && (a & 0x007fffffu) == 0x007fffffu && (b & 0x007fffffu) == 0;
+inline bool keeps_exponent(Operation operation, uint32_t a, uint32_t b, uint32_t newton, uint32_t exact,
+                           uint32_t significand) {
+  const uint32_t largest = 0x007fffffu >> (24 - significand) << (24 - significand);
+  const bool tie = operation == Operation::Div && (a & largest) == largest && (b & largest) == 0;
   if (tie && (exact & 0x7fffffffu) == 0x00800000u) return newton >> 23 == exact >> 31 << 8;
   return newton >> 23 == exact >> 23;
 }

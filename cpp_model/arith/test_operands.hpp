@@ -13,8 +13,19 @@
 
 namespace raypool::arith {
 
-inline std::vector<uint32_t> special_operands() {
+/// `a` with its last five bits where those of a shorter significand are, so that neighbours stay neighbours, and what
+/// has few bits few bits.
+inline uint32_t brought_up(uint32_t a, uint32_t significand) {
+  const uint32_t below = 24 - significand;
+  return below == 0 ? a : (a & ~uint32_t{0} << below) ^ (a & 31) << below;
+}
+
+/// The special values, of a short significand also those of the long one.
+inline std::vector<uint32_t> special_operands(uint32_t significand = 24) {
   std::vector<uint32_t> values;
+  const auto push = [&](uint32_t value) {
+    if (std::find(values.begin(), values.end(), value) == values.end()) values.push_back(value);
+  };
   for (const uint32_t magnitude :
        {0x00000000u, 0x00000001u, 0x00000002u, 0x00000003u, 0x00400000u, 0x007ffffeu, 0x007fffffu, 0x00800000u,
         0x00800001u, 0x00ffffffu, 0x01000000u, 0x01000001u, 0x0b800000u, 0x1fffffffu, 0x20000000u, 0x33800000u,
@@ -22,18 +33,17 @@ inline std::vector<uint32_t> special_operands() {
         0x3fffffffu, 0x40000000u, 0x40400000u, 0x407fffffu, 0x40800000u, 0x4b000000u, 0x4b000001u, 0x4b7fffffu,
         0x4b800000u, 0x4effffffu, 0x4f000000u, 0x4f000001u, 0x5f000000u, 0x7e800000u, 0x7effffffu, 0x7f000000u,
         0x7f000001u, 0x7f7ffffeu, 0x7f7fffffu, 0x7f800000u, 0x7f800001u, 0x7fbfffffu, 0x7fc00000u, 0x7fffffffu}) {
-    values.push_back(magnitude);
-    values.push_back(magnitude | 0x80000000u);
+    for (const uint32_t value : {magnitude, magnitude | 0x80000000u}) push(value), push(brought_up(value, significand));
   }
   return values;
 }
 
 /// The special values and the two neighbours of each.
-inline std::vector<uint32_t> boundary_operands() {
+inline std::vector<uint32_t> boundary_operands(uint32_t significand = 24) {
   std::vector<uint32_t> values;
   for (const uint32_t special : special_operands()) {
     for (const uint32_t step : {0u, 1u, 0xffffffffu}) {
-      const uint32_t value = special + step;
+      const uint32_t value = brought_up(special + step, significand);
       if (std::find(values.begin(), values.end(), value) == values.end()) values.push_back(value);
     }
   }
@@ -42,10 +52,55 @@ inline std::vector<uint32_t> boundary_operands() {
 
 class OperandSource {
  public:
-  explicit OperandSource(uint64_t seed) : random_(seed), specials_(special_operands()) {}
+  explicit OperandSource(uint64_t seed, uint32_t significand = 24)
+      : random_(seed), significand_(significand), specials_(special_operands()) {}
+
+  std::pair<uint32_t, uint32_t> next() {
+    const auto [a, b] = next_long();
+    return {shortened(a), shortened(b)};
+  }
+
+  /// An addend for a * b: anything, special, cancelling all or nearly all of the product, at every alignment to it, or
+  /// at the edge of the subnormal numbers.
+  uint32_t third(uint32_t a, uint32_t b) { return shortened(third_long(a, b)); }
+
+ private:
+  /// Of a shorter significand the special bits of most operands are brought up to its end; below it some have something
+  /// that must not be looked at.
+  uint32_t shortened(uint32_t a) {
+    if (significand_ == 24) return a;
+    const uint32_t below = ~(~uint32_t{0} << (24 - significand_));
+    const uint32_t kept = range(0, 2) != 0 ? brought_up(a, significand_) : a & ~below;
+    return range(0, 3) != 0 ? kept : kept | (bits() & below);
+  }
+
+  uint32_t third_long(uint32_t a, uint32_t b) {
+    const uint32_t product = as_bits(as_float(a) * as_float(b));
+    const uint32_t c = bits();
+    switch (random_() % 9) {
+      case 0:
+        return c;
+      case 1:
+        return special();
+      case 2:  // the rounded product itself: what is left is its rounding error
+        return product ^ 0x80000000u;
+      case 3:
+        return (product ^ 0x80000000u) + static_cast<uint32_t>(range(-3, 3));
+      case 4:  // cancellation, small shifts
+        return exponent((c & 0x7fffffffu) | (~product & 0x80000000u), field(product) + range(-2, 2));
+      case 5:  // every alignment
+        return exponent(c, field(product) + range(-51, 30));
+      case 6:  // halfway sums
+        return few_bits(exponent(c, field(product) + range(-51, 30)));
+      case 7:  // results at the edge of the subnormal numbers
+        return exponent(c, range(0, 3));
+      default:  // few bits below everything
+        return (c & 0x807fffffu) >> range(0, 22) | (c & 0x80000000u);
+    }
+  }
 
   // NOLINTNEXTLINE(readability-function-size): a list of kinds of pairs
-  std::pair<uint32_t, uint32_t> next() {
+  std::pair<uint32_t, uint32_t> next_long() {
     uint32_t a = bits(), b = bits();
     switch (random_() % 19) {
       case 0:  // anything
@@ -116,34 +171,6 @@ class OperandSource {
     return {a, b};
   }
 
-  /// An addend for a * b: anything, special, cancelling all or nearly all of the product, at every alignment to it, or
-  /// at the edge of the subnormal numbers.
-  uint32_t third(uint32_t a, uint32_t b) {
-    const uint32_t product = as_bits(as_float(a) * as_float(b));
-    const uint32_t c = bits();
-    switch (random_() % 9) {
-      case 0:
-        return c;
-      case 1:
-        return special();
-      case 2:  // the rounded product itself: what is left is its rounding error
-        return product ^ 0x80000000u;
-      case 3:
-        return (product ^ 0x80000000u) + static_cast<uint32_t>(range(-3, 3));
-      case 4:  // cancellation, small shifts
-        return exponent((c & 0x7fffffffu) | (~product & 0x80000000u), field(product) + range(-2, 2));
-      case 5:  // every alignment
-        return exponent(c, field(product) + range(-51, 30));
-      case 6:  // halfway sums
-        return few_bits(exponent(c, field(product) + range(-51, 30)));
-      case 7:  // results at the edge of the subnormal numbers
-        return exponent(c, range(0, 3));
-      default:  // few bits below everything
-        return (c & 0x807fffffu) >> range(0, 22) | (c & 0x80000000u);
-    }
-  }
-
- private:
   uint32_t bits() { return static_cast<uint32_t>(random_()); }
   uint32_t special() {
     static constexpr uint32_t kEnds[] = {0, 1, 0x7f7fffff, 0x7f800000, 0x7fc00000};
@@ -196,6 +223,7 @@ class OperandSource {
   }
 
   std::mt19937_64 random_;
+  uint32_t significand_;
   std::vector<uint32_t> specials_;
 };
 

@@ -1,6 +1,6 @@
 // Independent oracles for tests of arithmetic: the host's SSE unit (and its fused multiply-add), with MXCSR set to
-// the mode, integers for frsqrt, and MPFR at 24 bits where the host has no such operation, or to judge another
-// oracle. None shares code with the model.
+// the mode, integers for frsqrt, and MPFR where the host has no such operation, or to judge another oracle, or where
+// the significand is shorter. None shares code with the model.
 #pragma once
 
 #include <immintrin.h>
@@ -162,22 +162,45 @@ inline uint32_t inverse_root(uint32_t x, bool flush) {
                        : static_cast<uint32_t>(126 - half) << 23 | (static_cast<uint32_t>(r) & 0x007fffffu);
 }
 
-/// Numbers of 24 bits in MPFR with single precision's exponents.
+/// Numbers of so many bits in MPFR with single precision's exponents. Operands must have no more.
 class Wide {
  public:
-  Wide() {
-    mpfr_inits2(24, a_, b_, c_, result_, static_cast<mpfr_ptr>(nullptr));
-    mpfr_set_emin(-148);
-    mpfr_set_emax(128);
+  explicit Wide(uint32_t significand) : least_exponent_(-124 - static_cast<int>(significand)) {
+    mpfr_inits2(static_cast<mpfr_prec_t>(significand), a_, b_, c_, result_, static_cast<mpfr_ptr>(nullptr));
   }
   ~Wide() { mpfr_clears(a_, b_, c_, result_, static_cast<mpfr_ptr>(nullptr)); }
   Wide(const Wide&) = delete;
   Wide& operator=(const Wide&) = delete;
 
   uint32_t operator()(Operation operation, uint32_t a, uint32_t b, uint32_t c, bool flush) {
+    mpfr_set_emax(128);
+    mpfr_set_emin(least_exponent_);
     set(a_, a, flush), set(b_, b, flush), set(c_, c, flush);
     int inexact = 0;
+    // Tiny is judged at the significand's bits, before the exponent's end is looked at.
+    if (flush && operation != Operation::Min && operation != Operation::Max) mpfr_set_emin(-1000);
     switch (operation) {
+      case Operation::Add:
+        inexact = mpfr_add(result_, a_, b_, MPFR_RNDN);
+        break;
+      case Operation::Sub:
+        inexact = mpfr_sub(result_, a_, b_, MPFR_RNDN);
+        break;
+      case Operation::Mul:
+        inexact = mpfr_mul(result_, a_, b_, MPFR_RNDN);
+        break;
+      case Operation::Div:
+        inexact = mpfr_div(result_, a_, b_, MPFR_RNDN);
+        break;
+      case Operation::Rcp:
+        inexact = mpfr_ui_div(result_, 1, a_, MPFR_RNDN);
+        break;
+      case Operation::Sqrt:
+        inexact = mpfr_sqrt(result_, a_, MPFR_RNDN);
+        break;
+      case Operation::FromInt:
+        inexact = mpfr_set_si(result_, static_cast<int32_t>(a), MPFR_RNDN);
+        break;
       case Operation::Min:
         mpfr_min(result_, a_, b_, MPFR_RNDN);
         break;
@@ -190,11 +213,10 @@ class Wide {
         if (mpfr_zero_p(a_)) mpfr_setsign(result_, result_, mpfr_signbit(a_), MPFR_RNDN);
         break;
       default:
-        if (flush) mpfr_set_emin(-1000);  // tiny is judged at 24 bits, before the exponent's end is looked at
         inexact = mpfr_fma(result_, a_, b_, c_, MPFR_RNDN);
-        mpfr_set_emin(-148);
         break;
     }
+    mpfr_set_emin(least_exponent_);
     if (!flush) mpfr_subnormalize(result_, inexact, MPFR_RNDN);
     if (mpfr_nan_p(result_)) return 0x7fc00000u;
     const bool tiny = flush && mpfr_regular_p(result_) && mpfr_get_exp(result_) < -125;
@@ -207,11 +229,13 @@ class Wide {
     mpfr_set_flt(wide, as_float(bits), MPFR_RNDN);
   }
 
+  int least_exponent_;  // of the smallest subnormal number, in MPFR's way
   mpfr_t a_, b_, c_, result_;
 };
 
-inline void wide(Operation operation, const OperandBlock& in, bool flush, std::vector<uint32_t>& out) {
-  static thread_local Wide numbers;
+inline void wide(Operation operation, const OperandBlock& in, bool flush, std::vector<uint32_t>& out,
+                 uint32_t significand = 24) {
+  Wide numbers(significand);
   for (size_t i = 0; i < in.size(); ++i) out[i] = numbers(operation, in.a[i], in.b[i], in.c[i], flush);
 }
 
@@ -269,6 +293,30 @@ inline void results(Operation operation, const OperandBlock& in, bool flush, boo
   }
   const HostMode plain(false);
   wide(operation, in, flush, out);
+}
+
+/// The correct results of a block with a significand of less than 24 bits: of operands without the others.
+inline void narrow_results(Operation operation, const OperandBlock& in, bool flush, uint32_t significand,
+                           std::vector<uint32_t>& out) {
+  OperandBlock cut = in;
+  if (operation != Operation::FromInt) {
+    for (std::vector<uint32_t>* operands : {&cut.a, &cut.b, &cut.c}) {
+      for (uint32_t& operand : *operands) operand = operand >> (24 - significand) << (24 - significand);
+    }
+  }
+  switch (operation) {
+    case Operation::ToInt:
+    case Operation::Equal:
+    case Operation::NotEqual:
+    case Operation::Less:
+    case Operation::LessEqual:
+    case Operation::Greater:
+    case Operation::GreaterEqual:
+      return results(operation, cut, flush, false, out);
+    default:
+      out.resize(in.size());
+      wide(operation, cut, flush, out, significand);
+  }
 }
 
 }  // namespace oracle

@@ -46,6 +46,8 @@ enum class Shading : uint8_t { Kernel = 0, Traverser = 1 };
        "miss-status holding registers: lines that may be on their way at once") \
   ARITHMETIC(subnormals, Subnormals, Subnormals::Ieee, names("ieee", "flush"), all(), \
              "subnormal numbers: as IEEE 754 says, or zero") \
+  ARITHMETIC(significand, uint32_t, 24, integers(11, 24), tried(11, 13, 16, 24), \
+             "bits of a float's significand, with its leading one; what a word has below them counts as zero") \
   ARITHMETIC(slow_unit, SlowUnit, SlowUnit::Exact, names("exact", "newton2", "newton1", "newton0"), all(), \
              "how slw divides and takes roots: with one rounding, or by Newton's method of that many steps") \
   ARITHMETIC(fma, bool, false, on_or_off(), all(), "fused multiply-add: the instruction ffma") \

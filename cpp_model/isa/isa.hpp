@@ -30,11 +30,11 @@ namespace raypool {
 // clang-format off
 #define RAYPOOL_ALU_TYPES(CORE, CLASS) \
   CORE(Tid, "tid",  1, Own,       "",                       "indices, dimensions, arguments") \
-  CORE(Brh, "brh",  2, Framework, "SUBNORMALS",             "compares, predicates, control") \
+  CORE(Brh, "brh",  2, Framework, "SUBNORMALS, SIGNIFICAND", "compares, predicates, control") \
   CORE(Mem, "mem",  0, Own,       "",                       "memory") \
   CORE(Int, "int",  2, Framework, "",                       "integer and logic") \
-  CORE(Flt, "flt",  3, Framework, "SUBNORMALS, FMA",        "single-precision float") \
-  CORE(Slw, "slw", 11, Framework, "SUBNORMALS, SLOW_UNIT, SLOW_LANES", "slow float: division and square roots") \
+  CORE(Flt, "flt",  3, Framework, "SUBNORMALS, SIGNIFICAND, FMA", "single-precision float") \
+  CORE(Slw, "slw", 11, Framework, "SUBNORMALS, SIGNIFICAND, SLOW_UNIT, SLOW_LANES", "slow float: division and square roots") \
   CORE(Ray, "ray",  0, Own,       "",                       "ray packages") \
   /* The table ends here: the backslash above lets a row follow it. */
 // clang-format on

@@ -53,13 +53,19 @@ void matmul(K& k) {
            });
 }
 
-template <Subnormals kSubnormals, bool kFused>
+template <Subnormals kSubnormals, bool kFused, bool kNarrow>
 void run_in_mode(ComputeKernel which, NativeThread& thread) {
-  kernel::NativeKernel<kSubnormals, SlowUnit::Exact, kFused> k(thread);
+  kernel::NativeKernel<kSubnormals, SlowUnit::Exact, kFused, kNarrow> k(thread);
   if (which == ComputeKernel::Saxpy)
     saxpy(k);
   else
     matmul(k);
+}
+
+template <Subnormals kSubnormals, bool kFused>
+void run_in_mode(ComputeKernel which, NativeThread& thread) {
+  thread.mode.narrow() ? run_in_mode<kSubnormals, kFused, true>(which, thread)
+                       : run_in_mode<kSubnormals, kFused, false>(which, thread);
 }
 
 }  // namespace

@@ -9,9 +9,9 @@
 namespace raypool {
 namespace {
 
-template <Subnormals kSubnormals, SlowUnit kSlowUnit, bool kFused>
+template <Subnormals kSubnormals, SlowUnit kSlowUnit, bool kFused, bool kNarrow>
 void run_in_mode(RayKernel which, NativeThread& thread) {
-  kernel::NativeKernel<kSubnormals, kSlowUnit, kFused> k(thread);
+  kernel::NativeKernel<kSubnormals, kSlowUnit, kFused, kNarrow> k(thread);
   switch (which) {
     case RayKernel::CastEye:
       return kernel::cast_eye(k);
@@ -22,6 +22,12 @@ void run_in_mode(RayKernel which, NativeThread& thread) {
     case RayKernel::Shade:
       return kernel::shade(k);
   }
+}
+
+template <Subnormals kSubnormals, SlowUnit kSlowUnit, bool kFused>
+void run_in_mode(RayKernel which, NativeThread& thread) {
+  thread.mode.narrow() ? run_in_mode<kSubnormals, kSlowUnit, kFused, true>(which, thread)
+                       : run_in_mode<kSubnormals, kSlowUnit, kFused, false>(which, thread);
 }
 
 template <Subnormals kSubnormals, bool kFused>

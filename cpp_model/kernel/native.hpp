@@ -14,12 +14,17 @@ namespace raypool::kernel {
 /// What a thread reads from ray words that nobody has written: a NaN that shows up in pictures and comparisons.
 inline constexpr uint32_t kUndefinedWord = 0x7fdeadadu;
 
-/// kFused: as a machine with arithmetic.fma computes.
-template <Subnormals kSubnormals, SlowUnit kSlowUnit, bool kFused = false>
+/// kFused: as a machine with arithmetic.fma computes. kNarrow: with a significand of less than 24 bits, the thread's.
+template <Subnormals kSubnormals, SlowUnit kSlowUnit, bool kFused = false, bool kNarrow = false>
 class NativeKernel {
-  static constexpr arith::Mode kMode = {kSubnormals, kSlowUnit, kFused};
+  static inline thread_local uint32_t significand = arith::kFullSignificand;
 
  public:
+  /// For the operators below, which see no kernel: that of the thread's last one.
+  static arith::Mode mode() {
+    return {kSubnormals, kSlowUnit, kFused, kNarrow ? significand : arith::kFullSignificand};
+  }
+
   struct Bool {
     bool value;
     Bool(bool literal) : value(literal) {}
@@ -63,7 +68,7 @@ class NativeKernel {
     friend Int min_unsigned(Int a, Int b) { return a.bits < b.bits ? a : b; }
     friend Int max_unsigned(Int a, Int b) { return a.bits > b.bits ? a : b; }
     friend Int select(Bool condition, Int a, Int b) { return condition.value ? a : b; }
-    friend Float to_float(Int a) { return Float::of_bits(arith::from_int(a.bits, kMode)); }
+    friend Float to_float(Int a) { return Float::of_bits(arith::from_int(a.bits, mode())); }
     friend Float as_float(Int a) { return Float::of_bits(a.bits); }
   };
 
@@ -76,35 +81,38 @@ class NativeKernel {
       return result;
     }
 
-    friend Float operator+(Float a, Float b) { return of_bits(arith::add(a.bits, b.bits, kMode)); }
-    friend Float operator-(Float a, Float b) { return of_bits(arith::sub(a.bits, b.bits, kMode)); }
-    friend Float operator*(Float a, Float b) { return of_bits(arith::mul(a.bits, b.bits, kMode)); }
-    friend Float operator/(Float a, Float b) { return of_bits(arith::div(a.bits, b.bits, kMode)); }
+    friend Float operator+(Float a, Float b) { return of_bits(arith::add(a.bits, b.bits, mode())); }
+    friend Float operator-(Float a, Float b) { return of_bits(arith::sub(a.bits, b.bits, mode())); }
+    friend Float operator*(Float a, Float b) { return of_bits(arith::mul(a.bits, b.bits, mode())); }
+    friend Float operator/(Float a, Float b) { return of_bits(arith::div(a.bits, b.bits, mode())); }
     friend Float multiply_add(Float a, Float b, Float c) {
-      return of_bits(arith::muladd(a.bits, b.bits, c.bits, kMode));
+      return of_bits(arith::muladd(a.bits, b.bits, c.bits, mode()));
     }
     friend Float operator-(Float a) { return of_bits(a.bits ^ 0x80000000u); }
     Float& operator+=(Float b) { return *this = *this + b; }
     Float& operator-=(Float b) { return *this = *this - b; }
     Float& operator*=(Float b) { return *this = *this * b; }
-    friend Bool operator==(Float a, Float b) { return arith::equal(a.bits, b.bits, kMode); }
-    friend Bool operator!=(Float a, Float b) { return arith::not_equal(a.bits, b.bits, kMode); }
-    friend Bool operator<(Float a, Float b) { return arith::less(a.bits, b.bits, kMode); }
-    friend Bool operator<=(Float a, Float b) { return arith::less_equal(a.bits, b.bits, kMode); }
-    friend Bool operator>(Float a, Float b) { return arith::greater(a.bits, b.bits, kMode); }
-    friend Bool operator>=(Float a, Float b) { return arith::greater_equal(a.bits, b.bits, kMode); }
-    friend Float min(Float a, Float b) { return of_bits(arith::min(a.bits, b.bits, kMode)); }
-    friend Float max(Float a, Float b) { return of_bits(arith::max(a.bits, b.bits, kMode)); }
+    friend Bool operator==(Float a, Float b) { return arith::equal(a.bits, b.bits, mode()); }
+    friend Bool operator!=(Float a, Float b) { return arith::not_equal(a.bits, b.bits, mode()); }
+    friend Bool operator<(Float a, Float b) { return arith::less(a.bits, b.bits, mode()); }
+    friend Bool operator<=(Float a, Float b) { return arith::less_equal(a.bits, b.bits, mode()); }
+    friend Bool operator>(Float a, Float b) { return arith::greater(a.bits, b.bits, mode()); }
+    friend Bool operator>=(Float a, Float b) { return arith::greater_equal(a.bits, b.bits, mode()); }
+    friend Float min(Float a, Float b) { return of_bits(arith::min(a.bits, b.bits, mode())); }
+    friend Float max(Float a, Float b) { return of_bits(arith::max(a.bits, b.bits, mode())); }
     friend Float abs(Float a) { return of_bits(a.bits & 0x7fffffffu); }
-    friend Float sqrt(Float a) { return of_bits(arith::sqrt(a.bits, kMode)); }
-    friend Float rsqrt(Float a) { return of_bits(arith::rsqrt(a.bits, kMode)); }
-    friend Float rcp(Float a) { return of_bits(arith::rcp(a.bits, kMode)); }
+    friend Float sqrt(Float a) { return of_bits(arith::sqrt(a.bits, mode())); }
+    friend Float rsqrt(Float a) { return of_bits(arith::rsqrt(a.bits, mode())); }
+    friend Float rcp(Float a) { return of_bits(arith::rcp(a.bits, mode())); }
     friend Float select(Bool condition, Float a, Float b) { return condition.value ? a : b; }
-    friend Int to_int(Float a) { return arith::to_int(a.bits, kMode); }
+    friend Int to_int(Float a) { return arith::to_int(a.bits, mode()); }
     friend Int as_int(Float a) { return a.bits; }
   };
 
-  explicit NativeKernel(NativeThread& thread) : thread_(thread) { words_.fill(kUndefinedWord); }
+  explicit NativeKernel(NativeThread& thread) : thread_(thread) {
+    if (kNarrow) significand = thread.mode.significand;
+    words_.fill(kUndefinedWord);
+  }
 
   bool culling() const { return thread_.culling; }
   Int thread() const { return thread_.thread; }

@@ -367,10 +367,16 @@ int triples_of(const Program& program) {
   }));
 }
 
+template <Subnormals kSubnormals, bool kFused, bool kNarrow>
+void run_random(NativeThread& thread, uint32_t seed) {
+  NativeKernel<kSubnormals, SlowUnit::Exact, kFused, kNarrow> k(thread);
+  RandomKernel<decltype(k)>(k, seed).run();
+}
+
 template <Subnormals kSubnormals, bool kFused>
 void run_random(NativeThread& thread, uint32_t seed) {
-  NativeKernel<kSubnormals, SlowUnit::Exact, kFused> k(thread);
-  RandomKernel<decltype(k)>(k, seed).run();
+  thread.mode.narrow() ? run_random<kSubnormals, kFused, true>(thread, seed)
+                       : run_random<kSubnormals, kFused, false>(thread, seed);
 }
 
 void compare(uint32_t seed, Outcome& outcome) {
@@ -402,6 +408,7 @@ void compare(uint32_t seed, Outcome& outcome) {
   }
   machine.mode.subnormals = seed % 2 != 0 ? Subnormals::Flush : Subnormals::Ieee;
   machine.mode.fused = fused;
+  if (seed % 5 == 0) machine.mode.significand = arith::kLeastSignificand + seed % 13;
   machine.threads = 1 + seed % test::Interpreter::kLanes;
   Memory native_memory = machine.memory;
   machine.run(program, program.entries["random"]);

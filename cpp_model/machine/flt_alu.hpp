@@ -11,6 +11,14 @@ namespace raypool {
 struct FltAlu {
   template <int kLanes>
   static void execute(Opcode opcode, const Lanes<kLanes>& lanes, arith::Mode mode) {
+    mode.narrow() ? execute_in<kLanes, true>(opcode, lanes, mode) : execute_in<kLanes, false>(opcode, lanes, mode);
+  }
+
+ private:
+  template <int kLanes, bool kNarrow>
+  static void execute_in(Opcode opcode, const Lanes<kLanes>& lanes, arith::Mode mode) {
+    // Where the compiler knows it, all lanes are computed at once by the host's own unit.
+    if (!kNarrow) mode.significand = arith::kFullSignificand;
     switch (opcode) {
       case Opcode::Fadd:
         return lanes.map([mode](uint32_t x, uint32_t y) { return arith::add(x, y, mode); });

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <cstdio>
+#include <string>
 
 namespace raypool {
 
@@ -13,12 +14,14 @@ struct LongCount {
 };
 
 inline void print_long_head() {
-  std::printf("%-42s %16s %8s %16s %8s\n", "operation", "inputs, ieee", "errors", "inputs, flush", "errors");
+  std::printf("%-48s %16s %8s %16s %8s\n", "operation", "inputs, ieee", "errors", "inputs, flush", "errors");
 }
-inline void print_long_row(const char* what, const LongCount& ieee, const LongCount& flush) {
+/// For the first column: nothing of the full one.
+inline std::string of_significand(uint32_t bits) { return bits == 24 ? "" : ", " + std::to_string(bits) + " bits"; }
+inline void print_long_row(const std::string& what, const LongCount& ieee, const LongCount& flush) {
   const auto number = [](uint64_t value) { return static_cast<unsigned long long>(value); };
-  std::printf("%-42s %16llu %8llu %16llu %8llu\n", what, number(ieee.inputs), number(ieee.errors), number(flush.inputs),
-              number(flush.errors));
+  std::printf("%-48s %16llu %8llu %16llu %8llu\n", what.c_str(), number(ieee.inputs), number(ieee.errors),
+              number(flush.inputs), number(flush.errors));
   std::fflush(stdout);
 }
 

@@ -3,11 +3,11 @@
 set(arith_rtl ${RAYPOOL_RTL})
 set(arith_unit ${CMAKE_SOURCE_DIR}/tb/unit)
 
-# arith_top(NAME TOP SOURCES...): a bench top of the test program NAME.
-function(arith_top name top)
-  verilate(${name} SOURCES ${arith_unit}/${top}.v ${ARGN} TOP_MODULE ${top} PREFIX V${top} INCLUDE_DIRS ${arith_rtl}
+# arith_top(NAME TOP PREFIX PARAMETERS SOURCES...): a bench top of the test program NAME.
+function(arith_top name top prefix parameters)
+  verilate(${name} SOURCES ${arith_unit}/${top}.v ${ARGN} TOP_MODULE ${top} PREFIX ${prefix} INCLUDE_DIRS ${arith_rtl}
     OPT_SLOW -w OPT_FAST -O2 -w OPT_GLOBAL -O1 -w
-    VERILATOR_ARGS --default-language 1364-2005 -DSYNTHESIS -DNO_CLOCK_GATES --output-split 10000
+    VERILATOR_ARGS ${parameters} --default-language 1364-2005 -DSYNTHESIS -DNO_CLOCK_GATES --output-split 10000
     --output-split-cfuncs 1000 -O3 --x-assign fast --x-initial fast)
 endfunction()
 
@@ -18,24 +18,34 @@ function(arith_bench name top)
   add_executable(${name} ${arith_unit}/${name}.cpp)
   target_link_libraries(${name} PRIVATE raypool_machine GTest::gtest_main)
   target_include_directories(${name} SYSTEM PRIVATE ${VERILATOR_ROOT}/include)  # its headers warn
-  arith_top(${name} ${top} ${ARGN})
+  arith_top(${name} ${top} V${top} "" ${ARGN})
   # Tests named Long run in `make numerics-long`.
   gtest_discover_tests(${name} WORKING_DIRECTORY ${CMAKE_SOURCE_DIR} DISCOVERY_TIMEOUT 60 TEST_FILTER "-*Long*")
+endfunction()
+
+# arith_widths(NAME TOP SOURCES...): the same top with shorter significands, VTOP_20 and so on.
+function(arith_widths name top)
+  foreach(significand IN ITEMS 20 16 13 11)
+    arith_top(${name} ${top} V${top}_${significand} -GSIGNIFICAND=${significand} ${ARGN})
+  endforeach()
 endfunction()
 
 set(arith_flt_sources ${arith_rtl}/flt_alu.v ${arith_rtl}/float_lane.v ${arith_rtl}/float_adder.v
   ${arith_rtl}/float_multiplier.v ${arith_rtl}/float_convert.v ${arith_rtl}/float_fma.v ${arith_rtl}/multiply_tree.v
   ${arith_rtl}/alu_pipeline.v ${arith_rtl}/alu_delay.v)
 arith_bench(flt_alu_test flt_units ${arith_flt_sources})
+arith_widths(flt_alu_test flt_units ${arith_flt_sources})
 
 set(arith_brh_sources ${arith_rtl}/brh_alu.v ${arith_rtl}/alu_pipeline.v ${arith_rtl}/alu_delay.v)
 arith_bench(brh_alu_test brh_units ${arith_brh_sources})
+arith_widths(brh_alu_test brh_units ${arith_brh_sources})
 
 set(arith_slw_sources ${arith_rtl}/slw_alu.v ${arith_rtl}/slow_lane.v ${arith_rtl}/slow_prepare.v
   ${arith_rtl}/slow_exact.v ${arith_rtl}/slow_newton.v ${arith_rtl}/slow_refine.v ${arith_rtl}/slow_line_table.v
   ${arith_rtl}/slow_seed_table.v ${arith_rtl}/multiply_tree.v ${arith_rtl}/alu_pipeline.v ${arith_rtl}/alu_delay.v)
 arith_bench(slw_alu_test slw_units ${arith_slw_sources})
-arith_top(slw_alu_test slw_group_units ${arith_slw_sources})
+arith_widths(slw_alu_test slw_units ${arith_slw_sources})
+arith_top(slw_alu_test slw_group_units Vslw_group_units "" ${arith_slw_sources})
 
 arith_bench(alu_pipeline_test pipeline_units ${arith_rtl}/alu_pipeline.v)
 
@@ -45,23 +55,24 @@ find_program(VVP vvp)
 if(IVERILOG AND VVP)
   add_executable(arith_vectors ${arith_unit}/arith_vectors.cpp)
   target_link_libraries(arith_vectors PRIVATE raypool_machine)
-  foreach(mode IN ITEMS "0 0 0" "1 0 0" "0 1 1" "1 2 1" "0 3 0")
+  foreach(mode IN ITEMS "0 0 0 24" "1 0 0 24" "0 1 1 24" "1 2 1 24" "0 3 0 24" "0 0 1 16" "1 1 0 11")
     separate_arguments(mode)
     list(GET mode 0 subnormals)
     list(GET mode 1 slow_unit)
     list(GET mode 2 fma)
-    set(replay arith_icarus_${subnormals}${slow_unit}${fma})
+    list(GET mode 3 significand)
+    set(replay arith_icarus_${subnormals}${slow_unit}${fma}_${significand})
     set(program ${CMAKE_CURRENT_BINARY_DIR}/${replay}.vvp)
     set(vectors ${CMAKE_CURRENT_BINARY_DIR}/${replay}.txt)
     set(sources ${arith_brh_sources} ${arith_flt_sources} ${arith_slw_sources})
     list(REMOVE_DUPLICATES sources)
     add_custom_command(OUTPUT ${program}
       COMMAND ${IVERILOG} -g2005 -Wall -I ${arith_rtl} -s arith_icarus -Parith_icarus.SUBNORMALS=${subnormals}
-        -Parith_icarus.SLOW_UNIT=${slow_unit} -Parith_icarus.FMA=${fma} -o ${program} ${arith_unit}/arith_icarus.v
-          ${sources}
+        -Parith_icarus.SLOW_UNIT=${slow_unit} -Parith_icarus.FMA=${fma}
+        -Parith_icarus.SIGNIFICAND=${significand} -o ${program} ${arith_unit}/arith_icarus.v ${sources}
       DEPENDS ${arith_unit}/arith_icarus.v ${sources} ${arith_rtl}/isa.vh ${arith_rtl}/booth_digits.vh
         ${arith_rtl}/ones_below.vh ${arith_rtl}/free_running.vh VERBATIM)
-    add_custom_command(OUTPUT ${vectors} COMMAND arith_vectors ${subnormals} ${slow_unit} ${fma} 4000 > ${vectors}
+    add_custom_command(OUTPUT ${vectors} COMMAND arith_vectors ${subnormals} ${slow_unit} ${fma} ${significand} 4000 > ${vectors}
       DEPENDS arith_vectors VERBATIM)
     add_custom_target(${replay} ALL DEPENDS ${program} ${vectors})
     add_test(NAME ${replay} COMMAND ${VVP} -n ${program} +vectors=${vectors})

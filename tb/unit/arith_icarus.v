@@ -5,6 +5,7 @@
 `default_nettype none
 module arith_icarus #(
   parameter integer SUBNORMALS = 0,
+  parameter integer SIGNIFICAND = 24,
   parameter integer SLOW_UNIT = 0,
   parameter integer FMA = 0
 );
@@ -21,18 +22,21 @@ module arith_icarus #(
   wire [2:0] flt_warp, slw_warp, brh_warp;
   wire [31:0] flt_data, slw_data;
 
-  flt_alu #(.WARPS(8), .LANES(1), .LATENCY(1), .DEPTH(FLT_DEPTH), .SUBNORMALS(SUBNORMALS), .FMA(FMA)) flt (
+  flt_alu #(.WARPS(8), .LANES(1), .LATENCY(1), .DEPTH(FLT_DEPTH), .SUBNORMALS(SUBNORMALS),
+      .SIGNIFICAND(SIGNIFICAND), .FMA(FMA)) flt (
     .clk_i(clk), .rst_ni(rst_n), .task_valid_i(flt_valid), .task_warp_i(warp), .task_operation_i(op),
     .task_mask_i(1'b1), .task_operand_a_i(a), .task_operand_b_i(b), .task_operand_c_i(c), .task_immediate_i(32'd0),
     .task_word_i(5'd0), .task_predicate_x_i(1'b0), .task_predicate_b_i(1'b0), .ready_o(), .done_valid_o(flt_done),
     .done_warp_o(flt_warp), .done_data_o(flt_data), .done_predicate_o());
-  slw_alu #(.WARPS(8), .LANES(1), .LATENCY(1), .DEPTH(SLW_DEPTH), .SUBNORMALS(SUBNORMALS), .SLOW_UNIT(SLOW_UNIT)) slw (
+  slw_alu #(.WARPS(8), .LANES(1), .LATENCY(1), .DEPTH(SLW_DEPTH), .SUBNORMALS(SUBNORMALS),
+      .SIGNIFICAND(SIGNIFICAND), .SLOW_UNIT(SLOW_UNIT)) slw (
     .clk_i(clk), .rst_ni(rst_n), .task_valid_i(slw_valid), .task_warp_i(warp), .task_operation_i(op),
     .task_mask_i(1'b1), .task_operand_a_i(a), .task_operand_b_i(b), .task_operand_c_i(32'd0), .task_immediate_i(32'd0),
     .task_word_i(5'd0), .task_predicate_x_i(1'b0), .task_predicate_b_i(1'b0), .ready_o(), .done_valid_o(slw_done),
     .done_warp_o(slw_warp), .done_data_o(slw_data), .done_predicate_o());
 
-  brh_alu #(.WARPS(8), .LANES(1), .WARP_BITS(3), .LATENCY(1), .DEPTH(BRH_DEPTH), .SUBNORMALS(SUBNORMALS)) brh (
+  brh_alu #(.WARPS(8), .LANES(1), .WARP_BITS(3), .LATENCY(1), .DEPTH(BRH_DEPTH), .SUBNORMALS(SUBNORMALS),
+      .SIGNIFICAND(SIGNIFICAND)) brh (
     .clk_i(clk), .rst_ni(rst_n), .task_valid_i(brh_valid), .task_warp_i(warp), .task_operation_i(op),
     .task_mask_i(1'b1), .task_operand_a_i(a), .task_operand_b_i(b), .task_operand_c_i(32'd0), .task_immediate_i(32'd0),
     .task_word_i(5'd0), .task_predicate_x_i(c[0]), .task_predicate_b_i(c[1]), .ready_o(), .done_valid_o(brh_done),

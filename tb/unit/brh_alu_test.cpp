@@ -1,16 +1,22 @@
 // rtl/brh_alu.v in both subnormal modes against the model of arithmetic: compares,
 // predicate logic, decisions of control.
 #include "Vbrh_units.h"
+#include "Vbrh_units_11.h"
+#include "Vbrh_units_13.h"
+#include "Vbrh_units_16.h"
+#include "Vbrh_units_20.h"
 #include "alu_bench.hpp"
 #include "alu_model.hpp"
+#include "significands.hpp"
 
 namespace raypool {
 namespace {
 
 constexpr uint64_t kSeed = 1301;
 
-std::vector<AluUnderTest> units() {
-  return {{"ieee", {Subnormals::Ieee, SlowUnit::Exact}, 2}, {"flush", {Subnormals::Flush, SlowUnit::Exact}, 5}};
+std::vector<AluUnderTest> units(uint32_t significand) {
+  return {{"ieee", {Subnormals::Ieee, SlowUnit::Exact, false, significand}, 2},
+          {"flush", {Subnormals::Flush, SlowUnit::Exact, false, significand}, 5}};
 }
 
 /// Control decides for all lanes.
@@ -18,9 +24,17 @@ uint32_t compared(Opcode opcode, uint32_t mask, arith::Mode) {
   return instruction(opcode).kind == Kind::Control ? (1u << kBenchLanes) - 1 : mask;
 }
 
-TEST(BrhAlu, EveryPairOfBoundaryValuesComparesAsTheModelDoes) {
-  AluBench<Vbrh_units> bench(units(), brh_model, kSeed, compared);
-  const std::vector<uint32_t> values = arith::boundary_operands();
+using Significands =
+    testing::Types<Significand<Vbrh_units, 24>, Significand<Vbrh_units_20, 20>, Significand<Vbrh_units_16, 16>,
+                   Significand<Vbrh_units_13, 13>, Significand<Vbrh_units_11, 11>>;
+template <typename Type>
+class BrhAlu : public testing::Test {};
+TYPED_TEST_SUITE(BrhAlu, Significands, SignificandName);
+
+TYPED_TEST(BrhAlu, EveryPairOfBoundaryValuesComparesAsTheModelDoes) {
+  constexpr uint32_t kSignificand = TypeParam::kSignificand;
+  AluBench<typename TypeParam::Top> bench(units(kSignificand), brh_model, kSeed, compared);
+  const std::vector<uint32_t> values = arith::boundary_operands(kSignificand);
   uint64_t compares = 0;
   for (const Opcode opcode : opcodes_of(AluType::Brh)) {
     if (!has_operand(instruction(opcode), Operand::Ra)) continue;
@@ -34,12 +48,13 @@ TEST(BrhAlu, EveryPairOfBoundaryValuesComparesAsTheModelDoes) {
   EXPECT_EQ(bench.compared(), 2 * compares * values.size() * values.size());
 }
 
-TEST(BrhAlu, RandomPairsAgreeWithTheModel) {
-  AluBench<Vbrh_units> bench(units(), brh_model, kSeed, compared);
-  arith::OperandSource source(kSeed);
+TYPED_TEST(BrhAlu, RandomPairsAgreeWithTheModel) {
+  constexpr uint32_t kSignificand = TypeParam::kSignificand;
+  AluBench<typename TypeParam::Top> bench(units(kSignificand), brh_model, kSeed, compared);
+  arith::OperandSource source(kSeed, kSignificand);
   std::mt19937_64 random(kSeed);
   const std::vector<Opcode> opcodes = opcodes_of(AluType::Brh);
-  for (int i = 0; i < 600000; i += kBenchLanes) {
+  for (int i = 0; i < TypeParam::share(600000); i += kBenchLanes) {
     const Opcode opcode = opcodes[random() % opcodes.size()];
     for (int l = 0; l < kBenchLanes; ++l) {
       auto [a, b] = source.next();
@@ -48,11 +63,12 @@ TEST(BrhAlu, RandomPairsAgreeWithTheModel) {
     }
   }
   bench.finish();
-  EXPECT_GE(bench.compared(), 1000000u);
+  EXPECT_GE(bench.compared(), uint64_t{TypeParam::share(1000000)});
 }
 
-TEST(BrhAlu, ControlDecidesForEveryLaneWhetherAnyIsInTheMask) {
-  AluBench<Vbrh_units> bench(units(), brh_model, kSeed, compared);
+TYPED_TEST(BrhAlu, ControlDecidesForEveryLaneWhetherAnyIsInTheMask) {
+  constexpr uint32_t kSignificand = TypeParam::kSignificand;
+  AluBench<typename TypeParam::Top> bench(units(kSignificand), brh_model, kSeed, compared);
   std::mt19937_64 random(kSeed);
   const std::vector<Opcode> opcodes = opcodes_of(AluType::Brh, Kind::Control);
   for (int i = 0; i < 20000; ++i) {

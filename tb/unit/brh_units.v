@@ -2,7 +2,8 @@
 // one is deeper, so that the delay behind the stages is seen too.
 `default_nettype none
 module brh_units #(
-  parameter integer LANES = 4
+  parameter integer LANES = 4,
+  parameter integer SIGNIFICAND = 24
 ) (
   input  wire                clk_i,
   input  wire                rst_ni,
@@ -22,7 +23,8 @@ module brh_units #(
   genvar m;
   generate
     for (m = 0; m < 2; m = m + 1) begin : gen_mode
-      brh_alu #(.WARPS(8), .LANES(LANES), .WARP_BITS(3), .LATENCY(1), .DEPTH(2 + 3*m), .SUBNORMALS(m)) unit (
+      brh_alu #(.WARPS(8), .LANES(LANES), .WARP_BITS(3), .LATENCY(1), .DEPTH(2 + 3*m), .SUBNORMALS(m),
+          .SIGNIFICAND(SIGNIFICAND)) unit (
         .clk_i(clk_i), .rst_ni(rst_ni), .task_valid_i(task_valid_i), .task_warp_i(task_warp_i),
         .task_operation_i(task_operation_i), .task_mask_i(task_mask_i), .task_operand_a_i(task_operand_a_i),
         .task_operand_b_i(task_operand_b_i), .task_operand_c_i({LANES*32{1'b0}}), .task_immediate_i(32'd0),

@@ -1,8 +1,13 @@
 // rtl/flt_alu.v in both subnormal modes, with and without fused multiply-add, against the model of arithmetic.
 #include "Vflt_units.h"
+#include "Vflt_units_11.h"
+#include "Vflt_units_13.h"
+#include "Vflt_units_16.h"
+#include "Vflt_units_20.h"
 #include "alu_bench.hpp"
 #include "alu_model.hpp"
 #include "isa/isa.hpp"
+#include "significands.hpp"
 
 namespace raypool {
 namespace {
@@ -13,16 +18,27 @@ uint32_t compared(Opcode opcode, uint32_t mask, arith::Mode mode) {
   return opcode != Opcode::Ffma || mode.fused ? mask : 0;
 }
 
-std::vector<AluUnderTest> units() {
-  return {{"ieee", {Subnormals::Ieee, SlowUnit::Exact}, 3},
-          {"flush", {Subnormals::Flush, SlowUnit::Exact}, 5},
-          {"ieee fma", {Subnormals::Ieee, SlowUnit::Exact, true}, 5},
-          {"flush fma", {Subnormals::Flush, SlowUnit::Exact, true}, 7}};
+std::vector<AluUnderTest> units(uint32_t significand) {
+  return {{"ieee", {Subnormals::Ieee, SlowUnit::Exact, false, significand}, 3},
+          {"flush", {Subnormals::Flush, SlowUnit::Exact, false, significand}, 5},
+          {"ieee fma", {Subnormals::Ieee, SlowUnit::Exact, true, significand}, 5},
+          {"flush fma", {Subnormals::Flush, SlowUnit::Exact, true, significand}, 7}};
 }
 
-TEST(FltAlu, EveryPairOfSpecialValuesAgreesWithTheModel) {
-  AluBench<Vflt_units> bench(units(), flt_model, kSeed, compared);
-  const std::vector<uint32_t> specials = arith::special_operands();
+using Significands =
+    testing::Types<Significand<Vflt_units, 24>, Significand<Vflt_units_20, 20>, Significand<Vflt_units_16, 16>,
+                   Significand<Vflt_units_13, 13>, Significand<Vflt_units_11, 11>>;
+template <typename Type>
+class FltAlu : public testing::Test {};
+TYPED_TEST_SUITE(FltAlu, Significands, SignificandName);
+template <typename Type>
+class FltAluLong : public testing::Test {};
+TYPED_TEST_SUITE(FltAluLong, Significands, SignificandName);
+
+TYPED_TEST(FltAlu, EveryPairOfSpecialValuesAgreesWithTheModel) {
+  constexpr uint32_t kSignificand = TypeParam::kSignificand;
+  AluBench<typename TypeParam::Top> bench(units(kSignificand), flt_model, kSeed, compared);
+  const std::vector<uint32_t> specials = arith::special_operands(kSignificand);
   const std::vector<Opcode> opcodes = opcodes_of(AluType::Flt);
   for (const Opcode opcode : opcodes) {
     if (opcode == Opcode::Ffma) continue;
@@ -34,28 +50,31 @@ TEST(FltAlu, EveryPairOfSpecialValuesAgreesWithTheModel) {
   EXPECT_EQ(bench.compared(), 4 * (opcodes.size() - 1) * specials.size() * specials.size());
 }
 
-TEST(FltAlu, TriplesOfSpecialValuesFuseAsTheModelDoes) {
-  AluBench<Vflt_units> bench(units(), flt_model, kSeed, compared);
-  const std::vector<uint32_t> specials = arith::special_operands();
+TYPED_TEST(FltAlu, TriplesOfSpecialValuesFuseAsTheModelDoes) {
+  constexpr uint32_t kSignificand = TypeParam::kSignificand;
+  AluBench<typename TypeParam::Top> bench(units(kSignificand), flt_model, kSeed, compared);
+  const std::vector<uint32_t> specials = arith::special_operands(kSignificand);
   std::mt19937_64 random(kSeed);
   for (const uint32_t a : specials) {
     for (const uint32_t b : specials) {
-      // Every pair with a fifth of the addends; over the pairs all of them.
-      for (size_t i = random() % 5; i < specials.size(); i += 5) bench.add(Opcode::Ffma, a, b, specials[i]);
+      // Every pair with a fifth of the addends, or less of more; over the pairs all of them.
+      const size_t step = specials.size() / 19;
+      for (size_t i = random() % step; i < specials.size(); i += step) bench.add(Opcode::Ffma, a, b, specials[i]);
     }
   }
   bench.finish();
   EXPECT_GE(bench.compared(), 300000u);
 }
 
-TEST(FltAlu, RandomPairsAgreeWithTheModel) {
-  AluBench<Vflt_units> bench(units(), flt_model, kSeed, compared);
-  arith::OperandSource source(kSeed);
+TYPED_TEST(FltAlu, RandomPairsAgreeWithTheModel) {
+  constexpr uint32_t kSignificand = TypeParam::kSignificand;
+  AluBench<typename TypeParam::Top> bench(units(kSignificand), flt_model, kSeed, compared);
+  arith::OperandSource source(kSeed, kSignificand);
   std::mt19937_64 random(kSeed);
   // Sums and products most of all; conversions see operands of every magnitude.
   constexpr Opcode kOpcodes[] = {Opcode::Fadd, Opcode::Fadd, Opcode::Fsub, Opcode::Fmul, Opcode::Fmul, Opcode::Fmin,
                                  Opcode::Fmax, Opcode::F2i,  Opcode::I2f,  Opcode::Ffma, Opcode::Ffma, Opcode::Ffma};
-  for (int i = 0; i < 1500000; i += kBenchLanes) {
+  for (int i = 0; i < TypeParam::share(1500000); i += kBenchLanes) {
     const Opcode opcode = kOpcodes[random() % std::size(kOpcodes)];
     for (int l = 0; l < kBenchLanes; ++l) {
       auto [a, b] = source.next();
@@ -66,20 +85,22 @@ TEST(FltAlu, RandomPairsAgreeWithTheModel) {
     }
   }
   bench.finish();
-  EXPECT_GE(bench.compared(), 5000000u);
+  EXPECT_GE(bench.compared(), uint64_t{TypeParam::share(5000000)});
 }
 
 // Names with Long: in `make numerics-long` only.
-TEST(FltAluLong, ManyRandomPairsAgreeWithTheModel) {
-  AluBench<Vflt_units> bench(units(), flt_model, kSeed + 1, compared);
-  arith::OperandSource source(kSeed + 1);
+TYPED_TEST(FltAluLong, ManyRandomPairsAgreeWithTheModel) {
+  constexpr uint32_t kSignificand = TypeParam::kSignificand;
+  AluBench<typename TypeParam::Top> bench(units(kSignificand), flt_model, kSeed + 1, compared);
+  arith::OperandSource source(kSeed + 1, kSignificand);
   for (int i = 0; i < 40000000; ++i) {
     const auto [a, b] = source.next();
     constexpr Opcode kLongOpcodes[] = {Opcode::Fadd, Opcode::Fsub, Opcode::Fmul, Opcode::Ffma};
     bench.add(kLongOpcodes[i / kBenchLanes % 4], a, b, source.third(a, b));
   }
   bench.finish();
-  print_long_row("RTL fadd fsub fmul ffma, random", bench.count(Subnormals::Ieee), bench.count(Subnormals::Flush));
+  print_long_row("RTL fadd fsub fmul ffma, random" + of_significand(kSignificand), bench.count(Subnormals::Ieee),
+                 bench.count(Subnormals::Flush));
 }
 
 }  // namespace

@@ -3,7 +3,8 @@
 // too.
 `default_nettype none
 module flt_units #(
-  parameter integer LANES = 4
+  parameter integer LANES = 4,
+  parameter integer SIGNIFICAND = 24
 ) (
   input  wire                  clk_i,
   input  wire                  rst_ni,
@@ -23,7 +24,7 @@ module flt_units #(
   generate
     for (m = 0; m < 4; m = m + 1) begin : gen_mode
       flt_alu #(.WARPS(8), .LANES(LANES), .LATENCY(1), .DEPTH(3 + 2*(m/2) + 2*(m%2)), .SUBNORMALS(m%2),
-          .FMA(m/2)) unit (
+          .SIGNIFICAND(SIGNIFICAND), .FMA(m/2)) unit (
         .clk_i(clk_i), .rst_ni(rst_ni), .task_valid_i(task_valid_i), .task_warp_i(task_warp_i),
         .task_operation_i(task_operation_i), .task_mask_i(task_mask_i), .task_operand_a_i(task_operand_a_i),
         .task_operand_b_i(task_operand_b_i), .task_operand_c_i(task_operand_c_i), .task_immediate_i(32'd0),

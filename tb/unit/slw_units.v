@@ -2,7 +2,8 @@
 // 4, and the bits [m*...] of every output. The last ones are deeper, so that the delay behind the stages is seen too.
 `default_nettype none
 module slw_units #(
-  parameter integer LANES = 4
+  parameter integer LANES = 4,
+  parameter integer SIGNIFICAND = 24
 ) (
   input  wire                  clk_i,
   input  wire                  rst_ni,
@@ -25,7 +26,7 @@ module slw_units #(
   generate
     for (m = 0; m < 8; m = m + 1) begin : gen_mode
       slw_alu #(.WARPS(8), .LANES(LANES), .LATENCY(1), .DEPTH(least(m%4) + 2*(m/6)), .SUBNORMALS(m/4),
-          .SLOW_UNIT(m%4)) unit (
+          .SIGNIFICAND(SIGNIFICAND), .SLOW_UNIT(m%4)) unit (
         .clk_i(clk_i), .rst_ni(rst_ni), .task_valid_i(task_valid_i), .task_warp_i(task_warp_i),
         .task_operation_i(task_operation_i), .task_mask_i(task_mask_i), .task_operand_a_i(task_operand_a_i),
         .task_operand_b_i(task_operand_b_i), .task_operand_c_i({LANES*32{1'b0}}), .task_immediate_i(32'd0),
