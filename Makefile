@@ -115,8 +115,8 @@ UNIT_OF_ENGINE := $(if $(filter rtl lockstep,$(ENGINE)),$(UNIT),true)
 
 .PHONY: help sim fidelity compare run cosim configurations mutants faults unit test lint format bench clean
 .PHONY: setup-% program configured-%
-.PHONY: numerics-long proofs synth synth-replay synth-prove growth numerics extremes isa diagrams quoted package sweep
-.PHONY: report
+.PHONY: numerics-long proofs synth synth-replay synth-prove growth numerics significands extremes isa diagrams quoted
+.PHONY: package sweep report
 
 help: ## this list
 	@echo 'raypool: a ray-tracing GPU to render on, measure, verify and synthesise'
@@ -151,6 +151,7 @@ help: ## this list
 	@echo '  synth-replay:  BREAK=N;  synth-prove:  ONLY=BLOCKS;  growth:  PLAN=FILE'
 	@echo 'variables of make cosim:  PROGRAMS=$(PROGRAMS)  SEED=$(SEED)  CONFIG  SET  CUS  COVERAGE=FILE.json'
 	@echo 'variables of make numerics:  GATES=1: synthesise the lanes of every mode first'
+	@echo '  significands:  SCENE  CONFIG  SET  DEPTH  VIEW  DETAIL and those of the camera'
 	@echo '  extremes:  MODE=all|ieee-exact|...;  numerics-long:  THREADS=$(THREADS)'
 	@echo 'variables of make quoted:  LONG=1: those that take long too;  UPDATE=1: write what is printed into the pages'
 	@echo '  PAGES="docs/isa.md ...";  FILES=NAME=PATH: a file that quotes need'
@@ -265,6 +266,10 @@ numerics: setup-sim setup-numerics $(GATES_SETUP) program ## errors of each arit
 	  done)
 	@echo
 	@$(RAYPOOL) numerics
+
+significands: setup-sim program ## what floats of 11 to 24 bits do to SCENE's picture, and how few bits nobody sees
+	@$(RAYPOOL) significands --scene "$$SCENE" --config "$$CONFIG" $(SET_FIELDS) --depth "$$DEPTH" \
+	  $${VIEW:+--view "$$VIEW"} $(LOOK) $${DETAIL:+--detail "$$DETAIL"}
 
 extremes: setup-sim program ## hard cases in every arithmetic mode, on every engine: MODE
 	@for config in $$($(RAYPOOL) numerics --mode "$$MODE" --configurations $(BUILD)/out/modes); do \

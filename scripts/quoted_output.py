@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Runs the commands that README and docs quote and compares what they print.
 
-    scripts/quoted_output.py [--long] [--update] [--rules] [--file NAME=PATH]... [PAGE...]
+    scripts/quoted_output.py [--long] [--update] [--rules] [--only TEXT] [--file NAME=PATH]... [PAGE...]
 
 In a page an indented block is a command and its output: lines "$ COMMAND", each followed by what it prints. Everything
 else stands in a fence. A line "..." stands for any lines. Seconds and minutes are not compared. A comment above a block
@@ -149,6 +149,8 @@ def check_page(page, options, files):
     differ = ran = 0
     updates = []
     for quote in quotes_of(page, lines):
+        if options.only not in quote.command:
+            continue
         needed = [option.split()[1] for option in quote.options if option.startswith("needs ")]
         if ("long" in quote.options and not options.long) or any(name not in files for name in needed):
             print(f"{quote.place()}: left out: {quote.command}", flush=True)
@@ -182,6 +184,7 @@ def main():
     parser.add_argument(
         "--rules", action="store_true", help="run nothing; check only that every indented block is a quote"
     )
+    parser.add_argument("--only", default="", metavar="TEXT", help="only commands that have this in them")
     parser.add_argument("--file", action="append", default=[], metavar="NAME=PATH", help="a file that quotes need")
     options = parser.parse_args()
     unknown = [page for page in options.pages if page not in PAGES]

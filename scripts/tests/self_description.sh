@@ -60,7 +60,7 @@ completes() {
     bash "$folder/bash" "$@")
   [ "$got" = "$wanted" ] || fail "bash completes 'raypool $*' with '$got', not '$wanted'"
 }
-completes 'sim' si
+completes 'sim' sim
 completes '--engine' sim --eng
 completes 'rtl' sim --engine rt
 completes 'fish' completion 'fi'

@@ -36,7 +36,8 @@ struct RealFrame {
     options.memory = &image.memory;
     options.program_length = size32(program.code);
     for (size_t i = 0; i < kRayKernels; ++i) options.entries[i] = program.entries.at(std::string(kRayKernelNames[i]));
-    options.arguments = camera_arguments(scene, width, height, options.configuration.contents());
+    options.arguments =
+        camera_arguments(scene, width, height, options.configuration.contents(), options.configuration.significand);
     options.width = width;
     options.height = height;
     options.depth = depth;

@@ -165,4 +165,18 @@ struct NumericsOptions {
 };
 int numerics_command(const NumericsOptions& options);
 
+/// `raypool significands`
+struct SignificandsOptions {
+  std::string scene = "room";
+  double detail = 1;
+  std::string view;
+  ViewWords look;
+  std::string size = "256x256";
+  int depth = 3;
+  std::string config = "4w4c";  ///< what else the arithmetic is
+  std::vector<std::string> set;
+  bool quiet = false;  ///< no progress
+};
+int significands_command(const SignificandsOptions& options);
+
 }  // namespace raypool

@@ -148,7 +148,7 @@ int trade_command(const NumericsOptions& options) {
   return leak ? kOtherFailure : kDone;
 }
 
-/// One letter an engine, in the order native, functional, model, lockstep: lower case passed, X failed, - not run.
+/// One letter an engine, in the order native, functional, model, lockstep: its own passed, X failed, - not run.
 int extremes_command(const NumericsOptions& options) {
   const Configuration base = load_configuration(options.config, options.set);
   const std::vector<ArithmeticMode> modes = chosen_modes(options.mode);
@@ -166,9 +166,10 @@ int extremes_command(const NumericsOptions& options) {
   }
   Progress progress(options.quiet);
   std::string failures;
-  uint64_t checks = 0, failed = 0, on_rtl = 0;
+  uint64_t checks = 0, failed = 0, broken = 0, on_rtl = 0;
   fmt::print(
-      "n engine native, f functional, m model, l RTL in lockstep with the model, X failed, - no Verilated unit\n");
+      "n engine native, f functional, m model, l RTL in lockstep with the model, X failed, b breaks with so few bits, "
+      "- no Verilated unit\n");
   for (size_t i = 0; i < modes.size(); ++i) fmt::print("{}{} {}", i == 0 ? "modes " : ", ", i + 1, modes[i].name);
   fmt::print("\n{:<58}", "");
   for (size_t i = 0; i < modes.size(); ++i) fmt::print(" {:>4}", i + 1);
@@ -183,11 +184,12 @@ int extremes_command(const NumericsOptions& options) {
     for (const ExtremeMachine& machine : machines) {
       if (progress.due())
         progress.show(fmt::format("  {}: {}, {}", extreme.name, machine.mode().name, machine.engine()));
-      const std::string failure = run_extreme(extreme, machine);
+      const auto [holds, failure] = run_extreme(extreme, machine);
       ++checks;
       on_rtl += machine.engine() == "lockstep";
       failed += !failure.empty();
-      letters[machine.mode().name] += failure.empty() ? machine.engine()[0] : 'X';
+      broken += !holds && failure.empty();
+      letters[machine.mode().name] += holds ? machine.engine()[0] : failure.empty() ? 'b' : 'X';
       if (!failure.empty()) {
         failures += fmt::format("FAILED: {}: {} ({}), {}, {}: {}\n", extreme.theme, extreme.name, extreme.expected,
                                 machine.mode().name, machine.engine(), failure);
@@ -202,8 +204,8 @@ int extremes_command(const NumericsOptions& options) {
     fmt::print("\n");
     std::fflush(stdout);
   }
-  fmt::print("{}{} cases, {} runs ({} on RTL in lockstep), {} failed\n", failures, extreme_cases().size(), checks,
-             on_rtl, failed);
+  fmt::print("{}{} cases, {} runs ({} on RTL in lockstep), {} break with few bits, {} failed\n", failures,
+             extreme_cases().size(), checks, on_rtl, broken, failed);
   if (!missing.empty()) {
     fmt::print("without hardware: {} of {} modes; make extremes builds their units\n", missing.size(), modes.size());
   }

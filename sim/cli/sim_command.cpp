@@ -126,7 +126,8 @@ ChipOptions chip_options(const RunRecord& record, const Scene& scene, MemoryImag
   chip.program_length = size32(program.code);
   for (size_t i = 0; i < kRayKernels; ++i) chip.entries[i] = program.entries.at(std::string(kRayKernelNames[i]));
   chip.layout = ray_record_layout(record.configuration);
-  chip.arguments = camera_arguments(scene, record.width, record.height, record.configuration.contents());
+  chip.arguments = camera_arguments(scene, record.width, record.height, record.configuration.contents(),
+                                    record.configuration.significand);
   chip.width = record.width;
   chip.height = record.height;
   chip.depth = record.depth;
@@ -175,7 +176,8 @@ std::unique_ptr<ComputeUnit> make_device(const SimOptions& options, Engine engin
 /// The window that is asked for, in a picture of this size.
 trace::Window trace_window(const SimOptions& options, const RunRecord& record) {
   const trace::Window window = trace::parse_window(options.trace);
-  if (window.pixel && ((*window.pixel & 0xffff) >= record.width || *window.pixel >> 16 >= record.height)) {
+  const uint32_t pixel = window.pixel.value_or(0);
+  if (static_cast<int>(pixel & 0xffff) >= record.width || static_cast<int>(pixel >> 16) >= record.height) {
     throw InputError(fmt::format("--trace {}: the picture has {}x{} pixels, numbered from 0", options.trace,
                                  record.width, record.height));
   }

@@ -52,7 +52,7 @@ std::optional<ModeTiming> time_mode(const Scene& scene, int depth, const Configu
   chip.program_length = size32(program.code);
   for (size_t i = 0; i < kRayKernels; ++i) chip.entries[i] = program.entries.at(std::string(kRayKernelNames[i]));
   chip.layout = ray_record_layout(configuration);
-  chip.arguments = camera_arguments(scene, kTimedSize, kTimedSize, configuration.contents());
+  chip.arguments = camera_arguments(scene, kTimedSize, kTimedSize, configuration.contents(), configuration.significand);
   chip.width = chip.height = kTimedSize;
   chip.depth = depth;
   chip.tracer = &scene_tracer;
@@ -71,12 +71,19 @@ std::optional<ModeGates> read_gates(const fs::path& synthesis, const arith::Mode
   }
   std::sort(reports.rbegin(), reports.rend());
   const auto subnormals = to_underlying(mode.subnormals), slow_unit = to_underlying(mode.slow_unit);
+  const auto significand = static_cast<int>(mode.significand);
   std::optional<double> flt, slw;
   for (const auto& [time, path] : reports) {
     std::ifstream file(path);
     const Json report = Json::parse(file, nullptr, false);
-    if (!flt) flt = lane_kge(report, "Flt lane", {{"SUBNORMALS", subnormals}, {"FMA", mode.fused}});
-    if (!slw) slw = lane_kge(report, "Slw lane", {{"SUBNORMALS", subnormals}, {"SLOW_UNIT", slow_unit}});
+    if (!flt) {
+      flt =
+          lane_kge(report, "Flt lane", {{"SUBNORMALS", subnormals}, {"SIGNIFICAND", significand}, {"FMA", mode.fused}});
+    }
+    if (!slw) {
+      slw = lane_kge(report, "Slw lane",
+                     {{"SUBNORMALS", subnormals}, {"SIGNIFICAND", significand}, {"SLOW_UNIT", slow_unit}});
+    }
   }
   if (!flt || !slw) return std::nullopt;
   return ModeGates{*flt, *slw};

@@ -71,20 +71,23 @@ void sort(Drawing& drawing) {
 }
 
 void require_same(const Drawing& ours, const Drawing& native) {
+  const auto same = [](bool condition, const char* otherwise) {
+    if (!condition) throw EngineDifference(otherwise);
+  };
   auto equal_rays = [](const TracedRay& a, const TracedRay& b) {
     return a.ray == b.ray && a.goes_on == b.goes_on && (!a.goes_on || a.intersection == b.intersection);
   };
-  require(ours.traced.size() == native.traced.size() &&
-              std::equal(ours.traced.begin(), ours.traced.end(), native.traced.begin(), equal_rays),
-          "its rays are not those of engine native");
+  same(ours.traced.size() == native.traced.size() &&
+           std::equal(ours.traced.begin(), ours.traced.end(), native.traced.begin(), equal_rays),
+       "its rays are not those of engine native");
   auto equal_contributions = [](const FrameContribution& a, const FrameContribution& b) {
     return a.pixel == b.pixel && a.rgb == b.rgb;
   };
-  require(ours.contributions.size() == native.contributions.size() &&
-              std::equal(ours.contributions.begin(), ours.contributions.end(), native.contributions.begin(),
-                         equal_contributions),
-          "its contributions are not those of engine native");
-  require(ours.frame == native.frame, "its picture is not that of engine native");
+  same(ours.contributions.size() == native.contributions.size() &&
+           std::equal(ours.contributions.begin(), ours.contributions.end(), native.contributions.begin(),
+                      equal_contributions),
+       "its contributions are not those of engine native");
+  same(ours.frame == native.frame, "its picture is not that of engine native");
 }
 
 /// Finds hits, by the scene or by the frame's own function, and writes down what was asked.
@@ -175,8 +178,10 @@ uint32_t ExtremeMachine::operate(const std::string& mnemonic, uint32_t a, uint32
   const uint32_t native = operate_natively(mnemonic, a, b, c, mode_.mode);
   if (!unit_) return native;
   const uint32_t ours = operate_on_unit(mnemonic, a, b, c);
-  require(ours == native, fmt::format("{} of {:08x}, {:08x} and {:08x} is {:08x}, but {:08x} on engine native",
-                                      mnemonic, a, b, c, ours, native));
+  if (ours != native) {
+    throw EngineDifference(fmt::format("{} of {:08x}, {:08x} and {:08x} is {:08x}, but {:08x} on engine native",
+                                       mnemonic, a, b, c, ours, native));
+  }
   return ours;
 }
 
@@ -223,7 +228,8 @@ Drawing ExtremeMachine::draw_on_unit(const ExtremeFrame& frame) const {
   chip.program_length = size32(program.code);
   for (size_t i = 0; i < kRayKernels; ++i) chip.entries[i] = program.entries.at(std::string(kRayKernelNames[i]));
   chip.layout = ray_record_layout(configuration_);
-  chip.arguments = camera_arguments(frame.scene, frame.width, frame.height, configuration_.contents());
+  chip.arguments =
+      camera_arguments(frame.scene, frame.width, frame.height, configuration_.contents(), configuration_.significand);
   if (frame.change_arguments) frame.change_arguments(chip.arguments);
   chip.width = frame.width;
   chip.height = frame.height;
@@ -249,13 +255,20 @@ const std::vector<ExtremeCase>& extreme_cases() {
   return kCases;
 }
 
-std::string run_extreme(const ExtremeCase& extreme, const ExtremeMachine& machine) {
+ExtremeOutcome run_extreme(const ExtremeCase& extreme, const ExtremeMachine& machine) {
+  const auto failure = [](const std::exception& error) {
+    const std::string text = error.what();
+    return ExtremeOutcome{false, text.empty() ? "it failed without saying why" : text};
+  };
   try {
     extreme.check(machine);
-    return "";
+    return {true, ""};
+  } catch (const EngineDifference& error) {
+    return failure(error);
+  } catch (const ExtremeFailure& error) {
+    return machine.significand() < extreme.least_significand ? ExtremeOutcome{} : failure(error);
   } catch (const std::exception& error) {
-    const std::string text = error.what();
-    return text.empty() ? "it failed without saying why" : text;
+    return failure(error);
   }
 }
 

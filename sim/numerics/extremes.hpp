@@ -52,6 +52,10 @@ struct Drawing {
 struct ExtremeFailure : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
+/// An engine does not do what engine native does.
+struct EngineDifference : ExtremeFailure {
+  using ExtremeFailure::ExtremeFailure;
+};
 /// Throws ExtremeFailure unless `condition`.
 void require(bool condition, const std::string& otherwise);
 
@@ -66,13 +70,14 @@ class ExtremeMachine {
   const std::string& engine() const { return engine_; }
   const ArithmeticMode& mode() const { return mode_; }
   bool flushes() const { return mode_.mode.subnormals == Subnormals::Flush; }
+  int significand() const { return static_cast<int>(mode_.mode.significand); }
   bool exact() const { return mode_.mode.slow_unit == SlowUnit::Exact; }
 
   /// Result of one instruction, flt or slw unit or float compare (then 0 or 1), on bit
   /// patterns; ffma only where the mode has it.
-  /// Throws ExtremeFailure when it is not engine native's.
+  /// Throws EngineDifference when it is not engine native's.
   uint32_t operate(const std::string& mnemonic, uint32_t a, uint32_t b = 0, uint32_t c = 0) const;
-  /// Throws ExtremeFailure when the frame does not end or is not engine native's, bit for bit;
+  /// Throws ExtremeFailure when the frame does not end, EngineDifference when it is not engine native's, bit for bit;
   /// InputError for what the scene checks refuse.
   Drawing draw(const ExtremeFrame& frame) const;
 
@@ -90,6 +95,7 @@ struct ExtremeCase {
   std::string theme, name;
   std::string expected;                              ///< the defined behaviour, one clause
   std::function<void(const ExtremeMachine&)> check;  ///< throws ExtremeFailure
+  int least_significand = 11;  ///< bits with which the behaviour holds; with fewer it may break, on all engines alike
 };
 
 // The themes; each file has one.
@@ -102,7 +108,10 @@ std::vector<ExtremeCase> image_extremes();
 /// All of them.
 const std::vector<ExtremeCase>& extreme_cases();
 
-/// Empty when the case passes, else what is wrong.
-std::string run_extreme(const ExtremeCase& extreme, const ExtremeMachine& machine);
+struct ExtremeOutcome {
+  bool holds = false;   ///< the behaviour is the expected one
+  std::string failure;  ///< what is wrong; empty also where it may break, and does
+};
+ExtremeOutcome run_extreme(const ExtremeCase& extreme, const ExtremeMachine& machine);
 
 }  // namespace raypool::numerics

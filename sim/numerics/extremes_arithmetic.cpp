@@ -1,5 +1,8 @@
-// Extremes of single operations: results are the same in every mode but where subnormal numbers are concerned.
+// Extremes of single operations: results are the same in every mode but where subnormal numbers are concerned, and
+// with a shorter significand where a row's numbers have one too; elsewhere the engines must agree.
 #include <fmt/format.h>
+
+#include <string_view>
 
 #include "numerics/extremes.hpp"
 
@@ -23,11 +26,25 @@ constexpr Row same(const char* mnemonic, uint32_t a, uint32_t b, uint32_t result
   return {mnemonic, a, b, result, result};
 }
 
+/// Whether a float, or a result of this operation, has no bits below the machine's significand. What is rounded to such
+/// a number with 24 bits is rounded to it with fewer.
+bool has(const ExtremeMachine& machine, uint32_t a) {
+  return (a & ~(~uint32_t{0} << (arith::kFullSignificand - machine.mode().mode.significand))) == 0;
+}
+bool has_result(const ExtremeMachine& machine, std::string_view mnemonic, uint32_t result) {
+  return mnemonic == "f2i" || has(machine, result);
+}
+bool has_operand(const ExtremeMachine& machine, std::string_view mnemonic, uint32_t a) {
+  return mnemonic == "i2f" || has(machine, a);
+}
+
 ExtremeCase make(const char* name, const char* expected, std::vector<Row> rows) {
   return {"arithmetic", name, expected, [rows = std::move(rows)](const ExtremeMachine& machine) {
             for (const Row& row : rows) {
               const uint32_t wanted = machine.flushes() ? row.flush : row.ieee;
               const uint32_t result = machine.operate(row.mnemonic, row.a, row.b);
+              if (!has_operand(machine, row.mnemonic, row.a) || !has(machine, row.b)) continue;
+              if (!has_result(machine, row.mnemonic, wanted)) continue;
               require(result == wanted, fmt::format("{} of {:08x} and {:08x} is {:08x}, not {:08x}", row.mnemonic,
                                                     row.a, row.b, result, wanted));
             }
@@ -51,6 +68,8 @@ ExtremeCase make_sums(const char* name, const char* expected, std::vector<SumRow
               const uint32_t wanted = fused ? with_ffma : machine.flushes() ? row.separate_flush : row.separate_ieee;
               const uint32_t result = fused ? machine.operate("ffma", row.a, row.b, row.c)
                                             : machine.operate("fadd", machine.operate("fmul", row.a, row.b), row.c);
+              if (!has(machine, row.a) || !has(machine, row.b) || !has(machine, row.c) || !has(machine, wanted))
+                continue;
               require(result == wanted, fmt::format("{:08x} * {:08x} + {:08x} is {:08x}, not {:08x}", row.a, row.b,
                                                     row.c, result, wanted));
             }

@@ -31,7 +31,8 @@ void require_hit(const ExtremeMachine& machine, const Scene& scene, const Vec3& 
   const TracedRay& eye = eye_ray(drawing);
   require(eye.goes_on, "from " + text(origin) + " towards " + text(direction) + " nothing is hit");
   const float ours = as_float(eye.intersection[word::kDistance]);
-  require(std::fabs(ours - t) <= 1e-6f * t,
+  // Eight units in the last place of a significand: words of the ray and of the camera are cut off at it.
+  require(std::fabs(ours - t) <= std::ldexp(16.0f, -machine.significand()) * t,
           fmt::format("from {} towards {} t is {}, not {}", text(origin), text(direction), ours, t));
   require_right_hits(drawing, scene);
 }

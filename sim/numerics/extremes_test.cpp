@@ -18,7 +18,7 @@ class Extremes : public testing::TestWithParam<ArithmeticMode> {
  protected:
   static void run_all(const ExtremeMachine& machine) {
     for (const ExtremeCase& extreme : extreme_cases()) {
-      const std::string failure = run_extreme(extreme, machine);
+      const std::string failure = run_extreme(extreme, machine).failure;
       EXPECT_EQ(failure, "") << extreme.theme << ": " << extreme.name << " (" << extreme.expected << ")";
     }
   }
@@ -59,11 +59,32 @@ TEST(ExtremeCatalogue, AnEngineOfOtherArithmeticFails) {
   const ExtremeMachine coarse("functional", ieee, small_unit(), functional_in({Subnormals::Ieee, SlowUnit::Newton0}));
   int flush_failures = 0, coarse_failures = 0;
   for (const ExtremeCase& extreme : extreme_cases()) {
-    flush_failures += !run_extreme(extreme, flushing).empty();
-    coarse_failures += !run_extreme(extreme, coarse).empty();
+    flush_failures += !run_extreme(extreme, flushing).failure.empty();
+    coarse_failures += !run_extreme(extreme, coarse).failure.empty();
   }
   EXPECT_GT(flush_failures, 5);
   EXPECT_GT(coarse_failures, 5);
+}
+
+TEST(ExtremeCatalogue, WhatMayBreakWithFewBitsMustBreakAlike) {
+  ArithmeticMode narrow = arithmetic_modes().front();
+  narrow.mode.significand = 13;
+  const ExtremeMachine same("functional", narrow, small_unit(), make_functional_unit);
+  const ExtremeMachine other("functional", narrow, small_unit(),
+                             [](const Configuration& configuration, Memory& memory) {
+                               Configuration wider = configuration;
+                               wider.significand = 14;
+                               return make_functional_unit(wider, memory);
+                             });
+  int breaking = 0;
+  for (const ExtremeCase& extreme : extreme_cases()) {
+    if (extreme.least_significand <= 13) continue;
+    const ExtremeOutcome outcome = run_extreme(extreme, same);
+    breaking += !outcome.holds;
+    EXPECT_EQ(outcome.failure, "") << extreme.name;
+    EXPECT_NE(run_extreme(extreme, other).failure, "") << extreme.name;
+  }
+  EXPECT_EQ(breaking, 1);
 }
 
 TEST(ExtremeCatalogue, AFrameThatDoesNotEndFails) {
@@ -84,7 +105,7 @@ TEST(ExtremeCatalogue, AFrameThatDoesNotEndFails) {
   };
   const ExtremeMachine machine("deaf", arithmetic_modes().front(), small_unit(),
                                [](const Configuration&, Memory&) { return std::make_unique<Deaf>(); });
-  EXPECT_NE(run_extreme(image_extremes().front(), machine), "");
+  EXPECT_NE(run_extreme(image_extremes().front(), machine).failure, "");
 }
 
 }  // namespace

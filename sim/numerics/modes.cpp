@@ -1,5 +1,7 @@
 #include "numerics/modes.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
 
 namespace raypool::numerics {
@@ -9,6 +11,7 @@ Configuration ArithmeticMode::applied_to(const Configuration& base) const {
   changed.subnormals = mode.subnormals;
   changed.slow_unit = mode.slow_unit;
   changed.fma = mode.fused;
+  changed.significand = mode.significand;
   for (const AluType type : {AluType::Flt, AluType::Slw})
     changed.alus[type].depth += least_depth(changed, type) - least_depth(base, type);
   if (name != arithmetic_modes().front().name) changed.name += "-" + name;
@@ -31,6 +34,12 @@ const std::vector<ArithmeticMode>& arithmetic_modes() {
           modes.push_back(mode);
         }
       }
+    }
+    for (const uint32_t significand : {20, 16, 13, 11}) {
+      ArithmeticMode mode = modes.front();
+      mode.name += fmt::format("-{}", significand);
+      mode.mode.significand = significand;
+      modes.push_back(mode);
     }
     return modes;
   }();

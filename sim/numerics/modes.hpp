@@ -10,7 +10,9 @@
 namespace raypool::numerics {
 
 struct ArithmeticMode {
-  std::string name;  ///< "ieee-exact", ...: subnormals, slow unit, and "-fma" with a fused multiply-add
+  /// "ieee-exact", ...: subnormals, slow unit, "-fma" with a fused multiply-add, "-16" with so many bits in a
+  /// significand
+  std::string name;
   arith::Mode mode;
 
   /// `base` with this arithmetic. Flt and Slw keep the stages that they have beyond what their arithmetic needs; the
@@ -18,7 +20,8 @@ struct ArithmeticMode {
   Configuration applied_to(const Configuration& base) const;
 };
 
-/// Every mode, the default one first; exact before newton2, newton1, newton0.
+/// Every mode of the full significand, the default one first, exact before newton2, newton1, newton0; then the default
+/// one with shorter significands.
 const std::vector<ArithmeticMode>& arithmetic_modes();
 
 }  // namespace raypool::numerics

@@ -110,13 +110,14 @@ class Worker {
   std::vector<Ray> pending_;
 };
 
-float offset(const Scene& scene) {
+float offset(const Scene& scene, uint32_t significand) {
   const Bounds bounds = scene.bounds();
   double largest = 0;
   for (const Vec3& point : {bounds.lower, bounds.upper, scene.camera.eye}) {
     for (int axis = 0; axis < 3; ++axis) largest = std::max(largest, std::fabs(static_cast<double>(point[axis])));
   }
-  return static_cast<float>(std::max(kOffsetShare * static_cast<double>(bounds.diagonal()), kLeastOffset * largest));
+  const double least = std::max(kLeastOffset, std::ldexp(1.0, 1 - static_cast<int>(significand)));
+  return static_cast<float>(std::max(kOffsetShare * static_cast<double>(bounds.diagonal()), least * largest));
 }
 
 }  // namespace
@@ -144,7 +145,7 @@ MemoryImage build_memory(const Program& program, const Scene& scene) {
 }
 
 std::array<uint32_t, kArguments> camera_arguments(const Scene& scene, uint32_t width, uint32_t height,
-                                                  uint32_t contents) {
+                                                  uint32_t contents, uint32_t significand) {
   require_range("image width", width, 1, 65535);
   require_range("image height", height, 1, 65535);
   std::array<uint32_t, kArguments> arguments{};
@@ -165,7 +166,7 @@ std::array<uint32_t, kArguments> camera_arguments(const Scene& scene, uint32_t w
   put(argument::kStepY, step_y);
   put(argument::kLight, scene.light.position.as<double>());
   put(argument::kLightColor, scene.light.color.as<double>());
-  arguments[argument::kOffset] = as_bits(offset(scene));
+  arguments[argument::kOffset] = as_bits(offset(scene, significand));
   const uint32_t log2 = tile_width_log2(contents);
   arguments[argument::kTileWidthLog2] = log2;
   arguments[argument::kTileMask] = (1u << log2) - 1;
@@ -182,7 +183,7 @@ FrameBuffer render_native(const Scene& scene, const MemoryImage& image, const Tr
   if ((options.contents & (options.contents - 1)) != 0) {
     throw InputError(fmt::format("contents is {}; it must be a power of two", options.contents));
   }
-  auto arguments = camera_arguments(scene, options.width, options.height, options.contents);
+  auto arguments = camera_arguments(scene, options.width, options.height, options.contents, options.mode.significand);
   if (options.change_arguments) options.change_arguments(arguments);
   const uint32_t tile_width = 1u << tile_width_log2(options.contents), tile_height = options.contents / tile_width;
   Memory memory = image.memory;

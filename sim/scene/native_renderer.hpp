@@ -26,13 +26,14 @@ MemoryImage build_memory(const Program& program, const Scene& scene);
 
 /// A secondary ray's origin leaves its surface by this share of the diagonal of the scene's bounding box
 /// (docs/scenes.md has the measurement), but by no less than this share of the largest coordinate of box and eye:
-/// eight of its units in the last place.
+/// eight of its units in the last place, or one of a shorter significand where that is more.
 inline constexpr double kOffsetShare = 1e-5;
 inline constexpr double kLeastOffset = 1e-6;
 
-/// The kernel arguments of a frame (namespace argument). Throws InputError unless width and height lie in 1 .. 65535.
+/// The kernel arguments of a frame (namespace argument), for a machine whose floats have such a significand. Throws
+/// InputError unless width and height lie in 1 .. 65535.
 std::array<uint32_t, kArguments> camera_arguments(const Scene& scene, uint32_t width, uint32_t height,
-                                                  uint32_t contents);
+                                                  uint32_t contents, uint32_t significand = arith::kFullSignificand);
 
 /// A package's depth has 8 bits, and a reflection of the last depth must still be seen as beyond it.
 inline constexpr int kLargestDepth = 254;

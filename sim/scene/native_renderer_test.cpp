@@ -98,6 +98,9 @@ TEST(CameraArguments, SpanTheFieldOfView) {
   EXPECT_NEAR(as_float(a[argument::kOffset]), 1e-5f * scene.bounds().diagonal(), 1e-9);
   scene.camera.eye.x = 5000;
   EXPECT_NEAR(as_float(camera_arguments(scene, 200, 100, 32)[argument::kOffset]), 5e-3, 1e-8);
+  // With few bits by one unit in the last place of 5000.
+  EXPECT_EQ(as_float(camera_arguments(scene, 200, 100, 32, 20)[argument::kOffset]), 5000 * 0x1p-19f);
+  EXPECT_EQ(as_float(camera_arguments(scene, 200, 100, 32, 11)[argument::kOffset]), 5000 * 0x1p-10f);
   EXPECT_THROW(camera_arguments(scene, 0, 10, 64), InputError);
   EXPECT_THROW(camera_arguments(scene, 10, 65536, 64), InputError);
 }

@@ -108,6 +108,7 @@ class CommandLine {
   void add_errors_command();
   void add_scene_command();
   void add_numerics_command();
+  void add_significands_command();
   void add_descriptions_command();
 
   CLI::App app_{
@@ -129,6 +130,7 @@ class CommandLine {
   uint32_t grid_ = 4096;
   SceneCommandOptions scene_;
   NumericsOptions numerics_;
+  SignificandsOptions significands_;
   std::string shell_ = "bash";
 };
 
@@ -152,6 +154,7 @@ CommandLine::CommandLine(int argc, char** argv) {
   add_errors_command();
   add_scene_command();
   add_numerics_command();
+  add_significands_command();
   add_descriptions_command();
 }
 
@@ -361,6 +364,19 @@ void CommandLine::add_numerics_command() {
                            "only write a configuration file of each mode into this folder");
   numerics_app->add_flag("--quiet", numerics_.quiet, "no progress");
   numerics_app->callback([this] { code_ = numerics_command(numerics_); });
+}
+
+void CommandLine::add_significands_command() {
+  CLI::App* significands_app = app_.add_subcommand(
+      "significands", "what floats of fewer bits do to a scene's picture, and how few bits nobody sees");
+  add_scene(*significands_app, significands_.scene, significands_.size, significands_.view, significands_.look,
+            significands_.detail);
+  significands_app->add_option("--depth", significands_.depth, "of the picture's rays")
+      ->check(CLI::Range(1, 254))
+      ->capture_default_str();
+  add_config(*significands_app, significands_.config, significands_.set);
+  significands_app->add_flag("--quiet", significands_.quiet, "no progress");
+  significands_app->callback([this] { code_ = significands_command(significands_); });
 }
 
 void CommandLine::add_descriptions_command() {
