@@ -10,3 +10,10 @@
     {1{ISA_TYPE_MEM}},
     {BRH_COUNT{ISA_TYPE_BRH}},
     {TID_COUNT{ISA_TYPE_TID}}};
+  // Instructions that the ALUs lack: bit ALU type * 32 + operation.
+  localparam [31:0] BRH_LACKS = BRH_WITHOUT | 32'd0;
+  localparam [31:0] INT_LACKS = INT_WITHOUT | 32'd0;
+  localparam [31:0] FLT_LACKS = FLT_WITHOUT | 32'd0;
+  localparam [31:0] SLW_LACKS = SLW_WITHOUT | 32'd0;
+  localparam [16*32-1:0] WITHOUT = {
+    {9{32'd0}}, 32'd0, SLW_LACKS, FLT_LACKS, INT_LACKS, 32'd0, BRH_LACKS, 32'd0};

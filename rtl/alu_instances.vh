@@ -2,7 +2,7 @@
       if (TYPE == ISA_TYPE_BRH) begin : gen_brh
         brh_alu #(
           .WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS), .LATENCY(BRH_LATENCY),
-          .DEPTH(BRH_DEPTH), .SUBNORMALS(SUBNORMALS), .SIGNIFICAND(SIGNIFICAND)
+          .DEPTH(BRH_DEPTH), .WITHOUT(BRH_WITHOUT), .SUBNORMALS(SUBNORMALS), .SIGNIFICAND(SIGNIFICAND)
         ) brh_alu (
 `include "alu_port_map.vh"
         );
@@ -10,7 +10,7 @@
       if (TYPE == ISA_TYPE_INT) begin : gen_int
         int_alu #(
           .WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS), .LATENCY(INT_LATENCY),
-          .DEPTH(INT_DEPTH)
+          .DEPTH(INT_DEPTH), .WITHOUT(INT_WITHOUT)
         ) int_alu (
 `include "alu_port_map.vh"
         );
@@ -18,7 +18,7 @@
       if (TYPE == ISA_TYPE_FLT) begin : gen_flt
         flt_alu #(
           .WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS), .LATENCY(FLT_LATENCY),
-          .DEPTH(FLT_DEPTH), .SUBNORMALS(SUBNORMALS), .SIGNIFICAND(SIGNIFICAND), .FMA(FMA)
+          .DEPTH(FLT_DEPTH), .WITHOUT(FLT_WITHOUT), .SUBNORMALS(SUBNORMALS), .SIGNIFICAND(SIGNIFICAND), .FMA(FMA)
         ) flt_alu (
 `include "alu_port_map.vh"
         );
@@ -26,7 +26,8 @@
       if (TYPE == ISA_TYPE_SLW) begin : gen_slw
         slw_alu #(
           .WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS), .LATENCY(SLW_LATENCY),
-          .DEPTH(SLW_DEPTH), .SUBNORMALS(SUBNORMALS), .SIGNIFICAND(SIGNIFICAND), .SLOW_UNIT(SLOW_UNIT), .SLOW_LANES(SLOW_LANES)
+          .DEPTH(SLW_DEPTH), .WITHOUT(SLW_WITHOUT), .SUBNORMALS(SUBNORMALS), .SIGNIFICAND(SIGNIFICAND),
+          .SLOW_UNIT(SLOW_UNIT), .SLOW_LANES(SLOW_LANES)
         ) slw_alu (
 `include "alu_port_map.vh"
         );

@@ -8,7 +8,8 @@ module brh_alu #(
   parameter integer LATENCY = 1,
   parameter integer DEPTH = 2,
   parameter integer SUBNORMALS = 0,
-  parameter integer SIGNIFICAND = 24   // of a float, whose bits below are not looked at
+  parameter integer SIGNIFICAND = 24,   // of a float, whose bits below are not looked at
+  parameter integer WITHOUT = 0   // instructions that it lacks: a bit for each operation number
 ) (
 `include "alu_ports.vh"
 );
@@ -27,6 +28,7 @@ module brh_alu #(
     .done_valid_o(done_valid_o), .done_warp_o(done_warp_o), .stage_valid_o(stage_valid));
 
   localparam integer D = 24 - SIGNIFICAND;
+  localparam [31:0] LACKS = WITHOUT;
   // Zero, also where subnormals are flushed.
   function is_zero(input [31:D] v);
     is_zero = v[30:23] == 8'd0 && (SUBNORMALS != 0 || v[22:D] == {23-D{1'b0}});
@@ -52,23 +54,24 @@ module brh_alu #(
       else if (x[31] != y[31]) float_less = x[31];
       else float_less = x[31] ? (y < x) : (x < y);
       float_less = float_less && ordered;
+      // What the unit lacks is never asked for, and false.
       case (op)
         ISA_BRH_IEQ: compare = equal;
-        ISA_BRH_INE: compare = !equal;
-        ISA_BRH_ILT: compare = signed_less;
-        ISA_BRH_ILE: compare = signed_less || equal;
+        ISA_BRH_INE: compare = !LACKS[ISA_BRH_INE] && !equal;
+        ISA_BRH_ILT: compare = !LACKS[ISA_BRH_ILT] && signed_less;
+        ISA_BRH_ILE: compare = !LACKS[ISA_BRH_ILE] && (signed_less || equal);
         ISA_BRH_IGT: compare = !(signed_less || equal);
-        ISA_BRH_IGE: compare = !signed_less;
+        ISA_BRH_IGE: compare = !LACKS[ISA_BRH_IGE] && !signed_less;
         ISA_BRH_ULT: compare = less;
-        ISA_BRH_ULE: compare = less || equal;
-        ISA_BRH_UGT: compare = !(less || equal);
+        ISA_BRH_ULE: compare = !LACKS[ISA_BRH_ULE] && (less || equal);
+        ISA_BRH_UGT: compare = !LACKS[ISA_BRH_UGT] && !(less || equal);
         ISA_BRH_UGE: compare = !less;
-        ISA_BRH_FEQ: compare = float_equal;
-        ISA_BRH_FNE: compare = !float_equal;
-        ISA_BRH_FLT: compare = float_less;
-        ISA_BRH_FLE: compare = float_less || float_equal;
-        ISA_BRH_FGT: compare = ordered && !float_less && !float_equal;
-        default: compare = ordered && !float_less;
+        ISA_BRH_FEQ: compare = !LACKS[ISA_BRH_FEQ] && float_equal;
+        ISA_BRH_FNE: compare = !LACKS[ISA_BRH_FNE] && !float_equal;
+        ISA_BRH_FLT: compare = !LACKS[ISA_BRH_FLT] && float_less;
+        ISA_BRH_FLE: compare = !LACKS[ISA_BRH_FLE] && (float_less || float_equal);
+        ISA_BRH_FGT: compare = !LACKS[ISA_BRH_FGT] && (ordered && !float_less && !float_equal);
+        default: compare = !LACKS[ISA_BRH_FGE] && ordered && !float_less;
       endcase
     end
   endfunction

@@ -174,7 +174,7 @@ module compute_unit #(
       end
       warp #(
         .LANES(LANES), .STACK_DEPTH(STACK_DEPTH), .INSTANCES(INSTANCES), .INSTANCE_TYPES(INSTANCE_TYPES), .FMA(FMA),
-        .TRIPLES(TRIPLES), .INTERSECTION_WORDS(INTERSECTION_WORDS)
+        .TRIPLES(TRIPLES), .INTERSECTION_WORDS(INTERSECTION_WORDS), .WITHOUT(WITHOUT)
       ) warp (
         .clk_i(clk_i), .rst_ni(rst_ni), .start_i(start[w]), .start_pc_i(start_pc),
         .start_lanes_i(start_lanes[w*LANES +: LANES]),

@@ -11,6 +11,7 @@ module float_lane #(
   parameter integer SUBNORMALS = 0,
   parameter integer SIGNIFICAND = 24,
   parameter integer FMA = 0,
+  parameter integer NO_CONVERSION = 0,   // of float_convert
   parameter integer STAGES = (FMA != 0) ? 5 : 3
 ) (
   input  wire        clk_i,
@@ -30,7 +31,7 @@ module float_lane #(
   localparam integer D = 23 - M;            // bits of a word that it lacks
   wire [31:0] converted;
   reg [31:0] computed, result_q;            // computed: by the other units
-  float_convert #(.SUBNORMALS(SUBNORMALS), .SIGNIFICAND(SIGNIFICAND)) convert (
+  float_convert #(.SUBNORMALS(SUBNORMALS), .SIGNIFICAND(SIGNIFICAND), .WITHOUT(NO_CONVERSION)) convert (
     .clk_i(clk_i), .enable_i(convert_enable_i[2:0]), .op_i(convert_op_i), .a_i(a_i), .b_i(b_i), .result_o(converted));
 
   generate

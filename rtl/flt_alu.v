@@ -11,7 +11,8 @@ module flt_alu #(
   parameter integer DEPTH = 3,
   parameter integer SUBNORMALS = 0,
   parameter integer SIGNIFICAND = 24,
-  parameter integer FMA = 0
+  parameter integer FMA = 0,
+  parameter integer WITHOUT = 0   // instructions that it lacks: a bit for each operation number
 ) (
 `include "alu_ports.vh"
 );
@@ -80,7 +81,9 @@ module flt_alu #(
           convert_later_q <= convert_enable[STAGES-2:0];
         end
       end
-      float_lane #(.SUBNORMALS(SUBNORMALS), .SIGNIFICAND(SIGNIFICAND), .FMA(FMA)) lane (
+      float_lane #(
+        .SUBNORMALS(SUBNORMALS), .SIGNIFICAND(SIGNIFICAND), .FMA(FMA), .NO_CONVERSION(WITHOUT >> ISA_FLT_FMIN)
+      ) lane (
         .clk_i(clk_i), .add_enable_i(add_enable), .multiply_enable_i(multiply_enable), .fuse_enable_i(fuse_enable),
         .convert_enable_i(convert_enable), .subtract_i(task_operation_i == ISA_FLT_FSUB), .convert_op_i(convert_op),
         .a_i(task_operand_a_i[l*32 +: 32]), .b_i(task_operand_b_i[l*32 +: 32]), .c_i(task_operand_c_i[l*32 +: 32]),

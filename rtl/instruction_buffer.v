@@ -4,7 +4,8 @@
 module instruction_buffer #(
   parameter [0:0] FMA = 1'b0,          // ffma is legal
   parameter [0:0] TRIPLES = 1'b0,      // triples are legal
-  parameter integer INTERSECTION_WORDS = 21   // among so many words
+  parameter integer INTERSECTION_WORDS = 21,  // among so many words
+  parameter [511:0] WITHOUT = 512'd0   // bit ALU type * 32 + operation: that ALU lacks the instruction
 ) (
   input  wire        clk_i,
   input  wire        rst_ni,
@@ -91,7 +92,8 @@ module instruction_buffer #(
         F_CACHE:
           if (cache_hit_i) begin
             next_q <= cache_instruction_i;
-            next_legal_q <= isa_legal(cache_instruction_i, FMA, TRIPLES, INTERSECTION_WORDS[4:0]);
+            next_legal_q <= isa_legal(cache_instruction_i, FMA, TRIPLES, INTERSECTION_WORDS[4:0],
+                                      WITHOUT[cache_instruction_i[63:55]]);
             next_control_q <= isa_control(cache_instruction_i);
             fetch_q <= F_FULL;
           end else begin

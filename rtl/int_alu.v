@@ -6,7 +6,8 @@ module int_alu #(
   parameter integer LANES = 8,
   parameter integer WARP_BITS = 3,
   parameter integer LATENCY = 1,
-  parameter integer DEPTH = 2
+  parameter integer DEPTH = 2,
+  parameter integer WITHOUT = 0   // instructions that it lacks: a bit for each operation number
 ) (
 `include "alu_ports.vh"
 );
@@ -16,6 +17,7 @@ module int_alu #(
       int_alu_depth_must_be_at_least_2 illegal ();
     end
   endgenerate
+  localparam [31:0] LACKS = WITHOUT;
   wire [DEPTH-1:0] stage_valid;
   reg [LANES*32-1:0] low_q;     // the result, but of a multiplication
   reg [LANES*32-1:0] product_q; // a * b[10:0]
@@ -33,28 +35,29 @@ module int_alu #(
     reg signed_less;
     begin
       signed_less = $signed(a) < $signed(b);
+      // What the unit lacks is never asked for; it counts as mov.
       case (op)
         ISA_INT_MOV: compute = b;
         ISA_INT_IADD: compute = a + b;
         ISA_INT_ISUB: compute = a - b;
         ISA_INT_AND: compute = a & b;
-        ISA_INT_OR: compute = a | b;
+        ISA_INT_OR: compute = LACKS[ISA_INT_OR] ? b : a | b;
         ISA_INT_XOR: compute = a ^ b;
         ISA_INT_SHL: compute = a << b[4:0];
         ISA_INT_SHR: compute = a >> b[4:0];
-        ISA_INT_SAR: compute = $signed(a) >>> b[4:0];
-        ISA_INT_IMIN: compute = signed_less ? a : b;
-        ISA_INT_IMAX: compute = signed_less ? b : a;
-        ISA_INT_UMIN: compute = a < b ? a : b;
-        ISA_INT_UMAX: compute = a < b ? b : a;
-        default: compute = p ? a : b;
+        ISA_INT_SAR: if (LACKS[ISA_INT_SAR]) compute = b; else compute = $signed(a) >>> b[4:0];
+        ISA_INT_IMIN: compute = (!LACKS[ISA_INT_IMIN] && signed_less) ? a : b;
+        ISA_INT_IMAX: compute = (LACKS[ISA_INT_IMAX] || signed_less) ? b : a;
+        ISA_INT_UMIN: compute = (!LACKS[ISA_INT_UMIN] && a < b) ? a : b;
+        ISA_INT_UMAX: compute = (LACKS[ISA_INT_UMAX] || a < b) ? b : a;
+        default: compute = (!LACKS[ISA_INT_SEL] && p) ? a : b;
       endcase
     end
   endfunction
 
   always @(posedge clk_i)
     if (task_valid_i) begin
-      multiply_q <= task_operation_i == ISA_INT_IMUL;
+      multiply_q <= !LACKS[ISA_INT_IMUL] && task_operation_i == ISA_INT_IMUL;
       for (l = 0; l < LANES; l = l + 1) begin
         low_q[l*32 +: 32] <= compute(task_operation_i, task_operand_a_i[l*32 +: 32], task_operand_b_i[l*32 +: 32],
                                      task_predicate_x_i[l]);

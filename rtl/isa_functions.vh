@@ -11,24 +11,39 @@
       case ({encoding[63:60], encoding[59:55]})
         // tid: tid lane warp block threads blocks arg
         9'd0, 9'd1, 9'd2, 9'd3, 9'd4, 9'd5, 9'd6
-        // brh: ieq ine ilt ile igt ige ult ule ugt uge feq fne flt fle
-        //   fgt fge pand por pxor pandn jany jnone call loop ret exit
-        , 9'd32, 9'd33, 9'd34, 9'd35, 9'd36, 9'd37, 9'd38, 9'd39, 9'd40, 9'd41, 9'd42, 9'd43, 9'd44, 9'd45,
-        9'd46, 9'd47, 9'd48, 9'd49, 9'd50, 9'd51, 9'd56, 9'd57, 9'd58, 9'd59, 9'd60, 9'd61
+        // brh: ieq igt ult uge pand por pxor pandn jany jnone call loop ret exit
+        , 9'd32, 9'd36, 9'd38, 9'd41, 9'd48, 9'd49, 9'd50, 9'd51, 9'd56, 9'd57, 9'd58, 9'd59, 9'd60, 9'd61
         // mem: ld st
         , 9'd64, 9'd65
-        // int: mov iadd isub imul and or xor shl shr sar imin imax umin umax
-        //   sel
-        , 9'd96, 9'd97, 9'd98, 9'd99, 9'd100, 9'd101, 9'd102, 9'd103, 9'd104, 9'd105, 9'd106, 9'd107, 9'd108, 9'd109,
-        9'd110
-        // flt: fadd fsub fmul fmin fmax f2i i2f
-        , 9'd128, 9'd129, 9'd130, 9'd131, 9'd132, 9'd133, 9'd134
-        // slw: fdiv fsqrt frsqrt frcp
-        , 9'd160, 9'd161, 9'd162, 9'd163
+        // int: mov iadd isub and xor shl shr
+        , 9'd96, 9'd97, 9'd98, 9'd100, 9'd102, 9'd103, 9'd104
+        // flt: fadd fsub fmul
+        , 9'd128, 9'd129, 9'd130
         // ray: rin rout rfb rld rst
         , 9'd192, 9'd193, 9'd194, 9'd195, 9'd196
           : isa_legal_op = 1'b1;
         default: isa_legal_op = 1'b0;
+      endcase
+    end
+  endfunction
+
+  // a machine has this instruction unless its ALU is without it
+  function isa_optional_op;
+    /* verilator lint_off UNUSEDSIGNAL */
+    input [63:0] encoding;
+    /* verilator lint_on UNUSEDSIGNAL */
+    begin
+      case ({encoding[63:60], encoding[59:55]})
+        // brh: ine ilt ile ige ule ugt feq fne flt fle fgt fge
+        9'd33, 9'd34, 9'd35, 9'd37, 9'd39, 9'd40, 9'd42, 9'd43, 9'd44, 9'd45, 9'd46, 9'd47
+        // int: imul or sar imin imax umin umax sel
+        , 9'd99, 9'd101, 9'd105, 9'd106, 9'd107, 9'd108, 9'd109, 9'd110
+        // flt: fmin fmax f2i i2f
+        , 9'd131, 9'd132, 9'd133, 9'd134
+        // slw: fdiv fsqrt frsqrt frcp
+        , 9'd160, 9'd161, 9'd162, 9'd163
+          : isa_optional_op = 1'b1;
+        default: isa_optional_op = 1'b0;
       endcase
     end
   endfunction
@@ -100,14 +115,16 @@
   endfunction
 
   // the instruction has a table row, and the machine what it needs; fma: arithmetic.fma. A triple's words are
-  // all there, in packages of package_words
+  // all there, in packages of package_words. lacking: it is one that its ALU is without
   function isa_legal;
     input [63:0] encoding;
     input fma;
     input triples;
     input [4:0] package_words;
+    input lacking;
     begin
-      isa_legal = isa_legal_op(encoding) || (fma && isa_legal_fma_op(encoding)) ||
+      isa_legal = isa_legal_op(encoding) || (!lacking && isa_optional_op(encoding)) ||
+                  (fma && isa_legal_fma_op(encoding)) ||
                   (triples && isa_legal_triple_op(encoding) &&
                    !(isa_triple_of_words(encoding) && encoding[36:32] > package_words - 5'd3)) ||
                   (fma && triples && isa_legal_fused_triple_op(encoding));

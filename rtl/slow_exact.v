@@ -9,7 +9,8 @@
 // 10 and zero while enable_i[9] is low.
 `default_nettype none
 module slow_exact #(
-  parameter integer SIGNIFICAND = 24
+  parameter integer SIGNIFICAND = 24,
+  parameter integer WITHOUT = 0   // as slow_operations.vh has it
 ) (
   input  wire        clk_i,
   input  wire [9:0]  enable_i,
@@ -29,6 +30,9 @@ module slow_exact #(
   `include "free_running.vh"
   `include "ones_below.vh"
   `include "booth_digits.vh"
+  `include "slow_operations.vh"
+  wire root, unary;
+  assign {root, unary} = possible_operation(root_i, unary_i);
   localparam integer P = SIGNIFICAND;
   localparam integer D = 24 - P;
   // What travels with a task; registers sK_* are valid in stage K.
@@ -41,7 +45,8 @@ module slow_exact #(
   reg [P:0] s3_v_q, s4_v_q, s5_v_q, s6_v_q, s7_v_q;   // P - 1 fraction bits
   reg [P:0] s3_w_q, s4_w_q, s5_w_q, s6_w_q, s7_w_q, s8_w_q;
   wire [28:0] s2_row;
-  slow_line_table line_table (.clk_i(clk_i), .enable_i(enable_i[0]), .index_i(index_1_i[8:1]), .row_o(s2_row));
+  slow_line_table #(.WITHOUT(WITHOUT)) line_table (
+    .clk_i(clk_i), .enable_i(enable_i[0]), .index_i(index_1_i[8:1]), .row_o(s2_row));
   wire [27:0] line_sum, line_carry;
   multiply_tree #(.A_BITS(11), .B_BITS(11), .OUT_BITS(28), .ADD(1), .NEGATE(1), .CUT(8), .ENCODED(1)) line (
     .a_i(s2_row[10:0]), .b_i(offset_digits_i), .c_i({s2_row[28:11], 10'd0}), .sum_o(line_sum), .carry_o(line_carry));
@@ -70,6 +75,7 @@ module slow_exact #(
   // Modulo 2^52, of 24 bits, as what is left over is small; for frsqrt it is more than the 2^22 that are lost below
   // 2^18. slw_alu_test goes through every v of every significand.
   localparam integer OUT = 2*P + 4, CUT = P - 6;
+  localparam [0:0] FRSQRT = (WITHOUT & 4) == 0;
   reg [OUT-1:CUT] s10_sum_q, s10_carry_q;
   reg s10_above_q, s10_frsqrt_q, s10_sign_q;
   reg [P+6:0] s10_below_q;        // the float below m, or the special result
@@ -83,16 +89,23 @@ module slow_exact #(
   wire [F-1:0] s8_whole = (s8_tag_q[ROOT] && s8_tag_q[UNARY]) ? {F{1'b0}} : s8_tag_q[ROOT] ? {s8_w_q, {P+1{1'b0}}} :
                           {1'b0, s8_w_q, {P{1'b0}}};
   wire [OUT-1:0] s9_sum, s9_carry;
-  multiply_tree #(.A_BITS(F), .B_BITS(P+1), .OUT_BITS(OUT), .CUT(CUT)) second_product (
-    .a_i(s9_product_q), .b_i({s9_n_q, 1'b1}), .c_i({OUT{1'b0}}), .sum_o(s9_sum), .carry_o(s9_carry));
+  generate
+    if (FRSQRT) begin : gen_second_product
+      multiply_tree #(.A_BITS(F), .B_BITS(P+1), .OUT_BITS(OUT), .CUT(CUT)) second_product (
+        .a_i(s9_product_q), .b_i({s9_n_q, 1'b1}), .c_i({OUT{1'b0}}), .sum_o(s9_sum), .carry_o(s9_carry));
+    end else begin : gen_no_second_product
+      assign s9_sum = {OUT{1'b0}};
+      assign s9_carry = {OUT{1'b0}};
+    end
+  endgenerate
 
   always @(posedge clk_i) begin
     if (`STAGE_LOADS(enable_i[8:1] != 8'd0)) begin
       if (`STAGE_LOADS(enable_i[1])) begin
         s3_y_q <= s2_y[27:13];
         s3_y_digits_q <= s2_y_digits[23:0];
-        s3_root_q <= root_i;
-        s3_unary_q <= unary_i;
+        s3_root_q <= root;
+        s3_unary_q <= unary;
         s3_v_q <= v_i[24:D];
         s3_w_q <= w_i[24:D];
       end
@@ -122,7 +135,7 @@ module slow_exact #(
         s10_sum_q <= s9_sum[OUT-1:CUT];
         s10_carry_q <= s9_carry[OUT-1:CUT];
         s10_sign_q <= s9_tag_q[SIGN];
-        s10_frsqrt_q <= s9_tag_q[ROOT] && s9_tag_q[UNARY] && !s9_tag_q[SPECIAL];
+        s10_frsqrt_q <= FRSQRT && s9_tag_q[ROOT] && s9_tag_q[UNARY] && !s9_tag_q[SPECIAL];
         // Nothing is left over only when a subnormal quotient lies on m itself: then to even.
         s10_above_q <= !s9_tag_q[SPECIAL] && (s9_product_q[F-1] || (s9_product_q == {F{1'b0}} && s9_n_q[0]));
         s10_below_q <= s9_tag_q[SPECIAL] ? {s9_tag_q[EXPONENT +: 8], s9_tag_q[NAN], {P-2{1'b0}}} :

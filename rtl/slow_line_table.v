@@ -7,7 +7,9 @@
 // Relative error of y: at most 2^-14.29.
 // enable_i takes index_i; row_o = {start[17:0], slope[10:0]} is there from the next cycle on.
 `default_nettype none
-module slow_line_table (
+module slow_line_table #(
+  parameter integer WITHOUT = 0   // as slow_operations.vh has it: only roots take lines of root 1
+) (
   input  wire        clk_i,
   input  wire        enable_i,
   input  wire [7:0]  index_i,
@@ -15,9 +17,12 @@ module slow_line_table (
 );
   reg [28:0] row_q;
   assign row_o = row_q;
+  `include "slow_operations.vh"
+  wire [1:0] operation = possible_operation(index_i[7], 1'b0);
+  wire [7:0] index = {operation[1], index_i[6] && (WITHOUT & 6) != 6, index_i[5:0]};
   always @(posedge clk_i) begin
     if (enable_i) begin
-      case (index_i)
+      case (index)
         8'h00: row_q <= 29'h1fffdfe0; 8'h01: row_q <= 29'h1f81d7a3; 8'h02: row_q <= 29'h1f07a769;
         8'h03: row_q <= 29'h1e911731; 8'h04: row_q <= 29'h1e1e0efc; 8'h05: row_q <= 29'h1dae4ec9;
         8'h06: row_q <= 29'h1d41c698; 8'h07: row_q <= 29'h1cd84669; 8'h08: row_q <= 29'h1c71be3c;

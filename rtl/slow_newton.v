@@ -9,7 +9,8 @@
 module slow_newton #(
   parameter integer SIGNIFICAND = 24,
   parameter integer STEPS = 2,
-  parameter integer LAST = 10
+  parameter integer LAST = 10,
+  parameter integer WITHOUT = 0   // as slow_operations.vh has it
 ) (
   input  wire        clk_i,
   input  wire [LAST-1:0] enable_i,
@@ -28,6 +29,9 @@ module slow_newton #(
   `include "free_running.vh"
   `include "ones_below.vh"
   `include "booth_digits.vh"
+  `include "slow_operations.vh"
+  wire root, unary;
+  assign {root, unary} = possible_operation(root_i, unary_i);
   // The stages that make the quotient of w and y, and that round it.
   localparam integer PRODUCT = (STEPS == 0) ? 3 : 5, ROUND = LAST - 1;
   generate
@@ -65,8 +69,8 @@ module slow_newton #(
     if (`STAGE_LOADS(enable_i[ROUND-1:1] != {ROUND-1{1'b0}})) begin
       if (`STAGE_LOADS(enable_i[1])) begin
         s3_y_q <= {1'b1, s2_seed};
-        s3_root_q <= root_i;
-        s3_unary_q <= unary_i;
+        s3_root_q <= root;
+        s3_unary_q <= unary;
         s3_w_q <= w_i;
       end
       for (k = 4; k <= ROUND; k = k + 1)

@@ -18,7 +18,8 @@
 `default_nettype none
 module slow_prepare #(
   parameter integer SUBNORMALS = 0,
-  parameter integer SIGNIFICAND = 24
+  parameter integer SIGNIFICAND = 24,
+  parameter integer WITHOUT = 0   // as slow_operations.vh has it
 ) (
   input  wire        clk_i,
   input  wire [2:0]  enable_i,
@@ -39,6 +40,9 @@ module slow_prepare #(
   output wire [4:0]  shift_3_o
 );
   `include "booth_digits.vh"
+  `include "slow_operations.vh"
+  wire root, unary;
+  assign {root, unary} = possible_operation(root_i, unary_i);
   localparam [31:0] KEPT = 32'hffffffff << (24 - SIGNIFICAND);
   localparam [9:0] LAST_SHIFT = SIGNIFICAND[9:0];
   wire [31:0] float_a = a_i & KEPT;
@@ -83,7 +87,7 @@ module slow_prepare #(
     if (enable_i[0]) begin : stage0
       reg single, zero_a, zero_b, zero_n, zero_d, max_a, max_b, max_n, max_d, nan_a, nan_b, nan, infinite;
       reg [28:0] a, b;
-      single = root_i || unary_i;               // a_i is the divisor or radicand, and n is 1
+      single = root || unary;               // a_i is the divisor or radicand, and n is 1
       max_a = &float_a[30:23];
       max_b = &float_b[30:23];
       zero_a = float_a[30:23] == 8'd0 && (SUBNORMALS != 0 || float_a[22:0] == 23'd0);
@@ -96,9 +100,9 @@ module slow_prepare #(
       zero_d = single ? zero_a : zero_b;
       nan = nan_a || (nan_b && !single);
       infinite = 1'b0;
-      if (root_i) begin
+      if (root) begin
         if (float_a[31] && !zero_d) nan = 1'b1;
-        infinite = unary_i ? zero_d : max_d;
+        infinite = unary ? zero_d : max_d;
       end else begin
         if ((max_n && max_d) || (zero_n && zero_d)) nan = 1'b1;
         infinite = max_n || zero_d;
@@ -107,8 +111,8 @@ module slow_prepare #(
       s1_nan_q <= nan;
       s1_infinite_q <= infinite;
       s1_sign_q <= !nan && (float_a[31] ^ (float_b[31] && !single));
-      s1_root_q <= root_i;
-      s1_unary_q <= unary_i;
+      s1_root_q <= root;
+      s1_unary_q <= unary;
       a = normalised({float_a[30:23] != 8'd0, float_a[22:0]});
       b = normalised({float_b[30:23] != 8'd0, float_b[22:0]});
       {s1_zeros_n_q, s1_n_q} <= single ? {5'd0, 24'h800000} : a;

@@ -14,7 +14,8 @@ module slw_alu #(
   parameter integer SUBNORMALS = 0,
   parameter integer SIGNIFICAND = 24,
   parameter integer SLOW_UNIT = 0,
-  parameter integer SLOW_LANES = 32
+  parameter integer SLOW_LANES = 32,
+  parameter integer WITHOUT = 0   // instructions that it lacks: a bit for each operation number
 ) (
 `include "alu_ports.vh"
 );
@@ -81,7 +82,9 @@ module slw_alu #(
         if (!rst_ni) later_q <= {STAGES-1{1'b0}};
         else if (moving) later_q <= enable[STAGES-2:0];
       end
-      slow_lane #(.SUBNORMALS(SUBNORMALS), .SIGNIFICAND(SIGNIFICAND), .SLOW_UNIT(SLOW_UNIT), .STAGES(STAGES)) lane (
+      slow_lane #(
+        .SUBNORMALS(SUBNORMALS), .SIGNIFICAND(SIGNIFICAND), .SLOW_UNIT(SLOW_UNIT), .STAGES(STAGES), .WITHOUT(WITHOUT)
+      ) lane (
         .clk_i(clk_i), .enable_i(enable), .root_i(root), .unary_i(unary), .a_i(operand_a[l*32 +: 32]),
         .b_i(operand_b[l*32 +: 32]), .result_o(result[l*32 +: 32]));
     end

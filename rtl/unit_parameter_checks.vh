@@ -84,4 +84,16 @@
     if (SLW_DEPTH < 6 || SLW_DEPTH > 32) begin : gen_bad_SLW_DEPTH
       SLW_DEPTH_must_be_an_integer_from_6_to_32 illegal ();
     end
+    if ((BRH_WITHOUT & ~64942) != 0) begin : gen_bad_BRH_WITHOUT
+      BRH_WITHOUT_must_be_bits_of_instructions_that_a_unit_may_lack illegal ();
+    end
+    if ((INT_WITHOUT & ~32296) != 0) begin : gen_bad_INT_WITHOUT
+      INT_WITHOUT_must_be_bits_of_instructions_that_a_unit_may_lack illegal ();
+    end
+    if ((FLT_WITHOUT & ~120) != 0) begin : gen_bad_FLT_WITHOUT
+      FLT_WITHOUT_must_be_bits_of_instructions_that_a_unit_may_lack illegal ();
+    end
+    if ((SLW_WITHOUT & ~15) != 0) begin : gen_bad_SLW_WITHOUT
+      SLW_WITHOUT_must_be_bits_of_instructions_that_a_unit_may_lack illegal ();
+    end
   endgenerate

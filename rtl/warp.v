@@ -7,7 +7,8 @@ module warp #(
   parameter [INSTANCES*4-1:0] INSTANCE_TYPES = 28'h6543210,
   parameter integer FMA = 0,        // reads register rc too, and issues ffma
   parameter integer TRIPLES = 0,    // issues triples
-  parameter integer INTERSECTION_WORDS = 21
+  parameter integer INTERSECTION_WORDS = 21,
+  parameter [511:0] WITHOUT = 512'd0   // bit ALU type * 32 + operation: that ALU lacks the instruction
 ) (
   input  wire                      clk_i,
   input  wire                      rst_ni,
@@ -106,7 +107,7 @@ module warp #(
     .end_i(enter ? field_target : field_end), .return_i(pc_o), .overflow_o(overflow), .underflow_o(underflow));
 
   instruction_buffer #(
-    .FMA(FMA != 0), .TRIPLES(TRIPLES != 0), .INTERSECTION_WORDS(INTERSECTION_WORDS)
+    .FMA(FMA != 0), .TRIPLES(TRIPLES != 0), .INTERSECTION_WORDS(INTERSECTION_WORDS), .WITHOUT(WITHOUT)
   ) instruction_buffer (
     .clk_i(clk_i), .rst_ni(rst_ni), .start_i(start_i), .halt_i(halt_i), .active_o(active_o),
     .step_o(step), .pc_valid_i(pc_valid), .pc_i(stack_pc), .program_length_i(program_length_i),

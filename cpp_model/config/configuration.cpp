@@ -69,8 +69,18 @@ class Section {
       case Range::Form::OnOff:
         boolean(parameter, value);
         break;
+      case Range::Form::Instructions:
+        throw std::logic_error("only an ALU type lacks instructions");
     }
     parameter.set(configuration, value);
+  }
+  /// The value of a parameter of the ALU type, if it is there.
+  void read(const AluParameter& parameter, AluType type, Configuration& configuration) {
+    uint32_t& value = configuration.alus[type].*parameter.value;
+    if (parameter.range.form == Range::Form::Instructions)
+      instructions(parameter.key, range_of(parameter, type), value);
+    else
+      value = integer(parameter.key).value_or(value);
   }
   void text(std::string_view key, std::string& value) {
     const Json* found = find(key);
@@ -101,6 +111,21 @@ class Section {
     if (found == nullptr) return;
     if (!found->is_boolean()) refuse(parameter, *found);
     value = found->get<bool>() ? 1 : 0;
+  }
+  void instructions(std::string_view key, const Range& range, uint32_t& value) {
+    const Json* found = find(key);
+    if (found == nullptr) return;
+    const auto refuse = [&](const Json& what) {
+      throw InputError(
+          fmt::format("{}: {}{} has {}; it must be {}", where_, prefix_, key, what.dump(), text_of(range)));
+    };
+    if (!found->is_array()) refuse(*found);
+    value = 0;
+    for (const Json& each : *found) {
+      const auto operation = each.is_string() ? operation_named(range, each.get<std::string>()) : std::nullopt;
+      if (!operation) refuse(each);
+      value |= 1u << *operation;
+    }
   }
   void choice(const Parameter& parameter, int& value) {
     const Json* found = find(parameter.key);
@@ -167,10 +192,7 @@ Configuration from_json(const Json& json, const std::string& where, const std::s
       auto alu = alus->section(kAluNames[type]);
       if (!alu) continue;
       for (const AluParameter& parameter : parameter::kOfAlu)
-        if (applies(parameter, type)) {
-          uint32_t& value = configuration.alus[type].*parameter.value;
-          value = alu->integer(parameter.key).value_or(value);
-        }
+        if (applies(parameter, type)) alu->read(parameter, type, configuration);
       alu->refuse_others();
     }
     alus->refuse_others();
@@ -380,6 +402,7 @@ void check_configuration(const Configuration& configuration, const std::string& 
                                    alu.count, type == AluType::Mem ? "data cache" : "ray memory"));
     }
     for (const AluParameter& parameter : parameter::kOfAlu) {
+      if (!applies(parameter, type)) continue;
       check_range(where, prefix + std::string(parameter.key), alu.*parameter.value,
                   range_of(parameter, type, configuration));
     }
@@ -405,7 +428,9 @@ std::string to_json(const Configuration& configuration) {
   for (const AluType type : kEveryAluType) {
     Json& entry = json["alus"][std::string(kAluNames[type])];
     for (const AluParameter& parameter : parameter::kOfAlu)
-      if (applies(parameter, type)) entry[std::string(parameter.key)] = configuration.alus[type].*parameter.value;
+      if (applies(parameter, type))
+        entry[std::string(parameter.key)] =
+            json_of(range_of(parameter, type), configuration.alus[type].*parameter.value);
   }
   for (const std::string_view section : sections())
     put(json[std::string(section)], parameter::kAll, section, configuration);
@@ -427,7 +452,7 @@ std::vector<std::pair<std::string, int>> verilog_parameters(const Configuration&
   add(false);
   for (const AluParameter& parameter : parameter::kOfAlu) {
     for (const AluType type : kEveryAluType) {
-      if (alu_info(type).timed_by_events()) continue;
+      if (alu_info(type).timed_by_events() || !applies(parameter, type)) continue;
       parameters.emplace_back(verilog_name(type, parameter), configuration.alus[type].*parameter.value);
     }
   }

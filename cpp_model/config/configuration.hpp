@@ -60,9 +60,11 @@ struct Configuration {
 #undef RAYPOOL_PART
   ChipConfiguration chip;
 
-  /// Whether instructions that need the feature are legal.
-  bool has(Feature feature) const {
-    switch (feature) {
+  /// Whether the instruction is legal.
+  bool has(const InstructionInfo& info) const {
+    switch (info.needs) {
+      case Feature::Optional:
+        return (alus[info.alu()].without >> info.operation() & 1) == 0;
       case Feature::FusedMultiplyAdd:
         return fma;
       case Feature::Triples:

@@ -13,6 +13,7 @@
 
 #include "config/parameter_table.hpp"
 #include "config/reference.hpp"
+#include "isa/encoding.hpp"
 
 namespace raypool {
 namespace {
@@ -204,11 +205,34 @@ TEST(Configuration, FusedMultiplyAddDeepensFlt) {
   EXPECT_EQ(read.alu(AluType::Flt).depth, 5);
   EXPECT_EQ(least_depth(read, AluType::Flt), 5);
   EXPECT_EQ(least_depth(Configuration{}, AluType::Flt), 3);
-  EXPECT_TRUE(read.has(Feature::FusedMultiplyAdd));
-  EXPECT_FALSE(Configuration{}.has(Feature::FusedMultiplyAdd));
+  EXPECT_TRUE(read.has(instruction(Opcode::Ffma)));
+  EXPECT_FALSE(Configuration{}.has(instruction(Opcode::Ffma)));
   EXPECT_EQ(error_of(R"({"alus": {"flt": {"depth": 4}}, "arithmetic": {"fma": true}})"),
             "alus.flt.depth is 4; it must be an integer from 5 to 32");
   EXPECT_EQ(error_of(R"({"arithmetic": {"fma": 1}})"), "arithmetic.fma is 1; it must be true or false");
+}
+
+TEST(Configuration, AnAluMayLackInstructions) {
+  const TemporaryFile file(R"({"name": "few", "alus": {"int": {"without": ["sar", "imul"]}, "slw": {"without": []}}})");
+  const Configuration read = load_configuration(file.path());
+  EXPECT_EQ(read.alu(AluType::Int).without, 1u << operation_of(Opcode::Imul) | 1u << operation_of(Opcode::Sar));
+  EXPECT_FALSE(read.has(instruction(Opcode::Imul)));
+  EXPECT_TRUE(read.has(instruction(Opcode::Imax)));
+  EXPECT_TRUE(read.has(instruction(Opcode::Fmul)));
+  EXPECT_TRUE(read.has(instruction(Opcode::Fdiv)));
+  const nlohmann::json written = nlohmann::json::parse(to_json(read));
+  EXPECT_EQ(written["alus"]["int"]["without"].dump(), R"(["imul","sar"])");
+  EXPECT_EQ(written["alus"]["slw"]["without"].dump(), "[]");
+  EXPECT_FALSE(written["alus"]["tid"].contains("without"));
+  EXPECT_EQ(parse_configuration(to_json(read), "here").alu(AluType::Int).without, read.alu(AluType::Int).without);
+  EXPECT_EQ(load_configuration("4w4c", {"alus.int.without=sar,imul"}).name, "4w4c+alus.int.without-imul_sar");
+  EXPECT_EQ(error_of(R"({"alus": {"flt": {"without": ["fmul"]}}})"),
+            "alus.flt.without has \"fmul\"; it must be a list of some of fmin, fmax, f2i, i2f");
+  EXPECT_EQ(error_of(R"({"alus": {"slw": {"without": "fdiv"}}})"),
+            "alus.slw.without has \"fdiv\"; it must be a list of some of fdiv, fsqrt, frsqrt, frcp");
+  EXPECT_EQ(error_of(R"({"alus": {"slw": {"without": ["imul"]}}})"),
+            "alus.slw.without has \"imul\"; it must be a list of some of fdiv, fsqrt, frsqrt, frcp");
+  EXPECT_EQ(error_of(R"({"alus": {"ray": {"without": []}}})"), "unknown key alus.ray.without; known here: count");
 }
 
 TEST(Configuration, UnknownKeysAreRefusedWithTheKnownOnes) {
@@ -216,7 +240,7 @@ TEST(Configuration, UnknownKeysAreRefusedWithTheKnownOnes) {
             "unknown key warp; known here: name, warps, lanes, stack_depth, triples, kernel_overlap, wide_ray_memory, "
             "slow_lanes, intersection_words, instruction_cache, data_cache, arithmetic, alus, chip, $schema");
   EXPECT_EQ(error_of(R"({"alus": {"flt": {"counts": 1}}})"),
-            "unknown key alus.flt.counts; known here: count, latency, depth");
+            "unknown key alus.flt.counts; known here: count, latency, depth, without");
   EXPECT_EQ(error_of(R"({"alus": {"ray": {"depth": 2}}})"), "unknown key alus.ray.depth; known here: count");
 }
 

@@ -34,8 +34,8 @@ A row of an eye tile, 2^ceil(k/2) pixels for 2^k contents, must fit into `chip.h
 )";
 
 constexpr const char* kAlus = R"(
-Each ALU type but mem and ray, which stand once and are timed by events, has three more, the least depth being also
-the default:
+Each ALU type but mem and ray, which stand once and are timed by events, has these, the least depth being also the
+default:
 
 | in the file | in the Verilog | values | default | what it is |
 | --- | --- | --- | --- | --- |
@@ -43,6 +43,15 @@ the default:
 
 constexpr const char* kDepths = R"(
 | ALU type | least depth |
+| --- | --- |
+)";
+
+constexpr const char* kInstructionsLacked = R"(
+A unit may lack instructions, and then has nothing that only these need: `"without": ["imul", "sar"]`, or `--set
+alus.int.without=imul,sar`. In the Verilog they are a number with a bit for each operation. They are illegal there
+([architecture.md](architecture.md)).
+
+| ALU type | may be without |
 | --- | --- |
 )";
 
@@ -56,6 +65,7 @@ std::string values_text(const Parameter& parameter, bool in_verilog) {
       return fmt::format("{}, {}, {} .. {}", range.least, 2 * range.least, 4 * range.least, range.greatest);
     case Range::Form::Name:
     case Range::Form::OnOff:
+    case Range::Form::Instructions:
       break;
   }
   std::vector<std::string> values;
@@ -77,6 +87,11 @@ std::string parameters_markdown() {
   }
   text += kAlus;
   for (const AluParameter& parameter : parameter::kOfAlu) {
+    if (parameter.range.form == Range::Form::Instructions) {
+      text += fmt::format("| alus.int.{} ... | {} ... | as below | none | {} |\n", parameter.key,
+                          verilog_name(AluType::Int, parameter), parameter.meaning);
+      continue;
+    }
     const bool depth = parameter.value == &AluConfiguration::depth;
     text += fmt::format("| alus.int.{} ... | {} ... | {} .. {} | {} | {} |\n", parameter.key,
                         verilog_name(AluType::Int, parameter), depth ? "least" : std::to_string(parameter.range.least),
@@ -96,6 +111,13 @@ std::string parameters_markdown() {
           fmt::format("; {} with {} {}", rule.least, path_of(*rule.parameter), text_of(*rule.parameter, rule.value));
     }
     text += " |\n";
+  }
+  text += kInstructionsLacked;
+  for (const AluType alu : kEveryAluType) {
+    if (optional_operations(alu) == 0) continue;
+    for (const AluParameter& parameter : parameter::kOfAlu)
+      if (parameter.range.form == Range::Form::Instructions)
+        text += fmt::format("| {} | {} |\n", kAluNames[alu], fmt::join(names_of(range_of(parameter, alu)), ", "));
   }
   text += kChip;
   for (const Parameter& parameter : parameter::kOfChip) {

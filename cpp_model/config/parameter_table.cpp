@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "isa/encoding.hpp"
 #include "isa/reference.hpp"
 
 namespace raypool {
@@ -38,12 +39,17 @@ std::vector<std::string_view> sections() { return sections_of(parameter::kAll); 
 std::vector<std::string_view> chip_sections() { return sections_of(parameter::kOfChip); }
 
 bool applies(const AluParameter& parameter, AluType type) {
+  if (parameter.range.form == Range::Form::Instructions) return optional_operations(type) != 0;
   return parameter.value == &AluConfiguration::count || !alu_info(type).timed_by_events();
 }
 
 Range range_of(const AluParameter& parameter, AluType type, const Configuration& configuration) {
   Range range = parameter.range;
   if (parameter.value == &AluConfiguration::depth) range.least = least_depth(configuration, type);
+  if (range.form == Range::Form::Instructions) {
+    range.greatest = static_cast<int>(optional_operations(type));
+    range.alu = to_underlying(type);
+  }
   return range;
 }
 
@@ -86,7 +92,20 @@ std::vector<DepthRule> depth_rules() {
 }
 
 std::vector<std::string_view> names_of(const Range& range) {
+  if (range.form == Range::Form::Instructions) {
+    std::vector<std::string_view> names;
+    for (const InstructionInfo& info : kInstructions)
+      if (to_underlying(info.alu()) == range.alu && info.needs == Feature::Optional) names.push_back(info.mnemonic);
+    return names;
+  }
   return {range.names.begin(), range.names.begin() + range.greatest + 1};
+}
+
+std::optional<int> operation_named(const Range& range, std::string_view mnemonic) {
+  const InstructionInfo* info = find_instruction(mnemonic);
+  if (info == nullptr || to_underlying(info->alu()) != range.alu || info->needs != Feature::Optional)
+    return std::nullopt;
+  return info->operation();
 }
 
 std::vector<int> values_of(const Range& range) {
@@ -104,17 +123,33 @@ std::string text_of(const Range& range) {
       return fmt::format("a power of two from {} to {}", range.least, range.greatest);
     case Range::Form::Name:
       return fmt::format("one of {}", fmt::join(names_of(range), ", "));
+    case Range::Form::Instructions:
+      return fmt::format("a list of some of {}", fmt::join(names_of(range), ", "));
     case Range::Form::OnOff:
       break;
   }
   return "true or false";
 }
 
-nlohmann::ordered_json json_of(const Parameter& parameter, int value) {
-  if (parameter.range.form == Range::Form::Name) return parameter.range.names.at(value);
-  if (parameter.range.form == Range::Form::OnOff) return value != 0;
-  return value;
+nlohmann::ordered_json json_of(const Range& range, int value) {
+  switch (range.form) {
+    case Range::Form::Name:
+      return range.names.at(value);
+    case Range::Form::OnOff:
+      return value != 0;
+    case Range::Form::Instructions: {
+      nlohmann::ordered_json list = nlohmann::ordered_json::array();
+      for (const InstructionInfo& info : kInstructions)
+        if (to_underlying(info.alu()) == range.alu && (value >> info.operation() & 1) != 0 && !is_triple(info))
+          list.push_back(info.mnemonic);
+      return list;
+    }
+    default:
+      return value;
+  }
 }
+
+nlohmann::ordered_json json_of(const Parameter& parameter, int value) { return json_of(parameter.range, value); }
 
 std::string text_of(const Parameter& parameter, int value) {
   const nlohmann::ordered_json json = json_of(parameter, value);

@@ -1,6 +1,7 @@
 // The rows of config/parameters.hpp as objects: for whoever goes through all parameters.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -83,7 +84,8 @@ std::vector<std::string_view> sections();
 /// Those of its chip: "chip", "chip.memory", ...
 std::vector<std::string_view> chip_sections();
 
-/// Whether the type has it: those that are timed by events stand once, and have no other.
+/// Whether the type has it: those that are timed by events stand once, and have no other; what an ALU may lack has only
+/// who may lack something.
 bool applies(const AluParameter& parameter, AluType type);
 /// What the parameter may be in a configuration: a depth begins at least_depth().
 Range range_of(const AluParameter& parameter, AluType type, const Configuration& configuration);
@@ -99,14 +101,17 @@ struct DepthRule {
 };
 std::vector<DepthRule> depth_rules();
 
-/// Of a range of form Name.
+/// Of a range of form Name, or the mnemonics of one of form Instructions.
 std::vector<std::string_view> names_of(const Range& range);
+/// Number of the operation, if a range of form Instructions has the mnemonic.
+std::optional<int> operation_named(const Range& range, std::string_view mnemonic);
 /// All values that it has.
 std::vector<int> values_of(const Range& range);
 /// "an integer from 1 to 16"
 std::string text_of(const Range& range);
 
-/// A value as files have it.
+/// A value as files have it: of form Name the name, of form Instructions a list of mnemonics.
+nlohmann::ordered_json json_of(const Range& range, int value);
 nlohmann::ordered_json json_of(const Parameter& parameter, int value);
 /// A value as people read it: without quotes.
 std::string text_of(const Parameter& parameter, int value);

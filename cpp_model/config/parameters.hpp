@@ -65,6 +65,7 @@ enum class Shading : uint8_t { Kernel = 0, Traverser = 1 };
   CHIP(traverser, TraverserName, TraverserName::Static, names("static", "modelled"), "timing of the traverser") \
   CHIP(shading, Shading, Shading::Kernel, names("kernel", "traverser"), \
        "who adds shadow rays that reach the light to the frame buffer: the kernel shade, or the traverser itself") \
+  CHIP(reflections, bool, true, on_or_off(), "there is a kernel that casts reflections; without it a frame has none") \
   CHIP(culling, bool, false, on_or_off(), "rays that cannot add to the picture are left out") \
   CHIP_PART(thresholds, rays, uint32_t, 48, integers(0, 1 << 20), \
             "rays in the ray pool above which no more are cast, for 64 contents and one unit") \
@@ -134,18 +135,21 @@ enum class Shading : uint8_t { Kernel = 0, Traverser = 1 };
   ROW(count, 1, integers(1, 4), tried(1, 2, 3, 4), "instances") \
   ROW(latency, 1, integers(1, 16), tried(1, 2, 3, 16), "cycles between new tasks") \
   ROW(depth, 1, integers(0, 32), tried(0, 1, 32), "pipeline stages") \
+  ROW(without, 0, instructions(), all(), "instructions that it lacks, of those that a unit may lack") \
   /* The table ends here: the backslash above lets a row follow it. */
 // clang-format on
 
 /// The values that a parameter may have.
 struct Range {
-  enum class Form : uint8_t { Integer, PowerOfTwo, Name, OnOff };
+  enum class Form : uint8_t { Integer, PowerOfTwo, Name, OnOff, Instructions };
   Form form;
-  int least, greatest;
+  int least, greatest;                      ///< of form Instructions: the greatest is the set of all
   std::array<std::string_view, 8> names{};  ///< of 0, 1, ... of form Name
+  size_t alu = 0;                           ///< number of the type whose instructions they are, of form Instructions
 
   constexpr bool has(int value) const {
-    return value >= least && value <= greatest && (form != Form::PowerOfTwo || (value & (value - 1)) == 0);
+    return value >= least && value <= greatest && (form != Form::PowerOfTwo || (value & (value - 1)) == 0) &&
+           (form != Form::Instructions || (value & ~greatest) == 0);
   }
 };
 
@@ -160,6 +164,8 @@ namespace parameter {
 inline constexpr Range integers(int least, int greatest) { return {Range::Form::Integer, least, greatest}; }
 inline constexpr Range powers_of_two(int least, int greatest) { return {Range::Form::PowerOfTwo, least, greatest}; }
 inline constexpr Range on_or_off() { return {Range::Form::OnOff, 0, 1}; }
+/// A set of a type's instructions, a bit for each operation number; which they may be differs from type to type.
+inline constexpr Range instructions() { return {Range::Form::Instructions, 0, 0}; }
 template <typename... Names>
 constexpr Range names(Names... of_values) {
   return {Range::Form::Name, 0, int{sizeof...(Names)} - 1, {of_values...}};

@@ -26,6 +26,8 @@ Json schema_of(const Parameter& parameter) {
     case Range::Form::OnOff:
       schema["type"] = "boolean";
       break;
+    case Range::Form::Instructions:
+      break;
   }
   schema["default"] = json_of(parameter, parameter.get(Configuration()));
   return schema;
@@ -69,9 +71,13 @@ Json alu_schema(AluType type) {
     return schema;
   }
   for (const AluParameter& parameter : parameter::kOfAlu) {
+    if (!applies(parameter, type)) continue;
     const Range range = range_of(parameter, type);  // in any mode; what a mode asks for is said by schema_of(DepthRule)
-    schema["properties"][std::string(parameter.key)] = {
-        {"description", parameter.meaning}, {"type", "integer"}, {"minimum", range.least}, {"maximum", range.greatest}};
+    Json& property = schema["properties"][std::string(parameter.key)] = {{"description", parameter.meaning}};
+    if (range.form == Range::Form::Instructions)
+      property.update({{"type", "array"}, {"items", {{"enum", names_of(range)}}}, {"uniqueItems", true}});
+    else
+      property.update({{"type", "integer"}, {"minimum", range.least}, {"maximum", range.greatest}});
   }
   return schema;
 }

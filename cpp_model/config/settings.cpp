@@ -84,6 +84,12 @@ Json parse_value(const Field& field, const std::string& text) {
       if (std::find(names.begin(), names.end(), text) != names.end()) return text;
       break;
     }
+    case Range::Form::Instructions: {  // imul,sar; nothing: none. Who reads the file checks their names
+      Json list = Json::array();
+      std::istringstream names(text);
+      for (std::string name; std::getline(names, name, ',');) list.push_back(name);
+      return list;
+    }
   }
   throw InputError(fmt::format("--set {}={}: {} must be {}", field.path, text, field.path, text_of(field.range)));
 }
@@ -138,6 +144,7 @@ std::vector<std::string> paths_set(const std::vector<std::string>& texts) {
 
 std::string value_text(const Json& configuration, const std::string& path) {
   const Json& value = configuration.at(pointer(path));
+  if (value.is_array()) return fmt::format("{}", fmt::join(value.get<std::vector<std::string>>(), "_"));
   return value.is_string() ? value.get<std::string>() : value.dump();
 }
 

@@ -31,10 +31,11 @@ TEST(Settings, ReachEveryFieldThatAFileHolds) {
   for (const Field& field : fields()) {
     const nlohmann::ordered_json before = nlohmann::ordered_json::parse(to_json(Configuration()));
     const std::string value = value_text(before, field.path);
-    const std::string other = field.range.form == Range::Form::OnOff  ? (value == "true" ? "false" : "true")
-                              : field.range.form == Range::Form::Name ? std::string(names_of(field.range).back())
-                              : field.path == "chip.held_limit"       ? "100"
-                                                                      : std::to_string(field.range.greatest);
+    const std::string other = field.range.form == Range::Form::OnOff ? (value == "true" ? "false" : "true")
+                              : field.range.form == Range::Form::Name || field.range.form == Range::Form::Instructions
+                                  ? std::string(names_of(field.range).back())
+                              : field.path == "chip.held_limit" ? "100"
+                                                                : std::to_string(field.range.greatest);
     const Configuration changed = load_configuration("8w8c", {field.path + "=" + other});
     EXPECT_EQ(value_text(nlohmann::ordered_json::parse(to_json(changed)), field.path), other) << field.path;
     EXPECT_EQ(changed.name == "8w8c", other == value) << field.path;

@@ -21,11 +21,14 @@ std::string connection_line(const std::string& name) { return fmt::format("  .{0
 /// Elaboration stops at the missing module, whose name says why.
 std::string check(const std::string& name, Range range) {
   std::string wrong = fmt::format("{0} < {1} || {0} > {2}", name, range.least, range.greatest);
-  if (range.form == Range::Form::PowerOfTwo)
+  if (range.form == Range::Form::Instructions)
+    wrong = fmt::format("({} & ~{}) != 0", name, range.greatest);
+  else if (range.form == Range::Form::PowerOfTwo)
     wrong += fmt::format(" ||\n        ({0} & ({0} - 1)) != 0", name);
   else
     range.form = Range::Form::Integer;  // as which the Verilog knows it
-  std::string must = text_of(range);
+  std::string must =
+      range.form == Range::Form::Instructions ? "bits of instructions that a unit may lack" : text_of(range);
   std::replace(must.begin(), must.end(), ' ', '_');
   return fmt::format("    if ({}) begin : gen_bad_{}\n      {}_must_be_{} illegal ();\n    end\n", wrong, name, name,
                      must);
@@ -41,7 +44,8 @@ std::string unit_checks() {
     if (!parameter.of_part) checks += check(verilog_name(parameter), parameter.range);
   for (const AluParameter& parameter : parameter::kOfAlu) {
     for (const AluType alu : kEveryAluType) {
-      if (!alu_info(alu).timed_by_events()) checks += check(verilog_name(alu, parameter), range_of(parameter, alu));
+      if (!alu_info(alu).timed_by_events() && applies(parameter, alu))
+        checks += check(verilog_name(alu, parameter), range_of(parameter, alu));
     }
   }
   return as_body(checks);

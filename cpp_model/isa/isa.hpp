@@ -24,7 +24,8 @@ namespace raypool {
 //               the default one; 0: timed by events
 //   ports       Framework: those of docs/architecture.md, section 3; rtl/alu_instances.vh
 //               places it. Own: rtl/compute_unit.v does
-//   parameters  of the module beside the framework's, as rtl/compute_unit.v names them, separated by ", "
+//   parameters  of the module beside the framework's, as rtl/compute_unit.v names them, separated by ", "; a type
+//               with instructions that are Optional has WITHOUT too, a bit for each operation that it lacks
 //   title       for docs/isa.md
 // CORE: FunctionalCore executes the type. CLASS: a class derived from AluModel does, and the ports are the framework's.
 // clang-format off
@@ -34,7 +35,8 @@ namespace raypool {
   CORE(Mem, "mem",  0, Own,       "",                       "memory") \
   CORE(Int, "int",  2, Framework, "",                       "integer and logic") \
   CORE(Flt, "flt",  3, Framework, "SUBNORMALS, SIGNIFICAND, FMA", "single-precision float") \
-  CORE(Slw, "slw", 11, Framework, "SUBNORMALS, SIGNIFICAND, SLOW_UNIT, SLOW_LANES", "slow float: division and square roots") \
+  CORE(Slw, "slw", 11, Framework, "SUBNORMALS, SIGNIFICAND, SLOW_UNIT, SLOW_LANES", \
+       "slow float: division and square roots") \
   CORE(Ray, "ray",  0, Own,       "",                       "ray packages") \
   /* The table ends here: the backslash above lets a row follow it. */
 // clang-format on
@@ -119,6 +121,7 @@ enum class Kind : uint8_t {
 /// What a configuration must have for an instruction to be legal.
 enum class Feature : uint8_t {
   Base,              ///< nothing: every machine has the instruction
+  Optional,          ///< nothing: every machine has it whose alus.TYPE.without does not name it
   FusedMultiplyAdd,  ///< arithmetic.fma
   Triples,           ///< triples
   FusedTriples,      ///< both
@@ -145,21 +148,21 @@ enum class Feature : uint8_t {
   ROW(Arg,     Tid, 6,  Rd, Argument, None, None, None, Plain, "rd = kernel argument word") \
   /* Brh: compares into predicates (result AND mask, all lanes written), predicate logic, control */ \
   ROW(Ieq,     Brh, 0,  Pd, Ra, B, None, Integer, Plain, "pd = ra == b") \
-  ROW(Ine,     Brh, 1,  Pd, Ra, B, None, Integer, Plain, "pd = ra != b") \
-  ROW(Ilt,     Brh, 2,  Pd, Ra, B, None, Integer, Plain, "pd = ra < b, signed") \
-  ROW(Ile,     Brh, 3,  Pd, Ra, B, None, Integer, Plain, "pd = ra <= b, signed") \
+  ROW(Ine,     Brh, 1,  Pd, Ra, B, None, Integer, Plain, "pd = ra != b", Feature::Optional) \
+  ROW(Ilt,     Brh, 2,  Pd, Ra, B, None, Integer, Plain, "pd = ra < b, signed", Feature::Optional) \
+  ROW(Ile,     Brh, 3,  Pd, Ra, B, None, Integer, Plain, "pd = ra <= b, signed", Feature::Optional) \
   ROW(Igt,     Brh, 4,  Pd, Ra, B, None, Integer, Plain, "pd = ra > b, signed") \
-  ROW(Ige,     Brh, 5,  Pd, Ra, B, None, Integer, Plain, "pd = ra >= b, signed") \
+  ROW(Ige,     Brh, 5,  Pd, Ra, B, None, Integer, Plain, "pd = ra >= b, signed", Feature::Optional) \
   ROW(Ult,     Brh, 6,  Pd, Ra, B, None, Integer, Plain, "pd = ra < b, unsigned") \
-  ROW(Ule,     Brh, 7,  Pd, Ra, B, None, Integer, Plain, "pd = ra <= b, unsigned") \
-  ROW(Ugt,     Brh, 8,  Pd, Ra, B, None, Integer, Plain, "pd = ra > b, unsigned") \
+  ROW(Ule,     Brh, 7,  Pd, Ra, B, None, Integer, Plain, "pd = ra <= b, unsigned", Feature::Optional) \
+  ROW(Ugt,     Brh, 8,  Pd, Ra, B, None, Integer, Plain, "pd = ra > b, unsigned", Feature::Optional) \
   ROW(Uge,     Brh, 9,  Pd, Ra, B, None, Integer, Plain, "pd = ra >= b, unsigned") \
-  ROW(Feq,     Brh, 10, Pd, Ra, B, None, Float, Plain, "pd = ra == b; false with a NaN") \
-  ROW(Fne,     Brh, 11, Pd, Ra, B, None, Float, Plain, "pd = not (ra == b); true with a NaN") \
-  ROW(Flt,     Brh, 12, Pd, Ra, B, None, Float, Plain, "pd = ra < b; false with a NaN") \
-  ROW(Fle,     Brh, 13, Pd, Ra, B, None, Float, Plain, "pd = ra <= b; false with a NaN") \
-  ROW(Fgt,     Brh, 14, Pd, Ra, B, None, Float, Plain, "pd = ra > b; false with a NaN") \
-  ROW(Fge,     Brh, 15, Pd, Ra, B, None, Float, Plain, "pd = ra >= b; false with a NaN") \
+  ROW(Feq,     Brh, 10, Pd, Ra, B, None, Float, Plain, "pd = ra == b; false with a NaN", Feature::Optional) \
+  ROW(Fne,     Brh, 11, Pd, Ra, B, None, Float, Plain, "pd = not (ra == b); true with a NaN", Feature::Optional) \
+  ROW(Flt,     Brh, 12, Pd, Ra, B, None, Float, Plain, "pd = ra < b; false with a NaN", Feature::Optional) \
+  ROW(Fle,     Brh, 13, Pd, Ra, B, None, Float, Plain, "pd = ra <= b; false with a NaN", Feature::Optional) \
+  ROW(Fgt,     Brh, 14, Pd, Ra, B, None, Float, Plain, "pd = ra > b; false with a NaN", Feature::Optional) \
+  ROW(Fge,     Brh, 15, Pd, Ra, B, None, Float, Plain, "pd = ra >= b; false with a NaN", Feature::Optional) \
   ROW(Pand,    Brh, 16, Pd, Px, Pb, None, None, Plain, "pd = px and pb") \
   ROW(Por,     Brh, 17, Pd, Px, Pb, None, None, Plain, "pd = px or pb") \
   ROW(Pxor,    Brh, 18, Pd, Px, Pb, None, None, Plain, "pd = px xor pb") \
@@ -178,34 +181,36 @@ enum class Feature : uint8_t {
   ROW(Mov,     Int, 0,  Rd, B, None, None, Either, Plain, "rd = b") \
   ROW(Iadd,    Int, 1,  Rd, Ra, B, None, Integer, Plain, "rd = ra + b") \
   ROW(Isub,    Int, 2,  Rd, Ra, B, None, Integer, Plain, "rd = ra - b") \
-  ROW(Imul,    Int, 3,  Rd, Ra, B, None, Integer, Plain, "rd = low 32 bits of ra * b") \
+  ROW(Imul,    Int, 3,  Rd, Ra, B, None, Integer, Plain, "rd = low 32 bits of ra * b", Feature::Optional) \
   ROW(And,     Int, 4,  Rd, Ra, B, None, Integer, Plain, "rd = ra and b") \
-  ROW(Or,      Int, 5,  Rd, Ra, B, None, Integer, Plain, "rd = ra or b") \
+  ROW(Or,      Int, 5,  Rd, Ra, B, None, Integer, Plain, "rd = ra or b", Feature::Optional) \
   ROW(Xor,     Int, 6,  Rd, Ra, B, None, Integer, Plain, "rd = ra xor b") \
   ROW(Shl,     Int, 7,  Rd, Ra, B, None, Integer, Plain, "rd = ra << b[4:0]") \
   ROW(Shr,     Int, 8,  Rd, Ra, B, None, Integer, Plain, "rd = ra >> b[4:0], zeros shifted in") \
-  ROW(Sar,     Int, 9,  Rd, Ra, B, None, Integer, Plain, "rd = ra >> b[4:0], sign shifted in") \
-  ROW(Imin,    Int, 10, Rd, Ra, B, None, Integer, Plain, "rd = smaller of ra and b, signed") \
-  ROW(Imax,    Int, 11, Rd, Ra, B, None, Integer, Plain, "rd = larger of ra and b, signed") \
-  ROW(Umin,    Int, 12, Rd, Ra, B, None, Integer, Plain, "rd = smaller of ra and b, unsigned") \
-  ROW(Umax,    Int, 13, Rd, Ra, B, None, Integer, Plain, "rd = larger of ra and b, unsigned") \
-  ROW(Sel,     Int, 14, Rd, Px, Ra, B, Either, Plain, "rd = px ? ra : b") \
+  ROW(Sar,     Int, 9,  Rd, Ra, B, None, Integer, Plain, "rd = ra >> b[4:0], sign shifted in", Feature::Optional) \
+  ROW(Imin,    Int, 10, Rd, Ra, B, None, Integer, Plain, "rd = smaller of ra and b, signed", Feature::Optional) \
+  ROW(Imax,    Int, 11, Rd, Ra, B, None, Integer, Plain, "rd = larger of ra and b, signed", Feature::Optional) \
+  ROW(Umin,    Int, 12, Rd, Ra, B, None, Integer, Plain, "rd = smaller of ra and b, unsigned", Feature::Optional) \
+  ROW(Umax,    Int, 13, Rd, Ra, B, None, Integer, Plain, "rd = larger of ra and b, unsigned", Feature::Optional) \
+  ROW(Sel,     Int, 14, Rd, Px, Ra, B, Either, Plain, "rd = px ? ra : b", Feature::Optional) \
   /* Flt */ \
   ROW(Fadd,    Flt, 0,  Rd, Ra, B, None, Float, Plain, "rd = ra + b") \
   ROW(Fsub,    Flt, 1,  Rd, Ra, B, None, Float, Plain, "rd = ra - b") \
   ROW(Fmul,    Flt, 2,  Rd, Ra, B, None, Float, Plain, "rd = ra * b") \
   ROW(Fmin,    Flt, 3,  Rd, Ra, B, None, Float, Plain, \
-      "rd = smaller of ra and b; the number if one is a NaN; -0 < +0") \
+      "rd = smaller of ra and b; the number if one is a NaN; -0 < +0", Feature::Optional) \
   ROW(Fmax,    Flt, 4,  Rd, Ra, B, None, Float, Plain, \
-      "rd = larger of ra and b; the number if one is a NaN; -0 < +0") \
-  ROW(F2i,     Flt, 5,  Rd, Ra, None, None, None, Plain, "rd = signed integer, towards zero, saturating; NaN gives 0") \
-  ROW(I2f,     Flt, 6,  Rd, Ra, None, None, None, Plain, "rd = float of signed ra") \
+      "rd = larger of ra and b; the number if one is a NaN; -0 < +0", Feature::Optional) \
+  ROW(F2i,     Flt, 5,  Rd, Ra, None, None, None, Plain, \
+      "rd = signed integer, towards zero, saturating; NaN gives 0", Feature::Optional) \
+  ROW(I2f,     Flt, 6,  Rd, Ra, None, None, None, Plain, "rd = float of signed ra", Feature::Optional) \
   ROW(Ffma,    Flt, 7,  Rd, Ra, B, Rc, Float, Plain, "rd = ra * b + rc, one rounding", Feature::FusedMultiplyAdd) \
   /* Slw */ \
-  ROW(Fdiv,    Slw, 0,  Rd, Ra, B, None, Float, Plain, "rd = ra / b") \
-  ROW(Fsqrt,   Slw, 1,  Rd, Ra, None, None, None, Plain, "rd = square root of ra") \
-  ROW(Frsqrt,  Slw, 2,  Rd, Ra, None, None, None, Plain, "rd = 1 / square root of ra, one rounding") \
-  ROW(Frcp,    Slw, 3,  Rd, Ra, None, None, None, Plain, "rd = 1 / ra") \
+  ROW(Fdiv,    Slw, 0,  Rd, Ra, B, None, Float, Plain, "rd = ra / b", Feature::Optional) \
+  ROW(Fsqrt,   Slw, 1,  Rd, Ra, None, None, None, Plain, "rd = square root of ra", Feature::Optional) \
+  ROW(Frsqrt,  Slw, 2,  Rd, Ra, None, None, None, Plain, \
+      "rd = 1 / square root of ra, one rounding", Feature::Optional) \
+  ROW(Frcp,    Slw, 3,  Rd, Ra, None, None, None, Plain, "rd = 1 / ra", Feature::Optional) \
   /* Ray */ \
   ROW(Rin,     Ray, 0,  None, None, None, None, None, Swap, "wait for the imported packages, make them current") \
   ROW(Rout,    Ray, 1,  None, None, None, None, None, Swap, "export masked lanes' rays to the ray pool") \
@@ -288,6 +293,14 @@ inline constexpr size_t kSingles = [] {
     rows += info.needs != Feature::Triples && info.needs != Feature::FusedTriples ? 1 : 0;
   return rows;
 }();
+
+/// Instructions of the type that a machine may lack: a bit for each operation number.
+inline constexpr uint32_t optional_operations(AluType type) {
+  uint32_t operations = 0;
+  for (const InstructionInfo& info : kInstructions)
+    if (info.alu() == type && info.needs == Feature::Optional) operations |= 1u << info.operation();
+  return operations;
+}
 
 inline constexpr int kRegisters = 16;
 inline constexpr int kPredicates = 16;

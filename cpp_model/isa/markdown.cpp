@@ -56,6 +56,7 @@ const char* marks(const InstructionInfo& info) {
   if (info.needs == Feature::FusedMultiplyAdd) return "*fma*";
   if (info.needs == Feature::Triples) return "*t*";
   if (info.needs == Feature::FusedTriples) return "*t fma*";
+  if (info.needs == Feature::Optional) return "*o*";
   return info.kind == Kind::Control ? "*c*" : "";
 }
 
@@ -77,7 +78,8 @@ constexpr const char* kText = R"(
 `target` and `end` are the halves of the immediate of `jany`, `jnone` and `call`; `loop` has its end in the low half.
 Fields that an instruction does not use are written as 0 by the assembler and ignored by the machine. An instruction
 whose unit and operation stand in no row below is illegal, and so is one that the configuration has not: `ffma` without
-`arithmetic.fma`, a triple without `triples`, and `ffma3` and `ffma3s` without both.
+`arithmetic.fma`, a triple without `triples`, `ffma3` and `ffma3s` without both, and one with an *o* that its type's
+`without` names.
 
 ## Triples
 
@@ -141,7 +143,9 @@ std::string isa_markdown() {
   text += kText;
   text +=
       "\n## Instructions\n\nRows marked *c* are control instructions: they stop the instruction routine until their "
-      "write-back.\nRows marked *fma* are there in configurations with `arithmetic.fma` only, those marked *t* with "
+      "write-back.\nRows marked *fma* are there in configurations with `arithmetic.fma` only, those marked *o* unless "
+      "the type's\n"
+      "`without` names them, those marked *t* with "
       "`triples` "
       "only,\nthose marked *t fma* with both only.\n";
   for (const AluType type : kEveryAluType) {

@@ -160,6 +160,8 @@ std::string isa_verilog_functions() {
   text += "  // ALU type * 32 + operation.\n";
   text += function_of_row("isa_legal_op", "every machine has this instruction",
                           [](const InstructionInfo& info) { return info.needs == Feature::Base; });
+  text += function_of_row("isa_optional_op", "a machine has this instruction unless its ALU is without it",
+                          [](const InstructionInfo& info) { return info.needs == Feature::Optional; });
   text += function_of_row("isa_legal_fma_op", "machines with arithmetic.fma have this instruction",
                           [](const InstructionInfo& info) { return info.needs == Feature::FusedMultiplyAdd; });
   text += function_of_row("isa_legal_triple_op", "machines with triples have this instruction",
@@ -172,14 +174,16 @@ std::string isa_verilog_functions() {
   text += fmt::format(
       "\n  // the instruction has a table row, and the machine what it needs; fma: arithmetic.fma. A triple's words "
       "are\n"
-      "  // all there, in packages of package_words\n"
+      "  // all there, in packages of package_words. lacking: it is one that its ALU is without\n"
       "  function isa_legal;\n"
       "    input [63:0] encoding;\n"
       "    input fma;\n"
       "    input triples;\n"
       "    input [4:0] package_words;\n"
+      "    input lacking;\n"
       "    begin\n"
-      "      isa_legal = isa_legal_op(encoding) || (fma && isa_legal_fma_op(encoding)) ||\n"
+      "      isa_legal = isa_legal_op(encoding) || (!lacking && isa_optional_op(encoding)) ||\n"
+      "                  (fma && isa_legal_fma_op(encoding)) ||\n"
       "                  (triples && isa_legal_triple_op(encoding) &&\n"
       "                   !(isa_triple_of_words(encoding) && {} > package_words - 5'd{})) ||\n"
       "                  (fma && triples && isa_legal_fused_triple_op(encoding));\n"

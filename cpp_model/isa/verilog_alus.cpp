@@ -32,6 +32,21 @@ std::string further_parameters(std::string_view names) {
   return text;
 }
 
+/// Broken where it would become too long.
+std::string wrapped(std::string line) {
+  constexpr size_t kColumns = 120;
+  if (line.size() > kColumns) line.replace(line.rfind(", ", kColumns - 1) + 1, 1, "\n          ");
+  return line;
+}
+
+/// Of a type that may lack instructions.
+std::string without(const std::string& name) {
+  for (const AluType type : kEveryAluType)
+    if (verilog_name(type) == name && optional_operations(type) != 0)
+      return fmt::format(", .WITHOUT({}_WITHOUT)", name);
+  return "";
+}
+
 }  // namespace
 
 std::string alu_instance_types_verilog() {
@@ -46,6 +61,17 @@ std::string alu_instance_types_verilog() {
   text += fmt::format("  localparam integer INSTANCES = {};\n", instances);
   text += "  // The type of each instance, the first one's lowest: by type, in the order of the types' numbers.\n";
   text += fmt::format("  localparam [INSTANCES*4-1:0] INSTANCE_TYPES = {{\n    {}}};\n", types);
+  text += "  // Instructions that the ALUs lack: bit ALU type * 32 + operation.\n";
+  std::string lacked;
+  for_each_alu([&](const std::string& name, const AluInfo&) {
+    if (without(name).empty()) {
+      lacked = fmt::format("32'd0{}{}", lacked.empty() ? "" : ", ", lacked);
+      return;
+    }
+    text += fmt::format("  localparam [31:0] {0}_LACKS = {0}_WITHOUT | 32'd0;\n", name);
+    lacked = fmt::format("{}_LACKS{}{}", name, lacked.empty() ? "" : ", ", lacked);
+  });
+  text += fmt::format("  localparam [16*32-1:0] WITHOUT = {{\n    {{{}{{32'd0}}}}, {}}};\n", 16 - kAluTypes, lacked);
   return text;
 }
 
@@ -57,12 +83,14 @@ std::string alu_instances_verilog() {
         "      if (TYPE == ISA_TYPE_{0}) begin : gen_{1}\n"
         "        {1}_alu #(\n"
         "          .WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS), .LATENCY({0}_LATENCY),\n"
-        "          .DEPTH({0}_DEPTH){2}\n"
+        "{2}\n"
         "        ) {1}_alu (\n"
         "`include \"alu_port_map.vh\"\n"
         "        );\n"
         "      end\n",
-        name, info.name, further_parameters(info.parameters));
+        name, info.name,
+        wrapped(
+            fmt::format("          .DEPTH({}_DEPTH){}{}", name, without(name), further_parameters(info.parameters))));
   });
   return text;
 }

@@ -45,6 +45,17 @@ Program extract_kernel(const Program& program, const std::string& name) {
   return result;
 }
 
+void check_instructions(const Program& program, const std::string& kernel, const Configuration& configuration) {
+  const std::vector<uint64_t> code = extract_kernel(program, kernel).code;
+  for (size_t pc = 0; pc < code.size(); ++pc) {
+    const InstructionInfo* info = unpack(code[pc]).info;
+    if (info == nullptr || configuration.has(*info)) continue;
+    throw InputError(fmt::format(
+        "kernel {} has {} (instruction {}), which {} is without: take it off alus.{}.without of that configuration",
+        kernel, info->mnemonic, pc, configuration.name, kAluNames[info->alu()]));
+  }
+}
+
 InstructionCounts count_instructions(const Program& program, const std::string& name) {
   InstructionCounts counts{};
   for (const uint64_t encoding : extract_kernel(program, name).code) {

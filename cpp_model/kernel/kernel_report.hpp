@@ -17,6 +17,10 @@ using InstructionCounts = EnumArray<AluType, int, kAluTypes>;
 Program extract_kernel(const Program& program, const std::string& name);
 InstructionCounts count_instructions(const Program& program, const std::string& name);
 
+/// Throws InputError, naming kernel, instruction and what to do, when the machine is without an instruction that the
+/// kernel has.
+void check_instructions(const Program& program, const std::string& kernel, const Configuration& configuration);
+
 /// The ray kernels by ALU beside those of the thesis this machine starts from, as text with fixed columns.
 /// Of such machines.
 std::string kernel_table(const KernelTarget& target = {});

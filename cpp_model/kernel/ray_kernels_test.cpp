@@ -431,5 +431,24 @@ TEST(ComputeKernels, MatmulTakesAnyNumberOfBlocksAndThreads) {
   }
 }
 
+TEST(RayKernels, AreRefusedByAMachineThatLacksWhatTheyHave) {
+  const Program& program = ray_kernel_program();
+  Configuration machine;
+  machine.name = "mine";
+  machine.alus[AluType::Int].without = optional_operations(AluType::Int) & ~(1u << operation_of(Opcode::Or));
+  machine.alus[AluType::Slw].without = 1u << operation_of(Opcode::Frsqrt);
+  EXPECT_NO_THROW(check_instructions(program, "cast_eye", machine));
+  EXPECT_NO_THROW(check_instructions(program, "shade", machine));
+  try {
+    check_instructions(program, "cast_secondary", machine);
+    FAIL() << "not refused";
+  } catch (const InputError& error) {
+    EXPECT_EQ(
+        std::string(error.what()),
+        "kernel cast_secondary has frsqrt (instruction 55), which mine is without: take it off alus.slw.without of "
+        "that configuration");
+  }
+}
+
 }  // namespace
 }  // namespace raypool

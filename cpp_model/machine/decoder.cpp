@@ -7,7 +7,7 @@ namespace raypool {
 namespace {
 
 bool is_legal(const Instruction& fields, const Configuration& configuration) {
-  if (fields.info == nullptr || !configuration.has(fields.info->needs)) return false;
+  if (fields.info == nullptr || !configuration.has(*fields.info)) return false;
   return !(is_triple(*fields.info) && has_operand(*fields.info, Operand::Word) &&
            fields.x > last_triple_word(configuration.intersection_words));
 }

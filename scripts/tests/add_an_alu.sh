@@ -106,7 +106,7 @@ take 'run, fails' "echo '{\"alus\": {\"box\": {\"depth\": 1}}}' > shallow.json; 
 grep -q 'alus.box.depth is 1; it must be an integer from 2 to 32' "$output" ||
   { cat "$output"; fail "a depth of 1 is not refused"; }
 take run 'build/raypool configurations'
-grep -q '; tid brh int flt slw box as count/latency/depth$' "$output" ||
+grep -q '; tid brh int flt slw box as count/latency/depth, ' "$output" ||
   { cat "$output"; fail "the set of configurations has no column for box"; }
 lint='verilator --lint-only -Wall --default-language 1364-2005'
 take run "$lint -Irtl rtl/waivers.vlt --top-module multiprocessor rtl/*.v"

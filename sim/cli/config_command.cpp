@@ -23,6 +23,14 @@ void print_table(const Configuration& configuration) {
     fmt::print("  {}   {:>9}", kAluNames[i], alu.count);
     timed_by_events ? fmt::print("  by event\n") : fmt::print("  {:>7}  {:>5}\n", alu.latency, alu.depth);
   }
+  for (const AluType type : kEveryAluType) {
+    if (configuration.alus[type].without == 0) continue;
+    fmt::print("  {} is without", kAluNames[type]);
+    for (const InstructionInfo& info : kInstructions)
+      if (info.alu() == type && info.needs == Feature::Optional && !configuration.has(info))
+        fmt::print(" {}", info.mnemonic);
+    fmt::print("\n");
+  }
   for (const Parameter& parameter : parameter::kOfChip) print_row(parameter, configuration, 38);
 }
 

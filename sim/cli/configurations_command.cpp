@@ -17,7 +17,7 @@ int configurations_command(const ConfigurationsOptions& options) {
   fmt::print(";");
   for (size_t type = 0; type < kAluTypes; ++type)
     if (!kAluTable[type].timed_by_events()) fmt::print(" {}", kAluNames[type]);
-  fmt::print(" as count/latency/depth\n");
+  fmt::print(" as count/latency/depth, and /without as bits\n");
   for (const Machine& machine : machines) {
     const Configuration& c = machine.configuration;
     fmt::print("{:<16}", c.name);
@@ -27,7 +27,9 @@ int configurations_command(const ConfigurationsOptions& options) {
     fmt::print(";");
     for (size_t type = 0; type < kAluTypes; ++type) {
       const AluConfiguration& alu = c.alus[type];
-      if (!kAluTable[type].timed_by_events()) fmt::print(" {}/{}/{}", alu.count, alu.latency, alu.depth);
+      if (kAluTable[type].timed_by_events()) continue;
+      fmt::print(" {}/{}/{}", alu.count, alu.latency, alu.depth);
+      if (optional_operations(static_cast<AluType>(type)) != 0) fmt::print("/{:x}", alu.without);
     }
     fmt::print("\n");
   }

@@ -16,6 +16,7 @@
 #include "files/output_files.hpp"
 #include "isa/assembler.hpp"
 #include "kernel/compute_kernels.hpp"
+#include "kernel/kernel_report.hpp"
 
 namespace raypool {
 namespace {
@@ -67,6 +68,7 @@ void prepare_kernel(Job& job, const RunOptions& options, uint32_t default_n, uin
   }
   job.title = fmt::format("{}, n = {}", options.kernel, n);
   job.program = compute_kernel_program(KernelTarget(job.options.configuration));
+  check_instructions(job.program, options.kernel, job.options.configuration);
   job.options.entry = job.program.entries.at(options.kernel);
   job.options.threads = job.options.configuration.contents();
   job.options.arguments[saxpy_argument::kN] = n;

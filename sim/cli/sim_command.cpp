@@ -15,6 +15,7 @@
 #include "cli/output_folder.hpp"
 #include "cli/progress.hpp"
 #include "cli/report.hpp"
+#include "kernel/kernel_report.hpp"
 #include "scene/embree_scene.hpp"
 #include "scene/image.hpp"
 #include "scene/native_renderer.hpp"
@@ -114,6 +115,23 @@ struct Surroundings {
   FrameBuffer frame;
   FrameBufferSink sink;
 };
+
+/// A machine that was fitted to other scenes may lack what this one needs.
+void check_fits(const RunRecord& record, const Scene& scene) {
+  const ChipConfiguration& chip = record.configuration.chip;
+  if (record.reflections && !chip.reflections) {
+    throw InputError(fmt::format(
+        "{}: material '{}' reflects, and depth {} casts reflections, but {} has no kernel for them (chip.reflections): "
+        "draw with --depth 1, or fit a configuration to this scene with raypool fit",
+        scene.name, scene.reflecting()->name, record.depth, record.configuration.name));
+  }
+  std::vector<RayKernel> kernels = {RayKernel::CastEye, secondary_kernel(record.depth, record.reflections)};
+  if (chip.culling) kernels.push_back(RayKernel::CastSecondaryDirect);
+  if (chip.shading == Shading::Kernel) kernels.push_back(RayKernel::Shade);
+  const Program& program = ray_kernel_program(KernelTarget(record.configuration));
+  for (const RayKernel kernel : kernels)
+    check_instructions(program, std::string(kRayKernelNames[kernel]), record.configuration);
+}
 
 /// The chip around `device`.
 ChipOptions chip_options(const RunRecord& record, const Scene& scene, MemoryImage& image, ComputeUnit& device,
@@ -260,6 +278,7 @@ int sim_command(const SimOptions& options) {
   record.materials = scene.materials.size();
   record.view = {scene.camera, scene.light};
   record.reflections = record.depth > 1 && scene.reflects();
+  check_fits(record, scene);
   MemoryImage image = build_memory(ray_kernel_program(KernelTarget(record.configuration)), scene);
   if (options.modules) {
     print_modules(options, engine, record, scene, image);

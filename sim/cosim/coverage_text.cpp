@@ -61,7 +61,7 @@ std::vector<Coverage::Group> Coverage::groups() const {
   const auto table = [&](const char* name, const std::vector<uint64_t>& counts) {
     Group& rows = group(name);
     for (size_t row = 0; row < counts.size(); ++row)
-      if (configuration_.has(kInstructions[row].needs))
+      if (configuration_.has(kInstructions[row]))
         rows.items.push_back({std::string(kInstructions[row].mnemonic), counts[row]});
   };
   table("instructions", rows_);

@@ -32,6 +32,11 @@ Factor factor_of(const AluParameter& parameter, size_t type) {
                 [type, member](Machine& m, int value) { m.configuration.alus[type].*member = value; },
                 [type, member](const Machine& m) { return m.configuration.alus[type].*member; }};
   factor.of_alu = true;
+  if (parameter.range.form == Range::Form::Instructions) {
+    // All, none, and every other one: of two that share hardware each is there alone in some machine.
+    const int every = range_of(parameter, static_cast<AluType>(type)).greatest;
+    factor.values = {0, every, every & 0x55555555, every & 0x2aaaaaaa};
+  }
   if (member != &AluConfiguration::depth) return factor;
   // The greatest is the depth; a smaller value counts stages beyond the least, which other parameters decide.
   const int deepest = parameter.range.greatest;
@@ -62,7 +67,8 @@ std::vector<Factor> make_factors() {
     factor.multiplies = factor.name == "warps" || factor.name == "lanes" || factor.name == "units";
   for (size_t type = 0; type < kAluTypes; ++type) {
     for (const AluParameter& parameter : parameter::kOfAlu)
-      if (!kAluTable[type].timed_by_events()) factors.push_back(factor_of(parameter, type));
+      if (!kAluTable[type].timed_by_events() && applies(parameter, static_cast<AluType>(type)))
+        factors.push_back(factor_of(parameter, type));
   }
   return factors;
 }

@@ -1,6 +1,7 @@
 #include "cosim/program_statements.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 namespace raypool {
 namespace {
@@ -49,18 +50,35 @@ void ProgramStatements::body(int length, int loops, int entries) {
     } else if (is(p.early_exit)) {
       if (!import_pending_ && !in_function_) early_exit();
     } else {
-      if (configuration_.slow_groups() > 1 && chance(6)) some_groups();
+      if (configuration_.slow_groups() > 1 && has_any(AluType::Slw) && chance(6)) some_groups();
       plain();
     }
   }
 }
 
+bool ProgramStatements::has(Opcode opcode) const { return configuration_.has(instruction(opcode)); }
+
+void ProgramStatements::times(int rd, int ra, uint32_t factor) {
+  if (has(Opcode::Imul)) {
+    emit_immediate(Opcode::Imul, rd, ra, factor);
+    return;
+  }
+  uint32_t places = 0;
+  while (factor >> 1 >> places != 0) ++places;
+  emit_immediate(Opcode::Shl, rd, ra, places);
+}
+
+bool ProgramStatements::has_any(AluType type) const {
+  return std::any_of(std::begin(kInstructions), std::end(kInstructions),
+                     [&](const InstructionInfo& info) { return info.alu() == type && configuration_.has(info); });
+}
+
 size_t ProgramStatements::plain_type() {
   uint32_t total = 0;
-  for (size_t type = 0; type < kAluTypes; ++type) total += profile_.weight(type);
+  for (const uint32_t weight : weights_) total += weight;
   uint32_t pick = below(total);
   size_t type = 0;
-  while (pick >= profile_.weight(type)) pick -= profile_.weight(type++);
+  while (pick >= weights_[type]) pick -= weights_[type++];
   return type;
 }
 
@@ -68,8 +86,7 @@ const InstructionInfo& ProgramStatements::plain_row(std::optional<size_t> type) 
   const size_t of = type ? *type : plain_type();
   for (;;) {
     const InstructionInfo& info = kInstructions[below(kSingles)];
-    if (info.alu() == static_cast<AluType>(of) && info.kind != Kind::Control && configuration_.has(info.needs))
-      return info;
+    if (info.alu() == static_cast<AluType>(of) && info.kind != Kind::Control && configuration_.has(info)) return info;
   }
 }
 
@@ -161,7 +178,7 @@ void ProgramStatements::arithmetic() {
     else
       plain(b, a);
   }
-  if (!configuration_.has(instruction(Opcode::Ffma).needs)) return;
+  if (!has(Opcode::Ffma)) return;
   // The product meets an addend that goes with it.
   Instruction i;
   i.info = &instruction(Opcode::Ffma);
@@ -182,7 +199,7 @@ void ProgramStatements::pairs(int loops) {
   emit_immediate(Opcode::Igt, going, counter, 0);
   const size_t start = emit(Opcode::Loop, 0, 0, 0, going);
   emit(Opcode::Tid, kAddress);
-  emit_immediate(Opcode::Imul, a, counter, configuration_.contents());
+  times(a, counter, configuration_.contents());
   emit(Opcode::Iadd, kAddress, kAddress, a);
   emit_immediate(Opcode::Iadd, kAddress, kAddress, below(shared_bytes_));
   emit_immediate(Opcode::And, kAddress, kAddress, shared_bytes_ / 8 - 1);
@@ -215,20 +232,20 @@ void ProgramStatements::address(bool own, uint32_t offset, uint32_t entries, boo
       break;
     case 2:
       emit(Opcode::Tid, kAddress);
-      emit_immediate(Opcode::Imul, kAddress, kAddress, 1 + below(24));
+      times(kAddress, kAddress, 1 + below(24));
       break;
     case 3:
     case 4:
       // A few lines that share a set.
       if (own && own_.entries >= 2 * own_.way_entries) {
         emit_immediate(chance(2) ? Opcode::And : Opcode::Shr, kAddress, source(), 3);
-        emit_immediate(Opcode::Imul, kAddress, kAddress, own_.way_entries);
+        times(kAddress, kAddress, own_.way_entries);
         emit_immediate(Opcode::Iadd, kAddress, kAddress, below(2) + own_.way_entries * below(4));
         break;
       }
       [[fallthrough]];
     default:
-      emit(Opcode::Imul, kAddress, source(), source());
+      emit(has(Opcode::Imul) ? Opcode::Imul : Opcode::Xor, kAddress, source(), source());
       break;
   }
   emit_immediate(Opcode::And, kAddress, kAddress, (entries - 1) & (of_four ? ~3u : ~0u));

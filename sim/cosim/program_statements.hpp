@@ -2,6 +2,7 @@
 // program valid (program_check.hpp) wherever it is put.
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "arith/test_operands.hpp"
@@ -37,7 +38,10 @@ class ProgramStatements : public ProgramEmitter {
         intersection_words_(configuration.intersection_words),
         instruction_cache_bytes_(configuration.instruction_cache_bytes),
         profile_(profile),
-        operands_(seed) {}
+        operands_(seed) {
+    for (size_t type = 0; type < kAluTypes; ++type)
+      weights_[type] = has_any(static_cast<AluType>(type)) ? profile.weight(type) : 0;
+  }
 
   /// `entries`: entries of the PC stack in use.
   void body(int length, int loops, int entries);
@@ -47,6 +51,11 @@ class ProgramStatements : public ProgramEmitter {
   /// These instructions do what they do whatever their mask is.
   int control_guard() { return chance(3) ? any_predicate() : 0; }
   int free_predicate() { return 1 + below(kLoopPredicate - 1); }
+  bool has(Opcode opcode) const;
+  /// Of the type.
+  bool has_any(AluType type) const;
+  /// rd = ra * factor, or without imul the next lower power of two as factor.
+  void times(int rd, int ra, uint32_t factor);
   /// An ALU type, as often as the mix wants it.
   size_t plain_type();
   const InstructionInfo& plain_row(std::optional<size_t> type);
@@ -107,6 +116,7 @@ class ProgramStatements : public ProgramEmitter {
   uint32_t intersection_words_;
   uint32_t instruction_cache_bytes_;
   ProgramProfile profile_;
+  std::array<uint32_t, kAluTypes> weights_{};  ///< of each type, in the mix
   arith::OperandSource operands_;
   OwnWords own_;
   uint32_t shared_bytes_ = 1024;

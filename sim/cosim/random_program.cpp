@@ -262,12 +262,12 @@ class Generator : public ProgramStatements {
     // Another kernel's warp may have written the words that this one's warp gets.
     emit(Opcode::Warp, kAddress);
     if (chance(2)) emit_immediate(Opcode::Xor, kAddress, kAddress, below(warps_));
-    emit_immediate(Opcode::Imul, kAddress, kAddress, own_.stride);
+    times(kAddress, kAddress, own_.stride);
     emit_immediate(Opcode::Arg, kOwn, 0, 1);
     emit(Opcode::Iadd, kOwn, kOwn, kAddress);
     emit(Opcode::Block, kAddress);
     emit_immediate(Opcode::And, kAddress, kAddress, block_mask_);
-    emit_immediate(Opcode::Imul, kAddress, kAddress, own_.bytes);
+    times(kAddress, kAddress, own_.bytes);
     emit(Opcode::Iadd, kOwn, kOwn, kAddress);
     emit_immediate(Opcode::Arg, kShared, 0, 0);
   }
@@ -322,7 +322,7 @@ class Generator : public ProgramStatements {
         if (code == FaultCode::Misaligned) {
           emit(Opcode::Mov, kAddress, 0, kOwn);
           if (some)
-            emit(Opcode::Lane, kAddress), emit_immediate(Opcode::Imul, kAddress, kAddress, 1 + below(3)),
+            emit(Opcode::Lane, kAddress), times(kAddress, kAddress, 1 + below(3)),
                 emit(Opcode::Iadd, kAddress, kAddress, kOwn);
           emit_immediate(access, 0, kAddress, some ? 0 : 1 + below(3));
           return;
@@ -350,7 +350,7 @@ class Generator : public ProgramStatements {
   bool missing_instruction() {
     std::vector<Opcode> missing;
     for (const InstructionInfo& info : kInstructions)
-      if (!configuration_.has(info.needs)) missing.push_back(info.opcode);
+      if (!configuration_.has(info)) missing.push_back(info.opcode);
     if (missing.empty()) return false;
     emit(missing[below(size32(missing))], destination(), source(), source());
     return true;
@@ -434,7 +434,8 @@ class Generator : public ProgramStatements {
     for (uint32_t n = delays; n > 0; --n) {
       static constexpr std::array<Opcode, 5> kDelays = {Opcode::Lane, Opcode::Por, Opcode::Iadd, Opcode::Fadd,
                                                         Opcode::Frcp};  // of different depths
-      emit(kDelays[below(kDelays.size())], 1);
+      const Opcode delay = kDelays[below(kDelays.size())];
+      emit(has(delay) ? delay : Opcode::Lane, 1);
     }
     race_fault(code);
     emit(Opcode::Exit);

@@ -50,9 +50,10 @@ Bounds Scene::bounds() const {
   return result;
 }
 
-bool Scene::reflects() const {
-  return std::any_of(triangle_materials.begin(), triangle_materials.end(),
-                     [this](uint32_t material) { return materials[material].reflects(); });
+const Material* Scene::reflecting() const {
+  const auto found = std::find_if(triangle_materials.begin(), triangle_materials.end(),
+                                  [this](uint32_t material) { return materials[material].reflects(); });
+  return found == triangle_materials.end() ? nullptr : &materials[*found];
 }
 
 bool is_degenerate(const Scene& scene, size_t triangle) {

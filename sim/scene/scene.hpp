@@ -59,8 +59,9 @@ struct Scene {
   }
   /// Of the vertices that triangles use; both corners zero without triangles.
   Bounds bounds() const;
-  /// Some triangle's material does.
-  bool reflects() const;
+  /// The material of the first triangle that has one that does; null: none has.
+  const Material* reflecting() const;
+  bool reflects() const { return reflecting() != nullptr; }
 };
 
 /// Coordinates beyond this are refused: products of four of them must stay finite in single precision.

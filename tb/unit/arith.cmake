@@ -47,6 +47,13 @@ arith_bench(slw_alu_test slw_units ${arith_slw_sources})
 arith_widths(slw_alu_test slw_units ${arith_slw_sources})
 arith_top(slw_alu_test slw_group_units Vslw_group_units "" ${arith_slw_sources})
 
+# ALUs that lack instructions.
+set(arith_all_sources ${arith_brh_sources} ${arith_rtl}/int_alu.v ${arith_flt_sources} ${arith_slw_sources})
+list(REMOVE_DUPLICATES arith_all_sources)
+arith_bench(left_out_test left_out_units ${arith_all_sources})
+arith_top(left_out_test left_out_units Vleft_out_units_short "-GSIGNIFICAND=16;-GSUBNORMALS=1;-GSLOW_UNIT=1"
+  ${arith_all_sources})
+
 arith_bench(alu_pipeline_test pipeline_units ${arith_rtl}/alu_pipeline.v)
 
 # Icarus: the same sources in a second simulator, for the modes that differ most.
@@ -72,7 +79,8 @@ if(IVERILOG AND VVP)
         -Parith_icarus.SIGNIFICAND=${significand} -o ${program} ${arith_unit}/arith_icarus.v ${sources}
       DEPENDS ${arith_unit}/arith_icarus.v ${sources} ${arith_rtl}/isa.vh ${arith_rtl}/booth_digits.vh
         ${arith_rtl}/ones_below.vh ${arith_rtl}/free_running.vh VERBATIM)
-    add_custom_command(OUTPUT ${vectors} COMMAND arith_vectors ${subnormals} ${slow_unit} ${fma} ${significand} 4000 > ${vectors}
+    add_custom_command(OUTPUT ${vectors}
+      COMMAND arith_vectors ${subnormals} ${slow_unit} ${fma} ${significand} 4000 > ${vectors}
       DEPENDS arith_vectors VERBATIM)
     add_custom_target(${replay} ALL DEPENDS ${program} ${vectors})
     add_test(NAME ${replay} COMMAND ${VVP} -n ${program} +vectors=${vectors})

@@ -7,13 +7,15 @@
 // @proves a triple's elements are read, offered and done in order, no element twice and none left out before it retires
 // @proves the next element is read only when the one before has its ALU, or, if elements wait for each other,
 //   when that is done; where the counter says that it is read at once, it is
-// @proves an instruction without a table row is never issued; none that lies outside the program is fetched
+// @proves an instruction without a table row, or that its ALU lacks, is never issued; none that lies outside the
+//   program is fetched
 // @proves nothing is stepped while a control instruction is under way; nothing is stepped,
 //   fetched, issued or offered while halt_i
 // @proves fetch_pc_o is the PC of an instruction that is illegal or outside, from the next
 //   cycle on, as long as halt_i follows
 // @break instruction_buffer s/fetch_pc_o <= pc_i;/if (!outside_o) fetch_pc_o <= pc_i;/
 // @break instruction_buffer s/issue = ready && next_legal_q/issue = ready/
+// @break instruction_buffer s/WITHOUT\[cache_instruction_i\[63:55\]\]/1'b0/
 // @break instruction_buffer s/\(data_q == D_IDLE \|\| retire\)/(data_q != D_READ)/
 // @break instruction_buffer s/next_control_q \? F_IDLE : F_STACK/F_STACK/
 // @break instruction_buffer s/if \(!outside_o\) fetch_q/fetch_q/
@@ -47,7 +49,9 @@ module check #(parameter [0:0] TRIPLES = 1'b1) (
   wire [1:0] read_element, done_element;
   wire [15:0] fetch_pc, pc;
   wire [63:0] instruction;
-  instruction_buffer #(.TRIPLES(TRIPLES)) dut (
+  // Two that its ALUs lack.
+  localparam [511:0] WITHOUT = (512'd1 << {ISA_TYPE_INT, ISA_INT_IMUL}) | (512'd1 << {ISA_TYPE_SLW, ISA_SLW_FDIV});
+  instruction_buffer #(.TRIPLES(TRIPLES), .WITHOUT(WITHOUT)) dut (
     .clk_i(clk_i), .rst_ni(rst_n), .start_i(start_i), .halt_i(halt_i), .active_o(active), .step_o(step),
     .pc_valid_i(pc_valid_i), .pc_i(pc_i), .program_length_i(length), .fetch_request_o(fetch), .fetch_pc_o(fetch_pc),
     .fetch_grant_i(fetch_grant_i), .cache_hit_i(hit_i), .cache_instruction_i(instruction_i), .refill_done_i(refill_i),
@@ -120,8 +124,9 @@ module check #(parameter [0:0] TRIPLES = 1'b1) (
       assert (!(steps && stepped_q));
       assert (!(fetched && fetched_q));
       assert (!fetch || (stepped_q && fetch_pc == stepped_pc_q));
-      assert (!read || isa_legal(instruction, 1'b0, TRIPLES, 5'd21));
-      assert (!illegal || (fetched_q && !isa_legal(fetched_instruction_q, 1'b0, TRIPLES, 5'd21)));
+      assert (!read || isa_legal(instruction, 1'b0, TRIPLES, 5'd21, WITHOUT[instruction[63:55]]));
+      assert (!illegal || (fetched_q && !isa_legal(fetched_instruction_q, 1'b0, TRIPLES, 5'd21,
+                                                   WITHOUT[fetched_instruction_q[63:55]])));
       assert (!fetch || fetch_pc < length);
       assert (!(step && (read || reads_q != 2'd0) && control));
       assert (!(halt_i && (step || fetch || want)));

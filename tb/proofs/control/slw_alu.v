@@ -18,7 +18,10 @@
 // @break slw_alu s/if \(stage_valid\[DEPTH\+s\]\) data_q/if (stage_valid[DEPTH-1+s]) data_q/
 // @break slw_alu s/if \(stage_valid\[DEPTH\+s\]\) data_q/if (1'b1) data_q/
 `default_nettype none
-module slow_lane #(parameter SUBNORMALS = 0, parameter SLOW_UNIT = 0, parameter STAGES = 6) (
+module slow_lane #(
+  parameter SUBNORMALS = 0, parameter SIGNIFICAND = 24, parameter SLOW_UNIT = 0, parameter STAGES = 6,
+  parameter WITHOUT = 0
+) (
   input wire clk_i, input wire [STAGES-1:0] enable_i, input wire root_i, unary_i, input wire [31:0] a_i, b_i,
   output wire [31:0] result_o
 );
