@@ -23,7 +23,6 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr size_t kLongestName = 64;
 constexpr std::string_view kChip = "chip";  // the object of a file
 
 constexpr uint32_t kLeastFusedDepth = 5;  // of flt, whose additions and multiplications go through the fused unit
@@ -205,12 +204,6 @@ Configuration from_json(const Json& json, const std::string& where, const std::s
   return configuration;
 }
 
-/// The name of a file without its folder and ending, with _ for what a configuration's name may not have.
-std::string name_of_file(const fs::path& path) {
-  static const std::regex kOther("[^A-Za-z0-9_.+-]");
-  return std::regex_replace(path.stem().string(), kOther, "_").substr(0, kLongestName);
-}
-
 /// What a configuration is made of.
 struct Source {
   Json json;
@@ -220,7 +213,8 @@ struct Source {
 Configuration made_of(const Source& source) { return from_json(source.json, source.where, source.name); }
 
 Source source_of(const fs::path& path) {
-  return {parse_json(read_file(path.string(), "configuration"), path.string()), path.string(), name_of_file(path)};
+  return {parse_json(read_file(path.string(), "configuration"), path.string()), path.string(),
+          name_of_file(path.string())};
 }
 
 /// Where the project's own lie.
@@ -320,6 +314,11 @@ Configuration changed(const Source& source, const Configuration& base, const std
 }
 
 }  // namespace
+
+std::string name_of_file(const std::string& path) {
+  static const std::regex kOther("[^A-Za-z0-9_.+-]");
+  return std::regex_replace(fs::path(path).stem().string(), kOther, "_").substr(0, kLongestName);
+}
 
 Configuration load_configuration(const std::string& name_or_path, const std::vector<std::string>& set) {
   const Source source = find_source(name_or_path);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -41,6 +42,9 @@ inline constexpr EnumArray<AluType, AluConfiguration, kAluTypes> default_alus() 
 
 /// What the name of a configuration looks like, as a regular expression.
 inline constexpr const char* kNamePattern = "[A-Za-z0-9_.+-]{1,64}";
+inline constexpr size_t kLongestName = 64;
+/// The name of a file without its folder and ending, with _ for what a configuration's name may not have.
+std::string name_of_file(const std::string& path);
 
 /// log2 of an eye tile's width for `contents` threads (a power of two): tiles are square or twice as wide as high.
 uint32_t tile_width_log2(uint32_t contents);

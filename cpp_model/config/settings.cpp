@@ -94,12 +94,12 @@ Json parse_value(const Field& field, const std::string& text) {
   throw InputError(fmt::format("--set {}={}: {} must be {}", field.path, text, field.path, text_of(field.range)));
 }
 
-Json::json_pointer pointer(std::string path) {
+}  // namespace
+
+Json::json_pointer pointer_to(std::string path) {
   std::replace(path.begin(), path.end(), '.', '/');
   return Json::json_pointer("/" + path);
 }
-
-}  // namespace
 
 std::vector<Field> fields() {
   std::vector<Field> all;
@@ -126,7 +126,7 @@ void set_fields(Json& json, const std::vector<std::string>& texts) {
     const auto field =
         std::find_if(all.begin(), all.end(), [&](const Field& each) { return each.path == assignment.path; });
     if (field == all.end()) refuse_unknown(assignment.path);
-    json[pointer(field->path)] = parse_value(*field, assignment.value);
+    json[pointer_to(field->path)] = parse_value(*field, assignment.value);
   }
 }
 
@@ -143,7 +143,7 @@ std::vector<std::string> paths_set(const std::vector<std::string>& texts) {
 }
 
 std::string value_text(const Json& configuration, const std::string& path) {
-  const Json& value = configuration.at(pointer(path));
+  const Json& value = configuration.at(pointer_to(path));
   if (value.is_array()) return fmt::format("{}", fmt::join(value.get<std::vector<std::string>>(), "_"));
   return value.is_string() ? value.get<std::string>() : value.dump();
 }

@@ -17,6 +17,9 @@ struct Field {
 /// All but the name, in the order of the tables.
 std::vector<Field> fields();
 
+/// Where a configuration file has the field of this path.
+nlohmann::ordered_json::json_pointer pointer_to(std::string path);
+
 /// Puts "FIELD=VALUE" into `json`, the content of a configuration file; one text may hold several, with spaces between.
 /// Values of another type than the field's are refused; whether the value is possible, who reads the file checks.
 /// Throws InputError, which names the nearest fields when there is none such.

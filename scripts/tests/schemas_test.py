@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """The JSON Schemas say what the program accepts and writes: scripts/tests/schemas_test.py RAYPOOL [ENGINE...]
 
-Checked-in configurations and views, a report of each ENGINE (default: those without a Verilated unit), and what
-scripts/fidelity.py leaves of them, are valid; what raypool refuses the schema refuses, and what it takes the schema
-takes, at both ends of every range; a field of the report or of fidelity.json that is missing, unknown or of another
-kind is not valid, and each is named in its page of docs/.
+Checked-in configurations and views, a report of each ENGINE (default: those without a Verilated unit), what
+scripts/fidelity.py leaves of them, and what raypool fit --json writes, are valid; what raypool refuses the schema
+refuses, and what it takes the schema takes, at both ends of every range; a field of what is written that is missing,
+unknown or of another kind is not valid, and each is named in its page of docs/.
 """
 import copy
 import json
@@ -247,6 +247,27 @@ class Fidelity(Written):
 
     def test_docs_name_each_field(self):
         self.names_each_field("speed-and-accuracy.md", "fidelity.json")
+
+
+class Fit(Written):
+    """Of a small frame."""
+
+    def test_fit(self):
+        valid = validator("fit.json")
+        with tempfile.TemporaryDirectory() as folder:
+            done = raypool("fit", "cornell", "--size", "8x8", "--config", "4w4c", "--out", folder + "/fitted.json",
+                           "--json", folder + "/found.json")  # fmt: skip
+            self.assertEqual(done.returncode, 0, done.stderr)
+            document = read(folder + "/found.json")
+            fitted = read(folder + "/fitted.json")
+        self.assertEqual([error.message for error in valid.iter_errors(document)], [])
+        self.assertTrue(document["changes"])
+        self.assertTrue(validator("configuration.json").is_valid(fitted))
+        self.refuses(valid, document, lambda path: path[0] not in ("base", "fitted"),
+                     [("x",), ("scene", "x"), ("cycles", "x"), ("changes", 0, "x"), ("fitted", "x")])
+
+    def test_docs_name_each_field(self):
+        self.names_each_field("fit.md", "fit.json")
 
 
 if __name__ == "__main__":

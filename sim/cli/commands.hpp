@@ -179,4 +179,24 @@ struct SignificandsOptions {
 };
 int significands_command(const SignificandsOptions& options);
 
+/// `raypool fit`: the frame is that of `raypool sim`.
+struct FitOptions {
+  std::string scene = "room";
+  double detail = 1;
+  std::string view;
+  ViewWords look;
+  std::string size = "320x320";
+  int depth = 3;
+  int units = 1;
+  std::string config = "8w8c";  ///< what there is to be less of
+  std::vector<std::string> set;
+  std::string traverser;
+  std::string slower = "1%";  ///< cycles that the whole may take more
+  std::string out;            ///< the configuration's file; empty: out/fit/<its name>.json beside the executable
+  std::string json;           ///< file with what was found; empty: none
+  bool quiet = false;         ///< no progress
+  std::vector<std::string> command;
+};
+int fit_command(const FitOptions& options);
+
 }  // namespace raypool

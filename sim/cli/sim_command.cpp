@@ -3,19 +3,17 @@
 
 #include <cstdio>
 #include <filesystem>
-#include <thread>
 
-#include "bits.hpp"
 #include "chip/chip.hpp"
 #include "cli/black_picture.hpp"
 #include "cli/commands.hpp"
 #include "cli/engine.hpp"
 #include "cli/folders.hpp"
+#include "cli/frame.hpp"
 #include "cli/image_size.hpp"
 #include "cli/output_folder.hpp"
 #include "cli/progress.hpp"
 #include "cli/report.hpp"
-#include "kernel/kernel_report.hpp"
 #include "scene/embree_scene.hpp"
 #include "scene/image.hpp"
 #include "scene/native_renderer.hpp"
@@ -31,12 +29,7 @@ namespace fs = std::filesystem;
 constexpr double kLeastDetail = 0.01;
 
 void check(const SimOptions& options, Engine engine) {
-  if (options.depth < 1 || options.depth > kLargestDepth) {
-    throw InputError(fmt::format("depth is {}; it must be from 1 to {}", options.depth, kLargestDepth));
-  }
-  if (options.units != 1 && options.units != 2 && options.units != 4) {
-    throw InputError(fmt::format("compute units are {}; they must be 1, 2 or 4", options.units));
-  }
+  check_depth_and_units(options.depth, options.units);
   if (options.waves && engine != Engine::Rtl && engine != Engine::Lockstep) {
     throw InputError(fmt::format("engine {} has no waveform: use rtl or lockstep, or leave waves out", options.engine));
   }
@@ -98,81 +91,10 @@ std::string progress_text(const ChipProgress& done, bool timed, double seconds) 
   return text;
 }
 
-/// Of the tree that is walked. No picture depends on it.
-NodeFormat nodes_of(const ChipConfiguration& chip) {
-  return chip.traverser == TraverserName::Modelled ? chip.modelled_traverser_nodes : NodeFormat::Exact;
-}
-
-/// What the chip draws with, for as long as a frame lasts.
-struct Surroundings {
-  Surroundings(const Scene& scene, const MemoryImage& image, const RunRecord& record)
-      : tracer(scene, image.material_base, nodes_of(record.configuration.chip)),
-        scene_tracer(tracer),
-        frame(record.width, record.height),
-        sink(frame) {}
-  const Tracer tracer;
-  SceneTracer scene_tracer;
-  FrameBuffer frame;
-  FrameBufferSink sink;
-};
-
-/// A machine that was fitted to other scenes may lack what this one needs.
-void check_fits(const RunRecord& record, const Scene& scene) {
-  const ChipConfiguration& chip = record.configuration.chip;
-  if (record.reflections && !chip.reflections) {
-    throw InputError(fmt::format(
-        "{}: material '{}' reflects, and depth {} casts reflections, but {} has no kernel for them (chip.reflections): "
-        "draw with --depth 1, or fit a configuration to this scene with raypool fit",
-        scene.name, scene.reflecting()->name, record.depth, record.configuration.name));
-  }
-  std::vector<RayKernel> kernels = {RayKernel::CastEye, secondary_kernel(record.depth, record.reflections)};
-  if (chip.culling) kernels.push_back(RayKernel::CastSecondaryDirect);
-  if (chip.shading == Shading::Kernel) kernels.push_back(RayKernel::Shade);
-  const Program& program = ray_kernel_program(KernelTarget(record.configuration));
-  for (const RayKernel kernel : kernels)
-    check_instructions(program, std::string(kRayKernelNames[kernel]), record.configuration);
-}
-
-/// The chip around `device`.
-ChipOptions chip_options(const RunRecord& record, const Scene& scene, MemoryImage& image, ComputeUnit& device,
-                         Surroundings& around) {
-  const Program& program = ray_kernel_program(KernelTarget(record.configuration));
-  ChipOptions chip;
-  chip.configuration = record.configuration;
-  chip.device = &device;
-  chip.memory = &image.memory;
-  chip.program_length = size32(program.code);
-  for (size_t i = 0; i < kRayKernels; ++i) chip.entries[i] = program.entries.at(std::string(kRayKernelNames[i]));
-  chip.layout = ray_record_layout(record.configuration);
-  chip.arguments = camera_arguments(scene, record.width, record.height, record.configuration.contents(),
-                                    record.configuration.significand);
-  chip.width = record.width;
-  chip.height = record.height;
-  chip.depth = record.depth;
-  chip.reflections = record.reflections;
-  chip.tracer = &around.scene_tracer;
-  chip.frame = &around.sink;
-  return chip;
-}
-
-std::map<uint32_t, std::string> kernel_names(const Program& program) {
-  std::map<uint32_t, std::string> names;
-  for (const auto& [name, entry] : program.entries) names[entry] = name;
-  return names;
-}
-
 FrameBuffer draw_natively(Engine engine, RunRecord& record, const Scene& scene, MemoryImage& image) {
   const Tracer tracer(scene, image.material_base);
   std::optional<EmbreeTracer> embree;
-  NativeOptions native;
-  native.width = record.width;
-  native.height = record.height;
-  native.depth = record.depth;
-  native.reflections = record.reflections;
-  native.contents = record.configuration.contents();
-  native.threads = std::max(1u, std::thread::hardware_concurrency());
-  native.mode = arith::mode_of(record.configuration);
-  native.culling = record.configuration.chip.culling;
+  NativeOptions native = native_options(record);
   if (engine == Engine::Embree) {
     embree.emplace(scene, tracer);
     native.trace = [&](const Ray& ray, Intersection& hit) { return embree->trace(ray, hit); };

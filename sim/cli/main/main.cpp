@@ -73,6 +73,11 @@ void add_scene(CLI::App& app, std::string& scene, std::string& size, std::string
       ->capture_default_str();
 }
 
+void add_units_and_depth(CLI::App& app, int& units, int& depth) {
+  app.add_option("--units", units, "compute units: 1, 2 or 4")->capture_default_str();
+  app.add_option("--depth", depth, "1: eye and shadow rays only; up to 254: with reflections")->capture_default_str();
+}
+
 /// "--size is given 2 times (8x8, 16x16): give it once", of an option that takes one
 /// value; empty if there is none such.
 std::string given_twice(const CLI::App& app) {
@@ -109,6 +114,7 @@ class CommandLine {
   void add_scene_command();
   void add_numerics_command();
   void add_significands_command();
+  void add_fit_command();
   void add_descriptions_command();
 
   CLI::App app_{
@@ -131,6 +137,7 @@ class CommandLine {
   SceneCommandOptions scene_;
   NumericsOptions numerics_;
   SignificandsOptions significands_;
+  FitOptions fit_;
   std::string shell_ = "bash";
 };
 
@@ -141,6 +148,7 @@ CommandLine::CommandLine(int argc, char** argv) {
       "--version", [] { return about(); }, "version, and those of the libraries");
   app_.footer(exit_codes());
   sim_.command.assign(argv, argv + argc);
+  fit_.command = sim_.command;
   add_sim_command();
   add_compare_command();
   add_run_command();
@@ -155,6 +163,7 @@ CommandLine::CommandLine(int argc, char** argv) {
   add_scene_command();
   add_numerics_command();
   add_significands_command();
+  add_fit_command();
   add_descriptions_command();
 }
 
@@ -164,9 +173,7 @@ void CommandLine::add_sim_command() {
   add_scene(*sim_app, sim_.scene, sim_.size, sim_.view, sim_.look, sim_.detail);
   add_config(*sim_app, sim_.config, sim_.set);
   add_unit(*sim_app, sim_.engine, sim_.unit_library);
-  sim_app->add_option("--units", sim_.units, "compute units: 1, 2 or 4")->capture_default_str();
-  sim_app->add_option("--depth", sim_.depth, "1: eye and shadow rays only; up to 254: with reflections")
-      ->capture_default_str();
+  add_units_and_depth(*sim_app, sim_.units, sim_.depth);
   sim_app->add_option("--traverser", sim_.traverser, "as --set chip.traverser=NAME");
   sim_app->add_option(
       "--out", sim_.out,
@@ -377,6 +384,24 @@ void CommandLine::add_significands_command() {
   add_config(*significands_app, significands_.config, significands_.set);
   significands_app->add_flag("--quiet", significands_.quiet, "no progress");
   significands_app->callback([this] { code_ = significands_command(significands_); });
+}
+
+void CommandLine::add_fit_command() {
+  CLI::App* fit_app = app_.add_subcommand(
+      "fit", "what a scene needs of a machine: leaves a configuration with only that, for the other commands");
+  add_scene(*fit_app, fit_.scene, fit_.size, fit_.view, fit_.look, fit_.detail);
+  add_config(*fit_app, fit_.config, fit_.set);
+  add_units_and_depth(*fit_app, fit_.units, fit_.depth);
+  fit_app->add_option("--traverser", fit_.traverser, "as --set chip.traverser=NAME");
+  fit_app->add_option("--slower", fit_.slower, "cycles that the whole may take more, in percent")
+      ->type_name("N%")
+      ->capture_default_str();
+  fit_app->add_option("--out", fit_.out,
+                      "file for the configuration (default: out/fit/NAME.json beside the program; installed: in "
+                      "raypool-out)");
+  fit_app->add_option("--json", fit_.json, "file for all that was found, as JSON");
+  fit_app->add_flag("--quiet", fit_.quiet, "no progress");
+  fit_app->callback([this] { code_ = fit_command(fit_); });
 }
 
 void CommandLine::add_descriptions_command() {

@@ -1,0 +1,72 @@
+#!/bin/bash
+# What raypool fit leaves is a machine like any: scripts/tests/fit.sh RAYPOOL
+# It draws the picture of the kernels as C++, byte for byte, in the model and, hardware against model, in lockstep; the
+# same frame needs no less, and what needs more is refused.
+set -u -o pipefail
+raypool=$(realpath "$1")
+cd "$(dirname "$0")/../.." || exit 1
+. scripts/tests/expect.bash
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+
+# fits SCENE OPTION...: the fitted machine, and a run of it, in the folder SCENE.
+fits() {
+  local scene=$1 what="$*"; shift
+  local frame=("$scene" --size 24x16 "$@" --quiet)
+  local machine=$folder/$scene.json
+  expect "$what: fitted" 0 "byte for byte" "$raypool" fit "${frame[@]}" --config 2w2c --traverser modelled \
+    --out "$machine" --json "$folder/$scene-found.json"
+  expect "$what: the fitted machine draws it" 0 "results" "$raypool" sim "${frame[@]:0:$((${#frame[@]} - 1))}" \
+    --config "$machine" --engine model --out "$folder/$scene"
+  "$raypool" sim "${frame[@]}" --config 2w2c --engine native --out "$folder/$scene-native"
+  expect "$what: the same picture" 0 "" cmp "$folder/$scene/image.png" "$folder/$scene-native/image.png"
+  expect "$what: the cycles are those that fit has told" 0 "" python3 - "$folder/$scene-found.json" \
+    "$folder/$scene/report.json" <<'CHECK'
+import json, sys
+found, report = (json.load(open(path)) for path in sys.argv[1:])
+assert found["changes"] and found["cycles"]["fitted"] <= found["cycles"]["most"], found["cycles"]
+assert report["cycles"] == found["cycles"]["fitted"], (report["cycles"], found["cycles"])
+assert report["configuration"] == found["fitted"], "the file says another machine"
+CHECK
+  expect "$what: fitted again it loses nothing more" 0 "nothing: the frame needs all of it" "$raypool" fit \
+    "${frame[@]}" --config "$machine" --slower 0 --out "$folder/again.json"
+}
+fits room --depth 3 --detail 0.02
+fits cornell --depth 1
+
+# The hardware of the one of them that has less.
+expect "the fitted Cornell box has a Verilated unit" 0 "" env RAYPOOL="$raypool" scripts/unit.sh "$folder/cornell.json"
+expect "hardware and model agree in every cycle" 0 " 0 differences" "$raypool" sim cornell --size 24x16 --depth 1 \
+  --config "$folder/cornell.json" --engine lockstep --out "$folder/lockstep"
+expect "... on the same picture" 0 "" cmp "$folder/lockstep/image.png" "$folder/cornell-native/image.png"
+expect "random programs run on it" 0 " 0 differences" "$raypool" cosim --config "$folder/cornell.json" --programs 20 \
+  --seed 1 --quiet --save "$folder"
+
+# One mirror more than the machine was fitted to; a machine without what a kernel has; the kernels of other programs.
+"$raypool" scene cornell --detail 0.1 --write-obj "$folder/mirror.obj" > "$folder/scene.txt"
+sed 's/mirror/matt/' "$folder/mirror.obj" > "$folder/matt.obj"
+sed 's/^Ks .*/Ks 0 0 0/' "$folder/mirror.mtl" > "$folder/matt.mtl"
+expect "a scene without a mirror is fitted at depth 3" 0 "no material reflects" "$raypool" fit "$folder/matt.obj" \
+  --config 2w2c --size 8x8 --quiet --out "$folder/matt.json"
+for engine in native functional model lockstep; do
+  expect "a mirror is refused by engine $engine" 1 "floor' reflects, and depth 3 casts reflections" "$raypool" sim \
+    "$folder/mirror.obj" --config "$folder/matt.json" --size 8x8 --engine "$engine" --out "$folder/mirror"
+done
+expect "... and nothing is left" 1 "" test -e "$folder/mirror"
+expect "... by a further fit too" 1 "(chip.reflections)" "$raypool" fit "$folder/mirror.obj" --size 8x8 \
+  --config "$folder/matt.json" --out "$folder/mirror.json"
+expect "at depth 1 it is drawn" 0 results "$raypool" sim "$folder/mirror.obj" --config "$folder/matt.json" --size 8x8 \
+  --depth 1 --out "$folder/mirror"
+expect "a kernel with an instruction that is lacking is refused" 1 "kernel cast_secondary has frsqrt (instruction" \
+  "$raypool" sim cornell --config "$folder/room.json" --set alus.slw.without=frsqrt --size 8x8 --out "$folder/lacking"
+expect "... with what to do" 1 "take it off alus.int.without" "$raypool" run saxpy --config "$folder/matt.json"
+
+# Input that cannot be used.
+small=(fit cornell --size 8x8 --config 1w1c --quiet)
+expect "a share that is none is refused" 1 "--slower is 'much'" "$raypool" "${small[@]}" --slower much
+expect "a negative share is refused" 1 "--slower is '-1%'" "$raypool" "${small[@]}" --slower=-1%
+expect "a place that cannot be written is refused" 1 "cannot write '$folder/none/x.json'" "$raypool" "${small[@]}" \
+  --out "$folder/none/x.json"
+expect "a depth out of range is refused" 1 "depth is 0" "$raypool" "${small[@]}" --depth 0
+
+[ "$failures" = 0 ]

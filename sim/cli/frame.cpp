@@ -1,0 +1,89 @@
+#include "cli/frame.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <thread>
+
+#include "bits.hpp"
+#include "fit/needs.hpp"
+#include "kernel/kernel_report.hpp"
+#include "kernel/kernels.hpp"
+
+namespace raypool {
+namespace {
+
+/// Of the tree that is walked. No picture depends on it.
+NodeFormat nodes_of(const ChipConfiguration& chip) {
+  return chip.traverser == TraverserName::Modelled ? chip.modelled_traverser_nodes : NodeFormat::Exact;
+}
+
+}  // namespace
+
+void check_depth_and_units(int depth, int units) {
+  if (depth < 1 || depth > kLargestDepth)
+    throw InputError(fmt::format("depth is {}; it must be from 1 to {}", depth, kLargestDepth));
+  if (units != 1 && units != 2 && units != 4)
+    throw InputError(fmt::format("compute units are {}; they must be 1, 2 or 4", units));
+}
+
+void check_fits(const RunRecord& record, const Scene& scene) {
+  const ChipConfiguration& chip = record.configuration.chip;
+  if (record.reflections && !chip.reflections) {
+    throw InputError(fmt::format(
+        "{}: material '{}' reflects, and depth {} casts reflections, but {} has no kernel for them (chip.reflections): "
+        "draw with --depth 1, or fit a configuration to this scene with raypool fit",
+        scene.name, scene.reflecting()->name, record.depth, record.configuration.name));
+  }
+  const Program& program = ray_kernel_program(KernelTarget(record.configuration));
+  for (const RayKernel kernel : fit::kernels_of(chip, record.depth, record.reflections))
+    check_instructions(program, std::string(kRayKernelNames[kernel]), record.configuration);
+}
+
+Surroundings::Surroundings(const Scene& scene, const MemoryImage& image, const RunRecord& record)
+    : tracer(scene, image.material_base, nodes_of(record.configuration.chip)),
+      scene_tracer(tracer),
+      frame(record.width, record.height),
+      sink(frame) {}
+
+ChipOptions chip_options(const RunRecord& record, const Scene& scene, MemoryImage& image, ComputeUnit& device,
+                         Surroundings& around) {
+  const Program& program = ray_kernel_program(KernelTarget(record.configuration));
+  ChipOptions chip;
+  chip.configuration = record.configuration;
+  chip.device = &device;
+  chip.memory = &image.memory;
+  chip.program_length = size32(program.code);
+  for (size_t i = 0; i < kRayKernels; ++i) chip.entries[i] = program.entries.at(std::string(kRayKernelNames[i]));
+  chip.layout = ray_record_layout(record.configuration);
+  chip.arguments = camera_arguments(scene, record.width, record.height, record.configuration.contents(),
+                                    record.configuration.significand);
+  chip.width = record.width;
+  chip.height = record.height;
+  chip.depth = record.depth;
+  chip.reflections = record.reflections;
+  chip.tracer = &around.scene_tracer;
+  chip.frame = &around.sink;
+  return chip;
+}
+
+NativeOptions native_options(const RunRecord& record) {
+  NativeOptions native;
+  native.width = record.width;
+  native.height = record.height;
+  native.depth = record.depth;
+  native.reflections = record.reflections;
+  native.contents = record.configuration.contents();
+  native.threads = std::max(1u, std::thread::hardware_concurrency());
+  native.mode = arith::mode_of(record.configuration);
+  native.culling = record.configuration.chip.culling;
+  return native;
+}
+
+std::map<uint32_t, std::string> kernel_names(const Program& program) {
+  std::map<uint32_t, std::string> names;
+  for (const auto& [name, entry] : program.entries) names[entry] = name;
+  return names;
+}
+
+}  // namespace raypool

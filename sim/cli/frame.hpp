@@ -1,0 +1,43 @@
+// A frame as engines draw it: what each of them needs beside the scene and the record of the run.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+
+#include "chip/chip.hpp"
+#include "cli/report.hpp"
+#include "scene/image.hpp"
+#include "scene/native_renderer.hpp"
+#include "scene/scene.hpp"
+#include "scene/traversal.hpp"
+
+namespace raypool {
+
+/// Throws InputError unless there are 1 .. kLargestDepth, and 1, 2 or 4.
+void check_depth_and_units(int depth, int units);
+
+/// A machine that was fitted to other scenes may lack what this one needs: throws InputError then, with what, for what,
+/// and what to do.
+void check_fits(const RunRecord& record, const Scene& scene);
+
+/// What the chip draws with, for as long as a frame lasts.
+struct Surroundings {
+  Surroundings(const Scene& scene, const MemoryImage& image, const RunRecord& record);
+  const Tracer tracer;
+  SceneTracer scene_tracer;
+  FrameBuffer frame;
+  FrameBufferSink sink;
+};
+
+/// The chip around `device`, which draws the frame of the record.
+ChipOptions chip_options(const RunRecord& record, const Scene& scene, MemoryImage& image, ComputeUnit& device,
+                         Surroundings& around);
+
+/// The same frame without a chip, on all cores.
+NativeOptions native_options(const RunRecord& record);
+
+/// Entry PC -> name.
+std::map<uint32_t, std::string> kernel_names(const Program& program);
+
+}  // namespace raypool
