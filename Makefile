@@ -57,6 +57,9 @@ SEED      ?= 1
 COVERAGE  ?=
 # `make mutants`
 MUTANTS   ?= 500
+# `make fit`
+SLOWER    ?= 1%
+AREA      ?= 0
 # `make numerics`
 GATES     ?= 0
 # `make extremes`
@@ -78,6 +81,7 @@ FROM      ?=
 # Recipes read these from the environment, so that a value with spaces or quotes stays one word.
 export CONFIG SET CUS SCENE SIZE DEPTH ENGINE TRAVERSER VIEW CAMERA EYE LOOK_AT UP FOV LIGHT DETAIL OUT WAVES TRACE
 export A B KERNEL PROGRAMS SEED COVERAGE MUTANTS MODE THREADS
+export SLOWER
 export FROM EXPERIMENT WHERE JOBS SCENES LEVELS RUNS
 export LIBERTY CLOCK MEMORIES AGAINST RUN ONLY PLAN
 
@@ -110,10 +114,11 @@ SWEEP_SETUP := setup-sweep $(if $(filter slurm,$(WHERE)),setup-slurm)
 # The modules of Debian's packages are those of Debian's Python, whatever stands first in PATH.
 PYTHON := $(or $(wildcard /usr/bin/python3),python3)
 REPORT := RAYPOOL="$(abspath $(RAYPOOL))" PYTHONPATH=scripts $(PYTHON) -m report
+FIT_SETUP := $(if $(filter-out 0,$(AREA) $(POWER)),setup-synth)
 GATES_SETUP := $(if $(filter-out 0,$(GATES)),setup-synth)
 UNIT_OF_ENGINE := $(if $(filter rtl lockstep,$(ENGINE)),$(UNIT),true)
 
-.PHONY: help sim fidelity compare run cosim configurations mutants faults unit test lint format bench clean
+.PHONY: help sim fidelity fit compare run cosim configurations mutants faults unit test lint format bench clean
 .PHONY: setup-% program configured-%
 .PHONY: numerics-long proofs synth synth-replay synth-prove growth numerics significands extremes isa diagrams quoted
 .PHONY: package sweep report
@@ -142,6 +147,8 @@ help: ## this list
 	@echo '                                1: 0:20000; ENGINE=model                    $(TRACE)'
 	@echo 'variables of make fidelity:  those of the frame, from SCENE to DETAIL, and OUT=FOLDER'
 	@echo '  LEVELS="native model ...": only these; all if not given  RUNS=N: times that each draws, $(RUNS) if not given'
+	@echo 'variables of make fit:  those of the frame, and OUT=FILE for the configuration'
+	@echo '  SLOWER=N%: $(SLOWER) if not given  AREA=1: what each change saves in area; POWER=1: area, and timing and power before and after'
 	@echo 'variables of make sweep:  EXPERIMENT=FILE.json  OUT=FOLDER  WHERE=here|slurm  JOBS=N: points at a time'
 	@echo '  SCENES=FOLDER:FOLDER: where scenes are that are not part of the project'
 	@echo 'variables of make report:  FROM="FOLDER ...": sweeps, runs, synthesis reports or folders of them  OUT=FOLDER'
@@ -165,6 +172,11 @@ sim: setup-sim program ## draw a scene on the simulated chip: picture, report, f
 
 fidelity: setup-sim setup-fidelity program ## a frame at every level of simulation, speed against error: LEVELS, RUNS
 	@scripts/fidelity.py $(FRAME) $${LEVELS:+--levels "$$LEVELS"} --runs "$$RUNS" $${OUT:+--out "$$OUT"}
+
+fit: setup-sim $(FIT_SETUP) program ## what a scene needs of CONFIG: a configuration with only that: SLOWER, AREA, POWER
+	@mkdir -p $(BUILD)/out
+	@$(RAYPOOL) fit $(FRAME) --slower "$$SLOWER" $${OUT:+--out "$$OUT"} --json $(BUILD)/out/fit.json
+	@$(if $(FIT_SETUP),$(SYNTH) fit $(BUILD)/out/fit.json $(if $(filter-out 0,$(POWER)),--power))
 
 compare: setup-sim program ## two runs beside each other: A=FOLDER_OR_REPORT B=...
 	@$(RAYPOOL) compare "$$A" "$$B"

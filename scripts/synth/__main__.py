@@ -6,7 +6,7 @@ import shutil
 import sys
 import time
 
-from . import elaborate, flow, growth, plots, power, prove, replay, report, timing
+from . import elaborate, fit, flow, growth, plots, power, prove, replay, report, timing
 from .errors import SynthError, say, warn
 
 
@@ -37,10 +37,8 @@ def store(result, path):
     os.rename(path + ".new", path)
 
 
-def synth_command(arguments):
-    against = report.load(arguments.against) if arguments.against else None
-    options = options_of(arguments)
-    run = report.load_run(arguments.run, options.config) if arguments.run else None
+def made_report(options, wanted):
+    """The design and its report, made or kept; `wanted`: names of what is added to it, power or proofs."""
     design = flow.open_design(options)
     path = os.path.join(design.folder, "report.json")
     key = flow.digest(design)
@@ -61,15 +59,22 @@ def synth_command(arguments):
         report.check(result)
         store(result, path)
         plots.area_bars(result, os.path.join(design.folder, "work"), os.path.join(design.folder, "area.png"))
-    for name, wanted, estimate in (
-        ("power", arguments.power, power.estimate),
-        ("proofs", arguments.prove, prove.prove),
-    ):
-        if wanted and not result[name]:
+    for name, estimate in (("power", power.estimate), ("proofs", prove.prove)):
+        if name in wanted and not result[name]:
             if design.netlist is None:
                 map_as_kept(design, result)
             result[name] = estimate(design)
             store(result, path)
+    return design, result
+
+
+def synth_command(arguments):
+    against = report.load(arguments.against) if arguments.against else None
+    options = options_of(arguments)
+    run = report.load_run(arguments.run, options.config) if arguments.run else None
+    begin = time.time()
+    wanted = [name for name, given in (("power", arguments.power), ("proofs", arguments.prove)) if given]
+    design, result = made_report(options, wanted)
     if run:
         result["efficiency"] = report.efficiency(result, arguments.run, run)
     say(report.table(result, against))
@@ -134,6 +139,17 @@ def growth_command(arguments):
     growth.grow(arguments.jobs, arguments.out or os.path.join(flow.BUILD, "growth"), arguments.plan)
 
 
+def fit_command(arguments):
+    fit.fit(arguments.found, arguments.jobs)
+    if not arguments.power:
+        return
+    found = fit.load(arguments.found)
+    for title, config in (("before", fit.base_config(found)), ("fitted", found["file"])):
+        arguments.config, arguments.set = config, None
+        result = made_report(options_of(arguments), ["power"])[1]
+        say(fit.with_power(title, result))
+
+
 def parser():
     top = argparse.ArgumentParser(prog="synth", description="synthesis of the compute unit: area, timing, power")
     commands = top.add_subparsers(dest="command", required=True)
@@ -142,6 +158,7 @@ def parser():
         ("replay", replay_command),
         ("prove", prove_command),
         ("growth", growth_command),
+        ("fit", fit_command),
     ):
         command = commands.add_parser(name)
         command.set_defaults(function=function)
@@ -152,12 +169,15 @@ def parser():
         command.add_argument("--memories", help="macros (default), flops, or a folder of macros' Liberty files")
         command.add_argument("--jobs", type=int, default=os.cpu_count() or 2)
         command.add_argument("--out", help="folder for the results")
-        if name == "report":
-            command.add_argument("--against", help="an earlier report.json to compare with")
-            command.add_argument("--run", help="report.json of raypool sim with this configuration: Mrays/s a mm2")
+        if name in ("report", "fit"):
             command.add_argument(
                 "--power", action="store_true", help="simulate the netlist and estimate power by block"
             )
+        if name == "fit":
+            command.add_argument("found", help="what raypool fit --json has written")
+        if name == "report":
+            command.add_argument("--against", help="an earlier report.json to compare with")
+            command.add_argument("--run", help="report.json of raypool sim with this configuration: Mrays/s a mm2")
             command.add_argument("--prove", action="store_true", help="prove blocks equal to their RTL")
         if name == "replay":
             command.add_argument(

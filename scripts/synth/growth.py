@@ -23,11 +23,11 @@ def named(change):
     return "-".join(parts)
 
 
-def area_of(change, jobs):
-    """The report of one configuration, kept; no power, no proofs."""
+def area_of(change, jobs, name=None):
+    """The report of one configuration, kept; no power, no proofs. `name`: its own, instead of its values in a row."""
     folder = os.path.join(flow.BUILD, "growth")
     os.makedirs(folder, exist_ok=True)
-    name = named(change)
+    name = name or named(change)
     path = os.path.join(folder, name + ".json")
     new = f"{path}.{os.getpid()}"
     with open(new, "w", encoding="utf-8") as file:

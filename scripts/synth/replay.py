@@ -1,5 +1,6 @@
 """Runs the mapped netlist, with the functions of the library's Verilog cells, in lockstep with the golden model."""
 import array
+import json
 import os
 import re
 import subprocess
@@ -9,7 +10,7 @@ from .errors import SynthError, need, run, say
 from .function import truth
 from .library import ROOT
 
-SCENE = ["sim", "cornell", "--size", "8x8", "--depth", "2"]
+SCENE = ["sim", "cornell", "--size", "8x8"]
 PROGRAMS = 20
 # What joins two nets and is no cell of the library, as the first two kinds of gate.
 BUFFER, INVERTER = 0, 1
@@ -338,8 +339,10 @@ def replay(design, break_number=0):
         say(f"replay: broken on purpose: {what}")
     library = build(design, folder)
     # A failing program is shrunk into the netlist's folder: its fault is not the RTL's.
+    # A machine that was fitted may have no reflections.
+    chip = json.loads(elaborate.ask(design.options.config, "--json"))["chip"]
     runs = [
-        SCENE,
+        SCENE + ["--depth", "2" if chip["reflections"] else "1"],
         ["cosim", "--programs", str(PROGRAMS), "--seed", "1", "--save", folder] + (["--no-shrink"] if what else []),
     ]
     for arguments in runs:

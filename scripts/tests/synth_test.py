@@ -17,7 +17,7 @@ from unittest import mock
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 sys.path.insert(0, os.path.join(ROOT, "scripts"))
 
-from synth import clock_gates, elaborate, flow, function, library, macros, mapping, netlist  # noqa: E402
+from synth import clock_gates, elaborate, fit, flow, function, library, macros, mapping, netlist  # noqa: E402
 from synth import prove, replay, report, timing  # noqa: E402
 from synth.errors import SynthError  # noqa: E402
 from synth.memories import MemoryModel  # noqa: E402
@@ -111,12 +111,41 @@ class Synthesis(unittest.TestCase):
             (["report", "--config", "1w1c", "--clock", "soon"], "CLOCK=soon"),
             (["prove", "--config", "1w1c", "--only", "teapot"], "has no block teapot"),
             (["growth", "--plan", run], "not a plan"),
+            (["fit", run], "not what raypool fit --json writes"),
+            (["fit", "/no/such.json"], "not what raypool fit --json writes"),
         ):
             code, text = self.command(*arguments)
             self.assertEqual(code, 1, text)
             self.assertIn(word, text)
             self.assertNotIn("Traceback", text)
             self.assertEqual(text.count("\n"), 0, text)
+
+    def test_what_a_fit_saves_is_told_by_change_and_in_all(self):
+        """Units of which each part has a price stand in for synthesised ones."""
+        base = {"name": "whole", "warps": 8, "slow_lanes": 8, "alus": {"int": {"without": []}}, "chip": {"size": 1}}
+        fitted = {**base, "name": "less", "slow_lanes": 1, "alus": {"int": {"without": ["imul"]}}}
+        changes = [("slow_lanes", 1), ("alus.int.without", ["imul"]), ("chip.size", 2)]
+        found = {"base": base, "fitted": fitted, "file": "less.json", "config": "8w8c", "set": ["chip.size=1 warps=8"],
+                 "changes": [{"field": field, "to": to, "why": ""} for field, to in changes]}  # fmt: skip
+        path = self.written("found.json", json.dumps(found))
+        names, printed = [], []
+
+        def priced(unit, jobs, name):
+            self.assertNotIn("chip", unit)
+            names.append(name)
+            logic = 100.0 + 10 * unit["slow_lanes"] - 5 * len(unit["alus"]["int"]["without"])
+            return {"logic_kge": logic, "memory_kge": 1.0, "memory_bits": 64, "flip_flops": 8 * unit["slow_lanes"]}
+
+        with mock.patch.object(fit, "area_of", priced), mock.patch.object(fit, "say", printed.append):
+            results = fit.fit(path, 1)
+        saved = [line.split() for line in printed[1:]]
+        self.assertEqual(saved[0], ["slow_lanes", "70.0", "0.0", "0", "56", "38.9%"])
+        self.assertEqual(saved[1], ["alus.int.without", "5.0", "0.0", "0", "0", "2.8%"])
+        self.assertEqual(saved[2], ["chip.size", "0.0", "0.0", "0", "0", "0.0%"])
+        self.assertEqual(saved[3], ["all", "of", "it", "75.0", "0.0", "0", "56", "41.7%"])
+        self.assertEqual(results["fitted"]["logic_kge"], 105.0)
+        self.assertEqual(names[0], names[3], "a chip makes no other unit")
+        self.assertEqual(len(set(names)), 4)
 
     def test_set_ups_are_complete_and_their_cells_must_be_there(self):
         known = library.setups()
