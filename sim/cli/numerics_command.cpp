@@ -148,6 +148,17 @@ int trade_command(const NumericsOptions& options) {
   return leak ? kOtherFailure : kDone;
 }
 
+/// What the letters mean, and the columns: a number each, as names are too wide.
+void print_letters(const std::vector<ArithmeticMode>& modes) {
+  fmt::print(
+      "n engine native, f functional, m model, l RTL in lockstep with the model, X failed, b breaks with so few bits, "
+      "- no Verilated unit\n");
+  for (size_t i = 0; i < modes.size(); ++i) fmt::print("{}{} {}", i == 0 ? "modes " : ", ", i + 1, modes[i].name);
+  fmt::print("\n{:<58}", "");
+  for (size_t i = 0; i < modes.size(); ++i) fmt::print(" {:>4}", i + 1);
+  fmt::print("\n");
+}
+
 /// One letter an engine, in the order native, functional, model, lockstep: its own passed, X failed, - not run.
 int extremes_command(const NumericsOptions& options) {
   const Configuration base = load_configuration(options.config, options.set);
@@ -167,13 +178,7 @@ int extremes_command(const NumericsOptions& options) {
   Progress progress(options.quiet);
   std::string failures;
   uint64_t checks = 0, failed = 0, broken = 0, on_rtl = 0;
-  fmt::print(
-      "n engine native, f functional, m model, l RTL in lockstep with the model, X failed, b breaks with so few bits, "
-      "- no Verilated unit\n");
-  for (size_t i = 0; i < modes.size(); ++i) fmt::print("{}{} {}", i == 0 ? "modes " : ", ", i + 1, modes[i].name);
-  fmt::print("\n{:<58}", "");
-  for (size_t i = 0; i < modes.size(); ++i) fmt::print(" {:>4}", i + 1);
-  fmt::print("\n");
+  print_letters(modes);
   std::string theme;
   for (const ExtremeCase& extreme : extreme_cases()) {
     if (extreme.theme != theme) {
