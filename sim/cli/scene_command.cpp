@@ -65,7 +65,6 @@ int hits_command(const SceneCommandOptions& options) {
   print_counts("primary", report.primary, report.primary_visits);
   print_counts("shadow", report.shadow, report.shadow_visits);
   for (const std::string& line : report.explanations) fmt::print("  {}\n", line);
-  fmt::print("tracing, one thread: ours {:.2f} s, Embree {:.2f} s\n", report.our_seconds, report.embree_seconds);
   return 0;
 }
 

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cmath>
 #include <memory>
 #include <stdexcept>
@@ -47,10 +46,6 @@ void settle(HitVerdict verdict, const std::string& line, HitCounts& counts, Hits
   if (report.explanations.size() < max_explanations) {
     report.explanations.push_back((verdict == HitVerdict::OursWrong ? "OURS WRONG " : "Embree wrong ") + line);
   }
-}
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 }  // namespace
@@ -169,17 +164,24 @@ class HitsComparison {
   void find_nearest(const std::vector<Ray>& rays) {
     ours_.resize(rays.size());
     theirs_.resize(rays.size());
-    auto start = std::chrono::steady_clock::now();
     for (size_t i = 0; i < rays.size(); ++i) {
-      Hit hit;
-      ours_[i].hit = tracer_.traversal().nearest(to_query(rays[i]), hit, &report_.primary_visits);
+      const RayQuery query = to_query(rays[i]);
+      Hit hit, fast;
+      ours_[i].hit = tracer_.traversal().nearest(query, hit, &report_.primary_visits);
       ours_[i].triangle = hit.triangle;
       ours_[i].t = hit.t;
+      const bool fast_hit = tracer_.traversal().nearest(query, fast);
+      require_same(rays[i], fast_hit == ours_[i].hit && fast.triangle == hit.triangle && fast.t == hit.t &&
+                                fast.u == hit.u && fast.v == hit.v);
+      theirs_[i] = embree_answer(query);
     }
-    report_.our_seconds += seconds_since(start);
-    start = std::chrono::steady_clock::now();
-    for (size_t i = 0; i < rays.size(); ++i) theirs_[i] = embree_answer(to_query(rays[i]));
-    report_.embree_seconds += seconds_since(start);
+  }
+
+  // The fast way and the chip's.
+  static void require_same(const Ray& ray, bool same) {
+    if (same) return;
+    throw std::logic_error(fmt::format("of a ray of pixel ({}, {}) our two ways through the tree say different things",
+                                       ray[word::kPixel] & 0xffffu, ray[word::kPixel] >> 16));
   }
 
   HitAnswer embree_answer(const RayQuery& query) const {
@@ -203,13 +205,10 @@ class HitsComparison {
   // A blocked shadow ray names no triangle: where the sides differ, each side's nearest hit within the limit is judged.
   void compare_occlusion(const Ray& ray) {
     const RayQuery query = to_query(ray);
-    auto start = std::chrono::steady_clock::now();
     HitAnswer our, their;
     our.hit = tracer_.traversal().occluded(query, &report_.shadow_visits);
-    report_.our_seconds += seconds_since(start);
-    start = std::chrono::steady_clock::now();
+    require_same(ray, tracer_.traversal().occluded(query) == our.hit);
     their.hit = embree_.occluded(query);
-    report_.embree_seconds += seconds_since(start);
     ++report_.shadow.rays;
     if (our.hit == their.hit) {
       ++report_.shadow.agree;

@@ -63,7 +63,6 @@ struct HitsReport {
   std::vector<std::string>
       explanations;  ///< one line for each wrong hit: pixel, triangles, t, exact verdict; the first max_explanations
   TraversalCounts primary_visits, shadow_visits;
-  double our_seconds = 0, embree_seconds = 0;  ///< tracing alone, one thread
 };
 
 struct HitsOptions {
@@ -73,7 +72,8 @@ struct HitsOptions {
 };
 
 /// Traces the scene's view: eye rays and the shadow rays that follow from our hits, with our traversal and with
-/// rtcIntersect1 and rtcOccluded1 of a robust Embree scene.
+/// rtcIntersect1 and rtcOccluded1 of a robust Embree scene. Throws std::logic_error where the two ways of our traversal
+/// differ.
 HitsReport compare_with_embree(const Scene& scene, const HitsOptions& options);
 
 }  // namespace raypool

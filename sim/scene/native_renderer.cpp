@@ -19,19 +19,11 @@ void require_range(const char* what, int value, int low, int high) {
     throw InputError(fmt::format("{} is {}; it must lie in {} .. {}", what, value, low, high));
 }
 
-void add(TraversalCounts& sum, const TraversalCounts& part) {
-  sum.nodes += part.nodes;
-  sum.blocks += part.blocks;
-  sum.triangles += part.triangles;
-}
-
 void add(NativeStatistics& sum, const NativeStatistics& part) {
   sum.ray_counts.add(part.ray_counts);
   sum.dropped_rays += part.dropped_rays;
   sum.contributions += part.contributions;
   for (size_t i = 0; i < kRayKernels; ++i) sum.kernel_threads[i] += part.kernel_threads[i];
-  add(sum.normal_visits, part.normal_visits);
-  add(sum.shadow_visits, part.shadow_visits);
 }
 
 /// One worker: its own picture and counts.
@@ -88,9 +80,7 @@ class Worker {
     thread_.thread = 0;
     thread_.threads = 1;
     thread_.block = 0;
-    const bool goes_on = options_.trace ? options_.trace(ray, thread_.input)
-                                        : tracer_.trace(ray, thread_.input,
-                                                        shadow ? &statistics.shadow_visits : &statistics.normal_visits);
+    const bool goes_on = options_.trace ? options_.trace(ray, thread_.input) : tracer_.trace(ray, thread_.input);
     statistics.ray_counts.count(ray, goes_on);
     if (goes_on) run(shadow ? RayKernel::Shade : secondary(depth));
   }
@@ -178,7 +168,7 @@ std::array<uint32_t, kArguments> camera_arguments(const Scene& scene, uint32_t w
 FrameBuffer render_native(const Scene& scene, const MemoryImage& image, const Tracer& tracer,
                           const NativeOptions& options, NativeStatistics* statistics) {
   require_range("depth", options.depth, 1, kLargestDepth);
-  require_range("threads", options.threads, 1, 256);
+  require_range("threads", options.threads, 1, kMostRenderThreads);
   require_range("contents", options.contents, 1, 1024);
   if ((options.contents & (options.contents - 1)) != 0) {
     throw InputError(fmt::format("contents is {}; it must be a power of two", options.contents));
@@ -188,15 +178,18 @@ FrameBuffer render_native(const Scene& scene, const MemoryImage& image, const Tr
   const uint32_t tile_width = 1u << tile_width_log2(options.contents), tile_height = options.contents / tile_width;
   Memory memory = image.memory;
 
-  // Rows of tiles are handed out one at a time. Who gets which does not matter: pictures and counts are sums.
+  // Tiles are handed out one at a time. Who gets which does not matter: pictures and counts are sums.
+  const uint32_t columns = (options.width + tile_width - 1) / tile_width;
+  const uint64_t tiles = uint64_t{columns} * ((options.height + tile_height - 1) / tile_height);
   const size_t workers_count = options.threads;
   std::vector<Worker> workers(workers_count, Worker(arguments, memory, tracer, options));
   std::vector<std::exception_ptr> errors(workers_count);
-  std::atomic<uint32_t> next_row{0};
+  std::atomic<uint64_t> next_tile{0};
   auto work = [&](size_t index) {
     try {
-      for (uint32_t y = tile_height * next_row++; y < options.height; y = tile_height * next_row++) {
-        for (uint32_t x = 0; x < options.width; x += tile_width) workers[index].render_tile(x, y);
+      for (uint64_t tile = next_tile++; tile < tiles; tile = next_tile++) {
+        const auto row = static_cast<uint32_t>(tile / columns), column = static_cast<uint32_t>(tile % columns);
+        workers[index].render_tile(column * tile_width, row * tile_height);
       }
     } catch (...) {
       errors[index] = std::current_exception();

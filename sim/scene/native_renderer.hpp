@@ -38,18 +38,21 @@ std::array<uint32_t, kArguments> camera_arguments(const Scene& scene, uint32_t w
 /// A package's depth has 8 bits, and a reflection of the last depth must still be seen as beyond it.
 inline constexpr int kLargestDepth = 254;
 
+/// Each has a frame buffer of its own.
+inline constexpr uint32_t kMostRenderThreads = 256;
+
 struct NativeOptions {
   uint32_t width = 512, height = 512;
   uint32_t depth = 1;       ///< 1 .. kLargestDepth; 1: eye and shadow rays only; d: up to d - 1 reflections
   bool reflections = true;  ///< false: casts none, whatever the depth; the same picture where no material reflects
   uint32_t contents = 64;   ///< size of an eye tile in pixels, a power of two; changes no picture
-  uint32_t threads = 1;     ///< changes no picture and no count
+  uint32_t threads = 1;     ///< 1 .. kMostRenderThreads; changes no picture and no count
   arith::Mode mode;
   bool culling = false;                                  ///< chip.culling; changes no picture
   std::function<void(RayKernel, NativeThread&)> kernel;  ///< run_native when empty
   /// Called with camera_arguments() before the frame begins, to change them; may be empty.
   std::function<void(std::array<uint32_t, kArguments>&)> change_arguments;
-  std::function<bool(const Ray&, Intersection&)> trace;  ///< the tracer's when empty; then no visits are counted
+  std::function<bool(const Ray&, Intersection&)> trace;  ///< the tracer's when empty
 };
 
 struct NativeStatistics {
@@ -57,7 +60,6 @@ struct NativeStatistics {
   uint64_t dropped_rays = 0;                                     ///< normal rays beyond the depth limit, not traced
   uint64_t contributions = 0;                                    ///< added to the frame buffer
   EnumArray<RayKernel, uint64_t, kRayKernels> kernel_threads{};  ///< threads run of each kernel
-  TraversalCounts normal_visits, shadow_visits;
 
   uint64_t rays() const { return ray_counts.traced(); }
 };

@@ -116,7 +116,6 @@ TEST(NativeRenderer, PictureDoesNotDependOnThreadsOrTiles) {
       const Rendered other = render(scene, options);
       EXPECT_TRUE(other.frame == one.frame) << threads << " threads, " << contents << " contents";
       EXPECT_EQ(other.statistics.rays(), one.statistics.rays());
-      EXPECT_EQ(other.statistics.normal_visits.nodes, one.statistics.normal_visits.nodes);
     }
   }
 }
@@ -137,7 +136,6 @@ TEST(NativeRenderer, CountsRaysByKindAndDepth) {
                reflecting = to_underlying(RayKernel::CastSecondary);
     EXPECT_EQ(s.kernel_threads[direct], depth == 1 ? pixels : 0);
     EXPECT_EQ(s.kernel_threads[reflecting], depth == 1 ? 0 : pixels * static_cast<uint64_t>(depth));
-    EXPECT_GT(s.normal_visits.nodes, pixels);
   }
 }
 

@@ -13,78 +13,7 @@
 namespace raypool {
 namespace {
 
-constexpr int kMaxDepth = 80;
-constexpr float kUlp = 1.1920929e-7f;  // 2^-23
-constexpr float kPadding =
-    8 * kUlp;  // of the largest distance; the triangle test and the slabs err by less than half of it
-constexpr float kNearScale = 1 - 4 * kUlp;  // t of a slab carries three roundings
-constexpr float kFarScale = 1 + 4 * kUlp;
-constexpr double kCancelled = 0x1p-10;     // what is left of a sum is a smaller share of its terms than this
-constexpr float kLargestDistance = 1e18f;  // products of two distances stay finite
-
-/// A ray with all that boxes and triangles ask of it. Its direction is scaled by a power of two so that the largest
-/// component lies in 1 .. 2; times t_scale, internal t is the ray's.
-struct PreparedRay {
-  bool valid = false;
-  float origin[3];
-  float padded[2][3];  // subtracted from lower and upper bounds
-  float inverse[3];
-  int near_side[3];  // 0: the lower bound is met first
-  int kx, ky, kz;
-  float shear_x, shear_y;
-  double direction[3];
-  double inverse_z;
-  double t_scale;
-  float limit;           // the ray's
-  float internal_limit;  // rounded up
-};
-
-PreparedRay prepare(const RayQuery& query, const Bounds& bounds) {
-  PreparedRay ray;
-  float distance = 0, largest = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const float o = query.origin[axis], d = query.direction[axis];
-    if (!std::isfinite(o) || !std::isfinite(d)) return ray;
-    distance = std::max({distance, std::fabs(bounds.lower[axis] - o), std::fabs(bounds.upper[axis] - o)});
-    largest = std::max(largest, std::fabs(d));
-  }
-  if (!(largest > 0) || !(distance <= kLargestDistance) || !(query.limit > 0)) return ray;
-  ray.valid = true;
-
-  int exponent = 0;
-  std::frexp(largest, &exponent);
-  ray.t_scale = std::ldexp(1.0, 1 - exponent);
-  ray.limit = query.limit;
-  const double internal_limit = static_cast<double>(query.limit) / ray.t_scale;
-  ray.internal_limit = static_cast<float>(internal_limit);
-  if (static_cast<double>(ray.internal_limit) < internal_limit)
-    ray.internal_limit = std::nextafter(ray.internal_limit, INFINITY);
-
-  const double padding = static_cast<double>(kPadding) * distance;
-  double* const direction = ray.direction;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double o = query.origin[axis];
-    ray.origin[axis] = query.origin[axis];
-    ray.padded[0][axis] = std::nextafter(static_cast<float>(o + padding), INFINITY);
-    ray.padded[1][axis] = std::nextafter(static_cast<float>(o - padding), -INFINITY);
-    direction[axis] = static_cast<double>(query.direction[axis]) * ray.t_scale;
-    // Along such an axis the ray does not move at all, compared with the padding; a finite inverse keeps NaN out.
-    const double smallest = 0x1p-100;
-    const double d = std::fabs(direction[axis]) < smallest ? std::copysign(smallest, direction[axis]) : direction[axis];
-    ray.inverse[axis] = static_cast<float>(1.0 / d);
-    ray.near_side[axis] = ray.inverse[axis] < 0 ? 1 : 0;
-  }
-
-  ray.kz = 0;
-  if (std::fabs(direction[1]) > std::fabs(direction[ray.kz])) ray.kz = 1;
-  if (std::fabs(direction[2]) > std::fabs(direction[ray.kz])) ray.kz = 2;
-  ray.kx = (ray.kz + 1) % 3;
-  ray.ky = (ray.kz + 2) % 3;
-  ray.inverse_z = 1.0 / direction[ray.kz];
-  ray.shear_x = static_cast<float>(direction[ray.kx] * ray.inverse_z);
-  ray.shear_y = static_cast<float>(direction[ray.ky] * ray.inverse_z);
-  return ray;
-}
+#include "scene/triangle_test.hpp"
 
 /// The parts of a prepared ray that the box test wants in all four lanes.
 struct BoxRay {
@@ -114,105 +43,6 @@ unsigned intersect_boxes(const PreparedRay& ray, const BoxRay& box_ray, const Bv
   return mask4(near <= min4(far, splat4(best)));
 }
 
-/// The same arithmetic for one triangle's box. False when the ray misses it.
-bool own_box_interval(const PreparedRay& ray, const TriangleBlock& block, unsigned lane, float& near, float& far) {
-  near = 0;
-  far = INFINITY;
-  for (int axis = 0; axis < 3; ++axis) {
-    const float a = block.vertices[0][axis][lane], b = block.vertices[1][axis][lane], c = block.vertices[2][axis][lane];
-    const float bounds[2] = {std::min({a, b, c}), std::max({a, b, c})};
-    const int first = ray.near_side[axis], second = 1 - first;
-    near = std::max(near, (bounds[first] - ray.padded[first][axis]) * ray.inverse[axis]);
-    far = std::min(far, (bounds[second] - ray.padded[second][axis]) * ray.inverse[axis]);
-  }
-  near *= kNearScale;
-  far *= kFarScale;
-  return near <= far;
-}
-
-/// Best hit so far, in internal t.
-struct Candidate {
-  float t = INFINITY;
-  uint32_t triangle = kNoChild;
-  double u = 0, v = 0;
-  const TriangleBlock* block = nullptr;
-  unsigned lane = 0;
-};
-
-/// t of the triangle's plane.
-double plane_t(const PreparedRay& ray, const TriangleBlock& block, unsigned lane) {
-  Vec3d corners[3];
-  for (int corner = 0; corner < 3; ++corner) {
-    for (int axis = 0; axis < 3; ++axis) {
-      corners[corner][axis] = static_cast<double>(block.vertices[corner][axis][lane]) - ray.origin[axis];
-    }
-  }
-  const Vec3d normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
-  return dot(normal, corners[0]) / dot(normal, Vec3d{ray.direction[0], ray.direction[1], ray.direction[2]});
-}
-
-/// Finishes a triangle whose edge functions agree in sign; true when it becomes the candidate.
-bool accept(const PreparedRay& ray, const TriangleBlock& block, unsigned lane, double u, double v, double w,
-            Candidate& best) {
-  const double determinant = u + v + w;
-  if (determinant == 0) return false;
-  double z[3];
-  for (int corner = 0; corner < 3; ++corner) {
-    z[corner] = static_cast<double>(block.vertices[corner][ray.kz][lane]) - ray.origin[ray.kz];
-  }
-  const double sum = u * z[0] + v * z[1] + w * z[2];
-  double exact_t = sum / determinant * ray.inverse_z;
-  // Near the plane, compared with the triangle's size, the edge functions' roundings would decide on which side of it
-  // the ray begins: a triangle of 1e9 would be met or not met at random, and a surface could shadow itself.
-  if (std::fabs(sum) < kCancelled * (std::fabs(u * z[0]) + std::fabs(v * z[1]) + std::fabs(w * z[2]))) {
-    exact_t = plane_t(ray, block, lane);
-  }
-  float t = static_cast<float>(exact_t), near = 0, far = 0;
-  if (!(t > 0) || !own_box_interval(ray, block, lane, near, far)) return false;
-  t = std::min(std::max(t, near), far);
-  const auto ray_t = static_cast<float>(static_cast<double>(t) * ray.t_scale);
-  if (!(ray_t > 0 && ray_t < ray.limit)) return false;
-  const uint32_t triangle = block.triangles[lane];
-  if (!(t < best.t || (t == best.t && triangle < best.triangle))) return false;
-  best = {t, triangle, v / determinant, w / determinant, &block, lane};
-  return true;
-}
-
-/// Tests the triangles of a leaf; true when one became the candidate.
-bool intersect_block(const PreparedRay& ray, const TriangleBlock& block, Candidate& best) {
-  const Float4 ox = splat4(ray.origin[ray.kx]), oy = splat4(ray.origin[ray.ky]), oz = splat4(ray.origin[ray.kz]);
-  const Float4 sx = splat4(ray.shear_x), sy = splat4(ray.shear_y);
-  Float4 x[3], y[3];
-  for (int corner = 0; corner < 3; ++corner) {
-    const Float4 z = load4(block.vertices[corner][ray.kz]) - oz;
-    x[corner] = (load4(block.vertices[corner][ray.kx]) - ox) - sx * z;
-    y[corner] = (load4(block.vertices[corner][ray.ky]) - oy) - sy * z;
-  }
-  const Float4 u = x[2] * y[1] - y[2] * x[1];
-  const Float4 v = x[0] * y[2] - y[0] * x[2];
-  const Float4 w = x[1] * y[0] - y[1] * x[0];
-  const Float4 zero = splat4(0);
-  const unsigned used = (1u << block.count) - 1;
-  const unsigned negative = mask4((u < zero) | (v < zero) | (w < zero)),
-                 positive = mask4((u > zero) | (v > zero) | (w > zero));
-  const unsigned zeros = mask4((u == zero) | (v == zero) | (w == zero));
-  bool found = false;
-  for (unsigned lanes = ~(negative & positive) & used; lanes != 0; lanes &= lanes - 1) {
-    const auto lane = lowest(lanes);
-    double du = u[lane], dv = v[lane], dw = w[lane];
-    if ((zeros >> lane & 1u) != 0) {
-      // Products of floats are exact in double: the sign is that of the exact edge function.
-      auto edge = [&](int a, int b) {
-        return static_cast<double>(x[a][lane]) * y[b][lane] - static_cast<double>(y[a][lane]) * x[b][lane];
-      };
-      du = edge(2, 1), dv = edge(0, 2), dw = edge(1, 0);
-      if ((du < 0 || dv < 0 || dw < 0) && (du > 0 || dv > 0 || dw > 0)) continue;
-    }
-    found |= accept(ray, block, lane, du, dv, dw, best);
-  }
-  return found;
-}
-
 Hit finish(const PreparedRay& ray, const Candidate& best) {
   Vec3d corners[3];
   for (int corner = 0; corner < 3; ++corner) {
@@ -227,13 +57,13 @@ Hit finish(const PreparedRay& ray, const Candidate& best) {
   return hit;
 }
 
+/// `ray` is valid and the tree not empty.
 template <bool kAny>
 bool traverse(const Bvh& bvh, const PreparedRay& ray, Candidate& best, TraversalCounts* counts, VisitList* visits) {
   struct Entry {
     uint32_t child;
     float t;
   };
-  if (!ray.valid || bvh.nodes.empty()) return false;
   const BoxRay box_ray(ray);
   best.t = ray.internal_limit;
   bool found = false;
@@ -302,19 +132,26 @@ void Traversal::set_bvh(Bvh bvh) {
   if (tree_depth(bvh) > kMaxDepth)
     throw std::runtime_error("the bounding volume hierarchy is deeper than the traversal's stack");
   bvh_ = std::move(bvh);
+  wide_ = widen(bvh_);
 }
 
 bool Traversal::nearest(const RayQuery& query, Hit& hit, TraversalCounts* counts, VisitList* visits) const {
   const PreparedRay ray = prepare(query, bvh_.bounds);
+  if (!ray.valid || bvh_.nodes.empty()) return false;
   Candidate best;
-  if (!traverse<false>(bvh_, ray, best, counts, visits)) return false;
+  const bool fast = counts == nullptr && visits == nullptr;
+  if (!(fast ? walks().back().nearest(wide_, ray, best) : traverse<false>(bvh_, ray, best, counts, visits)))
+    return false;
   hit = finish(ray, best);
   return true;
 }
 
 bool Traversal::occluded(const RayQuery& query, TraversalCounts* counts, VisitList* visits) const {
+  const PreparedRay ray = prepare(query, bvh_.bounds);
+  if (!ray.valid || bvh_.nodes.empty()) return false;
   Candidate best;
-  return traverse<true>(bvh_, prepare(query, bvh_.bounds), best, counts, visits);
+  const bool fast = counts == nullptr && visits == nullptr;
+  return fast ? walks().back().any(wide_, ray, best) : traverse<true>(bvh_, ray, best, counts, visits);
 }
 
 bool Traversal::nearest_of_all(const RayQuery& query, Hit& hit) const {

@@ -14,6 +14,8 @@
 #include "config/parameters.hpp"
 #include "machine/compute_unit.hpp"
 #include "scene/bvh.hpp"
+#include "scene/prepared_ray.hpp"
+#include "scene/wide_bvh.hpp"
 
 namespace raypool {
 
@@ -45,14 +47,11 @@ struct Visit {
 /// Visits in their order. They are appended to.
 using VisitList = std::vector<Visit>;
 
-struct RayQuery {
-  Vec3 origin;
-  Vec3 direction;  ///< not normalised
-  float limit;     ///< hits with 0 < t < limit count
-};
-
 /// A direction that is zero, infinite or NaN, an origin that is not finite or further than 1e18 from the scene, and a
 /// limit that is NaN or not above zero hit nothing.
+///
+/// A ray whose visits nobody asks for takes the fast way, through nodes of eight (wide_bvh.hpp); else it walks the tree
+/// of bvh(), which is the chip's. The answer is the same.
 class Traversal {
  public:
   explicit Traversal(const Scene& scene);
@@ -64,13 +63,15 @@ class Traversal {
   bool nearest_of_all(const RayQuery& ray, Hit& hit) const;
 
   const Bvh& bvh() const { return bvh_; }
-  /// Makes every box what a node of 64 bytes has of it (compressed_node.hpp): no answer changes, visits do.
+  const WideBvh& wide_bvh() const { return wide_; }
+  /// Makes every box of bvh() what a node of 64 bytes has of it (compressed_node.hpp): no answer changes, visits do.
   void compress_nodes();
   /// Replaces the tree by another over the same triangles; no answer changes. For tests.
   void set_bvh(Bvh bvh);
 
  private:
   Bvh bvh_;
+  WideBvh wide_;
 };
 
 /// The traverser of the chip and of the native renderer: packages in, packages out. Safe to use from several threads.

@@ -21,6 +21,23 @@ bool same(const Hit& a, const Hit& b) {
          a.triangle == b.triangle && a.normal == b.normal;
 }
 
+/// Both ways, the fast one and the chip's, must say the same.
+bool nearest(const Traversal& traversal, const RayQuery& ray, Hit& hit) {
+  Hit counted;
+  TraversalCounts counts;
+  const bool found = traversal.nearest(ray, hit);
+  EXPECT_EQ(found, traversal.nearest(ray, counted, &counts));
+  EXPECT_TRUE(!found || same(hit, counted))
+      << hit.triangle << " at " << hit.t << ", " << counted.triangle << " at " << counted.t;
+  return found;
+}
+bool occluded(const Traversal& traversal, const RayQuery& ray) {
+  TraversalCounts counts;
+  const bool found = traversal.occluded(ray);
+  EXPECT_EQ(found, traversal.occluded(ray, &counts));
+  return found;
+}
+
 /// Triangles on z = 0 .. with one material.
 Scene scene_of(const std::vector<std::array<Vec3, 3>>& triangles) {
   Scene scene;
@@ -180,8 +197,8 @@ TEST(Watertight, NoRayLeavesAClosedMesh) {
       auto shoot = [&](const Vec3& target) {
         Hit hit;
         ++rays;
-        leaks += !traversal.nearest({origin, target - origin, kInfinity}, hit);
-        leaks += !traversal.occluded({origin, target - origin, 3});
+        leaks += !nearest(traversal, {origin, target - origin, kInfinity}, hit);
+        leaks += !occluded(traversal, {origin, target - origin, 3});
       };
       for (size_t i = 0; i < scene.triangles.size(); ++i) {
         const Vec3 a = scene.corner(i, 0), b = scene.corner(i, 1), c = scene.corner(i, 2);
@@ -208,9 +225,9 @@ TEST(Watertight, AxisParallelRaysThroughAGridOfSharedEdgesHit) {
     for (int y = 0; y <= 32; ++y) {
       Hit hit;
       const Vec3 origin{x * 0.5f, y * 0.5f, 0};
-      ASSERT_TRUE(traversal.nearest({origin, {0, 0, 1}, kInfinity}, hit)) << x << " " << y;
+      ASSERT_TRUE(nearest(traversal, {origin, {0, 0, 1}, kInfinity}, hit)) << x << " " << y;
       EXPECT_EQ(hit.t, 2);
-      EXPECT_TRUE(traversal.nearest({origin, {-0.0f, 0.0f, 0.25f}, kInfinity}, hit));
+      EXPECT_TRUE(nearest(traversal, {origin, {-0.0f, 0.0f, 0.25f}, kInfinity}, hit));
       EXPECT_EQ(hit.t, 8);
     }
   }
@@ -235,13 +252,13 @@ TEST(Ties, TheLowestIndexWins) {
     const float x = std::uniform_real_distribution<float>(-0.9f, 0.9f)(random),
                 y = std::uniform_real_distribution<float>(-0.9f, 0.9f)(random);
     Hit hit;
-    ASSERT_TRUE(traversal.nearest({{x, y, 0}, {0, 0, 1}, kInfinity}, hit));
+    ASSERT_TRUE(nearest(traversal, {{x, y, 0}, {0, 0, 1}, kInfinity}, hit));
     EXPECT_EQ(hit.t, 5);
     EXPECT_EQ(hit.triangle, y <= x ? 40u : 41u);
   }
   // On the diagonal both are hit.
   Hit hit;
-  ASSERT_TRUE(traversal.nearest({{0.5f, 0.5f, 0}, {0, 0, 1}, kInfinity}, hit));
+  ASSERT_TRUE(nearest(traversal, {{0.5f, 0.5f, 0}, {0, 0, 1}, kInfinity}, hit));
   EXPECT_EQ(hit.triangle, 40u);
 }
 
@@ -251,11 +268,11 @@ TEST(Traversal, FindsWhatTestingEveryTriangleFinds) {
     int hits = 0;
     for (const RayQuery& ray : hard_rays(scene, 1500, 17)) {
       Hit hit, reference;
-      const bool found = traversal.nearest(ray, hit);
+      const bool found = nearest(traversal, ray, hit);
       ASSERT_EQ(found, traversal.nearest_of_all(ray, reference));
       ASSERT_TRUE(!found || same(hit, reference))
           << hit.triangle << " at " << hit.t << ", " << reference.triangle << " at " << reference.t;
-      ASSERT_EQ(found, traversal.occluded(ray));
+      ASSERT_EQ(found, occluded(traversal, ray));
       hits += found;
     }
     EXPECT_GT(hits, 700);
@@ -271,11 +288,11 @@ TEST(Traversal, AnswerDoesNotDependOnTheTree) {
       if (seed == 2) bad.compress_nodes();
       for (const RayQuery& ray : hard_rays(scene, 6000, seed)) {
         Hit a, b;
-        const bool found = good.nearest(ray, a);
-        ASSERT_EQ(found, bad.nearest(ray, b)) << "seed " << seed;
+        const bool found = nearest(good, ray, a);
+        ASSERT_EQ(found, nearest(bad, ray, b)) << "seed " << seed;
         ASSERT_TRUE(!found || same(a, b)) << "seed " << seed;
-        ASSERT_EQ(good.occluded(ray), found);
-        ASSERT_EQ(bad.occluded(ray), found);
+        ASSERT_EQ(occluded(good, ray), found);
+        ASSERT_EQ(occluded(bad, ray), found);
       }
     }
   }
@@ -292,7 +309,7 @@ TEST(Traversal, AnswerIsTheSameWithCompressedNodes) {
     const bool found = exact.nearest(ray, a, &exact_counts);
     ASSERT_EQ(found, compressed.nearest(ray, b, &compressed_counts));
     ASSERT_TRUE(!found || same(a, b));
-    ASSERT_EQ(compressed.occluded(ray), found);
+    ASSERT_EQ(occluded(compressed, ray), found);
   }
   EXPECT_GT(compressed_counts.nodes, exact_counts.nodes);
   EXPECT_LT(compressed_counts.nodes, exact_counts.nodes * 11 / 10);
@@ -352,11 +369,11 @@ TEST(Traversal, AnswerDoesNotDependOnTheTreeForNeedlesSeenEdgeOn) {
     for (int i = 0; i < 1500; ++i) {
       const RayQuery ray{side * uniform(-1, 1), direction, kInfinity};
       Hit a, b;
-      const bool found = good.nearest(ray, a);
-      ASSERT_EQ(found, bad.nearest(ray, b)) << "seed " << seed << " ray " << i;
+      const bool found = nearest(good, ray, a);
+      ASSERT_EQ(found, nearest(bad, ray, b)) << "seed " << seed << " ray " << i;
       ASSERT_TRUE(!found || same(a, b)) << "seed " << seed << " ray " << i << ": " << a.triangle << " at " << a.t
                                         << ", " << b.triangle << " at " << b.t;
-      ASSERT_EQ(good.occluded(ray), found);
+      ASSERT_EQ(occluded(good, ray), found);
       hits += found;
     }
     EXPECT_GT(hits, 1000);
@@ -431,7 +448,7 @@ TEST(Traversal, StrangeRaysHaveADefinedAnswer) {
   const Traversal traversal(scene);
   const Vec3 eye = scene.camera.eye;
   Hit hit;
-  auto misses = [&](const RayQuery& ray) { return !traversal.nearest(ray, hit) && !traversal.occluded(ray); };
+  auto misses = [&](const RayQuery& ray) { return !nearest(traversal, ray, hit) && !occluded(traversal, ray); };
   EXPECT_TRUE(misses({eye, {0, 0, 0}, kInfinity}));
   EXPECT_TRUE(misses({eye, {-0.0f, 0, -0.0f}, kInfinity}));
   EXPECT_TRUE(misses({eye, {kNan, 0, 1}, kInfinity}));
@@ -444,19 +461,19 @@ TEST(Traversal, StrangeRaysHaveADefinedAnswer) {
   EXPECT_TRUE(misses({eye, {0, 0, -1}, -1}));
   // The length of a direction changes nothing but t, down to denormal and up to the largest
   // numbers; nor does the sign of a zero.
-  ASSERT_TRUE(traversal.nearest({eye, {0.1f, 0.2f, -1}, kInfinity}, hit));
+  ASSERT_TRUE(nearest(traversal, {eye, {0.1f, 0.2f, -1}, kInfinity}, hit));
   const Hit plain = hit;
   for (float scale : {0x1p-100f, 0x1p-20f, 0x1p60f, 0x1p126f}) {
-    ASSERT_TRUE(traversal.nearest({eye, Vec3{0.1f, 0.2f, -1} * scale, kInfinity}, hit)) << scale;
+    ASSERT_TRUE(nearest(traversal, {eye, Vec3{0.1f, 0.2f, -1} * scale, kInfinity}, hit)) << scale;
     EXPECT_EQ(hit.triangle, plain.triangle);
     EXPECT_EQ(hit.t, plain.t / scale);
   }
   EXPECT_TRUE(misses({eye, {0, 0, -1e-44f}, kInfinity})) << "t would be beyond the largest float";
-  ASSERT_TRUE(traversal.nearest({eye, {0, 0.0f, -1}, kInfinity}, hit));
+  ASSERT_TRUE(nearest(traversal, {eye, {0, 0.0f, -1}, kInfinity}, hit));
   const Hit straight = hit;
-  ASSERT_TRUE(traversal.nearest({eye, {-0.0f, -0.0f, -1}, kInfinity}, hit));
+  ASSERT_TRUE(nearest(traversal, {eye, {-0.0f, -0.0f, -1}, kInfinity}, hit));
   EXPECT_EQ(hit.t, straight.t);
-  ASSERT_TRUE(traversal.nearest({eye, {1e-45f, -1e-45f, -1}, kInfinity}, hit));
+  ASSERT_TRUE(nearest(traversal, {eye, {1e-45f, -1e-45f, -1}, kInfinity}, hit));
   EXPECT_EQ(hit.t, straight.t);
 }
 
@@ -466,13 +483,13 @@ TEST(Traversal, LimitIsExclusiveAtBothEnds) {
   Hit hit;
   for (float direction : {1.0f, 0.5f, 3.0f}) {
     const float t = 4 / direction;
-    EXPECT_FALSE(traversal.nearest({{0, 0, 0}, {0, 0, direction}, t}, hit));
-    EXPECT_FALSE(traversal.occluded({{0, 0, 0}, {0, 0, direction}, t}));
-    EXPECT_TRUE(traversal.nearest({{0, 0, 0}, {0, 0, direction}, std::nextafter(t, kInfinity)}, hit));
-    EXPECT_TRUE(traversal.occluded({{0, 0, 0}, {0, 0, direction}, std::nextafter(t, kInfinity)}));
+    EXPECT_FALSE(nearest(traversal, {{0, 0, 0}, {0, 0, direction}, t}, hit));
+    EXPECT_FALSE(occluded(traversal, {{0, 0, 0}, {0, 0, direction}, t}));
+    EXPECT_TRUE(nearest(traversal, {{0, 0, 0}, {0, 0, direction}, std::nextafter(t, kInfinity)}, hit));
+    EXPECT_TRUE(occluded(traversal, {{0, 0, 0}, {0, 0, direction}, std::nextafter(t, kInfinity)}));
   }
-  EXPECT_FALSE(traversal.nearest({{0, 0, 4}, {0, 0, 1}, kInfinity}, hit)) << "the origin lies on the triangle";
-  EXPECT_FALSE(traversal.nearest({{0, 0, 5}, {0, 0, 1}, kInfinity}, hit)) << "the triangle lies behind";
+  EXPECT_FALSE(nearest(traversal, {{0, 0, 4}, {0, 0, 1}, kInfinity}, hit)) << "the origin lies on the triangle";
+  EXPECT_FALSE(nearest(traversal, {{0, 0, 5}, {0, 0, 1}, kInfinity}, hit)) << "the triangle lies behind";
 }
 
 TEST(Traversal, HitCarriesPointBarycentricsAndNormal) {
@@ -480,12 +497,12 @@ TEST(Traversal, HitCarriesPointBarycentricsAndNormal) {
       scene_of({{Vec3{0, 0, 2}, Vec3{4, 0, 2}, Vec3{0, 4, 2}}, {Vec3{0, 0, 3}, Vec3{0, 4, 3}, Vec3{4, 0, 3}}});
   const Traversal traversal(scene);
   Hit hit;
-  ASSERT_TRUE(traversal.nearest({{1, 2, 0}, {0, 0, 0.5f}, kInfinity}, hit));
+  ASSERT_TRUE(nearest(traversal, {{1, 2, 0}, {0, 0, 0.5f}, kInfinity}, hit));
   EXPECT_EQ(hit.t, 4);
   EXPECT_FLOAT_EQ(hit.u, 0.25f);
   EXPECT_FLOAT_EQ(hit.v, 0.5f);
   EXPECT_EQ(hit.normal, (Vec3{0, 0, 1}));
-  ASSERT_TRUE(traversal.nearest({{1, 2, 9}, {0, 0, -1}, kInfinity}, hit));
+  ASSERT_TRUE(nearest(traversal, {{1, 2, 9}, {0, 0, -1}, kInfinity}, hit));
   EXPECT_EQ(hit.triangle, 1u);
   EXPECT_EQ(hit.normal, (Vec3{0, 0, -1}));
 }
