@@ -64,8 +64,8 @@ AREA      ?= 0
 GATES     ?= 0
 # `make extremes`
 MODE      ?= all
-# `make numerics-long`
-THREADS   ?= 1
+# `make numerics-long`, and sim with ENGINE=native or embree
+THREADS   ?=
 # `make quoted`
 LONG      ?= 0
 UPDATE    ?= 0
@@ -121,7 +121,7 @@ UNIT_OF_ENGINE := $(if $(filter rtl lockstep,$(ENGINE)),$(UNIT),true)
 .PHONY: help sim fidelity fit compare run cosim configurations mutants faults unit test lint format bench clean
 .PHONY: setup-% program configured-%
 .PHONY: numerics-long proofs synth synth-replay synth-prove growth numerics significands extremes isa diagrams quoted
-.PHONY: package sweep report
+.PHONY: package sweep report bench-native
 
 help: ## this list
 	@echo 'raypool: a ray-tracing GPU to render on, measure, verify and synthesise'
@@ -145,8 +145,10 @@ help: ## this list
 	@echo '  WAVES=1                       a waveform (FST) too; ENGINE=rtl, lockstep  $(WAVES)'
 	@echo '  TRACE=FROM:CYCLES|pixel:X,Y   what happens then, for Perfetto, Konata and make report;'
 	@echo '                                1: 0:20000; ENGINE=model                    $(TRACE)'
+	@echo '  THREADS=N                     ENGINE=native, embree; changes no picture   all cores'
 	@echo 'variables of make fidelity:  those of the frame, from SCENE to DETAIL, and OUT=FOLDER'
 	@echo '  LEVELS="native model ...": only these; all if not given  RUNS=N: times that each draws, $(RUNS) if not given'
+	@echo 'variables of make bench-native:  SCENE  SIZE  DEPTH  VIEW  DETAIL and those of the camera  THREADS=N'
 	@echo 'variables of make fit:  those of the frame, and OUT=FILE for the configuration'
 	@echo '  SLOWER=N%: $(SLOWER) if not given  AREA=1: what each change saves in area'
 	@echo '  POWER=1: area, and timing and power before and after'
@@ -160,7 +162,7 @@ help: ## this list
 	@echo 'variables of make cosim:  PROGRAMS=$(PROGRAMS)  SEED=$(SEED)  CONFIG  SET  CUS  COVERAGE=FILE.json'
 	@echo 'variables of make numerics:  GATES=1: synthesise the lanes of every mode first'
 	@echo '  significands:  SCENE  CONFIG  SET  DEPTH  VIEW  DETAIL and those of the camera'
-	@echo '  extremes:  MODE=all|ieee-exact|...;  numerics-long:  THREADS=$(THREADS)'
+	@echo '  extremes:  MODE=all|ieee-exact|...;  numerics-long:  THREADS=N, 1 if not given'
 	@echo 'variables of make quoted:  LONG=1: those that take long too;  UPDATE=1: write what is printed into the pages'
 	@echo '  PAGES="docs/isa.md ...";  FILES=NAME=PATH: a file that quotes need'
 	@echo 'variable of every target:  BUILD=FOLDER: for everything that is made, $(BUILD) if not given;'
@@ -169,7 +171,8 @@ help: ## this list
 
 sim: setup-sim program ## draw a scene on the simulated chip: picture, report, figures
 	@$(UNIT_OF_ENGINE) --units "$$CUS"
-	@$(RAYPOOL) sim $(FRAME) --engine "$$ENGINE" $${OUT:+--out "$$OUT"} $(WAVES_FLAG) $(TRACE_FLAG)
+	@$(RAYPOOL) sim $(FRAME) --engine "$$ENGINE" $${OUT:+--out "$$OUT"} $(WAVES_FLAG) $(TRACE_FLAG) \
+	  $${THREADS:+--threads "$$THREADS"}
 
 fidelity: setup-sim setup-fidelity program ## a frame at every level of simulation, speed against error: LEVELS, RUNS
 	@scripts/fidelity.py $(FRAME) $${LEVELS:+--levels "$$LEVELS"} --runs "$$RUNS" $${OUT:+--out "$$OUT"}
@@ -243,7 +246,7 @@ test: setup-sim setup-test setup-synth configured-ON ## every test
 
 numerics-long: setup-sim setup-test configured-ON ## arithmetic against its oracles, 10^8 pairs; an hour: THREADS
 	@scripts/build.sh $(BUILD) numerics_long flt_alu_test slw_alu_test small_floats_test
-	@scripts/numerics_long.sh $(BUILD) "$$THREADS"
+	@scripts/numerics_long.sh $(BUILD) "$${THREADS:-1}"
 
 quoted: setup-sim setup-test setup-synth setup-quoted configured-ON ## run what the pages quote: LONG, UPDATE, PAGES
 	@scripts/build.sh $(BUILD)
@@ -263,6 +266,10 @@ bench: setup-sim configured-OFF ## measured rates of the engines on this machine
 	@scripts/build.sh $(BUILD) raypool raypool_bench
 	@for config in 4w4c 8w8c 16w16c; do scripts/unit.sh "$$config"; done
 	@$(BUILD)/raypool_bench
+
+bench-native: setup-sim program ## our intersection beside Embree's on a frame's rays, one thread and all
+	@$(RAYPOOL) bench --scene "$$SCENE" --size "$$SIZE" --depth "$$DEPTH" $${VIEW:+--view "$$VIEW"} $(LOOK) \
+	  $${DETAIL:+--detail "$$DETAIL"} $${THREADS:+--threads "$$THREADS"}
 
 # For any computer, so not from the build folder of this one.
 package: setup-sim setup-package ## Debian packages of program and library, in build/package

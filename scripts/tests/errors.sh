@@ -83,6 +83,8 @@ refuses_sim "depth 0" "depth.*1" --depth 0
 refuses_sim "3 compute units" "3" --units 3
 refuses_sim "unknown engine" "native, embree, functional, model, rtl or lockstep" --engine spice
 refuses_sim "modules of the engine that has no chip" "engine native has no chip" --engine native --modules
+refuses_sim "threads of an engine that has one" "engine model runs on one thread" --engine model --threads 2
+refuses_sim "more threads than there may be" "Value 257 not in range 1 to 256" --engine native --threads 257
 refuses_sim "unknown traverser" "chip.traverser must be one of static, modelled" --traverser quick
 refuses_sim "unknown policy" "chip.policy must be one of thesis" --set chip.policy=magic
 refuses_sim "unknown field" "no field 'flt.count'; near to it are alus.flt.count" --set flt.count=2

@@ -29,7 +29,8 @@ struct SimOptions {
   std::string unit_library;  ///< Verilated unit; empty: unit_library_path()
   int depth = 3;
   int units = 1;
-  double detail = 1;  ///< of a built-in scene, 0.01 .. 16
+  uint32_t threads = 0;  ///< of engines native and embree; 0: as many as the machine has cores
+  double detail = 1;     ///< of a built-in scene, 0.01 .. 16
   bool waves = false;
   std::string trace;           ///< window of cycles (trace::parse_window()); empty: no trace
   bool modules = false;        ///< print the modules of the chip, and draw nothing
@@ -118,6 +119,22 @@ struct SceneCommandOptions {
 };
 int scene_command(const SceneCommandOptions& options);
 int hits_command(const SceneCommandOptions& options);
+
+/// `raypool bench`
+struct BenchCommandOptions {
+  std::string scene = "room";
+  std::string view;
+  ViewWords look;
+  std::string size = "320x320";
+  double detail = 1;  ///< of a built-in scene, 0.01 .. 16
+  uint32_t depth = 3;
+  uint32_t threads = 0;  ///< beside one; 0: as many as the machine has cores
+  uint32_t repetitions = 7;
+  bool processor_time = false;  ///< in place of the time on the wall
+  bool json = false;            ///< on standard output, in place of the table
+  bool quiet = false;           ///< no progress
+};
+int bench_command(const BenchCommandOptions& options);
 
 /// `raypool cosim`: random programs, each with its own seed: seed, seed + 1, ...
 struct CosimOptions {

@@ -2,13 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <thread>
-
 #include "bits.hpp"
 #include "fit/needs.hpp"
 #include "kernel/kernel_report.hpp"
 #include "kernel/kernels.hpp"
+#include "scene/threads.hpp"
 
 namespace raypool {
 namespace {
@@ -74,7 +72,7 @@ NativeOptions native_options(const RunRecord& record) {
   native.depth = record.depth;
   native.reflections = record.reflections;
   native.contents = record.configuration.contents();
-  native.threads = std::max(1u, std::thread::hardware_concurrency());
+  native.threads = threads_or_all();
   native.mode = arith::mode_of(record.configuration);
   native.culling = record.configuration.chip.culling;
   return native;

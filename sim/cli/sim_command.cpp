@@ -18,6 +18,7 @@
 #include "scene/image.hpp"
 #include "scene/native_renderer.hpp"
 #include "scene/scene.hpp"
+#include "scene/threads.hpp"
 #include "scene/traversal.hpp"
 #include "trace/trace_recorder.hpp"
 
@@ -39,6 +40,10 @@ void check(const SimOptions& options, Engine engine) {
   }
   if (!options.trace.empty() && engine != Engine::Model) {
     throw InputError(fmt::format("engine {} leaves no trace: use model, or leave trace out", options.engine));
+  }
+  if (options.threads != 0 && !without_unit(engine)) {
+    throw InputError(
+        fmt::format("engine {} runs on one thread: use native or embree, or leave --threads out", options.engine));
   }
   if (options.inspect_until != 0 && engine != Engine::Lockstep) throw InputError("--inspect is for --engine lockstep");
 }
@@ -91,10 +96,12 @@ std::string progress_text(const ChipProgress& done, bool timed, double seconds) 
   return text;
 }
 
-FrameBuffer draw_natively(Engine engine, RunRecord& record, const Scene& scene, MemoryImage& image) {
+FrameBuffer draw_natively(const SimOptions& options, Engine engine, RunRecord& record, const Scene& scene,
+                          MemoryImage& image) {
   const Tracer tracer(scene, image.material_base);
   std::optional<EmbreeTracer> embree;
   NativeOptions native = native_options(record);
+  native.threads = threads_or_all(options.threads);
   if (engine == Engine::Embree) {
     embree.emplace(scene, tracer);
     native.trace = [&](const Ray& ray, Intersection& hit) { return embree->trace(ray, hit); };
@@ -209,7 +216,7 @@ int sim_command(const SimOptions& options) {
   OutputFolder out(options.out.empty() ? default_folder(options, scene, record.configuration, size)
                                        : fs::path(options.out));
 
-  const FrameBuffer frame = without_unit(engine) ? draw_natively(engine, record, scene, image)
+  const FrameBuffer frame = without_unit(engine) ? draw_natively(options, engine, record, scene, image)
                                                  : draw_on_unit(options, engine, record, scene, image, out);
 
   const std::vector<uint8_t> png = encode_png(frame);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "scene/hits_check.hpp"
+#include "scene/threads.hpp"
 
 namespace raypool::numerics {
 namespace {
@@ -75,6 +76,8 @@ RecordedFrame record_frame(const TradeScene& scene, const arith::Mode& mode,
   options.height = scene.height;
   options.depth = scene.depth;
   options.mode = mode;
+  // What is recorded of a pixel, the one thread writes that draws it.
+  if (!kernel) options.threads = threads_or_all();
   options.kernel = [&](RayKernel which, NativeThread& thread) {
     kernel ? kernel(which, thread) : run_native(which, thread);
     if (which == RayKernel::CastEye) return;
@@ -84,7 +87,7 @@ RecordedFrame record_frame(const TradeScene& scene, const arith::Mode& mode,
     if (which == RayKernel::Shade) {
       step.lit = true;
       for (int i = 0; i < 3; ++i) {
-        if (is_nan(input[word::kColor + i])) recorded.nan_pixels[pixel] = true;
+        if (is_nan(input[word::kColor + i])) recorded.nan_pixels[pixel] = 1;
       }
       return;
     }

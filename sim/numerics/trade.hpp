@@ -41,13 +41,13 @@ struct RecordedFrame {
   RecordedFrame(int width, int height, int depth);
 
   FrameBuffer frame;
-  PathImage paths;               ///< colours empty: they are in `frame`
-  std::vector<Ray> shadow_rays;  ///< [pixel] of the primary hit; all words zero where there is none
-  std::vector<bool> nan_pixels;  ///< [pixel] a contribution had a NaN
+  PathImage paths;                  ///< colours empty: they are in `frame`
+  std::vector<Ray> shadow_rays;     ///< [pixel] of the primary hit; all words zero where there is none
+  std::vector<uint8_t> nan_pixels;  ///< [pixel] 1: a contribution had a NaN; a byte each, for threads
 };
 
 /// The frame by engine native; pictures of all engines are the same, bit for bit.
-/// `kernel` replaces run_native, for tests.
+/// `kernel` replaces run_native, for tests; then on one thread, else on all.
 RecordedFrame record_frame(const TradeScene& scene, const arith::Mode& mode,
                            const std::function<void(RayKernel, NativeThread&)>& kernel = nullptr);
 

@@ -17,6 +17,7 @@
 #include "cli/exit_code.hpp"
 #include "cli/inspecting_run.hpp"
 #include "lockstep/lockstep_unit.hpp"
+#include "scene/native_renderer.hpp"
 
 namespace raypool {
 namespace {
@@ -47,6 +48,11 @@ void add_unit(CLI::App& app, std::string& engine, std::string& library) {
       ->type_name("native|embree|functional|model|rtl|lockstep")
       ->capture_default_str();
   app.add_option("--unit-library", library, "Verilated unit (default: where raypool unit builds it)");
+}
+
+void add_threads(CLI::App& app, uint32_t& threads, const std::string& whose) {
+  app.add_option("--threads", threads, whose + " (default: as many as the machine has cores)")
+      ->check(CLI::Range(1u, kMostRenderThreads));
 }
 
 void add_inspect(CLI::App& app, uint64_t& until) {
@@ -112,6 +118,7 @@ class CommandLine {
   void add_kernels_command();
   void add_errors_command();
   void add_scene_command();
+  void add_bench_command();
   void add_numerics_command();
   void add_significands_command();
   void add_fit_command();
@@ -135,6 +142,7 @@ class CommandLine {
   std::vector<std::string> kernels_set_;
   uint32_t grid_ = 4096;
   SceneCommandOptions scene_;
+  BenchCommandOptions bench_;
   NumericsOptions numerics_;
   SignificandsOptions significands_;
   FitOptions fit_;
@@ -161,6 +169,7 @@ CommandLine::CommandLine(int argc, char** argv) {
   add_kernels_command();
   add_errors_command();
   add_scene_command();
+  add_bench_command();
   add_numerics_command();
   add_significands_command();
   add_fit_command();
@@ -174,6 +183,7 @@ void CommandLine::add_sim_command() {
   add_config(*sim_app, sim_.config, sim_.set);
   add_unit(*sim_app, sim_.engine, sim_.unit_library);
   add_units_and_depth(*sim_app, sim_.units, sim_.depth);
+  add_threads(*sim_app, sim_.threads, "native and embree: threads");
   sim_app->add_option("--traverser", sim_.traverser, "as --set chip.traverser=NAME");
   sim_app->add_option(
       "--out", sim_.out,
@@ -348,6 +358,25 @@ void CommandLine::add_scene_command() {
   scene_app->add_option("--write-obj", scene_.write_obj, "write it as an OBJ, with its MTL beside it");
   scene_app->callback([this] { code_ = scene_command(scene_); });
   hits_app->callback([this] { code_ = hits_command(scene_); });
+}
+
+void CommandLine::add_bench_command() {
+  CLI::App* bench_app = app_.add_subcommand(
+      "bench", "how fast our intersection is beside Embree's, on the eye, reflection and shadow rays of a frame");
+  add_scene(*bench_app, bench_.scene, bench_.size, bench_.view, bench_.look, bench_.detail);
+  bench_app->add_option("--depth", bench_.depth, "of the frame's rays")
+      ->check(CLI::Range(1, kLargestDepth))
+      ->capture_default_str();
+  add_threads(*bench_app, bench_.threads, "threads of the second half of the table");
+  bench_app->add_option("--repetitions", bench_.repetitions, "turns, each of both sides")
+      ->check(CLI::Range(1, 10000))
+      ->capture_default_str();
+  bench_app->add_flag("--processor-time", bench_.processor_time,
+                      "what the threads used of the processor, divided by their number, in place of the time on the "
+                      "wall: for a machine that does other things too");
+  bench_app->add_flag("--json", bench_.json, "the figures as JSON on standard output, and nothing else there");
+  bench_app->add_flag("--quiet", bench_.quiet, "no progress");
+  bench_app->callback([this] { code_ = bench_command(bench_); });
 }
 
 void CommandLine::add_numerics_command() {
