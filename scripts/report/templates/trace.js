@@ -85,8 +85,9 @@
         Math.round(first).toLocaleString("en");
     };
     const later = () => {
-      if (!asked) requestAnimationFrame(paint);
+      if (asked) return;
       asked = true;
+      requestAnimationFrame(paint);
     };
     const look = (from, count) => {
       cycles = Math.min(most, Math.max(LEAST, count));
