@@ -23,6 +23,26 @@ void replace_uses(Op& op, int from, int to) {
   if ((has_operand(*op.info, Operand::B) || has_operand(*op.info, Operand::Rb)) && op.rb == from) op.rb = to;
 }
 
+/// An op's effects, and a bit for each number modulo 64 that it touches: two that share none do not depend on each
+/// other. Most pairs do not.
+struct Touched {
+  explicit Touched(const Op& op) : effect(effects(op)) {
+    for (const int number : effect.register_uses) reads |= bit(number);
+    for (int e = 0; e < effect.registers_defined; ++e) writes |= bit(effect.register_defined + e);
+    for (const int number : effect.predicate_uses) reads |= bit(number);
+    writes |= bit(effect.predicate_defined);
+    memory = op.info->alu() == AluType::Mem || op.info->alu() == AluType::Ray;
+  }
+  static uint64_t bit(int number) { return number == kNothing ? 0 : uint64_t{1} << (number & 63); }
+  bool apart(const Touched& other) const {
+    return (writes & (other.reads | other.writes)) == 0 && (reads & other.writes) == 0 && !(memory && other.memory);
+  }
+
+  Effects effect;
+  uint64_t reads = 0, writes = 0;
+  bool memory = false;
+};
+
 /// Straight code between two places where threads part or meet.
 class Segment {
  public:
@@ -210,8 +230,9 @@ class Segment {
   }
 
   /// Whether b must stay behind a.
-  static bool depends(const Op& a, const Op& b) {
-    const Effects first = effects(a), second = effects(b);
+  static bool depends(const Op& a, const Touched& touched_by_a, const Op& b, const Touched& touched_by_b) {
+    if (touched_by_a.apart(touched_by_b)) return false;
+    const Effects &first = touched_by_a.effect, &second = touched_by_b.effect;
     const auto uses = [](const auto& list, int number) {
       return number != kNothing && std::find(std::begin(list), std::end(list), number) != std::end(list);
     };
@@ -244,11 +265,12 @@ class Segment {
       node_of[i] = static_cast<int>(nodes.size());
       nodes.emplace_back(ops_[i], static_cast<int>(i));
     }
+    const std::vector<Touched> touched(ops_.begin(), ops_.end());
     std::vector<std::vector<int>> before(nodes.size());
     std::vector<int> behind(nodes.size(), 0);
     for (size_t i = 0; i < ops_.size(); ++i) {
       for (size_t j = i + 1; j < ops_.size(); ++j) {
-        if (node_of[i] == node_of[j] || !depends(ops_[i], ops_[j])) continue;
+        if (node_of[i] == node_of[j] || !depends(ops_[i], touched[i], ops_[j], touched[j])) continue;
         before[node_of[j]].push_back(node_of[i]);
         ++behind[node_of[i]];
       }
