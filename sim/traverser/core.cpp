@@ -60,6 +60,8 @@ Core::Core(const ChipConfiguration& chip, MemoryTurns& turns)
       triangle_latency_(chip.modelled_traverser_triangle_latency),
       memory_latency_(chip.memory_latency),
       slots_(chip.modelled_traverser_rays),
+      earliest_(slots_.size(), kNever),
+      from_next_(slots_.size()),
       setup_(chip.modelled_traverser_setup_latency),
       nodes_(node_fetch(chip)),
       triangles_(triangle_fetch(chip)),
@@ -71,10 +73,30 @@ Core::Core(const ChipConfiguration& chip, MemoryTurns& turns)
   for (uint32_t slot = 0; slot < slots_.size(); ++slot) free_.push_back(slot);
 }
 
-// From the first lookup until the last result.
-uint64_t Core::least(const Visit& visit) const {
-  const uint32_t count = lines(visit);
-  return count * cache_latency_ + (count - 1) + (visit.triangles == 0 ? box_latency_ : triangle_latency_);
+void Core::plan(const VisitList& visits, std::vector<Step>& steps) const {
+  steps.clear();
+  for (size_t i = 0; i < visits.size(); ++i) {
+    const Visit& visit = visits[i];
+    Step step;
+    step.node = visit.triangles == 0;
+    step.line = step.node ? visit.place : first_line(visit);
+    step.all_tests = step.node ? 1 : visit.triangles;
+    step.children = visit.children;
+    step.taken = pops(visits, i);
+    for (uint32_t line = 0, count = lines(visit); line < count; ++line, ++step.line) {
+      step.tests = static_cast<uint8_t>(step.node ? 1 : triangles_of(visit, line));
+      step.more = static_cast<uint8_t>(count - line - 1);
+      steps.push_back(step);
+      step.all_tests = 0;
+    }
+  }
+  // A visit's results, or the entries that are taken after it, say in one cycle what is looked up in the next.
+  uint64_t rest = finish_.latency() - 1;
+  for (auto step = steps.rbegin(); step != steps.rend(); ++step) {
+    rest += cache_latency_ +
+            (step->more != 0 ? 1 : (step->node ? box_latency_ : triangle_latency_) + std::max(1u, step->taken));
+    step->rest = static_cast<uint32_t>(rest);
+  }
 }
 
 uint32_t Core::push(const VisitList& visits) {
@@ -85,15 +107,10 @@ uint32_t Core::push(const VisitList& visits) {
   ++work_.rays;
   work_.most_rays = std::max(work_.most_rays, ++in_flight_);
   Slot& slot = slots_[index];
-  slot.taken = true;
-  slot.wanted = false;
-  slot.visit = slot.line = 0;
-  slot.visits = visits;
+  slot.step = 0;
+  plan(visits, slot.steps);
   stacks_.clear(index);
-  slot.rest = finish_.latency();
-  for (size_t i = 0; i < visits.size(); ++i) slot.rest += least(visits[i]) + std::max(1u, pops(visits, i));
-  slot.earliest = cycle_ + setup_.latency() + slot.rest;
-  if (!visits.empty()) --slot.rest;  // the first lookup is in the cycle after
+  earliest_[index] = cycle_ + setup_.latency() + (slot.steps.empty() ? finish_.latency() : 1 + slot.steps[0].rest);
   setup_.push(cycle_, index);
   return index;
 }
@@ -102,8 +119,10 @@ uint32_t Core::push(const VisitList& visits) {
 void Core::clock(uint64_t cycle) {
   cycle_ = cycle;
   take_lines();
-  stacks_.clock();
-  for (const uint32_t slot : stacks_.done()) go_on(slot);
+  if (stacks_.pops()) {
+    stacks_.clock();
+    for (const uint32_t slot : stacks_.done()) go_on(slot);
+  }
   take_results(box_pipes_);
   take_results(triangle_pipes_);
   take_prepared();
@@ -137,7 +156,7 @@ void Core::take_lines() {
 void Core::take_prepared() {
   while (setup_.valid(cycle_)) {
     const uint32_t slot = setup_.take();
-    if (slots_[slot].visits.empty()) {
+    if (slots_[slot].steps.empty()) {
       done_.push_back(slot);
     } else {
       want(slot);
@@ -148,9 +167,9 @@ void Core::take_prepared() {
 void Core::take_data(FetchUnit& fetch, TestPipes& pipes) {
   while (fetch.valid(cycle_)) {
     const Fetch data = fetch.take();
-    for (uint32_t i = 0; i < data.tests; ++i) pipes.push(data.slot);
+    for (uint32_t i = 0; i < data.tests; ++i) pipes.push(cycle_, data.slot);
     if (data.more == 0) continue;
-    ++slots_[data.slot].line;
+    ++slots_[data.slot].step;
     want(data.slot);
   }
 }
@@ -165,50 +184,35 @@ void Core::take_results(TestPipes& pipes) {
 // A leaf's lines are wanted one after the other: a triangle may need two.
 void Core::want(uint32_t index) {
   Slot& slot = slots_[index];
-  const Visit& visit = slot.visits[slot.visit];
-  const bool node = visit.triangles == 0;
-  if (slot.line == 0) {
-    slot.tests = node ? 1 : visit.triangles;
-    if (!node) ++work_.leaves;
-  } else {
-    slot.rest -= cache_latency_ + 1;
-  }
-  slot.wanted = true;
-  slot.earliest = cycle_ + 1 + slot.rest;
-  if (node) {
-    nodes_.push(cycle_, {index, visit.place, 1, 0});
-  } else {
-    triangles_.push(
-        cycle_, {index, first_line(visit) + slot.line, triangles_of(visit, slot.line), lines(visit) - slot.line - 1});
-  }
+  const Step& step = slot.steps[slot.step];
+  slot.tests += step.all_tests;
+  work_.leaves += !step.node && step.all_tests != 0;
+  from_next_[index] = step.rest;
+  earliest_[index] = cycle_ + 1 + step.rest;
+  (step.node ? nodes_ : triangles_).push(cycle_, {index, step.line, step.tests, step.more});
 }
 
 // `rest` was counted from a lookup that hits.
 void Core::looked_up(uint32_t index, uint64_t due) {
-  Slot& slot = slots_[index];
-  slot.wanted = false;
+  from_next_[index] = 0;
   if (due == kNever) due = cycle_ + memory_latency_;
-  slot.earliest = due - cache_latency_ + slot.rest;
+  earliest_[index] = due - cache_latency_ + slots_[index].steps[slots_[index].step].rest;
 }
 
 void Core::visited(uint32_t index) {
   Slot& slot = slots_[index];
-  const Visit& visit = slot.visits[slot.visit];
-  if (visit.children > 1) stacks_.push(index, visit.children - 1u);
-  const uint32_t taken = pops(slot.visits, slot.visit);
-  // What has been of this visit: its last line, its tests, and what is taken from the stack.
-  slot.rest -= cache_latency_ + (visit.triangles == 0 ? box_latency_ : triangle_latency_) + std::max(1u, taken);
-  if (taken == 0 || stacks_.pop(index, taken)) go_on(index);
+  const Step& step = slot.steps[slot.step];
+  if (step.children > 1) stacks_.push(index, step.children - 1u);
+  if (step.taken == 0 || stacks_.pop(index, step.taken)) go_on(index);
 }
 
 void Core::go_on(uint32_t index) {
   Slot& slot = slots_[index];
-  slot.line = 0;
-  if (++slot.visit < slot.visits.size()) {
-    want(index);
-  } else {
+  if (++slot.step == slot.steps.size()) {
     done_.push_back(index);
+    return;
   }
+  want(index);
 }
 
 void Core::finish() {
@@ -219,7 +223,7 @@ void Core::finish() {
   finished_ = finish_.valid(cycle_);
   if (!finished_) return;
   slot_ = finish_.take();
-  slots_[slot_].taken = false;
+  earliest_[slot_] = kNever;
   free_.push_back(slot_);
   work_.ray_cycles += (cycle_ - since_) * in_flight_--;
   since_ = cycle_;
@@ -233,11 +237,9 @@ uint64_t Core::next() const {
 
 uint64_t Core::earliest_done(uint64_t now) const {
   uint64_t earliest = kNever;
-  for (const Slot& slot : slots_) {
-    if (!slot.taken) continue;
-    earliest = std::min(earliest, slot.wanted ? std::max(slot.earliest, now + 1 + slot.rest) : slot.earliest);
-  }
-  return std::max(earliest, now + 1);
+  for (size_t slot = 0; slot < earliest_.size(); ++slot)
+    earliest = std::min(earliest, std::max(earliest_[slot], now + 1 + from_next_[slot]));
+  return earliest;
 }
 
 TraverserWork Core::work() const {

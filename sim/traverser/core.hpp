@@ -7,7 +7,6 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <vector>
 
 #include "config/configuration.hpp"
@@ -15,6 +14,7 @@
 #include "traverser/delay_line.hpp"
 #include "traverser/fetch_unit.hpp"
 #include "traverser/ray_stacks.hpp"
+#include "traverser/ring.hpp"
 #include "traverser/test_pipes.hpp"
 #include "traverser/tree_memory.hpp"
 #include "traverser/work.hpp"
@@ -47,15 +47,21 @@ class Core : private LookupListener {
   TraverserWork work() const;
 
  private:
+  /// A line that a ray wants, and what comes after it.
+  struct Step {
+    uint32_t line = 0;
+    uint32_t rest = 0;      // cycles at least, from its lookup until the ray is done
+    uint8_t tests = 0;      // that can begin with it
+    uint8_t more = 0;       // lines of the visit behind it
+    uint8_t all_tests = 0;  // of the visit that begins with it; 0: there are lines of the visit before it
+    bool node = false;      // or a leaf
+    uint8_t children = 0;   // of the node that the ray meets
+    uint32_t taken = 0;     // from the stack, after the visit
+  };
   struct Slot {
-    bool taken = false;
-    bool wanted = false;    // waits for a lookup
-    uint32_t visit = 0;     // the present one
-    uint32_t line = 0;      // of it
-    uint32_t tests = 0;     // of it, whose result is to come
-    uint64_t rest = 0;      // cycles at least, from the lookup until it is done
-    uint64_t earliest = 0;  // cycle in which it can be done
-    VisitList visits;
+    std::vector<Step> steps;
+    uint32_t step = 0;   // the present one
+    uint32_t tests = 0;  // of the visit, whose result is to come
   };
 
   void looked_up(uint32_t slot, uint64_t due) override;
@@ -68,11 +74,14 @@ class Core : private LookupListener {
   void visited(uint32_t slot);
   void go_on(uint32_t slot);
   void finish();
-  uint64_t least(const Visit& visit) const;
+  void plan(const VisitList& visits, std::vector<Step>& steps) const;
 
   const uint64_t cache_latency_, box_latency_, triangle_latency_, memory_latency_;
   std::vector<Slot> slots_;
-  std::deque<uint32_t> free_;
+  // Apart, since all are looked at together. [slot]
+  std::vector<uint64_t> earliest_;   // cycle in which its ray can be done; kNever: it has none
+  std::vector<uint64_t> from_next_;  // of one that waits for a lookup: cycles from the next one on at least; else 0
+  Ring<uint32_t> free_;
   uint32_t in_flight_ = 0;
   uint64_t cycle_ = 0;
 
@@ -81,7 +90,7 @@ class Core : private LookupListener {
   TestPipes box_pipes_, triangle_pipes_;
   RayStacks stacks_;
   TreeMemory memory_;
-  std::deque<uint32_t> done_;  // visited everything
+  Ring<uint32_t> done_;  // visited everything
   DelayLine<uint32_t> finish_;
   bool finished_ = false;
   uint32_t slot_ = 0;

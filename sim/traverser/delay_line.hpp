@@ -3,7 +3,8 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <deque>
+
+#include "traverser/ring.hpp"
 
 namespace raypool::traverser {
 
@@ -14,15 +15,19 @@ class DelayLine {
  public:
   explicit DelayLine(uint64_t latency) : latency_(latency) {}
 
-  void push(uint64_t cycle, const Item& item) { items_.push_back({cycle + latency_, item}); }
+  void push(uint64_t cycle, const Item& item) {
+    if (items_.empty()) next_ = cycle + latency_;
+    items_.push_back({cycle + latency_, item});
+  }
   /// Something comes out in this cycle, and must be taken in it.
-  bool valid(uint64_t cycle) const { return !items_.empty() && items_.front().due <= cycle; }
+  bool valid(uint64_t cycle) const { return next_ <= cycle; }
   Item take() {
     const Item item = items_.front().item;
     items_.pop_front();
+    next_ = items_.empty() ? kNever : items_.front().due;
     return item;
   }
-  uint64_t next() const { return items_.empty() ? kNever : items_.front().due; }
+  uint64_t next() const { return next_; }
   size_t size() const { return items_.size(); }
   uint64_t latency() const { return latency_; }
 
@@ -32,7 +37,8 @@ class DelayLine {
     Item item;
   };
   uint64_t latency_;
-  std::deque<Entry> items_;
+  uint64_t next_ = kNever;  // cycle in which the oldest comes out
+  Ring<Entry> items_;
 };
 
 }  // namespace raypool::traverser

@@ -49,8 +49,7 @@ bool FetchUnit::look_up(uint64_t cycle, Wanted& wanted, LookupListener& listener
   return true;
 }
 
-void FetchUnit::clock(uint64_t cycle, LookupListener& listener) {
-  if (stuck_) return;
+void FetchUnit::look(uint64_t cycle, LookupListener& listener) {
   uint32_t lookups = prefetch(cycle);
   stuck_ = lookups == 0;
   const size_t window = std::min<size_t>(wanted_.size(), kWindow * setup_.lookups);
@@ -69,17 +68,11 @@ void FetchUnit::clock(uint64_t cycle, LookupListener& listener) {
     ++kept;
   }
   if (kept == place) return;
-  // Those that stay, of those that were looked at, stand at the front: they move to the others.
   stuck_ = false;
-  const auto from = wanted_.begin() + static_cast<std::ptrdiff_t>(kept);
-  wanted_.erase(from, wanted_.begin() + static_cast<std::ptrdiff_t>(place));
-}
-
-Fetch FetchUnit::take() {
-  if (filled_.empty()) return hits_.take();
-  const Fetch fetch = filled_.front();
-  filled_.pop_front();
-  return fetch;
+  // Those that stay, of those that were looked at, stand at the front: they move up to the others.
+  const size_t gone = place - kept;
+  while (kept-- > 0) wanted_[kept + gone] = wanted_[kept];
+  wanted_.pop_front(gone);
 }
 
 uint32_t FetchUnit::take_request() {
@@ -96,11 +89,6 @@ void FetchUnit::promise(uint32_t line, uint64_t cycle, LookupListener& listener)
 void FetchUnit::fill(uint32_t line) {
   stuck_ = false;
   for (const Fetch& fetch : cache_.fill(line)) filled_.push_back(fetch);
-}
-
-uint64_t FetchUnit::next(uint64_t cycle) const {
-  const bool asks = !stuck_ && !(wanted_.empty() && ahead_.empty());
-  return asks || !requests_.empty() || !filled_.empty() ? cycle + 1 : hits_.next();
 }
 
 }  // namespace raypool::traverser

@@ -4,11 +4,11 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <vector>
 
 #include "traverser/delay_line.hpp"
 #include "traverser/line_cache.hpp"
+#include "traverser/ring.hpp"
 
 namespace raypool::traverser {
 
@@ -36,12 +36,19 @@ class FetchUnit {
     stuck_ = false;
   }
   /// Lookups; who takes the data must be ready for them.
-  void clock(uint64_t cycle, LookupListener& listener);
+  void clock(uint64_t cycle, LookupListener& listener) {
+    if (!stuck_ && !(wanted_.empty() && ahead_.empty())) look(cycle, listener);
+  }
   size_t on_the_way() const { return hits_.size(); }
 
   /// Data has come.
   bool valid(uint64_t cycle) const { return !filled_.empty() || hits_.valid(cycle); }
-  Fetch take();
+  Fetch take() {
+    if (filled_.empty()) return hits_.take();
+    const Fetch fetch = filled_.front();
+    filled_.pop_front();
+    return fetch;
+  }
 
   // To the memory.
   bool request_valid() const { return !requests_.empty(); }
@@ -50,7 +57,10 @@ class FetchUnit {
   void promise(uint32_t line, uint64_t cycle, LookupListener& listener);
   void fill(uint32_t line);
 
-  uint64_t next(uint64_t cycle) const;
+  uint64_t next(uint64_t cycle) const {
+    const bool asks = !stuck_ && !(wanted_.empty() && ahead_.empty());
+    return asks || !requests_.empty() || !filled_.empty() ? cycle + 1 : hits_.next();
+  }
   const CacheWork& work() const { return cache_.work(); }
 
  private:
@@ -63,6 +73,7 @@ class FetchUnit {
     uint64_t cycle = kNever;  // in which it gave
     uint32_t line = 0;        // this one
   };
+  void look(uint64_t cycle, LookupListener& listener);
   bool bank_free(uint64_t cycle, uint32_t line);
   /// Looks up lines behind those that missed. Returns how many lookups that took.
   uint32_t prefetch(uint64_t cycle);
@@ -71,12 +82,12 @@ class FetchUnit {
 
   Setup setup_;
   LineCache cache_;
-  std::deque<Wanted> wanted_;
-  bool stuck_ = false;          // no lookup will come to more than in the last cycle, until a line comes or is wanted
-  std::deque<uint32_t> ahead_;  // lines to prefetch
+  Ring<Wanted> wanted_;
+  bool stuck_ = false;    // no lookup will come to more than in the last cycle, until a line comes or is wanted
+  Ring<uint32_t> ahead_;  // lines to prefetch
   DelayLine<Fetch> hits_;
-  std::deque<Fetch> filled_;
-  std::deque<uint32_t> requests_;
+  Ring<Fetch> filled_;
+  Ring<uint32_t> requests_;
   std::vector<Bank> banks_;
 };
 

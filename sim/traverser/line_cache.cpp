@@ -8,7 +8,7 @@
 namespace raypool::traverser {
 
 LineCache::LineCache(uint32_t lines, uint32_t ways, uint32_t mshrs)
-    : ways_a_set_(ways), sets_(lines / ways), tags_(lines), used_(lines), mshrs_(mshrs) {
+    : ways_a_set_(ways), sets_(lines / ways), tags_(lines, kNoLine), used_(lines), mshrs_(mshrs) {
   size_t buckets = 1;
   while (buckets < 4 * mshrs_.size()) buckets *= 2;
   buckets_.resize(buckets);
@@ -24,7 +24,7 @@ LineCache::Mshr* LineCache::find(uint32_t line) {
 size_t LineCache::find_way(uint32_t line) const {
   const size_t first = set(line);
   for (size_t way = first; way < first + ways_a_set_; ++way) {
-    if (tags_[way] == line && used_[way] != 0) return way;
+    if (tags_[way] == line) return way;
   }
   return kNone;
 }
@@ -64,7 +64,7 @@ bool LineCache::prefetch(uint32_t line) {
   return find_way(line) == kNone && find(line) == nullptr && miss(line) != nullptr;
 }
 
-std::vector<Fetch> LineCache::fill(uint32_t line) {
+const std::vector<Fetch>& LineCache::fill(uint32_t line) {
   ++fills_;
   Mshr** place = &bucket(line);
   while ((*place)->line != line) place = &(*place)->next;
@@ -75,7 +75,7 @@ std::vector<Fetch> LineCache::fill(uint32_t line) {
   const auto oldest = std::min_element(first, first + ways_a_set_);
   *oldest = ++lookups_;
   tags_[static_cast<size_t>(oldest - used_.begin())] = line;
-  return std::exchange(mshr->waiting, {});
+  return mshr->waiting;
 }
 
 }  // namespace raypool::traverser

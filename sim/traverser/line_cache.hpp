@@ -36,8 +36,8 @@ class LineCache {
   Answer lookup(const Fetch& fetch, uint64_t by = 0);
   /// A line that somebody will ask for soon. True if it must be requested: it is not there, and a register is free.
   bool prefetch(uint32_t line);
-  /// The line has come: who waited for it, oldest first.
-  std::vector<Fetch> fill(uint32_t line);
+  /// The line has come: who waited for it, oldest first. Holds until the next lookup or prefetch.
+  const std::vector<Fetch>& fill(uint32_t line);
   /// When it will come, once that is known.
   void promise(uint32_t line, uint64_t cycle) { find(line)->due = cycle; }
   /// kNever: not known. The line must be on its way.
@@ -65,9 +65,10 @@ class LineCache {
   Mshr*& bucket(uint32_t line) { return buckets_[line & (buckets_.size() - 1)]; }
 
   static constexpr size_t kNone = SIZE_MAX;
+  static constexpr uint32_t kNoLine = UINT32_MAX;  // of a way that is empty
   uint32_t ways_a_set_, sets_;
   std::vector<uint32_t> tags_;  // [set][way], apart from used_: they are searched in every lookup
-  std::vector<uint64_t> used_;  // [set][way]; 0: empty
+  std::vector<uint64_t> used_;  // [set][way]; 0: not yet
   std::vector<Mshr> mshrs_;
   std::vector<Mshr*> buckets_;  // taken registers, by their line's last bits
   Mshr* free_ = nullptr;

@@ -4,10 +4,10 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <vector>
 
 #include "traverser/delay_line.hpp"
+#include "traverser/ring.hpp"
 
 namespace raypool::traverser {
 
@@ -23,6 +23,8 @@ class RayStacks {
   void push(uint32_t slot, uint32_t entries);
   /// So many are taken, one in a cycle, the first in this one. True if that is all; else done() tells when it is.
   bool pop(uint32_t slot, uint32_t entries);
+  /// Entries are being taken, one in a cycle.
+  bool pops() const { return !popping_.empty(); }
   void clock();
   /// Rays whose entries have been taken in the cycle of the clock() before.
   const std::vector<uint32_t>& done() const { return done_; }
@@ -55,7 +57,7 @@ class RayStacks {
   uint32_t entries_;
   std::vector<Stack> stacks_;
   std::vector<uint32_t> popping_, done_;
-  std::deque<Request> requests_;
+  Ring<Request> requests_;
   uint64_t spills_ = 0, fills_ = 0;
   uint32_t deepest_ = 0;
 };

@@ -4,9 +4,9 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 
 #include "traverser/delay_line.hpp"
+#include "traverser/ring.hpp"
 #include "traverser/work.hpp"
 
 namespace raypool::traverser {
@@ -17,15 +17,19 @@ class TestPipes {
 
   /// There is room for what so many lookups bring. What the memory brings comes in any case, out of the registers.
   bool ready(size_t on_the_way) const { return queue_.size() + on_the_way < kQueue * pipes_; }
-  /// A test of the ray in `slot`.
-  void push(uint32_t slot) { queue_.push_back(slot); }
-
-  void clock(uint64_t cycle) {
-    for (uint32_t i = 0; i < pipes_ && !queue_.empty(); ++i) {
-      line_.push(cycle, queue_.front());
-      queue_.pop_front();
-      ++work_.tests;
+  /// A test of the ray in `slot`. One that need not wait is begun at once.
+  void push(uint64_t cycle, uint32_t slot) {
+    if (queue_.empty() && begun_ < pipes_) {
+      begin(cycle, slot);
+    } else {
+      queue_.push_back(slot);
     }
+  }
+
+  /// The end of a cycle in which tests were pushed, or some wait.
+  void clock(uint64_t cycle) {
+    for (; begun_ < pipes_ && !queue_.empty(); queue_.pop_front()) begin(cycle, queue_.front());
+    begun_ = 0;
     work_.waiting += queue_.size();
   }
 
@@ -37,9 +41,16 @@ class TestPipes {
   const PipeWork& work() const { return work_; }
 
  private:
+  void begin(uint64_t cycle, uint32_t slot) {
+    line_.push(cycle, slot);
+    ++begun_;
+    ++work_.tests;
+  }
+
   static constexpr size_t kQueue = 4;  // places, for each pipe
   uint32_t pipes_;
-  std::deque<uint32_t> queue_;
+  uint32_t begun_ = 0;  // tests, in this cycle
+  Ring<uint32_t> queue_;
   DelayLine<uint32_t> line_;
   PipeWork work_;
 };

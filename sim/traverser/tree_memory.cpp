@@ -53,7 +53,7 @@ void TreeMemory::serve_stack(uint64_t cycle, const RayStacks::Request& request) 
   }
 }
 
-void TreeMemory::clock(uint64_t cycle, FetchUnit& nodes, FetchUnit& triangles, RayStacks& stacks,
+void TreeMemory::serve(uint64_t cycle, FetchUnit& nodes, FetchUnit& triangles, RayStacks& stacks,
                        LookupListener& listener) {
   for (uint32_t i = 0; i < kSources; ++i) {
     const auto source = static_cast<Source>((next_source_ + i) % kSources);

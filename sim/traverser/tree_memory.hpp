@@ -6,12 +6,12 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <vector>
 
 #include "config/configuration.hpp"
 #include "traverser/fetch_unit.hpp"
 #include "traverser/ray_stacks.hpp"
+#include "traverser/ring.hpp"
 #include "traverser/work.hpp"
 
 namespace raypool::traverser {
@@ -38,7 +38,10 @@ class TreeMemory {
   TreeMemory(const ChipConfiguration& chip, MemoryTurns& turns);
 
   /// Makes one request of those that wait, in rotation.
-  void clock(uint64_t cycle, FetchUnit& nodes, FetchUnit& triangles, RayStacks& stacks, LookupListener& listener);
+  void clock(uint64_t cycle, FetchUnit& nodes, FetchUnit& triangles, RayStacks& stacks, LookupListener& listener) {
+    if (nodes.request_valid() || triangles.request_valid() || stacks.request_valid())
+      serve(cycle, nodes, triangles, stacks, listener);
+  }
 
   bool valid(uint64_t cycle) const { return !lines_.empty() && lines_.front().due <= cycle; }
   Returned take();
@@ -55,6 +58,7 @@ class TreeMemory {
   struct Bank {
     uint64_t row = kNever, free_from = 0;
   };
+  void serve(uint64_t cycle, FetchUnit& nodes, FetchUnit& triangles, RayStacks& stacks, LookupListener& listener);
   uint64_t access(uint64_t line, uint64_t start);
   /// Lines one behind the other, which come together.
   uint64_t read(uint64_t cycle, uint64_t line, uint64_t lines, Returned returned);
@@ -63,7 +67,7 @@ class TreeMemory {
   MemoryTurns& turns_;
   uint64_t latency_, row_miss_, lines_a_row_, lines_a_node_;
   std::vector<Bank> banks_;
-  std::deque<Line> lines_;
+  Ring<Line> lines_;
   uint32_t next_source_ = 0;
   uint64_t reads_ = 0, quadwords_ = 0, row_hits_ = 0, row_misses_ = 0;
 };
