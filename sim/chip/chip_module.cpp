@@ -44,7 +44,8 @@ Chip::Chip(const sc_core::sc_module_name& name, const ChipOptions& options)
       frame_("frame_port", *options.frame),
       controller_("controller", options_),
       traverser_(make_traverser({*options.tracer, options.configuration.chip, options.device->units(), options.depth,
-                                 secondary_kernel(options.depth, options.reflections) == RayKernel::CastSecondary})),
+                                 secondary_kernel(options.depth, options.reflections) == RayKernel::CastSecondary,
+                                 options.device->timed()})),
       device_("device_host", *options.device),
       monitor_("monitor", {options.watchdog_cycles, options.cycle_limit, true, options.progress != nullptr}) {
   memory_port_.clock(clock_.now);

@@ -43,6 +43,13 @@ TEST_P(Frame, IsThatOfTheNativeRenderer) {
   EXPECT_FALSE(result.timed);
 }
 
+TEST(FrameWithoutTime, SpendsNoneInTheTraverser) {
+  test::RealFrame run(4, 4, 32, 24, 3, make_cornell());
+  run.options.configuration.chip.traverser = TraverserName::Modelled;
+  run.set_device(make_functional_unit(run.options.configuration, run.image.memory));
+  EXPECT_FALSE(run_chip(run.options).traversal);
+}
+
 struct Drawn {
   FrameBuffer frame;
   RayCounts rays;

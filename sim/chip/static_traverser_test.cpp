@@ -58,7 +58,7 @@ struct Bench {
         rays("ray_pool", {}, 5),
         intersections("intersection_pool", chip),
         frame("frame_port", picture),
-        traverser("traverser", {tracer, chip, units, 5, true}) {
+        traverser("traverser", {tracer, chip, units, 5, true, true}) {
     rays.clock(clock.now);
     rays.ledger(ledger.records);
     rays.arrivals(traverser.arrivals);

@@ -103,7 +103,7 @@ uint32_t Traverser::advance(uint32_t budget) {
 }
 
 std::unique_ptr<Traverser> make_traverser(const Tracing& tracing) {
-  switch (tracing.chip.traverser) {
+  switch (tracing.timed ? tracing.chip.traverser : TraverserName::Static) {
     case TraverserName::Static:
       return std::make_unique<StaticTraverser>("traverser", tracing);
     case TraverserName::Modelled:

@@ -36,6 +36,7 @@ struct Tracing {
   uint32_t units;
   uint32_t depth;    ///< the largest of a normal ray
   bool reflections;  ///< normal intersections are given to a kernel that casts some
+  bool timed;        ///< the device has a notion of time
 };
 
 class Traverser : public sc_core::sc_module,
@@ -98,7 +99,8 @@ class Traverser : public sc_core::sc_module,
   sc_core::sc_event frame_free_;
 };
 
-/// The one that `chip.traverser` names.
+/// The one that `chip.traverser` names; beside a device without time, whose cycles mean nothing, the one that takes none
+/// to find them.
 std::unique_ptr<Traverser> make_traverser(const Tracing& tracing);
 
 }  // namespace raypool::chip

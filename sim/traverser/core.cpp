@@ -78,13 +78,19 @@ void Core::plan(const VisitList& visits, std::vector<Step>& steps) const {
   for (size_t i = 0; i < visits.size(); ++i) {
     const Visit& visit = visits[i];
     Step step;
-    step.node = visit.triangles == 0;
-    step.line = step.node ? visit.place : first_line(visit);
-    step.all_tests = step.node ? 1 : visit.triangles;
-    step.children = visit.children;
     step.taken = pops(visits, i);
+    step.node = visit.triangles == 0;
+    if (step.node) {
+      step.line = visit.place;
+      step.tests = step.all_tests = 1;
+      step.pushed = static_cast<uint8_t>(std::max<int>(1, visit.children) - 1);
+      steps.push_back(step);
+      continue;
+    }
+    step.line = first_line(visit);
+    step.all_tests = visit.triangles;
     for (uint32_t line = 0, count = lines(visit); line < count; ++line, ++step.line) {
-      step.tests = static_cast<uint8_t>(step.node ? 1 : triangles_of(visit, line));
+      step.tests = static_cast<uint8_t>(triangles_of(visit, line));
       step.more = static_cast<uint8_t>(count - line - 1);
       steps.push_back(step);
       step.all_tests = 0;
@@ -187,7 +193,7 @@ void Core::want(uint32_t index) {
   const Step& step = slot.steps[slot.step];
   slot.tests += step.all_tests;
   work_.leaves += !step.node && step.all_tests != 0;
-  from_next_[index] = step.rest;
+  from_next_[index] = slot.rest = step.rest;
   earliest_[index] = cycle_ + 1 + step.rest;
   (step.node ? nodes_ : triangles_).push(cycle_, {index, step.line, step.tests, step.more});
 }
@@ -196,13 +202,13 @@ void Core::want(uint32_t index) {
 void Core::looked_up(uint32_t index, uint64_t due) {
   from_next_[index] = 0;
   if (due == kNever) due = cycle_ + memory_latency_;
-  earliest_[index] = due - cache_latency_ + slots_[index].steps[slots_[index].step].rest;
+  earliest_[index] = due - cache_latency_ + slots_[index].rest;
 }
 
 void Core::visited(uint32_t index) {
   Slot& slot = slots_[index];
   const Step& step = slot.steps[slot.step];
-  if (step.children > 1) stacks_.push(index, step.children - 1u);
+  if (step.pushed > 0) stacks_.push(index, step.pushed);
   if (step.taken == 0 || stacks_.pop(index, step.taken)) go_on(index);
 }
 
@@ -230,9 +236,11 @@ void Core::finish() {
 }
 
 uint64_t Core::next() const {
-  if (!done_.empty()) return cycle_ + 1;
-  return std::min({setup_.next(), nodes_.next(cycle_), triangles_.next(cycle_), box_pipes_.next(cycle_),
-                   triangle_pipes_.next(cycle_), stacks_.next(cycle_), memory_.next(), finish_.next()});
+  if (!done_.empty() || nodes_.busy() || triangles_.busy() || box_pipes_.busy() || triangle_pipes_.busy() ||
+      stacks_.busy())
+    return cycle_ + 1;
+  return std::min({setup_.next(), nodes_.next(), triangles_.next(), box_pipes_.next(), triangle_pipes_.next(),
+                   memory_.next(), finish_.next()});
 }
 
 uint64_t Core::earliest_done(uint64_t now) const {

@@ -51,16 +51,17 @@ class Core : private LookupListener {
   struct Step {
     uint32_t line = 0;
     uint32_t rest = 0;      // cycles at least, from its lookup until the ray is done
+    uint32_t node : 1;      // or a leaf's
+    uint32_t taken : 31;    // from the stack, after the visit
     uint8_t tests = 0;      // that can begin with it
     uint8_t more = 0;       // lines of the visit behind it
     uint8_t all_tests = 0;  // of the visit that begins with it; 0: there are lines of the visit before it
-    bool node = false;      // or a leaf
-    uint8_t children = 0;   // of the node that the ray meets
-    uint32_t taken = 0;     // from the stack, after the visit
+    uint8_t pushed = 0;     // on the stack, after the visit
   };
   struct Slot {
     std::vector<Step> steps;
     uint32_t step = 0;   // the present one
+    uint32_t rest = 0;   // its
     uint32_t tests = 0;  // of the visit, whose result is to come
   };
 

@@ -50,7 +50,7 @@ bool FetchUnit::look_up(uint64_t cycle, Wanted& wanted, LookupListener& listener
 }
 
 void FetchUnit::look(uint64_t cycle, LookupListener& listener) {
-  uint32_t lookups = prefetch(cycle);
+  uint32_t lookups = ahead_.empty() ? 0 : prefetch(cycle);
   stuck_ = lookups == 0;
   const size_t window = std::min<size_t>(wanted_.size(), kWindow * setup_.lookups);
   size_t kept = 0, place = 0;

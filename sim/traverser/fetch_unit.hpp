@@ -37,7 +37,7 @@ class FetchUnit {
   }
   /// Lookups; who takes the data must be ready for them.
   void clock(uint64_t cycle, LookupListener& listener) {
-    if (!stuck_ && !(wanted_.empty() && ahead_.empty())) look(cycle, listener);
+    if (asks()) look(cycle, listener);
   }
   size_t on_the_way() const { return hits_.size(); }
 
@@ -57,10 +57,10 @@ class FetchUnit {
   void promise(uint32_t line, uint64_t cycle, LookupListener& listener);
   void fill(uint32_t line);
 
-  uint64_t next(uint64_t cycle) const {
-    const bool asks = !stuck_ && !(wanted_.empty() && ahead_.empty());
-    return asks || !requests_.empty() || !filled_.empty() ? cycle + 1 : hits_.next();
-  }
+  /// Has something to do in the next cycle.
+  bool busy() const { return asks() || !requests_.empty() || !filled_.empty(); }
+  /// The next cycle in which it has, if it is not busy.
+  uint64_t next() const { return hits_.next(); }
   const CacheWork& work() const { return cache_.work(); }
 
  private:
@@ -73,6 +73,7 @@ class FetchUnit {
     uint64_t cycle = kNever;  // in which it gave
     uint32_t line = 0;        // this one
   };
+  bool asks() const { return !stuck_ && !(wanted_.empty() && ahead_.empty()); }
   void look(uint64_t cycle, LookupListener& listener);
   bool bank_free(uint64_t cycle, uint32_t line);
   /// Looks up lines behind those that missed. Returns how many lookups that took.

@@ -39,7 +39,8 @@ class RayStacks {
   Request take_request();
   void filled(uint32_t slot);
 
-  uint64_t next(uint64_t cycle) const { return popping_.empty() && requests_.empty() ? kNever : cycle + 1; }
+  /// Has something to do in the next cycle.
+  bool busy() const { return pops() || request_valid(); }
   uint64_t spills() const { return spills_; }
   uint64_t fills() const { return fills_; }
   uint32_t deepest() const { return deepest_; }

@@ -21,7 +21,7 @@ class Ring {
   const Item& front() const { return items_[first_]; }
 
   void push_back(const Item& item) {
-    if (size_ == items_.size()) grow();
+    if (size_ > mask_) grow();
     items_[(first_ + size_++) & mask_] = item;
   }
   /// The oldest leave; so many must be there.
@@ -34,12 +34,12 @@ class Ring {
   void grow() {
     std::rotate(items_.begin(), items_.begin() + static_cast<std::ptrdiff_t>(first_), items_.end());
     first_ = 0;
-    items_.resize(std::max<size_t>(8, 2 * items_.size()));
+    items_.resize(2 * items_.size());
     mask_ = items_.size() - 1;
   }
 
-  std::vector<Item> items_;  // a power of two
-  size_t first_ = 0, size_ = 0, mask_ = 0;
+  std::vector<Item> items_ = std::vector<Item>(8);  // a power of two
+  size_t first_ = 0, size_ = 0, mask_ = 7;
 };
 
 }  // namespace raypool::traverser

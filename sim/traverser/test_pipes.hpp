@@ -37,7 +37,10 @@ class TestPipes {
   bool valid(uint64_t cycle) const { return line_.valid(cycle); }
   uint32_t take() { return line_.take(); }
 
-  uint64_t next(uint64_t cycle) const { return queue_.empty() ? line_.next() : cycle + 1; }
+  /// Begins a test in the next cycle.
+  bool busy() const { return !queue_.empty(); }
+  /// The next cycle in which a result is there.
+  uint64_t next() const { return line_.next(); }
   const PipeWork& work() const { return work_; }
 
  private:
