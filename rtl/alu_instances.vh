@@ -4,6 +4,7 @@
           .WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS), .LATENCY(BRH_LATENCY),
           .DEPTH(BRH_DEPTH), .WITHOUT(BRH_WITHOUT), .SUBNORMALS(SUBNORMALS), .SIGNIFICAND(SIGNIFICAND)
         ) brh_alu (
+          .done_subnormal_o(done_subnormal[k]),
 `include "alu_port_map.vh"
         );
       end
@@ -20,6 +21,7 @@
           .WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS), .LATENCY(FLT_LATENCY),
           .DEPTH(FLT_DEPTH), .WITHOUT(FLT_WITHOUT), .SUBNORMALS(SUBNORMALS), .SIGNIFICAND(SIGNIFICAND), .FMA(FMA)
         ) flt_alu (
+          .done_subnormal_o(done_subnormal[k]),
 `include "alu_port_map.vh"
         );
       end
@@ -29,6 +31,10 @@
           .DEPTH(SLW_DEPTH), .WITHOUT(SLW_WITHOUT), .SUBNORMALS(SUBNORMALS), .SIGNIFICAND(SIGNIFICAND),
           .SLOW_UNIT(SLOW_UNIT), .SLOW_LANES(SLOW_LANES)
         ) slw_alu (
+          .done_subnormal_o(done_subnormal[k]),
 `include "alu_port_map.vh"
         );
+      end
+      if (TYPE != ISA_TYPE_BRH && TYPE != ISA_TYPE_FLT && TYPE != ISA_TYPE_SLW) begin : gen_unguarded
+        assign done_subnormal[k] = 1'b0;
       end

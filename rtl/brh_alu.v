@@ -1,5 +1,6 @@
 // Compares into predicates, predicate logic, and the decision of control instructions: taken, in every lane of
-// done_predicate_o.
+// done_predicate_o. SUBNORMALS 0: IEEE, 1: subnormal operands count as zero, 2: the same, and done_subnormal_o says
+// that a task has met one.
 `default_nettype none
 module brh_alu #(
   parameter integer WARPS = 8,
@@ -11,6 +12,7 @@ module brh_alu #(
   parameter integer SIGNIFICAND = 24,   // of a float, whose bits below are not looked at
   parameter integer WITHOUT = 0   // instructions that it lacks: a bit for each operation number
 ) (
+  output wire                   done_subnormal_o,
 `include "alu_ports.vh"
 );
 `include "isa.vh"
@@ -94,5 +96,17 @@ module brh_alu #(
   alu_delay #(.WIDTH(LANES), .STAGES(DEPTH-1)) alu_delay (
     .clk_i(clk_i), .valid_i(stage_valid[DEPTH-1:1]), .data_i(result_q), .data_o(done_predicate_o));
   assign done_data_o = {LANES*32{1'b0}};
+
+  generate
+    if (SUBNORMALS == 2) begin : gen_guard
+      wire floats = task_operation_i >= ISA_BRH_FEQ && task_operation_i <= ISA_BRH_FGE;
+      subnormal_guard #(.LANES(LANES), .SIGNIFICAND(SIGNIFICAND), .DEPTH(DEPTH), .RESULT_STAGE(DEPTH)) guard (
+        .clk_i(clk_i), .enter_i(task_mask_i & {LANES{task_valid_i && floats}}), .reads_i(3'b011),
+        .a_i(task_operand_a_i), .b_i(task_operand_b_i), .c_i({LANES*32{1'b0}}), .result_i(1'b0),
+        .subnormal_o(done_subnormal_o));
+    end else begin : gen_no_guard
+      assign done_subnormal_o = 1'b0;
+    end
+  endgenerate
 endmodule
 `default_nettype wire

@@ -113,6 +113,7 @@ module compute_unit #(
   wire [INSTANCES*WARP_BITS-1:0] instance_warp, done_warp;
   wire [INSTANCES*DATA-1:0] done_data;
   wire [INSTANCES*LANES-1:0] done_predicate;
+  wire [INSTANCES-1:0] done_subnormal;   // with done_valid: the task has met a subnormal number
   // memory
   wire instruction_request, instruction_request_ready, instruction_response;
   wire [31:0] instruction_request_address;
@@ -124,7 +125,7 @@ module compute_unit #(
   wire data_hit, data_miss, data_store, mem_idle, arbiter_idle;
   // faults
   wire [WARPS-1:0] warp_fault;
-  wire [WARPS*3-1:0] warp_fault_code;
+  wire [WARPS*4-1:0] warp_fault_code;
   wire mem_fault, ray_fault;
   wire [3:0] mem_fault_code, ray_fault_code;
   wire [WARP_BITS-1:0] mem_fault_warp, ray_fault_warp;
@@ -188,10 +189,11 @@ module compute_unit #(
         .operand_a_o(operand_a[w*DATA +: DATA]), .operand_b_o(operand_b[w*DATA +: DATA]),
         .operand_c_o(operand_c[w*DATA +: DATA]),
         .done_i(done), .done_data_i(done_data), .done_predicate_i(done_predicate),
+        .done_subnormal_i(done_subnormal),
         .retire_o(retire[w]), .pc_o(pc[w*16 +: 16]), .retire_data_o(retire_data_o[w*DATA +: DATA]),
         .retire_predicate_o(retire_predicate_o[w*LANES +: LANES]), .fetching_o(fetching[w]),
         .executing_o(executing[w]),
-        .fault_valid_o(warp_fault[w]), .fault_code_o(warp_fault_code[w*3 +: 3]));
+        .fault_valid_o(warp_fault[w]), .fault_code_o(warp_fault_code[w*4 +: 4]));
     end
   endgenerate
 
@@ -320,7 +322,7 @@ module compute_unit #(
   reg [3:0] alu_fault_code_q;
   reg [WARP_BITS-1:0] alu_fault_warp_q;
   reg [WARPS-1:0] warp_fault_q;
-  reg [WARPS*3-1:0] warp_fault_code_q;
+  reg [WARPS*4-1:0] warp_fault_code_q;
   always @(posedge clk_i)
     if (!rst_ni) begin
       fault_q <= 1'b0;
@@ -344,7 +346,7 @@ module compute_unit #(
     if (fault_q) begin
       for (f = WARPS - 1; f >= 0; f = f - 1)
         if (warp_fault_q[f]) begin
-          fault_code = {1'b0, warp_fault_code_q[f*3 +: 3]};
+          fault_code = warp_fault_code_q[f*4 +: 4];
           fault_warp = f[WARP_BITS-1:0];
         end
       if (alu_fault_q) begin

@@ -3,7 +3,8 @@
 // result_o is combinational, valid in stage 2, and zero while enable_i[2] is low, so that units of a lane can be
 // ORed. Nearest even, one NaN (quiet, positive).
 // SUBNORMALS 0: IEEE; 1: subnormal operands and results become the zero of their sign. A subnormal sum is exact, so it
-// never depends on rounding whether one is flushed.
+// never depends on rounding whether one is flushed. 2: and
+// tiny_o says, with result_o, that a result was.
 `default_nettype none
 module float_adder #(
   parameter integer EXPONENT_BITS = 8,
@@ -16,7 +17,8 @@ module float_adder #(
   input  wire            subtract_i,
   input  wire [BITS-1:0] a_i,
   input  wire [BITS-1:0] b_i,
-  output reg  [BITS-1:0] result_o
+  output reg  [BITS-1:0] result_o,
+  output reg             tiny_o
 );
   `include "free_running.vh"
   localparam integer E = EXPONENT_BITS;
@@ -113,6 +115,7 @@ module float_adder #(
     reg round_up, sign;
     integer step;
     result_o = {BITS{1'b0}};
+    tiny_o = 1'b0;
     sum = s2_sum_q;
     guide = s2_guide_q;
     shift = 3'd0;
@@ -147,6 +150,7 @@ module float_adder #(
         if (sum[W-1]) magnitude[E+M-1:M] = {high, low[2:0]};
         if (SUBNORMALS == 0 || sum[W-1]) magnitude[M-1:0] = sum[W-2:4] ^ (ones[M-1:0] & {M{round_up}});
         if (sum == {W{1'b0}} && s2_subtract_q) sign = 1'b0;
+        tiny_o = SUBNORMALS == 2 && !sum[W-1] && sum != {W{1'b0}};
       end
       result_o = {sign, magnitude};
     end

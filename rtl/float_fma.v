@@ -5,7 +5,7 @@
 // result_o is combinational, valid in stage 4, and zero while enable_i[4] is low, so that units of a lane can be
 // ORed. Nearest even, one NaN (quiet, positive).
 // SUBNORMALS 0: IEEE; 1: subnormal operands count as zero and a result is flushed to zero when
-// it is tiny after rounding, as in SSE.
+// it is tiny after rounding, as in SSE. 2: and tiny_o says, with result_o, that it was.
 //
 // With p = MANTISSA_BITS + 1 the window has c in its top p bits when c dominates, two free bits, the product of 2p
 // bits, and bits below it in which the last one collects what is shifted out of c. Two below the product suffice: a
@@ -26,7 +26,8 @@ module float_fma #(
   input  wire [BITS-1:0] b_i,
   input  wire [BITS-1:0] c_i,
   input  wire            multiply_i,      // a * b: c_i is not looked at
-  output reg  [BITS-1:0] result_o
+  output reg  [BITS-1:0] result_o,
+  output reg             tiny_o
 );
   `include "free_running.vh"
   localparam integer E = EXPONENT_BITS;
@@ -173,6 +174,7 @@ module float_fma #(
     reg [X+M-1:0] magnitude;
     reg sign, round_up;
     result_o = {BITS{1'b0}};
+    tiny_o = 1'b0;
     kept = s4_kept_q;
     guide = s4_guide_q;
     shift = 3'd0;
@@ -199,6 +201,7 @@ module float_fma #(
         if (s4_tag_q[SUBTRACT]) sign = 1'b0;
       end else if (SUBNORMALS != 0 && (!kept[K-1] || magnitude[E+M-1:M] == {E{1'b0}})) begin
         magnitude = {X+M{1'b0}};
+        tiny_o = SUBNORMALS == 2;
       end
       result_o = {sign, magnitude[E+M-1:0]};
     end

@@ -4,7 +4,8 @@
 // conversions, whose results wait for two more.
 // add_enable_i, multiply_enable_i, fuse_enable_i and convert_enable_i: bit 0 takes the operands into that unit, bit k
 // says that stage k holds that operation k cycles later; at most one unit is enabled in a stage.
-// result_o is loaded at the end of the last stage and stays until the next one.
+// result_o is loaded at the end of the last stage and stays until the next one. tiny_o, for one cycle from then on: it
+// was flushed.
 // SIGNIFICAND below 24: the units have so many bits; what a word has below them is not looked at, and zero in results.
 `default_nettype none
 module float_lane #(
@@ -24,7 +25,8 @@ module float_lane #(
   input  wire [31:0] a_i,
   input  wire [31:0] b_i,
   input  wire [31:0] c_i,
-  output wire [31:0] result_o
+  output wire [31:0] result_o,
+  output reg         tiny_o
 );
   `include "free_running.vh"
   localparam integer M = SIGNIFICAND - 1;   // stored bits of a mantissa
@@ -37,11 +39,14 @@ module float_lane #(
   generate
     if (FMA == 0) begin : gen_separate
       wire [31:D] sum, product;
+      wire tiny_sum, tiny_product;
       float_adder #(.EXPONENT_BITS(8), .MANTISSA_BITS(M), .SUBNORMALS(SUBNORMALS)) adder (
         .clk_i(clk_i), .enable_i(add_enable_i[2:0]), .subtract_i(subtract_i), .a_i(a_i[31:D]), .b_i(b_i[31:D]),
-        .result_o(sum));
+        .result_o(sum), .tiny_o(tiny_sum));
       float_multiplier #(.EXPONENT_BITS(8), .MANTISSA_BITS(M), .SUBNORMALS(SUBNORMALS)) multiplier (
-        .clk_i(clk_i), .enable_i(multiply_enable_i[2:0]), .a_i(a_i[31:D]), .b_i(b_i[31:D]), .result_o(product));
+        .clk_i(clk_i), .enable_i(multiply_enable_i[2:0]), .a_i(a_i[31:D]), .b_i(b_i[31:D]), .result_o(product),
+        .tiny_o(tiny_product));
+      always @(posedge clk_i) tiny_o <= tiny_sum || tiny_product;
       always @* begin
         computed = 32'd0;
         computed[31:D] = sum | product;
@@ -52,13 +57,15 @@ module float_lane #(
     end else begin : gen_fused
       wire [4:0] enable = add_enable_i | multiply_enable_i | fuse_enable_i;
       wire [31:D] fused;
+      wire tiny_fused;
       localparam [31:0] ONE = 32'h3f800000;
       wire [31:D] addend = add_enable_i[0] ? {b_i[31] ^ subtract_i, b_i[30:D]} : c_i[31:D];
       wire [31:D] factor = add_enable_i[0] ? ONE[31:D] : b_i[31:D];
       reg [31:0] s3_converted_q, s4_converted_q;
       float_fma #(.EXPONENT_BITS(8), .MANTISSA_BITS(M), .SUBNORMALS(SUBNORMALS)) fma (
         .clk_i(clk_i), .enable_i(enable), .a_i(a_i[31:D]), .b_i(factor), .c_i(addend),
-        .multiply_i(multiply_enable_i[0]), .result_o(fused));
+        .multiply_i(multiply_enable_i[0]), .result_o(fused), .tiny_o(tiny_fused));
+      always @(posedge clk_i) tiny_o <= tiny_fused;
       always @* begin
         computed = 32'd0;
         computed[31:D] = fused;

@@ -6,7 +6,7 @@
 // result_o is combinational, valid in stage 2, and zero while enable_i[2] is low, so that units of a lane can be
 // ORed. Nearest even, one NaN (quiet, positive).
 // SUBNORMALS 0: IEEE; 1: subnormal operands count as zero and a result is flushed to zero when
-// it is tiny after rounding, as in SSE.
+// it is tiny after rounding, as in SSE. 2: and tiny_o says, with result_o, that it was.
 `default_nettype none
 module float_multiplier #(
   parameter integer EXPONENT_BITS = 8,
@@ -18,7 +18,8 @@ module float_multiplier #(
   input  wire [2:0]      enable_i,
   input  wire [BITS-1:0] a_i,
   input  wire [BITS-1:0] b_i,
-  output reg  [BITS-1:0] result_o
+  output reg  [BITS-1:0] result_o,
+  output reg             tiny_o
 );
   `include "free_running.vh"
   localparam integer E = EXPONENT_BITS;
@@ -114,6 +115,7 @@ module float_multiplier #(
     reg [X+M-1:0] magnitude;
     reg sticky, sign;
     result_o = {BITS{1'b0}};
+    tiny_o = 1'b0;
     top = s2_product_q[P-1:M-1];
     lost = {M+3{1'b0}};
     kept = {M+1{1'b0}};
@@ -147,6 +149,7 @@ module float_multiplier #(
         magnitude = {2'b00, {E{1'b1}}, {M{1'b0}}};
       end else if (SUBNORMALS != 0 && (magnitude[X+M-1] || magnitude[X+M-1:M] == {X{1'b0}})) begin
         magnitude = {X+M{1'b0}};
+        tiny_o = SUBNORMALS == 2;
       end
       result_o = {sign, magnitude[E+M-1:0]};
     end

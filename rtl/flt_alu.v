@@ -1,5 +1,6 @@
 // Flt ALU: fadd fsub fmul fmin fmax f2i i2f in three stages, or with FMA these and ffma in five, further ones as delay.
-// docs/numerics.md has the rules of the results. SUBNORMALS 0: IEEE, 1: flushed. SIGNIFICAND: bits of a float's
+// docs/numerics.md has the rules of the results. SUBNORMALS 0: IEEE, 1: flushed, 2: the same, and done_subnormal_o says
+// that a task has met one. SIGNIFICAND: bits of a float's
 // significand, with its leading one. task_operand_c_i is register rc, the third operand of ffma. Lanes outside the mask
 // keep what they held. Only the unit an operation needs is clocked.
 `default_nettype none
@@ -14,6 +15,7 @@ module flt_alu #(
   parameter integer FMA = 0,
   parameter integer WITHOUT = 0   // instructions that it lacks: a bit for each operation number
 ) (
+  output wire                   done_subnormal_o,
 `include "alu_ports.vh"
 );
   `include "isa.vh"
@@ -29,8 +31,8 @@ module flt_alu #(
     if (FMA < 0 || FMA > 1) begin : gen_illegal_fma
       flt_alu_needs_fma_0_or_1 illegal ();
     end
-    if (SUBNORMALS < 0 || SUBNORMALS > 1) begin : gen_illegal_subnormals
-      flt_alu_needs_subnormals_0_or_1 illegal ();
+    if (SUBNORMALS < 0 || SUBNORMALS > 2) begin : gen_illegal_subnormals
+      flt_alu_needs_subnormals_0_to_2 illegal ();
     end
     if (SIGNIFICAND < 11 || SIGNIFICAND > 24) begin : gen_illegal_significand
       flt_alu_needs_a_significand_of_11_to_24 illegal ();
@@ -59,6 +61,7 @@ module flt_alu #(
   end
 
   wire [LANES*32-1:0] result;
+  wire [LANES-1:0] tiny;
   genvar l;
   generate
     for (l = 0; l < LANES; l = l + 1) begin : gen_lane
@@ -87,13 +90,23 @@ module flt_alu #(
         .clk_i(clk_i), .add_enable_i(add_enable), .multiply_enable_i(multiply_enable), .fuse_enable_i(fuse_enable),
         .convert_enable_i(convert_enable), .subtract_i(task_operation_i == ISA_FLT_FSUB), .convert_op_i(convert_op),
         .a_i(task_operand_a_i[l*32 +: 32]), .b_i(task_operand_b_i[l*32 +: 32]), .c_i(task_operand_c_i[l*32 +: 32]),
-        .result_o(result[l*32 +: 32]));
+        .result_o(result[l*32 +: 32]), .tiny_o(tiny[l]));
     end
     if (DEPTH > STAGES) begin : gen_delay
       alu_delay #(.WIDTH(LANES*32), .STAGES(DEPTH-STAGES)) delay (
         .clk_i(clk_i), .valid_i(stage_valid[DEPTH-1:STAGES]), .data_i(result), .data_o(done_data_o));
     end else begin : gen_direct
       assign done_data_o = result;
+    end
+    if (SUBNORMALS == 2) begin : gen_guard
+      wire two = task_operation_i != ISA_FLT_F2I;   // float operands a and b, unless it is i2f
+      subnormal_guard #(.LANES(LANES), .SIGNIFICAND(SIGNIFICAND), .DEPTH(DEPTH), .RESULT_STAGE(STAGES)) guard (
+        .clk_i(clk_i), .enter_i(task_mask_i & {LANES{task_valid_i && task_operation_i != ISA_FLT_I2F}}),
+        .reads_i({fuse, two, 1'b1}), .a_i(task_operand_a_i), .b_i(task_operand_b_i), .c_i(task_operand_c_i),
+        .result_i(|tiny), .subnormal_o(done_subnormal_o));
+    end else begin : gen_no_guard
+      wire unused = &{1'b0, tiny};
+      assign done_subnormal_o = 1'b0;
     end
   endgenerate
   assign done_predicate_o = {LANES{1'b0}};

@@ -28,6 +28,7 @@ module instruction_buffer #(
   output wire        want_o,           // Dispatch
   input  wire        grant_i,
   input  wire        done_i,           // WriBack; of a triple, of each element
+  input  wire        fault_i,          // with done_i: the instruction has a fault, so no other one is issued
   output reg  [63:0] instruction_o,
   output wire        triple_o,
   output wire [1:0]  read_element_o,   // of a triple, which is read and dispatched; else 0
@@ -58,7 +59,7 @@ module instruction_buffer #(
 `include "isa_fields.vh"
   wire exits = field_type == ISA_TYPE_BRH && field_operation == ISA_BRH_EXIT;
   wire retire;   // done, and no element is left
-  wire ready = fetch_q == F_FULL && (data_q == D_IDLE || retire) && !halt_i;
+  wire ready = fetch_q == F_FULL && (data_q == D_IDLE || retire) && !halt_i && !fault_i;
 
   assign step_o = fetch_q == F_STACK && !halt_i;
   assign fetch_request_o = fetch_q == F_ARBITER && !halt_i;

@@ -2,7 +2,7 @@
 // that stage k holds a task of this lane.
 // root_i and unary_i name the operation: 00 fdiv, 10 fsqrt, 11 frsqrt, 01 frcp. SLOW_UNIT 0:
 // exact, 1 .. 3: two, one, no Newton steps. SIGNIFICAND below 24: what a word has below so many bits is not looked at,
-// and zero in the result.
+// and zero in the result. tiny_3_o, for one cycle, in stage 3: the result is a subnormal number that becomes zero.
 `default_nettype none
 module slow_lane #(
   parameter integer SUBNORMALS = 0,
@@ -17,7 +17,8 @@ module slow_lane #(
   input  wire        unary_i,
   input  wire [31:0] a_i,
   input  wire [31:0] b_i,
-  output wire [31:0] result_o
+  output wire [31:0] result_o,
+  output wire        tiny_3_o
 );
   wire root, unary, special, nan, sign;
   wire [7:0] exponent;
@@ -31,7 +32,8 @@ module slow_lane #(
   slow_prepare #(.SUBNORMALS(SUBNORMALS), .SIGNIFICAND(SIGNIFICAND), .WITHOUT(WITHOUT)) prepare (
     .clk_i(clk_i), .enable_i(enable_i[2:0]), .root_i(root_i), .unary_i(unary_i), .a_i(a_i), .b_i(b_i),
     .index_1_o(index), .offset_digits_o(offset_digits), .root_o(root), .unary_o(unary), .v_o(v), .w_o(w),
-    .special_3_o(special), .nan_3_o(nan), .sign_3_o(sign), .exponent_3_o(exponent), .shift_3_o(shift));
+    .special_3_o(special), .nan_3_o(nan), .sign_3_o(sign), .exponent_3_o(exponent), .shift_3_o(shift),
+    .tiny_3_o(tiny_3_o));
 
   generate
     if (SLOW_UNIT == 0) begin : gen_exact

@@ -14,7 +14,7 @@
 // With a SIGNIFICAND of p bits, 24 here, what an operand has below them is not looked at, v and w have p - 1 fraction
 // bits and zeros below, and q has p - 1 - shift, shift 0 .. p.
 // SUBNORMALS 0: IEEE; 1: subnormal operands count as zero, results below the normal numbers are zero
-// (no quotient there rounds up to one).
+// (no quotient there rounds up to one); 2: and tiny_3_o says for one cycle, in stage 3, that a result is such a one.
 `default_nettype none
 module slow_prepare #(
   parameter integer SUBNORMALS = 0,
@@ -37,7 +37,8 @@ module slow_prepare #(
   output wire        nan_3_o,
   output wire        sign_3_o,
   output wire [7:0]  exponent_3_o,
-  output wire [4:0]  shift_3_o
+  output wire [4:0]  shift_3_o,
+  output reg         tiny_3_o
 );
   `include "booth_digits.vh"
   `include "slow_operations.vh"
@@ -144,6 +145,7 @@ module slow_prepare #(
       else if (s1_root_q) s2_w_q <= s1_odd ? {s1_d_q, 1'b0} : {1'b0, s1_d_q};
       else s2_w_q <= smaller ? {s1_n_q, 1'b0} : {1'b0, s1_n_q};
     end
+    tiny_3_o <= 1'b0;
     if (`STAGE_LOADS(enable_i[2])) begin : stage2
       reg special;
       reg [9:0] exponent, below;
@@ -164,6 +166,7 @@ module slow_prepare #(
         s3_exponent_q <= 8'hff;
       end else if (exponent[9] || exponent == 10'd0) begin
         special = SUBNORMALS != 0 || below > LAST_SHIFT;
+        tiny_3_o <= enable_i[2] && SUBNORMALS == 2;
         s3_exponent_q <= 8'd0;
         if (SUBNORMALS == 0) s3_shift_q <= below[4:0];
       end else begin

@@ -1,7 +1,8 @@
 // Slw ALU: fdiv fsqrt frsqrt frcp, a new task in any of its stages; further stages as delay. docs/numerics.md has the
-// rules. SUBNORMALS 0: IEEE, 1: flushed. SIGNIFICAND: bits of a float's significand, with its leading one. SLOW_UNIT 0:
-// correctly rounded, 1: table and two Newton steps, both in 11 stages; 2: one step, 8; 3: none, 6. Lanes outside the
-// mask keep what they held and are not clocked.
+// rules. SUBNORMALS 0: IEEE, 1: flushed, 2: the same, and done_subnormal_o says that a task has met one.
+// SIGNIFICAND: bits of a float's significand, with its leading one. SLOW_UNIT 0: correctly rounded, 1: table and two
+// Newton steps, both in 11 stages; 2: one step, 8; 3: none, 6. Lanes outside the mask keep what they held and are not
+// clocked.
 // With SLOW_LANES below LANES there are so many lanes only. They take a task group after group, the lowest lanes first,
 // which makes LANES / SLOW_LANES - 1 cycles more than DEPTH, and as many between tasks; the task's operands must stay.
 `default_nettype none
@@ -17,6 +18,7 @@ module slw_alu #(
   parameter integer SLOW_LANES = 32,
   parameter integer WITHOUT = 0   // instructions that it lacks: a bit for each operation number
 ) (
+  output wire                   done_subnormal_o,
 `include "alu_ports.vh"
 );
   `include "isa.vh"
@@ -31,8 +33,8 @@ module slw_alu #(
     if (DEPTH < STAGES) begin : gen_illegal_depth
       slw_alu_needs_more_depth illegal ();
     end
-    if (SUBNORMALS < 0 || SUBNORMALS > 1) begin : gen_illegal_subnormals
-      slw_alu_needs_subnormals_0_or_1 illegal ();
+    if (SUBNORMALS < 0 || SUBNORMALS > 2) begin : gen_illegal_subnormals
+      slw_alu_needs_subnormals_0_to_2 illegal ();
     end
     if (SIGNIFICAND < 11 || SIGNIFICAND > 24) begin : gen_illegal_significand
       slw_alu_needs_a_significand_of_11_to_24 illegal ();
@@ -72,6 +74,7 @@ module slw_alu #(
   wire root = task_operation_i == ISA_SLW_FSQRT || task_operation_i == ISA_SLW_FRSQRT;
   wire unary = task_operation_i == ISA_SLW_FRSQRT || task_operation_i == ISA_SLW_FRCP;
   wire [GROUP*32-1:0] result, delayed;
+  wire [GROUP-1:0] tiny;
   genvar l, s;
   generate
     for (l = 0; l < GROUP; l = l + 1) begin : gen_lane
@@ -86,7 +89,8 @@ module slw_alu #(
         .SUBNORMALS(SUBNORMALS), .SIGNIFICAND(SIGNIFICAND), .SLOW_UNIT(SLOW_UNIT), .STAGES(STAGES), .WITHOUT(WITHOUT)
       ) lane (
         .clk_i(clk_i), .enable_i(enable), .root_i(root), .unary_i(unary), .a_i(operand_a[l*32 +: 32]),
-        .b_i(operand_b[l*32 +: 32]), .result_o(result[l*32 +: 32]));
+        .b_i(operand_b[l*32 +: 32]), .result_o(result[l*32 +: 32]),
+        .tiny_3_o(tiny[l]));
     end
     if (DELAY > 0) begin : gen_delay
       wire [DELAY-1:0] holds;   // a stage of the delay takes a group
@@ -104,6 +108,23 @@ module slw_alu #(
       reg [GROUP*32-1:0] data_q;
       always @(posedge clk_i) if (stage_valid[DEPTH+s]) data_q <= delayed;
       assign done_data_o[s*GROUP*32 +: GROUP*32] = data_q;
+    end
+    if (SUBNORMALS == 2) begin : gen_guard
+      wire found;   // of the group that leaves
+      subnormal_guard #(.LANES(GROUP), .SIGNIFICAND(SIGNIFICAND), .DEPTH(DEPTH), .RESULT_STAGE(3)) guard (
+        .clk_i(clk_i), .enter_i(entering), .reads_i({1'b0, !root && !unary, 1'b1}), .a_i(operand_a), .b_i(operand_b),
+        .c_i({GROUP*32{1'b0}}), .result_i(|tiny), .subnormal_o(found));
+      if (GROUPS > 1) begin : gen_groups
+        reg before_q;   // of the task's groups that have left
+        always @(posedge clk_i)
+          if (|stage_valid[DEPTH +: GROUPS-1]) before_q <= found || (before_q && !stage_valid[DEPTH]);
+        assign done_subnormal_o = found || before_q;
+      end else begin : gen_whole
+        assign done_subnormal_o = found;
+      end
+    end else begin : gen_no_guard
+      wire unused = &{1'b0, tiny};
+      assign done_subnormal_o = 1'b0;
     end
   endgenerate
   assign done_predicate_o = {LANES{1'b0}};

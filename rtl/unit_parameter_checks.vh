@@ -27,8 +27,8 @@
     if (INTERSECTION_WORDS < 12 || INTERSECTION_WORDS > 21) begin : gen_bad_INTERSECTION_WORDS
       INTERSECTION_WORDS_must_be_an_integer_from_12_to_21 illegal ();
     end
-    if (SUBNORMALS < 0 || SUBNORMALS > 1) begin : gen_bad_SUBNORMALS
-      SUBNORMALS_must_be_an_integer_from_0_to_1 illegal ();
+    if (SUBNORMALS < 0 || SUBNORMALS > 2) begin : gen_bad_SUBNORMALS
+      SUBNORMALS_must_be_an_integer_from_0_to_2 illegal ();
     end
     if (SIGNIFICAND < 11 || SIGNIFICAND > 24) begin : gen_bad_SIGNIFICAND
       SIGNIFICAND_must_be_an_integer_from_11_to_24 illegal ();

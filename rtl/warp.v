@@ -42,6 +42,7 @@ module warp #(
   input  wire [INSTANCES-1:0]          done_i,
   input  wire [INSTANCES*LANES*32-1:0] done_data_i,
   input  wire [INSTANCES*LANES-1:0]    done_predicate_i,
+  input  wire [INSTANCES-1:0]          done_subnormal_i,   // the task has met a subnormal number
   output reg                       retire_o,
   output wire [15:0]               pc_o,
   output reg  [LANES*32-1:0]       retire_data_o,
@@ -49,9 +50,9 @@ module warp #(
   // for the performance counters
   output wire                      fetching_o,
   output wire                      executing_o,
-  // faults, one cycle; codes 1 and 2 are of the instruction at fetch_pc_o, 3 and 4 of that at pc_o
+  // faults, one cycle; codes 1 and 2 are of the instruction at fetch_pc_o, 3, 4 and 8 of that at pc_o
   output wire                      fault_valid_o,
-  output wire [2:0]                fault_code_o
+  output wire [3:0]                fault_code_o
 );
 `include "isa.vh"
   reg [LANES-1:0] launched_q;
@@ -79,6 +80,9 @@ module warp #(
       end
     retire_predicate_o = retire_pred & mask_o;
   end
+
+  // What has met a subnormal number is followed by no other instruction, so that its PC stays.
+  wire subnormal = |(done_i & done_subnormal_i);
 
   // Control instructions: the branch ALU says in every lane's predicate bit whether the jump is taken. Only its done
   // counts, so that the way to the PC stack leads through no other ALU's.
@@ -113,7 +117,7 @@ module warp #(
     .step_o(step), .pc_valid_i(pc_valid), .pc_i(stack_pc), .program_length_i(program_length_i),
     .fetch_request_o(fetch_request_o), .fetch_pc_o(fetch_pc_o), .fetch_grant_i(fetch_grant_i),
     .cache_hit_i(cache_hit_i), .cache_instruction_i(cache_instruction_i), .refill_done_i(refill_done_i),
-    .read_o(read), .want_o(want_o), .grant_i(grant_i), .done_i(retire_o),
+    .read_o(read), .want_o(want_o), .grant_i(grant_i), .done_i(retire_o), .fault_i(subnormal),
     .instruction_o(instruction_o), .triple_o(triple), .read_element_o(read_element), .done_element_o(done_element),
     .overlaps_o(overlaps_o), .pc_o(pc_o), .writes_register_o(writes_register),
     .writes_predicate_o(writes_predicate), .fetching_o(fetching_o), .executing_o(executing_o), .illegal_o(illegal),
@@ -170,7 +174,7 @@ module warp #(
     end
   endgenerate
 
-  assign fault_valid_o = illegal || outside || overflow || underflow;
-  assign fault_code_o = illegal ? 3'd1 : outside ? 3'd2 : overflow ? 3'd3 : 3'd4;
+  assign fault_valid_o = illegal || outside || overflow || underflow || subnormal;
+  assign fault_code_o = subnormal ? 4'd8 : illegal ? 4'd1 : outside ? 4'd2 : overflow ? 4'd3 : 4'd4;
 endmodule
 `default_nettype wire

@@ -43,7 +43,7 @@ inline constexpr uint32_t kSmallestNormal = 0x00800000u;
 inline constexpr double kTinyLimit = 0x1p-126 - 0x1p-151;
 
 inline bool is_nan(uint32_t a) { return (a & kMagnitude) > kInfinity; }
-inline bool flushes(Mode mode) { return mode.subnormals == Subnormals::Flush; }
+inline bool flushes(Mode mode) { return mode.subnormals != Subnormals::Ieee; }
 /// A subnormal number becomes the zero of its sign.
 inline uint32_t flushed(uint32_t a) { return (a & kInfinity) == 0 ? a & kSign : a; }
 /// An operand as the unit sees it: what is below its significand counts as zero.

@@ -10,7 +10,8 @@
 
 namespace raypool {
 
-enum class Subnormals : uint8_t { Ieee = 0, Flush = 1 };
+/// None: as Flush, and where one arises the unit stops with a fault.
+enum class Subnormals : uint8_t { Ieee = 0, Flush = 1, None = 2 };
 enum class SlowUnit : uint8_t { Exact = 0, Newton2 = 1, Newton1 = 2, Newton0 = 3 };
 /// What chooses the next kernel, and what times the traverser. Each name has its class in sim/chip/.
 enum class PolicyName : uint8_t { Thesis = 0, Fill = 1 };
@@ -44,8 +45,8 @@ enum class Shading : uint8_t { Kernel = 0, Traverser = 1 };
   PART(data_cache, bytes, uint32_t, 8192, powers_of_two(512, 65536), tried(512, 1024, 8192, 65536), "size") \
   PART(data_cache, mshrs, uint32_t, 4, integers(1, 16), tried(1, 2, 3, 4, 16), \
        "miss-status holding registers: lines that may be on their way at once") \
-  ARITHMETIC(subnormals, Subnormals, Subnormals::Ieee, names("ieee", "flush"), all(), \
-             "subnormal numbers: as IEEE 754 says, or zero") \
+  ARITHMETIC(subnormals, Subnormals, Subnormals::Ieee, names("ieee", "flush", "none"), all(), \
+             "subnormal numbers: as IEEE 754 says, or zero, or none: where one arises the unit stops with a fault") \
   ARITHMETIC(significand, uint32_t, 24, integers(11, 24), tried(11, 13, 16, 24), \
              "bits of a float's significand, with its leading one; what a word has below them counts as zero") \
   ARITHMETIC(slow_unit, SlowUnit, SlowUnit::Exact, names("exact", "newton2", "newton1", "newton0"), all(), \

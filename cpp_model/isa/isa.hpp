@@ -23,7 +23,7 @@ namespace raypool {
 //   depth       least pipeline depth, which is what the function needs at speed, and
 //               the default one; 0: timed by events
 //   ports       Framework: those of docs/architecture.md, section 3; rtl/alu_instances.vh
-//               places it. Own: rtl/compute_unit.v does
+//               places it. Guarded: these and done_subnormal_o. Own: rtl/compute_unit.v places it
 //   parameters  of the module beside the framework's, as rtl/compute_unit.v names them, separated by ", "; a type
 //               with instructions that are Optional has WITHOUT too, a bit for each operation that it lacks
 //   title       for docs/isa.md
@@ -31,11 +31,11 @@ namespace raypool {
 // clang-format off
 #define RAYPOOL_ALU_TYPES(CORE, CLASS) \
   CORE(Tid, "tid",  1, Own,       "",                       "indices, dimensions, arguments") \
-  CORE(Brh, "brh",  2, Framework, "SUBNORMALS, SIGNIFICAND", "compares, predicates, control") \
+  CORE(Brh, "brh",  2, Guarded,   "SUBNORMALS, SIGNIFICAND", "compares, predicates, control") \
   CORE(Mem, "mem",  0, Own,       "",                       "memory") \
   CORE(Int, "int",  2, Framework, "",                       "integer and logic") \
-  CORE(Flt, "flt",  3, Framework, "SUBNORMALS, SIGNIFICAND, FMA", "single-precision float") \
-  CORE(Slw, "slw", 11, Framework, "SUBNORMALS, SIGNIFICAND, SLOW_UNIT, SLOW_LANES", \
+  CORE(Flt, "flt",  3, Guarded,   "SUBNORMALS, SIGNIFICAND, FMA", "single-precision float") \
+  CORE(Slw, "slw", 11, Guarded,   "SUBNORMALS, SIGNIFICAND, SLOW_UNIT, SLOW_LANES", \
        "slow float: division and square roots") \
   CORE(Ray, "ray",  0, Own,       "",                       "ray packages") \
   /* The table ends here: the backslash above lets a row follow it. */
@@ -50,7 +50,7 @@ enum class AluType : uint8_t {
 #undef RAYPOOL_CLASS
 };
 
-enum class Ports : uint8_t { Framework, Own };
+enum class Ports : uint8_t { Framework, Guarded, Own };
 
 struct AluInfo {
   std::string_view name;

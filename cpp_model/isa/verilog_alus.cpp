@@ -78,20 +78,31 @@ std::string alu_instance_types_verilog() {
 std::string alu_instances_verilog() {
   std::string text = fmt::format("      {}", kGenerated);
   for_each_alu([&](const std::string& name, const AluInfo& info) {
-    if (info.ports != Ports::Framework) return;
+    if (info.ports == Ports::Own) return;
     text += fmt::format(
         "      if (TYPE == ISA_TYPE_{0}) begin : gen_{1}\n"
         "        {1}_alu #(\n"
         "          .WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS), .LATENCY({0}_LATENCY),\n"
         "{2}\n"
-        "        ) {1}_alu (\n"
+        "        ) {1}_alu (\n{3}"
         "`include \"alu_port_map.vh\"\n"
         "        );\n"
         "      end\n",
         name, info.name,
         wrapped(
-            fmt::format("          .DEPTH({}_DEPTH){}{}", name, without(name), further_parameters(info.parameters))));
+            fmt::format("          .DEPTH({}_DEPTH){}{}", name, without(name), further_parameters(info.parameters))),
+        info.ports == Ports::Guarded ? "          .done_subnormal_o(done_subnormal[k]),\n" : "");
   });
+  std::string guarded;
+  for_each_alu([&](const std::string& name, const AluInfo& info) {
+    if (info.ports == Ports::Guarded)
+      guarded += fmt::format("{}TYPE != ISA_TYPE_{}", guarded.empty() ? "" : " && ", name);
+  });
+  text += fmt::format(
+      "      if ({}) begin : gen_unguarded\n"
+      "        assign done_subnormal[k] = 1'b0;\n"
+      "      end\n",
+      guarded);
   return text;
 }
 

@@ -72,7 +72,7 @@ void run_in_mode(ComputeKernel which, NativeThread& thread) {
 
 void run_native(ComputeKernel which, NativeThread& thread) {
   // Neither kernel uses the slow unit.
-  if (thread.mode.subnormals == Subnormals::Flush)
+  if (thread.mode.subnormals != Subnormals::Ieee)
     thread.mode.fused ? run_in_mode<Subnormals::Flush, true>(which, thread)
                       : run_in_mode<Subnormals::Flush, false>(which, thread);
   else

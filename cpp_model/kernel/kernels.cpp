@@ -80,7 +80,7 @@ const Compiled& compiled(const KernelTarget& target) { return program_for(target
 }  // namespace
 
 void run_native(RayKernel which, NativeThread& thread) {
-  if (thread.mode.subnormals == Subnormals::Flush)
+  if (thread.mode.subnormals != Subnormals::Ieee)
     thread.mode.fused ? run_in_mode<Subnormals::Flush, true>(which, thread)
                       : run_in_mode<Subnormals::Flush, false>(which, thread);
   else

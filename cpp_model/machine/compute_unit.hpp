@@ -64,6 +64,7 @@ enum class FaultCode : uint8_t {
   Misaligned = 5,
   AddressOutsideMemory = 6,
   RayWordOutside = 7,
+  SubnormalNumber = 8,  ///< of machines with arithmetic.subnormals none
 };
 
 struct Fault {

@@ -46,6 +46,8 @@ void CycleUnit::reset(uint32_t program_length, uint32_t memory_limit) {
   fault_ = Fault{};
   raised_.clear();
   planned_faults_.clear();
+  met_subnormal_ = 0;
+  met_in_.fill(0);
   outputs_ = UnitOutputs{};
   signals_ = outputs_.signals();
   trace_ = UnitTrace{};
@@ -85,6 +87,7 @@ void CycleUnit::step(const UnitInputs& inputs) {
   dispatcher_.want(AluType::Ray, due.want_ray);
   uint32_t retired = due.done | mem_.done() | ray_.done();
   const uint32_t again = due.again;
+  const uint32_t met_subnormal = (due.done | due.part) & met_subnormal_;
   due.done = due.full = due.want_mem = due.want_ray = due.part = due.again = 0;
   const bool mem_ready = mem_.ready();
   const bool ray_ready = ray_.ready(dispatcher_.task(AluType::Ray));
@@ -99,7 +102,9 @@ void CycleUnit::step(const UnitInputs& inputs) {
     port = clock_memory_arbiter(inputs);
     clock_launcher();
   }
-  // Write-back and the next instructions. Who retires in this cycle may issue in it.
+  // Write-back and the next instructions. Who retires in this cycle may issue in it, unless it has a fault.
+  uint32_t faulty = 0;
+  if (met_subnormal != 0) faulty = raise_subnormals(met_subnormal);
   if (retired != 0) {
     if ((retired & triples_) != 0) retired = end_elements(retired);
     counters_.leave(counter::kWarpsInMem, now_ + 1, mem_.done() != 0);
@@ -107,7 +112,7 @@ void CycleUnit::step(const UnitInputs& inputs) {
     if (const uint32_t control = buffer_.retire(retired); control != 0) retire_control(control);
   }
   if (!stopped) {
-    for (uint32_t warps = buffer_.ready(); warps != 0; warps &= warps - 1) issue_warp(lowest(warps));
+    for (uint32_t warps = buffer_.ready() & ~faulty; warps != 0; warps &= warps - 1) issue_warp(lowest(warps));
     if (again != 0) {
       dispatcher_.want_again(again);
       if (tracing_) record_next_want(again);
@@ -313,9 +318,15 @@ void CycleUnit::issue_warp(uint32_t warp) {
       stack_fault_[warp] = faults ? step.fault.code : FaultCode::None;
     }
     if (faults) forget_fault();
+    uint32_t met = step.subnormal, element = 0;
     // Loads may fault, each at its own time; of the other triples no element can tell when it is executed.
     if (instruction.alu() != AluType::Mem)
-      for (const DecodedInstruction* next = instruction.next; next != nullptr; next = next->next) execute(warp, *next);
+      for (const DecodedInstruction* next = instruction.next; next != nullptr; next = next->next)
+        met |= uint32_t{execute(warp, *next).subnormal} << ++element;
+    if (met != 0) {
+      met_in_[warp] = static_cast<uint8_t>(met);
+      met_subnormal_ |= 1u << warp;
+    }
   }
   if (instruction.alu() == AluType::Ray) ray_.begin(warp, instruction, mask, faults);
   // The core's PC stays at an instruction that has not been executed; the RTL's instruction routine goes on behind it.
@@ -414,6 +425,21 @@ void CycleUnit::raise(const Fault& fault) {
   faulty_ = attention_ = true;
 }
 
+// Of warps that are done with an element: those whose element has met a subnormal number.
+uint32_t CycleUnit::raise_subnormals(uint32_t done) {
+  uint32_t met = 0;
+  for (; done != 0; done &= done - 1) {
+    const uint32_t warp = lowest(done);
+    if ((met_in_[warp] & 1) != 0) {
+      raise({FaultCode::SubnormalNumber, warp, buffer_.pc(warp)});
+      met |= 1u << warp;
+    }
+    met_in_[warp] = static_cast<uint8_t>(met_in_[warp] >> 1);
+    if (met_in_[warp] == 0) met_subnormal_ &= ~(1u << warp);
+  }
+  return met;
+}
+
 // The first fault stays; of several in one cycle an ALU's wins, memory's before rays', then the lowest warp's.
 void CycleUnit::settle_faults() {
   if (halted()) return;
@@ -421,7 +447,9 @@ void CycleUnit::settle_faults() {
   for (const PlannedFault& planned_fault : planned_faults_) {
     if (planned_fault.cycle == now_) raise(planned_fault.fault);
   }
-  std::sort(raised_.begin(), raised_.end(), [](const Fault& a, const Fault& b) { return a.warp < b.warp; });
+  // Of a warp's own the one of the instruction that is done, as the other is of a later one.
+  std::sort(raised_.begin(), raised_.end(),
+            [](const Fault& a, const Fault& b) { return a.warp != b.warp ? a.warp < b.warp : a.code > b.code; });
   if (alu.ray) raised_.insert(raised_.begin(), {FaultCode::RayWordOutside, alu.ray_warp, buffer_.pc(alu.ray_warp)});
   if (alu.mem != FaultCode::None) raised_.insert(raised_.begin(), {alu.mem, alu.mem_warp, buffer_.pc(alu.mem_warp)});
   if (raised_.empty()) return;

@@ -134,6 +134,7 @@ class CycleUnit final : public ComputeUnit {
   void retire_control(uint32_t warps);
   // Faults
   void raise(const Fault& fault);
+  uint32_t raise_subnormals(uint32_t done);
   void settle_faults();
   void halt();
   // Ports
@@ -181,6 +182,8 @@ class CycleUnit final : public ComputeUnit {
   std::vector<Fault> raised_;                        // in this cycle, or in that of fault_
   std::vector<PlannedFault> planned_faults_;         // of PCs outside the program
   std::array<FaultCode, kMostWarps> stack_fault_{};  // [warp] of the control instruction under way
+  uint32_t met_subnormal_ = 0;                       // warps whose instruction under way has met a subnormal number
+  std::array<uint8_t, kMostWarps> met_in_{};         // [warp] in which elements: bit 0 is the next that is done
   // Triples of Mem and Ray: warps that have one, and what is left of it behind the element that is wanted, or done.
   uint32_t triples_ = 0, followed_ = 0;
   std::array<uint8_t, kMostWarps> wants_left_{}, dones_left_{};

@@ -11,6 +11,7 @@
 #include "machine/flt_alu.hpp"
 #include "machine/int_alu.hpp"
 #include "machine/slw_alu.hpp"
+#include "machine/subnormal_guard.hpp"
 
 namespace raypool {
 
@@ -24,6 +25,7 @@ FunctionalCore::FunctionalCore(const Configuration& configuration, Memory& memor
       lanes_(configuration.lanes),
       configuration_(configuration),
       mode_(arith::mode_of(configuration)),
+      guarded_(configuration.subnormals == Subnormals::None),
       registers_(configuration.contents() * kRegisters),
       warps_(configuration.warps, Warp(configuration.stack_depth)),
       slices_(configuration.warps, configuration.lanes, configuration.intersection_words) {
@@ -127,6 +129,7 @@ bool FunctionalCore::fault(FaultCode fault_code) {
   result.ray_count = 0;
   result.frame_count = 0;
   result.warp_ended = false;
+  result.subnormal = false;
   if (!warp.running) return false;
 
   warp.pc_stack.pop_finished();
@@ -157,7 +160,12 @@ const Step& FunctionalCore::step_lanes(uint32_t number) {
     for (int lane = 0; lane < kLanes; ++lane) immediate[lane] = instruction.immediate;
     lanes.b = immediate;
   }
-  if (!execute<kLanes>(instruction, warp, lanes)) return result_;
+  const AluType alu = instruction.alu();
+  if (guarded_ && (alu == AluType::Brh || alu == AluType::Flt || alu == AluType::Slw)) {
+    execute_guarded<kLanes>(instruction, warp, lanes);
+  } else if (!execute<kLanes>(instruction, warp, lanes)) {
+    return result_;
+  }
   if (instruction.writes_register) result_.data = lanes.rd;
   warp.element = instruction.next;
   if (warp.element == nullptr) warp.pc_stack.advance();
@@ -195,6 +203,14 @@ bool FunctionalCore::execute(const DecodedInstruction& instruction, Warp& warp, 
       execute_class(instruction, warp, lanes.rd, lanes.a, lanes.b);
       return true;
   }
+}
+
+// Of an ALU that never faults otherwise.
+template <int kLanes>
+void FunctionalCore::execute_guarded(const DecodedInstruction& instruction, Warp& warp, const Lanes<kLanes>& lanes) {
+  const SubnormalGuard<kLanes> guard(instruction.opcode, lanes, mode_);
+  execute<kLanes>(instruction, warp, lanes);
+  result_.subnormal = guard.met(instruction.writes_register ? lanes.rd : nullptr);
 }
 
 bool FunctionalCore::execute_control(const DecodedInstruction& instruction, Warp& warp) {

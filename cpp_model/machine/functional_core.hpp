@@ -41,6 +41,7 @@ struct Step {
 
   Status status = Status::NotRunning;
   bool warp_ended = false;  ///< `exit`
+  bool subnormal = false;   ///< executed, and met a subnormal number on a machine that has none: that is a fault
   uint32_t warp = 0;
   uint32_t pc = 0;
   uint32_t mask = 0;                                ///< thread mask
@@ -139,6 +140,8 @@ class FunctionalCore {
   template <int kLanes>
   bool execute(const DecodedInstruction& instruction, Warp& warp, const Lanes<kLanes>& lanes);
   template <int kLanes>
+  void execute_guarded(const DecodedInstruction& instruction, Warp& warp, const Lanes<kLanes>& lanes);
+  template <int kLanes>
   bool execute_memory(const DecodedInstruction& instruction, const Lanes<kLanes>& lanes);
   template <int kLanes>
   bool execute_ray(const DecodedInstruction& instruction, Warp& warp, const Lanes<kLanes>& lanes);
@@ -153,6 +156,7 @@ class FunctionalCore {
   uint32_t lanes_;
   Configuration configuration_;
   arith::Mode mode_;
+  bool guarded_;  ///< against subnormal numbers
   uint32_t program_length_ = 0, memory_limit_ = 0;
   bool program_decoded_ = false;
   uint32_t decoded_ = 0;  ///< program_.size(), which would cost a division

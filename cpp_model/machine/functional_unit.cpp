@@ -109,6 +109,10 @@ class FunctionalUnit : public ComputeUnit {
         }
         if (step.status != Step::Status::Executed) break;
         executed(step);
+        if (step.subnormal) {
+          outputs_.fault = {FaultCode::SubnormalNumber, step.warp, step.pc};
+          return;
+        }
       }
     }
     outputs_.kernel_done = core_.running() ? 0 : 1;

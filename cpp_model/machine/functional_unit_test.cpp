@@ -141,6 +141,24 @@ TEST(FunctionalUnit, AFaultIsStickyAndStopsEverything) {
   EXPECT_TRUE(fixture.unit->outputs().idle);
 }
 
+TEST(FunctionalUnit, ASubnormalNumberStopsAMachineThatHasNone) {
+  Configuration configuration;
+  configuration.subnormals = Subnormals::None;
+  Memory memory(kMemoryBytes);
+  const std::vector<uint64_t> code =
+      assembled("lane r1; ige p1, r1, 8; mov r2, 1.0; @p1 fadd r3, r2, 1e-39; fadd r3, r2, 1e-39; exit");
+  test::put_program(memory, code);
+  const std::unique_ptr<ComputeUnit> unit = make_functional_unit(configuration, memory);
+  unit->reset(size32(code), kMemoryBytes);
+  TestChip chip(*unit, memory);
+  LaunchCommand command;
+  command.threads = 8;
+  chip.launches.push_back(command);
+  EXPECT_FALSE(chip.run());
+  EXPECT_EQ(unit->outputs().fault.code, FaultCode::SubnormalNumber);
+  EXPECT_EQ(unit->outputs().fault.pc, 4u) << "no lane of the one before is active";
+}
+
 TEST(FunctionalUnit, TheTraceShowsAtMostOneInstructionOfAWarpInACycle) {
   Fixture fixture(assembled("tid r1; shl r2, r1, 2; st [r2+1024], r1; rst 3, r1; exit"));
   fixture.unit->trace_on();

@@ -61,6 +61,35 @@ expect "a kernel with an instruction that is lacking is refused" 1 "kernel cast_
   "$raypool" sim cornell --config "$folder/room.json" --set alus.slw.without=frsqrt --size 8x8 --out "$folder/lacking"
 expect "... with what to do" 1 "take it off alus.int.without" "$raypool" run saxpy --config "$folder/matt.json"
 
+# Subnormal numbers, which neither frame has: in what a scene is made of, and later, in a product of two reflectances.
+sed '0,/^v /s/^v [^ ]*/v 1e-39/' "$folder/matt.obj" > "$folder/vertex.obj"
+sed 's/^Ks .*/Ks 1e-30 1e-30 1e-30/; s/^Kd .*/Kd 1e-10 1e-10 1e-10/' "$folder/mirror.mtl" > "$folder/faint.mtl"
+sed 's/mirror/faint/' "$folder/mirror.obj" > "$folder/faint.obj"
+expect "a frame without subnormal numbers needs none" 0 '"none"' grep subnormals "$folder/matt.json" "$folder/room.json"
+for engine in native model lockstep; do
+  expect "a vertex at 1e-39 is refused by engine $engine" 1 \
+    "vertex 0, a corner of triangle 0 (material 'floor'), has the coordinate x 1e-39, a subnormal number" \
+    "$raypool" sim "$folder/vertex.obj" --config "$folder/matt.json" --size 8x8 --engine "$engine" \
+    --out "$folder/vertex"
+done
+expect "... and nothing is left" 1 "" test -e "$folder/vertex"
+echo '{"eye": [2.75, 2.75, 10], "direction": [0, 0, -1],
+  "light": {"position": [2.9, 5, 6.2], "color": [1e-40, 1, 1]}}' > "$folder/dark.json"
+expect "a light that is nearly black is refused" 1 "the light has the color r 1e-40" "$raypool" sim "$folder/matt.obj" \
+  --config "$folder/matt.json" --view "$folder/dark.json" --size 8x8 --out "$folder/dark"
+expect "a fit to such a scene keeps them" 0 "results" "$raypool" fit "$folder/vertex.obj" --config 2w2c --size 8x8 \
+  --quiet --out "$folder/vertex.json"
+expect "... in the file" 1 "" grep subnormals "$folder/vertex.json"
+for engine in functional model; do
+  expect "a product that is one stops the frame in engine $engine" 1 \
+    "subnormal number arose in kernel cast_secondary at 'f" "$raypool" sim "$folder/faint.obj" \
+    --config "$folder/room.json" --size 8x8 --engine "$engine" --out "$folder/faint"
+done
+expect "... with what to do" 1 "draw with --set arithmetic.subnormals=ieee, or fit" "$raypool" sim "$folder/faint.obj" \
+  --config "$folder/room.json" --size 8x8 --out "$folder/faint"
+expect "... which draws it" 0 results "$raypool" sim "$folder/faint.obj" --config "$folder/room.json" --size 8x8 \
+  --set arithmetic.subnormals=ieee --out "$folder/faint"
+
 # Input that cannot be used.
 small=(fit cornell --size 8x8 --config 1w1c --quiet)
 expect "a share that is none is refused" 1 "--slower is 'much'" "$raypool" "${small[@]}" --slower much

@@ -54,6 +54,9 @@ std::string fault_sentence(uint32_t unit, const Fault& fault) {
     case FaultCode::RayWordOutside:
       meaning = "ray word that an intersection has not";
       break;
+    case FaultCode::SubnormalNumber:
+      meaning = "subnormal number, of which the machine has none";
+      break;
   }
   return fmt::format("compute unit {} stopped with fault {} ({}) in warp {} at PC {}", unit, to_underlying(fault.code),
                      meaning, fault.warp, fault.pc);

@@ -21,6 +21,7 @@
 #include "files/output_files.hpp"
 #include "fit/fit.hpp"
 #include "fit/needs.hpp"
+#include "scene/subnormal_words.hpp"
 
 namespace raypool {
 namespace {
@@ -241,7 +242,9 @@ int fit_command(const FitOptions& options) {
   if (!options.json.empty()) check_writable(options.json);
 
   FrameRuns runs(options, found.record, scene);
-  found.frame = {options.depth, found.record.reflections, scene.materials.size(), runs.draw(base, "the whole machine")};
+  found.frame = {options.depth, found.record.reflections, scene.materials.size(),
+                 !subnormal_word(scene, arguments_of(found.record, scene)).empty(),
+                 runs.draw(base, "the whole machine")};
   found.fit =
       fit::fit(base, found.frame.drawn.cycles, fit::parts_of(found.frame), slower,
                [&](const Configuration& machine, const std::string& what) { return runs.cycles(machine, what); });

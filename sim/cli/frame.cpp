@@ -2,10 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <array>
+#include <iterator>
+
 #include "bits.hpp"
 #include "fit/needs.hpp"
+#include "isa/assembler.hpp"
 #include "kernel/kernel_report.hpp"
 #include "kernel/kernels.hpp"
+#include "scene/subnormal_words.hpp"
 #include "scene/threads.hpp"
 
 namespace raypool {
@@ -17,6 +22,11 @@ NodeFormat nodes_of(const ChipConfiguration& chip) {
 }
 
 }  // namespace
+
+std::array<uint32_t, kArguments> arguments_of(const RunRecord& record, const Scene& scene) {
+  return camera_arguments(scene, record.width, record.height, record.configuration.contents(),
+                          record.configuration.significand);
+}
 
 void check_depth_and_units(int depth, int units) {
   if (depth < 1 || depth > kLargestDepth)
@@ -33,9 +43,31 @@ void check_fits(const RunRecord& record, const Scene& scene) {
         "draw with --depth 1, or fit a configuration to this scene with raypool fit",
         scene.name, scene.reflecting()->name, record.depth, record.configuration.name));
   }
+  if (record.configuration.subnormals == Subnormals::None) {
+    const std::string found = subnormal_word(scene, arguments_of(record, scene));
+    if (!found.empty()) {
+      throw InputError(fmt::format(
+          "{}: {}, a subnormal number, of which {} has none (arithmetic.subnormals): make it zero, draw with --set "
+          "arithmetic.subnormals=ieee, or fit a configuration to this scene with raypool fit",
+          scene.name, found, record.configuration.name));
+    }
+  }
   const Program& program = ray_kernel_program(KernelTarget(record.configuration));
   for (const RayKernel kernel : fit::kernels_of(chip, record.depth, record.reflections))
     check_instructions(program, std::string(kRayKernelNames[kernel]), record.configuration);
+}
+
+std::string describe(const ChipFault& fault, const RunRecord& record) {
+  if (fault.fault.code != FaultCode::SubnormalNumber) return fault.what();
+  const Program& program = ray_kernel_program(KernelTarget(record.configuration));
+  const auto names = kernel_names(program);
+  const auto behind = names.upper_bound(fault.fault.pc);
+  return fmt::format(
+      "a subnormal number arose in kernel {} at '{}', and {} has none (arithmetic.subnormals): draw with --set "
+      "arithmetic.subnormals=ieee, or fit a configuration to this frame with raypool fit ({})",
+      behind == names.begin() ? "of no name" : std::prev(behind)->second,
+      fault.fault.pc < program.code.size() ? disassemble(program.code[fault.fault.pc]) : "", record.configuration.name,
+      fault.what());
 }
 
 Surroundings::Surroundings(const Scene& scene, const MemoryImage& image, const RunRecord& record)
@@ -54,8 +86,7 @@ ChipOptions chip_options(const RunRecord& record, const Scene& scene, MemoryImag
   chip.program_length = size32(program.code);
   for (size_t i = 0; i < kRayKernels; ++i) chip.entries[i] = program.entries.at(std::string(kRayKernelNames[i]));
   chip.layout = ray_record_layout(record.configuration);
-  chip.arguments = camera_arguments(scene, record.width, record.height, record.configuration.contents(),
-                                    record.configuration.significand);
+  chip.arguments = arguments_of(record, scene);
   chip.width = record.width;
   chip.height = record.height;
   chip.depth = record.depth;

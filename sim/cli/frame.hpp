@@ -1,6 +1,7 @@
 // A frame as engines draw it: what each of them needs beside the scene and the record of the run.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -20,6 +21,12 @@ void check_depth_and_units(int depth, int units);
 /// A machine that was fitted to other scenes may lack what this one needs: throws InputError then, with what, for what,
 /// and what to do.
 void check_fits(const RunRecord& record, const Scene& scene);
+
+/// The sentence of a fault in this frame; of a subnormal number with kernel, instruction, and what to do.
+std::string describe(const ChipFault& fault, const RunRecord& record);
+
+/// The words of the kernels' arguments.
+std::array<uint32_t, kArguments> arguments_of(const RunRecord& record, const Scene& scene);
 
 /// What the chip draws with, for as long as a frame lasts.
 struct Surroundings {

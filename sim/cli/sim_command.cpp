@@ -153,19 +153,24 @@ FrameBuffer draw_on_unit(const SimOptions& options, Engine engine, RunRecord& re
   }
   Surroundings around(scene, image, record);
   ChipOptions chip = chip_options(record, scene, image, *device, around);
+  // When something goes wrong the waveform up to there is what one wants to see.
+  const auto keep_waveform = [&] {
+    device.reset();
+    if (!options.waves) return;
+    out.publish();
+    std::fprintf(stderr, "raypool: the waveform until then is in %s\n", out.path("").c_str());
+  };
   try {
     Progress progress(options.quiet || options.json);
     chip.progress = [&](const ChipProgress& done) {
       if (progress.due()) progress.show(progress_text(done, device->timed(), progress.seconds()));
     };
     record.chip = run_chip(chip);
+  } catch (const ChipFault& fault) {
+    keep_waveform();
+    throw InputError(describe(fault, record));
   } catch (const std::exception&) {
-    // The waveform up to here is what one wants to see now.
-    device.reset();
-    if (options.waves) {
-      out.publish();
-      std::fprintf(stderr, "raypool: the waveform until then is in %s\n", out.path("").c_str());
-    }
+    keep_waveform();
     throw;
   }
   record.simulation_seconds = record.chip->wall_seconds;

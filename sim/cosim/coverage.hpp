@@ -42,7 +42,7 @@ class Coverage : public RunObserver {
   std::vector<Group> groups() const;
 
  private:
-  static constexpr size_t kFaultCodes = 8;
+  static constexpr size_t kFaultCodes = 9;
   static constexpr uint32_t kFirstUpperBit = 16, kFirstUpperPcBit = 9;
   struct Entry {
     uint32_t pc, rpc;
@@ -80,6 +80,7 @@ class Coverage : public RunObserver {
   };
 
   bool possible(Event one) const;
+  size_t last_fault() const;  ///< greatest code that the configuration can have
   void fault_pairs(Group& group) const;
   void hit(Event event, uint64_t times = 1) { events_[event] += times; }
   void retired(const RetireEvent& event);

@@ -7,14 +7,15 @@
 namespace raypool {
 namespace {
 
-constexpr std::array<std::string_view, 8> kFaultNames = {"",
+constexpr std::array<std::string_view, 9> kFaultNames = {"",
                                                          "illegal instruction",
                                                          "PC outside the program",
                                                          "stack overflow",
                                                          "stack underflow",
                                                          "misaligned address",
                                                          "address outside the memory",
-                                                         "ray word outside"};
+                                                         "ray word outside",
+                                                         "subnormal number"};
 
 template <size_t kBits>
 void bits(Coverage::Group& group, const char* what, const std::array<uint64_t, kBits>& counts, uint32_t first) {
@@ -94,10 +95,15 @@ std::vector<Coverage::Group> Coverage::groups() const {
   for (size_t number = 1; number < left_set_.size(); ++number)
     left.items.push_back({fmt::format("p{}", number), left_set_[number]});
   Group& faults = group("faults");
-  for (size_t code = 1; code < faults_.size(); ++code)
+  for (size_t code = 1; code <= last_fault(); ++code)
     faults.items.push_back({std::string(kFaultNames[code]), faults_[code]});
   if (configuration_.warps > 1) fault_pairs(group("faults in one cycle"));
   return groups;
+}
+
+size_t Coverage::last_fault() const {
+  return to_underlying(configuration_.subnormals == Subnormals::None ? FaultCode::SubnormalNumber
+                                                                     : FaultCode::RayWordOutside);
 }
 
 // The memory ALU's wins before the ray ALU's, that before any other, and of these the lower warp's.
@@ -105,16 +111,16 @@ void Coverage::fault_pairs(Group& group) const {
   constexpr size_t kMemory = 5, kRay = 7;
   const bool one_branch = configuration_.alu(AluType::Brh).count == 1;
   const auto of_stack = [](size_t code) { return code == 3 || code == 4; };
-  for (size_t wins = 1; wins < fault_pairs_.size(); ++wins) {
-    for (size_t other = 1; other < fault_pairs_.size(); ++other) {
-      if (other >= kMemory && (wins < kMemory || wins == kRay || other != kRay)) continue;
+  for (size_t wins = 1; wins <= last_fault(); ++wins) {
+    for (size_t other = 1; other <= last_fault(); ++other) {
+      if (other >= kMemory && other <= kRay && (wins < kMemory || wins >= kRay || other != kRay)) continue;
       if (one_branch && of_stack(wins) && of_stack(other)) continue;
       const auto add = [&](size_t lower, const char* warp) {
         group.items.push_back({fmt::format("{} of {} warp before {}", kFaultNames[wins], warp, kFaultNames[other]),
                                fault_pairs_[wins][other][lower]});
       };
       add(1, "a lower");
-      if (wins >= kMemory) add(0, "a higher");
+      if (wins >= kMemory && wins <= kRay) add(0, "a higher");
     }
   }
 }

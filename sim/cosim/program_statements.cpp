@@ -73,6 +73,37 @@ bool ProgramStatements::has_any(AluType type) const {
                      [&](const InstructionInfo& info) { return info.alu() == type && configuration_.has(info); });
 }
 
+void ProgramStatements::tame(int number, const Instruction& guarded) {
+  if (number >= kDataRegisters) return;
+  Instruction i;
+  i.guard = guarded.guard;
+  i.guard_negated = guarded.guard_negated;
+  i.rd = i.ra = static_cast<uint8_t>(number);
+  i.b_is_immediate = true;
+  i.info = &instruction(Opcode::And);
+  i.immediate = kTameBits;
+  emit(i);
+  i.info = &instruction(Opcode::Iadd);
+  i.immediate = kTameOffset;
+  emit(i);
+}
+
+void ProgramStatements::tame(Instruction& i) {
+  const bool compare = i.info->alu() == AluType::Brh && i.info->immediate == ImmediateType::Float;
+  const bool floats = compare || i.info->alu() == AluType::Flt || i.info->alu() == AluType::Slw;
+  if (!floats || !tames()) return;
+  const bool three = i.info->needs == Feature::Triples || i.info->needs == Feature::FusedTriples;
+  if (i.b_is_immediate) i.immediate = tamed(i.immediate);
+  // Counters and addresses, which are small integers, stay what they are.
+  for (uint8_t* number : {&i.ra, &i.rb, &i.x})
+    if (*number >= kDataRegisters) *number = static_cast<uint8_t>(destination());
+  for (int n = 0; n < (three ? kElements : 1); ++n) {
+    if (has_operand(*i.info, Operand::Ra)) tame((i.ra + n) % kRegisters, i);
+    if (has_operand(*i.info, Operand::B) && !i.b_is_immediate) tame((i.rb + n) % kRegisters, i);
+    if (has_operand(*i.info, Operand::Rc)) tame((i.x + n) % kRegisters, i);
+  }
+}
+
 size_t ProgramStatements::plain_type() {
   uint32_t total = 0;
   for (const uint32_t weight : weights_) total += weight;
@@ -100,7 +131,14 @@ void ProgramStatements::some_groups() {
   i.immediate = 1 + below(configuration_.lanes - 1);
   emit(Opcode::Lane, lane);
   emit(i);
-  emit(plain_row(to_underlying(AluType::Slw)).opcode, destination(), source(), source(), i.rd);
+  Instruction slow;
+  slow.rb = source();
+  slow.ra = source();
+  slow.rd = destination();
+  slow.info = &plain_row(to_underlying(AluType::Slw));
+  slow.guard = i.rd;
+  tame(slow);
+  emit(slow);
 }
 
 void ProgramStatements::triple(int a, int b) {
@@ -123,6 +161,7 @@ void ProgramStatements::triple(int a, int b) {
       i.rb = near();
     if (has_operand(*i.info, Operand::Rc)) i.x = near();
   }
+  tame(i);
   plain_at_.push_back(emit(i));
 }
 
@@ -158,6 +197,7 @@ void ProgramStatements::plain(int a, int b, std::optional<size_t> type) {
   if (has_operand(info, Operand::Rc)) i.x = a >= 0 && chance(2) ? (chance(2) ? a : std::max(b, 0)) : source();
   if (has_operand(info, Operand::Px)) i.x = any_predicate();
   if (has_operand(info, Operand::Argument)) i.immediate = below(kArguments);
+  tame(i);
   plain_at_.push_back(emit(i));
 }
 
@@ -188,6 +228,7 @@ void ProgramStatements::arithmetic() {
   i.rd = destination();
   i.ra = a;
   i.rb = b;
+  tame(i);
   emit(i);
 }
 

@@ -27,6 +27,8 @@ class ProgramStatements : public ProgramEmitter {
   static constexpr int kDataRegisters = 10;
   static constexpr int kLoopDepth = 3;
   static constexpr int kAddress = 13, kShared = 14, kOwn = 15;
+  static constexpr uint32_t kWild = 40;                                        // one operand in so many
+  static constexpr uint32_t kTameBits = 0x9fffffff, kTameOffset = 0x20000000;  // of the exponent the upper bits
   // p1 .. p12 are free, p13 .. p15 keep loops going.
   static constexpr int kLoopPredicate = 13;
 
@@ -56,6 +58,13 @@ class ProgramStatements : public ProgramEmitter {
   bool has_any(AluType type) const;
   /// rd = ra * factor, or without imul the next lower power of two as factor.
   void times(int rd, int ra, uint32_t factor);
+  /// On machines without subnormal numbers nearly every program would stop at once: there what a float instruction
+  /// reads is brought into 2^-63 .. 2 before it, where no product, quotient or sum is tiny. Not once in a while; and
+  /// not in the lanes that the instruction's guard leaves out.
+  static uint32_t tamed(uint32_t word) { return (word & kTameBits) + kTameOffset; }
+  void tame(Instruction& i);
+  void tame(int number, const Instruction& guarded);
+  bool tames() { return guarded_ && !chance(kWild); }
   /// An ALU type, as often as the mix wants it.
   size_t plain_type();
   const InstructionInfo& plain_row(std::optional<size_t> type);
@@ -111,6 +120,7 @@ class ProgramStatements : public ProgramEmitter {
   void functions();
 
   Configuration configuration_;
+  bool guarded_ = configuration_.subnormals == Subnormals::None;
   uint32_t warps_;
   int stack_depth_;
   uint32_t intersection_words_;

@@ -18,7 +18,7 @@ constexpr uint32_t kLongestProgram = 0xfff0, kLastPc = 0xffff, kUpperPcBit = 0x8
 constexpr uint32_t kLeastRaces = 32, kMostRaces = 96;
 constexpr uint32_t kLeastWalk = 8;                     ///< lines
 constexpr uint32_t kMostDelays = 24, kMostShifts = 5;  ///< instructions
-constexpr uint32_t kEveryFault = 0xfe;
+constexpr uint32_t kEveryFault = 0xfe;                 // but of subnormal numbers
 constexpr uint32_t kLineInstructions = kLineBytes / 8;
 
 class Generator : public ProgramStatements {
@@ -48,12 +48,13 @@ class Generator : public ProgramStatements {
       for (uint32_t k = 0; k < kernels_; ++k) race();
       result_.faults = kEveryFault;
     } else {
-      if (chance(8)) fault_ = static_cast<FaultCode>(1 + below(7));
+      if (chance(8)) fault_ = any_fault();
       if (fault_ != FaultCode::None) result_.faults = fault_bit(fault_);
       const bool second = profile_.most_kernels > 1 && fault_ == FaultCode::None && chance(2);
       entry("main", body_length, !second);
       if (second) entry("second", body_length / 2, true);
     }
+    if (guarded_) result_.faults |= fault_bit(FaultCode::SubnormalNumber);
     result_.program.code = code_;
     choose_data();
     choose_limits();
@@ -213,7 +214,9 @@ class Generator : public ProgramStatements {
     const uint32_t place = kLongestProgram - 8 - below(8);
     while (here() < place) code_.push_back(random());
     patch(at, here());
-    for (uint32_t n = 1 + below(6); n > 0; --n) plain();
+    // There is no room to tame operands.
+    const auto type = guarded_ ? std::optional<size_t>(to_underlying(AluType::Int)) : std::nullopt;
+    for (uint32_t n = 1 + below(6); n > 0; --n) plain(-1, -1, type);
     emit(Opcode::Exit);
   }
 
@@ -334,10 +337,22 @@ class Generator : public ProgramStatements {
             emit_immediate(last_word ? Opcode::Ld : access, 0, kAddress, last_word ? 0u - 4 : 4 * below(4)));
         return;
       }
+      case FaultCode::SubnormalNumber:
+        subnormal();
+        return;
       default:
         emit_word(chance(2) ? Opcode::Rld : Opcode::Rst, intersection_words_ + below(32 - intersection_words_));
         return;
     }
+  }
+
+  // As operand a, as operand b, or as a result.
+  void subnormal() {
+    constexpr uint32_t kOne = 0x3f800000, kHalf = 0x3f000000, kLeastNormal = 0x00800000;
+    const uint32_t number = 1 + below(kLeastNormal - 1);
+    const uint32_t kind = below(3);
+    emit_immediate(Opcode::Mov, 1, 0, kind == 0 ? number : kind == 1 ? kOne : kLeastNormal);
+    emit_immediate(Opcode::Fmul, 1, 1, kind == 0 ? kOne : kind == 1 ? number : kHalf);
   }
 
   // The first element of the triple is loaded.
@@ -410,7 +425,10 @@ class Generator : public ProgramStatements {
     emit(Opcode::Exit);
   }
 
-  FaultCode any_fault() { return static_cast<FaultCode>(1 + below(7)); }
+  FaultCode any_fault() {
+    return static_cast<FaultCode>(
+        1 + below(to_underlying(guarded_ ? FaultCode::SubnormalNumber : FaultCode::RayWordOutside)));
+  }
 
   // The stacks of a group that is to overflow; the other one's takes as long and stays empty.
   void fill_stacks(const std::array<FaultCode, 2>& codes, int second) {

@@ -88,6 +88,11 @@ std::vector<Cut> no_reflections(const Configuration& machine, const Frame& frame
   return {{"chip.reflections", false, frame.depth > 1 ? "no material reflects" : "depth 1 casts none"}};
 }
 
+std::vector<Cut> no_subnormals(const Configuration& machine, const Frame& frame) {
+  if (frame.subnormal_words || machine.subnormals == Subnormals::None) return {};
+  return {{"arithmetic.subnormals", "none", "none arises in this frame; where one does the unit stops"}};
+}
+
 std::vector<Cut> smaller_instruction_cache(const Configuration& machine, const std::vector<RayKernel>& kernels) {
   const uint32_t bytes = code_bytes(machine, kernels);
   return smaller("instruction_cache.bytes", bytes, machine.instruction_cache_bytes,
@@ -146,6 +151,7 @@ std::vector<Part> parts_of(const Frame& frame) {
   for (const AluType type : kEveryAluType)
     parts.emplace_back(
         [=](const Configuration& machine) { return fewer_instructions(machine, type, kernels(machine)); });
+  parts.emplace_back([frame](const Configuration& machine) { return no_subnormals(machine, frame); });
   const std::vector<Part> timed = {
       [frame](const Configuration& machine) { return fewer_slow_lanes(machine, frame.drawn); },
       [frame](const Configuration& machine) { return smaller_data_cache(machine, frame.materials); },

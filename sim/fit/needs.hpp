@@ -18,7 +18,8 @@ struct Frame {
   int depth = 1;             ///< rays beyond it are not traced
   bool reflections = false;  ///< are cast
   size_t materials = 0;
-  ChipResult drawn;  ///< on the machine that is to be fitted
+  bool subnormal_words = false;  ///< in what it is drawn from (scene/subnormal_words.hpp)
+  ChipResult drawn;              ///< on the machine that is to be fitted
 };
 
 /// The kernels that the chip may launch in such a frame.

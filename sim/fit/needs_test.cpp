@@ -95,6 +95,18 @@ TEST(Needs, OneWordOfAnIntersectionLessWouldNotDo) {
   EXPECT_THROW(ray_record_layout(machine), InputError);
 }
 
+TEST(Needs, SubnormalNumbersAreLeftOutUnlessTheSceneHasOne) {
+  for (const bool in_scene : {false, true}) {
+    Frame frame = frame_of(3, true);
+    frame.subnormal_words = in_scene;
+    bool tried = false;
+    for (const Part& part : parts_of(frame))
+      for (const Cut& cut : part(Configuration()))
+        if (cut.field == "arithmetic.subnormals") tried = cut.value == "none";
+    EXPECT_EQ(tried, !in_scene);
+  }
+}
+
 TEST(Needs, CutsAreLessThanTheMachineHas) {
   Configuration machine;
   machine.lanes = 4;
@@ -115,6 +127,7 @@ TEST(Needs, OfAMachineThatHasTheLeastNothingIsTried) {
   machine.instruction_cache_bytes = 512;
   machine.data_cache_bytes = 512;
   machine.data_cache_mshrs = 1;
+  machine.subnormals = Subnormals::None;
   for (const AluType type : kEveryAluType)
     machine.alus[type].without = optional_operations(type) & ~operations_of(machine, kKernels)[type];
   for (const Part& part : parts_of(frame_of(3, true))) {

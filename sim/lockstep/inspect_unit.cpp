@@ -177,7 +177,7 @@ void UnitInspection::check_faults() {
       (rtl.code == FaultCode::None || (rtl.warp == expected.warp && rtl.pc == expected.pc)))
     return;
   const FaultCode code = expected.code == FaultCode::None ? rtl.code : expected.code;
-  const bool of_alu = code >= FaultCode::Misaligned;
+  const bool of_alu = code >= FaultCode::Misaligned && code <= FaultCode::RayWordOutside;
   const bool raised =
       of_alu ? alu_fault_ : (warp_faults_ >> (expected.code == FaultCode::None ? rtl.warp : expected.warp) & 1) != 0;
   if (raised == (expected.code != FaultCode::None))
@@ -186,6 +186,7 @@ void UnitInspection::check_faults() {
                       : code == FaultCode::PcOutsideProgram ? "rtl/instruction_buffer.v, rtl/pc_stack.v"
                       : code <= FaultCode::StackUnderflow   ? "rtl/pc_stack.v, rtl/warp.v"
                       : code == FaultCode::RayWordOutside   ? "rtl/ray_alu.v"
+                      : code == FaultCode::SubnormalNumber  ? "rtl/subnormal_guard.v, rtl/warp.v"
                                                             : "rtl/mem_alu.v";
   find(files, expected.code == FaultCode::None ? "a fault is raised that is none" : "a fault is not raised");
 }

@@ -54,9 +54,10 @@ std::string first_files(const std::string& files, size_t most) {
 }
 
 std::string fault_text(const Fault& fault) {
-  static constexpr std::array<const char*, 8> kNames = {
+  static constexpr std::array<const char*, 9> kNames = {
       "no fault",           "illegal instruction", "PC outside the program", "PC stack overflow",
-      "PC stack underflow", "misaligned address",  "address outside memory", "ray word that an intersection has not"};
+      "PC stack underflow", "misaligned address",  "address outside memory", "ray word that an intersection has not",
+      "subnormal number"};
   const size_t code = to_underlying(fault.code);
   if (fault.code == FaultCode::None) return kNames[0];
   return fmt::format("{} (code {}) at warp {}, PC {}", code < kNames.size() ? kNames[code] : "unknown fault", code,

@@ -69,7 +69,7 @@ class ExtremeMachine {
 
   const std::string& engine() const { return engine_; }
   const ArithmeticMode& mode() const { return mode_; }
-  bool flushes() const { return mode_.mode.subnormals == Subnormals::Flush; }
+  bool flushes() const { return mode_.mode.subnormals != Subnormals::Ieee; }
   int significand() const { return static_cast<int>(mode_.mode.significand); }
   bool exact() const { return mode_.mode.slow_unit == SlowUnit::Exact; }
 

@@ -67,7 +67,7 @@ struct Point {
 /// rings; filled with subnormals, open without; a triangle with a fused multiply-add.
 std::string style(const ArithmeticMode& mode) {
   static constexpr const char* kColors[] = {"#4477aa", "#66aa55", "#ddaa33", "#bb5566"};
-  const bool flush = mode.mode.subnormals == Subnormals::Flush;
+  const bool flush = mode.mode.subnormals != Subnormals::Ieee;
   const size_t unit = to_underlying(mode.mode.slow_unit);
   const int shape = (mode.mode.fused ? 9 : 7) - (flush ? 1 : 0);
   return fmt::format("pointtype {} pointsize {:.1f} linewidth 2 linecolor \"{}\"", shape,

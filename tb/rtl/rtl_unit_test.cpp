@@ -94,7 +94,14 @@ TEST_P(RtlUnit, ReportsTheModelsFaults) {
       {"word", assembled(".word 0x6180401500000000  # rld r1, 21\nexit"), FaultCode::RayWordOutside},
       {"unmasked_word", assembled(".word 0x6240005e00000000  # @!p0 rst 30, r1\nexit"), FaultCode::RayWordOutside},
   };
-  for (const FaultProgram& program : programs) {
+  std::vector<FaultProgram> all(std::begin(programs), std::end(programs));
+  if (configuration.subnormals == Subnormals::None) {
+    all.push_back({"operand", assembled("mov r1, 1.0; fadd r2, r1, 1e-39; exit"), FaultCode::SubnormalNumber});
+    all.push_back({"result", assembled("mov r1, 1e-20; fmul r2, r1, r1; exit"), FaultCode::SubnormalNumber});
+    all.push_back({"compare", assembled("mov r1, 1.0; flt p1, r1, 1e-39; exit"), FaultCode::SubnormalNumber});
+    all.push_back({"quotient", assembled("mov r1, 1e-30; fdiv r2, r1, 1e30; exit"), FaultCode::SubnormalNumber});
+  }
+  for (const FaultProgram& program : all) {
     Memory memory(kMemoryBytes);
     test::put_program(memory, program.code);
     auto unit = make_lockstep_unit(configuration, load_rtl_unit(library, configuration), memory);
@@ -135,7 +142,7 @@ const Case kCases[] = {
      }},
     {"4w2c_many",
      [](Configuration& c) {
-       c.warps = 4, c.lanes = 2, c.subnormals = Subnormals::Flush, c.slow_unit = SlowUnit::Newton1, c.stack_depth = 5,
+       c.warps = 4, c.lanes = 2, c.subnormals = Subnormals::None, c.slow_unit = SlowUnit::Newton1, c.stack_depth = 5,
        c.fma = true;
        c.alus[AluType::Int] = {2, 1, 4};
        c.alus[AluType::Flt] = {3, 4, 5};

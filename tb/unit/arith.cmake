@@ -32,17 +32,19 @@ endfunction()
 
 set(arith_flt_sources ${arith_rtl}/flt_alu.v ${arith_rtl}/float_lane.v ${arith_rtl}/float_adder.v
   ${arith_rtl}/float_multiplier.v ${arith_rtl}/float_convert.v ${arith_rtl}/float_fma.v ${arith_rtl}/multiply_tree.v
-  ${arith_rtl}/alu_pipeline.v ${arith_rtl}/alu_delay.v)
+  ${arith_rtl}/alu_pipeline.v ${arith_rtl}/alu_delay.v ${arith_rtl}/subnormal_guard.v)
 arith_bench(flt_alu_test flt_units ${arith_flt_sources})
 arith_widths(flt_alu_test flt_units ${arith_flt_sources})
 
-set(arith_brh_sources ${arith_rtl}/brh_alu.v ${arith_rtl}/alu_pipeline.v ${arith_rtl}/alu_delay.v)
+set(arith_brh_sources ${arith_rtl}/brh_alu.v ${arith_rtl}/alu_pipeline.v ${arith_rtl}/alu_delay.v
+  ${arith_rtl}/subnormal_guard.v)
 arith_bench(brh_alu_test brh_units ${arith_brh_sources})
 arith_widths(brh_alu_test brh_units ${arith_brh_sources})
 
 set(arith_slw_sources ${arith_rtl}/slw_alu.v ${arith_rtl}/slow_lane.v ${arith_rtl}/slow_prepare.v
   ${arith_rtl}/slow_exact.v ${arith_rtl}/slow_newton.v ${arith_rtl}/slow_refine.v ${arith_rtl}/slow_line_table.v
-  ${arith_rtl}/slow_seed_table.v ${arith_rtl}/multiply_tree.v ${arith_rtl}/alu_pipeline.v ${arith_rtl}/alu_delay.v)
+  ${arith_rtl}/slow_seed_table.v ${arith_rtl}/multiply_tree.v ${arith_rtl}/alu_pipeline.v ${arith_rtl}/alu_delay.v
+  ${arith_rtl}/subnormal_guard.v)
 arith_bench(slw_alu_test slw_units ${arith_slw_sources})
 arith_widths(slw_alu_test slw_units ${arith_slw_sources})
 arith_top(slw_alu_test slw_group_units Vslw_group_units "" ${arith_slw_sources})
@@ -53,6 +55,10 @@ list(REMOVE_DUPLICATES arith_all_sources)
 arith_bench(left_out_test left_out_units ${arith_all_sources})
 arith_top(left_out_test left_out_units Vleft_out_units_short "-GSIGNIFICAND=16;-GSUBNORMALS=1;-GSLOW_UNIT=1"
   ${arith_all_sources})
+
+# ALUs that watch for subnormal numbers.
+arith_bench(subnormal_guard_test guard_units ${arith_all_sources})
+arith_top(subnormal_guard_test guard_units Vguard_units_13 -GSIGNIFICAND=13 ${arith_all_sources})
 
 arith_bench(alu_pipeline_test pipeline_units ${arith_rtl}/alu_pipeline.v)
 

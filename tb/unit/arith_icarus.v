@@ -27,20 +27,20 @@ module arith_icarus #(
     .clk_i(clk), .rst_ni(rst_n), .task_valid_i(flt_valid), .task_warp_i(warp), .task_operation_i(op),
     .task_mask_i(1'b1), .task_operand_a_i(a), .task_operand_b_i(b), .task_operand_c_i(c), .task_immediate_i(32'd0),
     .task_word_i(5'd0), .task_predicate_x_i(1'b0), .task_predicate_b_i(1'b0), .ready_o(), .done_valid_o(flt_done),
-    .done_warp_o(flt_warp), .done_data_o(flt_data), .done_predicate_o());
+    .done_warp_o(flt_warp), .done_data_o(flt_data), .done_predicate_o(), .done_subnormal_o());
   slw_alu #(.WARPS(8), .LANES(1), .LATENCY(1), .DEPTH(SLW_DEPTH), .SUBNORMALS(SUBNORMALS),
       .SIGNIFICAND(SIGNIFICAND), .SLOW_UNIT(SLOW_UNIT)) slw (
     .clk_i(clk), .rst_ni(rst_n), .task_valid_i(slw_valid), .task_warp_i(warp), .task_operation_i(op),
     .task_mask_i(1'b1), .task_operand_a_i(a), .task_operand_b_i(b), .task_operand_c_i(32'd0), .task_immediate_i(32'd0),
     .task_word_i(5'd0), .task_predicate_x_i(1'b0), .task_predicate_b_i(1'b0), .ready_o(), .done_valid_o(slw_done),
-    .done_warp_o(slw_warp), .done_data_o(slw_data), .done_predicate_o());
+    .done_warp_o(slw_warp), .done_data_o(slw_data), .done_predicate_o(), .done_subnormal_o());
 
   brh_alu #(.WARPS(8), .LANES(1), .WARP_BITS(3), .LATENCY(1), .DEPTH(BRH_DEPTH), .SUBNORMALS(SUBNORMALS),
       .SIGNIFICAND(SIGNIFICAND)) brh (
     .clk_i(clk), .rst_ni(rst_n), .task_valid_i(brh_valid), .task_warp_i(warp), .task_operation_i(op),
     .task_mask_i(1'b1), .task_operand_a_i(a), .task_operand_b_i(b), .task_operand_c_i(32'd0), .task_immediate_i(32'd0),
     .task_word_i(5'd0), .task_predicate_x_i(c[0]), .task_predicate_b_i(c[1]), .ready_o(), .done_valid_o(brh_done),
-    .done_warp_o(brh_warp), .done_data_o(), .done_predicate_o(brh_pred));
+    .done_warp_o(brh_warp), .done_data_o(), .done_predicate_o(brh_pred), .done_subnormal_o());
 
   // What is expected, beside the pipelines: entry k arrived k cycles ago.
   reg [SLW_DEPTH:0] flt_due = 0, slw_due = 0, brh_due = 0;

@@ -30,6 +30,7 @@ module brh_units #(
         .task_operand_b_i(task_operand_b_i), .task_operand_c_i({LANES*32{1'b0}}), .task_immediate_i(32'd0),
         .task_word_i(5'd0), .task_predicate_x_i(task_predicate_x_i), .task_predicate_b_i(task_predicate_b_i),
         .ready_o(ready_o[m]), .done_valid_o(done_valid_o[m]), .done_warp_o(done_warp_o[m*3 +: 3]), .done_data_o(),
+        .done_subnormal_o(),
         .done_predicate_o(done_predicate_o[m*LANES +: LANES]));
     end
   endgenerate

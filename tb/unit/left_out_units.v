@@ -47,15 +47,15 @@ module left_out_units #(
             .done_valid_o(valid), .done_warp_o(), .done_data_o(data), .done_predicate_o(predicate)
           if (t == 0) begin : gen_brh
             brh_alu #(.WARPS(1), .LANES(1), .WARP_BITS(1), .SUBNORMALS(SUBNORMALS), .SIGNIFICAND(SIGNIFICAND),
-              .WITHOUT(WITHOUT)) unit (`TASK);
+              .WITHOUT(WITHOUT)) unit (`TASK, .done_subnormal_o());
           end else if (t == 1) begin : gen_int
             int_alu #(.WARPS(1), .LANES(1), .WARP_BITS(1), .WITHOUT(WITHOUT)) unit (`TASK);
           end else if (t == 2) begin : gen_flt
             flt_alu #(.WARPS(1), .LANES(1), .WARP_BITS(1), .SUBNORMALS(SUBNORMALS), .SIGNIFICAND(SIGNIFICAND),
-              .WITHOUT(WITHOUT)) unit (`TASK);
+              .WITHOUT(WITHOUT)) unit (`TASK, .done_subnormal_o());
           end else begin : gen_slw
             slw_alu #(.WARPS(1), .LANES(1), .WARP_BITS(1), .DEPTH(SLOW_DEPTH), .SUBNORMALS(SUBNORMALS),
-              .SIGNIFICAND(SIGNIFICAND), .SLOW_UNIT(SLOW_UNIT), .WITHOUT(WITHOUT)) unit (`TASK);
+              .SIGNIFICAND(SIGNIFICAND), .SLOW_UNIT(SLOW_UNIT), .WITHOUT(WITHOUT)) unit (`TASK, .done_subnormal_o());
           end
           if (n == 32) begin : gen_whole
             assign whole_data = data;

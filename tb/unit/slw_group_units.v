@@ -28,7 +28,7 @@ module slw_group_units #(
         .task_operand_b_i(task_operand_b_i), .task_operand_c_i({LANES*32{1'b0}}), .task_immediate_i(32'd0),
         .task_word_i(5'd0), .task_predicate_x_i({LANES{1'b0}}), .task_predicate_b_i({LANES{1'b0}}),
         .ready_o(ready_o[u]), .done_valid_o(done_valid_o[u]), .done_warp_o(done_warp_o[u*3 +: 3]),
-        .done_data_o(done_data_o[u*LANES*32 +: LANES*32]), .done_predicate_o());
+        .done_data_o(done_data_o[u*LANES*32 +: LANES*32]), .done_predicate_o(), .done_subnormal_o());
     end
   endgenerate
 endmodule

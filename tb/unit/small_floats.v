@@ -21,12 +21,12 @@ module small_floats #(
     for (m = 0; m < 2; m = m + 1) begin : gen_mode
       float_adder #(.EXPONENT_BITS(EXPONENT_BITS), .MANTISSA_BITS(MANTISSA_BITS), .SUBNORMALS(m)) adder (
         .clk_i(clk_i), .enable_i(3'b111), .subtract_i(subtract_i), .a_i(a_i), .b_i(b_i),
-        .result_o(sum_o[m*BITS +: BITS]));
+        .result_o(sum_o[m*BITS +: BITS]), .tiny_o());
       float_multiplier #(.EXPONENT_BITS(EXPONENT_BITS), .MANTISSA_BITS(MANTISSA_BITS), .SUBNORMALS(m)) multiplier (
-        .clk_i(clk_i), .enable_i(3'b111), .a_i(a_i), .b_i(b_i), .result_o(product_o[m*BITS +: BITS]));
+        .clk_i(clk_i), .enable_i(3'b111), .a_i(a_i), .b_i(b_i), .result_o(product_o[m*BITS +: BITS]), .tiny_o());
       float_fma #(.EXPONENT_BITS(EXPONENT_BITS), .MANTISSA_BITS(MANTISSA_BITS), .SUBNORMALS(m)) fma (
         .clk_i(clk_i), .enable_i(5'b11111), .a_i(a_i), .b_i(b_i), .c_i(c_i), .multiply_i(multiply_i),
-        .result_o(fused_o[m*BITS +: BITS]));
+        .result_o(fused_o[m*BITS +: BITS]), .tiny_o());
     end
   endgenerate
 endmodule

@@ -19,7 +19,7 @@ module small_products #(
       for (l = 0; l < LANES; l = l + 1) begin : gen_lane
         float_multiplier #(.EXPONENT_BITS(EXPONENT_BITS), .MANTISSA_BITS(MANTISSA_BITS), .SUBNORMALS(m)) multiplier (
           .clk_i(clk_i), .enable_i(3'b111), .a_i(a_i), .b_i(b_i[l*BITS +: BITS]),
-          .result_o(product_o[(m*LANES+l)*BITS +: BITS]));
+          .result_o(product_o[(m*LANES+l)*BITS +: BITS]), .tiny_o());
       end
     end
   endgenerate

@@ -12,7 +12,7 @@
 // @proves nothing is stepped while a control instruction is under way; nothing is stepped,
 //   fetched, issued or offered while halt_i
 // @proves fetch_pc_o is the PC of an instruction that is illegal or outside, from the next
-//   cycle on, as long as halt_i follows
+//   cycle on, as long as halt_i follows; pc_o stays that of one that is done with a fault
 // @break instruction_buffer s/fetch_pc_o <= pc_i;/if (!outside_o) fetch_pc_o <= pc_i;/
 // @break instruction_buffer s/issue = ready && next_legal_q/issue = ready/
 // @break instruction_buffer s/WITHOUT\[cache_instruction_i\[63:55\]\]/1'b0/
@@ -20,6 +20,7 @@
 // @break instruction_buffer s/next_control_q \? F_IDLE : F_STACK/F_STACK/
 // @break instruction_buffer s/if \(!outside_o\) fetch_q/fetch_q/
 // @break instruction_buffer s/retire\) && !halt_i/retire)/
+// @break instruction_buffer s/ && !fault_i//
 // @break instruction_buffer s/data_q <= overlaps_o \? D_READ : D_EXECUTE/data_q <= D_WANT/
 // @break instruction_buffer s/refill_done_i \? F_ARBITER : F_MISS/F_STACK/
 // @break instruction_buffer s/read_element_q <= 2'd0/read_element_q <= read_element_q/
@@ -32,7 +33,7 @@
 // @break instruction_buffer s/done_i && !last_done && waits_q/done_i \&\& !last_done/
 `default_nettype none
 module check #(parameter [0:0] TRIPLES = 1'b1) (
-  input wire clk_i, start_i, halt_i, pc_valid_i, fetch_grant_i, hit_i, refill_i, grant_i, done_i,
+  input wire clk_i, start_i, halt_i, pc_valid_i, fetch_grant_i, hit_i, refill_i, grant_i, done_i, fault_i,
   input wire [2:0] some_pc_i, input wire [10:0] some_instruction_i
 );
   `include "isa.vh"
@@ -55,7 +56,8 @@ module check #(parameter [0:0] TRIPLES = 1'b1) (
     .clk_i(clk_i), .rst_ni(rst_n), .start_i(start_i), .halt_i(halt_i), .active_o(active), .step_o(step),
     .pc_valid_i(pc_valid_i), .pc_i(pc_i), .program_length_i(length), .fetch_request_o(fetch), .fetch_pc_o(fetch_pc),
     .fetch_grant_i(fetch_grant_i), .cache_hit_i(hit_i), .cache_instruction_i(instruction_i), .refill_done_i(refill_i),
-    .read_o(read), .want_o(want), .grant_i(grant_i), .done_i(done_i), .instruction_o(instruction), .triple_o(triple),
+    .read_o(read), .want_o(want), .grant_i(grant_i), .done_i(done_i), .fault_i(fault_i),
+    .instruction_o(instruction), .triple_o(triple),
     .read_element_o(read_element), .done_element_o(done_element), .overlaps_o(overlaps), .pc_o(pc),
     .writes_register_o(writes_register), .writes_predicate_o(writes_predicate), .illegal_o(illegal),
     .outside_o(outside));
@@ -103,12 +105,20 @@ module check #(parameter [0:0] TRIPLES = 1'b1) (
       fault_q <= illegal || outside || (fault_q && halt_i);
       if (illegal || outside) fault_pc_q <= illegal ? fetched_pc_q : pc_i;
     end
+  reg done_fault_q = 1'b0;      // likewise of one that was done with a fault
+  reg [15:0] done_fault_pc_q;
+  always @(posedge clk_i)
+    if (rst_n) begin
+      done_fault_q <= fault_i || (done_fault_q && halt_i);
+      if (fault_i) done_fault_pc_q <= pc;
+    end
   wire control = isa_control(instruction);
   always @* begin
     assume (!pc_valid_i || step);
     assume (!fetch_grant_i || fetch);
     assume (!grant_i || want);
     assume (!done_i || dones_q < grants_q);
+    assume (!fault_i || done_i);
     assume (!start_i || !active);
     if (rst_n) begin
       assert (!first_read ||
@@ -132,6 +142,8 @@ module check #(parameter [0:0] TRIPLES = 1'b1) (
       assert (!(halt_i && (step || fetch || want)));
       assert (!(halt_q && first_read));
       assert (!fault_q || fetch_pc == fault_pc_q);
+      assert (!(fault_i && illegal));
+      assert (!done_fault_q || (!first_read && pc == done_fault_pc_q));
     end
   end
 endmodule
