@@ -323,6 +323,7 @@ module compute_unit #(
   reg [WARP_BITS-1:0] alu_fault_warp_q;
   reg [WARPS-1:0] warp_fault_q;
   reg [WARPS*4-1:0] warp_fault_code_q;
+  localparam [WARPS*4-1:0] WARP_FAULT_CODES = {WARPS{SUBNORMALS == 2 ? 4'hf : 4'h7}};   // bits that there are
   always @(posedge clk_i)
     if (!rst_ni) begin
       fault_q <= 1'b0;
@@ -332,7 +333,7 @@ module compute_unit #(
       alu_fault_code_q <= mem_fault ? mem_fault_code : ray_fault_code;
       alu_fault_warp_q <= mem_fault ? mem_fault_warp : ray_fault_warp;
       warp_fault_q <= warp_fault;
-      warp_fault_code_q <= warp_fault_code;
+      warp_fault_code_q <= warp_fault_code & WARP_FAULT_CODES;
     end
 
   reg [3:0] fault_code;

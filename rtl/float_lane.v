@@ -46,7 +46,7 @@ module float_lane #(
       float_multiplier #(.EXPONENT_BITS(8), .MANTISSA_BITS(M), .SUBNORMALS(SUBNORMALS)) multiplier (
         .clk_i(clk_i), .enable_i(multiply_enable_i[2:0]), .a_i(a_i[31:D]), .b_i(b_i[31:D]), .result_o(product),
         .tiny_o(tiny_product));
-      always @(posedge clk_i) tiny_o <= tiny_sum || tiny_product;
+      always @(posedge clk_i) tiny_o <= SUBNORMALS == 2 && (tiny_sum || tiny_product);
       always @* begin
         computed = 32'd0;
         computed[31:D] = sum | product;
@@ -65,7 +65,7 @@ module float_lane #(
       float_fma #(.EXPONENT_BITS(8), .MANTISSA_BITS(M), .SUBNORMALS(SUBNORMALS)) fma (
         .clk_i(clk_i), .enable_i(enable), .a_i(a_i[31:D]), .b_i(factor), .c_i(addend),
         .multiply_i(multiply_enable_i[0]), .result_o(fused), .tiny_o(tiny_fused));
-      always @(posedge clk_i) tiny_o <= tiny_fused;
+      always @(posedge clk_i) tiny_o <= SUBNORMALS == 2 && tiny_fused;
       always @* begin
         computed = 32'd0;
         computed[31:D] = fused;
