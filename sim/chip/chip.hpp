@@ -12,6 +12,7 @@
 
 #include "chip/policy.hpp"
 #include "chip/ports.hpp"
+#include "chip/tile_costs.hpp"
 #include "config/configuration.hpp"
 #include "isa/isa.hpp"
 #include "kernel/kernels.hpp"
@@ -43,6 +44,10 @@ struct ChipOptions {
   bool reflections = true;  ///< false: casts none, whatever the depth; the same picture where no material reflects
   RayTracer* tracer = nullptr;
   FrameSink* frame = nullptr;
+
+  /// Numbers along the tile walk (chip/tile_walk.hpp) of those that are cast, ascending; empty: all of the picture.
+  std::vector<uint32_t> tiles;
+  chip::TileCosts* tile_costs = nullptr;  ///< gets what each of them costs; may be null
 
   chip::PolicyMaker own_policy;                       ///< makes one of the caller's own, in place of the one named
   std::function<void(const ChipProgress&)> progress;  ///< called now and then, and at the end

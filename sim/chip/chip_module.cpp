@@ -5,6 +5,7 @@
 #include <chrono>
 #include <stdexcept>
 
+#include "bits.hpp"
 #include "scene/native_renderer.hpp"
 
 namespace raypool::chip {
@@ -90,10 +91,27 @@ Chip::Chip(const sc_core::sc_module_name& name, const ChipOptions& options)
 
   monitor_.clock(clock_.now);
   monitor_.watched(*this);
+  if (options_.tile_costs != nullptr) watch_tiles();
+}
+
+void Chip::watch_tiles() {
+  tile_of_.resize(place(options_.width - 1, options_.height - 1) + 1);
+  controller_.on_cast = [this](const std::vector<uint32_t>& pixels) {
+    const uint32_t first = pixels.front();
+    tile_of_[place(first & 0xffff, first >> 16)] = options_.tile_costs->cast(size32(pixels), counts());
+  };
+  ledger_.on_finished = [this](uint32_t pixel) {
+    options_.tile_costs->finished(tile_of_[place(pixel & 0xffff, pixel >> 16)], counts());
+  };
+}
+
+size_t Chip::place(uint32_t x, uint32_t y) const {
+  const uint32_t columns = (options_.width + controller_.tile_width() - 1) / controller_.tile_width();
+  return size_t{y / controller_.tile_height()} * columns + x / controller_.tile_width();
 }
 
 void Chip::show_progress() {
-  options_.progress({static_cast<double>(ledger_.finished()) / ledger_.pixels(), clock_.cycle(), rays_traced()});
+  options_.progress({static_cast<double>(ledger_.finished()) / controller_.pixels(), clock_.cycle(), rays_traced()});
 }
 
 ChipResult Chip::draw() {
@@ -115,6 +133,7 @@ ChipResult Chip::draw() {
   }
   if (options_.progress) show_progress();
 
+  if (options_.tile_costs != nullptr) options_.tile_costs->end(counts());
   ChipResult result = collect();
   result.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return result;

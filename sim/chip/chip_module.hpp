@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 #include <systemc>
+#include <vector>
 
 #include "chip/chip.hpp"
 #include "chip/chip_clock.hpp"
@@ -44,6 +45,9 @@ class Chip : public sc_core::sc_module, public WatchedIf {
   void collect_units(ChipResult& result) const;
   void collect_pools(ChipResult& result) const;
   void collect_ceilings(ChipResult& result) const;
+  void watch_tiles();
+  size_t place(uint32_t x, uint32_t y) const;  // of a pixel's tile in tile_of_
+  Counts counts() const;
 
   const ChipOptions options_;
   ChipClock clock_{"clock"};
@@ -56,6 +60,7 @@ class Chip : public sc_core::sc_module, public WatchedIf {
   std::unique_ptr<Traverser> traverser_;
   DeviceHost device_;
   Monitor monitor_;
+  std::vector<uint32_t> tile_of_;  // [place in the picture, row by row] number in tile_costs, if there are any
 };
 
 }  // namespace raypool::chip

@@ -82,6 +82,28 @@ void Chip::collect_ceilings(ChipResult& result) const {
             [](const Ceiling& a, const Ceiling& b) { return a.mrays_per_s < b.mrays_per_s; });
 }
 
+Counts Chip::counts() const {
+  Counts counts{};
+  ComputeUnit& device = *options_.device;
+  const RayCounts& rays = traverser_->counts().rays;
+  const auto set = [&](size_t number, uint64_t value) { counts[number] = static_cast<double>(value); };
+  set(count::kCycles, clock_.cycle());
+  set(count::kEyeRays, rays.eye.traced);
+  set(count::kReflectionRays, rays.reflection.traced);
+  set(count::kShadowRays, rays.shadow.traced);
+  set(count::kBusyCycles, device_.busy_cycles());
+  set(count::kInstructions, device.counter(counter::kInstructions));
+  set(count::kThreadInstructions, device.counter(counter::kThreadInstructions));
+  set(count::kRayPort, rays_.busy_cycles());
+  set(count::kIntersectionPort, intersections_.busy_cycles());
+  set(count::kMemoryPort, memory_port_.busy_cycles());
+  for (size_t type = 0; type < kAluTypes; ++type) {
+    set(count::kUnused + type, device.counter(counter::kUnused + static_cast<int>(type)));
+    set(count::kIssued + type, device.counter(counter::kIssued + static_cast<int>(type)));
+  }
+  return counts;
+}
+
 ChipResult Chip::collect() const {
   ChipResult result;
   result.timed = options_.device->timed();

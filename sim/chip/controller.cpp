@@ -11,12 +11,21 @@ namespace raypool::chip {
 
 namespace {
 
-// The traverser of constant speed has no caches that the order could serve.
-TileOrder tile_order(const ChipConfiguration& chip) {
-  return chip.traverser == TraverserName::Modelled ? chip.modelled_traverser_tile_order : TileOrder::Rows;
+// A tile that would hold more pixels than allowed is cut into bands of whole rows.
+uint32_t tile_rows(const Configuration& configuration) {
+  return std::min(configuration.contents(), configuration.chip.held_limit) >> tile_width_log2(configuration.contents());
 }
 
 }  // namespace
+
+TileWalk tile_walk(const Configuration& configuration, uint32_t width, uint32_t height) {
+  const uint32_t columns = 1u << tile_width_log2(configuration.contents()), rows = tile_rows(configuration);
+  const ChipConfiguration& chip = configuration.chip;
+  // The traverser of constant speed has no caches that the order could serve.
+  const TileOrder order =
+      chip.traverser == TraverserName::Modelled ? chip.modelled_traverser_tile_order : TileOrder::Rows;
+  return {order, (width + columns - 1) / columns, (height + rows - 1) / rows};
+}
 
 Controller::Controller(const sc_core::sc_module_name& name, const ChipOptions& options)
     : sc_module(name),
@@ -26,10 +35,8 @@ Controller::Controller(const sc_core::sc_module_name& name, const ChipOptions& o
       height_(options.height),
       secondary_(secondary_kernel(options.depth, options.reflections)),
       tile_width_(1u << tile_width_log2(options.configuration.contents())),
-      // A tile that would hold more pixels than allowed is cut into bands of whole rows.
-      tile_height_(std::min(options.configuration.contents(), chip_.held_limit) / tile_width_),
-      next_tile_(tile_order(chip_), (width_ + tile_width_ - 1) / tile_width_,
-                 (height_ + tile_height_ - 1) / tile_height_),
+      tile_height_(tile_rows(options.configuration)),
+      next_tile_(tile_walk(options.configuration, width_, height_), options.tiles),
       given_(options.device->units()),
       ended_(options.device->units()) {
   const uint32_t contents = options.configuration.contents();
@@ -42,6 +49,7 @@ Controller::Controller(const sc_core::sc_module_name& name, const ChipOptions& o
                           chip_.static_traverser_batch,
                           secondary_ == RayKernel::CastSecondary ? 2u : 1u};
   policy_ = options.own_policy ? options.own_policy(setup) : make_policy(chip_.policy, setup);
+  for (ChosenTiles tiles = next_tile_; !tiles.at_end(); tiles.next()) pixels_ += pixels_of(tiles);
   decisions.bind(*this);
   kernel_events.bind(*this);
   SC_METHOD(decide);
@@ -61,15 +69,15 @@ void Controller::kernel_ended(uint32_t unit) {
   thread_time_launchable_ += static_cast<double>(time) * options_.configuration.contents();
 }
 
-uint32_t Controller::pixels_of_next_tile() const {
-  const uint32_t columns = std::min(tile_width_, width_ - tile_x()), rows = std::min(tile_height_, height_ - tile_y());
-  return columns * rows;
+uint32_t Controller::pixels_of(const ChosenTiles& tile) const {
+  return std::min(tile_width_, width_ - tile.column() * tile_width_) *
+         std::min(tile_height_, height_ - tile.row() * tile_height_);
 }
 
 bool Controller::eye_possible() const {
   if (next_tile_.at_end()) return false;
   if (!chip_.window_remedy && ledger->held() > 0 && round_ == 0) return false;
-  return ledger->held() + pixels_of_next_tile() <= chip_.held_limit;
+  return ledger->held() + pixels_of(next_tile_) <= chip_.held_limit;
 }
 
 uint32_t Controller::secondary_room() const {
@@ -115,7 +123,7 @@ void Controller::decide() {
 }
 
 bool Controller::end_if_finished() {
-  if (ledger->finished() < ledger->pixels() || !device->idle()) return false;
+  if (!next_tile_.at_end() || ledger->held() > 0 || !device->idle()) return false;
   finished_ = true;
   clock->stop();
   return true;
@@ -157,6 +165,7 @@ LaunchCommand Controller::next_tile(uint32_t unit) {
   const uint32_t left = tile_x(), top = tile_y();
   for (uint32_t y = top; y < std::min(top + tile_height_, height_); ++y)
     for (uint32_t x = left; x < std::min(left + tile_width_, width_); ++x) pixels.push_back(x | y << 16);
+  if (on_cast) on_cast(pixels);
   ledger->eye_launched(unit, std::move(pixels));
   held_peak_ = std::max(held_peak_, ledger->held());
 

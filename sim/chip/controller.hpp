@@ -10,6 +10,7 @@
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <string>
 #include <systemc>
@@ -23,11 +24,17 @@
 
 namespace raypool::chip {
 
+/// Over the tiles in which such a machine casts a picture: columns() x rows() pixels each, in its order.
+TileWalk tile_walk(const Configuration& configuration, uint32_t width, uint32_t height);
+
 class Controller : public sc_core::sc_module, public DecisionIf, public KernelEventsIf {
  public:
   SC_HAS_PROCESS(Controller);
   /// `options` must outlive the controller.
   Controller(const sc_core::sc_module_name& name, const ChipOptions& options);
+
+  /// Is told of a tile that is cast, by the pixels of it that lie in the image; may be empty.
+  std::function<void(const std::vector<uint32_t>& pixels)> on_cast;
 
   sc_core::sc_port<TimeIf> clock{"clock"};
   sc_core::sc_port<RayLevelIf> rays{"rays"};
@@ -42,6 +49,8 @@ class Controller : public sc_core::sc_module, public DecisionIf, public KernelEv
   void changed() override { clock->notify(decide_, Phase::Controller); }
 
   bool finished() const { return finished_; }
+  /// Of the tiles that are cast.
+  uint64_t pixels() const { return pixels_; }
   const EnumArray<RayKernel, ChipResult::Kernel, kRayKernels>& kernels() const { return kernels_; }
   double resource_utilisation() const {
     return thread_time_launchable_ == 0 ? 0 : thread_time_ / thread_time_launchable_;
@@ -72,7 +81,7 @@ class Controller : public sc_core::sc_module, public DecisionIf, public KernelEv
   LaunchCommand next_tile(uint32_t unit);
   uint32_t tile_x() const { return next_tile_.column() * tile_width_; }
   uint32_t tile_y() const { return next_tile_.row() * tile_height_; }
-  uint32_t pixels_of_next_tile() const;
+  uint32_t pixels_of(const ChosenTiles& tile) const;
 
   const ChipOptions& options_;
   const ChipConfiguration& chip_;
@@ -82,7 +91,8 @@ class Controller : public sc_core::sc_module, public DecisionIf, public KernelEv
   sc_core::sc_event decide_;
 
   uint32_t tile_width_, tile_height_;
-  TileWalk next_tile_;
+  uint64_t pixels_ = 0;
+  ChosenTiles next_tile_;
   int round_ = 0;  // tiles that may be cast before all held pixels are finished; without the remedy only
 
   bool finished_ = false;

@@ -163,6 +163,7 @@ void PixelLedger::gone(uint32_t pixel) {
   if (--live_[index(pixel)] > 0) return;
   --held_;
   ++finished_;
+  if (on_finished) on_finished(pixel);
 }
 
 }  // namespace raypool::chip

@@ -11,6 +11,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <systemc>
 #include <vector>
 
@@ -29,6 +30,8 @@ class PixelLedger : public sc_core::sc_module, public LedgerIf, public KernelEve
 
   /// Is told when a kernel goes off record: held() or the rays to come may have fallen.
   sc_core::sc_port<DecisionIf, 0, sc_core::SC_ZERO_OR_MORE_BOUND> controller{"controller"};
+  /// Is told when a pixel is finished; may be empty.
+  std::function<void(uint32_t pixel)> on_finished;
   sc_core::sc_export<LedgerIf> records{"records"};
   sc_core::sc_export<KernelEventsIf> kernel_events{"kernel_events"};
 

@@ -4,7 +4,9 @@
 
 #include <cstdint>
 #include <utility>
+#include <vector>
 
+#include "bits.hpp"
 #include "config/parameters.hpp"
 
 namespace raypool::chip {
@@ -59,6 +61,36 @@ class TileWalk {
   uint32_t side_ = 1;                           // of the square that the curve fills
   uint64_t step_ = 0;                           // along the curve
   uint32_t column_ = 0, row_ = 0;
+};
+
+/// Some tiles of a walk, in its order.
+class ChosenTiles {
+ public:
+  /// `numbers`: of the tiles, counted along the walk from 0, ascending; empty: all of them.
+  ChosenTiles(TileWalk walk, const std::vector<uint32_t>& numbers) : walk_(walk), numbers_(numbers) { skip(); }
+
+  bool at_end() const { return walk_.at_end() || (!numbers_.empty() && chosen_ == size32(numbers_)); }
+  uint32_t column() const { return walk_.column(); }
+  uint32_t row() const { return walk_.row(); }
+
+  void next() {
+    advance();
+    ++chosen_;
+    skip();
+  }
+
+ private:
+  void advance() {
+    walk_.next();
+    ++number_;
+  }
+  void skip() {
+    while (!numbers_.empty() && !at_end() && number_ < numbers_[chosen_]) advance();
+  }
+
+  TileWalk walk_;
+  const std::vector<uint32_t>& numbers_;
+  uint32_t number_ = 0, chosen_ = 0;  // of the present tile: along the walk, among those chosen
 };
 
 }  // namespace raypool::chip
