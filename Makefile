@@ -35,6 +35,9 @@ TRACE     ?= 0
 # `make fidelity`
 LEVELS    ?=
 RUNS      ?= 1
+# sim with ENGINE=sampled; `make intervals`
+ERROR     ?=
+SAMPLES   ?= 200
 # `make compare`
 A         ?=
 B         ?=
@@ -82,7 +85,7 @@ FROM      ?=
 export CONFIG SET CUS SCENE SIZE DEPTH ENGINE TRAVERSER VIEW CAMERA EYE LOOK_AT UP FOV LIGHT DETAIL OUT WAVES TRACE
 export A B KERNEL PROGRAMS SEED COVERAGE MUTANTS MODE THREADS
 export SLOWER
-export FROM EXPERIMENT WHERE JOBS SCENES LEVELS RUNS
+export FROM EXPERIMENT WHERE JOBS SCENES LEVELS RUNS ERROR TIME SAMPLES
 export LIBERTY CLOCK MEMORIES AGAINST RUN ONLY PLAN
 
 # Everything that is made goes here; scripts read it from the environment.
@@ -97,6 +100,9 @@ LOCKED := flock $(BUILD)/.lock
 # Only engines rtl and lockstep need a Verilated device.
 WAVES_FLAG := $(if $(filter-out 0,$(WAVES)),--waves)
 TRACE_FLAG := $(if $(filter-out 0,$(TRACE)),--trace $(if $(filter 1,$(TRACE)),:,"$$TRACE"))
+# An environment may hold a TIME of its own, for time(1).
+SAMPLE_FLAGS := $${ERROR:+--error "$$ERROR"} $(if $(findstring command,$(origin TIME)),--time "$$TIME") \
+  $(if $(filter sampled,$(ENGINE)),--seed "$$SEED")
 SET_FIELDS := $${SET:+--set "$$SET"}
 UNIT := scripts/unit.sh "$$CONFIG" $(SET_FIELDS) $(WAVES_FLAG)
 # After an equals sign a number may be negative.
@@ -118,7 +124,7 @@ FIT_SETUP := $(if $(filter-out 0,$(AREA) $(POWER)),setup-synth)
 GATES_SETUP := $(if $(filter-out 0,$(GATES)),setup-synth)
 UNIT_OF_ENGINE := $(if $(filter rtl lockstep,$(ENGINE)),$(UNIT),true)
 
-.PHONY: help sim fidelity fit compare run cosim configurations mutants faults unit test lint format bench clean
+.PHONY: help sim fidelity intervals fit compare run cosim configurations mutants faults unit test lint format bench clean
 .PHONY: setup-% program configured-%
 .PHONY: numerics-long proofs synth synth-replay synth-prove growth numerics significands extremes isa diagrams quoted
 .PHONY: package sweep report bench-native
@@ -131,7 +137,7 @@ help: ## this list
 	@echo 'variables of make sim                                                    default'
 	@echo '  SCENE=cornell|room|FILE       what is drawn; .obj, .gltf, .glb, .ply      $(SCENE)'
 	@echo '  CONFIG=4w4c|8w8c|...|FILE     hardware: configs/*.json, [best_]NwMc, file $(CONFIG)'
-	@echo '  ENGINE=native|embree|functional|model|rtl|lockstep  what stands in for the unit  $(ENGINE)'
+	@echo '  ENGINE=native|embree|functional|sampled|model|rtl|lockstep  what stands in for the unit  $(ENGINE)'
 	@echo '  SIZE=WxH                      pixels, 1..16384 each                       $(SIZE)'
 	@echo '  DEPTH=N                       1: eye and shadow rays; more: reflections   $(DEPTH)'
 	@echo '  CUS=1|2|4                     compute units                               $(CUS)'
@@ -146,8 +152,11 @@ help: ## this list
 	@echo '  TRACE=FROM:CYCLES|pixel:X,Y   what happens then, for Perfetto, Konata and make report;'
 	@echo '                                1: 0:20000; ENGINE=model                    $(TRACE)'
 	@echo '  THREADS=N                     ENGINE=native, embree; changes no picture   all cores'
+	@echo '  ERROR=N% or TIME=Ns           ENGINE=sampled: what may be afforded        ERROR=2%'
+	@echo '  SEED=N                        ENGINE=sampled: of the choice of tiles      $(SEED)'
 	@echo 'variables of make fidelity:  those of the frame, from SCENE to DETAIL, and OUT=FOLDER'
 	@echo '  LEVELS="native model ...": only these; all if not given  RUNS=N: times that each draws, $(RUNS) if not given'
+	@echo 'variables of make intervals:  SAMPLES=N: seeds of each frame, $(SAMPLES) if not given'
 	@echo 'variables of make bench-native:  SCENE  SIZE  DEPTH  VIEW  DETAIL and those of the camera  THREADS=N'
 	@echo 'variables of make fit:  those of the frame, and OUT=FILE for the configuration'
 	@echo '  SLOWER=N%: $(SLOWER) if not given  AREA=1: what each change saves in area'
@@ -172,10 +181,13 @@ help: ## this list
 sim: setup-sim program ## draw a scene on the simulated chip: picture, report, figures
 	@$(UNIT_OF_ENGINE) --units "$$CUS"
 	@$(RAYPOOL) sim $(FRAME) --engine "$$ENGINE" $${OUT:+--out "$$OUT"} $(WAVES_FLAG) $(TRACE_FLAG) \
-	  $${THREADS:+--threads "$$THREADS"}
+	  $${THREADS:+--threads "$$THREADS"} $(SAMPLE_FLAGS)
 
 fidelity: setup-sim setup-fidelity program ## a frame at every level of simulation, speed against error: LEVELS, RUNS
 	@scripts/fidelity.py $(FRAME) $${LEVELS:+--levels "$$LEVELS"} --runs "$$RUNS" $${OUT:+--out "$$OUT"}
+
+intervals: setup-sim program ## do the intervals of ENGINE=sampled contain the true values as often as they say? SAMPLES
+	@python3 scripts/intervals.py --samples "$$SAMPLES" $${OUT:+--out "$$OUT"}
 
 fit: setup-sim $(FIT_SETUP) program ## what a scene needs of CONFIG: a configuration with only that: SLOWER, AREA, POWER
 	@mkdir -p $(BUILD)/out

@@ -44,6 +44,7 @@ class Level(typing.NamedTuple):
 LEVELS = (
     Level("native", ("--engine", "native")),
     Level("functional", ("--engine", "functional")),
+    Level("sampled", ("--engine", "sampled")),
     Level("model", ("--engine", "model"), exact=True),
     Level("rtl", ("--engine", "rtl"), exact=True, verilated=True),
 )
@@ -123,6 +124,9 @@ def differences(report, other):
 
 def utilisations(report):
     """({ALU: share}, {port: share}); what the level does not know is None or left out."""
+    if sampled := report.get("sampled"):
+        return tuple({name.replace("_", " "): interval["value"] for name, interval in sampled[kind].items()}
+                     for kind in ("alus", "ports"))  # fmt: skip
     alus = {name: alu["utilisation"] for name, alu in report.get("alus", {}).items()}
     ports = {name.removesuffix("_utilisation").removeprefix("pools.").replace("_", " ").replace(".", " "): share
              for name, share in flat(report).items() if name.endswith("port_utilisation")}

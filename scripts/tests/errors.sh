@@ -57,6 +57,13 @@ refuses_sim "missing OBJ" "$folder/none.obj" --scene "$folder/none.obj"
 refuses_sim "OBJ index out of range" "index.obj" --scene "$folder/index.obj"
 refuses_sim "OBJ negative index out of range" "negative.obj" --scene "$folder/negative.obj"
 refuses_sim "OBJ with a NaN" "nan.obj" --scene "$folder/nan.obj"
+refuses_sim "an error for an engine without a sample" "functional draws no sample: use sampled" --error 2%
+refuses_sim "an error that is no share" "--error is '2 percent': it must be a number above 0, at most 50, and %" \
+  --engine sampled --error "2 percent"
+refuses_sim "an error of nothing" "--error is '0%'" --engine sampled --error 0%
+refuses_sim "no time" "--time is '-1s': it must be a number above 0" --engine sampled --time=-1s
+refuses_sim "error and time" "give one of them" --engine sampled --error 2% --time 3s
+refuses_sim "a sample's trace" "engine sampled leaves no trace" --engine sampled --trace :
 refuses_sim "no such scene" "nosuchscene" --scene nosuchscene
 refuses_sim "scene of an unknown format" "warps.json: .* \.obj, \.gltf, \.glb or \.ply" --scene "$folder/warps.json"
 refuses_sim "empty PLY" "empty.ply: the file is empty" --scene "$folder/empty.ply"

@@ -24,7 +24,7 @@ sys.path.insert(0, str(ROOT / "scripts"))
 import fidelity  # noqa: E402
 
 RAYPOOL = ""
-ENGINES = ["native", "functional", "model"]
+ENGINES = ["native", "functional", "sampled", "model"]
 
 
 def read(path):

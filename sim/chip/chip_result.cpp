@@ -91,7 +91,7 @@ Counts Chip::counts() const {
   set(count::kEyeRays, rays.eye.traced);
   set(count::kReflectionRays, rays.reflection.traced);
   set(count::kShadowRays, rays.shadow.traced);
-  set(count::kBusyCycles, device_.busy_cycles());
+  set(count::kBusyCycles, device.counter(counter::kBusyCycles));
   set(count::kInstructions, device.counter(counter::kInstructions));
   set(count::kThreadInstructions, device.counter(counter::kThreadInstructions));
   set(count::kRayPort, rays_.busy_cycles());

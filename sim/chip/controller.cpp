@@ -27,6 +27,19 @@ TileWalk tile_walk(const Configuration& configuration, uint32_t width, uint32_t 
   return {order, (width + columns - 1) / columns, (height + rows - 1) / rows};
 }
 
+std::vector<uint64_t> along_walk(const Configuration& configuration, uint32_t width, uint32_t height,
+                                 const std::vector<uint32_t>& pixels) {
+  const uint32_t columns = 1u << tile_width_log2(configuration.contents()), rows = tile_rows(configuration);
+  std::vector<uint64_t> sums;
+  for (TileWalk tile = tile_walk(configuration, width, height); !tile.at_end(); tile.next()) {
+    uint64_t& sum = sums.emplace_back();
+    for (uint32_t y = tile.row() * rows; y < std::min((tile.row() + 1) * rows, height); ++y)
+      for (uint32_t x = tile.column() * columns; x < std::min((tile.column() + 1) * columns, width); ++x)
+        sum += pixels[size_t{y} * width + x];
+  }
+  return sums;
+}
+
 Controller::Controller(const sc_core::sc_module_name& name, const ChipOptions& options)
     : sc_module(name),
       options_(options),

@@ -19,6 +19,8 @@ class TileWalk {
   }
 
   bool at_end() const { return left_ == 0; }
+  /// Tiles, the present one included.
+  uint64_t left() const { return left_; }
   uint32_t column() const { return column_; }
   uint32_t row() const { return row_; }
 
@@ -57,9 +59,9 @@ class TileWalk {
 
   TileOrder order_;
   uint32_t columns_, rows_;
-  uint64_t left_ = uint64_t{columns_} * rows_;  // tiles, the present one included
-  uint32_t side_ = 1;                           // of the square that the curve fills
-  uint64_t step_ = 0;                           // along the curve
+  uint64_t left_ = uint64_t{columns_} * rows_;
+  uint32_t side_ = 1;  // of the square that the curve fills
+  uint64_t step_ = 0;  // along the curve
   uint32_t column_ = 0, row_ = 0;
 };
 

@@ -30,7 +30,10 @@ struct SimOptions {
   int depth = 3;
   int units = 1;
   uint32_t threads = 0;  ///< of engines native and embree; 0: as many as the machine has cores
-  double detail = 1;     ///< of a built-in scene, 0.01 .. 16
+  /// Of engine sampled: "2%" of the cycles, half of their interval, or "10s" for the whole command; one or none.
+  std::string error, time;
+  uint64_t seed = 0;  ///< of engine sampled; 0: as 1
+  double detail = 1;  ///< of a built-in scene, 0.01 .. 16
   bool waves = false;
   std::string trace;           ///< window of cycles (trace::parse_window()); empty: no trace
   bool modules = false;        ///< print the modules of the chip, and draw nothing

@@ -24,11 +24,12 @@ Engine parse_engine(const std::string& name) {
   if (name == "native") return Engine::Native;
   if (name == "embree") return Engine::Embree;
   if (name == "functional") return Engine::Functional;
+  if (name == "sampled") return Engine::Sampled;
   if (name == "model") return Engine::Model;
   if (name == "rtl") return Engine::Rtl;
   if (name == "lockstep") return Engine::Lockstep;
   throw InputError(
-      fmt::format("there is no engine '{}': use native, embree, functional, model, rtl or lockstep", name));
+      fmt::format("there is no engine '{}': use native, embree, functional, sampled, model, rtl or lockstep", name));
 }
 
 std::string unit_library_path(const Configuration& configuration, bool waves, int units) {
@@ -100,8 +101,8 @@ std::string find_unit_library(const EngineOptions& options) {
 std::unique_ptr<ComputeUnit> make_unit(const EngineOptions& options, Memory& memory, const std::string& name,
                                        const std::map<uint32_t, std::string>& kernel_names) {
   const Configuration& configuration = options.configuration;
-  if (without_unit(options.engine))
-    throw InputError("engines native and embree have no compute unit: use functional, model, rtl or lockstep");
+  if (without_unit(options.engine) || options.engine == Engine::Sampled)
+    throw InputError("engines native, embree and sampled are for frames only: use functional, model, rtl or lockstep");
   if (options.engine == Engine::Functional) {
     std::vector<std::unique_ptr<ComputeUnit>> units;
     for (int i = 0; i < options.units; ++i) units.push_back(make_functional_unit(configuration, memory));

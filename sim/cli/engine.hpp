@@ -14,7 +14,7 @@
 
 namespace raypool {
 
-enum class Engine : uint8_t { Native, Embree, Functional, Model, Rtl, Lockstep };
+enum class Engine : uint8_t { Native, Embree, Functional, Sampled, Model, Rtl, Lockstep };
 
 /// No machine: the kernels as C++.
 constexpr bool without_unit(Engine engine) { return engine == Engine::Native || engine == Engine::Embree; }

@@ -194,6 +194,31 @@ void add_native(Json& json, const NativeStatistics& native) {
   }
 }
 
+void add_sampled(Json& json, const sampled::Figures& figures, uint64_t seed, bool thesis_counts_pixels) {
+  const auto interval = [](const sampled::Interval& x) {
+    return Json{{"value", x.value}, {"low", x.low}, {"high", x.high}};
+  };
+  const double cycles = figures.cycles.value;
+  json["cycles"] = std::llround(cycles);
+  json["mrays_per_second"] = figures.mrays_per_s.value;
+  const double pixels = json["size"]["width"].get<double>() * json["size"]["height"].get<double>();
+  json["mrays_per_second_thesis"] = thesis_counts_pixels ? 2e3 * pixels / cycles : figures.mrays_per_s.value;
+  json["frames_per_second"] = 1e9 / cycles;
+  Json& sampled = json["sampled"];
+  sampled["seed"] = seed;
+  sampled["whole"] = figures.whole;
+  sampled["tiles"] = figures.tiles;
+  sampled["counted_tiles"] = figures.counted_tiles;
+  sampled["simulated_tiles"] = figures.simulated_tiles;
+  sampled["error"] = figures.error();
+  sampled["cycles"] = interval(figures.cycles);
+  sampled["mrays_per_second"] = interval(figures.mrays_per_s);
+  for (size_t i = 0; i < kAluTypes; ++i) sampled["alus"][std::string(kAluNames[i])] = interval(figures.alus[i]);
+  sampled["ports"] = {{"ray_port", interval(figures.ray_port)},
+                      {"intersection_port", interval(figures.intersection_port)},
+                      {"memory_port", interval(figures.memory_port)}};
+}
+
 /// Appends a line to the table.
 template <typename... Arguments>
 void line(std::string& text, fmt::format_string<Arguments...> format, Arguments&&... arguments) {
@@ -308,6 +333,27 @@ void chip_table(std::string& text, const ChipResult& chip, const ChipConfigurati
        100 * chip.intersection_port_utilisation, 100 * chip.memory_port_utilisation);
 }
 
+void sampled_table(std::string& text, const RunRecord& record) {
+  const sampled::Figures& figures = *record.sampled;
+  if (figures.whole) {
+    line(text, "  sample      all of the {} tiles: the figures are exact", figures.tiles);
+  } else {
+    line(text, "  sample      {} of {} tiles ({:.1f}%), {} more around them, seed {}; in brackets 95% intervals",
+         figures.counted_tiles, figures.tiles, 100.0 * figures.counted_tiles / figures.tiles,
+         figures.simulated_tiles - figures.counted_tiles, record.seed);
+  }
+  const sampled::Interval &cycles = figures.cycles, &speed = figures.mrays_per_s;
+  line(text, "  speed       {:.2f} Mrays/s ({:.2f} .. {:.2f}), {:.0f} cycles ({:.0f} .. {:.0f}, +-{:.1f}%)",
+       speed.value, speed.low, speed.high, cycles.value, cycles.low, cycles.high, 100 * figures.error());
+  const auto percent = [](const sampled::Interval& x) {
+    return fmt::format("{:>6.1f}% ({:.1f} .. {:.1f})", 100 * x.value, 100 * x.low, 100 * x.high);
+  };
+  line(text, "  ALU    utilisation");
+  for (size_t i = 0; i < kAluTypes; ++i) line(text, "    {} {}", kAluNames[i], percent(figures.alus[i]));
+  line(text, "  ports  rays {}, intersections {}, memory {} busy", percent(figures.ray_port),
+       percent(figures.intersection_port), percent(figures.memory_port));
+}
+
 }  // namespace
 
 std::string to_json(const RunRecord& record) {
@@ -327,6 +373,7 @@ std::string to_json(const RunRecord& record) {
   json["traverser"] = configuration["chip"]["traverser"];
   if (record.chip) add_chip(json, *record.chip, record.configuration.chip);
   if (record.native) add_native(json, *record.native);
+  if (record.sampled) add_sampled(json, *record.sampled, record.seed, record.depth == 1);
   if (record.lockstep) json["lockstep"] = lockstep_json(*record.lockstep);
   json["wall_seconds"] = record.wall_seconds;
   json["simulation_seconds"] = record.simulation_seconds;
@@ -348,6 +395,7 @@ std::string to_table(const RunRecord& record) {
     chip_table(text, *record.chip, record.configuration.chip);
   }
   if (record.native) ray_table(text, record, record.native->ray_counts);
+  if (record.sampled) sampled_table(text, record);
   if (record.lockstep) line(text, "  {}", to_string(*record.lockstep));
   std::string simulated;
   if (record.chip && record.chip->timed) {

@@ -8,6 +8,7 @@
 #include "chip/chip.hpp"
 #include "config/configuration.hpp"
 #include "lockstep/lockstep_unit.hpp"
+#include "sampled/sampled_frame.hpp"
 #include "scene/native_renderer.hpp"
 
 namespace raypool {
@@ -24,11 +25,13 @@ struct RunRecord {
   int depth = 0;
   bool reflections = false;  ///< are cast
   int units = 0;
-  std::optional<ChipResult> chip;          ///< engines with a chip
-  std::optional<NativeStatistics> native;  ///< engine native
-  std::optional<LockstepCounts> lockstep;  ///< engine lockstep
-  double wall_seconds = 0;                 ///< the whole run
-  double simulation_seconds = 0;           ///< drawing alone, without scene, tree and files
+  std::optional<ChipResult> chip;           ///< engines with a chip
+  std::optional<NativeStatistics> native;   ///< engines native, embree and sampled
+  std::optional<sampled::Figures> sampled;  ///< engine sampled
+  uint64_t seed = 0;                        ///< its
+  std::optional<LockstepCounts> lockstep;   ///< engine lockstep
+  double wall_seconds = 0;                  ///< the whole run
+  double simulation_seconds = 0;            ///< drawing alone, without scene, tree and files
 };
 
 /// report.json's text.

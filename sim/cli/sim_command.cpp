@@ -46,6 +46,28 @@ void check(const SimOptions& options, Engine engine) {
         fmt::format("engine {} runs on one thread: use native or embree, or leave --threads out", options.engine));
   }
   if (options.inspect_until != 0 && engine != Engine::Lockstep) throw InputError("--inspect is for --engine lockstep");
+  if (engine != Engine::Sampled && (!options.error.empty() || !options.time.empty() || options.seed != 0)) {
+    throw InputError(
+        fmt::format("engine {} draws no sample: use sampled, or leave --error, --time and --seed out", options.engine));
+  }
+  if (!options.error.empty() && !options.time.empty())
+    throw InputError("--error says how long it takes, --time how large the error is: give one of them");
+}
+
+/// "2%", or "10s": a number above zero and that unit, which may be left out.
+double parse_amount(const std::string& text, const char* option, const std::string& unit, double most) {
+  size_t end = 0;
+  double value = 0;
+  try {
+    value = std::stod(text, &end);
+  } catch (const std::exception&) {
+    end = std::string::npos;
+  }
+  if (end == std::string::npos || (end != text.size() && text.substr(end) != unit) || !(value > 0 && value <= most)) {
+    throw InputError(
+        fmt::format("{} is '{}': it must be a number above 0, at most {:g}, and {}", option, text, most, unit));
+  }
+  return value;
 }
 
 template <typename Item>
@@ -97,14 +119,21 @@ std::string progress_text(const ChipProgress& done, bool timed, double seconds) 
 }
 
 FrameBuffer draw_natively(const SimOptions& options, Engine engine, RunRecord& record, const Scene& scene,
-                          MemoryImage& image) {
-  const Tracer tracer(scene, image.material_base);
+                          MemoryImage& image, const Tracer& tracer, std::vector<uint32_t>* rays = nullptr) {
   std::optional<EmbreeTracer> embree;
   NativeOptions native = native_options(record);
   native.threads = threads_or_all(options.threads);
   if (engine == Engine::Embree) {
     embree.emplace(scene, tracer);
     native.trace = [&](const Ray& ray, Intersection& hit) { return embree->trace(ray, hit); };
+  }
+  if (rays != nullptr) {
+    rays->resize(size_t{native.width} * native.height);
+    // Of a pixel there is one ray at a time.
+    native.trace = [&](const Ray& ray, Intersection& hit) {
+      ++(*rays)[size_t{ray[word::kPixel] >> 16} * native.width + (ray[word::kPixel] & 0xffff)];
+      return tracer.trace(ray, hit);
+    };
   }
   record.native.emplace();
   const Progress drawing(true);
@@ -115,8 +144,12 @@ FrameBuffer draw_natively(const SimOptions& options, Engine engine, RunRecord& r
 
 std::unique_ptr<ComputeUnit> make_device(const SimOptions& options, Engine engine, const RunRecord& record,
                                          MemoryImage& image) {
-  const EngineOptions device{engine,        record.configuration, options.unit_library,
-                             options.waves, options.units,        options.inspect_until};
+  const EngineOptions device{engine == Engine::Sampled ? Engine::Model : engine,
+                             record.configuration,
+                             options.unit_library,
+                             options.waves,
+                             options.units,
+                             options.inspect_until};
   return make_unit(device, image.memory, "unit", kernel_names(ray_kernel_program(KernelTarget(record.configuration))));
 }
 
@@ -180,6 +213,31 @@ FrameBuffer draw_on_unit(const SimOptions& options, Engine engine, RunRecord& re
   return std::move(around.frame);
 }
 
+/// The picture natively, the figures from a sample. `whole`: since when the command runs.
+FrameBuffer draw_sampled_frame(const SimOptions& options, RunRecord& record, const Scene& scene, MemoryImage& image,
+                               const Progress& whole) {
+  sampled::Wanted wanted;
+  if (!options.error.empty()) wanted.error = parse_amount(options.error, "--error", "%", 50) / 100;
+  const double time = options.time.empty() ? 0 : parse_amount(options.time, "--time", "s", 1e6);
+  wanted.seed = record.seed = std::max<uint64_t>(1, options.seed);
+
+  Surroundings around(scene, image, record);
+  const Progress drawing(true);
+  std::vector<uint32_t> rays;
+  FrameBuffer frame = draw_natively(options, Engine::Native, record, scene, image, around.tracer, &rays);
+  // What is over already gets the smallest sample.
+  if (time > 0) wanted.seconds = std::max(1e-3, time - whole.seconds());
+  const std::unique_ptr<ComputeUnit> device = make_device(options, Engine::Model, record, image);
+  ChipOptions chip = chip_options(record, scene, image, *device, around);
+  Progress progress(options.quiet || options.json);
+  chip.progress = [&](const ChipProgress& done) {
+    if (progress.due()) progress.show(progress_text(done, true, progress.seconds()));
+  };
+  record.sampled = sampled::draw_sampled(chip, rays, wanted);
+  record.simulation_seconds = drawing.seconds();
+  return frame;
+}
+
 void print_modules(const SimOptions& options, Engine engine, const RunRecord& record, const Scene& scene,
                    MemoryImage& image) {
   const std::unique_ptr<ComputeUnit> device = make_device(options, engine, record, image);
@@ -221,8 +279,10 @@ int sim_command(const SimOptions& options) {
   OutputFolder out(options.out.empty() ? default_folder(options, scene, record.configuration, size)
                                        : fs::path(options.out));
 
-  const FrameBuffer frame = without_unit(engine) ? draw_natively(options, engine, record, scene, image)
-                                                 : draw_on_unit(options, engine, record, scene, image, out);
+  const FrameBuffer frame =
+      engine == Engine::Sampled ? draw_sampled_frame(options, record, scene, image, whole)
+      : without_unit(engine) ? draw_natively(options, engine, record, scene, image, Tracer(scene, image.material_base))
+                             : draw_on_unit(options, engine, record, scene, image, out);
 
   const std::vector<uint8_t> png = encode_png(frame);
   out.write("image.png", std::string(png.begin(), png.end()));

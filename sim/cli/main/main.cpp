@@ -44,8 +44,8 @@ void add_config(CLI::App& app, std::string& config, std::vector<std::string>& se
 
 void add_unit(CLI::App& app, std::string& engine, std::string& library) {
   app.add_option("--engine", engine,
-                 "what stands in for the unit; native and embree, the reference picture, are for sim only")
-      ->type_name("native|embree|functional|model|rtl|lockstep")
+                 "what stands in for the unit; native, sampled and embree, the reference picture, are for sim only")
+      ->type_name("native|embree|functional|sampled|model|rtl|lockstep")
       ->capture_default_str();
   app.add_option("--unit-library", library, "Verilated unit (default: where raypool unit builds it)");
 }
@@ -184,6 +184,14 @@ void CommandLine::add_sim_command() {
   add_unit(*sim_app, sim_.engine, sim_.unit_library);
   add_units_and_depth(*sim_app, sim_.units, sim_.depth);
   add_threads(*sim_app, sim_.threads, "native and embree: threads");
+  sim_app
+      ->add_option("--error", sim_.error,
+                   "sampled: half of the 95% interval of the cycles; as many tiles as that takes (default: 2%)")
+      ->type_name("PERCENT");
+  sim_app->add_option("--time", sim_.time, "sampled: in place of --error, as many tiles as the command has time for")
+      ->type_name("SECONDS");
+  sim_app->add_option("--seed", sim_.seed, "sampled: of the random choice of tiles (default: 1)")
+      ->check(CLI::PositiveNumber);
   sim_app->add_option("--traverser", sim_.traverser, "as --set chip.traverser=NAME");
   sim_app->add_option(
       "--out", sim_.out,
