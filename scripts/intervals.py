@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Are the intervals of engine `sampled` honest? How many of them contain what the whole frame takes.
 
-    scripts/intervals.py [--samples N] [--error PERCENT] [--scenes NAME,...] [--configs NAME,...] [--size WxH] [--out FILE]
+    scripts/intervals.py [--samples N] [--error PERCENT] [--scenes NAME,...] [--configs NAME,...] [--size WxH]
+      [--out FILE]
 
 Draws each scene on each machine once with engine model, and so many times with engine sampled, each time with another
 seed. Prints, of each figure, which share of the 95% intervals contains its true value. Over all frames it must be 92 to
@@ -95,7 +96,8 @@ def check(frame, arguments, say):
                 raise IntervalsError(f"{frame[0]}: with --error {arguments.error} the whole frame is simulated: "
                                      "give a larger error or a larger --size")
             found = intervals(report)
-            contained.update({name: found[name]["low"] <= value <= found[name]["high"] for name, value in true.items()})
+            contained.update({name: found[name]["low"] <= value <= found[name]["high"]
+                              for name, value in true.items()})  # fmt: skip
             errors.append(report["cycles"] / true["cycles"] - 1)
             widths.append(report["sampled"]["error"])
             tiles.append(report["sampled"]["simulated_tiles"] / report["sampled"]["tiles"])
@@ -110,7 +112,7 @@ def mean(values):
 def parse(words):
     parser = argparse.ArgumentParser(description="How many intervals of engine sampled contain the true value.")
     parser.add_argument("--samples", type=int, default=200, help="seeds of each frame (%(default)s)")
-    parser.add_argument("--error", default="5%", help="that is asked for (%(default)s)")
+    parser.add_argument("--error", default="10%", help="that is asked for (%(default)s)")
     parser.add_argument("--scenes", default=",".join(SCENES), help="of %(default)s")
     parser.add_argument("--configs", default="4w4c,8w8c", help="machines (%(default)s)")
     parser.add_argument("--size", default="256x256", help="of the picture (%(default)s)")
@@ -132,8 +134,8 @@ def progress(text):
 
 def run(arguments, folder):
     frames, sums, asked = [], collections.Counter(), collections.Counter()
-    print(f"{'scene':<9} {'machine':<10} {'contain the cycles':>18} {'mean error':>11} {'spread':>7} {'half width':>11} "
-          f"{'tiles simulated':>16}")
+    print(f"{'scene':<9} {'machine':<10} {'contain the cycles':>18} {'mean error':>11} {'spread':>7} "
+          f"{'half width':>11} {'tiles simulated':>16}")
     for scene in arguments.scenes.split(","):
         for config in arguments.configs.split(","):
             frame = [*SCENES[scene](folder), "--config", config, "--traverser", "modelled", "--size", arguments.size,
@@ -153,7 +155,8 @@ def run(arguments, folder):
     bad = [name for name, share in shares.items()
            if not (FEWEST <= share <= MOST if name == "cycles" else share >= FEWEST_OF_OTHERS)]  # fmt: skip
     if arguments.out:
-        arguments.out.write_text(json.dumps({"command": sys.argv, "frames": frames, "contained": shares}, indent=2) + "\n")
+        document = {"command": sys.argv, "frames": frames, "contained": shares}
+        arguments.out.write_text(json.dumps(document, indent=2) + "\n")
     print(f"dishonest: {', '.join(bad)}" if bad else f"honest: of the cycles {FEWEST:.0%} to {MOST:.0%} were asked, "
           f"of each other figure {FEWEST_OF_OTHERS:.0%} or more")  # fmt: skip
     return DISHONEST if bad else 0

@@ -88,7 +88,7 @@ refuses_sim "size 0x0" "0x0.*1 to 16384" --size 0x0
 refuses_sim "size without x" "1 to 16384" --size 64
 refuses_sim "depth 0" "depth.*1" --depth 0
 refuses_sim "3 compute units" "3" --units 3
-refuses_sim "unknown engine" "native, embree, functional, model, rtl or lockstep" --engine spice
+refuses_sim "unknown engine" "native, embree, functional, sampled, model, rtl or lockstep" --engine spice
 refuses_sim "modules of the engine that has no chip" "engine native has no chip" --engine native --modules
 refuses_sim "threads of an engine that has one" "engine model runs on one thread" --engine model --threads 2
 refuses_sim "more threads than there may be" "Value 257 not in range 1 to 256" --engine native --threads 257

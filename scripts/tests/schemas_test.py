@@ -215,7 +215,7 @@ class Report(Written):
                 self.refuses_changes(valid, report)
 
     def refuses_changes(self, valid, report):
-        names = set(report["kernels"]) | set(report.get("alus", {}))
+        names = set(report["kernels"]) | set(report.get("alus", {})) | set(report.get("sampled", {}).get("alus", {}))
 
         def required(path):  # what a configuration leaves out has its default; kernels and ALUs are left open
             return len(path) == 1 or path[0] != "configuration" and path[-1] not in names | {"launches", "cycles"}

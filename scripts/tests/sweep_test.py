@@ -167,7 +167,7 @@ class Refusals(SweepTest):
             ("units", 3, "1, 2 or 4"),
             ("size", "8by8", "8by8"),
             ("size", "0x8", "0x8"),
-            ("engine", "spice", "native, embree, functional, model, rtl or lockstep"),
+            ("engine", "spice", "native, embree, functional, sampled, model, rtl or lockstep"),
             ("detail", 0, "detail"),
             ("scene", "none.obj", "none.obj"),
             ("view", "none.json", "none.json"),

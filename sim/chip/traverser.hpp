@@ -99,8 +99,8 @@ class Traverser : public sc_core::sc_module,
   sc_core::sc_event frame_free_;
 };
 
-/// The one that `chip.traverser` names; beside a device without time, whose cycles mean nothing, the one that takes none
-/// to find them.
+/// The one that `chip.traverser` names; beside a device without time, whose cycles mean nothing, the one that takes
+/// none to find them.
 std::unique_ptr<Traverser> make_traverser(const Tracing& tracing);
 
 }  // namespace raypool::chip

@@ -20,11 +20,11 @@ constexpr uint32_t kLeastStrata = 8;  // for the variance to be known
 constexpr uint32_t kPilotShare = 25;  // one of so many blocks
 constexpr double kMargin = 1.15;      // more blocks than the pilot says are needed: its variance is one of a sample
 // What a block costs depends a little on what is beside it, which in a sample is not what it is in the frame: this much
-// of each figure. `make intervals` prints mean errors of that size.
-constexpr double kBesideError = 0.0025;
+// of each figure, and no less than so much of a utilisation. `make intervals` prints mean errors of that size.
+constexpr double kBesideError = 0.0025, kLeastShareError = 0.0005;
 // Where the sample goes on elsewhere in the picture it reads lines that the frame has read before: of the memory port's
 // utilisation.
-constexpr double kReadAgainError = 0.005;
+constexpr double kReadAgainError = 0.025;
 constexpr double kWholeFrom = 0.5;  // of the frame's tiles
 
 double seconds_since(std::chrono::steady_clock::time_point begin) {
@@ -140,7 +140,7 @@ class SampledFrame {
   }
 
   static Interval share(const Interval& x, double error = 0) {
-    error += kBesideError * x.value;
+    error += std::max(kLeastShareError, kBesideError * x.value);
     return {x.value, std::max(0.0, x.low - error), std::min(1.0, x.high + error)};
   }
   static Interval exactly(double x) { return {x, x, x}; }
