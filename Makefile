@@ -124,7 +124,8 @@ FIT_SETUP := $(if $(filter-out 0,$(AREA) $(POWER)),setup-synth)
 GATES_SETUP := $(if $(filter-out 0,$(GATES)),setup-synth)
 UNIT_OF_ENGINE := $(if $(filter rtl lockstep,$(ENGINE)),$(UNIT),true)
 
-.PHONY: help sim fidelity intervals fit compare run cosim configurations mutants faults unit test lint format bench clean
+.PHONY: intervals
+.PHONY: help sim fidelity fit compare run cosim configurations mutants faults unit test lint format bench clean
 .PHONY: setup-% program configured-%
 .PHONY: numerics-long proofs synth synth-replay synth-prove growth numerics significands extremes isa diagrams quoted
 .PHONY: package sweep report bench-native
