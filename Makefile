@@ -38,6 +38,8 @@ RUNS      ?= 1
 # sim with ENGINE=sampled; `make intervals`
 ERROR     ?=
 SAMPLES   ?= 200
+# `make pareto`
+MACHINES  ?=
 # `make compare`
 A         ?=
 B         ?=
@@ -85,7 +87,7 @@ FROM      ?=
 export CONFIG SET CUS SCENE SIZE DEPTH ENGINE TRAVERSER VIEW CAMERA EYE LOOK_AT UP FOV LIGHT DETAIL OUT WAVES TRACE
 export A B KERNEL PROGRAMS SEED COVERAGE MUTANTS MODE THREADS
 export SLOWER
-export FROM EXPERIMENT WHERE JOBS SCENES LEVELS RUNS ERROR TIME SAMPLES
+export FROM EXPERIMENT WHERE JOBS SCENES LEVELS RUNS ERROR TIME SAMPLES MACHINES
 export LIBERTY CLOCK MEMORIES AGAINST RUN ONLY PLAN
 
 # Everything that is made goes here; scripts read it from the environment.
@@ -128,7 +130,7 @@ UNIT_OF_ENGINE := $(if $(filter rtl lockstep,$(ENGINE)),$(UNIT),true)
 .PHONY: help sim fidelity fit compare run cosim configurations mutants faults unit test lint format bench clean
 .PHONY: setup-% program configured-%
 .PHONY: numerics-long proofs synth synth-replay synth-prove growth numerics significands extremes isa diagrams quoted
-.PHONY: package sweep report bench-native
+.PHONY: package sweep report bench-native pareto
 
 help: ## this list
 	@echo 'raypool: a ray-tracing GPU to render on, measure, verify and synthesise'
@@ -158,6 +160,8 @@ help: ## this list
 	@echo 'variables of make fidelity:  those of the frame, from SCENE to DETAIL, and OUT=FOLDER'
 	@echo '  LEVELS="native model ...": only these; all if not given  RUNS=N: times that each draws, $(RUNS) if not given'
 	@echo 'variables of make intervals:  SAMPLES=N: seeds of each frame, $(SAMPLES) if not given'
+	@echo 'variables of make pareto:  those of the frame, OUT=FOLDER  JOBS=N: blocks that are mapped at a time'
+	@echo '  MACHINES="24 20-flush 16-newton1-fit ...": only these; what one chooses among if not given'
 	@echo 'variables of make bench-native:  SCENE  SIZE  DEPTH  VIEW  DETAIL and those of the camera  THREADS=N'
 	@echo 'variables of make fit:  those of the frame, and OUT=FILE for the configuration'
 	@echo '  SLOWER=N%: $(SLOWER) if not given  AREA=1: what each change saves in area'
@@ -189,6 +193,8 @@ fidelity: setup-sim setup-fidelity program ## a frame at every level of simulati
 
 intervals: setup-sim program ## do the intervals of ENGINE=sampled contain the true values as often as they say? SAMPLES
 	@python3 scripts/intervals.py --samples "$$SAMPLES" $${OUT:+--out "$$OUT"}
+pareto: setup-sim setup-synth program ## area against picture error: arithmetic modes and fits of a frame: MACHINES
+	@scripts/pareto.py $(FRAME) $${MACHINES:+--machines "$$MACHINES"} $${JOBS:+--jobs "$$JOBS"} $${OUT:+--out "$$OUT"}
 
 fit: setup-sim $(FIT_SETUP) program ## what a scene needs of CONFIG: a configuration with only that: SLOWER, AREA, POWER
 	@mkdir -p $(BUILD)/out

@@ -2,7 +2,7 @@
 """The JSON Schemas say what the program accepts and writes: scripts/tests/schemas_test.py RAYPOOL [ENGINE...]
 
 Checked-in configurations and views, a report of each ENGINE (default: those without a Verilated unit), what
-scripts/fidelity.py leaves of them, and what raypool fit --json writes, are valid; what raypool refuses the schema
+scripts/fidelity.py and scripts/pareto.py leave of them, and what raypool fit --json writes, are valid; what raypool
 refuses, and what it takes the schema takes, at both ends of every range; a field of what is written that is missing,
 unknown or of another kind is not valid, and each is named in its page of docs/.
 """
@@ -247,6 +247,32 @@ class Fidelity(Written):
 
     def test_docs_name_each_field(self):
         self.names_each_field("speed-and-accuracy.md", "fidelity.json")
+
+
+class Pareto(Written):
+    """Pictures of a small frame; what has areas is in the test `pareto`."""
+
+    @unittest.skipIf(shutil.which("gnuplot") is None, "gnuplot was not found")
+    def test_pareto(self):
+        valid = validator("pareto.json")
+        with tempfile.TemporaryDirectory() as folder:
+            command = [ROOT / "scripts/pareto.py", "--scene", "cornell", "--size", "8x8", "--config", "2w2c",
+                       "--machines", "11", "--no-area", "--out", folder]  # fmt: skip
+            done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=120, check=False,
+                                  env={**os.environ, "RAYPOOL": RAYPOOL})
+            self.assertEqual(done.returncode, 0, done.stderr)
+            document = read(folder + "/pareto.json")
+        for row, area in zip(document["machines"], (1.5, 1.25)):
+            row["area"] = {"logic_kge": area, "memory_kge": area, "memory_bits": 3, "flip_flops": 4}
+            self.assertTrue(validator("configuration.json").is_valid(row.pop("configuration")))
+            row["configuration"] = {}
+        self.assertEqual([error.message for error in valid.iter_errors(document)], [])
+        self.refuses(valid, document, lambda path: True,
+                     [("x",), ("scene", "x"), ("machines", 0, "x"), ("machines", 0, "picture", "x"),
+                      ("machines", 0, "area", "x")])  # fmt: skip
+
+    def test_docs_name_each_field(self):
+        self.names_each_field("speed-and-accuracy.md", "pareto.json")
 
 
 class Fit(Written):

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -116,7 +117,8 @@ Json picture(const Report& a, const Report& b) {
           {"pixels", difference.pixels},
           {"differ", difference.differ},
           {"largest_difference", difference.largest},
-          {"mean_difference", difference.mean}};
+          {"mean_difference", difference.mean},
+          {"psnr", std::isfinite(difference.psnr) ? Json(difference.psnr) : Json()}};
 }
 
 Json read_json(const std::string& path, const std::string& what) { return parse_json(read_file(path, what), path); }

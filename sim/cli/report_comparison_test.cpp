@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -149,7 +150,9 @@ TEST(ReportComparison, CountsThePixelsThatDiffer) {
   EXPECT_EQ(picture["differ"], 1);
   EXPECT_EQ(picture["largest_difference"], 255);
   EXPECT_NEAR(picture["mean_difference"].get<double>(), 255.0 / 6, 1e-9);
+  EXPECT_NEAR(picture["psnr"].get<double>(), 10 * std::log10(6.0), 1e-9);
   EXPECT_EQ(compare_reports(a, a, {})["picture"]["differ"], 0);
+  EXPECT_TRUE(compare_reports(a, a, {})["picture"]["psnr"].is_null());
 }
 
 TEST(ReportComparison, TakesTheAreaOfTheSameVerilog) {

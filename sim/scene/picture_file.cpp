@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <limits>
 #include <memory>
@@ -39,19 +40,21 @@ Picture read_png(const std::string& path) {
 
 PictureDifference difference_of(const Picture& a, const Picture& b) {
   PictureDifference result;
-  uint64_t sum = 0;
+  uint64_t sum = 0, squares = 0;
   for (size_t i = 0; i < a.rgb.size(); i += 3) {
     int largest = 0;  // of this pixel
     for (size_t channel = 0; channel < 3; ++channel) {
       const int difference = std::abs(int{a.rgb[i + channel]} - int{b.rgb[i + channel]});
       largest = std::max(largest, difference);
       sum += static_cast<uint64_t>(difference);
+      squares += static_cast<uint64_t>(difference * difference);
     }
     ++result.pixels;
     result.differ += largest > 0;
     result.largest = std::max(result.largest, largest);
   }
   result.mean = a.rgb.empty() ? 0 : static_cast<double>(sum) / a.rgb.size();
+  result.psnr = squares == 0 ? INFINITY : 10 * std::log10(255.0 * 255.0 * a.rgb.size() / squares);
   return result;
 }
 

@@ -20,6 +20,7 @@ struct PictureDifference {
   uint64_t differ = 0;  ///< of these, pixels of which a channel is another
   int largest = 0;      ///< difference of a channel, of 255
   double mean = 0;      ///< difference of a channel, over all channels of all pixels
+  double psnr = 0;      ///< dB; infinity when they are equal
 };
 
 /// Both must have the same size.
