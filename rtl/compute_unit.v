@@ -157,7 +157,7 @@ module compute_unit #(
 
   instruction_cache #(
 `include "instruction_cache_parameter_map.vh"
-    .WARPS(WARPS), .WARP_BITS(WARP_BITS)
+    .WARPS(WARPS), .PC_BITS(PC_BITS), .WARP_BITS(WARP_BITS)
   ) instruction_cache (
     .clk_i(clk_i), .rst_ni(rst_ni),
     .invalidate_i(argument_write_i), .lookup_valid_i(fetch_valid), .lookup_warp_i(fetch_warp), .lookup_pc_i(lookup_pc),
@@ -173,14 +173,25 @@ module compute_unit #(
       for (k = 0; k < INSTANCES; k = k + 1) begin : gen_done
         assign done[k] = done_valid[k] && done_warp[k*WARP_BITS +: WARP_BITS] == w;
       end
+      wire [PC_BITS-1:0] narrow_fetch_pc, narrow_pc;
+      reg [15:0] wide_fetch_pc, wide_pc;
+      always @* begin
+        wide_fetch_pc = 16'd0;
+        wide_pc = 16'd0;
+        wide_fetch_pc[PC_BITS-1:0] = narrow_fetch_pc;
+        wide_pc[PC_BITS-1:0] = narrow_pc;
+      end
+      assign fetch_pc[w*16 +: 16] = wide_fetch_pc;
+      assign pc[w*16 +: 16] = wide_pc;
       warp #(
         .LANES(LANES), .STACK_DEPTH(STACK_DEPTH), .INSTANCES(INSTANCES), .INSTANCE_TYPES(INSTANCE_TYPES), .FMA(FMA),
-        .TRIPLES(TRIPLES), .INTERSECTION_WORDS(INTERSECTION_WORDS), .WITHOUT(WITHOUT)
+        .TRIPLES(TRIPLES), .INTERSECTION_WORDS(INTERSECTION_WORDS), .REGISTERS(REGISTERS), .PREDICATES(PREDICATES),
+        .ARGUMENTS(ARGUMENTS), .PC_BITS(PC_BITS), .WITHOUT(WITHOUT)
       ) warp (
         .clk_i(clk_i), .rst_ni(rst_ni), .start_i(start[w]), .start_pc_i(start_pc),
         .start_lanes_i(start_lanes[w*LANES +: LANES]),
         .halt_i(fault_valid_o), .active_o(active[w]), .program_length_i(program_length_i),
-        .fetch_request_o(fetch_request[w]), .fetch_pc_o(fetch_pc[w*16 +: 16]), .fetch_grant_i(fetch_grant[w]),
+        .fetch_request_o(fetch_request[w]), .fetch_pc_o(narrow_fetch_pc), .fetch_grant_i(fetch_grant[w]),
         .cache_hit_i(instruction_hit && result_warp == w), .cache_instruction_i(fetched), .refill_done_i(refill_done),
         .want_o(want[w]), .grant_i(grant[w]), .type_o(wanted_type[w*4 +: 4]), .instruction_o(instruction[w*64 +: 64]),
         .task_o(task_of[w*64 +: 64]), .overlaps_o(overlaps[w]),
@@ -190,7 +201,7 @@ module compute_unit #(
         .operand_c_o(operand_c[w*DATA +: DATA]),
         .done_i(done), .done_data_i(done_data), .done_predicate_i(done_predicate),
         .done_subnormal_i(done_subnormal),
-        .retire_o(retire[w]), .pc_o(pc[w*16 +: 16]), .retire_data_o(retire_data_o[w*DATA +: DATA]),
+        .retire_o(retire[w]), .pc_o(narrow_pc), .retire_data_o(retire_data_o[w*DATA +: DATA]),
         .retire_predicate_o(retire_predicate_o[w*LANES +: LANES]), .fetching_o(fetching[w]),
         .executing_o(executing[w]),
         .fault_valid_o(warp_fault[w]), .fault_code_o(warp_fault_code[w*4 +: 4]));
@@ -235,7 +246,8 @@ module compute_unit #(
       if (TYPE == ISA_TYPE_TID) begin : gen_tid
         wire task_place = KERNEL_OVERLAP != 0 && launch_place[task_warp];
         tid_alu #(
-          .WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS), .LATENCY(TID_LATENCY), .DEPTH(TID_DEPTH)
+          .WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS), .LATENCY(TID_LATENCY), .DEPTH(TID_DEPTH),
+          .ARGUMENTS(ARGUMENTS)
         ) tid_alu (
           .block_i(task_place ? block[63:32] : block[31:0]), .blocks_i(task_place ? blocks[63:32] : blocks[31:0]),
           .threads_i(task_place ? threads[21:11] : threads[10:0]), .argument_write_i(argument_write_i),
@@ -299,7 +311,7 @@ module compute_unit #(
 
   performance_counters #(
     .WARPS(WARPS), .LANES(LANES), .INSTANCES(INSTANCES), .ALU_TYPES(ALU_TYPES), .INSTANCE_TYPES(INSTANCE_TYPES),
-    .TRIPLES(TRIPLES)
+    .TRIPLES(TRIPLES), .COUNTER_BITS(COUNTER_BITS)
   ) performance_counters (
     .clk_i(clk_i), .rst_ni(rst_ni), .running_i(busy_o), .retire_i(retire), .retire_mask_i(thread_mask),
     .instruction_hit_i(instruction_hit), .instruction_miss_i(instruction_miss),

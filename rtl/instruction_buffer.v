@@ -5,6 +5,10 @@ module instruction_buffer #(
   parameter [0:0] FMA = 1'b0,          // ffma is legal
   parameter [0:0] TRIPLES = 1'b0,      // triples are legal
   parameter integer INTERSECTION_WORDS = 21,  // among so many words
+  parameter integer REGISTERS = 16,           // instructions name no others, predicates, arguments
+  parameter integer PREDICATES = 16,
+  parameter integer ARGUMENTS = 32,
+  parameter integer PC_BITS = 16,
   parameter [511:0] WITHOUT = 512'd0   // bit ALU type * 32 + operation: that ALU lacks the instruction
 ) (
   input  wire        clk_i,
@@ -15,10 +19,10 @@ module instruction_buffer #(
   // instruction routine
   output wire        step_o,           // PCStack: step the PC stack
   input  wire        pc_valid_i,
-  input  wire [15:0] pc_i,
+  input  wire [PC_BITS-1:0] pc_i,
   input  wire [15:0] program_length_i,
   output wire        fetch_request_o,  // IArb: wants the instruction cache
-  output reg  [15:0] fetch_pc_o,
+  output reg  [PC_BITS-1:0] fetch_pc_o,
   input  wire        fetch_grant_i,
   input  wire        cache_hit_i,      // ICache: result of the lookup granted in the cycle before
   input  wire [63:0] cache_instruction_i,
@@ -34,7 +38,7 @@ module instruction_buffer #(
   output wire [1:0]  read_element_o,   // of a triple, which is read and dispatched; else 0
   output wire [1:0]  done_element_o,   // of a triple, which is done next; else 0
   output wire        overlaps_o,       // once this element has its ALU, the next one is read at once
-  output reg  [15:0] pc_o,
+  output reg  [PC_BITS-1:0] pc_o,
   output wire        writes_register_o,
   output wire        writes_predicate_o,
   // for the performance counters: no instruction is under way; an ALU has it
@@ -65,7 +69,12 @@ module instruction_buffer #(
   assign fetch_request_o = fetch_q == F_ARBITER && !halt_i;
   wire issue = ready && next_legal_q;
   assign illegal_o = ready && !next_legal_q;
-  assign outside_o = step_o && pc_valid_i && pc_i >= program_length_i;
+  reg [15:0] next_pc;
+  always @* begin
+    next_pc = 16'd0;
+    next_pc[PC_BITS-1:0] = pc_i;
+  end
+  assign outside_o = step_o && pc_valid_i && next_pc >= program_length_i;
   assign read_o = data_q == D_READ;
   assign want_o = data_q == D_WANT && !halt_i;
   assign fetching_o = active_o && data_q == D_IDLE;
@@ -94,7 +103,8 @@ module instruction_buffer #(
           if (cache_hit_i) begin
             next_q <= cache_instruction_i;
             next_legal_q <= isa_legal(cache_instruction_i, FMA, TRIPLES, INTERSECTION_WORDS[4:0],
-                                      WITHOUT[cache_instruction_i[63:55]]);
+                                      WITHOUT[cache_instruction_i[63:55]]) &&
+                            isa_numbers_fit(cache_instruction_i, REGISTERS[4:0], PREDICATES[4:0], ARGUMENTS[5:0]);
             next_control_q <= isa_control(cache_instruction_i);
             fetch_q <= F_FULL;
           end else begin

@@ -9,6 +9,7 @@
 module instruction_cache #(
 `include "instruction_cache_parameters.vh"
   parameter integer WARPS = 8,
+  parameter integer PC_BITS = 16,
   parameter integer WARP_BITS = (WARPS > 1) ? $clog2(WARPS) : 1
 ) (
   input  wire                 clk_i,
@@ -16,7 +17,7 @@ module instruction_cache #(
   input  wire                 invalidate_i,        // one cycle: forget all lines, that of a fetch under way too
   input  wire                 lookup_valid_i,
   input  wire [WARP_BITS-1:0] lookup_warp_i,
-  input  wire [15:0]          lookup_pc_i,         // in instructions
+  input  wire [15:0]          lookup_pc_i,         // in instructions, below 2^PC_BITS
   output wire                 hit_o,
   output wire                 miss_o,
   output wire [WARP_BITS-1:0] result_warp_o,       // with hit_o or miss_o
@@ -34,7 +35,8 @@ module instruction_cache #(
   localparam [WARPS-1:0] ONE = 1;
   localparam integer SETS = INSTRUCTION_CACHE_BYTES / 128;
   localparam integer SET_BITS = $clog2(SETS);
-  localparam integer TAG_BITS = 13 - SET_BITS;
+  localparam integer TAG_BITS = (PC_BITS - 3 > SET_BITS) ? PC_BITS - 3 - SET_BITS : 1;
+  localparam integer LINE_BITS = SET_BITS + TAG_BITS;
 
 `include "instruction_cache_parameter_checks.vh"
 
@@ -42,11 +44,13 @@ module instruction_cache #(
   reg [SETS-1:0] valid_1_q;
   reg [SETS-1:0] older_q;   // the way of a set that was used less recently
 
+  wire unused = &{1'b0, lookup_pc_i};   // bits that no PC has
+
   // Lookup. The valid bits are taken along, so that they and the tags belong to the same cycle.
   wire [SET_BITS-1:0] lookup_set = lookup_pc_i[3 +: SET_BITS];
   reg                 result_q;
   reg [WARP_BITS-1:0] warp_q;
-  reg [12:0]          line_q;
+  reg [LINE_BITS-1:0] line_q;
   reg                 half_q;
   reg [1:0]           valid_q;
 
@@ -55,7 +59,7 @@ module instruction_cache #(
     else result_q <= lookup_valid_i;
     if (lookup_valid_i) begin
       warp_q <= lookup_warp_i;
-      {line_q, half_q} <= {lookup_pc_i[15:3], lookup_pc_i[0]};
+      {line_q, half_q} <= {lookup_pc_i[3 +: LINE_BITS], lookup_pc_i[0]};
       valid_q <= {valid_1_q[lookup_set], valid_0_q[lookup_set]};
     end
   end
@@ -65,8 +69,8 @@ module instruction_cache #(
   wire [127:0]        data_0;
   wire [127:0]        data_1;
   wire [SET_BITS-1:0] set = line_q[SET_BITS-1:0];
-  wire hit_0 = valid_q[0] && tag_0 == line_q[12 -: TAG_BITS];
-  wire hit_1 = valid_q[1] && tag_1 == line_q[12 -: TAG_BITS];
+  wire hit_0 = valid_q[0] && tag_0 == line_q[SET_BITS +: TAG_BITS];
+  wire hit_1 = valid_q[1] && tag_1 == line_q[SET_BITS +: TAG_BITS];
   wire [127:0] pair = hit_1 ? data_1 : data_0;
   assign hit_o = result_q && (hit_0 || hit_1);
   assign miss_o = result_q && !hit_0 && !hit_1;
@@ -80,7 +84,7 @@ module instruction_cache #(
   localparam [1:0] FETCH_BEATS = 2'd2;
   localparam [1:0] FETCH_SETTLE = 2'd3;
   reg [1:0]  fetch_q;
-  reg [12:0] fetch_line_q;
+  reg [LINE_BITS-1:0] fetch_line_q;
   reg        fetch_way_q;
   reg        fetch_void_q;   // invalidated under way: the line is not entered
   reg        done_q;
@@ -91,7 +95,7 @@ module instruction_cache #(
 
   assign refill_done_o = done_q;
   assign request_valid_o = fetch_q == FETCH_REQUEST;
-  assign request_address_o = {13'd0, fetch_line_q, 6'd0};
+  assign request_address_o = {{26-LINE_BITS{1'b0}}, fetch_line_q, 6'd0};
 
   always @(posedge clk_i) begin
     if (!rst_ni) begin
@@ -143,11 +147,11 @@ module instruction_cache #(
   wire write_1 = response_valid_i && fetch_way_q;
   ram_1r1w #(.WIDTH(TAG_BITS), .DEPTH(SETS)) u_tag_0 (
     .clk_i(clk_i), .read_i(lookup_valid_i), .read_address_i(lookup_set), .read_data_o(tag_0),
-    .write_i(last_beat && !fetch_way_q), .write_address_i(fetch_set), .write_data_i(fetch_line_q[12 -: TAG_BITS])
+    .write_i(last_beat && !fetch_way_q), .write_address_i(fetch_set), .write_data_i(fetch_line_q[SET_BITS +: TAG_BITS])
   );
   ram_1r1w #(.WIDTH(TAG_BITS), .DEPTH(SETS)) u_tag_1 (
     .clk_i(clk_i), .read_i(lookup_valid_i), .read_address_i(lookup_set), .read_data_o(tag_1),
-    .write_i(last_beat && fetch_way_q), .write_address_i(fetch_set), .write_data_i(fetch_line_q[12 -: TAG_BITS])
+    .write_i(last_beat && fetch_way_q), .write_address_i(fetch_set), .write_data_i(fetch_line_q[SET_BITS +: TAG_BITS])
   );
   ram_1r1w #(.WIDTH(128), .DEPTH(SETS * 4)) u_data_0 (
     .clk_i(clk_i), .read_i(lookup_valid_i), .read_address_i(lookup_pc_i[SET_BITS+2:1]), .read_data_o(data_0),

@@ -114,8 +114,168 @@
     end
   endfunction
 
+  // has a register in ra
+  function isa_names_ra;
+    /* verilator lint_off UNUSEDSIGNAL */
+    input [63:0] encoding;
+    /* verilator lint_on UNUSEDSIGNAL */
+    begin
+      case ({encoding[63:60], encoding[59:55]})
+        // brh: ieq ine ilt ile igt ige ult ule ugt uge feq fne flt fle
+        //   fgt fge
+        9'd32, 9'd33, 9'd34, 9'd35, 9'd36, 9'd37, 9'd38, 9'd39, 9'd40, 9'd41, 9'd42, 9'd43, 9'd44, 9'd45,
+        9'd46, 9'd47
+        // mem: ld st ld3
+        , 9'd64, 9'd65, 9'd80
+        // int: iadd isub imul and or xor shl shr sar imin imax umin umax sel
+        , 9'd97, 9'd98, 9'd99, 9'd100, 9'd101, 9'd102, 9'd103, 9'd104, 9'd105, 9'd106, 9'd107, 9'd108, 9'd109, 9'd110
+        // flt: fadd fsub fmul fmin fmax f2i i2f ffma fadd3 fsub3 fmul3 fmul3s ffma3 ffma3s
+        , 9'd128, 9'd129, 9'd130, 9'd131, 9'd132, 9'd133, 9'd134, 9'd135, 9'd144, 9'd145, 9'd146, 9'd154, 9'd151, 9'd159
+        // slw: fdiv fsqrt frsqrt frcp
+        , 9'd160, 9'd161, 9'd162, 9'd163
+          : isa_names_ra = 1'b1;
+        default: isa_names_ra = 1'b0;
+      endcase
+    end
+  endfunction
+
+  // has a register in rb, unless bit 37 says that b is the immediate
+  function isa_names_b;
+    /* verilator lint_off UNUSEDSIGNAL */
+    input [63:0] encoding;
+    /* verilator lint_on UNUSEDSIGNAL */
+    begin
+      case ({encoding[63:60], encoding[59:55]})
+        // brh: ieq ine ilt ile igt ige ult ule ugt uge feq fne flt fle
+        //   fgt fge
+        9'd32, 9'd33, 9'd34, 9'd35, 9'd36, 9'd37, 9'd38, 9'd39, 9'd40, 9'd41, 9'd42, 9'd43, 9'd44, 9'd45,
+        9'd46, 9'd47
+        // int: mov iadd isub imul and or xor shl shr sar imin imax umin umax
+        //   sel
+        , 9'd96, 9'd97, 9'd98, 9'd99, 9'd100, 9'd101, 9'd102, 9'd103, 9'd104, 9'd105, 9'd106, 9'd107, 9'd108, 9'd109,
+        9'd110
+        // flt: fadd fsub fmul fmin fmax ffma fadd3 fsub3 fmul3 fmul3s ffma3 ffma3s
+        , 9'd128, 9'd129, 9'd130, 9'd131, 9'd132, 9'd135, 9'd144, 9'd145, 9'd146, 9'd154, 9'd151, 9'd159
+        // slw: fdiv
+        , 9'd160
+        // ray: rst rst3
+        , 9'd196, 9'd212
+          : isa_names_b = 1'b1;
+        default: isa_names_b = 1'b0;
+      endcase
+    end
+  endfunction
+
+  // has a register in rb
+  function isa_names_rb;
+    /* verilator lint_off UNUSEDSIGNAL */
+    input [63:0] encoding;
+    /* verilator lint_on UNUSEDSIGNAL */
+    begin
+      case ({encoding[63:60], encoding[59:55]})
+        // mem: st
+        9'd65
+          : isa_names_rb = 1'b1;
+        default: isa_names_rb = 1'b0;
+      endcase
+    end
+  endfunction
+
+  // has a register in x
+  function isa_names_rc;
+    /* verilator lint_off UNUSEDSIGNAL */
+    input [63:0] encoding;
+    /* verilator lint_on UNUSEDSIGNAL */
+    begin
+      case ({encoding[63:60], encoding[59:55]})
+        // flt: ffma ffma3 ffma3s
+        9'd135, 9'd151, 9'd159
+          : isa_names_rc = 1'b1;
+        default: isa_names_rc = 1'b0;
+      endcase
+    end
+  endfunction
+
+  // has a predicate in x
+  function isa_names_px;
+    /* verilator lint_off UNUSEDSIGNAL */
+    input [63:0] encoding;
+    /* verilator lint_on UNUSEDSIGNAL */
+    begin
+      case ({encoding[63:60], encoding[59:55]})
+        // brh: pand por pxor pandn
+        9'd48, 9'd49, 9'd50, 9'd51
+        // int: sel
+        , 9'd110
+          : isa_names_px = 1'b1;
+        default: isa_names_px = 1'b0;
+      endcase
+    end
+  endfunction
+
+  // has a predicate in rb
+  function isa_names_pb;
+    /* verilator lint_off UNUSEDSIGNAL */
+    input [63:0] encoding;
+    /* verilator lint_on UNUSEDSIGNAL */
+    begin
+      case ({encoding[63:60], encoding[59:55]})
+        // brh: pand por pxor pandn
+        9'd48, 9'd49, 9'd50, 9'd51
+          : isa_names_pb = 1'b1;
+        default: isa_names_pb = 1'b0;
+      endcase
+    end
+  endfunction
+
+  // has an argument's number in the immediate
+  function isa_names_argument;
+    /* verilator lint_off UNUSEDSIGNAL */
+    input [63:0] encoding;
+    /* verilator lint_on UNUSEDSIGNAL */
+    begin
+      case ({encoding[63:60], encoding[59:55]})
+        // tid: arg arg3
+        9'd6, 9'd22
+          : isa_names_argument = 1'b1;
+        default: isa_names_argument = 1'b0;
+      endcase
+    end
+  endfunction
+
+  // all registers, predicates and arguments that the instruction names are there, where there are so many; of a
+  // triple those of its last element too. Numbers go on behind the last of 16 registers and 32 arguments
+  function isa_numbers_fit;
+    input [63:0] encoding;
+    input [4:0] registers;
+    input [4:0] predicates;
+    input [5:0] arguments;
+    reg three, same_ra;
+    reg [4:0] last, last_moving, last_predicate;
+    reg [5:0] last_argument;
+    begin
+      three = isa_triple(encoding);
+      same_ra = encoding[58] || encoding[63:60] == 4'd2;
+      last = registers - 5'd1;
+      last_moving = three && registers != 5'd16 ? registers - 5'd3 : last;
+      last_predicate = predicates - 5'd1;
+      last_argument = three && arguments != 6'd32 ? arguments - 6'd3 : arguments - 6'd1;
+      isa_numbers_fit = !(
+        {1'b0, encoding[53:50]} > last_predicate ||
+        (isa_writes_register(encoding) && {1'b0, encoding[49:46]} > last_moving) ||
+        (isa_names_ra(encoding) && {1'b0, encoding[45:42]} > (same_ra ? last : last_moving)) ||
+        (isa_names_b(encoding) && !encoding[37] && {1'b0, encoding[41:38]} > last_moving) ||
+        (isa_names_rb(encoding) && {1'b0, encoding[41:38]} > last) ||
+        (isa_names_rc(encoding) && {1'b0, encoding[35:32]} > last_moving) ||
+        (isa_writes_predicate(encoding) && {1'b0, encoding[49:46]} > last_predicate) ||
+        (isa_names_px(encoding) && {1'b0, encoding[35:32]} > last_predicate) ||
+        (isa_names_pb(encoding) && {1'b0, encoding[41:38]} > last_predicate) ||
+        (isa_names_argument(encoding) && {1'b0, encoding[4:0]} > last_argument));
+    end
+  endfunction
+
   // the instruction has a table row, and the machine what it needs; fma: arithmetic.fma. A triple's words are
-  // all there, in packages of package_words. lacking: it is one that its ALU is without
+  // all there, in packages of package_words. lacking: it is one that its ALU is without, or names what is not there
   function isa_legal;
     input [63:0] encoding;
     input fma;

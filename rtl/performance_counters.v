@@ -9,7 +9,8 @@ module performance_counters #(
   parameter integer INSTANCES = 7,
   parameter integer ALU_TYPES = 7,
   parameter [INSTANCES*4-1:0] INSTANCE_TYPES = 28'h6543210,
-  parameter integer TRIPLES = 0
+  parameter integer TRIPLES = 0,
+  parameter integer COUNTER_BITS = 48       // each counts modulo 2^COUNTER_BITS
 ) (
   input  wire                   clk_i,
   input  wire                   rst_ni,
@@ -37,7 +38,7 @@ module performance_counters #(
 );
 `include "counters.vh"
 `include "isa.vh"
-  localparam integer BITS = 48;
+  localparam integer BITS = COUNTER_BITS;
   localparam integer LOW_BITS = 12;
   localparam integer STATES = COUNTER_WARPS_NOT_LAUNCHED;   // the first of the counters of warps in a state
   localparam integer SINGLES = COUNTER_FLT_OVERLAPPED + 1;

@@ -5,7 +5,8 @@ module tid_alu #(
   parameter integer LANES = 8,
   parameter integer WARP_BITS = 3,
   parameter integer LATENCY = 1,
-  parameter integer DEPTH = 1
+  parameter integer DEPTH = 1,
+  parameter integer ARGUMENTS = 32          // writes of others are ignored, reads never come
 ) (
   // the launch that runs, and the host's argument words
   input  wire [31:0]            block_i,
@@ -28,9 +29,12 @@ module tid_alu #(
     .clk_i(clk_i), .rst_ni(rst_ni), .task_valid_i(task_valid_i), .task_warp_i(task_warp_i), .ready_o(ready_o),
     .done_valid_o(done_valid_o), .done_warp_o(done_warp_o), .stage_valid_o(stage_valid));
 
-  ram_1r1w #(.WIDTH(32), .DEPTH(32)) arguments (
-    .clk_i(clk_i), .read_i(task_valid_i), .read_address_i(task_immediate_i[4:0]), .read_data_o(argument),
-    .write_i(argument_write_i), .write_address_i(argument_index_i), .write_data_i(argument_data_i));
+  localparam integer ARGUMENT_BITS = $clog2(ARGUMENTS);
+  wire there = {1'b0, argument_index_i} < ARGUMENTS[5:0];
+  ram_1r1w #(.WIDTH(32), .DEPTH(ARGUMENTS)) arguments (
+    .clk_i(clk_i), .read_i(task_valid_i), .read_address_i(task_immediate_i[ARGUMENT_BITS-1:0]), .read_data_o(argument),
+    .write_i(argument_write_i && there), .write_address_i(argument_index_i[ARGUMENT_BITS-1:0]),
+    .write_data_i(argument_data_i));
 
   always @(posedge clk_i)
     if (task_valid_i) begin

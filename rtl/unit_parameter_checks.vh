@@ -27,6 +27,21 @@
     if (INTERSECTION_WORDS < 12 || INTERSECTION_WORDS > 21) begin : gen_bad_INTERSECTION_WORDS
       INTERSECTION_WORDS_must_be_an_integer_from_12_to_21 illegal ();
     end
+    if (REGISTERS < 8 || REGISTERS > 16) begin : gen_bad_REGISTERS
+      REGISTERS_must_be_an_integer_from_8_to_16 illegal ();
+    end
+    if (PREDICATES < 2 || PREDICATES > 16) begin : gen_bad_PREDICATES
+      PREDICATES_must_be_an_integer_from_2_to_16 illegal ();
+    end
+    if (ARGUMENTS < 4 || ARGUMENTS > 32) begin : gen_bad_ARGUMENTS
+      ARGUMENTS_must_be_an_integer_from_4_to_32 illegal ();
+    end
+    if (PC_BITS < 8 || PC_BITS > 16) begin : gen_bad_PC_BITS
+      PC_BITS_must_be_an_integer_from_8_to_16 illegal ();
+    end
+    if (COUNTER_BITS < 16 || COUNTER_BITS > 48) begin : gen_bad_COUNTER_BITS
+      COUNTER_BITS_must_be_an_integer_from_16_to_48 illegal ();
+    end
     if (SUBNORMALS < 0 || SUBNORMALS > 2) begin : gen_bad_SUBNORMALS
       SUBNORMALS_must_be_an_integer_from_0_to_2 illegal ();
     end

@@ -8,6 +8,10 @@ module warp #(
   parameter integer FMA = 0,        // reads register rc too, and issues ffma
   parameter integer TRIPLES = 0,    // issues triples
   parameter integer INTERSECTION_WORDS = 21,
+  parameter integer REGISTERS = 16,
+  parameter integer PREDICATES = 16,
+  parameter integer ARGUMENTS = 32,
+  parameter integer PC_BITS = 16,
   parameter [511:0] WITHOUT = 512'd0   // bit ALU type * 32 + operation: that ALU lacks the instruction
 ) (
   input  wire                      clk_i,
@@ -20,7 +24,7 @@ module warp #(
   input  wire [15:0]               program_length_i,
   // instruction fetch
   output wire                      fetch_request_o,
-  output wire [15:0]               fetch_pc_o,
+  output wire [PC_BITS-1:0]        fetch_pc_o,
   input  wire                      fetch_grant_i,
   input  wire                      cache_hit_i,
   input  wire [63:0]               cache_instruction_i,
@@ -44,7 +48,7 @@ module warp #(
   input  wire [INSTANCES*LANES-1:0]    done_predicate_i,
   input  wire [INSTANCES-1:0]          done_subnormal_i,   // the task has met a subnormal number
   output reg                       retire_o,
-  output wire [15:0]               pc_o,
+  output wire [PC_BITS-1:0]        pc_o,
   output reg  [LANES*32-1:0]       retire_data_o,
   output reg  [LANES-1:0]          retire_predicate_o,
   // for the performance counters
@@ -55,12 +59,13 @@ module warp #(
   output wire [3:0]                fault_code_o
 );
 `include "isa.vh"
+  localparam integer REGISTER_BITS = $clog2(REGISTERS);
   reg [LANES-1:0] launched_q;
   reg [LANES-1:0] retire_pred;
   integer s, n;
 
   wire step, pc_valid, read, writes_register, writes_predicate, illegal, outside, overflow, underflow;
-  wire [15:0] stack_pc;
+  wire [PC_BITS-1:0] stack_pc;
   wire [63:0] instruction = instruction_o;
   wire triple;
   wire [1:0] read_element, done_element;
@@ -103,15 +108,25 @@ module warp #(
 
   always @(posedge clk_i) if (start_i) launched_q <= start_lanes_i;
 
-  pc_stack #(.DEPTH(STACK_DEPTH)) pc_stack (
+  reg [15:0] target;
+  always @* begin
+    target = field_target;
+    if (enter) begin
+      target = 16'd0;
+      target[PC_BITS-1:0] = pc_o + {{PC_BITS-1{1'b0}}, 1'b1};
+    end
+  end
+
+  pc_stack #(.DEPTH(STACK_DEPTH), .PC_BITS(PC_BITS)) pc_stack (
     .clk_i(clk_i), .rst_ni(rst_ni), .start_i(start_i), .start_pc_i(start_pc_i),
     .step_i(step), .pc_valid_o(pc_valid), .pc_o(stack_pc),
     .jump_i(jump || leave), .push_i(enter || call), .push_return_i(enter),
-    .pop_i(control && field_operation == ISA_BRH_RET), .target_i(enter ? pc_o + 16'd1 : field_target),
+    .pop_i(control && field_operation == ISA_BRH_RET), .target_i(target),
     .end_i(enter ? field_target : field_end), .return_i(pc_o), .overflow_o(overflow), .underflow_o(underflow));
 
   instruction_buffer #(
-    .FMA(FMA != 0), .TRIPLES(TRIPLES != 0), .INTERSECTION_WORDS(INTERSECTION_WORDS), .WITHOUT(WITHOUT)
+    .FMA(FMA != 0), .TRIPLES(TRIPLES != 0), .INTERSECTION_WORDS(INTERSECTION_WORDS), .REGISTERS(REGISTERS),
+    .PREDICATES(PREDICATES), .ARGUMENTS(ARGUMENTS), .PC_BITS(PC_BITS), .WITHOUT(WITHOUT)
   ) instruction_buffer (
     .clk_i(clk_i), .rst_ni(rst_ni), .start_i(start_i), .halt_i(halt_i), .active_o(active_o),
     .step_o(step), .pc_valid_i(pc_valid), .pc_i(stack_pc), .program_length_i(program_length_i),
@@ -126,7 +141,9 @@ module warp #(
   // ---- The element of a triple: what of its numbers moves on, and the operation that it has alone.
   wire one_ra;
   wire [3:0] task_ra = field_ra + (one_ra ? 4'd0 : {2'd0, read_element});
+  wire [3:0] task_rb = field_rb + {2'd0, read_element};
   wire [3:0] written = field_rd + {2'd0, done_element};
+  wire unused_bits = &{1'b0, task_ra, task_rb, written};   // of numbers that no instruction has
   generate
     if (TRIPLES != 0) begin : gen_triples
       wire address = field_type == ISA_TYPE_MEM;
@@ -145,30 +162,32 @@ module warp #(
     end
   endgenerate
 
-  predicate_file #(.LANES(LANES)) predicate_file (
+  predicate_file #(.LANES(LANES), .PREDICATES(PREDICATES)) predicate_file (
     .clk_i(clk_i), .clear_i(start_i), .read_i(read), .launched_i(launched_q),
     .guard_negated_i(field_guard_negated), .guard_i(field_guard), .x_index_i(field_x[3:0]), .b_index_i(field_rb),
     .mask_o(mask_o), .x_o(predicate_x_o), .b_o(predicate_b_o),
     .write_i(retire_o && writes_predicate), .write_index_i(field_rd), .write_data_i(retire_predicate_o));
 
-  ram_2r1w #(.WIDTH(LANES*32), .DEPTH(16), .GRANULE(32)) register_bank (
+  ram_2r1w #(.WIDTH(LANES*32), .DEPTH(REGISTERS), .GRANULE(32)) register_bank (
     .clk_i(clk_i), .read_i(read),
-    .read_address_a_i(task_ra), .read_address_b_i(field_rb + {2'd0, read_element}),
+    .read_address_a_i(task_ra[REGISTER_BITS-1:0]), .read_address_b_i(task_rb[REGISTER_BITS-1:0]),
     .read_data_a_o(operand_a_o), .read_data_b_o(operand_b_o),
     .write_mask_i(retire_o && writes_register ? mask_o : {LANES{1'b0}}),
-    .write_address_i(written), .write_data_i(retire_data_o));
+    .write_address_i(written[REGISTER_BITS-1:0]), .write_data_i(retire_data_o));
 
   // A copy of the bank gives the third operand, as memories with three read ports are rare.
   genvar l;
   generate
     if (FMA != 0) begin : gen_third
+      wire [3:0] task_rc = field_x[3:0] + {2'd0, read_element};
       for (l = 0; l < LANES; l = l + 1) begin : gen_lane
-        ram_1r1w #(.WIDTH(32), .DEPTH(16)) register_copy (
-          .clk_i(clk_i), .read_i(read), .read_address_i(field_x[3:0] + {2'd0, read_element}),
+        ram_1r1w #(.WIDTH(32), .DEPTH(REGISTERS)) register_copy (
+          .clk_i(clk_i), .read_i(read), .read_address_i(task_rc[REGISTER_BITS-1:0]),
           .read_data_o(operand_c_o[l*32 +: 32]),
-          .write_i(retire_o && writes_register && mask_o[l]), .write_address_i(written),
+          .write_i(retire_o && writes_register && mask_o[l]), .write_address_i(written[REGISTER_BITS-1:0]),
           .write_data_i(retire_data_o[l*32 +: 32]));
       end
+      wire unused = &{1'b0, task_rc};
     end else begin : gen_no_third
       assign operand_c_o = {LANES*32{1'b0}};
     end

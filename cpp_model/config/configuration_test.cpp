@@ -236,9 +236,11 @@ TEST(Configuration, AnAluMayLackInstructions) {
 }
 
 TEST(Configuration, UnknownKeysAreRefusedWithTheKnownOnes) {
-  EXPECT_EQ(error_of(R"({"warp": 8})"),
-            "unknown key warp; known here: name, warps, lanes, stack_depth, triples, kernel_overlap, wide_ray_memory, "
-            "slow_lanes, intersection_words, instruction_cache, data_cache, arithmetic, alus, chip, $schema");
+  EXPECT_EQ(
+      error_of(R"({"warp": 8})"),
+      "unknown key warp; known here: name, warps, lanes, stack_depth, triples, kernel_overlap, wide_ray_memory, "
+      "slow_lanes, intersection_words, registers, predicates, arguments, pc_bits, counter_bits, instruction_cache, "
+      "data_cache, arithmetic, alus, chip, $schema");
   EXPECT_EQ(error_of(R"({"alus": {"flt": {"counts": 1}}})"),
             "unknown key alus.flt.counts; known here: count, latency, depth, without");
   EXPECT_EQ(error_of(R"({"alus": {"ray": {"depth": 2}}})"), "unknown key alus.ray.depth; known here: count");

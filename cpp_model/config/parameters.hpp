@@ -41,6 +41,12 @@ enum class Shading : uint8_t { Kernel = 0, Traverser = 1 };
        "lanes of an instance of slw at most: with fewer than the unit has, a task takes them one group after another") \
   UNIT(intersection_words, uint32_t, 21, integers(12, 21), tried(12, 16, 21), \
        "words of an intersection on its port and in ray memory: 21, or those that the kernels need") \
+  UNIT(registers, uint32_t, 16, integers(8, 16), tried(8, 12, 16), "registers of a thread, from r0 on") \
+  UNIT(predicates, uint32_t, 16, integers(2, 16), tried(2, 5, 16), "predicates of a thread, from p0 on") \
+  UNIT(arguments, uint32_t, 32, integers(4, 32), tried(4, 11, 32), "argument words of a kernel") \
+  UNIT(pc_bits, uint32_t, 16, integers(8, 16), tried(8, 11, 16), \
+       "bits of a PC: a program has fewer than 2^pc_bits instructions") \
+  UNIT(counter_bits, uint32_t, 48, integers(16, 48), tried(16, 29, 48), "bits of a performance counter") \
   PART(instruction_cache, bytes, uint32_t, 4096, powers_of_two(512, 65536), tried(512, 1024, 4096, 65536), "size") \
   PART(data_cache, bytes, uint32_t, 8192, powers_of_two(512, 65536), tried(512, 1024, 8192, 65536), "size") \
   PART(data_cache, mshrs, uint32_t, 4, integers(1, 16), tried(1, 2, 3, 4, 16), \

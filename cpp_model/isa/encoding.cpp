@@ -1,5 +1,6 @@
 #include "isa/encoding.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 
@@ -143,6 +144,28 @@ bool elements_depend(const Instruction& triple) {
     }
   }
   return false;
+}
+
+Numbers numbers_of(const Instruction& instruction) {
+  Numbers numbers = {0, instruction.guard + 1u, 0};
+  if (instruction.info == nullptr) return numbers;
+  const auto at_least = [](uint32_t& number, uint32_t index) { number = std::max(number, index + 1); };
+  const bool triple = is_triple(*instruction.info);
+  for (int e = 0; e < (triple ? kElements : 1); ++e) {
+    const Instruction each = triple ? element(instruction, e) : instruction;
+    for (const Operand operand : instruction.info->operands) {
+      if (operand == Operand::Rd) at_least(numbers.registers, each.rd);
+      if (operand == Operand::Ra || operand == Operand::Address) at_least(numbers.registers, each.ra);
+      if (operand == Operand::Rb || (operand == Operand::B && !each.b_is_immediate))
+        at_least(numbers.registers, each.rb);
+      if (operand == Operand::Rc) at_least(numbers.registers, each.x % kRegisters);
+      if (operand == Operand::Pd) at_least(numbers.predicates, each.rd);
+      if (operand == Operand::Px) at_least(numbers.predicates, each.x % kPredicates);
+      if (operand == Operand::Pb) at_least(numbers.predicates, each.rb);
+      if (operand == Operand::Argument) at_least(numbers.arguments, each.immediate % kArguments);
+    }
+  }
+  return numbers;
 }
 
 uint64_t encode(const Instruction& parts) {

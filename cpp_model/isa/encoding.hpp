@@ -86,6 +86,14 @@ bool elements_depend(const Instruction& triple);
 /// The last word that a triple may begin with, of packages of so many words.
 constexpr uint32_t last_triple_word(uint32_t package_words) { return package_words - kElements; }
 
+/// How many registers, predicates and argument words a thread has.
+struct Numbers {
+  uint32_t registers = 0, predicates = 0, arguments = 0;
+};
+/// The fewest with which a machine has all that the instruction names, its guard and what the elements of a triple name
+/// too.
+Numbers numbers_of(const Instruction& instruction);
+
 /// `instruction.info` must not be null.
 uint64_t encode(const Instruction& instruction);
 /// All fields as they are encoded, also those that the row does not use.

@@ -234,6 +234,31 @@ TEST(Triples, ElementsDependWhenOneReadsWhatAnEarlierOneHasWritten) {
   EXPECT_GT(free, 100000);
 }
 
+TEST(Numbers, AreThoseThatAnInstructionNames) {
+  using Three = std::array<uint32_t, 3>;
+  const auto numbers = [](const std::string& text) {
+    const Numbers found = numbers_of(unpack(assemble(text, "test").code.front()));
+    return Three{found.registers, found.predicates, found.arguments};
+  };
+  EXPECT_EQ(numbers("iadd r3, r1, r2"), (Three{4, 1, 0}));
+  EXPECT_EQ(numbers("iadd r1, r2, 15"), (Three{3, 1, 0}));
+  EXPECT_EQ(numbers("@!p5 st [r7+4], r9"), (Three{10, 6, 0}));
+  EXPECT_EQ(numbers("pand p3, p4, p2"), (Three{0, 5, 0}));
+  EXPECT_EQ(numbers("flt p7, r1, r2"), (Three{3, 8, 0}));
+  EXPECT_EQ(numbers("sel r1, p6, r2, 3"), (Three{3, 7, 0}));
+  EXPECT_EQ(numbers("ffma r1, r2, r3, r12"), (Three{13, 1, 0}));
+  EXPECT_EQ(numbers("arg r1, 17"), (Three{2, 1, 18}));
+  EXPECT_EQ(numbers("rst 20, r11"), (Three{12, 1, 0}));
+  EXPECT_EQ(numbers("exit"), (Three{0, 1, 0}));
+  // Of a triple the last ones; what comes behind the last of all is the first.
+  EXPECT_EQ(numbers("fadd3 r1, r4, r7"), (Three{10, 1, 0}));
+  EXPECT_EQ(numbers("fmul3s r1, r11, r4"), (Three{12, 1, 0}));
+  EXPECT_EQ(numbers("ffma3 r1, r4, 2.0, r10"), (Three{13, 1, 0}));
+  EXPECT_EQ(numbers("ld3 r1, [r9]"), (Three{10, 1, 0}));
+  EXPECT_EQ(numbers("arg3 r14, 30"), (Three{16, 1, 32}));
+  EXPECT_EQ(numbers("rst3 3, r5"), (Three{8, 1, 0}));
+}
+
 TEST(Assembler, DisassembledInstructionsAssembleToThemselves) {
   std::mt19937_64 random(2);
   for (const InstructionInfo& info : kInstructions) {

@@ -79,7 +79,11 @@ constexpr const char* kText = R"(
 Fields that an instruction does not use are written as 0 by the assembler and ignored by the machine. An instruction
 whose unit and operation stand in no row below is illegal, and so is one that the configuration has not: `ffma` without
 `arithmetic.fma`, a triple without `triples`, `ffma3` and `ffma3s` without both, and one with an *o* that its type's
-`without` names.
+`without` names. One that names a register, predicate or argument which the configuration has not (`registers`,
+`predicates`, `arguments`) is illegal too; of a triple those of all elements count.
+
+A target, an end or an entry that does not fit into `pc_bits` is the greatest PC there is. It is outside of every
+program: of 16 bits, FFFF hex.
 
 ## Triples
 

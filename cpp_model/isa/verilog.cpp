@@ -1,8 +1,10 @@
 // Writes the two Verilog files of the instruction set.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bitset>
 #include <cctype>
+#include <initializer_list>
 
 #include "isa/counters.hpp"
 #include "isa/encoding.hpp"
@@ -52,7 +54,7 @@ std::string labels(Wanted wanted) {
 
 /// A function of ALU type and operation, true for the rows for which `wanted` is true.
 template <typename Wanted>
-std::string function_of_row(const char* name, const char* meaning, Wanted wanted) {
+std::string function_of_row(std::string_view name, std::string_view meaning, Wanted wanted) {
   return fmt::format(
       "\n  // {1}\n"
       "  function {0};\n"
@@ -105,6 +107,60 @@ std::string elements_depend_verilog() {
       fmt::format("encoding[{}:{}]", field::kX.lsb + 3, field::kX.lsb),
       fmt::format("encoding[{}]", field::kOperation.lsb + 3), slice(field::kBIsImmediate, "encoding"),
       fmt::format("encoding[{}:{}]", field::kOperation.lsb + 2, field::kOperation.lsb), operation_of(Opcode::Ffma));
+}
+
+/// Of Verilog, for numbers_of().
+std::string named_numbers_verilog() {
+  const auto names = [](std::string_view function, std::string_view what, std::initializer_list<Operand> operands) {
+    return function_of_row(function, what, [operands](const InstructionInfo& info) {
+      return std::any_of(operands.begin(), operands.end(), [&](Operand each) { return has_operand(info, each); });
+    });
+  };
+  const std::string x = fmt::format("encoding[{}:{}]", field::kX.lsb + 3, field::kX.lsb);
+  return names("isa_names_ra", "has a register in ra", {Operand::Ra, Operand::Address}) +
+         names("isa_names_b", "has a register in rb, unless bit 37 says that b is the immediate", {Operand::B}) +
+         names("isa_names_rb", "has a register in rb", {Operand::Rb}) +
+         names("isa_names_rc", "has a register in x", {Operand::Rc}) +
+         names("isa_names_px", "has a predicate in x", {Operand::Px}) +
+         names("isa_names_pb", "has a predicate in rb", {Operand::Pb}) +
+         names("isa_names_argument", "has an argument's number in the immediate", {Operand::Argument}) +
+         fmt::format(
+             "\n  // all registers, predicates and arguments that the instruction names are there, where there are so "
+             "many; of a\n"
+             "  // triple those of its last element too. Numbers go on behind the last of 16 registers and 32 "
+             "arguments\n"
+             "  function isa_numbers_fit;\n"
+             "    input [63:0] encoding;\n"
+             "    input [4:0] registers;\n"
+             "    input [4:0] predicates;\n"
+             "    input [5:0] arguments;\n"
+             "    reg three, same_ra;\n"
+             "    reg [4:0] last, last_moving, last_predicate;\n"
+             "    reg [5:0] last_argument;\n"
+             "    begin\n"
+             "      three = isa_triple(encoding);\n"
+             "      same_ra = {6} || {7} == 4'd{8};\n"
+             "      last = registers - 5'd1;\n"
+             "      last_moving = three && registers != 5'd{0} ? registers - 5'd{2} : last;\n"
+             "      last_predicate = predicates - 5'd1;\n"
+             "      last_argument = three && arguments != 6'd{1} ? arguments - 6'd{2} : arguments - 6'd1;\n"
+             "      isa_numbers_fit = !(\n"
+             "        {{1'b0, {3}}} > last_predicate ||\n"
+             "        (isa_writes_register(encoding) && {{1'b0, {4}}} > last_moving) ||\n"
+             "        (isa_names_ra(encoding) && {{1'b0, {5}}} > (same_ra ? last : last_moving)) ||\n"
+             "        (isa_names_b(encoding) && !{9} && {{1'b0, {10}}} > last_moving) ||\n"
+             "        (isa_names_rb(encoding) && {{1'b0, {10}}} > last) ||\n"
+             "        (isa_names_rc(encoding) && {{1'b0, {11}}} > last_moving) ||\n"
+             "        (isa_writes_predicate(encoding) && {{1'b0, {4}}} > last_predicate) ||\n"
+             "        (isa_names_px(encoding) && {{1'b0, {11}}} > last_predicate) ||\n"
+             "        (isa_names_pb(encoding) && {{1'b0, {10}}} > last_predicate) ||\n"
+             "        (isa_names_argument(encoding) && {{1'b0, encoding[4:0]}} > last_argument));\n"
+             "    end\n"
+             "  endfunction\n",
+             kRegisters, kArguments, kElements, slice(field::kGuard, "encoding"), slice(field::kRd, "encoding"),
+             slice(field::kRa, "encoding"), fmt::format("encoding[{}]", field::kOperation.lsb + 3),
+             slice(field::kType, "encoding"), to_underlying(AluType::Mem),
+             fmt::format("encoding[{}]", field::kBIsImmediate.lsb), slice(field::kRb, "encoding"), x);
 }
 
 constexpr const char* kGenerated =
@@ -171,10 +227,12 @@ std::string isa_verilog_functions() {
   text +=
       function_of_row("isa_triple_of_words", "the instruction accesses three words of a ray package",
                       [](const InstructionInfo& info) { return is_triple(info) && has_operand(info, Operand::Word); });
+  text += named_numbers_verilog();
   text += fmt::format(
       "\n  // the instruction has a table row, and the machine what it needs; fma: arithmetic.fma. A triple's words "
       "are\n"
-      "  // all there, in packages of package_words. lacking: it is one that its ALU is without\n"
+      "  // all there, in packages of package_words. lacking: it is one that its ALU is without, or names what is not "
+      "there\n"
       "  function isa_legal;\n"
       "    input [63:0] encoding;\n"
       "    input fma;\n"

@@ -15,6 +15,22 @@ namespace {
 constexpr std::array<InstructionCounts, kRayKernels> kThesisCounts = {
     {{2, 2, 2, 33, 24, 1, 13}, {1, 7, 4, 54, 75, 5, 45}, {1, 5, 4, 38, 33, 3, 26}, {1, 6, 3, 23, 10, 1, 10}}};
 
+/// Throws InputError when the instruction names what the machine has not.
+void check_numbers(const Instruction& instruction, const std::string& kernel, size_t pc,
+                   const Configuration& configuration) {
+  const Numbers needs = numbers_of(instruction);
+  const auto check = [&](const char* parameter, char letter, uint32_t needed, uint32_t there) {
+    if (needed <= there) return;
+    throw InputError(fmt::format(
+        "kernel {} has {} with {}{} (instruction {}), and {} has {} {}: give that configuration {}, or more", kernel,
+        instruction.info->mnemonic, letter == 'a' ? "argument " : std::string(1, letter), needed - 1, pc,
+        configuration.name, there, parameter, needed));
+  };
+  check("registers", 'r', needs.registers, configuration.registers);
+  check("predicates", 'p', needs.predicates, configuration.predicates);
+  check("arguments", 'a', needs.arguments, configuration.arguments);
+}
+
 int total(const InstructionCounts& counts) { return std::accumulate(counts.begin(), counts.end(), 0); }
 
 }  // namespace
@@ -48,8 +64,11 @@ Program extract_kernel(const Program& program, const std::string& name) {
 void check_instructions(const Program& program, const std::string& kernel, const Configuration& configuration) {
   const std::vector<uint64_t> code = extract_kernel(program, kernel).code;
   for (size_t pc = 0; pc < code.size(); ++pc) {
-    const InstructionInfo* info = unpack(code[pc]).info;
-    if (info == nullptr || configuration.has(*info)) continue;
+    const Instruction instruction = unpack(code[pc]);
+    const InstructionInfo* info = instruction.info;
+    if (info == nullptr) continue;
+    check_numbers(instruction, kernel, pc, configuration);
+    if (configuration.has(*info)) continue;
     throw InputError(fmt::format(
         "kernel {} has {} (instruction {}), which {} is without: take it off alus.{}.without of that configuration",
         kernel, info->mnemonic, pc, configuration.name, kAluNames[info->alu()]));

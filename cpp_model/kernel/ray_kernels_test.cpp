@@ -1,4 +1,5 @@
 // The kernels themselves: natively against formulas in double precision, and as machine code against native.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,6 +10,7 @@
 #include <sstream>
 
 #include "bits.hpp"
+#include "isa/encoding.hpp"
 #include "kernel/compute_kernels.hpp"
 #include "kernel/kernel_report.hpp"
 #include "kernel/kernels.hpp"
@@ -448,6 +450,37 @@ TEST(RayKernels, AreRefusedByAMachineThatLacksWhatTheyHave) {
         "kernel cast_secondary has frsqrt (instruction 55), which mine is without: take it off alus.slw.without of "
         "that configuration");
   }
+  machine = Configuration();
+  machine.name = "mine";
+  const auto refusal = [&](uint32_t Configuration::*field, uint32_t value) -> std::string {
+    Configuration less = machine;
+    less.*field = value;
+    try {
+      check_instructions(program, "cast_secondary", less);
+      return "";
+    } catch (const InputError& error) {
+      return error.what();
+    }
+  };
+  Numbers needs;
+  for (const uint64_t encoding : extract_kernel(program, "cast_secondary").code) {
+    const Numbers one = numbers_of(unpack(encoding));
+    needs.registers = std::max(needs.registers, one.registers);
+    needs.predicates = std::max(needs.predicates, one.predicates);
+    needs.arguments = std::max(needs.arguments, one.arguments);
+  }
+  EXPECT_EQ(refusal(&Configuration::registers, needs.registers), "");
+  EXPECT_EQ(refusal(&Configuration::predicates, needs.predicates), "");
+  EXPECT_EQ(refusal(&Configuration::arguments, needs.arguments), "");
+  EXPECT_NE(refusal(&Configuration::registers, needs.registers - 1)
+                .find(fmt::format("and mine has {} registers: give that configuration {}", needs.registers - 1,
+                                  needs.registers)),
+            std::string::npos)
+      << refusal(&Configuration::registers, needs.registers - 1);
+  EXPECT_NE(refusal(&Configuration::predicates, 1).find("with p1 (instruction"), std::string::npos);
+  EXPECT_NE(refusal(&Configuration::arguments, needs.arguments - 1)
+                .find(fmt::format("with argument {} (instruction", needs.arguments - 1)),
+            std::string::npos);
 }
 
 }  // namespace

@@ -16,6 +16,7 @@ constexpr size_t index(AluType type) { return static_cast<size_t>(type); }
 CycleUnit::CycleUnit(const Configuration& configuration, const Memory& memory)
     : warps_(static_cast<uint32_t>(configuration.warps)),
       lanes_(static_cast<uint32_t>(configuration.lanes)),
+      counter_bits_(configuration.counter_bits),
       host_memory_(&memory),
       core_(configuration, memory_),
       launcher_(configuration),
@@ -103,8 +104,7 @@ void CycleUnit::step(const UnitInputs& inputs) {
     clock_launcher();
   }
   // Write-back and the next instructions. Who retires in this cycle may issue in it, unless it has a fault.
-  uint32_t faulty = 0;
-  if (met_subnormal != 0) faulty = raise_subnormals(met_subnormal);
+  const uint32_t faulty = met_subnormal != 0 ? raise_subnormals(met_subnormal) : 0;
   if (retired != 0) {
     if ((retired & triples_) != 0) retired = end_elements(retired);
     counters_.leave(counter::kWarpsInMem, now_ + 1, mem_.done() != 0);

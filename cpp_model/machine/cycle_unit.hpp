@@ -139,6 +139,7 @@ class CycleUnit final : public ComputeUnit {
   void halt();
   // Ports
   bool quiet() const;
+  uint64_t counted(int number) const;
   uint32_t signals() const;
   uint32_t signals_but_rays() const;
   void present(uint32_t now);
@@ -148,7 +149,7 @@ class CycleUnit final : public ComputeUnit {
   void record_issue(uint32_t warp, const DecodedInstruction& instruction);
   void record_result(uint32_t warp, const Step& step);
 
-  uint32_t warps_, lanes_;
+  uint32_t warps_, lanes_, counter_bits_;
   const Memory* host_memory_;
   Memory memory_;
   bool memory_stale_ = true;

@@ -107,7 +107,12 @@ uint64_t CycleUnit::fetching() const {
   return warps_ * counters_.single[kBusyCycles] - others;
 }
 
+// No simulation takes so long that wide ones begin anew.
 uint64_t CycleUnit::counter(int number) {
+  return counter_bits_ == 48 ? counted(number) : counted(number) & ((uint64_t{1} << counter_bits_) - 1);
+}
+
+uint64_t CycleUnit::counted(int number) const {
   if (number == counter::kWarpsFetching) return fetching();
   const size_t type = static_cast<size_t>(number & 7);
   if (number < counter::kUnused || type >= kAluTypes) return counters_.value(number, 0, 0);

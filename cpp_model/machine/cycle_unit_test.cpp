@@ -188,6 +188,29 @@ TEST(CycleUnit, TheLowestWarpGoesFirstAndTheOthersAreCountedAsWaiting) {
   EXPECT_EQ(unit.counter(counter::kIssued + static_cast<int>(AluType::Int)), 4u);
 }
 
+TEST(CycleUnit, CountersCountModuloTheirBits) {
+  const std::vector<uint64_t> code =
+      assembled("mov r1, 4000; igt p1, r1, 0; @p1 loop 5; isub r1, r1, 1; igt p1, r1, 0; exit");
+  Memory memory = with_program(code);
+  std::array<std::vector<uint64_t>, 2> values;
+  for (const uint32_t bits : {48u, 16u}) {
+    Configuration configuration = make_configuration(2, 4);
+    configuration.counter_bits = bits;
+    CycleUnit unit(configuration, memory);
+    unit.reset(size32(code), kMemoryBytes);
+    TestChip chip(unit, memory);
+    chip.launches.push_back(launch_of(8));
+    ASSERT_TRUE(chip.run(200000));
+    for (int number = 0; number < counter::kCount; ++number) values[bits == 48 ? 0 : 1].push_back(unit.counter(number));
+  }
+  uint64_t more = 0;
+  for (size_t number = 0; number < values[0].size(); ++number) {
+    EXPECT_EQ(values[1][number], values[0][number] & 0xffff) << number;
+    more += values[0][number] >> 16;
+  }
+  EXPECT_GT(more, 2u) << "none has begun anew";
+}
+
 // Two units, one clocked and one run; the memory answers after a fixed time, the ports are always ready.
 // Two launches of which every thread stores its index, the threads of its launch and its block; warp 0 of each takes
 // longer than the others.

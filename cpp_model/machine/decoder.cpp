@@ -8,6 +8,10 @@ namespace {
 
 bool is_legal(const Instruction& fields, const Configuration& configuration) {
   if (fields.info == nullptr || !configuration.has(*fields.info)) return false;
+  const Numbers numbers = numbers_of(fields);
+  if (numbers.registers > configuration.registers || numbers.predicates > configuration.predicates ||
+      numbers.arguments > configuration.arguments)
+    return false;
   return !(is_triple(*fields.info) && has_operand(*fields.info, Operand::Word) &&
            fields.x > last_triple_word(configuration.intersection_words));
 }

@@ -27,7 +27,7 @@ FunctionalCore::FunctionalCore(const Configuration& configuration, Memory& memor
       mode_(arith::mode_of(configuration)),
       guarded_(configuration.subnormals == Subnormals::None),
       registers_(configuration.contents() * kRegisters),
-      warps_(configuration.warps, Warp(configuration.stack_depth)),
+      warps_(configuration.warps, Warp(configuration)),
       slices_(configuration.warps, configuration.lanes, configuration.intersection_words) {
   switch (lanes_) {
     case 1:

@@ -436,6 +436,55 @@ TEST(FunctionalCore, TriplesThatTheMachineHasNotAreIllegal) {
     EXPECT_EQ(first_fault(text, compact), FaultCode::IllegalInstruction) << text;
 }
 
+TEST(FunctionalCore, WhatNamesMoreThanThereIsIsIllegal) {
+  Configuration configuration = with_triples(true);
+  configuration.registers = 12, configuration.predicates = 5, configuration.arguments = 11;
+  const auto fault_of = [&](const std::string& text) {
+    Machine machine(assembled(text + "; exit"), configuration);
+    return machine.run() == Status::Fault ? machine.core.step(0).fault.code : FaultCode::None;
+  };
+  for (const char* text : {"iadd r11, r11, r11", "pand p4, p4, p4", "arg r0, 10", "fadd3 r9, r9, r9", "arg3 r0, 8",
+                           "fmul3s r0, r11, r9", "@p4 mov r1, 15", "sel r1, p4, r2, r3"})
+    EXPECT_EQ(fault_of(text), FaultCode::None) << text;
+  for (const char* text : {"iadd r12, r1, r1",
+                           "iadd r1, r12, r1",
+                           "iadd r1, r1, r15",
+                           "pand p5, p1, p1",
+                           "pand p1, p8, p1",
+                           "pand p1, p1, p5",
+                           "@p5 mov r1, 0",
+                           "@!p9 jany 0",
+                           "arg r0, 11",
+                           "st [r12], r1",
+                           "mov r1, 1024; st [r1], r12",
+                           "fadd3 r10, r0, r0",
+                           "fadd3 r0, r10, r0",
+                           "fadd3 r0, r0, r11",
+                           "ffma3 r0, r3, r6, r10",
+                           "fmul3s r0, r12, r1",
+                           "arg3 r0, 9",
+                           "sel r1, p5, r2, r3",
+                           "sel r1, p1, r2, r12",
+                           "rst3 0, r10"})
+    EXPECT_EQ(fault_of(text), FaultCode::IllegalInstruction) << text;
+}
+
+// The greatest PC is outside: what lies beyond is not taken for what its lower bits name.
+TEST(FunctionalCore, APcThatDoesNotFitIsOutsideOfTheProgram) {
+  Configuration configuration = make_configuration();
+  configuration.pc_bits = 8;
+  for (const char* text : {"jany 256; exit", "jany 257; exit", "jany 65535", "jany 255"}) {
+    Machine machine(assembled(text), configuration);
+    EXPECT_EQ(machine.run(), Status::Fault) << text;
+    EXPECT_EQ(machine.core.step(0).fault.code, FaultCode::PcOutsideProgram) << text;
+    EXPECT_EQ(machine.core.step(0).fault.pc, 255u) << text;
+  }
+  // An end beyond is never reached: the function goes on to its ret.
+  Machine machine(assembled("call 2, 256; exit; mov r1, 7; ret"), configuration);
+  EXPECT_EQ(machine.run(), Status::NotRunning);
+  EXPECT_EQ(machine.reg(0, 1, 0), 7u);
+}
+
 constexpr uint32_t kTable = 2048;
 
 /// All that a program leaves: how it ended, registers and the ray words of both warps.

@@ -1,5 +1,5 @@
 // rtl/pc_stack.v: the PC/RPC stack of one warp. An entry whose PC has reached its RPC
-// is finished; the first one never is.
+// is finished; the first one never is. A PC that does not fit becomes the greatest, which is outside of every program.
 #pragma once
 
 #include <array>
@@ -11,11 +11,11 @@ class PcStack {
  public:
   static constexpr uint32_t kMostEntries = 32;
 
-  explicit PcStack(uint32_t depth) : last_(depth - 1) {}
+  PcStack(uint32_t depth, uint32_t pc_bits) : last_(depth - 1), greatest_((1u << pc_bits) - 1) {}
 
   void start(uint32_t pc) {
     top_ = 0;
-    pc_[0] = pc;
+    pc_[0] = fitting(pc);
   }
 
   // The instruction that a warp executes next. The RTL pops and counts on while it
@@ -25,13 +25,13 @@ class PcStack {
   }
   uint32_t pc() const { return pc_[top_]; }  ///< after pop_finished()
   void advance() { ++pc_[top_]; }            ///< it has been executed
-  void jump(uint32_t target) { pc_[top_] = target; }
+  void jump(uint32_t target) { pc_[top_] = fitting(target); }
   /// False: overflow, and nothing happened. What is below goes on at `return_pc`.
   bool push(uint32_t target, uint32_t end, uint32_t return_pc) {
     if (top_ == last_) return false;
     pc_[top_++] = return_pc;
-    pc_[top_] = target;
-    rpc_[top_] = end;
+    pc_[top_] = fitting(target);
+    rpc_[top_] = fitting(end);
     return true;
   }
   /// False: underflow, and nothing happened.
@@ -67,7 +67,9 @@ class PcStack {
  private:
   bool finished(uint32_t entry, uint32_t pc) const { return entry > 0 && pc >= rpc_[entry]; }
 
-  uint32_t last_;
+  uint32_t fitting(uint32_t pc) const { return pc < greatest_ ? pc : greatest_; }
+
+  uint32_t last_, greatest_;
   uint32_t top_ = 0;
   std::array<uint32_t, kMostEntries> pc_{}, rpc_{};
 };

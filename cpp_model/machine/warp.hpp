@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "config/configuration.hpp"
 #include "machine/compute_unit.hpp"
 #include "machine/decoder.hpp"
 #include "machine/pc_stack.hpp"
@@ -11,7 +12,7 @@
 namespace raypool {
 
 struct Warp {
-  explicit Warp(uint32_t stack_depth) : pc_stack(stack_depth) {}
+  explicit Warp(const Configuration& configuration) : pc_stack(configuration.stack_depth, configuration.pc_bits) {}
   void reset() {
     running = output_busy = false;
     launched = 0;

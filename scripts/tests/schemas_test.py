@@ -83,6 +83,10 @@ class Agreement(unittest.TestCase):
         documents += [{"warps": value} for value in (0, 1, 2, 3, 32, 64, "8", 8.5, None)]
         documents += [{"lanes": value} for value in (0, 1, 24, 32, 64)] + [{"cores": 8}]
         documents += [{"stack_depth": value} for value in (1, 2, 32, 33)]
+        ends = {"registers": (8, 16), "predicates": (2, 16), "arguments": (4, 32), "pc_bits": (8, 16),
+                "counter_bits": (16, 48)}  # fmt: skip
+        documents += [{name: value} for name, (least, most) in ends.items()
+                      for value in (least - 1, least, most, most + 1)]  # fmt: skip
         documents += [
             {f"{cache}_cache": {"bytes": value}}
             for cache in ("instruction", "data")

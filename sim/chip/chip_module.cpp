@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "bits.hpp"
+#include "config/limits.hpp"
 #include "scene/native_renderer.hpp"
 
 namespace raypool::chip {
@@ -27,6 +28,7 @@ const ChipOptions& checked(const ChipOptions& options) {
   require_range("image height", options.height, 1, 65535);
   require_range("depth", options.depth, 1, kLargestDepth);
   check_configuration(options.configuration, "configuration " + options.configuration.name);
+  check_program_length(options.configuration, options.program_length);
   if (options.layout.words != options.configuration.intersection_words)
     throw std::logic_error("the program imports records of another size than the configuration has");
   return options;
@@ -48,7 +50,8 @@ Chip::Chip(const sc_core::sc_module_name& name, const ChipOptions& options)
                                  secondary_kernel(options.depth, options.reflections) == RayKernel::CastSecondary,
                                  options.device->timed()})),
       device_("device_host", *options.device),
-      monitor_("monitor", {options.watchdog_cycles, options.cycle_limit, true, options.progress != nullptr}) {
+      monitor_("monitor", {options.watchdog_cycles, options.cycle_limit, true, options.progress != nullptr,
+                           options.device->timed() ? &options.configuration : nullptr}) {
   memory_port_.clock(clock_.now);
   memory_port_.socket.bind(memory);
   memory_port_.others(traverser_->memory_user);

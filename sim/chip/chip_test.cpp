@@ -282,6 +282,23 @@ TEST(Chip, GivesUpAtTheCycleLimit) {
   EXPECT_THROW(run.go(), ChipStalled);
 }
 
+TEST(Chip, GivesUpWhenACounterMayBeginAnew) {
+  const auto error_of = [](uint32_t bits) -> std::string {
+    FrameRun run(8, 8, 1, 64, 64, 1);
+    run.options.configuration.counter_bits = bits;
+    try {
+      run.go();
+      return "";
+    } catch (const InputError& error) {
+      return error.what();
+    }
+  };
+  EXPECT_EQ(error_of(48), "");
+  EXPECT_EQ(error_of(32), "");
+  EXPECT_NE(error_of(16).find("1023 cycles have passed"), std::string::npos) << error_of(16);
+  EXPECT_NE(error_of(16).find("--set counter_bits=48"), std::string::npos) << error_of(16);
+}
+
 TEST(Chip, LetsErrorsOfTheTracerThrough) {
   struct Broken : RayTracer {
     bool trace(const Ray&, Intersection&) override { throw std::out_of_range("tracer"); }
@@ -304,6 +321,7 @@ TEST(Chip, RefusesOptionsOutOfRange) {
   refuses([](FrameRun& run) { run.options.depth = 255; }, "depth");
   refuses([](FrameRun& run) { run.options.configuration.chip.held_limit = 7; }, "held limit below a tile's width");
   refuses([](FrameRun& run) { run.options.configuration.chip.held_limit = 513; }, "held limit above the pool");
+  refuses([](FrameRun& run) { run.options.configuration.pc_bits = 8, run.options.program_length = 256; }, "program");
 }
 
 }  // namespace

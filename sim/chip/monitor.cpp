@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "chip/chip.hpp"
+#include "config/limits.hpp"
 
 namespace raypool::chip {
 
@@ -17,12 +18,28 @@ Monitor::Monitor(const sc_core::sc_module_name& name, const MonitorOptions& opti
   SC_METHOD(limit);
   sensitive << limit_;
   dont_initialize();
+  SC_METHOD(counted_out);
+  sensitive << counted_out_;
+  dont_initialize();
 }
 
 void Monitor::start_of_simulation() {
   if (options_.progress) clock->notify(show_, Phase::Monitor, progress_cycles());
   if (options_.watchdog_cycles > 0) clock->notify(watch_, Phase::Monitor, options_.watchdog_cycles);
+  // No frame takes so long that wide ones do.
+  if (options_.counters_of != nullptr && options_.counters_of->counter_bits < 40)
+    clock->notify(counted_out_, Phase::Monitor, counted_cycles(*options_.counters_of));
   if (options_.cycle_limit > 0) clock->notify(limit_, Phase::Monitor, options_.timed ? options_.cycle_limit : 1);
+}
+
+void Monitor::counted_out() {
+  clock->guard([&] {
+    const Configuration& machine = *options_.counters_of;
+    throw InputError(
+        fmt::format("{} cycles have passed, and after so many a performance counter of {}, of {} bits, may have begun "
+                    "anew: draw with --set counter_bits=48, or fit a configuration to this frame with raypool fit",
+                    clock->cycle(), machine.name, machine.counter_bits));
+  });
 }
 
 void Monitor::show() {

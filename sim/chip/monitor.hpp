@@ -7,6 +7,7 @@
 
 #include "chip/chip_clock.hpp"
 #include "chip/interfaces.hpp"
+#include "config/configuration.hpp"
 
 namespace raypool::chip {
 
@@ -15,6 +16,7 @@ struct MonitorOptions {
   uint64_t cycle_limit = 0;      ///< cycles, or instructions of an engine without time; 0: none
   bool timed = true;             ///< the engine has a notion of time: a cycle is not thousands of instructions
   bool progress = false;         ///< show_progress() every kProgressCycles, without time every cycle
+  const Configuration* counters_of = nullptr;  ///< ends when a performance counter of this machine may begin anew
 };
 
 class Monitor : public sc_core::sc_module {
@@ -37,10 +39,11 @@ class Monitor : public sc_core::sc_module {
   void show();
   void watch();
   void limit();
+  void counted_out();
   uint64_t progress_cycles() const { return options_.timed ? kProgressCycles : 1; }
 
   MonitorOptions options_;
-  sc_core::sc_event show_, watch_, limit_;
+  sc_core::sc_event show_, watch_, limit_, counted_out_;
   uint64_t retired_ = 0, transfers_ = 0;
   uint64_t silent_ = 0;  // periods without a transfer
 };

@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 
+#include "config/limits.hpp"
 #include "machine/decoder.hpp"
 
 namespace raypool::chip {
@@ -18,6 +19,7 @@ const ProgramOptions& checked(const ProgramOptions& options) {
     throw InputError(fmt::format("{} threads a block: configuration {} holds 1 to {}", options.threads,
                                  options.configuration.name, contents));
   }
+  check_program_length(options.configuration, options.program_length);
   if (options.blocks < 1) throw InputError("0 blocks: launch at least one");
   for (uint32_t pc = 0; pc < options.program_length; ++pc) {
     const uint64_t word = options.memory->load(8 * pc) | uint64_t{options.memory->load(8 * pc + 4)} << 32;
@@ -75,8 +77,8 @@ ProgramChip::ProgramChip(const sc_core::sc_module_name& name, const ProgramOptio
       memory_port_("memory_port", options.configuration.chip),
       grid_("grid", options_),
       device_("device_host", *options.device),
-      monitor_("monitor",
-               {options.watchdog_cycles, options.cycle_limit, options.device->timed(), options.progress != nullptr}) {
+      monitor_("monitor", {options.watchdog_cycles, options.cycle_limit, options.device->timed(),
+                           options.progress != nullptr, options.device->timed() ? &options.configuration : nullptr}) {
   memory_port_.clock(clock_.now);
   memory_port_.socket.bind(memory);
 

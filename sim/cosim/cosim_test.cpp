@@ -61,6 +61,39 @@ TEST(RandomPrograms, KeepTheirPromisesForEveryConfiguration) {
   }
 }
 
+// Registers, predicates, arguments and PCs that a fit leaves, and the fewest that there may be.
+TEST(RandomPrograms, KeepTheirPromisesOnMachinesWithLess) {
+  struct Less {
+    uint32_t registers, predicates, arguments, pc_bits;
+    bool triples;
+  };
+  for (const Less& less : {Less{9, 2, 23, 9, false}, Less{8, 2, 4, 8, true}, Less{10, 3, 11, 10, true},
+                           Less{12, 4, 32, 16, true}, Less{16, 5, 5, 12, false}}) {
+    Configuration configuration = configuration_of(4, 4, 3);
+    configuration.registers = less.registers;
+    configuration.predicates = less.predicates;
+    configuration.arguments = less.arguments;
+    configuration.pc_bits = less.pc_bits;
+    configuration.triples = configuration.fma = less.triples;
+    std::set<FaultCode> beyond;
+    bool loops = false, triples = false, far = false;
+    for (uint64_t seed = 1; seed <= 250; ++seed) {
+      const RandomProgram program = make_random_program(configuration, seed);
+      EXPECT_EQ(check_program(configuration, program), "") << less.registers << " registers, seed " << seed;
+      EXPECT_LT(told_length(program), 1u << less.pc_bits);
+      loops = loops || contains(program, Opcode::Loop);
+      triples = triples || contains(program, Opcode::Fmul3);
+      for (const uint64_t encoding : program.program.code) {
+        const Instruction one = unpack(encoding);
+        far = far || (one.info == &instruction(Opcode::Jany) && (one.immediate & 0xffff) >> less.pc_bits != 0);
+      }
+    }
+    EXPECT_TRUE(loops) << less.registers;
+    EXPECT_TRUE(triples || !less.triples) << less.registers;
+    EXPECT_EQ(far, less.pc_bits < 16) << "no jump beyond what a PC can be";
+  }
+}
+
 TEST(RandomPrograms, AreTheSameForTheSameSeedAndHaveEveryProfileAndFault) {
   std::set<std::string> profiles;
   uint32_t faults = 0;
@@ -416,7 +449,7 @@ TEST(CoverageOfPcs, TakesATwinOutsideForOneOnlyIfTheOtherBitsLieInside) {
   event.mask = 1;
   trace.retired = {event};
   coverage.cycle(UnitOutputs{}, UnitInputs{}, trace);
-  const std::string name = "a PC outside that lies inside but for bit 15";
+  const std::string name = "a PC outside that lies inside but for the upper bit";
   for (const uint32_t pc : {0xffffu, 0x8008u, 8u}) coverage.faulted({{FaultCode::PcOutsideProgram, 0, pc}});
   coverage.faulted({{FaultCode::IllegalInstruction, 0, 0x8007}});
   EXPECT_EQ(count(coverage, name), 0u);

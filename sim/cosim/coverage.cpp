@@ -14,7 +14,6 @@ constexpr uint32_t kInstructionId = 16;
 constexpr uint64_t kOpenCycles = 300;
 // An access that waits for a package's words retires as many cycles after these came.
 constexpr uint64_t kPackageCycles = 4;
-constexpr uint32_t kLastPcBit = 1u << 15;
 
 /// Of a line in a unit's data cache.
 uint32_t line_key(uint32_t unit, uint32_t address) { return unit << 26 | address / kLineBytes; }
@@ -74,9 +73,10 @@ void Coverage::faulted(const std::vector<Fault>& faults) {
       if (warp.element > 0 && fault.pc == warp.last_pc) hit(Event::FaultInTriple);
       if (warp.inside && launched_.size() > ended_ + 1)
         hit(warp.kernel == ended_ ? Event::FaultInOlder : Event::FaultInNewer);
+      const uint32_t upper = 1u << (configuration_.pc_bits - 1);
       // What has retired beyond it says that the twin is inside.
-      const bool outside = fault.code == FaultCode::PcOutsideProgram && fault.pc >= kLastPcBit;
-      if (outside && std::find(pcs_.begin() + (fault.pc ^ kLastPcBit), pcs_.end(), true) != pcs_.end())
+      const bool outside = fault.code == FaultCode::PcOutsideProgram && (fault.pc & upper) != 0;
+      if (outside && std::find(pcs_.begin() + (fault.pc ^ upper), pcs_.end(), true) != pcs_.end())
         hit(Event::TwinInside);
     } else {
       ++fault_pairs_[winner->code][fault.code][winner->warp < fault.warp ? 1 : 0];
@@ -240,10 +240,11 @@ void Coverage::predicates(Warp& warp, const RetireEvent& event, const Instructio
 
 void Coverage::last_of_all(const RetireEvent& event, const Instruction& instruction) {
   const Opcode opcode = instruction.info->opcode;
-  if (opcode == Opcode::Arg && instruction.immediate % kArguments == kArguments - 1) hit(Event::LastArgument);
+  if (opcode == Opcode::Arg && instruction.immediate % kArguments == configuration_.arguments - 1)
+    hit(Event::LastArgument);
   if (event.warp + 1 != configuration_.warps || (event.mask >> (lanes_ - 1) & 1) == 0) return;
-  if (writes_register(*instruction.info) && instruction.rd == kRegisters - 1) hit(Event::LastRegister);
-  if (writes_predicate(*instruction.info) && instruction.rd == kPredicates - 1 &&
+  if (writes_register(*instruction.info) && instruction.rd == configuration_.registers - 1) hit(Event::LastRegister);
+  if (writes_predicate(*instruction.info) && instruction.rd == configuration_.predicates - 1 &&
       (event.predicate >> (lanes_ - 1) & 1) != 0)
     hit(Event::LastPredicate);
   if (opcode == Opcode::Rst && instruction.x + 1u == configuration_.intersection_words) hit(Event::LastWord);

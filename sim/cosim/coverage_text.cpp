@@ -18,9 +18,9 @@ constexpr std::array<std::string_view, 9> kFaultNames = {"",
                                                          "subnormal number"};
 
 template <size_t kBits>
-void bits(Coverage::Group& group, const char* what, const std::array<uint64_t, kBits>& counts, uint32_t first) {
-  for (size_t bit = first; bit < kBits; ++bit)
-    group.items.push_back({fmt::format("bit {} {}", bit, what), counts[bit]});
+void bits(Coverage::Group& group, const char* what, const std::array<uint64_t, kBits>& counts, uint32_t first,
+          size_t end = kBits) {
+  for (size_t bit = first; bit < end; ++bit) group.items.push_back({fmt::format("bit {} {}", bit, what), counts[bit]});
 }
 
 std::string quoted(const std::string& name) { return name.find(' ') == std::string::npos ? name : '"' + name + '"'; }
@@ -42,6 +42,8 @@ bool Coverage::possible(Event one) const {
                          one == Event::OlderIsHigher || one == Event::FaultInNewer || one == Event::GroupsInARow ||
                          one == Event::PackageIntoSet;
   if (configuration_.warps == 1 && two_warps) return false;
+  // The one predicate that there is besides p0 keeps short loops going, which are not left.
+  if (configuration_.predicates == 2 && (one == Event::LoopLeft || one == Event::LoopLeftBack)) return false;
   const bool one_read = configuration_.data_cache_mshrs == 1 || configuration_.contents() == 1;
   if (one_read && (one == Event::OneSet || one == Event::TopBitOnTheWay || one == Event::UpperBitOnTheWay))
     return false;
@@ -89,10 +91,10 @@ std::vector<Coverage::Group> Coverage::groups() const {
   }
   bits(group("upper address bits"), "of loads", load_bits_, kFirstUpperBit);
   bits(group("upper address bits"), "of stores", store_bits_, kFirstUpperBit);
-  bits(group("upper PC bits"), "set", pc_bits_, kFirstUpperPcBit);
-  bits(group("upper PC bits"), "apart from a PC that has retired", pc_twins_, kFirstUpperPcBit);
+  bits(group("upper PC bits"), "set", pc_bits_, kFirstUpperPcBit, configuration_.pc_bits);
+  bits(group("upper PC bits"), "apart from a PC that has retired", pc_twins_, kFirstUpperPcBit, configuration_.pc_bits);
   Group& left = group("predicates that the kernel before left set");
-  for (size_t number = 1; number < left_set_.size(); ++number)
+  for (size_t number = 1; number < configuration_.predicates; ++number)
     left.items.push_back({fmt::format("p{}", number), left_set_[number]});
   Group& faults = group("faults");
   for (size_t code = 1; code <= last_fault(); ++code)

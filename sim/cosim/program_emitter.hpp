@@ -1,6 +1,7 @@
 // The lower half of the generator of random programs: random choices, and instructions appended one by one.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <random>
 #include <string_view>
@@ -14,7 +15,7 @@ namespace raypool {
 
 class ProgramEmitter {
  public:
-  explicit ProgramEmitter(uint64_t seed) : random_(seed) {}
+  ProgramEmitter(uint64_t seed, uint32_t registers) : registers_(registers), random_(seed) {}
 
  protected:
   uint64_t random() { return random_(); }
@@ -58,14 +59,20 @@ class ProgramEmitter {
         i.b_is_immediate = true;
         i.immediate = value();
       } else {
-        i.rb = below(16);
+        i.rb = first_of(below(registers_), is_triple(*i.info));
       }
     }
     return emit(i);
   }
+  /// With fewer than all registers a triple's must all be there.
+  int first_of(uint32_t number, bool triple) const {
+    const uint32_t last = triple && registers_ < kRegisters ? registers_ - kElements : registers_ - 1;
+    return static_cast<int>(std::min(number, last));
+  }
   void patch(size_t at, uint32_t immediate) { code_[at] = (code_[at] & ~uint64_t{0xffffffff}) | immediate; }
   uint32_t here() const { return size32(code_); }
 
+  uint32_t registers_;
   std::vector<uint64_t> code_;
 
  private:

@@ -6,7 +6,6 @@
 namespace raypool {
 namespace {
 
-constexpr uint32_t kMostInstructions = 60000;
 constexpr uint32_t kFarJump = 20000;
 constexpr uint32_t kMostParts = 8;  ///< power of two
 constexpr int kMostCalls = 40;
@@ -34,13 +33,14 @@ void ProgramStatements::body(int length, int loops, int entries) {
     if (is(p.arithmetic)) {
       arithmetic();
     } else if (is(p.pairs)) {
-      if (loops < kLoopDepth && entries < stack_depth_) pairs(loops);
+      if (loops < loop_depth_ && entries < stack_depth_) pairs(loops);
     } else if (is(p.memory)) {
       memory();
     } else if (is(p.ray)) {
       ray(loops == 0 && entries == 1 && !in_function_);
     } else if (is(p.loop)) {
-      if (loops < kLoopDepth && entries < stack_depth_ && length > 8) loop(length / 3, loops, entries);
+      if (loops < loop_depth_ && entries < stack_depth_ && length > 8) loop(length / 3, loops, entries);
+      if (loop_depth_ == 0 && entries < stack_depth_) short_loop();
     } else if (is(p.jump)) {
       jump(loops, entries);
     } else if (is(p.call)) {
@@ -74,7 +74,7 @@ bool ProgramStatements::has_any(AluType type) const {
 }
 
 void ProgramStatements::tame(int number, const Instruction& guarded) {
-  if (number >= kDataRegisters) return;
+  if (number >= data_registers_) return;
   Instruction i;
   i.guard = guarded.guard;
   i.guard_negated = guarded.guard_negated;
@@ -96,7 +96,7 @@ void ProgramStatements::tame(Instruction& i) {
   if (i.b_is_immediate) i.immediate = tamed(i.immediate);
   // Counters and addresses, which are small integers, stay what they are.
   for (uint8_t* number : {&i.ra, &i.rb, &i.x})
-    if (*number >= kDataRegisters) *number = static_cast<uint8_t>(destination());
+    if (*number >= data_registers_) *number = static_cast<uint8_t>(destination());
   for (int n = 0; n < (three ? kElements : 1); ++n) {
     if (has_operand(*i.info, Operand::Ra)) tame((i.ra + n) % kRegisters, i);
     if (has_operand(*i.info, Operand::B) && !i.b_is_immediate) tame((i.rb + n) % kRegisters, i);
@@ -150,32 +150,46 @@ void ProgramStatements::triple(int a, int b) {
   if (percent(profile_.guarded_percent)) i.guard = any_predicate(), i.guard_negated = chance(2);
   i.rd = destination_of_three(a, b);
   if (i.info->opcode == Opcode::Arg3) {
-    i.immediate = below(kArguments);
+    const uint32_t last = arguments_ < kArguments ? arguments_ - kElements : kArguments - 1;
+    i.immediate = std::min(below(arguments_), last);
   } else {
     // Near the destination: in some an element reads what an earlier one has written.
-    const auto near = [&] { return chance(2) ? source() : (i.rd + kRegisters - 3 + below(7)) % kRegisters; };
-    i.ra = near();
+    const auto near = [&](bool moves) {
+      const uint32_t number = chance(2) ? below(registers_) : (i.rd + registers_ - 3 + below(7)) % registers_;
+      return static_cast<uint8_t>(first_of(number, moves));
+    };
+    i.ra = near(!has_one_ra(*i.info));
     if (chance(3))
       i.b_is_immediate = true, i.immediate = value();
     else
-      i.rb = near();
-    if (has_operand(*i.info, Operand::Rc)) i.x = near();
+      i.rb = near(true);
+    if (has_operand(*i.info, Operand::Rc)) i.x = near(true);
   }
   tame(i);
   plain_at_.push_back(emit(i));
 }
 
+bool ProgramStatements::are_three(int first, int a, int b) {
+  const auto among = [first](int number) { return number >= first && number < first + kElements; };
+  return !among(a) && !among(b);
+}
+
+bool ProgramStatements::has_three(int a, int b) const {
+  for (int first = 0; first + kElements <= data_registers_; ++first)
+    if (are_three(first, a, b)) return true;
+  return false;
+}
+
 int ProgramStatements::destination_of_three(int a, int b) {
   for (;;) {
-    const int first = below(kDataRegisters - kElements + 1);
-    const auto among = [first](int number) { return number >= first && number < first + kElements; };
-    if (!among(a) && !among(b)) return first;
+    const int first = below(data_registers_ - kElements + 1);
+    if (are_three(first, a, b)) return first;
   }
 }
 
 void ProgramStatements::plain(int a, int b, std::optional<size_t> type) {
   const bool float_or_any = !type || *type == static_cast<size_t>(AluType::Flt);
-  if (configuration_.triples && float_or_any && chance(4)) return triple(a, b);
+  if (configuration_.triples && float_or_any && chance(4) && has_three(a, b)) return triple(a, b);
   Instruction i;
   i.info = &plain_row(type);
   const InstructionInfo& info = *i.info;
@@ -196,7 +210,7 @@ void ProgramStatements::plain(int a, int b, std::optional<size_t> type) {
   // A third operand that meets the product of the two.
   if (has_operand(info, Operand::Rc)) i.x = a >= 0 && chance(2) ? (chance(2) ? a : std::max(b, 0)) : source();
   if (has_operand(info, Operand::Px)) i.x = any_predicate();
-  if (has_operand(info, Operand::Argument)) i.immediate = below(kArguments);
+  if (has_operand(info, Operand::Argument)) i.immediate = below(arguments_);
   tame(i);
   plain_at_.push_back(emit(i));
 }
@@ -233,21 +247,21 @@ void ProgramStatements::arithmetic() {
 }
 
 void ProgramStatements::pairs(int loops) {
-  const int a = kDataRegisters - 2, b = kDataRegisters - 1;
-  const int counter = kDataRegisters + loops;
-  const int going = kLoopPredicate + loops;
+  const int a = data_registers_ - 2, b = data_registers_ - 1;
+  const int counter = data_registers_ + loops;
+  const int going = loop_predicate_ + loops;
   emit_immediate(Opcode::Mov, counter, 0, pair_rounds_);
   emit_immediate(Opcode::Igt, going, counter, 0);
   const size_t start = emit(Opcode::Loop, 0, 0, 0, going);
-  emit(Opcode::Tid, kAddress);
+  emit(Opcode::Tid, address_);
   times(a, counter, configuration_.contents());
-  emit(Opcode::Iadd, kAddress, kAddress, a);
-  emit_immediate(Opcode::Iadd, kAddress, kAddress, below(shared_bytes_));
-  emit_immediate(Opcode::And, kAddress, kAddress, shared_bytes_ / 8 - 1);
-  emit_immediate(Opcode::Shl, kAddress, kAddress, 3);
-  emit(Opcode::Iadd, kAddress, kAddress, kShared);
-  emit_immediate(Opcode::Ld, a, kAddress, 0);
-  emit_immediate(Opcode::Ld, b, kAddress, 4);
+  emit(Opcode::Iadd, address_, address_, a);
+  emit_immediate(Opcode::Iadd, address_, address_, below(shared_bytes_));
+  emit_immediate(Opcode::And, address_, address_, shared_bytes_ / 8 - 1);
+  emit_immediate(Opcode::Shl, address_, address_, 3);
+  emit(Opcode::Iadd, address_, address_, shared_);
+  emit_immediate(Opcode::Ld, a, address_, 0);
+  emit_immediate(Opcode::Ld, b, address_, 4);
   const int operations = kLeastPairOperations + below(kMostPairOperations - kLeastPairOperations + 1);
   // One type alone in half of the loops: all warps want it at once.
   const std::optional<size_t> type = chance(2) ? std::optional(plain_type()) : std::nullopt;
@@ -265,34 +279,34 @@ void ProgramStatements::pairs(int loops) {
 void ProgramStatements::address(bool own, uint32_t offset, uint32_t entries, bool of_four) {
   switch (below(6)) {
     case 0:
-      emit_immediate(Opcode::Mov, kAddress, 0, below(entries));
+      emit_immediate(Opcode::Mov, address_, 0, below(entries));
       break;
     case 1:
-      emit(Opcode::Lane, kAddress);
-      emit_immediate(Opcode::Iadd, kAddress, kAddress, below(entries));
+      emit(Opcode::Lane, address_);
+      emit_immediate(Opcode::Iadd, address_, address_, below(entries));
       break;
     case 2:
-      emit(Opcode::Tid, kAddress);
-      times(kAddress, kAddress, 1 + below(24));
+      emit(Opcode::Tid, address_);
+      times(address_, address_, 1 + below(24));
       break;
     case 3:
     case 4:
       // A few lines that share a set.
       if (own && own_.entries >= 2 * own_.way_entries) {
-        emit_immediate(chance(2) ? Opcode::And : Opcode::Shr, kAddress, source(), 3);
-        times(kAddress, kAddress, own_.way_entries);
-        emit_immediate(Opcode::Iadd, kAddress, kAddress, below(2) + own_.way_entries * below(4));
+        emit_immediate(chance(2) ? Opcode::And : Opcode::Shr, address_, source(), 3);
+        times(address_, address_, own_.way_entries);
+        emit_immediate(Opcode::Iadd, address_, address_, below(2) + own_.way_entries * below(4));
         break;
       }
       [[fallthrough]];
     default:
-      emit(has(Opcode::Imul) ? Opcode::Imul : Opcode::Xor, kAddress, source(), source());
+      emit(has(Opcode::Imul) ? Opcode::Imul : Opcode::Xor, address_, source(), source());
       break;
   }
-  emit_immediate(Opcode::And, kAddress, kAddress, (entries - 1) & (of_four ? ~3u : ~0u));
-  emit_immediate(Opcode::Shl, kAddress, kAddress, own ? own_.shift : 2);
-  emit(Opcode::Iadd, kAddress, kAddress, own ? kOwn : kShared);
-  if (offset != 0) emit_immediate(Opcode::Isub, kAddress, kAddress, offset);
+  emit_immediate(Opcode::And, address_, address_, (entries - 1) & (of_four ? ~3u : ~0u));
+  emit_immediate(Opcode::Shl, address_, address_, own ? own_.shift : 2);
+  emit(Opcode::Iadd, address_, address_, own ? base_ : shared_);
+  if (offset != 0) emit_immediate(Opcode::Isub, address_, address_, offset);
 }
 
 void ProgramStatements::access(bool store, uint32_t offset, bool of_four) {
@@ -300,7 +314,7 @@ void ProgramStatements::access(bool store, uint32_t offset, bool of_four) {
   const bool three = of_four && !store && chance(2);
   i.info = &instruction(store ? Opcode::St : three ? Opcode::Ld3 : Opcode::Ld);
   if (chance(2)) i.guard = any_predicate(), i.guard_negated = chance(2);
-  i.ra = kAddress;
+  i.ra = address_;
   i.immediate = offset;
   if (store)
     i.rb = source();
@@ -312,21 +326,21 @@ void ProgramStatements::access(bool store, uint32_t offset, bool of_four) {
 void ProgramStatements::far_address(bool own, uint32_t spread) {
   const int other = destination();
   if (own) {
-    emit(Opcode::Block, kAddress);
-    emit_immediate(Opcode::And, kAddress, kAddress, block_mask_);
-    emit_immediate(Opcode::Shl, kAddress, kAddress, kFarWarpBits);
+    emit(Opcode::Block, address_);
+    emit_immediate(Opcode::And, address_, address_, block_mask_);
+    emit_immediate(Opcode::Shl, address_, address_, kFarWarpBits);
     emit(Opcode::Warp, other);
-    emit(Opcode::Iadd, kAddress, kAddress, other);
-    emit_immediate(Opcode::Shl, kAddress, kAddress, 7);
-    emit_immediate(Opcode::Iadd, kAddress, kAddress, kLineBytes);
+    emit(Opcode::Iadd, address_, address_, other);
+    emit_immediate(Opcode::Shl, address_, address_, 7);
+    emit_immediate(Opcode::Iadd, address_, address_, kLineBytes);
   } else {
-    emit_immediate(Opcode::Mov, kAddress, 0, below(1u << kFarWarpBits) << 7);
+    emit_immediate(Opcode::Mov, address_, 0, below(1u << kFarWarpBits) << 7);
   }
   const auto add = [&](Opcode number, uint32_t mask, uint32_t shift) {
     emit(number, other);
     emit_immediate(Opcode::And, other, other, mask);
     emit_immediate(Opcode::Shl, other, other, shift);
-    emit(Opcode::Iadd, kAddress, kAddress, other);
+    emit(Opcode::Iadd, address_, address_, other);
   };
   add(Opcode::Lane, chance(2) ? 15 : 3, 2);
   if (spread < 32) add(chance(2) ? Opcode::Lane : Opcode::Warp, chance(2) ? 1 : 31, spread);
@@ -471,8 +485,8 @@ void ProgramStatements::leave() {
 }
 
 void ProgramStatements::loop(int length, int loops, int entries) {
-  const int counter = kDataRegisters + loops;
-  const int going = kLoopPredicate + loops;
+  const int counter = data_registers_ + loops;
+  const int going = loop_predicate_ + loops;
   begin_frame(counter, going, chance(4));
   // Threads leave after different numbers of rounds.
   emit(Opcode::Lane, counter);
@@ -487,6 +501,22 @@ void ProgramStatements::loop(int length, int loops, int entries) {
   patch(start, here());
   end_frame();
   written_words_ = 0;
+}
+
+void ProgramStatements::short_loop() {
+  const int counter = destination(), going = free_predicate();
+  emit(Opcode::Lane, counter);
+  emit_immediate(Opcode::And, counter, counter, below(4));
+  emit_immediate(Opcode::Iadd, counter, counter, below(2));
+  emit_immediate(Opcode::Igt, going, counter, 0);
+  const size_t start = emit(Opcode::Loop, 0, 0, 0, going);
+  for (uint32_t n = below(4); n > 0; --n) {
+    const int other = destination();
+    if (other != counter) emit(Opcode::Iadd, other, source(), counter, going);
+  }
+  emit_immediate(Opcode::Isub, counter, counter, 1, going);
+  emit_immediate(Opcode::Igt, going, counter, 0);
+  patch(start, here());
 }
 
 void ProgramStatements::jump(int loops, int entries) {
@@ -523,14 +553,14 @@ void ProgramStatements::far_jump() {
 }
 
 void ProgramStatements::filler(uint32_t count) {
-  if (code_.size() + count > kMostInstructions) return;
+  if (code_.size() + count > most_instructions_) return;
   for (uint32_t n = 0; n < count; ++n) code_.push_back(random());
 }
 
 void ProgramStatements::early_exit() {
-  emit(Opcode::Warp, kAddress);
+  emit(Opcode::Warp, address_);
   const int leaves = free_predicate();
-  emit_immediate(chance(2) ? Opcode::Ieq : Opcode::Ult, leaves, kAddress, below(warps_));
+  emit_immediate(chance(2) ? Opcode::Ieq : Opcode::Ult, leaves, address_, below(warps_));
   const size_t at = emit(Opcode::Jnone, 0, 0, 0, leaves);
   emit(Opcode::Exit);
   patch(at, here());
@@ -554,8 +584,14 @@ void ProgramStatements::functions() {
     body(1 + below(8), call.loops, call.entries + 1);
     // Deep stacks come from calls in calls.
     if (!chance(deep ? 16 : 2)) this->call(call.loops, call.entries + 1);
-    if (chance(2)) emit(Opcode::Ret, 0, 0, 0, control_guard());
-    patch(call.at, start | here() << 16);
+    const bool returns = chance(2);
+    if (returns) emit(Opcode::Ret, 0, 0, 0, control_guard());
+    uint32_t end = here();
+    // An end that is never reached, whose lower bits are a PC inside.
+    const uint32_t bits = configuration_.pc_bits;
+    if (returns && bits < 16 && frames_.back().leaves.empty() && chance(2))
+      end = (start + 1 + below(end - start)) | 1u << (bits + below(16 - bits));
+    patch(call.at, start | end << 16);
     end_frame();
   }
   in_function_ = false;

@@ -2,6 +2,7 @@
 // program valid (program_check.hpp) wherever it is put.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 
@@ -22,23 +23,21 @@ struct OwnWords {
 
 class ProgramStatements : public ProgramEmitter {
  protected:
-  // r0 .. r9 hold data. r10 .. r12 count loops, r13 is an address, r14 the base of what is
-  // only read, r15 of the warp's own words.
-  static constexpr int kDataRegisters = 10;
-  static constexpr int kLoopDepth = 3;
-  static constexpr int kAddress = 13, kShared = 14, kOwn = 15;
+  // Of 16 registers r0 .. r9 hold data, r10 .. r12 count loops, r13 is an address, r14 the base of what is
+  // only read, r15 of the warp's own words. With fewer there are fewer data and loops.
+  static constexpr int kMostLoopDepth = 3, kLeastDataRegisters = 4;
   static constexpr uint32_t kWild = 40;                                        // one operand in so many
   static constexpr uint32_t kTameBits = 0x9fffffff, kTameOffset = 0x20000000;  // of the exponent the upper bits
-  // p1 .. p12 are free, p13 .. p15 keep loops going.
-  static constexpr int kLoopPredicate = 13;
 
   ProgramStatements(const Configuration& configuration, const ProgramProfile& profile, uint64_t seed)
-      : ProgramEmitter(seed),
+      : ProgramEmitter(seed, configuration.registers),
         configuration_(configuration),
         warps_(configuration.warps),
         stack_depth_(configuration.stack_depth),
         intersection_words_(configuration.intersection_words),
         instruction_cache_bytes_(configuration.instruction_cache_bytes),
+        predicates_(configuration.predicates),
+        arguments_(configuration.arguments),
         profile_(profile),
         operands_(seed) {
     for (size_t type = 0; type < kAluTypes; ++type)
@@ -47,12 +46,12 @@ class ProgramStatements : public ProgramEmitter {
 
   /// `entries`: entries of the PC stack in use.
   void body(int length, int loops, int entries);
-  int source() { return below(16); }
-  int destination() { return below(kDataRegisters); }
-  int any_predicate() { return below(16); }
+  int source() { return below(registers_); }
+  int destination() { return below(data_registers_); }
+  int any_predicate() { return below(predicates_); }
   /// These instructions do what they do whatever their mask is.
   int control_guard() { return chance(3) ? any_predicate() : 0; }
-  int free_predicate() { return 1 + below(kLoopPredicate - 1); }
+  int free_predicate() { return 1 + below(loop_predicate_ - 1); }
   bool has(Opcode opcode) const;
   /// Of the type.
   bool has_any(AluType type) const;
@@ -75,8 +74,10 @@ class ProgramStatements : public ProgramEmitter {
   void some_groups();
   /// A triple in its place, of floats or arguments; its elements may depend on each other.
   void triple(int a, int b);
-  /// First of three registers for data, among which a and b are not.
+  /// First of three registers for data, among which a and b are not. There must be three.
   int destination_of_three(int a, int b);
+  bool has_three(int a, int b) const;
+  static bool are_three(int first, int a, int b);
   /// A few of them with a pair of operands that meet: sums that cancel or need rounding, products and
   /// quotients at the ends of the range.
   void arithmetic();
@@ -104,6 +105,8 @@ class ProgramStatements : public ProgramEmitter {
   int store_words(int word, int left);
   void rotate();
   void loop(int length, int loops, int entries);
+  /// Where no predicate is left to keep loops going: around what writes none.
+  void short_loop();
   void jump(int loops, int entries);
   /// Out of the innermost loop or function: beyond its end, or back to before its begin, and from there beyond its end.
   void leave();
@@ -125,6 +128,14 @@ class ProgramStatements : public ProgramEmitter {
   int stack_depth_;
   uint32_t intersection_words_;
   uint32_t instruction_cache_bytes_;
+  uint32_t predicates_, arguments_;
+  /// With what is never executed.
+  uint32_t most_instructions_ = configuration_.pc_bits < 16 ? (1u << configuration_.pc_bits) / 2 : 60000;
+  int loop_depth_ = std::min(
+      {kMostLoopDepth, static_cast<int>(registers_) - 3 - kLeastDataRegisters, static_cast<int>(predicates_) - 2});
+  int address_ = static_cast<int>(registers_) - 3, shared_ = address_ + 1, base_ = shared_ + 1;
+  int data_registers_ = address_ - loop_depth_;                       ///< behind them those that count loops
+  int loop_predicate_ = static_cast<int>(predicates_) - loop_depth_;  ///< from it on they keep loops going
   ProgramProfile profile_;
   std::array<uint32_t, kAluTypes> weights_{};  ///< of each type, in the mix
   arith::OperandSource operands_;

@@ -14,7 +14,7 @@ constexpr uint32_t kFarLimit = 20000;
 constexpr uint32_t kLastRestart = 3000;  ///< cycle
 constexpr uint32_t kLengthOfPairRound = 16;
 constexpr uint32_t kFarLimits = 1u << 19;  ///< from the end of the address space
-constexpr uint32_t kLongestProgram = 0xfff0, kLastPc = 0xffff, kUpperPcBit = 0x8000;
+constexpr uint32_t kLongestProgram = 0xfff0, kLastPc = 0xffff;
 constexpr uint32_t kLeastRaces = 32, kMostRaces = 96;
 constexpr uint32_t kLeastWalk = 8;                     ///< lines
 constexpr uint32_t kMostDelays = 24, kMostShifts = 5;  ///< instructions
@@ -23,8 +23,10 @@ constexpr uint32_t kLineInstructions = kLineBytes / 8;
 
 class Generator : public ProgramStatements {
  public:
-  Generator(const Configuration& configuration, const ProgramProfile& profile, uint64_t seed, int units)
-      : ProgramStatements(configuration, profile, seed) {
+  /// `attempt`: the next one makes another program.
+  Generator(const Configuration& configuration, const ProgramProfile& profile, uint64_t seed, int units,
+            uint32_t attempt)
+      : ProgramStatements(configuration, profile, attempt == 0 ? seed : mix(seed, 500, attempt)) {
     result_.seed = seed;
     result_.profile = std::string(profile_.name);
     result_.units = units;
@@ -45,7 +47,7 @@ class Generator : public ProgramStatements {
     if (chance(4)) filler(1 + below(chance(3) ? kFarLimit : 300));  // the program need not begin at 0
     if (profile_.name == kFaultMix) {
       result_.program.entries["main"] = here();
-      for (uint32_t k = 0; k < kernels_; ++k) race();
+      for (uint32_t k = 0; k < kernels_ && (k == 0 || here() < most_instructions_); ++k) race();
       result_.faults = kEveryFault;
     } else {
       if (chance(8)) fault_ = any_fault();
@@ -99,7 +101,7 @@ class Generator : public ProgramStatements {
   // Limits beyond what there is: their upper bits count too. Faulty addresses and targets begin at them.
   void choose_limits() {
     const auto length = size32(code_);
-    const uint32_t longest = std::max(length + 1, std::min(kLongestProgram, result_.memory_bytes / 8));
+    const uint32_t longest = std::max(length + 1, std::min({kLongestProgram, last_pc_ + 1, result_.memory_bytes / 8}));
     result_.program_length = length + (runs_out_ || !chance(3) ? 0 : below(longest - length));
     result_.memory_limit = result_.memory_bytes + (more_memory_told_ ? (below(1u << 30) >> below(24)) * 4 : 0);
     if (far_memory_told_) result_.memory_limit = 0u - 4 * (64 + below(kFarLimits / 4));
@@ -112,7 +114,8 @@ class Generator : public ProgramStatements {
     };
     // Outside, though the bits below the upper one are those of a PC inside.
     for (const size_t at : twins_) {
-      const uint32_t twin = static_cast<uint32_t>(code[at]) | kUpperPcBit;
+      const uint32_t upper = narrow_pc() && chance(2) ? last_pc_ + 1 : upper_pc_bit_;
+      const uint32_t twin = static_cast<uint32_t>(code[at]) | upper;
       code[at] = (code[at] & ~uint64_t{0xffffffff}) | (twin >= result_.program_length ? twin : kLastPc);
     }
     fix(from_length_, result_.program_length);
@@ -163,8 +166,8 @@ class Generator : public ProgramStatements {
       }
     }
     if (!chance(3)) rewrite.data_seed = random() | 1;
-    for (uint32_t n = chance(2) ? 1 : 1 + below(kArguments); n > 0; --n) {
-      const uint32_t number = 2 + below(kArguments - 2);
+    for (uint32_t n = chance(2) ? 1 : 1 + below(arguments_); n > 0; --n) {
+      const uint32_t number = 2 + below(arguments_ - 2);
       rewrite.arguments[number] = value();
     }
     return rewrite;
@@ -220,7 +223,7 @@ class Generator : public ProgramStatements {
     emit(Opcode::Exit);
   }
 
-  int last_or_any_predicate() { return chance(3) ? kPredicates - 1 : 1 + below(kPredicates - 1); }
+  int last_or_any_predicate() { return static_cast<int>(chance(3) ? predicates_ - 1 : 1 + below(predicates_ - 1)); }
 
   // Set in every lane when the kernel ends, which the next one must not see.
   void leave_predicate() {
@@ -232,12 +235,12 @@ class Generator : public ProgramStatements {
     emit(i);
   }
 
-  // Its last register is followed by the first, which nobody needs any more.
+  // Its last register is followed by the first of 16, which nobody needs any more.
   void last_triple() {
     Instruction i;
     i.info = &instruction(chance(2) ? Opcode::Fmul3 : Opcode::Arg3);
-    i.rd = kRegisters - 2 + below(2);
-    if (i.info->opcode == Opcode::Fmul3) i.ra = source(), i.rb = source();
+    i.rd = first_of(registers_ - 2 + below(2), true);
+    if (i.info->opcode == Opcode::Fmul3) i.ra = first_of(source(), true), i.rb = first_of(source(), true);
     emit(i);
     emit(Opcode::Iadd, 2, 0, 1);
   }
@@ -255,24 +258,24 @@ class Generator : public ProgramStatements {
 
   void prologue() {
     for (uint32_t n = below(4); n > 0; --n) read_predicate();
-    for (int r = 0; r < kDataRegisters; ++r) {
+    for (int r = 0; r < data_registers_; ++r) {
       if (chance(3))
         emit(Opcode::Tid, r);
       else
         emit_immediate(Opcode::Mov, r, 0, value());
     }
-    for (int r = kDataRegisters; r < kDataRegisters + kLoopDepth; ++r) emit_immediate(Opcode::Mov, r, 0, 0);
+    for (int r = data_registers_; r < data_registers_ + loop_depth_; ++r) emit_immediate(Opcode::Mov, r, 0, 0);
     // Another kernel's warp may have written the words that this one's warp gets.
-    emit(Opcode::Warp, kAddress);
-    if (chance(2)) emit_immediate(Opcode::Xor, kAddress, kAddress, below(warps_));
-    times(kAddress, kAddress, own_.stride);
-    emit_immediate(Opcode::Arg, kOwn, 0, 1);
-    emit(Opcode::Iadd, kOwn, kOwn, kAddress);
-    emit(Opcode::Block, kAddress);
-    emit_immediate(Opcode::And, kAddress, kAddress, block_mask_);
-    times(kAddress, kAddress, own_.bytes);
-    emit(Opcode::Iadd, kOwn, kOwn, kAddress);
-    emit_immediate(Opcode::Arg, kShared, 0, 0);
+    emit(Opcode::Warp, address_);
+    if (chance(2)) emit_immediate(Opcode::Xor, address_, address_, below(warps_));
+    times(address_, address_, own_.stride);
+    emit_immediate(Opcode::Arg, base_, 0, 1);
+    emit(Opcode::Iadd, base_, base_, address_);
+    emit(Opcode::Block, address_);
+    emit_immediate(Opcode::And, address_, address_, block_mask_);
+    times(address_, address_, own_.bytes);
+    emit(Opcode::Iadd, base_, base_, address_);
+    emit_immediate(Opcode::Arg, shared_, 0, 0);
   }
 
   void take_import() {
@@ -294,6 +297,7 @@ class Generator : public ProgramStatements {
     switch (code) {
       case FaultCode::IllegalInstruction:
         if (chance(4) && missing_instruction()) return;
+        if (names_too_few() && chance(2)) return missing_number();
         if (configuration_.triples && chance(4)) {
           const uint32_t outside = last_triple_word(intersection_words_) + 1;
           emit_word(chance(2) ? Opcode::Rld3 : Opcode::Rst3, outside + below(chance(2) ? 1 : 32 - outside));
@@ -323,18 +327,18 @@ class Generator : public ProgramStatements {
         const Opcode access = three ? Opcode::Ld3 : chance(2) ? Opcode::Ld : Opcode::St;
         const bool last_word = some && !more_memory_told_;  // lane 0 reads it
         if (code == FaultCode::Misaligned) {
-          emit(Opcode::Mov, kAddress, 0, kOwn);
+          emit(Opcode::Mov, address_, 0, base_);
           if (some)
-            emit(Opcode::Lane, kAddress), times(kAddress, kAddress, 1 + below(3)),
-                emit(Opcode::Iadd, kAddress, kAddress, kOwn);
-          emit_immediate(access, 0, kAddress, some ? 0 : 1 + below(3));
+            emit(Opcode::Lane, address_), times(address_, address_, 1 + below(3)),
+                emit(Opcode::Iadd, address_, address_, base_);
+          emit_immediate(access, 0, address_, some ? 0 : 1 + below(3));
           return;
         }
         if (three && far_memory_told_ && chance(2)) return across_limit();
-        emit_immediate(Opcode::Mov, kAddress, 0, 0);
-        if (some) emit(Opcode::Lane, kAddress), emit_immediate(Opcode::Shl, kAddress, kAddress, 2);
+        emit_immediate(Opcode::Mov, address_, 0, 0);
+        if (some) emit(Opcode::Lane, address_), emit_immediate(Opcode::Shl, address_, address_, 2);
         from_limit_.push_back(
-            emit_immediate(last_word ? Opcode::Ld : access, 0, kAddress, last_word ? 0u - 4 : 4 * below(4)));
+            emit_immediate(last_word ? Opcode::Ld : access, 0, address_, last_word ? 0u - 4 : 4 * below(4)));
         return;
       }
       case FaultCode::SubnormalNumber:
@@ -357,8 +361,8 @@ class Generator : public ProgramStatements {
 
   // The first element of the triple is loaded.
   void across_limit() {
-    emit_immediate(Opcode::Mov, kAddress, 0, 0);
-    across_limit_.push_back(emit_immediate(Opcode::Ld3, 0, kAddress, 0));
+    emit_immediate(Opcode::Mov, address_, 0, 0);
+    across_limit_.push_back(emit_immediate(Opcode::Ld3, 0, address_, 0));
   }
 
   // One that other machines have; false if this one has all.
@@ -371,13 +375,35 @@ class Generator : public ProgramStatements {
     return true;
   }
 
+  bool narrow_pc() const { return last_pc_ < kLastPc; }
+  bool names_too_few() const { return registers_ < kRegisters || predicates_ < kPredicates || arguments_ < kArguments; }
+
+  // An instruction that names a register, predicate or argument that this machine has not.
+  void missing_number() {
+    for (;;) {
+      Instruction i;
+      i.info = &kInstructions[below(std::size(kInstructions))];
+      if (!configuration_.has(*i.info)) continue;
+      i.guard = chance(2) ? any_predicate() : below(kPredicates);
+      i.rd = below(kRegisters), i.ra = below(kRegisters), i.rb = below(kRegisters);
+      i.b_is_immediate = chance(2);
+      i.x = below(32);
+      i.immediate = chance(2) ? below(kArguments) : value();
+      const Numbers numbers = numbers_of(i);
+      if (numbers.registers <= registers_ && numbers.predicates <= predicates_ && numbers.arguments <= arguments_)
+        continue;
+      emit(i);
+      return;
+    }
+  }
+
   void jump_outside() {
     switch (below(3)) {
       case 0:
         emit_immediate(Opcode::Jany, 0, 0, kLastPc - below(16));
         break;
       case 1:
-        twins_.push_back(emit_immediate(Opcode::Jany, 0, 0, below(std::min(here() + 1, kUpperPcBit))));
+        twins_.push_back(emit_immediate(Opcode::Jany, 0, 0, below(std::min(here() + 1, upper_pc_bit_))));
         break;
       default:
         from_length_.push_back(emit_immediate(Opcode::Jany, 0, 0, below(2)));
@@ -398,12 +424,12 @@ class Generator : public ProgramStatements {
     const int second = free_predicate();
     emit_immediate(Opcode::Mov, 0, 0, value());
     if (chance(2))
-      emit(Opcode::Lane, kOwn);
+      emit(Opcode::Lane, base_);
     else
-      emit_immediate(Opcode::Mov, kOwn, 0, 0);
-    emit(Opcode::Warp, kAddress);
-    emit_immediate(Opcode::And, kAddress, kAddress, mask);
-    emit_immediate(Opcode::Ieq, second, kAddress, below(warps_) & mask);
+      emit_immediate(Opcode::Mov, base_, 0, 0);
+    emit(Opcode::Warp, address_);
+    emit_immediate(Opcode::And, address_, address_, mask);
+    emit_immediate(Opcode::Ieq, second, address_, below(warps_) & mask);
     fill_stacks(codes, second);
     while (here() % kLineInstructions != kLineInstructions - 1) emit(Opcode::Lane, 4);
     const size_t branch = emit(Opcode::Jany, 0, 0, 0, second);
@@ -465,16 +491,18 @@ class Generator : public ProgramStatements {
     if (code == FaultCode::AddressOutsideMemory && configuration_.triples && far_memory_told_ && chance(2))
       across_limit();
     else if (code == FaultCode::Misaligned && chance(2))
-      emit_immediate(access, 0, kOwn, 1 + below(3));
+      emit_immediate(access, 0, base_, 1 + below(3));
     else if (code == FaultCode::Misaligned || code == FaultCode::AddressOutsideMemory)
       from_limit_.push_back(
-          emit_immediate(access, 0, kOwn, 4 * below(4) + (code == FaultCode::Misaligned ? 1 + below(3) : 0)));
+          emit_immediate(access, 0, base_, 4 * below(4) + (code == FaultCode::Misaligned ? 1 + below(3) : 0)));
     else if (code == FaultCode::PcOutsideProgram)
       jump_outside();
     else
       fault(code);
   }
 
+  const uint32_t last_pc_ = (1u << configuration_.pc_bits) - 1;  ///< which is outside of every program
+  const uint32_t upper_pc_bit_ = 1u << (configuration_.pc_bits - 1);
   RandomProgram result_;
   FaultCode fault_ = FaultCode::None;  ///< in which kernels of one end end
   bool rewrites_ = chance(4);          ///< between kernels
@@ -556,7 +584,12 @@ RandomProgram make_random_program(const Configuration& configuration, uint64_t s
                                   const std::string& mix) {
   const ProgramProfile& profile =
       mix.empty() ? kProgramProfiles[seed % std::size(kProgramProfiles)] : profile_named(mix);
-  return Generator(configuration, profile, seed, units).make(length);
+  for (uint32_t attempt = 0;; ++attempt) {
+    // The longest ones of a machine with short PCs are drawn anew, shorter.
+    const int shorter = std::max(4, length >> std::min(attempt, 8u));
+    RandomProgram program = Generator(configuration, profile, seed, units, attempt).make(shorter);
+    if (told_length(program) < 1u << configuration.pc_bits) return program;
+  }
 }
 
 }  // namespace raypool

@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "bits.hpp"
+#include "config/limits.hpp"
 #include "config/parameter_table.hpp"
 #include "isa/encoding.hpp"
 #include "kernel/kernel_report.hpp"
@@ -16,6 +17,8 @@ namespace raypool::fit {
 namespace {
 
 constexpr uint32_t kInstructionBytes = 8;
+// A small picture is fitted, and then a large one drawn: so many times as many cycles the counters hold.
+constexpr uint64_t kLongerFrames = 64;
 
 std::string name_of(RayKernel kernel) { return std::string(kRayKernelNames[kernel]); }
 
@@ -46,6 +49,30 @@ std::vector<Cut> fewer_words(const Configuration& machine) {
   const uint32_t words = least_intersection_words(machine);
   return smaller("intersection_words", words, std::min(words + 1, machine.intersection_words),
                  fmt::format("kernels read or pass on {} words of an intersection", words));
+}
+
+std::vector<Cut> smaller_numbers(const Configuration& machine, const std::vector<RayKernel>& kernels,
+                                 const std::string& path, uint32_t Numbers::*number, uint32_t there) {
+  uint32_t least = 0;
+  for_each_instruction(machine, kernels, [&](const Instruction& instruction) {
+    least = std::max(least, numbers_of(instruction).*number);
+  });
+  return smaller(path, least, there, fmt::format("the kernels name {} {}", least, path));
+}
+
+std::vector<Cut> shorter_pcs(const Configuration& machine) {
+  const uint32_t length = size32(ray_kernel_program(KernelTarget(machine)).code);
+  uint32_t bits = 1;
+  while (length >= 1u << bits) ++bits;
+  return smaller("pc_bits", bits, machine.pc_bits, fmt::format("the program has {} instructions", length));
+}
+
+std::vector<Cut> shorter_counters(const Configuration& machine, const ChipResult& drawn) {
+  Configuration narrow = machine;
+  narrow.counter_bits = 1;
+  while (counted_cycles(narrow) < kLongerFrames * drawn.cycles) ++narrow.counter_bits;
+  return smaller("counter_bits", narrow.counter_bits, machine.counter_bits,
+                 fmt::format("enough for a frame of {} times the cycles", kLongerFrames));
 }
 
 std::vector<Cut> fewer_stack_entries(const Configuration& machine) {
@@ -148,6 +175,16 @@ std::vector<Part> parts_of(const Frame& frame) {
       fewer_words,  // its kernels are others
       fewer_stack_entries,
   };
+  const auto numbers = [&](const std::string& path, uint32_t Numbers::*number, uint32_t Configuration::*there) {
+    parts.emplace_back([=](const Configuration& machine) {
+      return smaller_numbers(machine, kernels(machine), path, number, machine.*there);
+    });
+  };
+  numbers("registers", &Numbers::registers, &Configuration::registers);
+  numbers("predicates", &Numbers::predicates, &Configuration::predicates);
+  numbers("arguments", &Numbers::arguments, &Configuration::arguments);
+  parts.emplace_back(shorter_pcs);
+  parts.emplace_back([frame](const Configuration& machine) { return shorter_counters(machine, frame.drawn); });
   for (const AluType type : kEveryAluType)
     parts.emplace_back(
         [=](const Configuration& machine) { return fewer_instructions(machine, type, kernels(machine)); });

@@ -3,11 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <set>
 #include <string>
 #include <tuple>
 #include <vector>
 
+#include "bits.hpp"
+#include "config/limits.hpp"
 #include "isa/encoding.hpp"
+#include "kernel/kernel_report.hpp"
 
 namespace raypool::fit {
 namespace {
@@ -107,6 +111,47 @@ TEST(Needs, SubnormalNumbersAreLeftOutUnlessTheSceneHasOne) {
   }
 }
 
+TEST(Needs, NumbersAreTheFewestWithWhichTheKernelsAreAccepted) {
+  Configuration machine;
+  std::set<std::string> found;
+  for (const Part& part : parts_of(frame_of(3, true))) {
+    const std::vector<Cut> cuts = part(machine);
+    if (cuts.empty() ||
+        (cuts.front().field != "registers" && cuts.front().field != "predicates" && cuts.front().field != "arguments"))
+      continue;
+    const std::string field = cuts.front().field;
+    found.insert(field);
+    const Configuration least = with(machine, cuts.front());
+    const Program& program = ray_kernel_program(KernelTarget(machine));
+    EXPECT_NO_THROW(check_instructions(program, "cast_secondary", least)) << field;
+    EXPECT_NO_THROW(check_instructions(program, "cast_eye", least)) << field;
+    const auto fewer = cuts.front().value.get<int>() - 1;
+    if (fewer < (field == "registers" ? 8 : field == "predicates" ? 2 : 4)) continue;
+    const Configuration too_few = with(machine, {field, fewer, ""});
+    EXPECT_ANY_THROW(for (const char* kernel
+                          : {"cast_eye", "cast_secondary"}) check_instructions(program, kernel, too_few))
+        << field;
+  }
+  EXPECT_EQ(found.size(), 3u);
+}
+
+TEST(Needs, PcsHoldTheProgramAndCountersALongerFrame) {
+  Frame frame = frame_of(3, true);
+  frame.drawn.cycles = 100'000;
+  for (const Part& part : parts_of(frame)) {
+    for (const Cut& cut : part(Configuration())) {
+      const Configuration machine = with(Configuration(), cut);
+      if (cut.field == "pc_bits")
+        EXPECT_NO_THROW(check_program_length(machine, size32(ray_kernel_program(KernelTarget(machine)).code)));
+      if (cut.field == "counter_bits") EXPECT_GE(counted_cycles(machine), 64u * 100'000);
+    }
+  }
+  Configuration short_pcs;
+  short_pcs.pc_bits = 8;
+  EXPECT_THROW(check_program_length(short_pcs, 256), InputError);
+  EXPECT_NO_THROW(check_program_length(short_pcs, 255));
+}
+
 TEST(Needs, CutsAreLessThanTheMachineHas) {
   Configuration machine;
   machine.lanes = 4;
@@ -128,6 +173,14 @@ TEST(Needs, OfAMachineThatHasTheLeastNothingIsTried) {
   machine.data_cache_bytes = 512;
   machine.data_cache_mshrs = 1;
   machine.subnormals = Subnormals::None;
+  machine.counter_bits = 16;
+  machine.pc_bits = 9;
+  for (const Part& part : parts_of(frame_of(3, true)))
+    for (const Cut& cut : part(machine))
+      if (cut.field == "registers" || cut.field == "predicates" || cut.field == "arguments") {
+        machine = with(machine, cut);
+        break;
+      }
   for (const AluType type : kEveryAluType)
     machine.alus[type].without = optional_operations(type) & ~operations_of(machine, kKernels)[type];
   for (const Part& part : parts_of(frame_of(3, true))) {

@@ -101,6 +101,14 @@ TEST_P(RtlUnit, ReportsTheModelsFaults) {
     all.push_back({"compare", assembled("mov r1, 1.0; flt p1, r1, 1e-39; exit"), FaultCode::SubnormalNumber});
     all.push_back({"quotient", assembled("mov r1, 1e-30; fdiv r2, r1, 1e30; exit"), FaultCode::SubnormalNumber});
   }
+  if (configuration.registers < kRegisters) {
+    all.push_back({"register", assembled("mov r1, 1; iadd r2, r1, r12; exit"), FaultCode::IllegalInstruction});
+    all.push_back({"predicate", assembled("mov r1, 1; @p5 mov r1, 2; exit"), FaultCode::IllegalInstruction});
+    all.push_back({"argument", assembled("mov r1, 1; arg r1, 11; exit"), FaultCode::IllegalInstruction});
+    all.push_back({"twin", assembled(fmt::format("mov r1, 1; jany {}; exit", (1 << configuration.pc_bits) + 2)),
+                   FaultCode::PcOutsideProgram});
+    all.push_back({"launch_twin", assembled("exit"), FaultCode::PcOutsideProgram, 1u << configuration.pc_bits});
+  }
   for (const FaultProgram& program : all) {
     Memory memory(kMemoryBytes);
     test::put_program(memory, program.code);
@@ -139,6 +147,16 @@ const Case kCases[] = {
     {"1w1c",
      [](Configuration& c) {
        c.warps = c.lanes = 1, c.data_cache_mshrs = 1, c.data_cache_bytes = c.instruction_cache_bytes = 512;
+     }},
+    {"2w2c_least",
+     [](Configuration& c) {
+       c.warps = c.lanes = 2, c.registers = 8, c.predicates = 2, c.arguments = 4, c.pc_bits = 8, c.counter_bits = 16;
+     }},
+    {"2w4c_less",
+     [](Configuration& c) {
+       c.warps = 2, c.lanes = 4, c.registers = 12, c.predicates = 5, c.arguments = 11, c.pc_bits = 11;
+       c.counter_bits = 20, c.fma = c.triples = true;
+       c.alus[AluType::Flt].depth = 5;
      }},
     {"4w2c_many",
      [](Configuration& c) {
