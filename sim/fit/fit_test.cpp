@@ -156,6 +156,8 @@ TEST(ShortestFile, SaysWhatOtherFieldsWouldChange) {
   expect_same_machine(configuration);
   configuration.slow_unit = SlowUnit::Newton0;  // which the depth of slw follows
   expect_same_machine(configuration);
+  configuration.alus[AluType::Slw].depth = 6;  // which it may be with that slow unit only
+  expect_same_machine(configuration);
   for (const char* name : {"8w8c", "best_4w4c", "4w4c_fma", "2w32c"}) expect_same_machine(load_configuration(name));
 }
 
