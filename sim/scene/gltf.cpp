@@ -206,11 +206,15 @@ std::optional<PointLight> choose_light(const std::string& path, const GltfDocume
                normalized(backwards) * (kDistantLight * static_cast<double>(bounds.diagonal()));
     lost = fmt::format("intensity ({:g})", light.intensity);
   }
-  scene.warnings.push_back(fmt::format(
-      "{}: the light is '{}' ({}), as a point with its colour: its {} {} not used{}", path,
-      name_of(light.name, chosen->node, "light", chosen->index), light.type, lost,
-      light.type == "directional" ? "is" : "are",
-      assembly.lights.size() > 1 ? fmt::format(", nor are {} more lights", assembly.lights.size() - 1) : ""));
+  scene.warnings.push_back(fmt::format("{}: the light is '{}' ({}), as a point with its colour: its {} {} not used",
+                                       path, name_of(light.name, chosen->node, "light", chosen->index), light.type,
+                                       lost, light.type == "directional" ? "is" : "are"));
+  if (const size_t others = assembly.lights.size() - 1; others > 0) {
+    scene.warnings.push_back(fmt::format(
+        "{}: a scene has one light, and {} of the file {} not used: remove what should not shine from the file, or put "
+        "the light elsewhere with --light=X,Y,Z",
+        path, others == 1 ? "another one" : fmt::format("{} others", others), others == 1 ? "is" : "are"));
+  }
   return PointLight{position.as<float>(), light.color};
 }
 
