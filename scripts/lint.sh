@@ -50,25 +50,37 @@ verilog_configurations=(
   "WARPS=2 LANES=2 FMA=1 FLT_DEPTH=5 SIGNIFICAND=16 TRIPLES=1 KERNEL_OVERLAP=1 SLOW_LANES=1 SUBNORMALS=2"
 )
 
+# The chip's modules, which the multiprocessor does not hold: top, and parameters.
+chip_configurations=(
+  "ray_pool SIZE=512"
+  "ray_pool SIZE=1 OVERHEAD=1"
+  "ray_pool SIZE=5 OVERHEAD=9 CYCLES_PER_BEAT=3 PIPELINED=1 CULLING=1"
+  "intersection_pool SIZE=512"
+  "intersection_pool SIZE=1 OVERHEAD=1 INTERSECTION_WORDS=12 PIPELINED=1"
+  "intersection_pool SIZE=5 OVERHEAD=9 CYCLES_PER_BEAT=64 INTERSECTION_WORDS=16 CULLING=1"
+)
+
 check_verilog() {
-  local parameters parameter rtl
+  local top parameters parameter rtl configuration
   mapfile -t rtl < <(scripts/sources.sh verilog)
-  echo "lint: ${#rtl[@]} Verilog files in ${#verilog_configurations[@]} configurations by three tools"
-  for parameters in "${verilog_configurations[@]}"; do
+  local configurations=("${verilog_configurations[@]/#/multiprocessor }" "${chip_configurations[@]}")
+  echo "lint: ${#rtl[@]} Verilog files in ${#configurations[@]} configurations by three tools"
+  for configuration in "${configurations[@]}"; do
+    read -r top parameters <<< "$configuration"
     local verilator_flags=() iverilog_flags=() yosys_flags=()
     for parameter in $parameters; do
       verilator_flags+=("-G$parameter")
-      iverilog_flags+=("-Pmultiprocessor.$parameter")
+      iverilog_flags+=("-P$top.$parameter")
       yosys_flags+=(-chparam "${parameter%=*}" "${parameter#*=}")
     done
-    check "verilator $parameters" verilator --lint-only -Wall --default-language 1364-2005 -Irtl rtl/waivers.vlt \
-      "${verilator_flags[@]}" --top-module multiprocessor "${rtl[@]}"
-    check "iverilog $parameters" iverilog -g2005 -Wall -Irtl -o /dev/null "${iverilog_flags[@]}" -s multiprocessor \
+    check "verilator $configuration" verilator --lint-only -Wall --default-language 1364-2005 -Irtl rtl/waivers.vlt \
+      "${verilator_flags[@]}" --top-module "$top" "${rtl[@]}"
+    check "iverilog $configuration" iverilog -g2005 -Wall -Irtl -o /dev/null "${iverilog_flags[@]}" -s "$top" \
       "${rtl[@]}"
     # Synthesis view, of the whole in one piece: no latch, no combinational loop, no undriven or doubly driven net.
-    check "yosys $parameters" yosys -q -e '.*latch.*' -p "
+    check "yosys $configuration" yosys -q -e '.*latch.*' -p "
       read_verilog -DSYNTHESIS -DNO_CLOCK_GATES -Irtl ${rtl[*]}
-      hierarchy -check -top multiprocessor ${yosys_flags[*]}; proc -noopt; flatten; opt_clean
+      hierarchy -check -top $top ${yosys_flags[*]}; proc -noopt; flatten; opt_clean
       select -assert-none t:\$dlatch t:\$adlatch t:\$dlatchsr; check -assert"
   done
 }

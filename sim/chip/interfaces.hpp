@@ -11,10 +11,9 @@
 #include "kernel/kernels.hpp"
 #include "machine/compute_unit.hpp"
 #include "machine/packages.hpp"
+#include "machine/port_cycles.hpp"
 
 namespace raypool::chip {
-
-inline constexpr uint64_t kNever = UINT64_MAX;  ///< the cycle of what does not happen
 
 // ---- Of the device's ports
 
@@ -139,6 +138,7 @@ class KernelEventsIf : virtual public sc_core::sc_interface {
 /// A ray in the pool. The traverser notes its result here while the result cannot leave.
 struct PooledRay {
   Ray ray;
+  uint32_t place = 0;  ///< in the pool
   bool traced = false;
   bool goes_on = false;       ///< as an intersection; meaningful when traced
   Intersection intersection;  ///< meaningful when it goes on
@@ -149,9 +149,10 @@ using PooledRays = std::list<PooledRay>;
 /// The ray pool, for the traverser.
 class RaySourceIf : virtual public sc_core::sc_interface {
  public:
-  /// Oldest first. After removing some, of which so many were shadow rays, call removed().
+  /// Oldest first.
   virtual PooledRays& rays() = 0;
-  virtual void removed(uint32_t shadow_rays) = 0;
+  /// Frees the ray's place. Returns the next one.
+  virtual PooledRays::iterator remove(PooledRays::iterator ray) = 0;
 };
 
 /// Who is told of every ray that comes into the ray pool, in the phase of the units.

@@ -61,9 +61,8 @@ void ModelledTraverser::ray_done() {
     waiting->push_back(ray);
     return;
   }
-  const bool shadow = is_shadow(ray->ray);
-  rays->rays().erase(ray);
-  left(1, shadow ? 1 : 0);
+  rays->remove(ray);
+  left(1);
 }
 
 void ModelledTraverser::deliver_traced() {
@@ -71,9 +70,9 @@ void ModelledTraverser::deliver_traced() {
     uint32_t count = 0;
     for (auto& waiting = held_back_[kind]; !waiting.empty() && leave(*waiting.front()); waiting.pop_front()) {
       ++count;
-      rays->rays().erase(waiting.front());
+      rays->remove(waiting.front());
     }
-    left(count, kind == ImportKind::Shadow ? count : 0);
+    left(count);
   }
 }
 

@@ -149,8 +149,7 @@ TEST(RayPool, FindsNoPlaceAheadWhileFull) {
     if (bench.offer(0)) completed.push_back(cycle);
     if (cycle == 100) {
       EXPECT_TRUE(bench.rays.held_up());
-      bench.rays.rays().erase(bench.rays.rays().begin());
-      bench.rays.removed(0);
+      bench.rays.remove(bench.rays.rays().begin());
     }
     return cycle < 200;
   });
@@ -185,8 +184,7 @@ TEST(RayPool, TakesNothingWhileFull) {
     if (cycle == 100) {
       EXPECT_EQ(bench.rays.size(), 8u);
       EXPECT_TRUE(bench.rays.held_up());
-      bench.rays.rays().erase(bench.rays.rays().begin());
-      bench.rays.removed(0);
+      bench.rays.remove(bench.rays.rays().begin());
     }
     return cycle < 200;
   });

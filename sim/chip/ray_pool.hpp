@@ -1,5 +1,5 @@
 // The ray pool: rays that units have exported and the traverser has not finished, oldest first, behind one 128-bit
-// port.
+// port, whose cycles are those of machine/ray_pool.hpp.
 //
 // A ray costs the port its overhead and 3 beats: 5 cycles, as the thesis has it. There a ray offered in cycle c to an
 // idle port moves in c+2, c+3, c+4 (later if there are bubbles between its beats). A full pool serves nobody.
@@ -14,6 +14,7 @@
 #include "chip/statistics.hpp"
 #include "config/configuration.hpp"
 #include "machine/packages.hpp"
+#include "machine/ray_pool.hpp"
 
 namespace raypool::chip {
 
@@ -31,39 +32,24 @@ class RayPool : public sc_core::sc_module, public RayExportIf, public RaySourceI
 
   void want() override;
   void take(uint32_t unit, const Beat& beat, bool last) override;
-  bool held_up() const override { return beats_from() == kNever && full() && clock->cycle() > kept_at_; }
+  bool held_up() const override { return pool_.held_up(clock->cycle()); }
 
   PooledRays& rays() override { return rays_; }
-  void removed(uint32_t shadow_rays) override;
+  PooledRays::iterator remove(PooledRays::iterator ray) override;
 
-  uint32_t size() const override { return size32(rays_); }
-  uint32_t shadow_rays() const override { return shadow_rays_; }
-  bool full() const { return rays_.size() >= capacity_; }
-  uint32_t capacity() const { return capacity_; }
-  uint64_t taken() const { return taken_; }  ///< rays transferred, dropped ones too
+  uint32_t size() const override { return pool_.size(); }
+  uint32_t shadow_rays() const override { return pool_.shadow_rays(); }
+  uint32_t capacity() const { return pool_.capacity(); }
+  uint64_t taken() const { return pool_.taken(); }  ///< rays transferred, dropped ones too
   uint64_t dropped_depth() const { return dropped_depth_; }
-  uint64_t busy_cycles() const { return busy_cycles_; }  ///< of the port
+  uint64_t busy_cycles() const { return pool_.busy_cycles(); }  ///< of the port
   const LevelStatistics& fill() const { return fill_; }
 
  private:
-  void keep(bool shadow);
-
-  size_t capacity_;
-  uint64_t overhead_, cycles_per_beat_;
-  bool pipelined_;
-  bool culling_;
-  uint32_t depth_;
-  uint64_t begun_ = 0;       // cycle in which the ray that arrives was
-  uint64_t first_beat_ = 0;  // its
-  bool ahead_ = false;       // its overhead has run before it was begun
-  uint64_t free_from_ = 0;   // the next one may be
-  bool wanting_ = false;     // a ray is offered, and there is no room
-  uint64_t kept_at_ = 0;
-  Ray arriving_{};
-  size_t beats_ = 0;
+  raypool::RayPool pool_;
+  int beats_ = 0;  // of the ray that arrives
   PooledRays rays_;
-  uint32_t shadow_rays_ = 0;
-  uint64_t taken_ = 0, dropped_depth_ = 0, busy_cycles_ = 0;
+  uint64_t dropped_depth_ = 0;
   LevelStatistics fill_;
 };
 

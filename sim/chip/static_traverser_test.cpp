@@ -39,11 +39,17 @@ ChipConfiguration chip_of(int intersections) {
   return chip;
 }
 
+/// Rays come from nowhere: no kernel has made them.
+struct RaysOfNobody : PixelLedger {
+  using PixelLedger::PixelLedger;
+  void ray_exported(uint32_t /*unit*/, const Ray& /*ray*/, bool /*kept*/) override {}
+};
+
 /// A traverser between pools that the test fills.
 struct Bench {
   Simulation simulation;
   ChipClock clock{"clock"};
-  PixelLedger ledger;
+  RaysOfNobody ledger;
   RayPool rays;
   IntersectionPool intersections;
   HalfTracer tracer;
@@ -80,10 +86,9 @@ struct Bench {
     for (int i = 0; i < count; ++i) pixels.push_back(static_cast<uint32_t>(i));
     ledger.eye_launched(0, pixels);  // so that the pixels are held
     for (const uint32_t pixel : pixels) {
-      PooledRay ray{};
-      ray.ray[word::kPixel] = pixel;
-      ray.ray[word::kFlags] = flags;
-      rays.rays().push_back(ray);
+      rays.take(0, {}, false);
+      rays.take(0, {0, 0, 0, pixel}, false);
+      rays.take(0, {0, 0, 0, flags}, true);
     }
   }
   void run(std::function<bool(uint64_t)> cycle) { test::drive(simulation, clock, std::move(cycle)); }

@@ -76,15 +76,13 @@ bool Traverser::leave(const PooledRay& ray) {
   return true;
 }
 
-void Traverser::left(uint32_t count, uint32_t shadow_rays) {
-  if (count == 0) return;
-  rays->removed(shadow_rays);
-  controller->changed();
+void Traverser::left(uint32_t count) {
+  if (count != 0) controller->changed();
 }
 
 uint32_t Traverser::advance(uint32_t budget) {
   PooledRays& pool = rays->rays();
-  uint32_t count = 0, shadow_rays = 0;
+  uint32_t count = 0;
   for (auto ray = pool.begin(); ray != pool.end();) {
     if (!ray->traced && budget > 0) {
       --budget;
@@ -92,13 +90,12 @@ uint32_t Traverser::advance(uint32_t budget) {
     }
     if (ray->traced && leave(*ray)) {
       ++count;
-      shadow_rays += is_shadow(ray->ray);
-      ray = pool.erase(ray);
+      ray = rays->remove(ray);
     } else {
       ++ray;
     }
   }
-  left(count, shadow_rays);
+  left(count);
   return count;
 }
 

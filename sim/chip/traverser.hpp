@@ -75,10 +75,10 @@ class Traverser : public sc_core::sc_module,
   /// Finds what the ray hits, and what it visits on its way. It is not yet traced.
   void follow(PooledRay& ray, VisitList& visits);
   /// Delivers or drops a ray of which is known what it hits. False, if there is no room for what it becomes; else it
-  /// must be erased from the pool, and left() be told.
+  /// must be removed from the pool, and left() be told.
   bool leave(const PooledRay& ray);
-  /// So many rays have been erased, of which so many were shadow rays.
-  void left(uint32_t count, uint32_t shadow_rays);
+  /// So many rays have been removed.
+  void left(uint32_t count);
   /// What a traced ray that goes on becomes. Direct: with culling, a hit whose reflection could not add to the picture.
   ImportKind kind_of(const PooledRay& ray) const;
   /// The frame buffer's port, which a traced ray did not get, is free.

@@ -1,0 +1,10 @@
+// The pools' and memory's ports say in which cycle something happens, so that nobody need ask in the others.
+#pragma once
+
+#include <cstdint>
+
+namespace raypool {
+
+inline constexpr uint64_t kNever = UINT64_MAX;  ///< the cycle of what does not happen
+
+}  // namespace raypool

@@ -1,0 +1,54 @@
+// A first-in first-out queue in a RAM, with valid/ready at its end: what is pushed in a cycle is offered from the next
+// one on, and an entry can be taken in every cycle.
+// Promise: what is offered stays until it is taken. Must be given: push_i only while it holds fewer than DEPTH entries;
+// one that is taken in the same cycle still counts.
+`default_nettype none
+module ram_queue #(
+  parameter integer WIDTH = 9,
+  parameter integer DEPTH = 512
+) (
+  input  wire             clk_i,
+  input  wire             rst_ni,
+  input  wire             push_i,
+  input  wire [WIDTH-1:0] data_i,
+  output wire             valid_o,
+  input  wire             ready_i,
+  output wire [WIDTH-1:0] data_o
+);
+  localparam integer COUNT_BITS = $clog2(DEPTH + 1);
+  localparam integer ADDRESS_BITS = (DEPTH > 1) ? $clog2(DEPTH) : 1;
+  localparam integer LAST = DEPTH - 1;
+
+  reg [COUNT_BITS-1:0] count_q;
+  reg [ADDRESS_BITS-1:0] head_q, tail_q;   // the oldest entry; the place of the next one
+  assign valid_o = count_q != {COUNT_BITS{1'b0}};
+  wire pop = valid_o && ready_i;
+  wire [COUNT_BITS-1:0] left = count_q - {{COUNT_BITS-1{1'b0}}, pop};
+  wire another = left != {COUNT_BITS{1'b0}};
+  wire [ADDRESS_BITS-1:0] behind_head = (head_q == LAST[ADDRESS_BITS-1:0]) ? {ADDRESS_BITS{1'b0}} : head_q + 1'b1;
+
+  // The RAM's word is the oldest entry, but for one that came to an empty queue: it is in a register of its own.
+  reg alone_q;
+  reg [WIDTH-1:0] alone_data_q;
+  wire [WIDTH-1:0] word;
+  assign data_o = alone_q ? alone_data_q : word;
+  ram_1r1w #(.WIDTH(WIDTH), .DEPTH(DEPTH)) ram (
+    .clk_i(clk_i), .read_i(pop && another), .read_address_i(behind_head), .read_data_o(word), .write_i(push_i),
+    .write_address_i(tail_q), .write_data_i(data_i));
+
+  always @(posedge clk_i)
+    if (!rst_ni) begin
+      count_q <= {COUNT_BITS{1'b0}};
+      head_q <= {ADDRESS_BITS{1'b0}};
+      tail_q <= {ADDRESS_BITS{1'b0}};
+      alone_q <= 1'b0;
+    end else begin
+      count_q <= left + {{COUNT_BITS-1{1'b0}}, push_i};
+      if (pop) head_q <= behind_head;
+      if (push_i) tail_q <= (tail_q == LAST[ADDRESS_BITS-1:0]) ? {ADDRESS_BITS{1'b0}} : tail_q + 1'b1;
+      if (push_i && !another) alone_q <= 1'b1;
+      else if (pop) alone_q <= 1'b0;
+    end
+  always @(posedge clk_i) if (push_i && !another) alone_data_q <= data_i;
+endmodule
+`default_nettype wire

@@ -1,0 +1,31 @@
+# Benches of the chip's pools and ports in Verilog, against their classes in cpp_model/machine.
+function(raypool_pool_bench name)
+  add_executable(${name} ${CMAKE_CURRENT_LIST_DIR}/${name}.cpp)
+  target_link_libraries(${name} PRIVATE raypool_machine GTest::gtest_main)
+  target_include_directories(${name} SYSTEM PRIVATE ${VERILATOR_ROOT}/include)  # its headers warn
+  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60)
+endfunction()
+
+# raypool_pool_models(MODULE PARAMETERS MODEL...): class V<module>_<model>, a model being the parameters' values with _
+# between.
+function(raypool_pool_models module names)
+  foreach(model IN LISTS ARGN)
+    string(REPLACE "_" ";" values ${model})
+    set(parameters)
+    foreach(name value IN ZIP_LISTS names values)
+      list(APPEND parameters -G${name}=${value})
+    endforeach()
+    verilate(${module}_test SOURCES ${RAYPOOL_RTL}/${module}.v PREFIX V${module}_${model} TOP_MODULE ${module}
+      OPT_SLOW -w OPT_FAST -O2 -w OPT_GLOBAL -O1 -w
+      VERILATOR_ARGS -O3 --default-language 1364-2005 -y ${RAYPOOL_RTL} -I${RAYPOOL_RTL} ${parameters})
+  endforeach()
+endfunction()
+
+raypool_pool_bench(ray_pool_test)
+raypool_pool_models(ray_pool "SIZE;OVERHEAD;CYCLES_PER_BEAT;PIPELINED;CULLING"
+  1_1_1_0_0 1_2_1_1_0 2_1_1_1_1 7_2_1_0_1 5_9_3_1_1 16_3_2_0_1 3_64_64_1_0 512_2_1_0_0 512_2_1_1_1)
+
+raypool_pool_bench(intersection_pool_test)
+raypool_pool_models(intersection_pool "SIZE;INTERSECTION_WORDS;OVERHEAD;CYCLES_PER_BEAT;PIPELINED;CULLING"
+  1_21_1_1_0_0 1_21_2_1_1_1 2_16_1_1_1_0 3_12_9_2_0_1 3_21_64_64_1_0 5_21_9_1_1_1 7_18_3_3_1_0 512_21_2_1_0_0
+  512_16_2_1_1_1)
