@@ -263,8 +263,8 @@ test: setup-sim setup-test setup-synth configured-ON ## every test
 	@scripts/build.sh $(BUILD)
 	@ctest --test-dir $(BUILD) --output-on-failure -j "$$(nproc)"
 
-numerics-long: setup-sim setup-test configured-ON ## arithmetic against its oracles, 10^8 pairs; an hour: THREADS
-	@scripts/build.sh $(BUILD) numerics_long flt_alu_test slw_alu_test small_floats_test
+numerics-long: setup-sim setup-test configured-ON ## arithmetic against its oracles, 10^8 pairs; two hours: THREADS
+	@scripts/build.sh $(BUILD) numerics_long flt_alu_test slw_alu_test brh_alu_test small_floats_test
 	@scripts/numerics_long.sh $(BUILD) "$${THREADS:-1}"
 
 quoted: setup-sim setup-test setup-synth setup-quoted configured-ON ## run what the pages quote: LONG, UPDATE, PAGES

@@ -24,12 +24,20 @@ uint32_t compared(Opcode opcode, uint32_t mask, arith::Mode) {
   return instruction(opcode).kind == Kind::Control ? (1u << kBenchLanes) - 1 : mask;
 }
 
+/// The operand `b`, a quarter of them equal to `a` or but for one bit.
+uint32_t nearly(uint32_t a, uint32_t b, std::mt19937_64& random) {
+  return random() % 4 != 0 ? b : a ^ (random() % 2 != 0 ? 0 : 1u << random() % 32);
+}
+
 using Significands =
     testing::Types<Significand<Vbrh_units, 24>, Significand<Vbrh_units_20, 20>, Significand<Vbrh_units_16, 16>,
                    Significand<Vbrh_units_13, 13>, Significand<Vbrh_units_11, 11>>;
 template <typename Type>
 class BrhAlu : public testing::Test {};
 TYPED_TEST_SUITE(BrhAlu, Significands, SignificandName);
+template <typename Type>
+class BrhAluLong : public testing::Test {};
+TYPED_TEST_SUITE(BrhAluLong, Significands, SignificandName);
 
 TYPED_TEST(BrhAlu, EveryPairOfBoundaryValuesComparesAsTheModelDoes) {
   constexpr uint32_t kSignificand = TypeParam::kSignificand;
@@ -57,9 +65,8 @@ TYPED_TEST(BrhAlu, RandomPairsAgreeWithTheModel) {
   for (int i = 0; i < TypeParam::share(600000); i += kBenchLanes) {
     const Opcode opcode = opcodes[random() % opcodes.size()];
     for (int l = 0; l < kBenchLanes; ++l) {
-      auto [a, b] = source.next();
-      if (random() % 4 == 0) b = a ^ (random() % 2 != 0 ? 0 : 1u << random() % 32);  // equal, or but for one bit
-      bench.add(opcode, a, b, static_cast<uint32_t>(random()));
+      const auto [a, b] = source.next();
+      bench.add(opcode, a, nearly(a, b, random), static_cast<uint32_t>(random()));
     }
   }
   bench.finish();
@@ -82,6 +89,22 @@ TYPED_TEST(BrhAlu, ControlDecidesForEveryLaneWhetherAnyIsInTheMask) {
   }
   bench.finish();
   EXPECT_GE(bench.compared(), 80000u);
+}
+
+// Names with Long: in `make numerics-long` only. 10^7 pairs of each compare.
+TYPED_TEST(BrhAluLong, ManyRandomPairsCompareAsTheModelDoes) {
+  constexpr uint32_t kSignificand = TypeParam::kSignificand;
+  AluBench<typename TypeParam::Top> bench(units(kSignificand), brh_model, kSeed + 1, compared);
+  arith::OperandSource source(kSeed + 1, kSignificand);
+  std::mt19937_64 random(kSeed + 1);
+  constexpr Opcode kCompares[] = {Opcode::Feq, Opcode::Fne, Opcode::Flt, Opcode::Fle, Opcode::Fgt, Opcode::Fge};
+  for (size_t i = 0; i < 10'000'000 * std::size(kCompares); ++i) {
+    const auto [a, b] = source.next();
+    bench.add(kCompares[i / kBenchLanes % std::size(kCompares)], a, nearly(a, b, random));
+  }
+  bench.finish();
+  print_long_row("RTL feq fne flt fle fgt fge, random" + of_significand(kSignificand), bench.count(Subnormals::Ieee),
+                 bench.count(Subnormals::Flush));
 }
 
 }  // namespace

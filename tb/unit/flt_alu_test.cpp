@@ -25,6 +25,14 @@ std::vector<AluUnderTest> units(uint32_t significand) {
           {"flush fma", {Subnormals::Flush, SlowUnit::Exact, true, significand}, 7}};
 }
 
+/// The operand `a`, of a conversion of a magnitude that it can tell apart.
+uint32_t converted(Opcode opcode, uint32_t a, std::mt19937_64& random) {
+  if (opcode == Opcode::F2i && random() % 2)
+    return (a & 0x807fffffu) | static_cast<uint32_t>(120 + random() % 42) << 23;
+  if (opcode == Opcode::I2f) return static_cast<uint32_t>(static_cast<int32_t>(a) >> random() % 32);
+  return a;
+}
+
 using Significands =
     testing::Types<Significand<Vflt_units, 24>, Significand<Vflt_units_20, 20>, Significand<Vflt_units_16, 16>,
                    Significand<Vflt_units_13, 13>, Significand<Vflt_units_11, 11>>;
@@ -77,30 +85,37 @@ TYPED_TEST(FltAlu, RandomPairsAgreeWithTheModel) {
   for (int i = 0; i < TypeParam::share(1500000); i += kBenchLanes) {
     const Opcode opcode = kOpcodes[random() % std::size(kOpcodes)];
     for (int l = 0; l < kBenchLanes; ++l) {
-      auto [a, b] = source.next();
-      if (opcode == Opcode::F2i && random() % 2)
-        a = (a & 0x807fffffu) | static_cast<uint32_t>(120 + random() % 42) << 23;
-      if (opcode == Opcode::I2f) a = static_cast<uint32_t>(static_cast<int32_t>(a) >> random() % 32);
-      bench.add(opcode, a, b, source.third(a, b));
+      const auto [a, b] = source.next();
+      bench.add(opcode, converted(opcode, a, random), b, source.third(a, b));
     }
   }
   bench.finish();
   EXPECT_GE(bench.compared(), uint64_t{TypeParam::share(5000000)});
 }
 
-// Names with Long: in `make numerics-long` only.
-TYPED_TEST(FltAluLong, ManyRandomPairsAgreeWithTheModel) {
+// Names with Long: in `make numerics-long` only. 10^7 operands of each operation.
+template <typename TypeParam>
+void many_operands(const std::string& what, const std::vector<Opcode>& opcodes, uint64_t seed) {
   constexpr uint32_t kSignificand = TypeParam::kSignificand;
-  AluBench<typename TypeParam::Top> bench(units(kSignificand), flt_model, kSeed + 1, compared);
-  arith::OperandSource source(kSeed + 1, kSignificand);
-  for (int i = 0; i < 40000000; ++i) {
+  AluBench<typename TypeParam::Top> bench(units(kSignificand), flt_model, seed, compared);
+  arith::OperandSource source(seed, kSignificand);
+  std::mt19937_64 random(seed);
+  for (size_t i = 0; i < 10'000'000 * opcodes.size(); ++i) {
+    const Opcode opcode = opcodes[i / kBenchLanes % opcodes.size()];
     const auto [a, b] = source.next();
-    constexpr Opcode kLongOpcodes[] = {Opcode::Fadd, Opcode::Fsub, Opcode::Fmul, Opcode::Ffma};
-    bench.add(kLongOpcodes[i / kBenchLanes % 4], a, b, source.third(a, b));
+    bench.add(opcode, converted(opcode, a, random), b, source.third(a, b));
   }
   bench.finish();
-  print_long_row("RTL fadd fsub fmul ffma, random" + of_significand(kSignificand), bench.count(Subnormals::Ieee),
+  print_long_row("RTL " + what + ", random" + of_significand(kSignificand), bench.count(Subnormals::Ieee),
                  bench.count(Subnormals::Flush));
+}
+
+TYPED_TEST(FltAluLong, ManyRandomPairsAgreeWithTheModel) {
+  many_operands<TypeParam>("fadd fsub fmul ffma", {Opcode::Fadd, Opcode::Fsub, Opcode::Fmul, Opcode::Ffma}, kSeed + 1);
+}
+
+TYPED_TEST(FltAluLong, ManyExtremesAndConversionsAgreeWithTheModel) {
+  many_operands<TypeParam>("fmin fmax f2i i2f", {Opcode::Fmin, Opcode::Fmax, Opcode::F2i, Opcode::I2f}, kSeed + 2);
 }
 
 }  // namespace

@@ -63,6 +63,11 @@ TEST(SlwAlu, GroupsOfLanesGiveWhatAllLanesGive) {
   EXPECT_GE(bench.compared(), 80000u);
 }
 
+/// The operand `a`, of most roots something positive.
+uint32_t positive(Opcode opcode, uint32_t a, std::mt19937_64& random) {
+  return opcode != Opcode::Fdiv && random() % 2 ? a & 0x7fffffffu : a;
+}
+
 using Significands =
     testing::Types<Significand<Vslw_units, 24>, Significand<Vslw_units_20, 20>, Significand<Vslw_units_16, 16>,
                    Significand<Vslw_units_13, 13>, Significand<Vslw_units_11, 11>>;
@@ -96,9 +101,8 @@ TYPED_TEST(SlwAlu, RandomPairsAgreeWithTheModel) {
   for (int i = 0; i < TypeParam::share(400000); i += kBenchLanes) {
     const Opcode opcode = random() % 3 == 0 ? Opcode::Fdiv : opcodes[random() % opcodes.size()];
     for (int l = 0; l < kBenchLanes; ++l) {
-      auto [a, b] = source.next();
-      if (opcode != Opcode::Fdiv && random() % 2) a &= 0x7fffffffu;  // most roots of something positive
-      bench.add(opcode, a, b);
+      const auto [a, b] = source.next();
+      bench.add(opcode, positive(opcode, a, random), b);
     }
   }
   bench.finish();
@@ -130,17 +134,30 @@ TYPED_TEST(SlwAluLong, EveryMantissaAgreesWithTheModel) {
                  bench.count(Subnormals::Flush));
 }
 
-TYPED_TEST(SlwAluLong, ManyRandomQuotientsAgreeWithTheModel) {
+// 10^7 operands of each operation.
+template <typename TypeParam>
+void many_operands(const std::string& what, const std::vector<Opcode>& opcodes, uint64_t seed) {
   constexpr uint32_t kSignificand = TypeParam::kSignificand;
-  AluBench<typename TypeParam::Top> bench(units(kSignificand), slw_model, kSeed + 1);
-  arith::OperandSource source(kSeed + 1, kSignificand);
-  for (int i = 0; i < 10000000; ++i) {
+  AluBench<typename TypeParam::Top> bench(units(kSignificand), slw_model, seed);
+  arith::OperandSource source(seed, kSignificand);
+  std::mt19937_64 random(seed);
+  for (size_t i = 0; i < 10'000'000 * opcodes.size(); ++i) {
+    const Opcode opcode = opcodes[i / kBenchLanes % opcodes.size()];
     const auto [a, b] = source.next();
-    bench.add(Opcode::Fdiv, a, b);
+    bench.add(opcode, positive(opcode, a, random), b);
   }
   bench.finish();
-  print_long_row("RTL fdiv, random" + of_significand(kSignificand), bench.count(Subnormals::Ieee),
+  print_long_row("RTL " + what + ", random" + of_significand(kSignificand), bench.count(Subnormals::Ieee),
                  bench.count(Subnormals::Flush));
+}
+
+TYPED_TEST(SlwAluLong, ManyRandomQuotientsAgreeWithTheModel) {
+  many_operands<TypeParam>("fdiv", {Opcode::Fdiv}, kSeed + 1);
+}
+
+TYPED_TEST(SlwAluLong, ManyRandomRootsAgreeWithTheModel) {
+  if (TypeParam::kSignificand == 24) return;  // has more than 10^7 mantissas of each
+  many_operands<TypeParam>("fsqrt frsqrt frcp", {Opcode::Fsqrt, Opcode::Frsqrt, Opcode::Frcp}, kSeed + 2);
 }
 
 // What slow_exact.v leaves out of the square of the middle m between two floats, times v, must not matter: for every v
