@@ -11,6 +11,7 @@
 #include "machine/flt_alu.hpp"
 #include "machine/int_alu.hpp"
 #include "machine/slw_alu.hpp"
+#include "machine/special_census.hpp"
 #include "machine/subnormal_guard.hpp"
 
 namespace raypool {
@@ -26,6 +27,7 @@ FunctionalCore::FunctionalCore(const Configuration& configuration, Memory& memor
       configuration_(configuration),
       mode_(arith::mode_of(configuration)),
       guarded_(configuration.subnormals == Subnormals::None),
+      watched_(guarded_),
       registers_(configuration.contents() * kRegisters),
       warps_(configuration.warps, Warp(configuration)),
       slices_(configuration.warps, configuration.lanes, configuration.intersection_words) {
@@ -161,8 +163,8 @@ const Step& FunctionalCore::step_lanes(uint32_t number) {
     lanes.b = immediate;
   }
   const AluType alu = instruction.alu();
-  if (guarded_ && (alu == AluType::Brh || alu == AluType::Flt || alu == AluType::Slw)) {
-    execute_guarded<kLanes>(instruction, warp, lanes);
+  if (watched_ && (alu == AluType::Brh || alu == AluType::Flt || alu == AluType::Slw)) {
+    execute_watched<kLanes>(instruction, warp, lanes);
   } else if (!execute<kLanes>(instruction, warp, lanes)) {
     return result_;
   }
@@ -207,10 +209,12 @@ bool FunctionalCore::execute(const DecodedInstruction& instruction, Warp& warp, 
 
 // Of an ALU that never faults otherwise.
 template <int kLanes>
-void FunctionalCore::execute_guarded(const DecodedInstruction& instruction, Warp& warp, const Lanes<kLanes>& lanes) {
+void FunctionalCore::execute_watched(const DecodedInstruction& instruction, Warp& warp, const Lanes<kLanes>& lanes) {
   const SubnormalGuard<kLanes> guard(instruction.opcode, lanes, mode_);
+  if (census_ != nullptr) census_->operands(result_.pc, instruction.opcode, lanes);
   execute<kLanes>(instruction, warp, lanes);
-  result_.subnormal = guard.met(instruction.writes_register ? lanes.rd : nullptr);
+  if (census_ != nullptr && instruction.writes_register) census_->results(result_.pc, instruction.opcode, lanes);
+  if (guarded_) result_.subnormal = guard.met(instruction.writes_register ? lanes.rd : nullptr);
 }
 
 bool FunctionalCore::execute_control(const DecodedInstruction& instruction, Warp& warp) {

@@ -23,6 +23,7 @@ namespace raypool {
 
 template <int kLanes>
 struct Lanes;
+class SpecialCensus;
 
 inline constexpr int kMaxLanes = 32;
 
@@ -64,6 +65,9 @@ class FunctionalCore {
  public:
   /// `memory` must outlive the core.
   FunctionalCore(const Configuration& configuration, Memory& memory);
+
+  /// From now on float instructions are counted in there; it must outlive the core.
+  void count_specials(SpecialCensus& census) { census_ = &census, watched_ = true; }
 
   /// Stops everything, forgets imports, clears registers. The program is decoded at the next
   /// launch after it or after an argument.
@@ -140,7 +144,7 @@ class FunctionalCore {
   template <int kLanes>
   bool execute(const DecodedInstruction& instruction, Warp& warp, const Lanes<kLanes>& lanes);
   template <int kLanes>
-  void execute_guarded(const DecodedInstruction& instruction, Warp& warp, const Lanes<kLanes>& lanes);
+  void execute_watched(const DecodedInstruction& instruction, Warp& warp, const Lanes<kLanes>& lanes);
   template <int kLanes>
   bool execute_memory(const DecodedInstruction& instruction, const Lanes<kLanes>& lanes);
   template <int kLanes>
@@ -157,6 +161,8 @@ class FunctionalCore {
   Configuration configuration_;
   arith::Mode mode_;
   bool guarded_;  ///< against subnormal numbers
+  bool watched_;  ///< floats are, by the guard or the census
+  SpecialCensus* census_ = nullptr;
   uint32_t program_length_ = 0, memory_limit_ = 0;
   bool program_decoded_ = false;
   uint32_t decoded_ = 0;  ///< program_.size(), which would cost a division

@@ -16,11 +16,13 @@ constexpr int kInstructionsPerClock = 4096;  // of one warp, so that a program t
 
 class FunctionalUnit : public ComputeUnit {
  public:
-  FunctionalUnit(const Configuration& configuration, Memory& memory)
+  FunctionalUnit(const Configuration& configuration, Memory& memory, SpecialCensus* census)
       : core_(configuration, memory),
         lanes_(static_cast<uint32_t>(configuration.lanes)),
         reserved_(static_cast<size_t>(configuration.warps)),
-        exporting_(static_cast<size_t>(configuration.warps)) {}
+        exporting_(static_cast<size_t>(configuration.warps)) {
+    if (census != nullptr) core_.count_specials(*census);
+  }
 
   void reset(uint32_t program_length, uint32_t memory_limit) override {
     core_.reset(program_length, memory_limit);
@@ -195,8 +197,9 @@ class FunctionalUnit : public ComputeUnit {
 
 }  // namespace
 
-std::unique_ptr<ComputeUnit> make_functional_unit(const Configuration& configuration, Memory& memory) {
-  return std::make_unique<FunctionalUnit>(configuration, memory);
+std::unique_ptr<ComputeUnit> make_functional_unit(const Configuration& configuration, Memory& memory,
+                                                  SpecialCensus* census) {
+  return std::make_unique<FunctionalUnit>(configuration, memory, census);
 }
 
 }  // namespace raypool

@@ -10,12 +10,16 @@
 
 namespace raypool {
 
+class SpecialCensus;
+
 /// A functional compute unit. It reads and writes `memory` directly (which must outlive it), so its memory port stays
 /// silent; launches, imports, exports and frame contributions obey the handshakes of compute_unit.hpp, one beat a
 /// clock. One clock() runs every warp until it waits for a port, ends, or has executed some thousand instructions;
 /// after trace_on() at most one instruction a warp. At most one kernel ends in a clock. The program must lie in memory
 /// when the first kernel after reset() is launched. timed() is false; counters hold instructions, thread instructions
 /// and tasks issued of each ALU type; kBusyCycles counts clocks, all others read 0.
-std::unique_ptr<ComputeUnit> make_functional_unit(const Configuration& configuration, Memory& memory);
+/// With a census, which must outlive it, the unit counts infinities and NaNs there, and takes longer.
+std::unique_ptr<ComputeUnit> make_functional_unit(const Configuration& configuration, Memory& memory,
+                                                  SpecialCensus* census = nullptr);
 
 }  // namespace raypool

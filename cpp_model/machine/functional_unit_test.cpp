@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "bits.hpp"
+#include "machine/special_census.hpp"
 #include "machine/test_chip.hpp"
 #include "machine/test_program.hpp"
 
@@ -157,6 +158,57 @@ TEST(FunctionalUnit, ASubnormalNumberStopsAMachineThatHasNone) {
   EXPECT_FALSE(chip.run());
   EXPECT_EQ(unit->outputs().fault.code, FaultCode::SubnormalNumber);
   EXPECT_EQ(unit->outputs().fault.pc, 4u) << "no lane of the one before is active";
+}
+
+TEST(FunctionalUnit, InfinitiesAndNansAreCountedWhereTheyAriseAndWhereTheyAreRead) {
+  const std::vector<uint64_t> code = assembled(
+      "lane r1; ige p1, r1, 8; mov r2, 0; mov r3, 0; @p1 frcp r3, r2; frcp r3, r2; fsub r3, r3, r3; fgt p2, r3, r2; "
+      "f2i r4, r3; fmin r3, r3, r2; i2f r4, r3; fdiv r4, r2, r2; iadd r4, r4, r4; exit");
+  Memory memory(kMemoryBytes);
+  test::put_program(memory, code);
+  SpecialCensus census(arith::Mode{});
+  const std::unique_ptr<ComputeUnit> unit = make_functional_unit({}, memory, &census);
+  unit->reset(size32(code), kMemoryBytes);
+  TestChip chip(*unit, memory);
+  LaunchCommand command;
+  command.threads = 8;
+  chip.launches.push_back(command);
+  ASSERT_TRUE(chip.run());
+  const auto at = [&](uint32_t pc) {
+    const SpecialCounts counts = pc < census.counts().size() ? census.counts()[pc] : SpecialCounts{};
+    return std::vector<uint64_t>{counts.executed, counts.infinite_operands, counts.infinite_results,
+                                 counts.nan_operands, counts.nan_results};
+  };
+  using Row = std::vector<uint64_t>;
+  EXPECT_EQ(at(4), (Row{0, 0, 0, 0, 0})) << "in no lane of its mask";
+  EXPECT_EQ(at(5), (Row{8, 0, 8, 0, 0})) << "frcp of 0";
+  EXPECT_EQ(at(6), (Row{8, 8, 0, 0, 8})) << "infinity less itself, which it overwrites";
+  EXPECT_EQ(at(7), (Row{8, 0, 0, 8, 0})) << "a compare gives no float";
+  EXPECT_EQ(at(8), (Row{8, 0, 0, 8, 0})) << "nor does f2i";
+  EXPECT_EQ(at(9), (Row{8, 0, 0, 8, 0})) << "the other operand is a number";
+  EXPECT_EQ(at(10), (Row{0, 0, 0, 0, 0})) << "i2f reads no float";
+  EXPECT_EQ(at(11), (Row{8, 0, 0, 0, 8})) << "0 / 0";
+  EXPECT_EQ(at(12), (Row{0, 0, 0, 0, 0})) << "an integer addition of the same bits";
+}
+
+TEST(FunctionalUnit, InfinitiesAreThoseOfTheSignificand) {
+  Configuration configuration;
+  configuration.significand = 13;
+  const std::vector<uint64_t> code =
+      assembled("mov r1, 0x7f800001; fadd r2, r1, 0.0; mov r1, 0x7f801000; fadd r2, r1, 0.0; exit");
+  Memory memory(kMemoryBytes);
+  test::put_program(memory, code);
+  SpecialCensus census(arith::mode_of(configuration));
+  const std::unique_ptr<ComputeUnit> unit = make_functional_unit(configuration, memory, &census);
+  unit->reset(size32(code), kMemoryBytes);
+  TestChip chip(*unit, memory);
+  LaunchCommand command;
+  command.threads = 1;
+  chip.launches.push_back(command);
+  ASSERT_TRUE(chip.run());
+  EXPECT_EQ(census.counts().at(1).infinite_operands, 1u) << "its one lies below the significand";
+  EXPECT_EQ(census.counts().at(1).nan_operands, 0u);
+  EXPECT_EQ(census.counts().at(3).nan_operands, 1u);
 }
 
 TEST(FunctionalUnit, TheTraceShowsAtMostOneInstructionOfAWarpInACycle) {

@@ -9,6 +9,7 @@
 #include "arith/arith.hpp"
 #include "bits.hpp"
 #include "isa/isa.hpp"
+#include "machine/float_reads.hpp"
 #include "machine/lanes.hpp"
 
 namespace raypool {
@@ -18,7 +19,7 @@ class SubnormalGuard {
  public:
   /// Before the instruction is executed, as rd may be one of its operands.
   SubnormalGuard(Opcode opcode, const Lanes<kLanes>& lanes, arith::Mode mode)
-      : opcode_(opcode), mask_(lanes.mask), mode_(mode), reads_(reads(opcode)) {
+      : opcode_(opcode), mask_(lanes.mask), mode_(mode), reads_(float_reads(opcode)) {
     if (reads_.a) std::memcpy(a_, lanes.a, sizeof(a_));
     if (reads_.b) std::memcpy(b_, lanes.b, sizeof(b_));
     if (reads_.c) std::memcpy(c_, lanes.c, sizeof(c_));
@@ -41,37 +42,6 @@ class SubnormalGuard {
   }
 
  private:
-  struct Reads {
-    bool a, b, c;  ///< as a float
-  };
-
-  static Reads reads(Opcode opcode) {
-    switch (opcode) {
-      case Opcode::Feq:
-      case Opcode::Fne:
-      case Opcode::Flt:
-      case Opcode::Fle:
-      case Opcode::Fgt:
-      case Opcode::Fge:
-      case Opcode::Fadd:
-      case Opcode::Fsub:
-      case Opcode::Fmul:
-      case Opcode::Fmin:
-      case Opcode::Fmax:
-      case Opcode::Fdiv:
-        return {true, true, false};
-      case Opcode::Ffma:
-        return {true, true, true};
-      case Opcode::F2i:
-      case Opcode::Fsqrt:
-      case Opcode::Frsqrt:
-      case Opcode::Frcp:
-        return {true, false, false};
-      default:  // i2f, integers and predicates
-        return {false, false, false};
-    }
-  }
-
   /// As the unit sees it: without what is below its significand.
   bool subnormal(uint32_t word) const {
     word &= ~uint32_t{0} << (arith::kFullSignificand - mode_.significand);
@@ -102,7 +72,7 @@ class SubnormalGuard {
   Opcode opcode_;
   uint32_t mask_;
   arith::Mode mode_;
-  Reads reads_;
+  FloatReads reads_;
   uint32_t a_[kLanes] = {}, b_[kLanes] = {}, c_[kLanes] = {};
 };
 

@@ -90,6 +90,21 @@ expect "... with what to do" 1 "draw with --set arithmetic.subnormals=ieee, or f
 expect "... which draws it" 0 results "$raypool" sim "$folder/faint.obj" --config "$folder/room.json" --size 8x8 \
   --set arithmetic.subnormals=ieee --out "$folder/faint"
 
+# Infinities and NaNs are counted: no frame above has one. In a scene of 1e-25 squares of distances vanish.
+expect "no ordinary frame has infinities or NaNs" 0 "[0, 0]" python3 - "$folder/room-found.json" \
+  "$folder/cornell-found.json" <<'CHECK'
+import json, sys
+specials = [json.load(open(path))["specials"] for path in sys.argv[1:]]
+assert all(each["operations"] > 1000 and each["instructions"] > 50 for each in specials), specials
+print([len(each["places"]) for each in specials])
+CHECK
+awk '/^v / { $2 = $2 "e-25"; $3 = $3 "e-25"; $4 = $4 "e-25" } { print }' "$folder/mirror.obj" > "$folder/tiny.obj"
+echo '{"eye": [2.75e-25, 2.75e-25, 1e-24], "direction": [0, 0, -1],
+  "light": {"position": [2.9e-25, 5e-25, 6.2e-25], "color": [1, 1, 1]}}' > "$folder/tiny-view.json"
+expect "an infinity is told with kernel and instruction" 0 ": frsqrt r3, r3 " \
+  "$raypool" fit "$folder/tiny.obj" --view "$folder/tiny-view.json" --config 2w2c --size 8x8 --quiet \
+  --out "$folder/tiny.json"
+
 # Input that cannot be used.
 small=(fit cornell --size 8x8 --config 1w1c --quiet)
 expect "a share that is none is refused" 1 "--slower is 'much'" "$raypool" "${small[@]}" --slower much

@@ -16,11 +16,13 @@
 #include "cli/frame.hpp"
 #include "cli/image_size.hpp"
 #include "cli/progress.hpp"
+#include "cli/special_values.hpp"
 #include "cli/version.hpp"
 #include "files/json_text.hpp"
 #include "files/output_files.hpp"
 #include "fit/fit.hpp"
 #include "fit/needs.hpp"
+#include "machine/functional_unit.hpp"
 #include "scene/subnormal_words.hpp"
 
 namespace raypool {
@@ -63,12 +65,15 @@ class FrameRuns {
       return std::nullopt;
     }
   }
+  /// The infinities and NaNs that one compute unit of the machine meets, which are those of several.
+  SpecialValues specials(const Configuration& machine);
   int runs() const { return runs_; }
   /// Of the deepest ray that was traced; an eye ray has 1.
   uint32_t depth_reached() const { return depth_reached_; }
 
  private:
   FrameBuffer draw_natively();
+  ChipResult draw_on(ComputeUnit& device, MemoryImage& image, const std::string& what);
 
   const FitOptions& options_;
   RunRecord record_;
@@ -96,8 +101,21 @@ ChipResult FrameRuns::draw(const Configuration& machine, const std::string& what
   MemoryImage image = build_memory(ray_kernel_program(KernelTarget(machine)), scene_);
   const std::unique_ptr<ComputeUnit> device =
       make_unit({Engine::Model, machine, "", false, record_.units, 0}, image.memory);
+  return draw_on(*device, image, what);
+}
+
+SpecialValues FrameRuns::specials(const Configuration& machine) {
+  record_.configuration = machine;
+  const Program& program = ray_kernel_program(KernelTarget(machine));
+  MemoryImage image = build_memory(program, scene_);
+  SpecialCensus census(arith::mode_of(machine));
+  draw_on(*make_functional_unit(machine, image.memory, &census), image, "its infinities and NaNs");
+  return special_values(census, program);
+}
+
+ChipResult FrameRuns::draw_on(ComputeUnit& device, MemoryImage& image, const std::string& what) {
   Surroundings around(scene_, image, record_);
-  ChipOptions chip = chip_options(record_, scene_, image, *device, around);
+  ChipOptions chip = chip_options(record_, scene_, image, device, around);
   ++runs_;
   Progress progress(options_.quiet);
   chip.progress = [&](const ChipProgress& done) {
@@ -108,7 +126,7 @@ ChipResult FrameRuns::draw(const Configuration& machine, const std::string& what
   ChipResult result = run_chip(chip);
   if (around.frame == picture_) return result;
   throw std::runtime_error(
-      fmt::format("with {} the model draws another picture than the kernels as C++: {} of {} "
+      fmt::format("with {} the machine draws another picture than the kernels as C++: {} of {} "
                   "pixels differ",
                   what, compare(around.frame, picture_).pixels, record_.width * record_.height));
 }
@@ -128,8 +146,9 @@ std::string slower_text(uint64_t cycles, uint64_t base) {
 struct Found {
   RunRecord record;
   fit::Fit fit;
-  fit::Frame frame;   // drawn on the base
-  ChipResult fitted;  // on what is left
+  fit::Frame frame;        // drawn on the base
+  ChipResult fitted;       // on what is left
+  SpecialValues specials;  // on the base
   double slower = 0;
   uint32_t depth_reached = 0;
   int runs = 0;
@@ -153,6 +172,7 @@ std::string table_of(const Found& found) {
   }
   text += fmt::format("kernels   {}{}{}\n", fmt::join(launched, ", "),
                       never.empty() ? "" : "; never launched: ", fmt::join(never, ", "));
+  text += text_of(found.specials);
   text +=
       fmt::format("{:<26} {:>6} {:>6}  {:>12} {:>9}  {}\n", "left out", "from", "to", "cycles alone", "more", "why");
   for (const auto& [cut, from, cycles] : found.fit.changes) {
@@ -186,6 +206,7 @@ std::string json_of(const Found& found, const std::string& file) {
   json["slower"] = found.slower;
   for (size_t i = 0; i < kRayKernels; ++i)
     json["threads"][std::string(kRayKernelNames[i])] = found.frame.drawn.kernels[i].threads;
+  json["specials"] = json_of(found.specials);
   json["frames_drawn"] = found.runs;
   json["cycles"] = {{"base", found.fit.base_cycles}, {"most", found.fit.most_cycles}, {"fitted", found.fit.cycles}};
   json["simulation_seconds"] = {{"base", found.frame.drawn.wall_seconds}, {"fitted", found.fitted.wall_seconds}};
@@ -245,6 +266,7 @@ int fit_command(const FitOptions& options) {
   found.frame = {options.depth, found.record.reflections, scene.materials.size(),
                  !subnormal_word(scene, arguments_of(found.record, scene)).empty(),
                  runs.draw(base, "the whole machine")};
+  found.specials = runs.specials(base);
   found.fit =
       fit::fit(base, found.frame.drawn.cycles, fit::parts_of(found.frame), slower,
                [&](const Configuration& machine, const std::string& what) { return runs.cycles(machine, what); });

@@ -60,12 +60,10 @@ void check_fits(const RunRecord& record, const Scene& scene) {
 std::string describe(const ChipFault& fault, const RunRecord& record) {
   if (fault.fault.code != FaultCode::SubnormalNumber) return fault.what();
   const Program& program = ray_kernel_program(KernelTarget(record.configuration));
-  const auto names = kernel_names(program);
-  const auto behind = names.upper_bound(fault.fault.pc);
   return fmt::format(
       "a subnormal number arose in kernel {} at '{}', and {} has none (arithmetic.subnormals): draw with --set "
       "arithmetic.subnormals=ieee, or fit a configuration to this frame with raypool fit ({})",
-      behind == names.begin() ? "of no name" : std::prev(behind)->second,
+      kernel_at(program, fault.fault.pc),
       fault.fault.pc < program.code.size() ? disassemble(program.code[fault.fault.pc]) : "", record.configuration.name,
       fault.what());
 }
@@ -113,6 +111,12 @@ std::map<uint32_t, std::string> kernel_names(const Program& program) {
   std::map<uint32_t, std::string> names;
   for (const auto& [name, entry] : program.entries) names[entry] = name;
   return names;
+}
+
+std::string kernel_at(const Program& program, uint32_t pc) {
+  const auto names = kernel_names(program);
+  const auto behind = names.upper_bound(pc);
+  return behind == names.begin() ? "of no name" : std::prev(behind)->second;
 }
 
 }  // namespace raypool

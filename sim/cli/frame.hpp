@@ -46,5 +46,7 @@ NativeOptions native_options(const RunRecord& record);
 
 /// Entry PC -> name.
 std::map<uint32_t, std::string> kernel_names(const Program& program);
+/// The kernel that has the instruction at this PC.
+std::string kernel_at(const Program& program, uint32_t pc);
 
 }  // namespace raypool
