@@ -16,7 +16,7 @@ constexpr int kInstructionsPerClock = 4096;  // of one warp, so that a program t
 
 class FunctionalUnit : public ComputeUnit {
  public:
-  FunctionalUnit(const Configuration& configuration, Memory& memory, SpecialCensus* census)
+  FunctionalUnit(const Configuration& configuration, Memory& memory, SpecialCensus* census = nullptr)
       : core_(configuration, memory),
         lanes_(static_cast<uint32_t>(configuration.lanes)),
         reserved_(static_cast<size_t>(configuration.warps)),
@@ -197,9 +197,13 @@ class FunctionalUnit : public ComputeUnit {
 
 }  // namespace
 
-std::unique_ptr<ComputeUnit> make_functional_unit(const Configuration& configuration, Memory& memory,
-                                                  SpecialCensus* census) {
-  return std::make_unique<FunctionalUnit>(configuration, memory, census);
+std::unique_ptr<ComputeUnit> make_functional_unit(const Configuration& configuration, Memory& memory) {
+  return std::make_unique<FunctionalUnit>(configuration, memory);
+}
+
+std::unique_ptr<ComputeUnit> make_counting_functional_unit(const Configuration& configuration, Memory& memory,
+                                                           SpecialCensus& census) {
+  return std::make_unique<FunctionalUnit>(configuration, memory, &census);
 }
 
 }  // namespace raypool

@@ -18,8 +18,9 @@ class SpecialCensus;
 /// after trace_on() at most one instruction a warp. At most one kernel ends in a clock. The program must lie in memory
 /// when the first kernel after reset() is launched. timed() is false; counters hold instructions, thread instructions
 /// and tasks issued of each ALU type; kBusyCycles counts clocks, all others read 0.
-/// With a census, which must outlive it, the unit counts infinities and NaNs there, and takes longer.
-std::unique_ptr<ComputeUnit> make_functional_unit(const Configuration& configuration, Memory& memory,
-                                                  SpecialCensus* census = nullptr);
+std::unique_ptr<ComputeUnit> make_functional_unit(const Configuration& configuration, Memory& memory);
+/// The same, but counts infinities and NaNs in `census`, which must outlive it, and takes longer.
+std::unique_ptr<ComputeUnit> make_counting_functional_unit(const Configuration& configuration, Memory& memory,
+                                                           SpecialCensus& census);
 
 }  // namespace raypool

@@ -167,7 +167,7 @@ TEST(FunctionalUnit, InfinitiesAndNansAreCountedWhereTheyAriseAndWhereTheyAreRea
   Memory memory(kMemoryBytes);
   test::put_program(memory, code);
   SpecialCensus census(arith::Mode{});
-  const std::unique_ptr<ComputeUnit> unit = make_functional_unit({}, memory, &census);
+  const std::unique_ptr<ComputeUnit> unit = make_counting_functional_unit({}, memory, census);
   unit->reset(size32(code), kMemoryBytes);
   TestChip chip(*unit, memory);
   LaunchCommand command;
@@ -199,7 +199,7 @@ TEST(FunctionalUnit, InfinitiesAreThoseOfTheSignificand) {
   Memory memory(kMemoryBytes);
   test::put_program(memory, code);
   SpecialCensus census(arith::mode_of(configuration));
-  const std::unique_ptr<ComputeUnit> unit = make_functional_unit(configuration, memory, &census);
+  const std::unique_ptr<ComputeUnit> unit = make_counting_functional_unit(configuration, memory, census);
   unit->reset(size32(code), kMemoryBytes);
   TestChip chip(*unit, memory);
   LaunchCommand command;

@@ -109,7 +109,7 @@ SpecialValues FrameRuns::specials(const Configuration& machine) {
   const Program& program = ray_kernel_program(KernelTarget(machine));
   MemoryImage image = build_memory(program, scene_);
   SpecialCensus census(arith::mode_of(machine));
-  draw_on(*make_functional_unit(machine, image.memory, &census), image, "its infinities and NaNs");
+  draw_on(*make_counting_functional_unit(machine, image.memory, census), image, "its infinities and NaNs");
   return special_values(census, program);
 }
 
