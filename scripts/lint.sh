@@ -58,6 +58,9 @@ chip_configurations=(
   "intersection_pool SIZE=512"
   "intersection_pool SIZE=1 OVERHEAD=1 INTERSECTION_WORDS=12 PIPELINED=1"
   "intersection_pool SIZE=5 OVERHEAD=9 CYCLES_PER_BEAT=64 INTERSECTION_WORDS=16 CULLING=1"
+  "box_pipe BITS=6"
+  "box_pipe BITS=12"
+  "box_pipe BITS=16"
 )
 
 check_verilog() {

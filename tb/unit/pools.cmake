@@ -1,4 +1,4 @@
-# Benches of the chip's pools and ports in Verilog, against their classes in cpp_model/machine.
+# Benches of the chip's pools, ports and box pipe in Verilog, against their classes in cpp_model/machine.
 function(raypool_pool_bench name)
   add_executable(${name} ${CMAKE_CURRENT_LIST_DIR}/${name}.cpp)
   target_link_libraries(${name} PRIVATE raypool_machine GTest::gtest_main)
@@ -29,3 +29,9 @@ raypool_pool_bench(intersection_pool_test)
 raypool_pool_models(intersection_pool "SIZE;INTERSECTION_WORDS;OVERHEAD;CYCLES_PER_BEAT;PIPELINED;CULLING"
   1_21_1_1_0_0 1_21_2_1_1_1 2_16_1_1_1_0 3_12_9_2_0_1 3_21_64_64_1_0 5_21_9_1_1_1 7_18_3_3_1_0 512_21_2_1_0_0
   512_16_2_1_1_1)
+
+# The traverser's narrow box test. Its oracle counts in rational numbers.
+find_library(GMP_LIBRARY gmp REQUIRED)
+raypool_pool_bench(box_pipe_test)
+target_link_libraries(box_pipe_test PRIVATE ${GMP_LIBRARY})
+raypool_pool_models(box_pipe "BITS" 6 7 10 12 16)
