@@ -46,8 +46,8 @@ struct BoxRay {
     float origin = 0;
     bool backwards = false;  ///< the direction is negative
     bool still = false;      ///< it is zero, of either sign: the reciprocal is that of 1
-    uint32_t reciprocal =
-        0;  ///< m, of `bits` bits, the first of them 1: 1/|direction| lies in m .. m + 1, x 2^exponent
+    /// m, of `bits` bits, the first of them 1: 1/|direction| lies in m .. m + 1, x 2^exponent.
+    uint32_t reciprocal = 0;
     int exponent = 0;
     int padding = kNoPadding;  ///< boxes are met whose planes are nearer than 2^padding to those that are
   };
