@@ -44,7 +44,7 @@ size_t distance_of_path(const std::string& given, const std::string& path) {
 
 [[noreturn]] void refuse_unknown(const std::string& path) {
   std::vector<std::string> names = {kName};
-  for (const Field& field : fields()) names.push_back(field.path);
+  for (const ConfigurationField& field : fields()) names.push_back(field.path);
   std::stable_sort(names.begin(), names.end(), [&](const std::string& a, const std::string& b) {
     return distance_of_path(path, a) < distance_of_path(path, b);
   });
@@ -67,7 +67,7 @@ std::vector<Assignment> assignments(const std::vector<std::string>& texts) {
   return all;
 }
 
-Json parse_value(const Field& field, const std::string& text) {
+Json parse_value(const ConfigurationField& field, const std::string& text) {
   int number = 0;
   const char* const end = text.data() + text.size();
   const auto [rest, error] = std::from_chars(text.data(), end, number);
@@ -101,8 +101,8 @@ Json::json_pointer pointer_to(std::string path) {
   return Json::json_pointer("/" + path);
 }
 
-std::vector<Field> fields() {
-  std::vector<Field> all;
+std::vector<ConfigurationField> fields() {
+  std::vector<ConfigurationField> all;
   for (const Parameter& parameter : parameter::kAll) all.push_back({path_of(parameter), parameter.range});
   for (const AluType alu : kEveryAluType) {
     for (const AluParameter& parameter : parameter::kOfAlu) {
@@ -117,14 +117,14 @@ std::vector<Field> fields() {
 }
 
 void set_fields(Json& json, const std::vector<std::string>& texts) {
-  const std::vector<Field> all = fields();
+  const std::vector<ConfigurationField> all = fields();
   for (const Assignment& assignment : assignments(texts)) {
     if (assignment.path == kName) {
       json[kName] = assignment.value;
       continue;
     }
-    const auto field =
-        std::find_if(all.begin(), all.end(), [&](const Field& each) { return each.path == assignment.path; });
+    const auto field = std::find_if(all.begin(), all.end(),
+                                    [&](const ConfigurationField& each) { return each.path == assignment.path; });
     if (field == all.end()) refuse_unknown(assignment.path);
     json[pointer_to(field->path)] = parse_value(*field, assignment.value);
   }
@@ -138,7 +138,7 @@ std::vector<std::string> paths_set(const std::vector<std::string>& texts) {
       paths.push_back(path);
   };
   add(kName);
-  for (const Field& field : fields()) add(field.path);
+  for (const ConfigurationField& field : fields()) add(field.path);
   return paths;
 }
 

@@ -9,13 +9,13 @@
 
 namespace raypool {
 
-struct Field {
+struct ConfigurationField {
   std::string path;  ///< "warps", "alus.flt.count", "chip.ray_pool.size"
   Range range;
 };
 
 /// All but the name, in the order of the tables.
-std::vector<Field> fields();
+std::vector<ConfigurationField> fields();
 
 /// Where a configuration file has the field of this path.
 nlohmann::ordered_json::json_pointer pointer_to(std::string path);

@@ -28,7 +28,7 @@ TEST(Settings, ChangeAnyFieldOfUnitAndChip) {
 
 TEST(Settings, ReachEveryFieldThatAFileHolds) {
   // Each is set to another value where it has one, and that value must be what the machine then prints.
-  for (const Field& field : fields()) {
+  for (const ConfigurationField& field : fields()) {
     const nlohmann::ordered_json before = nlohmann::ordered_json::parse(to_json(Configuration()));
     const std::string value = value_text(before, field.path);
     const std::string other = field.range.form == Range::Form::OnOff ? (value == "true" ? "false" : "true")

@@ -99,7 +99,7 @@ std::string shortest_file(const Configuration& configuration) {
   const std::string whole = to_json(configuration);
   Json json = Json::parse(whole);
   // What one field is without being said may depend on others, so each is tried.
-  for (const Field& field : fields()) {
+  for (const ConfigurationField& field : fields()) {
     Json less = json;
     erase(less, pointer_to(field.path));
     if (is_that_of(less, whole)) json = less;
