@@ -19,21 +19,27 @@ for kind in "$@"; do
 done
 chosen=("${@:-${kinds[@]}}")
 checks=0
-failed=()
-log=$(mktemp)
-trap 'rm -f "$log"' EXIT
+scratch=$(mktemp -d)
+failed=$scratch/failed
+touch "$failed"
+trap 'rm -rf "$scratch"' EXIT
 
-# check NAME COMMAND...: silent success; on failure, or on any output when the tool only
-# warns, prints it and how to repeat it.
+# check NAME COMMAND...: silent success; on failure, or on any output when the tool only warns, prints it and how to
+# repeat it. As many run at a time as there are cores.
 check() {
-  local name=$1 begin=$SECONDS; shift
   checks=$((checks + 1))
+  while [ "$(jobs -rp | wc -l)" -ge "$(nproc)" ]; do wait -n; done
+  run_check "$scratch/$checks" "$@" &
+}
+
+run_check() {
+  local log=$1 name=$2 begin=$SECONDS; shift 2
   if "$@" > "$log" 2>&1 && ! grep -qiE 'warning|error' "$log"; then
     echo "lint: $name: clean ($((SECONDS - begin)) s)"
   else
-    failed+=("$name")
-    cat "$log"
-    printf 'lint: %s: NOT clean; again with:\n ' "$name"; printf ' %q' "$@"; echo
+    echo "$name" >> "$failed"
+    # In one piece, so that no other's line comes between.
+    printf '%s\nlint: %s: NOT clean; again with:\n%s\n' "$(cat "$log")" "$name" "$(printf ' %q' "$@")"
   fi
 }
 
@@ -111,33 +117,21 @@ check_shell() {
 # clang-tidy reads each source as the build compiles it; what only the build generates (Verilated models) is left to
 # the compiler.
 check_cpp() {
-  local cpp file tidy=()
+  local cpp
   mapfile -t cpp < <(scripts/sources.sh cpp)
   check "clang-format (make format), ${#cpp[@]} files" clang-format --dry-run -Werror "${cpp[@]}"
-  for file in "${cpp[@]}"; do
-    case $file in *.cpp) grep -qF "\"$PWD/$file\"" "$build/compile_commands.json" && tidy+=("$file") ;; esac
-  done
-  if [ ${#tidy[@]} -gt 0 ]; then
-    echo "lint: clang-tidy reads ${#tidy[@]} files, $(nproc) at a time, which takes most of the time"
-    # shellcheck disable=SC2016 # the inner shell expands them
-    check "clang-tidy, ${#tidy[@]} files" \
-      bash -c 'printf "%s\0" "$@" | xargs -0 -n 1 -P "$(nproc)" clang-tidy -p "$build" --quiet 2>&1 |
-      grep -vE "^[0-9]+ warnings? (generated|treated)|^Suppressed|^Use -header-filter"
-      exit "${PIPESTATUS[1]}"' clang-tidy "${tidy[@]}"
-  else
-    echo "lint: clang-tidy: $build/compile_commands.json names no file of the project;" \
-      "run make lint, not scripts/lint.sh" >&2
-    failed+=("clang-tidy")
-  fi
+  echo "lint: clang-tidy reads all sources, which takes most of the time"
+  check "clang-tidy" scripts/tidy.py "$build"
 }
 
 [ $# -gt 0 ] || echo "lint: $(last_duration lint)"
 for kind in "${chosen[@]}"; do "check_$kind"; done
+wait
 [ $# -gt 0 ] || keep_duration lint
 # The last lines are the ones that are read.
-if [ ${#failed[@]} -gt 0 ]; then
-  printf 'lint: %d of %d checks are not clean; what they say stands above:\n' "${#failed[@]}" "$checks"
-  printf '  %s\n' "${failed[@]}"
+if [ -s "$failed" ]; then
+  printf 'lint: %d of %d checks are not clean; what they say stands above:\n' "$(wc -l < "$failed")" "$checks"
+  sort "$failed" | sed 's/^/  /'
   exit 1
 fi
 echo "lint: all $checks checks are clean, in $SECONDS s"
