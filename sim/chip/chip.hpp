@@ -10,13 +10,13 @@
 #include <string>
 #include <vector>
 
-#include "chip/policy.hpp"
 #include "chip/ports.hpp"
 #include "chip/tile_costs.hpp"
 #include "config/configuration.hpp"
 #include "isa/isa.hpp"
 #include "kernel/kernels.hpp"
 #include "machine/compute_unit.hpp"
+#include "machine/kernel_policy.hpp"
 #include "machine/memory.hpp"
 #include "machine/warp_cycles.hpp"
 #include "scene/ray_counts.hpp"
@@ -49,7 +49,7 @@ struct ChipOptions {
   std::vector<uint32_t> tiles;
   chip::TileCosts* tile_costs = nullptr;  ///< gets what each of them costs; may be null
 
-  chip::PolicyMaker own_policy;                       ///< makes one of the caller's own, in place of the one named
+  PolicyMaker own_policy;                             ///< makes one of the caller's own, in place of the one named
   std::function<void(const ChipProgress&)> progress;  ///< called now and then, and at the end
   uint64_t watchdog_cycles = 100'000;  ///< this long without a retired instruction or a transfer is an error; 0: never
   uint64_t cycle_limit = 0;            ///< give up after this many cycles; 0: never

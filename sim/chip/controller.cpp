@@ -47,6 +47,7 @@ Controller::Controller(const sc_core::sc_module_name& name, const ChipOptions& o
       width_(options.width),
       height_(options.height),
       secondary_(secondary_kernel(options.depth, options.reflections)),
+      rules_(chip_, options.configuration.contents(), options.device->units()),
       tile_width_(1u << tile_width_log2(options.configuration.contents())),
       tile_height_(tile_rows(options.configuration)),
       next_tile_(tile_walk(options.configuration, width_, height_), options.tiles),
@@ -88,18 +89,12 @@ uint32_t Controller::pixels_of(const ChosenTiles& tile) const {
 }
 
 bool Controller::eye_possible() const {
-  if (next_tile_.at_end()) return false;
-  if (!chip_.window_remedy && ledger->held() > 0 && round_ == 0) return false;
-  return ledger->held() + pixels_of(next_tile_) <= chip_.held_limit;
+  return !next_tile_.at_end() && rules_.may_cast(pixels_of(next_tile_), ledger->held());
 }
 
 uint32_t Controller::secondary_room() const {
-  // No shadow ray ever waits for room.
-  if (chip_.shading == Shading::Traverser) return options_.configuration.contents();
-  const uint32_t limit = chip_.intersection_pool_size + chip_.ray_pool_size - 1;
-  const uint32_t shadows =
-      rays->shadow_rays() + ledger->shadow_rays_to_come() + intersections->available(ImportKind::Shadow);
-  return shadows < limit ? limit - shadows : 0;
+  return rules_.secondary_room(rays->shadow_rays(), ledger->shadow_rays_to_come(),
+                               intersections->available(ImportKind::Shadow));
 }
 
 ImportKind Controller::secondary_import() const {
@@ -172,8 +167,7 @@ void Controller::launch(const Choice& choice) {
 }
 
 LaunchCommand Controller::next_tile(uint32_t unit) {
-  if (ledger->held() == 0) round_ = device->units();
-  --round_;
+  rules_.cast(ledger->held());
   std::vector<uint32_t> pixels;
   const uint32_t left = tile_x(), top = tile_y();
   for (uint32_t y = top; y < std::min(top + tile_height_, height_); ++y)

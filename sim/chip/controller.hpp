@@ -19,8 +19,9 @@
 #include "chip/chip.hpp"
 #include "chip/chip_clock.hpp"
 #include "chip/interfaces.hpp"
-#include "chip/policy.hpp"
 #include "chip/tile_walk.hpp"
+#include "machine/kernel_policy.hpp"
+#include "machine/launch_rules.hpp"
 
 namespace raypool::chip {
 
@@ -92,12 +93,12 @@ class Controller : public sc_core::sc_module, public DecisionIf, public KernelEv
   const uint32_t width_, height_;  // of the image
   std::unique_ptr<KernelPolicy> policy_;
   RayKernel secondary_;
+  LaunchRules rules_;
   sc_core::sc_event decide_;
 
   uint32_t tile_width_, tile_height_;
   uint64_t pixels_ = 0;
   ChosenTiles next_tile_;
-  int round_ = 0;  // tiles that may be cast before all held pixels are finished; without the remedy only
 
   bool finished_ = false;
   uint32_t held_peak_ = 0;

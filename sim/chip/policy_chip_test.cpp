@@ -12,10 +12,6 @@
 namespace raypool {
 namespace {
 
-using chip::Choice;
-using chip::KernelPolicy;
-using chip::PolicySetup;
-using chip::PolicyView;
 using test::FrameRun;
 
 /// Does anything that is possible, kernels of any size or none, and keeps only to the contract of KernelPolicy.

@@ -1,4 +1,4 @@
-# Benches of the chip's pools, ports and box pipe in Verilog, against their classes in cpp_model/machine.
+# Benches of the chip's pools, ports, policies and box pipe in Verilog, against their classes.
 function(raypool_pool_bench name)
   add_executable(${name} ${CMAKE_CURRENT_LIST_DIR}/${name}.cpp)
   target_link_libraries(${name} PRIVATE raypool_machine GTest::gtest_main)
@@ -6,27 +6,28 @@ function(raypool_pool_bench name)
   gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60)
 endfunction()
 
-# raypool_pool_models(MODULE PARAMETERS MODEL...): class V<module>_<model>, a model being the parameters' values with _
-# between.
-function(raypool_pool_models module names)
+# raypool_pool_models(BENCH MODULE PARAMETERS MODEL...): class V<module>_<model>, a model being the parameters' values
+# with _ between.
+function(raypool_pool_models bench module names)
   foreach(model IN LISTS ARGN)
     string(REPLACE "_" ";" values ${model})
     set(parameters)
     foreach(name value IN ZIP_LISTS names values)
       list(APPEND parameters -G${name}=${value})
     endforeach()
-    verilate(${module}_test SOURCES ${RAYPOOL_RTL}/${module}.v PREFIX V${module}_${model} TOP_MODULE ${module}
+    verilate(${bench} SOURCES ${RAYPOOL_RTL}/${module}.v PREFIX V${module}_${model} TOP_MODULE ${module}
       OPT_SLOW -w OPT_FAST -O2 -w OPT_GLOBAL -O1 -w
       VERILATOR_ARGS -O3 --default-language 1364-2005 -y ${RAYPOOL_RTL} -I${RAYPOOL_RTL} ${parameters})
   endforeach()
 endfunction()
 
 raypool_pool_bench(ray_pool_test)
-raypool_pool_models(ray_pool "SIZE;OVERHEAD;CYCLES_PER_BEAT;PIPELINED;CULLING"
+raypool_pool_models(ray_pool_test ray_pool "SIZE;OVERHEAD;CYCLES_PER_BEAT;PIPELINED;CULLING"
   1_1_1_0_0 1_2_1_1_0 2_1_1_1_1 7_2_1_0_1 5_9_3_1_1 16_3_2_0_1 3_64_64_1_0 512_2_1_0_0 512_2_1_1_1)
 
 raypool_pool_bench(intersection_pool_test)
-raypool_pool_models(intersection_pool "SIZE;INTERSECTION_WORDS;OVERHEAD;CYCLES_PER_BEAT;PIPELINED;CULLING"
+raypool_pool_models(intersection_pool_test intersection_pool
+  "SIZE;INTERSECTION_WORDS;OVERHEAD;CYCLES_PER_BEAT;PIPELINED;CULLING"
   1_21_1_1_0_0 1_21_2_1_1_1 2_16_1_1_1_0 3_12_9_2_0_1 3_21_64_64_1_0 5_21_9_1_1_1 7_18_3_3_1_0 512_21_2_1_0_0
   512_16_2_1_1_1)
 
@@ -34,4 +35,15 @@ raypool_pool_models(intersection_pool "SIZE;INTERSECTION_WORDS;OVERHEAD;CYCLES_P
 find_library(GMP_LIBRARY gmp REQUIRED)
 raypool_pool_bench(box_pipe_test)
 target_link_libraries(box_pipe_test PRIVATE ${GMP_LIBRARY})
-raypool_pool_models(box_pipe "BITS" 6 7 10 12 16)
+raypool_pool_models(box_pipe_test box_pipe "BITS" 6 7 10 12 16)
+
+# What the controller decides with.
+raypool_pool_bench(policies_test)
+raypool_pool_models(policies_test thesis_policy
+  "CONTENTS;UNITS;RAY_POOL_SIZE;INTERSECTION_POOL_SIZE;RAY_THRESHOLD;INTERSECTION_THRESHOLD"
+  1_1_1_1_48_8 4_2_7_5_48_8 64_1_512_512_48_8 64_4_512_512_7_3 128_2_40_16_48_8 1024_4_512_512_48_8)
+raypool_pool_models(policies_test fill_policy "CONTENTS;UNITS;RAY_POOL_SIZE;INTERSECTION_POOL_SIZE;BATCH"
+  1_1_1_1_1 4_2_7_5_3 64_1_512_512_64 64_4_512_512_128 128_2_40_16_600 1024_4_512_512_64)
+raypool_pool_models(policies_test launch_rules
+  "CONTENTS;UNITS;RAY_POOL_SIZE;INTERSECTION_POOL_SIZE;HELD_LIMIT;WINDOW_REMEDY;TRAVERSER_SHADES"
+  1_1_1_1_1_1_0 4_2_7_5_3_0_0 64_1_512_512_512_1_1 64_4_512_512_100_0_0)

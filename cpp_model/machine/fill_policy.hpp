@@ -4,9 +4,9 @@
 
 #include <cstdint>
 
-#include "chip/policy.hpp"
+#include "machine/kernel_policy.hpp"
 
-namespace raypool::chip {
+namespace raypool {
 
 class FillPolicy : public KernelPolicy {
  public:
@@ -27,4 +27,4 @@ class FillPolicy : public KernelPolicy {
   uint32_t backlog_;  // with more rays in their pool the traverser is behind
 };
 
-}  // namespace raypool::chip
+}  // namespace raypool

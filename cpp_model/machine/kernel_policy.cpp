@@ -1,11 +1,11 @@
-#include "chip/policy.hpp"
+#include "machine/kernel_policy.hpp"
 
 #include <algorithm>
 #include <stdexcept>
 
-#include "chip/fill_policy.hpp"
+#include "machine/fill_policy.hpp"
 
-namespace raypool::chip {
+namespace raypool {
 
 namespace {
 
@@ -61,4 +61,4 @@ std::unique_ptr<KernelPolicy> make_policy(PolicyName name, const PolicySetup& se
   throw std::logic_error("a policy without a class");
 }
 
-}  // namespace raypool::chip
+}  // namespace raypool

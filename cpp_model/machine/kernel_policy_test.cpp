@@ -1,14 +1,14 @@
-#include "chip/policy.hpp"
+#include "machine/kernel_policy.hpp"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "chip/fill_policy.hpp"
 #include "config/configuration.hpp"
 #include "config/parameter_table.hpp"
+#include "machine/fill_policy.hpp"
 
-namespace raypool::chip {
+namespace raypool {
 namespace {
 
 using Kind = Choice::Kind;
@@ -225,4 +225,4 @@ TEST(Policy, EveryNameOfTheTableHasAClass) {
 }
 
 }  // namespace
-}  // namespace raypool::chip
+}  // namespace raypool

@@ -1,8 +1,8 @@
-#include "chip/fill_policy.hpp"
+#include "machine/fill_policy.hpp"
 
 #include <algorithm>
 
-namespace raypool::chip {
+namespace raypool {
 
 namespace {
 
@@ -57,8 +57,7 @@ Choice FillPolicy::part_load(const PolicyView& view, const Choice& secondary, co
   if (view.kernels > 0 || view.more_to_come) return {};
   // Nothing will come by itself, so the empty ray pool has to take what is made, however small it is.
   const uint32_t threads = std::min({setup_.contents, view.normal, view.secondary_room});
-  if (threads > 0) return {Choice::Kind::Secondary, threads};
-  return {view.eye_possible ? Choice::Kind::Eye : Choice::Kind::Halt, 0};
+  return {threads > 0 ? Choice::Kind::Secondary : Choice::Kind::Halt, threads};
 }
 
-}  // namespace raypool::chip
+}  // namespace raypool

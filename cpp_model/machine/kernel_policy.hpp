@@ -9,7 +9,7 @@
 
 #include "config/parameters.hpp"
 
-namespace raypool::chip {
+namespace raypool {
 
 /// What never changes in a run.
 struct PolicySetup {
@@ -69,4 +69,4 @@ class ThesisPolicy : public KernelPolicy {
 using PolicyMaker = std::function<std::unique_ptr<KernelPolicy>(const PolicySetup&)>;
 std::unique_ptr<KernelPolicy> make_policy(PolicyName name, const PolicySetup& setup);
 
-}  // namespace raypool::chip
+}  // namespace raypool

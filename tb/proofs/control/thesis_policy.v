@@ -1,0 +1,47 @@
+// @modules thesis_policy
+// @proves what is proposed is possible: eye rays if a tile may be cast, else a thread or more, as many as there are of
+//   its intersections and as are safe
+// @proves it never halts for good: not while shadow intersections fill their pool, nor when nothing is to come and
+//   intersections are there or a tile may be cast
+// @proves ahead of the unit only a full kernel that imports is launched
+// @parameters CONTENTS=4 RAYS=7 INTERSECTIONS=5
+// @parameters CONTENTS=1 RAYS=1 INTERSECTIONS=1
+// @parameters CONTENTS=64 RAYS=100 INTERSECTIONS=60
+// @break thesis_policy s/localparam integer INTERSECTIONS =/localparam integer INTERSECTIONS = 2 +/
+// @break thesis_policy s/secondary_room_i >= load/1'b1/
+// @break thesis_policy s/else if \(any_shadow\) wanted = SHADE;//
+// @break thesis_policy s/else if \(!more_to_come_i\) begin/else if (!more_to_come_i \&\& normal_i != shadow_i) begin/
+// @break thesis_policy s/ahead_i && threads/ahead_i \&\& wanted != EYE \&\& threads/
+`default_nettype none
+module check #(parameter CONTENTS = 4, parameter RAYS = 7, parameter INTERSECTIONS = 5) (
+  input wire clk_i, input wire [9:0] rays, normal, shadow, others, input wire eye_possible, to_come, ahead);
+  localparam BITS = 12;
+  localparam LIMIT = RAYS + INTERSECTIONS - 1;
+  // What a controller can see: rule 2 leaves what shadow rays and intersections do not take.
+  reg started = 1'b0;
+  always @(posedge clk_i) started <= 1'b1;
+  wire more_to_come = rays != 0 || to_come;
+  wire [BITS-1:0] shadows = shadow + (more_to_come ? others : 0);
+  wire [BITS-1:0] room = shadows < LIMIT ? LIMIT - shadows : 0;
+  wire [1:0] kind;
+  wire [$clog2(CONTENTS + 1)-1:0] threads;
+  thesis_policy #(.CONTENTS(CONTENTS), .RAY_POOL_SIZE(RAYS), .INTERSECTION_POOL_SIZE(INTERSECTIONS),
+                  .COUNT_BITS(BITS)) dut (
+    .rays_i({2'd0, rays}), .normal_i({2'd0, normal}), .shadow_i({2'd0, shadow}), .secondary_room_i(room),
+    .eye_possible_i(eye_possible), .more_to_come_i(more_to_come), .ahead_i(ahead), .kind_o(kind), .threads_o(threads));
+  always @* begin
+    assume (rays <= RAYS && normal <= INTERSECTIONS && shadow <= INTERSECTIONS);
+    if (started) begin
+      if (kind == 0 || kind == 1) assert (threads == 0);
+      if (kind == 1) assert (eye_possible);
+      if (kind == 2) assert (threads != 0 && threads <= CONTENTS && threads <= normal && threads <= room);
+      if (kind == 3) assert (threads != 0 && threads <= CONTENTS && threads <= shadow);
+      if (kind == 0 && !ahead) begin
+        assert (shadow != INTERSECTIONS);
+        assert (more_to_come || (!eye_possible && normal == 0 && shadow == 0));
+      end
+      if (ahead) assert (kind == 0 || (kind != 1 && threads == CONTENTS));
+    end
+  end
+endmodule
+`default_nettype wire
