@@ -56,6 +56,8 @@ POWER     ?= 0
 BREAK     ?= 0
 ONLY      ?=
 PLAN      ?=
+MODULE    ?=
+PARAMETERS ?=
 # `make cosim`
 PROGRAMS  ?= 1000
 SEED      ?= 1
@@ -88,7 +90,7 @@ export CONFIG SET CUS SCENE SIZE DEPTH ENGINE TRAVERSER VIEW CAMERA EYE LOOK_AT 
 export A B KERNEL PROGRAMS SEED COVERAGE MUTANTS MODE THREADS
 export SLOWER
 export FROM EXPERIMENT WHERE JOBS SCENES LEVELS RUNS ERROR TIME SAMPLES MACHINES
-export LIBERTY CLOCK MEMORIES AGAINST RUN ONLY PLAN
+export LIBERTY CLOCK MEMORIES AGAINST RUN ONLY PLAN MODULE PARAMETERS
 
 # Everything that is made goes here; scripts read it from the environment.
 BUILD     ?= build
@@ -130,7 +132,7 @@ UNIT_OF_ENGINE := $(if $(filter rtl lockstep,$(ENGINE)),$(UNIT),true)
 .PHONY: help sim fidelity fit compare run cosim configurations mutants faults unit test lint format bench clean
 .PHONY: setup-% program configured-%
 .PHONY: numerics-long proofs synth synth-replay synth-prove growth numerics significands extremes isa diagrams quoted
-.PHONY: package sweep report bench-native pareto
+.PHONY: package sweep report bench-native pareto synth-module
 
 help: ## this list
 	@echo 'raypool: a ray-tracing GPU to render on, measure, verify and synthesise'
@@ -172,6 +174,7 @@ help: ## this list
 	@echo 'variables of make synth, synth-replay, synth-prove:  CONFIG  SET  LIBERTY=FILE  CLOCK=NS'
 	@echo '    LIBERTY: .lib or .lib.gz, or a name that asks where it is  MEMORIES=macros|flops|FOLDER of Liberty files'
 	@echo '  make synth:  AGAINST=REPORT  RUN=REPORT_OF_SIM  POWER=1  OUT=FOLDER'
+	@echo '  synth-module:  MODULE=NAME  PARAMETERS="A=1,B=2 ...": of rtl/, one row for each  LIBERTY  CLOCK  MEMORIES'
 	@echo '  synth-replay:  BREAK=N;  synth-prove:  ONLY=BLOCKS;  growth:  PLAN=FILE'
 	@echo 'variables of make cosim:  PROGRAMS=$(PROGRAMS)  SEED=$(SEED)  CONFIG  SET  CUS  COVERAGE=FILE.json'
 	@echo 'variables of make numerics:  GATES=1: synthesise the lanes of every mode first'
@@ -255,6 +258,10 @@ synth-replay: setup-sim setup-synth program ## run the mapped netlist in lockste
 
 synth-prove: setup-sim setup-synth program ## prove each mapped block equal to its RTL
 	@$(SYNTH) prove $(SYNTH_OPTIONS) $${ONLY:+--only "$$ONLY"}
+
+synth-module: setup-synth ## area and slack of one module for each of PARAMETERS: MODULE
+	@$(SYNTH) module "$$MODULE" $$PARAMETERS --memories "$$MEMORIES" $${LIBERTY:+--liberty "$$LIBERTY"} \
+	  $${CLOCK:+--clock "$$CLOCK"}
 
 growth: setup-sim setup-synth program ## area against warps, lanes, ALUs; what each feature costs
 	@$(SYNTH) growth $${PLAN:+--plan "$$PLAN"} $${OUT:+--out "$$OUT"}

@@ -6,7 +6,7 @@ import shutil
 import sys
 import time
 
-from . import elaborate, fit, flow, growth, plots, power, prove, replay, report, timing
+from . import elaborate, fit, flow, growth, module, plots, power, prove, replay, report, timing
 from .errors import SynthError, say, warn
 
 
@@ -139,6 +139,10 @@ def growth_command(arguments):
     growth.grow(arguments.jobs, arguments.out or os.path.join(flow.BUILD, "growth"), arguments.plan)
 
 
+def module_command(arguments):
+    say(module.table(module.synthesise(arguments.module, arguments.parameters, options_of(arguments))))
+
+
 def fit_command(arguments):
     fit.fit(arguments.found, arguments.jobs)
     if not arguments.power:
@@ -159,6 +163,7 @@ def parser():
         ("prove", prove_command),
         ("growth", growth_command),
         ("fit", fit_command),
+        ("module", module_command),
     ):
         command = commands.add_parser(name)
         command.set_defaults(function=function)
@@ -175,6 +180,9 @@ def parser():
             )
         if name == "fit":
             command.add_argument("found", help="what raypool fit --json has written")
+        if name == "module":
+            command.add_argument("module", help="of rtl/")
+            command.add_argument("parameters", nargs="*", help="of one row of the table each: BITS=8 or A=1,B=2")
         if name == "report":
             command.add_argument("--against", help="an earlier report.json to compare with")
             command.add_argument("--run", help="report.json of raypool sim with this configuration: Mrays/s a mm2")

@@ -43,6 +43,7 @@ class Design:
     library: Library
     parameters: dict
     folder: str
+    top: str = "compute_unit"
     clock_ns: float = 0.0
     fo4_ns: float = 0.0
     kinds: dict = field(default_factory=dict)
@@ -69,10 +70,13 @@ class Design:
 def label(options, library):
     """The folder's name: the configuration and whatever is not the default."""
     name = os.path.splitext(os.path.basename(options.config))[0]
-    parts = (
-        [name]
-        + ([library.name] if library.name != "osu018" else [])
-        + ([os.path.basename(options.memories.rstrip("/"))] if options.memories != "macros" else [])
+    return "-".join(filter(None, (name, suffix(options, library))))
+
+
+def suffix(options, library):
+    """Whatever is not the default."""
+    parts = ([library.name] if library.name != "osu018" else []) + (
+        [os.path.basename(options.memories.rstrip("/"))] if options.memories != "macros" else []
     )
     if options.clock_ns is not None:
         parts.append(f"{options.clock_ns:g}ns")
@@ -138,7 +142,7 @@ def prepare(design):
     # A library that says nothing else gets the default library's clock, counted in its own FO4.
     default = 40.0 * design.fo4_ns
     design.clock_ns = design.options.clock_ns or design.library.setup.get("clock_ns") or round(default, 3)
-    design.kinds = elaborate.tree(design.parameters, work, gated=bool(design.library.clock_gate))
+    design.kinds = elaborate.tree(design.parameters, work, design.top, gated=bool(design.library.clock_gate))
     return work
 
 
@@ -150,7 +154,7 @@ def map_design(design):
     mapper = mapper_of(design)
     stay = {k.identity for k in design.blocks()}
     paths = mapper.map_all([k for k in design.kinds.values() if k.identity not in stay], design.efforts)
-    design.netlist = Netlist(design.kinds, paths, design.library)
+    design.netlist = Netlist(design.kinds, paths, design.library, design.top)
     design.buffers = fanout.repair(design.netlist)
     design.netlist.write(design.verilog)
     if design.blocks():
@@ -158,7 +162,9 @@ def map_design(design):
 
 
 def time_design(design, work):
-    design.endpoints, loops = timing.time_unit(design.verilog, design.library, design.macros, design.clock_ns, work)
+    design.endpoints, loops = timing.time_unit(
+        design.verilog, design.library, design.macros, design.clock_ns, work, design.top
+    )
     if loops:
         raise SynthError(f"the netlist has combinational loops:\n{loops}")
     return design.endpoints[0].slack
@@ -197,7 +203,7 @@ def on_failing_paths(design, work, needed=0.0):
             seen.add(name)
             chosen.append(end.pin)
     paths = timing.describe(
-        chosen[:PATHS_A_ROUND], design.verilog, design.library, design.macros, design.clock_ns, work
+        chosen[:PATHS_A_ROUND], design.verilog, design.library, design.macros, design.clock_ns, work, design.top
     )
     return identities_on(design, [step[0] for _, _, steps in paths for step in steps])
 

@@ -76,24 +76,28 @@ class Endpoint:
     slack: float
 
 
-def set_up(netlist_path, library, macros, clock_ns):
+def set_up(netlist_path, library, macros, clock_ns, top):
+    """A module without a file of its own has the constraints of any module."""
+    constraints = os.path.join(ROOT, "constraints", f"{top}.sdc")
+    if not os.path.exists(constraints):
+        constraints = os.path.join(ROOT, "constraints", "module.sdc")
     macro = f"read_liberty {macros}\n" if macros else ""
     return f"""read_liberty {library.whole_file()}
 {macro}read_verilog {netlist_path}
-link_design compute_unit
+link_design {top}
 set raypool_clock_ns {clock_ns}
 set raypool_driver {library.driver}
-source {ROOT}/constraints/compute_unit.sdc
+source {constraints}
 """
 
 
 _END = re.compile(r"^(?P<pin>\S+)\s+\(\S+\)\s+-?[\d.]+\s+-?[\d.]+\s+(?P<slack>-?[\d.]+)\s")
 
 
-def time_unit(netlist_path, library, macros, clock_ns, folder):
+def time_unit(netlist_path, library, macros, clock_ns, folder, top="compute_unit"):
     """Endpoints with their slack in ns, worst first, and the text of OpenSTA's check for loops."""
     text = run_sta(
-        set_up(netlist_path, library, macros, clock_ns)
+        set_up(netlist_path, library, macros, clock_ns, top)
         + """
 puts "== loops"
 check_setup -loops -verbose
@@ -119,10 +123,10 @@ puts "== end"
 _STEP = re.compile(r"^\s*(?P<delay>-?[\d.]+)\s+(?P<time>-?[\d.]+)\s+(?P<edge>[\^v])\s+(?P<pin>\S+)\s+\((?P<cell>\S+)\)")
 
 
-def describe(pins, netlist_path, library, macros, clock_ns, folder):
+def describe(pins, netlist_path, library, macros, clock_ns, folder, top="compute_unit"):
     """The slowest path to each of the given end points: [(start, end, [(pin, cell, delay, time)])], in their order."""
     commands = "\n".join(f'puts "== path"\nreport_checks -path_delay max -to {{{pin}}} -digits 4' for pin in pins)
-    text = run_sta(set_up(netlist_path, library, macros, clock_ns) + commands, folder, "paths")
+    text = run_sta(set_up(netlist_path, library, macros, clock_ns, top) + commands, folder, "paths")
     found = []
     for part in text.split("== path")[1:]:
         start = re.search(r"Startpoint: (\S+)", part)

@@ -17,7 +17,7 @@ from unittest import mock
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 sys.path.insert(0, os.path.join(ROOT, "scripts"))
 
-from synth import clock_gates, elaborate, fit, flow, function, library, macros, mapping, netlist  # noqa: E402
+from synth import clock_gates, elaborate, fit, flow, function, library, macros, mapping, module, netlist  # noqa: E402
 from synth import prove, replay, report, timing  # noqa: E402
 from synth.errors import SynthError  # noqa: E402
 from synth.memories import MemoryModel  # noqa: E402
@@ -92,6 +92,20 @@ class Synthesis(unittest.TestCase):
         )
         return done.returncode, done.stderr.strip()
 
+    def test_a_module_alone_has_a_row_for_each_set_of_parameters(self):
+        options = flow.Options(memories="flops", jobs=1)
+        with mock.patch.object(module, "BUILD", self.folder):
+            found = module.synthesise("free_list", ["SIZE=4", "SIZE=8,NUMBER_BITS=3"], options)
+        lines = [line.split() for line in module.table(found).splitlines()]
+        self.assertEqual(lines[0], ["osu018,", "4", "ns"])
+        self.assertEqual([line[0] for line in lines[2:]], ["SIZE=4", "SIZE=8,NUMBER_BITS=3"])
+        (kge, flops, slack), (more_kge, more_flops, less_slack) = ([float(x) for x in line[1:4]] for line in lines[2:])
+        self.assertGreater(more_kge, kge)
+        # Counts of 0 .. SIZE twice, two addresses, SIZE + 1 places of NUMBER_BITS, what came alone.
+        self.assertEqual(flops, 3 + 3 + 2 + 2 + 4 * 2 + 2 + 2 + 1)
+        self.assertGreater(more_flops, flops)
+        self.assertTrue(0 < less_slack <= slack < 4)
+
     def test_bad_input_gets_one_sentence(self):
         run = os.path.join(self.folder, "run.json")
         with open(run, "w", encoding="utf-8") as file:
@@ -113,6 +127,9 @@ class Synthesis(unittest.TestCase):
             (["growth", "--plan", run], "not a plan"),
             (["fit", run], "not what raypool fit --json writes"),
             (["fit", "/no/such.json"], "not what raypool fit --json writes"),
+            (["module", "teapot"], "teapot: no such module in rtl/"),
+            (["module", "free_list", "SIZE"], "written BITS=8 or A=1,B=2"),
+            (["module", "free_list", "SPOUT=1"], "free_list has no parameter SPOUT"),
         ):
             code, text = self.command(*arguments)
             self.assertEqual(code, 1, text)
