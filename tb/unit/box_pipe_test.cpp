@@ -204,6 +204,34 @@ TEST_P(Narrow, MeetsWhatExactArithmeticMeets) {
   EXPECT_GT(still, 1000u);
 }
 
+// What is subtracted may end below the last bit that is kept: then the distance is less than what the other bits say.
+// It matters where all else is exact: a reciprocal that is m but for little, and an origin that is off by all that it
+// may be.
+TEST_P(Narrow, OfADifferenceNothingIsRoundedUp) {
+  const int bits = GetParam(), places = bits + 3;
+  const uint32_t power = 1u << (bits - 1);
+  const auto rest = [bits](uint32_t m) { return (uint64_t{1} << (bits + 23)) % m; };
+  uint32_t m = power + 1;
+  for (uint32_t each = power + 1; each < 2 * power; ++each) m = rest(each) < rest(m) ? each : m;
+  const auto direction = static_cast<float>((uint64_t{1} << (bits + 23)) / m);
+  Cases cases(static_cast<uint32_t>(bits));
+  for (int i = 0; i < 60000; ++i) {
+    const uint32_t n = (1u << (places - 1)) + cases.below(1u << (places - 1));
+    BoxNode node{{std::ldexp(static_cast<float>(n), 24 - places), 0, 0}, {0, 0, 0}, 1, {}};
+    for (auto& upper : node.planes[1]) upper[0] = 255;
+    const RayWords words = {{0.25f - 0x1p-20f, 0, 0}, {direction, 0, 0}, kInfinity};
+    BoxRay ray = set_up(words, bits);
+    ASSERT_EQ(ray.axes[0].reciprocal, m);
+    ray.axes[0].padding = 24 - places;
+    const double shift[3] = {std::ldexp(1 - 0x1p-30, 24 - places), 0, 0};
+    Exact entry;
+    ASSERT_TRUE(meets(words, shift, node, 0, entry));
+    const BoxResult result = test_boxes(ray, node, ray.limit);
+    ASSERT_EQ(result.met, 1u);
+    ASSERT_FALSE(entry < Exact(value_of(result.entry[0], bits))) << "n " << n;
+  }
+}
+
 // Rays through the middle of things: how many boxes too many there are.
 TEST_P(Narrow, MeetsFewBoxesMore) {
   const int bits = GetParam();
