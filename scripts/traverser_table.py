@@ -5,6 +5,7 @@
                                                                machine what the ceilings of the machine without it
                                                                predict, and what was measured
     scripts/traverser_table.py nodes build/sweeps/nodes        compressed nodes against exact ones
+    scripts/traverser_table.py boxes build/sweeps/boxes        boxes in integers against boxes in floats
 """
 import json
 import os
@@ -105,8 +106,20 @@ def nodes(rows):
                              f"{row['mrays_per_second']:.1f}"))  # fmt: skip
 
 
+def boxes(rows):
+    columns = "{:<6}{:>11}{:>15}{:>12}{:>17}{:>9}"
+    print(columns.format("bits", "nodes/ray", "triangles/ray", "box pipes", "triangle pipes",
+                         "Mrays/s"))  # fmt: skip
+    for row in rows:
+        print(columns.format(row[PART + "box_bits"] or "float",
+                             f"{row['traversal.nodes_a_ray']:.2f}", f"{row['traversal.triangles_a_ray']:.2f}",
+                             f"{row['traversal.box_pipes.utilisation']:.1%}",
+                             f"{row['traversal.triangle_pipes.utilisation']:.1%}",
+                             f"{row['mrays_per_second']:.1f}"))  # fmt: skip
+
+
 def main():
-    tables = {"binds": binds, "nodes": nodes}
+    tables = {"binds": binds, "nodes": nodes, "boxes": boxes}
     if len(sys.argv) != 3 or sys.argv[1] not in tables:
         sys.exit(__doc__.strip())
     with open(sys.argv[2] + "/table.json", encoding="utf-8") as file:

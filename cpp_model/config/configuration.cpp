@@ -59,6 +59,7 @@ class Section {
     int value = parameter.get(configuration);
     switch (parameter.range.form) {
       case Range::Form::Integer:
+      case Range::Form::ZeroOr:
       case Range::Form::PowerOfTwo:
         value = integer(parameter.key).value_or(value);
         break;
@@ -379,6 +380,12 @@ void check_chip(const Configuration& configuration, const std::string& where) {
         fmt::format("{}: chip.modelled_traverser.node_cache_bytes is {}; with {} ways of nodes of {} bytes it must be "
                     "at least {}",
                     where, chip.modelled_traverser_node_cache_bytes, ways, node, ways * node));
+  }
+  if (chip.modelled_traverser_box_bits != 0 && chip.modelled_traverser_nodes != NodeFormat::Compressed) {
+    throw InputError(
+        fmt::format("{}: chip.modelled_traverser.box_bits is {}; with exact nodes (chip.modelled_traverser.nodes) it "
+                    "must be 0, since boxes in integers are those of compressed nodes",
+                    where, chip.modelled_traverser_box_bits));
   }
 }
 

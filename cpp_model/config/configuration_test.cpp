@@ -180,6 +180,24 @@ TEST(Configuration, TheNodeCacheHasASetAtLeast) {
   }
 }
 
+TEST(Configuration, BoxesInIntegersAreThoseOfCompressedNodes) {
+  const auto chip = [](const std::string& nodes, int bits) {
+    return R"({"chip": {"modelled_traverser": {"nodes": ")" + nodes + R"(", "box_bits": )" + std::to_string(bits) +
+           "}}}";
+  };
+  EXPECT_EQ(error_of(chip("exact", 8)),
+            "chip.modelled_traverser.box_bits is 8; with exact nodes (chip.modelled_traverser.nodes) it must be 0, "
+            "since boxes in integers are those of compressed nodes");
+  for (const int bits : {-1, 1, 5, 17}) {
+    EXPECT_EQ(error_of(chip("compressed", bits)), "chip.modelled_traverser.box_bits is " + std::to_string(bits) +
+                                                      "; it must be 0 or an integer from 6 to 16");
+  }
+  for (const auto& [nodes, bits] : {std::pair("exact", 0), std::pair("compressed", 0), std::pair("compressed", 6)}) {
+    const TemporaryFile file(chip(nodes, bits));
+    EXPECT_EQ(load_configuration(file.path()).chip.modelled_traverser_box_bits, static_cast<uint32_t>(bits));
+  }
+}
+
 TEST(Configuration, TheChipIsPartOfTheMachineAndNotOfItsVerilog) {
   const TemporaryFile file(R"({"chip": {"ray_pool": {"size": 100}}})");
   const Configuration configuration = load_configuration(file.path());

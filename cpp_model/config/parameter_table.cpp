@@ -110,7 +110,7 @@ std::optional<int> operation_named(const Range& range, std::string_view mnemonic
 
 std::vector<int> values_of(const Range& range) {
   std::vector<int> values;
-  for (int value = range.least; value <= range.greatest; ++value)
+  for (int value = std::min(range.least, 0); value <= range.greatest; ++value)
     if (range.has(value)) values.push_back(value);
   return values;
 }
@@ -119,6 +119,8 @@ std::string text_of(const Range& range) {
   switch (range.form) {
     case Range::Form::Integer:
       return fmt::format("an integer from {} to {}", range.least, range.greatest);
+    case Range::Form::ZeroOr:
+      return fmt::format("0 or an integer from {} to {}", range.least, range.greatest);
     case Range::Form::PowerOfTwo:
       return fmt::format("a power of two from {} to {}", range.least, range.greatest);
     case Range::Form::Name:

@@ -86,6 +86,8 @@ enum class Shading : uint8_t { Kernel = 0, Traverser = 1 };
             "order in which tiles are cast for it: rows from the top, or along a Hilbert curve, each beside the last") \
   CHIP_PART(modelled_traverser, nodes, NodeFormat, NodeFormat::Compressed, names("compressed", "exact"), \
             "nodes of 64 bytes, with planes of 8 bits on a grid rounded outwards, or of 128, with boxes as they are") \
+  CHIP_PART(modelled_traverser, box_bits, uint32_t, 0, zero_or(6, 16), \
+            "boxes of compressed nodes are tested in integers of so many bits, as rtl/box_pipe.v does; 0: in floats") \
   CHIP_PART(modelled_traverser, rays, uint32_t, 128, integers(1, 1024), "rays in flight") \
   CHIP_PART(modelled_traverser, setup_latency, uint32_t, 16, integers(1, 64), \
             "cycles in which a ray is prepared; one begins in a cycle") \
@@ -148,13 +150,14 @@ enum class Shading : uint8_t { Kernel = 0, Traverser = 1 };
 
 /// The values that a parameter may have.
 struct Range {
-  enum class Form : uint8_t { Integer, PowerOfTwo, Name, OnOff, Instructions };
+  enum class Form : uint8_t { Integer, ZeroOr, PowerOfTwo, Name, OnOff, Instructions };
   Form form;
   int least, greatest;                      ///< of form Instructions: the greatest is the set of all
   std::array<std::string_view, 8> names{};  ///< of 0, 1, ... of form Name
   size_t alu = 0;                           ///< number of the type whose instructions they are, of form Instructions
 
   constexpr bool has(int value) const {
+    if (form == Form::ZeroOr && value == 0) return true;
     return value >= least && value <= greatest && (form != Form::PowerOfTwo || (value & (value - 1)) == 0) &&
            (form != Form::Instructions || (value & ~greatest) == 0);
   }
@@ -169,6 +172,7 @@ struct Tried {
 /// What the rows are written with.
 namespace parameter {
 inline constexpr Range integers(int least, int greatest) { return {Range::Form::Integer, least, greatest}; }
+inline constexpr Range zero_or(int least, int greatest) { return {Range::Form::ZeroOr, least, greatest}; }
 inline constexpr Range powers_of_two(int least, int greatest) { return {Range::Form::PowerOfTwo, least, greatest}; }
 inline constexpr Range on_or_off() { return {Range::Form::OnOff, 0, 1}; }
 /// A set of a type's instructions, a bit for each operation number; which they may be differs from type to type.

@@ -76,11 +76,11 @@ struct BoxRay {
     limit = key(ray_limit);
   }
 
-  /// Of the ray's limit, or of the best hit so far.
-  uint32_t key(float t) const {
+  /// Of the ray's limit, or of the best hit so far: t x 2^scale, neither NaN nor negative.
+  uint32_t key(float t, int scale = 0) const {
     if (std::isinf(t)) return infinite_key(bits);
     const FloatParts parts(t);
-    return time_key(parts.value, parts.unit, bits);
+    return time_key(parts.value, parts.unit + scale, bits);
   }
 
  private:

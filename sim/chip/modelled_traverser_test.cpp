@@ -65,12 +65,11 @@ struct Drawn {
     if (stepped) metronome = std::make_unique<test::Metronome>("metronome");
     result = chip.draw();
   }
-  /// Returns the nodes of the tree that is walked.
-  NodeFormat configure(TraverserName traverser, const std::function<void(ChipConfiguration&)>& change) {
+  const ChipConfiguration& configure(TraverserName traverser, const std::function<void(ChipConfiguration&)>& change) {
     ChipConfiguration& chip = run.options.configuration.chip;
     chip.traverser = traverser;
     if (change) change(chip);
-    return traverser == TraverserName::Modelled ? chip.modelled_traverser_nodes : NodeFormat::Exact;
+    return chip;
   }
   test::RealFrame run;
   const Tracer walked;
@@ -95,6 +94,22 @@ TEST(ModelledTraverser, EveryHitAndThePictureAreThoseOfTheStaticOneWhateverTheNo
       }
       EXPECT_LT(work[NodeFormat::Exact].boxes.tests, work[NodeFormat::Compressed].boxes.tests);
       EXPECT_GT(work[NodeFormat::Exact].bytes(), work[NodeFormat::Compressed].bytes());
+    }
+  }
+}
+
+TEST(ModelledTraverser, EveryHitAndThePictureAreThoseOfTheStaticOneWithBoxesInIntegers) {
+  for (const Scene& scene : {make_cornell(0.3), make_room(0.02)}) {
+    const Drawn fixed(scene, TraverserName::Static, 1, 3);
+    uint64_t tests = 0;
+    for (const uint32_t bits : {0, 16, 8, 6}) {
+      const Drawn modelled(scene, TraverserName::Modelled, 1, 3,
+                           [&](ChipConfiguration& chip) { chip.modelled_traverser_box_bits = bits; });
+      EXPECT_TRUE(fixed.run.frame == modelled.run.frame) << bits;
+      EXPECT_EQ(fixed.tracer.noted, modelled.tracer.noted) << bits;
+      EXPECT_EQ(modelled.result.traversal->boxes.tests, modelled.tracer.nodes);
+      EXPECT_GT(modelled.tracer.nodes, tests) << bits;
+      tests = modelled.tracer.nodes;
     }
   }
 }

@@ -199,6 +199,19 @@ struct SignificandsOptions {
 };
 int significands_command(const SignificandsOptions& options);
 
+/// `raypool boxes`: exit code 3 if a hit is another one.
+struct BoxesOptions {
+  std::string scene = "room";
+  double detail = 1;
+  std::string view;
+  ViewWords look;
+  std::string size = "320x320";
+  uint32_t depth = 3;
+  std::vector<uint32_t> bits = {16, 14, 12, 11, 10, 9, 8, 7, 6};
+  bool quiet = false;  ///< no progress
+};
+int boxes_command(const BoxesOptions& options);
+
 /// `raypool fit`: the frame is that of `raypool sim`.
 struct FitOptions {
   std::string scene = "room";

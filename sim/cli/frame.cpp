@@ -14,14 +14,6 @@
 #include "scene/threads.hpp"
 
 namespace raypool {
-namespace {
-
-/// Of the tree that is walked. No picture depends on it.
-NodeFormat nodes_of(const ChipConfiguration& chip) {
-  return chip.traverser == TraverserName::Modelled ? chip.modelled_traverser_nodes : NodeFormat::Exact;
-}
-
-}  // namespace
 
 std::array<uint32_t, kArguments> arguments_of(const RunRecord& record, const Scene& scene) {
   return camera_arguments(scene, record.width, record.height, record.configuration.contents(),
@@ -69,7 +61,7 @@ std::string describe(const ChipFault& fault, const RunRecord& record) {
 }
 
 Surroundings::Surroundings(const Scene& scene, const MemoryImage& image, const RunRecord& record)
-    : tracer(scene, image.material_base, nodes_of(record.configuration.chip)),
+    : tracer(scene, image.material_base, record.configuration.chip),
       scene_tracer(tracer),
       frame(record.width, record.height),
       sink(frame) {}

@@ -93,10 +93,18 @@ void require_same(const Drawing& ours, const Drawing& native) {
 /// Finds hits, by the scene or by the frame's own function, and writes down what was asked.
 class RecordingTracer : public RayTracer {
  public:
-  RecordingTracer(const ExtremeFrame& frame, uint32_t material_base, std::vector<TracedRay>& traced)
-      : frame_(frame), material_base_(material_base), tracer_(frame.scene, material_base), traced_(traced) {}
+  RecordingTracer(const ExtremeFrame& frame, uint32_t material_base, const ChipConfiguration& chip,
+                  std::vector<TracedRay>& traced)
+      : frame_(frame), material_base_(material_base), tracer_(frame.scene, material_base, chip), traced_(traced) {}
 
-  bool trace(const Ray& ray, Intersection& intersection) override {
+  bool trace(const Ray& ray, Intersection& intersection) override { return find(ray, intersection, nullptr); }
+  bool follow(const Ray& ray, Intersection& intersection, VisitList& visits) override {
+    return find(ray, intersection, &visits);
+  }
+  const Tracer& scene_tracer() const { return tracer_; }
+
+ private:
+  bool find(const Ray& ray, Intersection& intersection, VisitList* visits) {
     bool goes_on = false;
     if (frame_.trace) {
       intersection.fill(0);
@@ -105,14 +113,12 @@ class RecordingTracer : public RayTracer {
       intersection[word::kMaterial] =
           material_base_ + intersection[word::kMaterial] * static_cast<uint32_t>(kMaterialBytes);
     } else {
-      goes_on = tracer_.trace(ray, intersection);
+      goes_on = tracer_.trace(ray, intersection, nullptr, visits);
     }
     traced_.push_back({ray, goes_on, intersection});
     return goes_on;
   }
-  const Tracer& scene_tracer() const { return tracer_; }
 
- private:
   const ExtremeFrame& frame_;
   uint32_t material_base_;
   Tracer tracer_;
@@ -134,7 +140,7 @@ class RecordingSink : public FrameSink {
 Drawing draw_natively(const ExtremeFrame& frame, const arith::Mode& mode) {
   Drawing drawing{FrameBuffer(frame.width, frame.height), {}, {}};
   const MemoryImage image = build_memory(ray_kernel_program({mode.fused, false}), frame.scene);
-  RecordingTracer tracer(frame, image.material_base, drawing.traced);
+  RecordingTracer tracer(frame, image.material_base, ChipConfiguration(), drawing.traced);
   NativeOptions options;
   options.width = frame.width;
   options.height = frame.height;
@@ -218,7 +224,7 @@ Drawing ExtremeMachine::draw_on_unit(const ExtremeFrame& frame) const {
   Drawing drawing{FrameBuffer(frame.width, frame.height), {}, {}};
   const Program& program = ray_kernel_program(KernelTarget(configuration_));
   MemoryImage image = build_memory(program, frame.scene);
-  RecordingTracer tracer(frame, image.material_base, drawing.traced);
+  RecordingTracer tracer(frame, image.material_base, configuration_.chip, drawing.traced);
   RecordingSink sink(drawing);
   const std::unique_ptr<ComputeUnit> unit = unit_(configuration_, image.memory);
   ChipOptions chip;

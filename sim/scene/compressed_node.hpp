@@ -6,21 +6,19 @@
 #include <array>
 #include <cstdint>
 
+#include "machine/box_pipe.hpp"
 #include "scene/bvh.hpp"
 
 namespace raypool {
 
-/// A plane q of an axis lies at origin + q x 2^exponent, in single precision.
-struct alignas(64) CompressedNode {
-  std::array<float, 3> origin;
-  std::array<int8_t, 3> exponent;
-  uint8_t children;                        ///< that there are
-  uint8_t planes[2][3][kBvhWidth];         ///< lower, upper; x, y, z; child
+struct alignas(64) CompressedNode : BoxNode {
   std::array<uint32_t, kBvhWidth> places;  ///< as BvhNode::children
 };
 static_assert(sizeof(CompressedNode) == 64);
+static_assert(kBoxes == kBvhWidth);
 
-/// Coordinates must be finite, and below 1e30.
+/// Coordinates must be finite, and below 1e30. Of a plane its number is chosen in single precision: with the sum of
+/// origin and steps rounded so, the box lies around the node's.
 CompressedNode compress(const BvhNode& node);
 BvhNode decompress(const CompressedNode& node);
 

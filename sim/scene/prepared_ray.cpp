@@ -56,6 +56,7 @@ PreparedRay prepare(const RayQuery& query, const Bounds& bounds) {
   ray.internal_limit = static_cast<float>(internal_limit);
   if (static_cast<double>(ray.internal_limit) < internal_limit) ray.internal_limit = next_above(ray.internal_limit);
 
+  ray.reach = distance;
   const double padding = static_cast<double>(kPadding) * distance;
   double* const direction = ray.direction;
   double inverse[3];

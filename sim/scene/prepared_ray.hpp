@@ -30,6 +30,7 @@ struct PreparedRay {
   bool valid = false;  ///< false: it hits nothing, and nothing else is set
   float origin[3];
   float padded[2][3];  ///< subtracted from lower and upper bounds
+  float reach;         ///< the largest distance along an axis between the origin and a face of the scene's box
   float inverse[3];
   int near_side[3];  ///< 0: the lower bound is met first
   int kx, ky, kz;

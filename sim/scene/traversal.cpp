@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "bits.hpp"
-#include "scene/compressed_node.hpp"
+#include "scene/narrow_boxes.hpp"
 #include "scene/simd4.hpp"
 
 namespace raypool {
@@ -15,33 +15,42 @@ namespace {
 
 #include "scene/triangle_test.hpp"
 
-/// The parts of a prepared ray that the box test wants in all four lanes.
-struct BoxRay {
-  Float4 padded[2][3];
-  Float4 inverse[3];
+/// The boxes of a tree, in single precision, as the walk below asks a ray for them. NarrowBoxes is another.
+class FloatBoxes {
+ public:
+  using Time = float;  ///< at which the ray enters a box
 
-  explicit BoxRay(const PreparedRay& ray) {
+  FloatBoxes(const Bvh& bvh, const PreparedRay& ray) : nodes_(bvh.nodes.data()), ray_(ray), best_(ray.internal_limit) {
     for (int axis = 0; axis < 3; ++axis) {
-      padded[0][axis] = splat4(ray.padded[0][axis]);
-      padded[1][axis] = splat4(ray.padded[1][axis]);
-      inverse[axis] = splat4(ray.inverse[axis]);
+      padded_[0][axis] = splat4(ray.padded[0][axis]);
+      padded_[1][axis] = splat4(ray.padded[1][axis]);
+      inverse_[axis] = splat4(ray.inverse[axis]);
     }
   }
-};
-
-/// Where the ray enters each of the four boxes; bit i of the result: box i is met at or before `best`.
-unsigned intersect_boxes(const PreparedRay& ray, const BoxRay& box_ray, const BvhNode& node, float best, float* entry) {
-  Float4 near = splat4(0), far = splat4(INFINITY);
-  for (int axis = 0; axis < 3; ++axis) {
-    const int first = ray.near_side[axis], second = 1 - first;
-    near = max4(near, (load4(node.bounds[first][axis]) - box_ray.padded[first][axis]) * box_ray.inverse[axis]);
-    far = min4(far, (load4(node.bounds[second][axis]) - box_ray.padded[second][axis]) * box_ray.inverse[axis]);
+  /// Where the ray enters each of the four boxes; bit i of the result: box i is met at or before the best hit so far.
+  unsigned meet(uint32_t number, Time (&entry)[kBvhWidth]) const {
+    const BvhNode& node = nodes_[number];
+    Float4 near = splat4(0), far = splat4(INFINITY);
+    for (int axis = 0; axis < 3; ++axis) {
+      const int first = ray_.near_side[axis], second = 1 - first;
+      near = max4(near, (load4(node.bounds[first][axis]) - padded_[first][axis]) * inverse_[axis]);
+      far = min4(far, (load4(node.bounds[second][axis]) - padded_[second][axis]) * inverse_[axis]);
+    }
+    near = near * splat4(kNearScale);
+    far = far * splat4(kFarScale);
+    std::memcpy(entry, &near, sizeof near);
+    return mask4(near <= min4(far, splat4(best_)));
   }
-  near = near * splat4(kNearScale);
-  far = far * splat4(kFarScale);
-  std::memcpy(entry, &near, sizeof near);
-  return mask4(near <= min4(far, splat4(best)));
-}
+  /// The best hit so far is behind it.
+  bool behind(Time entry) const { return entry > best_; }
+  void found(const Candidate& best) { best_ = best.t; }
+
+ private:
+  const BvhNode* nodes_;
+  const PreparedRay& ray_;
+  float best_;
+  Float4 padded_[2][3], inverse_[3];
+};
 
 Hit finish(const PreparedRay& ray, const Candidate& best) {
   Vec3d corners[3];
@@ -58,13 +67,13 @@ Hit finish(const PreparedRay& ray, const Candidate& best) {
 }
 
 /// `ray` is valid and the tree not empty.
-template <bool kAny>
-bool traverse(const Bvh& bvh, const PreparedRay& ray, Candidate& best, TraversalCounts* counts, VisitList* visits) {
+template <bool kAny, typename Boxes>
+bool traverse(const Bvh& bvh, const PreparedRay& ray, Boxes boxes, Candidate& best, TraversalCounts* counts,
+              VisitList* visits) {
   struct Entry {
     uint32_t child;
-    float t;
+    typename Boxes::Time t;
   };
-  const BoxRay box_ray(ray);
   best.t = ray.internal_limit;
   bool found = false;
   uint64_t nodes = 0, blocks = 0, triangles = 0;
@@ -73,7 +82,7 @@ bool traverse(const Bvh& bvh, const PreparedRay& ray, Candidate& best, Traversal
   stack[depth++] = {0, 0};
   while (depth > 0) {
     const Entry top = stack[--depth];
-    if (top.t > best.t) {
+    if (boxes.behind(top.t)) {
       if (visits != nullptr) ++visits->back().discarded;
       continue;
     }
@@ -82,14 +91,16 @@ bool traverse(const Bvh& bvh, const PreparedRay& ray, Candidate& best, Traversal
       if (visits != nullptr) visits->push_back({block.first, static_cast<uint8_t>(block.count), 0, 0});
       ++blocks;
       triangles += block.count;
-      found |= intersect_block(ray, block, best);
-      if (kAny && found) break;
+      if (!intersect_block(ray, block, best)) continue;
+      found = true;
+      if (kAny) break;
+      boxes.found(best);
       continue;
     }
     const BvhNode& node = bvh.nodes[top.child];
     ++nodes;
-    float entry[kBvhWidth];
-    unsigned lanes = intersect_boxes(ray, box_ray, node, best.t, entry);
+    typename Boxes::Time entry[kBvhWidth];
+    unsigned lanes = boxes.meet(top.child, entry);
     if (visits != nullptr) visits->push_back({top.child, 0, static_cast<uint8_t>(popcount(lanes)), 0});
     // The nearest child must end on top: insertion sort, furthest first.
     const int base = depth;
@@ -124,8 +135,17 @@ int tree_depth(const Bvh& bvh) {
 
 Traversal::Traversal(const Scene& scene) { set_bvh(build_bvh(scene)); }
 
-void Traversal::compress_nodes() {
-  for (BvhNode& node : bvh_.nodes) node = decompress(compress(node));
+void Traversal::compress_nodes(uint32_t box_bits) {
+  compressed_.clear();
+  for (const BvhNode& node : bvh_.nodes) compressed_.push_back(compress(node));
+  std::transform(compressed_.begin(), compressed_.end(), bvh_.nodes.begin(), decompress);
+  box_bits_ = box_bits;
+  if (box_bits_ == 0) compressed_.clear();
+}
+
+void Traversal::set_compressed_nodes(std::vector<CompressedNode> nodes) {
+  if (nodes.size() != compressed_.size()) throw std::logic_error("another number of nodes than the tree has");
+  compressed_ = std::move(nodes);
 }
 
 void Traversal::set_bvh(Bvh bvh) {
@@ -133,15 +153,27 @@ void Traversal::set_bvh(Bvh bvh) {
     throw std::runtime_error("the bounding volume hierarchy is deeper than the traversal's stack");
   bvh_ = std::move(bvh);
   wide_ = widen(bvh_);
+  compressed_.clear();
+  box_bits_ = 0;
+}
+
+template <bool kAny>
+bool Traversal::walk(const RayQuery& query, const PreparedRay& ray, Candidate& best, TraversalCounts* counts,
+                     VisitList* visits) const {
+  if (counts == nullptr && visits == nullptr) {
+    const Walk& fast = walks().back();
+    return (kAny ? fast.any : fast.nearest)(wide_, ray, best);
+  }
+  if (box_bits_ == 0) return traverse<kAny>(bvh_, ray, FloatBoxes(bvh_, ray), best, counts, visits);
+  const BoxRay narrow = narrow_ray(query, ray, bvh_.bounds, box_bits_);
+  return traverse<kAny>(bvh_, ray, NarrowBoxes(compressed_, narrow, ray), best, counts, visits);
 }
 
 bool Traversal::nearest(const RayQuery& query, Hit& hit, TraversalCounts* counts, VisitList* visits) const {
   const PreparedRay ray = prepare(query, bvh_.bounds);
   if (!ray.valid || bvh_.nodes.empty()) return false;
   Candidate best;
-  const bool fast = counts == nullptr && visits == nullptr;
-  if (!(fast ? walks().back().nearest(wide_, ray, best) : traverse<false>(bvh_, ray, best, counts, visits)))
-    return false;
+  if (!walk<false>(query, ray, best, counts, visits)) return false;
   hit = finish(ray, best);
   return true;
 }
@@ -150,8 +182,7 @@ bool Traversal::occluded(const RayQuery& query, TraversalCounts* counts, VisitLi
   const PreparedRay ray = prepare(query, bvh_.bounds);
   if (!ray.valid || bvh_.nodes.empty()) return false;
   Candidate best;
-  const bool fast = counts == nullptr && visits == nullptr;
-  return fast ? walks().back().any(wide_, ray, best) : traverse<true>(bvh_, ray, best, counts, visits);
+  return walk<true>(query, ray, best, counts, visits);
 }
 
 bool Traversal::nearest_of_all(const RayQuery& query, Hit& hit) const {
@@ -171,9 +202,13 @@ RayQuery to_query(const Ray& ray) {
   return {vector(word::kOrigin), vector(word::kDirection), as_float(ray[word::kLimit])};
 }
 
-Tracer::Tracer(const Scene& scene, uint32_t material_base, NodeFormat nodes)
-    : traversal_(scene), material_base_(material_base) {
-  if (nodes == NodeFormat::Compressed) traversal_.compress_nodes();
+Tracer::Tracer(const Scene& scene, uint32_t material_base, const ChipConfiguration& chip)
+    : Tracer(scene, material_base) {
+  if (chip.traverser == TraverserName::Modelled && chip.modelled_traverser_nodes == NodeFormat::Compressed)
+    traversal_.compress_nodes(chip.modelled_traverser_box_bits);
+}
+
+Tracer::Tracer(const Scene& scene, uint32_t material_base) : traversal_(scene), material_base_(material_base) {
   material_words_.reserve(scene.triangles.size());
   for (uint32_t material : scene.triangle_materials) {
     material_words_.push_back(material_base + material * static_cast<uint32_t>(kMaterialBytes));

@@ -11,9 +11,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "config/parameters.hpp"
+#include "config/configuration.hpp"
 #include "machine/compute_unit.hpp"
 #include "scene/bvh.hpp"
+#include "scene/compressed_node.hpp"
 #include "scene/prepared_ray.hpp"
 #include "scene/wide_bvh.hpp"
 
@@ -65,21 +66,33 @@ class Traversal {
   const Bvh& bvh() const { return bvh_; }
   const WideBvh& wide_bvh() const { return wide_; }
   /// Makes every box of bvh() what a node of 64 bytes has of it (compressed_node.hpp): no answer changes, visits do.
-  void compress_nodes();
+  /// `box_bits`, 6 .. 16: boxes are then tested in integers of so many bits (narrow_boxes.hpp); 0: in floats.
+  void compress_nodes(uint32_t box_bits = 0);
   /// Replaces the tree by another over the same triangles; no answer changes. For tests.
   void set_bvh(Bvh bvh);
+  /// The nodes whose boxes are tested in integers; none if they are not.
+  const std::vector<CompressedNode>& compressed_nodes() const { return compressed_; }
+  /// Replaces them by as many others. For tests.
+  void set_compressed_nodes(std::vector<CompressedNode> nodes);
 
  private:
+  template <bool kAny>
+  bool walk(const RayQuery& query, const PreparedRay& ray, Candidate& best, TraversalCounts* counts,
+            VisitList* visits) const;
+
   Bvh bvh_;
   WideBvh wide_;
+  std::vector<CompressedNode> compressed_;
+  uint32_t box_bits_ = 0;
 };
 
 /// The traverser of the chip and of the native renderer: packages in, packages out. Safe to use from several threads.
 class Tracer {
  public:
-  /// Material words are material_base + 32 * the triangle's material index. `nodes`: of the tree that it walks; no
-  /// answer depends on it. Keeps nothing of `scene`.
-  explicit Tracer(const Scene& scene, uint32_t material_base = 0, NodeFormat nodes = NodeFormat::Exact);
+  /// Material words are material_base + 32 * the triangle's material index. Keeps nothing of `scene`.
+  explicit Tracer(const Scene& scene, uint32_t material_base = 0);
+  /// What walks the tree is the traverser of `chip`: what it visits depends on its nodes and boxes, and no answer.
+  Tracer(const Scene& scene, uint32_t material_base, const ChipConfiguration& chip);
 
   /// Normal ray: true and the intersection when it hits, false when it misses. Shadow ray: false when it is blocked;
   /// true when it is free, with words 12 .. 20 of the intersection zero. Words 0 .. 11 are the ray's.

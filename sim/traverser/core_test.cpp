@@ -176,7 +176,9 @@ TEST(TraverserCore, MakesEveryTestOnceAndNeedsNoCycleInWhichNothingHappens) {
 /// Rays through a room.
 const std::vector<VisitList>& room_rays() {
   static const std::vector<VisitList> rays = [] {
-    const Tracer tracer(make_room(0.1), 0, NodeFormat::Compressed);
+    ChipConfiguration walked;
+    walked.traverser = TraverserName::Modelled;
+    const Tracer tracer(make_room(0.1), 0, walked);
     std::vector<VisitList> all;
     for (int y = 0; y < 60; ++y) {
       for (int x = 0; x < 60; ++x) {

@@ -17,6 +17,7 @@
 #include "cli/exit_code.hpp"
 #include "cli/inspecting_run.hpp"
 #include "lockstep/lockstep_unit.hpp"
+#include "machine/box_ray.hpp"
 #include "scene/native_renderer.hpp"
 
 namespace raypool {
@@ -121,6 +122,7 @@ class CommandLine {
   void add_bench_command();
   void add_numerics_command();
   void add_significands_command();
+  void add_boxes_command();
   void add_fit_command();
   void add_descriptions_command();
 
@@ -145,6 +147,7 @@ class CommandLine {
   BenchCommandOptions bench_;
   NumericsOptions numerics_;
   SignificandsOptions significands_;
+  BoxesOptions boxes_;
   FitOptions fit_;
   std::string shell_ = "bash";
 };
@@ -172,6 +175,7 @@ CommandLine::CommandLine(int argc, char** argv) {
   add_bench_command();
   add_numerics_command();
   add_significands_command();
+  add_boxes_command();
   add_fit_command();
   add_descriptions_command();
 }
@@ -421,6 +425,19 @@ void CommandLine::add_significands_command() {
   add_config(*significands_app, significands_.config, significands_.set);
   significands_app->add_flag("--quiet", significands_.quiet, "no progress");
   significands_app->callback([this] { code_ = significands_command(significands_); });
+}
+
+void CommandLine::add_boxes_command() {
+  CLI::App* boxes_app = app_.add_subcommand(
+      "boxes", "what a scene's rays visit when boxes are tested in integers of few bits: nodes and triangles a ray");
+  add_scene(*boxes_app, boxes_.scene, boxes_.size, boxes_.view, boxes_.look, boxes_.detail);
+  boxes_app->add_option("--depth", boxes_.depth, "of the rays")->check(CLI::Range(1, 254))->capture_default_str();
+  boxes_app->add_option("--bits", boxes_.bits, "widths, with commas between")
+      ->delimiter(',')
+      ->check(CLI::Range(kLeastBoxBits, kMostBoxBits))
+      ->capture_default_str();
+  boxes_app->add_flag("--quiet", boxes_.quiet, "no progress");
+  boxes_app->callback([this] { code_ = boxes_command(boxes_); });
 }
 
 void CommandLine::add_fit_command() {

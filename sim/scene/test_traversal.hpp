@@ -1,0 +1,170 @@
+// For tests: scenes, trees and rays that are hard to get right.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "bits.hpp"
+#include "scene/mesh_builder.hpp"
+#include "scene/traversal.hpp"
+
+namespace raypool::test {
+
+inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+inline bool same(const Hit& a, const Hit& b) {
+  return as_bits(a.t) == as_bits(b.t) && as_bits(a.u) == as_bits(b.u) && as_bits(a.v) == as_bits(b.v) &&
+         a.triangle == b.triangle && a.normal == b.normal;
+}
+
+/// Triangles on z = 0 .. with one material.
+inline Scene scene_of(const std::vector<std::array<Vec3, 3>>& triangles) {
+  Scene scene;
+  scene.materials.resize(1);
+  for (const auto& triangle : triangles) {
+    const auto first = size32(scene.vertices);
+    scene.vertices.insert(scene.vertices.end(), triangle.begin(), triangle.end());
+    scene.triangles.push_back({first, first + 1, first + 2});
+    scene.triangle_materials.push_back(0);
+  }
+  return scene;
+}
+
+/// A closed ball with vertices and edges in the coordinate planes, poles of many triangles, at `centre`.
+inline Scene ball(const Vec3d& centre, int around) {
+  Scene scene;
+  MeshBuilder mesh(scene, 1);
+  mesh.add_material("grey", {0.5f, 0.5f, 0.5f}, {});
+  mesh.sphere(centre, 1, around);
+  return scene;
+}
+
+/// Rays that are hard to get right: through vertices, along edges, in the planes of triangles and
+/// boxes, axis-parallel, and plain ones.
+inline std::vector<RayQuery> hard_rays(const Scene& scene, int count, uint32_t seed) {
+  std::mt19937 random(seed);
+  const Bounds bounds = scene.bounds();
+  auto uniform = [&](float low, float high) { return std::uniform_real_distribution<float>(low, high)(random); };
+  auto point = [&] {
+    return Vec3{uniform(bounds.lower.x, bounds.upper.x), uniform(bounds.lower.y, bounds.upper.y),
+                uniform(bounds.lower.z, bounds.upper.z)};
+  };
+  auto corner = [&](int k) { return scene.corner(random() % scene.triangles.size(), k); };
+  std::vector<RayQuery> rays;
+  for (int i = 0; i < count; ++i) {
+    RayQuery ray{point(), {}, kInfinity};
+    switch (i % 6) {
+      case 0:
+        ray.direction = point() - ray.origin;
+        break;
+      case 1:
+        ray.direction = corner(i % 3) - ray.origin;
+        break;
+      case 2: {  // along an edge, starting before it
+        const size_t t = random() % scene.triangles.size();
+        const Vec3 edge = scene.corner(t, 1) - scene.corner(t, 0);
+        ray = {scene.corner(t, 0) - edge * 2.0f, edge, kInfinity};
+        break;
+      }
+      case 3:
+        ray.direction[static_cast<int>(random() % 3)] = random() % 2 == 0 ? 1.0f : -1.0f;
+        break;
+      case 4:  // axis-parallel, from a coordinate of a vertex
+        ray.origin[static_cast<int>(random() % 3)] = corner(0)[static_cast<int>(random() % 3)];
+        ray.origin[i / 6 % 3] = corner(1)[i / 6 % 3];
+        ray.direction[static_cast<int>(random() % 3)] = -2.0f;
+        break;
+      default:  // in the plane of a triangle, nearly
+      {
+        const size_t t = random() % scene.triangles.size();
+        const Vec3 a = scene.corner(t, 0), b = scene.corner(t, 1), c = scene.corner(t, 2);
+        ray.direction = (b - a) * uniform(-1, 1) + (c - a) * uniform(-1, 1);
+        ray.origin = a - ray.direction * uniform(0, 20);
+      }
+    }
+    if (i % 5 == 0) ray.limit = uniform(0, 3);
+    rays.push_back(ray);
+  }
+  return rays;
+}
+
+struct Item {
+  uint32_t child;
+  Vec3 lower, upper;
+};
+
+/// The level of a tree above this one: four children a node, which are put behind `nodes`.
+inline std::vector<Item> parents_of(const std::vector<Item>& level, std::vector<BvhNode>& nodes) {
+  std::vector<Item> parents;
+  for (size_t first = 0; first < level.size(); first += 4) {
+    BvhNode node{};
+    Item parent{size32(nodes), {INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    for (size_t i = 0; i < 4; ++i) {
+      const bool used = first + i < level.size();
+      node.children[i] = used ? level[first + i].child : kNoChild;
+      for (int axis = 0; axis < 3; ++axis) {
+        node.bounds[0][axis][i] = used ? level[first + i].lower[axis] : INFINITY;
+        node.bounds[1][axis][i] = used ? level[first + i].upper[axis] : -INFINITY;
+        parent.lower[axis] = std::min(parent.lower[axis], node.bounds[0][axis][i]);
+        parent.upper[axis] = std::max(parent.upper[axis], node.bounds[1][axis][i]);
+      }
+    }
+    nodes.push_back(node);
+    parents.push_back(parent);
+  }
+  return parents;
+}
+
+/// A bad tree: triangles in random order, four a leaf, leaves in random groups of up to four.
+inline Bvh random_tree(const Bvh& original, uint32_t seed) {
+  std::mt19937 random(seed);
+  struct Loose {
+    const TriangleBlock* block;
+    uint32_t lane;
+  };
+  std::vector<Loose> loose;
+  for (const TriangleBlock& block : original.blocks) {
+    for (uint32_t lane = 0; lane < block.count; ++lane) loose.push_back({&block, lane});
+  }
+  std::shuffle(loose.begin(), loose.end(), random);
+  Bvh tree;
+  tree.bounds = original.bounds;
+  std::vector<Item> level;
+  for (size_t first = 0; first < loose.size(); first += 4) {
+    TriangleBlock block{};
+    block.count = static_cast<uint32_t>(std::min<size_t>(4, loose.size() - first));
+    Item item{size32(tree.blocks) | kLeafBit, {INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    for (uint32_t lane = 0; lane < 4; ++lane) {
+      const Loose& from = loose[first + std::min(lane, block.count - 1)];
+      block.triangles[lane] = lane < block.count ? from.block->triangles[from.lane] : kNoChild;
+      for (int corner = 0; corner < 3; ++corner) {
+        for (int axis = 0; axis < 3; ++axis) {
+          const float value = from.block->vertices[lane < block.count ? corner : 0][axis][from.lane];
+          block.vertices[corner][axis][lane] = value;
+          item.lower[axis] = std::min(item.lower[axis], value);
+          item.upper[axis] = std::max(item.upper[axis], value);
+        }
+      }
+    }
+    tree.blocks.push_back(block);
+    level.push_back(item);
+  }
+  std::vector<BvhNode> bottom_up;  // children before parents; turned round at the end
+  do level = parents_of(level, bottom_up);
+  while (level.size() > 1);
+  const auto last = static_cast<uint32_t>(bottom_up.size() - 1);
+  for (uint32_t i = 0; i <= last; ++i) {
+    BvhNode node = bottom_up[last - i];
+    for (uint32_t& child : node.children) {
+      if ((child & kLeafBit) == 0) child = last - child;
+    }
+    tree.nodes.push_back(node);
+  }
+  return tree;
+}
+
+}  // namespace raypool::test
