@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
@@ -16,6 +17,9 @@ std::string read_file(const std::string& path, const std::string& what) {
   const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
   int error = file < 0 ? errno : 0;
   std::string text;
+  struct stat status {};
+  if (file >= 0 && fstat(file, &status) == 0 && S_ISREG(status.st_mode))
+    text.reserve(static_cast<size_t>(status.st_size));
   std::array<char, 1 << 16> part{};
   for (ssize_t count = 1; error == 0 && count != 0;) {
     count = read(file, part.data(), part.size());

@@ -22,7 +22,13 @@ struct BuildNode {
   RTCBounds bounds[kBvhWidth] = {};
 };
 
-void* create_node(RTCThreadLocalAllocator allocator, unsigned count, void*) {
+/// What the builder has made.
+struct Made {
+  size_t nodes = 0, leaves = 0;
+};
+
+void* create_node(RTCThreadLocalAllocator allocator, unsigned count, void* made) {
+  ++static_cast<Made*>(made)->nodes;
   auto* node = new (rtcThreadLocalAlloc(allocator, sizeof(BuildNode), 16)) BuildNode;
   node->count = count;
   return node;
@@ -37,7 +43,8 @@ void set_bounds(void* pointer, const RTCBounds** bounds, unsigned count, void*) 
   for (unsigned i = 0; i < count; ++i) static_cast<BuildNode*>(pointer)->bounds[i] = *bounds[i];
 }
 
-void* create_leaf(RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* primitives, size_t count, void*) {
+void* create_leaf(RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* primitives, size_t count, void* made) {
+  ++static_cast<Made*>(made)->leaves;
   auto* node = new (rtcThreadLocalAlloc(allocator, sizeof(BuildNode), 16)) BuildNode;
   node->leaf = true;
   node->count = static_cast<uint32_t>(count);
@@ -156,9 +163,13 @@ Bvh build_bvh(const Scene& scene) {
   arguments.setNodeChildren = set_children;
   arguments.setNodeBounds = set_bounds;
   arguments.createLeaf = create_leaf;
+  Made made;
+  arguments.userPtr = &made;
   const auto* root = static_cast<const BuildNode*>(rtcBuildBVH(&arguments));
   if (root == nullptr)
     throw std::runtime_error("Embree could not build the hierarchy; the scene may be too large for the memory");
+  result.nodes.reserve(made.nodes + 1);
+  result.blocks.reserve(made.leaves);
   Flattener(scene, result).flatten_root(*root, all);
   return result;
 }

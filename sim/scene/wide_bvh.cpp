@@ -40,6 +40,8 @@ class Widener {
   }
 
   WideBvh run() {
+    wide_.nodes.reserve(bvh_.nodes.size());
+    wide_.blocks.reserve(bvh_.blocks.size());
     if (!bvh_.nodes.empty()) add_node(0);
     return std::move(wide_);
   }
