@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cmath>
 #include <exception>
+#include <optional>
 #include <thread>
 
 #include "bits.hpp"
@@ -36,13 +37,29 @@ class Worker {
     thread_.memory = &memory;
     thread_.mode = options.mode;
     thread_.culling = options.culling;
+    if (options.work != nullptr) visits_.emplace(tracer.traversal().wide_bvh());
   }
 
-  void render_tile(uint32_t x, uint32_t y) {
-    for (uint32_t i = 0; i < options_.contents; ++i) {
+  /// Only where options ask for it.
+  NativeWork work_of(const std::vector<PixelTile>& tiles) {
+    const auto threads = statistics.kernel_threads;
+    const uint64_t rays = statistics.rays();
+    visits_->begin();
+    for (const PixelTile& tile : tiles) render_tile(tile);
+    NativeWork work;
+    for (size_t i = 0; i < kRayKernels; ++i) work.kernel_threads[i] = statistics.kernel_threads[i] - threads[i];
+    work.rays = statistics.rays() - rays;
+    work.nodes = visits_->nodes;
+    work.triangles = visits_->triangles;
+    work.places = visits_->places;
+    return work;
+  }
+
+  void render_tile(const PixelTile& tile) {
+    for (uint32_t i = 0; i < tile.pixels; ++i) {
       thread_.thread = i;
-      thread_.threads = options_.contents;
-      thread_.block = x | y << 16;
+      thread_.threads = tile.pixels;
+      thread_.block = tile.x | tile.y << 16;
       run(RayKernel::CastEye);
       while (!pending_.empty()) {
         const Ray ray = pending_.back();
@@ -80,7 +97,9 @@ class Worker {
     thread_.thread = 0;
     thread_.threads = 1;
     thread_.block = 0;
-    const bool goes_on = options_.trace ? options_.trace(ray, thread_.input) : tracer_.trace(ray, thread_.input);
+    const bool goes_on = options_.trace ? options_.trace(ray, thread_.input)
+                         : visits_      ? tracer_.trace(ray, thread_.input, *visits_)
+                                        : tracer_.trace(ray, thread_.input);
     statistics.ray_counts.count(ray, goes_on);
     if (goes_on) run(shadow ? RayKernel::Shade : secondary(depth));
   }
@@ -98,6 +117,7 @@ class Worker {
   const NativeOptions& options_;
   NativeThread thread_;
   std::vector<Ray> pending_;
+  std::optional<WideVisits> visits_;
 };
 
 float offset(const Scene& scene, uint32_t significand) {
@@ -178,18 +198,30 @@ FrameBuffer render_native(const Scene& scene, const MemoryImage& image, const Tr
   const uint32_t tile_width = 1u << tile_width_log2(options.contents), tile_height = options.contents / tile_width;
   Memory memory = image.memory;
 
-  // Tiles are handed out one at a time. Who gets which does not matter: pictures and counts are sums.
+  // Tiles, or parts of several, are handed out one at a time. Who gets which does not matter: pictures and counts are
+  // sums.
   const uint32_t columns = (options.width + tile_width - 1) / tile_width;
   const uint64_t tiles = uint64_t{columns} * ((options.height + tile_height - 1) / tile_height);
+  const bool in_parts = !options.parts.empty();
+  const uint64_t pieces = in_parts ? options.parts.size() : tiles;
+  if (options.work != nullptr) options.work->assign(pieces, {});
+  const auto tiles_of = [&](uint64_t piece) {
+    if (in_parts) return options.parts[piece];
+    const auto row = static_cast<uint32_t>(piece / columns), column = static_cast<uint32_t>(piece % columns);
+    return std::vector<PixelTile>{{column * tile_width, row * tile_height, options.contents}};
+  };
   const size_t workers_count = options.threads;
   std::vector<Worker> workers(workers_count, Worker(arguments, memory, tracer, options));
   std::vector<std::exception_ptr> errors(workers_count);
-  std::atomic<uint64_t> next_tile{0};
+  std::atomic<uint64_t> next{0};
   auto work = [&](size_t index) {
     try {
-      for (uint64_t tile = next_tile++; tile < tiles; tile = next_tile++) {
-        const auto row = static_cast<uint32_t>(tile / columns), column = static_cast<uint32_t>(tile % columns);
-        workers[index].render_tile(column * tile_width, row * tile_height);
+      for (uint64_t piece = next++; piece < pieces; piece = next++) {
+        if (options.work != nullptr) {
+          (*options.work)[piece] = workers[index].work_of(tiles_of(piece));
+        } else {
+          for (const PixelTile& tile : tiles_of(piece)) workers[index].render_tile(tile);
+        }
       }
     } catch (...) {
       errors[index] = std::current_exception();

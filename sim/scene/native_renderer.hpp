@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <vector>
 
 #include "enum_array.hpp"
 #include "kernel/kernels.hpp"
@@ -41,6 +42,19 @@ inline constexpr int kLargestDepth = 254;
 /// Each has a frame buffer of its own.
 inline constexpr uint32_t kMostRenderThreads = 256;
 
+/// Pixels that one launch of the eye kernel casts: in rows as wide as a tile, from this first one on.
+struct PixelTile {
+  uint32_t x = 0, y = 0;
+  uint32_t pixels = 0;  ///< those beyond the picture included
+};
+/// What a part of the picture takes.
+struct NativeWork {
+  EnumArray<RayKernel, uint64_t, kRayKernels> kernel_threads{};
+  uint64_t rays = 0;                  ///< traced
+  uint64_t nodes = 0, triangles = 0;  ///< visited by them, on the fast way (Traversal)
+  uint64_t places = 0;                ///< different ones of the tree among these
+};
+
 struct NativeOptions {
   uint32_t width = 512, height = 512;
   uint32_t depth = 1;       ///< 1 .. kLargestDepth; 1: eye and shadow rays only; d: up to d - 1 reflections
@@ -53,6 +67,9 @@ struct NativeOptions {
   /// Called with camera_arguments() before the frame begins, to change them; may be empty.
   std::function<void(std::array<uint32_t, kArguments>&)> change_arguments;
   std::function<bool(const Ray&, Intersection&)> trace;  ///< the tracer's when empty
+  /// The picture in parts, of tiles that are drawn one after the other; empty: by tiles of `contents` pixels.
+  std::vector<std::vector<PixelTile>> parts;
+  std::vector<NativeWork>* work = nullptr;  ///< gets what each of the parts takes; not together with `trace`
 };
 
 struct NativeStatistics {

@@ -120,6 +120,42 @@ TEST(NativeRenderer, PictureDoesNotDependOnThreadsOrTiles) {
   }
 }
 
+TEST(NativeRenderer, DrawsInPartsAndSaysWhatEachTakes) {
+  NativeOptions options = size(40, 32, 3);
+  const Rendered whole = render(make_cornell(), options);  // in tiles of 8x8
+  std::vector<NativeWork> work;
+  // Bands of four rows, the lowest first, in parts of three.
+  for (uint32_t band = 0; band < 40; ++band) {
+    if (band % 3 == 0) options.parts.emplace_back();
+    options.parts.back().push_back({band % 5 * 8, 28 - band / 5 * 4, 32});
+  }
+  options.work = &work;
+  const Rendered parts = render(make_cornell(), options);
+  EXPECT_TRUE(parts.frame == whole.frame);
+  EXPECT_EQ(parts.statistics.contributions, whole.statistics.contributions);
+  ASSERT_EQ(work.size(), 14u);
+  NativeWork sum;
+  for (const NativeWork& part : work) {
+    for (size_t i = 0; i < kRayKernels; ++i) sum.kernel_threads[i] += part.kernel_threads[i];
+    sum.rays += part.rays;
+    EXPECT_GT(part.nodes, part.rays) << "the root is not all";
+    EXPECT_GT(part.triangles, 0u);
+    EXPECT_GT(part.places, 1u);
+    EXPECT_LT(part.places, (part.nodes + part.triangles) / 5) << "neighbours visit the same";
+  }
+  for (size_t i = 0; i < kRayKernels; ++i) EXPECT_EQ(sum.kernel_threads[i], whole.statistics.kernel_threads[i]);
+  EXPECT_EQ(sum.rays, whole.statistics.rays());
+
+  options.threads = 3;
+  std::vector<NativeWork> again;
+  options.work = &again;
+  render(make_cornell(), options);
+  for (size_t i = 0; i < work.size(); ++i) {
+    EXPECT_EQ(again[i].nodes, work[i].nodes);
+    EXPECT_EQ(again[i].places, work[i].places);
+  }
+}
+
 TEST(NativeRenderer, CountsRaysByKindAndDepth) {
   // All materials reflect and the room is closed: every normal ray up to the depth is traced, one more is dropped.
   const Scene scene = make_room(0.02);

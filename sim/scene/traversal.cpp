@@ -162,20 +162,33 @@ bool Traversal::walk(const RayQuery& query, const PreparedRay& ray, Candidate& b
                      VisitList* visits) const {
   if (counts == nullptr && visits == nullptr) {
     const Walk& fast = walks().back();
-    return (kAny ? fast.any : fast.nearest)(wide_, ray, best);
+    return (kAny ? fast.any : fast.nearest)(wide_, ray, best, nullptr);
   }
   if (box_bits_ == 0) return traverse<kAny>(bvh_, ray, FloatBoxes(bvh_, ray), best, counts, visits);
   const BoxRay narrow = narrow_ray(query, ray, bvh_.bounds, box_bits_);
   return traverse<kAny>(bvh_, ray, NarrowBoxes(compressed_, narrow, ray), best, counts, visits);
 }
 
-bool Traversal::nearest(const RayQuery& query, Hit& hit, TraversalCounts* counts, VisitList* visits) const {
+// walk(ray, best): whether it meets something.
+template <typename Walk>
+bool Traversal::nearest_on(const RayQuery& query, Hit& hit, const Walk& walk) const {
   const PreparedRay ray = prepare(query, bvh_.bounds);
-  if (!ray.valid || bvh_.nodes.empty()) return false;
   Candidate best;
-  if (!walk<false>(query, ray, best, counts, visits)) return false;
+  if (!ray.valid || bvh_.nodes.empty() || !walk(ray, best)) return false;
   hit = finish(ray, best);
   return true;
+}
+
+bool Traversal::nearest(const RayQuery& query, Hit& hit, TraversalCounts* counts, VisitList* visits) const {
+  return nearest_on(query, hit, [&](const PreparedRay& ray, Candidate& best) {
+    return walk<false>(query, ray, best, counts, visits);
+  });
+}
+
+bool Traversal::nearest(const RayQuery& query, Hit& hit, WideVisits& visits) const {
+  return nearest_on(query, hit, [&](const PreparedRay& ray, Candidate& best) {
+    return walks().back().nearest(wide_, ray, best, &visits);
+  });
 }
 
 bool Traversal::occluded(const RayQuery& query, TraversalCounts* counts, VisitList* visits) const {
@@ -183,6 +196,12 @@ bool Traversal::occluded(const RayQuery& query, TraversalCounts* counts, VisitLi
   if (!ray.valid || bvh_.nodes.empty()) return false;
   Candidate best;
   return walk<true>(query, ray, best, counts, visits);
+}
+
+bool Traversal::occluded(const RayQuery& query, WideVisits& visits) const {
+  const PreparedRay ray = prepare(query, bvh_.bounds);
+  Candidate best;
+  return ray.valid && !bvh_.nodes.empty() && walks().back().any(wide_, ray, best, &visits);
 }
 
 bool Traversal::nearest_of_all(const RayQuery& query, Hit& hit) const {
@@ -231,16 +250,25 @@ void Tracer::meet(const Ray& ray, const Hit& hit, Intersection& intersection) co
   intersection[word::kTriangle] = hit.triangle;
 }
 
-bool Tracer::trace(const Ray& ray, Intersection& intersection, TraversalCounts* counts, VisitList* visits) const {
+template <typename... Told>
+bool Tracer::trace_and_tell(const Ray& ray, Intersection& intersection, Told&&... told) const {
   const RayQuery query = to_query(ray);
   if ((ray[word::kFlags] & kShadowFlag) != 0) {
     pass_on(ray, intersection);
-    return !traversal_.occluded(query, counts, visits);
+    return !traversal_.occluded(query, told...);
   }
   Hit hit;
-  if (!traversal_.nearest(query, hit, counts, visits)) return false;
+  if (!traversal_.nearest(query, hit, told...)) return false;
   meet(ray, hit, intersection);
   return true;
+}
+
+bool Tracer::trace(const Ray& ray, Intersection& intersection, TraversalCounts* counts, VisitList* visits) const {
+  return trace_and_tell(ray, intersection, counts, visits);
+}
+
+bool Tracer::trace(const Ray& ray, Intersection& intersection, WideVisits& visits) const {
+  return trace_and_tell(ray, intersection, visits);
 }
 
 }  // namespace raypool

@@ -60,6 +60,9 @@ class Traversal {
   bool nearest(const RayQuery& ray, Hit& hit, TraversalCounts* counts = nullptr, VisitList* visits = nullptr) const;
   /// Any hit at all; visits fewer nodes than nearest().
   bool occluded(const RayQuery& ray, TraversalCounts* counts = nullptr, VisitList* visits = nullptr) const;
+  /// The same answers, the fast way; `visits` is told what is visited on it.
+  bool nearest(const RayQuery& ray, Hit& hit, WideVisits& visits) const;
+  bool occluded(const RayQuery& ray, WideVisits& visits) const;
   /// The same answer as nearest(), from every triangle in turn. For tests.
   bool nearest_of_all(const RayQuery& ray, Hit& hit) const;
 
@@ -79,6 +82,8 @@ class Traversal {
   template <bool kAny>
   bool walk(const RayQuery& query, const PreparedRay& ray, Candidate& best, TraversalCounts* counts,
             VisitList* visits) const;
+  template <typename Walk>
+  bool nearest_on(const RayQuery& query, Hit& hit, const Walk& walk) const;
 
   Bvh bvh_;
   WideBvh wide_;
@@ -99,6 +104,9 @@ class Tracer {
   bool trace(const Ray& ray, Intersection& intersection, TraversalCounts* counts = nullptr,
              VisitList* visits = nullptr) const;
 
+  /// The same answer; `visits`, made of traversal().wide_bvh(), is told what is visited on the fast way to it.
+  bool trace(const Ray& ray, Intersection& intersection, WideVisits& visits) const;
+
   /// Words 0 .. 11 are the ray's, the others zero.
   static void pass_on(const Ray& ray, Intersection& intersection);
   /// What a hit of the ray becomes.
@@ -111,6 +119,9 @@ class Tracer {
   const Traversal& traversal() const { return traversal_; }
 
  private:
+  template <typename... Told>
+  bool trace_and_tell(const Ray& ray, Intersection& intersection, Told&&... told) const;
+
   Traversal traversal_;
   uint32_t material_base_;
   std::vector<uint32_t> material_words_;  ///< one a triangle

@@ -29,12 +29,45 @@ struct WideBvh {
 /// The triangles of `bvh` under some of its boxes.
 WideBvh widen(const Bvh& bvh);
 
+/// What rays visit since begin(), and in how many different places: so many a cache that held all of them would have to
+/// read.
+class WideVisits {
+ public:
+  explicit WideVisits(const WideBvh& bvh) : nodes_(bvh.nodes.size()), blocks_(bvh.blocks.size()) {}
+
+  void begin() {
+    nodes = triangles = places = 0;
+    ++now_;
+  }
+  void node(uint32_t number) {
+    ++nodes;
+    visit(nodes_[number]);
+  }
+  void block(uint32_t number, uint32_t count) {
+    triangles += count;
+    visit(blocks_[number]);
+  }
+
+  uint64_t nodes = 0, triangles = 0;  ///< whose boxes, and which themselves, are tested
+  uint64_t places = 0;                ///< nodes and blocks, each once
+
+ private:
+  void visit(uint32_t& last) {
+    places += last != now_;
+    last = now_;
+  }
+
+  std::vector<uint32_t> nodes_, blocks_;  // which begin() was the last before it was visited
+  uint32_t now_ = 0;
+};
+
 /// The loop around box test and triangle test, for one set of the processor's instructions. `ray` is valid and the tree
-/// not empty. False: nothing is hit. Both answers are the same whichever set it is.
+/// not empty; `visits`, if not null, is told. False: nothing is hit. All answers are the same whichever set it is.
 struct Walk {
   const char* instructions;  ///< "sse", "avx2"
-  bool (*nearest)(const WideBvh& bvh, const PreparedRay& ray, Candidate& best);
-  bool (*any)(const WideBvh& bvh, const PreparedRay& ray, Candidate& best);  ///< the first hit that is met
+  bool (*nearest)(const WideBvh& bvh, const PreparedRay& ray, Candidate& best, WideVisits* visits);
+  /// The first hit that is met.
+  bool (*any)(const WideBvh& bvh, const PreparedRay& ray, Candidate& best, WideVisits* visits);
 };
 /// Those that this processor has, best last.
 const std::vector<Walk>& walks();

@@ -126,8 +126,8 @@ TEST(WideBvh, EveryWalkFindsWhatEveryTriangleInTurnFinds) {
         for (const Walk& walk : walks()) {
           SCOPED_TRACE(walk.instructions);
           Candidate best, any;
-          ASSERT_EQ(found, walk.nearest(traversal.wide_bvh(), ray, best));
-          ASSERT_EQ(found, walk.any(traversal.wide_bvh(), ray, any));
+          ASSERT_EQ(found, walk.nearest(traversal.wide_bvh(), ray, best, nullptr));
+          ASSERT_EQ(found, walk.any(traversal.wide_bvh(), ray, any, nullptr));
           if (!found) continue;
           ASSERT_EQ(best.triangle, expected.triangle);
           ASSERT_EQ(best.triangle, chips.triangle);
@@ -139,6 +139,45 @@ TEST(WideBvh, EveryWalkFindsWhatEveryTriangleInTurnFinds) {
     }
   }
   EXPECT_GT(hits, 6000);
+}
+
+TEST(WideBvh, TellsWhatRaysVisit) {
+  const Scene scene = make_cornell();
+  const Traversal traversal(scene);
+  WideVisits visits(traversal.wide_bvh());
+  std::mt19937 random(3);
+  const Vec3 eye = scene.camera.eye;
+  for (const Walk& walk : walks()) {
+    SCOPED_TRACE(walk.instructions);
+    for (int i = 0; i < 200; ++i) {
+      const auto number = [&] { return static_cast<float>(random() % 2000) / 1000 - 1; };
+      const Vec3 d = scene.camera.direction;
+      const RayQuery query{eye, {d.x + number(), d.y + number(), d.z + number()}, INFINITY};
+      const PreparedRay ray = prepare(query, traversal.bvh().bounds);
+      ASSERT_TRUE(ray.valid);
+      Candidate silent, told;
+      const bool found = walk.nearest(traversal.wide_bvh(), ray, silent, nullptr);
+      visits.begin();
+      EXPECT_EQ(visits.nodes + visits.triangles + visits.places, 0u);
+      ASSERT_EQ(walk.nearest(traversal.wide_bvh(), ray, told, &visits), found);
+      ASSERT_EQ(told.triangle, silent.triangle);
+      ASSERT_GE(visits.nodes, 1u);
+      ASSERT_GE(visits.triangles, found ? 1u : 0u);
+      ASSERT_GE(visits.places, visits.nodes) << "a ray comes to no node twice";
+      ASSERT_LE(visits.places, visits.nodes + visits.triangles);
+      const uint64_t nodes = visits.nodes, triangles = visits.triangles, places = visits.places;
+      Candidate any;
+      ASSERT_EQ(walk.any(traversal.wide_bvh(), ray, any, &visits), found);
+      ASSERT_GT(visits.nodes, nodes);
+      // Once more: as many visits, of no new place.
+      const uint64_t both = visits.places, nodes_of_both = visits.nodes, triangles_of_both = visits.triangles;
+      ASSERT_EQ(walk.nearest(traversal.wide_bvh(), ray, told, &visits), found);
+      ASSERT_EQ(visits.nodes, nodes_of_both + nodes);
+      ASSERT_EQ(visits.triangles, triangles_of_both + triangles);
+      ASSERT_EQ(visits.places, both);
+      ASSERT_GE(both, places);
+    }
+  }
 }
 
 TEST(WideBvh, WalksAreThoseOfTheProcessor) {

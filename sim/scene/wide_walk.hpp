@@ -75,9 +75,9 @@ uint32_t go_on(const WideBvh& bvh, const WideBvhNode& node, unsigned lanes, cons
   return static_cast<uint32_t>(nearest);
 }
 
-/// `ray` is valid and the tree not empty. kAny: ends with the first hit.
-template <bool kAny>
-bool walk_tree(const WideBvh& bvh, const PreparedRay& ray, Candidate& best) {
+/// `ray` is valid and the tree not empty. kAny: ends with the first hit. kVisits: `visits` is told.
+template <bool kAny, bool kVisits>
+bool walk_tree(const WideBvh& bvh, const PreparedRay& ray, Candidate& best, WideVisits* visits) {
   Float8 padded_near[3], padded_far[3], inverse[3];
   for (int axis = 0; axis < 3; ++axis) {
     padded_near[axis] = splat8(ray.padded[ray.near_side[axis]][axis]);
@@ -95,6 +95,7 @@ bool walk_tree(const WideBvh& bvh, const PreparedRay& ray, Candidate& best) {
   for (;;) {
     while ((child & kLeafBit) == 0) {
       const WideBvhNode& node = nodes[child];
+      if (kVisits) visits->node(child);
       Float8 near = max8(splat8(0), slab8(load8(node.bounds[x][0]), padded_near[0], inverse[0]));
       Float8 far = slab8(load8(node.bounds[1 - x][0]), padded_far[0], inverse[0]);
       near = max8(near, slab8(load8(node.bounds[y][1]), padded_near[1], inverse[1]));
@@ -112,7 +113,9 @@ bool walk_tree(const WideBvh& bvh, const PreparedRay& ray, Candidate& best) {
       child = go_on<!kAny>(bvh, node, lanes, entry, top);
     }
     if ((child & kLeafBit) != 0) {
-      found |= intersect_block(ray, blocks[child & ~kLeafBit], best);
+      const TriangleBlock& block = blocks[child & ~kLeafBit];
+      if (kVisits) visits->block(child & ~kLeafBit, block.count);
+      found |= intersect_block(ray, block, best);
       if (kAny && found) return true;
     }
     do {
@@ -123,9 +126,11 @@ bool walk_tree(const WideBvh& bvh, const PreparedRay& ray, Candidate& best) {
   }
 }
 
-inline bool walk_nearest(const WideBvh& bvh, const PreparedRay& ray, Candidate& best) {
-  return walk_tree<false>(bvh, ray, best);
+inline bool walk_nearest(const WideBvh& bvh, const PreparedRay& ray, Candidate& best, WideVisits* visits) {
+  return visits == nullptr ? walk_tree<false, false>(bvh, ray, best, visits)
+                           : walk_tree<false, true>(bvh, ray, best, visits);
 }
-inline bool walk_any(const WideBvh& bvh, const PreparedRay& ray, Candidate& best) {
-  return walk_tree<true>(bvh, ray, best);
+inline bool walk_any(const WideBvh& bvh, const PreparedRay& ray, Candidate& best, WideVisits* visits) {
+  return visits == nullptr ? walk_tree<true, false>(bvh, ray, best, visits)
+                           : walk_tree<true, true>(bvh, ray, best, visits);
 }
