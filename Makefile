@@ -156,7 +156,7 @@ help: ## this list
 	@echo '  WAVES=1                       a waveform (FST) too; ENGINE=rtl, lockstep  $(WAVES)'
 	@echo '  TRACE=FROM:CYCLES|pixel:X,Y   what happens then, for Perfetto, Konata and make report;'
 	@echo '                                1: 0:20000; ENGINE=model                    $(TRACE)'
-	@echo '  THREADS=N                     ENGINE=native, embree; changes no picture   all cores'
+	@echo '  THREADS=N                     ENGINE=native, embree, sampled; changes no figure  all cores'
 	@echo '  ERROR=N% or TIME=Ns           ENGINE=sampled: what may be afforded        ERROR=2%'
 	@echo '  SEED=N                        ENGINE=sampled: of the choice of tiles      $(SEED)'
 	@echo 'variables of make fidelity:  those of the frame, from SCENE to DETAIL, and OUT=FOLDER'

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "bits.hpp"
-#include "scene/native_renderer.hpp"
 
 namespace raypool::chip {
 
@@ -27,17 +26,12 @@ TileWalk tile_walk(const Configuration& configuration, uint32_t width, uint32_t 
   return {order, (width + columns - 1) / columns, (height + rows - 1) / rows};
 }
 
-std::vector<uint64_t> along_walk(const Configuration& configuration, uint32_t width, uint32_t height,
-                                 const std::vector<uint32_t>& pixels) {
+std::vector<PixelTile> along_walk(const Configuration& configuration, uint32_t width, uint32_t height) {
   const uint32_t columns = 1u << tile_width_log2(configuration.contents()), rows = tile_rows(configuration);
-  std::vector<uint64_t> sums;
-  for (TileWalk tile = tile_walk(configuration, width, height); !tile.at_end(); tile.next()) {
-    uint64_t& sum = sums.emplace_back();
-    for (uint32_t y = tile.row() * rows; y < std::min((tile.row() + 1) * rows, height); ++y)
-      for (uint32_t x = tile.column() * columns; x < std::min((tile.column() + 1) * columns, width); ++x)
-        sum += pixels[size_t{y} * width + x];
-  }
-  return sums;
+  std::vector<PixelTile> tiles;
+  for (TileWalk tile = tile_walk(configuration, width, height); !tile.at_end(); tile.next())
+    tiles.push_back({tile.column() * columns, tile.row() * rows, columns * rows});
+  return tiles;
 }
 
 Controller::Controller(const sc_core::sc_module_name& name, const ChipOptions& options)

@@ -22,15 +22,15 @@
 #include "chip/tile_walk.hpp"
 #include "machine/kernel_policy.hpp"
 #include "machine/launch_rules.hpp"
+#include "scene/native_renderer.hpp"
 
 namespace raypool::chip {
 
 /// Over the tiles in which such a machine casts a picture: columns() x rows() pixels each, in its order.
 TileWalk tile_walk(const Configuration& configuration, uint32_t width, uint32_t height);
 
-/// Of each tile, in that order, the sum of what its pixels have. `pixels`: row by row.
-std::vector<uint64_t> along_walk(const Configuration& configuration, uint32_t width, uint32_t height,
-                                 const std::vector<uint32_t>& pixels);
+/// These tiles, in that order.
+std::vector<PixelTile> along_walk(const Configuration& configuration, uint32_t width, uint32_t height);
 
 class Controller : public sc_core::sc_module, public DecisionIf, public KernelEventsIf {
  public:

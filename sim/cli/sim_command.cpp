@@ -41,9 +41,9 @@ void check(const SimOptions& options, Engine engine) {
   if (!options.trace.empty() && engine != Engine::Model) {
     throw InputError(fmt::format("engine {} leaves no trace: use model, or leave trace out", options.engine));
   }
-  if (options.threads != 0 && !without_unit(engine)) {
-    throw InputError(
-        fmt::format("engine {} runs on one thread: use native or embree, or leave --threads out", options.engine));
+  if (options.threads != 0 && !without_unit(engine) && engine != Engine::Sampled) {
+    throw InputError(fmt::format("engine {} runs on one thread: use native, embree or sampled, or leave --threads out",
+                                 options.engine));
   }
   if (options.inspect_until != 0 && engine != Engine::Lockstep) throw InputError("--inspect is for --engine lockstep");
   if (engine != Engine::Sampled && (!options.error.empty() || !options.time.empty() || options.seed != 0)) {
@@ -119,7 +119,7 @@ std::string progress_text(const ChipProgress& done, bool timed, double seconds) 
 }
 
 FrameBuffer draw_natively(const SimOptions& options, Engine engine, RunRecord& record, const Scene& scene,
-                          MemoryImage& image, const Tracer& tracer, std::vector<uint32_t>* rays = nullptr) {
+                          MemoryImage& image, const Tracer& tracer, std::vector<NativeWork>* work = nullptr) {
   std::optional<EmbreeTracer> embree;
   NativeOptions native = native_options(record);
   native.threads = threads_or_all(options.threads);
@@ -127,13 +127,9 @@ FrameBuffer draw_natively(const SimOptions& options, Engine engine, RunRecord& r
     embree.emplace(scene, tracer);
     native.trace = [&](const Ray& ray, Intersection& hit) { return embree->trace(ray, hit); };
   }
-  if (rays != nullptr) {
-    rays->resize(size_t{native.width} * native.height);
-    // Of a pixel there is one ray at a time.
-    native.trace = [&](const Ray& ray, Intersection& hit) {
-      ++(*rays)[size_t{ray[word::kPixel] >> 16} * native.width + (ray[word::kPixel] & 0xffff)];
-      return tracer.trace(ray, hit);
-    };
+  if (work != nullptr) {
+    native.parts = sampled::blocks_of(record.configuration, native.width, native.height);
+    native.work = work;
   }
   record.native.emplace();
   const Progress drawing(true);
@@ -220,11 +216,12 @@ FrameBuffer draw_sampled_frame(const SimOptions& options, RunRecord& record, con
   if (!options.error.empty()) wanted.error = parse_amount(options.error, "--error", "%", 50) / 100;
   const double time = options.time.empty() ? 0 : parse_amount(options.time, "--time", "s", 1e6);
   wanted.seed = record.seed = std::max<uint64_t>(1, options.seed);
+  wanted.processes = threads_or_all(options.threads);
 
   Surroundings around(scene, image, record);
   const Progress drawing(true);
-  std::vector<uint32_t> rays;
-  FrameBuffer frame = draw_natively(options, Engine::Native, record, scene, image, around.tracer, &rays);
+  std::vector<NativeWork> work;
+  FrameBuffer frame = draw_natively(options, Engine::Native, record, scene, image, around.tracer, &work);
   // What is over already gets the smallest sample.
   if (time > 0) wanted.seconds = std::max(1e-3, time - whole.seconds());
   const std::unique_ptr<ComputeUnit> device = make_device(options, Engine::Model, record, image);
@@ -233,7 +230,7 @@ FrameBuffer draw_sampled_frame(const SimOptions& options, RunRecord& record, con
   chip.progress = [&](const ChipProgress& done) {
     if (progress.due()) progress.show(progress_text(done, true, progress.seconds()));
   };
-  record.sampled = sampled::draw_sampled(chip, rays, wanted);
+  record.sampled = sampled::draw_sampled(chip, work, wanted);
   record.simulation_seconds = drawing.seconds();
   return frame;
 }

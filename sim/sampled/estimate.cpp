@@ -5,6 +5,49 @@
 #include <utility>
 
 namespace raypool::sampled {
+namespace {
+
+// Of each coefficient but the constant: as if there were one more block, of variance 1, in which it is 0. So a fit
+// exists whatever is known, of more things than blocks too.
+constexpr double kRidge = 1;
+// What is known first is used, as far as there are enough blocks: a fit of fewer says more of them than of others.
+constexpr size_t kBlocksACoefficient = 4;
+
+using Vector = std::vector<double>;
+using Matrix = std::vector<Vector>;
+
+double dot(const Vector& a, const Vector& b) {
+  double sum = 0;
+  for (size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
+  return sum;
+}
+
+/// The lower factor of Cholesky of a positive definite matrix.
+Matrix factor(Matrix matrix) {
+  for (size_t i = 0; i < matrix.size(); ++i) {
+    for (size_t j = 0; j <= i; ++j) {
+      double rest = matrix[i][j];
+      for (size_t k = 0; k < j; ++k) rest -= matrix[i][k] * matrix[j][k];
+      matrix[i][j] = i == j ? std::sqrt(rest) : rest / matrix[j][j];
+    }
+  }
+  return matrix;
+}
+
+/// x with (matrix of the factor) x = y.
+Vector solve(const Matrix& factor, Vector y) {
+  for (size_t i = 0; i < y.size(); ++i) {
+    for (size_t k = 0; k < i; ++k) y[i] -= factor[i][k] * y[k];
+    y[i] /= factor[i][i];
+  }
+  for (size_t i = y.size(); i-- > 0;) {
+    for (size_t k = i + 1; k < y.size(); ++k) y[i] -= factor[k][i] * y[k];
+    y[i] /= factor[i][i];
+  }
+  return y;
+}
+
+}  // namespace
 
 double student_t(double n) {
   constexpr double x = 1.959963984540054;  // of the normal distribution
@@ -15,29 +58,137 @@ double student_t(double n) {
          (79 * x9 + 776 * x7 + 1482 * x5 - 1920 * x3 - 945 * x) / (92160 * n * n * n * n);
 }
 
-Estimate::Estimate(const Counts& always, std::vector<Drawn> strata) : always_(always), strata_(std::move(strata)) {}
+Estimate::Estimate(const Counts& always, std::vector<Drawn> strata) : always_(always), strata_(std::move(strata)) {
+  standardise();
+  fit();
+}
+
+void Estimate::standardise() {
+  double all = 0;
+  size_t drawn = 0;
+  for (const Drawn& stratum : strata_) drawn += stratum.costs.size();
+  Vector mean, deviation;
+  for (const Drawn& stratum : strata_) {
+    all += static_cast<double>(stratum.known.size());
+    mean.resize(std::min(stratum.known.front().size(), drawn / kBlocksACoefficient));
+    for (const Known& known : stratum.known)
+      for (size_t i = 0; i < mean.size(); ++i) mean[i] += known[i];
+  }
+  for (double& x : mean) x /= all;
+  deviation.resize(mean.size());
+  for (const Drawn& stratum : strata_)
+    for (const Known& known : stratum.known)
+      for (size_t i = 0; i < mean.size(); ++i) deviation[i] += std::pow(known[i] - mean[i], 2) / all;
+  for (Drawn& stratum : strata_) {
+    for (Known& known : stratum.known) {
+      // What all blocks have the same of says nothing.
+      known.resize(mean.size());
+      for (size_t i = 0; i < mean.size(); ++i)
+        known[i] = deviation[i] == 0 ? 0 : (known[i] - mean[i]) / std::sqrt(deviation[i]);
+      known.insert(known.begin(), 1);
+    }
+  }
+}
+
+// Each block drawn stands for as many as its stratum has to one drawn, in the fit too. The estimate is linear in the
+// costs: weights say all.
+void Estimate::fit() {
+  double all = 0, drawn = 0;
+  for (const Drawn& stratum : strata_) {
+    all += static_cast<double>(stratum.known.size());
+    drawn += static_cast<double>(stratum.costs.size());
+  }
+  const size_t size = strata_.empty() ? 0 : strata_.front().known.front().size();
+  Matrix squares(size, Vector(size));
+  Vector missing(size);  // in the sum over all blocks, of what the sample says that it is
+  const auto stands_for = [](const Drawn& stratum) {
+    return static_cast<double>(stratum.known.size()) / static_cast<double>(stratum.costs.size());
+  };
+  for (const Drawn& stratum : strata_) {
+    const double weight = stands_for(stratum) * drawn / all;
+    for (size_t block = 0; block < stratum.known.size(); ++block) {
+      const Vector& known = stratum.known[block];
+      const bool is_drawn = block < stratum.costs.size();
+      for (size_t i = 0; i < size; ++i) {
+        missing[i] += known[i] - (is_drawn ? stands_for(stratum) * known[i] : 0);
+        for (size_t j = 0; is_drawn && j < size; ++j) squares[i][j] += weight * known[i] * known[j];
+      }
+    }
+  }
+  for (size_t i = 1; i < size; ++i) squares[i][i] += kRidge;
+  const Matrix factored = factor(squares);
+  for (const Drawn& stratum : strata_) {
+    std::vector<Block>& blocks = blocks_.emplace_back();
+    const double weight = stands_for(stratum) * drawn / all;
+    for (size_t i = 0; i < stratum.costs.size(); ++i) {
+      Block& block = blocks.emplace_back();
+      block.known = stratum.known[i];
+      block.fitted = solve(factored, block.known);
+      for (double& x : block.fitted) x *= weight;
+      // Without the constant's, which the strata's own means take the place of.
+      block.leverage = dot(block.fitted, block.known) - weight / drawn;
+      block.weight = stands_for(stratum) + dot(block.fitted, missing);
+    }
+  }
+}
 
 double Estimate::sum(const Linear& figure) const {
   double result = figure(always_);
-  for (const Drawn& stratum : strata_) {
-    double drawn = 0;
-    for (const Counts& costs : stratum.costs) drawn += figure(costs);
-    result += drawn * static_cast<double>(stratum.blocks) / static_cast<double>(stratum.costs.size());
-  }
+  for (size_t stratum = 0; stratum < strata_.size(); ++stratum)
+    for (size_t i = 0; i < blocks_[stratum].size(); ++i)
+      result += blocks_[stratum][i].weight * figure(strata_[stratum].costs[i]);
   return result;
 }
 
-// Degrees of freedom as Satterthwaite has them, but that the squares of the strata's variances, which are estimates
-// themselves, are counted without bias: of a stratum with n degrees of freedom n / (n + 2) of the square.
-double Estimate::half_width(const Linear& figure, double times) const {
-  double variance = 0, squares = 0;
+std::vector<double> Estimate::coefficients(const Linear& figure) const {
+  Vector coefficients;
+  for (size_t stratum = 0; stratum < strata_.size(); ++stratum) {
+    for (size_t i = 0; i < blocks_[stratum].size(); ++i) {
+      const Vector& fitted = blocks_[stratum][i].fitted;
+      const double cost = figure(strata_[stratum].costs[i]);
+      coefficients.resize(fitted.size());
+      for (size_t k = 0; k < fitted.size(); ++k) coefficients[k] += cost * fitted[k];
+    }
+  }
+  return coefficients;
+}
+
+double Estimate::variation(size_t count) const {
+  const Vector fit = coefficients([&](const Counts& costs) { return costs[count]; });
+  double all = 0, sum = 0, squares = 0;
   for (const Drawn& stratum : strata_) {
-    const auto all = static_cast<double>(stratum.blocks), here = static_cast<double>(stratum.costs.size());
+    for (const Known& known : stratum.known) {
+      const double prediction = dot(fit, known);
+      ++all;
+      sum += prediction;
+      squares += prediction * prediction;
+    }
+  }
+  return sum == 0 ? 0 : std::max(0.0, squares * all / (sum * sum) - 1);
+}
+
+// The variance is that of a stratified sample of residuals. What is left of a block that took part in the fit is too
+// little: its residual in a fit without it is residual / (1 - leverage), which has the variance of the fit itself too.
+// With n times the sample leverages are an n-th. Degrees of freedom as Satterthwaite has them, but that the squares of
+// the strata's variances, which are estimates themselves, are counted without bias: of a stratum with n degrees of
+// freedom n / (n + 2) of the square.
+double Estimate::half_width(const Linear& figure, double times) const {
+  const Vector fit = coefficients(figure);
+  double variance = 0, squares = 0;
+  for (size_t stratum = 0; stratum < strata_.size(); ++stratum) {
+    const std::vector<Block>& blocks = blocks_[stratum];
+    const auto all = static_cast<double>(strata_[stratum].known.size()), here = static_cast<double>(blocks.size());
     const double drawn = std::min(all, times * here);
     if (here < 2 || drawn >= all) continue;
+    Vector residuals;
     double mean = 0, deviations = 0;
-    for (const Counts& costs : stratum.costs) mean += figure(costs) / here;
-    for (const Counts& costs : stratum.costs) deviations += std::pow(figure(costs) - mean, 2);
+    for (size_t i = 0; i < blocks.size(); ++i) {
+      const double residual = figure(strata_[stratum].costs[i]) - dot(fit, blocks[i].known);
+      const double without = std::sqrt((1 - blocks[i].leverage) * (1 - blocks[i].leverage / times));
+      residuals.push_back(residual / without);
+      mean += residuals.back() / here;
+    }
+    for (const double residual : residuals) deviations += std::pow(residual - mean, 2);
     const double part = all * all * (1 - drawn / all) / drawn * deviations / (here - 1);
     variance += part;
     squares += part * part / (drawn + 1);

@@ -9,14 +9,10 @@
 
 namespace raypool::sampled {
 
-Sample::Sample(const std::vector<uint64_t>& tile_sizes, uint32_t block_tiles, uint32_t strata, uint64_t seed)
-    : tiles_(size32(tile_sizes)),
-      block_tiles_(block_tiles),
-      blocks_((tiles_ + block_tiles - 1) / block_tiles),
-      strata_(strata) {
+Sample::Sample(uint32_t tiles, uint32_t block_tiles, const std::vector<double>& sizes, uint32_t strata, uint64_t seed)
+    : tiles_(tiles), block_tiles_(block_tiles), blocks_(blocks_of(tiles, block_tiles)), strata_(strata) {
   if (strata == 0 || strata > most_strata(tiles_, block_tiles)) throw std::logic_error("a stratum of too few blocks");
-  std::vector<uint64_t> sizes(blocks_);
-  for (uint32_t tile = 0; tile < tiles_; ++tile) sizes[tile / block_tiles] += tile_sizes[tile];
+  if (sizes.size() != blocks_) throw std::logic_error("not a size of each block");
   std::vector<uint32_t> inner(inner_blocks());
   std::iota(inner.begin(), inner.end(), 1);
   std::stable_sort(inner.begin(), inner.end(), [&](uint32_t a, uint32_t b) { return sizes[a] < sizes[b]; });

@@ -22,13 +22,16 @@ struct Stratum {
 
 class Sample {
  public:
-  /// Of tiles of these sizes, along the walk, in blocks of `block_tiles`; so many strata, each of kLeastDrawn blocks or
-  /// more: see most_strata().
-  Sample(const std::vector<uint64_t>& tile_sizes, uint32_t block_tiles, uint32_t strata, uint64_t seed);
+  /// Of so many tiles, along the walk, in blocks of `block_tiles`, which have these sizes; so many strata, each of
+  /// kLeastDrawn blocks or more: see most_strata().
+  Sample(uint32_t tiles, uint32_t block_tiles, const std::vector<double>& sizes, uint32_t strata, uint64_t seed);
+
+  /// Blocks of such a picture.
+  static uint32_t blocks_of(uint32_t tiles, uint32_t block_tiles) { return (tiles + block_tiles - 1) / block_tiles; }
 
   /// So many strata can be made; 0: none.
   static uint32_t most_strata(uint32_t tiles, uint32_t block_tiles) {
-    const uint32_t all = (tiles + block_tiles - 1) / block_tiles;
+    const uint32_t all = blocks_of(tiles, block_tiles);
     return all < 2 ? 0 : (all - 2) / kLeastDrawn;
   }
 

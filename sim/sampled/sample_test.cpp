@@ -8,10 +8,11 @@
 namespace raypool::sampled {
 namespace {
 
-const std::vector<uint64_t> kAlike(1003, 1);
+constexpr uint32_t kTiles = 1003;
+const std::vector<double> kAlike(101, 1);
 
 TEST(Sample, HasEachInnerBlockInOneStratum) {
-  const Sample sample(kAlike, 10, 7, 1);
+  const Sample sample(kTiles, 10, kAlike, 7, 1);
   EXPECT_EQ(sample.blocks(), 101u);
   EXPECT_EQ(sample.begin(100), 1000u);
   EXPECT_EQ(sample.begin(101), 1003u) << "the last block is shorter";
@@ -23,16 +24,16 @@ TEST(Sample, HasEachInnerBlockInOneStratum) {
 }
 
 TEST(Sample, OfAlikeBlocksHasNeighboursInAStratum) {
-  const Sample sample(kAlike, 10, 3, 1);
+  const Sample sample(kTiles, 10, kAlike, 3, 1);
   for (uint32_t i = 0; i < 3; ++i) {
     for (const uint32_t block : sample.strata()[i].order) EXPECT_EQ((block - 1) / 33, i);
   }
 }
 
 TEST(Sample, KeepsWhatIsRareAndLargeApart) {
-  std::vector<uint64_t> sizes(1000, 1);
-  for (const uint32_t tile : {155u, 488u, 489u, 725u, 831u}) sizes[tile] = 100;  // of blocks 15, 48, 72, 83
-  const Sample sample(sizes, 10, 24, 1);
+  std::vector<double> sizes(100, 10);
+  for (const uint32_t block : {15u, 48u, 72u, 83u}) sizes[block] = 100;
+  const Sample sample(1000, 10, sizes, 24, 1);
   std::vector<uint32_t> last = sample.strata().back().order;
   std::sort(last.begin(), last.end());
   EXPECT_EQ(std::vector<uint32_t>(last.end() - 1, last.end()), std::vector<uint32_t>{98});
@@ -40,7 +41,7 @@ TEST(Sample, KeepsWhatIsRareAndLargeApart) {
 }
 
 TEST(Sample, DrawsWithoutReplacementAndMoreOfTheSame) {
-  Sample sample(kAlike, 10, 7, 1);
+  Sample sample(kTiles, 10, kAlike, 7, 1);
   std::vector<uint32_t> all = sample.draw(0);
   EXPECT_EQ(all.size(), 7 * kLeastDrawn);
   EXPECT_TRUE(std::is_sorted(all.begin(), all.end()));
@@ -54,14 +55,15 @@ TEST(Sample, DrawsWithoutReplacementAndMoreOfTheSame) {
 }
 
 TEST(Sample, IsAnotherWithAnotherSeedAndTheSameWithTheSame) {
-  EXPECT_EQ(Sample(kAlike, 10, 7, 3).draw(30), Sample(kAlike, 10, 7, 3).draw(30));
-  EXPECT_NE(Sample(kAlike, 10, 7, 3).draw(30), Sample(kAlike, 10, 7, 4).draw(30));
+  EXPECT_EQ(Sample(kTiles, 10, kAlike, 7, 3).draw(30), Sample(kTiles, 10, kAlike, 7, 3).draw(30));
+  EXPECT_NE(Sample(kTiles, 10, kAlike, 7, 3).draw(30), Sample(kTiles, 10, kAlike, 7, 4).draw(30));
 }
 
 TEST(Sample, RefusesStrataThatAreTooSmall) {
   EXPECT_EQ(Sample::most_strata(1003, 10), 33u);
   EXPECT_EQ(Sample::most_strata(15, 10), 0u);
-  EXPECT_THROW(Sample(kAlike, 10, 34, 1), std::logic_error);
+  EXPECT_THROW(Sample(kTiles, 10, kAlike, 34, 1), std::logic_error);
+  EXPECT_THROW(Sample(kTiles, 11, kAlike, 7, 1), std::logic_error) << "sizes of other blocks";
 }
 
 }  // namespace

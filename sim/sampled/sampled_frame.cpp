@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstring>
 #include <map>
 #include <numeric>
 #include <utility>
 
+#include "bits.hpp"
 #include "chip/controller.hpp"
+#include "sampled/processes.hpp"
 #include "sampled/sample.hpp"
 
 namespace raypool::sampled {
@@ -18,10 +21,16 @@ namespace count = chip::count;
 constexpr uint32_t kLeastBlockTiles = 4;
 constexpr uint32_t kLeastStrata = 8;  // for the variance to be known
 constexpr uint32_t kPilotShare = 25;  // one of so many blocks
-constexpr double kMargin = 1.15;      // more blocks than the pilot says are needed: its variance is one of a sample
+constexpr double kMargin = 1.1;       // more blocks than seem to be needed: a variance that is known is a sample's
+constexpr double kGrowth = 2;         // of the sample at a time, at most
+// A process begins with a block that is not counted: each has several to simulate.
+constexpr uint32_t kLeastGroup = 8, kMostGroups = 64;
 // What a block costs depends a little on what is beside it, which in a sample is not what it is in the frame: this much
 // of each figure, and no less than so much of a utilisation. `make intervals` prints mean errors of that size.
 constexpr double kBesideError = 0.0025, kLeastShareError = 0.0005;
+// And the more the less alike blocks are: cheap ones beside dear ones seem dearer and dear ones cheaper, which nearly
+// cancels out, but for a part that goes with the variance of what blocks cost.
+constexpr double kUnlikeError = 0.1;
 // Where the sample goes on elsewhere in the picture it reads lines that the frame has read before: of the memory port's
 // utilisation.
 constexpr double kReadAgainError = 0.025;
@@ -35,79 +44,181 @@ void add(Counts& sum, const Counts& costs) {
   for (size_t i = 0; i < sum.size(); ++i) sum[i] += costs[i];
 }
 
+/// As many pixels as may be under way at a time.
+uint32_t block_tiles(const Configuration& configuration) {
+  const uint32_t held = configuration.chip.held_limit;
+  return std::max(kLeastBlockTiles, held / std::min(configuration.contents(), held));
+}
+
+/// Instructions of each kernel, from its first to that of the next one.
+EnumArray<RayKernel, double, kRayKernels> kernel_lengths(const ChipOptions& chip) {
+  EnumArray<RayKernel, double, kRayKernels> lengths{};
+  for (size_t kernel = 0; kernel < kRayKernels; ++kernel) {
+    uint32_t end = chip.program_length;
+    for (size_t other = 0; other < kRayKernels; ++other)
+      if (chip.entries[other] > chip.entries[kernel]) end = std::min(end, chip.entries[other]);
+    lengths[kernel] = end - chip.entries[kernel];
+  }
+  if (chip.configuration.chip.shading == Shading::Traverser) lengths[RayKernel::Shade] = 0;  // which adds the colour
+  return lengths;
+}
+
+/// What predicts a block's cycles: instructions that its threads execute, rays, nodes and triangles that they visit,
+/// and how much of the tree that is, which caches must read.
+std::vector<Known> known_of(const ChipOptions& chip, const std::vector<NativeWork>& work) {
+  const auto lengths = kernel_lengths(chip);
+  std::vector<Known> known;
+  for (const NativeWork& block : work) {
+    double instructions = 0;
+    for (size_t i = 0; i < kRayKernels; ++i) instructions += lengths[i] * static_cast<double>(block.kernel_threads[i]);
+    known.push_back({instructions});
+    for (const uint64_t number : {block.rays, block.nodes, block.triangles, block.places})
+      known.back().push_back(static_cast<double>(number));
+  }
+  return known;
+}
+
+/// All that is known of each block as one number, a mean share each.
+std::vector<double> sizes_of(const std::vector<Known>& known) {
+  Known sum(known.front().size());
+  for (const Known& block : known)
+    for (size_t i = 0; i < sum.size(); ++i) sum[i] += block[i];
+  std::vector<double> sizes;
+  for (const Known& block : known) {
+    sizes.push_back(0);
+    for (size_t i = 0; i < sum.size(); ++i) sizes.back() += sum[i] == 0 ? 0 : block[i] / sum[i];
+  }
+  return sizes;
+}
+
 class SampledFrame {
  public:
-  SampledFrame(const ChipOptions& chip, const std::vector<uint32_t>& rays, const Wanted& wanted)
-      : chip_(chip), wanted_(wanted), rays_(chip::along_walk(chip.configuration, chip.width, chip.height, rays)) {
-    figures_.tiles = size32(rays_);
-    // As many pixels as may be under way at a time.
-    const uint32_t tile_pixels = std::min(chip.configuration.contents(), chip.configuration.chip.held_limit);
-    block_ = std::max(kLeastBlockTiles, chip.configuration.chip.held_limit / tile_pixels);
-    beside_ = std::max(1u, block_ / 8);
+  SampledFrame(const ChipOptions& chip, const std::vector<NativeWork>& work, const Wanted& wanted)
+      : chip_(chip), wanted_(wanted), block_(block_tiles(chip.configuration)), beside_(std::max(1u, block_ / 8)) {
+    figures_.tiles = static_cast<uint32_t>(chip::tile_walk(chip.configuration, chip.width, chip.height).left());
+    if (work.size() != Sample::blocks_of(figures_.tiles, block_))
+      throw std::logic_error("not the work of each block of the sample");
+    known_ = known_of(chip, work);
+    sizes_ = sizes_of(known_);
+    for (const NativeWork& block : work) rays_ += static_cast<double>(block.rays);
   }
 
   Figures draw() {
     const uint32_t most = Sample::most_strata(figures_.tiles, block_);
     if (most < kLeastDrawn * kLeastStrata) return draw_whole();
-    Sample sample(rays_, block_, std::max(kLeastStrata, figures_.tiles / block_ / kPilotShare / kLeastDrawn),
-                  wanted_.seed);
+    Sample sample(figures_.tiles, block_, sizes_,
+                  std::max(kLeastStrata, figures_.tiles / block_ / kPilotShare / kLeastDrawn), wanted_.seed);
     std::vector<uint32_t> pilot = sample.draw(0);
     pilot.insert(pilot.begin(), 0);
     pilot.push_back(sample.blocks() - 1);
     const auto begin = std::chrono::steady_clock::now();
-    simulate(sample, pilot, 0);
-    const double a_tile = seconds_since(begin) / figures_.simulated_tiles;
-    const double blocks = blocks_wanted(sample, a_tile);
-    // What is beside the blocks costs too.
-    if (blocks * (block_ + 2 * beside_) / block_ >= kWholeFrom * sample.inner_blocks() && affordable(a_tile))
-      return draw_whole();
-    const std::vector<uint32_t> more = sample.draw(static_cast<uint32_t>(blocks));
-    if (!more.empty()) simulate(sample, more, block_);
+    for (std::vector<uint32_t> more = pilot; !more.empty();) {
+      simulate(sample, more);
+      const double seconds = seconds_since(begin), a_tile = seconds / figures_.simulated_tiles;
+      const double blocks = blocks_wanted(sample, seconds, a_tile);
+      // What is beside the blocks costs too.
+      const bool all = blocks * (block_ + 2 * beside_) / block_ >= kWholeFrom * sample.inner_blocks();
+      if (all && (wanted_.seconds == 0 || seconds + a_tile * figures_.tiles < wanted_.seconds)) return draw_whole();
+      // What a small sample says of the size of a much larger one is worth little.
+      more = sample.draw(static_cast<uint32_t>(std::min(blocks, kGrowth * sample.drawn())));
+    }
     conclude(estimate(sample));
     return figures_;
   }
 
  private:
-  bool affordable(double a_tile) const { return wanted_.seconds == 0 || a_tile * figures_.tiles < wanted_.seconds; }
-
-  /// Inner blocks to be drawn in all.
-  double blocks_wanted(const Sample& sample, double a_tile) const {
-    const auto drawn = static_cast<double>(sample.drawn()), all = static_cast<double>(sample.inner_blocks());
-    if (wanted_.seconds > 0) {
-      const double left = wanted_.seconds - a_tile * figures_.simulated_tiles;
-      return std::min(all, drawn + std::max(0.0, left / (a_tile * (block_ + 2 * beside_))));
-    }
-    const Estimate pilot = estimate(sample);
-    const double allowed = (wanted_.error - kBesideError) * pilot.total(count::kCycles).value;
-    double blocks = drawn;
-    while (blocks < all && pilot.half_width(count::kCycles, blocks / drawn) > allowed) blocks *= 1.05;
-    return blocks == drawn ? drawn : std::min(all, kMargin * blocks);
+  /// A share of each figure.
+  static double beside_error(const Estimate& estimate) {
+    return kBesideError + kUnlikeError * estimate.variation(count::kCycles);
   }
 
-  /// These blocks in a run of the chip, the first behind so many tiles more.
-  void simulate(const Sample& sample, const std::vector<uint32_t>& blocks, uint32_t lead) {
-    std::map<uint32_t, bool> tiles;  // whether it counts
-    const auto add_beside = [&](uint32_t from, uint32_t to) {
-      for (uint32_t tile = from; tile < std::min(to, figures_.tiles); ++tile) tiles.emplace(tile, false);
-    };
-    for (const uint32_t block : blocks) {
-      const uint32_t first = sample.begin(block), end = sample.begin(block + 1);
-      add_beside(first - std::min(first, beside_ + (tiles.empty() ? lead : 0)), first);
-      add_beside(end, end + beside_);
-      for (uint32_t tile = first; tile < end; ++tile) tiles[tile] = true;
+  /// Inner blocks to be drawn in all; as many as are drawn, if that is enough. A few more pay for no further run.
+  double blocks_wanted(const Sample& sample, double seconds, double a_tile) const {
+    const auto drawn = static_cast<double>(sample.drawn()), all = static_cast<double>(sample.inner_blocks());
+    if (wanted_.seconds > 0) {
+      const double more = (wanted_.seconds - seconds) / (a_tile * (block_ + 2 * beside_));
+      return more < kLeastGroup ? drawn : std::min(all, drawn + more);
     }
+    const Estimate now = estimate(sample);
+    const double allowed = (wanted_.error - beside_error(now)) * now.total(count::kCycles).value;
+    double blocks = drawn;
+    while (blocks < all && now.half_width(count::kCycles, blocks / drawn) > allowed) blocks *= 1.05;
+    return blocks == drawn ? drawn : std::min(all, std::max(kMargin * blocks, drawn + kLeastGroup));
+  }
+
+  /// Tiles that are simulated together, ascending, and whether each counts.
+  using Group = std::map<uint32_t, bool>;
+
+  /// These blocks, of which a process simulates so many, neighbours, that all have about as much to do. How many groups
+  /// there are does not depend on the machine, nor do figures then.
+  std::vector<Group> groups_of(const Sample& sample, const std::vector<uint32_t>& blocks) const {
+    uint32_t count = 1;
+    while (count < kMostGroups && 2 * count * kLeastGroup <= blocks.size()) count *= 2;
+    double all = 0, before = 0;
+    for (const uint32_t block : blocks) all += sizes_[block];
+    std::vector<Group> groups(count);
+    for (const uint32_t block : blocks) {
+      Group& group = groups[std::min<size_t>(count - 1, static_cast<size_t>(before / all * count))];
+      before += sizes_[block];
+      const auto add_beside = [&](uint32_t from, uint32_t to) {
+        for (uint32_t tile = from; tile < std::min(to, figures_.tiles); ++tile) group.emplace(tile, false);
+      };
+      const uint32_t first = sample.begin(block), end = sample.begin(block + 1);
+      // A chip that has just begun is filled first.
+      add_beside(first - std::min(first, beside_ + (group.empty() ? block_ / 2 : 0)), first);
+      add_beside(end, end + beside_);
+      for (uint32_t tile = first; tile < end; ++tile) group[tile] = true;
+    }
+    groups.erase(std::remove_if(groups.begin(), groups.end(), [](const Group& group) { return group.empty(); }),
+                 groups.end());
+    return groups;
+  }
+
+  /// These blocks, each group of them in a process.
+  void simulate(const Sample& sample, const std::vector<uint32_t>& blocks) {
+    const std::vector<Group> groups = groups_of(sample, blocks);
+    size_t tiles = 0, ended = 0;
+    for (const Group& group : groups) tiles += group.size();
+    const auto costs_of = [](const std::string& bytes) {
+      std::vector<Counts> costs(bytes.size() / sizeof(Counts));
+      std::memcpy(costs.data(), bytes.data(), costs.size() * sizeof(Counts));
+      return costs;
+    };
+    Counts seen{};
+    const auto progress = [&](size_t group, const std::string& bytes) {
+      if (!chip_.progress) return;
+      ended += groups[group].size();
+      for (const Counts& costs : costs_of(bytes)) add(seen, costs);
+      chip_.progress(
+          {static_cast<double>(ended) / static_cast<double>(tiles), static_cast<uint64_t>(seen[count::kCycles]),
+           static_cast<uint64_t>(seen[count::kEyeRays] + seen[count::kReflectionRays] + seen[count::kShadowRays])});
+    };
+    const std::vector<std::string> results = in_processes(
+        groups.size(), wanted_.processes, [&](size_t group) { return simulate(groups[group]); }, progress);
+    for (size_t group = 0; group < groups.size(); ++group) {
+      const std::vector<Counts> costs = costs_of(results[group]);
+      if (costs.size() != groups[group].size()) throw std::logic_error("not the costs of each tile of a group");
+      figures_.simulated_tiles += size32(costs);
+      auto tile_costs = costs.begin();
+      for (const auto& [tile, counts] : groups[group]) {
+        if (counts) {
+          add(costs_[tile / block_], *tile_costs);
+          ++figures_.counted_tiles;
+        }
+        ++tile_costs;
+      }
+    }
+  }
+
+  /// A run of the chip. The bytes of what each tile costs.
+  std::string simulate(const Group& group) const {
     ChipOptions run = chip_;
+    run.progress = {};
     chip::TileCosts costs;
     run.tile_costs = &costs;
-    for (const auto& [tile, counts] : tiles) run.tiles.push_back(tile);
+    for (const auto& [tile, counts] : group) run.tiles.push_back(tile);
     run_chip(run);
-    figures_.simulated_tiles += size32(tiles);
-    auto tile_costs = costs.costs().begin();
-    for (const auto& [tile, counts] : tiles) {
-      if (counts) add(costs_[tile / block_], *tile_costs);
-      figures_.counted_tiles += counts;
-      ++tile_costs;
-    }
+    return {reinterpret_cast<const char*>(costs.costs().data()), costs.costs().size() * sizeof(Counts)};
   }
 
   Estimate estimate(const Sample& sample) const {
@@ -116,7 +227,7 @@ class SampledFrame {
     std::vector<Drawn> strata;
     for (const Stratum& stratum : sample.strata()) {
       Drawn& drawn = strata.emplace_back();
-      drawn.blocks = stratum.order.size();
+      for (const uint32_t block : stratum.order) drawn.known.push_back(known_[block]);
       for (uint32_t i = 0; i < stratum.drawn; ++i) drawn.costs.push_back(costs_.at(stratum.order[i]));
     }
     return {always, std::move(strata)};
@@ -124,10 +235,14 @@ class SampledFrame {
 
   void conclude(const Estimate& estimate) {
     figures_.cycles = estimate.total(count::kCycles);
-    figures_.cycles.low -= kBesideError * figures_.cycles.value;
-    figures_.cycles.high += kBesideError * figures_.cycles.value;
-    const auto rays = static_cast<double>(std::accumulate(rays_.begin(), rays_.end(), uint64_t{0}));
-    const auto mrays = [&](double cycles) { return 1e3 * rays / cycles; };
+    const double beside = beside_error(estimate);
+    figures_.cycles.low -= beside * figures_.cycles.value;
+    figures_.cycles.high += beside * figures_.cycles.value;
+    const auto share = [&](const Interval& x, double error = 0) {
+      error += std::max(kLeastShareError, beside * x.value);
+      return Interval{x.value, std::max(0.0, x.low - error), std::min(1.0, x.high + error)};
+    };
+    const auto mrays = [&](double cycles) { return 1e3 * rays_ / cycles; };
     figures_.mrays_per_s = {mrays(figures_.cycles.value), mrays(figures_.cycles.high), mrays(figures_.cycles.low)};
     for (size_t i = 0; i < kAluTypes; ++i) {
       const Interval unused = estimate.ratio(count::kUnused + i, count::kBusyCycles);
@@ -139,10 +254,6 @@ class SampledFrame {
     figures_.memory_port = share(estimate.ratio(count::kMemoryPort, count::kCycles), kReadAgainError);
   }
 
-  static Interval share(const Interval& x, double error = 0) {
-    error += std::max(kLeastShareError, kBesideError * x.value);
-    return {x.value, std::max(0.0, x.low - error), std::min(1.0, x.high + error)};
-  }
   static Interval exactly(double x) { return {x, x, x}; }
 
   Figures draw_whole() {
@@ -161,16 +272,28 @@ class SampledFrame {
 
   const ChipOptions& chip_;
   Wanted wanted_;
-  std::vector<uint64_t> rays_;        // of each tile, along the walk
-  uint32_t block_ = 0, beside_ = 0;   // tiles of a block, and uncounted ones on each side of it
+  uint32_t block_, beside_;           // tiles of a block, and uncounted ones on each side of it
+  std::vector<Known> known_;          // [block]
+  std::vector<double> sizes_;         // [block] a share of the frame's work, times what is known
+  double rays_ = 0;                   // of the frame
   std::map<uint32_t, Counts> costs_;  // [block]
   Figures figures_;
 };
 
 }  // namespace
 
-Figures draw_sampled(const ChipOptions& chip, const std::vector<uint32_t>& rays, const Wanted& wanted) {
-  return SampledFrame(chip, rays, wanted).draw();
+std::vector<std::vector<PixelTile>> blocks_of(const Configuration& configuration, uint32_t width, uint32_t height) {
+  const uint32_t tiles = block_tiles(configuration);
+  std::vector<std::vector<PixelTile>> blocks;
+  for (const PixelTile& tile : chip::along_walk(configuration, width, height)) {
+    if (blocks.empty() || blocks.back().size() == tiles) blocks.emplace_back();
+    blocks.back().push_back(tile);
+  }
+  return blocks;
+}
+
+Figures draw_sampled(const ChipOptions& chip, const std::vector<NativeWork>& work, const Wanted& wanted) {
+  return SampledFrame(chip, work, wanted).draw();
 }
 
 }  // namespace raypool::sampled

@@ -1,7 +1,8 @@
 // Engine `sampled`: the cycle-exact model on a random sample of a frame's tiles, and what that says of the frame.
 //
 // A block of the sample is simulated as it is in the frame, among its neighbours: tiles before it, that fill the chip
-// and its caches, and behind it, so that it does not drain, are simulated too and not counted.
+// and its caches, and behind it, so that it does not drain, are simulated too and not counted. What the native renderer
+// knows of all blocks predicts what they cost.
 #pragma once
 
 #include <cstdint>
@@ -9,6 +10,7 @@
 
 #include "chip/chip.hpp"
 #include "sampled/estimate.hpp"
+#include "scene/native_renderer.hpp"
 
 namespace raypool::sampled {
 
@@ -19,6 +21,7 @@ struct Wanted {
   double error = kDefaultError;  ///< half of the interval of the cycles, as a share of them; 0 < error < 1
   double seconds = 0;            ///< of simulation; 0: as many as the error takes
   uint64_t seed = 1;
+  uint32_t processes = 1;  ///< at a time, 1 or more; no figure depends on it, but where `seconds` are given
 };
 
 struct Figures {
@@ -33,9 +36,13 @@ struct Figures {
   double error() const { return cycles.value == 0 ? 0 : (cycles.high - cycles.low) / 2 / cycles.value; }
 };
 
-/// `rays`: that the frame traces of each pixel, row by row. A pilot sample finds how many tiles it takes; if that is
-/// half of the frame all of it is simulated. Options of `chip` as for run_chip(), whose exceptions it passes on;
-/// `chip.frame` gets what is simulated, some of it several times.
-Figures draw_sampled(const ChipOptions& chip, const std::vector<uint32_t>& rays, const Wanted& wanted);
+/// The blocks of which a sample is drawn, in order: the parts in which native draws for it (NativeOptions::parts).
+std::vector<std::vector<PixelTile>> blocks_of(const Configuration& configuration, uint32_t width, uint32_t height);
+
+/// `work`: what each of blocks_of() takes, of the frame and its memory image. A pilot sample finds how many tiles it
+/// takes; if that is half of the frame all of it is simulated. Options of `chip` as for run_chip(), whose exceptions it
+/// passes on, as in_processes() does. The sample is simulated in processes of their own: `chip.device` and `chip.frame`
+/// get nothing of it, and `chip.progress` is called when one has ended, with its stage's share, cycles and rays.
+Figures draw_sampled(const ChipOptions& chip, const std::vector<NativeWork>& work, const Wanted& wanted);
 
 }  // namespace raypool::sampled

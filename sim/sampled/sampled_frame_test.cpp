@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <random>
+#include <utility>
+
+#include "bits.hpp"
 #include "chip/test_real_frame.hpp"
 #include "machine/model.hpp"
 
@@ -10,20 +15,35 @@ namespace {
 
 constexpr uint32_t kSide = 96;  // pixels: 576 tiles of 4x4
 
+/// Half of a room: half of the eye's rays meet nothing.
+Scene make_half() {
+  const Scene room = make_cornell();
+  Scene half = room;
+  half.triangles.clear();
+  half.triangle_materials.clear();
+  const float middle = 0.5f * (room.bounds().lower.x + room.bounds().upper.x);
+  for (size_t i = 0; i < room.triangles.size(); ++i) {
+    if (std::max({room.corner(i, 0).x, room.corner(i, 1).x, room.corner(i, 2).x}) > middle) continue;
+    half.triangles.push_back(room.triangles[i]);
+    half.triangle_materials.push_back(room.triangle_materials[i]);
+  }
+  return half;
+}
+
 struct Frame : test::RealFrame {
-  explicit Frame(uint32_t side = kSide) : RealFrame(4, 4, side, side, 2), rays(size_t{side} * side) {
+  explicit Frame(uint32_t side = kSide, Scene drawn = make_cornell())
+      : RealFrame(4, 4, side, side, 2, std::move(drawn)) {
     options.configuration.chip.held_limit = 64;
     set_device(make_model(options.configuration, image.memory, 1).device);
     NativeOptions native;
     native.width = native.height = side;
     native.depth = 2;
-    native.trace = [&](const Ray& ray, Intersection& hit) {
-      ++rays[size_t{ray[word::kPixel] >> 16} * native.width + (ray[word::kPixel] & 0xffff)];
-      return tracer.trace(ray, hit);
-    };
+    native.contents = options.configuration.contents();
+    native.parts = blocks_of(options.configuration, side, side);
+    native.work = &work;
     render_native(scene, image, tracer, native);
   }
-  std::vector<uint32_t> rays;
+  std::vector<NativeWork> work;
 };
 
 TEST(SampledFrame, SaysWhatTheWholeFrameTakes) {
@@ -31,7 +51,7 @@ TEST(SampledFrame, SaysWhatTheWholeFrameTakes) {
   const ChipResult whole = run_chip(frame.options);
   Wanted wanted;
   wanted.error = 0.1;
-  const Figures figures = draw_sampled(frame.options, frame.rays, wanted);
+  const Figures figures = draw_sampled(frame.options, frame.work, wanted);
   ASSERT_FALSE(figures.whole);
   EXPECT_EQ(figures.tiles, 576u);
   EXPECT_LT(figures.simulated_tiles, 288u);
@@ -49,9 +69,9 @@ TEST(SampledFrame, SimulatesMoreWhereLessErrorIsAllowed) {
   Frame frame(160);
   Wanted coarse, fine;
   coarse.error = 0.3;
-  const Figures a = draw_sampled(frame.options, frame.rays, coarse);
+  const Figures a = draw_sampled(frame.options, frame.work, coarse);
   fine.error = 0.7 * a.error();
-  const Figures b = draw_sampled(frame.options, frame.rays, fine);
+  const Figures b = draw_sampled(frame.options, frame.work, fine);
   EXPECT_GT(b.counted_tiles, a.counted_tiles);
   EXPECT_LT(b.error(), a.error());
 }
@@ -59,7 +79,7 @@ TEST(SampledFrame, SimulatesMoreWhereLessErrorIsAllowed) {
 TEST(SampledFrame, IsExactWhereTheWholeFrameIsAsCheap) {
   Frame frame(32);
   const ChipResult whole = run_chip(frame.options);
-  const Figures figures = draw_sampled(frame.options, frame.rays, {});
+  const Figures figures = draw_sampled(frame.options, frame.work, {});
   EXPECT_TRUE(figures.whole);
   EXPECT_EQ(figures.simulated_tiles, figures.tiles);
   EXPECT_EQ(figures.cycles.low, static_cast<double>(whole.cycles));
@@ -68,15 +88,70 @@ TEST(SampledFrame, IsExactWhereTheWholeFrameIsAsCheap) {
   EXPECT_EQ(figures.error(), 0);
 }
 
+TEST(SampledFrame, IsTheSameHoweverManyProcesses) {
+  Frame frame(160);
+  Wanted wanted;
+  wanted.error = 0.05;
+  const Figures one = draw_sampled(frame.options, frame.work, wanted);
+  ASSERT_FALSE(one.whole);
+  for (const uint32_t processes : {2u, 3u, 64u}) {
+    wanted.processes = processes;
+    const Figures several = draw_sampled(frame.options, frame.work, wanted);
+    EXPECT_EQ(several.cycles.value, one.cycles.value);
+    EXPECT_EQ(several.cycles.low, one.cycles.low);
+    EXPECT_EQ(several.alus[AluType::Ray].high, one.alus[AluType::Ray].high);
+    EXPECT_EQ(several.simulated_tiles, one.simulated_tiles);
+  }
+  wanted.seed = 2;
+  EXPECT_NE(draw_sampled(frame.options, frame.work, wanted).cycles.value, one.cycles.value);
+}
+
+// With what is known of the blocks in the wrong order it predicts nothing.
+TEST(SampledFrame, IsNarrowerForWhatNativeKnows) {
+  Frame frame(160, make_half());
+  std::vector<NativeWork> mixed = frame.work;
+  std::shuffle(mixed.begin(), mixed.end(), std::mt19937(1));
+  Wanted wanted;
+  wanted.seconds = 1e-3;
+  double known = 0, unknown = 0;
+  for (wanted.seed = 1; wanted.seed <= 4; ++wanted.seed) {
+    known += draw_sampled(frame.options, frame.work, wanted).error();
+    unknown += draw_sampled(frame.options, mixed, wanted).error();
+  }
+  EXPECT_LT(known, 0.6 * unknown);
+}
+
+TEST(SampledFrame, TellsHowFarItIs) {
+  Frame frame;
+  std::vector<ChipProgress> told;
+  frame.options.progress = [&](const ChipProgress& done) { told.push_back(done); };
+  Wanted wanted;
+  wanted.error = 0.4;
+  ASSERT_FALSE(draw_sampled(frame.options, frame.work, wanted).whole);
+  ASSERT_GE(told.size(), 2u);
+  EXPECT_LT(told.front().pixels_done, 1);
+  EXPECT_EQ(told.back().pixels_done, 1);
+  EXPECT_GT(told.back().cycles, told.front().cycles);
+  EXPECT_GT(told.front().rays, 0u);
+}
+
+TEST(SampledFrame, PassesOnWhatGoesWrong) {
+  Frame frame;
+  frame.options.cycle_limit = 1000;
+  EXPECT_THROW(draw_sampled(frame.options, frame.work, {}), std::runtime_error);
+  frame.work.pop_back();
+  EXPECT_THROW(draw_sampled(frame.options, frame.work, {}), std::logic_error);
+}
+
 TEST(SampledFrame, WithoutTimeTakesTheSmallestSample) {
   Frame frame;
   Wanted wanted;
   wanted.seconds = 1e-3;
-  const Figures figures = draw_sampled(frame.options, frame.rays, wanted);
+  const Figures figures = draw_sampled(frame.options, frame.work, wanted);
   EXPECT_FALSE(figures.whole);
   wanted.seconds = 0;
   wanted.error = 0.4;
-  EXPECT_EQ(draw_sampled(frame.options, frame.rays, wanted).counted_tiles, figures.counted_tiles);
+  EXPECT_EQ(draw_sampled(frame.options, frame.work, wanted).counted_tiles, figures.counted_tiles);
 }
 
 }  // namespace

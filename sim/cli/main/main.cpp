@@ -187,7 +187,7 @@ void CommandLine::add_sim_command() {
   add_config(*sim_app, sim_.config, sim_.set);
   add_unit(*sim_app, sim_.engine, sim_.unit_library);
   add_units_and_depth(*sim_app, sim_.units, sim_.depth);
-  add_threads(*sim_app, sim_.threads, "native and embree: threads");
+  add_threads(*sim_app, sim_.threads, "native, embree and sampled: threads");
   sim_app
       ->add_option("--error", sim_.error,
                    "sampled: half of the 95% interval of the cycles; as many tiles as that takes (default: 2%)")
