@@ -35,7 +35,7 @@ TEST(RecordLayout, HasWhatIsReadAndWhatIsExportedAsItCame) {
       [](RecordedKernel& k) {
         k.ray_in();
         const Int sum = k.int_word(15) + k.int_word(3);
-        const Int unused = k.int_word(20);
+        [[maybe_unused]] const Int unused = k.int_word(20);
         set_ray(k, sum, 1u << 7);
         k.ray_out();
         set_ray(k, sum);

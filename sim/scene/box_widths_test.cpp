@@ -31,7 +31,9 @@ TEST(BoxWidths, TellVisitsOfEachWidthAndFindNoOtherAnswer) {
   for (size_t i = 0; i < tried.rows.size(); ++i) {
     EXPECT_EQ(tried.rows[i].different, 0u);
     EXPECT_EQ(tried.rows[i].bits, std::vector<uint32_t>({0, 16, 8, 6})[i]);
-    if (i > 0) EXPECT_GT(tried.rows[i].visits.nodes, tried.rows[i - 1].visits.nodes);
+    if (i > 0) {
+      EXPECT_GT(tried.rows[i].visits.nodes, tried.rows[i - 1].visits.nodes);
+    }
   }
 }
 
