@@ -43,7 +43,6 @@ class Design:
     library: Library
     parameters: dict
     folder: str
-    top: str = "compute_unit"
     clock_ns: float = 0.0
     fo4_ns: float = 0.0
     kinds: dict = field(default_factory=dict)
@@ -52,6 +51,7 @@ class Design:
     endpoints: list = field(default_factory=list)
     efforts: dict = field(default_factory=dict)  # by kind's identity, where it is not the first
     buffers: dict = field(default_factory=dict)  # added to each kind for fan-out
+    top: str = "compute_unit"
 
     @property
     def verilog(self):

@@ -30,7 +30,7 @@ def synthesise(name, rows, options):
         folder = os.path.join(BUILD, "modules", "-".join(filter(None, (name, text, flow.suffix(options, library)))))
         os.makedirs(folder, exist_ok=True)
         flow.lock(folder)
-        design = flow.Design(options, library, parsed(text) if text else {}, folder, name)
+        design = flow.Design(options, library, parsed(text) if text else {}, folder, top=name)
         design.options.config = f"{name} {text}".strip()
         design.memory = MemoryModel(library)
         try:
