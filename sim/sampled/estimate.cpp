@@ -1,5 +1,6 @@
 #include "sampled/estimate.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -14,38 +15,9 @@ constexpr double kRidge = 1;
 constexpr size_t kBlocksACoefficient = 4;
 
 using Vector = std::vector<double>;
-using Matrix = std::vector<Vector>;
 
-double dot(const Vector& a, const Vector& b) {
-  double sum = 0;
-  for (size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
-  return sum;
-}
-
-/// The lower factor of Cholesky of a positive definite matrix.
-Matrix factor(Matrix matrix) {
-  for (size_t i = 0; i < matrix.size(); ++i) {
-    for (size_t j = 0; j <= i; ++j) {
-      double rest = matrix[i][j];
-      for (size_t k = 0; k < j; ++k) rest -= matrix[i][k] * matrix[j][k];
-      matrix[i][j] = i == j ? std::sqrt(rest) : rest / matrix[j][j];
-    }
-  }
-  return matrix;
-}
-
-/// x with (matrix of the factor) x = y.
-Vector solve(const Matrix& factor, Vector y) {
-  for (size_t i = 0; i < y.size(); ++i) {
-    for (size_t k = 0; k < i; ++k) y[i] -= factor[i][k] * y[k];
-    y[i] /= factor[i][i];
-  }
-  for (size_t i = y.size(); i-- > 0;) {
-    for (size_t k = i + 1; k < y.size(); ++k) y[i] -= factor[k][i] * y[k];
-    y[i] /= factor[i][i];
-  }
-  return y;
-}
+Eigen::Map<const Eigen::VectorXd> vector(const Vector& x) { return {x.data(), static_cast<Eigen::Index>(x.size())}; }
+double dot(const Vector& a, const Vector& b) { return vector(a).dot(vector(b)); }
 
 }  // namespace
 
@@ -98,36 +70,36 @@ void Estimate::fit() {
     all += static_cast<double>(stratum.known.size());
     drawn += static_cast<double>(stratum.costs.size());
   }
-  const size_t size = strata_.empty() ? 0 : strata_.front().known.front().size();
-  Matrix squares(size, Vector(size));
-  Vector missing(size);  // in the sum over all blocks, of what the sample says that it is
+  if (strata_.empty()) return;
+  const auto size = vector(strata_.front().known.front()).size();
+  Eigen::MatrixXd squares = Eigen::MatrixXd::Zero(size, size);
+  Eigen::VectorXd missing = Eigen::VectorXd::Zero(size);  // in the sum over all blocks, of what the sample says it is
   const auto stands_for = [](const Drawn& stratum) {
     return static_cast<double>(stratum.known.size()) / static_cast<double>(stratum.costs.size());
   };
   for (const Drawn& stratum : strata_) {
     const double weight = stands_for(stratum) * drawn / all;
     for (size_t block = 0; block < stratum.known.size(); ++block) {
-      const Vector& known = stratum.known[block];
-      const bool is_drawn = block < stratum.costs.size();
-      for (size_t i = 0; i < size; ++i) {
-        missing[i] += known[i] - (is_drawn ? stands_for(stratum) * known[i] : 0);
-        for (size_t j = 0; is_drawn && j < size; ++j) squares[i][j] += weight * known[i] * known[j];
-      }
+      const auto known = vector(stratum.known[block]);
+      missing += known;
+      if (block >= stratum.costs.size()) continue;
+      missing -= stands_for(stratum) * known;
+      squares += weight * known * known.transpose();
     }
   }
-  for (size_t i = 1; i < size; ++i) squares[i][i] += kRidge;
-  const Matrix factored = factor(squares);
+  squares.diagonal().tail(size - 1).array() += kRidge;
+  const Eigen::LLT<Eigen::MatrixXd> factored(squares);
   for (const Drawn& stratum : strata_) {
     std::vector<Block>& blocks = blocks_.emplace_back();
     const double weight = stands_for(stratum) * drawn / all;
     for (size_t i = 0; i < stratum.costs.size(); ++i) {
       Block& block = blocks.emplace_back();
       block.known = stratum.known[i];
-      block.fitted = solve(factored, block.known);
-      for (double& x : block.fitted) x *= weight;
+      const Eigen::VectorXd fitted = weight * factored.solve(vector(block.known));
+      block.fitted.assign(fitted.begin(), fitted.end());
       // Without the constant's, which the strata's own means take the place of.
       block.leverage = dot(block.fitted, block.known) - weight / drawn;
-      block.weight = stands_for(stratum) + dot(block.fitted, missing);
+      block.weight = stands_for(stratum) + fitted.dot(missing);
     }
   }
 }
