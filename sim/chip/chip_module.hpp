@@ -46,6 +46,7 @@ class Chip : public sc_core::sc_module, public WatchedIf {
   void collect_pools(ChipResult& result) const;
   void collect_ceilings(ChipResult& result) const;
   void watch_tiles();
+  void remember_before(uint32_t number);
   size_t place(uint32_t x, uint32_t y) const;  // of a pixel's tile in tile_of_
   Counts counts() const;
 

@@ -27,6 +27,7 @@ class ModelledTraverser : public Traverser, private traverser::MemoryTurns {
   void room_made(ImportKind kind) override;
   void kernel_ended(uint32_t /*unit*/) override {}
   void catch_up(uint64_t cycle) override;
+  void remember(const VisitList& places) override { core_.remember(places); }
   std::optional<TraverserWork> work() const override { return core_.work(); }
 
  private:

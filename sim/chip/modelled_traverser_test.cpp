@@ -169,6 +169,46 @@ TEST(ModelledTraverser, SharesTheMemoryPortWithTheUnits) {
   EXPECT_LT(cycles(20, TraverserName::Static), 1.5 * cycles(2, TraverserName::Static));
 }
 
+TEST(ModelledTraverser, BehindTilesThatAreLeftOutItRemembersWhatTheyVisited) {
+  test::RealFrame run(4, 4, 64, 64, 2);
+  run.options.configuration.chip.traverser = TraverserName::Modelled;
+  run.set_device(device_of(run, 1));
+  run.options.tiles = {0, 1, 40, 41, 42, 200};
+  const auto lines_read = [&] {
+    TileCosts costs;
+    run.options.tile_costs = &costs;
+    return run_chip(run.options).traversal->memory_lines;
+  };
+  const uint64_t cold = lines_read();
+  std::vector<uint32_t> asked;
+  run.options.visited_before = [&](uint32_t tile) {
+    asked.push_back(tile);
+    return VisitList{};
+  };
+  EXPECT_EQ(lines_read(), cold);
+  EXPECT_EQ(asked, (std::vector<uint32_t>{40, 200}));
+
+  WideVisits visits(run.tracer.traversal().wide_bvh());
+  visits.begin();
+  NotingTracer noting(run.scene_tracer);
+  run.options.tracer = &noting;
+  run_chip(run.options);
+  for (const auto& [ray, answer] : noting.noted) {
+    Intersection hit;
+    run.tracer.trace(ray, hit, visits);
+  }
+  VisitList places;
+  run.tracer.traversal().places_of(visits, 0, places);
+  run.options.visited_before = [&](uint32_t) { return places; };
+  EXPECT_LT(static_cast<double>(lines_read()), 0.5 * static_cast<double>(cold));
+  run.options.tiles.front() = 5;
+  run.options.tiles[1] = 6;
+  run.options.visited_before = [&](uint32_t tile) { return asked.push_back(tile), VisitList{}; };
+  asked.clear();
+  lines_read();
+  EXPECT_EQ(asked, (std::vector<uint32_t>{5, 40, 200})) << "a run that begins elsewhere begins behind a gap too";
+}
+
 TEST(ModelledTraverser, DrawsAnEmptySceneAndASingleTriangle) {
   Scene empty = make_cornell(0.1);
   empty.triangles.clear();

@@ -63,6 +63,8 @@ class Traverser : public sc_core::sc_module,
   void catch_up(uint64_t /*cycle*/) override {}
 
   const TraverserCounts& counts() const { return counts_; }
+  /// Caches hold these places from now on, as if rays had visited them; the last of them stay longest.
+  virtual void remember(const VisitList& /*places*/) {}
   /// What a traverser with a machine inside has done.
   virtual std::optional<TraverserWork> work() const { return {}; }
 

@@ -125,20 +125,6 @@ std::vector<double> Estimate::coefficients(const Linear& figure) const {
   return coefficients;
 }
 
-double Estimate::variation(size_t count) const {
-  const Vector fit = coefficients([&](const Counts& costs) { return costs[count]; });
-  double all = 0, sum = 0, squares = 0;
-  for (const Drawn& stratum : strata_) {
-    for (const Known& known : stratum.known) {
-      const double prediction = dot(fit, known);
-      ++all;
-      sum += prediction;
-      squares += prediction * prediction;
-    }
-  }
-  return sum == 0 ? 0 : std::max(0.0, squares * all / (sum * sum) - 1);
-}
-
 // The variance is that of a stratified sample of residuals. What is left of a block that took part in the fit is too
 // little: its residual in a fit without it is residual / (1 - leverage), which has the variance of the fit itself too.
 // With n times the sample leverages are an n-th. Degrees of freedom as Satterthwaite has them, but that the squares of

@@ -49,10 +49,6 @@ class Estimate {
   /// Half of total's interval with so many times as many blocks of each stratum drawn, as far as there are as many.
   double half_width(size_t count, double times) const;
 
-  /// What is known of the blocks says that they differ by so much: the variance of the predictions of all of them, as a
-  /// share of the square of their mean.
-  double variation(size_t count) const;
-
  private:
   using Linear = std::function<double(const Counts&)>;
   /// A block that is drawn.

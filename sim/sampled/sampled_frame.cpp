@@ -19,22 +19,23 @@ namespace {
 namespace count = chip::count;
 
 constexpr uint32_t kLeastBlockTiles = 4;
-constexpr uint32_t kLeastStrata = 8;  // for the variance to be known
-constexpr uint32_t kPilotShare = 25;  // one of so many blocks
-constexpr double kMargin = 1.1;       // more blocks than seem to be needed: a variance that is known is a sample's
-constexpr double kGrowth = 2;         // of the sample at a time, at most
+constexpr uint32_t kManyBlocks = 256;  // of which there may be half as many
+constexpr uint32_t kLeastStrata = 8;   // for the variance to be known
+constexpr uint32_t kPilotShare = 25;   // one of so many blocks
+constexpr double kMargin = 1.1;        // more blocks than seem to be needed: a variance that is known is a sample's
+constexpr double kGrowth = 2;          // of the sample at a time, at most
 // A process begins with a block that is not counted: each has several to simulate.
 constexpr uint32_t kLeastGroup = 8, kMostGroups = 64;
 // What a block costs depends a little on what is beside it, which in a sample is not what it is in the frame: this much
 // of each figure, and no less than so much of a utilisation. `make intervals` prints mean errors of that size.
 constexpr double kBesideError = 0.0025, kLeastShareError = 0.0005;
-// And the more the less alike blocks are: cheap ones beside dear ones seem dearer and dear ones cheaper, which nearly
-// cancels out, but for a part that goes with the variance of what blocks cost.
-constexpr double kUnlikeError = 0.1;
-// Where the sample goes on elsewhere in the picture it reads lines that the frame has read before: of the memory port's
+// What caches are filled with behind tiles that are left out is not quite what they would hold: of the memory port's
 // utilisation.
-constexpr double kReadAgainError = 0.025;
-constexpr double kWholeFrom = 0.5;  // of the frame's tiles
+constexpr double kRememberedError = 0.01;
+// Places of the tree that caches are filled with before a block: so many times what they hold, as neighbours visit the
+// same.
+constexpr size_t kCacheFuls = 8;
+constexpr double kWholeFrom = 0.75;  // of the frame's tiles: a sample's are simulated on several cores
 
 double seconds_since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -45,9 +46,15 @@ void add(Counts& sum, const Counts& costs) {
 }
 
 /// As many pixels as may be under way at a time.
-uint32_t block_tiles(const Configuration& configuration) {
+uint32_t tiles_under_way(const Configuration& configuration) {
   const uint32_t held = configuration.chip.held_limit;
   return std::max(kLeastBlockTiles, held / std::min(configuration.contents(), held));
+}
+
+/// Of a picture of so many tiles. The larger a block, the less of its cost is its neighbours'.
+uint32_t block_tiles(const Configuration& configuration, uint64_t tiles) {
+  const uint32_t under_way = tiles_under_way(configuration);
+  return tiles >= uint64_t{2} * under_way * kManyBlocks ? 2 * under_way : under_way;
 }
 
 /// Instructions of each kernel, from its first to that of the next one.
@@ -94,8 +101,13 @@ std::vector<double> sizes_of(const std::vector<Known>& known) {
 class SampledFrame {
  public:
   SampledFrame(const ChipOptions& chip, const std::vector<NativeWork>& work, const Wanted& wanted)
-      : chip_(chip), wanted_(wanted), block_(block_tiles(chip.configuration)), beside_(std::max(1u, block_ / 8)) {
-    figures_.tiles = static_cast<uint32_t>(chip::tile_walk(chip.configuration, chip.width, chip.height).left());
+      : chip_(chip),
+        work_(work),
+        wanted_(wanted),
+        tiles_(static_cast<uint32_t>(chip::tile_walk(chip.configuration, chip.width, chip.height).left())),
+        block_(block_tiles(chip.configuration, tiles_)),
+        beside_(tiles_under_way(chip.configuration) / 4) {
+    figures_.tiles = tiles_;
     if (work.size() != Sample::blocks_of(figures_.tiles, block_))
       throw std::logic_error("not the work of each block of the sample");
     known_ = known_of(chip, work);
@@ -115,23 +127,18 @@ class SampledFrame {
     for (std::vector<uint32_t> more = pilot; !more.empty();) {
       simulate(sample, more);
       const double seconds = seconds_since(begin), a_tile = seconds / figures_.simulated_tiles;
-      const double blocks = blocks_wanted(sample, seconds, a_tile);
+      // What a small sample says of the size of a much larger one is worth little.
+      const double blocks = std::min(blocks_wanted(sample, seconds, a_tile), kGrowth * sample.drawn());
       // What is beside the blocks costs too.
       const bool all = blocks * (block_ + 2 * beside_) / block_ >= kWholeFrom * sample.inner_blocks();
       if (all && (wanted_.seconds == 0 || seconds + a_tile * figures_.tiles < wanted_.seconds)) return draw_whole();
-      // What a small sample says of the size of a much larger one is worth little.
-      more = sample.draw(static_cast<uint32_t>(std::min(blocks, kGrowth * sample.drawn())));
+      more = sample.draw(static_cast<uint32_t>(blocks));
     }
     conclude(estimate(sample));
     return figures_;
   }
 
  private:
-  /// A share of each figure.
-  static double beside_error(const Estimate& estimate) {
-    return kBesideError + kUnlikeError * estimate.variation(count::kCycles);
-  }
-
   /// Inner blocks to be drawn in all; as many as are drawn, if that is enough. A few more pay for no further run.
   double blocks_wanted(const Sample& sample, double seconds, double a_tile) const {
     const auto drawn = static_cast<double>(sample.drawn()), all = static_cast<double>(sample.inner_blocks());
@@ -140,7 +147,7 @@ class SampledFrame {
       return more < kLeastGroup ? drawn : std::min(all, drawn + more);
     }
     const Estimate now = estimate(sample);
-    const double allowed = (wanted_.error - beside_error(now)) * now.total(count::kCycles).value;
+    const double allowed = (wanted_.error - kBesideError) * now.total(count::kCycles).value;
     double blocks = drawn;
     while (blocks < all && now.half_width(count::kCycles, blocks / drawn) > allowed) blocks *= 1.05;
     return blocks == drawn ? drawn : std::min(all, std::max(kMargin * blocks, drawn + kLeastGroup));
@@ -216,9 +223,28 @@ class SampledFrame {
     run.progress = {};
     chip::TileCosts costs;
     run.tile_costs = &costs;
+    run.visited_before = [this](uint32_t tile) { return visited_before(tile); };
     for (const auto& [tile, counts] : group) run.tiles.push_back(tile);
     run_chip(run);
     return {reinterpret_cast<const char*>(costs.costs().data()), costs.costs().size() * sizeof(Counts)};
+  }
+
+  /// What native visited in the tiles before this one, from the last of them back until caches are full of it.
+  VisitList visited_before(uint32_t tile) const {
+    const ChipConfiguration& chip = chip_.configuration.chip;
+    const size_t enough =
+        kCacheFuls * (chip.modelled_traverser_node_cache_bytes + chip.modelled_traverser_triangle_cache_bytes) / 64;
+    // Of the block that the tile is in, those of the tiles before it.
+    const uint32_t own = tile / block_;
+    const size_t of_own = tile % block_ == 0 ? 0 : work_[own].tile_ends.at(tile % block_ - 1);
+    uint32_t first = own;
+    for (size_t places = of_own; first > 0 && places < enough;) places += work_[--first].chip_places.size();
+    VisitList visited;
+    for (uint32_t block = first; block < own; ++block)
+      visited.insert(visited.end(), work_[block].chip_places.begin(), work_[block].chip_places.end());
+    visited.insert(visited.end(), work_[own].chip_places.begin(),
+                   work_[own].chip_places.begin() + static_cast<std::ptrdiff_t>(of_own));
+    return visited;
   }
 
   Estimate estimate(const Sample& sample) const {
@@ -235,11 +261,10 @@ class SampledFrame {
 
   void conclude(const Estimate& estimate) {
     figures_.cycles = estimate.total(count::kCycles);
-    const double beside = beside_error(estimate);
-    figures_.cycles.low -= beside * figures_.cycles.value;
-    figures_.cycles.high += beside * figures_.cycles.value;
+    figures_.cycles.low -= kBesideError * figures_.cycles.value;
+    figures_.cycles.high += kBesideError * figures_.cycles.value;
     const auto share = [&](const Interval& x, double error = 0) {
-      error += std::max(kLeastShareError, beside * x.value);
+      error += std::max(kLeastShareError, kBesideError * x.value);
       return Interval{x.value, std::max(0.0, x.low - error), std::min(1.0, x.high + error)};
     };
     const auto mrays = [&](double cycles) { return 1e3 * rays_ / cycles; };
@@ -251,7 +276,7 @@ class SampledFrame {
     }
     figures_.ray_port = share(estimate.ratio(count::kRayPort, count::kCycles));
     figures_.intersection_port = share(estimate.ratio(count::kIntersectionPort, count::kCycles));
-    figures_.memory_port = share(estimate.ratio(count::kMemoryPort, count::kCycles), kReadAgainError);
+    figures_.memory_port = share(estimate.ratio(count::kMemoryPort, count::kCycles), kRememberedError);
   }
 
   static Interval exactly(double x) { return {x, x, x}; }
@@ -271,7 +296,9 @@ class SampledFrame {
   }
 
   const ChipOptions& chip_;
+  const std::vector<NativeWork>& work_;  // [block]
   Wanted wanted_;
+  uint32_t tiles_;                    // of the frame
   uint32_t block_, beside_;           // tiles of a block, and uncounted ones on each side of it
   std::vector<Known> known_;          // [block]
   std::vector<double> sizes_;         // [block] a share of the frame's work, times what is known
@@ -283,9 +310,10 @@ class SampledFrame {
 }  // namespace
 
 std::vector<std::vector<PixelTile>> blocks_of(const Configuration& configuration, uint32_t width, uint32_t height) {
-  const uint32_t tiles = block_tiles(configuration);
+  const std::vector<PixelTile> walk = chip::along_walk(configuration, width, height);
+  const uint32_t tiles = block_tiles(configuration, walk.size());
   std::vector<std::vector<PixelTile>> blocks;
-  for (const PixelTile& tile : chip::along_walk(configuration, width, height)) {
+  for (const PixelTile& tile : walk) {
     if (blocks.empty() || blocks.back().size() == tiles) blocks.emplace_back();
     blocks.back().push_back(tile);
   }

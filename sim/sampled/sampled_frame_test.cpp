@@ -13,7 +13,7 @@
 namespace raypool::sampled {
 namespace {
 
-constexpr uint32_t kSide = 96;  // pixels: 576 tiles of 4x4
+constexpr uint32_t kSide = 160;  // pixels: 1600 tiles of 4x4
 
 /// Half of a room: half of the eye's rays meet nothing.
 Scene make_half() {
@@ -53,8 +53,8 @@ TEST(SampledFrame, SaysWhatTheWholeFrameTakes) {
   wanted.error = 0.1;
   const Figures figures = draw_sampled(frame.options, frame.work, wanted);
   ASSERT_FALSE(figures.whole);
-  EXPECT_EQ(figures.tiles, 576u);
-  EXPECT_LT(figures.simulated_tiles, 288u);
+  EXPECT_EQ(figures.tiles, 1600u);
+  EXPECT_LT(figures.simulated_tiles, 1000u);
   EXPECT_LT(figures.counted_tiles, figures.simulated_tiles);
   EXPECT_NEAR(figures.cycles.value, static_cast<double>(whole.cycles), 0.05 * static_cast<double>(whole.cycles));
   EXPECT_LE(figures.error(), 0.15);
@@ -65,8 +65,26 @@ TEST(SampledFrame, SaysWhatTheWholeFrameTakes) {
   EXPECT_NEAR(figures.intersection_port.value, whole.intersection_port_utilisation, 0.02);
 }
 
+// A block reads what the frame's tiles before it have not read, and no more.
+TEST(SampledFrame, FindsTheTreeInTheCachesBehindTilesThatAreLeftOut) {
+  Frame frame;
+  ChipConfiguration& chip = frame.options.configuration.chip;
+  chip.traverser = TraverserName::Modelled;
+  chip.modelled_traverser_node_cache_bytes = chip.modelled_traverser_triangle_cache_bytes = 65536;
+  const ChipResult whole = run_chip(frame.options);
+  Wanted wanted;
+  wanted.error = 0.1;
+  double mean = 0;
+  for (wanted.seed = 1; wanted.seed <= 8; ++wanted.seed) {
+    const Figures figures = draw_sampled(frame.options, frame.work, wanted);
+    ASSERT_FALSE(figures.whole);
+    mean += figures.memory_port.value / 8;
+  }
+  EXPECT_NEAR(mean, whole.memory_port_utilisation, 0.2 * whole.memory_port_utilisation);
+}
+
 TEST(SampledFrame, SimulatesMoreWhereLessErrorIsAllowed) {
-  Frame frame(160);
+  Frame frame;
   Wanted coarse, fine;
   coarse.error = 0.3;
   const Figures a = draw_sampled(frame.options, frame.work, coarse);
@@ -89,7 +107,7 @@ TEST(SampledFrame, IsExactWhereTheWholeFrameIsAsCheap) {
 }
 
 TEST(SampledFrame, IsTheSameHoweverManyProcesses) {
-  Frame frame(160);
+  Frame frame;
   Wanted wanted;
   wanted.error = 0.05;
   const Figures one = draw_sampled(frame.options, frame.work, wanted);
@@ -108,7 +126,7 @@ TEST(SampledFrame, IsTheSameHoweverManyProcesses) {
 
 // With what is known of the blocks in the wrong order it predicts nothing.
 TEST(SampledFrame, IsNarrowerForWhatNativeKnows) {
-  Frame frame(160, make_half());
+  Frame frame(kSide, make_half());
   std::vector<NativeWork> mixed = frame.work;
   std::shuffle(mixed.begin(), mixed.end(), std::mt19937(1));
   Wanted wanted;

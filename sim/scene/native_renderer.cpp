@@ -9,6 +9,7 @@
 #include <exception>
 #include <optional>
 #include <thread>
+#include <utility>
 
 #include "bits.hpp"
 
@@ -45,13 +46,18 @@ class Worker {
     const auto threads = statistics.kernel_threads;
     const uint64_t rays = statistics.rays();
     visits_->begin();
-    for (const PixelTile& tile : tiles) render_tile(tile);
     NativeWork work;
+    size_t told = 0;
+    for (const PixelTile& tile : tiles) {
+      render_tile(tile);
+      tracer_.traversal().places_of(*visits_, std::exchange(told, visits_->places.size()), work.chip_places);
+      work.tile_ends.push_back(work.chip_places.size());
+    }
     for (size_t i = 0; i < kRayKernels; ++i) work.kernel_threads[i] = statistics.kernel_threads[i] - threads[i];
     work.rays = statistics.rays() - rays;
     work.nodes = visits_->nodes;
     work.triangles = visits_->triangles;
-    work.places = visits_->places;
+    work.places = visits_->places.size();
     return work;
   }
 

@@ -141,6 +141,10 @@ TEST(NativeRenderer, DrawsInPartsAndSaysWhatEachTakes) {
     EXPECT_GT(part.nodes, part.rays) << "the root is not all";
     EXPECT_GT(part.triangles, 0u);
     EXPECT_GT(part.places, 1u);
+    EXPECT_EQ(part.tile_ends.size(), options.parts[&part - work.data()].size());
+    EXPECT_TRUE(std::is_sorted(part.tile_ends.begin(), part.tile_ends.end()));
+    EXPECT_EQ(part.tile_ends.back(), part.chip_places.size());
+    EXPECT_GE(part.chip_places.size(), part.places) << "each stands for one or more";
     EXPECT_LT(part.places, (part.nodes + part.triangles) / 5) << "neighbours visit the same";
   }
   for (size_t i = 0; i < kRayKernels; ++i) EXPECT_EQ(sum.kernel_threads[i], whole.statistics.kernel_threads[i]);

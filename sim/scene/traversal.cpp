@@ -185,6 +185,18 @@ bool Traversal::nearest(const RayQuery& query, Hit& hit, TraversalCounts* counts
   });
 }
 
+void Traversal::places_of(const WideVisits& visits, size_t from, VisitList& places) const {
+  const auto add = [&](uint32_t place) {
+    const bool leaf = (place & kLeafBit) != 0;
+    const TriangleBlock* const block = leaf ? &bvh_.blocks[place & ~kLeafBit] : nullptr;
+    places.push_back({leaf ? block->first : place, static_cast<uint8_t>(leaf ? block->count : 0), 0, 0});
+  };
+  for (size_t i = from; i < visits.places.size(); ++i) {
+    const uint32_t place = visits.places[i];
+    ((place & kLeafBit) != 0 ? wide_.block_origins : wide_.node_origins).each(place & ~kLeafBit, add);
+  }
+}
+
 bool Traversal::nearest(const RayQuery& query, Hit& hit, WideVisits& visits) const {
   return nearest_on(query, hit, [&](const PreparedRay& ray, Candidate& best) {
     return walks().back().nearest(wide_, ray, best, &visits);

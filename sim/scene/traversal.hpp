@@ -68,6 +68,9 @@ class Traversal {
 
   const Bvh& bvh() const { return bvh_; }
   const WideBvh& wide_bvh() const { return wide_; }
+  /// What rays that visited this on the fast way, from so many places on, visit in bvh(), about: some nodes are told
+  /// several times, and here and there they come to some that they miss on the other way. They are appended.
+  void places_of(const WideVisits& visits, size_t from, VisitList& places) const;
   /// Makes every box of bvh() what a node of 64 bytes has of it (compressed_node.hpp): no answer changes, visits do.
   /// `box_bits`, 6 .. 16: boxes are then tested in integers of so many bits (narrow_boxes.hpp); 0: in floats.
   void compress_nodes(uint32_t box_bits = 0);

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "bits.hpp"
 #include "scene/bvh.hpp"
 #include "scene/prepared_ray.hpp"
 
@@ -21,39 +22,62 @@ struct alignas(64) WideBvhNode {
 };
 static_assert(sizeof(WideBvhNode) == 256);
 
+/// To what in the chip's tree a ray comes that comes to a node, or to a block: to nodes and, with kLeafBit, leaves.
+/// Some nodes are on the way to several.
+class WideOrigins {
+ public:
+  /// What is added from now on is of the next one, and this way to it.
+  void begin(const std::vector<uint32_t>& way) {
+    begins_.push_back(size32(places_));
+    places_.insert(places_.end(), way.begin(), way.end());
+  }
+  void add(uint32_t place) { places_.push_back(place); }
+
+  template <typename Told>
+  void each(uint32_t number, const Told& told) const {
+    const uint32_t end = number + 1 < begins_.size() ? begins_[number + 1] : size32(places_);
+    for (uint32_t i = begins_[number]; i < end; ++i) told(places_[i]);
+  }
+
+ private:
+  std::vector<uint32_t> begins_, places_;
+};
+
 struct WideBvh {
   std::vector<WideBvhNode> nodes;     ///< node 0 is the root; empty when no triangle has an area
   std::vector<TriangleBlock> blocks;  ///< each may hold the triangles of several leaves; `first` is not set
+  WideOrigins node_origins, block_origins;
 };
 
 /// The triangles of `bvh` under some of its boxes.
 WideBvh widen(const Bvh& bvh);
 
-/// What rays visit since begin(), and in how many different places: so many a cache that held all of them would have to
+/// What rays visit since begin(), and in which different places: so many a cache that held all of them would have to
 /// read.
 class WideVisits {
  public:
   explicit WideVisits(const WideBvh& bvh) : nodes_(bvh.nodes.size()), blocks_(bvh.blocks.size()) {}
 
   void begin() {
-    nodes = triangles = places = 0;
+    nodes = triangles = 0;
+    places.clear();
     ++now_;
   }
   void node(uint32_t number) {
     ++nodes;
-    visit(nodes_[number]);
+    visit(nodes_[number], number);
   }
   void block(uint32_t number, uint32_t count) {
     triangles += count;
-    visit(blocks_[number]);
+    visit(blocks_[number], number | kLeafBit);
   }
 
   uint64_t nodes = 0, triangles = 0;  ///< whose boxes, and which themselves, are tested
-  uint64_t places = 0;                ///< nodes and blocks, each once
+  std::vector<uint32_t> places;       ///< nodes and, with kLeafBit, blocks, each when it is come to first
 
  private:
-  void visit(uint32_t& last) {
-    places += last != now_;
+  void visit(uint32_t& last, uint32_t place) {
+    if (last != now_) places.push_back(place);
     last = now_;
   }
 

@@ -4,8 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <random>
+#include <set>
+#include <utility>
 
 #include "bits.hpp"
 #include "scene/mesh_builder.hpp"
@@ -158,26 +162,76 @@ TEST(WideBvh, TellsWhatRaysVisit) {
       Candidate silent, told;
       const bool found = walk.nearest(traversal.wide_bvh(), ray, silent, nullptr);
       visits.begin();
-      EXPECT_EQ(visits.nodes + visits.triangles + visits.places, 0u);
+      EXPECT_EQ(visits.nodes + visits.triangles + visits.places.size(), 0u);
       ASSERT_EQ(walk.nearest(traversal.wide_bvh(), ray, told, &visits), found);
       ASSERT_EQ(told.triangle, silent.triangle);
       ASSERT_GE(visits.nodes, 1u);
       ASSERT_GE(visits.triangles, found ? 1u : 0u);
-      ASSERT_GE(visits.places, visits.nodes) << "a ray comes to no node twice";
-      ASSERT_LE(visits.places, visits.nodes + visits.triangles);
-      const uint64_t nodes = visits.nodes, triangles = visits.triangles, places = visits.places;
+      ASSERT_GE(visits.places.size(), visits.nodes) << "a ray comes to no node twice";
+      ASSERT_LE(visits.places.size(), visits.nodes + visits.triangles);
+      const uint64_t nodes = visits.nodes, triangles = visits.triangles, places = visits.places.size();
       Candidate any;
       ASSERT_EQ(walk.any(traversal.wide_bvh(), ray, any, &visits), found);
       ASSERT_GT(visits.nodes, nodes);
       // Once more: as many visits, of no new place.
-      const uint64_t both = visits.places, nodes_of_both = visits.nodes, triangles_of_both = visits.triangles;
+      const uint64_t both = visits.places.size(), nodes_of_both = visits.nodes, triangles_of_both = visits.triangles;
       ASSERT_EQ(walk.nearest(traversal.wide_bvh(), ray, told, &visits), found);
       ASSERT_EQ(visits.nodes, nodes_of_both + nodes);
       ASSERT_EQ(visits.triangles, triangles_of_both + triangles);
-      ASSERT_EQ(visits.places, both);
+      ASSERT_EQ(visits.places.size(), both);
       ASSERT_GE(both, places);
     }
   }
+}
+
+TEST(WideBvh, KnowsOfWhatInTheChipsTreeItIsMade) {
+  for (const Scene& scene : {make_room(0.05), triangle_soup(1, 1, 2000), triangle_soup(2, 1, 2)}) {
+    const Bvh bvh = build_bvh(scene);
+    const WideBvh wide = widen(bvh);
+    std::vector<int> nodes(bvh.nodes.size()), leaves(bvh.blocks.size());
+    const auto seen = [&](uint32_t place) { ++((place & kLeafBit) != 0 ? leaves : nodes).at(place & ~kLeafBit); };
+    for (uint32_t i = 0; i < wide.nodes.size(); ++i) wide.node_origins.each(i, seen);
+    for (uint32_t i = 0; i < wide.blocks.size(); ++i) {
+      uint32_t triangles = 0;
+      wide.block_origins.each(i, [&](uint32_t place) {
+        seen(place);
+        if ((place & kLeafBit) == 0) return;
+        const TriangleBlock& leaf = bvh.blocks[place & ~kLeafBit];
+        EXPECT_EQ(wide.blocks[i].triangles[triangles], leaf.triangles[0]);
+        triangles += leaf.count;
+      });
+      EXPECT_EQ(triangles, wide.blocks[i].count);
+    }
+    EXPECT_EQ(std::count(nodes.begin(), nodes.end(), 0), 0) << "some way leads to each";
+    EXPECT_EQ(std::count(leaves.begin(), leaves.end(), 1), static_cast<std::ptrdiff_t>(leaves.size()));
+  }
+}
+
+// About: a box that lets the ray pass may be one of which only the chip's tree, or only the wide one, knows.
+TEST(WideBvh, PlacesAreAboutThoseThatTheChipsTraverserVisits) {
+  const Traversal traversal(make_room(0.05));
+  WideVisits wide(traversal.wide_bvh());
+  const auto key = [](const Visit& visit) { return std::pair(visit.triangles > 0, visit.place); };
+  wide.begin();
+  std::set<std::pair<bool, uint32_t>> visited, said;
+  for (const RayQuery& ray : rays_at(make_room(0.05), 7, 300)) {
+    Hit hit;
+    VisitList visits;
+    const bool found = traversal.nearest(ray, hit, nullptr, &visits);
+    for (const Visit& visit : visits) visited.insert(key(visit));
+    ASSERT_EQ(traversal.nearest(ray, hit, wide), found);
+  }
+  VisitList places, behind;
+  traversal.places_of(wide, 0, places);
+  traversal.places_of(wide, 10, behind);
+  EXPECT_LT(behind.size(), places.size());
+  EXPECT_TRUE(std::equal(behind.rbegin(), behind.rend(), places.rbegin()));
+  for (const Visit& place : places) said.insert(key(place));
+  std::vector<std::pair<bool, uint32_t>> both;
+  std::set_intersection(visited.begin(), visited.end(), said.begin(), said.end(), std::back_inserter(both));
+  EXPECT_GT(both.size(), 2000u);
+  EXPECT_GT(static_cast<double>(both.size()), 0.9 * static_cast<double>(visited.size()));
+  EXPECT_GT(static_cast<double>(both.size()), 0.8 * static_cast<double>(said.size()));
 }
 
 TEST(WideBvh, WalksAreThoseOfTheProcessor) {

@@ -250,6 +250,16 @@ uint64_t Core::earliest_done(uint64_t now) const {
   return earliest;
 }
 
+void Core::remember(const VisitList& places) {
+  for (const Visit& place : places) {
+    if (place.triangles == 0) {
+      nodes_.remember(place.place);
+      continue;
+    }
+    for (uint32_t line = 0, count = lines(place); line < count; ++line) triangles_.remember(first_line(place) + line);
+  }
+}
+
 TraverserWork Core::work() const {
   TraverserWork work = work_;
   work.boxes = box_pipes_.work();

@@ -44,6 +44,9 @@ class Core : private LookupListener {
   /// Cycles that a ray takes at least.
   uint64_t least_latency() const { return setup_.latency() + finish_.latency(); }
 
+  /// Caches hold the lines of these nodes and leaves, the last of them longest. It takes no time, and is no work.
+  void remember(const VisitList& places);
+
   TraverserWork work() const;
 
  private:

@@ -249,6 +249,27 @@ TEST(TraverserCore, HalfTheCacheReadsMoreAndIsSlowerWhereTheMemoryBinds) {
   EXPECT_NEAR(static_cast<double>(half.cycles) / static_cast<double>(whole.cycles), bytes, 0.1 * bytes);
 }
 
+TEST(TraverserCore, WhatItRemembersIsNotRead) {
+  const ChipConfiguration chip = ample();
+  const std::vector<VisitList> rays = room_rays();
+  ASSERT_GT(trace_all(chip, rays).work.node_cache.misses, 100u);
+  test::LonelyPort port(chip.memory_cycles_per_beat);
+  Core core(chip, port);
+  for (const VisitList& ray : rays) core.remember(ray);
+  uint64_t cycle = 0;
+  size_t left = 0;
+  for (const VisitList& ray : rays) {
+    do {
+      core.clock(++cycle);
+      left += core.valid();
+    } while (!core.ready());
+    core.push(ray);
+  }
+  while (left < rays.size()) core.clock(++cycle), left += core.valid();
+  EXPECT_EQ(core.work().node_cache.misses + core.work().triangle_cache.misses, 0u);
+  EXPECT_GT(core.work().triangle_cache.hits, 100u);
+}
+
 TEST(TraverserCore, AnExactNodeIsOneLookupAndTakesTwoLinesOfItsCache) {
   ChipConfiguration chip = quick();
   chip.modelled_traverser_nodes = NodeFormat::Exact;

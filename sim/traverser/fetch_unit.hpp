@@ -56,6 +56,7 @@ class FetchUnit {
   /// The line that was requested will come then.
   void promise(uint32_t line, uint64_t cycle, LookupListener& listener);
   void fill(uint32_t line);
+  void remember(uint32_t line) { cache_.remember(line); }
 
   /// Has something to do in the next cycle.
   bool busy() const { return asks() || !requests_.empty() || !filled_.empty(); }

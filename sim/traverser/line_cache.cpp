@@ -71,11 +71,24 @@ const std::vector<Fetch>& LineCache::fill(uint32_t line) {
   Mshr* const mshr = *place;
   *place = mshr->next;
   mshr->next = std::exchange(free_, mshr);
+  put(line);
+  return mshr->waiting;
+}
+
+void LineCache::put(uint32_t line) {
   const auto first = used_.begin() + static_cast<std::ptrdiff_t>(set(line));
   const auto oldest = std::min_element(first, first + ways_a_set_);
   *oldest = ++lookups_;
   tags_[static_cast<size_t>(oldest - used_.begin())] = line;
-  return mshr->waiting;
+}
+
+void LineCache::remember(uint32_t line) {
+  if (find(line) != nullptr) return;
+  if (const size_t way = find_way(line); way != kNone) {
+    used_[way] = ++lookups_;
+  } else {
+    put(line);
+  }
 }
 
 }  // namespace raypool::traverser

@@ -38,6 +38,8 @@ class LineCache {
   bool prefetch(uint32_t line);
   /// The line has come: who waited for it, oldest first. Holds until the next lookup or prefetch.
   const std::vector<Fetch>& fill(uint32_t line);
+  /// The line is there, as if it had just been looked up; if it is on its way, it still has to come.
+  void remember(uint32_t line);
   /// When it will come, once that is known.
   void promise(uint32_t line, uint64_t cycle) { find(line)->due = cycle; }
   /// kNever: not known. The line must be on its way.
@@ -61,6 +63,8 @@ class LineCache {
   size_t find_way(uint32_t line) const;
   /// A free register takes the line. Null if there is none.
   Mshr* miss(uint32_t line);
+  /// Takes the place of the least recently used line of its set.
+  void put(uint32_t line);
   size_t set(uint32_t line) const { return size_t{line & (sets_ - 1)} * ways_a_set_; }
   Mshr*& bucket(uint32_t line) { return buckets_[line & (buckets_.size() - 1)]; }
 

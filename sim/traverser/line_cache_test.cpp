@@ -67,6 +67,23 @@ TEST(LineCache, TheLeastRecentlyUsedLineOfTheSetGoes) {
   EXPECT_EQ(cache.lookup(of(0, 11)), Answer::Missed);
 }
 
+TEST(LineCache, WhatItRemembersIsThereAsIfItHadJustBeenLookedUp) {
+  LineCache cache(16, 2, 4);  // 8 sets
+  cache.remember(3);
+  cache.remember(11);
+  cache.remember(3);
+  cache.remember(19);
+  EXPECT_EQ(cache.work().hits + cache.work().misses, 0u);
+  EXPECT_EQ(cache.lookup(of(0, 3)), Answer::Hit);
+  EXPECT_EQ(cache.lookup(of(0, 19)), Answer::Hit);
+  EXPECT_EQ(cache.lookup(of(0, 11)), Answer::Missed);
+  cache.remember(11);
+  EXPECT_EQ(cache.lookup(of(1, 11)), Answer::Joined) << "it is on its way";
+  EXPECT_EQ(cache.fill(11).size(), 2u);
+  EXPECT_EQ(cache.lookup(of(0, 19)), Answer::Hit);
+  EXPECT_EQ(cache.lookup(of(0, 3)), Answer::Missed);
+}
+
 TEST(LineCache, KeepsAsManyLinesAsItHas) {
   for (const uint32_t lines : {16u, 64u}) {
     LineCache cache(lines, 4, 1);
