@@ -45,7 +45,7 @@ struct ChipOptions {
   RayTracer* tracer = nullptr;
   FrameSink* frame = nullptr;
 
-  /// Numbers along the tile walk (chip/tile_walk.hpp) of those that are cast, ascending; empty: all of the picture.
+  /// Numbers along the tile walk (machine/tile_walk.hpp) of those that are cast, ascending; empty: all of the picture.
   std::vector<uint32_t> tiles;
   chip::TileCosts* tile_costs = nullptr;  ///< gets what each of them costs; may be null
   /// What rays have visited of the tree, last what they visited last, when this tile of `tiles` is cast, of whose

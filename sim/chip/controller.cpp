@@ -8,29 +8,21 @@
 
 namespace raypool::chip {
 
-namespace {
-
-// A tile that would hold more pixels than allowed is cut into bands of whole rows.
-uint32_t tile_rows(const Configuration& configuration) {
-  return std::min(configuration.contents(), configuration.chip.held_limit) >> tile_width_log2(configuration.contents());
-}
-
-}  // namespace
-
 TileWalk tile_walk(const Configuration& configuration, uint32_t width, uint32_t height) {
-  const uint32_t columns = 1u << tile_width_log2(configuration.contents()), rows = tile_rows(configuration);
   const ChipConfiguration& chip = configuration.chip;
   // The traverser of constant speed has no caches that the order could serve.
   const TileOrder order =
       chip.traverser == TraverserName::Modelled ? chip.modelled_traverser_tile_order : TileOrder::Rows;
-  return {order, (width + columns - 1) / columns, (height + rows - 1) / rows};
+  TileWalk walk(order, configuration.contents(), chip.held_limit);
+  walk.start(width, height);
+  return walk;
 }
 
 std::vector<PixelTile> along_walk(const Configuration& configuration, uint32_t width, uint32_t height) {
-  const uint32_t columns = 1u << tile_width_log2(configuration.contents()), rows = tile_rows(configuration);
   std::vector<PixelTile> tiles;
-  for (TileWalk tile = tile_walk(configuration, width, height); !tile.at_end(); tile.next())
-    tiles.push_back({tile.column() * columns, tile.row() * rows, columns * rows});
+  TileWalk walk = tile_walk(configuration, width, height);
+  for (walk.await(); walk.busy(); walk.next())
+    tiles.push_back({walk.tile().left, walk.tile().top, walk.tile_width() * walk.tile_height()});
   return tiles;
 }
 
@@ -42,8 +34,6 @@ Controller::Controller(const sc_core::sc_module_name& name, const ChipOptions& o
       height_(options.height),
       secondary_(secondary_kernel(options.depth, options.reflections)),
       rules_(chip_, options.configuration.contents(), options.device->units()),
-      tile_width_(1u << tile_width_log2(options.configuration.contents())),
-      tile_height_(tile_rows(options.configuration)),
       next_tile_(tile_walk(options.configuration, width_, height_), options.tiles),
       given_(options.device->units()),
       ended_(options.device->units()) {
@@ -57,7 +47,7 @@ Controller::Controller(const sc_core::sc_module_name& name, const ChipOptions& o
                           chip_.static_traverser_batch,
                           secondary_ == RayKernel::CastSecondary ? 2u : 1u};
   policy_ = options.own_policy ? options.own_policy(setup) : make_policy(chip_.policy, setup);
-  for (ChosenTiles tiles = next_tile_; !tiles.at_end(); tiles.next()) pixels_ += pixels_of(tiles);
+  for (ChosenTiles tiles = next_tile_; !tiles.at_end(); tiles.next()) pixels_ += tiles.tile().pixels;
   decisions.bind(*this);
   kernel_events.bind(*this);
   SC_METHOD(decide);
@@ -77,13 +67,8 @@ void Controller::kernel_ended(uint32_t unit) {
   thread_time_launchable_ += static_cast<double>(time) * options_.configuration.contents();
 }
 
-uint32_t Controller::pixels_of(const ChosenTiles& tile) const {
-  return std::min(tile_width_, width_ - tile.column() * tile_width_) *
-         std::min(tile_height_, height_ - tile.row() * tile_height_);
-}
-
 bool Controller::eye_possible() const {
-  return !next_tile_.at_end() && rules_.may_cast(pixels_of(next_tile_), ledger->held());
+  return !next_tile_.at_end() && rules_.may_cast(next_tile_.tile().pixels, ledger->held());
 }
 
 uint32_t Controller::secondary_room() const {
@@ -163,16 +148,16 @@ void Controller::launch(const Choice& choice) {
 LaunchCommand Controller::next_tile(uint32_t unit) {
   rules_.cast(ledger->held());
   std::vector<uint32_t> pixels;
-  const uint32_t left = tile_x(), top = tile_y();
-  for (uint32_t y = top; y < std::min(top + tile_height_, height_); ++y)
-    for (uint32_t x = left; x < std::min(left + tile_width_, width_); ++x) pixels.push_back(x | y << 16);
+  const TileWalk::Tile& tile = next_tile_.tile();
+  for (uint32_t y = tile.top; y < std::min(tile.top + tile_height(), height_); ++y)
+    for (uint32_t x = tile.left; x < std::min(tile.left + tile_width(), width_); ++x) pixels.push_back(x | y << 16);
   if (on_cast) on_cast(pixels);
   ledger->eye_launched(unit, std::move(pixels));
   held_peak_ = std::max(held_peak_, ledger->held());
 
   LaunchCommand command;
-  command.threads = tile_width_ * tile_height_;
-  command.block = left | top << 16;
+  command.threads = tile_width() * tile_height();
+  command.block = tile.block();
   next_tile_.next();
   return command;
 }
@@ -183,8 +168,8 @@ std::string Controller::describe() const {
       "them shadow "
       "rays, {} more may "
       "come; intersection pool {} normal and {} shadow of {} each, {} and {} of them not promised to a kernel",
-      tile_x(), tile_y(), width_, height_, ledger->finished(), ledger->held(), rays->size(), chip_.ray_pool_size,
-      rays->shadow_rays(), ledger->rays_to_come(), intersections->size(ImportKind::Normal),
+      next_tile_.tile().left, next_tile_.tile().top, width_, height_, ledger->finished(), ledger->held(), rays->size(),
+      chip_.ray_pool_size, rays->shadow_rays(), ledger->rays_to_come(), intersections->size(ImportKind::Normal),
       intersections->size(ImportKind::Shadow), chip_.intersection_pool_size,
       intersections->available(ImportKind::Normal), intersections->available(ImportKind::Shadow));
 }

@@ -18,18 +18,19 @@
 
 #include "chip/chip.hpp"
 #include "chip/chip_clock.hpp"
+#include "chip/chosen_tiles.hpp"
 #include "chip/interfaces.hpp"
-#include "chip/tile_walk.hpp"
 #include "machine/kernel_policy.hpp"
 #include "machine/launch_rules.hpp"
+#include "machine/tile_walk.hpp"
 #include "scene/native_renderer.hpp"
 
 namespace raypool::chip {
 
-/// Over the tiles in which such a machine casts a picture: columns() x rows() pixels each, in its order.
+/// The walk over the tiles in which such a machine casts a picture, in its order; it has begun.
 TileWalk tile_walk(const Configuration& configuration, uint32_t width, uint32_t height);
 
-/// These tiles, in that order.
+/// These tiles.
 std::vector<PixelTile> along_walk(const Configuration& configuration, uint32_t width, uint32_t height);
 
 class Controller : public sc_core::sc_module, public DecisionIf, public KernelEventsIf {
@@ -64,8 +65,8 @@ class Controller : public sc_core::sc_module, public DecisionIf, public KernelEv
   std::string describe() const;
 
   /// Pixels of an eye tile: tile_width_log2(contents) gives its width; its height is what fits with the held limit.
-  uint32_t tile_width() const { return tile_width_; }
-  uint32_t tile_height() const { return tile_height_; }
+  uint32_t tile_width() const { return next_tile_.tile_width(); }
+  uint32_t tile_height() const { return next_tile_.tile_height(); }
 
  private:
   struct GivenKernel {
@@ -84,9 +85,6 @@ class Controller : public sc_core::sc_module, public DecisionIf, public KernelEv
   ImportKind secondary_import() const;
   void launch(const Choice& choice);
   LaunchCommand next_tile(uint32_t unit);
-  uint32_t tile_x() const { return next_tile_.column() * tile_width_; }
-  uint32_t tile_y() const { return next_tile_.row() * tile_height_; }
-  uint32_t pixels_of(const ChosenTiles& tile) const;
 
   const ChipOptions& options_;
   const ChipConfiguration& chip_;
@@ -96,7 +94,6 @@ class Controller : public sc_core::sc_module, public DecisionIf, public KernelEv
   LaunchRules rules_;
   sc_core::sc_event decide_;
 
-  uint32_t tile_width_, tile_height_;
   uint64_t pixels_ = 0;
   ChosenTiles next_tile_;
 

@@ -104,7 +104,7 @@ class SampledFrame {
       : chip_(chip),
         work_(work),
         wanted_(wanted),
-        tiles_(static_cast<uint32_t>(chip::tile_walk(chip.configuration, chip.width, chip.height).left())),
+        tiles_(size32(chip::along_walk(chip.configuration, chip.width, chip.height))),
         block_(block_tiles(chip.configuration, tiles_)),
         beside_(tiles_under_way(chip.configuration) / 4) {
     figures_.tiles = tiles_;

@@ -1,4 +1,4 @@
-# Benches of the chip's pools, ports, policies and box pipe in Verilog, against their classes.
+# Benches of the chip's pools, ports, policies, order of tiles and box pipe in Verilog, against their classes.
 function(raypool_pool_bench name)
   add_executable(${name} ${CMAKE_CURRENT_LIST_DIR}/${name}.cpp)
   target_link_libraries(${name} PRIVATE raypool_machine GTest::gtest_main)
@@ -47,3 +47,8 @@ raypool_pool_models(policies_test fill_policy "CONTENTS;UNITS;RAY_POOL_SIZE;INTE
 raypool_pool_models(policies_test launch_rules
   "CONTENTS;UNITS;RAY_POOL_SIZE;INTERSECTION_POOL_SIZE;HELD_LIMIT;WINDOW_REMEDY;TRAVERSER_SHADES"
   1_1_1_1_1_1_0 4_2_7_5_3_0_0 64_1_512_512_512_1_1 64_4_512_512_100_0_0)
+
+# The order of the tiles.
+raypool_pool_bench(tile_walk_test)
+raypool_pool_models(tile_walk_test tile_walk "CONTENTS;HELD_LIMIT;TILE_ORDER"
+  64_512_0 1_1_0 128_40_0 64_512_1 1_1_1 2_512_1 64_8_1 128_40_1 1024_512_1)
