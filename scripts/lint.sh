@@ -70,6 +70,7 @@ chip_configurations=(
   "tile_walk CONTENTS=1"
   "tile_walk TILE_ORDER=1"
   "tile_walk CONTENTS=128 HELD_LIMIT=40 TILE_ORDER=1 SIZE_BITS=8"
+  "frame_port"
   "box_pipe BITS=6"
   "box_pipe BITS=12"
   "box_pipe BITS=16"

@@ -1,4 +1,4 @@
-// The frame buffer's port: takes one contribution a cycle, a unit's first.
+// The frame buffer's port (cpp_model/machine/frame_port.hpp): takes one contribution a cycle, a unit's first.
 #pragma once
 
 #include <cstdint>
@@ -7,6 +7,7 @@
 #include "chip/chip_clock.hpp"
 #include "chip/interfaces.hpp"
 #include "chip/ports.hpp"
+#include "machine/frame_port.hpp"
 
 namespace raypool::chip {
 
@@ -29,21 +30,22 @@ class FramePort : public sc_core::sc_module, public ContributionIf, public Direc
     add(contribution);
   }
   bool offer(const FrameContribution& contribution) override {
-    if (clock->cycle() < free_from_) return false;
+    if (!port_.ready(clock->cycle())) return false;
     add(contribution);
     return true;
   }
-  uint64_t taken() const { return taken_; }
+  uint64_t taken() const { return port_.taken(); }
 
  private:
+  // The frame buffer takes it in the next cycle; nobody looks at a sum before the end, so it has it at once.
   void add(const FrameContribution& contribution) {
-    frame_.add(contribution);
-    ++taken_;
-    free_from_ = clock->cycle() + 1;
+    port_.take(clock->cycle(), contribution);
+    frame_.add(port_.data());
+    port_.leave();
   }
 
   FrameSink& frame_;
-  uint64_t taken_ = 0, free_from_ = 0;
+  raypool::FramePort port_;
 };
 
 }  // namespace raypool::chip

@@ -52,3 +52,9 @@ raypool_pool_models(policies_test launch_rules
 raypool_pool_bench(tile_walk_test)
 raypool_pool_models(tile_walk_test tile_walk "CONTENTS;HELD_LIMIT;TILE_ORDER"
   64_512_0 1_1_0 128_40_0 64_512_1 1_1_1 2_512_1 64_8_1 128_40_1 1024_512_1)
+
+# The frame buffer's port has no parameters.
+raypool_pool_bench(frame_port_test)
+verilate(frame_port_test SOURCES ${RAYPOOL_RTL}/frame_port.v PREFIX Vframe_port TOP_MODULE frame_port
+  OPT_SLOW -w OPT_FAST -O2 -w OPT_GLOBAL -O1 -w
+  VERILATOR_ARGS -O3 --default-language 1364-2005 -y ${RAYPOOL_RTL} -I${RAYPOOL_RTL})
