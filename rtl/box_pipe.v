@@ -1,5 +1,5 @@
 // Which of the four boxes of a node of 64 bytes a ray meets, in narrow integers that are rounded so that no box is
-// missed; docs/traverser.md proves it. A node a cycle, its result six moves later.
+// missed; docs/traverser.md proves it. A node a cycle, its result eight moves later.
 // Promises: it moves unless a result is there that nobody takes; no box that is not there is met; no output but ready_o
 // depends on an input of the same cycle.
 // Must be given: floats that are finite; lower planes not above upper ones; reciprocals whose first bit is 1.
@@ -52,17 +52,20 @@ module box_pipe #(
     end
   endgenerate
 
-  reg [4:0] valid_q;
+  // What each stage has loaded, the first one in the lowest bits.
+  reg [6:0] valid_q;
   always @(posedge clk_i)
-    if (!rst_ni) {valid_o, valid_q} <= 6'd0;
+    if (!rst_ni) {valid_o, valid_q} <= 8'd0;
     else if (move) {valid_o, valid_q} <= {valid_q, valid_i};
-  reg [KEY_BITS-1:0] limit_1, limit_2, limit_3, limit_4, limit_5;
-  reg [3:0] there_1, there_2, there_3, there_4, there_5;
+  reg [7*KEY_BITS-1:0] limit_q;
+  reg [7*3-1:0] children_q;
+  wire [KEY_BITS-1:0] limit_7 = limit_q[6*KEY_BITS+:KEY_BITS];
+  wire [2:0] children_7 = children_q[6*3+:3];
+  wire [3:0] there = {children_7 > 3'd3, children_7 > 3'd2, children_7 > 3'd1, children_7 > 3'd0};
   always @(posedge clk_i)
     if (move) begin
-      {limit_5, limit_4, limit_3, limit_2, limit_1} <= {limit_4, limit_3, limit_2, limit_1, limit_i};
-      {there_5, there_4, there_3, there_2} <= {there_4, there_3, there_2, there_1};
-      there_1 <= {children_i > 3'd3, children_i > 3'd2, children_i > 3'd1, children_i > 3'd0};
+      limit_q <= {limit_q[6*KEY_BITS-1:0], limit_i};
+      children_q <= {children_q[6*3-1:0], children_i};
     end
 
   generate
@@ -71,17 +74,17 @@ module box_pipe #(
       wire [KEY_BITS-1:0] near_y = near[(4+g)*KEY_BITS+:KEY_BITS];
       wire [KEY_BITS-1:0] near_z = near[(8+g)*KEY_BITS+:KEY_BITS];
       wire [KEY_BITS-1:0] near_xy = (near_x > near_y) ? near_x : near_y;
-      wire [KEY_BITS-1:0] last = (near_xy > near_z) ? near_xy : near_z;
       wire [KEY_BITS-1:0] far_x = far[g*KEY_BITS+:KEY_BITS];
       wire [KEY_BITS-1:0] far_y = far[(4+g)*KEY_BITS+:KEY_BITS];
       wire [KEY_BITS-1:0] far_z = far[(8+g)*KEY_BITS+:KEY_BITS];
       wire [KEY_BITS-1:0] far_xy = (far_x < far_y) ? far_x : far_y;
-      wire [KEY_BITS-1:0] far_zl = (far_z < limit_5) ? far_z : limit_5;
-      wire [KEY_BITS-1:0] first = (far_xy < far_zl) ? far_xy : far_zl;
+      wire [KEY_BITS-1:0] far_zl = (far_z < limit_7) ? far_z : limit_7;
+      // Each entry is compared with each exit, as the last entry and the first exit are known too late.
+      wire overlap = near_xy <= far_xy && near_xy <= far_zl && near_z <= far_xy && near_z <= far_zl;
       always @(posedge clk_i)
         if (move) begin
-          entry_o[g*KEY_BITS+:KEY_BITS] <= last;
-          met_o[g] <= there_5[g] && !(missed[g] || missed[4+g] || missed[8+g]) && last <= first;
+          entry_o[g*KEY_BITS+:KEY_BITS] <= (near_xy > near_z) ? near_xy : near_z;
+          met_o[g] <= there[g] && !(missed[g] || missed[4+g] || missed[8+g]) && overlap;
         end
     end
   endgenerate

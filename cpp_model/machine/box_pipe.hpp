@@ -92,7 +92,7 @@ inline BoxResult test_boxes(const BoxRay& ray, const BoxNode& node, uint32_t lim
 /// The pipe: a node a cycle while it moves, which it does unless a result is there that nobody takes.
 class BoxPipe {
  public:
-  static constexpr int kStages = 6;
+  static constexpr int kStages = 8;
 
   bool valid() const { return stages_[kStages - 1].valid; }
   const BoxResult& result() const { return stages_[kStages - 1].result; }

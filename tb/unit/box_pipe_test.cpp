@@ -15,6 +15,7 @@
 #include "Vbox_pipe_16.h"
 #include "Vbox_pipe_6.h"
 #include "Vbox_pipe_7.h"
+#include "config/configuration.hpp"
 #include "unit/clocked.hpp"
 
 namespace raypool::bench {
@@ -302,6 +303,11 @@ TEST(BoxRay, WhatHitsNothingIsNoRay) {
   EXPECT_TRUE(set_up({{tiny, -tiny, 0}, {0, -tiny, 0}, tiny}, 8).valid);
 }
 
+// So a frame of the modelled traverser has the cycles of this pipe, if nobody says otherwise.
+TEST(BoxPipe, TakesAsLongAsTheModelledTraverserBelieves) {
+  EXPECT_EQ(Configuration().chip.modelled_traverser_box_latency, static_cast<uint32_t>(BoxPipe::kStages));
+}
+
 template <typename Unit_, int kBits>
 struct Pipe {
   using Unit = Unit_;
@@ -385,7 +391,9 @@ TYPED_TEST(BoxPipeTest, IsItsClassInEveryCycle) {
         ray = next;
         if (bench.one_of(2)) {
           for (int axis = 0; axis < 3; ++axis) {
-            ray.axes[axis].padding = cases.node.exponent[axis] + static_cast<int>(cases.below(20)) - 10;
+            // It may also be coarser than all of the distance.
+            const int coarser = static_cast<int>(cases.one_of(4) ? cases.below(140) : cases.below(20));
+            ray.axes[axis].padding = cases.node.exponent[axis] + coarser - 10;
           }
         }
         limit = bench.one_of(4) ? ray.key(std::ldexp(1.0f, static_cast<int>(cases.below(20)) - 10)) : ray.limit;

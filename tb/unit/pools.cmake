@@ -7,7 +7,7 @@ function(raypool_pool_bench name)
 endfunction()
 
 # raypool_pool_models(BENCH MODULE PARAMETERS MODEL...): class V<module>_<model>, a model being the parameters' values
-# with _ between.
+# with _ between. With SYNTHESIS, as for the benches of the arithmetic: the multiplier that hardware has.
 function(raypool_pool_models bench module names)
   foreach(model IN LISTS ARGN)
     string(REPLACE "_" ";" values ${model})
@@ -17,7 +17,7 @@ function(raypool_pool_models bench module names)
     endforeach()
     verilate(${bench} SOURCES ${RAYPOOL_RTL}/${module}.v PREFIX V${module}_${model} TOP_MODULE ${module}
       OPT_SLOW -w OPT_FAST -O2 -w OPT_GLOBAL -O1 -w
-      VERILATOR_ARGS -O3 --default-language 1364-2005 -y ${RAYPOOL_RTL} -I${RAYPOOL_RTL} ${parameters})
+      VERILATOR_ARGS -O3 --default-language 1364-2005 -DSYNTHESIS -y ${RAYPOOL_RTL} -I${RAYPOOL_RTL} ${parameters})
   endforeach()
 endfunction()
 
