@@ -49,8 +49,8 @@ struct ChipOptions {
   std::vector<uint32_t> tiles;
   chip::TileCosts* tile_costs = nullptr;  ///< gets what each of them costs; may be null
   /// What rays have visited of the tree, last what they visited last, when this tile of `tiles` is cast, of whose
-  /// predecessor that is not: a modelled traverser's caches then hold it, and that takes no time. Asked together with `tile_costs` only; may be
-  /// empty.
+  /// predecessor that is not: a modelled traverser's caches then hold it, and that takes no time. Asked together with
+  /// `tile_costs` only; may be empty.
   std::function<VisitList(uint32_t tile)> visited_before;
 
   PolicyMaker own_policy;                             ///< makes one of the caller's own, in place of the one named

@@ -113,8 +113,7 @@ void Chip::watch_tiles() {
 void Chip::remember_before(uint32_t number) {
   if (!options_.visited_before || options_.tiles.empty()) return;
   const uint32_t tile = options_.tiles[number];
-  if (tile != (number == 0 ? 0 : options_.tiles[number - 1] + 1))
-    traverser_->remember(options_.visited_before(tile));
+  if (tile != (number == 0 ? 0 : options_.tiles[number - 1] + 1)) traverser_->remember(options_.visited_before(tile));
 }
 
 size_t Chip::place(uint32_t x, uint32_t y) const {
