@@ -30,6 +30,8 @@ expect "so it is with the features of best" 0 "" verilator --lint-only --default
 expect "mistakes are noticed, and without one the unit agrees" 0 "no mistake: 40 programs agree" \
   "$faults" "$folder" --programs 40 --only 16 21 44 79 96
 expect "a survivor is an error" 1 "NOT JUDGED" "$faults" "$folder" --programs 1 --only 160
+expect "a bench that is not there is an error" 1 "there is no bench" \
+  "$faults" "$folder" --programs 1 --only 160 --benches "$folder/nowhere"
 changed 's/next_pc >= program_length_i/next_pc >= program_size_i/'
 expect "a mistake that does not fit is refused" 1 \
   "fault 30 (instruction_buffer.v: The instruction behind the program's last one is let through.)" \

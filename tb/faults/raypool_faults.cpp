@@ -3,6 +3,7 @@
 // and where the report sends its reader.
 #include <fmt/format.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -147,7 +148,11 @@ std::vector<Bench> read_benches(const std::string& path, const std::string& fold
   for (const Json& entry : read_json(path)) {
     Bench bench;
     bench.name = entry.at("bench").get<std::string>();
-    bench.command = fmt::format("{}/{} '--gtest_filter={}'", folder, bench.name, entry.at("filter").get<std::string>());
+    const std::string program = folder + "/" + bench.name;
+    // What cannot be started would seem to notice every mistake.
+    if (access(program.c_str(), X_OK) != 0)
+      throw InputError(fmt::format("--benches {}: there is no bench {}: build it there", folder, bench.name));
+    bench.command = fmt::format("{} '--gtest_filter={}'", program, entry.at("filter").get<std::string>());
     bench.tops = entry.at("tops").get<std::vector<std::string>>();
     benches.push_back(bench);
   }
