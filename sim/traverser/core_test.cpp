@@ -251,7 +251,7 @@ TEST(TraverserCore, HalfTheCacheReadsMoreAndIsSlowerWhereTheMemoryBinds) {
 
 TEST(TraverserCore, WhatItRemembersIsNotRead) {
   const ChipConfiguration chip = ample();
-  const std::vector<VisitList> rays = room_rays();
+  const std::vector<VisitList>& rays = room_rays();
   ASSERT_GT(trace_all(chip, rays).work.node_cache.misses, 100u);
   test::LonelyPort port(chip.memory_cycles_per_beat);
   Core core(chip, port);

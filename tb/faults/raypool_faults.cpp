@@ -260,7 +260,7 @@ int run(int argc, char** argv) {
     return Trial{id, {{"number", fault.number}}, [&, fault, sound](const Note& note) {
                    // What stands beside the units is in no machine.
                    const bool in_machines = sound || hierarchy.contains("multiprocessor", module_of(fault.file));
-                   const Outcome outcome = in_machines ? run_fault(options, machines, fault.number, note) : Outcome();
+                   Outcome outcome = in_machines ? run_fault(options, machines, fault.number, note) : Outcome();
                    if (!in_machines) setenv("RAYPOOL_FAULT", std::to_string(fault.number).c_str(), 1);
                    if (sound || outcome.kind != Outcome::Kind::Survived) return outcome;
                    return run_benches(benches, hierarchy, fault.file, outcome);
