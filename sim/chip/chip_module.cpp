@@ -99,21 +99,15 @@ Chip::Chip(const sc_core::sc_module_name& name, const ChipOptions& options)
 
 void Chip::watch_tiles() {
   tile_of_.resize(place(options_.width - 1, options_.height - 1) + 1);
-  controller_.on_cast = [this](const std::vector<uint32_t>& pixels) {
+  controller_.on_cast = [this](uint32_t tile, const std::vector<uint32_t>& pixels) {
     const uint32_t first = pixels.front();
-    const uint32_t number = options_.tile_costs->cast(size32(pixels), counts());
-    tile_of_[place(first & 0xffff, first >> 16)] = number;
-    remember_before(number);
+    tile_of_[place(first & 0xffff, first >> 16)] = options_.tile_costs->cast(size32(pixels), counts());
+    if (options_.visited_before && tile != next_tile_) traverser_->remember(options_.visited_before(tile));
+    next_tile_ = tile + 1;
   };
   ledger_.on_finished = [this](uint32_t pixel) {
     options_.tile_costs->finished(tile_of_[place(pixel & 0xffff, pixel >> 16)], counts());
   };
-}
-
-void Chip::remember_before(uint32_t number) {
-  if (!options_.visited_before || options_.tiles.empty()) return;
-  const uint32_t tile = options_.tiles[number];
-  if (tile != (number == 0 ? 0 : options_.tiles[number - 1] + 1)) traverser_->remember(options_.visited_before(tile));
 }
 
 size_t Chip::place(uint32_t x, uint32_t y) const {

@@ -46,7 +46,6 @@ class Chip : public sc_core::sc_module, public WatchedIf {
   void collect_pools(ChipResult& result) const;
   void collect_ceilings(ChipResult& result) const;
   void watch_tiles();
-  void remember_before(uint32_t number);
   size_t place(uint32_t x, uint32_t y) const;  // of a pixel's tile in tile_of_
   Counts counts() const;
 
@@ -62,6 +61,7 @@ class Chip : public sc_core::sc_module, public WatchedIf {
   DeviceHost device_;
   Monitor monitor_;
   std::vector<uint32_t> tile_of_;  // [place in the picture, row by row] number in tile_costs, if there are any
+  uint32_t next_tile_ = 0;         // behind the one that was cast last, along the walk
 };
 
 }  // namespace raypool::chip

@@ -19,6 +19,7 @@ class ChosenTiles {
 
   bool at_end() const { return !walk_.busy() || (!numbers_.empty() && chosen_ == size32(numbers_)); }
   const TileWalk::Tile& tile() const { return walk_.tile(); }
+  uint32_t number() const { return number_; }  ///< of the tile, along the walk
   uint32_t tile_width() const { return walk_.tile_width(); }
   uint32_t tile_height() const { return walk_.tile_height(); }
 

@@ -151,7 +151,7 @@ LaunchCommand Controller::next_tile(uint32_t unit) {
   const TileWalk::Tile& tile = next_tile_.tile();
   for (uint32_t y = tile.top; y < std::min(tile.top + tile_height(), height_); ++y)
     for (uint32_t x = tile.left; x < std::min(tile.left + tile_width(), width_); ++x) pixels.push_back(x | y << 16);
-  if (on_cast) on_cast(pixels);
+  if (on_cast) on_cast(next_tile_.number(), pixels);
   ledger->eye_launched(unit, std::move(pixels));
   held_peak_ = std::max(held_peak_, ledger->held());
 

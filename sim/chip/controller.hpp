@@ -39,8 +39,9 @@ class Controller : public sc_core::sc_module, public DecisionIf, public KernelEv
   /// `options` must outlive the controller.
   Controller(const sc_core::sc_module_name& name, const ChipOptions& options);
 
-  /// Is told of a tile that is cast, by the pixels of it that lie in the image; may be empty.
-  std::function<void(const std::vector<uint32_t>& pixels)> on_cast;
+  /// Is told of a tile that is cast: its number along the walk, and the pixels of it that lie in the image; may be
+  /// empty.
+  std::function<void(uint32_t tile, const std::vector<uint32_t>& pixels)> on_cast;
 
   sc_core::sc_port<TimeIf> clock{"clock"};
   sc_core::sc_port<RayLevelIf> rays{"rays"};

@@ -104,10 +104,9 @@ class SampledFrame {
       : chip_(chip),
         work_(work),
         wanted_(wanted),
-        tiles_(size32(chip::along_walk(chip.configuration, chip.width, chip.height))),
-        block_(block_tiles(chip.configuration, tiles_)),
+        figures_(nothing_of(size32(chip::along_walk(chip.configuration, chip.width, chip.height)))),
+        block_(block_tiles(chip.configuration, figures_.tiles)),
         beside_(tiles_under_way(chip.configuration) / 4) {
-    figures_.tiles = tiles_;
     if (work.size() != Sample::blocks_of(figures_.tiles, block_))
       throw std::logic_error("not the work of each block of the sample");
     known_ = known_of(chip, work);
@@ -139,6 +138,12 @@ class SampledFrame {
   }
 
  private:
+  static Figures nothing_of(uint32_t tiles) {
+    Figures figures;
+    figures.tiles = tiles;
+    return figures;
+  }
+
   /// Inner blocks to be drawn in all; as many as are drawn, if that is enough. A few more pay for no further run.
   double blocks_wanted(const Sample& sample, double seconds, double a_tile) const {
     const auto drawn = static_cast<double>(sample.drawn()), all = static_cast<double>(sample.inner_blocks());
@@ -298,13 +303,12 @@ class SampledFrame {
   const ChipOptions& chip_;
   const std::vector<NativeWork>& work_;  // [block]
   Wanted wanted_;
-  uint32_t tiles_;                    // of the frame
+  Figures figures_;
   uint32_t block_, beside_;           // tiles of a block, and uncounted ones on each side of it
   std::vector<Known> known_;          // [block]
   std::vector<double> sizes_;         // [block] a share of the frame's work, times what is known
   double rays_ = 0;                   // of the frame
   std::map<uint32_t, Counts> costs_;  // [block]
-  Figures figures_;
 };
 
 }  // namespace

@@ -30,10 +30,13 @@ struct Outcome {
   TraverserWork work;
 };
 
-/// All rays enter as soon as they can. With `skip` only cycles are clocked in which something happens.
-Outcome trace_all(const ChipConfiguration& chip, const std::vector<VisitList>& rays, bool skip = true) {
+/// All rays enter as soon as they can. With `skip` only cycles are clocked in which something happens. Caches begin
+/// with what is `remembered`.
+Outcome trace_all(const ChipConfiguration& chip, const std::vector<VisitList>& rays, bool skip = true,
+                  const std::vector<VisitList>& remembered = {}) {
   test::LonelyPort port(chip.memory_cycles_per_beat);
   Core core(chip, port);
+  for (const VisitList& places : remembered) core.remember(places);
   Outcome result;
   result.done.resize(rays.size());
   std::map<uint32_t, size_t> in_flight;  // [slot]
@@ -250,24 +253,10 @@ TEST(TraverserCore, HalfTheCacheReadsMoreAndIsSlowerWhereTheMemoryBinds) {
 }
 
 TEST(TraverserCore, WhatItRemembersIsNotRead) {
-  const ChipConfiguration chip = ample();
-  const std::vector<VisitList>& rays = room_rays();
-  ASSERT_GT(trace_all(chip, rays).work.node_cache.misses, 100u);
-  test::LonelyPort port(chip.memory_cycles_per_beat);
-  Core core(chip, port);
-  for (const VisitList& ray : rays) core.remember(ray);
-  uint64_t cycle = 0;
-  size_t left = 0;
-  for (const VisitList& ray : rays) {
-    do {
-      core.clock(++cycle);
-      left += core.valid();
-    } while (!core.ready());
-    core.push(ray);
-  }
-  while (left < rays.size()) core.clock(++cycle), left += core.valid();
-  EXPECT_EQ(core.work().node_cache.misses + core.work().triangle_cache.misses, 0u);
-  EXPECT_GT(core.work().triangle_cache.hits, 100u);
+  ASSERT_GT(trace_all(ample(), room_rays()).work.node_cache.misses, 100u);
+  const TraverserWork work = trace_all(ample(), room_rays(), true, room_rays()).work;
+  EXPECT_EQ(work.node_cache.misses + work.triangle_cache.misses, 0u);
+  EXPECT_GT(work.triangle_cache.hits, 100u);
 }
 
 TEST(TraverserCore, AnExactNodeIsOneLookupAndTakesTwoLinesOfItsCache) {
