@@ -47,6 +47,7 @@ module compute_unit #(
   input  wire                      export_ready_i,
   output wire [127:0]              export_data_o,
   output wire                      export_last_o,
+  output wire [15:0]               exports_o,          // packages that kernels have asked to export since reset
   // frame buffer
   output wire                      frame_valid_o,
   input  wire                      frame_ready_i,
@@ -289,7 +290,7 @@ module compute_unit #(
           .ray_trace_valid_o(ray_trace_valid_o), .ray_trace_warp_o(ray_trace_warp_o),
           .ray_trace_word_o(ray_trace_word_o), .ray_trace_mask_o(ray_trace_mask_o), .ray_trace_data_o(ray_trace_data_o),
           .fault_valid_o(ray_fault), .fault_code_o(ray_fault_code), .fault_warp_o(ray_fault_warp),
-          .exporting_o(exporting), .import_wait_o(import_wait), .export_wait_o(export_wait),
+          .exporting_o(exporting), .exports_o(exports_o), .import_wait_o(import_wait), .export_wait_o(export_wait),
 `include "alu_port_map.vh"
         );
       end

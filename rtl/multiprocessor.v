@@ -31,6 +31,8 @@ module multiprocessor #(
   output wire [UNITS-1:0]                kernel_done_o,      // one cycle a kernel
   output wire [UNITS-1:0]                busy_o,             // a kernel is running
   output wire [UNITS-1:0]                idle_o,             // nothing runs, waits, is being exported or stored
+  // packages that each unit's kernels have asked to export since reset, modulo 2^16; unit 0 in the low bits
+  output wire [UNITS*16-1:0]             exports_o,
   // memory port; the upper two bits of an id are the unit's number
   output wire                            memory_request_valid_o,
   input  wire                            memory_request_ready_i,
@@ -134,8 +136,9 @@ module multiprocessor #(
         .import_request_valid_o(import_valid[u]), .import_request_kind_o(import_kind[u*2 +: 2]),
         .import_request_ready_i(import_ready[u]), .import_beat_valid_i(beat_valid[u]),
         .import_beat_data_i(import_beat_data_i), .export_valid_o(export_valid[u]), .export_ready_i(export_ready[u]),
-        .export_data_o(export_beat[u*129 +: 128]), .export_last_o(export_last[u]), .frame_valid_o(frame_valid[u]),
-        .frame_ready_i(frame_ready[u]), .frame_pixel_o(frame[u*128 +: 32]), .frame_color_o(frame[u*128 + 32 +: 96]),
+        .export_data_o(export_beat[u*129 +: 128]), .export_last_o(export_last[u]),
+        .exports_o(exports_o[u*16 +: 16]), .frame_valid_o(frame_valid[u]), .frame_ready_i(frame_ready[u]),
+        .frame_pixel_o(frame[u*128 +: 32]), .frame_color_o(frame[u*128 + 32 +: 96]),
         .fault_valid_o(fault_valid[u]), .fault_code_o(fault[u*FAULT_BITS + 16 + WARP_BITS +: 4]),
         .fault_warp_o(fault[u*FAULT_BITS + 16 +: WARP_BITS]), .fault_pc_o(fault[u*FAULT_BITS +: 16]),
         .counter_select_i(counter_select_i), .counter_o(counter[u*64 +: 64]),

@@ -34,6 +34,7 @@ module ray_alu #(
   output wire [31:0]            frame_pixel_o,
   output wire [95:0]            frame_color_o,
   output wire                   exporting_o,              // something waits to be exported
+  output wire [15:0]            exports_o,                // packages of the rout and rfb that have arrived, modulo 2^16
   // for the performance counters: rin without its package; rout or rfb behind one that is still being exported
   output wire [WARPS-1:0]       import_wait_o,
   output wire [WARPS-1:0]       export_wait_o,
@@ -237,6 +238,20 @@ module ray_alu #(
         current_q[swap_warp*2 +: 2] <= output_q[swap_warp*2 +: 2];
       end
     end
+
+  // ---- Packages that rout and rfb have asked to export
+  function [5:0] lanes_of(input [LANES-1:0] mask);
+    integer l;
+    begin
+      lanes_of = 6'd0;
+      for (l = 0; l < LANES; l = l + 1) lanes_of = lanes_of + {5'd0, mask[l]};
+    end
+  endfunction
+  reg [15:0] exports_q;
+  always @(posedge clk_i)
+    if (!rst_ni) exports_q <= 16'd0;
+    else if (arrive_out) exports_q <= exports_q + {10'd0, lanes_of(task_mask_i)};
+  assign exports_o = exports_q;
 
   // ---- Done, trace, fault
   reg done_q, trace_q, fault_q;

@@ -9,6 +9,7 @@
 // rtl/multiprocessor.v without _i and _o.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -118,6 +119,9 @@ struct UnitOutputs {
   uint32_t kernel_done = 0;  ///< mask: one cycle for each kernel that ends
   uint32_t busy = 0;         ///< mask: a kernel is running
   uint32_t unit_idle = 1;    ///< mask: as `idle`, of each unit
+  /// [unit] Rays and contributions that its kernels have asked to export since the reset, modulo 2^16. A kernel's are
+  /// in it when its kernel_done comes: they have left once as many packages have. No part of signals().
+  std::array<uint16_t, kMostUnits> exports{};
   MemoryRequest memory_request;
   Beat export_data{};
   FrameContribution frame;

@@ -81,6 +81,7 @@ void CycleUnit::present(uint32_t now) {
     out.unit_idle = is_set(signal::kUnitIdle);
     if (is_set(signal::kFault)) out.fault = fault_;
   }
+  out.exports[0] = ray_.registers().exports;
   if (out.memory_request_valid) out.memory_request = memory_arbiter_.request();
   out.import_request_kind = ray_.import_kind();
   if (out.export_valid) {

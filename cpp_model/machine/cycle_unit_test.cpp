@@ -9,6 +9,7 @@
 #include "machine/functional_unit.hpp"
 #include "machine/model.hpp"
 #include "machine/test_chip.hpp"
+#include "machine/test_exports.hpp"
 #include "machine/test_program.hpp"
 #include "machine/warp_cycles.hpp"
 
@@ -326,6 +327,7 @@ TEST(CycleUnit, RunIsClockRepeatedUntilSomethingHappens) {
     UnitInputs inputs = ready;
     const UnitOutputs& out = run.outputs();
     EXPECT_EQ(out.signals(), clocked.outputs().signals()) << now;
+    EXPECT_EQ(out.exports, clocked.outputs().exports) << now;
     if (!launched && out.launch_ready) {
       inputs.launch_valid = launched = true;
       inputs.launch = launch_of(16, ImportKind::Shadow);
@@ -359,8 +361,29 @@ TEST(CycleUnit, RunIsClockRepeatedUntilSomethingHappens) {
   }
   EXPECT_LT(calls, 3000u) << "run() was to skip what is quiet";
   EXPECT_GT(run.counter(counter::kInstructions), 50u);
+  EXPECT_EQ(run.outputs().exports[0], 32u) << "16 threads, a ray and a contribution each";
   for (int number = 0; number < counter::kCount; ++number)
     EXPECT_EQ(run.counter(number), clocked.counter(number)) << number;
+}
+
+TEST(CycleUnit, CountsTheExportsOfAKernelBeforeItIsDone) {
+  const std::vector<uint64_t> code = test::exporting_program();
+  for (const auto& [warps, lanes] : {std::pair{1, 1}, {2, 1}, {4, 4}, {8, 8}, {2, 32}}) {
+    for (const bool overlap : {false, true}) {
+      Configuration configuration = make_configuration(warps, lanes);
+      configuration.kernel_overlap = overlap;
+      for (const int ready_percent : {100, 60, 15}) {
+        SCOPED_TRACE(testing::Message() << warps << "w" << lanes << "c, " << ready_percent << "% ready");
+        Memory memory = with_program(code);
+        CycleUnit unit(configuration, memory);
+        for (const bool alone : {true, false}) {
+          unit.reset(size32(code), kMemoryBytes);
+          TestChip chip(unit, memory, 1, ready_percent);
+          test::expect_exports_counted(unit, chip, configuration, alone);
+        }
+      }
+    }
+  }
 }
 
 TEST(Model, RefusesNumbersOfUnitsThatAMultiprocessorCannotHave) {

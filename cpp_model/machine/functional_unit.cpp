@@ -130,6 +130,7 @@ class FunctionalUnit : public ComputeUnit {
     if (count == 0) return;
     for (uint32_t i = 0; i < step.ray_count; ++i) exports_.push_back({step.warp, false, step.rays[i], {}});
     for (uint32_t i = 0; i < step.frame_count; ++i) exports_.push_back({step.warp, true, {}, step.frame[i]});
+    outputs_.exports[0] = static_cast<uint16_t>(outputs_.exports[0] + count);
     exporting_[step.warp] = count;
     core_.set_output_busy(step.warp, true);
   }

@@ -7,6 +7,7 @@
 #include "bits.hpp"
 #include "machine/special_census.hpp"
 #include "machine/test_chip.hpp"
+#include "machine/test_exports.hpp"
 #include "machine/test_program.hpp"
 
 namespace raypool {
@@ -127,6 +128,19 @@ TEST(FunctionalUnit, FrameContributionsCarryPixelAndColour) {
   EXPECT_EQ(fixture.chip.frame[1].pixel, 307u);
   EXPECT_EQ(fixture.chip.frame[1].rgb[2], 310u);
   EXPECT_TRUE(fixture.chip.rays.empty());
+}
+
+TEST(FunctionalUnit, CountsTheExportsOfAKernelBeforeItIsDone) {
+  const std::vector<uint64_t> code = test::exporting_program();
+  for (const bool traced : {false, true}) {
+    Fixture fixture(code, 50);
+    if (traced) fixture.unit->trace_on();
+    for (const bool alone : {true, false}) {
+      fixture.unit->reset(size32(code), kMemoryBytes);
+      TestChip chip(*fixture.unit, fixture.memory, 1, 50);
+      test::expect_exports_counted(*fixture.unit, chip, Fixture::configuration(), alone);
+    }
+  }
 }
 
 TEST(FunctionalUnit, AFaultIsStickyAndStopsEverything) {

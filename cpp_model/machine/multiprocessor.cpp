@@ -94,6 +94,7 @@ void Multiprocessor::present() {
     exports |= uint32_t{unit.export_valid} << u;
     frame |= uint32_t{unit.frame_valid} << u;
     fault |= uint32_t{unit.fault.code != FaultCode::None} << u;
+    outputs_.exports[u] = unit.exports[0];
   }
   outputs_.busy = busy;
   outputs_.kernel_done = done;

@@ -43,6 +43,7 @@ class RayAlu {
     uint32_t done_warp = 0;
     bool fault = false;  ///< ray word that an intersection has not
     uint32_t fault_warp = 0;
+    uint16_t exports = 0;  ///< lanes of all rout and rfb that have arrived
   };
 
   /// `slices` must outlive it.
@@ -219,8 +220,13 @@ inline void RayAlu::swap(uint32_t warp) {
 inline void RayAlu::park(uint32_t warp) {
   const Task& task = tasks_[warp];
   if (task.access()) return;
-  (task.opcode == Opcode::Rin ? q_.parked_in : q_.parked_out) |= 1u << warp;
-  if (task.opcode != Opcode::Rin) export_.park(warp, task.opcode == Opcode::Rfb, task.mask);
+  if (task.opcode == Opcode::Rin) {
+    q_.parked_in |= 1u << warp;
+    return;
+  }
+  q_.parked_out |= 1u << warp;
+  q_.exports = static_cast<uint16_t>(q_.exports + popcount(task.mask));
+  export_.park(warp, task.opcode == Opcode::Rfb, task.mask);
 }
 
 }  // namespace raypool

@@ -119,7 +119,10 @@ class ScriptedUnit : public ComputeUnit {
   ScriptedUnit(const World& world, uint32_t contents, int pace, uint32_t seed, const Memory& memory)
       : world_(world), contents_(contents), pace_(pace), random_(seed), memory_(memory) {}
 
-  void reset(uint32_t, uint32_t) override { present(); }
+  void reset(uint32_t, uint32_t) override {
+    outputs_.exports = {};
+    present();
+  }
   void set_argument(uint32_t index, uint32_t value) override { arguments_.at(index) = value; }
   const UnitOutputs& outputs() const override { return outputs_; }
   const UnitTrace& trace() const override { return trace_; }
@@ -250,6 +253,7 @@ class ScriptedUnit : public ComputeUnit {
       case 2:  // rout, rfb
         if (!exports_.empty()) return;
         make(kernel.command, kernel.phase == 1);
+        outputs_.exports[0] = static_cast<uint16_t>(outputs_.exports[0] + exports_.size());
         break;
       default:
         if (asking_) return;  // reads that are under way may outlive the kernel, as a prefetch does

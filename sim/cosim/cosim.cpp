@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <deque>
 #include <vector>
 
@@ -51,6 +52,7 @@ class RandomHost {
       }
       ended_ += popcount(outputs.kernel_done);
       if (outputs.idle && !outputs.busy) {
+        if (ended_ > first_) check_exports(outputs);
         if (launched_ == program_.kernels.size()) return now_;
         rewrite();
       }
@@ -80,12 +82,22 @@ class RandomHost {
   void begin(size_t kernel) {
     unit_.reset(told_length(program_), told_limit(program_));
     for (int i = 0; i < kArguments; ++i) unit_.set_argument(i, arguments_[i]);
-    launched_ = ended_ = rewritten_ = kernel;
+    first_ = launched_ = ended_ = rewritten_ = kernel;
     fault_cycles_ = 0;
     offered_ = false;
     lines_.clear();
     beat_ = import_beat_ = 0;
     packages_asked_ = packages_given_ = 0;
+    left_ = {};
+  }
+
+  // Nothing is left: the units must have counted what has left, whatever engine they are.
+  void check_exports(const UnitOutputs& outputs) const {
+    for (uint32_t unit = 0; unit < unit_.units(); ++unit) {
+      if (outputs.exports[unit] == left_[unit]) continue;
+      throw ProgramFailure(fmt::format("unit {} has counted {} exports when it is idle, and {} have left", unit,
+                                       outputs.exports[unit], left_[unit]));
+    }
   }
 
   // The unit is idle: the next kernel finds what it is to find.
@@ -113,6 +125,8 @@ class RandomHost {
     if (inputs.import_request_ready && outputs.import_request_valid) ++packages_asked_;
     inputs.export_ready = open(Port::Export);
     inputs.frame_ready = open(Port::Frame);
+    if (outputs.export_valid && inputs.export_ready && outputs.export_last) ++left_[outputs.export_unit];
+    if (outputs.frame_valid && inputs.frame_ready) ++left_[outputs.frame_unit];
     if (observer_ != nullptr) observer_->cycle(outputs, inputs, unit_.trace());
     unit_.clock(inputs);
   }
@@ -189,6 +203,7 @@ class RandomHost {
   uint64_t fault_cycles_ = 0;  ///< since the fault
   std::array<uint32_t, kArguments> arguments_ = program_.arguments;
   size_t launched_ = 0, ended_ = 0;
+  size_t first_ = 0;      ///< kernel before which it has been reset
   size_t rewritten_ = 0;  ///< kernels before which it has been rewritten
   bool offered_ = false;  ///< and not taken
   std::vector<Line> lines_;
@@ -196,6 +211,7 @@ class RandomHost {
   int beat_ = 0;  ///< of lines_[sending_]
   uint64_t packages_asked_ = 0, packages_given_ = 0;
   uint32_t import_beat_ = 0;
+  std::array<uint16_t, kMostUnits> left_{};  ///< [unit] rays and contributions since the reset, modulo 2^16
 };
 
 }  // namespace

@@ -127,6 +127,7 @@ class Recorder : public ComputeUnit {
     field(out.export_valid ? 1 : 0, 1, on);
     words(out.export_data, on && out.export_valid ? 15 : 0);
     field(out.export_last ? 1 : 0, 1, on && out.export_valid);
+    field(out.exports[0], 16, on);
     field(out.frame_valid ? 1 : 0, 1, on);
     field(out.frame.pixel, 32, on && out.frame_valid);
     for (size_t i = 3; i-- > 0;) field(out.frame.rgb[i], 32, on && out.frame_valid);

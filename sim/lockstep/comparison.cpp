@@ -13,6 +13,7 @@ constexpr const char* kMemoryModules = "rtl/mem_alu.v, rtl/data_cache.v, rtl/mem
 constexpr const char* kFetchModules = "rtl/instruction_cache.v, rtl/memory_arbiter.v";
 constexpr const char* kImportModules = "rtl/ray_import.v, rtl/ray_alu.v, rtl/import_arbiter.v";
 constexpr const char* kExportModules = "rtl/ray_export.v, rtl/ray_alu.v, rtl/ray_memory.v";
+constexpr const char* kExportCountModules = "rtl/ray_alu.v, rtl/compute_unit.v, rtl/multiprocessor.v";
 constexpr const char* kLaunchModules = "rtl/launcher.v, rtl/compute_unit.v";
 
 // A row of a table of what differs.
@@ -274,6 +275,15 @@ void Comparison::outputs(const UnitOutputs& rtl, const UnitOutputs& model) const
     for (size_t i = 0; i < 3; ++i)
       details += row(kColors[i], word_text(rtl.frame.rgb[i]), word_text(model.frame.rgb[i]));
     throw Mismatch{"the frame contributions differ in this cycle", details, kExportModules, Context::Unit};
+  }
+  if (rtl.exports != model.exports) {
+    std::string details;
+    for (uint32_t u = 0; u < kMostUnits; ++u) {
+      if (rtl.exports[u] != model.exports[u])
+        details += row(fmt::format("exports of unit {}", u).c_str(), rtl.exports[u], model.exports[u]);
+    }
+    throw Mismatch{"the counts of packages to be exported differ in this cycle", details, kExportCountModules,
+                   Context::Unit};
   }
 }
 

@@ -297,6 +297,11 @@ INSTANTIATE_TEST_SUITE_P(
             "frame_colour", [](UnitOutputs& out) { out.frame.rgb[1] ^= 1; }, {"frame contributions differ", "green"}},
         PortCase{
             "frame_pixel", [](UnitOutputs& out) { out.frame.pixel ^= 1; }, {"frame contributions differ", "pixel"}},
+        PortCase{"exports",
+                 [](UnitOutputs& out) {
+                   if (out.exports[0] > 2) --out.exports[0];
+                 },
+                 {"counts of packages to be exported differ", "exports of unit 0", "rtl/ray_alu.v"}},
         PortCase{"import_kind",
                  [](UnitOutputs& out) { out.import_request_kind = ImportKind::Shadow; },
                  {"import requests differ", "kind"}},

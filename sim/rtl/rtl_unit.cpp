@@ -173,6 +173,7 @@ class RtlUnit : public ComputeUnit {
     out.busy = top.busy_o;
     out.unit_idle = top.idle_o;
     out.idle = out.unit_idle == (1u << kUnitCount) - 1;
+    for (uint32_t u = 0; u < kUnitCount; ++u) out.exports[u] = static_cast<uint16_t>(bits(top.exports_o, 16 * u, 16));
     out.memory_request_valid = top.memory_request_valid_o;
     if (out.memory_request_valid) {
       MemoryRequest& request = out.memory_request;

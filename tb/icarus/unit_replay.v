@@ -12,8 +12,8 @@ module unit_replay #(
   localparam integer WARP_BITS = (WARPS > 1) ? $clog2(WARPS) : 1;
   localparam integer RETIRE_BITS = 1 + 16 + 64 + LANES + LANES * 32 + LANES;
   localparam integer IN_BITS = 1 + 16 + 32 + 38 + 94 + 1 + 136 + 1 + 129 + 2;
-  localparam integer OUT_BITS = 4 + 171 + 3 + 130 + 129 + 1 + 4 + WARP_BITS + 16 + WARPS * RETIRE_BITS + 1 + WARP_BITS +
-                                164 + 1 + WARP_BITS + 5 + LANES + LANES * 32;
+  localparam integer OUT_BITS = 4 + 171 + 3 + 130 + 16 + 129 + 1 + 4 + WARP_BITS + 16 + WARPS * RETIRE_BITS + 1 +
+                                WARP_BITS + 164 + 1 + WARP_BITS + 5 + LANES + LANES * 32;
 
   reg clk = 1'b0;
   reg [IN_BITS-1:0] in;
@@ -43,7 +43,7 @@ module unit_replay #(
   wire [1:0]  import_request_kind;
   wire [95:0] frame_color;
   wire [WARP_BITS-1:0] fault_warp, store_trace_warp, ray_trace_warp;
-  wire [15:0] fault_pc;
+  wire [15:0] exports, fault_pc;
   wire [63:0] counter;
   wire [WARPS-1:0] retire_valid;
   wire [WARPS*16-1:0] retire_pc;
@@ -67,7 +67,7 @@ module unit_replay #(
     .memory_response_data_i(memory_response_data), .import_request_valid_o(import_request_valid),
     .import_request_kind_o(import_request_kind), .import_request_ready_i(import_request_ready),
     .import_beat_valid_i(import_beat_valid), .import_beat_data_i(import_beat_data), .export_valid_o(export_valid),
-    .export_ready_i(export_ready), .export_data_o(export_data), .export_last_o(export_last),
+    .export_ready_i(export_ready), .export_data_o(export_data), .export_last_o(export_last), .exports_o(exports),
     .frame_valid_o(frame_valid), .frame_ready_i(frame_ready), .frame_pixel_o(frame_pixel), .frame_color_o(frame_color),
     .fault_valid_o(fault_valid), .fault_code_o(fault_code), .fault_warp_o(fault_warp), .fault_pc_o(fault_pc),
     .counter_select_i(6'd1), .counter_o(counter), .retire_valid_o(retire_valid), .retire_pc_o(retire_pc),
@@ -90,7 +90,7 @@ module unit_replay #(
   wire [OUT_BITS-1:0] actual = {
     launch_ready, kernel_done, busy, idle, memory_request_valid, memory_request_write, memory_request_address,
     memory_request_data, memory_request_mask, memory_request_id, import_request_valid, import_request_kind,
-    export_valid, export_data, export_last, frame_valid, frame_pixel, frame_color, fault_valid, fault_code,
+    export_valid, export_data, export_last, exports, frame_valid, frame_pixel, frame_color, fault_valid, fault_code,
     fault_warp, fault_pc, retirements, store_trace_valid, store_trace_warp, store_trace_address, store_trace_data,
     store_trace_mask, ray_trace_valid, ray_trace_warp, ray_trace_word, ray_trace_mask, ray_trace_data};
   wire [OUT_BITS-1:0] difference = (actual ^ expected) & care;
@@ -123,7 +123,8 @@ module unit_replay #(
       field("memory_request_data", 128); field("memory_request_mask", 4); field("memory_request_id", 5);
       field("import_request_valid", 1); field("import_request_kind", 2); field("export_valid", 1);
       field("export_data", 128);
-      field("export_last", 1); field("frame_valid", 1); field("frame_pixel", 32); field("frame_color", 96);
+      field("export_last", 1); field("exports", 16);
+      field("frame_valid", 1); field("frame_pixel", 32); field("frame_color", 96);
       field("fault_valid", 1); field("fault_code", 4); field("fault_warp", WARP_BITS); field("fault_pc", 16);
       for (n = WARPS - 1; n >= 0; n = n - 1) begin
         field("retire_valid", 1); field("retire_pc", 16); field("retire_instruction", 64); field("retire_mask", LANES);

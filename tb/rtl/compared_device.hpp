@@ -40,6 +40,7 @@ inline std::string difference(const UnitOutputs& a, const UnitOutputs& b) {
   differs(a.export_valid != b.export_valid, "export_valid");
   differs(a.export_valid && (a.export_data != b.export_data || a.export_last != b.export_last), "export_data");
   differs(a.export_valid && a.export_unit != b.export_unit, "export_unit");
+  differs(a.exports != b.exports, "exports");
   differs(a.frame_valid != b.frame_valid, "frame_valid");
   differs(a.frame_valid && (a.frame.pixel != b.frame.pixel || a.frame.rgb != b.frame.rgb), "frame");
   differs(a.frame_valid && a.frame_unit != b.frame_unit, "frame_unit");
@@ -170,6 +171,7 @@ class ComparedDevice : public ComputeUnit {
     now.launch_ready = was.launch_ready = false;
     now.kernel_done = was.kernel_done = now.busy = was.busy = now.unit_idle = was.unit_idle = 0;
     now.idle = was.idle = false;
+    now.exports = was.exports = {};
     if (was.fault.code == FaultCode::None) now.fault = was.fault = {};
     const std::string name = difference(was, now);
     if (!name.empty()) fail(name + " changed while it waited");

@@ -12,6 +12,7 @@
 #include "lockstep/lockstep_unit.hpp"
 #include "lockstep/rtl_loader.hpp"
 #include "machine/test_chip.hpp"
+#include "machine/test_exports.hpp"
 #include "machine/test_program.hpp"
 #include "rtl/test_library.hpp"
 
@@ -126,6 +127,20 @@ TEST_P(RtlUnit, ReportsTheModelsFaults) {
     } catch (const LockstepDifference& difference) {
       ADD_FAILURE() << program.name << ": " << difference.what();
     }
+  }
+}
+
+TEST_P(RtlUnit, CountsTheExportsOfAKernelBeforeItIsDone) {
+  const std::string library = library_of(GetParam());
+  const Configuration configuration = configuration_of(GetParam());
+  const std::vector<uint64_t> code = test::exporting_program();
+  for (const bool alone : {true, false}) {
+    Memory memory(kMemoryBytes);
+    test::put_program(memory, code);
+    const auto unit = make_lockstep_unit(configuration, load_rtl_unit(library, configuration), memory);
+    unit->reset(size32(code), kMemoryBytes);
+    TestChip chip(*unit, memory, 1, 50);
+    test::expect_exports_counted(*unit, chip, configuration, alone);
   }
 }
 

@@ -1,8 +1,8 @@
 // Drives a Verilated ray_alu between pools of random speed and checks in every cycle what docs/ray-alu.md promises:
 // every word read, every ray and frame contribution (order, lanes, content), which package goes to which thread, the
-// rules of requests, stable payloads, the trace, exporting_o and import_active_o to the cycle, bounded time. What the
-// unit breaks is thrown, with cycle and seed. MODEL is a struct with the Verilated class as Unit and kWarps, kLanes,
-// kWide, kWords.
+// rules of requests, stable payloads, the trace, exporting_o, exports_o and import_active_o to the cycle, bounded time.
+// What the unit breaks is thrown, with cycle and seed. MODEL is a struct with the Verilated class as Unit and kWarps,
+// kLanes, kWide, kWords.
 #pragma once
 
 #include <verilated.h>
@@ -124,6 +124,9 @@ class RayAluBench {
     const bool ended = check_done();
     check_request();
     check_exports();
+    check(unit_->exports_o == static_cast<uint16_t>(asked_), "exports_o is not what has been asked for");
+    if (task != nullptr && (task->op == RayOp::Rout || task->op == RayOp::Rfb))
+      asked_ += static_cast<uint64_t>(__builtin_popcount(task->mask));
     take_beat();
     if (start_ && start_->kind != 0) {
       check(!active_, "the bench started an import during another");
@@ -148,7 +151,10 @@ class RayAluBench {
   void drain() {
     while (busy()) step();
     for (int i = 0; i < 20; ++i) step();
+    check(unit_->exports_o == static_cast<uint16_t>(counts.rays + counts.contributions),
+          "exports_o is not what has left, and nothing else is to come");
   }
+  uint16_t exports() const { return unit_->exports_o; }
 
  private:
   struct Flight {
@@ -400,6 +406,7 @@ class RayAluBench {
   std::vector<Launch> launches_;
   bool active_ = false, request_waits_ = false, offer_waits_ = false;
   uint32_t requested_ = 0, received_ = 0, beat_ = 0, outstanding_ = 0, accepted_ = 0;
+  uint64_t asked_ = 0;  ///< lanes of the rout and rfb that have arrived
   std::deque<Export> expected_;
   uint32_t export_beat_ = 0;
   std::array<uint32_t, 4> offered_{};

@@ -353,6 +353,45 @@ TYPED_TEST(RayAlu, AnEmptyMaskExportsNothingAndFreesAtOnce) {
   EXPECT_TRUE(bench.beat_cycles.empty());
 }
 
+// What a controller that sees a kernel's end may rely on: the kernel's warps have seen the done of their exports.
+TYPED_TEST(RayAlu, PackagesAreCountedAsTheyAreAskedForAndBeforeTheirDone) {
+  using Bench = RayAluBench<TypeParam>;
+  Bench bench(14);
+  uint32_t asked = 0;
+  for (const RayOp op : {RayOp::Rout, RayOp::Rfb}) {
+    for (const uint32_t mask : {Bench::kAllLanes, 1u, 0u, 1u << (Bench::kLanes - 1)}) {
+      for (uint32_t warp = 0; warp < Bench::kWarps; ++warp) {
+        const RayTask out = this->task(warp, op, 0, mask);
+        while (!bench.ready()) bench.step();
+        bench.step(&out);
+        asked += static_cast<uint32_t>(__builtin_popcount(mask));
+        EXPECT_EQ(bench.exports(), asked);
+        EXPECT_TRUE(bench.in_flight(warp));
+        while (bench.in_flight(warp)) bench.step();
+      }
+    }
+  }
+  bench.drain();
+  EXPECT_EQ(bench.counts.rays + bench.counts.contributions, asked);
+}
+
+TYPED_TEST(RayAlu, TheCountOfExportsBeginsAnewAfter65535) {
+  using Bench = RayAluBench<TypeParam>;
+  Bench bench(15);
+  uint64_t asked = 0;
+  while (asked < 66000) {
+    for (uint32_t warp = 0; warp < Bench::kWarps; ++warp) {
+      const RayTask out = this->task(warp, RayOp::Rfb);
+      while (!bench.ready() || bench.in_flight(warp)) bench.step();
+      bench.step(&out);
+      asked += Bench::kLanes;
+    }
+  }
+  bench.drain();
+  EXPECT_EQ(bench.counts.contributions, asked);
+  EXPECT_EQ(bench.exports(), asked - 65536);
+}
+
 TYPED_TEST(RayAluOfSeveralWarps, AWarpThatWaitsDoesNotBlockOthers) {
   using Bench = RayAluBench<TypeParam>;
   Bench bench(11);
