@@ -17,6 +17,7 @@ module launch_rules #(
   input  wire                  tile_left_i,        // one is still to be cast
   input  wire [COUNT_BITS-1:0] tile_pixels_i,      // of the next one, inside the picture
   input  wire                  cast_i,             // it is cast
+  input  wire [COUNT_BITS-1:0] cast_held_i,        // pixels that were held when that was decided
   input  wire [COUNT_BITS-1:0] held_i,             // pixels that somebody works on
   input  wire [COUNT_BITS-1:0] shadow_rays_i,      // in the ray pool
   input  wire [COUNT_BITS-1:0] shadow_to_come_i,   // most that kernels may still export
@@ -36,7 +37,7 @@ module launch_rules #(
   assign eye_possible_o = tile_left_i && in_round && held_then <= HELD_LIMIT[COUNT_BITS-1:0];
   always @(posedge clk_i)
     if (!rst_ni) round_q <= NO_TILE;
-    else if (cast_i) round_q <= (idle ? UNITS[ROUND_BITS-1:0] : round_q) - 1'b1;
+    else if (cast_i) round_q <= (cast_held_i == NONE ? UNITS[ROUND_BITS-1:0] : round_q) - 1'b1;
 
   // ---- Secondary rays.
   wire [COUNT_BITS-1:0] shadows = shadow_rays_i + shadow_to_come_i + shadow_i;

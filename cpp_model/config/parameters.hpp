@@ -15,6 +15,8 @@ enum class Subnormals : uint8_t { Ieee = 0, Flush = 1, None = 2 };
 enum class SlowUnit : uint8_t { Exact = 0, Newton2 = 1, Newton1 = 2, Newton0 = 3 };
 /// What chooses the next kernel, and what times the traverser. Each name has its class in sim/chip/.
 enum class PolicyName : uint8_t { Thesis = 0, Fill = 1 };
+/// Ledger: counts pixels, and decides at once; Counters: as rtl/controller.v.
+enum class ControllerName : uint8_t { Ledger = 0, Counters = 1 };
 enum class TileOrder : uint8_t { Rows = 0, Hilbert = 1 };
 /// How the modelled traverser keeps the boxes of a node: as numbers on a grid of the node, or as the floats they are.
 enum class NodeFormat : uint8_t { Compressed = 0, Exact = 1 };
@@ -66,6 +68,8 @@ enum class Shading : uint8_t { Kernel = 0, Traverser = 1 };
 // A beat is 128 bits, the width of the unit's ports: so 2 cycles a beat is a port of half that width.
 #define RAYPOOL_CHIP_PARAMETERS(CHIP, CHIP_PART) \
   CHIP(policy, PolicyName, PolicyName::Thesis, names("thesis", "fill"), "what chooses the next kernel") \
+  CHIP(controller, ControllerName, ControllerName::Ledger, names("ledger", "counters"), \
+       "what launches kernels: it counts pixels and decides at once, or rays and in three cycles (rtl/controller.v)") \
   CHIP(window_remedy, bool, true, on_or_off(), "eye rays of further tiles are cast while earlier ones are under way") \
   CHIP(launch_ahead, bool, true, on_or_off(), "a kernel is launched behind a running one, if it is worth it") \
   CHIP(held_limit, uint32_t, 512, integers(1, 1 << 20), "unfinished pixels at a time") \

@@ -37,6 +37,9 @@ class TileWalk {
   bool valid() const { return valid_; }       ///< one is offered
   const Tile& tile() const { return tile_; }  ///< this one; when none is left, the last one
 
+  /// A cycle in which nothing is taken changes nothing.
+  bool settled() const { return (valid_ || !busy_) && (!searching_ || (held_up_ && found_.count() == kAhead)); }
+
   /// The end of a cycle: what is offered is taken if `ready`.
   void clock(bool ready) {
     const bool taken = valid_ && ready, room = found_.count() < kAhead;
@@ -97,6 +100,7 @@ class TileWalk {
 
   // One step.
   void search(bool room) {
+    held_up_ = false;
     const uint32_t left = column_ * tile_width_, top = row_ * tile_height_;
     const bool beyond_right = left >= width_, below = top >= height_;
     if (sizing_) {
@@ -105,7 +109,8 @@ class TileWalk {
     }
     const bool outside = beyond_right || below;
     const bool found = !outside && level_ == 0;
-    if (found && !room) return;
+    held_up_ = found && !room;
+    if (held_up_) return;
     if (found) found_.push({left, top});
     if (curve_) {
       follow_curve(outside);
@@ -160,6 +165,7 @@ class TileWalk {
   Tile tile_;
   RequestQueue<Corner, kAhead> found_;
   bool searching_ = false, sizing_ = false;
+  bool held_up_ = false;                       // a tile is found that there is no room for
   uint32_t level_ = 0, column_ = 0, row_ = 0;  // of the square that is looked at; 0: one tile
   std::array<uint8_t, kLevels> quarters_{};    // [level] which one of the square around it; below level_ the last
   std::array<Turn, kLevels + 1> inner_{};      // [level] of the curve inside it

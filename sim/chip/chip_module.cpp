@@ -45,7 +45,7 @@ Chip::Chip(const sc_core::sc_module_name& name, const ChipOptions& options)
       rays_("ray_pool", options.configuration.chip, options.depth),
       intersections_("intersection_pool", options.configuration.chip, options.layout),
       frame_("frame_port", *options.frame),
-      controller_("controller", options_),
+      controller_(make_controller("controller", options_)),
       traverser_(make_traverser({*options.tracer, options.configuration.chip, options.device->units(), options.depth,
                                  secondary_kernel(options.depth, options.reflections) == RayKernel::CastSecondary,
                                  options.device->timed()})),
@@ -66,20 +66,20 @@ Chip::Chip(const sc_core::sc_module_name& name, const ChipOptions& options)
 
   frame_.clock(clock_.now);
   frame_.ledger(ledger_.records);
-  ledger_.controller(controller_.decisions);
+  ledger_.controller(controller_->decisions);
 
-  controller_.clock(clock_.now);
-  controller_.rays(rays_.controller);
-  controller_.intersections(intersections_.controller);
-  controller_.ledger(ledger_.records);
-  controller_.device(device_.launches);
+  controller_->clock(clock_.now);
+  controller_->rays(rays_.controller);
+  controller_->intersections(intersections_.controller);
+  controller_->ledger(ledger_.records);
+  controller_->device(device_.launches);
 
   traverser_->clock(clock_.now);
   traverser_->rays(rays_.traverser);
   traverser_->intersections(intersections_.traverser);
   traverser_->frame(frame_.traverser);
   traverser_->ledger(ledger_.records);
-  traverser_->controller(controller_.decisions);
+  traverser_->controller(controller_->decisions);
   traverser_->memory(memory_port_.turns);
 
   device_.clock(clock_.now);
@@ -87,8 +87,8 @@ Chip::Chip(const sc_core::sc_module_name& name, const ChipOptions& options)
   device_.rays(rays_.device);
   device_.intersections(intersections_.device);
   device_.frame(frame_.device);
-  device_.controller(controller_.decisions);
-  device_.kernel_events(controller_.kernel_events);
+  device_.controller(controller_->decisions);
+  device_.kernel_events(controller_->kernel_events);
   device_.kernel_events(ledger_.kernel_events);
   device_.kernel_events(traverser_->kernel_events);
 
@@ -99,7 +99,7 @@ Chip::Chip(const sc_core::sc_module_name& name, const ChipOptions& options)
 
 void Chip::watch_tiles() {
   tile_of_.resize(place(options_.width - 1, options_.height - 1) + 1);
-  controller_.on_cast = [this](uint32_t tile, const std::vector<uint32_t>& pixels) {
+  controller_->on_cast = [this](uint32_t tile, const std::vector<uint32_t>& pixels) {
     const uint32_t first = pixels.front();
     tile_of_[place(first & 0xffff, first >> 16)] = options_.tile_costs->cast(size32(pixels), counts());
     if (options_.visited_before && tile != next_tile_) traverser_->remember(options_.visited_before(tile));
@@ -111,12 +111,12 @@ void Chip::watch_tiles() {
 }
 
 size_t Chip::place(uint32_t x, uint32_t y) const {
-  const uint32_t columns = (options_.width + controller_.tile_width() - 1) / controller_.tile_width();
-  return size_t{y / controller_.tile_height()} * columns + x / controller_.tile_width();
+  const uint32_t columns = (options_.width + controller_->tile_width() - 1) / controller_->tile_width();
+  return size_t{y / controller_->tile_height()} * columns + x / controller_->tile_width();
 }
 
 void Chip::show_progress() {
-  options_.progress({static_cast<double>(ledger_.finished()) / controller_.pixels(), clock_.cycle(), rays_traced()});
+  options_.progress({static_cast<double>(ledger_.finished()) / controller_->pixels(), clock_.cycle(), rays_traced()});
 }
 
 ChipResult Chip::draw() {
@@ -132,7 +132,7 @@ ChipResult Chip::draw() {
 
   sc_core::sc_start();
   clock_.rethrow();
-  if (!controller_.finished()) {
+  if (!controller_->finished()) {
     throw ChipStalled(
         fmt::format("the chip is locked up: nothing is left to happen at cycle {}; {}", clock_.cycle(), describe()));
   }

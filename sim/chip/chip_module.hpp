@@ -36,7 +36,7 @@ class Chip : public sc_core::sc_module, public WatchedIf {
 
   uint64_t retired() override { return device_.instructions(); }
   uint64_t transfers() override { return rays_traced() + traverser_->counts().delivered + device_.transfers(); }
-  std::string describe() override { return controller_.describe() + "; " + device_.describe(); }
+  std::string describe() override { return controller_->describe() + "; " + device_.describe(); }
   void show_progress() override;
 
  private:
@@ -56,7 +56,7 @@ class Chip : public sc_core::sc_module, public WatchedIf {
   RayPool rays_;
   IntersectionPool intersections_;
   FramePort frame_;
-  Controller controller_;
+  std::unique_ptr<Controller> controller_;
   std::unique_ptr<Traverser> traverser_;
   DeviceHost device_;
   Monitor monitor_;

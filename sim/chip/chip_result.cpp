@@ -113,8 +113,8 @@ ChipResult Chip::collect() const {
   result.ray_counts = counts.rays;
   result.dropped_depth = rays_.dropped_depth() + counts.deepest;
   result.contributions = frame_.taken();
-  result.held_peak = controller_.held_peak();
-  result.kernels = controller_.kernels();
+  result.held_peak = controller_->held_peak();
+  result.kernels = controller_->kernels();
   result.ray_counts.count_left_out(
       result.kernels[RayKernel::CastSecondary].threads + result.kernels[RayKernel::CastSecondaryDirect].threads,
       secondary_kernel(options_.depth, options_.reflections) == RayKernel::CastSecondary, result.dropped_depth);
@@ -128,7 +128,7 @@ ChipResult Chip::collect() const {
 
   result.busy_cycles = device_.busy_cycles();
   result.time_utilisation = ratio(result.busy_cycles, result.cycles * options_.device->units());
-  result.resource_utilisation = controller_.resource_utilisation();
+  result.resource_utilisation = controller_->resource_utilisation();
   collect_units(result);
 
   collect_pools(result);

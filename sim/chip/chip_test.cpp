@@ -13,11 +13,13 @@ using test::FrameRun;
 
 struct Shape {
   uint32_t warps, lanes, units;
+  ControllerName controller = ControllerName::Ledger;
 };
 
 std::string shape_name(const testing::TestParamInfo<Shape>& shape) {
   return std::to_string(shape.param.warps) + "w" + std::to_string(shape.param.lanes) + "c" +
-         std::to_string(shape.param.units) + "u";
+         std::to_string(shape.param.units) + "u" +
+         (shape.param.controller == ControllerName::Counters ? "Counting" : "");
 }
 
 class EveryShape : public testing::TestWithParam<Shape> {};
@@ -29,6 +31,7 @@ TEST_P(EveryShape, DrawsEveryImageWithoutLosingARay) {
   for (const auto& [width, height, depth] : images) {
     SCOPED_TRACE(testing::Message() << width << "x" << height << " depth " << depth);
     FrameRun run(shape.warps, shape.lanes, shape.units, width, height, depth);
+    run.options.configuration.chip.controller = shape.controller;
     run.expect_conserved(run.go());
   }
 }
@@ -41,6 +44,7 @@ TEST_P(EveryShape, SurvivesFullPools) {
     for (const int rays : {512, 64, 1}) {
       SCOPED_TRACE(testing::Message() << packages << " intersections, " << rays << " rays");
       FrameRun run(shape.warps, shape.lanes, shape.units, rays == 1 ? 11 : 31, 23, 6, 30);
+      run.options.configuration.chip.controller = shape.controller;
       run.world.misses = run.world.blocked = 0;
       run.world.shadows = run.world.mirrors = 16;
       run.options.configuration.chip.intersection_pool_size = run.options.configuration.chip.held_limit = packages;
@@ -56,6 +60,7 @@ TEST_P(EveryShape, SurvivesFullPoolsWhenTheTraverserShades) {
     for (const int rays : {512, 64, 1}) {
       SCOPED_TRACE(testing::Message() << packages << " intersections, " << rays << " rays");
       FrameRun run(shape.warps, shape.lanes, shape.units, rays == 1 ? 11 : 31, 23, 6, 30);
+      run.options.configuration.chip.controller = shape.controller;
       run.world.misses = 0;
       run.world.shadows = run.world.mirrors = 16;
       ChipConfiguration& chip = run.options.configuration.chip;
@@ -77,6 +82,7 @@ TEST_P(EveryShape, SurvivesFullPoolsWhenRaysAreLeftOut) {
     for (const int rays : {512, 64, 1}) {
       SCOPED_TRACE(testing::Message() << rays << " rays" << (black ? ", black ones" : ""));
       FrameRun run(shape.warps, shape.lanes, shape.units, rays == 1 ? 11 : 31, 23, 6, 30);
+      run.options.configuration.chip.controller = shape.controller;
       run.world = {1, 0, 0, 9, rays == 64 ? 16 : 13, black};
       ChipConfiguration& chip = run.options.configuration.chip;
       chip.culling = true;
@@ -101,6 +107,7 @@ TEST_P(EveryShape, DrawsWithoutTheRemedyAndWithoutLaunchingAhead) {
   const Shape shape = GetParam();
   for (const bool remedy : {false, true}) {
     FrameRun run(shape.warps, shape.lanes, shape.units, 29, 23, 3);
+    run.options.configuration.chip.controller = shape.controller;
     run.options.configuration.chip.window_remedy = remedy;
     run.options.configuration.chip.launch_ahead = false;
     run.expect_conserved(run.go());
@@ -112,6 +119,13 @@ INSTANTIATE_TEST_SUITE_P(Chip, EveryShape,
                                          Shape{4, 4, 4}, Shape{1, 2, 4}, Shape{8, 8, 1}, Shape{8, 8, 2}, Shape{8, 8, 4},
                                          Shape{16, 32, 2}, Shape{32, 32, 1}, Shape{32, 32, 2}, Shape{32, 32, 4}),
                          shape_name);
+INSTANTIATE_TEST_SUITE_P(
+    CountingChip, EveryShape,
+    testing::Values(Shape{1, 1, 1, ControllerName::Counters}, Shape{1, 1, 4, ControllerName::Counters},
+                    Shape{4, 4, 2, ControllerName::Counters}, Shape{1, 2, 4, ControllerName::Counters},
+                    Shape{8, 8, 1, ControllerName::Counters}, Shape{8, 8, 4, ControllerName::Counters},
+                    Shape{32, 32, 2, ControllerName::Counters}),
+    shape_name);
 
 TEST_P(EveryShape, DrawsWithAnyPortsThresholdsAndBatches) {
   const Shape shape = GetParam();
@@ -119,6 +133,7 @@ TEST_P(EveryShape, DrawsWithAnyPortsThresholdsAndBatches) {
     for (const int threshold : {0, 1, 1000}) {
       SCOPED_TRACE(testing::Message() << overhead << " cycles, " << per_beat << " a beat, thresholds " << threshold);
       FrameRun run(shape.warps, shape.lanes, shape.units, 19, 11, 4);
+      run.options.configuration.chip.controller = shape.controller;
       ChipConfiguration& chip = run.options.configuration.chip;
       chip.ray_pool_overhead = chip.intersection_pool_overhead = overhead;
       chip.ray_pool_cycles_per_beat = chip.intersection_pool_cycles_per_beat = per_beat;
@@ -152,14 +167,16 @@ TEST(Chip, SurvivesPoolsSmallerThanAKernel) {
 }
 
 TEST(Chip, DrawsWhateverTheRandomDelays) {
-  for (uint32_t seed = 1; seed <= 24; ++seed) {
-    SCOPED_TRACE(testing::Message() << "seed " << seed);
-    FrameRun run(seed % 3 == 0 ? 2 : 8, seed % 2 == 0 ? 4 : 8, 1 << seed % 3, 37, 29, 1 + static_cast<int>(seed % 5),
-                 1 << seed % 9, seed);
-    run.world.shadows = 8 + static_cast<int>(seed % 9);
-    run.world.mirrors = 16 - static_cast<int>(seed % 7);
-    run.expect_conserved(run.go());
-  }
+  for (const ControllerName controller : {ControllerName::Ledger, ControllerName::Counters})
+    for (uint32_t seed = 1; seed <= 24; ++seed) {
+      SCOPED_TRACE(testing::Message() << "seed " << seed);
+      FrameRun run(seed % 3 == 0 ? 2 : 8, seed % 2 == 0 ? 4 : 8, 1 << seed % 3, 37, 29, 1 + static_cast<int>(seed % 5),
+                   1 << seed % 9, seed);
+      run.world.shadows = 8 + static_cast<int>(seed % 9);
+      run.world.mirrors = 16 - static_cast<int>(seed % 7);
+      run.options.configuration.chip.controller = controller;
+      run.expect_conserved(run.go());
+    }
 }
 
 TEST(Chip, GivesTheSameResultTwice) {

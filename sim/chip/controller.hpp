@@ -3,8 +3,8 @@
 //
 // Two rules keep the chip from locking up, whatever the policy (docs/chip.md has the argument): no more pixels are held
 // than the intersection pool has places for normal intersections, and a secondary kernel starts only if all shadow rays
-// and intersections that can exist then leave at least one place of the ray pool free. It decides without delay: a
-// kernel that it chooses in cycle c is offered in c+1.
+// and intersections that can exist then leave at least one place of the ray pool free. What is held is for its two
+// kinds to say, and when: LedgerController as the thesis may have meant it, CountingController as the Verilog does.
 #pragma once
 
 #include <array>
@@ -21,7 +21,6 @@
 #include "chip/chosen_tiles.hpp"
 #include "chip/interfaces.hpp"
 #include "machine/kernel_policy.hpp"
-#include "machine/launch_rules.hpp"
 #include "machine/tile_walk.hpp"
 #include "scene/native_renderer.hpp"
 
@@ -35,7 +34,6 @@ std::vector<PixelTile> along_walk(const Configuration& configuration, uint32_t w
 
 class Controller : public sc_core::sc_module, public DecisionIf, public KernelEventsIf {
  public:
-  SC_HAS_PROCESS(Controller);
   /// `options` must outlive the controller.
   Controller(const sc_core::sc_module_name& name, const ChipOptions& options);
 
@@ -53,7 +51,6 @@ class Controller : public sc_core::sc_module, public DecisionIf, public KernelEv
 
   void accepted(uint32_t unit) override;
   void kernel_ended(uint32_t unit) override;
-  void changed() override { clock->notify(decide_, Phase::Controller); }
 
   bool finished() const { return finished_; }
   /// Of the tiles that are cast.
@@ -69,7 +66,7 @@ class Controller : public sc_core::sc_module, public DecisionIf, public KernelEv
   uint32_t tile_width() const { return next_tile_.tile_width(); }
   uint32_t tile_height() const { return next_tile_.tile_height(); }
 
- private:
+ protected:
   struct GivenKernel {
     RayKernel kind;
     uint32_t threads;
@@ -77,33 +74,36 @@ class Controller : public sc_core::sc_module, public DecisionIf, public KernelEv
   };
 
   void start_of_simulation() override { changed(); }
-  void decide();
-  bool end_if_finished();
-  PolicyView view(bool ahead) const;
-  bool eye_possible() const;
-  uint32_t secondary_room() const;
-  /// Which normal intersections a secondary kernel would take: those of which there are more.
-  ImportKind secondary_import() const;
-  void launch(const Choice& choice);
-  LaunchCommand next_tile(uint32_t unit);
+  /// What proposes launches.
+  static std::unique_ptr<KernelPolicy> policy_of(const ChipOptions& options);
+  /// What the ledger of pixels says, or the controller's own count.
+  virtual uint32_t held() const = 0;
+  virtual uint32_t rays_to_come() const = 0;
+  void finish();
+  /// Gives the unit that is next the kernel for the next tile, or for intersections that it is promised. `held` pixels
+  /// were before.
+  void cast(uint32_t held);
+  void import(RayKernel kernel, ImportKind kind, uint32_t threads);
 
   const ChipOptions& options_;
   const ChipConfiguration& chip_;
   const uint32_t width_, height_;  // of the image
-  std::unique_ptr<KernelPolicy> policy_;
   RayKernel secondary_;
-  LaunchRules rules_;
-  sc_core::sc_event decide_;
+  ChosenTiles next_tile_;
+  std::vector<std::deque<GivenKernel>> given_;  // [unit] not ended, oldest first
+
+ private:
+  void give(RayKernel kernel, LaunchCommand command);
 
   uint64_t pixels_ = 0;
-  ChosenTiles next_tile_;
-
   bool finished_ = false;
   uint32_t held_peak_ = 0;
-  std::vector<std::deque<GivenKernel>> given_;  // [unit] not ended, oldest first
-  std::vector<uint64_t> ended_;                 // [unit] cycle in which the last one ended
+  std::vector<uint64_t> ended_;  // [unit] cycle in which the last one ended
   EnumArray<RayKernel, ChipResult::Kernel, kRayKernels> kernels_{};
   double thread_time_ = 0, thread_time_launchable_ = 0;
 };
+
+/// The controller that the configuration names.
+std::unique_ptr<Controller> make_controller(const sc_core::sc_module_name& name, const ChipOptions& options);
 
 }  // namespace raypool::chip

@@ -116,5 +116,15 @@ TEST(TemporalDecoupling, ChangesNothingWithPipelinedPortsAndATraverserThatShades
   expect_the_same_both_ways(around);
 }
 
+TEST(TemporalDecoupling, ChangesNothingWithAControllerThatCounts) {
+  ChipConfiguration around;
+  around.controller = ControllerName::Counters;
+  expect_the_same_both_ways(around);
+  around.policy = PolicyName::Fill;
+  around.shading = Shading::Traverser;
+  around.ray_pool_pipelined = around.intersection_pool_pipelined = true;
+  expect_the_same_both_ways(around);
+}
+
 }  // namespace
 }  // namespace raypool::chip

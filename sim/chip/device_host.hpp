@@ -33,9 +33,11 @@ class DeviceHost : public sc_core::sc_module, public LaunchIf {
 
   uint32_t units() const override { return units_; }
   bool can_launch() const override { return !pending_ && device_.outputs().launch_ready; }
+  bool could_launch() const override { return !pending_ && (awake_ ? ready_before_ : device_.outputs().launch_ready); }
   uint32_t next_unit() const override { return device_.outputs().launch_unit; }
   bool busy(uint32_t unit) const override { return given_[unit] > 0; }
   bool idle() const override { return given_in_all_ == 0 && device_.outputs().idle; }
+  uint16_t exports(uint32_t unit) const override { return device_.outputs().exports[unit]; }
   void launch(const LaunchCommand& command) override;
 
   uint64_t busy_cycles() const { return busy_cycles_; }  ///< in which a kernel ran, summed over the units

@@ -104,11 +104,15 @@ class LaunchIf : virtual public sc_core::sc_interface {
   virtual uint32_t units() const = 0;
   /// True if launch() may be called.
   virtual bool can_launch() const = 0;
+  /// The same, as it was at the beginning of this cycle; for the phase of the controller.
+  virtual bool could_launch() const = 0;
   /// The unit that would get the kernel; means something while can_launch().
   virtual uint32_t next_unit() const = 0;
   /// True if the unit runs a kernel, or one has been given to it and not begun.
   virtual bool busy(uint32_t unit) const = 0;
   virtual bool idle() const = 0;
+  /// UnitOutputs::exports of the unit.
+  virtual uint16_t exports(uint32_t unit) const = 0;
   /// Gives next_unit() a kernel, which it sees from the next cycle on. Not in the phase of the units.
   virtual void launch(const LaunchCommand& command) = 0;
 };
@@ -118,6 +122,11 @@ class DecisionIf : virtual public sc_core::sc_interface {
  public:
   /// Something has changed that may allow a launch, or end the run.
   virtual void changed() = 0;
+  /// A level of a pool has changed, for one that may decide on that alone.
+  virtual void level_changed() {}
+  /// A ray, or a contribution, of the unit has been taken at its port.
+  virtual void ray_left(uint32_t /*unit*/, bool /*shadow*/) {}
+  virtual void contribution_left(uint32_t /*unit*/) {}
 };
 
 /// Who follows what becomes of kernels. All in the phase of the units.

@@ -77,6 +77,7 @@ void PixelLedger::imported(uint32_t unit, uint32_t pixel) {
     if (kernel.imports_left == 0) continue;
     --kernel.imports_left;
     kernel.add(pixel);
+    for (int i = 0; i < controller.size(); ++i) controller[i]->level_changed();
     return;
   }
   throw std::runtime_error(fmt::format("compute unit {} imports a package that no kernel of it has asked for", unit));
@@ -106,9 +107,13 @@ void PixelLedger::ray_exported(uint32_t unit, const Ray& ray, bool kept) {
                       : (flags & kDepthMask) == 1 ? Export::EyeRay
                                                   : Export::SecondaryRay;
   attribute(unit, kind, pixel);
+  for (int i = 0; i < controller.size(); ++i) controller[i]->ray_left(unit, kind == Export::ShadowRay);
 }
 
-void PixelLedger::contribution_exported(uint32_t unit, uint32_t pixel) { attribute(unit, Export::Contribution, pixel); }
+void PixelLedger::contribution_exported(uint32_t unit, uint32_t pixel) {
+  attribute(unit, Export::Contribution, pixel);
+  for (int i = 0; i < controller.size(); ++i) controller[i]->contribution_left(unit);
+}
 
 void PixelLedger::attribute(uint32_t unit, Export kind, uint32_t pixel) {
   std::deque<Kernel>& kernels = kernels_[unit];

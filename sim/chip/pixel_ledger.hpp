@@ -28,7 +28,8 @@ class PixelLedger : public sc_core::sc_module, public LedgerIf, public KernelEve
   PixelLedger(const sc_core::sc_module_name& name, uint32_t units, uint32_t width, uint32_t height,
               bool overlap = false);
 
-  /// Is told when a kernel goes off record: held() or the rays to come may have fallen.
+  /// Is told when a kernel goes off record, so that held() or the rays to come may have fallen, and of what is imported
+  /// and exported.
   sc_core::sc_port<DecisionIf, 0, sc_core::SC_ZERO_OR_MORE_BOUND> controller{"controller"};
   /// Is told when a pixel is finished; may be empty.
   std::function<void(uint32_t pixel)> on_finished;

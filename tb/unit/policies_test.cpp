@@ -185,6 +185,7 @@ TYPED_TEST(LaunchRulesTest, AllowWhatTheirClassAllows) {
     unit.tile_left_i = !bench.one_of(8);
     unit.tile_pixels_i = 1 + around(std::min(TypeParam::kThreads, TypeParam::kLimit));
     unit.held_i = held;
+    unit.cast_held_i = held;
     unit.shadow_rays_i = around(chip.ray_pool_size);
     unit.shadow_i = around(chip.intersection_pool_size);
     unit.shadow_to_come_i =

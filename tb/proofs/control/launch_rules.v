@@ -12,7 +12,7 @@
 // @break launch_rules s/held_then <= HELD/held_i <= HELD/
 // @break launch_rules s/held_then <= HELD/held_then < HELD/
 // @break launch_rules s/idle \|\| round_q/round_q/
-// @break launch_rules s/\(idle \? UNITS\[ROUND_BITS-1:0\] : round_q\)/UNITS[ROUND_BITS-1:0]/
+// @break launch_rules s/\(cast_held_i == NONE \? UNITS\[ROUND_BITS-1:0\] : round_q\)/UNITS[ROUND_BITS-1:0]/
 `default_nettype none
 module check #(parameter WINDOW_REMEDY = 1, parameter UNITS = 2) (
   input wire clk_i, tile_left, cast, secondary, shade, exported, dropped, traced, input wire [4:0] finished, pixels,
@@ -26,7 +26,7 @@ module check #(parameter WINDOW_REMEDY = 1, parameter UNITS = 2) (
   launch_rules #(.CONTENTS(4), .UNITS(UNITS), .RAY_POOL_SIZE(RAYS), .INTERSECTION_POOL_SIZE(INTERSECTIONS),
                  .HELD_LIMIT(HELD), .WINDOW_REMEDY(WINDOW_REMEDY), .COUNT_BITS(BITS)) dut (
     .clk_i(clk_i), .rst_ni(rst_n), .tile_left_i(tile_left), .tile_pixels_i({1'b0, pixels}), .cast_i(cast),
-    .held_i(held_q), .shadow_rays_i(rays_q), .shadow_to_come_i(to_come_q), .shadow_i(shadow_q),
+    .cast_held_i(held_q), .held_i(held_q), .shadow_rays_i(rays_q), .shadow_to_come_i(to_come_q), .shadow_i(shadow_q),
     .eye_possible_o(eye_possible), .secondary_room_o(room));
 
   // The chip around it: one thing of each kind in a cycle.
