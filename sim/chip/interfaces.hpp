@@ -38,11 +38,12 @@ class MemoryIf : virtual public sc_core::sc_interface {
 /// The memory port, for the traverser, whose lines take turns with the device's requests: who asks first goes first.
 class MemoryTurnsIf : virtual public sc_core::sc_interface {
  public:
-  /// Keeps the port for so many beats as soon as it is free, not before `cycle`. Returns the first cycle. Calls come in
-  /// the order of their cycles.
+  /// Keeps the port for so many beats as soon as it is free, not before `cycle`: 4 for a line, 1 or 2 for quadwords
+  /// that are written. Returns the first cycle. Calls come in the order of their cycles.
   virtual uint64_t turn(uint64_t cycle, uint32_t beats) = 0;
-  /// Of a line that begins then and could end then: the cycle of its last beat, behind those of the lines before.
-  virtual uint64_t line(uint64_t start, uint64_t end) = 0;
+  /// After a line's turn, of this line, which could end then: the cycle of its last beat, behind those of the lines
+  /// before.
+  virtual uint64_t line(uint64_t end) = 0;
 };
 
 /// Who uses the memory port beside the device, and may be behind it in time.

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <stdexcept>
 
 #include "isa/isa.hpp"
@@ -10,18 +9,18 @@
 namespace raypool::chip {
 
 MemoryPort::MemoryPort(const sc_core::sc_module_name& name, const ChipConfiguration& chip)
-    : sc_module(name), cycles_per_beat_(chip.memory_cycles_per_beat), place_free_from_(chip.memory_queue) {
+    : sc_module(name), port_(chip, {}) {
   device.bind(*this);
   turns.bind(*this);
 }
 
-// Nothing that comes later can change when and in which order requests are served: so each goes to the memory at once.
+// The memory takes everything at once, so nothing that comes later can change when and in which order requests are
+// served: each goes to the memory as soon as it comes.
 void MemoryPort::request(const MemoryRequest& request) {
   for (int i = 0; i < others.size(); ++i) others[i]->catch_up(clock->cycle());
-  const uint64_t start = std::max(free_from_, clock->cycle());
-  place_free_from_[place_] = start + 1;
-  place_ = (place_ + 1) % place_free_from_.size();
-  room_from_ = place_free_from_[place_];
+  port_.request(clock->cycle(), request);
+  const uint64_t start = serve();
+  room_from_ = port_.room_from();
   if (request.write) {
     write(request, start);
   } else {
@@ -29,11 +28,15 @@ void MemoryPort::request(const MemoryRequest& request) {
   }
 }
 
+uint64_t MemoryPort::serve() {
+  const uint64_t start = port_.start();
+  port_.serve(start);
+  port_.taken(start + 1);
+  return start;
+}
+
 // A write is posted: nobody waits for its end.
 void MemoryPort::write(const MemoryRequest& request, uint64_t start) {
-  ++writes_;
-  free_from_ = start + cycles_per_beat_;
-  written_[unit_of_id(request.id)] = start + 1;
   for (size_t i = 0; i < kBeatBytes; ++i) {
     enable_[i] = (request.mask >> (i / 4) & 1) != 0 ? TLM_BYTE_ENABLED : TLM_BYTE_DISABLED;
   }
@@ -44,29 +47,26 @@ void MemoryPort::write(const MemoryRequest& request, uint64_t start) {
 }
 
 void MemoryPort::read(const MemoryRequest& request, uint64_t start) {
-  ++reads_;
-  free_from_ = start + kLineBeats * cycles_per_beat_;
-  ++reading_[unit_of_id(request.id)];
   payload_.set_byte_enable_ptr(nullptr);
   payload_.set_byte_enable_length(0);
-  Line line{0, request.id, 0, {}};
-  const uint64_t end = transport(tlm::TLM_READ_COMMAND, request.address, line.data.data(), kLineBytes, start);
-  line.due = this->line(start, end) - (kLineBeats - 1) * cycles_per_beat_;
-  lines_.push_back(line);
-  response_due_ = lines_.front().due;
+  std::array<Beat, kLineBeats> data{};
+  port_.line(transport(tlm::TLM_READ_COMMAND, request.address, data.data(), kLineBytes, start), data);
+  response_due_ = port_.response_due();
 }
 
 uint64_t MemoryPort::turn(uint64_t cycle, uint32_t beats) {
-  const uint64_t start = std::max(free_from_, cycle);
-  free_from_ = start + beats * cycles_per_beat_;
-  other_beats_ += beats;
+  if (beats != kLineBeats && beats > 2) throw std::logic_error("a turn is for a line, or for one or two quadwords");
+  port_.request(cycle, raypool::MemoryPort::TreeRequest{beats != kLineBeats, beats == 2, 0, {}});
+  const uint64_t start = serve();
+  if (port_.waits()) serve();
   return start;
 }
 
-// Beats are apart, and lines in order, however fast the memory is.
-uint64_t MemoryPort::line(uint64_t start, uint64_t end) {
-  last_beat_ = std::max(end, std::max(last_beat_, start) + kLineBeats * cycles_per_beat_);
-  return last_beat_;
+// The traverser's memory keeps its data to itself.
+uint64_t MemoryPort::line(uint64_t end) {
+  const uint64_t last = port_.line(end, {});
+  for (uint32_t i = 0; i < kLineBeats; ++i) port_.traverser_response();
+  return last;
 }
 
 // Returns the cycle in which it is done.
@@ -96,15 +96,9 @@ uint64_t MemoryPort::transport(tlm::tlm_command command, uint32_t address, void*
 }
 
 void MemoryPort::response(MemoryResponse& response) {
-  Line& line = lines_.front();
-  if (line.due != clock->cycle()) throw std::logic_error("the device was not clocked when a memory response came");
-  response = {line.id, line.beat, line.data[line.beat]};
-  line.due += cycles_per_beat_;
-  if (++line.beat == kLineBeats) {
-    --reading_[unit_of_id(line.id)];
-    lines_.pop_front();
-  }
-  response_due_ = lines_.empty() ? kNever : lines_.front().due;
+  if (response_due_ != clock->cycle()) throw std::logic_error("the device was not clocked when a memory response came");
+  response = port_.response();
+  response_due_ = port_.response_due();
 }
 
 }  // namespace raypool::chip

@@ -32,7 +32,7 @@ class ModelledTraverser : public Traverser, private traverser::MemoryTurns {
 
  private:
   uint64_t turn(uint64_t cycle, uint32_t beats) override { return memory->turn(cycle, beats); }
-  uint64_t line(uint64_t start, uint64_t end) override { return memory->line(start, end); }
+  uint64_t line(uint64_t /*start*/, uint64_t end) override { return memory->line(end); }
 
   void step();
   /// Clocks the machine up to this cycle, or until a ray leaves it. True if one does.

@@ -23,8 +23,8 @@ TEST(FilesNamed, AreWhatTheSimulatorSaysWhenItStops) {
 
 TEST(Hierarchy, IsThatOfTheVerilog) {
   const Hierarchy hierarchy("rtl");
-  EXPECT_EQ(hierarchy.parents("event_counter"),
-            (std::set<std::string>{"frame_port", "intersection_pool", "performance_counters", "ray_pool"}));
+  EXPECT_EQ(hierarchy.parents("event_counter"), (std::set<std::string>{"frame_port", "intersection_pool", "memory_port",
+                                                                       "performance_counters", "ray_pool"}));
   EXPECT_EQ(hierarchy.parents("data_cache"), std::set<std::string>{"mem_alu"});
   EXPECT_EQ(hierarchy.parents("int_alu"), std::set<std::string>{"compute_unit"}) << "instantiated in an included file";
   EXPECT_EQ(hierarchy.parents("round_robin"),

@@ -68,3 +68,10 @@ raypool_pool_models(controller_test controller
 INTERSECTION_THRESHOLD;BATCH;TRAVERSER_SHADES;CULLING;TILE_ORDER"
   1_64_512_512_512_1_1_0_48_8_64_0_0_0 4_64_512_512_512_1_1_1_48_8_256_1_1_1 1_1_1_1_1_1_1_0_48_8_1_0_0_0
   2_4_7_5_4_0_1_1_48_8_3_0_1_0 4_2_3_9_6_1_0_0_2_1_4_0_0_1 2_128_40_16_16_1_1_1_48_8_600_0_1_1)
+
+# The memory's port. Without LINES, they are enough for LATENCY.
+raypool_pool_bench(memory_port_test)
+raypool_pool_models(memory_port_test memory_port "QUEUE;TRAVERSER_QUEUE;CYCLES_PER_BEAT;LATENCY"
+  8_32_2_120 1_1_1_6 3_2_3_12 5_3_64_195 2_64_2_1000 8_8_1_50)
+raypool_pool_models(memory_port_test memory_port "QUEUE;TRAVERSER_QUEUE;CYCLES_PER_BEAT;LATENCY;LINES"
+  4_4_1_120_1 2_5_3_40_2 64_3_2_120_5)
