@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <utility>
 
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #define STB_IMAGE_WRITE_STATIC
@@ -108,10 +109,13 @@ ImageDifference compare(const FrameBuffer& a, const FrameBuffer& b) {
   }
   const std::vector<uint8_t> pa = to_rgb8(a), pb = to_rgb8(b);
   double squares = 0;
+  bool changed = false;
   for (size_t i = 0; i < pa.size(); ++i) {
     const int difference = std::abs(pa[i] - pb[i]);
     result.largest = std::max(result.largest, difference);
     squares += difference * difference;
+    changed |= difference != 0;
+    if (i % 3 == 2) result.visible += std::exchange(changed, false);
   }
   result.psnr = squares == 0 ? INFINITY : 10 * std::log10(255.0 * 255.0 * pa.size() / squares);
   return result;

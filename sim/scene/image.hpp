@@ -58,9 +58,10 @@ std::vector<uint8_t> encode_png(const FrameBuffer& frame);
 void write_png(const FrameBuffer& frame, const std::string& path);
 
 struct ImageDifference {
-  uint64_t pixels = 0;  ///< that differ in any accumulator
-  double psnr = 0;      ///< of the 8-bit pictures, dB; infinity when they are equal
-  int largest = 0;      ///< largest 8-bit difference
+  uint64_t pixels = 0;   ///< that differ in any accumulator
+  uint64_t visible = 0;  ///< that differ in the 8-bit pictures
+  double psnr = 0;       ///< of the 8-bit pictures, dB; infinity when they are equal
+  int largest = 0;       ///< largest 8-bit difference
 };
 /// Throws InputError when the sizes differ.
 ImageDifference compare(const FrameBuffer& a, const FrameBuffer& b);

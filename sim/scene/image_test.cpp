@@ -136,6 +136,7 @@ TEST(Difference, CountsPixelsAndMeasuresTheWorst) {
   b.add(contribution(3, 3, 1e-9f, 0, 0));
   const ImageDifference difference = compare(a, b);
   EXPECT_EQ(difference.pixels, 2u);
+  EXPECT_EQ(difference.visible, 1u);
   EXPECT_EQ(difference.largest, 255);
   EXPECT_NEAR(difference.psnr, 10 * std::log10(48.0), 1e-9);
   EXPECT_THROW(compare(a, FrameBuffer(3, 4)), InputError);

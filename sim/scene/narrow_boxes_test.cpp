@@ -46,7 +46,7 @@ void compare(const Traversal& floats, const Traversal& narrow, const RayQuery& r
 /// Hard rays (test_traversal.hpp), and what becomes of them when directions are very long or short, nearly or wholly
 /// parallel to an axis, subnormal, and origins move by some units in the last place.
 std::vector<RayQuery> harder_rays(const Scene& scene, int count, uint32_t seed) {
-  std::vector<RayQuery> rays = test::hard_rays(scene, count, seed);
+  std::vector<RayQuery> rays = hard_rays(scene, count, seed);
   std::mt19937 random(seed);
   const auto roll = [&](uint32_t below) { return static_cast<uint32_t>(random() % below); };
   for (RayQuery& ray : rays) {
@@ -64,26 +64,6 @@ std::vector<RayQuery> harder_rays(const Scene& scene, int count, uint32_t seed) 
     if (ray.limit != kInfinity) ray.limit = static_cast<float>(std::ldexp(static_cast<double>(ray.limit), -scale));
   }
   return rays;
-}
-
-/// Triangles of all sizes within a cube, at a place and of a scale.
-Scene soup(uint32_t seed, int triangles, float scale, const Vec3& at) {
-  std::mt19937 random(seed);
-  const auto uniform = [&](float low, float high) { return std::uniform_real_distribution<float>(low, high)(random); };
-  std::vector<std::array<Vec3, 3>> corners;
-  for (int i = 0; i < triangles; ++i) {
-    const Vec3 first{uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)};
-    const float size = std::ldexp(1.0f, -static_cast<int>(random() % 8));
-    std::array<Vec3, 3> triangle{first, first, first};
-    for (int axis = 0; axis < 3; ++axis) {
-      const bool flat = random() % 4 == 0;  // in the plane of an axis
-      for (int corner = 1; corner < 3; ++corner) triangle[corner][axis] += flat ? 0 : size * uniform(-1, 1);
-      for (Vec3& corner : triangle) corner[axis] = corner[axis] * scale + at[axis];
-    }
-    corners.push_back(triangle);
-    if (random() % 8 == 0) corners.push_back(triangle);  // a tie
-  }
-  return test::scene_of(corners);
 }
 
 class NarrowHits : public testing::TestWithParam<uint32_t> {
@@ -133,7 +113,7 @@ TEST_P(NarrowHits, OfNeedlesSeenEdgeOn) {
       const auto in_plane = [&] { return centre + direction * uniform(0, 4) + side * uniform(-1, 1); };
       needles.push_back({in_plane(), in_plane(), in_plane()});
     }
-    const Traversal floats(test::scene_of(needles)), narrow = raypool::narrow(floats, GetParam());
+    const Traversal floats(scene_of(needles)), narrow = raypool::narrow(floats, GetParam());
     Outcome outcome;
     for (int i = 0; i < 1500; ++i)
       compare(floats, narrow, {centre + side * uniform(-1, 1), direction, kInfinity}, outcome);
@@ -159,7 +139,7 @@ TEST_P(NarrowHits, InFacesOfBoxes) {
         triangles.push_back({point(along, 0, 0), point(along, 3, 0), point(along, 0, 3)});
         triangles.push_back({point(along, 3, 0), point(along, 3, 3), point(along, 0, 3)});
       }
-      const Traversal floats(test::scene_of(triangles)), narrow = raypool::narrow(floats, GetParam());
+      const Traversal floats(scene_of(triangles)), narrow = raypool::narrow(floats, GetParam());
       for (const float from : {-1.0f, 0.0f, 7.0f, 7.5f, 19.0f, 22.0f}) {
         for (const float a : {0.0f, 1.0f, 1.5f, 3.0f}) {
           for (const float b : {0.0f, 0.5f, 1.5f, 3.0f}) {
@@ -184,7 +164,7 @@ INSTANTIATE_TEST_SUITE_P(Bits, NarrowHits, testing::Range<uint32_t>(kLeastBoxBit
 TEST(NarrowBoxes, FewerBitsVisitMore) {
   const Scene scene = make_room(0.05);
   const Traversal floats(scene);
-  std::vector<RayQuery> rays = test::hard_rays(scene, 3000, 11);
+  std::vector<RayQuery> rays = hard_rays(scene, 3000, 11);
   const auto visits = [&](uint32_t bits) {
     Traversal traversal = floats;
     traversal.compress_nodes(bits);

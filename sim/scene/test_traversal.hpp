@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bits.hpp"
+#include "scene/hard_rays.hpp"
 #include "scene/mesh_builder.hpp"
 #include "scene/traversal.hpp"
 
@@ -21,19 +22,6 @@ inline bool same(const Hit& a, const Hit& b) {
          a.triangle == b.triangle && a.normal == b.normal;
 }
 
-/// Triangles on z = 0 .. with one material.
-inline Scene scene_of(const std::vector<std::array<Vec3, 3>>& triangles) {
-  Scene scene;
-  scene.materials.resize(1);
-  for (const auto& triangle : triangles) {
-    const auto first = size32(scene.vertices);
-    scene.vertices.insert(scene.vertices.end(), triangle.begin(), triangle.end());
-    scene.triangles.push_back({first, first + 1, first + 2});
-    scene.triangle_materials.push_back(0);
-  }
-  return scene;
-}
-
 /// A closed ball with vertices and edges in the coordinate planes, poles of many triangles, at `centre`.
 inline Scene ball(const Vec3d& centre, int around) {
   Scene scene;
@@ -41,55 +29,6 @@ inline Scene ball(const Vec3d& centre, int around) {
   mesh.add_material("grey", {0.5f, 0.5f, 0.5f}, {});
   mesh.sphere(centre, 1, around);
   return scene;
-}
-
-/// Rays that are hard to get right: through vertices, along edges, in the planes of triangles and
-/// boxes, axis-parallel, and plain ones.
-inline std::vector<RayQuery> hard_rays(const Scene& scene, int count, uint32_t seed) {
-  std::mt19937 random(seed);
-  const Bounds bounds = scene.bounds();
-  auto uniform = [&](float low, float high) { return std::uniform_real_distribution<float>(low, high)(random); };
-  auto point = [&] {
-    return Vec3{uniform(bounds.lower.x, bounds.upper.x), uniform(bounds.lower.y, bounds.upper.y),
-                uniform(bounds.lower.z, bounds.upper.z)};
-  };
-  auto corner = [&](int k) { return scene.corner(random() % scene.triangles.size(), k); };
-  std::vector<RayQuery> rays;
-  for (int i = 0; i < count; ++i) {
-    RayQuery ray{point(), {}, kInfinity};
-    switch (i % 6) {
-      case 0:
-        ray.direction = point() - ray.origin;
-        break;
-      case 1:
-        ray.direction = corner(i % 3) - ray.origin;
-        break;
-      case 2: {  // along an edge, starting before it
-        const size_t t = random() % scene.triangles.size();
-        const Vec3 edge = scene.corner(t, 1) - scene.corner(t, 0);
-        ray = {scene.corner(t, 0) - edge * 2.0f, edge, kInfinity};
-        break;
-      }
-      case 3:
-        ray.direction[static_cast<int>(random() % 3)] = random() % 2 == 0 ? 1.0f : -1.0f;
-        break;
-      case 4:  // axis-parallel, from a coordinate of a vertex
-        ray.origin[static_cast<int>(random() % 3)] = corner(0)[static_cast<int>(random() % 3)];
-        ray.origin[i / 6 % 3] = corner(1)[i / 6 % 3];
-        ray.direction[static_cast<int>(random() % 3)] = -2.0f;
-        break;
-      default:  // in the plane of a triangle, nearly
-      {
-        const size_t t = random() % scene.triangles.size();
-        const Vec3 a = scene.corner(t, 0), b = scene.corner(t, 1), c = scene.corner(t, 2);
-        ray.direction = (b - a) * uniform(-1, 1) + (c - a) * uniform(-1, 1);
-        ray.origin = a - ray.direction * uniform(0, 20);
-      }
-    }
-    if (i % 5 == 0) ray.limit = uniform(0, 3);
-    rays.push_back(ray);
-  }
-  return rays;
 }
 
 struct Item {

@@ -15,6 +15,13 @@ namespace {
 
 #include "scene/triangle_test.hpp"
 
+/// The triangles of a leaf as engines test them. TriangleTest is another.
+struct EngineTriangles {
+  bool operator()(const PreparedRay& ray, const TriangleBlock& block, Candidate& best) const {
+    return intersect_block(ray, block, best);
+  }
+};
+
 /// The boxes of a tree, in single precision, as the walk below asks a ray for them. NarrowBoxes is another.
 class FloatBoxes {
  public:
@@ -67,9 +74,9 @@ Hit finish(const PreparedRay& ray, const Candidate& best) {
 }
 
 /// `ray` is valid and the tree not empty.
-template <bool kAny, typename Boxes>
+template <bool kAny, typename Boxes, typename Triangles = EngineTriangles>
 bool traverse(const Bvh& bvh, const PreparedRay& ray, Boxes boxes, Candidate& best, TraversalCounts* counts,
-              VisitList* visits) {
+              VisitList* visits, const Triangles& test = {}) {
   struct Entry {
     uint32_t child;
     typename Boxes::Time t;
@@ -91,7 +98,7 @@ bool traverse(const Bvh& bvh, const PreparedRay& ray, Boxes boxes, Candidate& be
       if (visits != nullptr) visits->push_back({block.first, static_cast<uint8_t>(block.count), 0, 0});
       ++blocks;
       triangles += block.count;
-      if (!intersect_block(ray, block, best)) continue;
+      if (!test(ray, block, best)) continue;
       found = true;
       if (kAny) break;
       boxes.found(best);
@@ -160,6 +167,9 @@ void Traversal::set_bvh(Bvh bvh) {
 template <bool kAny>
 bool Traversal::walk(const RayQuery& query, const PreparedRay& ray, Candidate& best, TraversalCounts* counts,
                      VisitList* visits) const {
+  if (triangle_test_) {
+    return traverse<kAny>(bvh_, ray, FloatBoxes(bvh_, ray), best, counts, visits, *triangle_test_);
+  }
   if (counts == nullptr && visits == nullptr) {
     const Walk& fast = walks().back();
     return (kAny ? fast.any : fast.nearest)(wide_, ray, best, nullptr);

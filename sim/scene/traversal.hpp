@@ -9,12 +9,14 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "config/configuration.hpp"
 #include "machine/compute_unit.hpp"
 #include "scene/bvh.hpp"
 #include "scene/compressed_node.hpp"
+#include "scene/narrow_triangles.hpp"
 #include "scene/prepared_ray.hpp"
 #include "scene/wide_bvh.hpp"
 
@@ -74,6 +76,9 @@ class Traversal {
   /// Makes every box of bvh() what a node of 64 bytes has of it (compressed_node.hpp): no answer changes, visits do.
   /// `box_bits`, 6 .. 16: boxes are then tested in integers of so many bits (narrow_boxes.hpp); 0: in floats.
   void compress_nodes(uint32_t box_bits = 0);
+  /// From now on nearest() and occluded() test triangles so, whoever asks for visits or not, but for those who ask for
+  /// WideVisits; boxes are in floats.
+  void set_triangle_test(const TriangleTest& test) { triangle_test_ = test; }
   /// Replaces the tree by another over the same triangles; no answer changes. For tests.
   void set_bvh(Bvh bvh);
   /// The nodes whose boxes are tested in integers; none if they are not.
@@ -92,6 +97,7 @@ class Traversal {
   WideBvh wide_;
   std::vector<CompressedNode> compressed_;
   uint32_t box_bits_ = 0;
+  std::optional<TriangleTest> triangle_test_;
 };
 
 /// The traverser of the chip and of the native renderer: packages in, packages out. Safe to use from several threads.
@@ -120,6 +126,7 @@ class Tracer {
   bool reflects(uint32_t material) const { return reflecting_.at((material - material_base_) / kMaterialBytes); }
 
   const Traversal& traversal() const { return traversal_; }
+  void set_triangle_test(const TriangleTest& test) { traversal_.set_triangle_test(test); }
 
  private:
   template <typename... Told>

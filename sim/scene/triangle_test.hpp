@@ -23,6 +23,24 @@ inline bool own_box_interval(const PreparedRay& ray, const TriangleBlock& block,
   return near <= far;
 }
 
+/// Where the ray meets the triangle's plane at t, and hits the triangle, it becomes the candidate if it is one of the
+/// ray's hits, nearer than the best, or as near with a lower number. The candidate's u and v are left to the caller.
+inline bool take_if_nearer(const PreparedRay& ray, const TriangleBlock& block, unsigned lane, float t,
+                           Candidate& best) {
+  float near = 0, far = 0;
+  if (!(t > 0) || !own_box_interval(ray, block, lane, near, far)) return false;
+  t = smaller(larger(t, near), far);
+  const auto ray_t = static_cast<float>(static_cast<double>(t) * ray.t_scale);
+  if (!(ray_t > 0 && ray_t < ray.limit)) return false;
+  const uint32_t triangle = block.triangles[lane];
+  if (!(t < best.t || (t == best.t && triangle < best.triangle))) return false;
+  best.t = t;
+  best.triangle = triangle;
+  best.block = &block;
+  best.lane = lane;
+  return true;
+}
+
 /// Finishes a triangle whose edge functions agree in sign; true when it becomes the candidate.
 inline bool accept(const PreparedRay& ray, const TriangleBlock& block, unsigned lane, double u, double v, double w,
                    Candidate& best) {
@@ -39,14 +57,9 @@ inline bool accept(const PreparedRay& ray, const TriangleBlock& block, unsigned 
   if (std::fabs(sum) < kCancelled * (std::fabs(u * z[0]) + std::fabs(v * z[1]) + std::fabs(w * z[2]))) {
     exact_t = plane_t(ray, block, lane);
   }
-  float t = static_cast<float>(exact_t), near = 0, far = 0;
-  if (!(t > 0) || !own_box_interval(ray, block, lane, near, far)) return false;
-  t = smaller(larger(t, near), far);
-  const auto ray_t = static_cast<float>(static_cast<double>(t) * ray.t_scale);
-  if (!(ray_t > 0 && ray_t < ray.limit)) return false;
-  const uint32_t triangle = block.triangles[lane];
-  if (!(t < best.t || (t == best.t && triangle < best.triangle))) return false;
-  best = {t, triangle, v / determinant, w / determinant, &block, lane};
+  if (!take_if_nearer(ray, block, lane, static_cast<float>(exact_t), best)) return false;
+  best.u = v / determinant;
+  best.v = w / determinant;
   return true;
 }
 

@@ -2,7 +2,6 @@
 // class, all outputs in every cycle, with stalls. Boxes and rays are made so that they nearly touch.
 #include "machine/box_pipe.hpp"
 
-#include <gmp.h>
 #include <gtest/gtest.h>
 #include <verilated.h>
 
@@ -17,42 +16,12 @@
 #include "Vbox_pipe_7.h"
 #include "config/configuration.hpp"
 #include "unit/clocked.hpp"
+#include "unit/exact_rational.hpp"
 
 namespace raypool::bench {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-/// A rational number.
-class Exact {
- public:
-  Exact(double value = 0) {  // NOLINT(google-explicit-constructor)
-    mpq_init(q_);
-    mpq_set_d(q_, value);
-  }
-  Exact(const Exact& other) {
-    mpq_init(q_);
-    mpq_set(q_, other.q_);
-  }
-  Exact& operator=(const Exact& other) {
-    if (this != &other) mpq_set(q_, other.q_);
-    return *this;
-  }
-  ~Exact() { mpq_clear(q_); }
-  friend Exact operator+(const Exact& a, const Exact& b) { return made(mpq_add, a, b); }
-  friend Exact operator-(const Exact& a, const Exact& b) { return made(mpq_sub, a, b); }
-  friend Exact operator/(const Exact& a, const Exact& b) { return made(mpq_div, a, b); }
-  friend bool operator<(const Exact& a, const Exact& b) { return mpq_cmp(a.q_, b.q_) < 0; }
-
- private:
-  template <typename Operation>
-  static Exact made(Operation operation, const Exact& a, const Exact& b) {
-    Exact result;
-    operation(result.q_, a.q_, b.q_);
-    return result;
-  }
-  mpq_t q_;
-};
 
 struct RayWords {
   float origin[3], direction[3], limit;

@@ -37,6 +37,10 @@ raypool_pool_bench(box_pipe_test)
 target_link_libraries(box_pipe_test PRIVATE ${GMP_LIBRARY})
 raypool_pool_models(box_pipe_test box_pipe "BITS" 6 7 10 12 16)
 
+# The edges of its triangle test: the class alone, against the same oracle.
+raypool_pool_bench(triangle_edges_test)
+target_link_libraries(triangle_edges_test PRIVATE ${GMP_LIBRARY})
+
 # What the controller decides with.
 raypool_pool_bench(policies_test)
 raypool_pool_models(policies_test thesis_policy
