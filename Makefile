@@ -132,7 +132,7 @@ UNIT_OF_ENGINE := $(if $(filter rtl lockstep,$(ENGINE)),$(UNIT),true)
 .PHONY: help sim fidelity fit compare run cosim configurations mutants faults unit test lint format bench clean
 .PHONY: setup-% program configured-%
 .PHONY: numerics-long proofs synth synth-replay synth-prove growth numerics significands extremes isa diagrams quoted
-.PHONY: package sweep report bench-native pareto boxes synth-module
+.PHONY: package sweep report bench-native pareto boxes triangles synth-module
 
 help: ## this list
 	@echo 'raypool: a ray-tracing GPU to render on, measure, verify and synthesise'
@@ -165,7 +165,7 @@ help: ## this list
 	@echo 'variables of make pareto:  those of the frame, OUT=FOLDER  JOBS=N: blocks that are mapped at a time'
 	@echo '  MACHINES="24 20-flush 16-newton1-fit ...": only these; what one chooses among if not given'
 	@echo 'variables of make bench-native:  SCENE  SIZE  DEPTH  VIEW  DETAIL and those of the camera  THREADS=N'
-	@echo 'variables of make boxes:  SCENE  SIZE  DEPTH  VIEW  DETAIL and those of the camera'
+	@echo 'variables of make boxes, triangles:  SCENE  SIZE  DEPTH  VIEW  DETAIL and those of the camera'
 	@echo 'variables of make fit:  those of the frame, and OUT=FILE for the configuration'
 	@echo '  SLOWER=N%: $(SLOWER) if not given  AREA=1: what each change saves in area'
 	@echo '  POWER=1: area, and timing and power before and after'
@@ -320,6 +320,10 @@ significands: setup-sim program ## what floats of 11 to 24 bits do to SCENE's pi
 
 boxes: setup-sim program ## boxes in integers of 16 to 6 bits: nodes and triangles that a ray of SCENE tests
 	@$(RAYPOOL) boxes --scene "$$SCENE" --size "$$SIZE" --depth "$$DEPTH" $${VIEW:+--view "$$VIEW"} $(LOOK) \
+	  $${DETAIL:+--detail "$$DETAIL"}
+
+triangles: setup-sim program ## triangle tests of 53 to 24 bits: what they do to SCENE's hits and picture, to seams
+	@$(RAYPOOL) triangles --scene "$$SCENE" --size "$$SIZE" --depth "$$DEPTH" $${VIEW:+--view "$$VIEW"} $(LOOK) \
 	  $${DETAIL:+--detail "$$DETAIL"}
 
 extremes: setup-sim program ## hard cases in every arithmetic mode, on every engine: MODE

@@ -45,7 +45,8 @@ sim=(sim cornell --engine native --size 8x8 --depth 1)
 
 for command in --help kernels "kernels saxpy" isa "isa --verilog" "config 4w4c" "config 4w4c --json" \
   "asm $folder/a.asm" "disasm $folder/a.hex" \
-  "scene cornell" "hits cornell --size 4x4" "boxes cornell --size 4x4 --quiet" "errors --grid 2" configurations \
+  "scene cornell" "hits cornell --size 4x4" "boxes cornell --size 4x4 --quiet" \
+  "triangles cornell --size 4x4 --bits 24 --quiet" "errors --grid 2" configurations \
   "numerics --catalogue" \
   "run saxpy --n 8 --engine functional" "${sim[*]} --out $folder/out"; do
   # shellcheck disable=SC2086 # words

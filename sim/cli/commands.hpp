@@ -199,18 +199,26 @@ struct SignificandsOptions {
 };
 int significands_command(const SignificandsOptions& options);
 
-/// `raypool boxes`: exit code 3 if a hit is another one.
-struct BoxesOptions {
+/// `raypool boxes` and `raypool triangles`
+struct WidthsOptions {
   std::string scene = "room";
   double detail = 1;
   std::string view;
   ViewWords look;
   std::string size = "320x320";
   uint32_t depth = 3;
-  std::vector<uint32_t> bits = {16, 14, 12, 11, 10, 9, 8, 7, 6};
+  std::vector<uint32_t> bits;
   bool quiet = false;  ///< no progress
 };
+struct BoxesOptions : WidthsOptions {
+  BoxesOptions() { bits = {16, 14, 12, 11, 10, 9, 8, 7, 6}; }
+};
+struct TrianglesOptions : WidthsOptions {
+  TrianglesOptions() { bits = {53, 40, 32, 28, 26, 24}; }
+};
+/// Exit code 3 if a hit is another one.
 int boxes_command(const BoxesOptions& options);
+int triangles_command(const TrianglesOptions& options);
 
 /// `raypool fit`: the frame is that of `raypool sim`.
 struct FitOptions {

@@ -102,6 +102,7 @@ class RecordingTracer : public RayTracer {
     return find(ray, intersection, &visits);
   }
   const Tracer& scene_tracer() const { return tracer_; }
+  void set_triangle_test(const TriangleTest& test) { tracer_.set_triangle_test(test); }
 
  private:
   bool find(const Ray& ray, Intersection& intersection, VisitList* visits) {
@@ -137,10 +138,11 @@ class RecordingSink : public FrameSink {
   Drawing& drawing_;
 };
 
-Drawing draw_natively(const ExtremeFrame& frame, const arith::Mode& mode) {
+Drawing draw_natively(const ExtremeFrame& frame, const arith::Mode& mode, const std::optional<TriangleTest>& test) {
   Drawing drawing{FrameBuffer(frame.width, frame.height), {}, {}};
   const MemoryImage image = build_memory(ray_kernel_program({mode.fused, false}), frame.scene);
   RecordingTracer tracer(frame, image.material_base, ChipConfiguration(), drawing.traced);
+  if (test) tracer.set_triangle_test(*test);
   NativeOptions options;
   options.width = frame.width;
   options.height = frame.height;
@@ -213,7 +215,7 @@ uint32_t ExtremeMachine::operate_on_unit(const std::string& mnemonic, uint32_t a
 }
 
 Drawing ExtremeMachine::draw(const ExtremeFrame& frame) const {
-  Drawing native = draw_natively(frame, mode_.mode);
+  Drawing native = draw_natively(frame, mode_.mode, triangle_test_);
   if (!unit_) return native;
   Drawing ours = draw_on_unit(frame);
   require_same(ours, native);

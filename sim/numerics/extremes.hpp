@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -17,6 +18,7 @@
 #include "machine/memory.hpp"
 #include "numerics/modes.hpp"
 #include "scene/image.hpp"
+#include "scene/narrow_triangles.hpp"
 #include "scene/scene.hpp"
 
 namespace raypool::numerics {
@@ -67,6 +69,9 @@ class ExtremeMachine {
   /// Without `unit` engine native; else the engine that it makes. `base` gets the mode's arithmetic.
   ExtremeMachine(std::string engine, const ArithmeticMode& mode, const Configuration& base, UnitMaker unit = nullptr);
 
+  /// Rays of engine native hit what this test says; there must be no other engine.
+  void set_triangle_test(const TriangleTest& test) { triangle_test_ = test; }
+
   const std::string& engine() const { return engine_; }
   const ArithmeticMode& mode() const { return mode_; }
   bool flushes() const { return mode_.mode.subnormals != Subnormals::Ieee; }
@@ -89,6 +94,7 @@ class ExtremeMachine {
   ArithmeticMode mode_;
   Configuration configuration_;
   UnitMaker unit_;
+  std::optional<TriangleTest> triangle_test_;
 };
 
 struct ExtremeCase {

@@ -100,20 +100,9 @@ std::vector<Edge> shared_edges(const Scene& scene) {
   return edges;
 }
 
-}  // namespace
-
-std::vector<WatertightMesh> watertight_meshes() {
-  return {ball("ball", {0, 0, 0}, {1, 1, 1}, 96), ball("ball at 1e5", {1e5, -2e5, 5e4}, {100, 100, 100}, 96),
-          ball("needles 1000 to 1", {0.1, 0.2, 0.3}, {0.01, 10, 0.02}, 96), star(), terrain()};
-}
-
-WatertightCounts aim_at_seams(const WatertightMesh& mesh, uint64_t rays) {
-  return aim_at_seams(mesh, mesh.scene, rays);
-}
-
-WatertightCounts aim_at_seams(const WatertightMesh& mesh, const Scene& cast_at, uint64_t rays) {
+/// `traversal` is of `cast_at`.
+WatertightCounts aim(const WatertightMesh& mesh, const Scene& cast_at, const Traversal& traversal, uint64_t rays) {
   const Scene& scene = mesh.scene;
-  const Traversal traversal(cast_at);
   const std::vector<Edge> edges = shared_edges(scene);
   std::mt19937_64 random(11);
   WatertightCounts counts;
@@ -138,6 +127,27 @@ WatertightCounts aim_at_seams(const WatertightMesh& mesh, const Scene& cast_at, 
     if (i % kJudged == 0 && found) counts.on_seam += std::fabs(exact_hit(cast_at, hit.triangle, ray).margin) < 1e-6;
   }
   return counts;
+}
+
+}  // namespace
+
+std::vector<WatertightMesh> watertight_meshes() {
+  return {ball("ball", {0, 0, 0}, {1, 1, 1}, 96), ball("ball at 1e5", {1e5, -2e5, 5e4}, {100, 100, 100}, 96),
+          ball("needles 1000 to 1", {0.1, 0.2, 0.3}, {0.01, 10, 0.02}, 96), star(), terrain()};
+}
+
+WatertightCounts aim_at_seams(const WatertightMesh& mesh, uint64_t rays) {
+  return aim_at_seams(mesh, mesh.scene, rays);
+}
+
+WatertightCounts aim_at_seams(const WatertightMesh& mesh, const Scene& cast_at, uint64_t rays) {
+  return aim(mesh, cast_at, Traversal(cast_at), rays);
+}
+
+WatertightCounts aim_at_seams(const WatertightMesh& mesh, const TriangleTest& test, uint64_t rays) {
+  Traversal traversal(mesh.scene);
+  traversal.set_triangle_test(test);
+  return aim(mesh, mesh.scene, traversal, rays);
 }
 
 }  // namespace raypool::numerics

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/narrow_triangles.hpp"
 #include "scene/scene.hpp"
 
 namespace raypool::numerics {
@@ -28,5 +29,7 @@ struct WatertightCounts {
 WatertightCounts aim_at_seams(const WatertightMesh& mesh, uint64_t rays);
 /// The same rays, cast at another scene.
 WatertightCounts aim_at_seams(const WatertightMesh& mesh, const Scene& cast_at, uint64_t rays);
+/// The same rays, with triangles tested so.
+WatertightCounts aim_at_seams(const WatertightMesh& mesh, const TriangleTest& test, uint64_t rays);
 
 }  // namespace raypool::numerics

@@ -18,6 +18,7 @@
 #include "cli/inspecting_run.hpp"
 #include "lockstep/lockstep_unit.hpp"
 #include "machine/box_ray.hpp"
+#include "scene/narrow_float.hpp"
 #include "scene/native_renderer.hpp"
 
 namespace raypool {
@@ -122,7 +123,8 @@ class CommandLine {
   void add_bench_command();
   void add_numerics_command();
   void add_significands_command();
-  void add_boxes_command();
+  void add_widths_command(CLI::App& app, WidthsOptions& options, uint32_t least, uint32_t most);
+  void add_widths_commands();
   void add_fit_command();
   void add_descriptions_command();
 
@@ -148,6 +150,7 @@ class CommandLine {
   NumericsOptions numerics_;
   SignificandsOptions significands_;
   BoxesOptions boxes_;
+  TrianglesOptions triangles_;
   FitOptions fit_;
   std::string shell_ = "bash";
 };
@@ -175,7 +178,7 @@ CommandLine::CommandLine(int argc, char** argv) {
   add_bench_command();
   add_numerics_command();
   add_significands_command();
-  add_boxes_command();
+  add_widths_commands();
   add_fit_command();
   add_descriptions_command();
 }
@@ -427,17 +430,25 @@ void CommandLine::add_significands_command() {
   significands_app->callback([this] { code_ = significands_command(significands_); });
 }
 
-void CommandLine::add_boxes_command() {
+void CommandLine::add_widths_command(CLI::App& app, WidthsOptions& options, uint32_t least, uint32_t most) {
+  add_scene(app, options.scene, options.size, options.view, options.look, options.detail);
+  app.add_option("--depth", options.depth, "of the rays")->check(CLI::Range(1, 254))->capture_default_str();
+  app.add_option("--bits", options.bits, "widths, with commas between")
+      ->delimiter(',')
+      ->check(CLI::Range(least, most))
+      ->capture_default_str();
+  app.add_flag("--quiet", options.quiet, "no progress");
+}
+
+void CommandLine::add_widths_commands() {
   CLI::App* boxes_app = app_.add_subcommand(
       "boxes", "what a scene's rays visit when boxes are tested in integers of few bits: nodes and triangles a ray");
-  add_scene(*boxes_app, boxes_.scene, boxes_.size, boxes_.view, boxes_.look, boxes_.detail);
-  boxes_app->add_option("--depth", boxes_.depth, "of the rays")->check(CLI::Range(1, 254))->capture_default_str();
-  boxes_app->add_option("--bits", boxes_.bits, "widths, with commas between")
-      ->delimiter(',')
-      ->check(CLI::Range(kLeastBoxBits, kMostBoxBits))
-      ->capture_default_str();
-  boxes_app->add_flag("--quiet", boxes_.quiet, "no progress");
+  add_widths_command(*boxes_app, boxes_, kLeastBoxBits, kMostBoxBits);
   boxes_app->callback([this] { code_ = boxes_command(boxes_); });
+  CLI::App* triangles_app = app_.add_subcommand(
+      "triangles", "what triangle tests without double do to a scene's hits and picture, to seams and to hard cases");
+  add_widths_command(*triangles_app, triangles_, kLeastTimeBits, kMostTimeBits);
+  triangles_app->callback([this] { code_ = triangles_command(triangles_); });
 }
 
 void CommandLine::add_fit_command() {
