@@ -8,7 +8,7 @@
 #include "Vcontroller_1_1_1_1_1_1_1_0_48_8_1_0_0_0.h"
 #include "Vcontroller_1_64_512_512_512_1_1_0_48_8_64_0_0_0.h"
 #include "Vcontroller_2_128_40_16_16_1_1_1_48_8_600_0_1_1.h"
-#include "Vcontroller_2_4_7_5_4_0_1_1_48_8_3_0_1_0.h"
+#include "Vcontroller_2_4_3_9_8_0_1_1_48_8_3_0_1_0.h"
 #include "Vcontroller_4_2_3_9_6_1_0_0_2_1_4_0_0_1.h"
 #include "Vcontroller_4_64_512_512_512_1_1_1_48_8_256_1_1_1.h"
 #include "machine/controller.hpp"
@@ -54,7 +54,7 @@ using Machines = testing::Types<Machine<Vcontroller_1_64_512_512_512_1_1_0_48_8_
                                         true, PolicyName::Fill, 48, 8, 256, true, true, TileOrder::Hilbert>,
                                 Machine<Vcontroller_1_1_1_1_1_1_1_0_48_8_1_0_0_0, 1, 1, 1, 1, 1, true, true,
                                         PolicyName::Thesis, 48, 8, 1, false, false, TileOrder::Rows>,
-                                Machine<Vcontroller_2_4_7_5_4_0_1_1_48_8_3_0_1_0, 2, 4, 7, 5, 4, false, true,
+                                Machine<Vcontroller_2_4_3_9_8_0_1_1_48_8_3_0_1_0, 2, 4, 3, 9, 8, false, true,
                                         PolicyName::Fill, 48, 8, 3, false, true, TileOrder::Rows>,
                                 Machine<Vcontroller_4_2_3_9_6_1_0_0_2_1_4_0_0_1, 4, 2, 3, 9, 6, true, false,
                                         PolicyName::Thesis, 2, 1, 4, false, false, TileOrder::Hilbert>,
