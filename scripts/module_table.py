@@ -42,13 +42,18 @@ def inside(texts):
 
 
 def tests(holds):
-    """[test] = the modules of rtl/ that it builds, from the headers of Verilated classes, V<top>_<variant>.h."""
+    """[test] = the modules of rtl/ that it builds, from the headers of Verilated classes, V<top>_<variant>.h.
+
+    They stand in the test, or in a header of tb/unit/ that it includes.
+    """
     found = {path.stem: holds["multiprocessor"] for path in (ROOT / "tb/rtl").glob("*_test.cpp")}
     tops = {**holds}
     for path in (ROOT / "tb/unit").glob("*.v"):
         tops[path.stem] = set().union(*(holds[name] for name in instances(path.read_text(), holds)))
     for path in (ROOT / "tb/unit").glob("*_test.cpp"):
-        included = re.findall(r'#include "V(\w+)\.h"', path.read_text())
+        text = path.read_text()
+        text += "".join((ROOT / "tb" / own).read_text() for own in re.findall(r'#include "(unit/\w+\.hpp)"', text))
+        included = re.findall(r'#include "V(\w+)\.h"', text)
         built = [[top for top in tops if re.match(rf"{top}(_|$)", each)] for each in included]
         found[path.stem] = set().union(*(tops[max(names, key=len)] for names in built if names))
     return found
