@@ -125,6 +125,11 @@ refuses_sim "a folder as scene" "a scene cannot be read from this; give cornell,
 refuses_sim "a folder as configuration" "no configuration '$folder'" --config "$folder"
 refuses "a folder as saved program" "Is a directory" "$raypool" cosim --replay "$folder"
 refuses "a folder as program" "Is a directory" "$raypool" run "$folder"
+refuses "a tree into a folder that is not there" "cannot write '.*none/a.bvh' \(No such file" "$raypool" scene cornell \
+  --write-bvh "$folder/none/a.bvh"
+refuses "a tree in the place of the OBJ" "name the same file" "$raypool" scene cornell --write-obj "$folder/both" \
+  --write-bvh "$folder/both"
+refuses "a folder as tree" "Is a directory" "$raypool" scene cornell --write-bvh "$folder"
 refuses "a folder to assemble" "Is a directory" "$raypool" asm "$folder"
 refuses "a folder to write to" "Is a directory" "$raypool" asm "$folder/forever.asm" -o "$folder"
 refuses_sim "an option given twice" "--size is given 2 times \(8x8, 9x9\)" --size 8x8 --size 9x9

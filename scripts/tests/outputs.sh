@@ -83,6 +83,12 @@ if [ "$(id -u)" = 0 ] && mount -t tmpfs -o size=8k none "$disk" 2> /dev/null; th
     --write-obj "$disk/room.obj"
   promise "... and leaves the earlier file and nothing else" test "$(ls -A "$disk"; cat "$disk/room.obj")" = \
     $'room.obj\nearlier'
+  echo earlier > "$disk/room.bvh"
+  promise "scene --write-bvh on a full disk is an error" full "$raypool" scene room --detail 0.02 \
+    --write-obj "$folder/room.obj" --write-bvh "$disk/room.bvh"
+  promise "... and leaves the earlier file and nothing else" test "$(cd "$disk" && ls -A && cat room.bvh)" = \
+    $'room.bvh\nroom.obj\nearlier'
+  promise "... and no OBJ" test ! -e "$folder/room.obj"
   promise "a picture on a full disk is an error" full "$raypool" sim cornell --engine native --size 256x256 --depth 1 \
     --out "$disk/out"
   promise "... and leaves no part of it" test -z "$(ls -A "$disk/out")"

@@ -118,7 +118,8 @@ struct SceneCommandOptions {
   ViewWords look;
   std::string size = "320x320";
   double detail = 1;      ///< of a built-in scene, 0.01 .. 16
-  std::string write_obj;  ///< path, empty: only information
+  std::string write_obj;  ///< path, empty: none
+  std::string write_bvh;  ///< path of a TreeFile (scene/tree_file.hpp), empty: none
 };
 int scene_command(const SceneCommandOptions& options);
 int hits_command(const SceneCommandOptions& options);

@@ -6,8 +6,11 @@
 
 #include "cli/commands.hpp"
 #include "cli/image_size.hpp"
+#include "files/output_files.hpp"
+#include "isa/input_error.hpp"
 #include "scene/hits_check.hpp"
 #include "scene/scene.hpp"
+#include "scene/tree_file.hpp"
 
 namespace raypool {
 namespace {
@@ -25,11 +28,29 @@ void print_counts(const char* kind, const HitCounts& counts, const TraversalCoun
              static_cast<double>(visits.triangles) / rays);
 }
 
+/// What of it is printed.
+std::string write_bvh(const Scene& scene, const std::string& path, OutputFiles& files) {
+  const TreeFile tree = make_tree_file(scene);
+  const std::string bytes = to_bytes(tree);
+  files.write(path, bytes);
+  std::string text = fmt::format("tree       {} nodes, {} triangles, {} bytes", tree.nodes.size(),
+                                 tree.triangles.size(), bytes.size());
+  if (tree.triangles.empty()) return text;
+  const double share = static_cast<double>(bytes.size()) / static_cast<double>(tree.triangles.size());
+  return text + fmt::format(", {:.1f} a triangle", share);
+}
+
 }  // namespace
 
 int scene_command(const SceneCommandOptions& options) {
   const Scene scene = load(options);
+  if (!options.write_bvh.empty() && options.write_bvh == options.write_obj)
+    throw InputError("--write-obj and --write-bvh name the same file: give them two");
+  // Of both or none: what can fail comes before the OBJ gets its name.
+  OutputFiles files;
+  const std::string tree = options.write_bvh.empty() ? "" : write_bvh(scene, options.write_bvh, files);
   if (!options.write_obj.empty()) write_obj(scene, options.write_obj);
+  files.publish();
 
   size_t degenerate = 0;
   for (size_t i = 0; i < scene.triangles.size(); ++i) degenerate += is_degenerate(scene, i) ? 1 : 0;
@@ -49,6 +70,7 @@ int scene_command(const SceneCommandOptions& options) {
   fmt::print("camera     eye {}, direction {}, up {}, vertical field of view {:g} degrees\n", text(scene.camera.eye),
              text(scene.camera.direction), text(scene.camera.up), scene.camera.fov);
   fmt::print("light      position {}, colour {}\n", text(scene.light.position), text(scene.light.color));
+  if (!tree.empty()) fmt::print("{}\n", tree);
   return 0;
 }
 

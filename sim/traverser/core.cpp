@@ -2,14 +2,14 @@
 
 #include <algorithm>
 
-#include "scene/compressed_node.hpp"
+#include "scene/tree_file.hpp"
 
 namespace raypool::traverser {
 
 namespace {
 
-constexpr uint32_t kLineBytes = 64, kTriangleBytes = 44;
-static_assert(sizeof(CompressedNode) == node_bytes(NodeFormat::Compressed));
+constexpr uint32_t kLineBytes = 64, kTriangleBytes = sizeof(TreeTriangle);
+static_assert(sizeof(TreeNode) == node_bytes(NodeFormat::Compressed));
 static_assert(sizeof(BvhNode) == node_bytes(NodeFormat::Exact));
 
 /// A leaf's triangles lie one behind the other, so that some share a line, and some lie in two.

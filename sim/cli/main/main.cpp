@@ -371,6 +371,9 @@ void CommandLine::add_scene_command() {
   for (CLI::App* sub : {scene_app, hits_app})
     add_scene(*sub, scene_.scene, scene_.size, scene_.view, scene_.look, scene_.detail);
   scene_app->add_option("--write-obj", scene_.write_obj, "write it as an OBJ, with its MTL beside it");
+  scene_app->add_option(
+      "--write-bvh", scene_.write_bvh,
+      "write its tree as the traverser's memory holds it, a binary file that docs/scenes.md describes");
   scene_app->callback([this] { code_ = scene_command(scene_); });
   hits_app->callback([this] { code_ = hits_command(scene_); });
 }
