@@ -37,9 +37,12 @@ raypool_pool_bench(box_pipe_test)
 target_link_libraries(box_pipe_test PRIVATE ${GMP_LIBRARY})
 raypool_pool_models(box_pipe_test box_pipe "BITS" 6 7 10 12 16)
 
-# The edges of its triangle test: the class alone, against the same oracle.
+# The edges of its triangle test, against the same oracle.
 raypool_pool_bench(triangle_edges_test)
 target_link_libraries(triangle_edges_test PRIVATE ${GMP_LIBRARY})
+verilate(triangle_edges_test SOURCES ${RAYPOOL_RTL}/triangle_edges.v PREFIX Vtriangle_edges TOP_MODULE triangle_edges
+  OPT_SLOW -w OPT_FAST -O2 -w OPT_GLOBAL -O1 -w
+  VERILATOR_ARGS -O3 --default-language 1364-2005 -DSYNTHESIS -y ${RAYPOOL_RTL} -I${RAYPOOL_RTL})
 
 # What the controller decides with.
 raypool_pool_bench(policies_test)

@@ -1,12 +1,17 @@
 // On which side of a triangle's edges a ray passes, in integers, against rational numbers: subnormal, huge and equal
-// products included; and the engines' way to the same sign.
+// products included; and the engines' way to the same sign. And the Verilog against its class.
 #include "machine/triangle_edges.hpp"
 
 #include <gtest/gtest.h>
+#include <verilated.h>
 
+#include <array>
 #include <cmath>
+#include <deque>
 #include <random>
 
+#include "Vtriangle_edges.h"
+#include "unit/clocked.hpp"
 #include "unit/exact_rational.hpp"
 
 namespace raypool::bench {
@@ -126,6 +131,82 @@ TEST(TriangleEdges, InsideIsWhereSignsAgree) {
   EXPECT_NE(edges.signs[0], 0);
   EXPECT_EQ(edges.signs[0], edges.signs[1]);
   EXPECT_EQ(edges.signs[0], edges.signs[2]);
+}
+
+/// Corners around a ray: some of chance, some of which edges go through the ray or nearly so.
+struct Corners {
+  std::array<float, 3> x, y;
+
+  explicit Corners(std::mt19937& random) {
+    const uint32_t what = random() % 8;
+    const int most = what == 0 ? 127 : 20, least = what == 1 ? -127 : -20;
+    for (int corner = 0; corner < 3; ++corner) {
+      x[corner] = what == 2 ? as_float(random() & 0x807fffff) : any_float(random, least, most);
+      y[corner] = any_float(random, least, most);
+    }
+    const uint32_t a = random() % 3, b = (a + 1) % 3;
+    if (what == 3) x[b] = x[a], y[b] = next_to(random, y[a]);
+    if (what == 4) x[b] = -2 * x[a], y[b] = next_to(random, -2 * y[a]);
+    if (what == 5) x[b] = x[a], y[b] = y[a], x[(b + 1) % 3] = x[a], y[(b + 1) % 3] = y[a];
+    if (what == 6) (random() % 2 == 0 ? x : y)[a] = random() % 2 == 0 ? 0.0f : -0.0f;
+    if (what == 6 && random() % 3 == 0) x[b] = y[b] = 0;
+    for (int corner = 0; corner < 3; ++corner) {
+      if (!std::isfinite(x[corner])) x[corner] = 1;
+      if (!std::isfinite(y[corner])) y[corner] = -1;
+    }
+  }
+  TriangleEdges edges() const { return {{x[0], x[1], x[2]}, {y[0], y[1], y[2]}}; }
+};
+
+TEST(TriangleEdgesInVerilog, AgreesWithItsClassInEveryCycle) {
+  Clocked<Vtriangle_edges> bench(3);
+  Vtriangle_edges& u = *bench.u;
+  struct Stage {
+    bool valid = false;
+    std::array<int, 3> signs{};
+    bool inside = false;
+  };
+  constexpr size_t kMoves = 4;
+  std::deque<Stage> stages(kMoves);  // the last one is at the outputs
+  std::array<std::array<uint32_t, 3>, 3> seen{};
+  uint64_t inside = 0, outside = 0, edge_on = 0, stood = 0;
+  for (uint32_t cycle = 0; cycle < 400'000; ++cycle) {
+    const Corners corners(bench.random);
+    const bool valid = !bench.one_of(5), ready = !bench.one_of(4);
+    u.valid_i = valid;
+    u.ready_i = ready;
+    for (int corner = 0; corner < 3; ++corner) {
+      u.x_i[corner] = as_bits(corners.x[corner]);
+      u.y_i[corner] = as_bits(corners.y[corner]);
+    }
+    u.eval();
+    const Stage& shown = stages.back();
+    const bool moves = !shown.valid || ready;
+    ASSERT_EQ(u.ready_o, moves) << "cycle " << cycle;
+    ASSERT_EQ(u.valid_o, shown.valid) << "cycle " << cycle;
+    if (shown.valid) {
+      for (int edge = 0; edge < 3; ++edge) {
+        ASSERT_EQ(u.negative_o >> edge & 1, shown.signs[edge] < 0) << "edge " << edge << ", cycle " << cycle;
+        ASSERT_EQ(u.zero_o >> edge & 1, shown.signs[edge] == 0) << "edge " << edge << ", cycle " << cycle;
+        ++seen[edge][shown.signs[edge] + 1];
+      }
+      ASSERT_EQ(u.inside_o, shown.inside) << "cycle " << cycle;
+      ++(shown.inside ? inside : outside);
+      edge_on += shown.signs[0] == 0 && shown.signs[1] == 0 && shown.signs[2] == 0;
+      stood += !ready;
+    }
+    bench.clock();
+    if (!moves) continue;
+    stages.pop_back();
+    const TriangleEdges edges = corners.edges();
+    stages.push_front({valid, {edges.signs[0], edges.signs[1], edges.signs[2]}, edges.inside()});
+  }
+  for (const auto& edge : seen)
+    for (const uint32_t count : edge) EXPECT_GT(count, 10'000u);
+  EXPECT_GT(inside, 20'000u);
+  EXPECT_GT(outside, 20'000u);
+  EXPECT_GT(edge_on, 5'000u);
+  EXPECT_GT(stood, 50'000u);
 }
 
 }  // namespace
