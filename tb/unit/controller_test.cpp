@@ -191,84 +191,101 @@ struct Reached {
   uint64_t overlapped = 0, dropped = 0, late = 0, both = 0;
 };
 
+/// A frame that the class draws on such a chip.
+template <typename M>
+struct Frame {
+  const ChipConfiguration around = M::chip();
+  RandomChip chip;
+  Controller controller;
+  TimedTiles tiles;
+  Controller::Launch launch;  ///< that is offered in cycle launch_at
+  uint64_t launch_at = 0, decide_from = 0, ended_at = UINT64_MAX;
+  uint32_t pixels = 0;  ///< that have been cast
+
+  Frame(uint32_t width, uint32_t height, bool reflections, uint32_t pace, std::mt19937& random)
+      : chip(around, M::kUnits, reflections, random, pace),
+        controller(around, M::kContents, M::kUnits, reflections, M::walk().tile_width() * M::walk().tile_height(),
+                   M::policy(reflections)),
+        tiles(M::walk(), width, height) {}
+
+  bool ended() const { return ended_at != UINT64_MAX; }
+  void take_launch(uint64_t cycle, uint32_t unit) {
+    if (launch.import != ImportKind::None) chip.reserve(launch.import, launch.threads);
+    chip.accept(unit, launch);
+    controller.launched(cycle, unit, launch);
+    if (launch.choice.kind == Choice::Kind::Eye) pixels += tiles.take(cycle).pixels;
+    launch = {};
+  }
+  void tell(uint64_t cycle, const RandomChip::Events& events) {
+    if (events.ray) controller.ray_left(cycle, events.ray_unit, events.shadow);
+    if (events.contribution) controller.contribution_left(cycle, events.contribution_unit);
+    for (uint32_t unit = 0; unit < M::kUnits; ++unit)
+      if ((events.done >> unit & 1) != 0) controller.kernel_ended(cycle, unit, chip.unit(unit).exports);
+    controller.settle(cycle);
+  }
+  void decide(uint64_t cycle, bool ready) {
+    if (cycle < decide_from || ended()) return;
+    Controller::Levels levels = chip.levels();
+    levels.ready = ready;
+    const Controller::Tiles order = tiles.in(cycle + 2);
+    if (controller.ended(levels, order)) {
+      ended_at = cycle + Controller::kCycles + 1;
+    } else if (const Controller::Launch decided = controller.decide(levels, order)) {
+      launch = decided;
+      launch_at = cycle + Controller::kCycles + 1;
+      decide_from = launch_at + 1;
+    }
+  }
+  /// What is counted is never too little, and the rules hold.
+  void expect_rules() const {
+    const Controller::Levels& levels = chip.levels();
+    const uint32_t shadow = controller.shadow_rays_to_come();
+    ASSERT_GE(shadow, chip.to_come(Package::Shadow));
+    ASSERT_GE(controller.rays_to_come() - shadow, chip.to_come(Package::Normal));
+    ASSERT_LE(controller.held(levels), around.held_limit);
+    if (around.shading == Shading::Traverser) return;
+    ASSERT_LT(levels.shadow_rays + shadow + levels.available[ImportKind::Shadow],
+              around.ray_pool_size + around.intersection_pool_size);
+  }
+};
+
 template <typename M>
 class Bench {
+  using Frame = bench::Frame<M>;
+
  public:
   explicit Bench(uint32_t seed) : bench_(seed) {}
 
   /// Draws a frame. `pace`: each part of the chip does something once in so many cycles in the mean.
   void draw(uint32_t width, uint32_t height, bool reflections, uint32_t pace) {
-    const TileWalk walk = M::walk();
-    const ChipConfiguration around = M::chip();
-    RandomChip chip(around, M::kUnits, reflections, bench_.random, pace);
-    Controller controller(around, M::kContents, M::kUnits, reflections, walk.tile_width() * walk.tile_height(),
-                          M::policy(reflections));
-    TimedTiles tiles(walk, width, height);
+    Frame frame(width, height, reflections, pace, bench_.random);
     reset(width, height, reflections);
-    const auto overlap = chip.overlapped;
-
     RandomChip::Events before;  // in the cycle before
-    Controller::Launch launch;
-    uint64_t launch_at = 0, decide_from = 0, ended_at = UINT64_MAX;
-    uint32_t pixels = 0;
     constexpr uint64_t kMost = 2'000'000;
     uint64_t cycle = 0;
-    for (; cycle < kMost && (ended_at == UINT64_MAX || cycle < ended_at + 3); ++cycle) {
-      const bool ready = chip.ready();
-      const uint32_t unit = ready ? chip.next_unit() : 0;
-      const bool offered = launch && cycle == launch_at;
-      show(cycle, chip, before, ready, unit);
-      ASSERT_NO_FATAL_FAILURE(compare(cycle, offered ? &launch : nullptr, tiles, cycle != 0 && cycle < ended_at));
-      const RandomChip::Events events = chip.step(cycle);
-      // What comes behind a launch needs its intersections.
+    for (; cycle < kMost && (!frame.ended() || cycle < frame.ended_at + 3); ++cycle) {
+      const bool ready = frame.chip.ready();
+      const uint32_t unit = ready ? frame.chip.next_unit() : 0;
+      const bool offered = frame.launch && cycle == frame.launch_at;
+      show(cycle, frame.chip, before, ready, unit);
+      const bool busy = cycle != 0 && cycle < frame.ended_at;
+      ASSERT_NO_FATAL_FAILURE(compare(cycle, offered ? &frame.launch : nullptr, frame.tiles, busy));
+      const RandomChip::Events events = frame.chip.step(cycle);
+      ASSERT_TRUE(ready || !offered);
       if (offered) {
-        ASSERT_TRUE(ready);
-        reached.ahead += chip.unit(unit).kernels.empty() ? 0 : 1;
-        if (launch.import != ImportKind::None) chip.reserve(launch.import, launch.threads);
-        chip.accept(unit, launch);
-        controller.launched(cycle, unit, launch);
-        if (launch.choice.kind == Choice::Kind::Eye) pixels += tiles.take(cycle).pixels;
-        count(launch);
-        launch = {};
+        count(frame.launch, !frame.chip.unit(unit).kernels.empty());
+        frame.take_launch(cycle, unit);
       }
-      if (events.ray) controller.ray_left(cycle, events.ray_unit, events.shadow);
-      if (events.contribution) controller.contribution_left(cycle, events.contribution_unit);
-      for (uint32_t u = 0; u < M::kUnits; ++u)
-        if ((events.done >> u & 1) != 0) controller.kernel_ended(cycle, u, chip.unit(u).exports);
-      controller.settle(cycle);
-      if (cycle >= decide_from && ended_at == UINT64_MAX) {
-        Controller::Levels levels = chip.levels();
-        levels.ready = ready;
-        const Controller::Tiles order = tiles.in(cycle + 2);
-        if (controller.ended(levels, order)) {
-          ended_at = cycle + Controller::kCycles + 1;
-        } else if (const Controller::Launch decided = controller.decide(levels, order)) {
-          launch = decided;
-          launch_at = cycle + Controller::kCycles + 1;
-          decide_from = launch_at + 1;
-        }
-      }
-      // Counted is never too little, and the rules hold.
-      ASSERT_GE(controller.shadow_rays_to_come(), chip.to_come(Package::Shadow));
-      ASSERT_GE(controller.rays_to_come() - controller.shadow_rays_to_come(), chip.to_come(Package::Normal));
-      ASSERT_LE(controller.held(chip.levels()), around.held_limit);
-      if (around.shading == Shading::Kernel) {
-        ASSERT_LT(
-            chip.levels().shadow_rays + controller.shadow_rays_to_come() + chip.levels().available[ImportKind::Shadow],
-            around.ray_pool_size + around.intersection_pool_size);
-      }
+      frame.tell(cycle, events);
+      frame.decide(cycle, ready);
+      ASSERT_NO_FATAL_FAILURE(frame.expect_rules());
       before = events;
-      clock(cycle, events, chip);
+      clock(events, frame.chip);
     }
     ASSERT_LT(cycle, kMost) << "the frame does not end";
-    EXPECT_EQ(pixels, width * height);
-    EXPECT_EQ(controller.rays_to_come(), 0u);
-    ++reached.frames;
-    reached.cycles += cycle;
-    reached.overlapped += chip.overlapped - overlap;
-    reached.dropped += chip.dropped;
-    reached.late += chip.late;
-    reached.both += chip.both;
+    EXPECT_EQ(frame.pixels, width * height);
+    EXPECT_EQ(frame.controller.rays_to_come(), 0u);
+    count(frame.chip, cycle);
   }
   uint32_t below(uint32_t limit) { return static_cast<uint32_t>(bench_.random()) % limit; }
 
@@ -333,7 +350,7 @@ class Bench {
   }
 
   // What ends in this cycle is seen in it.
-  void clock(uint64_t /*cycle*/, const RandomChip::Events& events, const RandomChip& chip) {
+  void clock(const RandomChip::Events& events, const RandomChip& chip) {
     u_.kernel_done_i = events.done;
     uint64_t exports = 0;
     for (uint32_t u = M::kUnits; u-- > 0;) exports = exports << 16 | chip.unit(u).exports;
@@ -341,7 +358,16 @@ class Bench {
     bench_.clock();
   }
 
-  void count(const Controller::Launch& launch) {
+  void count(const RandomChip& chip, uint64_t cycles) {
+    ++reached.frames;
+    reached.cycles += cycles;
+    reached.overlapped += chip.overlapped;
+    reached.dropped += chip.dropped;
+    reached.late += chip.late;
+    reached.both += chip.both;
+  }
+  void count(const Controller::Launch& launch, bool ahead) {
+    reached.ahead += ahead;
     reached.eye += launch.choice.kind == Choice::Kind::Eye;
     reached.secondary += launch.choice.kind == Choice::Kind::Secondary;
     reached.reflecting += launch.reflects;
