@@ -16,6 +16,7 @@
 #include "machine/kernel_policy.hpp"
 #include "machine/launch_records.hpp"
 #include "machine/launch_rules.hpp"
+#include "machine/pool_levels.hpp"
 #include "machine/tile_walk.hpp"
 
 namespace raypool {
@@ -26,10 +27,7 @@ class Controller {
   static constexpr uint64_t kCycles = 3;
 
   /// At the end of a cycle.
-  struct Levels {
-    uint32_t rays = 0, shadow_rays = 0;  ///< of the ray pool, and among them
-    /// Of the intersection pool; and those that no launch has reserved.
-    EnumArray<ImportKind, uint32_t, kImportKinds> size{}, available{};
+  struct Levels : PoolLevels {
     bool ready = false;  ///< the units could take a launch in this cycle
   };
   /// The order of the tiles, as it stands then.
@@ -95,7 +93,7 @@ class Controller {
     return launch(policy_->choose(view), levels, tiles);
   }
   /// Normal rays, intersections of them that no launch has reserved, and rays to come: a pixel has one at most.
-  uint32_t held(const Levels& levels) const {
+  uint32_t held(const PoolLevels& levels) const {
     return levels.rays - levels.shadow_rays + levels.available[ImportKind::Normal] +
            levels.available[ImportKind::Direct] + to_come(&LaunchRecords::normal);
   }
@@ -119,23 +117,11 @@ class Controller {
     for (uint32_t unit = 0; unit < units_; ++unit) sum += (records_[unit].*count)();
     return sum;
   }
-  /// Those of which there are more.
-  static ImportKind secondary_import(const Levels& levels) {
-    return levels.available[ImportKind::Direct] > levels.available[ImportKind::Normal] ? ImportKind::Direct
-                                                                                       : ImportKind::Normal;
-  }
   PolicyView view(const Levels& levels, const Tiles& tiles, bool ahead) const {
-    PolicyView view;
-    view.rays = levels.rays;
-    view.normal = levels.available[secondary_import(levels)];
-    view.shadow = levels.available[ImportKind::Shadow];
+    PolicyView view = levels.view(rays_to_come());
     view.secondary_room = rules_.secondary_room(levels.shadow_rays, shadow_rays_to_come(), view.shadow);
-    view.rays_to_come = rays_to_come();
-    for (const ImportKind kind : {ImportKind::Normal, ImportKind::Shadow, ImportKind::Direct})
-      view.promised += levels.size[kind] - levels.available[kind];
     view.kernels = kernels();
     view.eye_possible = tiles.offered != nullptr && rules_.may_cast(tiles.offered->pixels, held(levels));
-    view.more_to_come = levels.rays > 0 || view.rays_to_come > 0;
     view.ahead = ahead;
     return view;
   }
@@ -149,7 +135,7 @@ class Controller {
         launch.normal = tiles.offered->pixels;
         break;
       case Choice::Kind::Secondary:
-        launch.import = secondary_import(levels);
+        launch.import = levels.secondary_import();
         launch.reflects = reflections_ && launch.import == ImportKind::Normal;
         launch.shadow = choice.threads;
         launch.normal = launch.reflects ? choice.threads : 0;

@@ -65,6 +65,17 @@ void Controller::kernel_ended(uint32_t unit) {
   thread_time_launchable_ += static_cast<double>(time) * options_.configuration.contents();
 }
 
+PoolLevels Controller::levels() const {
+  PoolLevels levels;
+  levels.rays = rays->size();
+  levels.shadow_rays = rays->shadow_rays();
+  for (const ImportKind kind : {ImportKind::Normal, ImportKind::Shadow, ImportKind::Direct}) {
+    levels.size[kind] = intersections->size(kind);
+    levels.available[kind] = intersections->available(kind);
+  }
+  return levels;
+}
+
 void Controller::finish() {
   finished_ = true;
   clock->stop();

@@ -21,6 +21,7 @@
 #include "chip/chosen_tiles.hpp"
 #include "chip/interfaces.hpp"
 #include "machine/kernel_policy.hpp"
+#include "machine/pool_levels.hpp"
 #include "machine/tile_walk.hpp"
 #include "scene/native_renderer.hpp"
 
@@ -79,6 +80,7 @@ class Controller : public sc_core::sc_module, public DecisionIf, public KernelEv
   /// What the ledger of pixels says, or the controller's own count.
   virtual uint32_t held() const = 0;
   virtual uint32_t rays_to_come() const = 0;
+  PoolLevels levels() const;
   void finish();
   /// Gives the unit that is next the kernel for the next tile, or for intersections that it is promised. `held` pixels
   /// were before.

@@ -33,18 +33,6 @@ void CountingController::kernel_ended(uint32_t unit) {
   look_soon();
 }
 
-raypool::Controller::Levels CountingController::levels() const {
-  raypool::Controller::Levels levels;
-  levels.rays = rays->size();
-  levels.shadow_rays = rays->shadow_rays();
-  for (const ImportKind kind : {ImportKind::Normal, ImportKind::Shadow, ImportKind::Direct}) {
-    levels.size[kind] = intersections->size(kind);
-    levels.available[kind] = intersections->available(kind);
-  }
-  levels.ready = device->could_launch();
-  return levels;
-}
-
 // Tiles that were chosen among those of the walk are there at once.
 raypool::Controller::Tiles CountingController::tiles() {
   const bool offered = !options_.tiles.empty() || walk_.in(clock->cycle() + 2).offered != nullptr;
@@ -66,7 +54,7 @@ void CountingController::look() {
       return;
     }
     counts_.settle(now);
-    const raypool::Controller::Levels seen = levels();
+    const raypool::Controller::Levels seen{levels(), device->could_launch()};
     const raypool::Controller::Tiles order = tiles();
     ending_ = counts_.ended(seen, order);
     if (!ending_) launch_ = counts_.decide(seen, order);

@@ -25,7 +25,6 @@ class CountingController : public Controller {
  private:
   uint32_t held() const override { return counts_.held(levels()); }
   uint32_t rays_to_come() const override { return counts_.rays_to_come(); }
-  raypool::Controller::Levels levels() const;
   raypool::Controller::Tiles tiles();
   void look_soon();
   void look();

@@ -19,29 +19,12 @@ bool LedgerController::eye_possible() const {
   return !next_tile_.at_end() && rules_.may_cast(next_tile_.tile().pixels, ledger->held());
 }
 
-uint32_t LedgerController::secondary_room() const {
-  return rules_.secondary_room(rays->shadow_rays(), ledger->shadow_rays_to_come(),
-                               intersections->available(ImportKind::Shadow));
-}
-
-ImportKind LedgerController::secondary_import() const {
-  const bool direct = intersections->available(ImportKind::Direct) > intersections->available(ImportKind::Normal);
-  return direct ? ImportKind::Direct : ImportKind::Normal;
-}
-
 PolicyView LedgerController::view(bool ahead) const {
-  PolicyView view;
-  view.rays = rays->size();
-  view.normal = intersections->available(secondary_import());
-  view.shadow = intersections->available(ImportKind::Shadow);
-  view.secondary_room = secondary_room();
-  view.rays_to_come = ledger->rays_to_come();
-  for (const ImportKind kind : {ImportKind::Normal, ImportKind::Shadow, ImportKind::Direct}) {
-    view.promised += intersections->size(kind) - intersections->available(kind);
-  }
+  const PoolLevels seen = levels();
+  PolicyView view = seen.view(ledger->rays_to_come());
+  view.secondary_room = rules_.secondary_room(seen.shadow_rays, ledger->shadow_rays_to_come(), view.shadow);
   for (const auto& given : given_) view.kernels += size32(given);
   view.eye_possible = eye_possible();
-  view.more_to_come = rays->size() > 0 || ledger->rays_to_come() > 0;
   view.ahead = ahead;
   return view;
 }
@@ -55,26 +38,27 @@ void LedgerController::decide() {
     if (!device->can_launch()) return;
     const bool ahead = device->busy(device->next_unit());
     if (ahead && !chip_.launch_ahead) return;
-    const Choice choice = policy_->choose(view(ahead));
-    if (choice.kind != Choice::Kind::Halt) launch(choice);
+    const PolicyView seen = view(ahead);
+    const Choice choice = policy_->choose(seen);
+    if (choice.kind != Choice::Kind::Halt) launch(choice, seen);
   });
 }
 
-void LedgerController::launch(const Choice& choice) {
+void LedgerController::launch(const Choice& choice, const PolicyView& seen) {
   if (choice.kind == Choice::Kind::Eye) {
-    if (!eye_possible()) throw std::logic_error("the policy casts eye rays that must not be cast now");
+    if (!seen.eye_possible) throw std::logic_error("the policy casts eye rays that must not be cast now");
     const uint32_t held = ledger->held();
     rules_.cast(held);
     cast(held);
     return;
   }
   const bool shade = choice.kind == Choice::Kind::Shade;
-  const ImportKind kind = shade ? ImportKind::Shadow : secondary_import();
+  const ImportKind kind = shade ? ImportKind::Shadow : levels().secondary_import();
   const RayKernel kernel = shade                        ? RayKernel::Shade
                            : kind == ImportKind::Direct ? RayKernel::CastSecondaryDirect
                                                         : secondary_;
-  if (choice.threads == 0 || choice.threads > intersections->available(kind) ||
-      choice.threads > options_.configuration.contents() || (!shade && choice.threads > secondary_room())) {
+  if (choice.threads == 0 || choice.threads > (shade ? seen.shadow : seen.normal) ||
+      choice.threads > options_.configuration.contents() || (!shade && choice.threads > seen.secondary_room)) {
     throw std::logic_error("the policy launches a kernel of a size that is not possible now");
   }
   import(kernel, kind, choice.threads);

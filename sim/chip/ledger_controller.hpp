@@ -24,10 +24,7 @@ class LedgerController : public Controller {
   void decide();
   PolicyView view(bool ahead) const;
   bool eye_possible() const;
-  uint32_t secondary_room() const;
-  /// Which normal intersections a secondary kernel would take: those of which there are more.
-  ImportKind secondary_import() const;
-  void launch(const Choice& choice);
+  void launch(const Choice& choice, const PolicyView& seen);
 
   std::unique_ptr<KernelPolicy> policy_;
   LaunchRules rules_;
