@@ -68,32 +68,14 @@ module triangle_edges (
   endgenerate
 
   // ---- Stages 2 and 3: of each edge two products, x_a y_b and y_a x_b. x of corner 0 is number 0, y of it number 3.
-  function integer first_of(input integer product);
-    case (product)
-      0: first_of = 2;
-      1: first_of = 5;
-      2: first_of = 0;
-      3: first_of = 3;
-      4: first_of = 1;
-      default: first_of = 4;
-    endcase
-  endfunction
-  function integer second_of(input integer product);
-    case (product)
-      0: second_of = 4;
-      1: second_of = 1;
-      2: second_of = 5;
-      3: second_of = 2;
-      4: second_of = 3;
-      default: second_of = 0;
-    endcase
-  endfunction
+  localparam [17:0] FIRST = {3'd4, 3'd1, 3'd3, 3'd0, 3'd5, 3'd2};   // of product 0 in the lowest bits
+  localparam [17:0] SECOND = {3'd0, 3'd3, 3'd2, 3'd5, 3'd1, 3'd4};
   wire [5:0] sign_3, zero_3;
   wire [6*PRODUCT-1:0] value_3;
   wire [6*UNIT_BITS-1:0] unit_3;
   generate
     for (p = 0; p < 6; p = p + 1) begin : gen_product
-      localparam integer A = first_of(p), B = second_of(p);
+      localparam [2:0] A = FIRST[3*p +: 3], B = SECOND[3*p +: 3];
       wire [PRODUCT-1:0] sum, carry;
       multiply_tree #(.A_BITS(WIDTH), .B_BITS(WIDTH), .OUT_BITS(PRODUCT)) multiply_tree (
         .a_i(value_1[A*WIDTH +: WIDTH]), .b_i(value_1[B*WIDTH +: WIDTH]), .c_i({PRODUCT{1'b0}}), .sum_o(sum),

@@ -62,7 +62,7 @@ enum class Shading : uint8_t { Kernel = 0, Traverser = 1 };
   ARITHMETIC(fma, bool, false, on_or_off(), all(), "fused multiply-add: the instruction ffma") \
   /* The table ends here: the backslash above lets a row follow it. */
 
-// The chip around the unit: nothing of it is in the Verilog.
+// The chip around the unit: no Verilated unit has any of it; some are parameters of its own modules in rtl/.
 //   CHIP(name, ...)              `chip.name` in files, chip.name in C++
 //   CHIP_PART(part, name, ...)   `chip.part.name` in files, chip.part_name in C++
 // A beat is 128 bits, the width of the unit's ports: so 2 cycles a beat is a port of half that width.
