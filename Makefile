@@ -19,7 +19,8 @@ SCENE     ?= room
 SIZE      ?= 320x320
 DEPTH     ?= 3
 ENGINE    ?= lockstep
-TRAVERSER ?= modelled
+CHIP      ?=
+TRAVERSER ?= $(if $(CHIP),static,modelled)
 SET       ?=
 VIEW      ?=
 EYE       ?=
@@ -86,7 +87,7 @@ SCENES    ?=
 # `make report`
 FROM      ?=
 # Recipes read these from the environment, so that a value with spaces or quotes stays one word.
-export CONFIG SET CUS SCENE SIZE DEPTH ENGINE TRAVERSER VIEW CAMERA EYE LOOK_AT UP FOV LIGHT DETAIL OUT WAVES TRACE
+export CONFIG SET CUS SCENE SIZE DEPTH ENGINE CHIP TRAVERSER VIEW CAMERA EYE LOOK_AT UP FOV LIGHT DETAIL OUT WAVES TRACE
 export A B KERNEL PROGRAMS SEED COVERAGE MUTANTS MODE THREADS
 export SLOWER
 export FROM EXPERIMENT WHERE JOBS SCENES LEVELS RUNS ERROR TIME SAMPLES MACHINES
@@ -126,7 +127,8 @@ PYTHON := $(or $(wildcard /usr/bin/python3),python3)
 REPORT := RAYPOOL="$(abspath $(RAYPOOL))" PYTHONPATH=scripts $(PYTHON) -m report
 FIT_SETUP := $(if $(filter-out 0,$(AREA) $(POWER)),setup-synth)
 GATES_SETUP := $(if $(filter-out 0,$(GATES)),setup-synth)
-UNIT_OF_ENGINE := $(if $(filter rtl lockstep,$(ENGINE)),$(UNIT),true)
+UNIT_OF_ENGINE := $(if $(filter rtl lockstep,$(or $(CHIP),$(ENGINE))),$(UNIT),true)
+CHIP_FLAG := $(if $(CHIP),--chip)
 
 .PHONY: intervals
 .PHONY: help sim fidelity fit compare run cosim configurations mutants faults unit test lint format bench clean
@@ -143,6 +145,7 @@ help: ## this list
 	@echo '  SCENE=cornell|room|FILE       what is drawn; .obj, .gltf, .glb, .ply      $(SCENE)'
 	@echo '  CONFIG=4w4c|8w8c|...|FILE     hardware: configs/*.json, [best_]NwMc, file $(CONFIG)'
 	@echo '  ENGINE=native|embree|functional|sampled|model|rtl|lockstep  what stands in for the unit  $(ENGINE)'
+	@echo '  CHIP=model|rtl|lockstep       in place of ENGINE: what stands in for the whole chip, rtl/chip.v'
 	@echo '  SIZE=WxH                      pixels, 1..16384 each                       $(SIZE)'
 	@echo '  DEPTH=N                       1: eye and shadow rays; more: reflections   $(DEPTH)'
 	@echo '  CUS=1|2|4                     compute units                               $(CUS)'
@@ -188,9 +191,9 @@ help: ## this list
 	@echo 'variables of make run:  KERNEL=saxpy|matmul|FILE.asm  CONFIG  SET  ENGINE  ARGS="--n 1000"'
 
 sim: setup-sim program ## draw a scene on the simulated chip: picture, report, figures
-	@$(UNIT_OF_ENGINE) --units "$$CUS"
-	@$(RAYPOOL) sim $(FRAME) --engine "$$ENGINE" $${OUT:+--out "$$OUT"} $(WAVES_FLAG) $(TRACE_FLAG) \
-	  $${THREADS:+--threads "$$THREADS"} $(SAMPLE_FLAGS)
+	@$(UNIT_OF_ENGINE) --units "$$CUS" $(CHIP_FLAG)
+	@$(RAYPOOL) sim $(FRAME) $(if $(CHIP),--chip "$$CHIP",--engine "$$ENGINE") $${OUT:+--out "$$OUT"} $(WAVES_FLAG) \
+	  $(TRACE_FLAG) $${THREADS:+--threads "$$THREADS"} $(SAMPLE_FLAGS)
 
 fidelity: setup-sim setup-fidelity program ## a frame at every level of simulation, speed against error: LEVELS, RUNS
 	@scripts/fidelity.py $(FRAME) $${LEVELS:+--levels "$$LEVELS"} --runs "$$RUNS" $${OUT:+--out "$$OUT"}
@@ -247,8 +250,8 @@ sweep: setup-sim $(SWEEP_SETUP) program ## all points of EXPERIMENT (docs/sweeps
 report: setup-sim setup-report program ## sweeps, runs and synthesis reports as one page: FROM, OUT (docs/page.md)
 	@$(REPORT) $${FROM:+--from $$FROM} $${OUT:+--out "$$OUT"}
 
-unit: setup-sim program ## Verilate CUS compute units of CONFIG (WAVES=1: with waveforms)
-	@$(UNIT) --units "$$CUS"
+unit: setup-sim program ## Verilate CUS compute units of CONFIG (WAVES=1: with waveforms; CHIP=rtl: the whole chip)
+	@$(UNIT) --units "$$CUS" $(CHIP_FLAG)
 
 synth: setup-sim setup-synth program ## area, timing and power of CONFIG from open tools
 	@$(SYNTH) report $(SYNTH_OPTIONS) $${AGAINST:+--against "$$AGAINST"} $${RUN:+--run "$$RUN"} $${OUT:+--out "$$OUT"} \

@@ -7,8 +7,8 @@ set(data ${CMAKE_INSTALL_DATADIR}/raypool)
 install(TARGETS raypool RUNTIME COMPONENT program)
 install(DIRECTORY configs schemas examples rtl DESTINATION ${data} COMPONENT program)
 install(PROGRAMS scripts/verilate.sh DESTINATION ${data}/scripts COMPONENT program)
-install(FILES sim/rtl/rtl_unit.cpp sim/rtl/unit_library.hpp sim/rtl/probes.vlt DESTINATION ${data}/sim/rtl
-  COMPONENT program)
+install(FILES sim/rtl/rtl_unit.cpp sim/rtl/unit_library.hpp sim/rtl/verilated_design.hpp sim/rtl/probes.vlt
+        DESTINATION ${data}/sim/rtl COMPONENT program)
 install(FILES cpp_model/isa/isa.hpp cpp_model/isa/input_error.hpp DESTINATION ${data}/cpp_model/isa COMPONENT program)
 install(FILES cpp_model/config/configuration.hpp cpp_model/config/parameters.hpp
         DESTINATION ${data}/cpp_model/config COMPONENT program)

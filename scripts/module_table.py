@@ -44,9 +44,11 @@ def inside(texts):
 def tests(holds):
     """[test] = the modules of rtl/ that it builds, from the headers of Verilated classes, V<top>_<variant>.h.
 
-    They stand in the test, or in a header of tb/unit/ that it includes.
+    They stand in the test, or in a header of tb/unit/ that it includes. Those of tb/rtl/ run scripts/verilate.sh.
     """
-    found = {path.stem: holds["multiprocessor"] for path in (ROOT / "tb/rtl").glob("*_test.cpp")}
+    found = {}
+    for path in (ROOT / "tb/rtl").glob("*_test.cpp"):
+        found[path.stem] = holds["chip" if " --top chip " in path.read_text() else "multiprocessor"]
     tops = {**holds}
     for path in (ROOT / "tb/unit").glob("*.v"):
         tops[path.stem] = set().union(*(holds[name] for name in instances(path.read_text(), holds)))

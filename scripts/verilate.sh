@@ -1,7 +1,9 @@
 #!/bin/bash
-# Builds the Verilated multiprocessor of one set of Verilog parameters: OUTPUT_DIR/libraypool_unit.so.
-#   scripts/verilate.sh OUTPUT_DIR [--trace] [--quick] [--netlist FILE]... NAME=VALUE...
-# NAME=VALUE as `raypool config CONFIG --verilog-parameters` prints them, and UNITS=1|2|4 (default 1).
+# Builds the Verilated multiprocessor of one set of Verilog parameters: OUTPUT_DIR/libraypool_unit.so; or the Verilated
+# chip: OUTPUT_DIR/libraypool_chip.so.
+#   scripts/verilate.sh OUTPUT_DIR [--top chip] [--trace] [--quick] [--netlist FILE]... NAME=VALUE...
+# NAME=VALUE as `raypool config CONFIG --verilog-parameters` prints them, and UNITS=1|2|4 (default 1); of a chip as
+# chip_verilog_parameters() has them.
 # --netlist: Verilog that stands in for the compute unit of rtl/, and calls sim/rtl/gate_simulator.cpp.
 # --trace: the unit can write waveforms (FST), and is slower. --quick: compiled in less time, slower. Nothing is built
 # when all it is made from is as it was; a build that fails leaves the old library as it was. VERILATOR, CXX and JOBS
@@ -13,9 +15,12 @@ fail() {
   exit 1
 }
 
-[ $# -ge 1 ] || fail "usage: scripts/verilate.sh OUTPUT_DIR [--trace] [--quick] [--netlist FILE]... NAME=VALUE..."
+usage="usage: scripts/verilate.sh OUTPUT_DIR [--top chip] [--trace] [--quick] [--netlist FILE]... NAME=VALUE..."
+[ $# -ge 1 ] || fail "$usage"
 output=$1
 shift
+top=multiprocessor
+kind=unit
 trace=0
 quick=0
 parameters=()
@@ -23,7 +28,15 @@ netlist=()
 while [ $# -gt 0 ]; do
   argument=$1
   shift
-  if [ "$argument" = --trace ]; then
+  if [ "$argument" = --top ]; then
+    case ${1:-} in
+      multiprocessor) kind=unit ;;
+      chip) kind=chip ;;
+      *) fail "--top is '${1:-}': there are multiprocessor, which is the default, and chip" ;;
+    esac
+    top=$1
+    shift
+  elif [ "$argument" = --trace ]; then
     trace=1
   elif [ "$argument" = --quick ]; then
     quick=1
@@ -34,7 +47,7 @@ while [ $# -gt 0 ]; do
   elif [[ $argument =~ ^[A-Z][A-Z0-9_]*=[0-9]+$ ]]; then
     parameters+=("$argument")
   else
-    fail "'$argument' is neither --trace, --quick nor a Verilog parameter such as WARPS=8"
+    fail "'$argument' is neither --top, --trace, --quick nor a Verilog parameter such as WARPS=8"
   fi
 done
 
@@ -50,23 +63,31 @@ compiler_version=$("$compiler" --version 2> /dev/null | head -n 1) ||
 mkdir -p "$output"
 output=$(cd "$output" && pwd)
 root=$(cd "$(dirname "$0")/.." && pwd)
-library=$output/libraypool_unit.so
-stamp=$output/libraypool_unit.stamp
+library=$output/libraypool_$kind.so
+stamp=$output/libraypool_$kind.stamp
 
 # Everything the library is made from.
 cd "$root"
 shopt -s nullglob
 headers=(cpp_model/isa/isa.hpp cpp_model/config/{configuration,parameters}.hpp \
   cpp_model/machine/{compute_unit,memory,packages}.hpp \
-  sim/rtl/unit_library.hpp)
-wrapper=(sim/rtl/rtl_unit.cpp cpp_model/machine/compute_unit.cpp)
+  sim/rtl/{unit_library,verilated_design}.hpp)
+wrapper=("sim/rtl/rtl_$kind.cpp" cpp_model/machine/compute_unit.cpp)
 verilog=(rtl/*.v)
-waivers=(rtl/*.vlt sim/rtl/probes.vlt)   # and what the lockstep looks at inside
+waivers=(rtl/*.vlt)   # and what the lockstep looks at inside
+if [ "$kind" = chip ]; then
+  headers+=(cpp_model/machine/{chip_device,memory_port,ray_kernel}.hpp sim/rtl/chip_library.hpp)
+  wrapper+=(cpp_model/machine/chip_device.cpp)
+  waivers+=(sim/rtl/chip_probes.vlt)
+else
+  waivers+=(sim/rtl/probes.vlt)
+fi
 language=1364-2005
 what=rtl/
 optimise=(OPT_FAST=-O2 OPT_SLOW=-O1 OPT_GLOBAL=-O2)
 [ "$quick" = 0 ] || optimise=(OPT_FAST=-O1 OPT_SLOW=-O0 OPT_GLOBAL=-O2)
 if [ ${#netlist[@]} -gt 0 ]; then
+  [ "$kind" = unit ] || fail "a netlist stands in for a unit of a multiprocessor, not of a chip"
   verilog=("${netlist[@]}")
   for file in rtl/*.v; do [ "$file" = rtl/compute_unit.v ] || verilog+=("$file"); done
   language=1800-2017
@@ -96,28 +117,28 @@ begin=$SECONDS
 echo "verilate.sh: verilating $what (${parameters[*]:-default parameters})"
 units=1
 for parameter in "${parameters[@]}"; do [ "${parameter%%=*}" != UNITS ] || units=${parameter#*=}; done
-printf '#define RAYPOOL_UNIT_PARAMETERS "%s"\n#define RAYPOOL_UNIT_COUNT %d\n' "${parameters[*]}" "$units" \
-  > "$build/unit_parameters.h"
-options=(--cc --exe --top-module multiprocessor --Mdir "$build" -Irtl --default-language "$language"
+printf '#define RAYPOOL_BUILT_PARAMETERS "%s"\n#define RAYPOOL_UNIT_COUNT %d\n' "${parameters[*]}" "$units" \
+  > "$build/built_parameters.h"
+options=(--cc --exe --top-module "$top" --Mdir "$build" -Irtl --default-language "$language"
   -O3 --x-assign fast --x-initial fast --noassert
   -CFLAGS "-std=c++17 -fPIC -fvisibility=hidden -fno-gnu-unique -fno-plt -fno-semantic-interposition"
   -CFLAGS "-I$root/cpp_model -I$root/sim -I$build"
-  -LDFLAGS "-shared -Wl,-Bsymbolic -Wl,-O1" -o libraypool_unit.so)
+  -LDFLAGS "-shared -Wl,-Bsymbolic -Wl,-O1" -o "libraypool_$kind.so")
 [ "$trace" = 0 ] || options+=(--trace-fst)
 for parameter in "${parameters[@]}"; do options+=("-G$parameter"); done
 [ ${#netlist[@]} -eq 0 ] || options+=(-Wno-lint -Wno-style -Wno-fatal)
 message="verilator refused the hardware description (its messages are above)"
 run "$verilator" "${options[@]}" "${waivers[@]}" "${verilog[@]}" "${wrapper[@]/#/$root/}"
 
-echo "verilate.sh: compiling $(cat "$build"/Vmultiprocessor*.cpp | wc -l) lines of C++ with $jobs compilers"
-message="the Verilated unit does not compile (messages above)"
+echo "verilate.sh: compiling $(cat "$build"/V"$top"*.cpp | wc -l) lines of C++ with $jobs compilers"
+message="the Verilated $kind does not compile (messages above)"
 launcher=
 command -v ccache > /dev/null && launcher=ccache
-run env CCACHE_BASEDIR="$build" CCACHE_NOHASHDIR=1 make -C "$build" -f Vmultiprocessor.mk -j "$jobs" CXX="$compiler" \
-  LINK="$compiler" OBJCACHE="$launcher" "${optimise[@]}" libraypool_unit.so
+run env CCACHE_BASEDIR="$build" CCACHE_NOHASHDIR=1 make -C "$build" -f "V$top.mk" -j "$jobs" CXX="$compiler" \
+  LINK="$compiler" OBJCACHE="$launcher" "${optimise[@]}" "libraypool_$kind.so"
 
 # The stamp goes first and comes last: an interrupted move never passes for a finished one.
 rm -f "$stamp"
-mv "$build/libraypool_unit.so" "$library"
+mv "$build/libraypool_$kind.so" "$library"
 echo "$digest" > "$stamp"
 echo "verilate.sh: built $library in $((SECONDS - begin)) s"

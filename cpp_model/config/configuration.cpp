@@ -466,4 +466,26 @@ std::vector<std::pair<std::string, int>> verilog_parameters(const Configuration&
   return parameters;
 }
 
+namespace {
+
+/// Whether rtl/chip.v has it: it has no traverser, and which kernels there are is its host's business.
+bool is_of_chip_verilog(const Parameter& parameter) {
+  static constexpr std::string_view kNot[] = {"controller", "traverser", "reflections",
+                                              "static_traverser_stall_cycles"};
+  return parameter.section != "chip.modelled_traverser" &&
+         std::find(std::begin(kNot), std::end(kNot), parameter.name) == std::end(kNot);
+}
+
+}  // namespace
+
+std::vector<std::pair<std::string, int>> chip_verilog_parameters(const Configuration& configuration, int units) {
+  std::vector<std::pair<std::string, int>> parameters = {{"UNITS", units}};
+  for (auto& of_unit : verilog_parameters(configuration)) parameters.push_back(std::move(of_unit));
+  for (const Parameter& parameter : parameter::kOfChip)
+    if (is_of_chip_verilog(parameter)) parameters.emplace_back(verilog_name(parameter), parameter.get(configuration));
+  parameters.emplace_back("TILE_ORDER", to_underlying(tile_order(configuration.chip)));
+  parameters.emplace_back("TRAVERSER_QUEUE", static_cast<int>(tree_requests(configuration.chip)));
+  return parameters;
+}
+
 }  // namespace raypool

@@ -52,6 +52,16 @@ uint32_t tile_width_log2(uint32_t contents);
 /// Of a node of four children in the modelled traverser's memory: a line of its node cache.
 constexpr uint32_t node_bytes(NodeFormat nodes) { return nodes == NodeFormat::Compressed ? 64 : 128; }
 
+/// The order in which tiles are cast. The traverser of constant speed has no caches that another one than rows could
+/// serve.
+constexpr TileOrder tile_order(const ChipConfiguration& chip) {
+  return chip.traverser == TraverserName::Modelled ? chip.modelled_traverser_tile_order : TileOrder::Rows;
+}
+/// Requests of the traverser that may wait at the memory port: the lines that its caches may have on their way.
+constexpr uint32_t tree_requests(const ChipConfiguration& chip) {
+  return chip.modelled_traverser_node_cache_mshrs + chip.modelled_traverser_triangle_cache_mshrs;
+}
+
 struct Configuration {
   std::string name = "8w8c";
   std::string source;            ///< what load_configuration was given; empty: nothing
@@ -121,5 +131,7 @@ std::string to_json(const Configuration& configuration);
 
 /// Parameters of rtl/compute_unit.v in their order: {"WARPS", 8}, ...
 std::vector<std::pair<std::string, int>> verilog_parameters(const Configuration& configuration);
+/// Of rtl/chip.v with so many units: UNITS, those of its units, and those of the chip, rtl/chip_parameters.vh.
+std::vector<std::pair<std::string, int>> chip_verilog_parameters(const Configuration& configuration, int units);
 
 }  // namespace raypool

@@ -65,6 +65,11 @@ std::vector<GeneratedFile> parameters_verilog() {
   }
   std::vector<GeneratedFile> files = {file_of("unit", "parameters", list), file_of("unit", "parameter_map", map),
                                       file_of("unit", "parameter_checks", unit_checks())};
+  list = kGenerated;
+  const auto of_chip = chip_verilog_parameters(Configuration(), 1);
+  for (size_t i = 1 + verilog_parameters(Configuration()).size(); i < of_chip.size(); ++i)
+    list += parameter_line(of_chip[i].first, of_chip[i].second);
+  files.push_back(file_of("chip", "parameters", list));
   for (const std::string_view section : sections()) {
     std::string checks;
     list = map = kGenerated;

@@ -5,30 +5,18 @@
 #include <array>
 #include <cstdint>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "arith/arith.hpp"
 #include "config/configuration.hpp"
-#include "enum_array.hpp"
 #include "isa/isa.hpp"
 #include "isa/program.hpp"
 #include "kernel/target.hpp"
 #include "machine/compute_unit.hpp"
 #include "machine/packages.hpp"
+#include "machine/ray_kernel.hpp"
 
 namespace raypool {
-
-/// Kernels of the renderer; their names in Program::entries and reports are in kRayKernelNames.
-enum class RayKernel : uint8_t {
-  CastEye = 0,              ///< makes an eye ray for each pixel of a tile
-  CastSecondary = 1,        ///< normal intersection -> reflection ray and shadow ray
-  CastSecondaryDirect = 2,  ///< normal intersection -> shadow ray only
-  Shade = 3,                ///< shadow intersection -> contribution to the frame buffer
-};
-inline constexpr int kRayKernels = 4;
-inline constexpr EnumArray<RayKernel, std::string_view, kRayKernels> kRayKernelNames = {
-    "cast_eye", "cast_secondary", "cast_secondary_direct", "shade"};
 
 /// What normal intersections are given to: the kernel without reflections at depth 1, and
 /// wherever there are none to be seen.

@@ -14,8 +14,9 @@ namespace raypool {
 
 class FramePort {
  public:
+  bool room() const { return waiting_.count() < kPlaces; }
   /// A contribution that is offered now is taken: there is room, and nobody has given one in this cycle.
-  bool ready(uint64_t cycle) const { return cycle != taken_at_ && waiting_.count() < kPlaces; }
+  bool ready(uint64_t cycle) const { return cycle != taken_at_ && room(); }
   /// Takes one; only if ready().
   void take(uint64_t cycle, const FrameContribution& contribution) {
     taken_at_ = cycle;

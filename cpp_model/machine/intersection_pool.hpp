@@ -24,24 +24,32 @@ class IntersectionPool {
   explicit IntersectionPool(const ChipConfiguration& chip, const RecordLayout& layout = {})
       : capacity_(chip.intersection_pool_size),
         layout_(layout),
-        beats_((layout.words + kBeatWords - 1) / kBeatWords),
+        beats_(beats(layout.words)),
         cycles_per_beat_(chip.intersection_pool_cycles_per_beat),
         pipelined_(chip.intersection_pool_pipelined),
-        service_cycles_(pipelined_ ? std::max<uint64_t>(chip.intersection_pool_overhead, beats_ * cycles_per_beat_)
-                                   : chip.intersection_pool_overhead + beats_ * cycles_per_beat_),
+        service_cycles_(service_cycles(chip, layout.words)),
         request_cycles_(std::max(2u, chip.intersection_pool_overhead) - 1) {}
+
+  /// Of a record of so many words.
+  static uint32_t beats(uint32_t words) { return (words + kBeatWords - 1) / kBeatWords; }
+  /// That such a record keeps the port.
+  static uint64_t service_cycles(const ChipConfiguration& chip, uint32_t words) {
+    const uint64_t moving = uint64_t{beats(words)} * chip.intersection_pool_cycles_per_beat;
+    return chip.intersection_pool_pipelined ? std::max<uint64_t>(chip.intersection_pool_overhead, moving)
+                                            : chip.intersection_pool_overhead + moving;
+  }
 
   /// Cycle in which the request that waits is taken; kNever: none waits, or the pool has nothing of its kind.
   uint64_t request_due() const { return request_due_; }
-  /// A request for a package of `kind` is shown, until it is taken. True if that is in this cycle.
+  /// A request of `unit` for a package of `kind` is shown, until it is taken. True if that is in this cycle.
   /// Only this port takes packages out: once there is one of the kind, it is known when the request will be taken.
-  bool request(uint64_t cycle, ImportKind kind) {
+  bool request(uint64_t cycle, ImportKind kind, uint32_t unit = 0) {
     if (wanting_ == ImportKind::None) {
       wanting_ = kind;
       if (!queues_[kind].empty()) request_due_ = due(cycle);
     }
     if (request_due_ != cycle) return false;
-    give();
+    give(unit);
     return true;
   }
   /// The package whose request has been taken last.
@@ -49,6 +57,9 @@ class IntersectionPool {
 
   /// Cycle of the next beat; kNever: none is on its way.
   uint64_t beat_due() const { return beat_due_; }
+  /// Which one that is, of its package, and the unit that has asked for this.
+  uint32_t beat_number() const { return next_beat_; }
+  uint32_t beat_unit() const { return leaving_.front().unit; }
   /// The beat that is due.
   void beat(Beat& beat) {
     const Intersection& record = leaving_.front().record;
@@ -69,6 +80,16 @@ class IntersectionPool {
     if (wanting_ == kind && request_due_ == kNever) request_due_ = due(cycle);
   }
 
+  /// The same beat by beat, as records have it; a package that has begun to come has its place.
+  bool put_ready(ImportKind kind) const { return put_beats_ != 0 || !full(kind); }
+  void put_beat(uint64_t cycle, ImportKind kind, const Beat& beat) {
+    for (uint32_t word = 0, to = put_beats_ * kBeatWords; word < kBeatWords && to < put_.size(); ++word, ++to)
+      put_[to] = beat[word];
+    if (++put_beats_ < beats_) return;
+    put_beats_ = 0;
+    put(cycle, kind, put_);
+  }
+
   bool full(ImportKind kind) const { return queues_[kind].size() >= capacity_; }
   uint32_t size(ImportKind kind) const { return size32(queues_[kind]); }
   /// Packages that no launch has reserved.
@@ -85,14 +106,14 @@ class IntersectionPool {
     free_from_ = std::max(free_from_, cycle);
     return std::max(free_from_ + request_cycles_, register_from_);
   }
-  void give() {
+  void give(uint32_t unit) {
     std::deque<Intersection>& queue = queues_[wanting_];
     given_ = queue.front();
     queue.pop_front();
     --reserved_[wanting_];
     ++taken_;
     const uint64_t first_beat = std::max(request_due_ + 1, beats_from_);
-    leaving_.push_back({first_beat, packed(given_, layout_)});
+    leaving_.push_back({first_beat, unit, packed(given_, layout_)});
     beats_from_ = first_beat + beats_ * cycles_per_beat_;
     register_from_ = first_beat;
     free_from_ = pipelined_ ? request_due_ + 1 : request_due_ - request_cycles_ + service_cycles_;
@@ -103,6 +124,7 @@ class IntersectionPool {
 
   struct Leaving {
     uint64_t first_beat;  // its cycle
+    uint32_t unit;
     Intersection record;
   };
 
@@ -122,7 +144,8 @@ class IntersectionPool {
   uint64_t beats_from_ = 0;      // its first beat may move
   std::deque<Leaving> leaving_;  // taken, and not gone
   uint32_t next_beat_ = 0;       // of the oldest
-  Intersection given_{};
+  Intersection given_{}, put_{};
+  uint32_t put_beats_ = 0;  // of the package that comes
   uint64_t taken_ = 0;
 };
 

@@ -41,6 +41,12 @@ class MemoryPort {
   struct Limits {
     uint32_t lines = UINT32_MAX;    ///< most on their way
     uint32_t traverser_queue = 32;  ///< requests of the traverser that wait
+
+    /// As rtl/chip.v has them: lines enough for the memory's latency.
+    static Limits of(const ChipConfiguration& chip) {
+      const uint32_t line = kLineBeats * chip.memory_cycles_per_beat;
+      return {std::max(chip.memory_latency, line) / line + 1, tree_requests(chip)};
+    }
   };
 
   MemoryPort(const ChipConfiguration& chip, const Limits& limits)
@@ -133,6 +139,7 @@ class MemoryPort {
   }
   /// Cycle of the next beat for the device; kNever: none has come.
   uint64_t response_due() const { return device_beats_.empty() ? kNever : device_beats_.front().due; }
+  const MemoryResponse& next_response() const { return device_beats_.front().response; }
   /// Hands it on.
   MemoryResponse response() {
     const MemoryResponse response = pop(device_beats_);
@@ -141,6 +148,7 @@ class MemoryPort {
   }
   /// The same for the traverser; the id means nothing.
   uint64_t traverser_response_due() const { return traverser_beats_.empty() ? kNever : traverser_beats_.front().due; }
+  const MemoryResponse& next_traverser_response() const { return traverser_beats_.front().response; }
   MemoryResponse traverser_response() { return pop(traverser_beats_); }
 
   // ---- For others

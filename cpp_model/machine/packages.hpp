@@ -43,6 +43,14 @@ struct RecordLayout {
   uint32_t words = kIntersectionWords;  ///< of the record
   std::array<uint8_t, kIntersectionWords> place = {0,  1,  2,  3,  4,  5,  6,  7,  8,  9, 10,
                                                    11, 12, 13, 14, 15, 16, 17, 18, 19, 20};  ///< [word] in the record
+
+  /// Of what is a record of so many words already.
+  static RecordLayout in_order(uint32_t words) {
+    RecordLayout layout;
+    layout.words = words;
+    for (uint32_t word = words; word < kIntersectionWords; ++word) layout.place[word] = kAbsent;
+    return layout;
+  }
 };
 
 /// The record of an intersection, and zeros.

@@ -3,7 +3,10 @@
 namespace raypool {
 
 WarpCycles warp_cycles(const Configuration& configuration, ComputeUnit& device) {
-  const auto count = [&](int number) { return device.counter(number); };
+  return warp_cycles(configuration, [&](int number) { return device.counter(number); });
+}
+
+WarpCycles warp_cycles(const Configuration& configuration, const std::function<uint64_t(int)>& count) {
   WarpCycles cycles;
   cycles.busy = count(counter::kBusyCycles) * static_cast<uint64_t>(configuration.warps);
   cycles.not_launched = count(counter::kWarpsNotLaunched);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <numeric>
 
 #include "config/configuration.hpp"
@@ -33,6 +34,8 @@ struct WarpCycles {
   }
 };
 
+/// `count`: a counter by its number (namespace counter), summed over the device's units.
+WarpCycles warp_cycles(const Configuration& configuration, const std::function<uint64_t(int)>& count);
 WarpCycles warp_cycles(const Configuration& configuration, ComputeUnit& device);
 
 }  // namespace raypool

@@ -48,7 +48,7 @@ printf 'exit\n' > "$folder/exit.asm"
 # refuses_sim WHAT PATTERN OPTION...: of raypool sim; what the options leave open is chosen here.
 refuses_sim() {
   local what=$1 pattern=$2 defaults=(--quiet); shift 2
-  [[ " $* " == *" --engine "* ]] || defaults+=(--engine functional)
+  [[ " $* " == *" --engine "* || " $* " == *" --chip "* ]] || defaults+=(--engine functional)
   [[ " $* " == *" --size "* ]] || defaults+=(--size 8x8)
   [[ " $* " == *" --out "* ]] || defaults+=(--out "$folder/out")
   refuses "$what" "$pattern" "$raypool" sim "${defaults[@]}" "$@"
@@ -89,6 +89,16 @@ refuses_sim "size without x" "1 to 16384" --size 64
 refuses_sim "depth 0" "depth.*1" --depth 0
 refuses_sim "3 compute units" "3" --units 3
 refuses_sim "unknown engine" "native, embree, functional, sampled, model, rtl or lockstep" --engine spice
+refuses_sim "a chip that nobody plays" "use model, rtl or lockstep" --chip functional
+refuses_sim "a chip beside an engine" "excludes" --chip model --engine model
+refuses_sim "modules of a chip as one piece" "leave --modules, --trace and --inspect out" --chip model --modules
+refuses_sim "the modelled traverser at a chip's ports" "choose it with --traverser static" --chip model \
+  --traverser modelled
+refuses_sim "a memory that is faster than the memory port" "chip.memory.latency is 8; .* takes 9 at least" \
+  --chip model --set chip.memory.latency=8
+refuses_sim "a chip that is not built" "make unit CONFIG=4w4c SET=\"chip.ray_pool.size=77\" CHIP=rtl" --chip rtl \
+  --config 4w4c --set chip.ray_pool.size=77
+refuses_sim "a waveform of the chip's model" "waveform" --chip model --waves
 refuses_sim "modules of the engine that has no chip" "engine native has no chip" --engine native --modules
 refuses_sim "threads of an engine that has one" "engine model runs on one thread" --engine model --threads 2
 refuses_sim "more threads than there may be" "Value 257 not in range 1 to 256" --engine native --threads 257

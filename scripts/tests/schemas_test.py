@@ -44,6 +44,13 @@ def raypool(*words):
     return subprocess.run([RAYPOOL, *words], cwd=ROOT, capture_output=True, text=True, timeout=120, check=False)
 
 
+def played_by(engine):
+    """Options of sim for an engine; of the whole chip for chip-model and such."""
+    if engine.startswith("chip-"):
+        return ["--chip", engine.removeprefix("chip-")]
+    return ["--engine", engine]
+
+
 class Agreement(unittest.TestCase):
     """Schema and program take and refuse the same documents."""
 
@@ -206,8 +213,7 @@ class Report(Written):
                     "8x8",
                     "--config",
                     "4w4c",
-                    "--engine",
-                    engine,
+                    *played_by(engine),
                     "--out",
                     folder,
                     "--json",

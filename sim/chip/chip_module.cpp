@@ -5,32 +5,16 @@
 #include <chrono>
 #include <stdexcept>
 
-#include "bits.hpp"
-#include "config/limits.hpp"
+#include "chip/frame_setup.hpp"
 #include "scene/native_renderer.hpp"
 
 namespace raypool::chip {
 
 namespace {
 
-void require_range(const char* what, int value, int low, int high) {
-  if (value < low || value > high)
-    throw InputError(fmt::format("{} is {}; it must lie in {} .. {}", what, value, low, high));
-}
-
-uint32_t tile_width(const ChipOptions& options) { return 1u << tile_width_log2(options.configuration.contents()); }
-
 const ChipOptions& checked(const ChipOptions& options) {
-  if (options.device == nullptr || options.memory == nullptr || options.tracer == nullptr || options.frame == nullptr) {
-    throw std::logic_error("run_chip needs device, memory, tracer and frame");
-  }
-  require_range("image width", options.width, 1, 65535);
-  require_range("image height", options.height, 1, 65535);
-  require_range("depth", options.depth, 1, kLargestDepth);
-  check_configuration(options.configuration, "configuration " + options.configuration.name);
-  check_program_length(options.configuration, options.program_length);
-  if (options.layout.words != options.configuration.intersection_words)
-    throw std::logic_error("the program imports records of another size than the configuration has");
+  if (options.device == nullptr) throw std::logic_error("run_chip needs a device");
+  check_frame(options);
   return options;
 }
 
@@ -122,11 +106,7 @@ void Chip::show_progress() {
 ChipResult Chip::draw() {
   const auto begin = std::chrono::steady_clock::now();
   ComputeUnit& device = *options_.device;
-  std::array<uint32_t, kArguments> arguments = options_.arguments;
-  arguments[argument::kTileWidthLog2] = tile_width_log2(options_.configuration.contents());
-  arguments[argument::kTileMask] = tile_width(options_) - 1;
-  arguments[argument::kWidth] = options_.width;
-  arguments[argument::kHeight] = options_.height;
+  const std::array<uint32_t, kArguments> arguments = frame_arguments(options_);
   device.reset(options_.program_length, options_.memory->size());
   for (uint32_t i = 0; i < kArguments; ++i) device.set_argument(i, arguments[i]);
 

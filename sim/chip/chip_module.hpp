@@ -42,9 +42,6 @@ class Chip : public sc_core::sc_module, public WatchedIf {
  private:
   uint64_t rays_traced() const { return traverser_->counts().rays.traced(); }
   ChipResult collect() const;
-  void collect_units(ChipResult& result) const;
-  void collect_pools(ChipResult& result) const;
-  void collect_ceilings(ChipResult& result) const;
   void watch_tiles();
   size_t place(uint32_t x, uint32_t y) const;  // of a pixel's tile in tile_of_
   Counts counts() const;

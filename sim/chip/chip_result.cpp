@@ -2,6 +2,9 @@
 #include <algorithm>
 
 #include "chip/chip_module.hpp"
+#include "chip/frame_figures.hpp"
+#include "machine/warp_cycles.hpp"
+#include "scene/native_renderer.hpp"
 
 namespace raypool::chip {
 
@@ -19,11 +22,9 @@ PoolFill pool_fill(const LevelStatistics& fill, uint32_t capacity, uint64_t cycl
   return {capacity, fill.peak(), fill.mean(cycles)};
 }
 
-}  // namespace
-
 // Averages over the units, from their counters.
-void Chip::collect_units(ChipResult& result) const {
-  const auto sum = [&](int number) { return options_.device->counter(number); };
+void collect_units(const ChipOptions& options, const FrameFigures& figures, ChipResult& result) {
+  const auto& sum = figures.counter;
   const uint64_t busy = sum(counter::kBusyCycles);
   result.instructions = sum(counter::kInstructions);
   result.thread_instructions = sum(counter::kThreadInstructions);
@@ -36,43 +37,46 @@ void Chip::collect_units(ChipResult& result) const {
     ChipResult::Alu& alu = result.alus[static_cast<size_t>(i)];
     alu.issued = sum(counter::kIssued + i);
     if (!result.timed) continue;
-    const auto instances = static_cast<uint64_t>(options_.configuration.alus[static_cast<size_t>(i)].count);
+    const auto instances = static_cast<uint64_t>(options.configuration.alus[static_cast<size_t>(i)].count);
     if (busy > 0) alu.utilisation = 1 - ratio(sum(counter::kUnused + i), busy * instances);
     alu.waiting = ratio(sum(counter::kWaiting + i), busy);
   }
 }
 
-void Chip::collect_pools(ChipResult& result) const {
-  result.rays_pool = pool_fill(rays_.fill(), rays_.capacity(), result.cycles);
-  result.normal_pool = pool_fill(intersections_.fill(ImportKind::Normal), intersections_.capacity(), result.cycles);
-  result.shadow_pool = pool_fill(intersections_.fill(ImportKind::Shadow), intersections_.capacity(), result.cycles);
-  result.direct_pool = pool_fill(intersections_.fill(ImportKind::Direct), intersections_.capacity(), result.cycles);
-  result.ray_port_utilisation = ratio(rays_.busy_cycles(), result.cycles);
-  result.intersection_port_utilisation = ratio(intersections_.busy_cycles(), result.cycles);
-  result.memory_port_utilisation = ratio(memory_port_.busy_cycles(), result.cycles);
-  result.memory_reads = memory_port_.reads();
-  result.memory_writes = memory_port_.writes();
+void collect_pools(const ChipConfiguration& chip, const FrameFigures& figures, ChipResult& result) {
+  const auto fill = [&](ImportKind kind) {
+    return pool_fill(*figures.intersections[kind], chip.intersection_pool_size, result.cycles);
+  };
+  result.rays_pool = pool_fill(*figures.rays, chip.ray_pool_size, result.cycles);
+  result.normal_pool = fill(ImportKind::Normal);
+  result.shadow_pool = fill(ImportKind::Shadow);
+  result.direct_pool = fill(ImportKind::Direct);
+  result.ray_port_utilisation = ratio(figures.ray_port_busy, result.cycles);
+  result.intersection_port_utilisation = ratio(figures.intersection_port_busy, result.cycles);
+  result.memory_port_utilisation = ratio(figures.memory_port_busy, result.cycles);
+  result.memory_reads = figures.memory_reads;
+  result.memory_writes = figures.memory_writes;
 }
 
 // Of each resource: as often as it was busy in the cycles that there were, so many times the speed it would bear.
-void Chip::collect_ceilings(ChipResult& result) const {
+void collect_ceilings(const ChipOptions& options, const FrameFigures& figures, ChipResult& result) {
   const auto add = [&](std::string name, uint64_t busy, uint64_t cycles) {
     if (busy > 0 && cycles > 0) result.ceilings.push_back({std::move(name), result.mrays_per_s * ratio(cycles, busy)});
   };
-  const auto units = static_cast<uint64_t>(options_.device->units());
+  const uint64_t units = figures.units;
   add("issue", result.instruction_cache_hits + result.instruction_cache_misses, result.cycles * units);
   for (int type = 0; type < kAluTypes; ++type) {
-    const auto instances = static_cast<uint64_t>(options_.configuration.alus[type].count);
-    const uint64_t unused = options_.device->counter(counter::kUnused + type);
+    const auto instances = static_cast<uint64_t>(options.configuration.alus[type].count);
+    const uint64_t unused = figures.counter(counter::kUnused + type);
     add(std::string(kAluNames[type]), result.busy_cycles * instances - unused, result.cycles * units * instances);
   }
-  add("ray_port", rays_.busy_cycles(), result.cycles);
-  add("intersection_port", intersections_.busy_cycles(), result.cycles);
-  add("frame_port", frame_.taken(), result.cycles);
-  add("memory_port", memory_port_.busy_cycles(), result.cycles);
-  add("traverser", result.rays(), traverser_->counts().most_rays);
+  add("ray_port", figures.ray_port_busy, result.cycles);
+  add("intersection_port", figures.intersection_port_busy, result.cycles);
+  add("frame_port", figures.contributions, result.cycles);
+  add("memory_port", figures.memory_port_busy, result.cycles);
+  add("traverser", result.rays(), figures.traverser.most_rays);
   if (result.traversal) {
-    const ChipConfiguration& chip = options_.configuration.chip;
+    const ChipConfiguration& chip = options.configuration.chip;
     add("box_pipes", result.traversal->boxes.tests, result.cycles * chip.modelled_traverser_box_pipes);
     add("triangle_pipes", result.traversal->triangles.tests, result.cycles * chip.modelled_traverser_triangle_pipes);
     add("rays_in_flight", result.traversal->ray_cycles, result.cycles * chip.modelled_traverser_rays);
@@ -80,6 +84,50 @@ void Chip::collect_ceilings(ChipResult& result) const {
   add("latency", own_cycles(result.warp_cycles), result.warp_cycles.busy + result.warp_cycles_without_kernel);
   std::sort(result.ceilings.begin(), result.ceilings.end(),
             [](const Ceiling& a, const Ceiling& b) { return a.mrays_per_s < b.mrays_per_s; });
+}
+
+void collect_rays(const ChipOptions& options, const FrameFigures& figures, ChipResult& result) {
+  result.ray_counts = figures.traverser.rays;
+  result.dropped_depth = figures.dropped_depth + figures.traverser.deepest;
+  result.contributions = figures.contributions;
+  result.held_peak = figures.held_peak;
+  result.kernels = figures.kernels->kernels();
+  result.ray_counts.count_left_out(
+      result.kernels[RayKernel::CastSecondary].threads + result.kernels[RayKernel::CastSecondaryDirect].threads,
+      secondary_kernel(options.depth, options.reflections) == RayKernel::CastSecondary, result.dropped_depth);
+  if (!result.timed) return;
+  const auto traced = static_cast<double>(result.rays());
+  const double thesis = options.depth == 1 ? 2.0 * options.width * options.height : traced;
+  result.mrays_per_s = ratio(1e3 * traced, result.nanoseconds);
+  result.thesis_mrays_per_s = ratio(1e3 * thesis, result.nanoseconds);
+  result.frames_per_s = ratio(1e9, result.nanoseconds);
+}
+
+}  // namespace
+
+ChipResult chip_result(const ChipOptions& options, const FrameFigures& figures) {
+  ChipResult result;
+  result.timed = figures.timed;
+  result.cycles = figures.cycles;
+  result.nanoseconds = static_cast<double>(result.cycles);
+  collect_rays(options, figures, result);
+
+  result.busy_cycles = figures.busy_cycles;
+  result.time_utilisation = ratio(result.busy_cycles, result.cycles * figures.units);
+  result.resource_utilisation = figures.kernels->resource_utilisation();
+  collect_units(options, figures, result);
+
+  collect_pools(options.configuration.chip, figures, result);
+  result.traversal = figures.work;
+  if (result.timed) {
+    result.warp_cycles = warp_cycles(options.configuration, figures.counter);
+    result.warp_cycles_without_kernel =
+        result.cycles * static_cast<uint64_t>(figures.units * options.configuration.warps) - result.warp_cycles.busy;
+    collect_ceilings(options, figures, result);
+  }
+  result.traverser_batches = figures.traverser.batches;
+  result.traverser_stall_batches = figures.traverser.stall_batches;
+  return result;
 }
 
 Counts Chip::counts() const {
@@ -105,44 +153,27 @@ Counts Chip::counts() const {
 }
 
 ChipResult Chip::collect() const {
-  ChipResult result;
-  result.timed = options_.device->timed();
-  result.cycles = clock_.cycle();
-  result.nanoseconds = static_cast<double>(result.cycles);
-  const TraverserCounts& counts = traverser_->counts();
-  result.ray_counts = counts.rays;
-  result.dropped_depth = rays_.dropped_depth() + counts.deepest;
-  result.contributions = frame_.taken();
-  result.held_peak = controller_->held_peak();
-  result.kernels = controller_->kernels();
-  result.ray_counts.count_left_out(
-      result.kernels[RayKernel::CastSecondary].threads + result.kernels[RayKernel::CastSecondaryDirect].threads,
-      secondary_kernel(options_.depth, options_.reflections) == RayKernel::CastSecondary, result.dropped_depth);
-  if (result.timed) {
-    const auto traced = static_cast<double>(result.rays());
-    const double thesis = options_.depth == 1 ? 2.0 * options_.width * options_.height : traced;
-    result.mrays_per_s = ratio(1e3 * traced, result.nanoseconds);
-    result.thesis_mrays_per_s = ratio(1e3 * thesis, result.nanoseconds);
-    result.frames_per_s = ratio(1e9, result.nanoseconds);
-  }
-
-  result.busy_cycles = device_.busy_cycles();
-  result.time_utilisation = ratio(result.busy_cycles, result.cycles * options_.device->units());
-  result.resource_utilisation = controller_->resource_utilisation();
-  collect_units(result);
-
-  collect_pools(result);
-  result.traversal = traverser_->work();
-  if (result.timed) {
-    result.warp_cycles = warp_cycles(options_.configuration, *options_.device);
-    result.warp_cycles_without_kernel =
-        result.cycles * static_cast<uint64_t>(options_.device->units() * options_.configuration.warps) -
-        result.warp_cycles.busy;
-    collect_ceilings(result);
-  }
-  result.traverser_batches = counts.batches;
-  result.traverser_stall_batches = counts.stall_batches;
-  return result;
+  FrameFigures figures;
+  figures.timed = options_.device->timed();
+  figures.cycles = clock_.cycle();
+  figures.units = options_.device->units();
+  figures.counter = [this](int number) { return options_.device->counter(number); };
+  figures.kernels = &controller_->kernels();
+  figures.busy_cycles = device_.busy_cycles();
+  figures.held_peak = controller_->held_peak();
+  figures.rays = &rays_.fill();
+  for (const ImportKind kind : {ImportKind::Normal, ImportKind::Shadow, ImportKind::Direct})
+    figures.intersections[kind] = &intersections_.fill(kind);
+  figures.dropped_depth = rays_.dropped_depth();
+  figures.contributions = frame_.taken();
+  figures.ray_port_busy = rays_.busy_cycles();
+  figures.intersection_port_busy = intersections_.busy_cycles();
+  figures.memory_port_busy = memory_port_.busy_cycles();
+  figures.memory_reads = memory_port_.reads();
+  figures.memory_writes = memory_port_.writes();
+  figures.traverser = traverser_->counts();
+  figures.work = traverser_->work();
+  return chip_result(options_, figures);
 }
 
 }  // namespace raypool::chip

@@ -12,11 +12,7 @@
 namespace raypool::chip {
 
 TileWalk tile_walk(const Configuration& configuration, uint32_t width, uint32_t height) {
-  const ChipConfiguration& chip = configuration.chip;
-  // The traverser of constant speed has no caches that the order could serve.
-  const TileOrder order =
-      chip.traverser == TraverserName::Modelled ? chip.modelled_traverser_tile_order : TileOrder::Rows;
-  TileWalk walk(order, configuration.contents(), chip.held_limit);
+  TileWalk walk(tile_order(configuration.chip), configuration.contents(), configuration.chip.held_limit);
   walk.start(width, height);
   return walk;
 }
@@ -46,24 +42,15 @@ Controller::Controller(const sc_core::sc_module_name& name, const ChipOptions& o
       height_(options.height),
       secondary_(secondary_kernel(options.depth, options.reflections)),
       next_tile_(tile_walk(options.configuration, width_, height_), options.tiles),
-      given_(options.device->units()),
-      ended_(options.device->units()) {
+      kernels_(options.device->units(), options.configuration.contents()) {
   for (ChosenTiles tiles = next_tile_; !tiles.at_end(); tiles.next()) pixels_ += tiles.tile().pixels;
   decisions.bind(*this);
   kernel_events.bind(*this);
 }
 
-void Controller::accepted(uint32_t unit) { given_[unit].back().begins = clock->cycle() + 1; }
+void Controller::accepted(uint32_t unit) { kernels_.accepted(unit, clock->cycle()); }
 
-void Controller::kernel_ended(uint32_t unit) {
-  const GivenKernel kernel = given_[unit].front();
-  given_[unit].pop_front();
-  const uint64_t time = clock->cycle() - std::max(kernel.begins, ended_[unit]);
-  ended_[unit] = clock->cycle();
-  kernels_[kernel.kind].cycles += time;
-  thread_time_ += static_cast<double>(time) * kernel.threads;
-  thread_time_launchable_ += static_cast<double>(time) * options_.configuration.contents();
-}
+void Controller::kernel_ended(uint32_t unit) { kernels_.ended(unit, clock->cycle()); }
 
 PoolLevels Controller::levels() const {
   PoolLevels levels;
@@ -108,10 +95,7 @@ void Controller::cast(uint32_t held) {
 
 void Controller::give(RayKernel kernel, LaunchCommand command) {
   command.pc = options_.entries[kernel];
-  ChipResult::Kernel& count = kernels_[kernel];
-  ++count.launches;
-  count.threads += command.threads;
-  given_[device->next_unit()].push_back({kernel, command.threads, UINT64_MAX});
+  kernels_.given(device->next_unit(), kernel, command.threads);
   device->launch(command);
 }
 

@@ -7,9 +7,7 @@
 // kinds to say, and when: LedgerController as the thesis may have meant it, CountingController as the Verilog does.
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <deque>
 #include <functional>
 #include <memory>
 #include <string>
@@ -20,6 +18,7 @@
 #include "chip/chip_clock.hpp"
 #include "chip/chosen_tiles.hpp"
 #include "chip/interfaces.hpp"
+#include "chip/kernel_times.hpp"
 #include "machine/kernel_policy.hpp"
 #include "machine/pool_levels.hpp"
 #include "machine/tile_walk.hpp"
@@ -56,10 +55,7 @@ class Controller : public sc_core::sc_module, public DecisionIf, public KernelEv
   bool finished() const { return finished_; }
   /// Of the tiles that are cast.
   uint64_t pixels() const { return pixels_; }
-  const EnumArray<RayKernel, ChipResult::Kernel, kRayKernels>& kernels() const { return kernels_; }
-  double resource_utilisation() const {
-    return thread_time_launchable_ == 0 ? 0 : thread_time_ / thread_time_launchable_;
-  }
+  const KernelTimes& kernels() const { return kernels_; }
   uint32_t held_peak() const { return held_peak_; }
   std::string describe() const;
 
@@ -68,12 +64,6 @@ class Controller : public sc_core::sc_module, public DecisionIf, public KernelEv
   uint32_t tile_height() const { return next_tile_.tile_height(); }
 
  protected:
-  struct GivenKernel {
-    RayKernel kind;
-    uint32_t threads;
-    uint64_t begins;  // not before this cycle
-  };
-
   void start_of_simulation() override { changed(); }
   /// What proposes launches.
   static std::unique_ptr<KernelPolicy> policy_of(const ChipOptions& options);
@@ -92,7 +82,7 @@ class Controller : public sc_core::sc_module, public DecisionIf, public KernelEv
   const uint32_t width_, height_;  // of the image
   RayKernel secondary_;
   ChosenTiles next_tile_;
-  std::vector<std::deque<GivenKernel>> given_;  // [unit] not ended, oldest first
+  KernelTimes kernels_;
 
  private:
   void give(RayKernel kernel, LaunchCommand command);
@@ -100,9 +90,6 @@ class Controller : public sc_core::sc_module, public DecisionIf, public KernelEv
   uint64_t pixels_ = 0;
   bool finished_ = false;
   uint32_t held_peak_ = 0;
-  std::vector<uint64_t> ended_;  // [unit] cycle in which the last one ended
-  EnumArray<RayKernel, ChipResult::Kernel, kRayKernels> kernels_{};
-  double thread_time_ = 0, thread_time_launchable_ = 0;
 };
 
 /// The controller that the configuration names.

@@ -23,7 +23,7 @@ PolicyView LedgerController::view(bool ahead) const {
   const PoolLevels seen = levels();
   PolicyView view = seen.view(ledger->rays_to_come());
   view.secondary_room = rules_.secondary_room(seen.shadow_rays, ledger->shadow_rays_to_come(), view.shadow);
-  for (const auto& given : given_) view.kernels += size32(given);
+  view.kernels = kernels_.under_way();
   view.eye_possible = eye_possible();
   view.ahead = ahead;
   return view;

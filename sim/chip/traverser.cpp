@@ -1,6 +1,5 @@
 #include "chip/traverser.hpp"
 
-#include <algorithm>
 #include <stdexcept>
 
 #include "chip/modelled_traverser.hpp"
@@ -11,9 +10,7 @@ namespace raypool::chip {
 Traverser::Traverser(const sc_core::sc_module_name& name, const Tracing& tracing)
     : sc_module(name),
       tracer_(tracing.tracer),
-      contributes_(tracing.chip.shading == Shading::Traverser),
-      sorts_(tracing.chip.culling && tracing.reflections),
-      depth_(tracing.depth) {
+      fates_(tracing.tracer, tracing.chip, tracing.depth, tracing.reflections) {
   kernel_events.bind(*this);
   arrivals.bind(*this);
   room.bind(*this);
@@ -21,12 +18,6 @@ Traverser::Traverser(const sc_core::sc_module_name& name, const Tracing& tracing
   SC_METHOD(next_contribution);
   sensitive << frame_free_;
   dont_initialize();
-}
-
-ImportKind Traverser::kind_of(const PooledRay& ray) const {
-  if (is_shadow(ray.ray)) return ImportKind::Shadow;
-  const bool reflects = (ray.ray[word::kFlags] & kDepthMask) < depth_ && tracer_.reflects(ray.intersection);
-  return sorts_ && !reflects ? ImportKind::Direct : ImportKind::Normal;
 }
 
 void Traverser::trace(PooledRay& ray) {
@@ -43,17 +34,15 @@ void Traverser::follow(PooledRay& ray, VisitList& visits) {
 // True if the result of the ray, which goes on, has left.
 bool Traverser::deliver(const PooledRay& ray) {
   const ImportKind kind = kind_of(ray);
-  if (kind == ImportKind::Shadow && contributes_) return contribute(ray.ray);
+  if (fates_.contributes(kind)) return contribute(ray.ray);
   if (intersections->full(kind)) return false;
-  counts_.deepest += kind == ImportKind::Direct && (ray.ray[word::kFlags] & kDepthMask) == depth_;
+  counts_.deepest += fates_.deepest(ray.ray, kind);
   intersections->put(kind, ray.intersection);
   return true;
 }
 
 bool Traverser::contribute(const Ray& ray) {
-  FrameContribution contribution;
-  contribution.pixel = ray[word::kPixel];
-  std::copy_n(&ray[word::kColor], contribution.rgb.size(), contribution.rgb.begin());
+  const FrameContribution contribution = contribution_of(ray);
   if (!frame->offer(contribution)) {
     clock->notify(frame_free_, Phase::Traverser, 1);
     return false;

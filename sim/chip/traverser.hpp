@@ -13,21 +13,12 @@
 #include "chip/chip_clock.hpp"
 #include "chip/interfaces.hpp"
 #include "chip/ports.hpp"
+#include "chip/ray_fates.hpp"
+#include "chip/traverser_counts.hpp"
 #include "config/configuration.hpp"
-#include "scene/ray_counts.hpp"
 #include "traverser/work.hpp"
 
 namespace raypool::chip {
-
-inline bool is_shadow(const Ray& ray) { return (ray[word::kFlags] & kShadowFlag) != 0; }
-
-struct TraverserCounts {
-  RayCounts rays;
-  uint64_t delivered = 0;  ///< intersections, and contributions
-  uint64_t deepest = 0;    ///< of these, apart because the reflection would be too deep
-  uint64_t batches = 0, stall_batches = 0;
-  uint64_t most_rays = 0;  ///< that could have been traced by now, had there always been some; 0: no limit
-};
 
 /// What every traverser works on.
 struct Tracing {
@@ -81,8 +72,8 @@ class Traverser : public sc_core::sc_module,
   bool leave(const PooledRay& ray);
   /// So many rays have been removed.
   void left(uint32_t count);
-  /// What a traced ray that goes on becomes. Direct: with culling, a hit whose reflection could not add to the picture.
-  ImportKind kind_of(const PooledRay& ray) const;
+  /// What a traced ray that goes on becomes.
+  ImportKind kind_of(const PooledRay& ray) const { return fates_.kind_of(ray.ray, ray.intersection); }
   /// The frame buffer's port, which a traced ray did not get, is free.
   virtual void deliver_traced() { advance(0); }
 
@@ -95,9 +86,7 @@ class Traverser : public sc_core::sc_module,
   void next_contribution();
 
   RayTracer& tracer_;
-  bool contributes_;  // shadow rays that reach the light leave contributions
-  bool sorts_;        // hits that need no reflection are kept apart
-  uint32_t depth_;
+  RayFates fates_;
   sc_core::sc_event frame_free_;
 };
 

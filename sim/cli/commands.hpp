@@ -21,6 +21,7 @@ struct SimOptions {
   std::string config = "8w8c";
   std::vector<std::string> set;  ///< fields of the configuration to change, "warps=4"
   std::string engine = "model";
+  std::string chip;  ///< model, rtl or lockstep: the whole chip, not the unit alone; empty: the chip in SystemC
   std::string size = "320x320";
   std::string view;          ///< JSON file with camera and light; empty: the scene's own
   ViewWords look;            ///< changes of it
@@ -90,6 +91,7 @@ struct UnitOptions {
   std::string config = "8w8c";
   std::vector<std::string> set;  ///< fields of the configuration to change, "warps=4"
   int units = 1;
+  bool chip = false;  ///< the whole chip around them
   bool waves = false;
 };
 int unit_command(const UnitOptions& options);

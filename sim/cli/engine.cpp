@@ -11,6 +11,7 @@
 
 #include "cli/folders.hpp"
 #include "config/data_folder.hpp"
+#include "lockstep/lockstep_chip.hpp"
 #include "lockstep/rtl_loader.hpp"
 #include "machine/functional_unit.hpp"
 #include "machine/model.hpp"
@@ -32,15 +33,28 @@ Engine parse_engine(const std::string& name) {
       fmt::format("there is no engine '{}': use native, embree, functional, sampled, model, rtl or lockstep", name));
 }
 
-std::string unit_library_path(const Configuration& configuration, bool waves, int units) {
-  // Two configurations share a unit exactly when their Verilog is the same.
+namespace {
+
+// Two configurations share a library exactly when their Verilog is the same.
+std::string library_path(const Configuration& configuration, const std::vector<std::pair<std::string, int>>& parameters,
+                         const std::string& what, const char* file) {
   uint32_t hash = hash_of("");
-  for (const auto& [name, value] : verilog_parameters(configuration))
-    hash = hash_of(fmt::format("{}={} ", name, value), hash);
-  const std::string several = units == 1 ? "" : fmt::format("-{}cu", units);
-  const std::string key =
-      fmt::format("{}w{}c-{:08x}{}{}", configuration.warps, configuration.lanes, hash, several, waves ? "-waves" : "");
-  return units_folder() / key / "libraypool_unit.so";
+  for (const auto& [name, value] : parameters) hash = hash_of(fmt::format("{}={} ", name, value), hash);
+  return units_folder() / fmt::format("{}w{}c-{:08x}{}", configuration.warps, configuration.lanes, hash, what) / file;
+}
+
+std::string several(int units) { return units == 1 ? "" : fmt::format("-{}cu", units); }
+
+}  // namespace
+
+std::string unit_library_path(const Configuration& configuration, bool waves, int units) {
+  return library_path(configuration, verilog_parameters(configuration), several(units) + (waves ? "-waves" : ""),
+                      "libraypool_unit.so");
+}
+
+std::string chip_library_path(const Configuration& configuration, bool waves, int units) {
+  return library_path(configuration, chip_verilog_parameters(configuration, units),
+                      several(units) + "-chip" + (waves ? "-waves" : ""), "libraypool_chip.so");
 }
 
 std::string newer_verilog(const std::string& library, const std::string& rtl) {
@@ -64,12 +78,12 @@ std::string build_command(const EngineOptions& options) {
   const Configuration& configuration = options.configuration;
   const std::string units = options.units == 1 ? "" : std::to_string(options.units);
   if (installed())
-    return fmt::format("raypool unit {}{}{}", config_options(configuration), units.empty() ? "" : " --units " + units,
-                       options.waves ? " --waves" : "");
+    return fmt::format("raypool unit {}{}{}{}", config_options(configuration), units.empty() ? "" : " --units " + units,
+                       options.chip ? " --chip" : "", options.waves ? " --waves" : "");
   const std::string set =
       configuration.set.empty() ? "" : fmt::format(" SET=\"{}\"", fmt::join(configuration.set, " "));
-  return fmt::format("make unit CONFIG={}{}{}{}", source_of(configuration), set, units.empty() ? "" : " CUS=" + units,
-                     options.waves ? " WAVES=1" : "");
+  return fmt::format("make unit CONFIG={}{}{}{}{}", source_of(configuration), set, units.empty() ? "" : " CUS=" + units,
+                     options.chip ? " CHIP=rtl" : "", options.waves ? " WAVES=1" : "");
 }
 
 }  // namespace
@@ -82,11 +96,13 @@ std::string config_options(const Configuration& configuration) {
 
 std::string find_unit_library(const EngineOptions& options) {
   const Configuration& configuration = options.configuration;
-  std::string library = options.unit_library.empty() ? unit_library_path(configuration, options.waves, options.units)
-                                                     : options.unit_library;
+  const auto path = options.chip ? chip_library_path : unit_library_path;
+  std::string library =
+      options.unit_library.empty() ? path(configuration, options.waves, options.units) : options.unit_library;
   const std::string build = build_command(options);
   if (!fs::exists(library))
-    throw InputError(fmt::format("there is no Verilated unit '{}': build it with {}", library, build));
+    throw InputError(
+        fmt::format("there is no Verilated {} '{}': build it with {}", options.chip ? "chip" : "unit", library, build));
 
   static std::set<std::string> checked;
   if (options.unit_library.empty() && checked.insert(library).second) {
@@ -118,6 +134,25 @@ std::unique_ptr<ComputeUnit> make_unit(const EngineOptions& options, Memory& mem
   lockstep.kernel_names = kernel_names;
   lockstep.inspect_until = options.waves ? kInspectAlways : options.inspect_until;
   return make_lockstep_unit(configuration, std::move(rtl), memory, lockstep);
+}
+
+std::unique_ptr<ChipDevice> make_chip(const EngineOptions& options, const Memory& memory) {
+  const Configuration& configuration = options.configuration;
+  switch (options.engine) {
+    case Engine::Model:
+      return make_chip(ChipKind::Model, configuration, memory, options.units);
+    case Engine::Rtl:
+      return make_chip(ChipKind::Rtl, configuration, memory, options.units, find_unit_library(options));
+    case Engine::Lockstep:
+      return make_chip(ChipKind::Lockstep, configuration, memory, options.units, find_unit_library(options));
+    default:
+      throw InputError("a chip as one piece is played by model, rtl or lockstep, no other engine");
+  }
+}
+
+std::optional<ChipLockstepCounts> lockstep_counts(const ChipDevice& chip) {
+  const auto* lockstep = dynamic_cast<const LockstepChip*>(&chip);
+  return lockstep == nullptr ? std::nullopt : std::optional(lockstep->lockstep_counts());
 }
 
 std::optional<LockstepCounts> lockstep_counts(ComputeUnit& device) {

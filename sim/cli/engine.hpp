@@ -8,7 +8,9 @@
 #include <string>
 
 #include "config/configuration.hpp"
+#include "lockstep/lockstep_chip.hpp"
 #include "lockstep/lockstep_unit.hpp"
+#include "machine/chip_device.hpp"
 #include "machine/compute_unit.hpp"
 #include "machine/memory.hpp"
 
@@ -26,6 +28,9 @@ Engine parse_engine(const std::string& name);
 /// `waves` the one that can write waveforms. Of a multiprocessor of `units` units.
 std::string unit_library_path(const Configuration& configuration, bool waves, int units = 1);
 
+/// The same of the whole chip: libraypool_chip.so.
+std::string chip_library_path(const Configuration& configuration, bool waves, int units = 1);
+
 /// "--config 8w8c", and "--set ..." if fields of it were set: what names this configuration to a command.
 std::string config_options(const Configuration& configuration);
 
@@ -39,6 +44,7 @@ struct EngineOptions {
   /// Of a lockstep, LockstepOptions::inspect_until. With `waves` it always looks inside: a waveform takes more time
   /// than that, and is not written twice.
   uint64_t inspect_until = 0;
+  bool chip = false;  ///< the whole chip, in place of the device alone
 };
 
 /// The Verilated device that they name. Throws InputError when it is missing; says on
@@ -55,7 +61,12 @@ std::string newer_verilog(const std::string& library, const std::string& rtl);
 std::unique_ptr<ComputeUnit> make_unit(const EngineOptions& options, Memory& memory, const std::string& name = "unit",
                                        const std::map<uint32_t, std::string>& kernel_names = {});
 
+/// What a chip as one piece may be played by; throws InputError for other engines. As make_unit(), of rtl/chip.v: its
+/// model, the Verilated one, or both.
+std::unique_ptr<ChipDevice> make_chip(const EngineOptions& options, const Memory& memory);
+
 /// What the device has compared; none unless it is a lockstep.
 std::optional<LockstepCounts> lockstep_counts(ComputeUnit& device);
+std::optional<ChipLockstepCounts> lockstep_counts(const ChipDevice& chip);
 
 }  // namespace raypool

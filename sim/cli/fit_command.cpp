@@ -115,7 +115,7 @@ SpecialValues FrameRuns::specials(const Configuration& machine) {
 
 ChipResult FrameRuns::draw_on(ComputeUnit& device, MemoryImage& image, const std::string& what) {
   Surroundings around(scene_, image, record_);
-  ChipOptions chip = chip_options(record_, scene_, image, device, around);
+  ChipOptions chip = chip_options(record_, scene_, image, &device, around);
   ++runs_;
   Progress progress(options_.quiet);
   chip.progress = [&](const ChipProgress& done) {

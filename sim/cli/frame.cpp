@@ -66,12 +66,12 @@ Surroundings::Surroundings(const Scene& scene, const MemoryImage& image, const R
       frame(record.width, record.height),
       sink(frame) {}
 
-ChipOptions chip_options(const RunRecord& record, const Scene& scene, MemoryImage& image, ComputeUnit& device,
+ChipOptions chip_options(const RunRecord& record, const Scene& scene, MemoryImage& image, ComputeUnit* device,
                          Surroundings& around) {
   const Program& program = ray_kernel_program(KernelTarget(record.configuration));
   ChipOptions chip;
   chip.configuration = record.configuration;
-  chip.device = &device;
+  chip.device = device;
   chip.memory = &image.memory;
   chip.program_length = size32(program.code);
   for (size_t i = 0; i < kRayKernels; ++i) chip.entries[i] = program.entries.at(std::string(kRayKernelNames[i]));

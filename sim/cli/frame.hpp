@@ -37,8 +37,8 @@ struct Surroundings {
   FrameBufferSink sink;
 };
 
-/// The chip around `device`, which draws the frame of the record.
-ChipOptions chip_options(const RunRecord& record, const Scene& scene, MemoryImage& image, ComputeUnit& device,
+/// The chip around `device`, or one that has it inside (null), which draws the frame of the record.
+ChipOptions chip_options(const RunRecord& record, const Scene& scene, MemoryImage& image, ComputeUnit* device,
                          Surroundings& around);
 
 /// The same frame without a chip, on all cores.

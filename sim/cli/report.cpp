@@ -34,6 +34,17 @@ Json timed(const ChipResult& chip, const Value& value) {
 
 Json pool_json(const PoolFill& pool) { return {{"capacity", pool.capacity}, {"peak", pool.peak}, {"mean", pool.mean}}; }
 
+Json lockstep_json(const ChipLockstepCounts& counts) {
+  return {{"differences", counts.differences},
+          {"cycles", counts.cycles},
+          {"kernels", counts.kernels},
+          {"rays", counts.rays},
+          {"intersections", counts.intersections},
+          {"frame_contributions", counts.contributions},
+          {"memory_reads", counts.memory_reads},
+          {"memory_writes", counts.memory_writes}};
+}
+
 Json lockstep_json(const LockstepCounts& counts) {
   return {{"instructions", counts.instructions},
           {"differences", counts.differences},
@@ -166,7 +177,7 @@ void add_chip(Json& json, const ChipResult& chip, const ChipConfiguration& machi
                    {"normal_intersections", pool_json(chip.normal_pool)},
                    {"shadow_intersections", pool_json(chip.shadow_pool)},
                    {"direct_intersections", pool_json(chip.direct_pool)},
-                   {"unfinished_pixels_peak", chip.held_peak},
+                   {"unfinished_pixels_peak", chip.held_peak ? Json(*chip.held_peak) : Json(nullptr)},
                    {"ray_port_utilisation", chip.ray_port_utilisation},
                    {"intersection_port_utilisation", chip.intersection_port_utilisation}};
   json["memory"] = {{"line_reads", chip.memory_reads},
@@ -364,6 +375,7 @@ std::string to_json(const RunRecord& record) {
   const Json configuration = Json::parse(to_json(record.configuration));
   json["configuration"] = configuration;
   json["engine"] = record.engine;
+  if (record.whole_chip) json["whole_chip"] = true;
   json["scene"] = {{"name", record.scene}, {"triangles", record.triangles}, {"materials", record.materials}};
   json["view"] = Json::parse(to_json(record.view));
   json["size"] = {{"width", record.width}, {"height", record.height}};
@@ -375,6 +387,7 @@ std::string to_json(const RunRecord& record) {
   if (record.native) add_native(json, *record.native);
   if (record.sampled) add_sampled(json, *record.sampled, record.seed, record.depth == 1);
   if (record.lockstep) json["lockstep"] = lockstep_json(*record.lockstep);
+  if (record.chip_lockstep) json["lockstep"] = lockstep_json(*record.chip_lockstep);
   json["wall_seconds"] = record.wall_seconds;
   json["simulation_seconds"] = record.simulation_seconds;
   if (record.chip && record.chip->timed) {
@@ -397,6 +410,7 @@ std::string to_table(const RunRecord& record) {
   if (record.native) ray_table(text, record, record.native->ray_counts);
   if (record.sampled) sampled_table(text, record);
   if (record.lockstep) line(text, "  {}", to_string(*record.lockstep));
+  if (record.chip_lockstep) line(text, "  {}", to_string(*record.chip_lockstep));
   std::string simulated;
   if (record.chip && record.chip->timed) {
     simulated = fmt::format(", {:.0f} thousand cycles and {:.0f} thousand thread instructions a second",

@@ -7,6 +7,7 @@
 
 #include "chip/chip.hpp"
 #include "config/configuration.hpp"
+#include "lockstep/lockstep_chip.hpp"
 #include "lockstep/lockstep_unit.hpp"
 #include "sampled/sampled_frame.hpp"
 #include "scene/native_renderer.hpp"
@@ -17,6 +18,7 @@ namespace raypool {
 struct RunRecord {
   std::vector<std::string> command;  ///< the command line
   std::string engine;
+  bool whole_chip = false;  ///< the engine plays rtl/chip.v, not the units alone
   Configuration configuration;
   std::string scene;
   size_t triangles = 0, materials = 0;
@@ -25,13 +27,14 @@ struct RunRecord {
   int depth = 0;
   bool reflections = false;  ///< are cast
   int units = 0;
-  std::optional<ChipResult> chip;           ///< engines with a chip
-  std::optional<NativeStatistics> native;   ///< engines native, embree and sampled
-  std::optional<sampled::Figures> sampled;  ///< engine sampled
-  uint64_t seed = 0;                        ///< its
-  std::optional<LockstepCounts> lockstep;   ///< engine lockstep
-  double wall_seconds = 0;                  ///< the whole run
-  double simulation_seconds = 0;            ///< drawing alone, without scene, tree and files
+  std::optional<ChipResult> chip;                   ///< engines with a chip
+  std::optional<NativeStatistics> native;           ///< engines native, embree and sampled
+  std::optional<sampled::Figures> sampled;          ///< engine sampled
+  uint64_t seed = 0;                                ///< its
+  std::optional<LockstepCounts> lockstep;           ///< engine lockstep, of the units
+  std::optional<ChipLockstepCounts> chip_lockstep;  ///< or of the whole chip
+  double wall_seconds = 0;                          ///< the whole run
+  double simulation_seconds = 0;                    ///< drawing alone, without scene, tree and files
 };
 
 /// report.json's text.

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "chip/board.hpp"
 #include "chip/chip.hpp"
 #include "cli/black_picture.hpp"
 #include "cli/commands.hpp"
@@ -31,6 +32,12 @@ constexpr double kLeastDetail = 0.01;
 
 void check(const SimOptions& options, Engine engine) {
   check_depth_and_units(options.depth, options.units);
+  if (!options.chip.empty()) {
+    if (engine != Engine::Model && engine != Engine::Rtl && engine != Engine::Lockstep)
+      throw InputError(fmt::format("--chip is '{}': use model, rtl or lockstep", options.chip));
+    if (options.modules || !options.trace.empty() || options.inspect_until != 0)
+      throw InputError("--chip draws on the chip as one piece: leave --modules, --trace and --inspect out");
+  }
   if (options.waves && engine != Engine::Rtl && engine != Engine::Lockstep) {
     throw InputError(fmt::format("engine {} has no waveform: use rtl or lockstep, or leave waves out", options.engine));
   }
@@ -104,7 +111,7 @@ fs::path default_folder(const SimOptions& options, const Scene& scene, const Con
   if (options.detail != 1) name += fmt::format("-detail{:g}", options.detail);
   if (!options.view.empty()) name += "-" + fs::path(options.view).stem().string();
   name += fmt::format("-{}-{}cu-{}x{}-depth{}-{}", configuration.name, options.units, size.width, size.height,
-                      options.depth, options.engine);
+                      options.depth, options.chip.empty() ? options.engine : "chip-" + options.chip);
   if (!names_say_all(options, scene, configuration)) name += fmt::format("-{:08x}", content_hash(scene, configuration));
   return results_folder() / name;
 }
@@ -169,6 +176,21 @@ void write_trace(const SimOptions& options, const trace::MachineTrace& trace, Ou
   out.write("trace.kanata", trace::to_kanata(trace));
 }
 
+/// The waveform, of a run that went wrong.
+void keep(OutputFolder& out) {
+  out.publish();
+  std::fprintf(stderr, "raypool: the waveform until then is in %s\n", out.path("").c_str());
+}
+
+template <typename Draw>
+ChipResult draw_with_progress(const SimOptions& options, ChipOptions& chip, bool timed, Draw draw) {
+  Progress progress(options.quiet || options.json);
+  chip.progress = [&](const ChipProgress& done) {
+    if (progress.due()) progress.show(progress_text(done, timed, progress.seconds()));
+  };
+  return draw();
+}
+
 FrameBuffer draw_on_unit(const SimOptions& options, Engine engine, RunRecord& record, const Scene& scene,
                          MemoryImage& image, OutputFolder& out) {
   std::unique_ptr<ComputeUnit> device = make_device(options, engine, record, image);
@@ -181,20 +203,14 @@ FrameBuffer draw_on_unit(const SimOptions& options, Engine engine, RunRecord& re
                                                     trace_window(options, record), trace);
   }
   Surroundings around(scene, image, record);
-  ChipOptions chip = chip_options(record, scene, image, *device, around);
+  ChipOptions chip = chip_options(record, scene, image, device.get(), around);
   // When something goes wrong the waveform up to there is what one wants to see.
   const auto keep_waveform = [&] {
     device.reset();
-    if (!options.waves) return;
-    out.publish();
-    std::fprintf(stderr, "raypool: the waveform until then is in %s\n", out.path("").c_str());
+    if (options.waves) keep(out);
   };
   try {
-    Progress progress(options.quiet || options.json);
-    chip.progress = [&](const ChipProgress& done) {
-      if (progress.due()) progress.show(progress_text(done, device->timed(), progress.seconds()));
-    };
-    record.chip = run_chip(chip);
+    record.chip = draw_with_progress(options, chip, device->timed(), [&] { return run_chip(chip); });
   } catch (const ChipFault& fault) {
     keep_waveform();
     throw InputError(describe(fault, record));
@@ -206,6 +222,32 @@ FrameBuffer draw_on_unit(const SimOptions& options, Engine engine, RunRecord& re
   record.lockstep = lockstep_counts(*device);
   device.reset();
   if (!options.trace.empty()) write_trace(options, trace, out);
+  return std::move(around.frame);
+}
+
+FrameBuffer draw_on_chip(const SimOptions& options, Engine engine, RunRecord& record, const Scene& scene,
+                         MemoryImage& image, OutputFolder& out) {
+  EngineOptions chosen{engine, record.configuration, options.unit_library, options.waves, options.units};
+  chosen.chip = true;
+  std::unique_ptr<ChipDevice> chip = make_chip(chosen, image.memory);
+  if (options.waves) chip->open_waveform(out.temporary("waves.fst"));
+  Surroundings around(scene, image, record);
+  ChipOptions frame = chip_options(record, scene, image, nullptr, around);
+  const auto keep_waveform = [&] {
+    chip.reset();
+    if (options.waves) keep(out);
+  };
+  try {
+    record.chip = draw_with_progress(options, frame, true, [&] { return run_board(frame, *chip); });
+  } catch (const ChipFault& fault) {
+    keep_waveform();
+    throw InputError(describe(fault, record));
+  } catch (const std::exception&) {
+    keep_waveform();
+    throw;
+  }
+  record.simulation_seconds = record.chip->wall_seconds;
+  record.chip_lockstep = lockstep_counts(*chip);
   return std::move(around.frame);
 }
 
@@ -225,7 +267,7 @@ FrameBuffer draw_sampled_frame(const SimOptions& options, RunRecord& record, con
   // What is over already gets the smallest sample.
   if (time > 0) wanted.seconds = std::max(1e-3, time - whole.seconds());
   const std::unique_ptr<ComputeUnit> device = make_device(options, Engine::Model, record, image);
-  ChipOptions chip = chip_options(record, scene, image, *device, around);
+  ChipOptions chip = chip_options(record, scene, image, device.get(), around);
   Progress progress(options.quiet || options.json);
   chip.progress = [&](const ChipProgress& done) {
     if (progress.due()) progress.show(progress_text(done, true, progress.seconds()));
@@ -239,23 +281,26 @@ void print_modules(const SimOptions& options, Engine engine, const RunRecord& re
                    MemoryImage& image) {
   const std::unique_ptr<ComputeUnit> device = make_device(options, engine, record, image);
   Surroundings around(scene, image, record);
-  fmt::print("{}", chip_modules(chip_options(record, scene, image, *device, around)));
+  fmt::print("{}", chip_modules(chip_options(record, scene, image, device.get(), around)));
 }
 
 }  // namespace
 
 int sim_command(const SimOptions& options) {
   const Progress whole(true);
-  const Engine engine = parse_engine(options.engine);
+  const Engine engine = parse_engine(options.chip.empty() ? options.engine : options.chip);
   const ImageSize size = parse_image_size(options.size);
   check(options, engine);
 
   RunRecord record;
   record.command = options.command;
-  record.engine = options.engine;
+  record.engine = options.chip.empty() ? options.engine : options.chip;
+  record.whole_chip = !options.chip.empty();
   std::vector<std::string> set = options.set;
   if (!options.traverser.empty()) set.push_back("chip.traverser=" + options.traverser);
-  record.configuration = load_configuration(options.config, set);
+  const Configuration loaded = load_configuration(options.config, set);
+  record.configuration = loaded;
+  if (record.whole_chip) record.configuration.chip.controller = ControllerName::Counters;  // the one in Verilog
   record.width = size.width;
   record.height = size.height;
   record.depth = options.depth;
@@ -273,12 +318,12 @@ int sim_command(const SimOptions& options) {
     print_modules(options, engine, record, scene, image);
     return 0;
   }
-  OutputFolder out(options.out.empty() ? default_folder(options, scene, record.configuration, size)
-                                       : fs::path(options.out));
+  OutputFolder out(options.out.empty() ? default_folder(options, scene, loaded, size) : fs::path(options.out));
 
   const FrameBuffer frame =
       engine == Engine::Sampled ? draw_sampled_frame(options, record, scene, image, whole)
       : without_unit(engine) ? draw_natively(options, engine, record, scene, image, Tracer(scene, image.material_base))
+      : record.whole_chip    ? draw_on_chip(options, engine, record, scene, image, out)
                              : draw_on_unit(options, engine, record, scene, image, out);
 
   const std::vector<uint8_t> png = encode_png(frame);

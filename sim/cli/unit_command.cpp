@@ -36,15 +36,18 @@ void make_folder(const fs::path& folder) {
 
 int unit_command(const UnitOptions& options) {
   const Configuration configuration = load_configuration(options.config, options.set);
-  const fs::path folder = fs::path(unit_library_path(configuration, options.waves, options.units)).parent_path();
+  const auto path = options.chip ? chip_library_path : unit_library_path;
+  const fs::path folder = fs::path(path(configuration, options.waves, options.units)).parent_path();
   make_folder(folder);
   // One build at a time in a folder: a second waits here.
   std::vector<std::string> command = {"flock", folder / ".lock", fs::path(data_folder()) / "scripts" / "verilate.sh",
                                       folder};
   if (options.waves) command.emplace_back("--trace");
-  command.push_back(fmt::format("UNITS={}", options.units));
-  for (const auto& [name, value] : verilog_parameters(configuration))
-    command.push_back(fmt::format("{}={}", name, value));
+  if (options.chip) command.insert(command.end(), {"--top", "chip"});
+  auto parameters =
+      options.chip ? chip_verilog_parameters(configuration, options.units) : verilog_parameters(configuration);
+  if (!options.chip) parameters.emplace_back("UNITS", options.units);
+  for (const auto& [name, value] : parameters) command.push_back(fmt::format("{}={}", name, value));
 
   setenv("JOBS", std::to_string(std::max(1u, std::thread::hardware_concurrency())).c_str(), 0);
   std::vector<char*> words;

@@ -1,10 +1,11 @@
-// Loads the Verilated compute unit that scripts/verilate.sh has built.
+// Loads the Verilated compute unit, or chip, that scripts/verilate.sh has built.
 #pragma once
 
 #include <memory>
 #include <string>
 
 #include "config/configuration.hpp"
+#include "machine/chip_device.hpp"
 #include "machine/compute_unit.hpp"
 
 namespace raypool {
@@ -16,5 +17,8 @@ namespace raypool {
 /// interface; the message says how to build it.
 std::unique_ptr<ComputeUnit> load_rtl_unit(const std::string& library_path, const Configuration& configuration,
                                            int units = 1);
+/// Likewise of rtl/chip.v: OUTPUT_DIR/libraypool_chip.so of scripts/verilate.sh --top chip.
+std::unique_ptr<ChipDevice> load_rtl_chip(const std::string& library_path, const Configuration& configuration,
+                                          int units = 1);
 
 }  // namespace raypool

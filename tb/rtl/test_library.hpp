@@ -5,23 +5,34 @@
 #include <filesystem>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "config/configuration.hpp"
 
 namespace raypool::test {
 
-/// Path of the library of `units` units of `configuration`, in a folder of its name below
-/// RAYPOOL_TEST_UNITS. Runs in the folder of the sources.
-inline std::string build_library(const Configuration& configuration, int units = 1, bool waves = false) {
-  const std::string folder = std::string(RAYPOOL_TEST_UNITS) + "/" + configuration.name +
-                             (units == 1 ? "" : "-" + std::to_string(units) + "cu");
+/// Runs scripts/verilate.sh of the tree `tree` with `options` in the folder `name` below RAYPOOL_TEST_UNITS.
+/// Returns this folder.
+inline std::string verilate(const std::string& name, const std::string& options, const std::string& tree = ".") {
+  const std::string folder = std::string(RAYPOOL_TEST_UNITS) + "/" + name;
   std::filesystem::create_directories(folder);
-  std::string command = "flock " + folder + "/.lock scripts/verilate.sh " + folder + (waves ? " --trace" : "");
-  command += " UNITS=" + std::to_string(units);
-  for (const auto& [name, value] : verilog_parameters(configuration))
-    command += " " + name + "=" + std::to_string(value);
+  const std::string command = "flock " + folder + "/.lock " + tree + "/scripts/verilate.sh " + folder + options;
   if (std::system(command.c_str()) != 0) throw std::runtime_error("this command failed: " + command);
-  return folder + "/libraypool_unit.so";
+  return folder;
+}
+inline std::string words_of(const std::vector<std::pair<std::string, int>>& parameters) {
+  std::string words;
+  for (const auto& [name, value] : parameters) words += " " + name + "=" + std::to_string(value);
+  return words;
+}
+
+/// Path of the library of `units` units of `configuration`, in a folder of its name. Runs in the folder of the sources.
+inline std::string build_library(const Configuration& configuration, int units = 1, bool waves = false) {
+  return verilate(configuration.name + (units == 1 ? "" : "-" + std::to_string(units) + "cu"),
+                  (waves ? " --trace UNITS=" : " UNITS=") + std::to_string(units) +
+                      words_of(verilog_parameters(configuration))) +
+         "/libraypool_unit.so";
 }
 
 }  // namespace raypool::test

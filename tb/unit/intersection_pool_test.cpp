@@ -38,12 +38,7 @@ struct Pool {
     return chip;
   }
   /// Records arrive with their words in order.
-  static RecordLayout layout() {
-    RecordLayout layout;
-    layout.words = kWords;
-    for (uint32_t word = kWords; word < kIntersectionWords; ++word) layout.place[word] = RecordLayout::kAbsent;
-    return layout;
-  }
+  static RecordLayout layout() { return RecordLayout::in_order(kWords); }
 };
 
 /// What a run has shown: that it was there.
@@ -155,7 +150,7 @@ class Bench {
       const auto of = static_cast<ImportKind>(kind);
       ASSERT_EQ(level(u_.size_o, kind), pool_.size(of)) << kind;
       ASSERT_EQ(level(u_.available_o, kind), pool_.available(of)) << kind;
-      ASSERT_EQ(u_.put_ready_o >> (kind - 1) & 1, !pool_.full(of) || put_beat_ != 0) << kind;
+      ASSERT_EQ(u_.put_ready_o >> (kind - 1) & 1, pool_.put_ready(of)) << kind;
       seen.full += pool_.full(of);
     }
   }
@@ -164,7 +159,7 @@ class Bench {
     taken_ = false;
     if (!u_.request_valid_i) return;
     const auto kind = static_cast<ImportKind>(u_.request_kind_i);
-    taken_ = pool_.request(cycle_, kind);
+    taken_ = pool_.request(cycle_, kind, u_.request_unit_i);
     ASSERT_EQ(u_.request_ready_o, taken_);
     request_waits_ = !taken_;
     if (!taken_) return;
@@ -180,6 +175,8 @@ class Bench {
     ASSERT_EQ(u_.beat_valid_o, due);
     ASSERT_EQ(u_.pixel_valid_o, due && beat_ == 1);
     if (!due) return;
+    ASSERT_EQ(pool_.beat_number(), beat_);
+    ASSERT_EQ(pool_.beat_unit(), leaving_.front());
     Beat beat;
     pool_.beat(beat);
     for (uint32_t i = 0; i < 4; ++i) ASSERT_EQ(u_.beat_data_o[i], beat[i]) << i;
@@ -195,12 +192,13 @@ class Bench {
     put_waits_ = u_.put_valid_i && !ready;
     seen.refused += put_waits_;
     if (!u_.put_valid_i || put_waits_) return;
+    const WData* data = u_.put_data_i;
+    pool_.put_beat(cycle_, static_cast<ImportKind>(u_.put_kind_i), {data[0], data[1], data[2], data[3]});
     if (++put_beat_ < kBeats) return;
     put_beat_ = 0;
     ++came_;
     seen.put_and_taken += taken_ && u_.put_kind_i == u_.request_kind_i;
     expected_[u_.put_kind_i].push_back(put_);
-    pool_.put(cycle_, static_cast<ImportKind>(u_.put_kind_i), put_);
   }
 
   Clocked<typename P::Unit> bench_;

@@ -44,12 +44,13 @@ void add_config(CLI::App& app, std::string& config, std::vector<std::string>& se
   add_set(app, set);
 }
 
-void add_unit(CLI::App& app, std::string& engine, std::string& library) {
-  app.add_option("--engine", engine,
-                 "what stands in for the unit; native, sampled and embree, the reference picture, are for sim only")
+CLI::Option* add_unit(CLI::App& app, std::string& engine, std::string& library) {
+  app.add_option("--unit-library", library, "Verilated unit (default: where raypool unit builds it)");
+  return app
+      .add_option("--engine", engine,
+                  "what stands in for the unit; native, sampled and embree, the reference picture, are for sim only")
       ->type_name("native|embree|functional|sampled|model|rtl|lockstep")
       ->capture_default_str();
-  app.add_option("--unit-library", library, "Verilated unit (default: where raypool unit builds it)");
 }
 
 void add_threads(CLI::App& app, uint32_t& threads, const std::string& whose) {
@@ -188,7 +189,13 @@ void CommandLine::add_sim_command() {
       app_.add_subcommand("sim", "draw a scene on the simulated chip; leaves image.png and report.json");
   add_scene(*sim_app, sim_.scene, sim_.size, sim_.view, sim_.look, sim_.detail);
   add_config(*sim_app, sim_.config, sim_.set);
-  add_unit(*sim_app, sim_.engine, sim_.unit_library);
+  CLI::Option* engine = add_unit(*sim_app, sim_.engine, sim_.unit_library);
+  sim_app
+      ->add_option("--chip", sim_.chip,
+                   "in place of --engine: what plays the whole chip, rtl/chip.v, not the unit alone; its traverser is "
+                   "static, its controller counts")
+      ->type_name("model|rtl|lockstep")
+      ->excludes(engine);
   add_units_and_depth(*sim_app, sim_.units, sim_.depth);
   add_threads(*sim_app, sim_.threads, "native, embree and sampled: threads");
   sim_app
@@ -316,6 +323,7 @@ void CommandLine::add_unit_command() {
   unit_app->add_option("--units", unit_.units, "compute units: 1, 2 or 4")
       ->check(CLI::IsMember({1, 2, 4}))
       ->capture_default_str();
+  unit_app->add_flag("--chip", unit_.chip, "the whole chip around them, for sim --chip");
   unit_app->add_flag("--waves", unit_.waves, "one that can leave a waveform, beside the fast one");
   unit_app->callback([this] { code_ = unit_command(unit_); });
 }

@@ -1,0 +1,124 @@
+// The chip's interface: one set of ports, behind which stand its model, the Verilated rtl/chip.v and the lockstep of
+// both. Outside remain the memory, the frame buffer, a host that starts a frame, and a traverser at its ports.
+//
+// Use, once a cycle: read outputs() (what the ports show in this cycle; they never depend on this cycle's inputs),
+// decide the inputs, call clock(inputs). A handshake transfers when both its valid and its ready are set in the same
+// cycle. Names are those of rtl/chip.v without _i and _o; docs/chip.md, section 8, has the protocols.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "config/configuration.hpp"
+#include "enum_array.hpp"
+#include "isa/isa.hpp"
+#include "machine/compute_unit.hpp"
+#include "machine/memory.hpp"
+#include "machine/memory_port.hpp"
+#include "machine/packages.hpp"
+#include "machine/ray_kernel.hpp"
+
+namespace raypool {
+
+/// What stays for a frame; a host writes it before it starts one.
+struct FrameSetup {
+  uint32_t program_length = 0;  ///< instructions, from address 0
+  uint32_t memory_limit = 0;    ///< bytes
+  std::array<uint32_t, kArguments> arguments{};
+  EnumArray<RayKernel, uint32_t, kRayKernels> entries{};  ///< PC of each
+  uint32_t width = 0, height = 0;                         ///< pixels, 1 .. 65535
+  uint32_t depth = 1;                                     ///< of normal rays: deeper ones are dropped
+  bool reflections = false;                               ///< normal intersections are for the kernel that reflects
+};
+
+struct ChipInputs {
+  // memory
+  bool memory_request_ready = false;
+  bool memory_beat_valid = false;
+  Beat memory_beat_data{};
+  // frame buffer
+  bool frame_ready = false;
+  // traverser: its rays, what becomes of them, and its memory
+  bool ray_ready = false;
+  bool free_valid = false;
+  uint32_t free_place = 0;
+  bool free_shadow = false;
+  bool put_valid = false;
+  ImportKind put_kind = ImportKind::None;
+  Beat put_data{};
+  bool contribution_valid = false;
+  FrameContribution contribution;
+  bool tree_request_valid = false;
+  MemoryPort::TreeRequest tree_request;
+};
+
+/// What belongs to a valid means something only while it is set; masks have one bit a unit.
+struct ChipOutputs {
+  bool busy = false;  ///< a frame is being drawn
+
+  // memory
+  bool memory_request_valid = false;
+  MemoryPort::Access memory_request;
+  bool memory_beat_ready = false;
+  // frame buffer
+  bool frame_valid = false;
+  FrameContribution frame;
+  // traverser
+  bool ray_valid = false, ray_last = false;
+  uint32_t ray_place = 0;
+  Beat ray_data{};
+  uint32_t put_ready = 0;  ///< mask: bit of ImportKind
+  bool contribution_ready = false;
+  bool tree_request_ready = false;
+  bool tree_response_valid = false;
+  uint8_t tree_response_beat = 0;  ///< 0 .. 3 within the line
+  Beat tree_response_data{};
+
+  // Between the blocks. Nothing there depends on this cycle's inputs either.
+  UnitInputs to_device;  ///< of the multiprocessor
+  UnitOutputs device;
+  struct Outcome {
+    bool valid = false, kept = false, deep = false, shadow = false, eye = false;
+    uint8_t unit = 0;
+    uint32_t pixel = 0;
+  } outcome;
+  uint32_t rays = 0, shadow_rays = 0;                                 ///< in the ray pool, and among them
+  bool held_up = false;                                               ///< a ray that is offered waits for room
+  EnumArray<ImportKind, uint32_t, kImportKinds> size{}, available{};  ///< of the intersection pool
+  bool reserve_valid = false;
+  ImportKind reserve_kind = ImportKind::None;
+  uint32_t reserve_count = 0;
+  bool pixel_valid = false;  ///< the pixel of a package that leaves the intersection pool is shown
+  uint8_t pixel_unit = 0;
+  bool exported_valid = false;  ///< the frame port has taken a contribution of a unit
+  uint8_t exported_unit = 0;
+  uint32_t exported_pixel = 0;
+  uint32_t quiet = 0;  ///< mask: nothing of the unit waits or is on its way at the memory port
+};
+
+/// For the report: since the frame's start, right two cycles after the last event.
+struct ChipCounts {
+  uint64_t rays_taken = 0, ray_port_busy = 0;  ///< dropped rays too; cycles
+  uint64_t packages_taken = 0;
+  uint64_t contributions = 0;
+  uint64_t memory_reads = 0, memory_writes = 0, memory_port_busy = 0;  ///< lines and quadwords of the device; cycles
+};
+
+class ChipDevice {
+ public:
+  virtual ~ChipDevice() = default;
+
+  virtual uint32_t units() const = 0;
+  /// Resets, writes what stays for a frame, and starts it: the frame begins in the first cycle that is clocked.
+  virtual void start(const FrameSetup& setup) = 0;
+  virtual const ChipOutputs& outputs() const = 0;
+  virtual void clock(const ChipInputs& inputs) = 0;
+
+  virtual ChipCounts counts() = 0;
+  virtual uint64_t counter(int number) = 0;  ///< of the units, summed; see namespace counter
+  /// Writes a waveform from now on; throws std::runtime_error where there is none.
+  virtual void open_waveform(const std::string& path);
+};
+
+}  // namespace raypool

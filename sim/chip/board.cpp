@@ -1,0 +1,232 @@
+#include "chip/board.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <stdexcept>
+
+#include "bits.hpp"
+#include "chip/board_memory.hpp"
+#include "chip/frame_figures.hpp"
+#include "chip/frame_setup.hpp"
+#include "chip/monitor.hpp"
+#include "chip/port_traverser.hpp"
+#include "config/limits.hpp"
+#include "machine/intersection_pool.hpp"
+#include "scene/native_renderer.hpp"
+
+namespace raypool {
+
+namespace {
+
+using namespace chip;
+
+const ChipOptions& checked(const ChipOptions& options) {
+  check_frame(options);
+  const ChipConfiguration& chip = options.configuration.chip;
+  if (chip.traverser != TraverserName::Static) {
+    throw InputError(
+        "the chip in hardware has its traverser at its ports, where there is none but static: choose it with "
+        "--traverser static");
+  }
+  if (chip.memory_latency < BoardMemory::least_latency(chip)) {
+    throw InputError(
+        fmt::format("chip.memory.latency is {}; the chip in hardware takes {} at least, with {} cycles a beat",
+                    chip.memory_latency, BoardMemory::least_latency(chip), chip.memory_cycles_per_beat));
+  }
+  return options;
+}
+
+class Board {
+ public:
+  Board(const ChipOptions& options, ChipDevice& chip)
+      : options_(checked(options)),
+        chip_(chip),
+        reflects_(secondary_kernel(options.depth, options.reflections) == RayKernel::CastSecondary),
+        memory_(*options.memory, options.configuration.chip),
+        traverser_(*options.tracer, options.configuration.chip, chip.units(), options.depth, reflects_, options.layout),
+        kernels_(chip.units(), options.configuration.contents()) {}
+
+  ChipResult draw() {
+    const auto begin = std::chrono::steady_clock::now();
+    chip_.start(setup());
+    inputs_.frame_ready = true;
+    while (still_ < kStillCycles) clock();
+    if (options_.progress) show_progress();
+    ChipResult result = chip_result(options_, figures());
+    result.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    return result;
+  }
+
+ private:
+  // More than any port is busy with a package: all that is counted for the report is right then.
+  static constexpr uint64_t kStillCycles = 1024;
+
+  FrameSetup setup() const;
+  void clock();
+  void follow_kernels(const ChipOutputs& outputs);
+  void follow_levels(const ChipOutputs& outputs);
+  void watch(const ChipOutputs& outputs);
+  void stall(const std::string& what) const;
+  RayKernel kernel_at(uint32_t pc) const;
+  void show_progress() const;
+  FrameFigures figures();
+
+  const ChipOptions& options_;
+  ChipDevice& chip_;
+  const bool reflects_;
+  BoardMemory memory_;
+  PortTraverser traverser_;
+  ChipInputs inputs_;
+  uint64_t cycle_ = 0;
+  uint64_t cycles_ = 0;  // of the frame, once it has ended
+  bool begun_ = false, ended_ = false;
+  uint64_t still_ = 0;  // cycles in which nothing has moved since the end
+
+  KernelTimes kernels_;
+  uint64_t busy_cycles_ = 0, dropped_depth_ = 0, cast_ = 0;
+  LevelStatistics rays_;
+  EnumArray<ImportKind, LevelStatistics, kImportKinds> intersections_;
+  uint64_t transfers_ = 0, transfers_before_ = 0, retired_before_ = 0, silent_ = 0;
+};
+
+FrameSetup Board::setup() const {
+  FrameSetup setup;
+  setup.program_length = options_.program_length;
+  setup.memory_limit = options_.memory->size();
+  setup.arguments = frame_arguments(options_);
+  setup.entries = options_.entries;
+  setup.width = options_.width;
+  setup.height = options_.height;
+  setup.depth = options_.depth;
+  setup.reflections = reflects_;
+  return setup;
+}
+
+void Board::clock() {
+  const ChipOutputs& outputs = chip_.outputs();
+  if (outputs.device.fault.code != FaultCode::None) {
+    const Fault& fault = outputs.device.fault;
+    throw ChipFault(fault.unit, fault, fault_sentence(fault.unit, fault));
+  }
+  begun_ |= outputs.busy;
+  if (begun_ && !ended_ && !outputs.busy) {
+    ended_ = true;
+    cycles_ = cycle_;
+  }
+  const bool moves = outputs.frame_valid || !outputs.device.idle || outputs.quiet + 1 != 1u << chip_.units();
+  still_ = ended_ && !moves ? still_ + 1 : 0;
+  memory_.offer(cycle_, inputs_);
+  traverser_.offer(inputs_);
+
+  if (!ended_) {
+    follow_kernels(outputs);
+    follow_levels(outputs);
+    watch(outputs);
+  }
+  if (outputs.frame_valid) options_.frame->add(outputs.frame);
+  memory_.clock(cycle_, outputs, inputs_);
+  traverser_.clock(outputs, inputs_, kernels_.under_way() == 0 || outputs.held_up);
+  chip_.clock(inputs_);
+  ++cycle_;
+}
+
+RayKernel Board::kernel_at(uint32_t pc) const {
+  const auto entry = std::find(options_.entries.begin(), options_.entries.end(), pc);
+  if (entry == options_.entries.end())
+    throw std::logic_error(fmt::format("the chip launches a kernel at PC {}, where none begins", pc));
+  return static_cast<RayKernel>(entry - options_.entries.begin());
+}
+
+void Board::follow_kernels(const ChipOutputs& outputs) {
+  for (uint32_t done = outputs.device.kernel_done; done != 0; done &= done - 1) kernels_.ended(lowest(done), cycle_);
+  busy_cycles_ += popcount(outputs.device.busy);
+  if (!outputs.to_device.launch_valid || !outputs.device.launch_ready) return;
+  const LaunchCommand& launch = outputs.to_device.launch;
+  const uint32_t unit = outputs.device.launch_unit;
+  const RayKernel kernel = kernel_at(launch.pc);
+  kernels_.given(unit, kernel, launch.threads);
+  kernels_.accepted(unit, cycle_);
+  if (kernel == RayKernel::CastEye) cast_ += launch.threads;
+}
+
+void Board::follow_levels(const ChipOutputs& outputs) {
+  rays_.set(cycle_, outputs.rays);
+  for (const ImportKind kind : {ImportKind::Normal, ImportKind::Shadow, ImportKind::Direct})
+    intersections_[kind].set(cycle_, outputs.size[kind]);
+  dropped_depth_ += outputs.outcome.valid && outputs.outcome.deep;
+}
+
+void Board::watch(const ChipOutputs& outputs) {
+  transfers_ += (outputs.memory_request_valid && inputs_.memory_request_ready) + outputs.ray_valid +
+                inputs_.free_valid + outputs.frame_valid +
+                (outputs.to_device.launch_valid && outputs.device.launch_ready) + outputs.outcome.valid +
+                outputs.pixel_valid;
+  if (options_.progress && cycle_ % Monitor::kProgressCycles == 0) show_progress();
+  if (options_.cycle_limit != 0 && cycle_ == options_.cycle_limit)
+    stall(Monitor::limit_sentence(options_.cycle_limit, true));
+  if (cycle_ == counted_cycles(options_.configuration)) {
+    throw InputError(
+        fmt::format("{} cycles have passed, and after so many a performance counter of {}, of {} bits, may "
+                    "have begun anew: draw with --set counter_bits=48",
+                    cycle_, options_.configuration.name, options_.configuration.counter_bits));
+  }
+  if (options_.watchdog_cycles == 0 || cycle_ % options_.watchdog_cycles != 0) return;
+  const uint64_t retired = chip_.counter(counter::kInstructions);
+  silent_ = transfers_ == transfers_before_ && cycle_ != 0 ? silent_ + 1 : 0;
+  if (silent_ > 0 && retired == retired_before_)
+    stall(fmt::format("the chip is locked up: no instruction has ended and nothing has been transferred for {} cycles",
+                      options_.watchdog_cycles));
+  if (silent_ >= Monitor::kSilentPeriods)
+    stall(fmt::format("a program runs without end: nothing has been transferred for {} cycles",
+                      Monitor::kSilentPeriods * options_.watchdog_cycles));
+  retired_before_ = retired;
+  transfers_before_ = transfers_;
+}
+
+void Board::stall(const std::string& what) const {
+  const ChipOutputs& o = chip_.outputs();
+  throw ChipStalled(
+      fmt::format("{}, at cycle {}; {} kernels under way; ray pool {} of {} rays, {} of them shadow rays; intersection "
+                  "pool {} normal, "
+                  "{} shadow and {} direct of {} each; {} pixels of {}x{} have been cast",
+                  what, cycle_, kernels_.under_way(), o.rays, options_.configuration.chip.ray_pool_size, o.shadow_rays,
+                  o.size[ImportKind::Normal], o.size[ImportKind::Shadow], o.size[ImportKind::Direct],
+                  options_.configuration.chip.intersection_pool_size, cast_, options_.width, options_.height));
+}
+
+// Of the pixels that are cast: which of them are finished nobody outside knows.
+void Board::show_progress() const {
+  const double pixels = static_cast<double>(options_.width) * options_.height;
+  options_.progress(
+      {ended_ ? 1 : std::min(1.0, static_cast<double>(cast_) / pixels), cycle_, traverser_.counts().rays.traced()});
+}
+
+FrameFigures Board::figures() {
+  const ChipCounts counts = chip_.counts();
+  FrameFigures figures;
+  figures.cycles = cycles_;
+  figures.units = chip_.units();
+  figures.counter = [this](int number) { return chip_.counter(number); };
+  figures.kernels = &kernels_;
+  figures.busy_cycles = busy_cycles_;
+  figures.rays = &rays_;
+  for (size_t kind = 0; kind < kImportKinds; ++kind) figures.intersections[kind] = &intersections_[kind];
+  figures.dropped_depth = dropped_depth_;
+  figures.contributions = counts.contributions;
+  figures.ray_port_busy = counts.ray_port_busy;
+  figures.intersection_port_busy = counts.packages_taken * raypool::IntersectionPool::service_cycles(
+                                                               options_.configuration.chip, options_.layout.words);
+  figures.memory_port_busy = counts.memory_port_busy;
+  figures.memory_reads = counts.memory_reads;
+  figures.memory_writes = counts.memory_writes;
+  figures.traverser = traverser_.counts();
+  return figures;
+}
+
+}  // namespace
+
+ChipResult run_board(const ChipOptions& options, ChipDevice& chip) { return Board(options, chip).draw(); }
+
+}  // namespace raypool

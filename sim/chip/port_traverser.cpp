@@ -1,0 +1,121 @@
+#include "chip/port_traverser.hpp"
+
+#include <algorithm>
+
+#include "bits.hpp"
+#include "machine/intersection_pool.hpp"
+
+namespace raypool::chip {
+
+PortTraverser::PortTraverser(RayTracer& tracer, const ChipConfiguration& chip, uint32_t units, uint32_t depth,
+                             bool reflections, const RecordLayout& layout)
+    : tracer_(tracer),
+      fates_(tracer, chip, depth, reflections),
+      layout_(layout),
+      beats_(raypool::IntersectionPool::beats(layout.words)),
+      batch_(chip.static_traverser_batch),
+      stall_cycles_(chip.static_traverser_stall_cycles),
+      units_(units) {}
+
+void PortTraverser::offer(ChipInputs& inputs) const {
+  inputs.ray_ready = true;
+  inputs.free_valid = !freed_.empty();
+  if (inputs.free_valid) {
+    inputs.free_place = freed_.front().place;
+    inputs.free_shadow = freed_.front().shadow;
+  }
+  inputs.put_valid = leaving_.has_value();
+  if (inputs.put_valid) {
+    inputs.put_kind = leaving_->kind;
+    const uint32_t from = next_beat_out_ * kBeatWords;
+    for (uint32_t i = 0; i < kBeatWords; ++i)
+      inputs.put_data[i] = from + i < leaving_->record.size() ? leaving_->record[from + i] : 0;
+  }
+  inputs.contribution_valid = !contributions_.empty();
+  if (inputs.contribution_valid) inputs.contribution = contributions_.front().contribution;
+  inputs.tree_request_valid = false;
+}
+
+void PortTraverser::clock(const ChipOutputs& outputs, const ChipInputs& inputs, bool stalls) {
+  move(outputs, inputs);
+  const uint64_t ended = popcount(outputs.device.kernel_done);
+  counts_.batches += ended;
+  uint64_t budget = batch_ * ended;
+  stalled_for_ = stalls ? stalled_for_ + 1 : 0;
+  const bool stall_over = stalled_for_ != 0 && stalled_for_ % stall_cycles_ == 0;
+  if (stall_over) budget += batch_ * units_;
+  counts_.most_rays += budget;
+  if (budget != 0 && trace(budget) != 0 && stall_over) ++counts_.stall_batches;
+  if (outputs.ray_valid) read(outputs);
+  if (!leaving_) choose(outputs.put_ready);
+}
+
+void PortTraverser::read(const ChipOutputs& outputs) {
+  std::copy(outputs.ray_data.begin(), outputs.ray_data.end(), &coming_.ray[next_beat_in_ * kBeatWords]);
+  ++next_beat_in_;
+  if (!outputs.ray_last) return;
+  next_beat_in_ = 0;
+  coming_.place = outputs.ray_place;
+  rays_.push_back(coming_);
+}
+
+uint32_t PortTraverser::trace(uint64_t rays) {
+  uint32_t count = 0;
+  for (; rays > 0 && !rays_.empty(); --rays, ++count) {
+    trace(rays_.front());
+    rays_.pop_front();
+  }
+  return count;
+}
+
+void PortTraverser::trace(const PlacedRay& ray) {
+  Result result{ray.place, is_shadow(ray.ray), ImportKind::None, {}, {}, number_++};
+  Intersection hit;
+  const bool goes_on = tracer_.trace(ray.ray, hit);
+  counts_.rays.count(ray.ray, goes_on);
+  if (!goes_on) {
+    freed_.push_back({result.place, result.shadow});
+    return;
+  }
+  result.kind = fates_.kind_of(ray.ray, hit);
+  counts_.deepest += fates_.deepest(ray.ray, result.kind);
+  if (fates_.contributes(result.kind)) {
+    result.contribution = contribution_of(ray.ray);
+    contributions_.push_back(result);
+  } else {
+    result.record = packed(hit, layout_);
+    results_[result.kind].push_back(result);
+  }
+}
+
+// What was offered in this cycle, and has been taken.
+void PortTraverser::move(const ChipOutputs& outputs, const ChipInputs& inputs) {
+  if (inputs.free_valid) freed_.pop_front();
+  if (inputs.contribution_valid && outputs.contribution_ready) {
+    freed_.push_back({contributions_.front().place, true});
+    contributions_.pop_front();
+    ++counts_.delivered;
+  }
+  if (inputs.put_valid && (outputs.put_ready >> to_underlying(inputs.put_kind) & 1) != 0 &&
+      ++next_beat_out_ == beats_) {
+    next_beat_out_ = 0;
+    freed_.push_back({leaving_->place, leaving_->shadow});
+    leaving_.reset();
+    ++counts_.delivered;
+  }
+}
+
+// The oldest of those whose kind has room: others do not wait for it.
+void PortTraverser::choose(uint32_t ready) {
+  std::deque<Result>* oldest = nullptr;
+  for (size_t kind = 0; kind < kImportKinds; ++kind) {
+    std::deque<Result>& queue = results_[kind];
+    if (queue.empty() || (ready >> kind & 1) == 0) continue;
+    if (oldest == nullptr || queue.front().number < oldest->front().number) oldest = &queue;
+  }
+  if (oldest == nullptr) return;
+  leaving_ = oldest->front();
+  oldest->pop_front();
+}
+
+}  // namespace raypool::chip

@@ -1,0 +1,79 @@
+// A traverser at the ports of a chip (machine/chip_device.hpp): beats of rays come in, packages and contributions go
+// out, each ray frees its place when what it has become has left.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+
+#include "chip/ports.hpp"
+#include "chip/ray_fates.hpp"
+#include "chip/traverser_counts.hpp"
+#include "config/configuration.hpp"
+#include "enum_array.hpp"
+#include "machine/chip_device.hpp"
+#include "machine/packages.hpp"
+
+namespace raypool::chip {
+
+/// `static` at ports: its batches are those of the traverser of constant speed (static_traverser.hpp), of rays that it
+/// has read; what becomes of them leaves beat by beat.
+class PortTraverser {
+ public:
+  /// `layout`: of the records that leave. `tracer` must outlive it.
+  PortTraverser(RayTracer& tracer, const ChipConfiguration& chip, uint32_t units, uint32_t depth, bool reflections,
+                const RecordLayout& layout);
+
+  /// Shows what it has at the traverser's ports.
+  void offer(ChipInputs& inputs) const;
+  /// The end of a cycle. `stalls`: no unit has a kernel, or a ray waits for room in the ray pool.
+  void clock(const ChipOutputs& outputs, const ChipInputs& inputs, bool stalls);
+
+  const TraverserCounts& counts() const { return counts_; }
+
+ private:
+  struct PlacedRay {
+    Ray ray;
+    uint32_t place = 0;
+  };
+  /// It goes on; when the others of its cycle do does not matter, but it is behind all of earlier ones.
+  struct Result {
+    uint32_t place;
+    bool shadow;
+    ImportKind kind;
+    Intersection record;  // as it travels; of a contribution nothing
+    FrameContribution contribution;
+    uint64_t number;  // rising
+  };
+  struct Freed {
+    uint32_t place;
+    bool shadow;
+  };
+
+  void read(const ChipOutputs& outputs);
+  uint32_t trace(uint64_t rays);
+  void trace(const PlacedRay& ray);
+  void move(const ChipOutputs& outputs, const ChipInputs& inputs);
+  void choose(uint32_t ready);
+
+  RayTracer& tracer_;
+  const RayFates fates_;
+  const RecordLayout layout_;
+  const uint32_t beats_;  // of a record
+  const uint64_t batch_, stall_cycles_;
+  const uint32_t units_;
+
+  PlacedRay coming_;
+  uint32_t next_beat_in_ = 0;
+  std::deque<PlacedRay> rays_;  // not traced, the oldest first
+  EnumArray<ImportKind, std::deque<Result>, kImportKinds> results_;
+  std::deque<Result> contributions_;
+  std::deque<Freed> freed_;
+  std::optional<Result> leaving_;
+  uint32_t next_beat_out_ = 0;
+  uint64_t number_ = 0;
+  uint64_t stalled_for_ = 0;  // cycles
+  TraverserCounts counts_;
+};
+
+}  // namespace raypool::chip
