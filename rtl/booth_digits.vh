@@ -20,3 +20,9 @@ function [47:0] booth_digits(input [31:0] word);
   end
 `endif
 endfunction
+`ifdef SYNTHESIS
+// The same of 62 bits, 31 digits: without its first 30 bits a word's digits 1 .. 15 are 16 .. 30 of the whole.
+function [92:0] wide_booth_digits(input [61:0] word);
+  wide_booth_digits = {booth_digits(word[61:30]) & ~48'd7, 45'd0} | {45'd0, booth_digits(word[31:0])};
+endfunction
+`endif

@@ -1,6 +1,6 @@
 // Product of a and b, or c + a * b with ADD, or c - a * b with ADD and NEGATE, as two numbers whose sum, modulo
 // 2^OUT_BITS, it is: radix-4 Booth digits of b, then a tree of carry-save adders. Combinational. a_i is unsigned; b_i
-// is unsigned, or signed with B_SIGNED. OUT_BITS may be less than the product has: what is not wanted costs nothing.
+// is unsigned, or signed with B_SIGNED, of up to 61 bits. OUT_BITS may be less than the product has: the rest is free.
 // With CUT the rows are left out below 2^CUT: the sum is less than it should be by at most 2^CUT for each pair of bits
 // of b below 2^CUT, CUT/2 of them rounded up, and how much less is not said.
 // With ENCODED b_i is what booth_digits made of b.
@@ -62,7 +62,7 @@ module multiply_tree #(
     if (ENCODED != 0) begin : gen_encoded
       assign digits = b_i;
     end else begin : gen_encode
-      wire [47:0] encoded = booth_digits({{32-B_BITS{(B_SIGNED != 0) && b_i[B_BITS-1]}}, b_i});
+      wire [92:0] encoded = wide_booth_digits({{62-B_BITS{(B_SIGNED != 0) && b_i[B_BITS-1]}}, b_i});
       assign digits = encoded[3*DIGITS-1:0];
     end
   endgenerate
