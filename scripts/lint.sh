@@ -81,6 +81,8 @@ chip_configurations=(
   "memory_port QUEUE=1 TRAVERSER_QUEUE=1 CYCLES_PER_BEAT=1 LATENCY=1"
   "memory_port QUEUE=64 CYCLES_PER_BEAT=64 LINES=1"
   "triangle_edges"
+  "triangle_pipe BITS=26 TAG_BITS=1"
+  "triangle_pipe BITS=32"
   "box_pipe BITS=6"
   "box_pipe BITS=12"
   "box_pipe BITS=16"

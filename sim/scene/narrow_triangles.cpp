@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "bits.hpp"
-#include "machine/triangle_edges.hpp"
+#include "machine/triangle_pipe.hpp"
 #include "scene/simd4.hpp"
 
 namespace raypool {
@@ -11,52 +11,49 @@ namespace {
 
 #include "scene/triangle_test.hpp"
 
-constexpr float kSmallestFloat = 0x1p-149f;
+Triangle triangle_of(const TriangleBlock& block, unsigned lane) {
+  Triangle triangle{{}, block.triangles[lane]};
+  for (int corner = 0; corner < 3; ++corner) {
+    for (int axis = 0; axis < 3; ++axis) triangle.corners[corner][axis] = block.vertices[corner][axis][lane];
+  }
+  return triangle;
+}
+
+/// t of the plane, from distances to the origin alone.
+double plane_t(const NarrowFloat& narrow, const PreparedRay& ray, const Triangle& triangle) {
+  double corners[3][3], sides[2][3];
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int corner = 0; corner < 3; ++corner) {
+      corners[corner][axis] = narrow.subtract(triangle(corner, axis), ray.origin[axis]);
+    }
+    for (int i = 0; i < 2; ++i) sides[i][axis] = narrow.subtract(corners[i + 1][axis], corners[0][axis]);
+  }
+  return plane_time(narrow, ray, corners[0], sides);
+}
 
 }  // namespace
 
-/// As the ray sees them.
-struct TriangleTest::Corners {
-  float x[3], y[3];
-
-  Corners(const PreparedRay& ray, const TriangleBlock& block, unsigned lane) {
-    for (int corner = 0; corner < 3; ++corner) {
-      const auto from_origin = [&](int axis) { return block.vertices[corner][axis][lane] - ray.origin[axis]; };
-      const float z = from_origin(ray.kz);
-      x[corner] = from_origin(ray.kx) - ray.shear_x * z;
-      y[corner] = from_origin(ray.ky) - ray.shear_y * z;
-    }
-  }
-};
-
-double TriangleTest::dot(const double (&a)[3], const double (&b)[3]) const {
-  const double first = narrow_.add(narrow_.multiply(a[0], b[0]), narrow_.multiply(a[1], b[1]));
-  return narrow_.add(first, narrow_.multiply(a[2], b[2]));
-}
-
-double TriangleTest::plane_t(const PreparedRay& ray, const TriangleBlock& block, unsigned lane) const {
-  double corners[3][3], normal[3];
+double TriangleTest::interpolated_t(const PreparedRay& ray, const Triangle& triangle, const double (&weights)[3],
+                                    double determinant) const {
+  double products[3];
   for (int corner = 0; corner < 3; ++corner) {
-    for (int axis = 0; axis < 3; ++axis) {
-      corners[corner][axis] =
-          narrow_.subtract(static_cast<double>(block.vertices[corner][axis][lane]), ray.origin[axis]);
-    }
+    const double z = narrow_.subtract(triangle(corner, ray.kz), ray.origin[ray.kz]);
+    products[corner] = narrow_.multiply(weights[corner], z);
   }
-  for (int axis = 0; axis < 3; ++axis) {
-    const int i = (axis + 1) % 3, j = (axis + 2) % 3;
-    const auto side = [&](int corner, int k) {
-      if (time_ == TriangleTime::Floats) return narrow_.subtract(corners[corner][k], corners[0][k]);
-      const float from = block.vertices[0][k][lane], to = block.vertices[corner][k][lane];
-      return narrow_.subtract(static_cast<double>(to), static_cast<double>(from));
-    };
-    normal[axis] = narrow_.subtract(narrow_.multiply(side(1, i), side(2, j)), narrow_.multiply(side(1, j), side(2, i)));
+  const double sum = narrow_.add(narrow_.add(products[0], products[1]), products[2]);
+  const double terms = narrow_.add(narrow_.add(std::fabs(products[0]), std::fabs(products[1])), std::fabs(products[2]));
+  if (std::fabs(sum) < kCancelled * terms) {
+    return time_ == TriangleTime::Floats ? plane_t(narrow_, ray, triangle) : plane_time(narrow_, ray, triangle);
   }
-  return narrow_.divide(dot(normal, corners[0]), dot(normal, ray.direction));
+  const double inverse_z = narrow_.divide(1, ray.direction[ray.kz]);
+  return narrow_.multiply(narrow_.divide(sum, determinant), inverse_z);
 }
 
-bool TriangleTest::accept(const PreparedRay& ray, const TriangleBlock& block, unsigned lane, const Corners& corners,
-                          Candidate& best) const {
-  const auto& [x, y] = corners;
+bool TriangleTest::accept(const PreparedRay& ray, const TriangleBlock& block, unsigned lane, Candidate& best) const {
+  const Triangle triangle = triangle_of(block, lane);
+  const TriangleView view(ray, triangle);
+  if (!TriangleEdges(view.x, view.y).inside()) return false;
+  const auto& [x, y, z, in_front] = view;
   double weights[3];  // u, v, w
   bool zero = time_ != TriangleTime::Floats;
   for (int k = 0; k < 3; ++k) {
@@ -70,22 +67,14 @@ bool TriangleTest::accept(const PreparedRay& ray, const TriangleBlock& block, un
     weights[k] = narrow_.difference(x[a], y[b], y[a], x[b]);
   }
   const double determinant = narrow_.add(narrow_.add(weights[0], weights[1]), weights[2]);
-  double products[3];
-  int in_front = 0;
-  for (int corner = 0; corner < 3; ++corner) {
-    const double z = narrow_.subtract(static_cast<double>(block.vertices[corner][ray.kz][lane]), ray.origin[ray.kz]);
-    products[corner] = narrow_.multiply(weights[corner], z);
-    in_front += z * ray.direction[ray.kz] > 0;
+  float t = 0;
+  if (time_ == TriangleTime::Plane) {
+    if (!meets_triangle(narrow_, ray, triangle, t)) return false;
+  } else {
+    t = static_cast<float>(interpolated_t(ray, triangle, weights, determinant));
+    if (!move_into_own_box(ray, triangle, t)) return false;
   }
-  const double sum = narrow_.add(narrow_.add(products[0], products[1]), products[2]);
-  const double terms = narrow_.add(narrow_.add(std::fabs(products[0]), std::fabs(products[1])), std::fabs(products[2]));
-  const double inverse_z = narrow_.divide(1, ray.direction[ray.kz]);
-  const bool cancelled = std::fabs(sum) < kCancelled * terms;
-  double t = time_ == TriangleTime::Plane || cancelled ? plane_t(ray, block, lane)
-                                                       : narrow_.multiply(narrow_.divide(sum, determinant), inverse_z);
-  if (time_ == TriangleTime::Plane && in_front == 3 && !(t > 0)) t = kSmallestFloat;
-  if (time_ == TriangleTime::Plane && in_front == 0) return false;
-  if (!take_if_nearer(ray, block, lane, static_cast<float>(t), best)) return false;
+  if (!take(ray, block, lane, t, best)) return false;
   best.u = narrow_.divide(weights[1], determinant);
   best.v = narrow_.divide(weights[2], determinant);
   return true;
@@ -93,10 +82,7 @@ bool TriangleTest::accept(const PreparedRay& ray, const TriangleBlock& block, un
 
 bool TriangleTest::operator()(const PreparedRay& ray, const TriangleBlock& block, Candidate& best) const {
   bool found = false;
-  for (unsigned lane = 0; lane < block.count; ++lane) {
-    const Corners corners(ray, block, lane);
-    if (TriangleEdges(corners.x, corners.y).inside()) found |= accept(ray, block, lane, corners, best);
-  }
+  for (unsigned lane = 0; lane < block.count; ++lane) found |= accept(ray, block, lane, best);
   return found;
 }
 

@@ -4,8 +4,8 @@
 
 #include <cstdint>
 
+#include "machine/narrow_float.hpp"
 #include "scene/bvh.hpp"
-#include "scene/narrow_float.hpp"
 #include "scene/prepared_ray.hpp"
 
 namespace raypool {
@@ -30,12 +30,12 @@ enum class TriangleTime : uint8_t {
 /// 5. If |rb(rb(p + q) + r)| is less than 2^-10 rb(rb(|p| + |q|) + |r|), and for Plane always, t is the plane's:
 ///    rb((n . a) / (n . d)), with a = rb(v0 - o), n = (v1 - v0) x (v2 - v0); each difference, product and sum of a, n
 ///    and the two scalar products is rb(), sums from left to right. Floats: v1 - v0 is rb(rb(v1 - o) - rb(v0 - o)), and
-///    so on. Plane: if (vz - oz) dz is above zero for all corners, a t that is not, or is NaN, counts as 2^-149; if it
-///    is for none, it is a miss.
-/// 6. t = fl(t), which must be above zero, and is moved into the interval of the triangle's own box, in floats. It must
-///    be below the ray's limit and the best hit's, or as far with a lower number.
+///    so on.
+/// 6. t = fl(t). Plane: if (vz - oz) dz is above zero for all corners, a t that is not, or is NaN, counts as 2^-149; if
+///    it is for none, it is a miss. t must be above zero, and is moved into the interval of the triangle's own box, in
+///    floats. It must be below the ray's limit and the best hit's, or as far with a lower number.
 ///
-/// With Floats and 53 bits that is what engines do, bit for bit.
+/// With Floats and 53 bits that is what engines do, bit for bit; Plane is what machine/triangle_pipe.hpp does.
 class TriangleTest {
  public:
   /// `bits`: kLeastTimeBits .. kMostTimeBits.
@@ -45,11 +45,9 @@ class TriangleTest {
   bool operator()(const PreparedRay& ray, const TriangleBlock& block, Candidate& best) const;
 
  private:
-  struct Corners;
-  bool accept(const PreparedRay& ray, const TriangleBlock& block, unsigned lane, const Corners& corners,
-              Candidate& best) const;
-  double plane_t(const PreparedRay& ray, const TriangleBlock& block, unsigned lane) const;
-  double dot(const double (&a)[3], const double (&b)[3]) const;
+  bool accept(const PreparedRay& ray, const TriangleBlock& block, unsigned lane, Candidate& best) const;
+  double interpolated_t(const PreparedRay& ray, const Triangle& triangle, const double (&weights)[3],
+                        double determinant) const;
 
   TriangleTime time_;
   NarrowFloat narrow_;

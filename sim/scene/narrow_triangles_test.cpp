@@ -262,7 +262,7 @@ TEST(NarrowTriangles, ATriangleInFrontIsHitWhateverItsPlaneSays) {
     const InFloats floats(ray, block);
     if (!ray.valid || !floats.inside() || floats.in_front() % 3 != 0) continue;
     float near = 0, far = 0;
-    const bool in_box = own_box_interval(ray, block, 0, near, far) && far > 0;
+    const bool in_box = own_box_interval(ray, LaneCorners{block, 0}, near, far) && far > 0;
     const float t = floats.plane(TriangleTime::Plane);
     for (const uint32_t bits : kWidths) {
       Candidate best;

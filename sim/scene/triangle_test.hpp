@@ -1,44 +1,31 @@
 // The triangle test. Included in a namespace of each set of instructions it is compiled for, after simd4.hpp,
 // prepared_ray.hpp and bits.hpp, and so without a guard. Every operation rounds the same way in each.
 
-// Of the library's functions, which may exist once in a program, none may be compiled for a processor that the
-// program's user need not have.
-inline float smaller(float a, float b) { return b < a ? b : a; }
-inline float larger(float a, float b) { return a < b ? b : a; }
+#include "machine/triangle_interval.hpp"
 
-/// Where the ray is in the triangle's own box: the arithmetic of a node's boxes. False when it misses it.
-inline bool own_box_interval(const PreparedRay& ray, const TriangleBlock& block, unsigned lane, float& near,
-                             float& far) {
-  near = 0;
-  far = INFINITY;
-  for (int axis = 0; axis < 3; ++axis) {
-    const float a = block.vertices[0][axis][lane], b = block.vertices[1][axis][lane], c = block.vertices[2][axis][lane];
-    const float bounds[2] = {smaller(smaller(a, b), c), larger(larger(a, b), c)};
-    const int first = ray.near_side[axis], second = 1 - first;
-    near = larger(near, (bounds[first] - ray.padded[first][axis]) * ray.inverse[axis]);
-    far = smaller(far, (bounds[second] - ray.padded[second][axis]) * ray.inverse[axis]);
-  }
-  near *= kNearScale;
-  far *= kFarScale;
-  return near <= far;
-}
+/// Coordinates of a triangle of a leaf.
+struct LaneCorners {
+  const TriangleBlock& block;
+  unsigned lane;
+  float operator()(int corner, int axis) const { return block.vertices[corner][axis][lane]; }
+};
 
-/// Where the ray meets the triangle's plane at t, and hits the triangle, it becomes the candidate if it is one of the
-/// ray's hits, nearer than the best, or as near with a lower number. The candidate's u and v are left to the caller.
-inline bool take_if_nearer(const PreparedRay& ray, const TriangleBlock& block, unsigned lane, float t,
-                           Candidate& best) {
-  float near = 0, far = 0;
-  if (!(t > 0) || !own_box_interval(ray, block, lane, near, far)) return false;
-  t = smaller(larger(t, near), far);
-  const auto ray_t = static_cast<float>(static_cast<double>(t) * ray.t_scale);
-  if (!(ray_t > 0 && ray_t < ray.limit)) return false;
-  const uint32_t triangle = block.triangles[lane];
-  if (!(t < best.t || (t == best.t && triangle < best.triangle))) return false;
+/// What is hit at t becomes the candidate if it is one of the ray's hits, nearer than the best, or as near with a lower
+/// number. The candidate's u and v are left to the caller.
+inline bool take(const PreparedRay& ray, const TriangleBlock& block, unsigned lane, float t, Candidate& best) {
+  if (!within_limit(t, ray.t_scale, ray.limit)) return false;
+  if (!is_nearer(t, block.triangles[lane], best.t, best.triangle)) return false;
   best.t = t;
-  best.triangle = triangle;
+  best.triangle = block.triangles[lane];
   best.block = &block;
   best.lane = lane;
   return true;
+}
+
+/// The same where the ray meets the triangle's plane at t, and hits the triangle.
+inline bool take_if_nearer(const PreparedRay& ray, const TriangleBlock& block, unsigned lane, float t,
+                           Candidate& best) {
+  return move_into_own_box(ray, LaneCorners{block, lane}, t) && take(ray, block, lane, t, best);
 }
 
 /// Finishes a triangle whose edge functions agree in sign; true when it becomes the candidate.

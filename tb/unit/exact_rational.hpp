@@ -3,6 +3,9 @@
 
 #include <gmp.h>
 
+#include <cmath>
+#include <cstdint>
+
 namespace raypool::bench {
 
 /// A rational number.
@@ -26,6 +29,26 @@ class Exact {
   friend Exact operator*(const Exact& a, const Exact& b) { return made(mpq_mul, a, b); }
   friend Exact operator/(const Exact& a, const Exact& b) { return made(mpq_div, a, b); }
   friend bool operator<(const Exact& a, const Exact& b) { return mpq_cmp(a.q_, b.q_) < 0; }
+  /// To so many bits, at most 53, to nearest even; it must not be smaller or larger than normal doubles are.
+  double rounded(int bits) const {
+    if (sign() == 0) return 0;
+    mpz_t n, d, rest;
+    mpz_inits(n, d, rest, nullptr);
+    mpz_abs(n, mpq_numref(q_));
+    mpz_set(d, mpq_denref(q_));
+    // A quotient of bits + 1 or bits + 2 bits.
+    const long shift = bits + 1 - (static_cast<long>(mpz_sizeinbase(n, 2)) - static_cast<long>(mpz_sizeinbase(d, 2)));
+    mpz_mul_2exp(shift > 0 ? n : d, shift > 0 ? n : d, static_cast<mp_bitcnt_t>(shift > 0 ? shift : -shift));
+    mpz_tdiv_qr(n, rest, n, d);
+    uint64_t kept = mpz_get_ui(n);
+    const int drop = static_cast<int>(mpz_sizeinbase(n, 2)) - bits;
+    const uint64_t half = uint64_t{1} << (drop - 1), off = kept & (2 * half - 1);
+    const bool exact = mpz_sgn(rest) == 0;
+    mpz_clears(n, d, rest, nullptr);
+    kept >>= drop;
+    kept += off > half || (off == half && (!exact || kept % 2 != 0)) ? 1 : 0;
+    return std::ldexp(static_cast<double>(kept) * sign(), drop - static_cast<int>(shift));
+  }
   /// -1, 0 or 1.
   int sign() const { return mpq_sgn(q_); }
 

@@ -7,7 +7,9 @@ function(raypool_pool_bench name)
 endfunction()
 
 # raypool_pool_models(BENCH MODULE PARAMETERS MODEL...): class V<module>_<model>, a model being the parameters' values
-# with _ between. With SYNTHESIS, as for the benches of the arithmetic: the multiplier that hardware has.
+# with _ between. With SYNTHESIS, as for the benches of the arithmetic: the multiplier that hardware has. That is what
+# `raypool_multiplier` says; without, the simulator multiplies.
+set(raypool_multiplier -DSYNTHESIS)
 function(raypool_pool_models bench module names)
   foreach(model IN LISTS ARGN)
     string(REPLACE "_" ";" values ${model})
@@ -17,7 +19,8 @@ function(raypool_pool_models bench module names)
     endforeach()
     verilate(${bench} SOURCES ${RAYPOOL_RTL}/${module}.v PREFIX V${module}_${model} TOP_MODULE ${module}
       OPT_SLOW -w OPT_FAST -O2 -w OPT_GLOBAL -O1 -w
-      VERILATOR_ARGS -O3 --default-language 1364-2005 -DSYNTHESIS -y ${RAYPOOL_RTL} -I${RAYPOOL_RTL} ${parameters})
+      VERILATOR_ARGS -O3 --default-language 1364-2005 ${raypool_multiplier} -y ${RAYPOOL_RTL} -I${RAYPOOL_RTL}
+      ${parameters})
   endforeach()
 endfunction()
 
@@ -43,6 +46,15 @@ target_link_libraries(triangle_edges_test PRIVATE ${GMP_LIBRARY})
 verilate(triangle_edges_test SOURCES ${RAYPOOL_RTL}/triangle_edges.v PREFIX Vtriangle_edges TOP_MODULE triangle_edges
   OPT_SLOW -w OPT_FAST -O2 -w OPT_GLOBAL -O1 -w
   VERILATOR_ARGS -O3 --default-language 1364-2005 -DSYNTHESIS -y ${RAYPOOL_RTL} -I${RAYPOOL_RTL})
+
+# The triangle pipe, whose rays are set up as those of a scene are, and apart from it the multiplier that it has.
+raypool_pool_bench(triangle_pipe_test)
+target_link_libraries(triangle_pipe_test PRIVATE raypool_scene ${GMP_LIBRARY})
+raypool_pool_models(triangle_pipe_test float_products "EXPONENT_BITS;MANTISSA_BITS;SUBNORMALS" 11_31_1)
+raypool_pool_models(triangle_pipe_test float_quotient "EXPONENT_BITS;MANTISSA_BITS" 6_5 11_31)
+set(raypool_multiplier)
+raypool_pool_models(triangle_pipe_test triangle_pipe "BITS" 26 32)
+set(raypool_multiplier -DSYNTHESIS)
 
 # What the controller decides with.
 raypool_pool_bench(policies_test)

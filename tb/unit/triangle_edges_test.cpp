@@ -166,7 +166,7 @@ TEST(TriangleEdgesInVerilog, AgreesWithItsClassInEveryCycle) {
     std::array<int, 3> signs{};
     bool inside = false;
   };
-  constexpr size_t kMoves = 4;
+  constexpr size_t kMoves = 5;
   std::deque<Stage> stages(kMoves);  // the last one is at the outputs
   std::array<std::array<uint32_t, 3>, 3> seen{};
   uint64_t inside = 0, outside = 0, edge_on = 0, stood = 0;

@@ -18,7 +18,7 @@
 #include "cli/inspecting_run.hpp"
 #include "lockstep/lockstep_unit.hpp"
 #include "machine/box_ray.hpp"
-#include "scene/narrow_float.hpp"
+#include "machine/narrow_float.hpp"
 #include "scene/native_renderer.hpp"
 
 namespace raypool {

@@ -1,0 +1,135 @@
+// rtl/triangle_pipe.v: whether and where a ray hits a triangle, from the triangle's plane, without double.
+// docs/traverser.md says why it is so.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "bits.hpp"
+#include "machine/narrow_float.hpp"
+#include "machine/triangle_edges.hpp"
+#include "machine/triangle_ray.hpp"
+
+namespace raypool {
+namespace triangle {
+#include "machine/triangle_interval.hpp"
+}  // namespace triangle
+
+/// rtl/triangle_view.v: the corners as the ray sees them, from its origin and along its direction.
+struct TriangleView {
+  float x[3], y[3], z[3];
+  int in_front = 0;  ///< corners that are, along the ray's main axis
+
+  TriangleView(const TriangleRay& ray, const Triangle& triangle) {
+    for (int corner = 0; corner < 3; ++corner) {
+      const auto from_origin = [&](int axis) { return triangle(corner, axis) - ray.origin[axis]; };
+      z[corner] = from_origin(ray.kz);
+      x[corner] = from_origin(ray.kx) - ray.shear_x * z[corner];
+      y[corner] = from_origin(ray.ky) - ray.shear_y * z[corner];
+      in_front += static_cast<double>(z[corner]) * ray.direction[ray.kz] > 0;
+    }
+  }
+};
+
+/// rtl/triangle_plane.v: t of a triangle's plane, n . a / n . d, with a corner 0 and sides[i - 1] what leads from it to
+/// corner i. Sums are added from left to right, and every operation is rounded.
+inline double plane_time(const NarrowFloat& narrow, const TriangleRay& ray, const double (&a)[3],
+                         const double (&sides)[2][3]) {
+  double normal[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    const int i = (axis + 1) % 3, j = (axis + 2) % 3;
+    normal[axis] =
+        narrow.subtract(narrow.multiply(sides[0][i], sides[1][j]), narrow.multiply(sides[0][j], sides[1][i]));
+  }
+  const auto dot = [&](const double(&b)[3]) {
+    const double first = narrow.add(narrow.multiply(normal[0], b[0]), narrow.multiply(normal[1], b[1]));
+    return narrow.add(first, narrow.multiply(normal[2], b[2]));
+  };
+  return narrow.divide(dot(a), dot(ray.direction));
+}
+inline double plane_time(const NarrowFloat& narrow, const TriangleRay& ray, const Triangle& triangle) {
+  const auto difference = [&](float to, float from) { return narrow.subtract(to, from); };
+  double a[3], sides[2][3];
+  for (int axis = 0; axis < 3; ++axis) {
+    a[axis] = difference(triangle(0, axis), ray.origin[axis]);
+    for (int i = 0; i < 2; ++i) sides[i][axis] = difference(triangle(i + 1, axis), triangle(0, axis));
+  }
+  return plane_time(narrow, ray, a, sides);
+}
+
+/// Whether the ray, without its limit, hits the triangle, and at which internal t. A triangle of which all corners lie
+/// in front is hit whatever rounding makes of its plane.
+inline bool meets_triangle(const NarrowFloat& narrow, const TriangleRay& ray, const Triangle& triangle, float& t) {
+  const TriangleView view(ray, triangle);
+  if (!TriangleEdges(view.x, view.y).inside() || view.in_front == 0) return false;
+  t = static_cast<float>(plane_time(narrow, ray, triangle));
+  if (view.in_front == 3 && !(t > 0)) t = as_float(1);
+  return triangle::move_into_own_box(ray, triangle, t);
+}
+
+/// What becomes of a test.
+struct TriangleResult {
+  uint32_t tag = 0, number = 0;
+  bool hit = false;  ///< it is the ray's best hit from now on
+  float t = 0;       ///< where it meets the triangle; internal
+};
+
+/// The pipe: it begins a test a cycle, and never waits.
+class TrianglePipe {
+ public:
+  /// What a ray says to a test that asks.
+  struct Limit {
+    float limit;  ///< the ray's
+    int scale;    ///< its t is internal t x 2^scale
+  };
+  struct Best {
+    float t;  ///< internal; 0 or above
+    uint32_t number;
+  };
+
+  /// `bits`: 26, 28, 30 or 32.
+  explicit TrianglePipe(uint32_t bits) : narrow_(bits), stages_(30 + static_cast<int>(bits) / 2) {}
+
+  /// Cycles from a test to its result.
+  int stages() const { return stages_; }
+
+  /// A test asks for the limit, or the best hit, of the ray with this tag; a result is there. Else null.
+  const TriangleResult* asks_limit() const { return at(stages_ - 4); }
+  const TriangleResult* asks_best() const { return at(stages_ - 1); }
+  const TriangleResult* result() const { return at(stages_); }
+
+  /// The end of a cycle. `ray`: null, no test begins.
+  void clock(const TriangleRay* ray, const Triangle& triangle, uint32_t tag, const Limit& limit, const Best& best) {
+    Stage& first = line_[place(0)];
+    first.valid = ray != nullptr;
+    if (first.valid) {
+      first.result = {tag, triangle.number, false, 0};
+      first.result.hit = meets_triangle(narrow_, *ray, triangle, first.result.t);
+    }
+    TriangleResult& limited = line_[place(stages_ - 4)].result;
+    limited.hit = limited.hit && triangle::within_limit(limited.t, std::ldexp(1.0, limit.scale), limit.limit);
+    TriangleResult& compared = line_[place(stages_ - 1)].result;
+    compared.hit = compared.hit && triangle::is_nearer(compared.t, compared.number, best.t, best.number);
+    ++cycle_;
+  }
+
+ private:
+  struct Stage {
+    bool valid = false;
+    TriangleResult result;
+  };
+  /// Of what was begun so many cycles ago.
+  size_t place(int ago) const { return (cycle_ + kPlaces - static_cast<size_t>(ago)) % kPlaces; }
+  const TriangleResult* at(int ago) const {
+    const Stage& stage = line_[place(ago)];
+    return stage.valid ? &stage.result : nullptr;
+  }
+
+  static constexpr size_t kPlaces = 64;
+  NarrowFloat narrow_;
+  int stages_;
+  size_t cycle_ = 0;
+  Stage line_[kPlaces];
+};
+
+}  // namespace raypool
