@@ -94,3 +94,8 @@ raypool_pool_models(memory_port_test memory_port "QUEUE;TRAVERSER_QUEUE;CYCLES_P
   8_32_2_120 1_1_1_6 3_2_3_12 5_3_64_195 2_64_2_1000 8_8_1_50)
 raypool_pool_models(memory_port_test memory_port "QUEUE;TRAVERSER_QUEUE;CYCLES_PER_BEAT;LATENCY;LINES"
   4_4_1_120_1 2_5_3_40_2 64_3_2_120_5)
+
+# A bank of the traverser's caches.
+raypool_pool_bench(tree_cache_test)
+raypool_pool_models(tree_cache_test tree_cache "LANES;SLOTS;LINES;WAYS;MSHRS;LINE_BITS;DATA_BITS"
+  1_1_4_2_1_5_32 3_5_64_4_5_23_32 8_24_128_16_8_23_32 32_2_16_2_3_9_32)

@@ -1,0 +1,303 @@
+// A bank of a cache of the traverser, read only: a lookup a cycle, of a line for all lanes that ask for it. A hit gives
+// them the line two cycles later. A miss asks the memory for the line; lanes wait in a list and are offered the line,
+// oldest first, once it has come. A lookup for no lane asks for a line that somebody will want, if a register is free.
+// Promises: a line that somebody waits for stays until the last one has it; a line is in one way at most, and in one
+// register; requests leave in the order of the misses. ready_o depends on fill_valid_i of the same cycle, and no other
+// output on any input. A line that comes is taken in the next cycle at the latest; lookups go on unless no register is
+// free, or a lane does not take what it is offered.
+// Must be given: a slot waits for one line at a time; a line comes once for each request; a lane that has had a lookup
+// taken takes no offer in that cycle, so that it is given one line in a cycle.
+`default_nettype none
+module tree_cache #(
+  parameter integer LANES = 8,
+  parameter integer SLOTS = 24,        // of rays in a lane
+  parameter integer LINES = 128,       // a power of two
+  parameter integer WAYS = 16,         // a power of two
+  parameter integer MSHRS = 8,         // lines that may be on their way
+  parameter integer LINE_BITS = 23,    // of a line's number, without those that choose the bank
+  parameter integer DATA_BITS = 512,
+  parameter integer SLOT_BITS = (SLOTS > 1) ? $clog2(SLOTS) : 1,
+  parameter integer MSHR_BITS = (MSHRS > 1) ? $clog2(MSHRS) : 1
+) (
+  input  wire                       clk_i,
+  input  wire                       rst_ni,
+  // a lookup
+  input  wire                       valid_i,
+  output wire                       ready_o,
+  input  wire [LINE_BITS-1:0]       line_i,
+  input  wire [LANES-1:0]           lanes_i,
+  input  wire [LANES*SLOT_BITS-1:0] slots_i,
+  // who gets a line
+  output reg  [LANES-1:0]           given_lanes_o,
+  output reg  [LANES*SLOT_BITS-1:0] given_slots_o,
+  output wire [DATA_BITS-1:0]       given_data_o,
+  // an offer to who has waited: given two cycles after it was taken
+  output wire                       offer_valid_o,
+  input  wire                       offer_ready_i,
+  output wire [LANES-1:0]           offer_lane_o,     // one bit
+  output wire [SLOT_BITS-1:0]       offer_slot_o,
+  // to the memory
+  output wire                       request_valid_o,
+  input  wire                       request_ready_i,
+  output wire [LINE_BITS-1:0]       request_line_o,
+  output wire [MSHR_BITS-1:0]       request_id_o,
+  input  wire                       fill_valid_i,
+  output wire                       fill_ready_o,
+  input  wire [MSHR_BITS-1:0]       fill_id_i,
+  input  wire [DATA_BITS-1:0]       fill_data_i
+);
+  generate
+    if (LANES < 1 || LANES > 32 || SLOTS < 1 || SLOTS > 256) begin : gen_bad_lanes
+      tree_cache_LANES_must_be_from_1_to_32_and_SLOTS_from_1_to_256 illegal ();
+    end
+    if (WAYS < 2 || WAYS > 16 || (WAYS & (WAYS - 1)) != 0) begin : gen_bad_ways
+      tree_cache_WAYS_must_be_a_power_of_two_from_2_to_16 illegal ();
+    end
+    if (LINES < 2 * WAYS || (LINES & (LINES - 1)) != 0) begin : gen_bad_lines
+      tree_cache_LINES_must_be_a_power_of_two_and_at_least_2_WAYS illegal ();
+    end
+    if (MSHRS < 1 || MSHRS > 32) begin : gen_bad_mshrs
+      tree_cache_MSHRS_must_be_from_1_to_32 illegal ();
+    end
+  endgenerate
+  localparam integer SETS = LINES / WAYS;
+  localparam integer SET_BITS = $clog2(SETS);
+  localparam integer TAG_BITS = LINE_BITS - SET_BITS;
+  localparam integer WAY_BITS = $clog2(WAYS);
+  localparam integer ROW_BITS = SET_BITS + WAY_BITS;   // of set and way
+  localparam integer LANE_BITS = (LANES > 1) ? $clog2(LANES) : 1;
+  localparam integer WAITER_BITS = LANE_BITS + SLOT_BITS;
+  localparam [LANES-1:0] NO_LANE = 0, ONE_LANE = 1;
+  localparam [MSHRS-1:0] NO_MSHR = 0, ONE_MSHR = 1;
+  localparam [WAYS-1:0] NO_WAY = 0;
+
+  // ---- State
+
+  reg looks_q;                                    // a lookup whose tags have been read; lanes that are left of it
+  reg fresh_q;                                    // it has, in the cycle before: later they may be out of date
+  reg [LINE_BITS-1:0] line_q;
+  reg [LANES-1:0] lanes_q;
+  reg [LANES*SLOT_BITS-1:0] slots_q;
+  reg [LINES-1:0] valid_q;
+  // A tree of bits, of which each says in which half a way was used less recently. Bit 0 stays 0.
+  reg [SETS*WAYS-1:0] order_q;
+  reg [MSHRS-1:0] busy_q, filled_q, waited_for_q;
+  reg [MSHRS*LINE_BITS-1:0] mshr_line_q;
+  reg [MSHRS*WAY_BITS-1:0] mshr_way_q;
+  reg [MSHRS*WAITER_BITS-1:0] head_q, tail_q;     // who waits longest, and shortest: lane and slot
+  localparam [1:0] NOBODY = 2'd0, CHOSEN = 2'd1, OFFERED = 2'd2;
+  reg [1:0] serving_q;
+  reg [MSHR_BITS-1:0] serve_id_q;
+
+  // ---- Tags
+
+  wire [SET_BITS-1:0] set = line_q[SET_BITS-1:0];
+  wire [WAYS*TAG_BITS-1:0] tags;
+  wire take = valid_i && ready_o;
+  wire fill = fill_valid_i && fill_ready_o;
+  wire [LINE_BITS-1:0] fill_line = mshr_line_q[fill_id_i*LINE_BITS +: LINE_BITS];
+  wire [SET_BITS-1:0] fill_set = fill_line[SET_BITS-1:0];
+  wire [WAY_BITS-1:0] fill_way = mshr_way_q[fill_id_i*WAY_BITS +: WAY_BITS];
+  genvar g;
+  generate
+    for (g = 0; g < WAYS; g = g + 1) begin : gen_way
+      ram_1r1w #(.WIDTH(TAG_BITS), .DEPTH(SETS)) ram (
+        .clk_i(clk_i), .read_i(take), .read_address_i(line_i[SET_BITS-1:0]), .read_data_o(tags[g*TAG_BITS +: TAG_BITS]),
+        .write_i(fill && fill_way == g[WAY_BITS-1:0]), .write_address_i(fill_set),
+        .write_data_i(fill_line[LINE_BITS-1:SET_BITS]));
+    end
+  endgenerate
+  wire [WAYS-1:0] set_valid = valid_q[{set, {WAY_BITS{1'b0}}} +: WAYS];
+
+  // ---- What the lookup comes to: of registers and tags alone
+
+  reg [WAYS-1:0] hits, locked;
+  reg [WAY_BITS-1:0] hit_way, victim;
+  reg [MSHRS-1:0] match;
+  reg [MSHR_BITS-1:0] match_id, free_id;
+  integer w, m;
+  always @* begin
+    hit_way = {WAY_BITS{1'b0}};
+    for (w = 0; w < WAYS; w = w + 1) begin
+      hits[w] = set_valid[w] && tags[w*TAG_BITS +: TAG_BITS] == line_q[LINE_BITS-1:SET_BITS];
+      if (hits[w]) hit_way = hit_way | w[WAY_BITS-1:0];
+    end
+  end
+  // Ways of the set that are promised to a register, and the line's own register.
+  always @* begin
+    locked = NO_WAY;
+    match = NO_MSHR;
+    match_id = {MSHR_BITS{1'b0}};
+    free_id = {MSHR_BITS{1'b0}};
+    for (m = MSHRS - 1; m >= 0; m = m - 1) begin
+      if (!busy_q[m]) free_id = m[MSHR_BITS-1:0];
+      else begin
+        match[m] = mshr_line_q[m*LINE_BITS +: LINE_BITS] == line_q;
+        if (match[m]) match_id = match_id | m[MSHR_BITS-1:0];
+        if (mshr_line_q[m*LINE_BITS +: SET_BITS] == set) locked[mshr_way_q[m*WAY_BITS +: WAY_BITS]] = 1'b1;
+      end
+    end
+  end
+  // The less recently used half, unless all its ways are promised.
+  wire [WAYS-1:0] order = order_q[{set, {WAY_BITS{1'b0}}} +: WAYS];
+  integer n, half;
+  reg [2*WAYS-1:0] unlocked;                      // a way of this half is not promised
+  always @* begin
+    unlocked = {~locked, NO_WAY};
+    for (n = WAYS - 1; n > 0; n = n - 1) unlocked[n] = unlocked[2*n] || unlocked[2*n+1];
+    n = 1;
+    for (half = WAYS; half > 1; half = half / 2) n = 2 * n + {31'd0, unlocked[2*n+{31'd0, order[n]}] == order[n]};
+    victim = n[WAY_BITS-1:0];
+  end
+
+  wire hit = fresh_q && |hits;
+  wire miss = looks_q && !hit;
+  wire asked = lanes_q != NO_LANE;
+  wire [LANES-1:0] behind = lanes_q & (lanes_q - ONE_LANE);
+  wire last = behind == NO_LANE;
+  wire joins = miss && |match && asked;
+  wire allocate = miss && !(|match) && !(&busy_q) && !(&locked);
+  wire blocked = miss && !(|match) && asked && !allocate;
+  wire done = hit || (miss && last && !blocked);
+  wire [MSHRS-1:0] waits = filled_q & waited_for_q;
+  wire choose = serving_q == NOBODY && waits != NO_MSHR;
+  assign ready_o = serving_q == NOBODY && !choose && !fill_valid_i && (!looks_q || done);
+  assign fill_ready_o = !hit;
+
+  // The lane that is next to wait.
+  reg [LANE_BITS-1:0] lane;
+  integer l;
+  always @* begin
+    lane = {LANE_BITS{1'b0}};
+    for (l = LANES - 1; l >= 0; l = l - 1) if (lanes_q[l]) lane = l[LANE_BITS-1:0];
+  end
+  wire [WAITER_BITS-1:0] waiter = {lane, slots_q[lane*SLOT_BITS +: SLOT_BITS]};
+
+  always @(posedge clk_i)
+    if (!rst_ni) looks_q <= 1'b0;
+    else if (take) looks_q <= 1'b1;
+    else if (done) looks_q <= 1'b0;
+  always @(posedge clk_i) fresh_q <= rst_ni && take;
+  always @(posedge clk_i)
+    if (take) begin
+      line_q <= line_i;
+      lanes_q <= lanes_i;
+      slots_q <= slots_i;
+    end else if (miss && !blocked) lanes_q <= behind;
+
+  always @(posedge clk_i)
+    if (!rst_ni) valid_q <= {LINES{1'b0}};
+    else if (fill) valid_q[{fill_set, fill_way}] <= 1'b1;
+
+  // The way that is used, or promised, becomes the most recently used one.
+  wire [WAY_BITS-1:0] used = hit ? hit_way : victim;
+  reg [WAYS-1:0] order_then;
+  localparam integer HALF = WAYS / 2;
+  reg [WAY_BITS-1:0] up;
+  integer o;
+  always @* begin
+    order_then = order;
+    up = (used >> 1) | HALF[WAY_BITS-1:0];
+    for (o = 0; o < WAY_BITS; o = o + 1) begin
+      order_then[up] = !used[o];
+      up = up >> 1;
+    end
+  end
+  always @(posedge clk_i)
+    if (!rst_ni) order_q <= {SETS*WAYS{1'b0}};
+    else if (hit || allocate) order_q[{set, {WAY_BITS{1'b0}}} +: WAYS] <= order_then;
+
+  // ---- Registers of lines that are on their way
+
+  wire hand_on = serving_q == OFFERED && offer_ready_i;
+  wire [WAITER_BITS-1:0] head = head_q[serve_id_q*WAITER_BITS +: WAITER_BITS];
+  wire the_last = head == tail_q[serve_id_q*WAITER_BITS +: WAITER_BITS];
+  wire [MSHRS-1:0] joined = joins ? match : NO_MSHR;
+  // Nobody joins one of these: a lookup from before the line came did so in the cycle in which it came, if not before.
+  wire [MSHRS-1:0] freed = filled_q & ~waited_for_q;
+  wire [MSHRS-1:0] allocated = allocate ? ONE_MSHR << free_id : NO_MSHR;
+  wire [MSHRS-1:0] has_come = fill ? ONE_MSHR << fill_id_i : NO_MSHR;
+  wire [MSHRS-1:0] left = (hand_on && the_last) ? ONE_MSHR << serve_id_q : NO_MSHR;
+  always @(posedge clk_i)
+    if (!rst_ni) begin
+      busy_q <= NO_MSHR;
+      filled_q <= NO_MSHR;
+      waited_for_q <= NO_MSHR;
+    end else begin
+      busy_q <= (busy_q & ~freed) | allocated;
+      filled_q <= (filled_q & ~freed) | has_come;
+      waited_for_q <= (waited_for_q & ~left) | joined | (asked ? allocated : NO_MSHR);
+    end
+
+  wire [MSHRS-1:0] choice;
+  round_robin #(.COUNT(MSHRS)) turn (
+    .clk_i(clk_i), .rst_ni(rst_ni), .request_i(waits), .advance_i(choose), .grant_o(choice));
+  integer c;
+  reg [MSHR_BITS-1:0] choice_id;
+  always @* begin
+    choice_id = {MSHR_BITS{1'b0}};
+    for (c = 0; c < MSHRS; c = c + 1) if (choice[c]) choice_id = choice_id | c[MSHR_BITS-1:0];
+  end
+  wire [WAITER_BITS-1:0] choice_head = head_q[choice_id*WAITER_BITS +: WAITER_BITS];
+
+  // Who waits behind whom.
+  wire [WAITER_BITS-1:0] next;
+  wire append = joins && |(match & waited_for_q);
+  ram_1r1w #(.WIDTH(WAITER_BITS), .DEPTH(1 << WAITER_BITS)) waiters (
+    .clk_i(clk_i), .read_i(!joins && (choose || serving_q == CHOSEN)),
+    .read_address_i(choose ? choice_head : head), .read_data_o(next),
+    .write_i(append), .write_address_i(tail_q[match_id*WAITER_BITS +: WAITER_BITS]), .write_data_i(waiter));
+  integer i;
+  always @(posedge clk_i)
+    for (i = 0; i < MSHRS; i = i + 1) begin
+      if (allocated[i]) begin
+        mshr_line_q[i*LINE_BITS +: LINE_BITS] <= line_q;
+        mshr_way_q[i*WAY_BITS +: WAY_BITS] <= victim;
+      end
+      if (allocated[i] || joined[i]) tail_q[i*WAITER_BITS +: WAITER_BITS] <= waiter;
+      if (allocated[i] || (joined[i] && !waited_for_q[i])) head_q[i*WAITER_BITS +: WAITER_BITS] <= waiter;
+      else if (hand_on && serve_id_q == i[MSHR_BITS-1:0]) head_q[i*WAITER_BITS +: WAITER_BITS] <= next;
+    end
+
+  // Their requests.
+  ram_queue #(.WIDTH(MSHR_BITS), .DEPTH(MSHRS)) requests (
+    .clk_i(clk_i), .rst_ni(rst_ni), .push_i(allocate), .data_i(free_id), .valid_o(request_valid_o),
+    .ready_i(request_ready_i), .data_o(request_id_o));
+  assign request_line_o = mshr_line_q[request_id_o*LINE_BITS +: LINE_BITS];
+
+  // Who has waited. While it is served no lookup is taken: so nobody joins the list whose head has been read, and no
+  // hit wants the data in the cycle in which it is read.
+  always @(posedge clk_i)
+    if (!rst_ni) serving_q <= NOBODY;
+    else if (choose) serving_q <= joins ? CHOSEN : OFFERED;
+    else if (serving_q == CHOSEN && !joins) serving_q <= OFFERED;
+    else if (hand_on) serving_q <= the_last ? NOBODY : CHOSEN;
+  always @(posedge clk_i) if (choose) serve_id_q <= choice_id;
+  assign offer_valid_o = serving_q == OFFERED;
+  assign offer_lane_o = ONE_LANE << head[SLOT_BITS +: LANE_BITS];
+  assign offer_slot_o = head[SLOT_BITS-1:0];
+
+  // ---- Data
+
+  reg read_q;                                     // for who took the offer
+  reg [LANES-1:0] read_lane_q;
+  reg [SLOT_BITS-1:0] read_slot_q;
+  reg [ROW_BITS-1:0] read_row_q;
+  always @(posedge clk_i) read_q <= rst_ni && hand_on;
+  always @(posedge clk_i)
+    if (hand_on) begin
+      read_lane_q <= offer_lane_o;
+      read_slot_q <= head[SLOT_BITS-1:0];
+      read_row_q <= {mshr_line_q[serve_id_q*LINE_BITS +: SET_BITS], mshr_way_q[serve_id_q*WAY_BITS +: WAY_BITS]};
+    end
+  ram_1r1w #(.WIDTH(DATA_BITS), .DEPTH(LINES)) data (
+    .clk_i(clk_i), .read_i(hit || read_q), .read_address_i(read_q ? read_row_q : {set, hit_way}),
+    .read_data_o(given_data_o), .write_i(fill), .write_address_i({fill_set, fill_way}),
+    .write_data_i(fill_data_i));
+  always @(posedge clk_i)
+    if (!rst_ni) given_lanes_o <= NO_LANE;
+    else given_lanes_o <= read_q ? read_lane_q : (hit ? lanes_q : NO_LANE);
+  always @(posedge clk_i)
+    if (read_q || hit) given_slots_o <= read_q ? {LANES{read_slot_q}} : slots_q;
+endmodule
+`default_nettype wire
