@@ -150,7 +150,7 @@ help: ## this list
 	@echo '  DEPTH=N                       1: eye and shadow rays; more: reflections   $(DEPTH)'
 	@echo '  CUS=1|2|4                     compute units                               $(CUS)'
 	@echo '  SET="FIELD=VALUE ..."         change fields of CONFIG, chip.ray_pool.size=256 (raypool config prints all)'
-	@echo '  TRAVERSER=static|modelled     timing model of the traverser               $(TRAVERSER)'
+	@echo '  TRAVERSER=NAME                static, modelled or lanes: its timing       $(TRAVERSER)'
 	@echo '  VIEW=FILE                     camera and light (JSON)                     from the scene'
 	@echo '  CAMERA=NAME                   of a glTF file                              its first'
 	@echo '  EYE=X,Y,Z LOOK_AT=X,Y,Z UP=X,Y,Z FOV=DEGREES LIGHT=X,Y,Z                  from the view'

@@ -55,7 +55,7 @@ constexpr uint32_t node_bytes(NodeFormat nodes) { return nodes == NodeFormat::Co
 /// The order in which tiles are cast. The traverser of constant speed has no caches that another one than rows could
 /// serve.
 constexpr TileOrder tile_order(const ChipConfiguration& chip) {
-  return chip.traverser == TraverserName::Modelled ? chip.modelled_traverser_tile_order : TileOrder::Rows;
+  return chip.traverser != TraverserName::Static ? chip.modelled_traverser_tile_order : TileOrder::Rows;
 }
 /// Requests of the traverser that may wait at the memory port: the lines that its caches may have on their way.
 constexpr uint32_t tree_requests(const ChipConfiguration& chip) {

@@ -76,10 +76,10 @@ void collect_ceilings(const ChipOptions& options, const FrameFigures& figures, C
   add("memory_port", figures.memory_port_busy, result.cycles);
   add("traverser", result.rays(), figures.traverser.most_rays);
   if (result.traversal) {
-    const ChipConfiguration& chip = options.configuration.chip;
-    add("box_pipes", result.traversal->boxes.tests, result.cycles * chip.modelled_traverser_box_pipes);
-    add("triangle_pipes", result.traversal->triangles.tests, result.cycles * chip.modelled_traverser_triangle_pipes);
-    add("rays_in_flight", result.traversal->ray_cycles, result.cycles * chip.modelled_traverser_rays);
+    const TraverserSizes sizes(options.configuration.chip);
+    add("box_pipes", result.traversal->boxes.tests, result.cycles * sizes.box_pipes);
+    add("triangle_pipes", result.traversal->triangles.tests, result.cycles * sizes.triangle_pipes);
+    add("rays_in_flight", result.traversal->ray_cycles, result.cycles * sizes.rays);
   }
   add("latency", own_cycles(result.warp_cycles), result.warp_cycles.busy + result.warp_cycles_without_kernel);
   std::sort(result.ceilings.begin(), result.ceilings.end(),

@@ -4,10 +4,22 @@
 #include <iterator>
 #include <stdexcept>
 
+#include "traverser/core.hpp"
+#include "traverser/lanes.hpp"
+
 namespace raypool::chip {
 
+namespace {
+
+std::unique_ptr<traverser::Machine> make_machine(const ChipConfiguration& chip, traverser::MemoryTurns& turns) {
+  if (chip.traverser == TraverserName::Lanes) return std::make_unique<traverser::Lanes>(chip, turns);
+  return std::make_unique<traverser::Core>(chip, turns);
+}
+
+}  // namespace
+
 ModelledTraverser::ModelledTraverser(const sc_core::sc_module_name& name, const Tracing& tracing)
-    : Traverser(name, tracing), core_(tracing.chip, *this), in_flight_(tracing.chip.modelled_traverser_rays) {
+    : Traverser(name, tracing), machine_(make_machine(tracing.chip, *this)), in_flight_(machine_->capacity()) {
   SC_METHOD(step);
   sensitive << step_;
   dont_initialize();
@@ -16,7 +28,7 @@ ModelledTraverser::ModelledTraverser(const sc_core::sc_module_name& name, const 
 void ModelledTraverser::ray_arrived() {
   if (untaken_.empty()) next_ray_ = std::prev(rays->rays().end());
   untaken_.push_back(clock->cycle());
-  clock->notify(step_, Phase::Traverser, core_.least_latency());
+  clock->notify(step_, Phase::Traverser, machine_->least_latency());
 }
 
 void ModelledTraverser::room_made(ImportKind kind) {
@@ -29,15 +41,15 @@ void ModelledTraverser::catch_up(uint64_t cycle) {
 
 bool ModelledTraverser::simulate(uint64_t to) {
   while (now_ < to) {
-    uint64_t next = core_.next();
-    if (core_.ready() && !untaken_.empty()) next = std::min(next, untaken_.front());
+    uint64_t next = machine_->next();
+    if (machine_->ready() && !untaken_.empty()) next = std::min(next, untaken_.front());
     next = std::max(next, now_ + 1);
     if (next > to) break;
     now_ = next;
-    core_.clock(now_);
-    const bool done = core_.valid();
+    machine_->clock(now_);
+    const bool done = machine_->valid();
     if (done) ray_done();
-    if (core_.ready() && !untaken_.empty() && untaken_.front() <= now_) take_ray();
+    if (machine_->ready() && !untaken_.empty() && untaken_.front() <= now_) take_ray();
     if (done) return true;
   }
   now_ = std::max(now_, to);
@@ -50,12 +62,12 @@ void ModelledTraverser::take_ray() {
   untaken_.pop_front();
   visits_.clear();
   follow(*ray, visits_);
-  in_flight_[core_.push(visits_)] = ray;
+  in_flight_[machine_->push(visits_)] = ray;
 }
 
 // One that leaves nothing needs no room, and is of no kind.
 void ModelledTraverser::ray_done() {
-  const PooledRays::iterator ray = in_flight_[core_.slot()];
+  const PooledRays::iterator ray = in_flight_[machine_->slot()];
   auto* const waiting = ray->goes_on ? &held_back_[kind_of(*ray)] : nullptr;
   if ((waiting != nullptr && !waiting->empty()) || !leave(*ray)) {
     waiting->push_back(ray);
@@ -86,8 +98,8 @@ void ModelledTraverser::step() {
 }
 
 void ModelledTraverser::wake_again() {
-  uint64_t next = core_.earliest_done(now_);
-  if (!untaken_.empty()) next = std::min(next, now_ + 1 + core_.least_latency());
+  uint64_t next = machine_->earliest_done(now_);
+  if (!untaken_.empty()) next = std::min(next, now_ + 1 + machine_->least_latency());
   if (next != kNever) clock->notify(step_, Phase::Traverser, next - now_);
 }
 

@@ -1,6 +1,6 @@
-// A traverser with a machine inside (traverser/core.hpp): a ray enters as soon as one in flight has left, and leaves
-// when its tests have been made. It keeps its place in the ray pool meanwhile, and until there is room for what it
-// becomes.
+// A traverser with a machine inside (traverser/core.hpp, traverser/lanes.hpp): a ray enters as soon as one in flight
+// has left, and leaves when its tests have been made. It keeps its place in the ray pool meanwhile, and until there is
+// room for what it becomes.
 //
 // The machine is behind the device in time: it is clocked as far as is needed, when a ray may leave it, or when the
 // device takes a turn at the memory port that both share. How early a ray can leave is known from what it has still to
@@ -9,12 +9,14 @@
 
 #include <cstdint>
 #include <deque>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "chip/traverser.hpp"
 #include "enum_array.hpp"
-#include "traverser/core.hpp"
+#include "traverser/machine.hpp"
+#include "traverser/tree_memory.hpp"
 
 namespace raypool::chip {
 
@@ -27,8 +29,8 @@ class ModelledTraverser : public Traverser, private traverser::MemoryTurns {
   void room_made(ImportKind kind) override;
   void kernel_ended(uint32_t /*unit*/) override {}
   void catch_up(uint64_t cycle) override;
-  void remember(const VisitList& places) override { core_.remember(places); }
-  std::optional<TraverserWork> work() const override { return core_.work(); }
+  void remember(const VisitList& places) override { machine_->remember(places); }
+  std::optional<TraverserWork> work() const override { return machine_->work(); }
 
  private:
   uint64_t turn(uint64_t cycle, uint32_t beats) override { return memory->turn(cycle, beats); }
@@ -42,7 +44,7 @@ class ModelledTraverser : public Traverser, private traverser::MemoryTurns {
   void deliver_traced() override;
   void wake_again();
 
-  traverser::Core core_;
+  std::unique_ptr<traverser::Machine> machine_;
   sc_core::sc_event step_;
   uint64_t now_ = 0;               // the machine's time
   std::deque<uint64_t> untaken_;   // cycles in which rays arrived that have not entered: the youngest of the pool

@@ -84,6 +84,9 @@ TEST(ModelledTraverser, EveryHitAndThePictureAreThoseOfTheStaticOneWhateverTheNo
       const Drawn fixed(scene, TraverserName::Static, units, 3);
       EXPECT_GT(fixed.tracer.noted.size(), 1000u);
       std::map<NodeFormat, TraverserWork> work;
+      const Drawn lanes(scene, TraverserName::Lanes, units, 3);
+      EXPECT_TRUE(fixed.run.frame == lanes.run.frame);
+      EXPECT_EQ(fixed.tracer.noted, lanes.tracer.noted);
       for (const NodeFormat nodes : {NodeFormat::Compressed, NodeFormat::Exact}) {
         const Drawn modelled(scene, TraverserName::Modelled, units, 3,
                              [&](ChipConfiguration& chip) { chip.modelled_traverser_nodes = nodes; });
@@ -125,15 +128,16 @@ TEST(ModelledTraverser, MakesTheTestsOfTheRaysAndEndsBlockedOnesEarly) {
   EXPECT_GT(drawn.tracer.ended_at_blockers, 0u);
 }
 
-void expect_the_same_stepped(uint32_t units, uint32_t pool, Shading shading) {
+void expect_the_same_stepped(uint32_t units, uint32_t pool, Shading shading,
+                             TraverserName traverser = TraverserName::Modelled) {
   const auto change = [&](ChipConfiguration& chip) {
     chip.intersection_pool_size = chip.held_limit = pool;
     chip.memory_cycles_per_beat = 9;  // the memory port is fought for
     chip.modelled_traverser_node_cache_bytes = chip.modelled_traverser_triangle_cache_bytes = 1024;
     chip.shading = shading;
   };
-  const Drawn ahead(make_room(0.02), TraverserName::Modelled, units, 3, change),
-      stepped(make_room(0.02), TraverserName::Modelled, units, 3, change, true);
+  const Drawn ahead(make_room(0.02), traverser, units, 3, change),
+      stepped(make_room(0.02), traverser, units, 3, change, true);
   EXPECT_EQ(ahead.result.cycles, stepped.result.cycles);
   EXPECT_EQ(ahead.result.instructions, stepped.result.instructions);
   EXPECT_EQ(ahead.result.memory_port_utilisation, stepped.result.memory_port_utilisation);
@@ -148,6 +152,8 @@ TEST(ModelledTraverser, TheDeviceRunsAheadWithoutChangingACycle) {
   expect_the_same_stepped(1, 512, Shading::Kernel);
   expect_the_same_stepped(4, 31, Shading::Kernel);  // rays are held back
   expect_the_same_stepped(4, 512, Shading::Traverser);
+  expect_the_same_stepped(1, 512, Shading::Kernel, TraverserName::Lanes);
+  expect_the_same_stepped(4, 31, Shading::Kernel, TraverserName::Lanes);
 }
 
 // The units' instructions come through the port that the traverser keeps busy.
@@ -231,7 +237,8 @@ struct Scarce {
   uint32_t units, rays, packages, in_flight;
 };
 
-void expect_an_end(const Scarce& scarce, PolicyName policy, Shading shading) {
+void expect_an_end(const Scarce& scarce, PolicyName policy, Shading shading,
+                   TraverserName traverser = TraverserName::Modelled) {
   SCOPED_TRACE(testing::Message() << scarce.units << " units, " << scarce.rays << " rays, " << scarce.packages
                                   << " intersections, " << scarce.in_flight << " in flight, policy "
                                   << static_cast<int>(policy) << ", shading " << static_cast<int>(shading));
@@ -241,7 +248,7 @@ void expect_an_end(const Scarce& scarce, PolicyName policy, Shading shading) {
   ChipConfiguration& chip = run.options.configuration.chip;
   chip.policy = policy;
   chip.shading = shading;
-  chip.traverser = TraverserName::Modelled;
+  chip.traverser = traverser;
   chip.modelled_traverser_rays = scarce.in_flight;
   chip.modelled_traverser_node_cache_mshrs = chip.modelled_traverser_triangle_cache_mshrs = 1;
   chip.intersection_pool_size = chip.held_limit = scarce.packages;
@@ -260,6 +267,7 @@ TEST(ModelledTraverser, NeverLocksUpWhateverIsScarce) {
           for (const PolicyName policy : {PolicyName::Thesis, PolicyName::Fill})
             expect_an_end({units, rays, packages, in_flight}, policy, Shading::Kernel);
           expect_an_end({units, rays, packages, in_flight}, PolicyName::Fill, Shading::Traverser);
+          expect_an_end({units, rays, packages, in_flight}, PolicyName::Fill, Shading::Traverser, TraverserName::Lanes);
         }
       }
     }

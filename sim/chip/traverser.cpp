@@ -93,6 +93,7 @@ std::unique_ptr<Traverser> make_traverser(const Tracing& tracing) {
     case TraverserName::Static:
       return std::make_unique<StaticTraverser>("traverser", tracing);
     case TraverserName::Modelled:
+    case TraverserName::Lanes:
       return std::make_unique<ModelledTraverser>("traverser", tracing);
   }
   throw std::logic_error("a traverser without a class");

@@ -245,7 +245,7 @@ RayQuery to_query(const Ray& ray) {
 
 Tracer::Tracer(const Scene& scene, uint32_t material_base, const ChipConfiguration& chip)
     : Tracer(scene, material_base) {
-  if (chip.traverser == TraverserName::Modelled && chip.modelled_traverser_nodes == NodeFormat::Compressed)
+  if (chip.traverser != TraverserName::Static && chip.modelled_traverser_nodes == NodeFormat::Compressed)
     traversal_.compress_nodes(chip.modelled_traverser_box_bits);
 }
 

@@ -2,39 +2,11 @@
 
 #include <algorithm>
 
-#include "scene/tree_file.hpp"
-
 namespace raypool::traverser {
 
 namespace {
 
-constexpr uint32_t kLineBytes = 64, kTriangleBytes = sizeof(TreeTriangle);
-static_assert(sizeof(TreeNode) == node_bytes(NodeFormat::Compressed));
-static_assert(sizeof(BvhNode) == node_bytes(NodeFormat::Exact));
-
-/// A leaf's triangles lie one behind the other, so that some share a line, and some lie in two.
-uint32_t first_line(const Visit& leaf) {
-  return static_cast<uint32_t>(uint64_t{leaf.place} * kTriangleBytes / kLineBytes);
-}
-uint32_t lines(const Visit& visit) {
-  if (visit.triangles == 0) return 1;
-  const uint64_t end = (uint64_t{visit.place} + visit.triangles) * kTriangleBytes;
-  return static_cast<uint32_t>((end - 1) / kLineBytes) - first_line(visit) + 1;
-}
-/// Triangles of the leaf that end in this line.
-uint32_t triangles_of(const Visit& leaf, uint32_t line) {
-  const uint64_t line_end = (uint64_t{first_line(leaf)} + line + 1) * kLineBytes;
-  const auto complete = [&](uint64_t end) {
-    return std::clamp<uint64_t>(end / kTriangleBytes, leaf.place, uint64_t{leaf.place} + leaf.triangles);
-  };
-  return static_cast<uint32_t>(complete(line_end) - complete(line_end - kLineBytes));
-}
-
-/// Entries that are taken from the stack after a visit: those that lie too far, and that of the next visit.
-uint32_t pops(const VisitList& visits, size_t visit) {
-  const Visit& present = visits[visit];
-  return present.discarded + (visit + 1 < visits.size() && present.children == 0 ? 1u : 0u);
-}
+constexpr uint32_t kLineBytes = 64;
 
 // A node is a line of its cache, whose banks are as wide.
 FetchUnit::Setup node_fetch(const ChipConfiguration& chip) {
@@ -55,9 +27,7 @@ FetchUnit::Setup triangle_fetch(const ChipConfiguration& chip) {
 }  // namespace
 
 Core::Core(const ChipConfiguration& chip, MemoryTurns& turns)
-    : cache_latency_(chip.modelled_traverser_cache_latency),
-      box_latency_(chip.modelled_traverser_box_latency),
-      triangle_latency_(chip.modelled_traverser_triangle_latency),
+    : latencies_(chip, chip.modelled_traverser_cache_latency),
       memory_latency_(chip.memory_latency),
       slots_(chip.modelled_traverser_rays),
       earliest_(slots_.size(), kNever),
@@ -73,38 +43,6 @@ Core::Core(const ChipConfiguration& chip, MemoryTurns& turns)
   for (uint32_t slot = 0; slot < slots_.size(); ++slot) free_.push_back(slot);
 }
 
-void Core::plan(const VisitList& visits, std::vector<Step>& steps) const {
-  steps.clear();
-  for (size_t i = 0; i < visits.size(); ++i) {
-    const Visit& visit = visits[i];
-    Step step;
-    step.taken = pops(visits, i);
-    step.node = visit.triangles == 0;
-    if (step.node) {
-      step.line = visit.place;
-      step.tests = step.all_tests = 1;
-      step.pushed = static_cast<uint8_t>(std::max<int>(1, visit.children) - 1);
-      steps.push_back(step);
-      continue;
-    }
-    step.line = first_line(visit);
-    step.all_tests = visit.triangles;
-    for (uint32_t line = 0, count = lines(visit); line < count; ++line, ++step.line) {
-      step.tests = static_cast<uint8_t>(triangles_of(visit, line));
-      step.more = static_cast<uint8_t>(count - line - 1);
-      steps.push_back(step);
-      step.all_tests = 0;
-    }
-  }
-  // A visit's results, or the entries that are taken after it, say in one cycle what is looked up in the next.
-  uint64_t rest = finish_.latency() - 1;
-  for (auto step = steps.rbegin(); step != steps.rend(); ++step) {
-    rest += cache_latency_ +
-            (step->more != 0 ? 1 : (step->node ? box_latency_ : triangle_latency_) + std::max(1u, step->taken));
-    step->rest = static_cast<uint32_t>(rest);
-  }
-}
-
 uint32_t Core::push(const VisitList& visits) {
   const uint32_t index = free_.front();
   free_.pop_front();
@@ -114,7 +52,7 @@ uint32_t Core::push(const VisitList& visits) {
   work_.most_rays = std::max(work_.most_rays, ++in_flight_);
   Slot& slot = slots_[index];
   slot.step = 0;
-  plan(visits, slot.steps);
+  plan(visits, latencies_, slot.steps);
   stacks_.clear(index);
   earliest_[index] = cycle_ + setup_.latency() + (slot.steps.empty() ? finish_.latency() : 1 + slot.steps[0].rest);
   setup_.push(cycle_, index);
@@ -202,7 +140,7 @@ void Core::want(uint32_t index) {
 void Core::looked_up(uint32_t index, uint64_t due) {
   from_next_[index] = 0;
   if (due == kNever) due = cycle_ + memory_latency_;
-  earliest_[index] = due - cache_latency_ + slots_[index].rest;
+  earliest_[index] = due - latencies_.cache + slots_[index].rest;
 }
 
 void Core::visited(uint32_t index) {
@@ -256,7 +194,8 @@ void Core::remember(const VisitList& places) {
       nodes_.remember(place.place);
       continue;
     }
-    for (uint32_t line = 0, count = lines(place); line < count; ++line) triangles_.remember(first_line(place) + line);
+    const LineRange lines = lines_of(place);
+    for (uint32_t line = 0; line < lines.count; ++line) triangles_.remember(lines.first + line);
   }
 }
 

@@ -13,54 +13,34 @@
 #include "scene/traversal.hpp"
 #include "traverser/delay_line.hpp"
 #include "traverser/fetch_unit.hpp"
+#include "traverser/machine.hpp"
 #include "traverser/ray_stacks.hpp"
 #include "traverser/ring.hpp"
+#include "traverser/steps.hpp"
 #include "traverser/test_pipes.hpp"
 #include "traverser/tree_memory.hpp"
 #include "traverser/work.hpp"
 
 namespace raypool::traverser {
 
-class Core : private LookupListener {
+class Core : public Machine, private LookupListener {
  public:
   /// `turns` must outlive it.
   Core(const ChipConfiguration& chip, MemoryTurns& turns);
 
-  /// A ray may enter, one in a cycle.
-  bool ready() const { return !free_.empty(); }
-  /// A ray enters in the cycle of the last clock(). Returns its slot.
-  uint32_t push(const VisitList& visits);
-
-  /// A cycle, after all earlier ones in which something happens: see next().
-  void clock(uint64_t cycle);
-  /// A ray is done in the cycle of the last clock(): its slot is free again.
-  bool valid() const { return finished_; }
-  uint32_t slot() const { return slot_; }
-
-  /// The next cycle in which anything can happen, if no ray enters.
-  uint64_t next() const;
-  /// The first cycle after `now`, up to which it has been clocked, in which a ray can be done, if none enters.
-  uint64_t earliest_done(uint64_t now) const;
-  /// Cycles that a ray takes at least.
-  uint64_t least_latency() const { return setup_.latency() + finish_.latency(); }
-
-  /// Caches hold the lines of these nodes and leaves, the last of them longest. It takes no time, and is no work.
-  void remember(const VisitList& places);
-
-  TraverserWork work() const;
+  bool ready() const override { return !free_.empty(); }
+  uint32_t push(const VisitList& visits) override;
+  void clock(uint64_t cycle) override;
+  bool valid() const override { return finished_; }
+  uint32_t slot() const override { return slot_; }
+  uint64_t next() const override;
+  uint64_t earliest_done(uint64_t now) const override;
+  uint64_t least_latency() const override { return setup_.latency() + finish_.latency(); }
+  uint32_t capacity() const override { return static_cast<uint32_t>(slots_.size()); }
+  void remember(const VisitList& places) override;
+  TraverserWork work() const override;
 
  private:
-  /// A line that a ray wants, and what comes after it.
-  struct Step {
-    uint32_t line = 0;
-    uint32_t rest = 0;      // cycles at least, from its lookup until the ray is done
-    uint32_t node : 1;      // or a leaf's
-    uint32_t taken : 31;    // from the stack, after the visit
-    uint8_t tests = 0;      // that can begin with it
-    uint8_t more = 0;       // lines of the visit behind it
-    uint8_t all_tests = 0;  // of the visit that begins with it; 0: there are lines of the visit before it
-    uint8_t pushed = 0;     // on the stack, after the visit
-  };
   struct Slot {
     std::vector<Step> steps;
     uint32_t step = 0;   // the present one
@@ -78,9 +58,9 @@ class Core : private LookupListener {
   void visited(uint32_t slot);
   void go_on(uint32_t slot);
   void finish();
-  void plan(const VisitList& visits, std::vector<Step>& steps) const;
 
-  const uint64_t cache_latency_, box_latency_, triangle_latency_, memory_latency_;
+  const StepLatencies latencies_;
+  const uint64_t memory_latency_;
   std::vector<Slot> slots_;
   // Apart, since all are looked at together. [slot]
   std::vector<uint64_t> earliest_;   // cycle in which its ray can be done; kNever: it has none

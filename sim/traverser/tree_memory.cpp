@@ -31,7 +31,7 @@ uint64_t TreeMemory::access(uint64_t line, uint64_t start) {
   return bank.free_from;
 }
 
-uint64_t TreeMemory::read(uint64_t cycle, uint64_t line, uint64_t lines, Returned returned) {
+uint64_t TreeMemory::read_lines(uint64_t cycle, uint64_t line, uint64_t lines, Returned returned) {
   uint64_t due = 0;
   for (const uint64_t end = line + lines; line < end; ++line) {
     ++reads_;
@@ -42,6 +42,11 @@ uint64_t TreeMemory::read(uint64_t cycle, uint64_t line, uint64_t lines, Returne
   return due;
 }
 
+uint64_t TreeMemory::read(uint64_t cycle, Source source, uint32_t line, uint32_t which) {
+  return source == Source::Nodes ? read_lines(cycle, line * lines_a_node_, lines_a_node_, {source, which})
+                                 : read_lines(cycle, kTriangles + line, 1, {source, which});
+}
+
 // A block of entries shares its line with the one after it.
 void TreeMemory::serve_stack(uint64_t cycle, const RayStacks::Request& request) {
   const uint64_t line = kStacks + request.slot * kStackLines + request.block / 2;
@@ -49,7 +54,7 @@ void TreeMemory::serve_stack(uint64_t cycle, const RayStacks::Request& request) 
     quadwords_ += kSpillBeats;
     access(line, turns_.turn(cycle, kSpillBeats));
   } else {
-    read(cycle, line, 1, {Source::Stacks, request.slot});
+    read_lines(cycle, line, 1, {Source::Stacks, request.slot});
   }
 }
 
@@ -64,9 +69,7 @@ void TreeMemory::serve(uint64_t cycle, FetchUnit& nodes, FetchUnit& triangles, R
       serve_stack(cycle, stacks.take_request());
     } else {
       const uint32_t line = fetch.take_request();
-      const uint64_t due = source == Source::Nodes ? read(cycle, line * lines_a_node_, lines_a_node_, {source, line})
-                                                   : read(cycle, kTriangles + line, 1, {source, line});
-      fetch.promise(line, due, listener);
+      fetch.promise(line, read(cycle, source, line, line), listener);
     }
     return;
   }

@@ -43,7 +43,12 @@ class TreeMemory {
       serve(cycle, nodes, triangles, stacks, listener);
   }
 
+  /// The same for who has chosen already: asks for a node or a line of triangles, which comes as `which`. Returns when.
+  uint64_t read(uint64_t cycle, Source source, uint32_t line, uint32_t which);
+  void serve_stack(uint64_t cycle, const RayStacks::Request& request);
+
   bool valid(uint64_t cycle) const { return !lines_.empty() && lines_.front().due <= cycle; }
+  const Returned& front() const { return lines_.front().returned; }  ///< means something while valid()
   Returned take();
   uint64_t next() const { return lines_.empty() ? kNever : lines_.front().due; }
 
@@ -61,8 +66,7 @@ class TreeMemory {
   void serve(uint64_t cycle, FetchUnit& nodes, FetchUnit& triangles, RayStacks& stacks, LookupListener& listener);
   uint64_t access(uint64_t line, uint64_t start);
   /// Lines one behind the other, which come together.
-  uint64_t read(uint64_t cycle, uint64_t line, uint64_t lines, Returned returned);
-  void serve_stack(uint64_t cycle, const RayStacks::Request& request);
+  uint64_t read_lines(uint64_t cycle, uint64_t line, uint64_t lines, Returned returned);
 
   MemoryTurns& turns_;
   uint64_t latency_, row_miss_, lines_a_row_, lines_a_node_;

@@ -1,9 +1,25 @@
 // What the traverser has done, for the report.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
+#include "config/configuration.hpp"
+
 namespace raypool {
+
+/// What a traverser with a machine inside has. Lanes have a pipe of each kind, and as many slots as others.
+struct TraverserSizes {
+  explicit TraverserSizes(const ChipConfiguration& chip)
+      : rays(chip.modelled_traverser_rays),
+        box_pipes(chip.modelled_traverser_box_pipes),
+        triangle_pipes(chip.modelled_traverser_triangle_pipes) {
+    if (chip.traverser != TraverserName::Lanes) return;
+    box_pipes = triangle_pipes = std::min(box_pipes, rays);
+    rays -= rays % box_pipes;
+  }
+  uint32_t rays, box_pipes, triangle_pipes;
+};
 
 struct CacheWork {
   uint64_t hits = 0;
