@@ -120,6 +120,8 @@ FRAME := --scene "$$SCENE" --config "$$CONFIG" --units "$$CUS" --size "$$SIZE" -
 SYNTH := PYTHONPATH=scripts python3 -m synth
 SYNTH_OPTIONS := --config "$$CONFIG" $(SET_FIELDS) --memories "$$MEMORIES" $${LIBERTY:+--liberty "$$LIBERTY"} \
   $${CLOCK:+--clock "$$CLOCK"}
+# Of synth, synth-replay and synth-prove.
+SYNTH_CHIP := $(if $(filter-out 0,$(CHIP)),--chip --units "$$CUS")
 SWEEP := RAYPOOL="$(abspath $(RAYPOOL))" PYTHONPATH=scripts python3 -m sweep
 SWEEP_SETUP := setup-sweep $(if $(filter slurm,$(WHERE)),setup-slurm)
 # The modules of Debian's packages are those of Debian's Python, whatever stands first in PATH.
@@ -177,6 +179,7 @@ help: ## this list
 	@echo 'variables of make report:  FROM="FOLDER ...": sweeps, runs, synthesis reports or folders of them  OUT=FOLDER'
 	@echo 'variables of make synth, synth-replay, synth-prove:  CONFIG  SET  LIBERTY=FILE  CLOCK=NS'
 	@echo '    LIBERTY: .lib or .lib.gz, or a name that asks where it is  MEMORIES=macros|flops|FOLDER of Liberty files'
+	@echo '  synth, synth-prove:  CHIP=1: the whole chip of CUS units, without its traverser'
 	@echo '  make synth:  AGAINST=REPORT  RUN=REPORT_OF_SIM  POWER=1  OUT=FOLDER'
 	@echo '  synth-module:  MODULE=NAME  PARAMETERS="A=1,B=2 ...": of rtl/, one row for each  LIBERTY  CLOCK  MEMORIES'
 	@echo '  synth-replay:  BREAK=N;  synth-prove:  ONLY=BLOCKS;  growth:  PLAN=FILE'
@@ -253,15 +256,15 @@ report: setup-sim setup-report program ## sweeps, runs and synthesis reports as 
 unit: setup-sim program ## Verilate CUS compute units of CONFIG (WAVES=1: with waveforms; CHIP=rtl: the whole chip)
 	@$(UNIT) --units "$$CUS" $(CHIP_FLAG)
 
-synth: setup-sim setup-synth program ## area, timing and power of CONFIG from open tools
-	@$(SYNTH) report $(SYNTH_OPTIONS) $${AGAINST:+--against "$$AGAINST"} $${RUN:+--run "$$RUN"} $${OUT:+--out "$$OUT"} \
-	  $(if $(filter-out 0,$(POWER)),--power)
+synth: setup-sim setup-synth program ## area, timing and power of CONFIG from open tools (CHIP=1: of the whole chip)
+	@$(SYNTH) report $(SYNTH_OPTIONS) $(SYNTH_CHIP) $${AGAINST:+--against "$$AGAINST"} $${RUN:+--run "$$RUN"} \
+	  $${OUT:+--out "$$OUT"} $(if $(filter-out 0,$(POWER)),--power)
 
 synth-replay: setup-sim setup-synth program ## run the mapped netlist in lockstep; BREAK=1: a broken one must fail
-	@$(SYNTH) replay $(SYNTH_OPTIONS) --break "$(BREAK)"
+	@$(SYNTH) replay $(SYNTH_OPTIONS) $(SYNTH_CHIP) --break "$(BREAK)"
 
 synth-prove: setup-sim setup-synth program ## prove each mapped block equal to its RTL
-	@$(SYNTH) prove $(SYNTH_OPTIONS) $${ONLY:+--only "$$ONLY"}
+	@$(SYNTH) prove $(SYNTH_OPTIONS) $(SYNTH_CHIP) $${ONLY:+--only "$$ONLY"}
 
 synth-module: setup-synth ## area and slack of one module for each of PARAMETERS: MODULE
 	@$(SYNTH) module "$$MODULE" $$PARAMETERS --memories "$$MEMORIES" $${LIBERTY:+--liberty "$$LIBERTY"} \

@@ -1,16 +1,5 @@
-# Constraints of compute_unit. The flow sets raypool_clock_ns and raypool_driver before it reads this file.
-# Before layout: no wires, an ideal clock.
-create_clock -name clk -period $raypool_clock_ns [get_ports clk_i]
-
-# The chip around the unit has registers at its side of every port; a quarter of the cycle is left to it.
-set away [expr {0.25 * $raypool_clock_ns}]
-set inputs {}
-foreach port [all_inputs] {
-  if {[get_property $port full_name] ne "clk_i"} { lappend inputs $port }
-}
-set_input_delay $away -clock clk $inputs
-set_output_delay $away -clock clk [all_outputs]
-set_driving_cell -lib_cell $raypool_driver $inputs
+# Constraints of compute_unit, beside those of any module (module.sdc): the chip around it has registers at its side of
+# every port.
 
 # Reset is released long before the unit works.
 set_case_analysis 1 [get_ports rst_ni]

@@ -1,5 +1,6 @@
-# Constraints of a module that is synthesised alone, without a file of its own: as compute_unit.sdc, but every port has
-# registers around it. The flow sets raypool_clock_ns and raypool_driver before it reads this file.
+# Constraints of any module: every port has registers around it, and a quarter of the cycle is left to what lies there.
+# Before layout: no wires, an ideal clock. The flow sets raypool_clock_ns and raypool_driver before it reads this file,
+# and then reads that of the module, if there is one.
 create_clock -name clk -period $raypool_clock_ns [get_ports clk_i]
 set away [expr {0.25 * $raypool_clock_ns}]
 set inputs {}

@@ -15,6 +15,15 @@ def config_of(arguments):
     return elaborate.with_fields(arguments.config, arguments.set, folder) if arguments.set else arguments.config
 
 
+def units_of(arguments):
+    """Of the chip; 0: a unit alone."""
+    if not getattr(arguments, "chip", False):
+        return 0
+    if arguments.units not in ("1", "2", "4"):
+        raise SynthError(f"CUS={arguments.units}: a chip has 1, 2 or 4 compute units")
+    return int(arguments.units)
+
+
 def options_of(arguments):
     try:
         clock = float(arguments.clock) if arguments.clock else None
@@ -28,6 +37,7 @@ def options_of(arguments):
         clock_ns=clock,
         memories=arguments.memories or "macros",
         jobs=arguments.jobs,
+        units=units_of(arguments),
     )
 
 
@@ -53,6 +63,7 @@ def made_report(options, wanted):
             design.macros,
             design.clock_ns,
             os.path.join(design.folder, "work"),
+            design.top,
         )[0]
         result = report.make(design, key, worst)
         result["seconds"] = round(time.time() - begin, 1)
@@ -71,6 +82,10 @@ def made_report(options, wanted):
 def synth_command(arguments):
     against = report.load(arguments.against) if arguments.against else None
     options = options_of(arguments)
+    if options.units and arguments.power:
+        raise SynthError("POWER: the netlist of a unit is simulated, that of a chip is not: leave CHIP out")
+    if options.units and arguments.run:
+        raise SynthError("RUN: Mrays/s a mm2 are those of units, a chip here lacks its traverser: leave CHIP out")
     run = report.load_run(arguments.run, options.config) if arguments.run else None
     begin = time.time()
     wanted = [name for name, given in (("power", arguments.power), ("proofs", arguments.prove)) if given]
@@ -115,6 +130,8 @@ def netlist_of(arguments):
 
 
 def replay_command(arguments):
+    if arguments.chip:
+        raise SynthError("CHIP: the netlist of a unit is simulated, that of a chip is not: leave CHIP out")
     replay.replay(netlist_of(arguments), arguments.break_number)
 
 
@@ -126,8 +143,8 @@ def prove_command(arguments):
         known = {k.base for k in design.kinds.values() if not k.memory}
         if not only <= known:
             raise SynthError(
-                f"ONLY={arguments.only}: {arguments.config} has no block {', '.join(sorted(only - known))}; it has "
-                f"{', '.join(sorted(known))}"
+                f"ONLY={arguments.only}: {design.options.title} has no block {', '.join(sorted(only - known))}; "
+                f"it has {', '.join(sorted(known))}"
             )
     verdicts = prove.prove(netlist_of(arguments), only)
     say(report.proofs_line(verdicts))
@@ -155,7 +172,7 @@ def fit_command(arguments):
 
 
 def parser():
-    top = argparse.ArgumentParser(prog="synth", description="synthesis of the compute unit: area, timing, power")
+    top = argparse.ArgumentParser(prog="synth", description="area, timing and power of the unit, or of the chip")
     commands = top.add_subparsers(dest="command", required=True)
     for name, function in (
         ("report", synth_command),
@@ -183,6 +200,9 @@ def parser():
         if name == "module":
             command.add_argument("module", help="of rtl/")
             command.add_argument("parameters", nargs="*", help="of one row of the table each: BITS=8 or A=1,B=2")
+        if name in ("report", "replay", "prove"):
+            command.add_argument("--chip", action="store_true", help="the whole chip, without its traverser")
+            command.add_argument("--units", default="1", help="with --chip: compute units, 1, 2 or 4")
         if name == "report":
             command.add_argument("--against", help="an earlier report.json to compare with")
             command.add_argument("--run", help="report.json of raypool sim with this configuration: Mrays/s a mm2")

@@ -71,9 +71,10 @@ def ask(*arguments):
     return done.stdout
 
 
-def configuration(name):
-    """The Verilog parameters of a configuration, as raypool says them."""
-    return dict(line.split("=") for line in ask(name, "--verilog-parameters").split())
+def configuration(name, units=0):
+    """The Verilog parameters of a configuration, as raypool says them: of the unit, or of a chip of so many units."""
+    chip = ["--chip", "--units", str(units)] if units else []
+    return dict(line.split("=") for line in ask(name, "--verilog-parameters", *chip).split())
 
 
 def with_fields(name, fields, folder):
@@ -88,7 +89,7 @@ def with_fields(name, fields, folder):
     return path
 
 
-def tree(parameters, folder, top="compute_unit", gated=False):
+def tree(parameters, folder, top, gated=False):
     """All kinds of module from `top` down, by identity; that of the top is its name."""
     os.makedirs(folder, exist_ok=True)
     script, result = os.path.join(folder, "elaborate.ys"), os.path.join(folder, "elaborate.json")

@@ -33,6 +33,12 @@ class Options:
     memories: str = "macros"
     jobs: int = 2
     out: str = None
+    units: int = 0  # of the whole chip; 0: a unit alone
+
+    @property
+    def title(self):
+        """The configuration, and that it is a chip's."""
+        return self.config + (f"-chip-{self.units}cu" if self.units else "")
 
 
 @dataclass
@@ -70,7 +76,8 @@ class Design:
 def label(options, library):
     """The folder's name: the configuration and whatever is not the default."""
     name = os.path.splitext(os.path.basename(options.config))[0]
-    return "-".join(filter(None, (name, suffix(options, library))))
+    chip = options.title.removeprefix(options.config)
+    return "-".join(filter(None, (name + chip, suffix(options, library))))
 
 
 def suffix(options, library):
@@ -88,12 +95,13 @@ def open_design(options):
     if options.memories not in ("macros", "flops") and not os.path.isdir(options.memories):
         raise SynthError(f"MEMORIES={options.memories}: macros, flops, or a folder with Liberty files of memory macros")
     library = Library(options.liberty)
-    parameters = elaborate.configuration(options.config)
+    parameters = elaborate.configuration(options.config, options.units)
     folder = options.out or os.path.join(BUILD, label(options, library))
     os.makedirs(folder, exist_ok=True)
     lock(folder)
     listed = macros.read(options.memories) if os.path.isdir(options.memories) else []
-    return Design(options, library, parameters, folder, memory=MemoryModel(library, listed))
+    top = "chip" if options.units else Design.top
+    return Design(options, library, parameters, folder, memory=MemoryModel(library, listed), top=top)
 
 
 def lock(folder):
@@ -123,6 +131,7 @@ def digest(design):
                     sources[name] = file.read()
     parts = [
         sources,
+        design.top,
         design.parameters,
         design.library.digest,
         mapping.versions(),
@@ -162,7 +171,7 @@ def map_design(design):
 
 
 def time_design(design, work):
-    design.endpoints, loops = timing.time_unit(
+    design.endpoints, loops = timing.time_netlist(
         design.verilog, design.library, design.macros, design.clock_ns, work, design.top
     )
     if loops:
@@ -267,7 +276,7 @@ def synthesise(design):
     work = prepare(design)
     map_design(design)
     slack = time_design(design, work)
-    progress(f"synth: {design.options.config}: slack {slack:+.3f} ns at {design.clock_ns:g} ns")
+    progress(f"synth: {design.options.title}: slack {slack:+.3f} ns at {design.clock_ns:g} ns")
     for _ in range(CLOSURE_ROUNDS):
         if slack >= 0:
             break

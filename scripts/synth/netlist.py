@@ -39,7 +39,7 @@ class Module:
 class Netlist:
     """All modules by identity; `top` is where instances begin. Memories are kinds without a module."""
 
-    def __init__(self, kinds, paths, library, top="compute_unit"):
+    def __init__(self, kinds, paths, library, top):
         self.kinds = kinds
         self.library = library
         self.top = top

@@ -25,9 +25,8 @@ def area_bars(report, folder, png):
     """Area by first-level block, logic and memory stacked."""
     rows = [
         b
-        for b in report["blocks"]
+        for b in report["blocks"][1:]
         if "/" not in b["block"]
-        and b["block"] != "compute_unit"
         and b["logic_kge"] + b["memory_kge"] > 0.005 * report["area"]["total_kge"]
     ]
     rows.sort(key=lambda b: -b["logic_kge"] - b["memory_kge"])

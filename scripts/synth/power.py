@@ -58,7 +58,7 @@ def estimate(design):
     rates = {name: activity(toggles, cycles, name) for name in ["", *top.blocks]}
     # OpenSTA gives the power of cells, of a block none: the cells of every block at or
     # below a first-level one are listed.
-    script = timing.set_up(design.verilog, design.library, design.macros, design.clock_ns)
+    script = timing.set_up(design.verilog, design.library, design.macros, design.clock_ns, design.top)
     kinds = dict(design.netlist.instances())
     for name, rate in rates.items():
         script += f"set_power_activity -global -activity {rate:.6f}\nset_power_activity -input -activity {rate:.6f}\n"
@@ -88,7 +88,7 @@ def estimate(design):
             raise SynthError(f"OpenSTA gave no power of {name or 'the unit'}; see {folder}/power.log")
         rows.append(
             {
-                "block": name or "compute_unit",
+                "block": name or design.top,
                 "activity": rates[name],
                 "internal_w": internal,
                 "switching_w": switching,

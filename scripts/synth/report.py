@@ -1,4 +1,4 @@
-"""report.json of a synthesised configuration, its table, and the comparison with an earlier one.
+"""report.json of a synthesised unit or chip, its table, and the comparison with an earlier one.
 docs/synthesis.md explains the fields.
 """
 import json
@@ -87,7 +87,7 @@ def blocks(design):
         end = worst.get(name)
         listed.append(
             {
-                "block": name or "compute_unit",
+                "block": name or design.top,
                 **{k: round(v, 1) if isinstance(v, float) else v for k, v in row.items()},
                 "logic_kge": round(library.kge(row["logic_um2"]), 3),
                 "memory_kge": round(library.kge(row["memory_um2"]), 3),
@@ -99,11 +99,11 @@ def blocks(design):
     return listed, of_path
 
 
-def block_of(of_path, pin):
+def block_of(design, of_path, pin):
     path = pin.split("/")[:-1]
     while path and "/".join(path) not in of_path:
         path = path[:-1]
-    return of_path["/".join(path)] or "compute_unit"
+    return of_path["/".join(path)] or design.top
 
 
 def forty_nm(design, logic_um2):
@@ -130,14 +130,14 @@ def make(design, key, path):
     library, clock = design.library, design.clock_ns
     start, end, steps = path
     slack = design.endpoints[0].slack
-    stages = [b for b in listed if b["delay_ns"] and b["flip_flops"] and b["block"] != "compute_unit"]
+    stages = [b for b in listed[1:] if b["delay_ns"] and b["flip_flops"]]
     median = statistics.median(b["delay_ns"] for b in stages)
     slow = sorted((b for b in stages if b["delay_ns"] > median * SLOW_STAGE), key=lambda b: -b["delay_ns"])
     allowed = clock - slack
     report = {
         "schema": SCHEMA,
         "key": key,
-        "config": design.options.config,
+        "config": design.options.title,
         "parameters": design.parameters,
         "library": {
             "name": library.name,
@@ -171,10 +171,11 @@ def make(design, key, path):
             "mhz": round(1000 / allowed, 1),
             "from": start,
             "to": end,
-            "from_block": block_of(of_path, start + "/x"),
-            "to_block": block_of(of_path, end + "/x"),
+            "from_block": block_of(design, of_path, start + "/x"),
+            "to_block": block_of(design, of_path, end + "/x"),
             "steps": [
-                {"pin": p, "cell": c, "delay_ns": d, "at_ns": t, "block": block_of(of_path, p)} for p, c, d, t in steps
+                {"pin": p, "cell": c, "delay_ns": d, "at_ns": t, "block": block_of(design, of_path, p)}
+                for p, c, d, t in steps
             ],
             "median_delay_ns": round(median, 4),
             "slow_stages": [
@@ -189,7 +190,10 @@ def make(design, key, path):
             ],
             "efforts": {design.kinds[i].name: effort for i, effort in sorted(design.efforts.items())},
         },
-        "forty_nm": {**forty_nm(design, whole["logic_um2"]), "thesis_4w4c_mm2": THESIS_MM2},
+        "forty_nm": {
+            **forty_nm(design, whole["logic_um2"]),
+            **({} if design.options.units else {"thesis_4w4c_mm2": THESIS_MM2}),
+        },
         "lanes": lanes(design, listed),
         "blocks": listed,
         "power": None,
@@ -228,8 +232,8 @@ def check(report):
         for name in names:
             if name not in report.get(group, {}):
                 raise SynthError(f"the report has no {group}.{name}")
-    top = [b for b in report["blocks"] if b["block"] != "compute_unit" and "/" not in b["block"]]
     whole = report["blocks"][0]
+    top = [b for b in report["blocks"][1:] if "/" not in b["block"]]
     for what in ("logic_um2", "memory_um2"):
         parts = sum(b[what] for b in top) + (whole["own_um2"] if what == "logic_um2" else 0)
         if abs(parts - whole[what]) > 1 + 1e-6 * whole[what]:
@@ -275,8 +279,8 @@ def proofs_line(verdicts):
     )
 
 
-def table(report, against=None, depth=2):
-    """What is printed."""
+def table(report, against=None):
+    """What is printed: blocks of the first two levels that are not tiny; of a chip all of the first, and its units'."""
     area, when, scaled = report["area"], report["timing"], report["forty_nm"]
     cells = report["library"]
     wires = f" with its wire load {cells['wire_load']}" if cells["wire_load"] else ""
@@ -286,21 +290,26 @@ def table(report, against=None, depth=2):
         "",
     ]
     old = {b["block"]: b for b in against["blocks"]} if against else {}
-    head = f"{'block':44} {'n':>4} {'um2':>11} {'kGE':>9} {'memory kGE':>11} "
+    chip = report["blocks"][0]["block"] == "chip"
+    listed = []
+    for block in report["blocks"]:
+        tiny = block["logic_um2"] + block["memory_um2"] < 0.0005 * area["total_um2"]
+        level = block["block"].count("/")
+        if level < (3 if chip else 2) and (not tiny or chip and level == 0):
+            listed.append(("  " * level + block["block"], block))
+    width = max(44, *(len(name) for name, _ in listed))
+    head = f"{'block':{width}} {'n':>4} {'um2':>11} {'kGE':>9} {'memory kGE':>11} "
     head += f"{'flip-flops':>11} {'memory bits':>12} {'slack ns':>9}"
     lines.append(head + (f" {'kGE before':>11} {'change':>8}" if against else ""))
-    for block in report["blocks"]:
-        name = block["block"]
-        if name.count("/") >= depth or (block["logic_um2"] + block["memory_um2"]) < 0.0005 * area["total_um2"]:
-            continue
+    for name, block in listed:
         line = (
-            f"{'  ' * name.count('/') + name:44} {block['instances']:>4} {block['logic_um2']:>11.0f} "
+            f"{name:{width}} {block['instances']:>4} {block['logic_um2']:>11.0f} "
             f"{block['logic_kge']:>9.2f} "
             f"{number(block['memory_kge']) if block['memory_bits'] else '-':>11} {block['flip_flops']:>11} "
             f"{block['memory_bits'] or '-':>12} {number(block['slack_ns'], 3):>9}"
         )
         if against:
-            before = old.get(name)
+            before = old.get(block["block"])
             line += f" {number(before['logic_kge']) if before else '-':>11} "
             if before and before["logic_kge"]:
                 line += f"{100 * (block['logic_kge'] / before['logic_kge'] - 1):>+7.1f}%"
@@ -314,8 +323,8 @@ def table(report, against=None, depth=2):
         f"gates    {area['logic_kge'] - area['clocked_kge']:.1f} kGE combinational, {area['clocked_kge']:.1f} kGE "
         "flip-flops and clock gates",
         f"40 nm    {scaled['total_mm2']:.3f} mm2 ({scaled['total_mm2_low']:.3f} to {scaled['total_mm2_high']:.3f}): "
-        f"logic {scaled['logic_mm2']:.3f}, memory {scaled['memory_mm2']:.3f}; "
-        f"the thesis' 4w4c: {scaled['thesis_4w4c_mm2']}",
+        f"logic {scaled['logic_mm2']:.3f}, memory {scaled['memory_mm2']:.3f}"
+        + (f"; the thesis' 4w4c: {scaled['thesis_4w4c_mm2']}" if "thesis_4w4c_mm2" in scaled else ""),
         f"timing   slack {when['slack_ns']:+.3f} ns at {when['clock_ns']:g} ns: {when['mhz']:.0f} MHz, "
         f"{when['allowed_ns']:.2f} ns, {when['allowed_fo4']:.1f} FO4",
         f"slowest  from {when['from_block']} ({when['from']}) to {when['to_block']} ({when['to']})",

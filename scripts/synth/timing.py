@@ -1,4 +1,4 @@
-"""Times a netlist with OpenSTA: the slowest path of the unit and of each block, and the FO4 delay of the library."""
+"""Times a netlist with OpenSTA: the slowest path of the whole and of each block, and the FO4 delay of the library."""
 import os
 import re
 import subprocess
@@ -77,24 +77,23 @@ class Endpoint:
 
 
 def set_up(netlist_path, library, macros, clock_ns, top):
-    """A module without a file of its own has the constraints of any module."""
-    constraints = os.path.join(ROOT, "constraints", f"{top}.sdc")
-    if not os.path.exists(constraints):
-        constraints = os.path.join(ROOT, "constraints", "module.sdc")
+    """The constraints of any module, and what else is known of this one."""
+    names = [os.path.join(ROOT, "constraints", f"{name}.sdc") for name in ("module", top)]
+    constraints = "\n".join(f"source {name}" for name in names if os.path.exists(name))
     macro = f"read_liberty {macros}\n" if macros else ""
     return f"""read_liberty {library.whole_file()}
 {macro}read_verilog {netlist_path}
 link_design {top}
 set raypool_clock_ns {clock_ns}
 set raypool_driver {library.driver}
-source {constraints}
+{constraints}
 """
 
 
 _END = re.compile(r"^(?P<pin>\S+)\s+\(\S+\)\s+-?[\d.]+\s+-?[\d.]+\s+(?P<slack>-?[\d.]+)\s")
 
 
-def time_unit(netlist_path, library, macros, clock_ns, folder, top="compute_unit"):
+def time_netlist(netlist_path, library, macros, clock_ns, folder, top):
     """Endpoints with their slack in ns, worst first, and the text of OpenSTA's check for loops."""
     text = run_sta(
         set_up(netlist_path, library, macros, clock_ns, top)
@@ -123,7 +122,7 @@ puts "== end"
 _STEP = re.compile(r"^\s*(?P<delay>-?[\d.]+)\s+(?P<time>-?[\d.]+)\s+(?P<edge>[\^v])\s+(?P<pin>\S+)\s+\((?P<cell>\S+)\)")
 
 
-def describe(pins, netlist_path, library, macros, clock_ns, folder, top="compute_unit"):
+def describe(pins, netlist_path, library, macros, clock_ns, folder, top):
     """The slowest path to each of the given end points: [(start, end, [(pin, cell, delay, time)])], in their order."""
     commands = "\n".join(f'puts "== path"\nreport_checks -path_delay max -to {{{pin}}} -digits 4' for pin in pins)
     text = run_sta(set_up(netlist_path, library, macros, clock_ns, top) + commands, folder, "paths")

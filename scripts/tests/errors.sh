@@ -125,6 +125,7 @@ another=$("$raypool" config 4w4c --unit-library)
 refuses "random programs on another configuration's unit" "build it for this configuration" \
   "${cosim[@]}" --config 2w2c --unit-library "$another"
 refuses "random programs, 3 warps" "3.*power of two from 1 to 32" "${cosim[@]}" --config "$folder/warps.json"
+refuses "parameters of a chip that are not asked for" "requires --verilog-parameters" "$raypool" config 4w4c --chip
 refuses "program that was not saved" "none.json" "${cosim[@]}" --replay "$folder/none.json"
 if [ -e "$folder/saved" ]; then
   failures=$((failures + 1))

@@ -18,7 +18,7 @@ ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)
 sys.path.insert(0, os.path.join(ROOT, "scripts"))
 
 from synth import clock_gates, elaborate, fit, flow, function, library, macros, mapping, module, netlist  # noqa: E402
-from synth import prove, replay, report, timing  # noqa: E402
+from synth import power, prove, replay, report, timing  # noqa: E402
 from synth.errors import SynthError  # noqa: E402
 from synth.memories import MemoryModel  # noqa: E402
 
@@ -50,7 +50,7 @@ MACRO = """library (of_a_memory) { time_unit : "1ns"; cell (sram_64x20) {
 def small_design(folder, top, parameters, lib=None):
     """One block mapped alone, as a design."""
     lib = lib or library.Library()
-    design = flow.Design(flow.Options(config=top), lib, {}, folder, 4.0, 0.1)
+    design = flow.Design(flow.Options(config=top), lib, {}, folder, 4.0, 0.1, top=top)
     design.kinds = elaborate.tree(parameters, folder, top, gated=bool(lib.clock_gate))
     design.memory = MemoryModel(lib)
     mapper = mapping.Mapper(lib, folder, 4.0, 2)
@@ -123,6 +123,10 @@ class Synthesis(unittest.TestCase):
             (["report", "--config", "1w1c", "--run", "/dev/null"], "RUN=/dev/null"),
             (["report", "--config", "1w1c", "--run", run], "4w4c"),
             (["report", "--config", "1w1c", "--clock", "soon"], "CLOCK=soon"),
+            (["report", "--config", "1w1c", "--chip", "--units", "3"], "CUS=3: a chip has 1, 2 or 4 compute units"),
+            (["report", "--config", "1w1c", "--chip", "--power"], "POWER: "),
+            (["report", "--config", "4w4c", "--chip", "--run", run], "RUN: "),
+            (["replay", "--config", "1w1c", "--chip"], "CHIP: "),
             (["prove", "--config", "1w1c", "--only", "teapot"], "has no block teapot"),
             (["growth", "--plan", run], "not a plan"),
             (["fit", run], "not what raypool fit --json writes"),
@@ -316,6 +320,78 @@ class Synthesis(unittest.TestCase):
         self.assertEqual(sum(r["memory_bits"] for r in rows[1:]), rows[0]["memory_bits"])
         self.assertGreater(rows[0]["logic_um2"], 100 * design.library.nand2_area)
         report.check({**{g: {n: 0 for n in names} for g, names in report.NEEDED.items()}, "blocks": rows})
+
+    def test_power_follows_activity(self):
+        design = small_design(self.folder, "event_counter", {"EVENT_BITS": "6"})
+        design.netlist.write(design.verilog)
+        os.makedirs(os.path.join(self.folder, "power"))
+
+        def estimated(toggles):
+            with mock.patch.object(power, "measure", lambda *_: ({"": (toggles, 100)}, {}, 1000)):
+                return power.estimate(design)
+
+        less, more = estimated(5000), estimated(10000)
+        self.assertEqual([row["block"] for row in more["blocks"]], ["event_counter"])
+        self.assertEqual(more["blocks"][0]["activity"], 0.1)
+        self.assertGreater(more["blocks"][0]["switching_w"], 1.5 * less["blocks"][0]["switching_w"])
+        self.assertGreater(less["blocks"][0]["switching_w"], 0)
+
+    def mapped_chip(self, units, real):
+        """A chip of which the blocks of these names are mapped; in the others are their blocks and a clock alone."""
+        design = flow.open_design(flow.Options(config="1w1c", out=self.folder, units=units))
+        flow.prepare(design)
+        mapper = mapping.Mapper(design.library, self.folder, design.clock_ns, 2)
+        paths = mapper.map_all([kind for kind in design.kinds.values() if kind.base in real])
+        for identity, kind in design.kinds.items():
+            if kind.memory or identity in paths:
+                continue
+            bits, ports = 2, {}
+            for name, (direction, width) in kind.ports.items():
+                ports[name] = {"direction": direction, "bits": list(range(bits, bits + width))}
+                bits += width
+            cells = {}
+            for name, child in kind.children.items():
+                clock = {p: ports[p]["bits"] for p in ("clk_i",) if p in design.kinds[child].ports and p in ports}
+                cells[name] = {"type": child, "connections": clock}
+            text = json.dumps({"ports": ports, "cells": cells, "netnames": {}})
+            paths[identity] = self.written(f"{len(paths)}.json", text)
+        design.netlist = netlist.Netlist(design.kinds, paths, design.library, design.top)
+        design.netlist.write(design.verilog)
+        design.memory.liberty(design.blocks(), design.fo4_ns, os.path.join(self.folder, "memories.lib"))
+        flow.time_design(design, self.folder)
+        return design
+
+    def test_a_chip_is_reported_by_block_and_its_units_are_mapped_once(self):
+        design = self.mapped_chip(2, {"frame_port", "launcher"})
+        self.assertEqual(flow.label(design.options, design.library), "1w1c-chip-2cu")
+        self.assertEqual(len([k for k in design.kinds.values() if k.base == "compute_unit"]), 1)
+        path = timing.describe([design.endpoints[0].pin], design.verilog, design.library, design.macros,
+                               design.clock_ns, self.folder, design.top)[0]  # fmt: skip
+        made = report.make(design, "key", path)
+        report.check(made)
+        rows = {row["block"]: row for row in made["blocks"]}
+        self.assertEqual(next(iter(rows)), "chip")
+        first = {"multiprocessor", "controller", "ray_pool", "intersection_pool", "memory_port", "frame_port"}
+        self.assertEqual({name for name in rows if "/" not in name}, {"chip"} | first)
+        self.assertEqual(made["area"]["logic_um2"], rows["chip"]["logic_um2"])
+        self.assertEqual(rows["chip"]["memory_bits"], sum(rows[name]["memory_bits"] for name in first))
+        self.assertEqual(rows["ray_pool/ram_1r1w"]["memory_bits"], 512 * 3 * 128)
+        unit, launches = "multiprocessor/compute_unit", "multiprocessor/compute_unit/launcher"
+        alone = design.netlist.own_flops(next(i for i, k in design.kinds.items() if k.base == "launcher"))
+        self.assertEqual((rows[unit]["instances"], rows[launches]["instances"]), (2, 2))
+        self.assertEqual((rows[unit]["flip_flops"], rows[launches]["flip_flops"]), (2 * alone, 2 * alone))
+        self.assertIn(made["timing"]["to_block"], ("frame_port", launches))
+        self.assertGreater(rows["frame_port"]["flip_flops"], 0)
+        # The thesis' area is that of a unit; of the chip every block is told, however small.
+        printed = report.table(made)
+        self.assertNotIn("thesis", printed)
+        self.assertTrue(printed.startswith("1w1c-chip-2cu "))
+        told = {line.split()[0] for line in printed.splitlines()[2:] if line.strip()}
+        self.assertLessEqual(first | {"chip"}, told)
+        # A unit whose instances were counted once would be noticed.
+        rows["multiprocessor"]["memory_um2"] /= 2
+        with self.assertRaisesRegex(SynthError, "add up"):
+            report.check(made)
 
     def test_memory_macros_have_their_own_price_and_times(self):
         self.written("sram.lib", MACRO)

@@ -80,9 +80,10 @@ struct ConfigOptions {
   std::string config = "8w8c";
   std::vector<std::string> set;  ///< fields of the configuration to change, "warps=4"
   bool verilog_parameters = false;
+  bool chip = false;  ///< `verilog_parameters` are those of the whole chip
   bool json = false;
   bool unit_library = false;  ///< path of the Verilated unit
-  int units = 1;              ///< of which `unit_library` has so many
+  int units = 1;              ///< of which `unit_library` and `chip` have so many
 };
 int config_command(const ConfigOptions& options);
 

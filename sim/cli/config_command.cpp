@@ -41,7 +41,9 @@ int config_command(const ConfigOptions& options) {
   if (options.json) {
     fmt::print("{}\n", to_json(configuration));
   } else if (options.verilog_parameters) {
-    for (const auto& [name, value] : verilog_parameters(configuration)) fmt::print("{}={}\n", name, value);
+    for (const auto& [name, value] :
+         options.chip ? chip_verilog_parameters(configuration, options.units) : verilog_parameters(configuration))
+      fmt::print("{}={}\n", name, value);
   } else if (options.unit_library) {
     fmt::print("{}\n", unit_library_path(configuration, false, options.units));
   } else {

@@ -308,10 +308,12 @@ void CommandLine::add_config_command() {
   add_set(*config_app, config_.set);
   auto* formats = config_app->add_option_group("format");
   formats->add_flag("--json", config_.json, "as a configuration file");
-  formats->add_flag("--verilog-parameters", config_.verilog_parameters, "as NAME=VALUE lines for rtl/multiprocessor.v");
+  CLI::Option* verilog = formats->add_flag("--verilog-parameters", config_.verilog_parameters,
+                                           "as NAME=VALUE lines for rtl/multiprocessor.v");
   formats->add_flag("--unit-library", config_.unit_library, "path of its Verilated unit");
   formats->require_option(0, 1);
-  config_app->add_option("--units", config_.units, "with --unit-library: compute units, 1, 2 or 4")
+  config_app->add_flag("--chip", config_.chip, "with --verilog-parameters: those of rtl/chip.v")->needs(verilog);
+  config_app->add_option("--units", config_.units, "with --unit-library or --chip: compute units, 1, 2 or 4")
       ->check(CLI::IsMember({1, 2, 4}));
   config_app->callback([this] { code_ = config_command(config_); });
 }
