@@ -7,14 +7,17 @@ set(data ${CMAKE_INSTALL_DATADIR}/raypool)
 install(TARGETS raypool RUNTIME COMPONENT program)
 install(DIRECTORY configs schemas examples rtl DESTINATION ${data} COMPONENT program)
 install(PROGRAMS scripts/verilate.sh DESTINATION ${data}/scripts COMPONENT program)
-install(FILES sim/rtl/rtl_unit.cpp sim/rtl/unit_library.hpp sim/rtl/verilated_design.hpp sim/rtl/probes.vlt
-        DESTINATION ${data}/sim/rtl COMPONENT program)
-install(FILES cpp_model/isa/isa.hpp cpp_model/isa/input_error.hpp DESTINATION ${data}/cpp_model/isa COMPONENT program)
-install(FILES cpp_model/config/configuration.hpp cpp_model/config/parameters.hpp
-        DESTINATION ${data}/cpp_model/config COMPONENT program)
-install(FILES cpp_model/machine/compute_unit.hpp cpp_model/machine/compute_unit.cpp cpp_model/machine/memory.hpp
-  cpp_model/machine/packages.hpp
-        DESTINATION ${data}/cpp_model/machine COMPONENT program)
+# What a Verilated unit or chip is compiled with.
+foreach(source sim/rtl/rtl_unit.cpp sim/rtl/rtl_chip.cpp sim/rtl/unit_library.hpp sim/rtl/chip_library.hpp
+    sim/rtl/verilated_design.hpp sim/rtl/probes.vlt sim/rtl/chip_probes.vlt cpp_model/bits.hpp cpp_model/enum_array.hpp
+    cpp_model/isa/isa.hpp cpp_model/isa/counters.hpp cpp_model/isa/input_error.hpp cpp_model/config/configuration.hpp
+    cpp_model/config/parameters.hpp cpp_model/machine/compute_unit.hpp cpp_model/machine/compute_unit.cpp
+    cpp_model/machine/chip_device.hpp cpp_model/machine/chip_device.cpp cpp_model/machine/memory.hpp
+    cpp_model/machine/memory_port.hpp cpp_model/machine/packages.hpp cpp_model/machine/port_cycles.hpp
+    cpp_model/machine/ram_queue.hpp cpp_model/machine/ray_kernel.hpp)
+  cmake_path(GET source PARENT_PATH folder)
+  install(FILES ${source} DESTINATION ${data}/${folder} COMPONENT program)
+endforeach()
 install(FILES ${CMAKE_BINARY_DIR}/share/raypool.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program)
 install(FILES ${CMAKE_BINARY_DIR}/share/raypool.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
   RENAME raypool COMPONENT program)

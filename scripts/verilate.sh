@@ -69,14 +69,14 @@ stamp=$output/libraypool_$kind.stamp
 # Everything the library is made from.
 cd "$root"
 shopt -s nullglob
-headers=(cpp_model/isa/isa.hpp cpp_model/config/{configuration,parameters}.hpp \
-  cpp_model/machine/{compute_unit,memory,packages}.hpp \
+headers=(cpp_model/{bits,enum_array}.hpp cpp_model/isa/{isa,counters,input_error}.hpp \
+  cpp_model/config/{configuration,parameters}.hpp cpp_model/machine/{compute_unit,memory,packages}.hpp \
   sim/rtl/{unit_library,verilated_design}.hpp)
 wrapper=("sim/rtl/rtl_$kind.cpp" cpp_model/machine/compute_unit.cpp)
 verilog=(rtl/*.v)
 waivers=(rtl/*.vlt)   # and what the lockstep looks at inside
 if [ "$kind" = chip ]; then
-  headers+=(cpp_model/machine/{chip_device,memory_port,ray_kernel}.hpp sim/rtl/chip_library.hpp)
+  headers+=(cpp_model/machine/{chip_device,memory_port,port_cycles,ram_queue,ray_kernel}.hpp sim/rtl/chip_library.hpp)
   wrapper+=(cpp_model/machine/chip_device.cpp)
   waivers+=(sim/rtl/chip_probes.vlt)
 else

@@ -45,6 +45,13 @@ cp "$built"/libraypool_unit.{so,stamp} "$(dirname "$unit")"
 "$raypool" unit --config 4w4c > "$folder/text" || fail "raypool unit: exit code $?"
 grep -q 'is up to date$' "$folder/text" ||
   fail "the installed sources are not those of the checkout's unit: $(cat "$folder/text")"
+# Every header of the project that a unit and a chip are compiled with is installed; the others are Verilator's.
+data=$folder/prefix/share/raypool
+for source in "$data"/sim/rtl/rtl_{unit,chip}.cpp; do
+  g++ -std=c++17 -MM -MG -I"$data/cpp_model" -I"$data/sim" "$source" > "$folder/text" || fail "$source: no headers"
+  missing=$(grep -oE '[^ ]+\.hpp' "$folder/text" | grep -vF "$data/" || true)
+  [ -z "$missing" ] || fail "$source needs what is not installed: $missing"
+done
 "$raypool" sim --scene cornell --size 8x8 --config 4w4c --engine lockstep > "$folder/text"
 grep -qE 'lockstep: [1-9][0-9]* cycles.*; 0 differences' "$folder/text" || fail "no lockstep: $(cat "$folder/text")"
 
