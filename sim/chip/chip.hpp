@@ -86,8 +86,8 @@ struct ChipResult {
   // Rays.
   RayCounts ray_counts;
   uint64_t rays() const { return ray_counts.traced(); }
-  uint64_t dropped_depth = 0;  ///< rays beyond the depth limit; never traced, with chip.culling never cast
-  uint64_t contributions = 0;  ///< to the frame buffer
+  uint64_t dropped_depth = 0;         ///< rays beyond the depth limit; never traced, with chip.culling never cast
+  uint64_t contributions = 0;         ///< to the frame buffer
   std::optional<uint32_t> held_peak;  ///< most unfinished pixels at a time; a chip in hardware does not say
 
   struct Kernel {
