@@ -227,8 +227,12 @@ class Report(Written):
     def refuses_changes(self, valid, report):
         names = set(report["kernels"]) | set(report.get("alus", {})) | set(report.get("sampled", {}).get("alus", {}))
 
-        def required(path):  # what a configuration leaves out has its default; kernels and ALUs are left open
-            return len(path) == 1 or path[0] != "configuration" and path[-1] not in names | {"launches", "cycles"}
+        # What a configuration leaves out has its default; kernels and ALUs are left open; and a frame that the units
+        # drew alone, which another report may be of, says nothing of the whole chip.
+        def required(path):
+            if len(path) == 1:
+                return path != ("whole_chip",)
+            return path[0] != "configuration" and path[-1] not in names | {"launches", "cycles"}
 
         self.refuses(valid, report, required, [("x",), ("scene", "x"), ("configuration", "x"), ("rays_by_kind", "x")])
 
