@@ -70,7 +70,7 @@ enum class Shading : uint8_t { Kernel = 0, Traverser = 1 };
 #define RAYPOOL_CHIP_PARAMETERS(CHIP, CHIP_PART) \
   CHIP(policy, PolicyName, PolicyName::Thesis, names("thesis", "fill"), "what chooses the next kernel") \
   CHIP(controller, ControllerName, ControllerName::Ledger, names("ledger", "counters"), \
-       "what launches kernels: it counts pixels and decides at once, or rays and in three cycles (rtl/controller.v)") \
+       "what launches kernels: it counts pixels and decides at once, or rays and in four cycles (rtl/controller.v)") \
   CHIP(window_remedy, bool, true, on_or_off(), "eye rays of further tiles are cast while earlier ones are under way") \
   CHIP(launch_ahead, bool, true, on_or_off(), "a kernel is launched behind a running one, if it is worth it") \
   CHIP(held_limit, uint32_t, 512, integers(1, 1 << 20), "unfinished pixels at a time") \

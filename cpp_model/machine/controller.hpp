@@ -1,4 +1,4 @@
-// rtl/controller.v: the controller that counts what is under way, and decides in three cycles.
+// rtl/controller.v: the controller that counts what is under way, and decides in four cycles.
 //
 // It is told what happens, with the cycle in which it does, and asked what follows from what a cycle has come to: so
 // nobody need call it in cycles in which nothing changes.
@@ -24,7 +24,7 @@ namespace raypool {
 class Controller {
  public:
   /// What is decided on the end of cycle c is offered to the units in c + 1 + kCycles.
-  static constexpr uint64_t kCycles = 3;
+  static constexpr uint64_t kCycles = 4;
 
   /// At the end of a cycle.
   struct Levels : PoolLevels {

@@ -1,5 +1,5 @@
 // The controller as rtl/controller.v has it (cpp_model/machine/controller.hpp): it counts what is under way from the
-// pools' levels and what leaves the units, knows of no pixels, and what it decides is offered three cycles later.
+// pools' levels and what leaves the units, knows of no pixels, and what it decides is offered four cycles later.
 #pragma once
 
 #include <cstdint>
