@@ -1,7 +1,7 @@
 // The controller: cuts a picture into tiles, and launches on the units what the policy proposes, as far as it is safe.
 // docs/chip.md, sections 3, 4 and 8.
-// What it sees of a cycle, levels and events, is counted in the next one; rules, policy and launch take one each: so a
-// launch is made four cycles after what it was decided on, and until it is counted nothing else is decided.
+// What it sees of a cycle, levels and events, is counted in the next one; rules and launch take one each, the policy
+// two: so a launch is made five cycles after what it was decided on, and until it is counted nothing else is decided.
 // Promises: a kernel imports only what has been reserved for it; the two rules of section 4; every tile is cast once;
 // no output depends on an input of the same cycle but that a tile is taken with its launch.
 // Must be given: levels of pools as rtl/ray_pool.v and rtl/intersection_pool.v have them; a unit that is ready stays
@@ -223,7 +223,17 @@ module controller #(
     view_done_q <= !tiles_left && !any_rays && size == NONE && kernels == {KERNEL_BITS{1'b0}} && &empty;
   end
 
-  // ---- The policy
+  // ---- The policy, and what else a launch is made of, as it stood when the policy saw it
+  reg [COUNT_BITS-1:0] held_q;
+  reg [THREAD_BITS-1:0] pixels_q;
+  reg direct_q, may_launch_q, all_done_q;
+  always @(posedge clk_i) begin
+    held_q <= view_held_q;
+    pixels_q <= view_pixels_q;
+    direct_q <= view_direct_q;
+    may_launch_q <= view_launch_q;
+    all_done_q <= view_done_q;
+  end
   wire [1:0] kind;
   wire [THREAD_BITS-1:0] threads;
   generate
@@ -234,27 +244,27 @@ module controller #(
         .INTERSECTION_POOL_SIZE(INTERSECTION_POOL_SIZE), .RAY_THRESHOLD(RAY_THRESHOLD),
         .INTERSECTION_THRESHOLD(INTERSECTION_THRESHOLD), .COUNT_BITS(COUNT_BITS)
       ) policy (
-        .rays_i(view_rays_q), .normal_i(view_normal_q), .shadow_i(view_shadow_q), .secondary_room_i(view_room_q),
-        .eye_possible_i(view_eye_q), .more_to_come_i(view_more_q), .ahead_i(view_ahead_q), .kind_o(kind),
-        .threads_o(threads));
+        .clk_i(clk_i), .rays_i(view_rays_q), .normal_i(view_normal_q), .shadow_i(view_shadow_q),
+        .secondary_room_i(view_room_q), .eye_possible_i(view_eye_q), .more_to_come_i(view_more_q),
+        .ahead_i(view_ahead_q), .kind_o(kind), .threads_o(threads));
     end else begin : gen_fill
       fill_policy #(
         .CONTENTS(CONTENTS), .UNITS(UNITS), .RAY_POOL_SIZE(RAY_POOL_SIZE),
         .INTERSECTION_POOL_SIZE(INTERSECTION_POOL_SIZE), .BATCH(BATCH), .COUNT_BITS(COUNT_BITS),
         .KERNEL_BITS(KERNEL_BITS)
       ) policy (
-        .rays_i(view_rays_q), .normal_i(view_normal_q), .shadow_i(view_shadow_q), .secondary_room_i(view_room_q),
-        .rays_to_come_i(view_to_come_q), .promised_i(view_promised_q), .kernels_i(view_kernels_q),
-        .two_rays_i(reflections_i), .eye_possible_i(view_eye_q), .more_to_come_i(view_more_q), .ahead_i(view_ahead_q),
-        .kind_o(kind), .threads_o(threads));
+        .clk_i(clk_i), .rays_i(view_rays_q), .normal_i(view_normal_q), .shadow_i(view_shadow_q),
+        .secondary_room_i(view_room_q), .rays_to_come_i(view_to_come_q), .promised_i(view_promised_q),
+        .kernels_i(view_kernels_q), .two_rays_i(reflections_i), .eye_possible_i(view_eye_q),
+        .more_to_come_i(view_more_q), .ahead_i(view_ahead_q), .kind_o(kind), .threads_o(threads));
     end
   endgenerate
 
   // ---- The launch. The first cycle that is decided on after one is that behind the one in which it is taken.
   reg [2:0] hold_q;
   wire may_decide = busy_o && hold_q == 3'd0;
-  wire decided = may_decide && view_launch_q && !view_done_q && kind != HALT;
-  wire reflects = reflections_i && !view_direct_q;
+  wire decided = may_decide && may_launch_q && !all_done_q && kind != HALT;
+  wire reflects = reflections_i && !direct_q;
   wire [THREAD_BITS+LEVEL_BITS-1:0] threads_reserved = {{LEVEL_BITS{1'b0}}, threads};
   wire [THREAD_BITS+10:0] threads_launched = {11'd0, threads};
   wire unused_threads = &{1'b0, threads_reserved[LEVEL_BITS +: THREAD_BITS], threads_launched[11 +: THREAD_BITS]};
@@ -267,23 +277,23 @@ module controller #(
       hold_q <= 3'd0;
     end else begin
       if (start_i) busy_o <= 1'b1;
-      else if (may_decide && view_done_q) busy_o <= 1'b0;
+      else if (may_decide && all_done_q) busy_o <= 1'b0;
       launch_valid_o <= decided || (launch_valid_o && !launch_ready_i);
       reserve_valid_o <= decided && kind != EYE;
       // The cycle in which a frame begins is the first one that is decided on.
-      if (start_i) hold_q <= 3'd2;
-      else if (decided || (launch_valid_o && !launch_ready_i)) hold_q <= 3'd4;
+      if (start_i) hold_q <= 3'd3;
+      else if (decided || (launch_valid_o && !launch_ready_i)) hold_q <= 3'd5;
       else if (hold_q != 3'd0) hold_q <= hold_q - 3'd1;
     end
     if (decided) begin
       kind_q <= kind;
-      held_then_q <= view_held_q;
+      held_then_q <= held_q;
       launch_threads_o <= (kind == EYE) ? TILE_THREADS[10:0] : threads_launched[10:0];
-      launch_import_o <= (kind == EYE) ? 2'd0 : (kind == SHADE) ? SHADOW : view_direct_q ? DIRECT : NORMAL;
+      launch_import_o <= (kind == EYE) ? 2'd0 : (kind == SHADE) ? SHADOW : direct_q ? DIRECT : NORMAL;
       launch_pc_o <= (kind == EYE) ? eye_pc_i : (kind == SHADE) ? shade_pc_i : reflects ? secondary_pc_i : direct_pc_i;
-      reserve_kind_o <= (kind == SHADE) ? SHADOW : view_direct_q ? DIRECT : NORMAL;
+      reserve_kind_o <= (kind == SHADE) ? SHADOW : direct_q ? DIRECT : NORMAL;
       reserve_count_o <= threads_reserved[LEVEL_BITS-1:0];
-      normal_q <= !makes_normal ? {THREAD_BITS{1'b0}} : (kind == EYE) ? view_pixels_q : threads;
+      normal_q <= !makes_normal ? {THREAD_BITS{1'b0}} : (kind == EYE) ? pixels_q : threads;
       shadow_q <= (kind == SECONDARY) ? threads : {THREAD_BITS{1'b0}};
     end
   end

@@ -1,5 +1,6 @@
 // The policy `fill`: full loads, a kernel ready behind the one that runs, and a look at what a kernel will produce and
 // at who waits at the ports. docs/chip.md, section 3.
+// What is seen in a cycle is decided in the next one.
 // Promises: as thesis_policy. Must be given: counts below 2^(COUNT_BITS - 2); kernels on record at most 2 x UNITS.
 `default_nettype none
 module fill_policy #(
@@ -12,6 +13,7 @@ module fill_policy #(
   parameter integer THREAD_BITS = $clog2(CONTENTS + 1),
   parameter integer KERNEL_BITS = $clog2(2 * UNITS + 1)
 ) (
+  input  wire                   clk_i,
   input  wire [COUNT_BITS-1:0]  rays_i,            // in the ray pool
   input  wire [COUNT_BITS-1:0]  normal_i,          // intersections that no kernel has been promised
   input  wire [COUNT_BITS-1:0]  shadow_i,
@@ -43,35 +45,48 @@ module fill_policy #(
   wire [COUNT_BITS-1:0] capacity = RAY_POOL_SIZE[COUNT_BITS-1:0] + BATCH[COUNT_BITS-1:0] * kernels;
   wire [COUNT_BITS-1:0] room = (coming < capacity) ? capacity - coming : NONE;
 
-  wire behind = rays_i > BACKLOG[COUNT_BITS-1:0];
-  wire any_kernel = kernels_i != {KERNEL_BITS{1'b0}};
-  wire [COUNT_BITS-1:0] shade = least(CONTENTS[COUNT_BITS-1:0], shadow_i);
-  wire [COUNT_BITS-1:0] safe = least(least(CONTENTS[COUNT_BITS-1:0], normal_i), secondary_room_i);
-  wire [COUNT_BITS-1:0] secondary = least(safe, two_rays_i ? room >> 1 : room);
-
-  wire secondary_full = secondary >= LOAD[COUNT_BITS-1:0];
-  wire shade_full = shade >= (behind ? SMALL_LOAD[COUNT_BITS-1:0] : LOAD[COUNT_BITS-1:0]);
-  wire shade_first = shade_full && (!secondary_full || behind || shade > secondary);
-  wire eye = eye_possible_i && room >= EYE_ROOM[COUNT_BITS-1:0];
+  // What is seen, and what follows from it at once.
+  reg [COUNT_BITS-1:0] room_q, shade_q, safe_q;
+  reg behind_q, eye_possible_q, two_rays_q;
+  reg waits_q;                            // for a full load
+  reg alone_q;                            // nothing will come by itself
   // Its packages would wait behind those at the port: later it will be fuller, and no later in the end.
+  wire any_kernel = kernels_i != {KERNEL_BITS{1'b0}};
   wire port_waits = any_kernel && promised_i >= LOAD[COUNT_BITS-1:0];
-  // Nothing will come by itself, so the empty ray pool has to take what is made, however small it is.
-  wire tail = !any_kernel && !more_to_come_i && safe != NONE;
-  wire part_secondary = secondary != NONE && (shade == NONE || (!behind && secondary >= shade));
+  always @(posedge clk_i) begin
+    room_q <= room;
+    shade_q <= least(CONTENTS[COUNT_BITS-1:0], shadow_i);
+    safe_q <= least(least(CONTENTS[COUNT_BITS-1:0], normal_i), secondary_room_i);
+    behind_q <= rays_i > BACKLOG[COUNT_BITS-1:0];
+    eye_possible_q <= eye_possible_i;
+    two_rays_q <= two_rays_i;
+    waits_q <= ahead_i || port_waits;
+    alone_q <= !any_kernel && !more_to_come_i;
+  end
+
+  // ---- The decision
+  wire [COUNT_BITS-1:0] secondary = least(safe_q, two_rays_q ? room_q >> 1 : room_q);
+  wire secondary_full = secondary >= LOAD[COUNT_BITS-1:0];
+  wire shade_full = shade_q >= (behind_q ? SMALL_LOAD[COUNT_BITS-1:0] : LOAD[COUNT_BITS-1:0]);
+  wire shade_first = shade_full && (!secondary_full || behind_q || shade_q > secondary);
+  wire eye = eye_possible_q && room_q >= EYE_ROOM[COUNT_BITS-1:0];
+  // The empty ray pool has to take what is made, however small it is.
+  wire tail = alone_q && safe_q != NONE;
+  wire part_secondary = secondary != NONE && (shade_q == NONE || (!behind_q && secondary >= shade_q));
 
   always @* begin
     kind_o = HALT;
     if (shade_first) kind_o = SHADE;
     else if (secondary_full) kind_o = SECONDARY;
     else if (eye) kind_o = EYE;
-    else if (!ahead_i && !port_waits) begin
+    else if (!waits_q) begin
       if (part_secondary) kind_o = SECONDARY;
-      else if (shade != NONE) kind_o = SHADE;
+      else if (shade_q != NONE) kind_o = SHADE;
       else if (tail) kind_o = SECONDARY;
     end
   end
-  assign threads_o = (kind_o == SHADE) ? shade[THREAD_BITS-1:0]
+  assign threads_o = (kind_o == SHADE) ? shade_q[THREAD_BITS-1:0]
                      : (kind_o != SECONDARY) ? {THREAD_BITS{1'b0}}
-                     : (secondary_full || part_secondary) ? secondary[THREAD_BITS-1:0] : safe[THREAD_BITS-1:0];
+                     : (secondary_full || part_secondary) ? secondary[THREAD_BITS-1:0] : safe_q[THREAD_BITS-1:0];
 endmodule
 `default_nettype wire

@@ -1,4 +1,5 @@
 // The policy of the thesis (its figure 5.3): which kernel a unit that can take one gets. docs/chip.md, section 3.
+// What is seen in a cycle is decided in the next one.
 // Promises: threads of a kernel are at most CONTENTS and what there is of its intersections, for a secondary kernel
 // secondary_room_i too, and at least one; eye rays are cast only if a tile may be.
 `default_nettype none
@@ -12,6 +13,7 @@ module thesis_policy #(
   parameter integer COUNT_BITS = 24,
   parameter integer THREAD_BITS = $clog2(CONTENTS + 1)
 ) (
+  input  wire                   clk_i,
   input  wire [COUNT_BITS-1:0]  rays_i,            // in the ray pool
   input  wire [COUNT_BITS-1:0]  normal_i,          // intersections that no kernel has been promised
   input  wire [COUNT_BITS-1:0]  shadow_i,
@@ -30,34 +32,44 @@ module thesis_policy #(
   localparam integer INTERSECTIONS =
     smaller(INTERSECTION_THRESHOLD * SCALE, smaller(CONTENTS - 1, INTERSECTION_POOL_SIZE - 1));
 
-  wire [COUNT_BITS-1:0] shade = least(CONTENTS[COUNT_BITS-1:0], shadow_i);
   wire [COUNT_BITS-1:0] load = least(CONTENTS[COUNT_BITS-1:0], normal_i);
-  wire [COUNT_BITS-1:0] secondary = least(load, secondary_room_i);
-  wire any_shadow = shadow_i != {COUNT_BITS{1'b0}};
-  wire more_normal = shadow_i < normal_i;
-  wire behind = rays_i > RAYS[COUNT_BITS-1:0];
-  wire work = {1'b0, normal_i} + {1'b0, shadow_i} > INTERSECTIONS[COUNT_BITS:0];
+  // What is seen, and what follows from it at once.
+  reg [COUNT_BITS-1:0] shade_q, secondary_q;
+  reg any_shadow_q, more_normal_q, safe_q, behind_q, work_q, eye_possible_q, more_to_come_q, ahead_q;
+  always @(posedge clk_i) begin
+    shade_q <= least(CONTENTS[COUNT_BITS-1:0], shadow_i);
+    secondary_q <= least(load, secondary_room_i);
+    any_shadow_q <= shadow_i != {COUNT_BITS{1'b0}};
+    more_normal_q <= shadow_i < normal_i;
+    safe_q <= secondary_room_i >= load;
+    behind_q <= rays_i > RAYS[COUNT_BITS-1:0];
+    work_q <= {1'b0, normal_i} + {1'b0, shadow_i} > INTERSECTIONS[COUNT_BITS:0];
+    eye_possible_q <= eye_possible_i;
+    more_to_come_q <= more_to_come_i;
+    ahead_q <= ahead_i;
+  end
 
   // Shade instead where a full secondary kernel would not be safe, so that room comes back; in the tail, where nothing
   // comes by itself, one that is not full will do.
   reg [1:0] wanted;
   always @* begin
     wanted = HALT;
-    if (behind) begin
-      if (any_shadow) wanted = SHADE;
-    end else if (work) begin
-      if (more_normal && secondary_room_i >= load) wanted = SECONDARY;
-      else if (any_shadow) wanted = SHADE;
-    end else if (eye_possible_i) wanted = EYE;
-    else if (!more_to_come_i) begin
-      if (more_normal && secondary != {COUNT_BITS{1'b0}}) wanted = SECONDARY;
-      else if (any_shadow) wanted = SHADE;
+    if (behind_q) begin
+      if (any_shadow_q) wanted = SHADE;
+    end else if (work_q) begin
+      if (more_normal_q && safe_q) wanted = SECONDARY;
+      else if (any_shadow_q) wanted = SHADE;
+    end else if (eye_possible_q) wanted = EYE;
+    else if (!more_to_come_q) begin
+      if (more_normal_q && secondary_q != {COUNT_BITS{1'b0}}) wanted = SECONDARY;
+      else if (any_shadow_q) wanted = SHADE;
     end
   end
 
-  wire [COUNT_BITS-1:0] threads = (wanted == SECONDARY) ? secondary : (wanted == SHADE) ? shade : {COUNT_BITS{1'b0}};
+  wire [COUNT_BITS-1:0] threads =
+    (wanted == SECONDARY) ? secondary_q : (wanted == SHADE) ? shade_q : {COUNT_BITS{1'b0}};
   // A kernel is launched ahead only to import a full load: any other decision is better made when the unit is free.
-  wire waits = ahead_i && threads != CONTENTS[COUNT_BITS-1:0];
+  wire waits = ahead_q && threads != CONTENTS[COUNT_BITS-1:0];
   assign threads_o = waits ? {THREAD_BITS{1'b0}} : threads[THREAD_BITS-1:0];
   always @* kind_o = waits ? HALT : wanted;
 endmodule

@@ -8,10 +8,10 @@
 // @parameters CONTENTS=1 RAYS=1 INTERSECTIONS=1
 // @parameters CONTENTS=64 RAYS=100 INTERSECTIONS=60
 // @break thesis_policy s/localparam integer INTERSECTIONS =/localparam integer INTERSECTIONS = 2 +/
-// @break thesis_policy s/secondary_room_i >= load/1'b1/
-// @break thesis_policy s/else if \(any_shadow\) wanted = SHADE;//
-// @break thesis_policy s/else if \(!more_to_come_i\) begin/else if (!more_to_come_i \&\& normal_i != shadow_i) begin/
-// @break thesis_policy s/ahead_i && threads/ahead_i \&\& wanted != EYE \&\& threads/
+// @break thesis_policy s/more_normal_q && safe_q/more_normal_q/
+// @break thesis_policy s/else if \(any_shadow_q\) wanted = SHADE;//
+// @break thesis_policy s/else if \(!more_to_come_q\) begin/else if (!more_to_come_q \&\& more_normal_q) begin/
+// @break thesis_policy s/ahead_q && threads/ahead_q \&\& wanted != EYE \&\& threads/
 `default_nettype none
 module check #(parameter CONTENTS = 4, parameter RAYS = 7, parameter INTERSECTIONS = 5) (
   input wire clk_i, input wire [9:0] rays, normal, shadow, others, input wire eye_possible, to_come, ahead);
