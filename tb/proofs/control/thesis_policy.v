@@ -18,8 +18,6 @@ module check #(parameter CONTENTS = 4, parameter RAYS = 7, parameter INTERSECTIO
   localparam BITS = 12;
   localparam LIMIT = RAYS + INTERSECTIONS - 1;
   // What a controller can see: rule 2 leaves what shadow rays and intersections do not take.
-  reg started = 1'b0;
-  always @(posedge clk_i) started <= 1'b1;
   wire more_to_come = rays != 0 || to_come;
   wire [BITS-1:0] shadows = shadow + (more_to_come ? others : 0);
   wire [BITS-1:0] room = shadows < LIMIT ? LIMIT - shadows : 0;
@@ -27,20 +25,31 @@ module check #(parameter CONTENTS = 4, parameter RAYS = 7, parameter INTERSECTIO
   wire [$clog2(CONTENTS + 1)-1:0] threads;
   thesis_policy #(.CONTENTS(CONTENTS), .RAY_POOL_SIZE(RAYS), .INTERSECTION_POOL_SIZE(INTERSECTIONS),
                   .COUNT_BITS(BITS)) dut (
-    .rays_i({2'd0, rays}), .normal_i({2'd0, normal}), .shadow_i({2'd0, shadow}), .secondary_room_i(room),
-    .eye_possible_i(eye_possible), .more_to_come_i(more_to_come), .ahead_i(ahead), .kind_o(kind), .threads_o(threads));
+    .clk_i(clk_i), .rays_i({2'd0, rays}), .normal_i({2'd0, normal}), .shadow_i({2'd0, shadow}),
+    .secondary_room_i(room), .eye_possible_i(eye_possible), .more_to_come_i(more_to_come), .ahead_i(ahead),
+    .kind_o(kind), .threads_o(threads));
+  // What it has seen in the cycle before.
+  reg decided_q = 1'b0;
+  reg [9:0] normal_q, shadow_q;
+  reg [BITS-1:0] room_q;
+  reg eye_possible_q, more_to_come_q, ahead_q;
+  always @(posedge clk_i) begin
+    decided_q <= 1'b1;
+    {normal_q, shadow_q, room_q} <= {normal, shadow, room};
+    {eye_possible_q, more_to_come_q, ahead_q} <= {eye_possible, more_to_come, ahead};
+  end
   always @* begin
     assume (rays <= RAYS && normal <= INTERSECTIONS && shadow <= INTERSECTIONS);
-    if (started) begin
+    if (decided_q) begin
       if (kind == 0 || kind == 1) assert (threads == 0);
-      if (kind == 1) assert (eye_possible);
-      if (kind == 2) assert (threads != 0 && threads <= CONTENTS && threads <= normal && threads <= room);
-      if (kind == 3) assert (threads != 0 && threads <= CONTENTS && threads <= shadow);
-      if (kind == 0 && !ahead) begin
-        assert (shadow != INTERSECTIONS);
-        assert (more_to_come || (!eye_possible && normal == 0 && shadow == 0));
+      if (kind == 1) assert (eye_possible_q);
+      if (kind == 2) assert (threads != 0 && threads <= CONTENTS && threads <= normal_q && threads <= room_q);
+      if (kind == 3) assert (threads != 0 && threads <= CONTENTS && threads <= shadow_q);
+      if (kind == 0 && !ahead_q) begin
+        assert (shadow_q != INTERSECTIONS);
+        assert (more_to_come_q || (!eye_possible_q && normal_q == 0 && shadow_q == 0));
       end
-      if (ahead) assert (kind == 0 || (kind != 1 && threads == CONTENTS));
+      if (ahead_q) assert (kind == 0 || (kind != 1 && threads == CONTENTS));
     end
   end
 endmodule
