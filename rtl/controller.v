@@ -166,22 +166,28 @@ module controller #(
   assign shadow = {{COUNT_BITS-LEVEL_BITS{1'b0}}, available_q[LEVEL_BITS +: LEVEL_BITS]};
   wire [COUNT_BITS-1:0] rays = {{COUNT_BITS-RAY_BITS{1'b0}}, rays_q};
   wire [COUNT_BITS-1:0] shadow_rays = {{COUNT_BITS-RAY_BITS{1'b0}}, shadow_rays_q};
-  reg [COUNT_BITS-1:0] all_normal, all_shadow;
+  reg [COUNT_BITS-1:0] normal_low, normal_high, shadow_low, shadow_high;   // of two and two units: sums take long
   reg [KERNEL_BITS-1:0] kernels;
   reg ahead;
   integer i;
   always @* begin
-    all_normal = NONE;
-    all_shadow = NONE;
+    {normal_low, normal_high, shadow_low, shadow_high} = {4{NONE}};
     kernels = {KERNEL_BITS{1'b0}};
     ahead = 1'b1;                         // the unit that takes the launch runs a kernel: each of them does
     for (i = 0; i < UNITS; i = i + 1) begin
-      all_normal = all_normal + {{COUNT_BITS-RECORD_BITS{1'b0}}, normal_to_come[i*RECORD_BITS +: RECORD_BITS]};
-      all_shadow = all_shadow + {{COUNT_BITS-RECORD_BITS{1'b0}}, shadow_to_come[i*RECORD_BITS +: RECORD_BITS]};
+      if (i < 2) begin
+        normal_low = normal_low + {{COUNT_BITS-RECORD_BITS{1'b0}}, normal_to_come[i*RECORD_BITS +: RECORD_BITS]};
+        shadow_low = shadow_low + {{COUNT_BITS-RECORD_BITS{1'b0}}, shadow_to_come[i*RECORD_BITS +: RECORD_BITS]};
+      end else begin
+        normal_high = normal_high + {{COUNT_BITS-RECORD_BITS{1'b0}}, normal_to_come[i*RECORD_BITS +: RECORD_BITS]};
+        shadow_high = shadow_high + {{COUNT_BITS-RECORD_BITS{1'b0}}, shadow_to_come[i*RECORD_BITS +: RECORD_BITS]};
+      end
       kernels = kernels + {{KERNEL_BITS-3{1'b0}}, kernels_q[i*3 +: 3]};
       if (kernels_q[i*3 +: 3] == 3'd0) ahead = 1'b0;
     end
   end
+  wire [COUNT_BITS-1:0] all_normal = normal_low + normal_high;
+  wire [COUNT_BITS-1:0] all_shadow = shadow_low + shadow_high;
   // Ways of light that are under way: a pixel has one at most.
   wire [COUNT_BITS-1:0] held = rays - shadow_rays + normal + direct + all_normal;
   wire eye_possible;

@@ -33,7 +33,7 @@ int configurations_command(const ConfigurationsOptions& options) {
     }
     fmt::print("\n");
   }
-  const Covered covered = count_covered(machines, most_threads);
+  const Covered covered = count_covered(covering_factors(), machines, most_threads);
   fmt::print("{} machines of at most {} threads: {} of {} values, {} of {} pairs of values\n", machines.size(),
              most_threads, covered.values, covered.all_values, covered.pairs, covered.all_pairs);
   if (options.folder.empty()) return 0;

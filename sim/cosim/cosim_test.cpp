@@ -363,17 +363,25 @@ TEST(Stalls, OpenAndShutAsTheirStyleSays) {
 TEST(Covering, AFewMachinesHaveEveryValue) {
   const std::vector<Machine> machines = covering_machines(kSmallThreads, 12);
   for (size_t i = 0; i < 12; ++i) EXPECT_LE(machines[i].configuration.contents() * machines[i].units, kSmallThreads);
-  const Covered covered = count_covered(machines, kSmallThreads);
+  const Covered covered = count_covered(covering_factors(), machines, kSmallThreads);
   EXPECT_EQ(covered.values, covered.all_values);
 }
 
 TEST(Covering, SetsHaveEveryPairThatMachinesOfTheirSizeCanHave) {
   for (const int most_threads : {kSmallThreads, kMostThreads}) {
     const std::vector<Machine> machines = covering_machines(most_threads);
-    const Covered covered = count_covered(machines, most_threads);
+    const Covered covered = count_covered(covering_factors(), machines, most_threads);
     EXPECT_EQ(covered.values, covered.all_values);
     EXPECT_EQ(covered.pairs, covered.all_pairs);
   }
+}
+
+TEST(Covering, ChipsHaveEveryPairThatSmallOnesCanHave) {
+  const std::vector<Machine> machines = covering_chips();
+  const Covered covered = count_covered(chip_factors(), machines, kSmallThreads);
+  EXPECT_EQ(covered.values, covered.all_values);
+  EXPECT_EQ(covered.pairs, covered.all_pairs);
+  EXPECT_LT(machines.size(), 30u);
 }
 
 TEST(CoverageOfNothing, ListsEverythingAsNotCovered) {

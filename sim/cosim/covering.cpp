@@ -6,6 +6,7 @@
 #include <numeric>
 #include <random>
 #include <set>
+#include <string_view>
 #include <tuple>
 #include <utility>
 
@@ -51,6 +52,10 @@ Factor factor_of(const AluParameter& parameter, size_t type) {
   return factor;
 }
 
+Factor units_factor() {
+  return {"units", {1, 2, 4}, [](Machine& m, int v) { m.units = v; }, [](const Machine& m) { return m.units; }};
+}
+
 // In the order in which they are set: a depth behind the modes that decide its least.
 std::vector<Factor> make_factors() {
   std::vector<Factor> factors;
@@ -60,15 +65,75 @@ std::vector<Factor> make_factors() {
   };
   put(false);
   put(true);
-  factors.insert(
-      factors.begin() + 2,
-      {"units", {1, 2, 4}, [](Machine& m, int v) { m.units = v; }, [](const Machine& m) { return m.units; }});
+  factors.insert(factors.begin() + 2, units_factor());
   for (Factor& factor : factors)
     factor.multiplies = factor.name == "warps" || factor.name == "lanes" || factor.name == "units";
   for (size_t type = 0; type < kAluTypes; ++type) {
     for (const AluParameter& parameter : parameter::kOfAlu)
       if (!kAluTable[type].timed_by_events() && applies(parameter, static_cast<AluType>(type)))
         factors.push_back(factor_of(parameter, type));
+  }
+  return factors;
+}
+
+/// Of the parameter of this path, with values of our own.
+Factor factor_of(std::string_view path, std::vector<int> values) {
+  const auto find = [path](const auto& rows) {
+    const auto found =
+        std::find_if(std::begin(rows), std::end(rows), [path](const Parameter& row) { return path_of(row) == path; });
+    return found == std::end(rows) ? nullptr : &*found;
+  };
+  const Parameter* const of_chip = find(parameter::kOfChip);
+  Factor factor = factor_of(of_chip != nullptr ? *of_chip : *find(parameter::kAll));
+  factor.values = std::move(values);
+  return factor;
+}
+
+// A size of the intersection pool counts what it holds beyond a tile's row, and what may be held is this row or as much
+// as the pool holds: so any two values go together.
+std::vector<Factor> make_chip_factors() {
+  const auto row = [](const Machine& m) { return 1 << tile_width_log2(m.configuration.contents()); };
+  std::vector<Factor> factors = {factor_of("warps", {1, 2}), factor_of("lanes", {1, 2}), units_factor()};
+  for (Factor& factor : factors) factor.multiplies = true;
+  for (const auto& [path, values] : std::initializer_list<std::pair<std::string_view, std::vector<int>>>{
+           {"kernel_overlap", {0, 1}},
+           {"intersection_words", {18, 21}},
+           {"data_cache.mshrs", {1, 2}},
+           {"chip.policy", {0, 1}},
+           {"chip.window_remedy", {0, 1}},
+           {"chip.launch_ahead", {0, 1}},
+           {"chip.shading", {0, 1}},
+           {"chip.culling", {0, 1}},
+           {"chip.thresholds.rays", {0, 48}},
+           {"chip.thresholds.intersections", {0, 64}},
+           {"chip.static_traverser.batch", {1, 3, 64}},
+           {"chip.ray_pool.size", {1, 2, 7}},
+           {"chip.ray_pool.overhead", {1, 2, 5}},
+           {"chip.ray_pool.cycles_per_beat", {1, 2}},
+           {"chip.ray_pool.pipelined", {0, 1}},
+           {"chip.intersection_pool.size", {1, 4, 9}},
+           {"chip.intersection_pool.overhead", {1, 2, 5}},
+           {"chip.intersection_pool.cycles_per_beat", {1, 2}},
+           {"chip.intersection_pool.pipelined", {0, 1}},
+           {"chip.memory.latency", {1, 10, 50}},
+           {"chip.memory.cycles_per_beat", {1, 2, 3}},
+           {"chip.memory.queue", {1, 2, 8}},
+           {"chip.modelled_traverser.node_cache_mshrs", {1, 2}},
+           {"chip.modelled_traverser.tile_order", {0, 1}},
+           {"chip.held_limit", {0, 1}}})
+    factors.push_back(factor_of(path, values));
+  for (Factor& factor : factors) {
+    const auto set = factor.set;
+    const auto get = factor.get;
+    if (factor.name == "chip.intersection_pool.size") {
+      factor.set = [set, row](Machine& m, int value) { set(m, row(m) + value); };
+      factor.get = [get, row](const Machine& m) { return get(m) - row(m); };
+    } else if (factor.name == "chip.held_limit") {
+      factor.set = [set, row](Machine& m, int value) {
+        set(m, value == 0 ? row(m) : static_cast<int>(m.configuration.chip.intersection_pool_size));
+      };
+      factor.get = [get, row](const Machine& m) { return get(m) == row(m) ? 0 : 1; };
+    }
   }
   return factors;
 }
@@ -89,8 +154,7 @@ using Row = std::vector<int>;
 
 class Search {
  public:
-  explicit Search(int most_threads) : most_threads_(most_threads) {
-    const auto& factors = covering_factors();
+  Search(const std::vector<Factor>& factors, int most_threads) : factors_(factors), most_threads_(most_threads) {
     for (size_t a = 0; a < factors.size(); ++a)
       for (size_t b = a + 1; b < factors.size(); ++b)
         for (size_t i = 0; i < factors[a].values.size(); ++i)
@@ -106,7 +170,7 @@ class Search {
     Row best;
     size_t most = 0;
     for (int n = 0; n < kCandidates; ++n) {
-      Row row(covering_factors().size(), -1);
+      Row row(factors_.size(), -1);
       auto pair = open_.begin();
       std::advance(pair, static_cast<std::ptrdiff_t>(random_() % open_.size()));
       row[std::get<0>(*pair)] = static_cast<int>(std::get<2>(*pair));
@@ -137,7 +201,7 @@ class Search {
     int product = 1;
     for (size_t other = 0; other < row.size(); ++other) {
       const size_t index = other == factor ? value : static_cast<size_t>(row[other]);
-      const Factor& f = covering_factors()[other];
+      const Factor& f = factors_[other];
       if (other == factor || row[other] >= 0) product *= threads_of(f, f.values[index]);
     }
     return product;
@@ -150,7 +214,7 @@ class Search {
     size_t total = 0;
     for (const size_t factor : order) {
       if (row[factor] >= 0) continue;
-      const size_t values = covering_factors()[factor].values.size();
+      const size_t values = factors_[factor].values.size();
       const size_t first = random_() % values;
       size_t chosen = 0, most = 0;  // a size's first value is 1, which always fits
       for (size_t n = 0; n < values; ++n) {
@@ -172,22 +236,22 @@ class Search {
     }
   }
 
+  const std::vector<Factor>& factors_;
   int most_threads_;
   std::set<Pair> open_;
   Random random_{1};
 };
 
-Machine named(Machine machine, size_t number) {
+Machine named(Machine machine, std::string_view set, size_t number) {
   Configuration& configuration = machine.configuration;
-  configuration.name = fmt::format("set{:02}-{}w{}c", number, configuration.warps, configuration.lanes);
+  configuration.name = fmt::format("{}{:02}-{}w{}c", set, number, configuration.warps, configuration.lanes);
   check_configuration(configuration, configuration.name);
   return machine;
 }
 
-Machine machine_of(const Row& row) {
-  Machine machine;
+Machine machine_of(const std::vector<Factor>& factors, const Row& row, Machine machine = {}) {
   for (size_t factor = 0; factor < row.size(); ++factor) {
-    const Factor& f = covering_factors()[factor];
+    const Factor& f = factors[factor];
     f.set(machine, f.values[row[factor]]);
   }
   return machine;
@@ -200,8 +264,12 @@ const std::vector<Factor>& covering_factors() {
   return kFactors;
 }
 
-Covered count_covered(const std::vector<Machine>& machines, int most_threads) {
-  const std::vector<Factor>& factors = covering_factors();
+const std::vector<Factor>& chip_factors() {
+  static const std::vector<Factor> kFactors = make_chip_factors();
+  return kFactors;
+}
+
+Covered count_covered(const std::vector<Factor>& factors, const std::vector<Machine>& machines, int most_threads) {
   std::set<std::pair<size_t, int>> values;
   std::set<std::tuple<size_t, size_t, int, int>> pairs;
   Covered covered;
@@ -227,19 +295,32 @@ Covered count_covered(const std::vector<Machine>& machines, int most_threads) {
 }
 
 std::vector<Machine> covering_machines(int most_threads, size_t most_pairings) {
-  Search search(most_threads);
+  Search search(covering_factors(), most_threads);
   std::vector<Machine> machines;
   while (!search.done() && machines.size() < most_pairings)
-    machines.push_back(named(machine_of(search.next()), machines.size() + 1));
+    machines.push_back(named(machine_of(covering_factors(), search.next()), "set", machines.size() + 1));
   for (const Factor& factor : covering_factors()) {
     for (const int value : factor.values) {
       if (threads_of(factor, value) <= most_threads) continue;
       Machine machine;
       machine.configuration.warps = machine.configuration.lanes = 1;
       factor.set(machine, value);
-      machines.push_back(named(std::move(machine), machines.size() + 1));
+      machines.push_back(named(std::move(machine), "set", machines.size() + 1));
     }
   }
+  return machines;
+}
+
+std::vector<Machine> covering_chips() {
+  Machine smallest;
+  Configuration& configuration = smallest.configuration;
+  configuration.instruction_cache_bytes = configuration.data_cache_bytes = 512;
+  configuration.chip.traverser = TraverserName::Modelled;  // whose tiles may have an order
+  configuration.chip.modelled_traverser_triangle_cache_mshrs = 1;
+  Search search(chip_factors(), kSmallThreads);
+  std::vector<Machine> machines;
+  while (!search.done())
+    machines.push_back(named(machine_of(chip_factors(), search.next(), smallest), "chip", machines.size() + 1));
   return machines;
 }
 

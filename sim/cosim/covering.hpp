@@ -26,7 +26,10 @@ struct Factor {
   bool multiplies = false;  ///< the number of threads
   bool of_alu = false;
 };
+/// Of a unit, and how many.
 const std::vector<Factor>& covering_factors();
+/// Of the chip around small units (rtl/chip.v), and of the units what it has to do with.
+const std::vector<Factor>& chip_factors();
 
 /// Threads, over all units, up to which a machine compiles in seconds.
 inline constexpr int kSmallThreads = 8;
@@ -37,12 +40,14 @@ struct Covered {
   size_t values = 0, all_values = 0;
   size_t pairs = 0, all_pairs = 0;  ///< pairs of values of two parameters that machines of so many threads can have
 };
-Covered count_covered(const std::vector<Machine>& machines, int most_threads);
+Covered count_covered(const std::vector<Factor>& factors, const std::vector<Machine>& machines, int most_threads);
 
 /// Every pair of values of any two parameters that a machine of at most `most_threads` threads can have is in one of
 /// them. Greedy: each next one is the best of some that are put together value by value, so that each value brings most
 /// pairs that were not there. Then, for each value that takes more threads alone, the default ALUs with it. The same
 /// set every time. `most_pairings`: only so many of the first kind, which have fewer pairs.
 std::vector<Machine> covering_machines(int most_threads, size_t most_pairings = ~size_t{0});
+/// Every pair of values of two chip_factors() that a machine of kSmallThreads can have is in one of them.
+std::vector<Machine> covering_chips();
 
 }  // namespace raypool

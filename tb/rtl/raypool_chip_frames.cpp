@@ -1,0 +1,199 @@
+// Draws frames of chance on tiny chips, rtl/chip.v in lockstep with its model: on machines that have every pair of
+// values of what a chip has (sim/cosim/covering.hpp), with pictures, traffic at every port and answers of the traverser
+// drawn at random. A frame that fails is made smaller while it still does, and the command that repeats it is printed.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <initializer_list>
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "lockstep/lockstep_chip.hpp"
+#include "lockstep/rtl_loader.hpp"
+#include "random.hpp"
+#include "rtl/chip_frames.hpp"
+
+namespace raypool {
+namespace {
+
+using namespace test;
+
+/// What one frame is drawn from.
+struct Case {
+  Picture picture{};
+  Traffic traffic;
+  uint32_t seed = 0;
+};
+
+std::string to_string(const Case& c) {
+  const Traffic& t = c.traffic;
+  return fmt::format("{} x {} pixels, depth {}, {}; stall {}, gap {}, tree {}, inside {}, cycles {}, latency {}, burst "
+                     "{}, frame {}",
+                     c.picture.width, c.picture.height, c.picture.depth,
+                     c.picture.reflections ? "reflections" : "no reflections", t.stall, t.gap, t.tree, t.inside,
+                     t.cycles, t.latency, t.burst, t.frame);
+}
+
+Case case_of(uint32_t seed, uint32_t machine, uint32_t frame) {
+  std::seed_seq all{seed, machine, frame};
+  Random random(all);
+  const auto one = [&](std::initializer_list<uint32_t> values) {
+    return *(values.begin() + random() % values.size());
+  };
+  Case c;
+  c.picture = {1 + random() % 9, 1 + random() % 7, 1 + random() % 4, random() % 4 != 0};
+  c.traffic.stall = one({0, 0, 2, 3, 9});
+  c.traffic.gap = one({0, 0, 2, 5});
+  c.traffic.tree = one({0, 2, 9, 40});
+  c.traffic.inside = one({1, 3, 1000});
+  c.traffic.cycles = one({1, 20, 200, 900});
+  c.traffic.latency = one({1, 5, 60});
+  c.traffic.burst = one({1, 1, 500, 2000});
+  c.traffic.frame = one({0, 0, 3, 100});
+  c.seed = random();
+  return c;
+}
+
+/// Of frames that held.
+struct Drawn {
+  Reached reached;
+  uint64_t cycles = 0, rays = 0;
+};
+
+/// Draws it on a device of its own. Returns what went wrong; empty: nothing.
+std::string failure_of(const Case& c, const Machine& machine, const std::string& library, Drawn& drawn) {
+  Frame frame(machine, c.picture);
+  try {
+    const std::unique_ptr<LockstepChip> chip =
+        make_lockstep_chip(machine.configuration, load_rtl_chip(library, machine.configuration, machine.units),
+                           frame.image.memory, machine.configuration.name);
+    draw(*chip, machine, frame, c.traffic, c.seed, drawn.reached);
+    drawn.cycles += chip->lockstep_counts().cycles;
+    drawn.rays += chip->lockstep_counts().rays;
+    if (chip->lockstep_counts().counters == 0) return "the counters were not compared";
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// The smallest picture of those tried that still fails.
+Case shrunk(Case c, const Machine& machine, const std::string& library) {
+  const auto smaller = [](const Case& from) {
+    std::vector<Case> cases;
+    for (uint32_t Picture::*size : {&Picture::width, &Picture::height, &Picture::depth}) {
+      for (const uint32_t value : {from.picture.*size / 2, from.picture.*size - 1}) {
+        if (value == 0) continue;
+        cases.push_back(from);
+        cases.back().picture.*size = value;
+      }
+    }
+    return cases;
+  };
+  for (bool found = true; found;) {
+    found = false;
+    for (const Case& tried : smaller(c)) {
+      Drawn drawn;
+      found = !failure_of(tried, machine, library, drawn).empty();
+      if (!found) continue;
+      c = tried;
+      break;
+    }
+  }
+  return c;
+}
+
+struct Options {
+  uint32_t frames = 70, seed = 1, machine = 0, frame = 0;
+  uint32_t machines = 0;
+};
+
+class Clock {
+ public:
+  double seconds() {
+    const auto now = std::chrono::steady_clock::now();
+    const double passed = std::chrono::duration<double>(now - begin_).count();
+    begin_ = now;
+    return passed;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+int run(const Options& options) {
+  const std::vector<Machine> machines = covering_chips();
+  const Covered covered = count_covered(chip_factors(), machines, kSmallThreads);
+  const auto last = static_cast<uint32_t>(machines.size());
+  if (options.machine > last)
+    throw InputError(fmt::format("--machine is {}; there are machines 1 to {}", options.machine, last));
+  fmt::print("{} machines of at most {} threads: {} of {} values, {} of {} pairs of values\n", last, kSmallThreads,
+             covered.values, covered.all_values, covered.pairs, covered.all_pairs);
+  Drawn drawn;
+  uint32_t drawn_on = 0, failed = 0;
+  for (uint32_t number = 1; number <= last; ++number) {
+    if (options.machine != 0 ? number != options.machine : options.machines != 0 && number > options.machines) continue;
+    const Machine& machine = machines[number - 1];
+    Clock clock;
+    const std::string library = chip_library(machine);
+    const double built = clock.seconds();
+    const Drawn before = drawn;
+    ++drawn_on;
+    bool held = true;
+    for (uint32_t frame = 1; frame <= options.frames && held; ++frame) {
+      if (options.frame != 0 && frame != options.frame) continue;
+      const Case c = case_of(options.seed, number, frame);
+      const std::string failure = failure_of(c, machine, library, drawn);
+      held = failure.empty();
+      if (held) continue;
+      ++failed;
+      fmt::print("{}, {} units, frame {}: {}\n{}\nthe smallest that fails: {}\n"
+                 "again with: raypool_chip_frames --seed {} --frames {} --machine {} --frame {}\n",
+                 machine.configuration.name, machine.units, frame, to_string(c), failure,
+                 to_string(shrunk(c, machine, library)), options.seed, options.frames, number, frame);
+    }
+    fmt::print("{}, {} units: {} frames, {} cycles, {} rays, {}; built in {:.0f} s, ran {:.0f} s\n",
+               machine.configuration.name, machine.units, drawn.reached.frames - before.reached.frames,
+               drawn.cycles - before.cycles, drawn.rays - before.rays, held ? "0 differences" : "FAILED", built,
+               clock.seconds());
+    std::fflush(stdout);
+  }
+  const Reached& all = drawn.reached;
+  const auto launches = [&all](RayKernel kernel) { return all.launches[to_underlying(kernel)]; };
+  fmt::print("{} machines, {} frames, {} cycles, {} rays, of which {} too deep and {} black; {} kernels cast, {} "
+             "reflected, {} lit, {} shaded; {} machines failed\n",
+             drawn_on, all.frames, drawn.cycles, drawn.rays, all.deep, all.black, launches(RayKernel::CastEye),
+             launches(RayKernel::CastSecondary), launches(RayKernel::CastSecondaryDirect), launches(RayKernel::Shade),
+             failed);
+  if (all.frames == 0 && failed == 0) throw InputError("no frame was drawn: --frame is above --frames");
+  return failed == 0 ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace raypool
+
+int main(int argc, char** argv) {
+  // What the surroundings assert is an exception here.
+  testing::FLAGS_gtest_throw_on_failure = true;
+  testing::InitGoogleTest(&argc, argv);
+  raypool::Options options;
+  CLI::App app("Frames of chance on tiny chips, rtl/chip.v in lockstep with its model.", "raypool_chip_frames");
+  app.add_option("--frames", options.frames, "of each machine")->capture_default_str()->check(CLI::PositiveNumber);
+  app.add_option("--seed", options.seed, "of pictures and traffic")->capture_default_str();
+  app.add_option("--machines", options.machines, "only the first so many machines; 0: all")->capture_default_str();
+  app.add_option("--machine", options.machine, "only this machine, from 1")->check(CLI::PositiveNumber);
+  app.add_option("--frame", options.frame, "only this frame of it, from 1")->check(CLI::PositiveNumber);
+  CLI11_PARSE(app, argc, argv);
+  try {
+    return raypool::run(options);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "raypool_chip_frames: {}\n", error.what());
+    return 1;
+  }
+}
