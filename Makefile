@@ -63,6 +63,8 @@ PARAMETERS ?=
 PROGRAMS  ?= 1000
 SEED      ?= 1
 COVERAGE  ?=
+# `make chip-frames`
+FRAMES    ?= 50
 # `make mutants`
 MUTANTS   ?= 500
 # `make fit`
@@ -88,7 +90,7 @@ SCENES    ?=
 FROM      ?=
 # Recipes read these from the environment, so that a value with spaces or quotes stays one word.
 export CONFIG SET CUS SCENE SIZE DEPTH ENGINE CHIP TRAVERSER VIEW CAMERA EYE LOOK_AT UP FOV LIGHT DETAIL OUT WAVES TRACE
-export A B KERNEL PROGRAMS SEED COVERAGE MUTANTS MODE THREADS
+export A B KERNEL PROGRAMS SEED FRAMES COVERAGE MUTANTS MODE THREADS
 export SLOWER
 export FROM EXPERIMENT WHERE JOBS SCENES LEVELS RUNS ERROR TIME SAMPLES MACHINES
 export LIBERTY CLOCK MEMORIES AGAINST RUN ONLY PLAN MODULE PARAMETERS
@@ -133,7 +135,7 @@ UNIT_OF_ENGINE := $(if $(filter rtl lockstep,$(or $(CHIP),$(ENGINE))),$(UNIT),tr
 CHIP_FLAG := $(if $(CHIP),--chip)
 
 .PHONY: intervals
-.PHONY: help sim fidelity fit compare run cosim configurations mutants faults unit test lint format bench clean
+.PHONY: help sim fidelity fit compare run cosim configurations chip-frames mutants faults unit test lint format bench clean
 .PHONY: setup-% program configured-%
 .PHONY: numerics-long proofs synth synth-replay synth-prove growth numerics significands extremes isa diagrams quoted
 .PHONY: package sweep report bench-native pareto boxes triangles synth-module
@@ -184,6 +186,7 @@ help: ## this list
 	@echo '  synth-module:  MODULE=NAME  PARAMETERS="A=1,B=2 ...": of rtl/, one row for each  LIBERTY  CLOCK  MEMORIES'
 	@echo '  synth-replay:  BREAK=N;  synth-prove:  ONLY=BLOCKS;  growth:  PLAN=FILE'
 	@echo 'variables of make cosim:  PROGRAMS=$(PROGRAMS)  SEED=$(SEED)  CONFIG  SET  CUS  COVERAGE=FILE.json'
+	@echo 'variables of make chip-frames:  FRAMES=$(FRAMES): of each machine  SEED=$(SEED)'
 	@echo 'variables of make numerics:  GATES=1: synthesise the lanes of every mode first'
 	@echo '  significands:  SCENE  CONFIG  SET  DEPTH  VIEW  DETAIL and those of the camera'
 	@echo '  extremes:  MODE=all|ieee-exact|...;  numerics-long:  THREADS=N, 1 if not given'
@@ -225,6 +228,10 @@ cosim: setup-sim program ## random programs, hardware against model: CONFIG, CUS
 
 configurations: setup-sim program ## random programs on machines with every pair of values (hours): PROGRAMS
 	@scripts/configurations.sh all "$$PROGRAMS"
+
+chip-frames: setup-sim setup-test configured-ON program ## frames of chance on tiny chips, chip.v against its model: FRAMES
+	@scripts/build.sh $(BUILD) raypool_chip_frames
+	@$(BUILD)/raypool_chip_frames --frames "$$FRAMES" --seed "$$SEED"
 
 mutants: setup-sim setup-lint program ## small faults put into the RTL: which does the lockstep notice? MUTANTS
 	@scripts/build.sh $(BUILD) raypool_mutants

@@ -242,7 +242,9 @@ write_json {result}
         with open(new, "w", encoding="utf-8") as file:
             file.write(f"set_driving_cell {self.library.driver}\nset_load {self.output_load} [all_outputs]\n")
         os.rename(new, self.constraints)
-        missing = [k for k in kinds if self.kept(k, efforts.get(k.identity, 0)) is None]
+        # Two kinds that differ in nothing that is mapped have one result: two threads would take each other's files.
+        of_path = {self.path(k, efforts.get(k.identity, 0)): k for k in kinds}
+        missing = [k for path, k in of_path.items() if not os.path.exists(path)]
         if missing:
             speed = " for speed" if efforts else ""
             progress(f"synth: mapping {len(missing)} of {len(kinds)} kinds of block{speed}")

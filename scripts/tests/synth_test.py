@@ -312,6 +312,21 @@ class Synthesis(unittest.TestCase):
         finally:
             elaborate.rtl_files = original
 
+    def test_kinds_that_are_mapped_alike_are_mapped_once(self):
+        kinds = [elaborate.Kind(identity, "round_robin", {}, {}, {}, identity) for identity in ("one", "other")]
+        mapper = mapping.Mapper(library.Library(), self.folder, 4.0, 2)
+        mapped = []
+
+        def map_one(kind, effort):
+            mapped.append(kind)
+            with open(mapper.path(kind, effort), "w", encoding="utf-8") as file:
+                file.write("{}")
+
+        mapper.map_one = map_one
+        paths = mapper.map_all(kinds)
+        self.assertEqual(len(mapped), 1)
+        self.assertEqual(paths["one"], paths["other"])
+
     def test_memories_are_priced_and_areas_add_up(self):
         design = small_design(self.folder, "ray_memory", {"CONTENTS": "16"})
         rows, _ = report.blocks(design)

@@ -20,10 +20,9 @@ namespace raypool::test {
 
 /// Path of the library of its Verilated chip.
 inline std::string chip_library(const Machine& machine) {
-  return verilate(
-             machine.configuration.name,
-             " --top chip --quick" + words_of(chip_verilog_parameters(machine.configuration, machine.units)),
-             RAYPOOL_TEST_TREE) +
+  return verilate(machine.configuration.name,
+                  " --top chip --quick" + words_of(chip_verilog_parameters(machine.configuration, machine.units)),
+                  RAYPOOL_TEST_TREE) +
          "/libraypool_chip.so";
 }
 

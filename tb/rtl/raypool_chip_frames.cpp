@@ -33,19 +33,17 @@ struct Case {
 
 std::string to_string(const Case& c) {
   const Traffic& t = c.traffic;
-  return fmt::format("{} x {} pixels, depth {}, {}; stall {}, gap {}, tree {}, inside {}, cycles {}, latency {}, burst "
-                     "{}, frame {}",
-                     c.picture.width, c.picture.height, c.picture.depth,
-                     c.picture.reflections ? "reflections" : "no reflections", t.stall, t.gap, t.tree, t.inside,
-                     t.cycles, t.latency, t.burst, t.frame);
+  return fmt::format(
+      "{} x {} pixels, depth {}, {}; stall {}, gap {}, tree {}, inside {}, cycles {}, latency {}, burst "
+      "{}, frame {}",
+      c.picture.width, c.picture.height, c.picture.depth, c.picture.reflections ? "reflections" : "no reflections",
+      t.stall, t.gap, t.tree, t.inside, t.cycles, t.latency, t.burst, t.frame);
 }
 
 Case case_of(uint32_t seed, uint32_t machine, uint32_t frame) {
   std::seed_seq all{seed, machine, frame};
   Random random(all);
-  const auto one = [&](std::initializer_list<uint32_t> values) {
-    return *(values.begin() + random() % values.size());
-  };
+  const auto one = [&](std::initializer_list<uint32_t> values) { return *(values.begin() + random() % values.size()); };
   Case c;
   c.picture = {1 + random() % 9, 1 + random() % 7, 1 + random() % 4, random() % 4 != 0};
   c.traffic.stall = one({0, 0, 2, 3, 9});
@@ -110,7 +108,7 @@ Case shrunk(Case c, const Machine& machine, const std::string& library) {
 }
 
 struct Options {
-  uint32_t frames = 70, seed = 1, machine = 0, frame = 0;
+  uint32_t frames = 50, seed = 1, machine = 0, frame = 0;
   uint32_t machines = 0;
 };
 
@@ -153,10 +151,11 @@ int run(const Options& options) {
       held = failure.empty();
       if (held) continue;
       ++failed;
-      fmt::print("{}, {} units, frame {}: {}\n{}\nthe smallest that fails: {}\n"
-                 "again with: raypool_chip_frames --seed {} --frames {} --machine {} --frame {}\n",
-                 machine.configuration.name, machine.units, frame, to_string(c), failure,
-                 to_string(shrunk(c, machine, library)), options.seed, options.frames, number, frame);
+      fmt::print(
+          "{}, {} units, frame {}: {}\n{}\nthe smallest that fails: {}\n"
+          "again with: raypool_chip_frames --seed {} --frames {} --machine {} --frame {}\n",
+          machine.configuration.name, machine.units, frame, to_string(c), failure,
+          to_string(shrunk(c, machine, library)), options.seed, options.frames, number, frame);
     }
     fmt::print("{}, {} units: {} frames, {} cycles, {} rays, {}; built in {:.0f} s, ran {:.0f} s\n",
                machine.configuration.name, machine.units, drawn.reached.frames - before.reached.frames,
@@ -166,11 +165,11 @@ int run(const Options& options) {
   }
   const Reached& all = drawn.reached;
   const auto launches = [&all](RayKernel kernel) { return all.launches[to_underlying(kernel)]; };
-  fmt::print("{} machines, {} frames, {} cycles, {} rays, of which {} too deep and {} black; {} kernels cast, {} "
-             "reflected, {} lit, {} shaded; {} machines failed\n",
-             drawn_on, all.frames, drawn.cycles, drawn.rays, all.deep, all.black, launches(RayKernel::CastEye),
-             launches(RayKernel::CastSecondary), launches(RayKernel::CastSecondaryDirect), launches(RayKernel::Shade),
-             failed);
+  fmt::print(
+      "{} machines, {} frames, {} cycles, {} rays, of which {} too deep and {} black; {} kernels cast, {} "
+      "reflected, {} lit, {} shaded; {} machines failed\n",
+      drawn_on, all.frames, drawn.cycles, drawn.rays, all.deep, all.black, launches(RayKernel::CastEye),
+      launches(RayKernel::CastSecondary), launches(RayKernel::CastSecondaryDirect), launches(RayKernel::Shade), failed);
   if (all.frames == 0 && failed == 0) throw InputError("no frame was drawn: --frame is above --frames");
   return failed == 0 ? 0 : 1;
 }

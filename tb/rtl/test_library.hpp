@@ -13,12 +13,14 @@
 namespace raypool::test {
 
 /// Runs scripts/verilate.sh of the tree `tree` with `options` in the folder `name` below RAYPOOL_TEST_UNITS.
-/// Returns this folder.
+/// Returns this folder. What the script says is shown if it fails.
 inline std::string verilate(const std::string& name, const std::string& options, const std::string& tree = ".") {
   const std::string folder = std::string(RAYPOOL_TEST_UNITS) + "/" + name;
   std::filesystem::create_directories(folder);
+  const std::string log = folder + "/verilate.log";
   const std::string command = "flock " + folder + "/.lock " + tree + "/scripts/verilate.sh " + folder + options;
-  if (std::system(command.c_str()) != 0) throw std::runtime_error("this command failed: " + command);
+  const std::string shown = command + " > " + log + " 2>&1 || { cat " + log + "; false; }";
+  if (std::system(shown.c_str()) != 0) throw std::runtime_error("this command failed: " + command);
   return folder;
 }
 inline std::string words_of(const std::vector<std::pair<std::string, int>>& parameters) {
