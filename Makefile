@@ -88,10 +88,15 @@ JOBS      ?=
 SCENES    ?=
 # `make report`
 FROM      ?=
+# `make follow`
+PIXEL     ?=
+RAY       ?=
+STATION   ?=
 # Recipes read these from the environment, so that a value with spaces or quotes stays one word.
 export CONFIG SET CUS SCENE SIZE DEPTH ENGINE CHIP TRAVERSER VIEW CAMERA EYE LOOK_AT UP FOV LIGHT DETAIL OUT WAVES TRACE
 export A B KERNEL PROGRAMS SEED FRAMES COVERAGE MUTANTS MODE THREADS
 export SLOWER
+export PIXEL RAY STATION
 export FROM EXPERIMENT WHERE JOBS SCENES LEVELS RUNS ERROR TIME SAMPLES MACHINES
 export LIBERTY CLOCK MEMORIES AGAINST RUN ONLY PLAN MODULE PARAMETERS
 
@@ -129,6 +134,14 @@ SWEEP_SETUP := setup-sweep $(if $(filter slurm,$(WHERE)),setup-slurm)
 # The modules of Debian's packages are those of Debian's Python, whatever stands first in PATH.
 PYTHON := $(or $(wildcard /usr/bin/python3),python3)
 REPORT := RAYPOOL="$(abspath $(RAYPOOL))" PYTHONPATH=scripts $(PYTHON) -m report
+# Its frame is small, whatever the defaults of make sim are: only what the command line says of it counts.
+said = $(if $(findstring command,$(origin $1)),$2)
+FOLLOW_CONFIG := $(if $(call said,CONFIG,yes),"$$CONFIG",4w4c)
+FOLLOW_UNITS := $(if $(call said,CUS,yes),"$$CUS",1)
+FOLLOWED := --config $(FOLLOW_CONFIG) --units $(FOLLOW_UNITS) $(call said,SCENE,--scene "$$SCENE") \
+  $(call said,SIZE,--size "$$SIZE") $(call said,DEPTH,--depth "$$DEPTH") $${SET:+--set "$$SET"} \
+  $${VIEW:+--view "$$VIEW"} $(LOOK) $${DETAIL:+--detail "$$DETAIL"} $${PIXEL:+--pixel "$$PIXEL"}
+FOLLOW := RAYPOOL="$(abspath $(RAYPOOL))" PYTHONPATH=scripts python3 -m follow
 FIT_SETUP := $(if $(filter-out 0,$(AREA) $(POWER)),setup-synth)
 GATES_SETUP := $(if $(filter-out 0,$(GATES)),setup-synth)
 UNIT_OF_ENGINE := $(if $(filter rtl lockstep,$(or $(CHIP),$(ENGINE))),$(UNIT),true)
@@ -138,7 +151,7 @@ CHIP_FLAG := $(if $(CHIP),--chip)
 .PHONY: help sim fidelity fit compare run cosim configurations chip-frames mutants faults unit test lint format bench clean
 .PHONY: setup-% program configured-%
 .PHONY: numerics-long proofs synth synth-replay synth-prove growth numerics significands extremes isa diagrams quoted
-.PHONY: package sweep report bench-native pareto boxes triangles synth-module
+.PHONY: package sweep report bench-native pareto boxes triangles synth-module follow tour
 
 help: ## this list
 	@echo 'raypool: a ray-tracing GPU to render on, measure, verify and synthesise'
@@ -173,6 +186,10 @@ help: ## this list
 	@echo '  MACHINES="24 20-flush 16-newton1-fit ...": only these; what one chooses among if not given'
 	@echo 'variables of make bench-native:  SCENE  SIZE  DEPTH  VIEW  DETAIL and those of the camera  THREADS=N'
 	@echo 'variables of make boxes, triangles:  SCENE  SIZE  DEPTH  VIEW  DETAIL and those of the camera'
+	@echo 'variables of make follow:  PIXEL=X,Y: 20,10 if not given  OUT=FOLDER  those of the frame, and if not given:'
+	@echo '    SCENE=examples/tour.obj with its view, CONFIG=4w4c, SIZE=32x24, DEPTH=2, CUS=1'
+	@echo '  RAY="eye shadow1 ...", STATION="launch instructions kernel export pool traverser tree import frame host":'
+	@echo '    show only these'
 	@echo 'variables of make fit:  those of the frame, and OUT=FILE for the configuration'
 	@echo '  SLOWER=N%: $(SLOWER) if not given  AREA=1: what each change saves in area'
 	@echo '  POWER=1: area, and timing and power before and after'
@@ -245,6 +262,19 @@ faults: setup-sim setup-test configured-ON program ## designers' mistakes: what 
 	@scripts/configure.sh $(BUILD)/faults/benches ON -DRAYPOOL_RTL=$(abspath $(BUILD))/faults/rtl
 	@scripts/build.sh $(BUILD)/faults/benches $$(grep -o '[a-z_]*_test' tb/faults/benches.json)
 	@$(BUILD)/raypool_faults $(BUILD)/faults --benches $(BUILD)/faults/benches/tb --json $(BUILD)/faults/outcomes.json
+
+# What is built meanwhile is no part of what it prints.
+follow: setup-sim setup-follow program ## one pixel through the chip in Verilog, from a waveform: PIXEL, RAY, STATION
+	@scripts/unit.sh $(FOLLOW_CONFIG) $(SET_FIELDS) --units $(FOLLOW_UNITS) --chip --waves >&2
+	@$(FOLLOW) $(FOLLOWED) $${RAY:+--ray "$$RAY"} $${STATION:+--station "$$STATION"} $${OUT:+--out "$$OUT"}
+
+tour: setup-sim setup-follow program ## write what docs/from-obj-to-pixel.md shows: its pictures, and what it quotes
+	@scripts/unit.sh 4w4c --chip --waves >&2
+	@$(FOLLOW) --out $(BUILD)/out/tour | tail -n 2
+	@for file in pixel.png time.svg way.svg export.svg launch.svg import.svg frame.svg; do \
+	  cp "$(BUILD)/out/tour/$$file" "docs/images/tour-$$file"; \
+	done
+	@scripts/quoted_output.py --update docs/from-obj-to-pixel.md
 
 isa: setup-sim program ## write what is derived from the tables of ALU types and instructions
 	@$(RAYPOOL) isa --write

@@ -1,0 +1,246 @@
+"""Follows one pixel through the chip in Verilog, from port to port of rtl/chip.v, in a waveform of the frame.
+
+    PYTHONPATH=scripts python3 -m follow [--pixel X,Y] [--scene SCENE] [--config CONFIG] [--out FOLDER] ...
+
+Draws the frame (raypool sim --chip rtl --waves), reads the waveform, prints the journey, draws pictures of it into
+FOLDER, and compares all that can be reckoned otherwise. Exit code 1, and a sentence, if the frame cannot be followed,
+2 if something differs. RAYPOOL names the program, BUILD the folder it is in if not.
+"""
+import argparse
+import json
+import os
+import pathlib
+import re
+import shutil
+import sys
+
+from . import packages, picture
+from .check import Check, query
+from .errors import FollowError, need, run
+from .journey import STATIONS, Journey
+from .pictures import draw_pictures
+from .ports import KERNELS, SIGNALS, Chip
+from .scene import Reckoning, Tree, materials_of
+from .vcd import Wave, lines_of
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+BUILD = pathlib.Path(os.environ.get("BUILD", "build"))
+SCENE, VIEW = "examples/tour.obj", "examples/tour.json"
+LOOK = ("view", "camera", "eye", "look-at", "up", "fov", "light", "detail")
+MORE = ("arguments", "tree", "host")  # stations that are no steps of a ray
+QUIET = ("arguments", "instructions", "tree")  # shown only when they are asked for
+
+
+def options_of(arguments):
+    parser = argparse.ArgumentParser(prog="follow", description=__doc__.splitlines()[0])
+    parser.add_argument("--pixel", default="20,10", metavar="X,Y", help="from 0, y downwards (default: %(default)s)")
+    parser.add_argument("--scene", default=SCENE, help="as of raypool sim (default: %(default)s, with its own view)")
+    parser.add_argument("--size", default="32x24", metavar="WxH", help="pixels (default: %(default)s)")
+    parser.add_argument("--depth", default="2", help="1: eye and shadow rays; more: reflections (default: %(default)s)")
+    parser.add_argument("--config", default="4w4c", help="machine (default: %(default)s)")
+    parser.add_argument("--set", default="", metavar="FIELDS", help="change fields of it")
+    parser.add_argument("--units", default="1", help="compute units (default: %(default)s)")
+    for name in LOOK:
+        parser.add_argument(f"--{name}", help="as of raypool sim")
+    parser.add_argument("--out", help="folder of waveform, report and pictures (default: build/out/follow)")
+    parser.add_argument("--from", dest="run", metavar="FOLDER", help="a run that is there: waves.fst or .vcd, report.json, image.png")
+    parser.add_argument("--ray", default="", help="show only these: eye, shadow1, reflection2, ...")
+    parser.add_argument("--station", default="", help="show only these: " + ", ".join((*STATIONS, *MORE)))
+    options = parser.parse_args(arguments)
+    options.stations = options.station.replace(",", " ").split()
+    options.rays = options.ray.replace(",", " ").split()
+    wrong = [name for name in options.stations if name not in (*STATIONS, *MORE)]
+    if wrong:
+        raise FollowError(f"--station {wrong[0]}: there are {', '.join((*STATIONS, *MORE))}")
+    if not re.fullmatch(r"\d+,\d+", options.pixel):
+        raise FollowError(f"--pixel {options.pixel}: say it as X,Y, such as 20,10")
+    options.pixel = tuple(map(int, options.pixel.split(",")))
+    if options.scene == SCENE:
+        options.scene = str(ROOT / SCENE)
+        options.view = options.view or str(ROOT / VIEW)
+    return options
+
+
+def check_pixel(pixel, width, height):
+    if pixel[0] >= width or pixel[1] >= height:
+        raise FollowError(f"--pixel {pixel[0]},{pixel[1]}: the picture has {width}x{height} pixels, numbered from 0")
+
+
+class Frame:
+    """The run: its folder, its report, and the commands that say more of it."""
+
+    def __init__(self, options):
+        self.options = options
+        self.raypool = os.environ.get("RAYPOOL", str(BUILD / "raypool"))
+        if shutil.which(self.raypool) is None:
+            raise FollowError(f"{self.raypool} was not found: build it with make program, or name it in RAYPOOL")
+        self.look = [f"--{name}={value}" for name in LOOK if (value := getattr(options, name.replace("-", "_")))]
+        self.machine = ["--config", options.config] + (["--set", options.set] if options.set else [])
+        self.folder = pathlib.Path(options.run or options.out or BUILD / "out/follow")
+        self.out = pathlib.Path(options.out or BUILD / "out/follow")
+        if not options.run:
+            size = re.fullmatch(r"(\d+)x(\d+)", options.size)
+            if size:
+                check_pixel(options.pixel, *map(int, size.groups()))
+            need("fst2vcd", "gtkwave")
+            self.draw("rtl", self.folder, "--chip", "rtl", "--traverser", "static", "--units", options.units, "--waves")
+        self.report = self.read("report.json")
+        self.size = self.report["size"]["width"], self.report["size"]["height"]
+        check_pixel(options.pixel, *self.size)
+
+    def draw(self, _, folder, *how):
+        run([self.raypool, "sim", self.options.scene, *self.look, "--size", self.options.size, "--depth",
+             self.options.depth, *self.machine, *how, "--out", folder, "--quiet"])  # fmt: skip
+
+    def read(self, name):
+        try:
+            return json.loads((self.folder / name).read_text(encoding="utf-8"))
+        except (OSError, ValueError) as error:
+            raise FollowError(f"{self.folder / name}: this is no report of raypool sim ({error})") from error
+
+    def waveform(self):
+        path = next((path for path in (self.folder / "waves.fst", self.folder / "waves.vcd") if path.is_file()), None)
+        if path is None:
+            raise FollowError(f"{self.folder}: there is neither waves.fst nor waves.vcd")
+        return Wave(lines_of(path), SIGNALS)
+
+    def native(self):
+        """The picture that the kernels draw as C++."""
+        width, height = self.size
+        folder = self.out / "native"
+        run([self.raypool, "sim", self.options.scene, *self.look, "--size", f"{width}x{height}", "--depth",
+             self.report["depth"], *self.machine, "--engine", "native", "--out", folder, "--quiet"])  # fmt: skip
+        return (folder / "image.png").read_bytes()
+
+    def tree_and_materials(self):
+        self.out.mkdir(parents=True, exist_ok=True)
+        tree, scene = self.out / "scene.bvh", self.out / "scene.obj"
+        run([self.raypool, "scene", self.options.scene, *self.look, "--write-bvh", tree, "--write-obj", scene])
+        return Tree(tree.read_bytes()), materials_of(scene.with_suffix(".mtl").read_text(encoding="utf-8"))
+
+    def texts(self, entries):
+        """The text of each instruction, by its PC."""
+        texts = {}
+        for entry, kernel in entries.items():
+            lines = run([self.raypool, "kernels", kernel, *self.machine]).splitlines()
+            listed = [re.fullmatch(r"(.*\S)\s+# (\d+)", line.strip()) for line in lines]
+            texts.update({entry + int(found[2]): " ".join(found[1].split()) for found in listed if found})
+        return texts
+
+
+def arguments_lines(words):
+    """What the host has written for the kernels, before the frame."""
+    names = [("eye", 0, 3), ("corner", 3, 3), ("step_x", 6, 3), ("step_y", 9, 3), ("light", 12, 3),
+             ("light's colour", 15, 3), ("offset", 18, 1)]  # fmt: skip
+    for name, first, count in names:
+        values = [packages.to_float(words[first + at]) for at in range(count)]
+        yield f"  {first:>2} {name:<15} {packages.text(values)}"
+    for name, first in (("log2 of a tile's width", 19), ("width - 1", 20), ("picture's width", 21), ("height", 22)):
+        yield f"  {first:>2} {name:<15} {words[first]}"
+
+
+def tree_lines(tree, life):
+    """The boxes and triangles that this ray is tested against on its way through the tree."""
+    hit, steps = tree.walk(*query(life.words))
+    for kind, what, tests in steps:
+        if kind == "node":
+            yield f"  node {what}: {len(tests)} boxes"
+            for child, begin, end in tests:
+                low, high = packages.text(child.lower), packages.text(child.upper)
+                found = f"met from t {begin:.6g} to {end:.6g}" if begin <= end else "missed"
+                yield f"    {child.name():<10} {low} .. {high}: {found}"
+        elif kind == "leaf":
+            yield f"  {what.name()}:"
+            for triangle, test in tests:
+                found = f"hit at t {test.t:.6g}, u {test.u:.6g}, v {test.v:.6g}" if test else "missed"
+                yield f"    triangle {triangle.number}: {found}"
+        else:
+            yield f"  {what.name()}: begins at t {tests:.6g}, behind the hit, and is left out"
+    yield f"  nearest: triangle {hit.triangle} at t {hit.t:.6g}" if hit else "  nothing is hit"
+
+
+def shown(options, name, station):
+    if options.stations:
+        return station in options.stations and (not options.rays or name in options.rays)
+    return station not in QUIET and (not options.rays or name in options.rays)
+
+
+def title_of(life):
+    fates = {"hit": "which hits something", "missed": "which hits nothing", "free": "which reaches the light",
+             "blocked": "which does not reach the light", "dropped": "which goes no further"}  # fmt: skip
+    return f"{life.name}: a ray {fates[life.fate]}"
+
+
+def print_journey(options, frame, chip, journey, tree):
+    if not options.stations and not options.rays:
+        width, height = frame.size
+        x, y = options.pixel
+        print(f"pixel {x},{y} of {frame.report['scene']['name']}, {frame.report['scene']['triangles']} triangles, "
+              f"{width}x{height}, depth {frame.report['depth']}: rtl/chip.v, {chip.units} unit"
+              f"{'s' if chip.units > 1 else ''} of {frame.report['config']}")  # fmt: skip
+        print(f"the frame takes {chip.wave.cycles} cycles, {len(chip.launches)} launches and {len(chip.exports)} rays, "
+              f"{len(journey.lives)} of them of this pixel")  # fmt: skip
+    if "arguments" in options.stations:
+        print("arguments, as the host has written them:")
+        print("\n".join(arguments_lines(chip.arguments)))
+    for life in journey.lives.values():
+        steps = [step for step in life.steps if shown(options, life.name, step.station)]
+        walk = shown(options, life.name, "tree") and life.fate != "dropped"
+        if not steps and not walk:
+            continue
+        print(f"\n{title_of(life)}" if not options.stations else title_of(life))
+        for step in steps:
+            print(f"  {step.cycle:>8}  {step.way + ': ' if step.way else ''}{step.what}")
+            for detail in step.details:
+                print(f"              {detail}")
+        if walk:
+            print("\n".join(tree_lines(tree, life)))
+
+
+def compare(options, frame, chip, journey, tree, materials):
+    """What the host reckons; returns it, and prints it where it is wanted."""
+    check = Check()
+    cycles = frame.report["cycles"]
+    check.note("cycles of the frame", chip.wave.cycles, cycles, chip.wave.cycles == cycles)
+    reckoning = Reckoning(tree, materials, frame.report["view"], packages.to_float(chip.arguments[18]), frame.size,
+                          frame.report["depth"])  # fmt: skip
+    reckoning.follow(options.pixel)
+    check.rays(journey, reckoning)
+    image = frame.folder / "image.png"
+    check.colour(journey, reckoning, picture.read(image), options.pixel)
+    check.note("image.png and that of engine native", *(("the same", "the same", True) if image.read_bytes() ==
+               frame.native() else ("another", "the same", False)))  # fmt: skip
+    if "host" in options.stations or not options.stations and not options.rays:
+        print(("" if options.stations else "\n") + "beside the host's reckoning:")
+        print("\n".join(f"  {line}" for line in check.lines))
+    return check
+
+
+def main(arguments):
+    options = options_of(arguments)
+    frame = Frame(options)
+    chip = Chip(frame.waveform())
+    tree, materials = frame.tree_and_materials()
+    journey = Journey(chip, options.pixel, frame.texts(chip.entries))
+    unknown = [name for name in options.rays if name not in journey.lives]
+    if unknown:
+        raise FollowError(f"--ray {unknown[0]}: this pixel has {', '.join(journey.lives)}")
+    print_journey(options, frame, chip, journey, tree)
+    check = compare(options, frame, chip, journey, tree, materials)
+    names = draw_pictures(options, frame, chip, journey, tree, materials)
+    wrong = journey.mismatches + journey.missing() + check.differ
+    if not options.stations and not options.rays:
+        print(f"\nin the waveform {journey.compared} packages stand twice, and {len(check.lines)} values are reckoned "
+              f"again: {len(wrong)} differ")  # fmt: skip
+        print(f"pictures: {frame.out}: {', '.join(names)}")
+    for line in wrong:
+        print(f"follow: {line}", file=sys.stderr)
+    return 2 if wrong else 0
+
+
+if __name__ == "__main__":
+    try:
+        sys.exit(main(sys.argv[1:]))
+    except FollowError as error:
+        print(f"follow: {error}", file=sys.stderr)
+        sys.exit(1)

@@ -1,0 +1,77 @@
+"""The journey beside what the host reckons (scene.py), and beside the pictures that were written."""
+import math
+
+from . import packages, picture
+from .packages import COLOR, DIRECTION, DISTANCE, NORMAL, ORIGIN, TRIANGLE
+
+WITHIN = 1e-5  # of the largest component: what single precision may add up to on the way
+
+
+class Check:
+    """What was compared, a line each."""
+
+    def __init__(self):
+        self.lines, self.differ = [], []
+
+    def note(self, what, seen, expected, good):
+        line = f"{what}: {seen}" + ("" if good else f", but {expected} by the host's reckoning")
+        self.lines.append(line + ("" if good else "  <-- differs"))
+        if not good:
+            self.differ.append(line)
+
+    def vector(self, what, seen, expected, share=WITHIN):
+        largest = max(map(abs, expected)) or 1
+        good = all(math.isfinite(one) and abs(one - other) <= share * largest for one, other in zip(seen, expected))
+        self.note(what, packages.text(seen), packages.text(expected), good)
+
+    def rays(self, journey, reckoning):
+        names = set(journey.lives) ^ set(reckoning.rays)
+        for name in sorted(names):
+            self.note(f"{name}", *(("is there", "not") if name in journey.lives else ("is not there", "it is")), False)
+        for name, life in journey.lives.items():
+            if name in reckoning.rays:
+                self.ray(name, life, reckoning.rays[name], reckoning)
+
+    def ray(self, name, life, expected, reckoning):
+        self.vector(f"{name}, origin", packages.floats(life.words, ORIGIN), expected.origin)
+        self.vector(f"{name}, direction", packages.floats(life.words, DIRECTION), expected.direction)
+        self.vector(f"{name}, colour", packages.floats(life.words, COLOR), expected.color)
+        if packages.is_shadow(life.words):
+            fates = ("blocked", "free")
+            if life.fate != "dropped":
+                self.note(f"{name}, way to the light", life.fate, fates[expected.free], life.fate == fates[expected.free])
+        elif life.fate in ("hit", "missed"):
+            self.hit(name, life, expected.hit, reckoning)
+
+    def hit(self, name, life, expected, reckoning):
+        fate = "missed" if expected is None else "hit"
+        if life.fate != fate or expected is None:
+            self.note(f"{name}, scene", life.fate, fate, life.fate == fate)
+            return
+        t, number = packages.to_float(life.put.words[DISTANCE]), life.put.words[TRIANGLE]
+        self.note(f"{name}, triangle", number, expected.triangle, number == expected.triangle)
+        self.vector(f"{name}, t", [t], [expected.t])
+        triangle = reckoning.tree.by_number[expected.triangle]
+        self.vector(f"{name}, u and v", packages.floats(life.put.words, DISTANCE + 1, 2), [expected.u, expected.v],
+                    10 * WITHIN)  # fmt: skip
+        self.vector(f"{name}, normal", packages.floats(life.put.words, NORMAL), triangle.normal())
+        tree_hit, _ = reckoning.tree.walk(*query(life.words))
+        self.note(f"{name}, triangle by the tree", number, tree_hit and tree_hit.triangle,
+                  tree_hit is not None and tree_hit.triangle == number)  # fmt: skip
+
+    def colour(self, journey, reckoning, drawn, pixel):
+        """The sum of what has left the chip, as the frame buffer adds it, and the picture."""
+        x, y = pixel
+        fixed = [sum(picture.to_fixed(one[channel]) for one in journey.contributions()) for channel in range(3)]
+        linear = [value / 2**32 for value in fixed]
+        self.vector("sum of the contributions", linear, reckoning.color)
+        bytes_of_sum = tuple(map(picture.to_srgb8, linear))
+        self.note("image.png", drawn[y][x], bytes_of_sum, drawn[y][x] == bytes_of_sum)
+
+
+def query(words):
+    """Origin, direction and limit of a ray."""
+    return (tuple(packages.floats(words, ORIGIN)), tuple(packages.floats(words, DIRECTION)),
+            packages.to_float(words[packages.LIMIT]))  # fmt: skip
+
+

@@ -1,0 +1,138 @@
+"""Signals of the instance `chip` in a waveform, cycle by cycle.
+
+A waveform is written after each edge of the clock. At a rising edge the registers have their new values already, which
+are those of the cycle that begins, while the inputs still stand as they were in the cycle that ends. So the outputs of
+cycle c are read after the edge before it, and its inputs after the edge that ends it. Cycle 0 is that of start_i.
+"""
+import bisect
+import subprocess
+
+from .errors import FollowError, need
+
+CLOCK = "clk_i"
+NO_DIGITS = bytes.maketrans(b"xXzZ", b"0000")
+
+
+def lines_of(path):
+    """The lines of a VCD, or of an FST as fst2vcd writes them."""
+    if not path.is_file():
+        raise FollowError(f"{path}: there is no waveform")
+    if path.suffix == ".vcd":
+        with path.open("rb") as file:
+            yield from file
+        return
+    with subprocess.Popen(
+        [need("fst2vcd", "gtkwave"), str(path)], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
+    ) as tool:
+        yield from tool.stdout
+    if tool.returncode != 0:
+        raise FollowError(f"{path}: fst2vcd cannot read it as a waveform")
+
+
+class Signal:
+    """Times of its changes, and its values from then on, as digits: few of them are ever asked for."""
+
+    def __init__(self):
+        self.times, self.values = [], []
+
+    def at(self, time):
+        place = bisect.bisect_right(self.times, time) - 1
+        return number(self.values[place]) if place >= 0 else 0
+
+
+def number(digits):
+    return int(digits.translate(NO_DIGITS), 2)
+
+
+class Wave:
+    """`lines` of a VCD; of all its signals only `names` are kept. Cycles are those of the frame."""
+
+    def __init__(self, lines, names):
+        lines = iter(lines)
+        codes = self.read_names(lines, {CLOCK, "start_i", "busy_o", *names})
+        self.read_changes(lines, codes)
+        clock = self.signals[CLOCK]
+        self.edges = [time for time, value in zip(clock.times, clock.values) if value == b"1"]
+        starts = [edge for edge in self.edges if self.signals["start_i"].at(edge)]
+        if not starts:
+            raise FollowError("the waveform has no frame: start_i is never high")
+        self.first = self.edges.index(starts[0])
+        self.cycles = self.length_of_frame()
+
+    def read_names(self, lines, names):
+        """The signals by their codes in the file."""
+        scopes, codes, self.signals = [], {}, {}
+        for line in lines:
+            words = line.split()
+            if not words:
+                continue
+            if words[0] == b"$scope":
+                scopes.append(words[2])
+            elif words[0] == b"$upscope":
+                scopes.pop()
+            elif words[0] == b"$enddefinitions":
+                break
+            elif words[0] == b"$var" and scopes and scopes[-1] == b"chip":
+                name = words[4].decode()
+                if name in names:
+                    self.signals[name] = codes.setdefault(words[3], Signal())
+        missing = sorted(names - set(self.signals))
+        if missing:
+            raise FollowError(f"the waveform has no signal '{missing[0]}' in rtl/chip.v: it is of something else")
+        return codes
+
+    @staticmethod
+    def read_changes(lines, codes):
+        time = 0
+        for line in lines:
+            kind = line[0]
+            if kind == 0x62:  # b: a bus
+                place = line.rfind(b" ")
+                signal = codes.get(line[place + 1 : -1])
+                if signal is not None:
+                    signal.times.append(time)
+                    signal.values.append(line[1:place])
+            elif kind == 0x23:  # #: a time
+                time = int(line[1:])
+            else:
+                signal = codes.get(line[1:-1])
+                if signal is not None:
+                    signal.times.append(time)
+                    signal.values.append(line[:1])
+
+    def length_of_frame(self):
+        """Cycles from the start of the frame until busy_o has fallen."""
+        busy = self.signals["busy_o"]
+        for cycle in range(1, len(self.edges) - self.first + 1):
+            if not busy.at(self.time("busy_o", cycle)) and busy.at(self.time("busy_o", cycle - 1)):
+                return cycle
+        raise FollowError("the frame does not end in the waveform: busy_o stays high")
+
+    def time(self, name, cycle):
+        """Where the waveform has the value of a cycle. There may be none: then the nearest."""
+        place = self.first + cycle - (0 if name.endswith("_i") else 1)
+        return self.edges[min(max(place, 0), len(self.edges) - 1)]
+
+    def value(self, name, cycle):
+        return self.signals[name].at(self.time(name, cycle))
+
+    def constant(self, name):
+        """A parameter, or what stays while the frame is drawn."""
+        return self.value(name, 1)
+
+    def high(self, name):
+        """The cycles of the frame in which any bit of it is set, in their order."""
+        signal = self.signals[name]
+        ends = signal.times[1:] + [self.edges[-1] + 1]
+        late = self.first - (0 if name.endswith("_i") else 1)
+        for begin, end, value in zip(signal.times, ends, signal.values):
+            if number(value):
+                first, last = bisect.bisect_left(self.edges, begin) - late, bisect.bisect_left(self.edges, end) - late
+                yield from range(max(first, 0), min(last, self.cycles + LATER))
+
+    def transfers(self, valid, ready):
+        """The cycles in which both sides of a port want."""
+        return [cycle for cycle in self.high(valid) if self.value(ready, cycle)]
+
+
+LATER = 64  # cycles behind the frame's end, in which what was on its way arrives
