@@ -4,7 +4,7 @@
 
 Draws the frame (raypool sim --chip rtl --waves), reads the waveform, prints the journey, draws pictures of it into
 FOLDER, and compares all that can be reckoned otherwise. Exit code 1, and a sentence, if the frame cannot be followed,
-2 if something differs. RAYPOOL names the program, BUILD the folder it is in if not.
+3 if something differs. RAYPOOL names the program, BUILD the folder it is in if not.
 """
 import argparse
 import json
@@ -19,7 +19,7 @@ from .check import Check, query
 from .errors import FollowError, need, run
 from .journey import STATIONS, Journey
 from .pictures import draw_pictures
-from .ports import KERNELS, SIGNALS, Chip
+from .ports import SIGNALS, Chip
 from .scene import Reckoning, Tree, materials_of
 from .vcd import Wave, lines_of
 
@@ -43,7 +43,9 @@ def options_of(arguments):
     for name in LOOK:
         parser.add_argument(f"--{name}", help="as of raypool sim")
     parser.add_argument("--out", help="folder of waveform, report and pictures (default: build/out/follow)")
-    parser.add_argument("--from", dest="run", metavar="FOLDER", help="a run that is there: waves.fst or .vcd, report.json, image.png")
+    parser.add_argument(
+        "--from", dest="run", metavar="FOLDER", help="a run that is there: waves.fst or .vcd, report.json, image.png"
+    )
     parser.add_argument("--ray", default="", help="show only these: eye, shadow1, reflection2, ...")
     parser.add_argument("--station", default="", help="show only these: " + ", ".join((*STATIONS, *MORE)))
     options = parser.parse_args(arguments)
@@ -83,14 +85,15 @@ class Frame:
             if size:
                 check_pixel(options.pixel, *map(int, size.groups()))
             need("fst2vcd", "gtkwave")
-            self.draw("rtl", self.folder, "--chip", "rtl", "--traverser", "static", "--units", options.units, "--waves")
+            self.draw(options.size, options.depth, self.folder, "--chip", "rtl", "--traverser", "static", "--units",
+                      options.units, "--waves")  # fmt: skip
         self.report = self.read("report.json")
         self.size = self.report["size"]["width"], self.report["size"]["height"]
         check_pixel(options.pixel, *self.size)
 
-    def draw(self, _, folder, *how):
-        run([self.raypool, "sim", self.options.scene, *self.look, "--size", self.options.size, "--depth",
-             self.options.depth, *self.machine, *how, "--out", folder, "--quiet"])  # fmt: skip
+    def draw(self, size, depth, folder, *how):
+        run([self.raypool, "sim", self.options.scene, *self.look, "--size", size, "--depth", depth, *self.machine, *how,
+             "--out", folder, "--quiet"])  # fmt: skip
 
     def read(self, name):
         try:
@@ -106,10 +109,8 @@ class Frame:
 
     def native(self):
         """The picture that the kernels draw as C++."""
-        width, height = self.size
         folder = self.out / "native"
-        run([self.raypool, "sim", self.options.scene, *self.look, "--size", f"{width}x{height}", "--depth",
-             self.report["depth"], *self.machine, "--engine", "native", "--out", folder, "--quiet"])  # fmt: skip
+        self.draw("%dx%d" % self.size, self.report["depth"], folder, "--engine", "native")
         return (folder / "image.png").read_bytes()
 
     def tree_and_materials(self):
@@ -166,9 +167,9 @@ def shown(options, name, station):
 
 
 def title_of(life):
-    fates = {"hit": "which hits something", "missed": "which hits nothing", "free": "which reaches the light",
-             "blocked": "which does not reach the light", "dropped": "which goes no further"}  # fmt: skip
-    return f"{life.name}: a ray {fates[life.fate]}"
+    fates = {"hit": "hits something", "missed": "hits nothing", "free": "reaches the light",
+             "blocked": "does not reach the light", "dropped": "is dropped"}  # fmt: skip
+    return f"{life.name}: the {packages.full_name(life.words)} {fates[life.fate]}"
 
 
 def print_journey(options, frame, chip, journey, tree):
@@ -235,7 +236,7 @@ def main(arguments):
         print(f"pictures: {frame.out}: {', '.join(names)}")
     for line in wrong:
         print(f"follow: {line}", file=sys.stderr)
-    return 2 if wrong else 0
+    return 3 if wrong else 0
 
 
 if __name__ == "__main__":

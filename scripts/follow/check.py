@@ -4,7 +4,7 @@ import math
 from . import packages, picture
 from .packages import COLOR, DIRECTION, DISTANCE, NORMAL, ORIGIN, TRIANGLE
 
-WITHIN = 1e-5  # of the largest component: what single precision may add up to on the way
+WITHIN = 1e-5  # of what a value's parts are as large as: what single precision may add up to on the way
 
 
 class Check:
@@ -19,27 +19,36 @@ class Check:
         if not good:
             self.differ.append(line)
 
-    def vector(self, what, seen, expected, share=WITHIN):
-        largest = max(map(abs, expected)) or 1
-        good = all(math.isfinite(one) and abs(one - other) <= share * largest for one, other in zip(seen, expected))
+    def vector(self, what, seen, expected, size=0.0):
+        """`size`: of what has been added and subtracted for it."""
+        most = WITHIN * (max(*map(abs, expected), size) or 1)
+        good = all(math.isfinite(one) and abs(one - other) <= most for one, other in zip(seen, expected))
         self.note(what, packages.text(seen), packages.text(expected), good)
 
     def rays(self, journey, reckoning):
-        names = set(journey.lives) ^ set(reckoning.rays)
-        for name in sorted(names):
-            self.note(f"{name}", *(("is there", "not") if name in journey.lives else ("is not there", "it is")), False)
+        """All that are expected are there, and no others; a chip that culls leaves out what adds nothing."""
+        culling = journey.chip.wave.constant("CULLING")
+        for name, expected in reckoning.rays.items():
+            if name not in journey.lives and (expected.useful or not culling):
+                self.note(name, "there is none", "there is one", False)
         for name, life in journey.lives.items():
             if name in reckoning.rays:
                 self.ray(name, life, reckoning.rays[name], reckoning)
+            else:
+                self.note(name, "there is one", "there is none", False)
 
     def ray(self, name, life, expected, reckoning):
-        self.vector(f"{name}, origin", packages.floats(life.words, ORIGIN), expected.origin)
-        self.vector(f"{name}, direction", packages.floats(life.words, DIRECTION), expected.direction)
-        self.vector(f"{name}, colour", packages.floats(life.words, COLOR), expected.color)
+        size = reckoning.tree.largest
+        self.vector(f"{name}, origin", packages.floats(life.words, ORIGIN), expected.origin, size)
+        self.vector(f"{name}, direction", packages.floats(life.words, DIRECTION), expected.direction,
+                    size if packages.is_shadow(life.words) else 0)  # fmt: skip
+        self.vector(f"{name}, colour", packages.floats(life.words, COLOR), expected.color, expected.brightest)
         if packages.is_shadow(life.words):
             fates = ("blocked", "free")
             if life.fate != "dropped":
-                self.note(f"{name}, way to the light", life.fate, fates[expected.free], life.fate == fates[expected.free])
+                self.note(
+                    f"{name}, way to the light", life.fate, fates[expected.free], life.fate == fates[expected.free]
+                )
         elif life.fate in ("hit", "missed"):
             self.hit(name, life, expected.hit, reckoning)
 
@@ -50,10 +59,10 @@ class Check:
             return
         t, number = packages.to_float(life.put.words[DISTANCE]), life.put.words[TRIANGLE]
         self.note(f"{name}, triangle", number, expected.triangle, number == expected.triangle)
-        self.vector(f"{name}, t", [t], [expected.t])
+        size = reckoning.tree.largest / max(map(abs, packages.floats(life.words, DIRECTION)))
+        self.vector(f"{name}, t", [t], [expected.t], size)
         triangle = reckoning.tree.by_number[expected.triangle]
-        self.vector(f"{name}, u and v", packages.floats(life.put.words, DISTANCE + 1, 2), [expected.u, expected.v],
-                    10 * WITHIN)  # fmt: skip
+        self.vector(f"{name}, u and v", packages.floats(life.put.words, DISTANCE + 1, 2), [expected.u, expected.v], 10)
         self.vector(f"{name}, normal", packages.floats(life.put.words, NORMAL), triangle.normal())
         tree_hit, _ = reckoning.tree.walk(*query(life.words))
         self.note(f"{name}, triangle by the tree", number, tree_hit and tree_hit.triangle,
@@ -64,7 +73,8 @@ class Check:
         x, y = pixel
         fixed = [sum(picture.to_fixed(one[channel]) for one in journey.contributions()) for channel in range(3)]
         linear = [value / 2**32 for value in fixed]
-        self.vector("sum of the contributions", linear, reckoning.color)
+        brightest = sum(ray.brightest for name, ray in reckoning.rays.items() if name.startswith("shadow"))
+        self.vector("sum of the contributions", linear, reckoning.color, brightest)
         bytes_of_sum = tuple(map(picture.to_srgb8, linear))
         self.note("image.png", drawn[y][x], bytes_of_sum, drawn[y][x] == bytes_of_sum)
 
@@ -73,5 +83,3 @@ def query(words):
     """Origin, direction and limit of a ray."""
     return (tuple(packages.floats(words, ORIGIN)), tuple(packages.floats(words, DIRECTION)),
             packages.to_float(words[packages.LIMIT]))  # fmt: skip
-
-

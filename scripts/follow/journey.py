@@ -42,6 +42,7 @@ class Life:
     read: object = None
     put: object = None
     come: object = None
+    asked: int = 0  # the cycle in which the request for it is taken
     launch: object = None  # that imports it; of the eye ray before, that casts it
     thread: int = 0
     contribution: object = None
@@ -68,7 +69,9 @@ class Journey:
     def same(self, what, one, other):
         self.compared += 1
         if one != other:
-            self.mismatches.append(f"{what}: {' '.join(f'{w:08x}' for w in one)} and {' '.join(f'{w:08x}' for w in other)}")
+            self.mismatches.append(
+                f"{what}: {' '.join(f'{w:08x}' for w in one)} and {' '.join(f'{w:08x}' for w in other)}"
+            )
 
     def live(self, number):
         chip, ray = self.chip, self.chip.exports[number]
@@ -76,8 +79,9 @@ class Journey:
         if life.name == "eye":
             self.cast(life)
         life.steps.append(Step(
-            "export", ray.offered, "multiprocessor -> ray_pool", f"a ray of unit {ray.unit}; its {len(ray.cycles)} beats "
-            f"pass in cycles {ray.cycles[0]} .. {ray.cycles[-1]}", packages.ray_text(ray.words)))  # fmt: skip
+            "export", ray.offered, "multiprocessor -> ray_pool",
+            f"a ray of unit {ray.unit}; its {len(ray.cycles)} beats pass in cycles {ray.cycles[0]} .. {ray.cycles[-1]}",
+            packages.ray_text(ray.words)))  # fmt: skip
         outcome = chip.outcomes[number]
         if not chip.wave.value("outcome_kept", outcome):
             deep = chip.wave.value("outcome_deep", outcome)
@@ -142,16 +146,16 @@ class Journey:
             raise FollowError(f"the traverser never gives back place {read.place} of the ray {life.name}")
         life.spans += [Span("ray_pool", ray.cycles[0], read.cycles[-1]), Span("traverser", read.cycles[-1], freed)]
         shadow = packages.is_shadow(life.words)
-        place = next((n for n, put in enumerate(chip.puts) if read.cycles[-1] < put.cycles[0] and
-                      put.words[packages.PIXEL : packages.FLAGS + 1 : 4] == life.words[packages.PIXEL :: 4]), None)  # fmt: skip
+        place = self.put_of(life.words, read.cycles[-1])
         handed = [one for one in chip.handed if one[1] == self.word and read.cycles[-1] < one[0] < freed]
         if place is not None:
             self.put(life, place, shadow)
         elif shadow and handed:
             life.fate = "free"
-            life.contribution = handed[0]
-            life.steps.append(Step("traverser", handed[0][0], "traverser -> frame_port",
-                                   f"nothing is in the way: {color_text(handed[0][2])} for the pixel"))  # fmt: skip
+            life.contribution = of_color(handed, life.words[8:11])
+            self.same(f"{life.name}: exported, and contributed", life.words[8:11], life.contribution[2])
+            life.steps.append(Step("traverser", life.contribution[0], "traverser -> frame_port",
+                                   f"the light is seen: {color_text(life.contribution[2])} for the pixel"))  # fmt: skip
         else:
             life.fate = "blocked" if shadow else "missed"
         end = {"hit": "", "free": "", "blocked": "; something is between surface and light",
@@ -161,6 +165,14 @@ class Journey:
             self.bring(life)
         if life.contribution:
             self.to_frame(life)
+
+    def put_of(self, words, after):
+        """The number of the package that this ray becomes; None if it becomes none."""
+        mine = words[packages.PIXEL], words[packages.FLAGS]
+        for number, put in enumerate(self.chip.puts):
+            if put.cycles[0] > after and (put.words[packages.PIXEL], put.words[packages.FLAGS]) == mine:
+                return number
+        return None
 
     def put(self, life, place, shadow):
         chip, put = self.chip, self.chip.puts[place]
@@ -192,13 +204,13 @@ class Journey:
         self.run(life, launch, life.thread, "the intersection's")
         bringing = Step(
             "import", life.asked, "intersection_pool -> multiprocessor",
-            f"request {life.thread} of {launch.threads} is taken; 6 beats in cycles "
+            f"the request for thread {life.thread} is taken; 6 beats in cycles "
             f"{come.cycles[0]} .. {come.cycles[-1]}:", packages.beats_text(come.words))  # fmt: skip
         life.steps.insert(begin + 1, bringing)
         life.spans[-1].begin = come.cycles[0]
         if put.kind == 2:
             mine = [one for one in self.chip.shaded if one[1] == self.word and one[0] > come.cycles[-1]]
-            life.contribution = next((one for one in mine if one[2] == life.words[8:11]), mine[0] if mine else None)
+            life.contribution = of_color(mine, life.words[8:11])
             if life.contribution is None:
                 raise FollowError(f"the contribution of the ray {life.name} never leaves the unit")
             self.same(f"{life.name}: exported, and contributed", life.words[8:11], life.contribution[2])
@@ -232,6 +244,11 @@ class Journey:
         culling = self.chip.wave.constant("CULLING")
         children = [] if culling else [f"shadow{depth}"]
         return children + ([f"reflection{depth + 1}"] if life.launch.kernel == "cast_secondary" else [])
+
+
+def of_color(contributions, color):
+    """Of several for one pixel that of this colour, if there is one; else the first, which is then another one."""
+    return next((one for one in contributions if one[2] == color), contributions[0] if contributions else None)
 
 
 def color_text(words):

@@ -1,4 +1,4 @@
-"""Pictures of a journey: the frame with its pixel, the rays in the scene and in time, and signals around four events."""
+"""Pictures of a journey: the frame with its pixel, the rays in time and space, and signals around four events."""
 from diagrams.svg import WIDTH, Picture
 
 from . import packages, picture
@@ -96,7 +96,8 @@ def import_picture(wave, life):
            f"normal y {packages.to_float(words[16]):.6g}, z {packages.to_float(words[17]):.6g}, "
            f"material at {words[18]}, triangle {words[19]}", "word 20 is 0"]  # fmt: skip
     return Signals(wave, f"What the {packages.full_name(life.words)} has hit comes into the unit",
-                   range(life.asked - 2, come[-1] + 3), rows, beat_notes(words, ray_said(words) + hit)).picture  # fmt: skip
+                   range(life.asked - 2, come[-1] + 3), rows,
+                   beat_notes(words, ray_said(words) + hit)).picture  # fmt: skip
 
 
 def frame_picture(wave, life, pixel):
@@ -130,7 +131,9 @@ def time_picture(journey, pixel):
     first, last = min(span.begin for span in spans), max(span.end for span in spans)
     left, row, top = 100, 34, 62
     per_cycle = (WIDTH - left - 20) / (last - first)
-    drawn = Picture(top + row * len(lives) + 40, f"raypool: where the rays of pixel {pixel[0]},{pixel[1]} were, and when")
+    drawn = Picture(
+        top + row * len(lives) + 40, f"raypool: where the rays of pixel {pixel[0]},{pixel[1]} were, and when"
+    )
     drawn.text(16, 24, f"Where the rays of pixel {pixel[0]},{pixel[1]} were, in which cycle", "part")
     x = 16
     for block, colour in BLOCKS.items():

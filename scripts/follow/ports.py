@@ -23,7 +23,8 @@ SIGNALS = [f"{port}_{name}" for port, names in PORTS.items() for name in names.s
     "free_place_i", "put_valid_i", "put_ready_o", "put_kind_i", "put_data_i", "frame_valid_o", "frame_ready_i",
     "frame_pixel_o", "frame_color_o", "contribution_valid_i", "contribution_ready_o", "contribution_pixel_i",
     "contribution_color_i", "argument_write_i", "argument_index_i", "argument_data_i", "program_length_i", "width_i",
-    "height_i", "depth_limit_i", "CULLING", "UNITS", "WARPS", "LANES", "INTERSECTION_WORDS", "LEVEL_BITS", "available", *KERNELS]  # fmt: skip
+    "height_i", "depth_limit_i", "available", "CULLING", "UNITS", "WARPS", "LANES", "INTERSECTION_WORDS", "LEVEL_BITS",
+    *KERNELS]  # fmt: skip
 
 
 @dataclass
@@ -188,9 +189,15 @@ class Chip:
         unit = self.imports[number].unit
         before = sum(1 for package in self.imports[:number] if package.unit == unit)
         for launch in self.launches:
-            if launch.unit == unit and launch.kind and launch.first_import <= before < launch.first_import + launch.threads:
+            if (
+                launch.unit == unit
+                and launch.kind
+                and launch.first_import <= before < launch.first_import + launch.threads
+            ):
                 return launch, before - launch.first_import
-        raise FollowError(f"nobody has been launched for the intersection that comes in cycle {self.imports[number].cycles[0]}")
+        raise FollowError(
+            f"nobody has been launched for the intersection that comes in cycle {self.imports[number].cycles[0]}"
+        )
 
     def instructions(self, launch, thread):
         """What the thread's warp retires in this launch: (cycle, PC, the lane's mask, result, predicate)."""

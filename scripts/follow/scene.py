@@ -102,6 +102,7 @@ class Tree:
         nodes, triangles, node_place, triangle_place = struct.unpack_from("<IIQQ", data, 40)
         self.nodes = [self.node(data, node_place + 64 * number) for number in range(nodes)]
         self.triangles = [self.triangle(data, triangle_place + 44 * place) for place in range(triangles)]
+        self.largest = max((abs(x) for one in self.triangles for corner in one.corners for x in corner), default=0)
         self.by_number = {triangle.number: triangle for triangle in self.triangles}
 
     @staticmethod
@@ -152,7 +153,9 @@ class Tree:
                         best = hit
                 steps.append(("leaf", child, tests))
                 continue
-            boxes = [(one, *one.interval(origin, direction, best.t if best else limit)) for one in self.nodes[child.node]]
+            boxes = [
+                (one, *one.interval(origin, direction, best.t if best else limit)) for one in self.nodes[child.node]
+            ]
             steps.append(("node", child.node, boxes))
             # The nearest comes first: it is pushed last.
             stack += sorted(((b, one) for one, b, e in boxes if b <= e), key=lambda item: -item[0])
@@ -178,6 +181,8 @@ class Light:
     origin: tuple
     direction: tuple
     color: tuple
+    useful: bool  # it may add to the picture
+    brightest: float  # the largest that the colour could be: of a shadow ray, were the surface to face the light
     hit: object = None
     free: bool = True  # of a shadow ray
 
@@ -203,7 +208,7 @@ class Reckoning:
         self.cast(tuple(self.view["eye"]), self.eye_direction(pixel), (1.0, 1.0, 1.0), 1)
 
     def cast(self, origin, direction, weight, depth):
-        ray = Light(origin, direction, weight)
+        ray = Light(origin, direction, weight, any(weight) and depth <= self.depth, max(weight))
         self.rays["eye" if depth == 1 else f"reflection{depth}"] = ray
         if depth > self.depth:
             return
@@ -223,8 +228,9 @@ class Reckoning:
     def shade(self, point, facing, weight, depth):
         to_light = subtract(self.view["light"]["position"], point)
         cosine = min(1.0, max(0.0, dot(facing, to_light) / math.sqrt(dot(to_light, to_light))))
-        color = tuple(w * light * cosine for w, light in zip(weight, self.view["light"]["color"]))
-        ray = Light(point, to_light, color)
+        full = [w * light for w, light in zip(weight, self.view["light"]["color"])]
+        color = tuple(one * cosine for one in full)
+        ray = Light(point, to_light, color, any(color), max(full))
         ray.free = self.tree.nearest_of_all(point, to_light, 1.0) is None
         self.rays[f"shadow{depth}"] = ray
         if ray.free:

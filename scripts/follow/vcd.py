@@ -83,18 +83,20 @@ class Wave:
 
     @staticmethod
     def read_changes(lines, codes):
+        """Most lines are of signals that nobody wants: they are told by their ends."""
+        longest = max(map(len, codes))
         time = 0
         for line in lines:
             kind = line[0]
             if kind == 0x62:  # b: a bus
-                place = line.rfind(b" ")
-                signal = codes.get(line[place + 1 : -1])
+                place = line.rfind(b" ", -longest - 2)
+                signal = codes.get(line[place + 1 : -1]) if place > 0 else None
                 if signal is not None:
                     signal.times.append(time)
                     signal.values.append(line[1:place])
             elif kind == 0x23:  # #: a time
                 time = int(line[1:])
-            else:
+            elif len(line) < longest + 3:
                 signal = codes.get(line[1:-1])
                 if signal is not None:
                     signal.times.append(time)

@@ -1,5 +1,4 @@
-"""Some signals in some cycles, as a picture in the look of scripts/diagrams: what belongs to the ray that is followed is
-coloured."""
+"""Some signals in some cycles, as a picture in the look of scripts/diagrams. What belongs to the ray is coloured."""
 from diagrams.svg import NAME_WIDTH, NOTE_WIDTH, WIDTH, Picture
 
 LEFT, RIGHT, TOP, ROW, HIGH = 176, 12, 58, 30, 18
@@ -25,7 +24,9 @@ class Signals:
     def ruler(self):
         picture, bottom = self.picture, TOP + ROW * len(self.rows)
         picture.text(16, 46, "cycle")
-        every = next(step for step in (1, 2, 5, 10, 20) if len(str(self.cycles[-1])) * NOTE_WIDTH + 4 < step * self.cell)
+        every = next(
+            step for step in (1, 2, 5, 10, 20) if len(str(self.cycles[-1])) * NOTE_WIDTH + 4 < step * self.cell
+        )
         for cycle in self.cycles:
             x = self.x(cycle)
             picture.shapes.append(f'<path d="M{x:.1f} {TOP - 6} V{bottom}" class="grid"/>')
