@@ -15,12 +15,13 @@ import shutil
 import sys
 
 from . import packages, picture
-from .check import Check, query
+from .check import Check
 from .errors import FollowError, need, run
 from .journey import STATIONS, Journey
 from .pictures import draw_pictures
 from .ports import SIGNALS, Chip
 from .scene import Reckoning, Tree, materials_of
+from .table import check_lines, journey_lines, last_lines
 from .vcd import Wave, lines_of
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
@@ -28,7 +29,6 @@ BUILD = pathlib.Path(os.environ.get("BUILD", "build"))
 SCENE, VIEW = "examples/tour.obj", "examples/tour.json"
 LOOK = ("view", "camera", "eye", "look-at", "up", "fov", "light", "detail")
 MORE = ("arguments", "tree", "host")  # stations that are no steps of a ray
-QUIET = ("arguments", "instructions", "tree")  # shown only when they are asked for
 
 
 def options_of(arguments):
@@ -129,91 +129,19 @@ class Frame:
         return texts
 
 
-def arguments_lines(words):
-    """What the host has written for the kernels, before the frame."""
-    names = [("eye", 0, 3), ("corner", 3, 3), ("step_x", 6, 3), ("step_y", 9, 3), ("light", 12, 3),
-             ("light's colour", 15, 3), ("offset", 18, 1)]  # fmt: skip
-    for name, first, count in names:
-        values = [packages.to_float(words[first + at]) for at in range(count)]
-        yield f"  {first:>2} {name:<15} {packages.text(values)}"
-    for name, first in (("log2 of a tile's width", 19), ("width - 1", 20), ("picture's width", 21), ("height", 22)):
-        yield f"  {first:>2} {name:<15} {words[first]}"
-
-
-def tree_lines(tree, life):
-    """The boxes and triangles that this ray is tested against on its way through the tree."""
-    hit, steps = tree.walk(*query(life.words))
-    for kind, what, tests in steps:
-        if kind == "node":
-            yield f"  node {what}: {len(tests)} boxes"
-            for child, begin, end in tests:
-                low, high = packages.text(child.lower), packages.text(child.upper)
-                found = f"met from t {begin:.6g} to {end:.6g}" if begin <= end else "missed"
-                yield f"    {child.name():<10} {low} .. {high}: {found}"
-        elif kind == "leaf":
-            yield f"  {what.name()}:"
-            for triangle, test in tests:
-                found = f"hit at t {test.t:.6g}, u {test.u:.6g}, v {test.v:.6g}" if test else "missed"
-                yield f"    triangle {triangle.number}: {found}"
-        else:
-            yield f"  {what.name()}: begins at t {tests:.6g}, behind the hit, and is left out"
-    yield f"  nearest: triangle {hit.triangle} at t {hit.t:.6g}" if hit else "  nothing is hit"
-
-
-def shown(options, name, station):
-    if options.stations:
-        return station in options.stations and (not options.rays or name in options.rays)
-    return station not in QUIET and (not options.rays or name in options.rays)
-
-
-def title_of(life):
-    fates = {"hit": "hits something", "missed": "hits nothing", "free": "reaches the light",
-             "blocked": "does not reach the light", "dropped": "is dropped"}  # fmt: skip
-    return f"{life.name}: the {packages.full_name(life.words)} {fates[life.fate]}"
-
-
-def print_journey(options, frame, chip, journey, tree):
-    if not options.stations and not options.rays:
-        width, height = frame.size
-        x, y = options.pixel
-        print(f"pixel {x},{y} of {frame.report['scene']['name']}, {frame.report['scene']['triangles']} triangles, "
-              f"{width}x{height}, depth {frame.report['depth']}: rtl/chip.v, {chip.units} unit"
-              f"{'s' if chip.units > 1 else ''} of {frame.report['config']}")  # fmt: skip
-        print(f"the frame takes {chip.wave.cycles} cycles, {len(chip.launches)} launches and {len(chip.exports)} rays, "
-              f"{len(journey.lives)} of them of this pixel")  # fmt: skip
-    if "arguments" in options.stations:
-        print("arguments, as the host has written them:")
-        print("\n".join(arguments_lines(chip.arguments)))
-    for life in journey.lives.values():
-        steps = [step for step in life.steps if shown(options, life.name, step.station)]
-        walk = shown(options, life.name, "tree") and life.fate != "dropped"
-        if not steps and not walk:
-            continue
-        print(f"\n{title_of(life)}" if not options.stations else title_of(life))
-        for step in steps:
-            print(f"  {step.cycle:>8}  {step.way + ': ' if step.way else ''}{step.what}")
-            for detail in step.details:
-                print(f"              {detail}")
-        if walk:
-            print("\n".join(tree_lines(tree, life)))
-
-
 def compare(options, frame, chip, journey, tree, materials):
-    """What the host reckons; returns it, and prints it where it is wanted."""
+    """What the host reckons beside it."""
     check = Check()
     cycles = frame.report["cycles"]
     check.note("cycles of the frame", chip.wave.cycles, cycles, chip.wave.cycles == cycles)
-    reckoning = Reckoning(tree, materials, frame.report["view"], packages.to_float(chip.arguments[18]), frame.size,
-                          frame.report["depth"])  # fmt: skip
+    offset = packages.to_float(chip.arguments[18])
+    reckoning = Reckoning(tree, materials, frame.report["view"], offset, frame.size, frame.report["depth"])
     reckoning.follow(options.pixel)
     check.rays(journey, reckoning)
     image = frame.folder / "image.png"
     check.colour(journey, reckoning, picture.read(image), options.pixel)
-    check.note("image.png and that of engine native", *(("the same", "the same", True) if image.read_bytes() ==
-               frame.native() else ("another", "the same", False)))  # fmt: skip
-    if "host" in options.stations or not options.stations and not options.rays:
-        print(("" if options.stations else "\n") + "beside the host's reckoning:")
-        print("\n".join(f"  {line}" for line in check.lines))
+    same = image.read_bytes() == frame.native()
+    check.note("image.png and that of engine native", "the same" if same else "not the same", "the same", same)
     return check
 
 
@@ -226,14 +154,15 @@ def main(arguments):
     unknown = [name for name in options.rays if name not in journey.lives]
     if unknown:
         raise FollowError(f"--ray {unknown[0]}: this pixel has {', '.join(journey.lives)}")
-    print_journey(options, frame, chip, journey, tree)
     check = compare(options, frame, chip, journey, tree, materials)
     names = draw_pictures(options, frame, chip, journey, tree, materials)
     wrong = journey.mismatches + journey.missing() + check.differ
-    if not options.stations and not options.rays:
-        print(f"\nin the waveform {journey.compared} packages stand twice, and {len(check.lines)} values are reckoned "
-              f"again: {len(wrong)} differ")  # fmt: skip
-        print(f"pictures: {frame.out}: {', '.join(names)}")
+    lines = [*journey_lines(options, frame, chip, journey, tree), *check_lines(options, check),
+             *last_lines(options, frame, journey, check, wrong, names)]  # fmt: skip
+    try:
+        print("\n".join(lines), flush=True)
+    except BrokenPipeError:  # whoever reads it has seen enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     for line in wrong:
         print(f"follow: {line}", file=sys.stderr)
     return 3 if wrong else 0

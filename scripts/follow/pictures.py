@@ -52,7 +52,7 @@ def export_picture(wave, life):
         ("export_ready", "export_ready", None, coloured(sent)),
         ("export_data", "export_data", beat_text(sent), coloured(sent)),
         ("export_last", "export_last", None, {sent[-1]: BEATS[2]}),
-        ("outcome_kept", "outcome_kept", None, {kept: "c4"}),
+        ("outcome_valid", "outcome_valid", None, {kept: "c4"}),
         ("ray_valid_o", "ray_valid_o", None, coloured(read)),
         ("ray_data_o", "ray_data_o", beat_text(read), coloured(read)),
         ("ray_place_o", "ray_place_o", while_high(wave, "ray_valid_o", number_text), {cycle: "c4" for cycle in read}),

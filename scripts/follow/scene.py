@@ -134,10 +134,10 @@ class Tree:
         hits = (triangle.hit(origin, direction, limit) for triangle in self.triangles)
         return min((hit for hit in hits if hit), key=lambda hit: (hit.t, hit.triangle), default=None)
 
-    def walk(self, origin, direction, limit):
-        """The hit that the tree leads to, and what is tested on the way: ("node", number, [(child, begin, end)]) and
-        ("leaf", child, [(triangle, hit)]), and ("skip", child) for what lies behind the best hit when its turn comes.
-        """
+    def walk(self, origin, direction, limit, any_hit=False):
+        """The hit that the tree leads to, with `any_hit` in the first leaf that has one; and what is tested on the way:
+        ("node", number, [(child, begin, end)]) and ("leaf", child, [(triangle, hit)]), and ("skip", child, begin) for
+        what lies behind the best hit when its turn comes."""
         best, steps, stack = None, [], [(0.0, Child((), (), node=0))] if self.nodes else []
         while stack:
             begin, child = stack.pop()
@@ -152,6 +152,8 @@ class Tree:
                     if hit and (best is None or (hit.t, hit.triangle) < (best.t, best.triangle)):
                         best = hit
                 steps.append(("leaf", child, tests))
+                if best and any_hit:
+                    break
                 continue
             boxes = [
                 (one, *one.interval(origin, direction, best.t if best else limit)) for one in self.nodes[child.node]
