@@ -67,11 +67,11 @@ class Journey:
             self.lives[life.name] = life
 
     def same(self, what, one, other):
+        """What the waveform has in two places."""
         self.compared += 1
-        if one != other:
-            self.mismatches.append(
-                f"{what}: {' '.join(f'{w:08x}' for w in one)} and {' '.join(f'{w:08x}' for w in other)}"
-            )
+        differ = [f"word {n} is {a:08x} and {b:08x}" for n, (a, b) in enumerate(zip(one, other)) if a != b]
+        if differ:
+            self.mismatches.append(f"{what}: {', '.join(differ)}")
 
     def live(self, number):
         chip, ray = self.chip, self.chip.exports[number]

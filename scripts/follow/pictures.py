@@ -172,6 +172,8 @@ def draw_pictures(options, frame, chip, journey, tree, materials):
     if added:
         drawn["frame"] = frame_picture(chip.wave, added[-1], options.pixel)
     frame.out.mkdir(parents=True, exist_ok=True)
+    for old in ("frame", "import", "launch", "export"):  # of another pixel
+        (frame.out / f"{old}.svg").unlink(missing_ok=True)
     for name, one in drawn.items():
         (frame.out / f"{name}.svg").write_text(one.svg(), encoding="utf-8")
     rows = picture.read(frame.folder / "image.png")
