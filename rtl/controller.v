@@ -291,7 +291,8 @@ module controller #(
       else if (decided || (launch_valid_o && !launch_ready_i)) hold_q <= 3'd5;
       else if (hold_q != 3'd0) hold_q <= hold_q - 3'd1;
     end
-    if (decided) begin
+    // What is offered, if anything is: it stays as it is while it waits, and `decided` comes late.
+    if (may_decide) begin
       kind_q <= kind;
       held_then_q <= held_q;
       launch_threads_o <= (kind == EYE) ? TILE_THREADS[10:0] : threads_launched[10:0];

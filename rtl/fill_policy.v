@@ -47,7 +47,8 @@ module fill_policy #(
 
   // What is seen, and what follows from it at once.
   reg [COUNT_BITS-1:0] room_q, shade_q, safe_q;
-  reg behind_q, eye_possible_q, two_rays_q;
+  reg [COUNT_BITS-1:0] makers_q;          // threads of a secondary kernel for whose rays there is room
+  reg behind_q, eye_possible_q;
   reg waits_q;                            // for a full load
   reg alone_q;                            // nothing will come by itself
   // Its packages would wait behind those at the port: later it will be fuller, and no later in the end.
@@ -55,17 +56,17 @@ module fill_policy #(
   wire port_waits = any_kernel && promised_i >= LOAD[COUNT_BITS-1:0];
   always @(posedge clk_i) begin
     room_q <= room;
+    makers_q <= two_rays_i ? room >> 1 : room;
     shade_q <= least(CONTENTS[COUNT_BITS-1:0], shadow_i);
     safe_q <= least(least(CONTENTS[COUNT_BITS-1:0], normal_i), secondary_room_i);
     behind_q <= rays_i > BACKLOG[COUNT_BITS-1:0];
     eye_possible_q <= eye_possible_i;
-    two_rays_q <= two_rays_i;
     waits_q <= ahead_i || port_waits;
     alone_q <= !any_kernel && !more_to_come_i;
   end
 
   // ---- The decision
-  wire [COUNT_BITS-1:0] secondary = least(safe_q, two_rays_q ? room_q >> 1 : room_q);
+  wire [COUNT_BITS-1:0] secondary = least(safe_q, makers_q);
   wire secondary_full = secondary >= LOAD[COUNT_BITS-1:0];
   wire shade_full = shade_q >= (behind_q ? SMALL_LOAD[COUNT_BITS-1:0] : LOAD[COUNT_BITS-1:0]);
   wire shade_first = shade_full && (!secondary_full || behind_q || shade_q > secondary);

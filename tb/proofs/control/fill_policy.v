@@ -11,7 +11,7 @@
 // @break fill_policy s/alone_q && safe_q/alone_q \&\& secondary/
 // @break fill_policy s/: safe_q\[/: secondary[/
 // @break fill_policy s/any_kernel && promised_i/1'b1 || promised_i/
-// @break fill_policy s/room_q >> 1 : room_q/room_q : room_q/
+// @break fill_policy s/room >> 1 : room/room : room/
 // @break fill_policy s/least\(least\(CONTENTS\[COUNT_BITS-1:0\], normal_i\), secondary_room_i\)/
 //   least(CONTENTS[COUNT_BITS-1:0], normal_i)/
 // @break fill_policy s/!any_kernel && !more/any_kernel \&\& !more/
