@@ -7,7 +7,6 @@
 
 #include <deque>
 #include <map>
-#include <type_traits>
 #include <vector>
 
 #include "Vtree_cache_1_1_4_2_1_5_32.h"
@@ -15,6 +14,7 @@
 #include "Vtree_cache_3_5_64_4_5_23_32.h"
 #include "Vtree_cache_8_24_128_16_8_23_32.h"
 #include "unit/clocked.hpp"
+#include "unit/signal_bits.hpp"
 
 namespace raypool::bench {
 namespace {
@@ -121,31 +121,6 @@ class Bench {
     looks_ = lookup_.lanes != 0;
   }
 
-  // Signals of more than 64 bits are arrays of words.
-  template <typename Signal>
-  static void set_bits(Signal& signal, uint32_t first, uint32_t width, uint32_t value) {
-    for (uint32_t bit = 0; bit < width; ++bit) {
-      const uint32_t at = first + bit;
-      if constexpr (std::is_integral_v<Signal>) {
-        signal = static_cast<Signal>((signal & ~(uint64_t{1} << at)) | uint64_t{value >> bit & 1} << at);
-      } else {
-        signal[at / 32] = (signal[at / 32] & ~(1u << at % 32)) | (value >> bit & 1) << at % 32;
-      }
-    }
-  }
-  template <typename Signal>
-  static uint32_t get_bits(const Signal& signal, uint32_t first, uint32_t width) {
-    uint32_t value = 0;
-    for (uint32_t bit = 0; bit < width; ++bit) {
-      const uint32_t at = first + bit;
-      if constexpr (std::is_integral_v<Signal>) {
-        value |= static_cast<uint32_t>(uint64_t{signal} >> at & 1) << bit;
-      } else {
-        value |= (signal[at / 32] >> at % 32 & 1) << bit;
-      }
-    }
-    return value;
-  }
   static constexpr uint32_t slot_bits() {
     uint32_t bits = 1;
     while (1u << bits < P::kSlots) ++bits;
