@@ -99,3 +99,8 @@ raypool_pool_models(memory_port_test memory_port "QUEUE;TRAVERSER_QUEUE;CYCLES_P
 raypool_pool_bench(tree_cache_test)
 raypool_pool_models(tree_cache_test tree_cache "LANES;SLOTS;LINES;WAYS;MSHRS;LINE_BITS;DATA_BITS"
   1_1_4_2_1_5_32 3_5_64_4_5_23_32 8_24_128_16_8_23_32 32_2_16_2_3_9_32)
+
+# The stacks of a lane of the traverser.
+raypool_pool_bench(lane_stacks_test)
+raypool_pool_models(lane_stacks_test lane_stacks "SLOTS;ENTRIES;KEY_BITS;REFERENCE_BITS;BLOCK_BITS"
+  1_8_3_12_7 3_9_21_20_3 5_8_6_10_4 8_12_8_8_7 24_16_32_32_7 33_64_2_9_2)
