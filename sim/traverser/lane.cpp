@@ -13,10 +13,10 @@ constexpr size_t kAhead = 4;    // lines that will be wanted; further ones are f
 
 Lane::Lane(const ChipConfiguration& chip, uint32_t slots, const StepLatencies& latencies)
     : latencies_(latencies),
-      entries_(chip.modelled_traverser_stack_entries),
       slots_(slots),
       boxes_(chip.modelled_traverser_box_latency),
-      triangles_(chip.modelled_traverser_triangle_latency) {
+      triangles_(chip.modelled_traverser_triangle_latency),
+      stacks_({slots, chip.modelled_traverser_stack_entries}) {
   for (uint32_t slot = 0; slot < slots; ++slot) free_.push_back(slot);
 }
 
@@ -25,15 +25,16 @@ uint32_t Lane::enter(uint64_t cycle, const VisitList& visits, uint64_t setup_lat
   free_.pop_front();
   Slot& slot = slots_[index];
   plan(visits, latencies_, slot.steps);
-  slot.step = slot.tests = slot.here = slot.blocks = slot.to_take = 0;
+  slot.step = slot.tests = 0;
   slot.least = 0;
   slot.earliest = cycle + setup_latency + (slot.steps.empty() ? latencies_.finish : 1 + slot.steps[0].rest);
   return index;
 }
 
 bool Lane::prepared(uint64_t cycle, uint32_t index) {
-  if (stack_wants_) return false;
-  stack_wants_ = true;
+  if (!ray_ready_) return false;
+  ray_ready_ = false;
+  stacks_.begin(index);
   if (slots_[index].steps.empty()) {
     done_.push_back(index);
   } else {
@@ -136,116 +137,36 @@ void Lane::want(uint64_t cycle, uint32_t index, uint32_t source) {
 }
 
 // A ray goes on with the nearest child, or with an entry of its stack.
-void Lane::visited(uint64_t cycle, uint32_t index, uint32_t source) {
-  Slot& slot = slots_[index];
+void Lane::go_on(uint64_t cycle, uint32_t index, uint32_t source) {
+  if (++slots_[index].step == slots_[index].steps.size()) {
+    done_.push_back(index);  // the last entry that it has taken lies behind the best hit too
+  } else {
+    want(cycle, index, source);
+  }
+}
+
+// Of the entries that are taken after the visit the last one, or the only one, does not lie behind it.
+uint32_t Lane::limit(uint32_t index) const { return stacks_.depth(index) - step(index).taken; }
+
+void Lane::node_visited(uint32_t index) {
   const Step& present = step(index);
-  slot.to_take = present.taken;
-  if (present.pushed > 0) {
-    stack_pushed_ = true;
-    slot.here += present.pushed;
-    deepest_ = std::max(deepest_, slot.here + slot.blocks * kBlock);
-  }
-  if (present.taken > 0 || slot.step + 1 == slot.steps.size()) {
-    pops_[source].push_back(index);
-    return;
-  }
-  ++slot.step;
-  if (slot.here + kLeast > entries_) {
-    spills_.push_back(index);
-  } else {
-    want(cycle, index, 0);
-  }
+  const bool last = slots_[index].step + 1 == slots_[index].steps.size();
+  node_result_.slot = index;
+  node_result_.children = present.taken > 0 || last ? 0 : present.pushed + 1u;
+  node_result_.limit = limit(index);
+  const uint32_t depth = stacks_.depth(index);
+  for (uint32_t i = 0; i < present.pushed; ++i) node_result_.others[i].key = depth + i;
+  deepest_ = std::max(deepest_, depth + present.pushed);
 }
 
-void Lane::results(uint64_t cycle) {
-  if (boxes_.valid(cycle)) visited(cycle, boxes_.take(), 0);
-  if (!triangles_.valid(cycle)) return;
-  const uint32_t index = triangles_.take();
-  if (--slots_[index].tests == 0) visited(cycle, index, 1);
-}
+// A ray that takes no entry has none, or is a shadow ray that has found a blocker.
+void Lane::leaf_visited(uint32_t index) { leaf_result_ = {index, limit(index), step(index).taken == 0}; }
 
-void Lane::read_entry(uint32_t index) {
-  Slot& slot = slots_[index];
-  if (slot.here == 0) {
-    fetches_.push_back(index);
-    return;
-  }
-  --slot.here;
-  read_ = Read::Entry;
-  read_slot_ = index;
-}
-
-// What the RAM has read. True if it reads on for the same ray.
-bool Lane::end_read(uint64_t cycle, Read read, uint32_t index) {
-  if (read == Read::Spill) want(cycle, index, 1);
-  if (read != Read::Entry) return false;
-  Slot& slot = slots_[index];
-  if (--slot.to_take > 0) {  // it lies behind the best hit
-    read_entry(index);
-    return true;
-  }
-  if (++slot.step == slot.steps.size()) {
-    done_.push_back(index);
-  } else {
-    want(cycle, index, 1);
-  }
-  return false;
-}
-
-void Lane::next_read() {
-  if (retries_) {
-    retries_ = false;
-    read_entry(fetching_slot_);
-    return;
-  }
-  if (!spills_.empty() && !request_valid_) {
-    read_slot_ = spills_.front();
-    spills_.pop_front();
-    read_ = Read::Spill;
-    slots_[read_slot_].here -= kBlock;
-    request_valid_ = true;
-    request_ = {read_slot_, true, slots_[read_slot_].blocks++};
-    ++spilled_;
-    return;
-  }
-  for (uint32_t i = 0; i < 2; ++i) {
-    Ring<uint32_t>& queue = pops_[pop_turn_ ^ i];
-    if (queue.empty()) continue;
-    const uint32_t slot = queue.front();
-    // Its stack is empty, or it is a shadow ray that has found a blocker.
-    const bool done = slots_[slot].to_take == 0;
-    if (done && stack_wants_) return;
-    queue.pop_front();
-    pop_turn_ ^= i ^ 1;
-    if (!done) {
-      read_entry(slot);
-    } else {
-      stack_wants_ = true;
-      ++slots_[slot].step;
-      done_.push_back(slot);
-    }
-    return;
-  }
-}
-
-// The stacks' RAM: what was read in the cycle before, then what is read in this one.
-void Lane::stack_port(uint64_t cycle) {
-  const Read read = read_;
-  read_ = Read::Nothing;
-  stack_wants_ = read != Read::Nothing;
-  if (!end_read(cycle, read, read_slot_)) next_read();
-  if (fill_waits_ && !stack_pushed_) {
-    fill_waits_ = fetching_ = false;
-    retries_ = true;
-    slots_[fetching_slot_].here += kBlock;
-  }
-  if (!fetching_ && !retries_ && !request_valid_ && !fetches_.empty()) {
-    fetching_ = request_valid_ = true;
-    fetching_slot_ = fetches_.front();
-    fetches_.pop_front();
-    request_ = {fetching_slot_, false, --slots_[fetching_slot_].blocks};
-    ++fetched_;
-  }
+Lane::StackRequest Lane::take_request() {
+  request_taken_ = true;
+  const LaneStacks::Request& request = stacks_.request();
+  if (!request.write) fetched_block_ = request.block;
+  return {request.slot, request.write, request.block};
 }
 
 // A triangle of the oldest line, or what is left of the line is kept.
@@ -271,10 +192,32 @@ void Lane::look_ahead(uint64_t cycle) {
 }
 
 void Lane::clock(uint64_t cycle) {
-  stack_pushed_ = false;
   look_ahead(cycle);
-  results(cycle);
-  stack_port(cycle);
+  LaneStacks::Inputs inputs;
+  if (boxes_.valid(cycle)) {
+    node_visited(boxes_.take());
+    inputs.node = &node_result_;
+  }
+  if (triangles_.valid(cycle)) {
+    const uint32_t index = triangles_.take();
+    if (--slots_[index].tests == 0) {
+      leaf_visited(index);
+      inputs.leaf = &leaf_result_;
+    }
+  }
+  LaneStacks::Block block;
+  if (fill_comes_) {
+    for (uint32_t i = 0; i < block.size(); ++i) block[i].key = fetched_block_ * LaneStacks::kBlock + i;
+    inputs.filled = &block;
+  }
+  inputs.request_taken = request_taken_;
+  request_taken_ = fill_comes_ = false;
+
+  const LaneStacks::Outcome outcome = stacks_.clock(inputs);
+  ray_ready_ = outcome.ray_ready;
+  if (outcome.node_goes_on) go_on(cycle, node_result_.slot, 0);
+  if (outcome.next) go_on(cycle, outcome.slot, 1);
+  if (outcome.done) done_.push_back(outcome.slot);
 }
 
 void Lane::add_to(TraverserWork& work) const {
@@ -283,8 +226,8 @@ void Lane::add_to(TraverserWork& work) const {
   work.triangles.tests += triangle_tests_;
   work.triangles.waiting += waiting_;
   work.deepest_stack = std::max(work.deepest_stack, deepest_);
-  work.stack_spills += spilled_;
-  work.stack_fills += fetched_;
+  work.stack_spills += stacks_.work().spilled;
+  work.stack_fills += stacks_.work().fetched;
 }
 
 }  // namespace raypool::traverser

@@ -1,6 +1,7 @@
 // A lane of the traverser under rules that hardware keeps: slots for rays, a box pipe, a triangle pipe, and their
-// stacks in a RAM of one read and one write in a cycle. In a cycle it offers each cache at most one line to look up, is
-// given at most one line by each, has at most one result of each pipe, and takes at most one entry from a stack.
+// stacks in RAMs of one read and one write in a cycle (machine/lane_stacks.hpp). In a cycle it offers each cache at
+// most one line to look up, is given at most one line by each, has at most one result of each pipe, and takes at most
+// one entry from a stack.
 //
 // What is put into a queue in a cycle leaves it in a later one, but for a slot that wants an entry of its stack: when
 // nothing else does, its read begins in the cycle of its result.
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "config/configuration.hpp"
+#include "machine/lane_stacks.hpp"
 #include "traverser/delay_line.hpp"
 #include "traverser/ring.hpp"
 #include "traverser/steps.hpp"
@@ -54,7 +56,7 @@ class Lane {
 
   /// Lines that it offers, of which one can be looked up, the first rather; null: none.
   using Offers = std::array<const Want*, 2>;
-  Offers node_offers() const { return offers(nodes_, node_turn_, !fill_waits_); }
+  Offers node_offers() const { return offers(nodes_, node_turn_, !fill_comes_ && !stacks_.fill_waits()); }
   Offers leaf_offers() const;
   /// It may be given a further line of a leaf.
   bool leaf_room() const { return lines_.size() + lines_on_way_ < kLines; }
@@ -69,13 +71,10 @@ class Lane {
 
   // ---- Stacks in the memory
 
-  bool request_valid() const { return request_valid_; }
-  StackRequest take_request() {
-    request_valid_ = false;
-    return request_;
-  }
+  bool request_valid() const { return stacks_.request_valid() && !request_taken_; }
+  StackRequest take_request();
   /// What the slot has asked for has come.
-  void filled() { fill_waits_ = true; }
+  void filled() { fill_comes_ = true; }
 
   /// A triangle of the oldest line is begun: before the lane is given another.
   void begin_triangle(uint64_t cycle);
@@ -85,17 +84,12 @@ class Lane {
   void add_to(TraverserWork& work) const;
 
  private:
-  static constexpr size_t kLines = 3;    // of leaves that it holds, and that are on their way
-  static constexpr uint32_t kLeast = 3;  // entries that a stack must have room for before a node is tested
-  static constexpr uint32_t kBlock = 4;  // entries that go to the memory together
+  static constexpr size_t kLines = 3;  // of leaves that it holds, and that are on their way
 
   struct Slot {
     std::vector<Step> steps;
     uint32_t step = 0;           // the present one
     uint32_t tests = 0;          // whose result is to come
-    uint32_t here = 0;           // entries of its stack
-    uint32_t blocks = 0;         // and of kBlock that are in the memory
-    uint32_t to_take = 0;        // entries
     uint64_t earliest = kNever;  // cycle in which it can be done
     uint64_t least = 0;          // of one that waits: cycles from the next one on
   };
@@ -106,8 +100,6 @@ class Lane {
     uint64_t due;
     Want want;
   };
-  // What the RAM has read in the cycle before.
-  enum class Read : uint8_t { Nothing, Entry, Spill };
 
   // The heads of two queues, those of the others later.
   template <size_t count>
@@ -125,16 +117,13 @@ class Lane {
 
   const Step& step(uint32_t slot) const { return slots_[slot].steps[slots_[slot].step]; }
   void want(uint64_t cycle, uint32_t slot, uint32_t source);
-  void visited(uint64_t cycle, uint32_t slot, uint32_t source);
-  void results(uint64_t cycle);
+  void go_on(uint64_t cycle, uint32_t slot, uint32_t source);
+  uint32_t limit(uint32_t slot) const;
+  void node_visited(uint32_t slot);
+  void leaf_visited(uint32_t slot);
   void look_ahead(uint64_t cycle);
-  void stack_port(uint64_t cycle);
-  bool end_read(uint64_t cycle, Read read, uint32_t slot);
-  void next_read();
-  void read_entry(uint32_t slot);
 
   StepLatencies latencies_;
-  uint32_t entries_;
   std::vector<Slot> slots_;
   Ring<uint32_t> free_;
 
@@ -147,21 +136,16 @@ class Lane {
   Ring<Line> lines_;  // of leaves, whose triangles are tested one in a cycle
   DelayLine<uint32_t> boxes_, triangles_;
 
-  std::array<Ring<uint32_t>, 2> pops_;  // want an entry: after a node, after a leaf
-  uint32_t pop_turn_ = 0;
-  Ring<uint32_t> spills_;   // go on when four entries have gone to the memory
-  Ring<uint32_t> fetches_;  // want some back
-  Read read_ = Read::Nothing;
-  uint32_t read_slot_ = 0;
-  bool stack_pushed_ = false, stack_wants_ = false;  // in this cycle
-  bool retries_ = false;                             // the slot whose entries have come back is next
-  bool request_valid_ = false;
-  StackRequest request_{};
-  bool fetching_ = false, fill_waits_ = false;
-  uint32_t fetching_slot_ = 0;
+  // The key of an entry is its place in the stack: so a limit says how many are taken.
+  LaneStacks stacks_;
+  LaneStacks::NodeResult node_result_;
+  LaneStacks::LeafResult leaf_result_;
+  bool request_taken_ = false, fill_comes_ = false;  // told to the stacks with the next cycle's results
+  uint32_t fetched_block_ = 0;
+  bool ray_ready_ = false;
   Ring<uint32_t> done_;
 
-  uint64_t leaf_visits_ = 0, box_tests_ = 0, triangle_tests_ = 0, waiting_ = 0, spilled_ = 0, fetched_ = 0;
+  uint64_t leaf_visits_ = 0, box_tests_ = 0, triangle_tests_ = 0, waiting_ = 0;
   uint32_t deepest_ = 0;
 };
 
