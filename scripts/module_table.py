@@ -44,17 +44,22 @@ def inside(texts):
 def tests(holds):
     """[test] = the modules of rtl/ that it builds, from the headers of Verilated classes, V<top>_<variant>.h.
 
-    They stand in the test, or in a header of tb/unit/ that it includes. Those of tb/rtl/ run scripts/verilate.sh.
+    They stand in the test, or in a header of tb/ that it includes. Those of tb/rtl/ run scripts/verilate.sh.
     """
+
+    def whole(path):
+        text = path.read_text()
+        headers = re.findall(r'#include "((?:unit|rtl)/\w+\.hpp)"', text)
+        return text + "".join((ROOT / "tb" / header).read_text() for header in headers)
+
     found = {}
     for path in (ROOT / "tb/rtl").glob("*_test.cpp"):
-        found[path.stem] = holds["chip" if " --top chip " in path.read_text() else "multiprocessor"]
+        found[path.stem] = holds["chip" if " --top chip " in whole(path) else "multiprocessor"]
     tops = {**holds}
     for path in (ROOT / "tb/unit").glob("*.v"):
         tops[path.stem] = set().union(*(holds[name] for name in instances(path.read_text(), holds)))
     for path in (ROOT / "tb/unit").glob("*_test.cpp"):
-        text = path.read_text()
-        text += "".join((ROOT / "tb" / own).read_text() for own in re.findall(r'#include "(unit/\w+\.hpp)"', text))
+        text = whole(path)
         included = re.findall(r'#include "V(\w+)\.h"', text)
         built = [[top for top in tops if re.match(rf"{top}(_|$)", each)] for each in included]
         found[path.stem] = set().union(*(tops[max(names, key=len)] for names in built if names))

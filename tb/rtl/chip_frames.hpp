@@ -120,7 +120,7 @@ inline void draw(ChipDevice& chip, const Machine& machine, Frame& frame, const T
   }
   ASSERT_LT(around.cycles, kMost) << "the frame does not end";
   Traffic quiet = traffic;
-  quiet.tree = 0;
+  quiet.tree = quiet.frame = 0;
   for (int i = 0; i < 3000; ++i) ASSERT_NO_FATAL_FAILURE(around.cycle(quiet));
   EXPECT_TRUE(around.empty());
   EXPECT_EQ(around.eye, frame.picture.width * frame.picture.height);
