@@ -148,10 +148,10 @@ UNIT_OF_ENGINE := $(if $(filter rtl lockstep,$(or $(CHIP),$(ENGINE))),$(UNIT),tr
 CHIP_FLAG := $(if $(CHIP),--chip)
 
 .PHONY: intervals
-.PHONY: help sim fidelity fit compare run cosim configurations chip-frames mutants faults unit test lint format bench clean
+.PHONY: help sim fidelity fit compare run cosim configurations mutants faults unit test lint format bench clean
 .PHONY: setup-% program configured-%
 .PHONY: numerics-long proofs synth synth-replay synth-prove growth numerics significands extremes isa diagrams quoted
-.PHONY: package sweep report bench-native pareto boxes triangles synth-module follow tour
+.PHONY: package sweep report bench-native pareto boxes triangles synth-module follow tour chip-frames
 
 help: ## this list
 	@echo 'raypool: a ray-tracing GPU to render on, measure, verify and synthesise'
@@ -246,7 +246,7 @@ cosim: setup-sim program ## random programs, hardware against model: CONFIG, CUS
 configurations: setup-sim program ## random programs on machines with every pair of values (hours): PROGRAMS
 	@scripts/configurations.sh all "$$PROGRAMS"
 
-chip-frames: setup-sim setup-test configured-ON program ## frames of chance on tiny chips, chip.v against its model: FRAMES
+chip-frames: setup-sim setup-test configured-ON program ## random frames on tiny chips, RTL against model: FRAMES
 	@scripts/build.sh $(BUILD) raypool_chip_frames
 	@$(BUILD)/raypool_chip_frames --frames "$$FRAMES" --seed "$$SEED"
 
