@@ -24,6 +24,9 @@ expect "it is plain Verilog" 0 "" iverilog -g2005 -I"$folder/rtl" -s multiproces
 expect "so it is with several units and every option" 0 "" verilator --lint-only --default-language 1364-2005 \
   -I"$folder/rtl" --top-module multiprocessor \
   -GUNITS=4 -GWARPS=2 -GLANES=2 -GFMA=1 -GFLT_DEPTH=5 -GSUBNORMALS=1 -GSLOW_UNIT=1 "$folder"/rtl/*.vlt "$folder"/rtl/*.v
+expect "so it is where products have digits, as benches have them" 0 "" verilator --lint-only -DSYNTHESIS \
+  --default-language 1364-2005 -I"$folder/rtl" --top-module multiply_tree "$folder"/rtl/*.vlt \
+  "$folder/rtl/multiply_tree.v"
 expect "so it is with the features of best" 0 "" verilator --lint-only --default-language 1364-2005 -I"$folder/rtl" \
   --top-module multiprocessor -GWARPS=2 -GLANES=8 -GTRIPLES=1 -GKERNEL_OVERLAP=1 -GWIDE_RAY_MEMORY=1 -GSLOW_LANES=2 \
   -GSLW_DEPTH=13 -GFLT_DEPTH=5 -GFMA=1 "$folder"/rtl/*.vlt "$folder"/rtl/*.v
