@@ -108,6 +108,7 @@ Case shrunk(Case c, const Machine& machine, const std::string& library) {
 }
 
 struct Options {
+  std::string program;  ///< as it was called
   uint32_t frames = 50, seed = 1, machine = 0, frame = 0;
   uint32_t machines = 0;
 };
@@ -153,9 +154,9 @@ int run(const Options& options) {
       ++failed;
       fmt::print(
           "{}, {} units, frame {}: {}\n{}\nthe smallest that fails: {}\n"
-          "again with: raypool_chip_frames --seed {} --frames {} --machine {} --frame {}\n",
+          "again with: {} --seed {} --frames {} --machine {} --frame {}\n",
           machine.configuration.name, machine.units, frame, to_string(c), failure,
-          to_string(shrunk(c, machine, library)), options.seed, options.frames, number, frame);
+          to_string(shrunk(c, machine, library)), options.program, options.seed, options.frames, number, frame);
     }
     fmt::print("{}, {} units: {} frames, {} cycles, {} rays, {}; built in {:.0f} s, ran {:.0f} s\n",
                machine.configuration.name, machine.units, drawn.reached.frames - before.reached.frames,
@@ -182,6 +183,7 @@ int main(int argc, char** argv) {
   testing::FLAGS_gtest_throw_on_failure = true;
   testing::InitGoogleTest(&argc, argv);
   raypool::Options options;
+  options.program = argv[0];
   CLI::App app("Frames of chance on tiny chips, rtl/chip.v in lockstep with its model.", "raypool_chip_frames");
   app.add_option("--frames", options.frames, "of each machine")->capture_default_str()->check(CLI::PositiveNumber);
   app.add_option("--seed", options.seed, "of pictures and traffic")->capture_default_str();

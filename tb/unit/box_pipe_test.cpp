@@ -17,6 +17,7 @@
 #include "config/configuration.hpp"
 #include "unit/clocked.hpp"
 #include "unit/exact_rational.hpp"
+#include "unit/signal_bits.hpp"
 
 namespace raypool::bench {
 namespace {
@@ -289,32 +290,6 @@ using Pipes = testing::Types<Pipe<Vbox_pipe_6, 6>, Pipe<Vbox_pipe_7, 7>, Pipe<Vb
                              Pipe<Vbox_pipe_16, 16>>;
 TYPED_TEST_SUITE(BoxPipeTest, Pipes);
 
-/// A port of any width: bits from `first` on.
-template <typename Port>
-void set_bits(Port& port, uint32_t first, uint32_t count, uint32_t value) {
-  for (uint32_t i = 0; i < count; ++i) {
-    const uint32_t at = first + i;
-    if constexpr (std::is_integral_v<Port>) {
-      port = static_cast<Port>((port & ~(Port{1} << at)) | (static_cast<Port>(value >> i & 1) << at));
-    } else {
-      port[at / 32] = (port[at / 32] & ~(1u << at % 32)) | ((value >> i & 1) << at % 32);
-    }
-  }
-}
-template <typename Port>
-uint32_t bits_of(const Port& port, uint32_t first, uint32_t count) {
-  uint32_t value = 0;
-  for (uint32_t i = 0; i < count; ++i) {
-    const uint32_t at = first + i;
-    if constexpr (std::is_integral_v<Port>) {
-      value |= static_cast<uint32_t>(port >> at & 1) << i;
-    } else {
-      value |= (port[at / 32] >> at % 32 & 1) << i;
-    }
-  }
-  return value;
-}
-
 template <typename Unit>
 void offer(Unit& u, const BoxRay& ray, const BoxNode& node, uint32_t limit) {
   const auto bits = static_cast<uint32_t>(ray.bits);
@@ -377,7 +352,7 @@ TYPED_TEST(BoxPipeTest, IsItsClassInEveryCycle) {
     if (pipe.valid()) {
       ASSERT_EQ(u.met_o, pipe.result().met) << "cycle " << cycle;
       for (uint32_t box = 0; box < kBoxes; ++box) {
-        ASSERT_EQ(bits_of(u.entry_o, box * kKeyBits, kKeyBits), pipe.result().entry[box])
+        ASSERT_EQ(get_bits(u.entry_o, box * kKeyBits, kKeyBits), pipe.result().entry[box])
             << "cycle " << cycle << ", box " << box;
       }
       stalls += !u.ready_i;
