@@ -1,7 +1,7 @@
 // Whether and where a ray hits a triangle, from the triangle's plane: docs/traverser.md says what is computed. A test
 // a cycle, its result 30 + BITS / 2 cycles later; it never waits.
-// Tests of one ray may follow each other at once: what may change, its best hit, each asks for in the cycle before its
-// result, so who answers must take the result that is shown then into account.
+// Tests of one ray may follow each other at once: what may change, its best hit, each is told in the cycle before its
+// result, so who answers must take the result that is shown then into account. Each asks a cycle before it is told.
 // Must be given: corners, and what the set-up of a valid ray has, so that no difference is infinite; a limit above
 // zero, and a best hit that is not before zero.
 `default_nettype none
@@ -23,12 +23,12 @@ module triangle_pipe #(
   input  wire [1:0]          main_axis_i,
   input  wire [63:0]         shear_i,
   input  wire [104:0]        direction_i,     // sign, 11 bits of exponent, 23 of fraction; x first
-  // four cycles before its result a test asks for its ray's limit, and is told in that cycle
+  // five cycles before its result a test asks for its ray's limit, and is told in the next cycle
   output wire                asks_limit_o,
   output wire [TAG_BITS-1:0] limit_tag_o,
   input  wire [31:0]         limit_i,
   input  wire signed [8:0]   scale_i,         // the ray's t is internal t x 2^scale
-  // one cycle before it, for its best hit so far
+  // two cycles before it, for its best hit so far
   output wire                asks_best_o,
   output wire [TAG_BITS-1:0] best_tag_o,
   input  wire [31:0]         best_t_i,        // internal
@@ -40,7 +40,7 @@ module triangle_pipe #(
   output wire [31:0]         t_o              // internal, where hit_o is set
 );
   localparam integer T = 24 + BITS / 2;       // cycles until t is there
-  localparam integer ASKS_LIMIT = T + 2, ASKS_BEST = T + 5, END = T + 6;
+  localparam integer ASKS_LIMIT = T + 1, ASKS_BEST = T + 4, END = T + 6;
 
   // ---- What goes along
   reg [END-2:0] valid_q;
@@ -49,12 +49,15 @@ module triangle_pipe #(
     else {valid_o, valid_q} <= {valid_q, valid_i};
   assign asks_limit_o = valid_q[ASKS_LIMIT-1];
   assign asks_best_o = valid_q[ASKS_BEST-1];
-  wire [31:0] number_asks, number_best;
+  wire [31:0] number_asks, number_asks_best, number_best;
+  wire [TAG_BITS-1:0] tag_best;
   steady_delay #(.WIDTH(TAG_BITS+32), .CYCLES(ASKS_LIMIT)) tag_delay (.clk_i(clk_i), .data_i({tag_i, number_i}),
     .data_o({limit_tag_o, number_asks}));
   steady_delay #(.WIDTH(TAG_BITS+32), .CYCLES(3)) best_tag_delay (.clk_i(clk_i), .data_i({limit_tag_o, number_asks}),
-    .data_o({best_tag_o, number_best}));
-  steady_delay #(.WIDTH(TAG_BITS+32)) end_tag_delay (.clk_i(clk_i), .data_i({best_tag_o, number_best}),
+    .data_o({best_tag_o, number_asks_best}));
+  steady_delay #(.WIDTH(TAG_BITS+32)) told_tag_delay (.clk_i(clk_i), .data_i({best_tag_o, number_asks_best}),
+    .data_o({tag_best, number_best}));
+  steady_delay #(.WIDTH(TAG_BITS+32)) end_tag_delay (.clk_i(clk_i), .data_i({tag_best, number_best}),
     .data_o({tag_o, number_o}));
 
   // ---- 1: from here on the triangle is wanted in many places

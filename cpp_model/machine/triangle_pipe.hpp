@@ -69,7 +69,8 @@ inline bool meets_triangle(const NarrowFloat& narrow, const TriangleRay& ray, co
 
 /// What becomes of a test.
 struct TriangleResult {
-  uint32_t tag = 0, number = 0;
+  uint64_t tag = 0;
+  uint32_t number = 0;
   bool hit = false;  ///< it is the ray's best hit from now on
   float t = 0;       ///< where it meets the triangle; internal
 };
@@ -93,13 +94,15 @@ class TrianglePipe {
   /// Cycles from a test to its result.
   int stages() const { return stages_; }
 
-  /// A test asks for the limit, or the best hit, of the ray with this tag; a result is there. Else null.
-  const TriangleResult* asks_limit() const { return at(stages_ - 4); }
-  const TriangleResult* asks_best() const { return at(stages_ - 1); }
+  /// A test asks for the limit, or the best hit, of the ray with this tag, or is told it; a result is there. Else null.
+  const TriangleResult* asks_limit() const { return at(stages_ - 5); }
+  const TriangleResult* told_limit() const { return at(stages_ - 4); }
+  const TriangleResult* asks_best() const { return at(stages_ - 2); }
+  const TriangleResult* told_best() const { return at(stages_ - 1); }
   const TriangleResult* result() const { return at(stages_); }
 
   /// The end of a cycle. `ray`: null, no test begins.
-  void clock(const TriangleRay* ray, const Triangle& triangle, uint32_t tag, const Limit& limit, const Best& best) {
+  void clock(const TriangleRay* ray, const Triangle& triangle, uint64_t tag, const Limit& limit, const Best& best) {
     Stage& first = line_[place(0)];
     first.valid = ray != nullptr;
     if (first.valid) {

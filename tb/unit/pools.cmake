@@ -7,17 +7,21 @@ function(raypool_pool_bench name)
 endfunction()
 
 # raypool_pool_models(BENCH MODULE PARAMETERS MODEL...): class V<module>_<model>, a model being the parameters' values
-# with _ between. With SYNTHESIS, as for the benches of the arithmetic: the multiplier that hardware has. That is what
-# `raypool_multiplier` says; without, the simulator multiplies.
+# with _ between; a module of rtl/, or of this folder. With SYNTHESIS, as for the benches of the arithmetic: the
+# multiplier that hardware has. That is what `raypool_multiplier` says; without, the simulator multiplies.
 set(raypool_multiplier -DSYNTHESIS)
 function(raypool_pool_models bench module names)
+  set(source ${RAYPOOL_RTL}/${module}.v)
+  if(NOT EXISTS ${source})
+    set(source ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/${module}.v)
+  endif()
   foreach(model IN LISTS ARGN)
     string(REPLACE "_" ";" values ${model})
     set(parameters)
     foreach(name value IN ZIP_LISTS names values)
       list(APPEND parameters -G${name}=${value})
     endforeach()
-    verilate(${bench} SOURCES ${RAYPOOL_RTL}/${module}.v PREFIX V${module}_${model} TOP_MODULE ${module}
+    verilate(${bench} SOURCES ${source} PREFIX V${module}_${model} TOP_MODULE ${module}
       OPT_SLOW -w OPT_FAST -O2 -w OPT_GLOBAL -O1 -w
       VERILATOR_ARGS -O3 --default-language 1364-2005 ${raypool_multiplier} -y ${RAYPOOL_RTL} -I${RAYPOOL_RTL}
       ${parameters})
@@ -104,3 +108,11 @@ raypool_pool_models(tree_cache_test tree_cache "LANES;SLOTS;LINES;WAYS;MSHRS;LIN
 raypool_pool_bench(lane_stacks_test)
 raypool_pool_models(lane_stacks_test lane_stacks "SLOTS;ENTRIES;KEY_BITS;REFERENCE_BITS;BLOCK_BITS"
   1_8_3_12_7 3_9_21_20_3 5_8_6_10_4 8_12_8_8_7 24_16_32_32_7 33_64_2_9_2)
+
+# A lane of the traverser, with a triangle pipe whose multipliers the simulator has.
+raypool_pool_bench(traverser_lane_test)
+target_link_libraries(traverser_lane_test PRIVATE raypool_scene)
+set(raypool_multiplier)
+raypool_pool_models(traverser_lane_test lane_units "SLOTS;ENTRIES;BITS;TRIANGLE_BITS"
+  1_8_6_26 3_9_10_30 6_8_16_28 24_16_12_32)
+set(raypool_multiplier -DSYNTHESIS)

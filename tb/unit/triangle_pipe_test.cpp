@@ -17,6 +17,7 @@
 #include "scene/prepared_ray.hpp"
 #include "unit/clocked.hpp"
 #include "unit/exact_rational.hpp"
+#include "unit/triangle_signals.hpp"
 
 namespace raypool::bench {
 namespace {
@@ -210,28 +211,6 @@ TEST(TrianglePipe, OfTwoAtTheSameTimeTheLowerNumberIsHit) {
   EXPECT_TRUE(hit(std::nextafter(0.5f, 1.0f), INFINITY, 8));
 }
 
-uint64_t number(double x) {
-  uint64_t bits = 0;
-  std::memcpy(&bits, &x, sizeof bits);
-  return bits;
-}
-
-/// A ray's components as the set-up has them: sign, 11 bits of exponent, 23 of fraction.
-void set_direction(const TriangleRay& ray, WData* words) {
-  std::fill_n(words, 4, 0);
-  for (uint32_t axis = 0; axis < 3; ++axis) {
-    const uint64_t bits = number(ray.direction[axis]) >> 29;
-    for (uint32_t bit = 0; bit < 35; ++bit) {
-      words[(35 * axis + bit) / 32] |= static_cast<uint32_t>(bits >> bit & 1) << (35 * axis + bit) % 32;
-    }
-  }
-}
-
-template <typename Unit, typename Floats>
-void set_floats(Unit* words, const Floats& floats) {
-  for (const float x : floats) *words++ = as_bits(x);
-}
-
 /// What the ray of each tag says when a test asks.
 struct Answers {
   TrianglePipe::Limit limit{1, 0};
@@ -275,7 +254,7 @@ class PipeBench : public Clocked<Unit> {
     set_answers();
     unit.eval();
     ASSERT_NO_FATAL_FAILURE(compare(seen)) << "cycle " << cycle_;
-    const TriangleResult *limited = pipe_.asks_limit(), *compared = pipe_.asks_best();
+    const TriangleResult *limited = pipe_.told_limit(), *compared = pipe_.told_best();
     const bool met = compared != nullptr && compared->hit;
     if (met) {
       const Answers& told = answers_[compared->tag];
@@ -295,20 +274,14 @@ class PipeBench : public Clocked<Unit> {
     unit.tag_i = tag;
     for (int corner = 0; corner < 3; ++corner) set_floats(&unit.corners_i[3 * corner], test.triangle.corners[corner]);
     unit.number_i = test.triangle.number;
-    set_floats(&unit.origin_i[0], test.ray.origin);
-    set_floats(&unit.padded_lower_i[0], test.ray.padded[0]);
-    set_floats(&unit.padded_upper_i[0], test.ray.padded[1]);
-    set_floats(&unit.inverse_i[0], test.ray.inverse);
-    unit.main_axis_i = static_cast<uint8_t>(test.ray.kz);
-    unit.shear_i = uint64_t{as_bits(test.ray.shear_y)} << 32 | as_bits(test.ray.shear_x);
-    set_direction(test.ray, &unit.direction_i[0]);
+    set_triangle_ray(unit, test.ray);
     if (!unit.valid_i) return;
     answers_[tag] = Answers(this->random, narrow_, test);
     kinds_[tag] = test.kind;
   }
   void set_answers() {
     Unit& unit = *this->u;
-    const TriangleResult *limited = pipe_.asks_limit(), *compared = pipe_.asks_best();
+    const TriangleResult *limited = pipe_.told_limit(), *compared = pipe_.told_best();
     unit.limit_i = limited != nullptr ? as_bits(answers_[limited->tag].limit.limit) : this->random();
     unit.scale_i = limited != nullptr ? answers_[limited->tag].limit.scale & 0x1ff : this->random() & 0x1ff;
     unit.best_t_i = compared != nullptr ? as_bits(answers_[compared->tag].best.t) : this->random();

@@ -1,0 +1,227 @@
+// rtl/leaf_reader.v: the leaves that a lane's rays come to. Which of their lines are wanted from the cache, and the
+// triangles in them, one in a cycle.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <vector>
+
+#include "machine/ram_queue.hpp"
+#include "machine/triangle_ray.hpp"
+
+namespace raypool {
+
+/// 64 bytes of the traverser's memory: little-endian words.
+using TreeLine = std::array<uint32_t, 16>;
+
+/// A line that a lane offers a cache to look up.
+struct LineWant {
+  uint32_t line = 0, slot = 0;
+  bool nobody = false;  ///< it will be wanted
+};
+using LineWants = std::array<std::optional<LineWant>, 2>;
+
+class LeafReader {
+ public:
+  static constexpr uint32_t kTriangleWords = 11;
+  static constexpr uint32_t kLines = 5;  ///< that it holds, and that are on their way
+  static constexpr uint32_t kAhead = 4;  ///< leaves whose lines will be wanted; further ones are forgotten
+
+  /// A ray goes on with a leaf.
+  struct Start {
+    uint32_t slot;
+    uint32_t leaf;  ///< its triangles less one in bits 30:29, the place of the first one below
+  };
+  struct Given {
+    uint32_t slot;
+    TreeLine line;
+  };
+  struct Inputs {
+    std::array<std::optional<Start>, 2> starts;  ///< from a node; from the stack, or as its first
+    std::optional<uint32_t> taken;               ///< which of the wants; only if it is there
+    bool waited = false;                         ///< a line is taken for which a ray has waited; only if room()
+    const Given* given = nullptr;                ///< two cycles after its lookup, if the cache has it
+    bool triangle_taken = false;                 ///< only if there is one
+  };
+  struct Test {
+    uint32_t slot = 0;
+    bool last = false;   ///< of its leaf
+    uint32_t place = 0;  ///< of the triangle in the tree
+    Triangle triangle{};
+  };
+
+  explicit LeafReader(uint32_t slots)
+      : queues_{RamQueue<Wanted>(slots), RamQueue<Wanted>(slots), RamQueue<Wanted>(slots)},
+        pending_(slots),
+        lines_(kLines),
+        kept_(slots) {}
+
+  bool room() const { return held_ < kLines; }
+  /// Of which one can be taken in the cycle, the first rather.
+  LineWants wants() const {
+    LineWants wants;
+    size_t count = 0;
+    if (ahead_.valid()) wants[count++] = {ahead_.data().line + ahead_step_, 0, true};
+    for (uint32_t i = 0; room() && i < queues_.size() && count < wants.size(); ++i) {
+      const RamQueue<Wanted>& queue = queues_[(turn_ + i) % queues_.size()];
+      if (queue.valid()) wants[count++] = {queue.data().leaf.line, queue.data().slot, false};
+    }
+    return wants;
+  }
+  /// A triangle whose test can begin.
+  std::optional<Test> test() const {
+    if (!line_ || line_->tests == 0) return {};
+    Test test{line_->slot, line_->leaf.left == 1, line_->leaf.place, {}};
+    std::array<uint32_t, kKept + 16> words;
+    std::copy(read_.begin(), read_.end(), words.begin());
+    std::copy(line_->data.begin(), line_->data.end(), words.begin() + kKept);
+    std::memcpy(&test.triangle, &words[static_cast<size_t>(line_->leaf.at + int{kKept})], sizeof test.triangle);
+    return test;
+  }
+  /// Leaves that are told to look ahead, and lines that they were.
+  uint64_t looked_ahead() const { return looked_ahead_; }
+  uint64_t waited_for_kept() const { return waited_for_kept_; }
+
+  /// The end of a cycle.
+  void clock(const Inputs& inputs) {
+    const bool leaves = line_ && (line_->tests == 0 || (line_->tests == 1 && inputs.triangle_taken));
+    const bool missed = due_ && inputs.given == nullptr;
+    const bool full = ahead_.size() == kAhead;
+    const std::optional<Wanted> taken = take(inputs.taken);
+    held_ += (taken || inputs.waited ? 1 : 0);
+    held_ -= (missed ? 1 : 0) + (leaves ? 1 : 0);
+
+    // Lines that have been looked up and were not there: those behind them are looked up at once.
+    if (missed && due_->behind != 0 && !full) ahead_.push({due_->line + 1, due_->behind});
+    due_.reset();
+    if (asked_) due_ = Behind{asked_->line, static_cast<uint32_t>(asked_->last_word() / 16)};
+    asked_.reset();
+    if (taken) {
+      asked_ = taken->leaf;
+      pending_[taken->slot] = taken->leaf;
+    }
+
+    if (come_) lines_.push(*come_);
+    std::optional<Wanted> further;
+    if (come_ && come_->leaf.left > come_->tests) further = Wanted{come_->slot, come_->leaf.behind(come_->tests)};
+    take_line(leaves, inputs.triangle_taken);
+    come_.reset();
+    if (inputs.given != nullptr) come_ = Line(inputs.given->slot, pending_[inputs.given->slot], inputs.given->line);
+    for (size_t i = 0; i < inputs.starts.size(); ++i)
+      if (inputs.starts[i]) queues_[i].push({inputs.starts[i]->slot, Leaf(inputs.starts[i]->leaf)});
+    if (further) queues_[2].push(*further);
+  }
+
+ private:
+  static constexpr uint32_t kKept = 10;  // last words of a line, that a triangle may begin in
+
+  // What is still to be read of a leaf.
+  struct Leaf {
+    uint32_t line = 0;   // the next one
+    int at = 0;          // where in it the next triangle begins, in words; less than 0: before it
+    uint32_t left = 0;   // triangles
+    uint32_t place = 0;  // of the first one
+
+    Leaf() = default;
+    explicit Leaf(uint32_t leaf) : left((leaf >> 29 & 3) + 1), place(leaf & 0x1fffffff) {
+      const uint64_t word = uint64_t{place} * kTriangleWords;
+      line = static_cast<uint32_t>(word / 16);
+      at = static_cast<int>(word % 16);
+    }
+    int last_word() const { return at + static_cast<int>(kTriangleWords * left) - 1; }
+    uint32_t tests() const { return std::min(left, static_cast<uint32_t>(16 - at) / kTriangleWords); }
+    Leaf behind(uint32_t tests) const {
+      Leaf behind = *this;
+      ++behind.line;
+      behind.at += static_cast<int>(kTriangleWords * tests) - 16;
+      behind.left -= tests;
+      behind.place += tests;
+      return behind;
+    }
+  };
+  struct Wanted {
+    uint32_t slot = 0;
+    Leaf leaf;
+  };
+  struct Behind {
+    uint32_t line = 0, behind = 0;
+  };
+  struct Line {
+    uint32_t slot = 0;
+    Leaf leaf;
+    uint32_t tests = 0;  // that are to be begun
+    TreeLine data{};
+
+    Line() = default;
+    Line(uint32_t of, const Leaf& from, const TreeLine& line) : slot(of), leaf(from), tests(from.tests()), data(line) {}
+  };
+
+  std::optional<Wanted> take(std::optional<uint32_t> which) {
+    std::optional<Wanted> taken;
+    std::optional<uint32_t> first;
+    uint32_t count = ahead_.valid() ? 1 : 0;
+    const bool ahead = count == 1;
+    for (uint32_t i = 0; room() && i < queues_.size(); ++i) {
+      const uint32_t queue = (turn_ + i) % static_cast<uint32_t>(queues_.size());
+      if (!queues_[queue].valid()) continue;
+      if (!first) first = queue;
+      if (which == count++) {
+        taken = queues_[queue].data();
+        queues_[queue].pop();
+        break;
+      }
+    }
+    if (first) turn_ = (*first + 1) % static_cast<uint32_t>(queues_.size());
+    if (ahead && which == 0u) {
+      ++looked_ahead_;
+      if (++ahead_step_ == ahead_.data().behind) {
+        ahead_step_ = 0;
+        ahead_.pop();
+      }
+    }
+    return taken;
+  }
+
+  // The present line's triangle is begun, or the line leaves; the next one comes unless it waits for what is kept of
+  // it.
+  void take_line(bool leaves, bool triangle_taken) {
+    const bool comes = lines_.valid() && (!line_ || (leaves && lines_.data().slot != line_->slot));
+    waited_for_kept_ += lines_.valid() && leaves && !comes ? 1 : 0;
+    std::array<uint32_t, kKept> read{};
+    if (comes) read = kept_[lines_.data().slot];
+    if (line_ && line_->tests != 0 && triangle_taken) {
+      --line_->tests;
+      line_->leaf.at += int{kTriangleWords};
+      --line_->leaf.left;
+      ++line_->leaf.place;
+    }
+    if (leaves) {
+      if (line_->leaf.left != 0) std::copy(line_->data.end() - kKept, line_->data.end(), kept_[line_->slot].begin());
+      line_.reset();
+    }
+    if (!comes) return;
+    line_ = lines_.data();
+    lines_.pop();
+    read_ = read;
+  }
+
+  std::array<RamQueue<Wanted>, 3> queues_;  // from nodes; from the stack; further lines of leaves
+  uint32_t turn_ = 0;
+  RamQueue<Behind> ahead_{kAhead};  // the first of so many lines that will be wanted
+  uint32_t ahead_step_ = 0;         // of which so many have been looked up
+  std::vector<Leaf> pending_;       // [slot] whose line has been looked up
+  std::optional<Leaf> asked_;       // in the cycle before
+  std::optional<Behind> due_;       // in that before it
+  std::optional<Line> come_;        // what was given in the cycle before
+  RamQueue<Line> lines_;
+  std::optional<Line> line_;                       // the oldest
+  std::vector<std::array<uint32_t, kKept>> kept_;  // [slot] the last words of its line before
+  std::array<uint32_t, kKept> read_{};
+  uint32_t held_ = 0;
+  uint64_t looked_ahead_ = 0, waited_for_kept_ = 0;
+};
+
+}  // namespace raypool

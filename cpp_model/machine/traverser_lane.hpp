@@ -1,0 +1,222 @@
+// rtl/traverser_lane.v: a lane of the traverser. Slots for rays, a box pipe, the stacks, what is kept of each ray and
+// its best hit; nodes, leaves and the results of triangle tests come from outside.
+//
+// What is said before clock() holds in a whole cycle, and depends on no input of it.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <vector>
+
+#include "machine/box_pipe.hpp"
+#include "machine/child_order.hpp"
+#include "machine/free_list.hpp"
+#include "machine/lane_hits.hpp"
+#include "machine/lane_stacks.hpp"
+#include "machine/leaf_reader.hpp"
+#include "machine/ram_queue.hpp"
+
+namespace raypool {
+
+class TraverserLane {
+ public:
+  struct Sizes {
+    uint32_t slots = 24;
+    uint32_t stack_entries = 16;  ///< of a slot
+    int box_bits = 12;
+  };
+  struct Entered {
+    uint32_t slot;
+    LaneRay ray;
+  };
+  struct Inputs {
+    bool slot_taken = false;                    ///< for a ray; only if slot_valid()
+    const Entered* ray = nullptr;               ///< is set up
+    std::optional<uint32_t> node_taken;         ///< which of node_wants()
+    const LeafReader::Given* node = nullptr;    ///< is given, two cycles after its lookup
+    std::optional<uint32_t> leaf_taken;         ///< which of leaf_wants()
+    bool leaf_waited = false;                   ///< a line of a leaf is taken for which a ray has waited
+    const LeafReader::Given* leaf = nullptr;    ///< is given
+    bool request_taken = false;                 ///< only if request_valid()
+    const LaneStacks::Block* filled = nullptr;  ///< what was asked for has come
+    bool test_taken = false;                    ///< by the triangle pipe; only if there is one
+    const LaneHits::Result* result = nullptr;   ///< of the triangle pipe
+    bool done_taken = false;                    ///< only if done_valid()
+    std::optional<uint32_t> freed;              ///< slot
+  };
+  static constexpr uint32_t kNoReference = UINT32_MAX;
+  static constexpr uint32_t kLeaf = 1u << 31;  ///< of a reference: it is a leaf's
+
+  explicit TraverserLane(const Sizes& sizes)
+      : box_bits_(sizes.box_bits),
+        free_(sizes.slots),
+        rays_(sizes.slots, LaneRay{false, false, no_ray(sizes.box_bits), {}, {}}),
+        begins_(sizes.slots),
+        nodes_{RamQueue<LineWant>(sizes.slots), RamQueue<LineWant>(sizes.slots)},
+        stacks_({sizes.slots, sizes.stack_entries}),
+        leaves_(sizes.slots),
+        ends_(sizes.slots),
+        hits_(rays_) {}
+  TraverserLane(const TraverserLane&) = delete;
+  TraverserLane& operator=(const TraverserLane&) = delete;
+
+  /// A reference, kNoReference of an empty tree. While no ray is in it.
+  void set_root(uint32_t root) { root_ = root; }
+
+  bool slot_valid() const { return free_.valid(); }
+  uint32_t slot() const { return free_.number(); }  ///< means something while slot_valid()
+
+  LineWants node_wants() const {
+    LineWants wants;
+    if (stacks_.fill_waits()) return wants;
+    size_t count = 0;
+    for (uint32_t i = 0; i < nodes_.size(); ++i) {
+      const RamQueue<LineWant>& queue = nodes_[(node_turn_ + i) % nodes_.size()];
+      if (queue.valid()) wants[count++] = queue.data();
+    }
+    return wants;
+  }
+  LineWants leaf_wants() const { return leaves_.wants(); }
+  bool leaf_room() const { return leaves_.room(); }
+
+  bool request_valid() const { return stacks_.request_valid(); }
+  const LaneStacks::Request& request() const { return stacks_.request(); }  ///< means something while request_valid()
+
+  std::optional<LeafReader::Test> test() const { return leaves_.test(); }
+  const LaneRay& ray(uint32_t slot) const { return rays_[slot]; }
+  const LaneHits& hits() const { return hits_; }
+
+  bool done_valid() const { return done_.has_value(); }
+  uint32_t done_slot() const { return *done_; }  ///< only while done_valid()
+
+  /// The end of a cycle.
+  void clock(const Inputs& inputs) {
+    LaneStacks::Inputs stacks;
+    stacks.node = node_ ? &*node_ : nullptr;
+    const std::optional<LaneStacks::LeafResult> leaf = hits_.leaf(box_bits_);
+    stacks.leaf = leaf ? &*leaf : nullptr;
+    stacks.request_taken = inputs.request_taken;
+    stacks.filled = inputs.filled;
+    take_node(inputs.node_taken);
+    const LaneStacks::Outcome outcome = stacks_.clock(stacks);
+    if (inputs.done_taken) done_.reset();
+    if (!done_ && ends_.valid()) {
+      done_ = ends_.data();
+      ends_.pop();
+    }
+
+    LeafReader::Inputs leaves;
+    if (outcome.node_goes_on) go(0, node_->slot, node_->nearest, leaves);
+    if (outcome.next) go(1, outcome.slot, outcome.reference, leaves);
+    if (outcome.done) ends_.push(outcome.slot);
+    if (outcome.ray_ready && begins_.valid()) begin(leaves);
+    leaves.taken = inputs.leaf_taken;
+    leaves.waited = inputs.leaf_waited;
+    leaves.given = inputs.leaf;
+    leaves.triangle_taken = inputs.test_taken;
+    leaves_.clock(leaves);
+
+    test_boxes_of(inputs.node);
+    hits_.clock(inputs.ray != nullptr ? std::optional<uint32_t>(inputs.ray->slot) : std::nullopt, inputs.result);
+    if (inputs.ray != nullptr) {
+      rays_[inputs.ray->slot] = inputs.ray->ray;
+      begins_.push(inputs.ray->slot);
+    }
+    if (inputs.slot_taken) free_.take();
+    if (inputs.freed) free_.free(*inputs.freed);
+  }
+
+  // ---- For measurements
+
+  const LaneStacks::Work& stack_work() const { return stacks_.work(); }
+  const LeafReader& leaves() const { return leaves_; }
+
+ private:
+  static constexpr uint32_t kBoxStages = BoxPipe::kStages;
+
+  /// What goes along with a box test.
+  struct Along {
+    uint32_t slot = 0, limit = 0;
+    std::array<uint32_t, kBoxes> references{};
+  };
+
+  static BoxRay no_ray(int bits) { return BoxRay({0, 0, 0}, {0, 0, 0}, 0, bits); }
+
+  void take_node(std::optional<uint32_t> which) {
+    if (stacks_.fill_waits()) return;
+    const uint32_t first = nodes_[node_turn_].valid() ? node_turn_ : 1 - node_turn_;
+    if (!nodes_[first].valid()) return;
+    if (which) nodes_[*which == 0 ? first : 1 - first].pop();
+    node_turn_ = 1 - first;
+  }
+
+  void go(uint32_t source, uint32_t slot, uint32_t reference, LeafReader::Inputs& leaves) {
+    if ((reference & kLeaf) == 0) {
+      nodes_[source].push({reference, slot, false});
+    } else {
+      leaves.starts[source] = LeafReader::Start{slot, reference};
+    }
+  }
+  void begin(LeafReader::Inputs& leaves) {
+    const uint32_t slot = begins_.data();
+    begins_.pop();
+    stacks_.begin(slot);
+    if (rays_[slot].meets && root_ != kNoReference) {
+      go(1, slot, root_, leaves);
+    } else {
+      ends_.push(slot);
+    }
+  }
+
+  void test_boxes_of(const LeafReader::Given* given) {
+    node_.reset();
+    if (boxes_.valid()) {
+      const Along& along = along_[place_ % kBoxStages];
+      node_ = LaneStacks::NodeResult{};
+      node_->slot = along.slot;
+      node_->limit = along.limit;
+      order_children(boxes_.result(), along.references, *node_);
+    }
+    const LaneRay& ray = rays_[given_ ? given_->slot : 0];
+    BoxNode node{};
+    uint32_t limit = 0;
+    if (given_) {
+      std::memcpy(&node, given_->line.data(), sizeof node);
+      node.children &= 7;
+      limit = hits_.limit_key(given_->slot);
+      Along& along = along_[place_ % kBoxStages];
+      along.slot = given_->slot;
+      along.limit = limit;
+      std::copy_n(given_->line.begin() + sizeof node / sizeof(uint32_t), kBoxes, along.references.begin());
+    }
+    boxes_.clock(true, ray.box, given_ ? &node : nullptr, limit);
+    ++place_;
+    given_.reset();
+    if (given != nullptr) given_ = *given;
+  }
+
+  int box_bits_;
+  uint32_t root_ = kNoReference;
+  FreeList free_;
+  std::vector<LaneRay> rays_;  // [slot]
+  RamQueue<uint32_t> begins_;  // slots whose ray has come
+
+  std::array<RamQueue<LineWant>, 2> nodes_;  // that are wanted: from box results; from the stack, and roots
+  uint32_t node_turn_ = 0;
+  std::optional<LeafReader::Given> given_;  // in the cycle before
+  BoxPipe boxes_;
+  std::array<Along, kBoxStages> along_;
+  uint32_t place_ = 0;
+  std::optional<LaneStacks::NodeResult> node_;  // of boxes that had their result in the cycle before
+
+  LaneStacks stacks_;
+  LeafReader leaves_;
+  RamQueue<uint32_t> ends_;       // slots whose ray is done
+  std::optional<uint32_t> done_;  // that is offered
+  LaneHits hits_;
+};
+
+}  // namespace raypool
