@@ -3,21 +3,10 @@
 #include <algorithm>
 #include <cstring>
 
-#include "bits.hpp"
+#include "machine/ray_setup.hpp"
 
 namespace raypool {
 namespace {
-
-constexpr float kPadding =
-    8 * kUlp;  // of the largest distance; the triangle test and the slabs err by less than half of it
-constexpr float kLargestDistance = 1e18f;  // products of two distances stay finite
-
-/// The next float towards infinity; not of a NaN or infinity. std::nextafter is a call, and a ray needs six.
-float next_above(float x) {
-  const uint32_t bits = as_bits(x + 0.0f);  // -0 becomes +0
-  return as_float(bits + 1 - (bits >> 31) * 2);
-}
-float next_below(float x) { return -next_above(-x); }
 
 /// 2^exponent, of a normal number.
 double power_of_two(int exponent) {
@@ -57,14 +46,13 @@ PreparedRay prepare(const RayQuery& query, const Bounds& bounds) {
   if (static_cast<double>(ray.internal_limit) < internal_limit) ray.internal_limit = next_above(ray.internal_limit);
 
   ray.reach = distance;
-  const double padding = static_cast<double>(kPadding) * distance;
+  const float padding = kPadding * distance;
   double* const direction = ray.direction;
   double inverse[3];
   for (int axis = 0; axis < 3; ++axis) {
-    const double o = query.origin[axis];
     ray.origin[axis] = query.origin[axis];
-    ray.padded[0][axis] = next_above(static_cast<float>(o + padding));
-    ray.padded[1][axis] = next_below(static_cast<float>(o - padding));
+    ray.padded[0][axis] = next_above(query.origin[axis] + padding);
+    ray.padded[1][axis] = next_below(query.origin[axis] - padding);
     direction[axis] = static_cast<double>(query.direction[axis]) * ray.t_scale;
     // Along such an axis the ray does not move at all, compared with the padding; a finite inverse keeps NaN out.
     const double smallest = 0x1p-100;
@@ -80,8 +68,9 @@ PreparedRay prepare(const RayQuery& query, const Bounds& bounds) {
   ray.kx = ray.kz == 2 ? 0 : ray.kz + 1;
   ray.ky = ray.kz == 0 ? 2 : ray.kz - 1;
   ray.inverse_z = inverse[ray.kz];
-  ray.shear_x = static_cast<float>(direction[ray.kx] * ray.inverse_z);
-  ray.shear_y = static_cast<float>(direction[ray.ky] * ray.inverse_z);
+  // The scale cancels: these are quotients of the floats that were given, rounded once.
+  ray.shear_x = query.direction[ray.kx] / query.direction[ray.kz];
+  ray.shear_y = query.direction[ray.ky] / query.direction[ray.kz];
   return ray;
 }
 

@@ -282,8 +282,8 @@ TEST(PreparedRay, IsScaledAndPaddedAsTheLibrarysFunctionsSay) {
     ASSERT_EQ(ray.kx, (kz + 1) % 3);
     ASSERT_EQ(ray.ky, (kz + 2) % 3);
     ASSERT_EQ(ray.inverse_z, 1.0 / ray.direction[kz]);
-    ASSERT_EQ(ray.shear_x, static_cast<float>(ray.direction[ray.kx] * ray.inverse_z));
-    ASSERT_EQ(ray.shear_y, static_cast<float>(ray.direction[ray.ky] * ray.inverse_z));
+    ASSERT_EQ(ray.shear_x, static_cast<float>(ray.direction[ray.kx] / ray.direction[kz]));
+    ASSERT_EQ(ray.shear_y, static_cast<float>(ray.direction[ray.ky] / ray.direction[kz]));
     const double limit = static_cast<double>(query.limit) / ray.t_scale;
     ASSERT_GE(static_cast<double>(ray.internal_limit), limit);
     ASSERT_TRUE(ray.internal_limit == 0 || static_cast<double>(std::nextafter(ray.internal_limit, 0.0f)) < limit);

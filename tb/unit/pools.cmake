@@ -60,6 +60,10 @@ set(raypool_multiplier)
 raypool_pool_models(triangle_pipe_test triangle_pipe "BITS" 26 32)
 set(raypool_multiplier -DSYNTHESIS)
 
+# The set-up of a ray, against what engines prepare too.
+raypool_pool_bench(ray_setup_test)
+target_link_libraries(ray_setup_test PRIVATE raypool_scene ${GMP_LIBRARY})
+
 # What the controller decides with.
 raypool_pool_bench(policies_test)
 raypool_pool_models(policies_test thesis_policy
