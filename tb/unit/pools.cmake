@@ -63,6 +63,7 @@ set(raypool_multiplier -DSYNTHESIS)
 # The set-up of a ray, against what engines prepare too.
 raypool_pool_bench(ray_setup_test)
 target_link_libraries(ray_setup_test PRIVATE raypool_scene ${GMP_LIBRARY})
+raypool_pool_models(ray_setup_test ray_setup "BITS" 6 12 16)
 
 # What the controller decides with.
 raypool_pool_bench(policies_test)

@@ -1,13 +1,20 @@
-// The set-up of a ray: the class against rational numbers, and against what engines prepare.
+// The set-up of a ray: the class against rational numbers, against what engines prepare, and the Verilog against the
+// class, all outputs in every cycle.
 #include "machine/ray_setup.hpp"
 
 #include <gtest/gtest.h>
+#include <verilated.h>
 
 #include <array>
 
+#include "Vray_setup_12.h"
+#include "Vray_setup_16.h"
+#include "Vray_setup_6.h"
 #include "scene/narrow_boxes.hpp"
+#include "unit/clocked.hpp"
 #include "unit/exact_rational.hpp"
 #include "unit/hard_words.hpp"
+#include "unit/signal_bits.hpp"
 
 namespace raypool::bench {
 namespace {
@@ -201,6 +208,133 @@ TEST(RaySetup, NeedsNoDouble) {
   }
   EXPECT_GT(rays, 500'000);
 }
+
+/// A component of the triangle pipe's direction: sign, 11 bits of exponent, 23 of fraction.
+uint64_t direction_word(double x) {
+  uint64_t bits = 0;
+  std::memcpy(&bits, &x, sizeof bits);
+  return bits >> 29;
+}
+
+template <typename Unit>
+void expect_shown(const Unit& u, const RaySetup& setup) {
+  const auto bits = static_cast<uint32_t>(setup.box.bits);
+  const auto word = [](const auto& signal, int axis) { return get_bits(signal, 32 * static_cast<uint32_t>(axis), 32); };
+  const TriangleRay& triangle = setup.triangle;
+  ASSERT_EQ(u.limit_o, as_bits(setup.limit));
+  ASSERT_EQ(u.scale_o, static_cast<uint32_t>(setup.scale) & 0x1ff);
+  ASSERT_EQ(u.key_o, setup.box.limit);
+  ASSERT_EQ(u.main_axis_o, triangle.kz);
+  ASSERT_EQ(word(u.shear_o, 0), as_bits(triangle.shear_x));
+  ASSERT_EQ(word(u.shear_o, 1), as_bits(triangle.shear_y));
+  for (int axis = 0; axis < 3; ++axis) {
+    SCOPED_TRACE(axis);
+    const auto at = static_cast<uint32_t>(axis);
+    const BoxRay::Axis& box = setup.box.axes[axis];
+    ASSERT_EQ(word(u.origin_o, axis), as_bits(triangle.origin[axis]));
+    ASSERT_EQ(get_bits(u.backwards_o, at, 1), box.backwards ? 1u : 0u);
+    ASSERT_EQ(get_bits(u.still_o, at, 1), box.still ? 1u : 0u);
+    ASSERT_EQ(get_bits(u.reciprocal_o, bits * at, bits), box.reciprocal);
+    ASSERT_EQ(get_bits(u.exponent_o, 10 * at, 10), static_cast<uint32_t>(box.exponent) & 0x3ff);
+    ASSERT_EQ(get_bits(u.padding_o, 10 * at, 10), static_cast<uint32_t>(box.padding) & 0x3ff);
+    ASSERT_EQ(word(u.padded_lower_o, axis), as_bits(triangle.padded[0][axis]));
+    ASSERT_EQ(word(u.padded_upper_o, axis), as_bits(triangle.padded[1][axis]));
+    ASSERT_EQ(word(u.inverse_o, axis), as_bits(triangle.inverse[axis]));
+    const uint64_t direction = direction_word(triangle.direction[axis]);
+    ASSERT_EQ(get_bits(u.direction_o, 35 * at, 32), static_cast<uint32_t>(direction));
+    ASSERT_EQ(get_bits(u.direction_o, 35 * at + 32, 3), static_cast<uint32_t>(direction >> 32));
+  }
+}
+
+constexpr uint32_t kSpacings = 40;
+
+struct Shown {
+  std::array<int, HardWords::kKinds> rays{};
+  int nothing = 0;                     // rays that hit nothing
+  std::array<int, kSpacings> apart{};  // by so many cycles more than they must be
+  std::array<int, 3> main_axes{};
+};
+
+/// Rays of one scene at a time, since its box stands still: the pipe is empty when the next one comes.
+template <typename Unit>
+class SetupBench : public Clocked<Unit> {
+ public:
+  explicit SetupBench(int bits) : Clocked<Unit>(static_cast<uint32_t>(bits)), bits_(bits), words_(this->random()) {}
+
+  void scene(int rays, Shown& shown) {
+    words_.draw();
+    const RootBox root = words_.root;
+    set_words(this->u->lower_i, root.lower);
+    set_words(this->u->upper_i, root.upper);
+    for (int ray = 0; ray < rays; ++ray) {
+      ASSERT_NO_FATAL_FAILURE(begin(root, ray == 0, shown));
+      ASSERT_NO_FATAL_FAILURE(cycle(true, shown));
+      const uint32_t apart = RaySetupPipe::kApart + (this->one_of(2) ? 0 : this->random() % kSpacings);
+      for (uint32_t i = 1; i < apart; ++i) ASSERT_NO_FATAL_FAILURE(cycle(false, shown));
+      ++shown.apart[apart - RaySetupPipe::kApart];
+    }
+    for (int i = 0; i < RaySetupPipe::kStages; ++i) ASSERT_NO_FATAL_FAILURE(cycle(false, shown));
+  }
+
+ private:
+  template <typename Signal>
+  static void set_words(Signal& signal, const float (&floats)[3]) {
+    for (uint32_t axis = 0; axis < 3; ++axis) set_bits(signal, 32 * axis, 32, as_bits(floats[axis]));
+  }
+  void begin(const RootBox& root, bool first, Shown& shown) {
+    if (!first) words_.draw_for(root);
+    Unit& u = *this->u;
+    set_words(u.origin_i, words_.ray.origin);
+    set_words(u.direction_i, words_.ray.direction);
+    u.limit_i = as_bits(words_.ray.limit);
+    next_ = {static_cast<uint32_t>(this->random() & 0xff), RaySetup(words_.ray, root, bits_)};
+    u.tag_i = next_.tag;
+    if (!next_.setup.valid) return;
+    ++shown.rays[words_.kind];
+    ++shown.main_axes[static_cast<size_t>(next_.setup.triangle.kz)];
+  }
+  void cycle(bool comes, Shown& shown) {
+    Unit& u = *this->u;
+    u.valid_i = comes;
+    // What stands at the inputs in other cycles is nothing.
+    if (!comes) u.tag_i = this->random() & 0xff;
+    if (!comes) u.limit_i = this->random();
+    if (!comes) set_bits(u.origin_i, 32 * (this->random() % 3), 32, this->random());
+    if (!comes) set_bits(u.direction_i, 32 * (this->random() % 3), 32, this->random());
+    u.eval();
+    ASSERT_EQ(u.valid_o, pipe_.result() != nullptr);
+    if (pipe_.result() != nullptr) {
+      ASSERT_EQ(u.tag_o, pipe_.result()->tag);
+      ASSERT_EQ(u.hits_o, pipe_.result()->setup.valid);
+      if (u.hits_o) ASSERT_NO_FATAL_FAILURE(expect_shown(u, pipe_.result()->setup));
+      shown.nothing += !u.hits_o;
+    }
+    pipe_.clock(comes ? &next_ : nullptr);
+    this->clock();
+  }
+
+  int bits_;
+  HardWords words_;
+  RaySetupPipe pipe_;
+  RaySetupPipe::Result next_{0, {{}, {}, 0}};
+};
+
+template <typename Unit>
+void compare_setup(int bits) {
+  SetupBench<Unit> bench(bits);
+  Shown shown;
+  for (int scene = 0; scene < 8000; ++scene) {
+    ASSERT_NO_FATAL_FAILURE(bench.scene(10, shown)) << "scene " << scene;
+  }
+  for (const int count : shown.rays) EXPECT_GT(count, 2'000);
+  for (const int count : shown.main_axes) EXPECT_GT(count, 10'000);
+  EXPECT_GT(shown.nothing, 5'000);
+  for (const int count : shown.apart) EXPECT_GT(count, 500);
+}
+
+TEST(RaySetupInVerilog, AgreesWithItsClassInEveryCycleWith6Bits) { compare_setup<Vray_setup_6>(6); }
+TEST(RaySetupInVerilog, AgreesWithItsClassInEveryCycleWith12Bits) { compare_setup<Vray_setup_12>(12); }
+TEST(RaySetupInVerilog, AgreesWithItsClassInEveryCycleWith16Bits) { compare_setup<Vray_setup_16>(16); }
 
 }  // namespace
 }  // namespace raypool::bench

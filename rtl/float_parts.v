@@ -1,0 +1,33 @@
+// A finite float as a significand whose leading one is not stored, subnormal ones too, and its exponent, a cycle later.
+// Infinite and not a number keep the exponent that they have.
+`default_nettype none
+module float_parts (
+  input  wire              clk_i,
+  input  wire [31:0]       float_i,
+  output reg               sign_o,
+  output reg               zero_o,
+  output reg signed [8:0]  exponent_o,   // as a normal number's is stored; -22 .. 255
+  output reg [22:0]        fraction_o    // 0 of a zero
+);
+  // Of a subnormal number: it is moved up until its first bit would be the one that is not stored.
+  reg [22:0] moved;
+  reg [4:0] places;
+  integer step;
+  always @* begin
+    moved = float_i[22:0];
+    places = 5'd0;
+    for (step = 4; step >= 0; step = step - 1)
+      if (moved >> (23 - (1 << step)) == 23'd0) begin
+        moved = moved << (1 << step);
+        places[step] = 1'b1;
+      end
+  end
+  wire normal = float_i[30:23] != 8'd0;
+  always @(posedge clk_i) begin
+    sign_o <= float_i[31];
+    zero_o <= float_i[30:0] == 31'd0;
+    exponent_o <= normal ? {1'b0, float_i[30:23]} : -{4'd0, places};
+    fraction_o <= normal ? float_i[22:0] : {moved[21:0], 1'b0};
+  end
+endmodule
+`default_nettype wire
