@@ -108,8 +108,16 @@ class HardWords {
     }
   }
   /// A component x so many places below the largest, a power of two, that its last bit is half of a subnormal unit; or
-  /// that it is but nearly so.
+  /// that it is but nearly so. Or half of a subnormal unit, an odd number of times, for a largest one of few bits.
   void set_ties() {
+    if (one_of(2)) {
+      const int exponent = 1 + static_cast<int>(random_() % 115), largest = static_cast<int>(random_() % 3);
+      const auto odd = [&](uint32_t below) { return static_cast<float>(1 | word() % below); };
+      const float most = odd(4096);
+      for (float& x : ray.direction) x = std::ldexp(most * odd(2048), exponent - 150) * (one_of(2) ? -1.0f : 1.0f);
+      ray.direction[largest] = std::ldexp(most, exponent);
+      return;
+    }
     const int places = 1 + static_cast<int>(random_() % 24), largest = static_cast<int>(random_() % 3);
     const int exponent = 1 + static_cast<int>(random_() % 126);
     for (int axis = 0; axis < 3; ++axis) {
