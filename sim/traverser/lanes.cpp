@@ -11,24 +11,19 @@ namespace {
 constexpr uint32_t kLineBytes = 64;
 constexpr uint64_t kCacheLatency = 2;
 
+// As many banks as have a set at least.
+TreeBanks::Sizes sizes(uint32_t lines, uint32_t ways, uint32_t mshrs, uint32_t most_banks, uint32_t lanes) {
+  const uint32_t banks = std::min(most_banks, std::max(1u, lines / ways));
+  return {lanes, lines, ways, banks * std::clamp(mshrs / banks, 1u, TreeCache::kMostMshrs), banks};
+}
+
 }  // namespace
 
 Lanes::Cache::Cache(uint32_t lines, uint32_t ways, uint32_t mshrs, uint32_t most_banks, uint32_t lanes)
-    : bank_turns(lanes), offers(lanes) {
-  const uint32_t count = std::min(most_banks, std::max(1u, lines / ways));
-  while (1u << bank_bits < count) ++bank_bits;
-  const uint32_t mshrs_a_bank = std::clamp(mshrs / count, 1u, TreeCache::kMostMshrs);
-  for (uint32_t bank = 0; bank < count; ++bank)
-    banks.emplace_back(TreeCache::Sizes{lanes, lines / count, ways, mshrs_a_bank});
-  inputs.resize(count);
-  lookups.resize(count);
-  lane_turns.resize(count);
-  wanted.resize(count);
-  chosen.resize(count);
-}
+    : banks(sizes(lines, ways, mshrs, most_banks, lanes)), offers(lanes) {}
 
 void Lanes::Cache::add_to(CacheWork& work) const {
-  for (const TreeCache& bank : banks) {
+  for (const TreeCache& bank : banks.banks()) {
     work.hits += bank.work().hits;
     work.misses += bank.work().misses;
     work.joined += bank.work().joined;
@@ -82,11 +77,9 @@ void Lanes::clock(uint64_t cycle) {
   take_prepared();
   ask_memory();
   for (Cache* cache : {&nodes_, &triangles_}) {
-    for (size_t bank = 0; bank < cache->banks.size(); ++bank) {
-      TreeCache::Inputs& inputs = cache->inputs[bank];
-      if (inputs.lookup != nullptr || !cache->banks[bank].idle()) cache->banks[bank].clock(inputs);
-      inputs = {};
-    }
+    cache->banks.clock(cache->request_taken);
+    cache->request_taken = false;
+    cache->fill = TreeBanks::kNone;
   }
 }
 
@@ -100,94 +93,35 @@ void Lanes::fill() {
     return;
   }
   Cache& cache = line.source == TreeMemory::Source::Nodes ? nodes_ : triangles_;
-  const uint32_t bank = line.which >> 8;
-  cache.inputs[bank].fill = true;
-  cache.inputs[bank].fill_id = line.which & 255;
-  if (cache.banks[bank].fill_ready()) memory_.take();
+  cache.fill = line.which;
+  if (cache.banks.fill_ready(cache.fill)) memory_.take();
 }
 
-// Lanes to whom a line is offered for which a ray has waited take one, and ask for none themselves. Returns them.
-template <bool nodes>
-uint32_t Lanes::take_offers(Cache& cache) {
-  uint32_t offered = 0, offering = 0;
-  for (uint32_t bank = 0; bank < cache.banks.size(); ++bank) {
-    if (!cache.banks[bank].offers()) continue;
-    offering |= 1u << bank;
-    offered |= 1u << cache.banks[bank].offer_lane();
-  }
-  for (uint32_t bits = offered; bits != 0; bits &= bits - 1) {
-    const uint32_t lane = lowest(bits);
-    if (!nodes && !lanes_[lane].leaf_room()) continue;
-    uint32_t choices = 0;
-    for (uint32_t banks = offering; banks != 0; banks &= banks - 1)
-      choices |= (cache.banks[lowest(banks)].offer_lane() == lane ? 1u : 0u) << lowest(banks);
-    const uint32_t bank = cache.bank_turns[lane].choose(choices);
-    cache.bank_turns[lane].advance(bank);
-    cache.inputs[bank].offer_taken = true;
-    if (!nodes) lanes_[lane].leaf_taken();
-  }
-  return offered;
-}
-
-// What the other lanes offer to look up. Returns those that do.
-template <bool nodes>
-uint32_t Lanes::ask(Cache& cache, uint32_t but) {
-  std::fill(cache.wanted.begin(), cache.wanted.end(), 0);
-  uint32_t asking = 0;
-  for (uint32_t lane = 0; lane < lanes_.size(); ++lane) {
-    cache.offers[lane] = {};
-    if ((but >> lane & 1) != 0) continue;
-    cache.offers[lane] = nodes ? lanes_[lane].node_offers() : lanes_[lane].leaf_offers();
-    for (const Lane::Want* const want : cache.offers[lane]) {
-      if (want == nullptr) continue;
-      asking |= 1u << lane;
-      cache.wanted[cache.bank_of(want->line)] |= 1u << lane;
-    }
-  }
-  return asking;
-}
-
-// Each bank chooses a line. Returns those that do.
-uint32_t Lanes::choose_lines(Cache& cache) {
-  uint32_t looking = 0;
-  for (uint32_t bank = 0; bank < cache.banks.size(); ++bank) {
-    const uint32_t wanted = cache.wanted[bank];
-    if (wanted == 0 || cache.inputs[bank].fill || !cache.banks[bank].ready()) continue;
-    looking |= 1u << bank;
-    const uint32_t first = cache.lane_turns[bank].choose(wanted);
-    cache.lane_turns[bank].advance(first);
-    const Lane::Offers& offers = cache.offers[first];
-    const bool is_first = offers[0] != nullptr && cache.bank_of(offers[0]->line) == bank;
-    cache.chosen[bank] = offers[is_first ? 0 : 1]->line;
-    cache.lookups[bank].line = cache.chosen[bank] >> cache.bank_bits;
-    cache.lookups[bank].lanes = 0;
-  }
-  return looking;
-}
-
-// A lane asks two banks, and each chooses a line; then the lane takes one, if both have chosen its line.
+// Lanes for which there are lines for which a ray has waited ask for none themselves.
 template <bool nodes>
 void Lanes::look_up(Cache& cache) {
-  const uint32_t asking = ask<nodes>(cache, take_offers<nodes>(cache));
-  const uint32_t looking = choose_lines(cache);
+  const uint32_t waited = cache.banks.waited();
+  uint32_t asking = 0, room = 0;
+  for (uint32_t lane = 0; lane < lanes_.size(); ++lane) {
+    if ((waited >> lane & 1) != 0) {
+      room |= (nodes || lanes_[lane].leaf_room() ? 1u : 0u) << lane;
+      continue;
+    }
+    cache.offers[lane] = nodes ? lanes_[lane].node_offers() : lanes_[lane].leaf_offers();
+    for (uint32_t i = 0; i < cache.offers[lane].size(); ++i) {
+      const Lane::Want* const want = cache.offers[lane][i];
+      cache.wants[lane][i].valid = want != nullptr;
+      if (want == nullptr) continue;
+      cache.wants[lane][i] = {true, want->prefetch, static_cast<uint8_t>(want->slot), want->line};
+      asking |= 1u << lane;
+    }
+  }
+  cache.banks.choose(cache.wants, room, cache.fill);
+  for (uint32_t bits = nodes ? 0 : waited & room; bits != 0; bits &= bits - 1) lanes_[lowest(bits)].leaf_taken();
   for (uint32_t bits = asking; bits != 0; bits &= bits - 1) {
     const uint32_t lane = lowest(bits);
-    const auto& offers = cache.offers[lane];
-    const auto is_chosen = [&](const Lane::Want* want) {
-      if (want == nullptr) return false;
-      const uint32_t bank = cache.bank_of(want->line);
-      return (looking >> bank & 1) != 0 && cache.chosen[bank] == want->line;
-    };
-    const auto* const place = std::find_if(offers.begin(), offers.end(), is_chosen);
-    const Lane::Want* const taken = place == offers.end() ? nullptr : *place;
-    if (taken != nullptr) {
-      const uint32_t bank = cache.bank_of(taken->line);
-      cache.inputs[bank].lookup = &cache.lookups[bank];
-      if (!taken->prefetch) {
-        cache.lookups[bank].lanes |= 1u << lane;
-        cache.lookups[bank].slots[lane] = static_cast<uint8_t>(taken->slot);
-      }
-    }
+    const uint32_t place = cache.banks.taken(lane);
+    const Lane::Want* const taken = place == TreeBanks::kNone ? nullptr : cache.offers[lane][place];
     if (nodes) {
       lanes_[lane].node_offered(taken);
     } else {
@@ -198,15 +132,12 @@ void Lanes::look_up(Cache& cache) {
 
 template <bool nodes>
 void Lanes::give(Cache& cache) {
-  for (const TreeCache& bank : cache.banks) {
-    const TreeCache::Given& given = bank.given();
-    for (uint32_t bits = given.lanes; bits != 0; bits &= bits - 1) {
-      const uint32_t lane = lowest(bits);
-      if (nodes) {
-        lanes_[lane].node_given(cycle_, given.slots[lane]);
-      } else {
-        lanes_[lane].leaf_given(cycle_, given.slots[lane]);
-      }
+  for (uint32_t bits = cache.banks.given_lanes(); bits != 0; bits &= bits - 1) {
+    const uint32_t lane = lowest(bits);
+    if (nodes) {
+      lanes_[lane].node_given(cycle_, cache.banks.given(lane).slot);
+    } else {
+      lanes_[lane].leaf_given(cycle_, cache.banks.given(lane).slot);
     }
   }
 }
@@ -219,15 +150,9 @@ void Lanes::take_prepared() {
 }
 
 bool Lanes::request(Cache& cache, TreeMemory::Source source) {
-  uint32_t banks = 0;
-  for (uint32_t bank = 0; bank < cache.banks.size(); ++bank)
-    banks |= (cache.banks[bank].request_valid() ? 1u : 0u) << bank;
-  if (banks == 0) return false;
-  const uint32_t bank = cache.request_turn.choose(banks);
-  cache.request_turn.advance(bank);
-  const TreeCache& asks = cache.banks[bank];
-  cache.inputs[bank].request_taken = true;
-  memory_.read(cycle_, source, asks.request_line() << cache.bank_bits | bank, bank << 8 | asks.request_id());
+  if (!cache.banks.request_valid()) return false;
+  cache.request_taken = true;
+  memory_.read(cycle_, source, cache.banks.request_line(), cache.banks.request_id());
   return true;
 }
 
@@ -283,8 +208,7 @@ void Lanes::remember(const VisitList& places) {
   for (const Visit& place : places) {
     Cache& cache = place.triangles == 0 ? nodes_ : triangles_;
     const LineRange lines = lines_of(place);
-    for (uint32_t line = lines.first; line < lines.first + lines.count; ++line)
-      cache.banks[cache.bank_of(line)].remember(line >> cache.bank_bits);
+    for (uint32_t line = lines.first; line < lines.first + lines.count; ++line) cache.banks.remember(line);
   }
 }
 

@@ -1,5 +1,5 @@
 // The traverser as a machine under rules that hardware keeps: equal lanes (lane.hpp), two caches of banks of which each
-// looks up one line in a cycle (machine/tree_cache.hpp), and set-up, finish and memory that all share.
+// looks up one line in a cycle (machine/tree_banks.hpp), and set-up, finish and memory that all share.
 //
 // A cycle's decisions are made of what registers hold when it begins. Lines that are on their way are bounded by the
 // banks' registers, and what waits in a lane by its slots, since a ray waits in one place at a time.
@@ -10,7 +10,7 @@
 
 #include "config/configuration.hpp"
 #include "machine/round_robin.hpp"
-#include "machine/tree_cache.hpp"
+#include "machine/tree_banks.hpp"
 #include "traverser/lane.hpp"
 #include "traverser/machine.hpp"
 #include "traverser/tree_memory.hpp"
@@ -35,29 +35,18 @@ class Lanes : public Machine {
   TraverserWork work() const override;
 
  private:
-  /// The banks of a cache, and who is next at each.
+  /// A cache, and what it is told in this cycle.
   struct Cache {
     Cache(uint32_t lines, uint32_t ways, uint32_t mshrs, uint32_t most_banks, uint32_t lanes);
-    uint32_t bank_of(uint32_t line) const { return line & (static_cast<uint32_t>(banks.size()) - 1); }
     void add_to(CacheWork& work) const;
 
-    uint32_t bank_bits = 0;
-    std::vector<TreeCache> banks;
-    std::vector<TreeCache::Inputs> inputs;   // [bank] of this cycle
-    std::vector<TreeCache::Lookup> lookups;  // [bank]
-    std::vector<RoundRobin> lane_turns;      // [bank] whose lookup
-    std::vector<RoundRobin> bank_turns;      // [lane] whose offer
-    std::vector<uint32_t> wanted;            // [bank] lanes that ask
-    std::vector<uint32_t> chosen;            // [bank] line
-    std::vector<Lane::Offers> offers;        // [lane]
-    RoundRobin request_turn;
+    TreeBanks banks;
+    TreeBanks::AllWants wants{};
+    std::vector<Lane::Offers> offers;  // [lane] whose lines these are
+    uint32_t fill = TreeBanks::kNone;  // request whose line comes
+    bool request_taken = false;
   };
 
-  template <bool nodes>
-  uint32_t take_offers(Cache& cache);
-  template <bool nodes>
-  uint32_t ask(Cache& cache, uint32_t but);
-  static uint32_t choose_lines(Cache& cache);
   template <bool nodes>
   void look_up(Cache& cache);
   template <bool nodes>

@@ -1,0 +1,218 @@
+// rtl/tree_banks.v: a cache of the traverser, of banks (machine/tree_cache.hpp). A line's last bits choose its bank. In
+// a cycle each bank looks up one line, and each lane has one of its two wants looked up, or takes one line for which
+// its ray has waited; so it is given one line at most.
+//
+// In a cycle: choose(), then what comes of it, then clock(). All else that is said holds in the whole cycle.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "bits.hpp"
+#include "machine/round_robin.hpp"
+#include "machine/tree_cache.hpp"
+
+namespace raypool {
+
+class TreeBanks {
+ public:
+  static constexpr uint32_t kMostBanks = 32, kMostLanes = TreeCache::kMostLanes;
+
+  /// Of the whole cache; each bank has its share.
+  struct Sizes {
+    uint32_t lanes = 8;
+    uint32_t lines = 1024, ways = 16;  ///< powers of two
+    uint32_t mshrs = 64;
+    uint32_t banks = 8;  ///< a power of two
+  };
+  /// A line that a lane would look up, for the ray of a slot or for nobody yet.
+  struct Want {
+    bool valid = false, nobody = false;
+    uint8_t slot = 0;
+    uint32_t line = 0;
+  };
+  /// Of which one can be looked up, the first rather.
+  using Wants = std::array<Want, 2>;
+  using AllWants = std::array<Wants, kMostLanes>;
+  struct Given {
+    uint8_t slot = 0;
+    uint32_t row = 0;  ///< of the data, those of a bank behind those of the banks before it
+  };
+  /// How often: banks chose both wants of a lane; a lookup was for one more lane; two banks had lines for a lane that
+  /// had waited; a lane left such a line; a bank did not take a line at once.
+  struct Work {
+    uint64_t both_chosen = 0, shared = 0, offered_twice = 0, left = 0, late_fills = 0;
+  };
+  static constexpr uint32_t kNone = UINT32_MAX;
+
+  explicit TreeBanks(const Sizes& sizes)
+      : lanes_(sizes.lanes),
+        lines_a_bank_(sizes.lines / sizes.banks),
+        banks_(sizes.banks, TreeCache({sizes.lanes, lines_a_bank_, sizes.ways, sizes.mshrs / sizes.banks})),
+        inputs_(sizes.banks),
+        lookups_(sizes.banks),
+        lane_turns_(sizes.banks),
+        bank_turns_(sizes.lanes) {
+    while (1u << bank_bits_ < sizes.banks) ++bank_bits_;
+    while (1u << id_bits_ < sizes.mshrs / sizes.banks) ++id_bits_;
+  }
+
+  // ---- Lanes
+
+  /// Lanes for which there is a line for which a ray has waited: their wants are not looked at in this cycle.
+  uint32_t waited() const {
+    uint32_t lanes = 0;
+    for (uint32_t bits = offering_; bits != 0; bits &= bits - 1) lanes |= 1u << banks_[lowest(bits)].offer_lane();
+    return lanes;
+  }
+  /// A cycle's decisions: of what each lane wants, of the lanes that would take a line for which they have waited, and
+  /// of the request whose line comes (kNone: none).
+  void choose(const AllWants& wants, uint32_t room, uint32_t fill) {
+    if (fill != kNone) {
+      TreeCache::Inputs& inputs = inputs_[fill >> id_bits_];
+      inputs.fill = true;
+      inputs.fill_id = fill & ((1u << id_bits_) - 1);
+      work_.late_fills += fill_ready(fill) ? 0 : 1;
+    }
+    const uint32_t waited_for = waited();
+    hand_on(waited_for, room);
+    look_up(wants, waited_for);
+  }
+  /// Which of its wants is looked up: 0, 1, or kNone.
+  uint32_t taken(uint32_t lane) const { return taken_[lane]; }
+  /// Lanes that are given a line, two cycles after they took it: by a hit, or because they had waited for it.
+  uint32_t given_lanes() const { return given_lanes_; }
+  const Given& given(uint32_t lane) const { return given_[lane]; }
+
+  // ---- The memory
+
+  bool request_valid() const { return requesting_ != 0; }
+  /// Mean something while request_valid(). They may change until the request is taken.
+  uint32_t request_id() const { return requester() << id_bits_ | banks_[requester()].request_id(); }
+  uint32_t request_line() const { return banks_[requester()].request_line() << bank_bits_ | requester(); }
+  /// A line that comes for this id is taken.
+  bool fill_ready(uint32_t id) const { return banks_[id >> id_bits_].fill_ready(); }
+
+  /// True if nothing can happen until there are inputs.
+  bool idle() const {
+    return std::all_of(banks_.begin(), banks_.end(), [](const TreeCache& bank) { return bank.idle(); });
+  }
+
+  /// The end of a cycle. The request is taken; only if request_valid().
+  void clock(bool request_taken) {
+    if (request_taken) {
+      const uint32_t bank = requester();
+      inputs_[bank].request_taken = true;
+      request_turn_.advance(bank);
+    }
+    given_lanes_ = offering_ = requesting_ = 0;
+    for (uint32_t number = 0; number < banks_.size(); ++number) {
+      TreeCache& bank = banks_[number];
+      TreeCache::Inputs& inputs = inputs_[number];
+      if (inputs.lookup == nullptr && bank.idle()) continue;
+      bank.clock(inputs);
+      inputs = {};
+      take_given(number);
+      offering_ |= (bank.offers() ? 1u : 0u) << number;
+      requesting_ |= (bank.request_valid() ? 1u : 0u) << number;
+    }
+  }
+
+  // ---- For measurements
+
+  /// The line is there, as if it had just been looked up. Takes no time; nothing may be under way.
+  void remember(uint32_t line) { banks_[bank_of(line)].remember(line >> bank_bits_); }
+  /// Row that the line of a request goes to.
+  uint32_t fill_row(uint32_t id) const {
+    const uint32_t bank = id >> id_bits_;
+    return bank * lines_a_bank_ + banks_[bank].fill_row(id & ((1u << id_bits_) - 1));
+  }
+  const std::vector<TreeCache>& banks() const { return banks_; }
+  const Work& work() const { return work_; }
+
+ private:
+  uint32_t bank_of(uint32_t line) const { return line & (static_cast<uint32_t>(banks_.size()) - 1); }
+  uint32_t requester() const { return request_turn_.choose(requesting_); }
+
+  // Each lane for which there are lines takes one, of its banks in rotation.
+  void hand_on(uint32_t waited_for, uint32_t room) {
+    for (uint32_t bits = waited_for; bits != 0; bits &= bits - 1) {
+      const uint32_t lane = lowest(bits);
+      uint32_t choices = 0;
+      for (uint32_t banks = offering_; banks != 0; banks &= banks - 1)
+        choices |= (banks_[lowest(banks)].offer_lane() == lane ? 1u : 0u) << lowest(banks);
+      work_.offered_twice += (choices & (choices - 1)) != 0 ? 1 : 0;
+      if ((room >> lane & 1) == 0) {
+        ++work_.left;
+        continue;
+      }
+      const uint32_t bank = bank_turns_[lane].choose(choices);
+      bank_turns_[lane].advance(bank);
+      inputs_[bank].offer_taken = true;
+    }
+  }
+
+  // Each bank chooses a lane, and the first of its wants that go to the bank; then a lane takes the first of its wants
+  // whose line a bank has chosen, for whomever. A bank whose lane takes another one may have chosen for nobody.
+  void look_up(const AllWants& wants, uint32_t but) {
+    std::array<uint32_t, kMostBanks> asking{}, chosen{};
+    for (uint32_t lane = 0; lane < lanes_; ++lane) {
+      taken_[lane] = kNone;
+      if ((but >> lane & 1) != 0) continue;
+      for (const Want& want : wants[lane]) asking[bank_of(want.line)] |= (want.valid ? 1u : 0u) << lane;
+    }
+    uint32_t looking = 0;
+    for (uint32_t bank = 0; bank < banks_.size(); ++bank) {
+      if (asking[bank] == 0 || inputs_[bank].fill || !banks_[bank].ready()) continue;
+      looking |= 1u << bank;
+      const uint32_t lane = lane_turns_[bank].choose(asking[bank]);
+      lane_turns_[bank].advance(lane);
+      const bool first = wants[lane][0].valid && bank_of(wants[lane][0].line) == bank;
+      chosen[bank] = wants[lane][first ? 0 : 1].line;
+      lookups_[bank].line = chosen[bank] >> bank_bits_;
+      lookups_[bank].lanes = 0;
+    }
+    const auto is_chosen = [&](const Want& want) {
+      const uint32_t bank = bank_of(want.line);
+      return want.valid && (looking >> bank & 1) != 0 && chosen[bank] == want.line;
+    };
+    for (uint32_t lane = 0; looking != 0 && lane < lanes_; ++lane) {
+      if ((but >> lane & 1) != 0) continue;
+      const std::array<bool, 2> which{is_chosen(wants[lane][0]), is_chosen(wants[lane][1])};
+      if (!which[0] && !which[1]) continue;
+      work_.both_chosen += which[0] && which[1] ? 1 : 0;
+      taken_[lane] = which[0] ? 0 : 1;
+      const Want& want = wants[lane][taken_[lane]];
+      const uint32_t bank = bank_of(want.line);
+      inputs_[bank].lookup = &lookups_[bank];
+      if (want.nobody) continue;
+      work_.shared += lookups_[bank].lanes != 0 ? 1 : 0;
+      lookups_[bank].lanes |= 1u << lane;
+      lookups_[bank].slots[lane] = want.slot;
+    }
+  }
+
+  void take_given(uint32_t number) {
+    const TreeCache::Given& given = banks_[number].given();
+    given_lanes_ |= given.lanes;
+    for (uint32_t bits = given.lanes; bits != 0; bits &= bits - 1)
+      given_[lowest(bits)] = {given.slots[lowest(bits)], number * lines_a_bank_ + given.row};
+  }
+
+  uint32_t lanes_, lines_a_bank_, bank_bits_ = 0, id_bits_ = 1;
+  std::vector<TreeCache> banks_;
+  std::vector<TreeCache::Inputs> inputs_;   // [bank] of this cycle
+  std::vector<TreeCache::Lookup> lookups_;  // [bank]
+  std::vector<RoundRobin> lane_turns_;      // [bank] whose wants
+  std::vector<RoundRobin> bank_turns_;      // [lane] whose line that it has waited for
+  RoundRobin request_turn_;
+  uint32_t offering_ = 0, requesting_ = 0;  // banks
+  std::array<uint32_t, kMostLanes> taken_{};
+  std::array<Given, kMostLanes> given_{};
+  uint32_t given_lanes_ = 0;
+  Work work_;
+};
+
+}  // namespace raypool
