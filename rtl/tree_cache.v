@@ -70,12 +70,14 @@ module tree_cache #(
   localparam [LANES-1:0] NO_LANE = 0, ONE_LANE = 1;
   localparam [MSHRS-1:0] NO_MSHR = 0, ONE_MSHR = 1;
   localparam [WAYS-1:0] NO_WAY = 0;
+  localparam [SETS-1:0] ONE_SET = 1;
 
   // ---- State
 
   reg looks_q;                                    // a lookup whose tags have been read; lanes that are left of it
   reg fresh_q;                                    // it has, in the cycle before: later they may be out of date
   reg [LINE_BITS-1:0] line_q;
+  reg [SETS-1:0] set_q;                           // its set, a bit
   reg [LANES-1:0] lanes_q;
   reg [LANES*SLOT_BITS-1:0] slots_q;
   reg [LINES-1:0] valid_q;
@@ -102,12 +104,18 @@ module tree_cache #(
   generate
     for (g = 0; g < WAYS; g = g + 1) begin : gen_way
       ram_1r1w #(.WIDTH(TAG_BITS), .DEPTH(SETS)) ram (
-        .clk_i(clk_i), .read_i(take), .read_address_i(line_i[SET_BITS-1:0]), .read_data_o(tags[g*TAG_BITS +: TAG_BITS]),
+        .clk_i(clk_i), .read_i(ready_o), .read_address_i(line_i[SET_BITS-1:0]),
+        .read_data_o(tags[g*TAG_BITS +: TAG_BITS]),
         .write_i(fill && fill_way == g[WAY_BITS-1:0]), .write_address_i(fill_set),
         .write_data_i(fill_line[LINE_BITS-1:SET_BITS]));
     end
   endgenerate
-  wire [WAYS-1:0] set_valid = valid_q[{set, {WAY_BITS{1'b0}}} +: WAYS];
+  reg [WAYS-1:0] set_valid;
+  integer s;
+  always @* begin
+    set_valid = NO_WAY;
+    for (s = 0; s < SETS; s = s + 1) if (set_q[s]) set_valid = set_valid | valid_q[s*WAYS +: WAYS];
+  end
 
   // ---- What the lookup comes to: of registers and tags alone
 
@@ -156,9 +164,12 @@ module tree_cache #(
   wire [LANES-1:0] behind = lanes_q & (lanes_q - ONE_LANE);
   wire last = behind == NO_LANE;
   wire joins = miss && |match && asked;
-  wire allocate = miss && !(|match) && !(&busy_q) && !(&locked);
-  wire blocked = miss && !(|match) && asked && !allocate;
-  wire done = hit || (miss && last && !blocked);
+  // Tags are compared last: what a miss comes to is found meanwhile.
+  wire room = !(&busy_q) && !(&locked);
+  wire stuck = !(|match) && asked && !room;
+  wire allocate = miss && !(|match) && room;
+  wire blocked = miss && stuck;
+  wire done = looks_q && (hit || (last && !stuck));
   wire [MSHRS-1:0] waits = filled_q & waited_for_q;
   wire choose = serving_q == NOBODY && waits != NO_MSHR;
   assign ready_o = serving_q == NOBODY && !choose && !fill_valid_i && (!looks_q || done);
@@ -178,9 +189,11 @@ module tree_cache #(
     else if (take) looks_q <= 1'b1;
     else if (done) looks_q <= 1'b0;
   always @(posedge clk_i) fresh_q <= rst_ni && take;
+  // What is there is kept, if it is a lookup or not: so valid_i may come late.
   always @(posedge clk_i)
-    if (take) begin
+    if (ready_o) begin
       line_q <= line_i;
+      set_q <= ONE_SET << line_i[SET_BITS-1:0];
       lanes_q <= lanes_i;
       slots_q <= slots_i;
     end else if (miss && !blocked) lanes_q <= behind;
@@ -273,9 +286,18 @@ module tree_cache #(
     else if (serving_q == CHOSEN && !joins) serving_q <= OFFERED;
     else if (hand_on) serving_q <= the_last ? NOBODY : CHOSEN;
   always @(posedge clk_i) if (choose) serve_id_q <= choice_id;
+  // Who will be offered it is kept in the cycle before, in which the head does not change any more: lanes answer late.
+  wire [WAITER_BITS-1:0] next_offer = choose ? choice_head : head;
+  reg [LANES-1:0] offer_lane_q;
+  reg [SLOT_BITS-1:0] offer_slot_q;
+  always @(posedge clk_i)
+    if (serving_q != OFFERED) begin
+      offer_lane_q <= ONE_LANE << next_offer[SLOT_BITS +: LANE_BITS];
+      offer_slot_q <= next_offer[SLOT_BITS-1:0];
+    end
   assign offer_valid_o = serving_q == OFFERED;
-  assign offer_lane_o = ONE_LANE << head[SLOT_BITS +: LANE_BITS];
-  assign offer_slot_o = head[SLOT_BITS-1:0];
+  assign offer_lane_o = offer_lane_q;
+  assign offer_slot_o = offer_slot_q;
 
   // ---- Data
 

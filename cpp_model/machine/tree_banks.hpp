@@ -182,7 +182,7 @@ class TreeBanks {
       if ((but >> lane & 1) != 0) continue;
       const std::array<bool, 2> which{is_chosen(wants[lane][0]), is_chosen(wants[lane][1])};
       if (!which[0] && !which[1]) continue;
-      work_.both_chosen += which[0] && which[1] ? 1 : 0;
+      work_.both_chosen += which[0] && which[1] && bank_of(wants[lane][0].line) != bank_of(wants[lane][1].line) ? 1 : 0;
       taken_[lane] = which[0] ? 0 : 1;
       const Want& want = wants[lane][taken_[lane]];
       const uint32_t bank = bank_of(want.line);

@@ -109,6 +109,12 @@ raypool_pool_bench(tree_cache_test)
 raypool_pool_models(tree_cache_test tree_cache "LANES;SLOTS;LINES;WAYS;MSHRS;LINE_BITS;DATA_BITS"
   1_1_4_2_1_5_32 3_5_64_4_5_23_32 8_24_128_16_8_23_32 32_2_16_2_3_9_32)
 
+# Such a cache, of banks, with who is next at each.
+raypool_pool_bench(tree_banks_test)
+raypool_pool_models(tree_banks_test tree_banks "LANES;SLOTS;LINES;WAYS;MSHRS;BANKS;LINE_BITS;DATA_BITS"
+  1_2_4_2_1_1_5_32 3_5_64_4_6_2_23_32 8_24_1024_16_64_8_26_32 16_3_64_2_12_4_20_32 2_9_256_4_16_16_12_32
+  32_2_32_2_4_1_9_32)
+
 # The stacks of a lane of the traverser.
 raypool_pool_bench(lane_stacks_test)
 raypool_pool_models(lane_stacks_test lane_stacks "SLOTS;ENTRIES;KEY_BITS;REFERENCE_BITS;BLOCK_BITS"
