@@ -16,14 +16,14 @@ module child_order #(
   output reg  [3*ENTRY_BITS-1:0]     others_o      // as lane_stacks takes them: the furthest in the lowest bits
 );
   // Of each child: those that are nearer.
-  reg [3:0] nearer [0:3];
+  reg [15:0] nearer;                              // four bits each
   integer i, j;
   always @* begin
     for (i = 0; i < 4; i = i + 1) begin
-      nearer[i] = 4'd0;
       for (j = 0; j < 4; j = j + 1)
-        if (j != i)
-          nearer[i][j] = met_i[j] && ((j > i) ? entry_i[j*KEY_BITS+:KEY_BITS] <= entry_i[i*KEY_BITS+:KEY_BITS] :
+        if (j == i) nearer[4*i+j] = 1'b0;
+        else
+          nearer[4*i+j] = met_i[j] && ((j > i) ? entry_i[j*KEY_BITS+:KEY_BITS] <= entry_i[i*KEY_BITS+:KEY_BITS] :
                                                 entry_i[j*KEY_BITS+:KEY_BITS] < entry_i[i*KEY_BITS+:KEY_BITS]);
     end
   end
@@ -40,7 +40,7 @@ module child_order #(
     nearest = {REFERENCE_BITS{1'b0}};
     others = {3*ENTRY_BITS{1'b0}};
     for (c = 0; c < 4; c = c + 1) begin
-      rank = count(nearer[c]);
+      rank = count(nearer[4*c+:4]);
       if (met_i[c] && rank == 3'd0) nearest = nearest | reference_i[c*REFERENCE_BITS+:REFERENCE_BITS];
       for (place = 0; place < 3; place = place + 1)
         if (met_i[c] && rank != 3'd0 && children - rank == place[2:0] + 3'd1)
