@@ -15,19 +15,26 @@ namespace triangle {
 #include "machine/triangle_interval.hpp"
 }  // namespace triangle
 
-/// rtl/triangle_view.v: the corners as the ray sees them, from its origin and along its direction.
-struct TriangleView {
+/// The corners as the ray sees them, from its origin and along its direction.
+struct CornersInView {
   float x[3], y[3], z[3];
-  int in_front = 0;  ///< corners that are, along the ray's main axis
 
-  TriangleView(const TriangleRay& ray, const Triangle& triangle) {
+  CornersInView(const TriangleRay& ray, const Triangle& triangle) {
     for (int corner = 0; corner < 3; ++corner) {
       const auto from_origin = [&](int axis) { return triangle(corner, axis) - ray.origin[axis]; };
       z[corner] = from_origin(ray.kz);
       x[corner] = from_origin(ray.kx) - ray.shear_x * z[corner];
       y[corner] = from_origin(ray.ky) - ray.shear_y * z[corner];
-      in_front += static_cast<double>(z[corner]) * ray.direction[ray.kz] > 0;
     }
+  }
+};
+
+/// rtl/triangle_view.v: these, and which lie in front.
+struct TriangleView : CornersInView {
+  int in_front = 0;  ///< corners that do, along the ray's main axis
+
+  TriangleView(const TriangleRay& ray, const Triangle& triangle) : CornersInView(ray, triangle) {
+    for (const float distance : z) in_front += static_cast<double>(distance) * ray.direction[ray.kz] > 0;
   }
 };
 

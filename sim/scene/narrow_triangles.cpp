@@ -53,7 +53,7 @@ bool TriangleTest::accept(const PreparedRay& ray, const TriangleBlock& block, un
   const Triangle triangle = triangle_of(block, lane);
   const TriangleView view(ray, triangle);
   if (!TriangleEdges(view.x, view.y).inside()) return false;
-  const auto& [x, y, z, in_front] = view;
+  const float(&x)[3] = view.x, (&y)[3] = view.y;
   double weights[3];  // u, v, w
   bool zero = time_ != TriangleTime::Floats;
   for (int k = 0; k < 3; ++k) {
