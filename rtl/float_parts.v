@@ -10,19 +10,11 @@ module float_parts (
   output reg [22:0]        fraction_o    // 0 of a zero
 );
   // Of a subnormal number: it is moved up until its first bit would be the one that is not stored.
-  reg [22:0] moved;
-  reg [4:0] places;
-  integer step;
-  always @* begin
-    moved = float_i[22:0];
-    places = 5'd0;
-    for (step = 4; step >= 0; step = step - 1)
-      if (moved >> (23 - (1 << step)) == 23'd0) begin
-        moved = moved << (1 << step);
-        places[step] = 1'b1;
-      end
-  end
+  wire [22:0] moved;
+  wire [4:0] places;
+  normaliser #(.WIDTH(23)) normaliser (.value_i(float_i[22:0]), .moved_o(moved), .places_o(places));
   wire normal = float_i[30:23] != 8'd0;
+  wire unused = &{1'b0, moved[22]};
   always @(posedge clk_i) begin
     sign_o <= float_i[31];
     zero_o <= float_i[30:0] == 31'd0;

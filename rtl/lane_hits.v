@@ -97,18 +97,10 @@ module lane_hits #(
 
   wire [8:0] scale;
   steady_delay #(.WIDTH(9), .CYCLES(4)) scale_delay (.clk_i(clk_i), .data_i(scale_o), .data_o(scale));
-  reg [23:0] moved;
-  reg [4:0] places;
-  integer step;
-  always @* begin
-    moved = {result_t_i[30:23] != 8'd0, result_t_i[22:0]};
-    places = 5'd0;
-    for (step = 4; step >= 0; step = step - 1)
-      if (moved >> (24 - (1 << step)) == 24'd0) begin
-        moved = moved << (1 << step);
-        places[step] = 1'b1;
-      end
-  end
+  wire [23:0] moved;
+  wire [4:0] places;
+  normaliser #(.WIDTH(24)) normaliser (
+    .value_i({result_t_i[30:23] != 8'd0, result_t_i[22:0]}), .moved_o(moved), .places_o(places));
   wire [9:0] exponent = {2'd0, result_t_i[30:24], result_t_i[23] || result_t_i[30:23] == 8'd0} - {5'd0, places} +
                         {scale[8], scale} + 10'd385;
   reg ends_q, ends_hit_q, told_q;

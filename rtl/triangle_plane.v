@@ -36,30 +36,12 @@ module triangle_plane #(
   float_sums #(.COUNT(9), .SUBTRACT(1), .MANTISSA_BITS(M)) differences (.clk_i(clk_i), .a_i(to), .b_i(from),
     .sum_o(difference_3));
 
-  // ---- 4: with an exponent of 11 bits. A difference of floats is a multiple of 2^-149: 23 of a subnormal one's bits.
+  // ---- 4: with an exponent of 11 bits. A difference of floats is a multiple of 2^-149.
   wire [9*N-1:0] number_4;
   generate
     for (k = 0; k < 9; k = k + 1) begin : gen_number
-      wire [F-1:0] narrow = difference_3[k*F+:F];
-      wire [7:0] exponent = narrow[M+:8];
-      reg [22:0] moved;
-      reg [4:0] places;
-      integer step;
-      always @* begin
-        moved = narrow[M-1-:23];
-        places = 5'd0;
-        for (step = 4; step >= 0; step = step - 1)
-          if (moved >> (23 - (1 << step)) == 23'd0) begin
-            moved = moved << (1 << step);
-            places[step] = 1'b1;
-          end
-      end
-      reg [N-1:0] number_q;
-      always @(posedge clk_i)
-        if (exponent != 8'd0) number_q <= {narrow[F-1], {3'd0, exponent} + 11'd896, narrow[M-1:0]};
-        else if (!moved[22]) number_q <= {narrow[F-1], {N-1{1'b0}}};
-        else number_q <= {narrow[F-1], 11'd896 - {6'd0, places}, moved[21:0], {M-22{1'b0}}};
-      assign number_4[k*N+:N] = number_q;
+      float_widen #(.MANTISSA_BITS(M)) widen (.clk_i(clk_i), .float_i(difference_3[k*F+:F]),
+        .number_o(number_4[k*N+:N]));
     end
   endgenerate
 

@@ -15,20 +15,21 @@
 
 namespace raypool {
 
-/// A number of 32 bits: significand x 2^exponent. Its first bit is 2^31, unless it is zero.
+/// A number as significand x 2^exponent.
 struct Significand {
   uint64_t value = 0;
   int exponent = 0;
   bool negative = false;
 
   Significand() = default;
-  /// Of a number that has no more bits; nor is it subnormal.
-  explicit Significand(double x) : negative(std::signbit(x)) {
-    uint64_t bits = 0;
-    std::memcpy(&bits, &x, sizeof bits);
-    if ((bits & ~uint64_t{0} >> 1) == 0) return;
-    value = uint64_t{1} << 31 | (bits >> 21 & 0x7fffffff);
-    exponent = static_cast<int>(bits >> 52 & 0x7ff) - 1023 - 31;
+  /// Of `bits`, up to 53, of which the first is a one; x is zero or has no more, nor is it subnormal.
+  Significand(double x, int bits) : negative(std::signbit(x)) {
+    uint64_t word = 0;
+    std::memcpy(&word, &x, sizeof word);
+    if (x == 0) return;
+    const uint64_t first = uint64_t{1} << 52;
+    value = (first | (word & (first - 1))) >> (53 - bits);
+    exponent = static_cast<int>(word >> 52 & 0x7ff) - 1023 - (bits - 1);
   }
 
   /// So many units of 2^unit, cut off; 2^unit is not below its last bit.
@@ -40,36 +41,36 @@ inline Significand cross_product(const Significand& a, const Significand& b, con
                                  const Significand& d) {
   using Wide = unsigned __int128;
   struct Product {
-    uint64_t value;
+    Wide value;
     int exponent;
     bool negative;
   };
-  Product large{a.value * b.value, a.exponent + b.exponent, a.negative != b.negative};
-  Product small{c.value * d.value, c.exponent + d.exponent, c.negative == d.negative};
-  if (large.value == 0 || (small.value != 0 && small.exponent > large.exponent)) std::swap(large, small);
-  Significand result;
-  if (large.value == 0) return result;
+  Product higher{Wide{a.value} * b.value, a.exponent + b.exponent, a.negative != b.negative};
+  Product lower{Wide{c.value} * d.value, c.exponent + d.exponent, c.negative == d.negative};
+  if (higher.value == 0 || (lower.value != 0 && lower.exponent > higher.exponent)) std::swap(higher, lower);
 
-  // Both with 63 bits behind the point of the larger exponent; what lies further back only shows that it is there.
-  const int distance = small.value == 0 ? 0 : std::min(large.exponent - small.exponent, 127);
-  const Wide whole = Wide{small.value} << 63, most = Wide{large.value} << 63;
+  // The lower one at the place of the other. If it is moved by more than two places, the difference has lost one bit at
+  // the most, so what lies behind three more bits only shows that it is there.
+  const int distance = lower.value == 0 ? 0 : std::min(higher.exponent - lower.exponent, 127);
+  const Wide most = higher.value << 3, whole = lower.value << 3;
   Wide less = whole >> distance;
   if (less << distance != whole) less |= 1;
-  result.negative = large.negative;
   Wide sum = most + less;
-  if (small.negative != large.negative) {
+  Significand result;
+  result.negative = higher.negative;
+  if (lower.negative != higher.negative) {
     sum = most < less ? less - most : most - less;
-    result.negative = large.negative != (most < less);
+    result.negative = higher.negative != (most < less);
   }
   if (sum == 0) return {};
-  const auto high = static_cast<uint64_t>(sum >> 64), low = static_cast<uint64_t>(sum);
-  const int first = high != 0 ? 127 - __builtin_clzll(high) : 63 - __builtin_clzll(low);
-  result.exponent = large.exponent - 63 + first - 31;
-  if (first <= 31) {
-    result.value = low << (31 - first);
+  const auto top = static_cast<uint64_t>(sum >> 64);
+  const int first = top != 0 ? 127 - __builtin_clzll(top) : 63 - __builtin_clzll(static_cast<uint64_t>(sum));
+  const int drop = first - 31;
+  result.exponent = higher.exponent - 3 + drop;
+  if (drop <= 0) {
+    result.value = static_cast<uint64_t>(sum) << -drop;
     return result;
   }
-  const int drop = first - 31;
   result.value = static_cast<uint64_t>(sum >> drop);
   const Wide half = Wide{1} << (drop - 1), off = sum & (2 * half - 1);
   result.value += off > half || (off == half && result.value % 2 != 0) ? 1 : 0;
@@ -112,13 +113,15 @@ struct RayFinish {
   }
 
  private:
+  static constexpr int kSideBits = 36;  ///< of a triangle's sides
+
   /// An edge's cross product is the weight of the corner opposite: of a hit all have one sign, so sizes do.
   void set_shares(const TriangleRay& ray, const Triangle& triangle) {
     const CornersInView view(ray, triangle);
     Significand x[3], y[3], weights[3];
     for (int corner = 0; corner < 3; ++corner) {
-      x[corner] = Significand(static_cast<double>(view.x[corner]));
-      y[corner] = Significand(static_cast<double>(view.y[corner]));
+      x[corner] = Significand(static_cast<double>(view.x[corner]), 24);
+      y[corner] = Significand(static_cast<double>(view.y[corner]), 24);
     }
     for (int k = 0; k < 3; ++k) {
       const int a = (k + 1) % 3, b = (k + 2) % 3;
@@ -139,11 +142,11 @@ struct RayFinish {
 
   /// The size's root has 31 bits, and so has its reciprocal, with one more: both are cut off.
   void set_normal(const Triangle& triangle) {
-    const NarrowFloat narrow(32);
+    const NarrowFloat narrow(kSideBits);
     Significand sides[2][3], along[3];
     for (int axis = 0; axis < 3; ++axis) {
       for (int i = 0; i < 2; ++i) {
-        sides[i][axis] = Significand(narrow.subtract(triangle(i + 1, axis), triangle(0, axis)));
+        sides[i][axis] = Significand(narrow.subtract(triangle(i + 1, axis), triangle(0, axis)), kSideBits);
       }
     }
     for (int axis = 0; axis < 3; ++axis) {
@@ -185,7 +188,7 @@ struct RayFinish {
 /// The pipe: a ray may begin when three cycles have passed since the last one did. It never waits.
 class RayFinishPipe {
  public:
-  static constexpr int kStages = 62;
+  static constexpr int kStages = 66;
   static constexpr int kApart = 3;  ///< cycles from a ray to the next one, or more
 
   struct Start {

@@ -65,6 +65,13 @@ raypool_pool_bench(ray_setup_test)
 target_link_libraries(ray_setup_test PRIVATE raypool_scene ${GMP_LIBRARY})
 raypool_pool_models(ray_setup_test ray_setup "BITS" 6 12 16)
 
+# The finish of a ray, and what of it can be tried apart.
+raypool_pool_bench(ray_finish_test)
+target_link_libraries(ray_finish_test PRIVATE raypool_scene ${GMP_LIBRARY})
+raypool_pool_models(ray_finish_test ray_finish "TAG_BITS" 16)
+raypool_pool_models(ray_finish_test cross_products "MANTISSA_BITS" 23 35)
+raypool_pool_models(ray_finish_test root_digits "DIGITS" 3 15)
+
 # What the controller decides with.
 raypool_pool_bench(policies_test)
 raypool_pool_models(policies_test thesis_policy
