@@ -51,6 +51,7 @@ class LeafReader {
     bool last = false;   ///< of its leaf
     uint32_t place = 0;  ///< of the triangle in the tree
     Triangle triangle{};
+    uint32_t material = 0;  ///< the word behind the triangle's number
   };
 
   explicit LeafReader(uint32_t slots)
@@ -74,11 +75,13 @@ class LeafReader {
   /// A triangle whose test can begin.
   std::optional<Test> test() const {
     if (!line_ || line_->tests == 0) return {};
-    Test test{line_->slot, line_->leaf.left == 1, line_->leaf.place, {}};
+    Test test{line_->slot, line_->leaf.left == 1, line_->leaf.place, {}, 0};
     std::array<uint32_t, kKept + 16> words;
     std::copy(read_.begin(), read_.end(), words.begin());
     std::copy(line_->data.begin(), line_->data.end(), words.begin() + kKept);
-    std::memcpy(&test.triangle, &words[static_cast<size_t>(line_->leaf.at + int{kKept})], sizeof test.triangle);
+    const uint32_t* const first = &words[static_cast<size_t>(line_->leaf.at + int{kKept})];
+    std::memcpy(&test.triangle, first, sizeof test.triangle);
+    test.material = first[kTriangleWords - 1];
     return test;
   }
   /// Leaves that are told to look ahead, and lines that they were.

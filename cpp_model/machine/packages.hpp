@@ -53,6 +53,16 @@ struct RecordLayout {
   }
 };
 
+/// Of each place of a record its word, or kNoWord where it has none: it is zero.
+inline constexpr uint8_t kNoWord = 31;
+inline std::array<uint8_t, kIntersectionWords> words_of(const RecordLayout& layout) {
+  std::array<uint8_t, kIntersectionWords> words;
+  words.fill(kNoWord);
+  for (size_t word = 0; word < layout.place.size(); ++word)
+    if (layout.place[word] != RecordLayout::kAbsent) words[layout.place[word]] = static_cast<uint8_t>(word);
+  return words;
+}
+
 /// The record of an intersection, and zeros.
 inline Intersection packed(const Intersection& intersection, const RecordLayout& layout) {
   Intersection record{};

@@ -133,4 +133,13 @@ target_link_libraries(traverser_lane_test PRIVATE raypool_scene)
 set(raypool_multiplier)
 raypool_pool_models(traverser_lane_test lane_units "SLOTS;ENTRIES;BITS;TRIANGLE_BITS"
   1_8_6_26 3_9_10_30 6_8_16_28 24_16_12_32)
+
+# The whole traverser.
+raypool_pool_bench(traverser_test)
+target_link_libraries(traverser_test PRIVATE raypool_scene)
+raypool_pool_models(traverser_test traverser
+  "LANES;SLOTS;ENTRIES;BITS;TRIANGLE_PIPES;NODE_LINES;NODE_WAYS;NODE_MSHRS;NODE_BANKS;TRIANGLE_LINES;TRIANGLE_WAYS;\
+TRIANGLE_MSHRS;TRIANGLE_BANKS;POOL;RECORD_WORDS;SHADING;CULLING"
+1_1_8_6_1_4_2_1_1_4_2_1_1_1_21_0_0 3_4_9_10_2_16_2_4_2_32_4_6_2_9_16_1_1
+  5_24_16_12_2_64_4_16_8_32_2_5_1_160_20_0_1)
 set(raypool_multiplier -DSYNTHESIS)

@@ -43,26 +43,6 @@ class Case {
   }
 };
 
-/// Of any size, from nothing to two thousand triangles, near the origin and far from it; the same one many times.
-Scene any_scene(std::mt19937& random) {
-  const Vec3 at{static_cast<float>(random() % 100), -static_cast<float>(random() % 1000), 3};
-  const float scale = std::ldexp(1.0f, static_cast<int>(random() % 40) - 20);
-  switch (random() % 7) {
-    case 0:
-      return soup(random(), static_cast<int>(random() % 5), scale, at);
-    case 1: {
-      const auto place = [&] { return Vec3{static_cast<float>(random() % 5), static_cast<float>(random() % 5), 1}; };
-      return scene_of(std::vector<std::array<Vec3, 3>>(1 + random() % 100, {place(), place(), place()}));
-    }
-    case 2:
-      return soup(random(), 2000, scale, at);
-    case 3:
-      return test::ball({0, 0, 0}, 4 + static_cast<int>(random() % 8));
-    default:
-      return soup(random(), 5 + static_cast<int>(random() % 200), scale, random() % 2 == 0 ? Vec3{0, 0, 0} : at);
-  }
-}
-
 template <typename P>
 class TraverserLaneTest : public testing::Test {};
 using All = testing::Types<

@@ -1,0 +1,366 @@
+// rtl/traverser.v: the whole traverser, at the ports that the chip has for it.
+//
+// Use, once a cycle: read outputs(), which depend on no input of the cycle, then call clock(inputs).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "bits.hpp"
+#include "config/configuration.hpp"
+#include "machine/memory_port.hpp"
+#include "machine/packages.hpp"
+#include "machine/ray_exit.hpp"
+#include "machine/ray_setup.hpp"
+#include "machine/round_robin.hpp"
+#include "machine/traverser_lane.hpp"
+#include "machine/tree_banks.hpp"
+#include "machine/tree_port.hpp"
+#include "machine/triangle_group.hpp"
+
+namespace raypool {
+
+/// What stays for a frame: a host writes it before the first ray.
+struct TraverserSetup {
+  uint32_t root = TraverserLane::kNoReference;
+  RootBox bounds{};
+  TreePort::Places places;  ///< in the traverser's memory; of the stacks Traverser::stack_bytes()
+  RayExit::Frame frame;
+};
+
+class Traverser {
+ public:
+  struct Sizes {
+    uint32_t lanes = 8;           ///< 1 .. 31
+    uint32_t slots = 24;          ///< of each
+    uint32_t stack_entries = 16;  ///< of a slot
+    int box_bits = 12;
+    uint32_t triangle_pipes = 4;     ///< 1 .. lanes; lane l uses pipe l % triangle_pipes
+    TreeBanks::Sizes nodes, leaves;  ///< of the caches; their lanes are not looked at
+    uint32_t pool = 512;             ///< places of the ray pool
+    uint32_t record_words = kIntersectionWords;
+    bool contributes = false, culling = false;
+  };
+  struct Inputs {
+    bool ray_valid = false, ray_last = false;
+    uint32_t ray_place = 0;
+    Beat ray_data{};
+    uint32_t put_ready = 0;  ///< mask: bit of ImportKind
+    bool contribution_ready = false;
+    bool request_ready = false;
+    bool response_valid = false;
+    uint8_t response_beat = 0;  ///< 0 .. 3 within the line
+    Beat response_data{};
+  };
+  /// What belongs to a valid means something only while it is set.
+  struct Outputs {
+    bool ray_ready = false;
+    bool free_valid = false, free_shadow = false;
+    uint32_t free_place = 0;
+    bool put_valid = false;
+    ImportKind put_kind = ImportKind::None;
+    Beat put_data{};
+    bool contribution_valid = false;
+    FrameContribution contribution;
+    bool request_valid = false;
+    MemoryPort::TreeRequest request;
+  };
+
+  explicit Traverser(const Sizes& sizes)
+      : sizes_(sizes),
+        nodes_(of(sizes.nodes, sizes.lanes), sizes.lanes),
+        leaves_(of(sizes.leaves, sizes.lanes + 1), sizes.lanes + 1),
+        port_(sizes.nodes.mshrs + sizes.leaves.mshrs + sizes.lanes, slot_bits(sizes.slots)),
+        exit_({sizes.lanes, sizes.slots, sizes.pool, sizes.record_words, sizes.contributes, sizes.culling}) {
+    for (uint32_t lane = 0; lane < sizes.lanes; ++lane) {
+      lanes_.push_back(
+          std::make_unique<TraverserLane>(TraverserLane::Sizes{sizes.slots, sizes.stack_entries, sizes.box_bits}));
+      inputs_.emplace_back();
+    }
+    for (uint32_t pipe = 0; pipe < sizes.triangle_pipes; ++pipe) {
+      groups_.emplace_back(slot_bits(sizes.slots));
+      for (uint32_t lane = pipe; lane < sizes.lanes; lane += sizes.triangle_pipes)
+        groups_.back().add(lanes_[lane].get());
+    }
+    present();
+  }
+
+  /// While no ray is in it.
+  void set_up(const TraverserSetup& setup) {
+    setup_ = setup;
+    for (const auto& lane : lanes_) lane->set_root(setup.root);
+    port_.set_places(setup.places);
+    exit_.set_frame(setup.frame);
+  }
+  /// Room for the stacks in the traverser's memory.
+  static uint64_t stack_bytes(const Sizes& sizes) {
+    uint64_t slots = uint64_t{1} << slot_bits(sizes.slots);
+    for (uint32_t lane = 1; lane < sizes.lanes; lane *= 2) slots *= 2;
+    return slots << TreePort::kBlockBits << 5;
+  }
+
+  const Outputs& outputs() const { return out_; }
+
+  /// The end of a cycle.
+  void clock(const Inputs& inputs) {
+    for (TraverserLane::Inputs& lane : inputs_) lane = {};
+    exit_inputs_ = {};
+    const bool request_taken = out_.request_valid && inputs.request_ready;
+    const bool line_taken = fill();
+    look_up(nodes_);
+    look_up(leaves_);
+    std::optional<TreePort::Asked> asked = ask(request_taken);
+    test_triangles();
+    end_rays();
+    enter(inputs);
+    exit_inputs_.put_ready = inputs.put_ready;
+    exit_inputs_.contribution_ready = inputs.contribution_ready;
+
+    for (TriangleGroup& group : groups_) group.clock();
+    for (uint32_t lane = 0; lane < sizes_.lanes; ++lane) lanes_[lane]->clock(inputs_[lane]);
+    exit_.clock(exit_inputs_);
+    nodes_.clock(port_.line());
+    leaves_.clock(port_.line());
+    port_.clock(request_taken, asked ? &*asked : nullptr, line_taken,
+                inputs.response_valid ? &inputs.response_data : nullptr);
+    present();
+  }
+
+  // ---- For measurements
+
+  const TreeBanks& node_cache() const { return nodes_.banks; }
+  const TreeBanks& triangle_cache() const { return leaves_.banks; }
+  const TraverserLane& lane(uint32_t number) const { return *lanes_[number]; }
+
+ private:
+  /// A cache, its lines, and what it is asked and told in a cycle.
+  struct Cache {
+    Cache(const TreeBanks::Sizes& sizes, uint32_t lanes) : banks(sizes), lines(sizes.lines), given(lanes) {}
+
+    /// The line that comes is taken.
+    bool fills() const { return fill != TreeBanks::kNone && banks.fill_ready(fill); }
+    void give(uint32_t lane) { given[lane] = {banks.given(lane).slot, lines[banks.given(lane).row]}; }
+    void clock(const std::optional<TreePort::Line>& line) {
+      if (fills()) lines[banks.fill_row(fill)] = line->data;
+      banks.clock(request_taken);
+      request_taken = false;
+      fill = TreeBanks::kNone;
+    }
+
+    TreeBanks banks;
+    std::vector<TreeLine> lines;  // [row]
+    TreeBanks::AllWants wants{};
+    std::vector<LeafReader::Given> given;  // [lane]
+    uint32_t fill = TreeBanks::kNone;      // request whose line comes
+    bool request_taken = false;
+  };
+  /// A ray that is set up.
+  struct Coming {
+    uint32_t place = 0, depth = 0;
+    bool shadow = false;
+    RayExit::Slot slot{0, 0};
+  };
+
+  static TreeBanks::Sizes of(TreeBanks::Sizes sizes, uint32_t lanes) {
+    sizes.lanes = lanes;
+    return sizes;
+  }
+  static uint32_t slot_bits(uint32_t slots) {
+    uint32_t bits = 1;
+    while ((1u << bits) < slots) ++bits;
+    return bits;
+  }
+  uint32_t all_lanes() const { return (1u << sizes_.lanes) - 1; }
+
+  // The line that has come is offered to who has asked for it. True: it is taken.
+  bool fill() {
+    const std::optional<TreePort::Line>& line = port_.line();
+    if (!line) return false;
+    if (line->source == TreePort::Source::Stacks) {
+      block_ = line->block();
+      inputs_[line->id].filled = &block_;
+      return true;
+    }
+    Cache& cache = line->source == TreePort::Source::Nodes ? nodes_ : leaves_;
+    cache.fill = line->id;
+    return cache.fills();
+  }
+
+  void look_up(Cache& cache) {
+    const bool nodes = &cache == &nodes_;
+    const auto count = static_cast<uint32_t>(cache.given.size());
+    uint32_t room = all_lanes();
+    for (uint32_t lane = 0; lane < count; ++lane) {
+      const bool exits = lane == sizes_.lanes;
+      const LineWants wants = exits ? exit_.wants() : nodes ? lanes_[lane]->node_wants() : lanes_[lane]->leaf_wants();
+      for (uint32_t i = 0; i < wants.size(); ++i) {
+        cache.wants[lane][i] = {};
+        if (wants[i])
+          cache.wants[lane][i] = {true, wants[i]->nobody, static_cast<uint8_t>(wants[i]->slot), wants[i]->line};
+      }
+      if (nodes) continue;
+      const bool has_room = exits ? exit_.room() : lanes_[lane]->leaf_room();
+      room = (room & ~(1u << lane)) | (has_room ? 1u : 0u) << lane;
+    }
+    const uint32_t waited = cache.banks.waited() & room;
+    cache.banks.choose(cache.wants, room, cache.fill);
+    for (uint32_t lane = 0; lane < count; ++lane) {
+      std::optional<uint32_t> taken;
+      if (cache.banks.taken(lane) != TreeBanks::kNone) taken = cache.banks.taken(lane);
+      const bool is_given = (cache.banks.given_lanes() >> lane & 1) != 0, has_waited = (waited >> lane & 1) != 0;
+      if (is_given) cache.give(lane);
+      const LeafReader::Given* const given = is_given ? &cache.given[lane] : nullptr;
+      if (lane == sizes_.lanes) {
+        exit_inputs_.taken = taken;
+        exit_inputs_.waited = has_waited;
+        exit_inputs_.given = given;
+      } else if (nodes) {
+        inputs_[lane].node_taken = taken;
+        inputs_[lane].node = given;
+      } else {
+        inputs_[lane].leaf_taken = taken;
+        inputs_[lane].leaf_waited = has_waited;
+        inputs_[lane].leaf = given;
+      }
+    }
+  }
+
+  std::optional<TreePort::Asked> ask(bool request_taken) {
+    uint32_t stacks = 0;
+    for (uint32_t lane = 0; lane < sizes_.lanes; ++lane) stacks |= (lanes_[lane]->request_valid() ? 1u : 0u) << lane;
+    const std::optional<TreePort::Source> source =
+        port_.choose(request_taken, nodes_.banks.request_valid(), leaves_.banks.request_valid(), stacks);
+    if (!source) return {};
+    TreePort::Asked asked;
+    asked.source = *source;
+    if (*source == TreePort::Source::Stacks) {
+      asked.lane = port_.lane();
+      stack_request_ = lanes_[asked.lane]->request();
+      asked.stack = &stack_request_;
+      inputs_[asked.lane].request_taken = true;
+      return asked;
+    }
+    Cache& cache = *source == TreePort::Source::Nodes ? nodes_ : leaves_;
+    asked.line = cache.banks.request_line();
+    asked.id = cache.banks.request_id();
+    cache.request_taken = true;
+    return asked;
+  }
+
+  void test_triangles() {
+    for (TriangleGroup& group : groups_) group.choose();
+    for (uint32_t lane = 0; lane < sizes_.lanes; ++lane) {
+      const TriangleGroup& group = groups_[lane % sizes_.triangle_pipes];
+      const uint32_t member = lane / sizes_.triangle_pipes;
+      inputs_[lane].test_taken = group.test_taken(member);
+      inputs_[lane].result = group.result(member);
+    }
+  }
+
+  void end_rays() {
+    if (const std::optional<RayExit::Slot> freed = exit_.freed_slot()) inputs_[freed->lane].freed = freed->slot;
+    uint32_t done = 0;
+    for (uint32_t lane = 0; lane < sizes_.lanes; ++lane) done |= (lanes_[lane]->done_valid() ? 1u : 0u) << lane;
+    const std::optional<uint32_t> lane = exit_.choose(done);
+    if (!lane) return;
+    const uint32_t slot = lanes_[*lane]->done_slot();
+    done_ = {*lane, slot, lanes_[*lane]->hits().best(slot)};
+    exit_inputs_.done = &done_;
+    inputs_[*lane].done_taken = true;
+  }
+
+  // A ray comes, in beats; with the last one it gets a slot. One that is set up enters its lane.
+  void enter(const Inputs& inputs) {
+    if (const RaySetupPipe::Result* const result = setup_pipe_.result()) {
+      const Coming coming = coming_.front();
+      coming_.pop_front();
+      const RaySetup& setup = result->setup;
+      entered_ = {coming.slot.slot,
+                  {setup.valid, coming.shadow, setup.box, setup.triangle, {setup.limit, setup.scale}}};
+      set_ = {coming.place, coming.depth, coming.shadow, setup.triangle, setup.scale};
+      inputs_[coming.slot.lane].ray = &entered_;
+      exit_inputs_.set = &set_;
+      exit_inputs_.set_slot = coming.slot;
+    }
+    if (!inputs.ray_valid || !out_.ray_ready) {
+      setup_pipe_.clock(nullptr);
+      return;
+    }
+    std::copy(inputs.ray_data.begin(), inputs.ray_data.end(), ray_.begin() + beat_ * kBeatWords);
+    ++beat_;
+    if (!inputs.ray_last) {
+      setup_pipe_.clock(nullptr);
+      return;
+    }
+    beat_ = 0;
+    const uint32_t lane = enter_turn_.choose(free_lanes());
+    enter_turn_.advance(lane);
+    inputs_[lane].slot_taken = true;
+    coming_.push_back({inputs.ray_place,
+                       ray_[word::kFlags] & kDepthMask,
+                       (ray_[word::kFlags] & kShadowFlag) != 0,
+                       {lane, lanes_[lane]->slot()}});
+    RayWords words;
+    for (int axis = 0; axis < 3; ++axis) {
+      words.origin[axis] = as_float(ray_[word::kOrigin + axis]);
+      words.direction[axis] = as_float(ray_[word::kDirection + axis]);
+    }
+    words.limit = as_float(ray_[word::kLimit]);
+    const RaySetupPipe::Result start{0, RaySetup(words, setup_.bounds, sizes_.box_bits)};
+    setup_pipe_.clock(&start);
+    exit_inputs_.ray = &ray_;
+    exit_inputs_.ray_place = inputs.ray_place;
+  }
+  uint32_t free_lanes() const {
+    uint32_t lanes = 0;
+    for (uint32_t lane = 0; lane < sizes_.lanes; ++lane) lanes |= (lanes_[lane]->slot_valid() ? 1u : 0u) << lane;
+    return lanes;
+  }
+
+  void present() {
+    out_.ray_ready = beat_ != 0 || free_lanes() != 0;
+    out_.free_valid = exit_.free_valid();
+    if (out_.free_valid) {
+      out_.free_place = exit_.free_place();
+      out_.free_shadow = exit_.free_shadow();
+    }
+    out_.put_valid = exit_.put_valid();
+    if (out_.put_valid) {
+      out_.put_kind = exit_.put_kind();
+      out_.put_data = exit_.put_data();
+    }
+    out_.contribution_valid = exit_.contribution_valid();
+    if (out_.contribution_valid) out_.contribution = exit_.contribution();
+    out_.request_valid = port_.request_valid();
+    if (out_.request_valid) out_.request = port_.request();
+  }
+
+  Sizes sizes_;
+  TraverserSetup setup_;
+  std::vector<std::unique_ptr<TraverserLane>> lanes_;
+  std::vector<TriangleGroup> groups_;
+  Cache nodes_, leaves_;
+  TreePort port_;
+  RayExit exit_;
+  RoundRobin enter_turn_;
+  Ray ray_{};          // that comes
+  uint32_t beat_ = 0;  // that comes next
+  RaySetupPipe setup_pipe_;
+  std::deque<Coming> coming_;  // rays in it
+
+  // What a cycle's inputs refer to.
+  std::vector<TraverserLane::Inputs> inputs_;  // [lane]
+  RayExit::Inputs exit_inputs_;
+  LaneStacks::Block block_;
+  LaneStacks::Request stack_request_;
+  RayExit::Done done_;
+  RayExit::Set set_;
+  TraverserLane::Entered entered_{0, {false, false, BoxRay({0, 0, 0}, {0, 0, 0}, 0, 12), {}, {}}};
+  Outputs out_;
+};
+
+}  // namespace raypool
