@@ -356,6 +356,44 @@ uint32_t tile_width_log2(uint32_t contents) {
 
 namespace {
 
+/// What of the modelled traverser's parameters rtl/traverser.v cannot have: its modules' checks, in sentences.
+void check_hardware_traverser(const ChipConfiguration& chip, const std::string& where) {
+  const auto refuse = [&where](const char* key, const auto& value, const std::string& must) {
+    throw InputError(fmt::format("{}: chip.modelled_traverser.{} is {}; with chip.traverser hardware it must be {}",
+                                 where, key, value, must));
+  };
+  constexpr uint32_t kMostSlots = 256, kMostBanks = 16, kLeastWays = 2, kMostMshrsOfABank = 32, kLine = 64;
+  if (chip.modelled_traverser_nodes != NodeFormat::Compressed) refuse("nodes", "exact", "compressed");
+  const uint32_t lanes = chip.modelled_traverser_box_pipes, rays = chip.modelled_traverser_rays;
+  if (rays % lanes != 0 || rays / lanes > kMostSlots) {
+    refuse("rays", rays,
+           fmt::format("a multiple of box_pipes, which is {}, and at most {} for each of them", lanes, kMostSlots));
+  }
+  if (chip.modelled_traverser_triangle_pipes > lanes) {
+    refuse("triangle_pipes", chip.modelled_traverser_triangle_pipes,
+           fmt::format("at most {}, which is box_pipes", lanes));
+  }
+  const uint32_t banks = chip.modelled_traverser_cache_banks;
+  if (banks > kMostBanks) refuse("cache_banks", banks, fmt::format("at most {}", kMostBanks));
+  const auto check_cache = [&](const std::string& cache, uint32_t bytes, uint32_t ways, uint32_t mshrs) {
+    if (ways < kLeastWays) refuse((cache + "_ways").c_str(), ways, fmt::format("at least {}", kLeastWays));
+    if (bytes < 2 * ways * banks * kLine) {
+      refuse((cache + "_bytes").c_str(), bytes,
+             fmt::format("at least {}: two sets of {} ways of {} bytes in each of {} banks", 2 * ways * banks * kLine,
+                         ways, kLine, banks));
+    }
+    if (mshrs % banks != 0 || mshrs > kMostMshrsOfABank * banks) {
+      refuse((cache + "_mshrs").c_str(), mshrs,
+             fmt::format("a multiple of cache_banks, which is {}, and at most {} in each bank", banks,
+                         kMostMshrsOfABank));
+    }
+  };
+  check_cache("node_cache", chip.modelled_traverser_node_cache_bytes, chip.modelled_traverser_node_cache_ways,
+              chip.modelled_traverser_node_cache_mshrs);
+  check_cache("triangle_cache", chip.modelled_traverser_triangle_cache_bytes,
+              chip.modelled_traverser_triangle_cache_ways, chip.modelled_traverser_triangle_cache_mshrs);
+}
+
 /// A row of an eye tile is held at once, and what is held must find room in the intersection pool.
 void check_chip(const Configuration& configuration, const std::string& where) {
   for (const Parameter& parameter : parameter::kOfChip)
@@ -387,6 +425,7 @@ void check_chip(const Configuration& configuration, const std::string& where) {
                     "must be 0, since boxes in integers are those of compressed nodes",
                     where, chip.modelled_traverser_box_bits));
   }
+  if (chip.traverser == TraverserName::Hardware) check_hardware_traverser(chip, where);
 }
 
 }  // namespace
@@ -468,12 +507,38 @@ std::vector<std::pair<std::string, int>> verilog_parameters(const Configuration&
 
 namespace {
 
-/// Whether rtl/chip.v has it: it has no traverser, and which kernels there are is its host's business.
+/// Whether rtl/chip.v has it by its own name: which kernels there are is its host's business, and the traverser is
+/// hardware_traverser_parameters().
 bool is_of_chip_verilog(const Parameter& parameter) {
   static constexpr std::string_view kNot[] = {"controller", "traverser", "reflections",
                                               "static_traverser_stall_cycles"};
   return parameter.section != "chip.modelled_traverser" &&
          std::find(std::begin(kNot), std::end(kNot), parameter.name) == std::end(kNot);
+}
+
+/// Of rtl/traverser.v in rtl/chip.v. A chip that has it outside has its sizes as they are by default, so that its
+/// Verilog does not depend on them.
+std::vector<std::pair<std::string, int>> hardware_traverser_parameters(const ChipConfiguration& chip) {
+  constexpr uint32_t kLine = 64;
+  const bool inside = chip.traverser == TraverserName::Hardware;
+  const ChipConfiguration sizes = inside ? chip : ChipConfiguration();
+  const uint32_t lanes = sizes.modelled_traverser_box_pipes;
+  std::vector<std::pair<std::string, int>> parameters = {{"TRAVERSER", inside ? 1 : 0}};
+  for (const auto& [name, value] : std::initializer_list<std::pair<const char*, uint32_t>>{
+           {"LANES", lanes},
+           {"SLOTS", sizes.modelled_traverser_rays / lanes},
+           {"ENTRIES", sizes.modelled_traverser_stack_entries},
+           {"BITS", hardware_box_bits(sizes)},
+           {"TRIANGLE_PIPES", sizes.modelled_traverser_triangle_pipes},
+           {"BANKS", sizes.modelled_traverser_cache_banks},
+           {"NODE_LINES", sizes.modelled_traverser_node_cache_bytes / kLine},
+           {"NODE_WAYS", sizes.modelled_traverser_node_cache_ways},
+           {"NODE_MSHRS", sizes.modelled_traverser_node_cache_mshrs},
+           {"TRIANGLE_LINES", sizes.modelled_traverser_triangle_cache_bytes / kLine},
+           {"TRIANGLE_WAYS", sizes.modelled_traverser_triangle_cache_ways},
+           {"TRIANGLE_MSHRS", sizes.modelled_traverser_triangle_cache_mshrs}})
+    parameters.emplace_back(std::string("TRAVERSER_") + name, static_cast<int>(value));
+  return parameters;
 }
 
 }  // namespace
@@ -485,6 +550,8 @@ std::vector<std::pair<std::string, int>> chip_verilog_parameters(const Configura
     if (is_of_chip_verilog(parameter)) parameters.emplace_back(verilog_name(parameter), parameter.get(configuration));
   parameters.emplace_back("TILE_ORDER", to_underlying(tile_order(configuration.chip)));
   parameters.emplace_back("TRAVERSER_QUEUE", static_cast<int>(tree_requests(configuration.chip)));
+  for (auto& of_traverser : hardware_traverser_parameters(configuration.chip))
+    parameters.push_back(std::move(of_traverser));
   return parameters;
 }
 

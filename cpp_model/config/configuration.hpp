@@ -62,6 +62,11 @@ constexpr uint32_t tree_requests(const ChipConfiguration& chip) {
   return chip.modelled_traverser_node_cache_mshrs + chip.modelled_traverser_triangle_cache_mshrs;
 }
 
+/// Bits of the box test of rtl/traverser.v, which has none in floats.
+constexpr uint32_t hardware_box_bits(const ChipConfiguration& chip) {
+  return chip.modelled_traverser_box_bits != 0 ? chip.modelled_traverser_box_bits : 12;
+}
+
 struct Configuration {
   std::string name = "8w8c";
   std::string source;            ///< what load_configuration was given; empty: nothing

@@ -198,6 +198,65 @@ TEST(Configuration, BoxesInIntegersAreThoseOfCompressedNodes) {
   }
 }
 
+TEST(Configuration, ATraverserInHardwareHasSizesThatItsModulesCanHave) {
+  const auto chip = [](const std::string& traverser, const std::string& sizes) {
+    return R"({"chip": {"traverser": ")" + traverser + R"(", "modelled_traverser": {)" + sizes + "}}}";
+  };
+  for (const auto& [sizes, key, value, must] : std::vector<std::array<std::string, 4>>{
+           {R"("nodes": "exact")", "nodes", "exact", "compressed"},
+           {R"("rays": 126)", "rays", "126", "a multiple of box_pipes, which is 4, and at most 256 for each of them"},
+           {R"("rays": 514, "box_pipes": 2)", "rays", "514",
+            "a multiple of box_pipes, which is 2, and at most 256 for each of them"},
+           {R"("triangle_pipes": 5)", "triangle_pipes", "5", "at most 4, which is box_pipes"},
+           {R"("cache_banks": 32)", "cache_banks", "32", "at most 16"},
+           {R"("node_cache_ways": 1)", "node_cache_ways", "1", "at least 2"},
+           {R"("triangle_cache_ways": 1)", "triangle_cache_ways", "1", "at least 2"},
+           {R"("node_cache_bytes": 2048)", "node_cache_bytes", "2048",
+            "at least 4096: two sets of 4 ways of 64 bytes in each of 8 banks"},
+           {R"("triangle_cache_bytes": 1024, "triangle_cache_ways": 16, "cache_banks": 1)", "triangle_cache_bytes",
+            "1024", "at least 2048: two sets of 16 ways of 64 bytes in each of 1 banks"},
+           {R"("node_cache_mshrs": 12)", "node_cache_mshrs", "12",
+            "a multiple of cache_banks, which is 8, and at most 32 in each bank"},
+           {R"("triangle_cache_mshrs": 33, "cache_banks": 1)", "triangle_cache_mshrs", "33",
+            "a multiple of cache_banks, which is 1, and at most 32 in each bank"}}) {
+    EXPECT_EQ(error_of(chip("hardware", sizes)), fmt::format("chip.modelled_traverser.{} is {}; with chip.traverser "
+                                                             "hardware it must be {}",
+                                                             key, value, must));
+    const TemporaryFile file(chip("lanes", sizes));
+    EXPECT_NO_THROW(load_configuration(file.path()));
+  }
+  const TemporaryFile file(chip("hardware", R"("rays": 512, "box_pipes": 2, "cache_banks": 16, "node_cache_ways": 16,
+                                              "node_cache_bytes": 32768, "node_cache_mshrs": 64)"));
+  EXPECT_NO_THROW(load_configuration(file.path()));
+}
+
+TEST(Configuration, TheChipHasTheSizesOfATraverserThatIsInside) {
+  Configuration configuration;
+  ChipConfiguration& chip = configuration.chip;
+  const auto value = [&configuration](const std::string& name) {
+    const auto parameters = chip_verilog_parameters(configuration, 1);
+    const auto found = std::find_if(parameters.begin(), parameters.end(),
+                                    [&](const auto& parameter) { return parameter.first == "TRAVERSER" + name; });
+    EXPECT_NE(found, parameters.end()) << name;
+    return found->second;
+  };
+  const auto outside = chip_verilog_parameters(configuration, 1);
+  EXPECT_EQ(value(""), 0);
+  chip.modelled_traverser_rays = 96;
+  chip.modelled_traverser_box_pipes = 8;
+  chip.modelled_traverser_node_cache_bytes = 1 << 17;
+  chip.traverser = TraverserName::Lanes;
+  EXPECT_EQ(chip_verilog_parameters(configuration, 1), outside) << "whatever traverser is outside";
+  chip.traverser = TraverserName::Hardware;
+  EXPECT_EQ(value(""), 1);
+  EXPECT_EQ(value("_LANES"), 8);
+  EXPECT_EQ(value("_SLOTS"), 12);
+  EXPECT_EQ(value("_NODE_LINES"), 2048);
+  EXPECT_EQ(value("_BITS"), 12) << "it has no boxes in floats";
+  chip.modelled_traverser_box_bits = 9;
+  EXPECT_EQ(value("_BITS"), 9);
+}
+
 TEST(Configuration, TheChipIsPartOfTheMachineAndNotOfItsVerilog) {
   const TemporaryFile file(R"({"chip": {"ray_pool": {"size": 100}}})");
   const Configuration configuration = load_configuration(file.path());

@@ -20,8 +20,9 @@ enum class ControllerName : uint8_t { Ledger = 0, Counters = 1 };
 enum class TileOrder : uint8_t { Rows = 0, Hilbert = 1 };
 /// How the modelled traverser keeps the boxes of a node: as numbers on a grid of the node, or as the floats they are.
 enum class NodeFormat : uint8_t { Compressed = 0, Exact = 1 };
-/// Lanes: as Modelled, under rules that hardware keeps.
-enum class TraverserName : uint8_t { Static = 0, Modelled = 1, Lanes = 2 };
+/// Lanes: as Modelled, under rules that hardware keeps. Hardware: rtl/traverser.v, inside rtl/chip.v; it has no class
+/// in sim/chip/.
+enum class TraverserName : uint8_t { Static = 0, Modelled = 1, Lanes = 2, Hardware = 3 };
 /// What becomes of a shadow ray that reaches the light: an intersection, for the kernel `shade`, or a contribution.
 enum class Shading : uint8_t { Kernel = 0, Traverser = 1 };
 
@@ -74,8 +75,8 @@ enum class Shading : uint8_t { Kernel = 0, Traverser = 1 };
   CHIP(window_remedy, bool, true, on_or_off(), "eye rays of further tiles are cast while earlier ones are under way") \
   CHIP(launch_ahead, bool, true, on_or_off(), "a kernel is launched behind a running one, if it is worth it") \
   CHIP(held_limit, uint32_t, 512, integers(1, 1 << 20), "unfinished pixels at a time") \
-  CHIP(traverser, TraverserName, TraverserName::Static, names("static", "modelled", "lanes"), \
-       "timing of the traverser: none of its own, a machine, or one under rules that hardware keeps") \
+  CHIP(traverser, TraverserName, TraverserName::Static, names("static", "modelled", "lanes", "hardware"), \
+       "the traverser: without time of its own, a machine, one under rules that hardware keeps, or rtl/traverser.v") \
   CHIP(shading, Shading, Shading::Kernel, names("kernel", "traverser"), \
        "who adds shadow rays that reach the light to the frame buffer: the kernel shade, or the traverser itself") \
   CHIP(reflections, bool, true, on_or_off(), "there is a kernel that casts reflections; without it a frame has none") \
@@ -93,12 +94,13 @@ enum class Shading : uint8_t { Kernel = 0, Traverser = 1 };
   CHIP_PART(modelled_traverser, nodes, NodeFormat, NodeFormat::Compressed, names("compressed", "exact"), \
             "nodes of 64 bytes, with planes of 8 bits on a grid rounded outwards, or of 128, with boxes as they are") \
   CHIP_PART(modelled_traverser, box_bits, uint32_t, 0, zero_or(6, 16), \
-            "boxes of compressed nodes are tested in integers of so many bits, as rtl/box_pipe.v does; 0: in floats") \
+            "boxes of compressed nodes are tested in integers of so many bits, as rtl/box_pipe.v does; 0: in floats, and " \
+            "`hardware`, which has none, in 12 bits") \
   CHIP_PART(modelled_traverser, rays, uint32_t, 128, integers(1, 1024), "rays in flight") \
   CHIP_PART(modelled_traverser, setup_latency, uint32_t, 16, integers(1, 64), \
             "cycles in which a ray is prepared; one begins in a cycle") \
   CHIP_PART(modelled_traverser, box_pipes, uint32_t, 4, integers(1, 32), \
-            "nodes, four boxes each, whose test begins in a cycle; of `lanes`, its lanes") \
+            "nodes, four boxes each, whose test begins in a cycle; of `lanes` and `hardware`, its lanes") \
   CHIP_PART(modelled_traverser, box_latency, uint32_t, 8, integers(1, 64), "cycles of a node's test") \
   CHIP_PART(modelled_traverser, triangle_pipes, uint32_t, 2, integers(1, 32), \
             "triangles whose test begins in a cycle; `lanes` has one in each lane") \

@@ -15,6 +15,11 @@ namespace {
 const ChipOptions& checked(const ChipOptions& options) {
   if (options.device == nullptr) throw std::logic_error("run_chip needs a device");
   check_frame(options);
+  if (options.device->timed() && options.configuration.chip.traverser == TraverserName::Hardware) {
+    throw InputError(
+        "chip.traverser is hardware: that one is in the chip as one piece (--chip model, rtl or lockstep), not in this "
+        "one: choose another with --traverser");
+  }
   return options;
 }
 

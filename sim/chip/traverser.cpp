@@ -95,6 +95,8 @@ std::unique_ptr<Traverser> make_traverser(const Tracing& tracing) {
     case TraverserName::Modelled:
     case TraverserName::Lanes:
       return std::make_unique<ModelledTraverser>("traverser", tracing);
+    case TraverserName::Hardware:
+      throw std::logic_error("the traverser of the hardware is in no chip of SystemC");
   }
   throw std::logic_error("a traverser without a class");
 }

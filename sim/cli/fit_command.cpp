@@ -85,7 +85,7 @@ class FrameRuns {
 
 FrameBuffer FrameRuns::draw_natively() {
   const MemoryImage image = build_memory(ray_kernel_program(KernelTarget(record_.configuration)), scene_);
-  const Tracer tracer(scene_, image.material_base);
+  const Tracer tracer = tracer_of(record_, scene_, image);
   NativeOptions native = native_options(record_);
   native.trace = [&](const Ray& ray, Intersection& hit) {
     const uint32_t depth = ray[word::kFlags] & kDepthMask;

@@ -86,6 +86,12 @@ ChipOptions chip_options(const RunRecord& record, const Scene& scene, MemoryImag
   return chip;
 }
 
+Tracer tracer_of(const RunRecord& record, const Scene& scene, const MemoryImage& image) {
+  Tracer tracer(scene, image.material_base);
+  tracer.take_hits_of(record.configuration.chip);
+  return tracer;
+}
+
 NativeOptions native_options(const RunRecord& record) {
   NativeOptions native;
   native.width = record.width;

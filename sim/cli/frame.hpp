@@ -41,6 +41,9 @@ struct Surroundings {
 ChipOptions chip_options(const RunRecord& record, const Scene& scene, MemoryImage& image, ComputeUnit* device,
                          Surroundings& around);
 
+/// What finds hits where there is no chip: as that of the record does.
+Tracer tracer_of(const RunRecord& record, const Scene& scene, const MemoryImage& image);
+
 /// The same frame without a chip, on all cores.
 NativeOptions native_options(const RunRecord& record);
 

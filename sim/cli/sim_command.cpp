@@ -61,6 +61,21 @@ void check(const SimOptions& options, Engine engine) {
     throw InputError("--error says how long it takes, --time how large the error is: give one of them");
 }
 
+/// The traverser in Verilog is in the chip in Verilog alone; who needs no traverser's time only needs its hits.
+void check_traverser(const RunRecord& record, Engine engine) {
+  const bool timed = engine == Engine::Model || engine == Engine::Rtl || engine == Engine::Lockstep;
+  if (record.configuration.chip.traverser != TraverserName::Hardware || record.whole_chip) return;
+  if (timed || engine == Engine::Sampled) {
+    throw InputError(
+        fmt::format("chip.traverser is hardware: that one is in the chip as one piece, and not around engine {}: draw "
+                    "with --chip model, rtl or lockstep, or choose another with --traverser",
+                    record.engine));
+  }
+  if (engine == Engine::Embree) {
+    throw InputError("chip.traverser is hardware: engine embree has hits of its own; use native or functional");
+  }
+}
+
 /// "2%", or "10s": a number above zero and that unit, which may be left out.
 double parse_amount(const std::string& text, const char* option, const std::string& unit, double most) {
   size_t end = 0;
@@ -305,6 +320,7 @@ int sim_command(const SimOptions& options) {
   record.height = size.height;
   record.depth = options.depth;
   record.units = options.units;
+  check_traverser(record, engine);
 
   const Scene scene = load_scene_and_warn(options.scene, options.detail, options.view, options.look);
   record.scene = scene.name;
@@ -322,7 +338,7 @@ int sim_command(const SimOptions& options) {
 
   const FrameBuffer frame =
       engine == Engine::Sampled ? draw_sampled_frame(options, record, scene, image, whole)
-      : without_unit(engine) ? draw_natively(options, engine, record, scene, image, Tracer(scene, image.material_base))
+      : without_unit(engine) ? draw_natively(options, engine, record, scene, image, tracer_of(record, scene, image))
       : record.whole_chip    ? draw_on_chip(options, engine, record, scene, image, out)
                              : draw_on_unit(options, engine, record, scene, image, out);
 

@@ -73,6 +73,11 @@ Hit finish(const PreparedRay& ray, const Candidate& best) {
   return hit;
 }
 
+/// As rtl/ray_finish.v does.
+Hit finish_in_hardware(const PreparedRay& ray, const Candidate& best) {
+  return finish(ray, best);
+}
+
 /// `ray` is valid and the tree not empty.
 template <bool kAny, typename Boxes, typename Triangles = EngineTriangles>
 bool traverse(const Bvh& bvh, const PreparedRay& ray, Boxes boxes, Candidate& best, TraversalCounts* counts,
@@ -155,6 +160,13 @@ void Traversal::set_compressed_nodes(std::vector<CompressedNode> nodes) {
   compressed_ = std::move(nodes);
 }
 
+void Traversal::take_hits_of(const ChipConfiguration& chip) {
+  constexpr uint32_t kTimeBits = 32;
+  if (chip.traverser != TraverserName::Hardware) return;
+  hardware_hits_ = true;
+  triangle_test_.emplace(TriangleTime::Plane, kTimeBits);
+}
+
 void Traversal::set_bvh(Bvh bvh) {
   if (tree_depth(bvh) > kMaxDepth)
     throw std::runtime_error("the bounding volume hierarchy is deeper than the traversal's stack");
@@ -185,7 +197,7 @@ bool Traversal::nearest_on(const RayQuery& query, Hit& hit, const Walk& walk) co
   const PreparedRay ray = prepare(query, bvh_.bounds);
   Candidate best;
   if (!ray.valid || bvh_.nodes.empty() || !walk(ray, best)) return false;
-  hit = finish(ray, best);
+  hit = hardware_hits_ ? finish_in_hardware(ray, best) : finish(ray, best);
   return true;
 }
 
@@ -245,7 +257,9 @@ RayQuery to_query(const Ray& ray) {
 
 Tracer::Tracer(const Scene& scene, uint32_t material_base, const ChipConfiguration& chip)
     : Tracer(scene, material_base) {
-  if (chip.traverser != TraverserName::Static && chip.modelled_traverser_nodes == NodeFormat::Compressed)
+  take_hits_of(chip);
+  const bool walks = chip.traverser == TraverserName::Modelled || chip.traverser == TraverserName::Lanes;
+  if (walks && chip.modelled_traverser_nodes == NodeFormat::Compressed)
     traversal_.compress_nodes(chip.modelled_traverser_box_bits);
 }
 

@@ -79,6 +79,10 @@ class Traversal {
   /// From now on nearest() and occluded() test triangles so, whoever asks for visits or not, but for those who ask for
   /// WideVisits; boxes are in floats.
   void set_triangle_test(const TriangleTest& test) { triangle_test_ = test; }
+  /// From now on hits are what the traverser of the chip makes of them. Of `hardware`: which triangle is hit, and at
+  /// which internal t, as rtl/triangle_pipe.v says (TriangleTest with the plane in 32 bits); t, u, v and normal as
+  /// rtl/ray_finish.v does. Of any other nothing changes.
+  void take_hits_of(const ChipConfiguration& chip);
   /// Replaces the tree by another over the same triangles; no answer changes. For tests.
   void set_bvh(Bvh bvh);
   /// The nodes whose boxes are tested in integers; none if they are not.
@@ -98,6 +102,7 @@ class Traversal {
   std::vector<CompressedNode> compressed_;
   uint32_t box_bits_ = 0;
   std::optional<TriangleTest> triangle_test_;
+  bool hardware_hits_ = false;
 };
 
 /// The traverser of the chip and of the native renderer: packages in, packages out. Safe to use from several threads.
@@ -105,7 +110,8 @@ class Tracer {
  public:
   /// Material words are material_base + 32 * the triangle's material index. Keeps nothing of `scene`.
   explicit Tracer(const Scene& scene, uint32_t material_base = 0);
-  /// What walks the tree is the traverser of `chip`: what it visits depends on its nodes and boxes, and no answer.
+  /// What walks the tree is the traverser of `chip`: what it visits depends on its nodes and boxes, and no answer; but
+  /// what a hit is, on whether it is `hardware` (take_hits_of()).
   Tracer(const Scene& scene, uint32_t material_base, const ChipConfiguration& chip);
 
   /// Normal ray: true and the intersection when it hits, false when it misses. Shadow ray: false when it is blocked;
@@ -127,6 +133,7 @@ class Tracer {
 
   const Traversal& traversal() const { return traversal_; }
   void set_triangle_test(const TriangleTest& test) { traversal_.set_triangle_test(test); }
+  void take_hits_of(const ChipConfiguration& chip) { traversal_.take_hits_of(chip); }
 
  private:
   template <typename... Told>
