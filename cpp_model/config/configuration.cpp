@@ -362,9 +362,10 @@ void check_hardware_traverser(const ChipConfiguration& chip, const std::string& 
     throw InputError(fmt::format("{}: chip.modelled_traverser.{} is {}; with chip.traverser hardware it must be {}",
                                  where, key, value, must));
   };
-  constexpr uint32_t kMostSlots = 256, kMostBanks = 16, kLeastWays = 2, kMostMshrsOfABank = 32, kLine = 64;
+  constexpr uint32_t kMostLanes = 31, kMostSlots = 256, kMostBanks = 16, kLeastWays = 2, kMostMshrsOfABank = 32, kLine = 64;
   if (chip.modelled_traverser_nodes != NodeFormat::Compressed) refuse("nodes", "exact", "compressed");
   const uint32_t lanes = chip.modelled_traverser_box_pipes, rays = chip.modelled_traverser_rays;
+  if (lanes > kMostLanes) refuse("box_pipes", lanes, fmt::format("at most {}", kMostLanes));
   if (rays % lanes != 0 || rays / lanes > kMostSlots) {
     refuse("rays", rays,
            fmt::format("a multiple of box_pipes, which is {}, and at most {} for each of them", lanes, kMostSlots));

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -204,6 +205,7 @@ TEST(Configuration, ATraverserInHardwareHasSizesThatItsModulesCanHave) {
   };
   for (const auto& [sizes, key, value, must] : std::vector<std::array<std::string, 4>>{
            {R"("nodes": "exact")", "nodes", "exact", "compressed"},
+           {R"("box_pipes": 32)", "box_pipes", "32", "at most 31"},
            {R"("rays": 126)", "rays", "126", "a multiple of box_pipes, which is 4, and at most 256 for each of them"},
            {R"("rays": 514, "box_pipes": 2)", "rays", "514",
             "a multiple of box_pipes, which is 2, and at most 256 for each of them"},

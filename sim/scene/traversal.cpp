@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "bits.hpp"
+#include "machine/ray_finish.hpp"
 #include "scene/narrow_boxes.hpp"
 #include "scene/simd4.hpp"
 
@@ -75,7 +76,13 @@ Hit finish(const PreparedRay& ray, const Candidate& best) {
 
 /// As rtl/ray_finish.v does.
 Hit finish_in_hardware(const PreparedRay& ray, const Candidate& best) {
-  return finish(ray, best);
+  Triangle triangle{{}, best.triangle};
+  for (int corner = 0; corner < 3; ++corner) {
+    for (int axis = 0; axis < 3; ++axis)
+      triangle.corners[corner][axis] = best.block->vertices[corner][axis][best.lane];
+  }
+  const RayFinish made(ray, triangle, best.t, std::ilogb(ray.t_scale));
+  return {made.t, made.u, made.v, {made.normal[0], made.normal[1], made.normal[2]}, best.triangle};
 }
 
 /// `ray` is valid and the tree not empty.
