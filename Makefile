@@ -116,7 +116,9 @@ TRACE_FLAG := $(if $(filter-out 0,$(TRACE)),--trace $(if $(filter 1,$(TRACE)),:,
 SAMPLE_FLAGS := $${ERROR:+--error "$$ERROR"} $(if $(findstring command,$(origin TIME)),--time "$$TIME") \
   $(if $(filter sampled,$(ENGINE)),--seed "$$SEED")
 SET_FIELDS := $${SET:+--set "$$SET"}
-UNIT := scripts/unit.sh "$$CONFIG" $(SET_FIELDS) $(WAVES_FLAG)
+# A chip in Verilog has its traverser inside, or not.
+INSIDE := $(if $(CHIP),$${TRAVERSER:+--set "chip.traverser=$$TRAVERSER"})
+UNIT := scripts/unit.sh "$$CONFIG" $(SET_FIELDS) $(INSIDE) $(WAVES_FLAG)
 # After an equals sign a number may be negative.
 LOOK := $${CAMERA:+"--camera=$$CAMERA"} $${EYE:+"--eye=$$EYE"} $${LOOK_AT:+"--look-at=$$LOOK_AT"} $${UP:+"--up=$$UP"} \
   $${FOV:+"--fov=$$FOV"} $${LIGHT:+"--light=$$LIGHT"}
@@ -167,7 +169,7 @@ help: ## this list
 	@echo '  DEPTH=N                       1: eye and shadow rays; more: reflections   $(DEPTH)'
 	@echo '  CUS=1|2|4                     compute units                               $(CUS)'
 	@echo '  SET="FIELD=VALUE ..."         change fields of CONFIG, chip.ray_pool.size=256 (raypool config prints all)'
-	@echo '  TRAVERSER=NAME                static, modelled or lanes: its timing       $(TRAVERSER)'
+	@echo '  TRAVERSER=NAME                static, modelled or lanes: its timing; hardware, with CHIP  $(TRAVERSER)'
 	@echo '  VIEW=FILE                     camera and light (JSON)                     from the scene'
 	@echo '  CAMERA=NAME                   of a glTF file                              its first'
 	@echo '  EYE=X,Y,Z LOOK_AT=X,Y,Z UP=X,Y,Z FOV=DEGREES LIGHT=X,Y,Z                  from the view'

@@ -11,10 +11,11 @@ install(PROGRAMS scripts/verilate.sh DESTINATION ${data}/scripts COMPONENT progr
 foreach(source sim/rtl/rtl_unit.cpp sim/rtl/rtl_chip.cpp sim/rtl/unit_library.hpp sim/rtl/chip_library.hpp
     sim/rtl/verilated_design.hpp sim/rtl/probes.vlt sim/rtl/chip_probes.vlt cpp_model/bits.hpp cpp_model/enum_array.hpp
     cpp_model/isa/isa.hpp cpp_model/isa/counters.hpp cpp_model/isa/input_error.hpp cpp_model/config/configuration.hpp
-    cpp_model/config/parameters.hpp cpp_model/machine/compute_unit.hpp cpp_model/machine/compute_unit.cpp
-    cpp_model/machine/chip_device.hpp cpp_model/machine/chip_device.cpp cpp_model/machine/memory.hpp
-    cpp_model/machine/memory_port.hpp cpp_model/machine/packages.hpp cpp_model/machine/port_cycles.hpp
-    cpp_model/machine/ram_queue.hpp cpp_model/machine/ray_kernel.hpp)
+    cpp_model/config/parameters.hpp cpp_model/machine/box_ray.hpp cpp_model/machine/compute_unit.hpp
+    cpp_model/machine/compute_unit.cpp cpp_model/machine/chip_device.hpp cpp_model/machine/chip_device.cpp
+    cpp_model/machine/memory.hpp cpp_model/machine/memory_port.hpp cpp_model/machine/packages.hpp
+    cpp_model/machine/port_cycles.hpp cpp_model/machine/ram_queue.hpp cpp_model/machine/ray_kernel.hpp
+    cpp_model/machine/ray_setup.hpp cpp_model/machine/tree_setup.hpp cpp_model/machine/triangle_ray.hpp)
   cmake_path(GET source PARENT_PATH folder)
   install(FILES ${source} DESTINATION ${data}/${folder} COMPONENT program)
 endforeach()

@@ -1,5 +1,6 @@
-// The chip: compute units, pools, controller, memory port and frame port. Outside remain the memory, the frame buffer,
-// a traverser at its ports, and a host that writes what stays for a frame and starts it. docs/chip.md, section 8.
+// The chip: compute units, pools, controller, memory port and frame port, and with TRAVERSER the traverser. Outside
+// remain the memory, the frame buffer, a host that writes what stays for a frame and starts it, and a traverser at the
+// chip's ports; with one inside these are tied off. docs/chip.md, section 8.
 // Promises: those of its blocks at its ports; of several units the one with a fault stops, and the frame does not end.
 // No output depends combinationally on an input, counter_o excepted, which depends on its selection.
 // Must be given: what its blocks must; arguments before start_i, and all that stays for a frame from then on.
@@ -29,6 +30,14 @@ module chip #(
   input  wire [15:0]           secondary_pc_i,         // of the kernel that reflects
   input  wire [15:0]           direct_pc_i,            // of the one that does not
   input  wire [15:0]           shade_pc_i,
+  // the same for a traverser inside: where its memory has the tree, and what leaves of its hits
+  input  wire [31:0]           tree_root_i,            // node or leaf; all ones: an empty tree
+  input  wire [95:0]           tree_lower_i,           // bounds of all vertices; x in the low word
+  input  wire [95:0]           tree_upper_i,
+  input  wire [25:0]           triangles_line_i,       // of 64 bytes; nodes begin with line 0
+  input  wire [25:0]           stacks_line_i,
+  input  wire [31:0]           material_base_i,        // bytes, in the units' memory
+  input  wire [104:0]          record_i,               // of each place of an intersection its word, 5 bits; 31: zero
   output wire                  busy_o,                 // a frame is drawn: something is still to leave the units
   // memory: accesses, and beats of the lines that are read, in their order
   output wire                  memory_request_valid_o,
@@ -136,6 +145,69 @@ module chip #(
   wire [1:0] exported_unit;
   wire [31:0] exported_pixel;
 
+  // ---- The traverser, and pools, memory port and frame port
+  wire ray_valid, ray_ready, ray_last, free_valid, free_shadow;
+  wire [127:0] ray_data;
+  wire [PLACE_BITS-1:0] ray_place, free_place;
+  wire put_valid;
+  wire [KINDS-1:0] put_ready;
+  wire [1:0] put_kind;
+  wire [127:0] put_data;
+  wire contribution_valid, contribution_ready;
+  wire [31:0] contribution_pixel;
+  wire [95:0] contribution_color;
+  wire tree_request_valid, tree_request_ready, tree_request_write, tree_request_second, tree_response_valid;
+  wire [31:0] tree_request_address;
+  wire [255:0] tree_request_data;
+  wire [1:0] tree_response_beat;
+  wire [127:0] tree_response_data;
+  generate
+    if (TRAVERSER != 0) begin : gen_inside
+      traverser #(
+        .LANES(TRAVERSER_LANES), .SLOTS(TRAVERSER_SLOTS), .ENTRIES(TRAVERSER_ENTRIES), .BITS(TRAVERSER_BITS),
+        .TRIANGLE_PIPES(TRAVERSER_TRIANGLE_PIPES), .NODE_LINES(TRAVERSER_NODE_LINES),
+        .NODE_WAYS(TRAVERSER_NODE_WAYS), .NODE_MSHRS(TRAVERSER_NODE_MSHRS), .NODE_BANKS(TRAVERSER_BANKS),
+        .TRIANGLE_LINES(TRAVERSER_TRIANGLE_LINES), .TRIANGLE_WAYS(TRAVERSER_TRIANGLE_WAYS),
+        .TRIANGLE_MSHRS(TRAVERSER_TRIANGLE_MSHRS), .TRIANGLE_BANKS(TRAVERSER_BANKS), .POOL(RAY_POOL_SIZE),
+        .RECORD_WORDS(INTERSECTION_WORDS), .SHADING(SHADING), .CULLING(CULLING), .KINDS(KINDS), .PLACE_BITS(PLACE_BITS)
+      ) traverser (
+        .clk_i(clk_i), .rst_ni(rst_ni), .root_i(tree_root_i), .lower_i(tree_lower_i), .upper_i(tree_upper_i),
+        .triangles_line_i(triangles_line_i), .stacks_line_i(stacks_line_i), .material_base_i(material_base_i),
+        .record_i(record_i), .depth_limit_i(depth_limit_i), .reflections_i(reflections_i),
+        .ray_valid_i(ray_valid), .ray_ready_o(ray_ready), .ray_data_i(ray_data), .ray_last_i(ray_last),
+        .ray_place_i(ray_place), .free_valid_o(free_valid), .free_place_o(free_place), .free_shadow_o(free_shadow),
+        .put_valid_o(put_valid), .put_ready_i(put_ready), .put_kind_o(put_kind), .put_data_o(put_data),
+        .contribution_valid_o(contribution_valid), .contribution_ready_i(contribution_ready),
+        .contribution_pixel_o(contribution_pixel), .contribution_color_o(contribution_color),
+        .request_valid_o(tree_request_valid), .request_ready_i(tree_request_ready),
+        .request_write_o(tree_request_write), .request_second_o(tree_request_second),
+        .request_address_o(tree_request_address), .request_data_o(tree_request_data),
+        .response_valid_i(tree_response_valid), .response_beat_i(tree_response_beat),
+        .response_data_i(tree_response_data));
+      assign {ray_valid_o, ray_last_o, ray_place_o, ray_data_o} = {{2 + PLACE_BITS{1'b0}}, 128'd0};
+      assign {put_ready_o, contribution_ready_o, tree_request_ready_o} = {KINDS + 2{1'b0}};
+      assign {tree_response_valid_o, tree_response_beat_o, tree_response_data_o} = {3'd0, 128'd0};
+      wire unused = &{1'b0, ray_ready_i, free_valid_i, free_place_i, free_shadow_i, put_valid_i, put_kind_i, put_data_i,
+                      contribution_valid_i, contribution_pixel_i, contribution_color_i, tree_request_valid_i,
+                      tree_request_write_i, tree_request_second_i, tree_request_address_i, tree_request_data_i};
+    end else begin : gen_outside
+      assign ray_ready = ray_ready_i;
+      assign {free_valid, free_place, free_shadow} = {free_valid_i, free_place_i, free_shadow_i};
+      assign {put_valid, put_kind, put_data} = {put_valid_i, put_kind_i, put_data_i};
+      assign {contribution_valid, contribution_pixel, contribution_color} =
+        {contribution_valid_i, contribution_pixel_i, contribution_color_i};
+      assign {tree_request_valid, tree_request_write, tree_request_second} =
+        {tree_request_valid_i, tree_request_write_i, tree_request_second_i};
+      assign {tree_request_address, tree_request_data} = {tree_request_address_i, tree_request_data_i};
+      assign {ray_valid_o, ray_last_o, ray_place_o, ray_data_o} = {ray_valid, ray_last, ray_place, ray_data};
+      assign {put_ready_o, contribution_ready_o} = {put_ready, contribution_ready};
+      assign {tree_request_ready_o, tree_response_valid_o} = {tree_request_ready, tree_response_valid};
+      assign {tree_response_beat_o, tree_response_data_o} = {tree_response_beat, tree_response_data};
+      wire unused = &{1'b0, tree_root_i, tree_lower_i, tree_upper_i, triangles_line_i, stacks_line_i, material_base_i,
+                      record_i};
+    end
+  endgenerate
+
   // For who looks at a simulation: traces, and what is not needed here of what happens to rays and pixels.
   wire ray_held_up, pixel_valid;
   wire [1:0] pixel_unit;
@@ -222,9 +294,9 @@ module chip #(
     .outcome_valid_o(outcome_valid), .outcome_kept_o(outcome_kept), .outcome_deep_o(outcome_deep),
     .outcome_shadow_o(outcome_shadow), .outcome_eye_o(outcome_eye), .outcome_unit_o(outcome_unit),
     .outcome_pixel_o(outcome_pixel), .rays_o(rays), .shadow_rays_o(shadow_rays), .held_up_o(ray_held_up),
-    .ray_valid_o(ray_valid_o), .ray_ready_i(ray_ready_i), .ray_data_o(ray_data_o), .ray_last_o(ray_last_o),
-    .ray_place_o(ray_place_o), .free_valid_i(free_valid_i), .free_place_i(free_place_i),
-    .free_shadow_i(free_shadow_i), .taken_o(rays_taken_o), .busy_cycles_o(ray_port_busy_o));
+    .ray_valid_o(ray_valid), .ray_ready_i(ray_ready), .ray_data_o(ray_data), .ray_last_o(ray_last),
+    .ray_place_o(ray_place), .free_valid_i(free_valid), .free_place_i(free_place), .free_shadow_i(free_shadow),
+    .taken_o(rays_taken_o), .busy_cycles_o(ray_port_busy_o));
 
   intersection_pool #(
     .SIZE(INTERSECTION_POOL_SIZE), .INTERSECTION_WORDS(INTERSECTION_WORDS), .OVERHEAD(INTERSECTION_POOL_OVERHEAD),
@@ -232,7 +304,7 @@ module chip #(
     .KINDS(KINDS), .LEVEL_BITS(LEVEL_BITS)
   ) intersection_pool (
     .clk_i(clk_i), .rst_ni(rst_ni),
-    .put_valid_i(put_valid_i), .put_ready_o(put_ready_o), .put_kind_i(put_kind_i), .put_data_i(put_data_i),
+    .put_valid_i(put_valid), .put_ready_o(put_ready), .put_kind_i(put_kind), .put_data_i(put_data),
     .request_valid_i(import_request_valid), .request_ready_o(import_request_ready),
     .request_kind_i(import_request_kind), .request_unit_i(import_request_unit), .beat_valid_o(import_beat_valid),
     .beat_data_o(import_beat_data), .pixel_valid_o(pixel_valid), .pixel_unit_o(pixel_unit),
@@ -250,11 +322,11 @@ module chip #(
     .device_request_id_i(device_request_id), .device_response_valid_o(device_response_valid),
     .device_response_id_o(device_response_id), .device_response_beat_o(device_response_beat),
     .device_response_data_o(device_response_data),
-    .traverser_request_valid_i(tree_request_valid_i), .traverser_request_ready_o(tree_request_ready_o),
-    .traverser_request_write_i(tree_request_write_i), .traverser_request_second_i(tree_request_second_i),
-    .traverser_request_address_i(tree_request_address_i), .traverser_request_data_i(tree_request_data_i),
-    .traverser_response_valid_o(tree_response_valid_o), .traverser_response_beat_o(tree_response_beat_o),
-    .traverser_response_data_o(tree_response_data_o),
+    .traverser_request_valid_i(tree_request_valid), .traverser_request_ready_o(tree_request_ready),
+    .traverser_request_write_i(tree_request_write), .traverser_request_second_i(tree_request_second),
+    .traverser_request_address_i(tree_request_address), .traverser_request_data_i(tree_request_data),
+    .traverser_response_valid_o(tree_response_valid), .traverser_response_beat_o(tree_response_beat),
+    .traverser_response_data_o(tree_response_data),
     .memory_request_valid_o(memory_request_valid_o), .memory_request_ready_i(memory_request_ready_i),
     .memory_request_traverser_o(memory_request_traverser_o), .memory_request_write_o(memory_request_write_o),
     .memory_request_address_o(memory_request_address_o), .memory_request_data_o(memory_request_data_o),
@@ -266,8 +338,8 @@ module chip #(
     .clk_i(clk_i), .rst_ni(rst_ni),
     .unit_valid_i(unit_frame_valid), .unit_ready_o(unit_frame_ready), .unit_pixel_i(unit_frame_pixel),
     .unit_color_i(unit_frame_color), .unit_number_i(unit_frame_unit),
-    .traverser_valid_i(contribution_valid_i), .traverser_ready_o(contribution_ready_o),
-    .traverser_pixel_i(contribution_pixel_i), .traverser_color_i(contribution_color_i),
+    .traverser_valid_i(contribution_valid), .traverser_ready_o(contribution_ready),
+    .traverser_pixel_i(contribution_pixel), .traverser_color_i(contribution_color),
     .frame_valid_o(frame_valid_o), .frame_ready_i(frame_ready_i), .frame_pixel_o(frame_pixel_o),
     .frame_color_o(frame_color_o), .exported_valid_o(exported_valid), .exported_unit_o(exported_unit),
     .exported_pixel_o(exported_pixel), .taken_o(contributions_o));

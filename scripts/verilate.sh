@@ -76,7 +76,8 @@ wrapper=("sim/rtl/rtl_$kind.cpp" cpp_model/machine/compute_unit.cpp)
 verilog=(rtl/*.v)
 waivers=(rtl/*.vlt)   # and what the lockstep looks at inside
 if [ "$kind" = chip ]; then
-  headers+=(cpp_model/machine/{chip_device,memory_port,port_cycles,ram_queue,ray_kernel}.hpp sim/rtl/chip_library.hpp)
+  headers+=(cpp_model/machine/{chip_device,memory_port,port_cycles,ram_queue,ray_kernel}.hpp sim/rtl/chip_library.hpp
+    cpp_model/machine/{tree_setup,ray_setup,box_ray,triangle_ray}.hpp)
   wrapper+=(cpp_model/machine/chip_device.cpp)
   waivers+=(sim/rtl/chip_probes.vlt)
 else

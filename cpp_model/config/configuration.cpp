@@ -362,7 +362,8 @@ void check_hardware_traverser(const ChipConfiguration& chip, const std::string& 
     throw InputError(fmt::format("{}: chip.modelled_traverser.{} is {}; with chip.traverser hardware it must be {}",
                                  where, key, value, must));
   };
-  constexpr uint32_t kMostLanes = 31, kMostSlots = 256, kMostBanks = 16, kLeastWays = 2, kMostMshrsOfABank = 32, kLine = 64;
+  constexpr uint32_t kMostLanes = 31, kMostSlots = 256, kMostBanks = 16, kLeastWays = 2, kMostMshrsOfABank = 32;
+  constexpr uint32_t kLine = 64;
   if (chip.modelled_traverser_nodes != NodeFormat::Compressed) refuse("nodes", "exact", "compressed");
   const uint32_t lanes = chip.modelled_traverser_box_pipes, rays = chip.modelled_traverser_rays;
   if (lanes > kMostLanes) refuse("box_pipes", lanes, fmt::format("at most {}", kMostLanes));
@@ -384,9 +385,9 @@ void check_hardware_traverser(const ChipConfiguration& chip, const std::string& 
                          ways, kLine, banks));
     }
     if (mshrs % banks != 0 || mshrs > kMostMshrsOfABank * banks) {
-      refuse((cache + "_mshrs").c_str(), mshrs,
-             fmt::format("a multiple of cache_banks, which is {}, and at most {} in each bank", banks,
-                         kMostMshrsOfABank));
+      refuse(
+          (cache + "_mshrs").c_str(), mshrs,
+          fmt::format("a multiple of cache_banks, which is {}, and at most {} in each bank", banks, kMostMshrsOfABank));
     }
   };
   check_cache("node_cache", chip.modelled_traverser_node_cache_bytes, chip.modelled_traverser_node_cache_ways,

@@ -94,8 +94,8 @@ enum class Shading : uint8_t { Kernel = 0, Traverser = 1 };
   CHIP_PART(modelled_traverser, nodes, NodeFormat, NodeFormat::Compressed, names("compressed", "exact"), \
             "nodes of 64 bytes, with planes of 8 bits on a grid rounded outwards, or of 128, with boxes as they are") \
   CHIP_PART(modelled_traverser, box_bits, uint32_t, 0, zero_or(6, 16), \
-            "boxes of compressed nodes are tested in integers of so many bits, as rtl/box_pipe.v does; 0: in floats, and " \
-            "`hardware`, which has none, in 12 bits") \
+            "boxes of compressed nodes are tested in integers of so many bits, as rtl/box_pipe.v does; 0: in floats, " \
+            "and with `hardware`, which has none, in 12 bits") \
   CHIP_PART(modelled_traverser, rays, uint32_t, 128, integers(1, 1024), "rays in flight") \
   CHIP_PART(modelled_traverser, setup_latency, uint32_t, 16, integers(1, 64), \
             "cycles in which a ray is prepared; one begins in a cycle") \

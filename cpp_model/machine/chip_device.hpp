@@ -1,5 +1,6 @@
 // The chip's interface: one set of ports, behind which stand its model, the Verilated rtl/chip.v and the lockstep of
-// both. Outside remain the memory, the frame buffer, a host that starts a frame, and a traverser at its ports.
+// both. Outside remain the memory, the frame buffer, a host that starts a frame, and a traverser at its ports, unless
+// one is inside.
 //
 // Use, once a cycle: read outputs() (what the ports show in this cycle; they never depend on this cycle's inputs),
 // decide the inputs, call clock(inputs). A handshake transfers when both its valid and its ready are set in the same
@@ -18,8 +19,13 @@
 #include "machine/memory_port.hpp"
 #include "machine/packages.hpp"
 #include "machine/ray_kernel.hpp"
+#include "machine/tree_setup.hpp"
 
 namespace raypool {
+
+/// Whether rtl/traverser.v is in rtl/chip.v: then what stays for a frame says where its tree is. Otherwise a traverser
+/// may be at the chip's ports.
+constexpr bool has_traverser(const ChipConfiguration& chip) { return chip.traverser == TraverserName::Hardware; }
 
 /// What stays for a frame; a host writes it before it starts one.
 struct FrameSetup {
@@ -30,16 +36,11 @@ struct FrameSetup {
   uint32_t width = 0, height = 0;                         ///< pixels, 1 .. 65535
   uint32_t depth = 1;                                     ///< of normal rays: deeper ones are dropped
   bool reflections = false;                               ///< normal intersections are for the kernel that reflects
+  TreeSetup tree;                                         ///< of a traverser inside
 };
 
-struct ChipInputs {
-  // memory
-  bool memory_request_ready = false;
-  bool memory_beat_valid = false;
-  Beat memory_beat_data{};
-  // frame buffer
-  bool frame_ready = false;
-  // traverser: its rays, what becomes of them, and its memory
+/// What a traverser shows: of its rays, what becomes of them, and its memory.
+struct TraverserPorts {
   bool ray_ready = false;
   bool free_valid = false;
   uint32_t free_place = 0;
@@ -53,6 +54,16 @@ struct ChipInputs {
   MemoryPort::TreeRequest tree_request;
 };
 
+/// Those of a traverser are for one at the chip's ports.
+struct ChipInputs : TraverserPorts {
+  // memory
+  bool memory_request_ready = false;
+  bool memory_beat_valid = false;
+  Beat memory_beat_data{};
+  // frame buffer
+  bool frame_ready = false;
+};
+
 /// What belongs to a valid means something only while it is set; masks have one bit a unit.
 struct ChipOutputs {
   bool busy = false;  ///< a frame is being drawn
@@ -64,7 +75,7 @@ struct ChipOutputs {
   // frame buffer
   bool frame_valid = false;
   FrameContribution frame;
-  // traverser
+  // traverser, inside or at the ports
   bool ray_valid = false, ray_last = false;
   uint32_t ray_place = 0;
   Beat ray_data{};
@@ -94,7 +105,8 @@ struct ChipOutputs {
   bool exported_valid = false;  ///< the frame port has taken a contribution of a unit
   uint8_t exported_unit = 0;
   uint32_t exported_pixel = 0;
-  uint32_t quiet = 0;  ///< mask: nothing of the unit waits or is on its way at the memory port
+  uint32_t quiet = 0;        ///< mask: nothing of the unit waits or is on its way at the memory port
+  TraverserPorts traverser;  ///< of one inside
 };
 
 /// For the report: since the frame's start, right two cycles after the last event.

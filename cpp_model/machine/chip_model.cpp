@@ -1,6 +1,7 @@
 #include "machine/chip_model.hpp"
 
 #include <array>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -10,6 +11,7 @@
 #include "machine/intersection_pool.hpp"
 #include "machine/ray_pool.hpp"
 #include "machine/timed_tiles.hpp"
+#include "machine/traverser.hpp"
 
 namespace raypool {
 
@@ -117,6 +119,38 @@ class Launches {
   uint64_t look_at_ = kNever;
 };
 
+/// As rtl/chip.v has them.
+Traverser::Sizes traverser_sizes(const Configuration& configuration) {
+  const ChipConfiguration& chip = configuration.chip;
+  constexpr uint32_t kLine = MemoryPort::kLineBytes;
+  Traverser::Sizes sizes;
+  sizes.lanes = chip.modelled_traverser_box_pipes;
+  sizes.slots = chip.modelled_traverser_rays / sizes.lanes;
+  sizes.stack_entries = chip.modelled_traverser_stack_entries;
+  sizes.box_bits = static_cast<int>(hardware_box_bits(chip));
+  sizes.triangle_pipes = chip.modelled_traverser_triangle_pipes;
+  sizes.nodes.lines = chip.modelled_traverser_node_cache_bytes / kLine;
+  sizes.nodes.ways = chip.modelled_traverser_node_cache_ways;
+  sizes.nodes.mshrs = chip.modelled_traverser_node_cache_mshrs;
+  sizes.leaves.lines = chip.modelled_traverser_triangle_cache_bytes / kLine;
+  sizes.leaves.ways = chip.modelled_traverser_triangle_cache_ways;
+  sizes.leaves.mshrs = chip.modelled_traverser_triangle_cache_mshrs;
+  sizes.nodes.banks = sizes.leaves.banks = chip.modelled_traverser_cache_banks;
+  sizes.pool = chip.ray_pool_size;
+  sizes.record_words = configuration.intersection_words;
+  sizes.contributes = chip.shading == Shading::Traverser;
+  sizes.culling = chip.culling;
+  return sizes;
+}
+
+TraverserSetup traverser_setup(const FrameSetup& setup) {
+  const TreeSetup& tree = setup.tree;
+  return {tree.root,
+          tree.bounds,
+          {tree.triangles_line, tree.stacks_line},
+          {tree.material_base, tree.layout, setup.depth, setup.reflections}};
+}
+
 class ChipModel : public ChipDevice {
  public:
   ChipModel(const Configuration& configuration, std::unique_ptr<ComputeUnit> device)
@@ -148,13 +182,16 @@ class ChipModel : public ChipDevice {
   }
 
   void clock(const ChipInputs& inputs) override {
+    const TraverserPorts& outside = inputs;
+    const TraverserPorts& traverser = blocks_->traverser ? out_.traverser : outside;
     clock_launch();
-    clock_rays(inputs);
-    clock_intersections(inputs);
-    clock_memory(inputs);
-    clock_frame(inputs);
+    clock_rays(traverser);
+    clock_intersections(traverser);
+    clock_memory(inputs, traverser);
+    clock_frame(inputs, traverser);
     end_kernels();
     decide();
+    clock_traverser();
     device_->clock(out_.to_device);
     ++cycle_;
     present();
@@ -167,7 +204,11 @@ class ChipModel : public ChipDevice {
           reader(configuration.chip.ray_pool_size),
           intersections(configuration.chip, RecordLayout::in_order(configuration.intersection_words)),
           memory(configuration.chip, MemoryPort::Limits::of(configuration.chip)),
-          launches(configuration, units, setup) {}
+          launches(configuration, units, setup) {
+      if (!has_traverser(configuration.chip)) return;
+      traverser.emplace(traverser_sizes(configuration));
+      traverser->set_up(traverser_setup(setup));
+    }
 
     RayPool rays;
     RayReader reader;
@@ -175,6 +216,7 @@ class ChipModel : public ChipDevice {
     MemoryPort memory;
     FramePort frame;
     Launches launches;
+    std::optional<Traverser> traverser;
   };
 
   // A launch is taken as soon as it is offered, by a unit that was ready before.
@@ -183,7 +225,7 @@ class ChipModel : public ChipDevice {
     if (out_.to_device.launch_valid && out_.device.launch_ready) b.launches.accepted(cycle_, out_.device.launch_unit);
   }
 
-  void clock_rays(const ChipInputs& inputs) {
+  void clock_rays(const TraverserPorts& traverser) {
     Blocks& b = *blocks_;
     const UnitOutputs& device = out_.device;
     bool kept = false;
@@ -205,21 +247,21 @@ class ChipModel : public ChipDevice {
         b.launches.ray_left(cycle_, device.export_unit, outcome.shadow);
       }
     }
-    if (inputs.free_valid) {
-      b.rays.free(cycle_, inputs.free_place, inputs.free_shadow);
+    if (traverser.free_valid) {
+      b.rays.free(cycle_, traverser.free_place, traverser.free_shadow);
       b.launches.changed();
     }
-    b.reader.clock(inputs.ray_ready);
+    b.reader.clock(traverser.ray_ready);
     if (kept) b.reader.push(b.rays.outcome().place, b.rays.ray());
   }
 
-  void clock_intersections(const ChipInputs& inputs) {
+  void clock_intersections(const TraverserPorts& traverser) {
     Blocks& b = *blocks_;
     if (out_.device.import_request_valid &&
         b.intersections.request(cycle_, out_.device.import_request_kind, out_.device.import_request_unit))
       b.launches.changed();
-    if (inputs.put_valid && (out_.put_ready >> to_underlying(inputs.put_kind) & 1) != 0) {
-      b.intersections.put_beat(cycle_, inputs.put_kind, inputs.put_data);
+    if (traverser.put_valid && (out_.put_ready >> to_underlying(traverser.put_kind) & 1) != 0) {
+      b.intersections.put_beat(cycle_, traverser.put_kind, traverser.put_data);
       b.launches.changed();
     }
     if (out_.reserve_valid) {
@@ -228,19 +270,19 @@ class ChipModel : public ChipDevice {
     }
   }
 
-  void clock_memory(const ChipInputs& inputs) {
+  void clock_memory(const ChipInputs& inputs, const TraverserPorts& traverser) {
     MemoryPort& memory = blocks_->memory;
     if (out_.memory_request_valid && inputs.memory_request_ready) memory.taken(cycle_);
     if (out_.device.memory_request_valid && out_.to_device.memory_request_ready)
       memory.request(cycle_, out_.device.memory_request);
-    if (inputs.tree_request_valid && out_.tree_request_ready) memory.request(cycle_, inputs.tree_request);
+    if (traverser.tree_request_valid && out_.tree_request_ready) memory.request(cycle_, traverser.tree_request);
     if (memory.start() <= cycle_) memory.serve(cycle_);
     if (out_.to_device.memory_response_valid) memory.response();
     if (out_.tree_response_valid) memory.traverser_response();
     if (inputs.memory_beat_valid && out_.memory_beat_ready) memory.beat(cycle_, inputs.memory_beat_data);
   }
 
-  void clock_frame(const ChipInputs& inputs) {
+  void clock_frame(const ChipInputs& inputs, const TraverserPorts& traverser) {
     FramePort& frame = blocks_->frame;
     exported_valid_ = out_.device.frame_valid && out_.to_device.frame_ready;
     if (exported_valid_) {
@@ -249,8 +291,24 @@ class ChipModel : public ChipDevice {
       exported_pixel_ = out_.device.frame.pixel;
       blocks_->launches.contribution_left(cycle_, exported_unit_);
     }
-    if (inputs.contribution_valid && out_.contribution_ready) frame.take(cycle_, inputs.contribution);
+    if (traverser.contribution_valid && out_.contribution_ready) frame.take(cycle_, traverser.contribution);
     if (out_.frame_valid && inputs.frame_ready) frame.leave();
+  }
+
+  void clock_traverser() {
+    if (!blocks_->traverser) return;
+    Traverser::Inputs in{};
+    in.ray_valid = out_.ray_valid;
+    in.ray_last = out_.ray_last;
+    in.ray_place = out_.ray_place;
+    in.ray_data = out_.ray_data;
+    in.put_ready = out_.put_ready;
+    in.contribution_ready = out_.contribution_ready;
+    in.request_ready = out_.tree_request_ready;
+    in.response_valid = out_.tree_response_valid;
+    in.response_beat = out_.tree_response_beat;
+    in.response_data = out_.tree_response_data;
+    blocks_->traverser->clock(in);
   }
 
   void end_kernels() {
@@ -282,6 +340,7 @@ class ChipModel : public ChipDevice {
     present_intersections();
     present_memory();
     present_frame();
+    present_traverser();
   }
 
   void present_launch() {
@@ -359,6 +418,23 @@ class ChipModel : public ChipDevice {
     out_.exported_valid = exported_valid_;
     out_.exported_unit = exported_unit_;
     out_.exported_pixel = exported_pixel_;
+  }
+
+  void present_traverser() {
+    if (!blocks_->traverser) return;
+    const Traverser::Outputs& shown = blocks_->traverser->outputs();
+    TraverserPorts& ports = out_.traverser;
+    ports.ray_ready = shown.ray_ready;
+    ports.free_valid = shown.free_valid;
+    ports.free_place = shown.free_place;
+    ports.free_shadow = shown.free_shadow;
+    ports.put_valid = shown.put_valid;
+    ports.put_kind = shown.put_kind;
+    if (shown.put_valid) ports.put_data = shown.put_data;
+    ports.contribution_valid = shown.contribution_valid;
+    if (shown.contribution_valid) ports.contribution = shown.contribution;
+    ports.tree_request_valid = shown.request_valid;
+    if (shown.request_valid) ports.tree_request = shown.request;
   }
 
   Configuration configuration_;

@@ -36,3 +36,20 @@ for depth in 1 4; do
 lockstep = json.load(open(sys.argv[1]))["lockstep"]
 assert lockstep["differences"] == 0 and lockstep["cycles"] >= int(sys.argv[2]), lockstep' "$report" "$cycles"
 done
+
+# With the traverser inside, nothing but memories and host is around the chip; a hit is what that traverser says.
+for depth in 1 4; do
+  inside=(cornell --size 40x24 --depth "$depth" --config "$config" --traverser hardware --set chip.culling=true --quiet)
+  "$raypool" sim "${inside[@]}" --engine native --out "$folder/native"
+  "$raypool" sim "${inside[@]}" --engine functional --out "$folder/functional"
+  "$raypool" sim "${inside[@]}" --chip model --out "$folder/inside"
+  cmp "$folder/native/image.png" "$folder/functional/image.png"
+  cmp "$folder/native/image.png" "$folder/inside/image.png"
+  figures "$folder/inside" > "$folder/inside.json"
+  python3 -c 'import json, sys
+chip, native = (json.load(open(path)) for path in sys.argv[1:])
+assert "traverser_batches" not in chip and "traversal" not in chip, chip
+for key in ("rays_by_kind", "rays_without_weight", "rays_in_vain", "rays_left_out", "rays_that_end", "contributions"):
+    assert chip[key] == native[key], (key, chip[key], native[key])' \
+    "$folder/inside.json" "$folder/native/report.json"
+done

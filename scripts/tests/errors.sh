@@ -92,8 +92,14 @@ refuses_sim "unknown engine" "native, embree, functional, sampled, model, rtl or
 refuses_sim "a chip that nobody plays" "use model, rtl or lockstep" --chip functional
 refuses_sim "a chip beside an engine" "excludes" --chip model --engine model
 refuses_sim "modules of a chip as one piece" "leave --modules, --trace and --inspect out" --chip model --modules
-refuses_sim "the modelled traverser at a chip's ports" "choose it with --traverser static" --chip model \
-  --traverser modelled
+refuses_sim "the modelled traverser at a chip's ports" "choose one with --traverser hardware or --traverser static" \
+  --chip model --traverser modelled
+refuses_sim "the hardware's traverser without its chip" "not around engine model: draw with --chip model, rtl or" \
+  --engine model --traverser hardware
+refuses_sim "the hardware's traverser in a sample" "not around engine sampled" --engine sampled --traverser hardware
+refuses_sim "hits of the hardware from Embree" "engine embree has hits of its own" --engine embree --traverser hardware
+refuses_sim "a cache that no hardware has" "node_cache_ways is 1; with chip.traverser hardware it must be at least 2" \
+  --chip model --traverser hardware --set chip.modelled_traverser.node_cache_ways=1
 refuses_sim "a memory that is faster than the memory port" "chip.memory.latency is 8; .* takes 9 at least" \
   --chip model --set chip.memory.latency=8
 refuses_sim "a chip that is not built" "make unit CONFIG=4w4c SET=\"chip.ray_pool.size=77\" CHIP=rtl" --chip rtl \

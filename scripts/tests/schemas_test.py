@@ -45,9 +45,11 @@ def raypool(*words):
 
 
 def played_by(engine):
-    """Options of sim for an engine; of the whole chip for chip-model and such."""
+    """Options of sim for an engine; of the whole chip for chip-model and such, with its traverser inside-model."""
     if engine.startswith("chip-"):
         return ["--chip", engine.removeprefix("chip-")]
+    if engine.startswith("inside-"):
+        return ["--chip", engine.removeprefix("inside-"), "--traverser", "hardware"]
     return ["--engine", engine]
 
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
 #include <stdexcept>
 
 #include "bits.hpp"
@@ -12,6 +13,7 @@
 #include "chip/frame_setup.hpp"
 #include "chip/monitor.hpp"
 #include "chip/port_traverser.hpp"
+#include "chip/traverser_watch.hpp"
 #include "config/limits.hpp"
 #include "machine/intersection_pool.hpp"
 #include "scene/native_renderer.hpp"
@@ -25,11 +27,13 @@ using namespace chip;
 const ChipOptions& checked(const ChipOptions& options) {
   check_frame(options);
   const ChipConfiguration& chip = options.configuration.chip;
-  if (chip.traverser != TraverserName::Static) {
+  if (chip.traverser != TraverserName::Static && !has_traverser(chip)) {
     throw InputError(
-        "the chip in hardware has its traverser at its ports, where there is none but static: choose it with "
-        "--traverser static");
+        "the chip in hardware has its traverser inside, or static at its ports: choose one with --traverser hardware "
+        "or --traverser static");
   }
+  if (has_traverser(chip) ? options.tree == nullptr : options.tracer == nullptr)
+    throw std::logic_error("a traverser needs its memory, or a tracer");
   if (chip.memory_latency < BoardMemory::least_latency(chip)) {
     throw InputError(
         fmt::format("chip.memory.latency is {}; the chip in hardware takes {} at least, with {} cycles a beat",
@@ -44,9 +48,14 @@ class Board {
       : options_(checked(options)),
         chip_(chip),
         reflects_(secondary_kernel(options.depth, options.reflections) == RayKernel::CastSecondary),
-        memory_(*options.memory, options.configuration.chip),
-        traverser_(*options.tracer, options.configuration.chip, chip.units(), options.depth, reflects_, options.layout),
-        kernels_(chip.units(), options.configuration.contents()) {}
+        memory_(*options.memory, options.tree == nullptr ? nullptr : &options.tree->memory, options.configuration.chip),
+        kernels_(chip.units(), options.configuration.contents()) {
+    const ChipConfiguration& configuration = options.configuration.chip;
+    if (has_traverser(configuration))
+      watch_.emplace(options.layout, configuration.ray_pool_size, options.depth);
+    else
+      traverser_.emplace(*options.tracer, configuration, chip.units(), options.depth, reflects_, options.layout);
+  }
 
   ChipResult draw() {
     const auto begin = std::chrono::steady_clock::now();
@@ -72,12 +81,14 @@ class Board {
   RayKernel kernel_at(uint32_t pc) const;
   void show_progress() const;
   FrameFigures figures();
+  const TraverserCounts& traced() const { return watch_ ? watch_->counts() : traverser_->counts(); }
 
   const ChipOptions& options_;
   ChipDevice& chip_;
   const bool reflects_;
   BoardMemory memory_;
-  PortTraverser traverser_;
+  std::optional<PortTraverser> traverser_;
+  std::optional<TraverserWatch> watch_;  // of one inside
   ChipInputs inputs_;
   uint64_t cycle_ = 0;
   uint64_t cycles_ = 0;  // of the frame, once it has ended
@@ -101,6 +112,9 @@ FrameSetup Board::setup() const {
   setup.height = options_.height;
   setup.depth = options_.depth;
   setup.reflections = reflects_;
+  if (!watch_) return setup;
+  setup.tree = options_.tree->setup;
+  setup.tree.layout = options_.layout;
   return setup;
 }
 
@@ -118,7 +132,7 @@ void Board::clock() {
   const bool moves = outputs.frame_valid || !outputs.device.idle || outputs.quiet + 1 != 1u << chip_.units();
   still_ = ended_ && !moves ? still_ + 1 : 0;
   memory_.offer(cycle_, inputs_);
-  traverser_.offer(inputs_);
+  if (traverser_) traverser_->offer(inputs_);
 
   if (!ended_) {
     follow_kernels(outputs);
@@ -127,7 +141,8 @@ void Board::clock() {
   }
   if (outputs.frame_valid) options_.frame->add(outputs.frame);
   memory_.clock(cycle_, outputs, inputs_);
-  traverser_.clock(outputs, inputs_, kernels_.under_way() == 0 || outputs.held_up);
+  if (traverser_) traverser_->clock(outputs, inputs_, kernels_.under_way() == 0 || outputs.held_up);
+  if (watch_) watch_->clock(outputs);
   chip_.clock(inputs_);
   ++cycle_;
 }
@@ -160,7 +175,7 @@ void Board::follow_levels(const ChipOutputs& outputs) {
 
 void Board::watch(const ChipOutputs& outputs) {
   transfers_ += (outputs.memory_request_valid && inputs_.memory_request_ready) + outputs.ray_valid +
-                inputs_.free_valid + outputs.frame_valid +
+                (watch_ ? outputs.traverser : inputs_).free_valid + outputs.frame_valid +
                 (outputs.to_device.launch_valid && outputs.device.launch_ready) + outputs.outcome.valid +
                 outputs.pixel_valid;
   if (options_.progress && cycle_ % Monitor::kProgressCycles == 0) show_progress();
@@ -199,8 +214,7 @@ void Board::stall(const std::string& what) const {
 // Of the pixels that are cast: which of them are finished nobody outside knows.
 void Board::show_progress() const {
   const double pixels = static_cast<double>(options_.width) * options_.height;
-  options_.progress(
-      {ended_ ? 1 : std::min(1.0, static_cast<double>(cast_) / pixels), cycle_, traverser_.counts().rays.traced()});
+  options_.progress({ended_ ? 1 : std::min(1.0, static_cast<double>(cast_) / pixels), cycle_, traced().rays.traced()});
 }
 
 FrameFigures Board::figures() {
@@ -221,7 +235,7 @@ FrameFigures Board::figures() {
   figures.memory_port_busy = counts.memory_port_busy;
   figures.memory_reads = counts.memory_reads;
   figures.memory_writes = counts.memory_writes;
-  figures.traverser = traverser_.counts();
+  figures.traverser = traced();
   return figures;
 }
 

@@ -12,6 +12,7 @@
 
 #include "chip/ports.hpp"
 #include "chip/tile_costs.hpp"
+#include "chip/tree_image.hpp"
 #include "config/configuration.hpp"
 #include "isa/isa.hpp"
 #include "kernel/kernels.hpp"
@@ -43,6 +44,7 @@ struct ChipOptions {
   uint32_t depth = 1;              ///< 1: eye and shadow rays only; up to kLargestDepth (scene/native_renderer.hpp)
   bool reflections = true;  ///< false: casts none, whatever the depth; the same picture where no material reflects
   RayTracer* tracer = nullptr;
+  TreeImage* tree = nullptr;  ///< of a traverser in hardware, which needs no tracer; its stacks are written
   FrameSink* frame = nullptr;
 
   /// Numbers along the tile walk (machine/tile_walk.hpp) of those that are cast, ascending; empty: all of the picture.

@@ -13,7 +13,8 @@ namespace raypool::chip {
 namespace {
 
 const ChipOptions& checked(const ChipOptions& options) {
-  if (options.device == nullptr) throw std::logic_error("run_chip needs a device");
+  if (options.device == nullptr || options.tracer == nullptr)
+    throw std::logic_error("run_chip needs a device and a tracer");
   check_frame(options);
   if (options.device->timed() && options.configuration.chip.traverser == TraverserName::Hardware) {
     throw InputError(

@@ -20,8 +20,7 @@ void require_range(const char* what, uint32_t value, uint32_t low, uint32_t high
 }  // namespace
 
 void check_frame(const ChipOptions& options) {
-  if (options.memory == nullptr || options.tracer == nullptr || options.frame == nullptr)
-    throw std::logic_error("a frame needs memory, tracer and frame");
+  if (options.memory == nullptr || options.frame == nullptr) throw std::logic_error("a frame needs memory and frame");
   require_range("image width", options.width, 1, 65535);
   require_range("image height", options.height, 1, 65535);
   require_range("depth", options.depth, 1, kLargestDepth);

@@ -64,7 +64,11 @@ Surroundings::Surroundings(const Scene& scene, const MemoryImage& image, const R
     : tracer(scene, image.material_base, record.configuration.chip),
       scene_tracer(tracer),
       frame(record.width, record.height),
-      sink(frame) {}
+      sink(frame) {
+  const ChipConfiguration& chip = record.configuration.chip;
+  if (record.whole_chip && has_traverser(chip))
+    tree = make_tree_image(scene, tracer.traversal().bvh(), chip, image.material_base);
+}
 
 ChipOptions chip_options(const RunRecord& record, const Scene& scene, MemoryImage& image, ComputeUnit* device,
                          Surroundings& around) {
@@ -82,6 +86,7 @@ ChipOptions chip_options(const RunRecord& record, const Scene& scene, MemoryImag
   chip.depth = record.depth;
   chip.reflections = record.reflections;
   chip.tracer = &around.scene_tracer;
+  chip.tree = around.tree ? &*around.tree : nullptr;
   chip.frame = &around.sink;
   return chip;
 }

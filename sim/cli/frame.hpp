@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "chip/chip.hpp"
@@ -35,6 +36,7 @@ struct Surroundings {
   SceneTracer scene_tracer;
   FrameBuffer frame;
   FrameBufferSink sink;
+  std::optional<TreeImage> tree;  // of a traverser in hardware
 };
 
 /// The chip around `device`, or one that has it inside (null), which draws the frame of the record.

@@ -183,7 +183,7 @@ void add_chip(Json& json, const ChipResult& chip, const ChipConfiguration& machi
                     {"port_utilisation", chip.memory_port_utilisation}};
   if (chip.traversal) {
     json["traversal"] = traversal_json(*chip.traversal, TraverserSizes(machine), chip.cycles);
-  } else {
+  } else if (machine.traverser != TraverserName::Hardware) {
     json["traverser_batches"] = {{"at_kernel_end", chip.traverser_batches},
                                  {"after_stall", chip.traverser_stall_batches}};
   }

@@ -336,11 +336,11 @@ int sim_command(const SimOptions& options) {
   }
   OutputFolder out(options.out.empty() ? default_folder(options, scene, loaded, size) : fs::path(options.out));
 
-  const FrameBuffer frame =
-      engine == Engine::Sampled ? draw_sampled_frame(options, record, scene, image, whole)
-      : without_unit(engine) ? draw_natively(options, engine, record, scene, image, tracer_of(record, scene, image))
-      : record.whole_chip    ? draw_on_chip(options, engine, record, scene, image, out)
-                             : draw_on_unit(options, engine, record, scene, image, out);
+  const FrameBuffer frame = engine == Engine::Sampled ? draw_sampled_frame(options, record, scene, image, whole)
+                            : without_unit(engine)
+                                ? draw_natively(options, engine, record, scene, image, tracer_of(record, scene, image))
+                            : record.whole_chip ? draw_on_chip(options, engine, record, scene, image, out)
+                                                : draw_on_unit(options, engine, record, scene, image, out);
 
   const std::vector<uint8_t> png = encode_png(frame);
   out.write("image.png", std::string(png.begin(), png.end()));

@@ -200,10 +200,35 @@ void compare_frame(Ports& ports, const ChipOutputs& rtl, const ChipOutputs& mode
   }
 }
 
+void compare_traverser(Ports& ports, const TraverserPorts& rtl, const TraverserPorts& model) {
+  ports.of("traverser");
+  ports.same("ray_ready", rtl.ray_ready, model.ray_ready);
+  if (ports.both("free_valid", rtl.free_valid, model.free_valid)) {
+    ports.same("free_place", rtl.free_place, model.free_place);
+    ports.same("free_shadow", rtl.free_shadow, model.free_shadow);
+  }
+  if (ports.both("put_valid", rtl.put_valid, model.put_valid)) {
+    ports.same("put_kind", rtl.put_kind, model.put_kind);
+    ports.same("put_data", rtl.put_data, model.put_data);
+  }
+  if (ports.both("contribution_valid", rtl.contribution_valid, model.contribution_valid)) {
+    ports.same_word("contribution_pixel", rtl.contribution.pixel, model.contribution.pixel);
+    ports.same("contribution_color", rtl.contribution.rgb, model.contribution.rgb);
+  }
+  if (!ports.both("request_valid", rtl.tree_request_valid, model.tree_request_valid)) return;
+  const MemoryPort::TreeRequest &r = rtl.tree_request, &m = model.tree_request;
+  ports.same("request_second", r.second, m.second);
+  ports.same_word("request_address", r.address, m.address);
+  if (!ports.same("request_write", r.write, m.write) || !m.write) return;
+  ports.same("request_data", r.data[0], m.data[0]);
+  if (m.second) ports.same("request_data", r.data[1], m.data[1]);
+}
+
 }  // namespace
 
 void compare_chip(const ChipOutputs& rtl, const ChipOutputs& model, uint32_t kinds) {
   Ports ports;
+  compare_traverser(ports, rtl.traverser, model.traverser);
   compare_rays(ports, rtl, model);
   compare_intersections(ports, rtl, model, kinds);
   compare_controller(ports, rtl, model);

@@ -53,7 +53,7 @@ class LockstepChipImpl : public LockstepChip {
   void clock(const ChipInputs& inputs) override {
     if (!report_.empty()) throw LockstepDifference(report_);
     count_transfers(inputs);
-    if (inputs.tree_request_valid) still_since_ = cycle_ + 1;
+    if (inputs.tree_request_valid || rtl_->outputs().traverser.tree_request_valid) still_since_ = cycle_ + 1;
     rtl_->clock(inputs);
     model_->clock(inputs);
     ++cycle_;

@@ -1,9 +1,12 @@
 // The Verilated rtl/chip.v behind the interface of the chip. scripts/verilate.sh --top chip compiles it into a shared
 // library. What the blocks show each other is read from the wires between them, which sim/rtl/chip_probes.vlt keeps.
+#include <algorithm>
+#include <array>
 #include <string>
 
 #include "Vchip.h"
 #include "Vchip___024root.h"
+#include "bits.hpp"
 #include "built_parameters.h"
 #include "rtl/chip_library.hpp"
 #include "rtl/verilated_design.hpp"
@@ -61,7 +64,8 @@ struct DevicePorts {
 class RtlChip : public ChipDevice {
  public:
   explicit RtlChip(const Configuration& configuration)
-      : arguments_(configuration.arguments),
+      : inside_(has_traverser(configuration.chip)),
+        arguments_(configuration.arguments),
         kinds_(configuration.chip.culling ? 3 : 2),
         level_bits_(32u - static_cast<uint32_t>(__builtin_clz(configuration.chip.intersection_pool_size))) {}
 
@@ -79,6 +83,7 @@ class RtlChip : public ChipDevice {
     top.secondary_pc_i = static_cast<SData>(setup.entries[RayKernel::CastSecondary]);
     top.direct_pc_i = static_cast<SData>(setup.entries[RayKernel::CastSecondaryDirect]);
     top.shade_pc_i = static_cast<SData>(setup.entries[RayKernel::Shade]);
+    write_tree(setup.tree);
     starts_ = false;
     top.rst_ni = 0;
     clock({});
@@ -112,6 +117,28 @@ class RtlChip : public ChipDevice {
   void open_waveform(const std::string& path) override { design_.open_waveform(path); }
 
  private:
+  void write_tree(const TreeSetup& tree) {
+    Vchip& top = design_.top();
+    top.tree_root_i = tree.root;
+    for (size_t axis = 0; axis < 3; ++axis) {
+      top.tree_lower_i.data()[axis] = as_bits(tree.bounds.lower[axis]);
+      top.tree_upper_i.data()[axis] = as_bits(tree.bounds.upper[axis]);
+    }
+    top.triangles_line_i = tree.triangles_line;
+    top.stacks_line_i = tree.stacks_line;
+    top.material_base_i = tree.material_base;
+    // Of each place of a record its word; of those without one, zero.
+    constexpr uint32_t kBits = 5, kNone = 31;
+    std::array<uint32_t, kIntersectionWords> words{};
+    words.fill(kNone);
+    for (uint32_t word = 0; word < words.size(); ++word)
+      if (tree.layout.place[word] != RecordLayout::kAbsent) words[tree.layout.place[word]] = word;
+    std::array<uint32_t, 4> record{};
+    for (uint32_t bit = 0; bit < kBits * words.size(); ++bit)
+      record[bit / 32] |= (words[bit / kBits] >> bit % kBits & 1) << bit % 32;
+    std::copy(record.begin(), record.end(), top.record_i.data());
+  }
+
   void write_inputs(const ChipInputs& in) {
     Vchip& top = design_.top();
     top.start_i = starts_;
@@ -161,23 +188,55 @@ class RtlChip : public ChipDevice {
       out_.frame.pixel = top.frame_pixel_o;
       read_color(top.frame_color_o, out_.frame);
     }
-    out_.ray_valid = top.ray_valid_o;
-    if (out_.ray_valid) {
-      out_.ray_last = top.ray_last_o;
-      out_.ray_place = top.ray_place_o;
-      read_beat(top.ray_data_o, out_.ray_data);
-    }
-    out_.put_ready = uint32_t{top.put_ready_o} << to_underlying(ImportKind::Normal);
-    out_.contribution_ready = top.contribution_ready_o;
-    out_.tree_request_ready = top.tree_request_ready_o;
-    out_.tree_response_valid = top.tree_response_valid_o;
-    if (out_.tree_response_valid) {
-      out_.tree_response_beat = top.tree_response_beat_o;
-      read_beat(top.tree_response_data_o, out_.tree_response_data);
-    }
     read_unit_outputs(device_, kUnitCount, out_.device);
     read_device_inputs();
     read_between();
+    read_to_traverser();
+    if (inside_) read_traverser();
+  }
+
+  // Whether it is inside or not.
+  void read_to_traverser() {
+    const Wires& w = wires_;
+    out_.ray_valid = w.chip__DOT__ray_valid;
+    if (out_.ray_valid) {
+      out_.ray_last = w.chip__DOT__ray_last;
+      out_.ray_place = w.chip__DOT__ray_place;
+      read_beat(w.chip__DOT__ray_data, out_.ray_data);
+    }
+    out_.put_ready = uint32_t{w.chip__DOT__put_ready} << to_underlying(ImportKind::Normal);
+    out_.contribution_ready = w.chip__DOT__contribution_ready;
+    out_.tree_request_ready = w.chip__DOT__tree_request_ready;
+    out_.tree_response_valid = w.chip__DOT__tree_response_valid;
+    if (!out_.tree_response_valid) return;
+    out_.tree_response_beat = w.chip__DOT__tree_response_beat;
+    read_beat(w.chip__DOT__tree_response_data, out_.tree_response_data);
+  }
+
+  void read_traverser() {
+    const Wires& w = wires_;
+    TraverserPorts& ports = out_.traverser;
+    ports.ray_ready = w.chip__DOT__ray_ready;
+    ports.free_valid = w.chip__DOT__free_valid;
+    ports.free_place = w.chip__DOT__free_place;
+    ports.free_shadow = w.chip__DOT__free_shadow;
+    ports.put_valid = w.chip__DOT__put_valid;
+    if (ports.put_valid) {
+      ports.put_kind = static_cast<ImportKind>(w.chip__DOT__put_kind);
+      read_beat(w.chip__DOT__put_data, ports.put_data);
+    }
+    ports.contribution_valid = w.chip__DOT__contribution_valid;
+    if (ports.contribution_valid) {
+      ports.contribution.pixel = w.chip__DOT__contribution_pixel;
+      read_color(w.chip__DOT__contribution_color, ports.contribution);
+    }
+    ports.tree_request_valid = w.chip__DOT__tree_request_valid;
+    if (!ports.tree_request_valid) return;
+    ports.tree_request.write = w.chip__DOT__tree_request_write;
+    ports.tree_request.second = w.chip__DOT__tree_request_second;
+    ports.tree_request.address = w.chip__DOT__tree_request_address;
+    for (uint32_t i = 0; i < 2 * kBeatWords; ++i)
+      ports.tree_request.data[i / kBeatWords][i % kBeatWords] = w.chip__DOT__tree_request_data.data()[i];
   }
 
   void read_device_inputs() {
@@ -233,6 +292,7 @@ class RtlChip : public ChipDevice {
     out_.quiet = w.chip__DOT__quiet & ((1u << kUnitCount) - 1);
   }
 
+  bool inside_;  // the traverser
   uint32_t arguments_, kinds_;
   uint32_t level_bits_;  // of the intersection pool
   VerilatedDesign<Vchip> design_{"chip"};

@@ -78,8 +78,7 @@ Hit finish(const PreparedRay& ray, const Candidate& best) {
 Hit finish_in_hardware(const PreparedRay& ray, const Candidate& best) {
   Triangle triangle{{}, best.triangle};
   for (int corner = 0; corner < 3; ++corner) {
-    for (int axis = 0; axis < 3; ++axis)
-      triangle.corners[corner][axis] = best.block->vertices[corner][axis][best.lane];
+    for (int axis = 0; axis < 3; ++axis) triangle.corners[corner][axis] = best.block->vertices[corner][axis][best.lane];
   }
   const RayFinish made(ray, triangle, best.t, std::ilogb(ray.t_scale));
   return {made.t, made.u, made.v, {made.normal[0], made.normal[1], made.normal[2]}, best.triangle};

@@ -193,7 +193,7 @@ void CommandLine::add_sim_command() {
   sim_app
       ->add_option("--chip", sim_.chip,
                    "in place of --engine: what plays the whole chip, rtl/chip.v, not the unit alone; its traverser is "
-                   "static, its controller counts")
+                   "static, at its ports, or hardware, inside; its controller counts")
       ->type_name("model|rtl|lockstep")
       ->excludes(engine);
   add_units_and_depth(*sim_app, sim_.units, sim_.depth);
