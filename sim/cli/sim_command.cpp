@@ -62,18 +62,17 @@ void check(const SimOptions& options, Engine engine) {
 }
 
 /// The traverser in Verilog is in the chip in Verilog alone; who needs no traverser's time only needs its hits.
-void check_traverser(const RunRecord& record, Engine engine) {
-  const bool timed = engine == Engine::Model || engine == Engine::Rtl || engine == Engine::Lockstep;
-  if (record.configuration.chip.traverser != TraverserName::Hardware || record.whole_chip) return;
-  if (timed || engine == Engine::Sampled) {
+Configuration for_engine(Configuration configuration, const SimOptions& options, Engine engine) {
+  if (configuration.chip.traverser != TraverserName::Hardware || !options.chip.empty()) return configuration;
+  if (engine == Engine::Embree)
+    throw InputError("chip.traverser is hardware: engine embree has hits of its own; use native or functional");
+  if (engine != Engine::Native && engine != Engine::Functional) {
     throw InputError(
         fmt::format("chip.traverser is hardware: that one is in the chip as one piece, and not around engine {}: draw "
                     "with --chip model, rtl or lockstep, or choose another with --traverser",
-                    record.engine));
+                    options.engine));
   }
-  if (engine == Engine::Embree) {
-    throw InputError("chip.traverser is hardware: engine embree has hits of its own; use native or functional");
-  }
+  return configuration;
 }
 
 /// "2%", or "10s": a number above zero and that unit, which may be left out.
@@ -313,14 +312,13 @@ int sim_command(const SimOptions& options) {
   record.whole_chip = !options.chip.empty();
   std::vector<std::string> set = options.set;
   if (!options.traverser.empty()) set.push_back("chip.traverser=" + options.traverser);
-  const Configuration loaded = load_configuration(options.config, set);
+  const Configuration loaded = for_engine(load_configuration(options.config, set), options, engine);
   record.configuration = loaded;
   if (record.whole_chip) record.configuration.chip.controller = ControllerName::Counters;  // the one in Verilog
   record.width = size.width;
   record.height = size.height;
   record.depth = options.depth;
   record.units = options.units;
-  check_traverser(record, engine);
 
   const Scene scene = load_scene_and_warn(options.scene, options.detail, options.view, options.look);
   record.scene = scene.name;
