@@ -100,6 +100,8 @@ chip_configurations=(
   "ray_setup"
   "ray_setup BITS=6 TAG_BITS=1"
   "ray_setup BITS=16"
+  "ray_finish"
+  "ray_finish TAG_BITS=1"
   "triangle_edges"
   "triangle_pipe BITS=26 TAG_BITS=1"
   "triangle_pipe BITS=32"

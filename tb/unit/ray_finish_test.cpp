@@ -351,7 +351,7 @@ TEST(RayFinish, IsAsNearToWhatIsExactAsDouble) {
                                      "any floats", "padded",        "slivers", "unequal"};
   for (size_t from : {0, 2}) {
     std::printf(from == 0 ? "shares, errors in 2^-24\n" : "normals, errors in the last place of a component\n");
-    std::printf("%17s %7s  %-26s  %-26s\n", "", "", "rtl/ray_finish.v", "engines, in double");
+    std::printf("%17s %7s  %-26s  engines, in double\n", "", "", "rtl/ray_finish.v");
     std::printf("%17s %7s", "hits of rays", "count");
     for (int i = 0; i < 2; ++i) std::printf("  %8s %8s %8s", "median", "99%", "largest");
     std::printf("\n");
