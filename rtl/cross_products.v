@@ -60,23 +60,29 @@ module cross_products #(
     distance_4 <= (distance > FAR) ? FAR[D-1:0] : distance[D-1:0];
   end
 
-  // ---- 5: the lower one at the place of the other. If it is moved by more than two places, the difference has lost one
-  // bit at the most, so what lies behind two more bits only shows that it is there.
-  wire [2*P+4:0] moved = {swap_4 ? product_a_4 : product_b_4, {P+5{1'b0}}} >> distance_4;
+  // ---- 5: the lower one at the place of the other. If it is moved by more than two places, the difference has lost
+  // one bit at the most, so what lies behind two more bits only shows that it is there.
+  wire [P-1:0] higher = swap_4 ? product_b_4 : product_a_4;
+  wire [P-1:0] lower = swap_4 ? product_a_4 : product_b_4;
+  wire [2*P+4:0] moved = {lower, {P+5{1'b0}}} >> distance_4;
+  // Only there the lower one can be larger.
+  wire at_once = distance_4 == {D{1'b0}} && lower > higher;
+  wire moved_once = distance_4 == {{D-1{1'b0}}, 1'b1} && {1'b0, lower} > {higher, 1'b0};
   reg [P-1:0] higher_5;
   reg [P+2:0] lower_5;
-  reg sign_5, subtract_5;
+  reg sign_5, subtract_5, below_5;
   reg [11:0] exponent_5;
   always @(posedge clk_i) begin
-    higher_5 <= swap_4 ? product_b_4 : product_a_4;
+    higher_5 <= higher;
     lower_5 <= {moved[2*P+4-:P+2], moved[P+2:0] != {P+3{1'b0}}};
-    {sign_5, subtract_5, exponent_5} <= {sign_4, subtract_4, exponent_4};
+    {subtract_5, exponent_5} <= {subtract_4, exponent_4};
+    below_5 <= subtract_4 && (at_once || moved_once);
+    sign_5 <= sign_4;
   end
 
   // ---- 6: their sum, or the size of their difference; 7: its first bit at the top; 8: rounded
-  wire [W-1:0] higher = {1'b0, higher_5, 3'b000}, lower = {1'b0, lower_5};
-  wire [W-1:0] difference = higher - lower;
-  wire below = difference[W-1];
+  wire [W-1:0] larger = below_5 ? {1'b0, lower_5} : {1'b0, higher_5, 3'b000};
+  wire [W-1:0] smaller = below_5 ? {1'b0, higher_5, 3'b000} : {1'b0, lower_5};
   reg [W-1:0] sum_6, sum_7;
   reg sign_6, sign_7;
   reg [11:0] exponent_6, exponent_7;
@@ -88,8 +94,8 @@ module cross_products #(
   wire up = sum_7[W-33] && (sum_7[W-32] || sum_7[W-34:0] != {W-33{1'b0}});
   wire [10:0] exponent = exponent_7[10:0] - {{11-PLACES_BITS{1'b0}}, places_7};
   always @(posedge clk_i) begin
-    sum_6 <= !subtract_5 ? higher + lower : below ? lower - higher : difference;
-    sign_6 <= sign_5 ^ (subtract_5 && below);
+    sum_6 <= larger + (smaller ^ {W{subtract_5}}) + {{W-1{1'b0}}, subtract_5};
+    sign_6 <= sign_5 ^ below_5;
     exponent_6 <= exponent_5;
     sum_7 <= moved_6;
     places_7 <= places_6;

@@ -1,5 +1,5 @@
-// A finite float, subnormal or not, as a number with an exponent of 11 bits that is not subnormal, a cycle later. It may
-// have MANTISSA_BITS of fraction, but is a multiple of 2^-149: a subnormal one has 23.
+// A finite float, subnormal or not, as a number with an exponent of 11 bits that is not subnormal, a cycle later. It
+// may have MANTISSA_BITS of fraction, but is a multiple of 2^-149: a subnormal one has 23.
 `default_nettype none
 module float_widen #(
   parameter integer MANTISSA_BITS = 31,          // 23 or more

@@ -1,5 +1,5 @@
-// Of three numbers that come one after the other, the largest exponent, beside what came: four cycles later, so that all
-// three have come, and for three cycles.
+// Of three numbers that come one after the other, the largest exponent, beside what came: four cycles later, so that
+// all three have come, and for three cycles.
 `default_nettype none
 module largest_exponent #(
   parameter integer BITS = 43                    // sign, exponent of 11 bits, the rest; a zero has the exponent 0

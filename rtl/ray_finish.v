@@ -51,13 +51,16 @@ module ray_finish #(
   endgenerate
   assign valid_o = first_q[END];
 
-  // ---- What waits: t, to 57, and the tag. Of rays that are three cycles apart 20 have begun by then
+  // ---- What waits: t, to 57, and the tag. When a ray comes 18 others, three cycles apart, are before 57
   wire waits;
+  wire [TAG_BITS+40:0] oldest;
   wire [31:0] t_57;
   wire [8:0] scale_57;
   wire [TAG_BITS-1:0] tag_57;
-  ram_queue #(.WIDTH(TAG_BITS+41), .DEPTH(20)) waiting (.clk_i(clk_i), .rst_ni(rst_ni), .push_i(valid_i),
-    .data_i({tag_i, t_i, scale_i}), .valid_o(waits), .ready_i(first_q[59]), .data_o({tag_57, t_57, scale_57}));
+  ram_queue #(.WIDTH(TAG_BITS+41), .DEPTH(19)) waiting (.clk_i(clk_i), .rst_ni(rst_ni), .push_i(valid_i),
+    .data_i({tag_i, t_i, scale_i}), .valid_o(waits), .ready_i(first_q[56]), .data_o(oldest));
+  ray_delay #(.WIDTH(TAG_BITS+41)) waited_delay (.clk_i(clk_i), .move_i(first_q[56]), .data_i(oldest),
+    .data_o({tag_57, t_57, scale_57}));
   ray_delay #(.WIDTH(TAG_BITS), .MOVES(3)) tag_delay (.clk_i(clk_i), .move_i({first_q[65], first_q[62], first_q[59]}),
     .data_i(tag_57), .data_o(tag_o));
 
@@ -84,21 +87,23 @@ module ray_finish #(
     .waiting_i({a_40[41:31] == 11'd0, exponent_40}), .digits_o(digits_57), .rest_o(rest_57),
     .waiting_o({zero_57, exponent_57}));
 
-  // ---- 57 .. 59: floats of the shares, and of t in between; 66: they wait for the normal
+  // ---- 58 .. 60: floats of the shares, and of t in between; 66: they wait for the normal
   wire t_sign_58, t_zero_58;
   wire signed [8:0] t_exponent_58;
   wire [22:0] t_fraction_58;
   float_parts t_parts (.clk_i(clk_i), .float_i(t_57), .sign_o(t_sign_58), .zero_o(t_zero_58),
     .exponent_o(t_exponent_58), .fraction_o(t_fraction_58));
   wire [10:0] t_exponent = 11'd896 + {{2{t_exponent_58[8]}}, t_exponent_58} + {{2{scale_57[8]}}, scale_57};
-  wire [44:0] number_57 = first_q[58] ? {1'b0, t_zero_58 ? 11'd0 : t_exponent, t_fraction_58, 10'd0} :
-                          {1'b0, zero_57 ? 11'd0 : exponent_57, digits_57, rest_57};
-  wire [31:0] float_59;
-  reg [31:0] float_60, float_61;
-  float_shorten #(.MANTISSA_BITS(33)) shorten (.clk_i(clk_i), .number_i(number_57), .float_o(float_59));
-  always @(posedge clk_i) {float_61, float_60} <= {float_60, float_59};
-  ray_delay #(.WIDTH(96), .MOVES(2)) share_delay (.clk_i(clk_i), .move_i({first_q[64], first_q[61]}),
-    .data_i({float_59, float_60, float_61}), .data_o({u_o, t_o, v_o}));
+  reg [44:0] number_58;
+  always @(posedge clk_i)
+    number_58 <= first_q[58] ? {1'b0, t_zero_58 ? 11'd0 : t_exponent, t_fraction_58, 10'd0} :
+                 {1'b0, zero_57 ? 11'd0 : exponent_57, digits_57, rest_57};
+  wire [31:0] float_60;
+  reg [31:0] float_61, float_62;
+  float_shorten #(.MANTISSA_BITS(33)) shorten (.clk_i(clk_i), .number_i(number_58), .float_o(float_60));
+  always @(posedge clk_i) {float_62, float_61} <= {float_61, float_60};
+  ray_delay #(.WIDTH(96), .MOVES(2)) share_delay (.clk_i(clk_i), .move_i({first_q[65], first_q[62]}),
+    .data_i({float_60, float_61, float_62}), .data_o({u_o, t_o, v_o}));
 
   // ---- 59: the length's reciprocal, cut off; 61: the normal times it; 62: what is behind 33 bits as one; 64: floats
   reg [30:0] digits_59;

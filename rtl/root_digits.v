@@ -19,8 +19,8 @@ module root_digits #(
   genvar b;
   generate
     for (b = 0; b < BLOCKS; b = b + 1) begin : gen_block
-      // At its end: of the root, of what is left, which is up to twice the root, and of what has not been looked at, but
-      // for the next four bits.
+      // Bits at its end: of the root, of what is left, which is up to twice the root, and of what has not been looked
+      // at, but for the next four.
       localparam integer Q = 6*b + 7, R = 6*b + 8, V = 4*DIGITS - 12*b - 4;
       wire [Q-7:0] given_root;
       wire [R-7:0] given_left;
