@@ -80,7 +80,7 @@ module cross_products #(
     sign_5 <= sign_4;
   end
 
-  // ---- 6: their sum, or the size of their difference; 7: its first bit at the top; 8: rounded
+  // ---- 6: their sum, or the size of their difference; 7: its first bit at the top, or next to it; 8: rounded
   wire [W-1:0] larger = below_5 ? {1'b0, lower_5} : {1'b0, higher_5, 3'b000};
   wire [W-1:0] smaller = below_5 ? {1'b0, higher_5, 3'b000} : {1'b0, lower_5};
   reg [W-1:0] sum_6, sum_7;
@@ -90,9 +90,10 @@ module cross_products #(
   localparam integer PLACES_BITS = $clog2(W);
   wire [PLACES_BITS-1:0] places_6;
   reg [PLACES_BITS-1:0] places_7;
-  normaliser #(.WIDTH(W)) normaliser (.value_i(sum_6), .moved_o(moved_6), .places_o(places_6));
-  wire up = sum_7[W-33] && (sum_7[W-32] || sum_7[W-34:0] != {W-33{1'b0}});
-  wire [10:0] exponent = exponent_7[10:0] - {{11-PLACES_BITS{1'b0}}, places_7};
+  normaliser #(.WIDTH(W), .LEFT(1)) normaliser (.value_i(sum_6), .moved_o(moved_6), .places_o(places_6));
+  wire [W-1:0] bits = sum_7[W-1] ? sum_7 : sum_7 << 1;
+  wire up = bits[W-33] && (bits[W-32] || bits[W-34:0] != {W-33{1'b0}});
+  wire [10:0] exponent = exponent_7[10:0] - {{11-PLACES_BITS{1'b0}}, places_7[PLACES_BITS-1:1], !sum_7[W-1]};
   always @(posedge clk_i) begin
     sum_6 <= larger + (smaller ^ {W{subtract_5}}) + {{W-1{1'b0}}, subtract_5};
     sign_6 <= sign_5 ^ below_5;
@@ -101,8 +102,8 @@ module cross_products #(
     places_7 <= places_6;
     sign_7 <= sign_6;
     exponent_7 <= exponent_6 - 12'd1021;         // a product of two ones has its first bit two places below the top
-    product_o <= sum_7[W-1] ? {sign_7, {exponent, sum_7[W-2-:31]} + {41'd0, up}} : 43'd0;
+    product_o <= bits[W-1] ? {sign_7, {exponent, bits[W-2-:31]} + {41'd0, up}} : 43'd0;
   end
-  wire unused = &{1'b0, distance[12:D], exponent_7[11]};
+  wire unused = &{1'b0, distance[12:D], exponent_7[11], places_7[0]};
 endmodule
 `default_nettype wire

@@ -1,7 +1,9 @@
-// A number moved up until its first bit is at the top, and by how many places: combinational. A zero stays one.
+// A number moved up until its first bit is at the top, and by how many places: combinational. A zero stays one. With LEFT
+// the last steps, less than 2^LEFT places together, are left to be taken.
 `default_nettype none
 module normaliser #(
   parameter integer WIDTH = 24,
+  parameter integer LEFT = 0,
   parameter integer PLACES_BITS = $clog2(WIDTH)
 ) (
   input  wire [WIDTH-1:0]       value_i,
@@ -12,7 +14,7 @@ module normaliser #(
   always @* begin
     moved_o = value_i;
     places_o = {PLACES_BITS{1'b0}};
-    for (step = PLACES_BITS - 1; step >= 0; step = step - 1)
+    for (step = PLACES_BITS - 1; step >= LEFT; step = step - 1)
       if (moved_o >> (WIDTH - (1 << step)) == {WIDTH{1'b0}}) begin
         moved_o = moved_o << (1 << step);
         places_o[step] = 1'b1;
