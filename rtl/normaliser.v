@@ -1,5 +1,5 @@
-// A number moved up until its first bit is at the top, and by how many places: combinational. A zero stays one. With LEFT
-// the last steps, less than 2^LEFT places together, are left to be taken.
+// A number moved up until its first bit is at the top, and by how many places: combinational. A zero stays one. With
+// LEFT the last steps, less than 2^LEFT places together, are left to be taken.
 `default_nettype none
 module normaliser #(
   parameter integer WIDTH = 24,

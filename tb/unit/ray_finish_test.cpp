@@ -173,6 +173,25 @@ TEST(RayFinish, IsWhatTheDefinitionSaysInRationalNumbers) {
   EXPECT_GT(infinite, 1'000);
 }
 
+/// Of numbers in the middle between two floats, or next to it by their last bit, and a rest.
+TEST(RayFinish, FloatsAreRoundedOnce) {
+  std::mt19937_64 random(9);
+  for (int i = 0; i < 100'000; ++i) {
+    const int bits = 26 + static_cast<int>(random() % 39), subnormal = static_cast<int>(random() % 27);
+    const int exponent = i % 2 == 0 ? -bits : -126 - bits - subnormal + 1;
+    const int drop = bits - 24 + (i % 2 == 0 ? 0 : std::max(subnormal - 1, 0) + 1);
+    const uint64_t first = uint64_t{1} << (bits - 1), middle = drop > bits ? 0 : uint64_t{1} << (drop - 1);
+    const uint64_t above = drop >= 64 ? 0 : random() << drop & (first - 1);
+    const uint64_t value = (first | above | middle) + random() % 3 - 1;
+    const bool rest = random() % 2 == 0;
+    const Exact whole =
+        (Exact(std::ldexp(static_cast<double>(value >> 32), 32)) + Exact(static_cast<double>(value & 0xffffffff))) *
+        Exact(std::ldexp(1.0, exponent));
+    const Exact exact = rest ? whole + Exact(std::ldexp(0.25, exponent)) : whole;
+    ASSERT_TRUE(is_nearest(rounded_to_float(value, exponent, rest), exact)) << value << " 2^" << exponent;
+  }
+}
+
 TEST(RayFinish, SharesAreFromZeroToOneAndNormalsHaveLengthOneOrZero) {
   std::mt19937 random(2);
   int areas = 0, lengths = 0, whole = 0;
