@@ -67,11 +67,19 @@ module leaf_reader #(
       wire push;
       wire [QUEUED_BITS-1:0] data;
       if (g < 2) begin : gen_start
-        wire [28:0] place = start_leaf_i[g*31+:29];
-        wire [32:0] word = {1'b0, place, 3'd0} + {3'd0, place, 1'b0} + {4'd0, place};
-        assign push = start_i[g];
-        assign data = {start_slot_i[g*SLOT_BITS+:SLOT_BITS], word[4+:LINE_BITS], 1'b0, word[3:0],
-                       {1'b0, start_leaf_i[g*31+29+:2]} + 3'd1, place};
+        // Who starts is known late in a cycle: the leaf's first word is found in the next one.
+        reg start_q;
+        reg [SLOT_BITS-1:0] start_slot_q;
+        reg [1:0] more_q;
+        reg [28:0] start_place_q;
+        always @(posedge clk_i) start_q <= rst_ni && start_i[g];
+        always @(posedge clk_i) begin
+          start_slot_q <= start_slot_i[g*SLOT_BITS+:SLOT_BITS];
+          {more_q, start_place_q} <= start_leaf_i[g*31+:31];
+        end
+        wire [32:0] word = {1'b0, start_place_q, 3'd0} + {3'd0, start_place_q, 1'b0} + {4'd0, start_place_q};
+        assign push = start_q;
+        assign data = {start_slot_q, word[4+:LINE_BITS], 1'b0, word[3:0], {1'b0, more_q} + 3'd1, start_place_q};
         wire unused = &{1'b0, word[32:LINE_BITS+4]};
       end else begin : gen_further
         assign push = further;

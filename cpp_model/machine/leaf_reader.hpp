@@ -113,8 +113,9 @@ class LeafReader {
     take_line(leaves, inputs.triangle_taken);
     come_.reset();
     if (inputs.given != nullptr) come_ = Line(inputs.given->slot, pending_[inputs.given->slot], inputs.given->line);
-    for (size_t i = 0; i < inputs.starts.size(); ++i)
-      if (inputs.starts[i]) queues_[i].push({inputs.starts[i]->slot, Leaf(inputs.starts[i]->leaf)});
+    for (size_t i = 0; i < starts_.size(); ++i)
+      if (starts_[i]) queues_[i].push({starts_[i]->slot, Leaf(starts_[i]->leaf)});
+    starts_ = inputs.starts;
     if (further) queues_[2].push(*further);
   }
 
@@ -211,7 +212,8 @@ class LeafReader {
     read_ = read;
   }
 
-  std::array<RamQueue<Wanted>, 3> queues_;  // from nodes; from the stack; further lines of leaves
+  std::array<std::optional<Start>, 2> starts_;  // in the cycle before
+  std::array<RamQueue<Wanted>, 3> queues_;      // from nodes; from the stack; further lines of leaves
   uint32_t turn_ = 0;
   RamQueue<Behind> ahead_{kAhead};  // the first of so many lines that will be wanted
   uint32_t ahead_step_ = 0;         // of which so many have been looked up
