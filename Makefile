@@ -116,9 +116,9 @@ TRACE_FLAG := $(if $(filter-out 0,$(TRACE)),--trace $(if $(filter 1,$(TRACE)),:,
 SAMPLE_FLAGS := $${ERROR:+--error "$$ERROR"} $(if $(findstring command,$(origin TIME)),--time "$$TIME") \
   $(if $(filter sampled,$(ENGINE)),--seed "$$SEED")
 SET_FIELDS := $${SET:+--set "$$SET"}
-# A chip in Verilog has its traverser inside, or not.
+# A chip in Verilog has its traverser inside, or not: of a frame TRAVERSER says so, of a chip SET, if it does.
 INSIDE := $(if $(CHIP),$${TRAVERSER:+--set "chip.traverser=$$TRAVERSER"})
-UNIT := scripts/unit.sh "$$CONFIG" $(SET_FIELDS) $(INSIDE) $(WAVES_FLAG)
+UNIT := scripts/unit.sh "$$CONFIG" $(SET_FIELDS) $(WAVES_FLAG)
 # After an equals sign a number may be negative.
 LOOK := $${CAMERA:+"--camera=$$CAMERA"} $${EYE:+"--eye=$$EYE"} $${LOOK_AT:+"--look-at=$$LOOK_AT"} $${UP:+"--up=$$UP"} \
   $${FOV:+"--fov=$$FOV"} $${LIGHT:+"--light=$$LIGHT"}
@@ -146,7 +146,7 @@ FOLLOWED := --config $(FOLLOW_CONFIG) --units $(FOLLOW_UNITS) $(call said,SCENE,
 FOLLOW := RAYPOOL="$(abspath $(RAYPOOL))" PYTHONPATH=scripts python3 -m follow
 FIT_SETUP := $(if $(filter-out 0,$(AREA) $(POWER)),setup-synth)
 GATES_SETUP := $(if $(filter-out 0,$(GATES)),setup-synth)
-UNIT_OF_ENGINE := $(if $(filter rtl lockstep,$(or $(CHIP),$(ENGINE))),$(UNIT),true)
+UNIT_OF_ENGINE := $(if $(filter rtl lockstep,$(or $(CHIP),$(ENGINE))),$(UNIT) $(INSIDE),true)
 CHIP_FLAG := $(if $(CHIP),--chip)
 
 .PHONY: intervals
@@ -293,7 +293,7 @@ report: setup-sim setup-report program ## sweeps, runs and synthesis reports as 
 	@$(REPORT) $${FROM:+--from $$FROM} $${OUT:+--out "$$OUT"}
 
 unit: setup-sim program ## Verilate CUS compute units of CONFIG (WAVES=1: with waveforms; CHIP=rtl: the whole chip)
-	@$(UNIT) --units "$$CUS" $(CHIP_FLAG)
+	@scripts/unit.sh "$$CONFIG" $(INSIDE) $(SET_FIELDS) $(WAVES_FLAG) --units "$$CUS" $(CHIP_FLAG)
 
 synth: setup-sim setup-synth program ## area, timing and power of CONFIG from open tools (CHIP=1: of the whole chip)
 	@$(SYNTH) report $(SYNTH_OPTIONS) $(SYNTH_CHIP) $${AGAINST:+--against "$$AGAINST"} $${RUN:+--run "$$RUN"} \
