@@ -101,8 +101,10 @@ module lane_hits #(
   wire [4:0] places;
   normaliser #(.WIDTH(24)) normaliser (
     .value_i({result_t_i[30:23] != 8'd0, result_t_i[22:0]}), .moved_o(moved), .places_o(places));
-  wire [9:0] exponent = {2'd0, result_t_i[30:24], result_t_i[23] || result_t_i[30:23] == 8'd0} - {5'd0, places} +
-                        {scale[8], scale} + 10'd385;
+  // The places come last.
+  wire [9:0] without_places = {2'd0, result_t_i[30:24], result_t_i[23] || result_t_i[30:23] == 8'd0} +
+                              {scale[8], scale} + 10'd385;
+  wire [9:0] exponent = without_places - {5'd0, places};
   reg ends_q, ends_hit_q, told_q;
   reg [SLOT_BITS-1:0] ends_slot_q, told_slot_q, key_slot_q;
   reg [KEY_BITS-1:0] ends_key_q, told_key_q;

@@ -130,8 +130,8 @@ module triangle_pipe #(
   always @(posedge clk_i) begin
     met_3 <= met_2;
     significand_3 <= moved;
-    exponent_3 <= $signed({3'd0, (t_2[30:23] != 8'd0) ? t_2[30:23] : 8'd1}) - $signed({6'd0, places}) +
-                  $signed({{2{scale_i[8]}}, scale_i});
+    exponent_3 <= ($signed({3'd0, (t_2[30:23] != 8'd0) ? t_2[30:23] : 8'd1}) + $signed({{2{scale_i[8]}}, scale_i})) -
+                  $signed({6'd0, places});
     limit_3 <= limit_i;
     met_4 <= met_3 && significand_3[23];
     limit_4 <= limit_3;
