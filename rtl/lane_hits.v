@@ -97,10 +97,19 @@ module lane_hits #(
 
   wire [8:0] scale;
   steady_delay #(.WIDTH(9), .CYCLES(4)) scale_delay (.clk_i(clk_i), .data_i(scale_o), .data_o(scale));
-  wire [23:0] moved;
-  wire [4:0] places;
-  normaliser #(.WIDTH(24)) normaliser (
-    .value_i({result_t_i[30:23] != 8'd0, result_t_i[22:0]}), .moved_o(moved), .places_o(places));
+  // As normaliser does it: mapped in one piece with what is added it is faster.
+  reg [23:0] moved;
+  reg [4:0] places;
+  integer step;
+  always @* begin
+    moved = {result_t_i[30:23] != 8'd0, result_t_i[22:0]};
+    places = 5'd0;
+    for (step = 4; step >= 0; step = step - 1)
+      if (moved >> (24 - (1 << step)) == 24'd0) begin
+        moved = moved << (1 << step);
+        places[step] = 1'b1;
+      end
+  end
   // The places come last.
   wire [9:0] without_places = {2'd0, result_t_i[30:24], result_t_i[23] || result_t_i[30:23] == 8'd0} +
                               {scale[8], scale} + 10'd385;
