@@ -112,10 +112,19 @@ module triangle_pipe #(
 
   // ---- The ray's t, and its limit: t is finite, as the box is left along the main axis. 3: exponent; 4: place of a
   // subnormal number; 5: comparison with the limit, which is one less where t is rounded up
-  wire [23:0] moved;
-  wire [4:0] places;
-  normaliser #(.WIDTH(24)) normaliser (
-    .value_i({t_2[30:23] != 8'd0, t_2[22:0]}), .moved_o(moved), .places_o(places));
+  // As normaliser does it: mapped in one piece with what is added it is faster.
+  reg [23:0] moved;
+  reg [4:0] places;
+  integer step;
+  always @* begin
+    moved = {t_2[30:23] != 8'd0, t_2[22:0]};
+    places = 5'd0;
+    for (step = 4; step >= 0; step = step - 1)
+      if (moved >> (24 - (1 << step)) == 24'd0) begin
+        moved = moved << (1 << step);
+        places[step] = 1'b1;
+      end
+  end
   reg [23:0] significand_3;
   reg signed [10:0] exponent_3;       // as it is stored; below 1: subnormal
   reg [31:0] limit_3, limit_4;
