@@ -65,6 +65,8 @@ SEED      ?= 1
 COVERAGE  ?=
 # `make chip-frames`
 FRAMES    ?= 50
+# `make traverser-trees`
+TREES     ?= 1000
 # `make mutants`
 MUTANTS   ?= 500
 # `make fit`
@@ -94,7 +96,7 @@ RAY       ?=
 STATION   ?=
 # Recipes read these from the environment, so that a value with spaces or quotes stays one word.
 export CONFIG SET CUS SCENE SIZE DEPTH ENGINE CHIP TRAVERSER VIEW CAMERA EYE LOOK_AT UP FOV LIGHT DETAIL OUT WAVES TRACE
-export A B KERNEL PROGRAMS SEED FRAMES COVERAGE MUTANTS MODE THREADS
+export A B KERNEL PROGRAMS SEED FRAMES TREES COVERAGE MUTANTS MODE THREADS
 export SLOWER
 export PIXEL RAY STATION
 export FROM EXPERIMENT WHERE JOBS SCENES LEVELS RUNS ERROR TIME SAMPLES MACHINES
@@ -154,6 +156,7 @@ CHIP_FLAG := $(if $(CHIP),--chip)
 .PHONY: setup-% program configured-%
 .PHONY: numerics-long proofs synth synth-replay synth-prove growth numerics significands extremes isa diagrams quoted
 .PHONY: package sweep report bench-native pareto boxes triangles synth-module follow tour chip-frames
+.PHONY: traverser-trees
 
 help: ## this list
 	@echo 'raypool: a ray-tracing GPU to render on, measure, verify and synthesise'
@@ -206,6 +209,7 @@ help: ## this list
 	@echo '  synth-replay:  BREAK=N;  synth-prove:  ONLY=BLOCKS;  growth:  PLAN=FILE'
 	@echo 'variables of make cosim:  PROGRAMS=$(PROGRAMS)  SEED=$(SEED)  CONFIG  SET  CUS  COVERAGE=FILE.json'
 	@echo 'variables of make chip-frames:  FRAMES=$(FRAMES): of each machine  SEED=$(SEED)'
+	@echo '  traverser-trees:  TREES=$(TREES): of each machine  SEED=$(SEED): of the first'
 	@echo 'variables of make numerics:  GATES=1: synthesise the lanes of every mode first'
 	@echo '  significands:  SCENE  CONFIG  SET  DEPTH  VIEW  DETAIL and those of the camera'
 	@echo '  extremes:  MODE=all|ieee-exact|...;  numerics-long:  THREADS=N, 1 if not given'
@@ -251,6 +255,11 @@ configurations: setup-sim program ## random programs on machines with every pair
 chip-frames: setup-sim setup-test configured-ON program ## random frames on tiny chips, RTL against model: FRAMES
 	@scripts/build.sh $(BUILD) raypool_chip_frames
 	@$(BUILD)/raypool_chip_frames --frames "$$FRAMES" --seed "$$SEED"
+
+traverser-trees: setup-sim setup-test configured-ON ## random trees in the traverser, RTL against model: TREES
+	@scripts/build.sh $(BUILD) traverser_test
+	@RAYPOOL_TREES="$$TREES" RAYPOOL_SEED="$$SEED" \
+	  $(BUILD)/tb/traverser_test --gtest_filter='*TreesOfChance*' --gtest_brief=1
 
 mutants: setup-sim setup-lint program ## small faults put into the RTL: which does the lockstep notice? MUTANTS
 	@scripts/build.sh $(BUILD) raypool_mutants

@@ -80,7 +80,8 @@ module traverser #(
   localparam integer BLOCK_BITS = 7;
   localparam integer LINE_BITS = 26;
   localparam integer TEST_BITS = 875;
-  localparam integer NODE_ID_BITS = $clog2(NODE_BANKS) + ((NODE_MSHRS > NODE_BANKS) ? $clog2(NODE_MSHRS / NODE_BANKS) : 1);
+  localparam integer NODE_ID_BITS = $clog2(NODE_BANKS) +
+    ((NODE_MSHRS > NODE_BANKS) ? $clog2(NODE_MSHRS / NODE_BANKS) : 1);
   localparam integer TRIANGLE_ID_BITS = $clog2(TRIANGLE_BANKS) +
     ((TRIANGLE_MSHRS > TRIANGLE_BANKS) ? $clog2(TRIANGLE_MSHRS / TRIANGLE_BANKS) : 1);
   genvar g;

@@ -28,7 +28,8 @@ TEST(Hierarchy, IsThatOfTheVerilog) {
   EXPECT_EQ(hierarchy.parents("data_cache"), std::set<std::string>{"mem_alu"});
   EXPECT_EQ(hierarchy.parents("int_alu"), std::set<std::string>{"compute_unit"}) << "instantiated in an included file";
   EXPECT_EQ(hierarchy.parents("round_robin"),
-            (std::set<std::string>{"block_scheduler", "fetch_arbiter", "port_arbiter", "tree_banks", "tree_cache"}));
+            (std::set<std::string>{"block_scheduler", "fetch_arbiter", "port_arbiter", "ray_exit", "traverser",
+                                   "tree_banks", "tree_cache", "tree_port", "triangle_group"}));
   EXPECT_EQ(hierarchy.parents("multiprocessor"), std::set<std::string>{"chip"});
   EXPECT_TRUE(hierarchy.parents("chip").empty());
   EXPECT_TRUE(hierarchy.contains("mem_alu", "ram_1rw"));

@@ -36,6 +36,15 @@ inline Scene any_scene(std::mt19937& random) {
   }
 }
 
+/// Of up to sixty triangles, or more once in fifty times.
+inline Scene small_scene(std::mt19937& random) {
+  if (random() % 50 == 0) return any_scene(random);
+  const float scale = std::ldexp(1.0f, static_cast<int>(random() % 40) - 20);
+  const Vec3 at{static_cast<float>(random() % 100), -static_cast<float>(random() % 1000), 3};
+  return soup(random(), static_cast<int>(random() % (random() % 4 == 0 ? 60 : 12)), scale,
+              random() % 2 == 0 ? Vec3{0, 0, 0} : at);
+}
+
 struct LaneTree {
   std::vector<TreeLine> nodes, triangles;
   Bounds bounds{};

@@ -27,6 +27,7 @@ struct TraverserTraffic {
 struct TraverserSeen {
   uint64_t cycles = 0, rays = 0, normal = 0, shadow = 0, direct = 0, contributions = 0, dropped = 0;
   uint64_t reads = 0, spills = 0, stack_reads = 0, most_lines = 0, full = 0;
+  uint64_t left = 0;  ///< cycles in which a lane has no room for a line of a leaf for which it has waited
 };
 
 /// A cache's sizes.
@@ -83,6 +84,7 @@ class TraverserBench {
     }
     // A place that is freed twice would be seen now.
     for (uint32_t i = 0; i < 100; ++i) ASSERT_NO_FATAL_FAILURE(cycle(traffic, ~0u));
+    seen.left += model_->triangle_cache().work().left;
   }
   /// The same where packages have no room for long: then all others are done, and places alone are what is missing.
   void trace_without_room(const LaneTree& tree, const std::vector<Asked>& rays) {

@@ -2,9 +2,12 @@
 // pools and a memory that stall; and both against a walk of each tree: what becomes of every ray.
 #include <gtest/gtest.h>
 
+#include <cstdio>
+#include <cstdlib>
+
 #include "Vtraverser_1_1_8_6_1_4_2_1_1_4_2_1_1_1_21_0_0.h"
 #include "Vtraverser_3_4_9_10_2_16_2_4_2_32_4_6_2_9_16_1_1.h"
-#include "Vtraverser_5_24_16_12_2_64_4_16_8_32_2_5_1_160_20_0_1.h"
+#include "Vtraverser_5_24_16_12_1_64_4_16_8_32_2_5_1_160_20_0_1.h"
 #include "unit/traverser_bench.hpp"
 
 namespace raypool::bench {
@@ -56,7 +59,7 @@ using All = testing::Types<TraverserParameters<Vtraverser_1_1_8_6_1_4_2_1_1_4_2_
                                                Cache<4, 2, 1, 1>, Cache<4, 2, 1, 1>, 1, 21, false, false>,
                            TraverserParameters<Vtraverser_3_4_9_10_2_16_2_4_2_32_4_6_2_9_16_1_1, 3, 4, 9, 10, 2,
                                                Cache<16, 2, 4, 2>, Cache<32, 4, 6, 2>, 9, 16, true, true>,
-                           TraverserParameters<Vtraverser_5_24_16_12_2_64_4_16_8_32_2_5_1_160_20_0_1, 5, 24, 16, 12, 2,
+                           TraverserParameters<Vtraverser_5_24_16_12_1_64_4_16_8_32_2_5_1_160_20_0_1, 5, 24, 16, 12, 1,
                                                Cache<64, 4, 16, 8>, Cache<32, 2, 5, 1>, 160, 20, false, true>>;
 TYPED_TEST_SUITE(TraverserTest, All);
 
@@ -86,12 +89,53 @@ TYPED_TEST(TraverserTest, AgreesWithItsClassInEveryCycleAndEveryRayBecomesWhatIt
 TYPED_TEST(TraverserTest, RaysThatWaitForRoomHoldUpNoOthers) {
   TraverserBench<TypeParam> bench(2);
   std::mt19937 random(9);
-  for (uint32_t seed = 1; seed <= 4; ++seed) {
+  for (uint32_t seed = 1; seed <= 8; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
-    const Case<TypeParam> test(any_scene(random), 300, 2 * seed);
+    const Case<TypeParam> test(small_scene(random), 4 * int{TypeParam::kPool} + 50, 2 * seed);
     ASSERT_NO_FATAL_FAILURE(bench.trace_without_room(test.tree, test.rays));
   }
   EXPECT_GT(bench.seen.full, 0u);
+}
+
+TYPED_TEST(TraverserTest, ManyRaysWaitForOneLine) {
+  TraverserBench<TypeParam> bench(3);
+  for (const size_t triangles : {1, 3, 100, 60, 100}) {
+    SCOPED_TRACE(testing::Message() << triangles << " triangles");
+    const std::array<Vec3, 3> one{Vec3{0, 0, 1}, Vec3{5, 0, 2}, Vec3{0, 5, 1}};
+    const Case<TypeParam> test(scene_of(std::vector<std::array<Vec3, 3>>(triangles, one)), 150,
+                               static_cast<uint32_t>(triangles));
+    ASSERT_NO_FATAL_FAILURE(bench.trace(test.tree, test.rays, {0, 0, triangles < 10 ? 600u : 60u, 0, 0, 0}));
+  }
+  if (TypeParam::sizes().slots > LeafReader::kLines) EXPECT_GT(bench.seen.left, 100u);
+}
+
+uint32_t number_from(const char* variable, uint32_t otherwise) {
+  const char* const text = std::getenv(variable);
+  return text == nullptr ? otherwise : static_cast<uint32_t>(std::strtoul(text, nullptr, 10));
+}
+
+// RAYPOOL_TREES trees from that of RAYPOOL_SEED on.
+TYPED_TEST(TraverserTest, TreesOfChance) {
+  const uint32_t first = number_from("RAYPOOL_SEED", 1), count = number_from("RAYPOOL_TREES", 30);
+  uint64_t rays = 0, cycles = 0;
+  for (uint32_t seed = first; seed < first + count; ++seed) {
+    std::mt19937 random(seed);
+    TraverserBench<TypeParam> bench(random());
+    const auto rare = [&](uint32_t most) { return random() % 2 == 0 ? 0 : 2 + static_cast<uint32_t>(random()) % most; };
+    const TraverserTraffic traffic{rare(20), rare(9), 1 + rare(60), rare(9), rare(40), rare(20)};
+    const Case<TypeParam> test(small_scene(random), 1 + static_cast<int>(random() % 30), seed);
+    bench.trace(test.tree, test.rays, traffic);
+    ASSERT_FALSE(testing::Test::HasFailure())
+        << "tree of seed " << seed << ": RAYPOOL_SEED=" << seed << " RAYPOOL_TREES=1 draws it alone";
+    rays += bench.seen.rays;
+    cycles += bench.seen.cycles;
+    if (count > 1000 && (seed - first + 1) % 1000 == 0)
+      std::fprintf(stderr, "%u trees, %llu rays, %llu cycles: 0 differences\n", seed - first + 1,
+                   static_cast<unsigned long long>(rays), static_cast<unsigned long long>(cycles));
+  }
+  EXPECT_GT(rays, count);
+  std::printf("%u trees, %llu rays, %llu cycles: 0 differences\n", count, static_cast<unsigned long long>(rays),
+              static_cast<unsigned long long>(cycles));
 }
 
 }  // namespace
