@@ -301,7 +301,7 @@ module chip #(
   intersection_pool #(
     .SIZE(INTERSECTION_POOL_SIZE), .INTERSECTION_WORDS(INTERSECTION_WORDS), .OVERHEAD(INTERSECTION_POOL_OVERHEAD),
     .CYCLES_PER_BEAT(INTERSECTION_POOL_CYCLES_PER_BEAT), .PIPELINED(INTERSECTION_POOL_PIPELINED), .CULLING(CULLING),
-    .KINDS(KINDS), .LEVEL_BITS(LEVEL_BITS)
+    .SHADOWS(1 - SHADING), .KINDS(KINDS), .LEVEL_BITS(LEVEL_BITS)
   ) intersection_pool (
     .clk_i(clk_i), .rst_ni(rst_ni),
     .put_valid_i(put_valid), .put_ready_o(put_ready), .put_kind_i(put_kind), .put_data_i(put_data),

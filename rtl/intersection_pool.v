@@ -4,7 +4,7 @@
 // place is free from the cycle after its request has been taken on; no output depends on an input of the same cycle.
 // Must be given: the beats of a package one after the other, of one kind; a request that stays until it is taken;
 // reservations of what is available only, and requests of what has been reserved. Kinds are 1 normal, 2 shadow, 3
-// direct; buses with something for each kind have normal in the low bits. 3 only with CULLING.
+// direct; buses with something for each kind have normal in the low bits. 2 only with SHADOWS, 3 only with CULLING.
 `default_nettype none
 module intersection_pool #(
   parameter integer SIZE = 512,               // packages of each kind
@@ -13,6 +13,7 @@ module intersection_pool #(
   parameter integer CYCLES_PER_BEAT = 1,
   parameter integer PIPELINED = 0,            // the next request is served while the beats of the last package move
   parameter integer CULLING = 0,
+  parameter integer SHADOWS = 1,              // there are packages of shadow rays; without, no room for them
   parameter integer KINDS = 2 + CULLING,
   parameter integer LEVEL_BITS = $clog2(SIZE + 1)
 ) (
@@ -52,15 +53,16 @@ module intersection_pool #(
     if (OVERHEAD < 1 || OVERHEAD > 64 || CYCLES_PER_BEAT < 1 || CYCLES_PER_BEAT > 64) begin : gen_bad_cycles
       intersection_pool_OVERHEAD_and_CYCLES_PER_BEAT_must_be_from_1_to_64 illegal ();
     end
-    if (PIPELINED < 0 || PIPELINED > 1 || CULLING < 0 || CULLING > 1) begin : gen_bad_mode
-      intersection_pool_PIPELINED_and_CULLING_must_be_0_or_1 illegal ();
+    if (PIPELINED < 0 || PIPELINED > 1 || CULLING < 0 || CULLING > 1 || SHADOWS < 0 || SHADOWS > 1) begin : gen_bad_mode
+      intersection_pool_PIPELINED_CULLING_and_SHADOWS_must_be_0_or_1 illegal ();
     end
   endgenerate
   localparam integer BEATS = (INTERSECTION_WORDS + 3) / 4;
   localparam integer LAST_BEAT = BEATS - 1;
   // A package that is leaving is still in the RAM, in a place that is none of SIZE.
   localparam integer SLOTS = SIZE + 1 + PIPELINED;
-  localparam integer DEPTH = KINDS * SLOTS * BEATS;
+  localparam integer REGIONS = KINDS - 1 + SHADOWS;
+  localparam integer DEPTH = REGIONS * SLOTS * BEATS;
   localparam integer ADDRESS_BITS = $clog2(DEPTH);
   // From a request's turn until it is taken, and from then on until the next turn.
   localparam integer REQUEST_CYCLES = (OVERHEAD > 2) ? OVERHEAD - 1 : 1;
@@ -142,39 +144,49 @@ module intersection_pool #(
     if (!rst_ni) put_beat_q <= 3'd0;
     else if (put) put_beat_q <= put_last ? 3'd0 : put_beat_q + 3'd1;
 
-  // ---- The queues: a region of the RAM for each kind.
+  // ---- The queues: a region of the RAM for each kind that there is.
   wire [KINDS*ADDRESS_BITS-1:0] heads, tails;
   genvar k;
   generate
     for (k = 0; k < KINDS; k = k + 1) begin : gen_kind
-      localparam integer FIRST = k * SLOTS * BEATS;
+      localparam integer REGION = (k == 0 || SHADOWS != 0) ? k : k - 1;
+      localparam integer FIRST = REGION * SLOTS * BEATS;
       localparam integer LAST = FIRST + SLOTS * BEATS - 1;
       localparam [1:0] KIND = k + 1;
-      reg [ADDRESS_BITS-1:0] head_q, tail_q;   // of the next beat to be read, and to be written
-      reg [LEVEL_BITS-1:0] size_q, available_q;
-      wire comes = put_last && put_kind_i == KIND;
-      wire goes = taken && request_kind_i == KIND;
-      assign filled[k] = size_q != {LEVEL_BITS{1'b0}} || comes;
-      assign put_ready_o[k] = size_q != SIZE[LEVEL_BITS-1:0] || begun;
-      assign size_o[k*LEVEL_BITS +: LEVEL_BITS] = size_q;
-      assign available_o[k*LEVEL_BITS +: LEVEL_BITS] = available_q;
-      assign heads[k*ADDRESS_BITS +: ADDRESS_BITS] = head_q;
-      assign tails[k*ADDRESS_BITS +: ADDRESS_BITS] = tail_q;
-      always @(posedge clk_i)
-        if (!rst_ni) begin
-          head_q <= FIRST[ADDRESS_BITS-1:0];
-          tail_q <= FIRST[ADDRESS_BITS-1:0];
-          size_q <= {LEVEL_BITS{1'b0}};
-          available_q <= {LEVEL_BITS{1'b0}};
-        end else begin
-          if (read && kind == KIND)
-            head_q <= (head_q == LAST[ADDRESS_BITS-1:0]) ? FIRST[ADDRESS_BITS-1:0] : head_q + 1'b1;
-          if (put && put_kind_i == KIND)
-            tail_q <= (tail_q == LAST[ADDRESS_BITS-1:0]) ? FIRST[ADDRESS_BITS-1:0] : tail_q + 1'b1;
-          if (comes != goes) size_q <= comes ? size_q + 1'b1 : size_q - 1'b1;
-          available_q <= available_q + {{LEVEL_BITS-1{1'b0}}, comes}
-                       - ((reserve_valid_i && reserve_kind_i == KIND) ? reserve_count_i : {LEVEL_BITS{1'b0}});
-        end
+      if (k == 1 && SHADOWS == 0) begin : gen_none
+        assign filled[k] = 1'b0;
+        assign put_ready_o[k] = 1'b1;
+        assign size_o[k*LEVEL_BITS +: LEVEL_BITS] = {LEVEL_BITS{1'b0}};
+        assign available_o[k*LEVEL_BITS +: LEVEL_BITS] = {LEVEL_BITS{1'b0}};
+        assign heads[k*ADDRESS_BITS +: ADDRESS_BITS] = {ADDRESS_BITS{1'b0}};
+        assign tails[k*ADDRESS_BITS +: ADDRESS_BITS] = {ADDRESS_BITS{1'b0}};
+      end else begin : gen_queue
+        reg [ADDRESS_BITS-1:0] head_q, tail_q;   // of the next beat to be read, and to be written
+        reg [LEVEL_BITS-1:0] size_q, available_q;
+        wire comes = put_last && put_kind_i == KIND;
+        wire goes = taken && request_kind_i == KIND;
+        assign filled[k] = size_q != {LEVEL_BITS{1'b0}} || comes;
+        assign put_ready_o[k] = size_q != SIZE[LEVEL_BITS-1:0] || begun;
+        assign size_o[k*LEVEL_BITS +: LEVEL_BITS] = size_q;
+        assign available_o[k*LEVEL_BITS +: LEVEL_BITS] = available_q;
+        assign heads[k*ADDRESS_BITS +: ADDRESS_BITS] = head_q;
+        assign tails[k*ADDRESS_BITS +: ADDRESS_BITS] = tail_q;
+        always @(posedge clk_i)
+          if (!rst_ni) begin
+            head_q <= FIRST[ADDRESS_BITS-1:0];
+            tail_q <= FIRST[ADDRESS_BITS-1:0];
+            size_q <= {LEVEL_BITS{1'b0}};
+            available_q <= {LEVEL_BITS{1'b0}};
+          end else begin
+            if (read && kind == KIND)
+              head_q <= (head_q == LAST[ADDRESS_BITS-1:0]) ? FIRST[ADDRESS_BITS-1:0] : head_q + 1'b1;
+            if (put && put_kind_i == KIND)
+              tail_q <= (tail_q == LAST[ADDRESS_BITS-1:0]) ? FIRST[ADDRESS_BITS-1:0] : tail_q + 1'b1;
+            if (comes != goes) size_q <= comes ? size_q + 1'b1 : size_q - 1'b1;
+            available_q <= available_q + {{LEVEL_BITS-1{1'b0}}, comes}
+                         - ((reserve_valid_i && reserve_kind_i == KIND) ? reserve_count_i : {LEVEL_BITS{1'b0}});
+          end
+      end
     end
   endgenerate
 

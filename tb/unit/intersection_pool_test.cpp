@@ -7,24 +7,26 @@
 
 #include <algorithm>
 #include <deque>
+#include <vector>
 
-#include "Vintersection_pool_1_21_1_1_0_0.h"
-#include "Vintersection_pool_1_21_2_1_1_1.h"
-#include "Vintersection_pool_2_16_1_1_1_0.h"
-#include "Vintersection_pool_3_12_9_2_0_1.h"
-#include "Vintersection_pool_3_21_64_64_1_0.h"
-#include "Vintersection_pool_512_16_2_1_1_1.h"
-#include "Vintersection_pool_512_21_2_1_0_0.h"
-#include "Vintersection_pool_5_21_9_1_1_1.h"
-#include "Vintersection_pool_7_18_3_3_1_0.h"
+#include "Vintersection_pool_1_21_1_1_0_0_1.h"
+#include "Vintersection_pool_1_21_2_1_1_1_1.h"
+#include "Vintersection_pool_2_16_1_1_1_0_0.h"
+#include "Vintersection_pool_3_12_9_2_0_1_1.h"
+#include "Vintersection_pool_3_21_64_64_1_0_1.h"
+#include "Vintersection_pool_512_16_2_1_1_1_0.h"
+#include "Vintersection_pool_512_21_2_1_0_0_1.h"
+#include "Vintersection_pool_5_21_9_1_1_1_0.h"
+#include "Vintersection_pool_7_18_3_3_1_0_1.h"
 #include "unit/clocked.hpp"
 
 namespace raypool::bench {
 namespace {
 
-/// Its numbers are those of the class: size, words, overhead, cycles per beat, pipelined, culling.
+/// Its numbers are those of the class: size, words, overhead, cycles per beat, pipelined, culling; and whether there
+/// are shadow packages, of which the class has none where nobody brings any.
 template <typename Unit_, uint32_t kSize, uint32_t kWords_, uint32_t kOverhead, uint32_t kCyclesPerBeat,
-          bool kPipelined, bool kCulling>
+          bool kPipelined, bool kCulling, bool kShadows>
 struct Pool {
   using Unit = Unit_;
   static constexpr uint32_t kWords = kWords_;
@@ -36,6 +38,13 @@ struct Pool {
     chip.intersection_pool_pipelined = kPipelined;
     chip.culling = kCulling;
     return chip;
+  }
+  /// That there are packages of.
+  static std::vector<uint32_t> kinds() {
+    std::vector<uint32_t> kinds = {1};
+    if (kShadows) kinds.push_back(2);
+    if (kCulling) kinds.push_back(3);
+    return kinds;
   }
   /// Records arrive with their words in order.
   static RecordLayout layout() { return RecordLayout::in_order(kWords); }
@@ -54,7 +63,8 @@ class Bench {
   explicit Bench(uint32_t seed)
       : bench_(seed),
         chip_(P::chip()),
-        kinds_(chip_.culling ? 3 : 2),
+        kinds_(P::kinds()),
+        all_kinds_(chip_.culling ? 3 : 2),
         level_bits_(bits_of(chip_.intersection_pool_size)),
         pool_(chip_, P::layout()) {
     u_.put_kind_i = u_.request_kind_i = u_.reserve_kind_i = 1;
@@ -93,6 +103,7 @@ class Bench {
   Seen seen;
 
  private:
+  uint32_t some_kind() { return kinds_[bench_.random() % kinds_.size()]; }
   static uint32_t bits_of(uint32_t size) {
     uint32_t bits = 1;
     while (size >> bits != 0) ++bits;
@@ -102,7 +113,7 @@ class Bench {
     return static_cast<uint32_t>(levels >> (kind - 1) * level_bits_) & ((1u << level_bits_) - 1);
   }
   bool empty() const {
-    for (uint32_t kind = 1; kind <= kinds_; ++kind)
+    for (uint32_t kind = 1; kind <= all_kinds_; ++kind)
       if (pool_.size(static_cast<ImportKind>(kind)) != 0) return false;
     return true;
   }
@@ -113,7 +124,7 @@ class Bench {
       if (!u_.put_valid_i) return;
       put_.fill(0);
       for (uint32_t i = 0; i < P::kWords; ++i) put_[i] = static_cast<uint32_t>(bench_.random());
-      u_.put_kind_i = traffic.only != 0 ? traffic.only : 1 + bench_.random() % kinds_;
+      u_.put_kind_i = traffic.only != 0 ? traffic.only : some_kind();
     } else {
       u_.put_valid_i = traffic.gap == 0 || !bench_.one_of(traffic.gap);
       if (!u_.put_valid_i) return;
@@ -125,7 +136,7 @@ class Bench {
   void reserve(const Traffic& traffic) {
     u_.reserve_valid_i = 0;
     if (traffic.launch == 0 || !bench_.one_of(traffic.launch)) return;
-    const uint32_t kind = 1 + bench_.random() % kinds_;
+    const uint32_t kind = some_kind();
     const uint32_t available = pool_.available(static_cast<ImportKind>(kind));
     if (available == 0 || promised_.size() > 64) return;
     u_.reserve_valid_i = 1;
@@ -146,7 +157,7 @@ class Bench {
     promised_.pop_front();
   }
   void check_levels() {
-    for (uint32_t kind = 1; kind <= kinds_; ++kind) {
+    for (uint32_t kind = 1; kind <= all_kinds_; ++kind) {
       const auto of = static_cast<ImportKind>(kind);
       ASSERT_EQ(level(u_.size_o, kind), pool_.size(of)) << kind;
       ASSERT_EQ(level(u_.available_o, kind), pool_.available(of)) << kind;
@@ -204,7 +215,8 @@ class Bench {
   Clocked<typename P::Unit> bench_;
   typename P::Unit& u_ = *bench_.u;
   ChipConfiguration chip_;
-  uint32_t kinds_, level_bits_;
+  std::vector<uint32_t> kinds_;  // that there are packages of
+  uint32_t all_kinds_, level_bits_;
   IntersectionPool pool_;
   uint64_t cycle_ = 1, came_ = 0, gone_ = 0;
   Intersection put_{};
@@ -217,22 +229,22 @@ class Bench {
 
 template <typename P>
 class IntersectionPoolInVerilog : public testing::Test {};
-using Pools = testing::Types<Pool<Vintersection_pool_1_21_1_1_0_0, 1, 21, 1, 1, false, false>,
-                             Pool<Vintersection_pool_1_21_2_1_1_1, 1, 21, 2, 1, true, true>,
-                             Pool<Vintersection_pool_2_16_1_1_1_0, 2, 16, 1, 1, true, false>,
-                             Pool<Vintersection_pool_3_12_9_2_0_1, 3, 12, 9, 2, false, true>,
-                             Pool<Vintersection_pool_3_21_64_64_1_0, 3, 21, 64, 64, true, false>,
-                             Pool<Vintersection_pool_5_21_9_1_1_1, 5, 21, 9, 1, true, true>,
-                             Pool<Vintersection_pool_7_18_3_3_1_0, 7, 18, 3, 3, true, false>,
-                             Pool<Vintersection_pool_512_21_2_1_0_0, 512, 21, 2, 1, false, false>,
-                             Pool<Vintersection_pool_512_16_2_1_1_1, 512, 16, 2, 1, true, true>>;
+using Pools = testing::Types<Pool<Vintersection_pool_1_21_1_1_0_0_1, 1, 21, 1, 1, false, false, true>,
+                             Pool<Vintersection_pool_1_21_2_1_1_1_1, 1, 21, 2, 1, true, true, true>,
+                             Pool<Vintersection_pool_2_16_1_1_1_0_0, 2, 16, 1, 1, true, false, false>,
+                             Pool<Vintersection_pool_3_12_9_2_0_1_1, 3, 12, 9, 2, false, true, true>,
+                             Pool<Vintersection_pool_3_21_64_64_1_0_1, 3, 21, 64, 64, true, false, true>,
+                             Pool<Vintersection_pool_5_21_9_1_1_1_0, 5, 21, 9, 1, true, true, false>,
+                             Pool<Vintersection_pool_7_18_3_3_1_0_1, 7, 18, 3, 3, true, false, true>,
+                             Pool<Vintersection_pool_512_21_2_1_0_0_1, 512, 21, 2, 1, false, false, true>,
+                             Pool<Vintersection_pool_512_16_2_1_1_1_0, 512, 16, 2, 1, true, true, false>>;
 TYPED_TEST_SUITE(IntersectionPoolInVerilog, Pools);
 
 TYPED_TEST(IntersectionPoolInVerilog, AgreesWithItsClassInEveryCycle) {
   Seen seen;
   uint64_t packages = 0;
   const ChipConfiguration chip = TypeParam::chip();
-  const uint32_t kinds = chip.culling ? 3 : 2;
+  const std::vector<uint32_t> kinds = TypeParam::kinds();
   const uint32_t service = chip.intersection_pool_overhead + 6 * chip.intersection_pool_cycles_per_beat;
   const uint32_t cycles = std::max(3000u, 40 * service + 24 * chip.intersection_pool_size);
   for (uint32_t seed = 1; seed <= 4; ++seed) {
@@ -243,7 +255,7 @@ TYPED_TEST(IntersectionPoolInVerilog, AgreesWithItsClassInEveryCycle) {
       ASSERT_NO_FATAL_FAILURE(bench.clock({1, 0, 3 * service, 4 * service, 0}));                  // full
     for (uint32_t i = 0; i < cycles; ++i) ASSERT_NO_FATAL_FAILURE(bench.clock({9, 3, 2, 3, 0}));  // now and then
     for (uint32_t i = 0; i < cycles; ++i)
-      ASSERT_NO_FATAL_FAILURE(bench.clock({1, 0, i / 256 % 2, 1, 1 + i / 128 % kinds}));
+      ASSERT_NO_FATAL_FAILURE(bench.clock({1, 0, i / 256 % 2, 1, kinds[i / 128 % kinds.size()]}));
     for (uint32_t i = 0; i < cycles; ++i) ASSERT_NO_FATAL_FAILURE(bench.clock({4 * service, 9, 1, 1, 0}));
     ASSERT_NO_FATAL_FAILURE(bench.drain());
     packages += bench.packages();
@@ -251,12 +263,12 @@ TYPED_TEST(IntersectionPoolInVerilog, AgreesWithItsClassInEveryCycle) {
     seen.refused += bench.seen.refused;
     seen.put_and_taken += bench.seen.put_and_taken;
     seen.both_registers += bench.seen.both_registers;
-    for (uint32_t kind = 1; kind <= kinds; ++kind) seen.of_kind[kind] += bench.seen.of_kind[kind];
+    for (const uint32_t kind : kinds) seen.of_kind[kind] += bench.seen.of_kind[kind];
   }
   EXPECT_GT(packages, 4 * 5 * cycles / (8 * service));
   EXPECT_GT(seen.full, 100u);
   EXPECT_GT(seen.refused, 100u);
-  for (uint32_t kind = 1; kind <= kinds; ++kind) EXPECT_GT(seen.of_kind[kind], 20u) << kind;
+  for (const uint32_t kind : kinds) EXPECT_GT(seen.of_kind[kind], 20u) << kind;
   // To a pool of one nothing comes while there is something; and where packages are long the two hardly meet.
   if (chip.intersection_pool_size > 1 && service < 64) {
     EXPECT_GT(seen.put_and_taken, 0u);
@@ -275,7 +287,9 @@ TYPED_TEST(IntersectionPoolInVerilog, ARequestWaitsForItsPackage) {
   Intersection package{};
   for (uint32_t i = 0; i < TypeParam::kWords; ++i) package[i] = 100 + i;
   uint32_t taken = 0, due_beats = 0;
-  u.request_kind_i = u.put_kind_i = u.reserve_kind_i = 2;
+  const uint32_t number = TypeParam::kinds().back();
+  const auto kind = static_cast<ImportKind>(number);
+  u.request_kind_i = u.put_kind_i = u.reserve_kind_i = number;
   u.request_valid_i = 1;
   for (uint64_t cycle = 1; cycle < 1000; ++cycle) {
     const bool comes = cycle >= 10 && cycle < 10 + beats;
@@ -285,7 +299,7 @@ TYPED_TEST(IntersectionPoolInVerilog, ARequestWaitsForItsPackage) {
     u.reserve_valid_i = cycle == 9 + beats;
     u.reserve_count_i = 1;
     u.eval();
-    const bool ready = u.request_valid_i && pool.request(cycle, ImportKind::Shadow);
+    const bool ready = u.request_valid_i && pool.request(cycle, kind);
     ASSERT_EQ(u.request_ready_o, ready) << cycle;
     taken += ready;
     ASSERT_EQ(u.beat_valid_o, pool.beat_due() == cycle) << cycle;
@@ -295,8 +309,8 @@ TYPED_TEST(IntersectionPoolInVerilog, ARequestWaitsForItsPackage) {
       for (uint32_t i = 0; i < 4; ++i) ASSERT_EQ(u.beat_data_o[i], beat[i]);
       ++due_beats;
     }
-    if (cycle == 9 + beats) pool.put(cycle, ImportKind::Shadow, package);
-    if (u.reserve_valid_i) pool.reserve(ImportKind::Shadow, 1);
+    if (cycle == 9 + beats) pool.put(cycle, kind, package);
+    if (u.reserve_valid_i) pool.reserve(kind, 1);
     bench.clock();
     if (ready) u.request_valid_i = 0;
   }

@@ -34,9 +34,9 @@ raypool_pool_models(ray_pool_test ray_pool "SIZE;OVERHEAD;CYCLES_PER_BEAT;PIPELI
 
 raypool_pool_bench(intersection_pool_test)
 raypool_pool_models(intersection_pool_test intersection_pool
-  "SIZE;INTERSECTION_WORDS;OVERHEAD;CYCLES_PER_BEAT;PIPELINED;CULLING"
-  1_21_1_1_0_0 1_21_2_1_1_1 2_16_1_1_1_0 3_12_9_2_0_1 3_21_64_64_1_0 5_21_9_1_1_1 7_18_3_3_1_0 512_21_2_1_0_0
-  512_16_2_1_1_1)
+  "SIZE;INTERSECTION_WORDS;OVERHEAD;CYCLES_PER_BEAT;PIPELINED;CULLING;SHADOWS"
+  1_21_1_1_0_0_1 1_21_2_1_1_1_1 2_16_1_1_1_0_0 3_12_9_2_0_1_1 3_21_64_64_1_0_1 5_21_9_1_1_1_0 7_18_3_3_1_0_1
+  512_21_2_1_0_0_1 512_16_2_1_1_1_0)
 
 # The traverser's narrow box test. Its oracle counts in rational numbers.
 find_library(GMP_LIBRARY gmp REQUIRED)
