@@ -84,14 +84,12 @@ def synth_command(arguments):
     options = options_of(arguments)
     if options.units and arguments.power:
         raise SynthError("POWER: the netlist of a unit is simulated, that of a chip is not: leave CHIP out")
-    if options.units and arguments.run:
-        raise SynthError("RUN: Mrays/s a mm2 are those of units, a chip here lacks its traverser: leave CHIP out")
-    run = report.load_run(arguments.run, options.config) if arguments.run else None
+    run = report.load_run(arguments.run, options.config, options.units) if arguments.run else None
     begin = time.time()
     wanted = [name for name, given in (("power", arguments.power), ("proofs", arguments.prove)) if given]
     design, result = made_report(options, wanted)
     if run:
-        result["efficiency"] = report.efficiency(result, arguments.run, run)
+        result["efficiency"] = report.efficiency(result, arguments.run, run, bool(options.units))
     say(report.table(result, against))
     if arguments.out:
         os.makedirs(arguments.out, exist_ok=True)
@@ -201,7 +199,7 @@ def parser():
             command.add_argument("module", help="of rtl/")
             command.add_argument("parameters", nargs="*", help="of one row of the table each: BITS=8 or A=1,B=2")
         if name in ("report", "replay", "prove"):
-            command.add_argument("--chip", action="store_true", help="the whole chip, without its traverser")
+            command.add_argument("--chip", action="store_true", help="the whole chip; its traverser only where chip.traverser=hardware")
             command.add_argument("--units", default="1", help="with --chip: compute units, 1, 2 or 4")
         if name == "report":
             command.add_argument("--against", help="an earlier report.json to compare with")

@@ -240,8 +240,8 @@ def check(report):
             raise SynthError(f"the blocks' {what} add up to {parts:.1f}, not to {whole[what]:.1f}")
 
 
-def load_run(path, config):
-    """A run's report, which must be of this configuration."""
+def load_run(path, config, units=0):
+    """A run's report, which must be of this configuration; of a chip of so many units, with its traverser inside."""
     try:
         with open(path, encoding="utf-8") as file:
             run = json.load(file)
@@ -251,20 +251,30 @@ def load_run(path, config):
         raise SynthError(f"RUN={path}: not a report of raypool sim (it has no mrays_per_second)")
     if run.get("config") != os.path.splitext(os.path.basename(config))[0]:
         raise SynthError(f"RUN={path}: drawn with configuration {run.get('config')}, but this is {config}")
+    if units and run.get("units") != units:
+        raise SynthError(f"RUN={path}: drawn by a chip of {run.get('units')} units, but this one has {units}")
+    if units and run.get("traverser") != "hardware":
+        raise SynthError(
+            f"RUN={path}: drawn with traverser {run.get('traverser')}, whose area nobody knows; draw it with "
+            "TRAVERSER=hardware, and SET=chip.traverser=hardware here"
+        )
     return run
 
 
-def efficiency(report, path, run):
-    """Mrays/s of a run at the simulated chip's clock and at the one that the library allows; a mm2 and a kGE."""
+def efficiency(report, path, run, whole_chip=False):
+    """Mrays/s of a run at the simulated chip's clock and at the one that the library allows; a mm2 and a kGE of the
+    whole chip, or of its units.
+    """
     units = run.get("units", 1)
     rate = run["mrays_per_second"]
+    areas = 1 if whole_chip else units
     return {
         "run": path,
         "mrays_per_second": rate,
         "mrays_per_second_allowed": rate * report["timing"]["mhz"] / SIMULATED_MHZ,
         "units": units,
-        "mrays_per_second_mm2": rate / units / report["forty_nm"]["total_mm2"],
-        "mrays_per_second_kge": rate / units / report["area"]["total_kge"],
+        "mrays_per_second_mm2": rate / areas / report["forty_nm"]["total_mm2"],
+        "mrays_per_second_kge": rate / areas / report["area"]["total_kge"],
     }
 
 

@@ -109,7 +109,7 @@ class Synthesis(unittest.TestCase):
     def test_bad_input_gets_one_sentence(self):
         run = os.path.join(self.folder, "run.json")
         with open(run, "w", encoding="utf-8") as file:
-            json.dump({"mrays_per_second": 1.0, "config": "4w4c"}, file)
+            json.dump({"mrays_per_second": 1.0, "config": "4w4c", "units": 1, "traverser": "static"}, file)
         self.written("run.json.gz", "not packed")
         for arguments, word in (
             (["report", "--liberty", "/no/such.lib"], "no such Liberty file; LIBERTY=NAME says where"),
@@ -125,7 +125,8 @@ class Synthesis(unittest.TestCase):
             (["report", "--config", "1w1c", "--clock", "soon"], "CLOCK=soon"),
             (["report", "--config", "1w1c", "--chip", "--units", "3"], "CUS=3: a chip has 1, 2 or 4 compute units"),
             (["report", "--config", "1w1c", "--chip", "--power"], "POWER: "),
-            (["report", "--config", "4w4c", "--chip", "--run", run], "RUN: "),
+            (["report", "--config", "4w4c", "--chip", "--run", run], "drawn with traverser static, whose area nobody"),
+            (["report", "--config", "4w4c", "--chip", "--units", "4", "--run", run], "of 1 units, but this one has 4"),
             (["replay", "--config", "1w1c", "--chip"], "CHIP: "),
             (["prove", "--config", "1w1c", "--only", "teapot"], "has no block teapot"),
             (["growth", "--plan", run], "not a plan"),
@@ -432,6 +433,9 @@ class Synthesis(unittest.TestCase):
         found = report.efficiency(made, "run", {"mrays_per_second": 60.0, "units": 2})
         self.assertEqual((found["mrays_per_second"], found["mrays_per_second_allowed"]), (60.0, 15.0))
         self.assertEqual(found["mrays_per_second_mm2"], 60.0)
+        # The area of a chip is that of all its units.
+        chip = report.efficiency(made, "run", {"mrays_per_second": 60.0, "units": 2}, whole_chip=True)
+        self.assertEqual((chip["mrays_per_second_mm2"], chip["mrays_per_second_kge"]), (120.0, 0.15))
 
     def simulated(self, design, cycles):
         """What the outputs of a mapped block are while it is given inputs, cycle by cycle; the first port lowest."""
