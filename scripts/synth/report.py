@@ -23,6 +23,22 @@ GOALS = [
 ]
 
 
+def published():
+    """Rows of the chips of constraints/published.json: what is known of each, and Mrays/s a mm2 at 40 nm."""
+    with open(os.path.join(ROOT, "constraints", "published.json"), encoding="utf-8") as file:
+        chips = json.load(file)["chips"]
+    lines = []
+    for chip in chips:
+        scaled = chip["mm2"] * (40 / chip["nm"]) ** 2
+        rates = chip["mrays_per_second"]
+        lines.append(
+            f"beside   {chip['name']}: {' to '.join(map(str, rates))} Mrays/s ({chip['scene']}) on {chip['mm2']} mm2 at "
+            f"{chip['nm']} nm, {scaled:.1f} at 40: {' to '.join(f'{rate / scaled:.1f}' for rate in rates)} a mm2; "
+            f"{chip['clock']}"
+        )
+    return lines
+
+
 def scaling():
     with open(os.path.join(ROOT, "constraints", "scaling.json"), encoding="utf-8") as file:
         return json.load(file)
@@ -273,6 +289,7 @@ def efficiency(report, path, run, whole_chip=False):
         "mrays_per_second": rate,
         "mrays_per_second_allowed": rate * report["timing"]["mhz"] / SIMULATED_MHZ,
         "units": units,
+        "whole_chip": whole_chip,
         "mrays_per_second_mm2": rate / areas / report["forty_nm"]["total_mm2"],
         "mrays_per_second_kge": rate / areas / report["area"]["total_kge"],
     }
@@ -382,6 +399,7 @@ def table(report, against=None):
             f"clock    {e['mrays_per_second_allowed']:.2f} Mrays/s at the {when['mhz']:.0f} MHz that "
             f"{report['library']['name']} allows, {e['mrays_per_second']:.2f} at {SIMULATED_MHZ} MHz"
         )
+        lines += published() if e["whole_chip"] else []
     if against:
         lines.append(
             f"against  {against['config']} ({against['area']['total_kge']:.1f} kGE, {against['timing']['mhz']:.0f} MHz)"

@@ -437,6 +437,13 @@ class Synthesis(unittest.TestCase):
         chip = report.efficiency(made, "run", {"mrays_per_second": 60.0, "units": 2}, whole_chip=True)
         self.assertEqual((chip["mrays_per_second_mm2"], chip["mrays_per_second_kge"]), (120.0, 0.15))
 
+    def test_published_chips_are_scaled_by_the_square_of_the_feature_size(self):
+        lines = report.published()
+        sgrt = next(line for line in lines if "SGRT" in line)
+        self.assertIn("184 Mrays/s (conference) on 25 mm2 at 65 nm, 9.5 at 40: 19.4 a mm2", sgrt)
+        self.assertIn("36.7 at 40: 5.3 to 6.5 a mm2", next(line for line in lines if "RayCore" in line))
+        self.assertIn("16.0 at 40", next(line for line in lines if "thesis" in line))
+
     def simulated(self, design, cycles):
         """What the outputs of a mapped block are while it is given inputs, cycle by cycle; the first port lowest."""
         replay.simulator(design, self.folder, False)
