@@ -1,7 +1,8 @@
 // The chip: compute units, pools, controller, memory port and frame port, and with TRAVERSER the traverser. Outside
 // remain the memory, the frame buffer, a host that writes what stays for a frame and starts it, and a traverser at the
 // chip's ports; with one inside these are tied off. docs/chip.md, section 8.
-// Promises: those of its blocks at its ports; of several units the one with a fault stops, and the frame does not end.
+// Promises: those of its blocks at its ports; of several units the one with a fault stops, and the frame does not end;
+// nor does it after a fault of the traverser.
 // No output depends combinationally on an input, counter_o excepted, which depends on its selection.
 // Must be given: what its blocks must; arguments before start_i, and all that stays for a frame from then on.
 `default_nettype none
@@ -34,7 +35,8 @@ module chip #(
   input  wire [31:0]           tree_root_i,            // node or leaf; all ones: an empty tree
   input  wire [95:0]           tree_lower_i,           // bounds of all vertices; x in the low word
   input  wire [95:0]           tree_upper_i,
-  input  wire [25:0]           triangles_line_i,       // of 64 bytes; nodes begin with line 0
+  input  wire [25:0]           triangles_line_i,       // of 64 bytes; nodes are the lines from 0 to here
+  input  wire [25:0]           triangle_lines_i,       // that triangles take
   input  wire [25:0]           stacks_line_i,
   input  wire [31:0]           material_base_i,        // bytes, in the units' memory
   input  wire [104:0]          record_i,               // of each place of an intersection its word, 5 bits; 31: zero
@@ -89,6 +91,10 @@ module chip #(
   output wire [WARP_BITS-1:0]  fault_warp_o,
   output wire [15:0]           fault_pc_o,
   output wire [1:0]            fault_unit_o,
+  // that of a traverser inside, sticky: codes as in rtl/traverser.v, and the line of its memory
+  output wire                  tree_fault_valid_o,
+  output wire [2:0]            tree_fault_code_o,
+  output wire [25:0]           tree_fault_line_o,
   // performance counters of the units, docs/architecture.md
   input  wire [1:0]            counter_unit_i,
   input  wire [5:0]            counter_select_i,
@@ -172,7 +178,9 @@ module chip #(
         .RECORD_WORDS(INTERSECTION_WORDS), .SHADING(SHADING), .CULLING(CULLING), .KINDS(KINDS), .PLACE_BITS(PLACE_BITS)
       ) traverser (
         .clk_i(clk_i), .rst_ni(rst_ni), .root_i(tree_root_i), .lower_i(tree_lower_i), .upper_i(tree_upper_i),
-        .triangles_line_i(triangles_line_i), .stacks_line_i(stacks_line_i), .material_base_i(material_base_i),
+        .triangles_line_i(triangles_line_i), .triangle_lines_i(triangle_lines_i), .stacks_line_i(stacks_line_i),
+        .material_base_i(material_base_i), .fault_valid_o(tree_fault_valid_o), .fault_code_o(tree_fault_code_o),
+        .fault_line_o(tree_fault_line_o),
         .record_i(record_i), .depth_limit_i(depth_limit_i), .reflections_i(reflections_i),
         .ray_valid_i(ray_valid), .ray_ready_o(ray_ready), .ray_data_i(ray_data), .ray_last_i(ray_last),
         .ray_place_i(ray_place), .free_valid_o(free_valid), .free_place_o(free_place), .free_shadow_o(free_shadow),
@@ -203,8 +211,9 @@ module chip #(
       assign {put_ready_o, contribution_ready_o} = {put_ready, contribution_ready};
       assign {tree_request_ready_o, tree_response_valid_o} = {tree_request_ready, tree_response_valid};
       assign {tree_response_beat_o, tree_response_data_o} = {tree_response_beat, tree_response_data};
-      wire unused = &{1'b0, tree_root_i, tree_lower_i, tree_upper_i, triangles_line_i, stacks_line_i, material_base_i,
-                      record_i};
+      assign {tree_fault_valid_o, tree_fault_code_o, tree_fault_line_o} = 30'd0;
+      wire unused = &{1'b0, tree_root_i, tree_lower_i, tree_upper_i, triangles_line_i, triangle_lines_i, stacks_line_i,
+                      material_base_i, record_i};
     end
   endgenerate
 

@@ -78,9 +78,10 @@ module leaf_reader #(
           {more_q, start_place_q} <= start_leaf_i[g*31+:31];
         end
         wire [32:0] word = {1'b0, start_place_q, 3'd0} + {3'd0, start_place_q, 1'b0} + {4'd0, start_place_q};
+        // A place whose line has no number has the last one, so that it is not taken for another.
+        wire [LINE_BITS-1:0] start_line = word[4+:LINE_BITS] | {LINE_BITS{|word[32:LINE_BITS+4]}};
         assign push = start_q;
-        assign data = {start_slot_q, word[4+:LINE_BITS], 1'b0, word[3:0], {1'b0, more_q} + 3'd1, start_place_q};
-        wire unused = &{1'b0, word[32:LINE_BITS+4]};
+        assign data = {start_slot_q, start_line, 1'b0, word[3:0], {1'b0, more_q} + 3'd1, start_place_q};
       end else begin : gen_further
         assign push = further;
         assign data = further_data;

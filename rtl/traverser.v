@@ -2,9 +2,12 @@
 // then. A ray is set up, given to a lane that has a slot for it, visits nodes and triangles there, and goes through
 // ray_exit.v. Lanes share two caches and the port to the traverser's memory, and some of them a triangle pipe.
 // Promises: what a ray hits is what triangle_pipe.v hits of all triangles in the tree; a ray in the traverser waits for
-// nobody but the memory and those before it in ray_exit; no output depends on an input of the same cycle.
-// Must be given: a place that is not free for each ray; a tree as docs/scenes.md has it, whose nodes no ray comes to
-// twice, and whose stacks have room in the memory; all that stays for a frame before its first ray.
+// nobody but the memory and those before it in ray_exit; whatever the memory holds, rays end or there is a fault, which
+// stays until the reset: no more rays come in then, no node is tested, nothing is requested, and no ray is done, so
+// that the one with the fault never leaves; what was done before still does. No output depends on an input of the same
+// cycle.
+// Must be given: a place that is not free for each ray; a tree as docs/scenes.md has it, or a fault may be all that
+// comes of it; all that stays for a frame before its first ray.
 `default_nettype none
 module traverser #(
   parameter integer LANES = 8,
@@ -33,12 +36,18 @@ module traverser #(
   input  wire [31:0]           root_i,               // node or leaf; all ones: an empty tree
   input  wire [95:0]           lower_i,              // bounds of the scene, x in the low word
   input  wire [95:0]           upper_i,
-  input  wire [25:0]           triangles_line_i,     // where they begin; nodes begin with line 0
+  input  wire [25:0]           triangles_line_i,     // where they begin; nodes are the lines from 0 to here
+  input  wire [25:0]           triangle_lines_i,
   input  wire [25:0]           stacks_line_i,
   input  wire [31:0]           material_base_i,      // bytes
   input  wire [104:0]          record_i,             // of each place of a package its word, 5 bits; 31: zero
   input  wire [7:0]            depth_limit_i,
   input  wire                  reflections_i,        // normal packages are for the kernel that reflects
+  // the first fault, sticky
+  output reg                   fault_valid_o,
+  output reg  [2:0]            fault_code_o,         // 0 node beyond the tree, 1 triangle beyond it, 2 no room in a
+                                                     // stack; of a node 4 children, 5 order, 6 visits
+  output reg  [25:0]           fault_line_o,
   // rays
   input  wire                  ray_valid_i,
   output wire                  ray_ready_o,
@@ -91,7 +100,7 @@ module traverser #(
   wire [LANES*SLOT_BITS-1:0] slot_of;
   reg [1:0] beat_q;
   reg [255:0] beats_q;
-  assign ray_ready_o = |slot_valid || beat_q != 2'd0;
+  assign ray_ready_o = (|slot_valid && !fault_valid_o) || beat_q != 2'd0;
   wire beat_comes = ray_valid_i && ray_ready_o;
   wire enters = beat_comes && ray_last_i;
   always @(posedge clk_i)
@@ -138,6 +147,9 @@ module traverser #(
   // ---- Lanes
   wire [LANES-1:0] slot_free, done_valid, done_ready, done_hit;
   wire [SLOT_BITS-1:0] slot_free_slot;
+  wire [LANES-1:0] node_fault;
+  wire [LANES*2-1:0] node_fault_reason;
+  wire [LANES*LINE_BITS-1:0] node_fault_line;
   wire [LANES*SLOT_BITS-1:0] done_slot;
   wire [LANES*32-1:0] done_t, done_number;
   wire [LANES*29-1:0] done_place;
@@ -169,7 +181,9 @@ module traverser #(
     for (g = 0; g < LANES; g = g + 1) begin : gen_lane
       traverser_lane #(.SLOTS(SLOTS), .ENTRIES(ENTRIES), .BITS(BITS), .LINE_BITS(LINE_BITS), .BLOCK_BITS(BLOCK_BITS))
       lane (
-        .clk_i(clk_i), .rst_ni(rst_ni), .root_i(root_i), .slot_valid_o(slot_valid[g]),
+        .clk_i(clk_i), .rst_ni(rst_ni), .root_i(root_i), .nodes_i(triangles_line_i), .fault_valid_o(node_fault[g]),
+        .fault_reason_o(node_fault_reason[2*g +: 2]), .fault_line_o(node_fault_line[g*LINE_BITS +: LINE_BITS]),
+        .stop_i(fault_valid_o), .slot_valid_o(slot_valid[g]),
         .slot_ready_i(enters && enter_grant[g]), .slot_o(slot_of[g*SLOT_BITS +: SLOT_BITS]),
         .ray_valid_i(set_valid && set_lane[g]), .ray_slot_i(set_slot), .ray_meets_i(meets),
         .ray_shadow_i(set_shadow), .origin_i(origin), .backwards_i(backwards), .still_i(still),
@@ -259,7 +273,8 @@ module traverser #(
     .depth_limit_i(depth_limit_i), .reflections_i(reflections_i), .ray_valid_i(enters), .ray_place_i(ray_place_i),
     .ray_words_i(ray_words), .set_valid_i(set_lane & {LANES{set_valid}}), .set_slot_i(set_slot),
     .set_place_i(set_place), .set_depth_i(set_depth), .set_shadow_i(set_shadow), .set_origin_i(origin),
-    .set_main_axis_i(main_axis), .set_shear_i(shear), .set_scale_i(scale), .done_valid_i(done_valid),
+    .set_main_axis_i(main_axis), .set_shear_i(shear), .set_scale_i(scale),
+    .done_valid_i(done_valid & {LANES{!fault_valid_o}}),
     .done_ready_o(done_ready), .done_slot_i(done_slot), .done_hit_i(done_hit), .done_t_i(done_t),
     .done_place_i(done_place), .slot_free_o(slot_free), .slot_free_slot_o(slot_free_slot),
     .want_o(leaf_want[2*LANES +: 2]), .want_nobody_o(leaf_nobody[2*LANES]),
@@ -281,6 +296,9 @@ module traverser #(
   wire [NODE_ID_BITS-1:0] node_request_id, node_fill_id;
   wire [TRIANGLE_ID_BITS-1:0] triangle_request_id, triangle_fill_id;
   wire [511:0] fill_data;
+  wire port_fault;
+  wire [1:0] port_fault_source;
+  wire [LINE_BITS-1:0] port_fault_line;
   tree_banks #(
     .LANES(LANES), .SLOTS(SLOTS), .LINES(NODE_LINES), .WAYS(NODE_WAYS), .MSHRS(NODE_MSHRS), .BANKS(NODE_BANKS),
     .LINE_BITS(LINE_BITS)
@@ -307,7 +325,9 @@ module traverser #(
     .LANES(LANES), .SLOTS(SLOTS), .ENTRY_BITS(ENTRY_BITS), .BLOCK_BITS(BLOCK_BITS), .NODE_ID_BITS(NODE_ID_BITS),
     .TRIANGLE_ID_BITS(TRIANGLE_ID_BITS), .LINES(NODE_MSHRS + TRIANGLE_MSHRS + LANES)
   ) port (
-    .clk_i(clk_i), .rst_ni(rst_ni), .triangles_line_i(triangles_line_i), .stacks_line_i(stacks_line_i),
+    .clk_i(clk_i), .rst_ni(rst_ni), .triangles_line_i(triangles_line_i), .triangle_lines_i(triangle_lines_i),
+    .stacks_line_i(stacks_line_i), .fault_valid_o(port_fault), .fault_source_o(port_fault_source),
+    .fault_line_o(port_fault_line), .stop_i(fault_valid_o),
     .node_request_valid_i(node_request_valid), .node_request_ready_o(node_request_ready),
     .node_request_line_i(node_request_line), .node_request_id_i(node_request_id),
     .node_fill_valid_o(node_fill_valid), .node_fill_ready_i(node_fill_ready), .node_fill_id_o(node_fill_id),
@@ -322,5 +342,28 @@ module traverser #(
     .request_ready_i(request_ready_i), .request_write_o(request_write_o), .request_second_o(request_second_o),
     .request_address_o(request_address_o), .request_data_o(request_data_o), .response_valid_i(response_valid_i),
     .response_beat_i(response_beat_i), .response_data_i(response_data_i));
+
+  // ---- The first fault: of the port's and the lanes' in one cycle the port's, then that of the lowest lane
+  reg [2:0] first_code;
+  reg [LINE_BITS-1:0] first_line;
+  integer f;
+  always @* begin
+    first_code = {1'b0, port_fault_source};
+    first_line = port_fault_line;
+    for (f = LANES - 1; f >= 0; f = f - 1)
+      if (node_fault[f] && !port_fault) begin
+        first_code = {1'b1, node_fault_reason[2*f +: 2]};
+        first_line = node_fault_line[f*LINE_BITS +: LINE_BITS];
+      end
+  end
+  wire faults = port_fault || |node_fault;
+  always @(posedge clk_i)
+    if (!rst_ni) fault_valid_o <= 1'b0;
+    else if (faults) fault_valid_o <= 1'b1;
+  always @(posedge clk_i)
+    if (faults && !fault_valid_o) begin
+      fault_code_o <= first_code;
+      fault_line_o <= first_line;
+    end
 endmodule
 `default_nettype wire

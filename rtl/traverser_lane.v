@@ -2,10 +2,15 @@
 // and leaves come from two caches that lanes share, and triangles go to a triangle pipe, which may be shared too. A
 // slot is given to a ray, which comes when it is set up; visits what its nodes, stack and hits say; and is offered with
 // its best hit when it has visited everything, or, if it is a shadow ray, has found a blocker.
+// Whatever lies in the memory, a ray's walk ends, with the ray done or with a fault. A way back to a node has a step to
+// a number that is not above the one before it: that is looked for in each node that comes, so the fault has the node
+// with that step. Ways that meet again, and entries that come back wrong from the memory of the stacks, are no such
+// step: a ray that has come to as many nodes as there are may come to none. Leaves need no count, as each is a child of
+// such a node.
 // Promises: what a ray hits is what triangle_pipe hits of all triangles in the tree, whatever comes in which order. No
 // output depends on an input of the same cycle, but what the triangle pipe is told.
 // Must be given: a ray once for a slot that was taken, and the slot back once after the ray was taken; what leaf_reader
-// must be of each cache; a tree whose depth stacks bear; triangle_pipe's results.
+// must be of each cache; triangle_pipe's results.
 `default_nettype none
 module traverser_lane #(
   parameter integer SLOTS = 24,
@@ -21,6 +26,12 @@ module traverser_lane #(
   input  wire                    clk_i,
   input  wire                    rst_ni,
   input  wire [31:0]             root_i,         // node or leaf; all ones: an empty tree
+  input  wire [LINE_BITS-1:0]    nodes_i,        // that there are
+  // a node that no tree has, or to which a ray comes too late, for a cycle, and then perhaps others
+  output reg                     fault_valid_o,
+  output reg  [1:0]              fault_reason_o, // 0 children, 1 order, 2 visits
+  output reg  [LINE_BITS-1:0]    fault_line_o,   // of the node
+  input  wire                    stop_i,         // no more nodes are tested
   // a slot for a ray
   output wire                    slot_valid_o,
   input  wire                    slot_ready_i,
@@ -183,12 +194,49 @@ module traverser_lane #(
   reg given_q;
   reg [SLOT_BITS-1:0] given_slot_q;
   reg [447:0] node_q;
-  always @(posedge clk_i) given_q <= rst_ni && node_given_i;
+  always @(posedge clk_i) given_q <= rst_ni && node_given_i && !stop_i;
   always @(posedge clk_i)
     if (node_given_i) begin
       given_slot_q <= node_given_slot_i;
       node_q <= node_given_data_i[447:0];
     end
+
+  // Meanwhile it is looked at: its number is that of the line that was looked up, and visits are those before it.
+  wire [LINE_BITS-1:0] number, counted;
+  ram_1r1w #(.WIDTH(LINE_BITS), .DEPTH(SLOTS)) numbers (
+    .clk_i(clk_i), .read_i(node_given_i), .read_address_i(node_given_slot_i), .read_data_o(number),
+    .write_i(|node_taken_i), .write_address_i(node_taken_i[1] ? node_want_slot_o[SLOT_BITS+:SLOT_BITS]
+                                                              : node_want_slot_o[0+:SLOT_BITS]),
+    .write_data_i(node_taken_i[1] ? node_want_line_o[LINE_BITS+:LINE_BITS] : node_want_line_o[0+:LINE_BITS]));
+  reg [SLOTS-1:0] fresh_q;                       // slots whose ray has come to no node yet
+  wire [LINE_BITS-1:0] visits = fresh_q[given_slot_q] ? {LINE_BITS{1'b0}} : counted;
+  wire [LINE_BITS-1:0] visits_then = visits + {{LINE_BITS-1{1'b0}}, 1'b1};
+  ram_1r1w #(.WIDTH(LINE_BITS), .DEPTH(SLOTS)) counts (
+    .clk_i(clk_i), .read_i(node_given_i), .read_address_i(node_given_slot_i), .read_data_o(counted),
+    .write_i(given_q), .write_address_i(given_slot_q), .write_data_i(visits_then));
+  integer s;
+  always @(posedge clk_i)
+    for (s = 0; s < SLOTS; s = s + 1)
+      if (ray_valid_i && ray_slot_i == s[SLOT_BITS-1:0]) fresh_q[s] <= 1'b1;
+      else if (given_q && given_slot_q == s[SLOT_BITS-1:0]) fresh_q[s] <= 1'b0;
+  wire [7:0] node_children = node_q[127:120];
+  wire bad_children = node_children == 8'd0 || node_children > 8'd4;
+  wire [3:0] backward;                           // a child is a node, and not of a higher number
+  generate
+    for (g = 0; g < 4; g = g + 1) begin : gen_child
+      wire [31:0] reference = node_q[320+32*g +: 32];
+      assign backward[g] = node_children > g && !reference[31] &&
+                           (|reference[30:LINE_BITS] || reference[LINE_BITS-1:0] <= number);
+    end
+  endgenerate
+  wire bad_order = |backward;
+  wire too_many = visits == nodes_i;
+  always @(posedge clk_i) fault_valid_o <= rst_ni && given_q && (bad_children || bad_order || too_many);
+  always @(posedge clk_i) begin
+    fault_reason_o <= bad_children ? 2'd0 : bad_order ? 2'd1 : 2'd2;
+    fault_line_o <= number;
+  end
+
   wire [KEY_BITS-1:0] test_limit = best_key_valid ? best_key : box_limit;
   wire boxes_valid, boxes_ready;
   wire [3:0] met;
@@ -213,7 +261,7 @@ module traverser_lane #(
     node_slot_q <= boxes_slot;
     node_limit_q <= boxes_limit;
   end
-  wire unused = &{1'b0, boxes_ready, node_given_data_i[511:448], node_q[127:123], triangle_material, result_t_i[31]};
+  wire unused = &{1'b0, boxes_ready, node_given_data_i[511:448], triangle_material, result_t_i[31]};
 
   // ---- The stacks
 

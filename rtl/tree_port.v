@@ -1,10 +1,12 @@
 // The traverser's side of its memory: one request in a cycle, of nodes, of triangles and of the stacks in rotation, and
 // lines that come back in the order of the reads. Nodes lie from line 0 on, triangles from triangles_line_i, the stacks
 // from stacks_line_i: of a slot 2^BLOCK_BITS blocks of four entries of 64 bits, two blocks to a line.
-// Promises: a request that is offered stays until it is taken; each line is given to who asked for it, once. Requests
-// depend on no input of the same cycle.
+// What lies beyond the tree is not asked for: it is a fault, as is the block of a stack that has no room for one more.
+// That is found here, where all lines pass, and not where a lane comes to a node, whose cycle is full.
+// Promises: a request that is offered stays until it is taken; each line is given to who asked for it, once; no line
+// beyond the tree is requested. Requests and faults depend on no input of the same cycle.
 // Must be given: at most LINES reads on their way; lines of four beats, whose receivers take them before the last beat
-// of the next one.
+// of the next one; stop_i from the cycle after a fault on.
 `default_nettype none
 module tree_port #(
   parameter integer LANES = 8,
@@ -18,8 +20,14 @@ module tree_port #(
 ) (
   input  wire                          clk_i,
   input  wire                          rst_ni,
-  input  wire [25:0]                   triangles_line_i,
+  input  wire [25:0]                   triangles_line_i,   // and so many lines of nodes there are
+  input  wire [25:0]                   triangle_lines_i,
   input  wire [25:0]                   stacks_line_i,
+  // a fault, for a cycle; from then on nothing is taken over
+  output reg                           fault_valid_o,
+  output reg  [1:0]                    fault_source_o,     // 0 nodes, 1 triangles, 2 stacks
+  output wire [25:0]                   fault_line_o,       // all ones where no address reaches it
+  input  wire                          stop_i,
   // from the caches, as tree_banks has them
   input  wire                          node_request_valid_i,
   output wire                          node_request_ready_o,
@@ -64,7 +72,8 @@ module tree_port #(
   localparam [1:0] NODES = 2'd0, TRIANGLES = 2'd1, STACKS = 2'd2;
 
   // ---- Who asks
-  wire takes = !request_valid_o || request_ready_i;
+  wire free = !request_valid_o || request_ready_i;
+  wire takes = free && !fault_valid_o && !stop_i;
   wire [2:0] grant;
   wire [LANES-1:0] stack_grant;
   round_robin #(.COUNT(3)) turn (
@@ -102,22 +111,34 @@ module tree_port #(
   wire writes = grant[2] && write;
   wire [25:0] base = grant[0] ? 26'd0 : grant[1] ? triangles_line_i : stacks_line_i;
   wire [25:0] stack_line = {{26-STACK_LINE_BITS{1'b0}}, lane, slot, block[BLOCK_BITS-1:1]};
-  wire [25:0] line = base + (grant[0] ? node_request_line_i : grant[1] ? triangle_request_line_i : stack_line);
+  wire [25:0] offset = grant[0] ? node_request_line_i : grant[1] ? triangle_request_line_i : stack_line;
+  wire [26:0] line = {1'b0, base} + {1'b0, offset};
+
+  // Compared beside the sum, not behind it. A stack has so many blocks that the next one's number would be that of the
+  // first.
+  wire node_beyond = node_request_line_i >= triangles_line_i;
+  wire triangle_beyond = triangle_request_line_i >= triangle_lines_i;
+  wire beyond = (grant[0] && node_beyond) || (grant[1] && triangle_beyond) || (writes && &block);
 
   always @(posedge clk_i)
     if (!rst_ni) request_valid_o <= 1'b0;
-    else if (takes) request_valid_o <= |grant;
+    else if (free) request_valid_o <= takes && |grant && !beyond;
+  always @(posedge clk_i) fault_valid_o <= rst_ni && takes && beyond;
+  always @(posedge clk_i) if (takes) fault_source_o <= grant[0] ? NODES : grant[1] ? TRIANGLES : STACKS;
+  reg carry_q;                                   // of that line's number
+  always @(posedge clk_i) if (takes) carry_q <= line[26];
+  assign fault_line_o = request_address_o[31:6] | {26{carry_q}};
   integer e;
   always @(posedge clk_i)
     if (takes) begin
       request_write_o <= writes;
-      request_address_o <= {line, writes && block[0], 5'd0};
+      request_address_o <= {line[25:0], writes && block[0], 5'd0};
       for (e = 0; e < 4; e = e + 1)
         request_data_o[64*e +: 64] <= {{64-ENTRY_BITS{1'b0}}, entries[e*ENTRY_BITS +: ENTRY_BITS]};
     end
   assign request_second_o = request_write_o;
 
-  // ---- Whose lines are on their way
+  // ---- Whose lines are on their way; behind one beyond the tree, which never comes, none is
   reg [ID_BITS-1:0] id;
   always @* begin
     id = {ID_BITS{1'b0}};

@@ -19,6 +19,7 @@
 #include "machine/memory_port.hpp"
 #include "machine/packages.hpp"
 #include "machine/ray_kernel.hpp"
+#include "machine/tree_fault.hpp"
 #include "machine/tree_setup.hpp"
 
 namespace raypool {
@@ -107,6 +108,7 @@ struct ChipOutputs {
   uint32_t exported_pixel = 0;
   uint32_t quiet = 0;        ///< mask: nothing of the unit waits or is on its way at the memory port
   TraverserPorts traverser;  ///< of one inside
+  TreeFault tree_fault;      ///< likewise
 };
 
 /// For the report: since the frame's start, right two cycles after the last event.

@@ -147,7 +147,7 @@ TraverserSetup traverser_setup(const FrameSetup& setup) {
   const TreeSetup& tree = setup.tree;
   return {tree.root,
           tree.bounds,
-          {tree.triangles_line, tree.stacks_line},
+          {tree.triangles_line, tree.stacks_line, tree.triangle_lines},
           {tree.material_base, tree.layout, setup.depth, setup.reflections}};
 }
 
@@ -435,6 +435,7 @@ class ChipModel : public ChipDevice {
     if (shown.contribution_valid) ports.contribution = shown.contribution;
     ports.tree_request_valid = shown.request_valid;
     if (shown.request_valid) ports.tree_request = shown.request;
+    out_.tree_fault = shown.fault;
   }
 
   Configuration configuration_;

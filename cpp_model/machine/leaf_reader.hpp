@@ -27,7 +27,8 @@ using LineWants = std::array<std::optional<LineWant>, 2>;
 class LeafReader {
  public:
   static constexpr uint32_t kTriangleWords = 11;
-  static constexpr uint32_t kLines = 5;  ///< that it holds, and that are on their way
+  static constexpr uint32_t kLines = 5;                  ///< that it holds, and that are on their way
+  static constexpr uint32_t kLastLine = (1u << 26) - 1;  ///< a place whose line has no number has this one
   static constexpr uint32_t kAhead = 4;  ///< leaves whose lines will be wanted; further ones are forgotten
 
   /// A ray goes on with a leaf.
@@ -65,7 +66,7 @@ class LeafReader {
   LineWants wants() const {
     LineWants wants;
     size_t count = 0;
-    if (ahead_.valid()) wants[count++] = {ahead_.data().line + ahead_step_, 0, true};
+    if (ahead_.valid()) wants[count++] = {(ahead_.data().line + ahead_step_) & kLastLine, 0, true};
     for (uint32_t i = 0; room() && i < queues_.size() && count < wants.size(); ++i) {
       const RamQueue<Wanted>& queue = queues_[(turn_ + i) % queues_.size()];
       if (queue.valid()) wants[count++] = {queue.data().leaf.line, queue.data().slot, false};
@@ -98,7 +99,7 @@ class LeafReader {
     held_ -= (missed ? 1 : 0) + (leaves ? 1 : 0);
 
     // Lines that have been looked up and were not there: those behind them are looked up at once.
-    if (missed && due_->behind != 0 && !full) ahead_.push({due_->line + 1, due_->behind});
+    if (missed && due_->behind != 0 && !full) ahead_.push({(due_->line + 1) & kLastLine, due_->behind});
     due_.reset();
     if (asked_) due_ = Behind{asked_->line, static_cast<uint32_t>(asked_->last_word() / 16)};
     asked_.reset();
@@ -132,14 +133,14 @@ class LeafReader {
     Leaf() = default;
     explicit Leaf(uint32_t leaf) : left((leaf >> 29 & 3) + 1), place(leaf & 0x1fffffff) {
       const uint64_t word = uint64_t{place} * kTriangleWords;
-      line = static_cast<uint32_t>(word / 16);
+      line = static_cast<uint32_t>(std::min<uint64_t>(word / 16, kLastLine));
       at = static_cast<int>(word % 16);
     }
     int last_word() const { return at + static_cast<int>(kTriangleWords * left) - 1; }
     uint32_t tests() const { return std::min(left, static_cast<uint32_t>(16 - at) / kTriangleWords); }
     Leaf behind(uint32_t tests) const {
       Leaf behind = *this;
-      ++behind.line;
+      behind.line = (line + 1) & kLastLine;
       behind.at += static_cast<int>(kTriangleWords * tests) - 16;
       behind.left -= tests;
       behind.place += tests;

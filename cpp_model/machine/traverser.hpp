@@ -68,6 +68,7 @@ class Traverser {
     FrameContribution contribution;
     bool request_valid = false;
     MemoryPort::TreeRequest request;
+    TreeFault fault;  ///< the first one, sticky
   };
 
   explicit Traverser(const Sizes& sizes)
@@ -92,7 +93,7 @@ class Traverser {
   /// While no ray is in it.
   void set_up(const TraverserSetup& setup) {
     setup_ = setup;
-    for (const auto& lane : lanes_) lane->set_root(setup.root);
+    for (const auto& lane : lanes_) lane->set_tree(setup.root, setup.places.triangles);
     port_.set_places(setup.places);
     exit_.set_frame(setup.frame);
   }
@@ -119,6 +120,8 @@ class Traverser {
     enter(inputs);
     exit_inputs_.put_ready = inputs.put_ready;
     exit_inputs_.contribution_ready = inputs.contribution_ready;
+    const TreeFault fault = first_fault();
+    for (TraverserLane::Inputs& lane : inputs_) lane.stop = out_.fault.valid;
 
     for (TriangleGroup& group : groups_) group.clock();
     for (uint32_t lane = 0; lane < sizes_.lanes; ++lane) lanes_[lane]->clock(inputs_[lane]);
@@ -127,6 +130,7 @@ class Traverser {
     leaves_.clock(port_.line());
     port_.clock(request_taken, asked ? &*asked : nullptr, line_taken,
                 inputs.response_valid ? &inputs.response_data : nullptr);
+    if (!out_.fault.valid) out_.fault = fault;
     present();
   }
 
@@ -181,7 +185,7 @@ class Traverser {
     const std::optional<TreePort::Line>& line = port_.line();
     if (!line) return false;
     if (line->source == TreePort::Source::Stacks) {
-      block_ = line->block();
+      block_ = line->block(sizes_.box_bits + 9);
       inputs_[line->id].filled = &block_;
       return true;
     }
@@ -232,8 +236,8 @@ class Traverser {
   std::optional<TreePort::Asked> ask(bool request_taken) {
     uint32_t stacks = 0;
     for (uint32_t lane = 0; lane < sizes_.lanes; ++lane) stacks |= (lanes_[lane]->request_valid() ? 1u : 0u) << lane;
-    const std::optional<TreePort::Source> source =
-        port_.choose(request_taken, nodes_.banks.request_valid(), leaves_.banks.request_valid(), stacks);
+    const std::optional<TreePort::Source> source = port_.choose(
+        request_taken, nodes_.banks.request_valid(), leaves_.banks.request_valid(), stacks, out_.fault.valid);
     if (!source) return {};
     TreePort::Asked asked;
     asked.source = *source;
@@ -265,7 +269,7 @@ class Traverser {
     if (const std::optional<RayExit::Slot> freed = exit_.freed_slot()) inputs_[freed->lane].freed = freed->slot;
     uint32_t done = 0;
     for (uint32_t lane = 0; lane < sizes_.lanes; ++lane) done |= (lanes_[lane]->done_valid() ? 1u : 0u) << lane;
-    const std::optional<uint32_t> lane = exit_.choose(done);
+    const std::optional<uint32_t> lane = exit_.choose(out_.fault.valid ? 0 : done);
     if (!lane) return;
     const uint32_t slot = lanes_[*lane]->done_slot();
     done_ = {*lane, slot, lanes_[*lane]->hits().best(slot)};
@@ -315,6 +319,13 @@ class Traverser {
     exit_inputs_.ray = &ray_;
     exit_inputs_.ray_place = inputs.ray_place;
   }
+  // Of this cycle: the port's, then that of the lowest lane.
+  TreeFault first_fault() const {
+    if (port_.fault().valid) return port_.fault();
+    for (const auto& lane : lanes_)
+      if (lane->fault().valid) return lane->fault();
+    return {};
+  }
   uint32_t free_lanes() const {
     uint32_t lanes = 0;
     for (uint32_t lane = 0; lane < sizes_.lanes; ++lane) lanes |= (lanes_[lane]->slot_valid() ? 1u : 0u) << lane;
@@ -322,7 +333,7 @@ class Traverser {
   }
 
   void present() {
-    out_.ray_ready = beat_ != 0 || free_lanes() != 0;
+    out_.ray_ready = beat_ != 0 || (!out_.fault.valid && free_lanes() != 0);
     out_.free_valid = exit_.free_valid();
     if (out_.free_valid) {
       out_.free_place = exit_.free_place();

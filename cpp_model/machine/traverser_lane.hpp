@@ -18,6 +18,7 @@
 #include "machine/lane_stacks.hpp"
 #include "machine/leaf_reader.hpp"
 #include "machine/ram_queue.hpp"
+#include "machine/tree_fault.hpp"
 
 namespace raypool {
 
@@ -46,6 +47,7 @@ class TraverserLane {
     const LaneHits::Result* result = nullptr;   ///< of the triangle pipe
     bool done_taken = false;                    ///< only if done_valid()
     std::optional<uint32_t> freed;              ///< slot
+    bool stop = false;                          ///< no more nodes are tested
   };
   static constexpr uint32_t kNoReference = UINT32_MAX;
   static constexpr uint32_t kLeaf = 1u << 31;  ///< of a reference: it is a leaf's
@@ -53,6 +55,8 @@ class TraverserLane {
   explicit TraverserLane(const Sizes& sizes)
       : box_bits_(sizes.box_bits),
         free_(sizes.slots),
+        numbers_(sizes.slots),
+        visits_(sizes.slots),
         rays_(sizes.slots, LaneRay{false, false, no_ray(sizes.box_bits), {}, {}}),
         begins_(sizes.slots),
         nodes_{RamQueue<LineWant>(sizes.slots), RamQueue<LineWant>(sizes.slots)},
@@ -63,8 +67,11 @@ class TraverserLane {
   TraverserLane(const TraverserLane&) = delete;
   TraverserLane& operator=(const TraverserLane&) = delete;
 
-  /// A reference, kNoReference of an empty tree. While no ray is in it.
-  void set_root(uint32_t root) { root_ = root; }
+  /// A reference, kNoReference of an empty tree, and the number of nodes. While no ray is in it.
+  void set_tree(uint32_t root, uint32_t nodes) {
+    root_ = root;
+    count_ = nodes;
+  }
 
   bool slot_valid() const { return free_.valid(); }
   uint32_t slot() const { return free_.number(); }  ///< means something while slot_valid()
@@ -81,6 +88,9 @@ class TraverserLane {
   }
   LineWants leaf_wants() const { return leaves_.wants(); }
   bool leaf_room() const { return leaves_.room(); }
+
+  /// A node that no tree has, or to which a ray comes too late: valid for a cycle, and then perhaps others.
+  const TreeFault& fault() const { return fault_; }
 
   bool request_valid() const { return stacks_.request_valid(); }
   const LaneStacks::Request& request() const { return stacks_.request(); }  ///< means something while request_valid()
@@ -119,10 +129,12 @@ class TraverserLane {
     leaves.triangle_taken = inputs.test_taken;
     leaves_.clock(leaves);
 
-    test_boxes_of(inputs.node);
+    look_at_node();
+    test_boxes_of(inputs.stop ? nullptr : inputs.node);
     hits_.clock(inputs.ray != nullptr ? std::optional<uint32_t>(inputs.ray->slot) : std::nullopt, inputs.result);
     if (inputs.ray != nullptr) {
       rays_[inputs.ray->slot] = inputs.ray->ray;
+      visits_[inputs.ray->slot] = 0;
       begins_.push(inputs.ray->slot);
     }
     if (inputs.slot_taken) free_.take();
@@ -149,13 +161,43 @@ class TraverserLane {
     if (stacks_.fill_waits()) return;
     const uint32_t first = nodes_[node_turn_].valid() ? node_turn_ : 1 - node_turn_;
     if (!nodes_[first].valid()) return;
-    if (which) nodes_[*which == 0 ? first : 1 - first].pop();
+    if (which) {
+      RamQueue<LineWant>& queue = nodes_[*which == 0 ? first : 1 - first];
+      numbers_[queue.data().slot] = queue.data().line;
+      queue.pop();
+    }
     node_turn_ = 1 - first;
+  }
+
+  // The node whose test begins. A way back to a node has a step to a number that is not above the one before it; ways
+  // that meet again, and stacks that come back wrong, lead to more visits than there are nodes.
+  void look_at_node() {
+    fault_.valid = false;
+    if (!given_) return;
+    BoxNode node;
+    std::memcpy(&node, given_->line.data(), sizeof node);
+    fault_.line = numbers_[given_->slot];
+    const bool late = visits_[given_->slot]++ == count_;
+    bool backward = false;
+    for (uint32_t i = 0; i < std::min<uint32_t>(node.children, kBoxes); ++i) {
+      const uint32_t reference = given_->line[sizeof node / sizeof(uint32_t) + i];
+      const bool too_high = reference > LeafReader::kLastLine;
+      backward = backward || ((reference & kLeaf) == 0 && (too_high || reference <= fault_.line));
+    }
+    if (node.children == 0 || node.children > kBoxes)
+      fault_.code = TreeFaultCode::Children;
+    else if (backward)
+      fault_.code = TreeFaultCode::Order;
+    else if (late)
+      fault_.code = TreeFaultCode::Visits;
+    else
+      return;
+    fault_.valid = true;
   }
 
   void go(uint32_t source, uint32_t slot, uint32_t reference, LeafReader::Inputs& leaves) {
     if ((reference & kLeaf) == 0) {
-      nodes_[source].push({reference, slot, false});
+      nodes_[source].push({reference & LeafReader::kLastLine, slot, false});
     } else {
       leaves.starts[source] = LeafReader::Start{slot, reference};
     }
@@ -199,8 +241,10 @@ class TraverserLane {
   }
 
   int box_bits_;
-  uint32_t root_ = kNoReference;
+  uint32_t root_ = kNoReference, count_ = 0;
   FreeList free_;
+  std::vector<uint32_t> numbers_, visits_;  // [slot] of the node that was looked up; of nodes that have come
+  TreeFault fault_;
   std::vector<LaneRay> rays_;  // [slot]
   RamQueue<uint32_t> begins_;  // slots whose ray has come
 

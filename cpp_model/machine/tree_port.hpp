@@ -1,7 +1,8 @@
 // rtl/tree_port.v: the traverser's side of its memory: requests of nodes, triangles and stacks in rotation, and lines
-// that come back in the order of the reads.
+// that come back in the order of the reads. What lies beyond the tree is a fault.
 //
-// request() and line() hold in a whole cycle. choose() says whose request is taken in it, then clock() ends it.
+// request(), fault() and line() hold in a whole cycle. choose() says whose request is taken in it, then clock() ends
+// it.
 #pragma once
 
 #include <algorithm>
@@ -14,6 +15,7 @@
 #include "machine/memory_port.hpp"
 #include "machine/ram_queue.hpp"
 #include "machine/round_robin.hpp"
+#include "machine/tree_fault.hpp"
 
 namespace raypool {
 
@@ -23,9 +25,10 @@ class TreePort {
   static constexpr uint32_t kEntryWords = 2, kBlockWords = kEntryWords * LaneStacks::kBlock;
   static constexpr uint32_t kBlockBits = 7;  ///< of a block's number in a slot's stack
 
-  /// Where what lies in the memory begins: lines. Nodes begin with line 0.
+  /// Where what lies in the memory begins: lines. Nodes are those from 0 to the triangles.
   struct Places {
     uint32_t triangles = 0, stacks = 0;
+    uint32_t triangle_lines = 0;
   };
   /// A request that is taken over.
   struct Asked {
@@ -41,11 +44,12 @@ class TreePort {
     bool second = false;
     TreeLine data{};
 
-    LaneStacks::Block block() const {
+    /// Of keys of so many bits, whatever lies in the memory.
+    LaneStacks::Block block(int key_bits) const {
       LaneStacks::Block block;
       for (uint32_t i = 0; i < block.size(); ++i) {
         const uint32_t word = (second ? kBlockWords : 0) + kEntryWords * i;
-        block[i] = {data[word + 1], data[word]};
+        block[i] = {data[word + 1] & ((1u << key_bits) - 1), data[word]};
       }
       return block;
     }
@@ -58,12 +62,14 @@ class TreePort {
 
   bool request_valid() const { return request_.has_value(); }
   const MemoryPort::TreeRequest& request() const { return *request_; }  ///< only while request_valid()
+  const TreeFault& fault() const { return fault_; }                     ///< valid for a cycle
   const std::optional<Line>& line() const { return line_; }
 
-  /// Of those who ask, lanes with a bit each: whose request is taken over, if there is room for one.
-  std::optional<Source> choose(bool request_taken, bool nodes, bool triangles, uint32_t stacks) {
+  /// Of those who ask, lanes with a bit each: whose request is taken over, if there is room for one. `stop`: of none,
+  /// from the cycle after a fault on.
+  std::optional<Source> choose(bool request_taken, bool nodes, bool triangles, uint32_t stacks, bool stop) {
     const uint32_t asking = (nodes ? 1u : 0u) | (triangles ? 2u : 0u) | (stacks != 0 ? 4u : 0u);
-    if ((request_ && !request_taken) || asking == 0) return {};
+    if ((request_ && !request_taken) || fault_.valid || stop || asking == 0) return {};
     const uint32_t chosen = turn_.choose(asking);
     turn_.advance(chosen);
     if (chosen == 2) {
@@ -79,6 +85,7 @@ class TreePort {
     if (request_taken) request_.reset();
     if (line_taken) line_.reset();
     if (beat != nullptr) take_beat(*beat);
+    fault_.valid = false;
     if (asked != nullptr) take_request(*asked);
   }
 
@@ -89,6 +96,26 @@ class TreePort {
     bool second;
   };
   static constexpr uint32_t kLine = MemoryPort::kLineBytes;
+  static constexpr uint32_t kLastLine = LeafReader::kLastLine;
+  static constexpr uint32_t kLastBlock = (1u << kBlockBits) - 1;  // with it a stack would have as many as none
+
+  // True: nothing of it is requested.
+  bool faults(TreeFaultCode code, uint32_t line) {
+    fault_ = {true, code, std::min(line, kLastLine)};
+    return true;
+  }
+  bool beyond(const Asked& asked) {
+    if (asked.source == Source::Stacks) {
+      const LaneStacks::Request& stack = *asked.stack;
+      const uint32_t slot = asked.lane << slot_bits_ | stack.slot;
+      return stack.write && stack.block == kLastBlock &&
+             faults(TreeFaultCode::StackFull, places_.stacks + ((slot << kBlockBits | stack.block) >> 1));
+    }
+    if (asked.source == Source::Nodes)
+      return asked.line >= places_.triangles && faults(TreeFaultCode::NodeBeyond, asked.line);
+    return asked.line >= places_.triangle_lines &&
+           faults(TreeFaultCode::TriangleBeyond, places_.triangles + asked.line);
+  }
 
   void take_beat(const Beat& beat) {
     std::copy(beat.begin(), beat.end(), coming_.begin() + beat_ * kBeatWords);
@@ -99,6 +126,7 @@ class TreePort {
     on_way_.pop();
   }
   void take_request(const Asked& asked) {
+    if (beyond(asked)) return;
     MemoryPort::TreeRequest request;
     OnWay on_way{asked.source, asked.id, false};
     if (asked.source == Source::Stacks) {
@@ -126,6 +154,7 @@ class TreePort {
   RoundRobin turn_, stack_turn_;
   uint32_t lane_ = 0;
   std::optional<MemoryPort::TreeRequest> request_;
+  TreeFault fault_;
   RamQueue<OnWay> on_way_;
   TreeLine coming_{};
   uint32_t beat_ = 0;  // that comes next

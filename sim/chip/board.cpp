@@ -8,11 +8,13 @@
 #include <stdexcept>
 
 #include "bits.hpp"
+#include "chip/answer_watch.hpp"
 #include "chip/board_memory.hpp"
 #include "chip/frame_figures.hpp"
 #include "chip/frame_setup.hpp"
 #include "chip/monitor.hpp"
 #include "chip/port_traverser.hpp"
+#include "chip/traverser_fault.hpp"
 #include "chip/traverser_watch.hpp"
 #include "config/limits.hpp"
 #include "machine/intersection_pool.hpp"
@@ -49,6 +51,7 @@ class Board {
         chip_(chip),
         reflects_(secondary_kernel(options.depth, options.reflections) == RayKernel::CastSecondary),
         memory_(*options.memory, options.tree == nullptr ? nullptr : &options.tree->memory, options.configuration.chip),
+        answers_(options.configuration.chip),
         kernels_(chip.units(), options.configuration.contents()) {
     const ChipConfiguration& configuration = options.configuration.chip;
     if (has_traverser(configuration))
@@ -87,6 +90,7 @@ class Board {
   ChipDevice& chip_;
   const bool reflects_;
   BoardMemory memory_;
+  AnswerWatch answers_;
   std::optional<PortTraverser> traverser_;
   std::optional<TraverserWatch> watch_;  // of one inside
   ChipInputs inputs_;
@@ -124,6 +128,8 @@ void Board::clock() {
     const Fault& fault = outputs.device.fault;
     throw ChipFault(fault.unit, fault, fault_sentence(fault.unit, fault));
   }
+  if (outputs.tree_fault.valid)
+    throw TraverserFault(outputs.tree_fault, fault_sentence(outputs.tree_fault, options_.tree->setup));
   begun_ |= outputs.busy;
   if (begun_ && !ended_ && !outputs.busy) {
     ended_ = true;
@@ -138,6 +144,7 @@ void Board::clock() {
     follow_kernels(outputs);
     follow_levels(outputs);
     watch(outputs);
+    if (const std::optional<std::string> waits = answers_.clock(cycle_, outputs, inputs_)) stall(*waits);
   }
   if (outputs.frame_valid) options_.frame->add(outputs.frame);
   memory_.clock(cycle_, outputs, inputs_);

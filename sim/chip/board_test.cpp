@@ -3,9 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+#include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
+#include "chip/answer_watch.hpp"
 #include "chip/test_real_frame.hpp"
 #include "machine/chip_model.hpp"
 #include "machine/model.hpp"
@@ -128,6 +132,180 @@ TEST(Board, TellsOfAFault) {
   BoardRun board({"", 4, 4, 1, 16, 8, 2});
   board.run.options.program_length = 3;
   EXPECT_THROW(board.draw(), ChipFault);
+}
+
+// ---- A traverser inside, whose memory holds no tree, or loses something
+
+void inside(ChipConfiguration& chip) {
+  chip.traverser = TraverserName::Hardware;
+  chip.modelled_traverser_box_pipes = 2;
+  chip.modelled_traverser_rays = 8;
+  chip.modelled_traverser_triangle_pipes = 1;
+  chip.modelled_traverser_stack_entries = 8;
+  chip.modelled_traverser_cache_banks = 1;
+  chip.modelled_traverser_node_cache_bytes = chip.modelled_traverser_triangle_cache_bytes = 1024;
+  chip.modelled_traverser_node_cache_ways = chip.modelled_traverser_triangle_cache_ways = 2;
+  chip.modelled_traverser_node_cache_mshrs = chip.modelled_traverser_triangle_cache_mshrs = 2;
+}
+
+struct TreeBoard : BoardRun {
+  TreeBoard()
+      : BoardRun({"", 4, 4, 1, 16, 12, 3, kIntersectionWords, inside}),
+        tree(make_tree_image(run.scene, run.tracer.traversal().bvh(), run.options.configuration.chip,
+                             run.image.material_base)) {
+    run.options.tree = &tree;
+  }
+  // Word of a node in the tree's memory.
+  void change(uint32_t node, uint32_t word, uint32_t value) { tree.memory.store(64 * node + 4 * word, value); }
+  uint32_t word(uint32_t node, uint32_t word) const { return tree.memory.load(64 * node + 4 * word); }
+
+  TreeImage tree;
+};
+constexpr uint32_t kCountWord = 3, kFirstChild = 10;
+
+std::string fault_of(TreeBoard& board, TreeFaultCode code) {
+  try {
+    board.draw();
+  } catch (const TraverserFault& fault) {
+    EXPECT_EQ(fault.fault.code, code);
+    const std::string said = fault.what();
+    EXPECT_EQ(said.find("the traverser has stopped with a fault: "), 0u) << said;
+    EXPECT_NE(said.find("; write the tree there as docs/scenes.md has it"), std::string::npos) << said;
+    return said;
+  }
+  return "";
+}
+
+TEST(Board, WithATraverserInsideDraws) { EXPECT_EQ(error_of(*std::make_unique<TreeBoard>()), ""); }
+
+TEST(Board, SaysWhatOfTheTreeIsNone) {
+  const auto expect = [](TreeFaultCode code, const std::string& what, const std::function<void(TreeBoard&)>& change) {
+    TreeBoard board;
+    change(board);
+    const std::string said = fault_of(board, code);
+    EXPECT_NE(said.find(what), std::string::npos) << said << "\n" << what;
+  };
+  expect(TreeFaultCode::NodeBeyond,
+         ": a ray comes to node 100000, at byte 6400000 of the traverser's memory, and there are",
+         [](TreeBoard& board) { board.tree.setup.root = 100000; });
+  expect(TreeFaultCode::TriangleBeyond, ": a leaf has triangles at byte ",
+         [](TreeBoard& board) { board.tree.setup.root = kLeafBit | (board.tree.setup.triangle_lines * 64 / 44 + 2); });
+  expect(TreeFaultCode::TriangleBeyond, ": a leaf has triangles beyond all bytes",
+         [](TreeBoard& board) { board.tree.setup.root = kLeafBit | 0x1fffffff; });
+  expect(TreeFaultCode::Children, ": node 0, at byte 0 of the traverser's memory, has not one to four children",
+         [](TreeBoard& board) { board.change(0, kCountWord, board.word(0, kCountWord) & 0xffffff); });
+  expect(TreeFaultCode::Order,
+         ": node 0, at byte 0 of the traverser's memory, has a child whose number is not above its",
+         [](TreeBoard& board) { board.change(0, kFirstChild, 0); });
+  expect(TreeFaultCode::Visits, ": a ray comes to more nodes than the 2 that there are, at last to node ",
+         [](TreeBoard& board) {
+           // The root has the other node four times, and that a leaf; all boxes are as large as the grid.
+           for (uint32_t i = 0; i < 16; ++i) board.change(1, i, board.word(0, i));
+           for (uint32_t node = 0; node < 2; ++node) {
+             board.change(node, kCountWord, (board.word(0, kCountWord) & 0xffffff) | 4u << 24);
+             for (uint32_t i = 4; i < 7; ++i) board.change(node, i, 0);
+             for (uint32_t i = 7; i < 10; ++i) board.change(node, i, 0xffffffff);
+             for (uint32_t i = 0; i < 4; ++i) board.change(node, kFirstChild + i, node == 0 ? 1 : kLeafBit);
+           }
+           board.tree.setup.triangle_lines += board.tree.setup.triangles_line - 2;
+           board.tree.setup.triangles_line = 2;
+         });
+}
+
+/// A chip between which and the board something is lost.
+class LossyBus : public ChipDevice {
+ public:
+  enum class Loses : uint8_t { Spills, ARead, Reads, Beats };
+  LossyBus(std::unique_ptr<ChipDevice> chip, Loses loses) : chip_(std::move(chip)), loses_(loses) {}
+
+  uint32_t units() const override { return chip_->units(); }
+  void start(const FrameSetup& setup) override {
+    chip_->start(setup);
+    look();
+  }
+  const ChipOutputs& outputs() const override { return out_; }
+  void clock(const ChipInputs& inputs) override {
+    ChipInputs in = inputs;
+    if (hidden_) in.memory_request_ready = true;
+    if (loses_ == Loses::Beats && in.memory_beat_valid && out_.memory_beat_ready && ++beats_ >= 1000)
+      in.memory_beat_valid = false;
+    chip_->clock(in);
+    look();
+  }
+  ChipCounts counts() override { return chip_->counts(); }
+  uint64_t counter(int number) override { return chip_->counter(number); }
+
+  uint64_t lost = 0;
+
+ private:
+  void look() {
+    out_ = chip_->outputs();
+    const MemoryPort::Access& access = out_.memory_request;
+    const bool of_tree = out_.memory_request_valid && access.traverser;
+    hidden_ = (loses_ == Loses::Spills && of_tree && access.request.write) ||
+              (of_tree && !access.request.write && ++reads_ >= 200 &&
+               (loses_ == Loses::Reads || (loses_ == Loses::ARead && reads_ == 200)));
+    if (!hidden_) return;
+    out_.memory_request_valid = false;
+    ++lost;
+  }
+
+  std::unique_ptr<ChipDevice> chip_;
+  Loses loses_;
+  bool hidden_ = false;
+  uint64_t beats_ = 0, reads_ = 0;
+  ChipOutputs out_;
+};
+
+// Blocks of stacks that have never been written are zeros: the root, again and again.
+TEST(Board, WhoseMemoryLosesStacksSaysThatARayComesToTooManyNodes) {
+  TreeBoard board;
+  auto bus = std::make_unique<LossyBus>(std::move(board.device), LossyBus::Loses::Spills);
+  const LossyBus& lossy = *bus;
+  board.device = std::move(bus);
+  const std::string said = fault_of(board, TreeFaultCode::Visits);
+  EXPECT_NE(said.find("or the memory has not kept a stack"), std::string::npos) << said;
+  EXPECT_GT(lossy.lost, 0u);
+}
+
+TEST(Board, SaysWhoWaitsForAnAnswerThatIsLost) {
+  for (const LossyBus::Loses loses : {LossyBus::Loses::Reads, LossyBus::Loses::Beats}) {
+    TreeBoard board;
+    const uint64_t limit = chip::AnswerWatch::limit(board.run.options.configuration.chip);
+    board.device = std::make_unique<LossyBus>(std::move(board.device), loses);
+    const std::string said = error_of(board);
+    const size_t at = said.find(" waits at port ");
+    ASSERT_NE(at, std::string::npos) << said;
+    EXPECT_NE(said.find(" since cycle "), std::string::npos) << said;
+    EXPECT_NE(said.find("and none takes more than " + std::to_string(limit) + " cycles"), std::string::npos) << said;
+    EXPECT_LT(limit, 50000u);
+  }
+}
+
+// Lines that come later are taken for those before them.
+TEST(Board, WhoseMemoryLosesOneReadEndsToo) {
+  TreeBoard board;
+  board.device = std::make_unique<LossyBus>(std::move(board.device), LossyBus::Loses::ARead);
+  const std::string said = error_of(board);
+  EXPECT_TRUE(said.find("the traverser has stopped with a fault: ") == 0 ||
+              said.find(" waits at port ") != std::string::npos)
+      << said;
+}
+
+TEST(Board, AnswersAreLostBehindTheirLimitAndNotBefore) {
+  const ChipConfiguration chip;
+  const uint64_t limit = chip::AnswerWatch::limit(chip);
+  chip::AnswerWatch watch(chip);
+  ChipOutputs outputs;
+  ChipInputs inputs;
+  inputs.memory_request_ready = true;
+  outputs.memory_request_valid = true;
+  EXPECT_FALSE(watch.clock(7, outputs, inputs));
+  outputs.memory_request_valid = false;
+  for (uint64_t cycle = 8; cycle <= 7 + limit; ++cycle) EXPECT_FALSE(watch.clock(cycle, outputs, inputs));
+  const std::optional<std::string> said = watch.clock(8 + limit, outputs, inputs);
+  ASSERT_TRUE(said);
+  EXPECT_EQ(said->find("the chip waits at port memory_request since cycle 7 for a line of the memory"), 0u) << *said;
 }
 
 }  // namespace

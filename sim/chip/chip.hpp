@@ -19,6 +19,7 @@
 #include "machine/compute_unit.hpp"
 #include "machine/kernel_policy.hpp"
 #include "machine/memory.hpp"
+#include "machine/tree_fault.hpp"
 #include "machine/warp_cycles.hpp"
 #include "scene/ray_counts.hpp"
 #include "traverser/work.hpp"
@@ -132,6 +133,13 @@ struct ChipFault : InputError {
       : InputError(message), unit(unit_number), fault(what_fault) {}
   uint32_t unit;
   Fault fault;
+};
+
+/// The traverser in the chip stopped with a fault: its memory does not hold a tree. what() says what is wrong, where,
+/// and what to do.
+struct TraverserFault : InputError {
+  TraverserFault(const TreeFault& what_fault, const std::string& message) : InputError(message), fault(what_fault) {}
+  TreeFault fault;
 };
 
 /// Nothing moves any more, or cycle_limit has passed. what() gives the state of controller, pools and units.

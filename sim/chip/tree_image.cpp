@@ -58,6 +58,7 @@ TreeImage make_tree_image(const Scene& scene, const Bvh& bvh, const ChipConfigur
   std::copy_n(tree.header.lower, 3, setup.bounds.lower);
   std::copy_n(tree.header.upper, 3, setup.bounds.upper);
   setup.triangles_line = static_cast<uint32_t>(triangles / kLine);
+  setup.triangle_lines = static_cast<uint32_t>(round_up(tree.triangles.size() * sizeof(TreeTriangle), kLine) / kLine);
   setup.stacks_line = static_cast<uint32_t>(stacks / kLine);
   setup.material_base = material_base;
   return image;

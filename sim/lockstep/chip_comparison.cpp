@@ -200,7 +200,9 @@ void compare_frame(Ports& ports, const ChipOutputs& rtl, const ChipOutputs& mode
   }
 }
 
-void compare_traverser(Ports& ports, const TraverserPorts& rtl, const TraverserPorts& model) {
+void compare_traverser(Ports& ports, const ChipOutputs& rtl_chip, const ChipOutputs& model_chip) {
+  const TraverserPorts &rtl = rtl_chip.traverser, &model = model_chip.traverser;
+  const TreeFault &rtl_fault = rtl_chip.tree_fault, &model_fault = model_chip.tree_fault;
   ports.of("traverser");
   ports.same("ray_ready", rtl.ray_ready, model.ray_ready);
   if (ports.both("free_valid", rtl.free_valid, model.free_valid)) {
@@ -215,6 +217,10 @@ void compare_traverser(Ports& ports, const TraverserPorts& rtl, const TraverserP
     ports.same_word("contribution_pixel", rtl.contribution.pixel, model.contribution.pixel);
     ports.same("contribution_color", rtl.contribution.rgb, model.contribution.rgb);
   }
+  if (ports.both("fault_valid", rtl_fault.valid, model_fault.valid)) {
+    ports.same("fault_code", rtl_fault.code, model_fault.code);
+    ports.same_word("fault_line", rtl_fault.line, model_fault.line);
+  }
   if (!ports.both("request_valid", rtl.tree_request_valid, model.tree_request_valid)) return;
   const MemoryPort::TreeRequest &r = rtl.tree_request, &m = model.tree_request;
   ports.same("request_second", r.second, m.second);
@@ -228,7 +234,7 @@ void compare_traverser(Ports& ports, const TraverserPorts& rtl, const TraverserP
 
 void compare_chip(const ChipOutputs& rtl, const ChipOutputs& model, uint32_t kinds) {
   Ports ports;
-  compare_traverser(ports, rtl.traverser, model.traverser);
+  compare_traverser(ports, rtl, model);
   compare_rays(ports, rtl, model);
   compare_intersections(ports, rtl, model, kinds);
   compare_controller(ports, rtl, model);

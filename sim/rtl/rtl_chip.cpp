@@ -125,6 +125,7 @@ class RtlChip : public ChipDevice {
       top.tree_upper_i.data()[axis] = as_bits(tree.bounds.upper[axis]);
     }
     top.triangles_line_i = tree.triangles_line;
+    top.triangle_lines_i = tree.triangle_lines;
     top.stacks_line_i = tree.stacks_line;
     top.material_base_i = tree.material_base;
     // Of each place of a record its word; of those without one, zero.
@@ -192,7 +193,12 @@ class RtlChip : public ChipDevice {
     read_device_inputs();
     read_between();
     read_to_traverser();
-    if (inside_) read_traverser();
+    if (!inside_) return;
+    read_traverser();
+    out_.tree_fault.valid = top.tree_fault_valid_o;
+    if (!out_.tree_fault.valid) return;
+    out_.tree_fault.code = static_cast<TreeFaultCode>(top.tree_fault_code_o);
+    out_.tree_fault.line = top.tree_fault_line_o;
   }
 
   // Whether it is inside or not.

@@ -102,6 +102,7 @@ class Drawing {
   }
 
   const Memory& memory() const { return image_.memory; }
+  TreeImage& tree() { return tree_; }
   ChipResult draw_on(ChipDevice& chip) { return run_board(options_, chip); }
 
   /// What has been drawn, and said of it, is what the native engine does and says.
@@ -170,14 +171,68 @@ TEST_P(ChipTraverser, DrawsThePictureOfTheNativeEngineWithoutADifference) {
 INSTANTIATE_TEST_SUITE_P(Machines, ChipTraverser, testing::Values(smallest, full),
                          [](const auto& machine) { return machine.param().configuration.name; });
 
+/// What is no tree, and the fault that comes of it.
+struct Garbage {
+  const char* name;
+  TreeFaultCode code;
+  void (*make)(TreeImage&);
+};
+constexpr uint32_t kNodeBytes = 64, kCountWord = 12, kFirstChild = 40;
+const Garbage kGarbage[] = {
+    {"node beyond", TreeFaultCode::NodeBeyond, [](TreeImage& tree) { tree.setup.root = tree.setup.triangles_line; }},
+    {"triangle beyond", TreeFaultCode::TriangleBeyond,
+     [](TreeImage& tree) { tree.setup.root = kLeafBit | (tree.setup.triangle_lines * kNodeBytes / 44 + 2); }},
+    {"end of triangles", TreeFaultCode::TriangleBeyond,
+     [](TreeImage& tree) {
+       tree.setup.triangle_lines = 1;
+       tree.setup.root = kLeafBit | 1;
+     }},
+    {"children", TreeFaultCode::Children,
+     [](TreeImage& tree) { tree.memory.store(kCountWord, tree.memory.load(kCountWord) | 7u << 24); }},
+    {"way back", TreeFaultCode::Order, [](TreeImage& tree) { tree.memory.store(kFirstChild, 0); }},
+    {"fewer nodes", TreeFaultCode::NodeBeyond, [](TreeImage& tree) { tree.setup.triangles_line = 1; }},
+};
+
+TEST_P(ChipTraverser, StopsWithTheSameFaultWhereItsMemoryHoldsNoTree) {
+  const Machine machine = GetParam()();
+  const Configuration& c = machine.configuration;
+  const std::string library = chip_library(machine);
+  for (const Garbage& garbage : kGarbage) {
+    SCOPED_TRACE(garbage.name);
+    Drawing drawing(machine, {9, 7, 2, true});
+    garbage.make(drawing.tree());
+    const std::unique_ptr<LockstepChip> chip =
+        make_lockstep_chip(c, load_rtl_chip(library, c, machine.units), drawing.memory(), c.name);
+    try {
+      drawing.draw_on(*chip);
+      ADD_FAILURE() << "a picture of no tree";
+    } catch (const TraverserFault& fault) {
+      EXPECT_EQ(fault.fault.code, garbage.code) << fault.what();
+      // The host might go on: it stays, and the frame does not end.
+      const TreeFault first = chip->outputs().tree_fault;
+      for (int cycle = 0; cycle < 5000; ++cycle) {
+        ChipInputs inputs;
+        inputs.frame_ready = true;
+        ASSERT_NO_THROW(chip->clock(inputs));
+        ASSERT_TRUE(chip->outputs().busy);
+        const TreeFault& now = chip->outputs().tree_fault;
+        ASSERT_TRUE(now.valid && now.code == first.code && now.line == first.line);
+      }
+    }
+  }
+}
+
 /// Shows in one cycle at one port of the traverser something else than the chip does that it wraps.
 class BrokenTraverser : public ChipDevice {
  public:
   /// True: it has been changed.
   using Change = std::function<bool(TraverserPorts&)>;
+  using ChangeFault = std::function<bool(TreeFault&)>;
 
   BrokenTraverser(std::unique_ptr<ChipDevice> chip, Change change)
       : chip_(std::move(chip)), change_(std::move(change)) {}
+  BrokenTraverser(std::unique_ptr<ChipDevice> chip, ChangeFault change)
+      : chip_(std::move(chip)), change_fault_(std::move(change)) {}
 
   uint32_t units() const override { return chip_->units(); }
   void start(const FrameSetup& setup) override {
@@ -188,7 +243,7 @@ class BrokenTraverser : public ChipDevice {
   void clock(const ChipInputs& inputs) override {
     chip_->clock(inputs);
     out_ = chip_->outputs();
-    if (!done_) done_ = change_(out_.traverser);
+    if (!done_) done_ = change_ ? change_(out_.traverser) : change_fault_(out_.tree_fault);
   }
   ChipCounts counts() override { return chip_->counts(); }
   uint64_t counter(int number) override { return chip_->counter(number); }
@@ -196,6 +251,7 @@ class BrokenTraverser : public ChipDevice {
  private:
   std::unique_ptr<ChipDevice> chip_;
   Change change_;
+  ChangeFault change_fault_;
   bool done_ = false;
   ChipOutputs out_;
 };
@@ -244,6 +300,35 @@ TEST(ChipTraverser, ThatIsBrokenIsNamed) {
       EXPECT_EQ(report.find("lockstep difference in chip: " + std::string(each.port) + " of traverser is "), 0u)
           << report;
       EXPECT_NE(report.find("look at: rtl/traverser.v, rtl/chip.v"), std::string::npos) << report;
+    }
+  }
+}
+
+TEST(ChipTraverser, WhoseFaultIsBrokenIsNamed) {
+  struct Case {
+    const char* port;
+    BrokenTraverser::ChangeFault change;
+  };
+  const Case cases[] = {
+      {"fault_valid", [](TreeFault& fault) { return fault.valid = !fault.valid, true; }},
+      {"fault_code", [](TreeFault& fault) { return fault.valid && (fault.code = TreeFaultCode::StackFull, true); }},
+      {"fault_line", [](TreeFault& fault) { return fault.valid && (fault.line ^= 1, true); }},
+  };
+  const Machine machine = full();
+  for (const Case& each : cases) {
+    SCOPED_TRACE(each.port);
+    Drawing drawing(machine, {7, 5, 3, true});
+    drawing.tree().memory.store(kFirstChild, 0);
+    const std::unique_ptr<LockstepChip> chip = make_lockstep_chip(
+        machine.configuration, std::make_unique<BrokenTraverser>(model_of(machine, drawing.memory()), each.change),
+        drawing.memory());
+    try {
+      drawing.draw_on(*chip);
+      ADD_FAILURE() << "nobody noticed";
+    } catch (const LockstepDifference& difference) {
+      const std::string report = difference.what();
+      EXPECT_EQ(report.find("lockstep difference in chip: " + std::string(each.port) + " of traverser is "), 0u)
+          << report;
     }
   }
 }

@@ -115,8 +115,10 @@ class LaneBench {
   /// Traces the rays; all are done in time. `tree` must outlive the call.
   void trace(const LaneTree& tree, const std::vector<Asked>& rays, const LaneTraffic& traffic) {
     tree_ = &tree;
-    lane_.set_root(tree.root);
+    lane_.set_tree(tree.root, static_cast<uint32_t>(tree.nodes.size()));
     u_.root_i = tree.root;
+    u_.nodes_i = static_cast<uint32_t>(tree.nodes.size());
+    u_.stop_i = 0;
     rays_ = &rays;
     begun_ = done_ = 0;
     uint64_t lines = 100;
@@ -335,6 +337,8 @@ class LaneBench {
   }
 
   void compare() {
+    ASSERT_FALSE(lane_.fault().valid) << "cycle " << seen.cycles << ": a tree is none";
+    ASSERT_FALSE(u_.fault_valid_o) << "cycle " << seen.cycles << ": a tree is none";
     ASSERT_EQ(u_.slot_valid_o, lane_.slot_valid()) << "cycle " << seen.cycles;
     if (lane_.slot_valid()) ASSERT_EQ(u_.slot_o, lane_.slot()) << "cycle " << seen.cycles;
     ASSERT_NO_FATAL_FAILURE(

@@ -2,6 +2,7 @@
 // and what each must visit and hit, found by a walk that knows nothing of lanes.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <random>
@@ -9,6 +10,7 @@
 
 #include "machine/lane_hits.hpp"
 #include "machine/leaf_reader.hpp"
+#include "machine/tree_fault.hpp"
 #include "machine/triangle_pipe.hpp"
 #include "scene/narrow_boxes.hpp"
 #include "scene/test_traversal.hpp"
@@ -97,23 +99,29 @@ inline LaneRay lane_ray(const RayQuery& query, const Bounds& bounds, uint32_t bi
   return ray;
 }
 
-/// What a ray does.
+/// What a ray does. Of what is no tree it ends with a fault.
 struct Walk {
   static constexpr uint32_t kLeafLine = 1u << 31;
   std::vector<uint32_t> lines;  ///< of nodes, and of leaves with kLeafLine, in their order
   LaneHits::Hit hit;
-  uint32_t deepest = 0;  ///< entries of the stack
+  uint32_t deepest = 0;           ///< entries of the stack
+  std::vector<TreeFault> faults;  ///< one of them there must be, if there are any: lines are told without their base
 
-  Walk(const LaneTree& tree, const LaneRay& ray, const NarrowFloat& narrow) {
+  /// `entries`: of a slot's stack, that are not in the memory.
+  Walk(const LaneTree& tree, const LaneRay& ray, const NarrowFloat& narrow, uint32_t entries = 16)
+      : most_here_(entries) {
     if (!ray.meets || tree.root == kNoChild) return;
     std::vector<LaneStacks::Entry> stack{{0, tree.root}};
     uint32_t limit = ray.box.limit;
-    while (!stack.empty()) {
+    bool on_stack = false;
+    while (!stack.empty() && faults.empty()) {
       const LaneStacks::Entry top = stack.back();
       stack.pop_back();
+      if (on_stack) take_off();
+      on_stack = true;
       if (top.key > limit) continue;
       if ((top.reference & kLeafBit) == 0) {
-        visit_node(tree, ray, top.reference, limit, stack);
+        on_stack = !visit_node(tree, ray, top.reference & kMostLines, limit, stack);
       } else if (visit_leaf(tree, ray, top.reference, narrow)) {
         if (ray.shadow) return;
         limit = ray.box.key(hit.t, ray.limit.scale);
@@ -122,10 +130,45 @@ struct Walk {
   }
 
  private:
-  void visit_node(const LaneTree& tree, const LaneRay& ray, uint32_t number, uint32_t limit,
+  static constexpr uint32_t kMostLines = (1u << 26) - 1, kMostBlocks = 127;
+
+  void fault(TreeFaultCode code, uint32_t line) { faults.push_back({true, code, line}); }
+  static bool is_backward(uint32_t child, uint32_t number) {
+    return (child & kLeafBit) == 0 && (child <= number || child > kMostLines);
+  }
+  bool fails(const TreeNode& node, uint32_t number, size_t nodes) {
+    const uint32_t count = node.boxes.children;
+    const uint32_t* const end = node.children + std::min<uint32_t>(count, kBvhWidth);
+    if (count == 0 || count > kBvhWidth)
+      fault(TreeFaultCode::Children, number);
+    else if (std::any_of(node.children, end, [number](uint32_t child) { return is_backward(child, number); }))
+      fault(TreeFaultCode::Order, number);
+    else if (++visits_ > nodes)
+      fault(TreeFaultCode::Visits, number);
+    return !faults.empty();
+  }
+  // Of the stack an entry is taken; so many are put on it, and the ray goes on with another node or leaf.
+  void take_off() {
+    if (here_ == 0) {
+      --blocks_;
+      here_ = LaneStacks::kBlock;
+    }
+    --here_;
+  }
+  void put_on(uint32_t count) {
+    here_ += count;
+    if (here_ + LaneStacks::kLeast <= most_here_) return;
+    here_ -= LaneStacks::kBlock;
+    if (blocks_++ == kMostBlocks) fault(TreeFaultCode::StackFull, 0);
+  }
+
+  // True: it goes on with the top of the stack at once.
+  bool visit_node(const LaneTree& tree, const LaneRay& ray, uint32_t number, uint32_t limit,
                   std::vector<LaneStacks::Entry>& stack) {
+    if (number >= tree.nodes.size()) return fault(TreeFaultCode::NodeBeyond, number), false;
     lines.push_back(number);
     const TreeNode node = tree.node(number);
+    if (fails(node, number, tree.nodes.size())) return false;
     const BoxResult boxes = test_boxes(ray.box, node.boxes, limit);
     std::vector<LaneStacks::Entry> met;
     for (uint32_t i = 0; i < kBoxes; ++i)
@@ -134,12 +177,18 @@ struct Walk {
     std::stable_sort(met.begin(), met.end(), further);
     stack.insert(stack.end(), met.begin(), met.end());
     deepest = std::max(deepest, static_cast<uint32_t>(stack.size()));
+    if (met.empty()) return false;
+    put_on(static_cast<uint32_t>(met.size()) - 1);
+    return true;
   }
   bool visit_leaf(const LaneTree& tree, const LaneRay& ray, uint32_t leaf, const NarrowFloat& narrow) {
     const uint32_t first = leaf & ((1u << kLeafPlaceBits) - 1), end = first + (leaf >> kLeafPlaceBits & 3) + 1;
     const auto line_of = [](uint64_t word) { return static_cast<uint32_t>(word / 16); };
-    for (uint32_t line = line_of(uint64_t{first} * 11); line <= line_of(uint64_t{end} * 11 - 1); ++line)
+    for (uint32_t line = line_of(uint64_t{first} * 11); line <= line_of(uint64_t{end} * 11 - 1); ++line) {
       lines.push_back(line | kLeafLine);
+      if (line >= tree.triangles.size()) fault(TreeFaultCode::TriangleBeyond, std::min(line, kMostLines));
+    }
+    if (!faults.empty()) return false;
     bool found = false;
     for (uint32_t place = first; place < end; ++place) {
       const Triangle triangle = tree.triangle(place);
@@ -152,6 +201,9 @@ struct Walk {
     }
     return found;
   }
+
+  uint32_t most_here_, here_ = 0, blocks_ = 0;  // of the stack, as lanes keep it
+  size_t visits_ = 0;                           // of nodes
 };
 
 }  // namespace raypool::bench

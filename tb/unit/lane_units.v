@@ -15,6 +15,11 @@ module lane_units #(
   input  wire                    clk_i,
   input  wire                    rst_ni,
   input  wire [31:0]             root_i,
+  input  wire [LINE_BITS-1:0]    nodes_i,
+  output wire                    fault_valid_o,
+  output wire [1:0]              fault_reason_o,
+  output wire [LINE_BITS-1:0]    fault_line_o,
+  input  wire                    stop_i,
   output wire                    slot_valid_o,
   input  wire                    slot_ready_i,
   output wire [SLOT_BITS-1:0]    slot_o,
@@ -89,7 +94,9 @@ module lane_units #(
   wire [8:0] scale;
   wire asks_limit, asks_best;
   traverser_lane #(.SLOTS(SLOTS), .ENTRIES(ENTRIES), .BITS(BITS), .LINE_BITS(LINE_BITS), .BLOCK_BITS(BLOCK_BITS)) lane (
-    .clk_i(clk_i), .rst_ni(rst_ni), .root_i(root_i), .slot_valid_o(slot_valid_o), .slot_ready_i(slot_ready_i),
+    .clk_i(clk_i), .rst_ni(rst_ni), .root_i(root_i), .nodes_i(nodes_i), .fault_valid_o(fault_valid_o),
+    .fault_reason_o(fault_reason_o), .fault_line_o(fault_line_o), .stop_i(stop_i), .slot_valid_o(slot_valid_o),
+    .slot_ready_i(slot_ready_i),
     .slot_o(slot_o), .ray_valid_i(ray_valid_i), .ray_slot_i(ray_slot_i), .ray_meets_i(ray_meets_i),
     .ray_shadow_i(ray_shadow_i), .origin_i(origin_i), .backwards_i(backwards_i), .still_i(still_i),
     .reciprocal_i(reciprocal_i), .exponent_i(exponent_i), .padding_i(padding_i), .limit_key_i(limit_key_i),

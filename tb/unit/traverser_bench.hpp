@@ -1,5 +1,6 @@
 // The traverser in Verilog and its class, side by side, between pools that have room when they like and a memory that
-// answers when it likes: all outputs in every cycle, and of every ray what becomes of it.
+// answers when it likes: all outputs in every cycle, and of every ray what becomes of it. Where the memory holds no
+// tree, the fault that comes of it.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -24,10 +25,15 @@ struct TraverserTraffic {
   uint32_t no_ray = 0, leave_request = 0, line = 1, late_beat = 0, no_room = 0, no_contribution = 0;
 };
 
+/// What the memory does to blocks of stacks that are written: keeps them, loses them, or changes some of their bits.
+enum class StackMemory : uint8_t { Keeps, Loses, Spoils };
+
 struct TraverserSeen {
   uint64_t cycles = 0, rays = 0, normal = 0, shadow = 0, direct = 0, contributions = 0, dropped = 0;
   uint64_t reads = 0, spills = 0, stack_reads = 0, most_lines = 0, full = 0;
   uint64_t left = 0;  ///< cycles in which a lane has no room for a line of a leaf for which it has waited
+  std::array<uint64_t, 7> faults{};  ///< [code]
+  uint64_t spoilt = 0;               ///< blocks of stacks
 };
 
 /// A cache's sizes.
@@ -73,18 +79,34 @@ class TraverserBench {
 
   /// Traces the rays; all are done in time. `tree` must outlive the call.
   void trace(const LaneTree& tree, const std::vector<Asked>& rays, const TraverserTraffic& traffic) {
-    begin(tree);
-    rays_ = &rays;
-    uint64_t lines = 100;
-    for (const Asked& asked : rays) lines += 3 + asked.walk.lines.size();
-    const uint64_t end = seen.cycles + 600 * lines;
-    while (done_ < rays.size()) {
-      ASSERT_LT(seen.cycles, end) << "a ray waits for ever";
-      ASSERT_NO_FATAL_FAILURE(cycle(traffic, ~0u));
+    ASSERT_NO_FATAL_FAILURE(run(tree, rays, traffic, StackMemory::Keeps));
+    ASSERT_FALSE(model_->outputs().fault.valid);
+  }
+  /// The same of what may be no tree: all are done, or there is a fault that one of them comes to. It stays, nothing is
+  /// requested any more, and a ray does not leave.
+  void trace_or_fault(const LaneTree& tree, const std::vector<Asked>& rays, const TraverserTraffic& traffic) {
+    ASSERT_NO_FATAL_FAILURE(run(tree, rays, traffic, StackMemory::Keeps));
+    const TreeFault& fault = model_->outputs().fault;
+    const auto faults = [](const Asked& asked) { return !asked.walk.faults.empty(); };
+    if (!fault.valid) {
+      ASSERT_TRUE(std::none_of(rays.begin(), rays.end(), faults)) << "a ray comes to what is no tree, and is done";
+      return;
     }
-    // A place that is freed twice would be seen now.
-    for (uint32_t i = 0; i < 100; ++i) ASSERT_NO_FATAL_FAILURE(cycle(traffic, ~0u));
-    seen.left += model_->triangle_cache().work().left;
+    const auto is_it = [&](const TreeFault& may) {
+      const uint64_t base = fault.code == TreeFaultCode::TriangleBeyond ? places_of_.triangles : 0;
+      const bool stack = fault.code == TreeFaultCode::StackFull && fault.line >= places_of_.stacks;
+      return may.code == fault.code &&
+             (stack || fault.line == std::min<uint64_t>(base + may.line, LeafReader::kLastLine));
+    };
+    ASSERT_TRUE(std::any_of(
+        rays.begin(), rays.begin() + static_cast<std::ptrdiff_t>(begun_),
+        [&](const Asked& asked) { return std::any_of(asked.walk.faults.begin(), asked.walk.faults.end(), is_it); }))
+        << "code " << int{to_underlying(fault.code)} << ", line " << fault.line << ": no ray comes to that";
+  }
+  /// The same with a memory that does so with stacks: rays may become anything.
+  void trace_or_fault(const LaneTree& tree, const std::vector<Asked>& rays, const TraverserTraffic& traffic,
+                      StackMemory stacks) {
+    ASSERT_NO_FATAL_FAILURE(run(tree, rays, traffic, stacks));
   }
   /// The same where packages have no room for long: then all others are done, and places alone are what is missing.
   void trace_without_room(const LaneTree& tree, const std::vector<Asked>& rays) {
@@ -111,6 +133,31 @@ class TraverserBench {
   TraverserSeen seen;
 
  private:
+  // Until all rays are done, or there is a fault; and then for long enough that all that still moves has moved.
+  void run(const LaneTree& tree, const std::vector<Asked>& rays, const TraverserTraffic& traffic, StackMemory stacks) {
+    begin(tree);
+    stack_memory_ = stacks;
+    rays_ = &rays;
+    uint64_t lines = 100;
+    for (const Asked& asked : rays)
+      lines += 3 + (stacks == StackMemory::Keeps ? asked.walk.lines.size() : 1 + 8 * tree.nodes.size());
+    const uint64_t end = seen.cycles + 600 * lines;
+    const TreeFault& fault = model_->outputs().fault;
+    while (done_ < rays.size() && !fault.valid) {
+      ASSERT_LT(seen.cycles, end) << "a ray waits for ever";
+      ASSERT_NO_FATAL_FAILURE(cycle(traffic, ~0u));
+    }
+    // A place that is freed twice would be seen now.
+    const TreeFault first = fault;
+    for (uint32_t i = 0; i < (first.valid ? 1500 : 100); ++i) ASSERT_NO_FATAL_FAILURE(cycle(traffic, ~0u));
+    seen.left += model_->triangle_cache().work().left;
+    if (!first.valid) return;
+    ++seen.faults[to_underlying(first.code)];
+    ASSERT_TRUE(fault.valid && fault.code == first.code && fault.line == first.line) << "it does not stay";
+    ASSERT_LE(requests_since_fault_, 1u) << "more is requested than what was offered before";
+    ASSERT_LT(done_, begun_) << "no ray is left";
+    ASSERT_FALSE(model_->outputs().ray_ready && beat_in_ == 0) << "rays come in";
+  }
   void begin(const LaneTree& tree) {
     model_ = std::make_unique<Traverser>(P::sizes());
     const Traverser::Sizes sizes = P::sizes();
@@ -120,8 +167,9 @@ class TraverserBench {
     };
     TraverserSetup setup;
     const auto nodes = static_cast<uint32_t>(tree.nodes.size());
-    setup.places.triangles = nodes + static_cast<uint32_t>(bench_.random()) % 1000;
-    setup.places.stacks = setup.places.triangles + static_cast<uint32_t>(tree.triangles.size()) + 64;
+    setup.places.triangles = nodes;
+    setup.places.triangle_lines = static_cast<uint32_t>(tree.triangles.size());
+    setup.places.stacks = nodes + setup.places.triangle_lines + static_cast<uint32_t>(bench_.random()) % 1000;
     put(0, tree.nodes);
     put(setup.places.triangles, tree.triangles);
     last_line_ = setup.places.stacks + static_cast<uint32_t>(Traverser::stack_bytes(sizes) / 64);
@@ -156,6 +204,8 @@ class TraverserBench {
     in_.assign(P::kPool, {});
     left_.assign(P::kPool, false);
     begun_ = done_ = 0;
+    stack_memory_ = StackMemory::Keeps;
+    requests_since_fault_ = 0;
     beat_in_ = beat_out_ = line_beat_ = 0;
     on_way_.clear();
   }
@@ -177,6 +227,7 @@ class TraverserBench {
       u_.upper_i[axis] = as_bits(setup.bounds.upper[axis]);
     }
     u_.triangles_line_i = setup.places.triangles;
+    u_.triangle_lines_i = setup.places.triangle_lines;
     u_.stacks_line_i = setup.places.stacks;
     u_.material_base_i = setup.frame.material_base;
     u_.depth_limit_i = static_cast<uint8_t>(setup.frame.depth);
@@ -245,11 +296,17 @@ class TraverserBench {
   void take_request(const MemoryPort::TreeRequest& request) {
     const uint32_t line = request.address / 64;
     ASSERT_LT(line, last_line_) << "cycle " << seen.cycles;
+    requests_since_fault_ += model_->outputs().fault.valid ? 1 : 0;
     const bool stack = line >= places_of_.stacks;
     if (request.write) {
       ASSERT_TRUE(stack && request.second && request.address % 32 == 0) << "cycle " << seen.cycles;
-      for (uint32_t i = 0; i < 8; ++i) memory_[line][request.address % 64 / 4 + i] = request.data[i / 4][i % 4];
       ++seen.spills;
+      TreeLine& stored = memory_[line];
+      for (uint32_t i = 0; i < 8 && stack_memory_ != StackMemory::Loses; ++i)
+        stored[request.address % 64 / 4 + i] = request.data[i / 4][i % 4];
+      seen.spoilt += stack_memory_ == StackMemory::Keeps ? 0 : 1;
+      if (stack_memory_ == StackMemory::Spoils && bench_.one_of(4))
+        stored[request.address % 64 / 4 + bench_.random() % 8] ^= 1u << bench_.random() % 32;
       return;
     }
     ASSERT_TRUE(!request.second && request.address % 64 == 0) << "cycle " << seen.cycles;
@@ -259,7 +316,8 @@ class TraverserBench {
     seen.most_lines = std::max<uint64_t>(seen.most_lines, on_way_.size());
   }
 
-  // ---- What becomes of rays
+  // ---- What becomes of rays, if that is known
+  bool knows() const { return stack_memory_ == StackMemory::Keeps; }
   bool is_shadow(const Asked& asked) const { return (asked.ray[word::kFlags] & kShadowFlag) != 0; }
   bool drops(const Asked& asked) const { return is_shadow(asked) == asked.walk.hit.hit; }
   bool contributes(const Asked& asked) const { return P::sizes().contributes && is_shadow(asked) && !drops(asked); }
@@ -268,7 +326,7 @@ class TraverserBench {
   template <typename Is>
   void leaves(uint32_t place, const Is& is) {
     ASSERT_TRUE(in_[place] && !left_[place]) << "cycle " << seen.cycles;
-    ASSERT_TRUE(is((*rays_)[*in_[place]])) << "cycle " << seen.cycles;
+    ASSERT_TRUE(!knows() || is((*rays_)[*in_[place]])) << "cycle " << seen.cycles;
     left_[place] = true;
   }
 
@@ -278,7 +336,7 @@ class TraverserBench {
     const uint32_t number = contribution.rgb[0];
     ASSERT_LT(number, begun_);
     const Asked& asked = (*rays_)[number];
-    ASSERT_TRUE(contributes(asked)) << "cycle " << seen.cycles;
+    ASSERT_TRUE(!knows() || contributes(asked)) << "cycle " << seen.cycles;
     EXPECT_EQ(contribution.pixel, asked.ray[word::kPixel]);
     for (int i = 0; i < 3; ++i) EXPECT_EQ(contribution.rgb[i], asked.ray[word::kColor + i]);
     ASSERT_NO_FATAL_FAILURE(leaves(place_of(number), [](const Asked&) { return true; }));
@@ -301,6 +359,7 @@ class TraverserBench {
   }
   // Which ray's it is: records may lack any word.
   void take_package() {
+    if (!knows()) return;
     for (uint32_t place = 0; place < P::kPool; ++place) {
       if (!in_[place] || left_[place]) continue;
       const Asked& asked = (*rays_)[*in_[place]];
@@ -340,7 +399,10 @@ class TraverserBench {
     const uint32_t place = out.free_place;
     ASSERT_TRUE(in_[place]) << "cycle " << seen.cycles << ": a place is freed that is free";
     const Asked& asked = (*rays_)[*in_[place]];
-    ASSERT_EQ(left_[place], !drops(asked)) << "cycle " << seen.cycles;
+    if (knows()) {
+      ASSERT_EQ(left_[place], !drops(asked)) << "cycle " << seen.cycles;
+      ASSERT_TRUE(asked.walk.faults.empty()) << "cycle " << seen.cycles << ": a ray leaves that comes to a fault";
+    }
     ASSERT_EQ(out.free_shadow, is_shadow(asked)) << "cycle " << seen.cycles;
     seen.dropped += drops(asked);
     in_[place].reset();
@@ -387,6 +449,11 @@ class TraverserBench {
       for (uint32_t i = 0; i < 3; ++i)
         ASSERT_EQ(u_.contribution_color_o[i], out.contribution.rgb[i]) << "cycle " << seen.cycles;
     }
+    ASSERT_EQ(u_.fault_valid_o, out.fault.valid) << "cycle " << seen.cycles;
+    if (out.fault.valid) {
+      ASSERT_EQ(u_.fault_code_o, to_underlying(out.fault.code)) << "cycle " << seen.cycles;
+      ASSERT_EQ(u_.fault_line_o, out.fault.line) << "cycle " << seen.cycles;
+    }
     ASSERT_EQ(u_.request_valid_o, out.request_valid) << "cycle " << seen.cycles;
     if (!out.request_valid) return;
     ASSERT_EQ(u_.request_write_o, out.request.write) << "cycle " << seen.cycles;
@@ -413,6 +480,8 @@ class TraverserBench {
   ImportKind kind_out_ = ImportKind::None;
 
   std::map<uint32_t, TreeLine> memory_;
+  StackMemory stack_memory_ = StackMemory::Keeps;
+  uint64_t requests_since_fault_ = 0;
   uint32_t last_line_ = 0;
   std::deque<TreeLine> on_way_;
   uint32_t line_beat_ = 0;

@@ -1,13 +1,16 @@
 // The traverser in Verilog against its class, all outputs in every cycle, over trees and rays that are hard, between
-// pools and a memory that stall; and both against a walk of each tree: what becomes of every ray.
+// pools and a memory that stall; and both against a walk of each tree: what becomes of every ray. Also over what is no
+// tree: rays end, or the fault comes that a walk comes to.
 #include <gtest/gtest.h>
 
 #include <cstdio>
 #include <cstdlib>
+#include <functional>
 
 #include "Vtraverser_1_1_8_6_1_4_2_1_1_4_2_1_1_1_21_0_0.h"
 #include "Vtraverser_3_4_9_10_2_16_2_4_2_32_4_6_2_9_16_1_1.h"
 #include "Vtraverser_5_24_16_12_1_64_4_16_8_32_2_5_1_160_20_0_1.h"
+#include "unit/garbage_trees.hpp"
 #include "unit/traverser_bench.hpp"
 
 namespace raypool::bench {
@@ -20,10 +23,12 @@ class Case {
   LaneTree tree;
   std::vector<typename TraverserBench<P>::Asked> rays;
 
-  Case(const Scene& scene, int count, uint32_t seed) {
+  /// `change`: of the tree, before it is walked.
+  Case(const Scene& scene, int count, uint32_t seed, const std::function<void(LaneTree&)>& change = {}) {
     const Traversal engine(scene);
     const Bvh& bvh = engine.bvh();
     tree = LaneTree(scene, seed % 2 == 0 && !bvh.nodes.empty() ? test::random_tree(bvh, seed) : bvh);
+    if (change) change(tree);
     const NarrowFloat narrow(TriangleGroup::kBits);
     std::mt19937 random(seed);
     const Scene aims = scene.triangles.empty() ? test::ball({0, 0, 0}, 4) : scene;
@@ -31,7 +36,8 @@ class Case {
       if (random() % 24 == 0) query.limit = random() % 2 == 0 ? 0 : NAN;
       const bool shadow = random() % 3 == 0;
       const LaneRay ray = lane_ray(query, tree.bounds, P::kBits, shadow);
-      rays.push_back({words(query, shadow, random), Walk(tree, ray, narrow), ray.limit.scale, ray.triangle});
+      rays.push_back({words(query, shadow, random), Walk(tree, ray, narrow, P::sizes().stack_entries), ray.limit.scale,
+                      ray.triangle});
     }
   }
 
@@ -109,6 +115,38 @@ TYPED_TEST(TraverserTest, ManyRaysWaitForOneLine) {
   if (TypeParam::sizes().slots > LeafReader::kLines) EXPECT_GT(bench.seen.left, 100u);
 }
 
+// Each reason for a fault, and the line that it names.
+TYPED_TEST(TraverserTest, EachFaultIsNamed) {
+  TraverserBench<TypeParam> bench(4);
+  for (const GarbageCase& garbage : kGarbageCases) {
+    SCOPED_TRACE(garbage.name);
+    const uint64_t before = bench.seen.faults[to_underlying(garbage.code)];
+    const Case<TypeParam> test(soup(5, 60, 1, {0, 0, 0}), 60, 1, garbage.make);
+    ASSERT_NO_FATAL_FAILURE(bench.trace_or_fault(test.tree, test.rays, {}));
+    EXPECT_EQ(bench.seen.faults[to_underlying(garbage.code)], before + 1);
+  }
+}
+
+// A tree as deep as stacks bear, and one that is deeper by a node.
+TYPED_TEST(TraverserTest, StacksBearWhatTheyHaveRoomFor) {
+  TraverserBench<TypeParam> bench(5);
+  // With three entries more in each node, one block is written for four of them, and 127 have room.
+  const uint32_t entries = TypeParam::sizes().stack_entries;
+  uint32_t depth = 1;
+  for (uint32_t here = 0, blocks = 0;; ++depth) {
+    here += LaneStacks::kLeast;
+    if (here + LaneStacks::kLeast <= entries) continue;
+    here -= LaneStacks::kBlock;
+    if (++blocks == 128) break;
+  }
+  for (const uint32_t nodes : {depth - 1, depth}) {
+    SCOPED_TRACE(testing::Message() << nodes << " nodes");
+    const Case<TypeParam> test(soup(5, 60, 1, {0, 0, 0}), 20, 1, [nodes](LaneTree& tree) { make_chain(tree, nodes); });
+    ASSERT_NO_FATAL_FAILURE(bench.trace_or_fault(test.tree, test.rays, {}));
+    EXPECT_EQ(bench.seen.faults[to_underlying(TreeFaultCode::StackFull)], nodes == depth ? 1u : 0u);
+  }
+}
+
 uint32_t number_from(const char* variable, uint32_t otherwise) {
   const char* const text = std::getenv(variable);
   return text == nullptr ? otherwise : static_cast<uint32_t>(std::strtoul(text, nullptr, 10));
@@ -136,6 +174,52 @@ TYPED_TEST(TraverserTest, TreesOfChance) {
   EXPECT_GT(rays, count);
   std::printf("%u trees, %llu rays, %llu cycles: 0 differences\n", count, static_cast<unsigned long long>(rays),
               static_cast<unsigned long long>(cycles));
+}
+
+// As many of what is no tree: bits turned, ways that lead back or together, what lies beyond, any bytes; and memories
+// that lose stacks.
+TYPED_TEST(TraverserTest, GarbageOfChance) {
+  const uint32_t first = number_from("RAYPOOL_SEED", 1), count = number_from("RAYPOOL_TREES", 60);
+  uint64_t rays = 0, cycles = 0, spoilt = 0;
+  std::array<uint64_t, 7> faults{};
+  for (uint32_t seed = first; seed < first + count; ++seed) {
+    std::mt19937 random(seed);
+    TraverserBench<TypeParam> bench(random());
+    const auto rare = [&](uint32_t most) { return random() % 2 == 0 ? 0 : 2 + static_cast<uint32_t>(random()) % most; };
+    const TraverserTraffic traffic{rare(20), rare(9), 1 + rare(60), rare(9), rare(40), rare(20)};
+    const auto stacks = static_cast<StackMemory>(random() % 8 < 6 ? 0 : 1 + random() % 2);
+    const Scene scene = stacks == StackMemory::Keeps ? small_scene(random) : soup(seed, 150, 1, {0, 0, 0});
+    const Case<TypeParam> test(scene, 1 + static_cast<int>(random() % 30), seed, [&](LaneTree& tree) {
+      if (stacks == StackMemory::Keeps) make_garbage(tree, random);
+    });
+    if (stacks == StackMemory::Keeps)
+      bench.trace_or_fault(test.tree, test.rays, traffic);
+    else
+      bench.trace_or_fault(test.tree, test.rays, traffic, stacks);
+    ASSERT_FALSE(testing::Test::HasFailure())
+        << "garbage of seed " << seed << ": RAYPOOL_SEED=" << seed << " RAYPOOL_TREES=1 draws it alone";
+    rays += bench.seen.rays;
+    cycles += bench.seen.cycles;
+    spoilt += bench.seen.spoilt;
+    for (size_t code = 0; code < faults.size(); ++code) faults[code] += bench.seen.faults[code];
+    if (count > 1000 && (seed - first + 1) % 1000 == 0)
+      std::fprintf(stderr, "%u pieces of garbage, %llu cycles: 0 differences\n", seed - first + 1,
+                   static_cast<unsigned long long>(cycles));
+  }
+  const auto of = [&](TreeFaultCode code) { return static_cast<unsigned long long>(faults[to_underlying(code)]); };
+  std::printf(
+      "%u pieces of garbage, %llu rays done, %llu cycles: 0 differences; faults: %llu nodes and %llu triangles beyond "
+      "the "
+      "tree, %llu full stacks, %llu nodes of no number of children, %llu with a way back, %llu visits too many\n",
+      count, static_cast<unsigned long long>(rays), static_cast<unsigned long long>(cycles),
+      of(TreeFaultCode::NodeBeyond), of(TreeFaultCode::TriangleBeyond), of(TreeFaultCode::StackFull),
+      of(TreeFaultCode::Children), of(TreeFaultCode::Order), of(TreeFaultCode::Visits));
+  if (count < 60) return;
+  EXPECT_GT(rays, 100u);
+  for (const TreeFaultCode code : {TreeFaultCode::NodeBeyond, TreeFaultCode::TriangleBeyond, TreeFaultCode::Children,
+                                   TreeFaultCode::Order, TreeFaultCode::Visits})
+    EXPECT_GT(of(code), 0u) << int{to_underlying(code)};
+  if (TypeParam::sizes().stack_entries < 16) EXPECT_GT(spoilt, 0u);
 }
 
 }  // namespace

@@ -1,0 +1,47 @@
+// Who on a board waits for an answer of the memory, and since when: an answer that is lost would never come.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+
+#include "config/configuration.hpp"
+#include "machine/chip_device.hpp"
+#include "machine/memory_port.hpp"
+
+namespace raypool::chip {
+
+class AnswerWatch {
+ public:
+  explicit AnswerWatch(const ChipConfiguration& chip) : limit_(limit(chip)) {}
+
+  /// Cycles that no answer takes. Requests are served in the order in which they come, so before one of them are those
+  /// that have room at the port and those on their way; even if the memory did one after the other, each of two lines,
+  /// it would have all of them by then.
+  static uint64_t limit(const ChipConfiguration& chip) {
+    const auto limits = raypool::MemoryPort::Limits::of(chip);
+    const uint64_t before = uint64_t{chip.memory_queue} + limits.traverser_queue + limits.lines + 1;
+    return 2 * before * (chip.memory_latency + uint64_t{raypool::MemoryPort::kLineBeats} * chip.memory_cycles_per_beat);
+  }
+
+  /// Once in a cycle. What has waited for too long, in a sentence.
+  std::optional<std::string> clock(uint64_t cycle, const ChipOutputs& outputs, const ChipInputs& inputs);
+
+ private:
+  // A port at which lines are asked for, and come back in order.
+  struct Port {
+    const char *who, *name;
+    std::deque<uint64_t> asked{};  // cycles, the oldest first
+    uint32_t beats = 0;            // of the oldest line, that have come
+
+    void clock(uint64_t cycle, bool asks, bool beat);
+  };
+
+  uint64_t limit_;
+  std::array<Port, 3> ports_{
+      {{"the chip", "memory_request"}, {"the traverser", "tree_request"}, {"a unit", "device_request"}}};
+};
+
+}  // namespace raypool::chip

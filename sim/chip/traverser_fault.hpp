@@ -1,0 +1,14 @@
+// What a fault of a traverser inside the chip means, in a sentence.
+#pragma once
+
+#include <string>
+
+#include "machine/tree_fault.hpp"
+#include "machine/tree_setup.hpp"
+
+namespace raypool::chip {
+
+/// What, at which address of its memory, and what to do. `tree`: as the host has said where it lies.
+std::string fault_sentence(const TreeFault& fault, const TreeSetup& tree);
+
+}  // namespace raypool::chip
