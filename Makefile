@@ -209,6 +209,7 @@ help: ## this list
 	@echo '  synth-replay:  BREAK=N;  synth-prove:  ONLY=BLOCKS;  growth:  PLAN=FILE'
 	@echo 'variables of make cosim:  PROGRAMS=$(PROGRAMS)  SEED=$(SEED)  CONFIG  SET  CUS  COVERAGE=FILE.json'
 	@echo 'variables of make chip-frames:  FRAMES=$(FRAMES): of each machine  SEED=$(SEED)'
+	@echo '    TRAVERSER=hardware: only the machines that have it inside'
 	@echo '  traverser-trees:  TREES=$(TREES): of each machine  SEED=$(SEED): of the first'
 	@echo 'variables of make numerics:  GATES=1: synthesise the lanes of every mode first'
 	@echo '  significands:  SCENE  CONFIG  SET  DEPTH  VIEW  DETAIL and those of the camera'
@@ -254,7 +255,7 @@ configurations: setup-sim program ## random programs on machines with every pair
 
 chip-frames: setup-sim setup-test configured-ON program ## random frames on tiny chips, RTL against model: FRAMES
 	@scripts/build.sh $(BUILD) raypool_chip_frames
-	@$(BUILD)/raypool_chip_frames --frames "$$FRAMES" --seed "$$SEED"
+	@$(BUILD)/raypool_chip_frames --frames "$$FRAMES" --seed "$$SEED" $(if $(filter hardware,$(TRAVERSER)),--inside)
 
 traverser-trees: setup-sim setup-test configured-ON ## random trees in the traverser, RTL against model: TREES
 	@scripts/build.sh $(BUILD) traverser_test

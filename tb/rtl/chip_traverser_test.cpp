@@ -8,134 +8,17 @@
 #include <string>
 #include <utility>
 
-#include "chip/board.hpp"
-#include "chip/tree_image.hpp"
 #include "lockstep/lockstep_chip.hpp"
 #include "lockstep/rtl_loader.hpp"
 #include "machine/chip_model.hpp"
 #include "machine/model.hpp"
 #include "rtl/chip_frames.hpp"
-#include "scene/image.hpp"
-#include "scene/native_renderer.hpp"
-#include "scene/traversal.hpp"
+#include "rtl/traverser_frames.hpp"
 
 namespace raypool {
 namespace {
 
 using namespace test;
-
-/// Of everything one, and caches as small as can be.
-Machine smallest() {
-  Machine machine;
-  Configuration& c = machine.configuration;
-  c.name = "chip_traverser_1w1c";
-  c.warps = c.lanes = 1;
-  c.instruction_cache_bytes = c.data_cache_bytes = 512;
-  c.data_cache_mshrs = 1;
-  ChipConfiguration& chip = c.chip;
-  chip.ray_pool_size = 3;
-  chip.intersection_pool_size = chip.held_limit = 2;
-  chip.memory_latency = 20;
-  chip.memory_queue = 1;
-  chip.traverser = TraverserName::Hardware;
-  chip.modelled_traverser_box_pipes = chip.modelled_traverser_rays = chip.modelled_traverser_triangle_pipes = 1;
-  chip.modelled_traverser_stack_entries = 8;
-  chip.modelled_traverser_cache_banks = 1;
-  chip.modelled_traverser_node_cache_bytes = chip.modelled_traverser_triangle_cache_bytes = 1024;
-  chip.modelled_traverser_node_cache_ways = chip.modelled_traverser_triangle_cache_ways = 2;
-  chip.modelled_traverser_node_cache_mshrs = chip.modelled_traverser_triangle_cache_mshrs = 1;
-  return machine;
-}
-
-/// Two units and two lanes that share a triangle pipe; a traverser that shades, culling, records, banks.
-Machine full() {
-  Machine machine = smallest();
-  machine.units = 2;
-  Configuration& c = machine.configuration;
-  c.name = "chip_traverser_2w1c_full";
-  c.warps = 2;
-  c.kernel_overlap = true;
-  c.intersection_words = 18;
-  ChipConfiguration& chip = c.chip;
-  chip.policy = PolicyName::Fill;
-  chip.culling = true;
-  chip.shading = Shading::Traverser;
-  chip.ray_pool_size = 9;
-  chip.ray_pool_pipelined = chip.intersection_pool_pipelined = true;
-  chip.intersection_pool_size = chip.held_limit = 4;
-  chip.memory_cycles_per_beat = 1;
-  chip.memory_queue = 8;
-  chip.modelled_traverser_tile_order = TileOrder::Hilbert;
-  chip.modelled_traverser_box_pipes = 2;
-  chip.modelled_traverser_rays = 6;
-  chip.modelled_traverser_box_bits = 6;
-  chip.modelled_traverser_cache_banks = 2;
-  chip.modelled_traverser_node_cache_mshrs = 2;
-  chip.modelled_traverser_triangle_cache_mshrs = 4;
-  return machine;
-}
-
-/// A picture of the Cornell box, and what it takes to draw it on a chip.
-class Drawing {
- public:
-  Drawing(const Machine& machine, const Picture& picture)
-      : configuration_(machine.configuration),
-        program_(ray_kernel_program(KernelTarget(configuration_))),
-        image_(build_memory(program_, scene_)),
-        tracer_(scene_, image_.material_base, configuration_.chip),
-        frame_(static_cast<int>(picture.width), static_cast<int>(picture.height)),
-        sink_(frame_),
-        tree_(make_tree_image(scene_, tracer_.traversal().bvh(), configuration_.chip, image_.material_base)) {
-    options_.configuration = configuration_;
-    options_.layout = ray_record_layout(configuration_);
-    options_.memory = &image_.memory;
-    options_.tree = &tree_;
-    options_.program_length = size32(program_.code);
-    for (size_t i = 0; i < kRayKernels; ++i) options_.entries[i] = program_.entries.at(std::string(kRayKernelNames[i]));
-    options_.arguments =
-        camera_arguments(scene_, picture.width, picture.height, configuration_.contents(), configuration_.significand);
-    options_.width = picture.width;
-    options_.height = picture.height;
-    options_.depth = picture.depth;
-    options_.reflections = picture.reflections;
-    options_.frame = &sink_;
-  }
-
-  const Memory& memory() const { return image_.memory; }
-  ChipResult draw_on(ChipDevice& chip) { return run_board(options_, chip); }
-
-  /// What has been drawn, and said of it, is what the native engine does and says.
-  void expect_native(const ChipResult& result) const {
-    NativeOptions native;
-    native.width = static_cast<int>(options_.width);
-    native.height = static_cast<int>(options_.height);
-    native.depth = static_cast<int>(options_.depth);
-    native.reflections = options_.reflections;
-    native.culling = configuration_.chip.culling;
-    NativeStatistics statistics;
-    EXPECT_TRUE(frame_ == render_native(scene_, image_, tracer_, native, &statistics));
-    for (const auto kind : {&RayCounts::eye, &RayCounts::reflection, &RayCounts::shadow}) {
-      EXPECT_EQ((result.ray_counts.*kind).traced, (statistics.ray_counts.*kind).traced);
-      EXPECT_EQ((result.ray_counts.*kind).ended, (statistics.ray_counts.*kind).ended);
-      EXPECT_EQ((result.ray_counts.*kind).weightless, (statistics.ray_counts.*kind).weightless);
-      EXPECT_EQ((result.ray_counts.*kind).futile, (statistics.ray_counts.*kind).futile);
-      EXPECT_EQ((result.ray_counts.*kind).left_out, (statistics.ray_counts.*kind).left_out);
-    }
-    EXPECT_EQ(result.dropped_depth, statistics.dropped_rays);
-    EXPECT_EQ(result.contributions, statistics.contributions);
-  }
-
- private:
-  const Configuration configuration_;
-  const Scene scene_ = make_cornell();
-  const Program& program_;
-  MemoryImage image_;
-  const Tracer tracer_;
-  FrameBuffer frame_;
-  FrameBufferSink sink_;
-  TreeImage tree_;
-  ChipOptions options_;
-};
 
 std::unique_ptr<ChipDevice> model_of(const Machine& machine, const Memory& memory) {
   return make_chip(ChipKind::Model, machine.configuration, memory, machine.units);
@@ -151,7 +34,7 @@ TEST_P(ChipTraverser, DrawsThePictureOfTheNativeEngineWithoutADifference) {
   uint64_t frames = 0;
   for (const Picture& picture : {Picture{9, 11, 3, true}, Picture{1, 9, 2, false}, Picture{8, 4, 1, true}}) {
     SCOPED_TRACE(testing::Message() << picture.width << " x " << picture.height << ", depth " << picture.depth);
-    Drawing drawing(machine, picture);
+    Drawing drawing(machine, picture, make_cornell());
     if (!chip) chip = make_lockstep_chip(c, load_rtl_chip(library, c, machine.units), drawing.memory(), c.name);
     try {
       drawing.expect_native(drawing.draw_on(*chip));
@@ -167,7 +50,7 @@ TEST_P(ChipTraverser, DrawsThePictureOfTheNativeEngineWithoutADifference) {
   EXPECT_GT(counts.memory_writes, 0u) << "no stack has been longer than what the traverser keeps of it";
 }
 
-INSTANTIATE_TEST_SUITE_P(Machines, ChipTraverser, testing::Values(smallest, full),
+INSTANTIATE_TEST_SUITE_P(Machines, ChipTraverser, testing::Values(smallest_inside, full_inside),
                          [](const auto& machine) { return machine.param().configuration.name; });
 
 /// Shows in one cycle at one port of the traverser something else than the chip does that it wraps.
@@ -229,10 +112,10 @@ TEST(ChipTraverser, ThatIsBrokenIsNamed) {
          return p.tree_request_valid && p.tree_request.write && (p.tree_request.data[1][0] ^= 1, true);
        }},
   };
-  const Machine machine = full();
+  const Machine machine = full_inside();
   for (const Case& each : cases) {
     SCOPED_TRACE(each.port);
-    Drawing drawing(machine, {7, 5, 3, true});
+    Drawing drawing(machine, {7, 5, 3, true}, make_cornell());
     const std::unique_ptr<LockstepChip> chip = make_lockstep_chip(
         machine.configuration, std::make_unique<BrokenTraverser>(model_of(machine, drawing.memory()), each.change),
         drawing.memory());
@@ -249,10 +132,10 @@ TEST(ChipTraverser, ThatIsBrokenIsNamed) {
 }
 
 TEST(ChipTraverser, OnTheModelDrawsThePictureOfTheNativeEngine) {
-  for (const auto machine_of : {smallest, full}) {
+  for (const auto machine_of : {smallest_inside, full_inside}) {
     const Machine machine = machine_of();
     SCOPED_TRACE(machine.configuration.name);
-    Drawing drawing(machine, {23, 17, 4, true});
+    Drawing drawing(machine, {23, 17, 4, true}, make_cornell());
     const std::unique_ptr<ChipDevice> chip = model_of(machine, drawing.memory());
     drawing.expect_native(drawing.draw_on(*chip));
   }
