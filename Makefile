@@ -69,6 +69,12 @@ FRAMES    ?= 50
 TREES     ?= 1000
 # `make mutants`
 MUTANTS   ?= 500
+# `make block-mutants`: the modules of the traverser
+EACH      ?= 10
+MODULES   ?= traverser traverser_lane tree_port triangle_group ray_exit ray_finish quotient_digits root_digits \
+  cross_products triangle_view triangle_normal triangle_shares float_shorten ray_setup ray_direction ray_padding \
+  triangle_pipe triangle_edges triangle_interval triangle_plane leaf_reader tree_banks bank_arbiter tree_cache \
+  box_pipe box_axis child_order lane_hits lane_stacks
 # `make fit`
 SLOWER    ?= 1%
 AREA      ?= 0
@@ -96,7 +102,7 @@ RAY       ?=
 STATION   ?=
 # Recipes read these from the environment, so that a value with spaces or quotes stays one word.
 export CONFIG SET CUS SCENE SIZE DEPTH ENGINE CHIP TRAVERSER VIEW CAMERA EYE LOOK_AT UP FOV LIGHT DETAIL OUT WAVES TRACE
-export A B KERNEL PROGRAMS SEED FRAMES TREES COVERAGE MUTANTS MODE THREADS
+export A B KERNEL PROGRAMS SEED FRAMES TREES COVERAGE MUTANTS EACH MODE THREADS
 export SLOWER
 export PIXEL RAY STATION
 export FROM EXPERIMENT WHERE JOBS SCENES LEVELS RUNS ERROR TIME SAMPLES MACHINES
@@ -156,7 +162,7 @@ CHIP_FLAG := $(if $(CHIP),--chip)
 .PHONY: setup-% program configured-%
 .PHONY: numerics-long proofs synth synth-replay synth-prove growth numerics significands extremes isa diagrams quoted
 .PHONY: package sweep report bench-native pareto boxes triangles synth-module follow tour chip-frames
-.PHONY: traverser-trees
+.PHONY: traverser-trees block-mutants
 
 help: ## this list
 	@echo 'raypool: a ray-tracing GPU to render on, measure, verify and synthesise'
@@ -209,7 +215,9 @@ help: ## this list
 	@echo '  synth-replay:  BREAK=N;  synth-prove:  ONLY=BLOCKS;  growth:  PLAN=FILE'
 	@echo 'variables of make cosim:  PROGRAMS=$(PROGRAMS)  SEED=$(SEED)  CONFIG  SET  CUS  COVERAGE=FILE.json'
 	@echo 'variables of make chip-frames:  FRAMES=$(FRAMES): of each machine  SEED=$(SEED)'
+	@echo '    TRAVERSER=hardware: only the machines that have it inside'
 	@echo '  traverser-trees:  TREES=$(TREES): of each machine  SEED=$(SEED): of the first'
+	@echo '  block-mutants:  EACH=$(EACH): faults of each module  SEED=$(SEED)  MODULES="box_pipe ...": only these'
 	@echo 'variables of make numerics:  GATES=1: synthesise the lanes of every mode first'
 	@echo '  significands:  SCENE  CONFIG  SET  DEPTH  VIEW  DETAIL and those of the camera'
 	@echo '  extremes:  MODE=all|ieee-exact|...;  numerics-long:  THREADS=N, 1 if not given'
@@ -254,7 +262,7 @@ configurations: setup-sim program ## random programs on machines with every pair
 
 chip-frames: setup-sim setup-test configured-ON program ## random frames on tiny chips, RTL against model: FRAMES
 	@scripts/build.sh $(BUILD) raypool_chip_frames
-	@$(BUILD)/raypool_chip_frames --frames "$$FRAMES" --seed "$$SEED"
+	@$(BUILD)/raypool_chip_frames --frames "$$FRAMES" --seed "$$SEED" $(if $(filter hardware,$(TRAVERSER)),--inside)
 
 traverser-trees: setup-sim setup-test configured-ON ## random trees and garbage in the traverser, RTL against model: TREES
 	@scripts/build.sh $(BUILD) traverser_test
@@ -266,6 +274,19 @@ mutants: setup-sim setup-lint program ## small faults put into the RTL: which do
 	@scripts/mutants.sh $(BUILD)/mutants tb/mutants/2w2c.json "$$MUTANTS" 1
 	@$(BUILD)/raypool_mutants --unit $(BUILD)/mutants/libraypool_unit.so --list $(BUILD)/mutants/list.txt \
 	  --config tb/mutants/2w2c.json --survivors tb/mutants/survivors.json --json $(BUILD)/mutants/outcomes.json
+
+block-mutants: setup-sim setup-test configured-ON ## small faults in each module of the traverser: EACH
+	@scripts/build.sh $(BUILD) raypool_block_mutants
+	@mkdir -p $(BUILD)/block-mutants
+	@python3 scripts/block_mutants.py rtl $(BUILD)/block-mutants/rtl $(BUILD)/block-mutants/list.json "$$EACH" \
+	  "$$SEED" $(MODULES:=.v)
+	@scripts/configure.sh $(BUILD)/block-mutants/benches ON -DRAYPOOL_BENCHES=pools \
+	  -DRAYPOOL_RTL=$(abspath $(BUILD))/block-mutants/rtl
+	@scripts/build.sh $(BUILD)/block-mutants/benches $$(grep -o '[a-z_]*_test' tb/mutants/benches.json)
+	@$(BUILD)/raypool_block_mutants --list $(BUILD)/block-mutants/list.json \
+	  --benches $(BUILD)/block-mutants/benches/tb --json $(BUILD)/block-mutants/outcomes.json \
+	  $(if $(filter 10:1,$(EACH):$(SEED)),--survivors tb/mutants/traverser_survivors.json) \
+	  $(if $(filter file,$(origin MODULES)),,--part)
 
 faults: setup-sim setup-test configured-ON program ## designers' mistakes: what notices each, where its report leads
 	@scripts/build.sh $(BUILD) raypool_faults

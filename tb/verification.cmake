@@ -34,6 +34,9 @@ set_tests_properties(cosim_2w2c_small_4cu PROPERTIES FIXTURES_REQUIRED unit_2w2c
 add_test(NAME faults_catalogue COMMAND ${scripts}/tests/faults_test.sh ${raypool_program} $<TARGET_FILE:raypool_faults>
   ${CMAKE_BINARY_DIR}/faults-test)
 set_tests_properties(faults_catalogue PROPERTIES TIMEOUT 900 FIXTURES_SETUP faulty_2w2c)
+# So are small faults of single blocks put where they belong; `make block-mutants` runs them.
+add_test(NAME block_mutants COMMAND ${scripts}/tests/block_mutants_test.py)
+set_tests_properties(block_mutants PROPERTIES TIMEOUT 300)
 # Whoever meets a difference runs again with a look inside the RTL: of its mistakes.
 add_test(NAME inspected_differences COMMAND ${scripts}/tests/inspect.sh ${raypool_program}
   ${CMAKE_BINARY_DIR}/faults-test)

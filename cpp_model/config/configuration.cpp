@@ -421,6 +421,14 @@ void check_chip(const Configuration& configuration, const std::string& where) {
                     "at least {}",
                     where, chip.modelled_traverser_node_cache_bytes, ways, node, ways * node));
   }
+  constexpr uint32_t kLine = 64;
+  const uint32_t triangle_ways = chip.modelled_traverser_triangle_cache_ways;
+  if (chip.modelled_traverser_triangle_cache_bytes < triangle_ways * kLine) {
+    throw InputError(
+        fmt::format("{}: chip.modelled_traverser.triangle_cache_bytes is {}; with {} ways of lines of {} bytes it must "
+                    "be at least {}",
+                    where, chip.modelled_traverser_triangle_cache_bytes, triangle_ways, kLine, triangle_ways * kLine));
+  }
   if (chip.modelled_traverser_box_bits != 0 && chip.modelled_traverser_nodes != NodeFormat::Compressed) {
     throw InputError(
         fmt::format("{}: chip.modelled_traverser.box_bits is {}; with exact nodes (chip.modelled_traverser.nodes) it "

@@ -181,6 +181,18 @@ TEST(Configuration, TheNodeCacheHasASetAtLeast) {
   }
 }
 
+TEST(Configuration, TheTriangleCacheHasASetAtLeast) {
+  const auto chip = [](int ways) {
+    return R"({"chip": {"modelled_traverser": {"triangle_cache_bytes": 512, "triangle_cache_ways": )" +
+           std::to_string(ways) + "}}}";
+  };
+  EXPECT_EQ(error_of(chip(16)),
+            "chip.modelled_traverser.triangle_cache_bytes is 512; with 16 ways of lines of 64 bytes it must be at "
+            "least 1024");
+  const TemporaryFile file(chip(8));
+  EXPECT_EQ(load_configuration(file.path()).chip.modelled_traverser_triangle_cache_bytes, 512u);
+}
+
 TEST(Configuration, BoxesInIntegersAreThoseOfCompressedNodes) {
   const auto chip = [](const std::string& nodes, int bits) {
     return R"({"chip": {"modelled_traverser": {"nodes": ")" + nodes + R"(", "box_bits": )" + std::to_string(bits) +

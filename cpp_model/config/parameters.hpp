@@ -113,12 +113,12 @@ enum class Shading : uint8_t { Kernel = 0, Traverser = 1 };
             "cycles from a cache's lookup to its data") \
   CHIP_PART(modelled_traverser, cache_banks, uint32_t, 8, powers_of_two(1, 32), \
             "banks of each cache: a line each in a cycle, for all who want that line") \
-  CHIP_PART(modelled_traverser, node_cache_bytes, uint32_t, 65536, powers_of_two(1024, 1 << 24), \
+  CHIP_PART(modelled_traverser, node_cache_bytes, uint32_t, 65536, powers_of_two(512, 1 << 24), \
             "size, in lines of a node") \
   CHIP_PART(modelled_traverser, node_cache_ways, uint32_t, 4, powers_of_two(1, 16), "lines of a set") \
   CHIP_PART(modelled_traverser, node_cache_mshrs, uint32_t, 16, integers(1, 64), \
             "lines that may be on their way at once") \
-  CHIP_PART(modelled_traverser, triangle_cache_bytes, uint32_t, 65536, powers_of_two(1024, 1 << 24), \
+  CHIP_PART(modelled_traverser, triangle_cache_bytes, uint32_t, 65536, powers_of_two(512, 1 << 24), \
             "size, in lines of 64 bytes") \
   CHIP_PART(modelled_traverser, triangle_cache_ways, uint32_t, 4, powers_of_two(1, 16), "lines of a set") \
   CHIP_PART(modelled_traverser, triangle_cache_mshrs, uint32_t, 16, integers(1, 64), \

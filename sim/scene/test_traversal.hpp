@@ -75,6 +75,7 @@ inline Bvh random_tree(const Bvh& original, uint32_t seed) {
   std::vector<Item> level;
   for (size_t first = 0; first < loose.size(); first += 4) {
     TriangleBlock block{};
+    block.first = static_cast<uint32_t>(first);
     block.count = static_cast<uint32_t>(std::min<size_t>(4, loose.size() - first));
     Item item{size32(tree.blocks) | kLeafBit, {INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
     for (uint32_t lane = 0; lane < 4; ++lane) {

@@ -2,12 +2,9 @@
 // random programs in lockstep, then, if none notices, on the benches of single blocks; says what noticed each,
 // and where the report sends its reader.
 #include <fmt/format.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -17,6 +14,7 @@
 #include <vector>
 
 #include "enum_array.hpp"
+#include "faulty/benches.hpp"
 #include "faulty/guilty.hpp"
 #include "faulty/judgements.hpp"
 #include "faulty/trials.hpp"
@@ -45,13 +43,6 @@ struct Fault {
   int number = 0;
   std::string file;  ///< of rtl/
   std::string mistake;
-};
-
-/// A bench of single blocks, built from the Verilog with the mistakes.
-struct Bench {
-  std::string name;
-  std::string command;
-  std::vector<std::string> tops;  ///< modules that it instantiates
 };
 
 Json read_json(const std::string& path) {
@@ -115,48 +106,6 @@ Outcome run_fault(const Options& options, const std::vector<Machine>& machines, 
   }
   outcome.by.clear();
   return outcome;
-}
-
-std::string module_of(const std::string& file) { return file.substr(0, file.rfind('.')); }
-
-/// Benches that have the module, until one fails: its name, and its first line that says so.
-Outcome run_benches(const std::vector<Bench>& benches, const Hierarchy& hierarchy, const std::string& file,
-                    Outcome outcome) {
-  const std::string module = module_of(file);
-  for (const Bench& bench : benches) {
-    const auto has = [&](const std::string& top) { return hierarchy.contains(top, module); };
-    if (std::none_of(bench.tops.begin(), bench.tops.end(), has)) continue;
-    std::FILE* printed = popen((bench.command + " 2>&1").c_str(), "r");
-    if (printed == nullptr) throw InputError(bench.command + " cannot be started");
-    std::string failed;
-    std::array<char, 500> line;
-    while (std::fgets(line.data(), line.size(), printed) != nullptr)
-      if (failed.empty() && std::string_view(line.data()).find("FAILED") != std::string_view::npos)
-        failed = line.data();
-    const int status = pclose(printed);
-    if (status == 0) continue;
-    outcome.kind = Outcome::Kind::Bench;
-    outcome.by = bench.name;
-    outcome.text = failed.empty() ? fmt::format("ended with status {}", status) : failed.substr(0, failed.find('\n'));
-    break;
-  }
-  return outcome;
-}
-
-std::vector<Bench> read_benches(const std::string& path, const std::string& folder) {
-  std::vector<Bench> benches;
-  for (const Json& entry : read_json(path)) {
-    Bench bench;
-    bench.name = entry.at("bench").get<std::string>();
-    const std::string program = folder + "/" + bench.name;
-    // What cannot be started would seem to notice every mistake.
-    if (access(program.c_str(), X_OK) != 0)
-      throw InputError(fmt::format("--benches {}: there is no bench {}: build it there", folder, bench.name));
-    bench.command = fmt::format("{} '--gtest_filter={}'", program, entry.at("filter").get<std::string>());
-    bench.tops = entry.at("tops").get<std::vector<std::string>>();
-    benches.push_back(bench);
-  }
-  return benches;
 }
 
 /// {mistake: why nothing notices it}
@@ -263,7 +212,8 @@ int run(int argc, char** argv) {
                    Outcome outcome = in_machines ? run_fault(options, machines, fault.number, note) : Outcome();
                    if (!in_machines) setenv("RAYPOOL_FAULT", std::to_string(fault.number).c_str(), 1);
                    if (sound || outcome.kind != Outcome::Kind::Survived) return outcome;
-                   return run_benches(benches, hierarchy, fault.file, outcome);
+                   run_benches(benches_of(benches, hierarchy, module_of(fault.file)), outcome);
+                   return outcome;
                  }};
   };
   // Without a mistake there must be no difference, or every kill would be worth nothing.

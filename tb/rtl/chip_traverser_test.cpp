@@ -8,22 +8,19 @@
 #include <string>
 #include <utility>
 
-#include "chip/board.hpp"
-#include "chip/tree_image.hpp"
 #include "lockstep/lockstep_chip.hpp"
 #include "lockstep/rtl_loader.hpp"
 #include "machine/chip_model.hpp"
 #include "machine/model.hpp"
 #include "rtl/chip_frames.hpp"
-#include "scene/image.hpp"
-#include "scene/native_renderer.hpp"
-#include "scene/traversal.hpp"
+#include "rtl/traverser_frames.hpp"
 
 namespace raypool {
 namespace {
 
 using namespace test;
 
+<<<<<<< HEAD
 /// Of everything one, and caches as small as can be.
 Machine smallest() {
   Machine machine;
@@ -138,6 +135,8 @@ class Drawing {
   ChipOptions options_;
 };
 
+=======
+>>>>>>> b_wip
 std::unique_ptr<ChipDevice> model_of(const Machine& machine, const Memory& memory) {
   return make_chip(ChipKind::Model, machine.configuration, memory, machine.units);
 }
@@ -152,7 +151,7 @@ TEST_P(ChipTraverser, DrawsThePictureOfTheNativeEngineWithoutADifference) {
   uint64_t frames = 0;
   for (const Picture& picture : {Picture{9, 11, 3, true}, Picture{1, 9, 2, false}, Picture{8, 4, 1, true}}) {
     SCOPED_TRACE(testing::Message() << picture.width << " x " << picture.height << ", depth " << picture.depth);
-    Drawing drawing(machine, picture);
+    Drawing drawing(machine, picture, make_cornell());
     if (!chip) chip = make_lockstep_chip(c, load_rtl_chip(library, c, machine.units), drawing.memory(), c.name);
     try {
       drawing.expect_native(drawing.draw_on(*chip));
@@ -168,7 +167,7 @@ TEST_P(ChipTraverser, DrawsThePictureOfTheNativeEngineWithoutADifference) {
   EXPECT_GT(counts.memory_writes, 0u) << "no stack has been longer than what the traverser keeps of it";
 }
 
-INSTANTIATE_TEST_SUITE_P(Machines, ChipTraverser, testing::Values(smallest, full),
+INSTANTIATE_TEST_SUITE_P(Machines, ChipTraverser, testing::Values(smallest_inside, full_inside),
                          [](const auto& machine) { return machine.param().configuration.name; });
 
 /// What is no tree, and the fault that comes of it.
@@ -285,10 +284,10 @@ TEST(ChipTraverser, ThatIsBrokenIsNamed) {
          return p.tree_request_valid && p.tree_request.write && (p.tree_request.data[1][0] ^= 1, true);
        }},
   };
-  const Machine machine = full();
+  const Machine machine = full_inside();
   for (const Case& each : cases) {
     SCOPED_TRACE(each.port);
-    Drawing drawing(machine, {7, 5, 3, true});
+    Drawing drawing(machine, {7, 5, 3, true}, make_cornell());
     const std::unique_ptr<LockstepChip> chip = make_lockstep_chip(
         machine.configuration, std::make_unique<BrokenTraverser>(model_of(machine, drawing.memory()), each.change),
         drawing.memory());
@@ -334,10 +333,10 @@ TEST(ChipTraverser, WhoseFaultIsBrokenIsNamed) {
 }
 
 TEST(ChipTraverser, OnTheModelDrawsThePictureOfTheNativeEngine) {
-  for (const auto machine_of : {smallest, full}) {
+  for (const auto machine_of : {smallest_inside, full_inside}) {
     const Machine machine = machine_of();
     SCOPED_TRACE(machine.configuration.name);
-    Drawing drawing(machine, {23, 17, 4, true});
+    Drawing drawing(machine, {23, 17, 4, true}, make_cornell());
     const std::unique_ptr<ChipDevice> chip = model_of(machine, drawing.memory());
     drawing.expect_native(drawing.draw_on(*chip));
   }

@@ -1,6 +1,8 @@
 // Draws frames of chance on tiny chips, rtl/chip.v in lockstep with its model: on machines that have every pair of
 // values of what a chip has (sim/cosim/covering.hpp), with pictures, traffic at every port and answers of the traverser
-// drawn at random. A frame that fails is made smaller while it still does, and the command that repeats it is printed.
+// drawn at random; and on some with the traverser inside, with scenes, trees and waits at the memories drawn at random,
+// whose pictures must be the native engine's. A frame that fails is made smaller while it still does, and the command
+// that repeats it is printed.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -12,12 +14,14 @@
 #include <memory>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "lockstep/lockstep_chip.hpp"
 #include "lockstep/rtl_loader.hpp"
 #include "random.hpp"
 #include "rtl/chip_frames.hpp"
+#include "rtl/traverser_frames.hpp"
 
 namespace raypool {
 namespace {
@@ -29,9 +33,20 @@ struct Case {
   Picture picture{};
   Traffic traffic;
   uint32_t seed = 0;
+  // With the traverser inside, in place of the traffic. `tree`: of a bad one; 0: the scene's own.
+  uint32_t triangles = 0, tree = 0;
+  WaitingChip::Waits waits;
 };
 
-std::string to_string(const Case& c) {
+bool is_inside(const Machine& machine) { return has_traverser(machine.configuration.chip); }
+
+std::string to_string(const Case& c, const Machine& machine) {
+  if (is_inside(machine)) {
+    return fmt::format("{} x {} pixels, depth {}, {}; {} triangles, {}; request {}, beat {}, frame {}", c.picture.width,
+                       c.picture.height, c.picture.depth, c.picture.reflections ? "reflections" : "no reflections",
+                       c.triangles, c.tree == 0 ? "their own tree" : "a bad tree", c.waits.request, c.waits.beat,
+                       c.waits.frame);
+  }
   const Traffic& t = c.traffic;
   return fmt::format(
       "{} x {} pixels, depth {}, {}; stall {}, gap {}, tree {}, inside {}, cycles {}, latency {}, burst "
@@ -58,14 +73,52 @@ Case case_of(uint32_t seed, uint32_t machine, uint32_t frame) {
   return c;
 }
 
+Case inside_case_of(uint32_t seed, uint32_t machine, uint32_t frame) {
+  std::seed_seq all{seed, machine, frame};
+  Random random(all);
+  const auto one = [&](std::initializer_list<uint32_t> values) { return *(values.begin() + random() % values.size()); };
+  Case c;
+  c.picture = {1 + random() % 8, 1 + random() % 6, 1 + random() % 4, random() % 4 != 0};
+  c.triangles = 1 + random() % one({1, 4, 12, 12, 40, 40, 100, 300});
+  c.tree = random() % 2 == 0 ? 0 : 1 + random() % 1000;
+  c.waits = {one({0, 0, 2, 5, 20}), one({0, 0, 2, 5, 20}), one({0, 0, 2, 30})};
+  c.seed = random();
+  return c;
+}
+
 /// Of frames that held.
 struct Drawn {
   Reached reached;
   uint64_t cycles = 0, rays = 0;
 };
 
+/// As failure_of(), with the traverser inside.
+std::string failure_inside(const Case& c, const Machine& machine, const std::string& library, Drawn& drawn) {
+  try {
+    Drawing drawing(machine, c.picture, scene_of_chance(c.seed, c.triangles), c.tree);
+    const std::unique_ptr<LockstepChip> chip =
+        make_lockstep_chip(machine.configuration, load_rtl_chip(library, machine.configuration, machine.units),
+                           drawing.memory(), machine.configuration.name);
+    WaitingChip waiting(*chip, c.waits, c.seed);
+    const ChipResult result = drawing.draw_on(waiting);
+    drawing.expect_native(result);
+    if (chip->lockstep_counts().counters == 0) return "the counters were not compared";
+    drawn.cycles += chip->lockstep_counts().cycles;
+    drawn.rays += chip->lockstep_counts().rays;
+    ++drawn.reached.frames;
+    drawn.reached.deep += waiting.deep;
+    drawn.reached.black += waiting.black;
+    for (size_t kernel = 0; kernel < kRayKernels; ++kernel)
+      drawn.reached.launches[kernel] += result.kernels[static_cast<RayKernel>(kernel)].launches;
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return "";
+}
+
 /// Draws it on a device of its own. Returns what went wrong; empty: nothing.
 std::string failure_of(const Case& c, const Machine& machine, const std::string& library, Drawn& drawn) {
+  if (is_inside(machine)) return failure_inside(c, machine, library, drawn);
   Frame frame(machine, c.picture);
   try {
     const std::unique_ptr<LockstepChip> chip =
@@ -81,7 +134,7 @@ std::string failure_of(const Case& c, const Machine& machine, const std::string&
   return "";
 }
 
-/// The smallest picture of those tried that still fails.
+/// The smallest picture, of fewest triangles, of those tried that still fails.
 Case shrunk(Case c, const Machine& machine, const std::string& library) {
   const auto smaller = [](const Case& from) {
     std::vector<Case> cases;
@@ -91,6 +144,11 @@ Case shrunk(Case c, const Machine& machine, const std::string& library) {
         cases.push_back(from);
         cases.back().picture.*size = value;
       }
+    }
+    for (const uint32_t triangles : {from.triangles / 2, from.triangles - 1}) {
+      if (from.triangles <= 1) break;
+      cases.push_back(from);
+      cases.back().triangles = triangles;
     }
     return cases;
   };
@@ -111,6 +169,7 @@ struct Options {
   std::string program;  ///< as it was called
   uint32_t frames = 50, seed = 1, machine = 0, frame = 0;
   uint32_t machines = 0;
+  bool inside = false;
 };
 
 class Clock {
@@ -127,17 +186,26 @@ class Clock {
 };
 
 int run(const Options& options) {
-  const std::vector<Machine> machines = covering_chips();
+  std::vector<Machine> machines = covering_chips();
   const Covered covered = count_covered(chip_factors(), machines, kSmallThreads);
+  const auto outside = static_cast<uint32_t>(machines.size());
+  for (Machine& machine : inside_machines()) machines.push_back(std::move(machine));
   const auto last = static_cast<uint32_t>(machines.size());
   if (options.machine > last)
     throw InputError(fmt::format("--machine is {}; there are machines 1 to {}", options.machine, last));
-  fmt::print("{} machines of at most {} threads: {} of {} values, {} of {} pairs of values\n", last, kSmallThreads,
-             covered.values, covered.all_values, covered.pairs, covered.all_pairs);
+  fmt::print(
+      "{} machines of at most {} threads: {} of {} values, {} of {} pairs of values; and {} with the traverser "
+      "inside\n",
+      outside, kSmallThreads, covered.values, covered.all_values, covered.pairs, covered.all_pairs, last - outside);
+  const uint32_t first = options.inside ? outside + 1 : 1;
+  const auto chosen = [&](uint32_t number) {
+    if (options.machine != 0) return number == options.machine;
+    return number >= first && (options.machines == 0 || number < first + options.machines);
+  };
   Drawn drawn;
   uint32_t drawn_on = 0, failed = 0;
   for (uint32_t number = 1; number <= last; ++number) {
-    if (options.machine != 0 ? number != options.machine : options.machines != 0 && number > options.machines) continue;
+    if (!chosen(number)) continue;
     const Machine& machine = machines[number - 1];
     Clock clock;
     const std::string library = chip_library(machine);
@@ -147,7 +215,8 @@ int run(const Options& options) {
     bool held = true;
     for (uint32_t frame = 1; frame <= options.frames && held; ++frame) {
       if (options.frame != 0 && frame != options.frame) continue;
-      const Case c = case_of(options.seed, number, frame);
+      const Case c =
+          is_inside(machine) ? inside_case_of(options.seed, number, frame) : case_of(options.seed, number, frame);
       const std::string failure = failure_of(c, machine, library, drawn);
       held = failure.empty();
       if (held) continue;
@@ -155,8 +224,9 @@ int run(const Options& options) {
       fmt::print(
           "{}, {} units, frame {}: {}\n{}\nthe smallest that fails: {}\n"
           "again with: {} --seed {} --frames {} --machine {} --frame {}\n",
-          machine.configuration.name, machine.units, frame, to_string(c), failure,
-          to_string(shrunk(c, machine, library)), options.program, options.seed, options.frames, number, frame);
+          machine.configuration.name, machine.units, frame, to_string(c, machine), failure,
+          to_string(shrunk(c, machine, library), machine), options.program, options.seed, options.frames, number,
+          frame);
     }
     fmt::print("{}, {} units: {} frames, {} cycles, {} rays, {}; built in {:.0f} s, ran {:.0f} s\n",
                machine.configuration.name, machine.units, drawn.reached.frames - before.reached.frames,
@@ -186,8 +256,9 @@ int main(int argc, char** argv) {
   options.program = argv[0];
   CLI::App app("Frames of chance on tiny chips, rtl/chip.v in lockstep with its model.", "raypool_chip_frames");
   app.add_option("--frames", options.frames, "of each machine")->capture_default_str()->check(CLI::PositiveNumber);
-  app.add_option("--seed", options.seed, "of pictures and traffic")->capture_default_str();
+  app.add_option("--seed", options.seed, "of pictures, scenes and traffic")->capture_default_str();
   app.add_option("--machines", options.machines, "only the first so many machines; 0: all")->capture_default_str();
+  app.add_flag("--inside", options.inside, "only those with the traverser inside");
   app.add_option("--machine", options.machine, "only this machine, from 1")->check(CLI::PositiveNumber);
   app.add_option("--frame", options.frame, "only this frame of it, from 1")->check(CLI::PositiveNumber);
   CLI11_PARSE(app, argc, argv);

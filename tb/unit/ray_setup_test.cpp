@@ -276,6 +276,37 @@ class SetupBench : public Clocked<Unit> {
     for (int i = 0; i < RaySetupPipe::kStages; ++i) ASSERT_NO_FATAL_FAILURE(cycle(false, shown));
   }
 
+  /// Scenes so far out and so small that a place more or less decides their padding, with a ray from within each.
+  void scenes_at_a_step(Shown& shown) {
+    words_.draw();
+    const size_t axis = this->random() % 3;
+    const uint32_t first = (this->random() % 2) << 31 | (100 + this->random() % 80) << 23;
+    const uint32_t more = this->random() % 4, origin = this->random() % 4;
+    for (size_t i = 0; i < 3; ++i) words_.ray.origin[i] = words_.root.lower[i] = words_.root.upper[i] = 0;
+    for (float& component : words_.ray.direction) component = std::isfinite(component) ? component + 1 : 1;
+    const auto padding_at = [&](uint32_t fraction) {
+      const float near = as_float(first + fraction), far = as_float(first + fraction + more);
+      words_.root.lower[axis] = std::min(near, far);
+      words_.root.upper[axis] = std::max(near, far);
+      words_.ray.origin[axis] = as_float(first + fraction + origin);
+      return RaySetup(words_.ray, words_.root, bits_).box.axes[axis].padding;
+    };
+    uint32_t low = 8, high = 0x7ffff0;
+    const int padding = padding_at(low);
+    while (high - low > 1) {
+      const uint32_t middle = low + (high - low) / 2;
+      (padding_at(middle) == padding ? low : high) = middle;
+    }
+    for (uint32_t fraction = low - 3; fraction <= high + 3; ++fraction) {
+      padding_at(fraction);
+      set_words(this->u->lower_i, words_.root.lower);
+      set_words(this->u->upper_i, words_.root.upper);
+      ASSERT_NO_FATAL_FAILURE(begin(words_.root, true, shown));
+      ASSERT_NO_FATAL_FAILURE(cycle(true, shown));
+      for (int i = 0; i < RaySetupPipe::kStages; ++i) ASSERT_NO_FATAL_FAILURE(cycle(false, shown));
+    }
+  }
+
  private:
   template <typename Signal>
   static void set_words(Signal& signal, const float (&floats)[3]) {
@@ -335,6 +366,16 @@ void compare_setup(int bits) {
 TEST(RaySetupInVerilog, AgreesWithItsClassInEveryCycleWith6Bits) { compare_setup<Vray_setup_6>(6); }
 TEST(RaySetupInVerilog, AgreesWithItsClassInEveryCycleWith12Bits) { compare_setup<Vray_setup_12>(12); }
 TEST(RaySetupInVerilog, AgreesWithItsClassInEveryCycleWith16Bits) { compare_setup<Vray_setup_16>(16); }
+
+// What a last place of a coordinate, or of what boxes are widened by, changes.
+TEST(RaySetupInVerilog, PadsAsItsClassWhereALastPlaceDecides) {
+  SetupBench<Vray_setup_12> bench(12);
+  Shown shown;
+  for (int scene = 0; scene < 400; ++scene) {
+    ASSERT_NO_FATAL_FAILURE(bench.scenes_at_a_step(shown)) << "scene " << scene;
+  }
+  EXPECT_LT(shown.nothing, 400);
+}
 
 }  // namespace
 }  // namespace raypool::bench

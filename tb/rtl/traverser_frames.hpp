@@ -1,0 +1,261 @@
+// For tests: chips with the traverser in Verilog inside, small scenes and trees of chance, and frames of them on a
+// board whose memories and frame buffer do not always take or give.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "chip/board.hpp"
+#include "chip/tree_image.hpp"
+#include "random.hpp"
+#include "rtl/chip_frames.hpp"
+#include "scene/hard_rays.hpp"
+#include "scene/image.hpp"
+#include "scene/mesh_builder.hpp"
+#include "scene/native_renderer.hpp"
+#include "scene/test_traversal.hpp"
+#include "scene/traversal.hpp"
+
+namespace raypool::test {
+
+/// Of everything one, and caches as small as can be.
+inline Machine smallest_inside() {
+  Machine machine;
+  Configuration& c = machine.configuration;
+  c.name = "chip_traverser_1w1c";
+  c.warps = c.lanes = 1;
+  c.instruction_cache_bytes = c.data_cache_bytes = 512;
+  c.data_cache_mshrs = 1;
+  ChipConfiguration& chip = c.chip;
+  chip.ray_pool_size = 1;
+  chip.intersection_pool_size = chip.held_limit = 1;
+  chip.memory_latency = 20;
+  chip.memory_queue = 1;
+  chip.traverser = TraverserName::Hardware;
+  chip.modelled_traverser_box_pipes = chip.modelled_traverser_rays = chip.modelled_traverser_triangle_pipes = 1;
+  chip.modelled_traverser_stack_entries = 8;
+  chip.modelled_traverser_cache_banks = 1;
+  chip.modelled_traverser_node_cache_bytes = chip.modelled_traverser_triangle_cache_bytes = 512;
+  chip.modelled_traverser_node_cache_ways = chip.modelled_traverser_triangle_cache_ways = 2;
+  chip.modelled_traverser_node_cache_mshrs = chip.modelled_traverser_triangle_cache_mshrs = 1;
+  return machine;
+}
+
+/// Two units and two lanes that share a triangle pipe; a traverser that shades, culling, records, banks.
+inline Machine full_inside() {
+  Machine machine = smallest_inside();
+  machine.units = 2;
+  Configuration& c = machine.configuration;
+  c.name = "chip_traverser_2w1c_full";
+  c.warps = 2;
+  c.kernel_overlap = true;
+  c.intersection_words = 18;
+  ChipConfiguration& chip = c.chip;
+  chip.policy = PolicyName::Fill;
+  chip.culling = true;
+  chip.shading = Shading::Traverser;
+  chip.ray_pool_size = 9;
+  chip.ray_pool_pipelined = chip.intersection_pool_pipelined = true;
+  chip.intersection_pool_size = chip.held_limit = 4;
+  chip.memory_cycles_per_beat = 1;
+  chip.memory_queue = 8;
+  chip.modelled_traverser_tile_order = TileOrder::Hilbert;
+  chip.modelled_traverser_box_pipes = 2;
+  chip.modelled_traverser_rays = 6;
+  chip.modelled_traverser_box_bits = 6;
+  chip.modelled_traverser_cache_banks = 2;
+  chip.modelled_traverser_node_cache_bytes = chip.modelled_traverser_triangle_cache_bytes = 1024;
+  chip.modelled_traverser_node_cache_mshrs = 2;
+  chip.modelled_traverser_triangle_cache_mshrs = 4;
+  return machine;
+}
+
+/// More rays in the pool than the traverser has slots, and more slots than the pool has places for what they become.
+inline Machine crowded_inside() {
+  Machine machine = smallest_inside();
+  Configuration& c = machine.configuration;
+  c.name = "chip_traverser_1w2c_crowded";
+  c.lanes = 2;
+  ChipConfiguration& chip = c.chip;
+  chip.culling = true;
+  chip.ray_pool_size = 13;
+  chip.intersection_pool_size = chip.held_limit = 2;
+  chip.memory_latency = 9;
+  chip.memory_cycles_per_beat = 1;
+  chip.memory_queue = 2;
+  chip.modelled_traverser_box_pipes = 2;
+  chip.modelled_traverser_triangle_pipes = 2;
+  chip.modelled_traverser_rays = 8;
+  chip.modelled_traverser_box_bits = 16;
+  chip.modelled_traverser_triangle_cache_ways = 4;
+  chip.modelled_traverser_triangle_cache_mshrs = 3;
+  return machine;
+}
+
+/// The machines of `make chip-frames` that have it inside.
+inline std::vector<Machine> inside_machines() { return {smallest_inside(), full_inside(), crowded_inside()}; }
+
+/// A soup of so many triangles, or a few more, with materials, camera and light of chance; at times all of it is one
+/// triangle many times. Half of them are in a closed box, with the camera, so that every ray hits something.
+inline Scene scene_of_chance(uint32_t seed, uint32_t triangles) {
+  Random random(seed);
+  const auto share = [&random] { return static_cast<float>(random() % 1001) / 1000; };
+  const auto near = [&](float distance) {
+    return Vec3{distance * (2 * share() - 1), distance * (2 * share() - 1), distance * (2 * share() - 1)};
+  };
+  const float scale = std::ldexp(1.0f, static_cast<int>(random() % 20) - 10);
+  const Vec3 at = random() % 2 == 0 ? Vec3{0, 0, 0} : near(20 * scale);
+  Scene scene = soup(random(), static_cast<int>(triangles), scale, at);
+  if (random() % 16 == 0)
+    for (size_t vertex = 3; vertex < scene.vertices.size(); ++vertex)
+      scene.vertices[vertex] = scene.vertices[vertex % 3];
+  const bool closed = random() % 2 == 0;
+  if (closed) {
+    const Vec3 half{2 * scale, 2 * scale, 2 * scale};
+    MeshBuilder mesh(scene, 1);
+    mesh.use(0);
+    mesh.box((at - half).as<double>(), (at + half).as<double>());
+  }
+  scene.name = "chance";
+  scene.materials.clear();
+  for (uint32_t material = 1 + random() % 4; material > 0; --material) {
+    const Vec3 kd = random() % 4 == 0 ? Vec3{0, 0, 0} : Vec3{share(), share(), share()};
+    scene.materials.push_back({"", kd, random() % 2 == 0 ? Vec3{0, 0, 0} : Vec3{share(), share(), 1}});
+  }
+  for (uint32_t& material : scene.triangle_materials) material = random() % size32(scene.materials);
+  scene.camera.eye = at + near((closed ? 1.9f : 3) * scale);
+  scene.camera.direction = scene.vertices[random() % scene.vertices.size()] + near(0.1f * scale) - scene.camera.eye;
+  scene.camera.up = near(1) + Vec3{0, 2, 0};
+  scene.camera.fov = 2 + 60 * share();
+  scene.light = {at + near((closed ? 1.9f : 4) * scale), {share(), 1, share()}};
+  check_scene(scene, "a scene of chance");
+  return scene;
+}
+
+/// A picture of a scene, and what it takes to draw it on a chip.
+class Drawing {
+ public:
+  /// `tree`: of a bad tree, which the traverser has in place of the native engine's; 0: it has the same.
+  Drawing(const Machine& machine, const Picture& picture, Scene scene, uint32_t tree = 0)
+      : configuration_(machine.configuration),
+        scene_(std::move(scene)),
+        program_(ray_kernel_program(KernelTarget(configuration_))),
+        image_(build_memory(program_, scene_)),
+        tracer_(scene_, image_.material_base, configuration_.chip),
+        frame_(static_cast<int>(picture.width), static_cast<int>(picture.height)),
+        sink_(frame_),
+        tree_(make_tree_image(scene_, tree_of(tracer_.traversal().bvh(), tree), configuration_.chip,
+                              image_.material_base)) {
+    options_.configuration = configuration_;
+    options_.layout = ray_record_layout(configuration_);
+    options_.memory = &image_.memory;
+    options_.tree = &tree_;
+    options_.program_length = size32(program_.code);
+    for (size_t i = 0; i < kRayKernels; ++i) options_.entries[i] = program_.entries.at(std::string(kRayKernelNames[i]));
+    options_.arguments =
+        camera_arguments(scene_, picture.width, picture.height, configuration_.contents(), configuration_.significand);
+    options_.width = picture.width;
+    options_.height = picture.height;
+    options_.depth = picture.depth;
+    options_.reflections = picture.reflections;
+    options_.frame = &sink_;
+  }
+
+  const Memory& memory() const { return image_.memory; }
+  ChipResult draw_on(ChipDevice& chip) { return run_board(options_, chip); }
+
+  /// What has been drawn, and said of it, is what the native engine does and says.
+  void expect_native(const ChipResult& result) const {
+    NativeOptions native;
+    native.width = static_cast<int>(options_.width);
+    native.height = static_cast<int>(options_.height);
+    native.depth = static_cast<int>(options_.depth);
+    native.reflections = options_.reflections;
+    native.culling = configuration_.chip.culling;
+    NativeStatistics statistics;
+    EXPECT_TRUE(frame_ == render_native(scene_, image_, tracer_, native, &statistics));
+    for (const auto kind : {&RayCounts::eye, &RayCounts::reflection, &RayCounts::shadow}) {
+      EXPECT_EQ((result.ray_counts.*kind).traced, (statistics.ray_counts.*kind).traced);
+      EXPECT_EQ((result.ray_counts.*kind).ended, (statistics.ray_counts.*kind).ended);
+      EXPECT_EQ((result.ray_counts.*kind).weightless, (statistics.ray_counts.*kind).weightless);
+      EXPECT_EQ((result.ray_counts.*kind).futile, (statistics.ray_counts.*kind).futile);
+      EXPECT_EQ((result.ray_counts.*kind).left_out, (statistics.ray_counts.*kind).left_out);
+    }
+    EXPECT_EQ(result.dropped_depth, statistics.dropped_rays);
+    EXPECT_EQ(result.contributions, statistics.contributions);
+  }
+
+ private:
+  static Bvh tree_of(const Bvh& good, uint32_t seed) {
+    return seed == 0 || good.nodes.empty() ? good : random_tree(good, seed);
+  }
+
+  const Configuration configuration_;
+  const Scene scene_;
+  const Program& program_;
+  MemoryImage image_;
+  const Tracer tracer_;
+  FrameBuffer frame_;
+  FrameBufferSink sink_;
+  TreeImage tree_;
+  ChipOptions options_;
+};
+
+/// A chip in front of which some transfers wait, one in so many cycles (0: none): a request to the memories, a beat of
+/// theirs, a contribution to the frame buffer.
+class WaitingChip : public ChipDevice {
+ public:
+  struct Waits {
+    uint32_t request = 0, beat = 0, frame = 0;
+  };
+
+  /// `chip` must outlive it.
+  WaitingChip(ChipDevice& chip, const Waits& waits, uint32_t seed) : chip_(chip), waits_(waits), random_(seed) {}
+
+  uint32_t units() const override { return chip_.units(); }
+  void start(const FrameSetup& setup) override {
+    chip_.start(setup);
+    decide();
+  }
+  const ChipOutputs& outputs() const override { return out_; }
+  void clock(const ChipInputs& inputs) override {
+    ChipInputs given = inputs;
+    given.memory_request_ready &= !request_waits_;
+    given.memory_beat_valid &= !beat_waits_;
+    given.frame_ready &= !frame_waits_;
+    const ChipOutputs::Outcome& outcome = chip_.outputs().outcome;
+    deep += outcome.valid && outcome.deep;
+    black += outcome.valid && !outcome.kept && !outcome.deep;
+    chip_.clock(given);
+    decide();
+  }
+  ChipCounts counts() override { return chip_.counts(); }
+  uint64_t counter(int number) override { return chip_.counter(number); }
+
+  uint64_t deep = 0, black = 0;  ///< rays that left the units and were dropped
+
+ private:
+  // What is around the chip sees nothing of a transfer that waits.
+  void decide() {
+    const auto one_of = [this](uint32_t number) { return number != 0 && random_() % number == 0; };
+    request_waits_ = one_of(waits_.request);
+    beat_waits_ = one_of(waits_.beat);
+    frame_waits_ = one_of(waits_.frame);
+    out_ = chip_.outputs();
+    out_.memory_request_valid &= !request_waits_;
+    out_.memory_beat_ready &= !beat_waits_;
+    out_.frame_valid &= !frame_waits_;
+  }
+
+  ChipDevice& chip_;
+  Waits waits_;
+  Random random_;
+  bool request_waits_ = false, beat_waits_ = false, frame_waits_ = false;
+  ChipOutputs out_;
+};
+
+}  // namespace raypool::test
