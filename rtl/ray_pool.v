@@ -152,16 +152,26 @@ module ray_pool #(
   assign rays_o = rays_q;
   assign shadow_rays_o = shadow_rays_q;
 
-  // ---- Places. The arriving ray is written to the next free one, which is its own once it is kept.
+  // ---- Places. The arriving ray is written to the next free one, which is its own once it is kept. All that is about
+  // them is a cycle later than the port, since it is known late whether the ray is.
   localparam integer ADDRESS_BITS = $clog2(3 * SIZE);
+  reg take_q, keep_q;
+  reg [1:0] take_beat_q;
+  reg [127:0] take_data_q;
+  always @(posedge clk_i) begin
+    take_q <= rst_ni && take;
+    keep_q <= rst_ni && keep;
+    take_beat_q <= beat_q;
+    take_data_q <= export_data_i;
+  end
   wire [PLACE_BITS-1:0] place, oldest;
   wire place_free, ray_waits;
   wire read, read_last;
   free_list #(.SIZE(SIZE)) free_list (
-    .clk_i(clk_i), .rst_ni(rst_ni), .valid_o(place_free), .ready_i(keep), .number_o(place), .free_i(free_valid_i),
+    .clk_i(clk_i), .rst_ni(rst_ni), .valid_o(place_free), .ready_i(keep_q), .number_o(place), .free_i(free_valid_i),
     .free_number_i(free_place_i));
   ram_queue #(.WIDTH(PLACE_BITS), .DEPTH(SIZE)) order (
-    .clk_i(clk_i), .rst_ni(rst_ni), .push_i(keep), .data_i(place), .valid_o(ray_waits), .ready_i(read && read_last),
+    .clk_i(clk_i), .rst_ni(rst_ni), .push_i(keep_q), .data_i(place), .valid_o(ray_waits), .ready_i(read && read_last),
     .data_o(oldest));
 
   function [ADDRESS_BITS-1:0] address_of(input [PLACE_BITS-1:0] of_place, input [1:0] of_beat);
@@ -179,7 +189,7 @@ module ray_pool #(
   assign read_last = read_beat_q == 2'd2;
   ram_1r1w #(.WIDTH(128), .DEPTH(3 * SIZE)) rays (
     .clk_i(clk_i), .read_i(read), .read_address_i(address_of(oldest, read_beat_q)), .read_data_o(ray_data_o),
-    .write_i(take && place_free), .write_address_i(address_of(place, beat_q)), .write_data_i(export_data_i));
+    .write_i(take_q && place_free), .write_address_i(address_of(place, take_beat_q)), .write_data_i(take_data_q));
   always @(posedge clk_i)
     if (!rst_ni) begin
       ray_valid_o <= 1'b0;

@@ -3,8 +3,8 @@
 // oldest first, once it has come. A lookup for no lane asks for a line that somebody will want, if a register is free.
 // Promises: a line that somebody waits for stays until the last one has it; a line is in one way at most, and in one
 // register; requests leave in the order of the misses. ready_o depends on fill_valid_i of the same cycle, and no other
-// output on any input. A line that comes is taken in the next cycle at the latest; lookups go on unless no register is
-// free, or a lane does not take what it is offered.
+// output on any input; and it does not depend on whether the lookup before hits. A line that comes is taken in the next
+// cycle at the latest; lookups go on unless no register is free, or a lane does not take what it is offered.
 // Must be given: a slot waits for one line at a time; a line comes once for each request; a lane that has had a lookup
 // taken takes no offer in that cycle, so that it is given one line in a cycle.
 `default_nettype none
@@ -74,12 +74,15 @@ module tree_cache #(
 
   // ---- State
 
-  reg looks_q;                                    // a lookup whose tags have been read; lanes that are left of it
+  reg looks_q;                                    // a lookup whose tags have been read
   reg fresh_q;                                    // it has, in the cycle before: later they may be out of date
   reg [LINE_BITS-1:0] line_q;
   reg [SETS-1:0] set_q;                           // its set, a bit
   reg [LANES-1:0] lanes_q;
   reg [LANES*SLOT_BITS-1:0] slots_q;
+  reg [LANES-1:0] join_lanes_q;                   // that have missed, and are not in a register's list yet: one a cycle
+  reg [LANES*SLOT_BITS-1:0] join_slots_q;
+  reg [MSHR_BITS-1:0] join_id_q;                  // the register
   reg [LINES-1:0] valid_q;
   // A tree of bits, of which each says in which half a way was used less recently. Bit 0 stays 0.
   reg [SETS*WAYS-1:0] order_q;
@@ -161,33 +164,24 @@ module tree_cache #(
   wire hit = fresh_q && |hits;
   wire miss = looks_q && !hit;
   wire asked = lanes_q != NO_LANE;
-  wire [LANES-1:0] behind = lanes_q & (lanes_q - ONE_LANE);
-  wire last = behind == NO_LANE;
-  wire joins = miss && |match && asked;
-  // Tags are compared last: what a miss comes to is found meanwhile.
+  wire known = |match;
   wire room = !(&busy_q) && !(&locked);
-  wire stuck = !(|match) && asked && !room;
-  wire allocate = miss && !(|match) && room;
+  wire joins = join_lanes_q != NO_LANE;
+  wire [LANES-1:0] behind = join_lanes_q & (join_lanes_q - ONE_LANE);
+  wire last = behind == NO_LANE;                  // the next lanes can join from the next cycle on
+  // Would the lookup wait if it were a miss? Tags are compared last, and the next lookup is taken without that.
+  wire stuck = asked && !(last && (known || room));
+  wire allocate = miss && !stuck && !known && room;
   wire blocked = miss && stuck;
-  wire done = looks_q && (hit || (last && !stuck));
+  wire will_join = miss && asked && !stuck;
   wire [MSHRS-1:0] waits = filled_q & waited_for_q;
   wire choose = serving_q == NOBODY && waits != NO_MSHR;
-  assign ready_o = serving_q == NOBODY && !choose && !fill_valid_i && (!looks_q || done);
+  assign ready_o = serving_q == NOBODY && !choose && !fill_valid_i && !(looks_q && stuck);
   assign fill_ready_o = !hit;
-
-  // The lane that is next to wait.
-  reg [LANE_BITS-1:0] lane;
-  integer l;
-  always @* begin
-    lane = {LANE_BITS{1'b0}};
-    for (l = LANES - 1; l >= 0; l = l - 1) if (lanes_q[l]) lane = l[LANE_BITS-1:0];
-  end
-  wire [WAITER_BITS-1:0] waiter = {lane, slots_q[lane*SLOT_BITS +: SLOT_BITS]};
 
   always @(posedge clk_i)
     if (!rst_ni) looks_q <= 1'b0;
-    else if (take) looks_q <= 1'b1;
-    else if (done) looks_q <= 1'b0;
+    else looks_q <= take || blocked;
   always @(posedge clk_i) fresh_q <= rst_ni && take;
   // What is there is kept, if it is a lookup or not: so valid_i may come late.
   always @(posedge clk_i)
@@ -196,7 +190,25 @@ module tree_cache #(
       set_q <= ONE_SET << line_i[SET_BITS-1:0];
       lanes_q <= lanes_i;
       slots_q <= slots_i;
-    end else if (miss && !blocked) lanes_q <= behind;
+    end
+
+  // The lane that is next to wait.
+  reg [LANE_BITS-1:0] lane;
+  integer l;
+  always @* begin
+    lane = {LANE_BITS{1'b0}};
+    for (l = LANES - 1; l >= 0; l = l - 1) if (join_lanes_q[l]) lane = l[LANE_BITS-1:0];
+  end
+  wire [WAITER_BITS-1:0] waiter = {lane, join_slots_q[lane*SLOT_BITS +: SLOT_BITS]};
+  // As above: whether they are lanes that have missed is known last.
+  always @(posedge clk_i)
+    if (!rst_ni) join_lanes_q <= NO_LANE;
+    else join_lanes_q <= will_join ? lanes_q : behind;
+  always @(posedge clk_i)
+    if (last) begin
+      join_slots_q <= slots_q;
+      join_id_q <= known ? match_id : free_id;
+    end
 
   always @(posedge clk_i)
     if (!rst_ni) valid_q <= {LINES{1'b0}};
@@ -225,9 +237,10 @@ module tree_cache #(
   wire hand_on = serving_q == OFFERED && offer_ready_i;
   wire [WAITER_BITS-1:0] head = head_q[serve_id_q*WAITER_BITS +: WAITER_BITS];
   wire the_last = head == tail_q[serve_id_q*WAITER_BITS +: WAITER_BITS];
-  wire [MSHRS-1:0] joined = joins ? match : NO_MSHR;
-  // Nobody joins one of these: a lookup from before the line came did so in the cycle in which it came, if not before.
-  wire [MSHRS-1:0] freed = filled_q & ~waited_for_q;
+  wire [MSHRS-1:0] joined = joins ? ONE_MSHR << join_id_q : NO_MSHR;
+  // A lookup from before the line came may wait for lanes that join another list, and then joins that of the line.
+  wire [MSHRS-1:0] late = (looks_q && !fresh_q) ? match : NO_MSHR;
+  wire [MSHRS-1:0] freed = filled_q & ~waited_for_q & ~joined & ~late;
   wire [MSHRS-1:0] allocated = allocate ? ONE_MSHR << free_id : NO_MSHR;
   wire [MSHRS-1:0] has_come = fill ? ONE_MSHR << fill_id_i : NO_MSHR;
   wire [MSHRS-1:0] left = (hand_on && the_last) ? ONE_MSHR << serve_id_q : NO_MSHR;
@@ -239,7 +252,7 @@ module tree_cache #(
     end else begin
       busy_q <= (busy_q & ~freed) | allocated;
       filled_q <= (filled_q & ~freed) | has_come;
-      waited_for_q <= (waited_for_q & ~left) | joined | (asked ? allocated : NO_MSHR);
+      waited_for_q <= (waited_for_q & ~left) | joined;
     end
 
   wire [MSHRS-1:0] choice;
@@ -253,13 +266,14 @@ module tree_cache #(
   end
   wire [WAITER_BITS-1:0] choice_head = head_q[choice_id*WAITER_BITS +: WAITER_BITS];
 
-  // Who waits behind whom.
+  // Who waits behind whom. Lanes that join a line's list when it has come do so in one cycle after another from that in
+  // which it came on: so who is next is read when nobody joins.
   wire [WAITER_BITS-1:0] next;
-  wire append = joins && |(match & waited_for_q);
+  wire append = joins && waited_for_q[join_id_q];
   ram_1r1w #(.WIDTH(WAITER_BITS), .DEPTH(1 << WAITER_BITS)) waiters (
     .clk_i(clk_i), .read_i(!joins && (choose || serving_q == CHOSEN)),
     .read_address_i(choose ? choice_head : head), .read_data_o(next),
-    .write_i(append), .write_address_i(tail_q[match_id*WAITER_BITS +: WAITER_BITS]), .write_data_i(waiter));
+    .write_i(append), .write_address_i(tail_q[join_id_q*WAITER_BITS +: WAITER_BITS]), .write_data_i(waiter));
   integer i;
   always @(posedge clk_i)
     for (i = 0; i < MSHRS; i = i + 1) begin
@@ -267,8 +281,8 @@ module tree_cache #(
         mshr_line_q[i*LINE_BITS +: LINE_BITS] <= line_q;
         mshr_way_q[i*WAY_BITS +: WAY_BITS] <= victim;
       end
-      if (allocated[i] || joined[i]) tail_q[i*WAITER_BITS +: WAITER_BITS] <= waiter;
-      if (allocated[i] || (joined[i] && !waited_for_q[i])) head_q[i*WAITER_BITS +: WAITER_BITS] <= waiter;
+      if (joined[i]) tail_q[i*WAITER_BITS +: WAITER_BITS] <= waiter;
+      if (joined[i] && !waited_for_q[i]) head_q[i*WAITER_BITS +: WAITER_BITS] <= waiter;
       else if (hand_on && serve_id_q == i[MSHR_BITS-1:0]) head_q[i*WAITER_BITS +: WAITER_BITS] <= next;
     end
 

@@ -118,8 +118,8 @@ class RayPool {
   uint64_t taken_ = 0, busy_cycles_ = 0;
 };
 
-/// The ray pool's port to the traverser: beats of the oldest ray that has not entered it, one a cycle, the first two
-/// cycles after the ray has arrived.
+/// The ray pool's port to the traverser: beats of the oldest ray that has not entered it, one a cycle, the first
+/// three cycles after the ray has arrived.
 class RayReader {
  public:
   explicit RayReader(uint32_t capacity) : rays_(capacity), order_(capacity) {}
@@ -135,7 +135,19 @@ class RayReader {
 
   /// The end of a cycle: `ready`, what is offered is taken.
   void clock(bool ready) {
-    if (valid_ && !ready) return;
+    if (!valid_ || ready) move();
+    if (arrived_) order_.push(arriving_);
+    arrived_ = false;
+  }
+  /// A ray has arrived in this cycle; after clock().
+  void push(uint32_t place, const Ray& ray) {
+    rays_[place] = ray;
+    arriving_ = place;
+    arrived_ = true;
+  }
+
+ private:
+  void move() {
     valid_ = order_.valid();
     if (!valid_) return;
     place_ = order_.data();
@@ -143,15 +155,11 @@ class RayReader {
     next_ = next_ + 1 == kRayBeats ? 0 : next_ + 1;
     if (next_ == 0) order_.pop();
   }
-  /// A ray has arrived in this cycle; after clock().
-  void push(uint32_t place, const Ray& ray) {
-    rays_[place] = ray;
-    order_.push(place);
-  }
 
- private:
   std::vector<Ray> rays_;  // [place]
   RamQueue<uint32_t> order_;
+  bool arrived_ = false;  // a ray, in the cycle before
+  uint32_t arriving_ = 0;
   bool valid_ = false;
   uint32_t place_ = 0, beat_ = 0, next_ = 0;
 };

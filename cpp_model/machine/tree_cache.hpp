@@ -57,9 +57,9 @@ class TreeCache {
 
   // ---- Lookups
 
-  /// A lookup is taken, unless a line comes in this cycle.
+  /// A lookup is taken, unless a line comes in this cycle. Whether the one before hits is not asked.
   bool ready() const {
-    return serving_ == Serving::Nobody && (filled_ & waited_for_) == 0 && (!looks_ || answer().done);
+    return serving_ == Serving::Nobody && (filled_ & waited_for_) == 0 && !(looks_ && miss().stuck);
   }
   /// Two cycles after a hit, or after an offer was taken: who gets the row that is there.
   const Given& given() const { return given_; }
@@ -77,18 +77,21 @@ class TreeCache {
   uint32_t request_id() const { return requests_[request_head_]; }  ///< mean something while request_valid()
   uint32_t request_line() const { return mshrs_[request_id()].line; }
   /// A line that comes in this cycle is taken; it is in the next one at the latest.
-  bool fill_ready() const { return !(looks_ && answer().hit); }
+  bool fill_ready() const { return !hit(); }
 
   /// True if nothing can happen until there are inputs.
   bool idle() const { return !looks_ && read_.lanes == 0 && given_.lanes == 0 && busy_ == 0; }
 
   /// The end of a cycle.
   void clock(const Inputs& inputs) {
-    const Answer now = looks_ ? answer() : Answer{};
-    const bool fill = inputs.fill && !now.hit;
+    const bool hits = hit(), joins = joins_.lanes != 0;
+    const Miss now = looks_ && !hits ? miss() : Miss{};
+    const bool fill = inputs.fill && !hits;
     given_ = read_;
     read_.lanes = 0;
-    const uint32_t freed = filled_ & ~waited_for_;  // nobody joins one of these
+    // A lookup from before the line came may wait for lanes that join another list, and then joins that of the line.
+    const uint32_t late = now.known && !fresh_ ? 1u << now.id : 0;
+    const uint32_t freed = filled_ & ~waited_for_ & ~late & ~(joins ? 1u << joins_.id : 0);
 
     // Of the registers that are as they were before this cycle.
     const uint32_t served = filled_ & waited_for_;
@@ -96,27 +99,25 @@ class TreeCache {
       if (served != 0) {
         serve_id_ = turn_.choose(served);
         turn_.advance(serve_id_);
-        serving_ = now.join ? Serving::Chosen : Serving::Offered;
+        serving_ = joins ? Serving::Chosen : Serving::Offered;
       }
     } else if (serving_ == Serving::Chosen) {
-      if (!now.join) serving_ = Serving::Offered;
+      if (!joins) serving_ = Serving::Offered;
     } else if (inputs.offer_taken) {
       hand_on();
     }
 
-    if (now.hit) {
-      given_ = {lookup_.lanes, lookup_.slots, row(set(lookup_.line), now.way)};
-      touch(set(lookup_.line), now.way);
+    if (joins) join();
+    if (hits) {
+      given_ = {lookup_.lanes, lookup_.slots, row(set(lookup_.line), found_)};
+      touch(set(lookup_.line), found_);
       work_.hits += popcount(lookup_.lanes);
-    } else if (now.allocate) {
-      allocate(now);
-    } else if (now.join) {
-      join(now.id);
+    } else if (looks_ && !now.stuck) {
+      if (now.allocate) allocate(now);
+      work_.joined += popcount(now.allocate ? lookup_.lanes & (lookup_.lanes - 1) : lookup_.lanes);
+      if (lookup_.lanes != 0) joins_ = {lookup_.lanes, lookup_.slots, now.id};
     }
-    if (looks_ && !now.blocked) {
-      lookup_.lanes = now.done ? 0 : lookup_.lanes & (lookup_.lanes - 1);
-      looks_ = !now.done;
-    }
+    looks_ = looks_ && now.stuck;
     if (fill) {
       Mshr& mshr = mshrs_[inputs.fill_id];
       tags_[row(set(mshr.line), mshr.way)] = mshr.line;
@@ -130,8 +131,8 @@ class TreeCache {
       request_head_ = request_head_ + 1 == sizes_.mshrs ? 0 : request_head_ + 1;
       --request_count_;
     }
-    found_ = kNone;
-    if (inputs.lookup != nullptr) {
+    fresh_ = inputs.lookup != nullptr;
+    if (fresh_) {
       found_ = find(inputs.lookup->line);
       lookup_ = *inputs.lookup;
       looks_ = true;
@@ -154,7 +155,7 @@ class TreeCache {
   /// Row that the line of register `id` goes to.
   uint32_t fill_row(uint32_t id) const { return row(set(mshrs_[id].line), mshrs_[id].way); }
   uint32_t busy() const { return busy_; }  ///< registers
-  bool blocked() const { return looks_ && answer().blocked; }
+  bool blocked() const { return looks_ && !hit() && miss().stuck; }
   const Work& work() const { return work_; }
 
  private:
@@ -169,12 +170,18 @@ class TreeCache {
     uint32_t line = 0, way = 0;
     Waiter head, tail;  // who waits longest, and shortest
   };
-  struct Answer {
-    bool hit = false, join = false, allocate = false;
-    bool blocked = false;  // no register is free, or no way of the set
-    bool done = false;     // for the last lane
-    uint32_t way = 0;      // of the hit, or that the line will have
-    uint32_t id = 0;       // of the register
+  // What a lookup comes to if it is a miss.
+  struct Miss {
+    bool known = false, allocate = false;
+    bool stuck = false;  // it waits: others join a list, or no register is free, or no way of the set
+    uint32_t way = 0;    // that the line will have, if allocate
+    uint32_t id = 0;     // of the register
+  };
+  // Lanes that join a register's list, one a cycle.
+  struct Joins {
+    uint32_t lanes = 0;
+    std::array<uint8_t, kMostLanes> slots{};
+    uint32_t id = 0;
   };
 
   uint32_t set(uint32_t line) const { return line & (sets_ - 1); }
@@ -188,31 +195,24 @@ class TreeCache {
   }
   uint32_t& next(Waiter waiter) { return next_[waiter.lane << 8 | waiter.slot]; }
 
+  bool hit() const { return looks_ && fresh_ && found_ != kNone; }
   // Of the registers and of what has been looked up alone.
-  Answer answer() const {
-    Answer now;
-    now.way = found_;
-    now.hit = now.way != kNone;
-    const bool last = (lookup_.lanes & (lookup_.lanes - 1)) == 0;
-    if (now.hit) {
-      now.done = true;
-      return now;
-    }
+  Miss miss() const {
+    Miss now;
     uint32_t locked = 0;
     for (uint32_t bits = busy_; bits != 0; bits &= bits - 1) {
       const Mshr& mshr = mshrs_[lowest(bits)];
       if (mshr.line == lookup_.line) {
-        now.join = lookup_.lanes != 0;
+        now.known = true;
         now.id = lowest(bits);
-        now.done = last;
-        return now;
       }
       if (set(mshr.line) == set(lookup_.line)) locked |= 1u << mshr.way;
     }
     const uint32_t free = ~busy_ & static_cast<uint32_t>((uint64_t{1} << sizes_.mshrs) - 1);
-    now.allocate = free != 0 && locked != all_ways_;
-    now.blocked = !now.allocate && lookup_.lanes != 0;  // what nobody waits for is dropped
-    now.done = !now.blocked && last;
+    const bool room = free != 0 && locked != all_ways_;
+    const bool others_join = (joins_.lanes & (joins_.lanes - 1)) != 0;        // in the next cycle, too
+    now.stuck = lookup_.lanes != 0 && (others_join || !(now.known || room));  // what nobody waits for is dropped
+    now.allocate = !now.stuck && !now.known && room;
     if (!now.allocate) return now;
     now.id = lowest(free);
     now.way = victim(set(lookup_.line), locked);
@@ -236,35 +236,27 @@ class TreeCache {
       order_[in] = (order_[in] & ~(1u << node / 2)) | (~node & 1) << node / 2;
   }
 
-  Waiter asking() const {
-    const uint32_t lane = lowest(lookup_.lanes);
-    return {static_cast<uint8_t>(lane), lookup_.slots[lane]};
-  }
-  void allocate(const Answer& now) {
+  void allocate(const Miss& now) {
     Mshr& mshr = mshrs_[now.id];
     mshr.line = lookup_.line;
     mshr.way = now.way;
     busy_ |= 1u << now.id;
-    waited_for_ &= ~(1u << now.id);
     touch(set(lookup_.line), now.way);
-    if (lookup_.lanes != 0) {
-      mshr.head = mshr.tail = asking();
-      waited_for_ |= 1u << now.id;
-    }
     requests_[(request_head_ + request_count_++) % sizes_.mshrs] = static_cast<uint8_t>(now.id);
     ++work_.misses;
   }
-  void join(uint32_t id) {
-    Mshr& mshr = mshrs_[id];
-    const Waiter waiter = asking();
-    if ((waited_for_ >> id & 1) == 0) {
+  void join() {
+    Mshr& mshr = mshrs_[joins_.id];
+    const uint32_t lane = lowest(joins_.lanes);
+    const Waiter waiter{static_cast<uint8_t>(lane), joins_.slots[lane]};
+    if ((waited_for_ >> joins_.id & 1) == 0) {
       mshr.head = waiter;
-      waited_for_ |= 1u << id;
+      waited_for_ |= 1u << joins_.id;
     } else {
       next(mshr.tail) = waiter.lane << 8 | waiter.slot;
     }
     mshr.tail = waiter;
-    ++work_.joined;
+    joins_.lanes &= joins_.lanes - 1;
   }
   // The waiter that was offered its line has it.
   void hand_on() {
@@ -288,8 +280,10 @@ class TreeCache {
   std::vector<uint8_t> valid_;   // [set][way]
   std::vector<uint32_t> order_;  // [set] bits 1 .. ways - 1
   bool looks_ = false;
-  Lookup lookup_;                                    // whose tags have been read; lanes that are left of it
-  uint32_t found_ = kNone;                           // way in which the line was, if that was in the cycle before
+  Lookup lookup_;                                    // whose tags have been read
+  bool fresh_ = false;                               // they have, in the cycle before: later they may be out of date
+  uint32_t found_ = kNone;                           // way in which the line was
+  Joins joins_;                                      // of a lookup that has missed
   uint32_t busy_ = 0, filled_ = 0, waited_for_ = 0;  // sets of registers
   std::array<Mshr, kMostMshrs> mshrs_{};             //
   std::vector<uint32_t> next_;                       // [waiter] who waits behind it

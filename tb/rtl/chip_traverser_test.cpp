@@ -20,123 +20,6 @@ namespace {
 
 using namespace test;
 
-<<<<<<< HEAD
-/// Of everything one, and caches as small as can be.
-Machine smallest() {
-  Machine machine;
-  Configuration& c = machine.configuration;
-  c.name = "chip_traverser_1w1c";
-  c.warps = c.lanes = 1;
-  c.instruction_cache_bytes = c.data_cache_bytes = 512;
-  c.data_cache_mshrs = 1;
-  ChipConfiguration& chip = c.chip;
-  chip.ray_pool_size = 3;
-  chip.intersection_pool_size = chip.held_limit = 2;
-  chip.memory_latency = 20;
-  chip.memory_queue = 1;
-  chip.traverser = TraverserName::Hardware;
-  chip.modelled_traverser_box_pipes = chip.modelled_traverser_rays = chip.modelled_traverser_triangle_pipes = 1;
-  chip.modelled_traverser_stack_entries = 8;
-  chip.modelled_traverser_cache_banks = 1;
-  chip.modelled_traverser_node_cache_bytes = chip.modelled_traverser_triangle_cache_bytes = 1024;
-  chip.modelled_traverser_node_cache_ways = chip.modelled_traverser_triangle_cache_ways = 2;
-  chip.modelled_traverser_node_cache_mshrs = chip.modelled_traverser_triangle_cache_mshrs = 1;
-  return machine;
-}
-
-/// Two units and two lanes that share a triangle pipe; a traverser that shades, culling, records, banks.
-Machine full() {
-  Machine machine = smallest();
-  machine.units = 2;
-  Configuration& c = machine.configuration;
-  c.name = "chip_traverser_2w1c_full";
-  c.warps = 2;
-  c.kernel_overlap = true;
-  c.intersection_words = 18;
-  ChipConfiguration& chip = c.chip;
-  chip.policy = PolicyName::Fill;
-  chip.culling = true;
-  chip.shading = Shading::Traverser;
-  chip.ray_pool_size = 9;
-  chip.ray_pool_pipelined = chip.intersection_pool_pipelined = true;
-  chip.intersection_pool_size = chip.held_limit = 4;
-  chip.memory_cycles_per_beat = 1;
-  chip.memory_queue = 8;
-  chip.modelled_traverser_tile_order = TileOrder::Hilbert;
-  chip.modelled_traverser_box_pipes = 2;
-  chip.modelled_traverser_rays = 6;
-  chip.modelled_traverser_box_bits = 6;
-  chip.modelled_traverser_cache_banks = 2;
-  chip.modelled_traverser_node_cache_mshrs = 2;
-  chip.modelled_traverser_triangle_cache_mshrs = 4;
-  return machine;
-}
-
-/// A picture of the Cornell box, and what it takes to draw it on a chip.
-class Drawing {
- public:
-  Drawing(const Machine& machine, const Picture& picture)
-      : configuration_(machine.configuration),
-        program_(ray_kernel_program(KernelTarget(configuration_))),
-        image_(build_memory(program_, scene_)),
-        tracer_(scene_, image_.material_base, configuration_.chip),
-        frame_(static_cast<int>(picture.width), static_cast<int>(picture.height)),
-        sink_(frame_),
-        tree_(make_tree_image(scene_, tracer_.traversal().bvh(), configuration_.chip, image_.material_base)) {
-    options_.configuration = configuration_;
-    options_.layout = ray_record_layout(configuration_);
-    options_.memory = &image_.memory;
-    options_.tree = &tree_;
-    options_.program_length = size32(program_.code);
-    for (size_t i = 0; i < kRayKernels; ++i) options_.entries[i] = program_.entries.at(std::string(kRayKernelNames[i]));
-    options_.arguments =
-        camera_arguments(scene_, picture.width, picture.height, configuration_.contents(), configuration_.significand);
-    options_.width = picture.width;
-    options_.height = picture.height;
-    options_.depth = picture.depth;
-    options_.reflections = picture.reflections;
-    options_.frame = &sink_;
-  }
-
-  const Memory& memory() const { return image_.memory; }
-  TreeImage& tree() { return tree_; }
-  ChipResult draw_on(ChipDevice& chip) { return run_board(options_, chip); }
-
-  /// What has been drawn, and said of it, is what the native engine does and says.
-  void expect_native(const ChipResult& result) const {
-    NativeOptions native;
-    native.width = static_cast<int>(options_.width);
-    native.height = static_cast<int>(options_.height);
-    native.depth = static_cast<int>(options_.depth);
-    native.reflections = options_.reflections;
-    native.culling = configuration_.chip.culling;
-    NativeStatistics statistics;
-    EXPECT_TRUE(frame_ == render_native(scene_, image_, tracer_, native, &statistics));
-    for (const auto kind : {&RayCounts::eye, &RayCounts::reflection, &RayCounts::shadow}) {
-      EXPECT_EQ((result.ray_counts.*kind).traced, (statistics.ray_counts.*kind).traced);
-      EXPECT_EQ((result.ray_counts.*kind).ended, (statistics.ray_counts.*kind).ended);
-      EXPECT_EQ((result.ray_counts.*kind).weightless, (statistics.ray_counts.*kind).weightless);
-      EXPECT_EQ((result.ray_counts.*kind).futile, (statistics.ray_counts.*kind).futile);
-      EXPECT_EQ((result.ray_counts.*kind).left_out, (statistics.ray_counts.*kind).left_out);
-    }
-    EXPECT_EQ(result.dropped_depth, statistics.dropped_rays);
-    EXPECT_EQ(result.contributions, statistics.contributions);
-  }
-
- private:
-  const Configuration configuration_;
-  const Scene scene_ = make_cornell();
-  const Program& program_;
-  MemoryImage image_;
-  const Tracer tracer_;
-  FrameBuffer frame_;
-  FrameBufferSink sink_;
-  TreeImage tree_;
-  ChipOptions options_;
-};
-
-=======
->>>>>>> b_wip
 std::unique_ptr<ChipDevice> model_of(const Machine& machine, const Memory& memory) {
   return make_chip(ChipKind::Model, machine.configuration, memory, machine.units);
 }
@@ -198,7 +81,7 @@ TEST_P(ChipTraverser, StopsWithTheSameFaultWhereItsMemoryHoldsNoTree) {
   const std::string library = chip_library(machine);
   for (const Garbage& garbage : kGarbage) {
     SCOPED_TRACE(garbage.name);
-    Drawing drawing(machine, {9, 7, 2, true});
+    Drawing drawing(machine, {9, 7, 2, true}, make_cornell());
     garbage.make(drawing.tree());
     const std::unique_ptr<LockstepChip> chip =
         make_lockstep_chip(c, load_rtl_chip(library, c, machine.units), drawing.memory(), c.name);
@@ -313,10 +196,10 @@ TEST(ChipTraverser, WhoseFaultIsBrokenIsNamed) {
       {"fault_code", [](TreeFault& fault) { return fault.valid && (fault.code = TreeFaultCode::StackFull, true); }},
       {"fault_line", [](TreeFault& fault) { return fault.valid && (fault.line ^= 1, true); }},
   };
-  const Machine machine = full();
+  const Machine machine = full_inside();
   for (const Case& each : cases) {
     SCOPED_TRACE(each.port);
-    Drawing drawing(machine, {7, 5, 3, true});
+    Drawing drawing(machine, {7, 5, 3, true}, make_cornell());
     drawing.tree().memory.store(kFirstChild, 0);
     const std::unique_ptr<LockstepChip> chip = make_lockstep_chip(
         machine.configuration, std::make_unique<BrokenTraverser>(model_of(machine, drawing.memory()), each.change),

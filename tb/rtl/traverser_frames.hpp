@@ -166,6 +166,7 @@ class Drawing {
   }
 
   const Memory& memory() const { return image_.memory; }
+  TreeImage& tree() { return tree_; }
   ChipResult draw_on(ChipDevice& chip) { return run_board(options_, chip); }
 
   /// What has been drawn, and said of it, is what the native engine does and says.
