@@ -104,6 +104,36 @@ inline const GarbageCase kGarbageCases[] = {
     {"ways that meet", TreeFaultCode::Visits, [](LaneTree& tree) { make_ladder(tree, 20); }},
 };
 
+/// Of a root with two children around the origin, on either side of x = 0: one is no node, that of the other one lies
+/// beyond.
+inline void make_both(LaneTree& tree) {
+  make_chain(tree, 3);
+  change_node(tree, 0, [](TreeNode& node) {
+    for (float& origin : node.boxes.origin) origin = -2;
+    for (int8_t& exponent : node.boxes.exponent) exponent = -6;
+    node.boxes.children = 2;
+    node.boxes.planes[1][0][0] = 127;
+    node.boxes.planes[0][0][1] = 128;
+    node.children[0] = 1;
+    node.children[1] = 2;
+  });
+  change_node(tree, 1, [](TreeNode& node) { node.boxes.children = 0; });
+  change_node(tree, 2, [](TreeNode& node) { node.children[3] = 7; });
+}
+
+/// The same where either child is the first node of a ladder of its own: rays come too often to other nodes.
+inline void make_two_ladders(LaneTree& tree) {
+  make_both(tree);
+  constexpr uint32_t kNodes = 21;
+  const TreeNode root = tree.node(0);
+  make_chain(tree, kNodes);
+  set_node(tree, 0, root);
+  for (uint32_t number = 1; number + 2 < kNodes; ++number)
+    change_node(tree, number, [&](TreeNode& node) { std::fill_n(node.children, kBvhWidth, number + 2); });
+  for (const uint32_t last : {kNodes - 2, kNodes - 1})
+    change_node(tree, last, [](TreeNode& node) { node.children[kBvhWidth - 1] = leaf_word(0, 1); });
+}
+
 /// Changes something of the tree, or all of it.
 inline void make_garbage(LaneTree& tree, std::mt19937& random) {
   const auto below = [&](size_t count) { return static_cast<uint32_t>(random() % count); };

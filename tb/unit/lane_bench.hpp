@@ -114,13 +114,7 @@ class LaneBench {
 
   /// Traces the rays; all are done in time. `tree` must outlive the call.
   void trace(const LaneTree& tree, const std::vector<Asked>& rays, const LaneTraffic& traffic) {
-    tree_ = &tree;
-    lane_.set_tree(tree.root, static_cast<uint32_t>(tree.nodes.size()));
-    u_.root_i = tree.root;
-    u_.nodes_i = static_cast<uint32_t>(tree.nodes.size());
-    u_.stop_i = 0;
-    rays_ = &rays;
-    begun_ = done_ = 0;
+    begin(tree, rays);
     uint64_t lines = 100;
     for (const Asked& asked : rays) lines += 1 + asked.walk.lines.size();
     // A visit takes 60 cycles or so by itself, and some 60 more where nothing is there at once.
@@ -137,9 +131,29 @@ class LaneBench {
     seen.dropped = lane_.stack_work().dropped;
   }
 
+  /// Traces them for so many cycles and is stopped: it comes to rest, with rays in it. The bench is of no use behind
+  /// it.
+  void trace_and_stop(const LaneTree& tree, const std::vector<Asked>& rays, const LaneTraffic& traffic,
+                      uint32_t cycles) {
+    begin(tree, rays);
+    for (uint32_t i = 0; i < cycles; ++i) ASSERT_NO_FATAL_FAILURE(cycle(traffic));
+    stopped_ = true;
+    for (uint32_t i = 0; i < 600; ++i) ASSERT_NO_FATAL_FAILURE(cycle({}));
+    const bool wants = lane_.node_wants()[0] || lane_.leaf_wants()[0];
+    ASSERT_FALSE(wants) << "it goes on";
+  }
+
   LaneSeen seen;
 
  private:
+  void begin(const LaneTree& tree, const std::vector<Asked>& rays) {
+    tree_ = &tree;
+    lane_.set_tree(tree.root, static_cast<uint32_t>(tree.nodes.size()));
+    u_.root_i = tree.root;
+    u_.nodes_i = static_cast<uint32_t>(tree.nodes.size());
+    rays_ = &rays;
+    begun_ = done_ = 0;
+  }
   struct Tracing {
     const Asked* asked = nullptr;
     size_t lines = 0;  // looked up
@@ -156,7 +170,9 @@ class LaneBench {
     TraverserLane::Inputs inputs;
     const auto random = [this](uint32_t n) { return one_of(n); };
 
-    inputs.slot_taken = lane_.slot_valid() && begun_ < rays_->size() && one_of(traffic.begin);
+    inputs.stop = stopped_;
+    u_.stop_i = stopped_;
+    inputs.slot_taken = !stopped_ && lane_.slot_valid() && begun_ < rays_->size() && one_of(traffic.begin);
     TraverserLane::Entered entered{0, no_ray()};
     if (!set_up_.empty() && !one_of(traffic.set_up)) {
       entered = {set_up_.front().slot, set_up_.front().asked->ray};
@@ -398,6 +414,7 @@ class LaneBench {
   const std::vector<Asked>* rays_ = nullptr;
   size_t begun_ = 0, done_ = 0;
   std::deque<SetUp> set_up_;
+  bool stopped_ = false;
   std::vector<Tracing> tracing_;  // [slot]
   std::deque<uint32_t> left_;     // slots
   LaneCache nodes_, leaves_;

@@ -149,7 +149,7 @@ class TraverserBench {
     }
     // A place that is freed twice would be seen now.
     const TreeFault first = fault;
-    for (uint32_t i = 0; i < (first.valid ? 1500 : 100); ++i) ASSERT_NO_FATAL_FAILURE(cycle(traffic, ~0u));
+    for (uint32_t i = 0; i < (first.valid ? 600 : 100); ++i) ASSERT_NO_FATAL_FAILURE(cycle(traffic, ~0u));
     seen.left += model_->triangle_cache().work().left;
     if (!first.valid) return;
     ++seen.faults[to_underlying(first.code)];

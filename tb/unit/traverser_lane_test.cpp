@@ -83,5 +83,16 @@ TYPED_TEST(TraverserLaneTest, AgreesWithItsClassInEveryCycleAndEveryRayHitsWhatI
   if (TypeParam::kSlots > 1) EXPECT_GT(seen.kept, 0u) << "a line comes before the one before it has left";
 }
 
+TYPED_TEST(TraverserLaneTest, ThatIsStoppedComesToRest) {
+  std::mt19937 random(8);
+  const Case<TypeParam> test(soup(3, 400, 1, {0, 0, 0}), 400, 3);
+  for (uint32_t run = 0; run < 20; ++run) {
+    SCOPED_TRACE(testing::Message() << "run " << run);
+    LaneBench<TypeParam> bench(run);
+    const auto cycles = static_cast<uint32_t>(200 + random() % 800);
+    ASSERT_NO_FATAL_FAILURE(bench.trace_and_stop(test.tree, test.rays, {}, cycles));
+  }
+}
+
 }  // namespace
 }  // namespace raypool::bench

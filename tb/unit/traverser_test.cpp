@@ -127,6 +127,22 @@ TYPED_TEST(TraverserTest, EachFaultIsNamed) {
   }
 }
 
+// Of two faults in one cycle, or in two that follow, which is the first.
+TYPED_TEST(TraverserTest, FaultsThatComeTogether) {
+  std::mt19937 random(11);
+  std::array<uint64_t, 7> faults{};
+  for (uint32_t seed = 1; seed <= 180; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    TraverserBench<TypeParam> bench(seed);
+    const Case<TypeParam> test(soup(seed, 12, 1, {0, 0, 0}), 24, seed, seed <= 60 ? make_both : make_two_ladders);
+    const TraverserTraffic traffic{0, 0, 1 + static_cast<uint32_t>(random() % 40), 0, 0, 0};
+    ASSERT_NO_FATAL_FAILURE(bench.trace_or_fault(test.tree, test.rays, traffic));
+    for (size_t code = 0; code < faults.size(); ++code) faults[code] += bench.seen.faults[code];
+  }
+  EXPECT_GT(faults[to_underlying(TreeFaultCode::NodeBeyond)] + faults[to_underlying(TreeFaultCode::Children)], 20u);
+  EXPECT_GT(faults[to_underlying(TreeFaultCode::Visits)], 20u);
+}
+
 // A tree as deep as stacks bear, and one that is deeper by a node.
 TYPED_TEST(TraverserTest, StacksBearWhatTheyHaveRoomFor) {
   TraverserBench<TypeParam> bench(5);
