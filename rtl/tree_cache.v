@@ -171,7 +171,7 @@ module tree_cache #(
   wire last = behind == NO_LANE;                  // the next lanes can join from the next cycle on
   // Would the lookup wait if it were a miss? Tags are compared last, and the next lookup is taken without that.
   wire stuck = asked && !(last && (known || room));
-  wire allocate = miss && !stuck && !known && room;
+  wire allocate = miss && (last || !asked) && !known && room;
   wire blocked = miss && stuck;
   wire will_join = miss && asked && !stuck;
   wire [MSHRS-1:0] waits = filled_q & waited_for_q;
