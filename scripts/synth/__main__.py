@@ -199,7 +199,7 @@ def parser():
             command.add_argument("module", help="of rtl/")
             command.add_argument("parameters", nargs="*", help="of one row of the table each: BITS=8 or A=1,B=2")
         if name in ("report", "replay", "prove"):
-            command.add_argument("--chip", action="store_true", help="the whole chip; its traverser only where chip.traverser=hardware")
+            command.add_argument("--chip", action="store_true", help="the whole chip; with chip.traverser=hardware all")
             command.add_argument("--units", default="1", help="with --chip: compute units, 1, 2 or 4")
         if name == "report":
             command.add_argument("--against", help="an earlier report.json to compare with")

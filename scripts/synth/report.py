@@ -31,10 +31,10 @@ def published():
     for chip in chips:
         scaled = chip["mm2"] * (40 / chip["nm"]) ** 2
         rates = chip["mrays_per_second"]
+        a_mm2 = " to ".join(f"{rate / scaled:.1f}" for rate in rates)
         lines.append(
-            f"beside   {chip['name']}: {' to '.join(map(str, rates))} Mrays/s ({chip['scene']}) on {chip['mm2']} mm2 at "
-            f"{chip['nm']} nm, {scaled:.1f} at 40: {' to '.join(f'{rate / scaled:.1f}' for rate in rates)} a mm2; "
-            f"{chip['clock']}"
+            f"beside   {chip['name']}: {' to '.join(map(str, rates))} Mrays/s ({chip['scene']}), {chip['mm2']} mm2 at "
+            f"{chip['nm']} nm, {scaled:.1f} at 40: {a_mm2} a mm2; {chip['clock']}"
         )
     return lines
 

@@ -440,7 +440,7 @@ class Synthesis(unittest.TestCase):
     def test_published_chips_are_scaled_by_the_square_of_the_feature_size(self):
         lines = report.published()
         sgrt = next(line for line in lines if "SGRT" in line)
-        self.assertIn("184 Mrays/s (conference) on 25 mm2 at 65 nm, 9.5 at 40: 19.4 a mm2", sgrt)
+        self.assertIn("184 Mrays/s (conference), 25 mm2 at 65 nm, 9.5 at 40: 19.4 a mm2", sgrt)
         self.assertIn("36.7 at 40: 5.3 to 6.5 a mm2", next(line for line in lines if "RayCore" in line))
         self.assertIn("16.0 at 40", next(line for line in lines if "thesis" in line))
 
