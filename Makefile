@@ -264,7 +264,7 @@ chip-frames: setup-sim setup-test configured-ON program ## random frames on tiny
 	@scripts/build.sh $(BUILD) raypool_chip_frames
 	@$(BUILD)/raypool_chip_frames --frames "$$FRAMES" --seed "$$SEED" $(if $(filter hardware,$(TRAVERSER)),--inside)
 
-traverser-trees: setup-sim setup-test configured-ON ## random trees and garbage in the traverser, RTL against model: TREES
+traverser-trees: setup-sim setup-test configured-ON ## random trees, and garbage, in the traverser: TREES
 	@scripts/build.sh $(BUILD) traverser_test
 	@RAYPOOL_TREES="$$TREES" RAYPOOL_SEED="$$SEED" \
 	  $(BUILD)/tb/traverser_test --gtest_filter='*OfChance*' --gtest_brief=1
