@@ -53,6 +53,7 @@ CLOCK     ?=
 MEMORIES  ?= macros
 AGAINST   ?=
 RUN       ?=
+ROUNDS    ?=
 POWER     ?= 0
 BREAK     ?= 0
 ONLY      ?=
@@ -105,7 +106,7 @@ export A B KERNEL PROGRAMS SEED FRAMES TREES COVERAGE MUTANTS EACH MODE THREADS
 export SLOWER
 export PIXEL RAY STATION
 export FROM EXPERIMENT WHERE JOBS SCENES LEVELS RUNS ERROR TIME SAMPLES MACHINES
-export LIBERTY CLOCK MEMORIES AGAINST RUN ONLY PLAN MODULE PARAMETERS
+export LIBERTY CLOCK MEMORIES AGAINST RUN ROUNDS ONLY PLAN MODULE PARAMETERS
 
 # Everything that is made goes here; scripts read it from the environment.
 BUILD     ?= build
@@ -209,7 +210,7 @@ help: ## this list
 	@echo 'variables of make synth, synth-replay, synth-prove:  CONFIG  SET  LIBERTY=FILE  CLOCK=NS'
 	@echo '    LIBERTY: .lib or .lib.gz, or a name that asks where it is  MEMORIES=macros|flops|FOLDER of Liberty files'
 	@echo '  synth, synth-prove:  CHIP=1: the whole chip of CUS units, its traverser with SET=chip.traverser=hardware'
-	@echo '  make synth:  AGAINST=REPORT  RUN=REPORT_OF_SIM  POWER=1  OUT=FOLDER'
+	@echo '  make synth:  AGAINST=REPORT  RUN=REPORT_OF_SIM  POWER=1  OUT=FOLDER  ROUNDS=0..4'
 	@echo '  synth-module:  MODULE=NAME  PARAMETERS="A=1,B=2 ...": of rtl/, one row for each  LIBERTY  CLOCK  MEMORIES'
 	@echo '  synth-replay:  BREAK=N;  synth-prove:  ONLY=BLOCKS;  growth:  PLAN=FILE'
 	@echo 'variables of make cosim:  PROGRAMS=$(PROGRAMS)  SEED=$(SEED)  CONFIG  SET  CUS  COVERAGE=FILE.json'
@@ -326,7 +327,7 @@ unit: setup-sim program ## Verilate CUS compute units of CONFIG (WAVES=1: with w
 
 synth: setup-sim setup-synth program ## area, timing and power of CONFIG from open tools (CHIP=1: of the whole chip)
 	@$(SYNTH) report $(SYNTH_OPTIONS) $(SYNTH_CHIP) $${AGAINST:+--against "$$AGAINST"} $${RUN:+--run "$$RUN"} \
-	  $${OUT:+--out "$$OUT"} $(if $(filter-out 0,$(POWER)),--power)
+	  $${ROUNDS:+--rounds "$$ROUNDS"} $${OUT:+--out "$$OUT"} $(if $(filter-out 0,$(POWER)),--power)
 
 synth-replay: setup-sim setup-synth program ## run the mapped netlist in lockstep; BREAK=1: a broken one must fail
 	@$(SYNTH) replay $(SYNTH_OPTIONS) $(SYNTH_CHIP) --break "$(BREAK)"

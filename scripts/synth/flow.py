@@ -34,6 +34,7 @@ class Options:
     jobs: int = 2
     out: str = None
     units: int = 0  # of the whole chip; 0: a unit alone
+    rounds: int = CLOSURE_ROUNDS  # fewer: a quick look, in which no area is won back
 
     @property
     def title(self):
@@ -87,6 +88,8 @@ def suffix(options, library):
     )
     if options.clock_ns is not None:
         parts.append(f"{options.clock_ns:g}ns")
+    if options.rounds != CLOSURE_ROUNDS:
+        parts.append(f"{options.rounds}rounds")
     return "-".join(parts)
 
 
@@ -138,6 +141,7 @@ def digest(design):
         timing.version(),
         str(design.options.clock_ns),
         design.options.memories,
+        design.options.rounds,
         [dataclasses.astuple(macro) for macro in design.memory.listed],
     ]
     return hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()[:16]
@@ -277,7 +281,7 @@ def synthesise(design):
     map_design(design)
     slack = time_design(design, work)
     progress(f"synth: {design.options.title}: slack {slack:+.3f} ns at {design.clock_ns:g} ns")
-    for _ in range(CLOSURE_ROUNDS):
+    for _ in range(design.options.rounds):
         if slack >= 0:
             break
         more = next_effort(design, on_failing_paths(design, work))
@@ -287,4 +291,4 @@ def synthesise(design):
         design.efforts.update({i: design.efforts.get(i, 0) + 1 for i in more})
         map_design(design)
         slack = time_design(design, work)
-    return win_back(design, work, slack)
+    return win_back(design, work, slack) if design.options.rounds == CLOSURE_ROUNDS else slack
