@@ -20,9 +20,9 @@ module leaf_reader #(
   input  wire [1:0]             start_i,
   input  wire [2*SLOT_BITS-1:0] start_slot_i,
   input  wire [2*31-1:0]        start_leaf_i,
-  // two lines to look up, of which one can be taken, the first rather
+  // two lines to look up, of which one can be taken, the first rather; either may be for nobody
   output wire [1:0]             want_o,
-  output wire                   want_nobody_o,       // the first one is for nobody
+  output wire [1:0]             want_nobody_o,
   output wire [2*LINE_BITS-1:0] want_line_o,
   output wire [2*SLOT_BITS-1:0] want_slot_o,
   input  wire [1:0]             taken_i,
@@ -93,85 +93,91 @@ module leaf_reader #(
   endgenerate
 
   reg [1:0] turn_q;                              // whose head is offered first
-  reg [2:0] first, second;
+  reg [2:0] next;
   always @*
     case (turn_q)
-      2'd0: begin
-        first = waits[0] ? 3'd1 : waits[1] ? 3'd2 : waits & 3'd4;
-        second = waits[0] ? (waits[1] ? 3'd2 : waits & 3'd4) : waits[1] ? waits & 3'd4 : 3'd0;
-      end
-      2'd1: begin
-        first = waits[1] ? 3'd2 : waits[2] ? 3'd4 : waits & 3'd1;
-        second = waits[1] ? (waits[2] ? 3'd4 : waits & 3'd1) : waits[2] ? waits & 3'd1 : 3'd0;
-      end
-      default: begin
-        first = waits[2] ? 3'd4 : waits[0] ? 3'd1 : waits & 3'd2;
-        second = waits[2] ? (waits[0] ? 3'd1 : waits & 3'd2) : waits[0] ? waits & 3'd2 : 3'd0;
-      end
+      2'd0: next = waits[0] ? 3'd1 : waits[1] ? 3'd2 : waits & 3'd4;
+      2'd1: next = waits[1] ? 3'd2 : waits[2] ? 3'd4 : waits & 3'd1;
+      default: next = waits[2] ? 3'd4 : waits[0] ? 3'd1 : waits & 3'd2;
     endcase
-  reg [HELD_BITS-1:0] held_q;
-  assign room_o = held_q != ALL_LINES;
-  always @(posedge clk_i)
-    if (!rst_ni) turn_q <= 2'd0;
-    else if (room_o && |first) turn_q <= first[0] ? 2'd1 : first[1] ? 2'd2 : 2'd0;
-  function [QUEUED_BITS-1:0] chosen(input [2:0] which, input [3*QUEUED_BITS-1:0] heads);
-    chosen = ({QUEUED_BITS{which[0]}} & heads[0+:QUEUED_BITS]) |
-             ({QUEUED_BITS{which[1]}} & heads[QUEUED_BITS+:QUEUED_BITS]) |
-             ({QUEUED_BITS{which[2]}} & heads[2*QUEUED_BITS+:QUEUED_BITS]);
-  endfunction
-  wire [QUEUED_BITS-1:0] first_data = chosen(first, waiting), second_data = chosen(second, waiting);
 
-  // Lines that will be wanted; of the oldest leaf so many have been looked up.
+  // Lines that will be wanted; of the oldest leaf so many have been offered. They go before the others.
   wire ahead;
   wire [LINE_BITS-1:0] ahead_line;
   wire [1:0] ahead_count;
   reg [1:0] ahead_step_q;
-  wire ahead_taken = ahead && taken_i[0];
   wire ahead_last = ahead_step_q + 2'd1 == ahead_count;
+
+  // What is offered lies in two registers, of which one that is free is filled in a cycle: what is taken is known late.
+  reg [1:0] offer_q, nobody_q;
+  reg older_q;                                   // which is offered first; if one is free, the other
+  reg [2*QUEUED_BITS-1:0] offered_q;
+  wire fills = offer_q != 2'b11 && (ahead || |waits);
+  wire [1:0] filled = fills ? {offer_q[0], !offer_q[0]} : 2'd0;
+  wire fills_ahead = fills && ahead;
+  assign popped = next & {3{fills && !ahead}};
+  wire [QUEUED_BITS-1:0] fill_data =
+    ahead ? {{SLOT_BITS{1'b0}}, ahead_line + {{LINE_BITS-2{1'b0}}, ahead_step_q}, {LEAF_BITS-LINE_BITS{1'b0}}} :
+    ({QUEUED_BITS{next[0]}} & waiting[0+:QUEUED_BITS]) |
+    ({QUEUED_BITS{next[1]}} & waiting[QUEUED_BITS+:QUEUED_BITS]) |
+    ({QUEUED_BITS{next[2]}} & waiting[2*QUEUED_BITS+:QUEUED_BITS]);
+  wire [1:0] gone = older_q ? {taken_i[0], taken_i[1]} : taken_i;
   always @(posedge clk_i)
-    if (!rst_ni) ahead_step_q <= 2'd0;
-    else if (ahead_taken) ahead_step_q <= ahead_last ? 2'd0 : ahead_step_q + 2'd1;
+    if (!rst_ni) begin
+      turn_q <= 2'd0;
+      ahead_step_q <= 2'd0;
+      offer_q <= 2'd0;
+      older_q <= 1'b0;
+    end else begin
+      if (|popped) turn_q <= next[0] ? 2'd1 : next[1] ? 2'd2 : 2'd0;
+      if (fills_ahead) ahead_step_q <= ahead_last ? 2'd0 : ahead_step_q + 2'd1;
+      offer_q <= (offer_q | filled) & ~gone;
+      if (|gone) older_q <= gone[0];
+      else if (offer_q == 2'd0) older_q <= 1'b0;
+    end
+  always @(posedge clk_i) begin
+    if (filled[0]) {nobody_q[0], offered_q[0+:QUEUED_BITS]} <= {ahead, fill_data};
+    if (filled[1]) {nobody_q[1], offered_q[QUEUED_BITS+:QUEUED_BITS]} <= {ahead, fill_data};
+  end
 
-  assign want_o = ahead ? {room_o && |first, 1'b1} : {room_o && |second, room_o && |first};
-  assign want_nobody_o = ahead;
-  wire [SLOT_BITS+LINE_BITS-1:0] other = ahead ? first_data[QUEUED_BITS-1-:SLOT_BITS+LINE_BITS] :
-                                                 second_data[QUEUED_BITS-1-:SLOT_BITS+LINE_BITS];
-  assign want_line_o[0+:LINE_BITS] = ahead ? ahead_line + {{LINE_BITS-2{1'b0}}, ahead_step_q} :
-                                             first_data[LEAF_BITS-1-:LINE_BITS];
-  assign want_line_o[LINE_BITS+:LINE_BITS] = other[LINE_BITS-1:0];
-  assign want_slot_o = {other[LINE_BITS+:SLOT_BITS], first_data[QUEUED_BITS-1-:SLOT_BITS]};
-
-  wire first_taken = ahead ? taken_i[1] : taken_i[0], second_taken = !ahead && taken_i[1];
-  wire taken = first_taken || second_taken;
-  assign popped = (first_taken ? first : 3'd0) | (second_taken ? second : 3'd0);
-  wire [QUEUED_BITS-1:0] taken_data = second_taken ? second_data : first_data;
+  wire [1:0] wants = offer_q & (nobody_q | {2{room_o}});
+  wire [SLOT_BITS+LINE_BITS-1:0] low = offered_q[QUEUED_BITS-1-:SLOT_BITS+LINE_BITS],
+                                 high = offered_q[2*QUEUED_BITS-1-:SLOT_BITS+LINE_BITS];
+  assign want_o = older_q ? {wants[0], wants[1]} : wants;
+  assign want_nobody_o = older_q ? {nobody_q[0], nobody_q[1]} : nobody_q;
+  assign want_line_o = older_q ? {low[0+:LINE_BITS], high[0+:LINE_BITS]} : {high[0+:LINE_BITS], low[0+:LINE_BITS]};
+  assign want_slot_o = older_q ? {low[LINE_BITS+:SLOT_BITS], high[LINE_BITS+:SLOT_BITS]} :
+                                 {high[LINE_BITS+:SLOT_BITS], low[LINE_BITS+:SLOT_BITS]};
 
   // ---- What has been looked up: two cycles later it comes, or it was not there
 
-  wire [LEAF_BITS-1:0] pending;                  // of the ray that is given a line, one cycle later
-  ram_1r1w #(.WIDTH(LEAF_BITS), .DEPTH(SLOTS)) pending_ram (
-    .clk_i(clk_i), .read_i(given_i), .read_address_i(given_slot_i), .read_data_o(pending), .write_i(taken),
-    .write_address_i(taken_data[QUEUED_BITS-1-:SLOT_BITS]), .write_data_i(taken_data[LEAF_BITS-1:0]));
   reg asked_q, due_q;
+  reg [SLOT_BITS-1:0] asked_slot_q;
   reg [LINE_BITS-1:0] asked_line_q;
   reg [4:0] asked_at_q;
   reg [2:0] asked_left_q;
+  reg [28:0] asked_place_q;
+  wire [LEAF_BITS-1:0] pending;                  // of the ray that is given a line, one cycle later
+  ram_1r1w #(.WIDTH(LEAF_BITS), .DEPTH(SLOTS)) pending_ram (
+    .clk_i(clk_i), .read_i(given_i), .read_address_i(given_slot_i), .read_data_o(pending), .write_i(asked_q),
+    .write_address_i(asked_slot_q), .write_data_i({asked_line_q, asked_at_q, asked_left_q, asked_place_q}));
   wire [6:0] asked_end = {{2{asked_at_q[4]}}, asked_at_q} + {4'd0, asked_left_q} + {3'd0, asked_left_q, 1'b0} +
                          {1'b0, asked_left_q, 3'd0} - 7'd1;   // the leaf's last word, from this line's first one on
   reg [LINE_BITS-1:0] due_line_q;                // the one behind it
   reg [1:0] due_behind_q;
   always @(posedge clk_i)
     if (!rst_ni) {due_q, asked_q} <= 2'd0;
-    else {due_q, asked_q} <= {asked_q, taken};
+    else {due_q, asked_q} <= {asked_q, |(gone & ~nobody_q)};
   always @(posedge clk_i) begin
-    {asked_line_q, asked_at_q, asked_left_q} <= taken_data[LEAF_BITS-1:29];
+    {asked_slot_q, asked_line_q, asked_at_q, asked_left_q, asked_place_q} <=
+      gone[1] ? offered_q[QUEUED_BITS+:QUEUED_BITS] : offered_q[0+:QUEUED_BITS];
     due_line_q <= asked_line_q + 1'b1;
     due_behind_q <= asked_end[5:4];
   end
   wire missed = due_q && !given_i;
   reg [2:0] ahead_size_q;                        // further ones are forgotten
   wire remember = missed && due_behind_q != 2'd0 && !ahead_size_q[2];
-  wire forget = ahead_taken && ahead_last;
+  wire forget = fills_ahead && ahead_last;
   always @(posedge clk_i)
     if (!rst_ni) ahead_size_q <= 3'd0;
     else ahead_size_q <= ahead_size_q + {2'd0, remember} - {2'd0, forget};
@@ -253,10 +259,13 @@ module leaf_reader #(
   assign triangle_o = words[{1'b0, moved[3:0], 5'd0} +: 352];
   wire unused = &{1'b0, line_passes, moved[4], asked_end[6], asked_end[3:0]};
 
-  // ---- Lines that it holds, and that are on their way
+  // ---- Lines that it holds, and that are on their way: one that was taken is counted in the next cycle
+
+  reg [HELD_BITS-1:0] held_q;
+  assign room_o = held_q != ALL_LINES && !(asked_q && held_q == ALL_LINES - 1'b1);
   always @(posedge clk_i)
     if (!rst_ni) held_q <= {HELD_BITS{1'b0}};
-    else held_q <= held_q + {{HELD_BITS-1{1'b0}}, taken || waited_i} - {{HELD_BITS-1{1'b0}}, missed} -
-                   {{HELD_BITS-1{1'b0}}, line_leaves};
+    else held_q <= held_q + {{HELD_BITS-1{1'b0}}, asked_q} + {{HELD_BITS-1{1'b0}}, waited_i} -
+                   {{HELD_BITS-1{1'b0}}, missed} - {{HELD_BITS-1{1'b0}}, line_leaves};
 endmodule
 `default_nettype wire

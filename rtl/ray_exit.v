@@ -51,7 +51,7 @@ module ray_exit #(
   output wire [SLOT_BITS-1:0]       slot_free_slot_o,
   // the triangle cache, as leaf_reader has it
   output wire [1:0]                 want_o,
-  output wire                       want_nobody_o,
+  output wire [1:0]                 want_nobody_o,
   output wire [51:0]                want_line_o,
   output wire [2*SLOT_BITS-1:0]     want_slot_o,
   input  wire [1:0]                 taken_i,

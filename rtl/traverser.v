@@ -194,7 +194,7 @@ module traverser #(
         .node_want_slot_o(node_want_slot[2*g*SLOT_BITS +: 2*SLOT_BITS]), .node_taken_i(node_taken[2*g +: 2]),
         .node_given_i(node_given[g]), .node_given_slot_i(node_given_slot[g*SLOT_BITS +: SLOT_BITS]),
         .node_given_data_i(node_given_data[g*512 +: 512]),
-        .leaf_want_o(leaf_want[2*g +: 2]), .leaf_want_nobody_o(leaf_nobody[2*g]),
+        .leaf_want_o(leaf_want[2*g +: 2]), .leaf_want_nobody_o(leaf_nobody[2*g +: 2]),
         .leaf_want_line_o(leaf_want_line[2*g*LINE_BITS +: 2*LINE_BITS]),
         .leaf_want_slot_o(leaf_want_slot[2*g*SLOT_BITS +: 2*SLOT_BITS]), .leaf_taken_i(leaf_taken[2*g +: 2]),
         .leaf_room_o(leaf_room[g]), .leaf_waited_i(leaf_waited[g] && leaf_room[g]), .leaf_given_i(leaf_given[g]),
@@ -220,7 +220,6 @@ module traverser #(
         .done_slot_o(done_slot[g*SLOT_BITS +: SLOT_BITS]), .done_hit_o(done_hit[g]),
         .done_t_o(done_t[g*32 +: 32]), .done_number_o(done_number[g*32 +: 32]), .done_place_o(done_place[g*29 +: 29]),
         .free_valid_i(slot_free[g]), .free_slot_i(slot_free_slot));
-      assign leaf_nobody[2*g+1] = 1'b0;
     end
   endgenerate
   wire unused = &{1'b0, done_number, node_waited, limit_tag, best_tag};
@@ -277,7 +276,7 @@ module traverser #(
     .done_valid_i(done_valid & {LANES{!fault_valid_o}}),
     .done_ready_o(done_ready), .done_slot_i(done_slot), .done_hit_i(done_hit), .done_t_i(done_t),
     .done_place_i(done_place), .slot_free_o(slot_free), .slot_free_slot_o(slot_free_slot),
-    .want_o(leaf_want[2*LANES +: 2]), .want_nobody_o(leaf_nobody[2*LANES]),
+    .want_o(leaf_want[2*LANES +: 2]), .want_nobody_o(leaf_nobody[2*LANES +: 2]),
     .want_line_o(leaf_want_line[2*LANES*LINE_BITS +: 2*LINE_BITS]),
     .want_slot_o(leaf_want_slot[2*LANES*SLOT_BITS +: 2*SLOT_BITS]), .taken_i(leaf_taken[2*LANES +: 2]),
     .room_o(leaf_room[LANES]), .waited_i(leaf_waited[LANES] && leaf_room[LANES]), .given_i(leaf_given[LANES]),
@@ -287,7 +286,6 @@ module traverser #(
     .put_data_o(put_data_o), .contribution_valid_o(contribution_valid_o),
     .contribution_ready_i(contribution_ready_i), .contribution_pixel_o(contribution_pixel_o),
     .contribution_color_o(contribution_color_o));
-  assign leaf_nobody[2*LANES+1] = 1'b0;
 
   // ---- Caches and memory
   wire node_request_valid, node_request_ready, node_fill_valid, node_fill_ready;

@@ -66,7 +66,7 @@ module traverser_lane #(
   input  wire [511:0]            node_given_data_i,
   // the triangle cache, as leaf_reader has it
   output wire [1:0]              leaf_want_o,
-  output wire                    leaf_want_nobody_o,
+  output wire [1:0]              leaf_want_nobody_o,
   output wire [2*LINE_BITS-1:0]  leaf_want_line_o,
   output wire [2*SLOT_BITS-1:0]  leaf_want_slot_o,
   input  wire [1:0]              leaf_taken_i,

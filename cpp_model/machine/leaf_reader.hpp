@@ -61,15 +61,13 @@ class LeafReader {
         lines_(kLines),
         kept_(slots) {}
 
-  bool room() const { return held_ < kLines; }
+  bool room() const { return held_ + (asked_ ? 1 : 0) < kLines; }
   /// Of which one can be taken in the cycle, the first rather.
   LineWants wants() const {
     LineWants wants;
-    size_t count = 0;
-    if (ahead_.valid()) wants[count++] = {(ahead_.data().line + ahead_step_) & kLastLine, 0, true};
-    for (uint32_t i = 0; room() && i < queues_.size() && count < wants.size(); ++i) {
-      const RamQueue<Wanted>& queue = queues_[(turn_ + i) % queues_.size()];
-      if (queue.valid()) wants[count++] = {queue.data().leaf.line, queue.data().slot, false};
+    for (uint32_t i = 0; i < wants.size(); ++i) {
+      const std::optional<Offer>& offer = offers_[older_ ^ i];
+      if (offer && (offer->nobody || room())) wants[i] = {offer->wanted.leaf.line, offer->wanted.slot, offer->nobody};
     }
     return wants;
   }
@@ -85,7 +83,7 @@ class LeafReader {
     test.material = first[kTriangleWords - 1];
     return test;
   }
-  /// Leaves that are told to look ahead, and lines that they were.
+  /// Lines that are offered because they will be wanted, and those that wait for what is kept of the one before.
   uint64_t looked_ahead() const { return looked_ahead_; }
   uint64_t waited_for_kept() const { return waited_for_kept_; }
 
@@ -94,19 +92,26 @@ class LeafReader {
     const bool leaves = line_ && (line_->tests == 0 || (line_->tests == 1 && inputs.triangle_taken));
     const bool missed = due_ && inputs.given == nullptr;
     const bool full = ahead_.size() == kAhead;
-    const std::optional<Wanted> taken = take(inputs.taken);
-    held_ += (taken || inputs.waited ? 1 : 0);
+    held_ += (asked_ ? 1 : 0) + (inputs.waited ? 1 : 0);
     held_ -= (missed ? 1 : 0) + (leaves ? 1 : 0);
+    if (asked_) pending_[asked_->slot] = asked_->leaf;
+    const std::optional<Offer> fill = next_offer();
+    const uint32_t filled = offers_[0] ? 1 : 0;
+    if (!offers_[0] && !offers_[1]) older_ = 0;
+    std::optional<Offer> taken;
+    if (inputs.taken) {
+      const uint32_t gone = older_ ^ *inputs.taken;
+      taken.swap(offers_[gone]);
+      older_ = gone ^ 1;
+    }
+    if (fill) offers_[filled] = fill;
 
     // Lines that have been looked up and were not there: those behind them are looked up at once.
     if (missed && due_->behind != 0 && !full) ahead_.push({(due_->line + 1) & kLastLine, due_->behind});
     due_.reset();
-    if (asked_) due_ = Behind{asked_->line, static_cast<uint32_t>(asked_->last_word() / 16)};
+    if (asked_) due_ = Behind{asked_->leaf.line, static_cast<uint32_t>(asked_->leaf.last_word() / 16)};
     asked_.reset();
-    if (taken) {
-      asked_ = taken->leaf;
-      pending_[taken->slot] = taken->leaf;
-    }
+    if (taken && !taken->nobody) asked_ = taken->wanted;
 
     if (come_) lines_.push(*come_);
     std::optional<Wanted> further;
@@ -151,6 +156,10 @@ class LeafReader {
     uint32_t slot = 0;
     Leaf leaf;
   };
+  struct Offer {
+    Wanted wanted;
+    bool nobody = false;
+  };
   struct Behind {
     uint32_t line = 0, behind = 0;
   };
@@ -164,30 +173,30 @@ class LeafReader {
     Line(uint32_t of, const Leaf& from, const TreeLine& line) : slot(of), leaf(from), tests(from.tests()), data(line) {}
   };
 
-  std::optional<Wanted> take(std::optional<uint32_t> which) {
-    std::optional<Wanted> taken;
-    std::optional<uint32_t> first;
-    uint32_t count = ahead_.valid() ? 1 : 0;
-    const bool ahead = count == 1;
-    for (uint32_t i = 0; room() && i < queues_.size(); ++i) {
-      const uint32_t queue = (turn_ + i) % static_cast<uint32_t>(queues_.size());
-      if (!queues_[queue].valid()) continue;
-      if (!first) first = queue;
-      if (which == count++) {
-        taken = queues_[queue].data();
-        queues_[queue].pop();
-        break;
-      }
-    }
-    if (first) turn_ = (*first + 1) % static_cast<uint32_t>(queues_.size());
-    if (ahead && which == 0u) {
+  // What is offered from the next cycle on, if one of the two is free: lines that will be wanted, then the queues'
+  // heads in rotation.
+  std::optional<Offer> next_offer() {
+    if (offers_[0] && offers_[1]) return {};
+    if (ahead_.valid()) {
+      Offer offer;
+      offer.nobody = true;
+      offer.wanted.leaf.line = (ahead_.data().line + ahead_step_) & kLastLine;
       ++looked_ahead_;
       if (++ahead_step_ == ahead_.data().behind) {
         ahead_step_ = 0;
         ahead_.pop();
       }
+      return offer;
     }
-    return taken;
+    for (uint32_t i = 0; i < queues_.size(); ++i) {
+      const uint32_t queue = (turn_ + i) % static_cast<uint32_t>(queues_.size());
+      if (!queues_[queue].valid()) continue;
+      const Offer offer{queues_[queue].data(), false};
+      queues_[queue].pop();
+      turn_ = (queue + 1) % static_cast<uint32_t>(queues_.size());
+      return offer;
+    }
+    return {};
   }
 
   // The present line's triangle is begun, or the line leaves; the next one comes unless it waits for what is kept of
@@ -217,16 +226,18 @@ class LeafReader {
   std::array<RamQueue<Wanted>, 3> queues_;      // from nodes; from the stack; further lines of leaves
   uint32_t turn_ = 0;
   RamQueue<Behind> ahead_{kAhead};  // the first of so many lines that will be wanted
-  uint32_t ahead_step_ = 0;         // of which so many have been looked up
-  std::vector<Leaf> pending_;       // [slot] whose line has been looked up
-  std::optional<Leaf> asked_;       // in the cycle before
-  std::optional<Behind> due_;       // in that before it
-  std::optional<Line> come_;        // what was given in the cycle before
+  uint32_t ahead_step_ = 0;         // of which so many have been offered
+  std::array<std::optional<Offer>, 2> offers_;
+  uint32_t older_ = 0;           // which of them is offered first; if one is free, the other
+  std::vector<Leaf> pending_;    // [slot] whose line has been looked up
+  std::optional<Wanted> asked_;  // in the cycle before
+  std::optional<Behind> due_;    // in that before it
+  std::optional<Line> come_;     // what was given in the cycle before
   RamQueue<Line> lines_;
   std::optional<Line> line_;                       // the oldest
   std::vector<std::array<uint32_t, kKept>> kept_;  // [slot] the last words of its line before
   std::array<uint32_t, kKept> read_{};
-  uint32_t held_ = 0;
+  uint32_t held_ = 0;  // without the one taken in the cycle before
   uint64_t looked_ahead_ = 0, waited_for_kept_ = 0;
 };
 

@@ -139,8 +139,8 @@ class LaneBench {
     for (uint32_t i = 0; i < cycles; ++i) ASSERT_NO_FATAL_FAILURE(cycle(traffic));
     stopped_ = true;
     for (uint32_t i = 0; i < 600; ++i) ASSERT_NO_FATAL_FAILURE(cycle({}));
-    const bool wants = lane_.node_wants()[0] || lane_.leaf_wants()[0];
-    ASSERT_FALSE(wants) << "it goes on";
+    for (const LineWants& wants : {lane_.node_wants(), lane_.leaf_wants()})
+      ASSERT_FALSE(wants[0] || wants[1]) << "it goes on";
   }
 
   LaneSeen seen;

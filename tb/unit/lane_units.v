@@ -50,7 +50,7 @@ module lane_units #(
   input  wire [SLOT_BITS-1:0]    node_given_slot_i,
   input  wire [511:0]            node_given_data_i,
   output wire [1:0]              leaf_want_o,
-  output wire                    leaf_want_nobody_o,
+  output wire [1:0]              leaf_want_nobody_o,
   output wire [2*LINE_BITS-1:0]  leaf_want_line_o,
   output wire [2*SLOT_BITS-1:0]  leaf_want_slot_o,
   input  wire [1:0]              leaf_taken_i,
