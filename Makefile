@@ -74,7 +74,8 @@ MUTANTS   ?= 500
 EACH      ?= 10
 MODULES   ?= traverser_lane ray_finish quotient_digits root_digits cross_products triangle_view triangle_normal \
   triangle_shares float_shorten ray_setup ray_direction ray_padding triangle_pipe triangle_edges triangle_interval \
-  triangle_plane leaf_reader tree_banks bank_arbiter tree_cache box_pipe box_axis child_order lane_hits lane_stacks
+  triangle_plane leaf_reader line_offers tree_banks bank_arbiter tree_cache box_pipe box_axis child_order lane_hits \
+  lane_stacks
 # `make fit`
 SLOWER    ?= 1%
 AREA      ?= 0

@@ -108,76 +108,70 @@ module leaf_reader #(
   reg [1:0] ahead_step_q;
   wire ahead_last = ahead_step_q + 2'd1 == ahead_count;
 
-  // What is offered lies in two registers, of which one that is free is filled in a cycle: what is taken is known late.
-  reg [1:0] offer_q, nobody_q;
-  reg older_q;                                   // which is offered first; if one is free, the other
-  reg [2*QUEUED_BITS-1:0] offered_q;
-  wire fills = offer_q != 2'b11 && (ahead || |waits);
-  wire [1:0] filled = fills ? {offer_q[0], !offer_q[0]} : 2'd0;
-  wire fills_ahead = fills && ahead;
-  assign popped = next & {3{fills && !ahead}};
-  wire [QUEUED_BITS-1:0] fill_data =
-    ahead ? {{SLOT_BITS{1'b0}}, ahead_line + {{LINE_BITS-2{1'b0}}, ahead_step_q}, {LEAF_BITS-LINE_BITS{1'b0}}} :
+  localparam integer OFFER_BITS = QUEUED_BITS + 1;   // for nobody
+  wire [1:0] offered;
+  wire [2*OFFER_BITS-1:0] offers;
+  wire offers_ready, was_taken, was_for_nobody;
+  wire [QUEUED_BITS-1:0] next_data =
     ({QUEUED_BITS{next[0]}} & waiting[0+:QUEUED_BITS]) |
     ({QUEUED_BITS{next[1]}} & waiting[QUEUED_BITS+:QUEUED_BITS]) |
     ({QUEUED_BITS{next[2]}} & waiting[2*QUEUED_BITS+:QUEUED_BITS]);
-  wire [1:0] gone = older_q ? {taken_i[0], taken_i[1]} : taken_i;
+  wire [QUEUED_BITS-1:0] ahead_data =
+    {{SLOT_BITS{1'b0}}, ahead_line + {{LINE_BITS-2{1'b0}}, ahead_step_q}, {LEAF_BITS-LINE_BITS{1'b0}}};
+  wire asked;                                    // in the cycle before
+  wire [SLOT_BITS-1:0] asked_slot;
+  wire [LINE_BITS-1:0] asked_line;
+  wire [4:0] asked_at;
+  wire [2:0] asked_left;
+  wire [28:0] asked_place;
+  line_offers #(.WIDTH(OFFER_BITS)) line_offers (
+    .clk_i(clk_i), .rst_ni(rst_ni), .valid_i(ahead || |waits), .ready_o(offers_ready),
+    .data_i({ahead, ahead ? ahead_data : next_data}), .valid_o(offered), .data_o(offers), .taken_i(taken_i),
+    .asked_o(was_taken),
+    .asked_data_o({was_for_nobody, asked_slot, asked_line, asked_at, asked_left, asked_place}));
+  assign asked = was_taken && !was_for_nobody;
+  assign popped = (offers_ready && !ahead) ? next : 3'd0;
+  wire ahead_taken = offers_ready && ahead;
   always @(posedge clk_i)
     if (!rst_ni) begin
       turn_q <= 2'd0;
       ahead_step_q <= 2'd0;
-      offer_q <= 2'd0;
-      older_q <= 1'b0;
     end else begin
       if (|popped) turn_q <= next[0] ? 2'd1 : next[1] ? 2'd2 : 2'd0;
-      if (fills_ahead) ahead_step_q <= ahead_last ? 2'd0 : ahead_step_q + 2'd1;
-      offer_q <= (offer_q | filled) & ~gone;
-      if (|gone) older_q <= gone[0];
-      else if (offer_q == 2'd0) older_q <= 1'b0;
+      if (ahead_taken) ahead_step_q <= ahead_last ? 2'd0 : ahead_step_q + 2'd1;
     end
-  always @(posedge clk_i) begin
-    if (filled[0]) {nobody_q[0], offered_q[0+:QUEUED_BITS]} <= {ahead, fill_data};
-    if (filled[1]) {nobody_q[1], offered_q[QUEUED_BITS+:QUEUED_BITS]} <= {ahead, fill_data};
-  end
-
-  wire [1:0] wants = offer_q & (nobody_q | {2{room_o}});
-  wire [SLOT_BITS+LINE_BITS-1:0] low = offered_q[QUEUED_BITS-1-:SLOT_BITS+LINE_BITS],
-                                 high = offered_q[2*QUEUED_BITS-1-:SLOT_BITS+LINE_BITS];
-  assign want_o = older_q ? {wants[0], wants[1]} : wants;
-  assign want_nobody_o = older_q ? {nobody_q[0], nobody_q[1]} : nobody_q;
-  assign want_line_o = older_q ? {low[0+:LINE_BITS], high[0+:LINE_BITS]} : {high[0+:LINE_BITS], low[0+:LINE_BITS]};
-  assign want_slot_o = older_q ? {low[LINE_BITS+:SLOT_BITS], high[LINE_BITS+:SLOT_BITS]} :
-                                 {high[LINE_BITS+:SLOT_BITS], low[LINE_BITS+:SLOT_BITS]};
+  generate
+    for (g = 0; g < 2; g = g + 1) begin : gen_want
+      localparam integer TOP = (g + 1) * OFFER_BITS - 1;
+      assign want_nobody_o[g] = offers[TOP];
+      assign {want_slot_o[g*SLOT_BITS+:SLOT_BITS], want_line_o[g*LINE_BITS+:LINE_BITS]} =
+        offers[TOP-1-:SLOT_BITS+LINE_BITS];
+      assign want_o[g] = offered[g] && (want_nobody_o[g] || room_o);
+    end
+  endgenerate
 
   // ---- What has been looked up: two cycles later it comes, or it was not there
 
-  reg asked_q, due_q;
-  reg [SLOT_BITS-1:0] asked_slot_q;
-  reg [LINE_BITS-1:0] asked_line_q;
-  reg [4:0] asked_at_q;
-  reg [2:0] asked_left_q;
-  reg [28:0] asked_place_q;
   wire [LEAF_BITS-1:0] pending;                  // of the ray that is given a line, one cycle later
   ram_1r1w #(.WIDTH(LEAF_BITS), .DEPTH(SLOTS)) pending_ram (
-    .clk_i(clk_i), .read_i(given_i), .read_address_i(given_slot_i), .read_data_o(pending), .write_i(asked_q),
-    .write_address_i(asked_slot_q), .write_data_i({asked_line_q, asked_at_q, asked_left_q, asked_place_q}));
-  wire [6:0] asked_end = {{2{asked_at_q[4]}}, asked_at_q} + {4'd0, asked_left_q} + {3'd0, asked_left_q, 1'b0} +
-                         {1'b0, asked_left_q, 3'd0} - 7'd1;   // the leaf's last word, from this line's first one on
+    .clk_i(clk_i), .read_i(given_i), .read_address_i(given_slot_i), .read_data_o(pending), .write_i(asked),
+    .write_address_i(asked_slot), .write_data_i({asked_line, asked_at, asked_left, asked_place}));
+  wire [6:0] asked_end = {{2{asked_at[4]}}, asked_at} + {4'd0, asked_left} + {3'd0, asked_left, 1'b0} +
+                         {1'b0, asked_left, 3'd0} - 7'd1;   // the leaf's last word, from this line's first one on
+  reg due_q;
   reg [LINE_BITS-1:0] due_line_q;                // the one behind it
   reg [1:0] due_behind_q;
   always @(posedge clk_i)
-    if (!rst_ni) {due_q, asked_q} <= 2'd0;
-    else {due_q, asked_q} <= {asked_q, |(gone & ~nobody_q)};
+    if (!rst_ni) due_q <= 1'b0;
+    else due_q <= asked;
   always @(posedge clk_i) begin
-    {asked_slot_q, asked_line_q, asked_at_q, asked_left_q, asked_place_q} <=
-      gone[1] ? offered_q[QUEUED_BITS+:QUEUED_BITS] : offered_q[0+:QUEUED_BITS];
-    due_line_q <= asked_line_q + 1'b1;
+    due_line_q <= asked_line + 1'b1;
     due_behind_q <= asked_end[5:4];
   end
   wire missed = due_q && !given_i;
   reg [2:0] ahead_size_q;                        // further ones are forgotten
   wire remember = missed && due_behind_q != 2'd0 && !ahead_size_q[2];
-  wire forget = fills_ahead && ahead_last;
+  wire forget = ahead_taken && ahead_last;
   always @(posedge clk_i)
     if (!rst_ni) ahead_size_q <= 3'd0;
     else ahead_size_q <= ahead_size_q + {2'd0, remember} - {2'd0, forget};
@@ -262,10 +256,10 @@ module leaf_reader #(
   // ---- Lines that it holds, and that are on their way: one that was taken is counted in the next cycle
 
   reg [HELD_BITS-1:0] held_q;
-  assign room_o = held_q != ALL_LINES && !(asked_q && held_q == ALL_LINES - 1'b1);
+  assign room_o = held_q != ALL_LINES && !(asked && held_q == ALL_LINES - 1'b1);
   always @(posedge clk_i)
     if (!rst_ni) held_q <= {HELD_BITS{1'b0}};
-    else held_q <= held_q + {{HELD_BITS-1{1'b0}}, asked_q} + {{HELD_BITS-1{1'b0}}, waited_i} -
+    else held_q <= held_q + {{HELD_BITS-1{1'b0}}, asked} + {{HELD_BITS-1{1'b0}}, waited_i} -
                    {{HELD_BITS-1{1'b0}}, missed} - {{HELD_BITS-1{1'b0}}, line_leaves};
 endmodule
 `default_nettype wire

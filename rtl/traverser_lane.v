@@ -152,30 +152,41 @@ module traverser_lane #(
 
   // ---- Nodes that are wanted
 
+  localparam integer NODE_BITS = SLOT_BITS + LINE_BITS;
   wire fill_waits;
   wire [1:0] node_waits, node_popped;
-  wire [2*(SLOT_BITS+LINE_BITS)-1:0] node_heads;
+  wire [2*NODE_BITS-1:0] node_heads;
   genvar g;
   generate
     for (g = 0; g < 2; g = g + 1) begin : gen_nodes
-      ram_queue #(.WIDTH(SLOT_BITS+LINE_BITS), .DEPTH(SLOTS)) queue (
+      ram_queue #(.WIDTH(NODE_BITS), .DEPTH(SLOTS)) queue (
         .clk_i(clk_i), .rst_ni(rst_ni), .push_i(go[g] && !go_reference[32*g+31]),
         .data_i({go_slot[g*SLOT_BITS+:SLOT_BITS], go_reference[32*g+:LINE_BITS]}), .valid_o(node_waits[g]),
-        .ready_i(node_popped[g]), .data_o(node_heads[g*(SLOT_BITS+LINE_BITS)+:SLOT_BITS+LINE_BITS]));
+        .ready_i(node_popped[g]), .data_o(node_heads[g*NODE_BITS+:NODE_BITS]));
     end
   endgenerate
-  reg node_turn_q;                               // whose head is offered first
-  wire node_first = node_waits[node_turn_q] ? node_turn_q : !node_turn_q;
-  assign node_want_o = fill_waits ? 2'd0 : {&node_waits, |node_waits};
+  reg node_turn_q;                               // whose head comes next
+  wire node_second = node_waits[node_turn_q] ? node_turn_q : !node_turn_q;
+  wire offers_ready, asked;                      // asked: in the cycle before
+  wire [1:0] offered;
+  wire [2*NODE_BITS-1:0] offers;
+  wire [SLOT_BITS-1:0] asked_slot;
+  wire [LINE_BITS-1:0] asked_line;
+  line_offers #(.WIDTH(NODE_BITS)) node_offers (
+    .clk_i(clk_i), .rst_ni(rst_ni), .valid_i(|node_waits), .ready_o(offers_ready),
+    .data_i(node_second ? node_heads[NODE_BITS+:NODE_BITS] : node_heads[0+:NODE_BITS]), .valid_o(offered),
+    .data_o(offers), .taken_i(node_taken_i), .asked_o(asked), .asked_data_o({asked_slot, asked_line}));
+  assign node_popped = offers_ready ? {node_second, !node_second} & node_waits : 2'd0;
   always @(posedge clk_i)
     if (!rst_ni) node_turn_q <= 1'b0;
-    else if (node_want_o[0]) node_turn_q <= !node_first;
-  wire [SLOT_BITS+LINE_BITS-1:0] node_head_0 = node_heads[0+:SLOT_BITS+LINE_BITS];
-  wire [SLOT_BITS+LINE_BITS-1:0] node_head_1 = node_heads[SLOT_BITS+LINE_BITS+:SLOT_BITS+LINE_BITS];
-  assign {node_want_slot_o[0+:SLOT_BITS], node_want_line_o[0+:LINE_BITS]} = node_first ? node_head_1 : node_head_0;
-  assign {node_want_slot_o[SLOT_BITS+:SLOT_BITS], node_want_line_o[LINE_BITS+:LINE_BITS]} =
-    node_first ? node_head_0 : node_head_1;
-  assign node_popped = node_first ? {node_taken_i[0], node_taken_i[1]} : node_taken_i;
+    else if (|node_popped) node_turn_q <= !node_second;
+  assign node_want_o = fill_waits ? 2'd0 : offered;
+  generate
+    for (g = 0; g < 2; g = g + 1) begin : gen_want
+      assign {node_want_slot_o[g*SLOT_BITS+:SLOT_BITS], node_want_line_o[g*LINE_BITS+:LINE_BITS]} =
+        offers[g*NODE_BITS+:NODE_BITS];
+    end
+  endgenerate
 
   // ---- A node has come: its boxes are tested in the next cycle, when what the ray's slot has is known
 
@@ -205,9 +216,7 @@ module traverser_lane #(
   wire [LINE_BITS-1:0] number, counted;
   ram_1r1w #(.WIDTH(LINE_BITS), .DEPTH(SLOTS)) numbers (
     .clk_i(clk_i), .read_i(node_given_i), .read_address_i(node_given_slot_i), .read_data_o(number),
-    .write_i(|node_taken_i), .write_address_i(node_taken_i[1] ? node_want_slot_o[SLOT_BITS+:SLOT_BITS]
-                                                              : node_want_slot_o[0+:SLOT_BITS]),
-    .write_data_i(node_taken_i[1] ? node_want_line_o[LINE_BITS+:LINE_BITS] : node_want_line_o[0+:LINE_BITS]));
+    .write_i(asked), .write_address_i(asked_slot), .write_data_i(asked_line));
   reg [SLOTS-1:0] fresh_q;                       // slots whose ray has come to no node yet
   wire [LINE_BITS-1:0] visits = fresh_q[given_slot_q] ? {LINE_BITS{1'b0}} : counted;
   wire [LINE_BITS-1:0] visits_then = visits + {{LINE_BITS-1{1'b0}}, 1'b1};

@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "machine/line_offers.hpp"
 #include "machine/ram_queue.hpp"
 #include "machine/triangle_ray.hpp"
 
@@ -61,13 +62,14 @@ class LeafReader {
         lines_(kLines),
         kept_(slots) {}
 
-  bool room() const { return held_ + (asked_ ? 1 : 0) < kLines; }
+  bool room() const { return held_ + (asked() ? 1 : 0) < kLines; }
   /// Of which one can be taken in the cycle, the first rather.
   LineWants wants() const {
     LineWants wants;
     for (uint32_t i = 0; i < wants.size(); ++i) {
-      const std::optional<Offer>& offer = offers_[older_ ^ i];
-      if (offer && (offer->nobody || room())) wants[i] = {offer->wanted.leaf.line, offer->wanted.slot, offer->nobody};
+      const Offer* const offer = offers_.offer(i);
+      if (offer != nullptr && (offer->nobody || room()))
+        wants[i] = {offer->wanted.leaf.line, offer->wanted.slot, offer->nobody};
     }
     return wants;
   }
@@ -92,26 +94,18 @@ class LeafReader {
     const bool leaves = line_ && (line_->tests == 0 || (line_->tests == 1 && inputs.triangle_taken));
     const bool missed = due_ && inputs.given == nullptr;
     const bool full = ahead_.size() == kAhead;
-    held_ += (asked_ ? 1 : 0) + (inputs.waited ? 1 : 0);
+    const std::optional<Offer> next = next_offer();
+    held_ += (asked() ? 1 : 0) + (inputs.waited ? 1 : 0);
     held_ -= (missed ? 1 : 0) + (leaves ? 1 : 0);
-    if (asked_) pending_[asked_->slot] = asked_->leaf;
-    const std::optional<Offer> fill = next_offer();
-    const uint32_t filled = offers_[0] ? 1 : 0;
-    if (!offers_[0] && !offers_[1]) older_ = 0;
-    std::optional<Offer> taken;
-    if (inputs.taken) {
-      const uint32_t gone = older_ ^ *inputs.taken;
-      taken.swap(offers_[gone]);
-      older_ = gone ^ 1;
-    }
-    if (fill) offers_[filled] = fill;
 
     // Lines that have been looked up and were not there: those behind them are looked up at once.
     if (missed && due_->behind != 0 && !full) ahead_.push({(due_->line + 1) & kLastLine, due_->behind});
     due_.reset();
-    if (asked_) due_ = Behind{asked_->leaf.line, static_cast<uint32_t>(asked_->leaf.last_word() / 16)};
-    asked_.reset();
-    if (taken && !taken->nobody) asked_ = taken->wanted;
+    if (const Wanted* const wanted = asked()) {
+      pending_[wanted->slot] = wanted->leaf;
+      due_ = Behind{wanted->leaf.line, static_cast<uint32_t>(wanted->leaf.last_word() / 16)};
+    }
+    offers_.clock(next, inputs.taken);
 
     if (come_) lines_.push(*come_);
     std::optional<Wanted> further;
@@ -173,10 +167,15 @@ class LeafReader {
     Line(uint32_t of, const Leaf& from, const TreeLine& line) : slot(of), leaf(from), tests(from.tests()), data(line) {}
   };
 
-  // What is offered from the next cycle on, if one of the two is free: lines that will be wanted, then the queues'
-  // heads in rotation.
+  // What was taken in the cycle before, for a ray.
+  const Wanted* asked() const {
+    const std::optional<Offer>& asked = offers_.asked();
+    return asked && !asked->nobody ? &asked->wanted : nullptr;
+  }
+
+  // Lines that will be wanted, then the queues' heads in rotation.
   std::optional<Offer> next_offer() {
-    if (offers_[0] && offers_[1]) return {};
+    if (!offers_.ready()) return {};
     if (ahead_.valid()) {
       Offer offer;
       offer.nobody = true;
@@ -227,12 +226,10 @@ class LeafReader {
   uint32_t turn_ = 0;
   RamQueue<Behind> ahead_{kAhead};  // the first of so many lines that will be wanted
   uint32_t ahead_step_ = 0;         // of which so many have been offered
-  std::array<std::optional<Offer>, 2> offers_;
-  uint32_t older_ = 0;           // which of them is offered first; if one is free, the other
-  std::vector<Leaf> pending_;    // [slot] whose line has been looked up
-  std::optional<Wanted> asked_;  // in the cycle before
-  std::optional<Behind> due_;    // in that before it
-  std::optional<Line> come_;     // what was given in the cycle before
+  LineOffers<Offer> offers_;
+  std::vector<Leaf> pending_;  // [slot] whose line has been looked up
+  std::optional<Behind> due_;  // that was asked for two cycles ago
+  std::optional<Line> come_;   // what was given in the cycle before
   RamQueue<Line> lines_;
   std::optional<Line> line_;                       // the oldest
   std::vector<std::array<uint32_t, kKept>> kept_;  // [slot] the last words of its line before

@@ -17,6 +17,7 @@
 #include "machine/lane_hits.hpp"
 #include "machine/lane_stacks.hpp"
 #include "machine/leaf_reader.hpp"
+#include "machine/line_offers.hpp"
 #include "machine/ram_queue.hpp"
 #include "machine/tree_fault.hpp"
 
@@ -79,11 +80,8 @@ class TraverserLane {
   LineWants node_wants() const {
     LineWants wants;
     if (stacks_.fill_waits()) return wants;
-    size_t count = 0;
-    for (uint32_t i = 0; i < nodes_.size(); ++i) {
-      const RamQueue<LineWant>& queue = nodes_[(node_turn_ + i) % nodes_.size()];
-      if (queue.valid()) wants[count++] = queue.data();
-    }
+    for (uint32_t i = 0; i < wants.size(); ++i)
+      if (const LineWant* const offer = node_offers_.offer(i)) wants[i] = *offer;
     return wants;
   }
   LineWants leaf_wants() const { return leaves_.wants(); }
@@ -110,7 +108,8 @@ class TraverserLane {
     stacks.leaf = leaf ? &*leaf : nullptr;
     stacks.request_taken = inputs.request_taken;
     stacks.filled = inputs.filled;
-    take_node(inputs.node_taken);
+    if (const std::optional<LineWant>& asked = node_offers_.asked()) numbers_[asked->slot] = asked->line;
+    node_offers_.clock(next_node(), inputs.node_taken);
     const LaneStacks::Outcome outcome = stacks_.clock(stacks);
     if (inputs.done_taken) done_.reset();
     if (!done_ && ends_.valid()) {
@@ -157,16 +156,13 @@ class TraverserLane {
 
   static BoxRay no_ray(int bits) { return BoxRay({0, 0, 0}, {0, 0, 0}, 0, bits); }
 
-  void take_node(std::optional<uint32_t> which) {
-    if (stacks_.fill_waits()) return;
+  std::optional<LineWant> next_node() {
     const uint32_t first = nodes_[node_turn_].valid() ? node_turn_ : 1 - node_turn_;
-    if (!nodes_[first].valid()) return;
-    if (which) {
-      RamQueue<LineWant>& queue = nodes_[*which == 0 ? first : 1 - first];
-      numbers_[queue.data().slot] = queue.data().line;
-      queue.pop();
-    }
+    if (!node_offers_.ready() || !nodes_[first].valid()) return {};
+    const LineWant next = nodes_[first].data();
+    nodes_[first].pop();
     node_turn_ = 1 - first;
+    return next;
   }
 
   // The node whose test begins. A way back to a node has a step to a number that is not above the one before it; ways
@@ -249,7 +245,8 @@ class TraverserLane {
   RamQueue<uint32_t> begins_;  // slots whose ray has come
 
   std::array<RamQueue<LineWant>, 2> nodes_;  // that are wanted: from box results; from the stack, and roots
-  uint32_t node_turn_ = 0;
+  uint32_t node_turn_ = 0;                   // whose head comes next
+  LineOffers<LineWant> node_offers_;
   std::optional<LeafReader::Given> given_;  // in the cycle before
   BoxPipe boxes_;
   std::array<Along, kBoxStages> along_;
