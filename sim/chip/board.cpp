@@ -4,27 +4,21 @@
 
 #include <algorithm>
 #include <chrono>
-#include <optional>
 #include <stdexcept>
 
 #include "bits.hpp"
-#include "chip/answer_watch.hpp"
-#include "chip/board_memory.hpp"
-#include "chip/frame_figures.hpp"
 #include "chip/frame_setup.hpp"
 #include "chip/monitor.hpp"
-#include "chip/port_traverser.hpp"
 #include "chip/traverser_fault.hpp"
-#include "chip/traverser_watch.hpp"
 #include "config/limits.hpp"
 #include "machine/intersection_pool.hpp"
 #include "scene/native_renderer.hpp"
 
 namespace raypool {
 
-namespace {
+namespace chip {
 
-using namespace chip;
+namespace {
 
 const ChipOptions& checked(const ChipOptions& options) {
   check_frame(options);
@@ -44,67 +38,28 @@ const ChipOptions& checked(const ChipOptions& options) {
   return options;
 }
 
-class Board {
- public:
-  Board(const ChipOptions& options, ChipDevice& chip)
-      : options_(checked(options)),
-        chip_(chip),
-        reflects_(secondary_kernel(options.depth, options.reflections) == RayKernel::CastSecondary),
-        memory_(*options.memory, options.tree == nullptr ? nullptr : &options.tree->memory, options.configuration.chip),
-        answers_(options.configuration.chip),
-        kernels_(chip.units(), options.configuration.contents()) {
-    const ChipConfiguration& configuration = options.configuration.chip;
-    if (has_traverser(configuration))
-      watch_.emplace(options.layout, configuration.ray_pool_size, options.depth);
-    else
-      traverser_.emplace(*options.tracer, configuration, chip.units(), options.depth, reflects_, options.layout);
-  }
+}  // namespace
 
-  ChipResult draw() {
-    const auto begin = std::chrono::steady_clock::now();
-    chip_.start(setup());
-    inputs_.frame_ready = true;
-    while (still_ < kStillCycles) clock();
-    if (options_.progress) show_progress();
-    ChipResult result = chip_result(options_, figures());
-    result.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    return result;
-  }
+Board::Board(const ChipOptions& options, ChipDevice& chip, LineStore& store)
+    : options_(checked(options)),
+      chip_(chip),
+      reflects_(secondary_kernel(options.depth, options.reflections) == RayKernel::CastSecondary),
+      memory_(store, options.configuration.chip),
+      answers_(options.configuration.chip),
+      kernels_(chip.units(), options.configuration.contents()) {
+  const ChipConfiguration& configuration = options.configuration.chip;
+  if (has_traverser(configuration))
+    watch_.emplace(options.layout, configuration.ray_pool_size, options.depth);
+  else
+    traverser_.emplace(*options.tracer, configuration, chip.units(), options.depth, reflects_, options.layout);
+  chip_.start(setup());
+  inputs_.frame_ready = true;
+}
 
- private:
-  // More than any port is busy with a package: all that is counted for the report is right then.
-  static constexpr uint64_t kStillCycles = 1024;
-
-  FrameSetup setup() const;
-  void clock();
-  void follow_kernels(const ChipOutputs& outputs);
-  void follow_levels(const ChipOutputs& outputs);
-  void watch(const ChipOutputs& outputs);
-  void stall(const std::string& what) const;
-  RayKernel kernel_at(uint32_t pc) const;
-  void show_progress() const;
-  FrameFigures figures();
-  const TraverserCounts& traced() const { return watch_ ? watch_->counts() : traverser_->counts(); }
-
-  const ChipOptions& options_;
-  ChipDevice& chip_;
-  const bool reflects_;
-  BoardMemory memory_;
-  AnswerWatch answers_;
-  std::optional<PortTraverser> traverser_;
-  std::optional<TraverserWatch> watch_;  // of one inside
-  ChipInputs inputs_;
-  uint64_t cycle_ = 0;
-  uint64_t cycles_ = 0;  // of the frame, once it has ended
-  bool begun_ = false, ended_ = false;
-  uint64_t still_ = 0;  // cycles in which nothing has moved since the end
-
-  KernelTimes kernels_;
-  uint64_t busy_cycles_ = 0, dropped_depth_ = 0, cast_ = 0;
-  LevelStatistics rays_;
-  EnumArray<ImportKind, LevelStatistics, kImportKinds> intersections_;
-  uint64_t transfers_ = 0, transfers_before_ = 0, retired_before_ = 0, silent_ = 0;
-};
+ChipResult Board::result() {
+  if (options_.progress) show_progress();
+  return chip_result(options_, figures());
+}
 
 FrameSetup Board::setup() const {
   FrameSetup setup;
@@ -246,8 +201,17 @@ FrameFigures Board::figures() {
   return figures;
 }
 
-}  // namespace
+}  // namespace chip
 
-ChipResult run_board(const ChipOptions& options, ChipDevice& chip) { return Board(options, chip).draw(); }
+ChipResult run_board(const ChipOptions& options, ChipDevice& chip) {
+  const auto begin = std::chrono::steady_clock::now();
+  chip::FixedLatencyStore store(*options.memory, options.tree == nullptr ? nullptr : &options.tree->memory,
+                                options.configuration.chip.memory_latency);
+  chip::Board board(options, chip, store);
+  while (!board.ended()) board.clock();
+  ChipResult result = board.result();
+  result.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return result;
+}
 
 }  // namespace raypool

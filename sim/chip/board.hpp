@@ -3,10 +3,71 @@
 // has all that takes its time.
 #pragma once
 
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "chip/answer_watch.hpp"
+#include "chip/board_memory.hpp"
 #include "chip/chip.hpp"
+#include "chip/frame_figures.hpp"
+#include "chip/port_traverser.hpp"
+#include "chip/traverser_watch.hpp"
 #include "machine/chip_device.hpp"
 
 namespace raypool {
+
+namespace chip {
+
+/// A frame on a board, cycle by cycle.
+class Board {
+ public:
+  /// Starts the frame. `store`: the memories. All must outlive the board. Throws InputError for options out of range or
+  /// a configuration that the chip has not.
+  Board(const ChipOptions& options, ChipDevice& chip, LineStore& store);
+
+  /// One cycle.
+  void clock();
+  /// Nothing moves any more.
+  bool ended() const { return still_ >= kStillCycles; }
+  /// Once it has ended; without the time that it took.
+  ChipResult result();
+
+ private:
+  // More than any port is busy with a package: all that is counted for the report is right then.
+  static constexpr uint64_t kStillCycles = 1024;
+
+  FrameSetup setup() const;
+  void follow_kernels(const ChipOutputs& outputs);
+  void follow_levels(const ChipOutputs& outputs);
+  void watch(const ChipOutputs& outputs);
+  void stall(const std::string& what) const;
+  RayKernel kernel_at(uint32_t pc) const;
+  void show_progress() const;
+  FrameFigures figures();
+  const TraverserCounts& traced() const { return watch_ ? watch_->counts() : traverser_->counts(); }
+
+  const ChipOptions& options_;
+  ChipDevice& chip_;
+  const bool reflects_;
+  BoardMemory memory_;
+  AnswerWatch answers_;
+  std::optional<PortTraverser> traverser_;
+  std::optional<TraverserWatch> watch_;  // of one inside
+  ChipInputs inputs_;
+  uint64_t cycle_ = 0;
+  uint64_t cycles_ = 0;  // of the frame, once it has ended
+  bool begun_ = false, ended_ = false;
+  uint64_t still_ = 0;  // cycles in which nothing has moved since the end
+
+  KernelTimes kernels_;
+  uint64_t busy_cycles_ = 0, dropped_depth_ = 0, cast_ = 0;
+  LevelStatistics rays_;
+  EnumArray<ImportKind, LevelStatistics, kImportKinds> intersections_;
+  uint64_t transfers_ = 0, transfers_before_ = 0, retired_before_ = 0, silent_ = 0;
+};
+
+}  // namespace chip
 
 /// Draws one frame, as run_chip() does, on a chip for `options.configuration`. `options.device`, `tiles` and
 /// `own_policy` have no meaning here, nor has `tracer` with a traverser inside, or `tree` with another. Throws

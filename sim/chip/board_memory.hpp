@@ -1,7 +1,8 @@
 // The memories on a board, the units' and the traverser's, behind the bus of the chip's memory port: they answer in
-// order, each line with its last beat after the latency.
+// order, each line with its last beat when the memory has it.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <deque>
@@ -14,15 +15,50 @@
 
 namespace raypool::chip {
 
+/// What the memories hold, and how long they take.
+class LineStore {
+ public:
+  using Line = std::array<Beat, raypool::MemoryPort::kLineBeats>;
+
+  virtual ~LineStore() = default;
+  /// Reads a line that is asked for in this cycle. Returns the cycles from its service at the chip's memory port to its
+  /// last beat there: fewer than BoardMemory::least_latency() are that many.
+  virtual uint64_t read(bool traverser, uint32_t address, Line& line) = 0;
+  virtual void write(bool traverser, const MemoryRequest& request) = 0;
+};
+
+/// Whatever is asked, a read is over so many cycles later.
+class FixedLatencyStore : public LineStore {
+ public:
+  /// `tree`: the traverser's; null: it has none. Both must outlive it.
+  FixedLatencyStore(Memory& memory, Memory* tree, uint64_t latency) : memory_(memory), tree_(tree), latency_(latency) {}
+
+  uint64_t read(bool traverser, uint32_t address, Line& line) override {
+    for (Beat& beat : line)
+      for (uint32_t& word : beat) word = of(traverser).load(address), address += 4;
+    return latency_;
+  }
+  void write(bool traverser, const MemoryRequest& request) override {
+    for (uint32_t word = 0; word < kBeatWords; ++word)
+      if ((request.mask >> word & 1) != 0) of(traverser).store(request.address + 4 * word, request.data[word]);
+  }
+
+ private:
+  Memory& of(bool traverser) const {
+    if (traverser && tree_ == nullptr) throw std::logic_error("the traverser has no memory");
+    return traverser ? *tree_ : memory_;
+  }
+
+  Memory& memory_;
+  Memory* tree_;
+  uint64_t latency_;
+};
+
 class BoardMemory {
  public:
-  /// chip.memory.latency must leave it a cycle (MemoryPort): least_latency() is enough. `tree`: the traverser's; null:
-  /// it has none. Both must outlive it.
-  BoardMemory(Memory& memory, Memory* tree, const ChipConfiguration& chip)
-      : memory_(memory),
-        tree_(tree),
-        cycles_per_beat_(chip.memory_cycles_per_beat),
-        first_beat_(chip.memory_latency - least_latency(chip) + 1) {}
+  /// `store` must outlive it.
+  BoardMemory(LineStore& store, const ChipConfiguration& chip)
+      : store_(store), cycles_per_beat_(chip.memory_cycles_per_beat), least_latency_(least_latency(chip)) {}
   /// Of a line, from its service at the port to its last beat: the port has three cycles of them, and the beats.
   static uint64_t least_latency(const ChipConfiguration& chip) {
     return 3 + uint64_t{raypool::MemoryPort::kLineBeats - 1} * chip.memory_cycles_per_beat;
@@ -43,34 +79,34 @@ class BoardMemory {
  private:
   struct Line {
     uint64_t due;  // its next beat
-    std::array<Beat, raypool::MemoryPort::kLineBeats> beats;
+    LineStore::Line beats;
   };
 
+  // The bus moves a beat at a time, whenever the memory has had the next line.
   void give(uint64_t cycle) {
-    lines_.front().due = cycle + cycles_per_beat_;
-    if (++next_beat_ < raypool::MemoryPort::kLineBeats) return;
-    next_beat_ = 0;
-    lines_.pop_front();
-  }
-  void take(uint64_t cycle, const raypool::MemoryPort::Access& access) {
-    if (access.traverser && tree_ == nullptr) throw std::logic_error("the traverser has no memory");
-    Memory& memory = access.traverser ? *tree_ : memory_;
-    const MemoryRequest& request = access.request;
-    if (request.write) {
-      for (uint32_t word = 0; word < kBeatWords; ++word)
-        if ((request.mask >> word & 1) != 0) memory.store(request.address + 4 * word, request.data[word]);
+    const uint64_t next = cycle + cycles_per_beat_;
+    if (++next_beat_ < raypool::MemoryPort::kLineBeats) {
+      lines_.front().due = next;
       return;
     }
-    Line line{cycle + first_beat_, {}};
-    uint32_t address = request.address;
-    for (Beat& beat : line.beats)
-      for (uint32_t& word : beat) word = memory.load(address), address += 4;
+    next_beat_ = 0;
+    lines_.pop_front();
+    if (!lines_.empty()) lines_.front().due = std::max(lines_.front().due, next);
+  }
+  void take(uint64_t cycle, const raypool::MemoryPort::Access& access) {
+    const MemoryRequest& request = access.request;
+    if (request.write) {
+      store_.write(access.traverser, request);
+      return;
+    }
+    Line line{};
+    const uint64_t latency = std::max(store_.read(access.traverser, request.address, line.beats), least_latency_);
+    line.due = cycle + latency - least_latency_ + 1;
     lines_.push_back(line);
   }
 
-  Memory& memory_;
-  Memory* tree_;
-  uint64_t cycles_per_beat_, first_beat_;
+  LineStore& store_;
+  uint64_t cycles_per_beat_, least_latency_;
   std::deque<Line> lines_;
   uint32_t next_beat_ = 0;  // of the oldest line
 };

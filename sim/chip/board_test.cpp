@@ -10,36 +10,15 @@
 #include <utility>
 
 #include "chip/answer_watch.hpp"
-#include "chip/test_real_frame.hpp"
-#include "machine/chip_model.hpp"
-#include "machine/model.hpp"
+#include "chip/test_board.hpp"
 #include "scene/native_renderer.hpp"
 
 namespace raypool {
 namespace {
 
-/// A machine, and what of its chip is not as it is by default.
-struct Case {
-  const char* name;
-  uint32_t warps, lanes, units, width, height, depth;
-  uint32_t intersection_words = kIntersectionWords;
-  void (*change)(ChipConfiguration&) = [](ChipConfiguration&) {};
-};
-
-struct BoardRun {
-  explicit BoardRun(const Case& c)
-      : run(c.warps, c.lanes, c.width, c.height, c.depth, make_cornell(), false, c.intersection_words) {
-    ChipConfiguration& chip = run.options.configuration.chip;
-    chip.controller = ControllerName::Counters;
-    c.change(chip);
-    device = make_chip_model(run.options.configuration,
-                             make_model(run.options.configuration, run.image.memory, c.units).device);
-  }
-  ChipResult draw() { return run_board(run.options, *device); }
-
-  test::RealFrame run;
-  std::unique_ptr<ChipDevice> device;
-};
+using Case = test::BoardCase;
+using test::BoardRun;
+using test::TreeBoard;
 
 class BoardFrame : public testing::TestWithParam<Case> {};
 
@@ -136,31 +115,6 @@ TEST(Board, TellsOfAFault) {
 
 // ---- A traverser inside, whose memory holds no tree, or loses something
 
-void inside(ChipConfiguration& chip) {
-  chip.traverser = TraverserName::Hardware;
-  chip.modelled_traverser_box_pipes = 2;
-  chip.modelled_traverser_rays = 8;
-  chip.modelled_traverser_triangle_pipes = 1;
-  chip.modelled_traverser_stack_entries = 8;
-  chip.modelled_traverser_cache_banks = 1;
-  chip.modelled_traverser_node_cache_bytes = chip.modelled_traverser_triangle_cache_bytes = 1024;
-  chip.modelled_traverser_node_cache_ways = chip.modelled_traverser_triangle_cache_ways = 2;
-  chip.modelled_traverser_node_cache_mshrs = chip.modelled_traverser_triangle_cache_mshrs = 2;
-}
-
-struct TreeBoard : BoardRun {
-  TreeBoard()
-      : BoardRun({"", 4, 4, 1, 16, 12, 3, kIntersectionWords, inside}),
-        tree(make_tree_image(run.scene, run.tracer.traversal().bvh(), run.options.configuration.chip,
-                             run.image.material_base)) {
-    run.options.tree = &tree;
-  }
-  // Word of a node in the tree's memory.
-  void change(uint32_t node, uint32_t word, uint32_t value) { tree.memory.store(64 * node + 4 * word, value); }
-  uint32_t word(uint32_t node, uint32_t word) const { return tree.memory.load(64 * node + 4 * word); }
-
-  TreeImage tree;
-};
 constexpr uint32_t kCountWord = 3, kFirstChild = 10;
 
 std::string fault_of(TreeBoard& board, TreeFaultCode code) {

@@ -15,16 +15,11 @@
 
 #include "chip/chip_clock.hpp"
 #include "chip/interfaces.hpp"
+#include "chip/memory_transport.hpp"
 #include "config/configuration.hpp"
 #include "machine/memory_port.hpp"
 
 namespace raypool::chip {
-
-inline constexpr uint32_t kLineBeats = raypool::MemoryPort::kLineBeats;
-inline constexpr uint32_t kBeatBytes = raypool::MemoryPort::kQuadwordBytes, kLineBytes = kLineBeats * kBeatBytes;
-
-inline constexpr unsigned kMemoryBits = 8 * kBeatBytes;  ///< width of the memory's sockets
-using MemorySocket = tlm::tlm_initiator_socket<kMemoryBits>;
 
 class MemoryPort : public sc_core::sc_module, public MemoryIf, public MemoryTurnsIf {
  public:
@@ -49,13 +44,10 @@ class MemoryPort : public sc_core::sc_module, public MemoryIf, public MemoryTurn
 
  private:
   uint64_t serve();
-  void write(const MemoryRequest& request, uint64_t start);
   void read(const MemoryRequest& request, uint64_t start);
-  uint64_t transport(tlm::tlm_command command, uint32_t address, void* data, uint32_t bytes, uint64_t start);
 
   raypool::MemoryPort port_;
-  tlm::tlm_generic_payload payload_;
-  std::array<unsigned char, kBeatBytes> enable_{};  // bytes of a write
+  MemoryTransport transport_;
 };
 
 }  // namespace raypool::chip

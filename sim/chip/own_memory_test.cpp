@@ -2,10 +2,13 @@
 #include <gtest/gtest.h>
 
 #include "bits.hpp"
+#include "chip/chip_device_module.hpp"
 #include "chip/chip_module.hpp"
+#include "chip/fixed_latency_memory.hpp"
 #include "chip/program_module.hpp"
 #include "chip/simulation.hpp"
 #include "chip/test_banked_dram.hpp"
+#include "chip/test_board.hpp"
 #include "chip/test_driver.hpp"
 #include "chip/test_real_frame.hpp"
 #include "kernel/compute_kernels.hpp"
@@ -65,6 +68,71 @@ TEST(OwnMemory, DrawsTheSamePictureInAnotherTime) {
   EXPECT_NE(result.cycles, expected.cycles);
 }
 
+/// Does with every access what a test wants.
+struct Peculiar : sc_core::sc_module {
+  Peculiar(const sc_core::sc_module_name& name, std::function<void(tlm::tlm_generic_payload&)> what)
+      : sc_module(name), act(std::move(what)) {
+    socket.register_b_transport(this, &Peculiar::b_transport);
+  }
+  void b_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time&) { act(payload); }
+
+  tlm_utils::simple_target_socket<Peculiar, kMemoryBits> socket{"socket"};
+  std::function<void(tlm::tlm_generic_payload&)> act;
+};
+
+// The chip as one piece, with a traverser inside, whose memory is another one.
+ChipResult draw_in_systemc(test::TreeBoard& board) {
+  const uint64_t latency = board.run.options.configuration.chip.memory_latency;
+  Simulation simulation;
+  ChipDeviceModule chip("chip", board.run.options, *board.device);
+  FixedLatencyMemory memory("memory", board.run.image.memory, latency), tree("tree", board.tree.memory, latency);
+  chip.memory.bind(memory.socket);
+  chip.tree.bind(tree.socket);
+  return chip.draw();
+}
+
+ChipResult draw_banked(test::TreeBoard& board, uint64_t& row_hits) {
+  Simulation simulation;
+  ChipDeviceModule chip("chip", board.run.options, *board.device);
+  BankedDram memory("memory", board.run.image.memory), tree("tree", board.tree.memory);
+  chip.memory.bind(memory.socket);
+  chip.tree.bind(tree.socket);
+  const ChipResult result = chip.draw();
+  row_hits = tree.row_hits;
+  return result;
+}
+
+TEST(OwnMemory, OfTheChipAsOnePieceTakesAsLongAsTheBoardsIfItDoes) {
+  test::TreeBoard board, systemc;
+  const ChipResult expected = board.draw(), result = draw_in_systemc(systemc);
+  EXPECT_TRUE(systemc.run.frame == board.run.frame);
+  EXPECT_EQ(result.cycles, expected.cycles);
+  EXPECT_EQ(result.memory_port_utilisation, expected.memory_port_utilisation);
+}
+
+TEST(OwnMemory, OfTheChipAsOnePieceDrawsTheSamePictureInAnotherTime) {
+  test::TreeBoard board, banked;
+  uint64_t row_hits = 0;
+  const ChipResult expected = board.draw(), result = draw_banked(banked, row_hits);
+  EXPECT_TRUE(banked.run.frame == board.run.frame);
+  EXPECT_EQ(result.contributions, expected.contributions);
+  EXPECT_NE(result.cycles, expected.cycles);
+  EXPECT_GT(row_hits, 0u);
+}
+
+TEST(OwnMemory, OfTheChipAsOnePieceThatRefusesEndsTheRunWithASentence) {
+  test::TreeBoard board;
+  Simulation simulation;
+  ChipDeviceModule chip("chip", board.run.options, *board.device);
+  Peculiar refuses("memory", [](tlm::tlm_generic_payload& payload) {
+    payload.set_response_status(tlm::TLM_ADDRESS_ERROR_RESPONSE);
+  });
+  chip.memory.bind(refuses.socket);
+  FixedLatencyMemory tree("tree", board.tree.memory, 100);
+  chip.tree.bind(tree.socket);
+  EXPECT_THROW(chip.draw(), InputError);
+}
+
 /// y[i] = x[i] + y[i] for 512 elements.
 struct Saxpy {
   static constexpr uint32_t kElements = 512, kX = 8192, kY = 16384;
@@ -113,18 +181,6 @@ TEST(OwnMemory, ServesAComputeProgram) {
   EXPECT_GT(dram.row_hits, dram.row_misses);
   EXPECT_NE(result.cycles, expected.cycles);
 }
-
-/// Does with every access what a test wants.
-struct Peculiar : sc_core::sc_module {
-  Peculiar(const sc_core::sc_module_name& name, std::function<void(tlm::tlm_generic_payload&)> what)
-      : sc_module(name), act(std::move(what)) {
-    socket.register_b_transport(this, &Peculiar::b_transport);
-  }
-  void b_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time&) { act(payload); }
-
-  tlm_utils::simple_target_socket<Peculiar, kMemoryBits> socket{"socket"};
-  std::function<void(tlm::tlm_generic_payload&)> act;
-};
 
 std::string refusal(std::function<void(tlm::tlm_generic_payload&)> what) {
   Saxpy saxpy;

@@ -8,6 +8,9 @@
 #include <string>
 #include <utility>
 
+#include "chip/chip_device_module.hpp"
+#include "chip/simulation.hpp"
+#include "chip/test_banked_dram.hpp"
 #include "lockstep/lockstep_chip.hpp"
 #include "lockstep/rtl_loader.hpp"
 #include "machine/chip_model.hpp"
@@ -48,6 +51,28 @@ TEST_P(ChipTraverser, DrawsThePictureOfTheNativeEngineWithoutADifference) {
   EXPECT_EQ(counts.differences, 0u);
   EXPECT_GE(counts.counters, frames);
   EXPECT_GT(counts.memory_writes, 0u) << "no stack has been longer than what the traverser keeps of it";
+}
+
+// The Verilated chip as a module of SystemC, whose memories answer in a time of their own.
+TEST_P(ChipTraverser, DrawsTheSameInSystemCWithDramOfBanks) {
+  const Machine machine = GetParam()();
+  const Configuration& c = machine.configuration;
+  Drawing drawing(machine, {9, 11, 3, true}, make_cornell());
+  const std::unique_ptr<LockstepChip> device =
+      make_lockstep_chip(c, load_rtl_chip(chip_library(machine), c, machine.units), drawing.memory(), c.name);
+  chip::Simulation simulation;
+  chip::ChipDeviceModule chip("chip", drawing.options(), *device);
+  BankedDram memory("memory", drawing.memory()), tree("tree", drawing.tree().memory);
+  chip.memory.bind(memory.socket);
+  chip.tree.bind(tree.socket);
+  try {
+    drawing.expect_native(chip.draw());
+  } catch (const LockstepDifference& difference) {
+    FAIL() << difference.what();
+  }
+  EXPECT_EQ(device->lockstep_counts().differences, 0u);
+  EXPECT_GT(memory.row_hits, memory.row_misses);
+  EXPECT_GT(tree.row_hits, 0u);
 }
 
 INSTANTIATE_TEST_SUITE_P(Machines, ChipTraverser, testing::Values(smallest_inside, full_inside),

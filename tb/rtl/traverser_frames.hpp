@@ -165,7 +165,8 @@ class Drawing {
     options_.frame = &sink_;
   }
 
-  const Memory& memory() const { return image_.memory; }
+  Memory& memory() { return image_.memory; }
+  const ChipOptions& options() const { return options_; }
   TreeImage& tree() { return tree_; }
   ChipResult draw_on(ChipDevice& chip) { return run_board(options_, chip); }
 
