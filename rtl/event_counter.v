@@ -1,11 +1,12 @@
 // Adds up to 2^EVENT_BITS - 1 events a cycle. The carry out of the low bits is added a cycle later, so
 // that no long carry chain stands in a cycle. Promise: value_o + pending_o is the number of events up to
-// and including this cycle's event_i.
+// and including this cycle's event_i; with LATE, the cycle before's: for events that are known late.
 `default_nettype none
 module event_counter #(
   parameter integer BITS = 48,
   parameter integer LOW_BITS = 12,
-  parameter integer EVENT_BITS = 6          // at most LOW_BITS
+  parameter integer EVENT_BITS = 6,         // at most LOW_BITS
+  parameter integer LATE = 0
 ) (
   input  wire                  clk_i,
   input  wire                  rst_ni,
@@ -17,7 +18,17 @@ module event_counter #(
   reg [LOW_BITS-1:0] low_q;
   reg [HIGH_BITS-1:0] high_q;
   reg carry_q;
-  wire [LOW_BITS-1:0] events = {{LOW_BITS-EVENT_BITS{1'b0}}, event_i};
+  wire [EVENT_BITS-1:0] event_then;
+  generate
+    if (LATE != 0) begin : gen_late
+      reg [EVENT_BITS-1:0] event_q;
+      always @(posedge clk_i) event_q <= rst_ni ? event_i : {EVENT_BITS{1'b0}};
+      assign event_then = event_q;
+    end else begin : gen_now
+      assign event_then = event_i;
+    end
+  endgenerate
+  wire [LOW_BITS-1:0] events = {{LOW_BITS-EVENT_BITS{1'b0}}, event_then};
 
   always @(posedge clk_i)
     if (!rst_ni) begin

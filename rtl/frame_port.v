@@ -53,7 +53,7 @@ module frame_port (
     end
 
   wire [12:0] unused;
-  event_counter #(.EVENT_BITS(1)) taken (
+  event_counter #(.EVENT_BITS(1), .LATE(1)) taken (
     .clk_i(clk_i), .rst_ni(rst_ni), .event_i(take), .value_o(taken_o), .pending_o(unused));
 endmodule
 `default_nettype wire

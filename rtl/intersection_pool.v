@@ -165,6 +165,8 @@ module intersection_pool #(
         reg [LEVEL_BITS-1:0] size_q, available_q;
         wire comes = put_last && put_kind_i == KIND;
         wire goes = taken && request_kind_i == KIND;
+        // read && kind == KIND; what is asked for is known late.
+        wire reads = gap_q == {GAP_BITS{1'b0}} && (moving ? kind_q == KIND : next_valid_q ? next_kind_q == KIND : goes);
         assign filled[k] = size_q != {LEVEL_BITS{1'b0}} || comes;
         assign put_ready_o[k] = size_q != SIZE[LEVEL_BITS-1:0] || begun;
         assign size_o[k*LEVEL_BITS +: LEVEL_BITS] = size_q;
@@ -178,7 +180,7 @@ module intersection_pool #(
             size_q <= {LEVEL_BITS{1'b0}};
             available_q <= {LEVEL_BITS{1'b0}};
           end else begin
-            if (read && kind == KIND)
+            if (reads)
               head_q <= (head_q == LAST[ADDRESS_BITS-1:0]) ? FIRST[ADDRESS_BITS-1:0] : head_q + 1'b1;
             if (put && put_kind_i == KIND)
               tail_q <= (tail_q == LAST[ADDRESS_BITS-1:0]) ? FIRST[ADDRESS_BITS-1:0] : tail_q + 1'b1;
@@ -205,7 +207,7 @@ module intersection_pool #(
     .write_address_i(tail), .write_data_i(put_data_i));
 
   wire [12:0] unused;
-  event_counter #(.EVENT_BITS(1)) packages_taken (
+  event_counter #(.EVENT_BITS(1), .LATE(1)) packages_taken (
     .clk_i(clk_i), .rst_ni(rst_ni), .event_i(taken), .value_o(taken_o), .pending_o(unused));
 endmodule
 `default_nettype wire

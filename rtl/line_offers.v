@@ -17,8 +17,8 @@ module line_offers #(
   output wire [2*WIDTH-1:0] data_o,
   input  wire [1:0]         taken_i,
   // what was taken in the cycle before
-  output reg                asked_o,
-  output reg  [WIDTH-1:0]   asked_data_o
+  output wire               asked_o,
+  output wire [WIDTH-1:0]   asked_data_o
 );
   reg [1:0] there_q;
   reg older_q;                                   // which is older; if one is free, the other
@@ -28,21 +28,24 @@ module line_offers #(
   assign valid_o = {&there_q, |there_q};
   assign data_o = older_q ? {low_q, high_q} : {high_q, low_q};
   wire [1:0] gone = older_q ? {taken_i[0], taken_i[1]} : taken_i;
+  // In the cycle after, a register still has what was taken out of it.
+  reg [1:0] gone_q;
+  assign asked_o = |gone_q;
+  assign asked_data_o = gone_q[1] ? high_q : low_q;
   always @(posedge clk_i)
     if (!rst_ni) begin
       there_q <= 2'd0;
       older_q <= 1'b0;
-      asked_o <= 1'b0;
+      gone_q <= 2'd0;
     end else begin
       there_q <= (there_q | comes) & ~gone;
       if (|gone) older_q <= gone[0];
       else if (there_q == 2'd0) older_q <= 1'b0;
-      asked_o <= |taken_i;
+      gone_q <= gone;
     end
   always @(posedge clk_i) begin
     if (comes[0]) low_q <= data_i;
     if (comes[1]) high_q <= data_i;
-    asked_data_o <= gone[1] ? high_q : low_q;
   end
 endmodule
 `default_nettype wire

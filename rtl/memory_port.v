@@ -224,19 +224,16 @@ module memory_port #(
     end
   endgenerate
 
-  // ---- For the report: whose turn it is is known late, so it is counted in the cycle after
-  reg served_q, busy_q;                        // a request of the device's; anybody's, or the port was busy with one
-  always @(posedge clk_i)
-    if (!rst_ni) {served_q, busy_q} <= 2'd0;
-    else {served_q, busy_q} <= {serve_device, serve || wait_q != {WAIT_BITS{1'b0}}};
+  // ---- For the report
   wire [38:0] unused;
-  event_counter #(.EVENT_BITS(1)) reads (
-    .clk_i(clk_i), .rst_ni(rst_ni), .event_i(served_q && !memory_request_write_o), .value_o(reads_o),
+  event_counter #(.EVENT_BITS(1), .LATE(1)) reads (
+    .clk_i(clk_i), .rst_ni(rst_ni), .event_i(serve_device && !write), .value_o(reads_o),
     .pending_o(unused[12:0]));
-  event_counter #(.EVENT_BITS(1)) writes (
-    .clk_i(clk_i), .rst_ni(rst_ni), .event_i(served_q && memory_request_write_o), .value_o(writes_o),
+  event_counter #(.EVENT_BITS(1), .LATE(1)) writes (
+    .clk_i(clk_i), .rst_ni(rst_ni), .event_i(serve_device && write), .value_o(writes_o),
     .pending_o(unused[25:13]));
-  event_counter #(.EVENT_BITS(1)) busy_cycles (
-    .clk_i(clk_i), .rst_ni(rst_ni), .event_i(busy_q), .value_o(busy_cycles_o), .pending_o(unused[38:26]));
+  event_counter #(.EVENT_BITS(1), .LATE(1)) busy_cycles (
+    .clk_i(clk_i), .rst_ni(rst_ni), .event_i(serve || wait_q != {WAIT_BITS{1'b0}}), .value_o(busy_cycles_o),
+    .pending_o(unused[38:26]));
 endmodule
 `default_nettype wire

@@ -27,28 +27,28 @@ module ram_queue #(
   wire another = left != {COUNT_BITS{1'b0}};
   wire [ADDRESS_BITS-1:0] behind_head = (head_q == LAST[ADDRESS_BITS-1:0]) ? {ADDRESS_BITS{1'b0}} : head_q + 1'b1;
 
-  // The RAM's word is the oldest entry, but for one that came to an empty queue: it is in a register of its own.
-  reg alone_q;
-  reg [WIDTH-1:0] alone_data_q;
+  // The RAM's word is the oldest entry, but for one that came to an empty queue in the cycle before: it is still in the
+  // register of what came last, which is loaded in every cycle, as whether the queue is empty is known late.
+  reg fresh_q;
+  reg [WIDTH-1:0] came_q;
   wire [WIDTH-1:0] word;
-  assign data_o = alone_q ? alone_data_q : word;
+  assign data_o = fresh_q ? came_q : word;
   ram_1r1w #(.WIDTH(WIDTH), .DEPTH(DEPTH)) ram (
-    .clk_i(clk_i), .read_i(pop && another), .read_address_i(behind_head), .read_data_o(word), .write_i(push_i),
-    .write_address_i(tail_q), .write_data_i(data_i));
+    .clk_i(clk_i), .read_i((fresh_q || pop) && another), .read_address_i(pop ? behind_head : head_q),
+    .read_data_o(word), .write_i(push_i), .write_address_i(tail_q), .write_data_i(data_i));
 
   always @(posedge clk_i)
     if (!rst_ni) begin
       count_q <= {COUNT_BITS{1'b0}};
       head_q <= {ADDRESS_BITS{1'b0}};
       tail_q <= {ADDRESS_BITS{1'b0}};
-      alone_q <= 1'b0;
+      fresh_q <= 1'b0;
     end else begin
       count_q <= left + {{COUNT_BITS-1{1'b0}}, push_i};
       if (pop) head_q <= behind_head;
       if (push_i) tail_q <= (tail_q == LAST[ADDRESS_BITS-1:0]) ? {ADDRESS_BITS{1'b0}} : tail_q + 1'b1;
-      if (push_i && !another) alone_q <= 1'b1;
-      else if (pop) alone_q <= 1'b0;
+      fresh_q <= push_i && !another;
     end
-  always @(posedge clk_i) if (push_i && !another) alone_data_q <= data_i;
+  always @(posedge clk_i) came_q <= data_i;
 endmodule
 `default_nettype wire

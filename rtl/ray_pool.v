@@ -207,9 +207,9 @@ module ray_pool #(
   // ---- For the report. A turn that was given ahead keeps the port busy from the ray's first beat on.
   wire busy = turn || waits || take || beat_q != 2'd0 || (open_q && !ahead_q);
   wire [25:0] unused;
-  event_counter #(.EVENT_BITS(1)) taken (
+  event_counter #(.EVENT_BITS(1), .LATE(1)) taken (
     .clk_i(clk_i), .rst_ni(rst_ni), .event_i(last), .value_o(taken_o), .pending_o(unused[12:0]));
-  event_counter #(.EVENT_BITS(1)) busy_cycles (
+  event_counter #(.EVENT_BITS(1), .LATE(1)) busy_cycles (
     .clk_i(clk_i), .rst_ni(rst_ni), .event_i(busy), .value_o(busy_cycles_o), .pending_o(unused[25:13]));
 endmodule
 `default_nettype wire

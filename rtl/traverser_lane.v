@@ -159,9 +159,13 @@ module traverser_lane #(
   genvar g;
   generate
     for (g = 0; g < 2; g = g + 1) begin : gen_nodes
+      // Who goes on is known late in a cycle.
+      reg go_q;
+      reg [NODE_BITS-1:0] go_node_q;
+      always @(posedge clk_i) go_q <= rst_ni && go[g] && !go_reference[32*g+31];
+      always @(posedge clk_i) go_node_q <= {go_slot[g*SLOT_BITS+:SLOT_BITS], go_reference[32*g+:LINE_BITS]};
       ram_queue #(.WIDTH(NODE_BITS), .DEPTH(SLOTS)) queue (
-        .clk_i(clk_i), .rst_ni(rst_ni), .push_i(go[g] && !go_reference[32*g+31]),
-        .data_i({go_slot[g*SLOT_BITS+:SLOT_BITS], go_reference[32*g+:LINE_BITS]}), .valid_o(node_waits[g]),
+        .clk_i(clk_i), .rst_ni(rst_ni), .push_i(go_q), .data_i(go_node_q), .valid_o(node_waits[g]),
         .ready_i(node_popped[g]), .data_o(node_heads[g*NODE_BITS+:NODE_BITS]));
     end
   endgenerate

@@ -117,6 +117,9 @@ class TraverserLane {
       ends_.pop();
     }
 
+    for (size_t i = 0; i < nodes_.size(); ++i)
+      if (goes_on_[i]) nodes_[i].push(*goes_on_[i]);
+    goes_on_ = {};
     LeafReader::Inputs leaves;
     if (outcome.node_goes_on) go(0, node_->slot, node_->nearest, leaves);
     if (outcome.next) go(1, outcome.slot, outcome.reference, leaves);
@@ -193,7 +196,7 @@ class TraverserLane {
 
   void go(uint32_t source, uint32_t slot, uint32_t reference, LeafReader::Inputs& leaves) {
     if ((reference & kLeaf) == 0) {
-      nodes_[source].push({reference & LeafReader::kLastLine, slot, false});
+      goes_on_[source] = LineWant{reference & LeafReader::kLastLine, slot, false};
     } else {
       leaves.starts[source] = LeafReader::Start{slot, reference};
     }
@@ -244,6 +247,7 @@ class TraverserLane {
   std::vector<LaneRay> rays_;  // [slot]
   RamQueue<uint32_t> begins_;  // slots whose ray has come
 
+  LineWants goes_on_;                        // with a node, in the cycle before
   std::array<RamQueue<LineWant>, 2> nodes_;  // that are wanted: from box results; from the stack, and roots
   uint32_t node_turn_ = 0;                   // whose head comes next
   LineOffers<LineWant> node_offers_;

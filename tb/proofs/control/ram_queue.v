@@ -5,9 +5,10 @@
 // @parameters DEPTH=4
 // @parameters DEPTH=3
 // @parameters DEPTH=1
-// @break ram_queue s/read_i\(pop && another\)/read_i(pop \&\& !push_i)/
-// @break ram_queue s/push_i && !another\) alone_q/push_i \&\& !valid_o) alone_q/
-// @break ram_queue s/else if \(pop\) alone_q <= 1'b0/else if (pop \&\& !another) alone_q <= 1'b0/
+// @break ram_queue s/read_i\(\(fresh_q \|\| pop\) && another\)/read_i((fresh_q || pop) \&\& another \&\& !push_i)/
+// @break ram_queue s/read_i\(\(fresh_q \|\| pop\) && another\)/read_i(pop \&\& another)/
+// @break ram_queue s/push_i && !another/push_i \&\& !valid_o/
+// @break ram_queue s/pop \? behind_head : head_q/behind_head/
 // @break ram_queue s/if \(pop\) head_q <= behind_head/if (pop \&\& another) head_q <= behind_head/
 // @break ram_queue s/LAST = DEPTH - 1/LAST = DEPTH - 3/
 `default_nettype none
