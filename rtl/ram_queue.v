@@ -19,13 +19,15 @@ module ram_queue #(
   localparam integer ADDRESS_BITS = (DEPTH > 1) ? $clog2(DEPTH) : 1;
   localparam integer LAST = DEPTH - 1;
 
+  localparam [COUNT_BITS-1:0] NONE = 0, ONE = 1;
+
   reg [COUNT_BITS-1:0] count_q;
+  reg some_q, more_q;                      // it holds an entry; more than one
   reg [ADDRESS_BITS-1:0] head_q, tail_q;   // the oldest entry; the place of the next one
-  assign valid_o = count_q != {COUNT_BITS{1'b0}};
-  wire pop = valid_o && ready_i;
-  wire [COUNT_BITS-1:0] left = count_q - {{COUNT_BITS-1{1'b0}}, pop};
-  wire another = left != {COUNT_BITS{1'b0}};
+  assign valid_o = some_q;
+  wire pop = some_q && ready_i;
   wire [ADDRESS_BITS-1:0] behind_head = (head_q == LAST[ADDRESS_BITS-1:0]) ? {ADDRESS_BITS{1'b0}} : head_q + 1'b1;
+  wire [ADDRESS_BITS-1:0] behind_tail = (tail_q == LAST[ADDRESS_BITS-1:0]) ? {ADDRESS_BITS{1'b0}} : tail_q + 1'b1;
 
   // The RAM's word is the oldest entry, but for one that came to an empty queue in the cycle before: it is still in the
   // register of what came last, which is loaded in every cycle, as whether the queue is empty is known late.
@@ -34,20 +36,28 @@ module ram_queue #(
   wire [WIDTH-1:0] word;
   assign data_o = fresh_q ? came_q : word;
   ram_1r1w #(.WIDTH(WIDTH), .DEPTH(DEPTH)) ram (
-    .clk_i(clk_i), .read_i((fresh_q || pop) && another), .read_address_i(pop ? behind_head : head_q),
-    .read_data_o(word), .write_i(push_i), .write_address_i(tail_q), .write_data_i(data_i));
+    .clk_i(clk_i), .read_i(pop ? more_q : fresh_q), .read_address_i(pop ? behind_head : head_q), .read_data_o(word),
+    .write_i(push_i), .write_address_i(tail_q), .write_data_i(data_i));
 
+  // What follows if nothing is taken, and if something is: ready_i, which may come late, chooses between the two.
+  wire [COUNT_BITS-1:0] count_left = count_q + {{COUNT_BITS-1{1'b0}}, push_i}, count_taken = count_left - ONE;
+  wire some_left = some_q || push_i, some_taken = more_q || push_i;
+  wire more_left = more_q || (some_q && push_i), more_taken = (count_taken >> 1) != NONE;
   always @(posedge clk_i)
     if (!rst_ni) begin
-      count_q <= {COUNT_BITS{1'b0}};
+      count_q <= NONE;
+      some_q <= 1'b0;
+      more_q <= 1'b0;
       head_q <= {ADDRESS_BITS{1'b0}};
       tail_q <= {ADDRESS_BITS{1'b0}};
       fresh_q <= 1'b0;
     end else begin
-      count_q <= left + {{COUNT_BITS-1{1'b0}}, push_i};
+      count_q <= pop ? count_taken : count_left;
+      some_q <= pop ? some_taken : some_left;
+      more_q <= pop ? more_taken : more_left;
       if (pop) head_q <= behind_head;
-      if (push_i) tail_q <= (tail_q == LAST[ADDRESS_BITS-1:0]) ? {ADDRESS_BITS{1'b0}} : tail_q + 1'b1;
-      fresh_q <= push_i && !another;
+      if (push_i) tail_q <= behind_tail;
+      fresh_q <= push_i && (pop ? !more_q : !some_q);
     end
   always @(posedge clk_i) came_q <= data_i;
 endmodule

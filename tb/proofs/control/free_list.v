@@ -8,7 +8,7 @@
 // @break free_list s/ready_i && !unused_left\)/ready_i)/
 // @break free_list s/if \(ready_i && unused_left\)/if (ready_i)/
 // @break free_list s/push_i\(free_i\)/push_i(free_i \&\& !ready_i)/
-// @break ram_queue s/push_i && !another/push_i \&\& !valid_o/
+// @break ram_queue s/push_i && \(pop \? !more_q : !some_q\)/push_i \&\& !some_q/
 `default_nettype none
 module check #(parameter SIZE = 4, parameter BITS = SIZE > 1 ? $clog2(SIZE) : 1) (
   input wire clk_i, ready_i, free_i, input wire [BITS-1:0] number_i);
