@@ -18,7 +18,6 @@ module ram_queue #(
   localparam integer COUNT_BITS = $clog2(DEPTH + 1);
   localparam integer ADDRESS_BITS = (DEPTH > 1) ? $clog2(DEPTH) : 1;
   localparam integer LAST = DEPTH - 1;
-
   localparam [COUNT_BITS-1:0] NONE = 0, ONE = 1;
 
   reg [COUNT_BITS-1:0] count_q;
@@ -39,10 +38,9 @@ module ram_queue #(
     .clk_i(clk_i), .read_i(pop ? more_q : fresh_q), .read_address_i(pop ? behind_head : head_q), .read_data_o(word),
     .write_i(push_i), .write_address_i(tail_q), .write_data_i(data_i));
 
-  // What follows if nothing is taken, and if something is: ready_i, which may come late, chooses between the two.
-  wire [COUNT_BITS-1:0] count_left = count_q + {{COUNT_BITS-1{1'b0}}, push_i}, count_taken = count_left - ONE;
-  wire some_left = some_q || push_i, some_taken = more_q || push_i;
-  wire more_left = more_q || (some_q && push_i), more_taken = (count_taken >> 1) != NONE;
+  // What follows is known of registers; push_i and ready_i, which may both come late, choose.
+  wire [COUNT_BITS-1:0] one_more = count_q + ONE, one_less = count_q - ONE;
+  wire many = (one_less >> 1) != NONE;     // more than two, if it holds one
   always @(posedge clk_i)
     if (!rst_ni) begin
       count_q <= NONE;
@@ -52,9 +50,9 @@ module ram_queue #(
       tail_q <= {ADDRESS_BITS{1'b0}};
       fresh_q <= 1'b0;
     end else begin
-      count_q <= pop ? count_taken : count_left;
-      some_q <= pop ? some_taken : some_left;
-      more_q <= pop ? more_taken : more_left;
+      if (push_i != pop) count_q <= push_i ? one_more : one_less;
+      some_q <= push_i || (pop ? more_q : some_q);
+      if (push_i != pop) more_q <= push_i ? some_q : many;
       if (pop) head_q <= behind_head;
       if (push_i) tail_q <= behind_tail;
       fresh_q <= push_i && (pop ? !more_q : !some_q);

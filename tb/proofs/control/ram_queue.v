@@ -9,8 +9,8 @@
 // @break ram_queue s/read_i\(pop \? more_q : fresh_q\)/read_i(pop \&\& more_q)/
 // @break ram_queue s/push_i && \(pop \? !more_q : !some_q\)/push_i \&\& !some_q/
 // @break ram_queue s/pop \? behind_head : head_q/behind_head/
-// @break ram_queue s/more_left = more_q \|\| \(some_q && push_i\)/more_left = some_q/
-// @break ram_queue s/some_taken = more_q \|\| push_i/some_taken = more_q/
+// @break ram_queue s/push_i \? some_q : many/push_i \? some_q : more_q/
+// @break ram_queue s/some_q <= push_i \|\| \(pop \? more_q : some_q\)/some_q <= pop \? more_q : push_i || some_q/
 // @break ram_queue s/LAST = DEPTH - 1/LAST = DEPTH - 3/
 `default_nettype none
 module check #(parameter DEPTH = 4) (input wire clk_i, push_i, ready_i, choose_i, input wire [1:0] data_i);
