@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "cosim/program_check.hpp"
+#include "cosim/shrink_blocks.hpp"
 #include "isa/encoding.hpp"
 
 namespace raypool {
@@ -60,16 +61,10 @@ class Shrinker {
   }
 
   bool instructions() {
-    bool any = false;
-    for (size_t block = std::max<size_t>(1, best_.program.code.size() / 2);; block /= 2) {
-      for (size_t from = 0; from < best_.program.code.size() && !exhausted();) {
-        if (attempt(without_instructions(best_, from, block)))
-          any = true;
-        else
-          from += block;
-      }
-      if (block == 1) return any;
-    }
+    return shrink_blocks(
+        [this] { return best_.program.code.size(); },
+        [this](size_t from, size_t count) { return attempt(without_instructions(best_, from, count)); },
+        [this] { return exhausted(); });
   }
 
   bool stalls() {

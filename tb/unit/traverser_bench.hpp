@@ -130,6 +130,10 @@ class TraverserBench {
     }
   }
 
+  /// To try what notices: where this word is in a line of the memory, the Verilog alone gets it with a bit turned. 0:
+  /// no word.
+  void turn(uint32_t word) { turned_ = word; }
+
   TraverserSeen seen;
 
  private:
@@ -420,7 +424,10 @@ class TraverserBench {
     u_.ray_place_i = inputs.ray_valid ? inputs.ray_place : noise() % P::kPool;
     for (uint32_t i = 0; i < kBeatWords; ++i) {
       u_.ray_data_i[i] = inputs.ray_valid ? inputs.ray_data[i] : noise();
-      u_.response_data_i[i] = inputs.response_valid ? inputs.response_data[i] : noise();
+      const uint32_t word = inputs.response_data[i];
+      u_.response_data_i[i] = !inputs.response_valid            ? noise()
+                              : turned_ != 0 && word == turned_ ? word ^ 1u << 22
+                                                                : word;
     }
     u_.put_ready_i = static_cast<uint8_t>(inputs.put_ready >> 1 & (P::sizes().culling ? 7 : 3));
     u_.contribution_ready_i = inputs.contribution_ready;
@@ -481,6 +488,7 @@ class TraverserBench {
 
   std::map<uint32_t, TreeLine> memory_;
   StackMemory stack_memory_ = StackMemory::Keeps;
+  uint32_t turned_ = 0;
   uint64_t requests_since_fault_ = 0;
   uint32_t last_line_ = 0;
   std::deque<TreeLine> on_way_;

@@ -12,6 +12,7 @@
 #include "Vtraverser_5_24_16_12_1_64_4_16_8_32_2_5_1_160_20_0_1.h"
 #include "unit/garbage_trees.hpp"
 #include "unit/traverser_bench.hpp"
+#include "unit/tree_case.hpp"
 
 namespace raypool::bench {
 namespace {
@@ -20,25 +21,23 @@ namespace {
 template <typename P>
 class Case {
  public:
-  LaneTree tree;
+  TreeCase what;
   std::vector<typename TraverserBench<P>::Asked> rays;
 
   /// `change`: of the tree, before it is walked.
   Case(const Scene& scene, int count, uint32_t seed, const std::function<void(LaneTree&)>& change = {}) {
     const Traversal engine(scene);
     const Bvh& bvh = engine.bvh();
-    tree = LaneTree(scene, seed % 2 == 0 && !bvh.nodes.empty() ? test::random_tree(bvh, seed) : bvh);
-    if (change) change(tree);
-    const NarrowFloat narrow(TriangleGroup::kBits);
+    what.tree = LaneTree(scene, seed % 2 == 0 && !bvh.nodes.empty() ? test::random_tree(bvh, seed) : bvh);
+    if (change) change(what.tree);
     std::mt19937 random(seed);
     const Scene aims = scene.triangles.empty() ? test::ball({0, 0, 0}, 4) : scene;
     for (RayQuery query : hard_rays(aims, count, seed)) {
       if (random() % 24 == 0) query.limit = random() % 2 == 0 ? 0 : NAN;
       const bool shadow = random() % 3 == 0;
-      const LaneRay ray = lane_ray(query, tree.bounds, P::kBits, shadow);
-      rays.push_back({words(query, shadow, random), Walk(tree, ray, narrow, P::sizes().stack_entries), ray.limit.scale,
-                      ray.triangle});
+      what.rays.push_back(words(query, shadow, random));
     }
+    rays = asked_of<P>(what);
   }
 
  private:
@@ -51,7 +50,7 @@ class Case {
     }
     ray[word::kLimit] = as_bits(query.limit);
     ray[word::kPixel] = random();
-    ray[word::kColor] = static_cast<uint32_t>(rays.size());
+    ray[word::kColor] = static_cast<uint32_t>(what.rays.size());
     ray[word::kColor + 1] = random();
     ray[word::kColor + 2] = random();
     ray[word::kFlags] = (shadow ? kShadowFlag : 0) | (random() & 0x7fffff00) | random() % 8;
@@ -77,7 +76,7 @@ TYPED_TEST(TraverserTest, AgreesWithItsClassInEveryCycleAndEveryRayBecomesWhatIt
   for (uint32_t seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     const Case<TypeParam> test(any_scene(random), 120, seed);
-    ASSERT_NO_FATAL_FAILURE(bench.trace(test.tree, test.rays, traffics[random() % std::size(traffics)]));
+    ASSERT_NO_FATAL_FAILURE(bench.trace(test.what.tree, test.rays, traffics[random() % std::size(traffics)]));
   }
   const TraverserSeen& seen = bench.seen;
   const Traverser::Sizes sizes = TypeParam::sizes();
@@ -98,7 +97,7 @@ TYPED_TEST(TraverserTest, RaysThatWaitForRoomHoldUpNoOthers) {
   for (uint32_t seed = 1; seed <= 8; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     const Case<TypeParam> test(small_scene(random), 4 * int{TypeParam::kPool} + 50, 2 * seed);
-    ASSERT_NO_FATAL_FAILURE(bench.trace_without_room(test.tree, test.rays));
+    ASSERT_NO_FATAL_FAILURE(bench.trace_without_room(test.what.tree, test.rays));
   }
   EXPECT_GT(bench.seen.full, 0u);
 }
@@ -110,7 +109,7 @@ TYPED_TEST(TraverserTest, ManyRaysWaitForOneLine) {
     const std::array<Vec3, 3> one{Vec3{0, 0, 1}, Vec3{5, 0, 2}, Vec3{0, 5, 1}};
     const Case<TypeParam> test(scene_of(std::vector<std::array<Vec3, 3>>(triangles, one)), 150,
                                static_cast<uint32_t>(triangles));
-    ASSERT_NO_FATAL_FAILURE(bench.trace(test.tree, test.rays, {0, 0, triangles < 10 ? 600u : 60u, 0, 0, 0}));
+    ASSERT_NO_FATAL_FAILURE(bench.trace(test.what.tree, test.rays, {0, 0, triangles < 10 ? 600u : 60u, 0, 0, 0}));
   }
   if (TypeParam::sizes().slots > LeafReader::kLines) EXPECT_GT(bench.seen.left, 100u);
 }
@@ -122,7 +121,7 @@ TYPED_TEST(TraverserTest, EachFaultIsNamed) {
     SCOPED_TRACE(garbage.name);
     const uint64_t before = bench.seen.faults[to_underlying(garbage.code)];
     const Case<TypeParam> test(soup(5, 60, 1, {0, 0, 0}), 60, 1, garbage.make);
-    ASSERT_NO_FATAL_FAILURE(bench.trace_or_fault(test.tree, test.rays, {}));
+    ASSERT_NO_FATAL_FAILURE(bench.trace_or_fault(test.what.tree, test.rays, {}));
     EXPECT_EQ(bench.seen.faults[to_underlying(garbage.code)], before + 1);
   }
 }
@@ -136,7 +135,7 @@ TYPED_TEST(TraverserTest, FaultsThatComeTogether) {
     TraverserBench<TypeParam> bench(seed);
     const Case<TypeParam> test(soup(seed, 12, 1, {0, 0, 0}), 24, seed, seed <= 60 ? make_both : make_two_ladders);
     const TraverserTraffic traffic{0, 0, 1 + static_cast<uint32_t>(random() % 40), 0, 0, 0};
-    ASSERT_NO_FATAL_FAILURE(bench.trace_or_fault(test.tree, test.rays, traffic));
+    ASSERT_NO_FATAL_FAILURE(bench.trace_or_fault(test.what.tree, test.rays, traffic));
     for (size_t code = 0; code < faults.size(); ++code) faults[code] += bench.seen.faults[code];
   }
   EXPECT_GT(faults[to_underlying(TreeFaultCode::NodeBeyond)] + faults[to_underlying(TreeFaultCode::Children)], 20u);
@@ -158,7 +157,7 @@ TYPED_TEST(TraverserTest, StacksBearWhatTheyHaveRoomFor) {
   for (const uint32_t nodes : {depth - 1, depth}) {
     SCOPED_TRACE(testing::Message() << nodes << " nodes");
     const Case<TypeParam> test(soup(5, 60, 1, {0, 0, 0}), 20, 1, [nodes](LaneTree& tree) { make_chain(tree, nodes); });
-    ASSERT_NO_FATAL_FAILURE(bench.trace_or_fault(test.tree, test.rays, {}));
+    ASSERT_NO_FATAL_FAILURE(bench.trace_or_fault(test.what.tree, test.rays, {}));
     EXPECT_EQ(bench.seen.faults[to_underlying(TreeFaultCode::StackFull)], nodes == depth ? 1u : 0u);
   }
 }
@@ -170,15 +169,20 @@ uint32_t number_from(const char* variable, uint32_t otherwise) {
 
 // RAYPOOL_TREES trees from that of RAYPOOL_SEED on.
 TYPED_TEST(TraverserTest, TreesOfChance) {
+  if (runs_case_of_file<TypeParam>()) return;
   const uint32_t first = number_from("RAYPOOL_SEED", 1), count = number_from("RAYPOOL_TREES", 30);
   uint64_t rays = 0, cycles = 0;
   for (uint32_t seed = first; seed < first + count; ++seed) {
     std::mt19937 random(seed);
-    TraverserBench<TypeParam> bench(random());
+    const auto of_bench = static_cast<uint32_t>(random());
+    TraverserBench<TypeParam> bench(of_bench);
     const auto rare = [&](uint32_t most) { return random() % 2 == 0 ? 0 : 2 + static_cast<uint32_t>(random()) % most; };
     const TraverserTraffic traffic{rare(20), rare(9), 1 + rare(60), rare(9), rare(40), rare(20)};
-    const Case<TypeParam> test(small_scene(random), 1 + static_cast<int>(random() % 30), seed);
-    bench.trace(test.tree, test.rays, traffic);
+    Case<TypeParam> test(small_scene(random), 1 + static_cast<int>(random() % 30), seed);
+    test.what.seed = of_bench;
+    test.what.traffic = traffic;
+    run_case(bench, test.what);
+    if (testing::Test::HasFailure()) shrink_and_tell<TypeParam>(test.what, "*TreesOfChance");
     ASSERT_FALSE(testing::Test::HasFailure())
         << "tree of seed " << seed << ": RAYPOOL_SEED=" << seed << " RAYPOOL_TREES=1 draws it alone";
     rays += bench.seen.rays;
@@ -192,6 +196,29 @@ TYPED_TEST(TraverserTest, TreesOfChance) {
               static_cast<unsigned long long>(cycles));
 }
 
+// What fails is made small: with a bit of a corner turned that the Verilog alone is given, to one ray and one triangle.
+TYPED_TEST(TraverserTest, WhatFailsIsMadeSmall) {
+  Case<TypeParam> test(soup(3, 40, 1, {0, 0, 0}), 24, 3);
+  test.what.traffic = {0, 2, 30, 3, 0, 0};
+  const auto hits = [](const auto& asked) {
+    return asked.walk.hit.hit && (asked.ray[word::kFlags] & kShadowFlag) == 0;
+  };
+  const auto ray = std::find_if(test.rays.begin(), test.rays.end(), hits);
+  ASSERT_NE(ray, test.rays.end());
+  const uint32_t word = as_bits(test.what.tree.triangle(ray->walk.hit.place).corners[0][0]);
+  ASSERT_FALSE(wrong_with<TypeParam>(test.what));
+  ASSERT_TRUE(wrong_with<TypeParam>(test.what, word));
+  TreeShrinker shrinker(test.what,
+                        [word](const TreeCase& cut) { return wrong_with<TypeParam>(cut, word).has_value(); });
+  const TreeCase small = case_of(to_json<TypeParam>(shrinker.run()));
+  EXPECT_TRUE(wrong_with<TypeParam>(small, word));
+  EXPECT_FALSE(wrong_with<TypeParam>(small));
+  EXPECT_EQ(size_of(small), "1 rays, 0 nodes, 1 triangles");
+  const TraverserTraffic& traffic = small.traffic;
+  EXPECT_EQ(traffic.leave_request + traffic.late_beat, 0u);
+  EXPECT_EQ(traffic.line, 1u);
+}
+
 // As many of what is no tree: bits turned, ways that lead back or together, what lies beyond, any bytes; and memories
 // that lose stacks.
 TYPED_TEST(TraverserTest, GarbageOfChance) {
@@ -200,18 +227,21 @@ TYPED_TEST(TraverserTest, GarbageOfChance) {
   std::array<uint64_t, 7> faults{};
   for (uint32_t seed = first; seed < first + count; ++seed) {
     std::mt19937 random(seed);
-    TraverserBench<TypeParam> bench(random());
+    const auto of_bench = static_cast<uint32_t>(random());
+    TraverserBench<TypeParam> bench(of_bench);
     const auto rare = [&](uint32_t most) { return random() % 2 == 0 ? 0 : 2 + static_cast<uint32_t>(random()) % most; };
     const TraverserTraffic traffic{rare(20), rare(9), 1 + rare(60), rare(9), rare(40), rare(20)};
     const auto stacks = static_cast<StackMemory>(random() % 8 < 6 ? 0 : 1 + random() % 2);
     const Scene scene = stacks == StackMemory::Keeps ? small_scene(random) : soup(seed, 150, 1, {0, 0, 0});
-    const Case<TypeParam> test(scene, 1 + static_cast<int>(random() % 30), seed, [&](LaneTree& tree) {
+    Case<TypeParam> test(scene, 1 + static_cast<int>(random() % 30), seed, [&](LaneTree& tree) {
       if (stacks == StackMemory::Keeps) make_garbage(tree, random);
     });
-    if (stacks == StackMemory::Keeps)
-      bench.trace_or_fault(test.tree, test.rays, traffic);
-    else
-      bench.trace_or_fault(test.tree, test.rays, traffic, stacks);
+    test.what.seed = of_bench;
+    test.what.traffic = traffic;
+    test.what.stacks = stacks;
+    test.what.is_tree = false;
+    run_case(bench, test.what);
+    if (testing::Test::HasFailure()) shrink_and_tell<TypeParam>(test.what, "*TreesOfChance");
     ASSERT_FALSE(testing::Test::HasFailure())
         << "garbage of seed " << seed << ": RAYPOOL_SEED=" << seed << " RAYPOOL_TREES=1 draws it alone";
     rays += bench.seen.rays;
