@@ -4,7 +4,8 @@
 #   scripts/verilate.sh OUTPUT_DIR [--top chip] [--trace] [--quick] [--netlist FILE]... NAME=VALUE...
 # NAME=VALUE as `raypool config CONFIG --verilog-parameters` prints them, and UNITS=1|2|4 (default 1); of a chip as
 # chip_verilog_parameters() has them.
-# --netlist: Verilog that stands in for the compute unit of rtl/, and calls sim/rtl/gate_simulator.cpp.
+# --netlist: SystemVerilog (.sv) that stands in for the compute unit of rtl/, or for the chip, and calls
+# sim/rtl/gate_simulator.cpp.
 # --trace: the unit can write waveforms (FST), and is slower. --quick: compiled in less time, slower. Nothing is built
 # when all it is made from is as it was; a build that fails leaves the old library as it was. VERILATOR, CXX and JOBS
 # (default 2) choose the tools and the number of compilers.
@@ -83,15 +84,14 @@ if [ "$kind" = chip ]; then
 else
   waivers+=(sim/rtl/probes.vlt)
 fi
-language=1364-2005
 what=rtl/
 optimise=(OPT_FAST=-O2 OPT_SLOW=-O1 OPT_GLOBAL=-O2)
 [ "$quick" = 0 ] || optimise=(OPT_FAST=-O1 OPT_SLOW=-O0 OPT_GLOBAL=-O2)
 if [ ${#netlist[@]} -gt 0 ]; then
-  [ "$kind" = unit ] || fail "a netlist stands in for a unit of a multiprocessor, not of a chip"
+  replaced=compute_unit
+  [ "$kind" = unit ] || replaced=chip
   verilog=("${netlist[@]}")
-  for file in rtl/*.v; do [ "$file" = rtl/compute_unit.v ] || verilog+=("$file"); done
-  language=1800-2017
+  for file in rtl/*.v; do [ "$file" = "rtl/$replaced.v" ] || verilog+=("$file"); done
   what="the shell of a netlist"
   wrapper+=(sim/rtl/gate_simulator.cpp)
 fi
@@ -120,7 +120,7 @@ units=1
 for parameter in "${parameters[@]}"; do [ "${parameter%%=*}" != UNITS ] || units=${parameter#*=}; done
 printf '#define RAYPOOL_BUILT_PARAMETERS "%s"\n#define RAYPOOL_UNIT_COUNT %d\n' "${parameters[*]}" "$units" \
   > "$build/built_parameters.h"
-options=(--cc --exe --top-module "$top" --Mdir "$build" -Irtl --default-language "$language"
+options=(--cc --exe --top-module "$top" --Mdir "$build" -Irtl --default-language 1364-2005 +1800-2017ext+sv
   -O3 --x-assign fast --x-initial fast --noassert
   -CFLAGS "-std=c++17 -fPIC -fvisibility=hidden -fno-gnu-unique -fno-plt -fno-semantic-interposition"
   -CFLAGS "-I$root/cpp_model -I$root/sim -I$build"

@@ -92,8 +92,6 @@ def made_report(options, wanted):
 def synth_command(arguments):
     against = report.load(arguments.against) if arguments.against else None
     options = options_of(arguments)
-    if options.units and arguments.power:
-        raise SynthError("POWER: the netlist of a unit is simulated, that of a chip is not: leave CHIP out")
     run = report.load_run(arguments.run, options.config, options.units) if arguments.run else None
     begin = time.time()
     wanted = [name for name, given in (("power", arguments.power), ("proofs", arguments.prove)) if given]
@@ -138,8 +136,6 @@ def netlist_of(arguments):
 
 
 def replay_command(arguments):
-    if arguments.chip:
-        raise SynthError("CHIP: the netlist of a unit is simulated, that of a chip is not: leave CHIP out")
     replay.replay(netlist_of(arguments), arguments.break_number)
 
 

@@ -3,7 +3,7 @@ import glob
 import json
 import os
 import subprocess
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from .errors import SynthError, need, run
 from .library import ROOT
@@ -22,6 +22,7 @@ class Kind:
     children: dict  # instance -> identity
     name: str = ""  # unique and fit for Verilog; the base name where that is enough
     bits: int = 0  # at its cells' pins before mapping: how large it is
+    wires: dict = field(default_factory=dict)  # of the top: name -> what drives each bit, as drivers() has it
 
     def value(self, parameter):
         return int(self.parameters[parameter], 2)
@@ -108,6 +109,8 @@ def tree(parameters, folder, top, gated=False):
         children = {n: c["type"] for n, c in module["cells"].items() if c["type"] in modules}
         bits = sum(len(b) for c in module["cells"].values() for b in c["connections"].values())
         kinds[identity] = Kind(identity, base, module.get("parameter_default_values", {}), ports, children, bits=bits)
+        if identity == top:
+            kinds[identity].wires = drivers(module, modules)
     by_base = {}
     for kind in kinds.values():
         by_base.setdefault(kind.base, []).append(kind)
@@ -118,6 +121,22 @@ def tree(parameters, folder, top, gated=False):
             else:
                 kind.name = base if len(group) == 1 else base + distinguishing(kind, group)
     return kinds
+
+
+def drivers(module, modules):
+    """By name of a module's wires what drives each bit: (block, its port, bit), ("", input, bit) or the constants "0"
+    and "1"; None where that is logic of its own.
+    """
+    found = {"0": "0", "1": "1"}
+    ends = [("", name, port["bits"]) for name, port in module["ports"].items() if port["direction"] == "input"]
+    for block, cell in module["cells"].items():
+        for name, port in modules.get(cell["type"], {"ports": {}})["ports"].items():
+            if port["direction"] == "output":
+                ends.append((block, name, cell["connections"].get(name, [])))
+    for block, name, bits in ends:
+        for place, bit in enumerate(bits):
+            found.setdefault(bit, (block, name, place))
+    return {name: [found.get(bit) for bit in net["bits"]] for name, net in module["netnames"].items()}
 
 
 def distinguishing(kind, group):

@@ -1,14 +1,42 @@
-"""Power by block: the toggles of the simulated netlist, averaged over each first-level block, given to OpenSTA."""
+"""Power by block: the toggles of the simulated netlist, averaged over each first-level block (of a chip's units and
+traverser over each block in them), given to OpenSTA.
+"""
+import json
 import math
 import os
 import re
+from collections import defaultdict
+from dataclasses import dataclass
 
-from . import replay, timing
+from . import replay, report, timing
 from .errors import SynthError, progress
 
-_CELL = re.compile(r"^\s*([\d.eE+-]+)\s+([\d.eE+-]+)\s+([\d.eE+-]+)\s+[\d.eE+-]+ \S+$", re.M)
-
 KERNEL = ["sim", "room", "--size", "8x8", "--depth", "1"]
+# What only holds other blocks together: those in it have an activity of their own each.
+OPENED = ("multiprocessor", "compute_unit", "traverser")
+# The cells of one block, or of all below it too, added up in OpenSTA: its own report has a line for each cell, and to
+# find those of a block it looks through all.
+WALK = """proc add_power {instance deep} {
+  set sum [list 0 0.0 0.0 0.0]
+  set iterator [sta::Instance_child_iterator $instance]
+  while {[$iterator has_next]} {
+    set child [$iterator next]
+    if {[sta::Instance_is_leaf $child]} {
+      set more [concat 1 [sta::instance_power $child [sta::cmd_corner]]]
+    } elseif {$deep} {
+      set more [add_power $child 1]
+    } else {
+      continue
+    }
+    set added {}
+    foreach a $sum b [lrange $more 0 3] { lappend added [expr {$a + $b}] }
+    set sum $added
+  }
+  $iterator finish
+  return $sum
+}
+"""
+_SUM = re.compile(r"^== (?P<path>\S*) (?P<cells>\d+) (?P<watts>\S+ \S+ \S+)$", re.M)
 
 
 def measure(design, folder):
@@ -18,28 +46,74 @@ def measure(design, folder):
     library = replay.build(design, folder, count=True)
     passed, text = replay.lockstep(design, library, folder, KERNEL, engine="rtl")
     if not passed:
-        raise SynthError("the netlist did not draw the frame whose activity was to be measured")
+        raise SynthError(
+            "the netlist did not draw the frame whose activity was to be measured"
+            + (f" as the model does:\n{text.strip()}" if design.options.units else "")
+        )
     toggles, accesses, cycles = {}, {}, 0
     for line in text.splitlines():
-        words = (line + " ").split(" ")  # the unit itself has no path
+        words = (line + " ").split(" ")  # the top itself has no path
         if words[0] == "TOGGLES":
             toggles[words[4]] = (int(words[1]), int(words[3]))
             cycles = int(words[2])
         elif words[0] == "ACCESSES":
             accesses[words[2]] = int(words[1])
+    if design.options.units:
+        # A chip is also clocked before the frame, and a while after it.
+        with open(os.path.join(folder, "picture", "report.json"), encoding="utf-8") as file:
+            cycles = json.load(file)["cycles"]
     if not toggles or not cycles:
         raise SynthError(f"the simulated netlist counted no toggles; see {folder}/sim.log")
     return toggles, accesses, cycles
 
 
-def activity(toggles, cycles, prefix):
-    """Toggles a cycle and gate, averaged over the instances at or below a path; of the unit, "", over its own gates."""
-    total = nets = 0
-    for path, (count, bits) in toggles.items():
-        if path == prefix or prefix and path.startswith(prefix + "/"):
-            total += count
-            nets += bits
-    return total / (nets * cycles) if nets else 0.0
+@dataclass
+class Part:
+    """A block whose cells have one activity: all below it too, or its own gates alone."""
+
+    path: tuple
+    identity: str
+    deep: bool
+    toggles: int = 0
+    nets: int = 0
+    picojoules: float = 0.0  # of accesses to its memories
+
+    @property
+    def name(self):
+        return "/".join(self.path)
+
+    @property
+    def used(self):
+        return self.nets or self.picojoules
+
+    def activity(self, cycles):
+        """Toggles a cycle and gate."""
+        return self.toggles / (self.nets * cycles) if self.nets else 0.0
+
+
+def parts(design):
+    """The first-level blocks, and in their place what lies in those that are opened; by path."""
+    modules, found = design.netlist.modules, {}
+
+    def visit(identity, path):
+        found[path] = Part(path, identity, False)
+        for name, (child, _) in modules[identity].blocks.items():
+            below = path + (name,)
+            if child in modules and design.kinds[child].base in OPENED:
+                visit(child, below)
+            else:
+                found[below] = Part(below, child, True)
+
+    visit(design.netlist.top, ())
+    return found
+
+
+def part_of(found, path):
+    """The part that a block belongs to."""
+    words = tuple(path.split("/")) if path else ()
+    while words not in found:
+        words = words[:-1]
+    return found[words]
 
 
 def memory_energy_pj(design, kind):
@@ -50,58 +124,80 @@ def memory_energy_pj(design, kind):
     return design.memory.energy_pj(kind) * math.sqrt(design.memory.scale) * (voltage / 1.1) ** 2
 
 
+def cell_power(design, listed, cycles, folder):
+    """Internal, switching and leakage power of each part's cells, by its name, as OpenSTA has it."""
+    script = timing.set_up(design.verilog, design.library, design.macros, design.clock_ns, design.top) + WALK
+    for part in listed:
+        rate = part.activity(cycles)
+        script += f"set_power_activity -global -activity {rate:.6f}\nset_power_activity -input -activity {rate:.6f}\n"
+        block = f"[sta::find_instance {{{part.name}}}]" if part.path else "[sta::top_instance]"
+        script += f'puts "== {part.name} [add_power {block} {int(part.deep)}]"\n'
+    found = {}
+    for line in _SUM.finditer(timing.run_sta(script, folder, "power")):
+        # OpenSTA counts the energy of a rising and a falling edge for every toggle.
+        internal, switching, leakage = (float(w) for w in line["watts"].split())
+        if int(line["cells"]):
+            found[line["path"]] = (internal / 2, switching, leakage)
+    return found
+
+
 def estimate(design):
-    """Watt by first-level block: [{block, activity, internal_w, switching_w, leakage_w, memory_w, total_w}]."""
+    """Watt by block: `blocks` has each once, `places` all instances of a place of the hierarchy together, with all that
+    lies below.
+    """
     folder = os.path.join(design.folder, "power")
     toggles, accesses, cycles = measure(design, folder)
-    top = design.netlist.modules[design.netlist.top]
-    rates = {name: activity(toggles, cycles, name) for name in ["", *top.blocks]}
-    # OpenSTA gives the power of cells, of a block none: the cells of every block at or
-    # below a first-level one are listed.
-    script = timing.set_up(design.verilog, design.library, design.macros, design.clock_ns, design.top)
     kinds = dict(design.netlist.instances())
-    for name, rate in rates.items():
-        script += f"set_power_activity -global -activity {rate:.6f}\nset_power_activity -input -activity {rate:.6f}\n"
-        script += f'puts "== {name}"\n'
-        for path, identity in kinds.items():
-            if (
-                path[:1] == ((name,) if name else ())
-                and identity in design.netlist.modules
-                and design.netlist.modules[identity].gates
-            ):
-                script += f'report_power -instances [get_cells {{{"/".join(path + ("*",))}}}] -digits 6\n'
-    text = timing.run_sta(script, folder, "power")
-    period_s = design.clock_ns * 1e-9
-    rows = []
-    for part in text.split("== ")[1:]:
-        name = part.split("\n", 1)[0].strip()
-        cells = [[float(n) for n in found] for found in _CELL.findall(part)]
-        # OpenSTA counts the energy of a rising and a falling edge for every toggle.
-        internal, switching, leakage = sum(c[0] for c in cells) / 2, sum(c[1] for c in cells), sum(c[2] for c in cells)
-        joules = sum(
-            count * memory_energy_pj(design, design.kinds[kinds[tuple(path.split("/"))]]) * 1e-12
-            for path, count in accesses.items()
-            if path.split("/")[0] == name
-        )
-        memory = joules / (cycles * period_s)
-        if not cells and not memory:
-            raise SynthError(f"OpenSTA gave no power of {name or 'the unit'}; see {folder}/power.log")
-        rows.append(
-            {
-                "block": name or design.top,
-                "activity": rates[name],
-                "internal_w": internal,
-                "switching_w": switching,
-                "leakage_w": leakage,
-                "memory_w": memory,
-                "total_w": internal + switching + leakage + memory,
-            }
-        )
-    progress(f"synth: power over {cycles} cycles of a rendered picture: {sum(r['total_w'] for r in rows):.3f} W")
+    found = parts(design)
+    for path, (count, nets) in toggles.items():
+        part = part_of(found, path)
+        part.toggles += count
+        part.nets += nets
+    for path, count in accesses.items():
+        energy = memory_energy_pj(design, design.kinds[kinds[tuple(path.split("/"))]])
+        part_of(found, path).picojoules += count * energy
+    shares = []
+    of_cells = cell_power(design, [p for p in found.values() if p.nets], cycles, folder)
+    seconds = cycles * design.clock_ns * 1e-9
+    for part in found.values():
+        if part.nets and part.name not in of_cells:
+            raise SynthError(f"OpenSTA gave no power of {part.name or design.top}; see {folder}/power.log")
+        internal, switching, leakage = of_cells.get(part.name, (0.0, 0.0, 0.0))
+        memory = part.picojoules * 1e-12 / seconds
+        watts = {"internal_w": internal, "switching_w": switching, "leakage_w": leakage, "memory_w": memory}
+        shares.append((part, watts))
+    total = sum(sum(watts.values()) for _, watts in shares)
+    progress(f"synth: power over {cycles} cycles of a rendered picture: {total:.3f} W")
     return {
         "kernel": " ".join(KERNEL[:4]),
         "cycles": cycles,
         "clock_ns": design.clock_ns,
-        "blocks": rows,
-        "total_w": sum(r["total_w"] for r in rows),
+        "blocks": [row(part.name or design.top, [(part, watts)], cycles) for part, watts in shares if part.used],
+        "places": places(design, shares, cycles),
+        "total_w": total,
     }
+
+
+def row(name, shares, cycles):
+    """What the given parts have together: [(part, {what: W})]."""
+    nets = sum(part.nets for part, _ in shares)
+    watts = {what: sum(of[what] for _, of in shares) for what in shares[0][1]}
+    return {
+        "block": name,
+        "activity": sum(part.toggles for part, _ in shares) / (nets * cycles) if nets else 0.0,
+        **watts,
+        "total_w": sum(watts.values()),
+    }
+
+
+def places(design, shares, cycles):
+    """One row for each place of the hierarchy down to the parts, all that lies in it counted: the report's blocks."""
+    inside, instances = defaultdict(list), defaultdict(set)
+    for part, watts in shares:
+        for depth in range(len(part.path) + 1):
+            name = report.base_path(design, part.path[:depth]) or design.top
+            inside[name].append((part, watts))
+            instances[name].add(part.path[:depth])
+    rows = [{**row(name, listed, cycles), "instances": len(instances[name])} for name, listed in inside.items()]
+    level = {design.top: -1}
+    return sorted(rows, key=lambda r: (level.get(r["block"], r["block"].count("/")), -r["total_w"]))

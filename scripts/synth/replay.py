@@ -11,6 +11,8 @@ from .function import truth
 from .library import ROOT
 
 SCENE = ["sim", "cornell", "--size", "8x8"]
+# What names the wires in a top that its wrapper reads, beside its ports.
+PROBES = os.path.join(ROOT, "sim", "rtl", "{}_probes.vlt")
 PROGRAMS = 20
 # What joins two nets and is no cell of the library, as the first two kinds of gate.
 BUFFER, INVERTER = 0, 1
@@ -176,6 +178,8 @@ def flatten(netlist, found):
         blocks.append(("/".join(path), first, len(gates)))
         for label, (child, ports) in module.blocks.items():
             nets = {p: [inside[n] for n in bits] for p, bits in ports.items()}
+            if not path:
+                top.update({(module.originals[label], p): bits for p, bits in nets.items()})
             if child in netlist.modules:
                 visit(child, path + (label,), nets)
             else:
@@ -183,23 +187,46 @@ def flatten(netlist, found):
 
     top = {}
     for name, _, nets in netlist.modules[netlist.top].ports:
-        top[name] = list(range(used, used + len(nets)))
+        top["", name] = list(range(used, used + len(nets)))
         used += len(nets)
-    visit(netlist.top, (), top)
+    visit(netlist.top, (), {port: nets for (_, port), nets in top.items()})
     return used, gates, blocks, memories, joins, top
 
 
+def probed(design, top):
+    """The nets of the wires that the top's wrapper reads: [(name, nets)]."""
+    path = PROBES.format(design.top)
+    if not os.path.exists(path):
+        return []
+    with open(path, encoding="utf-8") as file:
+        names = re.findall(rf'^public_flat_rd -module "{design.top}" -var "(\w+)"', file.read(), re.M)
+    wires = design.kinds[design.netlist.top].wires
+    found = []
+    for name in names:
+        drivers = wires.get(name, [None])
+        if None in drivers:
+            raise SynthError(
+                f"{path}: {design.top}.v has no wire {name} that one of its blocks or inputs drives: the netlist has "
+                "none of this name"
+            )
+        found.append((name, [int(d) if isinstance(d, str) else top[d[:2]][d[2]] for d in drivers]))
+    return found
+
+
 def simulator(design, folder, count):
-    """Writes the netlist as sim/rtl/gate_simulator.cpp reads it, and the Verilog that stands in for the compute unit:
-    that simulator and the RTL's memories. With `count` it prints at its end how often nets changed and memories were
-    accessed. Returns the Verilog's path.
+    """Writes the netlist as sim/rtl/gate_simulator.cpp reads it, and the Verilog that stands in for its top, a compute
+    unit or a chip: that simulator and the RTL's memories. With `count` it prints at its end how often nets changed and
+    memories were accessed. Returns the Verilog's path.
     """
     found = tables(design, folder)
     nets, gates, blocks, memories, joins, top = flatten(design.netlist, found)
     unit = design.kinds[design.netlist.top]
-    inputs = [(p, top[p]) for p, (direction, _) in unit.ports.items() if direction == "input" and p != "clk_i"]
-    outputs = [(p, top[p]) for p, (direction, _) in unit.ports.items() if direction == "output"]
+    inputs = [(p, top["", p]) for p, (direction, _) in unit.ports.items() if direction == "input" and p != "clk_i"]
+    outputs = [(p, top["", p]) for p, (direction, _) in unit.ports.items() if direction == "output"]
     lines = []
+    for name, wire in probed(design, top):
+        lines.append(f"  wire [{len(wire) - 1}:0] {name};")
+        outputs.append((name, wire))
     for place, (path, kind, connected) in enumerate(memories):
         connections = [".clk_i(clk_i)"]
         for port, (direction, width) in kind.ports.items():
@@ -218,7 +245,7 @@ def simulator(design, folder, count):
                 + ";",
                 f'  final $display("ACCESSES %0d {path}", accesses_{place});',
             ]
-    data, shell = os.path.join(folder, "netlist.bin"), os.path.join(folder, "compute_unit.v")
+    data, shell = os.path.join(folder, "netlist.bin"), os.path.join(folder, design.top + ".sv")
     entering, leaving = [[n for _, listed in ports for n in listed] for ports in (inputs, outputs)]
     number = {place: i + 2 for i, place in enumerate(found)}
     words = array.array("I", [nets, len(found) + 2, len(gates) + len(joins), len(entering), len(leaving), len(blocks)])
@@ -236,7 +263,7 @@ def simulator(design, folder, count):
         words.tofile(file)
     with open(shell, "w", encoding="utf-8") as file:
         file.write(
-            f"module compute_unit #({', '.join(f'parameter {n} = {int(v, 2)}' for n, v in unit.parameters.items())}) "
+            f"module {design.top} #({', '.join(f'parameter {n} = {int(v, 2)}' for n, v in unit.parameters.items())}) "
             f"({', '.join(unit.ports)});\n"
         )
         for name, (direction, width) in unit.ports.items():
@@ -266,7 +293,7 @@ endmodule
     return shell
 
 
-def broken(design, number, base="int_alu"):
+def broken(design, number, base):
     """Swaps the function of one cell, for a test of the test: a gate of block `base`, chosen by `number`, that has a
     partner cell with
     the same pins and another function. Returns what was done, in words."""
@@ -298,26 +325,21 @@ def build(design, folder, count=False):
     os.makedirs(folder, exist_ok=True)
     shell = simulator(design, folder, count)
     parameters = [f"{n}={v}" for n, v in design.parameters.items()]
+    kind = "chip" if design.options.units else "unit"
+    top = ["--top", "chip"] if design.options.units else []
     run(
-        [os.path.join(ROOT, "scripts", "verilate.sh"), folder, "--netlist", shell, *parameters],
+        [os.path.join(ROOT, "scripts", "verilate.sh"), folder, *top, "--netlist", shell, *parameters],
         os.path.join(folder, "build.log"),
         environment={"JOBS": str(design.options.jobs)},
     )
-    return os.path.join(folder, "libraypool_unit.so")
+    return os.path.join(folder, f"libraypool_{kind}.so")
 
 
 def lockstep(design, library, folder, arguments, engine="lockstep"):
-    """Runs raypool on the netlist; returns (passed, output)."""
-    command = [
-        elaborate.raypool(),
-        *arguments,
-        "--config",
-        design.options.config,
-        "--engine",
-        engine,
-        "--unit-library",
-        library,
-    ]
+    """Runs raypool on the netlist; returns (passed, output). Of a chip always in lockstep with the model."""
+    units = design.options.units
+    plays = ["--chip", "lockstep", "--units", str(units)] if units else ["--engine", engine]
+    command = [elaborate.raypool(), *arguments, "--config", design.options.config, *plays, "--unit-library", library]
     if arguments[0] == "sim":
         command += ["--out", os.path.join(folder, "picture"), "--quiet"]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
@@ -334,7 +356,9 @@ def lockstep(design, library, folder, arguments, engine="lockstep"):
 def replay(design, break_number=0):
     """Replays kernels and random programs. Raises when an intact netlist differs or a broken one does not."""
     folder = os.path.join(design.folder, "replay" + (f"-broken{break_number}" if break_number else ""))
-    what = broken(design, break_number) if break_number else None
+    # Of a chip a block that a picture goes through: programs, which try every instruction, run on a unit alone.
+    base = "ray_pool" if design.options.units else "int_alu"
+    what = broken(design, break_number, base) if break_number else None
     if what:
         say(f"replay: broken on purpose: {what}")
     library = build(design, folder)
@@ -344,7 +368,7 @@ def replay(design, break_number=0):
     runs = [
         SCENE + ["--depth", "2" if chip["reflections"] else "1"],
         ["cosim", "--programs", str(PROGRAMS), "--seed", "1", "--save", folder] + (["--no-shrink"] if what else []),
-    ]
+    ][: 1 if design.options.units else 2]  # programs alone run on a unit
     for arguments in runs:
         passed, text = lockstep(design, library, folder, arguments)
         words = arguments[0]

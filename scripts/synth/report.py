@@ -306,6 +306,25 @@ def proofs_line(verdicts):
     )
 
 
+def power_lines(power, chip):
+    """Of a unit its largest blocks; of a chip a table by place, as that of areas, in mW."""
+    text = f"power    {power['total_w'] * 1000:.0f} mW at {1000 / power['clock_ns']:.0f} MHz while drawing "
+    text += f"({power['kernel']}"
+    if not chip:
+        largest = sorted(power["blocks"], key=lambda r: -r["total_w"])[:6]
+        return [text + "); the largest: " + ", ".join(f"{r['block']} {r['total_w'] * 1000:.1f}" for r in largest)]
+    told = [p for p in power["places"] if p["total_w"] >= 0.0005 * power["total_w"] or "/" not in p["block"]]
+    names = ["  " * place["block"].count("/") + place["block"] for place in told]
+    width = max(map(len, names))
+    head = f"         {'mW':{width}} {'n':>4} {'internal':>9} {'switching':>9} {'leakage':>9} {'memory':>9} {'all':>9} "
+    lines = [text + f", {power['cycles']} cycles)", head + f"{'activity':>8}"]
+    for name, place in zip(names, told):
+        watts = [place[f"{what}_w"] for what in ("internal", "switching", "leakage", "memory", "total")]
+        numbers = " ".join(f"{1000 * w:>9.2f}" if w else f"{'-':>9}" for w in watts)
+        lines.append(f"         {name:{width}} {place['instances']:>4} {numbers} {place['activity']:>8.4f}")
+    return lines
+
+
 def table(report, against=None):
     """What is printed: blocks of the first two levels that are not tiny; of a chip all of the first, and its units'."""
     area, when, scaled = report["area"], report["timing"], report["forty_nm"]
@@ -378,15 +397,7 @@ def table(report, against=None):
         goal = f", goal at most {lane['goal_kge']:g}" if lane["goal_kge"] else ""
         lines.append(f"{label:8} {lane['kge']:.2f} kGE{goal}")
     if report.get("power"):
-        power = report["power"]
-        lines.append(
-            f"power    {power['total_w'] * 1000:.0f} mW at {1000 / power['clock_ns']:.0f} MHz while drawing "
-            f"({power['kernel']}); the largest: "
-            + ", ".join(
-                f"{r['block']} {r['total_w'] * 1000:.1f}"
-                for r in sorted(power["blocks"], key=lambda r: -r["total_w"])[:6]
-            )
-        )
+        lines += power_lines(report["power"], chip)
     if report.get("proofs"):
         lines.append(proofs_line(report["proofs"]))
     if report.get("efficiency"):

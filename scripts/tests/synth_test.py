@@ -6,6 +6,7 @@ import gzip
 import json
 import os
 import random
+import re
 import select
 import subprocess
 import sys
@@ -125,10 +126,8 @@ class Synthesis(unittest.TestCase):
             (["report", "--config", "1w1c", "--clock", "soon"], "CLOCK=soon"),
             (["report", "--config", "1w1c", "--chip", "--units", "3"], "CUS=3: a chip has 1, 2 or 4 compute units"),
             (["report", "--config", "1w1c", "--rounds", "5"], "ROUNDS=5: 0 to 4"),
-            (["report", "--config", "1w1c", "--chip", "--power"], "POWER: "),
             (["report", "--config", "4w4c", "--chip", "--run", run], "drawn with traverser static, whose area nobody"),
             (["report", "--config", "4w4c", "--chip", "--units", "4", "--run", run], "of 1 units, but this one has 4"),
-            (["replay", "--config", "1w1c", "--chip"], "CHIP: "),
             (["prove", "--config", "1w1c", "--only", "teapot"], "has no block teapot"),
             (["growth", "--plan", run], "not a plan"),
             (["fit", run], "not what raypool fit --json writes"),
@@ -410,6 +409,52 @@ class Synthesis(unittest.TestCase):
         with self.assertRaisesRegex(SynthError, "add up"):
             report.check(made)
 
+    def test_power_of_a_chip_is_told_by_place_and_adds_up(self):
+        design = self.mapped_chip(2, {"frame_port", "launcher", "event_counter"})
+        os.makedirs(os.path.join(self.folder, "power"))
+        toggles, accesses = {}, {}
+        for path, identity in design.netlist.instances():
+            if identity in design.netlist.modules:
+                gates = len(design.netlist.modules[identity].gates)
+                toggles["/".join(path)] = (300 * gates, gates)
+            else:
+                accesses["/".join(path)] = 1000
+        launchers = [path for path in toggles if path.endswith("/launcher")]
+        self.assertEqual(len(launchers), 2)
+        toggles[launchers[1]] = (600 * toggles[launchers[1]][1], toggles[launchers[1]][1])
+        with mock.patch.object(power, "measure", lambda *_: (toggles, accesses, 1000)):
+            found = power.estimate(design)
+        places = {place["block"]: place for place in found["places"]}
+        unit, launcher = "multiprocessor/compute_unit", "multiprocessor/compute_unit/launcher"
+        self.assertEqual([places[name]["instances"] for name in ("chip", unit, launcher)], [1, 2, 2])
+        self.assertAlmostEqual(places["frame_port"]["activity"], 0.3)
+        self.assertAlmostEqual(places[launcher]["activity"], 0.45)
+        rows = {row["block"]: row for row in found["blocks"]}
+        self.assertAlmostEqual(rows[launchers[1]]["switching_w"], 2 * rows[launchers[0]]["switching_w"], 7)
+        # The cells of a block and of all below it, as OpenSTA's own report of them all has them.
+        below = [path for path, (_, gates) in toggles.items() if gates and path.split("/")[0] == "frame_port"]
+        self.assertEqual(len(below), 2)
+        cells = " ".join(path + "/*" for path in below)
+        text = timing.run_sta(
+            timing.set_up(design.verilog, design.library, design.macros, design.clock_ns, design.top)
+            + "set_power_activity -global -activity 0.3\nset_power_activity -input -activity 0.3\n"
+            + f"report_power -instances [get_cells {{{cells}}}] -digits 9\n",
+            self.folder, "listed",
+        )  # fmt: skip
+        listed = re.findall(r"^ *(\S+) +(\S+) +(\S+) +\S+ frame_port/", text, re.M)
+        self.assertGreater(len(listed), 500)
+        for what, column, share in (("internal_w", 0, 0.5), ("switching_w", 1, 1), ("leakage_w", 2, 1)):
+            expected = share * sum(float(cell[column]) for cell in listed)
+            self.assertAlmostEqual(places["frame_port"][what] / expected, 1, 4)
+        # Every access of a memory counts, at its own place and above.
+        self.assertGreater(places["ray_pool"]["memory_w"], 0)
+        first = [place for name, place in places.items() if name != "chip" and "/" not in name]
+        for what in ("internal_w", "switching_w", "leakage_w", "memory_w", "total_w"):
+            self.assertAlmostEqual(sum(place[what] for place in first), places["chip"][what])
+            self.assertAlmostEqual(sum(row[what] for row in found["blocks"]), places["chip"][what])
+        told = "\n".join(report.power_lines(found, True))
+        self.assertRegex(told, r"\n +multiprocessor/compute_unit/launcher +2 ")
+
     def test_memory_macros_have_their_own_price_and_times(self):
         self.written("sram.lib", MACRO)
         listed = macros.read(self.folder)
@@ -463,8 +508,10 @@ class Synthesis(unittest.TestCase):
         self.assertIn("36.7 at 40: 5.3 to 6.5 a mm2", next(line for line in lines if "RayCore" in line))
         self.assertIn("16.0 at 40", next(line for line in lines if "thesis" in line))
 
-    def simulated(self, design, cycles):
-        """What the outputs of a mapped block are while it is given inputs, cycle by cycle; the first port lowest."""
+    def simulated(self, design, cycles, wires=0):
+        """What the outputs of a mapped block are while it is given inputs, cycle by cycle; the first port lowest. Above
+        them are so many bits of wires that are read.
+        """
         replay.simulator(design, self.folder, False)
         root = subprocess.run(
             ["verilator", "--getenv", "VERILATOR_ROOT"], capture_output=True, text=True, check=True
@@ -486,7 +533,7 @@ class Synthesis(unittest.TestCase):
         gates = ctypes.CDLL(path)
         gates.netlist_open.restype = ctypes.c_void_p
         unit = ctypes.c_void_p(gates.netlist_open(os.path.join(self.folder, "netlist.bin").encode()))
-        bits = Counter({"input": -1})  # the clock is none
+        bits = Counter({"input": -1, "output": wires})  # the clock is none
         for direction, width in design.kinds[design.netlist.top].ports.values():
             bits[direction] += width
         inputs, outputs = ((ctypes.c_uint32 * ((bits[way] + 31) // 32))() for way in ("input", "output"))
@@ -520,6 +567,26 @@ class Synthesis(unittest.TestCase):
         self.assertEqual(self.simulate(design, events), expected)
         replay.broken(design, 1, "event_counter")
         self.assertNotEqual(self.simulate(design, events), expected)
+
+    def test_wires_that_a_wrapper_reads_are_found_in_the_netlist(self):
+        design = small_design(self.folder, "frame_port", {})
+        probes = self.written("frame_port_probes.vlt", 'public_flat_rd -module "frame_port" -var "count"\n')
+        numbers = random.Random(1)
+        cycles = [numbers.getrandbits(300) & ~1 | (cycle > 0) for cycle in range(300)]
+        with mock.patch.object(replay, "PROBES", os.path.join(self.folder, "{}_probes.vlt")):
+            values = self.simulated(design, cycles, wires=2)
+            shell = os.path.join(self.folder, "frame_port.sv")
+            with open(shell, encoding="utf-8") as file:
+                self.assertIn("wire [1:0] count;", file.read())
+            ports = sum(w for d, w in design.kinds["frame_port"].ports.values() if d == "output")
+            counts = [value >> ports for value in values]
+            self.assertEqual(set(counts), {0, 1, 2})
+            # Its first output says that there is room.
+            self.assertEqual([count != 2 for count in counts], [bool(value & 1) for value in values])
+            with open(probes, "a", encoding="utf-8") as file:
+                file.write('public_flat_rd -module "frame_port" -var "take"\n')
+            with self.assertRaisesRegex(SynthError, "frame_port.v has no wire take that one of its blocks"):
+                self.simulated(design, cycles)
 
     def test_clock_gates_load_registers_when_their_enables_say_so(self):
         lib = self.gated_library()

@@ -1,6 +1,6 @@
-// The gates of a mapped netlist, simulated without being compiled: a Verilog shell in place of the compute unit calls
-// these functions. Two-valued, registers begin with 0, no delays. A gate is a truth table; only gates with a changed
-// input are looked at, level by level, so that each changes at most once while the netlist settles.
+// The gates of a mapped netlist, simulated without being compiled: a Verilog shell in place of the compute unit, or of
+// the chip, calls these functions. Two-valued, registers begin with 0, no delays. A gate is a truth table; only gates
+// with a changed input are looked at, level by level, so that each changes at most once while the netlist settles.
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -59,13 +59,14 @@ class Netlist {
     // A source is a gate, or beyond the gates an input of the unit; nets 0 and 1 are the constants.
     gates_.resize(gates);
     std::vector<uint32_t> driver(nets, kNoGate), kind_of(gates), pins;
+    uint32_t flops = 0;
     std::vector<std::vector<Sink>> sinks(gates + inputs);
     for (uint32_t gate = 0; gate < gates; ++gate) {
       kind_of[gate] = number();
       const Cell& kind = kinds.at(kind_of[gate]);
       gates_[gate].table = kind.table;
       gates_[gate].level = kind.flop ? kFlop : 0;
-      if (kind.flop) flops_.push_back(gate);
+      flops += kind.flop ? 1 : 0;
       for (uint32_t pin = 0; pin < kind.inputs; ++pin) pins.push_back(number());
       driver.at(number()) = gate;
     }
@@ -92,10 +93,8 @@ class Netlist {
     }
     join(sinks);
     input_values_.assign((inputs + 31) / 32, 0);
-    find_levels();
-    for (uint32_t gate = 0; gate < gates; ++gate) {
-      if (gates_[gate].level != kFlop) queue(gate);
-    }
+    find_levels(flops);
+    for (uint32_t gate = 0; gate < gates; ++gate) queue(gate);
   }
 
   void settle(const svBitVecVal* inputs, svBitVecVal* outputs) {
@@ -128,13 +127,15 @@ class Netlist {
     }
   }
 
-  // The registers take what their inputs settled to.
+  // The registers take what their inputs settled to; only those with an input that has changed since are looked at.
   void clock() {
     changed_.clear();
-    for (const uint32_t flop : flops_) {
-      const Gate& gate = gates_[flop];
+    for (const uint32_t flop : waiting_) {
+      Gate& gate = gates_[flop];
+      gate.queued = false;
       if ((gate.table >> gate.index & 1) != gate.value) changed_.push_back(flop);
     }
+    waiting_.clear();
     for (const uint32_t flop : changed_) change(gates_[flop]);
     ++cycles_;
   }
@@ -180,7 +181,7 @@ class Netlist {
   }
 
   // A gate's level is one more than the highest of the gates that drive it.
-  void find_levels() {
+  void find_levels(uint32_t flops) {
     std::vector<uint32_t> waiting(gates_.size(), 0), ready;
     for (const Gate& gate : gates_) {
       if (gate.level == kFlop) continue;
@@ -201,20 +202,20 @@ class Netlist {
         if (--waiting[sinks_[i].gate] == 0) ready.push_back(sinks_[i].gate);
       }
     }
-    if (done + flops_.size() != gates_.size()) fail(path_, "has a combinational loop");
+    if (done + flops != gates_.size()) fail(path_, "has a combinational loop");
     levels_.resize(highest + 1);
   }
 
   void queue(uint32_t gate) {
     gates_[gate].queued = true;
-    levels_[gates_[gate].level].push_back(gate);
+    (gates_[gate].level == kFlop ? waiting_ : levels_[gates_[gate].level]).push_back(gate);
   }
 
   void tell(uint32_t first, uint32_t last) {
     for (uint32_t i = first; i < last; ++i) {
       Gate& gate = gates_[sinks_[i].gate];
       gate.index ^= sinks_[i].pin;
-      if (gate.level != kFlop && !gate.queued) queue(sinks_[i].gate);
+      if (!gate.queued) queue(sinks_[i].gate);
     }
   }
 
@@ -227,7 +228,7 @@ class Netlist {
   FILE* file_ = nullptr;
   std::string path_;
   std::vector<Gate> gates_;
-  std::vector<uint32_t> flops_, changed_, outputs_, first_sink_, input_values_;
+  std::vector<uint32_t> waiting_, changed_, outputs_, first_sink_, input_values_;
   std::vector<Sink> sinks_;
   std::vector<std::vector<uint32_t>> levels_;
   std::vector<Block> blocks_;
