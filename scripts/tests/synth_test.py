@@ -102,8 +102,9 @@ class Synthesis(unittest.TestCase):
         self.assertEqual([line[0] for line in lines[2:]], ["SIZE=4", "SIZE=8,NUMBER_BITS=3"])
         (kge, flops, slack), (more_kge, more_flops, less_slack) = ([float(x) for x in line[1:4]] for line in lines[2:])
         self.assertGreater(more_kge, kge)
-        # Counts of 0 .. SIZE twice, two addresses, SIZE + 1 places of NUMBER_BITS, what came alone.
-        self.assertEqual(flops, 3 + 3 + 2 + 2 + 4 * 2 + 2 + 2 + 1)
+        # Counts of 0 .. SIZE twice, whether there is one and more than one, two addresses, SIZE + 1 places of
+        # NUMBER_BITS, what is read, whether it came alone.
+        self.assertEqual(flops, 3 + 3 + 2 + 2 + 2 + 4 * 2 + 2 + 2 + 1)
         self.assertGreater(more_flops, flops)
         self.assertTrue(0 < less_slack <= slack < 4)
 

@@ -97,7 +97,7 @@ ChipResult draw_banked(test::TreeBoard& board, uint64_t& row_hits) {
   BankedDram memory("memory", board.run.image.memory), tree("tree", board.tree.memory);
   chip.memory.bind(memory.socket);
   chip.tree.bind(tree.socket);
-  const ChipResult result = chip.draw();
+  ChipResult result = chip.draw();
   row_hits = tree.row_hits;
   return result;
 }
