@@ -296,15 +296,12 @@ faults: setup-sim setup-test configured-ON program ## designers' mistakes: what 
 	@scripts/build.sh $(BUILD)/faults/benches $$(grep -o '[a-z_]*_test' tb/faults/benches.json)
 	@$(BUILD)/raypool_faults $(BUILD)/faults --benches $(BUILD)/faults/benches/tb --json $(BUILD)/faults/outcomes.json
 
-# What is built meanwhile is no part of what it prints.
 follow: setup-sim setup-follow program ## one pixel through the chip in Verilog, from a waveform: PIXEL, RAY, STATION
-	@scripts/unit.sh $(FOLLOW_CONFIG) $(SET_FIELDS) --units $(FOLLOW_UNITS) --chip --waves >&2
 	@$(FOLLOW) $(FOLLOWED) $${RAY:+--ray "$$RAY"} $${STATION:+--station "$$STATION"} $${OUT:+--out "$$OUT"}
 
 tour: setup-sim setup-follow program ## write what docs/from-obj-to-pixel.md shows: its pictures, and what it quotes
-	@scripts/unit.sh 4w4c --chip --waves >&2
 	@$(FOLLOW) --out $(BUILD)/out/tour | tail -n 2
-	@for file in pixel.png time.svg way.svg export.svg launch.svg import.svg frame.svg; do \
+	@for file in pixel.png time.svg way.svg export.svg node.svg triangle.svg launch.svg import.svg frame.svg; do \
 	  cp "$(BUILD)/out/tour/$$file" "docs/images/tour-$$file"; \
 	done
 	@scripts/quoted_output.py --update docs/from-obj-to-pixel.md

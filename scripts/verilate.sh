@@ -75,12 +75,12 @@ headers=(cpp_model/{bits,enum_array}.hpp cpp_model/isa/{isa,counters,input_error
   sim/rtl/{unit_library,verilated_design}.hpp)
 wrapper=("sim/rtl/rtl_$kind.cpp" cpp_model/machine/compute_unit.cpp)
 verilog=(rtl/*.v)
-waivers=(rtl/*.vlt)   # and what the lockstep looks at inside
+waivers=(rtl/*.vlt)   # and what the lockstep looks at inside, and how a chip is compiled
 if [ "$kind" = chip ]; then
   headers+=(cpp_model/machine/{chip_device,memory_port,port_cycles,ram_queue,ray_kernel}.hpp sim/rtl/chip_library.hpp
     cpp_model/machine/{tree_setup,ray_setup,box_ray,triangle_ray}.hpp)
   wrapper+=(cpp_model/machine/chip_device.cpp)
-  waivers+=(sim/rtl/chip_probes.vlt)
+  waivers+=(sim/rtl/{chip_probes,shared_modules}.vlt)
 else
   waivers+=(sim/rtl/probes.vlt)
 fi

@@ -16,7 +16,7 @@ import sys
 
 from . import packages, picture
 from .check import Check
-from .errors import FollowError, need, run
+from .errors import FollowError, build, need, run
 from .journey import STATIONS, Journey
 from .pictures import draw_pictures
 from .ports import SIGNALS, Chip
@@ -27,6 +27,12 @@ from .vcd import Wave, lines_of
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 BUILD = pathlib.Path(os.environ.get("BUILD", "build"))
 SCENE, VIEW = "examples/tour.obj", "examples/tour.json"
+# A traverser inside the chip, which is as small as can be: it is Verilated with it.
+TRAVERSER = ("chip.traverser=hardware chip.modelled_traverser.box_pipes=2 chip.modelled_traverser.triangle_pipes=1 "
+             "chip.modelled_traverser.rays=16 chip.modelled_traverser.cache_banks=2 "
+             "chip.modelled_traverser.node_cache_bytes=2048 chip.modelled_traverser.triangle_cache_bytes=2048 "
+             "chip.modelled_traverser.node_cache_mshrs=8 "
+             "chip.modelled_traverser.triangle_cache_mshrs=8")  # fmt: skip
 LOOK = ("view", "camera", "eye", "look-at", "up", "fov", "light", "detail")
 MORE = ("arguments", "tree", "host")  # stations that are no steps of a ray
 
@@ -38,7 +44,7 @@ def options_of(arguments):
     parser.add_argument("--size", default="32x24", metavar="WxH", help="pixels (default: %(default)s)")
     parser.add_argument("--depth", default="2", help="1: eye and shadow rays; more: reflections (default: %(default)s)")
     parser.add_argument("--config", default="4w4c", help="machine (default: %(default)s)")
-    parser.add_argument("--set", default="", metavar="FIELDS", help="change fields of it")
+    parser.add_argument("--set", default="", metavar="FIELDS", help="change further fields of it")
     parser.add_argument("--units", default="1", help="compute units (default: %(default)s)")
     for name in LOOK:
         parser.add_argument(f"--{name}", help="as of raypool sim")
@@ -77,7 +83,7 @@ class Frame:
         if shutil.which(self.raypool) is None:
             raise FollowError(f"{self.raypool} was not found: build it with make program, or name it in RAYPOOL")
         self.look = [f"--{name}={value}" for name in LOOK if (value := getattr(options, name.replace("-", "_")))]
-        self.machine = ["--config", options.config] + (["--set", options.set] if options.set else [])
+        self.machine = ["--config", options.config, "--set", f"{TRAVERSER} {options.set}".strip()]
         self.folder = pathlib.Path(options.run or options.out or BUILD / "out/follow")
         self.out = pathlib.Path(options.out or BUILD / "out/follow")
         if not options.run:
@@ -85,8 +91,8 @@ class Frame:
             if size:
                 check_pixel(options.pixel, *map(int, size.groups()))
             need("fst2vcd", "gtkwave")
-            self.draw(options.size, options.depth, self.folder, "--chip", "rtl", "--traverser", "static", "--units",
-                      options.units, "--waves")  # fmt: skip
+            build([ROOT / "scripts/unit.sh", *self.machine[1:], "--units", options.units, "--chip", "--waves"])
+            self.draw(options.size, options.depth, self.folder, "--chip", "rtl", "--units", options.units, "--waves")
         self.report = self.read("report.json")
         self.size = self.report["size"]["width"], self.report["size"]["height"]
         check_pixel(options.pixel, *self.size)

@@ -43,6 +43,8 @@ class Check:
         self.vector(f"{name}, direction", packages.floats(life.words, DIRECTION), expected.direction,
                     size if packages.is_shadow(life.words) else 0)  # fmt: skip
         self.vector(f"{name}, colour", packages.floats(life.words, COLOR), expected.color, expected.brightest)
+        if life.walk:
+            self.walk(name, life, reckoning.tree)
         if packages.is_shadow(life.words):
             fates = ("blocked", "free")
             if life.fate != "dropped":
@@ -68,6 +70,24 @@ class Check:
         self.note(f"{name}, triangle by the tree", number, tree_hit and tree_hit.triangle,
                   tree_hit is not None and tree_hit.triangle == number)  # fmt: skip
 
+    def walk(self, name, life, tree):
+        """No box may be missed that the ray is in before its nearest hit, nor the hit's leaf, which may be flat; and
+        the walk ends with the hit."""
+        origin, direction, limit = query(life.words)
+        best = life.walk.best()
+        limit = min(limit, best.t) if best else limit
+        met = [(number in visit.met, child) for visit in life.walk.visits
+               for number, child in enumerate(tree.nodes[visit.node])]  # fmt: skip
+        needed = [is_met for is_met, child in met
+                  if is_in(child, origin, direction, limit) or best and tree.has(child, best.number)]  # fmt: skip
+        self.note(f"{name}, boxes met", f"{sum(is_met for is_met, _ in met)} of {len(met)}",
+                  f"{len(needed)} that {len(needed) - sum(needed)} of are not", all(needed))  # fmt: skip
+        if life.fate in ("hit", "missed"):
+            hit = life.put.words[TRIANGLE] if life.put else None
+            self.note(f"{name}, triangle of the walk", best and best.number, hit, (best and best.number) == hit)
+        else:
+            self.note(f"{name}, walk", "hit" if best else "free", life.fate, bool(best) == (life.fate == "blocked"))
+
     def colour(self, journey, reckoning, drawn, pixel):
         """The sum of what has left the chip, as the frame buffer adds it, and the picture."""
         x, y = pixel
@@ -77,6 +97,11 @@ class Check:
         self.vector("sum of the contributions", linear, reckoning.color, brightest)
         bytes_of_sum = tuple(map(picture.to_srgb8, linear))
         self.note("image.png", drawn[y][x], bytes_of_sum, drawn[y][x] == bytes_of_sum)
+
+
+def is_in(child, origin, direction, limit):
+    begin, end = child.interval(origin, direction, limit)
+    return begin <= end
 
 
 def query(words):

@@ -20,3 +20,10 @@ def run(command):
         said = (done.stderr or done.stdout).strip()
         raise FollowError(said or f"{command[0]} ended with {done.returncode}, and said nothing")
     return done.stdout
+
+
+def build(command):
+    """Runs what may take minutes. What it prints meanwhile is shown, but is no part of what follow prints."""
+    done = subprocess.run([str(word) for word in command], stdout=2, stderr=subprocess.PIPE, text=True, check=False)
+    if done.returncode != 0:
+        raise FollowError(done.stderr.strip() or f"{command[0]} ended with {done.returncode}, and said nothing")

@@ -5,8 +5,9 @@ from . import packages
 from .errors import FollowError
 from .packages import RAY_WORDS, name_of
 from .ports import KINDS
+from .walk import Walk, walk_lines
 
-STATIONS = ("launch", "instructions", "kernel", "export", "pool", "traverser", "import", "frame")
+STATIONS = ("launch", "instructions", "kernel", "export", "pool", "walk", "traverser", "import", "frame")
 
 
 @dataclass
@@ -40,6 +41,7 @@ class Life:
     spans: list = field(default_factory=list)
     fate: str = ""  # hit, missed, free, blocked, dropped
     read: object = None
+    walk: object = None
     put: object = None
     come: object = None
     asked: int = 0  # the cycle in which the request for it is taken
@@ -145,6 +147,8 @@ class Journey:
         if freed is None:
             raise FollowError(f"the traverser never gives back place {read.place} of the ray {life.name}")
         life.spans += [Span("ray_pool", ray.cycles[0], read.cycles[-1]), Span("traverser", read.cycles[-1], freed)]
+        life.walk = Walk(chip, read, freed)
+        life.steps += [Step("walk", cycle, "traverser", text) for cycle, text in walk_lines(life.walk)]
         shadow = packages.is_shadow(life.words)
         place = self.put_of(life.words, read.cycles[-1])
         handed = [one for one in chip.handed if one[1] == self.word and read.cycles[-1] < one[0] < freed]

@@ -2,6 +2,7 @@
 from diagrams.svg import WIDTH, Picture
 
 from . import packages, picture
+from .walk import ORDERED
 from .waveform import Signals
 from .way import way_picture
 
@@ -53,13 +54,58 @@ def export_picture(wave, life):
         ("export_data", "export_data", beat_text(sent), coloured(sent)),
         ("export_last", "export_last", None, {sent[-1]: BEATS[2]}),
         ("outcome_valid", "outcome_valid", None, {kept: "c4"}),
-        ("ray_valid_o", "ray_valid_o", None, coloured(read)),
-        ("ray_data_o", "ray_data_o", beat_text(read), coloured(read)),
-        ("ray_place_o", "ray_place_o", while_high(wave, "ray_valid_o", number_text), {cycle: "c4" for cycle in read}),
+        ("ray_valid", "ray_valid", None, coloured(read)),
+        ("ray_data", "ray_data", beat_text(read), coloured(read)),
+        ("ray_place", "ray_place", while_high(wave, "ray_valid", number_text), {cycle: "c4" for cycle in read}),
     ]
     title = f"The {packages.full_name(life.words)} leaves the unit, and the ray pool hands it to the traverser"
     return Signals(wave, title, range(life.export.offered - 2, read[-1] + 3), rows,
                    beat_notes(life.words, ray_said(life.words))).picture  # fmt: skip
+
+
+def node_picture(wave, walk, title):
+    """The first node of a walk."""
+    visit = walk.visits[0]
+    asked, given, tested = ({cycle: colour} for cycle, colour in zip((visit.asked, visit.given, visit.tested), BEATS))
+    ordered = {visit.tested + ORDERED: BEATS[3]}
+    name = walk.name
+
+    def boxes(value, _):
+        return " ".join(str(number) for number in range(4) if value >> number & 1) or "none"
+
+    rows = [
+        ("asked", name("asked"), None, asked),
+        ("asked_line", name("asked_line"), while_high(wave, name("asked"), number_text), asked),
+        ("given_q", name("given_q"), None, given),
+        ("number", name("number"), while_high(wave, name("given_q"), number_text), given),
+        ("boxes_valid", name("boxes_valid"), None, tested),
+        ("met", name("met"), while_high(wave, name("boxes_valid"), boxes), tested),
+        ("node_valid_q", name("node_valid_q"), None, ordered),
+        ("children", name("children"), while_high(wave, name("node_valid_q"), number_text), ordered),
+    ]
+    nearest = wave.value(name("nearest"), visit.tested + ORDERED)
+    notes = [f"lane {walk.lane}, slot {walk.slot}; met: numbers of the boxes; children: how many of them"]
+    if visit.nearest:
+        notes.append(f"the nearest is {visit.nearest}: {nearest:08x}")
+    return Signals(wave, title, range(visit.asked - 3, visit.tested + ORDERED + 3), rows, notes).picture
+
+
+def triangle_picture(wave, walk, title):
+    """The first triangles of a walk, as many as follow each other."""
+    tests = [test for test in walk.tests if test.begun < walk.tests[0].ended]
+    begun, ended = ({getattr(test, when): BEATS[number % len(BEATS)] for number, test in enumerate(tests)}
+                    for when in ("begun", "ended"))  # fmt: skip
+    name = walk.name
+    rows = [
+        ("test_valid_o", name("test_valid_o"), None, begun),
+        ("test_ready_i", name("test_ready_i"), None, begun),
+        ("test_number_o", name("test_number_o"), while_high(wave, name("test_valid_o"), number_text), begun),
+        ("result_valid_i", name("result_valid_i"), None, ended),
+        ("result_number_i", name("result_number_i"), while_high(wave, name("result_valid_i"), number_text), ended),
+        ("result_hit_i", name("result_hit_i"), None, ended),
+    ]
+    notes = [f"triangle {test.number}: {f'hit at t {test.t:.6g}' if test.hit else 'no better hit'}" for test in tests]
+    return Signals(wave, title, range(tests[0].begun - 2, tests[-1].ended + 3), rows, notes).picture
 
 
 def launch_picture(wave, life):
@@ -165,6 +211,12 @@ def draw_pictures(options, frame, chip, journey, tree, materials):
     drawn = {"time": time_picture(journey, options.pixel), "way": way_picture(journey, tree, materials)}
     if eye.read:
         drawn["export"] = export_picture(chip.wave, eye)
+        if eye.walk.visits:
+            title = f"The {packages.full_name(eye.words)} comes to node {eye.walk.visits[0].node}"
+            drawn["node"] = node_picture(chip.wave, eye.walk, title)
+        if eye.walk.tests:
+            title = f"Triangles for the {packages.full_name(eye.words)}, in the pipe"
+            drawn["triangle"] = triangle_picture(chip.wave, eye.walk, title)
     if eye.come:
         drawn["launch"] = launch_picture(chip.wave, eye)
         drawn["import"] = import_picture(chip.wave, eye)
@@ -172,7 +224,7 @@ def draw_pictures(options, frame, chip, journey, tree, materials):
     if added:
         drawn["frame"] = frame_picture(chip.wave, added[-1], options.pixel)
     frame.out.mkdir(parents=True, exist_ok=True)
-    for old in ("frame", "import", "launch", "export"):  # of another pixel
+    for old in ("frame", "import", "launch", "triangle", "node", "export"):  # of another pixel
         (frame.out / f"{old}.svg").unlink(missing_ok=True)
     for name, one in drawn.items():
         (frame.out / f"{name}.svg").write_text(one.svg(), encoding="utf-8")

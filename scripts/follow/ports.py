@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 
 from . import packages
 from .errors import FollowError
+from .walk import LANE_SIGNALS, TRAVERSER_SIGNALS
 
 KERNELS = {"eye_pc_i": "cast_eye", "secondary_pc_i": "cast_secondary", "direct_pc_i": "cast_secondary_direct",
            "shade_pc_i": "shade"}  # fmt: skip
@@ -16,15 +17,16 @@ PORTS = {
     "reserve": "valid kind count",
     "import": "request_valid request_ready request_kind request_unit beat_valid beat_data",
     "unit_frame": "valid ready pixel color unit",
+    "ray": "valid ready data last place",
+    "put": "valid ready kind data",
+    "contribution": "valid ready pixel color",
     "retire": "valid pc instruction mask data predicate",
 }
 SIGNALS = [f"{port}_{name}" for port, names in PORTS.items() for name in names.split()] + [
-    "kernel_done", "ray_valid_o", "ray_ready_i", "ray_data_o", "ray_last_o", "ray_place_o", "free_valid_i",
-    "free_place_i", "put_valid_i", "put_ready_o", "put_kind_i", "put_data_i", "frame_valid_o", "frame_ready_i",
-    "frame_pixel_o", "frame_color_o", "contribution_valid_i", "contribution_ready_o", "contribution_pixel_i",
-    "contribution_color_i", "argument_write_i", "argument_index_i", "argument_data_i", "program_length_i", "width_i",
-    "height_i", "depth_limit_i", "available", "CULLING", "UNITS", "WARPS", "LANES", "INTERSECTION_WORDS", "LEVEL_BITS",
-    *KERNELS]  # fmt: skip
+    "kernel_done", "free_valid", "free_place", "frame_valid_o", "frame_ready_i", "frame_pixel_o", "frame_color_o",
+    "argument_write_i", "argument_index_i", "argument_data_i", "program_length_i", "width_i", "height_i",
+    "depth_limit_i", "available", "CULLING", "UNITS", "WARPS", "LANES", "INTERSECTION_WORDS", "LEVEL_BITS", *KERNELS,
+    *TRAVERSER_SIGNALS, *LANE_SIGNALS]  # fmt: skip
 
 
 @dataclass
@@ -74,12 +76,12 @@ class Chip:
         self.exports = self.read_exports()
         self.outcomes = list(wave.high("outcome_valid"))
         self.rays = self.read_rays()
-        self.freed = [(cycle, wave.value("free_place_i", cycle)) for cycle in wave.high("free_valid_i")]
+        self.freed = [(cycle, wave.value("free_place", cycle)) for cycle in wave.high("free_valid")]
         self.puts = self.read_puts()
         self.requests, self.imports = self.read_imports()
         self.shaded = self.contributions("unit_frame_valid", "unit_frame_ready", "unit_frame_pixel", "unit_frame_color")
         self.handed = self.contributions(
-            "contribution_valid_i", "contribution_ready_o", "contribution_pixel_i", "contribution_color_i"
+            "contribution_valid", "contribution_ready", "contribution_pixel", "contribution_color"
         )
         self.frame = self.contributions("frame_valid_o", "frame_ready_i", "frame_pixel_o", "frame_color_o")
 
@@ -144,24 +146,22 @@ class Chip:
         """What the traverser reads."""
         wave = self.wave
         rays = list(
-            self.beats(
-                wave.transfers("ray_valid_o", "ray_ready_i"), "ray_data_o", lambda c, _: wave.value("ray_last_o", c)
-            )
+            self.beats(wave.transfers("ray_valid", "ray_ready"), "ray_data", lambda c, _: wave.value("ray_last", c))
         )
         for ray in rays:
-            ray.place = wave.value("ray_place_o", ray.cycles[0])
+            ray.place = wave.value("ray_place", ray.cycles[0])
         return rays
 
     def read_puts(self):
         wave = self.wave
         taken = [
             cycle
-            for cycle in wave.high("put_valid_i")
-            if wave.value("put_ready_o", cycle) >> wave.value("put_kind_i", cycle) - 1 & 1
+            for cycle in wave.high("put_valid")
+            if wave.value("put_ready", cycle) >> wave.value("put_kind", cycle) - 1 & 1
         ]
-        puts = list(self.beats(taken, "put_data_i", lambda _, package: len(package.words) >= 21))
+        puts = list(self.beats(taken, "put_data", lambda _, package: len(package.words) >= 21))
         for put in puts:
-            put.kind = wave.value("put_kind_i", put.cycles[0])
+            put.kind = wave.value("put_kind", put.cycles[0])
         return puts
 
     def read_imports(self):

@@ -110,6 +110,10 @@ class Tree:
         values = struct.unpack_from("<9f2I", data, place)
         return Triangle([values[0:3], values[3:6], values[6:9]], values[9], values[10])
 
+    def has(self, leaf, number):
+        """Whether it is a leaf with this triangle."""
+        return any(one.number == number for one in self.triangles[leaf.first : leaf.first + leaf.count])
+
     @staticmethod
     def node(data, place):
         origin = struct.unpack_from("<3f", data, place)

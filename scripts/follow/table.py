@@ -1,6 +1,7 @@
 """What is printed of a journey, line by line."""
 from . import packages
 from .check import query
+from .walk import INSIDE
 
 QUIET = ("arguments", "instructions", "tree")  # stations that are shown only when they are asked for
 
@@ -55,8 +56,9 @@ def journey_lines(options, frame, chip, journey, tree):
         width, height = frame.size
         x, y = options.pixel
         scene, units = frame.report["scene"], f"{chip.units} unit{'s' if chip.units > 1 else ''}"
+        config, lanes = frame.report["config"].split("+")[0], chip.wave.constant(INSIDE + "LANES")
         yield (f"pixel {x},{y} of {scene['name']}, {scene['triangles']} triangles, {width}x{height}, depth "
-               f"{frame.report['depth']}: rtl/chip.v, {units} of {frame.report['config']}")  # fmt: skip
+               f"{frame.report['depth']}: rtl/chip.v, {units} of {config}, {lanes} lanes of traverser")  # fmt: skip
         yield (f"the frame takes {chip.wave.cycles} cycles, {len(chip.launches)} launches and "
                f"{len(chip.exports)} rays, {len(journey.lives)} of them of this pixel")  # fmt: skip
     if "arguments" in options.stations:

@@ -1,15 +1,18 @@
-"""Signals of the instance `chip` in a waveform, cycle by cycle.
+"""Signals of the instance `chip` and of what is inside it, in a waveform, cycle by cycle.
 
 A waveform is written after each edge of the clock. At a rising edge the registers have their new values already, which
 are those of the cycle that begins, while the inputs still stand as they were in the cycle that ends. So the outputs of
 cycle c are read after the edge before it, and its inputs after the edge that ends it. Cycle 0 is that of start_i.
+What is inside is named by its way from the chip, with points between instances, and [*] for all of a row of them.
 """
 import bisect
+import re
 import subprocess
 
 from .errors import FollowError, need
 
 CLOCK = "clk_i"
+EACH = re.compile(r"\[\d+\]")
 NO_DIGITS = bytes.maketrans(b"xXzZ", b"0000")
 
 
@@ -44,6 +47,11 @@ def number(digits):
     return int(digits.translate(NO_DIGITS), 2)
 
 
+def name_in_chip(scopes, name):
+    inside = scopes[len(scopes) - scopes[::-1].index(b"chip") :]
+    return b".".join((*inside, name)).decode()
+
+
 class Wave:
     """`lines` of a VCD; of all its signals only `names` are kept. Cycles are those of the frame."""
 
@@ -61,7 +69,7 @@ class Wave:
 
     def read_names(self, lines, names):
         """The signals by their codes in the file."""
-        scopes, codes, self.signals = [], {}, {}
+        scopes, codes, found, self.signals = [], {}, set(), {}
         for line in lines:
             words = line.split()
             if not words:
@@ -72,11 +80,15 @@ class Wave:
                 scopes.pop()
             elif words[0] == b"$enddefinitions":
                 break
-            elif words[0] == b"$var" and scopes and scopes[-1] == b"chip":
-                name = words[4].decode()
-                if name in names:
+            elif words[0] == b"$var" and b"chip" in scopes:
+                name = name_in_chip(scopes, words[4])
+                pattern = EACH.sub("[*]", name)
+                if pattern in names:
+                    found.add(pattern)
                     self.signals[name] = codes.setdefault(words[3], Signal())
-        missing = sorted(names - set(self.signals))
+        missing = sorted(names - found, key=lambda name: ("." in name, name))
+        if missing and "." in missing[0]:
+            raise FollowError("the chip of this waveform has no traverser inside: draw with chip.traverser=hardware")
         if missing:
             raise FollowError(f"the waveform has no signal '{missing[0]}' in rtl/chip.v: it is of something else")
         return codes
@@ -112,7 +124,7 @@ class Wave:
 
     def time(self, name, cycle):
         """Where the waveform has the value of a cycle. There may be none: then the nearest."""
-        place = self.first + cycle - (0 if name.endswith("_i") else 1)
+        place = self.first + cycle - lateness(name)
         return self.edges[min(max(place, 0), len(self.edges) - 1)]
 
     def value(self, name, cycle):
@@ -126,7 +138,7 @@ class Wave:
         """The cycles of the frame in which any bit of it is set, in their order."""
         signal = self.signals[name]
         ends = signal.times[1:] + [self.edges[-1] + 1]
-        late = self.first - (0 if name.endswith("_i") else 1)
+        late = self.first - lateness(name)
         for begin, end, value in zip(signal.times, ends, signal.values):
             if number(value):
                 first, last = bisect.bisect_left(self.edges, begin) - late, bisect.bisect_left(self.edges, end) - late
@@ -135,6 +147,11 @@ class Wave:
     def transfers(self, valid, ready):
         """The cycles in which both sides of a port want."""
         return [cycle for cycle in self.high(valid) if self.value(ready, cycle)]
+
+
+def lateness(name):
+    """Edges from the one before which a value of cycle 0 stands to that of start_i: only the chip's inputs wait."""
+    return 0 if name.endswith("_i") and "." not in name else 1
 
 
 LATER = 64  # cycles behind the frame's end, in which what was on its way arrives

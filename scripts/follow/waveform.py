@@ -30,7 +30,8 @@ class Signals:
         for cycle in self.cycles:
             x = self.x(cycle)
             picture.shapes.append(f'<path d="M{x:.1f} {TOP - 6} V{bottom}" class="grid"/>')
-            if cycle % every == 0:
+            half = len(str(cycle)) * NOTE_WIDTH / 2
+            if cycle % every == 0 and x + self.cell / 2 + half <= WIDTH - 4:
                 picture.text(x + self.cell / 2, 46, str(cycle), "wide", "middle")
 
     def row(self, top, label, name, text, colours):

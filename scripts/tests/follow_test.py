@@ -21,6 +21,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(ROOT / "scripts"))
 from follow import __main__ as follow, packages, picture, ports, vcd  # noqa: E402
 from follow.errors import FollowError  # noqa: E402
+from follow.journey import Journey  # noqa: E402
 
 TITLE = re.compile(r"\w+: the (eye|reflection|shadow) ray")
 SMALL = ("--size", "8x6", "--pixel", "5,2")
@@ -65,11 +66,12 @@ class Tour(Case):
         code, said, complained = followed("--out", str(self.folder))
         self.assertEqual((code, complained), (0, ""))
         self.check_whole(said, ["eye", "reflection2", "shadow1", "reflection3", "shadow2"])
-        for way in ("controller -> multiprocessor: launch", "multiprocessor -> ray_pool: a ray",
+        for way in ("traverser: set-up: lane", "of its boxes 3 met", "hit at t 7.27261", "the ray leaves its lane",
+                    "controller -> multiprocessor: launch", "multiprocessor -> ray_pool: a ray",
                     "ray_pool -> traverser", "traverser -> intersection_pool", "intersection_pool -> multiprocessor",
                     "multiprocessor -> frame_port", "frame_port -> frame buffer", "113 instructions"):  # fmt: skip
             self.assertIn(way, said)
-        for name in ("time", "way", "export", "launch", "import", "frame"):
+        for name in ("time", "way", "export", "node", "triangle", "launch", "import", "frame"):
             shown = (ROOT / f"docs/images/tour-{name}.svg").read_text()
             self.assertEqual((self.folder / f"{name}.svg").read_text(), shown, f"tour-{name}.svg: run make tour")
         shown, drawn = (picture.read(path) for path in (ROOT / "docs/images/tour-pixel.png", self.folder / "pixel.png"))
@@ -121,6 +123,17 @@ class Notices(Case):
             change(self.folder)
         return ("--from", str(self.folder), *SMALL, "--out", str(self.folder / "out"))
 
+    def without(self, signal, bit):
+        """The waveform in which this bit of a signal of any lane is zero, always."""
+        codes = {line.split()[3] for line in self.lines if line.startswith(b"$var") and line.split()[4] == signal}
+        for line in self.lines:
+            digits, _, code = line.strip().partition(b" ")
+            if line.startswith(b"b") and code in codes:
+                line = b"b%s %s\n" % (f"{vcd.number(digits[1:]) & ~(1 << bit):b}".encode(), code)
+            elif line[:1] == b"1" and line[1:].strip() in codes and bit == 0:
+                line = b"0" + line[1:]
+            yield line
+
     def code_of(self, signal):
         return next(line.split()[3] for line in self.lines if line.startswith(b"$var") and line.split()[4] == signal)
 
@@ -144,6 +157,10 @@ class Notices(Case):
         return next(ray for ray in self.chip.exports
                     if packages.pixel_of(ray.words[7]) == (5, 2) and packages.name_of(ray.words) == name)  # fmt: skip
 
+    def walk(self, name):
+        journey = Journey(self.chip, (5, 2), {})
+        return journey.lives[name].walk
+
     def put(self, name):
         return next(put for put in self.chip.puts
                     if packages.pixel_of(put.words[7]) == (5, 2) and packages.name_of(put.words) == name)  # fmt: skip
@@ -164,20 +181,32 @@ class Notices(Case):
 
     def test_a_word_of_a_ray_on_its_way_to_the_traverser(self):
         word = self.ray("eye").words[4]
-        self.differs("eye: exported, and read by the traverser", self.altered([b"ray_data_o"], word, word ^ 1))
+        self.differs("eye: exported, and read by the traverser", self.altered([b"ray_data"], word, word ^ 1))
 
     def test_a_hit_on_its_way_to_the_unit(self):
         word = self.put("eye").words[12]
         self.differs("eye: put, and imported", self.altered([b"import_beat_data"], word, word ^ 1))
 
+    def test_a_box_that_is_not_met(self):
+        visit = self.walk("eye").visits[0]
+        self.assertTrue(visit.met)
+        self.differs("eye, boxes met: ", self.without(b"met", visit.met[0]))
+
+    def test_another_triangle_at_the_end_of_the_walk(self):
+        best = self.walk("eye").best()
+        self.differs("eye, triangle of the walk: ", self.altered([b"result_number_i"], best.number, best.number ^ 1))
+
+    def test_a_ray_that_no_lane_is_done_with(self):
+        self.refused("is never done in lane", *self.run_with(self.without(b"done_valid_o", 0)))
+
     def test_a_wrong_hit_that_all_agree_on(self):
         word = self.put("eye").words[12]
         other = packages.to_word(packages.to_float(word) * 1.001)
-        self.differs("eye, t: ", self.altered([b"put_data_i", b"import_beat_data"], word, other))
+        self.differs("eye, t: ", self.altered([b"put_data", b"import_beat_data"], word, other))
 
     def test_a_wrong_direction_that_all_agree_on(self):
         word = self.ray("eye").words[3]
-        everywhere = [b"export_data", b"ray_data_o", b"put_data_i", b"import_beat_data"]
+        everywhere = [b"export_data", b"ray_data", b"put_data", b"import_beat_data"]
         self.differs(
             "eye, direction: ", self.altered(everywhere, word, packages.to_word(packages.to_float(word) + 0.01))
         )
@@ -213,6 +242,10 @@ class Notices(Case):
         lines = [line.replace(b" launch_valid ", b" launch_invalid ") for line in self.lines]
         self.refused("no signal 'launch_valid' in rtl/chip.v", *self.run_with(lines))
 
+    def test_a_chip_without_a_traverser(self):
+        lines = [line.replace(b" gen_inside ", b" gen_outside ") for line in self.lines]
+        self.refused("has no traverser inside: draw with chip.traverser=hardware", *self.run_with(lines))
+
     def test_a_frame_that_never_ends(self):
         times = [number for number, line in enumerate(self.lines) if line.startswith(b"#")]
         self.refused("the frame does not end in the waveform", *self.run_with(self.lines[: times[len(times) // 2]]))
@@ -232,7 +265,8 @@ def thin(lines):
         elif line.startswith(b"$upscope"):
             scopes.pop()
         if line.startswith(b"$var"):
-            if scopes[-1] != b"chip" or words[4].decode() not in names:
+            inside = b"chip" in scopes and vcd.EACH.sub("[*]", vcd.name_in_chip(scopes, words[4]))
+            if inside not in names:
                 continue
             wanted.add(words[3])
         elif line[:1] in (b"0", b"1", b"b") and (words[1] if len(words) > 1 else line[1:-1]) not in wanted:
