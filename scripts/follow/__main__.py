@@ -7,6 +7,7 @@ FOLDER, and compares all that can be reckoned otherwise. Exit code 1, and a sent
 3 if something differs. RAYPOOL names the program, BUILD the folder it is in if not.
 """
 import argparse
+import hashlib
 import json
 import os
 import pathlib
@@ -22,7 +23,7 @@ from .pictures import draw_pictures
 from .ports import SIGNALS, Chip
 from .scene import Reckoning, Tree, materials_of
 from .table import check_lines, journey_lines, last_lines
-from .vcd import Wave, lines_of
+from .vcd import Wave, followed, lines_of
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 BUILD = pathlib.Path(os.environ.get("BUILD", "build"))
@@ -33,6 +34,7 @@ TRAVERSER = ("chip.traverser=hardware chip.modelled_traverser.box_pipes=2 chip.m
              "chip.modelled_traverser.node_cache_bytes=2048 chip.modelled_traverser.triangle_cache_bytes=2048 "
              "chip.modelled_traverser.node_cache_mshrs=8 "
              "chip.modelled_traverser.triangle_cache_mshrs=8")  # fmt: skip
+FOLLOWED = "followed.vcd"  # of the waveform what is read
 LOOK = ("view", "camera", "eye", "look-at", "up", "fov", "light", "detail")
 MORE = ("arguments", "tree", "host")  # stations that are no steps of a ray
 
@@ -92,7 +94,9 @@ class Frame:
                 check_pixel(options.pixel, *map(int, size.groups()))
             need("fst2vcd", "gtkwave")
             build([ROOT / "scripts/unit.sh", *self.machine[1:], "--units", options.units, "--chip", "--waves"])
-            self.draw(options.size, options.depth, self.folder, "--chip", "rtl", "--units", options.units, "--waves")
+        self.tree, self.materials = self.tree_and_materials()
+        if not options.run:
+            self.draw_once()
         self.report = self.read("report.json")
         self.size = self.report["size"]["width"], self.report["size"]["height"]
         check_pixel(options.pixel, *self.size)
@@ -101,6 +105,29 @@ class Frame:
         run([self.raypool, "sim", self.options.scene, *self.look, "--size", size, "--depth", depth, *self.machine, *how,
              "--out", folder, "--quiet"])  # fmt: skip
 
+    def draw_once(self):
+        """The frame and its followed signals, unless they are there, of the same program, hardware and scene."""
+        how = (self.options.size, self.options.depth, self.folder, "--chip", "rtl", "--units", self.options.units,
+               "--waves")  # fmt: skip
+        stamp, digest = self.folder / "followed.sha256", self.digest(how)
+        if stamp.is_file() and stamp.read_text(encoding="utf-8") == digest:
+            return
+        stamp.unlink(missing_ok=True)
+        self.draw(*how)
+        with (self.folder / FOLLOWED).open("wb") as file:
+            file.writelines(followed(lines_of(self.folder / "waves.fst"), SIGNALS))
+        stamp.write_text(digest, encoding="utf-8")
+
+    def digest(self, how):
+        """Of all that the waveform depends on."""
+        of = hashlib.sha256(repr((how, self.machine, self.look, SIGNALS)).encode())
+        units = pathlib.Path(self.raypool).resolve().parent / "units"
+        for path in (self.raypool, self.out / "scene.bvh", self.out / "scene.mtl", self.options.view,
+                     *sorted(units.glob("*-chip-waves/*.stamp"))):  # fmt: skip
+            if path and pathlib.Path(path).is_file():
+                of.update(pathlib.Path(path).read_bytes())
+        return of.hexdigest()
+
     def read(self, name):
         try:
             return json.loads((self.folder / name).read_text(encoding="utf-8"))
@@ -108,10 +135,12 @@ class Frame:
             raise FollowError(f"{self.folder / name}: this is no report of raypool sim ({error})") from error
 
     def waveform(self):
+        if not self.options.run:
+            return Wave(lines_of(self.folder / FOLLOWED), SIGNALS)
         path = next((path for path in (self.folder / "waves.fst", self.folder / "waves.vcd") if path.is_file()), None)
         if path is None:
             raise FollowError(f"{self.folder}: there is neither waves.fst nor waves.vcd")
-        return Wave(lines_of(path), SIGNALS)
+        return Wave(followed(lines_of(path), SIGNALS), SIGNALS)
 
     def native(self):
         """The picture that the kernels draw as C++."""
@@ -155,15 +184,14 @@ def main(arguments):
     options = options_of(arguments)
     frame = Frame(options)
     chip = Chip(frame.waveform())
-    tree, materials = frame.tree_and_materials()
     journey = Journey(chip, options.pixel, frame.texts(chip.entries))
     unknown = [name for name in options.rays if name not in journey.lives]
     if unknown:
         raise FollowError(f"--ray {unknown[0]}: this pixel has {', '.join(journey.lives)}")
-    check = compare(options, frame, chip, journey, tree, materials)
-    names = draw_pictures(options, frame, chip, journey, tree, materials)
+    check = compare(options, frame, chip, journey, frame.tree, frame.materials)
+    names = draw_pictures(options, frame, chip, journey, frame.tree, frame.materials)
     wrong = journey.mismatches + journey.missing() + check.differ
-    lines = [*journey_lines(options, frame, chip, journey, tree), *check_lines(options, check),
+    lines = [*journey_lines(options, frame, chip, journey, frame.tree), *check_lines(options, check),
              *last_lines(options, frame, journey, check, wrong, names)]  # fmt: skip
     try:
         print("\n".join(lines), flush=True)

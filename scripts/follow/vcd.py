@@ -12,6 +12,7 @@ import subprocess
 from .errors import FollowError, need
 
 CLOCK = "clk_i"
+ALWAYS = (CLOCK, "start_i", "busy_o")
 EACH = re.compile(r"\[\d+\]")
 NO_DIGITS = bytes.maketrans(b"xXzZ", b"0000")
 
@@ -47,17 +48,46 @@ def number(digits):
     return int(digits.translate(NO_DIGITS), 2)
 
 
+def followed(lines, names):
+    """Of a VCD's lines those of the signals in `names`, and of what a frame is told by."""
+    lines, names, scopes, codes = iter(lines), {*ALWAYS, *names}, [], set()
+    for line in lines:
+        words = line.split()
+        if words[:1] == [b"$scope"]:
+            scopes.append(words[2])
+        elif words[:1] == [b"$upscope"]:
+            scopes.pop()
+        elif words[:1] == [b"$var"]:
+            if EACH.sub("[*]", name_in_chip(scopes, words[4])) not in names:
+                continue
+            codes.add(words[3])
+        yield line
+        if words[:1] == [b"$enddefinitions"]:
+            break
+    longest = max(map(len, codes), default=0)
+    for line in lines:
+        kind = line[0]
+        if kind == 0x62:  # b: a bus, whose code is its end
+            place = line.rfind(b" ", -longest - 2)
+            if place > 0 and line[place + 1 : -1] in codes:
+                yield line
+        elif kind == 0x23 or len(line) < longest + 3 and line[1:-1] in codes:  # #: a time
+            yield line
+
+
 def name_in_chip(scopes, name):
-    inside = scopes[len(scopes) - scopes[::-1].index(b"chip") :]
-    return b".".join((*inside, name)).decode()
+    """Its way from the innermost scope of this name; empty outside of it."""
+    if b"chip" not in scopes:
+        return ""
+    return b".".join((*scopes[len(scopes) - scopes[::-1].index(b"chip") :], name)).decode()
 
 
 class Wave:
-    """`lines` of a VCD; of all its signals only `names` are kept. Cycles are those of the frame."""
+    """`lines` of a VCD, which must have `names`, as followed() leaves them. Cycles are those of the frame."""
 
     def __init__(self, lines, names):
         lines = iter(lines)
-        codes = self.read_names(lines, {CLOCK, "start_i", "busy_o", *names})
+        codes = self.read_names(lines, {*ALWAYS, *names})
         self.read_changes(lines, codes)
         clock = self.signals[CLOCK]
         self.edges = [time for time, value in zip(clock.times, clock.values) if value == b"1"]
@@ -69,50 +99,37 @@ class Wave:
 
     def read_names(self, lines, names):
         """The signals by their codes in the file."""
-        scopes, codes, found, self.signals = [], {}, set(), {}
+        scopes, codes, self.signals = [], {}, {}
         for line in lines:
             words = line.split()
-            if not words:
-                continue
-            if words[0] == b"$scope":
+            if words[:1] == [b"$scope"]:
                 scopes.append(words[2])
-            elif words[0] == b"$upscope":
+            elif words[:1] == [b"$upscope"]:
                 scopes.pop()
-            elif words[0] == b"$enddefinitions":
+            elif words[:1] == [b"$var"]:
+                self.signals[name_in_chip(scopes, words[4])] = codes.setdefault(words[3], Signal())
+            elif words[:1] == [b"$enddefinitions"]:
                 break
-            elif words[0] == b"$var" and b"chip" in scopes:
-                name = name_in_chip(scopes, words[4])
-                pattern = EACH.sub("[*]", name)
-                if pattern in names:
-                    found.add(pattern)
-                    self.signals[name] = codes.setdefault(words[3], Signal())
-        missing = sorted(names - found, key=lambda name: ("." in name, name))
-        if missing and "." in missing[0]:
-            raise FollowError("the chip of this waveform has no traverser inside: draw with chip.traverser=hardware")
+        missing = names - {EACH.sub("[*]", name) for name in self.signals}
+        ports = sorted(name for name in missing if "." not in name)
+        if ports:
+            raise FollowError(f"the waveform has no signal '{ports[0]}' in rtl/chip.v: it is of something else")
         if missing:
-            raise FollowError(f"the waveform has no signal '{missing[0]}' in rtl/chip.v: it is of something else")
+            raise FollowError("the chip of this waveform has no traverser inside: draw with chip.traverser=hardware")
         return codes
 
     @staticmethod
     def read_changes(lines, codes):
-        """Most lines are of signals that nobody wants: they are told by their ends."""
-        longest = max(map(len, codes))
         time = 0
         for line in lines:
-            kind = line[0]
-            if kind == 0x62:  # b: a bus
-                place = line.rfind(b" ", -longest - 2)
-                signal = codes.get(line[place + 1 : -1]) if place > 0 else None
-                if signal is not None:
-                    signal.times.append(time)
-                    signal.values.append(line[1:place])
-            elif kind == 0x23:  # #: a time
+            kind = line[:1]
+            if kind == b"#":
                 time = int(line[1:])
-            elif len(line) < longest + 3:
-                signal = codes.get(line[1:-1])
-                if signal is not None:
-                    signal.times.append(time)
-                    signal.values.append(line[:1])
+                continue
+            value, _, code = line[1:-1].rpartition(b" ") if kind == b"b" else (kind, b"", line[1:-1])
+            if code in codes:
+                codes[code].times.append(time)
+                codes[code].values.append(value)
 
     def length_of_frame(self):
         """Cycles from the start of the frame until busy_o has fallen."""

@@ -89,6 +89,20 @@ class Tour(Case):
         self.check_whole(said, ["eye"])
         self.assertIn("it hits nothing", said)
 
+    def test_a_frame_is_drawn_once(self):
+        def drawn(*arguments):
+            code, _, complained = followed(*SMALL, *arguments, "--out", str(self.folder))
+            self.assertEqual((code, complained), (0, ""))
+            return (self.folder / "waves.fst").stat().st_mtime_ns
+
+        first = drawn()
+        self.assertEqual(drawn("--ray", "eye"), first)
+        moved = drawn("--light=-2,4,3")
+        self.assertNotEqual(moved, first)
+        (self.folder / "followed.vcd").write_text("", encoding="utf-8")
+        (self.folder / "followed.sha256").unlink()
+        self.assertNotEqual(drawn("--light=-2,4,3"), moved)
+
     def test_instructions_and_tree(self):
         _, said, _ = followed(*SMALL, "--ray", "eye", "--station", "instructions", "--out", str(self.folder))
         self.assertIn("  0  arg r0, 19", said)
@@ -107,7 +121,7 @@ class Notices(Case):
         cls.run_folder = pathlib.Path(cls.temporary.name)
         code, _, complained = followed(*SMALL, "--out", str(cls.run_folder))
         assert code == 0, complained
-        cls.lines = list(thin(vcd.lines_of(cls.run_folder / "waves.fst")))
+        cls.lines = list(vcd.lines_of(cls.run_folder / follow.FOLLOWED))
         cls.chip = ports.Chip(vcd.Wave(cls.lines, ports.SIGNALS))
 
     @classmethod
@@ -253,25 +267,6 @@ class Notices(Case):
     def test_no_frame_at_all(self):
         times = [number for number, line in enumerate(self.lines) if line.startswith(b"#")]
         self.refused("start_i is never high", *self.run_with(self.lines[: times[10]]))
-
-
-def thin(lines):
-    """Of a VCD what is read of it."""
-    wanted, names, scopes = set(), {*ports.SIGNALS, vcd.CLOCK, "start_i", "busy_o"}, []
-    for line in lines:
-        words = line.split()
-        if line.startswith(b"$scope"):
-            scopes.append(words[2])
-        elif line.startswith(b"$upscope"):
-            scopes.pop()
-        if line.startswith(b"$var"):
-            inside = b"chip" in scopes and vcd.EACH.sub("[*]", vcd.name_in_chip(scopes, words[4]))
-            if inside not in names:
-                continue
-            wanted.add(words[3])
-        elif line[:1] in (b"0", b"1", b"b") and (words[1] if len(words) > 1 else line[1:-1]) not in wanted:
-            continue
-        yield line
 
 
 class Refusals(Case):
