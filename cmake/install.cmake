@@ -9,8 +9,8 @@ install(DIRECTORY configs schemas examples rtl DESTINATION ${data} COMPONENT pro
 install(PROGRAMS scripts/verilate.sh DESTINATION ${data}/scripts COMPONENT program)
 # What a Verilated unit or chip is compiled with.
 foreach(source sim/rtl/rtl_unit.cpp sim/rtl/rtl_chip.cpp sim/rtl/unit_library.hpp sim/rtl/chip_library.hpp
-    sim/rtl/verilated_design.hpp sim/rtl/probes.vlt sim/rtl/chip_probes.vlt sim/rtl/shared_modules.vlt cpp_model/bits.hpp
-    cpp_model/enum_array.hpp
+    sim/rtl/verilated_design.hpp sim/rtl/probes.vlt sim/rtl/chip_probes.vlt sim/rtl/shared_modules.vlt
+    cpp_model/bits.hpp cpp_model/enum_array.hpp
     cpp_model/isa/isa.hpp cpp_model/isa/counters.hpp cpp_model/isa/input_error.hpp cpp_model/config/configuration.hpp
     cpp_model/config/parameters.hpp cpp_model/machine/box_ray.hpp cpp_model/machine/compute_unit.hpp
     cpp_model/machine/compute_unit.cpp cpp_model/machine/chip_device.hpp cpp_model/machine/chip_device.cpp
