@@ -50,20 +50,13 @@ def number(digits):
 
 def followed(lines, names):
     """Of a VCD's lines those of the signals in `names`, and of what a frame is told by."""
-    lines, names, scopes, codes = iter(lines), {*ALWAYS, *names}, [], set()
-    for line in lines:
-        words = line.split()
-        if words[:1] == [b"$scope"]:
-            scopes.append(words[2])
-        elif words[:1] == [b"$upscope"]:
-            scopes.pop()
-        elif words[:1] == [b"$var"]:
-            if EACH.sub("[*]", name_in_chip(scopes, words[4])) not in names:
-                continue
-            codes.add(words[3])
-        yield line
-        if words[:1] == [b"$enddefinitions"]:
-            break
+    lines, names, codes = iter(lines), {*ALWAYS, *names}, set()
+    for line, code, name in header(lines):
+        if code is None:
+            yield line
+        elif EACH.sub("[*]", name) in names:
+            codes.add(code)
+            yield line
     longest = max(map(len, codes), default=0)
     for line in lines:
         kind = line[0]
@@ -73,6 +66,21 @@ def followed(lines, names):
                 yield line
         elif kind == 0x23 or len(line) < longest + 3 and line[1:-1] in codes:  # #: a time
             yield line
+
+
+def header(lines):
+    """Each line up to the end of the definitions; of a signal with its code and name, else with None."""
+    scopes = []
+    for line in lines:
+        words = line.split()
+        kind = words[0] if words else b""
+        if kind == b"$scope":
+            scopes.append(words[2])
+        elif kind == b"$upscope":
+            scopes.pop()
+        yield (line, words[3], name_in_chip(scopes, words[4])) if kind == b"$var" else (line, None, None)
+        if kind == b"$enddefinitions":
+            return
 
 
 def name_in_chip(scopes, name):
@@ -99,17 +107,10 @@ class Wave:
 
     def read_names(self, lines, names):
         """The signals by their codes in the file."""
-        scopes, codes, self.signals = [], {}, {}
-        for line in lines:
-            words = line.split()
-            if words[:1] == [b"$scope"]:
-                scopes.append(words[2])
-            elif words[:1] == [b"$upscope"]:
-                scopes.pop()
-            elif words[:1] == [b"$var"]:
-                self.signals[name_in_chip(scopes, words[4])] = codes.setdefault(words[3], Signal())
-            elif words[:1] == [b"$enddefinitions"]:
-                break
+        codes, self.signals = {}, {}
+        for _, code, name in header(lines):
+            if code is not None:
+                self.signals[name] = codes.setdefault(code, Signal())
         missing = names - {EACH.sub("[*]", name) for name in self.signals}
         ports = sorted(name for name in missing if "." not in name)
         if ports:

@@ -11,7 +11,7 @@ TRAVERSER_SIGNALS = [INSIDE + name for name in ("LANES", "SLOT_BITS", "enters", 
                                                 "set_valid", "set_place", "scale", "meets")]  # fmt: skip
 LANE_SIGNALS = [LANE + name for name in (
     "asked", "asked_slot", "asked_line", "given_q", "given_slot_q", "number", "boxes_valid", "boxes_slot", "met",
-    "node_valid_q", "node_slot_q", "children", "nearest", "test_valid_o", "test_ready_i", "test_tag_o",
+    "node_valid_q", "children", "nearest", "test_valid_o", "test_ready_i", "test_tag_o",
     "test_number_o", "result_valid_i", "result_tag_i", "result_number_i", "result_hit_i", "result_t_i", "done_valid_o",
     "done_ready_i", "done_slot_o")]  # fmt: skip
 LEAF = 1 << 31
@@ -45,8 +45,7 @@ class Walk:
     """Of a ray that `read` has brought. Cycles are those of the frame."""
 
     def __init__(self, chip, read, freed):
-        self.wave, self.read = chip.wave, read
-        wave = chip.wave
+        self.wave = wave = chip.wave
         self.entered = read.cycles[-1]
         if not wave.value(INSIDE + "enters", self.entered):
             raise FollowError(f"no ray enters the traverser in cycle {self.entered}, though its last beat passes")
@@ -65,6 +64,8 @@ class Walk:
         begun = [cycle for cycle in wave.transfers(self.name("test_valid_o"), self.name("test_ready_i"))
                  if self.set < cycle < self.done and self.of_slot("test_tag_o", cycle)]  # fmt: skip
         ended = list(self.mine("result_valid_i", "result_tag_i"))
+        if len(begun) != len(ended):
+            raise FollowError(f"of {len(begun)} triangles that lane {self.lane} tests for a ray {len(ended)} come back")
         self.tests = [self.test(*cycles) for cycles in zip(begun, ended)]
 
     def name(self, signal):
@@ -85,9 +86,12 @@ class Walk:
 
     def visit(self, given):
         node = self.value("number", given)
-        asked = max(cycle for cycle in self.wave.high(self.name("asked"))
-                    if cycle < given and self.of_slot("asked_slot", cycle))  # fmt: skip
-        tested = min(cycle for cycle in self.mine("boxes_valid", "boxes_slot") if cycle > given)
+        asked = max((cycle for cycle in self.wave.high(self.name("asked"))
+                     if cycle < given and self.of_slot("asked_slot", cycle)), default=None)  # fmt: skip
+        tested = min((cycle for cycle in self.mine("boxes_valid", "boxes_slot") if cycle > given), default=None)
+        if asked is None or tested is None:
+            said = "never asked for" if asked is None else "never tested"
+            raise FollowError(f"node {node}, which lane {self.lane} has in cycle {given}, is {said}")
         met = self.value("met", tested)
         children, nearest = (self.value(signal, tested + ORDERED) for signal in ("children", "nearest"))
         return Visit(asked, given, node, tested, [n for n in range(4) if met >> n & 1],

@@ -213,6 +213,12 @@ class Notices(Case):
     def test_a_ray_that_no_lane_is_done_with(self):
         self.refused("is never done in lane", *self.run_with(self.without(b"done_valid_o", 0)))
 
+    def test_a_node_or_triangle_that_nothing_comes_of(self):
+        for signal, sentence in ((b"asked", "is never asked for"), (b"boxes_valid", "is never tested"),
+                                 (b"result_valid_i", "triangles that lane")):  # fmt: skip
+            with self.subTest(signal):
+                self.refused(sentence, *self.run_with(self.without(signal, 0)))
+
     def test_a_wrong_hit_that_all_agree_on(self):
         word = self.put("eye").words[12]
         other = packages.to_word(packages.to_float(word) * 1.001)
