@@ -60,7 +60,9 @@ inline void expect_exports_counted(ComputeUnit& unit, TestChip& chip, const Conf
     if (unit.outputs().kernel_done != 0) {
       ended.push_back({done, exports});
       asked += expected[done++];
-      if (alone) EXPECT_EQ(exports, asked) << "kernel " << done;
+      if (alone) {
+        EXPECT_EQ(exports, asked) << "kernel " << done;
+      }
     }
     while (!ended.empty() && rays + contributions >= ended.front().exports) {
       EXPECT_EQ(left[ended.front().block], expected[ended.front().block]) << "kernel " << ended.front().block;
@@ -71,7 +73,9 @@ inline void expect_exports_counted(ComputeUnit& unit, TestChip& chip, const Conf
   EXPECT_EQ(left, expected);
   EXPECT_EQ(unit.outputs().exports[0], asked);
   EXPECT_GE(rays, kernels);
-  if (lanes > 1) EXPECT_GT(contributions, kernels / 2);
+  if (lanes > 1) {
+    EXPECT_GT(contributions, kernels / 2);
+  }
 }
 
 }  // namespace raypool::test

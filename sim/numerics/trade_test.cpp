@@ -61,7 +61,9 @@ TEST(Trade, CoarserSlowUnitsAreNeverBetter) {
     if (mode.mode.slow_unit != SlowUnit::Exact) {
       EXPECT_LT(psnr, previous + 0.1) << mode.name;
     }
-    if (mode.mode.slow_unit == SlowUnit::Newton0) EXPECT_LT(psnr, 75) << mode.name << " must show";
+    if (mode.mode.slow_unit == SlowUnit::Newton0) {
+      EXPECT_LT(psnr, 75) << mode.name << " must show";
+    }
     previous = psnr;
   }
 }
@@ -93,8 +95,12 @@ TEST(Significands, FewerBitsDrawWorseAndTheSmallestUnseenOneIsNamed) {
   EXPECT_GT(smallest, 11u);
   EXPECT_LT(smallest, 24u);
   for (const SignificandRow& row : rows) {
-    if (row.significand >= smallest) EXPECT_GE(row.difference.psnr, kInvisible);
-    if (row.significand + 1 == smallest) EXPECT_LT(row.difference.psnr, kInvisible);
+    if (row.significand >= smallest) {
+      EXPECT_GE(row.difference.psnr, kInvisible);
+    }
+    if (row.significand + 1 == smallest) {
+      EXPECT_LT(row.difference.psnr, kInvisible);
+    }
   }
   EXPECT_NE(significand_table(rows).find(fmt::format("(48 dB): {} bits\n", smallest)), std::string::npos);
 }

@@ -28,7 +28,9 @@ TEST(TriangleWidths, TellWhatEachWidthChanges) {
     EXPECT_EQ(row.leaks, 0u);
     EXPECT_EQ(row.broken, 0u);
     EXPECT_EQ(row.sides > 20, row.bits == 24) << "a float has too few bits for triangles of 1e9";
-    if (row.bits != 24) EXPECT_EQ(row.sides, 0u);
+    if (row.bits != 24) {
+      EXPECT_EQ(row.sides, 0u);
+    }
     EXPECT_GT(row.frame.rays, 48u * 32);
     EXPECT_GT(row.frame.hits, 48u * 32 / 2);
     EXPECT_LE(row.frame.exact, row.frame.hits);

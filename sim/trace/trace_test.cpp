@@ -204,10 +204,14 @@ TEST(Trace, EventsNestAndNameWhatHappens) {
     EXPECT_LT(from, to);
     auto& around = open[{event.at("pid"), event.at("tid")}];
     while (!around.empty() && around.back().second <= from) around.pop_back();
-    if (!around.empty()) EXPECT_LE(to, around.back().second) << event.dump();
+    if (!around.empty()) {
+      EXPECT_LE(to, around.back().second) << event.dump();
+    }
     around.emplace_back(from, to);
     instructions += event.contains("args") && event.at("args").contains("instruction");
-    if (event.at("name") == "flt") EXPECT_EQ(event.at("args").at("instruction"), "fadd3 r7, r7, r4");
+    if (event.at("name") == "flt") {
+      EXPECT_EQ(event.at("args").at("instruction"), "fadd3 r7, r7, r4");
+    }
   }
   EXPECT_EQ(static_cast<size_t>(instructions), traced.trace.instructions.size());
   EXPECT_EQ(names["warp 1"], 2);

@@ -64,7 +64,9 @@ class Bench {
     inputs.leaf = leaf_slot_ != kNobody ? &leaf_ : nullptr;
     inputs.request_taken = request_ready && stacks_.request_valid();
     inputs.filled = fills_ ? &memory_.at(asked_block_) : nullptr;
-    if (inputs.request_taken) ASSERT_NO_FATAL_FAILURE(take_request());
+    if (inputs.request_taken) {
+      ASSERT_NO_FATAL_FAILURE(take_request());
+    }
     take_results();
     const LaneStacks::Outcome outcome = stacks_.clock(inputs);
     ASSERT_NO_FATAL_FAILURE(compare(outcome));
@@ -204,7 +206,9 @@ class Bench {
       ASSERT_EQ(next_reference_, outcome.reference) << "cycle " << cycle_;
     }
     ASSERT_EQ(u_.done_valid_o, outcome.done) << "cycle " << cycle_;
-    if (outcome.done) ASSERT_EQ(u_.done_slot_o, outcome.slot) << "cycle " << cycle_;
+    if (outcome.done) {
+      ASSERT_EQ(u_.done_slot_o, outcome.slot) << "cycle " << cycle_;
+    }
   }
 
   // The memory keeps what the Verilog writes, and brings what it asks for, one block after the other.
@@ -251,9 +255,15 @@ class Bench {
   }
 
   void take_outcome(const LaneStacks::Outcome& outcome) {
-    if (outcome.node_goes_on) ASSERT_NO_FATAL_FAILURE(answer(node_slot_, false, node_.nearest));
-    if (outcome.next) ASSERT_NO_FATAL_FAILURE(answer(outcome.slot, false, outcome.reference));
-    if (outcome.done) ASSERT_NO_FATAL_FAILURE(answer(outcome.slot, true, 0));
+    if (outcome.node_goes_on) {
+      ASSERT_NO_FATAL_FAILURE(answer(node_slot_, false, node_.nearest));
+    }
+    if (outcome.next) {
+      ASSERT_NO_FATAL_FAILURE(answer(outcome.slot, false, outcome.reference));
+    }
+    if (outcome.done) {
+      ASSERT_NO_FATAL_FAILURE(answer(outcome.slot, true, 0));
+    }
   }
   void answer(uint32_t slot, bool done, uint32_t reference) {
     Ray& ray = rays_[slot];

@@ -314,31 +314,33 @@ class SetupBench : public Clocked<Unit> {
   }
   void begin(const RootBox& root, bool first, Shown& shown) {
     if (!first) words_.draw_for(root);
-    Unit& u = *this->u;
-    set_words(u.origin_i, words_.ray.origin);
-    set_words(u.direction_i, words_.ray.direction);
-    u.limit_i = as_bits(words_.ray.limit);
+    Unit& unit = *this->u;
+    set_words(unit.origin_i, words_.ray.origin);
+    set_words(unit.direction_i, words_.ray.direction);
+    unit.limit_i = as_bits(words_.ray.limit);
     next_ = {static_cast<uint32_t>(this->random() & 0xff), RaySetup(words_.ray, root, bits_)};
-    u.tag_i = next_.tag;
+    unit.tag_i = next_.tag;
     if (!next_.setup.valid) return;
     ++shown.rays[words_.kind];
     ++shown.main_axes[static_cast<size_t>(next_.setup.triangle.kz)];
   }
   void cycle(bool comes, Shown& shown) {
-    Unit& u = *this->u;
-    u.valid_i = comes;
+    Unit& unit = *this->u;
+    unit.valid_i = comes;
     // What stands at the inputs in other cycles is nothing.
-    if (!comes) u.tag_i = this->random() & 0xff;
-    if (!comes) u.limit_i = this->random();
-    if (!comes) set_bits(u.origin_i, 32 * (this->random() % 3), 32, this->random());
-    if (!comes) set_bits(u.direction_i, 32 * (this->random() % 3), 32, this->random());
-    u.eval();
-    ASSERT_EQ(u.valid_o, pipe_.result() != nullptr);
+    if (!comes) unit.tag_i = this->random() & 0xff;
+    if (!comes) unit.limit_i = this->random();
+    if (!comes) set_bits(unit.origin_i, 32 * (this->random() % 3), 32, this->random());
+    if (!comes) set_bits(unit.direction_i, 32 * (this->random() % 3), 32, this->random());
+    unit.eval();
+    ASSERT_EQ(unit.valid_o, pipe_.result() != nullptr);
     if (pipe_.result() != nullptr) {
-      ASSERT_EQ(u.tag_o, pipe_.result()->tag);
-      ASSERT_EQ(u.hits_o, pipe_.result()->setup.valid);
-      if (u.hits_o) ASSERT_NO_FATAL_FAILURE(expect_shown(u, pipe_.result()->setup));
-      shown.nothing += !u.hits_o;
+      ASSERT_EQ(unit.tag_o, pipe_.result()->tag);
+      ASSERT_EQ(unit.hits_o, pipe_.result()->setup.valid);
+      if (unit.hits_o) {
+        ASSERT_NO_FATAL_FAILURE(expect_shown(unit, pipe_.result()->setup));
+      }
+      shown.nothing += !unit.hits_o;
     }
     pipe_.clock(comes ? &next_ : nullptr);
     this->clock();

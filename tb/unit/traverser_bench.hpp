@@ -123,9 +123,13 @@ class TraverserBench {
       ASSERT_TRUE(moved != 0 || kinds == 0) << "rays wait for ever";
       if (kinds != 0) continue;
       for (const std::optional<size_t>& in : in_) {
-        if (in) EXPECT_TRUE(needs_room((*rays_)[*in])) << "a ray that needs no room waits for one that does";
+        if (in) {
+          EXPECT_TRUE(needs_room((*rays_)[*in])) << "a ray that needs no room waits for one that does";
+        }
       }
-      if (begun_ < rays.size()) EXPECT_TRUE(places_.empty());
+      if (begun_ < rays.size()) {
+        EXPECT_TRUE(places_.empty());
+      }
       seen.full += places_.empty() ? 1 : 0;
     }
   }
@@ -266,11 +270,18 @@ class TraverserBench {
     drive(inputs);
 
     if (ray_there && out.ray_ready) take_beat(inputs);
-    if (out.request_valid && inputs.request_ready) ASSERT_NO_FATAL_FAILURE(take_request(out.request));
-    if (out.contribution_valid && inputs.contribution_ready) ASSERT_NO_FATAL_FAILURE(take_contribution());
-    if (out.put_valid && (inputs.put_ready >> to_underlying(out.put_kind) & 1) != 0)
+    if (out.request_valid && inputs.request_ready) {
+      ASSERT_NO_FATAL_FAILURE(take_request(out.request));
+    }
+    if (out.contribution_valid && inputs.contribution_ready) {
+      ASSERT_NO_FATAL_FAILURE(take_contribution());
+    }
+    if (out.put_valid && (inputs.put_ready >> to_underlying(out.put_kind) & 1) != 0) {
       ASSERT_NO_FATAL_FAILURE(take_package_beat(out));
-    if (out.free_valid) ASSERT_NO_FATAL_FAILURE(take_place(out));
+    }
+    if (out.free_valid) {
+      ASSERT_NO_FATAL_FAILURE(take_place(out));
+    }
     model_->clock(inputs);
     bench_.clock();
     ++seen.cycles;

@@ -80,7 +80,9 @@ TYPED_TEST(TraverserLaneTest, AgreesWithItsClassInEveryCycleAndEveryRayHitsWhatI
   EXPECT_GT(seen.told_now, 15u);
   EXPECT_GT(seen.told_before, 15u);
   EXPECT_EQ(seen.most_rays, TypeParam::kSlots);
-  if (TypeParam::kSlots > 1) EXPECT_GT(seen.kept, 0u) << "a line comes before the one before it has left";
+  if (TypeParam::kSlots > 1) {
+    EXPECT_GT(seen.kept, 0u) << "a line comes before the one before it has left";
+  }
 }
 
 TYPED_TEST(TraverserLaneTest, ThatIsStoppedComesToRest) {

@@ -82,12 +82,16 @@ TYPED_TEST(TraverserTest, AgreesWithItsClassInEveryCycleAndEveryRayBecomesWhatIt
   const Traverser::Sizes sizes = TypeParam::sizes();
   EXPECT_EQ(seen.rays, 20u * 120);
   EXPECT_GT(seen.normal + seen.direct, 250u);
-  if (sizes.culling) EXPECT_GT(seen.direct, 100u);
+  if (sizes.culling) {
+    EXPECT_GT(seen.direct, 100u);
+  }
   EXPECT_EQ(seen.shadow == 0, sizes.contributes);
   EXPECT_GT(seen.shadow + seen.contributions, 50u);
   EXPECT_GT(seen.dropped, 300u);
   EXPECT_GT(seen.reads, 1000u);
-  if (sizes.stack_entries < 16) EXPECT_GT(seen.spills, 20u);
+  if (sizes.stack_entries < 16) {
+    EXPECT_GT(seen.spills, 20u);
+  }
   EXPECT_EQ(seen.spills == 0, seen.stack_reads == 0);
 }
 
@@ -111,7 +115,9 @@ TYPED_TEST(TraverserTest, ManyRaysWaitForOneLine) {
                                static_cast<uint32_t>(triangles));
     ASSERT_NO_FATAL_FAILURE(bench.trace(test.what.tree, test.rays, {0, 0, triangles < 10 ? 600u : 60u, 0, 0, 0}));
   }
-  if (TypeParam::sizes().slots > LeafReader::kLines) EXPECT_GT(bench.seen.left, 100u);
+  if (TypeParam::sizes().slots > LeafReader::kLines) {
+    EXPECT_GT(bench.seen.left, 100u);
+  }
 }
 
 // Each reason for a fault, and the line that it names.
@@ -265,7 +271,9 @@ TYPED_TEST(TraverserTest, GarbageOfChance) {
   for (const TreeFaultCode code : {TreeFaultCode::NodeBeyond, TreeFaultCode::TriangleBeyond, TreeFaultCode::Children,
                                    TreeFaultCode::Order, TreeFaultCode::Visits})
     EXPECT_GT(of(code), 0u) << int{to_underlying(code)};
-  if (TypeParam::sizes().stack_entries < 16) EXPECT_GT(spoilt, 0u);
+  if (TypeParam::sizes().stack_entries < 16) {
+    EXPECT_GT(spoilt, 0u);
+  }
 }
 
 }  // namespace

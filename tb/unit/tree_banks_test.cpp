@@ -65,9 +65,13 @@ class Bench {
     ASSERT_NO_FATAL_FAILURE(take_given());
     for (uint32_t lane = 0; lane < kLanes; ++lane) ASSERT_NO_FATAL_FAILURE(take_wanted(lane, waited, looks));
 
-    if (fills_) ASSERT_NO_FATAL_FAILURE(take_fill());
+    if (fills_) {
+      ASSERT_NO_FATAL_FAILURE(take_fill());
+    }
     const bool requested = request_ready && banks_.request_valid();
-    if (banks_.request_valid()) ASSERT_NO_FATAL_FAILURE(look_at_request(requested));
+    if (banks_.request_valid()) {
+      ASSERT_NO_FATAL_FAILURE(look_at_request(requested));
+    }
     banks_.clock(requested);
     bench_.clock();
     ++cycle_;
@@ -293,7 +297,9 @@ TYPED_TEST(TreeBanksTest, AgreesWithItsClassInEveryCycle) {
   EXPECT_GT(seen.left, 100u) << "a lane leaves a line for which it has waited";
   EXPECT_GT(seen.late_fills, 100u) << "a line waits";
   EXPECT_EQ(most, kSizes.mshrs);
-  if (kSizes.lanes > 1) EXPECT_GT(seen.shared, 1000u) << "lanes look a line up together";
+  if (kSizes.lanes > 1) {
+    EXPECT_GT(seen.shared, 1000u) << "lanes look a line up together";
+  }
   if (kSizes.banks == 1) return;
   EXPECT_GT(seen.both_chosen, 1000u) << "two banks have chosen wants of a lane";
   EXPECT_GT(seen.offered_twice, 100u) << "two banks have lines for a lane that has waited";
