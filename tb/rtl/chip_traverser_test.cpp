@@ -133,13 +133,10 @@ TEST_P(ChipTraverser, StopsWithTheSameFaultWhereItsMemoryHoldsNoTree) {
 class BrokenTraverser : public ChipDevice {
  public:
   /// True: it has been changed.
-  using Change = std::function<bool(TraverserPorts&)>;
-  using ChangeFault = std::function<bool(TreeFault&)>;
+  using Change = std::function<bool(ChipOutputs&)>;
 
   BrokenTraverser(std::unique_ptr<ChipDevice> chip, Change change)
       : chip_(std::move(chip)), change_(std::move(change)) {}
-  BrokenTraverser(std::unique_ptr<ChipDevice> chip, ChangeFault change)
-      : chip_(std::move(chip)), change_fault_(std::move(change)) {}
 
   uint32_t units() const override { return chip_->units(); }
   void start(const FrameSetup& setup) override {
@@ -150,7 +147,7 @@ class BrokenTraverser : public ChipDevice {
   void clock(const ChipInputs& inputs) override {
     chip_->clock(inputs);
     out_ = chip_->outputs();
-    if (!done_) done_ = change_ ? change_(out_.traverser) : change_fault_(out_.tree_fault);
+    if (!done_) done_ = change_(out_);
   }
   ChipCounts counts() override { return chip_->counts(); }
   uint64_t counter(int number) override { return chip_->counter(number); }
@@ -158,86 +155,84 @@ class BrokenTraverser : public ChipDevice {
  private:
   std::unique_ptr<ChipDevice> chip_;
   Change change_;
-  ChangeFault change_fault_;
   bool done_ = false;
   ChipOutputs out_;
 };
 
-TEST(ChipTraverser, ThatIsBrokenIsNamed) {
-  struct Case {
-    const char* port;
-    BrokenTraverser::Change change;
-  };
-  const auto flip = [](bool& bit) { return bit = !bit, true; };
-  const Case cases[] = {
-      {"ray_ready", [&](TraverserPorts& p) { return flip(p.ray_ready); }},
-      {"free_valid", [&](TraverserPorts& p) { return flip(p.free_valid); }},
-      {"free_place", [](TraverserPorts& p) { return p.free_valid && (p.free_place ^= 1, true); }},
-      {"free_shadow", [&](TraverserPorts& p) { return p.free_valid && flip(p.free_shadow); }},
-      {"put_valid", [&](TraverserPorts& p) { return flip(p.put_valid); }},
-      {"put_kind", [](TraverserPorts& p) { return p.put_valid && (p.put_kind = ImportKind::Shadow, true); }},
-      {"put_data", [](TraverserPorts& p) { return p.put_valid && (p.put_data[3] ^= 1, true); }},
-      {"contribution_valid", [&](TraverserPorts& p) { return flip(p.contribution_valid); }},
-      {"contribution_pixel",
-       [](TraverserPorts& p) { return p.contribution_valid && (p.contribution.pixel ^= 1 << 16, true); }},
-      {"contribution_color",
-       [](TraverserPorts& p) { return p.contribution_valid && (p.contribution.rgb[1] ^= 1, true); }},
-      {"request_valid", [&](TraverserPorts& p) { return flip(p.tree_request_valid); }},
-      {"request_write", [&](TraverserPorts& p) { return p.tree_request_valid && flip(p.tree_request.write); }},
-      {"request_second", [&](TraverserPorts& p) { return p.tree_request_valid && flip(p.tree_request.second); }},
-      {"request_address",
-       [](TraverserPorts& p) { return p.tree_request_valid && (p.tree_request.address ^= 64, true); }},
-      {"request_data",
-       [](TraverserPorts& p) {
-         return p.tree_request_valid && p.tree_request.write && (p.tree_request.data[1][0] ^= 1, true);
-       }},
-  };
+/// A port of the traverser, and what breaks it.
+struct BrokenPort {
+  const char* port;
+  BrokenTraverser::Change change;
+};
+
+BrokenPort broken(const char* port, bool (*change)(TraverserPorts&)) {
+  return {port, [change](ChipOutputs& out) { return change(out.traverser); }};
+}
+
+BrokenPort broken(const char* port, bool (*change)(TreeFault&)) {
+  return {port, [change](ChipOutputs& out) { return change(out.tree_fault); }};
+}
+
+bool flip(bool& bit) {
+  bit = !bit;
+  return true;
+}
+
+/// Draws with the broken port until the lockstep differs; its report must name port and block.
+/// `prepare`: what becomes of the tree before.
+void expect_named(const BrokenPort& broken, void (*prepare)(TreeImage&)) {
+  SCOPED_TRACE(broken.port);
   const Machine machine = full_inside();
-  for (const Case& each : cases) {
-    SCOPED_TRACE(each.port);
-    Drawing drawing(machine, {7, 5, 3, true}, make_cornell());
-    const std::unique_ptr<LockstepChip> chip = make_lockstep_chip(
-        machine.configuration, std::make_unique<BrokenTraverser>(model_of(machine, drawing.memory()), each.change),
-        drawing.memory());
-    try {
-      drawing.draw_on(*chip);
-      ADD_FAILURE() << "nobody noticed";
-    } catch (const LockstepDifference& difference) {
-      const std::string report = difference.what();
-      EXPECT_EQ(report.find("lockstep difference in chip: " + std::string(each.port) + " of traverser is "), 0u)
-          << report;
-      EXPECT_NE(report.find("look at: rtl/traverser.v, rtl/chip.v"), std::string::npos) << report;
-    }
+  Drawing drawing(machine, {7, 5, 3, true}, make_cornell());
+  prepare(drawing.tree());
+  const std::unique_ptr<LockstepChip> chip = make_lockstep_chip(
+      machine.configuration, std::make_unique<BrokenTraverser>(model_of(machine, drawing.memory()), broken.change),
+      drawing.memory());
+  try {
+    drawing.draw_on(*chip);
+    ADD_FAILURE() << "nobody noticed";
+  } catch (const LockstepDifference& difference) {
+    const std::string report = difference.what();
+    EXPECT_EQ(report.find("lockstep difference in chip: " + std::string(broken.port) + " of traverser is "), 0u)
+        << report;
+    EXPECT_NE(report.find("look at: rtl/traverser.v, rtl/chip.v"), std::string::npos) << report;
   }
 }
 
+TEST(ChipTraverser, ThatIsBrokenIsNamed) {
+  using Ports = TraverserPorts;
+  const BrokenPort ports[] = {
+      broken("ray_ready", [](Ports& p) { return flip(p.ray_ready); }),
+      broken("free_valid", [](Ports& p) { return flip(p.free_valid); }),
+      broken("free_place", [](Ports& p) { return p.free_valid && (p.free_place ^= 1, true); }),
+      broken("free_shadow", [](Ports& p) { return p.free_valid && flip(p.free_shadow); }),
+      broken("put_valid", [](Ports& p) { return flip(p.put_valid); }),
+      broken("put_kind", [](Ports& p) { return p.put_valid && (p.put_kind = ImportKind::Shadow, true); }),
+      broken("put_data", [](Ports& p) { return p.put_valid && (p.put_data[3] ^= 1, true); }),
+      broken("contribution_valid", [](Ports& p) { return flip(p.contribution_valid); }),
+      broken("contribution_pixel",
+             [](Ports& p) { return p.contribution_valid && (p.contribution.pixel ^= 1 << 16, true); }),
+      broken("contribution_color", [](Ports& p) { return p.contribution_valid && (p.contribution.rgb[1] ^= 1, true); }),
+      broken("request_valid", [](Ports& p) { return flip(p.tree_request_valid); }),
+      broken("request_write", [](Ports& p) { return p.tree_request_valid && flip(p.tree_request.write); }),
+      broken("request_second", [](Ports& p) { return p.tree_request_valid && flip(p.tree_request.second); }),
+      broken("request_address", [](Ports& p) { return p.tree_request_valid && (p.tree_request.address ^= 64, true); }),
+      broken("request_data",
+             [](Ports& p) {
+               return p.tree_request_valid && p.tree_request.write && (p.tree_request.data[1][0] ^= 1, true);
+             }),
+  };
+  for (const BrokenPort& each : ports) expect_named(each, [](TreeImage&) {});
+}
+
 TEST(ChipTraverser, WhoseFaultIsBrokenIsNamed) {
-  struct Case {
-    const char* port;
-    BrokenTraverser::ChangeFault change;
+  const BrokenPort ports[] = {
+      broken("fault_valid", [](TreeFault& fault) { return flip(fault.valid); }),
+      broken("fault_code",
+             [](TreeFault& fault) { return fault.valid && (fault.code = TreeFaultCode::StackFull, true); }),
+      broken("fault_line", [](TreeFault& fault) { return fault.valid && (fault.line ^= 1, true); }),
   };
-  const Case cases[] = {
-      {"fault_valid", [](TreeFault& fault) { return fault.valid = !fault.valid, true; }},
-      {"fault_code", [](TreeFault& fault) { return fault.valid && (fault.code = TreeFaultCode::StackFull, true); }},
-      {"fault_line", [](TreeFault& fault) { return fault.valid && (fault.line ^= 1, true); }},
-  };
-  const Machine machine = full_inside();
-  for (const Case& each : cases) {
-    SCOPED_TRACE(each.port);
-    Drawing drawing(machine, {7, 5, 3, true}, make_cornell());
-    drawing.tree().memory.store(kFirstChild, 0);
-    const std::unique_ptr<LockstepChip> chip = make_lockstep_chip(
-        machine.configuration, std::make_unique<BrokenTraverser>(model_of(machine, drawing.memory()), each.change),
-        drawing.memory());
-    try {
-      drawing.draw_on(*chip);
-      ADD_FAILURE() << "nobody noticed";
-    } catch (const LockstepDifference& difference) {
-      const std::string report = difference.what();
-      EXPECT_EQ(report.find("lockstep difference in chip: " + std::string(each.port) + " of traverser is "), 0u)
-          << report;
-    }
-  }
+  for (const BrokenPort& each : ports) expect_named(each, [](TreeImage& tree) { tree.memory.store(kFirstChild, 0); });
 }
 
 TEST(ChipTraverser, OnTheModelDrawsThePictureOfTheNativeEngine) {
