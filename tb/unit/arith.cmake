@@ -5,8 +5,8 @@ set(arith_unit ${CMAKE_SOURCE_DIR}/tb/unit)
 
 # arith_top(NAME TOP PREFIX PARAMETERS SOURCES...): a bench top of the test program NAME.
 function(arith_top name top prefix parameters)
-  verilate(${name} SOURCES ${arith_unit}/${top}.v ${ARGN} TOP_MODULE ${top} PREFIX ${prefix} INCLUDE_DIRS ${arith_rtl}
-    OPT_SLOW -w OPT_FAST -O2 -w OPT_GLOBAL -O1 -w
+  raypool_verilate(${name} SOURCES ${arith_unit}/${top}.v ${ARGN}
+    TOP_MODULE ${top} PREFIX ${prefix} INCLUDE_DIRS ${arith_rtl}
     VERILATOR_ARGS ${parameters} --default-language 1364-2005 -DSYNTHESIS -DNO_CLOCK_GATES --output-split 10000
     --output-split-cfuncs 1000 -O3 --x-assign fast --x-initial fast)
 endfunction()
@@ -17,7 +17,6 @@ endfunction()
 function(arith_bench name top)
   add_executable(${name} ${arith_unit}/${name}.cpp)
   target_link_libraries(${name} PRIVATE raypool_machine GTest::gtest_main)
-  target_include_directories(${name} SYSTEM PRIVATE ${VERILATOR_ROOT}/include)  # its headers warn
   arith_top(${name} ${top} V${top} "" ${ARGN})
   # Tests named Long run in `make numerics-long`.
   gtest_discover_tests(${name} WORKING_DIRECTORY ${CMAKE_SOURCE_DIR} DISCOVERY_TIMEOUT 60 TEST_FILTER "-*Long*")
@@ -97,36 +96,32 @@ endif()
 # Narrow formats, against exact integers with all operands there are.
 add_executable(small_floats_test ${arith_unit}/small_floats_test.cpp)
 target_link_libraries(small_floats_test PRIVATE raypool_include GTest::gtest_main)
-target_include_directories(small_floats_test SYSTEM PRIVATE ${VERILATOR_ROOT}/include)
 foreach(format IN ITEMS "16 5 10" "8 4 3")
   separate_arguments(format)
   list(GET format 0 bits)
   list(GET format 1 exponent)
   list(GET format 2 mantissa)
-  verilate(small_floats_test SOURCES ${arith_unit}/small_floats.v ${arith_rtl}/float_adder.v
-    ${arith_rtl}/float_multiplier.v
-      ${arith_rtl}/float_fma.v ${arith_rtl}/multiply_tree.v
+  raypool_verilate(small_floats_test SOURCES ${arith_unit}/small_floats.v ${arith_rtl}/float_adder.v
+    ${arith_rtl}/float_multiplier.v ${arith_rtl}/float_fma.v ${arith_rtl}/multiply_tree.v
     TOP_MODULE small_floats PREFIX Vsmall_floats_${bits} INCLUDE_DIRS ${arith_rtl}
-      OPT_SLOW -w OPT_FAST -O2 -w OPT_GLOBAL -O1 -w
     VERILATOR_ARGS --default-language 1364-2005 -DSYNTHESIS -DNO_CLOCK_GATES --output-split 10000
-      --output-split-cfuncs 1000 -O3 --x-assign fast --x-initial fast -GEXPONENT_BITS=${exponent}
-        -GMANTISSA_BITS=${mantissa})
+    --output-split-cfuncs 1000 -O3 --x-assign fast --x-initial fast -GEXPONENT_BITS=${exponent}
+    -GMANTISSA_BITS=${mantissa})
 endforeach()
 # Products of every pair of 16-bit numbers: with the tree that hardware has, and with
 # the simulator's product in its place.
 foreach(tree IN ITEMS "tree -DSYNTHESIS" "quick")
   separate_arguments(tree)
   list(POP_FRONT tree name)
-  verilate(small_floats_test SOURCES ${arith_unit}/small_products.v ${arith_rtl}/float_multiplier.v
+  raypool_verilate(small_floats_test SOURCES ${arith_unit}/small_products.v ${arith_rtl}/float_multiplier.v
     ${arith_rtl}/multiply_tree.v
     TOP_MODULE small_products PREFIX Vsmall_products_${name} INCLUDE_DIRS ${arith_rtl}
-    OPT_SLOW -w OPT_FAST -O3 -w OPT_GLOBAL -O1 -w
     VERILATOR_ARGS --default-language 1364-2005 ${tree} --output-split 10000 --output-split-cfuncs 1000
     -O3 --x-assign fast --x-initial fast)
 endforeach()
-verilate(small_floats_test SOURCES ${arith_rtl}/multiply_tree.v TOP_MODULE multiply_tree PREFIX Vmultiply_tree_11
-  INCLUDE_DIRS ${arith_rtl} OPT_SLOW -w OPT_FAST -O3 -w
-  OPT_GLOBAL -O1 -w VERILATOR_ARGS --default-language 1364-2005 -DSYNTHESIS -O3 -GA_BITS=11 -GB_BITS=11)
+raypool_verilate(small_floats_test SOURCES ${arith_rtl}/multiply_tree.v
+  TOP_MODULE multiply_tree PREFIX Vmultiply_tree_11 INCLUDE_DIRS ${arith_rtl}
+  VERILATOR_ARGS --default-language 1364-2005 -DSYNTHESIS -O3 -GA_BITS=11 -GB_BITS=11)
 # Tests named Hours run by hand.
 gtest_discover_tests(small_floats_test WORKING_DIRECTORY ${CMAKE_SOURCE_DIR} DISCOVERY_TIMEOUT 60
   TEST_FILTER "-*Long*:*Hours*")

@@ -3,15 +3,13 @@
 function(raypool_memory_bench name)
   add_executable(${name} ${CMAKE_CURRENT_LIST_DIR}/${name}.cpp)
   target_link_libraries(${name} PRIVATE GTest::gtest_main)
-  target_include_directories(${name} SYSTEM PRIVATE ${VERILATOR_ROOT}/include)  # its headers warn
   gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60)
 endfunction()
 
 # raypool_memory_model(TARGET MODULE SUFFIX PARAMETERS...): class V<module>_<suffix>
 function(raypool_memory_model target module suffix)
   list(TRANSFORM ARGN PREPEND -G OUTPUT_VARIABLE parameters)
-  verilate(${target} SOURCES ${RAYPOOL_RTL}/${module}.v PREFIX V${module}_${suffix} TOP_MODULE ${module}
-    OPT_SLOW -w OPT_FAST -O2 -w OPT_GLOBAL -O1 -w
+  raypool_verilate(${target} SOURCES ${RAYPOOL_RTL}/${module}.v PREFIX V${module}_${suffix} TOP_MODULE ${module}
     VERILATOR_ARGS -O3 --default-language 1364-2005 -y ${RAYPOOL_RTL} -I${RAYPOOL_RTL} ${parameters})
 endfunction()
 

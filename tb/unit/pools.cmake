@@ -2,7 +2,6 @@
 function(raypool_pool_bench name)
   add_executable(${name} ${CMAKE_CURRENT_LIST_DIR}/${name}.cpp)
   target_link_libraries(${name} PRIVATE raypool_machine GTest::gtest_main)
-  target_include_directories(${name} SYSTEM PRIVATE ${VERILATOR_ROOT}/include)  # its headers warn
   gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60)
 endfunction()
 
@@ -21,8 +20,7 @@ function(raypool_pool_models bench module names)
     foreach(name value IN ZIP_LISTS names values)
       list(APPEND parameters -G${name}=${value})
     endforeach()
-    verilate(${bench} SOURCES ${source} PREFIX V${module}_${model} TOP_MODULE ${module}
-      OPT_SLOW -w OPT_FAST -O2 -w OPT_GLOBAL -O1 -w
+    raypool_verilate(${bench} SOURCES ${source} PREFIX V${module}_${model} TOP_MODULE ${module}
       VERILATOR_ARGS -O3 --default-language 1364-2005 ${raypool_multiplier} -y ${RAYPOOL_RTL} -I${RAYPOOL_RTL}
       ${parameters})
   endforeach()
@@ -47,8 +45,8 @@ raypool_pool_models(box_pipe_test box_pipe "BITS" 6 7 10 12 16)
 # The edges of its triangle test, against the same oracle.
 raypool_pool_bench(triangle_edges_test)
 target_link_libraries(triangle_edges_test PRIVATE ${GMP_LIBRARY})
-verilate(triangle_edges_test SOURCES ${RAYPOOL_RTL}/triangle_edges.v PREFIX Vtriangle_edges TOP_MODULE triangle_edges
-  OPT_SLOW -w OPT_FAST -O2 -w OPT_GLOBAL -O1 -w
+raypool_verilate(triangle_edges_test SOURCES ${RAYPOOL_RTL}/triangle_edges.v
+  PREFIX Vtriangle_edges TOP_MODULE triangle_edges
   VERILATOR_ARGS -O3 --default-language 1364-2005 -DSYNTHESIS -y ${RAYPOOL_RTL} -I${RAYPOOL_RTL})
 
 # The triangle pipe, whose rays are set up as those of a scene are, and apart from it the multiplier that it has.
@@ -90,8 +88,7 @@ raypool_pool_models(tile_walk_test tile_walk "CONTENTS;HELD_LIMIT;TILE_ORDER"
 
 # The frame buffer's port has no parameters.
 raypool_pool_bench(frame_port_test)
-verilate(frame_port_test SOURCES ${RAYPOOL_RTL}/frame_port.v PREFIX Vframe_port TOP_MODULE frame_port
-  OPT_SLOW -w OPT_FAST -O2 -w OPT_GLOBAL -O1 -w
+raypool_verilate(frame_port_test SOURCES ${RAYPOOL_RTL}/frame_port.v PREFIX Vframe_port TOP_MODULE frame_port
   VERILATOR_ARGS -O3 --default-language 1364-2005 -y ${RAYPOOL_RTL} -I${RAYPOOL_RTL})
 
 # The controller around policies, rules and order of the tiles.

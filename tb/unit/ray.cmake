@@ -15,8 +15,7 @@ foreach(size 1x1 2x2 1x32 4x4 8x8 32x1 2x8_wide 1x32_wide 2x2_12words 8x8_16word
   else()
     set(wide 0)
   endif()
-  verilate(ray_alu_test SOURCES ${RAYPOOL_RTL}/ray_alu.v PREFIX Vray_alu_${size} TOP_MODULE ray_alu
-    OPT_SLOW -w OPT_FAST -O2 -w OPT_GLOBAL -O1 -w
+  raypool_verilate(ray_alu_test SOURCES ${RAYPOOL_RTL}/ray_alu.v PREFIX Vray_alu_${size} TOP_MODULE ray_alu
     VERILATOR_ARGS -O3 --default-language 1364-2005 -y ${RAYPOOL_RTL} -I${RAYPOOL_RTL} -GWARPS=${warps}
     -GLANES=${lanes} -GWIDE_RAY_MEMORY=${wide} -GINTERSECTION_WORDS=${words})
 endforeach()
