@@ -9,22 +9,11 @@ set -eu -o pipefail
 raypool=$(realpath "$1") config=$2 folder=$3
 shift 3
 cd "$(dirname "$0")/.."
-for tool in iverilog vvp; do
-  command -v $tool > /dev/null ||
-    { echo "icarus.sh: $tool was not found: install it (Debian package iverilog)" >&2; exit 1; }
-done
+. scripts/icarus.bash
+need_icarus
 mkdir -p "$folder"
-rtl=${RTL:-rtl}
-
-declare -A value
-list=
-for parameter in $("$raypool" config "$config" --verilog-parameters); do
-  value[${parameter%=*}]=${parameter#*=}
-  list+="${list:+, }.${parameter%=*}(${parameter#*=})"
-done
-iverilog -g2005 -Wall -Wno-timescale -I"$rtl" -s unit_replay -DUNIT_PARAMETERS="$list" \
-  -Punit_replay.WARPS="${value[WARPS]}" -Punit_replay.LANES="${value[LANES]}" \
-  -o "$folder/unit_replay.vvp" tb/icarus/unit_replay.v "$rtl"/*.v
+mapfile -t parameters < <("$raypool" config "$config" --verilog-parameters | tr -s ' \n' '\n')
+compile_replay unit_replay "$folder" "WARPS LANES" "${parameters[@]}"
 
 for seed in "$@"; do
   if [ -f "$seed" ]; then run=(--replay "$seed" --unchecked)
@@ -32,9 +21,5 @@ for seed in "$@"; do
   fi
   "$raypool" cosim "${run[@]}" --vectors "$folder/vectors.txt" --quiet > "$folder/log.txt" ||
     { cat "$folder/log.txt" >&2; exit 1; }
-  result=$(vvp -n "$folder/unit_replay.vvp" +vectors="$folder/vectors.txt")
-  echo "$config, program $seed: $result"
-  # A bench that stops early says nothing.
-  grep -q 'retire as recorded' <<< "$result" ||
-    { echo "icarus.sh: FAILED; the recording is $folder/vectors.txt" >&2; exit 1; }
+  replay unit_replay "$folder" "$config, program $seed"
 done

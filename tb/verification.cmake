@@ -72,11 +72,17 @@ if(IVERILOG)
   set_tests_properties(icarus_2w2c_small PROPERTIES FIXTURES_REQUIRED unit_2w2c_small TIMEOUT 300)
   add_test(NAME icarus_4w4c COMMAND ${scripts}/icarus.sh ${raypool_program} 4w4c ${CMAKE_BINARY_DIR}/icarus/4w4c 1 3)
   set_tests_properties(icarus_4w4c PROPERTIES FIXTURES_REQUIRED unit_4w4c TIMEOUT 300)
+  # The whole chip, without and with the traverser inside.
+  foreach(machine 1 23 26)
+    add_test(NAME icarus_chip_${machine} COMMAND ${scripts}/icarus_chip.sh $<TARGET_FILE:raypool_chip_frames>
+      ${CMAKE_BINARY_DIR}/icarus/chip_${machine} ${machine} 1)
+    set_tests_properties(icarus_chip_${machine} PROPERTIES TIMEOUT 600)
+  endforeach()
   # The pictures in docs show modules that are there, and the stages that a run has now.
   add_test(NAME diagrams COMMAND ${CMAKE_COMMAND} -E env PYTHONPATH=${scripts} python3 -m diagrams ${raypool_program}
     ${CMAKE_BINARY_DIR}/diagrams --check)
   set_tests_properties(diagrams PROPERTIES TIMEOUT 60)
   add_test(NAME icarus_notices_x COMMAND ${scripts}/tests/icarus_notices.sh ${raypool_program}
-    ${CMAKE_BINARY_DIR}/icarus/notices)
+    $<TARGET_FILE:raypool_chip_frames> ${CMAKE_BINARY_DIR}/icarus/notices)
   set_tests_properties(icarus_notices_x PROPERTIES FIXTURES_REQUIRED unit_2w2c_small TIMEOUT 300)
 endif()

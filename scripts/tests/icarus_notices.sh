@@ -1,31 +1,41 @@
 #!/bin/bash
-# Does the replay in Icarus notice what Verilator cannot: scripts/tests/icarus_notices.sh RAYPOOL FOLDER. Registers
-# without their reset, and a program that reads a register which it never wrote, must each end with an X on a named
-# output. Needs the Verilated unit of tb/mutants/2w2c.json.
+# Does the replay in Icarus notice what Verilator cannot: scripts/tests/icarus_notices.sh RAYPOOL CHIP_FRAMES FOLDER.
+# Registers of the unit and of the chip without their reset, and a program that reads a register which it never wrote,
+# must each end with an X on a named output. Needs the Verilated unit of tb/mutants/2w2c.json.
 set -u -o pipefail
-raypool=$(realpath "$1") folder=$2
+raypool=$(realpath "$1") chip_frames=$(realpath "$2") folder=$3
 cd "$(dirname "$0")/../.." || exit 1
 mkdir -p "$folder"
 failures=0
 
 # notices WHAT RTL OUTPUT PROGRAM: the replay of PROGRAM on the files of RTL shows an X on OUTPUT.
 notices() {
-  local what=$1 rtl=$2 output=$3 program=$4 text
-  text=$(RTL=$rtl scripts/icarus.sh "$raypool" tb/mutants/2w2c.json "$folder/run" "$program" 2>&1) &&
-    text="it passed: $text"
+  local what=$1 rtl=$2 output=$3 program=$4
+  expect_x "$what" "$output" "$(RTL=$rtl scripts/icarus.sh "$raypool" tb/mutants/2w2c.json "$folder/run" \
+    "$program" 2>&1)"
+}
+
+# chip_notices WHAT OUTPUT MACHINE: the same of the first frame of a chip, with the copy of rtl/.
+chip_notices() {
+  expect_x "$1" "$2" "$(RTL=$folder/rtl scripts/icarus_chip.sh "$chip_frames" "$folder/run" "$3" 1 2>&1)"
+}
+
+expect_x() {
+  local what=$1 output=$2 text=$3
   if grep -q "X on $output" <<< "$text"; then
     echo "ok: $what: $(grep -m 1 "X on $output" <<< "$text" | tr -s ' ')"
   else
     failures=$((failures + 1))
-    echo "FAILED: $what: no X on $output: $text"
+    echo "FAILED: $what: no X on $output, but: $text"
   fi
 }
 
 # without_reset FILE REGISTER: a copy of rtl/ in which the reset leaves the register alone.
 without_reset() {
+  local reset="( *)(if \(!rst_ni\) )?$2 <= [^;]*;"
   rm -rf "$folder/rtl"
   cp -r rtl "$folder/rtl"
-  sed -i -E "0,/^ *$2 <= [^;]*;/ s/^( *)$2 <= [^;]*;/\1;/" "$folder/rtl/$1"
+  sed -i -E "0,/^$reset/ s/^$reset/\1\2;/" "$folder/rtl/$1"
   if cmp -s "rtl/$1" "$folder/rtl/$1"; then
     failures=$((failures + 1))
     echo "FAILED: rtl/$1 has no assignment of $2 to take out"
@@ -42,5 +52,19 @@ without_reset compute_unit.v fault_q
 notices "the fault flag without reset" "$folder/rtl" "fault_valid" 1
 without_reset launcher.v running_o
 notices "the launcher's state without reset" "$folder/rtl" "busy" 1
+
+# Of a chip with the traverser inside: 22 is the smallest, 24 has several rays in flight.
+for machine in 22 24; do
+  text=$(scripts/icarus_chip.sh "$chip_frames" "$folder/run" $machine 1 2>&1) ||
+    { failures=$((failures + 1)); echo "FAILED: the sound chip: $text"; }
+done
+without_reset controller.v busy_o
+chip_notices "whether a frame is drawn, without reset" busy 22
+without_reset tree_port.v request_valid_o
+chip_notices "a request of the traverser without reset" memory_request_traverser 22
+without_reset tree_cache.v valid_q
+chip_notices "which lines a cache has, without reset" tree_request_valid 22
+without_reset leaf_reader.v held_q
+chip_notices "how many lines a lane holds, without reset" tree_request_valid 24
 
 [ "$failures" = 0 ] || { echo "$failures cases failed"; exit 1; }

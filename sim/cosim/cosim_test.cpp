@@ -15,6 +15,7 @@
 #include "cosim/program_profile.hpp"
 #include "cosim/shrink.hpp"
 #include "isa/encoding.hpp"
+#include "machine/chip_device.hpp"
 #include "machine/functional_unit.hpp"
 #include "machine/test_program.hpp"
 
@@ -377,11 +378,15 @@ TEST(Covering, SetsHaveEveryPairThatMachinesOfTheirSizeCanHave) {
 }
 
 TEST(Covering, ChipsHaveEveryPairThatSmallOnesCanHave) {
-  const std::vector<Machine> machines = covering_chips();
-  const Covered covered = count_covered(chip_factors(), machines, kSmallThreads);
-  EXPECT_EQ(covered.values, covered.all_values);
-  EXPECT_EQ(covered.pairs, covered.all_pairs);
-  EXPECT_LT(machines.size(), 30u);
+  const auto expect_all = [](const std::vector<Factor>& factors, const std::vector<Machine>& machines) {
+    const Covered covered = count_covered(factors, machines, kSmallThreads);
+    EXPECT_EQ(covered.values, covered.all_values);
+    EXPECT_EQ(covered.pairs, covered.all_pairs);
+    EXPECT_LT(machines.size(), 30u);
+  };
+  expect_all(chip_factors(), covering_chips());
+  expect_all(inside_factors(), covering_inside());
+  for (const Machine& machine : covering_inside()) EXPECT_TRUE(has_traverser(machine.configuration.chip));
 }
 
 TEST(CoverageOfNothing, ListsEverythingAsNotCovered) {

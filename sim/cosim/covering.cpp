@@ -89,6 +89,9 @@ Factor factor_of(std::string_view path, std::vector<int> values) {
   return factor;
 }
 
+/// Four sets of a way: the least there may be where a bank has two.
+constexpr int kSetBytes = 4 * 64;
+
 // A size of the intersection pool counts what it holds beyond a tile's row, and what may be held is this row or as much
 // as the pool holds: so any two values go together.
 std::vector<Factor> make_chip_factors() {
@@ -135,6 +138,57 @@ std::vector<Factor> make_chip_factors() {
       factor.get = [get, row](const Machine& m) { return get(m) == row(m) ? 0 : 1; };
     }
   }
+  return factors;
+}
+
+/// Those of a chip that has its traverser inside, and the traverser's. Lanes count beyond triangle pipes, slots are of
+/// a lane, registers of a bank, and sets of a bank beyond two: so any two values go together.
+std::vector<Factor> make_inside_factors() {
+  std::vector<Factor> factors;
+  for (Factor& factor : make_chip_factors()) {
+    // The first is of a traverser at the ports, the second below counted otherwise.
+    if (factor.name != "chip.static_traverser.batch" && factor.name != "chip.modelled_traverser.node_cache_mshrs")
+      factors.push_back(std::move(factor));
+  }
+  using Scale = std::function<int(const ChipConfiguration&)>;
+  const auto put = [&factors](std::string_view name, std::vector<int> values, const Scale& scale = nullptr) {
+    Factor factor = factor_of("chip.modelled_traverser." + std::string(name), std::move(values));
+    if (scale != nullptr) {
+      factor.set = [set = factor.set, scale](Machine& m, int value) { set(m, value * scale(m.configuration.chip)); };
+      factor.get = [get = factor.get, scale](const Machine& m) { return get(m) / scale(m.configuration.chip); };
+    }
+    factors.push_back(std::move(factor));
+  };
+  // The least that BoardMemory has with three cycles a beat.
+  const auto latency = std::find_if(factors.begin(), factors.end(),
+                                    [](const Factor& factor) { return factor.name == "chip.memory.latency"; });
+  latency->values = {12, 13, 50};
+  put("triangle_pipes", {1, 2});
+  put("box_pipes", {0, 1, 2});
+  Factor& lanes = factors.back();
+  const auto pipes = [](const Machine& m) {
+    return static_cast<int>(m.configuration.chip.modelled_traverser_triangle_pipes);
+  };
+  lanes.set = [set = lanes.set, pipes](Machine& m, int value) { set(m, pipes(m) + value); };
+  lanes.get = [get = lanes.get, pipes](const Machine& m) { return get(m) - pipes(m); };
+  put("rays", {1, 2, 5},
+      [](const ChipConfiguration& chip) { return static_cast<int>(chip.modelled_traverser_box_pipes); });
+  put("stack_entries", {8, 9, 16});
+  put("box_bits", {6, 12, 16});
+  put("cache_banks", {1, 2, 4});
+  const auto banks = [](const ChipConfiguration& chip) {
+    return static_cast<int>(chip.modelled_traverser_cache_banks);
+  };
+  put("node_cache_ways", {2, 4});
+  put("node_cache_bytes", {1, 2}, [banks](const ChipConfiguration& chip) {
+    return kSetBytes * banks(chip) * static_cast<int>(chip.modelled_traverser_node_cache_ways);
+  });
+  put("node_cache_mshrs", {1, 2, 3}, banks);
+  put("triangle_cache_ways", {2, 4});
+  put("triangle_cache_bytes", {1, 2}, [banks](const ChipConfiguration& chip) {
+    return kSetBytes * banks(chip) * static_cast<int>(chip.modelled_traverser_triangle_cache_ways);
+  });
+  put("triangle_cache_mshrs", {1, 2, 3}, banks);
   return factors;
 }
 
@@ -257,6 +311,20 @@ Machine machine_of(const std::vector<Factor>& factors, const Row& row, Machine m
   return machine;
 }
 
+/// Around units with caches as small as can be.
+std::vector<Machine> chips_of(const std::vector<Factor>& factors, TraverserName traverser, std::string_view set) {
+  Machine smallest;
+  Configuration& configuration = smallest.configuration;
+  configuration.instruction_cache_bytes = configuration.data_cache_bytes = 512;
+  configuration.chip.traverser = traverser;
+  configuration.chip.modelled_traverser_triangle_cache_mshrs = 1;
+  Search search(factors, kSmallThreads);
+  std::vector<Machine> machines;
+  while (!search.done())
+    machines.push_back(named(machine_of(factors, search.next(), smallest), set, machines.size() + 1));
+  return machines;
+}
+
 }  // namespace
 
 const std::vector<Factor>& covering_factors() {
@@ -266,6 +334,11 @@ const std::vector<Factor>& covering_factors() {
 
 const std::vector<Factor>& chip_factors() {
   static const std::vector<Factor> kFactors = make_chip_factors();
+  return kFactors;
+}
+
+const std::vector<Factor>& inside_factors() {
+  static const std::vector<Factor> kFactors = make_inside_factors();
   return kFactors;
 }
 
@@ -312,16 +385,10 @@ std::vector<Machine> covering_machines(int most_threads, size_t most_pairings) {
 }
 
 std::vector<Machine> covering_chips() {
-  Machine smallest;
-  Configuration& configuration = smallest.configuration;
-  configuration.instruction_cache_bytes = configuration.data_cache_bytes = 512;
-  configuration.chip.traverser = TraverserName::Modelled;  // whose tiles may have an order
-  configuration.chip.modelled_traverser_triangle_cache_mshrs = 1;
-  Search search(chip_factors(), kSmallThreads);
-  std::vector<Machine> machines;
-  while (!search.done())
-    machines.push_back(named(machine_of(chip_factors(), search.next(), smallest), "chip", machines.size() + 1));
-  return machines;
+  // Its tiles may have an order.
+  return chips_of(chip_factors(), TraverserName::Modelled, "chip");
 }
+
+std::vector<Machine> covering_inside() { return chips_of(inside_factors(), TraverserName::Hardware, "inside"); }
 
 }  // namespace raypool

@@ -30,6 +30,8 @@ struct Factor {
 const std::vector<Factor>& covering_factors();
 /// Of the chip around small units (rtl/chip.v), and of the units what it has to do with.
 const std::vector<Factor>& chip_factors();
+/// Of one with the traverser inside (rtl/traverser.v).
+const std::vector<Factor>& inside_factors();
 
 /// Threads, over all units, up to which a machine compiles in seconds.
 inline constexpr int kSmallThreads = 8;
@@ -49,5 +51,7 @@ Covered count_covered(const std::vector<Factor>& factors, const std::vector<Mach
 std::vector<Machine> covering_machines(int most_threads, size_t most_pairings = ~size_t{0});
 /// Every pair of values of two chip_factors() that a machine of kSmallThreads can have is in one of them.
 std::vector<Machine> covering_chips();
+/// The same of inside_factors().
+std::vector<Machine> covering_inside();
 
 }  // namespace raypool

@@ -1,40 +1,10 @@
 #include "cosim/vector_recorder.hpp"
 
-#include <string>
-#include <vector>
-
+#include "cosim/bus.hpp"
 #include "isa/encoding.hpp"
 
 namespace raypool {
 namespace {
-
-/// A bus, put together from its highest field down.
-class Bus {
- public:
-  void put(uint64_t value, int bits) {
-    for (int i = bits - 1; i >= 0; --i) bits_.push_back((value >> i & 1) != 0);
-  }
-  void put(const Beat& beat) {
-    for (size_t i = kBeatWords; i-- > 0;) put(beat[i], 32);
-  }
-  void clear() { bits_.clear(); }
-  std::string hex() const {
-    std::string text;
-    const size_t lead = (4 - bits_.size() % 4) % 4;
-    unsigned digit = 0;
-    for (size_t i = 0; i < bits_.size(); ++i) {
-      digit = digit << 1 | (bits_[i] ? 1u : 0u);
-      if ((i + 1 + lead) % 4 == 0) {
-        text += "0123456789abcdef"[digit];
-        digit = 0;
-      }
-    }
-    return text;
-  }
-
- private:
-  std::vector<bool> bits_;
-};
 
 class Recorder : public ComputeUnit {
  public:
@@ -86,74 +56,63 @@ class Recorder : public ComputeUnit {
     bus_.put(in.memory_response_valid ? 1 : 0, 1);
     bus_.put(in.memory_response.id, 5);
     bus_.put(in.memory_response.beat, 2);
-    bus_.put(in.memory_response.data);
+    bus_.put_words(in.memory_response.data);
     bus_.put(in.import_request_ready ? 1 : 0, 1);
     bus_.put(in.import_beat_valid ? 1 : 0, 1);
-    bus_.put(in.import_beat);
+    bus_.put_words(in.import_beat);
     bus_.put(in.export_ready ? 1 : 0, 1);
     bus_.put(in.frame_ready ? 1 : 0, 1);
-    *out_ << bus_.hex();
     outputs(cycle == Cycle::Checked);
-    *out_ << ' ' << bus_.hex() << ' ' << care_.hex() << '\n';
-  }
-
-  void field(uint64_t value, int bits, bool counts) {
-    bus_.put(value, bits);
-    care_.put(counts ? ~uint64_t{0} : 0, bits);
-  }
-  /// Words of a beat, each with a mask bit.
-  void words(const Beat& beat, uint32_t mask) {
-    for (size_t i = kBeatWords; i-- > 0;) field(beat[i], 32, (mask >> i & 1) != 0);
+    *out_ << bus_.hex() << ' ' << expected_.hex() << '\n';
   }
 
   /// `on`: they count.
   void outputs(bool on) {
-    bus_.clear();
-    care_.clear();
+    expected_.clear();
     const UnitOutputs& out = unit_->outputs();
-    field(out.launch_ready ? 1 : 0, 1, on);
-    field(out.kernel_done ? 1 : 0, 1, on);
-    field(out.busy ? 1 : 0, 1, on);
-    field(out.idle ? 1 : 0, 1, on);
+    expected_.put(out.launch_ready ? 1 : 0, 1, on);
+    expected_.put(out.kernel_done ? 1 : 0, 1, on);
+    expected_.put(out.busy ? 1 : 0, 1, on);
+    expected_.put(out.idle ? 1 : 0, 1, on);
     const bool request = on && out.memory_request_valid, write = request && out.memory_request.write;
-    field(out.memory_request_valid ? 1 : 0, 1, on);
-    field(out.memory_request.write ? 1 : 0, 1, request);
-    field(out.memory_request.address, 32, request);
-    words(out.memory_request.data, write ? out.memory_request.mask : 0);
-    field(out.memory_request.mask, 4, write);
-    field(out.memory_request.id, 5, request && !write);
-    field(out.import_request_valid ? 1 : 0, 1, on);
-    field(to_underlying(out.import_request_kind), 2, on && out.import_request_valid);
-    field(out.export_valid ? 1 : 0, 1, on);
-    words(out.export_data, on && out.export_valid ? 15 : 0);
-    field(out.export_last ? 1 : 0, 1, on && out.export_valid);
-    field(out.exports[0], 16, on);
-    field(out.frame_valid ? 1 : 0, 1, on);
-    field(out.frame.pixel, 32, on && out.frame_valid);
-    for (size_t i = 3; i-- > 0;) field(out.frame.rgb[i], 32, on && out.frame_valid);
+    expected_.put(out.memory_request_valid ? 1 : 0, 1, on);
+    expected_.put(out.memory_request.write ? 1 : 0, 1, request);
+    expected_.put(out.memory_request.address, 32, request);
+    expected_.put_words(out.memory_request.data, write ? out.memory_request.mask : 0);
+    expected_.put(out.memory_request.mask, 4, write);
+    expected_.put(out.memory_request.id, 5, request && !write);
+    expected_.put(out.import_request_valid ? 1 : 0, 1, on);
+    expected_.put(to_underlying(out.import_request_kind), 2, on && out.import_request_valid);
+    expected_.put(out.export_valid ? 1 : 0, 1, on);
+    expected_.put_words(out.export_data, on && out.export_valid ? 15 : 0);
+    expected_.put(out.export_last ? 1 : 0, 1, on && out.export_valid);
+    expected_.put(out.exports[0], 16, on);
+    expected_.put(out.frame_valid ? 1 : 0, 1, on);
+    expected_.put(out.frame.pixel, 32, on && out.frame_valid);
+    expected_.put_words(out.frame.rgb, on && out.frame_valid ? 7 : 0);
     const bool fault = out.fault.code != FaultCode::None;
-    field(fault ? 1 : 0, 1, on);
-    field(to_underlying(out.fault.code), 4, on && fault);
-    field(out.fault.warp, warp_bits_, on && fault);
-    field(out.fault.pc, 16, on && fault);
+    expected_.put(fault ? 1 : 0, 1, on);
+    expected_.put(to_underlying(out.fault.code), 4, on && fault);
+    expected_.put(out.fault.warp, warp_bits_, on && fault);
+    expected_.put(out.fault.pc, 16, on && fault);
     for (int warp = warps_ - 1; warp >= 0; --warp) retirement(static_cast<uint32_t>(warp), on);
     const UnitTrace& trace = unit_->trace();
     const StoreEvent* store = trace.stores.empty() ? nullptr : &trace.stores.front();
     const StoreEvent nothing;
-    field(store != nullptr ? 1 : 0, 1, on);
+    expected_.put(store != nullptr ? 1 : 0, 1, on);
     const StoreEvent& s = store != nullptr ? *store : nothing;
-    field(s.warp, warp_bits_, on && store != nullptr);
-    field(s.address, 32, on && store != nullptr);
-    words(s.data, on && store != nullptr ? s.mask : 0);
-    field(s.mask, 4, on && store != nullptr);
+    expected_.put(s.warp, warp_bits_, on && store != nullptr);
+    expected_.put(s.address, 32, on && store != nullptr);
+    expected_.put_words(s.data, on && store != nullptr ? s.mask : 0);
+    expected_.put(s.mask, 4, on && store != nullptr);
     const RayWriteEvent* ray = trace.ray_writes.empty() ? nullptr : &trace.ray_writes.front();
-    field(ray != nullptr ? 1 : 0, 1, on);
-    field(ray != nullptr ? ray->warp : 0, warp_bits_, on && ray != nullptr);
-    field(ray != nullptr ? ray->word : 0, 5, on && ray != nullptr);
-    field(ray != nullptr ? ray->mask : 0, lanes_, on && ray != nullptr);
+    expected_.put(ray != nullptr ? 1 : 0, 1, on);
+    expected_.put(ray != nullptr ? ray->warp : 0, warp_bits_, on && ray != nullptr);
+    expected_.put(ray != nullptr ? ray->word : 0, 5, on && ray != nullptr);
+    expected_.put(ray != nullptr ? ray->mask : 0, lanes_, on && ray != nullptr);
     for (int lane = lanes_ - 1; lane >= 0; --lane) {
       const size_t l = lane;
-      field(ray != nullptr ? ray->data[l] : 0, 32, on && ray != nullptr && (ray->mask >> lane & 1) != 0);
+      expected_.put(ray != nullptr ? ray->data[l] : 0, 32, on && ray != nullptr && (ray->mask >> lane & 1) != 0);
     }
   }
 
@@ -165,22 +124,23 @@ class Recorder : public ComputeUnit {
     const Instruction instruction = event != nullptr ? unpack(event->instruction) : Instruction{};
     const bool data = valid && instruction.info != nullptr && writes_register(*instruction.info);
     const bool predicate = valid && instruction.info != nullptr && writes_predicate(*instruction.info);
-    field(event != nullptr ? 1 : 0, 1, on);
-    field(event != nullptr ? event->pc : 0, 16, valid);
-    field(event != nullptr ? event->instruction : 0, 64, valid);
-    field(event != nullptr ? event->mask : 0, lanes_, valid);
+    expected_.put(event != nullptr ? 1 : 0, 1, on);
+    expected_.put(event != nullptr ? event->pc : 0, 16, valid);
+    expected_.put(event != nullptr ? event->instruction : 0, 64, valid);
+    expected_.put(event != nullptr ? event->mask : 0, lanes_, valid);
     for (int lane = lanes_ - 1; lane >= 0; --lane) {
       const size_t l = lane;
-      field(event != nullptr ? event->data[l] : 0, 32, data && (event->mask >> lane & 1) != 0);
+      expected_.put(event != nullptr ? event->data[l] : 0, 32, data && (event->mask >> lane & 1) != 0);
     }
-    field(event != nullptr ? event->predicate : 0, lanes_, predicate);
+    expected_.put(event != nullptr ? event->predicate : 0, lanes_, predicate);
   }
 
   std::unique_ptr<ComputeUnit> unit_;
   std::ostream* out_;
   int warps_, lanes_, warp_bits_;
   uint32_t program_length_ = 0, memory_limit_ = 0;
-  Bus bus_, care_;
+  Bus bus_;
+  ExpectedBus expected_;
 };
 
 }  // namespace

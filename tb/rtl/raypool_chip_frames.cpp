@@ -1,8 +1,9 @@
 // Draws frames of chance on tiny chips, rtl/chip.v in lockstep with its model: on machines that have every pair of
 // values of what a chip has (sim/cosim/covering.hpp), with pictures, traffic at every port and answers of the traverser
-// drawn at random; and on some with the traverser inside, with scenes, trees and waits at the memories drawn at random,
-// whose pictures must be the native engine's. A frame that fails is made smaller while it still does, and the command
-// that repeats it is printed.
+// drawn at random; and on as many with the traverser inside, with scenes, trees and waits at the memories drawn at
+// random, whose pictures must be the native engine's. A frame that fails is made smaller while it still does, and the
+// command that repeats it is printed. With --record one frame is drawn on the model alone and written down, for another
+// simulator of the Verilog (scripts/icarus_chip.sh).
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -10,6 +11,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
+#include <fstream>
 #include <initializer_list>
 #include <memory>
 #include <random>
@@ -17,8 +20,11 @@
 #include <utility>
 #include <vector>
 
+#include "cosim/chip_recorder.hpp"
 #include "lockstep/lockstep_chip.hpp"
 #include "lockstep/rtl_loader.hpp"
+#include "machine/chip_model.hpp"
+#include "machine/model.hpp"
 #include "random.hpp"
 #include "rtl/chip_frames.hpp"
 #include "rtl/traverser_frames.hpp"
@@ -134,6 +140,34 @@ std::string failure_of(const Case& c, const Machine& machine, const std::string&
   return "";
 }
 
+/// Draws it on the model, and writes into `folder` what the chip gets and shows (vectors.txt) and its parameters
+/// (parameters.txt).
+void record(const Case& c, const Machine& machine, const std::string& folder) {
+  const Configuration& configuration = machine.configuration;
+  std::filesystem::create_directories(folder);
+  std::ofstream vectors(folder + "/vectors.txt"), parameters(folder + "/parameters.txt");
+  parameters << words_of(chip_verilog_parameters(configuration, machine.units)) << '\n';
+  const auto draw_on = [&](Memory& memory, const auto& drawn) {
+    const std::unique_ptr<ChipDevice> model = make_chip(ChipKind::Model, configuration, memory, machine.units);
+    ChipRecorder recorder(configuration, *model, vectors);
+    drawn(recorder);
+  };
+  if (is_inside(machine)) {
+    Drawing drawing(machine, c.picture, scene_of_chance(c.seed, c.triangles), c.tree);
+    draw_on(drawing.memory(), [&](ChipDevice& chip) {
+      WaitingChip waiting(chip, c.waits, c.seed);
+      drawing.expect_native(drawing.draw_on(waiting));
+    });
+  } else {
+    Frame frame(machine, c.picture);
+    Reached reached;
+    draw_on(frame.image.memory, [&](ChipDevice& chip) { draw(chip, machine, frame, c.traffic, c.seed, reached); });
+  }
+  for (std::ofstream* file : {&vectors, &parameters})
+    if (!file->flush()) throw InputError(fmt::format("{}: the recording cannot be written there", folder));
+  fmt::print("{}, {} units: {}\n", configuration.name, machine.units, to_string(c, machine));
+}
+
 /// The smallest picture, of fewest triangles, of those tried that still fails.
 Case shrunk(Case c, const Machine& machine, const std::string& library) {
   const auto smaller = [](const Case& from) {
@@ -167,6 +201,7 @@ Case shrunk(Case c, const Machine& machine, const std::string& library) {
 
 struct Options {
   std::string program;  ///< as it was called
+  std::string record;   ///< folder for one frame; empty: none
   uint32_t frames = 50, seed = 1, machine = 0, frame = 0;
   uint32_t machines = 0;
   bool inside = false;
@@ -187,16 +222,25 @@ class Clock {
 
 int run(const Options& options) {
   std::vector<Machine> machines = covering_chips();
-  const Covered covered = count_covered(chip_factors(), machines, kSmallThreads);
   const auto outside = static_cast<uint32_t>(machines.size());
   for (Machine& machine : inside_machines()) machines.push_back(std::move(machine));
   const auto last = static_cast<uint32_t>(machines.size());
   if (options.machine > last)
     throw InputError(fmt::format("--machine is {}; there are machines 1 to {}", options.machine, last));
-  fmt::print(
-      "{} machines of at most {} threads: {} of {} values, {} of {} pairs of values; and {} with the traverser "
-      "inside\n",
-      outside, kSmallThreads, covered.values, covered.all_values, covered.pairs, covered.all_pairs, last - outside);
+  const auto case_on = [&](uint32_t number, uint32_t frame) {
+    return number > outside ? inside_case_of(options.seed, number, frame) : case_of(options.seed, number, frame);
+  };
+  if (!options.record.empty()) {
+    record(case_on(options.machine, options.frame), machines[options.machine - 1], options.record);
+    return 0;
+  }
+  const auto print = [](const std::vector<Machine>& set, const std::vector<Factor>& factors, const char* what) {
+    const Covered covered = count_covered(factors, set, kSmallThreads);
+    fmt::print("{} machines of at most {} threads{}: {} of {} values, {} of {} pairs of values\n", set.size(),
+               kSmallThreads, what, covered.values, covered.all_values, covered.pairs, covered.all_pairs);
+  };
+  print(covering_chips(), chip_factors(), "");
+  print(covering_inside(), inside_factors(), " with the traverser inside, and three more");
   const uint32_t first = options.inside ? outside + 1 : 1;
   const auto chosen = [&](uint32_t number) {
     if (options.machine != 0) return number == options.machine;
@@ -215,8 +259,7 @@ int run(const Options& options) {
     bool held = true;
     for (uint32_t frame = 1; frame <= options.frames && held; ++frame) {
       if (options.frame != 0 && frame != options.frame) continue;
-      const Case c =
-          is_inside(machine) ? inside_case_of(options.seed, number, frame) : case_of(options.seed, number, frame);
+      const Case c = case_on(number, frame);
       const std::string failure = failure_of(c, machine, library, drawn);
       held = failure.empty();
       if (held) continue;
@@ -259,8 +302,11 @@ int main(int argc, char** argv) {
   app.add_option("--seed", options.seed, "of pictures, scenes and traffic")->capture_default_str();
   app.add_option("--machines", options.machines, "only the first so many machines; 0: all")->capture_default_str();
   app.add_flag("--inside", options.inside, "only those with the traverser inside");
-  app.add_option("--machine", options.machine, "only this machine, from 1")->check(CLI::PositiveNumber);
-  app.add_option("--frame", options.frame, "only this frame of it, from 1")->check(CLI::PositiveNumber);
+  auto* machine = app.add_option("--machine", options.machine, "only this machine, from 1")->check(CLI::PositiveNumber);
+  auto* frame = app.add_option("--frame", options.frame, "only this frame of it, from 1")->check(CLI::PositiveNumber);
+  app.add_option("--record", options.record, "folder that gets this frame as the model draws it; no Verilog is needed")
+      ->needs(machine)
+      ->needs(frame);
   CLI11_PARSE(app, argc, argv);
   try {
     return raypool::run(options);

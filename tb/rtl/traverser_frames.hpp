@@ -96,8 +96,12 @@ inline Machine crowded_inside() {
   return machine;
 }
 
-/// The machines of `make chip-frames` that have it inside.
-inline std::vector<Machine> inside_machines() { return {smallest_inside(), full_inside(), crowded_inside()}; }
+/// The machines of `make chip-frames` that have it inside: these, and every pair of values of what such a chip has.
+inline std::vector<Machine> inside_machines() {
+  std::vector<Machine> machines = {smallest_inside(), full_inside(), crowded_inside()};
+  for (Machine& machine : covering_inside()) machines.push_back(std::move(machine));
+  return machines;
+}
 
 /// A soup of so many triangles, or a few more, with materials, camera and light of chance; at times all of it is one
 /// triangle many times. Half of them are in a closed box, with the camera, so that every ray hits something.
