@@ -220,6 +220,17 @@ class Clock {
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
+/// What the sets of machines have.
+void print_sets() {
+  const auto print = [](const std::vector<Machine>& set, const std::vector<Factor>& factors, const char* what) {
+    const Covered covered = count_covered(factors, set, kSmallThreads);
+    fmt::print("{} machines of at most {} threads{}: {} of {} values, {} of {} pairs of values\n", set.size(),
+               kSmallThreads, what, covered.values, covered.all_values, covered.pairs, covered.all_pairs);
+  };
+  print(covering_chips(), chip_factors(), "");
+  print(covering_inside(), inside_factors(), " with the traverser inside, and three more");
+}
+
 int run(const Options& options) {
   std::vector<Machine> machines = covering_chips();
   const auto outside = static_cast<uint32_t>(machines.size());
@@ -234,13 +245,7 @@ int run(const Options& options) {
     record(case_on(options.machine, options.frame), machines[options.machine - 1], options.record);
     return 0;
   }
-  const auto print = [](const std::vector<Machine>& set, const std::vector<Factor>& factors, const char* what) {
-    const Covered covered = count_covered(factors, set, kSmallThreads);
-    fmt::print("{} machines of at most {} threads{}: {} of {} values, {} of {} pairs of values\n", set.size(),
-               kSmallThreads, what, covered.values, covered.all_values, covered.pairs, covered.all_pairs);
-  };
-  print(covering_chips(), chip_factors(), "");
-  print(covering_inside(), inside_factors(), " with the traverser inside, and three more");
+  print_sets();
   const uint32_t first = options.inside ? outside + 1 : 1;
   const auto chosen = [&](uint32_t number) {
     if (options.machine != 0) return number == options.machine;
