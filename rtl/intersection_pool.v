@@ -73,15 +73,16 @@ module intersection_pool #(
   localparam integer GAP = CYCLES_PER_BEAT - 1;
 
   // ---- Requests. Pending: it is taken when wait_q is 0 and the register for the next package is free. Else the next
-  // turn begins wait_q cycles from now at the earliest.
+  // turn begins wait_q cycles from now at the earliest. As a request stays, what it asks for is known of registers then.
   reg pending_q;
+  reg [1:0] asked_kind_q, asked_unit_q;
   reg [WAIT_BITS-1:0] wait_q;
   reg next_valid_q;                    // a package has been taken, and none of its beats read
   reg [1:0] next_kind_q, next_unit_q;
   wire [KINDS-1:0] filled;             // there is a package of the kind, or its last beat comes in this cycle
   wire waits = wait_q != {WAIT_BITS{1'b0}};
-  assign request_ready_o = pending_q && !waits && !next_valid_q;
-  wire taken = request_valid_i && request_ready_o;
+  wire taken = pending_q && !waits && !next_valid_q;
+  assign request_ready_o = taken;
   wire [3:0] filled_kind = {{3-KINDS{1'b0}}, filled, 1'b0};
   wire turn = request_valid_i && !pending_q && filled_kind[request_kind_i];
 
@@ -96,6 +97,11 @@ module intersection_pool #(
       else if (taken) wait_q <= NEXT_WAIT[WAIT_BITS-1:0];
       else if (waits) wait_q <= wait_q - 1'b1;
     end
+  always @(posedge clk_i)
+    if (!pending_q) begin
+      asked_kind_q <= request_kind_i;
+      asked_unit_q <= request_unit_i;
+    end
 
   // ---- Beats. One is read a cycle before it is shown: of the package that moves, or else of the next one.
   reg [2:0] left_q;                    // beats of the package that moves
@@ -105,8 +111,8 @@ module intersection_pool #(
   wire first = !moving && (next_valid_q || taken);
   wire read = gap_q == {GAP_BITS{1'b0}} && (moving || first);
   wire begins = read && first;
-  wire [1:0] kind = moving ? kind_q : next_valid_q ? next_kind_q : request_kind_i;
-  wire [1:0] unit = next_valid_q ? next_unit_q : request_unit_i;
+  wire [1:0] kind = moving ? kind_q : next_valid_q ? next_kind_q : asked_kind_q;
+  wire [1:0] unit = next_valid_q ? next_unit_q : asked_unit_q;
 
   always @(posedge clk_i)
     if (!rst_ni) begin
@@ -124,8 +130,8 @@ module intersection_pool #(
     end
   always @(posedge clk_i) begin
     if (taken) begin
-      next_kind_q <= request_kind_i;
-      next_unit_q <= request_unit_i;
+      next_kind_q <= asked_kind_q;
+      next_unit_q <= asked_unit_q;
     end
     if (begins) begin
       kind_q <= kind;
@@ -164,9 +170,8 @@ module intersection_pool #(
         reg [ADDRESS_BITS-1:0] head_q, tail_q;   // of the next beat to be read, and to be written
         reg [LEVEL_BITS-1:0] size_q, available_q;
         wire comes = put_last && put_kind_i == KIND;
-        wire goes = taken && request_kind_i == KIND;
-        // read && kind == KIND; what is asked for is known late.
-        wire reads = gap_q == {GAP_BITS{1'b0}} && (moving ? kind_q == KIND : next_valid_q ? next_kind_q == KIND : goes);
+        wire goes = taken && asked_kind_q == KIND;
+        wire reads = read && kind == KIND;
         assign filled[k] = size_q != {LEVEL_BITS{1'b0}} || comes;
         assign put_ready_o[k] = size_q != SIZE[LEVEL_BITS-1:0] || begun;
         assign size_o[k*LEVEL_BITS +: LEVEL_BITS] = size_q;

@@ -100,14 +100,15 @@ module memory_port #(
   // ---- Whose turn it is. Where nothing waits, what comes is served in the same cycle.
   reg second_q;                                // the oldest of the traverser's has had its first part
   wire nothing_waits = !device_waits && !traverser_waits;
-  wire traverser_turn = nothing_waits ? !device_request_valid_i
-                      : traverser_waits && (!device_waits || before_oldest != went_q);
+  wire oldest_turn = traverser_waits && (!device_waits || before_oldest != went_q);   // of who waits, the traverser's
+  wire traverser_turn = nothing_waits ? !device_request_valid_i : oldest_turn;
   wire write, second, device_write, traverser_write;
   wire [31:0] device_address, traverser_address;
   wire [127:0] device_data;
   wire [255:0] traverser_data;
   wire [3:0] device_mask;
   wire [6:0] device_id;
+  wire device_write_waits = device_oldest[DEVICE_WIDTH-1];
   assign {device_write, device_address, device_data, device_mask, device_id} =
     device_waits ? device_oldest : device_new;
   assign {traverser_write, second, traverser_address, traverser_data} =
@@ -117,21 +118,27 @@ module memory_port #(
   reg [WAIT_BITS-1:0] wait_q;                  // cycles until the port is free
   reg [LINES_BITS-1:0] lines_q;                // on their way
   wire port_free = wait_q == {WAIT_BITS{1'b0}} && (!memory_request_valid_o || memory_request_ready_i);
-  wire serve = port_free && (!nothing_waits || device_request_valid_i || traverser_request_valid_i)
-             && (write || lines_q != LINES[LINES_BITS-1:0]);
-  wire serve_line = serve && !write;
-  wire serve_device = serve && !traverser_turn;
-  wire serve_traverser = serve && traverser_turn;
+  wire lines_left = lines_q != LINES[LINES_BITS-1:0];
   wire another = second && !second_q;
+  // Who waits is served whatever comes; and what comes is known late, a unit's request latest.
+  wire device_goes = port_free && !oldest_turn && (device_write_waits || lines_left);
+  wire traverser_goes = port_free && oldest_turn && (traverser_write || lines_left);
+  wire device_passes = port_free && nothing_waits && (device_request_write_i || lines_left);
+  wire traverser_passes = port_free && nothing_waits && !device_request_valid_i && (traverser_write || lines_left);
+  wire serve_device = (device_waits && device_goes) || (device_request_valid_i && device_passes);
+  wire serve_traverser = traverser_goes || (traverser_request_valid_i && traverser_passes);
+  wire serve = serve_device || serve_traverser;
+  wire serve_line = serve && !write;
   wire goes = serve_traverser && !another;
 
   ram_queue #(.WIDTH(NUMBER_BITS + DEVICE_WIDTH), .DEPTH(QUEUE)) device_requests (
-    .clk_i(clk_i), .rst_ni(rst_ni), .push_i(device_comes && (device_waits || !serve_device)),
-    .data_i({came_q, device_new}), .valid_o(device_waits), .ready_i(serve_device),
+    .clk_i(clk_i), .rst_ni(rst_ni), .push_i(device_comes && !device_passes),
+    .data_i({came_q, device_new}), .valid_o(device_waits), .ready_i(device_goes),
     .data_o({before_oldest, device_oldest}));
   ram_queue #(.WIDTH(TRAVERSER_WIDTH), .DEPTH(TRAVERSER_QUEUE)) traverser_requests (
-    .clk_i(clk_i), .rst_ni(rst_ni), .push_i(traverser_comes && (traverser_waits || !goes)), .data_i(traverser_new),
-    .valid_o(traverser_waits), .ready_i(goes), .data_o(traverser_oldest));
+    .clk_i(clk_i), .rst_ni(rst_ni), .push_i(traverser_comes && !(traverser_passes && !another)),
+    .data_i(traverser_new), .valid_o(traverser_waits), .ready_i(traverser_goes && !another),
+    .data_o(traverser_oldest));
 
   always @(posedge clk_i)
     if (!rst_ni) begin
@@ -156,7 +163,7 @@ module memory_port #(
     else if (serve) memory_request_valid_o <= 1'b1;
     else if (memory_request_ready_i) memory_request_valid_o <= 1'b0;
   always @(posedge clk_i)
-    if (serve) begin
+    if (port_free) begin
       memory_request_traverser_o <= traverser_turn;
       memory_request_write_o <= write;
       memory_request_address_o <= traverser_turn

@@ -50,9 +50,9 @@ module ram_queue #(
       tail_q <= {ADDRESS_BITS{1'b0}};
       fresh_q <= 1'b0;
     end else begin
-      if (push_i != pop) count_q <= push_i ? one_more : one_less;
+      count_q <= pop ? (push_i ? count_q : one_less) : (push_i ? one_more : count_q);
       some_q <= push_i || (pop ? more_q : some_q);
-      if (push_i != pop) more_q <= push_i ? some_q : many;
+      more_q <= pop ? (push_i ? more_q : many) : (push_i ? some_q : more_q);
       if (pop) head_q <= behind_head;
       if (push_i) tail_q <= behind_tail;
       fresh_q <= push_i && (pop ? !more_q : !some_q);

@@ -55,15 +55,23 @@ module ray_import #(
 
   wire taken = request_valid_o && request_ready_i;
   wire received = beat_valid_i && last;
-  wire [10:0] requested_next = requested_q + {10'd0, taken};
   wire [10:0] received_next = received_q + 11'd1;
-  wire [1:0] outstanding_next = outstanding_q + {1'b0, taken} - {1'b0, received};
   wire launch_end = received_next == threads_q;
   wire slice_end = (received_q & LAST_LANE[10:0]) == LAST_LANE[10:0] || launch_end;
 
-  wire [10:0] request_warp = requested_next >> LANE_BITS;
   wire [10:0] receive_warp = received_q >> LANE_BITS;
-  wire unused = &{1'b0, request_warp, receive_warp};   // the upper bits are 0 where it matters
+
+  // If the request is not taken, and if it is, which is known late: what has been requested and not received, and
+  // whether a package may be requested next.
+  wire [10:0] requested_more = requested_q + 11'd1;
+  wire [1:0] outstanding = outstanding_q - {1'b0, received};
+  wire [1:0] outstanding_more = outstanding + 2'd1;
+  wire [10:0] request_warp = requested_q >> LANE_BITS;
+  wire [10:0] request_warp_more = requested_more >> LANE_BITS;
+  wire requests = requested_q != threads_q && outstanding != 2'd2 && !full_q[request_warp[WARP_BITS-1:0]];
+  wire requests_more = requested_more != threads_q && outstanding_more != 2'd2 &&
+                       !full_q[request_warp_more[WARP_BITS-1:0]];
+  wire unused = &{1'b0, request_warp, request_warp_more, receive_warp};   // the upper bits are 0 where it matters
 
   always @(posedge clk_i)
     if (!rst_ni) begin
@@ -82,11 +90,10 @@ module ray_import #(
         beat_q <= 3'd0;
       end
       if (active_o) begin
-        requested_q <= requested_next;
-        outstanding_q <= outstanding_next;
+        if (taken) requested_q <= requested_more;
+        outstanding_q <= taken ? outstanding_more : outstanding;
         // A request that waits keeps these conditions: nothing but itself changes them.
-        request_valid_o <= requested_next != threads_q && outstanding_next != 2'd2 &&
-                           !full_q[request_warp[WARP_BITS-1:0]];
+        request_valid_o <= taken ? requests_more : requests;
         if (received) begin
           received_q <= received_next;
           if (launch_end) active_o <= 1'b0;

@@ -214,23 +214,30 @@ module tree_cache #(
     if (!rst_ni) valid_q <= {LINES{1'b0}};
     else if (fill) valid_q[{fill_set, fill_way}] <= 1'b1;
 
-  // The way that is used, or promised, becomes the most recently used one.
-  wire [WAY_BITS-1:0] used = hit ? hit_way : victim;
-  reg [WAYS-1:0] order_then;
+  // The way that is used, or promised, becomes the most recently used one. Tags are compared last: so of a hit each way
+  // says for itself in which halves it is, and of a miss it is known which order follows.
+  reg [WAYS-1:0] order_hit, order_miss, lower_hit, upper_hit;   // lower: a way of that half is hit
   localparam integer HALF = WAYS / 2;
   reg [WAY_BITS-1:0] up;
-  integer o;
+  integer o, u;
   always @* begin
-    order_then = order;
-    up = (used >> 1) | HALF[WAY_BITS-1:0];
+    lower_hit = NO_WAY;
+    upper_hit = NO_WAY;
+    for (u = 0; u < WAYS; u = u + 1)
+      for (o = 0; o < WAY_BITS; o = o + 1)
+        if (u[o]) upper_hit[(u + WAYS) >> (o + 1)] = upper_hit[(u + WAYS) >> (o + 1)] || hits[u];
+        else lower_hit[(u + WAYS) >> (o + 1)] = lower_hit[(u + WAYS) >> (o + 1)] || hits[u];
+    order_hit = (order | lower_hit) & ~upper_hit;
+    order_miss = order;
+    up = (victim >> 1) | HALF[WAY_BITS-1:0];
     for (o = 0; o < WAY_BITS; o = o + 1) begin
-      order_then[up] = !used[o];
+      order_miss[up] = !victim[o];
       up = up >> 1;
     end
   end
   always @(posedge clk_i)
     if (!rst_ni) order_q <= {SETS*WAYS{1'b0}};
-    else if (hit || allocate) order_q[{set, {WAY_BITS{1'b0}}} +: WAYS] <= order_then;
+    else if (hit || allocate) order_q[{set, {WAY_BITS{1'b0}}} +: WAYS] <= hit ? order_hit : order_miss;
 
   // ---- Registers of lines that are on their way
 

@@ -11,8 +11,8 @@
 // @break memory_port s/before_oldest != went_q/1'b1/
 // @break memory_port s/before_oldest != went_q/1'b0/
 // @break memory_port s/nothing_waits \? !device_request_valid_i/nothing_waits ? traverser_request_valid_i/
-// @break memory_port s/\(device_waits \|\| !serve_device\)/!serve_device/
-// @break memory_port s/\(traverser_waits \|\| !goes\)/(traverser_waits || !serve_traverser)/
+// @break memory_port s/device_comes && !device_passes/device_comes \&\& !serve_device/
+// @break memory_port s/!\(traverser_passes && !another\)/!traverser_passes/
 // @break memory_port s/if \(goes\) went_q/if (serve_traverser \&\& !second_q) went_q/
 // @break memory_port s/waiting_q != QUEUE/waiting_q <= QUEUE/
 // @break memory_port s/&& \(!memory_request_valid_o \|\| memory_request_ready_i\)//

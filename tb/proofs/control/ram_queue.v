@@ -9,7 +9,7 @@
 // @break ram_queue s/read_i\(pop \? more_q : fresh_q\)/read_i(pop \&\& more_q)/
 // @break ram_queue s/push_i && \(pop \? !more_q : !some_q\)/push_i \&\& !some_q/
 // @break ram_queue s/pop \? behind_head : head_q/behind_head/
-// @break ram_queue s/push_i \? some_q : many/push_i \? some_q : more_q/
+// @break ram_queue s/push_i \? more_q : many/push_i \? more_q : more_q/
 // @break ram_queue s/some_q <= push_i \|\| \(pop \? more_q : some_q\)/some_q <= pop \? more_q : push_i || some_q/
 // @break ram_queue s/LAST = DEPTH - 1/LAST = DEPTH - 3/
 `default_nettype none

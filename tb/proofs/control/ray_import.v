@@ -9,9 +9,9 @@
 // @parameters WIDE=0
 // @parameters WIDE=1 WORDS=18
 // @parameters WIDE=0 WORDS=16
-// @break ray_import s/outstanding_next != 2'd2/outstanding_q != 2'd2/
-// @break ray_import s/!full_q\[request_warp/!full_q[receive_warp/
-// @break ray_import s/requested_next != threads_q/requested_q != threads_q/
+// @break ray_import s/outstanding_more != 2'd2/outstanding != 2'd2/
+// @break ray_import s/!full_q\[request_warp\[/!full_q[receive_warp[/
+// @break ray_import s/requested_more != threads_q/requested_q != threads_q/
 // @break ray_import s/second = WIDE && beat_q\[0\]/second = WIDE/
 // @break ray_import s/\(!WIDE \|\| second \|\| last\)/1'b1/
 // @break ray_import s/second \? \{mask, 4'b1111\}/second ? {4'b1111, 4'b1111}/
