@@ -1,11 +1,10 @@
 // A bus as a hexadecimal number, for vectors that another simulator reads.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
-
-#include "machine/packages.hpp"
 
 namespace raypool {
 

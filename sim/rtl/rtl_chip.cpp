@@ -8,6 +8,7 @@
 #include "Vchip___024root.h"
 #include "bits.hpp"
 #include "built_parameters.h"
+#include "machine/packages.hpp"
 #include "rtl/chip_library.hpp"
 #include "rtl/verilated_design.hpp"
 
@@ -128,15 +129,11 @@ class RtlChip : public ChipDevice {
     top.triangle_lines_i = tree.triangle_lines;
     top.stacks_line_i = tree.stacks_line;
     top.material_base_i = tree.material_base;
-    // Of each place of a record its word; of those without one, zero.
-    constexpr uint32_t kBits = 5, kNone = 31;
-    std::array<uint32_t, kIntersectionWords> words{};
-    words.fill(kNone);
-    for (uint32_t word = 0; word < words.size(); ++word)
-      if (tree.layout.place[word] != RecordLayout::kAbsent) words[tree.layout.place[word]] = word;
+    constexpr uint32_t kBits = 5;
+    const std::array<uint8_t, kIntersectionWords> words = words_of(tree.layout);
     std::array<uint32_t, 4> record{};
     for (uint32_t bit = 0; bit < kBits * words.size(); ++bit)
-      record[bit / 32] |= (words[bit / kBits] >> bit % kBits & 1) << bit % 32;
+      record[bit / 32] |= (uint32_t{words[bit / kBits]} >> bit % kBits & 1) << bit % 32;
     std::copy(record.begin(), record.end(), top.record_i.data());
   }
 

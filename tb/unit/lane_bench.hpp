@@ -194,9 +194,8 @@ class LaneBench {
     inputs.leaf_waited = leaf.waited;
     inputs.node = nodes_.given();
     inputs.leaf = leaves_.given();
-    if (node.taken) ASSERT_NO_FATAL_FAILURE(visits(*node_wants[*node.taken], 0));
-    if (leaf.taken && !leaf_wants[*leaf.taken]->nobody)
-      ASSERT_NO_FATAL_FAILURE(visits(*leaf_wants[*leaf.taken], Walk::kLeafLine));
+    ASSERT_NO_FATAL_FAILURE(visits(node_wants, node, 0));
+    ASSERT_NO_FATAL_FAILURE(visits(leaf_wants, leaf, Walk::kLeafLine));
 
     inputs.request_taken = lane_.request_valid() && !one_of(traffic.leave_request);
     const bool fills = wanted_ && one_of(traffic.fill);
@@ -215,7 +214,9 @@ class LaneBench {
     }
     drive(inputs, test_ready);
     if (inputs.request_taken) take_request();
-    if (inputs.done_taken) ASSERT_NO_FATAL_FAILURE(take_done());
+    if (inputs.done_taken) {
+      ASSERT_NO_FATAL_FAILURE(take_done());
+    }
 
     clock_pipe(inputs, test);
     nodes_.clock();
@@ -252,7 +253,9 @@ class LaneBench {
   static uint32_t slot_of(const TriangleResult& result) { return TestTag::of(result.tag, P::slot_bits()).slot; }
   static LaneRay no_ray() { return {false, false, BoxRay({0, 0, 0}, {0, 0, 0}, 0, int{P::kBits}), {}, {1, 0}}; }
 
-  void visits(const LineWant& want, uint32_t kind) {
+  void visits(const LineWants& wants, const LaneCache::Turn& turn, uint32_t kind) {
+    if (!turn.taken || wants[*turn.taken]->nobody) return;
+    const LineWant& want = *wants[*turn.taken];
     Tracing& ray = tracing_[want.slot];
     ASSERT_NE(ray.asked, nullptr) << "cycle " << seen.cycles;
     ASSERT_LT(ray.lines, ray.asked->walk.lines.size()) << "cycle " << seen.cycles;
@@ -356,24 +359,34 @@ class LaneBench {
     ASSERT_FALSE(lane_.fault().valid) << "cycle " << seen.cycles << ": a tree is none";
     ASSERT_FALSE(u_.fault_valid_o) << "cycle " << seen.cycles << ": a tree is none";
     ASSERT_EQ(u_.slot_valid_o, lane_.slot_valid()) << "cycle " << seen.cycles;
-    if (lane_.slot_valid()) ASSERT_EQ(u_.slot_o, lane_.slot()) << "cycle " << seen.cycles;
+    if (lane_.slot_valid()) {
+      ASSERT_EQ(u_.slot_o, lane_.slot()) << "cycle " << seen.cycles;
+    }
     ASSERT_NO_FATAL_FAILURE(
         compare_wants(lane_.node_wants(), u_.node_want_o, 0, u_.node_want_line_o, u_.node_want_slot_o));
     ASSERT_NO_FATAL_FAILURE(compare_wants(lane_.leaf_wants(), u_.leaf_want_o, u_.leaf_want_nobody_o,
                                           u_.leaf_want_line_o, u_.leaf_want_slot_o));
     ASSERT_EQ(u_.leaf_room_o, lane_.leaf_room()) << "cycle " << seen.cycles;
     ASSERT_EQ(u_.request_valid_o, lane_.request_valid()) << "cycle " << seen.cycles;
-    if (lane_.request_valid()) ASSERT_NO_FATAL_FAILURE(compare_request());
+    if (lane_.request_valid()) {
+      ASSERT_NO_FATAL_FAILURE(compare_request());
+    }
     const std::optional<LeafReader::Test> test = lane_.test();
     ASSERT_EQ(u_.test_valid_o, test.has_value()) << "cycle " << seen.cycles;
-    if (test) ASSERT_NO_FATAL_FAILURE(compare_test(*test));
+    if (test) {
+      ASSERT_NO_FATAL_FAILURE(compare_test(*test));
+    }
     ASSERT_EQ(u_.result_valid_o, pipe_.result() != nullptr) << "cycle " << seen.cycles;
     if (pipe_.result() != nullptr) {
       ASSERT_EQ(u_.result_hit_o, pipe_.result()->hit) << "cycle " << seen.cycles;
-      if (pipe_.result()->hit) ASSERT_EQ(u_.result_t_o, as_bits(pipe_.result()->t)) << "cycle " << seen.cycles;
+      if (pipe_.result()->hit) {
+        ASSERT_EQ(u_.result_t_o, as_bits(pipe_.result()->t)) << "cycle " << seen.cycles;
+      }
     }
     ASSERT_EQ(u_.done_valid_o, lane_.done_valid()) << "cycle " << seen.cycles;
-    if (lane_.done_valid()) ASSERT_NO_FATAL_FAILURE(compare_done());
+    if (lane_.done_valid()) {
+      ASSERT_NO_FATAL_FAILURE(compare_done());
+    }
   }
   void compare_request() {
     const LaneStacks::Request& request = lane_.request();
