@@ -73,7 +73,7 @@ module intersection_pool #(
   localparam integer GAP = CYCLES_PER_BEAT - 1;
 
   // ---- Requests. Pending: it is taken when wait_q is 0 and the register for the next package is free. Else the next
-  // turn begins wait_q cycles from now at the earliest. As a request stays, what it asks for is known of registers then.
+  // turn begins wait_q cycles from now at the earliest. As a request stays, registers have what it asks for by then.
   reg pending_q;
   reg [1:0] asked_kind_q, asked_unit_q;
   reg [WAIT_BITS-1:0] wait_q;

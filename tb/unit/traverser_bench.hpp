@@ -79,7 +79,9 @@ class TraverserBench {
 
   /// Traces the rays; all are done in time. `tree` must outlive the call.
   void trace(const LaneTree& tree, const std::vector<Asked>& rays, const TraverserTraffic& traffic) {
+    more_lines_ = 1u << bench_.random() % 26;
     ASSERT_NO_FATAL_FAILURE(run(tree, rays, traffic, StackMemory::Keeps));
+    more_lines_ = 0;
     ASSERT_FALSE(model_->outputs().fault.valid);
   }
   /// The same of what may be no tree: all are done, or there is a fault that one of them comes to. It stays, nothing is
@@ -178,6 +180,7 @@ class TraverserBench {
     setup.places.triangles = nodes;
     setup.places.triangle_lines = static_cast<uint32_t>(tree.triangles.size());
     setup.places.stacks = nodes + setup.places.triangle_lines + static_cast<uint32_t>(bench_.random()) % 1000;
+    setup.places.triangle_lines = std::max(setup.places.triangle_lines, more_lines_);
     put(0, tree.nodes);
     put(setup.places.triangles, tree.triangles);
     last_line_ = setup.places.stacks + static_cast<uint32_t>(Traverser::stack_bytes(sizes) / 64);
@@ -502,6 +505,7 @@ class TraverserBench {
   uint32_t turned_ = 0;
   uint64_t requests_since_fault_ = 0;
   uint32_t last_line_ = 0;
+  uint32_t more_lines_ = 0;  // that triangles are said to take, though they take fewer
   std::deque<TreeLine> on_way_;
   uint32_t line_beat_ = 0;
 };

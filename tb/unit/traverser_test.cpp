@@ -3,6 +3,7 @@
 // tree: rays end, or the fault comes that a walk comes to.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
@@ -36,6 +37,13 @@ class Case {
       if (random() % 24 == 0) query.limit = random() % 2 == 0 ? 0 : NAN;
       const bool shadow = random() % 3 == 0;
       what.rays.push_back(words(query, shadow, random));
+    }
+    rays = asked_of<P>(what);
+    // Limits at what is hit, and a last place before and behind it.
+    for (size_t i = 0; i < rays.size(); ++i) {
+      const auto& hit = rays[i].walk.hit;
+      if (hit.hit && random() % 4 == 0)
+        what.rays[i][word::kLimit] = as_bits(std::ldexp(hit.t, rays[i].scale)) + random() % 3 - 1;
     }
     rays = asked_of<P>(what);
   }
@@ -75,7 +83,7 @@ TYPED_TEST(TraverserTest, AgreesWithItsClassInEveryCycleAndEveryRayBecomesWhatIt
       {}, {0, 2, 1, 0, 0, 0}, {3, 0, 9, 4, 3, 3}, {0, 3, 40, 0, 2, 9}, {40, 0, 1, 2, 0, 0}, {0, 0, 12, 0, 40, 2}};
   for (uint32_t seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
-    const Case<TypeParam> test(any_scene(random), 120, seed);
+    const Case<TypeParam> test(any_scene(random, 60), 120, seed);
     ASSERT_NO_FATAL_FAILURE(bench.trace(test.what.tree, test.rays, traffics[random() % std::size(traffics)]));
   }
   const TraverserSeen& seen = bench.seen;
@@ -91,8 +99,9 @@ TYPED_TEST(TraverserTest, AgreesWithItsClassInEveryCycleAndEveryRayBecomesWhatIt
   EXPECT_GT(seen.reads, 1000u);
   if (sizes.stack_entries < 16) {
     EXPECT_GT(seen.spills, 20u);
+    EXPECT_GT(seen.stack_reads, 5u);
   }
-  EXPECT_EQ(seen.spills == 0, seen.stack_reads == 0);
+  EXPECT_LE(seen.stack_reads, seen.spills);
 }
 
 TYPED_TEST(TraverserTest, RaysThatWaitForRoomHoldUpNoOthers) {
