@@ -70,12 +70,12 @@ FRAMES    ?= 50
 TREES     ?= 1000
 # `make mutants`
 MUTANTS   ?= 500
-# `make block-mutants`: the modules of the traverser, but those four that join these, whose survivors nobody has judged
+# `make block-mutants`: the modules of the traverser
 EACH      ?= 10
-MODULES   ?= traverser_lane ray_finish quotient_digits root_digits cross_products triangle_view triangle_normal \
-  triangle_shares float_shorten ray_setup ray_direction ray_padding triangle_pipe triangle_edges triangle_interval \
-  triangle_plane leaf_reader line_offers tree_banks bank_arbiter tree_cache box_pipe box_axis child_order lane_hits \
-  lane_stacks
+MODULES   ?= traverser tree_port triangle_group ray_exit traverser_lane ray_finish quotient_digits root_digits \
+  cross_products triangle_view triangle_normal triangle_shares float_shorten ray_setup ray_direction \
+  ray_padding triangle_pipe triangle_edges triangle_interval triangle_plane leaf_reader line_offers \
+  tree_banks bank_arbiter tree_cache box_pipe box_axis child_order lane_hits lane_stacks
 # `make fit`
 SLOWER    ?= 1%
 AREA      ?= 0
