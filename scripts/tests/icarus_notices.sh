@@ -61,7 +61,7 @@ done
 without_reset controller.v busy_o
 chip_notices "whether a frame is drawn, without reset" busy 22
 without_reset tree_port.v request_valid_o
-chip_notices "a request of the traverser without reset" memory_request_traverser 22
+chip_notices "a request of the traverser without reset" tree_response_valid 22
 without_reset tree_cache.v valid_q
 chip_notices "which lines a cache has, without reset" tree_request_valid 22
 without_reset leaf_reader.v held_q
