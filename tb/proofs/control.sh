@@ -6,7 +6,6 @@
 #   @proves SENTENCE           printed when it holds, once for each
 #   @parameters NAME=VALUE...  set of parameters to prove it for; more lines are more
 #                              proofs; without one, as the checker stands
-#   @slow-parameters NAME=VALUE...  a set before those, not with --quick
 #   @break FILE SED            a sed script that breaks FILE; the proof must then fail
 #   @zeros                     registers that have no reset start as 0 instead of anything
 #   @slow                      not with --quick
@@ -71,7 +70,7 @@ for name in "${names[@]}"; do
   [ -z "$quick" ] || ! grep -q '^// @slow' "$checker" || continue
   files=
   for module in $(said modules "$checker"); do files+=" rtl/$module.v"; done
-  mapfile -t sets < <([ -n "$quick" ] || said slow-parameters "$checker"; said parameters "$checker")
+  mapfile -t sets < <(said parameters "$checker")
   [ ${#sets[@]} -gt 0 ] || sets=("")
   for set in "${sets[@]}"; do
     [ -z "$only_broken" ] || break

@@ -79,7 +79,7 @@ class TraverserBench {
 
   /// Traces the rays; all are done in time. `tree` must outlive the call.
   void trace(const LaneTree& tree, const std::vector<Asked>& rays, const TraverserTraffic& traffic) {
-    more_lines_ = 1u << bench_.random() % 26;
+    more_lines_ = 1u << (25 - traces_++ % 26);
     ASSERT_NO_FATAL_FAILURE(run(tree, rays, traffic, StackMemory::Keeps));
     more_lines_ = 0;
     ASSERT_FALSE(model_->outputs().fault.valid);
@@ -506,6 +506,7 @@ class TraverserBench {
   uint64_t requests_since_fault_ = 0;
   uint32_t last_line_ = 0;
   uint32_t more_lines_ = 0;  // that triangles are said to take, though they take fewer
+  uint32_t traces_ = 0;
   std::deque<TreeLine> on_way_;
   uint32_t line_beat_ = 0;
 };

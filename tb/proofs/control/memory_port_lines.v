@@ -6,7 +6,7 @@
 // @proves nobody starves: while lines may be on their way, the next request is offered within 4 CYCLES_PER_BEAT cycles,
 //   and a beat that is there is handed on within CYCLES_PER_BEAT
 // @proves a unit is quiet if and only if none of its requests waits or is on its way
-// @slow-parameters QUEUE=1 TRAVERSER_QUEUE=1 CYCLES_PER_BEAT=2 LINES=1
+// @parameters QUEUE=1 TRAVERSER_QUEUE=1 CYCLES_PER_BEAT=2 LINES=1
 // @parameters QUEUE=1 TRAVERSER_QUEUE=1 CYCLES_PER_BEAT=1 LINES=1
 // @break memory_port s/lines_left = lines_q != .*;/lines_left = 1'b1;/
 // @break memory_port s/memory_beat_ready_o = beats != 2'd2/memory_beat_ready_o = beats != 2'd3/
