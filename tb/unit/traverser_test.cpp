@@ -109,15 +109,16 @@ TYPED_TEST(TraverserTest, AgreesWithItsClassInEveryCycleAndEveryRayBecomesWhatIt
 TYPED_TEST(TraverserTest, AgreesInLargeScenesAndWhereALimitIsAtAHit) {
   TraverserBench<TypeParam> bench(11);
   std::mt19937 random(12);
+  const int rays = TypeParam::kPool == 1 ? 20 : 160;  // one at a time takes long
   for (uint32_t seed = 1; seed <= 12; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     const float scale = std::ldexp(1.0f, static_cast<int>(3 * seed));
     const Vec3 at = seed % 2 == 0 ? Vec3{0, 0, 0} : Vec3{70, -800, 3};
-    Case<TypeParam> test(soup(random(), 600, scale, at), 160, seed);
+    Case<TypeParam> test(soup(random(), 600, scale, at), rays, seed);
     test.limit_at_hits(random);
     ASSERT_NO_FATAL_FAILURE(bench.trace(test.what.tree, test.rays, {}));
   }
-  EXPECT_EQ(bench.seen.rays, 12u * 160);
+  EXPECT_EQ(bench.seen.rays, 12u * static_cast<uint32_t>(rays));
 }
 
 TYPED_TEST(TraverserTest, RaysThatWaitForRoomHoldUpNoOthers) {
