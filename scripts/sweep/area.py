@@ -7,10 +7,11 @@ import tempfile
 
 from . import raypool
 from .errors import SweepError
+from .experiment import text
 
 
 class Areas:
-    """Synthesises each distinct unit once."""
+    """Synthesises each distinct unit, or chip, once."""
 
     def __init__(self, progress, power):
         self.progress = progress
@@ -18,18 +19,27 @@ class Areas:
         self.known = {}
 
     def of(self, planned):
-        """{"area_mm2", "kge"} of all units of the point, at 40 nm; with power "power_mw", at the clock of the
-        library.
+        """{"area_mm2", "kge"} of all units of the point, or of its whole chip, at 40 nm; with power "power_mw", at the
+        clock of the library.
         """
+        if planned.point["chip"]:
+            return self.synthesised(planned, planned.settings, ["--chip", f"--units={text(planned.point['units'])}"])
         settings = {field: value for field, value in planned.settings.items() if not field.startswith("chip.")}
-        config = planned.point["config"]
-        identity = raypool.ask_config(config, settings, "--verilog-parameters")
-        if identity not in self.known:
-            self.progress.show(f"  synthesis of unit {len(self.known) + 1}, {planned.machine['name']}: a new one takes "
-                               "minutes", now=True)
-            self.known[identity] = synthesise(raypool.machine_words(config, settings), self.power)
         units = int(planned.point["units"])
-        return {name: round(units * value, 6) for name, value in self.known[identity].items()}
+        return {name: round(units * value, 6) for name, value in self.synthesised(planned, settings, []).items()}
+
+    def synthesised(self, planned, settings, chip):
+        config = planned.point["config"]
+        identity = raypool.ask_config(config, settings, "--verilog-parameters", *chip)
+        if identity not in self.known:
+            what, time = ("chip", "half an hour") if chip else ("unit", "minutes")
+            self.progress.show(
+                f"  synthesis {len(self.known) + 1}, {what} {planned.machine['name']}: a new one takes {time}", now=True
+            )
+            # Rounds for speed change a chip's area by a hundredth, and each times millions of cells.
+            words = [*raypool.machine_words(config, settings), *chip, *(["--rounds=0"] if chip else [])]
+            self.known[identity] = synthesise(words, self.power)
+        return self.known[identity]
 
 
 def synthesise(words, power):

@@ -84,10 +84,17 @@ class Plan:
             return planned.point["config"], *planned.settings.items()
 
         for planned, machine in self.each_once("machines checked", identity, machine_of).items():
-            planned.machine = machine
+            # The controller of a whole chip is that of the Verilog, and its report says so.
+            whole = {"chip": {**machine["chip"], "controller": "counters"}} if planned.point["chip"] else {}
+            planned.machine = {**machine, **whole}
 
     def check_runs(self):
         """Each value of the other options once, by a call that draws nothing."""
+        for planned in self.points:
+            # A Verilated chip takes minutes to build and hours to draw what is worth a table.
+            if planned.point["chip"] not in ("", "model"):
+                value = text(planned.point["chip"])
+                raise self.error(planned, SweepError(f"chip is '{value}'; it must be 'model', or be left out"))
         for field in ("size", "depth", "units", "engine", "detail"):
 
             def check(planned, field=field):
@@ -167,7 +174,7 @@ class Plan:
             return raypool.ask_config(*machine, units, "--unit-library").strip()
 
         def identity(planned):
-            if planned.point["engine"] not in raypool.VERILATED:
+            if planned.point["chip"] or planned.point["engine"] not in raypool.VERILATED:
                 return None
             return json.dumps([planned.machine, planned.point["units"]])
 
@@ -194,7 +201,7 @@ class Plan:
         point = planned.point
         words = ["sim", *raypool.machine_words(point["config"], planned.settings)]
         for field in RUN_FIELDS:
-            if field != "config" and point[field] != "":
+            if field not in ("config", "engine" if point["chip"] else "chip") and point[field] != "":
                 words.append(f"--{field}={text(point[field])}")
         files = []
         if os.path.isfile(point["scene"]):

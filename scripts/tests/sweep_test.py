@@ -168,6 +168,7 @@ class Refusals(SweepTest):
             ("size", "8by8", "8by8"),
             ("size", "0x8", "0x8"),
             ("engine", "spice", "native, embree, functional, sampled, model, rtl or lockstep"),
+            ("chip", "rtl", "it must be 'model'"),
             ("detail", 0, "detail"),
             ("scene", "none.obj", "none.obj"),
             ("view", "none.json", "none.json"),
@@ -350,6 +351,18 @@ class Runs(SweepTest):
         self.assertEqual(len({row["cycles"] for row in rows[2:]}), 1)
         self.assertGreater(rows[2]["cycles"], 0)
         self.assertGreater(rows[4]["lockstep.instructions"], 0)
+
+    def test_a_whole_chip_is_a_point(self):
+        base = {**TINY, "config": "best_4w4c", "depth": 2, "engine": "model"}
+        points = [{}, {"chip": "model"}, {"chip": "model", "chip.traverser": "hardware"}]
+        self.run_sweep({"base": base, "points": points})
+        rows = self.rows()
+        self.assertEqual([row["chip"] for row in rows], ["", "model", "model"])
+        self.assertEqual(len({row["picture"] for row in rows}), 1)
+        self.assertEqual(len({row["cycles"] for row in rows}), 3)
+        for row in rows:
+            report = json.loads((self.out / "points" / row["key"] / "report.json").read_text())
+            self.assertEqual(report.get("whole_chip", False), row["chip"] == "model")
 
     def test_an_interrupt_while_machines_are_checked_does_not_wait_for_the_rest(self):
         self.write({"base": TINY, "product": {"chip.memory.latency": list(range(1, 1001))}})

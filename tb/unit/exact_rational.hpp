@@ -5,6 +5,10 @@
 
 #include <cmath>
 #include <cstdint>
+#include <initializer_list>
+#include <limits>
+
+#include "bits.hpp"
 
 namespace raypool::bench {
 
@@ -61,5 +65,19 @@ class Exact {
   }
   mpq_t q_;
 };
+
+/// Is this finite float the one that a number is rounded to, to nearest even?
+inline bool is_nearest(float rounded, const Exact& exact) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  const Exact twice = exact + exact, here = Exact(rounded);
+  for (const float next : {std::nextafter(rounded, kInfinity), std::nextafter(rounded, -kInfinity)}) {
+    if (std::isinf(next)) continue;
+    const Exact middle = here + Exact(next);
+    const bool above = next > rounded;
+    if (above ? middle < twice : twice < middle) return false;
+    if (!(middle < twice) && !(twice < middle) && (as_bits(rounded) & 1) != 0) return false;
+  }
+  return true;
+}
 
 }  // namespace raypool::bench

@@ -65,6 +65,7 @@ raypool_pool_models(ray_setup_test ray_setup "BITS" 6 12 16)
 
 # The finish of a ray, and what of it can be tried apart.
 raypool_pool_bench(ray_finish_test)
+target_sources(ray_finish_test PRIVATE ${CMAKE_CURRENT_LIST_DIR}/ray_finish_parts_test.cpp)
 target_link_libraries(ray_finish_test PRIVATE raypool_scene ${GMP_LIBRARY})
 raypool_pool_models(ray_finish_test ray_finish "TAG_BITS" 16)
 raypool_pool_models(ray_finish_test cross_products "MANTISSA_BITS" 23 35)

@@ -87,19 +87,6 @@ TEST(RaySetup, IsWhatEnginesPrepare) {
   EXPECT_GT(least_limits, 100);
 }
 
-/// Of two floats, whose bits are even or not, and a number between: is the float the one that it is rounded to?
-bool is_nearest(float rounded, const Exact& exact) {
-  const Exact twice = exact + exact, here = Exact(rounded);
-  for (const float next : {next_above(rounded), next_below(rounded)}) {
-    if (std::isinf(next)) continue;
-    const Exact middle = here + Exact(next);
-    const bool above = next > rounded;
-    if (above ? middle < twice : twice < middle) return false;
-    if (!(middle < twice) && !(twice < middle) && (as_bits(rounded) & 1) != 0) return false;
-  }
-  return true;
-}
-
 TEST(RaySetup, RoundsQuotientsOnceAndReciprocalsDown) {
   HardWords words(2);
   int rays = 0, ties = 0, subnormal = 0, nothing = 0;
