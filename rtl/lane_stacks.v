@@ -211,26 +211,30 @@ module lane_stacks #(
   assign next_slot_o = read_slot_q;
   assign next_reference_o = (read_q == SPILL) ? nearest : entry[REFERENCE_BITS-1:0];
 
-  // ---- Who is next, unless the same ray is: a block that has come, a stack that spills, who wants an entry
+  // ---- Who is next, unless the same ray is: a block that has come, a stack that spills, who wants an entry. Whether a
+  // request is taken is known last: so it chooses between what is with a spill and what is without.
 
   wire request_free = !request_valid_o || request_ready_i;
-  wire spill_next = !retry_q && request_free && spill_there;
+  wire spill_wants = !retry_q && spill_there;
+  wire spill_next = spill_wants && request_free;
   wire leaf_first = pop_turn_q ? pop_there[1] : !pop_there[0];
   wire [SLOT_BITS-1:0] pop_slot;
   wire pop_ends, pop_none;
   wire [ADDRESS_BITS-1:0] pop_address;           // of its youngest entry
   wire [1:0] pop_place;
   assign {pop_slot, pop_ends, pop_none, pop_address, pop_place} = leaf_first ? leaf_want : node_want;
-  wire pop_may = !retry_q && !spill_next && (!pop_ends || read_q == NOTHING);
+  wire pop_wants = !retry_q && (!pop_ends || read_q == NOTHING);
+  wire pop_may = pop_wants && !spill_next;
   wire pop_next = pop_may && pop_there != 2'd0;
 
   assign pop_ready = {pop_may && !onward && leaf_first, pop_may && !onward && !leaf_first};
   assign spill_ready = !retry_q && request_free && !onward;
   wire spill_taken = spill_next && !onward;
-  wire pop_done = pop_next && pop_ends;          // so that nothing was read
+  wire pop_would_end = pop_wants && pop_there != 2'd0 && pop_ends;
+  wire pop_done = pop_would_end && !spill_next;  // so that nothing was read
   assign done_valid_o = (behind && read_ends) || pop_done;
   assign done_slot_o = (read_q == NOTHING) ? pop_slot : read_slot_q;
-  assign ray_ready_o = read_q == NOTHING && !pop_done;
+  assign ray_ready_o = read_q == NOTHING && (!pop_would_end || spill_next);
 
   // ---- The read: the row of the youngest entry, or of the oldest four
 

@@ -13,8 +13,9 @@ module round_robin #(
   localparam [COUNT-1:0] ONE = 1;
   reg [COUNT-1:0] behind_q;  // the numbers behind the one chosen last
   wire [COUNT-1:0] behind = request_i & behind_q;
-  wire [COUNT-1:0] candidates = |behind ? behind : request_i;
-  assign grant_o = candidates & (~candidates + ONE);
+  // The first of those behind and the first of all are looked for side by side: who asks may be known late.
+  wire [COUNT-1:0] first_behind = behind & (~behind + ONE), first = request_i & (~request_i + ONE);
+  assign grant_o = |behind ? first_behind : first;
 
   always @(posedge clk_i)
     if (!rst_ni) behind_q <= {COUNT{1'b1}};

@@ -147,8 +147,9 @@ module traverser_lane #(
   wire [3*ENTRY_BITS-1:0] others;
   wire starts = begins_now && begin_meets;
   wire [1:0] go = {next_valid || starts, goes_on};
-  wire [2*SLOT_BITS-1:0] go_slot = {starts ? begin_slot : next_slot, node_slot_q};
-  wire [63:0] go_reference = {starts ? root_i : next_reference, nearest};
+  // No ray begins while another one goes on, and that is known earlier.
+  wire [2*SLOT_BITS-1:0] go_slot = {next_valid ? next_slot : begin_slot, node_slot_q};
+  wire [63:0] go_reference = {next_valid ? next_reference : root_i, nearest};
 
   // ---- Nodes that are wanted
 

@@ -149,16 +149,26 @@ module tree_cache #(
       end
     end
   end
-  // The less recently used half, unless all its ways are promised.
+  // The less recently used half, unless all its ways are promised. Each half says for itself which of its own two is,
+  // as which of them lead to the victim is known late.
   wire [WAYS-1:0] order = order_q[{set, {WAY_BITS{1'b0}}} +: WAYS];
-  integer n, half;
-  reg [2*WAYS-1:0] unlocked;                      // a way of this half is not promised
+  integer n, v;
+  reg [2*WAYS-1:0] unlocked, leads;               // a way of this half is not promised; the victim is of this half
+  reg [WAYS-1:0] upper;                           // the less recently used one of its halves is the upper one
   always @* begin
     unlocked = {~locked, NO_WAY};
-    for (n = WAYS - 1; n > 0; n = n - 1) unlocked[n] = unlocked[2*n] || unlocked[2*n+1];
-    n = 1;
-    for (half = WAYS; half > 1; half = half / 2) n = 2 * n + {31'd0, unlocked[2*n+{31'd0, order[n]}] == order[n]};
-    victim = n[WAY_BITS-1:0];
+    upper = NO_WAY;
+    leads = {{2*WAYS-2{1'b0}}, 2'd2};
+    for (n = WAYS - 1; n > 0; n = n - 1) begin
+      unlocked[n] = unlocked[2*n] || unlocked[2*n+1];
+      upper[n] = order[n] ? unlocked[2*n+1] : !unlocked[2*n];
+    end
+    for (n = 1; n < WAYS; n = n + 1) begin
+      leads[2*n] = leads[n] && !upper[n];
+      leads[2*n+1] = leads[n] && upper[n];
+    end
+    victim = {WAY_BITS{1'b0}};
+    for (v = 0; v < WAYS; v = v + 1) if (leads[WAYS+v]) victim = victim | v[WAY_BITS-1:0];
   end
 
   wire hit = fresh_q && |hits;
@@ -217,8 +227,6 @@ module tree_cache #(
   // The way that is used, or promised, becomes the most recently used one. Tags are compared last: so of a hit each way
   // says for itself in which halves it is, and of a miss it is known which order follows.
   reg [WAYS-1:0] order_hit, order_miss, lower_hit, upper_hit;   // lower: a way of that half is hit
-  localparam integer HALF = WAYS / 2;
-  reg [WAY_BITS-1:0] up;
   integer o, u;
   always @* begin
     lower_hit = NO_WAY;
@@ -228,12 +236,7 @@ module tree_cache #(
         if (u[o]) upper_hit[(u + WAYS) >> (o + 1)] = upper_hit[(u + WAYS) >> (o + 1)] || hits[u];
         else lower_hit[(u + WAYS) >> (o + 1)] = lower_hit[(u + WAYS) >> (o + 1)] || hits[u];
     order_hit = (order | lower_hit) & ~upper_hit;
-    order_miss = order;
-    up = (victim >> 1) | HALF[WAY_BITS-1:0];
-    for (o = 0; o < WAY_BITS; o = o + 1) begin
-      order_miss[up] = !victim[o];
-      up = up >> 1;
-    end
+    order_miss = (order & ~leads[WAYS-1:0]) | (leads[WAYS-1:0] & ~upper);
   end
   always @(posedge clk_i)
     if (!rst_ni) order_q <= {SETS*WAYS{1'b0}};

@@ -5,8 +5,9 @@
 // @parameters COUNT=7
 // @parameters COUNT=1
 // @break round_robin s/ \| \(grant_o - ONE\)//
-// @break round_robin s/\|behind \? behind : request_i/request_i/
-// @break round_robin s/\(~candidates \+ ONE\)/~(candidates << 1)/
+// @break round_robin s/\|behind \? first_behind : first/first/
+// @break round_robin s/\(~request_i \+ ONE\)/~(request_i << 1)/
+// @break round_robin s/\(~behind \+ ONE\)/~(behind << 1)/
 `default_nettype none
 module check #(parameter COUNT = 4) (input wire clk_i, advance_i, input wire [COUNT-1:0] request_i);
   localparam [COUNT-1:0] NONE = 0, ONE = 1;
