@@ -102,8 +102,10 @@ TYPED_TEST(TraverserTest, AgreesWithItsClassInEveryCycleAndEveryRayBecomesWhatIt
   EXPECT_GT(seen.reads, 1000u);
   if (sizes.stack_entries < 16) {
     EXPECT_GT(seen.spills, 20u);
+    EXPECT_GT(seen.stack_reads, 5u);
   }
   EXPECT_EQ(seen.spills == 0, seen.stack_reads == 0);
+  EXPECT_LE(seen.stack_reads, seen.spills);
 }
 
 TYPED_TEST(TraverserTest, AgreesInLargeScenesAndWhereALimitIsAtAHit) {
