@@ -146,8 +146,10 @@ module ray_exit #(
   wire unblocked = fate_q && shadow && !fate_hit_q;
 
   wire entry_valid, drop_freed;
-  wire fate_moves = drops ? drop_freed : !finishes || entry_valid;
-  assign fate_ready = !fate_q || fate_moves;
+  // Whether it is a shadow ray is read, and so known last: it chooses between what either would do.
+  wire shadow_moves = !fate_hit_q || drop_freed, normal_moves = fate_hit_q ? entry_valid : drop_freed;
+  wire fate_moves = shadow ? shadow_moves : normal_moves;
+  assign fate_ready = shadow ? !fate_q || shadow_moves : !fate_q || normal_moves;
   assign slot_free_o = fate_lane_q & {LANES{fate_q && fate_moves}};
   assign slot_free_slot_o = fate_slot_q;
 

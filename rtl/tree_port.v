@@ -75,7 +75,7 @@ module tree_port #(
   wire free = !request_valid_o || request_ready_i;
   wire takes = free && !fault_valid_o && !stop_i;
   wire [2:0] grant;
-  wire [LANES-1:0] stack_grant;
+  wire [LANES-1:0] stack_grant, stack_heard;
   round_robin #(.COUNT(3)) turn (
     .clk_i(clk_i), .rst_ni(rst_ni),
     .request_i({|stack_request_valid_i, triangle_request_valid_i, node_request_valid_i}), .advance_i(takes),
@@ -83,9 +83,14 @@ module tree_port #(
   round_robin #(.COUNT(LANES)) stack_turn (
     .clk_i(clk_i), .rst_ni(rst_ni), .request_i(stack_request_valid_i), .advance_i(takes && grant[2]),
     .grant_o(stack_grant));
+  // The same choice once more, for what the lanes hear: behind the first one hangs all of a request, so that its grants
+  // pass many buffers.
+  round_robin #(.COUNT(LANES)) heard_turn (
+    .clk_i(clk_i), .rst_ni(rst_ni), .request_i(stack_request_valid_i), .advance_i(takes && grant[2]),
+    .grant_o(stack_heard));
   assign node_request_ready_o = takes && grant[0];
   assign triangle_request_ready_o = takes && grant[1];
-  assign stack_request_ready_o = stack_grant & {LANES{takes && grant[2]}};
+  assign stack_request_ready_o = stack_heard & {LANES{takes && grant[2]}};
 
   reg [LANE_BITS-1:0] lane;
   reg write;

@@ -450,6 +450,20 @@ class Synthesis(SmallBlocks):
             self.assertEqual(done["win_back"].call_count, 1 if rounds == flow.CLOSURE_ROUNDS else 0)
             self.assertEqual(slack, -0.5 if rounds == flow.CLOSURE_ROUNDS else -1.0)
 
+    def test_the_fastest_netlist_of_all_rounds_stays(self):
+        for slacks, best, maps in (([-0.9, -0.2, -0.5], {"a": 2}, 4), ([-0.9, -0.9, -0.4], {"a": 3}, 3),
+                                   ([-2.0, -1.5, -1.2], {}, 4)):  # fmt: skip
+            design = flow.Design(flow.Options(rounds=3), None, {}, "")
+            design.kinds = {"a": mock.Mock()}
+            design.kinds["a"].name = "a"
+            with mock.patch.multiple(flow, map_design=mock.DEFAULT, time_design=mock.DEFAULT,
+                                     on_failing_paths=mock.DEFAULT, next_effort=mock.DEFAULT) as done:  # fmt: skip
+                done["next_effort"].return_value = {"a"}
+                done["time_design"].side_effect = slacks + [max(slacks + [-1.0])]
+                self.assertEqual(flow.close_timing(design, "", -1.0), max(slacks + [-1.0]))
+            self.assertEqual(design.efforts, best)
+            self.assertEqual(done["map_design"].call_count, maps)
+
     def test_published_chips_are_scaled_by_the_square_of_the_feature_size(self):
         lines = report.published()
         sgrt = next(line for line in lines if "SGRT" in line)
