@@ -76,13 +76,17 @@ module memory_port #(
   localparam integer WAIT_BITS = $clog2(4 * CYCLES_PER_BEAT);
   localparam integer LINE_WAIT = 4 * CYCLES_PER_BEAT - 1;
   localparam integer BEAT_WAIT = CYCLES_PER_BEAT - 1;
+  localparam [31:0] LAST_OF_QUEUE = TRAVERSER_QUEUE - 1;
+  localparam [NUMBER_BITS-1:0] LAST_PLACE = LAST_OF_QUEUE[NUMBER_BITS-1:0];
 
   // ---- Who comes. Requests of the traverser are numbered; each of the device that waits knows how many came before.
   reg [QUEUE_BITS-1:0] waiting_q;              // the device's
   reg [NUMBER_BITS-1:0] came_q, went_q;        // the traverser's, so many in all
   wire [NUMBER_BITS-1:0] traverser_waiting = came_q - went_q;
   assign device_request_ready_o = waiting_q != QUEUE[QUEUE_BITS-1:0];
-  assign traverser_request_ready_o = traverser_waiting != TRAVERSER_QUEUE[NUMBER_BITS-1:0];
+  // That the queue is full is kept, as the traverser's lanes hear of it.
+  reg traverser_full_q;
+  assign traverser_request_ready_o = !traverser_full_q;
   wire device_comes = device_request_valid_i && device_request_ready_o;
   wire traverser_comes = traverser_request_valid_i && traverser_request_ready_o;
 
@@ -145,11 +149,13 @@ module memory_port #(
       waiting_q <= {QUEUE_BITS{1'b0}};
       came_q <= {NUMBER_BITS{1'b0}};
       went_q <= {NUMBER_BITS{1'b0}};
+      traverser_full_q <= 1'b0;
       second_q <= 1'b0;
       wait_q <= {WAIT_BITS{1'b0}};
     end else begin
       if (device_comes != serve_device) waiting_q <= device_comes ? waiting_q + 1'b1 : waiting_q - 1'b1;
       if (traverser_comes) came_q <= came_q + 1'b1;
+      if (traverser_comes != goes) traverser_full_q <= traverser_comes && traverser_waiting == LAST_PLACE;
       if (goes) went_q <= went_q + 1'b1;
       if (serve_traverser) second_q <= another;
       if (serve) wait_q <= write ? BEAT_WAIT[WAIT_BITS-1:0] : LINE_WAIT[WAIT_BITS-1:0];

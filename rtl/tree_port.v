@@ -58,7 +58,7 @@ module tree_port #(
   input  wire                          request_ready_i,
   output reg                           request_write_o,
   output wire                          request_second_o,
-  output reg  [31:0]                   request_address_o,
+  output wire [31:0]                   request_address_o,
   output reg  [255:0]                  request_data_o,
   input  wire                          response_valid_i,
   input  wire [1:0]                    response_beat_i,
@@ -114,13 +114,11 @@ module tree_port #(
       end
   end
   wire writes = grant[2] && write;
-  wire [25:0] base = grant[0] ? 26'd0 : grant[1] ? triangles_line_i : stacks_line_i;
   wire [25:0] stack_line = {{26-STACK_LINE_BITS{1'b0}}, lane, slot, block[BLOCK_BITS-1:1]};
   wire [25:0] offset = grant[0] ? node_request_line_i : grant[1] ? triangle_request_line_i : stack_line;
-  wire [26:0] line = {1'b0, base} + {1'b0, offset};
 
-  // Compared beside the sum, not behind it. A stack has so many blocks that the next one's number would be that of the
-  // first.
+  // Compared as it comes, but added up behind registers: which line a stack asks for is known late. A stack has so many
+  // blocks that the next one's number would be that of the first.
   wire node_beyond = node_request_line_i >= triangles_line_i;
   wire triangle_beyond = triangle_request_line_i >= triangle_lines_i;
   wire beyond = (grant[0] && node_beyond) || (grant[1] && triangle_beyond) || (writes && &block);
@@ -130,14 +128,19 @@ module tree_port #(
     else if (free) request_valid_o <= takes && |grant && !beyond;
   always @(posedge clk_i) fault_valid_o <= rst_ni && takes && beyond;
   always @(posedge clk_i) if (takes) fault_source_o <= grant[0] ? NODES : grant[1] ? TRIANGLES : STACKS;
-  reg carry_q;                                   // of that line's number
-  always @(posedge clk_i) if (takes) carry_q <= line[26];
-  assign fault_line_o = request_address_o[31:6] | {26{carry_q}};
+  reg [25:0] offset_q;
+  reg half_q;                                    // of a line, that a stack's block is written to
+  wire [25:0] base = (fault_source_o == NODES) ? 26'd0 :
+                     (fault_source_o == TRIANGLES) ? triangles_line_i : stacks_line_i;
+  wire [26:0] line = {1'b0, base} + {1'b0, offset_q};
+  assign request_address_o = {line[25:0], half_q, 5'd0};
+  assign fault_line_o = line[25:0] | {26{line[26]}};
   integer e;
   always @(posedge clk_i)
     if (takes) begin
       request_write_o <= writes;
-      request_address_o <= {line[25:0], writes && block[0], 5'd0};
+      offset_q <= offset;
+      half_q <= writes && block[0];
       for (e = 0; e < 4; e = e + 1)
         request_data_o[64*e +: 64] <= {{64-ENTRY_BITS{1'b0}}, entries[e*ENTRY_BITS +: ENTRY_BITS]};
     end

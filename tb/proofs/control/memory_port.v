@@ -14,6 +14,8 @@
 // @break memory_port s/device_comes && !device_passes/device_comes \&\& !serve_device/
 // @break memory_port s/!\(traverser_passes && !another\)/!traverser_passes/
 // @break memory_port s/if \(goes\) went_q/if (serve_traverser \&\& !second_q) went_q/
+// @break memory_port s/traverser_waiting == LAST_PLACE/1'b0/
+// @break memory_port s/\(traverser_comes != goes\)/(traverser_comes)/
 // @break memory_port s/waiting_q != QUEUE/waiting_q <= QUEUE/
 // @break memory_port s/&& \(!memory_request_valid_o \|\| memory_request_ready_i\)//
 // @break memory_port s/write \? BEAT_WAIT/!write ? BEAT_WAIT/

@@ -10,8 +10,8 @@
 //   half of it that the block lies in, and stays until a cache takes it
 // @break tree_port /heard_turn/,/grant_o/ s/takes && grant\[2\]/takes/
 // @break tree_port /stack_turn/,/grant_o/ s/takes && grant\[2\]/takes/
-// @break tree_port s/base = grant\[0\] \? 26'd0 : grant\[1\]/base = grant[0] ? 26'd0 : 1'b0/
-// @break tree_port s/writes && block\[0\], 5'd0/block[0], 5'd0/
+// @break tree_port s/fault_source_o == TRIANGLES\) \?/1'b0) ?/
+// @break tree_port s/half_q <= writes && block/half_q <= block/
 // @break tree_port s/free = !request_valid_o \|\| request_ready_i/free = 1'b1/
 // @break tree_port s/\|grant && !writes\)/|grant)/
 // @break tree_port s/node_request_line_i >= triangles_line_i/node_request_line_i > triangles_line_i/
