@@ -28,8 +28,8 @@ def rounds_of(arguments):
     rounds = getattr(arguments, "rounds", None)
     if not rounds:
         return flow.CLOSURE_ROUNDS
-    if rounds not in map(str, range(flow.CLOSURE_ROUNDS + 1)):
-        raise SynthError(f"ROUNDS={rounds}: 0 to {flow.CLOSURE_ROUNDS}")
+    if rounds not in map(str, range(flow.MOST_ROUNDS + 1)):
+        raise SynthError(f"ROUNDS={rounds}: 0 to {flow.MOST_ROUNDS}")
     return int(rounds)
 
 
@@ -208,7 +208,7 @@ def parser():
             command.add_argument("--chip", action="store_true", help="the whole chip; with chip.traverser=hardware all")
             command.add_argument("--units", default="1", help="with --chip: compute units, 1, 2 or 4")
         if name == "report":
-            command.add_argument("--rounds", help="for speed, at most; fewer than 4: no area is won back")
+            command.add_argument("--rounds", help="for speed, at most; with any but 4 no area is won back")
             command.add_argument("--against", help="an earlier report.json to compare with")
             command.add_argument("--run", help="report.json of raypool sim with this configuration: Mrays/s a mm2")
             command.add_argument("--prove", action="store_true", help="prove blocks equal to their RTL")

@@ -15,8 +15,9 @@ from .library import BUILD, ROOT, Library
 from .memories import MemoryModel
 from .netlist import Netlist
 
-# Rounds of mapping for speed what lies on failing paths.
+# Rounds of mapping for speed what lies on failing paths; how many there are at most where the user wants more.
 CLOSURE_ROUNDS = 4
+MOST_ROUNDS = 8
 # Failing end points whose paths are looked at in a round.
 PATHS_A_ROUND = 60
 # What a kind of block must save to be tried with a lower effort again, as a share of all logic.
@@ -34,7 +35,7 @@ class Options:
     jobs: int = 2
     out: str = None
     units: int = 0  # of the whole chip; 0: a unit alone
-    rounds: int = CLOSURE_ROUNDS  # fewer: a quick look, in which no area is won back
+    rounds: int = CLOSURE_ROUNDS  # another number: no area is won back
 
     @property
     def title(self):
