@@ -161,7 +161,9 @@ def prepare(design):
 
 
 def mapper_of(design):
-    return mapping.Mapper(design.library, BUILD, design.clock_ns, design.options.jobs)
+    options = design.options
+    # Who wants more rounds than there are has the time.
+    return mapping.Mapper(design.library, BUILD, design.clock_ns, options.jobs, options.rounds > CLOSURE_ROUNDS)
 
 
 def map_design(design):

@@ -32,15 +32,19 @@ def versions():
     return {"yosys": text.split()[1]}
 
 
-# Ways of mapping: for area, for speed with area won back, for speed, and for few levels before that. Each ends with
-# buffers and drive strengths for the target {d}, and says its delay. What `map` takes for a delay is some two times
-# that: with {d} as its limit it never wins area back.
+# Ways of mapping: for area, for speed with area won back, for speed, for few levels before that, and with more buffers,
+# each for fewer gates, after one or two searches for few levels. Each ends with buffers and drive strengths for the
+# target {d}, and says its delay. What `map` takes for a delay is some two times that: with {d} as its limit it never
+# wins area back.
 _SIZING = "topo;buffer,-c;upsize,-D,{d};dnsize,-D,{d};stime"
+_SPREAD = _SIZING.replace("buffer,-c", "buffer,-c,-N,6")
 ABC_SCRIPTS = {
     "area": "+strash;dc2;dch,-f;amap,-m;" + _SIZING,
     "balance": "+strash;dch;map,-B,0.9,-D,{relaxed};" + _SIZING,
     "speed": "+strash;dch;map,-B,0.9,-D,{d};" + _SIZING,
     "levels": "+strash;dch;if,-g;strash;dch;map,-B,0.9,-D,{d};" + _SIZING,
+    "spread": "+strash;dch;if,-g;strash;dch;map,-B,0.9,-D,{d};" + _SPREAD,
+    "twice": "+strash;dch;if,-g;strash;dch;if,-g;strash;dch;map,-B,0.9,-D,{d};" + _SPREAD,
 }
 
 # From this effort on every way is tried and the fastest taken.
@@ -50,17 +54,18 @@ LAST_EFFORT = 3
 AREA_EFFORT = 4
 
 
-def efforts_of(library):
+def efforts_of(library, thorough=False):
     """The first try, and what a block on a failing path gets then, one more each time. Ways in this order, until one is
     fast enough (of the fast efforts all, and the fastest is taken), and the share they aim at. The second is the
-    set-up's: in most libraries area won back for a shorter target is both smaller and faster than speed alone.
+    set-up's: in most libraries area won back for a shorter target is both smaller and faster than speed alone. What is
+    thorough takes twice as long for the last effort.
     """
     again = library.setup.get("again", {"way": "balance", "share": 0.5})
     return [
         (["area", "balance", "speed"], LOGIC_SHARE),
         ([again["way"]], again["share"]),
         (["speed", "levels"], FAST_SHARE),
-        (["speed", "levels"], LAST_SHARE),
+        (["speed", "levels", *(["spread", "twice"] if thorough else [])], LAST_SHARE),
         (["area"], LOGIC_SHARE),
     ]
 
@@ -70,7 +75,7 @@ def constant(bits):
 
 
 class Mapper:
-    def __init__(self, library, folder, clock_ns, jobs=2):
+    def __init__(self, library, folder, clock_ns, jobs=2, thorough=False):
         self.library = library
         self.folder = os.path.join(folder, "kinds")
         os.makedirs(self.folder, exist_ok=True)
@@ -80,7 +85,7 @@ class Mapper:
         self.constraints = self.cells.removesuffix(".lib") + ".constr"
         self.output_load = f"{1000 * library.loads_pf['output']:.4g}"
         self.gated = bool(library.clock_gate)
-        self.efforts = efforts_of(library)
+        self.efforts = efforts_of(library, thorough)
         self.gating = self.gating_script()
         self.texts = rtl_texts()
         self.version = versions()["yosys"]

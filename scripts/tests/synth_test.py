@@ -450,6 +450,13 @@ class Synthesis(SmallBlocks):
             self.assertEqual(done["win_back"].call_count, 1 if rounds == flow.CLOSURE_ROUNDS else 0)
             self.assertEqual(slack, -0.5 if rounds == flow.CLOSURE_ROUNDS else -1.0)
 
+    def test_more_rounds_than_there_are_try_more_ways(self):
+        for rounds, ways in ((1, 2), (flow.CLOSURE_ROUNDS, 2), (flow.CLOSURE_ROUNDS + 1, 4)):
+            design = flow.Design(flow.Options(rounds=rounds), library.Library(), {}, "", clock_ns=4.0)
+            with mock.patch.object(flow, "BUILD", self.folder):
+                mapper = flow.mapper_of(design)
+            self.assertEqual([len(e[0]) for e in mapper.efforts[2:4]], [2, ways])
+
     def test_the_fastest_netlist_of_all_rounds_stays(self):
         for slacks, best, maps in (([-0.9, -0.2, -0.5], {"a": 2}, 4), ([-0.9, -0.9, -0.4], {"a": 3}, 3),
                                    ([-2.0, -1.5, -1.2], {}, 4)):  # fmt: skip
