@@ -28,7 +28,6 @@ module line_offers #(
   assign valid_o = {&there_q, |there_q};
   assign data_o = older_q ? {low_q, high_q} : {high_q, low_q};
   wire [1:0] gone = older_q ? {taken_i[0], taken_i[1]} : taken_i;
-  wire [1:0] stays = there_q | comes;             // where nothing is taken, which is known late
   // In the cycle after, a register still has what was taken out of it.
   reg [1:0] gone_q;
   assign asked_o = |gone_q;
@@ -39,7 +38,7 @@ module line_offers #(
       older_q <= 1'b0;
       gone_q <= 2'd0;
     end else begin
-      there_q <= (stays & {2{older_q}} & ~{taken_i[0], taken_i[1]}) | (stays & {2{!older_q}} & ~taken_i);
+      there_q <= (there_q | comes) & ~gone;
       if (|gone) older_q <= gone[0];
       else if (there_q == 2'd0) older_q <= 1'b0;
       gone_q <= gone;

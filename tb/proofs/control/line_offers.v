@@ -5,8 +5,7 @@
 // @break line_offers s/else if \(there_q == 2'd0\) older_q <= 1'b0/else if (there_q == 2'd1) older_q <= 1'b1/
 // @break line_offers s/older_q \? \{taken_i\[0\], taken_i\[1\]\} : taken_i/taken_i/
 // @break line_offers s/gone_q\[1\] \? high_q : low_q/gone_q[0] ? high_q : low_q/
-// @break line_offers s/stays = there_q \| comes/stays = there_q | (comes \& {2{!(|gone)}})/
-// @break line_offers s/~\{taken_i\[0\], taken_i\[1\]\}\) \|/~taken_i) |/
+// @break line_offers s/\(there_q \| comes\) & ~gone/(there_q \& ~gone) | (comes \& {2{!(|gone)}})/
 `default_nettype none
 module check (input wire clk_i, valid_i, choose_i, input wire [1:0] taken_i, input wire [1:0] data_i);
   reg rst_n = 1'b0;
