@@ -38,13 +38,15 @@ def versions():
 # wins area back.
 _SIZING = "topo;buffer,-c;upsize,-D,{d};dnsize,-D,{d};stime"
 _SPREAD = _SIZING.replace("buffer,-c", "buffer,-c,-N,6")
+_LEVELS = "dch;if,-g;strash;"
+_SPEED = "dch;map,-B,0.9,-D,{d};"
 ABC_SCRIPTS = {
     "area": "+strash;dc2;dch,-f;amap,-m;" + _SIZING,
     "balance": "+strash;dch;map,-B,0.9,-D,{relaxed};" + _SIZING,
-    "speed": "+strash;dch;map,-B,0.9,-D,{d};" + _SIZING,
-    "levels": "+strash;dch;if,-g;strash;dch;map,-B,0.9,-D,{d};" + _SIZING,
-    "spread": "+strash;dch;if,-g;strash;dch;map,-B,0.9,-D,{d};" + _SPREAD,
-    "twice": "+strash;dch;if,-g;strash;dch;if,-g;strash;dch;map,-B,0.9,-D,{d};" + _SPREAD,
+    "speed": "+strash;" + _SPEED + _SIZING,
+    "levels": "+strash;" + _LEVELS + _SPEED + _SIZING,
+    "spread": "+strash;" + _LEVELS + _SPEED + _SPREAD,
+    "twice": "+strash;" + 2 * _LEVELS + _SPEED + _SPREAD,
 }
 
 # From this effort on every way is tried and the fastest taken.
