@@ -77,7 +77,7 @@ module tree_cache #(
   reg looks_q;                                    // a lookup whose tags have been read
   reg fresh_q;                                    // it has, in the cycle before: later they may be out of date
   reg [LINE_BITS-1:0] line_q;
-  reg [SETS-1:0] set_q;                           // its set, a bit
+  reg [SETS-1:0] set_q;                           // its set, a bit: line_q has enough to drive
   reg [LANES-1:0] lanes_q;
   reg [LANES*SLOT_BITS-1:0] slots_q;
   reg [LANES-1:0] join_lanes_q;                   // that have missed, and are not in a register's list yet: one a cycle
@@ -113,11 +113,16 @@ module tree_cache #(
         .write_data_i(fill_line[LINE_BITS-1:SET_BITS]));
     end
   endgenerate
-  reg [WAYS-1:0] set_valid;
+  reg [WAYS-1:0] set_valid, order;                // of the set
   integer s;
   always @* begin
     set_valid = NO_WAY;
-    for (s = 0; s < SETS; s = s + 1) if (set_q[s]) set_valid = set_valid | valid_q[s*WAYS +: WAYS];
+    order = NO_WAY;
+    for (s = 0; s < SETS; s = s + 1)
+      if (set_q[s]) begin
+        set_valid = set_valid | valid_q[s*WAYS +: WAYS];
+        order = order | order_q[s*WAYS +: WAYS];
+      end
   end
 
   // ---- What the lookup comes to: of registers and tags alone
@@ -151,7 +156,6 @@ module tree_cache #(
   end
   // The less recently used half, unless all its ways are promised. Each half says for itself which of its own two is,
   // as which of them lead to the victim is known late.
-  wire [WAYS-1:0] order = order_q[{set, {WAY_BITS{1'b0}}} +: WAYS];
   integer n, v;
   reg [2*WAYS-1:0] unlocked, leads;               // a way of this half is not promised; the victim is of this half
   reg [WAYS-1:0] upper;                           // the less recently used one of its halves is the upper one
@@ -238,9 +242,11 @@ module tree_cache #(
     order_hit = (order | lower_hit) & ~upper_hit;
     order_miss = (order & ~leads[WAYS-1:0]) | (leads[WAYS-1:0] & ~upper);
   end
+  integer r;
   always @(posedge clk_i)
     if (!rst_ni) order_q <= {SETS*WAYS{1'b0}};
-    else if (hit || allocate) order_q[{set, {WAY_BITS{1'b0}}} +: WAYS] <= hit ? order_hit : order_miss;
+    else if (hit || allocate)
+      for (r = 0; r < SETS; r = r + 1) if (set_q[r]) order_q[r*WAYS +: WAYS] <= hit ? order_hit : order_miss;
 
   // ---- Registers of lines that are on their way
 
