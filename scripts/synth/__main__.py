@@ -92,7 +92,7 @@ def made_report(options, wanted):
 def synth_command(arguments):
     against = report.load(arguments.against) if arguments.against else None
     options = options_of(arguments)
-    run = report.load_run(arguments.run, options.config, options.units) if arguments.run else None
+    run = report.load_run(arguments.run, options.name, options.units) if arguments.run else None
     begin = time.time()
     wanted = [name for name, given in (("power", arguments.power), ("proofs", arguments.prove)) if given]
     design, result = made_report(options, wanted)

@@ -38,9 +38,14 @@ class Options:
     rounds: int = CLOSURE_ROUNDS  # another number: no area is won back
 
     @property
+    def name(self):
+        """The configuration's, as raypool reports it: of a file its own, without the folder."""
+        return os.path.splitext(os.path.basename(self.config))[0]
+
+    @property
     def title(self):
-        """The configuration, and that it is a chip's."""
-        return self.config + (f"-chip-{self.units}cu" if self.units else "")
+        """The configuration's name, and that it is a chip's."""
+        return self.name + (f"-chip-{self.units}cu" if self.units else "")
 
 
 @dataclass
@@ -77,9 +82,7 @@ class Design:
 
 def label(options, library):
     """The folder's name: the configuration and whatever is not the default."""
-    name = os.path.splitext(os.path.basename(options.config))[0]
-    chip = options.title.removeprefix(options.config)
-    return "-".join(filter(None, (name + chip, suffix(options, library))))
+    return "-".join(filter(None, (options.title, suffix(options, library))))
 
 
 def suffix(options, library):

@@ -257,7 +257,9 @@ def check(report):
 
 
 def load_run(path, config, units=0):
-    """A run's report, which must be of this configuration; of a chip of so many units, with its traverser inside."""
+    """A run's report, which must be of the configuration of that name; of a chip of so many units, with its
+    traverser inside.
+    """
     try:
         with open(path, encoding="utf-8") as file:
             run = json.load(file)
@@ -265,7 +267,7 @@ def load_run(path, config, units=0):
         raise SynthError(f"RUN={path}: not a report of raypool sim ({error})") from error
     if not isinstance(run, dict) or "mrays_per_second" not in run:
         raise SynthError(f"RUN={path}: not a report of raypool sim (it has no mrays_per_second)")
-    if run.get("config") != os.path.splitext(os.path.basename(config))[0]:
+    if run.get("config") != config:
         raise SynthError(f"RUN={path}: drawn with configuration {run.get('config')}, but this is {config}")
     if units and run.get("units") != units:
         raise SynthError(f"RUN={path}: drawn by a chip of {run.get('units')} units, but this one has {units}")

@@ -450,6 +450,11 @@ class Synthesis(SmallBlocks):
             self.assertEqual(done["win_back"].call_count, 1 if rounds == flow.CLOSURE_ROUNDS else 0)
             self.assertEqual(slack, -0.5 if rounds == flow.CLOSURE_ROUNDS else -1.0)
 
+    def test_a_file_is_reported_by_its_name_and_not_by_its_folder(self):
+        options = flow.Options(config="/elsewhere/configurations/4w4c+1_change.json", units=2, rounds=6)
+        self.assertEqual(options.title, "4w4c+1_change-chip-2cu")
+        self.assertEqual(flow.label(options, library.Library()), "4w4c+1_change-chip-2cu-6rounds")
+
     def test_more_rounds_than_there_are_try_more_ways(self):
         for rounds, ways in ((1, 2), (flow.CLOSURE_ROUNDS, 2), (flow.CLOSURE_ROUNDS + 1, 4)):
             design = flow.Design(flow.Options(rounds=rounds), library.Library(), {}, "", clock_ns=4.0)
