@@ -105,6 +105,7 @@ module box_axis #(
     reg [7:0] quarter;
     reg [3:0] eighth;
     begin
+      leading_of = 5'd0;
       leading_of[4] = value[31:16] != 16'd0;
       half = leading_of[4] ? value[31:16] : value[15:0];
       leading_of[3] = half[15:8] != 8'd0;
@@ -182,6 +183,7 @@ module box_axis #(
     integer i;
     begin
       moved = value;
+      places = {SHIFT_BITS{1'b0}};
       for (i = SHIFT_BITS - 1; i >= 0; i = i - 1) begin
         places[i] = moved >> (SUM_BITS - (1 << i)) == {SUM_BITS{1'b0}};
         if (places[i]) moved = moved << (1 << i);

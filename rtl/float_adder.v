@@ -122,7 +122,6 @@ module float_adder #(
     low = 5'd0;
     high = {E-3{1'b0}};
     magnitude = {E+M{1'b0}};
-    ones = 64'd0;
     round_up = 1'b0;
     sign = s2_sign_q;
     if (enable_i[2]) begin
@@ -140,13 +139,15 @@ module float_adder #(
       high = s2_exponent_q[E-1:3];
       if (low[4]) high = s2_exponent_q[E-1:3] - ONE_HIGH;
       else if (low[3]) high = s2_exponent_q[E-1:3] + ONE_HIGH;
+    end
+    ones = ones_below({{63-M{1'b0}}, sum[W-2:4]});
+    if (enable_i[2]) begin
       if (s2_nan_q) begin
         sign = 1'b0;
         magnitude = {{E+1{1'b1}}, {M-1{1'b0}}};
       end else if (s2_infinite_q || (&s2_exponent_q && s2_guide_q[W-1])) begin
         magnitude = {{E{1'b1}}, {M{1'b0}}};
       end else begin
-        ones = ones_below({{63-M{1'b0}}, sum[W-2:4]});
         if (sum[W-1]) magnitude[E+M-1:M] = {high, low[2:0]};
         if (SUBNORMALS == 0 || sum[W-1]) magnitude[M-1:0] = sum[W-2:4] ^ (ones[M-1:0] & {M{round_up}});
         if (sum == {W{1'b0}} && s2_subtract_q) sign = 1'b0;

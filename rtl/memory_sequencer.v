@@ -99,7 +99,6 @@ module memory_sequencer #(
     select_o = 1'b0;
     select_kind = KIND_NEW;
     select_mshr = {MSHR_BITS{1'b0}};
-    select_warp_o = {WARP_BITS{1'b0}};
     candidates = {WARPS{1'b0}};
     if (!next_valid_q) begin
       if (filled_i != {MSHRS{1'b0}})
@@ -113,15 +112,13 @@ module memory_sequencer #(
       if (!select_o && privilege_q && attempt_q && loser_q[privilege_warp_q] && parked_q[privilege_warp_q]) begin
         select_o = 1'b1;
         select_kind = KIND_LOSER;
-        select_warp_o = privilege_warp_q;
-      end else begin
-        if (!select_o && !queue_empty_o) begin
-          select_o = 1'b1;
-          candidates = queued_q;
-        end
-        if (select_o) select_warp_o = lowest(candidates);
+      end else if (!select_o && !queue_empty_o) begin
+        select_o = 1'b1;
+        candidates = queued_q;
       end
     end
+    select_warp_o = lowest(candidates);
+    if (select_kind == KIND_LOSER) select_warp_o = privilege_warp_q;
   end
 
   wire pass_of_privileged = pass_end_i && privilege_q && pass_warp_i == privilege_warp_q;

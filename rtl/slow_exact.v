@@ -151,11 +151,10 @@ module slow_exact #(
     result_o = 32'd0;
     rest = {OUT-CUT{1'b0}};
     round_up = 1'b0;
-    ones = 64'd0;
+    ones = ones_below({{56-P{1'b0}}, s10_below_q});
     if (enable_i[9]) begin
       rest = s10_sum_q + s10_carry_q;
       round_up = s10_frsqrt_q ? rest[OUT-1] : s10_above_q;
-      ones = ones_below({{56-P{1'b0}}, s10_below_q});
       result_o[31 -: P+8] = {s10_sign_q, s10_below_q ^ (ones[P+6:0] & {P+7{round_up}})};
     end
   end

@@ -159,10 +159,9 @@ module slow_newton #(
     reg [63:0] ones;
     reg [P+6:0] rounded;
     result_o = 32'd0;
-    ones = 64'd0;
+    ones = ones_below({{56-P{1'b0}}, last_magnitude_q});
     rounded = {P+7{1'b0}};
     if (enable_i[LAST-1]) begin
-      ones = ones_below({{56-P{1'b0}}, last_magnitude_q});
       // ones[P-1]: what is above a fraction of ones is the exponent.
       rounded = last_magnitude_q ^ (ones[P+6:0] & {P+7{last_round_up_q && !ones[P-1]}});
       if (last_tag_q[SPECIAL]) result_o = {last_tag_q[SIGN], last_tag_q[EXPONENT +: 8], last_tag_q[NAN], 22'd0};

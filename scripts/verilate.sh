@@ -75,12 +75,14 @@ headers=(cpp_model/{bits,enum_array}.hpp cpp_model/isa/{isa,counters,input_error
   sim/rtl/{unit_library,verilated_design}.hpp)
 wrapper=("sim/rtl/rtl_$kind.cpp" cpp_model/machine/compute_unit.cpp)
 verilog=(rtl/*.v)
-waivers=(rtl/*.vlt)   # and what the lockstep looks at inside, and how a chip is compiled
+waivers=(rtl/*.vlt)   # and what the lockstep looks at inside
+shared=()             # the modules of which all instances have the same code
 if [ "$kind" = chip ]; then
   headers+=(cpp_model/machine/{chip_device,memory_port,port_cycles,ram_queue,ray_kernel}.hpp sim/rtl/chip_library.hpp
     cpp_model/machine/{tree_setup,ray_setup,box_ray,triangle_ray}.hpp)
   wrapper+=(cpp_model/machine/chip_device.cpp)
-  waivers+=(sim/rtl/{chip_probes,shared_modules}.vlt)
+  waivers+=(sim/rtl/chip_probes.vlt)
+  shared=(sim/rtl/shared_modules.vlt)
 else
   waivers+=(sim/rtl/probes.vlt)
 fi
@@ -97,7 +99,7 @@ if [ ${#netlist[@]} -gt 0 ]; then
 fi
 digest=$({
   printf '%s\n' "$version" "$compiler_version" "trace $trace quick $quick" "${parameters[@]}"
-  sha256sum "${verilog[@]}" "${waivers[@]}" rtl/*.vh "${headers[@]}" "${wrapper[@]}" scripts/verilate.sh
+  sha256sum "${verilog[@]}" "${waivers[@]}" "${shared[@]}" rtl/*.vh "${headers[@]}" "${wrapper[@]}" scripts/verilate.sh
 } | sha256sum | cut -d ' ' -f 1)
 if [ -f "$library" ] && [ "$(cat "$stamp" 2> /dev/null)" = "$digest" ]; then
   touch "$library"   # raypool warns of one that is older than the Verilog
@@ -120,16 +122,32 @@ units=1
 for parameter in "${parameters[@]}"; do [ "${parameter%%=*}" != UNITS ] || units=${parameter#*=}; done
 printf '#define RAYPOOL_BUILT_PARAMETERS "%s"\n#define RAYPOOL_UNIT_COUNT %d\n' "${parameters[*]}" "$units" \
   > "$build/built_parameters.h"
+# So that instances share their code (see there): gold folds functions that are alike, and the longer functions are, the
+# fewer variables go from one to the next.
+fold=
+if [ ${#shared[@]} -gt 0 ]; then
+  ports=$build/shared_ports.vlt
+  {
+    echo "\`verilator_config"
+    sed -n 's/^no_inline -module "\(.*\)"$/\1/p' "${shared[@]}" | while read -r module; do
+      sed -nE '/^ *input /{s,//.*,,; s/.*[^a-z0-9_]([a-z0-9_]+)[ ,)]*$/\1/p}' "rtl/$module.v" | grep -vx clk_i |
+        sed "s/.*/public_flat_rd -module \"$module\" -var \"&\"/"
+    done
+  } > "$ports"
+  shared+=("$ports")
+  ! command -v ld.gold > /dev/null || fold="-fuse-ld=gold -Wl,--icf=all"
+fi
 options=(--cc --exe --top-module "$top" --Mdir "$build" -Irtl --default-language 1364-2005 +1800-2017ext+sv
   -O3 --x-assign fast --x-initial fast --noassert
   -CFLAGS "-std=c++17 -fPIC -fvisibility=hidden -fno-gnu-unique -fno-plt -fno-semantic-interposition"
   -CFLAGS "-I$root/cpp_model -I$root/sim -I$build"
-  -LDFLAGS "-shared -Wl,-Bsymbolic -Wl,-O1" -o "libraypool_$kind.so")
+  -LDFLAGS "-shared -Wl,-Bsymbolic -Wl,-O1 $fold" -o "libraypool_$kind.so")
+[ ${#shared[@]} -eq 0 ] || options+=(--output-split-cfuncs 30000 -CFLAGS -ffunction-sections)
 [ "$trace" = 0 ] || options+=(--trace-fst)
 for parameter in "${parameters[@]}"; do options+=("-G$parameter"); done
 [ ${#netlist[@]} -eq 0 ] || options+=(-Wno-lint -Wno-style -Wno-fatal)
 message="verilator refused the hardware description (its messages are above)"
-run "$verilator" "${options[@]}" "${waivers[@]}" "${verilog[@]}" "${wrapper[@]/#/$root/}"
+run "$verilator" "${options[@]}" "${waivers[@]}" "${shared[@]}" "${verilog[@]}" "${wrapper[@]/#/$root/}"
 
 echo "verilate.sh: compiling $(cat "$build"/V"$top"*.cpp | wc -l) lines of C++ with $jobs compilers"
 message="the Verilated $kind does not compile (messages above)"
