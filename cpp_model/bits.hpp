@@ -12,6 +12,8 @@ inline constexpr uint32_t kMostWarps = 32;
 inline uint32_t lowest(uint32_t set) { return static_cast<uint32_t>(__builtin_ctz(set)); }
 /// The lowest member as a set; of an empty set the empty set.
 inline uint32_t lowest_bit(uint32_t set) { return set & (0u - set); }
+/// Number of the leading one, from 0 on, of a word that is not 0.
+inline int leading_one(uint64_t word) { return 63 - __builtin_clzll(word); }
 inline uint64_t popcount(uint32_t set) { return static_cast<uint64_t>(__builtin_popcount(set)); }
 
 /// Elements of a container: of code, memory, lanes there are never more than a word counts.

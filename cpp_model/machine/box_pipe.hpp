@@ -44,8 +44,7 @@ struct BoxAxis {
     const uint64_t aligned = part >> shift;
     const bool rest = (aligned << shift) != part;
     const uint64_t sum = grid_negative != origin_negative ? whole + aligned : whole - aligned - rest;
-    int leading = 26;
-    while (leading > 0 && (sum >> leading & 1) == 0) --leading;
+    const int leading = sum != 0 ? leading_one(sum) : 0;
     const int sum_unit = large.unit - 2;
     const int unit = std::max(sum_unit + leading - (places - 1), ray.padding);
     const int drop = std::min(unit - sum_unit, 31);

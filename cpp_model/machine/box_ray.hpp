@@ -22,8 +22,7 @@ constexpr uint32_t infinite_key(int bits) { return (kKeyExponents << (bits - 1))
 /// exponent of the leading bit, with a bias of 512, above bits - 1 bits of fraction.
 inline uint32_t time_key(uint64_t value, int unit, int bits) {
   if (value == 0) return 0;
-  int leading = 63;
-  while ((value >> leading & 1) == 0) --leading;
+  const int leading = leading_one(value);
   const int drop = leading - (bits - 1);
   const uint64_t kept = drop > 0 ? value >> drop : value << -drop;
   const uint32_t fraction = static_cast<uint32_t>(kept) & ((1u << (bits - 1)) - 1);

@@ -65,7 +65,7 @@ inline Significand cross_product(const Significand& a, const Significand& b, con
   }
   if (sum == 0) return {};
   const auto top = static_cast<uint64_t>(sum >> 64);
-  const int first = top != 0 ? 127 - __builtin_clzll(top) : 63 - __builtin_clzll(static_cast<uint64_t>(sum));
+  const int first = top != 0 ? 64 + leading_one(top) : leading_one(static_cast<uint64_t>(sum));
   const int drop = first - 31;
   result.exponent = higher.exponent - 3 + drop;
   if (drop <= 0) {
@@ -90,7 +90,7 @@ inline float rounded_to_float(uint64_t value, int exponent, bool rest) {
     exponent += 2;
   }
   if (value == 0) return 0;
-  const int first = 63 - __builtin_clzll(value), drop = std::max(first - 23, -149 - exponent);
+  const int first = leading_one(value), drop = std::max(first - 23, -149 - exponent);
   if (drop <= 0) return std::ldexp(static_cast<float>(value), exponent);
   if (drop > 62) return 0;
   const uint64_t half = uint64_t{1} << (drop - 1), off = value & (2 * half - 1);

@@ -32,9 +32,7 @@ inline int padding_exponent(float origin, float padded_lower, float padded_upper
   const float least = widened + (padding + 0x1p-24f * largest);
   const uint32_t above = as_bits(least) + 32;
   if (above >> 23 != 0) return static_cast<int>(above >> 23) - 126;
-  int leading = 22;
-  while ((above >> leading) == 0) --leading;
-  return leading - 148;
+  return leading_one(above) - 148;
 }
 
 /// The words in which a ray comes to the traverser.
@@ -94,9 +92,7 @@ struct RaySetup {
   /// Of a finite float that is not zero: its size lies in 2^exponent .. 2^(exponent + 1).
   static int exponent_of(float x) {
     const FloatParts parts(x);
-    int leading = 23;
-    while ((parts.value >> leading) == 0) --leading;
-    return parts.unit + leading;
+    return parts.unit + leading_one(parts.value);
   }
   /// 1 / (x 2^-largest). A component below 2^-100 counts as that: along such an axis the ray does not move at all,
   /// compared with the padding, and a finite inverse keeps NaN out.
