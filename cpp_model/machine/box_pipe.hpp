@@ -93,16 +93,17 @@ class BoxPipe {
  public:
   static constexpr int kStages = 8;
 
-  bool valid() const { return stages_[kStages - 1].valid; }
-  const BoxResult& result() const { return stages_[kStages - 1].result; }
+  bool valid() const { return stages_[last_].valid; }
+  const BoxResult& result() const { return stages_[last_].result; }
   bool ready(bool result_ready) const { return !valid() || result_ready; }
 
   /// The end of a cycle. `node`: null, none is offered; `limit`: a key, of the best hit so far.
   void clock(bool result_ready, const BoxRay& ray, const BoxNode* node, uint32_t limit) {
     if (!ready(result_ready)) return;
-    for (int i = kStages - 1; i > 0; --i) stages_[i] = stages_[i - 1];
-    stages_[0].valid = node != nullptr;
-    if (node != nullptr) stages_[0].result = test_boxes(ray, *node, limit);
+    Stage& first = stages_[last_];
+    first.valid = node != nullptr;
+    if (node != nullptr) first.result = test_boxes(ray, *node, limit);
+    last_ = (last_ + 1) % kStages;
   }
 
  private:
@@ -111,6 +112,7 @@ class BoxPipe {
     BoxResult result;
   };
   Stage stages_[kStages];
+  int last_ = 0;  // whose result is there; the next node takes its place
 };
 
 }  // namespace raypool

@@ -14,17 +14,21 @@ namespace raypool {
 /// time the one with the higher number is the nearer.
 inline void order_children(const BoxResult& boxes, const std::array<uint32_t, kBoxes>& references,
                            LaneStacks::NodeResult& result) {
-  std::array<LaneStacks::Entry, kBoxes> children;  // the furthest first
-  result.children = 0;
-  for (uint32_t box = 0; box < kBoxes; ++box) {
-    if ((boxes.met >> box & 1) == 0) continue;
-    uint32_t place = result.children++;
-    for (; place > 0 && children[place - 1].key < boxes.entry[box]; --place) children[place] = children[place - 1];
-    children[place] = {boxes.entry[box], references[box]};
+  result.children = static_cast<uint32_t>(popcount(boxes.met));
+  for (uint32_t met = boxes.met; met != 0; met &= met - 1) {
+    const uint32_t box = lowest(met);
+    uint32_t further = 0;  // children
+    for (uint32_t other = 0; other < kBoxes; ++other) {
+      const bool is = other < box ? boxes.entry[other] >= boxes.entry[box] : boxes.entry[other] > boxes.entry[box];
+      further += (boxes.met >> other & 1) & (is ? 1u : 0u);
+    }
+    if (further + 1 == result.children) {
+      result.nearest = references[box];
+    } else {
+      result.others[further].key = boxes.entry[box];
+      result.others[further].reference = references[box];
+    }
   }
-  if (result.children == 0) return;
-  result.nearest = children[result.children - 1].reference;
-  for (uint32_t i = 0; i + 1 < result.children; ++i) result.others[i] = children[i];
 }
 
 }  // namespace raypool

@@ -54,7 +54,7 @@ class LaneStacks {
     bool done = false;          ///< a ray is
     bool ray_ready = false;     ///< a ray may begin
     uint32_t slot = 0;          ///< of next or done
-    uint32_t reference = 0;
+    uint32_t reference = 0;     ///< of next
   };
   struct Request {
     bool write = false;
@@ -81,9 +81,10 @@ class LaneStacks {
   const Request& request() const { return request_; }  ///< means something while request_valid()
   bool fill_waits() const { return fill_waits_; }
 
-  /// A cycle.
-  Outcome clock(const Inputs& inputs) {
-    Outcome now;
+  /// A cycle; what it says stays until the next one.
+  const Outcome& clock(const Inputs& inputs) {
+    Outcome& now = outcome_;
+    now.node_goes_on = now.next = now.done = false;
     if (inputs.request_taken) request_valid_ = false;
     pushed_ = false;
     if (inputs.node != nullptr) take_node(*inputs.node, now);
@@ -252,6 +253,7 @@ class LaneStacks {
   RamQueue<Spill> spills_;
   RamQueue<Pop> fetches_;
   Read read_;
+  Outcome outcome_;
   bool pushed_ = false;  // in this cycle
   Pop fetch_;            // whose block is asked for, or has come
   bool fetching_ = false, retry_ = false;

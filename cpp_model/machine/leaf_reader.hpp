@@ -10,20 +10,15 @@
 #include <vector>
 
 #include "machine/line_offers.hpp"
+#include "machine/line_want.hpp"
 #include "machine/ram_queue.hpp"
+#include "machine/round_robin.hpp"
 #include "machine/triangle_ray.hpp"
 
 namespace raypool {
 
 /// 64 bytes of the traverser's memory: little-endian words.
 using TreeLine = std::array<uint32_t, 16>;
-
-/// A line that a lane offers a cache to look up.
-struct LineWant {
-  uint32_t line = 0, slot = 0;
-  bool nobody = false;  ///< it will be wanted
-};
-using LineWants = std::array<std::optional<LineWant>, 2>;
 
 class LeafReader {
  public:
@@ -32,21 +27,18 @@ class LeafReader {
   static constexpr uint32_t kLastLine = (1u << 26) - 1;  ///< a place whose line has no number has this one
   static constexpr uint32_t kAhead = 4;  ///< leaves whose lines will be wanted; further ones are forgotten
 
-  /// A ray goes on with a leaf.
-  struct Start {
-    uint32_t slot;
-    uint32_t leaf;  ///< its triangles less one in bits 30:29, the place of the first one below
-  };
+  static constexpr size_t kSources = 2;  ///< of starts: nodes; stacks, and a ray's first leaf
+
+  /// Refers to the line, which stays for the cycle.
   struct Given {
     uint32_t slot;
-    TreeLine line;
+    const TreeLine* line;
   };
   struct Inputs {
-    std::array<std::optional<Start>, 2> starts;  ///< from a node; from the stack, or as its first
-    std::optional<uint32_t> taken;               ///< which of the wants; only if it is there
-    bool waited = false;                         ///< a line is taken for which a ray has waited; only if room()
-    const Given* given = nullptr;                ///< two cycles after its lookup, if the cache has it
-    bool triangle_taken = false;                 ///< only if there is one
+    uint32_t taken = 0;            ///< bit i: want i; only if it is there
+    bool waited = false;           ///< a line is taken for which a ray has waited; only if room()
+    const Given* given = nullptr;  ///< two cycles after its lookup, if the cache has it
+    bool triangle_taken = false;   ///< only if there is one
   };
   struct Test {
     uint32_t slot = 0;
@@ -67,15 +59,16 @@ class LeafReader {
   LineWants wants() const {
     LineWants wants;
     for (uint32_t i = 0; i < wants.size(); ++i) {
-      const Offer* const offer = offers_.offer(i);
+      const Wanted* const offer = offers_.offer(i);
       if (offer != nullptr && (offer->nobody || room()))
-        wants[i] = {offer->wanted.leaf.line, offer->wanted.slot, offer->nobody};
+        wants[i] = {true, offer->nobody, static_cast<uint8_t>(offer->slot), offer->leaf.line};
     }
     return wants;
   }
-  /// A triangle whose test can begin.
+  /// A triangle's test can begin: test().
+  bool test_valid() const { return line_ && line_->tests != 0; }
   std::optional<Test> test() const {
-    if (!line_ || line_->tests == 0) return {};
+    if (!test_valid()) return {};
     Test test{line_->slot, line_->leaf.left == 1, line_->leaf.place, {}, 0};
     std::array<uint32_t, kKept + 16> words;
     std::copy(read_.begin(), read_.end(), words.begin());
@@ -89,12 +82,20 @@ class LeafReader {
   uint64_t looked_ahead() const { return looked_ahead_; }
   uint64_t waited_for_kept() const { return waited_for_kept_; }
 
+  /// Before clock(): in this cycle a ray goes on with a leaf, its triangles less one in bits 30:29, the place of the
+  /// first one below.
+  void start(size_t source, uint32_t slot, uint32_t leaf) {
+    Start& start = starts_[1 - starts_at_][source];
+    start.valid = true;
+    start.slot = slot;
+    start.leaf = leaf;
+  }
   /// The end of a cycle.
   void clock(const Inputs& inputs) {
     const bool leaves = line_ && (line_->tests == 0 || (line_->tests == 1 && inputs.triangle_taken));
     const bool missed = due_ && inputs.given == nullptr;
     const bool full = ahead_.size() == kAhead;
-    const std::optional<Offer> next = next_offer();
+    const Wanted* const next = next_offer();
     held_ += (asked() ? 1 : 0) + (inputs.waited ? 1 : 0);
     held_ -= (missed ? 1 : 0) + (leaves ? 1 : 0);
 
@@ -112,10 +113,13 @@ class LeafReader {
     if (come_ && come_->leaf.left > come_->tests) further = Wanted{come_->slot, come_->leaf.behind(come_->tests)};
     take_line(leaves, inputs.triangle_taken);
     come_.reset();
-    if (inputs.given != nullptr) come_ = Line(inputs.given->slot, pending_[inputs.given->slot], inputs.given->line);
-    for (size_t i = 0; i < starts_.size(); ++i)
-      if (starts_[i]) queues_[i].push({starts_[i]->slot, Leaf(starts_[i]->leaf)});
-    starts_ = inputs.starts;
+    if (inputs.given != nullptr) come_.emplace(inputs.given->slot, pending_[inputs.given->slot], *inputs.given->line);
+    for (size_t source = 0; source < kSources; ++source) {
+      Start& start = starts_[starts_at_][source];
+      if (start.valid) queues_[source].push({start.slot, Leaf(start.leaf)});
+      start.valid = false;
+    }
+    starts_at_ = 1 - starts_at_;
     if (further) queues_[2].push(*further);
   }
 
@@ -149,10 +153,11 @@ class LeafReader {
   struct Wanted {
     uint32_t slot = 0;
     Leaf leaf;
+    bool nobody = false;  // it will be wanted
   };
-  struct Offer {
-    Wanted wanted;
-    bool nobody = false;
+  struct Start {
+    bool valid = false;
+    uint32_t slot = 0, leaf = 0;
   };
   struct Behind {
     uint32_t line = 0, behind = 0;
@@ -169,33 +174,31 @@ class LeafReader {
 
   // What was taken in the cycle before, for a ray.
   const Wanted* asked() const {
-    const std::optional<Offer>& asked = offers_.asked();
-    return asked && !asked->nobody ? &asked->wanted : nullptr;
+    const Wanted* const asked = offers_.asked();
+    return asked != nullptr && !asked->nobody ? asked : nullptr;
   }
 
-  // Lines that will be wanted, then the queues' heads in rotation.
-  std::optional<Offer> next_offer() {
-    if (!offers_.ready()) return {};
+  // Lines that will be wanted, then the queues' heads in rotation: null, or until something is put into a queue.
+  const Wanted* next_offer() {
+    if (!offers_.ready()) return nullptr;
     if (ahead_.valid()) {
-      Offer offer;
-      offer.nobody = true;
-      offer.wanted.leaf.line = (ahead_.data().line + ahead_step_) & kLastLine;
+      will_want_.nobody = true;
+      will_want_.leaf.line = (ahead_.data().line + ahead_step_) & kLastLine;
       ++looked_ahead_;
       if (++ahead_step_ == ahead_.data().behind) {
         ahead_step_ = 0;
         ahead_.pop();
       }
-      return offer;
+      return &will_want_;
     }
-    for (uint32_t i = 0; i < queues_.size(); ++i) {
-      const uint32_t queue = (turn_ + i) % static_cast<uint32_t>(queues_.size());
-      if (!queues_[queue].valid()) continue;
-      const Offer offer{queues_[queue].data(), false};
-      queues_[queue].pop();
-      turn_ = (queue + 1) % static_cast<uint32_t>(queues_.size());
-      return offer;
-    }
-    return {};
+    uint32_t valid = 0;
+    for (uint32_t queue = 0; queue < queues_.size(); ++queue) valid |= (queues_[queue].valid() ? 1u : 0u) << queue;
+    if (valid == 0) return nullptr;
+    const uint32_t queue = turn_.choose(valid);
+    turn_.advance(queue);
+    const Wanted* const wanted = &queues_[queue].data();
+    queues_[queue].pop();
+    return wanted;
   }
 
   // The present line's triangle is begun, or the line leaves; the next one comes unless it waits for what is kept of
@@ -221,12 +224,14 @@ class LeafReader {
     read_ = read;
   }
 
-  std::array<std::optional<Start>, 2> starts_;  // in the cycle before
-  std::array<RamQueue<Wanted>, 3> queues_;      // from nodes; from the stack; further lines of leaves
-  uint32_t turn_ = 0;
-  RamQueue<Behind> ahead_{kAhead};  // the first of so many lines that will be wanted
-  uint32_t ahead_step_ = 0;         // of which so many have been offered
-  LineOffers<Offer> offers_;
+  std::array<std::array<Start, kSources>, 2> starts_;  // of the cycle before, and of this one
+  size_t starts_at_ = 0;                               // where those of the cycle before are
+  std::array<RamQueue<Wanted>, 3> queues_;             // from nodes; from the stack; further lines of leaves
+  RoundRobin turn_;                                    // which of them
+  RamQueue<Behind> ahead_{kAhead};                     // the first of so many lines that will be wanted
+  uint32_t ahead_step_ = 0;                            // of which so many have been offered
+  Wanted will_want_;                                   // its line is offered
+  LineOffers<Wanted> offers_;
   std::vector<Leaf> pending_;  // [slot] whose line has been looked up
   std::optional<Behind> due_;  // that was asked for two cycles ago
   std::optional<Line> come_;   // what was given in the cycle before

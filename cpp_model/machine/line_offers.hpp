@@ -3,39 +3,43 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
 
 namespace raypool {
 
 template <typename T>
 class LineOffers {
  public:
-  bool ready() const { return !there_[0] || !there_[1]; }
+  bool ready() const { return there_ != 3; }
   /// The older one (0), and the younger (1), or null.
   const T* offer(uint32_t i) const {
-    const std::optional<T>& offer = there_[older_ ^ i];
-    return offer ? &*offer : nullptr;
+    const uint32_t place = older_ ^ i;
+    return (there_ >> place & 1) != 0 ? &lines_[place] : nullptr;
   }
-  /// What was taken in the cycle before.
-  const std::optional<T>& asked() const { return asked_; }
+  /// What was taken in the cycle before, or null.
+  const T* asked() const { return has_asked_ ? &asked_ : nullptr; }
 
-  /// The end of a cycle. `comes`: only while ready(). `taken`: 0 or 1, of those that are offered.
-  void clock(const std::optional<T>& comes, std::optional<uint32_t> taken) {
-    const uint32_t free = there_[0] ? 1 : 0;
-    if (!there_[0] && !there_[1]) older_ = 0;
-    asked_.reset();
-    if (taken) {
-      const uint32_t gone = older_ ^ *taken;
-      asked_.swap(there_[gone]);
+  /// The end of a cycle. `comes`: only while ready(), or null. `taken`: bit i: offer i; one at most.
+  void clock(const T* comes, uint32_t taken) {
+    const uint32_t free = there_ & 1;
+    if (there_ == 0) older_ = 0;
+    has_asked_ = taken != 0;
+    if (has_asked_) {
+      const uint32_t gone = older_ ^ taken >> 1;
+      asked_ = lines_[gone];
+      there_ &= ~(1u << gone);
       older_ = gone ^ 1;
     }
-    if (comes) there_[free] = comes;
+    if (comes == nullptr) return;
+    lines_[free] = *comes;
+    there_ |= 1u << free;
   }
 
  private:
-  std::array<std::optional<T>, 2> there_;
+  std::array<T, 2> lines_{};
+  uint32_t there_ = 0;  // a bit each
   uint32_t older_ = 0;  // which is older; if one is free, the other
-  std::optional<T> asked_;
+  T asked_{};
+  bool has_asked_ = false;
 };
 
 }  // namespace raypool

@@ -58,9 +58,9 @@ class RayExit {
     uint32_t ray_place = 0;
     const Set* set = nullptr;  ///< it is set up, for this slot
     Slot set_slot{0, 0};
-    const Done* done = nullptr;     ///< of choose()
-    std::optional<uint32_t> taken;  ///< which of wants()
-    bool waited = false;            ///< a line is taken for which a hit has waited
+    const Done* done = nullptr;  ///< of choose()
+    uint32_t taken = 0;          ///< bit i: wants()[i]
+    bool waited = false;         ///< a line is taken for which a hit has waited
     const LeafReader::Given* given = nullptr;
     uint32_t put_ready = 0;  ///< mask: bit of ImportKind
     bool contribution_ready = false;
@@ -127,7 +127,7 @@ class RayExit {
     LeafReader::Inputs reader;
     std::optional<Set> unblocked;
     if (moves && finishes()) {
-      reader.starts[0] = LeafReader::Start{entries_.number(), fate_->hit.place};
+      reader_.start(0, entries_.number(), fate_->hit.place);
       hits_[entries_.number()] = {set_of(*fate_), fate_->hit.t};
       entries_.take();
     } else if (moves && !drops()) {

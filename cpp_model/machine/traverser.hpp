@@ -81,6 +81,7 @@ class Traverser {
       lanes_.push_back(
           std::make_unique<TraverserLane>(TraverserLane::Sizes{sizes.slots, sizes.stack_entries, sizes.box_bits}));
       inputs_.emplace_back();
+      look_at(lane);
     }
     for (uint32_t pipe = 0; pipe < sizes.triangle_pipes; ++pipe) {
       groups_.emplace_back(slot_bits(sizes.slots));
@@ -108,7 +109,6 @@ class Traverser {
 
   /// The end of a cycle.
   void clock(const Inputs& inputs) {
-    for (TraverserLane::Inputs& lane : inputs_) lane = {};
     exit_inputs_ = {};
     const bool request_taken = out_.request_valid && inputs.request_ready;
     const bool line_taken = fill();
@@ -121,10 +121,14 @@ class Traverser {
     exit_inputs_.put_ready = inputs.put_ready;
     exit_inputs_.contribution_ready = inputs.contribution_ready;
     const TreeFault fault = first_fault();
-    for (TraverserLane::Inputs& lane : inputs_) lane.stop = out_.fault.valid;
 
     for (TriangleGroup& group : groups_) group.clock();
-    for (uint32_t lane = 0; lane < sizes_.lanes; ++lane) lanes_[lane]->clock(inputs_[lane]);
+    for (uint32_t lane = 0; lane < sizes_.lanes; ++lane) {
+      inputs_[lane].stop = out_.fault.valid;
+      lanes_[lane]->clock(inputs_[lane]);
+      inputs_[lane] = {};
+      look_at(lane);
+    }
     exit_.clock(exit_inputs_);
     nodes_.clock(port_.line());
     leaves_.clock(port_.line());
@@ -147,7 +151,7 @@ class Traverser {
 
     /// The line that comes is taken.
     bool fills() const { return fill != TreeBanks::kNone && banks.fill_ready(fill); }
-    void give(uint32_t lane) { given[lane] = {banks.given(lane).slot, lines[banks.given(lane).row]}; }
+    void give(uint32_t lane) { given[lane] = {banks.given(lane).slot, &lines[banks.given(lane).row]}; }
     void clock(const std::optional<TreePort::Line>& line) {
       if (fills()) lines[banks.fill_row(fill)] = line->data;
       banks.clock(request_taken);
@@ -180,6 +184,22 @@ class Traverser {
   }
   uint32_t all_lanes() const { return (1u << sizes_.lanes) - 1; }
 
+  // What a lane says in the next cycle.
+  void look_at(uint32_t number) {
+    const TraverserLane& lane = *lanes_[number];
+    const auto set = [number](uint32_t& lanes, bool said) {
+      lanes = (lanes & ~(1u << number)) | (said ? 1u : 0u) << number;
+    };
+    nodes_.wants[number] = lane.node_wants();
+    leaves_.wants[number] = lane.leaf_wants();
+    set(with_.leaf_room, lane.leaf_room());
+    set(with_.test, lane.test_valid());
+    set(with_.request, lane.request_valid());
+    set(with_.done, lane.done_valid());
+    set(with_.slot, lane.slot_valid());
+    set(with_.fault, lane.fault().valid);
+  }
+
   // The line that has come is offered to who has asked for it. True: it is taken.
   bool fill() {
     const std::optional<TreePort::Line>& line = port_.line();
@@ -198,23 +218,14 @@ class Traverser {
     const bool nodes = &cache == &nodes_;
     const auto count = static_cast<uint32_t>(cache.given.size());
     uint32_t room = all_lanes();
-    for (uint32_t lane = 0; lane < count; ++lane) {
-      const bool exits = lane == sizes_.lanes;
-      const LineWants wants = exits ? exit_.wants() : nodes ? lanes_[lane]->node_wants() : lanes_[lane]->leaf_wants();
-      for (uint32_t i = 0; i < wants.size(); ++i) {
-        cache.wants[lane][i] = {};
-        if (wants[i])
-          cache.wants[lane][i] = {true, wants[i]->nobody, static_cast<uint8_t>(wants[i]->slot), wants[i]->line};
-      }
-      if (nodes) continue;
-      const bool has_room = exits ? exit_.room() : lanes_[lane]->leaf_room();
-      room = (room & ~(1u << lane)) | (has_room ? 1u : 0u) << lane;
+    if (!nodes) {
+      cache.wants[sizes_.lanes] = exit_.wants();
+      room = with_.leaf_room | (exit_.room() ? 1u : 0u) << sizes_.lanes;
     }
     const uint32_t waited = cache.banks.waited() & room;
     cache.banks.choose(cache.wants, room, cache.fill);
     for (uint32_t lane = 0; lane < count; ++lane) {
-      std::optional<uint32_t> taken;
-      if (cache.banks.taken(lane) != TreeBanks::kNone) taken = cache.banks.taken(lane);
+      const uint32_t taken = cache.banks.taken(lane);
       const bool is_given = (cache.banks.given_lanes() >> lane & 1) != 0, has_waited = (waited >> lane & 1) != 0;
       if (is_given) cache.give(lane);
       const LeafReader::Given* const given = is_given ? &cache.given[lane] : nullptr;
@@ -234,10 +245,8 @@ class Traverser {
   }
 
   std::optional<TreePort::Asked> ask(bool request_taken) {
-    uint32_t stacks = 0;
-    for (uint32_t lane = 0; lane < sizes_.lanes; ++lane) stacks |= (lanes_[lane]->request_valid() ? 1u : 0u) << lane;
     const std::optional<TreePort::Source> source = port_.choose(
-        request_taken, nodes_.banks.request_valid(), leaves_.banks.request_valid(), stacks, out_.fault.valid);
+        request_taken, nodes_.banks.request_valid(), leaves_.banks.request_valid(), with_.request, out_.fault.valid);
     if (!source) return {};
     TreePort::Asked asked;
     asked.source = *source;
@@ -256,20 +265,22 @@ class Traverser {
   }
 
   void test_triangles() {
-    for (TriangleGroup& group : groups_) group.choose();
-    for (uint32_t lane = 0; lane < sizes_.lanes; ++lane) {
-      const TriangleGroup& group = groups_[lane % sizes_.triangle_pipes];
-      const uint32_t member = lane / sizes_.triangle_pipes;
-      inputs_[lane].test_taken = group.test_taken(member);
-      inputs_[lane].result = group.result(member);
+    for (uint32_t pipe = 0; pipe < sizes_.triangle_pipes; ++pipe) {
+      TriangleGroup& group = groups_[pipe];
+      uint32_t asking = 0;
+      for (uint32_t lane = pipe, member = 0; lane < sizes_.lanes; lane += sizes_.triangle_pipes, ++member)
+        asking |= (with_.test >> lane & 1) << member;
+      group.choose(asking);
+      for (uint32_t lane = pipe, member = 0; lane < sizes_.lanes; lane += sizes_.triangle_pipes, ++member) {
+        inputs_[lane].test_taken = group.test_taken(member);
+        inputs_[lane].result = group.result(member);
+      }
     }
   }
 
   void end_rays() {
     if (const std::optional<RayExit::Slot> freed = exit_.freed_slot()) inputs_[freed->lane].freed = freed->slot;
-    uint32_t done = 0;
-    for (uint32_t lane = 0; lane < sizes_.lanes; ++lane) done |= (lanes_[lane]->done_valid() ? 1u : 0u) << lane;
-    const std::optional<uint32_t> lane = exit_.choose(out_.fault.valid ? 0 : done);
+    const std::optional<uint32_t> lane = exit_.choose(out_.fault.valid ? 0 : with_.done);
     if (!lane) return;
     const uint32_t slot = lanes_[*lane]->done_slot();
     done_ = {*lane, slot, lanes_[*lane]->hits().best(slot)};
@@ -301,7 +312,7 @@ class Traverser {
       return;
     }
     beat_ = 0;
-    const uint32_t lane = enter_turn_.choose(free_lanes());
+    const uint32_t lane = enter_turn_.choose(with_.slot);
     enter_turn_.advance(lane);
     inputs_[lane].slot_taken = true;
     coming_.push_back({inputs.ray_place,
@@ -322,18 +333,11 @@ class Traverser {
   // Of this cycle: the port's, then that of the lowest lane.
   TreeFault first_fault() const {
     if (port_.fault().valid) return port_.fault();
-    for (const auto& lane : lanes_)
-      if (lane->fault().valid) return lane->fault();
-    return {};
-  }
-  uint32_t free_lanes() const {
-    uint32_t lanes = 0;
-    for (uint32_t lane = 0; lane < sizes_.lanes; ++lane) lanes |= (lanes_[lane]->slot_valid() ? 1u : 0u) << lane;
-    return lanes;
+    return with_.fault != 0 ? lanes_[lowest(with_.fault)]->fault() : TreeFault{};
   }
 
   void present() {
-    out_.ray_ready = beat_ != 0 || (!out_.fault.valid && free_lanes() != 0);
+    out_.ray_ready = beat_ != 0 || (!out_.fault.valid && with_.slot != 0);
     out_.free_valid = exit_.free_valid();
     if (out_.free_valid) {
       out_.free_place = exit_.free_place();
@@ -362,6 +366,12 @@ class Traverser {
   uint32_t beat_ = 0;  // that comes next
   RaySetupPipe setup_pipe_;
   std::deque<Coming> coming_;  // rays in it
+
+  // Lanes that have what is offered or wanted in this cycle.
+  struct Lanes {
+    uint32_t leaf_room = 0, test = 0, request = 0, done = 0, slot = 0, fault = 0;
+  };
+  Lanes with_;
 
   // What a cycle's inputs refer to.
   std::vector<TraverserLane::Inputs> inputs_;  // [lane]

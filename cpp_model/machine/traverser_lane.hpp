@@ -37,9 +37,9 @@ class TraverserLane {
   struct Inputs {
     bool slot_taken = false;                    ///< for a ray; only if slot_valid()
     const Entered* ray = nullptr;               ///< is set up
-    std::optional<uint32_t> node_taken;         ///< which of node_wants()
+    uint32_t node_taken = 0;                    ///< bit i: node_wants()[i]
     const LeafReader::Given* node = nullptr;    ///< is given, two cycles after its lookup
-    std::optional<uint32_t> leaf_taken;         ///< which of leaf_wants()
+    uint32_t leaf_taken = 0;                    ///< bit i: leaf_wants()[i]
     bool leaf_waited = false;                   ///< a line of a leaf is taken for which a ray has waited
     const LeafReader::Given* leaf = nullptr;    ///< is given
     bool request_taken = false;                 ///< only if request_valid()
@@ -93,6 +93,7 @@ class TraverserLane {
   bool request_valid() const { return stacks_.request_valid(); }
   const LaneStacks::Request& request() const { return stacks_.request(); }  ///< means something while request_valid()
 
+  bool test_valid() const { return leaves_.test_valid(); }
   std::optional<LeafReader::Test> test() const { return leaves_.test(); }
   const LaneRay& ray(uint32_t slot) const { return rays_[slot]; }
   const LaneHits& hits() const { return hits_; }
@@ -108,9 +109,9 @@ class TraverserLane {
     stacks.leaf = leaf ? &*leaf : nullptr;
     stacks.request_taken = inputs.request_taken;
     stacks.filled = inputs.filled;
-    if (const std::optional<LineWant>& asked = node_offers_.asked()) numbers_[asked->slot] = asked->line;
+    if (const LineWant* const asked = node_offers_.asked()) numbers_[asked->slot] = asked->line;
     node_offers_.clock(next_node(), inputs.node_taken);
-    const LaneStacks::Outcome outcome = stacks_.clock(stacks);
+    const LaneStacks::Outcome& outcome = stacks_.clock(stacks);
     if (inputs.done_taken) done_.reset();
     if (!done_ && ends_.valid()) {
       done_ = ends_.data();
@@ -118,13 +119,13 @@ class TraverserLane {
     }
 
     for (size_t i = 0; i < nodes_.size(); ++i)
-      if (goes_on_[i]) nodes_[i].push(*goes_on_[i]);
+      if (goes_on_[i].valid) nodes_[i].push(goes_on_[i]);
     goes_on_ = {};
-    LeafReader::Inputs leaves;
-    if (outcome.node_goes_on) go(0, node_->slot, node_->nearest, leaves);
-    if (outcome.next) go(1, outcome.slot, outcome.reference, leaves);
+    if (outcome.node_goes_on) go(0, node_->slot, node_->nearest);
+    if (outcome.next) go(1, outcome.slot, outcome.reference);
     if (outcome.done) ends_.push(outcome.slot);
-    if (outcome.ray_ready && begins_.valid()) begin(leaves);
+    if (outcome.ray_ready && begins_.valid()) begin();
+    LeafReader::Inputs leaves;
     leaves.taken = inputs.leaf_taken;
     leaves.waited = inputs.leaf_waited;
     leaves.given = inputs.leaf;
@@ -159,10 +160,11 @@ class TraverserLane {
 
   static BoxRay no_ray(int bits) { return BoxRay({0, 0, 0}, {0, 0, 0}, 0, bits); }
 
-  std::optional<LineWant> next_node() {
+  // Null, or until something is put into a queue.
+  const LineWant* next_node() {
     const uint32_t first = nodes_[node_turn_].valid() ? node_turn_ : 1 - node_turn_;
-    if (!node_offers_.ready() || !nodes_[first].valid()) return {};
-    const LineWant next = nodes_[first].data();
+    if (!node_offers_.ready() || !nodes_[first].valid()) return nullptr;
+    const LineWant* const next = &nodes_[first].data();
     nodes_[first].pop();
     node_turn_ = 1 - first;
     return next;
@@ -172,14 +174,14 @@ class TraverserLane {
   // that meet again, and stacks that come back wrong, lead to more visits than there are nodes.
   void look_at_node() {
     fault_.valid = false;
-    if (!given_) return;
+    if (!is_given_) return;
     BoxNode node;
-    std::memcpy(&node, given_->line.data(), sizeof node);
-    fault_.line = numbers_[given_->slot];
-    const bool late = visits_[given_->slot]++ == count_;
+    std::memcpy(&node, given_line_.data(), sizeof node);
+    fault_.line = numbers_[given_slot_];
+    const bool late = visits_[given_slot_]++ == count_;
     bool backward = false;
     for (uint32_t i = 0; i < std::min<uint32_t>(node.children, kBoxes); ++i) {
-      const uint32_t reference = given_->line[sizeof node / sizeof(uint32_t) + i];
+      const uint32_t reference = given_line_[sizeof node / sizeof(uint32_t) + i];
       const bool too_high = reference > LeafReader::kLastLine;
       backward = backward || ((reference & kLeaf) == 0 && (too_high || reference <= fault_.line));
     }
@@ -194,19 +196,19 @@ class TraverserLane {
     fault_.valid = true;
   }
 
-  void go(uint32_t source, uint32_t slot, uint32_t reference, LeafReader::Inputs& leaves) {
+  void go(uint32_t source, uint32_t slot, uint32_t reference) {
     if ((reference & kLeaf) == 0) {
-      goes_on_[source] = LineWant{reference & LeafReader::kLastLine, slot, false};
+      goes_on_[source] = {true, false, static_cast<uint8_t>(slot), reference & LeafReader::kLastLine};
     } else {
-      leaves.starts[source] = LeafReader::Start{slot, reference};
+      leaves_.start(source, slot, reference);
     }
   }
-  void begin(LeafReader::Inputs& leaves) {
+  void begin() {
     const uint32_t slot = begins_.data();
     begins_.pop();
     stacks_.begin(slot);
     if (rays_[slot].meets && root_ != kNoReference) {
-      go(1, slot, root_, leaves);
+      go(1, slot, root_);
     } else {
       ends_.push(slot);
     }
@@ -221,22 +223,24 @@ class TraverserLane {
       node_->limit = along.limit;
       order_children(boxes_.result(), along.references, *node_);
     }
-    const LaneRay& ray = rays_[given_ ? given_->slot : 0];
-    BoxNode node{};
-    uint32_t limit = 0;
-    if (given_) {
-      std::memcpy(&node, given_->line.data(), sizeof node);
+    if (is_given_) {
+      BoxNode node;
+      std::memcpy(&node, given_line_.data(), sizeof node);
       node.children &= 7;
-      limit = hits_.limit_key(given_->slot);
+      const uint32_t limit = hits_.limit_key(given_slot_);
       Along& along = along_[place_ % kBoxStages];
-      along.slot = given_->slot;
+      along.slot = given_slot_;
       along.limit = limit;
-      std::copy_n(given_->line.begin() + sizeof node / sizeof(uint32_t), kBoxes, along.references.begin());
+      std::copy_n(given_line_.begin() + sizeof node / sizeof(uint32_t), kBoxes, along.references.begin());
+      boxes_.clock(true, rays_[given_slot_].box, &node, limit);
+    } else {
+      boxes_.clock(true, rays_[0].box, nullptr, 0);
     }
-    boxes_.clock(true, ray.box, given_ ? &node : nullptr, limit);
     ++place_;
-    given_.reset();
-    if (given != nullptr) given_ = *given;
+    is_given_ = given != nullptr;
+    if (!is_given_) return;
+    given_slot_ = given->slot;
+    given_line_ = *given->line;
   }
 
   int box_bits_;
@@ -251,7 +255,9 @@ class TraverserLane {
   std::array<RamQueue<LineWant>, 2> nodes_;  // that are wanted: from box results; from the stack, and roots
   uint32_t node_turn_ = 0;                   // whose head comes next
   LineOffers<LineWant> node_offers_;
-  std::optional<LeafReader::Given> given_;  // in the cycle before
+  bool is_given_ = false;  // in the cycle before, for this slot this line
+  uint32_t given_slot_ = 0;
+  TreeLine given_line_{};
   BoxPipe boxes_;
   std::array<Along, kBoxStages> along_;
   uint32_t place_ = 0;

@@ -8,9 +8,11 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "bits.hpp"
+#include "machine/line_want.hpp"
 #include "machine/round_robin.hpp"
 #include "machine/tree_cache.hpp"
 
@@ -27,15 +29,7 @@ class TreeBanks {
     uint32_t mshrs = 64;
     uint32_t banks = 8;  ///< a power of two
   };
-  /// A line that a lane would look up, for the ray of a slot or for nobody yet.
-  struct Want {
-    bool valid = false, nobody = false;
-    uint8_t slot = 0;
-    uint32_t line = 0;
-  };
-  /// Of which one can be looked up, the first rather.
-  using Wants = std::array<Want, 2>;
-  using AllWants = std::array<Wants, kMostLanes>;
+  using AllWants = std::array<LineWants, kMostLanes>;
   struct Given {
     uint8_t slot = 0;
     uint32_t row = 0;  ///< of the data, those of a bank behind those of the banks before it
@@ -80,7 +74,7 @@ class TreeBanks {
     hand_on(waited_for, room);
     look_up(wants, waited_for);
   }
-  /// Which of its wants is looked up: 0, 1, or kNone.
+  /// Which of its wants is looked up: bit i: want i; one at most.
   uint32_t taken(uint32_t lane) const { return taken_[lane]; }
   /// Lanes that are given a line, two cycles after they took it: by a hit, or because they had waited for it.
   uint32_t given_lanes() const { return given_lanes_; }
@@ -157,34 +151,35 @@ class TreeBanks {
   // Each bank chooses a lane, and the first of its wants that go to the bank; then a lane takes the first of its wants
   // whose line a bank has chosen, for whomever. A bank whose lane takes another one may have chosen for nobody.
   void look_up(const AllWants& wants, uint32_t but) {
-    std::array<uint32_t, kMostBanks> asking{}, chosen{};
     for (uint32_t lane = 0; lane < lanes_; ++lane) {
-      taken_[lane] = kNone;
+      taken_[lane] = 0;
       if ((but >> lane & 1) != 0) continue;
-      for (const Want& want : wants[lane]) asking[bank_of(want.line)] |= (want.valid ? 1u : 0u) << lane;
+      for (const LineWant& want : wants[lane])
+        if (want.valid) asking_[bank_of(want.line)] |= 1u << lane;
     }
     uint32_t looking = 0;
     for (uint32_t bank = 0; bank < banks_.size(); ++bank) {
-      if (asking[bank] == 0 || inputs_[bank].fill || !banks_[bank].ready()) continue;
+      const uint32_t asking = std::exchange(asking_[bank], 0);
+      if (asking == 0 || inputs_[bank].fill || !banks_[bank].ready()) continue;
       looking |= 1u << bank;
-      const uint32_t lane = lane_turns_[bank].choose(asking[bank]);
+      const uint32_t lane = lane_turns_[bank].choose(asking);
       lane_turns_[bank].advance(lane);
       const bool first = wants[lane][0].valid && bank_of(wants[lane][0].line) == bank;
-      chosen[bank] = wants[lane][first ? 0 : 1].line;
-      lookups_[bank].line = chosen[bank] >> bank_bits_;
+      chosen_[bank] = wants[lane][first ? 0 : 1].line;
+      lookups_[bank].line = chosen_[bank] >> bank_bits_;
       lookups_[bank].lanes = 0;
     }
-    const auto is_chosen = [&](const Want& want) {
+    const auto is_chosen = [&](const LineWant& want) {
       const uint32_t bank = bank_of(want.line);
-      return want.valid && (looking >> bank & 1) != 0 && chosen[bank] == want.line;
+      return want.valid && (looking >> bank & 1) != 0 && chosen_[bank] == want.line;
     };
     for (uint32_t lane = 0; looking != 0 && lane < lanes_; ++lane) {
       if ((but >> lane & 1) != 0) continue;
       const std::array<bool, 2> which{is_chosen(wants[lane][0]), is_chosen(wants[lane][1])};
       if (!which[0] && !which[1]) continue;
       work_.both_chosen += which[0] && which[1] && bank_of(wants[lane][0].line) != bank_of(wants[lane][1].line) ? 1 : 0;
-      taken_[lane] = which[0] ? 0 : 1;
-      const Want& want = wants[lane][taken_[lane]];
+      taken_[lane] = which[0] ? 1 : 2;
+      const LineWant& want = wants[lane][which[0] ? 0 : 1];
       const uint32_t bank = bank_of(want.line);
       inputs_[bank].lookup = &lookups_[bank];
       if (want.nobody) continue;
@@ -208,7 +203,9 @@ class TreeBanks {
   std::vector<RoundRobin> lane_turns_;      // [bank] whose wants
   std::vector<RoundRobin> bank_turns_;      // [lane] whose line that it has waited for
   RoundRobin request_turn_;
-  uint32_t offering_ = 0, requesting_ = 0;  // banks
+  uint32_t offering_ = 0, requesting_ = 0;     // banks
+  std::array<uint32_t, kMostBanks> asking_{};  // lanes; 0 but during look_up()
+  std::array<uint32_t, kMostBanks> chosen_{};  // line, of a bank that looks
   std::array<uint32_t, kMostLanes> taken_{};
   std::array<Given, kMostLanes> given_{};
   uint32_t given_lanes_ = 0;

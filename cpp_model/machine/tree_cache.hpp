@@ -23,10 +23,11 @@ class TreeCache {
     uint32_t mshrs = 8;
   };
   /// A line for all lanes that ask for it, with the slots of their rays; for none: nobody waits for it yet.
+  using Slots = std::array<uint8_t, kMostLanes>;  ///< [lane]
   struct Lookup {
     uint32_t line = 0;
     uint32_t lanes = 0;  ///< a bit each
-    std::array<uint8_t, kMostLanes> slots{};
+    Slots slots{};
   };
   /// What happens in a cycle besides what the bank decides.
   struct Inputs {
@@ -39,7 +40,7 @@ class TreeCache {
   /// What a lane is given.
   struct Given {
     uint32_t lanes = 0;  ///< 0: nothing
-    std::array<uint8_t, kMostLanes> slots{};
+    Slots slots{};
     uint32_t row = 0;  ///< of the data
   };
   struct Work {
@@ -87,7 +88,7 @@ class TreeCache {
     const bool hits = hit(), joins = joins_.lanes != 0;
     const Miss now = looks_ && !hits ? miss() : Miss{};
     const bool fill = inputs.fill && !hits;
-    given_ = read_;
+    give(read_.lanes, read_.slots, read_.row);
     read_.lanes = 0;
     // A lookup from before the line came may wait for lanes that join another list, and then joins that of the line.
     const uint32_t late = now.known && !fresh_ ? 1u << now.id : 0;
@@ -109,13 +110,17 @@ class TreeCache {
 
     if (joins) join();
     if (hits) {
-      given_ = {lookup_.lanes, lookup_.slots, row(set(lookup_.line), found_)};
+      give(lookup_.lanes, lookup_.slots, row(set(lookup_.line), found_));
       touch(set(lookup_.line), found_);
       work_.hits += popcount(lookup_.lanes);
     } else if (looks_ && !now.stuck) {
       if (now.allocate) allocate(now);
       work_.joined += popcount(now.allocate ? lookup_.lanes & (lookup_.lanes - 1) : lookup_.lanes);
-      if (lookup_.lanes != 0) joins_ = {lookup_.lanes, lookup_.slots, now.id};
+      if (lookup_.lanes != 0) {
+        joins_.lanes = lookup_.lanes;
+        joins_.id = now.id;
+        copy(lookup_.lanes, lookup_.slots, joins_.slots);
+      }
     }
     looks_ = looks_ && now.stuck;
     if (fill) {
@@ -134,7 +139,9 @@ class TreeCache {
     fresh_ = inputs.lookup != nullptr;
     if (fresh_) {
       found_ = find(inputs.lookup->line);
-      lookup_ = *inputs.lookup;
+      lookup_.line = inputs.lookup->line;
+      lookup_.lanes = inputs.lookup->lanes;
+      copy(lookup_.lanes, inputs.lookup->slots, lookup_.slots);
       looks_ = true;
     }
   }
@@ -180,9 +187,19 @@ class TreeCache {
   // Lanes that join a register's list, one a cycle.
   struct Joins {
     uint32_t lanes = 0;
-    std::array<uint8_t, kMostLanes> slots{};
+    Slots slots{};
     uint32_t id = 0;
   };
+
+  // One by one: few lanes look at the same line, and a wide load would wait for what has just been written.
+  static void copy(uint32_t lanes, const Slots& from, Slots& to) {
+    for (uint32_t bits = lanes; bits != 0; bits &= bits - 1) to[lowest(bits)] = from[lowest(bits)];
+  }
+  void give(uint32_t lanes, const Slots& slots, uint32_t row) {
+    given_.lanes = lanes;
+    given_.row = row;
+    copy(lanes, slots, given_.slots);
+  }
 
   uint32_t set(uint32_t line) const { return line & (sets_ - 1); }
   uint32_t row(uint32_t in, uint32_t way) const { return in * sizes_.ways + way; }

@@ -21,18 +21,10 @@ class TriangleGroup {
   explicit TriangleGroup(uint32_t slot_bits) : slot_bits_(slot_bits), pipe_(kBits) {}
 
   /// So many lanes share it. All of them, once.
-  void add(TraverserLane* lane) {
-    lanes_.push_back(lane);
-    tests_.emplace_back();
-  }
+  void add(TraverserLane* lane) { lanes_.push_back(lane); }
 
-  /// A cycle's decisions: whose test begins, and whose result is there.
-  void choose() {
-    uint32_t asking = 0;
-    for (uint32_t i = 0; i < lanes_.size(); ++i) {
-      tests_[i] = lanes_[i]->test();
-      asking |= (tests_[i] ? 1u : 0u) << i;
-    }
+  /// A cycle's decisions: whose test begins, of the lanes that have one, and whose result is there.
+  void choose(uint32_t asking) {
     chosen_.reset();
     if (asking != 0) {
       chosen_ = turn_.choose(asking);
@@ -60,7 +52,7 @@ class TriangleGroup {
       pipe_.clock(nullptr, {}, 0, limit, best);
       return;
     }
-    const LeafReader::Test& test = *tests_[*chosen_];
+    const LeafReader::Test test = *lanes_[*chosen_]->test();
     const uint64_t tag = TestTag{test.slot, test.last, test.place}.word(slot_bits_);
     pipe_.clock(&lanes_[*chosen_]->ray(test.slot).triangle, test.triangle, uint64_t{*chosen_} << kLaneAt | tag, limit,
                 best);
@@ -77,7 +69,6 @@ class TriangleGroup {
   uint32_t slot_bits_;
   TrianglePipe pipe_;
   std::vector<TraverserLane*> lanes_;
-  std::vector<std::optional<LeafReader::Test>> tests_;  // [lane] of this cycle
   RoundRobin turn_;
   std::optional<uint32_t> chosen_, result_lane_;
   LaneHits::Result result_;

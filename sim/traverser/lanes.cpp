@@ -120,8 +120,8 @@ void Lanes::look_up(Cache& cache) {
   for (uint32_t bits = nodes ? 0 : waited & room; bits != 0; bits &= bits - 1) lanes_[lowest(bits)].leaf_taken();
   for (uint32_t bits = asking; bits != 0; bits &= bits - 1) {
     const uint32_t lane = lowest(bits);
-    const uint32_t place = cache.banks.taken(lane);
-    const Lane::Want* const taken = place == TreeBanks::kNone ? nullptr : cache.offers[lane][place];
+    const uint32_t offer = cache.banks.taken(lane);
+    const Lane::Want* const taken = offer == 0 ? nullptr : cache.offers[lane][offer >> 1];
     if (nodes) {
       lanes_[lane].node_offered(taken);
     } else {

@@ -53,7 +53,7 @@ struct LaneParameters {
 class LaneCache {
  public:
   struct Turn {
-    std::optional<uint32_t> taken;
+    uint32_t taken = 0;  // bit i: want i
     bool waited = false;
   };
 
@@ -71,19 +71,19 @@ class LaneCache {
       if (!room) return turn;
       turn.waited = true;
       ++seen.offers;
-      line_[2] = LeafReader::Given{come->want.slot, lines.at(come->want.line)};
+      line_[2] = LeafReader::Given{come->want.slot, &lines.at(come->want.line)};
       waiters_.erase(come);
       return turn;
     }
-    for (uint32_t i = 0; i < wants.size() && !turn.taken; ++i)
-      if (wants[i] && !one_of(traffic.leave_lookup)) turn.taken = i;
-    if (!turn.taken || wants[*turn.taken]->nobody) return turn;
-    const LineWant& want = *wants[*turn.taken];
+    for (uint32_t i = 0; i < wants.size() && turn.taken == 0; ++i)
+      if (wants[i].valid && !one_of(traffic.leave_lookup)) turn.taken = 1u << i;
+    if (turn.taken == 0 || wants[turn.taken >> 1].nobody) return turn;
+    const LineWant& want = wants[turn.taken >> 1];
     if (one_of(traffic.miss)) {
       ++seen.misses;
       waiters_.push_back({want, false});
     } else {
-      line_[2] = LeafReader::Given{want.slot, lines.at(want.line)};
+      line_[2] = LeafReader::Given{want.slot, &lines.at(want.line)};
     }
     return turn;
   }
@@ -140,7 +140,7 @@ class LaneBench {
     stopped_ = true;
     for (uint32_t i = 0; i < 600; ++i) ASSERT_NO_FATAL_FAILURE(cycle({}));
     for (const LineWants& wants : {lane_.node_wants(), lane_.leaf_wants()})
-      ASSERT_FALSE(wants[0] || wants[1]) << "it goes on";
+      ASSERT_FALSE(wants[0].valid || wants[1].valid) << "it goes on";
   }
 
   LaneSeen seen;
@@ -254,8 +254,8 @@ class LaneBench {
   static LaneRay no_ray() { return {false, false, BoxRay({0, 0, 0}, {0, 0, 0}, 0, int{P::kBits}), {}, {1, 0}}; }
 
   void visits(const LineWants& wants, const LaneCache::Turn& turn, uint32_t kind) {
-    if (!turn.taken || wants[*turn.taken]->nobody) return;
-    const LineWant& want = *wants[*turn.taken];
+    if (turn.taken == 0 || wants[turn.taken >> 1].nobody) return;
+    const LineWant& want = wants[turn.taken >> 1];
     Tracing& ray = tracing_[want.slot];
     ASSERT_NE(ray.asked, nullptr) << "cycle " << seen.cycles;
     ASSERT_LT(ray.lines, ray.asked->walk.lines.size()) << "cycle " << seen.cycles;
@@ -304,15 +304,15 @@ class LaneBench {
     u_.ray_valid_i = inputs.ray != nullptr;
     u_.ray_slot_i = inputs.ray != nullptr ? inputs.ray->slot : bench_.random() % P::kSlots;
     if (inputs.ray != nullptr) set_ray(inputs.ray->ray);
-    u_.node_taken_i = inputs.node_taken ? 1u << *inputs.node_taken : 0;
-    u_.leaf_taken_i = inputs.leaf_taken ? 1u << *inputs.leaf_taken : 0;
+    u_.node_taken_i = inputs.node_taken;
+    u_.leaf_taken_i = inputs.leaf_taken;
     u_.leaf_waited_i = inputs.leaf_waited;
     u_.node_given_i = inputs.node != nullptr;
     u_.node_given_slot_i = inputs.node != nullptr ? inputs.node->slot : bench_.random() % P::kSlots;
-    if (inputs.node != nullptr) std::copy(inputs.node->line.begin(), inputs.node->line.end(), &u_.node_given_data_i[0]);
+    if (inputs.node != nullptr) copy_line(*inputs.node, &u_.node_given_data_i[0]);
     u_.leaf_given_i = inputs.leaf != nullptr;
     u_.leaf_given_slot_i = inputs.leaf != nullptr ? inputs.leaf->slot : bench_.random() % P::kSlots;
-    if (inputs.leaf != nullptr) std::copy(inputs.leaf->line.begin(), inputs.leaf->line.end(), &u_.leaf_given_data_i[0]);
+    if (inputs.leaf != nullptr) copy_line(*inputs.leaf, &u_.leaf_given_data_i[0]);
     u_.request_ready_i = inputs.request_taken;
     u_.fill_valid_i = inputs.filled != nullptr;
     for (uint32_t i = 0; inputs.filled != nullptr && i < LaneStacks::kBlock; ++i) {
@@ -343,15 +343,19 @@ class LaneBench {
     u_.scale_i = static_cast<uint32_t>(ray.limit.scale) & 0x1ff;
   }
 
+  static void copy_line(const LeafReader::Given& given, uint32_t* to) {
+    std::copy(given.line->begin(), given.line->end(), to);
+  }
+
   template <typename Lines, typename Slots>
   void compare_wants(const LineWants& wants, uint32_t valid, uint32_t nobody, const Lines& lines, const Slots& of) {
     for (uint32_t i = 0; i < wants.size(); ++i) {
-      ASSERT_EQ(valid >> i & 1, wants[i].has_value()) << "cycle " << seen.cycles;
-      if (!wants[i]) continue;
-      ASSERT_EQ(get_bits(lines, i * kLineBits, kLineBits), wants[i]->line) << "cycle " << seen.cycles;
-      ASSERT_EQ(nobody >> i & 1, wants[i]->nobody) << "cycle " << seen.cycles;
-      if (wants[i]->nobody) continue;
-      ASSERT_EQ(get_bits(of, i * P::slot_bits(), P::slot_bits()), wants[i]->slot) << "cycle " << seen.cycles;
+      ASSERT_EQ(valid >> i & 1, wants[i].valid) << "cycle " << seen.cycles;
+      if (!wants[i].valid) continue;
+      ASSERT_EQ(get_bits(lines, i * kLineBits, kLineBits), wants[i].line) << "cycle " << seen.cycles;
+      ASSERT_EQ(nobody >> i & 1, wants[i].nobody) << "cycle " << seen.cycles;
+      if (wants[i].nobody) continue;
+      ASSERT_EQ(get_bits(of, i * P::slot_bits(), P::slot_bits()), wants[i].slot) << "cycle " << seen.cycles;
     }
   }
 

@@ -113,7 +113,7 @@ class Bench {
 
   // A want stays with its slot until it is taken; what the lane offers of its two wants it may change in any cycle.
   void want(const Traffic& traffic, uint32_t lane) {
-    for (TreeBanks::Want& want : wants_[lane]) {
+    for (LineWant& want : wants_[lane]) {
       const bool nobody = one_of(traffic.nobody);
       if (want.valid || !one_of(traffic.want) || (!nobody && free_[lane].empty())) continue;
       want = {true, nobody, 0, static_cast<uint32_t>(bench_.random()) % traffic.lines & ((1u << P::kLineBits) - 1)};
@@ -136,7 +136,7 @@ class Bench {
   void drive(uint32_t room, bool request_ready) {
     for (uint32_t lane = 0; lane < kLanes; ++lane) {
       for (uint32_t i = 0; i < 2; ++i) {
-        const TreeBanks::Want& want = offered_[lane][i];
+        const LineWant& want = offered_[lane][i];
         const uint32_t at = 2 * lane + i;
         const auto noise = static_cast<uint32_t>(bench_.random());
         set_bits(u_.want_valid_i, at, 1, want.valid);
@@ -161,9 +161,7 @@ class Bench {
   void compare(uint32_t waited) {
     ASSERT_EQ(u_.waited_valid_o, waited) << "cycle " << cycle_;
     for (uint32_t lane = 0; lane < kLanes; ++lane) {
-      const uint32_t taken = banks_.taken(lane);
-      ASSERT_EQ(get_bits(u_.taken_o, 2 * lane, 2), taken == TreeBanks::kNone ? 0 : 1u << taken)
-          << "cycle " << cycle_ << ", lane " << lane;
+      ASSERT_EQ(get_bits(u_.taken_o, 2 * lane, 2), banks_.taken(lane)) << "cycle " << cycle_ << ", lane " << lane;
     }
     ASSERT_EQ(u_.given_valid_o, banks_.given_lanes()) << "cycle " << cycle_;
     ASSERT_EQ(u_.request_valid_o, banks_.request_valid()) << "cycle " << cycle_;
@@ -196,19 +194,19 @@ class Bench {
 
   // What stays a lane's first want is taken when its bank has been ready so often that all lanes were chosen.
   void take_wanted(uint32_t lane, uint32_t waited, const std::array<bool, TreeBanks::kMostBanks>& looks) {
-    const TreeBanks::Want& first = offered_[lane][0];
+    const LineWant& first = offered_[lane][0];
     const uint32_t taken = banks_.taken(lane);
-    if (!first.valid || (waited >> lane & 1) != 0 || taken == 0 || first.line != first_[lane].line) first_[lane] = {};
-    if (first.valid && (waited >> lane & 1) == 0 && taken != 0) {
+    if (!first.valid || (waited >> lane & 1) != 0 || taken == 1 || first.line != first_[lane].line) first_[lane] = {};
+    if (first.valid && (waited >> lane & 1) == 0 && taken != 1) {
       first_[lane].line = first.line;
       first_[lane].passed += looks[first.line % P::kSizes.banks] ? 1 : 0;
       ASSERT_LT(first_[lane].passed, kLanes) << "lane " << lane << " waits for its bank in cycle " << cycle_;
     }
-    if (taken == TreeBanks::kNone) return;
+    if (taken == 0) return;
     ASSERT_EQ(waited >> lane & 1, 0u) << "cycle " << cycle_;
-    ASSERT_TRUE(offered_[lane][taken].valid) << "cycle " << cycle_;
-    seconds += taken;
-    TreeBanks::Want& want = wants_[lane][taken];
+    ASSERT_TRUE(offered_[lane][taken >> 1].valid) << "cycle " << cycle_;
+    seconds += taken >> 1;
+    LineWant& want = wants_[lane][taken >> 1];
     if (!want.nobody) wanted_[{lane, want.slot}] = want.line;
     want.valid = false;
   }
