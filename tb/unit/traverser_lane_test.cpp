@@ -85,6 +85,26 @@ TYPED_TEST(TraverserLaneTest, AgreesWithItsClassInEveryCycleAndEveryRayHitsWhatI
   }
 }
 
+// Times below 2^-125: with the float's least exponent, and subnormal ones.
+TYPED_TEST(TraverserLaneTest, AgreesWhereHitsAreAtTheLeastTimes) {
+  LaneBench<TypeParam> bench(9);
+  uint32_t seed = 0, least = 0, subnormal = 0;
+  for (const int scale : {-140, -132, -126, -125}) {
+    for (int run = 0; run < 4; ++run) {
+      SCOPED_TRACE(testing::Message() << "seed " << ++seed << ", scale 2^" << scale);
+      const Case<TypeParam> test(soup(seed, 60, std::ldexp(1.0f, scale), {0, 0, 0}), 100, seed);
+      for (const auto& ray : test.rays) {
+        const bool subnormal_hit = ray.walk.hit.hit && ray.walk.hit.t < 0x1p-126f;
+        subnormal += subnormal_hit;
+        least += ray.walk.hit.hit && !subnormal_hit && ray.walk.hit.t < 0x1p-125f;
+      }
+      ASSERT_NO_FATAL_FAILURE(bench.trace(test.tree, test.rays, {}));
+    }
+  }
+  EXPECT_GT(subnormal, 100u);
+  EXPECT_GT(least, 20u);
+}
+
 TYPED_TEST(TraverserLaneTest, ThatIsStoppedComesToRest) {
   std::mt19937 random(8);
   const Case<TypeParam> test(soup(3, 400, 1, {0, 0, 0}), 400, 3);
