@@ -97,8 +97,11 @@ if [ ${#netlist[@]} -gt 0 ]; then
   what="the shell of a netlist"
   wrapper+=(sim/rtl/gate_simulator.cpp)
 fi
+# Instances share their code where gold folds functions that are alike.
+fold=
+if [ ${#shared[@]} -gt 0 ] && command -v ld.gold > /dev/null; then fold="-fuse-ld=gold -Wl,--icf=all"; fi
 digest=$({
-  printf '%s\n' "$version" "$compiler_version" "trace $trace quick $quick" "${parameters[@]}"
+  printf '%s\n' "$version" "$compiler_version" "trace $trace quick $quick fold $fold" "${parameters[@]}"
   sha256sum "${verilog[@]}" "${waivers[@]}" "${shared[@]}" rtl/*.vh "${headers[@]}" "${wrapper[@]}" scripts/verilate.sh
 } | sha256sum | cut -d ' ' -f 1)
 if [ -f "$library" ] && [ "$(cat "$stamp" 2> /dev/null)" = "$digest" ]; then
@@ -122,9 +125,6 @@ units=1
 for parameter in "${parameters[@]}"; do [ "${parameter%%=*}" != UNITS ] || units=${parameter#*=}; done
 printf '#define RAYPOOL_BUILT_PARAMETERS "%s"\n#define RAYPOOL_UNIT_COUNT %d\n' "${parameters[*]}" "$units" \
   > "$build/built_parameters.h"
-# So that instances share their code (see there): gold folds functions that are alike, and the longer functions are, the
-# fewer variables go from one to the next.
-fold=
 if [ ${#shared[@]} -gt 0 ]; then
   ports=$build/shared_ports.vlt
   {
@@ -135,13 +135,13 @@ if [ ${#shared[@]} -gt 0 ]; then
     done
   } > "$ports"
   shared+=("$ports")
-  ! command -v ld.gold > /dev/null || fold="-fuse-ld=gold -Wl,--icf=all"
 fi
 options=(--cc --exe --top-module "$top" --Mdir "$build" -Irtl --default-language 1364-2005 +1800-2017ext+sv
   -O3 --x-assign fast --x-initial fast --noassert
   -CFLAGS "-std=c++17 -fPIC -fvisibility=hidden -fno-gnu-unique -fno-plt -fno-semantic-interposition"
   -CFLAGS "-I$root/cpp_model -I$root/sim -I$build"
   -LDFLAGS "-shared -Wl,-Bsymbolic -Wl,-O1 $fold" -o "libraypool_$kind.so")
+# Functions are alike if they work on nothing but their own: the longer they are, the less goes from one to the next.
 [ ${#shared[@]} -eq 0 ] || options+=(--output-split-cfuncs 30000 -CFLAGS -ffunction-sections)
 [ "$trace" = 0 ] || options+=(--trace-fst)
 for parameter in "${parameters[@]}"; do options+=("-G$parameter"); done

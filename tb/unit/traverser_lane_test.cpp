@@ -85,24 +85,34 @@ TYPED_TEST(TraverserLaneTest, AgreesWithItsClassInEveryCycleAndEveryRayHitsWhatI
   }
 }
 
-// Times below 2^-125: with the float's least exponent, and subnormal ones.
+// Times below 2^-125, with the float's least exponent and subnormal ones: a small soup, and triangles whose boxes have
+// planes right through it, as no step of a grid is below 2^-128.
 TYPED_TEST(TraverserLaneTest, AgreesWhereHitsAreAtTheLeastTimes) {
   LaneBench<TypeParam> bench(9);
+  std::mt19937 random(9);
+  const auto place = [&] { return std::ldexp(static_cast<float>(random() % 9) - 4, -127); };
+  const auto corner = [&] { return Vec3{place(), place(), place()}; };
   uint32_t seed = 0, least = 0, subnormal = 0;
-  for (const int scale : {-140, -132, -126, -125}) {
-    for (int run = 0; run < 4; ++run) {
-      SCOPED_TRACE(testing::Message() << "seed " << ++seed << ", scale 2^" << scale);
-      const Case<TypeParam> test(soup(seed, 60, std::ldexp(1.0f, scale), {0, 0, 0}), 100, seed);
+  for (const float scale : {0x1p-142f, 0x1p-134f, 0x1p-126f}) {
+    for (int run = 0; run < 6; ++run) {
+      SCOPED_TRACE(testing::Message() << "seed " << ++seed << ", scale " << scale);
+      const Scene small = soup(seed, 30, scale, {0, 0, 0});
+      std::vector<std::array<Vec3, 3>> triangles;
+      for (size_t i = 0; i < small.triangles.size(); ++i)
+        triangles.push_back({small.corner(i, 0), small.corner(i, 1), small.corner(i, 2)});
+      for (int i = 0; i < 30; ++i) triangles.push_back({corner(), corner(), corner()});
+      const Case<TypeParam> test(scene_of(triangles), 100, seed);
       for (const auto& ray : test.rays) {
-        const bool subnormal_hit = ray.walk.hit.hit && ray.walk.hit.t < 0x1p-126f;
-        subnormal += subnormal_hit;
-        least += ray.walk.hit.hit && !subnormal_hit && ray.walk.hit.t < 0x1p-125f;
+        const LaneHits::Hit& hit = ray.walk.hit;
+        subnormal += hit.hit && hit.t < 0x1p-126f;
+        least += hit.hit && hit.t >= 0x1p-126f && hit.t < 0x1p-125f;
       }
       ASSERT_NO_FATAL_FAILURE(bench.trace(test.tree, test.rays, {}));
     }
   }
   EXPECT_GT(subnormal, 100u);
   EXPECT_GT(least, 20u);
+  EXPECT_GT(bench.seen.dropped, 40u);
 }
 
 TYPED_TEST(TraverserLaneTest, ThatIsStoppedComesToRest) {
