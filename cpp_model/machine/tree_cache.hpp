@@ -22,8 +22,8 @@ class TreeCache {
     uint32_t lines = 128, ways = 16;  ///< powers of two
     uint32_t mshrs = 8;
   };
-  /// A line for all lanes that ask for it, with the slots of their rays; for none: nobody waits for it yet.
   using Slots = std::array<uint8_t, kMostLanes>;  ///< [lane]
+  /// A line for all lanes that ask for it, with the slots of their rays; for none: nobody waits for it yet.
   struct Lookup {
     uint32_t line = 0;
     uint32_t lanes = 0;  ///< a bit each

@@ -10,6 +10,7 @@
 #include <deque>
 #include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "machine/traverser.hpp"
@@ -34,6 +35,7 @@ struct TraverserSeen {
   uint64_t left = 0;  ///< cycles in which a lane has no room for a line of a leaf for which it has waited
   std::array<uint64_t, 7> faults{};  ///< [code]
   uint64_t spoilt = 0;               ///< blocks of stacks
+  uint64_t exchanged = 0;            ///< rays that left when another one with the same package seemed to have
 };
 
 /// A cache's sizes.
@@ -375,7 +377,7 @@ class TraverserBench {
     beat_out_ = 0;
     ASSERT_NO_FATAL_FAILURE(take_package());
   }
-  // Which ray's it is: records may lack any word.
+  // Which ray's it is: records may lack any word, so those of several rays may be alike.
   void take_package() {
     if (!knows()) return;
     for (uint32_t place = 0; place < P::kPool; ++place) {
@@ -413,11 +415,28 @@ class TraverserBench {
     return package;
   }
 
+  // What has left may have been this place's, and not that of another one whose package is the same.
+  void exchange_with_alike(uint32_t place) {
+    const auto package = [this](uint32_t of) {
+      const Asked& asked = (*rays_)[*in_[of]];
+      return std::make_pair(kind_of(asked), packed(package_of(asked), frame_.layout));
+    };
+    if (left_[place] || !needs_room((*rays_)[*in_[place]])) return;
+    for (uint32_t other = 0; other < P::kPool; ++other) {
+      if (!in_[other] || !left_[other] || !needs_room((*rays_)[*in_[other]])) continue;
+      if (package(other) != package(place)) continue;
+      left_[place] = true;
+      left_[other] = false;
+      ++seen.exchanged;
+      return;
+    }
+  }
   void take_place(const Traverser::Outputs& out) {
     const uint32_t place = out.free_place;
     ASSERT_TRUE(in_[place]) << "cycle " << seen.cycles << ": a place is freed that is free";
     const Asked& asked = (*rays_)[*in_[place]];
     if (knows()) {
+      exchange_with_alike(place);
       ASSERT_EQ(left_[place], !drops(asked)) << "cycle " << seen.cycles;
       ASSERT_TRUE(asked.walk.faults.empty()) << "cycle " << seen.cycles << ": a ray leaves that comes to a fault";
     }
