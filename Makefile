@@ -20,7 +20,8 @@ SIZE      ?= 320x320
 DEPTH     ?= 3
 ENGINE    ?= lockstep
 CHIP      ?=
-TRAVERSER ?= $(if $(CHIP),static,modelled)
+# SET may have it too.
+TRAVERSER ?= $(if $(findstring chip.traverser=,$(SET)),,$(if $(CHIP),static,modelled))
 SET       ?=
 VIEW      ?=
 EYE       ?=
