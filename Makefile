@@ -86,6 +86,8 @@ GATES     ?= 0
 MODE      ?= all
 # `make numerics-long`, and sim with ENGINE=native or embree
 THREADS   ?=
+# `make test-long`
+SHARE     ?=
 # `make quoted`
 LONG      ?= 0
 UPDATE    ?= 0
@@ -119,6 +121,9 @@ endif
 RAYPOOL := $(BUILD)/raypool
 # One at a time in a folder: a second make waits here.
 LOCKED := flock $(BUILD)/.lock
+# Benches whose runs of hours are worth an optimised build.
+OPTIMISED_BENCHES := mkdir -p $(BUILD)/benches && scripts/configure.sh $(BUILD)/benches ON \
+  -DRAYPOOL_BENCHES_OPTIMISED=ON
 # Only engines rtl and lockstep need a Verilated device.
 WAVES_FLAG := $(if $(filter-out 0,$(WAVES)),--waves)
 TRACE_FLAG := $(if $(filter-out 0,$(TRACE)),--trace $(if $(filter 1,$(TRACE)),:,"$$TRACE"))
@@ -160,7 +165,8 @@ UNIT_OF_ENGINE := $(if $(filter rtl lockstep,$(or $(CHIP),$(ENGINE))),$(UNIT) $(
 CHIP_FLAG := $(if $(CHIP),--chip)
 
 .PHONY: intervals
-.PHONY: help sim fidelity fit compare run cosim configurations mutants faults unit test lint format bench clean
+.PHONY: help sim fidelity fit compare run cosim configurations mutants faults unit test test-long lint format bench
+.PHONY: clean
 .PHONY: setup-% program configured-%
 .PHONY: numerics-long proofs synth synth-replay synth-prove growth numerics significands extremes isa diagrams quoted
 .PHONY: package sweep report bench-native pareto boxes triangles synth-module follow tour chip-frames
@@ -266,10 +272,13 @@ chip-frames: setup-sim setup-test configured-ON program ## random frames on tiny
 	@scripts/build.sh $(BUILD) raypool_chip_frames
 	@$(BUILD)/raypool_chip_frames --frames "$$FRAMES" --seed "$$SEED" $(if $(filter hardware,$(TRAVERSER)),--inside)
 
-traverser-trees: setup-sim setup-test configured-ON ## random trees, and garbage, in the traverser: TREES
-	@scripts/build.sh $(BUILD) traverser_test
-	@RAYPOOL_TREES="$$TREES" RAYPOOL_SEED="$$SEED" \
-	  $(BUILD)/tb/traverser_test --gtest_filter='*OfChance*' --gtest_brief=1
+traverser-trees: setup-sim setup-test ## random trees, and garbage, in the traverser: TREES
+	@$(OPTIMISED_BENCHES)
+	@scripts/build.sh $(BUILD)/benches traverser_test traverser_large_test
+	@for bench in traverser_test traverser_large_test; do \
+	  RAYPOOL_TREES="$$TREES" RAYPOOL_SEED="$$SEED" \
+	    $(BUILD)/benches/tb/$$bench --gtest_filter='*OfChance*' --gtest_brief=1; \
+	done
 
 mutants: setup-sim setup-lint program ## small faults put into the RTL: which does the lockstep notice? MUTANTS
 	@scripts/build.sh $(BUILD) raypool_mutants
@@ -282,7 +291,7 @@ block-mutants: setup-sim setup-test configured-ON ## small faults in each module
 	@mkdir -p $(BUILD)/block-mutants
 	@python3 scripts/block_mutants.py rtl $(BUILD)/block-mutants/rtl $(BUILD)/block-mutants/list.json "$$EACH" \
 	  "$$SEED" $(MODULES:=.v)
-	@scripts/configure.sh $(BUILD)/block-mutants/benches ON -DRAYPOOL_BENCHES=pools \
+	@scripts/configure.sh $(BUILD)/block-mutants/benches ON -DRAYPOOL_BENCHES=pools -DRAYPOOL_BENCHES_OPTIMISED=ON \
 	  -DRAYPOOL_RTL=$(abspath $(BUILD))/block-mutants/rtl
 	@scripts/build.sh $(BUILD)/block-mutants/benches $$(grep -o '[a-z_]*_test' tb/mutants/benches.json)
 	@$(BUILD)/raypool_block_mutants --list $(BUILD)/block-mutants/list.json \
@@ -293,7 +302,8 @@ block-mutants: setup-sim setup-test configured-ON ## small faults in each module
 faults: setup-sim setup-test configured-ON program ## designers' mistakes: what notices each, where its report leads
 	@scripts/build.sh $(BUILD) raypool_faults
 	@scripts/faults.sh $(BUILD)/faults
-	@scripts/configure.sh $(BUILD)/faults/benches ON -DRAYPOOL_RTL=$(abspath $(BUILD))/faults/rtl
+	@scripts/configure.sh $(BUILD)/faults/benches ON -DRAYPOOL_BENCHES_OPTIMISED=ON \
+	  -DRAYPOOL_RTL=$(abspath $(BUILD))/faults/rtl
 	@scripts/build.sh $(BUILD)/faults/benches $$(grep -o '[a-z_]*_test' tb/faults/benches.json)
 	@$(BUILD)/raypool_faults $(BUILD)/faults --benches $(BUILD)/faults/benches/tb --json $(BUILD)/faults/outcomes.json
 
@@ -341,13 +351,19 @@ synth-module: setup-synth ## area and slack of one module for each of PARAMETERS
 growth: setup-sim setup-synth program ## area against warps, lanes, ALUs; what each feature costs
 	@$(SYNTH) growth $${PLAN:+--plan "$$PLAN"} $${OUT:+--out "$$OUT"}
 
-test: setup-sim setup-test setup-synth configured-ON ## every test
+test: setup-sim setup-test setup-synth configured-ON ## what guards a change
 	@scripts/build.sh $(BUILD)
-	@ctest --test-dir $(BUILD) --output-on-failure -j "$$(nproc)"
+	@ctest --test-dir $(BUILD) --output-on-failure -j "$$(nproc)" -LE long
 
-numerics-long: setup-sim setup-test configured-ON ## arithmetic against its oracles, 10^8 pairs; two hours: THREADS
-	@scripts/build.sh $(BUILD) numerics_long flt_alu_test slw_alu_test brh_alu_test small_floats_test
-	@scripts/numerics_long.sh $(BUILD) "$${THREADS:-1}"
+test-long: setup-sim setup-test setup-synth setup-lint configured-ON program ## the other tests; SHARE=1..10: a tenth
+	@ctest --test-dir $(BUILD) --output-on-failure -j "$$(nproc)" \
+	  -L $(if $(SHARE),'^share-$(SHARE)$$',long) --no-tests=error
+
+numerics-long: setup-sim setup-test ## arithmetic against its oracles, 10^8 pairs; two hours: THREADS
+	@$(OPTIMISED_BENCHES)
+	@scripts/build.sh $(BUILD)/benches numerics_long flt_alu_test slw_alu_test slw_alu_large_test brh_alu_test \
+	  small_floats_test
+	@scripts/numerics_long.sh $(BUILD)/benches "$${THREADS:-1}"
 
 quoted: setup-sim setup-test setup-synth setup-quoted configured-ON ## run what the pages quote: LONG, UPDATE, PAGES
 	@scripts/build.sh $(BUILD)

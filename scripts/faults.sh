@@ -2,7 +2,7 @@
 # Builds machines that carry every mistake of tb/faults/catalogue.json: scripts/faults.sh FOLDER [MACHINE]...
 # The environment variable RAYPOOL_FAULT selects the mistake (none: 0) of every unit made after it is set. The machines
 # are the small one of the cosim tests, as one unit and as four, one with all features of `best`, and those that the
-# test configurations_quick walks. FOLDER gets
+# tests configurations_quick_* walk. FOLDER gets
 #   rtl/                      the Verilog with the mistakes
 #   NAME/libraypool_unit.so   a machine
 #   list                      a line for each: name, file of the configuration, units

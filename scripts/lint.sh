@@ -5,7 +5,9 @@
 #   columns  no line is longer than 120 columns
 #   python   flake8 (.flake8)
 #   shell    shellcheck (.shellcheckrc)
-#   cpp      clang-format and clang-tidy; needs the build folder (BUILD, default build) configured with tests
+#   cpp      clang-format, and clang-tidy on what has changed since the last commit that passed (scripts/passed.sh; the
+#            tests tidy_* of make test-long read all); needs the build folder (BUILD, default build) configured with
+#            tests
 # Prints what failed and the command that shows it again; ends with 1 if anything did. Keeps in the build folder how
 # long all kinds took.
 set -u -o pipefail
@@ -161,8 +163,9 @@ check_cpp() {
   local cpp
   mapfile -t cpp < <(scripts/sources.sh cpp)
   check "clang-format (make format), ${#cpp[@]} files" clang-format --dry-run -Werror "${cpp[@]}"
-  echo "lint: clang-tidy reads all sources, which takes most of the time"
-  check "clang-tidy" scripts/tidy.py "$build"
+  local since
+  since=$(scripts/passed.sh)
+  check "clang-tidy, what has changed since ${since:0:12}" scripts/tidy.py "$build" --since "$since"
 }
 
 [ $# -gt 0 ] || echo "lint: $(last_duration lint)"

@@ -48,6 +48,20 @@ add_test(NAME pages COMMAND ${scripts}/pages.py)
 # tb stands on sim and this on cpp_model; CMakeLists.txt checks their targets.
 add_test(NAME layers COMMAND ${scripts}/layers.py)
 
+# clang-tidy on all sources; `make lint` reads those that have changed.
+find_program(CLANG_TIDY clang-tidy)
+if(CLANG_TIDY)
+  foreach(part RANGE 1 ${RAYPOOL_SHARES})
+    add_test(NAME tidy_${part} COMMAND ${scripts}/tidy.py ${CMAKE_BINARY_DIR} --share ${part}/${RAYPOOL_SHARES})
+    set_tests_properties(tidy_${part} PROPERTIES TIMEOUT 1800)
+    raypool_long(200 tidy_${part})
+  endforeach()
+else()
+  message(STATUS "clang-tidy was not found: the tests tidy_* are left out (scripts/setup.sh lint)")
+endif()
+
+add_test(NAME shares COMMAND ${scripts}/tests/shares_test.py ${CMAKE_BINARY_DIR})
+
 # Every program that has once shown a fault.
 file(GLOB regressions CONFIGURE_DEPENDS RELATIVE ${CMAKE_SOURCE_DIR}/tb/regressions
   ${CMAKE_SOURCE_DIR}/tb/regressions/*.json)
@@ -59,11 +73,13 @@ foreach(regression IN LISTS regressions)
 endforeach()
 
 # Every parameter value, and most pairs of values that a machine of 8 threads can have.
-add_test(NAME configurations_quick
-         COMMAND ${CMAKE_COMMAND} -E env RAYPOOL=${raypool_program} ${scripts}/configurations.sh quick 40
-         ${CMAKE_BINARY_DIR}/configurations)
-# It takes longest, so it begins first: no core waits for it in the end.
-set_tests_properties(configurations_quick PROPERTIES TIMEOUT 2400 COST 600)
+foreach(part RANGE 1 4)
+  add_test(NAME configurations_quick_${part}
+           COMMAND ${CMAKE_COMMAND} -E env RAYPOOL=${raypool_program} ${scripts}/configurations.sh quick 40
+           ${CMAKE_BINARY_DIR}/configurations/${part} ${part}/4)
+  set_tests_properties(configurations_quick_${part} PROPERTIES TIMEOUT 2400)
+  raypool_long(200 configurations_quick_${part})
+endforeach()
 
 # The same Verilog in a 4-state simulator.
 find_program(IVERILOG iverilog)

@@ -7,19 +7,16 @@ set(arith_unit ${CMAKE_SOURCE_DIR}/tb/unit)
 function(arith_top name top prefix parameters)
   raypool_verilate(${name} SOURCES ${arith_unit}/${top}.v ${ARGN}
     TOP_MODULE ${top} PREFIX ${prefix} INCLUDE_DIRS ${arith_rtl}
-    VERILATOR_ARGS ${parameters} --default-language 1364-2005 -DSYNTHESIS -DNO_CLOCK_GATES --output-split 10000
-    --output-split-cfuncs 1000 -O3 --x-assign fast --x-initial fast)
+    VERILATOR_ARGS ${parameters} --default-language 1364-2005 -DSYNTHESIS -DNO_CLOCK_GATES -O3 --x-assign fast
+    --x-initial fast)
 endfunction()
 
 # arith_bench(NAME TOP SOURCES...): the test program NAME of unit/NAME.cpp with the Verilated bench top TOP.
 # SYNTHESIS, NO_CLOCK_GATES: with the multipliers and the pipeline registers that hardware has, in whose place whole
-# units in simulation have quicker ones.
+# units in simulation have quicker ones. Tests named Long run in `make numerics-long`.
 function(arith_bench name top)
-  add_executable(${name} ${arith_unit}/${name}.cpp)
-  target_link_libraries(${name} PRIVATE raypool_machine GTest::gtest_main)
+  raypool_bench(${name} "-*Long*")
   arith_top(${name} ${top} V${top} "" ${ARGN})
-  # Tests named Long run in `make numerics-long`.
-  gtest_discover_tests(${name} WORKING_DIRECTORY ${CMAKE_SOURCE_DIR} DISCOVERY_TIMEOUT 60 TEST_FILTER "-*Long*")
 endfunction()
 
 # arith_widths(NAME TOP SOURCES...): the same top with shorter significands, VTOP_20 and so on.
@@ -45,7 +42,8 @@ set(arith_slw_sources ${arith_rtl}/slw_alu.v ${arith_rtl}/slow_lane.v ${arith_rt
   ${arith_rtl}/slow_seed_table.v ${arith_rtl}/multiply_tree.v ${arith_rtl}/alu_pipeline.v ${arith_rtl}/alu_delay.v
   ${arith_rtl}/subnormal_guard.v)
 arith_bench(slw_alu_test slw_units ${arith_slw_sources})
-arith_widths(slw_alu_test slw_units ${arith_slw_sources})
+raypool_large_bench(slw_alu 300 --gtest_filter=-*Long*)
+arith_widths(slw_alu_large_test slw_units ${arith_slw_sources})
 arith_top(slw_alu_test slw_group_units Vslw_group_units "" ${arith_slw_sources})
 
 # ALUs that lack instructions.
@@ -94,8 +92,8 @@ if(IVERILOG AND VVP)
 endif()
 
 # Narrow formats, against exact integers with all operands there are.
-add_executable(small_floats_test ${arith_unit}/small_floats_test.cpp)
-target_link_libraries(small_floats_test PRIVATE raypool_include GTest::gtest_main)
+# Tests named Hours run by hand.
+raypool_bench(small_floats_test "-*Long*:*Hours*")
 foreach(format IN ITEMS "16 5 10" "8 4 3")
   separate_arguments(format)
   list(GET format 0 bits)
@@ -104,9 +102,8 @@ foreach(format IN ITEMS "16 5 10" "8 4 3")
   raypool_verilate(small_floats_test SOURCES ${arith_unit}/small_floats.v ${arith_rtl}/float_adder.v
     ${arith_rtl}/float_multiplier.v ${arith_rtl}/float_fma.v ${arith_rtl}/multiply_tree.v
     TOP_MODULE small_floats PREFIX Vsmall_floats_${bits} INCLUDE_DIRS ${arith_rtl}
-    VERILATOR_ARGS --default-language 1364-2005 -DSYNTHESIS -DNO_CLOCK_GATES --output-split 10000
-    --output-split-cfuncs 1000 -O3 --x-assign fast --x-initial fast -GEXPONENT_BITS=${exponent}
-    -GMANTISSA_BITS=${mantissa})
+    VERILATOR_ARGS --default-language 1364-2005 -DSYNTHESIS -DNO_CLOCK_GATES -O3 --x-assign fast --x-initial fast
+    -GEXPONENT_BITS=${exponent} -GMANTISSA_BITS=${mantissa})
 endforeach()
 # Products of every pair of 16-bit numbers: with the tree that hardware has, and with
 # the simulator's product in its place.
@@ -116,12 +113,8 @@ foreach(tree IN ITEMS "tree -DSYNTHESIS" "quick")
   raypool_verilate(small_floats_test SOURCES ${arith_unit}/small_products.v ${arith_rtl}/float_multiplier.v
     ${arith_rtl}/multiply_tree.v
     TOP_MODULE small_products PREFIX Vsmall_products_${name} INCLUDE_DIRS ${arith_rtl}
-    VERILATOR_ARGS --default-language 1364-2005 ${tree} --output-split 10000 --output-split-cfuncs 1000
-    -O3 --x-assign fast --x-initial fast)
+    VERILATOR_ARGS --default-language 1364-2005 ${tree} -O3 --x-assign fast --x-initial fast)
 endforeach()
 raypool_verilate(small_floats_test SOURCES ${arith_rtl}/multiply_tree.v
   TOP_MODULE multiply_tree PREFIX Vmultiply_tree_11 INCLUDE_DIRS ${arith_rtl}
   VERILATOR_ARGS --default-language 1364-2005 -DSYNTHESIS -O3 -GA_BITS=11 -GB_BITS=11)
-# Tests named Hours run by hand.
-gtest_discover_tests(small_floats_test WORKING_DIRECTORY ${CMAKE_SOURCE_DIR} DISCOVERY_TIMEOUT 60
-  TEST_FILTER "-*Long*:*Hours*")

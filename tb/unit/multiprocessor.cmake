@@ -1,6 +1,5 @@
 # Bench of what stands between the units of a multiprocessor: class V<module>_<units>.
-add_executable(arbiters_test ${CMAKE_CURRENT_LIST_DIR}/arbiters_test.cpp)
-target_link_libraries(arbiters_test PRIVATE GTest::gtest_main)
+raypool_bench(arbiters_test)
 function(raypool_arbiter_model module units)
   raypool_verilate(arbiters_test SOURCES ${RAYPOOL_RTL}/${module}.v PREFIX V${module}_${units} TOP_MODULE ${module}
     VERILATOR_ARGS -O3 --default-language 1364-2005 -y ${RAYPOOL_RTL} ${ARGN})
@@ -10,4 +9,3 @@ foreach(units 2 4)
   raypool_arbiter_model(import_arbiter ${units} -GUNITS=${units})
   raypool_arbiter_model(block_scheduler ${units} -GUNITS=${units})
 endforeach()
-gtest_discover_tests(arbiters_test DISCOVERY_TIMEOUT 60)

@@ -1,7 +1,6 @@
 # Bench of the ray ALU for narrow and wide warps: class Vray_alu_<warps>x<lanes>, with compact records of some words
 # Vray_alu_<warps>x<lanes>_<words>words, and with ray memory as wide as the lanes also _wide.
-add_executable(ray_alu_test ${CMAKE_CURRENT_LIST_DIR}/ray_alu_test.cpp)
-target_link_libraries(ray_alu_test PRIVATE GTest::gtest_main)
+raypool_bench(ray_alu_test)
 foreach(size 1x1 2x2 1x32 4x4 8x8 32x1 2x8_wide 1x32_wide 2x2_12words 8x8_16words 2x8_18words_wide)
   string(REGEX MATCH "^([0-9]+)x([0-9]+)(_([0-9]+)words)?(_wide)?$" size ${size})
   set(warps ${CMAKE_MATCH_1})
@@ -19,4 +18,3 @@ foreach(size 1x1 2x2 1x32 4x4 8x8 32x1 2x8_wide 1x32_wide 2x2_12words 8x8_16word
     VERILATOR_ARGS -O3 --default-language 1364-2005 -y ${RAYPOOL_RTL} -I${RAYPOOL_RTL} -GWARPS=${warps}
     -GLANES=${lanes} -GWIDE_RAY_MEMORY=${wide} -GINTERSECTION_WORDS=${words})
 endforeach()
-gtest_discover_tests(ray_alu_test DISCOVERY_TIMEOUT 60)

@@ -2,12 +2,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "Vslw_group_units.h"
-#include "Vslw_units.h"
+#ifdef RAYPOOL_LARGE
 #include "Vslw_units_11.h"
 #include "Vslw_units_13.h"
 #include "Vslw_units_16.h"
 #include "Vslw_units_20.h"
+#else
+#include "Vslw_group_units.h"
+#include "Vslw_units.h"
+#endif
 #include "alu_bench.hpp"
 #include "alu_model.hpp"
 #include "significands.hpp"
@@ -32,6 +35,7 @@ std::vector<AluUnderTest> units(uint32_t significand) {
   return all;
 }
 
+#ifndef RAYPOOL_LARGE
 /// With fewer lanes than a task has: as slw_group_units.v has them.
 std::vector<AluUnderTest> group_units() {
   std::vector<AluUnderTest> all;
@@ -62,15 +66,19 @@ TEST(SlwAlu, GroupsOfLanesGiveWhatAllLanesGive) {
   bench.finish();
   EXPECT_GE(bench.compared(), 80000u);
 }
+#endif
 
 /// The operand `a`, of most roots something positive.
 uint32_t positive(Opcode opcode, uint32_t a, std::mt19937_64& random) {
   return opcode != Opcode::Fdiv && random() % 2 ? a & 0x7fffffffu : a;
 }
 
-using Significands =
-    testing::Types<Significand<Vslw_units, 24>, Significand<Vslw_units_20, 20>, Significand<Vslw_units_16, 16>,
-                   Significand<Vslw_units_13, 13>, Significand<Vslw_units_11, 11>>;
+#ifdef RAYPOOL_LARGE  // slw_alu_large_test, of make test-long
+using Significands = testing::Types<Significand<Vslw_units_20, 20>, Significand<Vslw_units_16, 16>,
+                                    Significand<Vslw_units_13, 13>, Significand<Vslw_units_11, 11>>;
+#else
+using Significands = testing::Types<Significand<Vslw_units, 24>>;
+#endif
 template <typename Type>
 class SlwAlu : public testing::Test {};
 TYPED_TEST_SUITE(SlwAlu, Significands, SignificandName);
@@ -160,6 +168,7 @@ TYPED_TEST(SlwAluLong, ManyRandomRootsAgreeWithTheModel) {
   many_operands<TypeParam>("fsqrt frsqrt frcp", {Opcode::Fsqrt, Opcode::Frsqrt, Opcode::Frcp}, kSeed + 2);
 }
 
+#ifndef RAYPOOL_LARGE
 // What slow_exact.v leaves out of the square of the middle m between two floats, times v, must not matter: for every v
 // of every significand the product differs from 4 by more, and by so little that its lower bits tell the sign.
 TEST(SlwAluExact, NoInverseRootIsAsNearToAMiddleAsTheTreeIsWrong) {
@@ -187,6 +196,7 @@ TEST(SlwAluExact, NoInverseRootIsAsNearToAMiddleAsTheTreeIsWrong) {
     EXPECT_LT(most, uint64_t{1} << (out - 1)) << p;
   }
 }
+#endif
 
 TYPED_TEST(SlwAlu, SubnormalQuotientsOnTheMiddleGoToEven) {
   constexpr uint32_t kSignificand = TypeParam::kSignificand;

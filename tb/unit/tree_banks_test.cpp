@@ -10,12 +10,15 @@
 #include <map>
 #include <vector>
 
+#ifdef RAYPOOL_LARGE
 #include "Vtree_banks_16_3_64_2_12_4_20_32.h"
+#include "Vtree_banks_32_2_32_2_4_1_9_32.h"
+#include "Vtree_banks_8_24_1024_16_64_8_26_32.h"
+#else
 #include "Vtree_banks_1_2_4_2_1_1_5_32.h"
 #include "Vtree_banks_2_9_256_4_16_16_12_32.h"
-#include "Vtree_banks_32_2_32_2_4_1_9_32.h"
 #include "Vtree_banks_3_5_64_4_6_2_23_32.h"
-#include "Vtree_banks_8_24_1024_16_64_8_26_32.h"
+#endif
 #include "unit/clocked.hpp"
 #include "unit/signal_bits.hpp"
 
@@ -256,12 +259,15 @@ class Bench {
 
 template <typename P>
 class TreeBanksTest : public testing::Test {};
+#ifdef RAYPOOL_LARGE  // tree_banks_large_test, of make test-long
+using All = testing::Types<Parameters<Vtree_banks_8_24_1024_16_64_8_26_32, 8, 24, 1024, 16, 64, 8, 26>,
+                           Parameters<Vtree_banks_16_3_64_2_12_4_20_32, 16, 3, 64, 2, 12, 4, 20>,
+                           Parameters<Vtree_banks_32_2_32_2_4_1_9_32, 32, 2, 32, 2, 4, 1, 9>>;
+#else
 using All = testing::Types<Parameters<Vtree_banks_1_2_4_2_1_1_5_32, 1, 2, 4, 2, 1, 1, 5>,
                            Parameters<Vtree_banks_3_5_64_4_6_2_23_32, 3, 5, 64, 4, 6, 2, 23>,
-                           Parameters<Vtree_banks_8_24_1024_16_64_8_26_32, 8, 24, 1024, 16, 64, 8, 26>,
-                           Parameters<Vtree_banks_16_3_64_2_12_4_20_32, 16, 3, 64, 2, 12, 4, 20>,
-                           Parameters<Vtree_banks_2_9_256_4_16_16_12_32, 2, 9, 256, 4, 16, 16, 12>,
-                           Parameters<Vtree_banks_32_2_32_2_4_1_9_32, 32, 2, 32, 2, 4, 1, 9>>;
+                           Parameters<Vtree_banks_2_9_256_4_16_16_12_32, 2, 9, 256, 4, 16, 16, 12>>;
+#endif
 TYPED_TEST_SUITE(TreeBanksTest, All);
 
 TYPED_TEST(TreeBanksTest, AgreesWithItsClassInEveryCycle) {

@@ -1,0 +1,91 @@
+#!/usr/bin/env python3
+"""Nothing falls between the shares: shares_test.py BUILD. Each long test is in one of ten shares and `make test` runs the
+others; the parts of clang-tidy make up all sources; what has changed is read, headers through a source that includes
+them."""
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
+import tidy  # noqa: E402
+
+BUILD = sys.argv.pop() if len(sys.argv) > 1 else "build"
+
+
+class Shares(unittest.TestCase):
+    def test_each_long_test_is_in_one_share_and_no_share_is_empty(self):
+        listed = subprocess.run(["ctest", "--test-dir", BUILD, "--show-only=json-v1"], check=True, capture_output=True,
+                                text=True)
+        shares = {}
+        for test in json.loads(listed.stdout)["tests"]:
+            labels = next((p["value"] for p in test.get("properties", []) if p["name"] == "LABELS"), [])
+            of = [label for label in labels if label.startswith("share-")]
+            self.assertEqual(len(of), 1 if "long" in labels else 0, test["name"])
+            for label in of:
+                shares.setdefault(label, []).append(test["name"])
+        self.assertEqual(set(shares), {f"share-{k}" for k in range(1, 11)})
+
+    def test_the_parts_of_the_sources_are_all_of_them_once(self):
+        sources = {pathlib.Path(f"/{n}.cpp") for n in range(57)}
+        parts = [tidy.share_of(sources, f"{k}/10") for k in range(1, 11)]
+        self.assertEqual(set.union(*parts), sources)
+        self.assertEqual(sum(len(part) for part in parts), 57)
+        for wrong in "0/10", "11/10", "3", "a/b":
+            with self.assertRaises(SystemExit) as refusal:
+                tidy.share_of(sources, wrong)
+            self.assertIn("--share is", str(refusal.exception))
+
+
+class Changed(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.root, self.before = pathlib.Path(folder.name), tidy.ROOT
+        tidy.ROOT = self.root
+        self.addCleanup(lambda: setattr(tidy, "ROOT", self.before))
+        self.write("sim/user.cpp", '#include "model/deep.hpp"\n')
+        self.write("model/deep.hpp", '#include "model/base.hpp"\n')
+        self.write("model/base.hpp", "\n")
+        self.write("model/own.hpp", "\n")
+        self.write("model/own.cpp", '#include "model/own.hpp"\n')
+        self.write("model/other.cpp", "\n")
+        self.git("init", "-q")
+        self.git("add", ".")
+        self.git("-c", "user.name=x", "-c", "user.email=x@localhost", "commit", "-q", "-m", "first")
+
+    def write(self, name, text):
+        (self.root / name).parent.mkdir(exist_ok=True)
+        (self.root / name).write_text(text)
+
+    def git(self, *arguments):
+        subprocess.run(["git", *arguments], cwd=self.root, check=True)
+
+    def changed(self):
+        return {str(path.relative_to(self.root)) for path in tidy.changed_sources("HEAD")}
+
+    def test_nothing_is_read_when_nothing_has_changed(self):
+        self.assertEqual(self.changed(), set())
+
+    def test_a_header_is_read_with_its_source(self):
+        self.write("model/own.hpp", "// changed\n")
+        self.assertEqual(self.changed(), {"model/own.cpp"})
+
+    def test_a_header_that_only_headers_include_is_read_through_them(self):
+        self.write("model/base.hpp", "// changed\n")
+        self.assertEqual(self.changed(), {"sim/user.cpp"})
+
+    def test_sources_that_no_commit_has_yet_are_read(self):
+        self.write("model/new.cpp", "\n")
+        self.assertEqual(self.changed(), {"model/new.cpp"})
+
+    def test_a_commit_that_there_is_not_is_named(self):
+        with self.assertRaises(SystemExit) as refusal:
+            tidy.changed_sources("nowhere")
+        self.assertIn("nowhere", str(refusal.exception))
+
+
+if __name__ == "__main__":
+    unittest.main()
