@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Nothing falls between the shares: shares_test.py BUILD. Each long test is in one of ten shares and `make test` runs the
-others; the parts of clang-tidy make up all sources; what has changed is read, headers through a source that includes
-them."""
+"""Nothing falls between the shares: shares_test.py BUILD. Each long test is in one of ten shares and `make test` runs
+all others; the parts of clang-tidy make up all sources; what has changed is read, headers through a source that
+includes them."""
 import json
 import pathlib
 import subprocess
