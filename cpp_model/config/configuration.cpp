@@ -214,7 +214,7 @@ struct Source {
 Configuration made_of(const Source& source) { return from_json(source.json, source.where, source.name); }
 
 Source source_of(const fs::path& path) {
-  return {parse_json(read_file(path.string(), "configuration"), path.string()), path.string(),
+  return {parse_json(read_text_file(path.string(), "configuration"), path.string()), path.string(),
           name_of_file(path.string())};
 }
 

@@ -105,6 +105,41 @@ TEST_F(Files, AFolderIsNeitherReadNorWritten) {
             folder_.string() + ": the view file cannot be read (Is a directory); check the path");
 }
 
+TEST_F(Files, TextIsReadWithoutItsByteOrderMark) {
+  const auto read = [&](const std::string& bytes) {
+    write_file(folder_ / "a", bytes);
+    return read_text_file((folder_ / "a").string(), "view file");
+  };
+  EXPECT_EQ(read("\xef\xbb\xbftext\n"), "text\n");
+  EXPECT_EQ(read("\xef\xbb\xbf\xef\xbb\xbf{}"), "{}");
+  EXPECT_EQ(read("\xef\xbb\xbf"), "");
+  for (const std::string plain : {"", "\xef", "a\xef\xbb\xbf", "\xc3\xa4", "ply\n"}) EXPECT_EQ(read(plain), plain);
+}
+
+TEST_F(Files, WideTextIsRefusedInOneSentence) {
+  using namespace std::string_literals;
+  const auto refusal = [&](const std::string& bytes) {
+    write_file(folder_ / "a", bytes);
+    return error_of([&] { read_text_file((folder_ / "a").string(), "view file"); });
+  };
+  const std::string start = (folder_ / "a").string() + ": the view file is ";
+  for (const std::string& bytes : {"\xff\xfe{\0}\0"s, "\xfe\xff\0{\0}"s, "\xff\xfe"s, "v\0 \0"s, "\0v\0 \0001"s})
+    EXPECT_EQ(refusal(bytes), start + "UTF-16 text, which is not read; save it as UTF-8");
+  for (const std::string& bytes : {"\xff\xfe\0\0{\0\0\0"s, "\0\0\xfe\xff\0\0\0{"s, "{\0\0\0"s, "\0\0\0{"s})
+    EXPECT_EQ(refusal(bytes), start + "UTF-32 text, which is not read; save it as UTF-8");
+}
+
+TEST(Text, EveryEndOfALineBecomesALineFeed) {
+  const auto read = [](std::string text) {
+    use_line_feeds(text);
+    return text;
+  };
+  EXPECT_EQ(read("a\rb\r\rc"), "a\nb\n\nc");
+  EXPECT_EQ(read("a\r\nb\r\r\nc\n\nd\r"), "a\nb\nc\n\nd\n");
+  EXPECT_EQ(read("\n\r\n"), "\n\n");
+  EXPECT_EQ(read(""), "");
+}
+
 TEST(JsonText, AKeyTwiceInOneObjectIsRefusedAndInTwoIsNot) {
   EXPECT_EQ(parse_json(R"({"a": {"b": 1}, "c": {"b": 2}, "d": [{"b": 3}, {"b": 4}]})", "x").size(), 3u);
   for (const std::string text : {R"({"a": 1, "b": 2, "a": 3})", R"([{"c": {"a": 1, "a": 1}}])"}) {

@@ -9,4 +9,11 @@ namespace raypool {
 /// names it in the sentence: "view file".
 std::string read_file(const std::string& path, const std::string& what);
 
+/// The same of a text file, without a byte order mark of UTF-8. Throws InputError too when the text is UTF-16 or
+/// UTF-32. Whatever reads text that a user has written reads it with this; binary data behind a text are kept.
+std::string read_text_file(const std::string& path, const std::string& what);
+
+/// Lines end in "\n" afterwards, whether they ended so, in "\r\n" (or more of "\r"), or in "\r" alone.
+void use_line_feeds(std::string& text);
+
 }  // namespace raypool

@@ -107,7 +107,7 @@ def text(value):
 
 def read(path):
     try:
-        with open(path, encoding="utf-8") as file:
+        with open(path, encoding="utf-8-sig") as file:
             return json.load(file, object_pairs_hook=once)
     except OSError as error:
         raise SweepError(f"{path}: cannot be read: {error.strerror}") from error

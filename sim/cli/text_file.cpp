@@ -4,6 +4,10 @@
 
 namespace raypool {
 
-std::string read_text(const std::string& path) { return read_file(path == "-" ? "/dev/stdin" : path, "file"); }
+std::string read_text(const std::string& path) {
+  std::string text = read_text_file(path == "-" ? "/dev/stdin" : path, "file");
+  use_line_feeds(text);
+  return text;
+}
 
 }  // namespace raypool

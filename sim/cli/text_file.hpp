@@ -5,7 +5,7 @@
 
 namespace raypool {
 
-/// The whole file; "-" is standard input. Throws InputError when it cannot be read.
+/// The whole file, with lines that end in "\n"; "-" is standard input. Throws InputError when it cannot be read.
 std::string read_text(const std::string& path);
 
 }  // namespace raypool

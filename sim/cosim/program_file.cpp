@@ -159,7 +159,7 @@ SavedProgram parse_saved_program(const std::string& text, const std::string& whe
 }
 
 SavedProgram load_saved_program(const std::string& path, bool check) {
-  return parse_saved_program(read_file(path, "saved program"), path, check);
+  return parse_saved_program(read_text_file(path, "saved program"), path, check);
 }
 
 }  // namespace raypool

@@ -77,7 +77,7 @@ std::string percent_decoded(const std::string& uri) {
 }  // namespace
 
 GltfFile::GltfFile(const std::string& path) : path_(path) {
-  const std::string bytes = read_file(path, "glTF file");
+  const std::string bytes = read_text_file(path, "glTF file");
   if (bytes.empty()) throw InputError(path + ": the file is empty; export it again");
   json_ = parse_json(bytes.compare(0, 4, "glTF") == 0 ? read_binary(bytes) : bytes, path);
 }

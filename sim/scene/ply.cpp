@@ -68,6 +68,9 @@ class HeaderReader {
 
   Header read() {
     if (text_.empty()) throw InputError(path_ + ": the file is empty; export it again");
+    const size_t first_end = text_.find_first_of("\r\n");
+    if (first_end != std::string::npos && text_[first_end] == '\r' && text_.compare(first_end, 2, "\r\n") != 0)
+      line_end_ = '\r';
     std::string_view line = next_line();
     if (next_word(line) != "ply") fail("the file does not begin with 'ply': it is not a PLY file; check the path");
     bool has_format = false;
@@ -104,7 +107,7 @@ class HeaderReader {
     return text;
   }
   std::string_view next_line() {
-    const size_t begin = header_.end, found = text_.find('\n', begin);
+    const size_t begin = header_.end, found = text_.find(line_end_, begin);
     const size_t end = found == std::string::npos ? text_.size() : found;
     header_.end = std::min(end + 1, text_.size());
     ++header_.line;
@@ -157,6 +160,7 @@ class HeaderReader {
   const std::string& path_;
   const std::string& text_;
   Header header_;
+  char line_end_ = '\n';  // as the first line has it: the byte behind the header's last line may be any of binary data
 };
 
 /// The data behind the header, one value after the other.
@@ -422,7 +426,8 @@ class PlyReader {
 }  // namespace
 
 Scene load_ply(const std::string& path) {
-  const std::string data = read_file(path, "PLY file");
+  std::string data = read_text_file(path, "PLY file");
+  if (HeaderReader(path, data).read().format == Format::Text) use_line_feeds(data);
   Scene scene = PlyReader(path, data).read();
   weld_vertices(scene);
   check_scene(scene, path);

@@ -62,7 +62,7 @@ void change_view(View& view, const ViewChanges& changes) {
 }
 
 View load_view(const std::string& path) {
-  const Json json = parse_json(read_file(path, "view file"), path);
+  const Json json = parse_json(read_text_file(path, "view file"), path);
   if (!json.is_object()) throw InputError(path + ": a view file must be one JSON object, {\"eye\": ...}");
   refuse_unknown(json, {"eye", "direction", "target", "up", "fov", "light", "$schema"}, path);
 
