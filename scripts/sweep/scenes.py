@@ -5,7 +5,9 @@ import functools
 import json
 import lzma
 import os
+import re
 import shutil
+import urllib.parse
 
 from .errors import SweepError
 from .raypool import BUILD, ROOT
@@ -53,10 +55,8 @@ def unpacked(packed):
     try:
         os.makedirs(os.path.dirname(scene), exist_ok=True)
         copy(packed, scene, lzma.open)
-        for name in names_in(scene):
-            path = os.path.join(os.path.dirname(packed), name)
-            if os.path.isfile(path):
-                copy(path, os.path.join(os.path.dirname(scene), os.path.basename(name)), open)
+        for path in named_by(scene, os.path.dirname(packed)):
+            copy(path, os.path.join(os.path.dirname(scene), os.path.basename(path)), open)
     except (OSError, lzma.LZMAError, EOFError, ValueError) as error:
         raise SweepError(f"{packed}: cannot be unpacked into {os.path.dirname(scene)}: {error}") from error
     return scene
@@ -78,23 +78,38 @@ def copy(path, to, opened):
             os.unlink(part)
 
 
-def names_in(scene):
-    """The names that a scene's file gives of others: materials of an OBJ, buffers of a glTF."""
-    names = []
-    if scene.lower().endswith(".obj"):
-        with open(scene, encoding="utf-8", errors="replace") as file:
-            for line in file:
-                if line.startswith("mtllib"):
-                    # A name with spaces is one name, or several names.
-                    names += [line[6:].strip(), *line.split()[1:]]
-    elif scene.lower().endswith(".gltf"):
-        with open(scene, encoding="utf-8", errors="replace") as file:
-            names = [part.get("uri", "data:") for part in json.load(file).get("buffers", [])]
-    return [name for name in names if not name.startswith("data:")]
+def named_by(scene, folder):
+    """The files of a folder, or below it, that a scene's file may mean: materials of an OBJ, buffers of a glTF. It may
+    be more than raypool reads: a result only depends on those too, then."""
+    # Line continuations, whose ends may be those of Windows; utf-8-sig leaves out a byte order mark.
+    with open(scene, encoding="utf-8-sig", errors="surrogateescape") as file:
+        if scene.lower().endswith(".obj"):
+            libraries = re.findall(r"^\ufeff*[ \t]*mtllib[ \t]+(.*)", re.sub(r"\\[ \t]*\n", " ", file.read()), re.M)
+            names = [name for library in libraries for name in possible_names(library)]
+        elif scene.lower().endswith(".gltf"):
+            uris = [part.get("uri", "data:") for part in json.load(file).get("buffers", [])]
+            names = [urllib.parse.unquote(uri) for uri in uris if not uri.startswith("data:")]
+        else:
+            names = []
+    paths = set()
+    for name in names:
+        # Case does not matter, and a whole path of another machine may mean a file beside the scene.
+        for place in {name, name.replace("\\", "/"), re.split(r"[\\/]", name)[-1]}:
+            within, last = os.path.split(os.path.join(folder, place))
+            with contextlib.suppress(OSError):
+                same = [other for other in os.listdir(within or ".") if other.lower() == last.lower()]
+                paths |= {os.path.join(within, other) for other in same}
+    return sorted(path for path in paths if os.path.isfile(path))
+
+
+def possible_names(library):
+    """A line mtllib has one name, which may have blanks, or several: all words that stand next to each other."""
+    words = list(re.finditer(r"\S+", library))
+    spans = [(first.start(), last.end()) for at, first in enumerate(words) for last in words[at:]]
+    return [library[begin:end].strip('"') for begin, end in spans]
 
 
 @functools.lru_cache(maxsize=None)
 def files_of(scene):
     """The scene's file and those that it names."""
-    paths = {os.path.join(os.path.dirname(scene), name) for name in names_in(scene)}
-    return (scene, *sorted(path for path in paths if os.path.isfile(path)))
+    return (scene, *named_by(scene, os.path.dirname(scene)))

@@ -311,6 +311,23 @@ class Runs(SweepTest):
             self.run_sweep(document)
             self.assertEqual(len(self.starts()), 4)
 
+    def test_a_result_depends_on_libraries_however_they_are_named(self):
+        (self.folder / "sub").mkdir()
+        libraries = [self.folder / "sub/my colours.mtl", self.folder / "more.mtl"]
+        for library in libraries:
+            library.write_text("newmtl red\nKd 1 0 0\n")
+        named = "\ufeffmtllib sub\\My Colours.mtl \\\r\n C:\\hall\\more.mtl\r\n"
+        (self.folder / "hall.obj").write_text(named + HALL.replace("mtllib colours.mtl\n", ""))
+        document = {"base": {**TINY, "scene": "hall.obj"}}
+        self.run_sweep(document)
+        for number, library in enumerate(libraries, 2):
+            library.write_text("newmtl red\nKd 0 1 0\n")
+            self.run_sweep(document)
+            self.assertEqual(len(self.starts()), number)
+        # An experiment with a byte order mark is the same one.
+        self.run_sweep("\ufeff" + json.dumps(document))
+        self.assertEqual(len(self.starts()), number)
+
     def test_a_point_whose_program_was_changed_meanwhile_does_not_run(self):
         self.run_sweep({"base": TINY})
         (key,) = self.finished()

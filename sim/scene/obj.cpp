@@ -1,229 +1,294 @@
-// Wavefront OBJ in and out. tinyobjloader reads vertices and materials; before it, the file is scanned line by line,
-// because tinyobjloader takes malformed numbers for zero and drops faces it cannot resolve, both without a line number.
+// Wavefront OBJ in and out. What a file has wrong gets its line; names are looked up when all of it has been read,
+// since a library may stand behind the faces that use it.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <charconv>
-#include <cstdlib>
 #include <filesystem>
 #include <iterator>
 #include <map>
+#include <optional>
 #include <set>
-#include <sstream>
 #include <string_view>
 
-#define TINYOBJLOADER_IMPLEMENTATION
-#include <tiny_obj_loader.h>
-
 #include "bits.hpp"
-#include "files/input_file.hpp"
 #include "files/output_files.hpp"
+#include "scene/losses.hpp"
+#include "scene/mtl.hpp"
+#include "scene/obj_text.hpp"
 #include "scene/polygon.hpp"
 #include "scene/scene.hpp"
 
 namespace raypool {
 namespace {
 
-/// Calls visit(line number from 1, line without its end) for every line.
-template <typename Visit>
-void for_each_line(const std::string& text, Visit visit) {
-  size_t number = 1;
-  for (size_t start = 0; start < text.size(); ++number) {
-    size_t end = text.find('\n', start);
-    if (end == std::string::npos) end = text.size();
-    std::string_view line(text.data() + start, end - start);
-    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
-    visit(number, line);
-    start = end + 1;
-  }
-}
+namespace fs = std::filesystem;
 
-/// Takes the next word off the front of `line`; empty at its end.
-std::string_view next_word(std::string_view& line) {
-  const size_t start = line.find_first_not_of(" \t");
-  if (start == std::string_view::npos) return line = {};
-  const size_t end = std::min(line.find_first_of(" \t", start), line.size());
-  const std::string_view word = line.substr(start, end - start);
-  line.remove_prefix(end);
-  return word;
-}
-
-/// Reads a decimal number and nothing after it; the result may be infinite or NaN if the text says so.
-bool read_float(std::string_view word, float& value) {
-  if (!word.empty() && word.front() == '+') word.remove_prefix(1);
-  const auto result = std::from_chars(word.data(), word.data() + word.size(), value);
-  // Both the too large (becomes infinite) and the too small (harmless) are out of range.
-  if (result.ec == std::errc::result_out_of_range)
-    value = static_cast<float>(std::strtod(std::string(word).c_str(), nullptr));
-  return result.ec != std::errc::invalid_argument && result.ptr == word.data() + word.size();
-}
-
-[[noreturn]] void fail(const std::string& path, size_t line, const std::string& message) {
-  throw InputError(fmt::format("{}:{}: {}", path, line, message));
-}
-
-void check_numbers(const std::string& path, size_t number, std::string_view rest, const char* what, float low,
-                   float high) {
-  for (int i = 0; i < 3; ++i) {
-    const std::string_view word = next_word(rest);
-    float value = 0;
-    if (word.empty()) fail(path, number, fmt::format("{} has {} numbers; give three", what, i));
-    if (!read_float(word, value))
-      fail(path, number, fmt::format("'{}' in {} is not a number; give three numbers", word, what));
-    if (!(value >= low && value <= high)) {
-      fail(path, number,
-           fmt::format("{} has {}, which is not in {:g} .. {:g}; correct or rescale the file", what, word, low, high));
-    }
-  }
-}
-
-void check_mtl(const std::string& path) {
-  const std::string text = read_file(path, "material file");
-  for_each_line(text, [&](size_t number, std::string_view line) {
-    const std::string_view key = next_word(line);
-    if (key == "Kd") check_numbers(path, number, line, "colour Kd", 0, 1000);
-    if (key == "Ks") check_numbers(path, number, line, "colour Ks", 0, 1000);
-  });
-}
-
-/// Comments behind vertices and faces become blanks: tinyobjloader takes them for indices. In lines with longer
-/// keywords the character may belong to a name.
-void blank_comments(std::string& text) {
-  for (size_t place = text.find('#'); place != std::string::npos; place = text.find('#', place + 1)) {
-    const size_t before = place == 0 ? std::string::npos : text.rfind('\n', place - 1);
-    std::string_view line = std::string_view(text).substr(before == std::string::npos ? 0 : before + 1);
-    const std::string_view key = next_word(line);
-    if (key.size() > 2) continue;
-    for (; place < text.size() && text[place] != '\n' && text[place] != '\r'; ++place) text[place] = ' ';
-  }
-}
-
-/// The faces' corners, as indices of vertices from 0. tinyobjloader would fill a notch and lose corners beyond 255.
-struct Faces {
-  std::vector<uint32_t> corners;  // of all faces, one after the other
-  std::vector<size_t> begin{0};   // [face] its first corner; one more at the end
-  std::vector<size_t> lines;      // [face] of the file
+/// What of the faces and beside them is not drawn.
+struct ObjLosses {
+  size_t coloured_faces = 0, faces_with_normals = 0, points_and_lines = 0, free_forms = 0;
 };
 
-/// Refuses everything of the file that tinyobjloader would swallow or misread.
-Faces check_obj(const std::string& path, const std::string& text) {
-  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
-  Faces faces;
-  long vertices = 0, largest = 0;
-  size_t largest_line = 0;
-  for_each_line(text, [&](size_t number, std::string_view line) {
-    if (line.find('\0') != std::string_view::npos)
-      fail(path, number, "a zero byte: this is not an OBJ text file; check the path");
-    if (!line.empty() && line.back() == '\\')
-      fail(path, number, "line continuation by '\\' is not supported; join the lines");
-    const std::string_view key = next_word(line);
-    if (key == "v") {
-      check_numbers(path, number, line, "vertex", -kLargestCoordinate, kLargestCoordinate);
-      ++vertices;
-    } else if (key == "f") {
-      int corners = 0;
-      for (std::string_view word = next_word(line); !word.empty(); word = next_word(line), ++corners) {
-        const std::string_view digits = word.substr(0, word.find('/'));
-        long index = 0;
-        const auto result = std::from_chars(digits.data(), digits.data() + digits.size(), index);
-        if (result.ec != std::errc() || result.ptr != digits.data() + digits.size()) {
-          fail(path, number, fmt::format("'{}' is not a vertex index; give f 1 2 3 or f 1/2/3 ...", word));
-        }
-        if (index == 0 || -index > vertices) {
-          fail(path, number,
-               fmt::format("vertex index {} is out of range; {} vertices stand above this line, numbered from 1", index,
-                           vertices));
-        }
-        if (index > largest) largest = index, largest_line = number;
-        faces.corners.push_back(static_cast<uint32_t>(index > 0 ? index - 1 : vertices + index));
-      }
-      if (corners < 3) fail(path, number, fmt::format("a face of {} corners; give at least three", corners));
-      faces.begin.push_back(faces.corners.size());
-      faces.lines.push_back(number);
-    } else if (key == "mtllib") {
-      bool found = false;
-      std::string names(line);
-      for (std::string_view word = next_word(line); !word.empty() && !found; word = next_word(line)) {
-        const std::string file = (folder / std::string(word)).string();
-        found = std::filesystem::is_regular_file(file);
-        if (found) check_mtl(file);
-      }
-      if (!found) {
-        fail(path, number,
-             fmt::format(
-                 "material file{} is not in '{}'; put it there, under a name without blanks, or remove the line (faces "
-                 "are grey then)",
-                 names, folder.empty() ? "." : folder.string()));
+class ObjReader {
+ public:
+  explicit ObjReader(const std::string& path) : path_(path), text_(path, "OBJ file") {}
+
+  Scene read() {
+    for (ObjLine line; text_.next(line);) {
+      if (line.key == "v") {
+        add_vertex(line);
+      } else if (line.key == "f") {
+        add_face(line);
+      } else if (line.key == "usemtl") {
+        material_ = names_.emplace(line.rest, size32(names_)).first->second;
+      } else if (line.key == "mtllib") {
+        add_libraries(line);
+      } else if (line.key == "l" || line.key == "p") {
+        ++losses_.points_and_lines;
+      } else if (line.key == "curv" || line.key == "curv2" || line.key == "surf") {
+        ++losses_.free_forms;
       }
     }
-  });
-  if (largest > vertices) {
-    fail(path, largest_line,
-         fmt::format("vertex index {} is out of range; the file has {} vertices", largest, vertices));
+    check_faces();
+    scene_.name = fs::path(path_).stem().string();
+    add_triangles();
+    tell();
+    return std::move(scene_);
   }
-  if (faces.lines.empty())
-    throw InputError(path + ": the file has no faces (lines that begin with f); nothing can be rendered");
-  return faces;
-}
 
-/// Negative materials are none.
-void add_triangles(Scene& scene, const std::string& path, const Faces& faces, const std::vector<int>& materials) {
-  const auto grey = size32(scene.materials);
-  std::map<PolygonShape, std::vector<size_t>> lines;
-  for (size_t face = 0; face < materials.size(); ++face) {
-    const size_t begin = faces.begin[face];
-    const PolygonShape shape =
-        triangulate(scene.vertices, &faces.corners[begin], faces.begin[face + 1] - begin, scene.triangles);
-    if (shape != PolygonShape::Flat) lines[shape].push_back(faces.lines[face]);
-    scene.triangle_materials.resize(scene.triangles.size(),
-                                    materials[face] < 0 ? grey : static_cast<uint32_t>(materials[face]));
-  }
-  if (std::any_of(materials.begin(), materials.end(), [](int material) { return material < 0; })) {
-    scene.materials.push_back({"default_grey", {0.5f, 0.5f, 0.5f}, {0, 0, 0}});
-  }
-  warn_of_faces(scene.warnings, lines, [&](size_t line) { return fmt::format("{}:{}: the face", path, line); });
-}
+ private:
+  struct Corner {
+    uint32_t vertex;
+    bool normal;
+  };
+  struct Missing {
+    size_t line;
+    std::string name;
+  };
+  static constexpr uint32_t kNone = ~uint32_t{0};
 
-Vec3 to_vec3(const tinyobj::real_t* v) {
-  return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
-}
+  void add_vertex(const ObjLine& line) {
+    const std::vector<std::string_view> words = words_of(line.rest);
+    if (words.size() < 3) text_.fail(line, fmt::format("vertex has {} numbers; give three", words.size()));
+    Vec3 p;
+    for (size_t i = 0; i < 3; ++i) {
+      p[static_cast<int>(i)] = number_of(text_, line, words[i], "vertex", -kLargestCoordinate, kLargestCoordinate);
+    }
+    scene_.vertices.push_back(p);
+    // A colour stands behind the place, or behind its weight.
+    coloured_.push_back(words.size() >= 6);
+  }
+
+  /// v, v/t, v//n or v/t/n; the numbers behind the first may be left out.
+  bool add_corner(const ObjLine& line, std::string_view word) {
+    std::array<std::string_view, 3> parts;
+    size_t count = 0;
+    for (std::string_view rest = word;; ++count) {
+      const size_t slash = rest.find('/');
+      if (count == parts.size()) refuse_corner(line, word);
+      parts[count] = rest.substr(0, slash);
+      if (slash == std::string_view::npos) break;
+      rest.remove_prefix(slash + 1);
+    }
+    std::array<long, 3> indices{};
+    for (size_t i = 0; i < parts.size(); ++i) {
+      std::string_view digits = parts[i];
+      if (digits.empty() && i > 0) continue;
+      if (!digits.empty() && digits.front() == '+') digits.remove_prefix(1);
+      const auto result = std::from_chars(digits.data(), digits.data() + digits.size(), indices[i]);
+      if (result.ec != std::errc() || result.ptr != digits.data() + digits.size()) refuse_corner(line, word);
+    }
+    const long index = indices[0], vertices = static_cast<long>(scene_.vertices.size());
+    if (index == 0 || -index > vertices) {
+      text_.fail(line,
+                 fmt::format("vertex index {} is out of range; {} vertices stand above this line, numbered from 1",
+                             index, vertices));
+    }
+    if (index > largest_) largest_ = index, largest_line_ = line.number;
+    corners_.push_back(static_cast<uint32_t>(index > 0 ? index - 1 : vertices + index));
+    return indices[2] != 0;
+  }
+  [[noreturn]] void refuse_corner(const ObjLine& line, std::string_view word) const {
+    text_.fail(line,
+               fmt::format("'{}' is not a corner of a face; give f 1 2 3, f 1/2 ..., f 1//3 ... or f 1/2/3 ...", word));
+  }
+
+  void add_face(const ObjLine& line) {
+    bool normals = false;
+    std::string_view rest = line.rest;
+    for (std::string_view word = next_word(rest); !word.empty(); word = next_word(rest))
+      normals = add_corner(line, word) || normals;
+    const size_t corners = corners_.size() - begin_.back();
+    if (corners < 3) text_.fail(line, fmt::format("a face of {} corners; give at least three", corners));
+    begin_.push_back(corners_.size());
+    lines_.push_back(line.number);
+    materials_of_.push_back(material_);
+    losses_.faces_with_normals += normals;
+  }
+
+  /// The path of a library as the file names it; empty: it is nowhere. Exporters of Windows write "\" between folders,
+  /// whole paths of the machine that they ran on, and do not mind upper and lower case.
+  std::string find_library(std::string name) const {
+    const fs::path folder = fs::path(path_).parent_path();
+    const auto is_file = [](const fs::path& path) {
+      std::error_code none;
+      return fs::is_regular_file(path, none);
+    };
+    if (is_file(folder / name)) return (folder / name).string();
+    std::replace(name.begin(), name.end(), '\\', '/');
+    const fs::path own = folder / name, beside = folder / fs::path(name).filename();
+    for (const fs::path& path : {own, beside}) {
+      if (is_file(path)) return path.string();
+      std::error_code none;
+      for (fs::directory_iterator entry(path.parent_path().empty() ? "." : path.parent_path(), none), end;
+           !none && entry != end; entry.increment(none)) {
+        if (lower(entry->path().filename().string()) == lower(path.filename().string()) && is_file(entry->path()))
+          return (path.parent_path() / entry->path().filename()).string();
+      }
+    }
+    return "";
+  }
+  static std::string lower(std::string text) {
+    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+    return text;
+  }
+  bool read_library(std::string name) {
+    if (name.size() > 2 && name.front() == '"' && name.back() == '"') name = name.substr(1, name.size() - 2);
+    const std::string path = name.empty() ? "" : find_library(name);
+    if (path.empty()) return false;
+    if (libraries_.insert(path).second) read_mtl(path, materials_);
+    return true;
+  }
+
+  /// One name, which may have blanks, or several: of words that are next to each other the most that name a file.
+  void add_libraries(const ObjLine& line) {
+    std::vector<std::string_view> words = words_of(line.rest);
+    std::string missing;
+    const auto miss = [&] {
+      if (!missing.empty()) missing_libraries_.push_back({line.number, missing});
+      missing.clear();
+    };
+    for (size_t i = 0; i < words.size();) {
+      size_t end = words.size();
+      const auto name = [&] {
+        const char* const first = words[i].data();
+        return std::string(first, words[end - 1].data() + words[end - 1].size());
+      };
+      while (end > i && !read_library(name())) --end;
+      if (end > i) {
+        miss();
+        i = end;
+        continue;
+      }
+      if (words[i].front() == '#') break;
+      missing += (missing.empty() ? "" : " ") + std::string(words[i++]);
+      if (lower(fs::path(missing).extension().string()) == ".mtl") miss();
+    }
+    miss();
+  }
+
+  void check_faces() const {
+    const auto vertices = static_cast<long>(scene_.vertices.size());
+    if (largest_ > vertices) {
+      ObjLine line;
+      line.number = largest_line_;
+      text_.fail(line, fmt::format("vertex index {} is out of range; the file has {} vertices", largest_, vertices));
+    }
+    if (lines_.empty())
+      throw InputError(path_ + ": the file has no faces (lines that begin with f); nothing can be rendered");
+  }
+
+  /// A name as the library has it, or before what looks like a comment behind it, or its first word.
+  static std::vector<std::string_view> readings(std::string_view name) {
+    std::string_view rest = name;
+    return {name, trimmed(name.substr(0, name.find(" #"))), next_word(rest)};
+  }
+
+  /// [name] The first material of it; the grey if there is none.
+  std::vector<uint32_t> find_materials() {
+    std::map<std::string_view, uint32_t> first;
+    for (uint32_t i = 0; i < materials_.size(); ++i) first.emplace(materials_[i].name, i);
+    std::vector<uint32_t> result(names_.size(), size32(materials_));
+    for (const auto& [name, number] : names_) {
+      bool found = name.empty();
+      for (const std::string_view reading : readings(name)) {
+        const auto material = first.find(reading);
+        if (material == first.end()) continue;
+        result[number] = material->second;
+        found = true;
+        break;
+      }
+      if (!found) unknown_.push_back(name);
+    }
+    return result;
+  }
+
+  void add_triangles() {
+    const auto grey = size32(materials_);
+    for (const MtlMaterial& material : materials_) scene_.materials.push_back(material.material());
+    const std::vector<uint32_t> material_of = find_materials();
+    used_.resize(materials_.size() + 1);
+    std::map<PolygonShape, std::vector<size_t>> odd;
+    for (size_t face = 0; face < lines_.size(); ++face) {
+      const size_t begin = begin_[face], end = begin_[face + 1];
+      const PolygonShape shape = triangulate(scene_.vertices, &corners_[begin], end - begin, scene_.triangles);
+      if (shape != PolygonShape::Flat) odd[shape].push_back(lines_[face]);
+      const uint32_t material = materials_of_[face] == kNone ? grey : material_of[materials_of_[face]];
+      scene_.triangle_materials.resize(scene_.triangles.size(), material);
+      used_[material] = true;
+      losses_.coloured_faces += std::any_of(&corners_[begin], &corners_[begin] + (end - begin),
+                                            [this](uint32_t corner) { return coloured_[corner]; });
+    }
+    if (used_[grey]) scene_.materials.push_back({"default_grey", {0.5f, 0.5f, 0.5f}, {0, 0, 0}});
+    warn_of_faces(scene_.warnings, odd, [&](size_t line) { return fmt::format("{}:{}: the face", path_, line); });
+  }
+
+  void tell() {
+    std::vector<std::string>& warnings = scene_.warnings;
+    const auto more = [](size_t count) { return count == 1 ? "" : fmt::format(" (and {} more)", count - 1); };
+    if (!missing_libraries_.empty()) {
+      const fs::path folder = fs::path(path_).parent_path();
+      warnings.push_back(
+          fmt::format("{}:{}: material file '{}'{} is not in '{}': what has its materials is grey; put it there", path_,
+                      missing_libraries_.front().line, missing_libraries_.front().name, more(missing_libraries_.size()),
+                      folder.empty() ? "." : folder.string()));
+    } else if (!unknown_.empty()) {
+      warnings.push_back(fmt::format("{}: material '{}'{} is in no material file: what has it is grey", path_,
+                                     unknown_.front(), more(unknown_.size())));
+    }
+    tell_of_materials(warnings, path_, materials_, used_);
+    tell_loss(warnings, path_, losses_.coloured_faces, "face", Loss::VertexColours);
+    tell_loss(warnings, path_, losses_.faces_with_normals, "face", Loss::VertexNormals);
+    tell_loss(warnings, path_, losses_.points_and_lines, "element", Loss::PointsOrLines);
+    tell_count(warnings, path_, losses_.free_forms, "free-form curve or surface", "not drawn", "not drawn");
+  }
+
+  const std::string& path_;
+  ObjText text_;
+  Scene scene_;
+  ObjLosses losses_;
+  std::vector<bool> coloured_;             // [vertex]
+  std::vector<uint32_t> corners_;          // of all faces, one after the other
+  std::vector<size_t> begin_{0};           // [face] its first corner; one more at the end
+  std::vector<size_t> lines_;              // [face] of the file
+  std::vector<uint32_t> materials_of_;     // [face] number in names_, or kNone
+  std::map<std::string, uint32_t> names_;  // of materials, as usemtl has them
+  uint32_t material_ = kNone;              // of the faces that follow
+  long largest_ = 0;                       // index of a vertex
+  size_t largest_line_ = 0;
+  std::set<std::string> libraries_;  // that have been read
+  std::vector<MtlMaterial> materials_;
+  std::vector<bool> used_;  // [material] by a triangle; the last one is the grey
+  std::vector<Missing> missing_libraries_;
+  std::vector<std::string> unknown_;  // materials that no library has
+};
 
 }  // namespace
 
 Scene load_obj(const std::string& path) {
-  std::string text = read_file(path, "OBJ file");
-  blank_comments(text);
-  const Faces faces = check_obj(path, text);
-
-  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
-  tinyobj::attrib_t attributes;
-  std::vector<tinyobj::shape_t> shapes;
-  std::vector<tinyobj::material_t> materials;
-  std::string warning, error;
-  std::istringstream stream(text);
-  tinyobj::MaterialFileReader material_reader(folder.empty() ? "." : folder.string());
-  if (!tinyobj::LoadObj(&attributes, &shapes, &materials, &warning, &error, &stream, &material_reader, false, false)) {
-    while (!error.empty() && (error.back() == '\n' || error.back() == ' ')) error.pop_back();
-    throw InputError(fmt::format("{}: not a readable OBJ file ({}); correct it", path, error));
-  }
-
-  Scene scene;
-  scene.name = std::filesystem::path(path).stem().string();
-  scene.vertices.resize(attributes.vertices.size() / 3);
-  for (size_t i = 0; i < scene.vertices.size(); ++i) scene.vertices[i] = to_vec3(&attributes.vertices[3 * i]);
-  for (const tinyobj::material_t& material : materials) {
-    scene.materials.push_back({material.name, to_vec3(material.diffuse), to_vec3(material.specular)});
-  }
-  std::vector<int> face_materials;
-  for (const tinyobj::shape_t& shape : shapes) {
-    face_materials.insert(face_materials.end(), shape.mesh.material_ids.begin(), shape.mesh.material_ids.end());
-  }
-  if (face_materials.size() != faces.lines.size()) {
-    throw InputError(fmt::format("{}: not a readable OBJ file ({} of {} faces were read); correct it", path,
-                                 face_materials.size(), faces.lines.size()));
-  }
-  add_triangles(scene, path, faces, face_materials);
-
+  Scene scene = ObjReader(path).read();
   check_scene(scene, path);
   return scene;
 }
@@ -253,8 +318,8 @@ void write_obj(const Scene& scene, const std::string& path) {
   fmt::memory_buffer mtl, obj;
   for (size_t i = 0; i < names.size(); ++i) {
     const Material& m = scene.materials[i];
-    fmt::format_to(std::back_inserter(mtl), "newmtl {}\nKd {} {} {}\nKs {} {} {}\n", names[i], m.kd.x, m.kd.y, m.kd.z,
-                   m.ks.x, m.ks.y, m.ks.z);
+    fmt::format_to(std::back_inserter(mtl), "newmtl {}\nKd {} {} {}\nKs {} {} {}\n{}", names[i], m.kd.x, m.kd.y, m.kd.z,
+                   m.ks.x, m.ks.y, m.ks.z, m.reflects() ? "illum 3\n" : "");
   }
   fmt::format_to(std::back_inserter(obj), "# {}: {} vertices, {} triangles\nmtllib {}\n", scene.name,
                  scene.vertices.size(), scene.triangles.size(), mtl_name);

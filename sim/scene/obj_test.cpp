@@ -127,10 +127,8 @@ TEST_F(Obj, ErrorsNameFileAndLine) {
   expect_error(kTriangle + "f 1 2 -4\n", "a.obj:4:", "-4");
   expect_error(kTriangle + "f 1 2 x\n", "a.obj:4:", "x");
   expect_error(kTriangle + "f 1 2\n", "a.obj:4:", "at least three");
-  expect_error(kTriangle + "f 1 2 \\\n3\n", "a.obj:4:", "join");
   expect_error(kTriangle, "a.obj:", "no faces");
   expect_error("", "a.obj:", "no faces");
-  expect_error("mtllib none.mtl\n" + kTriangle + "f 1 2 3\n", "a.obj:1:", "none.mtl");
   EXPECT_EQ(error_of(kTriangle + "v 1e-60 +1.5 -0\nf 1 2 3 # text\n"), "");
 }
 

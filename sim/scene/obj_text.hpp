@@ -1,0 +1,46 @@
+// The text of OBJ and MTL files: lines, words and numbers, with the sentence about one that is wrong.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace raypool {
+
+/// A statement: a line, with those joined to it that a "\" at its end continues it on; in their place is a blank.
+struct ObjLine {
+  size_t number = 0;  ///< of its first line in the file, from 1
+  std::string_view key;
+  std::string_view rest;  ///< behind the key, without blanks at either end
+};
+
+class ObjText {
+ public:
+  /// `what` names the file in sentences: "OBJ file". Throws InputError.
+  ObjText(const std::string& path, const std::string& what);
+  /// Takes the next statement that has a key and is no comment; false behind the last one. What it points to lasts
+  /// until the next call. A comment behind the values of a key of one or two letters is left out; behind longer keys it
+  /// may be part of a name.
+  bool next(ObjLine& line);
+  const std::string& path() const { return path_; }
+  [[noreturn]] void fail(const ObjLine& line, const std::string& message) const;
+
+ private:
+  std::string_view next_line();
+
+  std::string path_, text_, joined_;
+  size_t place_ = 0, number_ = 0;
+};
+
+/// Takes the next word off the front of `text`; empty at its end.
+std::string_view next_word(std::string_view& text);
+std::vector<std::string_view> words_of(std::string_view text);
+std::string_view trimmed(std::string_view text);
+
+/// Reads a decimal number and nothing after it; the result may be infinite or NaN if the text says so.
+bool read_float(std::string_view word, float& value);
+/// The same as part of `line`, within low .. high; `what` begins the sentence if it is not: "vertex".
+float number_of(const ObjText& text, const ObjLine& line, std::string_view word, const char* what, float low,
+                float high);
+
+}  // namespace raypool
