@@ -34,7 +34,7 @@ std::optional<size_t> number_in(const aiString& text) {
 /// What Assimp may open: the document's geometry and its buffers, all in memory.
 class GltfMemory : public Assimp::IOSystem {
  public:
-  GltfMemory(const GltfFile& file, const GltfDocument& document) : file_(file), document_(document) {}
+  explicit GltfMemory(const GltfDocument& document) : document_(document) {}
 
   bool Exists(const char* name) const override { return find(name) != nullptr; }
   char getOsSeparator() const override { return '/'; }
@@ -49,11 +49,9 @@ class GltfMemory : public Assimp::IOSystem {
   const std::string* find(const char* name) const {
     if (std::strcmp(name, kGeometryName) == 0) return &document_.geometry;
     const std::optional<size_t> index = number_in(aiString(name));
-    const auto found = index ? file_.buffers().find(*index) : file_.buffers().end();
-    return found == file_.buffers().end() ? nullptr : &found->second;
+    return index && *index < document_.buffers.size() ? &document_.buffers[*index] : nullptr;
   }
 
-  const GltfFile& file_;
   const GltfDocument& document_;
 };
 
@@ -81,10 +79,15 @@ class Assembler {
 
   void add(const aiNode& node, const Transform& above) {
     const Transform here = above * to_transform(node.mTransformation);
-    for (unsigned i = 0; i < node.mNumMeshes; ++i) add(*source_.mMeshes[node.mMeshes[i]], here);
     // The root above several nodes is Assimp's own, without a number.
     if (const std::optional<size_t> number = number_in(node.mName)) {
       const GltfNode& content = document_.nodes.at(*number);
+      const Transform place = content.skinned ? Transform() : here;
+      for (unsigned i = 0; i < node.mNumMeshes; ++i) {
+        const aiMesh& mesh = *source_.mMeshes[node.mMeshes[i]];
+        if (content.instances.empty()) add(mesh, place);
+        for (const Transform& instance : content.instances) add(mesh, place * instance);
+      }
       if (content.camera) result_.cameras.push_back({*content.camera, content.name, here});
       if (content.light) result_.lights.push_back({*content.light, content.name, here});
     }
@@ -124,16 +127,16 @@ class Assembler {
   Assembly& result_;
 };
 
-Assembly assemble(const GltfFile& file, const GltfDocument& document) {
+Assembly assemble(const std::string& path, const GltfDocument& document) {
   Assimp::Importer importer;
-  importer.SetIOHandler(new GltfMemory(file, document));
+  importer.SetIOHandler(new GltfMemory(document));
   const aiScene* source = importer.ReadFile(kGeometryName, 0);
   if (source == nullptr) {
     throw InputError(
-        fmt::format("{}: not a readable glTF file ({}); export it again", file.path(), importer.GetErrorString()));
+        fmt::format("{}: not a readable glTF file ({}); export it again", path, importer.GetErrorString()));
   }
   Assembly result;
-  result.scene.name = std::filesystem::path(file.path()).stem().string();
+  result.scene.name = std::filesystem::path(path).stem().string();
   result.scene.materials = document.materials;
   Assembler(*source, document, result).add(*source->mRootNode, {});
   return result;
@@ -221,9 +224,8 @@ std::optional<PointLight> choose_light(const std::string& path, const GltfDocume
 }  // namespace
 
 SceneFile load_gltf(const std::string& path, const std::string& camera) {
-  GltfFile file(path);
-  const GltfDocument document = read_gltf_document(file);
-  Assembly assembly = assemble(file, document);
+  const GltfDocument document = read_gltf_document(path);
+  Assembly assembly = assemble(path, document);
   SceneFile result;
   result.scene = std::move(assembly.scene);
   result.scene.warnings = document.warnings;

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "scene/gltf_file.hpp"
+#include "scene/losses.hpp"
+#include "scene/mesh_builder.hpp"
 #include "scene/scene.hpp"
 
 namespace raypool {
@@ -26,13 +28,16 @@ struct GltfLight {
 struct GltfNode {
   std::string name;
   std::optional<size_t> camera, light;
+  std::vector<Transform> instances;  ///< in the node, of its mesh; empty: it is there once
+  bool skinned = false;              ///< the mesh stands where its joints have it: no node above it counts
 };
 
 struct GltfDocument {
-  /// glTF with the geometry alone, for Assimp: every accessor lies within its buffer, every index within its
-  /// positions, every position is finite; nodes and materials are named by their place in `nodes` and `materials`.
-  /// The uri of a buffer is its number in the file.
+  /// glTF with the geometry alone, for Assimp: positions are floats, where morph targets and joints have them, and
+  /// finite; indices are within them. Nodes and materials are named by their place in `nodes` and `materials`, buffers
+  /// by theirs in `buffers`.
   std::string geometry;
+  std::vector<std::string> buffers;
   std::vector<GltfNode> nodes;
   std::vector<Material> materials;
   std::vector<GltfCamera> cameras;
@@ -40,15 +45,10 @@ struct GltfDocument {
   std::vector<std::string> warnings;
 };
 
-/// Loads the buffers that the geometry needs. Throws InputError naming file, place and what to do.
-GltfDocument read_gltf_document(GltfFile& file);
-
-/// What of materials has no counterpart here: in how many of them.
-struct GltfMaterialLosses {
-  size_t textures = 0, emissive = 0, transparent = 0, extensions = 0;
-};
+/// Throws InputError naming file, place and what to do.
+GltfDocument read_gltf_document(const std::string& path);
 
 /// The rule of docs/scenes.md, "glTF files".
-Material read_gltf_material(const JsonPlace& place, size_t index, GltfMaterialLosses& losses);
+Material read_gltf_material(const JsonPlace& place, size_t index, MaterialLosses& losses);
 
 }  // namespace raypool

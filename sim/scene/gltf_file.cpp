@@ -95,11 +95,20 @@ std::string GltfFile::read_binary(const std::string& bytes) {
   }
   const uint64_t length = word_at(bytes, 8);
   if (length > bytes.size()) throw cut_off(length);
+  // All of the file is there, and its header or a chunk says something else.
+  const auto contradicts = [&](uint64_t end) {
+    return InputError(
+        fmt::format("{}: its chunks go to byte {}, but its header says that the file has {} bytes, and it "
+                    "has {}; export it again",
+                    path_, end, length, bytes.size()));
+  };
+  if (length < kHeaderBytes + kChunkHeaderBytes) throw contradicts(kHeaderBytes + kChunkHeaderBytes);
   std::string text;
   for (uint64_t place = kHeaderBytes; place + kChunkHeaderBytes <= length;) {
     const uint64_t size = word_at(bytes, place), begin = place + kChunkHeaderBytes;
     const uint32_t type = word_at(bytes, place + 4);
-    if (begin + size > length) throw cut_off(begin + size);
+    if (begin + size > bytes.size()) throw cut_off(begin + size);
+    if (begin + size > length) throw contradicts(begin + size);
     if (place == kHeaderBytes) {
       if (type != kJsonChunk) throw InputError(path_ + ": its first chunk is not JSON; export it as glTF 2.0");
       text = bytes.substr(begin, size);
@@ -141,7 +150,6 @@ const std::string& GltfFile::buffer(const JsonPlace& place, size_t index) {
                            bytes.size(), length));
   }
   bytes.resize(length);
-  bytes.resize(length + kPadding, '\0');
   return buffers_.emplace(index, std::move(bytes)).first->second;
 }
 

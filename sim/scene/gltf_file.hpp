@@ -20,11 +20,8 @@ class GltfFile {
   const std::string& path() const { return path_; }
   JsonPlace root() const { return {json_, path_}; }
   /// The bytes of a buffer, whose place in the document is given: from a file beside this one, a data URI or the binary
-  /// chunk. Its byteLength, and kPadding zeros, so that there is a whole stride for the last of interleaved elements.
+  /// chunk. As many as its byteLength says.
   const std::string& buffer(const JsonPlace& place, size_t index);
-  /// Of those that have been asked for.
-  const std::map<size_t, std::string>& buffers() const { return buffers_; }
-  static constexpr size_t kPadding = 256;
 
  private:
   std::string read_binary(const std::string& bytes);

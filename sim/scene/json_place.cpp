@@ -66,6 +66,11 @@ double JsonPlace::number(double least, double largest) const {
   refuse(fmt::format("a number in {:g} .. {:g}", least, largest));
 }
 
+bool JsonPlace::flag() const {
+  if (!json_->is_boolean()) refuse("true or false");
+  return json_->get<bool>();
+}
+
 std::string JsonPlace::text() const {
   if (!json_->is_string()) refuse("a text, \"...\"");
   auto text = json_->get<std::string>();

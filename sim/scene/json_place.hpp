@@ -27,6 +27,7 @@ class JsonPlace {
 
   uint64_t whole(uint64_t least, uint64_t largest) const;
   double number(double least, double largest) const;
+  bool flag() const;
   /// Control characters, which would spoil a line of output, become blanks.
   std::string text() const;
 

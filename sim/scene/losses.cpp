@@ -36,6 +36,8 @@ void tell_losses(std::vector<std::string>& warnings, const std::string& path, co
   tell_loss(warnings, path, losses.emissive, "material", Loss::Emission);
   tell_loss(warnings, path, losses.transparent, "material", Loss::Transparency);
   tell_loss(warnings, path, losses.extensions, "material", Loss::MaterialExtensions);
+  tell_count(warnings, path, losses.beyond, "material", "with factors beyond 0 .. 1, of which the nearest is taken",
+             "with factors beyond 0 .. 1, of which the nearest are taken");
 }
 
 }  // namespace raypool

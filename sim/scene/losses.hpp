@@ -31,6 +31,7 @@ void tell_count(std::vector<std::string>& warnings, const std::string& path, siz
 /// What of materials has no counterpart here: in how many of those that are drawn.
 struct MaterialLosses {
   size_t textures = 0, emissive = 0, transparent = 0, extensions = 0;
+  size_t beyond = 0;  ///< 0 .. 1, where a number must lie within
 };
 void tell_losses(std::vector<std::string>& warnings, const std::string& path, const MaterialLosses& losses);
 
