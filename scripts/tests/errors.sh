@@ -214,6 +214,9 @@ warns() {
 printf 'v 0 0 0\nv 1 1 0\nv 1 0 0\nv 0 1 0\nf 1 2 3 4\n' > "$folder/crossing.obj"
 warns "eye that sees nothing" "all black: no ray from the eye hits" "${sim[@]}" --scene "$folder/good.obj" --eye 0,0,5 \
   --look-at 0,0,9
+printf 'v 0 0 0\nv 1 1 0\nv 2 2 0\nf 1 2 3\nf 2 2 2\n' > "$folder/line.obj"
+warns "triangles without area, and no view" "all black: no triangle of the scene has an area" "${sim[@]}" \
+  --scene "$folder/line.obj"
 warns "light behind the walls" "all black: no light reaches" "${sim[@]}" --scene cornell --light 0,1000,0
 warns "face that crosses itself" "crossing.obj:5: the face crosses itself" "${sim[@]}" --scene "$folder/crossing.obj"
 

@@ -5,10 +5,14 @@
 
 #include "scene/image.hpp"
 #include "scene/ray_counts.hpp"
+#include "scene/scene.hpp"
 
 namespace raypool {
 
+/// Who has chosen where the eye is.
+enum class EyeOf { User, File, Automatic };
+
 /// A sentence with what to try; empty unless every pixel of the PNG is black.
-std::string why_black(const FrameBuffer& frame, const RayCounts& rays);
+std::string why_black(const FrameBuffer& frame, const RayCounts& rays, const Scene& scene, EyeOf eye);
 
 }  // namespace raypool

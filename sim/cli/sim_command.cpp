@@ -291,6 +291,11 @@ FrameBuffer draw_sampled_frame(const SimOptions& options, RunRecord& record, con
   return frame;
 }
 
+EyeOf eye_of(const SimOptions& options, const Scene& scene) {
+  if (!options.view.empty() || !options.look.eye.empty() || !options.look.look_at.empty()) return EyeOf::User;
+  return scene.cameras.empty() ? EyeOf::Automatic : EyeOf::File;
+}
+
 void print_modules(const SimOptions& options, Engine engine, const RunRecord& record, const Scene& scene,
                    MemoryImage& image) {
   const std::unique_ptr<ComputeUnit> device = make_device(options, engine, record, image);
@@ -346,7 +351,8 @@ int sim_command(const SimOptions& options) {
   const std::string report = to_json(record);
   out.write("report.json", report);
   out.publish();
-  const std::string black = why_black(frame, record.chip ? record.chip->ray_counts : record.native->ray_counts);
+  const std::string black = why_black(frame, record.chip ? record.chip->ray_counts : record.native->ray_counts, scene,
+                                      eye_of(options, scene));
   if (!black.empty()) std::fprintf(stderr, "raypool: warning: %s\n", black.c_str());
   if (options.json) {
     fmt::print("{}", report);

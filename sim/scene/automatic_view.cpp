@@ -1,14 +1,16 @@
-// A view of triangles of which nothing is known: cameras around them and, where they enclose something, among them are
-// tried with a few rays each, and the one that shows most is taken; then lights. docs/scenes.md describes the rule.
-// Nothing here depends on the machine: no thread, no clock, and scores are rounded before they are compared.
+// A view of triangles of which nothing is known: cameras around their subject and, in an interior, among them are tried
+// with a few rays each, and the one that shows most is taken; then lights. docs/scenes.md describes the rule. Scores
+// are rounded before they are compared, so that every machine chooses the same.
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 #include <tuple>
 
-#include "scene/scene.hpp"
-#include "scene/traversal.hpp"
+#include "scene/automatic_light.hpp"
+#include "scene/enclosure.hpp"
+#include "scene/scene_probe.hpp"
+#include "scene/subject.hpp"
 
 namespace raypool {
 namespace {
@@ -17,12 +19,13 @@ constexpr double kInsideFov = 60, kOutsideFov = 40;
 constexpr double kNear = 1.0;      // of the box's middle side: what is nearer counts less, down to nothing at the eye
 constexpr double kBackSide = 0.5;  // what a surface's back counts, its front being 1
 constexpr double kAmong = 0.85;    // what a view from among the triangles counts: less of the whole is in it
-constexpr double kLeastEnclosed = 0.7;  // of the directions from a place among the triangles
-constexpr double kLeastContent = 0.08;  // of what places see: surfaces that are hidden from outside on either side
-constexpr double kLeastFront = 0.9;     // of what places see, in a box with nothing in it
-constexpr double kLitEnough = 0.6;      // of what the eye sees
+constexpr double kWide = 0.9;      // what a wider angle counts, each step of kWiderFovs
+constexpr double kDeep = 0.25;     // of the distance of the subject's far side: as far away its near side should be
+constexpr double kMargin = 1.04;   // of the picture, around what must be in it
+constexpr double kWideMargin = 1.15;                         // the same where there is more around it
+constexpr std::array<double, 3> kWiderFovs = {60, 85, 110};  // where the eye has no room for kOutsideFov
 
-/// Where the places of camera and light are counted from.
+/// Where the places of the camera are counted from.
 struct Axes {
   Vec3d right, up, back;
 };
@@ -46,47 +49,31 @@ Vec3d direction(const Axes& axes, int step, double slope) {
   return normalized(axes.right * sine(step) + axes.back * sine(step + 4) + axes.up * slope);
 }
 
-/// The 26 directions to a cube's corners, edges and sides.
-std::vector<Vec3d> all_around() {
-  std::vector<Vec3d> directions;
-  for (int i = 0; i < 27; ++i) {
-    if (i != 13) directions.push_back(normalized(Vec3d{i % 3 - 1.0, i / 3 % 3 - 1.0, i / 9 - 1.0}));
-  }
-  return directions;
+bool within_reach(const Vec3d& eye) {
+  return std::max({std::fabs(eye.x), std::fabs(eye.y), std::fabs(eye.z)}) <= kLargestCoordinate;
 }
-
-struct Sample {
-  Vec3d point, normal;  // the normal turned towards the eye
-  double distance;
-  bool front;
-  uint32_t material;
-};
 
 class Viewfinder {
  public:
   Viewfinder(const Scene& scene, const ViewChanges& changes)
-      : scene_(scene),
-        changes_(changes),
-        bounds_(scene.bounds()),
-        lower_(bounds_.lower.as<double>()),
-        extent_(bounds_.upper.as<double>() - lower_),
-        diagonal_(std::max(length(extent_), 1e-6)),
+      : changes_(changes),
+        probe_(scene),
         axes_(axes_of(changes.up.value_or(Vec3{0, 1, 0}))),
-        traversal_(scene) {
-    for (const int axis : {0, 1, 2}) {
-      if (std::fabs(axes_.up[axis]) > std::fabs(axes_.up[vertical_])) vertical_ = axis;
-    }
-    const double largest = std::max({extent_.x, extent_.y, extent_.z}),
-                 least = std::min({extent_.x, extent_.y, extent_.z});
-    near_ = std::max(kNear * (extent_.x + extent_.y + extent_.z - largest - least), 1e-3 * diagonal_);
-    const int a = (vertical_ + 1) % 3, b = (vertical_ + 2) % 3;
-    along_ = extent_[a] >= extent_[b] ? a : b;
+        room_(probe_.bounds(), axes_.up),
+        shells_(shells_of(scene)),
+        subject_(find_subject(scene, shells_)) {
+    if (subject_.vertices.empty()) subject_.box = room_.box();
+    near_ = std::max(kNear * subject_.box.nth_extent(1), 1e-3 * length(subject_.box.extent()));
   }
 
   View find() {
     View view;
     view.camera = best_camera();
-    if (!changes_.light) view.light.position = light(view.camera);
+    if (changes_.light) return view;
+    const Vec3d eye = view.camera.eye.as<double>();
+    const bool inside = room_.contains(eye) && !subject_.has_surroundings;
+    const double distance = inside ? 0.5 * room_.box().nth_extent(2) : length(subject_.box.centre() - eye);
+    view.light.position = automatic_light(probe_, view.camera, distance, inside ? &room_ : nullptr);
     return view;
   }
 
@@ -97,67 +84,30 @@ class Viewfinder {
     double score = 0;
   };
 
-  /// From 0 to 1 on each axis of the box.
-  Vec3d place(double along, double height, double across) const {
-    Vec3d share;
-    share[vertical_] = axes_.up[vertical_] > 0 ? height : 1 - height;
-    share[along_] = along;
-    share[3 - vertical_ - along_] = across;
-    return {lower_.x + share.x * extent_.x, lower_.y + share.y * extent_.y, lower_.z + share.z * extent_.z};
-  }
-
-  bool inside(const Vec3d& p) const {
-    const Vec3d d = p - lower_;
-    return d.x >= 0 && d.y >= 0 && d.z >= 0 && d.x <= extent_.x && d.y <= extent_.y && d.z <= extent_.z;
-  }
-
   Camera camera(const Vec3d& eye, const Vec3d& forward, double fov) const {
     return {eye.as<float>(), forward.as<float>(), axes_.up.as<float>(), changes_.fov.value_or(static_cast<float>(fov))};
   }
 
-  bool hit(const Vec3d& from, const Vec3d& towards, Sample& sample) const {
-    Hit found;
-    if (!traversal_.nearest({from.as<float>(), towards.as<float>(), INFINITY}, found)) return false;
-    const Vec3d normal = found.normal.as<double>();
-    const double distance = found.t;
-    const bool front = dot(normal, towards) < 0;
-    sample = {from + towards * distance, front ? normal : normal * -1.0, distance, front,
-              scene_.triangle_materials[found.triangle]};
-    return true;
-  }
-
-  /// What an n x n grid of rays of a square picture hits.
-  std::vector<Sample> look(const Camera& camera, int n) const {
-    const Vec3d eye = camera.eye.as<double>(), forward = normalized(camera.direction.as<double>());
-    const Vec3d right = normalized(cross(forward, camera.up.as<double>())), up = cross(right, forward);
-    const double half = half_height(camera.fov);
-    std::vector<Sample> samples;
-    for (int i = 0; i < n * n; ++i) {
-      const double x = (2 * (i % n) + 1.0) / n - 1, y = (2 * (i / n) + 1.0) / n - 1;
-      Sample sample;
-      if (hit(eye, normalized(forward + right * (x * half) + up * (y * half)), sample)) samples.push_back(sample);
-    }
-    return samples;
-  }
-
-  /// In float, which hides that the libraries' tangents differ in the last place.
-  static double half_height(float fov) {
-    return static_cast<double>(static_cast<float>(std::tan(fov * 0.5 * 3.14159265358979323846 / 180)));
-  }
-
-  /// How much there is to see: the share of the picture that shows something, and into how many kinds of surface (by
-  /// direction, distance and material) it falls, as an entropy.
+  /// How much there is to see: the share of the picture that shows the subject, and into how many kinds of surface (by
+  /// direction, distance and material) that falls, as an entropy. What is around the subject is one kind.
   double score(const Camera& camera, int n) const {
     std::map<std::tuple<long, long, long, int, uint32_t>, int> kinds;
     double covered = 0;
     int seen = 0;
-    for (const Sample& s : look(camera, n)) {
-      covered += (s.front ? 1 : kBackSide) * std::min(1.0, s.distance / near_);
+    for (const auto& sample : probe_.picture(camera, n, n)) {
+      if (!sample) continue;
+      const Sample& s = *sample;
       ++seen;
+      if (!subject_.triangles[s.triangle]) {
+        ++kinds[{0, 0, 0, 0, UINT32_MAX}];
+        continue;
+      }
+      covered += (s.front ? 1 : kBackSide) * std::min(1.0, s.distance / near_);
       int octave = 0;
-      const double mantissa = std::frexp(s.distance / diagonal_, &octave);
+      const double mantissa = std::frexp(s.distance / length(subject_.box.extent()), &octave);
       const auto sector = [](double c) { return std::lround(2.4 * c); };
-      ++kinds[{sector(s.normal.x), sector(s.normal.y), sector(s.normal.z), 2 * octave + (mantissa > 0.7), s.material}];
+      ++kinds[{sector(s.normal.x), sector(s.normal.y), sector(s.normal.z), 2 * octave + (mantissa > 0.7),
+               probe_.scene().triangle_materials[s.triangle]}];
     }
     double entropy = 0;
     for (const auto& [kind, count] : kinds) {
@@ -167,99 +117,61 @@ class Viewfinder {
     return std::sqrt(covered / (n * n)) * (1 + entropy);
   }
 
-  /// How far from `target` the eye must be to have all vertices in a square picture.
-  double distance_to_fit(const Vec3d& target, const Vec3d& from, double half) const {
+  struct Fit {
+    Vec3d eye;
+    double depth;  // distance of the subject's near side along the view, of that of its far side
+  };
+
+  /// The nearest eye in direction `from` of the subject that has all of it in a square picture; seen from there, the
+  /// subject touches the picture's borders on both sides, or above and below. `target`: what must be in the middle.
+  Fit fit(const Vec3d& from, double half, const std::optional<Vec3d>& target) const {
     const Vec3d right = normalized(cross(axes_.up, from)), up = cross(from, right);
-    double distance = 0;
-    for (const auto& triangle : scene_.triangles) {
-      const Vec3d p = scene_.vertices[triangle[0]].as<double>() - target,
-                  q = scene_.vertices[triangle[1]].as<double>() - target,
-                  r = scene_.vertices[triangle[2]].as<double>() - target;
-      for (const Vec3d& v : {p, q, r}) {
-        distance = std::max(distance, std::max(std::fabs(dot(v, right)), std::fabs(dot(v, up))) / half + dot(v, from));
+    const Vec3d origin = target.value_or(subject_.box.centre());
+    const double slope = half / (subject_.has_surroundings ? kWideMargin : kMargin);
+    // An eye at (x, y, z) of right, up and from sees v when |v.x - x| and |v.y - y| are at most slope (z - v.z).
+    std::array<double, 4> most = {-INFINITY, -INFINITY, -INFINITY, -INFINITY};
+    double nearest = -INFINITY, furthest = INFINITY;
+    for (const Vec3d& vertex : subject_.vertices) {
+      const Vec3d p = vertex - origin;
+      const double x = dot(p, right), y = dot(p, up), z = dot(p, from), reach = slope * z;
+      most = {std::max(most[0], reach + x), std::max(most[1], reach - x), std::max(most[2], reach + y),
+              std::max(most[3], reach - y)};
+      nearest = std::max(nearest, z), furthest = std::min(furthest, z);
+    }
+    const double least = 1e-3 * length(subject_.box.extent());
+    if (target) {
+      const double distance = std::max(*std::max_element(most.begin(), most.end()) / slope, least);
+      return {origin + from * distance, (distance - nearest) / (distance - furthest)};
+    }
+    const double across = most[0] + most[1], upwards = most[2] + most[3];
+    const double distance = std::max(std::max(across, upwards) / 2 / slope, least);
+    return {origin + right * ((most[0] - most[1]) / 2) + up * ((most[2] - most[3]) / 2) + from * distance,
+            (distance - nearest) / (distance - furthest)};
+  }
+
+  void add_around(double fov, double liking, std::vector<Candidate>& candidates) const {
+    const double half = half_height(changes_.fov.value_or(static_cast<float>(fov)));
+    std::optional<Vec3d> target;
+    if (changes_.look_at) target = changes_.look_at->as<double>();
+    for (const auto& [slope, height] : {std::pair(0.36, 1.0), std::pair(0.1, 0.93), std::pair(0.9, 0.9)}) {
+      for (const int step : {1, 0, -1, 2, -2, 3, -3, 4, -4, 5, -5, 6, -6, 7, -7, 8}) {
+        const Vec3d from = direction(axes_, step, slope);
+        const Fit found = fit(from, half, target);
+        const double facing = std::abs(step) <= 3 ? 1 : std::abs(step) <= 5 ? 0.93 : 0.86;
+        const double deep = found.depth < kDeep ? std::sqrt(std::max(found.depth, 0.0) / kDeep) : 1;
+        if (!within_reach(found.eye)) continue;
+        const Vec3d forward = target ? *target - found.eye : from * -1.0;
+        candidates.push_back({camera(found.eye, forward, fov), liking * height * facing * deep});
       }
     }
-    return std::max(1.04 * distance, 1e-3 * diagonal_);
   }
 
   void add_outside(std::vector<Candidate>& candidates) const {
-    const Vec3d centre = lower_ + extent_ * 0.5, target = changes_.look_at ? changes_.look_at->as<double>() : centre;
-    const float fov = changes_.fov.value_or(static_cast<float>(kOutsideFov));
-    for (const auto& [slope, liking] : {std::pair(0.36, 1.0), std::pair(0.1, 0.97), std::pair(0.9, 0.9)}) {
-      for (const int step : {1, 0, -1, 2, -2, 3, -3, 4, -4, 5, -5, 6, -6, 7, -7, 8}) {
-        const Vec3d from = direction(axes_, step, slope);
-        const Vec3d eye = target + from * distance_to_fit(target, from, half_height(fov));
-        const double facing = std::abs(step) <= 3 ? 1 : std::abs(step) <= 5 ? 0.93 : 0.86;
-        candidates.push_back({camera(eye, target - eye, fov), liking * facing});
-      }
-    }
-  }
-
-  /// Places among the triangles with triangles around them; empty when that is but the inside of something solid, where
-  /// the surfaces' other sides are all that is seen from outside.
-  std::vector<Vec3d> places_inside() const {
-    const std::vector<Vec3d> around = all_around();
-    std::vector<Vec3d> places;
-    int seen = 0, hidden = 0, fronts = 0;
-    for (const double height : {0.55, 0.4}) {
-      for (const double along : {0.08, 0.92, 0.28, 0.72, 0.5}) {
-        for (const double across : {0.3, 0.7, 0.5, 0.12, 0.88}) {
-          const Vec3d eye = place(along, height, across);
-          std::vector<Sample> samples;
-          bool free = true;
-          for (const Vec3d& towards : around) {
-            Sample sample;
-            if (!hit(eye, towards, sample)) continue;
-            free &= sample.distance > 0.005 * diagonal_;
-            samples.push_back(sample);
-          }
-          if (!free || static_cast<double>(samples.size()) < kLeastEnclosed * static_cast<double>(around.size()))
-            continue;
-          places.push_back(eye);
-          for (const Sample& sample : samples) {
-            ++seen;
-            hidden += !exposed(sample, around);
-            fronts += sample.front;
-          }
-        }
-      }
-    }
-    const bool furnished = hidden > kLeastContent * seen, room = fronts > kLeastFront * seen && is_box();
-    return furnished || room ? places : std::vector<Vec3d>();
-  }
-
-  /// The side that the eye does not see has the open before it.
-  bool exposed(const Sample& sample, const std::vector<Vec3d>& around) const {
-    const Vec3d origin = sample.point - sample.normal * (1e-4 * diagonal_);
-    int tried = 0, open = 0;
-    for (const Vec3d& towards : around) {
-      if (dot(towards, sample.normal) > -0.2) continue;
-      ++tried;
-      open += !traversal_.occluded({origin.as<float>(), towards.as<float>(), INFINITY});
-    }
-    return 4 * open > tried;
-  }
-
-  /// Triangles cover at least five sides of the bounding box by more than half.
-  bool is_box() const {
-    std::array<double, 6> covered{};
-    for (size_t i = 0; i < scene_.triangles.size(); ++i) {
-      const Vec3d p = scene_.corner(i, 0).as<double>() - lower_, q = scene_.corner(i, 1).as<double>() - lower_,
-                  r = scene_.corner(i, 2).as<double>() - lower_;
-      const Vec3d area = cross(q - p, r - p) * 0.5;
-      for (int axis = 0; axis < 3; ++axis) {
-        const double low = std::min({p[axis], q[axis], r[axis]}), high = std::max({p[axis], q[axis], r[axis]});
-        const size_t side = 2 * axis;
-        if (high <= 0.03 * extent_[axis]) covered[side] += std::fabs(area[axis]);
-        if (low >= 0.97 * extent_[axis]) covered[side + 1] += std::fabs(area[axis]);
-      }
-    }
-    int walls = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-      const double side = extent_[(axis + 1) % 3] * extent_[(axis + 2) % 3];
-      for (const size_t end : {0u, 1u}) walls += covered[static_cast<size_t>(2 * axis) + end] > 0.5 * side;
-    }
-    return walls >= 5;
+    add_around(kOutsideFov, 1, candidates);
+    // What is around the subject may leave no room for the eye, and so may the largest coordinate.
+    if (changes_.fov || (!subject_.has_surroundings && !candidates.empty())) return;
+    double liking = 1;
+    for (const double fov : kWiderFovs) add_around(fov, liking *= kWide, candidates);
   }
 
   void add_from(const Vec3d& eye, double fov, std::initializer_list<double> slopes,
@@ -274,86 +186,74 @@ class Viewfinder {
     }
   }
 
-  Camera best_camera() const {
-    std::vector<Candidate> candidates;
-    if (changes_.eye) {
-      const Vec3d eye = changes_.eye->as<double>(), centre = lower_ + extent_ * 0.5;
-      if (!changes_.look_at) candidates.push_back({camera(eye, centre - eye, inside(eye) ? kInsideFov : kOutsideFov)});
-      add_from(eye, inside(eye) ? kInsideFov : kOutsideFov, {-0.1, -0.4, 0.25, -1.0}, candidates);
-    } else {
-      add_outside(candidates);
-      for (const Vec3d& eye : places_inside()) add_from(eye, kInsideFov, {-0.1, -0.3}, candidates);
+  /// Of what is seen from around the subject, the share of fronts.
+  double outer_fronts(const std::vector<Candidate>& outside) const {
+    int seen = 0, fronts = 0;
+    for (const Candidate& candidate : outside) {
+      for (const auto& sample : probe_.picture(candidate.camera, 6, 6)) {
+        seen += sample.has_value();
+        fronts += sample && sample->front;
+      }
     }
-    const auto unusable = [](const Candidate& c) {
-      const Vec3d forward = c.camera.direction.as<double>(), up = c.camera.up.as<double>();
-      return !(length(cross(forward, up)) > 1e-3 * length(forward) * length(up));
-    };
-    const Camera first = candidates.front().camera;
-    candidates.erase(std::remove_if(candidates.begin(), candidates.end(), unusable), candidates.end());
-    if (candidates.size() < 2) return candidates.empty() ? first : candidates.front().camera;
-    // All with few rays, the best of them with many.
-    for (const auto& [rays, keep] : {std::pair<int, size_t>(10, 16), std::pair<int, size_t>(32, 1)}) {
-      for (Candidate& c : candidates) c.score = std::round(1e6 * c.prior * score(c.camera, rays));
-      std::stable_sort(candidates.begin(), candidates.end(),
-                       [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
-      candidates.resize(std::min(candidates.size(), keep));
-    }
-    return candidates.front().camera;
+    return seen == 0 ? 0 : static_cast<double>(fronts) / seen;
   }
 
-  /// What the eye sees of a light: the sum of the cosines, and the share of samples that are not dark.
-  struct Lit {
-    double light = 0, share = 0;
-  };
-  Lit lit(const std::vector<Sample>& samples, const Vec3d& light) const {
-    Lit result;
-    for (const Sample& sample : samples) {
-      const Vec3d origin = sample.point + sample.normal * (1e-5 * diagonal_), way = light - origin;
-      const double cosine = dot(sample.normal, way) / std::max(length(way), 1e-30);
-      if (!(cosine > 0.02) || traversal_.occluded({origin.as<float>(), way.as<float>(), 1})) continue;
-      result.light += cosine;
-      result.share += 1 / static_cast<double>(samples.size());
+  std::vector<Candidate> candidates() const {
+    std::vector<Candidate> result;
+    if (changes_.eye) {
+      const Vec3d eye = changes_.eye->as<double>();
+      const double fov = room_.contains(eye) ? kInsideFov : kOutsideFov;
+      if (!changes_.look_at) result.push_back({camera(eye, subject_.box.centre() - eye, fov)});
+      add_from(eye, fov, {-0.1, -0.4, 0.25, -1.0}, result);
+      return result;
+    }
+    add_outside(result);
+    if (!subject_.has_surroundings) {
+      for (const Vec3d& eye : places_inside(probe_, shells_, room_, outer_fronts(result)))
+        add_from(eye, kInsideFov, {-0.1, -0.3}, result);
+    }
+    // So large that no eye within the largest coordinate sees all of it.
+    if (result.empty()) {
+      for (const double along : {0.0, 1.0}) {
+        for (const double across : {0.0, 1.0}) {
+          const Vec3d eye = room_.place(along, 1, across);
+          result.push_back({camera(eye, room_.box().centre() - eye, kWiderFovs.back())});
+        }
+      }
     }
     return result;
   }
 
-  /// Over the viewer's shoulders, as long as that lights most of what is seen; else the
-  /// best of these and of places in the box.
-  Vec3 light(const Camera& camera) const {
-    const std::vector<Sample> samples = look(camera, 24);
-    const Vec3d forward = camera.direction.as<double>(), centre = lower_ + extent_ * 0.5;
-    const Vec3d right = normalized(cross(forward, axes_.up)), back = cross(right, axes_.up);
-    Vec3d best = centre + normalized(right * 0.6 + axes_.up * 0.9 + back * 0.8) * (2 * diagonal_);
-    double most = -1;
-    const auto consider = [&](const Vec3d& place) {
-      const Lit found = lit(samples, place);
-      const double rounded = std::round(1e6 * found.light);
-      if (rounded > most) most = rounded, best = place;
-      return found.share >= kLitEnough;
+  Camera best_camera() const {
+    if (subject_.vertices.empty() && !changes_.eye && !changes_.look_at) {
+      // No triangle has an area, and no view shows anything.
+      const double distance = std::max(probe_.diagonal(), 1.0);
+      return camera(room_.box().centre() + axes_.back * distance, Vec3d{} - axes_.back, kOutsideFov);
+    }
+    std::vector<Candidate> all = candidates();
+    const auto unusable = [](const Candidate& c) {
+      const Vec3d forward = c.camera.direction.as<double>(), up = c.camera.up.as<double>();
+      return !(length(cross(forward, up)) > 1e-3 * length(forward) * length(up));
     };
-    if (!inside(camera.eye.as<double>())) {
-      for (const Vec3d& from :
-           {Vec3d{0.6, 0.9, 0.8}, Vec3d{-0.6, 0.9, 0.8}, Vec3d{0.2, 1.2, 0.4}, Vec3d{0.3, 0.3, 1.2}}) {
-        const Vec3d place = centre + normalized(right * from.x + axes_.up * from.y + back * from.z) * (2 * diagonal_);
-        if (consider(place)) return place.as<float>();
-      }
+    const Camera first = all.front().camera;
+    all.erase(std::remove_if(all.begin(), all.end(), unusable), all.end());
+    if (all.size() < 2) return all.empty() ? first : all.front().camera;
+    // All with few rays, the best of them with many.
+    for (const auto& [rays, keep] : {std::pair<int, size_t>(10, 16), std::pair<int, size_t>(32, 1)}) {
+      for (Candidate& c : all) c.score = std::round(1e6 * c.prior * score(c.camera, rays));
+      std::stable_sort(all.begin(), all.end(),
+                       [](const Candidate& a, const Candidate& b) { return a.score > b.score; });
+      all.resize(std::min(all.size(), keep));
     }
-    for (const double height : {0.75, 0.85}) {
-      for (const double along : {0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8, 0.12, 0.88}) {
-        for (const double across : {0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8}) consider(place(along, height, across));
-      }
-    }
-    return best.as<float>();
+    return all.front().camera;
   }
 
-  const Scene& scene_;
   const ViewChanges& changes_;
-  Bounds bounds_;
-  Vec3d lower_, extent_;
-  double diagonal_;
+  SceneProbe probe_;
   Axes axes_;
-  Traversal traversal_;
-  int vertical_ = 0, along_ = 0;  // axes of the box
+  RoomBox room_;
+  Shells shells_;
+  Subject subject_;
   double near_;
 };
 

@@ -126,17 +126,16 @@ class Worker {
   std::optional<WideVisits> visits_;
 };
 
-float offset(const Scene& scene, uint32_t significand) {
-  const Bounds bounds = scene.bounds();
+}  // namespace
+
+float ray_offset(const Bounds& bounds, const Vec3& eye, uint32_t significand) {
   double largest = 0;
-  for (const Vec3& point : {bounds.lower, bounds.upper, scene.camera.eye}) {
+  for (const Vec3& point : {bounds.lower, bounds.upper, eye}) {
     for (int axis = 0; axis < 3; ++axis) largest = std::max(largest, std::fabs(static_cast<double>(point[axis])));
   }
   const double least = std::max(kLeastOffset, std::ldexp(1.0, 1 - static_cast<int>(significand)));
   return static_cast<float>(std::max(kOffsetShare * static_cast<double>(bounds.diagonal()), least * largest));
 }
-
-}  // namespace
 
 MemoryImage build_memory(const Program& program, const Scene& scene) {
   auto round_up = [](uint64_t bytes) { return (bytes + 63) / 64 * 64; };
@@ -182,7 +181,7 @@ std::array<uint32_t, kArguments> camera_arguments(const Scene& scene, uint32_t w
   put(argument::kStepY, step_y);
   put(argument::kLight, scene.light.position.as<double>());
   put(argument::kLightColor, scene.light.color.as<double>());
-  arguments[argument::kOffset] = as_bits(offset(scene, significand));
+  arguments[argument::kOffset] = as_bits(ray_offset(scene.bounds(), scene.camera.eye, significand));
   const uint32_t log2 = tile_width_log2(contents);
   arguments[argument::kTileWidthLog2] = log2;
   arguments[argument::kTileMask] = (1u << log2) - 1;

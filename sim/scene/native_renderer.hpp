@@ -30,6 +30,8 @@ MemoryImage build_memory(const Program& program, const Scene& scene);
 /// eight of its units in the last place, or one of a shorter significand where that is more.
 inline constexpr double kOffsetShare = 1e-5;
 inline constexpr double kLeastOffset = 1e-6;
+/// In the unit of the scene; `bounds` are the scene's.
+float ray_offset(const Bounds& bounds, const Vec3& eye, uint32_t significand = arith::kFullSignificand);
 
 /// The kernel arguments of a frame (namespace argument), for a machine whose floats have such a significand. Throws
 /// InputError unless width and height lie in 1 .. 65535.
