@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kMostDark = 0.06;  // of what is seen
 constexpr int kCoarse = 4;          // every fourth sample, where many places are tried
-constexpr size_t kEnough = 200;     // samples that see something
+constexpr size_t kEnough = 400;     // samples that see something
 
 /// Of a picture of 16 : 9, the square one in its middle, and a few of this.
 struct Pictures {
@@ -18,7 +18,7 @@ struct Pictures {
 Pictures pictures(const SceneProbe& probe, const Camera& camera) {
   Pictures result;
   // What is small in the picture is looked at more closely.
-  for (const int rows : {36, 144}) {
+  for (const int rows : {36, 144, 288}) {
     const int columns = rows * 16 / 9;
     result = {};
     const auto samples = probe.picture(camera, columns, rows);
