@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scene/image.hpp"
@@ -250,6 +251,10 @@ std::vector<Model> models() {
          m.sphere({0, 0, 0}, 100, 40);
        }},
       {"a cube before a backdrop", 0.2, cube, backdrop},
+      {"a cube, and a speck far away", 0.25, cube,
+       [](MeshBuilder& m) {
+         m.triangle({500, 40, 0}, {500.1, 40, 0}, {500, 40.1, 0});
+       }},
       {"a cube before a wall", 0.2, cube,
        [](MeshBuilder& m) {
          ground(m, 20);
@@ -264,8 +269,10 @@ struct Viewed {
   size_t object = 0;  ///< so many triangles are of the object
 };
 
+using Change = std::function<void(Scene&)>;
+
 Viewed view_of(const std::function<void(MeshBuilder&)>& object, const std::function<void(MeshBuilder&)>& around,
-               const Transform& place = {}) {
+               const Transform& place = {}, const Change& change = nullptr) {
   Viewed viewed;
   MeshBuilder mesh(viewed.scene, 1);
   mesh.add_material("grey", {0.5f, 0.5f, 0.5f}, {});
@@ -273,7 +280,9 @@ Viewed view_of(const std::function<void(MeshBuilder&)>& object, const std::funct
   object(mesh);
   viewed.object = viewed.scene.triangles.size();
   if (around) around(mesh);
-  const View view = automatic_view(viewed.scene);
+  Scene changed = viewed.scene;
+  if (change) change(changed);
+  const View view = automatic_view(changed);
   viewed.scene.camera = view.camera;
   viewed.scene.light = view.light;
   return viewed;
@@ -324,9 +333,9 @@ Drawn drawn(const Viewed& viewed, uint32_t width, uint32_t height) {
 }
 
 /// What every model must show, wherever it is and whatever its size.
-void expect_shown(const Model& model, const Transform& place) {
+void expect_shown(const Model& model, const Transform& place, const Change& change = nullptr) {
   SCOPED_TRACE(model.name);
-  const Viewed viewed = view_of(model.object, model.around, place);
+  const Viewed viewed = view_of(model.object, model.around, place, change);
   EXPECT_LT(winding(viewed.scene, viewed.object, viewed.scene.camera.eye), 0.5) << "the eye is inside a solid";
   const Drawn square = drawn(viewed, 128, 128), wide = drawn(viewed, 192, 108);
   EXPECT_GT(square.object, model.least_covered) << "the object is small in the picture";
@@ -345,6 +354,36 @@ TEST(AutomaticView, ShowsThemWhateverTheirSizePlaceAndTurn) {
     SCOPED_TRACE(i);
     expect_shown(all[i], Transform::move({300, -200 + 10 * step, 100}) * Transform::turn_y(37 + 50 * step));
     expect_shown(all[i], Transform::scale(i % 2 == 0 ? 1e-5 : 1e5) * Transform::turn_y(-20 * step));
+  }
+}
+
+TEST(AutomaticView, ShowsSolidsFromOutsideWhicheverWayTheirTrianglesTurn) {
+  const auto turn = [](const std::function<bool()>& turned) {
+    return [turned](Scene& scene) {
+      for (auto& triangle : scene.triangles) {
+        if (turned()) std::swap(triangle[1], triangle[2]);
+      }
+    };
+  };
+  Sequence random(3);
+  for (const Model& model : models()) {
+    expect_shown(model, {}, turn([&] { return random.next(0, 1) < 0.5; }));
+    // Turned round, what is one box is an empty corridor.
+    if (std::string(model.name) != "a long stick") expect_shown(model, {}, turn([] { return true; }));
+  }
+}
+
+TEST(AutomaticView, ShowsThemWhereNoTwoTrianglesShareAVertex) {
+  for (const Model& model : models()) {
+    expect_shown(model, {}, [](Scene& scene) {
+      const std::vector<Vec3> vertices = std::exchange(scene.vertices, {});
+      for (auto& triangle : scene.triangles) {
+        for (uint32_t& index : triangle) {
+          scene.vertices.push_back(vertices[index]);
+          index = static_cast<uint32_t>(scene.vertices.size() - 1);
+        }
+      }
+    });
   }
 }
 
@@ -411,7 +450,9 @@ TEST(AutomaticView, ShowsRoomsFromInside) {
     const Drawn picture = drawn(viewed, 128, 128);
     EXPECT_EQ(picture.seen, 1);
     EXPECT_LE(picture.black, 0.1);
-    if (room.furnished) EXPECT_GT(picture.object, 0.05);
+    if (room.furnished) {
+      EXPECT_GT(picture.object, 0.05);
+    }
   }
 }
 
@@ -430,7 +471,9 @@ TEST(AutomaticView, LightsWhatAGivenEyeSees) {
       viewed.scene.light = view.light;
       const Drawn picture = drawn(viewed, 96, 96);
       EXPECT_EQ(view.camera.eye, *changes.eye);
-      if (picture.seen > 0.002) EXPECT_LE(picture.black, 0.1);
+      if (picture.seen > 0.002) {
+        EXPECT_LE(picture.black, 0.1);
+      }
     }
   }
 }

@@ -10,12 +10,13 @@ namespace {
 constexpr double kLeastEnclosed = 0.7;  // of the directions from a place among the triangles
 constexpr double kRoomy = 0.2;          // of the box's least length: half of what a place sees is further away
 constexpr double kLeastContent = 0.08;  // of what places see: pieces that are hidden from outside
-constexpr double kMuchHidden = 0.25;    // of what places see: surfaces whose other side is hidden, too
-constexpr double kMostlyFront = 0.6;    // of what a place in a room sees
-constexpr double kLeastFront = 0.9;     // of what places see, in a room with nothing in it
+constexpr double kMostlyFront = 0.6;    // of what a place in a furnished room sees
+constexpr double kLeastFront = 0.9;     // of what a place in an empty room sees
+constexpr double kMostWalls = 0.75;     // of what a place in an empty room sees
+constexpr double kLow = 0.3;            // of the height
+constexpr double kWhole = 0.8;          // of the scene's lengths
 constexpr double kOpen = 0.3;           // of a surface's directions: it is seen from outside
-constexpr double kOtherSideOpen = 0.25;
-constexpr double kOnSide = 0.03;  // of the box
+constexpr double kOnSide = 0.03;        // of the box
 
 /// Whether any of it is seen from outside; asked of a piece only once.
 class Hidden {
@@ -122,44 +123,52 @@ std::vector<Place> enclosed_places(const SceneProbe& probe, const RoomBox& room)
   return places;
 }
 
-double share(size_t part, size_t of) { return of == 0 ? 0 : static_cast<double>(part) / static_cast<double>(of); }
-
-/// What places see are the walls of a box about as large as the scene.
-bool sees_box(const std::vector<Place>& places, const Box& room) {
-  Box seen;
-  size_t samples = 0, on_sides = 0;
-  for (const Place& place : places) {
-    for (const Sample& sample : place.samples) seen.add(sample.point);
-  }
-  for (int axis = 0; axis < 3; ++axis) {
-    if (seen.extent()[axis] < 0.8 * room.extent()[axis]) return false;
-  }
-  for (const Place& place : places) {
-    for (const Sample& sample : place.samples) {
-      bool on_side = false;
-      for (int axis = 0; axis < 3; ++axis) {
-        const double from_lower = (sample.point[axis] - seen.lower[axis]) / seen.extent()[axis];
-        on_side |= from_lower < kOnSide || from_lower > 1 - kOnSide;
-      }
-      ++samples;
-      on_sides += on_side;
-    }
-  }
-  return share(on_sides, samples) > kLeastFront;
+template <typename Fits>
+void keep(std::vector<Place>& places, const Fits& fits) {
+  places.erase(std::remove_if(places.begin(), places.end(), [&](const Place& place) { return !fits(place); }),
+               places.end());
 }
 
-/// Seen from outside it is the back of walls.
-bool is_room(const SceneProbe& probe, const Shells& shells, const std::vector<Place>& places, const Box& box) {
-  Hidden hidden(probe, shells);
-  size_t seen = 0, content = 0, closed = 0;
-  for (const Place& place : places) {
-    for (const Sample& sample : place.samples) {
-      ++seen;
-      content += hidden(sample);
-      closed += probe.open_share(sample.point, sample.normal * -1.0) <= kOtherSideOpen;
-    }
+double share(size_t part, size_t of) { return of == 0 ? 0 : static_cast<double>(part) / static_cast<double>(of); }
+
+/// What the place sees are the walls of a box about as large as the scene.
+bool sees_box(const Place& place, const Box& room, double least) {
+  Box seen;
+  for (const Sample& sample : place.samples) seen.add(sample.point);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (seen.extent()[axis] < kWhole * room.extent()[axis]) return false;
   }
-  return share(content, seen) > kLeastContent || share(closed, seen) > kMuchHidden || sees_box(places, box);
+  size_t on_sides = 0;
+  for (const Sample& sample : place.samples) {
+    bool on_side = false;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double from_lower = (sample.point[axis] - seen.lower[axis]) / seen.extent()[axis];
+      on_side |= from_lower < kOnSide || from_lower > 1 - kOnSide;
+    }
+    on_sides += on_side;
+  }
+  return share(on_sides, place.samples.size()) > least;
+}
+
+/// Leaves the places that see the fronts of pieces which are hidden from outside; none unless these are much of what is
+/// seen there, and some stand low.
+void keep_furnished(std::vector<Place>& places, const SceneProbe& probe, const Shells& shells, const RoomBox& room) {
+  Hidden hidden(probe, shells);
+  size_t seen = 0, content = 0;
+  bool stands = false;
+  keep(places, [&](const Place& place) {
+    size_t here = 0;
+    for (const Sample& sample : place.samples) {
+      if (!sample.front || !hidden(sample)) continue;
+      ++here;
+      stands |= room.height_of(sample.point) < kLow;
+    }
+    if (here == 0) return false;
+    seen += place.samples.size();
+    content += here;
+    return true;
+  });
+  if (share(content, seen) <= kLeastContent || !stands) places.clear();
 }
 
 }  // namespace
@@ -195,41 +204,23 @@ double RoomBox::height_of(const Vec3d& point) const {
 std::vector<Vec3d> places_inside(const SceneProbe& probe, const Shells& shells, const RoomBox& room,
                                  double outer_fronts) {
   std::vector<Place> places = enclosed_places(probe, room);
-  const auto drop = [&](const auto& unfit) {
-    places.erase(std::remove_if(places.begin(), places.end(), unfit), places.end());
-  };
-  const auto mostly_backs = [](const Place& place) { return place.fronts < kMostlyFront; };
-  std::vector<Vec3d> eyes;
-  const auto take = [&] {
-    for (const Place& place : places) eyes.push_back(place.eye);
-    return eyes;
-  };
-  if (outer_fronts < 0.5) {
-    drop(mostly_backs);
-    return !places.empty() && is_room(probe, shells, places, room.box()) ? take() : eyes;
+  // From outside an object is seen, unless it is a box with something in it.
+  const bool is_object = outer_fronts >= 0.5;
+  if (places.empty() || (is_object && !is_box(probe.scene(), room.box()))) return {};
+  std::vector<Place> furnished = places;
+  if (!is_object) keep(furnished, [](const Place& place) { return place.fronts >= kMostlyFront; });
+  keep_furnished(furnished, probe, shells, room);
+  if (furnished.empty()) {
+    // Nothing is in it: walls, which outside show their backs or are a second time.
+    keep(places, [&](const Place& place) {
+      return place.fronts > kLeastFront && (is_object || outer_fronts < 1 - kLeastFront) &&
+             sees_box(place, room.box(), is_object ? kLeastFront : kMostWalls);
+    });
+    furnished = std::move(places);
   }
-  // From outside it is an object: all but a box with something in it.
-  if (!is_box(probe.scene(), room.box())) return eyes;
-  std::vector<Place> cavity = places;
-  cavity.erase(std::remove_if(cavity.begin(), cavity.end(), mostly_backs), cavity.end());
-  Hidden hidden(probe, shells);
-  size_t seen = 0, content = 0;
-  bool stands = false;
-  drop([&](const Place& place) {
-    size_t here = 0;
-    for (const Sample& sample : place.samples) {
-      if (!sample.front || !hidden(sample)) continue;
-      ++here;
-      stands |= room.height_of(sample.point) < 0.3;
-    }
-    if (here == 0) return true;
-    seen += place.samples.size();
-    content += here;
-    return false;
-  });
-  if (share(content, seen) > kLeastContent && stands) return take();
-  places = std::move(cavity);
-  return !places.empty() && sees_box(places, room.box()) ? take() : eyes;
+  std::vector<Vec3d> eyes;
+  for (const Place& place : furnished) eyes.push_back(place.eye);
+  return eyes;
 }
 
 }  // namespace raypool

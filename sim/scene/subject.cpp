@@ -17,6 +17,7 @@ constexpr double kLargerPlane = 2.5, kLargerSheet = 4, kLargerSky = 3, kLargerSo
 constexpr double kThin = 0.04;    // of its second largest length: as thick as a slab of ground may be
 constexpr double kSheet = 0.5;    // the area of a sheet's mean direction, of all its area
 constexpr double kTileSizes = 4;  // the larger of two tiles of one floor, of the smaller
+constexpr double kStrayArea = 0.01, kStrayDistance = 4;  // of all; of the size of the rest
 constexpr size_t kMostSurroundings = 16;
 constexpr int kLeastTriangles = 4;  // of a subject
 
@@ -185,6 +186,34 @@ bool is_convex(const Scene& scene, const std::vector<uint32_t>& triangles, doubl
   return true;
 }
 
+/// Small pieces so far away that what they lie around would be small in the picture.
+std::vector<uint32_t> strays(const std::vector<Piece>& pieces, std::vector<uint32_t> order) {
+  std::sort(order.begin(), order.end(),
+            [&](uint32_t a, uint32_t b) { return std::pair(-pieces[a].area, a) < std::pair(-pieces[b].area, b); });
+  Box all, most;
+  double area = 0, of_most = 0;
+  for (const uint32_t i : order) {
+    all.add(pieces[i].box);
+    area += pieces[i].area;
+  }
+  size_t first = 0;
+  for (; first < order.size() && of_most < (1 - kStrayArea) * area; ++first) {
+    most.add(pieces[order[first]].box);
+    of_most += pieces[order[first]].area;
+  }
+  const double size = most.nth_extent(0);
+  order.erase(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(first));
+  const auto is_far = [&](uint32_t i) {
+    const Box& box = pieces[i].box;
+    double gap = 0;
+    for (int axis = 0; axis < 3; ++axis)
+      gap = std::max({gap, box.lower[axis] - most.upper[axis], most.lower[axis] - box.upper[axis]});
+    return gap > size;
+  };
+  const bool hide_the_rest = all.nth_extent(0) > kStrayDistance * size;
+  return hide_the_rest && std::all_of(order.begin(), order.end(), is_far) ? order : std::vector<uint32_t>();
+}
+
 Subject subject_of(const Scene& scene, std::vector<bool> triangles) {
   Subject subject;
   std::vector<bool> used(scene.vertices.size());
@@ -303,6 +332,8 @@ Subject find_subject(const Scene& scene, const Shells& connected) {
   }
   std::vector<bool> of_surroundings(shells.count);
   for (size_t i = 0; i < surroundings; ++i) of_surroundings[order[i]] = true;
+  order.erase(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(surroundings));
+  for (const uint32_t stray : strays(pieces, order)) of_surroundings[stray] = true;
   std::vector<bool> triangles;
   triangles.reserve(scene.triangles.size());
   for (const uint32_t shell : shells.of_triangle) triangles.push_back(!of_surroundings[shell]);
