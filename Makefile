@@ -1,5 +1,5 @@
 # The front door. Every target installs what it needs, builds what it needs in the folder BUILD,
-# and keeps it. `make help` lists them.
+# and keeps it. `make help` lists those that one needs first, `make help-all` all.
 SHELL := /bin/bash
 .SHELLFLAGS := -eu -o pipefail -c
 .DEFAULT_GOAL := help
@@ -165,17 +165,30 @@ UNIT_OF_ENGINE := $(if $(filter rtl lockstep,$(or $(CHIP),$(ENGINE))),$(UNIT) $(
 CHIP_FLAG := $(if $(CHIP),--chip)
 
 .PHONY: intervals
-.PHONY: help sim fidelity fit compare run cosim configurations mutants faults unit test test-long lint format bench
-.PHONY: clean
+.PHONY: help help-all sim fidelity fit compare run cosim configurations mutants faults unit test test-long lint format
+.PHONY: bench clean
 .PHONY: setup-% program configured-%
 .PHONY: numerics-long proofs synth synth-replay synth-prove growth numerics significands extremes isa diagrams quoted
 .PHONY: package sweep report bench-native pareto boxes triangles synth-module follow tour chip-frames
 .PHONY: traverser-trees block-mutants
 
-help: ## this list
+# Of a target the line that lists it, made of the comment behind it.
+LISTED = sed -nE 's/^($1):.*\#\# (.*)/  make \1\t\2/p' $(firstword $(MAKEFILE_LIST)) | expand -t 23
+
+help: ## the targets and variables that one needs first
 	@echo 'raypool: a ray-tracing GPU to render on, measure, verify and synthesise'
 	@echo
-	@sed -nE 's/^([a-z-]+):.*## (.*)/  make \1\t\2/p' $(firstword $(MAKEFILE_LIST)) | expand -t 22
+	@$(call LISTED,sim|compare|sweep|report|run|cosim|synth|test)
+	@echo
+	@echo '  of make sim: SCENE=room|cornell|FILE  SIZE=WxH  DEPTH=N  CONFIG=8w8c|best_8w8c|FILE'
+	@echo '               ENGINE=lockstep|rtl|model|native  CHIP=rtl for the whole chip  OUT=FOLDER'
+	@echo
+	@echo '  make help-all lists every target and variable, docs/commands.md what to do with them'
+
+help-all: ## every target and variable
+	@echo 'raypool: a ray-tracing GPU to render on, measure, verify and synthesise'
+	@echo
+	@$(call LISTED,[a-z-]+)
 	@echo
 	@echo 'variables of make sim                                                    default'
 	@echo '  SCENE=cornell|room|FILE       what is drawn; .obj, .gltf, .glb, .ply      $(SCENE)'

@@ -3,7 +3,8 @@
 
 That is: the files and headings of links; and between backquotes paths of the project, in which a star stands for any
 letters, members of C++ classes (Class::member), targets of make, and what looks like an identifier: with an underscore,
-or with a capital behind a small letter. Fences and quoted output are left to the checks that run them.
+or with a capital behind a small letter. Fences and quoted output are left to the checks that run them. The README's
+figures, in bold at the head of a list's item, must stand in the page that the item links to.
 """
 import pathlib
 import re
@@ -52,6 +53,20 @@ def link_error(page, target):
     if part and part not in {anchor(heading) for heading in re.findall(r"^#+ (.*)$", path.read_text(), re.M)}:
         return f"links to {target}, but there is no such heading"
     return None
+
+
+def figure_errors(readme):
+    """Which of the README's figures the page beside them does not have; and how many figures it has."""
+    errors, looked = [], 0
+    for item in re.findall(r"^- \*\*(.*?)\*\*(.*?)(?=^-|^#|\Z)", readme, re.M | re.S):
+        page = re.search(r"\]\((docs/[\w-]+\.md)", item[1])
+        text = (ROOT / page.group(1)).read_text() if page else ""
+        known = set(re.findall(r"\d+(?:\.\d+)?", text))
+        for figure in re.findall(r"\d[\d,]*(?:\.\d+)?", item[0]):
+            looked += 1
+            if figure.replace(",", "") not in known:
+                errors.append(f"README.md has {figure}, which {page.group(1) if page else 'no page'} does not have")
+    return errors, looked
 
 
 def has_identifiers(path):
@@ -113,11 +128,15 @@ def errors_of(page, project):
 def main():
     project = Project()
     found = [errors_of(page, project) for page in PAGES]
+    found.append(figure_errors((ROOT / "README.md").read_text()))
+    if found[-1][1] == 0:
+        found[-1][0].append("README.md has no figures, or none at the head of a list's item")
     errors = sorted({error for page_errors, _ in found for error in page_errors})
     for error in errors:
         print(error, file=sys.stderr)
     if not errors:
-        print(f"pages.py: {sum(looked for _, looked in found)} links and names in {len(PAGES)} pages, all there")
+        looked = sum(number for _, number in found)
+        print(f"pages.py: {looked} links, names and figures in {len(PAGES)} pages, all there")
     return 1 if errors else 0
 
 

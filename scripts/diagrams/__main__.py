@@ -2,25 +2,47 @@
 
     PYTHONPATH=scripts python3 -m diagrams RAYPOOL FOLDER [--check]
 
-FOLDER keeps what Icarus makes. A picture whose modules are not in rtl/ or sim/chip/ is refused. --check writes nothing
-and ends with 1 if a picture would change.
+FOLDER keeps what Icarus makes. A picture whose modules are not in rtl/ or sim/chip/ is refused, and one of the chip in
+Verilog that lacks a block of it, or shows another. --check writes nothing and ends with 1 if a picture would change.
 """
 import pathlib
+import re
 import shutil
 import sys
 
-from . import chip, compute_unit, stages
+from . import chip, chip_verilog, compute_unit, stages
 from .svg import DiagramError
 
 ROOT = stages.ROOT
 MODULES = {path.stem for path in (ROOT / "rtl").glob("*.v")} | {path.stem for path in (ROOT / "sim/chip").glob("*.hpp")}
+INSTANCE = re.compile(r"^ *(\w+) *(?:#\(|\w+ *\()", re.M)
+
+
+def modules_within(module):
+    """The modules of rtl/ of which this one has instances."""
+    return set(INSTANCE.findall((ROOT / f"rtl/{module}.v").read_text())) & MODULES - {module}
+
+
+def check_chip(picture):
+    """It shows each block of the modules that it opens, and no other."""
+    inside = set().union(*map(modules_within, chip_verilog.OPENED)) - chip_verilog.LEFT_OUT
+    missing, wrong = sorted(inside - picture.modules), sorted(picture.modules - inside - {"chip"})
+    if missing or wrong:
+        raise DiagramError(f"docs/images/chip-verilog.svg lacks {missing or 'nothing'} of rtl/chip.v and shows "
+                           f"{wrong or 'nothing'} that is not in it: mend scripts/diagrams/chip_verilog.py")
+    return picture
 
 
 def pictures(raypool, folder):
     for tool in ("iverilog", "vvp"):
         if shutil.which(tool) is None:
             raise DiagramError(f"{tool} was not found: install it (Debian package iverilog)")
-    return {"compute-unit": compute_unit.draw(), "chip": chip.draw(), "stages": stages.draw(raypool, folder)}
+    return {
+        "compute-unit": compute_unit.draw(),
+        "chip": chip.draw(),
+        "chip-verilog": check_chip(chip_verilog.draw()),
+        "stages": stages.draw(raypool, folder),
+    }
 
 
 def main(arguments):

@@ -4,7 +4,11 @@ from .svg import Picture
 
 def device(picture):
     picture.group((184, 124, 532, 346), "device_host", "clocks the device")
-    picture.group((200, 156, 500, 298), "multiprocessor", "in Verilog or C++")
+    multiprocessor(picture, "in Verilog or C++")
+
+
+def multiprocessor(picture, note=""):
+    picture.group((200, 156, 500, 298), "multiprocessor", note)
     picture.box((350, 190, 210, 46), "block_scheduler", ["idle units first, in turn"])
     for copy in (2, 1):
         picture.rectangle(366 + 4 * copy, 280 + 4 * copy, 170, 62, "box")
