@@ -4,6 +4,13 @@
 set -eu -o pipefail
 build=$1
 shift
+# shellcheck source=scripts/build_place.bash
+. "$(dirname "$0")/build_place.bash"
+was=$(made_elsewhere "$build")
+if [ -n "$was" ]; then
+  echo "build.sh: the build folder \"$build\" was made for $was: let make, or scripts/configure.sh, configure it" >&2
+  exit 1
+fi
 exec 9> "$build/.lock"
 flock 9
 width=$(tput cols 2> /dev/null || echo 80)

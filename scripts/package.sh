@@ -6,6 +6,9 @@ cd "$(dirname "$0")/.."
 mkdir -p "$1"
 folder=$(realpath "$1")
 log=$folder/package.log
+# shellcheck source=scripts/build_place.bash
+. scripts/build_place.bash
+leave_place "$folder"
 run() { "$@" > "$log" 2>&1 || { cat "$log" >&2; exit 1; }; }
 echo 'building raypool for any computer; the first time this takes minutes'
 run cmake -S . -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE=Release -DRAYPOOL_TESTS=OFF -DRAYPOOL_NATIVE=OFF

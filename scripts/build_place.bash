@@ -1,0 +1,34 @@
+# Which place a build folder was made for. CMake writes absolute paths into it: in a checkout that was copied or renamed
+# they lead to the old one, where Ninja would configure and build.
+# shellcheck shell=bash
+
+# Where the checkout or the folder was, if it is another one than this checkout (.) and BUILD: made_elsewhere BUILD
+made_elsewhere() {
+  local cache=$1/CMakeCache.txt key was
+  [ -f "$cache" ] || return 0
+  for key in CMAKE_HOME_DIRECTORY CMAKE_CACHEFILE_DIR; do
+    was=$(sed -n "s/^$key:INTERNAL=//p" "$cache")
+    [ "$key" = CMAKE_HOME_DIRECTORY ] && [ "$was" -ef . ] && continue
+    [ "$key" = CMAKE_CACHEFILE_DIR ] && [ "$was" -ef "$1" ] && continue
+    echo "${was:-another place}"
+    return 0
+  done
+}
+
+# Takes CMake's part out of such a folder and says so; results and Verilated units, which hold no such paths, stay. The
+# project's options in it, as words for CMake, are then in the array `kept`: leave_place BUILD
+leave_place() {
+  local was name
+  was=$(made_elsewhere "$1")
+  [ -n "$was" ] || return 0
+  name=$(sed -n 's/^CMAKE_PROJECT_NAME:STATIC=//p' "$1/CMakeCache.txt")
+  if [ "${name:-raypool}" != raypool ]; then
+    echo "make: the build folder \"$1\" is one of $name: choose another one with BUILD=/path/elsewhere" >&2
+    return 1
+  fi
+  # shellcheck disable=SC2034 # for the caller
+  mapfile -t kept < <(sed -nE 's/^(RAYPOOL_[A-Z_]+:(BOOL|STRING)=.*)/-D\1/p' "$1/CMakeCache.txt")
+  rm -rf "$1"/{,cpp_model/,sim/,tb/}CMakeFiles
+  rm -f "$1"/{CMakeCache.txt,build.ninja,.ninja_log,.ninja_deps}
+  echo "make: the build folder \"$1\" was made for $was: it is configured and built again for $PWD; results stay" >&2
+}
