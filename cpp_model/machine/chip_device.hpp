@@ -109,6 +109,10 @@ struct ChipOutputs {
   uint32_t quiet = 0;        ///< mask: nothing of the unit waits or is on its way at the memory port
   TraverserPorts traverser;  ///< of one inside
   TreeFault tree_fault;      ///< likewise
+  /// Of one inside, whose rays visit for long without a transfer at a port: lanes that its caches give a line, a bit
+  /// each, and with triangles one above them for its exit. kNotSeen: where only ports can be seen.
+  uint32_t nodes_given = 0, leaves_given = 0;
+  static constexpr uint32_t kNotSeen = UINT32_MAX;
 };
 
 /// For the report: since the frame's start, right two cycles after the last event.

@@ -435,6 +435,8 @@ class ChipModel : public ChipDevice {
     if (shown.contribution_valid) ports.contribution = shown.contribution;
     ports.tree_request_valid = shown.request_valid;
     if (shown.request_valid) ports.tree_request = shown.request;
+    out_.nodes_given = shown.nodes_given;
+    out_.leaves_given = shown.leaves_given;
     out_.tree_fault = shown.fault;
   }
 

@@ -68,7 +68,8 @@ class Traverser {
     FrameContribution contribution;
     bool request_valid = false;
     MemoryPort::TreeRequest request;
-    TreeFault fault;  ///< the first one, sticky
+    uint32_t nodes_given = 0, leaves_given = 0;  ///< masks: lanes that a cache gives a line; above them the exit
+    TreeFault fault;                             ///< the first one, sticky
   };
 
   explicit Traverser(const Sizes& sizes)
@@ -352,6 +353,8 @@ class Traverser {
     if (out_.contribution_valid) out_.contribution = exit_.contribution();
     out_.request_valid = port_.request_valid();
     if (out_.request_valid) out_.request = port_.request();
+    out_.nodes_given = nodes_.banks.given_lanes();
+    out_.leaves_given = leaves_.banks.given_lanes();
   }
 
   Sizes sizes_;

@@ -41,6 +41,8 @@ printf 'mov r1, 0x7ffffff0\nld r2, [r1+0]\nexit\n' > "$folder/load.asm"
 printf 'mov r1, 0\nnonsense r1\nexit\n' > "$folder/word.asm"
 printf 'again:\njany again\nexit\n' > "$folder/forever.asm"
 printf 'again: tid r1\njany again\nexit\n' > "$folder/spin.asm"
+printf '%s\n' 'mov r1, 600000' 'ine p1, r1, 0' '@p1 loop e' '@p1 isub r1, r1, 1' '@p1 ine p1, r1, 0' 'e: exit' \
+  > "$folder/count.asm"
 printf 'mov r1, 0x402\nld r2, [r1+0]\nexit\n' > "$folder/odd.asm"
 printf 'mov r1, 0\nrin\nexit\n' > "$folder/rin.asm"
 printf 'exit\n' > "$folder/exit.asm"
@@ -168,6 +170,19 @@ refuses_sim "unknown option" "--help" --colour
 refuses "unknown kernel" "saxpy" "$raypool" run sexpy
 refuses "saxpy of nothing" "--n is 0: saxpy takes a size from 1 to" "$raypool" run saxpy --n 0
 refuses "no cycles" "--cycles" "$raypool" run saxpy --cycles 0
+# Some 11 million cycles in which nothing is transferred: a limit that was given is the limit.
+counts=("$raypool" run "$folder/count.asm" --config 4w4c --threads 4 --quiet)
+refuses "silent program without a limit" "for 10000000 cycles .* say how long with --cycles; .*unit 0: running" \
+  "${counts[@]}"
+refuses "silent program with a limit" "the limit of 2000000 cycles has passed; " "${counts[@]}" --cycles 2000000
+if "${counts[@]}" --cycles 20000000 > "$folder/stdout" 2>&1 && grep -q ' cycles$' "$folder/stdout"; then
+  echo "ok: a silent program ends within the limit that was given"
+else
+  failures=$((failures + 1))
+  echo "FAILED: a silent program within its limit:"; cat "$folder/stdout"
+fi
+refuses_sim "frame within no cycles" "the limit of 300 cycles has passed; .*traverser: " --engine model --cycles 300
+refuses_sim "limit of what has no cycles" "native .* leave --cycles out" --engine native --cycles 300
 for range in 60000:2 252:2 0:4294967295 4294967292:2; do
   refuses "words beyond the memory, $range" "$range goes beyond the memory of 256 bytes" "$raypool" run \
     "$folder/exit.asm" --memory 256 --print "$range"

@@ -12,6 +12,16 @@ void AnswerWatch::Port::clock(uint64_t cycle, bool asks, bool beat) {
   if (asks) asked.push_back(cycle);
 }
 
+std::optional<std::string> AnswerWatch::waits() const {
+  std::string all;
+  for (const Port& port : ports_) {
+    if (port.asked.empty()) continue;
+    all += fmt::format("{}{} waits for {} lines of the memory, since cycle {}", all.empty() ? "" : ", ", port.who,
+                       port.asked.size(), port.asked.front());
+  }
+  return all.empty() ? std::nullopt : std::optional(all);
+}
+
 std::optional<std::string> AnswerWatch::clock(uint64_t cycle, const ChipOutputs& outputs, const ChipInputs& inputs) {
   const auto reads = [](bool valid, bool ready, bool write) { return valid && ready && !write; };
   const TraverserPorts& traverser = outputs.traverser;

@@ -26,6 +26,9 @@ class AnswerWatch {
     return 2 * before * (chip.memory_latency + uint64_t{raypool::MemoryPort::kLineBeats} * chip.memory_cycles_per_beat);
   }
 
+  /// Who waits for a line, and since when, in a few words; nobody may.
+  std::optional<std::string> waits() const;
+
   /// Once in a cycle. What has waited for too long, in a sentence.
   std::optional<std::string> clock(uint64_t cycle, const ChipOutputs& outputs, const ChipInputs& inputs);
 

@@ -46,7 +46,8 @@ Board::Board(const ChipOptions& options, ChipDevice& chip, LineStore& store)
       reflects_(secondary_kernel(options.depth, options.reflections) == RayKernel::CastSecondary),
       memory_(store, options.configuration.chip),
       answers_(options.configuration.chip),
-      kernels_(chip.units(), options.configuration.contents()) {
+      kernels_(chip.units(), options.configuration.contents()),
+      progress_(options.watchdog_cycles, options.limits.silent()) {
   const ChipConfiguration& configuration = options.configuration.chip;
   if (has_traverser(configuration))
     watch_.emplace(options.layout, configuration.ray_pool_size, options.depth);
@@ -99,7 +100,8 @@ void Board::clock() {
     follow_kernels(outputs);
     follow_levels(outputs);
     watch(outputs);
-    if (const std::optional<std::string> waits = answers_.clock(cycle_, outputs, inputs_)) stall(*waits);
+    if (const std::optional<std::string> waits = answers_.clock(cycle_, outputs, inputs_))
+      throw ChipStalled(at_cycle(*waits) + "; " + state());
   }
   if (outputs.frame_valid) options_.frame->add(outputs.frame);
   memory_.clock(cycle_, outputs, inputs_);
@@ -135,14 +137,30 @@ void Board::follow_levels(const ChipOutputs& outputs) {
   dropped_depth_ += outputs.outcome.valid && outputs.outcome.deep;
 }
 
+// A traverser inside may test for long without a transfer at its ports. Where only these can be seen it is taken for
+// one that does while it has rays.
+void Board::count_work(const ChipOutputs& outputs) {
+  const TraverserPorts& traverser = watch_ ? outputs.traverser : inputs_;
+  const UnitInputs& to_device = outputs.to_device;
+  const bool unseen = outputs.nodes_given == ChipOutputs::kNotSeen;
+  work_ += (outputs.memory_request_valid && inputs_.memory_request_ready) +
+           (inputs_.memory_beat_valid && outputs.memory_beat_ready) + (outputs.ray_valid && traverser.ray_ready) +
+           traverser.free_valid + (outputs.frame_valid && inputs_.frame_ready) +
+           (to_device.launch_valid && outputs.device.launch_ready) + to_device.import_beat_valid +
+           (outputs.device.export_valid && to_device.export_ready) + outputs.outcome.valid + outputs.pixel_valid +
+           (unseen ? outputs.rays != 0 : (outputs.nodes_given | outputs.leaves_given) != 0);
+}
+
+uint64_t Board::due() const {
+  const uint64_t stall = traverser_ ? traverser_->stall_left() : 0;
+  return std::min(memory_.due(), stall == 0 ? kNever : cycle_ + stall);
+}
+
 void Board::watch(const ChipOutputs& outputs) {
-  transfers_ += (outputs.memory_request_valid && inputs_.memory_request_ready) + outputs.ray_valid +
-                (watch_ ? outputs.traverser : inputs_).free_valid + outputs.frame_valid +
-                (outputs.to_device.launch_valid && outputs.device.launch_ready) + outputs.outcome.valid +
-                outputs.pixel_valid;
+  count_work(outputs);
   if (options_.progress && cycle_ % Monitor::kProgressCycles == 0) show_progress();
-  if (options_.cycle_limit != 0 && cycle_ == options_.cycle_limit)
-    stall(Monitor::limit_sentence(options_.cycle_limit, true));
+  if (options_.limits.cycles != 0 && cycle_ == options_.limits.cycles)
+    throw LimitPassed(at_cycle(Monitor::limit_sentence(options_.limits.cycles, true)), state());
   if (cycle_ == counted_cycles(options_.configuration)) {
     throw InputError(
         fmt::format("{} cycles have passed, and after so many a performance counter of {}, of {} bits, may "
@@ -150,27 +168,59 @@ void Board::watch(const ChipOutputs& outputs) {
                     cycle_, options_.configuration.name, options_.configuration.counter_bits));
   }
   if (options_.watchdog_cycles == 0 || cycle_ % options_.watchdog_cycles != 0) return;
-  const uint64_t retired = chip_.counter(counter::kInstructions);
-  silent_ = transfers_ == transfers_before_ && cycle_ != 0 ? silent_ + 1 : 0;
-  if (silent_ > 0 && retired == retired_before_)
-    stall(fmt::format("the chip is locked up: no instruction has ended and nothing has been transferred for {} cycles",
-                      options_.watchdog_cycles));
-  if (silent_ >= Monitor::kSilentPeriods)
-    stall(fmt::format("a program runs without end: nothing has been transferred for {} cycles",
-                      Monitor::kSilentPeriods * options_.watchdog_cycles));
-  retired_before_ = retired;
-  transfers_before_ = transfers_;
+  switch (progress_.look(cycle_, {chip_.counter(counter::kInstructions), work_, due()})) {
+    case ProgressWatch::State::GoesOn:
+      break;
+    case ProgressWatch::State::LockedUp:
+      throw ChipStalled(at_cycle(progress_.locked_up()) + "; " + state());
+    case ProgressWatch::State::Silent:
+      throw LimitPassed(at_cycle(progress_.silent()), state());
+  }
 }
 
-void Board::stall(const std::string& what) const {
+std::string Board::at_cycle(const std::string& what) const { return fmt::format("{}, at cycle {}", what, cycle_); }
+
+std::string Board::state() const {
   const ChipOutputs& o = chip_.outputs();
-  throw ChipStalled(
-      fmt::format("{}, at cycle {}; {} kernels under way; ray pool {} of {} rays, {} of them shadow rays; intersection "
-                  "pool {} normal, "
-                  "{} shadow and {} direct of {} each; {} pixels of {}x{} have been cast",
-                  what, cycle_, kernels_.under_way(), o.rays, options_.configuration.chip.ray_pool_size, o.shadow_rays,
-                  o.size[ImportKind::Normal], o.size[ImportKind::Shadow], o.size[ImportKind::Direct],
-                  options_.configuration.chip.intersection_pool_size, cast_, options_.width, options_.height));
+  const ChipConfiguration& chip = options_.configuration.chip;
+  const TraverserPorts& traverser = watch_ ? o.traverser : inputs_;
+  std::string waits;
+  const auto add = [&](bool shown, const std::string& what) {
+    if (shown) waits += what + "; ";
+  };
+  for (uint32_t unit = 0; unit < chip_.units(); ++unit) {
+    const bool busy = (o.device.busy >> unit & 1) != 0, quiet = (o.quiet >> unit & 1) != 0;
+    add(busy || !quiet, fmt::format("unit {} {}{}", unit, busy ? "runs a kernel" : "has none",
+                                    quiet ? "" : " and waits for the memory port"));
+  }
+  add(o.device.export_valid && !o.to_device.export_ready,
+      fmt::format("unit {} waits for the ray pool to take a ray", o.device.export_unit));
+  add(o.device.import_request_valid && !o.to_device.import_request_ready,
+      fmt::format("unit {} waits for the intersection pool to give it a package", o.device.import_request_unit));
+  add(o.device.memory_request_valid && !o.to_device.memory_request_ready,
+      "a unit's request waits for the memory port, whose queue is full");
+  add(o.to_device.launch_valid && !o.device.launch_ready, "the controller waits for a unit that takes a kernel");
+  const bool waits_for_rays =
+      cast_ >= uint64_t{options_.width} * options_.height &&
+      o.available[ImportKind::Normal] + o.available[ImportKind::Shadow] + o.available[ImportKind::Direct] == 0;
+  add(!o.to_device.launch_valid && o.device.launch_ready,
+      waits_for_rays
+          ? "the controller has nothing to launch until intersections come"
+          : fmt::format("the controller launches nothing, though unit {} could take a kernel", o.device.launch_unit));
+  add(o.ray_valid && !traverser.ray_ready, "a ray waits for the traverser to take it");
+  add(traverser.put_valid && (o.put_ready >> to_underlying(traverser.put_kind) & 1) == 0,
+      "the traverser waits for room in the intersection pool");
+  add(traverser.contribution_valid && !o.contribution_ready, "the traverser waits for the frame port");
+  add(traverser.tree_request_valid && !o.tree_request_ready, "the traverser waits for the memory port");
+  add(o.memory_request_valid && !inputs_.memory_request_ready, "the memory port waits for the memory");
+  if (const std::optional<std::string> lines = answers_.waits()) add(true, *lines);
+  add(traverser_.has_value(), traverser_ ? traverser_->describe() : "");
+  return fmt::format(
+      "{}{} kernels under way; ray pool {} of {} rays{}, {} of them shadow rays; intersection pool {} normal, "
+      "{} shadow and {} direct of {} each; {} pixels of {}x{} have been cast",
+      waits, kernels_.under_way(), o.rays, chip.ray_pool_size, o.rays == chip.ray_pool_size ? ", which is full" : "",
+      o.shadow_rays, o.size[ImportKind::Normal], o.size[ImportKind::Shadow], o.size[ImportKind::Direct],
+      chip.intersection_pool_size, cast_, options_.width, options_.height);
 }
 
 // Of the pixels that are cast: which of them are finished nobody outside knows.

@@ -12,6 +12,7 @@
 #include "chip/chip.hpp"
 #include "chip/frame_figures.hpp"
 #include "chip/port_traverser.hpp"
+#include "chip/progress_watch.hpp"
 #include "chip/traverser_watch.hpp"
 #include "machine/chip_device.hpp"
 
@@ -41,7 +42,11 @@ class Board {
   void follow_kernels(const ChipOutputs& outputs);
   void follow_levels(const ChipOutputs& outputs);
   void watch(const ChipOutputs& outputs);
-  void stall(const std::string& what) const;
+  void count_work(const ChipOutputs& outputs);
+  uint64_t due() const;
+  std::string at_cycle(const std::string& what) const;
+  /// Who waits for what.
+  std::string state() const;
   RayKernel kernel_at(uint32_t pc) const;
   void show_progress() const;
   FrameFigures figures();
@@ -64,7 +69,8 @@ class Board {
   uint64_t busy_cycles_ = 0, dropped_depth_ = 0, cast_ = 0;
   LevelStatistics rays_;
   EnumArray<ImportKind, LevelStatistics, kImportKinds> intersections_;
-  uint64_t transfers_ = 0, transfers_before_ = 0, retired_before_ = 0, silent_ = 0;
+  uint64_t work_ = 0;  // transfers, and lines that the caches of a traverser inside give
+  ProgressWatch progress_;
 };
 
 }  // namespace chip

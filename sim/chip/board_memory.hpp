@@ -75,6 +75,8 @@ class BoardMemory {
     if (outputs.memory_request_valid) take(cycle, outputs.memory_request);
   }
   bool busy() const { return !lines_.empty(); }
+  /// Cycle of the next beat; kNever: none is on its way.
+  uint64_t due() const { return lines_.empty() ? kNever : lines_.front().due; }
 
  private:
   struct Line {

@@ -102,7 +102,7 @@ TEST(Board, ShortestLatency) {
 
 TEST(Board, GivesUpAndSaysWhere) {
   BoardRun board({"", 4, 4, 1, 16, 8, 2});
-  board.run.options.cycle_limit = 500;
+  board.run.options.limits.cycles = 500;
   const std::string error = error_of(board);
   EXPECT_NE(error.find("the limit of 500 cycles has passed, at cycle 500; "), std::string::npos) << error;
 }

@@ -32,6 +32,16 @@ struct ChipProgress {
   uint64_t rays = 0;  ///< traced
 };
 
+/// When to give up a run in which something is still done.
+struct RunLimits {
+  uint64_t cycles = 0;  ///< so many; 0: never. Of a program on an engine without time: warp instructions
+  /// So many cycles in which instructions end and nothing else happens, as in a program without end; 0: never. By
+  /// default 10 million, unless `cycles` says how long a run may take.
+  std::optional<uint64_t> silent_cycles;
+
+  uint64_t silent() const { return silent_cycles.value_or(cycles == 0 ? 10'000'000 : 0); }
+};
+
 struct ChipOptions {
   Configuration configuration;    ///< of the unit and of the chip
   ComputeUnit* device = nullptr;  ///< fits `configuration`; run_chip resets it and leaves its counters to be read
@@ -58,8 +68,9 @@ struct ChipOptions {
 
   PolicyMaker own_policy;                             ///< makes one of the caller's own, in place of the one named
   std::function<void(const ChipProgress&)> progress;  ///< called now and then, and at the end
-  uint64_t watchdog_cycles = 100'000;  ///< this long without a retired instruction or a transfer is an error; 0: never
-  uint64_t cycle_limit = 0;            ///< give up after this many cycles; 0: never
+  /// So many cycles in which nothing is done, and nothing is due, are an error; 0: never looked at.
+  uint64_t watchdog_cycles = 100'000;
+  RunLimits limits;
 };
 
 /// What bounds a run: the Mrays/s at which this would be busy in every cycle, everything else being as it was.
@@ -142,9 +153,17 @@ struct TraverserFault : InputError {
   TreeFault fault;
 };
 
-/// Nothing moves any more, or cycle_limit has passed. what() gives the state of controller, pools and units.
+/// Nothing moves any more, or a limit has passed. what() says who waits for what.
 struct ChipStalled : std::runtime_error {
   using std::runtime_error::runtime_error;
+};
+
+/// One of the RunLimits has passed, and the run might have ended later.
+struct LimitPassed : ChipStalled {
+  /// `passed`: which one; `state`: who waits for what.
+  LimitPassed(const std::string& passed, const std::string& state)
+      : ChipStalled(passed + "; " + state), limit(passed), rest(state) {}
+  std::string limit, rest;
 };
 
 /// Draws one frame. Throws InputError for options out of range, ChipFault, ChipStalled, and whatever a unit's clock()

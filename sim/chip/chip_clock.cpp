@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "machine/port_cycles.hpp"
+
 namespace raypool::chip {
 
 namespace {
@@ -23,6 +25,8 @@ sc_core::sc_time ChipClock::until(uint64_t cycle) const {
 }
 
 uint64_t ChipClock::cycle_after(const sc_core::sc_time& time) const {
+  // What takes all the time that there is never ends.
+  if (time.value() > UINT64_MAX - systemc_time() - kCyclePicoseconds) return kNever;
   return (systemc_time() + time.value() + kCyclePicoseconds - 1) / kCyclePicoseconds;
 }
 

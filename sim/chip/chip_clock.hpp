@@ -34,7 +34,7 @@ class TimeIf : virtual public sc_core::sc_interface {
   uint64_t cycle() const { return cycle_; }
   /// The beginning of a cycle, seen from SystemC's time. Not before it.
   virtual sc_core::sc_time until(uint64_t cycle) const = 0;
-  /// The cycle in which what takes so long from SystemC's time on is over.
+  /// The cycle in which what takes so long from SystemC's time on is over; kNever: not in the time that SystemC has.
   virtual uint64_t cycle_after(const sc_core::sc_time& time) const = 0;
 
   /// Triggers `event` in the coming `phase` of this cycle, or of a later one. An earlier notification that is pending

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <stdexcept>
 
@@ -40,7 +41,7 @@ Chip::Chip(const sc_core::sc_module_name& name, const ChipOptions& options)
                                  secondary_kernel(options.depth, options.reflections) == RayKernel::CastSecondary,
                                  options.device->timed()})),
       device_("device_host", *options.device),
-      monitor_("monitor", {options.watchdog_cycles, options.cycle_limit, true, options.progress != nullptr,
+      monitor_("monitor", {options.watchdog_cycles, options.limits, true, options.progress != nullptr,
                            options.device->timed() ? &options.configuration : nullptr}) {
   memory_port_.clock(clock_.now);
   memory_port_.socket.bind(memory);
@@ -103,6 +104,19 @@ void Chip::watch_tiles() {
 size_t Chip::place(uint32_t x, uint32_t y) const {
   const uint32_t columns = (options_.width + controller_->tile_width() - 1) / controller_->tile_width();
   return size_t{y / controller_->tile_height()} * columns + x / controller_->tile_width();
+}
+
+WorkDone Chip::work_done() {
+  WorkDone done = traverser_->work_done();
+  done.instructions = device_.instructions();
+  done.other += device_.transfers();
+  done.due = std::min(done.due, memory_port_.response_due());
+  return done;
+}
+
+std::string Chip::describe() {
+  return fmt::format("{}; {}; {}; {}", controller_->describe(), traverser_->describe(), memory_port_.describe(),
+                     device_.describe());
 }
 
 void Chip::show_progress() {

@@ -34,9 +34,8 @@ class Chip : public sc_core::sc_module, public WatchedIf {
   /// Resets the device and draws. Throws as run_chip does.
   ChipResult draw();
 
-  uint64_t retired() override { return device_.instructions(); }
-  uint64_t transfers() override { return rays_traced() + traverser_->counts().delivered + device_.transfers(); }
-  std::string describe() override { return controller_->describe() + "; " + device_.describe(); }
+  WorkDone work_done() override;
+  std::string describe() override;
   void show_progress() override;
 
  private:

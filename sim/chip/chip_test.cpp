@@ -295,7 +295,7 @@ TEST(Chip, EndsWithItsStateWhenNothingMoves) {
 
 TEST(Chip, GivesUpAtTheCycleLimit) {
   FrameRun run(8, 8, 1, 64, 64, 1);
-  run.options.cycle_limit = 1000;
+  run.options.limits.cycles = 1000;
   EXPECT_THROW(run.go(), ChipStalled);
 }
 

@@ -100,15 +100,30 @@ void Controller::give(RayKernel kernel, LaunchCommand command) {
 }
 
 std::string Controller::describe() const {
+  const auto kind = [&](ImportKind of, const char* name) {
+    const uint32_t promised = intersections->size(of) - std::min(intersections->size(of), intersections->available(of));
+    return fmt::format("{} {}{}", intersections->size(of), name,
+                       promised == 0 ? "" : fmt::format(" ({} of them promised to a kernel)", promised));
+  };
+  std::string waits = "waits for a unit that takes a kernel";
+  if (device->can_launch() && next_tile_.at_end() && intersections->available(ImportKind::Normal) == 0 &&
+      intersections->available(ImportKind::Shadow) == 0 && intersections->available(ImportKind::Direct) == 0) {
+    waits = "has nothing to launch until intersections come";
+  } else if (device->can_launch()) {
+    waits = fmt::format("launches nothing, though unit {} could take a kernel: {} proposes none that may begin",
+                        device->next_unit(), options_.own_policy ? "a policy of the caller's own" : "its policy");
+  }
   return fmt::format(
-      "controller: next tile at ({}, {}) of {}x{} pixels, {} pixels finished, {} held; ray pool {} of {} rays, {} of "
-      "them shadow "
-      "rays, {} more may "
-      "come; intersection pool {} normal and {} shadow of {} each, {} and {} of them not promised to a kernel",
-      next_tile_.tile().left, next_tile_.tile().top, width_, height_, ledger->finished(), held(), rays->size(),
-      chip_.ray_pool_size, rays->shadow_rays(), rays_to_come(), intersections->size(ImportKind::Normal),
-      intersections->size(ImportKind::Shadow), chip_.intersection_pool_size,
-      intersections->available(ImportKind::Normal), intersections->available(ImportKind::Shadow));
+      "the controller {}; {} pixels finished, {} held, {}; ray pool {} of {} rays{}, {} of them shadow rays, {} more "
+      "may "
+      "come; intersection pool {}, {} and {} of {} each",
+      waits, ledger->finished(), held(),
+      next_tile_.at_end() ? "none to cast"
+                          : fmt::format("next tile at ({}, {}) of {}x{} pixels", next_tile_.tile().left,
+                                        next_tile_.tile().top, width_, height_),
+      rays->size(), chip_.ray_pool_size, rays->size() == chip_.ray_pool_size ? ", which is full" : "",
+      rays->shadow_rays(), rays_to_come(), kind(ImportKind::Normal, "normal"), kind(ImportKind::Shadow, "shadow"),
+      kind(ImportKind::Direct, "direct"), chip_.intersection_pool_size);
 }
 
 std::unique_ptr<Controller> make_controller(const sc_core::sc_module_name& name, const ChipOptions& options) {

@@ -104,7 +104,9 @@ void DeviceHost::serve_memory(const UnitOutputs& outputs, uint64_t now) {
     ++transfers_;
   }
   inputs_.memory_response_valid = memory->response_due() <= now;
-  if (inputs_.memory_response_valid) memory->response(inputs_.memory_response);
+  if (!inputs_.memory_response_valid) return;
+  memory->response(inputs_.memory_response);
+  ++transfers_;
 }
 
 void DeviceHost::serve_imports(const UnitOutputs& outputs, uint64_t now) {
@@ -178,16 +180,19 @@ std::string DeviceHost::describe() {
                                                        : "draining",
                         given_[unit], memory->quiet(unit) ? "" : ", memory response to come");
   }
-  const auto add = [&](bool shown, const char* what) {
-    if (shown) ports += (ports.empty() ? "" : ", ") + std::string(what);
+  const auto add = [&](bool shown, const std::string& what) {
+    if (shown) ports += (ports.empty() ? "" : ", ") + what;
   };
-  add(pending_.has_value(), "launch offered");
-  add(o.launch_ready, "ready for a launch");
-  add(o.memory_request_valid, "memory request waits");
-  add(o.import_request_valid, "import request waits");
-  add(o.export_valid, "ray waits for the ray pool");
-  add(o.frame_valid, "contribution waits");
-  return fmt::format("{}{} instructions retired; {}", text, instructions(), ports.empty() ? "ports quiet" : ports);
+  add(pending_.has_value(), fmt::format("a launch waits for unit {}", pending_unit_));
+  add(o.launch_ready && !pending_, fmt::format("unit {} waits for a launch", o.launch_unit));
+  add(o.memory_request_valid && !inputs_.memory_request_ready,
+      "a request waits for the memory port, whose queue is full");
+  add(o.import_request_valid && !inputs_.import_request_ready,
+      fmt::format("unit {} waits for the intersection pool to give it a package", o.import_request_unit));
+  add(o.export_valid && !inputs_.export_ready,
+      fmt::format("unit {} waits for the ray pool to take a ray", o.export_unit));
+  return fmt::format("{}{} instructions retired; {}", text, instructions(),
+                     ports.empty() ? "nothing waits at the units' ports" : ports);
 }
 
 }  // namespace raypool::chip

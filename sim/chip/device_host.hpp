@@ -41,7 +41,7 @@ class DeviceHost : public sc_core::sc_module, public LaunchIf {
   void launch(const LaunchCommand& command) override;
 
   uint64_t busy_cycles() const { return busy_cycles_; }  ///< in which a kernel ran, summed over the units
-  uint64_t transfers() const { return transfers_; }  ///< beats, requests, launches and contributions, for the watchdog
+  uint64_t transfers() const { return transfers_; }      ///< beats, requests, launches and contributions
   uint64_t instructions() { return device_.counter(counter::kInstructions); }
   /// For error messages: what the device's ports show.
   std::string describe();

@@ -8,6 +8,7 @@
 #include <systemc>
 #include <vector>
 
+#include "chip/progress_watch.hpp"
 #include "kernel/kernels.hpp"
 #include "machine/compute_unit.hpp"
 #include "machine/packages.hpp"
@@ -230,9 +231,8 @@ class LedgerIf : virtual public sc_core::sc_interface {
 /// A chip, for the monitor that watches its run.
 class WatchedIf : virtual public sc_core::sc_interface {
  public:
-  virtual uint64_t retired() = 0;      ///< instructions so far
-  virtual uint64_t transfers() = 0;    ///< so far
-  virtual std::string describe() = 0;  ///< state, for the error
+  virtual WorkDone work_done() = 0;    ///< so far, and what is due
+  virtual std::string describe() = 0;  ///< who waits for what, for the error
   virtual void show_progress() = 0;
 };
 

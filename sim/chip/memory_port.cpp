@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 
+#include "chip/progress_watch.hpp"
 #include "isa/isa.hpp"
 
 namespace raypool::chip {
@@ -39,6 +40,12 @@ void MemoryPort::read(const MemoryRequest& request, uint64_t start) {
   std::array<Beat, kLineBeats> data{};
   port_.line(transport_.read(*socket[0], *clock[0], request.address, data, start), data);
   response_due_ = port_.response_due();
+}
+
+std::string MemoryPort::describe() const {
+  if (response_due_ == kNever) return "memory port: nothing is on its way";
+  if (response_due_ >= kFarAway) return "memory port: the device waits for a line that the memory never gives";
+  return fmt::format("memory port: the device waits for a line that the memory gives in cycle {}", response_due_);
 }
 
 uint64_t MemoryPort::turn(uint64_t cycle, uint32_t beats) {

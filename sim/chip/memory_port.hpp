@@ -38,6 +38,8 @@ class MemoryPort : public sc_core::sc_module, public MemoryIf, public MemoryTurn
   uint64_t turn(uint64_t cycle, uint32_t beats) override;
   uint64_t line(uint64_t end) override;
 
+  /// What is on its way, for an error.
+  std::string describe() const;
   uint64_t reads() const { return port_.reads(); }    ///< lines, of the device
   uint64_t writes() const { return port_.writes(); }  ///< quadwords, of the device
   uint64_t busy_cycles() const { return port_.busy_cycles(); }

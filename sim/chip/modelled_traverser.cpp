@@ -1,5 +1,7 @@
 #include "chip/modelled_traverser.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <iterator>
 #include <stdexcept>
@@ -37,6 +39,28 @@ void ModelledTraverser::room_made(ImportKind kind) {
 
 void ModelledTraverser::catch_up(uint64_t cycle) {
   if (simulate(cycle - 1)) throw std::logic_error("a ray left the traverser sooner than it could");
+}
+
+// The machine may be far behind: up to here its work is that of the present.
+WorkDone ModelledTraverser::work_done() {
+  catch_up(clock->cycle());
+  WorkDone done = Traverser::work_done();
+  done.other += machine_->work().steps();
+  done.due = machine_->line_due();
+  return done;
+}
+
+std::string ModelledTraverser::describe() {
+  const auto held = [&](ImportKind kind) { return held_back_[kind].size(); };
+  const size_t done = held(ImportKind::Normal) + held(ImportKind::Shadow) + held(ImportKind::Direct);
+  return fmt::format(
+      "traverser: {} rays in flight, {} wait to enter, {} are done and wait for room ({} normal, {} shadow and {} "
+      "direct "
+      "ones); {}",
+      rays->rays().size() - untaken_.size() - done, untaken_.size(), done, held(ImportKind::Normal),
+      held(ImportKind::Shadow), held(ImportKind::Direct),
+      machine_->line_due() == kNever ? "none waits for a line of the memory"
+                                     : fmt::format("a line of the memory comes in cycle {}", machine_->line_due()));
 }
 
 bool ModelledTraverser::simulate(uint64_t to) {

@@ -29,6 +29,8 @@ class ModelledTraverser : public Traverser, private traverser::MemoryTurns {
   void room_made(ImportKind kind) override;
   void kernel_ended(uint32_t /*unit*/) override {}
   void catch_up(uint64_t cycle) override;
+  WorkDone work_done() override;
+  std::string describe() override;
   void remember(const VisitList& places) override { machine_->remember(places); }
   std::optional<TraverserWork> work() const override { return machine_->work(); }
 

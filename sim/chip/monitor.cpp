@@ -2,13 +2,12 @@
 
 #include <fmt/format.h>
 
-#include "chip/chip.hpp"
 #include "config/limits.hpp"
 
 namespace raypool::chip {
 
 Monitor::Monitor(const sc_core::sc_module_name& name, const MonitorOptions& options)
-    : sc_module(name), options_(options) {
+    : sc_module(name), options_(options), progress_(options.watchdog_cycles, options.limits.silent()) {
   SC_METHOD(show);
   sensitive << show_;
   dont_initialize();
@@ -29,7 +28,7 @@ void Monitor::start_of_simulation() {
   // No frame takes so long that wide ones do.
   if (options_.counters_of != nullptr && options_.counters_of->counter_bits < 40)
     clock->notify(counted_out_, Phase::Monitor, counted_cycles(*options_.counters_of));
-  if (options_.cycle_limit > 0) clock->notify(limit_, Phase::Monitor, options_.timed ? options_.cycle_limit : 1);
+  if (options_.limits.cycles > 0) clock->notify(limit_, Phase::Monitor, options_.timed ? options_.limits.cycles : 1);
 }
 
 void Monitor::counted_out() {
@@ -51,30 +50,23 @@ void Monitor::show() {
 
 void Monitor::watch() {
   clock->guard([&] {
-    const uint64_t retired = watched->retired(), transfers = watched->transfers();
-    silent_ = transfers == transfers_ ? silent_ + 1 : 0;
-    if (silent_ > 0 && retired == retired_) {
-      throw ChipStalled(
-          fmt::format("the chip is locked up: no instruction has ended and nothing has been transferred for {} cycles, "
-                      "at cycle {}; {}",
-                      options_.watchdog_cycles, clock->cycle(), watched->describe()));
+    const uint64_t now = clock->cycle();
+    switch (progress_.look(now, watched->work_done())) {
+      case ProgressWatch::State::GoesOn:
+        break;
+      case ProgressWatch::State::LockedUp:
+        throw ChipStalled(fmt::format("{}, at cycle {}; {}", progress_.locked_up(), now, watched->describe()));
+      case ProgressWatch::State::Silent:
+        throw LimitPassed(fmt::format("{}, at cycle {}", progress_.silent(), now), watched->describe());
     }
-    if (silent_ >= kSilentPeriods) {
-      throw ChipStalled(
-          fmt::format("a program runs without end: nothing has been transferred for {} cycles, at cycle {}; {}",
-                      kSilentPeriods * options_.watchdog_cycles, clock->cycle(), watched->describe()));
-    }
-    retired_ = retired;
-    transfers_ = transfers;
     clock->notify(watch_, Phase::Monitor, options_.watchdog_cycles);
   });
 }
 
 void Monitor::limit() {
   clock->guard([&] {
-    if (options_.timed || watched->retired() > options_.cycle_limit)
-      throw ChipStalled(
-          fmt::format("{}; {}", limit_sentence(options_.cycle_limit, options_.timed), watched->describe()));
+    if (options_.timed || watched->work_done().instructions > options_.limits.cycles)
+      throw LimitPassed(limit_sentence(options_.limits.cycles, options_.timed), watched->describe());
     clock->notify(limit_, Phase::Monitor, 1);
   });
 }

@@ -5,17 +5,19 @@
 #include <string>
 #include <systemc>
 
+#include "chip/chip.hpp"
 #include "chip/chip_clock.hpp"
 #include "chip/interfaces.hpp"
+#include "chip/progress_watch.hpp"
 #include "config/configuration.hpp"
 
 namespace raypool::chip {
 
 struct MonitorOptions {
-  uint64_t watchdog_cycles = 0;  ///< 0: never
-  uint64_t cycle_limit = 0;      ///< cycles, or instructions of an engine without time; 0: none
-  bool timed = true;             ///< the engine has a notion of time: a cycle is not thousands of instructions
-  bool progress = false;         ///< show_progress() every kProgressCycles, without time every cycle
+  uint64_t watchdog_cycles = 0;  ///< between two looks at what has been done; 0: none
+  RunLimits limits;
+  bool timed = true;      ///< the engine has a notion of time: a cycle is not thousands of instructions
+  bool progress = false;  ///< show_progress() every kProgressCycles, without time every cycle
   const Configuration* counters_of = nullptr;  ///< ends when a performance counter of this machine may begin anew
 };
 
@@ -31,8 +33,6 @@ class Monitor : public sc_core::sc_module {
   static std::string limit_sentence(uint64_t limit, bool timed);
 
   static constexpr uint64_t kProgressCycles = 16384;
-  /// A program may compute for long without a transfer, but not for so many watchdog periods.
-  static constexpr uint64_t kSilentPeriods = 100;
 
  private:
   void start_of_simulation() override;
@@ -44,8 +44,7 @@ class Monitor : public sc_core::sc_module {
 
   MonitorOptions options_;
   sc_core::sc_event show_, watch_, limit_, counted_out_;
-  uint64_t retired_ = 0, transfers_ = 0;
-  uint64_t silent_ = 0;  // periods without a transfer
+  ProgressWatch progress_;
 };
 
 }  // namespace raypool::chip

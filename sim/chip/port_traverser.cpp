@@ -1,5 +1,7 @@
 #include "chip/port_traverser.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "bits.hpp"
@@ -86,6 +88,18 @@ void PortTraverser::trace(const PlacedRay& ray) {
     result.record = packed(hit, layout_);
     results_[result.kind].push_back(result);
   }
+}
+
+std::string PortTraverser::describe() const {
+  const auto waiting = [&](ImportKind kind) {
+    return results_[kind].size() + (leaving_ && leaving_->kind == kind ? 1 : 0);
+  };
+  return fmt::format(
+      "traverser: {} rays wait to be traced, until a kernel ends or the shader has stalled for {} cycles; {} normal, "
+      "{} "
+      "shadow and {} direct intersections wait for the intersection pool",
+      rays_.size(), stall_cycles_, waiting(ImportKind::Normal), waiting(ImportKind::Shadow),
+      waiting(ImportKind::Direct));
 }
 
 // What was offered in this cycle, and has been taken.

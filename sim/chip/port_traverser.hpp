@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <deque>
 #include <optional>
+#include <string>
 
 #include "chip/ports.hpp"
 #include "chip/ray_fates.hpp"
@@ -30,6 +31,13 @@ class PortTraverser {
   void clock(const ChipOutputs& outputs, const ChipInputs& inputs, bool stalls);
 
   const TraverserCounts& counts() const { return counts_; }
+  /// Cycles until the shader's stall has lasted long enough for rays to be traced; 0: it does not stall, or there are
+  /// none.
+  uint64_t stall_left() const {
+    return stalled_for_ == 0 || rays_.empty() ? 0 : stall_cycles_ - stalled_for_ % stall_cycles_;
+  }
+  /// What its rays wait for, for an error.
+  std::string describe() const;
 
  private:
   struct PlacedRay {

@@ -77,7 +77,7 @@ ProgramChip::ProgramChip(const sc_core::sc_module_name& name, const ProgramOptio
       memory_port_("memory_port", options.configuration.chip),
       grid_("grid", options_),
       device_("device_host", *options.device),
-      monitor_("monitor", {options.watchdog_cycles, options.cycle_limit, options.device->timed(),
+      monitor_("monitor", {options.watchdog_cycles, options.limits, options.device->timed(),
                            options.progress != nullptr, options.device->timed() ? &options.configuration : nullptr}) {
   memory_port_.clock(clock_.now);
   memory_port_.socket.bind(memory);
@@ -104,8 +104,8 @@ ProgramResult ProgramChip::run() {
   sc_core::sc_start();
   clock_.rethrow();
   // Without time a program may end and pass the limit in the same cycle.
-  if (!device.timed() && options_.cycle_limit > 0 && device_.instructions() > options_.cycle_limit)
-    throw ChipStalled(Monitor::limit_sentence(options_.cycle_limit, false) + "; the program has ended since");
+  if (!device.timed() && options_.limits.cycles > 0 && device_.instructions() > options_.limits.cycles)
+    throw LimitPassed(Monitor::limit_sentence(options_.limits.cycles, false), "the program has ended since");
 
   ProgramResult result;
   result.timed = device.timed();

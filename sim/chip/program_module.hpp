@@ -67,9 +67,10 @@ class ProgramChip : public sc_core::sc_module, public WatchedIf {
   /// Resets the device and runs the program. Throws as run_program does.
   ProgramResult run();
 
-  uint64_t retired() override { return device_.instructions(); }
-  uint64_t transfers() override { return device_.transfers(); }
-  std::string describe() override { return grid_.describe() + "; " + device_.describe(); }
+  WorkDone work_done() override { return {device_.instructions(), device_.transfers(), memory_port_.response_due()}; }
+  std::string describe() override {
+    return grid_.describe() + "; " + memory_port_.describe() + "; " + device_.describe();
+  }
   void show_progress() override { options_.progress(clock_.cycle(), device_.instructions()); }
 
  private:

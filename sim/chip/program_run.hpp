@@ -19,8 +19,8 @@ struct ProgramOptions {
   uint32_t blocks = 1;   ///< launched with block words 0 .. blocks-1
   uint32_t threads = 1;  ///< a block, 1 .. contents
   std::array<uint32_t, kArguments> arguments{};
-  uint64_t watchdog_cycles = 100'000;
-  uint64_t cycle_limit = 0;  ///< cycles, or warp instructions of an engine without time; 0: none
+  uint64_t watchdog_cycles = 100'000;  ///< as of ChipOptions
+  RunLimits limits;
   /// Called now and then with the cycles and warp instructions so far; may be empty.
   std::function<void(uint64_t cycles, uint64_t instructions)> progress;
 };

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "machine/functional_unit.hpp"
+#include "machine/model.hpp"
 #include "machine/test_program.hpp"
 
 namespace raypool {
@@ -78,10 +79,39 @@ TEST(ProgramRun, RefusesProgramsThatNeedThePools) {
 TEST(ProgramRun, GivesUpOnAProgramThatNeverEnds) {
   Bench bench(assembled("@p1 jnone 0; exit"));
   bench.options.watchdog_cycles = 10;
-  EXPECT_THROW(run_program(bench.options), ChipStalled);
+  bench.options.limits.silent_cycles = 1000;
+  EXPECT_THROW(run_program(bench.options), LimitPassed);
   bench.options.watchdog_cycles = 0;
-  bench.options.cycle_limit = 200;
-  EXPECT_THROW(run_program(bench.options), ChipStalled);
+  bench.options.limits = {200, {}};
+  EXPECT_THROW(run_program(bench.options), LimitPassed);
+}
+
+// Some 12,000 cycles in which nothing passes a port.
+TEST(ProgramRun, OfAKernelThatCountsForLongTheLimitThatWasGivenHolds) {
+  const std::vector<uint64_t> code = assembled(R"(
+      mov r1, 1000
+      igt p1, r1, 0
+      @p1 loop 5
+      @p1 isub r1, r1, 1
+      @p1 igt p1, r1, 0
+      exit)");
+  const auto limit_passed = [&](const RunLimits& limits) {
+    Bench bench(code);
+    bench.unit = make_model(bench.configuration, bench.memory, 1).device;
+    bench.options.device = bench.unit.get();
+    bench.options.watchdog_cycles = 100;
+    bench.options.limits = limits;
+    try {
+      run_program(bench.options);
+      return std::string();
+    } catch (const LimitPassed& passed) {
+      return passed.limit;
+    }
+  };
+  EXPECT_NE(limit_passed({0, 5000}).find("for 5000 cycles instructions have ended"), std::string::npos);
+  EXPECT_EQ(limit_passed({1'000'000, {}}), "") << "a limit that was given is the limit";
+  EXPECT_EQ(limit_passed({0, 0}), "");
+  EXPECT_EQ(limit_passed({3000, {}}), "the limit of 3000 cycles has passed");
 }
 
 TEST(ProgramRun, WithoutTimeTheLimitCountsInstructions) {
@@ -89,9 +119,9 @@ TEST(ProgramRun, WithoutTimeTheLimitCountsInstructions) {
   Bench bench(number_threads());
   bench.options.blocks = 3;
   bench.options.arguments[0] = kResults;
-  bench.options.cycle_limit = 3 * 80;
+  bench.options.limits.cycles = 3 * 80;
   EXPECT_EQ(run_program(bench.options).counters[counter::kInstructions], 3u * 80);
-  --bench.options.cycle_limit;
+  --bench.options.limits.cycles;
   try {
     run_program(bench.options);
     FAIL() << "no limit";

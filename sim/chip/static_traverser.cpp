@@ -1,5 +1,9 @@
 #include "chip/static_traverser.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
 namespace raypool::chip {
 
 StaticTraverser::StaticTraverser(const sc_core::sc_module_name& name, const Tracing& tracing)
@@ -21,9 +25,40 @@ void StaticTraverser::kernel_ended(uint32_t /*unit*/) {
 }
 
 void StaticTraverser::shader_stalls(bool stalls) {
-  if (!stalling_ && stalls) clock->notify(stall_over_, Phase::Traverser, stall_cycles_);
-  if (stalling_ && !stalls) stall_over_.cancel();
+  if (!stalling_ && stalls) wait_for_end_of_stall();
+  if (stalling_ && !stalls) {
+    stall_over_.cancel();
+    stall_until_ = 0;
+  }
   stalling_ = stalls;
+}
+
+void StaticTraverser::wait_for_end_of_stall() {
+  stall_until_ = clock->cycle() + stall_cycles_;
+  clock->notify(stall_over_, Phase::Traverser, stall_cycles_);
+}
+
+// The end of a stall moves something only if a ray is there that can be traced, or leave.
+WorkDone StaticTraverser::work_done() {
+  WorkDone done = Traverser::work_done();
+  const PooledRays& pool = rays->rays();
+  if (stall_until_ != 0 &&
+      std::any_of(pool.begin(), pool.end(), [&](const PooledRay& ray) { return !ray.traced || may_leave(ray); }))
+    done.due = stall_until_;
+  return done;
+}
+
+std::string StaticTraverser::describe() {
+  uint32_t untraced = 0, without_room = 0;
+  for (const PooledRay& ray : rays->rays()) {
+    untraced += !ray.traced;
+    without_room += ray.traced && !may_leave(ray);
+  }
+  return fmt::format(
+      "traverser: {} rays wait to be traced, until a kernel ends or the shader has stalled for {} cycles; {} traced "
+      "ones "
+      "wait for room in the intersection pool",
+      untraced, stall_cycles_, without_room);
 }
 
 void StaticTraverser::end_of_kernel() {
@@ -39,7 +74,7 @@ void StaticTraverser::end_of_stall() {
   clock->guard([&] {
     counts_.most_rays += batch_ * units_;
     if (advance(batch_ * units_) > 0) ++counts_.stall_batches;
-    clock->notify(stall_over_, Phase::Traverser, stall_cycles_);
+    wait_for_end_of_stall();
   });
 }
 

@@ -15,8 +15,11 @@ class StaticTraverser : public Traverser {
 
   void kernel_ended(uint32_t unit) override;
   void shader_stalls(bool stalls) override;
+  WorkDone work_done() override;
+  std::string describe() override;
 
  private:
+  void wait_for_end_of_stall();
   void end_of_kernel();
   void end_of_stall();
 
@@ -26,6 +29,7 @@ class StaticTraverser : public Traverser {
   sc_core::sc_event kernel_ended_, stall_over_;
   uint32_t kernels_ = 0;  // that ended in this cycle
   bool stalling_ = true;
+  uint64_t stall_until_ = 0;  // cycle of the next batch while stalling; 0: none is due
 };
 
 }  // namespace raypool::chip

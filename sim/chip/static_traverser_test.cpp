@@ -186,6 +186,36 @@ TEST(StaticTraverser, KeepsRaysWithoutRoomAndTracesThemOnce) {
   EXPECT_EQ(bench.traverser.counts().rays.blocked(), 32u);
 }
 
+TEST(StaticTraverser, IsDueAtTheEndOfAStallThatMovesARayAndOfNoOther) {
+  Bench bench(1, 10);
+  const auto due = [&] { return bench.traverser.work_done().due; };
+  bench.run([&](uint64_t cycle) {
+    if (cycle == 1) {
+      bench.traverser.shader_stalls(false);
+      bench.fill(64);
+      EXPECT_EQ(due(), kNever) << "the shader works";
+    }
+    if (cycle == 10) {
+      bench.traverser.shader_stalls(true);
+      EXPECT_EQ(due(), 1010u);
+    }
+    if (cycle == 1011) {
+      EXPECT_EQ(
+          bench.traverser.describe(),
+          "traverser: 0 rays wait to be traced, until a kernel ends or the shader has stalled for 1000 cycles; 22 "
+          "traced ones wait for room in the intersection pool");
+      EXPECT_EQ(due(), kNever) << "no ray that is there can move";
+      bench.ledger.launched(0, RayKernel::CastSecondary, 1);
+      bench.intersections.request(0, ImportKind::Normal);
+    }
+    if (cycle == 1012) {
+      bench.intersections.request(0, ImportKind::Normal);
+      EXPECT_EQ(due(), 2010u) << "there is room for one";
+    }
+    return cycle < 1013;
+  });
+}
+
 TEST(StaticTraverser, AddsOneShadowRayACycleToThePictureAUnitsContributionFirst) {
   ChipConfiguration chip;
   chip.shading = Shading::Traverser;

@@ -65,6 +65,12 @@ bool Traverser::leave(const PooledRay& ray) {
   return true;
 }
 
+bool Traverser::may_leave(const PooledRay& ray) const {
+  return !ray.goes_on || fates_.contributes(kind_of(ray)) || !intersections->full(kind_of(ray));
+}
+
+WorkDone Traverser::work_done() { return {0, counts_.rays.traced() + counts_.delivered, kNever}; }
+
 void Traverser::left(uint32_t count) {
   if (count != 0) controller->changed();
 }

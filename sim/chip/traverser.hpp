@@ -56,6 +56,10 @@ class Traverser : public sc_core::sc_module,
   const TraverserCounts& counts() const { return counts_; }
   /// Caches hold these places from now on, as if rays had visited them; the last of them stay longest.
   virtual void remember(const VisitList& /*places*/) {}
+  /// So far, and what is due, in the present cycle. What the traverser tests is work, whether rays come and go or not.
+  virtual WorkDone work_done();
+  /// What its rays wait for, for an error.
+  virtual std::string describe() = 0;
   /// What a traverser with a machine inside has done.
   virtual std::optional<TraverserWork> work() const { return {}; }
 
@@ -72,6 +76,8 @@ class Traverser : public sc_core::sc_module,
   bool leave(const PooledRay& ray);
   /// So many rays have been removed.
   void left(uint32_t count);
+  /// The result of a traced ray could leave now, if there is one; or stays until there is room.
+  bool may_leave(const PooledRay& ray) const;
   /// What a traced ray that goes on becomes.
   ImportKind kind_of(const PooledRay& ray) const { return fates_.kind_of(ray.ray, ray.intersection); }
   /// The frame buffer's port, which a traced ray did not get, is free.

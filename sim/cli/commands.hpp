@@ -36,8 +36,9 @@ struct SimOptions {
   uint64_t seed = 0;  ///< of engine sampled; 0: as 1
   double detail = 1;  ///< of a built-in scene, 0.01 .. 16
   bool waves = false;
-  std::string trace;           ///< window of cycles (trace::parse_window()); empty: no trace
-  bool modules = false;        ///< print the modules of the chip, and draw nothing
+  std::string trace;                    ///< window of cycles (trace::parse_window()); empty: no trace
+  bool modules = false;                 ///< print the modules of the chip, and draw nothing
+  std::optional<uint64_t> cycle_limit;  ///< of engines model, rtl and lockstep
   uint64_t inspect_until = 0;  ///< cycle of a difference that a look inside the RTL is to tell more of; 0: no look
   bool json = false;           ///< the report on standard output, instead of the table
   bool quiet = false;          ///< no progress, no table
@@ -66,12 +67,12 @@ struct RunOptions {
   uint32_t blocks = 1;        ///< assembly file only, like all below
   uint32_t threads = 0;       ///< a block; 0: as many as the unit holds
   uint32_t memory_bytes = 65536;
-  std::vector<std::string> arguments;  ///< integers, 0x..., or floats (with a point or exponent)
-  std::vector<std::string> print;      ///< ADDRESS:COUNT words of memory to print afterwards
-  std::string waves;                   ///< path of a waveform, empty: none
-  uint64_t inspect_until = 0;          ///< as of SimOptions
-  uint64_t cycle_limit = 100'000'000;  ///< of engine functional, which has no cycles: warp instructions
-  bool quiet = false;                  ///< no progress
+  std::vector<std::string> arguments;   ///< integers, 0x..., or floats (with a point or exponent)
+  std::vector<std::string> print;       ///< ADDRESS:COUNT words of memory to print afterwards
+  std::string waves;                    ///< path of a waveform, empty: none
+  uint64_t inspect_until = 0;           ///< as of SimOptions
+  std::optional<uint64_t> cycle_limit;  ///< of engine functional, which has no cycles: warp instructions
+  bool quiet = false;                   ///< no progress
 };
 int run_command(const RunOptions& options);
 

@@ -131,6 +131,7 @@ std::unique_ptr<ComputeUnit> make_unit(const EngineOptions& options, Memory& mem
   if (options.engine == Engine::Rtl) return rtl;
   LockstepOptions lockstep;
   lockstep.name = name;
+  lockstep.answered_soon = false;  // the chip around it has a watch of its own
   lockstep.kernel_names = kernel_names;
   lockstep.inspect_until = options.waves ? kInspectAlways : options.inspect_until;
   return make_lockstep_unit(configuration, std::move(rtl), memory, lockstep);

@@ -11,6 +11,7 @@
 #include "cli/commands.hpp"
 #include "cli/engine.hpp"
 #include "cli/exit_code.hpp"
+#include "cli/limit_sentence.hpp"
 #include "cli/progress.hpp"
 #include "cli/text_file.hpp"
 #include "files/output_files.hpp"
@@ -229,7 +230,10 @@ void prepare(Job& job, const RunOptions& options) {
 ProgramResult run_job(Job& job, const RunOptions& options, ComputeUnit& unit) {
   job.options.device = &unit;
   job.options.memory = &job.memory;
-  job.options.cycle_limit = options.cycle_limit;
+  // Without a limit of the user's a program that never ends should not take an hour.
+  constexpr uint64_t kDefaultCycles = 100'000'000;
+  const RunLimits by_default{kDefaultCycles, RunLimits().silent()};
+  job.options.limits = options.cycle_limit ? RunLimits{*options.cycle_limit, {}} : by_default;
   Progress progress(options.quiet);
   job.options.progress = [&](uint64_t cycles, uint64_t instructions) {
     if (!progress.due()) return;
@@ -276,9 +280,9 @@ int run_command(const RunOptions& options) {
   try {
     result = run_job(job, options, *unit);
     if (const auto counts = lockstep_counts(*unit)) compared = to_string(*counts);
-  } catch (const ChipStalled& stalled) {
+  } catch (const LimitPassed& passed) {
     close_waves();
-    throw InputError(stalled.what());
+    throw InputError(limit_sentence(passed, options.cycle_limit.has_value()));
   } catch (const ChipFault& fault) {
     close_waves();
     throw InputError(describe(fault, options));

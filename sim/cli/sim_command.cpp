@@ -12,6 +12,7 @@
 #include "cli/folders.hpp"
 #include "cli/frame.hpp"
 #include "cli/image_size.hpp"
+#include "cli/limit_sentence.hpp"
 #include "cli/output_folder.hpp"
 #include "cli/progress.hpp"
 #include "cli/report.hpp"
@@ -56,6 +57,12 @@ void check(const SimOptions& options, Engine engine) {
   if (engine != Engine::Sampled && (!options.error.empty() || !options.time.empty() || options.seed != 0)) {
     throw InputError(
         fmt::format("engine {} draws no sample: use sampled, or leave --error, --time and --seed out", options.engine));
+  }
+  if (options.cycle_limit && (without_unit(engine) || engine == Engine::Functional || engine == Engine::Sampled)) {
+    throw InputError(
+        fmt::format("engine {} draws without a count of cycles that could end: use model, rtl or lockstep, or leave "
+                    "--cycles out",
+                    options.engine));
   }
   if (!options.error.empty() && !options.time.empty())
     throw InputError("--error says how long it takes, --time how large the error is: give one of them");
@@ -218,6 +225,7 @@ FrameBuffer draw_on_unit(const SimOptions& options, Engine engine, RunRecord& re
   }
   Surroundings around(scene, image, record);
   ChipOptions chip = chip_options(record, scene, image, device.get(), around);
+  chip.limits.cycles = options.cycle_limit.value_or(0);
   // When something goes wrong the waveform up to there is what one wants to see.
   const auto keep_waveform = [&] {
     device.reset();
@@ -228,6 +236,9 @@ FrameBuffer draw_on_unit(const SimOptions& options, Engine engine, RunRecord& re
   } catch (const ChipFault& fault) {
     keep_waveform();
     throw InputError(describe(fault, record));
+  } catch (const LimitPassed& passed) {
+    keep_waveform();
+    throw InputError(limit_sentence(passed, options.cycle_limit.has_value()));
   } catch (const std::exception&) {
     keep_waveform();
     throw;
@@ -247,6 +258,7 @@ FrameBuffer draw_on_chip(const SimOptions& options, Engine engine, RunRecord& re
   if (options.waves) chip->open_waveform(out.temporary("waves.fst"));
   Surroundings around(scene, image, record);
   ChipOptions frame = chip_options(record, scene, image, nullptr, around);
+  frame.limits.cycles = options.cycle_limit.value_or(0);
   const auto keep_waveform = [&] {
     chip.reset();
     if (options.waves) keep(out);
@@ -256,6 +268,9 @@ FrameBuffer draw_on_chip(const SimOptions& options, Engine engine, RunRecord& re
   } catch (const ChipFault& fault) {
     keep_waveform();
     throw InputError(describe(fault, record));
+  } catch (const LimitPassed& passed) {
+    keep_waveform();
+    throw InputError(limit_sentence(passed, options.cycle_limit.has_value()));
   } catch (const std::exception&) {
     keep_waveform();
     throw;

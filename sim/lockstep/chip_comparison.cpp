@@ -221,6 +221,10 @@ void compare_traverser(Ports& ports, const ChipOutputs& rtl_chip, const ChipOutp
     ports.same("fault_code", rtl_fault.code, model_fault.code);
     ports.same_word("fault_line", rtl_fault.line, model_fault.line);
   }
+  if (rtl_chip.nodes_given != ChipOutputs::kNotSeen) {
+    ports.same("node_given", rtl_chip.nodes_given, model_chip.nodes_given);
+    ports.same("leaf_given", rtl_chip.leaves_given, model_chip.leaves_given);
+  }
   if (!ports.both("request_valid", rtl.tree_request_valid, model.tree_request_valid)) return;
   const MemoryPort::TreeRequest &r = rtl.tree_request, &m = model.tree_request;
   ports.same("request_second", r.second, m.second);

@@ -49,6 +49,7 @@ class LockstepUnitImpl : public LockstepUnit {
     fault_seen_ = false;
     was_idle_ = true;
     reads_ = 0;
+    import_beats_ = 0;
     last_progress_ = counts_.cycles;
     for (History& history : histories_) history.count = 0;
   }
@@ -123,6 +124,7 @@ class LockstepUnitImpl : public LockstepUnit {
     }
     if (out.import_request_valid && inputs.import_request_ready) {
       ++counts_.imports;
+      import_beats_ += configuration_.intersection_beats();
       progress = true;
     }
     if (out.export_valid && inputs.export_ready) {
@@ -133,6 +135,7 @@ class LockstepUnitImpl : public LockstepUnit {
       ++counts_.frame_contributions;
       progress = true;
     }
+    if (inputs.import_beat_valid && import_beats_ != 0) --import_beats_;
     if (progress || inputs.import_beat_valid) last_progress_ = counts_.cycles;
   }
 
@@ -157,8 +160,16 @@ class LockstepUnitImpl : public LockstepUnit {
       ++counts_.counters;
     }
     was_idle_ = out.idle;
-    if (options_.watchdog_cycles != 0 && out.busy != 0 && counts_.cycles - last_progress_ > options_.watchdog_cycles)
+    if (options_.watchdog_cycles != 0 && out.busy != 0 && counts_.cycles - last_progress_ > options_.watchdog_cycles &&
+        (options_.answered_soon || !waits_for_others()))
       hang();
+  }
+
+  // At a port, or for what it has asked for there. Several units hang only when all of them do.
+  bool waits_for_others() const {
+    const UnitOutputs& out = rtl_->outputs();
+    return out.memory_request_valid || out.import_request_valid || out.export_valid || out.frame_valid || reads_ != 0 ||
+           import_beats_ != 0;
   }
 
   // Every warp's instruction under way, and what it can be waiting for.
@@ -271,7 +282,8 @@ class LockstepUnitImpl : public LockstepUnit {
   uint64_t kernels_started_ = 0;
   bool fault_seen_ = false;  // of a unit of both, which has stopped
   bool was_idle_ = true;
-  int64_t reads_ = 0;  // lines requested and not answered completely
+  int64_t reads_ = 0;          // lines requested and not answered completely
+  uint64_t import_beats_ = 0;  // of packages that have been promised, to come
   uint64_t last_progress_ = 0;
   std::vector<History> histories_;  // [unit][warp]
   std::optional<Inspection> inspection_;

@@ -22,6 +22,9 @@ namespace raypool {
 struct LockstepOptions {
   uint64_t watchdog_cycles =
       20000;  ///< cycles without retirement or port transfer, while busy, that count as a hang; 0 = never
+  /// Whoever is around the unit answers within watchdog_cycles. Otherwise a unit that waits for an answer does not
+  /// hang: how long that may take is for those around it to say.
+  bool answered_soon = true;
   std::string name = "unit";                          ///< names the device in reports
   std::map<uint32_t, std::string> kernel_names = {};  ///< entry PC -> name of the kernel, for reports
   /// Look inside the RTL in every cycle up to this one, so that a report can name the file to look at; it takes

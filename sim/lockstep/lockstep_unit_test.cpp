@@ -397,6 +397,34 @@ TEST(Lockstep, AHangIsReportedWithWhatEveryWarpWaitsFor) {
   EXPECT_LT(fixture.unit->counts().cycles, 800u);
 }
 
+TEST(Lockstep, AWaitForASlowChipIsNoHang) {
+  LockstepOptions options;
+  options.watchdog_cycles = 100;
+  options.answered_soon = false;
+  Fixture fixture(kProgram, options);
+  fixture.chip.imports_ready = false;
+  fixture.launch();
+  for (int i = 0; i < 1000; ++i) fixture.chip.cycle();
+  fixture.chip.imports_ready = true;
+  EXPECT_EQ(fixture.report(), "");
+  EXPECT_GT(fixture.unit->counts().instructions, 0u);
+}
+
+TEST(Lockstep, AWarpThatWaitsForWhatNobodyWasAskedForHangsHoweverSlowTheChip) {
+  LockstepOptions options;
+  options.watchdog_cycles = 100;
+  options.answered_soon = false;
+  Fixture fixture(assembled("rin; exit"), options);
+  fixture.launch(7, ImportKind::None);
+  std::string report;
+  try {
+    for (int i = 0; i < 1000; ++i) fixture.chip.cycle();
+  } catch (const LockstepDifference& difference) {
+    report = difference.what();
+  }
+  expect_parts(report, {"hang", "for 100 cycles", "warp  0: PC     0: rin"});
+}
+
 TEST(Lockstep, FaultsThatBothReportAlikeAreNoDifference) {
   Fixture fixture(assembled("mov r1, 2; ld r1, [r1]; mov r2, 0; exit"));
   fixture.launch(3, ImportKind::None);

@@ -209,7 +209,7 @@ uint32_t ExtremeMachine::operate_on_unit(const std::string& mnemonic, uint32_t a
   options.arguments[0] = a;
   options.arguments[1] = b;
   options.arguments[2] = c;
-  options.cycle_limit = kCycleLimit;
+  options.limits.cycles = kCycleLimit;
   run_program(options);
   return memory.load(kResultAddress);
 }
@@ -244,7 +244,7 @@ Drawing ExtremeMachine::draw_on_unit(const ExtremeFrame& frame) const {
   chip.depth = frame.depth;
   chip.tracer = &tracer;
   chip.frame = &sink;
-  chip.cycle_limit = kCycleLimit;
+  chip.limits.cycles = kCycleLimit;
   run_chip(chip);
   sort(drawing);
   return drawing;

@@ -62,6 +62,22 @@ struct DevicePorts {
 #undef RAYPOOL_DEVICE_PORTS
 };
 
+/// Lanes that the caches of a traverser inside give a line.
+struct LinesGiven {
+  uint32_t nodes, leaves;
+};
+// Without a traverser these wires do not exist, and in a netlist nothing but the top's wires can be found.
+template <typename AnyWires>
+auto lines_given(const AnyWires& w, int /*preferred*/)
+    -> decltype(w.chip__DOT__gen_inside__DOT__traverser__DOT__node_given, LinesGiven()) {
+  return {w.chip__DOT__gen_inside__DOT__traverser__DOT__node_given,
+          w.chip__DOT__gen_inside__DOT__traverser__DOT__leaf_given};
+}
+template <typename AnyWires>
+LinesGiven lines_given(const AnyWires& /*w*/, long /*otherwise*/) {
+  return {ChipOutputs::kNotSeen, ChipOutputs::kNotSeen};
+}
+
 class RtlChip : public ChipDevice {
  public:
   explicit RtlChip(const Configuration& configuration)
@@ -192,6 +208,9 @@ class RtlChip : public ChipDevice {
     read_to_traverser();
     if (!inside_) return;
     read_traverser();
+    const LinesGiven given = lines_given(wires_, 0);
+    out_.nodes_given = given.nodes;
+    out_.leaves_given = given.leaves;
     out_.tree_fault.valid = top.tree_fault_valid_o;
     if (!out_.tree_fault.valid) return;
     out_.tree_fault.code = static_cast<TreeFaultCode>(top.tree_fault_code_o);

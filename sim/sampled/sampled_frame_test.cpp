@@ -155,7 +155,7 @@ TEST(SampledFrame, TellsHowFarItIs) {
 
 TEST(SampledFrame, PassesOnWhatGoesWrong) {
   Frame frame;
-  frame.options.cycle_limit = 1000;
+  frame.options.limits.cycles = 1000;
   EXPECT_THROW(draw_sampled(frame.options, frame.work, {}), std::runtime_error);
   frame.work.pop_back();
   EXPECT_THROW(draw_sampled(frame.options, frame.work, {}), std::logic_error);

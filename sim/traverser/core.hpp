@@ -35,6 +35,7 @@ class Core : public Machine, private LookupListener {
   uint32_t slot() const override { return slot_; }
   uint64_t next() const override;
   uint64_t earliest_done(uint64_t now) const override;
+  uint64_t line_due() const override { return memory_.next(); }
   uint64_t least_latency() const override { return setup_.latency() + finish_.latency(); }
   uint32_t capacity() const override { return static_cast<uint32_t>(slots_.size()); }
   void remember(const VisitList& places) override;

@@ -30,6 +30,8 @@ class Machine {
   virtual uint64_t next() const = 0;
   /// The first cycle after `now`, up to which it has been clocked, in which a ray can be done, if none enters.
   virtual uint64_t earliest_done(uint64_t now) const = 0;
+  /// Cycle in which the next line comes from the memory; kNever: none is on its way.
+  virtual uint64_t line_due() const = 0;
   /// Cycles that a ray takes at least.
   virtual uint64_t least_latency() const = 0;
   /// Rays that it holds at most: slots are below.

@@ -44,6 +44,8 @@ struct TraverserWork {
   uint64_t memory_lines = 0;                   ///< of 64 bytes, read: nodes, triangles, stacks
   uint64_t memory_quadwords = 0;               ///< of 16 bytes, written: stacks
   uint64_t row_hits = 0, row_misses = 0;       ///< of all of these
+  /// A count of what has been done: it stands still when nothing is.
+  uint64_t steps() const { return rays + boxes.tests + triangles.tests + memory_lines + memory_quadwords; }
   uint64_t bytes() const { return memory_lines * 64 + memory_quadwords * 16; }
 };
 

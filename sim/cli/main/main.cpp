@@ -217,6 +217,10 @@ void CommandLine::add_sim_command() {
   sim_app->add_flag("--waves", sim_.waves, "leave a waveform, waves.fst, too; rtl and lockstep only");
   sim_app->add_flag("--modules", sim_.modules,
                     "draw nothing: print the chip's SystemC modules, and what their ports are bound to");
+  sim_app
+      ->add_option("--cycles", sim_.cycle_limit,
+                   "give up after this many cycles (default: after 10000000 without a transfer)")
+      ->check(CLI::PositiveNumber);
   add_inspect(*sim_app, sim_.inspect_until);
   sim_app->add_flag("--json", sim_.json, "the report on standard output, and nothing else there");
   sim_app->add_flag("--quiet", sim_.quiet, "no progress and no table");
@@ -258,9 +262,12 @@ void CommandLine::add_run_command() {
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   run_app->add_option("--waves", compute_.waves, "leave a waveform (FST) in this file; rtl and lockstep only");
   add_inspect(*run_app, compute_.inspect_until);
-  run_app->add_option("--cycles", compute_.cycle_limit, "give up after this many cycles; functional: warp instructions")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+  run_app
+      ->add_option(
+          "--cycles", compute_.cycle_limit,
+          "give up after this many cycles; functional: warp instructions (default: 100000000, and after 10000000 "
+          "without a transfer)")
+      ->check(CLI::PositiveNumber);
   run_app->add_flag("--quiet", compute_.quiet, "no progress");
   run_app->callback([this] { code_ = run_command(compute_); });
 }
