@@ -23,6 +23,7 @@ module controller #(
   parameter integer TRAVERSER_SHADES = 0,
   parameter integer CULLING = 0,
   parameter integer TILE_ORDER = 0,                // 0: rows, 1: along a Hilbert curve
+  parameter integer EXPORT_BITS = 16,              // of a unit's count of exports, as in launch_records.v
   parameter integer KINDS = 2 + CULLING,
   parameter integer RAY_BITS = $clog2(RAY_POOL_SIZE + 1),
   parameter integer LEVEL_BITS = $clog2(INTERSECTION_POOL_SIZE + 1)
@@ -48,7 +49,7 @@ module controller #(
   output wire [31:0]                 launch_block_o,
   output reg  [1:0]                  launch_import_o,
   input  wire [UNITS-1:0]            kernel_done_i,
-  input  wire [UNITS*16-1:0]         exports_i,
+  input  wire [UNITS*EXPORT_BITS-1:0] exports_i,
   // from the ray pool: levels, and what has become of a ray
   input  wire [RAY_BITS-1:0]         rays_i,
   input  wire [RAY_BITS-1:0]         shadow_rays_i,
@@ -100,7 +101,7 @@ module controller #(
   // ---- What is seen of a cycle c is registered in c+1, as events of rays are by who reports them.
   reg ready_1_q, ready_2_q;
   reg [UNITS-1:0] done_q;
-  reg [UNITS*16-1:0] exports_q;
+  reg [UNITS*EXPORT_BITS-1:0] exports_q;
   always @(posedge clk_i) begin
     done_q <= rst_ni ? kernel_done_i : {UNITS{1'b0}};
     exports_q <= exports_i;
@@ -116,11 +117,12 @@ module controller #(
     for (u = 0; u < UNITS; u = u + 1) begin : gen_unit
       localparam [1:0] UNIT = u;
       wire launched = accepted && launch_unit_i == UNIT;
-      launch_records #(.CONTENTS(CONTENTS)) launch_records (
+      launch_records #(.CONTENTS(CONTENTS), .EXPORT_BITS(EXPORT_BITS)) launch_records (
         .clk_i(clk_i), .rst_ni(rst_ni), .launch_valid_i(launched), .launch_normal_i(normal_q),
         .launch_shadow_i(shadow_q), .ray_valid_i(outcome_valid_i && outcome_unit_i == UNIT),
         .ray_shadow_i(outcome_shadow_i), .contribution_valid_i(exported_valid_i && exported_unit_i == UNIT),
-        .ended_valid_i(done_q[u]), .ended_exports_i(exports_q[u*16 +: 16]), .full_o(full[u]), .empty_o(empty[u]),
+        .ended_valid_i(done_q[u]), .ended_exports_i(exports_q[u*EXPORT_BITS +: EXPORT_BITS]), .full_o(full[u]),
+        .empty_o(empty[u]),
         .normal_o(normal_to_come[u*RECORD_BITS +: RECORD_BITS]),
         .shadow_o(shadow_to_come[u*RECORD_BITS +: RECORD_BITS]));
       always @(posedge clk_i)

@@ -144,6 +144,31 @@ TEST_P(RtlUnit, CountsTheExportsOfAKernelBeforeItIsDone) {
   }
 }
 
+// A narrow counter wraps in a kernel of 70,000 cycles and more, as a wide one does after days.
+TEST_P(RtlUnit, CountsOnWhereACounterBeginsAnew) {
+  const std::string library = library_of(GetParam());
+  const Configuration configuration = configuration_of(GetParam());
+  const std::vector<uint64_t> code = assembled("mov r1, 0; iadd r1, r1, 1; ilt p1, r1, 20000; @p1 jany 1; exit");
+  Memory memory(kMemoryBytes);
+  test::put_program(memory, code);
+  const auto unit = make_lockstep_unit(configuration, load_rtl_unit(library, configuration), memory);
+  unit->reset(size32(code), kMemoryBytes);
+  TestChip chip(*unit, memory);
+  LaunchCommand command;
+  command.threads = configuration.contents();
+  chip.launches.push_back(command);
+  try {
+    EXPECT_TRUE(chip.run(2'000'000));
+  } catch (const LockstepDifference& difference) {
+    FAIL() << difference.what();
+  }
+  EXPECT_GT(unit->counts().counters, 0u);
+  EXPECT_GT(unit->counts().cycles, 70'000u);
+  const uint64_t most = (uint64_t{1} << configuration.counter_bits) - 1;
+  EXPECT_LE(unit->counter(counter::kBusyCycles), most);
+  EXPECT_EQ(unit->counter(counter::kBusyCycles) < 70'000, most < 70'000);
+}
+
 TEST_P(RtlUnit, ALibraryOfOtherParametersIsRefused) {
   const std::string library = library_of(GetParam());
   Configuration other = configuration_of(GetParam());

@@ -82,9 +82,7 @@ class Beside : public sc_core::sc_module {
     u_.launch_ready_i = seen.launch_ready;
     u_.launch_unit_i = seen.launch_unit;
     u_.kernel_done_i = clocked ? seen.kernel_done : 0;
-    uint64_t exports = 0;
-    for (uint32_t unit = M::kUnits; unit-- > 0;) exports = exports << 16 | seen.exports[unit];
-    set(u_.exports_i, exports);
+    set(u_.exports_i, exports_port<M>([&](uint32_t unit) { return seen.exports[unit]; }));
     u_.eval();
     compare(clocked && device_.inputs.launch_valid ? &device_.inputs.launch : nullptr);
     bench_.clock();

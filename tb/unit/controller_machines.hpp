@@ -5,12 +5,12 @@
 
 #include <memory>
 
-#include "Vcontroller_1_1_1_1_1_1_1_0_48_8_1_0_0_0.h"
-#include "Vcontroller_1_64_512_512_512_1_1_0_48_8_64_0_0_0.h"
-#include "Vcontroller_2_128_40_16_16_1_1_1_48_8_600_0_1_1.h"
-#include "Vcontroller_2_4_3_9_8_0_1_1_48_8_3_0_1_0.h"
-#include "Vcontroller_4_2_3_9_6_1_0_0_2_1_4_0_0_1.h"
-#include "Vcontroller_4_64_512_512_512_1_1_1_48_8_256_1_1_1.h"
+#include "Vcontroller_1_1_1_1_1_1_1_0_48_8_1_0_0_0_8.h"
+#include "Vcontroller_1_64_512_512_512_1_1_0_48_8_64_0_0_0_16.h"
+#include "Vcontroller_2_128_40_16_16_1_1_1_48_8_600_0_1_1_8.h"
+#include "Vcontroller_2_4_3_9_8_0_1_1_48_8_3_0_1_0_8.h"
+#include "Vcontroller_4_2_3_9_6_1_0_0_2_1_4_0_0_1_8.h"
+#include "Vcontroller_4_64_512_512_512_1_1_1_48_8_256_1_1_1_8.h"
 #include "machine/controller.hpp"
 #include "machine/kernel_policy.hpp"
 #include "machine/tile_walk.hpp"
@@ -21,10 +21,12 @@ inline constexpr uint16_t kEyePc = 11, kSecondaryPc = 222, kDirectPc = 3333, kSh
 
 template <typename Unit_, uint32_t kUnits_, uint32_t kContents_, uint32_t kRays, uint32_t kIntersections,
           uint32_t kHeld, bool kRemedy, bool kAhead, PolicyName kPolicy, uint32_t kRayThreshold,
-          uint32_t kIntersectionThreshold, uint32_t kBatch, bool kShades, bool kCulling, TileOrder kOrder>
+          uint32_t kIntersectionThreshold, uint32_t kBatch, bool kShades, bool kCulling, TileOrder kOrder,
+          uint32_t kExportBits_>
 struct Machine {
   using Unit = Unit_;
   static constexpr uint32_t kUnits = kUnits_, kContents = kContents_;
+  static constexpr uint32_t kExportBits = kExportBits_;  ///< of a unit's count of exports, as the Verilog has it
   static ChipConfiguration chip() {
     ChipConfiguration chip;
     chip.ray_pool_size = kRays;
@@ -48,23 +50,32 @@ struct Machine {
   }
 };
 
-using Machines = testing::Types<Machine<Vcontroller_1_64_512_512_512_1_1_0_48_8_64_0_0_0, 1, 64, 512, 512, 512, true,
-                                        true, PolicyName::Thesis, 48, 8, 64, false, false, TileOrder::Rows>,
-                                Machine<Vcontroller_4_64_512_512_512_1_1_1_48_8_256_1_1_1, 4, 64, 512, 512, 512, true,
-                                        true, PolicyName::Fill, 48, 8, 256, true, true, TileOrder::Hilbert>,
-                                Machine<Vcontroller_1_1_1_1_1_1_1_0_48_8_1_0_0_0, 1, 1, 1, 1, 1, true, true,
-                                        PolicyName::Thesis, 48, 8, 1, false, false, TileOrder::Rows>,
-                                Machine<Vcontroller_2_4_3_9_8_0_1_1_48_8_3_0_1_0, 2, 4, 3, 9, 8, false, true,
-                                        PolicyName::Fill, 48, 8, 3, false, true, TileOrder::Rows>,
-                                Machine<Vcontroller_4_2_3_9_6_1_0_0_2_1_4_0_0_1, 4, 2, 3, 9, 6, true, false,
-                                        PolicyName::Thesis, 2, 1, 4, false, false, TileOrder::Hilbert>,
-                                Machine<Vcontroller_2_128_40_16_16_1_1_1_48_8_600_0_1_1, 2, 128, 40, 16, 16, true, true,
-                                        PolicyName::Fill, 48, 8, 600, false, true, TileOrder::Hilbert>>;
+using Machines = testing::Types<Machine<Vcontroller_1_64_512_512_512_1_1_0_48_8_64_0_0_0_16, 1, 64, 512, 512, 512, true,
+                                        true, PolicyName::Thesis, 48, 8, 64, false, false, TileOrder::Rows, 16>,
+                                Machine<Vcontroller_4_64_512_512_512_1_1_1_48_8_256_1_1_1_8, 4, 64, 512, 512, 512, true,
+                                        true, PolicyName::Fill, 48, 8, 256, true, true, TileOrder::Hilbert, 8>,
+                                Machine<Vcontroller_1_1_1_1_1_1_1_0_48_8_1_0_0_0_8, 1, 1, 1, 1, 1, true, true,
+                                        PolicyName::Thesis, 48, 8, 1, false, false, TileOrder::Rows, 8>,
+                                Machine<Vcontroller_2_4_3_9_8_0_1_1_48_8_3_0_1_0_8, 2, 4, 3, 9, 8, false, true,
+                                        PolicyName::Fill, 48, 8, 3, false, true, TileOrder::Rows, 8>,
+                                Machine<Vcontroller_4_2_3_9_6_1_0_0_2_1_4_0_0_1_8, 4, 2, 3, 9, 6, true, false,
+                                        PolicyName::Thesis, 2, 1, 4, false, false, TileOrder::Hilbert, 8>,
+                                Machine<Vcontroller_2_128_40_16_16_1_1_1_48_8_600_0_1_1_8, 2, 128, 40, 16, 16, true,
+                                        true, PolicyName::Fill, 48, 8, 600, false, true, TileOrder::Hilbert, 8>>;
 
 /// A port of a width that depends on the machine.
 template <typename Port>
 void set(Port& port, uint64_t value) {
   port = static_cast<Port>(value);
+}
+
+/// The units' counts of exports, exports(unit), as they stand on the port.
+template <typename M, typename Exports>
+uint64_t exports_port(const Exports& exports) {
+  uint64_t port = 0;
+  for (uint32_t unit = M::kUnits; unit-- > 0;)
+    port = port << M::kExportBits | (exports(unit) & ((uint64_t{1} << M::kExportBits) - 1));
+  return port;
 }
 
 /// Levels as they stand on the intersection pool's ports.

@@ -31,6 +31,7 @@ struct RandomUnit {
   bool waits = false;
   std::deque<Package> leaving;  // made, and still in the unit
   uint16_t exports = 0;
+  uint64_t made = 0;  // the same, not modulo 2^16
 
   size_t running() const { return kernels.size() - waits; }
 };
@@ -138,6 +139,7 @@ class RandomChip {
         unit.leaving.push_back(kernel.exports.back());
         kernel.exports.pop_back();
         ++unit.exports;
+        ++unit.made;
       }
     }
   }
@@ -189,6 +191,7 @@ class RandomChip {
 struct Reached {
   uint64_t frames = 0, cycles = 0, eye = 0, secondary = 0, reflecting = 0, direct = 0, shade = 0, ahead = 0;
   uint64_t overlapped = 0, dropped = 0, late = 0, both = 0;
+  uint64_t wrapped = 0;  ///< times that a unit's count of exports began anew
 };
 
 /// A frame that the class draws on such a chip.
@@ -352,9 +355,7 @@ class Bench {
   // What ends in this cycle is seen in it.
   void clock(const RandomChip::Events& events, const RandomChip& chip) {
     u_.kernel_done_i = events.done;
-    uint64_t exports = 0;
-    for (uint32_t u = M::kUnits; u-- > 0;) exports = exports << 16 | chip.unit(u).exports;
-    set(u_.exports_i, exports);
+    set(u_.exports_i, exports_port<M>([&](uint32_t unit) { return chip.unit(unit).exports; }));
     bench_.clock();
   }
 
@@ -365,6 +366,7 @@ class Bench {
     reached.dropped += chip.dropped;
     reached.late += chip.late;
     reached.both += chip.both;
+    for (uint32_t u = 0; u < M::kUnits; ++u) reached.wrapped += chip.unit(u).made >> M::kExportBits;
   }
   void count(const Controller::Launch& launch, bool ahead) {
     reached.ahead += ahead;
@@ -415,6 +417,14 @@ TYPED_TEST(ControllerInVerilog, AgreesWithItsClassInEveryCycle) {
   if (chip.shading == Shading::Kernel) {
     EXPECT_GT(reached.shade, 100u);
   }
+}
+
+// As many packages of each unit as it takes: the narrower the count the smaller the picture.
+TYPED_TEST(ControllerInVerilog, EndsAFrameInWhichTheCountsOfExportsBeginAnew) {
+  Bench<TypeParam> bench(4);
+  const uint32_t side = TypeParam::kExportBits == 16 ? 240 : 60;
+  ASSERT_NO_FATAL_FAILURE(bench.draw(side, side, true, 1));
+  EXPECT_GE(bench.reached.wrapped, TypeParam::kUnits);
 }
 
 }  // namespace

@@ -86,15 +86,20 @@ raypool_bench(frame_port_test)
 raypool_verilate(frame_port_test SOURCES ${RAYPOOL_RTL}/frame_port.v PREFIX Vframe_port TOP_MODULE frame_port
   VERILATOR_ARGS -O3 --default-language 1364-2005 -y ${RAYPOOL_RTL} -I${RAYPOOL_RTL})
 
+# What counts events for the report: narrow, so that it begins anew.
+raypool_pool_bench(event_counter_test)
+raypool_pool_models(event_counter_test event_counter "BITS;LOW_BITS;EVENT_BITS;LATE"
+  4_2_2_0 6_3_2_0 7_3_1_1 13_12_6_0)
+
 # The controller around policies, rules and order of the tiles.
 raypool_bench(controller_test)
 target_sources(controller_test PRIVATE ${CMAKE_CURRENT_LIST_DIR}/controller_frame_test.cpp)
 target_link_libraries(controller_test PRIVATE raypool_chip)
 raypool_pool_models(controller_test controller
   "UNITS;CONTENTS;RAY_POOL_SIZE;INTERSECTION_POOL_SIZE;HELD_LIMIT;WINDOW_REMEDY;LAUNCH_AHEAD;POLICY;RAY_THRESHOLD;\
-INTERSECTION_THRESHOLD;BATCH;TRAVERSER_SHADES;CULLING;TILE_ORDER"
-  1_64_512_512_512_1_1_0_48_8_64_0_0_0 4_64_512_512_512_1_1_1_48_8_256_1_1_1 1_1_1_1_1_1_1_0_48_8_1_0_0_0
-  2_4_3_9_8_0_1_1_48_8_3_0_1_0 4_2_3_9_6_1_0_0_2_1_4_0_0_1 2_128_40_16_16_1_1_1_48_8_600_0_1_1)
+INTERSECTION_THRESHOLD;BATCH;TRAVERSER_SHADES;CULLING;TILE_ORDER;EXPORT_BITS"
+  1_64_512_512_512_1_1_0_48_8_64_0_0_0_16 4_64_512_512_512_1_1_1_48_8_256_1_1_1_8 1_1_1_1_1_1_1_0_48_8_1_0_0_0_8
+  2_4_3_9_8_0_1_1_48_8_3_0_1_0_8 4_2_3_9_6_1_0_0_2_1_4_0_0_1_8 2_128_40_16_16_1_1_1_48_8_600_0_1_1_8)
 
 # The memory's port. Without LINES, they are enough for LATENCY.
 raypool_bench(memory_port_test)
