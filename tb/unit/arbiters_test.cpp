@@ -1,5 +1,5 @@
 // What port_arbiter, import_arbiter and block_scheduler promise, under random traffic: nothing is lost, mixed up or
-// changed while it waits, and nobody starves.
+// changed while it waits, and no requester starves. In every cycle each is compared with its class, too.
 #include <gtest/gtest.h>
 #include <verilated.h>
 
@@ -11,11 +11,17 @@
 #include <vector>
 
 #include "Vblock_scheduler_2.h"
+#include "Vblock_scheduler_3.h"
 #include "Vblock_scheduler_4.h"
 #include "Vimport_arbiter_2.h"
+#include "Vimport_arbiter_3.h"
 #include "Vimport_arbiter_4.h"
 #include "Vport_arbiter_2.h"
+#include "Vport_arbiter_3.h"
 #include "Vport_arbiter_4.h"
+#include "machine/block_scheduler.hpp"
+#include "machine/import_arbiter.hpp"
+#include "machine/port_arbiter.hpp"
 
 namespace raypool::bench {
 namespace {
@@ -47,15 +53,19 @@ struct Port2 {
   using Unit = Vport_arbiter_2;
   static constexpr uint32_t kCount = 2;
 };
+struct Port3 {
+  using Unit = Vport_arbiter_3;
+  static constexpr uint32_t kCount = 3;
+};
 struct Port4 {
   using Unit = Vport_arbiter_4;
   static constexpr uint32_t kCount = 4;
 };
 
 template <typename Model>
-class PortArbiter : public testing::Test {};
-using Ports = testing::Types<Port2, Port4>;
-TYPED_TEST_SUITE(PortArbiter, Ports);
+class PortArbiterTest : public testing::Test {};
+using Ports = testing::Types<Port2, Port3, Port4>;
+TYPED_TEST_SUITE(PortArbiterTest, Ports);
 
 // A requester sends packages of 1 to 3 words, {requester, number of the word}, with gaps
 // between the words of a package too.
@@ -85,8 +95,14 @@ class PortArbiterBench {
     unit_.ready_i = crowded || !bench_.one_of(3);
     unit_.eval();
     ASSERT_EQ(unit_.valid_o, shown);
+    model_.present(valid_);
+    ASSERT_EQ(model_.valid(), shown);
+    if (shown) {
+      ASSERT_EQ(unit_.number_o, model_.choice());
+    }
     ASSERT_NO_FATAL_FAILURE(check_offer());
     ASSERT_EQ(unit_.ready_o & valid_, unit_.valid_o && unit_.ready_i ? 1u << number_ : 0u);
+    model_.clock(unit_.ready_i != 0, (unit_.last_i >> number_ & 1) != 0);
     if (unit_.valid_o && unit_.ready_i) {
       ASSERT_NO_FATAL_FAILURE(take(crowded));
     }
@@ -159,6 +175,7 @@ class PortArbiterBench {
 
   Clocked<typename Port::Unit> bench_;
   typename Port::Unit& unit_ = bench_.u;
+  PortArbiter model_;
   std::array<Requester, kCount> requesters_;
   std::array<uint32_t, kCount> received_{};
   int owner_ = -1;      // of the package under way at the port
@@ -166,7 +183,7 @@ class PortArbiterBench {
   uint32_t valid_ = 0, offered_ = 0, number_ = 0, packages_ = 0;
 };
 
-TYPED_TEST(PortArbiter, KeepsPackagesTogetherInTurnAndLosesNothing) {
+TYPED_TEST(PortArbiterTest, KeepsPackagesTogetherInTurnAndLosesNothing) {
   for (uint32_t seed = 1; seed <= 8; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     PortArbiterBench<TypeParam> bench(seed);
@@ -178,75 +195,153 @@ TYPED_TEST(PortArbiter, KeepsPackagesTogetherInTurnAndLosesNothing) {
 
 struct Import2 {
   using Unit = Vimport_arbiter_2;
-  static constexpr uint32_t kUnits = 2;
+  static constexpr uint32_t kUnits = 2, kBeats = 5;
+};
+struct Import3 {
+  using Unit = Vimport_arbiter_3;
+  static constexpr uint32_t kUnits = 3, kBeats = 3;
 };
 struct Import4 {
   using Unit = Vimport_arbiter_4;
-  static constexpr uint32_t kUnits = 4;
+  static constexpr uint32_t kUnits = 4, kBeats = 6;
 };
 
 template <typename Model>
-class ImportArbiter : public testing::Test {};
-using Imports = testing::Types<Import2, Import4>;
-TYPED_TEST_SUITE(ImportArbiter, Imports);
+class ImportArbiterTest : public testing::Test {};
+using Imports = testing::Types<Import2, Import3, Import4>;
+TYPED_TEST_SUITE(ImportArbiterTest, Imports);
 
-TYPED_TEST(ImportArbiter, GivesEveryPackageToTheUnitThatAsked) {
-  constexpr uint32_t kUnits = TypeParam::kUnits;
+// Units that ask, and the pool whose packages come back in order. Beats come even while the queue of receivers is full
+// and another request waits, so that a place becomes free in the cycle in which a request would take it.
+template <typename Import>
+class ImportArbiterBench {
+ public:
+  static constexpr uint32_t kUnits = Import::kUnits, kBeats = Import::kBeats, kPlaces = 3;
+  explicit ImportArbiterBench(uint32_t seed) : bench_(seed) {}
+
+  struct Traffic {
+    uint32_t ask = 1, take = 2, gap = 4;  ///< one in so many cycles: a unit asks, a request is taken, no beat comes
+  };
+  void clock(const Traffic& traffic) {
+    show(traffic);
+    const bool arrives = !expected_.empty() && !bench_.one_of(traffic.gap);
+    u_.beat_valid_i = arrives;
+    u_.eval();
+    model_.present(valid_);
+    ASSERT_NO_FATAL_FAILURE(compare(arrives));
+    const bool was_full = expected_.size() == kPlaces;
+    const bool transfer = u_.request_valid_o && u_.request_ready_i;
+    model_.clock(u_.request_ready_i != 0, arrives);
+    if (arrives) take_beat();
+    full_and_leaves += was_full && valid_ != 0 && u_.request_ready_i && expected_.size() < kPlaces ? 1 : 0;
+    if (transfer) take_request();
+    most = std::max(most, expected_.size());
+    bench_.clock();
+  }
+  /// In the middle of everything; requests of the units stay, packages under way are forgotten.
+  void reset() {
+    u_.rst_ni = 0;
+    u_.beat_valid_i = 0;
+    u_.unit_request_valid_i = 0;
+    bench_.clock();
+    u_.rst_ni = 1;
+    model_ = ImportArbiter(kBeats);
+    expected_.clear();
+    beat_ = 0;
+  }
+
+  uint64_t full_and_leaves = 0;  ///< cycles in which the queue was full, its oldest left, and a request waited
+  size_t most = 0;
+  std::array<uint32_t, kUnits> asked{}, beats{};
+
+ private:
+  void show(const Traffic& traffic) {
+    uint32_t kinds = 0;
+    valid_ = 0;
+    for (uint32_t r = 0; r < kUnits; ++r) {
+      if (kind_[r] == 0 && bench_.one_of(traffic.ask)) kind_[r] = 1 + bench_.random() % 2;
+      valid_ |= uint32_t{kind_[r] != 0} << r;
+      kinds |= kind_[r] << 2 * r;
+    }
+    u_.unit_request_valid_i = valid_;
+    u_.unit_request_kind_i = kinds;
+    u_.request_ready_i = bench_.one_of(traffic.take);
+  }
+  void compare(bool arrives) {
+    ASSERT_EQ(u_.unit_beat_valid_o, arrives ? 1u << expected_.front() : 0u);
+    ASSERT_EQ(model_.expects(), !expected_.empty());
+    if (model_.expects()) {
+      ASSERT_EQ(model_.receiver(), expected_.front());
+    }
+    ASSERT_EQ(u_.request_valid_o, model_.valid());
+    ASSERT_EQ(u_.request_valid_o, valid_ != 0 && expected_.size() < kPlaces)
+        << "a package may be asked for while fewer than three are to come, and not before one of three is there";
+    const bool transfer = u_.request_valid_o && u_.request_ready_i;
+    ASSERT_EQ(u_.unit_request_ready_o & valid_, transfer ? 1u << u_.request_unit_o : 0u);
+    if (!u_.request_valid_o) return;
+    ASSERT_EQ(u_.request_unit_o, model_.choice());
+    ASSERT_EQ(u_.request_kind_o, kind_[u_.request_unit_o]);
+  }
+  void take_beat() {
+    ++beats[expected_.front()];
+    if (++beat_ < kBeats) return;
+    beat_ = 0;
+    expected_.pop_front();
+  }
+  void take_request() {
+    const uint32_t unit = u_.request_unit_o;
+    expected_.push_back(unit);
+    ++asked[unit];
+    kind_[unit] = 0;
+  }
+
+  Clocked<typename Import::Unit> bench_;
+  typename Import::Unit& u_ = bench_.u;
+  ImportArbiter model_{kBeats};
+  std::array<uint32_t, kUnits> kind_{};  // 0: asks for nothing
+  std::deque<uint32_t> expected_;        // units, in the order of their requests
+  uint32_t valid_ = 0, beat_ = 0;
+};
+
+TYPED_TEST(ImportArbiterTest, GivesEveryPackageToTheUnitThatAsked) {
+  using Bench = ImportArbiterBench<TypeParam>;
+  uint64_t full_and_leaves = 0;
   for (uint32_t seed = 1; seed <= 8; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
-    Clocked<typename TypeParam::Unit> bench(seed);
-    auto& u = bench.u;
-    std::array<uint32_t, kUnits> kind{};  // 0: asks for nothing
-    std::array<uint32_t, kUnits> asked{}, beats{};
-    std::deque<uint32_t> expected;  // units, in the order of their requests
-    uint32_t beat = 0;
-    size_t most = 0;
-    for (int cycle = 0; cycle < 6000; ++cycle) {
-      const uint32_t hurry = cycle < 3000 ? 6 : 1;
-      uint32_t valid = 0, kinds = 0;
-      for (uint32_t r = 0; r < kUnits; ++r) {
-        if (kind[r] == 0 && bench.one_of(hurry)) kind[r] = 1 + bench.random() % 2;
-        valid |= uint32_t{kind[r] != 0} << r;
-        kinds |= kind[r] << 2 * r;
-      }
-      u.unit_request_valid_i = valid;
-      u.unit_request_kind_i = kinds;
-      u.request_ready_i = bench.one_of(2);
-      const bool arrives = !expected.empty() && !bench.one_of(4);
-      u.beat_valid_i = arrives;
-      u.eval();
-      ASSERT_EQ(u.unit_beat_valid_o, arrives ? 1u << expected.front() : 0u) << "cycle " << cycle;
-      const bool transfer = u.request_valid_o && u.request_ready_i;
-      ASSERT_EQ(u.unit_request_ready_o & valid, transfer ? 1u << u.request_unit_o : 0u);
-      if (arrives) {
-        ++beats[expected.front()];
-        if (++beat == 6) {
-          beat = 0;
-          expected.pop_front();
-        }
-      }
-      if (u.request_valid_o) {
-        ASSERT_EQ(u.request_kind_o, kind[u.request_unit_o]);
-      }
-      if (transfer) {
-        expected.push_back(u.request_unit_o);
-        ++asked[u.request_unit_o];
-        kind[u.request_unit_o] = 0;
-      }
-      most = std::max(most, expected.size());
-      bench.clock();
+    Bench bench(seed);
+    for (const typename Bench::Traffic traffic : {typename Bench::Traffic{6, 2, 4}, typename Bench::Traffic{1, 2, 4}})
+      for (int cycle = 0; cycle < 3000; ++cycle) ASSERT_NO_FATAL_FAILURE(bench.clock(traffic)) << "cycle " << cycle;
+    EXPECT_EQ(bench.most, Bench::kPlaces);
+    const uint32_t fewest = *std::min_element(bench.asked.begin(), bench.asked.end());
+    for (uint32_t r = 0; r < Bench::kUnits; ++r) {
+      EXPECT_LE(bench.asked[r], fewest + fewest / 4) << "unit " << r << " is preferred";
+      EXPECT_GE(bench.beats[r] + Bench::kPlaces * Bench::kBeats, Bench::kBeats * bench.asked[r]);
+      EXPECT_LE(bench.beats[r], Bench::kBeats * bench.asked[r]);
     }
-    EXPECT_EQ(most, 3u);
-    const uint32_t fewest = *std::min_element(asked.begin(), asked.end());
-    for (uint32_t r = 0; r < kUnits; ++r) {
-      EXPECT_LE(asked[r], fewest + fewest / 4) << "unit " << r << " is preferred";
-      EXPECT_GE(beats[r] + 18, 6 * asked[r]);
-      EXPECT_LE(beats[r], 6 * asked[r]);
-    }
+    full_and_leaves += bench.full_and_leaves;
+  }
+  EXPECT_GT(full_and_leaves, 500u) << "no request waited while a full queue lost its oldest entry";
+}
+
+TYPED_TEST(ImportArbiterTest, AFullQueueThatLosesItsOldestTakesTheNextRequestOneCycleLater) {
+  using Bench = ImportArbiterBench<TypeParam>;
+  Bench bench(3);
+  for (int cycle = 0; cycle < 3000; ++cycle)  // the pool takes at once and sends without gaps
+    ASSERT_NO_FATAL_FAILURE(bench.clock({1, 1, 1000})) << "cycle " << cycle;
+  EXPECT_GT(bench.full_and_leaves, 400u);
+}
+
+TYPED_TEST(ImportArbiterTest, ForgetsPackagesUnderWayAtAReset) {
+  ImportArbiterBench<TypeParam> bench(5);
+  for (int round = 0; round < 200; ++round) {
+    for (int cycle = 0; cycle < 5 + round % 17; ++cycle)
+      ASSERT_NO_FATAL_FAILURE(bench.clock({1, 1, 3})) << "round " << round << ", cycle " << cycle;
+    bench.reset();
   }
 }
 
-TYPED_TEST(ImportArbiter, IgnoresBeatsThatNobodyAskedFor) {
+TYPED_TEST(ImportArbiterTest, IgnoresBeatsThatNoUnitAskedFor) {
+  constexpr int kBeats = TypeParam::kBeats;
   Clocked<typename TypeParam::Unit> bench(1);
   bench.u.beat_valid_i = 1;
   for (int i = 0; i < 10; ++i) {
@@ -262,7 +357,7 @@ TYPED_TEST(ImportArbiter, IgnoresBeatsThatNobodyAskedFor) {
   bench.u.beat_valid_i = 1;
   for (int i = 0; i < 10; ++i) {
     bench.u.eval();
-    EXPECT_EQ(bench.u.unit_beat_valid_o, i < 6 ? 2u : 0u);
+    EXPECT_EQ(bench.u.unit_beat_valid_o, i < kBeats ? 2u : 0u);
     bench.clock();
   }
 }
@@ -271,18 +366,23 @@ struct Blocks2 {
   using Unit = Vblock_scheduler_2;
   static constexpr uint32_t kUnits = 2;
 };
+struct Blocks3 {
+  using Unit = Vblock_scheduler_3;
+  static constexpr uint32_t kUnits = 3;
+};
 struct Blocks4 {
   using Unit = Vblock_scheduler_4;
   static constexpr uint32_t kUnits = 4;
 };
 
 template <typename Model>
-class BlockScheduler : public testing::Test {};
-using Blocks = testing::Types<Blocks2, Blocks4>;
-TYPED_TEST_SUITE(BlockScheduler, Blocks);
+class BlockSchedulerTest : public testing::Test {};
+using Blocks = testing::Types<Blocks2, Blocks3, Blocks4>;
+TYPED_TEST_SUITE(BlockSchedulerTest, Blocks);
 
-TYPED_TEST(BlockScheduler, GivesALaunchToAReadyUnitAndFreeOnesFirst) {
+TYPED_TEST(BlockSchedulerTest, GivesALaunchToAReadyUnitAndFreeOnesFirst) {
   Clocked<typename TypeParam::Unit> bench(1);
+  BlockScheduler model;
   auto& u = bench.u;
   for (int i = 0; i < 5000; ++i) {
     u.ready_i = bench.random() % (1u << TypeParam::kUnits);
@@ -297,7 +397,11 @@ TYPED_TEST(BlockScheduler, GivesALaunchToAReadyUnitAndFreeOnesFirst) {
     ASSERT_EQ(u.launch_ready_o, u.ready_i != 0) << "ready depends on valid";
     ASSERT_EQ(u.launch_unit_o, unit) << "the unit depends on valid";
     ASSERT_EQ(u.valid_o, u.launch_valid_i && u.ready_i ? 1u << unit : 0u);
+    model.present(u.ready_i, u.busy_i);
+    ASSERT_EQ(u.launch_ready_o, model.ready());
+    model.clock(u.launch_valid_i != 0);
     if (u.ready_i) {
+      ASSERT_EQ(unit, model.unit());
       ASSERT_TRUE(u.ready_i >> unit & 1);
       if (u.ready_i & ~u.busy_i) {
         ASSERT_FALSE(u.busy_i >> unit & 1) << "a unit that runs no kernel was passed over";
@@ -307,7 +411,7 @@ TYPED_TEST(BlockScheduler, GivesALaunchToAReadyUnitAndFreeOnesFirst) {
   }
 }
 
-TYPED_TEST(BlockScheduler, TakesTurnsAmongEqualUnits) {
+TYPED_TEST(BlockSchedulerTest, TakesTurnsAmongEqualUnits) {
   for (const bool busy : {false, true}) {
     Clocked<typename TypeParam::Unit> bench(1);
     auto& u = bench.u;

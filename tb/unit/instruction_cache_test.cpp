@@ -1,5 +1,7 @@
-// The instruction cache, in several sizes: a small core of warps looks up, waits for refills
-// as the contract says, and compares.
+// The instruction cache, in several sizes: a small core of warps looks up, waits for refills as the contract says, and
+// compares. In every cycle its answers, its requests and what it says of refills are those of its class, too.
+#include "machine/instruction_cache.hpp"
+
 #include <gtest/gtest.h>
 #include <verilated.h>
 
@@ -13,6 +15,7 @@
 #include "Vinstruction_cache_1w.h"
 #include "Vinstruction_cache_32w.h"
 #include "Vinstruction_cache_8w.h"
+#include "bits.hpp"
 #include "line_memory.hpp"
 
 namespace raypool::bench {
@@ -41,9 +44,13 @@ template <typename Model>
 class Bench {
  public:
   static constexpr uint32_t kWayLines = Model::kBytes / 128;  ///< lines between those of one set
+  static constexpr uint32_t kUpper = 4 * kWayLines * 8;       ///< programs of which no line has a bit from this on
 
   explicit Bench(uint32_t seed = 1)
-      : memory(8 * Model::kBytes / 4, seed), random(seed), unit_(std::make_unique<typename Model::Unit>()) {
+      : memory(8 * Model::kBytes / 4, seed),
+        random(seed),
+        unit_(std::make_unique<typename Model::Unit>()),
+        model_(configuration()) {
     unit_->rst_ni = 0;
     tick();
     tick();
@@ -57,7 +64,11 @@ class Bench {
   bool invalidate = false;
   std::optional<LineMemory::Beat> beat;  ///< the one of the last step
 
-  uint32_t instructions() const { return memory.bytes() / 8; }
+  uint32_t any_upper_bit() {
+    std::vector<uint32_t> bits;
+    for (uint32_t bit = kUpper; bit < 1u << 16; bit *= 2) bits.push_back(bit);
+    return bits[random() % bits.size()];
+  }
   uint64_t stored(uint32_t pc) { return uint64_t{memory.word(8 * pc + 4)} << 32 | memory.word(8 * pc); }
 
   /// One cycle, with a lookup in it; what the cache answers in this cycle to the lookup of the one before.
@@ -72,6 +83,7 @@ class Bench {
     answer.refill_done = u.refill_done_o;
     EXPECT_FALSE(answer.hit && answer.miss);
     EXPECT_EQ(answer.valid, looked_up_) << "each lookup gets one answer";
+    compare(answer);
     EXPECT_EQ(u.first_o, refilled_ ? 1u << fetch_warp_ : 0u) << "whose miss began the fetch looks up first";
     refilled_ = answer.refill_done;
     if (refilled_) fetch_warp_ = next_fetch_warp_;
@@ -87,7 +99,6 @@ class Bench {
       u.lookup_pc_i = warp_and_pc->second;
     }
     u.invalidate_i = invalidate;
-    invalidate = false;
     u.request_ready_i = memory.decide_ready();
     beat = memory.respond(cycle);
     u.response_valid_i = beat.has_value();
@@ -104,6 +115,8 @@ class Bench {
     }
     EXPECT_TRUE(!held_ || u.request_valid_o) << "a request was withdrawn";
     held_ = u.request_valid_o && !u.request_ready_i;
+    clock_model(warp_and_pc);
+    invalidate = false;
     tick();
     return answer;
   }
@@ -125,6 +138,30 @@ class Bench {
   }
 
  private:
+  static Configuration configuration() {
+    Configuration configuration;
+    configuration.warps = Model::kWarps;
+    configuration.instruction_cache_bytes = Model::kBytes;
+    return configuration;
+  }
+  void compare(const Answer& answer) {
+    if (!has_class_) return;
+    EXPECT_EQ(answer.miss, looked_up_ && model_.missed()) << "cycle " << cycle;
+    EXPECT_TRUE(!answer.valid || answer.warp == model_.result_warp()) << "cycle " << cycle;
+    EXPECT_EQ(answer.refill_done, model_.refill_done()) << "cycle " << cycle;
+    EXPECT_EQ(unit_->first_o, model_.first(cycle)) << "cycle " << cycle;
+    EXPECT_EQ(unit_->request_valid_o, model_.request_valid()) << "cycle " << cycle;
+    EXPECT_TRUE(!model_.request_valid() || unit_->request_address_o == model_.request_address()) << "cycle " << cycle;
+  }
+  void clock_model(const std::optional<std::pair<uint32_t, uint32_t>>& warp_and_pc) {
+    model_.clock(cycle, model_.missed(), unit_->request_ready_i != 0, beat && beat->beat == 3);
+    if (warp_and_pc) model_.lookup(warp_and_pc->first, warp_and_pc->second);
+    model_.end_cycle();
+    if (!invalidate) return;
+    // The class knows no invalidation under way: the unit has none.
+    has_class_ = has_class_ && !model_.busy();
+    model_.invalidate();
+  }
   void tick() {
     unit_->clk_i = 0;
     unit_->eval();
@@ -133,17 +170,19 @@ class Bench {
     ++cycle;
   }
   std::unique_ptr<typename Model::Unit> unit_;
+  InstructionCache model_;
+  bool has_class_ = true;
   bool looked_up_ = false, held_ = false;
   bool fetching_ = false, refilled_ = false;
   uint32_t next_fetch_warp_ = 0, fetch_warp_ = 0;
 };
 
 template <typename Model>
-class InstructionCache : public ::testing::Test {};
+class InstructionCacheTest : public ::testing::Test {};
 using Models = ::testing::Types<Model1w, Model8w, Model32w>;
-TYPED_TEST_SUITE(InstructionCache, Models);
+TYPED_TEST_SUITE(InstructionCacheTest, Models);
 
-TYPED_TEST(InstructionCache, ReplacesTheLeastRecentlyUsedLine) {
+TYPED_TEST(InstructionCacheTest, ReplacesTheLeastRecentlyUsedLine) {
   Bench<TypeParam> bench(5);
   std::map<uint32_t, std::deque<uint32_t>> sets;
   for (int i = 0; i < 800; ++i) {
@@ -162,7 +201,22 @@ TYPED_TEST(InstructionCache, ReplacesTheLeastRecentlyUsedLine) {
   }
 }
 
-TYPED_TEST(InstructionCache, OtherLinesHitDuringAFetch) {
+// Two lines that differ in one upper bit, whichever it is, in both ways of their set and in either order.
+TYPED_TEST(InstructionCacheTest, TellsLinesApartByEveryBitOfTheirPc) {
+  for (uint32_t bit = lowest(8 * Bench<TypeParam>::kWayLines); bit < 16; ++bit) {
+    for (const uint32_t before : {0u, 1u}) {  // other lines of the set, so that the pair goes into either way
+      Bench<TypeParam> bench;
+      for (uint32_t i = 0; i < before; ++i) bench.fetch(0, 5 ^ 1u << (bit == 15 ? 14 : 15));
+      for (const uint32_t pc : {5u, 5u | 1u << bit, 5u, 5u | 1u << bit}) {
+        uint64_t instruction = 0;
+        bench.fetch(0, pc, &instruction);
+        ASSERT_EQ(instruction, bench.stored(pc)) << "bit " << bit << " of the PC, after " << before << " other lines";
+      }
+    }
+  }
+}
+
+TYPED_TEST(InstructionCacheTest, OtherLinesHitDuringAFetch) {
   Bench<TypeParam> bench;
   for (uint32_t pc = 0; pc < 8; ++pc) bench.fetch(0, pc);
   bench.memory.behaviour.silent = true;
@@ -176,7 +230,7 @@ TYPED_TEST(InstructionCache, OtherLinesHitDuringAFetch) {
 }
 
 // Every time between a lookup and the beats of the same line: the answer is right, and the line is fetched once.
-TYPED_TEST(InstructionCache, LookupMeetsRefillBeatsOfItsLine) {
+TYPED_TEST(InstructionCacheTest, LookupMeetsRefillBeatsOfItsLine) {
   for (int start = 0; start < 24; ++start) {
     Bench<TypeParam> bench;
     bench.memory.behaviour.latency = 8;
@@ -196,7 +250,7 @@ TYPED_TEST(InstructionCache, LookupMeetsRefillBeatsOfItsLine) {
   }
 }
 
-TYPED_TEST(InstructionCache, InvalidateForgetsAlsoTheLineBeingFetched) {
+TYPED_TEST(InstructionCacheTest, InvalidateForgetsAlsoTheLineBeingFetched) {
   for (int when = 0; when < 30; ++when) {
     Bench<TypeParam> bench;
     bench.memory.behaviour.latency = 12;
@@ -216,7 +270,7 @@ TYPED_TEST(InstructionCache, InvalidateForgetsAlsoTheLineBeingFetched) {
   }
 }
 
-TYPED_TEST(InstructionCache, RandomWarpsGetTheirInstructions) {
+TYPED_TEST(InstructionCacheTest, RandomWarpsGetTheirInstructions) {
   for (uint32_t seed = 1; seed <= 12; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Bench<TypeParam> bench(seed);
@@ -254,8 +308,12 @@ TYPED_TEST(InstructionCache, RandomWarpsGetTheirInstructions) {
           ASSERT_EQ(warp.pc, looking_pc);
           ASSERT_EQ(answer.instruction, bench.stored(warp.pc)) << "pc " << warp.pc << " cycle " << bench.cycle;
           warp.since = bench.cycle;
-          warp.pc =
-              bench.random() % 4 ? (warp.pc + 1) % (lines * 8) : static_cast<uint32_t>(bench.random() % (lines * 8));
+          if (bench.random() % 4 != 0) {
+            warp.pc = (warp.pc & ~(bench.kUpper - 1)) | (warp.pc + 1) % (lines * 8);
+          } else {
+            warp.pc = static_cast<uint32_t>(bench.random() % (lines * 8));
+            if (bench.random() % 3 == 0) warp.pc |= bench.any_upper_bit();
+          }
         }
       }
       if (lookup) looking_pc = lookup->second;

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 #include <random>
+#include <unordered_map>
 #include <vector>
 
 namespace raypool::bench {
@@ -17,7 +18,8 @@ struct MemoryBehaviour {
   int ready_percent = 100;    ///< how often a request is taken
   int beat_percent = 100;     ///< how often a beat comes that could come
   bool out_of_order = false;  ///< beats of several lines are mixed
-  bool silent = false;        ///< takes requests, answers nothing
+  int gap = 0;          ///< up to so many cycles from a line's last beat to the first of the next; 0: as they come
+  bool silent = false;  ///< takes requests, answers nothing
 };
 
 class LineMemory {
@@ -28,14 +30,14 @@ class LineMemory {
     std::array<uint32_t, 4> data{};
   };
 
-  LineMemory(size_t words, uint32_t seed) : words_(words), random_(seed) {
-    for (size_t i = 0; i < words; ++i) words_[i] = 0x10000000u + static_cast<uint32_t>(i);
-  }
+  /// There are words at all addresses, each of which holds another value at first; bytes() says how many are meant to
+  /// be used.
+  LineMemory(size_t words, uint32_t seed) : bytes_(static_cast<uint32_t>(words * 4)), random_(seed) {}
 
   MemoryBehaviour behaviour;
 
-  uint32_t& word(uint32_t address) { return words_.at(address / 4); }
-  uint32_t bytes() const { return static_cast<uint32_t>(words_.size() * 4); }
+  uint32_t& word(uint32_t address) { return words_.try_emplace(address / 4, 0x10000000u + address / 4).first->second; }
+  uint32_t bytes() const { return bytes_; }
 
   bool decide_ready() { return percent(behaviour.ready_percent); }
 
@@ -59,12 +61,15 @@ class LineMemory {
     if (lines_.empty() || behaviour.silent || !percent(behaviour.beat_percent)) return std::nullopt;
     size_t which = behaviour.out_of_order ? random_() % lines_.size() : 0;
     Line& line = lines_[which];
-    if (cycle < line.due) return std::nullopt;
+    if (cycle < line.due || (line.next == 0 && cycle < next_line_)) return std::nullopt;
     Beat beat;
     beat.id = line.id;
     beat.beat = line.next;
     for (uint32_t i = 0; i < 4; ++i) beat.data[i] = line.data[line.next * 4 + i];
-    if (++line.next == 4) lines_.erase(lines_.begin() + which);
+    if (++line.next == 4) {
+      lines_.erase(lines_.begin() + which);
+      if (behaviour.gap > 0) next_line_ = cycle + 1 + random_() % static_cast<uint32_t>(behaviour.gap);
+    }
     return beat;
   }
 
@@ -90,7 +95,9 @@ class LineMemory {
 
   bool percent(int chance) { return static_cast<int>(random_() % 100) < chance; }
 
-  std::vector<uint32_t> words_;
+  std::unordered_map<uint32_t, uint32_t> words_;
+  uint32_t bytes_;
+  uint64_t next_line_ = 0;
   std::vector<Line> lines_;
   std::mt19937 random_;
   size_t reads_ = 0;

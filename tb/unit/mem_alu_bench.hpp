@@ -1,7 +1,8 @@
 // Drives a Verilated mem_alu and checks everything that is promised in every cycle: each result against the
 // history of the stores, stores at the port against the store trace, reads against the rules of miss-status
-// holding registers, stable payloads, bounded time. MODEL is a struct with the Verilated class as Unit and the
-// parameters kWarps, kLanes, kBytes, kMshrs.
+// holding registers, stable payloads, bounded time; and all outputs but data against those of its class, so that a
+// cycle too many is seen, too. MODEL is a struct with the Verilated class as Unit and the parameters kWarps, kLanes,
+// kBytes, kMshrs.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -13,9 +14,12 @@
 #include <optional>
 #include <random>
 #include <stdexcept>
+#include <unordered_map>
 #include <vector>
 
+#include "bits.hpp"
 #include "line_memory.hpp"
+#include "machine/mem_alu.hpp"
 
 namespace raypool::bench {
 
@@ -71,9 +75,11 @@ class MemAluBench {
   };
 
   explicit MemAluBench(uint32_t seed = 1, uint32_t bytes = Model::kBytes * 8)
-      : memory(bytes / 4, seed), random(seed), history_(bytes / 4), unit_(std::make_unique<typename Model::Unit>()) {
-    for (uint32_t i = 0; i < bytes / 4; ++i) history_[i].push_back({0, memory.word(4 * i)});
-    unit_->memory_limit_i = bytes;
+      : memory(bytes / 4, seed),
+        random(seed),
+        unit_(std::make_unique<typename Model::Unit>()),
+        model_(std::make_unique<MemAlu>(configuration())) {
+    set_limit(~uint32_t{0});
     unit_->rst_ni = 0;
     clock();
     clock();
@@ -100,10 +106,18 @@ class MemAluBench {
     return false;
   }
   void set_limit(uint32_t bytes) { unit_->memory_limit_i = bytes; }
+  /// Of an address: a bit that none of the words in use has.
+  uint32_t any_upper_bit() {
+    const uint32_t lowest_bit = lowest(memory.bytes());
+    return 1u << (lowest_bit + random() % (32 - lowest_bit));
+  }
+  /// How often a register was freed in the cycle in which the privileged loser was chosen; and how often both ways of a
+  /// set that the loser reads from were promised to other registers then, so that it tried in vain.
+  uint64_t freed_while_chosen = 0, freed_in_vain = 0;
   /// The memory as changed from outside, which is legal before an invalidate.
   void poke(uint32_t address, uint32_t value) {
     memory.word(address) = value;
-    history_[address / 4].assign(1, {cycle, value});
+    history_of(address).assign(1, {cycle, value});
   }
 
   static std::map<uint32_t, Quad> quads_of(const MemTask& task) {
@@ -138,6 +152,7 @@ class MemAluBench {
       }
       ASSERT_FALSE(flights[task->warp]) << "bench: warp has a task";
       if (!busy()) last_done_ = cycle;
+      begin_in_class(*task);
       Flight& flight = flights[task->warp].emplace();
       flight.task = *task;
       flight.start = cycle;
@@ -154,11 +169,11 @@ class MemAluBench {
       for (int i = 0; i < 4; ++i) put(u.response_data_i, i, beat->data[i]);
     }
     u.invalidate_i = invalidate;
-    invalidate = false;
     u.clk_i = 0;
     u.eval();
     ASSERT_EQ(before, outputs()) << "an output depends on an input of the same cycle, cycle " << cycle;
     ready_ = u.ready_o;
+    ASSERT_NO_FATAL_FAILURE(compare_with_class());
     check_store_trace();
     check_done();
     check_request();
@@ -172,6 +187,11 @@ class MemAluBench {
       flights[fault_warp].reset();
     }
     ASSERT_FALSE(busy() && u.idle_o && !task) << "idle_o with a task under way, cycle " << cycle;
+    count_collisions();
+    events_ = model_->clock({task ? static_cast<int>(task->warp) : -1, beat.has_value(), beat ? beat->id : 0,
+                             beat ? beat->beat : 0, u.request_ready_i != 0});
+    if (invalidate) model_->invalidate();
+    invalidate = false;
     u.clk_i = 1;
     u.eval();
     ++cycle;
@@ -211,23 +231,26 @@ class MemAluBench {
     task.mask = kLaneMask;
     for (int lane = 0; lane < kLanes; ++lane) {
       task.address.push_back(base + static_cast<uint32_t>(lane) * stride);
-      task.data.push_back(0x20000000u + next_value_++);
+      task.data.push_back(0x60000000u + next_value_++);
     }
     return task;
   }
 
-  /// Any task. Addresses crowd in the first `lines` lines of `sets` neighbouring sets, so that warps meet there.
-  MemTask any_task(uint32_t warp, uint32_t sets, uint32_t lines, int store_percent) {
+  /// Any task. Addresses crowd in the first `lines` lines of `sets` neighbouring sets, so that warps meet there. With
+  /// `upper` half of the tasks set one of the address bits above, some in each lane another one.
+  MemTask any_task(uint32_t warp, uint32_t sets, uint32_t lines, int store_percent, bool upper = false) {
     const auto below = [&](uint32_t n) { return static_cast<uint32_t>(random() % n); };
     const auto crowded = [&] { return below(lines) * kWayBytes + below(sets * 16) * 4; };
     static constexpr uint32_t kStrides[] = {0, 4, 4, 8, 16, 20, 64, kWayBytes, kWayBytes + 64};
     MemTask task = strided(warp, static_cast<int>(below(100)) < store_percent, crowded(), kStrides[below(9)]);
     task.immediate = below(2) ? 0 : static_cast<uint32_t>(random());
     if (below(8) != 0) task.mask = static_cast<uint32_t>(random()) & kLaneMask;
-    const bool scattered = below(3) == 0;
+    const bool scattered = below(3) == 0, above = upper && below(2) == 0;
+    uint32_t bit = above ? any_upper_bit() : 0;
     for (auto& address : task.address) {
       if (scattered) address = crowded();
-      address %= memory.bytes();
+      if (scattered && above) bit = below(2) * any_upper_bit();
+      address = address % memory.bytes() | bit;
     }
     return task;
   }
@@ -237,6 +260,97 @@ class MemAluBench {
     uint64_t since;
     uint32_t value;
   };
+
+  static Configuration configuration() {
+    Configuration configuration;
+    configuration.warps = kWarps;
+    configuration.lanes = kLanes;
+    configuration.data_cache_bytes = Model::kBytes;
+    configuration.data_cache_mshrs = Model::kMshrs;
+    return configuration;
+  }
+  std::vector<Version>& history_of(uint32_t address) {
+    auto& versions = history_[address / 4];
+    if (versions.empty()) versions.push_back({0, memory.word(address)});
+    return versions;
+  }
+
+  // What the functional core would have said of it.
+  void begin_in_class(const MemTask& task) {
+    DecodedInstruction instruction;
+    instruction.opcode = task.store ? Opcode::St : Opcode::Ld;
+    step_ = {};
+    step_.status = Step::Status::Executed;
+    step_.warp = task.warp;
+    step_.mask = task.mask;
+    step_.instruction = &instruction;
+    bool misaligned = false, outside = false;
+    for (uint32_t lanes = task.mask; lanes != 0; lanes &= lanes - 1) {
+      const uint32_t lane = lowest(lanes), address = task.address[lane];
+      misaligned |= address % 4 != 0;
+      outside |= address >= unit_->memory_limit_i;
+      step_.addresses[lane] = address;
+      if (task.store) step_.stores[step_.store_count++] = {lane, address, task.data[lane]};
+    }
+    if (misaligned || outside) {
+      step_.status = Step::Status::Fault;
+      step_.fault.code = misaligned ? FaultCode::Misaligned : FaultCode::AddressOutsideMemory;
+      step_.store_count = 0;
+    }
+    model_->begin(step_);
+  }
+
+  void compare_with_class() {
+    const auto& u = *unit_;
+    const MemAlu& model = *model_;
+    ASSERT_EQ(u.ready_o, model.ready()) << "cycle " << cycle;
+    ASSERT_EQ(u.idle_o, model.idle()) << "cycle " << cycle;
+    ASSERT_EQ(u.done_valid_o ? 1u << u.done_warp_o : 0u, model.done()) << "cycle " << cycle;
+    ASSERT_EQ(u.fault_valid_o, model.fault() != FaultCode::None) << "cycle " << cycle;
+    if (u.fault_valid_o) {
+      ASSERT_EQ(u.fault_code_o, to_underlying(model.fault())) << "cycle " << cycle;
+      ASSERT_EQ(u.fault_warp_o, model.fault_warp()) << "cycle " << cycle;
+    }
+    StoreEvent stored;
+    ASSERT_EQ(u.store_trace_valid_o, model.storing(stored)) << "cycle " << cycle;
+    ASSERT_EQ(u.store_o, u.store_trace_valid_o) << "cycle " << cycle;
+    if (u.store_trace_valid_o) {
+      ASSERT_EQ(u.store_trace_address_o, stored.address) << "cycle " << cycle;
+      ASSERT_EQ(u.store_trace_warp_o, stored.warp) << "cycle " << cycle;
+    }
+    ASSERT_EQ(u.hit_o, events_.hit) << "cycle " << cycle;
+    ASSERT_EQ(u.miss_o, events_.miss) << "cycle " << cycle;
+    ASSERT_EQ(u.request_valid_o, model.request_valid()) << "cycle " << cycle;
+    if (!u.request_valid_o) return;
+    ASSERT_EQ(u.request_write_o, model.request().write) << "cycle " << cycle;
+    ASSERT_EQ(u.request_address_o, model.request().address) << "cycle " << cycle;
+    if (!u.request_write_o) {
+      ASSERT_EQ(u.request_id_o, model.request().id) << "cycle " << cycle;
+    }
+  }
+
+  void count_collisions() {
+    const MissStatus& status = model_->cache().miss_status();
+    const MissStatus::Registers& miss = status.registers();
+    const MemorySequencer::Select select = model_->sequencer().select(miss);
+    if (!select.valid || select.kind != MemorySequencer::Kind::Loser || !status.freed()) return;
+    ++freed_while_chosen;
+    const auto set_of = [](uint32_t line) { return line % (kWayBytes / 64); };
+    const MemTask& task = flights[select.warp]->task;
+    for (uint32_t lanes = task.mask; lanes != 0; lanes &= lanes - 1) {
+      const uint32_t line = task.address[lowest(lanes)] / 64;
+      uint32_t promised = 0;
+      bool comes = false;
+      for (uint32_t stay = miss.busy & ~status.finished(); stay != 0; stay &= stay - 1) {
+        const uint32_t id = lowest(stay);
+        comes |= miss.line[id] == line;
+        if (set_of(miss.line[id]) == set_of(line)) promised |= 1u << miss.way[id];
+      }
+      if (promised != 3 || comes) continue;
+      ++freed_in_vain;
+      return;
+    }
+  }
 
   uint64_t outputs() {
     const auto& u = *unit_;
@@ -265,7 +379,7 @@ class MemAluBench {
       seen.data[i] = u.store_trace_data_o[i];
       if (!(seen.mask >> i & 1)) continue;
       ASSERT_EQ(quad->second.data[i], seen.data[i]) << "stored word " << i << ", cycle " << cycle;
-      history_[quad->first / 4 + i].push_back({cycle, seen.data[i]});
+      history_of(quad->first + 4 * i).push_back({cycle, seen.data[i]});
     }
     port_writes_.push_back({quad->first, seen});
     flight->stores.erase(quad);
@@ -285,7 +399,7 @@ class MemAluBench {
       if (flight->task.store || !(flight->task.mask >> lane & 1)) continue;
       ASSERT_TRUE(may_load(flight->task.address[lane], result.data[lane], flight->start))
           << "warp " << warp << " lane " << lane << " loaded " << std::hex << result.data[lane] << " from "
-          << flight->task.address[lane] << ", which held " << history_[flight->task.address[lane] / 4].back().value
+          << flight->task.address[lane] << ", which held " << history_of(flight->task.address[lane]).back().value
           << std::dec << ", cycle " << cycle;
     }
     ASSERT_TRUE(flight->stores.empty()) << "a store is done before all its quadwords are, cycle " << cycle;
@@ -294,8 +408,8 @@ class MemAluBench {
   }
 
   /// The word held this value at some time from `start` to now.
-  bool may_load(uint32_t address, uint32_t value, uint64_t start) const {
-    const auto& versions = history_[address / 4];
+  bool may_load(uint32_t address, uint32_t value, uint64_t start) {
+    const auto& versions = history_of(address);
     for (size_t i = versions.size(); i-- > 0;) {
       if (versions[i].value == value) return true;
       if (versions[i].since <= start) return false;
@@ -337,9 +451,12 @@ class MemAluBench {
     }
   }
 
-  std::vector<std::vector<Version>> history_;  ///< a word
+  std::unordered_map<uint32_t, std::vector<Version>> history_;  ///< a word
   std::deque<std::pair<uint32_t, Quad>> port_writes_;
   std::unique_ptr<typename Model::Unit> unit_;
+  std::unique_ptr<MemAlu> model_;
+  MemAlu::Events events_;  ///< of the cycle before
+  Step step_;
   uint64_t last_done_ = 0;
   uint32_t next_value_ = 0;
   bool ready_ = false, held_ = false, held_write_ = false;

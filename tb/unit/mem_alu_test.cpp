@@ -1,4 +1,5 @@
 // The memory ALU with its data cache, in several sizes. mem_alu_bench.hpp checks every cycle; here are the situations.
+#include "Vmem_alu_16x4.h"
 #include "Vmem_alu_1x1.h"
 #include "Vmem_alu_1x32.h"
 #include "Vmem_alu_32x2.h"
@@ -21,8 +22,9 @@ using Model4x4 = Model<Vmem_alu_4x4, 4, 4, 1024, 2>;
 using Model8x8 = Model<Vmem_alu_8x8, 8, 8, 8192, 4>;
 using Model8x8_small = Model<Vmem_alu_8x8_small, 8, 8, 512, 1>;
 using Model1x32 = Model<Vmem_alu_1x32, 1, 32, 1024, 4>;
+using Model16x4 = Model<Vmem_alu_16x4, 16, 4, 512, 16>;
 using Model32x2 = Model<Vmem_alu_32x2, 32, 2, 512, 3>;
-using Models = ::testing::Types<Model1x1, Model4x4, Model8x8, Model8x8_small, Model1x32, Model32x2>;
+using Models = ::testing::Types<Model1x1, Model4x4, Model8x8, Model8x8_small, Model1x32, Model16x4, Model32x2>;
 
 template <typename M>
 class MemAlu : public ::testing::Test {
@@ -47,39 +49,53 @@ class MemAlu : public ::testing::Test {
     uint32_t sets, lines;
     int store_percent, issue_percent;
     MemoryBehaviour memory;
+    bool upper = false;  ///< upper address bits are set, too
   };
-  static void run_random(uint32_t seed, int tasks, const Mix& mix) {
+  /// What the bench has counted.
+  struct Seen {
+    uint64_t freed_while_chosen = 0, freed_in_vain = 0;
+  };
+  static Seen run_random(uint32_t seed, int tasks, const Mix& mix) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Bench bench(seed);
     bench.memory.behaviour = mix.memory;
-    const uint64_t bound = 1000 + static_cast<uint64_t>(M::kWarps) * M::kLanes *
-                                      static_cast<uint64_t>(mix.memory.latency + mix.memory.jitter + 40) * 100 /
-                                      static_cast<uint64_t>(mix.memory.beat_percent);
+    const uint64_t bound =
+        1000 + static_cast<uint64_t>(M::kWarps) * M::kLanes *
+                   static_cast<uint64_t>(mix.memory.latency + mix.memory.jitter + mix.memory.gap + 40) * 100 /
+                   static_cast<uint64_t>(mix.memory.beat_percent);
     for (int given = 0; given < tasks;) {
       const auto warp = static_cast<uint32_t>(bench.random() % M::kWarps);
       if (bench.ready() && !bench.flights[warp] && static_cast<int>(bench.random() % 100) < mix.issue_percent) {
-        const MemTask task = bench.any_task(warp, mix.sets, mix.lines, mix.store_percent);
+        const MemTask task = bench.any_task(warp, mix.sets, mix.lines, mix.store_percent, mix.upper);
         bench.step(&task);
         ++given;
       } else {
         bench.step();
       }
       for (const auto& flight : bench.flights)
-        ASSERT_TRUE(!flight || bench.cycle - flight->start < bound) << "starved or hung, cycle " << bench.cycle;
+        if (flight && bench.cycle - flight->start >= bound)
+          throw std::runtime_error("starved or hung, cycle " + std::to_string(bench.cycle));
     }
     bench.drain();
     EXPECT_EQ(bench.hits + bench.misses, bench.expected_loads);
     EXPECT_EQ(bench.stores, bench.expected_stores);
     EXPECT_EQ(bench.writes_at_port, bench.expected_stores);
     EXPECT_EQ(bench.faults, 0u);
+    return {bench.freed_while_chosen, bench.freed_in_vain};
   }
 };
 TYPED_TEST_SUITE(MemAlu, Models);
 
+// What needs three miss-status holding registers: two have both ways of a set, and a third one is freed.
+template <typename M>
+class MemAluOfThreeMisses : public MemAlu<M> {};
+using ModelsOfThreeMisses = ::testing::Types<Model8x8, Model16x4, Model32x2>;
+TYPED_TEST_SUITE(MemAluOfThreeMisses, ModelsOfThreeMisses);
+
 // What needs a second warp.
 template <typename M>
 class MemAluOfSeveralWarps : public MemAlu<M> {};
-using ModelsOfSeveralWarps = ::testing::Types<Model4x4, Model8x8, Model8x8_small, Model32x2>;
+using ModelsOfSeveralWarps = ::testing::Types<Model4x4, Model8x8, Model8x8_small, Model16x4, Model32x2>;
 TYPED_TEST_SUITE(MemAluOfSeveralWarps, ModelsOfSeveralWarps);
 
 TYPED_TEST(MemAlu, EmptyMaskCompletesInThreeCycles) {
@@ -289,6 +305,61 @@ TYPED_TEST(MemAlu, RandomTasksOfAllWarps) {
     this->run_random(seed + 20, tasks, {2, 2, 10, 50, slow});    // mostly hits
     this->run_random(seed + 30, tasks, {4, 4, 60, 100, stuck});  // stores against a slow port
     this->run_random(seed + 40, tasks, {4, 8, 5, 100, fast});    // mostly misses
+    this->run_random(seed + 50, tasks, {2, 2, 30, 100, slow, true});
+    this->run_random(seed + 60, tasks, {1, 2, 30, 100, fast, true});
+  }
+}
+
+// Lines of one set or a few, of which there are more than ways and registers, and which come back one at a time.
+TYPED_TEST(MemAluOfThreeMisses, RegistersAreFreedWhileLosersWaitForAWayOfTheirSet) {
+  uint64_t chosen = 0, in_vain = 0;
+  const int tasks = 12000 / TypeParam::kLanes;
+  for (uint32_t seed = 1; seed <= 4; ++seed) {
+    for (const uint32_t sets : {1u, 2u, 3u}) {
+      for (const int gap : {1, 12, 40}) {
+        MemoryBehaviour memory;
+        memory.latency = 3;
+        memory.gap = gap;
+        const auto seen = this->run_random(100 * seed + sets, tasks, {sets, 6, 5, 100, memory, seed % 2 == 0});
+        chosen += seen.freed_while_chosen;
+        in_vain += seen.freed_in_vain;
+      }
+    }
+  }
+  this->RecordProperty("chosen", static_cast<int>(chosen));
+  this->RecordProperty("in_vain", static_cast<int>(in_vain));
+  EXPECT_GT(chosen, 100u) << "no register was freed in the cycle in which the privileged loser was chosen";
+  EXPECT_GT(in_vain, 10u) << "then no other registers had both ways of the loser's set";
+}
+
+// Each bit of an address, in the bank that is accessed, in what waits for it and at the port.
+TYPED_TEST(MemAlu, TellsLinesApartByEveryBitOfTheirAddress) {
+  for (uint32_t bit = lowest(this->kWay); bit < 32; ++bit) {
+    for (const bool other_first : {false, true}) {  // so that the pair goes into either way
+      typename TestFixture::Bench bench;
+      if (other_first) bench.run(bench.strided(0, false, 32 | 1u << (bit == 31 ? 30 : 31), 0));
+      for (const uint32_t address : {32u, 32u | 1u << bit, 32u}) {
+        bench.run(bench.strided(0, false, address, 0));
+        bench.run(bench.strided(0, true, address, 0));
+        bench.run(bench.strided(0, false, address, 0));
+      }
+    }
+  }
+}
+
+TYPED_TEST(MemAlu, EveryBitOfAnAddressCountsAtTheLimit) {
+  for (uint32_t bit = 9; bit < 32; ++bit) {
+    typename TestFixture::Bench bench;
+    bench.set_limit(1u << bit);
+    MemTask task = bench.strided(0, false, 0, 0);
+    task.address.back() = 1u << bit;
+    bench.give(task);
+    for (int i = 0; i < 30; ++i) bench.step();
+    EXPECT_EQ(bench.faults, 1u) << "bit " << bit;
+    EXPECT_EQ(bench.fault_code, 6u) << "bit " << bit;
+    task.address.back() = (1u << bit) - 4;
+    bench.run(task);
+    EXPECT_EQ(bench.faults, 1u) << "bit " << bit;
   }
 }
 

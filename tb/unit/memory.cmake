@@ -13,6 +13,7 @@ raypool_memory_model(mem_alu_test mem_alu 4x4 WARPS=4 LANES=4 DATA_CACHE_BYTES=1
 raypool_memory_model(mem_alu_test mem_alu 8x8 WARPS=8 LANES=8 DATA_CACHE_BYTES=8192 DATA_CACHE_MSHRS=4)
 raypool_memory_model(mem_alu_test mem_alu 8x8_small WARPS=8 LANES=8 DATA_CACHE_BYTES=512 DATA_CACHE_MSHRS=1)
 raypool_memory_model(mem_alu_test mem_alu 1x32 WARPS=1 LANES=32 DATA_CACHE_BYTES=1024 DATA_CACHE_MSHRS=4)
+raypool_memory_model(mem_alu_test mem_alu 16x4 WARPS=16 LANES=4 DATA_CACHE_BYTES=512 DATA_CACHE_MSHRS=16)
 raypool_memory_model(mem_alu_test mem_alu 32x2 WARPS=32 LANES=2 DATA_CACHE_BYTES=512 DATA_CACHE_MSHRS=3)
 
 raypool_bench(instruction_cache_test)
