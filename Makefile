@@ -234,7 +234,7 @@ help-all: ## every target and variable
 	@echo '  make synth:  AGAINST=REPORT  RUN=REPORT_OF_SIM  POWER=1  OUT=FOLDER  ROUNDS=0..8'
 	@echo '  synth-module:  MODULE=NAME  PARAMETERS="A=1,B=2 ...": of rtl/, one row for each  LIBERTY  CLOCK  MEMORIES'
 	@echo '  synth-replay:  BREAK=N;  synth-prove:  ONLY=BLOCKS;  growth:  PLAN=FILE'
-	@echo 'variables of make cosim:  PROGRAMS=$(PROGRAMS)  SEED=$(SEED)  CONFIG  SET  CUS  COVERAGE=FILE.json'
+	@echo 'variables of make cosim:  PROGRAMS=$(PROGRAMS)  SEED=$(SEED)  COVERAGE=FILE.json  CONFIG  SET  CUS: one machine'
 	@echo 'variables of make chip-frames:  FRAMES=$(FRAMES): of each machine  SEED=$(SEED)'
 	@echo '    TRAVERSER=hardware: only the machines that have it inside'
 	@echo '  traverser-trees:  TREES=$(TREES): of each machine  SEED=$(SEED): of the first'
@@ -273,9 +273,13 @@ run: setup-sim program ## run a compute kernel, check its results, print its cyc
 	@$(UNIT_OF_ENGINE)
 	@$(RAYPOOL) run "$$KERNEL" --config "$$CONFIG" $(SET_FIELDS) --engine "$$ENGINE" $(ARGS)
 
-cosim: setup-sim program ## random programs, hardware against model: CONFIG, CUS, PROGRAMS, SEED
-	@$(UNIT) --units "$$CUS"
-	@$(RAYPOOL) cosim --config "$$CONFIG" $(SET_FIELDS) --units "$$CUS" --programs "$$PROGRAMS" \
+# One machine where the call says which; else those of configs/cosim/, which share the programs. What an outer make has
+# exported is no call.
+ONE_MACHINE := $(filter command $(if $(filter 0,$(MAKELEVEL)),environment),\
+  $(foreach name,CONFIG CUS SET,$(firstword $(origin $(name)))))
+cosim: setup-sim program ## random programs, hardware against model, on a set of small machines, or CONFIG: PROGRAMS
+	@$(if $(ONE_MACHINE),$(UNIT) --units "$$CUS",scripts/cosim_units.sh)
+	@$(RAYPOOL) cosim $(if $(ONE_MACHINE),--config "$$CONFIG" $(SET_FIELDS) --units "$$CUS") --programs "$$PROGRAMS" \
 	  --seed "$$SEED" $${COVERAGE:+--coverage "$$COVERAGE"}
 
 configurations: setup-sim program ## random programs on machines with every pair of values (hours): PROGRAMS

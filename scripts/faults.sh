@@ -1,8 +1,8 @@
 #!/bin/bash
 # Builds machines that carry every mistake of tb/faults/catalogue.json: scripts/faults.sh FOLDER [MACHINE]...
 # The environment variable RAYPOOL_FAULT selects the mistake (none: 0) of every unit made after it is set. The machines
-# are the small one of the cosim tests, as one unit and as four, one with all features of `best`, and those that the
-# tests configurations_quick_* walk. FOLDER gets
+# are the small one of the cosim tests, as one unit and as four, one with all features of `best`, those that the tests
+# configurations_quick_* walk, and the others of `raypool cosim` by the names of their files. FOLDER gets
 #   rtl/                      the Verilog with the mistakes
 #   NAME/libraypool_unit.so   a machine
 #   list                      a line for each: name, file of the configuration, units
@@ -29,6 +29,9 @@ machines=("2w2c $small 1" "2w8c-best ${small%2w2c.json}2w8c_best.json 1" "2w2c-4
 while read -r file units; do
   machines+=("${file%.json} $folder/configurations/$file $units")
 done < "$folder/configurations/list"
+while read -r file units; do
+  [ "$file" -ef "$small" ] || machines+=("$(basename "$file" .json) $file $units")
+done < <("$raypool" cosim --machines)
 
 rm -f "$folder/list"
 for machine in "${machines[@]}"; do

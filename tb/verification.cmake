@@ -8,26 +8,15 @@ set(small_config ${CMAKE_SOURCE_DIR}/tb/mutants/2w2c.json)
 add_test(NAME verilate_2w2c_small COMMAND ${CMAKE_COMMAND} -E env RAYPOOL=${raypool_program} ${scripts}/unit.sh
   ${small_config})
 set_tests_properties(verilate_2w2c_small PROPERTIES FIXTURES_SETUP unit_2w2c_small TIMEOUT 900)
-add_test(NAME cosim_2w2c_small COMMAND raypool cosim --config ${small_config} --programs 1000 --seed 1
-  --no-shrink --quiet)
-set_tests_properties(cosim_2w2c_small PROPERTIES FIXTURES_REQUIRED unit_2w2c_small TIMEOUT 300)
-# A small one with all features of best, and arithmetic.fma, of which there are triples too.
-set(best_config ${CMAKE_SOURCE_DIR}/tb/mutants/2w8c_best.json)
-add_test(NAME verilate_2w8c_best_small COMMAND ${CMAKE_COMMAND} -E env RAYPOOL=${raypool_program} ${scripts}/unit.sh
-  ${best_config})
-set_tests_properties(verilate_2w8c_best_small PROPERTIES FIXTURES_SETUP unit_2w8c_best_small TIMEOUT 900)
-add_test(NAME cosim_2w8c_best_small COMMAND raypool cosim --config ${best_config} --programs 300 --seed 1
-  --no-shrink --quiet)
-set_tests_properties(cosim_2w8c_best_small PROPERTIES FIXTURES_REQUIRED unit_2w8c_best_small TIMEOUT 300)
-add_test(NAME cosim_4w4c_2cu COMMAND raypool cosim --config 4w4c --units 2 --programs 100 --no-shrink --quiet)
-set_tests_properties(cosim_4w4c_2cu PROPERTIES FIXTURES_REQUIRED unit_4w4c_2cu TIMEOUT 300)
-# Four small ones: a multiprocessor of four 4w4c takes a minute to compile.
-add_test(NAME verilate_2w2c_small_4cu COMMAND ${CMAKE_COMMAND} -E env RAYPOOL=${raypool_program} ${scripts}/unit.sh
-  ${small_config} --units 4)
-set_tests_properties(verilate_2w2c_small_4cu PROPERTIES FIXTURES_SETUP unit_2w2c_small_4cu TIMEOUT 900)
-add_test(NAME cosim_2w2c_small_4cu COMMAND raypool cosim --config ${small_config} --units 4 --programs 300
-  --no-shrink --quiet)
-set_tests_properties(cosim_2w2c_small_4cu PROPERTIES FIXTURES_REQUIRED unit_2w2c_small_4cu TIMEOUT 300)
+# The machines of `make cosim`, which together have every feature: sim/cosim/machines.cpp lists them.
+add_test(NAME verilate_cosim_machines COMMAND ${CMAKE_COMMAND} -E env RAYPOOL=${raypool_program}
+  ${scripts}/cosim_units.sh)
+set_tests_properties(verilate_cosim_machines PROPERTIES FIXTURES_SETUP units_of_cosim FIXTURES_REQUIRED unit_2w2c_small
+  TIMEOUT 900)
+add_test(NAME cosim_machines COMMAND raypool cosim --programs 1000 --seed 1 --no-shrink --quiet)
+set_tests_properties(cosim_machines PROPERTIES FIXTURES_REQUIRED units_of_cosim TIMEOUT 300)
+add_test(NAME cosim_command COMMAND ${scripts}/tests/cosim.sh ${raypool_program} ${CMAKE_BINARY_DIR}/cosim-test)
+set_tests_properties(cosim_command PROPERTIES FIXTURES_REQUIRED units_of_cosim TIMEOUT 300)
 
 # The catalogue of designers' mistakes fits the Verilog, and a few of them are
 # noticed soon; `make faults` runs them all.

@@ -146,7 +146,7 @@ int bench_command(const BenchCommandOptions& options);
 
 /// `raypool cosim`: random programs, each with its own seed: seed, seed + 1, ...
 struct CosimOptions {
-  std::string config = "8w8c";
+  std::string config;            ///< empty: the machines of cosim_machines(), which share the programs
   std::vector<std::string> set;  ///< fields of the configuration to change, "warps=4"
   std::string engine = "lockstep";
   std::string unit_library;
@@ -163,6 +163,7 @@ struct CosimOptions {
   std::string replay;                   ///< a saved program, instead of random ones
   bool show_configuration = false;      ///< of the saved program, instead of running it
   bool unchecked = false;               ///< the saved program may break the rules of random programs
+  bool machines = false;                ///< print the machines of an empty `config`, instead of running them
 };
 int cosim_command(const CosimOptions& options);
 

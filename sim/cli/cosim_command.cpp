@@ -1,15 +1,20 @@
 // `raypool cosim`: random programs on the Verilated unit in lockstep with the golden model.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <fstream>
+#include <memory>
 #include <optional>
+#include <vector>
 
 #include "cli/commands.hpp"
 #include "cli/engine.hpp"
 #include "cli/output_folder.hpp"
 #include "cli/progress.hpp"
+#include "config/data_folder.hpp"
 #include "cosim/cosim.hpp"
 #include "cosim/coverage.hpp"
+#include "cosim/machines.hpp"
 #include "cosim/program_file.hpp"
 #include "cosim/shrink.hpp"
 #include "cosim/vector_recorder.hpp"
@@ -38,6 +43,11 @@ class Cosim {
   const Coverage& coverage() const { return coverage_; }
   const Configuration& configuration() const { return engine_.configuration; }
   Engine engine() const { return engine_.engine; }
+
+  /// Throws InputError if the Verilated unit is missing that it needs.
+  void find_unit() const {
+    if (traced()) find_unit_library(engine_);
+  }
 
   /// The recording gets its name.
   void finish() {
@@ -158,6 +168,40 @@ std::string subject(const std::string& report) {
   throw InputError(text);
 }
 
+/// A machine with its part of the programs.
+struct Share {
+  Machine machine;
+  uint64_t programs;
+  std::unique_ptr<Cosim> cosim;
+};
+
+/// In equal parts; the first have one more where that does not come out even. Who gets none is left out.
+std::vector<Share> share_programs(const CosimOptions& options, const std::vector<Machine>& machines) {
+  std::vector<Share> shares;
+  for (const Machine& machine : machines) {
+    const uint64_t rest = options.programs % machines.size() > shares.size() ? 1 : 0;
+    const uint64_t programs = options.programs / machines.size() + rest;
+    if (programs == 0 && machines.size() > 1) break;
+    shares.push_back({machine, programs, std::make_unique<Cosim>(options, machine.configuration, machine.units)});
+  }
+  if (shares.empty()) throw InputError("--programs 0 of several machines: give each at least one");
+  return shares;
+}
+
+/// All of them at once, before the first one runs: what is missing is no matter of minutes later.
+void find_units(const std::vector<Share>& shares) {
+  for (const Share& share : shares) {
+    try {
+      share.cosim->find_unit();
+    } catch (const InputError& error) {
+      if (shares.size() == 1) throw;
+      throw InputError(fmt::format("{} ({} the units of all {} machines)", error.what(),
+                                   installed() ? "raypool cosim --machines lists" : "make cosim builds",
+                                   shares.size()));
+    }
+  }
+}
+
 void run_or_report(Cosim& cosim, const CosimOptions& options, const RandomProgram& program, const std::string& again,
                    uint64_t& cycles) {
   try {
@@ -167,6 +211,77 @@ void run_or_report(Cosim& cosim, const CosimOptions& options, const RandomProgra
   } catch (const ProgramFailure& failure) {
     report_failure(cosim, options, program, failure.what(), again, false);
   }
+}
+
+uint64_t run_share(const Share& share, const CosimOptions& options, const std::string& title, Progress& progress) {
+  const Configuration& configuration = share.machine.configuration;
+  uint64_t cycles = 0;
+  for (uint64_t n = 0; n < share.programs; ++n) {
+    const RandomProgram program =
+        make_random_program(configuration, options.seed + n, options.length, share.machine.units, options.mix);
+    run_or_report(*share.cosim, options, program,
+                  fmt::format("raypool cosim {} --units {} --programs 1 --seed {} --length {}{}",
+                              config_options(configuration), share.machine.units, program.seed, options.length,
+                              options.mix.empty() ? "" : " --mix " + options.mix),
+                  cycles);
+    if (progress.due())
+      progress.show(fmt::format("cosim {}: {} of {} programs, {} cycles", title, n + 1, share.programs, cycles));
+  }
+  return cycles;
+}
+
+std::vector<Machine> machines_of(const std::vector<Share>& shares) {
+  std::vector<Machine> machines;
+  for (const Share& share : shares) machines.push_back(share.machine);
+  return machines;
+}
+
+void print_lacking(const std::vector<Share>& shares) {
+  const std::vector<Machine> machines = machines_of(shares);
+  const std::vector<std::string> features = features_lacking(machines);
+  if (shares.size() == 1) {
+    if (!features.empty())
+      fmt::print("not tried, as {} lacks them: {}\n", name_of(machines.front()), fmt::join(features, ", "));
+    return;
+  }
+  if (!features.empty()) fmt::print("not tried, as no machine has them: {}\n", fmt::join(features, ", "));
+  fmt::print("no machine has (make configurations has all): {}\n", fmt::join(values_lacking(machines), "; "));
+}
+
+void print_coverage(const std::vector<Share>& shares, const CosimOptions& options) {
+  std::vector<NamedCoverage> machines;
+  for (const Share& share : shares)
+    machines.push_back({name_of(share.machine), share.programs, &share.cosim->coverage()});
+  const bool one = machines.size() == 1;
+  if (shares.front().cosim->traced())
+    fmt::print("{}", one ? to_string(*machines.front().coverage) : to_string(machines));
+  print_lacking(shares);
+  if (options.coverage.empty()) return;
+  if (!shares.front().cosim->traced()) throw InputError("--coverage needs an engine with a trace: rtl or lockstep");
+  write_file(options.coverage, one ? to_json(machines.front()) : to_json(machines));
+}
+
+int run_machines(const CosimOptions& options, const std::vector<Machine>& machines) {
+  const std::vector<Share> shares = share_programs(options, machines);
+  find_units(shares);
+  Progress progress(options.quiet);
+  LockstepCounts counts;
+  uint64_t cycles = 0;
+  for (size_t number = 0; number < shares.size(); ++number) {
+    const Share& share = shares[number];
+    std::string title = name_of(share.machine);
+    if (shares.size() > 1) title = fmt::format("{} ({} of {} machines)", title, number + 1, shares.size());
+    cycles += run_share(share, options, title, progress);
+    counts += share.cosim->counts();
+  }
+  const std::string name =
+      shares.size() == 1 ? name_of(shares.front().machine) : fmt::format("on {} machines", shares.size());
+  fmt::print("cosim {}: {} programs from seed {}, {} cycles in {:.1f} s\n", name, options.programs, options.seed,
+             cycles, progress.seconds());
+  if (shares.front().cosim->engine() == Engine::Lockstep) fmt::print("{}\n", to_string(counts));
+  print_coverage(shares, options);
+  for (const Share& share : shares) share.cosim->finish();
+  return 0;
 }
 
 }  // namespace
@@ -187,32 +302,16 @@ int cosim_command(const CosimOptions& options) {
     return 0;
   }
 
-  Cosim cosim(options, load_configuration(options.config, options.set), options.units);
-  const std::string name = options.units == 1 ? cosim.configuration().name
-                                              : fmt::format("{} x {}", options.units, cosim.configuration().name);
-  uint64_t cycles = 0;
-  Progress progress(options.quiet);
-  for (uint64_t n = 0; n < options.programs; ++n) {
-    const RandomProgram program =
-        make_random_program(cosim.configuration(), options.seed + n, options.length, options.units, options.mix);
-    run_or_report(cosim, options, program,
-                  fmt::format("raypool cosim {} --units {} --programs 1 --seed {} --length {}{}",
-                              config_options(cosim.configuration()), options.units, program.seed, options.length,
-                              options.mix.empty() ? "" : " --mix " + options.mix),
-                  cycles);
-    if (progress.due())
-      progress.show(fmt::format("cosim {}: {} of {} programs, {} cycles", name, n + 1, options.programs, cycles));
+  const std::vector<Machine> machines =
+      options.config.empty() ? cosim_machines()
+                             : std::vector<Machine>{{load_configuration(options.config, options.set), options.units}};
+  if (options.machines) {
+    for (const Machine& machine : machines) fmt::print("{} {}\n", machine.configuration.source, machine.units);
+    return 0;
   }
-  fmt::print("cosim {}: {} programs from seed {}, {} cycles in {:.1f} s\n", name, options.programs, options.seed,
-             cycles, progress.seconds());
-  if (cosim.engine() == Engine::Lockstep) fmt::print("{}\n", to_string(cosim.counts()));
-  if (cosim.traced()) fmt::print("{}", to_string(cosim.coverage()));
-  if (!options.coverage.empty()) {
-    if (!cosim.traced()) throw InputError("--coverage needs an engine with a trace: rtl or lockstep");
-    write_file(options.coverage, to_json(cosim.coverage(), name, options.programs));
-  }
-  cosim.finish();
-  return 0;
+  if (machines.size() > 1 && !(options.unit_library.empty() && options.vectors.empty()))
+    throw InputError("--unit-library and --vectors are of one machine: name it with --config");
+  return run_machines(options, machines);
 }
 
 }  // namespace raypool

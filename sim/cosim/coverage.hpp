@@ -149,7 +149,19 @@ class Coverage : public RunObserver {
 
 /// Several lines: how much of each group is covered, then what is not.
 std::string to_string(const Coverage& coverage);
+/// The coverage of one of several machines.
+struct NamedCoverage {
+  std::string name;
+  uint64_t programs;
+  const Coverage* coverage;
+};
+/// A row for each group: seen of what it can show, for each machine and of all together, where an item counts once.
+/// Then what none has seen.
+std::string to_string(const std::vector<NamedCoverage>& machines);
+
 /// A JSON object: groups, items, counts.
-std::string to_json(const Coverage& coverage, const std::string& configuration, uint64_t programs);
+std::string to_json(const NamedCoverage& machine);
+/// The same of each, in an array "machines".
+std::string to_json(const std::vector<NamedCoverage>& machines);
 
 }  // namespace raypool

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "cosim/coverage.hpp"
@@ -24,6 +25,29 @@ void bits(Coverage::Group& group, const char* what, const std::array<uint64_t, k
 }
 
 std::string quoted(const std::string& name) { return name.find(' ') == std::string::npos ? name : '"' + name + '"'; }
+
+/// The items that have not been seen, with commas.
+std::string not_covered(const Coverage::Group& group) {
+  std::string missing;
+  for (const Coverage::Item& item : group.items)
+    if (item.count == 0) missing += (missing.empty() ? "" : ", ") + quoted(item.name);
+  return missing;
+}
+
+/// Of a machine's column in the table.
+size_t width_of(const std::string& name) { return std::max(name.size() + 2, size_t{12}); }
+
+nlohmann::ordered_json json_of(const NamedCoverage& machine) {
+  nlohmann::ordered_json json;
+  json["configuration"] = machine.name;
+  json["programs"] = machine.programs;
+  for (const Coverage::Group& group : machine.coverage->groups()) {
+    nlohmann::ordered_json items;
+    for (const Coverage::Item& item : group.items) items[item.name] = item.count;
+    json["groups"][group.name] = {{"covered", group.covered()}, {"items", group.items.size()}, {"counts", items}};
+  }
+  return json;
+}
 
 }  // namespace
 
@@ -131,23 +155,66 @@ std::string to_string(const Coverage& coverage) {
   std::string text = "coverage (seen of what the configuration can show):\n";
   for (const Coverage::Group& group : coverage.groups()) {
     text += fmt::format("  {:<38} {:>3} of {:>3}", group.name, group.covered(), group.items.size());
-    std::string missing;
-    for (const Coverage::Item& item : group.items)
-      if (item.count == 0) missing += (missing.empty() ? "" : ", ") + quoted(item.name);
+    const std::string missing = not_covered(group);
     text += missing.empty() ? "\n" : "   NOT covered: " + missing + "\n";
   }
   return text;
 }
 
-std::string to_json(const Coverage& coverage, const std::string& configuration, uint64_t programs) {
-  nlohmann::ordered_json json;
-  json["configuration"] = configuration;
-  json["programs"] = programs;
-  for (const Coverage::Group& group : coverage.groups()) {
-    nlohmann::ordered_json items;
-    for (const Coverage::Item& item : group.items) items[item.name] = item.count;
-    json["groups"][group.name] = {{"covered", group.covered()}, {"items", group.items.size()}, {"counts", items}};
+std::string to_string(const std::vector<NamedCoverage>& machines) {
+  // Groups and items in the order in which the machines name them first; an item's count is that of all.
+  std::vector<Coverage::Group> together;
+  std::vector<std::vector<std::string>> cells;  // [group of `together`][machine]
+  const auto place = [&](const std::string& name) {
+    const auto found = std::find_if(together.begin(), together.end(),
+                                    [&](const Coverage::Group& group) { return group.name == name; });
+    if (found == together.end()) {
+      together.push_back({name, {}});
+      cells.emplace_back(machines.size(), "-");
+      return together.size() - 1;
+    }
+    return static_cast<size_t>(found - together.begin());
+  };
+  const auto cell = [](const Coverage::Group& group) {
+    return fmt::format("{}/{}", group.covered(), group.items.size());
+  };
+  for (size_t machine = 0; machine < machines.size(); ++machine) {
+    for (const Coverage::Group& group : machines[machine].coverage->groups()) {
+      const size_t number = place(group.name);
+      cells[number][machine] = cell(group);
+      std::vector<Coverage::Item>& all = together[number].items;
+      for (const Coverage::Item& item : group.items) {
+        const auto same =
+            std::find_if(all.begin(), all.end(), [&](const Coverage::Item& other) { return other.name == item.name; });
+        if (same == all.end())
+          all.push_back(item);
+        else
+          same->count += item.count;
+      }
+    }
   }
+  std::string text = fmt::format("{:<44}", "coverage (seen/what the machine can show):");
+  for (const NamedCoverage& machine : machines) text += fmt::format("{:>{}}", machine.name, width_of(machine.name));
+  text += fmt::format("{:>12}\n", "together");
+  std::string missing;
+  for (size_t number = 0; number < together.size(); ++number) {
+    const Coverage::Group& group = together[number];
+    text += fmt::format("  {:<42}", group.name);
+    for (size_t machine = 0; machine < machines.size(); ++machine)
+      text += fmt::format("{:>{}}", cells[number][machine], width_of(machines[machine].name));
+    text += fmt::format("{:>12}\n", cell(group));
+    const std::string names = not_covered(group);
+    if (!names.empty()) missing += fmt::format("  {}: {}\n", group.name, names);
+  }
+  return text +
+         (missing.empty() ? "every item has been seen on some machine\n" : "NOT covered on any machine:\n" + missing);
+}
+
+std::string to_json(const NamedCoverage& machine) { return json_of(machine).dump(2) + "\n"; }
+
+std::string to_json(const std::vector<NamedCoverage>& machines) {
+  nlohmann::ordered_json json;
+  for (const NamedCoverage& machine : machines) json["machines"].push_back(json_of(machine));
   return json.dump(2) + "\n";
 }
 

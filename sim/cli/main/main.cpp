@@ -31,8 +31,9 @@ std::string exit_codes() {
   return text;
 }
 
-void add_set(CLI::App& app, std::vector<std::string>& set) {
-  app.add_option("--set", set, "change a field of the configuration, alus.flt.count=2 or chip.ray_pool.size=256")
+CLI::Option* add_set(CLI::App& app, std::vector<std::string>& set) {
+  return app
+      .add_option("--set", set, "change a field of the configuration, alus.flt.count=2 or chip.ray_pool.size=256")
       ->type_name("FIELD=VALUE")
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
@@ -275,9 +276,13 @@ void CommandLine::add_run_command() {
 void CommandLine::add_cosim_command() {
   CLI::App* cosim_app =
       app_.add_subcommand("cosim", "random programs, with stalls on every port, in lockstep with the golden model");
-  add_config(*cosim_app, cosim_.config, cosim_.set);
+  auto* config = cosim_app->add_option("--config", cosim_.config,
+                                       "machine: a name in configs/, NwMc (N warps, M lanes) or a JSON file (default: "
+                                       "the small ones that --machines prints, which share the programs)");
+  add_set(*cosim_app, cosim_.set)->needs(config);
   add_unit(*cosim_app, cosim_.engine, cosim_.unit_library);
-  cosim_app->add_option("--units", cosim_.units, "compute units: 1, 2 or 4")
+  cosim_app->add_option("--units", cosim_.units, "compute units of --config: 1, 2 or 4")
+      ->needs(config)
       ->check(CLI::IsMember({1, 2, 4}))
       ->capture_default_str();
   cosim_app->add_option("--programs", cosim_.programs, "how many")->capture_default_str();
@@ -291,6 +296,7 @@ void CommandLine::add_cosim_command() {
   cosim_app->add_option("--save", cosim_.save, "folder for the shrunk program")->capture_default_str();
   cosim_app->add_option("--coverage", cosim_.coverage, "JSON file with what was covered");
   cosim_app->add_option("--vectors", cosim_.vectors, "record every cycle in this file, for tb/icarus");
+  cosim_app->add_flag("--machines", cosim_.machines, "print the machines of a run without --config: file and units");
   auto* replay = cosim_app->add_option("--replay", cosim_.replay, "run a saved program instead of random ones");
   cosim_app->add_flag("--show-config", cosim_.show_configuration, "print the configuration of the saved program")
       ->needs(replay);
