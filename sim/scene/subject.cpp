@@ -111,60 +111,67 @@ void join_layers(const Scene& scene, Shells& shells) {
   shells = numbered(sets, shells.of_triangle);
 }
 
+/// By their second largest length, the largest first; those without area are left out.
+std::vector<uint32_t> by_size(const std::vector<Piece>& pieces) {
+  std::vector<uint32_t> order;
+  for (uint32_t i = 0; i < pieces.size(); ++i) {
+    if (pieces[i].triangles > 0) order.push_back(i);
+  }
+  std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
+    return std::pair(-pieces[a].box.nth_extent(1), a) < std::pair(-pieces[b].box.nth_extent(1), b);
+  });
+  return order;
+}
+
+constexpr int kSides = 6;
+
+/// All corners of the triangle are in a thin layer at this side of its piece's box.
+bool in_layer(const Scene& scene, size_t triangle, const Box& box, int side) {
+  const int axis = side / 2;
+  const double thickness = kThin * box.nth_extent(1);
+  for (int corner = 0; corner < 3; ++corner) {
+    const double place = scene.corner(triangle, corner)[axis];
+    if (side % 2 == 0 ? place > box.lower[axis] + thickness : place < box.upper[axis] - thickness) return false;
+  }
+  return true;
+}
+
 /// A piece with a thin layer at one of its sides, and much less beyond it, becomes two: something that stands on ground
 /// of the same mesh.
 void part_from_ground(const Scene& scene, Shells& shells) {
   const std::vector<Piece> pieces = pieces_of(scene, shells);
-  std::vector<uint32_t> large;
-  for (uint32_t i = 0; i < pieces.size(); ++i) {
-    if (pieces[i].triangles > kLeastTriangles) large.push_back(i);
+  struct Large {
+    uint32_t piece;
+    std::array<Box, kSides> beyond;  // of each side: what is not wholly in the layer there
+    int ground = -1;                 // side
+    uint32_t number = 0;             // of what stands on it
+  };
+  std::vector<Large> large;
+  for (const uint32_t i : by_size(pieces)) {
+    if (large.size() == kMostSurroundings) break;
+    large.push_back({i, {}});
   }
-  std::sort(large.begin(), large.end(), [&](uint32_t a, uint32_t b) {
-    return std::pair(-pieces[a].box.nth_extent(1), a) < std::pair(-pieces[b].box.nth_extent(1), b);
-  });
-  large.resize(std::min(large.size(), kMostSurroundings));
-
-  // Of each of them and each of its six sides: what is not wholly in the layer there.
-  constexpr int kSides = 6;
-  std::vector<std::array<Box, kSides>> beyond(pieces.size());
-  const auto in_layer = [&](const Piece& piece, const std::array<Vec3d, 3>& corners, int side) {
-    const int axis = side / 2;
-    const double thickness = kThin * piece.box.nth_extent(1);
-    return std::all_of(corners.begin(), corners.end(), [&](const Vec3d& corner) {
-      return side % 2 == 0 ? corner[axis] <= piece.box.lower[axis] + thickness
-                           : corner[axis] >= piece.box.upper[axis] - thickness;
-    });
-  };
-  const auto corners_of = [&](size_t i) {
-    return std::array<Vec3d, 3>{scene.corner(i, 0).as<double>(), scene.corner(i, 1).as<double>(),
-                                scene.corner(i, 2).as<double>()};
-  };
-  std::vector<bool> is_large(pieces.size());
-  for (const uint32_t i : large) is_large[i] = true;
+  std::vector<Large*> of_piece(pieces.size());
+  for (Large& one : large) of_piece[one.piece] = &one;
   for (size_t i = 0; i < scene.triangles.size(); ++i) {
-    const uint32_t shell = shells.of_triangle[i];
-    if (!is_large[shell]) continue;
-    const std::array<Vec3d, 3> corners = corners_of(i);
-    for (int side = 0; side < kSides; ++side) {
-      if (in_layer(pieces[shell], corners, side)) continue;
-      for (const Vec3d& corner : corners) beyond[shell][side].add(corner);
+    Large* one = of_piece[shells.of_triangle[i]];
+    for (int side = 0; side < kSides && one != nullptr; ++side) {
+      if (in_layer(scene, i, pieces[one->piece].box, side)) continue;
+      for (int corner = 0; corner < 3; ++corner) one->beyond[side].add(scene.corner(i, corner).as<double>());
     }
   }
-  std::vector<int> parted(pieces.size(), -1);
-  std::vector<uint32_t> number(pieces.size());
-  for (const uint32_t i : large) {
-    for (int side = 0; side < kSides; ++side) {
-      const Box& rest = beyond[i][side];
-      if (rest.empty() || rest.nth_extent(0) * kLargerPlane > pieces[i].box.nth_extent(1)) continue;
-      parted[i] = side;
-      number[i] = shells.count++;
-      break;
+  for (Large& one : large) {
+    for (int side = 0; side < kSides && one.ground < 0; ++side) {
+      const Box& rest = one.beyond[side];
+      if (rest.empty() || rest.nth_extent(0) * kLargerPlane > pieces[one.piece].box.nth_extent(1)) continue;
+      one.ground = side;
+      one.number = shells.count++;
     }
   }
   for (size_t i = 0; i < scene.triangles.size(); ++i) {
-    const uint32_t shell = shells.of_triangle[i];
-    if (parted[shell] >= 0 && !in_layer(pieces[shell], corners_of(i), parted[shell]))
-      shells.of_triangle[i] = number[shell];
+    const Large* one = of_piece[shells.of_triangle[i]];
+    if (one != nullptr && one->ground >= 0 && !in_layer(scene, i, pieces[one->piece].box, one->ground))
+      shells.of_triangle[i] = one->number;
   }
 }
 
@@ -184,6 +191,51 @@ bool is_convex(const Scene& scene, const std::vector<uint32_t>& triangles, doubl
     if (before && behind) return false;
   }
   return true;
+}
+
+/// What a piece may be around something smaller, if anything.
+struct Surroundings {
+  double larger = 0;  // than all the rest; 0: it may not
+  bool sky = false;   // the rest must be in it
+};
+Surroundings surroundings(const Scene& scene, const Shells& shells, uint32_t number, const Piece& piece) {
+  const double facing = length(piece.direction) / piece.area;
+  if (piece.box.nth_extent(2) <= kThin * piece.box.nth_extent(1) || facing > 0.98) return {kLargerPlane};
+  std::vector<uint32_t> triangles;
+  for (size_t i = 0; i < scene.triangles.size(); ++i) {
+    if (shells.of_triangle[i] == number) triangles.push_back(static_cast<uint32_t>(i));
+  }
+  if (is_convex(scene, triangles, piece.box.nth_extent(0)))
+    return {piece.facing_out > 0 ? kLargerSolid : kLargerSky, true};
+  return {facing < kSheet ? 0 : kLargerSheet};
+}
+
+/// How many of the largest pieces are around the others: as many as leave something that is much smaller than all of
+/// these.
+size_t count_surroundings(const Scene& scene, const Shells& shells, const std::vector<Piece>& pieces,
+                          const std::vector<uint32_t>& order) {
+  std::vector<Box> rest(order.size() + 1);
+  std::vector<int> left(order.size() + 1);
+  for (size_t i = order.size(); i-- > 0;) {
+    rest[i] = rest[i + 1];
+    rest[i].add(pieces[order[i]].box);
+    left[i] = left[i + 1] + pieces[order[i]].triangles;
+  }
+  std::vector<Surroundings> around;
+  size_t count = 0;
+  for (size_t k = 0; k < std::min(order.size(), kMostSurroundings); ++k) {
+    around.push_back(surroundings(scene, shells, order[k], pieces[order[k]]));
+    if (around.back().larger == 0 || left[k + 1] < kLeastTriangles) break;
+    bool all_larger = true;
+    for (size_t i = 0; i <= k; ++i) {
+      const Box& box = pieces[order[i]].box;
+      all_larger &= box.nth_extent(1) >= around[i].larger * rest[k + 1].nth_extent(0);
+      // Of what is before a wall, or on the ground, some may stick through it; but nothing is seen beyond the sky.
+      if (around[i].sky) all_larger &= box.contains(rest[k + 1].lower) && box.contains(rest[k + 1].upper);
+    }
+    if (all_larger) count = k + 1;
+  }
+  return count;
 }
 
 /// Small pieces so far away that what they lie around would be small in the picture.
@@ -277,68 +329,23 @@ Shells shells_of(const Scene& scene) {
   return numbered(sets, of_triangle);
 }
 
-Subject whole_scene(const Scene& scene) { return subject_of(scene, std::vector<bool>(scene.triangles.size(), true)); }
-
 Subject find_subject(const Scene& scene, const Shells& connected) {
   Shells shells = connected;
   join_layers(scene, shells);
   part_from_ground(scene, shells);
   const std::vector<Piece> pieces = pieces_of(scene, shells);
-  std::vector<uint32_t> order;
-  for (uint32_t i = 0; i < pieces.size(); ++i) {
-    if (pieces[i].triangles > 0) order.push_back(i);
-  }
-  std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
-    return std::pair(-pieces[a].box.nth_extent(1), a) < std::pair(-pieces[b].box.nth_extent(1), b);
-  });
-  std::vector<Box> rest(order.size() + 1);
-  std::vector<int> left(order.size() + 1);
-  for (size_t i = order.size(); i-- > 0;) {
-    rest[i] = rest[i + 1];
-    rest[i].add(pieces[order[i]].box);
-    left[i] = left[i + 1] + pieces[order[i]].triangles;
-  }
+  std::vector<uint32_t> order = by_size(pieces);
+  const size_t around = count_surroundings(scene, shells, pieces, order);
+  std::vector<bool> left_out(shells.count);
+  for (size_t i = 0; i < around; ++i) left_out[order[i]] = true;
+  order.erase(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(around));
+  for (const uint32_t stray : strays(pieces, order)) left_out[stray] = true;
 
-  // The largest pieces, as long as each may be ground, sky or backdrop; and as many of them as leave something that is
-  // much smaller than all of these.
-  std::vector<double> larger;
-  std::vector<bool> encloses;
-  size_t surroundings = 0;
-  for (size_t k = 0; k < std::min(order.size(), kMostSurroundings); ++k) {
-    const Piece& piece = pieces[order[k]];
-    const double second = piece.box.nth_extent(1), facing = length(piece.direction) / piece.area;
-    if (piece.box.nth_extent(2) <= kThin * second || facing > 0.98) {
-      larger.push_back(kLargerPlane);
-      encloses.push_back(false);
-    } else {
-      std::vector<uint32_t> triangles;
-      for (size_t i = 0; i < scene.triangles.size(); ++i) {
-        if (shells.of_triangle[i] == order[k]) triangles.push_back(static_cast<uint32_t>(i));
-      }
-      encloses.push_back(is_convex(scene, triangles, piece.box.nth_extent(0)));
-      if (!encloses.back() && facing < kSheet) break;
-      larger.push_back(!encloses.back() ? kLargerSheet : piece.facing_out > 0 ? kLargerSolid : kLargerSky);
-    }
-    const Box& others = rest[k + 1];
-    if (left[k + 1] < kLeastTriangles) break;
-    bool all_larger = true;
-    for (size_t i = 0; i <= k; ++i) {
-      const Box& box = pieces[order[i]].box;
-      all_larger &= box.nth_extent(1) >= larger[i] * others.nth_extent(0);
-      // Of what is before a wall, or on the ground, some may stick through it; but nothing is seen beyond the sky.
-      if (encloses[i]) all_larger &= box.contains(others.lower) && box.contains(others.upper);
-    }
-    if (all_larger) surroundings = k + 1;
-  }
-  std::vector<bool> of_surroundings(shells.count);
-  for (size_t i = 0; i < surroundings; ++i) of_surroundings[order[i]] = true;
-  order.erase(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(surroundings));
-  for (const uint32_t stray : strays(pieces, order)) of_surroundings[stray] = true;
   std::vector<bool> triangles;
   triangles.reserve(scene.triangles.size());
-  for (const uint32_t shell : shells.of_triangle) triangles.push_back(!of_surroundings[shell]);
+  for (const uint32_t shell : shells.of_triangle) triangles.push_back(!left_out[shell]);
   Subject subject = subject_of(scene, std::move(triangles));
-  subject.has_surroundings = surroundings > 0;
+  subject.has_surroundings = around > 0;
   return subject;
 }
 

@@ -38,7 +38,5 @@ struct Subject {
 };
 /// docs/scenes.md has the rule.
 Subject find_subject(const Scene& scene, const Shells& shells);
-/// All triangles that have an area.
-Subject whole_scene(const Scene& scene);
 
 }  // namespace raypool
