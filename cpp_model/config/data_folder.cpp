@@ -24,7 +24,7 @@ fs::path checkout() {
        folder = folder.parent_path()) {
     const std::string text = folder.string();
     if (text.size() <= place.size() || text.compare(text.size() - place.size(), place.size(), place) != 0) continue;
-    const fs::path above = text.substr(0, text.size() - place.size());
+    fs::path above = text.substr(0, text.size() - place.size());
     std::error_code missing;
     if (fs::is_directory(above / "configs", missing)) return above;
   }

@@ -84,10 +84,9 @@ fs::path OutputFiles::begin(const fs::path& path, bool whole) {
     throw InputError(fmt::format("cannot write '{}': this needs a regular file, not a device or FIFO", path.string()));
   }
   if (place.stream) return path;
-  const fs::path folder = place.file.parent_path();
-  // The process number keeps two runs apart; the ending stays, since writers of pictures and waveforms look at it.
-  fs::path temporary = folder / fmt::format(".{}.{}", getpid(), place.file.filename().string());
-  parts_.push_back({temporary, place.file});
+  clear(place.file);
+  fs::path temporary = place.file.parent_path() / temporary_name(place.file.filename());
+  parts_.push_back({temporary, place.file, RemovedWhenStopped(temporary)});
   // Made here, so that a folder that may not be written to is told before the work.
   const int file = open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   const int error = file < 0 ? errno : 0;
@@ -119,6 +118,17 @@ void OutputFiles::publish() {
     if (std::rename(part.temporary.c_str(), part.final.c_str()) != 0) fail(part.final, errno);
   }
   parts_.clear();
+  holds_.clear();
+}
+
+void OutputFiles::clear_unfinished(const fs::path& path) {
+  const Place place = find_place(path);
+  if (!place.stream) clear(place.file);
+}
+
+void OutputFiles::clear(const fs::path& file) {
+  const fs::path folder = file.parent_path();
+  holds_.try_emplace(folder, folder).first->second.clear(file.filename());
 }
 
 void write_file(const fs::path& path, const std::string& content) {

@@ -3,13 +3,17 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
+
+#include "files/unfinished.hpp"
 
 namespace raypool {
 
 /// Several files, all of them or none: publish() gives them their names; without it the destructor removes what has
-/// been written, and earlier files stay as they are. Throws InputError with the system's reason.
+/// been written, and earlier files stay as they are. What a run that was killed has left of a file is cleared when it
+/// is begun again (FolderHold::clear). Throws InputError with the system's reason.
 class OutputFiles {
  public:
   OutputFiles() = default;
@@ -23,15 +27,21 @@ class OutputFiles {
   /// A whole file at once. A device or FIFO gets it when publish() is called.
   void write(const std::filesystem::path& path, const std::string& content);
   void publish();
+  /// Clears what runs that were killed have left of a file, without beginning it.
+  void clear_unfinished(const std::filesystem::path& path);
 
  private:
   struct Part {
     std::filesystem::path temporary, final;
+    RemovedWhenStopped guard;
   };
   struct Stream {
     std::filesystem::path path;
     std::string content;
   };
+  void clear(const std::filesystem::path& file);
+
+  std::map<std::filesystem::path, FolderHold> holds_;  // longer than the parts
   std::vector<Part> parts_;
   std::vector<Stream> streams_;
 };

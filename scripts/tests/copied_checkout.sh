@@ -92,7 +92,8 @@ echo "ok: a build folder elsewhere"
 # One of another project is left alone.
 sed -i 's/^CMAKE_PROJECT_NAME.*/CMAKE_PROJECT_NAME:STATIC=other/' "$folder/moved/CMakeCache.txt"
 state "$folder/moved" > "$folder/before"
-if make -C "$folder/copied" program "BUILD=$folder/moved" > "$log" 2>&1 || ! grep -q 'is one of other: choose' "$log"; then
+if make -C "$folder/copied" program "BUILD=$folder/moved" > "$log" 2>&1 ||
+  ! grep -q 'is one of other: choose' "$log"; then
   fail "the build folder of another project is taken"
 fi
 state "$folder/moved" | grep -v '\./\.lock ' | diff <(grep -v '\./\.lock ' "$folder/before") - > "$log" ||

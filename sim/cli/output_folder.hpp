@@ -20,6 +20,8 @@ class OutputFolder {
   /// Final path of a file.
   std::filesystem::path path(const std::string& name) const { return folder_ / name; }
   void publish() { files_.publish(); }
+  /// Clears what runs that were killed have left of the file `name`.
+  void clear_unfinished(const std::string& name) { files_.clear_unfinished(path(name)); }
 
  private:
   std::filesystem::path folder_;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "bits.hpp"
 #include "chip/program_run.hpp"
@@ -15,6 +16,7 @@
 #include "cli/progress.hpp"
 #include "cli/text_file.hpp"
 #include "files/output_files.hpp"
+#include "files/unfinished.hpp"
 #include "isa/assembler.hpp"
 #include "kernel/compute_kernels.hpp"
 #include "kernel/kernel_report.hpp"
@@ -268,11 +270,19 @@ int run_command(const RunOptions& options) {
                                    1,      options.inspect_until};
   std::unique_ptr<ComputeUnit> unit = make_unit(unit_options, job.memory);
   OutputFiles waves;
-  if (!options.waves.empty()) unit->open_waveform(waves.begin(options.waves, true));
-  // The waveform is wanted most when something goes wrong.
+  std::optional<KeepRunning> keep_running;
+  if (!options.waves.empty()) {
+    keep_running.emplace();
+    unit->open_waveform(waves.begin(options.waves, true));
+  }
   const auto close_waves = [&] {
     unit.reset();
     waves.publish();
+  };
+  // The waveform is wanted most when something goes wrong.
+  const auto keep_waves = [&] {
+    close_waves();
+    if (!options.waves.empty()) std::fprintf(stderr, "raypool: the waveform until then is %s\n", options.waves.c_str());
   };
 
   ProgramResult result;
@@ -281,13 +291,13 @@ int run_command(const RunOptions& options) {
     result = run_job(job, options, *unit);
     if (const auto counts = lockstep_counts(*unit)) compared = to_string(*counts);
   } catch (const LimitPassed& passed) {
-    close_waves();
+    keep_waves();
     throw InputError(limit_sentence(passed, options.cycle_limit.has_value()));
   } catch (const ChipFault& fault) {
-    close_waves();
+    keep_waves();
     throw InputError(describe(fault, options));
   } catch (const std::exception&) {
-    close_waves();
+    keep_waves();
     throw;
   }
   close_waves();

@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 
 #include "chip/board.hpp"
 #include "chip/chip.hpp"
@@ -16,6 +17,7 @@
 #include "cli/output_folder.hpp"
 #include "cli/progress.hpp"
 #include "cli/report.hpp"
+#include "files/unfinished.hpp"
 #include "scene/embree_scene.hpp"
 #include "scene/image.hpp"
 #include "scene/native_renderer.hpp"
@@ -30,6 +32,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kLeastDetail = 0.01;
+constexpr const char* kWaveform = "waves.fst";
 
 void check(const SimOptions& options, Engine engine) {
   check_depth_and_units(options.depth, options.units);
@@ -197,10 +200,10 @@ void write_trace(const SimOptions& options, const trace::MachineTrace& trace, Ou
   out.write("trace.kanata", trace::to_kanata(trace));
 }
 
-/// The waveform, of a run that went wrong.
+/// The waveform, of a run that went wrong or was stopped.
 void keep(OutputFolder& out) {
   out.publish();
-  std::fprintf(stderr, "raypool: the waveform until then is in %s\n", out.path("").c_str());
+  std::fprintf(stderr, "raypool: the waveform until then is %s\n", out.path(kWaveform).c_str());
 }
 
 template <typename Draw>
@@ -216,7 +219,7 @@ FrameBuffer draw_on_unit(const SimOptions& options, Engine engine, RunRecord& re
                          MemoryImage& image, OutputFolder& out) {
   std::unique_ptr<ComputeUnit> device = make_device(options, engine, record, image);
   if (options.wrap) device = options.wrap(std::move(device), image.memory);
-  if (options.waves) device->open_waveform(out.temporary("waves.fst"));
+  if (options.waves) device->open_waveform(out.temporary(kWaveform));
   trace::MachineTrace trace;
   if (!options.trace.empty()) {
     trace.kernels = kernel_names(ray_kernel_program(KernelTarget(record.configuration)));
@@ -255,7 +258,7 @@ FrameBuffer draw_on_chip(const SimOptions& options, Engine engine, RunRecord& re
   EngineOptions chosen{engine, record.configuration, options.unit_library, options.waves, options.units};
   chosen.chip = true;
   std::unique_ptr<ChipDevice> chip = make_chip(chosen, image.memory);
-  if (options.waves) chip->open_waveform(out.temporary("waves.fst"));
+  if (options.waves) chip->open_waveform(out.temporary(kWaveform));
   Surroundings around(scene, image, record);
   ChipOptions frame = chip_options(record, scene, image, nullptr, around);
   frame.limits.cycles = options.cycle_limit.value_or(0);
@@ -353,6 +356,12 @@ int sim_command(const SimOptions& options) {
     return 0;
   }
   OutputFolder out(options.out.empty() ? default_folder(options, scene, loaded, size) : fs::path(options.out));
+
+  for (const char* name : {kWaveform, "image.png", "report.json", "trace.json", "trace.kanata"})
+    out.clear_unfinished(name);
+  // Who stops a run wants to see its waveform until then.
+  std::optional<KeepRunning> keep_running;
+  if (options.waves) keep_running.emplace();
 
   const FrameBuffer frame = engine == Engine::Sampled ? draw_sampled_frame(options, record, scene, image, whole)
                             : without_unit(engine)

@@ -32,6 +32,13 @@ void make_folder(const fs::path& folder) {
                                  installed() ? "set XDG_CACHE_HOME to a folder of your own" : "check its permissions"));
 }
 
+// $1: the folder; what follows is run.
+constexpr const char* kClearAndRun = R"(for left in "$1"/.verilate.*; do
+  [ ! -e "$left" ] || { rm -rf "$left" && echo "raypool: removed $left, which a build that was killed left" >&2; }
+done
+shift
+exec "$@")";
+
 }  // namespace
 
 int unit_command(const UnitOptions& options) {
@@ -39,9 +46,11 @@ int unit_command(const UnitOptions& options) {
   const auto path = options.chip ? chip_library_path : unit_library_path;
   const fs::path folder = fs::path(path(configuration, options.waves, options.units)).parent_path();
   make_folder(folder);
-  // One build at a time in a folder: a second waits here.
-  std::vector<std::string> command = {"flock", folder / ".lock", fs::path(data_folder()) / "scripts" / "verilate.sh",
-                                      folder};
+  // One build at a time in a folder: a second waits here. So what lies there half done is of one that was killed.
+  std::vector<std::string> command = {
+      "flock",      folder / ".lock", "bash", "-c",
+      kClearAndRun, "raypool unit",   folder, fs::path(data_folder()) / "scripts" / "verilate.sh",
+      folder};
   if (options.waves) command.emplace_back("--trace");
   if (options.chip) command.insert(command.end(), {"--top", "chip"});
   auto parameters =

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "files/unfinished.hpp"
 #include "rtl/chip_library.hpp"
 #include "rtl/unit_library.hpp"
 
@@ -97,7 +98,10 @@ class LoadedUnit : public ComputeUnit {
   void reset(uint32_t program_length, uint32_t memory_limit) override { unit_->reset(program_length, memory_limit); }
   void set_argument(uint32_t index, uint32_t value) override { unit_->set_argument(index, value); }
   const UnitOutputs& outputs() const override { return unit_->outputs(); }
-  void clock(const UnitInputs& inputs) override { unit_->clock(inputs); }
+  void clock(const UnitInputs& inputs) override {
+    stop_point();
+    unit_->clock(inputs);
+  }
   void trace_on() override { unit_->trace_on(); }
   const UnitTrace& trace() const override { return unit_->trace(); }
   Signal signal(const std::string& scope, const std::string& name) const override { return unit_->signal(scope, name); }
@@ -118,7 +122,10 @@ class LoadedChip : public ChipDevice {
   uint32_t units() const override { return chip_->units(); }
   void start(const FrameSetup& setup) override { chip_->start(setup); }
   const ChipOutputs& outputs() const override { return chip_->outputs(); }
-  void clock(const ChipInputs& inputs) override { chip_->clock(inputs); }
+  void clock(const ChipInputs& inputs) override {
+    stop_point();
+    chip_->clock(inputs);
+  }
   ChipCounts counts() override { return chip_->counts(); }
   uint64_t counter(int number) override { return chip_->counter(number); }
   void open_waveform(const std::string& path) override { chip_->open_waveform(path); }

@@ -16,6 +16,7 @@
 #include "cli/engine.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/inspecting_run.hpp"
+#include "files/unfinished.hpp"
 #include "lockstep/lockstep_unit.hpp"
 #include "machine/box_ray.hpp"
 #include "machine/narrow_float.hpp"
@@ -546,6 +547,9 @@ int run_and_report(int argc, char** argv) {
   } catch (const ChipStalled& stalled) {
     std::fprintf(stderr, "raypool: %s\n", stalled.what());
     return kOtherFailure;
+  } catch (const Stopped& stopped) {
+    std::fprintf(stderr, "raypool: %s\n", stopped.what());
+    return kOtherFailure;
   } catch (const std::exception& error) {
     if (std::ferror(stdout) != 0) return kInputFailure;  // which close_output() says
     std::fprintf(stderr, "raypool: failed: %s\n", error.what());
@@ -556,4 +560,10 @@ int run_and_report(int argc, char** argv) {
 }  // namespace
 }  // namespace raypool
 
-int main(int argc, char** argv) { return raypool::close_output(raypool::run_and_report(argc, argv)); }
+int main(int argc, char** argv) {
+  raypool::handle_stop_signals();
+  raypool::tell_unfinished([](const std::string& what) { std::fprintf(stderr, "raypool: %s\n", what.c_str()); });
+  const int code = raypool::close_output(raypool::run_and_report(argc, argv));
+  if (const int signal = raypool::stop_signal()) raypool::end_by(signal);
+  return code;
+}
