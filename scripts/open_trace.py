@@ -9,10 +9,11 @@ import html
 import json
 import pathlib
 import re
-import shutil
 import subprocess
 import sys
 import tempfile
+
+import chromium
 
 VIEWER = pathlib.Path("/usr/share/go-1.19/src/cmd/trace/static")  # golang-1.19-src
 PAGE = """<!DOCTYPE html>
@@ -53,13 +54,9 @@ document.addEventListener("HTMLImportsLoaded", () => {
 """
 
 
-def browser():
-    return next(filter(None, map(shutil.which, ("chromium-headless-shell", "chromium"))), None)
-
-
 def missing():
     """What has to be installed first, in a sentence, or None."""
-    if browser() is None or not (VIEWER / "trace_viewer_full.html").exists():
+    if chromium.program() is None or not (VIEWER / "trace_viewer_full.html").exists():
         return "no trace viewer is here (scripts/setup.sh report-test installs it)"
     return None
 
@@ -75,9 +72,8 @@ def shown(texts):
             (folder / trace).write_text(text)
         page = folder / "index.html"
         page.write_text(PAGE.replace("TRACES", json.dumps(traces)))
-        command = [browser(), "--headless", "--no-sandbox", "--disable-gpu", "--allow-file-access-from-files",
-                   f"--user-data-dir={folder / 'profile'}", "--virtual-time-budget=60000", "--dump-dom",
-                   page.as_uri()]  # fmt: skip
+        command = chromium.command(folder / "profile", "--allow-file-access-from-files",
+                                   "--virtual-time-budget=60000", page.as_uri())  # fmt: skip
         done = subprocess.run(command, capture_output=True, text=True, timeout=600, check=False)
     found = re.search(r'<pre id="found">(.*?)</pre>', done.stdout, re.DOTALL)
     if found is None:

@@ -5,6 +5,7 @@ It is one well-formed file that asks no network, has every section, and says of 
 which command makes it; its figures are those of the reports; what is broken is named and left out."""
 import csv
 import html.parser
+import http.server
 import json
 import os
 import pathlib
@@ -13,11 +14,13 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import threading
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 RAYPOOL = ""
 sys.path.insert(0, str(ROOT / "scripts"))
+import chromium  # noqa: E402
 SECTIONS = ("changes", "published", "speed", "alus", "cycles", "ceilings", "units", "policies", "fields", "area",
             "power", "pictures", "work", "points", "machines")  # fmt: skip
 VOID = {"meta", "link", "br", "img", "input", "hr", "path", "use", "rect"}
@@ -475,26 +478,77 @@ window.addEventListener("load", () => {
 </script>"""
 
 
+class Silent(http.server.BaseHTTPRequestHandler):
+    """Answers everything with nothing."""
+
+    def do_GET(self):
+        self.send_response(200)
+        self.send_header("Content-Length", "0")
+        self.end_headers()
+
+    def log_message(self, format, *arguments):
+        pass
+
+
+class NetLog(unittest.TestCase):
+    """What of a net log counts."""
+
+    def asked(self, *requests):
+        events = [{"type": 2, "phase": 1, "params": {"url": url, **rest}} for url, rest in requests]
+        events += [{"type": 2, "phase": 2}, {"type": 5, "params": {"url": "http://resolved.example/"}}]
+        types = {"URL_REQUEST_START_JOB": 2, "HOST_RESOLVER_MANAGER_REQUEST": 5}
+        return chromium.asked_by_page(json.dumps({"constants": {"logEventTypes": types}, "events": events}))
+
+    def test_requests_of_the_page_count_and_those_of_the_browser_do_not(self):
+        own = "not an origin"
+        self.assertEqual(
+            self.asked(
+                ("https://update.example/service", {"initiator": own}),
+                ("https://accounts.example/list", {"initiator": "https://accounts.example"}),
+                ("https://dictionary.example/en.bdic", {}),
+                ("http://tracker.example/pixel.png", {"initiator": "file://"}),
+                ("https://frame.example/", {"initiator": "null"}),
+                ("file:///tmp/index.html", {"initiator": own}),
+                ("data:image/png,", {"initiator": "file://"}),
+            ),
+            {"http://tracker.example/pixel.png", "https://frame.example/"},
+        )
+
+    def test_another_form_of_log_is_refused(self):
+        for log in ("{", "[]", '{"events": []}', '{"constants": {"logEventTypes": {}}, "events": []}'):
+            with self.subTest(log=log), self.assertRaises(ValueError):
+                chromium.asked_by_page(log)
+
+
 class Browser(ReportTest):
     """In headless Chromium."""
 
     def setUp(self):
         super().setUp()
-        self.browser = next(filter(None, map(shutil.which, ("chromium-headless-shell", "chromium"))), None)
-        if self.browser is None:
+        if chromium.program() is None:
             self.skipTest("no headless Chromium is here (scripts/setup.sh report-test installs it)")
 
     def dump(self, page, width):
-        """The document after its scripts have run, what the console said, and the addresses that were asked for."""
+        """The document after its scripts have run, what the console said, and the addresses that it asked for."""
         log = self.folder / "net.json"
-        command = [self.browser, "--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--dump-dom",
-                   f"--user-data-dir={self.folder / 'profile'}", f"--window-size={width},900", f"--log-net-log={log}",
-                   "--enable-logging=stderr", "--virtual-time-budget=10000", page.as_uri()]  # fmt: skip
+        command = chromium.command(self.folder / "profile", "--hide-scrollbars", f"--window-size={width},900",
+                                   f"--log-net-log={log}", "--enable-logging=stderr", "--virtual-time-budget=10000",
+                                   page.as_uri())  # fmt: skip
         done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
         self.assertEqual(done.returncode, 0, done.stderr)
         console = [line for line in done.stderr.splitlines() if "CONSOLE" in line]
-        urls = set(re.findall(r'"url":"([^"]*)"', log.read_text())) if log.exists() else {"no log of requests"}
-        return done.stdout, console, urls
+        return done.stdout, console, chromium.asked_by_page(log.read_text())
+
+    def test_what_a_page_asks_for_is_seen(self):
+        """And nothing of what the browser asks for itself."""
+        with http.server.HTTPServer(("127.0.0.1", 0), Silent) as server:
+            threading.Thread(target=server.serve_forever, daemon=True).start()
+            place = f"http://127.0.0.1:{server.server_port}"
+            page = self.folder / "asks.html"
+            page.write_text(f'<img src="{place}/picture.png"><script>fetch("{place}/data").catch(() => 0)</script>')
+            _, _, urls = self.dump(page, 360)
+            server.shutdown()
+        self.assertEqual(urls, {f"{place}/picture.png", f"{place}/data"})
 
     def test_it_fits_and_asks_nobody(self):
         text = self.page()
@@ -504,7 +558,7 @@ class Browser(ReportTest):
             with self.subTest(width=width):
                 document, console, urls = self.dump(path, width)
                 self.assertEqual(console, [])
-                self.assertEqual({url for url in urls if not url.startswith(("file:", "data:"))}, set())
+                self.assertEqual(urls, set())
                 found = json.loads(html.unescape(re.search(r'<pre id="measured">(.*?)</pre>', document)[1]))
                 self.assertEqual(found["inner"], width)
                 self.assertLessEqual(found["scroll"], width)
@@ -533,7 +587,7 @@ class Browser(ReportTest):
             with self.subTest(width=width):
                 document, console, urls = self.dump(path, width)
                 self.assertEqual(console, [])
-                self.assertEqual({url for url in urls if not url.startswith(("file:", "data:"))}, set())
+                self.assertEqual(urls, set())
                 self.assertRegex(document, r"<output>150 cycles from [0-9,]+</output>")
                 self.assertRegex(document, r'<p class="under" aria-live="polite">unit 0 warp 0, cycle [0-9,]+: ')
                 self.assertGreater(int(re.search(r'data-colours="(\d+)"', document)[1]), 5)
