@@ -200,6 +200,12 @@ void write_trace(const SimOptions& options, const trace::MachineTrace& trace, Ou
   out.write("trace.kanata", trace::to_kanata(trace));
 }
 
+/// What earlier runs have left that were killed.
+void clear_unfinished(OutputFolder& out) {
+  for (const char* name : {kWaveform, "image.png", "report.json", "trace.json", "trace.kanata"})
+    out.clear_unfinished(name);
+}
+
 /// The waveform, of a run that went wrong or was stopped.
 void keep(OutputFolder& out) {
   out.publish();
@@ -314,11 +320,28 @@ EyeOf eye_of(const SimOptions& options, const Scene& scene) {
   return scene.cameras.empty() ? EyeOf::Automatic : EyeOf::File;
 }
 
+FrameBuffer draw(const SimOptions& options, Engine engine, RunRecord& record, const Scene& scene, MemoryImage& image,
+                 OutputFolder& out, const Progress& whole) {
+  if (engine == Engine::Sampled) return draw_sampled_frame(options, record, scene, image, whole);
+  if (without_unit(engine))
+    return draw_natively(options, engine, record, scene, image, tracer_of(record, scene, image));
+  return record.whole_chip ? draw_on_chip(options, engine, record, scene, image, out)
+                           : draw_on_unit(options, engine, record, scene, image, out);
+}
+
 void print_modules(const SimOptions& options, Engine engine, const RunRecord& record, const Scene& scene,
                    MemoryImage& image) {
   const std::unique_ptr<ComputeUnit> device = make_device(options, engine, record, image);
   Surroundings around(scene, image, record);
   fmt::print("{}", chip_modules(chip_options(record, scene, image, device.get(), around)));
+}
+
+void print_table(const SimOptions& options, const RunRecord& record, const OutputFolder& out) {
+  fmt::print("{}  results     {}: image.png, report.json{}\n", to_table(record),
+             fs::proximate(out.path(".")).lexically_normal().string(),
+             options.waves            ? ", waves.fst"
+             : !options.trace.empty() ? ", trace.json, trace.kanata"
+                                      : "");
 }
 
 }  // namespace
@@ -357,17 +380,12 @@ int sim_command(const SimOptions& options) {
   }
   OutputFolder out(options.out.empty() ? default_folder(options, scene, loaded, size) : fs::path(options.out));
 
-  for (const char* name : {kWaveform, "image.png", "report.json", "trace.json", "trace.kanata"})
-    out.clear_unfinished(name);
+  clear_unfinished(out);
   // Who stops a run wants to see its waveform until then.
   std::optional<KeepRunning> keep_running;
   if (options.waves) keep_running.emplace();
 
-  const FrameBuffer frame = engine == Engine::Sampled ? draw_sampled_frame(options, record, scene, image, whole)
-                            : without_unit(engine)
-                                ? draw_natively(options, engine, record, scene, image, tracer_of(record, scene, image))
-                            : record.whole_chip ? draw_on_chip(options, engine, record, scene, image, out)
-                                                : draw_on_unit(options, engine, record, scene, image, out);
+  const FrameBuffer frame = draw(options, engine, record, scene, image, out, whole);
 
   const std::vector<uint8_t> png = encode_png(frame);
   out.write("image.png", std::string(png.begin(), png.end()));
@@ -382,13 +400,7 @@ int sim_command(const SimOptions& options) {
     fmt::print("{}", report);
     return 0;
   }
-  if (!options.quiet) {
-    fmt::print("{}  results     {}: image.png, report.json{}\n", to_table(record),
-               fs::proximate(out.path(".")).lexically_normal().string(),
-               options.waves            ? ", waves.fst"
-               : !options.trace.empty() ? ", trace.json, trace.kanata"
-                                        : "");
-  }
+  if (!options.quiet) print_table(options, record, out);
   return 0;
 }
 
