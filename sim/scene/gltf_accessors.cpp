@@ -59,7 +59,7 @@ const GltfForm kGltfIndices{1,
                             {kUnsignedByte, kUnsignedShort, kUnsignedInt},
                             "must be 5121, 5123 or 5125 and the type SCALAR: indices are whole numbers"};
 const GltfForm kGltfJoints{
-    4, {kUnsignedByte, kUnsignedShort}, "must be 5121 or 5123 and the type VEC4: joints' numbers"};
+    4, {kUnsignedByte, kUnsignedShort, kUnsignedInt}, "must be 5121, 5123 or 5125 and the type VEC4: joints' numbers"};
 const GltfForm kGltfWeights{4,
                             {kFloat, kUnsignedByte, kUnsignedShort},
                             "must be 5126, 5121 or 5123 and the type VEC4: a weight for each joint"};

@@ -14,6 +14,7 @@
 #include "bits.hpp"
 #include "enum_array.hpp"
 #include "files/input_file.hpp"
+#include "scene/losses.hpp"
 #include "scene/polygon.hpp"
 #include "scene/scene_file.hpp"
 
@@ -265,6 +266,7 @@ class PlyReader {
       } else if (element.name == "face" || element.name == "tristrips") {
         read_faces(element);
       } else {
+        points_and_lines_ += element.name == "edge" ? element.count : 0;
         skip(element);
       }
     }
@@ -274,6 +276,8 @@ class PlyReader {
       scene_.warnings.push_back(
           fmt::format("{}: {} bytes behind the last element are not read", path_, values_.bytes_left()));
     }
+    if (has_normals_) tell_loss(scene_.warnings, path_, faces_, "face", Loss::VertexNormals);
+    tell_loss(scene_.warnings, path_, points_and_lines_, "element", Loss::PointsOrLines);
     warn_of_faces(scene_.warnings, odd_faces_, [&](size_t face) { return fmt::format("{}: face {}", path_, face); });
     scene_.name = std::filesystem::path(path_).stem().string();
     return std::move(scene_);
@@ -320,6 +324,7 @@ class PlyReader {
       if (place[i] < 0)
         throw InputError(fmt::format("{}: vertices have no '{}'; export the file again", path_, axes[i]));
     }
+    has_normals_ = find(element, {"nx"}, false) >= 0;
     const bool coloured = colour[0] >= 0 && colour[1] >= 0 && colour[2] >= 0;
     std::vector<std::vector<double>> values;
     for (uint64_t number = 0; number < element.count; ++number) {
@@ -348,6 +353,7 @@ class PlyReader {
           fmt::format("{}: element {} has no list vertex_indices; export the file again", path_, element.name));
     }
     if (find(element, {"red"}, false) >= 0) scene_.warnings.push_back(path_ + ": colours of faces are not used");
+    faces_ += element.count;
     std::vector<std::vector<double>> values;
     std::vector<uint32_t> corners;
     for (uint64_t number = 0; number < element.count; ++number) {
@@ -421,6 +427,8 @@ class PlyReader {
   std::vector<Vec3d> colours_;                        // [vertex]; empty: without
   std::map<std::array<int, 3>, uint32_t> materials_;  // by colour
   std::map<PolygonShape, std::vector<size_t>> odd_faces_;
+  bool has_normals_ = false;
+  size_t faces_ = 0, points_and_lines_ = 0;
 };
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "bits.hpp"
 #include "scene/file_fixture.hpp"
 #include "scene/scene_file.hpp"
 
@@ -163,6 +164,37 @@ TEST_F(Ply, EveryShorterFileIsRefused) {
   for (size_t size = 0; size < bytes.size(); ++size) expect_refusal(bytes.substr(0, size), "a.ply:", "");
   EXPECT_EQ(load(bytes).triangles.size(), 2u);
   expect_refusal(header("binary_little_endian", 4000000000u, 1) + "0123", "a.ply:", "cut off in vertex 0");
+}
+
+TEST_F(Ply, NormalsAndEdgesAreCountedInTheWordsOfOtherFormats) {
+  const std::string normals = "property float nx\nproperty float ny\nproperty float nz\n";
+  std::string text = header("ascii", 3, 1, normals + "element edge 2\nproperty int vertex1\nproperty int vertex2\n");
+  text += "0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n0 1\n1 2\n3 0 1 2\n";
+  EXPECT_EQ(warnings(load(text)),
+            (std::vector<std::string>{"a.ply: 1 face with vertex normals, which are not used: shading is flat",
+                                      "a.ply: 2 elements of points or lines, not drawn"}));
+}
+
+TEST_F(Ply, TheHeaderMayEndItsLinesAsOnAnyMachine) {
+  const std::string cut = kSquare + "4 0 1 2 3\n";
+  const std::vector<Vec3> wanted = corners_of(load(cut));
+  std::string old_mac = cut;
+  std::replace(old_mac.begin(), old_mac.end(), '\n', '\r');
+  EXPECT_EQ(corners_of(load(old_mac)), wanted);
+  EXPECT_EQ(corners_of(load("\xef\xbb\xbf" + cut)), wanted);
+  // The byte behind such a header may be any: here those of line ends.
+  for (const uint8_t byte : {uint8_t{0x0a}, uint8_t{0x0d}}) {
+    std::string bytes = header("binary_big_endian", 3, 1);
+    std::replace(bytes.begin(), bytes.end(), '\n', '\r');
+    std::vector<Vec3> corners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    corners[0].x = as_float(static_cast<uint32_t>(byte) << 24 | 0x0a0d00u);
+    for (const Vec3& p : corners) {
+      for (int axis = 0; axis < 3; ++axis) append(bytes, p[axis], true);
+    }
+    bytes += '\3';
+    for (const uint32_t index : {0u, 1u, 2u}) append(bytes, index, true);
+    EXPECT_EQ(corners_of(load(bytes)), corners) << int{byte};
+  }
 }
 
 }  // namespace

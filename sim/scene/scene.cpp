@@ -111,6 +111,9 @@ void check_scene(const Scene& scene, const std::string& where) {
 
 namespace {
 
+/// Below it products of two lengths may be zero in single precision.
+constexpr float kLeastDiagonal = 1e-18f;
+
 constexpr const char* kScenes = "cornell, room, or the path of a .obj, .gltf, .glb or .ply file";
 
 SceneFile load_file(const std::string& path, const std::string& camera) {
@@ -167,6 +170,11 @@ Scene load_scene(const std::string& name_or_path, const SceneOptions& options) {
   SceneFile file;
   if (!built_in) {
     file = load_file(name_or_path, options.camera);
+    if (const float size = file.scene.bounds().diagonal(); size > 0 && size < kLeastDiagonal) {
+      file.scene.warnings.push_back(
+          fmt::format("{}: all of it is {:.2g} across, too small for single precision: rays miss it; scale the file up",
+                      name_or_path, size));
+    }
   } else {
     file.scene = name_or_path == "room" ? make_room(options.detail) : make_cornell(options.detail);
   }

@@ -312,5 +312,30 @@ TEST_F(ViewFile, ErrorsNameTheKey) {
   EXPECT_THROW(load_view("no/such/view.json"), InputError);
 }
 
+TEST(AutomaticView, AScaledSceneHasTheScaledView) {
+  const std::string path = testing::TempDir() + "raypool_scaled.obj";
+  const Scene cube = load_scene("cornell", {0.05, "", {}, ""});
+  for (const float scale : {1.0f, 1e-5f, 1e-8f, 1e-12f}) {
+    Scene scaled = cube;
+    for (Vec3& vertex : scaled.vertices) vertex = (vertex.as<double>() * static_cast<double>(scale)).as<float>();
+    write_obj(scaled, path);
+    const Scene read = load_scene(path);
+    EXPECT_EQ(read.warnings, std::vector<std::string>()) << scale;
+    const double seen = length(read.camera.eye.as<double>()) / static_cast<double>(scale);
+    EXPECT_GT(seen, 1) << scale;
+    EXPECT_LT(seen, 100) << scale;
+  }
+  std::filesystem::remove(path);
+}
+
+TEST(Scene, ASceneThatIsTooSmallForItsNumbersIsTold) {
+  const std::string path = testing::TempDir() + "raypool_tiny.obj";
+  std::ofstream(path) << "v 0 0 0\nv 1e-30 0 0\nv 0 1e-30 0\nf 1 2 3\n";
+  EXPECT_EQ(load_scene(path).warnings,
+            std::vector<std::string>{path + ": all of it is 1.4e-30 across, too small for single precision: rays miss "
+                                            "it; scale the file up"});
+  std::filesystem::remove(path);
+}
+
 }  // namespace
 }  // namespace raypool
