@@ -43,7 +43,8 @@ def edge_scene(folder):
             lines.append("f " + " ".join(str(count + i) for i in range(1, 5)))
             count += 4
     (folder / "edge.obj").write_text("\n".join(lines) + "\n")
-    (folder / "edge.mtl").write_text("newmtl wall\nKd 0.7 0.7 0.7\nnewmtl mirror\nKd 0.3 0.3 0.3\nKs 0.6 0.6 0.6\nillum 3\n")
+    (folder / "edge.mtl").write_text("newmtl wall\nKd 0.7 0.7 0.7\n"
+                                     "newmtl mirror\nKd 0.3 0.3 0.3\nKs 0.6 0.6 0.6\nillum 3\n")
     return [str(folder / "edge.obj"), "--eye", "0,0,4", "--look-at", "0,0,0", "--fov", "50", "--light", "0,3,4"]
 
 

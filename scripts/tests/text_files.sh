@@ -27,11 +27,12 @@ printf '{"warps": 2,\n "name": "two"}\n' > "$folder/plain/c.json"
 printf '{"eye": [0, 0, 5],\n "direction": [0, 0, -1], "light": {"position": [0, 0, 9]}}\n' > "$folder/plain/view.json"
 "$raypool" sim cornell --engine native --size 8x8 --quiet --out "$folder/frame" > /dev/null
 cp "$folder/frame/report.json" "$folder/plain/report.json"
+triangle=$(printf '\0\0\0\0\0\0\0\0\0\0\0\0\0\0\200?\0\0\0\0\0\0\0\0\0\0\0\0\0\0\200?\0\0\0\0' | base64 -w0)
 printf '%s\n' '{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],' \
   '"meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],' \
   '"accessors": [{"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": 3}],' \
   '"bufferViews": [{"buffer": 0, "byteLength": 36}], "buffers": [{"byteLength": 36, "uri":' \
-  "\"data:;base64,$(printf '\0\0\0\0\0\0\0\0\0\0\0\0\0\0\200?\0\0\0\0\0\0\0\0\0\0\0\0\0\0\200?\0\0\0\0' | base64 -w0)\"}]}" \
+  "\"data:;base64,$triangle\"}]}" \
   > "$folder/plain/s.gltf"
 
 # use KIND FOLDER: the command that reads such a file; what it prints has no names of folders.
@@ -69,7 +70,8 @@ for kind in s.obj s.mtl s.ply s.gltf a.asm a.hex c.json view.json report.json; d
     cp "$folder"/plain/* "$folder/wide"
     iconv -f UTF-8 -t "$encoding" "$folder/plain/$kind" > "$folder/wide/$kind"
     use "$kind" "$folder/wide" > "$folder/log" 2>&1
-    if [ $? = 1 ] && [ "$(wc -l < "$folder/log")" = 1 ] && grep -q "$kind: the .* is UTF-16 text.*UTF-8" "$folder/log"; then
+    if [ $? = 1 ] && [ "$(wc -l < "$folder/log")" = 1 ] &&
+      grep -q "$kind: the .* is UTF-16 text.*UTF-8" "$folder/log"; then
       echo "ok: $kind, $encoding"
     else
       failed "$kind as $encoding is refused in one sentence"

@@ -121,7 +121,9 @@ Json picture(const Report& a, const Report& b) {
           {"psnr", std::isfinite(difference.psnr) ? Json(difference.psnr) : Json()}};
 }
 
-Json read_json(const std::string& path, const std::string& what) { return parse_json(read_text_file(path, what), path); }
+Json read_json(const std::string& path, const std::string& what) {
+  return parse_json(read_text_file(path, what), path);
+}
 
 bool is_synthesis(const Json& json) {
   const auto number = [&](const char* object, const char* key) {
