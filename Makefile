@@ -242,6 +242,7 @@ help-all: ## every target and variable
 	@echo 'variables of make numerics:  GATES=1: synthesise the lanes of every mode first'
 	@echo '  significands:  SCENE  CONFIG  SET  DEPTH  VIEW  DETAIL and those of the camera'
 	@echo '  extremes:  MODE=all|ieee-exact|...;  numerics-long:  THREADS=N, 1 if not given'
+	@echo 'variable of make test-long:  SHARE=1..10: only this tenth of the tests'
 	@echo 'variables of make quoted:  LONG=1: those that take long too;  UPDATE=1: write what is printed into the pages'
 	@echo '  PAGES="docs/isa.md ...";  FILES=NAME=PATH: a file that quotes need'
 	@echo 'variable of every target:  BUILD=FOLDER: for everything that is made, $(BUILD) if not given;'
