@@ -374,6 +374,8 @@ test: setup-sim setup-test setup-synth configured-ON ## what guards a change
 	@ctest --test-dir $(BUILD) --output-on-failure -j "$$(nproc)" -LE long
 
 test-long: setup-sim setup-test setup-synth setup-lint configured-ON program ## the other tests; SHARE=1..10: a tenth
+	@[[ "$(SHARE)" =~ ^([1-9]|10)?$$ ]] || \
+	  { echo 'make test-long: SHARE is "$(SHARE)": say 1 to 10, or nothing' >&2; exit 1; }
 	@ctest --test-dir $(BUILD) --output-on-failure -j "$$(nproc)" \
 	  -L $(if $(SHARE),'^share-$(SHARE)$$',long) --no-tests=error
 
