@@ -171,9 +171,9 @@ Scene load_scene(const std::string& name_or_path, const SceneOptions& options) {
   if (!built_in) {
     file = load_file(name_or_path, options.camera);
     if (const float size = file.scene.bounds().diagonal(); size > 0 && size < kLeastDiagonal) {
-      file.scene.warnings.push_back(
-          fmt::format("{}: all of it is {:.2g} across, too small for single precision: rays miss it; scale the file up",
-                      name_or_path, size));
+      file.scene.warnings.push_back(fmt::format(
+          "{}: all of it is {:.2g} across, too small for single precision: its shading is wrong; scale the file up",
+          name_or_path, size));
     }
   } else {
     file.scene = name_or_path == "room" ? make_room(options.detail) : make_cornell(options.detail);

@@ -332,8 +332,8 @@ TEST(Scene, ASceneThatIsTooSmallForItsNumbersIsTold) {
   const std::string path = testing::TempDir() + "raypool_tiny.obj";
   std::ofstream(path) << "v 0 0 0\nv 1e-30 0 0\nv 0 1e-30 0\nf 1 2 3\n";
   EXPECT_EQ(load_scene(path).warnings,
-            std::vector<std::string>{path + ": all of it is 1.4e-30 across, too small for single precision: rays miss "
-                                            "it; scale the file up"});
+            std::vector<std::string>{path + ": all of it is 1.4e-30 across, too small for single precision: its "
+                                            "shading is wrong; scale the file up"});
   std::filesystem::remove(path);
 }
 
