@@ -44,6 +44,7 @@ class Plan:
         self.check_runs()
         self.check_scenes()
         self.left_out = self.filter()
+        self.check_fields()
         self.find_units()
         for planned in self.points:
             self.give_key(planned)
@@ -163,6 +164,17 @@ class Plan:
                 f"{experiment.path}: the filter '{experiment.filter}' leaves out all {len(left_out)} points"
             )
         return left_out
+
+    def check_fields(self):
+        """No point that is left names a field that its machine does not look at: it would be another one's twin."""
+
+        def identity(planned):
+            return planned.point["config"], *planned.settings.items()
+
+        def check(planned):
+            raypool.ask_config(planned.point["config"], planned.settings, "--in-use", "--json")
+
+        self.each_once("fields checked", identity, check)
 
     def find_units(self):
         """The Verilated unit of each point that needs one is there, and of today's Verilog."""

@@ -181,6 +181,32 @@ else
   failures=$((failures + 1))
   echo "FAILED: a silent program within its limit:"; cat "$folder/stdout"
 fi
+# Fields that another field makes meaningless.
+refuses_sim "field of another traverser" \
+  "rays and chip.modelled_traverser.box_pipes are not looked at: chip.traverser is static, .*leave them out" \
+  --engine model --set "chip.modelled_traverser.rays=8 chip.modelled_traverser.box_pipes=2"
+refuses_sim "field of the static traverser" "stall_cycles is not looked at: chip.traverser is not static; choose" \
+  --engine model --traverser modelled --set chip.static_traverser.stall_cycles=50
+refuses_sim "field of another policy" "chip.thresholds.rays is not looked at: chip.policy is fill" \
+  --engine model --set "chip.policy=fill chip.thresholds.rays=9"
+refuses_sim "wide memory of narrow units" "wide_ray_memory is not looked at: .* at most four lanes" \
+  --engine model --config 4w4c --set wide_ray_memory=true
+refuses_sim "controller of another chip" "chip.controller is not looked at: the chip as one piece" \
+  --chip model --set chip.controller=ledger
+refuses "chip around a compute program" "chip.ray_pool.size is not looked at: a compute program" \
+  "$raypool" run saxpy --set chip.ray_pool.size=9
+refuses "fit by a field of another traverser" "not looked at: chip.traverser is static" \
+  "$raypool" fit cornell --set chip.modelled_traverser.rays=8
+echo '{"chip": {"modelled_traverser": {"rays": 8, "box_pipes": 2, "stack_entries": 9}}}' > "$folder/lanes.json"
+"$raypool" sim cornell --config "$folder/lanes.json" --engine model --size 4x4 --quiet --out "$folder/told" \
+  2> "$folder/stderr"
+if [ "$(wc -l < "$folder/stderr")" = 1 ] && grep -qE -e \
+  "warning: configuration lanes: chip.modelled_traverser.rays and 2 more are not looked at" "$folder/stderr"; then
+  echo "ok: fields of a file that are not looked at: $(cat "$folder/stderr")"
+else
+  failures=$((failures + 1))
+  echo "FAILED: fields of a file that are not looked at:"; cat "$folder/stderr"
+fi
 refuses_sim "frame within no cycles" "the limit of 300 cycles has passed; .*traverser: " --engine model --cycles 300
 refuses_sim "limit of what has no cycles" "native .* leave --cycles out" --engine native --cycles 300
 for range in 60000:2 252:2 0:4294967295 4294967292:2; do

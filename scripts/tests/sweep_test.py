@@ -179,6 +179,16 @@ class Refusals(SweepTest):
                 place = "point 1 " if good == value else "point 2 "
                 self.refuses(document, place, f"{field}=", *words)
 
+    def test_fields_that_a_machine_does_not_look_at(self):
+        pipes = "chip.modelled_traverser.box_pipes"
+        words = (f"{pipes} is not looked at", "chip.traverser is static", "or leave it out")
+        self.refuses({"base": TINY, "product": {pipes: [1, 4]}}, "point 1 ", *words)
+        both = {"base": TINY, "product": {"chip.traverser": ["modelled", "static"], pipes: [4, 8]}}
+        self.refuses(both, "point 3 ", *words)
+        points = [{}, {"chip.policy": "thesis"}, {"chip.static_traverser.stall_cycles": 9}]
+        self.refuses({"base": {**TINY, "chip.traverser": "lanes"}, "points": points}, "point 3 ",
+                     "chip.traverser is not static")  # fmt: skip
+
     def test_a_scene_that_is_not_part_of_the_project(self):
         with self.scenes_here_and_there():
             document = {"base": {**TINY, "scene": "hall.obj"}, "scene_source": "ask the caretaker"}
@@ -357,6 +367,13 @@ class Runs(SweepTest):
             self.assertEqual(float(line["alus.flt.utilisation"]), report["alus"]["flt"]["utilisation"])
             self.assertEqual(report["configuration"]["warps"], row["warps"])
             self.assertNotIn("wall_seconds", row)
+
+    def test_a_filter_leaves_out_points_with_fields_that_are_not_looked_at(self):
+        pipes = "chip.modelled_traverser.box_pipes"
+        document = {"base": TINY, "product": {"chip.traverser": ["static", "modelled"], pipes: [4, 8]},
+                    "filter": "chip.traverser == 'modelled'"}  # fmt: skip
+        self.run_sweep(document)
+        self.assertEqual([row[pipes] for row in self.rows()], [4, 8])
 
     def test_every_engine_is_a_point(self):
         engines = ["native", "functional", "model", "rtl", "lockstep"]

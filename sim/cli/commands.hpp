@@ -83,6 +83,7 @@ struct ConfigOptions {
   bool verilog_parameters = false;
   bool chip = false;  ///< `verilog_parameters` are those of the whole chip
   bool json = false;
+  bool in_use = false;        ///< refuses a field of `set` that a frame does not look at
   bool unit_library = false;  ///< path of the Verilated unit
   int units = 1;              ///< of which `unit_library` and `chip` have so many
 };

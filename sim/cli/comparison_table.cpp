@@ -114,8 +114,11 @@ std::string comparison_table(const Json& comparison) {
     line(text, "set-up    the same");
   } else {
     line(text, "set-up    {:<38} {:>30} {:>30}", "", "A", "B");
-    for (const Json& row : comparison["set_up"])
+    for (const Json& row : comparison["set_up"]) {
       line(text, "  {:<46} {:>30} {:>30}", row["field"].get<std::string>(), text_of(row["a"]), text_of(row["b"]));
+      if (row.contains("not_looked_at"))
+        line(text, "    not looked at by either: {}", row["not_looked_at"].get<std::string>());
+    }
   }
   line(text, "results   {:<38} {:>14} {:>14} {:>14}", "", "A", "B", "change");
   size_t same = 0, others = 0;

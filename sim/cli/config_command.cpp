@@ -4,6 +4,7 @@
 #include "cli/commands.hpp"
 #include "cli/engine.hpp"
 #include "config/parameter_table.hpp"
+#include "config/unused_fields.hpp"
 
 namespace raypool {
 namespace {
@@ -38,6 +39,7 @@ void print_table(const Configuration& configuration) {
 
 int config_command(const ConfigOptions& options) {
   const Configuration configuration = load_configuration(options.config, options.set);
+  if (options.in_use) refuse_unused_settings(configuration);
   if (options.json) {
     fmt::print("{}\n", to_json(configuration));
   } else if (options.verilog_parameters) {

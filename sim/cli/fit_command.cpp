@@ -18,6 +18,7 @@
 #include "cli/progress.hpp"
 #include "cli/special_values.hpp"
 #include "cli/version.hpp"
+#include "config/unused_fields.hpp"
 #include "files/json_text.hpp"
 #include "files/output_files.hpp"
 #include "fit/fit.hpp"
@@ -234,6 +235,7 @@ RunRecord record_of(const FitOptions& options, const Scene& scene) {
   RunRecord record;
   record.command = options.command;
   record.configuration = load_configuration(options.config, set);
+  refuse_unused_settings(record.configuration);
   record.width = size.width;
   record.height = size.height;
   record.depth = options.depth;

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "config/configuration.hpp"
+#include "config/unused_fields.hpp"
 #include "files/input_file.hpp"
 #include "files/json_text.hpp"
 #include "scene/picture_file.hpp"
@@ -79,10 +80,28 @@ Json side_by_side(const Report& a, const Report& b, Wanted wanted) {
   return rows;
 }
 
+/// Fields that the machine of the report does not look at, each with the reason.
+std::map<std::string, std::string> unused_of(const Report& report) {
+  std::map<std::string, std::string> reasons;
+  try {
+    const Json whole = whole_configuration(report.json["configuration"], report.path);
+    for (const UnusedField& field : unused_fields(parse_configuration(to_text(whole, -1), report.path)))
+      reasons["configuration." + field.path] = field.reason;
+  } catch (const InputError&) {
+    return {};  // of a version with other parameters
+  }
+  return reasons;
+}
+
 Json set_up(const Report& a, const Report& b) {
+  const std::map<std::string, std::string> of_a = unused_of(a), of_b = unused_of(b);
   Json rows = Json::array();
-  for (const Json& row : side_by_side(a, b, [](const std::string& key) { return is_in(kSetUp, key); }))
-    if (row["a"] != row["b"]) rows.push_back(row);
+  for (Json& row : side_by_side(a, b, [](const std::string& key) { return is_in(kSetUp, key); })) {
+    if (row["a"] == row["b"]) continue;
+    const auto found = of_a.find(row["field"]);
+    if (found != of_a.end() && of_b.count(row["field"]) != 0) row["not_looked_at"] = found->second;
+    rows.push_back(row);
+  }
   return rows;
 }
 

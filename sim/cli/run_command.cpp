@@ -15,6 +15,7 @@
 #include "cli/limit_sentence.hpp"
 #include "cli/progress.hpp"
 #include "cli/text_file.hpp"
+#include "config/unused_fields.hpp"
 #include "files/output_files.hpp"
 #include "files/unfinished.hpp"
 #include "isa/assembler.hpp"
@@ -224,6 +225,7 @@ void print_figures(const ProgramResult& result, const Configuration& configurati
 
 void prepare(Job& job, const RunOptions& options) {
   job.options.configuration = load_configuration(options.config, options.set);
+  refuse_settings_of_frames(job.options.configuration);
   if (options.kernel == "saxpy") return prepare_saxpy(job, options);
   if (options.kernel == "matmul") return prepare_matmul(job, options);
   prepare_assembly(job, options);

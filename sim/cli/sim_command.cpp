@@ -1,6 +1,7 @@
 // `raypool sim`: one frame, from the scene to the files it leaves.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
@@ -17,6 +18,8 @@
 #include "cli/output_folder.hpp"
 #include "cli/progress.hpp"
 #include "cli/report.hpp"
+#include "config/settings.hpp"
+#include "config/unused_fields.hpp"
 #include "files/unfinished.hpp"
 #include "scene/embree_scene.hpp"
 #include "scene/image.hpp"
@@ -69,6 +72,20 @@ void check(const SimOptions& options, Engine engine) {
   }
   if (!options.error.empty() && !options.time.empty())
     throw InputError("--error says how long it takes, --time how large the error is: give one of them");
+}
+
+/// What is named in vain is refused; of a file, which may be written for other runs as well, it is told.
+void check_fields_in_use(const Configuration& configuration, bool whole_chip) {
+  refuse_unused_settings(configuration);
+  const std::vector<std::string> set = paths_set(configuration.set);
+  if (whole_chip && configuration.chip.controller != ControllerName::Counters &&
+      std::find(set.begin(), set.end(), "chip.controller") != set.end()) {
+    throw InputError(
+        "chip.controller is not looked at: the chip as one piece has that of rtl/controller.v, counters; draw "
+        "without --chip, or leave it out");
+  }
+  const std::string told = unused_in_file(configuration);
+  if (!told.empty()) fmt::print(stderr, "raypool: warning: {}\n", told);
 }
 
 /// The traverser in Verilog is in the chip in Verilog alone; who needs no traverser's time only needs its hits.
@@ -359,6 +376,7 @@ int sim_command(const SimOptions& options) {
   std::vector<std::string> set = options.set;
   if (!options.traverser.empty()) set.push_back("chip.traverser=" + options.traverser);
   const Configuration loaded = for_engine(load_configuration(options.config, set), options, engine);
+  check_fields_in_use(loaded, record.whole_chip);
   record.configuration = loaded;
   if (record.whole_chip) record.configuration.chip.controller = ControllerName::Counters;  // the one in Verilog
   record.width = size.width;

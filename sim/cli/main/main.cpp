@@ -326,6 +326,7 @@ void CommandLine::add_config_command() {
                                            "as NAME=VALUE lines for rtl/multiprocessor.v");
   formats->add_flag("--unit-library", config_.unit_library, "path of its Verilated unit");
   formats->require_option(0, 1);
+  config_app->add_flag("--in-use", config_.in_use, "refuse a field of --set that a frame on it does not look at");
   config_app->add_flag("--chip", config_.chip, "with --verilog-parameters: those of rtl/chip.v")->needs(verilog);
   config_app->add_option("--units", config_.units, "with --unit-library or --chip: compute units, 1, 2 or 4")
       ->check(CLI::IsMember({1, 2, 4}));
