@@ -2,9 +2,11 @@
 // remain the memory, the frame buffer, a host that writes what stays for a frame and starts it, and a traverser at the
 // chip's ports; with one inside these are tied off. docs/chip.md, section 8.
 // Promises: those of its blocks at its ports; of several units the one with a fault stops, and the frame does not end;
-// nor does it after a fault of the traverser.
+// nor does it after a fault of the traverser. It takes a frame only while it is ready, when nothing of another one is
+// left in it. The traverser is in reset then, so that it begins each frame without a line in its caches.
 // No output depends combinationally on an input, counter_o excepted, which depends on its selection.
-// Must be given: what its blocks must; arguments before start_i, and all that stays for a frame from then on.
+// Must be given: what its blocks must; while it is ready an argument before each frame, as memories may have changed,
+// and all that stays for a frame from start_i on.
 `default_nettype none
 module chip #(
   parameter integer UNITS = 1,
@@ -19,10 +21,11 @@ module chip #(
   // the host's: for the units, and for a frame
   input  wire [15:0]           program_length_i,       // instructions
   input  wire [31:0]           memory_limit_i,         // bytes
-  input  wire                  argument_write_i,       // while no frame is drawn; invalidates the caches
+  input  wire                  argument_write_i,       // while ready_o; invalidates the units' caches
   input  wire [4:0]            argument_index_i,
   input  wire [31:0]           argument_data_i,
-  input  wire                  start_i,                // a frame begins
+  output wire                  ready_o,                // nothing of a frame is left inside: the next one may begin
+  input  wire                  start_i,                // it does, in a cycle with ready_o; refused in others
   input  wire [15:0]           width_i,                // pixels, 1 or more
   input  wire [15:0]           height_i,
   input  wire [7:0]            depth_limit_i,          // of normal rays: deeper ones are dropped
@@ -111,6 +114,16 @@ module chip #(
   localparam integer RAY_BITS = $clog2(RAY_POOL_SIZE + 1);
   localparam integer LEVEL_BITS = $clog2(INTERSECTION_POOL_SIZE + 1);
 
+  // ---- Between two frames: all that waits or is on its way has gone, and the traverser asks for nothing more. What a
+  // frame began to fetch for nobody it forgets in its reset: no line comes back for a request of the frame before.
+  reg ready_q;
+  wire idle;
+  wire starts = start_i && ready_q;
+  assign ready_o = ready_q;
+  always @(posedge clk_i)
+    if (!rst_ni) ready_q <= 1'b1;
+    else ready_q <= idle && !starts;
+
   // ---- Controller and units
   wire launch_valid, launch_ready;
   wire [1:0] launch_unit, launch_import;
@@ -167,8 +180,13 @@ module chip #(
   wire [255:0] tree_request_data;
   wire [1:0] tree_response_beat;
   wire [127:0] tree_response_data;
+  wire memory_idle, inside_asks;
+  assign idle = !busy_o && &unit_idle && memory_idle && !frame_valid_o && !inside_asks;
   generate
     if (TRAVERSER != 0) begin : gen_inside
+      wire request_valid;
+      assign inside_asks = request_valid && !ready_q;
+      assign tree_request_valid = inside_asks;
       traverser #(
         .LANES(TRAVERSER_LANES), .SLOTS(TRAVERSER_SLOTS), .ENTRIES(TRAVERSER_ENTRIES), .BITS(TRAVERSER_BITS),
         .TRIANGLE_PIPES(TRAVERSER_TRIANGLE_PIPES), .NODE_LINES(TRAVERSER_NODE_LINES),
@@ -177,7 +195,8 @@ module chip #(
         .TRIANGLE_MSHRS(TRAVERSER_TRIANGLE_MSHRS), .TRIANGLE_BANKS(TRAVERSER_BANKS), .POOL(RAY_POOL_SIZE),
         .RECORD_WORDS(INTERSECTION_WORDS), .SHADING(SHADING), .CULLING(CULLING), .KINDS(KINDS), .PLACE_BITS(PLACE_BITS)
       ) traverser (
-        .clk_i(clk_i), .rst_ni(rst_ni), .root_i(tree_root_i), .lower_i(tree_lower_i), .upper_i(tree_upper_i),
+        .clk_i(clk_i), .rst_ni(rst_ni && !ready_q), .root_i(tree_root_i), .lower_i(tree_lower_i),
+        .upper_i(tree_upper_i),
         .triangles_line_i(triangles_line_i), .triangle_lines_i(triangle_lines_i), .stacks_line_i(stacks_line_i),
         .material_base_i(material_base_i), .fault_valid_o(tree_fault_valid_o), .fault_code_o(tree_fault_code_o),
         .fault_line_o(tree_fault_line_o),
@@ -187,7 +206,7 @@ module chip #(
         .put_valid_o(put_valid), .put_ready_i(put_ready), .put_kind_o(put_kind), .put_data_o(put_data),
         .contribution_valid_o(contribution_valid), .contribution_ready_i(contribution_ready),
         .contribution_pixel_o(contribution_pixel), .contribution_color_o(contribution_color),
-        .request_valid_o(tree_request_valid), .request_ready_i(tree_request_ready),
+        .request_valid_o(request_valid), .request_ready_i(tree_request_ready),
         .request_write_o(tree_request_write), .request_second_o(tree_request_second),
         .request_address_o(tree_request_address), .request_data_o(tree_request_data),
         .response_valid_i(tree_response_valid), .response_beat_i(tree_response_beat),
@@ -199,6 +218,7 @@ module chip #(
                       contribution_valid_i, contribution_pixel_i, contribution_color_i, tree_request_valid_i,
                       tree_request_write_i, tree_request_second_i, tree_request_address_i, tree_request_data_i};
     end else begin : gen_outside
+      assign inside_asks = 1'b0;
       assign ray_ready = ray_ready_i;
       assign {free_valid, free_place, free_shadow} = {free_valid_i, free_place_i, free_shadow_i};
       assign {put_valid, put_kind, put_data} = {put_valid_i, put_kind_i, put_data_i};
@@ -235,7 +255,7 @@ module chip #(
   wire [UNITS*LANES-1:0] ray_trace_mask;
   wire [UNITS*LANES*32-1:0] ray_trace_data;
   wire unused = &{1'b0, ray_held_up, pixel_valid, pixel_unit, quiet, outcome_kept, outcome_deep, outcome_eye,
-                  outcome_pixel, exported_pixel, unit_busy, unit_idle, retire_valid, retire_pc, retire_instruction,
+                  outcome_pixel, exported_pixel, unit_busy, retire_valid, retire_pc, retire_instruction,
                   retire_mask, retire_predicate, retire_data, store_trace_valid, store_trace_warp, store_trace_address,
                   store_trace_data, store_trace_mask, ray_trace_valid, ray_trace_warp, ray_trace_word, ray_trace_mask,
                   ray_trace_data};
@@ -282,7 +302,7 @@ module chip #(
     .INTERSECTION_THRESHOLD(THRESHOLDS_INTERSECTIONS), .BATCH(STATIC_TRAVERSER_BATCH), .TRAVERSER_SHADES(SHADING),
     .CULLING(CULLING), .TILE_ORDER(TILE_ORDER), .KINDS(KINDS), .RAY_BITS(RAY_BITS), .LEVEL_BITS(LEVEL_BITS)
   ) controller (
-    .clk_i(clk_i), .rst_ni(rst_ni), .start_i(start_i), .width_i(width_i), .height_i(height_i),
+    .clk_i(clk_i), .rst_ni(rst_ni), .start_i(starts), .width_i(width_i), .height_i(height_i),
     .reflections_i(reflections_i), .eye_pc_i(eye_pc_i), .secondary_pc_i(secondary_pc_i), .direct_pc_i(direct_pc_i),
     .shade_pc_i(shade_pc_i), .busy_o(busy_o),
     .launch_valid_o(launch_valid), .launch_ready_i(launch_ready), .launch_unit_i(launch_unit),
@@ -341,7 +361,7 @@ module chip #(
     .memory_request_address_o(memory_request_address_o), .memory_request_data_o(memory_request_data_o),
     .memory_request_mask_o(memory_request_mask_o), .memory_beat_valid_i(memory_beat_valid_i),
     .memory_beat_ready_o(memory_beat_ready_o), .memory_beat_data_i(memory_beat_data_i), .quiet_o(quiet),
-    .reads_o(memory_reads_o), .writes_o(memory_writes_o), .busy_cycles_o(memory_port_busy_o));
+    .idle_o(memory_idle), .reads_o(memory_reads_o), .writes_o(memory_writes_o), .busy_cycles_o(memory_port_busy_o));
 
   frame_port frame_port (
     .clk_i(clk_i), .rst_ni(rst_ni),

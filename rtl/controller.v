@@ -6,7 +6,7 @@
 // no output depends on an input of the same cycle but that a tile is taken with its launch.
 // Must be given: levels of pools as rtl/ray_pool.v and rtl/intersection_pool.v have them; a unit that is ready stays
 // ready until it is given a kernel; a ray leaves the ray pool when what it becomes is in the intersection pool, or
-// later; a picture of 1 pixel or more each way.
+// later; a picture of 1 pixel or more each way; start_i only while busy_o is low.
 `default_nettype none
 module controller #(
   parameter integer UNITS = 1,

@@ -53,6 +53,7 @@ module memory_port #(
   input  wire [127:0] memory_beat_data_i,
   // of each unit: nothing waits or is on its way
   output wire [3:0]   quiet_o,
+  output wire         idle_o,                       // the same of all units and of the traverser
   // for the report, right two cycles after the last event
   output wire [47:0]  reads_o,                      // lines, of the device
   output wire [47:0]  writes_o,                     // quadwords, of the device
@@ -236,6 +237,9 @@ module memory_port #(
                         - {{PENDING_BITS-1{1'b0}}, read_ends};
     end
   endgenerate
+
+  assign idle_o = waiting_q == {QUEUE_BITS{1'b0}} && came_q == went_q && lines_q == {LINES_BITS{1'b0}} &&
+                  !memory_request_valid_o;
 
   // ---- For the report
   wire [38:0] unused;

@@ -7,7 +7,8 @@
 // that the one with the fault never leaves; what was done before still does. No output depends on an input of the same
 // cycle.
 // Must be given: a place that is not free for each ray; a tree as docs/scenes.md has it, or a fault may be all that
-// comes of it; all that stays for a frame before its first ray.
+// comes of it; all that stays for a frame before its first ray; a reset before another tree or other materials, while
+// none of its requests is on its way.
 `default_nettype none
 module traverser #(
   parameter integer LANES = 8,

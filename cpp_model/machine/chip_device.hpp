@@ -30,8 +30,8 @@ constexpr bool has_traverser(const ChipConfiguration& chip) { return chip.traver
 
 /// What stays for a frame; a host writes it before it starts one.
 struct FrameSetup {
-  uint32_t program_length = 0;  ///< instructions, from address 0
-  uint32_t memory_limit = 0;    ///< bytes
+  uint32_t program_length = 0;  ///< instructions, from address 0; until the next reset
+  uint32_t memory_limit = 0;    ///< bytes; likewise
   std::array<uint32_t, kArguments> arguments{};
   EnumArray<RayKernel, uint32_t, kRayKernels> entries{};  ///< PC of each
   uint32_t width = 0, height = 0;                         ///< pixels, 1 .. 65535
@@ -39,6 +39,9 @@ struct FrameSetup {
   bool reflections = false;                               ///< normal intersections are for the kernel that reflects
   TreeSetup tree;                                         ///< of a traverser inside
 };
+
+/// How a frame begins: after a reset of the chip, or as the next one, once nothing of the one before is left in it.
+enum class FrameBegin : uint8_t { Reset, Next };
 
 /// What a traverser shows: of its rays, what becomes of them, and its memory.
 struct TraverserPorts {
@@ -57,6 +60,7 @@ struct TraverserPorts {
 
 /// Those of a traverser are for one at the chip's ports.
 struct ChipInputs : TraverserPorts {
+  bool start = false;  ///< the host asks for a frame once more, of what stays for it; refused where ready is not set
   // memory
   bool memory_request_ready = false;
   bool memory_beat_valid = false;
@@ -67,7 +71,8 @@ struct ChipInputs : TraverserPorts {
 
 /// What belongs to a valid means something only while it is set; masks have one bit a unit.
 struct ChipOutputs {
-  bool busy = false;  ///< a frame is being drawn
+  bool ready = false;  ///< nothing of a frame is left inside: the next one may begin; stays until it does
+  bool busy = false;   ///< a frame is being drawn
 
   // memory
   bool memory_request_valid = false;
@@ -115,12 +120,23 @@ struct ChipOutputs {
   static constexpr uint32_t kNotSeen = UINT32_MAX;
 };
 
-/// For the report: since the frame's start, right two cycles after the last event.
+/// For the report: since the last reset, right two cycles after the last event.
 struct ChipCounts {
   uint64_t rays_taken = 0, ray_port_busy = 0;  ///< dropped rays too; cycles
   uint64_t packages_taken = 0;
   uint64_t contributions = 0;
   uint64_t memory_reads = 0, memory_writes = 0, memory_port_busy = 0;  ///< lines and quadwords of the device; cycles
+
+  /// What has been counted since `before`.
+  ChipCounts operator-(const ChipCounts& before) const {
+    return {rays_taken - before.rays_taken,
+            ray_port_busy - before.ray_port_busy,
+            packages_taken - before.packages_taken,
+            contributions - before.contributions,
+            memory_reads - before.memory_reads,
+            memory_writes - before.memory_writes,
+            memory_port_busy - before.memory_port_busy};
+  }
 };
 
 class ChipDevice {
@@ -130,6 +146,10 @@ class ChipDevice {
   virtual uint32_t units() const = 0;
   /// Resets, writes what stays for a frame, and starts it: the frame begins in the first cycle that is clocked.
   virtual void start(const FrameSetup& setup) = 0;
+  /// The same without a reset, for the next frame: of the memories, which may hold another scene, nothing is
+  /// remembered. Takes a cycle for each argument. Throws std::logic_error while outputs().ready is not set, or where
+  /// program length or memory limit are not those of the last start().
+  virtual void start_next(const FrameSetup& setup) = 0;
   virtual const ChipOutputs& outputs() const = 0;
   virtual void clock(const ChipInputs& inputs) = 0;
 
@@ -137,6 +157,10 @@ class ChipDevice {
   virtual uint64_t counter(int number) = 0;  ///< of the units, summed; see namespace counter
   /// Writes a waveform from now on; throws std::runtime_error where there is none.
   virtual void open_waveform(const std::string& path);
+
+ protected:
+  /// Throws what start_next() does.
+  static void check_next(const FrameSetup& before, const FrameSetup& setup, const ChipOutputs& outputs);
 };
 
 }  // namespace raypool

@@ -22,14 +22,24 @@ constexpr std::array<ImportKind, 3> kKinds = {ImportKind::Normal, ImportKind::Sh
 /// Controller and tiles: what is launched, and when.
 class Launches {
  public:
-  Launches(const Configuration& configuration, uint32_t units, const FrameSetup& setup)
-      : setup_(setup),
+  Launches(const Configuration& configuration, uint32_t units)
+      : configuration_(configuration),
+        units_(units),
         walk_(tile_order(configuration.chip), configuration.contents(), configuration.chip.held_limit),
-        controller_(configuration.chip, configuration.contents(), units, setup.reflections,
-                    walk_.tile_width() * walk_.tile_height(), policy(configuration, units, setup.reflections)),
-        tiles_(walk_, setup.width, setup.height) {}
+        controller_(configuration.chip, configuration.contents(), units, false,
+                    walk_.tile_width() * walk_.tile_height(), nullptr),
+        tiles_(walk_, 1, 1) {}
 
-  bool busy(uint64_t cycle) const { return cycle != 0 && cycle < ended_at_; }
+  /// A frame begins in this cycle, when there is none.
+  void begin(uint64_t cycle, const FrameSetup& setup) {
+    setup_ = setup;
+    controller_.begin(setup.reflections, policy(setup.reflections));
+    tiles_ = TimedTiles(walk_, setup.width, setup.height, cycle);
+    begun_at_ = decide_from_ = cycle;
+    ended_at_ = look_at_ = kNever;
+    changed_ = true;
+  }
+  bool busy(uint64_t cycle) const { return cycle > begun_at_ && cycle < ended_at_; }
   /// What is offered to the units.
   bool offered(uint64_t cycle) const { return launch_ && cycle >= launch_at_; }
   LaunchCommand command(uint64_t cycle) {
@@ -92,9 +102,9 @@ class Launches {
   }
 
  private:
-  static std::unique_ptr<KernelPolicy> policy(const Configuration& configuration, uint32_t units, bool reflections) {
-    const ChipConfiguration& chip = configuration.chip;
-    return make_policy(chip.policy, {configuration.contents(), units, chip.ray_pool_size, chip.intersection_pool_size,
+  std::unique_ptr<KernelPolicy> policy(bool reflections) const {
+    const ChipConfiguration& chip = configuration_.chip;
+    return make_policy(chip.policy, {configuration_.contents(), units_, chip.ray_pool_size, chip.intersection_pool_size,
                                      chip.thresholds_rays, chip.thresholds_intersections, chip.static_traverser_batch,
                                      reflections ? 2u : 1u});
   }
@@ -109,12 +119,14 @@ class Launches {
     }
   }
 
+  Configuration configuration_;
+  uint32_t units_;
   FrameSetup setup_;
   TileWalk walk_;
   Controller controller_;
   TimedTiles tiles_;
   Controller::Launch launch_;  // decided and not taken
-  uint64_t launch_at_ = 0, decide_from_ = 0, ended_at_ = kNever;
+  uint64_t launch_at_ = 0, decide_from_ = 0, begun_at_ = 0, ended_at_ = 0;
   bool changed_ = true, ready_ = false;
   uint64_t look_at_ = kNever;
 };
@@ -173,16 +185,35 @@ class ChipModel : public ChipDevice {
     device_->reset(setup.program_length, setup.memory_limit);
     for (uint32_t index = 0; index < configuration_.arguments; ++index)
       device_->set_argument(index, setup.arguments[index]);
-    blocks_ = std::make_unique<Blocks>(configuration_, device_->units(), setup);
+    blocks_ = std::make_unique<Blocks>(configuration_, device_->units());
+    setup_ = setup;
     cycle_ = 0;
+    ready_ = starts_ = true;
     out_ = {};
     outcome_ = {};
     exported_valid_ = false;
     present();
   }
 
+  void start_next(const FrameSetup& setup) override {
+    check_next(setup_, setup, out_);
+    setup_ = setup;
+    for (uint32_t index = 0; index < configuration_.arguments; ++index)
+      clock_around({}, [&] { device_->set_argument(index, setup.arguments[index]); });
+    starts_ = true;
+  }
+
   void clock(const ChipInputs& inputs) override {
+    clock_around(inputs, [this] { device_->clock(out_.to_device); });
+  }
+
+ private:
+  // A cycle; `clock_device` is what it is for the units.
+  template <typename ClockDevice>
+  void clock_around(const ChipInputs& inputs, const ClockDevice& clock_device) {
     const TraverserPorts& outside = inputs;
+    const bool starts = ready_ && (starts_ || inputs.start), idle = this->idle();
+    if (starts) begin_frame();
     const TraverserPorts& traverser = blocks_->traverser ? out_.traverser : outside;
     clock_launch();
     clock_rays(traverser);
@@ -192,22 +223,21 @@ class ChipModel : public ChipDevice {
     end_kernels();
     decide();
     clock_traverser();
-    device_->clock(out_.to_device);
+    clock_device();
+    ready_ = idle && !starts;
+    starts_ = false;
     ++cycle_;
     present();
   }
 
- private:
   struct Blocks {
-    Blocks(const Configuration& configuration, uint32_t units, const FrameSetup& setup)
-        : rays(configuration.chip, setup.depth),
+    Blocks(const Configuration& configuration, uint32_t units)
+        : rays(configuration.chip, 0),
           reader(configuration.chip.ray_pool_size),
           intersections(configuration.chip, RecordLayout::in_order(configuration.intersection_words)),
           memory(configuration.chip, MemoryPort::Limits::of(configuration.chip)),
-          launches(configuration, units, setup) {
-      if (!has_traverser(configuration.chip)) return;
-      traverser.emplace(traverser_sizes(configuration));
-      traverser->set_up(traverser_setup(setup));
+          launches(configuration, units) {
+      if (has_traverser(configuration.chip)) traverser.emplace(traverser_sizes(configuration));
     }
 
     RayPool rays;
@@ -217,7 +247,20 @@ class ChipModel : public ChipDevice {
     FramePort frame;
     Launches launches;
     std::optional<Traverser> traverser;
+    bool traverser_used = false;  // since its reset
   };
+
+  /// Nothing of a frame is left in the chip, as it stands in this cycle.
+  bool idle() const {
+    return !out_.busy && out_.device.idle && blocks_->memory.idle() && !out_.frame_valid &&
+           !out_.traverser.tree_request_valid;
+  }
+  void begin_frame() {
+    Blocks& b = *blocks_;
+    b.rays.set_depth(setup_.depth);
+    b.launches.begin(cycle_, setup_);
+    if (b.traverser) b.traverser->set_up(traverser_setup(setup_));
+  }
 
   // A launch is taken as soon as it is offered, by a unit that was ready before.
   void clock_launch() {
@@ -295,8 +338,16 @@ class ChipModel : public ChipDevice {
     if (out_.frame_valid && inputs.frame_ready) frame.leave();
   }
 
+  // Between two frames it is in reset.
   void clock_traverser() {
     if (!blocks_->traverser) return;
+    if (ready_) {
+      if (!blocks_->traverser_used) return;
+      blocks_->traverser.emplace(traverser_sizes(configuration_));
+      blocks_->traverser_used = false;
+      return;
+    }
+    blocks_->traverser_used = true;
     Traverser::Inputs in{};
     in.ray_valid = out_.ray_valid;
     in.ray_last = out_.ray_last;
@@ -335,6 +386,7 @@ class ChipModel : public ChipDevice {
   // What the ports show in the cycle that begins.
   void present() {
     out_.device = device_->outputs();
+    out_.ready = ready_;
     present_launch();
     present_rays();
     present_intersections();
@@ -433,8 +485,8 @@ class ChipModel : public ChipDevice {
     if (shown.put_valid) ports.put_data = shown.put_data;
     ports.contribution_valid = shown.contribution_valid;
     if (shown.contribution_valid) ports.contribution = shown.contribution;
-    ports.tree_request_valid = shown.request_valid;
-    if (shown.request_valid) ports.tree_request = shown.request;
+    ports.tree_request_valid = shown.request_valid && !ready_;
+    if (ports.tree_request_valid) ports.tree_request = shown.request;
     out_.nodes_given = shown.nodes_given;
     out_.leaves_given = shown.leaves_given;
     out_.tree_fault = shown.fault;
@@ -442,8 +494,11 @@ class ChipModel : public ChipDevice {
 
   Configuration configuration_;
   std::unique_ptr<ComputeUnit> device_;
-  std::unique_ptr<Blocks> blocks_;  // since the frame's start
-  uint64_t cycle_ = 0;
+  std::unique_ptr<Blocks> blocks_;  // since the reset
+  FrameSetup setup_;
+  bool ready_ = true;    // for a frame
+  bool starts_ = false;  // one begins in the next cycle that is clocked
+  uint64_t cycle_ = 0;   // since the reset
   ChipOutputs out_;
   ChipOutputs::Outcome outcome_;  // of the cycle before, as are these
   bool exported_valid_ = false;

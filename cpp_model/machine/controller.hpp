@@ -55,6 +55,12 @@ class Controller {
         rules_(chip, contents, units),
         policy_(std::move(policy)) {}
 
+  /// Another frame, when the one before has ended. What is counted modulo 2^16 goes on.
+  void begin(bool reflections, std::unique_ptr<KernelPolicy> policy) {
+    reflections_ = reflections;
+    policy_ = std::move(policy);
+  }
+
   // What happens in a cycle, in this order.
   void ray_left(uint64_t cycle, uint32_t unit, bool shadow) { records_[unit].ray_left(cycle, shadow); }
   void contribution_left(uint64_t cycle, uint32_t unit) { records_[unit].contribution_left(cycle); }

@@ -28,6 +28,9 @@ class RayPool {
         depth_(depth),
         places_(capacity_) {}
 
+  /// For the rays of another frame.
+  void set_depth(uint32_t depth) { depth_ = depth; }
+
   /// What a ray that has arrived becomes.
   struct Outcome {
     bool shadow = false, deep = false, kept = false;

@@ -10,8 +10,10 @@ namespace raypool {
 
 class TimedTiles {
  public:
-  /// The walk begins in cycle 0, and has its first cycle in the next one.
-  TimedTiles(const TileWalk& walk, uint32_t width, uint32_t height) : walk_(walk) { walk_.start(width, height); }
+  /// The walk begins in cycle `begun`, and has its first cycle in the next one.
+  TimedTiles(const TileWalk& walk, uint32_t width, uint32_t height, uint64_t begun = 0) : walk_(walk), clocks_(begun) {
+    walk_.start(width, height);
+  }
 
   /// As they are in a cycle, not before the last one that was asked for.
   Controller::Tiles in(uint64_t cycle) {
@@ -30,7 +32,7 @@ class TimedTiles {
 
  private:
   TileWalk walk_;
-  uint64_t clocks_ = 0;
+  uint64_t clocks_;  // the cycle up to which it has been clocked
 };
 
 }  // namespace raypool

@@ -40,7 +40,7 @@ const ChipOptions& checked(const ChipOptions& options) {
 
 }  // namespace
 
-Board::Board(const ChipOptions& options, ChipDevice& chip, LineStore& store)
+Board::Board(const ChipOptions& options, ChipDevice& chip, LineStore& store, FrameBegin begin)
     : options_(checked(options)),
       chip_(chip),
       reflects_(secondary_kernel(options.depth, options.reflections) == RayKernel::CastSecondary),
@@ -53,8 +53,14 @@ Board::Board(const ChipOptions& options, ChipDevice& chip, LineStore& store)
     watch_.emplace(options.layout, configuration.ray_pool_size, options.depth);
   else
     traverser_.emplace(*options.tracer, configuration, chip.units(), options.depth, reflects_, options.layout);
-  chip_.start(setup());
   inputs_.frame_ready = true;
+  if (begin == FrameBegin::Reset) {
+    chip_.start(setup());
+    return;
+  }
+  chip_.start_next(setup());
+  counts_before_ = chip_.counts();
+  for (int number = 0; number < counter::kCount; ++number) counters_before_[number] = chip_.counter(number);
 }
 
 ChipResult Board::result() {
@@ -229,12 +235,17 @@ void Board::show_progress() const {
   options_.progress({ended_ ? 1 : std::min(1.0, static_cast<double>(cast_) / pixels), cycle_, traced().rays.traced()});
 }
 
+uint64_t Board::counter(int number) const {
+  const uint64_t all = (uint64_t{1} << options_.configuration.counter_bits) - 1;
+  return (chip_.counter(number) - counters_before_[number]) & all;
+}
+
 FrameFigures Board::figures() {
-  const ChipCounts counts = chip_.counts();
+  const ChipCounts counts = chip_.counts() - counts_before_;
   FrameFigures figures;
   figures.cycles = cycles_;
   figures.units = chip_.units();
-  figures.counter = [this](int number) { return chip_.counter(number); };
+  figures.counter = [this](int number) { return counter(number); };
   figures.kernels = &kernels_;
   figures.busy_cycles = busy_cycles_;
   figures.rays = &rays_;
@@ -253,14 +264,14 @@ FrameFigures Board::figures() {
 
 }  // namespace chip
 
-ChipResult run_board(const ChipOptions& options, ChipDevice& chip) {
-  const auto begin = std::chrono::steady_clock::now();
+ChipResult run_board(const ChipOptions& options, ChipDevice& chip, FrameBegin begin) {
+  const auto begun = std::chrono::steady_clock::now();
   chip::FixedLatencyStore store(*options.memory, options.tree == nullptr ? nullptr : &options.tree->memory,
                                 options.configuration.chip.memory_latency);
-  chip::Board board(options, chip, store);
+  chip::Board board(options, chip, store, begin);
   while (!board.ended()) board.clock();
   ChipResult result = board.result();
-  result.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  result.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
   return result;
 }
 

@@ -3,6 +3,7 @@
 // has all that takes its time.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -14,6 +15,7 @@
 #include "chip/port_traverser.hpp"
 #include "chip/progress_watch.hpp"
 #include "chip/traverser_watch.hpp"
+#include "isa/counters.hpp"
 #include "machine/chip_device.hpp"
 
 namespace raypool {
@@ -24,13 +26,15 @@ namespace chip {
 class Board {
  public:
   /// Starts the frame. `store`: the memories. All must outlive the board. Throws InputError for options out of range or
-  /// a configuration that the chip has not.
-  Board(const ChipOptions& options, ChipDevice& chip, LineStore& store);
+  /// a configuration that the chip has not, std::logic_error as ChipDevice::start_next() does.
+  Board(const ChipOptions& options, ChipDevice& chip, LineStore& store, FrameBegin begin = FrameBegin::Reset);
 
   /// One cycle.
   void clock();
   /// Nothing moves any more.
   bool ended() const { return still_ >= kStillCycles; }
+  /// The next frame may begin; of this one all but the ports' busy cycles has been counted.
+  bool may_be_followed() const { return ended_ && chip_.outputs().ready; }
   /// Once it has ended; without the time that it took.
   ChipResult result();
 
@@ -50,6 +54,7 @@ class Board {
   RayKernel kernel_at(uint32_t pc) const;
   void show_progress() const;
   FrameFigures figures();
+  uint64_t counter(int number) const;
   const TraverserCounts& traced() const { return watch_ ? watch_->counts() : traverser_->counts(); }
 
   const ChipOptions& options_;
@@ -65,6 +70,10 @@ class Board {
   bool begun_ = false, ended_ = false;
   uint64_t still_ = 0;  // cycles in which nothing has moved since the end
 
+  // What the chip had counted before.
+  ChipCounts counts_before_;
+  std::array<uint64_t, counter::kCount> counters_before_{};
+
   KernelTimes kernels_;
   uint64_t busy_cycles_ = 0, dropped_depth_ = 0, cast_ = 0;
   LevelStatistics rays_;
@@ -79,6 +88,6 @@ class Board {
 /// `own_policy` have no meaning here, nor has `tracer` with a traverser inside, or `tree` with another. Throws
 /// InputError for options out of range or a configuration that the chip has not, ChipFault, TraverserFault,
 /// ChipStalled, also where an answer of the memory does not come, and whatever the chip's clock() or the tracer throws.
-ChipResult run_board(const ChipOptions& options, ChipDevice& chip);
+ChipResult run_board(const ChipOptions& options, ChipDevice& chip, FrameBegin begin = FrameBegin::Reset);
 
 }  // namespace raypool

@@ -177,6 +177,10 @@ class LossyBus : public ChipDevice {
     chip_->start(setup);
     look();
   }
+  void start_next(const FrameSetup& setup) override {
+    chip_->start_next(setup);
+    look();
+  }
   const ChipOutputs& outputs() const override { return out_; }
   void clock(const ChipInputs& inputs) override {
     ChipInputs in = inputs;

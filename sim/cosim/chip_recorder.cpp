@@ -53,6 +53,7 @@ void put_traverser(Bus& bus, const TraverserPorts& in, int place_bits) {
 }
 
 void expect_chip(ExpectedBus& bus, const ChipOutputs& out, int kinds, int place_bits, bool on) {
+  bus.put(out.ready ? 1 : 0, 1, on);
   bus.put(out.busy ? 1 : 0, 1, on);
   const MemoryRequest& request = out.memory_request.request;
   const bool asks = on && out.memory_request_valid, writes = asks && request.write;
@@ -138,13 +139,23 @@ void ChipRecorder::start(const FrameSetup& setup) {
   // Nothing is compared before the frame begins.
   for (int cycle = 0; cycle < 4; ++cycle) record({true, false, false, 0, 0}, {}, false);
   record({}, {}, false);
+  record_arguments();
+}
+
+void ChipRecorder::start_next(const FrameSetup& setup) {
+  chip_.start_next(setup);
+  setup_ = setup;
+  record_arguments();
+}
+
+void ChipRecorder::record_arguments() {
   for (uint32_t index = 0; index < arguments_; ++index)
-    record({false, false, true, index, setup.arguments[index]}, {}, false);
+    record({false, false, true, index, setup_.arguments[index]}, {}, false);
   starts_ = true;
 }
 
 void ChipRecorder::clock(const ChipInputs& inputs) {
-  record({false, starts_, false, 0, 0}, inputs, true);
+  record({false, starts_ || inputs.start, false, 0, 0}, inputs, true);
   starts_ = false;
   chip_.clock(inputs);
 }

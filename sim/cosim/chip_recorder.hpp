@@ -20,6 +20,7 @@ class ChipRecorder : public ChipDevice {
 
   uint32_t units() const override { return chip_.units(); }
   void start(const FrameSetup& setup) override;
+  void start_next(const FrameSetup& setup) override;
   const ChipOutputs& outputs() const override { return chip_.outputs(); }
   void clock(const ChipInputs& inputs) override;
   ChipCounts counts() override { return chip_.counts(); }
@@ -32,6 +33,7 @@ class ChipRecorder : public ChipDevice {
     uint32_t index = 0, value = 0;
   };
 
+  void record_arguments();
   /// `checked`: the outputs count.
   void record(const Host& host, const ChipInputs& inputs, bool checked);
 

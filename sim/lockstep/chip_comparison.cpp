@@ -112,6 +112,8 @@ void compare_device(Ports& ports, const UnitOutputs& rtl, const UnitOutputs& mod
 }
 
 void compare_controller(Ports& ports, const ChipOutputs& rtl, const ChipOutputs& model) {
+  ports.of("chip");
+  ports.same("ready", rtl.ready, model.ready);
   ports.of("controller");
   ports.same("busy", rtl.busy, model.busy);
   if (ports.both("launch_valid", rtl.to_device.launch_valid, model.to_device.launch_valid)) {

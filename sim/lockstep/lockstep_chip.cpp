@@ -44,10 +44,13 @@ class LockstepChipImpl : public LockstepChip {
   void start(const FrameSetup& setup) override {
     rtl_->start(setup);
     model_->start(setup);
-    cycle_ = 0;
-    moved_ = true;
-    still_since_ = 0;
-    compared([this] { compare_chip(rtl_->outputs(), model_->outputs(), kinds_); });
+    begin();
+  }
+  void start_next(const FrameSetup& setup) override {
+    if (!report_.empty()) throw LockstepDifference(report_);
+    rtl_->start_next(setup);
+    model_->start_next(setup);
+    begin();
   }
 
   void clock(const ChipInputs& inputs) override {
@@ -66,6 +69,13 @@ class LockstepChipImpl : public LockstepChip {
   }
 
  private:
+  void begin() {
+    cycle_ = 0;
+    moved_ = true;
+    still_since_ = 0;
+    compared([this] { compare_chip(rtl_->outputs(), model_->outputs(), kinds_); });
+  }
+
   // What passes the ports at the end of this cycle; both sides show the same.
   void count_transfers(const ChipInputs& inputs) {
     const ChipOutputs& out = rtl_->outputs();

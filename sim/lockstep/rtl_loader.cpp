@@ -121,6 +121,7 @@ class LoadedChip : public ChipDevice {
 
   uint32_t units() const override { return chip_->units(); }
   void start(const FrameSetup& setup) override { chip_->start(setup); }
+  void start_next(const FrameSetup& setup) override { chip_->start_next(setup); }
   const ChipOutputs& outputs() const override { return chip_->outputs(); }
   void clock(const ChipInputs& inputs) override {
     stop_point();

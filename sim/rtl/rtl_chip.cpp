@@ -90,30 +90,19 @@ class RtlChip : public ChipDevice {
 
   void start(const FrameSetup& setup) override {
     Vchip& top = design_.top();
-    top.program_length_i = static_cast<SData>(setup.program_length);
-    top.memory_limit_i = setup.memory_limit;
-    top.width_i = static_cast<SData>(setup.width);
-    top.height_i = static_cast<SData>(setup.height);
-    top.depth_limit_i = static_cast<CData>(setup.depth);
-    top.reflections_i = setup.reflections;
-    top.eye_pc_i = static_cast<SData>(setup.entries[RayKernel::CastEye]);
-    top.secondary_pc_i = static_cast<SData>(setup.entries[RayKernel::CastSecondary]);
-    top.direct_pc_i = static_cast<SData>(setup.entries[RayKernel::CastSecondaryDirect]);
-    top.shade_pc_i = static_cast<SData>(setup.entries[RayKernel::Shade]);
-    write_tree(setup.tree);
+    write_setup(setup);
     starts_ = false;
     top.rst_ni = 0;
     clock({});
     top.rst_ni = 1;
     clock({});
-    top.argument_write_i = 1;
-    for (uint32_t index = 0; index < arguments_; ++index) {
-      top.argument_index_i = static_cast<CData>(index);
-      top.argument_data_i = setup.arguments[index];
-      clock({});
-    }
-    top.argument_write_i = 0;
-    starts_ = true;
+    write_arguments();
+  }
+
+  void start_next(const FrameSetup& setup) override {
+    check_next(setup_, setup, out_);
+    write_setup(setup);
+    write_arguments();
   }
 
   const ChipOutputs& outputs() const override { return out_; }
@@ -134,6 +123,35 @@ class RtlChip : public ChipDevice {
   void open_waveform(const std::string& path) override { design_.open_waveform(path); }
 
  private:
+  void write_setup(const FrameSetup& setup) {
+    setup_ = setup;
+    Vchip& top = design_.top();
+    top.program_length_i = static_cast<SData>(setup.program_length);
+    top.memory_limit_i = setup.memory_limit;
+    top.width_i = static_cast<SData>(setup.width);
+    top.height_i = static_cast<SData>(setup.height);
+    top.depth_limit_i = static_cast<CData>(setup.depth);
+    top.reflections_i = setup.reflections;
+    top.eye_pc_i = static_cast<SData>(setup.entries[RayKernel::CastEye]);
+    top.secondary_pc_i = static_cast<SData>(setup.entries[RayKernel::CastSecondary]);
+    top.direct_pc_i = static_cast<SData>(setup.entries[RayKernel::CastSecondaryDirect]);
+    top.shade_pc_i = static_cast<SData>(setup.entries[RayKernel::Shade]);
+    write_tree(setup.tree);
+  }
+
+  // The frame begins in the cycle behind them.
+  void write_arguments() {
+    Vchip& top = design_.top();
+    top.argument_write_i = 1;
+    for (uint32_t index = 0; index < arguments_; ++index) {
+      top.argument_index_i = static_cast<CData>(index);
+      top.argument_data_i = setup_.arguments[index];
+      clock({});
+    }
+    top.argument_write_i = 0;
+    starts_ = true;
+  }
+
   void write_tree(const TreeSetup& tree) {
     Vchip& top = design_.top();
     top.tree_root_i = tree.root;
@@ -155,7 +173,7 @@ class RtlChip : public ChipDevice {
 
   void write_inputs(const ChipInputs& in) {
     Vchip& top = design_.top();
-    top.start_i = starts_;
+    top.start_i = starts_ || in.start;
     top.memory_request_ready_i = in.memory_request_ready;
     top.memory_beat_valid_i = in.memory_beat_valid;
     if (in.memory_beat_valid) write_beat(top.memory_beat_data_i, in.memory_beat_data);
@@ -186,6 +204,7 @@ class RtlChip : public ChipDevice {
 
   void read_outputs() {
     const Vchip& top = design_.top();
+    out_.ready = top.ready_o;
     out_.busy = top.busy_o;
     out_.memory_request_valid = top.memory_request_valid_o;
     if (out_.memory_request_valid) {
@@ -320,6 +339,7 @@ class RtlChip : public ChipDevice {
   VerilatedDesign<Vchip> design_{"chip"};
   const Wires& wires_ = *design_.top().rootp;
   DevicePorts device_{design_.top(), wires_};
+  FrameSetup setup_;
   bool starts_ = false;  // the next cycle begins a frame
   ChipOutputs out_;
 };

@@ -14,7 +14,7 @@ module chip_replay #(
   localparam integer SETUP_BITS = 16 + 32 + 16 + 16 + 8 + 1 + 4 * 16 + 32 + 2 * 96 + 3 * 26 + 32 + 105;
   localparam integer TRAVERSER_BITS = 1 + 2 + PLACE_BITS + 131 + 129 + 35 + 256;
   localparam integer IN_BITS = 1 + SETUP_BITS + 39 + 130 + 1 + TRAVERSER_BITS;
-  localparam integer OUT_BITS = 1 + 167 + 1 + 129 + 130 + PLACE_BITS + KINDS + 2 + 131 + 5 + 132 + 1 + TRAVERSER_BITS +
+  localparam integer OUT_BITS = 2 + 167 + 1 + 129 + 130 + PLACE_BITS + KINDS + 2 + 131 + 5 + 132 + 1 + TRAVERSER_BITS +
                                 30;
 
   reg clk = 1'b0;
@@ -43,7 +43,7 @@ module chip_replay #(
           tree_request_second, tree_request_address, tree_request_data} = in;
 
   // Outputs of the chip alone.
-  wire         busy, memory_request_valid, memory_request_traverser, memory_request_write, memory_beat_ready;
+  wire         ready, busy, memory_request_valid, memory_request_traverser, memory_request_write, memory_beat_ready;
   wire         frame_valid, fault_valid, tree_fault_valid;
   wire [31:0]  memory_request_address, frame_pixel;
   wire [127:0] memory_request_data;
@@ -59,7 +59,7 @@ module chip_replay #(
     .depth_limit_i(depth_limit), .reflections_i(reflections), .eye_pc_i(eye_pc), .secondary_pc_i(secondary_pc),
     .direct_pc_i(direct_pc), .shade_pc_i(shade_pc), .tree_root_i(tree_root), .tree_lower_i(tree_lower),
     .tree_upper_i(tree_upper), .triangles_line_i(triangles_line), .triangle_lines_i(triangle_lines),
-    .stacks_line_i(stacks_line), .material_base_i(material_base), .record_i(record), .busy_o(busy),
+    .stacks_line_i(stacks_line), .material_base_i(material_base), .record_i(record), .ready_o(ready), .busy_o(busy),
     .memory_request_valid_o(memory_request_valid), .memory_request_ready_i(memory_request_ready),
     .memory_request_traverser_o(memory_request_traverser), .memory_request_write_o(memory_request_write),
     .memory_request_address_o(memory_request_address), .memory_request_data_o(memory_request_data),
@@ -81,7 +81,7 @@ module chip_replay #(
     .tree_fault_line_o(tree_fault_line), .counter_unit_i(2'd0), .counter_select_i(6'd0));
 
   wire [OUT_BITS-1:0] actual = {
-    busy, memory_request_valid, memory_request_traverser, memory_request_write, memory_request_address,
+    ready, busy, memory_request_valid, memory_request_traverser, memory_request_write, memory_request_address,
     memory_request_data, memory_request_mask, memory_beat_ready, frame_valid, frame_pixel, frame_color,
     chip.ray_valid, chip.ray_last, chip.ray_place, chip.ray_data, chip.put_ready, chip.contribution_ready,
     chip.tree_request_ready, chip.tree_response_valid, chip.tree_response_beat, chip.tree_response_data,
@@ -96,7 +96,7 @@ module chip_replay #(
 
   task explain;
     begin
-      field("busy", 1); field("memory_request_valid", 1); field("memory_request_traverser", 1);
+      field("ready", 1); field("busy", 1); field("memory_request_valid", 1); field("memory_request_traverser", 1);
       field("memory_request_write", 1); field("memory_request_address", 32); field("memory_request_data", 128);
       field("memory_request_mask", 4); field("memory_beat_ready", 1);
       field("frame_valid", 1); field("frame_pixel", 32); field("frame_color", 96);

@@ -77,6 +77,13 @@ struct Frame {
     around.reflections = setup.reflections;
   }
 
+  /// Another picture, in the memory of this one.
+  void show(const Frame& next) {
+    picture = next.picture;
+    setup = next.setup;
+    around = next.around;
+  }
+
   Picture picture;
   FrameSetup setup;
   MemoryImage image;
@@ -105,13 +112,20 @@ struct Reached {
   }
 };
 
-/// Draws a frame to its end, and some cycles more; nothing may be lost.
+/// Draws a frame to its end, and some cycles more; nothing may be lost. `followed`: only until the chip is ready for
+/// the next frame.
 inline void draw(ChipDevice& chip, const Machine& machine, Frame& frame, const Traffic& traffic, uint32_t seed,
-                 Reached& reached) {
+                 Reached& reached, FrameBegin begin = FrameBegin::Reset, bool followed = false) {
   constexpr uint64_t kMost = 1'000'000;
   Surroundings around(chip, machine.configuration, frame.image.memory, frame.around, seed);
   around.setup = frame.setup;
-  chip.start(frame.setup);
+  ChipCounts before;
+  if (begin == FrameBegin::Reset) {
+    chip.start(frame.setup);
+  } else {
+    chip.start_next(frame.setup);
+    before = chip.counts();
+  }
   ASSERT_FALSE(chip.outputs().busy);
   ASSERT_NO_FATAL_FAILURE(around.cycle(traffic));
   while (chip.outputs().busy && around.cycles < kMost) {
@@ -121,11 +135,12 @@ inline void draw(ChipDevice& chip, const Machine& machine, Frame& frame, const T
   ASSERT_LT(around.cycles, kMost) << "the frame does not end";
   Traffic quiet = traffic;
   quiet.tree = quiet.frame = 0;
-  for (int i = 0; i < 3000; ++i) ASSERT_NO_FATAL_FAILURE(around.cycle(quiet));
+  for (int i = 0; i < 3000 && !(followed && chip.outputs().ready); ++i) ASSERT_NO_FATAL_FAILURE(around.cycle(quiet));
+  EXPECT_TRUE(chip.outputs().ready);
   EXPECT_TRUE(around.empty());
   EXPECT_EQ(around.eye, frame.picture.width * frame.picture.height);
   EXPECT_EQ(around.rays, around.freed);
-  const ChipCounts counts = chip.counts();
+  const ChipCounts counts = chip.counts() - before;
   EXPECT_EQ(counts.rays_taken, around.rays + around.dropped);
   EXPECT_EQ(counts.packages_taken, around.packages);
   EXPECT_EQ(around.requests, around.packages);

@@ -139,6 +139,39 @@ TEST_P(ChipLockstep, DrawsFramesWithoutADifference) {
   for (int unit = 0; unit < machine.units; ++unit) EXPECT_GT(reached.of_unit[unit], 50u) << unit;
 }
 
+// Of each frame the next one finds what it has left: counts that go on, places that are free in another order.
+TEST_P(ChipLockstep, DrawsFrameAfterFrameWithoutAReset) {
+  const Machine machine = GetParam()();
+  const Configuration& c = machine.configuration;
+  const uint32_t size = c.chip.held_limit > 1 ? 2 : 1;
+  const Picture pictures[] = {{3 * size, 2 * size, 2, true},
+                              {2 * size, 5 * size, 3, true},
+                              {1, 3 * size, 1, false},
+                              {4 * size, 3 * size, 4, true}};
+  const Traffic all[] = {{0, 0, 0, 1000, 1, 1, 1}, {3, 2, 40, 1000, 200, 30, 1}, {2, 5, 9, 3, 20, 60, 1}};
+  Reached reached;
+  Frame frame(machine, pictures[0]);
+  const std::unique_ptr<LockstepChip> chip =
+      make_lockstep_chip(c, load_rtl_chip(chip_library(machine), c, machine.units), frame.image.memory, c.name);
+  uint32_t seed = 0;
+  for (const Traffic& traffic : all) {
+    for (const Picture& picture : pictures) {
+      SCOPED_TRACE(testing::Message() << "seed " << seed << ", " << picture.width << " x " << picture.height);
+      frame.show(Frame(machine, picture));
+      try {
+        ASSERT_NO_FATAL_FAILURE(draw(*chip, machine, frame, traffic, seed, reached,
+                                     seed == 0 ? FrameBegin::Reset : FrameBegin::Next, seed % 3 != 2));
+      } catch (const LockstepDifference& difference) {
+        FAIL() << difference.what();
+      }
+      ++seed;
+    }
+  }
+  EXPECT_EQ(reached.frames, seed);
+  EXPECT_EQ(chip->lockstep_counts().differences, 0u);
+  EXPECT_GT(chip->lockstep_counts().counters, 0u);
+}
+
 INSTANTIATE_TEST_SUITE_P(Machines, ChipLockstep, testing::Values(smallest, full, slow),
                          [](const auto& machine) { return machine.param().configuration.name; });
 

@@ -48,6 +48,7 @@ class Surroundings {
   void cycle(const Traffic& traffic) {
     const ChipOutputs& out = chip_.outputs();
     ChipInputs in;
+    in.start = !out.ready && hasty_() % 16 == 0;  // which is refused
     serve_memory(out, in, traffic);
     in.frame_ready = traffic.frame != 0 ? one_of(traffic.frame) : !one_of(traffic.stall);
     frame += out.frame_valid && in.frame_ready;
@@ -274,6 +275,7 @@ class Surroundings {
   Memory& memory_;
   Scene scene_;
   Random random_;
+  Random hasty_{1};         // a host that asks for frames while one is drawn
   std::deque<Line> lines_;  // beats to come
   std::deque<Beat> tree_beats_;
   std::array<uint32_t, kRayWords> ray_{};

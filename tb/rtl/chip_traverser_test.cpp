@@ -2,6 +2,7 @@
 // but memories, frame buffer and host: all ports of all blocks in every cycle. The pictures are the native engine's.
 #include <gtest/gtest.h>
 
+#include <deque>
 #include <functional>
 #include <iostream>
 #include <memory>
@@ -16,6 +17,7 @@
 #include "machine/chip_model.hpp"
 #include "machine/model.hpp"
 #include "rtl/chip_frames.hpp"
+#include "rtl/next_frames.hpp"
 #include "rtl/traverser_frames.hpp"
 
 namespace raypool {
@@ -51,6 +53,46 @@ TEST_P(ChipTraverser, DrawsThePictureOfTheNativeEngineWithoutADifference) {
   EXPECT_EQ(counts.differences, 0u);
   EXPECT_GE(counts.counters, frames);
   EXPECT_GT(counts.memory_writes, 0u) << "no stack has been longer than what the traverser keeps of it";
+}
+
+/// Pictures of scenes that differ from one of the cornell box: in triangles, trees, materials, cameras and lights. The
+/// last one is that again.
+std::deque<Drawing> other_drawings(const Machine& machine) {
+  std::deque<Drawing> drawings;
+  for (const auto& [seed, triangles] : {std::pair{3u, 40u}, {4u, 3u}, {5u, 90u}})
+    drawings.emplace_back(machine, Picture{2 + seed, 9 - seed, 1 + seed % 3, true}, scene_of_chance(seed, triangles),
+                          seed == 5 ? 7 : 0);
+  drawings.emplace_back(machine, Picture{7, 5, 3, true}, make_cornell());
+  return drawings;
+}
+
+/// Draws all of them without a reset on the chip that make(memory) makes. `told(result)` of each but the first.
+template <typename Make, typename Told>
+void draw_one_after_another(const Machine& machine, const Make& make, const Told& told) {
+  Drawing first(machine, {7, 5, 3, true}, make_cornell());
+  first.memory().grow(first.memory().size() + kRoomForNext);
+  std::deque<Drawing> others = other_drawings(machine);
+  WaitingChip hasty(make(first.memory()), {}, 1);
+  first.expect_native(first.draw_on(hasty, FrameBegin::Reset, true));
+  draw_next(others, first.memory(), hasty, told);
+}
+
+TEST_P(ChipTraverser, DrawsOneTreeAfterAnotherWithoutAReset) {
+  const Machine machine = GetParam()();
+  const Configuration& c = machine.configuration;
+  const std::string library = chip_library(machine);
+  std::unique_ptr<LockstepChip> chip;
+  const auto make = [&](const Memory& memory) -> ChipDevice& {
+    chip = make_lockstep_chip(c, load_rtl_chip(library, c, machine.units), memory, c.name);
+    return *chip;
+  };
+  try {
+    draw_one_after_another(machine, make, [](const ChipResult&) {});
+  } catch (const LockstepDifference& difference) {
+    FAIL() << difference.what();
+  }
+  EXPECT_EQ(chip->lockstep_counts().differences, 0u);
+  EXPECT_GT(chip->lockstep_counts().counters, 0u);
 }
 
 // The Verilated chip as a module of SystemC, whose memories answer in a time of their own.
@@ -143,6 +185,10 @@ class BrokenTraverser : public ChipDevice {
     chip_->start(setup);
     out_ = chip_->outputs();
   }
+  void start_next(const FrameSetup& setup) override {
+    chip_->start_next(setup);
+    out_ = chip_->outputs();
+  }
   const ChipOutputs& outputs() const override { return out_; }
   void clock(const ChipInputs& inputs) override {
     chip_->clock(inputs);
@@ -233,6 +279,57 @@ TEST(ChipTraverser, WhoseFaultIsBrokenIsNamed) {
       broken("fault_line", [](TreeFault& fault) { return fault.valid && (fault.line ^= 1, true); }),
   };
   for (const BrokenPort& each : ports) expect_named(each, [](TreeImage& tree) { tree.memory.store(kFirstChild, 0); });
+}
+
+// A frame that is asked for while one is drawn is refused; what cannot change without a reset is, too.
+TEST(ChipTraverser, OnTheModelDrawsOneTreeAfterAnotherWithoutAReset) {
+  for (const auto machine_of : {smallest_inside, full_inside, crowded_inside}) {
+    const Machine machine = machine_of();
+    SCOPED_TRACE(machine.configuration.name);
+    std::unique_ptr<ChipDevice> chip;
+    const auto make = [&](const Memory& memory) -> ChipDevice& {
+      chip = model_of(machine, memory);
+      return *chip;
+    };
+    uint32_t frames = 0;
+    draw_one_after_another(machine, make, [&](const ChipResult& result) {
+      ++frames;
+      EXPECT_GT(result.cycles, 100u);
+    });
+    EXPECT_EQ(frames, 4u);
+    ASSERT_TRUE(chip->outputs().ready);
+    FrameSetup setup;
+    setup.program_length = 1;
+    EXPECT_THROW(chip->start_next(setup), std::logic_error);
+  }
+}
+
+TEST(ChipTraverser, OnTheModelIsReadyForAFrameOnlyWhenNothingOfAnotherIsLeft) {
+  const Machine machine = full_inside();
+  Drawing drawing(machine, {9, 7, 3, true}, make_cornell());
+  const std::unique_ptr<ChipDevice> chip = model_of(machine, drawing.memory());
+  chip::FixedLatencyStore store(drawing.memory(), &drawing.tree().memory, machine.configuration.chip.memory_latency);
+  chip::Board board(drawing.options(), *chip, store);
+  EXPECT_TRUE(chip->outputs().ready);
+  uint64_t frames = 0, waited = 0;
+  for (bool busy = false; !board.ended(); busy = chip->outputs().busy) {
+    board.clock();
+    const ChipOutputs& out = chip->outputs();
+    frames += !busy && out.busy;
+    waited += !out.busy && !out.ready;
+    if (!out.ready) continue;
+    ASSERT_FALSE(out.busy || out.frame_valid || out.memory_request_valid || out.tree_response_valid);
+    ASSERT_TRUE(out.device.idle && out.rays == 0);
+  }
+  EXPECT_EQ(frames, 1u);
+  EXPECT_GT(waited, 0u) << "nothing was left when the frame was done";
+  EXPECT_TRUE(chip->outputs().ready);
+  ChipInputs inputs;
+  inputs.start = true;  // the same frame again
+  chip->clock(inputs);
+  EXPECT_TRUE(chip->outputs().busy);
+  EXPECT_FALSE(chip->outputs().ready);
+  EXPECT_THROW(chip->start_next({}), std::logic_error);
 }
 
 TEST(ChipTraverser, OnTheModelDrawsThePictureOfTheNativeEngine) {

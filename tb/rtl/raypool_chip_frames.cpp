@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <deque>
 #include <filesystem>
 #include <fstream>
 #include <initializer_list>
@@ -27,6 +28,7 @@
 #include "machine/model.hpp"
 #include "random.hpp"
 #include "rtl/chip_frames.hpp"
+#include "rtl/next_frames.hpp"
 #include "rtl/traverser_frames.hpp"
 
 namespace raypool {
@@ -42,6 +44,7 @@ struct Case {
   // With the traverser inside, in place of the traffic. `tree`: of a bad one; 0: the scene's own.
   uint32_t triangles = 0, tree = 0;
   WaitingChip::Waits waits;
+  std::vector<Case> after;  ///< frames that follow it without a reset, amid what is around this one
 };
 
 bool is_inside(const Machine& machine) { return has_traverser(machine.configuration.chip); }
@@ -59,6 +62,11 @@ std::string to_string(const Case& c, const Machine& machine) {
       "{}, frame {}",
       c.picture.width, c.picture.height, c.picture.depth, c.picture.reflections ? "reflections" : "no reflections",
       t.stall, t.gap, t.tree, t.inside, t.cycles, t.latency, t.burst, t.frame);
+}
+
+/// With what follows.
+std::string described(const Case& c, const Machine& machine) {
+  return to_string(c, machine) + (c.after.empty() ? "" : fmt::format("; {} more without a reset", c.after.size()));
 }
 
 Case case_of(uint32_t seed, uint32_t machine, uint32_t frame) {
@@ -92,11 +100,36 @@ Case inside_case_of(uint32_t seed, uint32_t machine, uint32_t frame) {
   return c;
 }
 
+/// With the frames that follow it: none, one or two.
+Case with_followers(Case c, uint32_t seed, uint32_t machine, uint32_t frame,
+                    Case (*any)(uint32_t, uint32_t, uint32_t)) {
+  std::seed_seq all{seed, machine, frame, 1u};
+  Random random(all);
+  for (uint32_t more = random() % 4 / 2 + random() % 4 / 3; more > 0; --more) {
+    c.after.push_back(any(random(), machine, frame));
+    Case& next = c.after.back();
+    next.picture.width = std::min(next.picture.width, 4u);
+    next.picture.height = std::min(next.picture.height, 3u);
+    if (random() % 4 == 0) next.picture = c.picture;
+  }
+  return c;
+}
+
 /// Of frames that held.
 struct Drawn {
   Reached reached;
   uint64_t cycles = 0, rays = 0;
 };
+
+/// Draws the frames that follow one in its memories, each as soon as the chip is ready for it, and their scenes are
+/// others. Returns how many.
+uint32_t draw_followers(const Case& c, const Machine& machine, Drawing& first, ChipDevice& chip) {
+  std::deque<Drawing> drawings;
+  for (const Case& next : c.after)
+    drawings.emplace_back(machine, next.picture, scene_of_chance(next.seed, next.triangles), next.tree);
+  draw_next(drawings, first.memory(), chip, [](const ChipResult&) {});
+  return size32(drawings);
+}
 
 /// As failure_of(), with the traverser inside.
 std::string failure_inside(const Case& c, const Machine& machine, const std::string& library, Drawn& drawn) {
@@ -106,8 +139,10 @@ std::string failure_inside(const Case& c, const Machine& machine, const std::str
         make_lockstep_chip(machine.configuration, load_rtl_chip(library, machine.configuration, machine.units),
                            drawing.memory(), machine.configuration.name);
     WaitingChip waiting(*chip, c.waits, c.seed);
-    const ChipResult result = drawing.draw_on(waiting);
+    if (!c.after.empty()) drawing.memory().grow(drawing.memory().size() + kRoomForNext);
+    const ChipResult result = drawing.draw_on(waiting, FrameBegin::Reset, !c.after.empty());
     drawing.expect_native(result);
+    drawn.reached.frames += draw_followers(c, machine, drawing, waiting);
     if (chip->lockstep_counts().counters == 0) return "the counters were not compared";
     drawn.cycles += chip->lockstep_counts().cycles;
     drawn.rays += chip->lockstep_counts().rays;
@@ -122,6 +157,15 @@ std::string failure_inside(const Case& c, const Machine& machine, const std::str
   return "";
 }
 
+/// Without a traverser inside: draws it, and the frames that follow it.
+void draw_frames(const Case& c, ChipDevice& chip, const Machine& machine, Frame& frame, Reached& reached) {
+  draw(chip, machine, frame, c.traffic, c.seed, reached, FrameBegin::Reset, !c.after.empty());
+  for (const Case& next : c.after) {
+    frame.show(Frame(machine, next.picture));
+    draw(chip, machine, frame, next.traffic, next.seed, reached, FrameBegin::Next, &next != &c.after.back());
+  }
+}
+
 /// Draws it on a device of its own. Returns what went wrong; empty: nothing.
 std::string failure_of(const Case& c, const Machine& machine, const std::string& library, Drawn& drawn) {
   if (is_inside(machine)) return failure_inside(c, machine, library, drawn);
@@ -130,7 +174,7 @@ std::string failure_of(const Case& c, const Machine& machine, const std::string&
     const std::unique_ptr<LockstepChip> chip =
         make_lockstep_chip(machine.configuration, load_rtl_chip(library, machine.configuration, machine.units),
                            frame.image.memory, machine.configuration.name);
-    draw(*chip, machine, frame, c.traffic, c.seed, drawn.reached);
+    draw_frames(c, *chip, machine, frame, drawn.reached);
     drawn.cycles += chip->lockstep_counts().cycles;
     drawn.rays += chip->lockstep_counts().rays;
     if (chip->lockstep_counts().counters == 0) return "the counters were not compared";
@@ -156,16 +200,18 @@ void record(const Case& c, const Machine& machine, const std::string& folder) {
     Drawing drawing(machine, c.picture, scene_of_chance(c.seed, c.triangles), c.tree);
     draw_on(drawing.memory(), [&](ChipDevice& chip) {
       WaitingChip waiting(chip, c.waits, c.seed);
-      drawing.expect_native(drawing.draw_on(waiting));
+      if (!c.after.empty()) drawing.memory().grow(drawing.memory().size() + kRoomForNext);
+      drawing.expect_native(drawing.draw_on(waiting, FrameBegin::Reset, !c.after.empty()));
+      draw_followers(c, machine, drawing, waiting);
     });
   } else {
     Frame frame(machine, c.picture);
     Reached reached;
-    draw_on(frame.image.memory, [&](ChipDevice& chip) { draw(chip, machine, frame, c.traffic, c.seed, reached); });
+    draw_on(frame.image.memory, [&](ChipDevice& chip) { draw_frames(c, chip, machine, frame, reached); });
   }
   for (std::ofstream* file : {&vectors, &parameters})
     if (!file->flush()) throw InputError(fmt::format("{}: the recording cannot be written there", folder));
-  fmt::print("{}, {} units: {}\n", configuration.name, machine.units, to_string(c, machine));
+  fmt::print("{}, {} units: {}\n", configuration.name, machine.units, described(c, machine));
 }
 
 /// The smallest picture, of fewest triangles, of those tried that still fails.
@@ -178,6 +224,10 @@ Case shrunk(Case c, const Machine& machine, const std::string& library) {
         cases.push_back(from);
         cases.back().picture.*size = value;
       }
+    }
+    for (size_t without = 0; without < from.after.size(); ++without) {
+      cases.push_back(from);
+      cases.back().after.erase(cases.back().after.begin() + static_cast<std::ptrdiff_t>(without));
     }
     for (const uint32_t triangles : {from.triangles / 2, from.triangles - 1}) {
       if (from.triangles <= 1) break;
@@ -239,7 +289,8 @@ int run(const Options& options) {
   if (options.machine > last)
     throw InputError(fmt::format("--machine is {}; there are machines 1 to {}", options.machine, last));
   const auto case_on = [&](uint32_t number, uint32_t frame) {
-    return number > outside ? inside_case_of(options.seed, number, frame) : case_of(options.seed, number, frame);
+    const auto any = number > outside ? inside_case_of : case_of;
+    return with_followers(any(options.seed, number, frame), options.seed, number, frame, any);
   };
   if (!options.record.empty()) {
     record(case_on(options.machine, options.frame), machines[options.machine - 1], options.record);
@@ -272,8 +323,8 @@ int run(const Options& options) {
       fmt::print(
           "{}, {} units, frame {}: {}\n{}\nthe smallest that fails: {}\n"
           "again with: {} --seed {} --frames {} --machine {} --frame {}\n",
-          machine.configuration.name, machine.units, frame, to_string(c, machine), failure,
-          to_string(shrunk(c, machine, library), machine), options.program, options.seed, options.frames, number,
+          machine.configuration.name, machine.units, frame, described(c, machine), failure,
+          described(shrunk(c, machine, library), machine), options.program, options.seed, options.frames, number,
           frame);
     }
     fmt::print("{}, {} units: {} frames, {} cycles, {} rays, {}; built in {:.0f} s, ran {:.0f} s\n",

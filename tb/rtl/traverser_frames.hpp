@@ -172,7 +172,21 @@ class Drawing {
   Memory& memory() { return image_.memory; }
   const ChipOptions& options() const { return options_; }
   TreeImage& tree() { return tree_; }
-  ChipResult draw_on(ChipDevice& chip) { return run_board(options_, chip); }
+  /// It stands in the memory of a chip that has drawn other pictures: as large, and overwritten with this one's.
+  void stand_in(Memory& memory) {
+    image_.memory.grow(memory.size());
+    ASSERT_EQ(memory.size(), image_.memory.size());
+    memory = image_.memory;
+    options_.memory = &memory;
+  }
+  /// `followed`: until the chip is ready for the next frame.
+  ChipResult draw_on(ChipDevice& chip, FrameBegin begin = FrameBegin::Reset, bool followed = false) {
+    if (!followed) return run_board(options_, chip, begin);
+    chip::FixedLatencyStore store(*options_.memory, &tree_.memory, configuration_.chip.memory_latency);
+    chip::Board board(options_, chip, store, begin);
+    while (!board.may_be_followed()) board.clock();
+    return board.result();
+  }
 
   /// What has been drawn, and said of it, is what the native engine does and says.
   void expect_native(const ChipResult& result) const {
@@ -227,12 +241,17 @@ class WaitingChip : public ChipDevice {
     chip_.start(setup);
     decide();
   }
+  void start_next(const FrameSetup& setup) override {
+    chip_.start_next(setup);
+    decide();
+  }
   const ChipOutputs& outputs() const override { return out_; }
   void clock(const ChipInputs& inputs) override {
     ChipInputs given = inputs;
     given.memory_request_ready &= !request_waits_;
     given.memory_beat_valid &= !beat_waits_;
     given.frame_ready &= !frame_waits_;
+    given.start |= !chip_.outputs().ready && hasty_() % 16 == 0;  // which is refused
     const ChipOutputs::Outcome& outcome = chip_.outputs().outcome;
     deep += outcome.valid && outcome.deep;
     black += outcome.valid && !outcome.kept && !outcome.deep;
@@ -258,6 +277,7 @@ class WaitingChip : public ChipDevice {
   }
 
   ChipDevice& chip_;
+  Random hasty_{1};  // a host that asks for frames while one is drawn
   Waits waits_;
   Random random_;
   bool request_waits_ = false, beat_waits_ = false, frame_waits_ = false;

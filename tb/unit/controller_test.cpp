@@ -42,6 +42,8 @@ class RandomChip {
   RandomChip(const ChipConfiguration& chip, uint32_t units, bool reflections, std::mt19937& random, uint32_t pace)
       : chip_(chip), reflections_(reflections), random_(random), pace_(pace), units_(units) {}
 
+  void next(bool reflections) { reflections_ = reflections; }
+
   /// What happens in a cycle.
   struct Events {
     bool ray = false, shadow = false, contribution = false;
@@ -194,7 +196,7 @@ struct Reached {
   uint64_t wrapped = 0;  ///< times that a unit's count of exports began anew
 };
 
-/// A frame that the class draws on such a chip.
+/// Frames that the class draws on such a chip, one after the other.
 template <typename M>
 struct Frame {
   const ChipConfiguration around = M::chip();
@@ -202,7 +204,7 @@ struct Frame {
   Controller controller;
   TimedTiles tiles;
   Controller::Launch launch;  ///< that is offered in cycle launch_at
-  uint64_t launch_at = 0, decide_from = 0, ended_at = UINT64_MAX;
+  uint64_t begun_at = 0, launch_at = 0, decide_from = 0, ended_at = UINT64_MAX;
   uint32_t pixels = 0;  ///< that have been cast
 
   Frame(uint32_t width, uint32_t height, bool reflections, uint32_t pace, std::mt19937& random)
@@ -211,6 +213,15 @@ struct Frame {
                    M::policy(reflections)),
         tiles(M::walk(), width, height) {}
 
+  /// The next one begins in this cycle, without a reset.
+  void begin_next(uint64_t cycle, uint32_t width, uint32_t height, bool reflections) {
+    chip.next(reflections);
+    controller.begin(reflections, M::policy(reflections));
+    tiles = TimedTiles(M::walk(), width, height, cycle);
+    begun_at = decide_from = cycle;
+    ended_at = UINT64_MAX;
+    pixels = 0;
+  }
   bool ended() const { return ended_at != UINT64_MAX; }
   void take_launch(uint64_t cycle, uint32_t unit) {
     if (launch.import != ImportKind::None) chip.reserve(launch.import, launch.threads);
@@ -259,19 +270,46 @@ class Bench {
  public:
   explicit Bench(uint32_t seed) : bench_(seed) {}
 
+  struct Size {
+    uint32_t width, height;
+    bool reflections;
+  };
   /// Draws a frame. `pace`: each part of the chip does something once in so many cycles in the mean.
   void draw(uint32_t width, uint32_t height, bool reflections, uint32_t pace) {
-    Frame frame(width, height, reflections, pace, bench_.random);
-    reset(width, height, reflections);
-    RandomChip::Events before;  // in the cycle before
-    constexpr uint64_t kMost = 2'000'000;
+    draw({{width, height, reflections}}, pace);
+  }
+  /// The first one after a reset, the others without.
+  void draw(const std::vector<Size>& sizes, uint32_t pace) {
+    const Size& first = sizes.front();
+    Frame frame(first.width, first.height, first.reflections, pace, bench_.random);
+    reset();
     uint64_t cycle = 0;
-    for (; cycle < kMost && (!frame.ended() || cycle < frame.ended_at + 3); ++cycle) {
+    for (const Size& size : sizes) {
+      if (cycle != 0) frame.begin_next(cycle, size.width, size.height, size.reflections);
+      const uint64_t begun = cycle;
+      ASSERT_NO_FATAL_FAILURE(draw(frame, size, cycle));
+      ++reached.frames;
+      reached.cycles += cycle - begun;
+    }
+    count(frame.chip);
+  }
+  uint32_t below(uint32_t limit) { return static_cast<uint32_t>(bench_.random()) % limit; }
+
+  Reached reached;
+
+ private:
+  void draw(Frame& frame, const Size& size, uint64_t& cycle) {
+    show(size);
+    RandomChip::Events before;  // in the cycle before
+    const uint64_t most = cycle + 2'000'000;
+    const uint32_t after = 3 + below(20);  // cycles until the next one begins
+    for (; cycle < most && (!frame.ended() || cycle < frame.ended_at + after); ++cycle) {
       const bool ready = frame.chip.ready();
       const uint32_t unit = ready ? frame.chip.next_unit() : 0;
       const bool offered = frame.launch && cycle == frame.launch_at;
-      show(cycle, frame.chip, before, ready, unit);
-      const bool busy = cycle != 0 && cycle < frame.ended_at;
+      show(frame.chip, before, ready, unit);
+      u_.start_i = cycle == frame.begun_at;
+      const bool busy = cycle > frame.begun_at && cycle < frame.ended_at;
       ASSERT_NO_FATAL_FAILURE(compare(cycle, offered ? &frame.launch : nullptr, frame.tiles, busy));
       const RandomChip::Events events = frame.chip.step(cycle);
       ASSERT_TRUE(ready || !offered);
@@ -285,26 +323,22 @@ class Bench {
       before = events;
       clock(events, frame.chip);
     }
-    ASSERT_LT(cycle, kMost) << "the frame does not end";
-    EXPECT_EQ(frame.pixels, width * height);
+    ASSERT_LT(cycle, most) << "the frame does not end";
+    EXPECT_EQ(frame.pixels, size.width * size.height);
     EXPECT_EQ(frame.controller.rays_to_come(), 0u);
-    count(frame.chip, cycle);
   }
-  uint32_t below(uint32_t limit) { return static_cast<uint32_t>(bench_.random()) % limit; }
-
-  Reached reached;
-
- private:
-  void reset(uint32_t width, uint32_t height, bool reflections) {
+  void reset() {
     u_.rst_ni = 0;
     u_.start_i = 0;
     u_.kernel_done_i = 0;
     u_.outcome_valid_i = u_.exported_valid_i = 0;
     bench_.clock();
     u_.rst_ni = 1;
-    u_.width_i = width;
-    u_.height_i = height;
-    u_.reflections_i = reflections;
+  }
+  void show(const Size& size) {
+    u_.width_i = size.width;
+    u_.height_i = size.height;
+    u_.reflections_i = size.reflections;
     u_.eye_pc_i = kEyePc;
     u_.secondary_pc_i = kSecondaryPc;
     u_.direct_pc_i = kDirectPc;
@@ -312,8 +346,7 @@ class Bench {
   }
 
   // Levels and what has left are those of the cycle before.
-  void show(uint64_t cycle, const RandomChip& chip, const RandomChip::Events& before, bool ready, uint32_t unit) {
-    u_.start_i = cycle == 0;
+  void show(const RandomChip& chip, const RandomChip::Events& before, bool ready, uint32_t unit) {
     u_.launch_ready_i = ready;
     u_.launch_unit_i = unit;
     u_.rays_i = chip.levels().rays;
@@ -359,9 +392,7 @@ class Bench {
     bench_.clock();
   }
 
-  void count(const RandomChip& chip, uint64_t cycles) {
-    ++reached.frames;
-    reached.cycles += cycles;
+  void count(const RandomChip& chip) {
     reached.overlapped += chip.overlapped;
     reached.dropped += chip.dropped;
     reached.late += chip.late;
@@ -417,6 +448,18 @@ TYPED_TEST(ControllerInVerilog, AgreesWithItsClassInEveryCycle) {
   if (chip.shading == Shading::Kernel) {
     EXPECT_GT(reached.shade, 100u);
   }
+}
+
+TYPED_TEST(ControllerInVerilog, DrawsFrameAfterFrameWithoutAReset) {
+  Bench<TypeParam> bench(5);
+  for (uint32_t run = 0; run < 12; ++run) {
+    SCOPED_TRACE(testing::Message() << "run " << run);
+    std::vector<typename Bench<TypeParam>::Size> sizes;
+    for (uint32_t frame = 0; frame < 5; ++frame)
+      sizes.push_back({1 + bench.below(20), 1 + bench.below(20), bench.below(3) != 0});
+    ASSERT_NO_FATAL_FAILURE(bench.draw(sizes, 1 + run % 4));
+  }
+  EXPECT_EQ(bench.reached.frames, 60u);
 }
 
 // As many packages of each unit as it takes: the narrower the count the smaller the picture.

@@ -192,6 +192,7 @@ class Bench {
     ASSERT_EQ(u_.traverser_request_ready_o, port_.traverser_room());
     ASSERT_EQ(u_.memory_beat_ready_o, port_.beat_ready());
     for (uint32_t unit = 0; unit < kUnits; ++unit) ASSERT_EQ(u_.quiet_o >> unit & 1, quiet_[unit]) << unit;
+    ASSERT_EQ(u_.idle_o, port_.idle());
   }
   void check_offer() {
     ASSERT_EQ(u_.memory_request_valid_o, port_.offers());

@@ -93,9 +93,37 @@ class Bench {
     EXPECT_TRUE(cache_.idle());
     EXPECT_EQ(cache_.busy(), 0u);
   }
+  /// A reset in front of another tree, whatever is looked up or waits: nothing is on its way then, but for a line that
+  /// comes in the cycle of the reset. What the memory has is another thing from then on.
+  void restart(Traffic traffic) {
+    traffic.leave_request = 1;
+    const bool fill = bench_.one_of(2);
+    for (uint32_t i = 0; on_way_.size() > (fill ? 1 : 0); ++i) {
+      ASSERT_LT(i, 5000u) << "lines do not come";
+      ASSERT_NO_FATAL_FAILURE(clock(traffic));
+    }
+    const bool comes = !on_way_.empty();
+    u_.rst_ni = 0;
+    drive(comes, comes ? on_way_.front().id : 0, comes ? line_data(on_way_.front().line) : 0, bench_.one_of(2),
+          bench_.one_of(2));
+    bench_.clock();
+    u_.rst_ni = 1;
+    restarts_with_fill += comes ? 1 : 0;
+    busy_at_restart += cache_.busy() != 0 ? 1 : 0;
+    for (const auto& [who, line] : wanted_) free_[who.first].push_back(who.second);
+    for (uint32_t lane = 0; looks_ && lane < P::kLanes; ++lane)
+      if ((lookup_.lanes >> lane & 1) != 0) free_[lane].push_back(lookup_.slots[lane]);
+    cache_ = TreeCache(P::kSizes);
+    wanted_.clear();
+    asked_.clear();
+    on_way_.clear();
+    looks_ = fill_waits_ = false;
+    tree_ += 0x10001;
+  }
   const TreeCache::Work& work() const { return cache_.work(); }
 
   uint64_t lookups = 0, given = 0, shared = 0, late_fills = 0, blocked = 0, most_on_way = 0;
+  uint64_t restarts_with_fill = 0, busy_at_restart = 0;
 
  private:
   using Line = uint32_t;  // data that tells it from others, DATA_BITS are 32
@@ -104,7 +132,7 @@ class Bench {
   };
 
   bool one_of(uint32_t n) { return n != 0 && bench_.one_of(n); }
-  static Line line_data(uint32_t line) { return line * 2654435761u + 12345; }
+  Line line_data(uint32_t line) const { return line * 2654435761u + tree_; }
 
   void offer_lookup(const Traffic& traffic) {
     if (!one_of(traffic.lookup)) return;
@@ -184,6 +212,7 @@ class Bench {
   typename P::Verilated& u_ = *bench_.u;
   TreeCache cache_{P::kSizes};
   uint64_t cycle_ = 0;
+  uint32_t tree_ = 12345;                                     // that the memory has
   std::map<uint32_t, std::deque<uint32_t>> free_;             // [lane] slots that wait for nothing
   std::map<std::pair<uint32_t, uint32_t>, uint32_t> wanted_;  // [lane, slot] line
   TreeCache::Lookup lookup_;                                  // that is offered
@@ -229,6 +258,27 @@ TYPED_TEST(TreeCacheTest, AgreesWithItsClassInEveryCycle) {
     EXPECT_GT(shared, 1000u);
     EXPECT_GT(joined, 1000u);
   }
+}
+
+TYPED_TEST(TreeCacheTest, HasNoLineOfTheTreeBeforeBehindAReset) {
+  constexpr uint32_t kLines = TypeParam::kSizes.lines;
+  uint64_t with_fill = 0, busy = 0, given = 0;
+  for (uint32_t seed = 1; seed <= 3; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    Bench<TypeParam> bench(seed);
+    for (uint32_t tree = 0; tree < 120; ++tree) {
+      const Traffic all[] = {{1, 0, 0, 1, 2 * kLines, 3}, {1, 3, 2, 4, kLines, 2}, {1, 2, 0, 9, 4 * kLines, 0}};
+      const Traffic& traffic = all[tree % 3];
+      for (uint32_t i = 0; i < 100 + 2 * kLines; ++i) ASSERT_NO_FATAL_FAILURE(bench.clock(traffic));
+      ASSERT_NO_FATAL_FAILURE(bench.restart(traffic));
+    }
+    with_fill += bench.restarts_with_fill;
+    busy += bench.busy_at_restart;
+    given += bench.given;
+  }
+  EXPECT_GT(with_fill, 50u);
+  EXPECT_GT(busy, 100u);
+  EXPECT_GT(given, 1000u);
 }
 
 }  // namespace

@@ -5,7 +5,8 @@
 //   number, CYCLES_PER_BEAT cycles apart at least; no more than LINES lines are on their way
 // @proves nobody starves: while lines may be on their way, the next request is offered within 4 CYCLES_PER_BEAT cycles,
 //   and a beat that is there is handed on within CYCLES_PER_BEAT
-// @proves a unit is quiet if and only if none of its requests waits or is on its way
+// @proves a unit is quiet if and only if none of its requests waits or is on its way, and the port is idle if and only
+//   if nobody's does
 // @parameters QUEUE=1 TRAVERSER_QUEUE=1 CYCLES_PER_BEAT=2 LINES=1
 // @parameters QUEUE=1 TRAVERSER_QUEUE=1 CYCLES_PER_BEAT=1 LINES=1
 // @break memory_port s/lines_left = lines_q != .*;/lines_left = 1'b1;/
@@ -13,6 +14,8 @@
 // @break memory_port s/push_i\(serve_line\), .data_i\(\{traverser_turn/push_i(serve_line), .data_i({traverser_waits/
 // @break memory_port s/line_ends = hand_on && beat_q == 2'd3/line_ends = hand_on \&\& beat_q == 2'd2/
 // @break memory_port s/read_ends = line_ends/read_ends = hand_on/
+// @break memory_port s/came_q == went_q && lines_q == .LINES_BITS.1'b0.. &&/came_q == went_q \&\&/
+// @break memory_port s/came_q == went_q && lines_q/lines_q/
 // @break memory_port s/write_ends = written/write_ends = serve_device \&\& write/
 // @break memory_port s/unit_q <= device_id/unit_q <= device_request_id_i/
 // @break memory_port s/else if \(wait_q != /else if (memory_request_ready_i \&\& wait_q != /
@@ -28,7 +31,7 @@ module check #(
   always @(posedge clk_i) rst_n <= 1'b1;
   localparam LINE = 4 * CYCLES_PER_BEAT;
 
-  wire device_ready, traverser_ready, device_back, traverser_back, memory_valid, of_traverser, write, beat_ready;
+  wire idle, device_ready, traverser_ready, device_back, traverser_back, memory_valid, of_traverser, write, beat_ready;
   wire [6:0] back_id;
   wire [1:0] device_beat, traverser_beat;
   wire [127:0] device_data, traverser_data, data;
@@ -51,7 +54,7 @@ module check #(
     .memory_request_ready_i(memory_ready), .memory_request_traverser_o(of_traverser), .memory_request_write_o(write),
     .memory_request_address_o(address), .memory_request_data_o(data), .memory_request_mask_o(mask),
     .memory_beat_valid_i(beat_valid), .memory_beat_ready_o(beat_ready), .memory_beat_data_i({127'd0, beat_bit}),
-    .quiet_o(quiet), .reads_o(unused[47:0]), .writes_o(unused[95:48]), .busy_cycles_o(unused[143:96]));
+    .quiet_o(quiet), .idle_o(idle), .reads_o(unused[47:0]), .writes_o(unused[95:48]), .busy_cycles_o(unused[143:96]));
 
   wire from_device = rst_n && device_valid && device_ready;
   wire from_traverser = rst_n && traverser_valid && traverser_ready;
@@ -141,6 +144,7 @@ module check #(
       assert (idle_q <= LINE);
       assert (beat_idle_q <= CYCLES_PER_BEAT);
       assert (quiet[chosen_q] == (pending_q == 0));
+      assert (idle == (accesses_q == 0 && beats_q == 0));
     end
   end
 endmodule

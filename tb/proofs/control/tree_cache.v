@@ -1,13 +1,20 @@
 // A cache of two sets of two ways with two registers, asked by two lanes. The memory answers requests in any order,
-// after any time; of a line it holds one bit.
+// after any time; of a line it holds one bit. A reset may come in any cycle in which nothing is on its way, or in which
+// the last line comes, and behind it the memory holds something else.
 // @modules tree_cache round_robin ram_queue ram_1r1w
 // @zeros
 // @proves whoever is given a line has asked for one, and it is that one, as the memory holds it; a line is asked for
 //   by one register at a time, and a register that is asked for is free; an offer stays until it is taken, and is to a
 //   lane that waits
+// @proves behind a reset nobody is given a line as the memory held it before
 // @proves nobody is forgotten: while the memory owes nothing and lanes take what they are offered, who has asked is
 //   given the line, and the cache takes lookups again, within 9 cycles
 // @break tree_cache s/set_valid\[w\] && tags/tags/
+// @break tree_cache s/if \(!rst_ni\) valid_q <= \{LINES\{1'b0\}\};/if (!rst_ni) valid_q <= valid_q;/
+// @break tree_cache s/if \(!rst_ni\) valid_q <= \{LINES\{1'b0\}\};/if (!rst_ni) valid_q <= valid_q \& 4'b1010;/
+// @break tree_cache s/if \(!rst_ni\) valid_q <= \{LINES\{1'b0\}\};/if (!rst_ni \&\& !fill) valid_q <= 0;/
+// @break tree_cache s/if \(!rst_ni\) serving_q/if (1'b0) serving_q/
+// @break tree_cache s/if \(!rst_ni\) given_lanes_o <= NO_LANE;\s*else //
 // @break tree_cache s/if \(hits\[w\]\) hit_way = hit_way \| w/if (hits[w]) hit_way = hit_way | ~w/
 // @break tree_cache s/locked\[mshr_way_q\[m\*WAY_BITS \+: WAY_BITS\]\] = 1'b1/locked = locked/
 // @break tree_cache s/asked && !\(last && \(known \|\| room\)\)/1'b0/
@@ -22,11 +29,16 @@
 // @break tree_cache s/read_q \? read_row_q : \{set, hit_way\}/{set, hit_way}/
 `default_nettype none
 module check (
-  input wire clk_i, valid, takes, memory_ready, comes, come_id,
+  input wire clk_i, restart, valid, takes, memory_ready, comes, come_id,
   input wire [2:0] line, input wire [1:0] lanes);
-  reg rst_n = 1'b0;
-  always @(posedge clk_i) rst_n <= 1'b1;
-  (* anyconst *) wire [7:0] memory;              // each line's bit
+  reg begun_q = 1'b0, later_q = 1'b0;
+  always @(posedge clk_i) begin
+    begun_q <= 1'b1;
+    later_q <= later_q ^ restart;
+  end
+  wire rst_n = begun_q && !restart;
+  (* anyconst *) wire [7:0] one_tree, other_tree;
+  wire [7:0] memory = later_q ? other_tree : one_tree;   // each line's bit
 
   wire ready, data, offers, asks, ask_id, fill_ready;
   wire [1:0] given, given_slots, offer_lane;
@@ -68,6 +80,11 @@ module check (
       line_q[ask_id] <= ask_line;
     end
     if (filled) owed_q[come_id] <= 1'b0;
+    if (!rst_n) begin
+      waits_q <= 2'd0;
+      owed_q <= 2'd0;
+      {idle_q[0], idle_q[1], busy_q} <= 15'd0;
+    end
     taken_q <= (rst_n && offers && takes) ? offer_lane : 2'd0;
     {offered_q, offered_lane_q} <= {rst_n && offers && !takes, offer_lane};
     {blocked_q, come_id_q} <= {rst_n && comes && !fill_ready, come_id};
@@ -75,6 +92,7 @@ module check (
 
   always @* begin
     assume (!comes || owed_q[come_id]);
+    assume (!restart || owed_q == 2'd0 || (comes && owed_q == 2'd1 << come_id));
     assume (!blocked_q || (comes && come_id == come_id_q));
     assume (!(looks && |(lanes & waits_q)));
     assume (!(offers && takes && looks && |(offer_lane & lanes)));
