@@ -32,6 +32,9 @@ expect "so it is with the features of best" 0 "" verilator --lint-only --default
   -GSLW_DEPTH=13 -GFLT_DEPTH=5 -GFMA=1 "$folder"/rtl/*.vlt "$folder"/rtl/*.v
 expect "mistakes are noticed, and without one the unit agrees" 0 "no mistake: 40 programs agree" \
   "$faults" "$folder" --programs 40 --only 16 21 44 79 96
+# Each of these once led to another file: of the block beside it, or of the one above.
+expect "reports name the right file first or second" 0 "the first or the second: 9 of 9" \
+  "$faults" "$folder" --programs 60 --only 6 10 11 13 28 33 67 81 88
 expect "a survivor is an error" 1 "NOT JUDGED" "$faults" "$folder" --programs 1 --only 160
 expect "a bench that is not there is an error" 1 "there is no bench" \
   "$faults" "$folder" --programs 1 --only 160 --benches "$folder/nowhere"

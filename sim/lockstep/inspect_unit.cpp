@@ -168,6 +168,14 @@ void UnitInspection::check_launch() {
     expect(w_.start_lanes.flag(thread), thread < started.threads, "rtl/launcher.v", "lane that is started");
 }
 
+// The guard looks at what the ALU has taken and made; which of an instruction's operands and lanes that is, and when,
+// the ALU says.
+std::string UnitInspection::subnormal_files(uint32_t warp) const {
+  const DecodedInstruction* instruction = warp < warps_ ? model_->issue(warp).instruction : nullptr;
+  if (instruction == nullptr || !instruction->legal()) return "rtl/subnormal_guard.v, rtl/warp.v";
+  return fmt::format("rtl/{}_alu.v, rtl/subnormal_guard.v", alu_info(instruction->alu()).name);
+}
+
 void UnitInspection::check_faults() {
   const Fault& expected = model_->outputs().fault;
   Fault rtl;
@@ -180,15 +188,26 @@ void UnitInspection::check_faults() {
   const bool of_alu = code >= FaultCode::Misaligned && code <= FaultCode::RayWordOutside;
   const bool raised =
       of_alu ? alu_fault_ : (warp_faults_ >> (expected.code == FaultCode::None ? rtl.warp : expected.warp) & 1) != 0;
-  if (raised == (expected.code != FaultCode::None))
+  // Of one warp and of one kind of ALU: who raises it says what it is, and where.
+  const bool of_rtl_alu = rtl.code >= FaultCode::Misaligned && rtl.code <= FaultCode::RayWordOutside;
+  const bool same_raiser = rtl.code != FaultCode::None && expected.code != FaultCode::None &&
+                           rtl.warp == expected.warp && of_rtl_alu == of_alu;
+  if (raised == (expected.code != FaultCode::None) && !same_raiser)
     return find("rtl/compute_unit.v", "the fault that was raised is not the one shown");
-  const char* files = code == FaultCode::IllegalInstruction ? "rtl/instruction_buffer.v, rtl/isa_functions.vh"
-                      : code == FaultCode::PcOutsideProgram ? "rtl/instruction_buffer.v, rtl/pc_stack.v"
-                      : code <= FaultCode::StackUnderflow   ? "rtl/pc_stack.v, rtl/warp.v"
-                      : code == FaultCode::RayWordOutside   ? "rtl/ray_alu.v"
-                      : code == FaultCode::SubnormalNumber  ? "rtl/subnormal_guard.v, rtl/warp.v"
-                                                            : "rtl/mem_alu.v";
-  find(files, expected.code == FaultCode::None ? "a fault is raised that is none" : "a fault is not raised");
+  const bool other_pc = same_raiser && rtl.code == expected.code;
+  const char* files = other_pc                                ? "rtl/warp.v, rtl/compute_unit.v, rtl/pc_stack.v"
+                      : code == FaultCode::IllegalInstruction ? "rtl/instruction_buffer.v, rtl/isa_functions.vh"
+                      : code == FaultCode::PcOutsideProgram   ? "rtl/instruction_buffer.v, rtl/pc_stack.v"
+                      : code <= FaultCode::StackUnderflow     ? "rtl/pc_stack.v, rtl/warp.v"
+                      : code == FaultCode::RayWordOutside     ? "rtl/ray_alu.v"
+                                                              : "rtl/mem_alu.v";
+  const char* text = expected.code == FaultCode::None ? "a fault is raised that is none"
+                     : same_raiser                    ? "another fault is raised, or at another PC"
+                                                      : "a fault is not raised";
+  if (code == FaultCode::SubnormalNumber)
+    find(subnormal_files(expected.code == FaultCode::None ? rtl.warp : expected.warp).c_str(), text);
+  else
+    find(files, text);
 }
 
 // ---- The memory port of the unit
@@ -244,7 +263,9 @@ void UnitInspection::advance_fetch(const UnitTransfers& given) {
   const bool missed = w_.instruction_miss.value() != 0;
   const uint32_t warp = w_.result_warp.value();
   if (missed) missed_ |= 1u << warp;
+  refilled_ = 0;
   if (w_.refill_done.value() != 0) {
+    refilled_ = missed_;
     requests_ |= missed_;
     missed_ = 0;
   }
@@ -288,7 +309,8 @@ void UnitInspection::check_fetch() {
     const CycleUnit::Timing& next = model_->timing(warp);
     if (next.fetch_cycle != now_ || next.fetch_pc >= program_length_) continue;
     requests_ |= 1u << warp;
-    if (w_.fetch_pc.bits(warp * 16, 16) != next.fetch_pc) {
+    // One that does not want yet has perhaps not gone on to it.
+    if ((w_.fetch_request.value() >> warp & 1) != 0 && w_.fetch_pc.bits(warp * 16, 16) != next.fetch_pc) {
       find("rtl/pc_stack.v, rtl/warp.v", fmt::format("warp {} fetches PC {}, after its last instruction comes {}", warp,
                                                      w_.fetch_pc.bits(warp * 16, 16), next.fetch_pc));
     }
@@ -297,9 +319,11 @@ void UnitInspection::check_fetch() {
   for (uint32_t warps = rtl ^ requests_; warps != 0; warps &= warps - 1) {
     const uint32_t warp = lowest(warps);
     const bool early = (rtl >> warp & 1) != 0;
-    const bool stack = w_.fetch_pc.bits(warp * 16, 16) != model_->timing(warp).fetch_pc;
-    find(stack ? "rtl/pc_stack.v, rtl/instruction_buffer.v, rtl/warp.v"
-               : "rtl/instruction_buffer.v, rtl/pc_stack.v, rtl/warp.v",
+    const bool stack = early && w_.fetch_pc.bits(warp * 16, 16) != model_->timing(warp).fetch_pc;
+    // That a line has come is told to those who wait for it.
+    find(stack                          ? "rtl/pc_stack.v, rtl/instruction_buffer.v, rtl/warp.v"
+         : (refilled_ >> warp & 1) != 0 ? "rtl/instruction_buffer.v, rtl/compute_unit.v"
+                                        : "rtl/instruction_buffer.v, rtl/pc_stack.v, rtl/warp.v",
          fmt::format("warp {} {} the instruction cache", warp, early ? "wants too early" : "does not want in time"));
   }
 }
@@ -356,8 +380,11 @@ void UnitInspection::check_operands(uint32_t warp) {
     const bool same = (!uses(TaskOperand::OperandA) || w_.operand_a.word(row) == issue.operand_a[lane]) &&
                       (!reads_b || w_.operand_b.word(row) == issue.operand_b[lane]) &&
                       (!uses(TaskOperand::OperandC) || w_.operand_c.word(row) == issue.operand_c[lane]);
+    // Of a triple the instruction buffer says which element is read.
+    const bool triple = is_triple(*unpack(encoding).info);
     if (!same)
-      return find("rtl/warp.v, rtl/ram_2r1w.v", fmt::format("warp {}, lane {}: a register was read wrong", warp, lane));
+      return find(triple ? "rtl/warp.v, rtl/instruction_buffer.v" : "rtl/warp.v, rtl/ram_2r1w.v",
+                  fmt::format("warp {}, lane {}: a register was read wrong", warp, lane));
   }
 }
 
@@ -374,25 +401,38 @@ void UnitInspection::check_tasks() {
 void UnitInspection::check_task(uint32_t instance, uint32_t warp, const CycleUnit::Issue& issue) {
   const TaskWires& task = task_[instance];
   const DecodedInstruction& instruction = *issue.instruction;
-  const auto unused = [&](TaskOperand operand) { return !looks_at(*instruction.info, operand); };
-  bool same =
-      task.task_warp_o.value() == warp && task.task_operation_o.value() == operation_of(instruction.opcode) &&
-      task.task_mask_o.value() == issue.mask &&
-      (unused(TaskOperand::Immediate) || task.task_immediate_o.value() == instruction.immediate) &&
-      (unused(TaskOperand::Word) || task.task_word_o.value() == instruction.x) &&
-      (unused(TaskOperand::PredicateX) || ((task.task_predicate_x_o.value() ^ issue.predicate_x) & issue.mask) == 0) &&
-      (unused(TaskOperand::PredicateB) || ((task.task_predicate_b_o.value() ^ issue.predicate_b) & issue.mask) == 0);
-  for (uint32_t mask = issue.mask; same && mask != 0; mask &= mask - 1) {
+  const auto uses = [&](TaskOperand operand) { return looks_at(*instruction.info, operand); };
+  const char* differs = nullptr;
+  const auto compare = [&](bool used, uint32_t rtl, uint32_t expected, const char* what) {
+    if (used && rtl != expected && differs == nullptr) differs = what;
+  };
+  compare(true, task.task_warp_o.value(), warp, "warp");
+  compare(true, task.task_operation_o.value(), operation_of(instruction.opcode), "operation");
+  compare(true, task.task_mask_o.value(), issue.mask, "thread mask");
+  // Of an argument's number no more bits count than it has, whatever an element of a triple adds to them.
+  const uint32_t counts = instruction.opcode == Opcode::Arg ? kArguments - 1 : ~0u;
+  compare(uses(TaskOperand::Immediate), task.task_immediate_o.value() & counts, instruction.immediate & counts,
+          "immediate");
+  compare(uses(TaskOperand::Word), task.task_word_o.value(), instruction.x, "word number");
+  compare(uses(TaskOperand::PredicateX), task.task_predicate_x_o.value() & issue.mask, issue.predicate_x & issue.mask,
+          "predicate px");
+  compare(uses(TaskOperand::PredicateB), task.task_predicate_b_o.value() & issue.mask, issue.predicate_b & issue.mask,
+          "predicate pb");
+  for (uint32_t mask = issue.mask; differs == nullptr && mask != 0; mask &= mask - 1) {
     const uint32_t lane = lowest(mask);
-    same = (unused(TaskOperand::OperandA) || task.task_operand_a_o.word(lane) == issue.operand_a[lane]) &&
-           (unused(TaskOperand::OperandB) || task.task_operand_b_o.word(lane) == issue.operand_b[lane]) &&
-           (unused(TaskOperand::OperandC) || task.task_operand_c_o.word(lane) == issue.operand_c[lane]);
+    compare(uses(TaskOperand::OperandA), task.task_operand_a_o.word(lane), issue.operand_a[lane], "operand a");
+    compare(uses(TaskOperand::OperandB), task.task_operand_b_o.word(lane), issue.operand_b[lane], "operand b");
+    compare(uses(TaskOperand::OperandC), task.task_operand_c_o.word(lane), issue.operand_c[lane], "operand c");
   }
-  if (same) return;
+  if (differs == nullptr) return;
   // Of a triple the warp works out the element.
   const bool triple = is_triple(*unpack(instruction.encoding).info);
-  find(triple ? "rtl/task_register.v, rtl/warp.v" : "rtl/task_register.v",
-       fmt::format("instance {}: the task is not that of warp {}", instance, warp));
+  const bool other_warp = task.task_warp_o.value() != warp;
+  find(other_warp ? "rtl/dispatcher.v, rtl/task_register.v"
+       : triple   ? "rtl/task_register.v, rtl/warp.v"
+                  : "rtl/task_register.v",
+       fmt::format("instance {}: the task is not that of warp {}: {}, the {} differs", instance, warp,
+                   instruction.info->mnemonic, differs));
 }
 
 void UnitInspection::check_ready() {

@@ -5,6 +5,21 @@
 #include <utility>
 
 namespace raypool::lockstep {
+namespace {
+
+/// What stands at the device's memory port is what the unit shows, but for the unit's number in the id.
+bool same_request(const MemoryRequest& shown, const UnitWires& unit) {
+  if (shown.write != (unit.memory_request_write_o.value() != 0) ||
+      shown.address != unit.memory_request_address_o.value())
+    return false;
+  if (!shown.write) return (shown.id & 31) == unit.memory_request_id_o.value();
+  if (shown.mask != unit.memory_request_mask_o.value()) return false;
+  for (uint32_t i = 0; i < kBeatWords; ++i)
+    if ((shown.mask >> i & 1) != 0 && shown.data[i] != unit.memory_request_data_o.word(i)) return false;
+  return true;
+}
+
+}  // namespace
 
 Inspection::Inspection(const Configuration& configuration, const ComputeUnit& rtl,
                        const std::vector<CycleUnit*>& models)
@@ -95,12 +110,14 @@ void Inspection::check_arbiters() {
       (out.memory_request_valid && unit_of_id(out.memory_request.id) != memory_.choice()))
     find("rtl/unit_memory_arbiter.v, rtl/port_arbiter.v, rtl/round_robin.v",
          "another unit's memory request is taken than its rule says");
+  else if (out.memory_request_valid && !same_request(out.memory_request, units_[memory_.choice()].wires()))
+    find("rtl/unit_memory_arbiter.v, rtl/multiprocessor.v", "the memory request is not that of its unit");
   if (out.import_request_valid != imports_.valid() ||
       (out.import_request_valid && out.import_request_unit != imports_.choice()))
     find("rtl/import_arbiter.v, rtl/port_arbiter.v, rtl/request_queue.v",
          "another unit's import request is taken than its rule says");
   if (out.export_valid != exports_.valid() || (out.export_valid && out.export_unit != exports_.choice()))
-    find("rtl/port_arbiter.v, rtl/round_robin.v, rtl/multiprocessor.v",
+    find("rtl/port_arbiter.v, rtl/multiprocessor.v, rtl/round_robin.v",
          "another unit's ray is exported than its rule says");
   if (out.frame_valid != frames_.valid() || (out.frame_valid && out.frame_unit != frames_.choice()))
     find("rtl/port_arbiter.v, rtl/round_robin.v, rtl/multiprocessor.v",

@@ -82,6 +82,7 @@ class UnitInspection {
   void check_launch();
   void check_memory_port();
   void check_faults();
+  std::string subnormal_files(uint32_t warp) const;
   void check_instruction_cache();
   void check_fetch();
   void check_fetch_arbiter();
@@ -124,6 +125,7 @@ class UnitInspection {
   RoundRobin fetch_turn_;
   InstructionCache instruction_cache_;
   uint32_t requests_ = 0, missed_ = 0, first_ = 0, wants_ = 0;
+  uint32_t refilled_ = 0;  // warps whose line came in the cycle before
   bool lookup_ = false, lookup_hit_ = false;
   uint32_t lookup_warp_ = 0, lookup_pc_ = 0;
   Port port_;

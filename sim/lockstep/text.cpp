@@ -26,17 +26,23 @@ std::string result_files(const DecodedInstruction& instruction, const Configurat
                           : configuration.fma ? "float_fma"
                           : product           ? "float_multiplier"
                                               : "float_adder";
-      return fmt::format("rtl/{}.v, rtl/float_lane.v, rtl/flt_alu.v", block);
+      // A difference is a sum with another sign, for which the lane sees.
+      return fmt::format(opcode == Opcode::Fsub ? "rtl/{}.v, rtl/float_lane.v, rtl/flt_alu.v"
+                                                : "rtl/{}.v, rtl/flt_alu.v, rtl/float_lane.v",
+                         block);
     }
     case AluType::Slw:
       // Of fewer lanes than a task has, the ALU itself says which take what, and when.
-      return fmt::format("rtl/{}.v, rtl/slow_prepare.v, rtl/{}.v",
+      return fmt::format("rtl/{}.v, rtl/{}.v, rtl/slow_prepare.v",
                          configuration.slow_unit == SlowUnit::Exact ? "slow_exact" : "slow_newton",
                          configuration.slow_groups() > 1 ? "slw_alu" : "slow_lane");
     case AluType::Mem:
       return "rtl/mem_alu.v, rtl/data_cache.v";
     case AluType::Ray:
       return "rtl/ray_memory.v, rtl/ray_alu.v";
+    case AluType::Tid:
+      // What it is told of the launch.
+      return "rtl/tid_alu.v, rtl/compute_unit.v";
     default:
       return fmt::format("rtl/{}_alu.v", alu_info(instruction.alu()).name);
   }

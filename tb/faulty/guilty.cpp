@@ -76,4 +76,10 @@ Verdict judge(const Hierarchy& hierarchy, const std::vector<std::string>& named,
   return parent ? Verdict::Parent : Verdict::Wrong;
 }
 
+bool named_early(const std::vector<std::string>& named, const std::string& file) {
+  constexpr size_t kEarly = 2;
+  const auto end = named.begin() + static_cast<std::ptrdiff_t>(std::min(kEarly, named.size()));
+  return std::find(named.begin(), end, file) != end;
+}
+
 }  // namespace raypool::faulty

@@ -30,4 +30,7 @@ enum class Verdict { Right, Parent, Wrong, None };
 /// Of the files named, against that of the mistake: itself, or one that instantiates it.
 Verdict judge(const Hierarchy& hierarchy, const std::vector<std::string>& named, const std::string& file);
 
+/// Whether the mistake's file is the first or the second of those named.
+bool named_early(const std::vector<std::string>& named, const std::string& file);
+
 }  // namespace raypool::faulty

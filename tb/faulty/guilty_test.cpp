@@ -45,5 +45,13 @@ TEST(Judge, KnowsTheFileItsParentAndOthers) {
   EXPECT_EQ(judge(hierarchy, {}, "warp.v"), Verdict::None);
 }
 
+TEST(NamedEarly, IsTheFirstOrTheSecondOfTheFiles) {
+  EXPECT_TRUE(named_early({"warp.v", "pc_stack.v", "launcher.v"}, "warp.v"));
+  EXPECT_TRUE(named_early({"warp.v", "pc_stack.v", "launcher.v"}, "pc_stack.v"));
+  EXPECT_FALSE(named_early({"warp.v", "pc_stack.v", "launcher.v"}, "launcher.v"));
+  EXPECT_FALSE(named_early({"warp.v"}, "launcher.v"));
+  EXPECT_FALSE(named_early({}, "warp.v"));
+}
+
 }  // namespace
 }  // namespace raypool::faulty
