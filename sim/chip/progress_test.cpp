@@ -154,6 +154,10 @@ struct PortsAlone : ChipDevice {
     chip->start(setup);
     look();
   }
+  void start_next(const FrameSetup& setup) override {
+    chip->start_next(setup);
+    look();
+  }
   const ChipOutputs& outputs() const override { return out; }
   void clock(const ChipInputs& inputs) override {
     chip->clock(inputs);
