@@ -96,8 +96,9 @@ class Bench {
   /// A reset in front of another tree, whatever is wanted or waits: nothing is on its way then, but for a line that
   /// comes in the cycle of the reset. What the memory has is another thing from then on.
   void restart(Traffic traffic) {
-    traffic.leave_request = 1;
     const bool fill = bench_.one_of(2);
+    for (uint32_t i = 0; fill && on_way_.empty() && i < 1000; ++i) ASSERT_NO_FATAL_FAILURE(clock(traffic));
+    traffic.leave_request = 1;
     for (uint32_t i = 0; on_way_.size() > (fill ? 1 : 0); ++i) {
       ASSERT_LT(i, 20000u) << "lines do not come";
       ASSERT_NO_FATAL_FAILURE(clock(traffic));
