@@ -326,8 +326,6 @@ TYPED_TEST(MemAluOfThreeMisses, RegistersAreFreedWhileLosersWaitForAWayOfTheirSe
       }
     }
   }
-  this->RecordProperty("chosen", static_cast<int>(chosen));
-  this->RecordProperty("in_vain", static_cast<int>(in_vain));
   EXPECT_GT(chosen, 100u) << "no register was freed in the cycle in which the privileged loser was chosen";
   EXPECT_GT(in_vain, 10u) << "then no other registers had both ways of the loser's set";
 }

@@ -116,10 +116,10 @@ raypool_pool_models(tree_cache_test tree_cache "LANES;SLOTS;LINES;WAYS;MSHRS;LIN
 # Such a cache, of banks, with who is next at each.
 raypool_bench(tree_banks_test)
 raypool_pool_models(tree_banks_test tree_banks "LANES;SLOTS;LINES;WAYS;MSHRS;BANKS;LINE_BITS;DATA_BITS"
-  1_2_4_2_1_1_5_32 3_5_64_4_6_2_23_32 2_9_256_4_16_16_12_32)
+  1_2_4_2_1_1_5_32 3_5_64_4_6_2_23_32 16_3_64_2_12_4_20_32 2_9_256_4_16_16_12_32)
 raypool_large_bench(tree_banks 150)
 raypool_pool_models(tree_banks_large_test tree_banks "LANES;SLOTS;LINES;WAYS;MSHRS;BANKS;LINE_BITS;DATA_BITS"
-  8_24_1024_16_64_8_26_32 16_3_64_2_12_4_20_32 32_2_32_2_4_1_9_32)
+  8_24_1024_16_64_8_26_32 32_2_32_2_4_1_9_32)
 
 # The stacks of a lane of the traverser.
 raypool_bench(lane_stacks_test)

@@ -199,7 +199,7 @@ class TraverserBench {
       setup.bounds.upper[axis] = tree.bounds.upper[axis];
     }
     frame_.material_base = static_cast<uint32_t>(bench_.random()) & ~3u;
-    frame_.depth = static_cast<uint32_t>(bench_.random()) % 8;
+    frame_.depth = static_cast<uint32_t>(bench_.random()) % 256;
     frame_.reflections = bench_.random() % 4 != 0;
     frame_.layout = any_layout();
     setup.frame = frame_;

@@ -67,7 +67,7 @@ class Case {
     ray[word::kColor] = static_cast<uint32_t>(what.rays.size());
     ray[word::kColor + 1] = random();
     ray[word::kColor + 2] = random();
-    ray[word::kFlags] = (shadow ? kShadowFlag : 0) | (random() & 0x7fffff00) | random() % 8;
+    ray[word::kFlags] = (shadow ? kShadowFlag : 0) | (random() & 0x7fffff00) | random() % 256;
     return ray;
   }
 };

@@ -11,15 +11,16 @@
 #include <vector>
 
 #ifdef RAYPOOL_LARGE
-#include "Vtree_banks_16_3_64_2_12_4_20_32.h"
 #include "Vtree_banks_32_2_32_2_4_1_9_32.h"
 #include "Vtree_banks_8_24_1024_16_64_8_26_32.h"
 #else
+#include "Vtree_banks_16_3_64_2_12_4_20_32.h"
 #include "Vtree_banks_1_2_4_2_1_1_5_32.h"
 #include "Vtree_banks_2_9_256_4_16_16_12_32.h"
 #include "Vtree_banks_3_5_64_4_6_2_23_32.h"
 #endif
 #include "unit/clocked.hpp"
+#include "unit/full_sets.hpp"
 #include "unit/signal_bits.hpp"
 
 namespace raypool::bench {
@@ -36,15 +37,17 @@ struct Parameters {
 
 /// One in so many cycles (0: never): a lane has another want, leaves a line for which it has waited, offers its wants
 /// in another order than in the cycle before, or leaves one out; the memory leaves a request, a line comes. `lines`
-/// from 0 on are wanted; one in so many wants is for nobody.
+/// from 0 on are wanted, or with `sets` as many lines of the first so many sets of the banks, shared evenly; one in so
+/// many wants is for nobody, and one is of a line of which some bit is another one.
 struct Traffic {
-  uint32_t want = 1, leave = 0, turn = 0, withhold = 0, leave_request = 0, fill = 1, lines = 16, nobody = 0;
+  uint32_t want = 1, leave = 0, turn = 0, withhold = 0, leave_request = 0, fill = 1, lines = 16, nobody = 0, sets = 0,
+           other_bit = 0;
 };
 
 template <typename P>
 class Bench {
  public:
-  explicit Bench(uint32_t seed) : bench_(seed), rows_(P::kSizes.lines) {
+  explicit Bench(uint32_t seed) : full_sets(P::kSizes.banks, FullSets(kOfABank)), bench_(seed), rows_(P::kSizes.lines) {
     for (uint32_t lane = 0; lane < kLanes; ++lane) {
       for (uint32_t slot = 0; slot < P::kSlots; ++slot) free_[lane].push_back(slot);
     }
@@ -75,7 +78,9 @@ class Bench {
     if (banks_.request_valid()) {
       ASSERT_NO_FATAL_FAILURE(look_at_request(requested));
     }
+    for (uint32_t bank = 0; bank < P::kSizes.banks; ++bank) full_sets[bank].before(banks_.banks()[bank]);
     banks_.clock(requested);
+    for (uint32_t bank = 0; bank < P::kSizes.banks; ++bank) full_sets[bank].after(banks_.banks()[bank]);
     bench_.clock();
     ++cycle_;
   }
@@ -126,6 +131,7 @@ class Bench {
   }
   const TreeBanks::Work& work() const { return banks_.work(); }
 
+  std::vector<FullSets> full_sets;  ///< [bank]
   uint64_t given = 0, seconds = 0, gave_way = 0, most_on_way = 0, full = 0;
   uint64_t restarts_with_fill = 0;
 
@@ -135,6 +141,8 @@ class Bench {
     uint32_t line, id;
   };
   static constexpr uint32_t kLanes = P::kSizes.lanes, kMshrs = P::kSizes.mshrs / P::kSizes.banks;
+  static constexpr TreeCache::Sizes kOfABank{P::kSizes.lanes, P::kSizes.lines / P::kSizes.banks, P::kSizes.ways,
+                                             kMshrs};
 
   static constexpr uint32_t bits_for(uint32_t count) {
     uint32_t bits = 1;
@@ -151,7 +159,7 @@ class Bench {
     for (LineWant& want : wants_[lane]) {
       const bool nobody = one_of(traffic.nobody);
       if (want.valid || !one_of(traffic.want) || (!nobody && free_[lane].empty())) continue;
-      want = {true, nobody, 0, static_cast<uint32_t>(bench_.random()) % traffic.lines & ((1u << P::kLineBits) - 1)};
+      want = {true, nobody, 0, any_line(traffic) & ((1u << P::kLineBits) - 1)};
       if (nobody) continue;
       want.slot = static_cast<uint8_t>(free_[lane].front());
       free_[lane].pop_front();
@@ -159,6 +167,14 @@ class Bench {
     if (one_of(traffic.turn)) std::swap(wants_[lane][0], wants_[lane][1]);
     offered_[lane] = wants_[lane];
     if (one_of(traffic.withhold)) offered_[lane][bench_.random() % 2].valid = false;
+  }
+
+  uint32_t any_line(const Traffic& traffic) {
+    uint32_t line = static_cast<uint32_t>(bench_.random()) % traffic.lines;
+    constexpr uint32_t kSets = P::kSizes.lines / P::kSizes.ways;  // of all banks
+    if (traffic.sets != 0) line = line % traffic.sets % kSets + line / traffic.sets * kSets;
+    if (one_of(traffic.other_bit)) line ^= 1u << bench_.random() % P::kLineBits;
+    return line;
   }
 
   // Of the lines on their way any may come next; then it waits until it is taken.
@@ -294,11 +310,11 @@ template <typename P>
 class TreeBanksTest : public testing::Test {};
 #ifdef RAYPOOL_LARGE  // tree_banks_large_test, of make test-long
 using All = testing::Types<Parameters<Vtree_banks_8_24_1024_16_64_8_26_32, 8, 24, 1024, 16, 64, 8, 26>,
-                           Parameters<Vtree_banks_16_3_64_2_12_4_20_32, 16, 3, 64, 2, 12, 4, 20>,
                            Parameters<Vtree_banks_32_2_32_2_4_1_9_32, 32, 2, 32, 2, 4, 1, 9>>;
 #else
 using All = testing::Types<Parameters<Vtree_banks_1_2_4_2_1_1_5_32, 1, 2, 4, 2, 1, 1, 5>,
                            Parameters<Vtree_banks_3_5_64_4_6_2_23_32, 3, 5, 64, 4, 6, 2, 23>,
+                           Parameters<Vtree_banks_16_3_64_2_12_4_20_32, 16, 3, 64, 2, 12, 4, 20>,
                            Parameters<Vtree_banks_2_9_256_4_16_16_12_32, 2, 9, 256, 4, 16, 16, 12>>;
 #endif
 TYPED_TEST_SUITE(TreeBanksTest, All);
@@ -311,11 +327,12 @@ TYPED_TEST(TreeBanksTest, AgreesWithItsClassInEveryCycle) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     Bench<TypeParam> bench(seed);
     constexpr uint32_t kLines = kSizes.lines;
-    for (const Traffic& traffic : {Traffic{1, 0, 1, 0, 0, 1, kLines, 0}, Traffic{1, 0, 0, 0, 0, 1, 2 * kLines, 5},
-                                   Traffic{1, 2, 2, 3, 2, 4, 3 * kLines, 3}, Traffic{1, 0, 1, 9, 0, 40, 1 << 20, 0},
-                                   Traffic{3, 1, 1, 5, 5, 2, 20, 9}, Traffic{9, 2, 3, 0, 2, 5, 5, 2},
-                                   Traffic{1, 0, 2, 0, 0, 60, 4 * kLines, 4}, Traffic{2, 0, 1, 0, 9, 9, 2 * kLines, 3},
-                                   Traffic{1, 3, 1, 0, 0, 1, kLines + 3, 0}, Traffic{1, 4, 0, 0, 3, 2, 3, 4}}) {
+    for (const Traffic& traffic :
+         {Traffic{1, 0, 1, 0, 0, 1, kLines, 0}, Traffic{1, 0, 0, 0, 0, 1, 2 * kLines, 5},
+          Traffic{1, 2, 2, 3, 2, 4, 3 * kLines, 3}, Traffic{1, 0, 1, 9, 0, 40, 1 << 20, 0},
+          Traffic{3, 1, 1, 5, 5, 2, 20, 9}, Traffic{9, 2, 3, 0, 2, 5, 5, 2}, Traffic{1, 0, 2, 0, 0, 60, 4 * kLines, 4},
+          Traffic{2, 0, 1, 0, 9, 9, 2 * kLines, 3}, Traffic{1, 3, 1, 0, 0, 1, kLines + 3, 0},
+          Traffic{1, 4, 0, 0, 3, 2, 3, 4}, Traffic{1, 2, 1, 0, 2, 3, kLines, 7, 0, 2}}) {
       for (uint32_t i = 0; i < 3000; ++i) ASSERT_NO_FATAL_FAILURE(bench.clock(traffic));
       ASSERT_NO_FATAL_FAILURE(bench.drain());
     }
@@ -358,6 +375,45 @@ TYPED_TEST(TreeBanksTest, HaveNoLineOfTheTreeBeforeBehindAReset) {
   given += bench.given;
   EXPECT_GT(with_fill, 20u);
   EXPECT_GT(given, 300u);
+}
+
+// Of these a bank has more registers than ways.
+template <typename P>
+class TreeBanksOfMoreMisses : public testing::Test {};
+#ifdef RAYPOOL_LARGE
+using MoreMisses = testing::Types<Parameters<Vtree_banks_32_2_32_2_4_1_9_32, 32, 2, 32, 2, 4, 1, 9>>;
+#else
+using MoreMisses = testing::Types<Parameters<Vtree_banks_16_3_64_2_12_4_20_32, 16, 3, 64, 2, 12, 4, 20>>;
+#endif
+TYPED_TEST_SUITE(TreeBanksOfMoreMisses, MoreMisses);
+
+// Lines of one set, or of one in each bank and more, that come back one at a time.
+TYPED_TEST(TreeBanksOfMoreMisses, MissesOfOneSetWaitForAWayThoughARegisterIsFree) {
+  constexpr TreeBanks::Sizes kSizes = TypeParam::kSizes;
+  uint64_t waits = 0, others = 0, own = 0;
+  for (uint32_t seed = 1; seed <= 3; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    Bench<TypeParam> bench(seed);
+    constexpr uint32_t kLines = 4 * kSizes.ways, kBanks = kSizes.banks;
+    for (const uint32_t nobody : {0u, 4u}) {
+      for (const Traffic& traffic : {Traffic{1, 0, 1, 0, 0, 4, kLines, nobody, 1},
+                                     Traffic{1, 2, 1, 3, 0, 12, 2 * kBanks * kLines, nobody, 2 * kBanks},
+                                     Traffic{1, 0, 0, 0, 3, 12, 3 * kLines, nobody, kBanks + 1},
+                                     Traffic{1, 0, 1, 0, 0, 90, 2 * kLines, nobody, kBanks + 1},
+                                     Traffic{1, 0, 0, 0, 0, 7, kBanks * kLines, nobody, 1 + kBanks, 5}}) {
+        for (uint32_t i = 0; i < 3000; ++i) ASSERT_NO_FATAL_FAILURE(bench.clock(traffic));
+        ASSERT_NO_FATAL_FAILURE(bench.drain());
+      }
+    }
+    for (const FullSets& bank : bench.full_sets) {
+      waits += bank.waits;
+      others += bank.others_freed;
+      own += bank.own_freed;
+    }
+  }
+  EXPECT_GT(waits, 50u) << "no lookup waits for a way while a register is free";
+  EXPECT_GT(others, 20u) << "no other register is freed meanwhile";
+  EXPECT_GT(own, 50u) << "no way of the set is given back";
 }
 
 }  // namespace

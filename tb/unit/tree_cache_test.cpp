@@ -14,6 +14,7 @@
 #include "Vtree_cache_3_5_64_4_5_23_32.h"
 #include "Vtree_cache_8_24_128_16_8_23_32.h"
 #include "unit/clocked.hpp"
+#include "unit/full_sets.hpp"
 #include "unit/signal_bits.hpp"
 
 namespace raypool::bench {
@@ -28,9 +29,10 @@ struct Parameters {
 };
 
 /// One in so many cycles (0: never): somebody looks up a line, a lane leaves an offer, the memory leaves a request, a
-/// line comes. `lines` from 0 on are looked up; one in so many lookups is for nobody.
+/// line comes. `lines` from 0 on are looked up, or with `sets` as many lines of the first so many sets, shared evenly;
+/// one in so many lookups is for nobody, and one is of a line of which some bit is another one.
 struct Traffic {
-  uint32_t lookup = 1, leave_offer = 0, leave_request = 0, fill = 1, lines = 16, nobody = 0;
+  uint32_t lookup = 1, leave_offer = 0, leave_request = 0, fill = 1, lines = 16, nobody = 0, sets = 0, other_bit = 0;
 };
 
 template <typename P>
@@ -80,7 +82,9 @@ class Bench {
         wanted_[{lane, lookup_.slots[lane]}] = lookup_.line;
       }
     }
+    full_sets.before(cache_);
     cache_.clock({taken ? &lookup_ : nullptr, fill, fill_id, offer_taken, requested});
+    full_sets.after(cache_);
     if (taken) looks_ = false, ++lookups;
     bench_.clock();
     ++cycle_;
@@ -123,6 +127,7 @@ class Bench {
   }
   const TreeCache::Work& work() const { return cache_.work(); }
 
+  FullSets full_sets{P::kSizes};
   uint64_t lookups = 0, given = 0, shared = 0, late_fills = 0, blocked = 0, most_on_way = 0;
   uint64_t restarts_with_fill = 0, busy_at_restart = 0;
 
@@ -138,7 +143,7 @@ class Bench {
   void offer_lookup(const Traffic& traffic) {
     if (!one_of(traffic.lookup)) return;
     lookup_ = {};
-    lookup_.line = bench_.random() % traffic.lines & ((1u << P::kLineBits) - 1);
+    lookup_.line = any_line(traffic) & ((1u << P::kLineBits) - 1);
     looks_ = true;
     if (one_of(traffic.nobody)) return;
     for (uint32_t lane = 0; lane < P::kLanes; ++lane) {
@@ -148,6 +153,14 @@ class Bench {
       free_[lane].pop_front();
     }
     looks_ = lookup_.lanes != 0;
+  }
+
+  uint32_t any_line(const Traffic& traffic) {
+    uint32_t line = static_cast<uint32_t>(bench_.random()) % traffic.lines;
+    constexpr uint32_t kSets = P::kSizes.lines / P::kSizes.ways;
+    if (traffic.sets != 0) line = line % traffic.sets % kSets + line / traffic.sets * kSets;
+    if (one_of(traffic.other_bit)) line ^= 1u << bench_.random() % P::kLineBits;
+    return line;
   }
 
   static constexpr uint32_t slot_bits() {
@@ -241,8 +254,8 @@ TYPED_TEST(TreeCacheTest, AgreesWithItsClassInEveryCycle) {
     for (const Traffic& traffic :
          {Traffic{1, 0, 0, 1, kLines, 0}, Traffic{1, 0, 0, 1, 2 * kLines, 5}, Traffic{1, 3, 2, 4, 3 * kLines, 3},
           Traffic{1, 0, 0, 40, 1 << 20, 0}, Traffic{2, 1, 5, 2, 20, 9}, Traffic{5, 2, 2, 5, 5, 2},
-          Traffic{1, 0, 0, 100, 4 * kLines, 4}, Traffic{2, 0, 0, 20, 2 * kLines, 3},
-          Traffic{1, 1, 0, 1, kLines + 3, 0}}) {
+          Traffic{1, 0, 0, 100, 4 * kLines, 4}, Traffic{2, 0, 0, 20, 2 * kLines, 3}, Traffic{1, 1, 0, 1, kLines + 3, 0},
+          Traffic{1, 1, 2, 2, kLines, 7, 0, 2}}) {
       for (uint32_t i = 0; i < 4000; ++i) ASSERT_NO_FATAL_FAILURE(bench.clock(traffic));
       ASSERT_NO_FATAL_FAILURE(bench.drain());
     }
@@ -280,6 +293,39 @@ TYPED_TEST(TreeCacheTest, HasNoLineOfTheTreeBeforeBehindAReset) {
   EXPECT_GT(with_fill, 50u);
   EXPECT_GT(busy, 100u);
   EXPECT_GT(given, 1000u);
+}
+
+// Of these a bank has more registers than ways.
+template <typename P>
+class TreeCacheOfMoreMisses : public testing::Test {};
+using MoreMisses = testing::Types<Parameters<Vtree_cache_3_5_64_4_5_23_32, 3, 5, 64, 4, 5, 23>,
+                                  Parameters<Vtree_cache_32_2_16_2_3_9_32, 32, 2, 16, 2, 3, 9>>;
+TYPED_TEST_SUITE(TreeCacheOfMoreMisses, MoreMisses);
+
+// Lines of one set, or of two and three, that come back one at a time.
+TYPED_TEST(TreeCacheOfMoreMisses, MissesOfOneSetWaitForAWayThoughARegisterIsFree) {
+  constexpr TreeCache::Sizes kSizes = TypeParam::kSizes;
+  uint64_t waits = 0, others = 0, own = 0;
+  for (uint32_t seed = 1; seed <= 4; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    Bench<TypeParam> bench(seed);
+    constexpr uint32_t kLines = 4 * kSizes.ways;
+    for (const uint32_t nobody : {0u, 4u}) {
+      for (const Traffic& traffic :
+           {Traffic{1, 0, 0, 4, kLines, nobody, 1}, Traffic{1, 2, 0, 12, kLines, nobody, 2},
+            Traffic{1, 0, 3, 12, kLines, nobody, 3}, Traffic{1, 0, 0, 90, kLines, nobody, 2},
+            Traffic{2, 3, 0, 40, kLines / 2 + 1, nobody, 2}, Traffic{1, 0, 0, 7, kLines, nobody, 2, 5}}) {
+        for (uint32_t i = 0; i < 4000; ++i) ASSERT_NO_FATAL_FAILURE(bench.clock(traffic));
+        ASSERT_NO_FATAL_FAILURE(bench.drain());
+      }
+    }
+    waits += bench.full_sets.waits;
+    others += bench.full_sets.others_freed;
+    own += bench.full_sets.own_freed;
+  }
+  EXPECT_GT(waits, 50u) << "no lookup waits for a way while a register is free";
+  EXPECT_GT(others, 20u) << "no other register is freed meanwhile";
+  EXPECT_GT(own, 50u) << "no way of the set is given back";
 }
 
 }  // namespace
