@@ -20,7 +20,6 @@ namespace raypool {
 namespace {
 
 using chip::ProgressWatch;
-using chip::WorkDone;
 using State = ProgressWatch::State;
 
 // ---- What is asked now and then
@@ -178,7 +177,7 @@ struct PortsAlone : ChipDevice {
 TEST(Progress, ARayThatTestsForLongInTheChipIsNoLockUp) {
   const auto draw = [](std::optional<uint32_t> given) {
     Frame frame(pile(2000), TraverserName::Hardware, one_ray);
-    const std::string error = error_of([&] {
+    std::string error = error_of([&] {
       frame.draw_on_board([&](std::unique_ptr<ChipDevice> chip) -> std::unique_ptr<ChipDevice> {
         if (!given) return chip;
         auto hiding = std::make_unique<PortsAlone>(std::move(chip));

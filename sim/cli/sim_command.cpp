@@ -90,6 +90,7 @@ void check_fields_in_use(const Configuration& configuration, bool whole_chip) {
 
 /// The traverser in Verilog is in the chip in Verilog alone; who needs no traverser's time only needs its hits.
 Configuration for_engine(Configuration configuration, const SimOptions& options, Engine engine) {
+  check_fields_in_use(configuration, !options.chip.empty());
   if (configuration.chip.traverser != TraverserName::Hardware || !options.chip.empty()) return configuration;
   if (engine == Engine::Embree)
     throw InputError("chip.traverser is hardware: engine embree has hits of its own; use native or functional");
@@ -376,7 +377,6 @@ int sim_command(const SimOptions& options) {
   std::vector<std::string> set = options.set;
   if (!options.traverser.empty()) set.push_back("chip.traverser=" + options.traverser);
   const Configuration loaded = for_engine(load_configuration(options.config, set), options, engine);
-  check_fields_in_use(loaded, record.whole_chip);
   record.configuration = loaded;
   if (record.whole_chip) record.configuration.chip.controller = ControllerName::Counters;  // the one in Verilog
   record.width = size.width;
