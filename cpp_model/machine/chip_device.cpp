@@ -14,4 +14,6 @@ void ChipDevice::check_next(const FrameSetup& before, const FrameSetup& setup, c
     throw std::logic_error("another program length or memory limit needs a reset of the chip");
 }
 
+Signal ChipDevice::signal(const std::string& /*scope*/, const std::string& /*name*/) const { return {}; }
+
 }  // namespace raypool

@@ -157,6 +157,8 @@ class ChipDevice {
   virtual uint64_t counter(int number) = 0;  ///< of the units, summed; see namespace counter
   /// Writes a waveform from now on; throws std::runtime_error where there is none.
   virtual void open_waveform(const std::string& path);
+  /// A signal of the instance `scope` (such as "gen_inside.traverser"); the list chip_probes.vlt has those there are.
+  virtual Signal signal(const std::string& scope, const std::string& name) const;
 
  protected:
   /// Throws what start_next() does.

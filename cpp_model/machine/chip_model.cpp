@@ -175,6 +175,12 @@ class ChipModel : public ChipDevice {
   uint64_t counter(int number) override { return device_->counter(number); }
   void open_waveform(const std::string& path) override { device_->open_waveform(path); }
 
+  const Traverser* look_inside() {
+    if (!blocks_->traverser) return nullptr;
+    blocks_->traverser->look_inside();
+    return &*blocks_->traverser;
+  }
+
   ChipCounts counts() override {
     const Blocks& b = *blocks_;
     return {b.rays.taken(),   b.rays.busy_cycles(), b.intersections.taken(), b.frame.taken(),
@@ -507,6 +513,11 @@ class ChipModel : public ChipDevice {
 };
 
 }  // namespace
+
+const Traverser* look_inside_traverser(ChipDevice& chip) {
+  auto* model = dynamic_cast<ChipModel*>(&chip);
+  return model == nullptr ? nullptr : model->look_inside();
+}
 
 std::unique_ptr<ChipDevice> make_chip_model(const Configuration& configuration, std::unique_ptr<ComputeUnit> device) {
   return std::make_unique<ChipModel>(configuration, std::move(device));

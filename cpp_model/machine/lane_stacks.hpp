@@ -80,6 +80,7 @@ class LaneStacks {
   bool request_valid() const { return request_valid_; }
   const Request& request() const { return request_; }  ///< means something while request_valid()
   bool fill_waits() const { return fill_waits_; }
+  const Outcome& outcome() const { return outcome_; }  ///< of the last clock()
 
   /// A cycle; what it says stays until the next one.
   const Outcome& clock(const Inputs& inputs) {

@@ -120,6 +120,9 @@ class RayExit {
     return {ray[word::kPixel], {ray[word::kColor], ray[word::kColor + 1], ray[word::kColor + 2]}};
   }
 
+  /// For reports: of a word of put_data() its number in an intersection, or kNoWord. Means something while put_valid().
+  uint32_t put_word(uint32_t number) const { return words_of(frame_.layout)[put_beat_ * kBeatWords + number]; }
+
   /// The end of a cycle.
   void clock(const Inputs& inputs) {
     const bool moves = fate_ && fate_moves();

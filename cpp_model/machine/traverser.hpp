@@ -122,6 +122,7 @@ class Traverser {
     exit_inputs_.put_ready = inputs.put_ready;
     exit_inputs_.contribution_ready = inputs.contribution_ready;
     const TreeFault fault = first_fault();
+    if (looks_inside_) note_handed();
 
     for (TriangleGroup& group : groups_) group.clock();
     for (uint32_t lane = 0; lane < sizes_.lanes; ++lane) {
@@ -138,6 +139,36 @@ class Traverser {
     if (!out_.fault.valid) out_.fault = fault;
     present();
   }
+
+  // ---- For reports of a lockstep
+
+  /// What was handed from block to block in the cycle that has ended.
+  struct Handed {
+    struct ToLane {
+      bool slot_taken = false, request_taken = false, test_taken = false, done_taken = false, leaf_waited = false;
+      uint32_t node_taken = 0, leaf_taken = 0;
+      std::optional<uint32_t> freed;
+      std::optional<LaneStacks::Block> filled;
+      std::optional<uint32_t> node_slot, leaf_slot;  ///< of lines that are given
+      TreeLine node{}, leaf{};
+      std::optional<LaneHits::Result> result;
+    };
+    std::vector<ToLane> lanes;  ///< the last one is ray_exit
+    struct RaySet {
+      RayExit::Slot slot{0, 0};
+      RayExit::Set set;
+      TraverserLane::Entered entered;
+    };
+    std::optional<RaySet> set;
+    std::optional<uint32_t> entered_lane;  ///< of a ray that has come
+  };
+  void look_inside() { looks_inside_ = true; }
+  const Handed& handed() const { return handed_; }  ///< after look_inside() only
+  const TreePort& port() const { return port_; }
+  const RayExit& exit() const { return exit_; }
+  uint32_t lanes() const { return sizes_.lanes; }
+  uint32_t slot_bits() const { return slot_bits(sizes_.slots); }
+  int box_bits() const { return sizes_.box_bits; }
 
   // ---- For measurements
 
@@ -184,6 +215,31 @@ class Traverser {
     return bits;
   }
   uint32_t all_lanes() const { return (1u << sizes_.lanes) - 1; }
+
+  void note_handed() {
+    handed_ = {};
+    for (const TraverserLane::Inputs& in : inputs_) {
+      Handed::ToLane& lane = handed_.lanes.emplace_back();
+      lane.slot_taken = in.slot_taken;
+      lane.request_taken = in.request_taken;
+      lane.test_taken = in.test_taken;
+      lane.done_taken = in.done_taken;
+      lane.node_taken = in.node_taken;
+      lane.leaf_taken = in.leaf_taken;
+      lane.leaf_waited = in.leaf_waited;
+      lane.freed = in.freed;
+      if (in.filled != nullptr) lane.filled = *in.filled;
+      if (in.node != nullptr) lane.node_slot = in.node->slot, lane.node = *in.node->line;
+      if (in.leaf != nullptr) lane.leaf_slot = in.leaf->slot, lane.leaf = *in.leaf->line;
+      if (in.result != nullptr) lane.result = *in.result;
+      if (in.slot_taken) handed_.entered_lane = size32(handed_.lanes) - 1;
+    }
+    Handed::ToLane& exit = handed_.lanes.emplace_back();
+    exit.leaf_taken = exit_inputs_.taken;
+    exit.leaf_waited = exit_inputs_.waited;
+    if (exit_inputs_.given != nullptr) exit.leaf_slot = exit_inputs_.given->slot, exit.leaf = *exit_inputs_.given->line;
+    if (exit_inputs_.set != nullptr) handed_.set = {exit_inputs_.set_slot, set_, entered_};
+  }
 
   // What a lane says in the next cycle.
   void look_at(uint32_t number) {
@@ -385,6 +441,8 @@ class Traverser {
   RayExit::Set set_;
   TraverserLane::Entered entered_{0, {false, false, BoxRay({0, 0, 0}, {0, 0, 0}, 0, 12), {}, {}}};
   Outputs out_;
+  bool looks_inside_ = false;
+  Handed handed_;
 };
 
 }  // namespace raypool

@@ -144,6 +144,18 @@ class TraverserLane {
     if (inputs.freed) free_.free(*inputs.freed);
   }
 
+  // ---- For reports of a lockstep
+
+  const BoxPipe& boxes() const { return boxes_; }
+  const std::optional<LaneStacks::NodeResult>& node() const { return node_; }
+  const LaneStacks::Outcome& stacks_outcome() const { return stacks_.outcome(); }  ///< of the cycle that has ended
+  std::optional<LaneStacks::LeafResult> leaf_result() const { return hits_.leaf(box_bits_); }
+  /// Of which a slot is given a line in this cycle, whose boxes are tested in it.
+  std::optional<uint32_t> given_slot() const { return is_given_ ? std::optional(given_slot_) : std::nullopt; }
+  bool fill_waits() const { return stacks_.fill_waits(); }
+  bool begin_valid() const { return begins_.valid(); }
+  uint32_t begin_slot() const { return begins_.data(); }  ///< only while begin_valid()
+
   // ---- For measurements
 
   const LaneStacks::Work& stack_work() const { return stacks_.work(); }

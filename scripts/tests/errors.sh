@@ -93,7 +93,7 @@ refuses_sim "3 compute units" "3" --units 3
 refuses_sim "unknown engine" "native, embree, functional, sampled, model, rtl or lockstep" --engine spice
 refuses_sim "a chip that nobody plays" "use model, rtl or lockstep" --chip functional
 refuses_sim "a chip beside an engine" "excludes" --chip model --engine model
-refuses_sim "modules of a chip as one piece" "leave --modules, --trace and --inspect out" --chip model --modules
+refuses_sim "modules of a chip as one piece" "leave --modules and --trace out" --chip model --modules
 refuses_sim "the modelled traverser at a chip's ports" "choose one with --traverser hardware or --traverser static" \
   --chip model --traverser modelled
 refuses_sim "the hardware's traverser without its chip" "not around engine model: draw with --chip model, rtl or" \

@@ -145,7 +145,8 @@ std::unique_ptr<ChipDevice> make_chip(const EngineOptions& options, const Memory
     case Engine::Rtl:
       return make_chip(ChipKind::Rtl, configuration, memory, options.units, find_unit_library(options));
     case Engine::Lockstep:
-      return make_chip(ChipKind::Lockstep, configuration, memory, options.units, find_unit_library(options));
+      return make_chip(ChipKind::Lockstep, configuration, memory, options.units, find_unit_library(options), "chip",
+                       options.waves ? kInspectAlways : options.inspect_until);
     default:
       throw InputError("a chip as one piece is played by model, rtl or lockstep, no other engine");
   }

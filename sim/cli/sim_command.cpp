@@ -42,8 +42,8 @@ void check(const SimOptions& options, Engine engine) {
   if (!options.chip.empty()) {
     if (engine != Engine::Model && engine != Engine::Rtl && engine != Engine::Lockstep)
       throw InputError(fmt::format("--chip is '{}': use model, rtl or lockstep", options.chip));
-    if (options.modules || !options.trace.empty() || options.inspect_until != 0)
-      throw InputError("--chip draws on the chip as one piece: leave --modules, --trace and --inspect out");
+    if (options.modules || !options.trace.empty())
+      throw InputError("--chip draws on the chip as one piece: leave --modules and --trace out");
   }
   if (options.waves && engine != Engine::Rtl && engine != Engine::Lockstep) {
     throw InputError(fmt::format("engine {} has no waveform: use rtl or lockstep, or leave waves out", options.engine));
@@ -281,6 +281,7 @@ FrameBuffer draw_on_chip(const SimOptions& options, Engine engine, RunRecord& re
                          MemoryImage& image, OutputFolder& out) {
   EngineOptions chosen{engine, record.configuration, options.unit_library, options.waves, options.units};
   chosen.chip = true;
+  chosen.inspect_until = options.inspect_until;
   std::unique_ptr<ChipDevice> chip = make_chip(chosen, image.memory);
   if (options.waves) chip->open_waveform(out.temporary(kWaveform));
   Surroundings around(scene, image, record);

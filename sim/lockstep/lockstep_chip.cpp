@@ -7,6 +7,7 @@
 #include "bits.hpp"
 #include "isa/counters.hpp"
 #include "lockstep/chip_comparison.hpp"
+#include "lockstep/chip_inspection.hpp"
 #include "lockstep/rtl_loader.hpp"
 #include "lockstep/text.hpp"
 #include "machine/chip_model.hpp"
@@ -27,12 +28,14 @@ uint64_t settling_cycles(const ChipConfiguration& chip) {
 class LockstepChipImpl : public LockstepChip {
  public:
   LockstepChipImpl(const Configuration& configuration, std::unique_ptr<ChipDevice> rtl, const Memory& memory,
-                   std::string name)
+                   std::string name, uint64_t inspect_until)
       : kinds_(configuration.chip.culling ? 3 : 2),
         settling_(settling_cycles(configuration.chip)),
         name_(std::move(name)),
         rtl_(std::move(rtl)),
-        model_(make_chip_model(configuration, make_model(configuration, memory, rtl_->units()).device)) {}
+        model_(make_chip_model(configuration, make_model(configuration, memory, rtl_->units()).device)),
+        inspect_until_(inspect_until),
+        inspection_(configuration, *rtl_) {}
 
   uint32_t units() const override { return rtl_->units(); }
   const ChipOutputs& outputs() const override { return rtl_->outputs(); }
@@ -57,10 +60,13 @@ class LockstepChipImpl : public LockstepChip {
     if (!report_.empty()) throw LockstepDifference(report_);
     count_transfers(inputs);
     if (inputs.tree_request_valid || rtl_->outputs().traverser.tree_request_valid) still_since_ = cycle_ + 1;
-    rtl_->clock(inputs);
     model_->clock(inputs);
+    // The RTL still shows what its blocks hand over in this cycle.
+    if (inspects()) inspection_.advance(cycle_);
+    rtl_->clock(inputs);
     ++cycle_;
     ++counts_.cycles;
+    if (inspects()) inspection_.check(cycle_);
     compared([this] {
       compare_chip(rtl_->outputs(), model_->outputs(), kinds_);
       counts_.kernels += popcount(rtl_->outputs().device.kernel_done);
@@ -68,12 +74,29 @@ class LockstepChipImpl : public LockstepChip {
     });
   }
 
+  std::vector<Finding> inside() const override { return inspection_.findings(); }
+
  private:
   void begin() {
     cycle_ = 0;
     moved_ = true;
     still_since_ = 0;
+    if (inspects()) inspection_.restart(look_inside_traverser(*model_));
     compared([this] { compare_chip(rtl_->outputs(), model_->outputs(), kinds_); });
+  }
+
+  bool inspects() const { return counts_.cycles <= inspect_until_ && inspect_until_ != 0; }
+
+  // At most three files, those of what was found inside first.
+  std::string last_lines(const Mismatch& mismatch) const {
+    std::string text, files;
+    for (const Finding& finding : inspection_.findings()) {
+      const uint64_t ago = cycle_ - finding.cycle;
+      text += fmt::format("  inside, {}: {}\n", ago == 0 ? "in this cycle" : fmt::format("{} cycles before", ago),
+                          finding.text);
+      files += finding.files + ", ";
+    }
+    return text + "  look at: " + first_files(files + mismatch.module, 3) + "\n  so far " + to_string(counts_);
   }
 
   // What passes the ports at the end of this cycle; both sides show the same.
@@ -114,10 +137,9 @@ class LockstepChipImpl : public LockstepChip {
       check();
     } catch (const Mismatch& mismatch) {
       counts_.differences = 1;
-      report_ =
-          fmt::format("lockstep difference in {}: {}\n  cycle {} of the frame\n{}  look at: {}\n  so far {}", name_,
-                      mismatch.title, cycle_, mismatch.details, first_files(mismatch.module, 3), to_string(counts_));
-      throw LockstepDifference(report_);
+      report_ = fmt::format("lockstep difference in {}: {}\n  cycle {} of the frame, {} in all\n{}{}", name_,
+                            mismatch.title, cycle_, counts_.cycles, mismatch.details, last_lines(mismatch));
+      throw LockstepDifference(report_, inspect_until_ == 0 && inspection_.active() ? counts_.cycles + 1 : 0);
     }
   }
 
@@ -130,6 +152,8 @@ class LockstepChipImpl : public LockstepChip {
   bool moved_ = true;         // since counters were compared
   uint64_t still_since_ = 0;  // this cycle
   std::string report_;
+  uint64_t inspect_until_;  // cycles in all; 0: it does not look inside
+  ChipInspection inspection_;
 };
 
 }  // namespace
@@ -143,17 +167,19 @@ std::string to_string(const ChipLockstepCounts& counts) {
 }
 
 std::unique_ptr<LockstepChip> make_lockstep_chip(const Configuration& configuration, std::unique_ptr<ChipDevice> rtl,
-                                                 const Memory& memory, const std::string& name) {
-  return std::make_unique<LockstepChipImpl>(configuration, std::move(rtl), memory, name);
+                                                 const Memory& memory, const std::string& name,
+                                                 uint64_t inspect_until) {
+  return std::make_unique<LockstepChipImpl>(configuration, std::move(rtl), memory, name, inspect_until);
 }
 
 std::unique_ptr<ChipDevice> make_chip(ChipKind kind, const Configuration& configuration, const Memory& memory,
-                                      int units, const std::string& library, const std::string& name) {
+                                      int units, const std::string& library, const std::string& name,
+                                      uint64_t inspect_until) {
   if (kind == ChipKind::Model)
     return make_chip_model(configuration, make_model(configuration, memory, static_cast<uint32_t>(units)).device);
   std::unique_ptr<ChipDevice> rtl = load_rtl_chip(library, configuration, units);
   if (kind == ChipKind::Rtl) return rtl;
-  return make_lockstep_chip(configuration, std::move(rtl), memory, name);
+  return make_lockstep_chip(configuration, std::move(rtl), memory, name, inspect_until);
 }
 
 }  // namespace raypool

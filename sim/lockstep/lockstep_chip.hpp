@@ -4,8 +4,10 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "lockstep/lockstep_unit.hpp"
+#include "lockstep/mismatch.hpp"
 #include "machine/chip_device.hpp"
 
 namespace raypool {
@@ -29,14 +31,19 @@ std::string to_string(const ChipLockstepCounts& counts);
 class LockstepChip : public ChipDevice {
  public:
   virtual const ChipLockstepCounts& lockstep_counts() const = 0;
+  /// What a look inside has found first; nothing in RTL that is right.
+  virtual std::vector<lockstep::Finding> inside() const = 0;
 };
 
 /// Wraps `rtl`, and a model of the same configuration and number of units. The model reads program and data from
 /// `memory`, the host's, when the first kernel after start() begins; it must outlive the lockstep. clock() throws
 /// LockstepDifference at the first difference, and again at every later call. Counters are compared, and may be found
-/// to differ, when a frame has ended and nothing has moved for some cycles. `name` is for the report.
+/// to differ, when a frame has ended and nothing has moved for some cycles. `name` is for the report. `inspect_until`:
+/// it looks inside the traverser up to this cycle, of all that it is clocked, as LockstepOptions::inspect_until says;
+/// 0: not at all.
 std::unique_ptr<LockstepChip> make_lockstep_chip(const Configuration& configuration, std::unique_ptr<ChipDevice> rtl,
-                                                 const Memory& memory, const std::string& name = "chip");
+                                                 const Memory& memory, const std::string& name = "chip",
+                                                 uint64_t inspect_until = 0);
 
 /// What stands behind the ports of a chip.
 enum class ChipKind : uint8_t { Model, Rtl, Lockstep };
@@ -44,6 +51,7 @@ enum class ChipKind : uint8_t { Model, Rtl, Lockstep };
 /// A chip with `units` units for program and data in `memory`, which must outlive it. `library`: of rtl and lockstep,
 /// the file libraypool_chip.so. Throws InputError when this is missing or does not fit.
 std::unique_ptr<ChipDevice> make_chip(ChipKind kind, const Configuration& configuration, const Memory& memory,
-                                      int units, const std::string& library = "", const std::string& name = "chip");
+                                      int units, const std::string& library = "", const std::string& name = "chip",
+                                      uint64_t inspect_until = 0);
 
 }  // namespace raypool

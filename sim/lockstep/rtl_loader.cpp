@@ -130,6 +130,7 @@ class LoadedChip : public ChipDevice {
   ChipCounts counts() override { return chip_->counts(); }
   uint64_t counter(int number) override { return chip_->counter(number); }
   void open_waveform(const std::string& path) override { chip_->open_waveform(path); }
+  Signal signal(const std::string& scope, const std::string& name) const override { return chip_->signal(scope, name); }
 
  private:
   Library library_;  // destroyed after the chip

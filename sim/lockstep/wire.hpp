@@ -11,8 +11,10 @@ namespace raypool::lockstep {
 class Wire {
  public:
   Wire() = default;
-  Wire(const ComputeUnit& unit, const std::string& scope, const std::string& name) {
-    const Signal signal = unit.signal(scope, name);
+  /// Of a ComputeUnit or a ChipDevice.
+  template <typename Device>
+  Wire(const Device& device, const std::string& scope, const std::string& name) {
+    const Signal signal = device.signal(scope, name);
     if (signal.data == nullptr) return;
     data_ = signal.data;
     width_ = signal.bits;

@@ -121,6 +121,9 @@ class RtlChip : public ChipDevice {
   }
   uint64_t counter(int number) override { return read_counter(design_.top(), kUnitCount, number); }
   void open_waveform(const std::string& path) override { design_.open_waveform(path); }
+  Signal signal(const std::string& scope, const std::string& name) const override {
+    return design_.signal(scope, name);
+  }
 
  private:
   void write_setup(const FrameSetup& setup) {

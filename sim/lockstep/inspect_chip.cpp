@@ -1,0 +1,420 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "bits.hpp"
+#include "lockstep/chip_inspection.hpp"
+
+namespace raypool::lockstep {
+namespace {
+
+constexpr const char* kScope = "gen_inside.traverser";
+constexpr size_t kMostFindings = 2;
+constexpr uint32_t kLineBits = 26, kBlockBits = 7, kTestBits = 875;
+
+/// They differ by how they were rounded.
+bool in_last_place(uint32_t a, uint32_t b) { return a - b + 1 <= 2; }
+
+/// Of a component of a hit's normal, which is one of a cross product through its length: another direction is made by
+/// the products, another length by its root, and a power of two by the quotient.
+const char* normal_files(uint32_t rtl, uint32_t expected) {
+  constexpr uint32_t kSign = 1u << 31, kFraction = (1u << 23) - 1;
+  if (rtl == (expected ^ kSign) || in_last_place(rtl, expected))
+    return "rtl/ray_finish.v, rtl/triangle_normal.v, rtl/cross_products.v";
+  if ((rtl & ~kSign) == 0 || (expected & ~kSign) == 0 || ((rtl ^ expected) & kSign) != 0)
+    return "rtl/cross_products.v, rtl/triangle_normal.v, rtl/ray_finish.v";
+  if (((rtl ^ expected) & kFraction) == 0) return "rtl/ray_finish.v, rtl/triangle_normal.v";
+  return "rtl/triangle_normal.v, rtl/root_digits.v, rtl/ray_finish.v";
+}
+
+}  // namespace
+
+ChipInspection::ChipInspection(const Configuration& configuration, const ChipDevice& rtl)
+    : rtl_(&rtl), w_(rtl, kScope) {
+  if (!has_traverser(configuration.chip) || !w_.missing.empty()) return;
+  for (uint32_t lane = 0; lane < configuration.chip.modelled_traverser_box_pipes; ++lane) {
+    lanes_.emplace_back(rtl, fmt::format("{}.gen_lane[{}].lane", kScope, lane));
+    if (!lanes_.back().missing.empty()) return;
+  }
+  active_ = true;
+}
+
+void ChipInspection::restart(const Traverser* model) {
+  model_ = model;
+  findings_.clear();
+}
+
+bool ChipInspection::expect(uint64_t rtl, uint64_t expected, const char* files, const char* what) {
+  if (rtl == expected) return true;
+  const bool same = std::any_of(findings_.begin(), findings_.end(), [&](const Finding& f) { return f.files == files; });
+  if (findings_.size() < kMostFindings && !same)
+    findings_.push_back({cycle_, files,
+                         fmt::format("traverser, lane {}, {}: {:x} in the RTL, {:x} by its rule (bits, hexadecimal)",
+                                     lane_, what, rtl, expected)});
+  return false;
+}
+
+bool ChipInspection::expect_words(const Wire& wire, uint32_t low, const uint32_t* words, uint32_t count,
+                                  const char* files, const char* what) {
+  for (uint32_t i = 0; i < count; ++i)
+    if (!expect(wire.bits(low + 32 * i, 32), words[i], files, what)) return false;
+  return true;
+}
+
+void ChipInspection::advance(uint64_t cycle) {
+  if (!active_ || model_ == nullptr || !findings_.empty()) return;
+  cycle_ = cycle;
+  for (uint32_t lane = 0; lane < model_->lanes(); ++lane) {
+    lane_ = lane;
+    advance_lane(lane);
+  }
+  check_set();
+  // The last lane of the triangle cache is ray_exit's.
+  lane_ = model_->lanes();
+  const Traverser::Handed::ToLane& exit = model_->handed().lanes[lane_];
+  constexpr const char* kCache = "rtl/tree_banks.v, rtl/tree_cache.v";
+  expect(w_.leaf_taken.bits(2 * lane_, 2), exit.leaf_taken, kCache, "want of a triangle's line that is taken");
+  if (expect(w_.leaf_given.flag(lane_), exit.leaf_slot.has_value(), "rtl/tree_cache.v, rtl/tree_banks.v",
+             "a triangle's line is given") &&
+      exit.leaf_slot)
+    expect_words(w_.leaf_given_data, 512 * lane_, exit.leaf.data(), 16, "rtl/tree_cache.v, rtl/tree_banks.v",
+                 "triangle's line that is given");
+}
+
+// A ray that has been set up, for its lane and for ray_exit.
+void ChipInspection::check_set() {
+  const auto& set = model_->handed().set;
+  constexpr const char* kSetup = "rtl/ray_setup.v, rtl/traverser.v";
+  constexpr const char* kDirection = "rtl/ray_direction.v, rtl/ray_setup.v";
+  constexpr const char* kPadding = "rtl/ray_padding.v, rtl/ray_setup.v";
+  if (!expect(w_.set_valid.value(), set.has_value(), kSetup, "a ray is set up") || !set) return;
+  lane_ = set->slot.lane;
+  expect(w_.set_lane.value(), 1u << lane_, "rtl/ray_setup.v, rtl/ray_delay.v", "lane of the ray that is set up");
+  expect(w_.set_slot.value(), set->slot.slot, "rtl/ray_setup.v, rtl/ray_delay.v", "slot of the ray that is set up");
+  expect(w_.set_place.value(), set->set.place, "rtl/traverser.v, rtl/ray_setup.v", "place of the ray that is set up");
+  expect(w_.set_depth.value(), set->set.depth, "rtl/traverser.v, rtl/ray_setup.v", "depth of the ray that is set up");
+  expect(w_.set_shadow.value(), set->set.shadow, "rtl/traverser.v, rtl/ray_setup.v", "a shadow ray is set up");
+  const LaneRay& ray = set->entered.ray;
+  if (!expect(w_.meets.value(), ray.meets, "rtl/ray_setup.v, rtl/ray_direction.v", "the ray can hit something") ||
+      !ray.meets)
+    return;
+  const auto bits = static_cast<uint32_t>(model_->box_bits());
+  const TriangleRay& triangle = ray.triangle;
+  expect(w_.main_axis.value(), static_cast<uint32_t>(triangle.kz), kDirection, "main axis");
+  expect(w_.scale.value(), static_cast<uint32_t>(ray.limit.scale) & 0x1ff, kDirection, "scale");
+  expect(w_.limit.value(), as_bits(ray.limit.limit), "rtl/ray_setup.v", "limit");
+  expect(w_.limit_key.value(), ray.box.limit, "rtl/ray_setup.v, rtl/float_parts.v", "key of the limit");
+  for (uint32_t axis = 0; axis < 3; ++axis) {
+    const BoxRay::Axis& box = ray.box.axes[axis];
+    expect(w_.origin.word(axis), as_bits(triangle.origin[axis]), kPadding, "origin");
+    expect(w_.padding.bits(10 * axis, 10), static_cast<uint32_t>(box.padding) & 0x3ff, kPadding, "padding of boxes");
+    expect(w_.padded_lower.word(axis), as_bits(triangle.padded[0][axis]), kPadding, "padded origin");
+    expect(w_.padded_upper.word(axis), as_bits(triangle.padded[1][axis]), kPadding, "padded origin");
+    expect(w_.backwards.flag(axis), box.backwards, kDirection, "backwards");
+    expect(w_.still.flag(axis), box.still, kDirection, "still");
+    expect(w_.reciprocal.bits(bits * axis, bits), box.reciprocal, kDirection, "reciprocal of the direction");
+    expect(w_.exponent.bits(10 * axis, 10), static_cast<uint32_t>(box.exponent) & 0x3ff, kDirection,
+           "exponent of the reciprocal");
+    expect(w_.inverse.word(axis), as_bits(triangle.inverse[axis]), kDirection, "inverse direction");
+  }
+  expect(w_.shear.word(0), as_bits(triangle.shear_x), kDirection, "shear");
+  expect(w_.shear.word(1), as_bits(triangle.shear_y), kDirection, "shear");
+}
+
+// What a lane is given in the cycle.
+void ChipInspection::advance_lane(uint32_t number) {
+  const Traverser::Handed::ToLane& lane = model_->handed().lanes[number];
+  const uint32_t slot_bits = model_->slot_bits();
+  constexpr const char* kCache = "rtl/tree_cache.v, rtl/tree_banks.v";
+  constexpr const char* kBanks = "rtl/tree_banks.v, rtl/bank_arbiter.v";
+  const bool enters = w_.enters.value() != 0 && w_.enter_grant.flag(number);
+  expect(enters, lane.slot_taken, "rtl/traverser.v, rtl/round_robin.v", "a ray that comes gets a slot here");
+  expect(w_.slot_free.flag(number), lane.freed.has_value(), "rtl/ray_exit.v, rtl/ray_finish.v", "a slot is free again");
+  if (lane.freed && w_.slot_free.flag(number))
+    expect(w_.slot_free_slot.value(), *lane.freed, "rtl/ray_exit.v", "slot that is free again");
+  // Results of tests before what they lead to.
+  if (expect(w_.result_valid.flag(number), lane.result.has_value(), "rtl/triangle_group.v, rtl/triangle_pipe.v",
+             "a triangle has its result") &&
+      lane.result) {
+    const uint32_t tag_bits = 30 + slot_bits;
+    const uint64_t tag = lane.result->tag.word(slot_bits);
+    expect(w_.result_tag.bits(number * tag_bits, 30), tag & 0x3fffffff, "rtl/triangle_group.v, rtl/triangle_pipe.v",
+           "slot and place of a triangle's result");
+    expect(w_.result_number.word(number), lane.result->number, "rtl/triangle_pipe.v, rtl/triangle_group.v",
+           "number of a triangle's result");
+    if (expect(w_.result_hit.flag(number), lane.result->hit, "rtl/triangle_edges.v, rtl/triangle_pipe.v",
+               "the triangle is hit") &&
+        lane.result->hit)
+      expect(w_.result_t.word(number), as_bits(lane.result->t),
+             in_last_place(w_.result_t.word(number), as_bits(lane.result->t))
+                 ? "rtl/triangle_plane.v, rtl/float_shorten.v"
+                 : "rtl/triangle_plane.v, rtl/triangle_pipe.v",
+             "time of the hit");
+  }
+  expect(w_.test_valid.flag(number) && w_.test_ready.flag(number), lane.test_taken,
+         "rtl/triangle_group.v, rtl/round_robin.v", "a triangle's test begins");
+  expect(w_.done_valid.flag(number) && w_.done_ready.flag(number), lane.done_taken, "rtl/ray_exit.v, rtl/traverser.v",
+         "a ray that is done is taken");
+  // A bank that takes one more than it can, or less, is busy with something else; another one is the arbiters' choice.
+  const auto expect_taken = [&](const Wire& wire, uint32_t taken, const char* what) {
+    const uint32_t rtl = wire.bits(2 * number, 2);
+    const bool choice = popcount(rtl) == popcount(taken);
+    expect(rtl, taken, choice ? kBanks : "rtl/tree_cache.v, rtl/bank_arbiter.v", what);
+  };
+  expect_taken(w_.node_taken, lane.node_taken, "want of a node that is taken");
+  expect_taken(w_.leaf_taken, lane.leaf_taken, "want of a triangle's line that is taken");
+  expect(w_.leaf_waited.flag(number) && w_.leaf_room.flag(number), lane.leaf_waited, kBanks,
+         "a triangle's line comes for which a ray has waited");
+  if (expect(w_.node_given.flag(number), lane.node_slot.has_value(), kCache, "a node is given") && lane.node_slot) {
+    expect(w_.node_given_slot.bits(number * slot_bits, slot_bits), *lane.node_slot,
+           "rtl/tree_cache.v, rtl/bank_arbiter.v", "slot that gets a node");
+    expect_words(w_.node_given_data, 512 * number, lane.node.data(), 14, kCache, "node that is given");
+  }
+  if (expect(w_.leaf_given.flag(number), lane.leaf_slot.has_value(), kCache, "a triangle's line is given") &&
+      lane.leaf_slot) {
+    expect(w_.leaf_given_slot.bits(number * slot_bits, slot_bits), *lane.leaf_slot,
+           "rtl/tree_cache.v, rtl/bank_arbiter.v", "slot that gets a triangle's line");
+    expect_words(w_.leaf_given_data, 512 * number, lane.leaf.data(), 16, kCache, "triangle's line that is given");
+  }
+  expect(w_.stack_request_valid.flag(number) && w_.stack_request_ready.flag(number), lane.request_taken,
+         "rtl/tree_port.v, rtl/round_robin.v", "a request of a stack is taken");
+  if (expect(w_.stack_fill_valid.flag(number), lane.filled.has_value(), "rtl/tree_port.v",
+             "a block of a stack comes") &&
+      lane.filled) {
+    const auto key_bits = static_cast<uint32_t>(model_->box_bits() + 9);
+    for (uint32_t i = 0; i < LaneStacks::kBlock; ++i) {
+      const uint32_t low = i * (key_bits + 32);
+      expect(w_.stack_fill_entries.bits(low, 32), (*lane.filled)[i].reference, "rtl/tree_port.v",
+             "reference in a block of a stack that comes");
+      expect(w_.stack_fill_entries.bits(low + 32, key_bits), (*lane.filled)[i].key, "rtl/tree_port.v",
+             "key in a block of a stack that comes");
+    }
+  }
+  // What the stacks decide in the cycle.
+  const LaneWires& l = lanes_[number];
+  const LaneStacks::Outcome& outcome = model_->lane(number).stacks_outcome();
+  constexpr const char* kStacks = "rtl/lane_stacks.v, rtl/pass_queue.v";
+  expect(l.goes_on.value(), outcome.node_goes_on, kStacks, "a ray goes on with its nearest child");
+  expect(l.next_valid.value(), outcome.next, kStacks, "a ray goes on from its stack");
+  expect(l.done.value(), outcome.done, kStacks, "a ray is done");
+  if (outcome.next && l.next_valid.value() != 0) {
+    expect(l.next_slot.value(), outcome.slot, kStacks, "slot that goes on from its stack");
+    expect(l.next_reference.value(), outcome.reference, kStacks, "reference from the stack");
+  }
+  if (outcome.done && l.done.value() != 0) expect(l.done_slot.value(), outcome.slot, kStacks, "slot that is done");
+  expect(l.begin_ready.value(), outcome.ray_ready, kStacks, "a ray may begin");
+}
+
+void ChipInspection::check(uint64_t cycle) {
+  if (!active_ || model_ == nullptr || !findings_.empty()) return;
+  cycle_ = cycle;
+  lane_ = 0;
+  for (uint32_t lane = 0; lane < model_->lanes(); ++lane) {
+    lane_ = lane;
+    check_lane(lane);
+  }
+  if (findings_.empty()) check_caches();
+}
+
+void ChipInspection::check_lane(uint32_t number) {
+  check_lane_boxes(number);
+  if (findings_.empty()) check_lane_ports(number);
+}
+
+// From a node's boxes to the stack: registers.
+void ChipInspection::check_lane_boxes(uint32_t number) {
+  const TraverserLane& lane = model_->lane(number);
+  const LaneWires& l = lanes_[number];
+  const auto key_bits = static_cast<uint32_t>(model_->box_bits() + 9);
+  expect(l.begin_valid.value(), lane.begin_valid(), "rtl/traverser_lane.v, rtl/ram_queue.v", "a ray is to begin");
+  if (lane.begin_valid() && l.begin_valid.value() != 0)
+    expect(l.begin_slot.value(), lane.begin_slot(), "rtl/traverser_lane.v, rtl/ram_queue.v", "slot that is to begin");
+  expect(l.given_q.value(), lane.given_slot().has_value(), "rtl/traverser_lane.v", "boxes of a node are tested");
+  if (lane.given_slot() && l.given_q.value() != 0) {
+    expect(l.given_slot_q.value(), *lane.given_slot(), "rtl/traverser_lane.v", "slot whose boxes are tested");
+    const uint32_t limit = l.best_key_valid.value() != 0 ? l.best_key.value() : l.box_limit.value();
+    expect(limit, lane.hits().limit_key(*lane.given_slot()), "rtl/lane_hits.v, rtl/traverser_lane.v",
+           "limit of the boxes' test");
+  }
+  if (expect(l.boxes_valid.value(), lane.boxes().valid(), "rtl/box_pipe.v, rtl/traverser_lane.v",
+             "boxes have their result") &&
+      lane.boxes().valid()) {
+    const BoxResult& result = lane.boxes().result();
+    constexpr const char* kAxis = "rtl/box_axis.v, rtl/box_pipe.v";
+    expect(l.met.value(), result.met, kAxis, "boxes that are met");
+    for (uint32_t i = 0; i < kBoxes; ++i)
+      if ((result.met >> i & 1) != 0)
+        expect(l.entry.bits(i * key_bits, key_bits), result.entry[i], kAxis, "key of a box's entry");
+  }
+  const std::optional<LaneStacks::NodeResult>& node = lane.node();
+  constexpr const char* kOrder = "rtl/child_order.v, rtl/traverser_lane.v";
+  if (expect(l.node_valid_q.value(), node.has_value(), "rtl/traverser_lane.v", "a node has been tested") && node) {
+    expect(l.children.value(), node->children, kOrder, "children that are met");
+    expect(l.node_slot_q.value(), node->slot, "rtl/traverser_lane.v, rtl/ram_delay.v", "slot of the node");
+    // Their references have waited for the boxes.
+    constexpr const char* kReferences = "rtl/child_order.v, rtl/ram_delay.v";
+    if (node->children != 0) expect(l.nearest.value(), node->nearest, kReferences, "nearest child");
+    for (uint32_t i = 0; i + 1 < node->children; ++i) {
+      const uint32_t low = i * (key_bits + 32);
+      expect(l.others.bits(low, 32), node->others[i].reference, kReferences, "another child");
+      expect(l.others.bits(low + 32, key_bits), node->others[i].key, kOrder, "key of another child");
+    }
+    if (node->children == 0)
+      expect(l.node_limit_q.value(), node->limit, "rtl/traverser_lane.v, rtl/lane_hits.v", "limit of the node");
+  }
+  const std::optional<LaneStacks::LeafResult> leaf = lane.leaf_result();
+  constexpr const char* kHits = "rtl/lane_hits.v, rtl/traverser_lane.v";
+  if (expect(l.leaf_valid.value(), leaf.has_value(), kHits, "a leaf has its results") && leaf) {
+    expect(l.leaf_over.value(), leaf->over, kHits, "the leaf's ray is done");
+    expect(l.leaf_limit.value(), leaf->limit, kHits, "limit after the leaf");
+  }
+}
+
+void ChipInspection::check_wants(const LineWants& wants, const Wire& valid, const Wire& line, const Wire& slot,
+                                 uint32_t number, const char* files, const char* what) {
+  const uint32_t slot_bits = model_->slot_bits();
+  for (uint32_t i = 0; i < wants.size(); ++i) {
+    const uint32_t place = 2 * number + i;
+    if (!expect(valid.flag(place), wants[i].valid, files, what) || !wants[i].valid) continue;
+    expect(line.bits(place * kLineBits, kLineBits), wants[i].line, files, what);
+    if (!wants[i].nobody) expect(slot.bits(place * slot_bits, slot_bits), wants[i].slot, files, what);
+  }
+}
+
+void ChipInspection::check_lane_ports(uint32_t number) {
+  const TraverserLane& lane = model_->lane(number);
+  const uint32_t slot_bits = model_->slot_bits();
+  expect(w_.slot_valid.flag(number), lane.slot_valid(), "rtl/free_list.v, rtl/traverser_lane.v", "a slot is free");
+  if (lane.slot_valid() && w_.slot_valid.flag(number))
+    expect(w_.slot_of.bits(number * slot_bits, slot_bits), lane.slot(), "rtl/free_list.v, rtl/traverser_lane.v",
+           "slot that is free");
+  expect(lanes_[number].fill_waits.value(), lane.fill_waits(), "rtl/lane_stacks.v", "a block of a stack waits");
+  check_wants(lane.node_wants(), w_.node_want, w_.node_want_line, w_.node_want_slot, number,
+              "rtl/traverser_lane.v, rtl/line_offers.v", "node that is wanted");
+  check_wants(lane.leaf_wants(), w_.leaf_want, w_.leaf_want_line, w_.leaf_want_slot, number,
+              "rtl/leaf_reader.v, rtl/line_offers.v", "triangle's line that is wanted");
+  expect(w_.leaf_room.flag(number), lane.leaf_room(), "rtl/leaf_reader.v", "room for a triangle's line");
+  const TreeFault& fault = lane.fault();
+  constexpr const char* kLane = "rtl/traverser_lane.v";
+  if (expect(w_.node_fault.flag(number), fault.valid, kLane, "a node that no tree has") && fault.valid)
+    expect(w_.node_fault_line.bits(number * kLineBits, kLineBits), fault.line, kLane, "number of that node");
+  constexpr const char* kStacks = "rtl/lane_stacks.v, rtl/pass_queue.v";
+  if (expect(w_.stack_request_valid.flag(number), lane.request_valid(), kStacks, "request of a stack") &&
+      lane.request_valid()) {
+    const LaneStacks::Request& request = lane.request();
+    const auto key_bits = static_cast<uint32_t>(model_->box_bits() + 9);
+    expect(w_.stack_request_write.flag(number), request.write, kStacks, "a stack's request writes");
+    expect(w_.stack_request_slot.bits(number * slot_bits, slot_bits), request.slot, kStacks, "slot of the request");
+    expect(w_.stack_request_block.bits(number * kBlockBits, kBlockBits), request.block, kStacks, "block of a stack");
+    for (uint32_t i = 0; request.write && i < LaneStacks::kBlock; ++i) {
+      const uint32_t low = (number * LaneStacks::kBlock + i) * (key_bits + 32);
+      expect(w_.stack_request_entries.bits(low, 32), request.entries[i].reference, kStacks, "reference of an entry");
+      expect(w_.stack_request_entries.bits(low + 32, key_bits), request.entries[i].key, kStacks, "key of an entry");
+    }
+  }
+  check_test(number);
+  if (expect(w_.done_valid.flag(number), lane.done_valid(), "rtl/traverser_lane.v, rtl/lane_stacks.v",
+             "a ray is done") &&
+      lane.done_valid()) {
+    constexpr const char* kHits = "rtl/lane_hits.v, rtl/traverser_lane.v";
+    expect(w_.done_slot.bits(number * slot_bits, slot_bits), lane.done_slot(), kLane, "slot of the ray that is done");
+    const LaneHits::Hit& hit = lane.hits().best(lane.done_slot());
+    if (expect(w_.done_hit.flag(number), hit.hit, kHits, "the ray has hit something") && hit.hit) {
+      expect(w_.done_t.word(number), as_bits(hit.t), kHits, "time of the ray's hit");
+      expect(w_.done_place.bits(number * 29, 29), hit.place, kHits, "place of the triangle that is hit");
+    }
+  }
+}
+
+void ChipInspection::check_test(uint32_t number) {
+  const TraverserLane& lane = model_->lane(number);
+  constexpr const char* kReader = "rtl/leaf_reader.v, rtl/pass_queue.v";
+  constexpr const char* kRays = "rtl/traverser_lane.v, rtl/leaf_reader.v";
+  if (!expect(w_.test_valid.flag(number), lane.test_valid(), kReader, "a triangle can be tested") || !lane.test_valid())
+    return;
+  const LeafReader::Test test = *lane.test();
+  const uint32_t slot_bits = model_->slot_bits(), tag_bits = 30 + slot_bits, low = number * kTestBits;
+  const uint64_t tag = TestTag{test.slot, test.last, test.place}.word(slot_bits);
+  expect(w_.test_tag.bits(number * tag_bits, 30), tag & 0x3fffffff, kReader, "slot and place of a triangle's test");
+  std::array<uint32_t, 10> words;
+  std::memcpy(words.data(), &test.triangle, sizeof words);
+  expect_words(w_.test, low, words.data(), 10, kReader, "triangle that is tested");
+  const TriangleRay& ray = lane.ray(test.slot).triangle;
+  const auto floats = [&](uint32_t at, const float* values, uint32_t count, const char* what) {
+    for (uint32_t i = 0; i < count; ++i) expect(w_.test.bits(low + at + 32 * i, 32), as_bits(values[i]), kRays, what);
+  };
+  floats(320, ray.origin, 3, "origin of a triangle's ray");
+  floats(416, ray.padded[0], 3, "padded origin of a triangle's ray");
+  floats(512, ray.padded[1], 3, "padded origin of a triangle's ray");
+  floats(608, ray.inverse, 3, "inverse direction of a triangle's ray");
+  floats(706, &ray.shear_x, 1, "shear of a triangle's ray");
+  floats(738, &ray.shear_y, 1, "shear of a triangle's ray");
+}
+
+void ChipInspection::check_caches() {
+  const TreeBanks &nodes = model_->node_cache(), &leaves = model_->triangle_cache();
+  constexpr const char* kCache = "rtl/tree_cache.v, rtl/tree_banks.v";
+  if (expect(w_.node_request_valid.value(), nodes.request_valid(), kCache, "the node cache asks for a line") &&
+      nodes.request_valid()) {
+    expect(w_.node_request_line.value(), nodes.request_line(), kCache, "line that the node cache asks for");
+    expect(w_.node_request_id.value(), nodes.request_id(), kCache, "register of the node cache's request");
+  }
+  if (expect(w_.triangle_request_valid.value(), leaves.request_valid(), kCache, "the triangle cache asks for a line") &&
+      leaves.request_valid()) {
+    expect(w_.triangle_request_line.value(), leaves.request_line(), kCache, "line that the triangle cache asks for");
+    expect(w_.triangle_request_id.value(), leaves.request_id(), kCache, "register of the triangle cache's request");
+  }
+  const std::optional<TreePort::Line>& line = model_->port().line();
+  constexpr const char* kPort = "rtl/tree_port.v";
+  const bool to_nodes = line && line->source == TreePort::Source::Nodes;
+  const bool to_leaves = line && line->source == TreePort::Source::Triangles;
+  // One that has gone has been taken.
+  const auto expect_line = [&](const Wire& wire, bool comes, const char* what) {
+    expect(wire.value(), comes, comes ? "rtl/tree_cache.v, rtl/tree_port.v" : "rtl/tree_port.v, rtl/tree_cache.v",
+           what);
+  };
+  expect_line(w_.node_fill_valid, to_nodes, "a line comes for the node cache");
+  expect_line(w_.triangle_fill_valid, to_leaves, "a line comes for the triangle cache");
+  if (to_nodes && w_.node_fill_valid.value() != 0) expect(w_.node_fill_id.value(), line->id, kPort, "whose line comes");
+  if (to_leaves && w_.triangle_fill_valid.value() != 0)
+    expect(w_.triangle_fill_id.value(), line->id, kPort, "whose line comes");
+  if (to_nodes || to_leaves) expect_words(w_.fill_data, 0, line->data.data(), 16, kPort, "line that comes");
+  expect(w_.port_fault.value(), model_->port().fault().valid, kPort, "a line that no tree has");
+  check_exit();
+  lane_ = model_->lanes();
+  check_wants(model_->exit().wants(), w_.leaf_want, w_.leaf_want_line, w_.leaf_want_slot, lane_,
+              "rtl/ray_exit.v, rtl/leaf_reader.v", "line of a triangle that was hit, which is wanted");
+  expect(w_.leaf_room.flag(lane_), model_->exit().room(), "rtl/ray_exit.v, rtl/leaf_reader.v",
+         "room for the line of a triangle that was hit");
+}
+
+// What leaves with a ray: each word of an intersection is the work of one block.
+void ChipInspection::check_exit() {
+  const RayExit& exit = model_->exit();
+  const TraverserPorts& ports = rtl_->outputs().traverser;
+  constexpr const char* kExit = "rtl/ray_exit.v, rtl/ray_finish.v";
+  const TreePort& port = model_->port();
+  constexpr const char* kPort = "rtl/tree_port.v, rtl/traverser.v";
+  if (expect(ports.tree_request_valid, port.request_valid(), kPort, "request to the memory") && port.request_valid()) {
+    expect(ports.tree_request.address, port.request().address, kPort, "address of a request");
+    expect(ports.tree_request.write, port.request().write, kPort, "a request writes");
+  }
+  expect(ports.free_valid, exit.free_valid(), kExit, "a ray leaves its place");
+  expect(ports.contribution_valid, exit.contribution_valid(), kExit, "a contribution");
+  if (!expect(ports.put_valid, exit.put_valid(), kExit, "a beat of an intersection") || !exit.put_valid()) return;
+  const Beat expected = exit.put_data();
+  for (uint32_t i = 0; i < kBeatWords; ++i) {
+    const uint32_t number = exit.put_word(i);
+    const bool shares = number >= word::kBarycentric && number < word::kBarycentric + 2;
+    const char* files = number >= word::kNormal && number < word::kNormal + 3
+                            ? normal_files(ports.put_data[i], expected[i])
+                        : shares                    ? "rtl/triangle_shares.v, rtl/ray_finish.v, rtl/cross_products.v"
+                        : number == word::kDistance ? "rtl/ray_finish.v, rtl/float_shorten.v"
+                        : number == word::kMaterial ? "rtl/ray_exit.v, rtl/chip.v"
+                                                    : "rtl/ray_exit.v, rtl/ray_finish.v";
+    if (number != kNoWord) expect(ports.put_data[i], expected[i], files, "word of an intersection");
+  }
+}
+
+}  // namespace raypool::lockstep
