@@ -207,11 +207,11 @@ TEST_F(ObjInTheWild, WhatHasNoCounterpartIsCountedInTheWordsOfOtherFormats) {
       "v 0 0 0 1 0 0\nv 1 0 0\nv 0 1 0\nv 0 2 0 1\nvn 0 0 1\nvt 0 0\nusemtl a\nf 1/1/1 2/1/1 3/1/1\nusemtl b\nf 1//1 "
       "2//1 3//1\nusemtl c\nf 4 2 3\nusemtl plain\nf 4 2 3\nusemtl glass\nf 4/1 2/1 3/1\nl 1 2\np 1\ncurv 0 1 1 2\n",
       mtl);
+  const std::string extensions =
+      "a.obj: 1 material with extensions (KHR_materials_..., or Pm, Ps and Pc of MTL), which are not used";
   EXPECT_EQ(warnings(scene), (Texts{"a.obj: 3 materials with textures: the colours beside them are used alone",
                                     "a.obj: 2 materials with emission, which is not used: the one light is a point",
-                                    "a.obj: 4 materials with transparency, drawn opaque",
-                                    "a.obj: 1 material with extensions (KHR_materials_..., or Pm, Ps and Pc of MTL), "
-                                    "which are not used",
+                                    "a.obj: 4 materials with transparency, drawn opaque", extensions,
                                     "a.obj: 2 faces with vertex colours, which are not used",
                                     "a.obj: 2 faces with vertex normals, which are not used: shading is flat",
                                     "a.obj: 2 elements of points or lines, not drawn",
