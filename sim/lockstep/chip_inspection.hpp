@@ -37,6 +37,8 @@ class ChipInspection {
   bool expect_words(const Wire& wire, uint32_t low, const uint32_t* words, uint32_t count, const char* files,
                     const char* what);
   void advance_lane(uint32_t number);
+  void advance_lines(uint32_t number);
+  void advance_stacks(uint32_t number);
   void check_lane(uint32_t number);
   void check_lane_boxes(uint32_t number);
   void check_lane_ports(uint32_t number);

@@ -68,6 +68,8 @@ void ChipInspection::advance(uint64_t cycle) {
   for (uint32_t lane = 0; lane < model_->lanes(); ++lane) {
     lane_ = lane;
     advance_lane(lane);
+    advance_lines(lane);
+    advance_stacks(lane);
   }
   check_set();
   // The last lane of the triangle cache is ray_exit's.
@@ -126,8 +128,6 @@ void ChipInspection::check_set() {
 void ChipInspection::advance_lane(uint32_t number) {
   const Traverser::Handed::ToLane& lane = model_->handed().lanes[number];
   const uint32_t slot_bits = model_->slot_bits();
-  constexpr const char* kCache = "rtl/tree_cache.v, rtl/tree_banks.v";
-  constexpr const char* kBanks = "rtl/tree_banks.v, rtl/bank_arbiter.v";
   const bool enters = w_.enters.value() != 0 && w_.enter_grant.flag(number);
   expect(enters, lane.slot_taken, "rtl/traverser.v, rtl/round_robin.v", "a ray that comes gets a slot here");
   expect(w_.slot_free.flag(number), lane.freed.has_value(), "rtl/ray_exit.v, rtl/ray_finish.v", "a slot is free again");
@@ -156,6 +156,14 @@ void ChipInspection::advance_lane(uint32_t number) {
          "rtl/triangle_group.v, rtl/round_robin.v", "a triangle's test begins");
   expect(w_.done_valid.flag(number) && w_.done_ready.flag(number), lane.done_taken, "rtl/ray_exit.v, rtl/traverser.v",
          "a ray that is done is taken");
+}
+
+// What the caches and the memory give a lane in the cycle.
+void ChipInspection::advance_lines(uint32_t number) {
+  const Traverser::Handed::ToLane& lane = model_->handed().lanes[number];
+  const uint32_t slot_bits = model_->slot_bits();
+  constexpr const char* kCache = "rtl/tree_cache.v, rtl/tree_banks.v";
+  constexpr const char* kBanks = "rtl/tree_banks.v, rtl/bank_arbiter.v";
   // A bank that takes one more than it can, or less, is busy with something else; another one is the arbiters' choice.
   const auto expect_taken = [&](const Wire& wire, uint32_t taken, const char* what) {
     const uint32_t rtl = wire.bits(2 * number, 2);
@@ -191,7 +199,10 @@ void ChipInspection::advance_lane(uint32_t number) {
              "key in a block of a stack that comes");
     }
   }
-  // What the stacks decide in the cycle.
+}
+
+// What a lane's stacks decide in the cycle.
+void ChipInspection::advance_stacks(uint32_t number) {
   const LaneWires& l = lanes_[number];
   const LaneStacks::Outcome& outcome = model_->lane(number).stacks_outcome();
   constexpr const char* kStacks = "rtl/lane_stacks.v, rtl/pass_queue.v";
