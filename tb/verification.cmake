@@ -83,7 +83,7 @@ if(IVERILOG)
   # The whole chip, without and with the traverser inside.
   foreach(machine 1 23 26)
     add_test(NAME icarus_chip_${machine} COMMAND ${scripts}/icarus_chip.sh $<TARGET_FILE:raypool_chip_frames>
-      ${CMAKE_BINARY_DIR}/icarus/chip_${machine} ${machine} 1)
+      ${CMAKE_BINARY_DIR}/icarus/chip_${machine} ${machine} 2)
     set_tests_properties(icarus_chip_${machine} PROPERTIES TIMEOUT 600)
   endforeach()
   # The pictures in docs show modules that are there, and the stages that a run has now.

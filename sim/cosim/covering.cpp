@@ -159,10 +159,13 @@ std::vector<Factor> make_inside_factors() {
     }
     factors.push_back(std::move(factor));
   };
+  const auto values_of = [&factors](std::string_view name) -> std::vector<int>& {
+    return std::find_if(factors.begin(), factors.end(), [name](const Factor& f) { return f.name == name; })->values;
+  };
   // The least that BoardMemory has with three cycles a beat.
-  const auto latency = std::find_if(factors.begin(), factors.end(),
-                                    [](const Factor& factor) { return factor.name == "chip.memory.latency"; });
-  latency->values = {12, 13, 50};
+  values_of("chip.memory.latency") = {12, 13, 50};
+  // A lane's slots must have rays: so many are in the pool, too, until they leave.
+  values_of("chip.ray_pool.size") = {1, 2, 7, 40};
   put("triangle_pipes", {1, 2});
   put("box_pipes", {0, 1, 2});
   Factor& lanes = factors.back();
@@ -171,7 +174,7 @@ std::vector<Factor> make_inside_factors() {
   };
   lanes.set = [set = lanes.set, pipes](Machine& m, int value) { set(m, pipes(m) + value); };
   lanes.get = [get = lanes.get, pipes](const Machine& m) { return get(m) - pipes(m); };
-  put("rays", {1, 2, 5},
+  put("rays", {1, 2, 5, 24},
       [](const ChipConfiguration& chip) { return static_cast<int>(chip.modelled_traverser_box_pipes); });
   put("stack_entries", {8, 9, 16});
   put("box_bits", {6, 12, 16});

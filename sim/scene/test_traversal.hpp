@@ -36,30 +36,47 @@ struct Item {
   Vec3 lower, upper;
 };
 
-/// The level of a tree above this one: four children a node, which are put behind `nodes`.
+/// A node around up to four items from `first` on, which is put behind `nodes`.
+inline Item parent_of(const std::vector<Item>& level, size_t first, std::vector<BvhNode>& nodes) {
+  BvhNode node{};
+  Item parent{size32(nodes), {INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+  for (size_t i = 0; i < 4; ++i) {
+    const bool used = first + i < level.size();
+    node.children[i] = used ? level[first + i].child : kNoChild;
+    for (int axis = 0; axis < 3; ++axis) {
+      node.bounds[0][axis][i] = used ? level[first + i].lower[axis] : INFINITY;
+      node.bounds[1][axis][i] = used ? level[first + i].upper[axis] : -INFINITY;
+      parent.lower[axis] = std::min(parent.lower[axis], node.bounds[0][axis][i]);
+      parent.upper[axis] = std::max(parent.upper[axis], node.bounds[1][axis][i]);
+    }
+  }
+  nodes.push_back(node);
+  return parent;
+}
+/// The level of a tree above this one: four children a node.
 inline std::vector<Item> parents_of(const std::vector<Item>& level, std::vector<BvhNode>& nodes) {
   std::vector<Item> parents;
-  for (size_t first = 0; first < level.size(); first += 4) {
-    BvhNode node{};
-    Item parent{size32(nodes), {INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
-    for (size_t i = 0; i < 4; ++i) {
-      const bool used = first + i < level.size();
-      node.children[i] = used ? level[first + i].child : kNoChild;
-      for (int axis = 0; axis < 3; ++axis) {
-        node.bounds[0][axis][i] = used ? level[first + i].lower[axis] : INFINITY;
-        node.bounds[1][axis][i] = used ? level[first + i].upper[axis] : -INFINITY;
-        parent.lower[axis] = std::min(parent.lower[axis], node.bounds[0][axis][i]);
-        parent.upper[axis] = std::max(parent.upper[axis], node.bounds[1][axis][i]);
-      }
-    }
-    nodes.push_back(node);
-    parents.push_back(parent);
-  }
+  for (size_t first = 0; first < level.size(); first += 4) parents.push_back(parent_of(level, first, nodes));
   return parents;
 }
+/// The level without its last items, around which there is a node now: of one level after another a chain of nodes.
+inline std::vector<Item> chained(std::vector<Item> level, std::vector<BvhNode>& nodes) {
+  const size_t first = level.size() < 4 ? 0 : level.size() - 4;
+  const Item parent = parent_of(level, first, nodes);
+  level.resize(first);
+  level.push_back(parent);
+  return level;
+}
 
-/// A bad tree: triangles in random order, four a leaf, leaves in random groups of up to four.
-inline Bvh random_tree(const Bvh& original, uint32_t seed) {
+/// How many triangles leaves of a bad tree have, and children its nodes.
+enum class TreeShape : uint8_t {
+  Full,   ///< four, but for the last
+  Mixed,  ///< one to four
+  Chain,  ///< one to four; and each node has a node, as its last child, and leaves beside it: as deep as can be
+};
+
+/// A bad tree: triangles in random order, leaves in random groups.
+inline Bvh random_tree(const Bvh& original, uint32_t seed, TreeShape shape = TreeShape::Full) {
   std::mt19937 random(seed);
   struct Loose {
     const TriangleBlock* block;
@@ -73,13 +90,15 @@ inline Bvh random_tree(const Bvh& original, uint32_t seed) {
   Bvh tree;
   tree.bounds = original.bounds;
   std::vector<Item> level;
-  for (size_t first = 0; first < loose.size(); first += 4) {
+  const auto most = [&] { return shape == TreeShape::Full ? 4 : 1 + random() % 4; };
+  for (size_t first = 0; first < loose.size();) {
     TriangleBlock block{};
     block.first = static_cast<uint32_t>(first);
-    block.count = static_cast<uint32_t>(std::min<size_t>(4, loose.size() - first));
+    block.count = static_cast<uint32_t>(std::min<size_t>(most(), loose.size() - first));
+    first += block.count;
     Item item{size32(tree.blocks) | kLeafBit, {INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
     for (uint32_t lane = 0; lane < 4; ++lane) {
-      const Loose& from = loose[first + std::min(lane, block.count - 1)];
+      const Loose& from = loose[block.first + std::min(lane, block.count - 1)];
       block.triangles[lane] = lane < block.count ? from.block->triangles[from.lane] : kNoChild;
       for (int corner = 0; corner < 3; ++corner) {
         for (int axis = 0; axis < 3; ++axis) {
@@ -94,7 +113,7 @@ inline Bvh random_tree(const Bvh& original, uint32_t seed) {
     level.push_back(item);
   }
   std::vector<BvhNode> bottom_up;  // children before parents; turned round at the end
-  do level = parents_of(level, bottom_up);
+  do level = shape == TreeShape::Chain ? chained(level, bottom_up) : parents_of(level, bottom_up);
   while (level.size() > 1);
   const auto last = static_cast<uint32_t>(bottom_up.size() - 1);
   for (uint32_t i = 0; i <= last; ++i) {

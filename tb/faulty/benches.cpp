@@ -34,8 +34,10 @@ std::vector<Bench> read_benches(const std::string& path, const std::string& fold
       const std::string program = folder + "/" + bench.name;
       if (access(program.c_str(), X_OK) != 0)
         throw InputError(fmt::format("--benches {}: there is no bench {}: build it there", folder, bench.name));
-      bench.command = fmt::format("timeout {} {} --gtest_fail_fast '--gtest_filter={}'", kSecondsLimit, program,
-                                  entry.at("filter").get<std::string>());
+      const std::string arguments = entry.contains("arguments") ? entry["arguments"].get<std::string>()
+                                                                : fmt::format("--gtest_fail_fast '--gtest_filter={}'",
+                                                                              entry.at("filter").get<std::string>());
+      bench.command = fmt::format("timeout {} {} {}", kSecondsLimit, program, arguments);
       bench.tops = entry.at("tops").get<std::vector<std::string>>();
       benches.push_back(bench);
     }

@@ -15,8 +15,9 @@ struct Bench {
   std::vector<std::string> tops;  ///< modules that it instantiates
 };
 
-/// `path`: a JSON list of {"bench", "tops", "filter"}, the last of tests. They are programs in `folder`. Throws
-/// InputError when one is not there: what cannot be started would seem to notice every fault.
+/// `path`: a JSON list of {"bench", "tops", "filter"}, the last of tests, or {"bench", "tops", "arguments"}. They are
+/// programs in `folder`. Throws InputError when one is not there: what cannot be started would seem to notice every
+/// fault.
 std::vector<Bench> read_benches(const std::string& path, const std::string& folder);
 
 /// Those that have the module, in their order.

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <string>
 #include <vector>
 
@@ -49,13 +50,37 @@ inline Program storing_kernels(const Configuration& configuration, uint32_t addr
   return program;
 }
 
+/// Gives materials and light colours that are hard to get right: rays whose weight is 0 or -0 in some channels or in
+/// all, or so small that a product is a subnormal number. `mirrors`: nothing is lost in a reflection.
+inline void harden(Scene& scene, uint32_t seed, bool mirrors = false) {
+  Random random(seed);
+  const uint32_t plain = 2 + random() % 10;  // one channel in so many is hard
+  const auto channel = [&](float& value) {
+    if (random() % plain != 0) return;
+    constexpr std::array<float, 6> kHard = {0.0f, -0.0f, -0.0f, 0x1p-70f, 0x1p-126f, 1.0f};
+    value = kHard[random() % kHard.size()];
+  };
+  const auto colour = [&](Vec3& value) {
+    for (int axis = 0; axis < 3; ++axis) channel(value[axis]);
+    if (random() % (3 * plain) == 0) value = {-0.0f, random() % 2 == 0 ? 0.0f : -0.0f, -0.0f};
+  };
+  for (Material& material : scene.materials) {
+    colour(material.kd);
+    colour(material.ks);
+    if (mirrors) material.ks = {1, 1, 1};
+  }
+  colour(scene.light.color);
+}
+
 struct Frame {
   static constexpr uint32_t kStored = 0x8000;  // behind program and materials
 
-  Frame(const Machine& machine, const Picture& drawn) : picture(drawn) {
+  /// `hard`: seed of materials of which some have colours of 0, -0 or next to nothing; 0: they are those of the scene.
+  Frame(const Machine& machine, const Picture& drawn, uint32_t hard = 0) : picture(drawn) {
     const Configuration& configuration = machine.configuration;
     const Program program = storing_kernels(configuration, kStored);
-    const Scene cornell = make_cornell();
+    Scene cornell = make_cornell();
+    if (hard != 0) harden(cornell, hard);
     image = build_memory(program, cornell);
     EXPECT_LE(image.memory.size(), kStored);
     image.memory.grow(kStored + 64 * ((configuration.contents() + 15) / 16));

@@ -44,6 +44,10 @@ class TamperedChip : public ChipDevice {
     chip_->start(setup);
     copy();
   }
+  void start_next(const FrameSetup& setup) override {
+    chip_->start_next(setup);
+    copy();
+  }
   const ChipOutputs& outputs() const override { return chip_->outputs(); }
   void clock(const ChipInputs& inputs) override {
     chip_->clock(inputs);

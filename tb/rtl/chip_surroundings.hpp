@@ -21,11 +21,18 @@ namespace raypool::test {
 /// One in so many cycles, 0 never: who could take something does not; of a package being put a beat is late; the
 /// traverser asks for its tree. It has so many rays inside at most, and each for so many cycles at most; they leave in
 /// cycles that are multiples of `burst`. With `frame` the frame buffer takes one in so many cycles only. The memory has
-/// a line's first beat so many cycles after its request at most.
+/// a line's first beat so many cycles after its request at most. With `shut` each port takes nothing for so many
+/// cycles, and then is open for as many, so that what is before it fills up and then leaves while more comes. Of one in
+/// `age` rays the traverser says that it has been reflected many times.
 struct Traffic {
   uint32_t stall = 0, gap = 0, tree = 0;
-  uint32_t inside = 1000, cycles = 1, latency = 1, burst = 1, frame = 0;
+  uint32_t inside = 1000, cycles = 1, latency = 1, burst = 1, frame = 0, shut = 0, age = 0;
 };
+
+/// A port that is shut for `period` cycles, then open for as many; 0: always open. Ports have periods of their own.
+inline bool is_shut(uint32_t period, uint64_t cycle, uint32_t port) {
+  return period != 0 && cycle / (period + port * (period / 7)) % 2 == 1;
+}
 
 class Surroundings {
  public:
@@ -50,7 +57,7 @@ class Surroundings {
     ChipInputs in;
     in.start = !out.ready && hasty_() % 16 == 0;  // which is refused
     serve_memory(out, in, traffic);
-    in.frame_ready = traffic.frame != 0 ? one_of(traffic.frame) : !one_of(traffic.stall);
+    in.frame_ready = (traffic.frame != 0 ? one_of(traffic.frame) : !one_of(traffic.stall)) && !shut(traffic, 0);
     frame += out.frame_valid && in.frame_ready;
     take_rays(out, in, traffic);
     put(out, in, traffic);
@@ -75,6 +82,7 @@ class Surroundings {
   FrameSetup setup;                   ///< of the frame, to know kernels by
 
  private:
+  static constexpr uint32_t kMostAged = 250;  // reflections: the kernels count on from there, within eight bits
   struct Inside {
     uint32_t place = 0;
     bool shadow = false;
@@ -91,6 +99,7 @@ class Surroundings {
   };
 
   bool one_of(uint32_t number) { return number != 0 && random_() % number == 0; }
+  bool shut(const Traffic& traffic, uint32_t port) const { return is_shut(traffic.shut, cycles, port); }
   float share() { return static_cast<float>(random_() % 1000) / 1000; }
 
   Beat line_data(bool traverser, uint32_t address) const {
@@ -101,10 +110,10 @@ class Surroundings {
   }
 
   void serve_memory(const ChipOutputs& out, ChipInputs& in, const Traffic& traffic) {
-    in.memory_beat_valid = !lines_.empty() && lines_.front().from <= cycles;
+    in.memory_beat_valid = !lines_.empty() && lines_.front().from <= cycles && !shut(traffic, 1);
     if (in.memory_beat_valid) in.memory_beat_data = lines_.front().data;
     if (in.memory_beat_valid && out.memory_beat_ready) lines_.pop_front();
-    in.memory_request_ready = !one_of(traffic.stall);
+    in.memory_request_ready = !one_of(traffic.stall) && !shut(traffic, 2);
     if (!out.memory_request_valid || !in.memory_request_ready) return;
     const MemoryRequest& request = out.memory_request.request;
     if (request.write) {
@@ -121,7 +130,7 @@ class Surroundings {
   }
 
   void take_rays(const ChipOutputs& out, ChipInputs& in, const Traffic& traffic) {
-    in.ray_ready = inside_.size() + leaving_.size() < traffic.inside && !one_of(traffic.stall);
+    in.ray_ready = inside_.size() + leaving_.size() < traffic.inside && !one_of(traffic.stall) && !shut(traffic, 3);
     if (!out.ray_valid || !in.ray_ready) return;
     std::copy(out.ray_data.begin(), out.ray_data.end(), &ray_[ray_beats_ * kBeatWords]);
     ++ray_beats_;
@@ -156,6 +165,10 @@ class Surroundings {
       for (int axis = 0; axis < 3; ++axis) hit[word::kNormal + axis] = as_bits(share() - 0.5f);
       hit[word::kMaterial] = scene_.material_base + random_() % scene_.materials * kMaterialBytes;
       hit[word::kTriangle] = random_() % 1000;
+      if (one_of(traffic.age)) {
+        const uint32_t depth = hit[word::kFlags] & kDepthMask;
+        hit[word::kFlags] += std::min(kMostAged - std::min(depth, kMostAged), static_cast<uint32_t>(random_() % 256));
+      }
       ray.record = packed(hit, scene_.layout);
     }
     return ray;

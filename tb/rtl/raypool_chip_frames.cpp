@@ -1,7 +1,8 @@
 // Draws frames of chance on tiny chips, rtl/chip.v in lockstep with its model: on machines that have every pair of
 // values of what a chip has (sim/cosim/covering.hpp), with pictures, traffic at every port and answers of the traverser
 // drawn at random; and on as many with the traverser inside, with scenes, trees and waits at the memories drawn at
-// random, whose pictures must be the native engine's. A frame that fails is made smaller while it still does, and the
+// random, whose pictures must be the native engine's. Some trees are none: of these the fault is compared, and what the
+// chip does behind it. A frame that fails is made smaller while it still does, and the
 // command that repeats it is printed. With --record one frame is drawn on the model alone and written down, for another
 // simulator of the Verilog (scripts/icarus_chip.sh).
 #include <fmt/format.h>
@@ -16,11 +17,13 @@
 #include <fstream>
 #include <initializer_list>
 #include <memory>
+#include <optional>
 #include <random>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "chip/chip.hpp"
 #include "cosim/chip_recorder.hpp"
 #include "lockstep/lockstep_chip.hpp"
 #include "lockstep/rtl_loader.hpp"
@@ -41,8 +44,10 @@ struct Case {
   Picture picture{};
   Traffic traffic;
   uint32_t seed = 0;
-  // With the traverser inside, in place of the traffic. `tree`: of a bad one; 0: the scene's own.
-  uint32_t triangles = 0, tree = 0;
+  // With the traverser inside, in place of the traffic. `tree`: of a bad one; 0: the scene's own. `spoilt`: of what
+  // makes it none; 0: nothing. `mirrors`: all that is there.
+  uint32_t triangles = 0, tree = 0, spoilt = 0;
+  bool mirrors = false;
   WaitingChip::Waits waits;
   std::vector<Case> after;  ///< frames that follow it without a reset, amid what is around this one
 };
@@ -51,17 +56,26 @@ bool is_inside(const Machine& machine) { return has_traverser(machine.configurat
 
 std::string to_string(const Case& c, const Machine& machine) {
   if (is_inside(machine)) {
-    return fmt::format("{} x {} pixels, depth {}, {}; {} triangles, {}; request {}, beat {}, frame {}", c.picture.width,
-                       c.picture.height, c.picture.depth, c.picture.reflections ? "reflections" : "no reflections",
-                       c.triangles, c.tree == 0 ? "their own tree" : "a bad tree", c.waits.request, c.waits.beat,
-                       c.waits.frame);
+    return fmt::format(
+        "{} x {} pixels, depth {}, {}; {} triangles{}, {}{}; request {}, beat {}, frame {}, shut {}", c.picture.width,
+        c.picture.height, c.picture.depth, c.picture.reflections ? "reflections" : "no reflections", c.triangles,
+        c.mirrors ? " of mirrors" : "", c.tree == 0 ? "their own tree" : "a bad tree",
+        c.spoilt == 0 ? "" : " that is spoilt", c.waits.request, c.waits.beat, c.waits.frame, c.waits.shut);
   }
   const Traffic& t = c.traffic;
   return fmt::format(
       "{} x {} pixels, depth {}, {}; stall {}, gap {}, tree {}, inside {}, cycles {}, latency {}, burst "
-      "{}, frame {}",
+      "{}, frame {}, shut {}, age {}",
       c.picture.width, c.picture.height, c.picture.depth, c.picture.reflections ? "reflections" : "no reflections",
-      t.stall, t.gap, t.tree, t.inside, t.cycles, t.latency, t.burst, t.frame);
+      t.stall, t.gap, t.tree, t.inside, t.cycles, t.latency, t.burst, t.frame, t.shut, t.age);
+}
+
+constexpr uint32_t kMostShort = 4;  ///< depth of most pictures
+
+/// Of the depths one in four is above 127, and of these some differ from a small one in bit 7 alone.
+uint32_t any_depth(Random& random, uint32_t small) {
+  if (random() % 4 != 0) return small;
+  return random() % 3 != 0 ? 127 + small : 127 + random() % (kLargestDepth - 126);
 }
 
 /// With what follows.
@@ -84,6 +98,9 @@ Case case_of(uint32_t seed, uint32_t machine, uint32_t frame) {
   c.traffic.burst = one({1, 1, 500, 2000});
   c.traffic.frame = one({0, 0, 3, 100});
   c.seed = random();
+  c.traffic.shut = one({0, 0, 20, 150, 700});
+  c.traffic.age = one({0, 0, 2, 7});
+  c.picture.depth = any_depth(random, c.picture.depth);
   return c;
 }
 
@@ -95,14 +112,25 @@ Case inside_case_of(uint32_t seed, uint32_t machine, uint32_t frame) {
   c.picture = {1 + random() % 8, 1 + random() % 6, 1 + random() % 4, random() % 4 != 0};
   c.triangles = 1 + random() % one({1, 4, 12, 12, 40, 40, 100, 300});
   c.tree = random() % 2 == 0 ? 0 : 1 + random() % 1000;
-  c.waits = {one({0, 0, 2, 5, 20}), one({0, 0, 2, 5, 20}), one({0, 0, 2, 30})};
+  c.waits = {one({0, 0, 2, 5, 20}), one({0, 0, 2, 5, 20}), one({0, 0, 2, 30}), one({0, 0, 12, 40})};
   c.seed = random();
+  // A ray that has been reflected more than 127 times takes a picture of its own.
+  c.mirrors = frame % 25 == 0;
+  c.picture.depth = any_depth(random, c.picture.depth);
+  if (random() % 8 == 0) c.spoilt = 1 + random() % 1000;
+  if (c.mirrors) {
+    c.picture = {1, 1, one({127, 129, 129, 130}), true};
+    c.triangles = 1 + random() % 4;
+    c.spoilt = 0;
+    c.waits = {};
+  }
   return c;
 }
 
 /// With the frames that follow it: none, one or two.
 Case with_followers(Case c, uint32_t seed, uint32_t machine, uint32_t frame,
                     Case (*any)(uint32_t, uint32_t, uint32_t)) {
+  if (c.spoilt != 0) return c;  // it may stop the traverser, and then the chip is never ready
   std::seed_seq all{seed, machine, frame, 1u};
   Random random(all);
   for (uint32_t more = random() % 4 / 2 + random() % 4 / 3; more > 0; --more) {
@@ -111,6 +139,7 @@ Case with_followers(Case c, uint32_t seed, uint32_t machine, uint32_t frame,
     next.picture.width = std::min(next.picture.width, 4u);
     next.picture.height = std::min(next.picture.height, 3u);
     if (random() % 4 == 0) next.picture = c.picture;
+    next.spoilt = 0;
   }
   return c;
 }
@@ -118,39 +147,62 @@ Case with_followers(Case c, uint32_t seed, uint32_t machine, uint32_t frame,
 /// Of frames that held.
 struct Drawn {
   Reached reached;
-  uint64_t cycles = 0, rays = 0;
+  uint64_t cycles = 0, rays = 0, faults = 0;
 };
+
+Scene scene_of(const Case& c) {
+  Scene scene = scene_of_chance(c.seed, c.triangles, c.mirrors);
+  // In a closed box rays would be reflected as often as they may be.
+  if (c.picture.depth > kMostShort && !c.mirrors) make_dull(scene, c.seed);
+  return scene;
+}
 
 /// Draws the frames that follow one in its memories, each as soon as the chip is ready for it, and their scenes are
 /// others. Returns how many.
 uint32_t draw_followers(const Case& c, const Machine& machine, Drawing& first, ChipDevice& chip) {
   std::deque<Drawing> drawings;
-  for (const Case& next : c.after)
-    drawings.emplace_back(machine, next.picture, scene_of_chance(next.seed, next.triangles), next.tree);
+  for (const Case& next : c.after) drawings.emplace_back(machine, next.picture, scene_of(next), next.tree);
   draw_next(drawings, first.memory(), chip, [](const ChipResult&) {});
   return size32(drawings);
+}
+
+/// Draws it, and compares with the native engine what can be. Without a result the tree was none, and the traverser has
+/// said so: then the chip goes on for some time, and nothing comes back.
+std::optional<ChipResult> draw_inside(const Case& c, const Machine& machine, Drawing& drawing, WaitingChip& chip,
+                                      Reached& reached) {
+  if (!c.after.empty()) drawing.memory().grow(drawing.memory().size() + kRoomForNext);
+  try {
+    const ChipResult result = drawing.draw_on(chip, FrameBegin::Reset, !c.after.empty());
+    if (c.spoilt == 0) drawing.expect_native(result);
+    reached.frames += draw_followers(c, machine, drawing, chip);
+    return result;
+  } catch (const TraverserFault&) {
+    if (c.spoilt == 0) throw;
+  }
+  ChipInputs inputs;
+  inputs.memory_request_ready = inputs.frame_ready = true;
+  for (int cycle = 0; cycle < 1000; ++cycle) chip.clock(inputs);
+  return {};
 }
 
 /// As failure_of(), with the traverser inside.
 std::string failure_inside(const Case& c, const Machine& machine, const std::string& library, Drawn& drawn) {
   try {
-    Drawing drawing(machine, c.picture, scene_of_chance(c.seed, c.triangles), c.tree);
+    Drawing drawing(machine, c.picture, scene_of(c), c.tree, c.spoilt);
     const std::unique_ptr<LockstepChip> chip =
         make_lockstep_chip(machine.configuration, load_rtl_chip(library, machine.configuration, machine.units),
                            drawing.memory(), machine.configuration.name);
     WaitingChip waiting(*chip, c.waits, c.seed);
-    if (!c.after.empty()) drawing.memory().grow(drawing.memory().size() + kRoomForNext);
-    const ChipResult result = drawing.draw_on(waiting, FrameBegin::Reset, !c.after.empty());
-    drawing.expect_native(result);
-    drawn.reached.frames += draw_followers(c, machine, drawing, waiting);
-    if (chip->lockstep_counts().counters == 0) return "the counters were not compared";
+    const std::optional<ChipResult> result = draw_inside(c, machine, drawing, waiting, drawn.reached);
+    if (result && chip->lockstep_counts().counters == 0) return "the counters were not compared";
     drawn.cycles += chip->lockstep_counts().cycles;
     drawn.rays += chip->lockstep_counts().rays;
     ++drawn.reached.frames;
     drawn.reached.deep += waiting.deep;
     drawn.reached.black += waiting.black;
-    for (size_t kernel = 0; kernel < kRayKernels; ++kernel)
-      drawn.reached.launches[kernel] += result.kernels[static_cast<RayKernel>(kernel)].launches;
+    drawn.faults += result ? 0 : 1;
+    for (size_t kernel = 0; result && kernel < kRayKernels; ++kernel)
+      drawn.reached.launches[kernel] += result->kernels[static_cast<RayKernel>(kernel)].launches;
   } catch (const std::exception& error) {
     return error.what();
   }
@@ -161,7 +213,7 @@ std::string failure_inside(const Case& c, const Machine& machine, const std::str
 void draw_frames(const Case& c, ChipDevice& chip, const Machine& machine, Frame& frame, Reached& reached) {
   draw(chip, machine, frame, c.traffic, c.seed, reached, FrameBegin::Reset, !c.after.empty());
   for (const Case& next : c.after) {
-    frame.show(Frame(machine, next.picture));
+    frame.show(Frame(machine, next.picture, next.seed | 1));
     draw(chip, machine, frame, next.traffic, next.seed, reached, FrameBegin::Next, &next != &c.after.back());
   }
 }
@@ -169,7 +221,7 @@ void draw_frames(const Case& c, ChipDevice& chip, const Machine& machine, Frame&
 /// Draws it on a device of its own. Returns what went wrong; empty: nothing.
 std::string failure_of(const Case& c, const Machine& machine, const std::string& library, Drawn& drawn) {
   if (is_inside(machine)) return failure_inside(c, machine, library, drawn);
-  Frame frame(machine, c.picture);
+  Frame frame(machine, c.picture, c.seed | 1);
   try {
     const std::unique_ptr<LockstepChip> chip =
         make_lockstep_chip(machine.configuration, load_rtl_chip(library, machine.configuration, machine.units),
@@ -197,15 +249,14 @@ void record(const Case& c, const Machine& machine, const std::string& folder) {
     drawn(recorder);
   };
   if (is_inside(machine)) {
-    Drawing drawing(machine, c.picture, scene_of_chance(c.seed, c.triangles), c.tree);
+    Drawing drawing(machine, c.picture, scene_of(c), c.tree, c.spoilt);
     draw_on(drawing.memory(), [&](ChipDevice& chip) {
       WaitingChip waiting(chip, c.waits, c.seed);
-      if (!c.after.empty()) drawing.memory().grow(drawing.memory().size() + kRoomForNext);
-      drawing.expect_native(drawing.draw_on(waiting, FrameBegin::Reset, !c.after.empty()));
-      draw_followers(c, machine, drawing, waiting);
+      Reached reached;
+      draw_inside(c, machine, drawing, waiting, reached);
     });
   } else {
-    Frame frame(machine, c.picture);
+    Frame frame(machine, c.picture, c.seed | 1);
     Reached reached;
     draw_on(frame.image.memory, [&](ChipDevice& chip) { draw_frames(c, chip, machine, frame, reached); });
   }
@@ -252,9 +303,10 @@ Case shrunk(Case c, const Machine& machine, const std::string& library) {
 struct Options {
   std::string program;  ///< as it was called
   std::string record;   ///< folder for one frame; empty: none
-  uint32_t frames = 50, seed = 1, machine = 0, frame = 0;
+  uint32_t frames = 50, seed = 1, frame = 0;
+  std::vector<uint32_t> only;  ///< machines
   uint32_t machines = 0;
-  bool inside = false;
+  bool inside = false, stop = false;
 };
 
 class Clock {
@@ -286,21 +338,24 @@ int run(const Options& options) {
   const auto outside = static_cast<uint32_t>(machines.size());
   for (Machine& machine : inside_machines()) machines.push_back(std::move(machine));
   const auto last = static_cast<uint32_t>(machines.size());
-  if (options.machine > last)
-    throw InputError(fmt::format("--machine is {}; there are machines 1 to {}", options.machine, last));
+  for (const uint32_t machine : options.only) {
+    if (machine > last) throw InputError(fmt::format("--machine is {}; there are machines 1 to {}", machine, last));
+  }
   const auto case_on = [&](uint32_t number, uint32_t frame) {
     const auto any = number > outside ? inside_case_of : case_of;
     return with_followers(any(options.seed, number, frame), options.seed, number, frame, any);
   };
   if (!options.record.empty()) {
-    record(case_on(options.machine, options.frame), machines[options.machine - 1], options.record);
+    const uint32_t number = options.only.front();
+    record(case_on(number, options.frame), machines[number - 1], options.record);
     return 0;
   }
   print_sets();
   const uint32_t first = options.inside ? outside + 1 : 1;
   const auto chosen = [&](uint32_t number) {
-    if (options.machine != 0) return number == options.machine;
-    return number >= first && (options.machines == 0 || number < first + options.machines);
+    const auto& only = options.only;
+    if (number < first || (!only.empty() && std::count(only.begin(), only.end(), number) == 0)) return false;
+    return !only.empty() || (options.machines == 0 || number < first + options.machines);
   };
   Drawn drawn;
   uint32_t drawn_on = 0, failed = 0;
@@ -320,6 +375,11 @@ int run(const Options& options) {
       held = failure.empty();
       if (held) continue;
       ++failed;
+      if (options.stop) {
+        fmt::print("FAILED on {}, frame {}: {}\n{}\n", machine.configuration.name, frame, to_string(c, machine),
+                   failure);
+        return 1;
+      }
       fmt::print(
           "{}, {} units, frame {}: {}\n{}\nthe smallest that fails: {}\n"
           "again with: {} --seed {} --frames {} --machine {} --frame {}\n",
@@ -336,9 +396,9 @@ int run(const Options& options) {
   const Reached& all = drawn.reached;
   const auto launches = [&all](RayKernel kernel) { return all.launches[to_underlying(kernel)]; };
   fmt::print(
-      "{} machines, {} frames, {} cycles, {} rays, of which {} too deep and {} black; {} kernels cast, {} "
-      "reflected, {} lit, {} shaded; {} machines failed\n",
-      drawn_on, all.frames, drawn.cycles, drawn.rays, all.deep, all.black, launches(RayKernel::CastEye),
+      "{} machines, {} frames, {} cycles, {} rays, of which {} too deep and {} black; {} trees were none; {} kernels "
+      "cast, {} reflected, {} lit, {} shaded; {} machines failed\n",
+      drawn_on, all.frames, drawn.cycles, drawn.rays, all.deep, all.black, drawn.faults, launches(RayKernel::CastEye),
       launches(RayKernel::CastSecondary), launches(RayKernel::CastSecondaryDirect), launches(RayKernel::Shade), failed);
   if (all.frames == 0 && failed == 0) throw InputError("no frame was drawn: --frame is above --frames");
   return failed == 0 ? 0 : 1;
@@ -358,11 +418,14 @@ int main(int argc, char** argv) {
   app.add_option("--seed", options.seed, "of pictures, scenes and traffic")->capture_default_str();
   app.add_option("--machines", options.machines, "only the first so many machines; 0: all")->capture_default_str();
   app.add_flag("--inside", options.inside, "only those with the traverser inside");
-  auto* machine = app.add_option("--machine", options.machine, "only this machine, from 1")->check(CLI::PositiveNumber);
+  auto* machine = app.add_option("--machine", options.only, "only this machine, from 1; or several, with , between")
+                      ->check(CLI::PositiveNumber)
+                      ->delimiter(',');
   auto* frame = app.add_option("--frame", options.frame, "only this frame of it, from 1")->check(CLI::PositiveNumber);
   app.add_option("--record", options.record, "folder that gets this frame as the model draws it; no Verilog is needed")
       ->needs(machine)
       ->needs(frame);
+  app.add_flag("--stop", options.stop, "end at the first frame that fails, and do not make it smaller");
   CLI11_PARSE(app, argc, argv);
   try {
     return raypool::run(options);

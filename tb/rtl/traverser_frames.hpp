@@ -105,7 +105,8 @@ inline std::vector<Machine> inside_machines() {
 
 /// A soup of so many triangles, or a few more, with materials, camera and light of chance; at times all of it is one
 /// triangle many times. Half of them are in a closed box, with the camera, so that every ray hits something.
-inline Scene scene_of_chance(uint32_t seed, uint32_t triangles) {
+/// `mirrors`: in a closed box of mirrors, so that rays are reflected as often as they may be.
+inline Scene scene_of_chance(uint32_t seed, uint32_t triangles, bool mirrors = false) {
   Random random(seed);
   const auto share = [&random] { return static_cast<float>(random() % 1001) / 1000; };
   const auto near = [&](float distance) {
@@ -117,7 +118,7 @@ inline Scene scene_of_chance(uint32_t seed, uint32_t triangles) {
   if (random() % 16 == 0)
     for (size_t vertex = 3; vertex < scene.vertices.size(); ++vertex)
       scene.vertices[vertex] = scene.vertices[vertex % 3];
-  const bool closed = random() % 2 == 0;
+  const bool closed = random() % 2 == 0 || mirrors;
   if (closed) {
     const Vec3 half{2 * scale, 2 * scale, 2 * scale};
     MeshBuilder mesh(scene, 1);
@@ -136,15 +137,25 @@ inline Scene scene_of_chance(uint32_t seed, uint32_t triangles) {
   scene.camera.up = near(1) + Vec3{0, 2, 0};
   scene.camera.fov = 2 + 60 * share();
   scene.light = {at + near((closed ? 1.9f : 4) * scale), {share(), 1, share()}};
+  harden(scene, seed + 1, mirrors);
   check_scene(scene, "a scene of chance");
   return scene;
+}
+
+/// Half of the triangles reflect nothing, so that rays are soon reflected no more.
+inline void make_dull(Scene& scene, uint32_t seed) {
+  Random random(seed + 2);
+  scene.materials.push_back({"", {0.5f, 0.25f, 0.75f}, {}});
+  for (uint32_t& material : scene.triangle_materials)
+    if (random() % 2 == 0) material = size32(scene.materials) - 1;
 }
 
 /// A picture of a scene, and what it takes to draw it on a chip.
 class Drawing {
  public:
-  /// `tree`: of a bad tree, which the traverser has in place of the native engine's; 0: it has the same.
-  Drawing(const Machine& machine, const Picture& picture, Scene scene, uint32_t tree = 0)
+  /// `tree`: of a bad tree, which the traverser has in place of the native engine's; 0: it has the same. `spoilt`: of
+  /// what is wrong in the memory that holds it, so that it may be none; 0: nothing.
+  Drawing(const Machine& machine, const Picture& picture, Scene scene, uint32_t tree = 0, uint32_t spoilt = 0)
       : configuration_(machine.configuration),
         scene_(std::move(scene)),
         program_(ray_kernel_program(KernelTarget(configuration_))),
@@ -167,6 +178,7 @@ class Drawing {
     options_.depth = picture.depth;
     options_.reflections = picture.reflections;
     options_.frame = &sink_;
+    if (spoilt != 0) spoil(spoilt);
   }
 
   Memory& memory() { return image_.memory; }
@@ -211,7 +223,40 @@ class Drawing {
 
  private:
   static Bvh tree_of(const Bvh& good, uint32_t seed) {
-    return seed == 0 || good.nodes.empty() ? good : random_tree(good, seed);
+    return seed == 0 || good.nodes.empty() ? good : random_tree(good, seed, static_cast<TreeShape>(seed % 3));
+  }
+  // Some bits of what nodes say of their children, or of where nodes and triangles end. Their boxes and the triangles
+  // stay: they may be anything anyhow.
+  void spoil(uint32_t seed) {
+    Random random(seed);
+    TreeSetup& setup = tree_.setup;
+    for (uint32_t times = 1 + random() % 4; times > 0; --times) {
+      const uint32_t node = random() % std::max(1u, setup.triangles_line) * 64;
+      const uint32_t child = node + 40 + random() % 4 * 4, number = node / 64;
+      const auto put = [this](uint32_t address, uint32_t word) { tree_.memory.store(address, word); };
+      switch (random() % 8) {
+        case 0:
+          put(node + 12, (tree_.memory.load(node + 12) & 0xffffff) | random() % 8 << 24);
+          break;
+        case 1:
+          put(child, number);
+          break;
+        case 2:
+          put(child, number + 1 + random() % 3);
+          break;
+        case 3:
+          put(child, setup.triangles_line - 1 + random() % 3);
+          break;
+        case 4:
+          put(child, kLeafBit | (setup.triangle_lines * 16 / 11 - 3 + random() % 6) | random() % 4 << 29);
+          break;
+        case 5:
+          setup.triangle_lines -= std::min(setup.triangle_lines, static_cast<uint32_t>(random() % 3));
+          break;
+        default:
+          put(child, tree_.memory.load(child) ^ 1u << random() % 32);
+      }
+    }
   }
 
   const Configuration configuration_;
@@ -226,11 +271,12 @@ class Drawing {
 };
 
 /// A chip in front of which some transfers wait, one in so many cycles (0: none): a request to the memories, a beat of
-/// theirs, a contribution to the frame buffer.
+/// theirs, a contribution to the frame buffer. With `shut` the memories' ports are shut for so many cycles, then open
+/// for as many, and the frame buffer's for ten times as many.
 class WaitingChip : public ChipDevice {
  public:
   struct Waits {
-    uint32_t request = 0, beat = 0, frame = 0;
+    uint32_t request = 0, beat = 0, frame = 0, shut = 0;
   };
 
   /// `chip` must outlive it.
@@ -267,9 +313,10 @@ class WaitingChip : public ChipDevice {
   // What is around the chip sees nothing of a transfer that waits.
   void decide() {
     const auto one_of = [this](uint32_t number) { return number != 0 && random_() % number == 0; };
-    request_waits_ = one_of(waits_.request);
-    beat_waits_ = one_of(waits_.beat);
-    frame_waits_ = one_of(waits_.frame);
+    ++cycle_;
+    request_waits_ = one_of(waits_.request) || is_shut(waits_.shut, cycle_, 0);
+    beat_waits_ = one_of(waits_.beat) || is_shut(waits_.shut, cycle_, 1);
+    frame_waits_ = one_of(waits_.frame) || is_shut(10 * waits_.shut, cycle_, 2);
     out_ = chip_.outputs();
     out_.memory_request_valid &= !request_waits_;
     out_.memory_beat_ready &= !beat_waits_;
@@ -280,6 +327,7 @@ class WaitingChip : public ChipDevice {
   Random hasty_{1};  // a host that asks for frames while one is drawn
   Waits waits_;
   Random random_;
+  uint64_t cycle_ = 0;
   bool request_waits_ = false, beat_waits_ = false, frame_waits_ = false;
   ChipOutputs out_;
 };
