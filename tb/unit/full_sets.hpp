@@ -10,8 +10,8 @@
 namespace raypool::bench {
 
 /// Counts cycles in which a lookup of a bank waits and all ways of a set are promised to lines on their way. `waits`: a
-/// register is free all the same. `others_freed`: a register is freed and the set stays full, so that the lookup must go
-/// on waiting; `own_freed`: the set gets a way back.
+/// register is free all the same. `others_freed`: a register is freed and the set stays full, so that the lookup must
+/// go on waiting; `own_freed`: the set gets a way back.
 class FullSets {
  public:
   explicit FullSets(const TreeCache::Sizes& sizes) : sizes_(sizes) {}
