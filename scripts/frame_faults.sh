@@ -2,7 +2,8 @@
 # How many of the mistakes of tb/faults/catalogue.json in chip and traverser do random frames find, with no bench of a
 # single block? scripts/frame_faults.sh FOLDER [OPTION]... builds raypool_chip_frames from a copy of rtl/ that carries
 # them all, and runs it with one after another; OPTION: for raypool_faults (--only 266 267, --least 90, --resume).
-# MACHINES: numbers of machines, with , between, instead of all; FRAMES: of each (default 50); CATALOGUE: other mistakes.
+# MACHINES: numbers of machines, with , between, instead of all; FRAMES: of each (default 50); CATALOGUE: other
+# mistakes.
 set -eu -o pipefail
 [ $# -ge 1 ] || { echo "usage: scripts/frame_faults.sh FOLDER [OPTION]..." >&2; exit 1; }
 root=$(cd "$(dirname "$0")/.." && pwd)
