@@ -177,6 +177,7 @@ class ChipModel : public ChipDevice {
 
   const Traverser* look_inside() {
     if (!blocks_->traverser) return nullptr;
+    looks_inside_ = true;
     blocks_->traverser->look_inside();
     return &*blocks_->traverser;
   }
@@ -350,6 +351,7 @@ class ChipModel : public ChipDevice {
     if (ready_) {
       if (!blocks_->traverser_used) return;
       blocks_->traverser.emplace(traverser_sizes(configuration_));
+      if (looks_inside_) blocks_->traverser->look_inside();
       blocks_->traverser_used = false;
       return;
     }
@@ -504,7 +506,8 @@ class ChipModel : public ChipDevice {
   FrameSetup setup_;
   bool ready_ = true;    // for a frame
   bool starts_ = false;  // one begins in the next cycle that is clocked
-  uint64_t cycle_ = 0;   // since the reset
+  bool looks_inside_ = false;
+  uint64_t cycle_ = 0;  // since the reset
   ChipOutputs out_;
   ChipOutputs::Outcome outcome_;  // of the cycle before, as are these
   bool exported_valid_ = false;

@@ -65,6 +65,7 @@ bool ChipInspection::expect_words(const Wire& wire, uint32_t low, const uint32_t
 void ChipInspection::advance(uint64_t cycle) {
   if (!active_ || model_ == nullptr || !findings_.empty()) return;
   cycle_ = cycle;
+  if (model_->handed().lanes.empty()) return;  // between frames the traverser is in reset
   for (uint32_t lane = 0; lane < model_->lanes(); ++lane) {
     lane_ = lane;
     advance_lane(lane);

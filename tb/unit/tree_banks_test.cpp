@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <verilated.h>
 
+#include <algorithm>
 #include <array>
 #include <deque>
 #include <map>
@@ -364,11 +365,11 @@ TYPED_TEST(TreeBanksTest, HaveNoLineOfTheTreeBeforeBehindAReset) {
   constexpr uint32_t kLines = TypeParam::kSizes.lines;
   uint64_t with_fill = 0, given = 0;
   Bench<TypeParam> bench(7);
-  for (uint32_t tree = 0; tree < 100; ++tree) {
+  for (uint32_t tree = 0; tree < 300; ++tree) {
     const Traffic all[] = {
         {1, 0, 1, 0, 0, 1, kLines, 3}, {1, 3, 1, 5, 2, 4, kLines / 2, 2}, {1, 2, 1, 0, 0, 9, kLines}};
     const Traffic& traffic = all[tree % 3];
-    for (uint32_t i = 0; i < kLines; ++i) ASSERT_NO_FATAL_FAILURE(bench.clock(traffic));
+    for (uint32_t i = 0; i < std::max(kLines, 60u); ++i) ASSERT_NO_FATAL_FAILURE(bench.clock(traffic));
     ASSERT_NO_FATAL_FAILURE(bench.restart(traffic));
   }
   with_fill += bench.restarts_with_fill;
