@@ -182,13 +182,15 @@ def tidy(piece, flags):
 
 
 def main():
-    parser = argparse.ArgumentParser(prog="tidy.py", usage=__doc__)
+    parser = argparse.ArgumentParser(prog="tidy.py", description=__doc__,
+                                     usage="scripts/tidy.py BUILD [--since COMMIT | --share K/N] [FOLDER...]",
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build")
     parser.add_argument("folders", nargs="*")
     chosen = parser.add_mutually_exclusive_group()
     chosen.add_argument("--since")
     chosen.add_argument("--share")
-    options = parser.parse_args()
+    options = parser.parse_intermixed_args()
     file = pathlib.Path(options.build, "compile_commands.json")
     if not file.is_file():
         sys.exit(f"tidy.py: there is no {file}: configure the build with tests, or run make lint")
