@@ -185,9 +185,7 @@ int report(const Options& options, const Hierarchy& hierarchy, const std::vector
   return judgements.up_to_date() ? 0 : 1;
 }
 
-int run(int argc, char** argv) {
-  Options options;
-  CLI::App app("Runs designers' mistakes on random programs in lockstep and on the benches of single blocks.");
+void add_options(CLI::App& app, Options& options) {
   app.add_option("folder", options.folder, "where scripts/faults.sh has built the machines")->required();
   app.add_option("--catalogue", options.catalogue, "the mistakes")->capture_default_str();
   app.add_option("--survivors", options.survivors, "JSON file with the known survivors and why they are")
@@ -212,8 +210,10 @@ int run(int argc, char** argv) {
   app.add_flag("--resume", options.resume,
                "take over what --json has of an interrupted run of the same units, and run the others");
   app.add_flag("--verbose", options.verbose, "print the whole report of each difference");
-  CLI11_PARSE(app, argc, argv);
+}
 
+/// Those of the catalogue that the options leave.
+std::vector<Fault> chosen_faults(const Options& options, const Hierarchy& hierarchy) {
   std::vector<Fault> faults = read_catalogue(options.catalogue);
   if (!options.only.empty()) {
     const auto left_out = [&](const Fault& f) {
@@ -221,13 +221,23 @@ int run(int argc, char** argv) {
     };
     faults.erase(std::remove_if(faults.begin(), faults.end(), left_out), faults.end());
   }
-  const Hierarchy hierarchy(options.rtl);
   if (options.beside_units) {
     const auto in_unit = [&](const Fault& f) { return hierarchy.contains("multiprocessor", module_of(f.file)); };
     faults.erase(std::remove_if(faults.begin(), faults.end(), in_unit), faults.end());
   } else if (options.every > 0) {
     faults = sample(faults, hierarchy, options.every);
   }
+  return faults;
+}
+
+int run(int argc, char** argv) {
+  Options options;
+  CLI::App app("Runs designers' mistakes on random programs in lockstep and on the benches of single blocks.");
+  add_options(app, options);
+  CLI11_PARSE(app, argc, argv);
+
+  const Hierarchy hierarchy(options.rtl);
+  const std::vector<Fault> faults = chosen_faults(options, hierarchy);
   const std::vector<Machine> machines = options.beside_units ? std::vector<Machine>() : read_machines(options.folder);
   const std::vector<Bench> benches =
       options.benches.empty() ? std::vector<Bench>() : read_benches(options.bench_list, options.benches);

@@ -333,6 +333,24 @@ void print_sets() {
   print(covering_inside(), inside_factors(), " with the traverser inside, and three more");
 }
 
+/// Of all machines that have drawn.
+void print_totals(const Drawn& drawn, uint32_t machines, uint32_t failed) {
+  const Reached& all = drawn.reached;
+  const auto launches = [&all](RayKernel kernel) { return all.launches[to_underlying(kernel)]; };
+  fmt::print(
+      "{} machines, {} frames, {} cycles, {} rays, of which {} too deep and {} black; {} trees were none; {} kernels "
+      "cast, {} reflected, {} lit, {} shaded; {} machines failed\n",
+      machines, all.frames, drawn.cycles, drawn.rays, all.deep, all.black, drawn.faults, launches(RayKernel::CastEye),
+      launches(RayKernel::CastSecondary), launches(RayKernel::CastSecondaryDirect), launches(RayKernel::Shade), failed);
+}
+
+/// `first`: the first machine that may be.
+bool is_chosen(const Options& options, uint32_t first, uint32_t number) {
+  const auto& only = options.only;
+  if (number < first || (!only.empty() && std::count(only.begin(), only.end(), number) == 0)) return false;
+  return !only.empty() || (options.machines == 0 || number < first + options.machines);
+}
+
 int run(const Options& options) {
   std::vector<Machine> machines = covering_chips();
   const auto outside = static_cast<uint32_t>(machines.size());
@@ -352,15 +370,10 @@ int run(const Options& options) {
   }
   print_sets();
   const uint32_t first = options.inside ? outside + 1 : 1;
-  const auto chosen = [&](uint32_t number) {
-    const auto& only = options.only;
-    if (number < first || (!only.empty() && std::count(only.begin(), only.end(), number) == 0)) return false;
-    return !only.empty() || (options.machines == 0 || number < first + options.machines);
-  };
   Drawn drawn;
   uint32_t drawn_on = 0, failed = 0;
   for (uint32_t number = 1; number <= last; ++number) {
-    if (!chosen(number)) continue;
+    if (!is_chosen(options, first, number)) continue;
     const Machine& machine = machines[number - 1];
     Clock clock;
     const std::string library = chip_library(machine);
@@ -393,14 +406,8 @@ int run(const Options& options) {
                clock.seconds());
     std::fflush(stdout);
   }
-  const Reached& all = drawn.reached;
-  const auto launches = [&all](RayKernel kernel) { return all.launches[to_underlying(kernel)]; };
-  fmt::print(
-      "{} machines, {} frames, {} cycles, {} rays, of which {} too deep and {} black; {} trees were none; {} kernels "
-      "cast, {} reflected, {} lit, {} shaded; {} machines failed\n",
-      drawn_on, all.frames, drawn.cycles, drawn.rays, all.deep, all.black, drawn.faults, launches(RayKernel::CastEye),
-      launches(RayKernel::CastSecondary), launches(RayKernel::CastSecondaryDirect), launches(RayKernel::Shade), failed);
-  if (all.frames == 0 && failed == 0) throw InputError("no frame was drawn: --frame is above --frames");
+  print_totals(drawn, drawn_on, failed);
+  if (drawn.reached.frames == 0 && failed == 0) throw InputError("no frame was drawn: --frame is above --frames");
   return failed == 0 ? 0 : 1;
 }
 

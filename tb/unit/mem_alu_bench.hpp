@@ -132,6 +132,29 @@ class MemAluBench {
     return quads;
   }
 
+  /// The task is at the inputs in this cycle, and expected from then on.
+  void begin(const MemTask& task) {
+    ASSERT_TRUE(ready_) << "bench: task without ready";
+    auto& u = *unit_;
+    u.task_warp_i = task.warp;
+    u.task_operation_i = task.store;
+    u.task_mask_i = task.mask;
+    u.task_immediate_i = task.immediate;
+    for (int lane = 0; lane < kLanes; ++lane) {
+      put(u.task_operand_a_i, lane, task.address[lane] - task.immediate);
+      put(u.task_operand_b_i, lane, task.data[lane]);
+    }
+    ASSERT_FALSE(flights[task.warp]) << "bench: warp has a task";
+    if (!busy()) last_done_ = cycle;
+    begin_in_class(task);
+    Flight& flight = flights[task.warp].emplace();
+    flight.task = task;
+    flight.start = cycle;
+    auto quads = quads_of(task);
+    (task.store ? expected_stores : expected_loads) += quads.size();
+    if (task.store) flight.stores = std::move(quads);
+  }
+
   /// One cycle; the task arrives in it. Throws in the cycle after a fatal failure, so that
   /// no test goes on with a broken unit.
   void step(const MemTask* task = nullptr) {
@@ -140,26 +163,7 @@ class MemAluBench {
     auto& u = *unit_;
     const uint64_t before = outputs();
     u.task_valid_i = task != nullptr;
-    if (task) {
-      ASSERT_TRUE(ready_) << "bench: task without ready";
-      u.task_warp_i = task->warp;
-      u.task_operation_i = task->store;
-      u.task_mask_i = task->mask;
-      u.task_immediate_i = task->immediate;
-      for (int lane = 0; lane < kLanes; ++lane) {
-        put(u.task_operand_a_i, lane, task->address[lane] - task->immediate);
-        put(u.task_operand_b_i, lane, task->data[lane]);
-      }
-      ASSERT_FALSE(flights[task->warp]) << "bench: warp has a task";
-      if (!busy()) last_done_ = cycle;
-      begin_in_class(*task);
-      Flight& flight = flights[task->warp].emplace();
-      flight.task = *task;
-      flight.start = cycle;
-      auto quads = quads_of(*task);
-      (task->store ? expected_stores : expected_loads) += quads.size();
-      if (task->store) flight.stores = std::move(quads);
-    }
+    if (task) ASSERT_NO_FATAL_FAILURE(begin(*task));
     u.request_ready_i = memory.decide_ready();
     const auto beat = memory.respond(cycle);
     u.response_valid_i = beat.has_value();
