@@ -1,6 +1,6 @@
 #!/bin/bash
 # Configures the build folder: scripts/configure.sh BUILD TESTS [OPTION]..., TESTS = ON or OFF. ON once
-# stays ON; nothing is done when it fits. A folder that was made for another checkout is configured anew.
+# stays ON; nothing is done when it fits. A folder that was made for another checkout is configured again.
 # OPTION: for CMake, of a folder that does not exist yet.
 set -eu -o pipefail
 build=$1 tests=$2

@@ -2,7 +2,7 @@
 """Checks the tables of counters in docs/verification.md: scripts/counter_table.py; exit code 1 if a row is missing.
 
 Each register of rtl/ that is set to a sum or difference with itself has its place in one of two tables: of those that
-begin anew at their end, with the tests in which they do, and of those that never come there. What the tables name is
+wrap, with the tests in which they do, and of those that never come there. What the tables name is
 in the Verilog, and a test that is named builds the module.
 """
 import re
@@ -11,7 +11,7 @@ import sys
 import module_table
 
 PAGE = module_table.ROOT / "docs/verification.md"
-HEADS = ("| begins anew |", "| never comes to its end |")
+HEADS = ("| wraps |", "| never comes to its end |")
 LEVELS = 2  # of wires between a register and its sum
 
 
@@ -75,7 +75,7 @@ def main():
                 if module in texts and module not in built.get(test, ()):
                     errors.append(f"{module}.{register}: {test} does not build it")
         if len(cells) == 4 and not named_tests:
-            errors.append(f"{cells[0]}: the row names no test in which it begins anew")
+            errors.append(f"{cells[0]}: the row names no test in which it wraps")
     for module, text in texts.items():
         errors += [
             f"{module}.{register}: a counter without a row"

@@ -33,7 +33,7 @@ set_tests_properties(inspected_differences PROPERTIES FIXTURES_REQUIRED faulty_2
 
 # docs/modules.md names every module of rtl/, and no page names what is not there.
 add_test(NAME module_table COMMAND ${scripts}/module_table.py)
-# docs/verification.md says of each counter of rtl/ in which test it begins anew.
+# docs/verification.md says of each counter of rtl/ in which test it wraps.
 add_test(NAME counter_table COMMAND ${scripts}/counter_table.py)
 add_test(NAME pages COMMAND ${scripts}/pages.py)
 # tb stands on sim and this on cpp_model; CMakeLists.txt checks their targets.

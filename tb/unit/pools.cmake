@@ -86,7 +86,7 @@ raypool_bench(frame_port_test)
 raypool_verilate(frame_port_test SOURCES ${RAYPOOL_RTL}/frame_port.v PREFIX Vframe_port TOP_MODULE frame_port
   VERILATOR_ARGS -O3 --default-language 1364-2005 -y ${RAYPOOL_RTL} -I${RAYPOOL_RTL})
 
-# What counts events for the report: narrow, so that it begins anew.
+# What counts events for the report: narrow, so that it wraps.
 raypool_bench(event_counter_test)
 raypool_pool_models(event_counter_test event_counter "BITS;LOW_BITS;EVENT_BITS;LATE"
   4_2_2_0 6_3_2_0 7_3_1_1 13_12_6_0)
