@@ -8,6 +8,8 @@ void ChipDevice::open_waveform(const std::string& path) {
   throw std::runtime_error(path + ": this engine has no waveforms");
 }
 
+void ChipDevice::settle(const ChipInputs& /*inputs*/) {}
+
 void ChipDevice::check_next(const FrameSetup& before, const FrameSetup& setup, const ChipOutputs& outputs) {
   if (!outputs.ready) throw std::logic_error("a frame is started while something of another one is left in the chip");
   if (setup.program_length != before.program_length || setup.memory_limit != before.memory_limit)

@@ -152,6 +152,8 @@ class ChipDevice {
   virtual void start_next(const FrameSetup& setup) = 0;
   virtual const ChipOutputs& outputs() const = 0;
   virtual void clock(const ChipInputs& inputs) = 0;
+  /// For who looks at signals inside: they show what a cycle with these inputs comes to, which clock() then ends.
+  virtual void settle(const ChipInputs& inputs);
 
   virtual ChipCounts counts() = 0;
   virtual uint64_t counter(int number) = 0;  ///< of the units, summed; see namespace counter

@@ -55,6 +55,7 @@ class Ports {
   // The block, or what in it says what its port shows; and what joins the blocks.
   std::string files() const {
     if (first_block_ == "controller" && first_port_ == "launch_block") return "rtl/tile_walk.v, rtl/chip.v";
+    if (first_port_ == "node_given" || first_port_ == "leaf_given") return "rtl/tree_banks.v, rtl/tree_cache.v";
     return fmt::format("rtl/{}.v, rtl/chip.v", first_block_);
   }
   void differs(const char* port, const std::string& rtl, const std::string& model) {

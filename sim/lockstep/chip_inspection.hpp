@@ -1,6 +1,6 @@
-// Looks inside the traverser of a chip, block by block, so that a report can name the file to look at. Up to the first
-// difference all blocks have had the same inputs in RTL and model; so the block whose output or state is the first to
-// differ is the one that went wrong.
+// Looks inside a chip, block by block, so that a report can name the file to look at: blocks that have a rule of their
+// own (block_rules.hpp), and the traverser. Up to the first difference all its blocks have had the same inputs in RTL
+// and model; so the block whose output or state is the first to differ is the one that went wrong.
 #pragma once
 
 #include <cstdint>
@@ -8,8 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "lockstep/block_rules.hpp"
 #include "lockstep/chip_wires.hpp"
-#include "lockstep/mismatch.hpp"
+#include "lockstep/findings.hpp"
 #include "machine/chip_device.hpp"
 #include "machine/traverser.hpp"
 
@@ -17,18 +18,18 @@ namespace raypool::lockstep {
 
 class ChipInspection {
  public:
-  /// `rtl` must outlive it. Inactive if the RTL lacks a signal, or has no traverser inside.
+  /// `rtl` must outlive it. Inactive if the RTL lacks what it looks at.
   ChipInspection(const Configuration& configuration, const ChipDevice& rtl);
 
   bool active() const { return active_; }
-  /// The model has started another frame; its traverser.
-  void restart(const Traverser* model);
-  /// The end of a cycle: the model has been clocked, the RTL has not, and shows what is handed over in the cycle.
+  /// The model has started another frame; its traverser, if it has one. `reset`: the chip was reset before.
+  void restart(const Traverser* model, bool reset);
+  /// The end of a cycle: the model has been clocked, the RTL has settled, and shows what is handed over in the cycle.
   void advance(uint64_t cycle);
   /// Both have been clocked: the state that the next cycle begins with.
   void check(uint64_t cycle);
   /// All of the first cycle that has any; the likeliest first.
-  const std::vector<Finding>& findings() const { return findings_; }
+  const std::vector<Finding>& findings() const { return findings_.all(); }
 
  private:
   /// A finding unless both are equal; true if they are.
@@ -36,6 +37,9 @@ class ChipInspection {
   /// The same of so many words, that begin at bit `low` of the wire.
   bool expect_words(const Wire& wire, uint32_t low, const uint32_t* words, uint32_t count, const char* files,
                     const char* what);
+  void find_lanes(const ChipConfiguration& chip);
+  bool traverser_seen() const { return traverser_active_ && model_ != nullptr; }
+  void advance_traverser();
   void advance_lane(uint32_t number);
   void advance_lines(uint32_t number);
   void advance_stacks(uint32_t number);
@@ -52,11 +56,11 @@ class ChipInspection {
   const ChipDevice* rtl_;
   TraverserWires w_;
   std::vector<LaneWires> lanes_;
-  bool active_ = false;
+  BlockRules rules_;
+  bool active_ = false, traverser_active_ = false;
   const Traverser* model_ = nullptr;
-  uint64_t cycle_ = 0;
   uint32_t lane_ = 0;  ///< that is looked at, for the texts
-  std::vector<Finding> findings_;
+  Findings findings_;
 };
 
 }  // namespace raypool::lockstep

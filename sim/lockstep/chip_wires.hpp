@@ -26,7 +26,7 @@
   X(begin_valid) X(begin_ready) X(begin_slot) X(begin_meets) X(boxes_valid) X(met) X(entry) X(node_valid_q) \
   X(node_slot_q) X(node_limit_q) X(children) X(nearest) X(others) X(goes_on) X(next_valid) X(next_slot) \
   X(next_reference) X(done) X(done_slot) X(leaf_valid) X(leaf_over) X(leaf_limit) X(best_key_valid) \
-  X(best_key) X(given_q) X(given_slot_q) X(box_limit) X(fill_waits)
+  X(best_key) X(given_q) X(given_slot_q) X(box_limit) X(test_limit) X(fill_waits)
 // clang-format on
 
 namespace raypool::lockstep {

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstring>
 
 #include "bits.hpp"
@@ -10,48 +9,46 @@ namespace raypool::lockstep {
 namespace {
 
 constexpr const char* kScope = "gen_inside.traverser";
-constexpr size_t kMostFindings = 2;
+/// What a bank of a cache decides has a rule of its own: what is left is between the banks, or its data.
+constexpr const char* kArbiter = "rtl/bank_arbiter.v, rtl/tree_banks.v";
+constexpr const char* kBanks = "rtl/tree_banks.v, rtl/bank_arbiter.v";
+constexpr const char* kCache = "rtl/tree_cache.v, rtl/tree_banks.v";
 constexpr uint32_t kLineBits = 26, kBlockBits = 7, kTestBits = 875;
-
-/// They differ by how they were rounded.
-bool in_last_place(uint32_t a, uint32_t b) { return a - b + 1 <= 2; }
-
-/// Of a component of a hit's normal, which is one of a cross product through its length: another direction is made by
-/// the products, another length by its root, and a power of two by the quotient.
-const char* normal_files(uint32_t rtl, uint32_t expected) {
-  constexpr uint32_t kSign = 1u << 31, kFraction = (1u << 23) - 1;
-  if (rtl == (expected ^ kSign) || in_last_place(rtl, expected))
-    return "rtl/ray_finish.v, rtl/triangle_normal.v, rtl/cross_products.v";
-  if ((rtl & ~kSign) == 0 || (expected & ~kSign) == 0 || ((rtl ^ expected) & kSign) != 0)
-    return "rtl/cross_products.v, rtl/triangle_normal.v, rtl/ray_finish.v";
-  if (((rtl ^ expected) & kFraction) == 0) return "rtl/ray_finish.v, rtl/triangle_normal.v";
-  return "rtl/triangle_normal.v, rtl/root_digits.v, rtl/ray_finish.v";
-}
 
 }  // namespace
 
 ChipInspection::ChipInspection(const Configuration& configuration, const ChipDevice& rtl)
-    : rtl_(&rtl), w_(rtl, kScope) {
-  if (!has_traverser(configuration.chip) || !w_.missing.empty()) return;
-  for (uint32_t lane = 0; lane < configuration.chip.modelled_traverser_box_pipes; ++lane) {
-    lanes_.emplace_back(rtl, fmt::format("{}.gen_lane[{}].lane", kScope, lane));
-    if (!lanes_.back().missing.empty()) return;
-  }
-  active_ = true;
+    : rtl_(&rtl), w_(rtl, kScope), rules_(configuration, rtl) {
+  active_ = !rules_.chip.empty();
+  if (has_traverser(configuration.chip)) find_lanes(configuration.chip);
 }
 
-void ChipInspection::restart(const Traverser* model) {
+void ChipInspection::find_lanes(const ChipConfiguration& chip) {
+  if (!w_.missing.empty()) return;
+  for (uint32_t lane = 0; lane < chip.modelled_traverser_box_pipes; ++lane) {
+    lanes_.emplace_back(*rtl_, fmt::format("{}.gen_lane[{}].lane", kScope, lane));
+    if (!lanes_.back().missing.empty()) return;
+  }
+  traverser_active_ = true;
+}
+
+void ChipInspection::restart(const Traverser* model, bool reset) {
   model_ = model;
   findings_.clear();
+  for (const auto& rule : rules_.chip) {
+    if (reset) rule->reset();
+    rule->forget();
+  }
+  for (const auto& rule : rules_.traverser) {
+    rule->reset();
+    rule->forget();
+  }
 }
 
 bool ChipInspection::expect(uint64_t rtl, uint64_t expected, const char* files, const char* what) {
   if (rtl == expected) return true;
-  const bool same = std::any_of(findings_.begin(), findings_.end(), [&](const Finding& f) { return f.files == files; });
-  if (findings_.size() < kMostFindings && !same)
-    findings_.push_back({cycle_, files,
-                         fmt::format("traverser, lane {}, {}: {:x} in the RTL, {:x} by its rule (bits, hexadecimal)",
-                                     lane_, what, rtl, expected)});
+  findings_.add(files, fmt::format("traverser, lane {}, {}: {:x} in the RTL, {:x} by its rule (bits, hexadecimal)",
+                                   lane_, what, rtl, expected));
   return false;
 }
 
@@ -63,8 +60,22 @@ bool ChipInspection::expect_words(const Wire& wire, uint32_t low, const uint32_t
 }
 
 void ChipInspection::advance(uint64_t cycle) {
-  if (!active_ || model_ == nullptr || !findings_.empty()) return;
-  cycle_ = cycle;
+  if (!active_ || !findings_.empty()) return;
+  findings_.begin_cycle(cycle);
+  for (const auto& rule : rules_.chip) rule->take();
+  // Between frames the traverser is in reset.
+  const bool reset = rtl_->outputs().ready;
+  for (const auto& rule : rules_.traverser) {
+    if (reset) {
+      rule->reset();
+    } else {
+      rule->take();
+    }
+  }
+  if (traverser_seen()) advance_traverser();
+}
+
+void ChipInspection::advance_traverser() {
   if (model_->handed().lanes.empty()) return;  // between frames the traverser is in reset
   for (uint32_t lane = 0; lane < model_->lanes(); ++lane) {
     lane_ = lane;
@@ -76,10 +87,8 @@ void ChipInspection::advance(uint64_t cycle) {
   // The last lane of the triangle cache is ray_exit's.
   lane_ = model_->lanes();
   const Traverser::Handed::ToLane& exit = model_->handed().lanes[lane_];
-  constexpr const char* kCache = "rtl/tree_banks.v, rtl/tree_cache.v";
-  expect(w_.leaf_taken.bits(2 * lane_, 2), exit.leaf_taken, kCache, "want of a triangle's line that is taken");
-  if (expect(w_.leaf_given.flag(lane_), exit.leaf_slot.has_value(), "rtl/tree_cache.v, rtl/tree_banks.v",
-             "a triangle's line is given") &&
+  expect(w_.leaf_taken.bits(2 * lane_, 2), exit.leaf_taken, kArbiter, "want of a triangle's line that is taken");
+  if (expect(w_.leaf_given.flag(lane_), exit.leaf_slot.has_value(), kBanks, "a triangle's line is given") &&
       exit.leaf_slot)
     expect_words(w_.leaf_given_data, 512 * lane_, exit.leaf.data(), 16, "rtl/tree_cache.v, rtl/tree_banks.v",
                  "triangle's line that is given");
@@ -144,13 +153,11 @@ void ChipInspection::advance_lane(uint32_t number) {
            "slot and place of a triangle's result");
     expect(w_.result_number.word(number), lane.result->number, "rtl/triangle_pipe.v, rtl/triangle_group.v",
            "number of a triangle's result");
-    if (expect(w_.result_hit.flag(number), lane.result->hit, "rtl/triangle_edges.v, rtl/triangle_pipe.v",
+    // Its parts have rules of their own.
+    if (expect(w_.result_hit.flag(number), lane.result->hit, "rtl/triangle_pipe.v, rtl/lane_hits.v",
                "the triangle is hit") &&
         lane.result->hit)
-      expect(w_.result_t.word(number), as_bits(lane.result->t),
-             in_last_place(w_.result_t.word(number), as_bits(lane.result->t))
-                 ? "rtl/triangle_plane.v, rtl/float_shorten.v"
-                 : "rtl/triangle_plane.v, rtl/triangle_pipe.v",
+      expect(w_.result_t.word(number), as_bits(lane.result->t), "rtl/triangle_pipe.v, rtl/triangle_plane.v",
              "time of the hit");
   }
   expect(w_.test_valid.flag(number) && w_.test_ready.flag(number), lane.test_taken,
@@ -163,27 +170,18 @@ void ChipInspection::advance_lane(uint32_t number) {
 void ChipInspection::advance_lines(uint32_t number) {
   const Traverser::Handed::ToLane& lane = model_->handed().lanes[number];
   const uint32_t slot_bits = model_->slot_bits();
-  constexpr const char* kCache = "rtl/tree_cache.v, rtl/tree_banks.v";
-  constexpr const char* kBanks = "rtl/tree_banks.v, rtl/bank_arbiter.v";
-  // A bank that takes one more than it can, or less, is busy with something else; another one is the arbiters' choice.
-  const auto expect_taken = [&](const Wire& wire, uint32_t taken, const char* what) {
-    const uint32_t rtl = wire.bits(2 * number, 2);
-    const bool choice = popcount(rtl) == popcount(taken);
-    expect(rtl, taken, choice ? kBanks : "rtl/tree_cache.v, rtl/bank_arbiter.v", what);
-  };
-  expect_taken(w_.node_taken, lane.node_taken, "want of a node that is taken");
-  expect_taken(w_.leaf_taken, lane.leaf_taken, "want of a triangle's line that is taken");
+  expect(w_.node_taken.bits(2 * number, 2), lane.node_taken, kArbiter, "want of a node that is taken");
+  expect(w_.leaf_taken.bits(2 * number, 2), lane.leaf_taken, kArbiter, "want of a triangle's line that is taken");
   expect(w_.leaf_waited.flag(number) && w_.leaf_room.flag(number), lane.leaf_waited, kBanks,
          "a triangle's line comes for which a ray has waited");
-  if (expect(w_.node_given.flag(number), lane.node_slot.has_value(), kCache, "a node is given") && lane.node_slot) {
-    expect(w_.node_given_slot.bits(number * slot_bits, slot_bits), *lane.node_slot,
-           "rtl/tree_cache.v, rtl/bank_arbiter.v", "slot that gets a node");
+  if (expect(w_.node_given.flag(number), lane.node_slot.has_value(), kBanks, "a node is given") && lane.node_slot) {
+    expect(w_.node_given_slot.bits(number * slot_bits, slot_bits), *lane.node_slot, kBanks, "slot that gets a node");
     expect_words(w_.node_given_data, 512 * number, lane.node.data(), 14, kCache, "node that is given");
   }
-  if (expect(w_.leaf_given.flag(number), lane.leaf_slot.has_value(), kCache, "a triangle's line is given") &&
+  if (expect(w_.leaf_given.flag(number), lane.leaf_slot.has_value(), kBanks, "a triangle's line is given") &&
       lane.leaf_slot) {
-    expect(w_.leaf_given_slot.bits(number * slot_bits, slot_bits), *lane.leaf_slot,
-           "rtl/tree_cache.v, rtl/bank_arbiter.v", "slot that gets a triangle's line");
+    expect(w_.leaf_given_slot.bits(number * slot_bits, slot_bits), *lane.leaf_slot, kBanks,
+           "slot that gets a triangle's line");
     expect_words(w_.leaf_given_data, 512 * number, lane.leaf.data(), 16, kCache, "triangle's line that is given");
   }
   expect(w_.stack_request_valid.flag(number) && w_.stack_request_ready.flag(number), lane.request_taken,
@@ -219,8 +217,11 @@ void ChipInspection::advance_stacks(uint32_t number) {
 }
 
 void ChipInspection::check(uint64_t cycle) {
-  if (!active_ || model_ == nullptr || !findings_.empty()) return;
-  cycle_ = cycle;
+  if (!active_ || !findings_.empty()) return;
+  findings_.begin_cycle(cycle);
+  for (const auto& rule : rules_.chip) rule->compare(findings_);
+  for (const auto& rule : rules_.traverser) rule->compare(findings_);
+  if (!traverser_seen()) return;
   lane_ = 0;
   for (uint32_t lane = 0; lane < model_->lanes(); ++lane) {
     lane_ = lane;
@@ -248,6 +249,7 @@ void ChipInspection::check_lane_boxes(uint32_t number) {
     const uint32_t limit = l.best_key_valid.value() != 0 ? l.best_key.value() : l.box_limit.value();
     expect(limit, lane.hits().limit_key(*lane.given_slot()), "rtl/lane_hits.v, rtl/traverser_lane.v",
            "limit of the boxes' test");
+    expect(l.test_limit.value(), limit, "rtl/traverser_lane.v, rtl/lane_hits.v", "limit that the boxes are given");
   }
   if (expect(l.boxes_valid.value(), lane.boxes().valid(), "rtl/box_pipe.v, rtl/traverser_lane.v",
              "boxes have their result") &&
@@ -366,16 +368,15 @@ void ChipInspection::check_test(uint32_t number) {
 
 void ChipInspection::check_caches() {
   const TreeBanks &nodes = model_->node_cache(), &leaves = model_->triangle_cache();
-  constexpr const char* kCache = "rtl/tree_cache.v, rtl/tree_banks.v";
-  if (expect(w_.node_request_valid.value(), nodes.request_valid(), kCache, "the node cache asks for a line") &&
+  if (expect(w_.node_request_valid.value(), nodes.request_valid(), kBanks, "the node cache asks for a line") &&
       nodes.request_valid()) {
-    expect(w_.node_request_line.value(), nodes.request_line(), kCache, "line that the node cache asks for");
-    expect(w_.node_request_id.value(), nodes.request_id(), kCache, "register of the node cache's request");
+    expect(w_.node_request_line.value(), nodes.request_line(), kBanks, "line that the node cache asks for");
+    expect(w_.node_request_id.value(), nodes.request_id(), kBanks, "register of the node cache's request");
   }
-  if (expect(w_.triangle_request_valid.value(), leaves.request_valid(), kCache, "the triangle cache asks for a line") &&
+  if (expect(w_.triangle_request_valid.value(), leaves.request_valid(), kBanks, "the triangle cache asks for a line") &&
       leaves.request_valid()) {
-    expect(w_.triangle_request_line.value(), leaves.request_line(), kCache, "line that the triangle cache asks for");
-    expect(w_.triangle_request_id.value(), leaves.request_id(), kCache, "register of the triangle cache's request");
+    expect(w_.triangle_request_line.value(), leaves.request_line(), kBanks, "line that the triangle cache asks for");
+    expect(w_.triangle_request_id.value(), leaves.request_id(), kBanks, "register of the triangle cache's request");
   }
   const std::optional<TreePort::Line>& line = model_->port().line();
   constexpr const char* kPort = "rtl/tree_port.v";
@@ -383,7 +384,7 @@ void ChipInspection::check_caches() {
   const bool to_leaves = line && line->source == TreePort::Source::Triangles;
   // One that has gone has been taken.
   const auto expect_line = [&](const Wire& wire, bool comes, const char* what) {
-    expect(wire.value(), comes, comes ? "rtl/tree_cache.v, rtl/tree_port.v" : "rtl/tree_port.v, rtl/tree_cache.v",
+    expect(wire.value(), comes, comes ? "rtl/tree_banks.v, rtl/tree_port.v" : "rtl/tree_port.v, rtl/tree_banks.v",
            what);
   };
   expect_line(w_.node_fill_valid, to_nodes, "a line comes for the node cache");
@@ -415,15 +416,16 @@ void ChipInspection::check_exit() {
   expect(ports.free_valid, exit.free_valid(), kExit, "a ray leaves its place");
   expect(ports.contribution_valid, exit.contribution_valid(), kExit, "a contribution");
   if (!expect(ports.put_valid, exit.put_valid(), kExit, "a beat of an intersection") || !exit.put_valid()) return;
+  expect(to_underlying(ports.put_kind), to_underlying(exit.put_kind()), kExit, "kind of an intersection");
   const Beat expected = exit.put_data();
   for (uint32_t i = 0; i < kBeatWords; ++i) {
     const uint32_t number = exit.put_word(i);
+    const bool normal = number >= word::kNormal && number < word::kNormal + 3;
     const bool shares = number >= word::kBarycentric && number < word::kBarycentric + 2;
-    const char* files = number >= word::kNormal && number < word::kNormal + 3
-                            ? normal_files(ports.put_data[i], expected[i])
-                        : shares                    ? "rtl/triangle_shares.v, rtl/ray_finish.v, rtl/cross_products.v"
-                        : number == word::kDistance ? "rtl/ray_finish.v, rtl/float_shorten.v"
-                        : number == word::kMaterial ? "rtl/ray_exit.v, rtl/chip.v"
+    const char* files = normal                      ? "rtl/ray_finish.v, rtl/triangle_normal.v"
+                        : shares                    ? "rtl/triangle_shares.v, rtl/ray_finish.v"
+                        : number == word::kDistance ? "rtl/ray_finish.v, rtl/ray_delay.v"
+                        : number == word::kMaterial ? "rtl/ray_exit.v, rtl/leaf_reader.v"
                                                     : "rtl/ray_exit.v, rtl/ray_finish.v";
     if (number != kNoWord) expect(ports.put_data[i], expected[i], files, "word of an intersection");
   }

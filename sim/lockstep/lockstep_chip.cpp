@@ -47,13 +47,13 @@ class LockstepChipImpl : public LockstepChip {
   void start(const FrameSetup& setup) override {
     rtl_->start(setup);
     model_->start(setup);
-    begin();
+    begin(true);
   }
   void start_next(const FrameSetup& setup) override {
     if (!report_.empty()) throw LockstepDifference(report_);
     rtl_->start_next(setup);
     model_->start_next(setup);
-    begin();
+    begin(false);
   }
 
   void clock(const ChipInputs& inputs) override {
@@ -62,7 +62,10 @@ class LockstepChipImpl : public LockstepChip {
     if (inputs.tree_request_valid || rtl_->outputs().traverser.tree_request_valid) still_since_ = cycle_ + 1;
     model_->clock(inputs);
     // The RTL still shows what its blocks hand over in this cycle.
-    if (inspects()) inspection_.advance(cycle_);
+    if (inspects()) {
+      rtl_->settle(inputs);
+      inspection_.advance(cycle_);
+    }
     rtl_->clock(inputs);
     ++cycle_;
     ++counts_.cycles;
@@ -77,11 +80,11 @@ class LockstepChipImpl : public LockstepChip {
   std::vector<Finding> inside() const override { return inspection_.findings(); }
 
  private:
-  void begin() {
+  void begin(bool reset) {
     cycle_ = 0;
     moved_ = true;
     still_since_ = 0;
-    if (inspects()) inspection_.restart(look_inside_traverser(*model_));
+    if (inspects()) inspection_.restart(look_inside_traverser(*model_), reset);
     compared([this] { compare_chip(rtl_->outputs(), model_->outputs(), kinds_); });
   }
 

@@ -127,6 +127,7 @@ class LoadedChip : public ChipDevice {
     stop_point();
     chip_->clock(inputs);
   }
+  void settle(const ChipInputs& inputs) override { chip_->settle(inputs); }
   ChipCounts counts() override { return chip_->counts(); }
   uint64_t counter(int number) override { return chip_->counter(number); }
   void open_waveform(const std::string& path) override { chip_->open_waveform(path); }

@@ -46,6 +46,12 @@ class Wire {
     }
     return static_cast<uint32_t>(value & ((uint64_t{1} << width) - 1));
   }
+  /// Bits from `low` on, 32 or as many as there are.
+  uint32_t part(uint32_t low) const { return bits(low, width_ - low < 32 ? width_ - low : 32); }
+  /// The same of up to 64 bits.
+  uint64_t wide(uint32_t low, uint32_t width) const {
+    return width <= 32 ? bits(low, width) : bits(low, 32) | uint64_t{bits(low + 32, width - 32)} << 32;
+  }
   /// Number `index` of fields of 32 bits.
   uint32_t word(uint32_t index) const { return bits(32 * index, 32); }
   bool flag(uint32_t index) const { return bits(index, 1) != 0; }

@@ -7,7 +7,7 @@
 namespace raypool {
 
 /// Raised when the meaning of chip_device.hpp changes in a way that its sizes do not show.
-inline constexpr int kChipInterfaceVersion = 3;
+inline constexpr int kChipInterfaceVersion = 4;
 
 inline std::string chip_interface() {
   return interface_text(kChipInterfaceVersion, {sizeof(Configuration), sizeof(FrameSetup), sizeof(ChipInputs),

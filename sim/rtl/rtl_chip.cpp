@@ -114,6 +114,11 @@ class RtlChip : public ChipDevice {
     read_outputs();
   }
 
+  void settle(const ChipInputs& inputs) override {
+    write_inputs(inputs);
+    design_.settle();
+  }
+
   ChipCounts counts() override {
     const Vchip& top = design_.top();
     return {top.rays_taken_o,   top.ray_port_busy_o, top.packages_taken_o,  top.contributions_o,

@@ -81,10 +81,14 @@ class VerilatedDesign {
     dump();
   }
 
-  /// Of the instance `scope`, from the design on.
+  /// What depends on inputs that have been written follows them.
+  void settle() { top_->eval(); }
+
+  /// Of the instance `scope`, from the design on; of the design itself, if it is empty.
   Signal signal(const std::string& scope, const std::string& name) const {
     // Verilator's look-up is not const, though it changes nothing.
-    auto* found = const_cast<VerilatedScope*>(context_.scopeFind((name_ + "." + name_ + "." + scope).c_str()));
+    auto* found = const_cast<VerilatedScope*>(
+        context_.scopeFind((name_ + "." + name_ + (scope.empty() ? "" : "." + scope)).c_str()));
     const VerilatedVar* variable = found == nullptr ? nullptr : found->varFind(name.c_str());
     if (variable == nullptr) return {};
     return {variable->datap(), static_cast<uint32_t>(variable->packed().elements())};

@@ -20,10 +20,11 @@ namespace {
 
 using namespace test;
 
-constexpr const char* kLane = ".gen_lane[0].lane";
+constexpr const char* kTraverser = "gen_inside.traverser";
+constexpr const char* kLane = "gen_inside.traverser.gen_lane[0].lane";
 
-/// A signal of the traverser, the lowest bit of which that is set is shown as 0 from the `from`th cycle on in which it
-/// has one.
+/// A signal of an instance inside the chip, the lowest bit of which that is set is shown as 0 from the `from`th cycle
+/// on in which it has one.
 struct Tamper {
   const char* scope;
   const char* signal;
@@ -36,7 +37,7 @@ struct Tamper {
 class TamperedChip : public ChipDevice {
  public:
   TamperedChip(std::unique_ptr<ChipDevice> chip, const Tamper& tamper) : chip_(std::move(chip)), tamper_(tamper) {
-    signal_ = chip_->signal(std::string("gen_inside.traverser") + tamper.scope, tamper.signal);
+    signal_ = chip_->signal(tamper.scope, tamper.signal);
     EXPECT_NE(signal_.data, nullptr) << tamper.signal;
   }
   uint32_t units() const override { return chip_->units(); }
@@ -53,6 +54,10 @@ class TamperedChip : public ChipDevice {
     chip_->clock(inputs);
     copy();
   }
+  void settle(const ChipInputs& inputs) override {
+    chip_->settle(inputs);
+    show();
+  }
   ChipCounts counts() override { return chip_->counts(); }
   uint64_t counter(int number) override { return chip_->counter(number); }
   Signal signal(const std::string& scope, const std::string& name) const override {
@@ -62,13 +67,19 @@ class TamperedChip : public ChipDevice {
 
  private:
   void copy() {
+    seen_ += show() ? 1 : 0;
+    show();
+  }
+  // True if it has a bit that is set.
+  bool show() {
     const uint32_t bits = signal_.bits;
     const size_t bytes = bits <= 8 ? 1 : bits <= 16 ? 2 : bits <= 32 ? 4 : bits <= 64 ? 8 : (bits + 31) / 32 * 4;
-    ASSERT_LE(bytes, sizeof(shown_));
+    EXPECT_LE(bytes, sizeof(shown_));
     std::memcpy(shown_.data(), signal_.data, bytes);
     uint32_t low = 0;
     while (low < bits && (shown_[low / 8] >> low % 8 & 1) == 0) ++low;
-    if (low < bits && ++seen_ > tamper_.from) shown_[low / 8] ^= static_cast<uint8_t>(1u << low % 8);
+    if (low < bits && seen_ > tamper_.from) shown_[low / 8] ^= static_cast<uint8_t>(1u << low % 8);
+    return low < bits;
   }
 
   std::unique_ptr<ChipDevice> chip_;
@@ -95,11 +106,11 @@ TEST_P(InspectedChip, NamesTheFileOfTheSignal) {
 }
 
 const Tamper kTampers[] = {
-    {"", "set_valid", "ray_setup.v"},
-    {"", "padding", "ray_padding.v", 0},
-    {"", "reciprocal", "ray_direction.v", 0},
-    {"", "limit_key", "ray_setup.v", 0},
-    {"", "slot_valid", "free_list.v"},
+    {kTraverser, "set_valid", "ray_setup.v"},
+    {kTraverser, "padding", "ray_padding.v", 0},
+    {kTraverser, "reciprocal", "ray_direction.v", 0},
+    {kTraverser, "limit_key", "ray_setup.v", 0},
+    {kTraverser, "slot_valid", "free_list.v"},
     {kLane, "given_q", "traverser_lane.v"},
     {kLane, "met", "box_axis.v"},
     {kLane, "entry", "box_axis.v", 0},
@@ -107,18 +118,24 @@ const Tamper kTampers[] = {
     {kLane, "next_valid", "lane_stacks.v", 2},
     {kLane, "done", "lane_stacks.v", 2},
     {kLane, "leaf_valid", "lane_hits.v", 2},
-    {"", "node_want", "traverser_lane.v"},
-    {"", "leaf_want", "leaf_reader.v", 0},
-    {"", "test_valid", "leaf_reader.v"},
-    {"", "stack_request_valid", "lane_stacks.v", 0},
-    {"", "result_hit", "triangle_edges.v", 0},
-    {"", "result_valid", "triangle_group.v"},
-    {"", "node_given", "tree_cache.v"},
-    {"", "node_given_data", "tree_cache.v", 0},
-    {"", "leaf_given_data", "tree_cache.v", 0},
-    {"", "node_request_valid", "tree_cache.v", 0},
-    {"", "fill_data", "tree_port.v", 0},
-    {"", "slot_free", "ray_exit.v", 0},
+    {kTraverser, "node_want", "traverser_lane.v"},
+    {kTraverser, "leaf_want", "leaf_reader.v", 0},
+    {kTraverser, "test_valid", "leaf_reader.v"},
+    {kTraverser, "stack_request_valid", "lane_stacks.v", 0},
+    {kTraverser, "result_hit", "triangle_pipe.v", 0},
+    {kTraverser, "result_valid", "triangle_group.v"},
+    {kTraverser, "node_given", "tree_banks.v"},
+    {kTraverser, "node_given_data", "tree_cache.v", 0},
+    {kTraverser, "leaf_given_data", "tree_cache.v", 0},
+    {kTraverser, "node_request_valid", "tree_banks.v", 0},
+    {kTraverser, "fill_data", "tree_port.v", 0},
+    {kTraverser, "slot_free", "ray_exit.v", 0},
+    {"controller.gen_unit[0].launch_records", "normal_o", "launch_records.v", 0},
+    {"controller.tile_walk", "tile_block_o", "tile_walk.v", 0},
+    {"controller.launch_rules", "secondary_room_o", "launch_rules.v", 0},
+    {"controller.gen_thesis.policy", "kind_o", "thesis_policy.v", 2},
+    {"memory_port.device_requests", "data_o", "ram_queue.v", 0},
+    {"ray_pool.free_list", "valid_o", "free_list.v", 0},
 };
 
 INSTANTIATE_TEST_SUITE_P(Blocks, InspectedChip, testing::ValuesIn(kTampers),
