@@ -45,8 +45,9 @@ struct Case {
   Traffic traffic;
   uint32_t seed = 0;
   // With the traverser inside, in place of the traffic. `tree`: of a bad one; 0: the scene's own. `spoilt`: of what
-  // makes it none; 0: nothing. `mirrors`: all that is there.
-  uint32_t triangles = 0, tree = 0, spoilt = 0;
+  // makes it none; 0: nothing. `strange`: of numbers in place of some of the scene's; 0: none. `mirrors`: all that is
+  // there.
+  uint32_t triangles = 0, tree = 0, spoilt = 0, strange = 0;
   bool mirrors = false;
   WaitingChip::Waits waits;
   std::vector<Case> after;  ///< frames that follow it without a reset, amid what is around this one
@@ -56,11 +57,12 @@ bool is_inside(const Machine& machine) { return has_traverser(machine.configurat
 
 std::string to_string(const Case& c, const Machine& machine) {
   if (is_inside(machine)) {
-    return fmt::format(
-        "{} x {} pixels, depth {}, {}; {} triangles{}, {}{}; request {}, beat {}, frame {}, shut {}", c.picture.width,
-        c.picture.height, c.picture.depth, c.picture.reflections ? "reflections" : "no reflections", c.triangles,
-        c.mirrors ? " of mirrors" : "", c.tree == 0 ? "their own tree" : "a bad tree",
-        c.spoilt == 0 ? "" : " that is spoilt", c.waits.request, c.waits.beat, c.waits.frame, c.waits.shut);
+    return fmt::format("{} x {} pixels, depth {}, {}; {} triangles{}, {}{}{}; request {}, beat {}, frame {}, shut {}",
+                       c.picture.width, c.picture.height, c.picture.depth,
+                       c.picture.reflections ? "reflections" : "no reflections", c.triangles,
+                       c.mirrors ? " of mirrors" : "", c.tree == 0 ? "their own tree" : "a bad tree",
+                       c.spoilt == 0 ? "" : " that is spoilt", c.strange == 0 ? "" : ", strange numbers",
+                       c.waits.request, c.waits.beat, c.waits.frame, c.waits.shut);
   }
   const Traffic& t = c.traffic;
   return fmt::format(
@@ -123,6 +125,14 @@ Case inside_case_of(uint32_t seed, uint32_t machine, uint32_t frame) {
     c.triangles = 1 + random() % 4;
     c.spoilt = 0;
     c.waits = {};
+  } else if (random() % 3 == 0) {
+    c.strange = 1 + random() % 1000000;
+    // Where rays meet the surface that they leave they would be reflected as often as they may be.
+    c.picture.depth = 1 + c.picture.depth % kMostShort;
+  }
+  if (c.picture.depth > kMostShort) {  // each pixel may take many rays
+    c.picture.width = std::min(c.picture.width, 3u);
+    c.picture.height = std::min(c.picture.height, 2u);
   }
   return c;
 }
@@ -139,7 +149,7 @@ Case with_followers(Case c, uint32_t seed, uint32_t machine, uint32_t frame,
     next.picture.width = std::min(next.picture.width, 4u);
     next.picture.height = std::min(next.picture.height, 3u);
     if (random() % 4 == 0) next.picture = c.picture;
-    next.spoilt = 0;
+    next.spoilt = next.strange = 0;
   }
   return c;
 }
@@ -173,7 +183,7 @@ std::optional<ChipResult> draw_inside(const Case& c, const Machine& machine, Dra
   if (!c.after.empty()) drawing.memory().grow(drawing.memory().size() + kRoomForNext);
   try {
     const ChipResult result = drawing.draw_on(chip, FrameBegin::Reset, !c.after.empty());
-    if (c.spoilt == 0) drawing.expect_native(result);
+    if (c.spoilt == 0 && c.strange == 0) drawing.expect_native(result);
     reached.frames += draw_followers(c, machine, drawing, chip);
     return result;
   } catch (const TraverserFault&) {
@@ -188,7 +198,7 @@ std::optional<ChipResult> draw_inside(const Case& c, const Machine& machine, Dra
 /// As failure_of(), with the traverser inside.
 std::string failure_inside(const Case& c, const Machine& machine, const std::string& library, Drawn& drawn) {
   try {
-    Drawing drawing(machine, c.picture, scene_of(c), c.tree, c.spoilt);
+    Drawing drawing(machine, c.picture, scene_of(c), c.tree, c.spoilt, c.strange);
     const std::unique_ptr<LockstepChip> chip =
         make_lockstep_chip(machine.configuration, load_rtl_chip(library, machine.configuration, machine.units),
                            drawing.memory(), machine.configuration.name);
@@ -249,7 +259,7 @@ void record(const Case& c, const Machine& machine, const std::string& folder) {
     drawn(recorder);
   };
   if (is_inside(machine)) {
-    Drawing drawing(machine, c.picture, scene_of(c), c.tree, c.spoilt);
+    Drawing drawing(machine, c.picture, scene_of(c), c.tree, c.spoilt, c.strange);
     draw_on(drawing.memory(), [&](ChipDevice& chip) {
       WaitingChip waiting(chip, c.waits, c.seed);
       Reached reached;

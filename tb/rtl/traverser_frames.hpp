@@ -13,6 +13,7 @@
 #include "chip/tree_image.hpp"
 #include "random.hpp"
 #include "rtl/chip_frames.hpp"
+#include "rtl/strange_numbers.hpp"
 #include "scene/hard_rays.hpp"
 #include "scene/image.hpp"
 #include "scene/mesh_builder.hpp"
@@ -112,9 +113,16 @@ inline Scene scene_of_chance(uint32_t seed, uint32_t triangles, bool mirrors = f
   const auto near = [&](float distance) {
     return Vec3{distance * (2 * share() - 1), distance * (2 * share() - 1), distance * (2 * share() - 1)};
   };
-  const float scale = std::ldexp(1.0f, static_cast<int>(random() % 20) - 10);
+  // Some are next to nothing, or as large as can be.
+  const int ordinary = static_cast<int>(random() % 20) - 10, tiny = -60 - static_cast<int>(random() % 60);
+  const float scale = std::ldexp(1.0f, random() % 8 != 0 ? ordinary : random() % 3 == 0 ? 22 : tiny);
   const Vec3 at = random() % 2 == 0 ? Vec3{0, 0, 0} : near(20 * scale);
   Scene scene = soup(random(), static_cast<int>(triangles), scale, at);
+  if (random() % 8 == 0) {  // nearly flat
+    const auto axis = static_cast<int>(random() % 3);
+    const float thin = std::ldexp(1.0f, -static_cast<int>(random() % 50));
+    for (Vec3& vertex : scene.vertices) vertex[axis] = at[axis] + (vertex[axis] - at[axis]) * thin;
+  }
   if (random() % 16 == 0)
     for (size_t vertex = 3; vertex < scene.vertices.size(); ++vertex)
       scene.vertices[vertex] = scene.vertices[vertex % 3];
@@ -154,8 +162,10 @@ inline void make_dull(Scene& scene, uint32_t seed) {
 class Drawing {
  public:
   /// `tree`: of a bad tree, which the traverser has in place of the native engine's; 0: it has the same. `spoilt`: of
-  /// what is wrong in the memory that holds it, so that it may be none; 0: nothing.
-  Drawing(const Machine& machine, const Picture& picture, Scene scene, uint32_t tree = 0, uint32_t spoilt = 0)
+  /// what is wrong in the memory that holds it, so that it may be none; 0: nothing. `strange`: of numbers that are not
+  /// the scene's (strange_numbers.hpp), so that no other engine draws the picture; 0: none.
+  Drawing(const Machine& machine, const Picture& picture, Scene scene, uint32_t tree = 0, uint32_t spoilt = 0,
+          uint32_t strange = 0)
       : configuration_(machine.configuration),
         scene_(std::move(scene)),
         program_(ray_kernel_program(KernelTarget(configuration_))),
@@ -179,6 +189,10 @@ class Drawing {
     options_.reflections = picture.reflections;
     options_.frame = &sink_;
     if (spoilt != 0) spoil(spoilt);
+    if (strange == 0) return;
+    StrangeNumbers numbers(strange);
+    numbers.put(options_.arguments, tree_.memory, tree_.setup);
+    numbers.put(tree_.memory, tree_.setup);
   }
 
   Memory& memory() { return image_.memory; }
@@ -234,7 +248,7 @@ class Drawing {
       const uint32_t node = random() % std::max(1u, setup.triangles_line) * 64;
       const uint32_t child = node + 40 + random() % 4 * 4, number = node / 64;
       const auto put = [this](uint32_t address, uint32_t word) { tree_.memory.store(address, word); };
-      switch (random() % 8) {
+      switch (random() % 9) {
         case 0:
           put(node + 12, (tree_.memory.load(node + 12) & 0xffffff) | random() % 8 << 24);
           break;
@@ -250,7 +264,10 @@ class Drawing {
         case 4:
           put(child, kLeafBit | (setup.triangle_lines * 16 / 11 - 3 + random() % 6) | random() % 4 << 29);
           break;
-        case 5:
+        case 5:  // its last bits are a leaf's
+          put(child, kLeafBit | random() % 4 << 29 | (tree_.memory.load(child) & 15) | 1u << (4 + random() % 25));
+          break;
+        case 6:
           setup.triangle_lines -= std::min(setup.triangle_lines, static_cast<uint32_t>(random() % 3));
           break;
         default:
