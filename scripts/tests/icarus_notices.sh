@@ -15,9 +15,10 @@ notices() {
     "$program" 2>&1)"
 }
 
-# chip_notices WHAT OUTPUT MACHINE: the same of the first frame of a chip, with the copy of rtl/.
+# chip_notices WHAT OUTPUT MACHINE [FRAME]: the same of a frame of a chip, the first one if none is named, with the copy
+# of rtl/.
 chip_notices() {
-  expect_x "$1" "$2" "$(RTL=$folder/rtl scripts/icarus_chip.sh "$chip_frames" "$folder/run" "$3" 1 2>&1)"
+  expect_x "$1" "$2" "$(RTL=$folder/rtl scripts/icarus_chip.sh "$chip_frames" "$folder/run" "$3" "${4:-1}" 2>&1)"
 }
 
 expect_x() {
@@ -65,6 +66,6 @@ chip_notices "a request of the traverser without reset" tree_request_valid 22
 without_reset tree_cache.v valid_q
 chip_notices "which lines a cache has, without reset" tree_request_valid 22
 without_reset leaf_reader.v held_q
-chip_notices "how many lines a lane holds, without reset" tree_request_address 26
+chip_notices "how many lines a lane holds, without reset" tree_request_address 26 2
 
 [ "$failures" = 0 ] || { echo "$failures cases failed"; exit 1; }
