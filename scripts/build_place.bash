@@ -2,13 +2,14 @@
 # they lead to the old one, where Ninja would configure and build.
 # shellcheck shell=bash
 
-# Where the checkout or the folder was, if it is another one than this checkout (.) and BUILD: made_elsewhere BUILD
+# Where the checkout or the folder was, if it is another one than this script's and BUILD: made_elsewhere BUILD
 made_elsewhere() {
-  local cache=$1/CMakeCache.txt key was
+  local cache=$1/CMakeCache.txt root key was
+  root=$(dirname "${BASH_SOURCE[0]}")/..
   [ -f "$cache" ] || return 0
   for key in CMAKE_HOME_DIRECTORY CMAKE_CACHEFILE_DIR; do
     was=$(sed -n "s/^$key:INTERNAL=//p" "$cache")
-    [ "$key" = CMAKE_HOME_DIRECTORY ] && [ "$was" -ef . ] && continue
+    [ "$key" = CMAKE_HOME_DIRECTORY ] && [ "$was" -ef "$root" ] && continue
     [ "$key" = CMAKE_CACHEFILE_DIR ] && [ "$was" -ef "$1" ] && continue
     echo "${was:-another place}"
     return 0

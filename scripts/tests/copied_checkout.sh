@@ -46,6 +46,7 @@ state() { (cd "$1" && find . -type f -printf '%p %T@ ' -exec sha256sum {} \;) | 
 
 built "$old"
 says "$old" "$old one"
+(cd / && "$old/scripts/build.sh" "$old/build" raypool) > "$log" 2>&1 || fail "build.sh called from another folder"
 mkdir -p "$old/build/out/mine" "$old/build/units/1w1c"
 echo picture > "$old/build/out/mine/image.png"
 echo library > "$old/build/units/1w1c/libraypool_unit.so"
