@@ -92,6 +92,23 @@ class History {
   std::deque<Value> values_;
 };
 
+/// Of numbers between the traverser's blocks, which have the exponents of double, and fractions of several widths.
+inline constexpr uint32_t kExponentBits = 11;
+inline constexpr int kExponentBias = 1023;
+
+/// A number as its sign, its exponent with its bias, and what is behind the leading one.
+struct Number {
+  bool negative;
+  uint32_t exponent;
+  uint64_t fraction;
+
+  static Number of(uint64_t word, uint32_t fraction_bits) {
+    return {(word >> (fraction_bits + kExponentBits) & 1) != 0,
+            static_cast<uint32_t>(word >> fraction_bits & ((1u << kExponentBits) - 1)),
+            word & ((uint64_t{1} << fraction_bits) - 1)};
+  }
+};
+
 /// Of all blocks outside the traverser that have one, and of those inside it.
 struct BlockRules {
   std::vector<std::unique_ptr<BlockRule>> chip, traverser;

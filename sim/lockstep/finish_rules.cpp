@@ -8,17 +8,12 @@
 namespace raypool::lockstep {
 namespace {
 
-constexpr uint32_t kExponentBits = 11, kBits = 43, kFraction = 31;
-constexpr int kBias = 1023;
-
-uint32_t exponent_of(uint64_t number, uint32_t fraction_bits) {
-  return static_cast<uint32_t>(number >> fraction_bits & ((1u << kExponentBits) - 1));
-}
+constexpr uint32_t kBits = 43, kFraction = 31;
 
 /// As hardware has it, with a fraction of 31 bits.
 uint64_t word_of(const Significand& number) {
   if (number.value == 0) return 0;
-  const uint64_t exponent = static_cast<uint64_t>(number.exponent + static_cast<int>(kFraction) + kBias);
+  const uint64_t exponent = static_cast<uint64_t>(number.exponent + static_cast<int>(kFraction) + kExponentBias);
   return uint64_t{number.negative} << (kBits - 1) | exponent << kFraction | (number.value & ((1u << kFraction) - 1));
 }
 
@@ -51,15 +46,14 @@ class CrossProductsRule : public BlockRule {
   struct Pair {
     Significand x, y;
   };
-  static Significand significand(const Wire& number) {
-    const uint32_t fraction = number.width() - 1 - kExponentBits;
-    const uint64_t word = number.wide(0, number.width());
+  static Significand significand(const Wire& wire) {
+    const uint32_t fraction = wire.width() - 1 - kExponentBits;
+    const Number number = Number::of(wire.wide(0, wire.width()), fraction);
     Significand result;
-    result.negative = (word >> (number.width() - 1) & 1) != 0;
-    const uint32_t exponent = exponent_of(word, fraction);
-    if (exponent == 0) return result;
-    result.value = uint64_t{1} << fraction | (word & ((uint64_t{1} << fraction) - 1));
-    result.exponent = static_cast<int>(exponent) - kBias - static_cast<int>(fraction);
+    result.negative = number.negative;
+    if (number.exponent == 0) return result;
+    result.value = uint64_t{1} << fraction | number.fraction;
+    result.exponent = static_cast<int>(number.exponent) - kExponentBias - static_cast<int>(fraction);
     return result;
   }
   // By an even number of places, so that the first bit is one of the first two.
@@ -101,7 +95,7 @@ class LargestExponentRule : public BlockRule {
     }
   }
   void take() override {
-    exponents_.push(exponent_of(number_.wide(0, kBits), kFraction));
+    exponents_.push(Number::of(number_.wide(0, kBits), kFraction).exponent);
     firsts_.push(first_.value() != 0);
   }
 
@@ -140,14 +134,14 @@ class NormalLengthRule : public BlockRule {
  private:
   void check_length(Findings& findings, size_t ago) const {
     uint32_t largest = 0;
-    for (size_t i = 0; i < 3; ++i) largest = std::max(largest, exponent_of(*normals_.ago(ago - i), kFraction));
+    for (size_t i = 0; i < 3; ++i) largest = std::max(largest, Number::of(*normals_.ago(ago - i), kFraction).exponent);
     if (largest == 0) return;
     uint64_t sum = 0;
     for (size_t i = 0; i < 3; ++i) {
-      const uint64_t normal = *normals_.ago(ago - i);
-      const uint32_t exponent = exponent_of(normal, kFraction), places = largest - exponent;
-      if (exponent == 0 || places > 31) continue;
-      const uint64_t units = ((1u << 30) | (normal >> 1 & ((1u << 30) - 1))) >> places;
+      const Number normal = Number::of(*normals_.ago(ago - i), kFraction);
+      const uint32_t places = largest - normal.exponent;
+      if (normal.exponent == 0 || places > 31) continue;
+      const uint64_t units = ((1u << 30) | normal.fraction >> 1) >> places;
       sum += units * units;
     }
     const uint32_t more = sum >> 62 != 0 ? 1 : 0;

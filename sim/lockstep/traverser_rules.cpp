@@ -9,8 +9,6 @@
 namespace raypool::lockstep {
 namespace {
 
-constexpr uint32_t kExponentBits = 11;
-
 class TreeCacheRule : public BlockRule {
  public:
   TreeCacheRule(const Block& block, const TreeCache::Sizes& sizes) : BlockRule(block), sizes_(sizes), cache_(sizes) {
@@ -88,19 +86,6 @@ class QuotientDigitsRule : public BlockRule {
   History<Digits> begun_;
 };
 
-/// A number as its sign, its exponent with its bias, and what is behind the leading one.
-struct Number {
-  bool negative;
-  uint32_t exponent;
-  uint64_t fraction;
-
-  static Number of(uint64_t word, uint32_t fraction_bits) {
-    return {(word >> (fraction_bits + kExponentBits) & 1) != 0,
-            static_cast<uint32_t>(word >> fraction_bits & ((1u << kExponentBits) - 1)),
-            word & ((uint64_t{1} << fraction_bits) - 1)};
-  }
-};
-
 class FloatQuotientRule : public BlockRule {
  public:
   explicit FloatQuotientRule(const Block& block) : BlockRule(block) {}
@@ -118,7 +103,7 @@ class FloatQuotientRule : public BlockRule {
                    left = x < y ? 2 * x - y : x - y;
     // One bit more than stays decides.
     const uint64_t digits = (left << (bits + 1)) / y;
-    const uint32_t exponent = (a.exponent - b.exponent + 1023 - (x < y ? 1 : 0)) & kSpecial;
+    const uint32_t exponent = (a.exponent - b.exponent + kExponentBias - (x < y ? 1 : 0)) & kSpecial;
     const uint64_t sign = uint64_t{a.negative != b.negative} << (bits + kExponentBits);
     if (b.exponent == 0) {
       begun_.push(sign | uint64_t{kSpecial} << bits | (a.exponent == 0 ? one >> 1 : 0));
@@ -151,7 +136,7 @@ class FloatShortenRule : public BlockRule {
     } else if (number.exponent != 0) {
       // A double has as many bits, or more, and rounds to the nearest even one as it becomes a float.
       const double value = std::ldexp(static_cast<double>(uint64_t{1} << bits | number.fraction),
-                                      static_cast<int>(number.exponent) - 1023 - static_cast<int>(bits));
+                                      static_cast<int>(number.exponent) - kExponentBias - static_cast<int>(bits));
       size = as_bits(static_cast<float>(value));
     }
     begun_.push(size | (number.negative ? 1u << 31 : 0));
@@ -217,9 +202,10 @@ class TrianglePartsRule : public BlockRule {
       ray.inverse[axis] = as_float(inverse_.word(axis));
       ray.near_side[axis] = std::signbit(ray.inverse[axis]) ? 1 : 0;
       const Number number = Number::of(direction_.wide(kWidth * axis, kWidth), kFraction);
-      const double size = number.exponent == 0 ? 0
-                                               : std::ldexp(static_cast<double>(1u << kFraction | number.fraction),
-                                                            static_cast<int>(number.exponent) - 1023 - int{kFraction});
+      const double size = number.exponent == 0
+                              ? 0
+                              : std::ldexp(static_cast<double>(1u << kFraction | number.fraction),
+                                           static_cast<int>(number.exponent) - kExponentBias - int{kFraction});
       ray.direction[axis] = number.negative ? -size : size;
     }
     ray.kz = static_cast<int>(main_axis_.value()) % 3;
