@@ -111,15 +111,6 @@ Outcome run_fault(const Options& options, const std::vector<Machine>& machines, 
   return outcome;
 }
 
-/// Each `every`-th of those that the machines make, the first one among them.
-std::vector<Fault> sample(const std::vector<Fault>& faults, const Hierarchy& hierarchy, size_t every) {
-  std::vector<Fault> sampled;
-  size_t number = 0;
-  for (const Fault& fault : faults)
-    if (hierarchy.contains("multiprocessor", module_of(fault.file)) && number++ % every == 0) sampled.push_back(fault);
-  return sampled;
-}
-
 /// What noticed the faults of a module, or of all.
 struct Count {
   int all = 0, cosim = 0, bench = 0, right = 0, parent = 0;
@@ -202,7 +193,8 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option("--seed", options.seed, "of the first program of each machine")->capture_default_str();
   app.add_option("--jobs", options.jobs, "processes")->capture_default_str();
   app.add_option("--only", options.only, "these mistakes only (numbers)");
-  app.add_option("--every", options.every, "of these that are in the machines only each so many-th: a sample")
+  app.add_option("--every", options.every,
+                 "of these that are in the machines, or stand beside units, only each so many-th: a sample")
       ->check(CLI::PositiveNumber);
   app.add_flag("--beside-units", options.beside_units,
                "only mistakes in what stands beside the units, on benches alone: no machine is needed");
@@ -221,13 +213,16 @@ std::vector<Fault> chosen_faults(const Options& options, const Hierarchy& hierar
     };
     faults.erase(std::remove_if(faults.begin(), faults.end(), left_out), faults.end());
   }
-  if (options.beside_units) {
-    const auto in_unit = [&](const Fault& f) { return hierarchy.contains("multiprocessor", module_of(f.file)); };
-    faults.erase(std::remove_if(faults.begin(), faults.end(), in_unit), faults.end());
-  } else if (options.every > 0) {
-    faults = sample(faults, hierarchy, options.every);
+  if (options.beside_units || options.every > 0) {
+    const auto other_side = [&](const Fault& f) {
+      return hierarchy.contains("multiprocessor", module_of(f.file)) == options.beside_units;
+    };
+    faults.erase(std::remove_if(faults.begin(), faults.end(), other_side), faults.end());
   }
-  return faults;
+  if (options.every == 0) return faults;
+  std::vector<Fault> sampled;
+  for (size_t i = 0; i < faults.size(); i += options.every) sampled.push_back(faults[i]);
+  return sampled;
 }
 
 int run(int argc, char** argv) {
