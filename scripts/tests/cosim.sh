@@ -34,10 +34,10 @@ expect "no programs at all are refused" 1 "give each at least one" "${cosim[@]}"
 expect "a unit without its machine is refused" 1 "name it with --config" "${cosim[@]}" --unit-library "$folder/none.so"
 expect "fields without their machine are refused" 1 "--set requires --config" "${cosim[@]}" --set warps=2
 unset CONFIG CUS SET MAKEFLAGS MAKELEVEL
-expect "the makefile's call is the set's" 0 "cosim  --programs \"\$PROGRAMS\"" make -n cosim
-expect "with CONFIG it is one machine" 0 "cosim --config \"\$CONFIG\"" make -n cosim CONFIG=4w4c
-expect "so it is with CUS" 0 "--units \"\$CUS\"" make -n cosim CUS=2
-expect "so it is with CONFIG of the environment" 0 "cosim --config" env CONFIG=4w4c make -n cosim
+expect "the makefile's call is the set's" 0 "cosim \${PROGRAMS:+\"--programs=\$PROGRAMS\"}" make -n cosim
+expect "with CONFIG it is one machine" 0 "cosim \${CONFIG:+\"--config=\$CONFIG\"}" make -n cosim CONFIG=4w4c
+expect "so it is with CUS" 0 "\${CUS:+\"--units=\$CUS\"}" make -n cosim CUS=2
+expect "so it is with CONFIG of the environment" 0 "cosim \${CONFIG" env CONFIG=4w4c make -n cosim
 expect "but not with what an outer make exports" 0 "scripts/cosim_units.sh" env MAKELEVEL=1 CONFIG=8w8c make -n cosim
 
 [ "$failures" = 0 ] || { echo "$failures cases failed"; exit 1; }

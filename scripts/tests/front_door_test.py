@@ -2,18 +2,38 @@
 """What somebody new reads first: the README is one screen, `make help` too, and nothing that they name is missing."""
 import pathlib
 import re
+import shutil
 import subprocess
+import tempfile
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 MAKEFILE = (ROOT / "Makefile").read_text()
 README = (ROOT / "README.md").read_text()
+DEFAULTS = re.findall(r"^(?:export )?([A-Z_]+) \?=", MAKEFILE, re.M)
 
 
-def printed(target):
-    command = ["make", "--no-print-directory", "-C", str(ROOT), target]
-    environment = {"PATH": "/usr/local/bin:/usr/bin:/bin"}
-    return subprocess.run(command, capture_output=True, text=True, check=True, env=environment).stdout.splitlines()
+def make(*words, folder=ROOT, **environment):
+    command = ["make", "--no-print-directory", "-C", str(folder), *words]
+    environment = {"PATH": "/usr/local/bin:/usr/bin:/bin", **environment}
+    return subprocess.run(command, capture_output=True, text=True, check=False, env=environment)
+
+
+def printed(*words):
+    done = make(*words)
+    assert done.returncode == 0, done.stderr
+    return done.stdout.splitlines()
+
+
+def variables():
+    """What help-all lists, in sections: targets of make, and a variable of theirs."""
+    targets = []
+    for line in printed("help-all"):
+        head = re.match(r"(?:variables? )?of (make|every target)([a-z, -]*)", line)
+        if head:
+            targets = re.findall(r"[a-z-]+", head[2].replace(" and ", ", ").split(", with")[0]) or ["sim"]
+        if targets:
+            yield from ((targets, name) for name in re.findall(r"  ([A-Z_]+)=", line))
 
 
 def section(title):
@@ -40,11 +60,67 @@ class Help(unittest.TestCase):
         self.assertEqual(named_targets(printed("help-all")), self.described)
 
     def test_help_all_tells_every_variable_that_has_a_default(self):
+        listed = {name for _, name in variables()}
+        self.assertGreater(len(listed), 50)
+        self.assertEqual(set(DEFAULTS) - listed, set())
         text = "\n".join(printed("help-all"))
-        variables = re.findall(r"^([A-Z_]+) +\?=", MAKEFILE, re.M)
-        self.assertGreater(len(variables), 40)
-        # A and B stand in the line of `make compare`.
-        self.assertEqual([name for name in variables if not re.search(rf"\b{name}\b", text)], [])
+        for name, default in re.findall(r"^export ([A-Z_]+) \?= ([^$\n]+)$", MAKEFILE, re.M):
+            self.assertRegex(text, rf"(?m)^  {name}=.*\n?.* {default}$")
+
+    def test_few_variables_have_a_default_that_is_not_the_programs(self):
+        self.assertGreater(len(DEFAULTS), 10)
+        self.assertLessEqual(MAKEFILE.count("?="), 30)
+
+    def test_every_variable_that_help_all_lists_reaches_its_targets(self):
+        lost = []
+        for targets, name in variables():
+            if name == "SCENES":  # the sweep itself reads it
+                continue
+            for target in targets:
+                words = ["-n", target, *(["ENGINE=sampled"] if name == "SEED" else [])]
+                recipe = printed(*words)
+                if not re.search(rf"\$\{{?{name}\b", "\n".join(recipe)) and printed(*words, name + "=1") == recipe:
+                    lost.append(f"make {target} {name}=")
+        self.assertEqual(lost, [])
+
+
+class Values(unittest.TestCase):
+    """A copy of the Makefile whose program prints its words."""
+
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp())
+        self.addCleanup(shutil.rmtree, self.folder)
+        shutil.copy(ROOT / "Makefile", self.folder)
+        for name in ("setup.sh", "configure.sh", "build.sh", "unit.sh", "raypool"):
+            path = self.folder / ("build" if name == "raypool" else "scripts") / name
+            path.parent.mkdir(exist_ok=True)
+            path.write_text("#!/bin/bash\n" + "printf '%s\\n' \"$@\"\n" * (name == "raypool"))
+            path.chmod(0o755)
+
+    def words(self, *words, **environment):
+        done = make(*words, folder=self.folder, **environment)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done.stdout.splitlines()
+
+    def test_each_is_one_word(self):
+        room = "it's \"my\" room.obj"
+        said = self.words("sim", "SCENE=" + room, "EYE=-1,2,3", "SET=warps=2 lanes=4", "ARGS=--cycles 9 'a b'",
+                          OUT="-o p", CUS="2")  # fmt: skip
+        for word in ("--scene=" + room, "--eye=-1,2,3", "--set=warps=2 lanes=4", "--units=2", "--out=-o p", "9", "a b"):
+            self.assertIn(word, said)
+        self.assertEqual(self.words("compare", "A=-a b", "B=" + room), ["compare", "-a b", room])
+
+    def test_defaults_reach_the_program_and_an_environment_overrules_them(self):
+        listed = re.findall(r"^export (SCENE|SIZE|DEPTH|CONFIG|ENGINE) \?= (\S+)$", MAKEFILE, re.M)
+        self.assertEqual(len(listed), 5)
+        said, other = self.words("sim"), self.words("sim", **{name: "else" for name, _ in listed})
+        for name, default in listed:
+            self.assertIn(f"--{name.lower()}={default}", said)
+            self.assertIn(f"--{name.lower()}=else", other)
+
+    def test_what_is_empty_is_left_to_the_program(self):
+        said = self.words("sim", "SCENE=", "TRAVERSER=")
+        self.assertEqual([word for word in said if re.match("--(scene|traverser|set|view|seed)", word)], [])
 
 
 class Readme(unittest.TestCase):
@@ -64,7 +140,7 @@ class Readme(unittest.TestCase):
         self.assertEqual(len(re.findall(r"^- ", section("Six links"), re.M)), 6)
 
     def test_variables_in_its_commands_are_variables_of_make(self):
-        known = set(re.findall(r"^([A-Z_]+) +\?=", MAKEFILE, re.M))
+        known = {name for _, name in variables()}
         commands = re.findall(r"`make ([^`]*)`", README)
         used = {name for command in commands for name in re.findall(r"\b([A-Z_]+)=", command)}
         self.assertGreater(len(used), 5)
