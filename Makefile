@@ -51,6 +51,17 @@ unexport ARGS
 # Those of NAMES that the command line has.
 said = $(foreach name,$1,$(if $(findstring command,$(origin $(name))),$(name)))
 
+# What is mistyped must not be ignored. What an outer make hands on is not looked at; tools have variables of their own.
+TOOLS := CC CXX CFLAGS CXXFLAGS LDFLAGS VERILATOR CCACHE_% CMAKE_% RAYPOOL_%
+given := $(if $(filter 0,$(MAKELEVEL)),$(filter-out $(TOOLS),$(call said,$(.VARIABLES))))
+known := $(if $(given),$(shell grep -oE '(^|  |export )[A-Z_]+ *[:?+]?=' Makefile | sed -E 's/export//; s/[^A-Z_]//g'))
+unknown := $(firstword $(filter-out $(known),$(given)))
+ifneq (,$(unknown))
+  nearest := $(shell python3 -c 'import difflib, sys; print(*difflib.get_close_matches(sys.argv[1], sys.argv[2:], 1))' \
+    "$$(tr a-z- A-Z_ <<< '$(unknown)')" $(known))
+  $(error $(unknown) is no variable of this Makefile$(patsubst %,: do you mean %?,$(nearest)) (make help-all lists all))
+endif
+
 #: variables of every target
 #:   ARGS="--option ..."           further options of what the target runs, as they are written
 #:   BUILD=FOLDER                  for everything that is made; a checkout

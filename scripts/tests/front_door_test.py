@@ -122,6 +122,18 @@ class Values(unittest.TestCase):
         said = self.words("sim", "SCENE=", "TRAVERSER=")
         self.assertEqual([word for word in said if re.match("--(scene|traverser|set|view|seed)", word)], [])
 
+    def test_an_unknown_one_is_refused_with_the_nearest(self):
+        for word, name in (("SCNE=room", "SCENE"), ("look-at=1", "LOOK_AT"), ("CONFIGS=4w4c", "CONFIG")):
+            done = make("sim", "SIZE=8x8", word, folder=self.folder)
+            self.assertEqual((done.returncode, done.stdout), (2, ""))
+            said = f"{word.split('=')[0]} is no variable of this Makefile: do you mean {name}? (make help-all"
+            self.assertIn(said, done.stderr)
+            self.assertEqual(done.stderr.count("\n"), 1)
+        self.assertIn("XYZZY is no variable of this Makefile (make", make("XYZZY=1", folder=self.folder).stderr)
+        # Neither parts of a value, nor what an outer make hands on, nor what tools read.
+        self.words("sim", "SET=warps=2 scne=3", "CXX=g++", "CMAKE_GENERATOR=Ninja")
+        self.words("sim", "SCNE=room", MAKELEVEL="1")
+
 
 class Readme(unittest.TestCase):
     def test_it_is_one_screen(self):
