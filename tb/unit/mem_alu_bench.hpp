@@ -163,7 +163,9 @@ class MemAluBench {
     auto& u = *unit_;
     const uint64_t before = outputs();
     u.task_valid_i = task != nullptr;
-    if (task) ASSERT_NO_FATAL_FAILURE(begin(*task));
+    if (task) {
+      ASSERT_NO_FATAL_FAILURE(begin(*task));
+    }
     u.request_ready_i = memory.decide_ready();
     const auto beat = memory.respond(cycle);
     u.response_valid_i = beat.has_value();
