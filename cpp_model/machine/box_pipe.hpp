@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstring>
 
 #include "machine/box_ray.hpp"
+#include "machine/pipe_items.hpp"
 
 namespace raypool {
 
@@ -25,10 +27,25 @@ struct BoxResult {
   uint32_t entry[kBoxes] = {};  ///< key of the time from which on the ray may be in it, rounded down
 };
 
+/// Something of each child's box; of comparisons all bits are set where they hold.
+using OfBoxes = int32_t __attribute__((vector_size(kBoxes * sizeof(int32_t))));
+using FloatsOfBoxes = float __attribute__((vector_size(kBoxes * sizeof(float))));
+inline OfBoxes larger_of(const OfBoxes& a, const OfBoxes& b) { return a > b ? a : b; }
+inline OfBoxes smaller_of(const OfBoxes& a, const OfBoxes& b) { return a < b ? a : b; }
+
+/// time_key() of values of less than 27 bits, not below zero: a float has their leading bit as its exponent, and behind
+/// it the fraction. Of 23 bits and more the last four are left out, so that no float is rounded up; no key has them.
+inline OfBoxes time_keys(const OfBoxes& values, int unit, int bits) {
+  const OfBoxes kept = values & ~((values >= (1 << 22)) & 15);
+  const FloatsOfBoxes floats = __builtin_convertvector(kept, FloatsOfBoxes);
+  OfBoxes words;
+  std::memcpy(&words, &floats, sizeof words);
+  return ((words >> (24 - bits)) + (unit + kKeyBias - 127) * (1 << (bits - 1))) & (values != 0);
+}
+
 /// A box against the slab of one axis: the times between which the ray may be in it, as keys.
 struct BoxAxis {
-  uint32_t near[kBoxes], far[kBoxes];
-  bool missed[kBoxes];
+  OfBoxes near, far, missed;
 
   BoxAxis(const BoxRay::Axis& ray, int bits, const BoxNode& node, int axis) {
     const int places = bits + 3;  // of the distance n
@@ -59,17 +76,24 @@ struct BoxAxis {
     const int coarser = unit + cut - node.exponent[axis];
     const int base_drop = std::min(std::max(-coarser, 0), 31), step_drop = std::min(std::max(coarser, 0), 31);
     const int sum_at = std::max(unit + cut, static_cast<int>(node.exponent[axis])) + ray.exponent;
-    for (int i = 0; i < kBoxes; ++i) {
-      const int64_t first = node.planes[ray.backwards ? 1 : 0][axis][i];
-      const int64_t second = node.planes[ray.backwards ? 0 : 1][axis][i];
-      // The far plane's time is negated, so that dropped bits make it later.
-      const auto steps = [m](int64_t q, bool negated) { return negated ? -(q * m + q) : q * m; };
-      const int64_t enters = (near_base >> base_drop) + (steps(first, ray.backwards) >> step_drop);
-      const int64_t leaves = -((far_base >> base_drop) + (steps(second, !ray.backwards) >> step_drop));
-      missed[i] = leaves < 0 || (ray.still && enters > 0);
-      near[i] = enters < 0 || ray.still ? 0 : time_key(static_cast<uint64_t>(enters), sum_at, bits);
-      far[i] = leaves < 0 ? 0 : time_key(static_cast<uint64_t>(leaves), sum_at, bits);
-      if (ray.still) far[i] = infinite_key(bits);
+    // Of both planes that side first that the ray meets first. The far one's time is negated, so that dropped bits make
+    // it later.
+    const auto steps = [&](int side, bool negated) {
+      const uint8_t(&q)[kBoxes] = node.planes[side][axis];
+      const OfBoxes planes = {q[0], q[1], q[2], q[3]}, times = planes * static_cast<int32_t>(m);
+      return (negated ? -(times + planes) : times) >> step_drop;
+    };
+    const OfBoxes enters = static_cast<int32_t>(near_base >> base_drop) + steps(ray.backwards ? 1 : 0, ray.backwards);
+    const OfBoxes leaves =
+        -(static_cast<int32_t>(far_base >> base_drop) + steps(ray.backwards ? 0 : 1, !ray.backwards));
+    if (ray.still) {
+      near = OfBoxes{};
+      far = OfBoxes{} + static_cast<int32_t>(infinite_key(bits));
+      missed = (leaves < 0) | (enters > 0);
+    } else {
+      near = time_keys(larger_of(enters, OfBoxes{}), sum_at, bits);
+      far = time_keys(larger_of(leaves, OfBoxes{}), sum_at, bits);
+      missed = leaves < 0;
     }
   }
 };
@@ -78,13 +102,14 @@ struct BoxAxis {
 inline BoxResult test_boxes(const BoxRay& ray, const BoxNode& node, uint32_t limit) {
   BoxResult result;
   const BoxAxis x(ray.axes[0], ray.bits, node, 0), y(ray.axes[1], ray.bits, node, 1), z(ray.axes[2], ray.bits, node, 2);
+  const OfBoxes near = larger_of(larger_of(x.near, y.near), z.near);
+  const OfBoxes far = smaller_of(smaller_of(x.far, y.far), smaller_of(z.far, OfBoxes{} + static_cast<int32_t>(limit)));
+  const OfBoxes bit = {1, 2, 4, 8}, met = (near <= far) & ~(x.missed | y.missed | z.missed) & bit;
   for (int i = 0; i < kBoxes; ++i) {
-    const uint32_t near = std::max({x.near[i], y.near[i], z.near[i]});
-    const uint32_t far = std::min({x.far[i], y.far[i], z.far[i], limit});
-    const bool missed = x.missed[i] || y.missed[i] || z.missed[i];
-    result.entry[i] = near;
-    result.met |= static_cast<uint32_t>(i < node.children && !missed && near <= far) << i;
+    result.entry[i] = static_cast<uint32_t>(near[i]);
+    result.met |= static_cast<uint32_t>(met[i]);
   }
+  result.met &= (1u << std::min<uint32_t>(node.children, kBoxes)) - 1;
   return result;
 }
 
@@ -93,26 +118,21 @@ class BoxPipe {
  public:
   static constexpr int kStages = 8;
 
-  bool valid() const { return stages_[last_].valid; }
-  const BoxResult& result() const { return stages_[last_].result; }
+  bool valid() const { return nodes_.there(kStages); }
+  const BoxResult& result() const { return *nodes_.at(kStages); }  ///< only while valid()
+  /// What will become of the node that was offered in the cycle before, or null.
+  const BoxResult* begun() const { return nodes_.at(1); }
   bool ready(bool result_ready) const { return !valid() || result_ready; }
 
   /// The end of a cycle. `node`: null, none is offered; `limit`: a key, of the best hit so far.
   void clock(bool result_ready, const BoxRay& ray, const BoxNode* node, uint32_t limit) {
     if (!ready(result_ready)) return;
-    Stage& first = stages_[last_];
-    first.valid = node != nullptr;
-    if (node != nullptr) first.result = test_boxes(ray, *node, limit);
-    last_ = (last_ + 1) % kStages;
+    if (node != nullptr) nodes_.begin() = test_boxes(ray, *node, limit);
+    nodes_.clock();
   }
 
  private:
-  struct Stage {
-    bool valid = false;
-    BoxResult result;
-  };
-  Stage stages_[kStages];
-  int last_ = 0;  // whose result is there; the next node takes its place
+  PipeItems<BoxResult, kStages> nodes_;
 };
 
 }  // namespace raypool

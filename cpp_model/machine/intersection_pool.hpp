@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <deque>
 
-#include "bits.hpp"
 #include "config/configuration.hpp"
 #include "enum_array.hpp"
 #include "machine/compute_unit.hpp"
@@ -77,6 +76,7 @@ class IntersectionPool {
   /// A package has come, all of it. There must be room.
   void put(uint64_t cycle, ImportKind kind, const Intersection& intersection) {
     queues_[kind].push_back(intersection);
+    ++sizes_[kind];
     if (wanting_ == kind && request_due_ == kNever) request_due_ = due(cycle);
   }
 
@@ -90,8 +90,8 @@ class IntersectionPool {
     put(cycle, kind, put_);
   }
 
-  bool full(ImportKind kind) const { return queues_[kind].size() >= capacity_; }
-  uint32_t size(ImportKind kind) const { return size32(queues_[kind]); }
+  bool full(ImportKind kind) const { return sizes_[kind] >= capacity_; }
+  uint32_t size(ImportKind kind) const { return sizes_[kind]; }
   /// Packages that no launch has reserved.
   uint32_t available(ImportKind kind) const { return size(kind) - reserved_[kind]; }
   void reserve(ImportKind kind, uint32_t count) { reserved_[kind] += count; }
@@ -110,6 +110,7 @@ class IntersectionPool {
     std::deque<Intersection>& queue = queues_[wanting_];
     given_ = queue.front();
     queue.pop_front();
+    --sizes_[wanting_];
     --reserved_[wanting_];
     ++taken_;
     const uint64_t first_beat = std::max(request_due_ + 1, beats_from_);
@@ -136,7 +137,7 @@ class IntersectionPool {
   uint64_t service_cycles_;  // that a package keeps the port
   uint64_t request_cycles_;  // from a request's turn until it is taken
   EnumArray<ImportKind, std::deque<Intersection>, kImportKinds> queues_;
-  EnumArray<ImportKind, uint32_t, kImportKinds> reserved_{};
+  EnumArray<ImportKind, uint32_t, kImportKinds> sizes_{}, reserved_{};
   ImportKind wanting_ = ImportKind::None;  // a package of this kind
   uint64_t request_due_ = kNever, beat_due_ = kNever;
   uint64_t free_from_ = 0;       // the next request can be served

@@ -63,6 +63,7 @@ class LaneHits {
     const LaneRay& ray = (*rays_)[slot];
     return hits_[slot].hit ? ray.box.key(hits_[slot].t, ray.limit.scale) : ray.box.limit;
   }
+  bool leaf_valid() const { return ends_.has_value(); }
   /// A leaf all of whose triangles have results, the last of which came in the cycle before; `bits`: of keys.
   std::optional<LaneStacks::LeafResult> leaf(int bits) const {
     if (!ends_) return {};
@@ -71,9 +72,10 @@ class LaneHits {
     return LaneStacks::LeafResult{*ends_, hit ? limit_key(*ends_) : infinite_key(bits), (*rays_)[*ends_].shadow && hit};
   }
 
-  /// The end of a cycle. `entered`: a slot whose ray enters.
-  void clock(std::optional<uint32_t> entered, const Result* result) {
-    if (entered) hits_[*entered].hit = false;
+  /// In this cycle a ray enters this slot, which has no results.
+  void enter(uint32_t slot) { hits_[slot].hit = false; }
+  /// The end of a cycle.
+  void clock(const Result* result) {
     ends_.reset();
     if (result == nullptr) return;
     if (result->hit) hits_[result->tag.slot] = {true, result->t, result->number, result->tag.place};

@@ -86,29 +86,9 @@ class LaneStacks {
   const Outcome& clock(const Inputs& inputs) {
     Outcome& now = outcome_;
     now.node_goes_on = now.next = now.done = false;
+    now.ray_ready = true;
     if (inputs.request_taken) request_valid_ = false;
-    pushed_ = false;
-    if (inputs.node != nullptr) take_node(*inputs.node, now);
-    if (inputs.leaf != nullptr) pops_[1].push({inputs.leaf->slot, inputs.leaf->limit, inputs.leaf->over});
-
-    const Read read = read_;
-    read_.kind = Read::Kind::Nothing;
-    now.ray_ready = read.kind == Read::Kind::Nothing;
-    if (!end_read(read, now)) {
-      next_read(now);
-    } else {
-      work_.late_retries += retry_ ? 1 : 0;
-    }
-    if (inputs.filled != nullptr) {
-      fill_ = *inputs.filled;
-      fill_waits_ = true;
-    }
-    if (fill_waits_ && !pushed_) {
-      write_block();
-    } else if (fill_waits_) {
-      ++work_.late_fills;
-    }
-    if (!fetching_ && !retry_ && !request_valid_ && fetches_.valid()) begin_fetch();
+    if (!sleeps() || inputs.node != nullptr || inputs.leaf != nullptr || inputs.filled != nullptr) go_on(inputs, now);
     return now;
   }
   /// A ray begins in the cycle of the last clock(), if that was ray_ready: its stack is empty.
@@ -138,7 +118,41 @@ class LaneStacks {
   };
 
   // A place of a slot's stack, the first one that has ever been in use being 0.
-  Entry& entry(uint32_t slot, uint32_t place) { return ram_[slot * capacity_ + place % capacity_]; }
+  Entry& entry(uint32_t slot, uint32_t place) {
+    while (place >= capacity_) place -= capacity_;
+    return ram_[slot * capacity_ + place];
+  }
+
+  // Until something comes nothing happens.
+  bool sleeps() const {
+    const uint32_t waiting = pops_[0].size() | pops_[1].size() | spills_.size() | fetches_.size();
+    return read_.kind == Read::Kind::Nothing && waiting == 0 && !retry_ && !fill_waits_;
+  }
+
+  void go_on(const Inputs& inputs, Outcome& now) {
+    pushed_ = false;
+    if (inputs.node != nullptr) take_node(*inputs.node, now);
+    if (inputs.leaf != nullptr) pops_[1].push({inputs.leaf->slot, inputs.leaf->limit, inputs.leaf->over});
+
+    const Read read = read_;
+    read_.kind = Read::Kind::Nothing;
+    now.ray_ready = read.kind == Read::Kind::Nothing;
+    if (!end_read(read, now)) {
+      next_read(now);
+    } else {
+      work_.late_retries += retry_ ? 1 : 0;
+    }
+    if (inputs.filled != nullptr) {
+      fill_ = *inputs.filled;
+      fill_waits_ = true;
+    }
+    if (fill_waits_ && !pushed_) {
+      write_block();
+    } else if (fill_waits_) {
+      ++work_.late_fills;
+    }
+    if (!fetching_ && !retry_ && !request_valid_ && fetches_.valid()) begin_fetch();
+  }
 
   void take_node(const NodeResult& node, Outcome& now) {
     if (node.children == 0) {

@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "machine/late_queue.hpp"
 #include "machine/line_offers.hpp"
 #include "machine/line_want.hpp"
 #include "machine/ram_queue.hpp"
@@ -49,31 +50,22 @@ class LeafReader {
   };
 
   explicit LeafReader(uint32_t slots)
-      : queues_{RamQueue<Wanted>(slots), RamQueue<Wanted>(slots), RamQueue<Wanted>(slots)},
+      : queues_{LateQueue<LineWant>(slots), LateQueue<LineWant>(slots), LateQueue<LineWant>(slots)},
         pending_(slots),
-        lines_(kLines),
         kept_(slots) {}
 
-  bool room() const { return held_ + (asked() ? 1 : 0) < kLines; }
-  /// Of which one can be taken in the cycle, the first rather.
-  LineWants wants() const {
-    LineWants wants;
-    for (uint32_t i = 0; i < wants.size(); ++i) {
-      const Wanted* const offer = offers_.offer(i);
-      if (offer != nullptr && (offer->nobody || room()))
-        wants[i] = {true, offer->nobody, static_cast<uint8_t>(offer->slot), offer->leaf.line};
-    }
-    return wants;
-  }
+  bool room() const { return held_ < kLines; }
+  /// Lines that it wants, if it wants any, of which one can be taken in the cycle, the first rather. They stay where
+  /// they are.
+  bool wants_any() const { return wants_[0].valid || wants_[1].valid; }
+  const LineWants& wants() const { return wants_; }
   /// A triangle's test can begin: test().
-  bool test_valid() const { return line_ && line_->tests != 0; }
+  bool test_valid() const { return present_ && lines_[oldest_].tests != 0; }
   std::optional<Test> test() const {
     if (!test_valid()) return {};
-    Test test{line_->slot, line_->leaf.left == 1, line_->leaf.place, {}, 0};
-    std::array<uint32_t, kKept + 16> words;
-    std::copy(read_.begin(), read_.end(), words.begin());
-    std::copy(line_->data.begin(), line_->data.end(), words.begin() + kKept);
-    const uint32_t* const first = &words[static_cast<size_t>(line_->leaf.at + int{kKept})];
+    const Line& line = lines_[oldest_];
+    Test test{line.slot, line.leaf.left == 1, line.leaf.place, {}, 0};
+    const uint32_t* const first = &line.words[static_cast<size_t>(line.leaf.at + int{kKept})];
     std::memcpy(&test.triangle, first, sizeof test.triangle);
     test.material = first[kTriangleWords - 1];
     return test;
@@ -84,43 +76,12 @@ class LeafReader {
 
   /// Before clock(): in this cycle a ray goes on with a leaf, its triangles less one in bits 30:29, the place of the
   /// first one below.
-  void start(size_t source, uint32_t slot, uint32_t leaf) {
-    Start& start = starts_[1 - starts_at_][source];
-    start.valid = true;
-    start.slot = slot;
-    start.leaf = leaf;
-  }
+  void start(size_t source, uint32_t slot, uint32_t leaf) { want(source, slot, Leaf(leaf)); }
   /// The end of a cycle.
   void clock(const Inputs& inputs) {
-    const bool leaves = line_ && (line_->tests == 0 || (line_->tests == 1 && inputs.triangle_taken));
-    const bool missed = due_ && inputs.given == nullptr;
-    const bool full = ahead_.size() == kAhead;
-    const Wanted* const next = next_offer();
-    held_ += (asked() ? 1 : 0) + (inputs.waited ? 1 : 0);
-    held_ -= (missed ? 1 : 0) + (leaves ? 1 : 0);
-
-    // Lines that have been looked up and were not there: those behind them are looked up at once.
-    if (missed && due_->behind != 0 && !full) ahead_.push({(due_->line + 1) & kLastLine, due_->behind});
-    due_.reset();
-    if (const Wanted* const wanted = asked()) {
-      pending_[wanted->slot] = wanted->leaf;
-      due_ = Behind{wanted->leaf.line, static_cast<uint32_t>(wanted->leaf.last_word() / 16)};
-    }
-    offers_.clock(next, inputs.taken);
-
-    if (come_) lines_.push(*come_);
-    std::optional<Wanted> further;
-    if (come_ && come_->leaf.left > come_->tests) further = Wanted{come_->slot, come_->leaf.behind(come_->tests)};
-    take_line(leaves, inputs.triangle_taken);
-    come_.reset();
-    if (inputs.given != nullptr) come_.emplace(inputs.given->slot, pending_[inputs.given->slot], *inputs.given->line);
-    for (size_t source = 0; source < kSources; ++source) {
-      Start& start = starts_[starts_at_][source];
-      if (start.valid) queues_[source].push({start.slot, Leaf(start.leaf)});
-      start.valid = false;
-    }
-    starts_at_ = 1 - starts_at_;
-    if (further) queues_[2].push(*further);
+    const bool sleeps = queued_ == 0 && !ahead_.valid() && count_ == 0 && !due_[0].valid && !due_[1].valid;
+    if (!sleeps || inputs.taken != 0 || inputs.waited || inputs.given != nullptr) work(inputs);
+    ++cycle_;
   }
 
  private:
@@ -150,40 +111,61 @@ class LeafReader {
       return behind;
     }
   };
-  struct Wanted {
-    uint32_t slot = 0;
-    Leaf leaf;
-    bool nobody = false;  // it will be wanted
-  };
-  struct Start {
-    bool valid = false;
-    uint32_t slot = 0, leaf = 0;
-  };
   struct Behind {
     uint32_t line = 0, behind = 0;
   };
+  struct Due {
+    bool valid = false;
+    Behind lines;
+  };
   struct Line {
     uint32_t slot = 0;
-    Leaf leaf;
     uint32_t tests = 0;  // that are to be begun
-    TreeLine data{};
-
-    Line() = default;
-    Line(uint32_t of, const Leaf& from, const TreeLine& line) : slot(of), leaf(from), tests(from.tests()), data(line) {}
+    Leaf leaf;
+    std::array<uint32_t, kKept + 16> words{};  // what is kept of the line before, once the line is the oldest; its own
   };
 
-  // What was taken in the cycle before, for a ray.
-  const Wanted* asked() const {
-    const Wanted* const asked = offers_.asked();
-    return asked != nullptr && !asked->nobody ? asked : nullptr;
+  void work(const Inputs& inputs) {
+    const bool leaves =
+        present_ && (lines_[oldest_].tests == 0 || (lines_[oldest_].tests == 1 && inputs.triangle_taken));
+    const bool full = ahead_.size() == kAhead;
+    const LineWant* const next = next_offer();
+    Due& due = due_[cycle_ % due_.size()];
+    const bool missed = due.valid && inputs.given == nullptr;
+    held_ += inputs.waited ? 1 : 0;
+    held_ -= (missed ? 1 : 0) + (leaves ? 1 : 0);
+
+    // Lines that have been looked up and were not there: those behind them are looked up at once.
+    if (missed && due.lines.behind != 0 && !full) ahead_.push({(due.lines.line + 1) & kLastLine, due.lines.behind});
+    due.valid = false;
+    if (inputs.taken != 0) {
+      const LineWant& taken = offers_.wants()[inputs.taken >> 1];
+      if (!taken.nobody) {
+        due = {true, {taken.line, static_cast<uint32_t>(pending_[taken.slot].last_word() / 16)}};
+        ++held_;
+      }
+    }
+    if (next != nullptr || inputs.taken != 0) offers_.clock(next, inputs.taken);
+    take_line(leaves, inputs.triangle_taken);
+    if (inputs.given != nullptr) come(*inputs.given);
+    for (size_t i = 0; i < wants_.size(); ++i) {
+      wants_[i] = offers_.wants()[i];
+      if (!room() && !wants_[i].nobody) wants_[i].valid = false;
+    }
+  }
+
+  // For the ray of this slot, from the cycle behind the next one on.
+  void want(size_t queue, uint32_t slot, const Leaf& leaf) {
+    pending_[slot] = leaf;
+    queues_[queue].push(cycle_, {true, false, static_cast<uint8_t>(slot), leaf.line});
+    ++queued_;
   }
 
   // Lines that will be wanted, then the queues' heads in rotation: null, or until something is put into a queue.
-  const Wanted* next_offer() {
+  const LineWant* next_offer() {
     if (!offers_.ready()) return nullptr;
     if (ahead_.valid()) {
-      will_want_.nobody = true;
-      will_want_.leaf.line = (ahead_.data().line + ahead_step_) & kLastLine;
+      will_want_ = {true, true, 0, (ahead_.data().line + ahead_step_) & kLastLine};
       ++looked_ahead_;
       if (++ahead_step_ == ahead_.data().behind) {
         ahead_step_ = 0;
@@ -191,55 +173,73 @@ class LeafReader {
       }
       return &will_want_;
     }
+    if (queued_ == 0) return nullptr;
     uint32_t valid = 0;
-    for (uint32_t queue = 0; queue < queues_.size(); ++queue) valid |= (queues_[queue].valid() ? 1u : 0u) << queue;
+    for (uint32_t queue = 0; queue < queues_.size(); ++queue)
+      valid |= (queues_[queue].valid(cycle_) ? 1u : 0u) << queue;
     if (valid == 0) return nullptr;
     const uint32_t queue = turn_.choose(valid);
     turn_.advance(queue);
-    const Wanted* const wanted = &queues_[queue].data();
+    const LineWant* const wanted = &queues_[queue].data();
     queues_[queue].pop();
+    --queued_;
     return wanted;
   }
 
   // The present line's triangle is begun, or the line leaves; the next one comes unless it waits for what is kept of
   // it.
   void take_line(bool leaves, bool triangle_taken) {
-    const bool comes = lines_.valid() && (!line_ || (leaves && lines_.data().slot != line_->slot));
-    waited_for_kept_ += lines_.valid() && leaves && !comes ? 1 : 0;
-    std::array<uint32_t, kKept> read{};
-    if (comes) read = kept_[lines_.data().slot];
-    if (line_ && line_->tests != 0 && triangle_taken) {
-      --line_->tests;
-      line_->leaf.at += int{kTriangleWords};
-      --line_->leaf.left;
-      ++line_->leaf.place;
+    Line& line = lines_[oldest_];
+    if (present_ && line.tests != 0 && triangle_taken) {
+      --line.tests;
+      line.leaf.at += int{kTriangleWords};
+      --line.leaf.left;
+      ++line.leaf.place;
     }
+    const bool waits = count_ > (present_ ? 1u : 0u);
+    const Line& next = lines_[present_ ? behind(oldest_) : oldest_];
+    const bool comes = waits && (!present_ || (leaves && next.slot != line.slot));
+    waited_for_kept_ += waits && leaves && !comes ? 1 : 0;
     if (leaves) {
-      if (line_->leaf.left != 0) std::copy(line_->data.end() - kKept, line_->data.end(), kept_[line_->slot].begin());
-      line_.reset();
+      if (line.leaf.left != 0) std::copy(line.words.end() - kKept, line.words.end(), kept_[line.slot].begin());
+      present_ = false;
+      oldest_ = behind(oldest_);
+      --count_;
     }
     if (!comes) return;
-    line_ = lines_.data();
-    lines_.pop();
-    read_ = read;
+    present_ = true;
+    Line& came = lines_[oldest_];
+    std::copy(kept_[came.slot].begin(), kept_[came.slot].end(), came.words.begin());
   }
 
-  std::array<std::array<Start, kSources>, 2> starts_;  // of the cycle before, and of this one
-  size_t starts_at_ = 0;                               // where those of the cycle before are
-  std::array<RamQueue<Wanted>, 3> queues_;             // from nodes; from the stack; further lines of leaves
-  RoundRobin turn_;                                    // which of them
-  RamQueue<Behind> ahead_{kAhead};                     // the first of so many lines that will be wanted
-  uint32_t ahead_step_ = 0;                            // of which so many have been offered
-  Wanted will_want_;                                   // its line is offered
-  LineOffers<Wanted> offers_;
-  std::vector<Leaf> pending_;  // [slot] whose line has been looked up
-  std::optional<Behind> due_;  // that was asked for two cycles ago
-  std::optional<Line> come_;   // what was given in the cycle before
-  RamQueue<Line> lines_;
-  std::optional<Line> line_;                       // the oldest
+  // A line that is given comes behind those that are there; the one behind it in memory is wanted if its leaf goes on.
+  void come(const Given& given) {
+    Line& line = lines_[(oldest_ + count_++) % lines_.size()];
+    line.slot = given.slot;
+    line.leaf = pending_[given.slot];
+    line.tests = line.leaf.tests();
+    std::copy(given.line->begin(), given.line->end(), line.words.begin() + kKept);
+    if (line.leaf.left > line.tests) want(2, line.slot, line.leaf.behind(line.tests));
+  }
+  static uint32_t behind(uint32_t line) { return (line + 1) % kPlaces; }
+
+  static constexpr uint32_t kPlaces = 8;  // a power of two, for kLines
+  uint64_t cycle_ = 0;
+  std::array<LateQueue<LineWant>, 3> queues_;  // from nodes; from the stack; further lines of leaves
+  uint32_t queued_ = 0;                        // in them
+  RoundRobin turn_;                            // which of them
+  RamQueue<Behind> ahead_{kAhead};             // the first of so many lines that will be wanted
+  uint32_t ahead_step_ = 0;                    // of which so many have been offered
+  LineWant will_want_;                         // its line is offered
+  LineOffers offers_;
+  LineWants wants_{};          // those of them for which there is room
+  std::vector<Leaf> pending_;  // [slot] of which a line is wanted, or on its way
+  std::array<Due, 2> due_;     // [cycle] in turn: asked for two cycles ago, or one
+  std::array<Line, kPlaces> lines_;
+  uint32_t oldest_ = 0, count_ = 0;                // of them
+  bool present_ = false;                           // the oldest one's triangles are tested
   std::vector<std::array<uint32_t, kKept>> kept_;  // [slot] the last words of its line before
-  std::array<uint32_t, kKept> read_{};
-  uint32_t held_ = 0;  // without the one taken in the cycle before
+  uint32_t held_ = 0;
   uint64_t looked_ahead_ = 0, waited_for_kept_ = 0;
 };
 

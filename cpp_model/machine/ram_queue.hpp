@@ -10,7 +10,7 @@ namespace raypool {
 template <typename Entry>
 class RamQueue {
  public:
-  explicit RamQueue(uint32_t depth) : entries_(depth) {}
+  explicit RamQueue(uint32_t depth) : depth_(depth), entries_(depth) {}
 
   uint32_t size() const { return size_; }
   bool valid() const { return size_ != 0; }
@@ -28,8 +28,9 @@ class RamQueue {
   }
 
  private:
-  uint32_t behind(uint32_t place) const { return place + 1 == entries_.size() ? 0 : place + 1; }
+  uint32_t behind(uint32_t place) const { return place + 1 == depth_ ? 0 : place + 1; }
 
+  uint32_t depth_;
   std::vector<Entry> entries_;
   uint32_t head_ = 0, tail_ = 0, size_ = 0;
 };

@@ -92,7 +92,8 @@ class RayExit {
     return Slot{fate_->lane, fate_->slot};
   }
 
-  LineWants wants() const { return reader_.wants(); }
+  bool wants_any() const { return reader_.wants_any(); }
+  const LineWants& wants() const { return reader_.wants(); }  ///< stay where they are
   bool room() const { return reader_.room(); }
 
   bool free_valid() const { return put_free_ || contributed_ || (fate_ && drops()); }

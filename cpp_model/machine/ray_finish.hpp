@@ -11,6 +11,7 @@
 
 #include "bits.hpp"
 #include "machine/narrow_float.hpp"
+#include "machine/pipe_items.hpp"
 #include "machine/triangle_pipe.hpp"
 #include "machine/triangle_ray.hpp"
 
@@ -205,29 +206,16 @@ class RayFinishPipe {
   };
 
   /// Null: none is there.
-  const Result* result() const {
-    const Stage& stage = line_[place(kStages)];
-    return stage.valid ? &stage.result : nullptr;
-  }
+  const Result* result() const { return rays_.at(kStages); }
 
   /// The end of a cycle. `ray`: null, none begins.
   void clock(const Start* ray) {
-    Stage& first = line_[place(0)];
-    first.valid = ray != nullptr;
-    if (first.valid) first.result = {ray->tag, RayFinish(ray->ray, ray->triangle, ray->t, ray->scale)};
-    ++cycle_;
+    if (ray != nullptr) rays_.begin() = {ray->tag, RayFinish(ray->ray, ray->triangle, ray->t, ray->scale)};
+    rays_.clock();
   }
 
  private:
-  struct Stage {
-    bool valid = false;
-    Result result;
-  };
-  size_t place(int ago) const { return (cycle_ + kPlaces - static_cast<size_t>(ago)) % kPlaces; }
-
-  static constexpr size_t kPlaces = 128;
-  size_t cycle_ = 0;
-  Stage line_[kPlaces];
+  PipeItems<Result, kStages> rays_;
 };
 
 }  // namespace raypool

@@ -9,6 +9,7 @@
 
 #include "bits.hpp"
 #include "machine/box_ray.hpp"
+#include "machine/pipe_items.hpp"
 #include "machine/triangle_ray.hpp"
 
 namespace raypool {
@@ -113,35 +114,21 @@ class RaySetupPipe {
   static constexpr int kApart = 3;  ///< cycles from a ray to the next one, or more
 
   struct Result {
-    uint32_t tag;
-    RaySetup setup;
+    uint32_t tag = 0;
+    RaySetup setup{{}, {}, 0};
   };
 
   /// Null: none is there.
-  const Result* result() const { return at(kStages); }
+  const Result* result() const { return rays_.at(kStages); }
 
   /// The end of a cycle. `ray`: null, none begins.
   void clock(const Result* ray) {
-    Stage& first = line_[place(0)];
-    first.valid = ray != nullptr;
-    if (first.valid) first.result = *ray;
-    ++cycle_;
+    if (ray != nullptr) rays_.begin() = *ray;
+    rays_.clock();
   }
 
  private:
-  struct Stage {
-    bool valid = false;
-    Result result{0, {{}, {}, 0}};
-  };
-  size_t place(int ago) const { return (cycle_ + kPlaces - static_cast<size_t>(ago)) % kPlaces; }
-  const Result* at(int ago) const {
-    const Stage& stage = line_[place(ago)];
-    return stage.valid ? &stage.result : nullptr;
-  }
-
-  static constexpr size_t kPlaces = 32;
-  size_t cycle_ = 0;
-  Stage line_[kPlaces];
+  PipeItems<Result, kStages> rays_;
 };
 
 }  // namespace raypool

@@ -82,15 +82,22 @@ class Traverser {
       lanes_.push_back(
           std::make_unique<TraverserLane>(TraverserLane::Sizes{sizes.slots, sizes.stack_entries, sizes.box_bits}));
       inputs_.emplace_back();
+      nodes_.wants[lane] = &lanes_[lane]->node_wants();
+      leaves_.wants[lane] = &lanes_[lane]->leaf_wants();
       look_at(lane);
     }
+    leaves_.wants[sizes.lanes] = &exit_.wants();
+    look_at_exit();
     for (uint32_t pipe = 0; pipe < sizes.triangle_pipes; ++pipe) {
-      groups_.emplace_back(slot_bits(sizes.slots));
-      for (uint32_t lane = pipe; lane < sizes.lanes; lane += sizes.triangle_pipes)
-        groups_.back().add(lanes_[lane].get());
+      uint32_t members = 0;
+      for (uint32_t lane = pipe; lane < sizes.lanes; lane += sizes.triangle_pipes) members |= 1u << lane;
+      groups_.emplace_back(lanes_, members, slot_bits(sizes.slots));
     }
     present();
   }
+
+  Traverser(const Traverser&) = delete;
+  Traverser& operator=(const Traverser&) = delete;
 
   /// While no ray is in it.
   void set_up(const TraverserSetup& setup) {
@@ -113,8 +120,8 @@ class Traverser {
     exit_inputs_ = {};
     const bool request_taken = out_.request_valid && inputs.request_ready;
     const bool line_taken = fill();
-    look_up(nodes_);
-    look_up(leaves_);
+    look_up_nodes();
+    look_up_leaves();
     std::optional<TreePort::Asked> asked = ask(request_taken);
     test_triangles();
     end_rays();
@@ -125,6 +132,7 @@ class Traverser {
     if (looks_inside_) note_handed();
 
     for (TriangleGroup& group : groups_) group.clock();
+    with_ = {};
     for (uint32_t lane = 0; lane < sizes_.lanes; ++lane) {
       inputs_[lane].stop = out_.fault.valid;
       lanes_[lane]->clock(inputs_[lane]);
@@ -132,6 +140,7 @@ class Traverser {
       look_at(lane);
     }
     exit_.clock(exit_inputs_);
+    look_at_exit();
     nodes_.clock(port_.line());
     leaves_.clock(port_.line());
     port_.clock(request_taken, asked ? &*asked : nullptr, line_taken,
@@ -183,7 +192,10 @@ class Traverser {
 
     /// The line that comes is taken.
     bool fills() const { return fill != TreeBanks::kNone && banks.fill_ready(fill); }
-    void give(uint32_t lane) { given[lane] = {banks.given(lane).slot, &lines[banks.given(lane).row]}; }
+    const LeafReader::Given* give(uint32_t lane) {
+      given[lane] = {banks.given(lane).slot, &lines[banks.given(lane).row]};
+      return &given[lane];
+    }
     void clock(const std::optional<TreePort::Line>& line) {
       if (fills()) lines[banks.fill_row(fill)] = line->data;
       banks.clock(request_taken);
@@ -227,7 +239,7 @@ class Traverser {
       lane.node_taken = in.node_taken;
       lane.leaf_taken = in.leaf_taken;
       lane.leaf_waited = in.leaf_waited;
-      lane.freed = in.freed;
+      if (in.freed != TraverserLane::kNoSlot) lane.freed = in.freed;
       if (in.filled != nullptr) lane.filled = *in.filled;
       if (in.node != nullptr) lane.node_slot = in.node->slot, lane.node = *in.node->line;
       if (in.leaf != nullptr) lane.leaf_slot = in.leaf->slot, lane.leaf = *in.leaf->line;
@@ -244,17 +256,19 @@ class Traverser {
   // What a lane says in the next cycle.
   void look_at(uint32_t number) {
     const TraverserLane& lane = *lanes_[number];
-    const auto set = [number](uint32_t& lanes, bool said) {
-      lanes = (lanes & ~(1u << number)) | (said ? 1u : 0u) << number;
-    };
-    nodes_.wants[number] = lane.node_wants();
-    leaves_.wants[number] = lane.leaf_wants();
+    const auto set = [number](uint32_t& lanes, bool said) { lanes |= (said ? 1u : 0u) << number; };
+    set(with_.nodes, lane.wants_node());
+    set(with_.leaves, lane.wants_leaf());
     set(with_.leaf_room, lane.leaf_room());
     set(with_.test, lane.test_valid());
     set(with_.request, lane.request_valid());
     set(with_.done, lane.done_valid());
     set(with_.slot, lane.slot_valid());
     set(with_.fault, lane.fault().valid);
+  }
+  void look_at_exit() {
+    with_.leaf_room |= (exit_.room() ? 1u : 0u) << sizes_.lanes;
+    with_.leaves |= (exit_.wants_any() ? 1u : 0u) << sizes_.lanes;
   }
 
   // The line that has come is offered to who has asked for it. True: it is taken.
@@ -271,34 +285,26 @@ class Traverser {
     return cache.fills();
   }
 
-  void look_up(Cache& cache) {
-    const bool nodes = &cache == &nodes_;
-    const auto count = static_cast<uint32_t>(cache.given.size());
-    uint32_t room = all_lanes();
-    if (!nodes) {
-      cache.wants[sizes_.lanes] = exit_.wants();
-      room = with_.leaf_room | (exit_.room() ? 1u : 0u) << sizes_.lanes;
-    }
-    const uint32_t waited = cache.banks.waited() & room;
-    cache.banks.choose(cache.wants, room, cache.fill);
-    for (uint32_t lane = 0; lane < count; ++lane) {
-      const uint32_t taken = cache.banks.taken(lane);
-      const bool is_given = (cache.banks.given_lanes() >> lane & 1) != 0, has_waited = (waited >> lane & 1) != 0;
-      if (is_given) cache.give(lane);
-      const LeafReader::Given* const given = is_given ? &cache.given[lane] : nullptr;
-      if (lane == sizes_.lanes) {
-        exit_inputs_.taken = taken;
-        exit_inputs_.waited = has_waited;
-        exit_inputs_.given = given;
-      } else if (nodes) {
-        inputs_[lane].node_taken = taken;
-        inputs_[lane].node = given;
-      } else {
-        inputs_[lane].leaf_taken = taken;
-        inputs_[lane].leaf_waited = has_waited;
-        inputs_[lane].leaf = given;
-      }
-    }
+  void look_up_nodes() {
+    nodes_.banks.choose(nodes_.wants, with_.nodes, all_lanes(), nodes_.fill);
+    for (uint32_t lanes = nodes_.banks.taken_lanes(); lanes != 0; lanes &= lanes - 1)
+      inputs_[lowest(lanes)].node_taken = nodes_.banks.taken(lowest(lanes));
+    for (uint32_t lanes = nodes_.banks.given_lanes(); lanes != 0; lanes &= lanes - 1)
+      inputs_[lowest(lanes)].node = nodes_.give(lowest(lanes));
+  }
+  // For the lanes, and behind them for the exit.
+  void look_up_leaves() {
+    const uint32_t waited = leaves_.banks.waited() & with_.leaf_room;
+    leaves_.banks.choose(leaves_.wants, with_.leaves, with_.leaf_room, leaves_.fill);
+    const uint32_t taken = leaves_.banks.taken_lanes(), given = leaves_.banks.given_lanes(), exit = 1u << sizes_.lanes;
+    for (uint32_t lanes = waited & ~exit; lanes != 0; lanes &= lanes - 1) inputs_[lowest(lanes)].leaf_waited = true;
+    for (uint32_t lanes = taken & ~exit; lanes != 0; lanes &= lanes - 1)
+      inputs_[lowest(lanes)].leaf_taken = leaves_.banks.taken(lowest(lanes));
+    for (uint32_t lanes = given & ~exit; lanes != 0; lanes &= lanes - 1)
+      inputs_[lowest(lanes)].leaf = leaves_.give(lowest(lanes));
+    exit_inputs_.waited = (waited & exit) != 0;
+    exit_inputs_.taken = leaves_.banks.taken(sizes_.lanes);
+    if ((given & exit) != 0) exit_inputs_.given = leaves_.give(sizes_.lanes);
   }
 
   std::optional<TreePort::Asked> ask(bool request_taken) {
@@ -322,16 +328,10 @@ class Traverser {
   }
 
   void test_triangles() {
-    for (uint32_t pipe = 0; pipe < sizes_.triangle_pipes; ++pipe) {
-      TriangleGroup& group = groups_[pipe];
-      uint32_t asking = 0;
-      for (uint32_t lane = pipe, member = 0; lane < sizes_.lanes; lane += sizes_.triangle_pipes, ++member)
-        asking |= (with_.test >> lane & 1) << member;
-      group.choose(asking);
-      for (uint32_t lane = pipe, member = 0; lane < sizes_.lanes; lane += sizes_.triangle_pipes, ++member) {
-        inputs_[lane].test_taken = group.test_taken(member);
-        inputs_[lane].result = group.result(member);
-      }
+    for (TriangleGroup& group : groups_) {
+      group.choose(with_.test);
+      if (group.taken() != TriangleGroup::kNone) inputs_[group.taken()].test_taken = true;
+      if (group.result_lane() != TriangleGroup::kNone) inputs_[group.result_lane()].result = &group.result();
     }
   }
 
@@ -428,7 +428,8 @@ class Traverser {
 
   // Lanes that have what is offered or wanted in this cycle.
   struct Lanes {
-    uint32_t leaf_room = 0, test = 0, request = 0, done = 0, slot = 0, fault = 0;
+    uint32_t test = 0, request = 0, done = 0, slot = 0, fault = 0;
+    uint32_t nodes = 0, leaves = 0, leaf_room = 0;  // with lines that they may want; the exit is behind the lanes
   };
   Lanes with_;
 

@@ -16,8 +16,10 @@
 #include "machine/free_list.hpp"
 #include "machine/lane_hits.hpp"
 #include "machine/lane_stacks.hpp"
+#include "machine/late_queue.hpp"
 #include "machine/leaf_reader.hpp"
 #include "machine/line_offers.hpp"
+#include "machine/pipe_items.hpp"
 #include "machine/ram_queue.hpp"
 #include "machine/tree_fault.hpp"
 
@@ -34,20 +36,21 @@ class TraverserLane {
     uint32_t slot;
     LaneRay ray;
   };
+  static constexpr uint32_t kNoSlot = UINT32_MAX;
   struct Inputs {
-    bool slot_taken = false;                    ///< for a ray; only if slot_valid()
     const Entered* ray = nullptr;               ///< is set up
-    uint32_t node_taken = 0;                    ///< bit i: node_wants()[i]
     const LeafReader::Given* node = nullptr;    ///< is given, two cycles after its lookup
-    uint32_t leaf_taken = 0;                    ///< bit i: leaf_wants()[i]
-    bool leaf_waited = false;                   ///< a line of a leaf is taken for which a ray has waited
-    const LeafReader::Given* leaf = nullptr;    ///< is given
-    bool request_taken = false;                 ///< only if request_valid()
+    const LeafReader::Given* leaf = nullptr;    ///< likewise
     const LaneStacks::Block* filled = nullptr;  ///< what was asked for has come
-    bool test_taken = false;                    ///< by the triangle pipe; only if there is one
     const LaneHits::Result* result = nullptr;   ///< of the triangle pipe
+    uint32_t freed = kNoSlot;                   ///< slot
+    uint8_t node_taken = 0;                     ///< bit i: node_wants()[i]
+    uint8_t leaf_taken = 0;                     ///< bit i: leaf_wants()[i]
+    bool leaf_waited = false;                   ///< a line of a leaf is taken for which a ray has waited
+    bool slot_taken = false;                    ///< for a ray; only if slot_valid()
+    bool request_taken = false;                 ///< only if request_valid()
+    bool test_taken = false;                    ///< by the triangle pipe; only if there is one
     bool done_taken = false;                    ///< only if done_valid()
-    std::optional<uint32_t> freed;              ///< slot
     bool stop = false;                          ///< no more nodes are tested
   };
   static constexpr uint32_t kNoReference = UINT32_MAX;
@@ -60,7 +63,7 @@ class TraverserLane {
         visits_(sizes.slots),
         rays_(sizes.slots, LaneRay{false, false, no_ray(sizes.box_bits), {}, {}}),
         begins_(sizes.slots),
-        nodes_{RamQueue<LineWant>(sizes.slots), RamQueue<LineWant>(sizes.slots)},
+        nodes_{LateQueue<LineWant>(sizes.slots), LateQueue<LineWant>(sizes.slots)},
         stacks_({sizes.slots, sizes.stack_entries}),
         leaves_(sizes.slots),
         ends_(sizes.slots),
@@ -77,14 +80,11 @@ class TraverserLane {
   bool slot_valid() const { return free_.valid(); }
   uint32_t slot() const { return free_.number(); }  ///< means something while slot_valid()
 
-  LineWants node_wants() const {
-    LineWants wants;
-    if (stacks_.fill_waits()) return wants;
-    for (uint32_t i = 0; i < wants.size(); ++i)
-      if (const LineWant* const offer = node_offers_.offer(i)) wants[i] = *offer;
-    return wants;
-  }
-  LineWants leaf_wants() const { return leaves_.wants(); }
+  /// Lines that it wants in this cycle, if it wants any; they stay where they are.
+  bool wants_node() const { return node_offers_.any() && !stacks_.fill_waits(); }
+  bool wants_leaf() const { return leaves_.wants_any(); }
+  const LineWants& node_wants() const { return node_offers_.wants(); }
+  const LineWants& leaf_wants() const { return leaves_.wants(); }
   bool leaf_room() const { return leaves_.room(); }
 
   /// A node that no tree has, or to which a ray comes too late: valid for a cycle, and then perhaps others.
@@ -103,25 +103,16 @@ class TraverserLane {
 
   /// The end of a cycle.
   void clock(const Inputs& inputs) {
-    LaneStacks::Inputs stacks;
-    stacks.node = node_ ? &*node_ : nullptr;
-    const std::optional<LaneStacks::LeafResult> leaf = hits_.leaf(box_bits_);
-    stacks.leaf = leaf ? &*leaf : nullptr;
-    stacks.request_taken = inputs.request_taken;
-    stacks.filled = inputs.filled;
-    if (const LineWant* const asked = node_offers_.asked()) numbers_[asked->slot] = asked->line;
-    node_offers_.clock(next_node(), inputs.node_taken);
-    const LaneStacks::Outcome& outcome = stacks_.clock(stacks);
+    offer_nodes(inputs.node_taken);
+    const LaneStacks::NodeResult* const node = tests_.at(kNode);
+    const LaneStacks::Outcome& outcome = clock_stacks(inputs, node);
     if (inputs.done_taken) done_.reset();
     if (!done_ && ends_.valid()) {
       done_ = ends_.data();
       ends_.pop();
     }
 
-    for (size_t i = 0; i < nodes_.size(); ++i)
-      if (goes_on_[i].valid) nodes_[i].push(goes_on_[i]);
-    goes_on_ = {};
-    if (outcome.node_goes_on) go(0, node_->slot, node_->nearest);
+    if (outcome.node_goes_on) go(0, node->slot, node->nearest);
     if (outcome.next) go(1, outcome.slot, outcome.reference);
     if (outcome.done) ends_.push(outcome.slot);
     if (outcome.ray_ready && begins_.valid()) begin();
@@ -132,22 +123,31 @@ class TraverserLane {
     leaves.triangle_taken = inputs.test_taken;
     leaves_.clock(leaves);
 
-    look_at_node();
-    test_boxes_of(inputs.stop ? nullptr : inputs.node);
-    hits_.clock(inputs.ray != nullptr ? std::optional<uint32_t>(inputs.ray->slot) : std::nullopt, inputs.result);
-    if (inputs.ray != nullptr) {
-      rays_[inputs.ray->slot] = inputs.ray->ray;
-      visits_[inputs.ray->slot] = 0;
-      begins_.push(inputs.ray->slot);
+    fault_.valid = false;
+    if (is_given_) {
+      look_at_node();
+      test_boxes();
+    } else {
+      boxes_.clock(true, rays_[0].box, nullptr, 0);
     }
+    tests_.clock();
+    is_given_ = inputs.node != nullptr && !inputs.stop;
+    if (is_given_) {
+      given_slot_ = inputs.node->slot;
+      given_line_ = *inputs.node->line;
+    }
+    hits_.clock(inputs.result);
+    if (inputs.ray != nullptr) enter(*inputs.ray);
     if (inputs.slot_taken) free_.take();
-    if (inputs.freed) free_.free(*inputs.freed);
+    if (inputs.freed != kNoSlot) free_.free(inputs.freed);
+    ++cycle_;
   }
 
   // ---- For reports of a lockstep
 
   const BoxPipe& boxes() const { return boxes_; }
-  const std::optional<LaneStacks::NodeResult>& node() const { return node_; }
+  /// Of boxes that had their result in the cycle before, or null.
+  const LaneStacks::NodeResult* node() const { return tests_.at(kNode); }
   const LaneStacks::Outcome& stacks_outcome() const { return stacks_.outcome(); }  ///< of the cycle that has ended
   std::optional<LaneStacks::LeafResult> leaf_result() const { return hits_.leaf(box_bits_); }
   /// Of which a slot is given a line in this cycle, whose boxes are tested in it.
@@ -162,31 +162,43 @@ class TraverserLane {
   const LeafReader& leaves() const { return leaves_; }
 
  private:
-  static constexpr uint32_t kBoxStages = BoxPipe::kStages;
-
-  /// What goes along with a box test.
-  struct Along {
-    uint32_t slot = 0, limit = 0;
-    std::array<uint32_t, kBoxes> references{};
-  };
+  static constexpr uint32_t kNode = BoxPipe::kStages + 1;  // cycles from a box test to when its result is a node's
 
   static BoxRay no_ray(int bits) { return BoxRay({0, 0, 0}, {0, 0, 0}, 0, bits); }
 
-  // Null, or until something is put into a queue.
-  const LineWant* next_node() {
-    const uint32_t first = nodes_[node_turn_].valid() ? node_turn_ : 1 - node_turn_;
-    if (!node_offers_.ready() || !nodes_[first].valid()) return nullptr;
-    const LineWant* const next = &nodes_[first].data();
-    nodes_[first].pop();
-    node_turn_ = 1 - first;
-    return next;
+  // The next one is offered; one that is taken is looked up.
+  void offer_nodes(uint32_t taken) {
+    const LineWant* next = nullptr;
+    if (queued_nodes_ != 0 && node_offers_.ready()) {
+      const uint32_t first = nodes_[node_turn_].valid(cycle_) ? node_turn_ : 1 - node_turn_;
+      if (nodes_[first].valid(cycle_)) {
+        next = &nodes_[first].data();
+        nodes_[first].pop();
+        --queued_nodes_;
+        node_turn_ = 1 - first;
+      }
+    }
+    if (taken != 0) {
+      const LineWant& asked = node_offers_.wants()[taken >> 1];
+      numbers_[asked.slot] = asked.line;
+    }
+    if (next != nullptr || taken != 0) node_offers_.clock(next, taken);
+  }
+
+  const LaneStacks::Outcome& clock_stacks(const Inputs& inputs, const LaneStacks::NodeResult* node) {
+    LaneStacks::Inputs stacks;
+    std::optional<LaneStacks::LeafResult> leaf;
+    stacks.node = node;
+    if (hits_.leaf_valid()) leaf = hits_.leaf(box_bits_);
+    stacks.leaf = leaf ? &*leaf : nullptr;
+    stacks.request_taken = inputs.request_taken;
+    stacks.filled = inputs.filled;
+    return stacks_.clock(stacks);
   }
 
   // The node whose test begins. A way back to a node has a step to a number that is not above the one before it; ways
   // that meet again, and stacks that come back wrong, lead to more visits than there are nodes.
   void look_at_node() {
-    fault_.valid = false;
-    if (!is_given_) return;
     BoxNode node;
     std::memcpy(&node, given_line_.data(), sizeof node);
     fault_.line = numbers_[given_slot_];
@@ -210,7 +222,8 @@ class TraverserLane {
 
   void go(uint32_t source, uint32_t slot, uint32_t reference) {
     if ((reference & kLeaf) == 0) {
-      goes_on_[source] = {true, false, static_cast<uint8_t>(slot), reference & LeafReader::kLastLine};
+      nodes_[source].push(cycle_, {true, false, static_cast<uint8_t>(slot), reference & LeafReader::kLastLine});
+      ++queued_nodes_;
     } else {
       leaves_.start(source, slot, reference);
     }
@@ -226,33 +239,22 @@ class TraverserLane {
     }
   }
 
-  void test_boxes_of(const LeafReader::Given* given) {
-    node_.reset();
-    if (boxes_.valid()) {
-      const Along& along = along_[place_ % kBoxStages];
-      node_ = LaneStacks::NodeResult{};
-      node_->slot = along.slot;
-      node_->limit = along.limit;
-      order_children(boxes_.result(), along.references, *node_);
-    }
-    if (is_given_) {
-      BoxNode node;
-      std::memcpy(&node, given_line_.data(), sizeof node);
-      node.children &= 7;
-      const uint32_t limit = hits_.limit_key(given_slot_);
-      Along& along = along_[place_ % kBoxStages];
-      along.slot = given_slot_;
-      along.limit = limit;
-      std::copy_n(given_line_.begin() + sizeof node / sizeof(uint32_t), kBoxes, along.references.begin());
-      boxes_.clock(true, rays_[given_slot_].box, &node, limit);
-    } else {
-      boxes_.clock(true, rays_[0].box, nullptr, 0);
-    }
-    ++place_;
-    is_given_ = given != nullptr;
-    if (!is_given_) return;
-    given_slot_ = given->slot;
-    given_line_ = *given->line;
+  // Of the node that has been given.
+  void test_boxes() {
+    BoxNode node;
+    std::memcpy(&node, given_line_.data(), sizeof node);
+    node.children &= 7;
+    LaneStacks::NodeResult& result = tests_.begin();
+    result.slot = given_slot_;
+    result.limit = hits_.limit_key(given_slot_);
+    boxes_.clock(true, rays_[given_slot_].box, &node, result.limit);
+    order_children(*boxes_.begun(), given_line_.data() + sizeof node / sizeof(uint32_t), result);
+  }
+  void enter(const Entered& entered) {
+    rays_[entered.slot] = entered.ray;
+    visits_[entered.slot] = 0;
+    hits_.enter(entered.slot);
+    begins_.push(entered.slot);
   }
 
   int box_bits_;
@@ -263,17 +265,16 @@ class TraverserLane {
   std::vector<LaneRay> rays_;  // [slot]
   RamQueue<uint32_t> begins_;  // slots whose ray has come
 
-  LineWants goes_on_;                        // with a node, in the cycle before
-  std::array<RamQueue<LineWant>, 2> nodes_;  // that are wanted: from box results; from the stack, and roots
-  uint32_t node_turn_ = 0;                   // whose head comes next
-  LineOffers<LineWant> node_offers_;
+  uint64_t cycle_ = 0;
+  std::array<LateQueue<LineWant>, 2> nodes_;  // that are wanted: from box results; from the stack, and roots
+  uint32_t queued_nodes_ = 0;                 // in them
+  uint32_t node_turn_ = 0;                    // whose head comes next
+  LineOffers node_offers_;
   bool is_given_ = false;  // in the cycle before, for this slot this line
   uint32_t given_slot_ = 0;
   TreeLine given_line_{};
   BoxPipe boxes_;
-  std::array<Along, kBoxStages> along_;
-  uint32_t place_ = 0;
-  std::optional<LaneStacks::NodeResult> node_;  // of boxes that had their result in the cycle before
+  PipeItems<LaneStacks::NodeResult, kNode> tests_;  // of boxes, and what the stacks will make of them
 
   LaneStacks stacks_;
   LeafReader leaves_;

@@ -29,7 +29,7 @@ class TreeBanks {
     uint32_t mshrs = 64;
     uint32_t banks = 8;  ///< a power of two
   };
-  using AllWants = std::array<LineWants, kMostLanes>;
+  using AllWants = std::array<const LineWants*, kMostLanes>;
   struct Given {
     uint8_t slot = 0;
     uint32_t row = 0;  ///< of the data, those of a bank behind those of the banks before it
@@ -42,8 +42,7 @@ class TreeBanks {
   static constexpr uint32_t kNone = UINT32_MAX;
 
   explicit TreeBanks(const Sizes& sizes)
-      : lanes_(sizes.lanes),
-        lines_a_bank_(sizes.lines / sizes.banks),
+      : lines_a_bank_(sizes.lines / sizes.banks),
         banks_(sizes.banks, TreeCache({sizes.lanes, lines_a_bank_, sizes.ways, sizes.mshrs / sizes.banks})),
         inputs_(sizes.banks),
         lookups_(sizes.banks),
@@ -61,21 +60,23 @@ class TreeBanks {
     for (uint32_t bits = offering_; bits != 0; bits &= bits - 1) lanes |= 1u << banks_[lowest(bits)].offer_lane();
     return lanes;
   }
-  /// A cycle's decisions: of what each lane wants, of the lanes that would take a line for which they have waited, and
-  /// of the request whose line comes (kNone: none).
-  void choose(const AllWants& wants, uint32_t room, uint32_t fill) {
+  /// A cycle's decisions: of what each lane of `wanting` wants, others want nothing; of the lanes that would take a
+  /// line for which they have waited; and of the request whose line comes (kNone: none).
+  void choose(const AllWants& wants, uint32_t wanting, uint32_t room, uint32_t fill) {
     if (fill != kNone) {
       TreeCache::Inputs& inputs = inputs_[fill >> id_bits_];
       inputs.fill = true;
       inputs.fill_id = fill & ((1u << id_bits_) - 1);
+      called_ |= 1u << (fill >> id_bits_);
       work_.late_fills += fill_ready(fill) ? 0 : 1;
     }
     const uint32_t waited_for = waited();
     hand_on(waited_for, room);
-    look_up(wants, waited_for);
+    look_up(wants, wanting & ~waited_for);
   }
-  /// Which of its wants is looked up: bit i: want i; one at most.
-  uint32_t taken(uint32_t lane) const { return taken_[lane]; }
+  /// Lanes of which a want is looked up, and which: bit i: want i; one at most.
+  uint32_t taken_lanes() const { return taken_lanes_; }
+  uint8_t taken(uint32_t lane) const { return (taken_lanes_ >> lane & 1) != 0 ? taken_[lane] : uint8_t{0}; }
   /// Lanes that are given a line, two cycles after they took it: by a hit, or because they had waited for it.
   uint32_t given_lanes() const { return given_lanes_; }
   const Given& given(uint32_t lane) const { return given_[lane]; }
@@ -100,17 +101,22 @@ class TreeBanks {
       const uint32_t bank = requester();
       inputs_[bank].request_taken = true;
       request_turn_.advance(bank);
+      called_ |= 1u << bank;
     }
-    given_lanes_ = offering_ = requesting_ = 0;
-    for (uint32_t number = 0; number < banks_.size(); ++number) {
+    given_lanes_ = 0;
+    const uint32_t clocked = awake_ | called_;
+    awake_ = called_ = 0;
+    offering_ &= ~clocked;
+    requesting_ &= ~clocked;
+    for (uint32_t bits = clocked; bits != 0; bits &= bits - 1) {
+      const uint32_t number = lowest(bits);
       TreeCache& bank = banks_[number];
-      TreeCache::Inputs& inputs = inputs_[number];
-      if (inputs.lookup == nullptr && bank.idle()) continue;
-      bank.clock(inputs);
-      inputs = {};
+      bank.clock(inputs_[number]);
+      inputs_[number] = {};
       take_given(number);
       offering_ |= (bank.offers() ? 1u : 0u) << number;
       requesting_ |= (bank.request_valid() ? 1u : 0u) << number;
+      awake_ |= (bank.sleeps() ? 0u : 1u) << number;
     }
   }
 
@@ -127,7 +133,7 @@ class TreeBanks {
   const Work& work() const { return work_; }
 
  private:
-  uint32_t bank_of(uint32_t line) const { return line & (static_cast<uint32_t>(banks_.size()) - 1); }
+  uint32_t bank_of(uint32_t line) const { return line & ((1u << bank_bits_) - 1); }
   uint32_t requester() const { return request_turn_.choose(requesting_); }
 
   // Each lane for which there are lines takes one, of its banks in rotation.
@@ -150,22 +156,28 @@ class TreeBanks {
 
   // Each bank chooses a lane, and the first of its wants that go to the bank; then a lane takes the first of its wants
   // whose line a bank has chosen, for whomever. A bank whose lane takes another one may have chosen for nobody.
-  void look_up(const AllWants& wants, uint32_t but) {
-    for (uint32_t lane = 0; lane < lanes_; ++lane) {
-      taken_[lane] = 0;
-      if ((but >> lane & 1) != 0) continue;
-      for (const LineWant& want : wants[lane])
-        if (want.valid) asking_[bank_of(want.line)] |= 1u << lane;
+  void look_up(const AllWants& wants, uint32_t wanting) {
+    taken_lanes_ = 0;
+    uint32_t asked = 0;
+    for (uint32_t bits = wanting; bits != 0; bits &= bits - 1) {
+      const uint32_t lane = lowest(bits);
+      for (const LineWant& want : *wants[lane]) {
+        if (!want.valid) continue;
+        asking_[bank_of(want.line)] |= 1u << lane;
+        asked |= 1u << bank_of(want.line);
+      }
     }
     uint32_t looking = 0;
-    for (uint32_t bank = 0; bank < banks_.size(); ++bank) {
+    for (; asked != 0; asked &= asked - 1) {
+      const uint32_t bank = lowest(asked);
       const uint32_t asking = std::exchange(asking_[bank], 0);
-      if (asking == 0 || inputs_[bank].fill || !banks_[bank].ready()) continue;
+      if (inputs_[bank].fill || !banks_[bank].ready()) continue;
       looking |= 1u << bank;
       const uint32_t lane = lane_turns_[bank].choose(asking);
       lane_turns_[bank].advance(lane);
-      const bool first = wants[lane][0].valid && bank_of(wants[lane][0].line) == bank;
-      chosen_[bank] = wants[lane][first ? 0 : 1].line;
+      const LineWants& of = *wants[lane];
+      const bool first = of[0].valid && bank_of(of[0].line) == bank;
+      chosen_[bank] = of[first ? 0 : 1].line;
       lookups_[bank].line = chosen_[bank] >> bank_bits_;
       lookups_[bank].lanes = 0;
     }
@@ -173,14 +185,17 @@ class TreeBanks {
       const uint32_t bank = bank_of(want.line);
       return want.valid && (looking >> bank & 1) != 0 && chosen_[bank] == want.line;
     };
-    for (uint32_t lane = 0; looking != 0 && lane < lanes_; ++lane) {
-      if ((but >> lane & 1) != 0) continue;
-      const std::array<bool, 2> which{is_chosen(wants[lane][0]), is_chosen(wants[lane][1])};
+    for (uint32_t bits = looking != 0 ? wanting : 0; bits != 0; bits &= bits - 1) {
+      const uint32_t lane = lowest(bits);
+      const LineWants& of = *wants[lane];
+      const std::array<bool, 2> which{is_chosen(of[0]), is_chosen(of[1])};
       if (!which[0] && !which[1]) continue;
-      work_.both_chosen += which[0] && which[1] && bank_of(wants[lane][0].line) != bank_of(wants[lane][1].line) ? 1 : 0;
+      work_.both_chosen += which[0] && which[1] && bank_of(of[0].line) != bank_of(of[1].line) ? 1 : 0;
+      taken_lanes_ |= 1u << lane;
       taken_[lane] = which[0] ? 1 : 2;
-      const LineWant& want = wants[lane][which[0] ? 0 : 1];
+      const LineWant& want = of[which[0] ? 0 : 1];
       const uint32_t bank = bank_of(want.line);
+      called_ |= 1u << bank;
       inputs_[bank].lookup = &lookups_[bank];
       if (want.nobody) continue;
       work_.shared += lookups_[bank].lanes != 0 ? 1 : 0;
@@ -196,7 +211,7 @@ class TreeBanks {
       given_[lowest(bits)] = {given.slots[lowest(bits)], number * lines_a_bank_ + given.row};
   }
 
-  uint32_t lanes_, lines_a_bank_, bank_bits_ = 0, id_bits_ = 1;
+  uint32_t lines_a_bank_, bank_bits_ = 0, id_bits_ = 1;
   std::vector<TreeCache> banks_;
   std::vector<TreeCache::Inputs> inputs_;   // [bank] of this cycle
   std::vector<TreeCache::Lookup> lookups_;  // [bank]
@@ -206,7 +221,9 @@ class TreeBanks {
   uint32_t offering_ = 0, requesting_ = 0;     // banks
   std::array<uint32_t, kMostBanks> asking_{};  // lanes; 0 but during look_up()
   std::array<uint32_t, kMostBanks> chosen_{};  // line, of a bank that looks
-  std::array<uint32_t, kMostLanes> taken_{};
+  uint32_t awake_ = 0, called_ = 0;            // banks that do not sleep, and those with inputs in this cycle
+  uint32_t taken_lanes_ = 0;
+  std::array<uint8_t, kMostLanes> taken_{};
   std::array<Given, kMostLanes> given_{};
   uint32_t given_lanes_ = 0;
   Work work_;

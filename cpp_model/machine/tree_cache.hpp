@@ -51,8 +51,7 @@ class TreeCache {
       : sizes_(sizes),
         all_ways_((1u << sizes.ways) - 1),
         sets_(sizes.lines / sizes.ways),
-        tags_(sizes.lines),
-        valid_(sizes.lines),
+        tags_(sizes.lines, kNone),
         order_(sets_),
         next_(kMostLanes << 8) {}
 
@@ -60,7 +59,7 @@ class TreeCache {
 
   /// A lookup is taken, unless a line comes in this cycle. Whether the one before hits is not asked.
   bool ready() const {
-    return serving_ == Serving::Nobody && (filled_ & waited_for_) == 0 && !(looks_ && miss().stuck);
+    return serving_ == Serving::Nobody && (filled_ & waited_for_) == 0 && !(looks_ && (waits_ || stuck()));
   }
   /// Two cycles after a hit, or after an offer was taken: who gets the row that is there.
   const Given& given() const { return given_; }
@@ -81,12 +80,19 @@ class TreeCache {
   bool fill_ready() const { return !hit(); }
 
   /// True if nothing can happen until there are inputs.
-  bool idle() const { return !looks_ && read_.lanes == 0 && given_.lanes == 0 && busy_ == 0; }
+  bool sleeps() const {
+    return looks_ == waits_ && (read_.lanes | given_.lanes | joins_.lanes | filled_) == 0 &&
+           serving_ == Serving::Nobody;
+  }
+  /// True if nothing is under way either.
+  bool idle() const { return sleeps() && !looks_ && busy_ == 0; }
 
   /// The end of a cycle.
   void clock(const Inputs& inputs) {
     const bool hits = hit(), joins = joins_.lanes != 0;
-    const Miss now = looks_ && !hits ? miss() : Miss{};
+    Miss now;
+    if (waits_) now.stuck = true;
+    if (looks_ && !waits_ && !hits) now = miss();
     const bool fill = inputs.fill && !hits;
     give(read_.lanes, read_.slots, read_.row);
     read_.lanes = 0;
@@ -123,10 +129,10 @@ class TreeCache {
       }
     }
     looks_ = looks_ && now.stuck;
+    waits_ = looks_ && !joins && freed == 0;
     if (fill) {
       Mshr& mshr = mshrs_[inputs.fill_id];
       tags_[row(set(mshr.line), mshr.way)] = mshr.line;
-      valid_[row(set(mshr.line), mshr.way)] = true;
       filled_ |= 1u << inputs.fill_id;
     }
     busy_ &= ~freed;
@@ -155,7 +161,6 @@ class TreeCache {
     if (way == kNone) {
       way = victim(in, 0);
       tags_[row(in, way)] = line;
-      valid_[row(in, way)] = true;
     }
     touch(in, way);
   }
@@ -204,15 +209,22 @@ class TreeCache {
   uint32_t set(uint32_t line) const { return line & (sets_ - 1); }
   uint32_t row(uint32_t in, uint32_t way) const { return in * sizes_.ways + way; }
   uint32_t find(uint32_t line) const {
-    const uint32_t first = row(set(line), 0);
-    for (uint32_t way = 0; way < sizes_.ways; ++way) {
-      if (tags_[first + way] == line && valid_[first + way]) return way;
-    }
-    return kNone;
+    const uint32_t* const tags = &tags_[row(set(line), 0)];
+    uint32_t ways = 0;
+    for (uint32_t way = 0; way < sizes_.ways; ++way) ways |= (tags[way] == line ? 1u : 0u) << way;
+    return ways != 0 ? lowest(ways) : kNone;
   }
   uint32_t& next(Waiter waiter) { return next_[waiter.lane << 8 | waiter.slot]; }
 
   bool hit() const { return looks_ && fresh_ && found_ != kNone; }
+  bool others_join() const { return (joins_.lanes & (joins_.lanes - 1)) != 0; }  // in the next cycle, too
+  // A lookup that waits if it is a miss. As long as there are fewer lines on their way than ways, no set is locked.
+  bool stuck() const {
+    if (lookup_.lanes == 0) return false;
+    if (others_join()) return true;
+    const uint64_t busy = popcount(busy_);
+    return (busy >= sizes_.mshrs || busy >= sizes_.ways) && miss().stuck;
+  }
   // Of the registers and of what has been looked up alone.
   Miss miss() const {
     Miss now;
@@ -227,8 +239,7 @@ class TreeCache {
     }
     const uint32_t free = ~busy_ & static_cast<uint32_t>((uint64_t{1} << sizes_.mshrs) - 1);
     const bool room = free != 0 && locked != all_ways_;
-    const bool others_join = (joins_.lanes & (joins_.lanes - 1)) != 0;        // in the next cycle, too
-    now.stuck = lookup_.lanes != 0 && (others_join || !(now.known || room));  // what nobody waits for is dropped
+    now.stuck = lookup_.lanes != 0 && (others_join() || !(now.known || room));  // what nobody waits for is dropped
     now.allocate = !now.stuck && !now.known && room;
     if (!now.allocate) return now;
     now.id = lowest(free);
@@ -249,8 +260,10 @@ class TreeCache {
     return node - sizes_.ways;
   }
   void touch(uint32_t in, uint32_t way) {
+    uint32_t order = order_[in];
     for (uint32_t node = sizes_.ways + way; node > 1; node /= 2)
-      order_[in] = (order_[in] & ~(1u << node / 2)) | (~node & 1) << node / 2;
+      order = (order & ~(1u << node / 2)) | (~node & 1) << node / 2;
+    order_[in] = order;
   }
 
   void allocate(const Miss& now) {
@@ -293,10 +306,10 @@ class TreeCache {
 
   Sizes sizes_;
   uint32_t all_ways_, sets_;
-  std::vector<uint32_t> tags_;   // [set][way] lines
-  std::vector<uint8_t> valid_;   // [set][way]
+  std::vector<uint32_t> tags_;   // [set][way] lines, or kNone
   std::vector<uint32_t> order_;  // [set] bits 1 .. ways - 1
   bool looks_ = false;
+  bool waits_ = false;                               // what is looked up is stuck until a register is free
   Lookup lookup_;                                    // whose tags have been read
   bool fresh_ = false;                               // they have, in the cycle before: later they may be out of date
   uint32_t found_ = kNone;                           // way in which the line was

@@ -7,6 +7,7 @@
 
 #include "bits.hpp"
 #include "machine/narrow_float.hpp"
+#include "machine/pipe_items.hpp"
 #include "machine/triangle_edges.hpp"
 #include "machine/triangle_ray.hpp"
 
@@ -96,50 +97,38 @@ class TrianglePipe {
   };
 
   /// `bits`: 26, 28, 30 or 32.
-  explicit TrianglePipe(uint32_t bits) : narrow_(bits), stages_(30 + static_cast<int>(bits) / 2) {}
+  explicit TrianglePipe(uint32_t bits) : narrow_(bits), stages_(30 + bits / 2) {}
 
   /// Cycles from a test to its result.
-  int stages() const { return stages_; }
+  int stages() const { return static_cast<int>(stages_); }
 
   /// A test asks for the limit, or the best hit, of the ray with this tag, or is told it; a result is there. Else null.
-  const TriangleResult* asks_limit() const { return at(stages_ - 5); }
-  const TriangleResult* told_limit() const { return at(stages_ - 4); }
-  const TriangleResult* asks_best() const { return at(stages_ - 2); }
-  const TriangleResult* told_best() const { return at(stages_ - 1); }
-  const TriangleResult* result() const { return at(stages_); }
+  const TriangleResult* asks_limit() const { return tests_.at(stages_ - 5); }
+  const TriangleResult* told_limit() const { return tests_.at(stages_ - 4); }
+  const TriangleResult* asks_best() const { return tests_.at(stages_ - 2); }
+  const TriangleResult* told_best() const { return tests_.at(stages_ - 1); }
+  const TriangleResult* result() const { return tests_.at(stages_); }
 
-  /// The end of a cycle. `ray`: null, no test begins.
-  void clock(const TriangleRay* ray, const Triangle& triangle, uint64_t tag, const Limit& limit, const Best& best) {
-    Stage& first = line_[place(0)];
-    first.valid = ray != nullptr;
-    if (first.valid) {
-      first.result = {tag, triangle.number, false, 0};
-      first.result.hit = meets_triangle(narrow_, *ray, triangle, first.result.t);
-    }
-    TriangleResult& limited = line_[place(stages_ - 4)].result;
-    limited.hit = limited.hit && triangle::within_limit(limited.t, std::ldexp(1.0, limit.scale), limit.limit);
-    TriangleResult& compared = line_[place(stages_ - 1)].result;
-    compared.hit = compared.hit && triangle::is_nearer(compared.t, compared.number, best.t, best.number);
-    ++cycle_;
+  /// A test begins in this cycle.
+  void begin(const TriangleRay& ray, const Triangle& triangle, uint64_t tag) {
+    TriangleResult& begun = tests_.begin();
+    begun = {tag, triangle.number, false, 0};
+    begun.hit = meets_triangle(narrow_, ray, triangle, begun.t);
+  }
+  /// The end of a cycle. `limit`, `best`: of the tests that are told them.
+  void clock(const Limit& limit, const Best& best) {
+    if (TriangleResult* const limited = tests_.at(stages_ - 4))
+      limited->hit = limited->hit && triangle::within_limit(limited->t, std::ldexp(1.0, limit.scale), limit.limit);
+    if (TriangleResult* const compared = tests_.at(stages_ - 1))
+      compared->hit = compared->hit && triangle::is_nearer(compared->t, compared->number, best.t, best.number);
+    tests_.clock();
   }
 
  private:
-  struct Stage {
-    bool valid = false;
-    TriangleResult result;
-  };
-  /// Of what was begun so many cycles ago.
-  size_t place(int ago) const { return (cycle_ + kPlaces - static_cast<size_t>(ago)) % kPlaces; }
-  const TriangleResult* at(int ago) const {
-    const Stage& stage = line_[place(ago)];
-    return stage.valid ? &stage.result : nullptr;
-  }
-
-  static constexpr size_t kPlaces = 64;
+  static constexpr uint32_t kMostStages = 30 + 32 / 2;
   NarrowFloat narrow_;
-  int stages_;
-  size_t cycle_ = 0;
-  Stage line_[kPlaces];
+  uint32_t stages_;
+  PipeItems<TriangleResult, kMostStages> tests_;
 };
 
 }  // namespace raypool

@@ -261,9 +261,10 @@ void ChipInspection::check_lane_boxes(uint32_t number) {
       if ((result.met >> i & 1) != 0)
         expect(l.entry.bits(i * key_bits, key_bits), result.entry[i], kAxis, "key of a box's entry");
   }
-  const std::optional<LaneStacks::NodeResult>& node = lane.node();
+  const LaneStacks::NodeResult* const node = lane.node();
   constexpr const char* kOrder = "rtl/child_order.v, rtl/traverser_lane.v";
-  if (expect(l.node_valid_q.value(), node.has_value(), "rtl/traverser_lane.v", "a node has been tested") && node) {
+  if (expect(l.node_valid_q.value(), node != nullptr, "rtl/traverser_lane.v", "a node has been tested") &&
+      node != nullptr) {
     expect(l.children.value(), node->children, kOrder, "children that are met");
     expect(l.node_slot_q.value(), node->slot, "rtl/traverser_lane.v, rtl/ram_delay.v", "slot of the node");
     // Their references have waited for the boxes.
@@ -304,8 +305,8 @@ void ChipInspection::check_lane_ports(uint32_t number) {
     expect(w_.slot_of.bits(number * slot_bits, slot_bits), lane.slot(), "rtl/free_list.v, rtl/traverser_lane.v",
            "slot that is free");
   expect(lanes_[number].fill_waits.value(), lane.fill_waits(), "rtl/lane_stacks.v", "a block of a stack waits");
-  check_wants(lane.node_wants(), w_.node_want, w_.node_want_line, w_.node_want_slot, number,
-              "rtl/traverser_lane.v, rtl/line_offers.v", "node that is wanted");
+  check_wants(lane.wants_node() ? lane.node_wants() : LineWants{}, w_.node_want, w_.node_want_line, w_.node_want_slot,
+              number, "rtl/traverser_lane.v, rtl/line_offers.v", "node that is wanted");
   check_wants(lane.leaf_wants(), w_.leaf_want, w_.leaf_want_line, w_.leaf_want_slot, number,
               "rtl/leaf_reader.v, rtl/line_offers.v", "triangle's line that is wanted");
   expect(w_.leaf_room.flag(number), lane.leaf_room(), "rtl/leaf_reader.v", "room for a triangle's line");

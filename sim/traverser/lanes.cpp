@@ -108,15 +108,16 @@ void Lanes::look_up(Cache& cache) {
       continue;
     }
     cache.offers[lane] = nodes ? lanes_[lane].node_offers() : lanes_[lane].leaf_offers();
+    cache.wants[lane] = &cache.wanted[lane];
     for (uint32_t i = 0; i < cache.offers[lane].size(); ++i) {
       const Lane::Want* const want = cache.offers[lane][i];
-      cache.wants[lane][i].valid = want != nullptr;
+      cache.wanted[lane][i].valid = want != nullptr;
       if (want == nullptr) continue;
-      cache.wants[lane][i] = {true, want->prefetch, static_cast<uint8_t>(want->slot), want->line};
+      cache.wanted[lane][i] = {true, want->prefetch, static_cast<uint8_t>(want->slot), want->line};
       asking |= 1u << lane;
     }
   }
-  cache.banks.choose(cache.wants, room, cache.fill);
+  cache.banks.choose(cache.wants, asking, room, cache.fill);
   for (uint32_t bits = nodes ? 0 : waited & room; bits != 0; bits &= bits - 1) lanes_[lowest(bits)].leaf_taken();
   for (uint32_t bits = asking; bits != 0; bits &= bits - 1) {
     const uint32_t lane = lowest(bits);

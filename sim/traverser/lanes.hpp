@@ -5,6 +5,7 @@
 // banks' registers, and what waits in a lane by its slots, since a ray waits in one place at a time.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -42,9 +43,10 @@ class Lanes : public Machine {
     void add_to(CacheWork& work) const;
 
     TreeBanks banks;
-    TreeBanks::AllWants wants{};
-    std::vector<Lane::Offers> offers;  // [lane] whose lines these are
-    uint32_t fill = TreeBanks::kNone;  // request whose line comes
+    std::array<LineWants, TreeBanks::kMostLanes> wanted{};  // by each lane
+    TreeBanks::AllWants wants{};                            // where they are
+    std::vector<Lane::Offers> offers;                       // [lane] whose lines these are
+    uint32_t fill = TreeBanks::kNone;                       // request whose line comes
     bool request_taken = false;
   };
 

@@ -53,7 +53,7 @@ struct LaneParameters {
 class LaneCache {
  public:
   struct Turn {
-    uint32_t taken = 0;  // bit i: want i
+    uint8_t taken = 0;  // bit i: want i
     bool waited = false;
   };
 
@@ -76,7 +76,7 @@ class LaneCache {
       return turn;
     }
     for (uint32_t i = 0; i < wants.size() && turn.taken == 0; ++i)
-      if (wants[i].valid && !one_of(traffic.leave_lookup)) turn.taken = 1u << i;
+      if (wants[i].valid && !one_of(traffic.leave_lookup)) turn.taken = static_cast<uint8_t>(1u << i);
     if (turn.taken == 0 || wants[turn.taken >> 1].nobody) return turn;
     const LineWant& want = wants[turn.taken >> 1];
     if (one_of(traffic.miss)) {
@@ -139,7 +139,7 @@ class LaneBench {
     for (uint32_t i = 0; i < cycles; ++i) ASSERT_NO_FATAL_FAILURE(cycle(traffic));
     stopped_ = true;
     for (uint32_t i = 0; i < 600; ++i) ASSERT_NO_FATAL_FAILURE(cycle({}));
-    for (const LineWants& wants : {lane_.node_wants(), lane_.leaf_wants()})
+    for (const LineWants& wants : {wants_nodes(), lane_.leaf_wants()})
       ASSERT_FALSE(wants[0].valid || wants[1].valid) << "it goes on";
   }
 
@@ -163,6 +163,7 @@ class LaneBench {
     const Asked* asked;
   };
 
+  LineWants wants_nodes() const { return lane_.wants_node() ? lane_.node_wants() : LineWants{}; }
   bool one_of(uint32_t n) { return n != 0 && bench_.one_of(n); }
 
   void cycle(const LaneTraffic& traffic) {
@@ -186,7 +187,7 @@ class LaneBench {
       seen.most_rays = std::max(seen.most_rays, static_cast<uint32_t>(begun_ - done_));
     }
 
-    const LineWants node_wants = lane_.node_wants(), leaf_wants = lane_.leaf_wants();
+    const LineWants node_wants = wants_nodes(), leaf_wants = lane_.leaf_wants();
     const LaneCache::Turn node = nodes_.turn(node_wants, true, tree_->nodes, traffic, random, seen);
     const LaneCache::Turn leaf = leaves_.turn(leaf_wants, lane_.leaf_room(), tree_->triangles, traffic, random, seen);
     inputs.node_taken = node.taken;
@@ -245,9 +246,11 @@ class LaneBench {
       seen.told_before += !now && hit_before_ == slot;
     }
     hit_before_ = result.hit ? result.tag.slot : P::kSlots;
-    const TriangleRay* const ray = inputs.test_taken ? &lane_.ray(test->slot).triangle : nullptr;
-    pipe_.clock(ray, inputs.test_taken ? test->triangle : Triangle{},
-                inputs.test_taken ? TestTag{test->slot, test->last, test->place}.word(P::slot_bits()) : 0, limit, best);
+    if (inputs.test_taken) {
+      pipe_.begin(lane_.ray(test->slot).triangle, test->triangle,
+                  TestTag{test->slot, test->last, test->place}.word(P::slot_bits()));
+    }
+    pipe_.clock(limit, best);
     lane_.clock(inputs);
   }
   static uint32_t slot_of(const TriangleResult& result) { return TestTag::of(result.tag, P::slot_bits()).slot; }
@@ -321,8 +324,8 @@ class LaneBench {
     }
     u_.test_ready_i = test_ready;
     u_.done_ready_i = inputs.done_taken;
-    u_.free_valid_i = inputs.freed.has_value();
-    u_.free_slot_i = inputs.freed ? *inputs.freed : bench_.random() % P::kSlots;
+    u_.free_valid_i = inputs.freed != TraverserLane::kNoSlot;
+    u_.free_slot_i = u_.free_valid_i != 0 ? inputs.freed : bench_.random() % P::kSlots;
   }
   void set_ray(const LaneRay& ray) {
     u_.ray_meets_i = ray.meets;
@@ -366,8 +369,7 @@ class LaneBench {
     if (lane_.slot_valid()) {
       ASSERT_EQ(u_.slot_o, lane_.slot()) << "cycle " << seen.cycles;
     }
-    ASSERT_NO_FATAL_FAILURE(
-        compare_wants(lane_.node_wants(), u_.node_want_o, 0, u_.node_want_line_o, u_.node_want_slot_o));
+    ASSERT_NO_FATAL_FAILURE(compare_wants(wants_nodes(), u_.node_want_o, 0, u_.node_want_line_o, u_.node_want_slot_o));
     ASSERT_NO_FATAL_FAILURE(compare_wants(lane_.leaf_wants(), u_.leaf_want_o, u_.leaf_want_nobody_o,
                                           u_.leaf_want_line_o, u_.leaf_want_slot_o));
     ASSERT_EQ(u_.leaf_room_o, lane_.leaf_room()) << "cycle " << seen.cycles;

@@ -67,7 +67,7 @@ class Bench {
     std::array<bool, TreeBanks::kMostBanks> looks{};
     for (uint32_t bank = 0; bank < P::kSizes.banks; ++bank)
       looks[bank] = banks_.banks()[bank].ready() && !(fills_ && fill >> kMshrBits == bank);
-    banks_.choose(offered_, room, fill);
+    banks_.choose(wants(), wanting(), room, fill);
     ASSERT_NO_FATAL_FAILURE(compare(waited));
     ASSERT_NO_FATAL_FAILURE(take_given());
     for (uint32_t lane = 0; lane < kLanes; ++lane) ASSERT_NO_FATAL_FAILURE(take_wanted(lane, waited, looks));
@@ -168,6 +168,19 @@ class Bench {
     if (one_of(traffic.turn)) std::swap(wants_[lane][0], wants_[lane][1]);
     offered_[lane] = wants_[lane];
     if (one_of(traffic.withhold)) offered_[lane][bench_.random() % 2].valid = false;
+  }
+
+  TreeBanks::AllWants wants() const {
+    TreeBanks::AllWants wants{};
+    for (uint32_t lane = 0; lane < kLanes; ++lane) wants[lane] = &offered_[lane];
+    return wants;
+  }
+  // Lanes that want nothing may be among them.
+  uint32_t wanting() {
+    auto lanes = static_cast<uint32_t>(bench_.random());
+    for (uint32_t lane = 0; lane < kLanes; ++lane)
+      lanes |= (offered_[lane][0].valid || offered_[lane][1].valid ? 1u : 0u) << lane;
+    return lanes & static_cast<uint32_t>((uint64_t{1} << kLanes) - 1);
   }
 
   uint32_t any_line(const Traffic& traffic) {
@@ -291,10 +304,10 @@ class Bench {
   typename P::Verilated& u_ = *bench_.u;
   TreeBanks banks_{P::kSizes};
   uint64_t cycle_ = 0;
-  uint32_t tree_ = 12345;                                     // that the memory has
-  std::map<uint32_t, std::deque<uint32_t>> free_;             // [lane] slots that wait for nothing
-  std::map<std::pair<uint32_t, uint32_t>, uint32_t> wanted_;  // [lane, slot] line
-  TreeBanks::AllWants wants_, offered_;                       // that each lane has, and what it offers of them
+  uint32_t tree_ = 12345;                                         // that the memory has
+  std::map<uint32_t, std::deque<uint32_t>> free_;                 // [lane] slots that wait for nothing
+  std::map<std::pair<uint32_t, uint32_t>, uint32_t> wanted_;      // [lane, slot] line
+  std::array<LineWants, TreeBanks::kMostLanes> wants_, offered_;  // that each lane has, and what it offers of them
   struct First {
     uint32_t line = UINT32_MAX, passed = 0;  // how often its bank chose another
   };

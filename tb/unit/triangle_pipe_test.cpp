@@ -105,10 +105,9 @@ TEST(TrianglePipe, OfTwoAtTheSameTimeTheLowerNumberIsHit) {
   const Triangle triangle{{{-1, -1, 3}, {1, -1, 3}, {0, 1, 3}}, 7};
   const PreparedRay ray = prepared({0, 0, 1}, {0, 0, 4}, triangle);
   const auto hit = [&](float limit, float best_t, uint32_t best_number) {
-    pipe.clock(&ray, triangle, 1, {}, {});
-    for (int cycle = 1; cycle < pipe.stages(); ++cycle) {
-      pipe.clock(nullptr, triangle, 0, {limit, -2}, {best_t, best_number});
-    }
+    pipe.begin(ray, triangle, 1);
+    pipe.clock({}, {});
+    for (int cycle = 1; cycle < pipe.stages(); ++cycle) pipe.clock({limit, -2}, {best_t, best_number});
     EXPECT_NE(pipe.result(), nullptr);
     EXPECT_EQ(pipe.result()->t, 2) << "internal: the direction's largest component is scaled to 1";
     return pipe.result()->hit;
@@ -171,8 +170,8 @@ class PipeBench : public Clocked<Unit> {
       seen.ties += compared->t == told.best.t && compared->number != told.best.number;
     }
     const Answers none;
-    pipe_.clock(unit.valid_i ? &test.ray : nullptr, test.triangle, tag,
-                limited != nullptr ? answers_[limited->tag].limit : none.limit,
+    if (unit.valid_i) pipe_.begin(test.ray, test.triangle, tag);
+    pipe_.clock(limited != nullptr ? answers_[limited->tag].limit : none.limit,
                 compared != nullptr ? answers_[compared->tag].best : none.best);
     seen.late_misses += met && !pipe_.result()->hit;
     this->clock();
