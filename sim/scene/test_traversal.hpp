@@ -73,6 +73,7 @@ enum class TreeShape : uint8_t {
   Full,   ///< four, but for the last
   Mixed,  ///< one to four
   Chain,  ///< one to four; and each node has a node, as its last child, and leaves beside it: as deep as can be
+  Deep,   ///< one; and such a chain
 };
 
 /// A bad tree: triangles in random order, leaves in random groups.
@@ -90,7 +91,7 @@ inline Bvh random_tree(const Bvh& original, uint32_t seed, TreeShape shape = Tre
   Bvh tree;
   tree.bounds = original.bounds;
   std::vector<Item> level;
-  const auto most = [&] { return shape == TreeShape::Full ? 4 : 1 + random() % 4; };
+  const auto most = [&] { return shape == TreeShape::Full ? 4 : shape == TreeShape::Deep ? 1 : 1 + random() % 4; };
   for (size_t first = 0; first < loose.size();) {
     TriangleBlock block{};
     block.first = static_cast<uint32_t>(first);
@@ -113,7 +114,7 @@ inline Bvh random_tree(const Bvh& original, uint32_t seed, TreeShape shape = Tre
     level.push_back(item);
   }
   std::vector<BvhNode> bottom_up;  // children before parents; turned round at the end
-  do level = shape == TreeShape::Chain ? chained(level, bottom_up) : parents_of(level, bottom_up);
+  do level = shape >= TreeShape::Chain ? chained(level, bottom_up) : parents_of(level, bottom_up);
   while (level.size() > 1);
   const auto last = static_cast<uint32_t>(bottom_up.size() - 1);
   for (uint32_t i = 0; i <= last; ++i) {

@@ -31,6 +31,7 @@
 #include "machine/model.hpp"
 #include "random.hpp"
 #include "rtl/chip_frames.hpp"
+#include "rtl/hard_scenes.hpp"
 #include "rtl/next_frames.hpp"
 #include "rtl/traverser_frames.hpp"
 
@@ -49,20 +50,29 @@ struct Case {
   // there.
   uint32_t triangles = 0, tree = 0, spoilt = 0, strange = 0;
   bool mirrors = false;
+  // `grid`: its corners are on one. `alike`: triangles are nearly in one place. `deep`: so many of them that a stack is
+  // full, or nearly.
+  bool grid = false, alike = false, deep = false;
   WaitingChip::Waits waits;
   std::vector<Case> after;  ///< frames that follow it without a reset, amid what is around this one
 };
+
+/// The tree may be none, or deeper than a stack.
+bool may_fault(const Case& c) { return c.spoilt != 0 || c.deep; }
 
 bool is_inside(const Machine& machine) { return has_traverser(machine.configuration.chip); }
 
 std::string to_string(const Case& c, const Machine& machine) {
   if (is_inside(machine)) {
-    return fmt::format("{} x {} pixels, depth {}, {}; {} triangles{}, {}{}{}; request {}, beat {}, frame {}, shut {}",
-                       c.picture.width, c.picture.height, c.picture.depth,
-                       c.picture.reflections ? "reflections" : "no reflections", c.triangles,
-                       c.mirrors ? " of mirrors" : "", c.tree == 0 ? "their own tree" : "a bad tree",
-                       c.spoilt == 0 ? "" : " that is spoilt", c.strange == 0 ? "" : ", strange numbers",
-                       c.waits.request, c.waits.beat, c.waits.frame, c.waits.shut);
+    return fmt::format(
+        "{} x {} pixels, depth {}, {}; {} triangles{}, {}{}{}; request {}, beat {}, frame {}, shut {}", c.picture.width,
+        c.picture.height, c.picture.depth, c.picture.reflections ? "reflections" : "no reflections", c.triangles,
+        c.mirrors ? " of mirrors"
+        : c.grid  ? " on a grid"
+        : c.alike ? " in one place"
+                  : "",
+        c.tree == 0 ? "their own tree" : "a bad tree", c.spoilt == 0 ? "" : " that is spoilt",
+        c.strange == 0 ? "" : ", strange numbers", c.waits.request, c.waits.beat, c.waits.frame, c.waits.shut);
   }
   const Traffic& t = c.traffic;
   return fmt::format(
@@ -73,6 +83,8 @@ std::string to_string(const Case& c, const Machine& machine) {
 }
 
 constexpr uint32_t kMostShort = 4;  ///< depth of most pictures
+/// Leaves, less a stack's entries in the RAMs, with which its last blocks in the memory are written, or nearly.
+constexpr uint32_t kFullStack = 499;
 
 /// Of the depths one in four is above 127, and of these some differ from a small one in bit 7 alone.
 uint32_t any_depth(Random& random, uint32_t small) {
@@ -137,10 +149,43 @@ Case inside_case_of(uint32_t seed, uint32_t machine, uint32_t frame) {
   return c;
 }
 
+/// Some of the frames with the traverser inside are made harder.
+Case harder(Case c, uint32_t seed, uint32_t number, uint32_t frame, const Machine& machine) {
+  if (!is_inside(machine) || c.mirrors) return c;
+  std::seed_seq all{seed, number, frame, 2u};
+  Random random(all);
+  if (frame % 25 == 13) {
+    const auto entries = static_cast<uint32_t>(machine.configuration.chip.modelled_traverser_stack_entries);
+    c.picture = {1 + random() % 2, 1, 1, false};
+    c.alike = c.deep = true;
+    c.triangles = kFullStack + entries + random() % 12;
+    c.tree = 3 + random() % 1000 * 4;
+    c.spoilt = c.strange = 0;
+    c.waits = {};
+    return c;
+  }
+  if (c.strange == 0 && random() % 4 == 0) {
+    c.strange = 1 + random() % 1000000;
+    c.picture.depth = 1 + c.picture.depth % kMostShort;
+  }
+  c.grid = random() % (c.strange != 0 ? 2 : 4) == 0;
+  c.alike = random() % 5 == 0;
+  if (c.alike && random() % 2 == 0) {  // a chain, so that all stacks spill
+    c.triangles = 20 + random() % 60;
+    c.tree = 2 + random() % 1000 * 4 + random() % 2;
+  }
+  if (random() % 6 == 0) {  // many rays at the same time
+    c.picture = {6 + random() % 6, 5 + random() % 4, 1 + random() % 2, c.picture.reflections};
+    c.triangles = std::min(c.triangles, 40u);
+    if (random() % 2 == 0) c.waits = {};
+  }
+  return c;
+}
+
 /// With the frames that follow it: none, one or two.
 Case with_followers(Case c, uint32_t seed, uint32_t machine, uint32_t frame,
                     Case (*any)(uint32_t, uint32_t, uint32_t)) {
-  if (c.spoilt != 0) return c;  // it may stop the traverser, and then the chip is never ready
+  if (may_fault(c)) return c;  // it may stop the traverser, and then the chip is never ready
   std::seed_seq all{seed, machine, frame, 1u};
   Random random(all);
   for (uint32_t more = random() % 4 / 2 + random() % 4 / 3; more > 0; --more) {
@@ -164,6 +209,12 @@ Scene scene_of(const Case& c) {
   Scene scene = scene_of_chance(c.seed, c.triangles, c.mirrors);
   // In a closed box rays would be reflected as often as they may be.
   if (c.picture.depth > kMostShort && !c.mirrors) make_dull(scene, c.seed);
+  if (c.deep) {
+    scene.triangles.resize(c.triangles);
+    scene.triangle_materials.resize(c.triangles);
+  }
+  if (c.alike) gather(scene, c.seed, c.triangles, c.deep);
+  if (c.grid) put_on_grid(scene, c.seed, c.strange != 0);
   return scene;
 }
 
@@ -187,7 +238,7 @@ std::optional<ChipResult> draw_inside(const Case& c, const Machine& machine, Dra
     reached.frames += draw_followers(c, machine, drawing, chip);
     return result;
   } catch (const TraverserFault&) {
-    if (c.spoilt == 0) throw;
+    if (!may_fault(c)) throw;
   }
   ChipInputs inputs;
   inputs.memory_request_ready = inputs.frame_ready = true;
@@ -371,7 +422,8 @@ int run(const Options& options) {
   }
   const auto case_on = [&](uint32_t number, uint32_t frame) {
     const auto any = number > outside ? inside_case_of : case_of;
-    return with_followers(any(options.seed, number, frame), options.seed, number, frame, any);
+    const Case c = harder(any(options.seed, number, frame), options.seed, number, frame, machines[number - 1]);
+    return with_followers(c, options.seed, number, frame, any);
   };
   if (!options.record.empty()) {
     const uint32_t number = options.only.front();

@@ -14,6 +14,7 @@
 #include "random.hpp"
 #include "scene/scene.hpp"
 #include "scene/tree_file.hpp"
+#include "scene/vec.hpp"
 
 namespace raypool::test {
 
@@ -22,27 +23,29 @@ namespace raypool::test {
 /// a tree.
 class StrangeNumbers {
  public:
-  explicit StrangeNumbers(uint32_t seed) : random_(seed), wild_(random_() % 2 == 0), one_in_(2 + random_() % 20) {}
+  explicit StrangeNumbers(uint32_t seed)
+      : random_(seed), wild_(random_() % 2 == 0), aimed_(random_() % 2 == 0), one_in_(2 + random_() % 20) {}
 
-  /// What eye rays are made from, and the light. In one frame of three all eye rays have the same direction, of hard
-  /// components; in one of three they begin at a corner, or at coordinates of several.
+  /// What eye rays are made from, and the light. In half of the frames they are aimed at a triangle; of the others all
+  /// eye rays of one in three have the same direction, of hard components, and in one of three they begin at a corner,
+  /// or at coordinates of several, or beside those.
   void put(std::array<uint32_t, kArguments>& arguments, const Memory& tree, const TreeSetup& setup) {
+    const uint32_t triangles = count_of_triangles(setup);
+    if (triangles == 0) aimed_ = false;
+    if (aimed_) {
+      aim(arguments, tree, setup);
+      return;
+    }
     for (int a = argument::kEye; a < argument::kLightColor; ++a) perhaps(arguments[a]);
     perhaps(arguments[argument::kOffset]);
-    if (random_() % 3 == 0) {
-      for (int a = argument::kCorner; a < argument::kLight; ++a) arguments[a] = zero();
-      const uint32_t long_axis = random_() % 4;  // 3: none
-      const bool nowhere = random_() % 8 == 0;
-      for (uint32_t axis = 0; axis < 3 && !nowhere; ++axis)
-        arguments[argument::kCorner + axis] = axis == long_axis ? power_of_two() : component();
-    }
-    const uint32_t triangles = count_of_triangles(setup);
+    if (random_() % 3 == 0) one_direction(arguments);
     if (random_() % 3 != 0 || triangles == 0) return;
-    uint32_t corner = corner_of(random_() % triangles, random_() % 3);
-    const bool one = random_() % 2 == 0;
+    const bool one = random_() % 2 == 0, beside = random_() % 2 == 0;
+    Vec3 corner = any_corner(tree, setup);
     for (int axis = 0; axis < 3; ++axis) {
-      arguments[argument::kEye + axis] = tree.load(setup.triangles_line * kLineBytes + corner + axis * 4);
-      if (!one) corner = corner_of(random_() % triangles, random_() % 3);
+      arguments[argument::kEye + axis] = as_bits(corner[axis]);
+      if (beside) arguments[argument::kEye + axis] += (random_() % 33 - 16) << random_() % 18;
+      if (!one) corner = any_corner(tree, setup);
     }
   }
 
@@ -51,7 +54,7 @@ class StrangeNumbers {
   void put(Memory& tree, TreeSetup& setup) {
     const uint32_t first = setup.triangles_line * kLineBytes;
     for (uint32_t node = 0; node < first; node += sizeof(TreeNode)) fill_unused(tree, node);
-    if (random_() % 4 == 0) return;
+    if (random_() % 4 == 0 || aimed_) return;
     const auto change = [&](uint32_t address) {
       uint32_t word = tree.load(address);
       perhaps(word);
@@ -75,8 +78,74 @@ class StrangeNumbers {
  private:
   static constexpr uint32_t kLineBytes = 64;
 
-  static uint32_t corner_of(uint32_t triangle, uint32_t corner) {
-    return triangle * sizeof(TreeTriangle) + corner * 3 * sizeof(float);
+  static Vec3 corner_of(const Memory& tree, const TreeSetup& setup, uint32_t triangle, uint32_t corner) {
+    const uint32_t at = static_cast<uint32_t>(setup.triangles_line * kLineBytes + triangle * sizeof(TreeTriangle) +
+                                              corner * 3 * sizeof(float));
+    return {as_float(tree.load(at)), as_float(tree.load(at + 4)), as_float(tree.load(at + 8))};
+  }
+  Vec3 any_corner(const Memory& tree, const TreeSetup& setup) {
+    const uint32_t triangle = random_() % count_of_triangles(setup);
+    return corner_of(tree, setup, triangle, random_() % 3);
+  }
+  // Eye rays go exactly through corners and edges of a triangle, or as nearly as floats can tell; from a corner of
+  // another one, or nearly in its plane. The light is such a point, too, so that shadow rays end on a triangle.
+  void aim(std::array<uint32_t, kArguments>& arguments, const Memory& tree, const TreeSetup& setup) {
+    const auto put = [&](int argument, const Vec3& value) {
+      for (int axis = 0; axis < 3; ++axis) arguments[argument + axis] = as_bits(value[axis]);
+    };
+    const auto share = [&] { return static_cast<float>(random_() % 9) / 4 - 1; };
+    const auto triangle = [&] {
+      const uint32_t number = random_() % count_of_triangles(setup);
+      const Vec3 first = corner_of(tree, setup, number, 0);
+      return std::array<Vec3, 3>{first, corner_of(tree, setup, number, 1) - first,
+                                 corner_of(tree, setup, number, 2) - first};
+    };
+    const auto [target, along, aside] = triangle();
+    Vec3 eye{as_float(arguments[0]), as_float(arguments[1]), as_float(arguments[2])};
+    switch (random_() % 5) {
+      case 0:
+        eye = any_corner(tree, setup);
+        break;
+      case 1:  // in its plane
+        eye = target - along * (4 * share()) - aside * (4 * share());
+        break;
+      case 2:  // along an axis
+        eye = target;
+        eye[static_cast<int>(random_() % 3)] += along.x + along.y + along.z + aside.x;
+        break;
+      default:
+        break;
+    }
+    if (random_() % 2 == 0) {
+      float& moved = eye[static_cast<int>(random_() % 3)];
+      moved = as_float(as_bits(moved) + (random_() % 2 == 0 ? 1 : UINT32_MAX));
+    }
+    put(argument::kEye, eye);
+    put(argument::kCorner, target - eye);
+    put(argument::kStepX, along * std::ldexp(1.0f, -static_cast<int>(random_() % 4)));
+    put(argument::kStepY, aside * std::ldexp(1.0f, -static_cast<int>(random_() % 4)));
+    if (random_() % 4 == 0) perhaps(arguments[argument::kCorner + random_() % 9]);
+    // A component stays -0 only if what is added to it is, too.
+    for (int a = argument::kCorner; a < argument::kLight && random_() % 8 != 0; ++a)
+      if (arguments[a] << 1 == 0) arguments[a] = 1u << 31;
+    const auto [lit, lit_along, lit_aside] = triangle();
+    if (random_() % 4 != 0) put(argument::kLight, lit + lit_along * share() + lit_aside * share());
+    if (random_() % 2 == 0) arguments[argument::kOffset] = random_() % 4 == 0 ? power_of_two() : 0;
+  }
+  // A component is one of the others again in some, which decides the main axis.
+  void one_direction(std::array<uint32_t, kArguments>& arguments) {
+    const uint32_t long_axis = random_() % 4;  // 3: none
+    const bool nowhere = random_() % 8 == 0;
+    uint32_t before = power_of_two();
+    for (uint32_t axis = 0; axis < 3; ++axis) {
+      const uint32_t none = zero();
+      uint32_t& corner = arguments[argument::kCorner + axis];
+      corner = arguments[argument::kStepX + axis] = arguments[argument::kStepY + axis] = none;
+      if (nowhere) continue;
+      corner = axis == long_axis ? power_of_two() : random_() % 3 == 0 ? sign() | before << 1 >> 1 : component();
+      if (corner << 1 == 0) corner = none;
+      before = corner;
+    }
   }
   static uint32_t count_of_triangles(const TreeSetup& setup) {
     return setup.triangle_lines * kLineBytes / sizeof(TreeTriangle);
@@ -138,7 +207,7 @@ class StrangeNumbers {
   }
 
   Random random_;
-  bool wild_;
+  bool wild_, aimed_;
   uint32_t one_in_;
   uint32_t last_ = 0;
 };

@@ -237,7 +237,7 @@ class Drawing {
 
  private:
   static Bvh tree_of(const Bvh& good, uint32_t seed) {
-    return seed == 0 || good.nodes.empty() ? good : random_tree(good, seed, static_cast<TreeShape>(seed % 3));
+    return seed == 0 || good.nodes.empty() ? good : random_tree(good, seed, static_cast<TreeShape>(seed % 4));
   }
   // Some bits of what nodes say of their children, or of where nodes and triangles end. Their boxes and the triangles
   // stay: they may be anything anyhow.
@@ -248,7 +248,7 @@ class Drawing {
       const uint32_t node = random() % std::max(1u, setup.triangles_line) * 64;
       const uint32_t child = node + 40 + random() % 4 * 4, number = node / 64;
       const auto put = [this](uint32_t address, uint32_t word) { tree_.memory.store(address, word); };
-      switch (random() % 9) {
+      switch (random() % 12) {
         case 0:
           put(node + 12, (tree_.memory.load(node + 12) & 0xffffff) | random() % 8 << 24);
           break;
@@ -270,10 +270,24 @@ class Drawing {
         case 6:
           setup.triangle_lines -= std::min(setup.triangle_lines, static_cast<uint32_t>(random() % 3));
           break;
+        case 7:  // a line that no address reaches, or nearly
+          put(child,
+              leaf_word(static_cast<uint32_t>(((uint64_t{1} << 26) - random() % (setup.triangles_line + 2)) * 16 / 11),
+                        1 + random() % 4));
+          break;
+        case 8:
+          share_children();
+          break;
         default:
           put(child, tree_.memory.load(child) ^ 1u << random() % 32);
       }
     }
+  }
+
+  // All children of a node are the next one, so that a ray comes to nodes more often than there are any.
+  void share_children() {
+    for (uint32_t node = 0; node + 1 < tree_.setup.triangles_line; ++node)
+      for (uint32_t child = 0; child < kBvhWidth; ++child) tree_.memory.store(node * 64 + 40 + child * 4, node + 1);
   }
 
   const Configuration configuration_;
