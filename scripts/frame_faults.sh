@@ -3,7 +3,7 @@
 # single block? scripts/frame_faults.sh FOLDER [OPTION]... builds raypool_chip_frames from a copy of rtl/ that carries
 # them all, and runs it with one after another; OPTION: for raypool_faults (--only 266 267, --least 90, --resume).
 # MACHINES: numbers of machines, with , between, instead of all; FRAMES: of each (default 50); CATALOGUE: other
-# mistakes.
+# mistakes. tb/faults/frame_survivors.json has those that no chip can show, and why.
 set -eu -o pipefail
 [ $# -ge 1 ] || { echo "usage: scripts/frame_faults.sh FOLDER [OPTION]..." >&2; exit 1; }
 root=$(cd "$(dirname "$0")/.." && pwd)
@@ -35,4 +35,4 @@ for bench in benches:
 print(json.dumps(benches))
 END
 "$build/raypool_faults" "$folder" --catalogue "$catalogue" --beside-units --benches "$folder/frames" \
-  --bench-list "$folder/chip_frames.json" --json "$folder/outcomes.json" "$@"
+  --survivors tb/faults/frame_survivors.json --bench-list "$folder/chip_frames.json" --json "$folder/outcomes.json" "$@"

@@ -43,6 +43,12 @@ inline void put_on_grid(Scene& scene, uint32_t seed, bool wild) {
 inline void gather(Scene& scene, uint32_t seed, uint32_t triangles, bool same) {
   Random random(seed + 4);
   const int places = same || random() % 2 == 0 ? 0 : 1 + static_cast<int>(random() % 20);
+  if (same) {  // one that has an area
+    const float size = 0.5f * scene.bounds().diagonal();
+    const auto [first, second, third] = scene.triangles[0];
+    scene.vertices[second] = scene.vertices[first] + Vec3{size, 0, 0};
+    scene.vertices[third] = scene.vertices[first] + Vec3{0, size, size};
+  }
   if (places == 0)
     for (auto& triangle : scene.triangles) triangle = scene.triangles[0];
   for (size_t vertex = 3; vertex < std::min<size_t>(3 * triangles, scene.vertices.size()) && places != 0; ++vertex) {
