@@ -16,8 +16,11 @@ inline void put_on_grid(Scene& scene, uint32_t seed, bool wild) {
   const Bounds bounds = scene.bounds();
   const Vec3 centre = (bounds.lower + bounds.upper) * 0.5f;
   const float extent = bounds.diagonal();
+  if (extent == 0) return;
   const int steps = 2 + static_cast<int>(random() % 8);
-  const int exponent = wild && random() % 4 == 0 ? -149 + static_cast<int>(random() % 26) : std::ilogb(extent / 4);
+  // Of tiny ones most have subnormal distances beside others.
+  const int tiny = random() % 4 == 0 ? -149 + static_cast<int>(random() % 23) : -124 - static_cast<int>(random() % 6);
+  const int exponent = wild && random() % 3 == 0 ? tiny : std::ilogb(extent / 4);
   const float step = std::ldexp(1.0f, exponent);
   Vec3 at{};
   if (random() % 2 == 0)
@@ -30,7 +33,11 @@ inline void put_on_grid(Scene& scene, uint32_t seed, bool wild) {
     }
     return moved;
   };
-  for (Vec3& vertex : scene.vertices) vertex = on_grid(vertex);
+  const bool ragged = random() % 2 == 0;  // so that small triangles keep an area
+  for (Vec3& vertex : scene.vertices) {
+    vertex = on_grid(vertex);
+    for (int axis = 0; axis < 3 && ragged; ++axis) vertex[axis] += step * (static_cast<float>(random() % 3) - 1);
+  }
   const Vec3 target = on_grid(scene.camera.eye + scene.camera.direction), eye = on_grid(scene.camera.eye);
   scene.camera.eye = eye;
   const Vec3 direction = (target - eye) * (1 / std::max(step, 0x1p-100f));

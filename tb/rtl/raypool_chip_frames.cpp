@@ -164,6 +164,7 @@ Case harder(Case c, uint32_t seed, uint32_t number, uint32_t frame, const Machin
     c.waits = {};
     return c;
   }
+  if (random() % 8 == 0) c.spoilt = 1 + random() % 1000;
   if (c.strange == 0 && random() % 4 == 0) {
     c.strange = 1 + random() % 1000000;
     c.picture.depth = 1 + c.picture.depth % kMostShort;

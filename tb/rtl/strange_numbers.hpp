@@ -26,9 +26,9 @@ class StrangeNumbers {
   explicit StrangeNumbers(uint32_t seed)
       : random_(seed), wild_(random_() % 2 == 0), aimed_(random_() % 2 == 0), one_in_(2 + random_() % 20) {}
 
-  /// What eye rays are made from, and the light. In half of the frames they are aimed at a triangle; of the others all
-  /// eye rays of one in three have the same direction, of hard components, and in one of three they begin at a corner,
-  /// or at coordinates of several, or beside those.
+  /// What eye rays are made from, and the light. In half of the frames they are aimed at a triangle; of half of the
+  /// others all have the same direction, of hard components, and in two of three of them they begin at a corner, or at
+  /// coordinates of several, or beside those.
   void put(std::array<uint32_t, kArguments>& arguments, const Memory& tree, const TreeSetup& setup) {
     const uint32_t triangles = count_of_triangles(setup);
     if (triangles == 0) aimed_ = false;
@@ -38,9 +38,9 @@ class StrangeNumbers {
     }
     for (int a = argument::kEye; a < argument::kLightColor; ++a) perhaps(arguments[a]);
     perhaps(arguments[argument::kOffset]);
-    if (random_() % 3 == 0) one_direction(arguments);
-    if (random_() % 3 != 0 || triangles == 0) return;
-    const bool one = random_() % 2 == 0, beside = random_() % 2 == 0;
+    if (random_() % 2 == 0) one_direction(arguments);
+    if (random_() % 3 == 0 || triangles == 0) return;
+    const bool one = random_() % 2 == 0, beside = random_() % 3 != 0;
     Vec3 corner = any_corner(tree, setup);
     for (int axis = 0; axis < 3; ++axis) {
       arguments[argument::kEye + axis] = as_bits(corner[axis]);
@@ -118,7 +118,8 @@ class StrangeNumbers {
     }
     if (random_() % 2 == 0) {
       float& moved = eye[static_cast<int>(random_() % 3)];
-      moved = as_float(as_bits(moved) + (random_() % 2 == 0 ? 1 : UINT32_MAX));
+      const bool zero = as_bits(moved) << 1 == 0;
+      moved = as_float(as_bits(moved) + (zero || random_() % 2 == 0 ? 1 : UINT32_MAX));
     }
     put(argument::kEye, eye);
     put(argument::kCorner, target - eye);
