@@ -245,7 +245,8 @@ class Drawing {
     Random random(seed);
     TreeSetup& setup = tree_.setup;
     for (uint32_t times = 1 + random() % 4; times > 0; --times) {
-      const uint32_t node = random() % std::max(1u, setup.triangles_line) * 64;
+      // Rays come to the first node.
+      const uint32_t node = random() % 2 == 0 ? 0 : random() % std::max(1u, setup.triangles_line) * 64;
       const uint32_t child = node + 40 + random() % 4 * 4, number = node / 64;
       const auto put = [this](uint32_t address, uint32_t word) { tree_.memory.store(address, word); };
       switch (random() % 12) {
