@@ -100,20 +100,7 @@ class TreeCache {
     const uint32_t late = now.known && !fresh_ ? 1u << now.id : 0;
     const uint32_t freed = filled_ & ~waited_for_ & ~late & ~(joins ? 1u << joins_.id : 0);
 
-    // Of the registers that are as they were before this cycle.
-    const uint32_t served = filled_ & waited_for_;
-    if (serving_ == Serving::Nobody) {
-      if (served != 0) {
-        serve_id_ = turn_.choose(served);
-        turn_.advance(serve_id_);
-        serving_ = joins ? Serving::Chosen : Serving::Offered;
-      }
-    } else if (serving_ == Serving::Chosen) {
-      if (!joins) serving_ = Serving::Offered;
-    } else if (inputs.offer_taken) {
-      hand_on();
-    }
-
+    serve(joins, inputs.offer_taken);
     if (joins) join();
     if (hits) {
       give(lookup_.lanes, lookup_.slots, row(set(lookup_.line), found_));
@@ -287,6 +274,21 @@ class TreeCache {
     }
     mshr.tail = waiter;
     joins_.lanes &= joins_.lanes - 1;
+  }
+  // Of the registers that are as they were before this cycle.
+  void serve(bool joins, bool offer_taken) {
+    const uint32_t served = filled_ & waited_for_;
+    if (serving_ == Serving::Nobody) {
+      if (served != 0) {
+        serve_id_ = turn_.choose(served);
+        turn_.advance(serve_id_);
+        serving_ = joins ? Serving::Chosen : Serving::Offered;
+      }
+    } else if (serving_ == Serving::Chosen) {
+      if (!joins) serving_ = Serving::Offered;
+    } else if (offer_taken) {
+      hand_on();
+    }
   }
   // The waiter that was offered its line has it.
   void hand_on() {
