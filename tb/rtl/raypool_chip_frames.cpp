@@ -175,7 +175,7 @@ Case harder(Case c, uint32_t seed, uint32_t number, uint32_t frame, const Machin
     c.triangles = 20 + random() % 60;
     c.tree = 2 + random() % 1000 * 4 + random() % 2;
   }
-  if (random() % 6 == 0) {  // many rays at the same time
+  if (random() % 6 == 0 && machine.configuration.chip.ray_pool_size > 4) {  // many rays at the same time
     c.picture = {6 + random() % 6, 5 + random() % 4, 1 + random() % 2, c.picture.reflections};
     c.triangles = std::min(c.triangles, 40u);
     if (random() % 2 == 0) c.waits = {};
