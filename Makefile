@@ -23,17 +23,14 @@ export SIZE ?= 320x320
 export DEPTH ?= 3
 #:   CONFIG=4w4c|8w8c|...|FILE     hardware: configs/*.json, [best_]NwMc, file
 export CONFIG ?= 8w8c
-#:   ENGINE=native|embree|functional|sampled|model|rtl|lockstep
-#:                                 what stands in for the unit
+#:   ENGINE=native|functional|sampled|model|rtl|lockstep
+#:                                 what stands in for the hardware
 export ENGINE ?= lockstep
-#:   CHIP=model|rtl|lockstep       in place of ENGINE: what stands in for the whole chip, rtl/chip.v
+#:   BOUNDARY=unit|chip            ENGINE=rtl, lockstep: what is Verilog       unit
 #:   CUS=1|2|4                     compute units
 export CUS ?= 1
 #:   SET="FIELD=VALUE ..."         change fields of CONFIG, chip.ray_pool.size=256 (raypool config prints all)
-#:   TRAVERSER=NAME                static, modelled, lanes: its timing;        modelled;
-#:                                 hardware, with CHIP                         with CHIP static
-# SET may have it too.
-export TRAVERSER ?= $(if $(findstring chip.traverser=,$(SET)),,$(if $(CHIP),static,modelled))
+#:   TRAVERSER=static|hardware     of constant speed, or rtl/traverser.v       as CONFIG says: hardware
 #:   VIEW=FILE                     camera and light (JSON)                     from the scene
 #:   CAMERA=NAME                   of a glTF file                              its first
 #:   EYE=X,Y,Z  LOOK_AT=X,Y,Z  UP=X,Y,Z  FOV=DEGREES  LIGHT=X,Y,Z              from the view
@@ -42,7 +39,8 @@ export TRAVERSER ?= $(if $(findstring chip.traverser=,$(SET)),,$(if $(CHIP),stat
 #:   WAVES=1                       a waveform (FST) too; ENGINE=rtl, lockstep
 #:   TRACE=FROM:CYCLES|pixel:X,Y   what happens then, for Perfetto, Konata and make report;
 #:                                 1: 0:20000; ENGINE=model
-#:   THREADS=N                     ENGINE=native, embree, sampled              all cores
+#:   HITS=own|embree               ENGINE=native: whose hits                   own
+#:   THREADS=N                     ENGINE=native, sampled                      all cores
 #:   ERROR=N%  or  TIME=Ns         ENGINE=sampled: what may be afforded        ERROR=2%
 #:   SEED=N                        of what is random: ENGINE=sampled, cosim ...
 export SEED ?= 1
@@ -86,12 +84,11 @@ FRAME := SCENE CONFIG CUS SIZE DEPTH SET TRAVERSER $(LOOK)
 WAVES_FLAG := $(if $(filter-out 0,$(WAVES)),--waves)
 TRACE_FLAG := $(if $(filter-out 0,$(TRACE)),--trace $(if $(filter 1,$(TRACE)),:,"$$TRACE"))
 POWER_FLAG := $(if $(filter-out 0,$(POWER)),--power)
-CHIP_FLAG := $(if $(CHIP),--chip)
-# A chip in Verilog has its traverser inside, or not: of a frame TRAVERSER says so, of a chip SET, if it does.
-INSIDE := $(if $(CHIP),$${TRAVERSER:+--set "chip.traverser=$$TRAVERSER"})
 # Only engines rtl and lockstep need a Verilated device.
 UNIT = scripts/unit.sh "$$CONFIG" $(call options,SET) $(WAVES_FLAG)
-UNIT_OF_ENGINE = $(if $(filter rtl lockstep,$(or $(CHIP),$(ENGINE))),$(UNIT) $(INSIDE),true)
+UNIT_OF_ENGINE = $(if $(filter rtl lockstep,$(ENGINE)),$(UNIT),true)
+# That of a frame may be the chip, with its traverser inside or not.
+OF_FRAME = $(call options,CUS BOUNDARY) $${TRAVERSER:+--set "chip.traverser=$$TRAVERSER"}
 # The synthesis flow; paths may be relative to this folder.
 SYNTH := PYTHONPATH=scripts python3 -m synth
 LIBRARY := MEMORIES LIBERTY CLOCK
@@ -122,7 +119,7 @@ help: ## the targets and variables that one needs first
 	@echo
 	@$(call LISTED,sim|compare|sweep|report|run|cosim|synth|test)
 	@echo
-	@sed -nE '/^#: .*make sim/,/^$$/ s/^#:   ((SCENE|CONFIG|ENGINE|CHIP|SIZE|DEPTH|OUT)=[^ ]*).*/\1/p' Makefile | \
+	@sed -nE '/^#: .*make sim/,/^$$/ s/^#:   ((SCENE|CONFIG|ENGINE|BOUNDARY|SIZE|DEPTH|OUT)=[^ ]*).*/\1/p' Makefile | \
 	  paste -sd ' ' | fold -sw 96 | sed '1s/^/  of make sim: /; 2,$$s/^/               /; s/ $$//'
 	@echo
 	@echo '  make help-all lists every target and variable, docs/commands.md what to do with them'
@@ -137,8 +134,8 @@ help-all: ## every target and variable
 
 # An environment may hold a TIME of its own, for time(1).
 sim: setup-sim program ## draw a scene on the simulated chip: picture, report, figures
-	@$(UNIT_OF_ENGINE) $(call options,CUS) $(CHIP_FLAG)
-	@$(RAYPOOL) sim $(call options,$(FRAME) $(if $(CHIP),CHIP,ENGINE) OUT THREADS ERROR $(call said,TIME) \
+	@$(UNIT_OF_ENGINE) $(OF_FRAME)
+	@$(RAYPOOL) sim $(call options,$(FRAME) ENGINE BOUNDARY HITS OUT THREADS ERROR $(call said,TIME) \
 	  $(if $(filter sampled,$(ENGINE)),SEED)) $(WAVES_FLAG) $(TRACE_FLAG) $(ARGS)
 
 #: variables of make fidelity: those of the frame, from SCENE to DETAIL
@@ -293,11 +290,11 @@ sweep: setup-sim $(SWEEP_SETUP) program ## all points of EXPERIMENT (docs/sweeps
 report: setup-sim setup-report program ## sweeps, runs and synthesis reports as one page (docs/page.md)
 	@$(REPORT) $${FROM:+--from $$FROM} $(call options,OUT) $(ARGS)
 
-unit: setup-sim program ## Verilate CUS compute units of CONFIG (WAVES=1: with waveforms; CHIP=rtl: the whole chip)
-	@scripts/unit.sh "$$CONFIG" $(INSIDE) $(call options,SET CUS) $(WAVES_FLAG) $(CHIP_FLAG) $(ARGS)
+unit: setup-sim program ## Verilate CUS compute units of CONFIG (WAVES=1: with waveforms; BOUNDARY=chip: the whole chip)
+	@$(UNIT) $(OF_FRAME) $(ARGS)
 
 #: variables of make synth, synth-replay and synth-prove: CONFIG, SET
-#:   CHIP=1                        the whole chip of CUS units, its traverser with SET=chip.traverser=hardware
+#:   CHIP=1                        the whole chip of CUS units; SET=chip.traverser=static: no traverser inside
 #:   LIBERTY=FILE                  .lib or .lib.gz, or a name that asks where it is
 #:   CLOCK=NS                      LIBERTY and CLOCK                           those of constraints/
 #:   MEMORIES=macros|flops|FOLDER  a folder has Liberty files                  macros

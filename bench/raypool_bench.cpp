@@ -1,7 +1,7 @@
 // `make bench`: how fast the engines run on this machine. Draws one fixed frame with each, best of three, and sets the
 // Verilated unit's rate beside that of the best open GPU RTL at 4 warps x 4 lanes on this class of machine. Then the
 // units alone: what the chip gave the unit in every cycle of that frame is recorded, and model and RTL are clocked
-// through it in turn. Needs the Verilated units of 4w4c, 8w8c and 16w16c.
+// through it in turn. Needs the Verilated units of 4w4c, 8w8c and 16w16c; --loops none.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -18,6 +18,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/engine.hpp"
+#include "loops.hpp"
 #include "port_recording.hpp"
 
 namespace {
@@ -138,16 +139,21 @@ void compare_engines(const BenchOptions& bench) {
 
 int main(int argc, char** argv) {
   BenchOptions bench;
-  bool alone = false;
+  bool alone = false, loops = false;
   CLI::App app("How fast the engines run on this machine.");
   app.add_flag("--alone", alone, "only the units alone, without the chip");
-  app.add_option("--config", bench.configurations, "of the units alone")->capture_default_str();
+  app.add_flag("--loops", loops, "only a frame on the model of the chip, in the bare loop and in SystemC");
+  app.add_option("--config", bench.configurations, "of the units alone, or of --loops")->capture_default_str();
   app.add_option("--engine", bench.engines, "of the units alone: rtl, model, lockstep")->capture_default_str();
-  app.add_option("--repetitions", bench.repetitions, "of which the best counts")
+  app.add_option("--repetitions", bench.repetitions, "of which the best counts; of --loops the median")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
   CLI11_PARSE(app, argc, argv);
   try {
+    if (loops) {
+      for (const std::string& config : bench.configurations) raypool::bench::compare_loops(config, bench.repetitions);
+      return 0;
+    }
     if (!alone) compare_engines(bench);
     fmt::print("the same frame, the unit alone on its recorded ports; best of {}, in turn\n", bench.repetitions);
     for (const std::string& config : bench.configurations) compare_units(bench, config);

@@ -17,7 +17,8 @@ foreach(source sim/rtl/rtl_unit.cpp sim/rtl/rtl_chip.cpp sim/rtl/unit_library.hp
     cpp_model/machine/memory.hpp cpp_model/machine/memory_port.hpp cpp_model/machine/packages.hpp
     cpp_model/machine/pipe_items.hpp cpp_model/machine/port_cycles.hpp cpp_model/machine/ram_queue.hpp
     cpp_model/machine/ray_kernel.hpp
-    cpp_model/machine/ray_setup.hpp cpp_model/machine/tree_fault.hpp cpp_model/machine/tree_setup.hpp
+    cpp_model/machine/ray_setup.hpp cpp_model/machine/traverser_work.hpp cpp_model/machine/tree_fault.hpp
+    cpp_model/machine/tree_setup.hpp
     cpp_model/machine/triangle_ray.hpp)
   cmake_path(GET source PARENT_PATH folder)
   install(FILES ${source} DESTINATION ${data}/${folder} COMPONENT program)

@@ -24,7 +24,7 @@ module frame_port (
   input  wire         frame_ready_i,
   output wire [31:0]  frame_pixel_o,
   output wire [95:0]  frame_color_o,
-  // for the ledger: the cycle after a unit's contribution has been taken
+  // for the controller: the cycle after a unit's contribution has been taken
   output reg          exported_valid_o,
   output reg  [1:0]   exported_unit_o,
   output reg  [31:0]  exported_pixel_o,

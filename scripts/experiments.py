@@ -64,7 +64,7 @@ def load(path):
             rows = json.load(file)["rows"]
         found = {}
         for row in rows:
-            if row["cycles"] is None:  # a picture of engine embree
+            if row["cycles"] is None:  # a picture of Embree's hits
                 continue
             warps, cores = (int(part) for part in row["config"].rstrip("c").split("w"))
             found[warps, cores, *(row.get(field, default) for field, default in SWEPT.items())] = row

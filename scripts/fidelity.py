@@ -50,10 +50,10 @@ LEVELS = (
 )
 HARDWARE = LEVELS[-1].name
 # What reports of one frame may have of their own: who drew it, and how fast.
-OF_THE_RUN = ("command", "engine", "wall_seconds", "simulation_seconds", "simulated_per_second")
+OF_THE_RUN = ("command", "engine", "boundary", "hits", "wall_seconds", "simulation_seconds", "simulated_per_second")
 # Options of raypool sim that are passed on; those with a default name the folder.
-DEFAULTS = {"scene": "room", "config": "8w8c", "units": "1", "size": "320x320", "depth": "3", "traverser": "modelled"}
-OTHERS = ("set", "view", "camera", "eye", "look-at", "up", "fov", "light", "detail")
+DEFAULTS = {"scene": "room", "config": "8w8c", "units": "1", "size": "320x320", "depth": "3"}
+OTHERS = ("set", "traverser", "view", "camera", "eye", "look-at", "up", "fov", "light", "detail")
 
 PLOT = """set terminal svg size 760,440 font 'Sans,12' background 'white'
 set output '{svg}'
@@ -417,8 +417,7 @@ def frame(arguments):
     options = [f"--{name}={value}" for name, value in given.items() if value is not None]
     scene, config = (pathlib.Path(given[name]).stem for name in ("scene", "config"))
     name = f"{scene}-{config}-{given['units']}cu-{given['size']}-depth{given['depth']}"
-    shown = {"scene": scene, "config": config, "traverser": DEFAULTS["traverser"],
-             **{field: given[field] for field in ("units", "size", "depth")}}  # fmt: skip
+    shown = {"scene": scene, "config": config, **{field: given[field] for field in ("units", "size", "depth")}}
     if rest := [f"{field}={value}" for field, value in given.items() if value not in (None, shown.get(field))]:
         name += f"-{zlib.crc32(' '.join(rest).encode(errors='surrogateescape')):08x}"
     return options, name.replace("/", "_")

@@ -139,8 +139,7 @@ def run(arguments, folder):
           f"{'half width':>11} {'tiles simulated':>16}")
     for scene in arguments.scenes.split(","):
         for config in arguments.configs.split(","):
-            frame = [*SCENES[scene](folder), "--config", config, "--traverser", "modelled", "--size", arguments.size,
-                     "--depth", arguments.depth]  # fmt: skip
+            frame = [*SCENES[scene](folder), "--config", config, "--size", arguments.size, "--depth", arguments.depth]
             contained, errors, widths, tiles = check(frame, arguments, lambda text: progress(f"{scene}, {text}"))
             sums.update(contained)
             asked.update({name: arguments.samples for name in contained})

@@ -1,20 +1,18 @@
 #!/usr/bin/env python3
 """Tables of docs/traverser.md, of the folder that a sweep leaves:
 
-    scripts/traverser_table.py binds build/sweeps/traverser    what binds the modelled traverser: for each change of a
-                                                               machine what the ceilings of the machine without it
-                                                               predict, and what was measured
-    scripts/traverser_table.py nodes build/sweeps/nodes        compressed nodes against exact ones
-    scripts/traverser_table.py boxes build/sweeps/boxes        boxes in integers against boxes in floats
+    scripts/traverser_table.py binds build/sweeps/traverser    what binds the traverser: for each change of a machine
+                                                               what the ceilings of the machine without it predict,
+                                                               and what was measured
+    scripts/traverser_table.py boxes build/sweeps/boxes        boxes in integers of few bits
 """
 import json
-import os
 import sys
 
-PART = "chip.modelled_traverser."
+PART = "chip.hardware_traverser."
 BEAT = "chip.memory.cycles_per_beat"
 CACHES = (PART + "node_cache_bytes", PART + "triangle_cache_bytes")
-PLACE = ("scene", "detail", "view", "size", "depth", "units")
+PLACE = ("depth", "units")
 
 
 def ceilings(row):
@@ -35,7 +33,8 @@ def lowest(values):
 def predicted(base, row):
     """The lowest ceiling of `base` when those that the change touches are moved by as much as it moves them."""
     moved = ceilings(base)
-    moved["ceilings.box_pipes"] *= row[PART + "box_pipes"] / base[PART + "box_pipes"]
+    moved["ceilings.box_pipes"] *= row[PART + "lanes"] / base[PART + "lanes"]
+    moved["ceilings.triangle_pipes"] *= row[PART + "triangle_pipes"] / base[PART + "triangle_pipes"]
     moved["ceilings.memory_port"] *= base[BEAT] / row[BEAT]
     if cache(row) != cache(base):  # what a cache lets through is measured, not known beforehand
         moved["ceilings.memory_port"] *= base["traversal.bytes_a_ray"] / row["traversal.bytes_a_ray"]
@@ -43,7 +42,7 @@ def predicted(base, row):
 
 
 def line(*cells):
-    print("{:<11}{:>6}{:>6}  {:<33}{:<17}{:<20}{:>8}{:>9}".format(*cells))
+    print("{:<6}{:>6}  {:<35}{:<19}{:<21}{:>8}{:>9}".format(*cells))
 
 
 def change(new, old):
@@ -51,34 +50,34 @@ def change(new, old):
 
 
 def differs(row, base):
-    return [name for name in (PART + "box_pipes", BEAT) if row[name] != base[name]] + (
+    return [name for name in (PART + "lanes", BEAT) if row[name] != base[name]] + (
         ["caches"] if cache(row) != cache(base) else []
     )
 
 
 def label(row):
-    return f"{row[PART + 'box_pipes']} box, {cache(row) // 1024} KB, {16 / row[BEAT]:.1f} GB/s"
+    return f"{row[PART + 'lanes']} lanes, {cache(row) // 1024} KB, {16 / row[BEAT]:.1f} GB/s"
 
 
 def show(rows):
     for row in rows:
-        place = [os.path.basename(row["scene"]).split(".")[0], str(row["depth"]), str(row["units"])]
+        place = [str(row["depth"]), str(row["units"])]
         if row["chip.traverser"] == "static":
             line(*place, "static", bound(row), "", "", f"{row['mrays_per_second']:.1f}")
             continue
-        bases = [base for base in rows if base["chip.traverser"] == "modelled" and len(differs(row, base)) == 1
+        bases = [base for base in rows if base["chip.traverser"] != "static" and len(differs(row, base)) == 1
                  and smaller_change(base, row)]  # fmt: skip
         line(*place, label(row), bound(row), "", "", f"{row['mrays_per_second']:.1f}")
         for base in bases:
             name, after = predicted(base, row)
             before = lowest(ceilings(base))[1]
-            line("", "", "", f"  from {label(base)}", "", f"to {name} {after:.0f}",
+            line("", "", f"  from {label(base)}", "", f"to {name} {after:.0f}",
                  change(after, before), change(row["mrays_per_second"], base["mrays_per_second"]))  # fmt: skip
 
 
 def smaller_change(base, row):
-    """Twice the pipes, half the cache, a tenth of the bandwidth."""
-    return (row[PART + "box_pipes"] == 2 * base[PART + "box_pipes"] or 2 * cache(row) == cache(base)
+    """Twice the lanes, half the cache, a tenth of the bandwidth."""
+    return (row[PART + "lanes"] == 2 * base[PART + "lanes"] or 2 * cache(row) == cache(base)
             or row[BEAT] == 10 * base[BEAT])  # fmt: skip
 
 
@@ -88,22 +87,10 @@ def bound(row):
 
 
 def binds(rows):
-    line("scene", "depth", "units", "machine", "lowest ceiling", "ceilings predict", "", "measured")
+    line("depth", "units", "machine", "lowest ceiling", "ceilings predict", "", "measured")
     places = list(dict.fromkeys(tuple(row.get(name) for name in PLACE) for row in rows))
     for place in places:
         show([row for row in rows if tuple(row.get(name) for name in PLACE) == place])
-
-
-def nodes(rows):
-    columns = "{:>5}{:>6}  {:<11}{:>11}{:>11}{:>12}{:>10}{:>12}{:>9}"
-    print(columns.format("depth", "units", "nodes", "cache, KB", "nodes/ray", "bytes/ray", "node hits", "memory port",
-                         "Mrays/s"))  # fmt: skip
-    for row in rows:
-        kilobytes = "+".join(str(row[name] // 1024) for name in CACHES)
-        print(columns.format(row["depth"], row["units"], row[PART + "nodes"], kilobytes,
-                             f"{row['traversal.nodes_a_ray']:.2f}", f"{row['traversal.bytes_a_ray']:.1f}",
-                             f"{row['traversal.node_cache.hit_rate']:.1%}", f"{row['memory.port_utilisation']:.1%}",
-                             f"{row['mrays_per_second']:.1f}"))  # fmt: skip
 
 
 def boxes(rows):
@@ -111,15 +98,15 @@ def boxes(rows):
     print(columns.format("bits", "nodes/ray", "triangles/ray", "box pipes", "triangle pipes",
                          "Mrays/s"))  # fmt: skip
     for row in rows:
-        print(columns.format(row[PART + "box_bits"] or "float",
-                             f"{row['traversal.nodes_a_ray']:.2f}", f"{row['traversal.triangles_a_ray']:.2f}",
+        print(columns.format(row[PART + "box_bits"], f"{row['traversal.nodes_a_ray']:.2f}",
+                             f"{row['traversal.triangles_a_ray']:.2f}",
                              f"{row['traversal.box_pipes.utilisation']:.1%}",
                              f"{row['traversal.triangle_pipes.utilisation']:.1%}",
                              f"{row['mrays_per_second']:.1f}"))  # fmt: skip
 
 
 def main():
-    tables = {"binds": binds, "nodes": nodes, "boxes": boxes}
+    tables = {"binds": binds, "boxes": boxes}
     if len(sys.argv) != 3 or sys.argv[1] not in tables:
         sys.exit(__doc__.strip())
     with open(sys.argv[2] + "/table.json", encoding="utf-8") as file:

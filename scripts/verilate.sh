@@ -79,7 +79,7 @@ waivers=(rtl/*.vlt)   # and what the lockstep looks at inside
 shared=()             # the modules of which all instances have the same code
 if [ "$kind" = chip ]; then
   headers+=(cpp_model/machine/{chip_device,memory_port,port_cycles,ram_queue,ray_kernel}.hpp sim/rtl/chip_library.hpp
-    cpp_model/machine/{tree_setup,ray_setup,box_ray,triangle_ray}.hpp)
+    cpp_model/machine/{tree_setup,ray_setup,box_ray,triangle_ray,traverser_work}.hpp)
   wrapper+=(cpp_model/machine/chip_device.cpp)
   waivers+=(sim/rtl/chip_probes.vlt)
   shared=(sim/rtl/shared_modules.vlt)

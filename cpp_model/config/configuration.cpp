@@ -59,7 +59,6 @@ class Section {
     int value = parameter.get(configuration);
     switch (parameter.range.form) {
       case Range::Form::Integer:
-      case Range::Form::ZeroOr:
       case Range::Form::PowerOfTwo:
         value = integer(parameter.key).value_or(value);
         break;
@@ -356,29 +355,23 @@ uint32_t tile_width_log2(uint32_t contents) {
 
 namespace {
 
-/// What of the modelled traverser's parameters rtl/traverser.v cannot have: its modules' checks, in sentences.
+/// What of the parameters of the traverser its modules check, in sentences.
 void check_hardware_traverser(const ChipConfiguration& chip, const std::string& where) {
   const auto refuse = [&where](const char* key, const auto& value, const std::string& must) {
-    throw InputError(fmt::format("{}: chip.modelled_traverser.{} is {}; with chip.traverser hardware it must be {}",
-                                 where, key, value, must));
+    throw InputError(fmt::format("{}: chip.hardware_traverser.{} is {}; it must be {}", where, key, value, must));
   };
-  constexpr uint32_t kMostLanes = 31, kMostSlots = 256, kMostBanks = 16, kLeastWays = 2, kMostMshrsOfABank = 32;
+  constexpr uint32_t kMostSlots = 256, kMostMshrsOfABank = 32;
   constexpr uint32_t kLine = 64;
-  if (chip.modelled_traverser_nodes != NodeFormat::Compressed) refuse("nodes", "exact", "compressed");
-  const uint32_t lanes = chip.modelled_traverser_box_pipes, rays = chip.modelled_traverser_rays;
-  if (lanes > kMostLanes) refuse("box_pipes", lanes, fmt::format("at most {}", kMostLanes));
+  const uint32_t lanes = chip.hardware_traverser_lanes, rays = chip.hardware_traverser_rays;
   if (rays % lanes != 0 || rays / lanes > kMostSlots) {
     refuse("rays", rays,
-           fmt::format("a multiple of box_pipes, which is {}, and at most {} for each of them", lanes, kMostSlots));
+           fmt::format("a multiple of lanes, which is {}, and at most {} for each of them", lanes, kMostSlots));
   }
-  if (chip.modelled_traverser_triangle_pipes > lanes) {
-    refuse("triangle_pipes", chip.modelled_traverser_triangle_pipes,
-           fmt::format("at most {}, which is box_pipes", lanes));
+  if (chip.hardware_traverser_triangle_pipes > lanes) {
+    refuse("triangle_pipes", chip.hardware_traverser_triangle_pipes, fmt::format("at most {}, which is lanes", lanes));
   }
-  const uint32_t banks = chip.modelled_traverser_cache_banks;
-  if (banks > kMostBanks) refuse("cache_banks", banks, fmt::format("at most {}", kMostBanks));
+  const uint32_t banks = chip.hardware_traverser_cache_banks;
   const auto check_cache = [&](const std::string& cache, uint32_t bytes, uint32_t ways, uint32_t mshrs) {
-    if (ways < kLeastWays) refuse((cache + "_ways").c_str(), ways, fmt::format("at least {}", kLeastWays));
     if (bytes < 2 * ways * banks * kLine) {
       refuse((cache + "_bytes").c_str(), bytes,
              fmt::format("at least {}: two sets of {} ways of {} bytes in each of {} banks", 2 * ways * banks * kLine,
@@ -390,10 +383,10 @@ void check_hardware_traverser(const ChipConfiguration& chip, const std::string& 
           fmt::format("a multiple of cache_banks, which is {}, and at most {} in each bank", banks, kMostMshrsOfABank));
     }
   };
-  check_cache("node_cache", chip.modelled_traverser_node_cache_bytes, chip.modelled_traverser_node_cache_ways,
-              chip.modelled_traverser_node_cache_mshrs);
-  check_cache("triangle_cache", chip.modelled_traverser_triangle_cache_bytes,
-              chip.modelled_traverser_triangle_cache_ways, chip.modelled_traverser_triangle_cache_mshrs);
+  check_cache("node_cache", chip.hardware_traverser_node_cache_bytes, chip.hardware_traverser_node_cache_ways,
+              chip.hardware_traverser_node_cache_mshrs);
+  check_cache("triangle_cache", chip.hardware_traverser_triangle_cache_bytes,
+              chip.hardware_traverser_triangle_cache_ways, chip.hardware_traverser_triangle_cache_mshrs);
 }
 
 /// A row of an eye tile is held at once, and what is held must find room in the intersection pool.
@@ -413,27 +406,6 @@ void check_chip(const Configuration& configuration, const std::string& where) {
         fmt::format("{}: chip.held_limit is {}; it must be from {}, the width of a tile of {} contents, to "
                     "{}, which is chip.intersection_pool.size",
                     where, chip.held_limit, width, configuration.contents(), chip.intersection_pool_size));
-  }
-  const uint32_t node = node_bytes(chip.modelled_traverser_nodes), ways = chip.modelled_traverser_node_cache_ways;
-  if (chip.modelled_traverser_node_cache_bytes < ways * node) {
-    throw InputError(
-        fmt::format("{}: chip.modelled_traverser.node_cache_bytes is {}; with {} ways of nodes of {} bytes it must be "
-                    "at least {}",
-                    where, chip.modelled_traverser_node_cache_bytes, ways, node, ways * node));
-  }
-  constexpr uint32_t kLine = 64;
-  const uint32_t triangle_ways = chip.modelled_traverser_triangle_cache_ways;
-  if (chip.modelled_traverser_triangle_cache_bytes < triangle_ways * kLine) {
-    throw InputError(
-        fmt::format("{}: chip.modelled_traverser.triangle_cache_bytes is {}; with {} ways of lines of {} bytes it must "
-                    "be at least {}",
-                    where, chip.modelled_traverser_triangle_cache_bytes, triangle_ways, kLine, triangle_ways * kLine));
-  }
-  if (chip.modelled_traverser_box_bits != 0 && chip.modelled_traverser_nodes != NodeFormat::Compressed) {
-    throw InputError(
-        fmt::format("{}: chip.modelled_traverser.box_bits is {}; with exact nodes (chip.modelled_traverser.nodes) it "
-                    "must be 0, since boxes in integers are those of compressed nodes",
-                    where, chip.modelled_traverser_box_bits));
   }
   if (chip.traverser == TraverserName::Hardware) check_hardware_traverser(chip, where);
 }
@@ -520,9 +492,9 @@ namespace {
 /// Whether rtl/chip.v has it by its own name: which kernels there are is its host's business, and the traverser is
 /// hardware_traverser_parameters().
 bool is_of_chip_verilog(const Parameter& parameter) {
-  static constexpr std::string_view kNot[] = {"controller", "traverser", "reflections",
-                                              "static_traverser_stall_cycles"};
-  return parameter.section != "chip.modelled_traverser" &&
+  static constexpr std::string_view kNot[] = {"traverser",    "reflections",      "static_traverser_stall_cycles",
+                                              "memory_banks", "memory_row_bytes", "memory_row_miss"};
+  return parameter.section != "chip.hardware_traverser" &&
          std::find(std::begin(kNot), std::end(kNot), parameter.name) == std::end(kNot);
 }
 
@@ -532,21 +504,21 @@ std::vector<std::pair<std::string, int>> hardware_traverser_parameters(const Chi
   constexpr uint32_t kLine = 64;
   const bool inside = chip.traverser == TraverserName::Hardware;
   const ChipConfiguration sizes = inside ? chip : ChipConfiguration();
-  const uint32_t lanes = sizes.modelled_traverser_box_pipes;
+  const uint32_t lanes = sizes.hardware_traverser_lanes;
   std::vector<std::pair<std::string, int>> parameters = {{"TRAVERSER", inside ? 1 : 0}};
   for (const auto& [name, value] : std::initializer_list<std::pair<const char*, uint32_t>>{
            {"LANES", lanes},
-           {"SLOTS", sizes.modelled_traverser_rays / lanes},
-           {"ENTRIES", sizes.modelled_traverser_stack_entries},
-           {"BITS", hardware_box_bits(sizes)},
-           {"TRIANGLE_PIPES", sizes.modelled_traverser_triangle_pipes},
-           {"BANKS", sizes.modelled_traverser_cache_banks},
-           {"NODE_LINES", sizes.modelled_traverser_node_cache_bytes / kLine},
-           {"NODE_WAYS", sizes.modelled_traverser_node_cache_ways},
-           {"NODE_MSHRS", sizes.modelled_traverser_node_cache_mshrs},
-           {"TRIANGLE_LINES", sizes.modelled_traverser_triangle_cache_bytes / kLine},
-           {"TRIANGLE_WAYS", sizes.modelled_traverser_triangle_cache_ways},
-           {"TRIANGLE_MSHRS", sizes.modelled_traverser_triangle_cache_mshrs}})
+           {"SLOTS", sizes.hardware_traverser_rays / lanes},
+           {"ENTRIES", sizes.hardware_traverser_stack_entries},
+           {"BITS", sizes.hardware_traverser_box_bits},
+           {"TRIANGLE_PIPES", sizes.hardware_traverser_triangle_pipes},
+           {"BANKS", sizes.hardware_traverser_cache_banks},
+           {"NODE_LINES", sizes.hardware_traverser_node_cache_bytes / kLine},
+           {"NODE_WAYS", sizes.hardware_traverser_node_cache_ways},
+           {"NODE_MSHRS", sizes.hardware_traverser_node_cache_mshrs},
+           {"TRIANGLE_LINES", sizes.hardware_traverser_triangle_cache_bytes / kLine},
+           {"TRIANGLE_WAYS", sizes.hardware_traverser_triangle_cache_ways},
+           {"TRIANGLE_MSHRS", sizes.hardware_traverser_triangle_cache_mshrs}})
     parameters.emplace_back(std::string("TRAVERSER_") + name, static_cast<int>(value));
   return parameters;
 }
@@ -558,7 +530,6 @@ std::vector<std::pair<std::string, int>> chip_verilog_parameters(const Configura
   for (auto& of_unit : verilog_parameters(configuration)) parameters.push_back(std::move(of_unit));
   for (const Parameter& parameter : parameter::kOfChip)
     if (is_of_chip_verilog(parameter)) parameters.emplace_back(verilog_name(parameter), parameter.get(configuration));
-  parameters.emplace_back("TILE_ORDER", to_underlying(tile_order(configuration.chip)));
   parameters.emplace_back("TRAVERSER_QUEUE", static_cast<int>(tree_requests(configuration.chip)));
   for (auto& of_traverser : hardware_traverser_parameters(configuration.chip))
     parameters.push_back(std::move(of_traverser));

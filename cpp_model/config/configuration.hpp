@@ -24,7 +24,7 @@ struct AluConfiguration {
 #undef RAYPOOL_ROW
 };
 
-/// The chip around the unit; its defaults are the thesis' chip.
+/// The chip around the unit; its defaults are the thesis' chip, but for the traverser.
 struct ChipConfiguration {
 #define RAYPOOL_CHIP(name, type, value, ...) type name = value;
 #define RAYPOOL_PART(part, name, type, value, ...) type part##_##name = value;
@@ -49,22 +49,9 @@ std::string name_of_file(const std::string& path);
 /// log2 of an eye tile's width for `contents` threads (a power of two): tiles are square or twice as wide as high.
 uint32_t tile_width_log2(uint32_t contents);
 
-/// Of a node of four children in the modelled traverser's memory: a line of its node cache.
-constexpr uint32_t node_bytes(NodeFormat nodes) { return nodes == NodeFormat::Compressed ? 64 : 128; }
-
-/// The order in which tiles are cast. The traverser of constant speed has no caches that another one than rows could
-/// serve.
-constexpr TileOrder tile_order(const ChipConfiguration& chip) {
-  return chip.traverser != TraverserName::Static ? chip.modelled_traverser_tile_order : TileOrder::Rows;
-}
 /// Requests of the traverser that may wait at the memory port: the lines that its caches may have on their way.
 constexpr uint32_t tree_requests(const ChipConfiguration& chip) {
-  return chip.modelled_traverser_node_cache_mshrs + chip.modelled_traverser_triangle_cache_mshrs;
-}
-
-/// Bits of the box test of rtl/traverser.v, which has none in floats.
-constexpr uint32_t hardware_box_bits(const ChipConfiguration& chip) {
-  return chip.modelled_traverser_box_bits != 0 ? chip.modelled_traverser_box_bits : 12;
+  return chip.hardware_traverser_node_cache_mshrs + chip.hardware_traverser_triangle_cache_mshrs;
 }
 
 struct Configuration {

@@ -167,64 +167,20 @@ TEST(Configuration, TheChipHoldsAsManyPixelsAsTheIntersectionPoolUnlessToldOther
             "chip.intersection_pool.size is 31; with 1024 contents it must be at least 32, the width of a tile");
 }
 
-TEST(Configuration, TheNodeCacheHasASetAtLeast) {
-  const auto chip = [](const std::string& nodes, int bytes) {
-    return R"({"chip": {"modelled_traverser": {"nodes": ")" + nodes +
-           R"(", "node_cache_ways": 16, "node_cache_bytes": )" + std::to_string(bytes) + "}}}";
-  };
-  EXPECT_EQ(error_of(chip("exact", 1024)),
-            "chip.modelled_traverser.node_cache_bytes is 1024; with 16 ways of nodes of 128 bytes it must be at least "
-            "2048");
-  for (const auto& [nodes, bytes] : {std::pair("compressed", 1024), std::pair("exact", 2048)}) {
-    const TemporaryFile file(chip(nodes, bytes));
-    EXPECT_EQ(load_configuration(file.path()).chip.modelled_traverser_node_cache_bytes, static_cast<uint32_t>(bytes));
-  }
-}
-
-TEST(Configuration, TheTriangleCacheHasASetAtLeast) {
-  const auto chip = [](int ways) {
-    return R"({"chip": {"modelled_traverser": {"triangle_cache_bytes": 512, "triangle_cache_ways": )" +
-           std::to_string(ways) + "}}}";
-  };
-  EXPECT_EQ(error_of(chip(16)),
-            "chip.modelled_traverser.triangle_cache_bytes is 512; with 16 ways of lines of 64 bytes it must be at "
-            "least 1024");
-  const TemporaryFile file(chip(8));
-  EXPECT_EQ(load_configuration(file.path()).chip.modelled_traverser_triangle_cache_bytes, 512u);
-}
-
-TEST(Configuration, BoxesInIntegersAreThoseOfCompressedNodes) {
-  const auto chip = [](const std::string& nodes, int bits) {
-    return R"({"chip": {"modelled_traverser": {"nodes": ")" + nodes + R"(", "box_bits": )" + std::to_string(bits) +
-           "}}}";
-  };
-  EXPECT_EQ(error_of(chip("exact", 8)),
-            "chip.modelled_traverser.box_bits is 8; with exact nodes (chip.modelled_traverser.nodes) it must be 0, "
-            "since boxes in integers are those of compressed nodes");
-  for (const int bits : {-1, 1, 5, 17}) {
-    EXPECT_EQ(error_of(chip("compressed", bits)), "chip.modelled_traverser.box_bits is " + std::to_string(bits) +
-                                                      "; it must be 0 or an integer from 6 to 16");
-  }
-  for (const auto& [nodes, bits] : {std::pair("exact", 0), std::pair("compressed", 0), std::pair("compressed", 6)}) {
-    const TemporaryFile file(chip(nodes, bits));
-    EXPECT_EQ(load_configuration(file.path()).chip.modelled_traverser_box_bits, static_cast<uint32_t>(bits));
-  }
-}
-
 TEST(Configuration, ATraverserInHardwareHasSizesThatItsModulesCanHave) {
   const auto chip = [](const std::string& traverser, const std::string& sizes) {
-    return R"({"chip": {"traverser": ")" + traverser + R"(", "modelled_traverser": {)" + sizes + "}}}";
+    return R"({"chip": {"traverser": ")" + traverser + R"(", "hardware_traverser": {)" + sizes + "}}}";
   };
   for (const auto& [sizes, key, value, must] : std::vector<std::array<std::string, 4>>{
-           {R"("nodes": "exact")", "nodes", "exact", "compressed"},
-           {R"("box_pipes": 32)", "box_pipes", "32", "at most 31"},
-           {R"("rays": 126)", "rays", "126", "a multiple of box_pipes, which is 4, and at most 256 for each of them"},
-           {R"("rays": 514, "box_pipes": 2)", "rays", "514",
-            "a multiple of box_pipes, which is 2, and at most 256 for each of them"},
-           {R"("triangle_pipes": 5)", "triangle_pipes", "5", "at most 4, which is box_pipes"},
-           {R"("cache_banks": 32)", "cache_banks", "32", "at most 16"},
-           {R"("node_cache_ways": 1)", "node_cache_ways", "1", "at least 2"},
-           {R"("triangle_cache_ways": 1)", "triangle_cache_ways", "1", "at least 2"},
+           {R"("lanes": 32)", "lanes", "32", "an integer from 1 to 31"},
+           {R"("box_bits": 17)", "box_bits", "17", "an integer from 6 to 16"},
+           {R"("rays": 126)", "rays", "126", "a multiple of lanes, which is 4, and at most 256 for each of them"},
+           {R"("rays": 514, "lanes": 2)", "rays", "514",
+            "a multiple of lanes, which is 2, and at most 256 for each of them"},
+           {R"("triangle_pipes": 5)", "triangle_pipes", "5", "at most 4, which is lanes"},
+           {R"("cache_banks": 32)", "cache_banks", "32", "a power of two from 1 to 16"},
+           {R"("node_cache_ways": 1)", "node_cache_ways", "1", "a power of two from 2 to 16"},
+           {R"("triangle_cache_ways": 1)", "triangle_cache_ways", "1", "a power of two from 2 to 16"},
            {R"("node_cache_bytes": 2048)", "node_cache_bytes", "2048",
             "at least 4096: two sets of 4 ways of 64 bytes in each of 8 banks"},
            {R"("triangle_cache_bytes": 1024, "triangle_cache_ways": 16, "cache_banks": 1)", "triangle_cache_bytes",
@@ -233,13 +189,10 @@ TEST(Configuration, ATraverserInHardwareHasSizesThatItsModulesCanHave) {
             "a multiple of cache_banks, which is 8, and at most 32 in each bank"},
            {R"("triangle_cache_mshrs": 33, "cache_banks": 1)", "triangle_cache_mshrs", "33",
             "a multiple of cache_banks, which is 1, and at most 32 in each bank"}}) {
-    EXPECT_EQ(error_of(chip("hardware", sizes)), fmt::format("chip.modelled_traverser.{} is {}; with chip.traverser "
-                                                             "hardware it must be {}",
-                                                             key, value, must));
-    const TemporaryFile file(chip("lanes", sizes));
-    EXPECT_NO_THROW(load_configuration(file.path()));
+    EXPECT_EQ(error_of(chip("hardware", sizes)),
+              fmt::format("chip.hardware_traverser.{} is {}; it must be {}", key, value, must));
   }
-  const TemporaryFile file(chip("hardware", R"("rays": 512, "box_pipes": 2, "cache_banks": 16, "node_cache_ways": 16,
+  const TemporaryFile file(chip("hardware", R"("rays": 512, "lanes": 2, "cache_banks": 16, "node_cache_ways": 16,
                                               "node_cache_bytes": 32768, "node_cache_mshrs": 64)"));
   EXPECT_NO_THROW(load_configuration(file.path()));
 }
@@ -254,20 +207,20 @@ TEST(Configuration, TheChipHasTheSizesOfATraverserThatIsInside) {
     EXPECT_NE(found, parameters.end()) << name;
     return found->second;
   };
+  chip.traverser = TraverserName::Static;
   const auto outside = chip_verilog_parameters(configuration, 1);
   EXPECT_EQ(value(""), 0);
-  chip.modelled_traverser_rays = 96;
-  chip.modelled_traverser_box_pipes = 8;
-  chip.modelled_traverser_node_cache_bytes = 1 << 17;
-  chip.traverser = TraverserName::Lanes;
-  EXPECT_EQ(chip_verilog_parameters(configuration, 1), outside) << "whatever traverser is outside";
+  chip.hardware_traverser_rays = 96;
+  chip.hardware_traverser_lanes = 8;
+  chip.hardware_traverser_node_cache_bytes = 1 << 17;
+  EXPECT_EQ(chip_verilog_parameters(configuration, 1), outside) << "whatever sizes one inside would have";
   chip.traverser = TraverserName::Hardware;
   EXPECT_EQ(value(""), 1);
   EXPECT_EQ(value("_LANES"), 8);
   EXPECT_EQ(value("_SLOTS"), 12);
   EXPECT_EQ(value("_NODE_LINES"), 2048);
-  EXPECT_EQ(value("_BITS"), 12) << "it has no boxes in floats";
-  chip.modelled_traverser_box_bits = 9;
+  EXPECT_EQ(value("_BITS"), 12);
+  chip.hardware_traverser_box_bits = 9;
   EXPECT_EQ(value("_BITS"), 9);
 }
 

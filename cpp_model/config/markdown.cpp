@@ -61,8 +61,6 @@ std::string values_text(const Parameter& parameter, bool in_verilog) {
   switch (range.form) {
     case Range::Form::Integer:
       return fmt::format("{} .. {}", range.least, range.greatest);
-    case Range::Form::ZeroOr:
-      return fmt::format("0, {} .. {}", range.least, range.greatest);
     case Range::Form::PowerOfTwo:
       return fmt::format("{}, {}, {} .. {}", range.least, 2 * range.least, 4 * range.least, range.greatest);
     case Range::Form::Name:

@@ -119,8 +119,6 @@ std::string text_of(const Range& range) {
   switch (range.form) {
     case Range::Form::Integer:
       return fmt::format("an integer from {} to {}", range.least, range.greatest);
-    case Range::Form::ZeroOr:
-      return fmt::format("0 or an integer from {} to {}", range.least, range.greatest);
     case Range::Form::PowerOfTwo:
       return fmt::format("a power of two from {} to {}", range.least, range.greatest);
     case Range::Form::Name:

@@ -13,16 +13,11 @@ namespace raypool {
 /// None: as Flush, and where one arises the unit stops with a fault.
 enum class Subnormals : uint8_t { Ieee = 0, Flush = 1, None = 2 };
 enum class SlowUnit : uint8_t { Exact = 0, Newton2 = 1, Newton1 = 2, Newton0 = 3 };
-/// What chooses the next kernel, and what times the traverser. Each name has its class in sim/chip/.
+/// What chooses the next kernel. Each name has its class in cpp_model/machine/.
 enum class PolicyName : uint8_t { Thesis = 0, Fill = 1 };
-/// Ledger: counts pixels, and decides at once; Counters: as rtl/controller.v.
-enum class ControllerName : uint8_t { Ledger = 0, Counters = 1 };
 enum class TileOrder : uint8_t { Rows = 0, Hilbert = 1 };
-/// How the modelled traverser keeps the boxes of a node: as numbers on a grid of the node, or as the floats they are.
-enum class NodeFormat : uint8_t { Compressed = 0, Exact = 1 };
-/// Lanes: as Modelled, under rules that hardware keeps. Hardware: rtl/traverser.v, inside rtl/chip.v; it has no class
-/// in sim/chip/.
-enum class TraverserName : uint8_t { Static = 0, Modelled = 1, Lanes = 2, Hardware = 3 };
+/// Static: the published one of constant speed, at the ports of rtl/chip.v. Hardware: rtl/traverser.v, inside it.
+enum class TraverserName : uint8_t { Static = 0, Hardware = 1 };
 /// What becomes of a shadow ray that reaches the light: an intersection, for the kernel `shade`, or a contribution.
 enum class Shading : uint8_t { Kernel = 0, Traverser = 1 };
 
@@ -70,13 +65,13 @@ enum class Shading : uint8_t { Kernel = 0, Traverser = 1 };
 // A beat is 128 bits, the width of the unit's ports: so 2 cycles a beat is a port of half that width.
 #define RAYPOOL_CHIP_PARAMETERS(CHIP, CHIP_PART) \
   CHIP(policy, PolicyName, PolicyName::Thesis, names("thesis", "fill"), "what chooses the next kernel") \
-  CHIP(controller, ControllerName, ControllerName::Ledger, names("ledger", "counters"), \
-       "what launches kernels: it counts pixels and decides at once, or rays and in four cycles (rtl/controller.v)") \
   CHIP(window_remedy, bool, true, on_or_off(), "eye rays of further tiles are cast while earlier ones are under way") \
   CHIP(launch_ahead, bool, true, on_or_off(), "a kernel is launched behind a running one, if it is worth it") \
   CHIP(held_limit, uint32_t, 512, integers(1, 1 << 20), "unfinished pixels at a time") \
-  CHIP(traverser, TraverserName, TraverserName::Static, names("static", "modelled", "lanes", "hardware"), \
-       "the traverser: without time of its own, a machine, one under rules that hardware keeps, or rtl/traverser.v") \
+  CHIP(traverser, TraverserName, TraverserName::Hardware, names("static", "hardware"), \
+       "the traverser: the published one of constant speed, or rtl/traverser.v") \
+  CHIP(tile_order, TileOrder, TileOrder::Rows, names("rows", "hilbert"), \
+       "order in which tiles are cast: rows from the top, or along a Hilbert curve, each beside the last") \
   CHIP(shading, Shading, Shading::Kernel, names("kernel", "traverser"), \
        "who adds shadow rays that reach the light to the frame buffer: the kernel shade, or the traverser itself") \
   CHIP(reflections, bool, true, on_or_off(), "there is a kernel that casts reflections; without it a frame has none") \
@@ -89,45 +84,27 @@ enum class Shading : uint8_t { Kernel = 0, Traverser = 1 };
             "rays traced when a kernel ends, or after a stall") \
   CHIP_PART(static_traverser, stall_cycles, uint32_t, 1000, integers(1, 1 << 20), \
             "cycles in which the shader stalls until a batch is traced") \
-  CHIP_PART(modelled_traverser, tile_order, TileOrder, TileOrder::Rows, names("rows", "hilbert"), \
-            "order in which tiles are cast for it: rows from the top, or along a Hilbert curve, each beside the last") \
-  CHIP_PART(modelled_traverser, nodes, NodeFormat, NodeFormat::Compressed, names("compressed", "exact"), \
-            "nodes of 64 bytes, with planes of 8 bits on a grid rounded outwards, or of 128, with boxes as they are") \
-  CHIP_PART(modelled_traverser, box_bits, uint32_t, 0, zero_or(6, 16), \
-            "boxes of compressed nodes are tested in integers of so many bits, as rtl/box_pipe.v does; 0: in floats, " \
-            "and with `hardware`, which has none, in 12 bits") \
-  CHIP_PART(modelled_traverser, rays, uint32_t, 128, integers(1, 1024), "rays in flight") \
-  CHIP_PART(modelled_traverser, setup_latency, uint32_t, 16, integers(1, 64), \
-            "cycles in which a ray is prepared; one begins in a cycle") \
-  CHIP_PART(modelled_traverser, box_pipes, uint32_t, 4, integers(1, 32), \
-            "nodes, four boxes each, whose test begins in a cycle; of `lanes` and `hardware`, its lanes") \
-  CHIP_PART(modelled_traverser, box_latency, uint32_t, 8, integers(1, 64), "cycles of a node's test") \
-  CHIP_PART(modelled_traverser, triangle_pipes, uint32_t, 2, integers(1, 32), \
-            "triangles whose test begins in a cycle; `lanes` has one in each lane") \
-  CHIP_PART(modelled_traverser, triangle_latency, uint32_t, 16, integers(1, 64), "cycles of a triangle's test") \
-  CHIP_PART(modelled_traverser, finish_latency, uint32_t, 16, integers(1, 64), \
-            "cycles in which a hit is completed; one begins in a cycle") \
-  CHIP_PART(modelled_traverser, stack_entries, uint32_t, 12, integers(8, 64), \
-            "entries of 8 bytes that a ray's stack keeps; older ones go to the memory, four at a time") \
-  CHIP_PART(modelled_traverser, cache_latency, uint32_t, 2, integers(1, 16), \
-            "cycles from a cache's lookup to its data") \
-  CHIP_PART(modelled_traverser, cache_banks, uint32_t, 8, powers_of_two(1, 32), \
+  CHIP_PART(hardware_traverser, box_bits, uint32_t, 12, integers(6, 16), \
+            "bits of the integers in which boxes are tested") \
+  CHIP_PART(hardware_traverser, rays, uint32_t, 128, integers(1, 1024), "rays in flight, of all lanes") \
+  CHIP_PART(hardware_traverser, lanes, uint32_t, 4, integers(1, 31), \
+            "lanes, each with a pipe that begins to test a node of four boxes in a cycle") \
+  CHIP_PART(hardware_traverser, triangle_pipes, uint32_t, 2, integers(1, 31), \
+            "triangles whose test begins in a cycle: pipes that lanes share") \
+  CHIP_PART(hardware_traverser, stack_entries, uint32_t, 12, integers(8, 64), \
+            "entries that a ray's stack keeps; older ones go to the memory, four at a time") \
+  CHIP_PART(hardware_traverser, cache_banks, uint32_t, 8, powers_of_two(1, 16), \
             "banks of each cache: a line each in a cycle, for all who want that line") \
-  CHIP_PART(modelled_traverser, node_cache_bytes, uint32_t, 65536, powers_of_two(512, 1 << 24), \
-            "size, in lines of a node") \
-  CHIP_PART(modelled_traverser, node_cache_ways, uint32_t, 4, powers_of_two(1, 16), "lines of a set") \
-  CHIP_PART(modelled_traverser, node_cache_mshrs, uint32_t, 16, integers(1, 64), \
+  CHIP_PART(hardware_traverser, node_cache_bytes, uint32_t, 65536, powers_of_two(512, 1 << 24), \
+            "size, in lines of a node, 64 bytes") \
+  CHIP_PART(hardware_traverser, node_cache_ways, uint32_t, 4, powers_of_two(2, 16), "lines of a set") \
+  CHIP_PART(hardware_traverser, node_cache_mshrs, uint32_t, 16, integers(1, 64), \
             "lines that may be on their way at once") \
-  CHIP_PART(modelled_traverser, triangle_cache_bytes, uint32_t, 65536, powers_of_two(512, 1 << 24), \
+  CHIP_PART(hardware_traverser, triangle_cache_bytes, uint32_t, 65536, powers_of_two(512, 1 << 24), \
             "size, in lines of 64 bytes") \
-  CHIP_PART(modelled_traverser, triangle_cache_ways, uint32_t, 4, powers_of_two(1, 16), "lines of a set") \
-  CHIP_PART(modelled_traverser, triangle_cache_mshrs, uint32_t, 16, integers(1, 64), \
+  CHIP_PART(hardware_traverser, triangle_cache_ways, uint32_t, 4, powers_of_two(2, 16), "lines of a set") \
+  CHIP_PART(hardware_traverser, triangle_cache_mshrs, uint32_t, 16, integers(1, 64), \
             "lines that may be on their way at once") \
-  CHIP_PART(modelled_traverser, memory_banks, uint32_t, 16, powers_of_two(1, 64), \
-            "banks of the memory, each with a row open") \
-  CHIP_PART(modelled_traverser, memory_row_bytes, uint32_t, 2048, powers_of_two(64, 65536), "size of a row") \
-  CHIP_PART(modelled_traverser, memory_row_miss, uint32_t, 30, integers(0, 1000), \
-            "cycles by which a line of a row that is not open comes later") \
   CHIP_PART(ray_pool, size, uint32_t, 512, integers(1, 1 << 20), "rays that it holds") \
   CHIP_PART(ray_pool, overhead, uint32_t, 2, integers(1, 64), \
             "cycles that its port takes for a ray besides the 3 beats") \
@@ -144,6 +121,10 @@ enum class Shading : uint8_t { Kernel = 0, Traverser = 1 };
   CHIP_PART(memory, latency, uint32_t, 120, integers(1, 10000), "cycles from a read's service to its last beat") \
   CHIP_PART(memory, cycles_per_beat, uint32_t, 2, integers(1, 64), "cycles of its port for a beat of 128 bits") \
   CHIP_PART(memory, queue, uint32_t, 8, integers(1, 64), "requests that wait at its port") \
+  CHIP_PART(memory, banks, uint32_t, 16, powers_of_two(1, 64), "banks, each with a row open") \
+  CHIP_PART(memory, row_bytes, uint32_t, 2048, powers_of_two(64, 65536), "size of a row") \
+  CHIP_PART(memory, row_miss, uint32_t, 0, integers(0, 1000), \
+            "cycles by which a line of a row that is not open comes later; 0: no rows") \
   /* The table ends here: the backslash above lets a row follow it. */
 
 // What each ALU type has, but for mem and ray, which stand once and are timed by events: `alus.int.count` in files,
@@ -158,14 +139,13 @@ enum class Shading : uint8_t { Kernel = 0, Traverser = 1 };
 
 /// The values that a parameter may have.
 struct Range {
-  enum class Form : uint8_t { Integer, ZeroOr, PowerOfTwo, Name, OnOff, Instructions };
+  enum class Form : uint8_t { Integer, PowerOfTwo, Name, OnOff, Instructions };
   Form form;
   int least, greatest;                      ///< of form Instructions: the greatest is the set of all
   std::array<std::string_view, 8> names{};  ///< of 0, 1, ... of form Name
   size_t alu = 0;                           ///< number of the type whose instructions they are, of form Instructions
 
   constexpr bool has(int value) const {
-    if (form == Form::ZeroOr && value == 0) return true;
     return value >= least && value <= greatest && (form != Form::PowerOfTwo || (value & (value - 1)) == 0) &&
            (form != Form::Instructions || (value & ~greatest) == 0);
   }
@@ -180,7 +160,6 @@ struct Tried {
 /// What the rows are written with.
 namespace parameter {
 inline constexpr Range integers(int least, int greatest) { return {Range::Form::Integer, least, greatest}; }
-inline constexpr Range zero_or(int least, int greatest) { return {Range::Form::ZeroOr, least, greatest}; }
 inline constexpr Range powers_of_two(int least, int greatest) { return {Range::Form::PowerOfTwo, least, greatest}; }
 inline constexpr Range on_or_off() { return {Range::Form::OnOff, 0, 1}; }
 /// A set of a type's instructions, a bit for each operation number; which they may be differs from type to type.

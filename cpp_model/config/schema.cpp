@@ -17,7 +17,6 @@ Json schema_of(const Parameter& parameter) {
     case Range::Form::Integer:
       schema.update({{"type", "integer"}, {"minimum", range.least}, {"maximum", range.greatest}});
       break;
-    case Range::Form::ZeroOr:
     case Range::Form::PowerOfTwo:
       schema.update({{"type", "integer"}, {"enum", values_of(range)}});
       break;

@@ -73,7 +73,6 @@ Json parse_value(const ConfigurationField& field, const std::string& text) {
   const auto [rest, error] = std::from_chars(text.data(), end, number);
   switch (field.range.form) {
     case Range::Form::Integer:
-    case Range::Form::ZeroOr:
     case Range::Form::PowerOfTwo:
       if (!text.empty() && error == std::errc() && rest == end) return number;
       break;

@@ -14,9 +14,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::string_view kModelled = "chip.modelled_traverser.";
-constexpr const char* kOtherTraverser = "choose another traverser";
-
 struct Rule {
   std::function<bool(const Configuration&)> unused;
   std::vector<std::string> paths;  ///< one that ends with a point stands for all behind it
@@ -24,46 +21,27 @@ struct Rule {
   const char* remedy;
 };
 
-std::function<bool(const Configuration&)> traverser_is(TraverserName name) {
-  return [name](const Configuration& c) { return c.chip.traverser == name; };
-}
-
-std::vector<std::string> modelled(std::initializer_list<std::string_view> keys) {
-  std::vector<std::string> paths;
-  for (const std::string_view key : keys) paths.push_back(fmt::format("{}{}", kModelled, key));
-  return paths;
-}
+bool is_static(const Configuration& c) { return c.chip.traverser == TraverserName::Static; }
+bool is_hardware(const Configuration& c) { return c.chip.traverser == TraverserName::Hardware; }
 
 const std::vector<Rule>& rules() {
   static const std::vector<Rule> kRules = {
-      {traverser_is(TraverserName::Static),
-       {std::string(kModelled)},
+      {is_static,
+       {"chip.hardware_traverser."},
        "chip.traverser is static, which has no machine inside",
-       "choose another traverser, such as chip.traverser=modelled"},
-      {[](const Configuration& c) { return c.chip.traverser != TraverserName::Static; },
+       "choose chip.traverser=hardware"},
+      {is_hardware,
        {"chip.static_traverser.stall_cycles"},
        "chip.traverser is not static",
        "choose chip.traverser=static"},
-      {[](const Configuration& c) {
-         return c.chip.traverser != TraverserName::Static && c.chip.policy != PolicyName::Fill;
-       },
+      {[](const Configuration& c) { return is_hardware(c) && c.chip.policy != PolicyName::Fill; },
        {"chip.static_traverser.batch"},
        "chip.traverser is not static, and of the policies only fill looks at it",
        "choose chip.traverser=static, or chip.policy=fill"},
-      {traverser_is(TraverserName::Lanes), modelled({"triangle_pipes"}),
-       "chip.traverser is lanes, which has a triangle pipe in each lane", kOtherTraverser},
-      {traverser_is(TraverserName::Lanes), modelled({"cache_latency"}),
-       "chip.traverser is lanes, whose caches take two cycles", kOtherTraverser},
-      {traverser_is(TraverserName::Hardware),
-       modelled({"setup_latency", "box_latency", "triangle_latency", "finish_latency", "cache_latency"}),
-       "chip.traverser is hardware, whose pipes and caches are as long as they are built", kOtherTraverser},
-      {traverser_is(TraverserName::Hardware), modelled({"memory_banks", "memory_row_bytes", "memory_row_miss"}),
-       "chip.traverser is hardware, around which the memory has no rows and banks", kOtherTraverser},
-      {[](const Configuration& c) {
-         return c.chip.traverser != TraverserName::Static && c.chip.modelled_traverser_nodes == NodeFormat::Exact;
-       },
-       modelled({"box_bits"}), "chip.modelled_traverser.nodes is exact, whose boxes are floats",
-       "choose chip.modelled_traverser.nodes=compressed"},
+      {[](const Configuration& c) { return c.chip.memory_row_miss == 0; },
+       {"chip.memory.banks", "chip.memory.row_bytes"},
+       "chip.memory.row_miss is 0, and a line takes the same time whatever row is open",
+       "choose chip.memory.row_miss"},
       {[](const Configuration& c) { return c.chip.policy == PolicyName::Fill; },
        {"chip.thresholds."},
        "chip.policy is fill, which has no thresholds",

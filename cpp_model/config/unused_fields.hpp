@@ -10,7 +10,7 @@
 namespace raypool {
 
 struct UnusedField {
-  std::string path;    ///< "chip.modelled_traverser.rays"
+  std::string path;    ///< "chip.hardware_traverser.rays"
   std::string reason;  ///< "chip.traverser is static, which has no machine inside"
   std::string remedy;  ///< what to do to have it looked at
 };

@@ -30,44 +30,41 @@ std::string refused(const std::vector<std::string>& set) {
 }
 
 TEST(UnusedFields, AreThoseOfATraverserThatIsNotThere) {
-  std::vector<std::string> modelled;
+  std::vector<std::string> hardware;
   for (const ConfigurationField& field : fields())
-    if (field.path.rfind("chip.modelled_traverser.", 0) == 0) modelled.push_back(field.path);
-  EXPECT_EQ(unused({}), modelled);
-  EXPECT_EQ(unused({"chip.traverser=modelled"}),
-            (std::vector<std::string>{"chip.static_traverser.batch", "chip.static_traverser.stall_cycles"}));
+    if (field.path.rfind("chip.hardware_traverser.", 0) == 0) hardware.push_back(field.path);
+  hardware.insert(hardware.end(), {"chip.memory.banks", "chip.memory.row_bytes"});
+  EXPECT_EQ(unused({"chip.traverser=static"}), hardware);
+  EXPECT_EQ(unused({}), (std::vector<std::string>{"chip.static_traverser.batch", "chip.static_traverser.stall_cycles",
+                                                  "chip.memory.banks", "chip.memory.row_bytes"}));
 }
 
 TEST(UnusedFields, AreWhatOtherFieldsMakeMeaningless) {
-  EXPECT_FALSE(is_unused("chip.static_traverser.batch", {"chip.traverser=lanes", "chip.policy=fill"}))
-      << "the policy looks at it";
+  EXPECT_FALSE(is_unused("chip.static_traverser.batch", {"chip.policy=fill"})) << "the policy looks at it";
   EXPECT_TRUE(is_unused("chip.thresholds.rays", {"chip.policy=fill"}));
-  EXPECT_TRUE(is_unused("chip.modelled_traverser.triangle_pipes", {"chip.traverser=lanes"}));
-  EXPECT_TRUE(is_unused("chip.modelled_traverser.memory_row_miss", {"chip.traverser=hardware"}));
-  EXPECT_FALSE(is_unused("chip.modelled_traverser.triangle_pipes", {"chip.traverser=hardware"}));
-  EXPECT_TRUE(is_unused("chip.modelled_traverser.box_bits",
-                        {"chip.traverser=modelled", "chip.modelled_traverser.nodes=exact"}));
+  EXPECT_FALSE(is_unused("chip.memory.banks", {"chip.memory.row_miss=30"}));
+  EXPECT_FALSE(is_unused("chip.hardware_traverser.triangle_pipes", {"chip.traverser=hardware"}));
   EXPECT_TRUE(is_unused("wide_ray_memory", {"lanes=4", "wide_ray_memory=true"}));
   EXPECT_FALSE(is_unused("wide_ray_memory", {"wide_ray_memory=true"}));
 }
 
 TEST(UnusedFields, AreRefusedWhereTheyAreSet) {
-  EXPECT_EQ(
-      refused({"chip.modelled_traverser.box_pipes=1"}),
-      "chip.modelled_traverser.box_pipes is not looked at: chip.traverser is static, which has no machine inside; "
-      "choose another traverser, such as chip.traverser=modelled, or leave it out");
-  EXPECT_EQ(refused({"chip.traverser=modelled", "chip.modelled_traverser.box_pipes=1"}), "");
-  EXPECT_NE(refused({"chip.modelled_traverser.rays=8 chip.modelled_traverser.box_pipes=4"}).find(" are not looked at"),
+  EXPECT_EQ(refused({"chip.traverser=static", "chip.hardware_traverser.lanes=1"}),
+            "chip.hardware_traverser.lanes is not looked at: chip.traverser is static, which has no machine inside; "
+            "choose chip.traverser=hardware, or leave it out");
+  EXPECT_EQ(refused({"chip.hardware_traverser.lanes=2"}), "");
+  EXPECT_NE(refused({"chip.traverser=static chip.hardware_traverser.rays=8 chip.hardware_traverser.lanes=4"})
+                .find(" are not looked at"),
             std::string::npos);
-  EXPECT_NE(refused({"chip.modelled_traverser.box_pipes=4"}), "") << "also to what it is anyway";
+  EXPECT_NE(refused({"chip.traverser=static", "chip.hardware_traverser.lanes=4"}), "") << "also to what it is anyway";
 }
 
 TEST(UnusedFields, OfAFileAreToldWhereTheyAreNotTheDefaults) {
   EXPECT_EQ(unused_in_file(load_configuration("8w8c")), "");
-  const std::string said = unused_in_file(load_configuration("best_8w8c"));
+  const std::string said = unused_in_file(load_configuration("best_8w8c", {"chip.traverser=static"}));
   EXPECT_EQ(said.find("configuration best"), 0u) << said;
-  EXPECT_NE(said.find("chip.modelled_traverser.tile_order and 8 more are not looked at"), std::string::npos) << said;
-  EXPECT_EQ(unused_in_file(load_configuration("best_8w8c", {"chip.traverser=modelled"})), "");
+  EXPECT_NE(said.find("chip.hardware_traverser.rays and 7 more are not looked at"), std::string::npos) << said;
+  EXPECT_EQ(unused_in_file(load_configuration("best_8w8c")), "");
 }
 
 }  // namespace

@@ -8,6 +8,8 @@ void ChipDevice::open_waveform(const std::string& path) {
   throw std::runtime_error(path + ": this engine has no waveforms");
 }
 
+std::optional<TraverserWork> ChipDevice::traverser_work() const { return {}; }
+
 void ChipDevice::settle(const ChipInputs& /*inputs*/) {}
 
 void ChipDevice::check_next(const FrameSetup& before, const FrameSetup& setup, const ChipOutputs& outputs) {

@@ -9,7 +9,9 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "config/configuration.hpp"
 #include "enum_array.hpp"
@@ -19,6 +21,7 @@
 #include "machine/memory_port.hpp"
 #include "machine/packages.hpp"
 #include "machine/ray_kernel.hpp"
+#include "machine/traverser_work.hpp"
 #include "machine/tree_fault.hpp"
 #include "machine/tree_setup.hpp"
 
@@ -38,6 +41,9 @@ struct FrameSetup {
   uint32_t depth = 1;                                     ///< of normal rays: deeper ones are dropped
   bool reflections = false;                               ///< normal intersections are for the kernel that reflects
   TreeSetup tree;                                         ///< of a traverser inside
+  /// Of a model alone: numbers of the tiles that are cast, counted along their walk, ascending; the others take no
+  /// time. Empty: all. Throws std::logic_error in Verilog.
+  std::vector<uint32_t> tiles;
 };
 
 /// How a frame begins: after a reset of the chip, or as the next one, once nothing of the one before is left in it.
@@ -157,6 +163,8 @@ class ChipDevice {
 
   virtual ChipCounts counts() = 0;
   virtual uint64_t counter(int number) = 0;  ///< of the units, summed; see namespace counter
+  /// What a traverser inside has done since the last frame began; nothing where only ports can be seen.
+  virtual std::optional<TraverserWork> traverser_work() const;
   /// Writes a waveform from now on; throws std::runtime_error where there is none.
   virtual void open_waveform(const std::string& path);
   /// A signal of the instance `scope` (such as "gen_inside.traverser"); the list chip_probes.vlt has those there are.

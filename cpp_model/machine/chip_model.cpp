@@ -2,6 +2,7 @@
 
 #include <array>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -22,10 +23,11 @@ constexpr std::array<ImportKind, 3> kKinds = {ImportKind::Normal, ImportKind::Sh
 /// Controller and tiles: what is launched, and when.
 class Launches {
  public:
-  Launches(const Configuration& configuration, uint32_t units)
+  Launches(const Configuration& configuration, uint32_t units, const PolicyMaker& own_policy)
       : configuration_(configuration),
         units_(units),
-        walk_(tile_order(configuration.chip), configuration.contents(), configuration.chip.held_limit),
+        own_policy_(own_policy),
+        walk_(configuration.chip.tile_order, configuration.contents(), configuration.chip.held_limit),
         controller_(configuration.chip, configuration.contents(), units, false,
                     walk_.tile_width() * walk_.tile_height(), nullptr),
         tiles_(walk_, 1, 1) {}
@@ -34,7 +36,7 @@ class Launches {
   void begin(uint64_t cycle, const FrameSetup& setup) {
     setup_ = setup;
     controller_.begin(setup.reflections, policy(setup.reflections));
-    tiles_ = TimedTiles(walk_, setup.width, setup.height, cycle);
+    tiles_ = TimedTiles(walk_, setup.width, setup.height, cycle, setup.tiles);
     begun_at_ = decide_from_ = cycle;
     ended_at_ = look_at_ = kNever;
     changed_ = true;
@@ -104,9 +106,11 @@ class Launches {
  private:
   std::unique_ptr<KernelPolicy> policy(bool reflections) const {
     const ChipConfiguration& chip = configuration_.chip;
-    return make_policy(chip.policy, {configuration_.contents(), units_, chip.ray_pool_size, chip.intersection_pool_size,
-                                     chip.thresholds_rays, chip.thresholds_intersections, chip.static_traverser_batch,
-                                     reflections ? 2u : 1u});
+    const PolicySetup setup{configuration_.contents(),   units_,
+                            chip.ray_pool_size,          chip.intersection_pool_size,
+                            chip.thresholds_rays,        chip.thresholds_intersections,
+                            chip.static_traverser_batch, reflections ? 2u : 1u};
+    return own_policy_ ? own_policy_(setup) : make_policy(chip.policy, setup);
   }
   RayKernel kernel() const {
     switch (launch_.choice.kind) {
@@ -121,6 +125,7 @@ class Launches {
 
   Configuration configuration_;
   uint32_t units_;
+  PolicyMaker own_policy_;
   FrameSetup setup_;
   TileWalk walk_;
   Controller controller_;
@@ -136,18 +141,18 @@ Traverser::Sizes traverser_sizes(const Configuration& configuration) {
   const ChipConfiguration& chip = configuration.chip;
   constexpr uint32_t kLine = MemoryPort::kLineBytes;
   Traverser::Sizes sizes;
-  sizes.lanes = chip.modelled_traverser_box_pipes;
-  sizes.slots = chip.modelled_traverser_rays / sizes.lanes;
-  sizes.stack_entries = chip.modelled_traverser_stack_entries;
-  sizes.box_bits = static_cast<int>(hardware_box_bits(chip));
-  sizes.triangle_pipes = chip.modelled_traverser_triangle_pipes;
-  sizes.nodes.lines = chip.modelled_traverser_node_cache_bytes / kLine;
-  sizes.nodes.ways = chip.modelled_traverser_node_cache_ways;
-  sizes.nodes.mshrs = chip.modelled_traverser_node_cache_mshrs;
-  sizes.leaves.lines = chip.modelled_traverser_triangle_cache_bytes / kLine;
-  sizes.leaves.ways = chip.modelled_traverser_triangle_cache_ways;
-  sizes.leaves.mshrs = chip.modelled_traverser_triangle_cache_mshrs;
-  sizes.nodes.banks = sizes.leaves.banks = chip.modelled_traverser_cache_banks;
+  sizes.lanes = chip.hardware_traverser_lanes;
+  sizes.slots = chip.hardware_traverser_rays / sizes.lanes;
+  sizes.stack_entries = chip.hardware_traverser_stack_entries;
+  sizes.box_bits = static_cast<int>(chip.hardware_traverser_box_bits);
+  sizes.triangle_pipes = chip.hardware_traverser_triangle_pipes;
+  sizes.nodes.lines = chip.hardware_traverser_node_cache_bytes / kLine;
+  sizes.nodes.ways = chip.hardware_traverser_node_cache_ways;
+  sizes.nodes.mshrs = chip.hardware_traverser_node_cache_mshrs;
+  sizes.leaves.lines = chip.hardware_traverser_triangle_cache_bytes / kLine;
+  sizes.leaves.ways = chip.hardware_traverser_triangle_cache_ways;
+  sizes.leaves.mshrs = chip.hardware_traverser_triangle_cache_mshrs;
+  sizes.nodes.banks = sizes.leaves.banks = chip.hardware_traverser_cache_banks;
   sizes.pool = chip.ray_pool_size;
   sizes.record_words = configuration.intersection_words;
   sizes.contributes = chip.shading == Shading::Traverser;
@@ -165,8 +170,8 @@ TraverserSetup traverser_setup(const FrameSetup& setup) {
 
 class ChipModel : public ChipDevice {
  public:
-  ChipModel(const Configuration& configuration, std::unique_ptr<ComputeUnit> device)
-      : configuration_(configuration), device_(std::move(device)) {
+  ChipModel(const Configuration& configuration, std::unique_ptr<ComputeUnit> device, PolicyMaker own_policy)
+      : configuration_(configuration), own_policy_(std::move(own_policy)), device_(std::move(device)) {
     start({});
   }
 
@@ -181,6 +186,7 @@ class ChipModel : public ChipDevice {
     blocks_->traverser->look_inside();
     return &*blocks_->traverser;
   }
+  Traverser* traverser() { return blocks_->traverser ? &*blocks_->traverser : nullptr; }
 
   ChipCounts counts() override {
     const Blocks& b = *blocks_;
@@ -188,11 +194,16 @@ class ChipModel : public ChipDevice {
             b.memory.reads(), b.memory.writes(),    b.memory.busy_cycles()};
   }
 
+  std::optional<TraverserWork> traverser_work() const override {
+    if (!blocks_->traverser) return {};
+    return blocks_->traverser_used ? blocks_->traverser->work() : blocks_->traverser_work;
+  }
+
   void start(const FrameSetup& setup) override {
     device_->reset(setup.program_length, setup.memory_limit);
     for (uint32_t index = 0; index < configuration_.arguments; ++index)
       device_->set_argument(index, setup.arguments[index]);
-    blocks_ = std::make_unique<Blocks>(configuration_, device_->units());
+    blocks_ = std::make_unique<Blocks>(configuration_, device_->units(), own_policy_);
     setup_ = setup;
     cycle_ = 0;
     ready_ = starts_ = true;
@@ -238,12 +249,12 @@ class ChipModel : public ChipDevice {
   }
 
   struct Blocks {
-    Blocks(const Configuration& configuration, uint32_t units)
+    Blocks(const Configuration& configuration, uint32_t units, const PolicyMaker& own_policy)
         : rays(configuration.chip, 0),
           reader(configuration.chip.ray_pool_size),
           intersections(configuration.chip, RecordLayout::in_order(configuration.intersection_words)),
           memory(configuration.chip, MemoryPort::Limits::of(configuration.chip)),
-          launches(configuration, units) {
+          launches(configuration, units, own_policy) {
       if (has_traverser(configuration.chip)) traverser.emplace(traverser_sizes(configuration));
     }
 
@@ -254,7 +265,8 @@ class ChipModel : public ChipDevice {
     FramePort frame;
     Launches launches;
     std::optional<Traverser> traverser;
-    bool traverser_used = false;  // since its reset
+    bool traverser_used = false;   // since its reset
+    TraverserWork traverser_work;  // up to it
   };
 
   /// Nothing of a frame is left in the chip, as it stands in this cycle.
@@ -350,7 +362,9 @@ class ChipModel : public ChipDevice {
     if (!blocks_->traverser) return;
     if (ready_) {
       if (!blocks_->traverser_used) return;
+      blocks_->traverser_work = blocks_->traverser->work();
       blocks_->traverser.emplace(traverser_sizes(configuration_));
+      blocks_->traverser->set_up(traverser_setup(setup_));
       if (looks_inside_) blocks_->traverser->look_inside();
       blocks_->traverser_used = false;
       return;
@@ -501,6 +515,7 @@ class ChipModel : public ChipDevice {
   }
 
   Configuration configuration_;
+  PolicyMaker own_policy_;
   std::unique_ptr<ComputeUnit> device_;
   std::unique_ptr<Blocks> blocks_;  // since the reset
   FrameSetup setup_;
@@ -522,8 +537,16 @@ const Traverser* look_inside_traverser(ChipDevice& chip) {
   return model == nullptr ? nullptr : model->look_inside();
 }
 
-std::unique_ptr<ChipDevice> make_chip_model(const Configuration& configuration, std::unique_ptr<ComputeUnit> device) {
-  return std::make_unique<ChipModel>(configuration, std::move(device));
+void remember_lines(ChipDevice& chip, const TreeLines& lines, const std::function<TreeLine(uint32_t line)>& read) {
+  auto* model = dynamic_cast<ChipModel*>(&chip);
+  Traverser* const traverser = model == nullptr ? nullptr : model->traverser();
+  if (traverser == nullptr) throw std::logic_error("only the model of a chip with a traverser inside remembers lines");
+  traverser->remember(lines, read);
+}
+
+std::unique_ptr<ChipDevice> make_chip_model(const Configuration& configuration, std::unique_ptr<ComputeUnit> device,
+                                            PolicyMaker own_policy) {
+  return std::make_unique<ChipModel>(configuration, std::move(device), std::move(own_policy));
 }
 
 }  // namespace raypool

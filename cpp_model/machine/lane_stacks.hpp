@@ -6,6 +6,7 @@
 // it.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -62,6 +63,7 @@ class LaneStacks {
     Block entries;  ///< of one that writes
   };
   struct Work {
+    uint32_t deepest = 0;                                        ///< entries of a slot, those in the memory too
     uint64_t spilled = 0, fetched = 0;                           ///< blocks
     uint64_t dropped = 0;                                        ///< entries that lay behind the limit
     std::array<uint64_t, 2> popped{};                            ///< who wanted an entry, after nodes and after leaves
@@ -164,6 +166,7 @@ class LaneStacks {
       entry(node.slot, depth(node.slot)) = node.others[i];
       ++stacks_[node.slot].here;
     }
+    work_.deepest = std::max(work_.deepest, depth(node.slot));
     now.node_goes_on = stacks_[node.slot].here + kLeast <= entries_;
     if (!now.node_goes_on) spills_.push({node.slot, node.nearest});
   }

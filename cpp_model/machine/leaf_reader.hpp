@@ -14,12 +14,10 @@
 #include "machine/line_want.hpp"
 #include "machine/ram_queue.hpp"
 #include "machine/round_robin.hpp"
+#include "machine/tree_lines.hpp"
 #include "machine/triangle_ray.hpp"
 
 namespace raypool {
-
-/// 64 bytes of the traverser's memory: little-endian words.
-using TreeLine = std::array<uint32_t, 16>;
 
 class LeafReader {
  public:

@@ -3,9 +3,11 @@
 // Use, once a cycle: read outputs(), which depend on no input of the cycle, then call clock(inputs).
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -18,7 +20,9 @@
 #include "machine/ray_setup.hpp"
 #include "machine/round_robin.hpp"
 #include "machine/traverser_lane.hpp"
+#include "machine/traverser_work.hpp"
 #include "machine/tree_banks.hpp"
+#include "machine/tree_lines.hpp"
 #include "machine/tree_port.hpp"
 #include "machine/triangle_group.hpp"
 
@@ -118,6 +122,7 @@ class Traverser {
   /// The end of a cycle.
   void clock(const Inputs& inputs) {
     exit_inputs_ = {};
+    work_.ray_cycles += in_flight_;
     const bool request_taken = out_.request_valid && inputs.request_ready;
     const bool line_taken = fill();
     look_up_nodes();
@@ -181,9 +186,36 @@ class Traverser {
 
   // ---- For measurements
 
+  /// Lines that the caches hold from now on as if they had just been looked up, the last one last; of triangles,
+  /// counted from the first one. Takes no time. `read`: what a line of the traverser's memory holds.
+  void remember(const TreeLines& lines, const std::function<TreeLine(uint32_t line)>& read) {
+    for (const uint32_t line : lines.nodes) nodes_.remember(line, 0, read);
+    for (const uint32_t line : lines.triangles) leaves_.remember(line, setup_.places.triangles, read);
+  }
   const TreeBanks& node_cache() const { return nodes_.banks; }
   const TreeBanks& triangle_cache() const { return leaves_.banks; }
   const TraverserLane& lane(uint32_t number) const { return *lanes_[number]; }
+  /// A ray is in flight while it has its slot. A leaf is visited when the last of its triangles has been tested.
+  TraverserWork work() const {
+    TraverserWork work = work_;
+    for (const auto& lane : lanes_) {
+      const LaneStacks::Work& stacks = lane->stack_work();
+      work.boxes.tests += lane->node_tests();  // each lane has a pipe of its own, so none waits
+      work.leaves += stacks.popped[1];
+      work.deepest_stack = std::max(work.deepest_stack, stacks.deepest);
+      work.stack_spills += stacks.spilled;
+      work.stack_fills += stacks.fetched;
+    }
+    for (const TriangleGroup& group : groups_) {
+      work.triangles.tests += group.work().tests;
+      work.triangles.waiting += group.work().waiting;
+    }
+    work.node_cache = nodes_.banks.cache_work();
+    work.triangle_cache = leaves_.banks.cache_work();
+    work.memory_lines = port_.lines_read();
+    work.memory_quadwords = port_.blocks_written() * (TreePort::kBlockWords / kBeatWords);
+    return work;
+  }
 
  private:
   /// A cache, its lines, and what it is asked and told in a cycle.
@@ -195,6 +227,11 @@ class Traverser {
     const LeafReader::Given* give(uint32_t lane) {
       given[lane] = {banks.given(lane).slot, &lines[banks.given(lane).row]};
       return &given[lane];
+    }
+    /// `first`: where in the memory its lines begin.
+    void remember(uint32_t line, uint32_t first, const std::function<TreeLine(uint32_t line)>& read) {
+      const uint32_t row = banks.remember(line);
+      if (row != TreeBanks::kNone) lines[row] = read(first + line);
     }
     void clock(const std::optional<TreePort::Line>& line) {
       if (fills()) lines[banks.fill_row(fill)] = line->data;
@@ -336,7 +373,10 @@ class Traverser {
   }
 
   void end_rays() {
-    if (const std::optional<RayExit::Slot> freed = exit_.freed_slot()) inputs_[freed->lane].freed = freed->slot;
+    if (const std::optional<RayExit::Slot> freed = exit_.freed_slot()) {
+      inputs_[freed->lane].freed = freed->slot;
+      --in_flight_;
+    }
     const std::optional<uint32_t> lane = exit_.choose(out_.fault.valid ? 0 : with_.done);
     if (!lane) return;
     const uint32_t slot = lanes_[*lane]->done_slot();
@@ -372,6 +412,8 @@ class Traverser {
     const uint32_t lane = enter_turn_.choose(with_.slot);
     enter_turn_.advance(lane);
     inputs_[lane].slot_taken = true;
+    ++work_.rays;
+    work_.most_rays = std::max(work_.most_rays, ++in_flight_);
     coming_.push_back({inputs.ray_place,
                        ray_[word::kFlags] & kDepthMask,
                        (ray_[word::kFlags] & kShadowFlag) != 0,
@@ -442,6 +484,8 @@ class Traverser {
   RayExit::Set set_;
   TraverserLane::Entered entered_{0, {false, false, BoxRay({0, 0, 0}, {0, 0, 0}, 0, 12), {}, {}}};
   Outputs out_;
+  uint32_t in_flight_ = 0;  // rays
+  TraverserWork work_;      // what no block counts
   bool looks_inside_ = false;
   Handed handed_;
 };

@@ -125,6 +125,7 @@ class TraverserLane {
 
     fault_.valid = false;
     if (is_given_) {
+      ++node_tests_;
       look_at_node();
       test_boxes();
     } else {
@@ -158,6 +159,7 @@ class TraverserLane {
 
   // ---- For measurements
 
+  uint64_t node_tests() const { return node_tests_; }
   const LaneStacks::Work& stack_work() const { return stacks_.work(); }
   const LeafReader& leaves() const { return leaves_; }
 
@@ -281,6 +283,7 @@ class TraverserLane {
   RamQueue<uint32_t> ends_;       // slots whose ray is done
   std::optional<uint32_t> done_;  // that is offered
   LaneHits hits_;
+  uint64_t node_tests_ = 0;
 };
 
 }  // namespace raypool

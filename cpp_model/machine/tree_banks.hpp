@@ -122,8 +122,11 @@ class TreeBanks {
 
   // ---- For measurements
 
-  /// The line is there, as if it had just been looked up. Takes no time; nothing may be under way.
-  void remember(uint32_t line) { banks_[bank_of(line)].remember(line >> bank_bits_); }
+  /// As TreeCache::remember().
+  uint32_t remember(uint32_t line) {
+    const uint32_t bank = bank_of(line), row = banks_[bank].remember(line >> bank_bits_);
+    return row == TreeCache::kNone ? kNone : bank * lines_a_bank_ + row;
+  }
   /// Row that the line of a request goes to.
   uint32_t fill_row(uint32_t id) const {
     const uint32_t bank = id >> id_bits_;
@@ -131,6 +134,11 @@ class TreeBanks {
   }
   const std::vector<TreeCache>& banks() const { return banks_; }
   const Work& work() const { return work_; }
+  CacheWork cache_work() const {
+    CacheWork work;
+    for (const TreeCache& bank : banks_) work += bank.work();
+    return work;
+  }
 
  private:
   uint32_t bank_of(uint32_t line) const { return line & ((1u << bank_bits_) - 1); }

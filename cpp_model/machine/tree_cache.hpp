@@ -10,6 +10,7 @@
 
 #include "bits.hpp"
 #include "machine/round_robin.hpp"
+#include "machine/traverser_work.hpp"
 
 namespace raypool {
 
@@ -43,9 +44,7 @@ class TreeCache {
     Slots slots{};
     uint32_t row = 0;  ///< of the data
   };
-  struct Work {
-    uint64_t hits = 0, misses = 0, joined = 0;  ///< of lanes; a miss is a line that is read
-  };
+  using Work = CacheWork;  ///< of lanes; a miss is a line that is read
 
   explicit TreeCache(const Sizes& sizes)
       : sizes_(sizes),
@@ -141,15 +140,30 @@ class TreeCache {
 
   // ---- For measurements
 
-  /// The line is there, as if it had just been looked up. Takes no time; nothing may be under way.
-  void remember(uint32_t line) {
-    const uint32_t in = set(line);
-    uint32_t way = find(line);
-    if (way == kNone) {
-      way = victim(in, 0);
-      tags_[row(in, way)] = line;
+  static constexpr uint32_t kNone = UINT32_MAX;
+  /// The line is there from now on, as if it had just been looked up. Takes no time. Returns the row that its data must
+  /// be put into before the next cycle; kNone: it was there, is on its way, or every way of its set is in use.
+  uint32_t remember(uint32_t line) {
+    const uint32_t in = set(line), found = find(line);
+    if (found != kNone) {
+      touch(in, found);
+      return kNone;
     }
+    uint32_t used = 0;  // ways whose line somebody waits for, or is about to get
+    const auto uses = [&](uint32_t of) { used |= of / sizes_.ways == in ? 1u << of % sizes_.ways : 0; };
+    for (uint32_t bits = busy_; bits != 0; bits &= bits - 1) {
+      const uint32_t id = lowest(bits);
+      if (mshrs_[id].line == line) return kNone;
+      uses(fill_row(id));
+    }
+    if (hit()) uses(row(set(lookup_.line), found_));
+    if (read_.lanes != 0) uses(read_.row);
+    if (given_.lanes != 0) uses(given_.row);
+    if (used == all_ways_ || (looks_ && lookup_.line == line)) return kNone;
+    const uint32_t way = victim(in, used);
+    tags_[row(in, way)] = line;
     touch(in, way);
+    return row(in, way);
   }
   /// Row that the line of register `id` goes to.
   uint32_t fill_row(uint32_t id) const { return row(set(mshrs_[id].line), mshrs_[id].way); }
@@ -158,7 +172,6 @@ class TreeCache {
   const Work& work() const { return work_; }
 
  private:
-  static constexpr uint32_t kNone = UINT32_MAX;
   enum class Serving : uint8_t { Nobody, Chosen, Offered };
 
   struct Waiter {

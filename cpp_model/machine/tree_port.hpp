@@ -64,6 +64,8 @@ class TreePort {
   const MemoryPort::TreeRequest& request() const { return *request_; }  ///< only while request_valid()
   const TreeFault& fault() const { return fault_; }                     ///< valid for a cycle
   const std::optional<Line>& line() const { return line_; }
+  uint64_t lines_read() const { return lines_read_; }
+  uint64_t blocks_written() const { return blocks_written_; }
 
   /// Of those who ask, lanes with a bit each: whose request is taken over, if there is room for one. `stop`: of none,
   /// from the cycle after a fault on.
@@ -145,6 +147,7 @@ class TreePort {
     } else {
       request.address = ((asked.source == Source::Nodes ? 0 : places_.triangles) + asked.line) * kLine;
     }
+    ++(request.write ? blocks_written_ : lines_read_);
     if (!request.write) on_way_.push(on_way);
     request_ = request;
   }
@@ -159,6 +162,7 @@ class TreePort {
   TreeLine coming_{};
   uint32_t beat_ = 0;  // that comes next
   std::optional<Line> line_;
+  uint64_t lines_read_ = 0, blocks_written_ = 0;
 };
 
 }  // namespace raypool

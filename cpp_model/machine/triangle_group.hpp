@@ -5,10 +5,12 @@
 #include <memory>
 #include <vector>
 
+#include "bits.hpp"
 #include "machine/lane_hits.hpp"
 #include "machine/leaf_reader.hpp"
 #include "machine/round_robin.hpp"
 #include "machine/traverser_lane.hpp"
+#include "machine/traverser_work.hpp"
 #include "machine/triangle_pipe.hpp"
 
 namespace raypool {
@@ -31,6 +33,8 @@ class TriangleGroup {
     if (members != 0) {
       taken_ = turn_.choose(members);
       turn_.advance(taken_);
+      ++work_.tests;
+      work_.waiting += popcount(members) - 1;
     }
     if (pipe_.result() == nullptr) return;
     const TriangleResult& from = *pipe_.result();
@@ -41,6 +45,7 @@ class TriangleGroup {
   uint32_t taken() const { return taken_; }
   uint32_t result_lane() const { return result_lane_; }
   const LaneHits::Result& result() const { return result_; }
+  const PipeWork& work() const { return work_; }
 
   /// The end of a cycle, before that of its lanes.
   void clock() {
@@ -74,6 +79,7 @@ class TriangleGroup {
   RoundRobin turn_;
   uint32_t taken_ = kNone, result_lane_ = kNone;
   LaneHits::Result result_;
+  PipeWork work_;
 };
 
 }  // namespace raypool

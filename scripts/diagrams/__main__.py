@@ -2,19 +2,19 @@
 
     PYTHONPATH=scripts python3 -m diagrams RAYPOOL FOLDER [--check]
 
-FOLDER keeps what Icarus makes. A picture whose modules are not in rtl/ or sim/chip/ is refused, and one of the chip in
-Verilog that lacks a block of it, or shows another. --check writes nothing and ends with 1 if a picture would change.
+FOLDER keeps what Icarus makes. A picture whose modules are not in rtl/ is refused, and one of the chip that lacks a
+block of it, or shows another. --check writes nothing and ends with 1 if a picture would change.
 """
 import pathlib
 import re
 import shutil
 import sys
 
-from . import chip, chip_verilog, compute_unit, stages
+from . import chip_verilog, compute_unit, stages
 from .svg import DiagramError
 
 ROOT = stages.ROOT
-MODULES = {path.stem for path in (ROOT / "rtl").glob("*.v")} | {path.stem for path in (ROOT / "sim/chip").glob("*.hpp")}
+MODULES = {path.stem for path in (ROOT / "rtl").glob("*.v")}
 INSTANCE = re.compile(r"^ *(\w+) *(?:#\(|\w+ *\()", re.M)
 
 
@@ -39,7 +39,6 @@ def pictures(raypool, folder):
             raise DiagramError(f"{tool} was not found: install it (Debian package iverilog)")
     return {
         "compute-unit": compute_unit.draw(),
-        "chip": chip.draw(),
         "chip-verilog": check_chip(chip_verilog.draw()),
         "stages": stages.draw(raypool, folder),
     }
@@ -53,7 +52,7 @@ def main(arguments):
     for name, picture in pictures(arguments[0], pathlib.Path(arguments[1]).resolve()).items():
         unknown = sorted(picture.modules - MODULES)
         if unknown:
-            raise DiagramError(f"docs/images/{name}.svg would show {', '.join(unknown)}: not in rtl/ or sim/chip/")
+            raise DiagramError(f"docs/images/{name}.svg would show {', '.join(unknown)}: not in rtl/")
         file, text = ROOT / f"docs/images/{name}.svg", picture.svg()
         if file.exists() and file.read_text() == text:
             continue

@@ -1,5 +1,4 @@
 """The chip in Verilog: what rtl/chip.v joins, with what stands in its multiprocessor and its traverser."""
-from .chip import multiprocessor
 from .svg import Picture
 
 # Modules whose insides are shown, and what of these is left out: arbiters of a few gates.
@@ -14,6 +13,24 @@ def around(picture):
     picture.box((740, 303, 130, 80), "ray_pool", ["rays that are", "still to be traced"], "box memory")
     picture.box((740, 180, 130, 63), "frame_port", ["contributions", "to pixels"], "box memory")
     picture.box((346, 496, 218, 46), "memory_port", ["one after the other"], "box memory")
+
+
+def multiprocessor(picture):
+    picture.group((200, 156, 500, 298), "multiprocessor")
+    picture.box((350, 190, 210, 46), "block_scheduler", ["idle units first, in turn"])
+    for copy in (2, 1):
+        picture.rectangle(366 + 4 * copy, 280 + 4 * copy, 170, 62, "box")
+    picture.box((366, 280, 170, 62), "compute_unit", ["WARPS x LANES", "threads each"], times=" x UNITS")
+    picture.box((212, 288, 118, 46), "import_arbiter", ["by request"])
+    picture.box((578, 260, 106, 46), "port_arbiter", ["frame"])
+    picture.box((578, 320, 106, 46), "port_arbiter", ["export"])
+    picture.box((366, 390, 178, 46), "unit_memory_arbiter", ["port_arbiter"])
+    picture.wire((455, 236), (455, 280))
+    picture.wire((330, 311), (366, 311), both=True)
+    picture.line((544, 311), (560, 311))
+    picture.wire((560, 311), (560, 283), (578, 283))
+    picture.wire((560, 311), (560, 343), (578, 343))
+    picture.wire((455, 350), (455, 390), both=True)
 
 
 def traverser(picture):

@@ -2,9 +2,9 @@
 
     PYTHONPATH=scripts python3 -m follow [--pixel X,Y] [--scene SCENE] [--config CONFIG] [--out FOLDER] ...
 
-Draws the frame (raypool sim --chip rtl --waves), reads the waveform, prints the journey, draws pictures of it into
-FOLDER, and compares all that can be reckoned otherwise. Exit code 1, and a sentence, if the frame cannot be followed,
-3 if something differs. RAYPOOL names the program, BUILD the folder it is in if not.
+Draws the frame (raypool sim --engine rtl --boundary chip --waves), reads the waveform, prints the journey, draws
+pictures of it into FOLDER, and compares all that can be reckoned otherwise. Exit code 1, and a sentence, if the frame
+cannot be followed, 3 if something differs. RAYPOOL names the program, BUILD the folder it is in if not.
 """
 import argparse
 import hashlib
@@ -29,11 +29,11 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 BUILD = pathlib.Path(os.environ.get("BUILD", "build"))
 SCENE, VIEW = "examples/tour.obj", "examples/tour.json"
 # A traverser inside the chip, which is as small as can be: it is Verilated with it.
-TRAVERSER = ("chip.traverser=hardware chip.modelled_traverser.box_pipes=2 chip.modelled_traverser.triangle_pipes=1 "
-             "chip.modelled_traverser.rays=16 chip.modelled_traverser.cache_banks=2 "
-             "chip.modelled_traverser.node_cache_bytes=2048 chip.modelled_traverser.triangle_cache_bytes=2048 "
-             "chip.modelled_traverser.node_cache_mshrs=8 "
-             "chip.modelled_traverser.triangle_cache_mshrs=8")  # fmt: skip
+TRAVERSER = ("chip.traverser=hardware chip.hardware_traverser.lanes=2 chip.hardware_traverser.triangle_pipes=1 "
+             "chip.hardware_traverser.rays=16 chip.hardware_traverser.cache_banks=2 "
+             "chip.hardware_traverser.node_cache_bytes=2048 chip.hardware_traverser.triangle_cache_bytes=2048 "
+             "chip.hardware_traverser.node_cache_mshrs=8 "
+             "chip.hardware_traverser.triangle_cache_mshrs=8")  # fmt: skip
 FOLLOWED = "followed.vcd"  # of the waveform what is read
 LOOK = ("view", "camera", "eye", "look-at", "up", "fov", "light", "detail")
 MORE = ("arguments", "tree", "host")  # stations that are no steps of a ray
@@ -93,7 +93,8 @@ class Frame:
             if size:
                 check_pixel(options.pixel, *map(int, size.groups()))
             need("fst2vcd", "gtkwave")
-            build([ROOT / "scripts/unit.sh", *self.machine[1:], "--units", options.units, "--chip", "--waves"])
+            build([ROOT / "scripts/unit.sh", *self.machine[1:], "--units", options.units, "--boundary", "chip",
+                   "--waves"])  # fmt: skip
         self.tree, self.materials = self.tree_and_materials()
         if not options.run:
             self.draw_once()
@@ -107,8 +108,8 @@ class Frame:
 
     def draw_once(self):
         """The frame and its followed signals, unless they are there, of the same program, hardware and scene."""
-        how = (self.options.size, self.options.depth, self.folder, "--chip", "rtl", "--units", self.options.units,
-               "--waves")  # fmt: skip
+        how = (self.options.size, self.options.depth, self.folder, "--engine", "rtl", "--boundary", "chip",
+               "--units", self.options.units, "--waves")  # fmt: skip
         stamp, digest = self.folder / "followed.sha256", self.digest(how)
         if stamp.is_file() and stamp.read_text(encoding="utf-8") == digest:
             return

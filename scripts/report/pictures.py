@@ -1,5 +1,5 @@
-"""The pictures that were drawn, each once, and beside them Embree's own: that of engine embree, with exact arithmetic
-where there is one."""
+"""The pictures that were drawn, each once, and beside them Embree's own: that of engine native with Embree's hits, with
+exact arithmetic where there is one."""
 import base64
 import json
 import shlex
@@ -15,6 +15,9 @@ MOST_BYTES = 24_000_000
 PNG_END = b"IEND\xaeB`\x82"
 EXACT = {"arithmetic.subnormals": "ieee", "arithmetic.significand": 24, "arithmetic.slow_unit": "exact",
          "arithmetic.fma": False}  # fmt: skip
+# Options of raypool sim that are of other engines, or of a machine, which Embree's own picture does not ask for.
+OF_OTHERS = ("--engine", "--boundary", "--unit-library", "--hits", "--set", "--traverser", "--trace", "--error",
+             "--time", "--seed", "--cycles", "--inspect")  # fmt: skip
 
 
 class Picture:
@@ -37,23 +40,18 @@ class Picture:
     @property
     def is_ours(self):
         """Machines drew it, and not Embree alone."""
-        return any(point["engine"] != "embree" for point in self.points)
+        return any(not point.is_embrees for point in self.points)
 
     @property
     def reference_command(self):
         """That would draw Embree's own."""
-        words = shlex.split(self.point.command)
-        words = [word for word in words if not word.startswith("--set=")]
-        for place, word in enumerate(words):
-            if word.startswith("--engine="):
-                words[place] = "--engine=embree"
-                break
-            if word == "--engine" and place + 1 < len(words):
-                words[place + 1] = "embree"
-                break
-        else:
-            words += ["--engine", "embree"]
-        return "build/" + shlex.join(words)
+        words, kept = iter(shlex.split(self.point.command)), []
+        for word in words:
+            if word in OF_OTHERS:
+                next(words, None)
+            elif word.split("=")[0] not in (*OF_OTHERS, "--waves"):
+                kept.append(word)
+        return "build/" + shlex.join([*kept, "--engine", "native", "--hits", "embree"])
 
 
 def scene_key(point):
@@ -69,10 +67,10 @@ def compare(a, b):
 
 
 def references_of(points):
-    """{scene: point} of engine embree; exact arithmetic is preferred."""
+    """{scene: point} of Embree's hits; exact arithmetic is preferred."""
     found = {}
     for point in points:
-        if point["engine"] == "embree" and point.picture:
+        if point.is_embrees and point.picture:
             kept = found.setdefault(scene_key(point), point)
             if not is_exact(kept) and is_exact(point):
                 found[scene_key(point)] = point

@@ -8,6 +8,8 @@ from sweep.raypool import ROOT, flat
 TIMED = ("model", "rtl", "lockstep")
 # Of a run, beside the machine's; in this order where points are told apart.
 RUN_FIELDS = ("scene", "view", "size", "depth", "units", "engine")
+# What is told of an engine beside its name: boundary or hits, where they are not the default.
+OF_ENGINE = {"chip": " chip", "embree": " embree"}
 
 
 def near(path):
@@ -45,7 +47,8 @@ class Point:
             "scene": f"{report['scene']['name']} ({report['scene']['triangles']:,} triangles)",
             "view": json.dumps(report["view"]),
             "size": f"{size['width']}x{size['height']}",
-            **{name: report[name] for name in ("depth", "units", "engine")},
+            **{name: report[name] for name in ("depth", "units")},
+            "engine": report["engine"] + OF_ENGINE.get(report.get("boundary") or report.get("hits"), ""),
             **machine,
         }
 
@@ -68,6 +71,10 @@ class Point:
     @property
     def timed(self):
         return self.report["engine"] in TIMED
+
+    @property
+    def is_embrees(self):
+        return self.report.get("hits") == "embree"
 
     @property
     def version(self):

@@ -38,9 +38,9 @@ def rows_of(path=FILE):
 
 @functools.lru_cache(maxsize=None)
 def plain_machine(shape):
-    """All fields of the machine of this name, as the program has them by default."""
+    """All fields of the machine of this name, as the program has them by default, with the thesis' traverser."""
     try:
-        machine = raypool.flat(raypool.machine(shape, {}))
+        machine = raypool.flat(raypool.machine(shape, {"chip.traverser": "static"}))
     except SweepError:
         return None
     return {name: value for name, value in machine.items() if name != "name"}

@@ -11,10 +11,11 @@ from .experiment import text
 
 
 class Areas:
-    """Synthesises each distinct unit, or chip, once."""
+    """Synthesises each distinct unit, or with `chip` each chip, once."""
 
-    def __init__(self, progress, power):
+    def __init__(self, progress, chip, power):
         self.progress = progress
+        self.chip = chip
         self.power = power
         self.known = {}
 
@@ -22,7 +23,7 @@ class Areas:
         """{"area_mm2", "kge"} of all units of the point, or of its whole chip, at 40 nm; with power "power_mw", at the
         clock of the library.
         """
-        if planned.point["chip"]:
+        if self.chip:
             return self.synthesised(planned, planned.settings, ["--chip", f"--units={text(planned.point['units'])}"])
         settings = {field: value for field, value in planned.settings.items() if not field.startswith("chip.")}
         units = int(planned.point["units"])

@@ -21,7 +21,8 @@ RUN_FIELDS = {
     "config": "8w8c",
     "units": 1,
     "engine": "model",
-    "chip": "",  # in place of engine
+    "boundary": "",
+    "hits": "",
 }
 
 

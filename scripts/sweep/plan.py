@@ -3,6 +3,8 @@ result depends on."""
 import hashlib
 import json
 import os
+import re
+import tempfile
 from concurrent import futures
 
 from . import area, raypool, scenes
@@ -85,30 +87,34 @@ class Plan:
             return planned.point["config"], *planned.settings.items()
 
         for planned, machine in self.each_once("machines checked", identity, machine_of).items():
-            # The controller of a whole chip is that of the Verilog, and its report says so.
-            whole = {"chip": {**machine["chip"], "controller": "counters"}} if planned.point["chip"] else {}
-            planned.machine = {**machine, **whole}
+            planned.machine = machine
 
     def check_runs(self):
         """Each value of the other options once, by a call that draws nothing."""
-        for planned in self.points:
-            # A Verilated chip takes minutes to build and hours to draw what is worth a table.
-            if planned.point["chip"] not in ("", "model"):
-                value = text(planned.point["chip"])
-                raise self.error(planned, SweepError(f"chip is '{value}'; it must be 'model', or be left out"))
-        for field in ("size", "depth", "units", "engine", "detail"):
+        for field in ("size", "depth", "units", "detail"):
 
             def check(planned, field=field):
-                value = text(planned.point[field])
-                # The native engine has no chip to print, and a Verilated one may have to be built.
-                if field == "engine" and value in ("native", "embree", *raypool.VERILATED):
-                    return
                 words = ["sim", "cornell", "--modules", "--engine", "model", "--detail", "0.01"]
-                words = [word for word in words if field != "engine" or word not in ("--engine", "model")]
                 words = words[:-2] if field == "detail" else words
-                raypool.ask(*words, f"--{field}={value}")
+                raypool.ask(*words, f"--{field}={text(planned.point[field])}")
 
             self.each_once(f"values of {field} checked", lambda planned, field=field: text(planned.point[field]), check)
+
+        def engine(planned):
+            fields = {field: planned.point[field] for field in ("engine", "boundary", "hits")}
+            fields["traverser"] = planned.settings.get("chip.traverser", "")
+            return tuple(f"--{field}={text(value)}" for field, value in fields.items() if value != "")
+
+        def check_engine(planned):
+            point = planned.point
+            # A Verilated device may have to be built first; the native engine has no chip to print, and draws a pixel.
+            if point["engine"] in raypool.VERILATED and point["hits"] == "":
+                return
+            with tempfile.TemporaryDirectory() as out:
+                how = ["--size=1x1", "--quiet", f"--out={out}"] if point["engine"] == "native" else ["--modules"]
+                raypool.ask("sim", "cornell", "--detail=0.01", *engine(planned), *how)
+
+        self.each_once("engines checked", engine, check_engine)
 
     def check_scenes(self):
         def check(planned):
@@ -142,7 +148,7 @@ class Plan:
             except SweepError as error:
                 raise SweepError(f"{experiment.path}: {error}") from error
         if experiment.area or (condition and condition.names & set(AREA)):
-            areas = area.Areas(self.progress, experiment.power)
+            areas = area.Areas(self.progress, experiment.area == "chip", experiment.power)
             for planned in self.points:
                 try:
                     planned.area = areas.of(planned)
@@ -177,18 +183,19 @@ class Plan:
         self.each_once("fields checked", identity, check)
 
     def find_units(self):
-        """The Verilated unit of each point that needs one is there, and of today's Verilog."""
+        """The Verilated unit or chip of each point that needs one is there, and of today's Verilog."""
 
         def build(planned):
-            machine = planned.point["config"], planned.settings
-            units = f"--units={text(planned.point['units'])}"
-            raypool.ask("unit", *raypool.machine_words(*machine), units)
-            return raypool.ask_config(*machine, units, "--unit-library").strip()
+            point = planned.point
+            boundary = [f"--boundary={point['boundary']}"] if point["boundary"] else []
+            said = raypool.ask("unit", *raypool.machine_words(point["config"], planned.settings),
+                               f"--units={text(point['units'])}", *boundary)  # fmt: skip
+            return re.findall(r"\S+/libraypool_\w+\.so", said)[-1]
 
         def identity(planned):
-            if planned.point["chip"] or planned.point["engine"] not in raypool.VERILATED:
+            if planned.point["engine"] not in raypool.VERILATED:
                 return None
-            return json.dumps([planned.machine, planned.point["units"]])
+            return json.dumps([planned.machine, planned.point["units"], planned.point["boundary"]])
 
         # One at a time: building takes all cores.
         self.units = {}
@@ -213,7 +220,7 @@ class Plan:
         point = planned.point
         words = ["sim", *raypool.machine_words(point["config"], planned.settings)]
         for field in RUN_FIELDS:
-            if field not in ("config", "engine" if point["chip"] else "chip") and point[field] != "":
+            if field != "config" and point[field] != "":
                 words.append(f"--{field}={text(point[field])}")
         files = []
         if os.path.isfile(point["scene"]):

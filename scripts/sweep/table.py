@@ -12,7 +12,7 @@ from .store import write_json, write_whole
 # Of a report: what the point's fields say already, and what depends on the computer.
 SET_UP = (
     "raypool", "command", "config", "configuration", "engine", "scene", "view", "size", "depth", "units", "traverser",
-    "whole_chip",
+    "boundary", "hits",
 )  # fmt: skip
 TIMES = ("wall_seconds", "simulation_seconds", "simulated_per_second")
 

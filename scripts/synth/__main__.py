@@ -205,7 +205,7 @@ def parser():
             command.add_argument("module", help="of rtl/")
             command.add_argument("parameters", nargs="*", help="of one row of the table each: BITS=8 or A=1,B=2")
         if name in ("report", "replay", "prove"):
-            command.add_argument("--chip", action="store_true", help="the whole chip; with chip.traverser=hardware all")
+            command.add_argument("--chip", action="store_true", help="the whole chip")
             command.add_argument("--units", default="1", help="with --chip: compute units, 1, 2 or 4")
         if name == "report":
             command.add_argument("--rounds", help="for speed, at most; with any but 4 no area is won back")

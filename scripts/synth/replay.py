@@ -338,7 +338,8 @@ def build(design, folder, count=False):
 def lockstep(design, library, folder, arguments, engine="lockstep"):
     """Runs raypool on the netlist; returns (passed, output). Of a chip always in lockstep with the model."""
     units = design.options.units
-    plays = ["--chip", "lockstep", "--units", str(units)] if units else ["--engine", engine]
+    chip = ["--boundary", "chip", "--units", str(units)] if units else []
+    plays = ["--engine", "lockstep" if units else engine, *chip]
     command = [elaborate.raypool(), *arguments, "--config", design.options.config, *plays, "--unit-library", library]
     if arguments[0] == "sim":
         command += ["--out", os.path.join(folder, "picture"), "--quiet"]

@@ -274,7 +274,7 @@ def load_run(path, config, units=0):
     if units and run.get("traverser") != "hardware":
         raise SynthError(
             f"RUN={path}: drawn with traverser {run.get('traverser')}, whose area nobody knows; draw it with "
-            "TRAVERSER=hardware, and SET=chip.traverser=hardware here"
+            "TRAVERSER=hardware"
         )
     return run
 

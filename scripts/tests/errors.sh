@@ -50,7 +50,7 @@ printf 'exit\n' > "$folder/exit.asm"
 # refuses_sim WHAT PATTERN OPTION...: of raypool sim; what the options leave open is chosen here.
 refuses_sim() {
   local what=$1 pattern=$2 defaults=(--quiet); shift 2
-  [[ " $* " == *" --engine "* || " $* " == *" --chip "* ]] || defaults+=(--engine functional)
+  [[ " $* " == *" --engine "* ]] || defaults+=(--engine functional)
   [[ " $* " == *" --size "* ]] || defaults+=(--size 8x8)
   [[ " $* " == *" --out "* ]] || defaults+=(--out "$folder/out")
   refuses "$what" "$pattern" "$raypool" sim "${defaults[@]}" "$@"
@@ -90,27 +90,27 @@ refuses_sim "size 0x0" "0x0.*1 to 16384" --size 0x0
 refuses_sim "size without x" "1 to 16384" --size 64
 refuses_sim "depth 0" "depth.*1" --depth 0
 refuses_sim "3 compute units" "3" --units 3
-refuses_sim "unknown engine" "native, embree, functional, sampled, model, rtl or lockstep" --engine spice
-refuses_sim "a chip that nobody plays" "use model, rtl or lockstep" --chip functional
-refuses_sim "a chip beside an engine" "excludes" --chip model --engine model
-refuses_sim "modules of a chip as one piece" "leave --modules and --trace out" --chip model --modules
-refuses_sim "the modelled traverser at a chip's ports" "choose one with --traverser hardware or --traverser static" \
-  --chip model --traverser modelled
-refuses_sim "the hardware's traverser without its chip" "not around engine model: draw with --chip model, rtl or" \
-  --engine model --traverser hardware
-refuses_sim "the hardware's traverser in a sample" "not around engine sampled" --engine sampled --traverser hardware
-refuses_sim "hits of the hardware from Embree" "engine embree has hits of its own" --engine embree --traverser hardware
-refuses_sim "a cache that no hardware has" "node_cache_ways is 1; with chip.traverser hardware it must be at least 2" \
-  --chip model --traverser hardware --set chip.modelled_traverser.node_cache_ways=1
+refuses_sim "unknown engine" "native, functional, sampled, model, rtl or lockstep" --engine spice
+refuses_sim "unknown boundary" "no boundary 'board': use unit or chip" --engine rtl --boundary board
+refuses_sim "a boundary without Verilog" "engine model has no Verilog, and so no boundary" --engine model \
+  --boundary chip
+refuses_sim "unknown hits" "--hits is 'mine': use own or embree" --engine native --hits mine
+refuses_sim "hits of a chip from Embree" "engine model has the hits of its traverser" --engine model --hits embree
+refuses_sim "hits of a traverser from Embree" "takes no hits of the machine's traverser" --engine native --hits embree \
+  --traverser hardware
+refuses_sim "a cache that no hardware has" "node_cache_ways is 1; it must be a power of two from 2 to 16" \
+  --engine model --set chip.hardware_traverser.node_cache_ways=1
+refuses_sim "more triangle pipes than lanes" "triangle_pipes is 3; it must be at most 2, which is lanes" \
+  --engine model --set "chip.hardware_traverser.lanes=2 chip.hardware_traverser.triangle_pipes=3"
 refuses_sim "a memory that is faster than the memory port" "chip.memory.latency is 8; .* takes 9 at least" \
-  --chip model --set chip.memory.latency=8
-refuses_sim "a chip that is not built" "make unit CONFIG=4w4c SET=\"chip.ray_pool.size=77\" CHIP=rtl" --chip rtl \
-  --config 4w4c --set chip.ray_pool.size=77
-refuses_sim "a waveform of the chip's model" "waveform" --chip model --waves
+  --engine model --set chip.memory.latency=8
+refuses_sim "a chip that is not built" "make unit CONFIG=4w4c SET=\"chip.ray_pool.size=77\" BOUNDARY=chip" \
+  --engine rtl --boundary chip --config 4w4c --set chip.ray_pool.size=77
+refuses_sim "a waveform of the model" "engine model has no waveform" --engine model --waves
 refuses_sim "modules of the engine that has no chip" "engine native has no chip" --engine native --modules
 refuses_sim "threads of an engine that has one" "engine model runs on one thread" --engine model --threads 2
 refuses_sim "more threads than there may be" "Value 257 not in range 1 to 256" --engine native --threads 257
-refuses_sim "unknown traverser" "chip.traverser must be one of static, modelled" --traverser quick
+refuses_sim "unknown traverser" "chip.traverser must be one of static, hardware" --traverser quick
 refuses_sim "unknown policy" "chip.policy must be one of thesis" --set chip.policy=magic
 refuses_sim "unknown field" "no field 'flt.count'; near to it are alus.flt.count" --set flt.count=2
 refuses_sim "value of another type" "warps must be a power of two" --set warps=eight
@@ -183,31 +183,32 @@ else
 fi
 # Fields that another field makes meaningless.
 refuses_sim "field of another traverser" \
-  "rays and chip.modelled_traverser.box_pipes are not looked at: chip.traverser is static, .*leave them out" \
-  --engine model --set "chip.modelled_traverser.rays=8 chip.modelled_traverser.box_pipes=2"
+  "rays and chip.hardware_traverser.lanes are not looked at: chip.traverser is static, .*leave them out" \
+  --engine model --traverser static --set "chip.hardware_traverser.rays=8 chip.hardware_traverser.lanes=2"
 refuses_sim "field of the static traverser" "stall_cycles is not looked at: chip.traverser is not static; choose" \
-  --engine model --traverser modelled --set chip.static_traverser.stall_cycles=50
+  --engine model --set chip.static_traverser.stall_cycles=50
+refuses_sim "rows of a memory without" "banks is not looked at: chip.memory.row_miss is 0" --engine model \
+  --set chip.memory.banks=4
 refuses_sim "field of another policy" "chip.thresholds.rays is not looked at: chip.policy is fill" \
   --engine model --set "chip.policy=fill chip.thresholds.rays=9"
 refuses_sim "wide memory of narrow units" "wide_ray_memory is not looked at: .* at most four lanes" \
   --engine model --config 4w4c --set wide_ray_memory=true
-refuses_sim "controller of another chip" "chip.controller is not looked at: the chip as one piece" \
-  --chip model --set chip.controller=ledger
 refuses "chip around a compute program" "chip.ray_pool.size is not looked at: a compute program" \
   "$raypool" run saxpy --set chip.ray_pool.size=9
 refuses "fit by a field of another traverser" "not looked at: chip.traverser is static" \
-  "$raypool" fit cornell --set chip.modelled_traverser.rays=8
-echo '{"chip": {"modelled_traverser": {"rays": 8, "box_pipes": 2, "stack_entries": 9}}}' > "$folder/lanes.json"
+  "$raypool" fit cornell --set "chip.traverser=static chip.hardware_traverser.rays=8"
+echo '{"chip": {"traverser": "static", "hardware_traverser": {"rays": 8, "lanes": 2, "stack_entries": 9}}}' \
+  > "$folder/lanes.json"
 "$raypool" sim cornell --config "$folder/lanes.json" --engine model --size 4x4 --quiet --out "$folder/told" \
   2> "$folder/stderr"
 if [ "$(wc -l < "$folder/stderr")" = 1 ] && grep -qE -e \
-  "warning: configuration lanes: chip.modelled_traverser.rays and 2 more are not looked at" "$folder/stderr"; then
+  "warning: configuration lanes: chip.hardware_traverser.rays and 2 more are not looked at" "$folder/stderr"; then
   echo "ok: fields of a file that are not looked at: $(cat "$folder/stderr")"
 else
   failures=$((failures + 1))
   echo "FAILED: fields of a file that are not looked at:"; cat "$folder/stderr"
 fi
-refuses_sim "frame within no cycles" "the limit of 300 cycles has passed; .*traverser: " --engine model --cycles 300
+refuses_sim "frame within no cycles" "the limit of 300 cycles has passed, .* ray pool " --engine model --cycles 300
 refuses_sim "limit of what has no cycles" "native .* leave --cycles out" --engine native --cycles 300
 for range in 60000:2 252:2 0:4294967295 4294967292:2; do
   refuses "words beyond the memory, $range" "$range goes beyond the memory of 256 bytes" "$raypool" run \

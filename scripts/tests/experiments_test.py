@@ -13,8 +13,8 @@ sys.path.insert(0, str(ROOT / "scripts"))
 import experiments  # noqa: E402
 
 
-def row(config, units, depth, policy, remedy, engine):
-    """Cycles and rays that make simple figures, for the engine that has time; all cycles of warps issue or import."""
+def row(config, units, depth, policy, remedy, timed=True):
+    """Cycles and rays that make simple figures, if they are timed; all cycles of warps issue or import."""
     warps, cores = (int(part) for part in config[:-1].split("w"))
     rate = 10.0 * units * cores * (2 if policy == "fill" else 1) * (1 if remedy else 0.5)
     found = {
@@ -31,7 +31,7 @@ def row(config, units, depth, policy, remedy, engine):
     for kernel in experiments.PUBLISHED_KERNELS:
         found.update({f"kernels.{kernel}.{what}": value for what, value in
                       (("launches", 10), ("threads", 150), ("cycles", 4000))})
-    if engine == "embree":
+    if not timed:
         found.update({name: None for name, value in found.items() if isinstance(value, (int, float)) and "." not in name
                       and name not in ("units", "depth")})
     return found
@@ -45,6 +45,7 @@ class Experiments(unittest.TestCase):
         with open(ROOT / "configs/experiments/published.json", encoding="utf-8") as file:
             self.product = json.load(file)["product"]
         self.rows = [row(*values) for values in itertools.product(*self.product.values())]
+        self.rows.append(row("8w8c", 1, 1, "thesis", True, timed=False))  # a picture of Embree's hits
 
     def call(self, *words, code=0):
         table = self.folder / "table.json"

@@ -80,7 +80,7 @@ class Features(unittest.TestCase):
             best = json.load(file)
         best.pop("name")
         self.assertEqual(last, {field: value for field, value in flat(best).items()
-                                if not field.startswith("chip.modelled_traverser.")})
+                                if not field.startswith("chip.hardware_traverser.")})
 
 
 def flat(json_object, prefix=""):

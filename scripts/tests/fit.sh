@@ -14,7 +14,7 @@ fits() {
   local scene=$1 what="$*"; shift
   local frame=("$scene" --size 24x16 "$@" --quiet)
   local machine=$folder/$scene.json
-  expect "$what: fitted" 0 "byte for byte" "$raypool" fit "${frame[@]}" --config 2w2c --traverser modelled \
+  expect "$what: fitted" 0 "byte for byte" "$raypool" fit "${frame[@]}" --config 2w2c \
     --out "$machine" --json "$folder/$scene-found.json"
   expect "$what: the fitted machine draws it" 0 "results" "$raypool" sim "${frame[@]:0:$((${#frame[@]} - 1))}" \
     --config "$machine" --engine model --out "$folder/$scene"

@@ -29,7 +29,8 @@ EXPERIMENTS = {
     "shapes": {"title": "shapes & <units>", "base": TINY,
                "product": {"warps": [1, 2], "lanes": [1, 4], "units": [1, 2], "chip.policy": ["thesis", "fill"]}},
     "question": {"base": {**TINY, "size": "64x64"}, "points": [
-        {}, {"alus.flt.count": 2, "data_cache.bytes": 4096, "arithmetic.slow_unit": "newton1"}, {"engine": "embree"}]},
+        {}, {"alus.flt.count": 2, "data_cache.bytes": 4096, "arithmetic.slow_unit": "newton1"},
+        {"engine": "native", "hits": "embree"}]},
     "depth": {"base": TINY, "product": {"depth": [1, 3]}},
 }  # fmt: skip
 
@@ -242,7 +243,7 @@ class Page(ReportTest):
             self.assertLessEqual(set(named), targets)
             for path in re.findall(r"configs/[\w/]+\.json", words[1]):
                 self.assertTrue((ROOT / path).exists(), path)
-        self.assertIn("--engine embree", self.section(page, "pictures"))
+        self.assertIn("--engine native --hits embree", self.section(page, "pictures"))
 
 
 class Refusals(ReportTest):
@@ -307,8 +308,8 @@ class Figures(ReportTest):
             published = list(csv.DictReader(line for line in file if not line.startswith("#")))
 
         def become(report, number):
-            whole = subprocess.run([RAYPOOL, "config", "8w8c" if number else "32w1c", "--json"],
-                                   capture_output=True, text=True, check=True).stdout
+            whole = subprocess.run([RAYPOOL, "config", "8w8c" if number else "32w1c", "--set=chip.traverser=static",
+                                    "--json"], capture_output=True, text=True, check=True).stdout  # fmt: skip
             report["configuration"] = json.loads(whole)
             report["scene"]["name"], report["size"] = "conference", {"width": 512, "height": 512}
             report.update(depth=1, units=1, mrays_per_second_thesis=[10.0, 99.0, 60.0][min(number, 2)])

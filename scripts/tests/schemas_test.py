@@ -45,12 +45,10 @@ def raypool(*words):
 
 
 def played_by(engine):
-    """Options of sim for an engine; of the whole chip for chip-model and such, with its traverser inside-model."""
-    if engine.startswith("chip-"):
-        return ["--chip", engine.removeprefix("chip-")]
-    if engine.startswith("inside-"):
-        return ["--chip", engine.removeprefix("inside-"), "--traverser", "hardware"]
-    return ["--engine", engine]
+    """Options of sim for an engine, such as lockstep-chip-static: with boundary chip, and the traverser static."""
+    engine, *more = engine.split("-")
+    options = {"chip": ("--boundary", "chip"), "static": ("--traverser", "static"), "embree": ("--hits", "embree")}
+    return ["--engine", engine, *(word for name in more for word in options[name])]
 
 
 class Agreement(unittest.TestCase):
@@ -229,12 +227,9 @@ class Report(Written):
     def refuses_changes(self, valid, report):
         names = set(report["kernels"]) | set(report.get("alus", {})) | set(report.get("sampled", {}).get("alus", {}))
 
-        # What a configuration leaves out has its default; kernels and ALUs are left open; and a frame that the units
-        # drew alone, which another report may be of, says nothing of the whole chip.
+        # What a configuration leaves out has its default; kernels and ALUs are left open.
         def required(path):
-            if len(path) == 1:
-                return path != ("whole_chip",)
-            return path[0] != "configuration" and path[-1] not in names | {"launches", "cycles"}
+            return len(path) == 1 or path[0] != "configuration" and path[-1] not in names | {"launches", "cycles"}
 
         self.refuses(valid, report, required, [("x",), ("scene", "x"), ("configuration", "x"), ("rays_by_kind", "x")])
 

@@ -15,7 +15,7 @@ sys.path.insert(0, str(ROOT / "scripts"))
 from follow.__main__ import TRAVERSER  # noqa: E402
 
 RAYPOOL = ""
-CHIP = ("--config", "4w4c", "--set", TRAVERSER, "--chip", "rtl", "--waves")
+CHIP = ("--config", "4w4c", "--set", TRAVERSER, "--engine", "rtl", "--boundary", "chip", "--waves")
 LONG = ("sim", "cornell", "--size", "512x512", "--depth", "3")
 
 

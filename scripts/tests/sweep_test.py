@@ -167,8 +167,9 @@ class Refusals(SweepTest):
             ("units", 3, "1, 2 or 4"),
             ("size", "8by8", "8by8"),
             ("size", "0x8", "0x8"),
-            ("engine", "spice", "native, embree, functional, sampled, model, rtl or lockstep"),
-            ("chip", "rtl", "it must be 'model'"),
+            ("engine", "spice", "native, functional, sampled, model, rtl or lockstep"),
+            ("boundary", "chip", "engine model has no Verilog"),
+            ("hits", "embree", "engine model has the hits of its traverser"),
             ("detail", 0, "detail"),
             ("scene", "none.obj", "none.obj"),
             ("view", "none.json", "none.json"),
@@ -180,14 +181,13 @@ class Refusals(SweepTest):
                 self.refuses(document, place, f"{field}=", *words)
 
     def test_fields_that_a_machine_does_not_look_at(self):
-        pipes = "chip.modelled_traverser.box_pipes"
+        pipes = "chip.hardware_traverser.lanes"
         words = (f"{pipes} is not looked at", "chip.traverser is static", "or leave it out")
-        self.refuses({"base": TINY, "product": {pipes: [1, 4]}}, "point 1 ", *words)
-        both = {"base": TINY, "product": {"chip.traverser": ["modelled", "static"], pipes: [4, 8]}}
+        self.refuses({"base": {**TINY, "chip.traverser": "static"}, "product": {pipes: [1, 4]}}, "point 1 ", *words)
+        both = {"base": TINY, "product": {"chip.traverser": ["hardware", "static"], pipes: [4, 8]}}
         self.refuses(both, "point 3 ", *words)
         points = [{}, {"chip.policy": "thesis"}, {"chip.static_traverser.stall_cycles": 9}]
-        self.refuses({"base": {**TINY, "chip.traverser": "lanes"}, "points": points}, "point 3 ",
-                     "chip.traverser is not static")  # fmt: skip
+        self.refuses({"base": TINY, "points": points}, "point 3 ", "chip.traverser is not static")
 
     def test_a_scene_that_is_not_part_of_the_project(self):
         with self.scenes_here_and_there():
@@ -369,9 +369,9 @@ class Runs(SweepTest):
             self.assertNotIn("wall_seconds", row)
 
     def test_a_filter_leaves_out_points_with_fields_that_are_not_looked_at(self):
-        pipes = "chip.modelled_traverser.box_pipes"
-        document = {"base": TINY, "product": {"chip.traverser": ["static", "modelled"], pipes: [4, 8]},
-                    "filter": "chip.traverser == 'modelled'"}  # fmt: skip
+        pipes = "chip.hardware_traverser.lanes"
+        document = {"base": TINY, "product": {"chip.traverser": ["static", "hardware"], pipes: [4, 8]},
+                    "filter": "chip.traverser == 'hardware'"}  # fmt: skip
         self.run_sweep(document)
         self.assertEqual([row[pipes] for row in self.rows()], [4, 8])
 
@@ -386,17 +386,17 @@ class Runs(SweepTest):
         self.assertGreater(rows[2]["cycles"], 0)
         self.assertGreater(rows[4]["lockstep.instructions"], 0)
 
-    def test_a_whole_chip_is_a_point(self):
-        base = {**TINY, "config": "best_4w4c", "depth": 2, "engine": "model"}
-        points = [{}, {"chip": "model"}, {"chip": "model", "chip.traverser": "hardware"}]
-        self.run_sweep({"base": base, "points": points})
+    def test_boundary_and_hits_are_those_of_the_point(self):
+        points = [{"engine": "native", "hits": "embree"}, {"chip.traverser": "static"},
+                  {"engine": "lockstep", "boundary": "chip", "chip.traverser": "static"}]  # fmt: skip
+        self.run_sweep({"base": {**TINY, "config": "4w4c", "depth": 2, "engine": "model"}, "points": points})
         rows = self.rows()
-        self.assertEqual([row["chip"] for row in rows], ["", "model", "model"])
+        self.assertEqual([(row["hits"], row["boundary"]) for row in rows], [("embree", ""), ("", ""), ("", "chip")])
         self.assertEqual(len({row["picture"] for row in rows}), 1)
-        self.assertEqual(len({row["cycles"] for row in rows}), 3)
-        for row in rows:
-            report = json.loads((self.out / "points" / row["key"] / "report.json").read_text())
-            self.assertEqual(report.get("whole_chip", False), row["chip"] == "model")
+        self.assertEqual(rows[1]["cycles"], rows[2]["cycles"])
+        reports = [json.loads((self.out / "points" / row["key"] / "report.json").read_text()) for row in rows]
+        self.assertEqual([(report.get("hits"), report.get("boundary")) for report in reports],
+                         [("embree", None), (None, None), (None, "chip")])  # fmt: skip
 
     def test_an_interrupt_while_machines_are_checked_does_not_wait_for_the_rest(self):
         self.write({"base": TINY, "product": {"chip.memory.latency": list(range(1, 1001))}})

@@ -336,7 +336,8 @@ class Synthesis(SmallBlocks):
         report.check(made)
         rows = {row["block"]: row for row in made["blocks"]}
         self.assertEqual(next(iter(rows)), "chip")
-        first = {"multiprocessor", "controller", "ray_pool", "intersection_pool", "memory_port", "frame_port"}
+        first = {"multiprocessor", "controller", "ray_pool", "intersection_pool", "memory_port", "frame_port",
+                 "traverser"}  # fmt: skip
         self.assertEqual({name for name in rows if "/" not in name}, {"chip"} | first)
         self.assertEqual(made["area"]["logic_um2"], rows["chip"]["logic_um2"])
         self.assertEqual(rows["chip"]["memory_bits"], sum(rows[name]["memory_bits"] for name in first))

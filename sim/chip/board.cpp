@@ -8,9 +8,9 @@
 
 #include "bits.hpp"
 #include "chip/frame_setup.hpp"
-#include "chip/monitor.hpp"
 #include "chip/traverser_fault.hpp"
 #include "config/limits.hpp"
+#include "machine/chip_model.hpp"
 #include "machine/intersection_pool.hpp"
 #include "scene/native_renderer.hpp"
 
@@ -23,65 +23,53 @@ namespace {
 const ChipOptions& checked(const ChipOptions& options) {
   check_frame(options);
   const ChipConfiguration& chip = options.configuration.chip;
-  if (chip.traverser != TraverserName::Static && !has_traverser(chip)) {
+  if (has_traverser(chip) && options.traverser != nullptr) {
     throw InputError(
-        "the chip in hardware has its traverser inside, or static at its ports: choose one with --traverser hardware "
-        "or --traverser static");
+        "the chip has its traverser inside, and no ports for another: draw with --traverser static for one of your "
+        "own");
   }
-  if (has_traverser(chip) ? options.tree == nullptr : options.tracer == nullptr)
+  if (has_traverser(chip) ? options.tree == nullptr : options.tracer == nullptr && options.traverser == nullptr)
     throw std::logic_error("a traverser needs its memory, or a tracer");
-  if (chip.memory_latency < BoardMemory::least_latency(chip)) {
-    throw InputError(
-        fmt::format("chip.memory.latency is {}; the chip in hardware takes {} at least, with {} cycles a beat",
-                    chip.memory_latency, BoardMemory::least_latency(chip), chip.memory_cycles_per_beat));
-  }
+  check_memory_latency(chip);
   return options;
 }
 
 }  // namespace
 
 Board::Board(const ChipOptions& options, ChipDevice& chip, LineStore& store, FrameBegin begin)
+    : Board(checked(options), frame_setup(options), chip, store, begin) {}
+
+Board::Board(const ChipOptions& options, const FrameSetup& setup, ChipDevice& chip, LineStore& store, FrameBegin begin)
     : options_(checked(options)),
       chip_(chip),
-      reflects_(secondary_kernel(options.depth, options.reflections) == RayKernel::CastSecondary),
+      setup_(setup),
       memory_(store, options.configuration.chip),
       answers_(options.configuration.chip),
       kernels_(chip.units(), options.configuration.contents()),
       progress_(options.watchdog_cycles, options.limits.silent()) {
   const ChipConfiguration& configuration = options.configuration.chip;
-  if (has_traverser(configuration))
+  if (has_traverser(configuration)) {
     watch_.emplace(options.layout, configuration.ray_pool_size, options.depth);
-  else
-    traverser_.emplace(*options.tracer, configuration, chip.units(), options.depth, reflects_, options.layout);
-  inputs_.frame_ready = true;
-  if (begin == FrameBegin::Reset) {
-    chip_.start(setup());
-    return;
+  } else {
+    external_ = options.traverser;
+    if (external_ == nullptr)
+      external_ = &static_traverser_.emplace(*options.tracer, configuration, chip.units(), options.layout);
+    external_->start(setup_);
   }
-  chip_.start_next(setup());
-  counts_before_ = chip_.counts();
-  for (int number = 0; number < counter::kCount; ++number) counters_before_[number] = chip_.counter(number);
+  if (begin == FrameBegin::Reset) {
+    chip_.start(setup_);
+  } else {
+    chip_.start_next(setup_);
+    counts_before_ = chip_.counts();
+    for (int number = 0; number < counter::kCount; ++number) counters_before_[number] = chip_.counter(number);
+  }
+  if (options.tile_costs != nullptr) tiles_.emplace(options, chip.units(), chip.outputs(), [this] { return counts(); });
 }
 
 ChipResult Board::result() {
   if (options_.progress) show_progress();
+  if (tiles_) tiles_->end();
   return chip_result(options_, figures());
-}
-
-FrameSetup Board::setup() const {
-  FrameSetup setup;
-  setup.program_length = options_.program_length;
-  setup.memory_limit = options_.memory->size();
-  setup.arguments = frame_arguments(options_);
-  setup.entries = options_.entries;
-  setup.width = options_.width;
-  setup.height = options_.height;
-  setup.depth = options_.depth;
-  setup.reflections = reflects_;
-  if (!watch_) return setup;
-  setup.tree = options_.tree->setup;
-  setup.tree.layout = options_.layout;
-  return setup;
 }
 
 void Board::clock() {
@@ -91,7 +79,7 @@ void Board::clock() {
     throw ChipFault(fault.unit, fault, fault_sentence(fault.unit, fault));
   }
   if (outputs.tree_fault.valid)
-    throw TraverserFault(outputs.tree_fault, fault_sentence(outputs.tree_fault, options_.tree->setup));
+    throw TraverserFault(outputs.tree_fault, fault_sentence(outputs.tree_fault, setup_.tree));
   begun_ |= outputs.busy;
   if (begun_ && !ended_ && !outputs.busy) {
     ended_ = true;
@@ -100,7 +88,8 @@ void Board::clock() {
   const bool moves = outputs.frame_valid || !outputs.device.idle || outputs.quiet + 1 != 1u << chip_.units();
   still_ = ended_ && !moves ? still_ + 1 : 0;
   memory_.offer(cycle_, inputs_);
-  if (traverser_) traverser_->offer(inputs_);
+  inputs_.frame_ready = options_.frame->ready();
+  if (external_ != nullptr) external_->offer(inputs_);
 
   if (!ended_) {
     follow_kernels(outputs);
@@ -109,9 +98,10 @@ void Board::clock() {
     if (const std::optional<std::string> waits = answers_.clock(cycle_, outputs, inputs_))
       throw ChipStalled(at_cycle(*waits) + "; " + state());
   }
-  if (outputs.frame_valid) options_.frame->add(outputs.frame);
+  if (tiles_) tiles_->clock(outputs, watch_ ? outputs.traverser : inputs_);
+  if (outputs.frame_valid && inputs_.frame_ready) options_.frame->add(outputs.frame);
   memory_.clock(cycle_, outputs, inputs_);
-  if (traverser_) traverser_->clock(outputs, inputs_, kernels_.under_way() == 0 || outputs.held_up);
+  if (external_ != nullptr) external_->clock(outputs, inputs_, kernels_.under_way() == 0 || outputs.held_up);
   if (watch_) watch_->clock(outputs);
   chip_.clock(inputs_);
   ++cycle_;
@@ -134,6 +124,43 @@ void Board::follow_kernels(const ChipOutputs& outputs) {
   kernels_.given(unit, kernel, launch.threads);
   kernels_.accepted(unit, cycle_);
   if (kernel == RayKernel::CastEye) cast_ += launch.threads;
+  if (tiles_ && tiles_->launched(unit, kernel, launch) && options_.visited_before && watch_) remember(tiles_->number());
+}
+
+void Board::remember(uint32_t tile) {
+  remember_lines(chip_, lines_of(options_.visited_before(tile)), [this](uint32_t line) {
+    TreeLine data;
+    uint32_t address = raypool::MemoryPort::kLineBytes * line;
+    for (uint32_t& word : data) word = options_.tree->memory.load(address), address += 4;
+    return data;
+  });
+}
+
+uint64_t Board::intersection_port_busy(const ChipCounts& counts) const {
+  return counts.packages_taken *
+         raypool::IntersectionPool::service_cycles(options_.configuration.chip, options_.layout.words);
+}
+
+Counts Board::counts() const {
+  Counts counts{};
+  const RayCounts& rays = traced().rays;
+  const ChipCounts chip = chip_.counts() - counts_before_;
+  const auto set = [&](size_t number, uint64_t value) { counts[number] = static_cast<double>(value); };
+  set(count::kCycles, ended_ ? cycles_ : cycle_);
+  set(count::kEyeRays, rays.eye.traced);
+  set(count::kReflectionRays, rays.reflection.traced);
+  set(count::kShadowRays, rays.shadow.traced);
+  set(count::kBusyCycles, counter(counter::kBusyCycles));
+  set(count::kInstructions, counter(counter::kInstructions));
+  set(count::kThreadInstructions, counter(counter::kThreadInstructions));
+  set(count::kRayPort, chip.ray_port_busy);
+  set(count::kIntersectionPort, intersection_port_busy(chip));
+  set(count::kMemoryPort, chip.memory_port_busy);
+  for (size_t type = 0; type < kAluTypes; ++type) {
+    set(count::kUnused + type, counter(counter::kUnused + static_cast<int>(type)));
+    set(count::kIssued + type, counter(counter::kIssued + static_cast<int>(type)));
+  }
+  return counts;
 }
 
 void Board::follow_levels(const ChipOutputs& outputs) {
@@ -158,16 +185,17 @@ void Board::count_work(const ChipOutputs& outputs) {
 }
 
 uint64_t Board::due() const {
-  const uint64_t stall = traverser_ ? traverser_->stall_left() : 0;
-  return std::min(memory_.due(), stall == 0 ? kNever : cycle_ + stall);
+  const uint64_t stall = external_ != nullptr ? external_->stall_left() : 0;
+  // A line that is due in this cycle comes in it, which is later than what has been counted.
+  return std::min(std::max(memory_.due(), cycle_ + 1), stall == 0 ? kNever : cycle_ + stall);
 }
 
 void Board::watch(const ChipOutputs& outputs) {
   count_work(outputs);
-  if (options_.progress && cycle_ % Monitor::kProgressCycles == 0) show_progress();
+  if (options_.progress && cycle_ % kProgressCycles == 0) show_progress();
   if (options_.limits.cycles != 0 && cycle_ == options_.limits.cycles)
-    throw LimitPassed(at_cycle(Monitor::limit_sentence(options_.limits.cycles, true)), state());
-  if (cycle_ == counted_cycles(options_.configuration)) {
+    throw LimitPassed(at_cycle(limit_sentence(options_.limits.cycles, true)), state());
+  if (options_.timed && cycle_ == counted_cycles(options_.configuration)) {
     throw InputError(
         fmt::format("{} cycles have passed, and after so many a performance counter of {}, of {} bits, may "
                     "have begun anew: draw with --set counter_bits=48",
@@ -218,9 +246,10 @@ std::string Board::state() const {
       "the traverser waits for room in the intersection pool");
   add(traverser.contribution_valid && !o.contribution_ready, "the traverser waits for the frame port");
   add(traverser.tree_request_valid && !o.tree_request_ready, "the traverser waits for the memory port");
+  add(o.frame_valid && !inputs_.frame_ready, "a contribution waits for the frame buffer");
   add(o.memory_request_valid && !inputs_.memory_request_ready, "the memory port waits for the memory");
   if (const std::optional<std::string> lines = answers_.waits()) add(true, *lines);
-  add(traverser_.has_value(), traverser_ ? traverser_->describe() : "");
+  add(external_ != nullptr, external_ != nullptr ? external_->describe() : "");
   return fmt::format(
       "{}{} kernels under way; ray pool {} of {} rays{}, {} of them shadow rays; intersection pool {} normal, "
       "{} shadow and {} direct of {} each; {} pixels of {}x{} have been cast",
@@ -232,7 +261,8 @@ std::string Board::state() const {
 // Of the pixels that are cast: which of them are finished nobody outside knows.
 void Board::show_progress() const {
   const double pixels = static_cast<double>(options_.width) * options_.height;
-  options_.progress({ended_ ? 1 : std::min(1.0, static_cast<double>(cast_) / pixels), cycle_, traced().rays.traced()});
+  options_.progress({ended_ ? 1 : std::min(1.0, static_cast<double>(cast_) / pixels), ended_ ? cycles_ : cycle_,
+                     traced().rays.traced()});
 }
 
 uint64_t Board::counter(int number) const {
@@ -243,6 +273,7 @@ uint64_t Board::counter(int number) const {
 FrameFigures Board::figures() {
   const ChipCounts counts = chip_.counts() - counts_before_;
   FrameFigures figures;
+  figures.timed = options_.timed;
   figures.cycles = cycles_;
   figures.units = chip_.units();
   figures.counter = [this](int number) { return counter(number); };
@@ -253,21 +284,27 @@ FrameFigures Board::figures() {
   figures.dropped_depth = dropped_depth_;
   figures.contributions = counts.contributions;
   figures.ray_port_busy = counts.ray_port_busy;
-  figures.intersection_port_busy = counts.packages_taken * raypool::IntersectionPool::service_cycles(
-                                                               options_.configuration.chip, options_.layout.words);
+  figures.intersection_port_busy = intersection_port_busy(counts);
   figures.memory_port_busy = counts.memory_port_busy;
   figures.memory_reads = counts.memory_reads;
   figures.memory_writes = counts.memory_writes;
   figures.traverser = traced();
+  figures.work = chip_.traverser_work();
   return figures;
 }
 
 }  // namespace chip
 
+std::unique_ptr<ChipDevice> make_chip_around(ChipOptions& options, std::unique_ptr<ComputeUnit> device) {
+  options.timed = device->timed();
+  if (!options.timed) options.configuration.chip.traverser = TraverserName::Static;
+  return make_chip_model(options.configuration, std::move(device));
+}
+
 ChipResult run_board(const ChipOptions& options, ChipDevice& chip, FrameBegin begin) {
   const auto begun = std::chrono::steady_clock::now();
   chip::FixedLatencyStore store(*options.memory, options.tree == nullptr ? nullptr : &options.tree->memory,
-                                options.configuration.chip.memory_latency);
+                                options.configuration.chip);
   chip::Board board(options, chip, store, begin);
   while (!board.ended()) board.clock();
   ChipResult result = board.result();

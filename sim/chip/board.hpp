@@ -1,19 +1,22 @@
-// A board with the chip as one piece (machine/chip_device.hpp): its memory, its frame buffer, a host that starts a
+// A board with the chip (machine/chip_device.hpp): its memory, its frame buffer, a host that starts a
 // frame, and, unless the chip has one inside, the traverser at its ports. A loop over cycles, without SystemC: the chip
 // has all that takes its time.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "chip/answer_watch.hpp"
 #include "chip/board_memory.hpp"
 #include "chip/chip.hpp"
+#include "chip/external_traverser.hpp"
 #include "chip/frame_figures.hpp"
 #include "chip/port_traverser.hpp"
 #include "chip/progress_watch.hpp"
+#include "chip/tile_watch.hpp"
 #include "chip/traverser_watch.hpp"
 #include "isa/counters.hpp"
 #include "machine/chip_device.hpp"
@@ -28,6 +31,8 @@ class Board {
   /// Starts the frame. `store`: the memories. All must outlive the board. Throws InputError for options out of range or
   /// a configuration that the chip has not, std::logic_error as ChipDevice::start_next() does.
   Board(const ChipOptions& options, ChipDevice& chip, LineStore& store, FrameBegin begin = FrameBegin::Reset);
+  /// With a setup of the host's own, to which picture, depth and entries of the options must be equal.
+  Board(const ChipOptions& options, const FrameSetup& setup, ChipDevice& chip, LineStore& store, FrameBegin begin);
 
   /// One cycle.
   void clock();
@@ -35,6 +40,8 @@ class Board {
   bool ended() const { return still_ >= kStillCycles; }
   /// The next frame may begin; of this one all but the ports' busy cycles has been counted.
   bool may_be_followed() const { return ended_ && chip_.outputs().ready; }
+  /// The frame is drawn.
+  bool drawn() const { return ended_; }
   /// Once it has ended; without the time that it took.
   ChipResult result();
 
@@ -42,7 +49,6 @@ class Board {
   // More than any port is busy with a package: all that is counted for the report is right then.
   static constexpr uint64_t kStillCycles = 1024;
 
-  FrameSetup setup() const;
   void follow_kernels(const ChipOutputs& outputs);
   void follow_levels(const ChipOutputs& outputs);
   void watch(const ChipOutputs& outputs);
@@ -52,18 +58,24 @@ class Board {
   /// Who waits for what.
   std::string state() const;
   RayKernel kernel_at(uint32_t pc) const;
+  /// The caches of a traverser inside hold what has been visited before this tile.
+  void remember(uint32_t tile);
   void show_progress() const;
   FrameFigures figures();
+  Counts counts() const;
   uint64_t counter(int number) const;
-  const TraverserCounts& traced() const { return watch_ ? watch_->counts() : traverser_->counts(); }
+  /// Cycles in which the port serves.
+  uint64_t intersection_port_busy(const ChipCounts& counts) const;
+  const TraverserCounts& traced() const { return watch_ ? watch_->counts() : external_->counts(); }
 
   const ChipOptions& options_;
   ChipDevice& chip_;
-  const bool reflects_;
+  const FrameSetup setup_;
   BoardMemory memory_;
   AnswerWatch answers_;
-  std::optional<PortTraverser> traverser_;
-  std::optional<TraverserWatch> watch_;  // of one inside
+  std::optional<PortTraverser> static_traverser_;
+  ExternalTraverser* external_ = nullptr;  // null: it is inside
+  std::optional<TraverserWatch> watch_;    // of one inside
   ChipInputs inputs_;
   uint64_t cycle_ = 0;
   uint64_t cycles_ = 0;  // of the frame, once it has ended
@@ -78,16 +90,21 @@ class Board {
   uint64_t busy_cycles_ = 0, dropped_depth_ = 0, cast_ = 0;
   LevelStatistics rays_;
   EnumArray<ImportKind, LevelStatistics, kImportKinds> intersections_;
-  uint64_t work_ = 0;  // transfers, and lines that the caches of a traverser inside give
+  std::optional<TileWatch> tiles_;  // where tiles' costs are asked for
+  uint64_t work_ = 0;               // transfers, and lines that the caches of a traverser inside give
   ProgressWatch progress_;
 };
 
 }  // namespace chip
 
-/// Draws one frame, as run_chip() does, on a chip for `options.configuration`. `options.device`, `tiles` and
-/// `own_policy` have no meaning here, nor has `tracer` with a traverser inside, or `tree` with another. Throws
-/// InputError for options out of range or a configuration that the chip has not, ChipFault, TraverserFault,
-/// ChipStalled, also where an answer of the memory does not come, and whatever the chip's clock() or the tracer throws.
+/// The model of the chip of `options.configuration` around these units. If they have no notion of time it changes the
+/// options: no traverser needs any then, and hits come from the static one, at the ports.
+std::unique_ptr<ChipDevice> make_chip_around(ChipOptions& options, std::unique_ptr<ComputeUnit> device);
+
+/// Draws one frame on a chip for `options.configuration`. `tracer` has no meaning with a traverser inside, nor has
+/// `tree` with another. Throws InputError for options out of range or a configuration that the chip has not, ChipFault,
+/// TraverserFault, ChipStalled, also where an answer of the memory does not come, and whatever the chip's clock() or
+/// the tracer throws.
 ChipResult run_board(const ChipOptions& options, ChipDevice& chip, FrameBegin begin = FrameBegin::Reset);
 
 }  // namespace raypool

@@ -2,12 +2,15 @@
 // order, each line with its last beat when the memory has it.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <deque>
 #include <stdexcept>
 
+#include "chip/memory_rows.hpp"
 #include "config/configuration.hpp"
 #include "machine/chip_device.hpp"
 #include "machine/memory.hpp"
@@ -27,18 +30,26 @@ class LineStore {
   virtual void write(bool traverser, const MemoryRequest& request) = 0;
 };
 
-/// Whatever is asked, a read is over so many cycles later.
+/// A read takes so many cycles, and what its row costs.
 class FixedLatencyStore : public LineStore {
  public:
   /// `tree`: the traverser's; null: it has none. Both must outlive it.
-  FixedLatencyStore(Memory& memory, Memory* tree, uint64_t latency) : memory_(memory), tree_(tree), latency_(latency) {}
+  FixedLatencyStore(Memory& memory, Memory* tree, const ChipConfiguration& chip)
+      : memory_(memory), tree_(tree), latency_(chip.memory_latency), rows_{MemoryRows(chip), MemoryRows(chip)} {}
+  /// Without rows.
+  FixedLatencyStore(Memory& memory, Memory* tree, uint64_t latency)
+      : FixedLatencyStore(memory, tree, ChipConfiguration()) {
+    latency_ = latency;
+  }
 
   uint64_t read(bool traverser, uint32_t address, Line& line) override {
+    const uint64_t latency = latency_ + rows_[traverser].access(address);
     for (Beat& beat : line)
       for (uint32_t& word : beat) word = of(traverser).load(address), address += 4;
-    return latency_;
+    return latency;
   }
   void write(bool traverser, const MemoryRequest& request) override {
+    rows_[traverser].access(request.address);
     for (uint32_t word = 0; word < kBeatWords; ++word)
       if ((request.mask >> word & 1) != 0) of(traverser).store(request.address + 4 * word, request.data[word]);
   }
@@ -52,6 +63,7 @@ class FixedLatencyStore : public LineStore {
   Memory& memory_;
   Memory* tree_;
   uint64_t latency_;
+  std::array<MemoryRows, 2> rows_;  // [traverser]
 };
 
 class BoardMemory {
@@ -112,5 +124,14 @@ class BoardMemory {
   std::deque<Line> lines_;
   uint32_t next_beat_ = 0;  // of the oldest line
 };
+
+/// Throws InputError for a memory that is faster than the chip's port can be.
+inline void check_memory_latency(const ChipConfiguration& chip) {
+  const uint64_t least = BoardMemory::least_latency(chip);
+  if (chip.memory_latency >= least) return;
+  throw InputError(
+      fmt::format("chip.memory.latency is {}; the chip in hardware takes {} at least, with {} cycles a beat",
+                  chip.memory_latency, least, chip.memory_cycles_per_beat));
+}
 
 }  // namespace raypool::chip

@@ -1,8 +1,9 @@
-// Frames on a board, on the model of the chip as one piece, against the native renderer.
+// Frames on a board, on the model of the chip, against the native renderer.
 #include "chip/board.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -85,9 +86,6 @@ std::string error_of(BoardRun& board) {
 }
 
 TEST(Board, RefusesWhatTheChipHasNot) {
-  BoardRun modelled({"", 4, 4, 1, 8, 8, 1});
-  modelled.run.options.configuration.chip.traverser = TraverserName::Modelled;
-  EXPECT_NE(error_of(modelled).find("--traverser static"), std::string::npos);
   BoardRun early({"", 4, 4, 1, 8, 8, 1});
   early.run.options.configuration.chip.memory_latency = 8;
   EXPECT_NE(error_of(early).find("chip.memory.latency is 8; the chip in hardware takes 9 at least"), std::string::npos);
@@ -131,6 +129,68 @@ std::string fault_of(TreeBoard& board, TreeFaultCode code) {
 }
 
 TEST(Board, WithATraverserInsideDraws) { EXPECT_EQ(error_of(*std::make_unique<TreeBoard>()), ""); }
+
+TEST(Board, CountsWhatItsTraverserHasDoneInEachFrame) {
+  TreeBoard board;
+  const test::RealFrame& run = board.run;
+  const uint32_t rays = run.options.configuration.chip.hardware_traverser_rays;
+  for (const FrameBegin begin : {FrameBegin::Reset, FrameBegin::Next}) {
+    const ChipResult result = run_board(run.options, *board.device, begin);
+    ASSERT_TRUE(result.traversal);
+    const TraverserWork& work = *result.traversal;
+    EXPECT_EQ(work.rays, result.rays());
+    EXPECT_GT(work.most_rays, 1u);
+    EXPECT_LE(work.most_rays, rays);
+    EXPECT_GT(work.ray_cycles, work.rays * BoxPipe::kStages);
+    EXPECT_LE(work.ray_cycles, result.cycles * rays);
+
+    const auto lookups = [](const CacheWork& cache) { return cache.hits + cache.misses + cache.joined; };
+    EXPECT_EQ(lookups(work.node_cache), work.boxes.tests);
+    EXPECT_EQ(work.boxes.waiting, 0u);
+    EXPECT_GT(work.leaves, 0u);
+    EXPECT_GE(work.triangles.tests, work.leaves);
+    EXPECT_LE(work.triangles.tests, work.leaves * 4);
+    EXPECT_GE(lookups(work.triangle_cache), work.leaves) << "the exit reads the triangles of hits once more";
+    EXPECT_GT(work.triangles.waiting, 0u) << "two lanes share the pipe";
+
+    EXPECT_GT(work.deepest_stack, 0u);
+    EXPECT_LE(work.stack_fills, work.stack_spills);
+    EXPECT_EQ(work.memory_lines, work.node_cache.misses + work.triangle_cache.misses + work.stack_fills);
+    EXPECT_EQ(work.memory_quadwords, 2 * work.stack_spills);
+  }
+}
+
+// What a ray visits does not depend on time.
+TEST(Board, CountsTheTestsThatTheTracerMakesOfTheSameRays) {
+  TreeBoard board;
+  const test::RealFrame& run = board.run;
+  Traversal traversal(run.scene);
+  traversal.compress_nodes(run.options.configuration.chip.hardware_traverser_box_bits);
+  chip::FixedLatencyStore store(board.run.image.memory, &board.tree.memory, run.options.configuration.chip);
+  chip::Board frame(run.options, *board.device, store);
+  Ray ray{};
+  uint32_t beats = 0;
+  TraversalCounts expected;
+  while (!frame.ended()) {
+    const ChipOutputs& outputs = board.device->outputs();
+    if (outputs.ray_valid && outputs.traverser.ray_ready) {
+      std::copy(outputs.ray_data.begin(), outputs.ray_data.end(), ray.begin() + beats++ * kBeatWords);
+      if (outputs.ray_last) {
+        beats = 0;
+        Hit hit;
+        if ((ray[word::kFlags] & kShadowFlag) != 0)
+          traversal.occluded(to_query(ray), &expected);
+        else
+          traversal.nearest(to_query(ray), hit, &expected);
+      }
+    }
+    frame.clock();
+  }
+  const TraverserWork work = *frame.result().traversal;
+  EXPECT_EQ(work.boxes.tests, expected.nodes);
+  EXPECT_EQ(work.leaves, expected.blocks);
+  EXPECT_EQ(work.triangles.tests, expected.triangles);
+}
 
 TEST(Board, SaysWhatOfTheTreeIsNone) {
   const auto expect = [](TreeFaultCode code, const std::string& what, const std::function<void(TreeBoard&)>& change) {

@@ -2,30 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <stdexcept>
-
-#include "chip/chip_module.hpp"
-#include "chip/fixed_latency_memory.hpp"
-#include "chip/module_tree.hpp"
-#include "chip/simulation.hpp"
+#include "bits.hpp"
 
 namespace raypool {
-
-namespace {
-
-/// The chip with its own memory.
-struct System {
-  explicit System(const ChipOptions& options)
-      : chip("chip", options), memory("memory", *options.memory, options.configuration.chip.memory_latency) {
-    chip.memory.bind(memory.socket);
-  }
-
-  chip::Simulation simulation;
-  chip::Chip chip;
-  chip::FixedLatencyMemory memory;
-};
-
-}  // namespace
 
 std::string fault_sentence(uint32_t unit, const Fault& fault) {
   const char* meaning = "of an unknown kind";
@@ -60,13 +39,6 @@ std::string fault_sentence(uint32_t unit, const Fault& fault) {
   }
   return fmt::format("compute unit {} stopped with fault {} ({}) in warp {} at PC {}", unit, to_underlying(fault.code),
                      meaning, fault.warp, fault.pc);
-}
-
-ChipResult run_chip(const ChipOptions& options) { return System(options).chip.draw(); }
-
-std::string chip_modules(const ChipOptions& options) {
-  const System system(options);
-  return chip::module_tree();
 }
 
 }  // namespace raypool

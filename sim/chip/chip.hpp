@@ -1,6 +1,5 @@
-// The whole chip, simulated with SystemC: ray pool, traverser, intersection pool, controller and memory port around one
-// device of 1, 2 or 4 compute units, whichever engine it is. docs/chip.md describes the blocks, their timing, and why
-// the chip cannot lock up.
+// A frame: what a chip draws it with, and what comes of it. docs/chip.md describes the chip's blocks, their timing, and
+// why it cannot lock up.
 #pragma once
 
 #include <array>
@@ -17,17 +16,20 @@
 #include "isa/isa.hpp"
 #include "kernel/kernels.hpp"
 #include "machine/compute_unit.hpp"
-#include "machine/kernel_policy.hpp"
 #include "machine/memory.hpp"
+#include "machine/traverser_work.hpp"
 #include "machine/tree_fault.hpp"
 #include "machine/warp_cycles.hpp"
 #include "scene/ray_counts.hpp"
-#include "traverser/work.hpp"
 
 namespace raypool {
 
+namespace chip {
+class ExternalTraverser;
+}
+
 struct ChipProgress {
-  double pixels_done = 0;  ///< share of the image's pixels of which no ray is left, 0 .. 1
+  double pixels_done = 0;  ///< share of the image's pixels that have been cast, 0 .. 1
   uint64_t cycles = 0;
   uint64_t rays = 0;  ///< traced
 };
@@ -43,10 +45,10 @@ struct RunLimits {
 };
 
 struct ChipOptions {
-  Configuration configuration;    ///< of the unit and of the chip
-  ComputeUnit* device = nullptr;  ///< fits `configuration`; run_chip resets it and leaves its counters to be read
-  Memory* memory = nullptr;       ///< program and materials
-  uint32_t program_length = 0;    ///< instructions, from address 0
+  Configuration configuration;                            ///< of the unit and of the chip
+  bool timed = true;                                      ///< the chip's units have a notion of time
+  Memory* memory = nullptr;                               ///< program and materials
+  uint32_t program_length = 0;                            ///< instructions, from address 0
   EnumArray<RayKernel, uint32_t, kRayKernels> entries{};  ///< PC of each
   RecordLayout layout;  ///< of the intersections that the program imports; `configuration` says how many words
   /// Words kTileWidthLog2, kTileMask, kWidth and kHeight are set by the chip, whatever they hold.
@@ -55,6 +57,9 @@ struct ChipOptions {
   uint32_t depth = 1;              ///< 1: eye and shadow rays only; up to kLargestDepth (scene/native_renderer.hpp)
   bool reflections = true;  ///< false: casts none, whatever the depth; the same picture where no material reflects
   RayTracer* tracer = nullptr;
+  /// At the ports of a chip without one inside (external_traverser.hpp), which then needs no tracer; null: the one of
+  /// constant speed.
+  chip::ExternalTraverser* traverser = nullptr;
   TreeImage* tree = nullptr;  ///< of a traverser in hardware, which needs no tracer; its stacks are written
   FrameSink* frame = nullptr;
 
@@ -62,11 +67,10 @@ struct ChipOptions {
   std::vector<uint32_t> tiles;
   chip::TileCosts* tile_costs = nullptr;  ///< gets what each of them costs; may be null
   /// What rays have visited of the tree, last what they visited last, when this tile of `tiles` is cast, of whose
-  /// predecessor that is not: a modelled traverser's caches then hold it, and that takes no time. Asked together with
-  /// `tile_costs` only; may be empty.
+  /// predecessor that is not: the caches of a traverser inside then hold it, and that takes no time. Asked together
+  /// with `tile_costs` only; may be empty.
   std::function<VisitList(uint32_t tile)> visited_before;
 
-  PolicyMaker own_policy;                             ///< makes one of the caller's own, in place of the one named
   std::function<void(const ChipProgress&)> progress;  ///< called now and then, and at the end
   /// So many cycles in which nothing is done, and nothing is due, are an error; 0: never looked at.
   uint64_t watchdog_cycles = 100'000;
@@ -100,9 +104,8 @@ struct ChipResult {
   // Rays.
   RayCounts ray_counts;
   uint64_t rays() const { return ray_counts.traced(); }
-  uint64_t dropped_depth = 0;         ///< rays beyond the depth limit; never traced, with chip.culling never cast
-  uint64_t contributions = 0;         ///< to the frame buffer
-  std::optional<uint32_t> held_peak;  ///< most unfinished pixels at a time; a chip in hardware does not say
+  uint64_t dropped_depth = 0;  ///< rays beyond the depth limit; never traced, with chip.culling never cast
+  uint64_t contributions = 0;  ///< to the frame buffer
 
   struct Kernel {
     uint64_t launches = 0;
@@ -165,13 +168,6 @@ struct LimitPassed : ChipStalled {
       : ChipStalled(passed + "; " + state), limit(passed), rest(state) {}
   std::string limit, rest;
 };
-
-/// Draws one frame. Throws InputError for options out of range, ChipFault, ChipStalled, and whatever a unit's clock()
-/// or the tracer throws. One run at a time in a process; any number of them one after the other.
-ChipResult run_chip(const ChipOptions& options);
-
-/// The modules of that chip, with their ports and what each is bound to: a line each.
-std::string chip_modules(const ChipOptions& options);
 
 /// One sentence: code, its meaning, unit, warp and PC.
 std::string fault_sentence(uint32_t unit, const Fault& fault);

@@ -1,7 +1,6 @@
 // What a frame has come to, gathered from the modules of the chip.
 #include <algorithm>
 
-#include "chip/chip_module.hpp"
 #include "chip/frame_figures.hpp"
 #include "machine/warp_cycles.hpp"
 #include "scene/native_renderer.hpp"
@@ -76,10 +75,10 @@ void collect_ceilings(const ChipOptions& options, const FrameFigures& figures, C
   add("memory_port", figures.memory_port_busy, result.cycles);
   add("traverser", result.rays(), figures.traverser.most_rays);
   if (result.traversal) {
-    const TraverserSizes sizes(options.configuration.chip);
-    add("box_pipes", result.traversal->boxes.tests, result.cycles * sizes.box_pipes);
-    add("triangle_pipes", result.traversal->triangles.tests, result.cycles * sizes.triangle_pipes);
-    add("rays_in_flight", result.traversal->ray_cycles, result.cycles * sizes.rays);
+    const ChipConfiguration& chip = options.configuration.chip;
+    add("box_pipes", result.traversal->boxes.tests, result.cycles * chip.hardware_traverser_lanes);
+    add("triangle_pipes", result.traversal->triangles.tests, result.cycles * chip.hardware_traverser_triangle_pipes);
+    add("rays_in_flight", result.traversal->ray_cycles, result.cycles * chip.hardware_traverser_rays);
   }
   add("latency", own_cycles(result.warp_cycles), result.warp_cycles.busy + result.warp_cycles_without_kernel);
   std::sort(result.ceilings.begin(), result.ceilings.end(),
@@ -90,7 +89,6 @@ void collect_rays(const ChipOptions& options, const FrameFigures& figures, ChipR
   result.ray_counts = figures.traverser.rays;
   result.dropped_depth = figures.dropped_depth + figures.traverser.deepest;
   result.contributions = figures.contributions;
-  result.held_peak = figures.held_peak;
   result.kernels = figures.kernels->kernels();
   result.ray_counts.count_left_out(
       result.kernels[RayKernel::CastSecondary].threads + result.kernels[RayKernel::CastSecondaryDirect].threads,
@@ -128,52 +126,6 @@ ChipResult chip_result(const ChipOptions& options, const FrameFigures& figures) 
   result.traverser_batches = figures.traverser.batches;
   result.traverser_stall_batches = figures.traverser.stall_batches;
   return result;
-}
-
-Counts Chip::counts() const {
-  Counts counts{};
-  ComputeUnit& device = *options_.device;
-  const RayCounts& rays = traverser_->counts().rays;
-  const auto set = [&](size_t number, uint64_t value) { counts[number] = static_cast<double>(value); };
-  set(count::kCycles, clock_.cycle());
-  set(count::kEyeRays, rays.eye.traced);
-  set(count::kReflectionRays, rays.reflection.traced);
-  set(count::kShadowRays, rays.shadow.traced);
-  set(count::kBusyCycles, device.counter(counter::kBusyCycles));
-  set(count::kInstructions, device.counter(counter::kInstructions));
-  set(count::kThreadInstructions, device.counter(counter::kThreadInstructions));
-  set(count::kRayPort, rays_.busy_cycles());
-  set(count::kIntersectionPort, intersections_.busy_cycles());
-  set(count::kMemoryPort, memory_port_.busy_cycles());
-  for (size_t type = 0; type < kAluTypes; ++type) {
-    set(count::kUnused + type, device.counter(counter::kUnused + static_cast<int>(type)));
-    set(count::kIssued + type, device.counter(counter::kIssued + static_cast<int>(type)));
-  }
-  return counts;
-}
-
-ChipResult Chip::collect() const {
-  FrameFigures figures;
-  figures.timed = options_.device->timed();
-  figures.cycles = clock_.cycle();
-  figures.units = options_.device->units();
-  figures.counter = [this](int number) { return options_.device->counter(number); };
-  figures.kernels = &controller_->kernels();
-  figures.busy_cycles = device_.busy_cycles();
-  figures.held_peak = controller_->held_peak();
-  figures.rays = &rays_.fill();
-  for (const ImportKind kind : {ImportKind::Normal, ImportKind::Shadow, ImportKind::Direct})
-    figures.intersections[kind] = &intersections_.fill(kind);
-  figures.dropped_depth = rays_.dropped_depth();
-  figures.contributions = frame_.taken();
-  figures.ray_port_busy = rays_.busy_cycles();
-  figures.intersection_port_busy = intersections_.busy_cycles();
-  figures.memory_port_busy = memory_port_.busy_cycles();
-  figures.memory_reads = memory_port_.reads();
-  figures.memory_writes = memory_port_.writes();
-  figures.traverser = traverser_->counts();
-  figures.work = traverser_->work();
-  return chip_result(options_, figures);
 }
 
 }  // namespace raypool::chip

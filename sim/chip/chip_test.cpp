@@ -1,5 +1,3 @@
-#include "chip/chip.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,13 +11,11 @@ using test::FrameRun;
 
 struct Shape {
   uint32_t warps, lanes, units;
-  ControllerName controller = ControllerName::Ledger;
 };
 
 std::string shape_name(const testing::TestParamInfo<Shape>& shape) {
   return std::to_string(shape.param.warps) + "w" + std::to_string(shape.param.lanes) + "c" +
-         std::to_string(shape.param.units) + "u" +
-         (shape.param.controller == ControllerName::Counters ? "Counting" : "");
+         std::to_string(shape.param.units) + "u";
 }
 
 class EveryShape : public testing::TestWithParam<Shape> {};
@@ -31,7 +27,6 @@ TEST_P(EveryShape, DrawsEveryImageWithoutLosingARay) {
   for (const auto& [width, height, depth] : images) {
     SCOPED_TRACE(testing::Message() << width << "x" << height << " depth " << depth);
     FrameRun run(shape.warps, shape.lanes, shape.units, width, height, depth);
-    run.options.configuration.chip.controller = shape.controller;
     run.expect_conserved(run.go());
   }
 }
@@ -44,7 +39,6 @@ TEST_P(EveryShape, SurvivesFullPools) {
     for (const int rays : {512, 64, 1}) {
       SCOPED_TRACE(testing::Message() << packages << " intersections, " << rays << " rays");
       FrameRun run(shape.warps, shape.lanes, shape.units, rays == 1 ? 11 : 31, 23, 6, 30);
-      run.options.configuration.chip.controller = shape.controller;
       run.world.misses = run.world.blocked = 0;
       run.world.shadows = run.world.mirrors = 16;
       run.options.configuration.chip.intersection_pool_size = run.options.configuration.chip.held_limit = packages;
@@ -60,7 +54,6 @@ TEST_P(EveryShape, SurvivesFullPoolsWhenTheTraverserShades) {
     for (const int rays : {512, 64, 1}) {
       SCOPED_TRACE(testing::Message() << packages << " intersections, " << rays << " rays");
       FrameRun run(shape.warps, shape.lanes, shape.units, rays == 1 ? 11 : 31, 23, 6, 30);
-      run.options.configuration.chip.controller = shape.controller;
       run.world.misses = 0;
       run.world.shadows = run.world.mirrors = 16;
       ChipConfiguration& chip = run.options.configuration.chip;
@@ -82,7 +75,6 @@ TEST_P(EveryShape, SurvivesFullPoolsWhenRaysAreLeftOut) {
     for (const int rays : {512, 64, 1}) {
       SCOPED_TRACE(testing::Message() << rays << " rays" << (black ? ", black ones" : ""));
       FrameRun run(shape.warps, shape.lanes, shape.units, rays == 1 ? 11 : 31, 23, 6, 30);
-      run.options.configuration.chip.controller = shape.controller;
       run.world = {1, 0, 0, 9, rays == 64 ? 16 : 13, black};
       ChipConfiguration& chip = run.options.configuration.chip;
       chip.culling = true;
@@ -107,7 +99,6 @@ TEST_P(EveryShape, DrawsWithoutTheRemedyAndWithoutLaunchingAhead) {
   const Shape shape = GetParam();
   for (const bool remedy : {false, true}) {
     FrameRun run(shape.warps, shape.lanes, shape.units, 29, 23, 3);
-    run.options.configuration.chip.controller = shape.controller;
     run.options.configuration.chip.window_remedy = remedy;
     run.options.configuration.chip.launch_ahead = false;
     run.expect_conserved(run.go());
@@ -119,21 +110,12 @@ INSTANTIATE_TEST_SUITE_P(Chip, EveryShape,
                                          Shape{4, 4, 4}, Shape{1, 2, 4}, Shape{8, 8, 1}, Shape{8, 8, 2}, Shape{8, 8, 4},
                                          Shape{16, 32, 2}, Shape{32, 32, 1}, Shape{32, 32, 2}, Shape{32, 32, 4}),
                          shape_name);
-INSTANTIATE_TEST_SUITE_P(
-    CountingChip, EveryShape,
-    testing::Values(Shape{1, 1, 1, ControllerName::Counters}, Shape{1, 1, 4, ControllerName::Counters},
-                    Shape{4, 4, 2, ControllerName::Counters}, Shape{1, 2, 4, ControllerName::Counters},
-                    Shape{8, 8, 1, ControllerName::Counters}, Shape{8, 8, 4, ControllerName::Counters},
-                    Shape{32, 32, 2, ControllerName::Counters}),
-    shape_name);
-
 TEST_P(EveryShape, DrawsWithAnyPortsThresholdsAndBatches) {
   const Shape shape = GetParam();
   for (const auto& [overhead, per_beat] : {std::pair{1, 1}, {1, 2}, {7, 3}}) {
     for (const int threshold : {0, 1, 1000}) {
       SCOPED_TRACE(testing::Message() << overhead << " cycles, " << per_beat << " a beat, thresholds " << threshold);
       FrameRun run(shape.warps, shape.lanes, shape.units, 19, 11, 4);
-      run.options.configuration.chip.controller = shape.controller;
       ChipConfiguration& chip = run.options.configuration.chip;
       chip.ray_pool_overhead = chip.intersection_pool_overhead = overhead;
       chip.ray_pool_cycles_per_beat = chip.intersection_pool_cycles_per_beat = per_beat;
@@ -167,16 +149,14 @@ TEST(Chip, SurvivesPoolsSmallerThanAKernel) {
 }
 
 TEST(Chip, DrawsWhateverTheRandomDelays) {
-  for (const ControllerName controller : {ControllerName::Ledger, ControllerName::Counters})
-    for (uint32_t seed = 1; seed <= 24; ++seed) {
-      SCOPED_TRACE(testing::Message() << "seed " << seed);
-      FrameRun run(seed % 3 == 0 ? 2 : 8, seed % 2 == 0 ? 4 : 8, 1 << seed % 3, 37, 29, 1 + static_cast<int>(seed % 5),
-                   1 << seed % 9, seed);
-      run.world.shadows = 8 + static_cast<int>(seed % 9);
-      run.world.mirrors = 16 - static_cast<int>(seed % 7);
-      run.options.configuration.chip.controller = controller;
-      run.expect_conserved(run.go());
-    }
+  for (uint32_t seed = 1; seed <= 24; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    FrameRun run(seed % 3 == 0 ? 2 : 8, seed % 2 == 0 ? 4 : 8, 1 << seed % 3, 37, 29, 1 + static_cast<int>(seed % 5),
+                 1 << seed % 9, seed);
+    run.world.shadows = 8 + static_cast<int>(seed % 9);
+    run.world.mirrors = 16 - static_cast<int>(seed % 7);
+    run.expect_conserved(run.go());
+  }
 }
 
 TEST(Chip, GivesTheSameResultTwice) {
@@ -194,16 +174,6 @@ TEST(Chip, TakesRaysFromTheWindowWithTheRemedy) {
     return run.go().cycles;
   };
   EXPECT_LT(cycles(true), cycles(false));
-}
-
-TEST(Chip, HoldsNoMorePixelsThanAllowed) {
-  FrameRun run(8, 8, 2, 96, 96, 3);
-  run.options.configuration.chip.held_limit =
-      100;  // one tile of 64, and another as soon as 28 pixels of it are finished
-  const ChipResult result = run.go();
-  run.expect_conserved(result);
-  EXPECT_GE(result.held_peak, 64u);
-  EXPECT_LE(result.held_peak, 100u);
 }
 
 TEST(Chip, CountsKernelsAndThreads) {
@@ -289,7 +259,7 @@ TEST(Chip, EndsWithItsStateWhenNothingMoves) {
   } catch (const ChipStalled& stalled) {
     EXPECT_NE(std::string(stalled.what()).find("locked up"), std::string::npos) << stalled.what();
     EXPECT_NE(std::string(stalled.what()).find("ray pool 0 of 512"), std::string::npos) << stalled.what();
-    EXPECT_NE(std::string(stalled.what()).find("unit 0: running"), std::string::npos) << stalled.what();
+    EXPECT_NE(std::string(stalled.what()).find("unit 0 runs a kernel"), std::string::npos) << stalled.what();
   }
 }
 
@@ -323,7 +293,7 @@ TEST(Chip, LetsErrorsOfTheTracerThrough) {
   FrameRun run(8, 8, 1, 64, 64, 1);
   run.options.frame = &run.frame;
   run.options.tracer = &broken;
-  EXPECT_THROW(run_chip(run.options), std::out_of_range);
+  EXPECT_THROW(run_board(run.options, *make_chip_around(run.options, std::move(run.device))), std::out_of_range);
 }
 
 TEST(Chip, RefusesOptionsOutOfRange) {

@@ -2,16 +2,20 @@
 
 #include <cstring>
 
+#include "chip/local_time.hpp"
+
 namespace raypool::chip {
 
-FixedLatencyMemory::FixedLatencyMemory(const sc_core::sc_module_name& name, Memory& memory, uint64_t latency)
-    : sc_module(name), memory_(memory), latency_(sc_core::sc_time::from_value(latency * kCyclePicoseconds)) {
+FixedLatencyMemory::FixedLatencyMemory(const sc_core::sc_module_name& name, Memory& memory,
+                                       const ChipConfiguration& chip)
+    : sc_module(name), memory_(memory), latency_(chip.memory_latency), rows_(chip) {
   socket.register_b_transport(this, &FixedLatencyMemory::b_transport);
 }
 
 void FixedLatencyMemory::b_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay) {
+  const uint64_t row = rows_.access(static_cast<uint32_t>(payload.get_address()));
   transfer(payload, memory_);
-  if (payload.is_read()) delay += latency_;
+  if (payload.is_read()) delay += sc_core::sc_time::from_value((latency_ + row) * kCyclePicoseconds);
 }
 
 void transfer(tlm::tlm_generic_payload& payload, Memory& memory) {

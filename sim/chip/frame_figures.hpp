@@ -11,7 +11,7 @@
 #include "chip/traverser_counts.hpp"
 #include "enum_array.hpp"
 #include "machine/compute_unit.hpp"
-#include "traverser/work.hpp"
+#include "machine/traverser_work.hpp"
 
 namespace raypool::chip {
 
@@ -22,7 +22,6 @@ struct FrameFigures {
   std::function<uint64_t(int)> counter;  ///< of the units, summed; see namespace counter
   const KernelTimes* kernels = nullptr;
   uint64_t busy_cycles = 0;  ///< in which a kernel ran, summed over the units
-  std::optional<uint32_t> held_peak;
 
   const LevelStatistics* rays = nullptr;
   EnumArray<ImportKind, const LevelStatistics*, kImportKinds> intersections{};

@@ -5,8 +5,6 @@
 #include <stdexcept>
 
 #include "config/limits.hpp"
-#include "machine/tile_walk.hpp"
-#include "scene/native_renderer.hpp"
 
 namespace raypool::chip {
 
@@ -38,6 +36,36 @@ std::array<uint32_t, kArguments> frame_arguments(const ChipOptions& options) {
   arguments[argument::kWidth] = options.width;
   arguments[argument::kHeight] = options.height;
   return arguments;
+}
+
+FrameSetup frame_setup(const ChipOptions& options) {
+  FrameSetup setup;
+  setup.program_length = options.program_length;
+  setup.memory_limit = options.memory->size();
+  setup.arguments = frame_arguments(options);
+  setup.entries = options.entries;
+  setup.width = options.width;
+  setup.height = options.height;
+  setup.depth = options.depth;
+  setup.reflections = secondary_kernel(options.depth, options.reflections) == RayKernel::CastSecondary;
+  if (options.tree != nullptr) setup.tree = options.tree->setup;
+  setup.tree.layout = options.layout;
+  setup.tiles = options.tiles;
+  return setup;
+}
+
+TileWalk tile_walk(const Configuration& configuration, uint32_t width, uint32_t height) {
+  TileWalk walk(configuration.chip.tile_order, configuration.contents(), configuration.chip.held_limit);
+  walk.start(width, height);
+  return walk;
+}
+
+std::vector<PixelTile> along_walk(const Configuration& configuration, uint32_t width, uint32_t height) {
+  std::vector<PixelTile> tiles;
+  TileWalk walk = tile_walk(configuration, width, height);
+  for (walk.await(); walk.busy(); walk.next())
+    tiles.push_back({walk.tile().left, walk.tile().top, walk.tile_width() * walk.tile_height()});
+  return tiles;
 }
 
 }  // namespace raypool::chip

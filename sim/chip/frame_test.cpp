@@ -21,7 +21,6 @@ TEST_P(Frame, IsThatOfTheNativeRenderer) {
   test::RealFrame run(c.warps, c.lanes, c.width, c.height, c.depth, make_cornell(), false, c.intersection_words);
   std::vector<std::unique_ptr<ComputeUnit>> units;
   for (int i = 0; i < c.units; ++i) units.push_back(make_functional_unit(run.options.configuration, run.image.memory));
-  run.set_device(make_multiprocessor(std::move(units), static_cast<int>(run.configuration.intersection_beats())));
 
   NativeOptions native;
   native.width = c.width;
@@ -29,7 +28,8 @@ TEST_P(Frame, IsThatOfTheNativeRenderer) {
   native.depth = c.depth;
   NativeStatistics statistics;
   const FrameBuffer expected = render_native(run.scene, run.image, run.tracer, native, &statistics);
-  const ChipResult result = run_chip(run.options);
+  const ChipResult result =
+      run.draw(make_multiprocessor(std::move(units), static_cast<int>(run.configuration.intersection_beats())));
 
   EXPECT_TRUE(run.frame == expected);
   const auto same = [](const RayCounts::Kind& a, const RayCounts::Kind& b) {
@@ -45,9 +45,8 @@ TEST_P(Frame, IsThatOfTheNativeRenderer) {
 
 TEST(FrameWithoutTime, SpendsNoneInTheTraverser) {
   test::RealFrame run(4, 4, 32, 24, 3, make_cornell());
-  run.options.configuration.chip.traverser = TraverserName::Modelled;
-  run.set_device(make_functional_unit(run.options.configuration, run.image.memory));
-  EXPECT_FALSE(run_chip(run.options).traversal);
+  run.options.configuration.chip.traverser = TraverserName::Hardware;
+  EXPECT_FALSE(run.draw(make_functional_unit(run.options.configuration, run.image.memory)).traversal);
 }
 
 struct Drawn {
@@ -59,8 +58,7 @@ struct Drawn {
 
 Drawn draw_on_chip(const Scene& scene, uint32_t depth, bool culling) {
   test::RealFrame run(4, 4, 32, 24, depth, scene, culling);
-  run.set_device(make_functional_unit(run.options.configuration, run.image.memory));
-  const ChipResult result = run_chip(run.options);
+  const ChipResult result = run.draw(make_functional_unit(run.options.configuration, run.image.memory));
   return {run.frame, result.ray_counts, result.dropped_depth, result.kernels[RayKernel::CastSecondary].threads};
 }
 

@@ -13,8 +13,6 @@
 #include <utility>
 #include <vector>
 
-#include "chip/interfaces.hpp"
-
 namespace raypool::chip {
 
 namespace {
@@ -68,15 +66,6 @@ class Tree {
     return object == nullptr ? "a channel without a name" : object->name();
   }
 
-  std::string bound_to(const sc_core::sc_port_base& port) const {
-    const auto* several = dynamic_cast<const sc_core::sc_port_b<KernelEventsIf>*>(&port);
-    if (several == nullptr || several->size() < 2) return bound_to(channel(port));
-    std::string names;
-    for (int i = 0; i < several->size(); ++i)
-      names += (i == 0 ? "" : ", ") + bound_to({(*several)[i], port.get_interface_type()});
-    return names;
-  }
-
   void show(const sc_core::sc_object& object, int depth) {
     const auto line = [&](const std::string& what) {
       text_ += fmt::format("{:<24}{}\n", std::string(2 * static_cast<size_t>(depth), ' ') + object.basename(), what);
@@ -87,7 +76,7 @@ class Tree {
     if (const auto* port = dynamic_cast<const sc_core::sc_port_base*>(&object)) {
       line(fmt::format("{} -> {}",
                        socket == nullptr ? "port of " + type_name(port->get_interface_type()) : "initiator " + bits,
-                       bound_to(*port)));
+                       bound_to(channel(*port))));
     } else if (const auto* target = dynamic_cast<const sc_core::sc_export_base*>(&object)) {
       line(socket == nullptr ? "export of " + type_name(target->get_interface_type()) : "target " + bits);
     } else if (dynamic_cast<const sc_core::sc_module*>(&object) != nullptr) {

@@ -2,48 +2,64 @@
 
 #include <gtest/gtest.h>
 
-#include "chip/chip_module.hpp"
+#include "chip/board_modules.hpp"
+#include "chip/frame_setup.hpp"
 #include "chip/simulation.hpp"
 #include "chip/test_banked_dram.hpp"
-#include "chip/test_real_frame.hpp"
-#include "machine/cycle_unit.hpp"
+#include "chip/test_board.hpp"
 
 namespace raypool::chip {
 namespace {
 
-TEST(ModuleTree, SaysWhatEachPortIsBoundTo) {
-  test::RealFrame run(2, 2, 8, 8, 1);
-  run.set_device(std::make_unique<CycleUnit>(run.options.configuration, run.image.memory));
-  const std::string text = chip_modules(run.options);
-  const auto has = [&](const std::string& line) {
-    EXPECT_NE(text.find(line + "\n"), std::string::npos) << line << "\n" << text;
-  };
-  has("chip                    Chip");
-  has("  device_host           DeviceHost");
-  has("    memory              port of MemoryIf -> chip.memory_port.device");
-  has("    kernel_events       port of KernelEventsIf -> chip.controller.kernel_events, "
-      "chip.pixel_ledger.kernel_events, "
-      "chip.traverser.kernel_events");
-  has("    watched             port of WatchedIf -> chip");
-  has("    rays                port of RaySourceIf -> chip.ray_pool.traverser");
-  has("  memory                initiator socket, 128 bits -> memory.socket");
-  has("memory                  FixedLatencyMemory");
-  has("  socket                target socket, 128 bits");
-  EXPECT_EQ(text.find("nothing"), std::string::npos) << text;
-  EXPECT_EQ(text.find("without a name"), std::string::npos) << text;
+TEST(ModuleTree, SaysWhatEachSocketIsBoundTo) {
+  test::TreeBoard board;
+  const std::string text = chip_modules(board.run.options, *board.device);
+  EXPECT_EQ(text, R"(chip                    ChipModule
+  memory                initiator socket, 128 bits -> memory.socket
+  tree                  initiator socket, 128 bits -> tree.socket
+  frame                 initiator socket, 128 bits -> frame.socket
+  host                  target socket, 32 bits
+  traverser             port of ExternalTraverserIf -> nothing
+  done                  port of sc_signal_write_if -> done
+memory                  FixedLatencyMemory
+  socket                target socket, 128 bits
+frame                   FrameBufferModule
+  socket                target socket, 128 bits
+host                    HostModule
+  socket                initiator socket, 32 bits -> chip.host
+  done                  port of sc_signal_in_if -> done
+tree                    FixedLatencyMemory
+  socket                target socket, 128 bits
+)");
+}
+
+TEST(ModuleTree, DrawsNothing) {
+  test::BoardRun board({"", 4, 4, 1, 16, 12, 1});
+  const FrameBuffer before = board.run.frame;
+  chip_modules(board.run.options, *board.device);
+  EXPECT_TRUE(board.run.frame == before);
 }
 
 TEST(ModuleTree, ShowsTheMemoryThatIsBound) {
-  test::RealFrame run(2, 2, 8, 8, 1);
-  run.set_device(std::make_unique<CycleUnit>(run.options.configuration, run.image.memory));
+  test::BoardRun board({"", 4, 4, 1, 16, 12, 1});
   Simulation simulation;
-  Chip chip("own", run.options);
-  test::BankedDram dram("dram", run.image.memory);
+  ChipModule chip("own", board.run.options, *board.device);
+  test::BankedDram dram("dram", board.run.image.memory);
+  FrameBufferModule frame("frame", board.run.sink);
+  HostModule host("host", frame_setup(board.run.options));
+  sc_core::sc_signal<bool> done{"done"};
   chip.memory.bind(dram.socket);
+  chip.frame.bind(frame.socket);
+  host.socket.bind(chip.host);
+  host.done.bind(done);
   const std::string text = module_tree();
-  EXPECT_NE(text.find("  memory                initiator socket, 128 bits -> dram.socket\n"), std::string::npos)
-      << text;
-  EXPECT_NE(text.find("dram                    BankedDram\n"), std::string::npos) << text;
+  const auto has = [&](const std::string& line) {
+    EXPECT_NE(text.find(line + "\n"), std::string::npos) << line << "\n" << text;
+  };
+  has("  memory                initiator socket, 128 bits -> dram.socket");
+  has("  tree                  initiator socket, 128 bits -> nothing");
+  has("  done                  port of sc_signal_write_if -> nothing");
+  has("dram                    BankedDram");
 }
 
 }  // namespace

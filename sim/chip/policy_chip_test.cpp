@@ -3,10 +3,16 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <random>
+#include <utility>
 
+#include "chip/board.hpp"
 #include "chip/test_frame_run.hpp"
 #include "chip/test_real_frame.hpp"
+#include "chip/tree_image.hpp"
+#include "machine/chip_model.hpp"
+#include "machine/kernel_policy.hpp"
 #include "machine/model.hpp"
 
 namespace raypool {
@@ -50,15 +56,21 @@ struct Policy {
 
 class EveryPolicy : public testing::TestWithParam<Policy> {
  protected:
-  static void choose(ChipOptions& options) {
+  static std::unique_ptr<ChipDevice> chip_around(std::unique_ptr<ComputeUnit> device, ChipOptions& options) {
     const Policy policy = GetParam();
-    if (policy.seed == 0) {
-      options.configuration.chip.policy = policy.named;
-    } else {
-      options.own_policy = [seed = policy.seed](const PolicySetup& setup) {
-        return std::make_unique<AnyPolicy>(setup, seed);
-      };
-    }
+    options.configuration.chip.policy = policy.named;
+    PolicyMaker own;
+    if (policy.seed != 0)
+      own = [seed = policy.seed](const PolicySetup& setup) { return std::make_unique<AnyPolicy>(setup, seed); };
+    return make_chip_model(options.configuration, std::move(device), own);
+  }
+  static void expect_conserved(FrameRun& run) {
+    const std::unique_ptr<ChipDevice> chip = chip_around(std::move(run.device), run.options);
+    for (test::ScriptedUnit* unit : run.units) unit->set_world(run.world);
+    test::WorldTracer tracer(run.world);
+    run.options.tracer = &tracer;
+    run.options.frame = &run.frame;
+    run.expect_conserved(run_board(run.options, *chip));
   }
 };
 
@@ -69,10 +81,7 @@ TEST_P(EveryPolicy, DrawsEveryImageWithoutLosingARay) {
         SCOPED_TRACE(testing::Message() << warps << "w" << lanes << "c, " << units << " units, " << width << "x"
                                         << height << " depth " << depth);
         FrameRun run(warps, lanes, units, width, height, depth);
-        choose(run.options);
-        run.options.configuration.chip.traverser = units == 2 ? TraverserName::Modelled : TraverserName::Static;
-        run.options.configuration.chip.modelled_traverser_tile_order = TileOrder::Hilbert;
-        run.expect_conserved(run.go());
+        expect_conserved(run);
       }
     }
   }
@@ -87,14 +96,13 @@ TEST_P(EveryPolicy, SurvivesFullPools) {
           SCOPED_TRACE(testing::Message() << warps << "w" << lanes << "c, " << units << " units, " << packages
                                           << " intersections, " << rays << " rays");
           FrameRun run(warps, lanes, units, rays < 64 ? 11 : 31, rays < 64 ? 7 : 23, 6, 30);
-          choose(run.options);
           run.world.misses = run.world.blocked = 0;
           run.world.shadows = run.world.mirrors = 16;
           ChipConfiguration& around = run.options.configuration.chip;
           around.intersection_pool_size = around.held_limit = packages;
           around.ray_pool_size = rays;
           around.shading = rays == 64 || packages == 16 ? Shading::Traverser : Shading::Kernel;
-          run.expect_conserved(run.go());
+          expect_conserved(run);
         }
       }
     }
@@ -105,10 +113,9 @@ TEST_P(EveryPolicy, DrawsWithoutTheRemedyAndWithoutLaunchingAhead) {
   for (const bool remedy : {false, true}) {
     for (const bool ahead : {false, true}) {
       FrameRun run(8, 8, 2, 29, 23, 3);
-      choose(run.options);
       run.options.configuration.chip.window_remedy = remedy;
       run.options.configuration.chip.launch_ahead = ahead;
-      run.expect_conserved(run.go());
+      expect_conserved(run);
     }
   }
 }
@@ -138,15 +145,24 @@ TEST_P(EveryPolicy, DrawsThePictureOfTheNativeRenderer) {
         SCOPED_TRACE(testing::Message() << scene.triangles.size() << " triangles, " << warps << "w" << lanes << "c, "
                                         << units << " units, " << width << "x" << height << " depth " << depth);
         test::RealFrame run(warps, lanes, width, height, depth, scene, false, units == 1 ? kIntersectionWords : 16);
-        choose(run.options);
-        run.options.configuration.chip.shading = width == 23 ? Shading::Traverser : Shading::Kernel;
-        run.set_device(make_model(run.options.configuration, run.image.memory, units).device);
+        ChipConfiguration& chip = run.options.configuration.chip;
+        chip.shading = width == 23 ? Shading::Traverser : Shading::Kernel;
+        if (units != 2) chip.traverser = TraverserName::Hardware;
+        if (units == 4) chip.tile_order = TileOrder::Hilbert;
+        const Tracer tracer(run.scene, run.image.material_base, chip);
+        std::optional<TreeImage> tree;
+        if (has_traverser(chip)) {
+          tree = make_tree_image(run.scene, tracer.traversal().bvh(), chip, run.image.material_base);
+          run.options.tree = &*tree;
+        }
+        const auto model =
+            chip_around(make_model(run.options.configuration, run.image.memory, units).device, run.options);
         NativeOptions native;
         native.width = width;
         native.height = height;
         native.depth = depth;
-        const FrameBuffer expected = render_native(run.scene, run.image, run.tracer, native);
-        EXPECT_GT(run_chip(run.options).cycles, 0u);
+        const FrameBuffer expected = render_native(run.scene, run.image, tracer, native);
+        EXPECT_GT(run_board(run.options, *model).cycles, 0u);
         EXPECT_TRUE(run.frame == expected);
       }
     }
@@ -161,9 +177,10 @@ INSTANTIATE_TEST_SUITE_P(Chip, EveryPolicy,
 TEST(FillPolicy, IsFasterWithOneUnitAndWithFour) {
   const auto cycles = [](PolicyName policy, uint32_t units) {
     test::RealFrame run(8, 8, 96, 64, 1);
+    const Configuration& configuration = run.options.configuration;
     run.options.configuration.chip.policy = policy;
-    run.set_device(make_model(run.options.configuration, run.image.memory, units).device);
-    return run_chip(run.options).cycles;
+    const auto chip = make_chip_model(configuration, make_model(configuration, run.image.memory, units).device);
+    return run_board(run.options, *chip).cycles;
   };
   EXPECT_LT(cycles(PolicyName::Fill, 1) * 5, cycles(PolicyName::Thesis, 1) * 4);
   EXPECT_LT(cycles(PolicyName::Fill, 4), cycles(PolicyName::Thesis, 4));

@@ -9,37 +9,50 @@
 
 namespace raypool::chip {
 
-PortTraverser::PortTraverser(RayTracer& tracer, const ChipConfiguration& chip, uint32_t units, uint32_t depth,
-                             bool reflections, const RecordLayout& layout)
+PortTraverser::PortTraverser(RayTracer& tracer, const ChipConfiguration& chip, uint32_t units,
+                             const RecordLayout& layout)
     : tracer_(tracer),
-      fates_(tracer, chip, depth, reflections),
+      chip_(chip),
       layout_(layout),
       beats_(raypool::IntersectionPool::beats(layout.words)),
+      capacity_(chip.intersection_pool_size),
       batch_(chip.static_traverser_batch),
       stall_cycles_(chip.static_traverser_stall_cycles),
       units_(units) {}
 
-void PortTraverser::offer(ChipInputs& inputs) const {
-  inputs.ray_ready = true;
-  inputs.free_valid = !freed_.empty();
-  if (inputs.free_valid) {
-    inputs.free_place = freed_.front().place;
-    inputs.free_shadow = freed_.front().shadow;
-  }
-  inputs.put_valid = leaving_.has_value();
-  if (inputs.put_valid) {
-    inputs.put_kind = leaving_->kind;
-    const uint32_t from = next_beat_out_ * kBeatWords;
-    for (uint32_t i = 0; i < kBeatWords; ++i)
-      inputs.put_data[i] = from + i < leaving_->record.size() ? leaving_->record[from + i] : 0;
-  }
-  inputs.contribution_valid = !contributions_.empty();
-  if (inputs.contribution_valid) inputs.contribution = contributions_.front().contribution;
-  inputs.tree_request_valid = false;
+void PortTraverser::start(const FrameSetup& setup) {
+  fates_.emplace(tracer_, chip_, setup.depth, setup.reflections);
+  next_beat_in_ = next_beat_out_ = 0;
+  rays_.clear();
+  results_ = {};
+  contributions_.clear();
+  freed_.clear();
+  leaving_.reset();
+  number_ = stalled_for_ = 0;
+  counts_ = {};
 }
 
-void PortTraverser::clock(const ChipOutputs& outputs, const ChipInputs& inputs, bool stalls) {
-  move(outputs, inputs);
+void PortTraverser::offer(TraverserPorts& ports) {
+  ports.ray_ready = true;
+  ports.free_valid = !freed_.empty();
+  if (ports.free_valid) {
+    ports.free_place = freed_.front().place;
+    ports.free_shadow = freed_.front().shadow;
+  }
+  ports.put_valid = leaving_.has_value();
+  if (ports.put_valid) {
+    ports.put_kind = leaving_->kind;
+    const uint32_t from = next_beat_out_ * kBeatWords;
+    for (uint32_t i = 0; i < kBeatWords; ++i)
+      ports.put_data[i] = from + i < leaving_->record.size() ? leaving_->record[from + i] : 0;
+  }
+  ports.contribution_valid = !contributions_.empty();
+  if (ports.contribution_valid) ports.contribution = contributions_.front().contribution;
+  ports.tree_request_valid = false;
+}
+
+void PortTraverser::clock(const ChipOutputs& outputs, const TraverserPorts& ports, bool stalls) {
+  const ImportKind put = move(outputs, ports);
   const uint64_t ended = popcount(outputs.device.kernel_done);
   counts_.batches += ended;
   uint64_t budget = batch_ * ended;
@@ -49,7 +62,7 @@ void PortTraverser::clock(const ChipOutputs& outputs, const ChipInputs& inputs, 
   counts_.most_rays += budget;
   if (budget != 0 && trace(budget) != 0 && stall_over) ++counts_.stall_batches;
   if (outputs.ray_valid) read(outputs);
-  if (!leaving_) choose(outputs.put_ready);
+  if (!leaving_) choose(outputs, put);
 }
 
 void PortTraverser::read(const ChipOutputs& outputs) {
@@ -79,9 +92,9 @@ void PortTraverser::trace(const PlacedRay& ray) {
     freed_.push_back({result.place, result.shadow});
     return;
   }
-  result.kind = fates_.kind_of(ray.ray, hit);
-  counts_.deepest += fates_.deepest(ray.ray, result.kind);
-  if (fates_.contributes(result.kind)) {
+  result.kind = fates_->kind_of(ray.ray, hit);
+  counts_.deepest += fates_->deepest(ray.ray, result.kind);
+  if (fates_->contributes(result.kind)) {
     result.contribution = contribution_of(ray.ray);
     contributions_.push_back(result);
   } else {
@@ -102,29 +115,33 @@ std::string PortTraverser::describe() const {
       waiting(ImportKind::Direct));
 }
 
-// What was offered in this cycle, and has been taken.
-void PortTraverser::move(const ChipOutputs& outputs, const ChipInputs& inputs) {
-  if (inputs.free_valid) freed_.pop_front();
-  if (inputs.contribution_valid && outputs.contribution_ready) {
+// What was offered in this cycle, and has been taken. The kind of which an intersection is put with it.
+ImportKind PortTraverser::move(const ChipOutputs& outputs, const TraverserPorts& ports) {
+  if (ports.free_valid) freed_.pop_front();
+  if (ports.contribution_valid && outputs.contribution_ready) {
     freed_.push_back({contributions_.front().place, true});
     contributions_.pop_front();
     ++counts_.delivered;
   }
-  if (inputs.put_valid && (outputs.put_ready >> to_underlying(inputs.put_kind) & 1) != 0 &&
-      ++next_beat_out_ == beats_) {
+  if (ports.put_valid && (outputs.put_ready >> to_underlying(ports.put_kind) & 1) != 0 && ++next_beat_out_ == beats_) {
     next_beat_out_ = 0;
     freed_.push_back({leaving_->place, leaving_->shadow});
+    const ImportKind put = leaving_->kind;
     leaving_.reset();
     ++counts_.delivered;
+    return put;
   }
+  return ImportKind::None;
 }
 
-// The oldest of those whose kind has room: others do not wait for it.
-void PortTraverser::choose(uint32_t ready) {
+// The oldest of those whose kind has room: others do not wait for it. With a package's last beat the pool is ready for
+// whatever comes, and does not count the package yet.
+void PortTraverser::choose(const ChipOutputs& outputs, ImportKind put) {
   std::deque<Result>* oldest = nullptr;
   for (size_t kind = 0; kind < kImportKinds; ++kind) {
     std::deque<Result>& queue = results_[kind];
-    if (queue.empty() || (ready >> kind & 1) == 0) continue;
+    const uint32_t size = outputs.size[kind] + (kind == to_underlying(put) ? 1 : 0);
+    if (queue.empty() || size >= capacity_) continue;
     if (oldest == nullptr || queue.front().number < oldest->front().number) oldest = &queue;
   }
   if (oldest == nullptr) return;

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "chip/external_traverser.hpp"
 #include "chip/ports.hpp"
 #include "chip/ray_fates.hpp"
 #include "chip/traverser_counts.hpp"
@@ -17,27 +18,24 @@
 
 namespace raypool::chip {
 
-/// `static` at ports: its batches are those of the traverser of constant speed (static_traverser.hpp), of rays that it
+/// `static` at ports: its batches are those of the published traverser of constant speed, of rays that it
 /// has read; what becomes of them leaves beat by beat.
-class PortTraverser {
+class PortTraverser : public ExternalTraverser {
  public:
   /// `layout`: of the records that leave. `tracer` must outlive it.
-  PortTraverser(RayTracer& tracer, const ChipConfiguration& chip, uint32_t units, uint32_t depth, bool reflections,
-                const RecordLayout& layout);
+  PortTraverser(RayTracer& tracer, const ChipConfiguration& chip, uint32_t units, const RecordLayout& layout);
 
-  /// Shows what it has at the traverser's ports.
-  void offer(ChipInputs& inputs) const;
-  /// The end of a cycle. `stalls`: no unit has a kernel, or a ray waits for room in the ray pool.
-  void clock(const ChipOutputs& outputs, const ChipInputs& inputs, bool stalls);
+  void start(const FrameSetup& setup) override;
+  void offer(TraverserPorts& ports) override;
+  void clock(const ChipOutputs& outputs, const TraverserPorts& ports, bool stalls) override;
 
-  const TraverserCounts& counts() const { return counts_; }
+  const TraverserCounts& counts() const override { return counts_; }
   /// Cycles until the shader's stall has lasted long enough for rays to be traced; 0: it does not stall, or there are
   /// none.
-  uint64_t stall_left() const {
+  uint64_t stall_left() const override {
     return stalled_for_ == 0 || rays_.empty() ? 0 : stall_cycles_ - stalled_for_ % stall_cycles_;
   }
-  /// What its rays wait for, for an error.
-  std::string describe() const;
+  std::string describe() const override;
 
  private:
   struct PlacedRay {
@@ -61,13 +59,15 @@ class PortTraverser {
   void read(const ChipOutputs& outputs);
   uint32_t trace(uint64_t rays);
   void trace(const PlacedRay& ray);
-  void move(const ChipOutputs& outputs, const ChipInputs& inputs);
-  void choose(uint32_t ready);
+  ImportKind move(const ChipOutputs& outputs, const TraverserPorts& ports);
+  void choose(const ChipOutputs& outputs, ImportKind put);
 
   RayTracer& tracer_;
-  const RayFates fates_;
+  const ChipConfiguration chip_;
+  std::optional<RayFates> fates_;  // of the frame
   const RecordLayout layout_;
-  const uint32_t beats_;  // of a record
+  const uint32_t beats_;     // of a record
+  const uint32_t capacity_;  // of the intersection pool, of each kind
   const uint64_t batch_, stall_cycles_;
   const uint32_t units_;
 

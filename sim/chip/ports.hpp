@@ -15,10 +15,6 @@ class RayTracer {
   /// Normal ray: true and the intersection when it hits. Shadow ray: true and an intersection with words 12-20 zero
   /// when it is free. False: the ray leaves nothing. Words 0-11 of the intersection are the ray's.
   virtual bool trace(const Ray& ray, Intersection& intersection) = 0;
-  /// The same, and what the ray visits on its way. One that walks no tree visits nothing.
-  virtual bool follow(const Ray& ray, Intersection& intersection, VisitList& /*visits*/) {
-    return trace(ray, intersection);
-  }
   /// False if what a normal ray hit reflects nothing. One that knows no materials says true.
   virtual bool reflects(const Intersection& /*intersection*/) const { return true; }
 };
@@ -26,6 +22,8 @@ class RayTracer {
 class FrameSink {
  public:
   virtual ~FrameSink() = default;
+  /// Whether it takes a contribution in the present cycle.
+  virtual bool ready() { return true; }
   /// The pixel is inside the image.
   virtual void add(const FrameContribution& contribution) = 0;
 };
@@ -35,9 +33,6 @@ class SceneTracer : public RayTracer {
   /// `tracer` must outlive this.
   explicit SceneTracer(const Tracer& tracer) : tracer_(tracer) {}
   bool trace(const Ray& ray, Intersection& intersection) override { return tracer_.trace(ray, intersection); }
-  bool follow(const Ray& ray, Intersection& intersection, VisitList& visits) override {
-    return tracer_.trace(ray, intersection, nullptr, &visits);
-  }
   bool reflects(const Intersection& intersection) const override {
     return tracer_.reflects(intersection[word::kMaterial]);
   }

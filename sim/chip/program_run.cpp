@@ -3,16 +3,37 @@
 #include <fmt/format.h>
 
 #include <optional>
+#include <stdexcept>
 
 #include "bits.hpp"
-#include "chip/fixed_latency_memory.hpp"
-#include "chip/program_module.hpp"
-#include "chip/simulation.hpp"
+#include "chip/board_memory.hpp"
+#include "chip/program_board.hpp"
+#include "config/limits.hpp"
+#include "machine/decoder.hpp"
 #include "machine/functional_core.hpp"
 
 namespace raypool {
 
 namespace {
+
+void check(const ProgramOptions& options) {
+  if (options.device == nullptr || options.memory == nullptr)
+    throw std::logic_error("run_program needs a device and a memory");
+  const auto contents = options.configuration.contents();
+  if (options.threads < 1 || options.threads > contents) {
+    throw InputError(fmt::format("{} threads a block: configuration {} holds 1 to {}", options.threads,
+                                 options.configuration.name, contents));
+  }
+  check_program_length(options.configuration, options.program_length);
+  if (options.blocks < 1) throw InputError("0 blocks: launch at least one");
+  for (uint32_t pc = 0; pc < options.program_length; ++pc) {
+    const uint64_t word = options.memory->load(8 * pc) | uint64_t{options.memory->load(8 * pc + 4)} << 32;
+    const DecodedInstruction instruction = decode(word, options.configuration);
+    if (!instruction.legal() || instruction.opcode != Opcode::Rin) continue;
+    throw InputError(fmt::format(
+        "PC {}: rin waits for a ray, and a compute program has no ray pools that one could come from: remove it", pc));
+  }
+}
 
 /// A load or store that faults.
 struct FaultingAccess {
@@ -56,12 +77,17 @@ std::string faulting_access(const ProgramOptions& options, Memory memory, const 
   return fmt::format("thread {} of block {} goes to address 0x{:x}", found->thread, found->block, found->address);
 }
 
+ProgramResult run_program(const ProgramOptions& options, chip::LineStore& store) {
+  check(options);
+  return chip::ProgramBoard(options, store).run();
+}
+
 ProgramResult run_program(const ProgramOptions& options) {
-  chip::Simulation simulation;
-  chip::ProgramChip chip("chip", options);
-  chip::FixedLatencyMemory memory("memory", *options.memory, options.configuration.chip.memory_latency);
-  chip.memory.bind(memory.socket);
-  return chip.run();
+  check(options);
+  const ChipConfiguration& chip = options.configuration.chip;
+  chip::check_memory_latency(chip);
+  chip::FixedLatencyStore store(*options.memory, nullptr, chip);
+  return chip::ProgramBoard(options, store).run();
 }
 
 }  // namespace raypool

@@ -10,6 +10,10 @@
 
 namespace raypool {
 
+namespace chip {
+class LineStore;
+}
+
 struct ProgramOptions {
   Configuration configuration;
   ComputeUnit* device = nullptr;  ///< is reset; its counters can be read afterwards
@@ -27,7 +31,7 @@ struct ProgramOptions {
 
 struct ProgramResult {
   bool timed = true;
-  uint64_t cycles = 0;  ///< until the device is idle
+  uint64_t cycles = 0;  ///< until every block has ended and the device is idle
   std::array<uint64_t, counter::kCount> counters{};
   uint64_t memory_reads = 0, memory_writes = 0;
   double memory_port_utilisation = 0;
@@ -35,6 +39,9 @@ struct ProgramResult {
 
 /// Throws InputError for options out of range and for programs that use the pools, ChipFault, ChipStalled.
 ProgramResult run_program(const ProgramOptions& options);
+/// The same with a memory of one's own (chip/board_memory.hpp) in place of the one with the fixed latency. Of
+/// `options.memory` the program and the size are used.
+ProgramResult run_program(const ProgramOptions& options, chip::LineStore& store);
 
 /// "thread 3 of block 0 goes to address 0x402": the access behind a fault of
 /// run_program(options), whose units do not say it.

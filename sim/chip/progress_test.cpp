@@ -7,13 +7,11 @@
 #include <utility>
 
 #include "chip/board.hpp"
-#include "chip/chip_module.hpp"
-#include "chip/fixed_latency_memory.hpp"
 #include "chip/progress_watch.hpp"
-#include "chip/simulation.hpp"
 #include "chip/test_real_frame.hpp"
 #include "chip/tree_image.hpp"
 #include "machine/chip_model.hpp"
+#include "machine/kernel_policy.hpp"
 #include "machine/model.hpp"
 
 namespace raypool {
@@ -73,13 +71,13 @@ Scene pile(uint32_t count) {
 
 // One ray at a time, and room for all of a small scene in the caches.
 void one_ray(ChipConfiguration& chip) {
-  chip.modelled_traverser_rays = chip.modelled_traverser_box_pipes = chip.modelled_traverser_triangle_pipes = 1;
-  chip.modelled_traverser_node_cache_bytes = chip.modelled_traverser_triangle_cache_bytes = 1 << 18;
+  chip.hardware_traverser_rays = chip.hardware_traverser_lanes = chip.hardware_traverser_triangle_pipes = 1;
+  chip.hardware_traverser_node_cache_bytes = chip.hardware_traverser_triangle_cache_bytes = 1 << 18;
 }
 void slow_memory(ChipConfiguration& chip) {
   one_ray(chip);
-  chip.modelled_traverser_cache_banks = 1;
-  chip.modelled_traverser_node_cache_bytes = chip.modelled_traverser_triangle_cache_bytes = 512;
+  chip.hardware_traverser_cache_banks = 1;
+  chip.hardware_traverser_node_cache_bytes = chip.hardware_traverser_triangle_cache_bytes = 512;
   chip.memory_latency = 10'000;
 }
 void long_stalls(ChipConfiguration& chip) {
@@ -103,19 +101,15 @@ struct Frame {
     options.depth = 1;
     return render_native(run.scene, run.image, run.tracer, options);
   }
-  void draw_in_systemc() {
-    run.set_device(make_model(run.options.configuration, run.image.memory, 1).device);
-    run_chip(run.options);
-  }
-  void draw_on_board(const std::function<std::unique_ptr<ChipDevice>(std::unique_ptr<ChipDevice>)>& wrap = {}) {
+  void draw(const std::function<std::unique_ptr<ChipDevice>(std::unique_ptr<ChipDevice>)>& wrap = {},
+            const PolicyMaker& policy = {}) {
     Configuration& configuration = run.options.configuration;
-    configuration.chip.controller = ControllerName::Counters;
     if (has_traverser(configuration.chip)) {
       tree.emplace(
           make_tree_image(run.scene, run.tracer.traversal().bvh(), configuration.chip, run.image.material_base));
       run.options.tree = &*tree;
     }
-    auto device = make_chip_model(configuration, make_model(configuration, run.image.memory, 1).device);
+    auto device = make_chip_model(configuration, make_model(configuration, run.image.memory, 1).device, policy);
     if (wrap) device = wrap(std::move(device));
     run_board(run.options, *device);
   }
@@ -135,14 +129,6 @@ std::string error_of(const std::function<void()>& draw) {
 
 void expect_parts(const std::string& text, std::initializer_list<const char*> parts) {
   for (const char* part : parts) EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
-}
-
-TEST(Progress, ARayThatTestsForLongIsNoLockUp) {
-  for (const TraverserName traverser : {TraverserName::Modelled, TraverserName::Lanes}) {
-    Frame frame(pile(2000), traverser, one_ray);
-    EXPECT_EQ(error_of([&] { frame.draw_in_systemc(); }), "");
-    EXPECT_TRUE(frame.run.frame == frame.native());
-  }
 }
 
 // Hides what the caches in the chip give.
@@ -174,11 +160,11 @@ struct PortsAlone : ChipDevice {
   uint32_t given = 0;
 };
 
-TEST(Progress, ARayThatTestsForLongInTheChipIsNoLockUp) {
+TEST(Progress, ARayThatTestsForLongIsNoLockUp) {
   const auto draw = [](std::optional<uint32_t> given) {
     Frame frame(pile(2000), TraverserName::Hardware, one_ray);
     std::string error = error_of([&] {
-      frame.draw_on_board([&](std::unique_ptr<ChipDevice> chip) -> std::unique_ptr<ChipDevice> {
+      frame.draw([&](std::unique_ptr<ChipDevice> chip) -> std::unique_ptr<ChipDevice> {
         if (!given) return chip;
         auto hiding = std::make_unique<PortsAlone>(std::move(chip));
         hiding->given = *given;
@@ -194,23 +180,17 @@ TEST(Progress, ARayThatTestsForLongInTheChipIsNoLockUp) {
 }
 
 TEST(Progress, AWaitForTheMemoryIsNoLockUp) {
-  for (const TraverserName traverser : {TraverserName::Static, TraverserName::Modelled, TraverserName::Lanes}) {
-    Frame frame(pile(20), traverser, slow_memory);
-    EXPECT_EQ(error_of([&] { frame.draw_in_systemc(); }), "");
-    EXPECT_TRUE(frame.run.frame == frame.native());
-  }
   for (const TraverserName traverser : {TraverserName::Static, TraverserName::Hardware}) {
     Frame frame(pile(20), traverser, slow_memory);
-    EXPECT_EQ(error_of([&] { frame.draw_on_board(); }), "");
+    EXPECT_EQ(error_of([&] { frame.draw(); }), "");
     EXPECT_TRUE(frame.run.frame == frame.native());
   }
 }
 
 TEST(Progress, AStallOfTheShaderIsNoLockUp) {
-  Frame in_systemc(pile(1), TraverserName::Static, long_stalls), on_board(pile(1), TraverserName::Static, long_stalls);
-  EXPECT_EQ(error_of([&] { in_systemc.draw_in_systemc(); }), "");
-  EXPECT_EQ(error_of([&] { on_board.draw_on_board(); }), "");
-  EXPECT_TRUE(in_systemc.run.frame == on_board.run.frame);
+  Frame frame(pile(1), TraverserName::Static, long_stalls);
+  EXPECT_EQ(error_of([&] { frame.draw(); }), "");
+  EXPECT_TRUE(frame.run.frame == frame.native());
 }
 
 // ---- Chips that are locked up
@@ -227,48 +207,17 @@ struct GivesUp : KernelPolicy {
 };
 
 TEST(Progress, APolicyThatNeverLaunchesIsALockUp) {
-  for (const TraverserName traverser : {TraverserName::Static, TraverserName::Modelled, TraverserName::Lanes}) {
+  for (const TraverserName traverser : {TraverserName::Static, TraverserName::Hardware}) {
     for (const uint32_t tiles : {0u, 1u}) {
       Frame frame(pile(20), traverser, one_ray, 8);
-      frame.run.options.own_policy = [&](const PolicySetup&) { return std::make_unique<GivesUp>(tiles); };
       frame.run.options.limits.cycles = 100 * kPeriod;
-      const std::string error = error_of([&] { frame.draw_in_systemc(); });
-      expect_parts(error,
-                   {"the chip is locked up: for 2000 cycles no instruction has ended",
-                    "the controller launches nothing, though unit 0 could take a kernel: a policy of the caller's own",
-                    "unit 0: idle", tiles == 0 ? "0 held" : "16 held"});
+      const std::string error =
+          error_of([&] { frame.draw({}, [&](const PolicySetup&) { return std::make_unique<GivesUp>(tiles); }); });
+      expect_parts(error, {"the chip is locked up: for 2000 cycles no instruction has ended",
+                           "the controller launches nothing, though unit 0 could take a kernel",
+                           tiles == 0 ? "0 pixels of 8x8 have been cast" : "16 pixels of 8x8 have been cast"});
     }
   }
-}
-
-/// Reads take all the time that there is.
-class SilentMemory : public sc_core::sc_module {
- public:
-  SilentMemory(const sc_core::sc_module_name& name, Memory& memory) : sc_module(name), memory_(memory) {
-    socket.register_b_transport(this, &SilentMemory::b_transport);
-  }
-  tlm_utils::simple_target_socket<SilentMemory, chip::kMemoryBits> socket{"socket"};
-
- private:
-  void b_transport(tlm::tlm_generic_payload& payload, sc_core::sc_time& delay) {
-    chip::transfer(payload, memory_);
-    if (payload.is_read()) delay = sc_core::sc_max_time();
-  }
-  Memory& memory_;
-};
-
-TEST(Progress, AMemoryThatNeverAnswersIsALockUp) {
-  Frame frame(pile(20), TraverserName::Modelled, one_ray);
-  test::RealFrame& run = frame.run;
-  run.options.limits.cycles = 100 * kPeriod;
-  run.set_device(make_model(run.options.configuration, run.image.memory, 1).device);
-  chip::Simulation simulation;
-  chip::Chip chip("chip", run.options);
-  SilentMemory memory("memory", run.image.memory);
-  chip.memory.bind(memory.socket);
-  expect_parts(error_of([&] { chip.draw(); }),
-               {"the chip is locked up", "the device waits for a line that the memory never gives",
-                "the controller has nothing to launch until intersections come", "unit 0: running"});
 }
 
 /// Shows the board a memory port that asks for nothing, and takes what it asks for.
@@ -291,8 +240,7 @@ TEST(Progress, ABoardWhoseMemoryHearsNothingIsLockedUp) {
     Frame frame(pile(20), traverser, one_ray);
     frame.run.options.limits.cycles = 100 * kPeriod;
     const std::string error = error_of([&] {
-      frame.draw_on_board(
-          [](std::unique_ptr<ChipDevice> chip) { return std::make_unique<DeafMemory>(std::move(chip)); });
+      frame.draw([](std::unique_ptr<ChipDevice> chip) { return std::make_unique<DeafMemory>(std::move(chip)); });
     });
     expect_parts(error, {"the chip is locked up", "unit 0 runs a kernel and waits for the memory port",
                          "a unit waits for 1 lines of the memory, since cycle "});
@@ -316,7 +264,7 @@ TEST(Progress, ARayThatIsOfferedAndNeverTakenIsALockUp) {
   Frame frame(pile(20), TraverserName::Hardware, one_ray);
   frame.run.options.limits.cycles = 100 * kPeriod;
   const std::string error = error_of([&] {
-    frame.draw_on_board([](std::unique_ptr<ChipDevice> chip) { return std::make_unique<Standstill>(std::move(chip)); });
+    frame.draw([](std::unique_ptr<ChipDevice> chip) { return std::make_unique<Standstill>(std::move(chip)); });
   });
   expect_parts(error, {"the chip is locked up", "a ray waits for the traverser to take it",
                        "unit 0 waits for the ray pool to take a ray", "ray pool 512 of 512 rays, which is full"});

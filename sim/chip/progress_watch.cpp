@@ -29,4 +29,8 @@ std::string ProgressWatch::silent() const {
       silent_);
 }
 
+std::string limit_sentence(uint64_t limit, bool timed) {
+  return fmt::format("the limit of {} {} has passed", limit, timed ? "cycles" : "instructions");
+}
+
 }  // namespace raypool::chip

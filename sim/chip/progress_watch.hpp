@@ -12,6 +12,9 @@ namespace raypool::chip {
 /// A cycle that no run comes to: what is due then or later never happens.
 inline constexpr uint64_t kFarAway = kNever / 2;
 
+/// Between two calls of a run's `progress`.
+inline constexpr uint64_t kProgressCycles = 16384;
+
 /// Counts rise, and never fall.
 struct WorkDone {
   uint64_t instructions = 0;
@@ -43,5 +46,8 @@ class ProgressWatch {
   WorkDone before_;
   uint64_t silent_ = 0;  // cycles without other work
 };
+
+/// The beginning of a sentence: what has passed. Without time the limit is of instructions.
+std::string limit_sentence(uint64_t limit, bool timed);
 
 }  // namespace raypool::chip

@@ -1,4 +1,4 @@
-// For tests: frames on a board, on the model of the chip as one piece.
+// For tests: frames on a board, on the model of the chip.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,6 @@ struct BoardRun {
   explicit BoardRun(const BoardCase& c)
       : run(c.warps, c.lanes, c.width, c.height, c.depth, make_cornell(), false, c.intersection_words) {
     ChipConfiguration& chip = run.options.configuration.chip;
-    chip.controller = ControllerName::Counters;
     c.change(chip);
     device = make_chip_model(run.options.configuration,
                              make_model(run.options.configuration, run.image.memory, c.units).device);
@@ -38,14 +37,14 @@ struct BoardRun {
 // With a traverser inside.
 inline void inside(ChipConfiguration& chip) {
   chip.traverser = TraverserName::Hardware;
-  chip.modelled_traverser_box_pipes = 2;
-  chip.modelled_traverser_rays = 8;
-  chip.modelled_traverser_triangle_pipes = 1;
-  chip.modelled_traverser_stack_entries = 8;
-  chip.modelled_traverser_cache_banks = 1;
-  chip.modelled_traverser_node_cache_bytes = chip.modelled_traverser_triangle_cache_bytes = 1024;
-  chip.modelled_traverser_node_cache_ways = chip.modelled_traverser_triangle_cache_ways = 2;
-  chip.modelled_traverser_node_cache_mshrs = chip.modelled_traverser_triangle_cache_mshrs = 2;
+  chip.hardware_traverser_lanes = 2;
+  chip.hardware_traverser_rays = 8;
+  chip.hardware_traverser_triangle_pipes = 1;
+  chip.hardware_traverser_stack_entries = 8;
+  chip.hardware_traverser_cache_banks = 1;
+  chip.hardware_traverser_node_cache_bytes = chip.hardware_traverser_triangle_cache_bytes = 1024;
+  chip.hardware_traverser_node_cache_ways = chip.hardware_traverser_triangle_cache_ways = 2;
+  chip.hardware_traverser_node_cache_mshrs = chip.hardware_traverser_triangle_cache_mshrs = 2;
 }
 
 struct TreeBoard : BoardRun {

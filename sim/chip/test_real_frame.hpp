@@ -1,11 +1,12 @@
-// For tests: the Cornell box, or another scene, drawn with the real kernels, on a device that the test chooses.
+// For tests: the Cornell box, or another scene, drawn with the real kernels, on a device that the test chooses, with
+// the static traverser unless a test changes that.
 #pragma once
 
 #include <memory>
 #include <string>
 #include <utility>
 
-#include "chip/chip.hpp"
+#include "chip/board.hpp"
 #include "scene/image.hpp"
 #include "scene/native_renderer.hpp"
 #include "scene/scene.hpp"
@@ -22,7 +23,6 @@ struct RealFrame {
   SceneTracer scene_tracer{tracer};
   FrameBuffer frame;
   FrameBufferSink sink{frame};
-  std::unique_ptr<ComputeUnit> device;
   ChipOptions options;
 
   RealFrame(uint32_t warps, uint32_t lanes, uint32_t width, uint32_t height, uint32_t depth,
@@ -47,14 +47,14 @@ struct RealFrame {
   RealFrame(const RealFrame&) = delete;
   RealFrame& operator=(const RealFrame&) = delete;
 
-  void set_device(std::unique_ptr<ComputeUnit> made) {
-    device = std::move(made);
-    options.device = device.get();
+  ChipResult draw(std::unique_ptr<ComputeUnit> device) {
+    return run_board(options, *make_chip_around(options, std::move(device)));
   }
 
  private:
   static Configuration machine(uint32_t warps, uint32_t lanes, uint32_t intersection_words, bool culling) {
     Configuration configuration;
+    configuration.chip.traverser = TraverserName::Static;
     configuration.chip.culling = culling;
     configuration.warps = warps;
     configuration.lanes = lanes;

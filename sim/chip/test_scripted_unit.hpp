@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "chip/chip.hpp"
-#include "traverser/test_visits.hpp"
 
 namespace raypool::test {
 
@@ -91,11 +90,6 @@ class WorldTracer : public RayTracer {
   }
   bool reflects(const Intersection& hit) const override {
     return world_.makes_reflection(hit[word::kPixel], hit[word::kFlags] & kDepthMask);
-  }
-  bool follow(const Ray& ray, Intersection& intersection, VisitList& visits) override {
-    std::mt19937 random(ray[word::kPixel] * 31 + ray[word::kFlags]);
-    visits = random_visits(random, 12, 100);
-    return trace(ray, intersection);
   }
 
  private:

@@ -39,7 +39,7 @@ TreeImage make_tree_image(const Scene& scene, const Bvh& bvh, const ChipConfigur
   const TreeFile tree = make_tree_file(scene, bvh);
   const uint64_t triangles = tree.nodes.size() * sizeof(TreeNode);
   const uint64_t stacks = round_up(triangles + tree.triangles.size() * sizeof(TreeTriangle), kStack);
-  const uint32_t lanes = chip.modelled_traverser_box_pipes, slots = chip.modelled_traverser_rays / lanes;
+  const uint32_t lanes = chip.hardware_traverser_lanes, slots = chip.hardware_traverser_rays / lanes;
   // A lane with one slot has a bit for its number all the same.
   const uint64_t bytes = stacks + power_of_two_from(lanes) * power_of_two_from(std::max(2u, slots)) * kStack;
   if (bytes > UINT32_MAX) {
@@ -62,6 +62,20 @@ TreeImage make_tree_image(const Scene& scene, const Bvh& bvh, const ChipConfigur
   setup.stacks_line = static_cast<uint32_t>(stacks / kLine);
   setup.material_base = material_base;
   return image;
+}
+
+TreeLines lines_of(const VisitList& places) {
+  TreeLines lines;
+  for (const Visit& place : places) {
+    if (place.triangles == 0) {
+      lines.nodes.push_back(place.place);
+      continue;
+    }
+    const uint64_t first = place.place * sizeof(TreeTriangle), end = first + place.triangles * sizeof(TreeTriangle);
+    for (uint64_t line = first / kLine; line * kLine < end; ++line)
+      lines.triangles.push_back(static_cast<uint32_t>(line));
+  }
+  return lines;
 }
 
 }  // namespace raypool

@@ -14,23 +14,16 @@
 namespace raypool {
 namespace {
 
-/// A frame of 8x8 pixels on this machine: in SystemC, or on a board.
-std::pair<uint64_t, FrameBuffer> drawn(const Configuration& configuration, bool on_board) {
+/// A frame of 8x8 pixels on this machine.
+std::pair<uint64_t, FrameBuffer> drawn(const Configuration& configuration) {
   test::RealFrame run(configuration.warps, configuration.lanes, 8, 8, 2);
   run.options.configuration = configuration;
   std::optional<TreeImage> tree;
-  if (!on_board) {
-    run.set_device(make_model(configuration, run.image.memory, 1).device);
-    const uint64_t cycles = run_chip(run.options).cycles;
-    return {cycles, run.frame};
-  }
-  run.options.configuration.chip.controller = ControllerName::Counters;
   if (has_traverser(configuration.chip)) {
     tree.emplace(make_tree_image(run.scene, run.tracer.traversal().bvh(), configuration.chip, run.image.material_base));
     run.options.tree = &*tree;
   }
-  const auto device = make_chip_model(run.options.configuration, make_model(configuration, run.image.memory, 1).device);
-  const uint64_t cycles = run_board(run.options, *device).cycles;
+  const uint64_t cycles = run.draw(make_model(configuration, run.image.memory, 1).device).cycles;
   return {cycles, run.frame};
 }
 
@@ -54,28 +47,22 @@ std::vector<std::string> other_values(const ConfigurationField& field, const Con
 }
 
 TEST(UnusedFields, ChangeNoFrame) {
-  struct Machine {
-    std::vector<std::string> set;
-    bool on_board;
+  const std::vector<std::vector<std::string>> machines = {
+      {"chip.traverser=static"},
+      {"chip.traverser=static", "chip.policy=fill"},
+      {"chip.traverser=hardware", "chip.hardware_traverser.rays=16"},
+      {"chip.traverser=hardware", "chip.policy=fill"},
+      {"chip.traverser=static", "wide_ray_memory=true"},
   };
-  const std::vector<Machine> machines = {
-      {{"chip.traverser=static"}, false},
-      {{"chip.traverser=static", "chip.policy=fill"}, true},
-      {{"chip.traverser=modelled"}, false},
-      {{"chip.traverser=modelled", "chip.policy=fill", "chip.modelled_traverser.nodes=exact"}, false},
-      {{"chip.traverser=lanes"}, false},
-      {{"chip.traverser=hardware", "chip.modelled_traverser.rays=16"}, true},
-      {{"chip.traverser=static", "wide_ray_memory=true"}, false},
-  };
-  for (const Machine& machine : machines) {
-    const Configuration configuration = load_configuration("4w4c", machine.set);
-    const auto expected = drawn(configuration, machine.on_board);
+  for (const std::vector<std::string>& machine : machines) {
+    const Configuration configuration = load_configuration("4w4c", machine);
+    const auto expected = drawn(configuration);
     size_t tried = 0;
     for (const UnusedField& unused : unused_fields(configuration)) {
       const std::vector<ConfigurationField> all = fields();
       const auto field = std::find_if(all.begin(), all.end(), [&](const auto& f) { return f.path == unused.path; });
       for (const std::string& value : other_values(*field, configuration)) {
-        std::vector<std::string> set = machine.set;
+        std::vector<std::string> set = machine;
         set.push_back(unused.path + "=" + value);
         Configuration other;
         try {
@@ -83,7 +70,7 @@ TEST(UnusedFields, ChangeNoFrame) {
         } catch (const InputError&) {
           continue;  // not with the other fields
         }
-        EXPECT_TRUE(drawn(other, machine.on_board) == expected) << set.front() << " " << set.back();
+        EXPECT_TRUE(drawn(other) == expected) << set.front() << " " << set.back();
         ++tried;
         break;
       }

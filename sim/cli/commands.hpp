@@ -21,7 +21,8 @@ struct SimOptions {
   std::string config = "8w8c";
   std::vector<std::string> set;  ///< fields of the configuration to change, "warps=4"
   std::string engine = "model";
-  std::string chip;  ///< model, rtl or lockstep: the whole chip, not the unit alone; empty: the chip in SystemC
+  std::string boundary;  ///< unit or chip: what is Verilog, of engines rtl and lockstep; empty: unit
+  std::string hits;      ///< own or embree: whose hits engine native takes; empty: own
   std::string size = "320x320";
   std::string view;          ///< JSON file with camera and light; empty: the scene's own
   ViewWords look;            ///< changes of it
@@ -30,7 +31,7 @@ struct SimOptions {
   std::string unit_library;  ///< Verilated unit; empty: unit_library_path()
   int depth = 3;
   int units = 1;
-  uint32_t threads = 0;  ///< of engines native, embree and sampled; 0: as many as the machine has cores
+  uint32_t threads = 0;  ///< of engines native and sampled; 0: as many as the machine has cores
   /// Of engine sampled: "2%" of the cycles, half of their interval, or "10s" for the whole command; one or none.
   std::string error, time;
   uint64_t seed = 0;  ///< of engine sampled; 0: as 1
@@ -94,7 +95,7 @@ struct UnitOptions {
   std::string config = "8w8c";
   std::vector<std::string> set;  ///< fields of the configuration to change, "warps=4"
   int units = 1;
-  bool chip = false;  ///< the whole chip around them
+  std::string boundary = "unit";  ///< unit or chip: what becomes Verilated
   bool waves = false;
 };
 int unit_command(const UnitOptions& options);

@@ -23,14 +23,19 @@ namespace fs = std::filesystem;
 
 Engine parse_engine(const std::string& name) {
   if (name == "native") return Engine::Native;
-  if (name == "embree") return Engine::Embree;
   if (name == "functional") return Engine::Functional;
   if (name == "sampled") return Engine::Sampled;
   if (name == "model") return Engine::Model;
   if (name == "rtl") return Engine::Rtl;
   if (name == "lockstep") return Engine::Lockstep;
   throw InputError(
-      fmt::format("there is no engine '{}': use native, embree, functional, sampled, model, rtl or lockstep", name));
+      fmt::format("there is no engine '{}': use native, functional, sampled, model, rtl or lockstep", name));
+}
+
+Boundary parse_boundary(const std::string& name) {
+  if (name == "unit") return Boundary::Unit;
+  if (name == "chip") return Boundary::Chip;
+  throw InputError(fmt::format("there is no boundary '{}': use unit or chip", name));
 }
 
 namespace {
@@ -79,11 +84,11 @@ std::string build_command(const EngineOptions& options) {
   const std::string units = options.units == 1 ? "" : std::to_string(options.units);
   if (installed())
     return fmt::format("raypool unit {}{}{}{}", config_options(configuration), units.empty() ? "" : " --units " + units,
-                       options.chip ? " --chip" : "", options.waves ? " --waves" : "");
+                       options.boundary == Boundary::Chip ? " --boundary chip" : "", options.waves ? " --waves" : "");
   const std::string set =
       configuration.set.empty() ? "" : fmt::format(" SET=\"{}\"", fmt::join(configuration.set, " "));
   return fmt::format("make unit CONFIG={}{}{}{}{}", source_of(configuration), set, units.empty() ? "" : " CUS=" + units,
-                     options.chip ? " CHIP=rtl" : "", options.waves ? " WAVES=1" : "");
+                     options.boundary == Boundary::Chip ? " BOUNDARY=chip" : "", options.waves ? " WAVES=1" : "");
 }
 
 }  // namespace
@@ -96,13 +101,14 @@ std::string config_options(const Configuration& configuration) {
 
 std::string find_unit_library(const EngineOptions& options) {
   const Configuration& configuration = options.configuration;
-  const auto path = options.chip ? chip_library_path : unit_library_path;
+  const bool chip = options.boundary == Boundary::Chip;
+  const auto path = chip ? chip_library_path : unit_library_path;
   std::string library =
       options.unit_library.empty() ? path(configuration, options.waves, options.units) : options.unit_library;
   const std::string build = build_command(options);
   if (!fs::exists(library))
     throw InputError(
-        fmt::format("there is no Verilated {} '{}': build it with {}", options.chip ? "chip" : "unit", library, build));
+        fmt::format("there is no Verilated {} '{}': build it with {}", chip ? "chip" : "unit", library, build));
 
   static std::set<std::string> checked;
   if (options.unit_library.empty() && checked.insert(library).second) {
@@ -117,8 +123,8 @@ std::string find_unit_library(const EngineOptions& options) {
 std::unique_ptr<ComputeUnit> make_unit(const EngineOptions& options, Memory& memory, const std::string& name,
                                        const std::map<uint32_t, std::string>& kernel_names) {
   const Configuration& configuration = options.configuration;
-  if (without_unit(options.engine) || options.engine == Engine::Sampled)
-    throw InputError("engines native, embree and sampled are for frames only: use functional, model, rtl or lockstep");
+  if (options.engine == Engine::Native || options.engine == Engine::Sampled)
+    throw InputError("engines native and sampled are for frames only: use functional, model, rtl or lockstep");
   if (options.engine == Engine::Functional) {
     std::vector<std::unique_ptr<ComputeUnit>> units;
     for (int i = 0; i < options.units; ++i) units.push_back(make_functional_unit(configuration, memory));
@@ -137,19 +143,12 @@ std::unique_ptr<ComputeUnit> make_unit(const EngineOptions& options, Memory& mem
   return make_lockstep_unit(configuration, std::move(rtl), memory, lockstep);
 }
 
-std::unique_ptr<ChipDevice> make_chip(const EngineOptions& options, const Memory& memory) {
+std::unique_ptr<ChipDevice> make_verilog_chip(const EngineOptions& options, const Memory& memory) {
   const Configuration& configuration = options.configuration;
-  switch (options.engine) {
-    case Engine::Model:
-      return make_chip(ChipKind::Model, configuration, memory, options.units);
-    case Engine::Rtl:
-      return make_chip(ChipKind::Rtl, configuration, memory, options.units, find_unit_library(options));
-    case Engine::Lockstep:
-      return make_chip(ChipKind::Lockstep, configuration, memory, options.units, find_unit_library(options), "chip",
-                       options.waves ? kInspectAlways : options.inspect_until);
-    default:
-      throw InputError("a chip as one piece is played by model, rtl or lockstep, no other engine");
-  }
+  if (options.engine == Engine::Rtl)
+    return make_chip(ChipKind::Rtl, configuration, memory, options.units, find_unit_library(options));
+  return make_chip(ChipKind::Lockstep, configuration, memory, options.units, find_unit_library(options), "chip",
+                   options.waves ? kInspectAlways : options.inspect_until);
 }
 
 std::optional<ChipLockstepCounts> lockstep_counts(const ChipDevice& chip) {

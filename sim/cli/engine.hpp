@@ -16,13 +16,17 @@
 
 namespace raypool {
 
-enum class Engine : uint8_t { Native, Embree, Functional, Sampled, Model, Rtl, Lockstep };
+/// Native: no machine, the kernels as C++. Functional: the units without time. Model, Sampled: the C++ model. Rtl: the
+/// Verilated Verilog. Lockstep: both, compared in every cycle.
+enum class Engine : uint8_t { Native, Functional, Sampled, Model, Rtl, Lockstep };
+/// What of the chip is Verilog, of engines rtl and lockstep: its units, with the model of the chip around them, or all.
+enum class Boundary : uint8_t { Unit, Chip };
 
-/// No machine: the kernels as C++.
-constexpr bool without_unit(Engine engine) { return engine == Engine::Native || engine == Engine::Embree; }
+constexpr bool has_verilog(Engine engine) { return engine == Engine::Rtl || engine == Engine::Lockstep; }
 
-/// Throws InputError naming the engines.
+/// Throw InputError naming those there are.
 Engine parse_engine(const std::string& name);
+Boundary parse_boundary(const std::string& name);
 
 /// units_folder()/<name from the Verilog parameters>/libraypool_unit.so, where `raypool unit` builds it; with
 /// `waves` the one that can write waveforms. Of a multiprocessor of `units` units.
@@ -44,7 +48,7 @@ struct EngineOptions {
   /// Of a lockstep, LockstepOptions::inspect_until. With `waves` it always looks inside: a waveform takes more time
   /// than that, and is not written twice.
   uint64_t inspect_until = 0;
-  bool chip = false;  ///< the whole chip, in place of the device alone
+  Boundary boundary = Boundary::Unit;
 };
 
 /// The Verilated device that they name. Throws InputError when it is missing; says on
@@ -61,9 +65,8 @@ std::string newer_verilog(const std::string& library, const std::string& rtl);
 std::unique_ptr<ComputeUnit> make_unit(const EngineOptions& options, Memory& memory, const std::string& name = "unit",
                                        const std::map<uint32_t, std::string>& kernel_names = {});
 
-/// What a chip as one piece may be played by; throws InputError for other engines. As make_unit(), of rtl/chip.v: its
-/// model, the Verilated one, or both.
-std::unique_ptr<ChipDevice> make_chip(const EngineOptions& options, const Memory& memory);
+/// rtl/chip.v whole, of engine rtl or lockstep; else as make_unit().
+std::unique_ptr<ChipDevice> make_verilog_chip(const EngineOptions& options, const Memory& memory);
 
 /// What the device has compared; none unless it is a lockstep.
 std::optional<LockstepCounts> lockstep_counts(ComputeUnit& device);

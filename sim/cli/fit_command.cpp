@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "chip/board.hpp"
 #include "cli/commands.hpp"
 #include "cli/engine.hpp"
 #include "cli/exit_code.hpp"
@@ -56,7 +57,7 @@ class FrameRuns {
   FrameRuns(const FitOptions& options, RunRecord record, const Scene& scene)
       : options_(options), record_(std::move(record)), scene_(scene), picture_(draw_natively()) {}
 
-  /// Throws std::runtime_error when the picture is another one, and what run_chip() throws.
+  /// Throws std::runtime_error when the picture is another one, and what run_board() throws.
   ChipResult draw(const Configuration& machine, const std::string& what);
   /// None when the machine stops with a fault.
   std::optional<uint64_t> cycles(const Configuration& machine, const std::string& what) {
@@ -74,7 +75,7 @@ class FrameRuns {
 
  private:
   FrameBuffer draw_natively();
-  ChipResult draw_on(ComputeUnit& device, MemoryImage& image, const std::string& what);
+  ChipResult draw_on(std::unique_ptr<ComputeUnit> device, MemoryImage& image, const std::string& what);
 
   const FitOptions& options_;
   RunRecord record_;
@@ -100,9 +101,7 @@ FrameBuffer FrameRuns::draw_natively() {
 ChipResult FrameRuns::draw(const Configuration& machine, const std::string& what) {
   record_.configuration = machine;
   MemoryImage image = build_memory(ray_kernel_program(KernelTarget(machine)), scene_);
-  const std::unique_ptr<ComputeUnit> device =
-      make_unit({Engine::Model, machine, "", false, record_.units, 0}, image.memory);
-  return draw_on(*device, image, what);
+  return draw_on(make_unit({Engine::Model, machine, "", false, record_.units, 0}, image.memory), image, what);
 }
 
 SpecialValues FrameRuns::specials(const Configuration& machine) {
@@ -110,21 +109,22 @@ SpecialValues FrameRuns::specials(const Configuration& machine) {
   const Program& program = ray_kernel_program(KernelTarget(machine));
   MemoryImage image = build_memory(program, scene_);
   SpecialCensus census(arith::mode_of(machine));
-  draw_on(*make_counting_functional_unit(machine, image.memory, census), image, "its infinities and NaNs");
+  draw_on(make_counting_functional_unit(machine, image.memory, census), image, "its infinities and NaNs");
   return special_values(census, program);
 }
 
-ChipResult FrameRuns::draw_on(ComputeUnit& device, MemoryImage& image, const std::string& what) {
+ChipResult FrameRuns::draw_on(std::unique_ptr<ComputeUnit> device, MemoryImage& image, const std::string& what) {
   Surroundings around(scene_, image, record_);
-  ChipOptions chip = chip_options(record_, scene_, image, &device, around);
+  ChipOptions frame = chip_options(record_, scene_, image, around);
+  const std::unique_ptr<ChipDevice> chip = make_chip_around(frame, std::move(device));
   ++runs_;
   Progress progress(options_.quiet);
-  chip.progress = [&](const ChipProgress& done) {
+  frame.progress = [&](const ChipProgress& done) {
     if (!progress.due()) return;
     progress.show(fmt::format("  frame {}, {}: {:.0f}% of the pixels, {:.0f} s", runs_, what, 100 * done.pixels_done,
                               progress.seconds()));
   };
-  ChipResult result = run_chip(chip);
+  ChipResult result = run_board(frame, *chip);
   if (around.frame == picture_) return result;
   throw std::runtime_error(
       fmt::format("with {} the machine draws another picture than the kernels as C++: {} of {} "

@@ -66,16 +66,14 @@ Surroundings::Surroundings(const Scene& scene, const MemoryImage& image, const R
       frame(record.width, record.height),
       sink(frame) {
   const ChipConfiguration& chip = record.configuration.chip;
-  if (record.whole_chip && has_traverser(chip))
+  if (has_traverser(chip) && record.engine != "functional")
     tree = make_tree_image(scene, tracer.traversal().bvh(), chip, image.material_base);
 }
 
-ChipOptions chip_options(const RunRecord& record, const Scene& scene, MemoryImage& image, ComputeUnit* device,
-                         Surroundings& around) {
+ChipOptions chip_options(const RunRecord& record, const Scene& scene, MemoryImage& image, Surroundings& around) {
   const Program& program = ray_kernel_program(KernelTarget(record.configuration));
   ChipOptions chip;
   chip.configuration = record.configuration;
-  chip.device = device;
   chip.memory = &image.memory;
   chip.program_length = size32(program.code);
   for (size_t i = 0; i < kRayKernels; ++i) chip.entries[i] = program.entries.at(std::string(kRayKernelNames[i]));

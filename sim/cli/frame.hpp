@@ -39,9 +39,8 @@ struct Surroundings {
   std::optional<TreeImage> tree;  // of a traverser in hardware
 };
 
-/// The chip around `device`, or one that has it inside (null), which draws the frame of the record.
-ChipOptions chip_options(const RunRecord& record, const Scene& scene, MemoryImage& image, ComputeUnit* device,
-                         Surroundings& around);
+/// What a chip draws the frame of the record with.
+ChipOptions chip_options(const RunRecord& record, const Scene& scene, MemoryImage& image, Surroundings& around);
 
 /// What finds hits where there is no chip: as that of the record does.
 Tracer tracer_of(const RunRecord& record, const Scene& scene, const MemoryImage& image);

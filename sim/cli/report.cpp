@@ -120,23 +120,21 @@ Json pipes_json(const PipeWork& pipes, uint64_t count, uint64_t cycles) {
           {"waiting", ratio(pipes.waiting, cycles)}};
 }
 
-Json traversal_json(const TraverserWork& work, const TraverserSizes& machine, uint64_t cycles) {
+Json traversal_json(const TraverserWork& work, const ChipConfiguration& machine, uint64_t cycles) {
   return {{"nodes_a_ray", ratio(work.boxes.tests, work.rays)},
           {"leaves_a_ray", ratio(work.leaves, work.rays)},
           {"triangles_a_ray", ratio(work.triangles.tests, work.rays)},
           {"bytes_a_ray", ratio(work.bytes(), work.rays)},
           {"rays_in_flight",
-           {{"capacity", machine.rays}, {"peak", work.most_rays}, {"mean", ratio(work.ray_cycles, cycles)}}},
-          {"box_pipes", pipes_json(work.boxes, machine.box_pipes, cycles)},
-          {"triangle_pipes", pipes_json(work.triangles, machine.triangle_pipes, cycles)},
+           {{"capacity", machine.hardware_traverser_rays},
+            {"peak", work.most_rays},
+            {"mean", ratio(work.ray_cycles, cycles)}}},
+          {"box_pipes", pipes_json(work.boxes, machine.hardware_traverser_lanes, cycles)},
+          {"triangle_pipes", pipes_json(work.triangles, machine.hardware_traverser_triangle_pipes, cycles)},
           {"node_cache", cache_json(work.node_cache)},
           {"triangle_cache", cache_json(work.triangle_cache)},
           {"stacks", {{"deepest", work.deepest_stack}, {"spills", work.stack_spills}, {"fills", work.stack_fills}}},
-          {"memory",
-           {{"line_reads", work.memory_lines},
-            {"quadword_writes", work.memory_quadwords},
-            {"row_hits", work.row_hits},
-            {"row_misses", work.row_misses}}}};
+          {"memory", {{"line_reads", work.memory_lines}, {"quadword_writes", work.memory_quadwords}}}};
 }
 
 void add_chip(Json& json, const ChipResult& chip, const ChipConfiguration& machine) {
@@ -175,15 +173,14 @@ void add_chip(Json& json, const ChipResult& chip, const ChipConfiguration& machi
                    {"normal_intersections", pool_json(chip.normal_pool)},
                    {"shadow_intersections", pool_json(chip.shadow_pool)},
                    {"direct_intersections", pool_json(chip.direct_pool)},
-                   {"unfinished_pixels_peak", chip.held_peak ? Json(*chip.held_peak) : Json(nullptr)},
                    {"ray_port_utilisation", chip.ray_port_utilisation},
                    {"intersection_port_utilisation", chip.intersection_port_utilisation}};
   json["memory"] = {{"line_reads", chip.memory_reads},
                     {"quadword_writes", chip.memory_writes},
                     {"port_utilisation", chip.memory_port_utilisation}};
   if (chip.traversal) {
-    json["traversal"] = traversal_json(*chip.traversal, TraverserSizes(machine), chip.cycles);
-  } else if (machine.traverser != TraverserName::Hardware) {
+    json["traversal"] = traversal_json(*chip.traversal, machine, chip.cycles);
+  } else if (machine.traverser == TraverserName::Static) {
     json["traverser_batches"] = {{"at_kernel_end", chip.traverser_batches},
                                  {"after_stall", chip.traverser_stall_batches}};
   }
@@ -294,19 +291,18 @@ void ceiling_line(std::string& text, const ChipResult& chip) {
        100 * chip.mrays_per_s / lowest.mrays_per_s, others);
 }
 
-void traversal_table(std::string& text, const TraverserWork& work, uint64_t cycles, const TraverserSizes& machine) {
+void traversal_table(std::string& text, const TraverserWork& work, uint64_t cycles, const ChipConfiguration& machine) {
   const auto busy = [&](const PipeWork& pipes, uint64_t count) { return 100 * ratio(pipes.tests, count * cycles); };
   line(text,
        "  traverser   {:.1f} nodes, {:.1f} triangles and {:.1f} bytes a ray; {:.0f} of {} rays in flight (peak {})",
        ratio(work.boxes.tests, work.rays), ratio(work.triangles.tests, work.rays), ratio(work.bytes(), work.rays),
-       ratio(work.ray_cycles, cycles), machine.rays, work.most_rays);
+       ratio(work.ray_cycles, cycles), machine.hardware_traverser_rays, work.most_rays);
   line(text,
        "    pipes     boxes {:.1f}%, triangles {:.1f}% busy; stacks up to {} deep, {} blocks of them to the memory",
-       busy(work.boxes, machine.box_pipes), busy(work.triangles, machine.triangle_pipes), work.deepest_stack,
-       work.stack_spills);
-  line(text, "    caches    nodes {:.1f}% hits, triangles {:.1f}% hits; memory {:.1f}% in the open row",
-       100 * hit_rate(work.node_cache), 100 * hit_rate(work.triangle_cache),
-       100 * share(work.row_hits, work.row_misses));
+       busy(work.boxes, machine.hardware_traverser_lanes),
+       busy(work.triangles, machine.hardware_traverser_triangle_pipes), work.deepest_stack, work.stack_spills);
+  line(text, "    caches    nodes {:.1f}% hits, triangles {:.1f}% hits", 100 * hit_rate(work.node_cache),
+       100 * hit_rate(work.triangle_cache));
 }
 
 void chip_table(std::string& text, const ChipResult& chip, const ChipConfiguration& machine) {
@@ -337,7 +333,7 @@ void chip_table(std::string& text, const ChipResult& chip, const ChipConfigurati
        "  pools       rays {:.0f} of {} (peak {}), intersections {:.0f} normal (peak {}), {:.0f} shadow (peak {})",
        chip.rays_pool.mean, chip.rays_pool.capacity, chip.rays_pool.peak, chip.normal_pool.mean, chip.normal_pool.peak,
        chip.shadow_pool.mean, chip.shadow_pool.peak);
-  if (chip.traversal) traversal_table(text, *chip.traversal, chip.cycles, TraverserSizes(machine));
+  if (chip.traversal) traversal_table(text, *chip.traversal, chip.cycles, machine);
   line(text, "  ports       rays {:.1f}%, intersections {:.1f}%, memory {:.1f}% busy", 100 * chip.ray_port_utilisation,
        100 * chip.intersection_port_utilisation, 100 * chip.memory_port_utilisation);
 }
@@ -373,7 +369,8 @@ std::string to_json(const RunRecord& record) {
   const Json configuration = Json::parse(to_json(record.configuration));
   json["configuration"] = configuration;
   json["engine"] = record.engine;
-  if (record.whole_chip) json["whole_chip"] = true;
+  if (!record.boundary.empty()) json["boundary"] = record.boundary;
+  if (!record.hits.empty()) json["hits"] = record.hits;
   json["scene"] = {{"name", record.scene}, {"triangles", record.triangles}, {"materials", record.materials}};
   json["view"] = Json::parse(to_json(record.view));
   json["size"] = {{"width", record.width}, {"height", record.height}};

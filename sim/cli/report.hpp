@@ -18,7 +18,8 @@ namespace raypool {
 struct RunRecord {
   std::vector<std::string> command;  ///< the command line
   std::string engine;
-  bool whole_chip = false;  ///< the engine plays rtl/chip.v, not the units alone
+  std::string boundary;  ///< unit or chip, of engines rtl and lockstep; else empty
+  std::string hits;      ///< own or embree, of engine native; else empty
   Configuration configuration;
   std::string scene;
   size_t triangles = 0, materials = 0;
@@ -28,7 +29,7 @@ struct RunRecord {
   bool reflections = false;  ///< are cast
   int units = 0;
   std::optional<ChipResult> chip;                   ///< engines with a chip
-  std::optional<NativeStatistics> native;           ///< engines native, embree and sampled
+  std::optional<NativeStatistics> native;           ///< engines native and sampled
   std::optional<sampled::Figures> sampled;          ///< engine sampled
   uint64_t seed = 0;                                ///< its
   std::optional<LockstepCounts> lockstep;           ///< engine lockstep, of the units

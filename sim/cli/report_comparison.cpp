@@ -23,8 +23,8 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 // What a report says of the run itself; all other numbers are what came of it.
-constexpr std::array kSetUp = {"raypool", "engine", "whole_chip", "scene",       "view",
-                               "size",    "depth",  "units",      "reflections", "configuration"};
+constexpr std::array kSetUp = {"raypool", "engine", "boundary", "hits",        "scene",        "view",
+                               "size",    "depth",  "units",    "reflections", "configuration"};
 // Neither: the same things in other words, and what this computer did.
 constexpr std::array kLeftOut = {
     "command", "config", "traverser", "lockstep", "wall_seconds", "simulation_seconds", "simulated_per_second"};

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "chip/board.hpp"
+#include "chip/board_modules.hpp"
 #include "chip/chip.hpp"
 #include "cli/black_picture.hpp"
 #include "cli/commands.hpp"
@@ -37,34 +37,45 @@ namespace fs = std::filesystem;
 constexpr double kLeastDetail = 0.01;
 constexpr const char* kWaveform = "waves.fst";
 
+bool is_chosen(const SimOptions& options, const std::string& field) {
+  const std::vector<std::string> set = paths_set(options.set);
+  return std::find(set.begin(), set.end(), field) != set.end();
+}
+
 void check(const SimOptions& options, Engine engine) {
   check_depth_and_units(options.depth, options.units);
-  if (!options.chip.empty()) {
-    if (engine != Engine::Model && engine != Engine::Rtl && engine != Engine::Lockstep)
-      throw InputError(fmt::format("--chip is '{}': use model, rtl or lockstep", options.chip));
-    if (options.modules || !options.trace.empty())
-      throw InputError("--chip draws on the chip as one piece: leave --modules and --trace out");
+  if (!options.boundary.empty() && !has_verilog(engine)) {
+    throw InputError(fmt::format(
+        "engine {} has no Verilog, and so no boundary: use rtl or lockstep, or leave --boundary out", options.engine));
   }
-  if (options.waves && engine != Engine::Rtl && engine != Engine::Lockstep) {
+  if (!options.hits.empty() && engine != Engine::Native) {
+    throw InputError(
+        fmt::format("engine {} has the hits of its traverser: use native, or leave --hits out", options.engine));
+  }
+  if (!options.hits.empty() && options.hits != "own" && options.hits != "embree")
+    throw InputError(fmt::format("--hits is '{}': use own or embree", options.hits));
+  if (options.hits == "embree" && (!options.traverser.empty() || is_chosen(options, "chip.traverser")))
+    throw InputError("--hits embree takes no hits of the machine's traverser: leave --traverser out");
+  if (options.waves && !has_verilog(engine)) {
     throw InputError(fmt::format("engine {} has no waveform: use rtl or lockstep, or leave waves out", options.engine));
   }
-  if (options.modules && without_unit(engine)) {
+  if (options.modules && engine == Engine::Native) {
     throw InputError(fmt::format("engine {} has no chip, and so no modules to print: choose another, such as model",
                                  options.engine));
   }
   if (!options.trace.empty() && engine != Engine::Model) {
     throw InputError(fmt::format("engine {} leaves no trace: use model, or leave trace out", options.engine));
   }
-  if (options.threads != 0 && !without_unit(engine) && engine != Engine::Sampled) {
-    throw InputError(fmt::format("engine {} runs on one thread: use native, embree or sampled, or leave --threads out",
-                                 options.engine));
+  if (options.threads != 0 && engine != Engine::Native && engine != Engine::Sampled) {
+    throw InputError(
+        fmt::format("engine {} runs on one thread: use native or sampled, or leave --threads out", options.engine));
   }
   if (options.inspect_until != 0 && engine != Engine::Lockstep) throw InputError("--inspect is for --engine lockstep");
   if (engine != Engine::Sampled && (!options.error.empty() || !options.time.empty() || options.seed != 0)) {
     throw InputError(
         fmt::format("engine {} draws no sample: use sampled, or leave --error, --time and --seed out", options.engine));
   }
-  if (options.cycle_limit && (without_unit(engine) || engine == Engine::Functional || engine == Engine::Sampled)) {
+  if (options.cycle_limit && engine != Engine::Model && !has_verilog(engine)) {
     throw InputError(
         fmt::format("engine {} draws without a count of cycles that could end: use model, rtl or lockstep, or leave "
                     "--cycles out",
@@ -75,32 +86,10 @@ void check(const SimOptions& options, Engine engine) {
 }
 
 /// What is named in vain is refused; of a file, which may be written for other runs as well, it is told.
-void check_fields_in_use(const Configuration& configuration, bool whole_chip) {
+void check_fields_in_use(const Configuration& configuration) {
   refuse_unused_settings(configuration);
-  const std::vector<std::string> set = paths_set(configuration.set);
-  if (whole_chip && configuration.chip.controller != ControllerName::Counters &&
-      std::find(set.begin(), set.end(), "chip.controller") != set.end()) {
-    throw InputError(
-        "chip.controller is not looked at: the chip as one piece has that of rtl/controller.v, counters; draw "
-        "without --chip, or leave it out");
-  }
   const std::string told = unused_in_file(configuration);
   if (!told.empty()) fmt::print(stderr, "raypool: warning: {}\n", told);
-}
-
-/// The traverser in Verilog is in the chip in Verilog alone; who needs no traverser's time only needs its hits.
-Configuration for_engine(Configuration configuration, const SimOptions& options, Engine engine) {
-  check_fields_in_use(configuration, !options.chip.empty());
-  if (configuration.chip.traverser != TraverserName::Hardware || !options.chip.empty()) return configuration;
-  if (engine == Engine::Embree)
-    throw InputError("chip.traverser is hardware: engine embree has hits of its own; use native or functional");
-  if (engine != Engine::Native && engine != Engine::Functional) {
-    throw InputError(
-        fmt::format("chip.traverser is hardware: that one is in the chip as one piece, and not around engine {}: draw "
-                    "with --chip model, rtl or lockstep, or choose another with --traverser",
-                    options.engine));
-  }
-  return configuration;
 }
 
 /// "2%", or "10s": a number above zero and that unit, which may be left out.
@@ -153,7 +142,9 @@ fs::path default_folder(const SimOptions& options, const Scene& scene, const Con
   if (options.detail != 1) name += fmt::format("-detail{:g}", options.detail);
   if (!options.view.empty()) name += "-" + fs::path(options.view).stem().string();
   name += fmt::format("-{}-{}cu-{}x{}-depth{}-{}", configuration.name, options.units, size.width, size.height,
-                      options.depth, options.chip.empty() ? options.engine : "chip-" + options.chip);
+                      options.depth, options.engine);
+  if (options.boundary == "chip") name += "-chip";
+  if (options.hits == "embree") name += "-embree";
   if (!names_say_all(options, scene, configuration)) name += fmt::format("-{:08x}", content_hash(scene, configuration));
   return results_folder() / name;
 }
@@ -167,12 +158,12 @@ std::string progress_text(const ChipProgress& done, bool timed, double seconds) 
   return text;
 }
 
-FrameBuffer draw_natively(const SimOptions& options, Engine engine, RunRecord& record, const Scene& scene,
-                          MemoryImage& image, const Tracer& tracer, std::vector<NativeWork>* work = nullptr) {
+FrameBuffer draw_natively(const SimOptions& options, RunRecord& record, const Scene& scene, MemoryImage& image,
+                          const Tracer& tracer, std::vector<NativeWork>* work = nullptr) {
   std::optional<EmbreeTracer> embree;
   NativeOptions native = native_options(record);
   native.threads = threads_or_all(options.threads);
-  if (engine == Engine::Embree) {
+  if (record.hits == "embree") {
     embree.emplace(scene, tracer);
     native.trace = [&](const Ray& ray, Intersection& hit) { return embree->trace(ray, hit); };
   }
@@ -187,15 +178,21 @@ FrameBuffer draw_natively(const SimOptions& options, Engine engine, RunRecord& r
   return frame;
 }
 
+EngineOptions engine_options(const SimOptions& options, Engine engine, const RunRecord& record) {
+  return {engine == Engine::Sampled ? Engine::Model : engine,
+          record.configuration,
+          options.unit_library,
+          options.waves,
+          options.units,
+          options.inspect_until,
+          record.boundary == "chip" ? Boundary::Chip : Boundary::Unit};
+}
+
 std::unique_ptr<ComputeUnit> make_device(const SimOptions& options, Engine engine, const RunRecord& record,
                                          MemoryImage& image) {
-  const EngineOptions device{engine == Engine::Sampled ? Engine::Model : engine,
-                             record.configuration,
-                             options.unit_library,
-                             options.waves,
-                             options.units,
-                             options.inspect_until};
-  return make_unit(device, image.memory, "unit", kernel_names(ray_kernel_program(KernelTarget(record.configuration))));
+  std::unique_ptr<ComputeUnit> device = make_unit(engine_options(options, engine, record), image.memory, "unit",
+                                                  kernel_names(ray_kernel_program(KernelTarget(record.configuration))));
+  return options.wrap ? options.wrap(std::move(device), image.memory) : std::move(device);
 }
 
 /// The window that is asked for, in a picture of this size.
@@ -230,69 +227,49 @@ void keep(OutputFolder& out) {
   std::fprintf(stderr, "raypool: the waveform until then is %s\n", out.path(kWaveform).c_str());
 }
 
-template <typename Draw>
-ChipResult draw_with_progress(const SimOptions& options, ChipOptions& chip, bool timed, Draw draw) {
-  Progress progress(options.quiet || options.json);
-  chip.progress = [&](const ChipProgress& done) {
-    if (progress.due()) progress.show(progress_text(done, timed, progress.seconds()));
-  };
-  return draw();
-}
-
-FrameBuffer draw_on_unit(const SimOptions& options, Engine engine, RunRecord& record, const Scene& scene,
-                         MemoryImage& image, OutputFolder& out) {
-  std::unique_ptr<ComputeUnit> device = make_device(options, engine, record, image);
-  if (options.wrap) device = options.wrap(std::move(device), image.memory);
-  if (options.waves) device->open_waveform(out.temporary(kWaveform));
+/// The chip of an engine that has one, and what is to be asked of it when the frame is drawn.
+struct DrawingChip {
+  std::unique_ptr<ChipDevice> chip;
+  ComputeUnit* device = nullptr;  ///< in it; null: the chip is Verilog
   trace::MachineTrace trace;
+};
+
+/// `frame`: of which it adjusts what the chip needs.
+void make_drawing_chip(const SimOptions& options, Engine engine, const RunRecord& record, MemoryImage& image,
+                       ChipOptions& frame, DrawingChip& made) {
+  if (record.boundary == "chip") {
+    made.chip = make_verilog_chip(engine_options(options, engine, record), image.memory);
+    return;
+  }
+  std::unique_ptr<ComputeUnit> device = make_device(options, engine, record, image);
+  made.device = device.get();
   if (!options.trace.empty()) {
-    trace.kernels = kernel_names(ray_kernel_program(KernelTarget(record.configuration)));
+    made.trace.kernels = kernel_names(ray_kernel_program(KernelTarget(record.configuration)));
     device = std::make_unique<trace::TraceRecorder>(std::move(device), record.configuration,
-                                                    trace_window(options, record), trace);
+                                                    trace_window(options, record), made.trace);
   }
-  Surroundings around(scene, image, record);
-  ChipOptions chip = chip_options(record, scene, image, device.get(), around);
-  chip.limits.cycles = options.cycle_limit.value_or(0);
-  // When something goes wrong the waveform up to there is what one wants to see.
-  const auto keep_waveform = [&] {
-    device.reset();
-    if (options.waves) keep(out);
-  };
-  try {
-    record.chip = draw_with_progress(options, chip, device->timed(), [&] { return run_chip(chip); });
-  } catch (const ChipFault& fault) {
-    keep_waveform();
-    throw InputError(describe(fault, record));
-  } catch (const LimitPassed& passed) {
-    keep_waveform();
-    throw InputError(limit_sentence(passed, options.cycle_limit.has_value()));
-  } catch (const std::exception&) {
-    keep_waveform();
-    throw;
-  }
-  record.simulation_seconds = record.chip->wall_seconds;
-  record.lockstep = lockstep_counts(*device);
-  device.reset();
-  if (!options.trace.empty()) write_trace(options, trace, out);
-  return std::move(around.frame);
+  made.chip = make_chip_around(frame, std::move(device));
 }
 
 FrameBuffer draw_on_chip(const SimOptions& options, Engine engine, RunRecord& record, const Scene& scene,
                          MemoryImage& image, OutputFolder& out) {
-  EngineOptions chosen{engine, record.configuration, options.unit_library, options.waves, options.units};
-  chosen.chip = true;
-  chosen.inspect_until = options.inspect_until;
-  std::unique_ptr<ChipDevice> chip = make_chip(chosen, image.memory);
-  if (options.waves) chip->open_waveform(out.temporary(kWaveform));
   Surroundings around(scene, image, record);
-  ChipOptions frame = chip_options(record, scene, image, nullptr, around);
+  ChipOptions frame = chip_options(record, scene, image, around);
   frame.limits.cycles = options.cycle_limit.value_or(0);
+  DrawingChip drawing;
+  make_drawing_chip(options, engine, record, image, frame, drawing);
+  if (options.waves) drawing.chip->open_waveform(out.temporary(kWaveform));
+  Progress progress(options.quiet || options.json);
+  frame.progress = [&](const ChipProgress& done) {
+    if (progress.due()) progress.show(progress_text(done, frame.timed, progress.seconds()));
+  };
+  // When something goes wrong the waveform up to there is what one wants to see.
   const auto keep_waveform = [&] {
-    chip.reset();
+    drawing.chip.reset();
     if (options.waves) keep(out);
   };
   try {
-    record.chip = draw_with_progress(options, frame, true, [&] { return run_board(frame, *chip); });
+    record.chip = run_chip(frame, *drawing.chip);
   } catch (const ChipFault& fault) {
     keep_waveform();
     throw InputError(describe(fault, record));
@@ -304,7 +281,12 @@ FrameBuffer draw_on_chip(const SimOptions& options, Engine engine, RunRecord& re
     throw;
   }
   record.simulation_seconds = record.chip->wall_seconds;
-  record.chip_lockstep = lockstep_counts(*chip);
+  if (drawing.device != nullptr)
+    record.lockstep = lockstep_counts(*drawing.device);
+  else
+    record.chip_lockstep = lockstep_counts(*drawing.chip);
+  drawing.chip.reset();
+  if (!options.trace.empty()) write_trace(options, drawing.trace, out);
   return std::move(around.frame);
 }
 
@@ -320,16 +302,15 @@ FrameBuffer draw_sampled_frame(const SimOptions& options, RunRecord& record, con
   Surroundings around(scene, image, record);
   const Progress drawing(true);
   std::vector<NativeWork> work;
-  FrameBuffer frame = draw_natively(options, Engine::Native, record, scene, image, around.tracer, &work);
+  FrameBuffer frame = draw_natively(options, record, scene, image, around.tracer, &work);
   // What is over already gets the smallest sample.
   if (time > 0) wanted.seconds = std::max(1e-3, time - whole.seconds());
-  const std::unique_ptr<ComputeUnit> device = make_device(options, Engine::Model, record, image);
-  ChipOptions chip = chip_options(record, scene, image, device.get(), around);
+  ChipOptions chip = chip_options(record, scene, image, around);
   Progress progress(options.quiet || options.json);
   chip.progress = [&](const ChipProgress& done) {
     if (progress.due()) progress.show(progress_text(done, true, progress.seconds()));
   };
-  record.sampled = sampled::draw_sampled(chip, work, wanted);
+  record.sampled = sampled::draw_sampled(chip, static_cast<uint32_t>(options.units), work, wanted);
   record.simulation_seconds = drawing.seconds();
   return frame;
 }
@@ -342,17 +323,17 @@ EyeOf eye_of(const SimOptions& options, const Scene& scene) {
 FrameBuffer draw(const SimOptions& options, Engine engine, RunRecord& record, const Scene& scene, MemoryImage& image,
                  OutputFolder& out, const Progress& whole) {
   if (engine == Engine::Sampled) return draw_sampled_frame(options, record, scene, image, whole);
-  if (without_unit(engine))
-    return draw_natively(options, engine, record, scene, image, tracer_of(record, scene, image));
-  return record.whole_chip ? draw_on_chip(options, engine, record, scene, image, out)
-                           : draw_on_unit(options, engine, record, scene, image, out);
+  if (engine == Engine::Native) return draw_natively(options, record, scene, image, tracer_of(record, scene, image));
+  return draw_on_chip(options, engine, record, scene, image, out);
 }
 
 void print_modules(const SimOptions& options, Engine engine, const RunRecord& record, const Scene& scene,
                    MemoryImage& image) {
-  const std::unique_ptr<ComputeUnit> device = make_device(options, engine, record, image);
   Surroundings around(scene, image, record);
-  fmt::print("{}", chip_modules(chip_options(record, scene, image, device.get(), around)));
+  ChipOptions frame = chip_options(record, scene, image, around);
+  DrawingChip drawing;
+  make_drawing_chip(options, engine, record, image, frame, drawing);
+  fmt::print("{}", chip_modules(frame, *drawing.chip));
 }
 
 void print_table(const SimOptions& options, const RunRecord& record, const OutputFolder& out) {
@@ -367,19 +348,20 @@ void print_table(const SimOptions& options, const RunRecord& record, const Outpu
 
 int sim_command(const SimOptions& options) {
   const Progress whole(true);
-  const Engine engine = parse_engine(options.chip.empty() ? options.engine : options.chip);
+  const Engine engine = parse_engine(options.engine);
   const ImageSize size = parse_image_size(options.size);
   check(options, engine);
 
   RunRecord record;
   record.command = options.command;
-  record.engine = options.chip.empty() ? options.engine : options.chip;
-  record.whole_chip = !options.chip.empty();
+  record.engine = options.engine;
+  if (has_verilog(engine)) record.boundary = options.boundary.empty() ? "unit" : options.boundary;
+  if (!record.boundary.empty()) parse_boundary(record.boundary);
+  if (engine == Engine::Native) record.hits = options.hits.empty() ? "own" : options.hits;
   std::vector<std::string> set = options.set;
   if (!options.traverser.empty()) set.push_back("chip.traverser=" + options.traverser);
-  const Configuration loaded = for_engine(load_configuration(options.config, set), options, engine);
-  record.configuration = loaded;
-  if (record.whole_chip) record.configuration.chip.controller = ControllerName::Counters;  // the one in Verilog
+  record.configuration = load_configuration(options.config, set);
+  check_fields_in_use(record.configuration);
   record.width = size.width;
   record.height = size.height;
   record.depth = options.depth;
@@ -397,7 +379,8 @@ int sim_command(const SimOptions& options) {
     print_modules(options, engine, record, scene, image);
     return 0;
   }
-  OutputFolder out(options.out.empty() ? default_folder(options, scene, loaded, size) : fs::path(options.out));
+  OutputFolder out(options.out.empty() ? default_folder(options, scene, record.configuration, size)
+                                       : fs::path(options.out));
 
   clear_unfinished(out);
   // Who stops a run wants to see its waveform until then.

@@ -43,7 +43,8 @@ exec "$@")";
 
 int unit_command(const UnitOptions& options) {
   const Configuration configuration = load_configuration(options.config, options.set);
-  const auto path = options.chip ? chip_library_path : unit_library_path;
+  const bool chip = parse_boundary(options.boundary) == Boundary::Chip;
+  const auto path = chip ? chip_library_path : unit_library_path;
   const fs::path folder = fs::path(path(configuration, options.waves, options.units)).parent_path();
   make_folder(folder);
   // One build at a time in a folder: a second waits here. So what lies there half done is of one that was killed.
@@ -52,10 +53,9 @@ int unit_command(const UnitOptions& options) {
       kClearAndRun, "raypool unit",   folder, fs::path(data_folder()) / "scripts" / "verilate.sh",
       folder};
   if (options.waves) command.emplace_back("--trace");
-  if (options.chip) command.insert(command.end(), {"--top", "chip"});
-  auto parameters =
-      options.chip ? chip_verilog_parameters(configuration, options.units) : verilog_parameters(configuration);
-  if (!options.chip) parameters.emplace_back("UNITS", options.units);
+  if (chip) command.insert(command.end(), {"--top", "chip"});
+  auto parameters = chip ? chip_verilog_parameters(configuration, options.units) : verilog_parameters(configuration);
+  if (!chip) parameters.emplace_back("UNITS", options.units);
   for (const auto& [name, value] : parameters) command.push_back(fmt::format("{}={}", name, value));
 
   setenv("JOBS", std::to_string(std::max(1u, std::thread::hardware_concurrency())).c_str(), 0);

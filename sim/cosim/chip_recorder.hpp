@@ -25,6 +25,7 @@ class ChipRecorder : public ChipDevice {
   void clock(const ChipInputs& inputs) override;
   ChipCounts counts() override { return chip_.counts(); }
   uint64_t counter(int number) override { return chip_.counter(number); }
+  std::optional<TraverserWork> traverser_work() const override { return chip_.traverser_work(); }
 
  private:
   struct Host {

@@ -121,8 +121,8 @@ std::vector<Factor> make_chip_factors() {
            {"chip.memory.latency", {1, 10, 50}},
            {"chip.memory.cycles_per_beat", {1, 2, 3}},
            {"chip.memory.queue", {1, 2, 8}},
-           {"chip.modelled_traverser.node_cache_mshrs", {1, 2}},
-           {"chip.modelled_traverser.tile_order", {0, 1}},
+           {"chip.hardware_traverser.node_cache_mshrs", {1, 2}},
+           {"chip.tile_order", {0, 1}},
            {"chip.held_limit", {0, 1}}})
     factors.push_back(factor_of(path, values));
   for (Factor& factor : factors) {
@@ -147,12 +147,12 @@ std::vector<Factor> make_inside_factors() {
   std::vector<Factor> factors;
   for (Factor& factor : make_chip_factors()) {
     // The first is of a traverser at the ports, the second below counted otherwise.
-    if (factor.name != "chip.static_traverser.batch" && factor.name != "chip.modelled_traverser.node_cache_mshrs")
+    if (factor.name != "chip.static_traverser.batch" && factor.name != "chip.hardware_traverser.node_cache_mshrs")
       factors.push_back(std::move(factor));
   }
   using Scale = std::function<int(const ChipConfiguration&)>;
   const auto put = [&factors](std::string_view name, std::vector<int> values, const Scale& scale = nullptr) {
-    Factor factor = factor_of("chip.modelled_traverser." + std::string(name), std::move(values));
+    Factor factor = factor_of("chip.hardware_traverser." + std::string(name), std::move(values));
     if (scale != nullptr) {
       factor.set = [set = factor.set, scale](Machine& m, int value) { set(m, value * scale(m.configuration.chip)); };
       factor.get = [get = factor.get, scale](const Machine& m) { return get(m) / scale(m.configuration.chip); };
@@ -167,29 +167,29 @@ std::vector<Factor> make_inside_factors() {
   // A lane's slots must have rays: so many are in the pool, too, until they leave.
   values_of("chip.ray_pool.size") = {1, 2, 7, 40};
   put("triangle_pipes", {1, 2});
-  put("box_pipes", {0, 1, 2});
+  put("lanes", {0, 1, 2});
   Factor& lanes = factors.back();
   const auto pipes = [](const Machine& m) {
-    return static_cast<int>(m.configuration.chip.modelled_traverser_triangle_pipes);
+    return static_cast<int>(m.configuration.chip.hardware_traverser_triangle_pipes);
   };
   lanes.set = [set = lanes.set, pipes](Machine& m, int value) { set(m, pipes(m) + value); };
   lanes.get = [get = lanes.get, pipes](const Machine& m) { return get(m) - pipes(m); };
   put("rays", {1, 2, 5, 24},
-      [](const ChipConfiguration& chip) { return static_cast<int>(chip.modelled_traverser_box_pipes); });
+      [](const ChipConfiguration& chip) { return static_cast<int>(chip.hardware_traverser_lanes); });
   put("stack_entries", {8, 9, 16});
   put("box_bits", {6, 12, 16});
   put("cache_banks", {1, 2, 4});
   const auto banks = [](const ChipConfiguration& chip) {
-    return static_cast<int>(chip.modelled_traverser_cache_banks);
+    return static_cast<int>(chip.hardware_traverser_cache_banks);
   };
   put("node_cache_ways", {2, 4});
   put("node_cache_bytes", {1, 2}, [banks](const ChipConfiguration& chip) {
-    return kSetBytes * banks(chip) * static_cast<int>(chip.modelled_traverser_node_cache_ways);
+    return kSetBytes * banks(chip) * static_cast<int>(chip.hardware_traverser_node_cache_ways);
   });
   put("node_cache_mshrs", {1, 2, 3}, banks);
   put("triangle_cache_ways", {2, 4});
   put("triangle_cache_bytes", {1, 2}, [banks](const ChipConfiguration& chip) {
-    return kSetBytes * banks(chip) * static_cast<int>(chip.modelled_traverser_triangle_cache_ways);
+    return kSetBytes * banks(chip) * static_cast<int>(chip.hardware_traverser_triangle_cache_ways);
   });
   put("triangle_cache_mshrs", {1, 2, 3}, banks);
   return factors;
@@ -320,7 +320,7 @@ std::vector<Machine> chips_of(const std::vector<Factor>& factors, TraverserName 
   Configuration& configuration = smallest.configuration;
   configuration.instruction_cache_bytes = configuration.data_cache_bytes = 512;
   configuration.chip.traverser = traverser;
-  configuration.chip.modelled_traverser_triangle_cache_mshrs = 1;
+  configuration.chip.hardware_traverser_triangle_cache_mshrs = 1;
   Search search(factors, kSmallThreads);
   std::vector<Machine> machines;
   while (!search.done())
@@ -387,10 +387,7 @@ std::vector<Machine> covering_machines(int most_threads, size_t most_pairings) {
   return machines;
 }
 
-std::vector<Machine> covering_chips() {
-  // Its tiles may have an order.
-  return chips_of(chip_factors(), TraverserName::Modelled, "chip");
-}
+std::vector<Machine> covering_chips() { return chips_of(chip_factors(), TraverserName::Static, "chip"); }
 
 std::vector<Machine> covering_inside() { return chips_of(inside_factors(), TraverserName::Hardware, "inside"); }
 

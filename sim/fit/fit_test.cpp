@@ -133,9 +133,9 @@ TEST(ShortestFile, SaysWhatIsNotAsItIsWithoutBeingSaid) {
   Configuration configuration;
   configuration.name = "small";
   configuration.data_cache_bytes = 512;
-  configuration.chip.traverser = TraverserName::Modelled;
+  configuration.chip.traverser = TraverserName::Static;
   EXPECT_EQ(Json::parse(shortest_file(configuration)),
-            Json::parse(R"({"name": "small", "data_cache": {"bytes": 512}, "chip": {"traverser": "modelled"}})"));
+            Json::parse(R"({"name": "small", "data_cache": {"bytes": 512}, "chip": {"traverser": "static"}})"));
   expect_same_machine(configuration);
 }
 

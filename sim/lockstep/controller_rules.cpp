@@ -47,7 +47,7 @@ class LaunchRecordsRule : public BlockRule {
 class TileWalkRule : public BlockRule {
  public:
   TileWalkRule(const Block& block, const Configuration& c)
-      : BlockRule(block), start_walk_(tile_order(c.chip), c.contents(), c.chip.held_limit), walk_(start_walk_) {}
+      : BlockRule(block), start_walk_(c.chip.tile_order, c.contents(), c.chip.held_limit), walk_(start_walk_) {}
   void reset() override { walk_ = start_walk_; }
   void compare(Findings& findings) override {
     expect(findings, busy_.value(), walk_.busy(), "a tile is left");

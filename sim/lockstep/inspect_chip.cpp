@@ -25,7 +25,7 @@ ChipInspection::ChipInspection(const Configuration& configuration, const ChipDev
 
 void ChipInspection::find_lanes(const ChipConfiguration& chip) {
   if (!w_.missing.empty()) return;
-  for (uint32_t lane = 0; lane < chip.modelled_traverser_box_pipes; ++lane) {
+  for (uint32_t lane = 0; lane < chip.hardware_traverser_lanes; ++lane) {
     lanes_.emplace_back(*rtl_, fmt::format("{}.gen_lane[{}].lane", kScope, lane));
     if (!lanes_.back().missing.empty()) return;
   }

@@ -41,6 +41,7 @@ class LockstepChipImpl : public LockstepChip {
   const ChipOutputs& outputs() const override { return rtl_->outputs(); }
   ChipCounts counts() override { return rtl_->counts(); }
   uint64_t counter(int number) override { return rtl_->counter(number); }
+  std::optional<TraverserWork> traverser_work() const override { return model_->traverser_work(); }
   void open_waveform(const std::string& path) override { rtl_->open_waveform(path); }
   const ChipLockstepCounts& lockstep_counts() const override { return counts_; }
 

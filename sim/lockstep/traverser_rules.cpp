@@ -312,24 +312,24 @@ void add_traverser_rules(std::vector<std::unique_ptr<BlockRule>>& rules, const C
                          const ChipDevice& rtl) {
   const ChipConfiguration& chip = configuration.chip;
   const Block traverser{&rtl, "gen_inside.traverser", "traverser", "chip"};
-  const uint32_t banks = chip.modelled_traverser_cache_banks, lanes = chip.modelled_traverser_box_pipes;
+  const uint32_t banks = chip.hardware_traverser_cache_banks, lanes = chip.hardware_traverser_lanes;
   constexpr uint32_t kLine = 64;
   const Block direction{&rtl, traverser.scope + ".setup.direction", "ray_direction", "ray_setup"};
   for (const char* digits : {"inverse_digits", "aside_digits"})
     add_quotient_rule(rules, direction.inner(digits, "quotient_digits"));
   add_cache_rules(rules, traverser.inner("nodes", "tree_banks"),
-                  {lanes, chip.modelled_traverser_node_cache_bytes / kLine / banks,
-                   chip.modelled_traverser_node_cache_ways, chip.modelled_traverser_node_cache_mshrs / banks},
+                  {lanes, chip.hardware_traverser_node_cache_bytes / kLine / banks,
+                   chip.hardware_traverser_node_cache_ways, chip.hardware_traverser_node_cache_mshrs / banks},
                   banks);
   add_cache_rules(rules, traverser.inner("triangles", "tree_banks"),
-                  {lanes + 1, chip.modelled_traverser_triangle_cache_bytes / kLine / banks,
-                   chip.modelled_traverser_triangle_cache_ways, chip.modelled_traverser_triangle_cache_mshrs / banks},
+                  {lanes + 1, chip.hardware_traverser_triangle_cache_bytes / kLine / banks,
+                   chip.hardware_traverser_triangle_cache_ways, chip.hardware_traverser_triangle_cache_mshrs / banks},
                   banks);
   for (uint32_t lane = 0; lane < lanes; ++lane) {
     const Block one = traverser.inner(fmt::format("gen_lane[{}].lane", lane), "traverser_lane");
     for (const char* queue : {"begins", "ends"}) add_queue_rule(rules, one.inner(queue, "ram_queue"));
   }
-  for (uint32_t pipe = 0; pipe < chip.modelled_traverser_triangle_pipes; ++pipe)
+  for (uint32_t pipe = 0; pipe < chip.hardware_traverser_triangle_pipes; ++pipe)
     add_triangle_rules(rules, traverser.inner(fmt::format("gen_group[{}].pipe", pipe), "triangle_group"));
   const Block exit = traverser.inner("exit", "ray_exit");
   add_finish_rules(rules, exit.inner("finish", "ray_finish"));

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "bits.hpp"
-#include "chip/chip.hpp"
+#include "chip/board.hpp"
 #include "scene/native_renderer.hpp"
 
 namespace raypool::numerics {
@@ -44,10 +44,9 @@ std::optional<ModeTiming> time_mode(const Scene& scene, int depth, const Configu
   SceneTracer scene_tracer(tracer);
   FrameBuffer frame(kTimedSize, kTimedSize);
   FrameBufferSink sink(frame);
-  const std::unique_ptr<ComputeUnit> unit = make(configuration, image.memory);
   ChipOptions chip;
   chip.configuration = configuration;
-  chip.device = unit.get();
+  chip.configuration.chip.traverser = TraverserName::Static;
   chip.memory = &image.memory;
   chip.program_length = size32(program.code);
   for (size_t i = 0; i < kRayKernels; ++i) chip.entries[i] = program.entries.at(std::string(kRayKernelNames[i]));
@@ -57,7 +56,7 @@ std::optional<ModeTiming> time_mode(const Scene& scene, int depth, const Configu
   chip.depth = depth;
   chip.tracer = &scene_tracer;
   chip.frame = &sink;
-  const ChipResult result = run_chip(chip);
+  const ChipResult result = run_board(chip, *make_chip_around(chip, make(configuration, image.memory)));
   if (!result.timed || result.rays() == 0) return std::nullopt;
   return ModeTiming{static_cast<double>(result.cycles) / result.rays(), result.mrays_per_s};
 }

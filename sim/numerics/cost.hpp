@@ -9,7 +9,8 @@
 
 namespace raypool::numerics {
 
-/// Draws `scene`'s view at 32 x 32 on a unit of `unit`'s making, and reads cycles. Nothing when the engine has no time.
+/// Draws `scene`'s view at 32 x 32 on a unit of `unit`'s making, and reads cycles; its traverser is static, so
+/// that they are the unit's. Nothing when the engine has no time.
 std::optional<ModeTiming> time_mode(const Scene& scene, int depth, const Configuration& configuration,
                                     const UnitMaker& unit);
 

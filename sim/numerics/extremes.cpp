@@ -8,7 +8,7 @@
 #include <map>
 
 #include "bits.hpp"
-#include "chip/chip.hpp"
+#include "chip/board.hpp"
 #include "chip/program_run.hpp"
 #include "isa/assembler.hpp"
 #include "isa/encoding.hpp"
@@ -93,19 +93,10 @@ void require_same(const Drawing& ours, const Drawing& native) {
 /// Finds hits, by the scene or by the frame's own function, and writes down what was asked.
 class RecordingTracer : public RayTracer {
  public:
-  RecordingTracer(const ExtremeFrame& frame, uint32_t material_base, const ChipConfiguration& chip,
-                  std::vector<TracedRay>& traced)
-      : frame_(frame), material_base_(material_base), tracer_(frame.scene, material_base, chip), traced_(traced) {}
+  RecordingTracer(const ExtremeFrame& frame, uint32_t material_base, std::vector<TracedRay>& traced)
+      : frame_(frame), material_base_(material_base), tracer_(frame.scene, material_base), traced_(traced) {}
 
-  bool trace(const Ray& ray, Intersection& intersection) override { return find(ray, intersection, nullptr); }
-  bool follow(const Ray& ray, Intersection& intersection, VisitList& visits) override {
-    return find(ray, intersection, &visits);
-  }
-  const Tracer& scene_tracer() const { return tracer_; }
-  void set_triangle_test(const TriangleTest& test) { tracer_.set_triangle_test(test); }
-
- private:
-  bool find(const Ray& ray, Intersection& intersection, VisitList* visits) {
+  bool trace(const Ray& ray, Intersection& intersection) override {
     bool goes_on = false;
     if (frame_.trace) {
       intersection.fill(0);
@@ -114,12 +105,15 @@ class RecordingTracer : public RayTracer {
       intersection[word::kMaterial] =
           material_base_ + intersection[word::kMaterial] * static_cast<uint32_t>(kMaterialBytes);
     } else {
-      goes_on = tracer_.trace(ray, intersection, nullptr, visits);
+      goes_on = tracer_.trace(ray, intersection);
     }
     traced_.push_back({ray, goes_on, intersection});
     return goes_on;
   }
+  const Tracer& scene_tracer() const { return tracer_; }
+  void set_triangle_test(const TriangleTest& test) { tracer_.set_triangle_test(test); }
 
+ private:
   const ExtremeFrame& frame_;
   uint32_t material_base_;
   Tracer tracer_;
@@ -141,7 +135,7 @@ class RecordingSink : public FrameSink {
 Drawing draw_natively(const ExtremeFrame& frame, const arith::Mode& mode, const std::optional<TriangleTest>& test) {
   Drawing drawing{FrameBuffer(frame.width, frame.height), {}, {}};
   const MemoryImage image = build_memory(ray_kernel_program({mode.fused, false}), frame.scene);
-  RecordingTracer tracer(frame, image.material_base, ChipConfiguration(), drawing.traced);
+  RecordingTracer tracer(frame, image.material_base, drawing.traced);
   if (test) tracer.set_triangle_test(*test);
   NativeOptions options;
   options.width = frame.width;
@@ -180,7 +174,9 @@ void require(bool condition, const std::string& otherwise) {
 
 ExtremeMachine::ExtremeMachine(std::string engine, const ArithmeticMode& mode, const Configuration& base,
                                UnitMaker unit)
-    : engine_(std::move(engine)), mode_(mode), configuration_(mode.applied_to(base)), unit_(std::move(unit)) {}
+    : engine_(std::move(engine)), mode_(mode), configuration_(mode.applied_to(base)), unit_(std::move(unit)) {
+  configuration_.chip.traverser = TraverserName::Static;  // at the ports its rays are seen
+}
 
 uint32_t ExtremeMachine::operate(const std::string& mnemonic, uint32_t a, uint32_t b, uint32_t c) const {
   const uint32_t native = operate_natively(mnemonic, a, b, c, mode_.mode);
@@ -226,12 +222,10 @@ Drawing ExtremeMachine::draw_on_unit(const ExtremeFrame& frame) const {
   Drawing drawing{FrameBuffer(frame.width, frame.height), {}, {}};
   const Program& program = ray_kernel_program(KernelTarget(configuration_));
   MemoryImage image = build_memory(program, frame.scene);
-  RecordingTracer tracer(frame, image.material_base, configuration_.chip, drawing.traced);
+  RecordingTracer tracer(frame, image.material_base, drawing.traced);
   RecordingSink sink(drawing);
-  const std::unique_ptr<ComputeUnit> unit = unit_(configuration_, image.memory);
   ChipOptions chip;
   chip.configuration = configuration_;
-  chip.device = unit.get();
   chip.memory = &image.memory;
   chip.program_length = size32(program.code);
   for (size_t i = 0; i < kRayKernels; ++i) chip.entries[i] = program.entries.at(std::string(kRayKernelNames[i]));
@@ -245,7 +239,7 @@ Drawing ExtremeMachine::draw_on_unit(const ExtremeFrame& frame) const {
   chip.tracer = &tracer;
   chip.frame = &sink;
   chip.limits.cycles = kCycleLimit;
-  run_chip(chip);
+  run_board(chip, *make_chip_around(chip, unit_(configuration_, image.memory)));
   sort(drawing);
   return drawing;
 }

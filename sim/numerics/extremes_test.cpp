@@ -6,7 +6,6 @@
 
 #include <set>
 
-#include "machine/cycle_unit.hpp"
 #include "machine/functional_unit.hpp"
 #include "numerics/extreme_parts.hpp"
 
@@ -36,27 +35,6 @@ INSTANTIATE_TEST_SUITE_P(Modes, Extremes, testing::ValuesIn(arithmetic_modes()),
   for (char& c : name) c = c == '-' ? '_' : c;
   return name;
 });
-
-std::unique_ptr<ComputeUnit> cycle_unit(const Configuration& configuration, Memory& memory) {
-  return std::make_unique<CycleUnit>(configuration, memory);
-}
-
-// What the catalogue has of rays and scenes, on the chip with the modelled traverser, whose rays must hit what those of
-// engine native do.
-TEST(ExtremeCatalogue, HitsAreTheSameWithBoxesInIntegers) {
-  for (const uint32_t bits : {6, 8, 16}) {
-    Configuration base = small_unit();
-    base.chip.traverser = TraverserName::Modelled;
-    base.chip.modelled_traverser_box_bits = bits;
-    const ExtremeMachine machine("model", arithmetic_modes().front(), base, cycle_unit);
-    for (auto* theme : {ray_extremes, triangle_extremes, scene_extremes}) {
-      for (const ExtremeCase& extreme : theme()) {
-        const std::string failure = run_extreme(extreme, machine).failure;
-        EXPECT_EQ(failure, "") << bits << " bits, " << extreme.theme << ": " << extreme.name;
-      }
-    }
-  }
-}
 
 TEST(ExtremeCatalogue, NamesAreUnique) {
   std::set<std::string> names;

@@ -2,6 +2,7 @@
 // library. What the blocks show each other is read from the wires between them, which sim/rtl/chip_probes.vlt keeps.
 #include <algorithm>
 #include <array>
+#include <stdexcept>
 #include <string>
 
 #include "Vchip.h"
@@ -132,6 +133,7 @@ class RtlChip : public ChipDevice {
 
  private:
   void write_setup(const FrameSetup& setup) {
+    if (!setup.tiles.empty()) throw std::logic_error("the chip in Verilog casts every tile: draw some with its model");
     setup_ = setup;
     Vchip& top = design_.top();
     top.program_length_i = static_cast<SData>(setup.program_length);

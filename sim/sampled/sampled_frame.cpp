@@ -5,11 +5,15 @@
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <memory>
 #include <numeric>
 #include <utility>
 
 #include "bits.hpp"
-#include "chip/controller.hpp"
+#include "chip/board.hpp"
+#include "chip/frame_setup.hpp"
+#include "machine/chip_model.hpp"
+#include "machine/model.hpp"
 #include "sampled/processes.hpp"
 #include "sampled/sample.hpp"
 
@@ -29,6 +33,7 @@ constexpr uint32_t kLeastGroup = 8, kMostGroups = 64;
 // What a block costs depends a little on what is beside it, which in a sample is not what it is in the frame: this much
 // of each figure, and no less than so much of a utilisation. `make intervals` prints mean errors of that size.
 constexpr double kBesideError = 0.0025, kLeastShareError = 0.0005;
+constexpr double kBesideCachesError = 0.005;  // the same where a traverser has caches
 // What caches are filled with behind tiles that are left out is not quite what they would hold: of the memory port's
 // utilisation.
 constexpr double kRememberedError = 0.01;
@@ -51,11 +56,26 @@ uint32_t tiles_under_way(const Configuration& configuration) {
   return std::max(kLeastBlockTiles, held / std::min(configuration.contents(), held));
 }
 
-/// Of a picture of so many tiles. The larger a block, the less of its cost is its neighbours'.
+/// Of a picture of so many tiles. The larger a block, the less of its cost is its neighbours', of whom caches need
+/// more.
 uint32_t block_tiles(const Configuration& configuration, uint64_t tiles) {
   const uint32_t under_way = tiles_under_way(configuration);
-  return tiles >= uint64_t{2} * under_way * kManyBlocks ? 2 * under_way : under_way;
+  const uint32_t block = has_traverser(configuration.chip) ? 2 * under_way : under_way;
+  return tiles >= uint64_t{2} * under_way * kManyBlocks ? 2 * block : block;
 }
+
+/// Tiles that are simulated beside a block and not counted. With caches, before it what is under way when it begins;
+/// and behind it more than that: where tiles are left out, caches are filled for those that come, and what is under way
+/// loses its lines.
+struct Beside {
+  explicit Beside(const Configuration& configuration) {
+    const uint32_t under_way = tiles_under_way(configuration);
+    const bool caches = has_traverser(configuration.chip);
+    before = caches ? under_way : under_way / 4;
+    behind = caches ? 2 * under_way : under_way / 4;
+  }
+  uint32_t before, behind;
+};
 
 /// Instructions of each kernel, from its first to that of the next one.
 EnumArray<RayKernel, double, kRayKernels> kernel_lengths(const ChipOptions& chip) {
@@ -100,13 +120,15 @@ std::vector<double> sizes_of(const std::vector<Known>& known) {
 
 class SampledFrame {
  public:
-  SampledFrame(const ChipOptions& chip, const std::vector<NativeWork>& work, const Wanted& wanted)
+  SampledFrame(const ChipOptions& chip, uint32_t units, const std::vector<NativeWork>& work, const Wanted& wanted)
       : chip_(chip),
+        units_(units),
         work_(work),
         wanted_(wanted),
         figures_(nothing_of(size32(chip::along_walk(chip.configuration, chip.width, chip.height)))),
         block_(block_tiles(chip.configuration, figures_.tiles)),
-        beside_(tiles_under_way(chip.configuration) / 4) {
+        beside_(chip.configuration),
+        beside_error_(has_traverser(chip.configuration.chip) ? kBesideCachesError : kBesideError) {
     if (work.size() != Sample::blocks_of(figures_.tiles, block_))
       throw std::logic_error("not the work of each block of the sample");
     known_ = known_of(chip, work);
@@ -129,7 +151,7 @@ class SampledFrame {
       // What a small sample says of the size of a much larger one is worth little.
       const double blocks = std::min(blocks_wanted(sample, seconds, a_tile), kGrowth * sample.drawn());
       // What is beside the blocks costs too.
-      const bool all = blocks * (block_ + 2 * beside_) / block_ >= kWholeFrom * sample.inner_blocks();
+      const bool all = blocks * with_beside() / block_ >= kWholeFrom * sample.inner_blocks();
       if (all && (wanted_.seconds == 0 || seconds + a_tile * figures_.tiles < wanted_.seconds)) return draw_whole();
       more = sample.draw(static_cast<uint32_t>(blocks));
     }
@@ -144,15 +166,17 @@ class SampledFrame {
     return figures;
   }
 
+  /// Tiles that are simulated for a block.
+  uint32_t with_beside() const { return beside_.before + block_ + beside_.behind; }
   /// Inner blocks to be drawn in all; as many as are drawn, if that is enough. A few more pay for no further run.
   double blocks_wanted(const Sample& sample, double seconds, double a_tile) const {
     const auto drawn = static_cast<double>(sample.drawn()), all = static_cast<double>(sample.inner_blocks());
     if (wanted_.seconds > 0) {
-      const double more = (wanted_.seconds - seconds) / (a_tile * (block_ + 2 * beside_));
+      const double more = (wanted_.seconds - seconds) / (a_tile * with_beside());
       return more < kLeastGroup ? drawn : std::min(all, drawn + more);
     }
     const Estimate now = estimate(sample);
-    const double allowed = (wanted_.error - kBesideError) * now.total(count::kCycles).value;
+    const double allowed = (wanted_.error - beside_error_) * now.total(count::kCycles).value;
     double blocks = drawn;
     while (blocks < all && now.half_width(count::kCycles, blocks / drawn) > allowed) blocks *= 1.05;
     return blocks == drawn ? drawn : std::min(all, std::max(kMargin * blocks, drawn + kLeastGroup));
@@ -177,8 +201,8 @@ class SampledFrame {
       };
       const uint32_t first = sample.begin(block), end = sample.begin(block + 1);
       // A chip that has just begun is filled first.
-      add_beside(first - std::min(first, beside_ + (group.empty() ? block_ / 2 : 0)), first);
-      add_beside(end, end + beside_);
+      add_beside(first - std::min(first, beside_.before + (group.empty() ? block_ / 2 : 0)), first);
+      add_beside(end, end + beside_.behind);
       for (uint32_t tile = first; tile < end; ++tile) group[tile] = true;
     }
     groups.erase(std::remove_if(groups.begin(), groups.end(), [](const Group& group) { return group.empty(); }),
@@ -222,6 +246,12 @@ class SampledFrame {
     }
   }
 
+  ChipResult run_on_model(const ChipOptions& run) const {
+    const std::unique_ptr<ChipDevice> model =
+        make_chip_model(run.configuration, make_model(run.configuration, *run.memory, units_).device);
+    return run_board(run, *model);
+  }
+
   /// A run of the chip. The bytes of what each tile costs.
   std::string simulate(const Group& group) const {
     ChipOptions run = chip_;
@@ -230,7 +260,7 @@ class SampledFrame {
     run.tile_costs = &costs;
     run.visited_before = [this](uint32_t tile) { return visited_before(tile); };
     for (const auto& [tile, counts] : group) run.tiles.push_back(tile);
-    run_chip(run);
+    run_on_model(run);
     return {reinterpret_cast<const char*>(costs.costs().data()), costs.costs().size() * sizeof(Counts)};
   }
 
@@ -238,7 +268,7 @@ class SampledFrame {
   VisitList visited_before(uint32_t tile) const {
     const ChipConfiguration& chip = chip_.configuration.chip;
     const size_t enough =
-        kCacheFuls * (chip.modelled_traverser_node_cache_bytes + chip.modelled_traverser_triangle_cache_bytes) / 64;
+        kCacheFuls * (chip.hardware_traverser_node_cache_bytes + chip.hardware_traverser_triangle_cache_bytes) / 64;
     // Of the block that the tile is in, those of the tiles before it.
     const uint32_t own = tile / block_;
     const size_t of_own = tile % block_ == 0 ? 0 : work_[own].tile_ends.at(tile % block_ - 1);
@@ -266,10 +296,10 @@ class SampledFrame {
 
   void conclude(const Estimate& estimate) {
     figures_.cycles = estimate.total(count::kCycles);
-    figures_.cycles.low -= kBesideError * figures_.cycles.value;
-    figures_.cycles.high += kBesideError * figures_.cycles.value;
+    figures_.cycles.low -= beside_error_ * figures_.cycles.value;
+    figures_.cycles.high += beside_error_ * figures_.cycles.value;
     const auto share = [&](const Interval& x, double error = 0) {
-      error += std::max(kLeastShareError, kBesideError * x.value);
+      error += std::max(kLeastShareError, beside_error_ * x.value);
       return Interval{x.value, std::max(0.0, x.low - error), std::min(1.0, x.high + error)};
     };
     const auto mrays = [&](double cycles) { return 1e3 * rays_ / cycles; };
@@ -287,7 +317,7 @@ class SampledFrame {
   static Interval exactly(double x) { return {x, x, x}; }
 
   Figures draw_whole() {
-    const ChipResult result = run_chip(chip_);
+    const ChipResult result = run_on_model(chip_);
     figures_.whole = true;
     figures_.simulated_tiles += figures_.tiles;
     figures_.counted_tiles = figures_.tiles;
@@ -301,10 +331,13 @@ class SampledFrame {
   }
 
   const ChipOptions& chip_;
+  uint32_t units_;
   const std::vector<NativeWork>& work_;  // [block]
   Wanted wanted_;
   Figures figures_;
-  uint32_t block_, beside_;           // tiles of a block, and uncounted ones on each side of it
+  uint32_t block_;  // tiles
+  Beside beside_;
+  double beside_error_;               // a share of each figure
   std::vector<Known> known_;          // [block]
   std::vector<double> sizes_;         // [block] a share of the frame's work, times what is known
   double rays_ = 0;                   // of the frame
@@ -324,8 +357,9 @@ std::vector<std::vector<PixelTile>> blocks_of(const Configuration& configuration
   return blocks;
 }
 
-Figures draw_sampled(const ChipOptions& chip, const std::vector<NativeWork>& work, const Wanted& wanted) {
-  return SampledFrame(chip, work, wanted).draw();
+Figures draw_sampled(const ChipOptions& chip, uint32_t units, const std::vector<NativeWork>& work,
+                     const Wanted& wanted) {
+  return SampledFrame(chip, units, work, wanted).draw();
 }
 
 }  // namespace raypool::sampled

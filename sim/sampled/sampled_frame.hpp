@@ -40,10 +40,11 @@ struct Figures {
 std::vector<std::vector<PixelTile>> blocks_of(const Configuration& configuration, uint32_t width, uint32_t height);
 
 /// `work`: what each of blocks_of() takes, of the frame and its memory image. A pilot sample finds how many tiles it
-/// takes; if that is three quarters of the frame all of it is simulated. Options of `chip` as for run_chip(), whose
-/// exceptions it passes on, as in_processes() does. The sample is simulated in processes of their own: `chip.device`
-/// and `chip.frame` get nothing of it, and `chip.progress` is called when one has ended, with its stage's share, cycles
-/// and rays.
-Figures draw_sampled(const ChipOptions& chip, const std::vector<NativeWork>& work, const Wanted& wanted);
+/// takes; if that is three quarters of the frame all of it is simulated. Options of `chip` as for run_board(), whose
+/// exceptions it passes on, as in_processes() does; it makes the model of the chip itself, of so many units. The sample
+/// is simulated in processes of their own: `chip.frame` gets nothing of it, and `chip.progress` is called when one has
+/// ended, with its stage's share, cycles and rays.
+Figures draw_sampled(const ChipOptions& chip, uint32_t units, const std::vector<NativeWork>& work,
+                     const Wanted& wanted);
 
 }  // namespace raypool::sampled

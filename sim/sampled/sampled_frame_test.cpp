@@ -3,11 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <optional>
 #include <random>
 #include <utility>
 
 #include "bits.hpp"
-#include "chip/test_real_frame.hpp"
+#include "chip/board.hpp"
+#include "chip/test_board.hpp"
+#include "chip/tree_image.hpp"
+#include "machine/chip_model.hpp"
 #include "machine/model.hpp"
 
 namespace raypool::sampled {
@@ -31,10 +35,15 @@ Scene make_half() {
 }
 
 struct Frame : test::RealFrame {
-  explicit Frame(uint32_t side = kSide, Scene drawn = make_cornell())
+  explicit Frame(uint32_t side = kSide, Scene drawn = make_cornell(), void (*change)(ChipConfiguration&) = {})
       : RealFrame(4, 4, side, side, 2, std::move(drawn)) {
-    options.configuration.chip.held_limit = 64;
-    set_device(make_model(options.configuration, image.memory, 1).device);
+    ChipConfiguration& chip = options.configuration.chip;
+    chip.held_limit = 64;
+    if (change != nullptr) change(chip);
+    if (has_traverser(chip)) {
+      tree = make_tree_image(scene, tracer.traversal().bvh(), chip, image.material_base);
+      options.tree = &*tree;
+    }
     NativeOptions native;
     native.width = native.height = side;
     native.depth = 2;
@@ -43,15 +52,22 @@ struct Frame : test::RealFrame {
     native.work = &work;
     render_native(scene, image, tracer, native);
   }
+  /// All of it.
+  ChipResult draw() {
+    const auto chip = make_chip_model(options.configuration, make_model(options.configuration, image.memory, 1).device);
+    return run_board(options, *chip);
+  }
+
+  std::optional<TreeImage> tree;
   std::vector<NativeWork> work;
 };
 
 TEST(SampledFrame, SaysWhatTheWholeFrameTakes) {
   Frame frame;
-  const ChipResult whole = run_chip(frame.options);
+  const ChipResult whole = frame.draw();
   Wanted wanted;
   wanted.error = 0.1;
-  const Figures figures = draw_sampled(frame.options, frame.work, wanted);
+  const Figures figures = draw_sampled(frame.options, 1, frame.work, wanted);
   ASSERT_FALSE(figures.whole);
   EXPECT_EQ(figures.tiles, 1600u);
   EXPECT_LT(figures.simulated_tiles, 1000u);
@@ -67,16 +83,20 @@ TEST(SampledFrame, SaysWhatTheWholeFrameTakes) {
 
 // A block reads what the frame's tiles before it have not read, and no more.
 TEST(SampledFrame, FindsTheTreeInTheCachesBehindTilesThatAreLeftOut) {
-  Frame frame;
-  ChipConfiguration& chip = frame.options.configuration.chip;
-  chip.traverser = TraverserName::Modelled;
-  chip.modelled_traverser_node_cache_bytes = chip.modelled_traverser_triangle_cache_bytes = 65536;
-  const ChipResult whole = run_chip(frame.options);
+  Frame frame(kSide, make_cornell(), [](ChipConfiguration& chip) {
+    test::inside(chip);
+    chip.hardware_traverser_lanes = 4;
+    chip.hardware_traverser_rays = 64;
+    chip.hardware_traverser_triangle_pipes = 4;
+    chip.hardware_traverser_node_cache_bytes = chip.hardware_traverser_triangle_cache_bytes = 65536;
+    chip.hardware_traverser_node_cache_mshrs = chip.hardware_traverser_triangle_cache_mshrs = 8;
+  });
+  const ChipResult whole = frame.draw();
   Wanted wanted;
   wanted.error = 0.1;
   double mean = 0;
   for (wanted.seed = 1; wanted.seed <= 8; ++wanted.seed) {
-    const Figures figures = draw_sampled(frame.options, frame.work, wanted);
+    const Figures figures = draw_sampled(frame.options, 1, frame.work, wanted);
     ASSERT_FALSE(figures.whole);
     mean += figures.memory_port.value / 8;
   }
@@ -87,17 +107,17 @@ TEST(SampledFrame, SimulatesMoreWhereLessErrorIsAllowed) {
   Frame frame;
   Wanted coarse, fine;
   coarse.error = 0.3;
-  const Figures a = draw_sampled(frame.options, frame.work, coarse);
+  const Figures a = draw_sampled(frame.options, 1, frame.work, coarse);
   fine.error = 0.7 * a.error();
-  const Figures b = draw_sampled(frame.options, frame.work, fine);
+  const Figures b = draw_sampled(frame.options, 1, frame.work, fine);
   EXPECT_GT(b.counted_tiles, a.counted_tiles);
   EXPECT_LT(b.error(), a.error());
 }
 
 TEST(SampledFrame, IsExactWhereTheWholeFrameIsAsCheap) {
   Frame frame(32);
-  const ChipResult whole = run_chip(frame.options);
-  const Figures figures = draw_sampled(frame.options, frame.work, {});
+  const ChipResult whole = frame.draw();
+  const Figures figures = draw_sampled(frame.options, 1, frame.work, {});
   EXPECT_TRUE(figures.whole);
   EXPECT_EQ(figures.simulated_tiles, figures.tiles);
   EXPECT_EQ(figures.cycles.low, static_cast<double>(whole.cycles));
@@ -110,18 +130,18 @@ TEST(SampledFrame, IsTheSameHoweverManyProcesses) {
   Frame frame;
   Wanted wanted;
   wanted.error = 0.05;
-  const Figures one = draw_sampled(frame.options, frame.work, wanted);
+  const Figures one = draw_sampled(frame.options, 1, frame.work, wanted);
   ASSERT_FALSE(one.whole);
   for (const uint32_t processes : {2u, 3u, 64u}) {
     wanted.processes = processes;
-    const Figures several = draw_sampled(frame.options, frame.work, wanted);
+    const Figures several = draw_sampled(frame.options, 1, frame.work, wanted);
     EXPECT_EQ(several.cycles.value, one.cycles.value);
     EXPECT_EQ(several.cycles.low, one.cycles.low);
     EXPECT_EQ(several.alus[AluType::Ray].high, one.alus[AluType::Ray].high);
     EXPECT_EQ(several.simulated_tiles, one.simulated_tiles);
   }
   wanted.seed = 2;
-  EXPECT_NE(draw_sampled(frame.options, frame.work, wanted).cycles.value, one.cycles.value);
+  EXPECT_NE(draw_sampled(frame.options, 1, frame.work, wanted).cycles.value, one.cycles.value);
 }
 
 // With what is known of the blocks in the wrong order it predicts nothing.
@@ -133,8 +153,8 @@ TEST(SampledFrame, IsNarrowerForWhatNativeKnows) {
   wanted.seconds = 1e-3;
   double known = 0, unknown = 0;
   for (wanted.seed = 1; wanted.seed <= 4; ++wanted.seed) {
-    known += draw_sampled(frame.options, frame.work, wanted).error();
-    unknown += draw_sampled(frame.options, mixed, wanted).error();
+    known += draw_sampled(frame.options, 1, frame.work, wanted).error();
+    unknown += draw_sampled(frame.options, 1, mixed, wanted).error();
   }
   EXPECT_LT(known, 0.6 * unknown);
 }
@@ -145,7 +165,7 @@ TEST(SampledFrame, TellsHowFarItIs) {
   frame.options.progress = [&](const ChipProgress& done) { told.push_back(done); };
   Wanted wanted;
   wanted.error = 0.4;
-  ASSERT_FALSE(draw_sampled(frame.options, frame.work, wanted).whole);
+  ASSERT_FALSE(draw_sampled(frame.options, 1, frame.work, wanted).whole);
   ASSERT_GE(told.size(), 2u);
   EXPECT_LT(told.front().pixels_done, 1);
   EXPECT_EQ(told.back().pixels_done, 1);
@@ -156,20 +176,20 @@ TEST(SampledFrame, TellsHowFarItIs) {
 TEST(SampledFrame, PassesOnWhatGoesWrong) {
   Frame frame;
   frame.options.limits.cycles = 1000;
-  EXPECT_THROW(draw_sampled(frame.options, frame.work, {}), std::runtime_error);
+  EXPECT_THROW(draw_sampled(frame.options, 1, frame.work, {}), std::runtime_error);
   frame.work.pop_back();
-  EXPECT_THROW(draw_sampled(frame.options, frame.work, {}), std::logic_error);
+  EXPECT_THROW(draw_sampled(frame.options, 1, frame.work, {}), std::logic_error);
 }
 
 TEST(SampledFrame, WithoutTimeTakesTheSmallestSample) {
   Frame frame;
   Wanted wanted;
   wanted.seconds = 1e-3;
-  const Figures figures = draw_sampled(frame.options, frame.work, wanted);
+  const Figures figures = draw_sampled(frame.options, 1, frame.work, wanted);
   EXPECT_FALSE(figures.whole);
   wanted.seconds = 0;
   wanted.error = 0.4;
-  EXPECT_EQ(draw_sampled(frame.options, frame.work, wanted).counted_tiles, figures.counted_tiles);
+  EXPECT_EQ(draw_sampled(frame.options, 1, frame.work, wanted).counted_tiles, figures.counted_tiles);
 }
 
 }  // namespace

@@ -264,9 +264,6 @@ RayQuery to_query(const Ray& ray) {
 Tracer::Tracer(const Scene& scene, uint32_t material_base, const ChipConfiguration& chip)
     : Tracer(scene, material_base) {
   take_hits_of(chip);
-  const bool walks = chip.traverser == TraverserName::Modelled || chip.traverser == TraverserName::Lanes;
-  if (walks && chip.modelled_traverser_nodes == NodeFormat::Compressed)
-    traversal_.compress_nodes(chip.modelled_traverser_box_bits);
 }
 
 Tracer::Tracer(const Scene& scene, uint32_t material_base) : traversal_(scene), material_base_(material_base) {

@@ -110,8 +110,7 @@ class Tracer {
  public:
   /// Material words are material_base + 32 * the triangle's material index. Keeps nothing of `scene`.
   explicit Tracer(const Scene& scene, uint32_t material_base = 0);
-  /// What walks the tree is the traverser of `chip`: what it visits depends on its nodes and boxes, and no answer; but
-  /// what a hit is, on whether it is `hardware` (take_hits_of()).
+  /// With the hits of the traverser of `chip` (take_hits_of()).
   Tracer(const Scene& scene, uint32_t material_base, const ChipConfiguration& chip);
 
   /// Normal ray: true and the intersection when it hits, false when it misses. Shadow ray: false when it is blocked;

@@ -1,4 +1,4 @@
-// The tree as the modelled traverser's memory holds it, and as a file of just that: a header, nodes of 64 bytes,
+// The tree as the traverser's memory holds it, and as a file of just that: a header, nodes of 64 bytes,
 // triangles of 44. docs/scenes.md has a table of every byte. Numbers are little-endian.
 #pragma once
 

@@ -1,5 +1,5 @@
 // The tree as a file, read by what knows of it only what docs/scenes.md says: places of bytes, and how a plane follows
-// from them. Walked so, it gives the hits of the engines and the visits of the modelled traverser.
+// from them. Walked so, it gives the hits of the engines and the visits of compressed nodes.
 #include "scene/tree_file.hpp"
 
 #include <algorithm>
@@ -269,15 +269,6 @@ TEST_F(TreeFileTest, IsAsThePageDescribesIt) {
   }
 }
 
-/// The traverser of a chip whose nodes are of 64 bytes, and whose boxes are tested in floats.
-ChipConfiguration modelled() {
-  ChipConfiguration chip;
-  chip.traverser = TraverserName::Modelled;
-  chip.modelled_traverser_nodes = NodeFormat::Compressed;
-  chip.modelled_traverser_box_bits = 0;
-  return chip;
-}
-
 Ray to_ray(const RayQuery& query, uint32_t flags) {
   Ray ray{};
   for (int axis = 0; axis < 3; ++axis) {
@@ -289,21 +280,24 @@ Ray to_ray(const RayQuery& query, uint32_t flags) {
   return ray;
 }
 
-TEST_F(TreeFileTest, GivesTheHitsOfTheEnginesAndTheVisitsOfTheTraverser) {
+TEST_F(TreeFileTest, GivesTheHitsOfTheEnginesAndTheVisitsOfCompressedNodes) {
   constexpr uint32_t kBase = 0x4000;
   for (const Case& made : cases()) {
     SCOPED_TRACE(made.name);
     const Reader tree = read_back(made.scene);
-    const Tracer engine(made.scene, kBase), chip(made.scene, kBase, modelled());
+    const Tracer engine(made.scene, kBase);
+    Traversal compressed(made.scene);
+    compressed.compress_nodes();
     // Nothing can be aimed at in an empty scene.
     const Scene& aim = made.scene.triangles.empty() ? scene_of({kTriangle}) : made.scene;
     int hits = 0, blocked = 0;
     for (const RayQuery& query : hard_rays(aim, 3000, 11)) {
-      Intersection expected{}, visited{};
+      Intersection expected{};
+      Hit visited;
       VisitList visits;
       const Ray ray = to_ray(query, 0);
       const bool hit = engine.trace(ray, expected);
-      ASSERT_EQ(chip.trace(ray, visited, nullptr, &visits), hit);
+      ASSERT_EQ(compressed.nearest(query, visited, nullptr, &visits), hit);
       const Walked nearest = tree.walk<false>(query);
       ASSERT_EQ(nearest.found, hit);
       ASSERT_TRUE(nearest.visits == visits);
@@ -319,7 +313,7 @@ TEST_F(TreeFileTest, GivesTheHitsOfTheEnginesAndTheVisitsOfTheTraverser) {
       visits.clear();
       const Ray shadow = to_ray(query, kShadowFlag);
       const bool free = engine.trace(shadow, expected);
-      ASSERT_EQ(chip.trace(shadow, visited, nullptr, &visits), free);
+      ASSERT_EQ(compressed.occluded(query, nullptr, &visits), !free);
       const Walked any = tree.walk<true>(query);
       ASSERT_EQ(any.found, !free);
       ASSERT_TRUE(any.visits == visits);

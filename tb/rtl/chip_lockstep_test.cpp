@@ -20,6 +20,7 @@ Machine smallest() {
   Machine machine;
   Configuration& c = machine.configuration;
   c.name = "chip_1w1c";
+  c.chip.traverser = TraverserName::Static;
   c.warps = c.lanes = 1;
   c.instruction_cache_bytes = c.data_cache_bytes = 512;
   c.data_cache_mshrs = 1;
@@ -28,7 +29,7 @@ Machine smallest() {
   c.chip.memory_queue = 1;
   c.chip.memory_latency = 6;
   c.chip.memory_cycles_per_beat = 1;
-  c.chip.modelled_traverser_node_cache_mshrs = c.chip.modelled_traverser_triangle_cache_mshrs = 1;
+  c.chip.hardware_traverser_node_cache_mshrs = c.chip.hardware_traverser_triangle_cache_mshrs = 1;
   return machine;
 }
 
@@ -38,6 +39,7 @@ Machine full() {
   machine.units = 2;
   Configuration& c = machine.configuration;
   c.name = "chip_2w2c_full";
+  c.chip.traverser = TraverserName::Static;
   c.warps = c.lanes = 2;
   c.instruction_cache_bytes = c.data_cache_bytes = 512;
   c.data_cache_mshrs = 2;
@@ -47,8 +49,7 @@ Machine full() {
   c.chip.culling = true;
   c.chip.shading = Shading::Traverser;
   c.chip.static_traverser_batch = 3;
-  c.chip.traverser = TraverserName::Modelled;
-  c.chip.modelled_traverser_tile_order = TileOrder::Hilbert;
+  c.chip.tile_order = TileOrder::Hilbert;
   c.chip.ray_pool_size = 5;
   c.chip.ray_pool_pipelined = c.chip.intersection_pool_pipelined = true;
   c.chip.intersection_pool_size = c.chip.held_limit = 8;
@@ -62,6 +63,7 @@ Machine slow() {
   machine.units = 4;
   Configuration& c = machine.configuration;
   c.name = "chip_1w1c_slow";
+  c.chip.traverser = TraverserName::Static;
   c.warps = c.lanes = 1;
   c.instruction_cache_bytes = c.data_cache_bytes = 512;
   c.data_cache_mshrs = 2;
@@ -76,8 +78,8 @@ Machine slow() {
   c.chip.memory_latency = 40;
   c.chip.memory_cycles_per_beat = 3;
   c.chip.memory_queue = 3;
-  c.chip.modelled_traverser_node_cache_mshrs = 2;
-  c.chip.modelled_traverser_triangle_cache_mshrs = 1;
+  c.chip.hardware_traverser_node_cache_mshrs = 2;
+  c.chip.hardware_traverser_triangle_cache_mshrs = 1;
   return machine;
 }
 

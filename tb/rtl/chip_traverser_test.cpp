@@ -9,7 +9,8 @@
 #include <string>
 #include <utility>
 
-#include "chip/chip_device_module.hpp"
+#include "chip/board_modules.hpp"
+#include "chip/frame_setup.hpp"
 #include "chip/simulation.hpp"
 #include "chip/test_banked_dram.hpp"
 #include "lockstep/lockstep_chip.hpp"
@@ -103,12 +104,20 @@ TEST_P(ChipTraverser, DrawsTheSameInSystemCWithDramOfBanks) {
   const std::unique_ptr<LockstepChip> device =
       make_lockstep_chip(c, load_rtl_chip(chip_library(machine), c, machine.units), drawing.memory(), c.name);
   chip::Simulation simulation;
-  chip::ChipDeviceModule chip("chip", drawing.options(), *device);
+  chip::ChipModule chip("chip", drawing.options(), *device);
   BankedDram memory("memory", drawing.memory()), tree("tree", drawing.tree().memory);
+  chip::FrameBufferModule frame("frame", *drawing.options().frame);
+  chip::HostModule host("host", chip::frame_setup(drawing.options()));
+  sc_core::sc_signal<bool> done("done");
   chip.memory.bind(memory.socket);
   chip.tree.bind(tree.socket);
+  chip.frame.bind(frame.socket);
+  host.socket.bind(chip.host);
+  chip.done.bind(done);
+  host.done.bind(done);
   try {
-    drawing.expect_native(chip.draw());
+    simulation.run();
+    drawing.expect_native(chip.result());
   } catch (const LockstepDifference& difference) {
     FAIL() << difference.what();
   }
@@ -308,7 +317,7 @@ TEST(ChipTraverser, OnTheModelIsReadyForAFrameOnlyWhenNothingOfAnotherIsLeft) {
   const Machine machine = full_inside();
   Drawing drawing(machine, {9, 7, 3, true}, make_cornell());
   const std::unique_ptr<ChipDevice> chip = model_of(machine, drawing.memory());
-  chip::FixedLatencyStore store(drawing.memory(), &drawing.tree().memory, machine.configuration.chip.memory_latency);
+  chip::FixedLatencyStore store(drawing.memory(), &drawing.tree().memory, machine.configuration.chip);
   chip::Board board(drawing.options(), *chip, store);
   EXPECT_TRUE(chip->outputs().ready);
   uint64_t frames = 0, waited = 0;

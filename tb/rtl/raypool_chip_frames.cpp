@@ -155,7 +155,7 @@ Case harder(Case c, uint32_t seed, uint32_t number, uint32_t frame, const Machin
   std::seed_seq all{seed, number, frame, 2u};
   Random random(all);
   if (frame % 25 == 13) {
-    const auto entries = static_cast<uint32_t>(machine.configuration.chip.modelled_traverser_stack_entries);
+    const auto entries = static_cast<uint32_t>(machine.configuration.chip.hardware_traverser_stack_entries);
     c.picture = {1, 1, 1, false};
     c.alike = c.deep = true;
     c.triangles = kFullStack + entries + random() % 12;

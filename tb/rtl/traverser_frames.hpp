@@ -37,12 +37,12 @@ inline Machine smallest_inside() {
   chip.memory_latency = 20;
   chip.memory_queue = 1;
   chip.traverser = TraverserName::Hardware;
-  chip.modelled_traverser_box_pipes = chip.modelled_traverser_rays = chip.modelled_traverser_triangle_pipes = 1;
-  chip.modelled_traverser_stack_entries = 8;
-  chip.modelled_traverser_cache_banks = 1;
-  chip.modelled_traverser_node_cache_bytes = chip.modelled_traverser_triangle_cache_bytes = 512;
-  chip.modelled_traverser_node_cache_ways = chip.modelled_traverser_triangle_cache_ways = 2;
-  chip.modelled_traverser_node_cache_mshrs = chip.modelled_traverser_triangle_cache_mshrs = 1;
+  chip.hardware_traverser_lanes = chip.hardware_traverser_rays = chip.hardware_traverser_triangle_pipes = 1;
+  chip.hardware_traverser_stack_entries = 8;
+  chip.hardware_traverser_cache_banks = 1;
+  chip.hardware_traverser_node_cache_bytes = chip.hardware_traverser_triangle_cache_bytes = 512;
+  chip.hardware_traverser_node_cache_ways = chip.hardware_traverser_triangle_cache_ways = 2;
+  chip.hardware_traverser_node_cache_mshrs = chip.hardware_traverser_triangle_cache_mshrs = 1;
   return machine;
 }
 
@@ -64,14 +64,14 @@ inline Machine full_inside() {
   chip.intersection_pool_size = chip.held_limit = 4;
   chip.memory_cycles_per_beat = 1;
   chip.memory_queue = 8;
-  chip.modelled_traverser_tile_order = TileOrder::Hilbert;
-  chip.modelled_traverser_box_pipes = 2;
-  chip.modelled_traverser_rays = 6;
-  chip.modelled_traverser_box_bits = 6;
-  chip.modelled_traverser_cache_banks = 2;
-  chip.modelled_traverser_node_cache_bytes = chip.modelled_traverser_triangle_cache_bytes = 1024;
-  chip.modelled_traverser_node_cache_mshrs = 2;
-  chip.modelled_traverser_triangle_cache_mshrs = 4;
+  chip.tile_order = TileOrder::Hilbert;
+  chip.hardware_traverser_lanes = 2;
+  chip.hardware_traverser_rays = 6;
+  chip.hardware_traverser_box_bits = 6;
+  chip.hardware_traverser_cache_banks = 2;
+  chip.hardware_traverser_node_cache_bytes = chip.hardware_traverser_triangle_cache_bytes = 1024;
+  chip.hardware_traverser_node_cache_mshrs = 2;
+  chip.hardware_traverser_triangle_cache_mshrs = 4;
   return machine;
 }
 
@@ -88,12 +88,12 @@ inline Machine crowded_inside() {
   chip.memory_latency = 9;
   chip.memory_cycles_per_beat = 1;
   chip.memory_queue = 2;
-  chip.modelled_traverser_box_pipes = 2;
-  chip.modelled_traverser_triangle_pipes = 2;
-  chip.modelled_traverser_rays = 8;
-  chip.modelled_traverser_box_bits = 16;
-  chip.modelled_traverser_triangle_cache_ways = 4;
-  chip.modelled_traverser_triangle_cache_mshrs = 3;
+  chip.hardware_traverser_lanes = 2;
+  chip.hardware_traverser_triangle_pipes = 2;
+  chip.hardware_traverser_rays = 8;
+  chip.hardware_traverser_box_bits = 16;
+  chip.hardware_traverser_triangle_cache_ways = 4;
+  chip.hardware_traverser_triangle_cache_mshrs = 3;
   return machine;
 }
 
@@ -208,7 +208,7 @@ class Drawing {
   /// `followed`: until the chip is ready for the next frame.
   ChipResult draw_on(ChipDevice& chip, FrameBegin begin = FrameBegin::Reset, bool followed = false) {
     if (!followed) return run_board(options_, chip, begin);
-    chip::FixedLatencyStore store(*options_.memory, &tree_.memory, configuration_.chip.memory_latency);
+    chip::FixedLatencyStore store(*options_.memory, &tree_.memory, configuration_.chip);
     chip::Board board(options_, chip, store, begin);
     while (!board.may_be_followed()) board.clock();
     return board.result();

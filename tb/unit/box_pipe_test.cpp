@@ -273,11 +273,6 @@ TEST(BoxRay, WhatHitsNothingIsNoRay) {
   EXPECT_TRUE(set_up({{tiny, -tiny, 0}, {0, -tiny, 0}, tiny}, 8).valid);
 }
 
-// So a frame of the modelled traverser has the cycles of this pipe, if nobody says otherwise.
-TEST(BoxPipe, TakesAsLongAsTheModelledTraverserBelieves) {
-  EXPECT_EQ(Configuration().chip.modelled_traverser_box_latency, static_cast<uint32_t>(BoxPipe::kStages));
-}
-
 template <typename Unit_, int kBits>
 struct Pipe {
   using Unit = Unit_;

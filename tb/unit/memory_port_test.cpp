@@ -38,8 +38,8 @@ struct Port {
     chip.memory_queue = kQueue;
     chip.memory_cycles_per_beat = kCyclesPerBeat;
     chip.memory_latency = kLatency;
-    chip.modelled_traverser_node_cache_mshrs = kTraverserQueue;  // all of the traverser's
-    chip.modelled_traverser_triangle_cache_mshrs = 0;
+    chip.hardware_traverser_node_cache_mshrs = kTraverserQueue;  // all of the traverser's
+    chip.hardware_traverser_triangle_cache_mshrs = 0;
     return chip;
   }
   static MemoryPort::Limits limits() {

@@ -93,7 +93,6 @@ raypool_pool_models(event_counter_test event_counter "BITS;LOW_BITS;EVENT_BITS;L
 
 # The controller around policies, rules and order of the tiles.
 raypool_bench(controller_test)
-target_sources(controller_test PRIVATE ${CMAKE_CURRENT_LIST_DIR}/controller_frame_test.cpp)
 target_link_libraries(controller_test PRIVATE raypool_chip)
 raypool_pool_models(controller_test controller
   "UNITS;CONTENTS;RAY_POOL_SIZE;INTERSECTION_POOL_SIZE;HELD_LIMIT;WINDOW_REMEDY;LAUNCH_AHEAD;POLICY;RAY_THRESHOLD;\

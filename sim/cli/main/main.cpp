@@ -50,8 +50,8 @@ CLI::Option* add_unit(CLI::App& app, std::string& engine, std::string& library) 
   app.add_option("--unit-library", library, "Verilated unit (default: where raypool unit builds it)");
   return app
       .add_option("--engine", engine,
-                  "what stands in for the unit; native, sampled and embree, the reference picture, are for sim only")
-      ->type_name("native|embree|functional|sampled|model|rtl|lockstep")
+                  "what plays the machine; native, the kernels as C++, and sampled are for sim only")
+      ->type_name("native|functional|sampled|model|rtl|lockstep")
       ->capture_default_str();
 }
 
@@ -191,15 +191,16 @@ void CommandLine::add_sim_command() {
       app_.add_subcommand("sim", "draw a scene on the simulated chip; leaves image.png and report.json");
   add_scene(*sim_app, sim_.scene, sim_.size, sim_.view, sim_.look, sim_.detail);
   add_config(*sim_app, sim_.config, sim_.set);
-  CLI::Option* engine = add_unit(*sim_app, sim_.engine, sim_.unit_library);
+  add_unit(*sim_app, sim_.engine, sim_.unit_library);
   sim_app
-      ->add_option("--chip", sim_.chip,
-                   "in place of --engine: what plays the whole chip, rtl/chip.v, not the unit alone; its traverser is "
-                   "static, at its ports, or hardware, inside; its controller counts")
-      ->type_name("model|rtl|lockstep")
-      ->excludes(engine);
+      ->add_option("--boundary", sim_.boundary,
+                   "rtl and lockstep: what is Verilog, the units in the model of the chip, or the whole chip (default: "
+                   "unit)")
+      ->type_name("unit|chip");
+  sim_app->add_option("--hits", sim_.hits, "native: hits of its own, or Embree's (default: own)")
+      ->type_name("own|embree");
   add_units_and_depth(*sim_app, sim_.units, sim_.depth);
-  add_threads(*sim_app, sim_.threads, "native, embree and sampled: threads");
+  add_threads(*sim_app, sim_.threads, "native and sampled: threads");
   sim_app
       ->add_option("--error", sim_.error,
                    "sampled: half of the 95% interval of the cycles; as many tiles as that takes (default: 2%)")
@@ -340,7 +341,9 @@ void CommandLine::add_unit_command() {
   unit_app->add_option("--units", unit_.units, "compute units: 1, 2 or 4")
       ->check(CLI::IsMember({1, 2, 4}))
       ->capture_default_str();
-  unit_app->add_flag("--chip", unit_.chip, "the whole chip around them, for sim --chip");
+  unit_app->add_option("--boundary", unit_.boundary, "the units, or the whole chip around them, as of sim")
+      ->type_name("unit|chip")
+      ->capture_default_str();
   unit_app->add_flag("--waves", unit_.waves, "one that can leave a waveform, beside the fast one");
   unit_app->callback([this] { code_ = unit_command(unit_); });
 }
