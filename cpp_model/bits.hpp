@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Sets of warps, lanes, types as the bits of a word; floats as bits; sizes as words.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // An array that has an element for each member of an enumeration, 0 to Count - 1, and
 // is indexed by them; by numbers too.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Random numbers of tests, random programs and samples: std::mt19937, whose numbers are words here and need no cast.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Carries a WIDTH-bit result through STAGES registers; stage s loads when valid_i[s] is set. STAGES may be 0.
 `default_nettype none
 module alu_delay #(

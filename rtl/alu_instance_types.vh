@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
   // Generated from cpp_model/isa/isa.hpp by `raypool isa --write`; a test compares. Do not edit.
   localparam integer ALU_TYPES = 7;
   localparam integer INSTANCES = TID_COUNT + BRH_COUNT + 1 + INT_COUNT + FLT_COUNT + SLW_COUNT + 1;

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Valid, warp and ready of an ALU with LATENCY cycles between tasks and DEPTH stages; it has no data path.
 // A task that arrives in cycle t (task_valid_i) is done in cycle t + DEPTH (done_valid_o, done_warp_o).
 // stage_valid_o[k] says that the task which arrived k cycles ago is in its stage k now, so the data path's

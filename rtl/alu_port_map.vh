@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
         // The ALU of instance k: its ports, and what they are joined to. To be included at the end of its connections.
         .clk_i(clk_i), .rst_ni(rst_ni), .task_valid_i(task_valid), .task_warp_i(task_warp),
         .task_operation_i(task_operation), .task_mask_i(task_mask), .task_operand_a_i(task_operand_a),

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Which lines the banks of a cache look up: of each lane two lines are wanted, of which one can be taken, the first
 // rather. Each bank chooses a lane, in rotation among those that want a line of it, and the first of its wants that go
 // to the bank. Then each lane takes the first of its wants whose line a bank that is ready has chosen, for whomever.

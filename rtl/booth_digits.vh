@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Included in a module: what multiply_tree with ENCODED takes for its b, so that a register can stand between. word
 // is b extended to 32 bits by zeros or by its sign. Digit i, for bits 2i+1 .. 2i-1 of the word, is -2 .. 2, as
 // {negative, two, one}; zero has neither two nor one.

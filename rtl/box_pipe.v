@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Which of the four boxes of a node of 64 bytes a ray meets, in narrow integers that are rounded so that no box is
 // missed; docs/traverser.md proves it. A node a cycle, its result eight moves later.
 // Promises: it moves unless a result is there that nobody takes; no box that is not there is met; no output but ready_o
@@ -45,10 +47,22 @@ module box_pipe #(
   generate
     for (a = 0; a < 3; a = a + 1) begin : gen_axis
       box_axis #(.BITS(BITS)) box_axis (
-        .clk_i(clk_i), .move_i(move), .grid_i(grid_i[32*a+:32]), .step_i(step_i[8*a+:8]), .lower_i(lower_i[32*a+:32]),
-        .upper_i(upper_i[32*a+:32]), .origin_i(origin_i[32*a+:32]), .backwards_i(backwards_i[a]), .still_i(still_i[a]),
-        .reciprocal_i(reciprocal_i[BITS*a+:BITS]), .exponent_i(exponent_i[10*a+:10]), .padding_i(padding_i[10*a+:10]),
-        .near_o(near[4*KEY_BITS*a+:4*KEY_BITS]), .far_o(far[4*KEY_BITS*a+:4*KEY_BITS]), .missed_o(missed[4*a+:4]));
+        .clk_i(clk_i),
+        .move_i(move),
+        .grid_i(grid_i[32*a+:32]),
+        .step_i(step_i[8*a+:8]),
+        .lower_i(lower_i[32*a+:32]),
+        .upper_i(upper_i[32*a+:32]),
+        .origin_i(origin_i[32*a+:32]),
+        .backwards_i(backwards_i[a]),
+        .still_i(still_i[a]),
+        .reciprocal_i(reciprocal_i[BITS*a+:BITS]),
+        .exponent_i(exponent_i[10*a+:10]),
+        .padding_i(padding_i[10*a+:10]),
+        .near_o(near[4*KEY_BITS*a+:4*KEY_BITS]),
+        .far_o(far[4*KEY_BITS*a+:4*KEY_BITS]),
+        .missed_o(missed[4*a+:4])
+      );
     end
   endgenerate
 

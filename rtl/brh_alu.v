@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Compares into predicates, predicate logic, and the decision of control instructions: taken, in every lane of
 // done_predicate_o. SUBNORMALS 0: IEEE, 1: subnormal operands count as zero, 2: the same, and done_subnormal_o says
 // that a task has met one.
@@ -26,8 +28,15 @@ module brh_alu #(
   integer l;
 
   alu_pipeline #(.WARP_BITS(WARP_BITS), .LATENCY(LATENCY), .DEPTH(DEPTH)) alu_pipeline (
-    .clk_i(clk_i), .rst_ni(rst_ni), .task_valid_i(task_valid_i), .task_warp_i(task_warp_i), .ready_o(ready_o),
-    .done_valid_o(done_valid_o), .done_warp_o(done_warp_o), .stage_valid_o(stage_valid));
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .task_valid_i(task_valid_i),
+    .task_warp_i(task_warp_i),
+    .ready_o(ready_o),
+    .done_valid_o(done_valid_o),
+    .done_warp_o(done_warp_o),
+    .stage_valid_o(stage_valid)
+  );
 
   localparam integer D = 24 - SIGNIFICAND;
   localparam [31:0] LACKS = WITHOUT;
@@ -101,9 +110,15 @@ module brh_alu #(
     if (SUBNORMALS == 2) begin : gen_guard
       wire floats = task_operation_i >= ISA_BRH_FEQ && task_operation_i <= ISA_BRH_FGE;
       subnormal_guard #(.LANES(LANES), .SIGNIFICAND(SIGNIFICAND), .DEPTH(DEPTH), .RESULT_STAGE(DEPTH)) guard (
-        .clk_i(clk_i), .enter_i(task_mask_i & {LANES{task_valid_i && floats}}), .reads_i(3'b011),
-        .a_i(task_operand_a_i), .b_i(task_operand_b_i), .c_i({LANES*32{1'b0}}), .result_i(1'b0),
-        .subnormal_o(done_subnormal_o));
+        .clk_i(clk_i),
+        .enter_i(task_mask_i & {LANES{task_valid_i && floats}}),
+        .reads_i(3'b011),
+        .a_i(task_operand_a_i),
+        .b_i(task_operand_b_i),
+        .c_i({LANES*32{1'b0}}),
+        .result_i(1'b0),
+        .subnormal_o(done_subnormal_o)
+      );
     end else begin : gen_no_guard
       assign done_subnormal_o = 1'b0;
     end

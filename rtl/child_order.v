@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // The children of a node that a ray meets, the nearest first: with that one the ray goes on, the others are put on its
 // stack, the furthest first. Of two that are entered at the same time the one with the higher number is the nearer.
 // All outputs come in the next cycle.

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // One SIMT compute unit: instruction routine, data routine, ALUs, caches, ray memory, launch. docs/architecture.md
 // describes it.
 // Promises: no output depends combinationally on an input; every valid/ready pair keeps its payload until taken.
@@ -134,19 +136,42 @@ module compute_unit #(
   genvar w, k;
 
   launcher #(.WARPS(WARPS), .LANES(LANES), .OVERLAP(KERNEL_OVERLAP)) launcher (
-    .clk_i(clk_i), .rst_ni(rst_ni),
-    .launch_valid_i(launch_valid_i), .launch_ready_o(launch_ready_o), .launch_pc_i(launch_pc_i),
-    .launch_threads_i(launch_threads_i), .launch_block_i(launch_block_i), .launch_blocks_i(launch_blocks_i),
-    .launch_import_i(launch_import_i), .import_start_o(import_start), .import_active_i(import_active),
-    .start_o(start), .start_pc_o(start_pc), .start_lanes_o(start_lanes), .active_i(active),
-    .launched_o(launched), .place_o(launch_place), .older_o(older), .threads_o(threads), .block_o(block),
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .launch_valid_i(launch_valid_i),
+    .launch_ready_o(launch_ready_o),
+    .launch_pc_i(launch_pc_i),
+    .launch_threads_i(launch_threads_i),
+    .launch_block_i(launch_block_i),
+    .launch_blocks_i(launch_blocks_i),
+    .launch_import_i(launch_import_i),
+    .import_start_o(import_start),
+    .import_active_i(import_active),
+    .start_o(start),
+    .start_pc_o(start_pc),
+    .start_lanes_o(start_lanes),
+    .active_i(active),
+    .launched_o(launched),
+    .place_o(launch_place),
+    .older_o(older),
+    .threads_o(threads),
+    .block_o(block),
     .blocks_o(blocks),
-    .kernel_done_o(kernel_done_o), .running_o(busy_o), .waiting_o(waiting_launch));
+    .kernel_done_o(kernel_done_o),
+    .running_o(busy_o),
+    .waiting_o(waiting_launch)
+  );
   assign idle_o = !busy_o && !waiting_launch && !import_active && !exporting && mem_idle && arbiter_idle;
 
   fetch_arbiter #(.WARPS(WARPS), .WARP_BITS(WARP_BITS)) fetch_arbiter (
-    .clk_i(clk_i), .rst_ni(rst_ni), .request_i(fetch_request), .first_i(fetch_first),
-    .grant_o(fetch_grant), .valid_o(fetch_valid), .warp_o(fetch_warp));
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .request_i(fetch_request),
+    .first_i(fetch_first),
+    .grant_o(fetch_grant),
+    .valid_o(fetch_valid),
+    .warp_o(fetch_warp)
+  );
 
   // By the grants, which are there before the warp's number.
   integer g;
@@ -160,13 +185,25 @@ module compute_unit #(
 `include "instruction_cache_parameter_map.vh"
     .WARPS(WARPS), .PC_BITS(PC_BITS), .WARP_BITS(WARP_BITS)
   ) instruction_cache (
-    .clk_i(clk_i), .rst_ni(rst_ni),
-    .invalidate_i(argument_write_i), .lookup_valid_i(fetch_valid), .lookup_warp_i(fetch_warp), .lookup_pc_i(lookup_pc),
-    .hit_o(instruction_hit), .miss_o(instruction_miss), .result_warp_o(result_warp), .instruction_o(fetched),
-    .refill_done_o(refill_done), .first_o(fetch_first), .request_valid_o(instruction_request),
-    .request_ready_i(instruction_request_ready), .request_address_o(instruction_request_address),
-    .response_valid_i(instruction_response), .response_beat_i(memory_response_beat_i),
-    .response_data_i(memory_response_data_i));
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .invalidate_i(argument_write_i),
+    .lookup_valid_i(fetch_valid),
+    .lookup_warp_i(fetch_warp),
+    .lookup_pc_i(lookup_pc),
+    .hit_o(instruction_hit),
+    .miss_o(instruction_miss),
+    .result_warp_o(result_warp),
+    .instruction_o(fetched),
+    .refill_done_o(refill_done),
+    .first_o(fetch_first),
+    .request_valid_o(instruction_request),
+    .request_ready_i(instruction_request_ready),
+    .request_address_o(instruction_request_address),
+    .response_valid_i(instruction_response),
+    .response_beat_i(memory_response_beat_i),
+    .response_data_i(memory_response_data_i)
+  );
 
   generate
     for (w = 0; w < WARPS; w = w + 1) begin : gen_warp
@@ -189,23 +226,45 @@ module compute_unit #(
         .TRIPLES(TRIPLES), .INTERSECTION_WORDS(INTERSECTION_WORDS), .REGISTERS(REGISTERS), .PREDICATES(PREDICATES),
         .ARGUMENTS(ARGUMENTS), .PC_BITS(PC_BITS), .WITHOUT(WITHOUT)
       ) warp (
-        .clk_i(clk_i), .rst_ni(rst_ni), .start_i(start[w]), .start_pc_i(start_pc),
+        .clk_i(clk_i),
+        .rst_ni(rst_ni),
+        .start_i(start[w]),
+        .start_pc_i(start_pc),
         .start_lanes_i(start_lanes[w*LANES +: LANES]),
-        .halt_i(fault_valid_o), .active_o(active[w]), .program_length_i(program_length_i),
-        .fetch_request_o(fetch_request[w]), .fetch_pc_o(narrow_fetch_pc), .fetch_grant_i(fetch_grant[w]),
-        .cache_hit_i(instruction_hit && result_warp == w), .cache_instruction_i(fetched), .refill_done_i(refill_done),
-        .want_o(want[w]), .grant_i(grant[w]), .type_o(wanted_type[w*4 +: 4]), .instruction_o(instruction[w*64 +: 64]),
-        .task_o(task_of[w*64 +: 64]), .overlaps_o(overlaps[w]),
+        .halt_i(fault_valid_o),
+        .active_o(active[w]),
+        .program_length_i(program_length_i),
+        .fetch_request_o(fetch_request[w]),
+        .fetch_pc_o(narrow_fetch_pc),
+        .fetch_grant_i(fetch_grant[w]),
+        .cache_hit_i(instruction_hit && result_warp == w),
+        .cache_instruction_i(fetched),
+        .refill_done_i(refill_done),
+        .want_o(want[w]),
+        .grant_i(grant[w]),
+        .type_o(wanted_type[w*4 +: 4]),
+        .instruction_o(instruction[w*64 +: 64]),
+        .task_o(task_of[w*64 +: 64]),
+        .overlaps_o(overlaps[w]),
         .mask_o(thread_mask[w*LANES +: LANES]),
-        .predicate_x_o(predicate_x[w*LANES +: LANES]), .predicate_b_o(predicate_b[w*LANES +: LANES]),
-        .operand_a_o(operand_a[w*DATA +: DATA]), .operand_b_o(operand_b[w*DATA +: DATA]),
+        .predicate_x_o(predicate_x[w*LANES +: LANES]),
+        .predicate_b_o(predicate_b[w*LANES +: LANES]),
+        .operand_a_o(operand_a[w*DATA +: DATA]),
+        .operand_b_o(operand_b[w*DATA +: DATA]),
         .operand_c_o(operand_c[w*DATA +: DATA]),
-        .done_i(done), .done_data_i(done_data), .done_predicate_i(done_predicate),
+        .done_i(done),
+        .done_data_i(done_data),
+        .done_predicate_i(done_predicate),
         .done_subnormal_i(done_subnormal),
-        .retire_o(retire[w]), .pc_o(narrow_pc), .retire_data_o(retire_data_o[w*DATA +: DATA]),
-        .retire_predicate_o(retire_predicate_o[w*LANES +: LANES]), .fetching_o(fetching[w]),
+        .retire_o(retire[w]),
+        .pc_o(narrow_pc),
+        .retire_data_o(retire_data_o[w*DATA +: DATA]),
+        .retire_predicate_o(retire_predicate_o[w*LANES +: LANES]),
+        .fetching_o(fetching[w]),
         .executing_o(executing[w]),
-        .fault_valid_o(warp_fault[w]), .fault_code_o(warp_fault_code[w*4 +: 4]));
+        .fault_valid_o(warp_fault[w]),
+        .fault_code_o(warp_fault_code[w*4 +: 4])
+      );
     end
   endgenerate
 
@@ -220,8 +279,15 @@ module compute_unit #(
     .WARPS(WARPS), .WARP_BITS(WARP_BITS), .INSTANCES(INSTANCES), .INSTANCE_TYPES(INSTANCE_TYPES),
     .OVERLAP(KERNEL_OVERLAP)
   ) dispatcher (
-    .want_i(want), .type_i(wanted_type), .first_i(first_q), .grant_o(grant), .waiting_o(waiting),
-    .ready_i(ready), .instance_grant_o(instance_grant), .instance_warp_o(instance_warp));
+    .want_i(want),
+    .type_i(wanted_type),
+    .first_i(first_q),
+    .grant_o(grant),
+    .waiting_o(waiting),
+    .ready_i(ready),
+    .instance_grant_o(instance_grant),
+    .instance_warp_o(instance_warp)
+  );
 
   // Each ALU instance has a task register before it. Those with ports of their own stand here, the others in
   // alu_instances.vh.
@@ -235,13 +301,29 @@ module compute_unit #(
       wire [LANES-1:0] task_mask, task_predicate_x, task_predicate_b;
       wire [DATA-1:0] task_operand_a, task_operand_b, task_operand_c;
       task_register #(.WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS), .TYPE(TYPE), .FMA(FMA)) task_register (
-        .clk_i(clk_i), .rst_ni(rst_ni), .grant_i(instance_grant[k]), .warp_i(instance_warp[k*WARP_BITS +: WARP_BITS]),
-        .instruction_i(task_of), .mask_i(thread_mask), .predicate_x_i(predicate_x), .predicate_b_i(predicate_b),
-        .operand_a_i(operand_a), .operand_b_i(operand_b), .operand_c_i(operand_c),
-        .task_valid_o(task_valid), .task_warp_o(task_warp), .task_operation_o(task_operation), .task_mask_o(task_mask),
-        .task_operand_a_o(task_operand_a), .task_operand_b_o(task_operand_b), .task_operand_c_o(task_operand_c),
-        .task_immediate_o(task_immediate), .task_word_o(task_word),
-        .task_predicate_x_o(task_predicate_x), .task_predicate_b_o(task_predicate_b));
+        .clk_i(clk_i),
+        .rst_ni(rst_ni),
+        .grant_i(instance_grant[k]),
+        .warp_i(instance_warp[k*WARP_BITS +: WARP_BITS]),
+        .instruction_i(task_of),
+        .mask_i(thread_mask),
+        .predicate_x_i(predicate_x),
+        .predicate_b_i(predicate_b),
+        .operand_a_i(operand_a),
+        .operand_b_i(operand_b),
+        .operand_c_i(operand_c),
+        .task_valid_o(task_valid),
+        .task_warp_o(task_warp),
+        .task_operation_o(task_operation),
+        .task_mask_o(task_mask),
+        .task_operand_a_o(task_operand_a),
+        .task_operand_b_o(task_operand_b),
+        .task_operand_c_o(task_operand_c),
+        .task_immediate_o(task_immediate),
+        .task_word_o(task_word),
+        .task_predicate_x_o(task_predicate_x),
+        .task_predicate_b_o(task_predicate_b)
+      );
 
 `include "alu_instances.vh"
       if (TYPE == ISA_TYPE_TID) begin : gen_tid
@@ -250,9 +332,12 @@ module compute_unit #(
           .WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS), .LATENCY(TID_LATENCY), .DEPTH(TID_DEPTH),
           .ARGUMENTS(ARGUMENTS)
         ) tid_alu (
-          .block_i(task_place ? block[63:32] : block[31:0]), .blocks_i(task_place ? blocks[63:32] : blocks[31:0]),
-          .threads_i(task_place ? threads[21:11] : threads[10:0]), .argument_write_i(argument_write_i),
-          .argument_index_i(argument_index_i), .argument_data_i(argument_data_i),
+          .block_i(task_place ? block[63:32] : block[31:0]),
+          .blocks_i(task_place ? blocks[63:32] : blocks[31:0]),
+          .threads_i(task_place ? threads[21:11] : threads[10:0]),
+          .argument_write_i(argument_write_i),
+          .argument_index_i(argument_index_i),
+          .argument_data_i(argument_data_i),
 `include "alu_port_map.vh"
         );
       end
@@ -261,16 +346,31 @@ module compute_unit #(
 `include "data_cache_parameter_map.vh"
           .WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS)
         ) mem_alu (
-          .invalidate_i(argument_write_i), .memory_limit_i(memory_limit_i),
-          .fault_valid_o(mem_fault), .fault_code_o(mem_fault_code), .fault_warp_o(mem_fault_warp),
-          .request_valid_o(data_request), .request_ready_i(data_request_ready), .request_write_o(data_request_write),
-          .request_address_o(data_request_address), .request_data_o(data_request_data),
-          .request_mask_o(data_request_mask), .request_id_o(data_request_id), .response_valid_i(data_response),
-          .response_id_i(memory_response_id_i), .response_beat_i(memory_response_beat_i),
-          .response_data_i(memory_response_data_i), .store_trace_valid_o(store_trace_valid_o),
-          .store_trace_warp_o(store_trace_warp_o), .store_trace_address_o(store_trace_address_o),
-          .store_trace_data_o(store_trace_data_o), .store_trace_mask_o(store_trace_mask_o), .hit_o(data_hit),
-          .miss_o(data_miss), .store_o(data_store), .idle_o(mem_idle),
+          .invalidate_i(argument_write_i),
+          .memory_limit_i(memory_limit_i),
+          .fault_valid_o(mem_fault),
+          .fault_code_o(mem_fault_code),
+          .fault_warp_o(mem_fault_warp),
+          .request_valid_o(data_request),
+          .request_ready_i(data_request_ready),
+          .request_write_o(data_request_write),
+          .request_address_o(data_request_address),
+          .request_data_o(data_request_data),
+          .request_mask_o(data_request_mask),
+          .request_id_o(data_request_id),
+          .response_valid_i(data_response),
+          .response_id_i(memory_response_id_i),
+          .response_beat_i(memory_response_beat_i),
+          .response_data_i(memory_response_data_i),
+          .store_trace_valid_o(store_trace_valid_o),
+          .store_trace_warp_o(store_trace_warp_o),
+          .store_trace_address_o(store_trace_address_o),
+          .store_trace_data_o(store_trace_data_o),
+          .store_trace_mask_o(store_trace_mask_o),
+          .hit_o(data_hit),
+          .miss_o(data_miss),
+          .store_o(data_store),
+          .idle_o(mem_idle),
 `include "alu_port_map.vh"
         );
       end
@@ -279,18 +379,35 @@ module compute_unit #(
           .WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS), .INTERSECTION_WORDS(INTERSECTION_WORDS),
           .WIDE_RAY_MEMORY(WIDE_RAY_MEMORY)
         ) ray_alu (
-          .import_start_i(import_start), .import_start_kind_i(launch_import_i),
+          .import_start_i(import_start),
+          .import_start_kind_i(launch_import_i),
           .import_start_threads_i(launch_threads_i),
-          .import_active_o(import_active), .import_request_valid_o(import_request_valid_o),
-          .import_request_kind_o(import_request_kind_o), .import_request_ready_i(import_request_ready_i),
-          .import_beat_valid_i(import_beat_valid_i), .import_beat_data_i(import_beat_data_i),
-          .export_valid_o(export_valid_o), .export_ready_i(export_ready_i), .export_data_o(export_data_o),
-          .export_last_o(export_last_o), .frame_valid_o(frame_valid_o), .frame_ready_i(frame_ready_i),
-          .frame_pixel_o(frame_pixel_o), .frame_color_o(frame_color_o),
-          .ray_trace_valid_o(ray_trace_valid_o), .ray_trace_warp_o(ray_trace_warp_o),
-          .ray_trace_word_o(ray_trace_word_o), .ray_trace_mask_o(ray_trace_mask_o), .ray_trace_data_o(ray_trace_data_o),
-          .fault_valid_o(ray_fault), .fault_code_o(ray_fault_code), .fault_warp_o(ray_fault_warp),
-          .exporting_o(exporting), .exports_o(exports_o), .import_wait_o(import_wait), .export_wait_o(export_wait),
+          .import_active_o(import_active),
+          .import_request_valid_o(import_request_valid_o),
+          .import_request_kind_o(import_request_kind_o),
+          .import_request_ready_i(import_request_ready_i),
+          .import_beat_valid_i(import_beat_valid_i),
+          .import_beat_data_i(import_beat_data_i),
+          .export_valid_o(export_valid_o),
+          .export_ready_i(export_ready_i),
+          .export_data_o(export_data_o),
+          .export_last_o(export_last_o),
+          .frame_valid_o(frame_valid_o),
+          .frame_ready_i(frame_ready_i),
+          .frame_pixel_o(frame_pixel_o),
+          .frame_color_o(frame_color_o),
+          .ray_trace_valid_o(ray_trace_valid_o),
+          .ray_trace_warp_o(ray_trace_warp_o),
+          .ray_trace_word_o(ray_trace_word_o),
+          .ray_trace_mask_o(ray_trace_mask_o),
+          .ray_trace_data_o(ray_trace_data_o),
+          .fault_valid_o(ray_fault),
+          .fault_code_o(ray_fault_code),
+          .fault_warp_o(ray_fault_warp),
+          .exporting_o(exporting),
+          .exports_o(exports_o),
+          .import_wait_o(import_wait),
+          .export_wait_o(export_wait),
 `include "alu_port_map.vh"
         );
       end
@@ -298,30 +415,60 @@ module compute_unit #(
   endgenerate
 
   memory_arbiter memory_arbiter (
-    .clk_i(clk_i), .rst_ni(rst_ni),
-    .instruction_request_valid_i(instruction_request), .instruction_request_ready_o(instruction_request_ready),
-    .instruction_request_address_i(instruction_request_address), .instruction_response_valid_o(instruction_response),
-    .data_request_valid_i(data_request), .data_request_ready_o(data_request_ready),
-    .data_request_write_i(data_request_write), .data_request_address_i(data_request_address),
-    .data_request_data_i(data_request_data), .data_request_mask_i(data_request_mask),
-    .data_request_id_i(data_request_id), .data_response_valid_o(data_response),
-    .request_valid_o(memory_request_valid_o), .request_ready_i(memory_request_ready_i),
-    .request_write_o(memory_request_write_o), .request_address_o(memory_request_address_o),
-    .request_data_o(memory_request_data_o), .request_mask_o(memory_request_mask_o), .request_id_o(memory_request_id_o),
-    .response_valid_i(memory_response_valid_i), .response_id_i(memory_response_id_i), .idle_o(arbiter_idle));
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .instruction_request_valid_i(instruction_request),
+    .instruction_request_ready_o(instruction_request_ready),
+    .instruction_request_address_i(instruction_request_address),
+    .instruction_response_valid_o(instruction_response),
+    .data_request_valid_i(data_request),
+    .data_request_ready_o(data_request_ready),
+    .data_request_write_i(data_request_write),
+    .data_request_address_i(data_request_address),
+    .data_request_data_i(data_request_data),
+    .data_request_mask_i(data_request_mask),
+    .data_request_id_i(data_request_id),
+    .data_response_valid_o(data_response),
+    .request_valid_o(memory_request_valid_o),
+    .request_ready_i(memory_request_ready_i),
+    .request_write_o(memory_request_write_o),
+    .request_address_o(memory_request_address_o),
+    .request_data_o(memory_request_data_o),
+    .request_mask_o(memory_request_mask_o),
+    .request_id_o(memory_request_id_o),
+    .response_valid_i(memory_response_valid_i),
+    .response_id_i(memory_response_id_i),
+    .idle_o(arbiter_idle)
+  );
 
   performance_counters #(
     .WARPS(WARPS), .LANES(LANES), .INSTANCES(INSTANCES), .ALU_TYPES(ALU_TYPES), .INSTANCE_TYPES(INSTANCE_TYPES),
     .TRIPLES(TRIPLES), .COUNTER_BITS(COUNTER_BITS)
   ) performance_counters (
-    .clk_i(clk_i), .rst_ni(rst_ni), .running_i(busy_o), .retire_i(retire), .retire_mask_i(thread_mask),
-    .instruction_hit_i(instruction_hit), .instruction_miss_i(instruction_miss),
-    .data_hit_i(data_hit), .data_miss_i(data_miss), .data_store_i(data_store),
-    .ready_i(ready), .grant_i(instance_grant), .waiting_i(waiting), .type_i(wanted_type),
-    .launched_i(launched), .active_i(active), .fetching_i(fetching), .executing_i(executing),
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .running_i(busy_o),
+    .retire_i(retire),
+    .retire_mask_i(thread_mask),
+    .instruction_hit_i(instruction_hit),
+    .instruction_miss_i(instruction_miss),
+    .data_hit_i(data_hit),
+    .data_miss_i(data_miss),
+    .data_store_i(data_store),
+    .ready_i(ready),
+    .grant_i(instance_grant),
+    .waiting_i(waiting),
+    .type_i(wanted_type),
+    .launched_i(launched),
+    .active_i(active),
+    .fetching_i(fetching),
+    .executing_i(executing),
     .overlapping_i(overlaps & grant),
-    .import_wait_i(import_wait), .export_wait_i(export_wait),
-    .select_i(counter_select_i), .value_o(counter_o));
+    .import_wait_i(import_wait),
+    .export_wait_i(export_wait),
+    .select_i(counter_select_i),
+    .value_o(counter_o)
+  );
 
   // What the trace shows of an instruction's write-back.
   assign retire_valid_o = retire;

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // The controller: cuts a picture into tiles, and launches on the units what the policy proposes, as far as it is safe.
 // docs/chip.md, sections 3, 4 and 8.
 // What it sees of a cycle, levels and events, is counted in the next one; rules and launch take one each, the policy
@@ -118,13 +120,21 @@ module controller #(
       localparam [1:0] UNIT = u;
       wire launched = accepted && launch_unit_i == UNIT;
       launch_records #(.CONTENTS(CONTENTS), .EXPORT_BITS(EXPORT_BITS)) launch_records (
-        .clk_i(clk_i), .rst_ni(rst_ni), .launch_valid_i(launched), .launch_normal_i(normal_q),
-        .launch_shadow_i(shadow_q), .ray_valid_i(outcome_valid_i && outcome_unit_i == UNIT),
-        .ray_shadow_i(outcome_shadow_i), .contribution_valid_i(exported_valid_i && exported_unit_i == UNIT),
-        .ended_valid_i(done_q[u]), .ended_exports_i(exports_q[u*EXPORT_BITS +: EXPORT_BITS]), .full_o(full[u]),
+        .clk_i(clk_i),
+        .rst_ni(rst_ni),
+        .launch_valid_i(launched),
+        .launch_normal_i(normal_q),
+        .launch_shadow_i(shadow_q),
+        .ray_valid_i(outcome_valid_i && outcome_unit_i == UNIT),
+        .ray_shadow_i(outcome_shadow_i),
+        .contribution_valid_i(exported_valid_i && exported_unit_i == UNIT),
+        .ended_valid_i(done_q[u]),
+        .ended_exports_i(exports_q[u*EXPORT_BITS +: EXPORT_BITS]),
+        .full_o(full[u]),
         .empty_o(empty[u]),
         .normal_o(normal_to_come[u*RECORD_BITS +: RECORD_BITS]),
-        .shadow_o(shadow_to_come[u*RECORD_BITS +: RECORD_BITS]));
+        .shadow_o(shadow_to_come[u*RECORD_BITS +: RECORD_BITS])
+      );
       always @(posedge clk_i)
         if (!rst_ni) kernels_q[u*3 +: 3] <= 3'd0;
         else kernels_q[u*3 +: 3] <= kernels_q[u*3 +: 3] + {2'd0, launched} - {2'd0, done_q[u]};
@@ -144,9 +154,18 @@ module controller #(
   wire [THREAD_BITS-1:0] tile_pixels;
   wire unused_last;
   tile_walk #(.CONTENTS(CONTENTS), .HELD_LIMIT(HELD_LIMIT), .TILE_ORDER(TILE_ORDER)) tile_walk (
-    .clk_i(clk_i), .rst_ni(rst_ni), .start_i(start_i), .width_i(width_i), .height_i(height_i), .busy_o(tiles_left),
-    .tile_valid_o(tile_valid), .tile_ready_i(cast), .tile_block_o(launch_block_o), .tile_pixels_o(tile_pixels),
-    .tile_last_o(unused_last));
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .start_i(start_i),
+    .width_i(width_i),
+    .height_i(height_i),
+    .busy_o(tiles_left),
+    .tile_valid_o(tile_valid),
+    .tile_ready_i(cast),
+    .tile_block_o(launch_block_o),
+    .tile_pixels_o(tile_pixels),
+    .tile_last_o(unused_last)
+  );
 
   // ---- Sums and rules
   wire take_direct;
@@ -199,10 +218,19 @@ module controller #(
     .HELD_LIMIT(HELD_LIMIT), .WINDOW_REMEDY(WINDOW_REMEDY), .TRAVERSER_SHADES(TRAVERSER_SHADES),
     .COUNT_BITS(COUNT_BITS)
   ) launch_rules (
-    .clk_i(clk_i), .rst_ni(rst_ni), .tile_left_i(tile_valid),
-    .tile_pixels_i({{COUNT_BITS-THREAD_BITS{1'b0}}, tile_pixels}), .cast_i(cast), .cast_held_i(held_then_q),
-    .held_i(held), .shadow_rays_i(shadow_rays), .shadow_to_come_i(all_shadow), .shadow_i(shadow),
-    .eye_possible_o(eye_possible), .secondary_room_o(secondary_room));
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .tile_left_i(tile_valid),
+    .tile_pixels_i({{COUNT_BITS-THREAD_BITS{1'b0}}, tile_pixels}),
+    .cast_i(cast),
+    .cast_held_i(held_then_q),
+    .held_i(held),
+    .shadow_rays_i(shadow_rays),
+    .shadow_to_come_i(all_shadow),
+    .shadow_i(shadow),
+    .eye_possible_o(eye_possible),
+    .secondary_room_o(secondary_room)
+  );
 
   // ---- What the policy sees
   reg [COUNT_BITS-1:0] view_rays_q, view_normal_q, view_shadow_q, view_room_q, view_to_come_q, view_promised_q;
@@ -252,19 +280,38 @@ module controller #(
         .INTERSECTION_POOL_SIZE(INTERSECTION_POOL_SIZE), .RAY_THRESHOLD(RAY_THRESHOLD),
         .INTERSECTION_THRESHOLD(INTERSECTION_THRESHOLD), .COUNT_BITS(COUNT_BITS)
       ) policy (
-        .clk_i(clk_i), .rays_i(view_rays_q), .normal_i(view_normal_q), .shadow_i(view_shadow_q),
-        .secondary_room_i(view_room_q), .eye_possible_i(view_eye_q), .more_to_come_i(view_more_q),
-        .ahead_i(view_ahead_q), .kind_o(kind), .threads_o(threads));
+        .clk_i(clk_i),
+        .rays_i(view_rays_q),
+        .normal_i(view_normal_q),
+        .shadow_i(view_shadow_q),
+        .secondary_room_i(view_room_q),
+        .eye_possible_i(view_eye_q),
+        .more_to_come_i(view_more_q),
+        .ahead_i(view_ahead_q),
+        .kind_o(kind),
+        .threads_o(threads)
+      );
     end else begin : gen_fill
       fill_policy #(
         .CONTENTS(CONTENTS), .UNITS(UNITS), .RAY_POOL_SIZE(RAY_POOL_SIZE),
         .INTERSECTION_POOL_SIZE(INTERSECTION_POOL_SIZE), .BATCH(BATCH), .COUNT_BITS(COUNT_BITS),
         .KERNEL_BITS(KERNEL_BITS)
       ) policy (
-        .clk_i(clk_i), .rays_i(view_rays_q), .normal_i(view_normal_q), .shadow_i(view_shadow_q),
-        .secondary_room_i(view_room_q), .rays_to_come_i(view_to_come_q), .promised_i(view_promised_q),
-        .kernels_i(view_kernels_q), .two_rays_i(reflections_i), .eye_possible_i(view_eye_q),
-        .more_to_come_i(view_more_q), .ahead_i(view_ahead_q), .kind_o(kind), .threads_o(threads));
+        .clk_i(clk_i),
+        .rays_i(view_rays_q),
+        .normal_i(view_normal_q),
+        .shadow_i(view_shadow_q),
+        .secondary_room_i(view_room_q),
+        .rays_to_come_i(view_to_come_q),
+        .promised_i(view_promised_q),
+        .kernels_i(view_kernels_q),
+        .two_rays_i(reflections_i),
+        .eye_possible_i(view_eye_q),
+        .more_to_come_i(view_more_q),
+        .ahead_i(view_ahead_q),
+        .kind_o(kind),
+        .threads_o(threads)
+      );
     end
   endgenerate
 

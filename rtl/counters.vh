@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
   // Generated from cpp_model/isa/counters.hpp by `raypool isa --write`; a test compares. Do not edit.
   // Numbers of the performance counters; those of a row by type are of ALU type 0, and the other types' follow.
   // A module uses some of them only.

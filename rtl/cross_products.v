@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Of three pairs (x, y) that come one after the other, 0, 1 and 2, the cross products of 0 and 1, 1 and 2, 2 and 0:
 // x' y - y' x of a pair (x, y) and the next one (x', y'), rounded once, to nearest even, to 32 bits. The three follow
 // each other too, the first one eight cycles after pair 0. It never waits.

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // The L1 data cache: 2-way, 64-byte lines, least recently used, write-through, no write-allocate, one quadword (16
 // bytes) a cycle, loads that miss do not block. Tags and data are single-port memories: a cycle reads (lookup), or
 // writes (a store that hits, a refill beat).
@@ -144,26 +146,52 @@ module data_cache #(
 
   miss_status #(.WARPS(WARPS), .WARP_BITS(WARP_BITS), .MSHRS(DATA_CACHE_MSHRS), .MSHR_BITS(MSHR_BITS),
       .SET_BITS(SET_BITS)) u_miss_status (
-    .clk_i(clk_i), .rst_ni(rst_ni),
-    .access_i(access_i), .access_line_i(quad_q[27:2]), .access_warp_i(access_warp_i),
-    .match_o(match), .available_o(available), .available_id_o(push_id_o), .locked_o(locked),
-    .join_i(access_i && match), .allocate_i(allocate_o), .allocate_way_i(victim),
-    .fill_i(refill_q), .fill_id_i(refill_id_q), .fill_last_i(refill_last), .fill_line_o(refill_line),
-    .fill_way_o(refill_way), .served_i(served_i), .served_id_i(served_id_i), .served_warp_i(served_warp_i),
-    .freed_o(freed_o), .idle_o(idle_o), .filled_o(filled_o), .line_o(line_o), .waiters_o(waiters_o)
-  );
+        .clk_i(clk_i),
+        .rst_ni(rst_ni),
+        .access_i(access_i),
+        .access_line_i(quad_q[27:2]),
+        .access_warp_i(access_warp_i),
+        .match_o(match),
+        .available_o(available),
+        .available_id_o(push_id_o),
+        .locked_o(locked),
+        .join_i(access_i && match),
+        .allocate_i(allocate_o),
+        .allocate_way_i(victim),
+        .fill_i(refill_q),
+        .fill_id_i(refill_id_q),
+        .fill_last_i(refill_last),
+        .fill_line_o(refill_line),
+        .fill_way_o(refill_way),
+        .served_i(served_i),
+        .served_id_i(served_id_i),
+        .served_warp_i(served_warp_i),
+        .freed_o(freed_o),
+        .idle_o(idle_o),
+        .filled_o(filled_o),
+        .line_o(line_o),
+        .waiters_o(waiters_o)
+      );
 
   // Memories. The cycle of refill_q has no lookup and no access of a store.
   wire [SET_BITS-1:0] tag_address = refill_q ? refill_set : lookup_set;
   wire [TAG_BITS-1:0] refill_tag = refill_line[25 -: TAG_BITS];
 
   ram_1rw #(.WIDTH(TAG_BITS), .DEPTH(SETS)) u_tag_0 (
-    .clk_i(clk_i), .enable_i(lookup_i || (refill_last && !refill_way)), .write_i(refill_q), .address_i(tag_address),
-    .data_i(refill_tag), .data_o(tag_0)
+    .clk_i(clk_i),
+    .enable_i(lookup_i || (refill_last && !refill_way)),
+    .write_i(refill_q),
+    .address_i(tag_address),
+    .data_i(refill_tag),
+    .data_o(tag_0)
   );
   ram_1rw #(.WIDTH(TAG_BITS), .DEPTH(SETS)) u_tag_1 (
-    .clk_i(clk_i), .enable_i(lookup_i || (refill_last && refill_way)), .write_i(refill_q), .address_i(tag_address),
-    .data_i(refill_tag), .data_o(tag_1)
+    .clk_i(clk_i),
+    .enable_i(lookup_i || (refill_last && refill_way)),
+    .write_i(refill_q),
+    .address_i(tag_address),
+    .data_i(refill_tag),
+    .data_o(tag_1)
   );
 
   wire read_data = lookup_i && !lookup_store_i;
@@ -181,12 +209,20 @@ module data_cache #(
   generate
     for (word = 0; word < 4; word = word + 1) begin : gen_word
       ram_1rw #(.WIDTH(32), .DEPTH(SETS * 4)) u_data_0 (
-        .clk_i(clk_i), .enable_i(read_data || write_0[word]), .write_i(write_0[word]), .address_i(data_address),
-        .data_i(data_in[word*32 +: 32]), .data_o(data_0[word*32 +: 32])
+        .clk_i(clk_i),
+        .enable_i(read_data || write_0[word]),
+        .write_i(write_0[word]),
+        .address_i(data_address),
+        .data_i(data_in[word*32 +: 32]),
+        .data_o(data_0[word*32 +: 32])
       );
       ram_1rw #(.WIDTH(32), .DEPTH(SETS * 4)) u_data_1 (
-        .clk_i(clk_i), .enable_i(read_data || write_1[word]), .write_i(write_1[word]), .address_i(data_address),
-        .data_i(data_in[word*32 +: 32]), .data_o(data_1[word*32 +: 32])
+        .clk_i(clk_i),
+        .enable_i(read_data || write_1[word]),
+        .write_i(write_1[word]),
+        .address_i(data_address),
+        .data_i(data_in[word*32 +: 32]),
+        .data_o(data_1[word*32 +: 32])
       );
     end
   endgenerate

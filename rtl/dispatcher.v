@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Each cycle, gives every free ALU instance the lowest-numbered warp that wants its type and was given none yet. Never
 // grants an instance that is not ready, nor a warp twice. What the warp offers is taken over by the instance's task
 // register. With OVERLAP, warps in first_i go before all others.

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Adds up to 2^EVENT_BITS - 1 events a cycle. The carry out of the low bits is added a cycle later, so
 // that no long carry chain stands in a cycle. Promise: value_o + pending_o is the number of events up to
 // and including this cycle's event_i; with LATE, the cycle before's: for events that are known late.

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Grants one of the requesting warps a cycle, in rotation: the search starts behind the warp granted last, so that
 // every request is granted within WARPS cycles, not counting those of first_i. A request of a warp in first_i is
 // granted at once and leaves the rotation as it is.

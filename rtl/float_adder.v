@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Floating-point adder and subtracter, three stages: align, add and begin to normalise, normalise and round.
 // Operands are taken with enable_i[0]; enable_i[k] must say that stage k holds that operation k cycles later.
 // result_o is combinational, valid in stage 2, and zero while enable_i[2] is low, so that units of a lane can be

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Conversions between single precision and 32-bit signed integers, and minimum and maximum, in three
 // stages like the adder's and multiplier's.
 // Operands are taken with enable_i[0]; enable_i[k] must say that stage k holds that operation k cycles later. result_o

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Floating-point fused multiply-add, five stages: a * b + c, rounded once.
 // 0: product as two numbers (multiply_tree), distance of c, 1: their sum; c is aligned with it, 2: addition or
 // subtraction, 3: magnitude, the leading one brought into the top eight bits, 4: to the top, rounding.

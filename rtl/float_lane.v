@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // One lane of the Flt ALU and the result register behind it. FMA 0: adder, multiplier and the unit
 // of conversions, each in three stages.
 // FMA 1: the fused unit, which adds a * 1 + b and multiplies too, in five, and the
@@ -34,18 +36,35 @@ module float_lane #(
   wire [31:0] converted;
   reg [31:0] computed, result_q;            // computed: by the other units
   float_convert #(.SUBNORMALS(SUBNORMALS), .SIGNIFICAND(SIGNIFICAND), .WITHOUT(NO_CONVERSION)) convert (
-    .clk_i(clk_i), .enable_i(convert_enable_i[2:0]), .op_i(convert_op_i), .a_i(a_i), .b_i(b_i), .result_o(converted));
+    .clk_i(clk_i),
+    .enable_i(convert_enable_i[2:0]),
+    .op_i(convert_op_i),
+    .a_i(a_i),
+    .b_i(b_i),
+    .result_o(converted)
+  );
 
   generate
     if (FMA == 0) begin : gen_separate
       wire [31:D] sum, product;
       wire tiny_sum, tiny_product;
       float_adder #(.EXPONENT_BITS(8), .MANTISSA_BITS(M), .SUBNORMALS(SUBNORMALS)) adder (
-        .clk_i(clk_i), .enable_i(add_enable_i[2:0]), .subtract_i(subtract_i), .a_i(a_i[31:D]), .b_i(b_i[31:D]),
-        .result_o(sum), .tiny_o(tiny_sum));
+        .clk_i(clk_i),
+        .enable_i(add_enable_i[2:0]),
+        .subtract_i(subtract_i),
+        .a_i(a_i[31:D]),
+        .b_i(b_i[31:D]),
+        .result_o(sum),
+        .tiny_o(tiny_sum)
+      );
       float_multiplier #(.EXPONENT_BITS(8), .MANTISSA_BITS(M), .SUBNORMALS(SUBNORMALS)) multiplier (
-        .clk_i(clk_i), .enable_i(multiply_enable_i[2:0]), .a_i(a_i[31:D]), .b_i(b_i[31:D]), .result_o(product),
-        .tiny_o(tiny_product));
+        .clk_i(clk_i),
+        .enable_i(multiply_enable_i[2:0]),
+        .a_i(a_i[31:D]),
+        .b_i(b_i[31:D]),
+        .result_o(product),
+        .tiny_o(tiny_product)
+      );
       always @(posedge clk_i) tiny_o <= SUBNORMALS == 2 && (tiny_sum || tiny_product);
       always @* begin
         computed = 32'd0;
@@ -63,8 +82,15 @@ module float_lane #(
       wire [31:D] factor = add_enable_i[0] ? ONE[31:D] : b_i[31:D];
       reg [31:0] s3_converted_q, s4_converted_q;
       float_fma #(.EXPONENT_BITS(8), .MANTISSA_BITS(M), .SUBNORMALS(SUBNORMALS)) fma (
-        .clk_i(clk_i), .enable_i(enable), .a_i(a_i[31:D]), .b_i(factor), .c_i(addend),
-        .multiply_i(multiply_enable_i[0]), .result_o(fused), .tiny_o(tiny_fused));
+        .clk_i(clk_i),
+        .enable_i(enable),
+        .a_i(a_i[31:D]),
+        .b_i(factor),
+        .c_i(addend),
+        .multiply_i(multiply_enable_i[0]),
+        .result_o(fused),
+        .tiny_o(tiny_fused)
+      );
       always @(posedge clk_i) tiny_o <= SUBNORMALS == 2 && tiny_fused;
       always @* begin
         computed = 32'd0;

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Floating-point multiplier, three stages: the product as two numbers (multiply_tree), their sum with its leading one
 // brought to the top two bits, rounding.
 // The tree takes both operands as normal numbers, so that it need not wait for what the exponents say; what a subnormal

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // A finite float as a significand whose leading one is not stored, subnormal ones too, and its exponent, a cycle later.
 // Infinite and not a number keep the exponent that they have.
 `default_nettype none

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // COUNT multipliers side by side for a pipe that never waits: each begins a product in every cycle, and shows from a
 // register that of what stood at its inputs three cycles before. Formats and SUBNORMALS as in float_multiplier.
 `default_nettype none
@@ -22,8 +24,13 @@ module float_products #(
     for (k = 0; k < COUNT; k = k + 1) begin : gen_product
       float_multiplier #(.EXPONENT_BITS(EXPONENT_BITS), .MANTISSA_BITS(MANTISSA_BITS), .SUBNORMALS(SUBNORMALS))
       multiplier (
-        .clk_i(clk_i), .enable_i(3'b111), .a_i(a_i[k*BITS+:BITS]), .b_i(b_i[k*BITS+:BITS]),
-        .result_o(product[k*BITS+:BITS]), .tiny_o(tiny[k]));
+        .clk_i(clk_i),
+        .enable_i(3'b111),
+        .a_i(a_i[k*BITS+:BITS]),
+        .b_i(b_i[k*BITS+:BITS]),
+        .result_o(product[k*BITS+:BITS]),
+        .tiny_o(tiny[k])
+      );
     end
   endgenerate
 endmodule

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Quotient of two floating-point numbers of MANTISSA_BITS + 1 bits, rounded once, to nearest even: one in every cycle,
 // 2 + (MANTISSA_BITS + 1) / 2 cycles later.
 // It needs no bit behind the first that is rounded off: a quotient that ended there would have one more bit than its
@@ -31,9 +33,15 @@ module float_quotient #(
   wire rest, zero_numerator, zero_denominator, sign;
   wire [E-1:0] quotient_exponent;
   quotient_digits #(.BITS(S), .WAITING(E + 3)) digit_array (
-    .clk_i(clk_i), .a_i({1'b1, a_i[0+:S-1]}), .b_i({1'b1, b_i[0+:S-1]}), .less_o(less),
-    .waiting_i({zero_a, zero_b, a_i[BITS-1] ^ b_i[BITS-1], exponent}), .digits_o(bits), .rest_o(rest),
-    .waiting_o({zero_numerator, zero_denominator, sign, quotient_exponent}));
+    .clk_i(clk_i),
+    .a_i({1'b1, a_i[0+:S-1]}),
+    .b_i({1'b1, b_i[0+:S-1]}),
+    .less_o(less),
+    .waiting_i({zero_a, zero_b, a_i[BITS-1] ^ b_i[BITS-1], exponent}),
+    .digits_o(bits),
+    .rest_o(rest),
+    .waiting_o({zero_numerator, zero_denominator, sign, quotient_exponent})
+  );
   wire unused = &{1'b0, rest};
 
   // ---- Last stage: the last bit decides the rounding.

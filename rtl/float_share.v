@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // A finite float that is not negative times 2^-PLACES, rounded to nearest even where that is subnormal, two cycles
 // later. take_i: what was given two cycles before its result shows is shown from then on, until the next one.
 `default_nettype none

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // A number with an exponent of 11 bits, and not subnormal, as a float, rounded to nearest even, two cycles later;
 // infinite and not a number are what they are. MANTISSA_BITS: 25 or more.
 `default_nettype none

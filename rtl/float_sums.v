@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // COUNT adders side by side, or subtracters with SUBTRACT, for a pipe that never waits: each begins an operation in
 // every cycle, and shows from a register what stood at its inputs three cycles before. Formats and SUBNORMALS as in
 // float_adder.
@@ -23,8 +25,14 @@ module float_sums #(
   generate
     for (k = 0; k < COUNT; k = k + 1) begin : gen_sum
       float_adder #(.EXPONENT_BITS(EXPONENT_BITS), .MANTISSA_BITS(MANTISSA_BITS), .SUBNORMALS(SUBNORMALS)) adder (
-        .clk_i(clk_i), .enable_i(3'b111), .subtract_i(SUBTRACT != 0), .a_i(a_i[k*BITS+:BITS]),
-        .b_i(b_i[k*BITS+:BITS]), .result_o(sum[k*BITS+:BITS]), .tiny_o(tiny[k]));
+        .clk_i(clk_i),
+        .enable_i(3'b111),
+        .subtract_i(SUBTRACT != 0),
+        .a_i(a_i[k*BITS+:BITS]),
+        .b_i(b_i[k*BITS+:BITS]),
+        .result_o(sum[k*BITS+:BITS]),
+        .tiny_o(tiny[k])
+      );
     end
   endgenerate
 endmodule

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // A finite float, subnormal or not, as a number with an exponent of 11 bits that is not subnormal, a cycle later. It
 // may have MANTISSA_BITS of fraction, but is a multiple of 2^-149: a subnormal one has 23.
 `default_nettype none

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Flt ALU: fadd fsub fmul fmin fmax f2i i2f in three stages, or with FMA these and ffma in five, further ones as delay.
 // docs/numerics.md has the rules of the results. SUBNORMALS 0: IEEE, 1: flushed, 2: the same, and done_subnormal_o says
 // that a task has met one. SIGNIFICAND: bits of a float's
@@ -41,8 +43,15 @@ module flt_alu #(
 
   wire [DEPTH-1:0] stage_valid;
   alu_pipeline #(.WARP_BITS(WARP_BITS), .LATENCY(LATENCY), .DEPTH(DEPTH)) pipeline (
-    .clk_i(clk_i), .rst_ni(rst_ni), .task_valid_i(task_valid_i), .task_warp_i(task_warp_i), .ready_o(ready_o),
-    .done_valid_o(done_valid_o), .done_warp_o(done_warp_o), .stage_valid_o(stage_valid));
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .task_valid_i(task_valid_i),
+    .task_warp_i(task_warp_i),
+    .ready_o(ready_o),
+    .done_valid_o(done_valid_o),
+    .done_warp_o(done_warp_o),
+    .stage_valid_o(stage_valid)
+  );
 
   wire moving = |stage_valid[STAGES-1:0];
   // The unit of an operation, and what its conversion is.
@@ -87,10 +96,19 @@ module flt_alu #(
       float_lane #(
         .SUBNORMALS(SUBNORMALS), .SIGNIFICAND(SIGNIFICAND), .FMA(FMA), .NO_CONVERSION(WITHOUT >> ISA_FLT_FMIN)
       ) lane (
-        .clk_i(clk_i), .add_enable_i(add_enable), .multiply_enable_i(multiply_enable), .fuse_enable_i(fuse_enable),
-        .convert_enable_i(convert_enable), .subtract_i(task_operation_i == ISA_FLT_FSUB), .convert_op_i(convert_op),
-        .a_i(task_operand_a_i[l*32 +: 32]), .b_i(task_operand_b_i[l*32 +: 32]), .c_i(task_operand_c_i[l*32 +: 32]),
-        .result_o(result[l*32 +: 32]), .tiny_o(tiny[l]));
+        .clk_i(clk_i),
+        .add_enable_i(add_enable),
+        .multiply_enable_i(multiply_enable),
+        .fuse_enable_i(fuse_enable),
+        .convert_enable_i(convert_enable),
+        .subtract_i(task_operation_i == ISA_FLT_FSUB),
+        .convert_op_i(convert_op),
+        .a_i(task_operand_a_i[l*32 +: 32]),
+        .b_i(task_operand_b_i[l*32 +: 32]),
+        .c_i(task_operand_c_i[l*32 +: 32]),
+        .result_o(result[l*32 +: 32]),
+        .tiny_o(tiny[l])
+      );
     end
     if (DEPTH > STAGES) begin : gen_delay
       alu_delay #(.WIDTH(LANES*32), .STAGES(DEPTH-STAGES)) delay (
@@ -101,9 +119,15 @@ module flt_alu #(
     if (SUBNORMALS == 2) begin : gen_guard
       wire two = task_operation_i != ISA_FLT_F2I;   // float operands a and b, unless it is i2f
       subnormal_guard #(.LANES(LANES), .SIGNIFICAND(SIGNIFICAND), .DEPTH(DEPTH), .RESULT_STAGE(STAGES)) guard (
-        .clk_i(clk_i), .enter_i(task_mask_i & {LANES{task_valid_i && task_operation_i != ISA_FLT_I2F}}),
-        .reads_i({fuse, two, 1'b1}), .a_i(task_operand_a_i), .b_i(task_operand_b_i), .c_i(task_operand_c_i),
-        .result_i(|tiny), .subnormal_o(done_subnormal_o));
+        .clk_i(clk_i),
+        .enter_i(task_mask_i & {LANES{task_valid_i && task_operation_i != ISA_FLT_I2F}}),
+        .reads_i({fuse, two, 1'b1}),
+        .a_i(task_operand_a_i),
+        .b_i(task_operand_b_i),
+        .c_i(task_operand_c_i),
+        .result_i(|tiny),
+        .subnormal_o(done_subnormal_o)
+      );
     end else begin : gen_no_guard
       wire unused = &{1'b0, tiny};
       assign done_subnormal_o = 1'b0;

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // The frame buffer's port: takes one contribution a cycle, a unit's where there is one, else the traverser's.
 // docs/chip.md gives its cycles.
 // Promises: contributions leave in the order in which they came, unchanged; what is offered stays until it is taken; a
@@ -39,9 +41,15 @@ module frame_port (
 
   // Two places: one is filled while the other one leaves.
   request_queue #(.WIDTH(128), .DEPTH(2)) contributions (
-    .clk_i(clk_i), .rst_ni(rst_ni), .push_i(take),
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .push_i(take),
     .data_i(unit_valid_i ? {unit_color_i, unit_pixel_i} : {traverser_color_i, traverser_pixel_i}),
-    .valid_o(frame_valid_o), .ready_i(frame_ready_i), .data_o({frame_color_o, frame_pixel_o}), .count_o(count));
+    .valid_o(frame_valid_o),
+    .ready_i(frame_ready_i),
+    .data_o({frame_color_o, frame_pixel_o}),
+    .count_o(count)
+  );
 
   always @(posedge clk_i)
     if (!rst_ni) exported_valid_o <= 1'b0;

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // The numbers 0 .. SIZE-1 that are free, with valid/ready at its end: first 0, 1, 2 and so on, then those that have
 // come back, in the order in which they did. One that comes back in a cycle can be had from the next one on.
 // Must be given: a number comes back once for each time that it was taken. So it needs no reset of a memory, and knows
@@ -21,8 +23,14 @@ module free_list #(
   wire back_valid;
   wire [NUMBER_BITS-1:0] back;
   ram_queue #(.WIDTH(NUMBER_BITS), .DEPTH(SIZE)) returned (
-    .clk_i(clk_i), .rst_ni(rst_ni), .push_i(free_i), .data_i(free_number_i), .valid_o(back_valid),
-    .ready_i(ready_i && !unused_left), .data_o(back));
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .push_i(free_i),
+    .data_i(free_number_i),
+    .valid_o(back_valid),
+    .ready_i(ready_i && !unused_left),
+    .data_o(back)
+  );
   assign valid_o = unused_left || back_valid;
   assign number_o = unused_left ? used_q[NUMBER_BITS-1:0] : back;
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Included in a module whose pipeline never waits: whether the data registers behind
 // its second stage or a later one load.
 // Where no clock gates are they do in every cycle, and a bit costs two gates less than with an enable: what they take

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Joins the import ports of 2 to 4 units: requests leave in rotation, a package at a time, and their beats, which come
 // back in the order of the requests, go to the units that asked.
 // Promises: at most 3 packages are requested and not yet received. Must be given: for each request taken, in
@@ -29,16 +31,31 @@ module import_arbiter #(
   wire [1:0] receiver, count;
   wire open = count != PLACES[1:0];
   port_arbiter #(.COUNT(UNITS), .WIDTH(2)) port_arbiter (
-    .clk_i(clk_i), .rst_ni(rst_ni), .valid_i(unit_request_valid_i & {UNITS{open}}), .ready_o(unit_request_ready_o),
-    .data_i(unit_request_kind_i), .last_i({UNITS{1'b1}}), .valid_o(request_valid_o), .ready_i(request_ready_i),
-    .data_o(request_kind_o), .number_o(request_unit_o));
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .valid_i(unit_request_valid_i & {UNITS{open}}),
+    .ready_o(unit_request_ready_o),
+    .data_i(unit_request_kind_i),
+    .last_i({UNITS{1'b1}}),
+    .valid_o(request_valid_o),
+    .ready_i(request_ready_i),
+    .data_o(request_kind_o),
+    .number_o(request_unit_o)
+  );
 
   reg [2:0] beat_q;
   wire beat = beat_valid_i && expected;
   wire package_end = beat && beat_q == LAST_BEAT[2:0];
   request_queue #(.WIDTH(2), .DEPTH(PLACES)) order (
-    .clk_i(clk_i), .rst_ni(rst_ni), .push_i(request_valid_o && request_ready_i), .data_i(request_unit_o),
-    .valid_o(expected), .ready_i(package_end), .data_o(receiver), .count_o(count));
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .push_i(request_valid_o && request_ready_i),
+    .data_i(request_unit_o),
+    .valid_o(expected),
+    .ready_i(package_end),
+    .data_o(receiver),
+    .count_o(count)
+  );
 
   always @(posedge clk_i)
     if (!rst_ni) beat_q <= 3'd0;

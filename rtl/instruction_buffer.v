@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // One warp's instruction buffer: the current instruction in the data routine, the next one in the instruction routine,
 // and the state of both. docs/architecture.md, section 3, has the cycles.
 `default_nettype none

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // The L1 instruction cache: 2-way, 64-byte lines of 8 instructions, least recently used, one
 // lookup a cycle, one fetch at a time.
 // A lookup in cycle c is answered in c+1 with hit_o and the instruction, or with miss_o. A miss begins a fetch when
@@ -146,20 +148,40 @@ module instruction_cache #(
   wire write_0 = response_valid_i && !fetch_way_q;
   wire write_1 = response_valid_i && fetch_way_q;
   ram_1r1w #(.WIDTH(TAG_BITS), .DEPTH(SETS)) u_tag_0 (
-    .clk_i(clk_i), .read_i(lookup_valid_i), .read_address_i(lookup_set), .read_data_o(tag_0),
-    .write_i(last_beat && !fetch_way_q), .write_address_i(fetch_set), .write_data_i(fetch_line_q[SET_BITS +: TAG_BITS])
+    .clk_i(clk_i),
+    .read_i(lookup_valid_i),
+    .read_address_i(lookup_set),
+    .read_data_o(tag_0),
+    .write_i(last_beat && !fetch_way_q),
+    .write_address_i(fetch_set),
+    .write_data_i(fetch_line_q[SET_BITS +: TAG_BITS])
   );
   ram_1r1w #(.WIDTH(TAG_BITS), .DEPTH(SETS)) u_tag_1 (
-    .clk_i(clk_i), .read_i(lookup_valid_i), .read_address_i(lookup_set), .read_data_o(tag_1),
-    .write_i(last_beat && fetch_way_q), .write_address_i(fetch_set), .write_data_i(fetch_line_q[SET_BITS +: TAG_BITS])
+    .clk_i(clk_i),
+    .read_i(lookup_valid_i),
+    .read_address_i(lookup_set),
+    .read_data_o(tag_1),
+    .write_i(last_beat && fetch_way_q),
+    .write_address_i(fetch_set),
+    .write_data_i(fetch_line_q[SET_BITS +: TAG_BITS])
   );
   ram_1r1w #(.WIDTH(128), .DEPTH(SETS * 4)) u_data_0 (
-    .clk_i(clk_i), .read_i(lookup_valid_i), .read_address_i(lookup_pc_i[SET_BITS+2:1]), .read_data_o(data_0),
-    .write_i(write_0), .write_address_i({fetch_set, response_beat_i}), .write_data_i(response_data_i)
+    .clk_i(clk_i),
+    .read_i(lookup_valid_i),
+    .read_address_i(lookup_pc_i[SET_BITS+2:1]),
+    .read_data_o(data_0),
+    .write_i(write_0),
+    .write_address_i({fetch_set, response_beat_i}),
+    .write_data_i(response_data_i)
   );
   ram_1r1w #(.WIDTH(128), .DEPTH(SETS * 4)) u_data_1 (
-    .clk_i(clk_i), .read_i(lookup_valid_i), .read_address_i(lookup_pc_i[SET_BITS+2:1]), .read_data_o(data_1),
-    .write_i(write_1), .write_address_i({fetch_set, response_beat_i}), .write_data_i(response_data_i)
+    .clk_i(clk_i),
+    .read_i(lookup_valid_i),
+    .read_address_i(lookup_pc_i[SET_BITS+2:1]),
+    .read_data_o(data_1),
+    .write_i(write_1),
+    .write_address_i({fetch_set, response_beat_i}),
+    .write_data_i(response_data_i)
   );
 endmodule
 `default_nettype wire

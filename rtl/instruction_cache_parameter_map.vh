@@ -1,2 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
   // Generated from cpp_model/config/parameters.hpp by `raypool isa --write`; a test compares. Do not edit.
   .INSTRUCTION_CACHE_BYTES(INSTRUCTION_CACHE_BYTES),

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Integer and logic operations. Stage 1: everything but the multiplication, of which it makes three partial products;
 // stage 2 adds those.
 `default_nettype none
@@ -28,8 +30,15 @@ module int_alu #(
   integer l;
 
   alu_pipeline #(.WARP_BITS(WARP_BITS), .LATENCY(LATENCY), .DEPTH(DEPTH)) alu_pipeline (
-    .clk_i(clk_i), .rst_ni(rst_ni), .task_valid_i(task_valid_i), .task_warp_i(task_warp_i), .ready_o(ready_o),
-    .done_valid_o(done_valid_o), .done_warp_o(done_warp_o), .stage_valid_o(stage_valid));
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .task_valid_i(task_valid_i),
+    .task_warp_i(task_warp_i),
+    .ready_o(ready_o),
+    .done_valid_o(done_valid_o),
+    .done_warp_o(done_warp_o),
+    .stage_valid_o(stage_valid)
+  );
 
   function [31:0] compute(input [4:0] op, input [31:0] a, input [31:0] b, input p);
     reg signed_less;

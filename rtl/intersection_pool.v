@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // The intersection pool: a queue for each kind of intersection behind a port of 128 bits. docs/chip.md gives its
 // cycles.
 // Promises: the oldest package of the kind that is asked for leaves, once, its beats in the order of the requests; its
@@ -208,8 +210,14 @@ module intersection_pool #(
     end
   end
   ram_1r1w #(.WIDTH(128), .DEPTH(DEPTH)) packages (
-    .clk_i(clk_i), .read_i(read), .read_address_i(head), .read_data_o(beat_data_o), .write_i(put),
-    .write_address_i(tail), .write_data_i(put_data_i));
+    .clk_i(clk_i),
+    .read_i(read),
+    .read_address_i(head),
+    .read_data_o(beat_data_o),
+    .write_i(put),
+    .write_address_i(tail),
+    .write_data_i(put_data_i)
+  );
 
   wire [12:0] unused;
   event_counter #(.EVENT_BITS(1), .LATE(1)) packages_taken (

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
   // Generated from cpp_model/isa/isa.hpp by `raypool isa --verilog`; a test compares. Do not edit.
   // Constants of the instruction set. To be included inside a module body; rtl/isa_functions.vh decodes.
   // A module uses some of them only.

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
   // Generated from cpp_model/isa/isa.hpp by `raypool isa --write`; a test compares. Do not edit.
   // The fields of `instruction`, to be included behind its declaration. A module uses some of them only.
   /* verilator lint_off UNUSEDSIGNAL */

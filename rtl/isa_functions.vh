@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
   // Generated from cpp_model/isa/isa.hpp by `raypool isa --verilog-functions`; a test compares. Do not edit.
   // Decoding functions of the instruction set. To be included inside a module body; they need no constants. A label is
   // ALU type * 32 + operation.

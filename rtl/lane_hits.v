@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // What a lane knows of its rays' hits: each ray's limit, and its best hit so far. The triangle pipe is told both by
 // slot, a cycle after it asks; its results are taken into account at once. When the last triangle of a leaf has its
 // result, the ray goes on, with the time of its best hit as a key.
@@ -62,8 +64,14 @@ module lane_hits #(
     else hit_q <= (hit_q & ~(ray_valid_i ? ONE_SLOT << ray_slot_i : NO_SLOT)) |
                   (hit ? ONE_SLOT << result_slot_i : NO_SLOT);
   ram_1r1w #(.WIDTH(41), .DEPTH(SLOTS)) limits (
-    .clk_i(clk_i), .read_i(1'b1), .read_address_i(limit_slot_i), .read_data_o({scale_o, limit_o}),
-    .write_i(ray_valid_i), .write_address_i(ray_slot_i), .write_data_i({ray_scale_i, ray_limit_i}));
+    .clk_i(clk_i),
+    .read_i(1'b1),
+    .read_address_i(limit_slot_i),
+    .read_data_o({scale_o, limit_o}),
+    .write_i(ray_valid_i),
+    .write_address_i(ray_slot_i),
+    .write_data_i({ray_scale_i, ray_limit_i})
+  );
 
   // ---- The best hit: what came in the cycle in which it was asked for is not in the RAM's word, nor what comes in
   // that in which it is told
@@ -79,9 +87,16 @@ module lane_hits #(
   end
   wire [91:0] best_word, done_word;
   ram_2r1w #(.WIDTH(92), .DEPTH(SLOTS), .GRANULE(92)) best (
-    .clk_i(clk_i), .read_i(1'b1), .read_address_a_i(best_slot_i), .read_address_b_i(done_slot_i),
-    .read_data_a_o(best_word), .read_data_b_o(done_word), .write_mask_i(hit), .write_address_i(result_slot_i),
-    .write_data_i({result_place_i, result_t_i, result_number_i}));
+    .clk_i(clk_i),
+    .read_i(1'b1),
+    .read_address_a_i(best_slot_i),
+    .read_address_b_i(done_slot_i),
+    .read_data_a_o(best_word),
+    .read_data_b_o(done_word),
+    .write_mask_i(hit),
+    .write_address_i(result_slot_i),
+    .write_data_i({result_place_i, result_t_i, result_number_i})
+  );
   wire now = hit && result_slot_i == best_slot_q, before = written_q && written_slot_q == best_slot_q;
   wire [62:0] best_so_far = now ? {result_t_i, result_number_i} : before ? written_best_q :
                             hit_q[best_slot_q] ? best_word[62:0] : {31'h7f800000, 32'd0};
@@ -130,9 +145,16 @@ module lane_hits #(
   wire unused_key = &{1'b0, moved};
   wire [KEY_BITS-1:0] ends_word;
   ram_2r1w #(.WIDTH(KEY_BITS), .DEPTH(SLOTS), .GRANULE(KEY_BITS)) keys (
-    .clk_i(clk_i), .read_i(1'b1), .read_address_a_i(key_slot_i), .read_address_b_i(result_slot_i),
-    .read_data_a_o(key_o), .read_data_b_o(ends_word), .write_mask_i(ends_hit_q), .write_address_i(ends_slot_q),
-    .write_data_i(ends_key_q));
+    .clk_i(clk_i),
+    .read_i(1'b1),
+    .read_address_a_i(key_slot_i),
+    .read_address_b_i(result_slot_i),
+    .read_data_a_o(key_o),
+    .read_data_b_o(ends_word),
+    .write_mask_i(ends_hit_q),
+    .write_address_i(ends_slot_q),
+    .write_data_i(ends_key_q)
+  );
   assign key_valid_o = hit_q[key_slot_q];
   assign leaf_slot_o = result_slot_i;
   assign leaf_valid_o = ends_q;

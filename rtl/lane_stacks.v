@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // The stacks of a lane of the traverser: of each slot's ray the youngest entries in RAMs of one read and one write a
 // cycle, and how many blocks of four older ones are in the memory. A visit's result says how the ray goes on: with the
 // nearest child, once its stack has room for three more; else with the youngest entry that does not lie behind the best
@@ -153,20 +155,38 @@ module lane_stacks #(
   wire [1:0] pop_there, pop_passes, pop_ready;   // of nodes, of leaves
   wire [WANT_BITS-1:0] node_want, leaf_want;
   pass_queue #(.WIDTH(WANT_BITS), .DEPTH(SLOTS)) node_pops (
-    .clk_i(clk_i), .rst_ni(rst_ni), .push_i(node_valid_i && !meets),
-    .data_i(want_of(node_slot_q, 1'b0, node_blocks_q, node_here_q, node_base_q)), .valid_o(pop_there[0]),
-    .passes_o(pop_passes[0]), .ready_i(pop_ready[0]), .data_o(node_want));
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .push_i(node_valid_i && !meets),
+    .data_i(want_of(node_slot_q, 1'b0, node_blocks_q, node_here_q, node_base_q)),
+    .valid_o(pop_there[0]),
+    .passes_o(pop_passes[0]),
+    .ready_i(pop_ready[0]),
+    .data_o(node_want)
+  );
   pass_queue #(.WIDTH(WANT_BITS), .DEPTH(SLOTS)) leaf_pops (
-    .clk_i(clk_i), .rst_ni(rst_ni), .push_i(leaf_valid_i),
-    .data_i(want_of(leaf_slot_q, leaf_over_i, leaf_blocks_q, leaf_here_q, leaf_base_q)), .valid_o(pop_there[1]),
-    .passes_o(pop_passes[1]), .ready_i(pop_ready[1]), .data_o(leaf_want));
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .push_i(leaf_valid_i),
+    .data_i(want_of(leaf_slot_q, leaf_over_i, leaf_blocks_q, leaf_here_q, leaf_base_q)),
+    .valid_o(pop_there[1]),
+    .passes_o(pop_passes[1]),
+    .ready_i(pop_ready[1]),
+    .data_o(leaf_want)
+  );
   wire spill_there, spill_passes, spill_ready;
   wire [SLOT_BITS-1:0] spill_slot;
   wire [ADDRESS_BITS-1:0] spill_address;         // of its oldest entries
   pass_queue #(.WIDTH(SLOT_BITS + ADDRESS_BITS), .DEPTH(SLOTS)) spills (
-    .clk_i(clk_i), .rst_ni(rst_ni), .push_i(meets && full),
-    .data_i({node_slot_q, address_of(node_slot_q, node_base_q)}), .valid_o(spill_there), .passes_o(spill_passes),
-    .ready_i(spill_ready), .data_o({spill_slot, spill_address}));
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .push_i(meets && full),
+    .data_i({node_slot_q, address_of(node_slot_q, node_base_q)}),
+    .valid_o(spill_there),
+    .passes_o(spill_passes),
+    .ready_i(spill_ready),
+    .data_o({spill_slot, spill_address})
+  );
   // Who comes to want a block is known late: if it cannot be asked for at once, it is put into the queue a cycle later.
   wire fetch_comes, fetch_waits, fetch_ready, unused;
   wire fetch_begins = fetch_ready && (fetch_waits || fetch_comes);
@@ -178,8 +198,15 @@ module lane_stacks #(
   always @(posedge clk_i) fetch_late_q <= rst_ni && fetch_comes && (fetch_waits || !fetch_ready);
   always @(posedge clk_i) fetch_want_q <= fetch_want_comes;
   pass_queue #(.WIDTH(1 + SLOT_BITS), .DEPTH(SLOTS)) fetches (
-    .clk_i(clk_i), .rst_ni(rst_ni), .push_i(fetch_late_q), .data_i(fetch_want_q), .valid_o(fetch_waits),
-    .passes_o(unused), .ready_i(fetch_ready), .data_o(fetch_want_waits));
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .push_i(fetch_late_q),
+    .data_i(fetch_want_q),
+    .valid_o(fetch_waits),
+    .passes_o(unused),
+    .ready_i(fetch_ready),
+    .data_o(fetch_want_waits)
+  );
 
   // What is kept of who waits: the limit, or the nearest child; read with the entry.
   wire keep_reads;
@@ -189,11 +216,23 @@ module lane_stacks #(
   wire [KEPT_BITS-1:0] node_kept;
   wire [KEY_BITS-1:0] leaf_kept;
   ram_1r1w #(.WIDTH(KEPT_BITS), .DEPTH(SLOTS)) node_keep (
-    .clk_i(clk_i), .read_i(keep_reads), .read_address_i(keep_slot), .read_data_o(node_kept), .write_i(node_valid_i),
-    .write_address_i(node_slot_q), .write_data_i(node_keeps));
+    .clk_i(clk_i),
+    .read_i(keep_reads),
+    .read_address_i(keep_slot),
+    .read_data_o(node_kept),
+    .write_i(node_valid_i),
+    .write_address_i(node_slot_q),
+    .write_data_i(node_keeps)
+  );
   ram_1r1w #(.WIDTH(KEY_BITS), .DEPTH(SLOTS)) leaf_keep (
-    .clk_i(clk_i), .read_i(keep_reads), .read_address_i(keep_slot), .read_data_o(leaf_kept), .write_i(leaf_valid_i),
-    .write_address_i(leaf_slot_q), .write_data_i(leaf_limit_i));
+    .clk_i(clk_i),
+    .read_i(keep_reads),
+    .read_address_i(keep_slot),
+    .read_data_o(leaf_kept),
+    .write_i(leaf_valid_i),
+    .write_address_i(leaf_slot_q),
+    .write_data_i(leaf_limit_i)
+  );
 
   // ---- What was read in the cycle before
 
@@ -331,9 +370,14 @@ module lane_stacks #(
       wire [ADDRESS_BITS-1:0] other_address = which[2] ? push_address_behind : push_address;
       wire pushed = pushes && {1'b0, which[1:0]} < others;
       ram_1r1w #(.WIDTH(ENTRY_BITS), .DEPTH(SLOTS * ROWS)) entries (
-        .clk_i(clk_i), .read_i(reads), .read_address_i(onward ? onward_address : next_address),
-        .read_data_o(word[g*ENTRY_BITS +: ENTRY_BITS]), .write_i(pushed || fill),
-        .write_address_i(pushes ? other_address : retry_address), .write_data_i(pushes ? other : filled));
+        .clk_i(clk_i),
+        .read_i(reads),
+        .read_address_i(onward ? onward_address : next_address),
+        .read_data_o(word[g*ENTRY_BITS +: ENTRY_BITS]),
+        .write_i(pushed || fill),
+        .write_address_i(pushes ? other_address : retry_address),
+        .write_data_i(pushes ? other : filled)
+      );
     end
     // With eight entries an oldest one can be put on the stack in the cycle in which it is read: the last of its row.
     if (ENTRIES == 8) begin : gen_forward

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Of three numbers that come one after the other, the largest exponent, beside what came: four cycles later, so that
 // all three have come, and for three cycles.
 `default_nettype none

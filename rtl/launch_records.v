@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // What the kernels of a compute unit may still export. Each launch has a record until everything that its kernel has
 // exported has left the unit: how many packages there are the unit says itself when the kernel ends. docs/chip.md,
 // section 8.

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // The leaves that a lane's rays come to: which of their lines are wanted from the cache, and the triangles in them, one
 // in a cycle. A leaf's triangles are 11 words each, one behind the other, so some lie in two lines: the next line is
 // wanted when one has come, and of a line that does not end with a triangle the last words are kept by slot. Where a
@@ -87,8 +89,14 @@ module leaf_reader #(
         assign data = further_data;
       end
       ram_queue #(.WIDTH(QUEUED_BITS), .DEPTH(SLOTS)) queue (
-        .clk_i(clk_i), .rst_ni(rst_ni), .push_i(push), .data_i(data), .valid_o(waits[g]), .ready_i(popped[g]),
-        .data_o(waiting[g*QUEUED_BITS+:QUEUED_BITS]));
+        .clk_i(clk_i),
+        .rst_ni(rst_ni),
+        .push_i(push),
+        .data_i(data),
+        .valid_o(waits[g]),
+        .ready_i(popped[g]),
+        .data_o(waiting[g*QUEUED_BITS+:QUEUED_BITS])
+      );
     end
   endgenerate
 
@@ -125,10 +133,17 @@ module leaf_reader #(
   wire [2:0] asked_left;
   wire [28:0] asked_place;
   line_offers #(.WIDTH(OFFER_BITS)) line_offers (
-    .clk_i(clk_i), .rst_ni(rst_ni), .valid_i(ahead || |waits), .ready_o(offers_ready),
-    .data_i({ahead, ahead ? ahead_data : next_data}), .valid_o(offered), .data_o(offers), .taken_i(taken_i),
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .valid_i(ahead || |waits),
+    .ready_o(offers_ready),
+    .data_i({ahead, ahead ? ahead_data : next_data}),
+    .valid_o(offered),
+    .data_o(offers),
+    .taken_i(taken_i),
     .asked_o(was_taken),
-    .asked_data_o({was_for_nobody, asked_slot, asked_line, asked_at, asked_left, asked_place}));
+    .asked_data_o({was_for_nobody, asked_slot, asked_line, asked_at, asked_left, asked_place})
+  );
   assign asked = was_taken && !was_for_nobody;
   assign popped = (offers_ready && !ahead) ? next : 3'd0;
   wire ahead_taken = offers_ready && ahead;
@@ -154,8 +169,14 @@ module leaf_reader #(
 
   wire [LEAF_BITS-1:0] pending;                  // of the ray that is given a line, one cycle later
   ram_1r1w #(.WIDTH(LEAF_BITS), .DEPTH(SLOTS)) pending_ram (
-    .clk_i(clk_i), .read_i(given_i), .read_address_i(given_slot_i), .read_data_o(pending), .write_i(asked),
-    .write_address_i(asked_slot), .write_data_i({asked_line, asked_at, asked_left, asked_place}));
+    .clk_i(clk_i),
+    .read_i(given_i),
+    .read_address_i(given_slot_i),
+    .read_data_o(pending),
+    .write_i(asked),
+    .write_address_i(asked_slot),
+    .write_data_i({asked_line, asked_at, asked_left, asked_place})
+  );
   wire [6:0] asked_end = {{2{asked_at[4]}}, asked_at} + {4'd0, asked_left} + {3'd0, asked_left, 1'b0} +
                          {1'b0, asked_left, 3'd0} - 7'd1;   // the leaf's last word, from this line's first one on
   reg due_q;
@@ -176,8 +197,14 @@ module leaf_reader #(
     if (!rst_ni) ahead_size_q <= 3'd0;
     else ahead_size_q <= ahead_size_q + {2'd0, remember} - {2'd0, forget};
   ram_queue #(.WIDTH(LINE_BITS+2), .DEPTH(4)) ahead_queue (
-    .clk_i(clk_i), .rst_ni(rst_ni), .push_i(remember), .data_i({due_line_q, due_behind_q}), .valid_o(ahead),
-    .ready_i(forget), .data_o({ahead_line, ahead_count}));
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .push_i(remember),
+    .data_i({due_line_q, due_behind_q}),
+    .valid_o(ahead),
+    .ready_i(forget),
+    .data_o({ahead_line, ahead_count})
+  );
 
   // ---- A line has come: which triangles end in it, and what is left of the leaf
 
@@ -206,9 +233,15 @@ module leaf_reader #(
   wire line_valid, line_passes, line_taken;
   wire [LINE_WIDTH-1:0] line;
   pass_queue #(.WIDTH(LINE_WIDTH), .DEPTH(LINES)) lines (
-    .clk_i(clk_i), .rst_ni(rst_ni), .push_i(come_q),
-    .data_i({come_slot_q, come_tests, come_at, come_left, come_place, come_data_q}), .valid_o(line_valid),
-    .passes_o(line_passes), .ready_i(line_taken), .data_o(line));
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .push_i(come_q),
+    .data_i({come_slot_q, come_tests, come_at, come_left, come_place, come_data_q}),
+    .valid_o(line_valid),
+    .passes_o(line_passes),
+    .ready_i(line_taken),
+    .data_o(line)
+  );
 
   // ---- The oldest line
 
@@ -229,8 +262,14 @@ module leaf_reader #(
   assign line_taken = !held_line_q || (line_leaves && line_slot != slot_q);
   wire load = line_valid && line_taken;
   ram_1r1w #(.WIDTH(320), .DEPTH(SLOTS)) kept_ram (
-    .clk_i(clk_i), .read_i(load), .read_address_i(line_slot), .read_data_o(kept),
-    .write_i(line_leaves && left_then != 3'd0), .write_address_i(slot_q), .write_data_i(data_q[511:192]));
+    .clk_i(clk_i),
+    .read_i(load),
+    .read_address_i(line_slot),
+    .read_data_o(kept),
+    .write_i(line_leaves && left_then != 3'd0),
+    .write_address_i(slot_q),
+    .write_data_i(data_q[511:192])
+  );
   always @(posedge clk_i)
     if (!rst_ni) held_line_q <= 1'b0;
     else if (load) held_line_q <= 1'b1;

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Two lines at most that are offered to be looked up, of which one can be taken in a cycle: which, is known late, so it
 // is looked at in the next cycle.
 // Promises: each line that comes is taken once, as it came; the older one is offered first; what is offered stays until

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // The memory ALU: loads and stores of a warp's lanes through the data cache, one quadword (16 bytes) a cycle.
 // docs/memory.md gives it cycle by cycle. A task that arrives in cycle t computes its addresses in t, looks quadword k
 // up in t+1+k and accesses it in t+2+k; with n quadwords that hit, it is done in t+2+n. Lanes whose line is absent are
@@ -95,13 +97,22 @@ module mem_alu #(
   reg [LANES*32-1:0]   result_q;
 
   ram_1r1w #(.WIDTH(TASK_BITS), .DEPTH(WARPS)) u_task (
-    .clk_i(clk_i), .read_i(select), .read_address_i(select_warp), .read_data_o(task_word),
-    .write_i(task_valid_i), .write_address_i(task_warp_i),
+    .clk_i(clk_i),
+    .read_i(select),
+    .read_address_i(select_warp),
+    .read_data_o(task_word),
+    .write_i(task_valid_i),
+    .write_address_i(task_warp_i),
     .write_data_i({arrive_misaligned, arrive_store, task_mask_i, task_operand_b_i, arrive_words})
   );
   ram_1r1w #(.WIDTH(PARTIAL_BITS), .DEPTH(WARPS)) u_partial (
-    .clk_i(clk_i), .read_i(select), .read_address_i(select_warp), .read_data_o(partial_word),
-    .write_i(park_q), .write_address_i(end_warp_q), .write_data_i({left_q, refused_q, result_q})
+    .clk_i(clk_i),
+    .read_i(select),
+    .read_address_i(select_warp),
+    .read_data_o(partial_word),
+    .write_i(park_q),
+    .write_address_i(end_warp_q),
+    .write_data_i({left_q, refused_q, result_q})
   );
 
   // ---- Lookup stage: the pass whose lanes are looked up. The lowest pending lane leads; all
@@ -314,17 +325,41 @@ module mem_alu #(
 `include "data_cache_parameter_map.vh"
     .WARPS(WARPS), .WARP_BITS(WARP_BITS), .MSHR_BITS(MSHR_BITS)
   ) u_cache (
-    .clk_i(clk_i), .rst_ni(rst_ni), .invalidate_i(invalidate_i),
-    .load_ready_o(load_ready), .store_ready_o(store_ready),
-    .lookup_i(look), .lookup_store_i(pass_store_q), .lookup_quad_i(quad),
-    .access_i(access), .access_store_i(access_store_q),
-    .access_may_allocate_i(!privilege || privilege_warp == access_warp_q), .access_warp_i(access_warp_q),
-    .access_data_i(access_data_q), .access_mask_i(access_mask_q), .hit_o(hit), .data_o(quad_data),
-    .allocate_o(allocates), .refuse_o(refuses), .accept_o(accepts), .push_o(push), .push_write_o(push_write),
-    .push_quad_o(push_quad), .push_id_o(push_id), .response_valid_i(response_valid_i),
-    .response_id_i(response_id_i[MSHR_BITS-1:0]), .response_beat_i(response_beat_i), .response_data_i(response_data_i),
-    .served_i(access_end && access_kind_q == KIND_FILLED), .served_id_i(access_mshr_q), .served_warp_i(access_warp_q),
-    .freed_o(freed), .idle_o(cache_idle), .filled_o(filled), .line_o(mshr_lines), .waiters_o(waiters)
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .invalidate_i(invalidate_i),
+    .load_ready_o(load_ready),
+    .store_ready_o(store_ready),
+    .lookup_i(look),
+    .lookup_store_i(pass_store_q),
+    .lookup_quad_i(quad),
+    .access_i(access),
+    .access_store_i(access_store_q),
+    .access_may_allocate_i(!privilege || privilege_warp == access_warp_q),
+    .access_warp_i(access_warp_q),
+    .access_data_i(access_data_q),
+    .access_mask_i(access_mask_q),
+    .hit_o(hit),
+    .data_o(quad_data),
+    .allocate_o(allocates),
+    .refuse_o(refuses),
+    .accept_o(accepts),
+    .push_o(push),
+    .push_write_o(push_write),
+    .push_quad_o(push_quad),
+    .push_id_o(push_id),
+    .response_valid_i(response_valid_i),
+    .response_id_i(response_id_i[MSHR_BITS-1:0]),
+    .response_beat_i(response_beat_i),
+    .response_data_i(response_data_i),
+    .served_i(access_end && access_kind_q == KIND_FILLED),
+    .served_id_i(access_mshr_q),
+    .served_warp_i(access_warp_q),
+    .freed_o(freed),
+    .idle_o(cache_idle),
+    .filled_o(filled),
+    .line_o(mshr_lines),
+    .waiters_o(waiters)
   );
 
   // ---- Results gather here over the accesses of a pass; after the last one the warp
@@ -378,14 +413,29 @@ module mem_alu #(
   memory_sequencer #(
     .WARPS(WARPS), .WARP_BITS(WARP_BITS), .MSHRS(DATA_CACHE_MSHRS), .MSHR_BITS(MSHR_BITS)
   ) u_sequencer (
-    .clk_i(clk_i), .rst_ni(rst_ni),
-    .queue_i(task_valid_i && !start), .queue_warp_i(task_warp_i),
-    .park_i(park_q), .park_warp_i(end_warp_q),
-    .pass_end_i(access_end), .pass_warp_i(access_warp_q), .pass_refused_i(refused_after != NONE),
-    .pass_allocated_i(allocated_after), .filled_i(filled), .waiters_i(waiters), .freed_i(freed),
-    .select_o(select), .select_warp_o(select_warp),
-    .next_valid_o(next_valid), .next_kind_o(next_kind), .next_warp_o(next_warp), .next_mshr_o(next_mshr),
-    .next_take_i(take), .queue_empty_o(waiting_empty), .privilege_o(privilege), .privilege_warp_o(privilege_warp),
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .queue_i(task_valid_i && !start),
+    .queue_warp_i(task_warp_i),
+    .park_i(park_q),
+    .park_warp_i(end_warp_q),
+    .pass_end_i(access_end),
+    .pass_warp_i(access_warp_q),
+    .pass_refused_i(refused_after != NONE),
+    .pass_allocated_i(allocated_after),
+    .filled_i(filled),
+    .waiters_i(waiters),
+    .freed_i(freed),
+    .select_o(select),
+    .select_warp_o(select_warp),
+    .next_valid_o(next_valid),
+    .next_kind_o(next_kind),
+    .next_warp_o(next_warp),
+    .next_mshr_o(next_mshr),
+    .next_take_i(take),
+    .queue_empty_o(waiting_empty),
+    .privilege_o(privilege),
+    .privilege_warp_o(privilege_warp),
     .idle_o(sequencer_idle)
   );
 
@@ -393,10 +443,14 @@ module mem_alu #(
   wire [MSHR_BITS-1:0] request_id;
   wire [27:0]          request_quad;
   request_queue #(.WIDTH(1 + 28 + 128 + 4 + MSHR_BITS), .DEPTH(3)) u_requests (
-    .clk_i(clk_i), .rst_ni(rst_ni),
-    .push_i(push), .data_i({push_write, push_quad, access_data_q, access_mask_q, push_id}),
-    .valid_o(request_valid_o), .ready_i(request_ready_i),
-    .data_o({request_write_o, request_quad, request_data_o, request_mask_o, request_id}), .count_o(queue_count)
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .push_i(push),
+    .data_i({push_write, push_quad, access_data_q, access_mask_q, push_id}),
+    .valid_o(request_valid_o),
+    .ready_i(request_ready_i),
+    .data_o({request_write_o, request_quad, request_data_o, request_mask_o, request_id}),
+    .count_o(queue_count)
   );
   assign request_address_o = {request_quad, 4'b0000};
   assign request_id_o = {{(5-MSHR_BITS){1'b0}}, request_id};

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // The chip's memory port: requests of the device and of the traverser go to the memory one by one, in the order in
 // which they come, and lines come back. A line keeps the port for four beats, a quadword for one; a beat takes
 // CYCLES_PER_BEAT cycles. docs/chip.md gives its cycles.
@@ -137,13 +139,23 @@ module memory_port #(
   wire goes = serve_traverser && !another;
 
   ram_queue #(.WIDTH(NUMBER_BITS + DEVICE_WIDTH), .DEPTH(QUEUE)) device_requests (
-    .clk_i(clk_i), .rst_ni(rst_ni), .push_i(device_comes && !device_passes),
-    .data_i({came_q, device_new}), .valid_o(device_waits), .ready_i(device_goes),
-    .data_o({before_oldest, device_oldest}));
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .push_i(device_comes && !device_passes),
+    .data_i({came_q, device_new}),
+    .valid_o(device_waits),
+    .ready_i(device_goes),
+    .data_o({before_oldest, device_oldest})
+  );
   ram_queue #(.WIDTH(TRAVERSER_WIDTH), .DEPTH(TRAVERSER_QUEUE)) traverser_requests (
-    .clk_i(clk_i), .rst_ni(rst_ni), .push_i(traverser_comes && !(traverser_passes && !another)),
-    .data_i(traverser_new), .valid_o(traverser_waits), .ready_i(traverser_goes && !another),
-    .data_o(traverser_oldest));
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .push_i(traverser_comes && !(traverser_passes && !another)),
+    .data_i(traverser_new),
+    .valid_o(traverser_waits),
+    .ready_i(traverser_goes && !another),
+    .data_o(traverser_oldest)
+  );
 
   always @(posedge clk_i)
     if (!rst_ni) begin
@@ -195,11 +207,24 @@ module memory_port #(
   wire hand_on = beat_waits && line_known && beat_wait_q == {WAIT_BITS{1'b0}};
   wire line_ends = hand_on && beat_q == 2'd3;
   request_queue #(.WIDTH(128), .DEPTH(2)) answers (
-    .clk_i(clk_i), .rst_ni(rst_ni), .push_i(memory_beat_valid_i && memory_beat_ready_o), .data_i(memory_beat_data_i),
-    .valid_o(beat_waits), .ready_i(hand_on), .data_o(beat_data), .count_o(beats));
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .push_i(memory_beat_valid_i && memory_beat_ready_o),
+    .data_i(memory_beat_data_i),
+    .valid_o(beat_waits),
+    .ready_i(hand_on),
+    .data_o(beat_data),
+    .count_o(beats)
+  );
   ram_queue #(.WIDTH(8), .DEPTH(LINES)) lines (
-    .clk_i(clk_i), .rst_ni(rst_ni), .push_i(serve_line), .data_i({traverser_turn, device_id}), .valid_o(line_known),
-    .ready_i(line_ends), .data_o({of_traverser, line_id}));
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .push_i(serve_line),
+    .data_i({traverser_turn, device_id}),
+    .valid_o(line_known),
+    .ready_i(line_ends),
+    .data_o({of_traverser, line_id})
+  );
   // A line that begins while no other is on its way counts as a beat: its own first one is apart from that.
   always @(posedge clk_i)
     if (!rst_ni) begin

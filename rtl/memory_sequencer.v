@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Which warp's memory task goes through the cache next: the state of every warp that has a task which is not in the
 // pipeline. A warp is queued (new, not started) or parked (lanes are left). A parked warp waits for lines in
 // miss-status holding registers, or was refused one (it is a loser), or both. One pass is prepared at a time; the order

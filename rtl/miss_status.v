@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Miss-status holding registers (MSHRs) of the data cache: which lines are being fetched, into which
 // way, and which warps wait for them.
 // Promises: a line has at most one register, and a way of a set is promised to at most one register. A register

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Product of a and b, or c + a * b with ADD, or c - a * b with ADD and NEGATE, as two numbers whose sum, modulo
 // 2^OUT_BITS, it is: radix-4 Booth digits of b, then a tree of carry-save adders. Combinational. a_i is unsigned; b_i
 // is unsigned, or signed with B_SIGNED, of up to 61 bits. OUT_BITS may be less than the product has: the rest is free.

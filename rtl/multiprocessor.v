@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // 1, 2 or 4 compute units behind one set of ports: a block scheduler, and arbiters for memory, imports, exports and
 // frame contributions. docs/multiprocessor.md gives their cycles. With one unit all of it is wires.
 // Promises: no output depends combinationally on an input (counter_o excepted, which depends on its selection); every
@@ -122,27 +124,56 @@ module multiprocessor #(
 `include "unit_parameter_map.vh"
         .WARP_BITS(WARP_BITS)
       ) compute_unit (
-        .clk_i(clk_i), .rst_ni(rst_ni), .program_length_i(program_length_i), .memory_limit_i(memory_limit_i),
-        .argument_write_i(argument_write_i), .argument_index_i(argument_index_i), .argument_data_i(argument_data_i),
-        .launch_valid_i(launch_valid[u]), .launch_ready_o(launch_ready[u]), .launch_pc_i(launch_pc_i),
-        .launch_threads_i(launch_threads_i), .launch_block_i(launch_block_i), .launch_blocks_i(launch_blocks_i),
-        .launch_import_i(launch_import_i), .kernel_done_o(kernel_done_o[u]), .busy_o(busy_o[u]), .idle_o(idle_o[u]),
-        .memory_request_valid_o(request_valid[u]), .memory_request_ready_i(request_ready[u]),
-        .memory_request_write_o(request_write[u]), .memory_request_address_o(request_address[u*32 +: 32]),
-        .memory_request_data_o(request_data[u*128 +: 128]), .memory_request_mask_o(request_mask[u*4 +: 4]),
-        .memory_request_id_o(request_id[u*5 +: 5]), .memory_response_valid_i(response_valid[u]),
-        .memory_response_id_i(memory_response_id_i[4:0]), .memory_response_beat_i(memory_response_beat_i),
+        .clk_i(clk_i),
+        .rst_ni(rst_ni),
+        .program_length_i(program_length_i),
+        .memory_limit_i(memory_limit_i),
+        .argument_write_i(argument_write_i),
+        .argument_index_i(argument_index_i),
+        .argument_data_i(argument_data_i),
+        .launch_valid_i(launch_valid[u]),
+        .launch_ready_o(launch_ready[u]),
+        .launch_pc_i(launch_pc_i),
+        .launch_threads_i(launch_threads_i),
+        .launch_block_i(launch_block_i),
+        .launch_blocks_i(launch_blocks_i),
+        .launch_import_i(launch_import_i),
+        .kernel_done_o(kernel_done_o[u]),
+        .busy_o(busy_o[u]),
+        .idle_o(idle_o[u]),
+        .memory_request_valid_o(request_valid[u]),
+        .memory_request_ready_i(request_ready[u]),
+        .memory_request_write_o(request_write[u]),
+        .memory_request_address_o(request_address[u*32 +: 32]),
+        .memory_request_data_o(request_data[u*128 +: 128]),
+        .memory_request_mask_o(request_mask[u*4 +: 4]),
+        .memory_request_id_o(request_id[u*5 +: 5]),
+        .memory_response_valid_i(response_valid[u]),
+        .memory_response_id_i(memory_response_id_i[4:0]),
+        .memory_response_beat_i(memory_response_beat_i),
         .memory_response_data_i(memory_response_data_i),
-        .import_request_valid_o(import_valid[u]), .import_request_kind_o(import_kind[u*2 +: 2]),
-        .import_request_ready_i(import_ready[u]), .import_beat_valid_i(beat_valid[u]),
-        .import_beat_data_i(import_beat_data_i), .export_valid_o(export_valid[u]), .export_ready_i(export_ready[u]),
-        .export_data_o(export_beat[u*129 +: 128]), .export_last_o(export_last[u]),
-        .exports_o(exports_o[u*16 +: 16]), .frame_valid_o(frame_valid[u]), .frame_ready_i(frame_ready[u]),
-        .frame_pixel_o(frame[u*128 +: 32]), .frame_color_o(frame[u*128 + 32 +: 96]),
-        .fault_valid_o(fault_valid[u]), .fault_code_o(fault[u*FAULT_BITS + 16 + WARP_BITS +: 4]),
-        .fault_warp_o(fault[u*FAULT_BITS + 16 +: WARP_BITS]), .fault_pc_o(fault[u*FAULT_BITS +: 16]),
-        .counter_select_i(counter_select_i), .counter_o(counter[u*64 +: 64]),
-        .retire_valid_o(retire_valid_o[u*WARPS +: WARPS]), .retire_pc_o(retire_pc_o[u*WARPS*16 +: WARPS*16]),
+        .import_request_valid_o(import_valid[u]),
+        .import_request_kind_o(import_kind[u*2 +: 2]),
+        .import_request_ready_i(import_ready[u]),
+        .import_beat_valid_i(beat_valid[u]),
+        .import_beat_data_i(import_beat_data_i),
+        .export_valid_o(export_valid[u]),
+        .export_ready_i(export_ready[u]),
+        .export_data_o(export_beat[u*129 +: 128]),
+        .export_last_o(export_last[u]),
+        .exports_o(exports_o[u*16 +: 16]),
+        .frame_valid_o(frame_valid[u]),
+        .frame_ready_i(frame_ready[u]),
+        .frame_pixel_o(frame[u*128 +: 32]),
+        .frame_color_o(frame[u*128 + 32 +: 96]),
+        .fault_valid_o(fault_valid[u]),
+        .fault_code_o(fault[u*FAULT_BITS + 16 + WARP_BITS +: 4]),
+        .fault_warp_o(fault[u*FAULT_BITS + 16 +: WARP_BITS]),
+        .fault_pc_o(fault[u*FAULT_BITS +: 16]),
+        .counter_select_i(counter_select_i),
+        .counter_o(counter[u*64 +: 64]),
+        .retire_valid_o(retire_valid_o[u*WARPS +: WARPS]),
+        .retire_pc_o(retire_pc_o[u*WARPS*16 +: WARPS*16]),
         .retire_instruction_o(retire_instruction_o[u*WARPS*64 +: WARPS*64]),
         .retire_mask_o(retire_mask_o[u*WARPS*LANES +: WARPS*LANES]),
         .retire_data_o(retire_data_o[u*WARPS*LANES*32 +: WARPS*LANES*32]),
@@ -150,10 +181,14 @@ module multiprocessor #(
         .store_trace_valid_o(store_trace_valid_o[u]),
         .store_trace_warp_o(store_trace_warp_o[u*WARP_BITS +: WARP_BITS]),
         .store_trace_address_o(store_trace_address_o[u*32 +: 32]),
-        .store_trace_data_o(store_trace_data_o[u*128 +: 128]), .store_trace_mask_o(store_trace_mask_o[u*4 +: 4]),
-        .ray_trace_valid_o(ray_trace_valid_o[u]), .ray_trace_warp_o(ray_trace_warp_o[u*WARP_BITS +: WARP_BITS]),
-        .ray_trace_word_o(ray_trace_word_o[u*5 +: 5]), .ray_trace_mask_o(ray_trace_mask_o[u*LANES +: LANES]),
-        .ray_trace_data_o(ray_trace_data_o[u*LANES*32 +: LANES*32]));
+        .store_trace_data_o(store_trace_data_o[u*128 +: 128]),
+        .store_trace_mask_o(store_trace_mask_o[u*4 +: 4]),
+        .ray_trace_valid_o(ray_trace_valid_o[u]),
+        .ray_trace_warp_o(ray_trace_warp_o[u*WARP_BITS +: WARP_BITS]),
+        .ray_trace_word_o(ray_trace_word_o[u*5 +: 5]),
+        .ray_trace_mask_o(ray_trace_mask_o[u*LANES +: LANES]),
+        .ray_trace_data_o(ray_trace_data_o[u*LANES*32 +: LANES*32])
+      );
       assign export_beat[u*129 + 128] = export_last[u];
     end
 
@@ -189,42 +224,93 @@ module multiprocessor #(
       assign counter_o = counter;
     end else begin : gen_several
       block_scheduler #(.UNITS(UNITS)) block_scheduler (
-        .clk_i(clk_i), .rst_ni(rst_ni), .launch_valid_i(launch_valid_i), .launch_ready_o(launch_ready_o),
-        .launch_unit_o(launch_unit_o), .ready_i(launch_ready), .busy_i(busy_o), .valid_o(launch_valid));
+        .clk_i(clk_i),
+        .rst_ni(rst_ni),
+        .launch_valid_i(launch_valid_i),
+        .launch_ready_o(launch_ready_o),
+        .launch_unit_o(launch_unit_o),
+        .ready_i(launch_ready),
+        .busy_i(busy_o),
+        .valid_o(launch_valid)
+      );
 
       unit_memory_arbiter #(.UNITS(UNITS)) unit_memory_arbiter (
-        .clk_i(clk_i), .rst_ni(rst_ni), .unit_request_valid_i(request_valid), .unit_request_ready_o(request_ready),
-        .unit_request_write_i(request_write), .unit_request_address_i(request_address),
-        .unit_request_data_i(request_data), .unit_request_mask_i(request_mask), .unit_request_id_i(request_id),
-        .unit_response_valid_o(response_valid), .request_valid_o(memory_request_valid_o),
-        .request_ready_i(memory_request_ready_i), .request_write_o(memory_request_write_o),
-        .request_address_o(memory_request_address_o), .request_data_o(memory_request_data_o),
-        .request_mask_o(memory_request_mask_o), .request_id_o(memory_request_id_o),
-        .response_valid_i(memory_response_valid_i), .response_unit_i(memory_response_id_i[6:5]));
+        .clk_i(clk_i),
+        .rst_ni(rst_ni),
+        .unit_request_valid_i(request_valid),
+        .unit_request_ready_o(request_ready),
+        .unit_request_write_i(request_write),
+        .unit_request_address_i(request_address),
+        .unit_request_data_i(request_data),
+        .unit_request_mask_i(request_mask),
+        .unit_request_id_i(request_id),
+        .unit_response_valid_o(response_valid),
+        .request_valid_o(memory_request_valid_o),
+        .request_ready_i(memory_request_ready_i),
+        .request_write_o(memory_request_write_o),
+        .request_address_o(memory_request_address_o),
+        .request_data_o(memory_request_data_o),
+        .request_mask_o(memory_request_mask_o),
+        .request_id_o(memory_request_id_o),
+        .response_valid_i(memory_response_valid_i),
+        .response_unit_i(memory_response_id_i[6:5])
+      );
 
       import_arbiter #(.UNITS(UNITS), .INTERSECTION_WORDS(INTERSECTION_WORDS)) import_arbiter (
-        .clk_i(clk_i), .rst_ni(rst_ni), .unit_request_valid_i(import_valid), .unit_request_ready_o(import_ready),
-        .unit_request_kind_i(import_kind), .unit_beat_valid_o(beat_valid), .request_valid_o(import_request_valid_o),
-        .request_ready_i(import_request_ready_i), .request_kind_o(import_request_kind_o),
-        .request_unit_o(import_request_unit_o), .beat_valid_i(import_beat_valid_i));
+        .clk_i(clk_i),
+        .rst_ni(rst_ni),
+        .unit_request_valid_i(import_valid),
+        .unit_request_ready_o(import_ready),
+        .unit_request_kind_i(import_kind),
+        .unit_beat_valid_o(beat_valid),
+        .request_valid_o(import_request_valid_o),
+        .request_ready_i(import_request_ready_i),
+        .request_kind_o(import_request_kind_o),
+        .request_unit_o(import_request_unit_o),
+        .beat_valid_i(import_beat_valid_i)
+      );
 
       // A ray is a package of three transfers.
       port_arbiter #(.COUNT(UNITS), .WIDTH(129)) export_arbiter (
-        .clk_i(clk_i), .rst_ni(rst_ni), .valid_i(export_valid), .ready_o(export_ready), .data_i(export_beat),
-        .last_i(export_last), .valid_o(export_valid_o), .ready_i(export_ready_i),
-        .data_o({export_last_o, export_data_o}), .number_o(export_unit_o));
+        .clk_i(clk_i),
+        .rst_ni(rst_ni),
+        .valid_i(export_valid),
+        .ready_o(export_ready),
+        .data_i(export_beat),
+        .last_i(export_last),
+        .valid_o(export_valid_o),
+        .ready_i(export_ready_i),
+        .data_o({export_last_o, export_data_o}),
+        .number_o(export_unit_o)
+      );
 
       port_arbiter #(.COUNT(UNITS), .WIDTH(128)) frame_arbiter (
-        .clk_i(clk_i), .rst_ni(rst_ni), .valid_i(frame_valid), .ready_o(frame_ready), .data_i(frame),
-        .last_i({UNITS{1'b1}}), .valid_o(frame_valid_o), .ready_i(frame_ready_i),
-        .data_o({frame_color_o, frame_pixel_o}), .number_o(frame_unit_o));
+        .clk_i(clk_i),
+        .rst_ni(rst_ni),
+        .valid_i(frame_valid),
+        .ready_o(frame_ready),
+        .data_i(frame),
+        .last_i({UNITS{1'b1}}),
+        .valid_o(frame_valid_o),
+        .ready_i(frame_ready_i),
+        .data_o({frame_color_o, frame_pixel_o}),
+        .number_o(frame_unit_o)
+      );
 
       // Never taken: the fault that is shown first stays.
       wire [UNITS-1:0] unused;
       port_arbiter #(.COUNT(UNITS), .WIDTH(FAULT_BITS)) fault_arbiter (
-        .clk_i(clk_i), .rst_ni(rst_ni), .valid_i(fault_valid), .ready_o(unused), .data_i(fault), .last_i({UNITS{1'b1}}),
-        .valid_o(fault_valid_o), .ready_i(1'b0), .data_o({fault_code_o, fault_warp_o, fault_pc_o}),
-        .number_o(fault_unit_o));
+        .clk_i(clk_i),
+        .rst_ni(rst_ni),
+        .valid_i(fault_valid),
+        .ready_o(unused),
+        .data_i(fault),
+        .last_i({UNITS{1'b1}}),
+        .valid_o(fault_valid_o),
+        .ready_i(1'b0),
+        .data_o({fault_code_o, fault_warp_o, fault_pc_o}),
+        .number_o(fault_unit_o)
+      );
 
       assign counter_o = counter[counter_unit_i*64 +: 64];
     end

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // A number moved up until its first bit is at the top, and by how many places: combinational. A zero stays one. With
 // LEFT the last steps, less than 2^LEFT places together, are left to be taken.
 `default_nettype none

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Included in a module: bit i says that all bits of x below i are ones, so that x + 1
 // is x ^ ones_below(x), and x + c for a bit c that comes late is x ^ (ones_below(x) & {64{c}}). In
 // log2(64) steps; what is not used of it costs nothing. Where it is called under no condition it needs no variables of

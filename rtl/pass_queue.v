@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // A first-in first-out queue in a RAM, with valid/ready at its end: what is pushed is offered in the same cycle if
 // nothing is before it, and else as soon as that is taken. It bears a ready_i that is known late.
 // Promise: what is offered stays until it is taken. Must be given: push_i only while it holds fewer than DEPTH entries;
@@ -36,8 +38,14 @@ module pass_queue #(
   assign passes_o = !some_q;
   assign data_o = some_q ? (alone_q ? alone_data_q : word) : data_i;
   ram_1r1w #(.WIDTH(WIDTH), .DEPTH(DEPTH)) ram (
-    .clk_i(clk_i), .read_i(more_q && ready_i), .read_address_i(behind_head), .read_data_o(word), .write_i(push_i),
-    .write_address_i(tail_q), .write_data_i(data_i));
+    .clk_i(clk_i),
+    .read_i(more_q && ready_i),
+    .read_address_i(behind_head),
+    .read_data_o(word),
+    .write_i(push_i),
+    .write_address_i(tail_q),
+    .write_data_i(data_i)
+  );
 
   // What follows if nothing is taken, and if something is: ready_i chooses between the two.
   wire [COUNT_BITS-1:0] pushed = {{COUNT_BITS-1{1'b0}}, push_i};

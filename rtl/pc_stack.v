@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // PC/RPC stack of one warp. In a step it either yields the top entry's PC and increments it, or, when that PC has
 // reached the entry's RPC, pops the entry and yields nothing. Control instructions change it at their write-back. The
 // caller never steps and controls in the same cycle. The first entry has no RPC; popping it is an underflow.

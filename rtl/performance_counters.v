@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Counts events while a kernel runs; rtl/counters.vh has the counters' numbers.
 // The events of a cycle are taken into registers and counted in the next one; value_o includes those of the cycle
 // before. What many warps add to is summed up first and counted a cycle later: a warp retires at least two cycles

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // What the controller's policies share: the kinds of kernels, and functions of numbers.
 localparam [1:0] HALT = 2'd0, EYE = 2'd1, SECONDARY = 2'd2, SHADE = 2'd3;
 

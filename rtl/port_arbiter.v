@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Shares a port among 2 to 4 requesters, in rotation, a package of one or more transfers at a time. Adds no cycle.
 // Promises: who is chosen keeps the port until the last transfer of its package, also while it has nothing to send, so
 // that packages are never mixed and what is offered stays stable; whoever keeps asking is served before anybody else is

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Predicates of one warp: PREDICATES registers of one bit a lane. p0 reads as all ones; writes to it are ignored.
 // read_i captures the three reads and the thread mask; they stay until the next read.
 `default_nettype none

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // One read and one write port. The read word appears in the next cycle and stays until the next read. Reading the
 // address that is written in the same cycle gives the old word; users must not rely on either.
 `default_nettype none

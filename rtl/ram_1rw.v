@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // One port: a cycle reads or writes. The read word appears in the next cycle and stays until the next read.
 `default_nettype none
 module ram_1rw #(

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Two read ports (read together) and one write port with a mask of GRANULE-bit parts. The read words appear in the
 // next cycle and stay until the next read. Reading the address that is written in the same cycle gives the old
 // word; users must not rely on either.

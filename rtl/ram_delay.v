@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // What stood at the input CYCLES cycles before, as steady_delay says it, but kept in a RAM. CYCLES must be 2 or more.
 `default_nettype none
 module ram_delay #(
@@ -22,7 +24,13 @@ module ram_delay #(
     if (!rst_ni) place_q <= {ADDRESS_BITS{1'b0}};
     else place_q <= behind;
   ram_1r1w #(.WIDTH(WIDTH), .DEPTH(CYCLES)) ram (
-    .clk_i(clk_i), .read_i(1'b1), .read_address_i(behind), .read_data_o(data_o), .write_i(1'b1),
-    .write_address_i(place_q), .write_data_i(data_i));
+    .clk_i(clk_i),
+    .read_i(1'b1),
+    .read_address_i(behind),
+    .read_data_o(data_o),
+    .write_i(1'b1),
+    .write_address_i(place_q),
+    .write_data_i(data_i)
+  );
 endmodule
 `default_nettype wire

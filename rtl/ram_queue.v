@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // A first-in first-out queue in a RAM, with valid/ready at its end: what is pushed in a cycle is offered from the next
 // one on, and an entry can be taken in every cycle.
 // Promise: what is offered stays until it is taken. Must be given: push_i only while it holds fewer than DEPTH entries;
@@ -35,8 +37,14 @@ module ram_queue #(
   wire [WIDTH-1:0] word;
   assign data_o = fresh_q ? came_q : word;
   ram_1r1w #(.WIDTH(WIDTH), .DEPTH(DEPTH)) ram (
-    .clk_i(clk_i), .read_i(pop ? more_q : fresh_q), .read_address_i(pop ? behind_head : head_q), .read_data_o(word),
-    .write_i(push_i), .write_address_i(tail_q), .write_data_i(data_i));
+    .clk_i(clk_i),
+    .read_i(pop ? more_q : fresh_q),
+    .read_address_i(pop ? behind_head : head_q),
+    .read_data_o(word),
+    .write_i(push_i),
+    .write_address_i(tail_q),
+    .write_data_i(data_i)
+  );
 
   // What follows is known of registers; push_i and ready_i, which may both come late, choose.
   wire [COUNT_BITS-1:0] one_more = count_q + ONE, one_less = count_q - ONE;

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // The ray ALU: three sets of local ray memory, of which every warp has a slice each; the slices change roles (input,
 // current, output) warp by warp. docs/ray-alu.md has the contract and the cycles.
 // Promises: rin, rout and rfb that have to wait do not block other warps; every task of a warp sees the effects of the
@@ -294,12 +296,26 @@ module ray_alu #(
   ray_import #(
     .WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS), .INTERSECTION_WORDS(INTERSECTION_WORDS), .WIDE(BANKS > 4)
   ) ray_import (
-    .clk_i(clk_i), .rst_ni(rst_ni),
-    .start_i(import_start_i), .start_kind_i(import_start_kind_i), .start_threads_i(import_start_threads_i),
-    .active_o(import_active_o), .request_valid_o(import_request_valid_o), .request_kind_o(import_request_kind_o),
-    .request_ready_i(import_request_ready_i), .beat_valid_i(import_beat_valid_i), .beat_data_i(import_beat_data_i),
-    .input_set_i(input_q), .full_o(full), .take_i(swap_in), .take_warp_i(swap_warp), .write_o(import_write),
-    .write_set_o(import_set), .write_thread_o(import_thread), .write_word_o(import_word), .write_mask_o(import_mask),
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .start_i(import_start_i),
+    .start_kind_i(import_start_kind_i),
+    .start_threads_i(import_start_threads_i),
+    .active_o(import_active_o),
+    .request_valid_o(import_request_valid_o),
+    .request_kind_o(import_request_kind_o),
+    .request_ready_i(import_request_ready_i),
+    .beat_valid_i(import_beat_valid_i),
+    .beat_data_i(import_beat_data_i),
+    .input_set_i(input_q),
+    .full_o(full),
+    .take_i(swap_in),
+    .take_warp_i(swap_warp),
+    .write_o(import_write),
+    .write_set_o(import_set),
+    .write_thread_o(import_thread),
+    .write_word_o(import_word),
+    .write_mask_o(import_mask),
     .write_data_o(import_data)
   );
 
@@ -323,14 +339,31 @@ module ray_alu #(
                           !(access && access_set == export_set);
 
   ray_export #(.WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS)) ray_export (
-    .clk_i(clk_i), .rst_ni(rst_ni),
-    .park_i(arrive_out), .park_warp_i(task_warp_i), .park_frame_i(task_operation_i == ISA_RAY_RFB),
-    .park_mask_i(task_mask_i), .push_i(swap_out && !parked_empty_q[swap_warp]), .push_warp_i(swap_warp),
-    .output_set_i(output_q), .busy_o(busy), .exporting_o(exporting_o), .read_o(export_read), .read_set_o(export_set),
-    .read_thread_o(export_thread), .read_word_o(export_word), .read_grant_i(export_granted),
-    .memory_data_i(package_data), .export_valid_o(export_valid_o), .export_ready_i(export_ready_i),
-    .export_data_o(export_data_o), .export_last_o(export_last_o), .frame_valid_o(frame_valid_o),
-    .frame_ready_i(frame_ready_i), .frame_pixel_o(frame_pixel_o), .frame_color_o(frame_color_o)
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .park_i(arrive_out),
+    .park_warp_i(task_warp_i),
+    .park_frame_i(task_operation_i == ISA_RAY_RFB),
+    .park_mask_i(task_mask_i),
+    .push_i(swap_out && !parked_empty_q[swap_warp]),
+    .push_warp_i(swap_warp),
+    .output_set_i(output_q),
+    .busy_o(busy),
+    .exporting_o(exporting_o),
+    .read_o(export_read),
+    .read_set_o(export_set),
+    .read_thread_o(export_thread),
+    .read_word_o(export_word),
+    .read_grant_i(export_granted),
+    .memory_data_i(package_data),
+    .export_valid_o(export_valid_o),
+    .export_ready_i(export_ready_i),
+    .export_data_o(export_data_o),
+    .export_last_o(export_last_o),
+    .frame_valid_o(frame_valid_o),
+    .frame_ready_i(frame_ready_i),
+    .frame_pixel_o(frame_pixel_o),
+    .frame_color_o(frame_color_o)
   );
 
   // ---- The three sets. The port goes to import, then to the kernel's access, then to export. Of a package's access
@@ -343,12 +376,14 @@ module ray_alu #(
       wire by_access = access && access_set == SET && !by_import;
       wire by_export = export_read && export_set == SET && !by_import && !by_access;
       ray_memory #(.CONTENTS(WARPS * LANES), .WORDS(INTERSECTION_WORDS), .BANKS(BANKS)) ray_memory (
-        .clk_i(clk_i), .read_i((by_access && !access_write) || by_export),
+        .clk_i(clk_i),
+        .read_i((by_access && !access_write) || by_export),
         .write_i(by_import ? import_banks : by_access ? access_mask : {BANKS{1'b0}}),
         .package_i(by_import || by_export),
         .thread_i(by_import ? import_thread : by_access ? access_thread : export_thread),
         .word_i(by_import ? import_word : by_access ? access_word : export_word),
-        .data_i(by_import ? import_elements : access_data), .data_o(memory_data[s*BANKS*32 +: BANKS*32])
+        .data_i(by_import ? import_elements : access_data),
+        .data_o(memory_data[s*BANKS*32 +: BANKS*32])
       );
       assign package_data[s*128 +: 128] = memory_data[s*BANKS*32 +: 128];
     end

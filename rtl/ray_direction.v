@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // What is computed of a ray's direction: for boxes reciprocals of BITS bits, rounded down, and for triangles the
 // direction scaled by a power of two, its inverses, and what it goes aside for each step along its main axis. An axis a
 // cycle, x first, its results 23 cycles later; a register's name ends with the stage that loads it, and first_i says in
@@ -28,8 +30,14 @@ module ray_direction #(
   wire sign_2, zero_2;
   wire signed [8:0] exponent_2;
   wire [22:0] fraction_2;
-  float_parts parts (.clk_i(clk_i), .float_i(direction_1_i), .sign_o(sign_2), .zero_o(zero_2), .exponent_o(exponent_2),
-    .fraction_o(fraction_2));
+  float_parts parts (
+    .clk_i(clk_i),
+    .float_i(direction_1_i),
+    .sign_o(sign_2),
+    .zero_o(zero_2),
+    .exponent_o(exponent_2),
+    .fraction_o(fraction_2)
+  );
   reg [30:0] size_2, main_size_3;
   reg [1:0] main_axis_3;
   reg main_sign_3;
@@ -71,15 +79,27 @@ module ray_direction #(
   wire [23:0] digits_22;
   wire rest_22;
   quotient_digits #(.BITS(24), .WAITING(44)) inverse_digits (
-    .clk_i(clk_i), .a_i(24'h800000), .b_i({1'b1, fraction_9}), .less_o(less_9),
-    .waiting_i({sign_9, zero_9, less_9, exponent_9, places_9, fraction_9}), .digits_o(digits_22), .rest_o(rest_22),
-    .waiting_o({sign_22, zero_22, less_22, exponent_22, places_22, fraction_22}));
+    .clk_i(clk_i),
+    .a_i(24'h800000),
+    .b_i({1'b1, fraction_9}),
+    .less_o(less_9),
+    .waiting_i({sign_9, zero_9, less_9, exponent_9, places_9, fraction_9}),
+    .digits_o(digits_22),
+    .rest_o(rest_22),
+    .waiting_o({sign_22, zero_22, less_22, exponent_22, places_22, fraction_22})
+  );
   wire aside_less_9, main_sign_22, aside_less_22, aside_rest_22;
   wire [23:0] aside_digits_22;
   quotient_digits #(.BITS(24), .WAITING(2)) aside_digits (
-    .clk_i(clk_i), .a_i({1'b1, fraction_9}), .b_i({1'b1, main_fraction_9}), .less_o(aside_less_9),
-    .waiting_i({main_sign_9, aside_less_9}), .digits_o(aside_digits_22), .rest_o(aside_rest_22),
-    .waiting_o({main_sign_22, aside_less_22}));
+    .clk_i(clk_i),
+    .a_i({1'b1, fraction_9}),
+    .b_i({1'b1, main_fraction_9}),
+    .less_o(aside_less_9),
+    .waiting_i({main_sign_9, aside_less_9}),
+    .digits_o(aside_digits_22),
+    .rest_o(aside_rest_22),
+    .waiting_o({main_sign_22, aside_less_22})
+  );
 
   // ---- 23: floats of them. Along an axis that is 2^-100 of the main one, or less, a ray does not move at all.
   wire [9:0] exponent_23 = {exponent_22[8], exponent_22};

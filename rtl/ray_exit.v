@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // What becomes of rays that have visited everything. A normal ray that has hit nothing, and a shadow ray that has met
 // something, frees its place; a shadow ray that has not leaves a contribution, with SHADING, or a package. A hit is
 // finished: its triangle is read through the triangle cache and ray_finish.v computes what the package carries. What a
@@ -77,6 +79,8 @@ module ray_exit #(
 );
   localparam integer BEATS = (RECORD_WORDS + 3) / 4;
   localparam [2:0] LAST_BEAT = BEATS[2:0] - 3'd1;
+`include "onehot.vh"
+`include "records.vh"
   localparam integer SET_BITS = PLACE_BITS + 8 + 1 + 96 + 2 + 64 + 9;
   genvar g;
 
@@ -92,34 +96,19 @@ module ray_exit #(
   round_robin #(.COUNT(LANES)) done_turn (
     .clk_i(clk_i), .rst_ni(rst_ni), .request_i(done_valid_i), .advance_i(fate_ready), .grant_o(done_grant));
   assign done_ready_o = done_grant & {LANES{fate_ready}};
-  reg [SLOT_BITS-1:0] done_slot;
-  reg done_hit;
-  reg [31:0] done_t;
-  reg [28:0] done_triangle;
-  integer d;
-  always @* begin
-    done_slot = {SLOT_BITS{1'b0}};
-    done_hit = 1'b0;
-    done_t = 32'd0;
-    done_triangle = 29'd0;
-    for (d = 0; d < LANES; d = d + 1)
-      if (done_grant[d]) begin
-        done_slot = done_slot | done_slot_i[d*SLOT_BITS +: SLOT_BITS];
-        done_hit = done_hit | done_hit_i[d];
-        done_t = done_t | done_t_i[d*32 +: 32];
-        done_triangle = done_triangle | done_place_i[d*29 +: 29];
-      end
-  end
+  `ONEHOT_SELECT(slot_among, LANES, SLOT_BITS)
+  `ONEHOT_SELECT(t_among, LANES, 32)
+  `ONEHOT_SELECT(triangle_among, LANES, 29)
   always @(posedge clk_i)
     if (!rst_ni) fate_q <= 1'b0;
     else if (fate_ready) fate_q <= |done_valid_i;
   always @(posedge clk_i)
     if (fate_ready) begin
       fate_lane_q <= done_grant;
-      fate_slot_q <= done_slot;
-      fate_hit_q <= done_hit;
-      fate_t_q <= done_t;
-      fate_triangle_q <= done_triangle;
+      fate_slot_q <= slot_among(done_grant, done_slot_i);
+      fate_hit_q <= |(done_grant & done_hit_i);
+      fate_t_q <= t_among(done_grant, done_t_i);
+      fate_triangle_q <= triangle_among(done_grant, done_place_i);
     end
 
   // ---- 2: what it becomes, by what its slot says of it
@@ -127,18 +116,19 @@ module ray_exit #(
   generate
     for (g = 0; g < LANES; g = g + 1) begin : gen_set
       ram_1r1w #(.WIDTH(SET_BITS), .DEPTH(SLOTS)) set (
-        .clk_i(clk_i), .read_i(done_ready_o[g]), .read_address_i(done_slot_i[g*SLOT_BITS +: SLOT_BITS]),
-        .read_data_o(sets[g*SET_BITS +: SET_BITS]), .write_i(set_valid_i[g]), .write_address_i(set_slot_i),
+        .clk_i(clk_i),
+        .read_i(done_ready_o[g]),
+        .read_address_i(done_slot_i[g*SLOT_BITS +: SLOT_BITS]),
+        .read_data_o(sets[g*SET_BITS +: SET_BITS]),
+        .write_i(set_valid_i[g]),
+        .write_address_i(set_slot_i),
         .write_data_i({set_shadow_i, set_place_i, set_depth_i, set_origin_i, set_main_axis_i, set_shear_i,
-                       set_scale_i}));
+                       set_scale_i})
+      );
     end
   endgenerate
-  reg [SET_BITS-1:0] set_of;
-  integer s;
-  always @* begin
-    set_of = {SET_BITS{1'b0}};
-    for (s = 0; s < LANES; s = s + 1) if (fate_lane_q[s]) set_of = set_of | sets[s*SET_BITS +: SET_BITS];
-  end
+  `ONEHOT_SELECT(set_among, LANES, SET_BITS)
+  wire [SET_BITS-1:0] set_of = set_among(fate_lane_q, sets);
   wire shadow = set_of[SET_BITS-1];
   wire [PLACE_BITS-1:0] place = set_of[179 +: PLACE_BITS];
   wire drops = shadow == fate_hit_q;
@@ -158,12 +148,18 @@ module ray_exit #(
   wire begins = fate_q && finishes && entry_valid;
   wire load, triangle_valid, triangle_last;
   wire [28:0] triangle_place;
-  wire [351:0] triangle;
+  wire [TRIANGLE_BITS-1:0] triangle;
   reg [1:0] pause_q;                             // cycles until the next hit may be finished
   wire starts = triangle_valid && pause_q == 2'd0;
   free_list #(.SIZE(SLOTS), .NUMBER_BITS(SLOT_BITS)) entries (
-    .clk_i(clk_i), .rst_ni(rst_ni), .valid_o(entry_valid), .ready_i(begins), .number_o(entry), .free_i(starts),
-    .free_number_i(read_slot));
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .valid_o(entry_valid),
+    .ready_i(begins),
+    .number_o(entry),
+    .free_i(starts),
+    .free_number_i(read_slot)
+  );
   wire [PLACE_BITS-1:0] hit_place;
   wire [7:0] hit_depth;
   wire [95:0] hit_origin;
@@ -172,22 +168,45 @@ module ray_exit #(
   wire [8:0] hit_scale;
   wire [31:0] hit_t;
   ram_1r1w #(.WIDTH(SET_BITS-1+32), .DEPTH(SLOTS)) hits (
-    .clk_i(clk_i), .read_i(load), .read_address_i(load_slot),
-    .read_data_o({hit_place, hit_depth, hit_origin, hit_main_axis, hit_shear, hit_scale, hit_t}), .write_i(begins),
-    .write_address_i(entry), .write_data_i({set_of[SET_BITS-2:0], fate_t_q}));
+    .clk_i(clk_i),
+    .read_i(load),
+    .read_address_i(load_slot),
+    .read_data_o({hit_place, hit_depth, hit_origin, hit_main_axis, hit_shear, hit_scale, hit_t}),
+    .write_i(begins),
+    .write_address_i(entry),
+    .write_data_i({set_of[SET_BITS-2:0], fate_t_q})
+  );
   leaf_reader #(.SLOTS(SLOTS), .LINE_BITS(26)) reader (
-    .clk_i(clk_i), .rst_ni(rst_ni), .start_i({1'b0, begins}), .start_slot_i({{SLOT_BITS{1'b0}}, entry}),
-    .start_leaf_i({31'd0, 2'd0, fate_triangle_q}), .want_o(want_o), .want_nobody_o(want_nobody_o),
-    .want_line_o(want_line_o), .want_slot_o(want_slot_o), .taken_i(taken_i), .room_o(room_o), .waited_i(waited_i),
-    .given_i(given_i), .given_slot_i(given_slot_i), .given_data_i(given_data_i), .load_o(load),
-    .load_slot_o(load_slot), .triangle_valid_o(triangle_valid), .triangle_ready_i(pause_q == 2'd0),
-    .triangle_slot_o(read_slot), .triangle_last_o(triangle_last), .triangle_place_o(triangle_place),
-    .triangle_o(triangle));
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .start_i({1'b0, begins}),
+    .start_slot_i({{SLOT_BITS{1'b0}}, entry}),
+    .start_leaf_i({31'd0, 2'd0, fate_triangle_q}),
+    .want_o(want_o),
+    .want_nobody_o(want_nobody_o),
+    .want_line_o(want_line_o),
+    .want_slot_o(want_slot_o),
+    .taken_i(taken_i),
+    .room_o(room_o),
+    .waited_i(waited_i),
+    .given_i(given_i),
+    .given_slot_i(given_slot_i),
+    .given_data_i(given_data_i),
+    .load_o(load),
+    .load_slot_o(load_slot),
+    .triangle_valid_o(triangle_valid),
+    .triangle_ready_i(pause_q == 2'd0),
+    .triangle_slot_o(read_slot),
+    .triangle_last_o(triangle_last),
+    .triangle_place_o(triangle_place),
+    .triangle_o(triangle)
+  );
   always @(posedge clk_i)
     if (!rst_ni) pause_q <= 2'd0;
     else if (starts) pause_q <= 2'd2;
     else if (pause_q != 2'd0) pause_q <= pause_q - 2'd1;
-  wire [31:0] number = triangle[288 +: 32], material = triangle[320 +: 32];
+  wire [31:0] number = triangle[TRIANGLE_NUMBER +: TRIANGLE_NUMBER_BITS];
+  wire [31:0] material = triangle[TRIANGLE_MATERIAL +: TRIANGLE_MATERIAL_BITS];
   wire direct = CULLING != 0 && reflections_i && !(hit_depth < depth_limit_i && material[31]);
   wire unused = &{1'b0, triangle_last, triangle_place, material[30:27]};
 
@@ -196,9 +215,23 @@ module ray_exit #(
   wire [31:0] t, u, v;
   wire [95:0] normal;
   ray_finish #(.TAG_BITS(1+PLACE_BITS)) finish (
-    .clk_i(clk_i), .rst_ni(rst_ni), .valid_i(starts), .tag_i({direct, hit_place}), .corners_i(triangle[287:0]),
-    .origin_i(hit_origin), .main_axis_i(hit_main_axis), .shear_i(hit_shear), .t_i(hit_t), .scale_i(hit_scale),
-    .valid_o(finished), .tag_o({finished_direct, finished_place}), .t_o(t), .u_o(u), .v_o(v), .normal_o(normal));
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .valid_i(starts),
+    .tag_i({direct, hit_place}),
+    .corners_i(triangle[TRIANGLE_CORNERS +: TRIANGLE_CORNERS_BITS]),
+    .origin_i(hit_origin),
+    .main_axis_i(hit_main_axis),
+    .shear_i(hit_shear),
+    .t_i(hit_t),
+    .scale_i(hit_scale),
+    .valid_o(finished),
+    .tag_o({finished_direct, finished_place}),
+    .t_o(t),
+    .u_o(u),
+    .v_o(v),
+    .normal_o(normal)
+  );
 
   // ---- Packages that wait, by kind, and what they are made of, by place
   wire [KINDS-1:0] waits, chosen;
@@ -210,10 +243,14 @@ module ray_exit #(
         assign oldest[g*PLACE_BITS +: PLACE_BITS] = {PLACE_BITS{1'b0}};
       end else begin : gen_queue
         ram_queue #(.WIDTH(PLACE_BITS), .DEPTH(POOL)) queue (
-          .clk_i(clk_i), .rst_ni(rst_ni),
+          .clk_i(clk_i),
+          .rst_ni(rst_ni),
           .push_i((g == 1) ? unblocked : finished && finished_direct == (g == 2)),
-          .data_i((g == 1) ? place : finished_place), .valid_o(waits[g]), .ready_i(chosen[g]),
-          .data_o(oldest[g*PLACE_BITS +: PLACE_BITS]));
+          .data_i((g == 1) ? place : finished_place),
+          .valid_o(waits[g]),
+          .ready_i(chosen[g]),
+          .data_o(oldest[g*PLACE_BITS +: PLACE_BITS])
+        );
       end
     end
   endgenerate
@@ -225,18 +262,10 @@ module ray_exit #(
   round_robin #(.COUNT(KINDS)) kind_turn (
     .clk_i(clk_i), .rst_ni(rst_ni), .request_i(waits & put_ready_i), .advance_i(!puts_q), .grant_o(kind_grant));
   assign chosen = kind_grant & {KINDS{!puts_q}};
-  reg [PLACE_BITS-1:0] chosen_place;
-  reg [1:0] chosen_kind;
-  integer k;
-  always @* begin
-    chosen_place = {PLACE_BITS{1'b0}};
-    chosen_kind = 2'd0;
-    for (k = 0; k < KINDS; k = k + 1)
-      if (chosen[k]) begin
-        chosen_place = chosen_place | oldest[k*PLACE_BITS +: PLACE_BITS];
-        chosen_kind = chosen_kind | (k[1:0] + 2'd1);
-      end
-  end
+  `ONEHOT_SELECT(place_among, KINDS, PLACE_BITS)
+  `ONEHOT_NUMBER(kind_among, KINDS + 1, 2)
+  wire [PLACE_BITS-1:0] chosen_place = place_among(chosen, oldest);
+  wire [1:0] chosen_kind = kind_among({chosen, 1'b0});   // from 1
   wire [3:0] put_ready_kind = {{3-KINDS{1'b0}}, put_ready_i, 1'b0};
   wire beat_goes = puts_q && put_ready_kind[put_kind_o];
   wire ends = beat_goes && beat_q == LAST_BEAT;
@@ -258,14 +287,32 @@ module ray_exit #(
   wire [191:0] put_hit;
   wire [58:0] put_triangle;
   ram_1r1w #(.WIDTH(384), .DEPTH(POOL)) rays (
-    .clk_i(clk_i), .read_i(|chosen), .read_address_i(chosen_place), .read_data_o(put_ray), .write_i(ray_valid_i),
-    .write_address_i(ray_place_i), .write_data_i(ray_words_i));
+    .clk_i(clk_i),
+    .read_i(|chosen),
+    .read_address_i(chosen_place),
+    .read_data_o(put_ray),
+    .write_i(ray_valid_i),
+    .write_address_i(ray_place_i),
+    .write_data_i(ray_words_i)
+  );
   ram_1r1w #(.WIDTH(59), .DEPTH(POOL)) triangles (
-    .clk_i(clk_i), .read_i(|chosen), .read_address_i(chosen_place), .read_data_o(put_triangle), .write_i(starts),
-    .write_address_i(hit_place), .write_data_i({number, material[26:0]}));
+    .clk_i(clk_i),
+    .read_i(|chosen),
+    .read_address_i(chosen_place),
+    .read_data_o(put_triangle),
+    .write_i(starts),
+    .write_address_i(hit_place),
+    .write_data_i({number, material[26:0]})
+  );
   ram_1r1w #(.WIDTH(192), .DEPTH(POOL)) finishes_of (
-    .clk_i(clk_i), .read_i(|chosen), .read_address_i(chosen_place), .read_data_o(put_hit), .write_i(finished),
-    .write_address_i(finished_place), .write_data_i({normal, v, u, t}));
+    .clk_i(clk_i),
+    .read_i(|chosen),
+    .read_address_i(chosen_place),
+    .read_data_o(put_hit),
+    .write_i(finished),
+    .write_address_i(finished_place),
+    .write_data_i({normal, v, u, t})
+  );
   wire [31:0] material_word = material_base_i + {put_triangle[26:0], 5'd0};
   wire [255:0] hit_words = {put_triangle[58:27], material_word, put_hit};
   wire [1023:0] words = {384'd0, (put_kind_o == 2'd2) ? 256'd0 : hit_words, put_ray};
@@ -301,12 +348,23 @@ module ray_exit #(
       wire [PLACE_BITS-1:0] next;
       wire reads = waiting && !contributes_q;
       ram_queue #(.WIDTH(PLACE_BITS), .DEPTH(POOL)) queue (
-        .clk_i(clk_i), .rst_ni(rst_ni), .push_i(unblocked), .data_i(place), .valid_o(waiting), .ready_i(reads),
-        .data_o(next));
+        .clk_i(clk_i),
+        .rst_ni(rst_ni),
+        .push_i(unblocked),
+        .data_i(place),
+        .valid_o(waiting),
+        .ready_i(reads),
+        .data_o(next)
+      );
       ram_1r1w #(.WIDTH(128), .DEPTH(POOL)) colors (
-        .clk_i(clk_i), .read_i(reads), .read_address_i(next),
-        .read_data_o({contribution_color_o, contribution_pixel_o}), .write_i(ray_valid_i),
-        .write_address_i(ray_place_i), .write_data_i({ray_words_i[351:256], ray_words_i[255:224]}));
+        .clk_i(clk_i),
+        .read_i(reads),
+        .read_address_i(next),
+        .read_data_o({contribution_color_o, contribution_pixel_o}),
+        .write_i(ray_valid_i),
+        .write_address_i(ray_place_i),
+        .write_data_i({ray_words_i[RAY_COLOR +: RAY_COLOR_BITS], ray_words_i[RAY_PIXEL +: RAY_PIXEL_BITS]})
+      );
       always @(posedge clk_i)
         if (!rst_ni) {contributes_q, contributed_q} <= 2'd0;
         else begin

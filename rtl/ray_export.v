@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Export engine: takes warps' output slices in the order in which they are pushed, reads the masked lanes' packages in
 // rising order, four words a cycle, and offers them on the ray-pool port (words 0 .. 11, three beats) or the
 // frame-buffer port (words 7 .. 10, one).
@@ -65,8 +67,12 @@ module ray_export #(
   wire next_frame;
   wire [LANES-1:0] next_mask;
   ram_1r1w #(.WIDTH(LANES + 1), .DEPTH(2 * PLACES)) u_masks (
-    .clk_i(clk_i), .read_i(take_first), .read_address_i({!slot_q[first_warp], first_warp}),
-    .read_data_o({next_frame, next_mask}), .write_i(park_i), .write_address_i({slot_q[park_warp_i], park_warp_i}),
+    .clk_i(clk_i),
+    .read_i(take_first),
+    .read_address_i({!slot_q[first_warp], first_warp}),
+    .read_data_o({next_frame, next_mask}),
+    .write_i(park_i),
+    .write_address_i({slot_q[park_warp_i], park_warp_i}),
     .write_data_i({park_frame_i, park_mask_i})
   );
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // What a ray carries on of its hit, without double: the time, where in the triangle, and the triangle's normal.
 // docs/traverser.md says what is computed. A ray's corners, axes and quotients follow each other through the units, and
 // its results are there together 66 cycles after it came; it never waits. A name ends with the stage that holds what
@@ -57,8 +59,15 @@ module ray_finish #(
   wire [31:0] t_57;
   wire [8:0] scale_57;
   wire [TAG_BITS-1:0] tag_57;
-  ram_queue #(.WIDTH(TAG_BITS+41), .DEPTH(19)) waiting (.clk_i(clk_i), .rst_ni(rst_ni), .push_i(valid_i),
-    .data_i({tag_i, t_i, scale_i}), .valid_o(waits), .ready_i(first_q[56]), .data_o(oldest));
+  ram_queue #(.WIDTH(TAG_BITS+41), .DEPTH(19)) waiting (
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .push_i(valid_i),
+    .data_i({tag_i, t_i, scale_i}),
+    .valid_o(waits),
+    .ready_i(first_q[56]),
+    .data_o(oldest)
+  );
   ray_delay #(.WIDTH(TAG_BITS+41)) waited_delay (.clk_i(clk_i), .move_i(first_q[56]), .data_i(oldest),
     .data_o({tag_57, t_57, scale_57}));
   ray_delay #(.WIDTH(TAG_BITS), .MOVES(3)) tag_delay (.clk_i(clk_i), .move_i({first_q[65], first_q[62], first_q[59]}),
@@ -66,11 +75,25 @@ module ray_finish #(
 
   // ---- The parts
   wire [42:0] weight_39, sum_39, length_40, normal_59;
-  triangle_shares shares (.clk_i(clk_i), .rst_ni(rst_ni), .first_i(first_q[38:1]), .corner_2_i(corner_2),
-    .origin_2_i(origin_2), .main_axis_2_i(main_axis_2), .shear_2_i(shear_2), .weight_39_o(weight_39),
-    .sum_39_o(sum_39));
-  triangle_normal normal (.clk_i(clk_i), .rst_ni(rst_ni), .first_i(first_q[58:1]), .corners_2_i(along_2),
-    .length_40_o(length_40), .normal_59_o(normal_59));
+  triangle_shares shares (
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .first_i(first_q[38:1]),
+    .corner_2_i(corner_2),
+    .origin_2_i(origin_2),
+    .main_axis_2_i(main_axis_2),
+    .shear_2_i(shear_2),
+    .weight_39_o(weight_39),
+    .sum_39_o(sum_39)
+  );
+  triangle_normal normal (
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .first_i(first_q[58:1]),
+    .corners_2_i(along_2),
+    .length_40_o(length_40),
+    .normal_59_o(normal_59)
+  );
 
   // ---- 40 .. 57: three quotients: the share of corner 2, 1 / the normal's length, the share of corner 1
   reg [41:0] a_40, b_40;                      // without signs
@@ -83,16 +106,28 @@ module ray_finish #(
   wire [10:0] exponent_57;
   wire [31:0] digits_57;
   quotient_digits #(.BITS(32), .WAITING(12)) quotients (
-    .clk_i(clk_i), .a_i({1'b1, a_40[30:0]}), .b_i({1'b1, b_40[30:0]}), .less_o(less_40),
-    .waiting_i({a_40[41:31] == 11'd0, exponent_40}), .digits_o(digits_57), .rest_o(rest_57),
-    .waiting_o({zero_57, exponent_57}));
+    .clk_i(clk_i),
+    .a_i({1'b1, a_40[30:0]}),
+    .b_i({1'b1, b_40[30:0]}),
+    .less_o(less_40),
+    .waiting_i({a_40[41:31] == 11'd0, exponent_40}),
+    .digits_o(digits_57),
+    .rest_o(rest_57),
+    .waiting_o({zero_57, exponent_57})
+  );
 
   // ---- 58 .. 60: floats of the shares, and of t in between; 66: they wait for the normal
   wire t_sign_58, t_zero_58;
   wire signed [8:0] t_exponent_58;
   wire [22:0] t_fraction_58;
-  float_parts t_parts (.clk_i(clk_i), .float_i(t_57), .sign_o(t_sign_58), .zero_o(t_zero_58),
-    .exponent_o(t_exponent_58), .fraction_o(t_fraction_58));
+  float_parts t_parts (
+    .clk_i(clk_i),
+    .float_i(t_57),
+    .sign_o(t_sign_58),
+    .zero_o(t_zero_58),
+    .exponent_o(t_exponent_58),
+    .fraction_o(t_fraction_58)
+  );
   wire [10:0] t_exponent = 11'd896 + {{2{t_exponent_58[8]}}, t_exponent_58} + {{2{scale_57[8]}}, scale_57};
   reg [44:0] number_58;
   always @(posedge clk_i)

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Import engine: requests a launch's packages, thread after thread, and writes their beats into the warps' input
 // slices. Knows which input slices hold all their packages: full_o.
 // Promises: at most two packages are requested and not yet received; one is only requested while its warp's input slice

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // One set of local ray memory: BANKS 32-bit single-port banks, WORDS words for each of CONTENTS threads. Word k of
 // thread t lies in bank (t+k)%BANKS, row k*ceil(CONTENTS/BANKS) + t/BANKS, so that an access moves one word of BANKS
 // threads a cycle, or words of one thread: four are read, as many as eight written.
@@ -49,8 +51,12 @@ module ray_memory #(
       else assign read = reading;
       wire unused = &{1'b0, row};   // a small set leaves the upper bits
       ram_1rw #(.WIDTH(32), .DEPTH(DEPTH)) u_bank (
-        .clk_i(clk_i), .enable_i(write || read), .write_i(write),
-        .address_i(row[ADDRESS_BITS-1:0]), .data_i(data_i[{element, 5'd0} +: 32]), .data_o(bank_read[b*32 +: 32])
+        .clk_i(clk_i),
+        .enable_i(write || read),
+        .write_i(write),
+        .address_i(row[ADDRESS_BITS-1:0]),
+        .data_i(data_i[{element, 5'd0} +: 32]),
+        .data_o(bank_read[b*32 +: 32])
       );
       wire [BANK_BITS-1:0] from = BANK + shift_q;   // of element b
       assign data_o[b*32 +: 32] = bank_read[{from, 5'd0} +: 32];

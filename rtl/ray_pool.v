@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // The ray pool: rays that units have exported and the traverser has not finished, behind a port of 128 bits.
 // docs/chip.md gives its cycles.
 // Promises: a full pool takes nothing; a ray that stays keeps its place until the traverser frees it; the traverser
@@ -60,6 +62,7 @@ module ray_pool #(
       ray_pool_PIPELINED_and_CULLING_must_be_0_or_1 illegal ();
     end
   endgenerate
+`include "records.vh"
   localparam integer LONGER = (CYCLES_PER_BEAT > OVERHEAD) ? CYCLES_PER_BEAT : OVERHEAD;
   localparam integer WAIT_BITS = $clog2(LONGER + OVERHEAD);
   localparam integer OVERHEAD_WAIT = OVERHEAD - 1;
@@ -81,9 +84,9 @@ module ray_pool #(
   // Room that is made in this cycle is taken by nobody else.
   wire turn = export_valid_i && !open_q && (!full || free_valid_i);
 
-  // The flags and the weight are all in the last beat.
-  wire shadow = export_data_i[127];
-  wire [7:0] depth = export_data_i[103:96];
+  // The flags and the weight are all in the last beat, of the bits from 256 on.
+  wire shadow = export_data_i[RAY_SHADOW-256];
+  wire [7:0] depth = export_data_i[RAY_DEPTH-256 +: RAY_DEPTH_BITS];
   wire deep = !shadow && depth > depth_limit_i;
   wire black = CULLING != 0 && {export_data_i[94:64], export_data_i[62:32], export_data_i[30:0]} == 93'd0;
   wire kept = !deep && !black;
@@ -139,7 +142,7 @@ module ray_pool #(
     end
   reg [31:0] pixel_q;
   always @(posedge clk_i) begin
-    if (take && beat_q == 2'd1) pixel_q <= export_data_i[127:96];
+    if (take && beat_q == 2'd1) pixel_q <= export_data_i[RAY_PIXEL-128 +: RAY_PIXEL_BITS];
     if (last) begin
       outcome_kept_o <= kept;
       outcome_deep_o <= deep;
@@ -168,11 +171,23 @@ module ray_pool #(
   wire place_free, ray_waits;
   wire read, read_last;
   free_list #(.SIZE(SIZE)) free_list (
-    .clk_i(clk_i), .rst_ni(rst_ni), .valid_o(place_free), .ready_i(keep_q), .number_o(place), .free_i(free_valid_i),
-    .free_number_i(free_place_i));
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .valid_o(place_free),
+    .ready_i(keep_q),
+    .number_o(place),
+    .free_i(free_valid_i),
+    .free_number_i(free_place_i)
+  );
   ram_queue #(.WIDTH(PLACE_BITS), .DEPTH(SIZE)) order (
-    .clk_i(clk_i), .rst_ni(rst_ni), .push_i(keep_q), .data_i(place), .valid_o(ray_waits), .ready_i(read && read_last),
-    .data_o(oldest));
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .push_i(keep_q),
+    .data_i(place),
+    .valid_o(ray_waits),
+    .ready_i(read && read_last),
+    .data_o(oldest)
+  );
 
   function [ADDRESS_BITS-1:0] address_of(input [PLACE_BITS-1:0] of_place, input [1:0] of_beat);
     begin
@@ -188,8 +203,14 @@ module ray_pool #(
   assign read = moves && ray_waits;
   assign read_last = read_beat_q == 2'd2;
   ram_1r1w #(.WIDTH(128), .DEPTH(3 * SIZE)) rays (
-    .clk_i(clk_i), .read_i(read), .read_address_i(address_of(oldest, read_beat_q)), .read_data_o(ray_data_o),
-    .write_i(take_q && place_free), .write_address_i(address_of(place, take_beat_q)), .write_data_i(take_data_q));
+    .clk_i(clk_i),
+    .read_i(read),
+    .read_address_i(address_of(oldest, read_beat_q)),
+    .read_data_o(ray_data_o),
+    .write_i(take_q && place_free),
+    .write_address_i(address_of(place, take_beat_q)),
+    .write_data_i(take_data_q)
+  );
   always @(posedge clk_i)
     if (!rst_ni) begin
       ray_valid_o <= 1'b0;

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // What is computed once of a ray, for box_pipe and triangle_pipe: docs/traverser.md says what, and why it is exact.
 // A ray's axes follow each other through the units, x first, and leave side by side, 27 cycles after the ray came; it
 // never waits. A register's name ends with the stage that loads its first axis.
@@ -69,14 +71,32 @@ module ray_setup #(
   wire [BITS-1:0] reciprocal_24;
   wire [34:0] direction_24;
   ray_padding padding (
-    .clk_i(clk_i), .first_i(first_q[24:1]), .origin_1_i(origin_1), .lower_i(lower_i), .upper_i(upper_i),
-    .near_10_o(near_10), .origin_24_o(origin_24), .padded_lower_24_o(padded_lower_24),
-    .padded_upper_24_o(padded_upper_24), .padding_24_o(padding_24));
+    .clk_i(clk_i),
+    .first_i(first_q[24:1]),
+    .origin_1_i(origin_1),
+    .lower_i(lower_i),
+    .upper_i(upper_i),
+    .near_10_o(near_10),
+    .origin_24_o(origin_24),
+    .padded_lower_24_o(padded_lower_24),
+    .padded_upper_24_o(padded_upper_24),
+    .padding_24_o(padding_24)
+  );
   ray_direction #(.BITS(BITS)) direction (
-    .clk_i(clk_i), .first_i(first_q[24:1]), .direction_1_i(direction_1), .moves_6_o(moves_6),
-    .main_axis_6_o(main_axis_6), .exponent_6_o(exponent_6), .backwards_24_o(backwards_24), .still_24_o(still_24),
-    .reciprocal_24_o(reciprocal_24), .exponent_24_o(exponent_24), .inverse_24_o(inverse_24),
-    .direction_24_o(direction_24), .aside_24_o(aside_24));
+    .clk_i(clk_i),
+    .first_i(first_q[24:1]),
+    .direction_1_i(direction_1),
+    .moves_6_o(moves_6),
+    .main_axis_6_o(main_axis_6),
+    .exponent_6_o(exponent_6),
+    .backwards_24_o(backwards_24),
+    .still_24_o(still_24),
+    .reciprocal_24_o(reciprocal_24),
+    .exponent_24_o(exponent_24),
+    .inverse_24_o(inverse_24),
+    .direction_24_o(direction_24),
+    .aside_24_o(aside_24)
+  );
 
   // ---- What is the ray's, in registers for three cycles: limit and tag, with their last one at 22 and 25
   wire [31:0] limit_4, limit_22;
@@ -120,8 +140,14 @@ module ray_setup #(
   wire limit_sign, limit_zero;
   wire signed [8:0] limit_exponent;
   wire [22:0] limit_fraction;
-  float_parts limit_parts (.clk_i(clk_i), .float_i(limit_22), .sign_o(limit_sign), .zero_o(limit_zero),
-    .exponent_o(limit_exponent), .fraction_o(limit_fraction));
+  float_parts limit_parts (
+    .clk_i(clk_i),
+    .float_i(limit_22),
+    .sign_o(limit_sign),
+    .zero_o(limit_zero),
+    .exponent_o(limit_exponent),
+    .fraction_o(limit_fraction)
+  );
   wire unused = &{1'b0, limit_sign, limit_zero, limit_fraction};
   always @(posedge clk_i)
     if (first_q[24])

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // A short first-in first-out queue with valid/ready at its end. Its output is a register and stays until taken.
 // Must be given: push_i only while count_o < DEPTH; an entry taken in the same cycle does not count as free yet.
 `default_nettype none

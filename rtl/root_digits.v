@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // The root of a number of 2 + 4 * DIGITS bits, of which the first two are not both zero, cut off: 1 + 2 * DIGITS bits,
 // DIGITS cycles after it is taken. It takes a number in three cycles: each block finds three digits 0 .. 3, one in a
 // cycle, and hands on what is left. Of four times a root so far, a digit takes off 8 d root + d d.

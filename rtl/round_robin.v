@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Chooses one of the requesters in rotation: the search starts behind the one that was chosen last, so that whoever
 // keeps asking is chosen before anybody else is chosen twice.
 `default_nettype none

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Correctly rounded quotient w/v, w/sqrt(v) of slow_prepare, stages 1 .. 10 of the slow unit.
 // 1: a table gives a line, 2: the line gives y, about 1/v or 1/sqrt(v), 3-6: one multiplicative step leaves an error
 // below 2^-24 in the quotient. So of the floats only the two around the middle m of the interval that the estimate lies
@@ -59,10 +61,17 @@ module slow_exact #(
   wire [25:0] s3_v = {s3_v_q, {D+1{1'b0}}};
   wire [25:0] s3_w = {s3_w_q, {D+1{1'b0}}};
   slow_refine #(.EXACT(1), .LESS((D < 8) ? D : 8)) refine (
-    .clk_i(clk_i), .enable_i(enable_i[5:2]), .v_i(s3_v[25:1]), .w_i(s3_w[25:1]), .y_i(s3_y_q),
+    .clk_i(clk_i),
+    .enable_i(enable_i[5:2]),
+    .v_i(s3_v[25:1]),
+    .w_i(s3_w[25:1]),
+    .y_i(s3_y_q),
     .y_digits_i(s3_y_digits_q),
-    .root_1_i(s4_tag_q[ROOT]), .unary_1_i(s4_tag_q[UNARY]),
-    .root_2_i(s5_tag_q[ROOT]), .quotient_o(s7_estimate));
+    .root_1_i(s4_tag_q[ROOT]),
+    .unary_1_i(s4_tag_q[UNARY]),
+    .root_2_i(s5_tag_q[ROOT]),
+    .quotient_o(s7_estimate)
+  );
 
   reg [P:0] s7_half_q;            // half a unit in the last place of the result: the lowest one of m
   reg [P:0] s7_keep_q;            // the bits of the estimate that stay in m

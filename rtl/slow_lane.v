@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // One lane of the Slw ALU: STAGES stages, and the result register behind them. enable_i[k] says
 // that stage k holds a task of this lane.
 // root_i and unary_i name the operation: 00 fdiv, 10 fsqrt, 11 frsqrt, 01 frcp. SLOW_UNIT 0:
@@ -30,24 +32,62 @@ module slow_lane #(
   reg [31:0] result_q;
 
   slow_prepare #(.SUBNORMALS(SUBNORMALS), .SIGNIFICAND(SIGNIFICAND), .WITHOUT(WITHOUT)) prepare (
-    .clk_i(clk_i), .enable_i(enable_i[2:0]), .root_i(root_i), .unary_i(unary_i), .a_i(a_i), .b_i(b_i),
-    .index_1_o(index), .offset_digits_o(offset_digits), .root_o(root), .unary_o(unary), .v_o(v), .w_o(w),
-    .special_3_o(special), .nan_3_o(nan), .sign_3_o(sign), .exponent_3_o(exponent), .shift_3_o(shift),
-    .tiny_3_o(tiny_3_o));
+    .clk_i(clk_i),
+    .enable_i(enable_i[2:0]),
+    .root_i(root_i),
+    .unary_i(unary_i),
+    .a_i(a_i),
+    .b_i(b_i),
+    .index_1_o(index),
+    .offset_digits_o(offset_digits),
+    .root_o(root),
+    .unary_o(unary),
+    .v_o(v),
+    .w_o(w),
+    .special_3_o(special),
+    .nan_3_o(nan),
+    .sign_3_o(sign),
+    .exponent_3_o(exponent),
+    .shift_3_o(shift),
+    .tiny_3_o(tiny_3_o)
+  );
 
   generate
     if (SLOW_UNIT == 0) begin : gen_exact
       slow_exact #(.SIGNIFICAND(SIGNIFICAND), .WITHOUT(WITHOUT)) quotient (
-        .clk_i(clk_i), .enable_i(enable_i[STAGES-1:1]), .index_1_i(index), .offset_digits_i(offset_digits),
-        .root_i(root), .unary_i(unary), .v_i(v), .w_i(w), .special_3_i(special), .nan_3_i(nan), .sign_3_i(sign),
-        .exponent_3_i(exponent), .shift_3_i(shift), .result_o(result));
+        .clk_i(clk_i),
+        .enable_i(enable_i[STAGES-1:1]),
+        .index_1_i(index),
+        .offset_digits_i(offset_digits),
+        .root_i(root),
+        .unary_i(unary),
+        .v_i(v),
+        .w_i(w),
+        .special_3_i(special),
+        .nan_3_i(nan),
+        .sign_3_i(sign),
+        .exponent_3_i(exponent),
+        .shift_3_i(shift),
+        .result_o(result)
+      );
     end else begin : gen_newton
       slow_newton #(
         .SIGNIFICAND(SIGNIFICAND), .STEPS(3 - SLOW_UNIT), .LAST(STAGES - 1), .WITHOUT(WITHOUT)
       ) quotient (
-        .clk_i(clk_i), .enable_i(enable_i[STAGES-1:1]), .index_1_i(index), .root_i(root), .unary_i(unary), .v_i(v),
-        .w_i(w), .special_3_i(special), .nan_3_i(nan), .sign_3_i(sign), .exponent_3_i(exponent), .shift_3_i(shift),
-        .result_o(result));
+        .clk_i(clk_i),
+        .enable_i(enable_i[STAGES-1:1]),
+        .index_1_i(index),
+        .root_i(root),
+        .unary_i(unary),
+        .v_i(v),
+        .w_i(w),
+        .special_3_i(special),
+        .nan_3_i(nan),
+        .sign_3_i(sign),
+        .exponent_3_i(exponent),
+        .shift_3_i(shift),
+        .result_o(result)
+      );
     end
   endgenerate
 

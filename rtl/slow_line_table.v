@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Straight lines through 1/m and 1/sqrt(m), from which the exact slow unit
 // starts: y = start - slope * offset with 15 fraction bits.
 // index_i: {root, odd, i[5:0]}; root 0: 1/m, m in [1 + i/64, 1 + (i+1)/64) (odd is 0);

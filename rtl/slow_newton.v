@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Approximate quotient w/v, w/sqrt(v) of slow_prepare, stages 1 .. LAST of the slow unit: a table of
 // bytes gives y, about 1/v or 1/sqrt(v).
 // STEPS 0: w*y. STEPS 1: a Newton step on y before, y + y*(1 - v*y), for a root y + y*(1 - v*y*y)/2.
@@ -138,9 +140,17 @@ module slow_newton #(
           if (`STAGE_LOADS(enable_i[3])) s5_y_digits_q <= s4_y_digits[23:0];
         end
         slow_refine #(.EXACT(0)) refine (
-          .clk_i(clk_i), .enable_i(enable_i[7:4]), .v_i(s5_v_q), .w_i(w), .y_i(y), .y_digits_i(s5_y_digits_q),
-          .root_1_i(tags[3*TAG_BITS+ROOT]), .unary_1_i(tags[3*TAG_BITS+UNARY]), .root_2_i(tags[4*TAG_BITS+ROOT]),
-          .quotient_o(round_estimate));
+          .clk_i(clk_i),
+          .enable_i(enable_i[7:4]),
+          .v_i(s5_v_q),
+          .w_i(w),
+          .y_i(y),
+          .y_digits_i(s5_y_digits_q),
+          .root_1_i(tags[3*TAG_BITS+ROOT]),
+          .unary_1_i(tags[3*TAG_BITS+UNARY]),
+          .root_2_i(tags[4*TAG_BITS+ROOT]),
+          .quotient_o(round_estimate)
+        );
       end
     end
     if (STEPS != 2) begin : gen_product

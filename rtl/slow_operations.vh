@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
   // What the lane may be asked for. WITHOUT: operations of slw that it lacks, bit 0 fdiv, 1 fsqrt, 2 frsqrt, 3 frcp.
   // {root, unary}, constant where nothing else can come: registers and logic behind it then go.
   function [1:0] possible_operation(input ask_root, input ask_unary);

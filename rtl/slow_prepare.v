@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // The first three stages of the slow unit: unpacks, normalises subnormal operands, finds every result that needs
 // no computation, and turns the rest into one task for the stages behind: the quotient q = w/v,
 // or q = w/sqrt(v), which lies in [1, 2).

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // One multiplicative step of the slow unit in four stages: from y, about 1/v or
 // 1/sqrt(v), the quotient w/v or w/sqrt(v).
 // With n = w*y and e = 1 - v*y, or (1 - v*y*y)/2 for a root, the quotient is n + n*e

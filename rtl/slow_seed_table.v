@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Seeds of the Newton slow unit: the byte s stands for (256 + s) / 512. index_i: {0, i[6:0]}: 1/m for the middle m of
 // [1 + i/128, 1 + (i+1)/128); {1, odd, i[5:0]}: 1/sqrt(m), or 1/sqrt(2m) when odd, for the
 // middle m of [1 + i/64, 1 + (i+1)/64).

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Slw ALU: fdiv fsqrt frsqrt frcp, a new task in any of its stages; further stages as delay. docs/numerics.md has the
 // rules. SUBNORMALS 0: IEEE, 1: flushed, 2: the same, and done_subnormal_o says that a task has met one.
 // SIGNIFICAND: bits of a float's significand, with its leading one. SLOW_UNIT 0: correctly rounded, 1: table and two
@@ -46,8 +48,15 @@ module slw_alu #(
 
   wire [TASK_DEPTH-1:0] stage_valid;
   alu_pipeline #(.WARP_BITS(WARP_BITS), .LATENCY(TASK_LATENCY), .DEPTH(TASK_DEPTH)) pipeline (
-    .clk_i(clk_i), .rst_ni(rst_ni), .task_valid_i(task_valid_i), .task_warp_i(task_warp_i), .ready_o(ready_o),
-    .done_valid_o(done_valid_o), .done_warp_o(done_warp_o), .stage_valid_o(stage_valid));
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .task_valid_i(task_valid_i),
+    .task_warp_i(task_warp_i),
+    .ready_o(ready_o),
+    .done_valid_o(done_valid_o),
+    .done_warp_o(done_warp_o),
+    .stage_valid_o(stage_valid)
+  );
 
   // ---- The group that enters in this cycle: g of the task that arrived g cycles ago, which is one task at most.
   reg [GROUP*32-1:0] operand_a, operand_b;
@@ -88,9 +97,15 @@ module slw_alu #(
       slow_lane #(
         .SUBNORMALS(SUBNORMALS), .SIGNIFICAND(SIGNIFICAND), .SLOW_UNIT(SLOW_UNIT), .STAGES(STAGES), .WITHOUT(WITHOUT)
       ) lane (
-        .clk_i(clk_i), .enable_i(enable), .root_i(root), .unary_i(unary), .a_i(operand_a[l*32 +: 32]),
-        .b_i(operand_b[l*32 +: 32]), .result_o(result[l*32 +: 32]),
-        .tiny_3_o(tiny[l]));
+        .clk_i(clk_i),
+        .enable_i(enable),
+        .root_i(root),
+        .unary_i(unary),
+        .a_i(operand_a[l*32 +: 32]),
+        .b_i(operand_b[l*32 +: 32]),
+        .result_o(result[l*32 +: 32]),
+        .tiny_3_o(tiny[l])
+      );
     end
     if (DELAY > 0) begin : gen_delay
       wire [DELAY-1:0] holds;   // a stage of the delay takes a group
@@ -112,8 +127,15 @@ module slw_alu #(
     if (SUBNORMALS == 2) begin : gen_guard
       wire found;   // of the group that leaves
       subnormal_guard #(.LANES(GROUP), .SIGNIFICAND(SIGNIFICAND), .DEPTH(DEPTH), .RESULT_STAGE(3)) guard (
-        .clk_i(clk_i), .enter_i(entering), .reads_i({1'b0, !root && !unary, 1'b1}), .a_i(operand_a), .b_i(operand_b),
-        .c_i({GROUP*32{1'b0}}), .result_i(|tiny), .subnormal_o(found));
+        .clk_i(clk_i),
+        .enter_i(entering),
+        .reads_i({1'b0, !root && !unary, 1'b1}),
+        .a_i(operand_a),
+        .b_i(operand_b),
+        .c_i({GROUP*32{1'b0}}),
+        .result_i(|tiny),
+        .subnormal_o(found)
+      );
       if (GROUPS > 1) begin : gen_groups
         reg before_q;   // of the task's groups that have left
         always @(posedge clk_i)

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // What stood at the input CYCLES cycles before, of a pipe that never waits. CYCLES may be 0.
 `default_nettype none
 module steady_delay #(

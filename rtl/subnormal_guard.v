@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Watches the float tasks of an ALU: says, when one is done, whether an operand that it read, or a result before it was
 // flushed, was a subnormal number in any lane of its mask.
 // enter_i: lanes that enter in this cycle, and have their operands at a_i, b_i and c_i; reads_i: which of these {c, b,

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // The task of one ALU instance: takes over what the warp that the dispatcher chose offers, and holds it for one cycle.
 // Operands that no instruction of the ALU's type has are zero: no register and no multiplexer is spent on them.
 `default_nettype none

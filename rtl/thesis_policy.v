@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // The policy of the thesis (its figure 5.3): which kernel a unit that can take one gets. docs/chip.md, section 3.
 // What is seen in a cycle is decided in the next one.
 // Promises: threads of a kernel are at most CONTENTS and what there is of its intersections, for a secondary kernel

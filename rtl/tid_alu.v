@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Thread, warp and block indices, dimensions, kernel arguments.
 `default_nettype none
 module tid_alu #(
@@ -26,15 +28,27 @@ module tid_alu #(
   integer l;
 
   alu_pipeline #(.WARP_BITS(WARP_BITS), .LATENCY(LATENCY), .DEPTH(DEPTH)) alu_pipeline (
-    .clk_i(clk_i), .rst_ni(rst_ni), .task_valid_i(task_valid_i), .task_warp_i(task_warp_i), .ready_o(ready_o),
-    .done_valid_o(done_valid_o), .done_warp_o(done_warp_o), .stage_valid_o(stage_valid));
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .task_valid_i(task_valid_i),
+    .task_warp_i(task_warp_i),
+    .ready_o(ready_o),
+    .done_valid_o(done_valid_o),
+    .done_warp_o(done_warp_o),
+    .stage_valid_o(stage_valid)
+  );
 
   localparam integer ARGUMENT_BITS = $clog2(ARGUMENTS);
   wire there = {1'b0, argument_index_i} < ARGUMENTS[5:0];
   ram_1r1w #(.WIDTH(32), .DEPTH(ARGUMENTS)) arguments (
-    .clk_i(clk_i), .read_i(task_valid_i), .read_address_i(task_immediate_i[ARGUMENT_BITS-1:0]), .read_data_o(argument),
-    .write_i(argument_write_i && there), .write_address_i(argument_index_i[ARGUMENT_BITS-1:0]),
-    .write_data_i(argument_data_i));
+    .clk_i(clk_i),
+    .read_i(task_valid_i),
+    .read_address_i(task_immediate_i[ARGUMENT_BITS-1:0]),
+    .read_data_o(argument),
+    .write_i(argument_write_i && there),
+    .write_address_i(argument_index_i[ARGUMENT_BITS-1:0]),
+    .write_data_i(argument_data_i)
+  );
 
   always @(posedge clk_i)
     if (task_valid_i) begin

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // The tiles of a picture in the order in which they are cast: row for row, or along a Hilbert curve, which stays longer
 // among neighbours. docs/chip.md, section 8.
 // Promises: each tile that has a pixel in the picture once; what is offered stays until it is taken, or until another
@@ -165,9 +167,15 @@ module tile_walk #(
   wire [SIZE_BITS-1:0] corner_left, corner_top;
   wire moves = (!tile_valid_o || tile_ready_i) && found_valid && (count != 2'd1 || !searching_q);
   request_queue #(.WIDTH(2 * SIZE_BITS), .DEPTH(3)) ahead (
-    .clk_i(clk_i), .rst_ni(rst_ni && !start_i), .push_i(step && found),
-    .data_i({top[SIZE_BITS-1:0], left[SIZE_BITS-1:0]}), .valid_o(found_valid), .ready_i(moves),
-    .data_o({corner_top, corner_left}), .count_o(count));
+    .clk_i(clk_i),
+    .rst_ni(rst_ni && !start_i),
+    .push_i(step && found),
+    .data_i({top[SIZE_BITS-1:0], left[SIZE_BITS-1:0]}),
+    .valid_o(found_valid),
+    .ready_i(moves),
+    .data_o({corner_top, corner_left}),
+    .count_o(count)
+  );
 
   // ---- The one that is offered
   wire [CORNER_BITS-1:0] right_of = width - {{CORNER_BITS-SIZE_BITS{1'b0}}, corner_left};

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // The traverser: rays come from the ray pool, and leave as packages, contributions, or nothing, each freeing its place
 // then. A ray is set up, given to a lane that has a slot for it, visits nodes and triangles there, and goes through
 // ray_exit.v. Lanes share two caches and the port to the traverser's memory, and some of them a triangle pipe.
@@ -83,13 +85,14 @@ module traverser #(
       traverser_LANES_must_be_31_or_less_and_TRIANGLE_PIPES_from_1_to_LANES illegal ();
     end
   endgenerate
+`include "onehot.vh"
+`include "records.vh"
   localparam integer SLOT_BITS = (SLOTS > 1) ? $clog2(SLOTS) : 1;
   localparam integer KEY_BITS = BITS + 9;
   localparam integer ENTRY_BITS = KEY_BITS + 32;
   localparam integer TAG_BITS = 30 + SLOT_BITS;
   localparam integer BLOCK_BITS = 7;
   localparam integer LINE_BITS = 26;
-  localparam integer TEST_BITS = 875;
   localparam integer NODE_ID_BITS = $clog2(NODE_BANKS) +
     ((NODE_MSHRS > NODE_BANKS) ? $clog2(NODE_MSHRS / NODE_BANKS) : 1);
   localparam integer TRIANGLE_ID_BITS = $clog2(TRIANGLE_BANKS) +
@@ -111,13 +114,8 @@ module traverser #(
   wire [383:0] ray_words = {ray_data_i, beats_q};
   round_robin #(.COUNT(LANES)) enter_turn (
     .clk_i(clk_i), .rst_ni(rst_ni), .request_i(slot_valid), .advance_i(enters), .grant_o(enter_grant));
-  reg [SLOT_BITS-1:0] enter_slot;
-  integer l;
-  always @* begin
-    enter_slot = {SLOT_BITS{1'b0}};
-    for (l = 0; l < LANES; l = l + 1)
-      if (enter_grant[l]) enter_slot = enter_slot | slot_of[l*SLOT_BITS +: SLOT_BITS];
-  end
+  `ONEHOT_SELECT(slot_among, LANES, SLOT_BITS)
+  wire [SLOT_BITS-1:0] enter_slot = slot_among(enter_grant, slot_of);
 
   // ---- It is set up, for all lanes to see
   wire set_valid, meets, set_shadow;
@@ -136,14 +134,34 @@ module traverser #(
   wire [63:0] shear;
   wire [104:0] direction;
   ray_setup #(.BITS(BITS), .TAG_BITS(PLACE_BITS+8+1+LANES+SLOT_BITS)) setup (
-    .clk_i(clk_i), .rst_ni(rst_ni), .valid_i(enters),
-    .tag_i({ray_place_i, ray_words[359:352], ray_words[383], enter_grant, enter_slot}),
-    .origin_i(ray_words[95:0]), .direction_i(ray_words[191:96]), .limit_i(ray_words[223:192]), .lower_i(lower_i),
-    .upper_i(upper_i), .valid_o(set_valid), .tag_o({set_place, set_depth, set_shadow, set_lane, set_slot}),
-    .hits_o(meets), .origin_o(origin), .limit_o(limit), .scale_o(scale), .backwards_o(backwards), .still_o(still),
-    .reciprocal_o(reciprocal), .exponent_o(exponent), .padding_o(padding), .key_o(limit_key),
-    .padded_lower_o(padded_lower), .padded_upper_o(padded_upper), .inverse_o(inverse), .main_axis_o(main_axis),
-    .shear_o(shear), .direction_o(direction));
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .valid_i(enters),
+    .tag_i({ray_place_i, ray_words[RAY_DEPTH +: RAY_DEPTH_BITS], ray_words[RAY_SHADOW], enter_grant, enter_slot}),
+    .origin_i(ray_words[RAY_ORIGIN +: RAY_ORIGIN_BITS]),
+    .direction_i(ray_words[RAY_DIRECTION +: RAY_DIRECTION_BITS]),
+    .limit_i(ray_words[RAY_LIMIT +: RAY_LIMIT_BITS]),
+    .lower_i(lower_i),
+    .upper_i(upper_i),
+    .valid_o(set_valid),
+    .tag_o({set_place, set_depth, set_shadow, set_lane, set_slot}),
+    .hits_o(meets),
+    .origin_o(origin),
+    .limit_o(limit),
+    .scale_o(scale),
+    .backwards_o(backwards),
+    .still_o(still),
+    .reciprocal_o(reciprocal),
+    .exponent_o(exponent),
+    .padding_o(padding),
+    .key_o(limit_key),
+    .padded_lower_o(padded_lower),
+    .padded_upper_o(padded_upper),
+    .inverse_o(inverse),
+    .main_axis_o(main_axis),
+    .shear_o(shear),
+    .direction_o(direction)
+  );
 
   // ---- Lanes
   wire [LANES-1:0] slot_free, done_valid, done_ready, done_hit;
@@ -182,45 +200,94 @@ module traverser #(
     for (g = 0; g < LANES; g = g + 1) begin : gen_lane
       traverser_lane #(.SLOTS(SLOTS), .ENTRIES(ENTRIES), .BITS(BITS), .LINE_BITS(LINE_BITS), .BLOCK_BITS(BLOCK_BITS))
       lane (
-        .clk_i(clk_i), .rst_ni(rst_ni), .root_i(root_i), .nodes_i(triangles_line_i), .fault_valid_o(node_fault[g]),
-        .fault_reason_o(node_fault_reason[2*g +: 2]), .fault_line_o(node_fault_line[g*LINE_BITS +: LINE_BITS]),
-        .stop_i(fault_valid_o), .slot_valid_o(slot_valid[g]),
-        .slot_ready_i(enters && enter_grant[g]), .slot_o(slot_of[g*SLOT_BITS +: SLOT_BITS]),
-        .ray_valid_i(set_valid && set_lane[g]), .ray_slot_i(set_slot), .ray_meets_i(meets),
-        .ray_shadow_i(set_shadow), .origin_i(origin), .backwards_i(backwards), .still_i(still),
-        .reciprocal_i(reciprocal), .exponent_i(exponent), .padding_i(padding), .limit_key_i(limit_key),
-        .padded_lower_i(padded_lower), .padded_upper_i(padded_upper), .inverse_i(inverse), .main_axis_i(main_axis),
-        .shear_i(shear), .direction_i(direction), .limit_i(limit), .scale_i(scale),
-        .node_want_o(node_want[2*g +: 2]), .node_want_line_o(node_want_line[2*g*LINE_BITS +: 2*LINE_BITS]),
-        .node_want_slot_o(node_want_slot[2*g*SLOT_BITS +: 2*SLOT_BITS]), .node_taken_i(node_taken[2*g +: 2]),
-        .node_given_i(node_given[g]), .node_given_slot_i(node_given_slot[g*SLOT_BITS +: SLOT_BITS]),
+        .clk_i(clk_i),
+        .rst_ni(rst_ni),
+        .root_i(root_i),
+        .nodes_i(triangles_line_i),
+        .fault_valid_o(node_fault[g]),
+        .fault_reason_o(node_fault_reason[2*g +: 2]),
+        .fault_line_o(node_fault_line[g*LINE_BITS +: LINE_BITS]),
+        .stop_i(fault_valid_o),
+        .slot_valid_o(slot_valid[g]),
+        .slot_ready_i(enters && enter_grant[g]),
+        .slot_o(slot_of[g*SLOT_BITS +: SLOT_BITS]),
+        .ray_valid_i(set_valid && set_lane[g]),
+        .ray_slot_i(set_slot),
+        .ray_meets_i(meets),
+        .ray_shadow_i(set_shadow),
+        .origin_i(origin),
+        .backwards_i(backwards),
+        .still_i(still),
+        .reciprocal_i(reciprocal),
+        .exponent_i(exponent),
+        .padding_i(padding),
+        .limit_key_i(limit_key),
+        .padded_lower_i(padded_lower),
+        .padded_upper_i(padded_upper),
+        .inverse_i(inverse),
+        .main_axis_i(main_axis),
+        .shear_i(shear),
+        .direction_i(direction),
+        .limit_i(limit),
+        .scale_i(scale),
+        .node_want_o(node_want[2*g +: 2]),
+        .node_want_line_o(node_want_line[2*g*LINE_BITS +: 2*LINE_BITS]),
+        .node_want_slot_o(node_want_slot[2*g*SLOT_BITS +: 2*SLOT_BITS]),
+        .node_taken_i(node_taken[2*g +: 2]),
+        .node_given_i(node_given[g]),
+        .node_given_slot_i(node_given_slot[g*SLOT_BITS +: SLOT_BITS]),
         .node_given_data_i(node_given_data[g*512 +: 512]),
-        .leaf_want_o(leaf_want[2*g +: 2]), .leaf_want_nobody_o(leaf_nobody[2*g +: 2]),
+        .leaf_want_o(leaf_want[2*g +: 2]),
+        .leaf_want_nobody_o(leaf_nobody[2*g +: 2]),
         .leaf_want_line_o(leaf_want_line[2*g*LINE_BITS +: 2*LINE_BITS]),
-        .leaf_want_slot_o(leaf_want_slot[2*g*SLOT_BITS +: 2*SLOT_BITS]), .leaf_taken_i(leaf_taken[2*g +: 2]),
-        .leaf_room_o(leaf_room[g]), .leaf_waited_i(leaf_waited[g] && leaf_room[g]), .leaf_given_i(leaf_given[g]),
+        .leaf_want_slot_o(leaf_want_slot[2*g*SLOT_BITS +: 2*SLOT_BITS]),
+        .leaf_taken_i(leaf_taken[2*g +: 2]),
+        .leaf_room_o(leaf_room[g]),
+        .leaf_waited_i(leaf_waited[g] && leaf_room[g]),
+        .leaf_given_i(leaf_given[g]),
         .leaf_given_slot_i(leaf_given_slot[g*SLOT_BITS +: SLOT_BITS]),
         .leaf_given_data_i(leaf_given_data[g*512 +: 512]),
-        .request_valid_o(stack_request_valid[g]), .request_ready_i(stack_request_ready[g]),
-        .request_write_o(stack_request_write[g]), .request_slot_o(stack_request_slot[g*SLOT_BITS +: SLOT_BITS]),
+        .request_valid_o(stack_request_valid[g]),
+        .request_ready_i(stack_request_ready[g]),
+        .request_write_o(stack_request_write[g]),
+        .request_slot_o(stack_request_slot[g*SLOT_BITS +: SLOT_BITS]),
         .request_block_o(stack_request_block[g*BLOCK_BITS +: BLOCK_BITS]),
         .request_entries_o(stack_request_entries[g*4*ENTRY_BITS +: 4*ENTRY_BITS]),
-        .fill_valid_i(stack_fill_valid[g]), .fill_entries_i(stack_fill_entries),
-        .test_valid_o(test_valid[g]), .test_ready_i(test_ready[g]), .test_tag_o(test_tag[g*TAG_BITS +: TAG_BITS]),
-        .test_corners_o(test[g*TEST_BITS +: 288]), .test_number_o(test[g*TEST_BITS+288 +: 32]),
-        .test_origin_o(test[g*TEST_BITS+320 +: 96]), .test_padded_lower_o(test[g*TEST_BITS+416 +: 96]),
-        .test_padded_upper_o(test[g*TEST_BITS+512 +: 96]), .test_inverse_o(test[g*TEST_BITS+608 +: 96]),
-        .test_main_axis_o(test[g*TEST_BITS+704 +: 2]), .test_shear_o(test[g*TEST_BITS+706 +: 64]),
-        .test_direction_o(test[g*TEST_BITS+770 +: 105]),
-        .limit_slot_i(limit_tag[g*TAG_BITS +: SLOT_BITS]), .limit_o(test_limit[g*32 +: 32]),
-        .scale_o(test_scale[g*9 +: 9]), .best_slot_i(best_tag[g*TAG_BITS +: SLOT_BITS]),
-        .best_t_o(best_t[g*32 +: 32]), .best_number_o(best_number[g*32 +: 32]), .result_valid_i(result_valid[g]),
-        .result_tag_i(result_tag[g*TAG_BITS +: TAG_BITS]), .result_number_i(result_number[g*32 +: 32]),
-        .result_hit_i(result_hit[g]), .result_t_i(result_t[g*32 +: 32]),
-        .done_valid_o(done_valid[g]), .done_ready_i(done_ready[g]),
-        .done_slot_o(done_slot[g*SLOT_BITS +: SLOT_BITS]), .done_hit_o(done_hit[g]),
-        .done_t_o(done_t[g*32 +: 32]), .done_number_o(done_number[g*32 +: 32]), .done_place_o(done_place[g*29 +: 29]),
-        .free_valid_i(slot_free[g]), .free_slot_i(slot_free_slot));
+        .fill_valid_i(stack_fill_valid[g]),
+        .fill_entries_i(stack_fill_entries),
+        .test_valid_o(test_valid[g]),
+        .test_ready_i(test_ready[g]),
+        .test_tag_o(test_tag[g*TAG_BITS +: TAG_BITS]),
+        .test_corners_o(test[g*TEST_BITS+TEST_CORNERS +: TEST_CORNERS_BITS]),
+        .test_number_o(test[g*TEST_BITS+TEST_NUMBER +: TEST_NUMBER_BITS]),
+        .test_origin_o(test[g*TEST_BITS+TEST_ORIGIN +: TEST_ORIGIN_BITS]),
+        .test_padded_lower_o(test[g*TEST_BITS+TEST_PADDED_LOWER +: TEST_PADDED_LOWER_BITS]),
+        .test_padded_upper_o(test[g*TEST_BITS+TEST_PADDED_UPPER +: TEST_PADDED_UPPER_BITS]),
+        .test_inverse_o(test[g*TEST_BITS+TEST_INVERSE +: TEST_INVERSE_BITS]),
+        .test_main_axis_o(test[g*TEST_BITS+TEST_MAIN_AXIS +: TEST_MAIN_AXIS_BITS]),
+        .test_shear_o(test[g*TEST_BITS+TEST_SHEAR +: TEST_SHEAR_BITS]),
+        .test_direction_o(test[g*TEST_BITS+TEST_DIRECTION +: TEST_DIRECTION_BITS]),
+        .limit_slot_i(limit_tag[g*TAG_BITS +: SLOT_BITS]),
+        .limit_o(test_limit[g*32 +: 32]),
+        .scale_o(test_scale[g*9 +: 9]),
+        .best_slot_i(best_tag[g*TAG_BITS +: SLOT_BITS]),
+        .best_t_o(best_t[g*32 +: 32]),
+        .best_number_o(best_number[g*32 +: 32]),
+        .result_valid_i(result_valid[g]),
+        .result_tag_i(result_tag[g*TAG_BITS +: TAG_BITS]),
+        .result_number_i(result_number[g*32 +: 32]),
+        .result_hit_i(result_hit[g]),
+        .result_t_i(result_t[g*32 +: 32]),
+        .done_valid_o(done_valid[g]),
+        .done_ready_i(done_ready[g]),
+        .done_slot_o(done_slot[g*SLOT_BITS +: SLOT_BITS]),
+        .done_hit_o(done_hit[g]),
+        .done_t_o(done_t[g*32 +: 32]),
+        .done_number_o(done_number[g*32 +: 32]),
+        .done_place_o(done_place[g*29 +: 29]),
+        .free_valid_i(slot_free[g]),
+        .free_slot_i(slot_free_slot)
+      );
     end
   endgenerate
   wire unused = &{1'b0, done_number, node_waited, limit_tag, best_tag};
@@ -256,11 +323,25 @@ module traverser #(
         assign result_hit[LANE] = hit;
         assign result_t[LANE*32 +: 32] = t;
       end
-      triangle_group #(.LANES(COUNT), .TAG_BITS(TAG_BITS), .TEST_BITS(TEST_BITS)) pipe (
-        .clk_i(clk_i), .rst_ni(rst_ni), .test_valid_i(valid), .test_ready_o(ready), .test_tag_i(tags),
-        .test_i(tests), .limit_tag_o(asks_limit), .limit_i(limits), .scale_i(scales), .best_tag_o(asks_best),
-        .best_t_i(ts), .best_number_i(numbers), .result_valid_o(results), .result_tag_o(tag),
-        .result_number_o(number), .result_hit_o(hit), .result_t_o(t));
+      triangle_group #(.LANES(COUNT), .TAG_BITS(TAG_BITS), .WIDTH(TEST_BITS)) pipe (
+        .clk_i(clk_i),
+        .rst_ni(rst_ni),
+        .test_valid_i(valid),
+        .test_ready_o(ready),
+        .test_tag_i(tags),
+        .test_i(tests),
+        .limit_tag_o(asks_limit),
+        .limit_i(limits),
+        .scale_i(scales),
+        .best_tag_o(asks_best),
+        .best_t_i(ts),
+        .best_number_i(numbers),
+        .result_valid_o(results),
+        .result_tag_o(tag),
+        .result_number_o(number),
+        .result_hit_o(hit),
+        .result_t_o(t)
+      );
     end
   endgenerate
 
@@ -269,24 +350,54 @@ module traverser #(
     .LANES(LANES), .SLOTS(SLOTS), .POOL(POOL), .RECORD_WORDS(RECORD_WORDS), .SHADING(SHADING), .CULLING(CULLING),
     .KINDS(KINDS), .PLACE_BITS(PLACE_BITS), .SLOT_BITS(SLOT_BITS)
   ) exit (
-    .clk_i(clk_i), .rst_ni(rst_ni), .material_base_i(material_base_i), .record_i(record_i),
-    .depth_limit_i(depth_limit_i), .reflections_i(reflections_i), .ray_valid_i(enters), .ray_place_i(ray_place_i),
-    .ray_words_i(ray_words), .set_valid_i(set_lane & {LANES{set_valid}}), .set_slot_i(set_slot),
-    .set_place_i(set_place), .set_depth_i(set_depth), .set_shadow_i(set_shadow), .set_origin_i(origin),
-    .set_main_axis_i(main_axis), .set_shear_i(shear), .set_scale_i(scale),
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .material_base_i(material_base_i),
+    .record_i(record_i),
+    .depth_limit_i(depth_limit_i),
+    .reflections_i(reflections_i),
+    .ray_valid_i(enters),
+    .ray_place_i(ray_place_i),
+    .ray_words_i(ray_words),
+    .set_valid_i(set_lane & {LANES{set_valid}}),
+    .set_slot_i(set_slot),
+    .set_place_i(set_place),
+    .set_depth_i(set_depth),
+    .set_shadow_i(set_shadow),
+    .set_origin_i(origin),
+    .set_main_axis_i(main_axis),
+    .set_shear_i(shear),
+    .set_scale_i(scale),
     .done_valid_i(done_valid & {LANES{!fault_valid_o}}),
-    .done_ready_o(done_ready), .done_slot_i(done_slot), .done_hit_i(done_hit), .done_t_i(done_t),
-    .done_place_i(done_place), .slot_free_o(slot_free), .slot_free_slot_o(slot_free_slot),
-    .want_o(leaf_want[2*LANES +: 2]), .want_nobody_o(leaf_nobody[2*LANES +: 2]),
+    .done_ready_o(done_ready),
+    .done_slot_i(done_slot),
+    .done_hit_i(done_hit),
+    .done_t_i(done_t),
+    .done_place_i(done_place),
+    .slot_free_o(slot_free),
+    .slot_free_slot_o(slot_free_slot),
+    .want_o(leaf_want[2*LANES +: 2]),
+    .want_nobody_o(leaf_nobody[2*LANES +: 2]),
     .want_line_o(leaf_want_line[2*LANES*LINE_BITS +: 2*LINE_BITS]),
-    .want_slot_o(leaf_want_slot[2*LANES*SLOT_BITS +: 2*SLOT_BITS]), .taken_i(leaf_taken[2*LANES +: 2]),
-    .room_o(leaf_room[LANES]), .waited_i(leaf_waited[LANES] && leaf_room[LANES]), .given_i(leaf_given[LANES]),
+    .want_slot_o(leaf_want_slot[2*LANES*SLOT_BITS +: 2*SLOT_BITS]),
+    .taken_i(leaf_taken[2*LANES +: 2]),
+    .room_o(leaf_room[LANES]),
+    .waited_i(leaf_waited[LANES] && leaf_room[LANES]),
+    .given_i(leaf_given[LANES]),
     .given_slot_i(leaf_given_slot[LANES*SLOT_BITS +: SLOT_BITS]),
-    .given_data_i(leaf_given_data[LANES*512 +: 512]), .free_valid_o(free_valid_o), .free_place_o(free_place_o),
-    .free_shadow_o(free_shadow_o), .put_valid_o(put_valid_o), .put_ready_i(put_ready_i), .put_kind_o(put_kind_o),
-    .put_data_o(put_data_o), .contribution_valid_o(contribution_valid_o),
-    .contribution_ready_i(contribution_ready_i), .contribution_pixel_o(contribution_pixel_o),
-    .contribution_color_o(contribution_color_o));
+    .given_data_i(leaf_given_data[LANES*512 +: 512]),
+    .free_valid_o(free_valid_o),
+    .free_place_o(free_place_o),
+    .free_shadow_o(free_shadow_o),
+    .put_valid_o(put_valid_o),
+    .put_ready_i(put_ready_i),
+    .put_kind_o(put_kind_o),
+    .put_data_o(put_data_o),
+    .contribution_valid_o(contribution_valid_o),
+    .contribution_ready_i(contribution_ready_i),
+    .contribution_pixel_o(contribution_pixel_o),
+    .contribution_color_o(contribution_color_o)
+  );
 
   // ---- Caches and memory
   wire node_request_valid, node_request_ready, node_fill_valid, node_fill_ready;
@@ -302,45 +413,98 @@ module traverser #(
     .LANES(LANES), .SLOTS(SLOTS), .LINES(NODE_LINES), .WAYS(NODE_WAYS), .MSHRS(NODE_MSHRS), .BANKS(NODE_BANKS),
     .LINE_BITS(LINE_BITS)
   ) nodes (
-    .clk_i(clk_i), .rst_ni(rst_ni), .want_valid_i(node_want), .want_line_i(node_want_line),
-    .want_slot_i(node_want_slot), .want_nobody_i({2*LANES{1'b0}}), .taken_o(node_taken),
-    .waited_valid_o(node_waited), .waited_ready_i({LANES{1'b1}}), .given_valid_o(node_given),
-    .given_slot_o(node_given_slot), .given_data_o(node_given_data), .request_valid_o(node_request_valid),
-    .request_ready_i(node_request_ready), .request_line_o(node_request_line), .request_id_o(node_request_id),
-    .fill_valid_i(node_fill_valid), .fill_ready_o(node_fill_ready), .fill_id_i(node_fill_id),
-    .fill_data_i(fill_data));
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .want_valid_i(node_want),
+    .want_line_i(node_want_line),
+    .want_slot_i(node_want_slot),
+    .want_nobody_i({2*LANES{1'b0}}),
+    .taken_o(node_taken),
+    .waited_valid_o(node_waited),
+    .waited_ready_i({LANES{1'b1}}),
+    .given_valid_o(node_given),
+    .given_slot_o(node_given_slot),
+    .given_data_o(node_given_data),
+    .request_valid_o(node_request_valid),
+    .request_ready_i(node_request_ready),
+    .request_line_o(node_request_line),
+    .request_id_o(node_request_id),
+    .fill_valid_i(node_fill_valid),
+    .fill_ready_o(node_fill_ready),
+    .fill_id_i(node_fill_id),
+    .fill_data_i(fill_data)
+  );
   tree_banks #(
     .LANES(LANES+1), .SLOTS(SLOTS), .LINES(TRIANGLE_LINES), .WAYS(TRIANGLE_WAYS), .MSHRS(TRIANGLE_MSHRS),
     .BANKS(TRIANGLE_BANKS), .LINE_BITS(LINE_BITS)
   ) triangles (
-    .clk_i(clk_i), .rst_ni(rst_ni), .want_valid_i(leaf_want), .want_line_i(leaf_want_line),
-    .want_slot_i(leaf_want_slot), .want_nobody_i(leaf_nobody), .taken_o(leaf_taken), .waited_valid_o(leaf_waited),
-    .waited_ready_i(leaf_room), .given_valid_o(leaf_given), .given_slot_o(leaf_given_slot),
-    .given_data_o(leaf_given_data), .request_valid_o(triangle_request_valid),
-    .request_ready_i(triangle_request_ready), .request_line_o(triangle_request_line),
-    .request_id_o(triangle_request_id), .fill_valid_i(triangle_fill_valid), .fill_ready_o(triangle_fill_ready),
-    .fill_id_i(triangle_fill_id), .fill_data_i(fill_data));
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .want_valid_i(leaf_want),
+    .want_line_i(leaf_want_line),
+    .want_slot_i(leaf_want_slot),
+    .want_nobody_i(leaf_nobody),
+    .taken_o(leaf_taken),
+    .waited_valid_o(leaf_waited),
+    .waited_ready_i(leaf_room),
+    .given_valid_o(leaf_given),
+    .given_slot_o(leaf_given_slot),
+    .given_data_o(leaf_given_data),
+    .request_valid_o(triangle_request_valid),
+    .request_ready_i(triangle_request_ready),
+    .request_line_o(triangle_request_line),
+    .request_id_o(triangle_request_id),
+    .fill_valid_i(triangle_fill_valid),
+    .fill_ready_o(triangle_fill_ready),
+    .fill_id_i(triangle_fill_id),
+    .fill_data_i(fill_data)
+  );
   tree_port #(
     .LANES(LANES), .SLOTS(SLOTS), .ENTRY_BITS(ENTRY_BITS), .BLOCK_BITS(BLOCK_BITS), .NODE_ID_BITS(NODE_ID_BITS),
     .TRIANGLE_ID_BITS(TRIANGLE_ID_BITS), .LINES(NODE_MSHRS + TRIANGLE_MSHRS + LANES)
   ) port (
-    .clk_i(clk_i), .rst_ni(rst_ni), .triangles_line_i(triangles_line_i), .triangle_lines_i(triangle_lines_i),
-    .stacks_line_i(stacks_line_i), .fault_valid_o(port_fault), .fault_source_o(port_fault_source),
-    .fault_line_o(port_fault_line), .stop_i(fault_valid_o),
-    .node_request_valid_i(node_request_valid), .node_request_ready_o(node_request_ready),
-    .node_request_line_i(node_request_line), .node_request_id_i(node_request_id),
-    .node_fill_valid_o(node_fill_valid), .node_fill_ready_i(node_fill_ready), .node_fill_id_o(node_fill_id),
-    .triangle_request_valid_i(triangle_request_valid), .triangle_request_ready_o(triangle_request_ready),
-    .triangle_request_line_i(triangle_request_line), .triangle_request_id_i(triangle_request_id),
-    .triangle_fill_valid_o(triangle_fill_valid), .triangle_fill_ready_i(triangle_fill_ready),
-    .triangle_fill_id_o(triangle_fill_id), .fill_data_o(fill_data), .stack_request_valid_i(stack_request_valid),
-    .stack_request_ready_o(stack_request_ready), .stack_request_write_i(stack_request_write),
-    .stack_request_slot_i(stack_request_slot), .stack_request_block_i(stack_request_block),
-    .stack_request_entries_i(stack_request_entries), .stack_fill_valid_o(stack_fill_valid),
-    .stack_fill_entries_o(stack_fill_entries), .request_valid_o(request_valid_o),
-    .request_ready_i(request_ready_i), .request_write_o(request_write_o), .request_second_o(request_second_o),
-    .request_address_o(request_address_o), .request_data_o(request_data_o), .response_valid_i(response_valid_i),
-    .response_beat_i(response_beat_i), .response_data_i(response_data_i));
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .triangles_line_i(triangles_line_i),
+    .triangle_lines_i(triangle_lines_i),
+    .stacks_line_i(stacks_line_i),
+    .fault_valid_o(port_fault),
+    .fault_source_o(port_fault_source),
+    .fault_line_o(port_fault_line),
+    .stop_i(fault_valid_o),
+    .node_request_valid_i(node_request_valid),
+    .node_request_ready_o(node_request_ready),
+    .node_request_line_i(node_request_line),
+    .node_request_id_i(node_request_id),
+    .node_fill_valid_o(node_fill_valid),
+    .node_fill_ready_i(node_fill_ready),
+    .node_fill_id_o(node_fill_id),
+    .triangle_request_valid_i(triangle_request_valid),
+    .triangle_request_ready_o(triangle_request_ready),
+    .triangle_request_line_i(triangle_request_line),
+    .triangle_request_id_i(triangle_request_id),
+    .triangle_fill_valid_o(triangle_fill_valid),
+    .triangle_fill_ready_i(triangle_fill_ready),
+    .triangle_fill_id_o(triangle_fill_id),
+    .fill_data_o(fill_data),
+    .stack_request_valid_i(stack_request_valid),
+    .stack_request_ready_o(stack_request_ready),
+    .stack_request_write_i(stack_request_write),
+    .stack_request_slot_i(stack_request_slot),
+    .stack_request_block_i(stack_request_block),
+    .stack_request_entries_i(stack_request_entries),
+    .stack_fill_valid_o(stack_fill_valid),
+    .stack_fill_entries_o(stack_fill_entries),
+    .request_valid_o(request_valid_o),
+    .request_ready_i(request_ready_i),
+    .request_write_o(request_write_o),
+    .request_second_o(request_second_o),
+    .request_address_o(request_address_o),
+    .request_data_o(request_data_o),
+    .response_valid_i(response_valid_i),
+    .response_beat_i(response_beat_i),
+    .response_data_i(response_data_i)
+  );
 
   // ---- The first fault: of the port's and the lanes' in one cycle the port's, then that of the lowest lane
   reg [2:0] first_code;

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // A lane of the traverser: slots for rays, a box pipe, the stacks, and what is kept of each ray and its best hit. Nodes
 // and leaves come from two caches that lanes share, and triangles go to a triangle pipe, which may be shared too. A
 // slot is given to a ray, which comes when it is set up; visits what its nodes, stack and hits say; and is offered with
@@ -120,18 +122,30 @@ module traverser_lane #(
   input  wire                    free_valid_i,
   input  wire [SLOT_BITS-1:0]    free_slot_i
 );
+`include "records.vh"
   free_list #(.SIZE(SLOTS), .NUMBER_BITS(SLOT_BITS)) slots (
-    .clk_i(clk_i), .rst_ni(rst_ni), .valid_o(slot_valid_o), .ready_i(slot_ready_i), .number_o(slot_o),
-    .free_i(free_valid_i), .free_number_i(free_slot_i));
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .valid_o(slot_valid_o),
+    .ready_i(slot_ready_i),
+    .number_o(slot_o),
+    .free_i(free_valid_i),
+    .free_number_i(free_slot_i)
+  );
 
   // ---- Rays that come, until their stack can be begun
 
   wire begin_valid, begin_ready, begin_meets;
   wire [SLOT_BITS-1:0] begin_slot;
   ram_queue #(.WIDTH(SLOT_BITS+1), .DEPTH(SLOTS)) begins (
-    .clk_i(clk_i), .rst_ni(rst_ni), .push_i(ray_valid_i),
-    .data_i({ray_slot_i, ray_meets_i && root_i != 32'hffffffff}), .valid_o(begin_valid), .ready_i(begin_ready),
-    .data_o({begin_slot, begin_meets}));
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .push_i(ray_valid_i),
+    .data_i({ray_slot_i, ray_meets_i && root_i != 32'hffffffff}),
+    .valid_o(begin_valid),
+    .ready_i(begin_ready),
+    .data_o({begin_slot, begin_meets})
+  );
   wire begins_now = begin_valid && begin_ready;
 
   // ---- Where a ray goes on: from a node's result with the nearest child; from its stack, or at the root
@@ -153,34 +167,48 @@ module traverser_lane #(
 
   // ---- Nodes that are wanted
 
-  localparam integer NODE_BITS = SLOT_BITS + LINE_BITS;
+  localparam integer WANT_BITS = SLOT_BITS + LINE_BITS;
   wire fill_waits;
   wire [1:0] node_waits, node_popped;
-  wire [2*NODE_BITS-1:0] node_heads;
+  wire [2*WANT_BITS-1:0] node_heads;
   genvar g;
   generate
     for (g = 0; g < 2; g = g + 1) begin : gen_nodes
       // Who goes on is known late in a cycle.
       reg go_q;
-      reg [NODE_BITS-1:0] go_node_q;
+      reg [WANT_BITS-1:0] go_node_q;
       always @(posedge clk_i) go_q <= rst_ni && go[g] && !go_reference[32*g+31];
       always @(posedge clk_i) go_node_q <= {go_slot[g*SLOT_BITS+:SLOT_BITS], go_reference[32*g+:LINE_BITS]};
-      ram_queue #(.WIDTH(NODE_BITS), .DEPTH(SLOTS)) queue (
-        .clk_i(clk_i), .rst_ni(rst_ni), .push_i(go_q), .data_i(go_node_q), .valid_o(node_waits[g]),
-        .ready_i(node_popped[g]), .data_o(node_heads[g*NODE_BITS+:NODE_BITS]));
+      ram_queue #(.WIDTH(WANT_BITS), .DEPTH(SLOTS)) queue (
+        .clk_i(clk_i),
+        .rst_ni(rst_ni),
+        .push_i(go_q),
+        .data_i(go_node_q),
+        .valid_o(node_waits[g]),
+        .ready_i(node_popped[g]),
+        .data_o(node_heads[g*WANT_BITS+:WANT_BITS])
+      );
     end
   endgenerate
   reg node_turn_q;                               // whose head comes next
   wire node_second = node_waits[node_turn_q] ? node_turn_q : !node_turn_q;
   wire offers_ready, asked;                      // asked: in the cycle before
   wire [1:0] offered;
-  wire [2*NODE_BITS-1:0] offers;
+  wire [2*WANT_BITS-1:0] offers;
   wire [SLOT_BITS-1:0] asked_slot;
   wire [LINE_BITS-1:0] asked_line;
-  line_offers #(.WIDTH(NODE_BITS)) node_offers (
-    .clk_i(clk_i), .rst_ni(rst_ni), .valid_i(|node_waits), .ready_o(offers_ready),
-    .data_i(node_second ? node_heads[NODE_BITS+:NODE_BITS] : node_heads[0+:NODE_BITS]), .valid_o(offered),
-    .data_o(offers), .taken_i(node_taken_i), .asked_o(asked), .asked_data_o({asked_slot, asked_line}));
+  line_offers #(.WIDTH(WANT_BITS)) node_offers (
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .valid_i(|node_waits),
+    .ready_o(offers_ready),
+    .data_i(node_second ? node_heads[WANT_BITS+:WANT_BITS] : node_heads[0+:WANT_BITS]),
+    .valid_o(offered),
+    .data_o(offers),
+    .taken_i(node_taken_i),
+    .asked_o(asked),
+    .asked_data_o({asked_slot, asked_line})
+  );
   assign node_popped = offers_ready ? {node_second, !node_second} & node_waits : 2'd0;
   always @(posedge clk_i)
     if (!rst_ni) node_turn_q <= 1'b0;
@@ -189,7 +217,7 @@ module traverser_lane #(
   generate
     for (g = 0; g < 2; g = g + 1) begin : gen_want
       assign {node_want_slot_o[g*SLOT_BITS+:SLOT_BITS], node_want_line_o[g*LINE_BITS+:LINE_BITS]} =
-        offers[g*NODE_BITS+:NODE_BITS];
+        offers[g*WANT_BITS+:WANT_BITS];
     end
   endgenerate
 
@@ -203,42 +231,58 @@ module traverser_lane #(
   wire [KEY_BITS-1:0] box_limit, best_key;
   wire best_key_valid;
   ram_1r1w #(.WIDTH(BOX_WIDTH), .DEPTH(SLOTS)) box_rays (
-    .clk_i(clk_i), .read_i(node_given_i), .read_address_i(node_given_slot_i),
+    .clk_i(clk_i),
+    .read_i(node_given_i),
+    .read_address_i(node_given_slot_i),
     .read_data_o({box_origin, box_backwards, box_still, box_reciprocal, box_exponent, box_padding, box_limit}),
-    .write_i(ray_valid_i), .write_address_i(ray_slot_i),
-    .write_data_i({origin_i, backwards_i, still_i, reciprocal_i, exponent_i, padding_i, limit_key_i}));
+    .write_i(ray_valid_i),
+    .write_address_i(ray_slot_i),
+    .write_data_i({origin_i, backwards_i, still_i, reciprocal_i, exponent_i, padding_i, limit_key_i})
+  );
   reg given_q;
   reg [SLOT_BITS-1:0] given_slot_q;
-  reg [447:0] node_q;
+  reg [NODE_BITS-1:0] node_q;
   always @(posedge clk_i) given_q <= rst_ni && node_given_i && !stop_i;
   always @(posedge clk_i)
     if (node_given_i) begin
       given_slot_q <= node_given_slot_i;
-      node_q <= node_given_data_i[447:0];
+      node_q <= node_given_data_i[NODE_BITS-1:0];
     end
 
   // Meanwhile it is looked at: its number is that of the line that was looked up, and visits are those before it.
   wire [LINE_BITS-1:0] number, counted;
   ram_1r1w #(.WIDTH(LINE_BITS), .DEPTH(SLOTS)) numbers (
-    .clk_i(clk_i), .read_i(node_given_i), .read_address_i(node_given_slot_i), .read_data_o(number),
-    .write_i(asked), .write_address_i(asked_slot), .write_data_i(asked_line));
+    .clk_i(clk_i),
+    .read_i(node_given_i),
+    .read_address_i(node_given_slot_i),
+    .read_data_o(number),
+    .write_i(asked),
+    .write_address_i(asked_slot),
+    .write_data_i(asked_line)
+  );
   reg [SLOTS-1:0] fresh_q;                       // slots whose ray has come to no node yet
   wire [LINE_BITS-1:0] visits = fresh_q[given_slot_q] ? {LINE_BITS{1'b0}} : counted;
   wire [LINE_BITS-1:0] visits_then = visits + {{LINE_BITS-1{1'b0}}, 1'b1};
   ram_1r1w #(.WIDTH(LINE_BITS), .DEPTH(SLOTS)) counts (
-    .clk_i(clk_i), .read_i(node_given_i), .read_address_i(node_given_slot_i), .read_data_o(counted),
-    .write_i(given_q), .write_address_i(given_slot_q), .write_data_i(visits_then));
+    .clk_i(clk_i),
+    .read_i(node_given_i),
+    .read_address_i(node_given_slot_i),
+    .read_data_o(counted),
+    .write_i(given_q),
+    .write_address_i(given_slot_q),
+    .write_data_i(visits_then)
+  );
   integer s;
   always @(posedge clk_i)
     for (s = 0; s < SLOTS; s = s + 1)
       if (ray_valid_i && ray_slot_i == s[SLOT_BITS-1:0]) fresh_q[s] <= 1'b1;
       else if (given_q && given_slot_q == s[SLOT_BITS-1:0]) fresh_q[s] <= 1'b0;
-  wire [7:0] node_children = node_q[127:120];
+  wire [7:0] node_children = node_q[NODE_CHILDREN +: NODE_CHILDREN_BITS];
   wire bad_children = node_children == 8'd0 || node_children > 8'd4;
   wire [3:0] backward;                           // a child is a node, and not of a higher number
   generate
     for (g = 0; g < 4; g = g + 1) begin : gen_child
-      wire [31:0] reference = node_q[320+32*g +: 32];
+      wire [31:0] reference = node_q[NODE_REFERENCES+32*g +: 32];
       assign backward[g] = node_children > g && !reference[31] &&
                            (|reference[30:LINE_BITS] || reference[LINE_BITS-1:0] <= number);
     end
@@ -256,26 +300,49 @@ module traverser_lane #(
   wire [3:0] met;
   wire [4*KEY_BITS-1:0] entry;
   box_pipe #(.BITS(BITS)) boxes (
-    .clk_i(clk_i), .rst_ni(rst_ni), .valid_i(given_q), .ready_o(boxes_ready), .grid_i(node_q[95:0]),
-    .step_i(node_q[119:96]), .children_i(node_q[122:120]), .lower_i(node_q[223:128]), .upper_i(node_q[319:224]),
-    .origin_i(box_origin), .backwards_i(box_backwards), .still_i(box_still), .reciprocal_i(box_reciprocal),
-    .exponent_i(box_exponent), .padding_i(box_padding), .limit_i(test_limit), .valid_o(boxes_valid), .ready_i(1'b1),
-    .met_o(met), .entry_o(entry));
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .valid_i(given_q),
+    .ready_o(boxes_ready),
+    .grid_i(node_q[NODE_GRID +: NODE_GRID_BITS]),
+    .step_i(node_q[NODE_STEP +: NODE_STEP_BITS]),
+    .children_i(node_children[2:0]),
+    .lower_i(node_q[NODE_LOWER +: NODE_LOWER_BITS]),
+    .upper_i(node_q[NODE_UPPER +: NODE_UPPER_BITS]),
+    .origin_i(box_origin),
+    .backwards_i(box_backwards),
+    .still_i(box_still),
+    .reciprocal_i(box_reciprocal),
+    .exponent_i(box_exponent),
+    .padding_i(box_padding),
+    .limit_i(test_limit),
+    .valid_o(boxes_valid),
+    .ready_i(1'b1),
+    .met_o(met),
+    .entry_o(entry)
+  );
   wire [SLOT_BITS-1:0] boxes_slot;
   wire [KEY_BITS-1:0] boxes_limit;
   wire [127:0] boxes_references;
   ram_delay #(.WIDTH(SLOT_BITS+KEY_BITS+128), .CYCLES(8)) along (
-    .clk_i(clk_i), .rst_ni(rst_ni), .data_i({given_slot_q, test_limit, node_q[447:320]}),
+    .clk_i(clk_i), .rst_ni(rst_ni),
+    .data_i({given_slot_q, test_limit, node_q[NODE_REFERENCES +: NODE_REFERENCES_BITS]}),
     .data_o({boxes_slot, boxes_limit, boxes_references}));
   child_order #(.KEY_BITS(KEY_BITS), .REFERENCE_BITS(32)) order (
-    .clk_i(clk_i), .met_i(met), .entry_i(entry), .reference_i(boxes_references), .children_o(children),
-    .nearest_o(nearest), .others_o(others));
+    .clk_i(clk_i),
+    .met_i(met),
+    .entry_i(entry),
+    .reference_i(boxes_references),
+    .children_o(children),
+    .nearest_o(nearest),
+    .others_o(others)
+  );
   always @(posedge clk_i) node_valid_q <= rst_ni && boxes_valid;
   always @(posedge clk_i) begin
     node_slot_q <= boxes_slot;
     node_limit_q <= boxes_limit;
   end
-  wire unused = &{1'b0, boxes_ready, node_given_data_i[511:448], triangle_material, result_t_i[31]};
+  wire unused = &{1'b0, boxes_ready, node_given_data_i[511:NODE_BITS], triangle_material, result_t_i[31]};
 
   // ---- The stacks
 
@@ -284,14 +351,37 @@ module traverser_lane #(
   wire [KEY_BITS-1:0] leaf_limit;
   lane_stacks #(.SLOTS(SLOTS), .ENTRIES(ENTRIES), .KEY_BITS(KEY_BITS), .REFERENCE_BITS(32), .BLOCK_BITS(BLOCK_BITS))
   stacks (
-    .clk_i(clk_i), .rst_ni(rst_ni), .ray_valid_i(begin_valid), .ray_ready_o(begin_ready), .ray_slot_i(begin_slot),
-    .node_slot_i(boxes_slot), .node_valid_i(node_valid_q), .node_children_i(children), .node_nearest_i(nearest),
-    .node_others_i(others), .node_limit_i(node_limit_q), .node_goes_on_o(goes_on), .leaf_slot_i(leaf_slot),
-    .leaf_valid_i(leaf_valid), .leaf_limit_i(leaf_limit), .leaf_over_i(leaf_over), .next_valid_o(next_valid),
-    .next_slot_o(next_slot), .next_reference_o(next_reference), .done_valid_o(done), .done_slot_o(done_slot),
-    .request_valid_o(request_valid_o), .request_ready_i(request_ready_i), .request_write_o(request_write_o),
-    .request_slot_o(request_slot_o), .request_block_o(request_block_o), .request_entries_o(request_entries_o),
-    .fill_valid_i(fill_valid_i), .fill_entries_i(fill_entries_i), .fill_waits_o(fill_waits));
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .ray_valid_i(begin_valid),
+    .ray_ready_o(begin_ready),
+    .ray_slot_i(begin_slot),
+    .node_slot_i(boxes_slot),
+    .node_valid_i(node_valid_q),
+    .node_children_i(children),
+    .node_nearest_i(nearest),
+    .node_others_i(others),
+    .node_limit_i(node_limit_q),
+    .node_goes_on_o(goes_on),
+    .leaf_slot_i(leaf_slot),
+    .leaf_valid_i(leaf_valid),
+    .leaf_limit_i(leaf_limit),
+    .leaf_over_i(leaf_over),
+    .next_valid_o(next_valid),
+    .next_slot_o(next_slot),
+    .next_reference_o(next_reference),
+    .done_valid_o(done),
+    .done_slot_o(done_slot),
+    .request_valid_o(request_valid_o),
+    .request_ready_i(request_ready_i),
+    .request_write_o(request_write_o),
+    .request_slot_o(request_slot_o),
+    .request_block_o(request_block_o),
+    .request_entries_o(request_entries_o),
+    .fill_valid_i(fill_valid_i),
+    .fill_entries_i(fill_entries_i),
+    .fill_waits_o(fill_waits)
+  );
 
   // ---- Leaves and their triangles
 
@@ -301,29 +391,55 @@ module traverser_lane #(
   wire [28:0] triangle_place;
   wire [31:0] triangle_material;
   leaf_reader #(.SLOTS(SLOTS), .LINE_BITS(LINE_BITS)) leaves (
-    .clk_i(clk_i), .rst_ni(rst_ni), .start_i({go[1] && go_reference[63], go[0] && go_reference[31]}),
-    .start_slot_i(go_slot), .start_leaf_i({go_reference[62:32], go_reference[30:0]}), .want_o(leaf_want_o),
-    .want_nobody_o(leaf_want_nobody_o), .want_line_o(leaf_want_line_o), .want_slot_o(leaf_want_slot_o),
-    .taken_i(leaf_taken_i), .room_o(leaf_room_o), .waited_i(leaf_waited_i), .given_i(leaf_given_i),
-    .given_slot_i(leaf_given_slot_i), .given_data_i(leaf_given_data_i), .load_o(load), .load_slot_o(load_slot),
-    .triangle_valid_o(test_valid_o), .triangle_ready_i(test_ready_i), .triangle_slot_o(triangle_slot),
-    .triangle_last_o(triangle_last), .triangle_place_o(triangle_place),
-    .triangle_o({triangle_material, test_number_o, test_corners_o}));
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .start_i({go[1] && go_reference[63], go[0] && go_reference[31]}),
+    .start_slot_i(go_slot),
+    .start_leaf_i({go_reference[62:32], go_reference[30:0]}),
+    .want_o(leaf_want_o),
+    .want_nobody_o(leaf_want_nobody_o),
+    .want_line_o(leaf_want_line_o),
+    .want_slot_o(leaf_want_slot_o),
+    .taken_i(leaf_taken_i),
+    .room_o(leaf_room_o),
+    .waited_i(leaf_waited_i),
+    .given_i(leaf_given_i),
+    .given_slot_i(leaf_given_slot_i),
+    .given_data_i(leaf_given_data_i),
+    .load_o(load),
+    .load_slot_o(load_slot),
+    .triangle_valid_o(test_valid_o),
+    .triangle_ready_i(test_ready_i),
+    .triangle_slot_o(triangle_slot),
+    .triangle_last_o(triangle_last),
+    .triangle_place_o(triangle_place),
+    .triangle_o({triangle_material, test_number_o, test_corners_o})
+  );
   assign test_tag_o = {triangle_place, triangle_last, triangle_slot};
   ram_1r1w #(.WIDTH(555), .DEPTH(SLOTS)) triangle_rays (
-    .clk_i(clk_i), .read_i(load), .read_address_i(load_slot),
+    .clk_i(clk_i),
+    .read_i(load),
+    .read_address_i(load_slot),
     .read_data_o({test_origin_o, test_padded_lower_o, test_padded_upper_o, test_inverse_o, test_main_axis_o,
                   test_shear_o, test_direction_o}),
-    .write_i(ray_valid_i), .write_address_i(ray_slot_i),
-    .write_data_i({origin_i, padded_lower_i, padded_upper_i, inverse_i, main_axis_i, shear_i, direction_i}));
+    .write_i(ray_valid_i),
+    .write_address_i(ray_slot_i),
+    .write_data_i({origin_i, padded_lower_i, padded_upper_i, inverse_i, main_axis_i, shear_i, direction_i})
+  );
 
   // ---- Rays that are done, and the hits
 
   wire ends_valid, ends_ready;
   wire [SLOT_BITS-1:0] ends_slot;
   ram_queue #(.WIDTH(SLOT_BITS), .DEPTH(SLOTS)) ends (
-    .clk_i(clk_i), .rst_ni(rst_ni), .push_i(done || (begins_now && !begin_meets)),
-    .data_i(done ? done_slot : begin_slot), .valid_o(ends_valid), .ready_i(ends_ready), .data_o(ends_slot));
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .push_i(done || (begins_now && !begin_meets)),
+    .data_i(done ? done_slot : begin_slot),
+    .valid_o(ends_valid),
+    .ready_i(ends_ready),
+    .data_o(ends_slot)
+  );
   reg done_q;
   reg [SLOT_BITS-1:0] done_slot_q;
   assign ends_ready = !done_q || done_ready_i;
@@ -335,14 +451,38 @@ module traverser_lane #(
   assign done_slot_o = done_slot_q;
   assign done_t_o[31] = 1'b0;
   lane_hits #(.SLOTS(SLOTS), .BITS(BITS)) hits (
-    .clk_i(clk_i), .rst_ni(rst_ni), .ray_valid_i(ray_valid_i), .ray_slot_i(ray_slot_i), .ray_shadow_i(ray_shadow_i),
-    .ray_limit_i(limit_i), .ray_scale_i(scale_i), .limit_slot_i(limit_slot_i), .limit_o(limit_o), .scale_o(scale_o),
-    .best_slot_i(best_slot_i), .best_t_o(best_t_o), .best_number_o(best_number_o), .result_valid_i(result_valid_i),
-    .result_slot_i(result_tag_i[SLOT_BITS-1:0]), .result_last_i(result_tag_i[SLOT_BITS]),
-    .result_place_i(result_tag_i[SLOT_BITS+1+:29]), .result_number_i(result_number_i), .result_hit_i(result_hit_i),
-    .result_t_i(result_t_i[30:0]), .leaf_slot_o(leaf_slot), .leaf_valid_o(leaf_valid), .leaf_limit_o(leaf_limit),
-    .leaf_over_o(leaf_over), .key_slot_i(node_given_slot_i), .key_valid_o(best_key_valid), .key_o(best_key),
-    .done_slot_i(ends_ready ? ends_slot : done_slot_q), .done_hit_o(done_hit_o), .done_t_o(done_t_o[30:0]),
-    .done_number_o(done_number_o), .done_place_o(done_place_o));
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .ray_valid_i(ray_valid_i),
+    .ray_slot_i(ray_slot_i),
+    .ray_shadow_i(ray_shadow_i),
+    .ray_limit_i(limit_i),
+    .ray_scale_i(scale_i),
+    .limit_slot_i(limit_slot_i),
+    .limit_o(limit_o),
+    .scale_o(scale_o),
+    .best_slot_i(best_slot_i),
+    .best_t_o(best_t_o),
+    .best_number_o(best_number_o),
+    .result_valid_i(result_valid_i),
+    .result_slot_i(result_tag_i[SLOT_BITS-1:0]),
+    .result_last_i(result_tag_i[SLOT_BITS]),
+    .result_place_i(result_tag_i[SLOT_BITS+1+:29]),
+    .result_number_i(result_number_i),
+    .result_hit_i(result_hit_i),
+    .result_t_i(result_t_i[30:0]),
+    .leaf_slot_o(leaf_slot),
+    .leaf_valid_o(leaf_valid),
+    .leaf_limit_o(leaf_limit),
+    .leaf_over_o(leaf_over),
+    .key_slot_i(node_given_slot_i),
+    .key_valid_o(best_key_valid),
+    .key_o(best_key),
+    .done_slot_i(ends_ready ? ends_slot : done_slot_q),
+    .done_hit_o(done_hit_o),
+    .done_t_o(done_t_o[30:0]),
+    .done_number_o(done_number_o),
+    .done_place_o(done_place_o)
+  );
 endmodule
 `default_nettype wire

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // A cache of the traverser, read only, of banks: a line's last bits choose its bank. In a cycle each bank looks up one
 // line, for all lanes that want it (bank_arbiter.v, tree_cache.v), and each lane has one of two wants looked up. A lane
 // for which a line has come for which its ray has waited takes that, if it has room, and its wants are not looked at.
@@ -35,8 +37,8 @@ module tree_banks #(
   // to the memory
   output wire                         request_valid_o,
   input  wire                         request_ready_i,
-  output reg  [LINE_BITS-1:0]         request_line_o,
-  output reg  [ID_BITS-1:0]           request_id_o,
+  output wire [LINE_BITS-1:0]         request_line_o,
+  output wire [ID_BITS-1:0]           request_id_o,
   input  wire                         fill_valid_i,
   output wire                         fill_ready_o,
   input  wire [ID_BITS-1:0]           fill_id_i,
@@ -59,6 +61,7 @@ module tree_banks #(
   localparam integer BANK_BITS = $clog2(BANKS);
   localparam integer BANK_LINE_BITS = LINE_BITS - BANK_BITS;
   localparam integer MSHR_BITS = ID_BITS - BANK_BITS;
+`include "onehot.vh"
   genvar b, l;
 
   // ---- Lines for which lanes have waited: a lane takes one, of its banks in rotation
@@ -86,9 +89,20 @@ module tree_banks #(
   wire [BANKS*LANES-1:0] look_lanes;
   wire [BANKS*LANES*SLOT_BITS-1:0] look_slots;
   bank_arbiter #(.LANES(LANES), .BANKS(BANKS), .LINE_BITS(LINE_BITS), .SLOT_BITS(SLOT_BITS)) arbiter (
-    .clk_i(clk_i), .rst_ni(rst_ni), .want_valid_i(want_valid_i), .want_line_i(want_line_i), .want_slot_i(want_slot_i),
-    .want_nobody_i(want_nobody_i), .silent_i(waited_valid_o), .taken_o(taken_o), .valid_o(look_valid),
-    .ready_i(look_ready), .line_o(look_line), .lanes_o(look_lanes), .slots_o(look_slots));
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .want_valid_i(want_valid_i),
+    .want_line_i(want_line_i),
+    .want_slot_i(want_slot_i),
+    .want_nobody_i(want_nobody_i),
+    .silent_i(waited_valid_o),
+    .taken_o(taken_o),
+    .valid_o(look_valid),
+    .ready_i(look_ready),
+    .line_o(look_line),
+    .lanes_o(look_lanes),
+    .slots_o(look_slots)
+  );
 
   // ---- Banks
 
@@ -96,8 +110,8 @@ module tree_banks #(
   wire [BANKS*LANES*SLOT_BITS-1:0] given_slots;
   wire [BANKS*DATA_BITS-1:0] given_data;
   wire [BANKS-1:0] request_valid, request_grant, fill_bank, fill_ready;
-  wire [BANKS*BANK_LINE_BITS-1:0] request_line;
-  wire [BANKS*MSHR_BITS-1:0] request_id;
+  wire [BANKS*LINE_BITS-1:0] request_line;         // the bank in its low bits
+  wire [BANKS*ID_BITS-1:0] request_id;             // the bank in its high bits
   generate
     for (b = 0; b < BANKS; b = b + 1) begin : gen_bank
       wire [LANES-1:0] taken_of;
@@ -106,24 +120,37 @@ module tree_banks #(
       end
       assign offer_ready[b] = |taken_of;
       if (BANKS > 1) begin : gen_choose
-        assign fill_bank[b] = fill_id_i[ID_BITS-1:MSHR_BITS] == b[ID_BITS-MSHR_BITS-1:0];
+        assign fill_bank[b] = fill_id_i[ID_BITS-1:MSHR_BITS] == b[BANK_BITS-1:0];
+        assign request_line[b*LINE_BITS +: BANK_BITS] = b[BANK_BITS-1:0];
+        assign request_id[b*ID_BITS+MSHR_BITS +: BANK_BITS] = b[BANK_BITS-1:0];
       end else begin : gen_only
         assign fill_bank[b] = 1'b1;
       end
       tree_cache #(.LANES(LANES), .SLOTS(SLOTS), .LINES(LINES / BANKS), .WAYS(WAYS), .MSHRS(MSHRS / BANKS),
         .LINE_BITS(BANK_LINE_BITS), .DATA_BITS(DATA_BITS)) bank (
-        .clk_i(clk_i), .rst_ni(rst_ni),
-        .valid_i(look_valid[b]), .ready_o(look_ready[b]),
-        .line_i(look_line[b*BANK_LINE_BITS +: BANK_LINE_BITS]), .lanes_i(look_lanes[b*LANES +: LANES]),
-        .slots_i(look_slots[b*LANES*SLOT_BITS +: LANES*SLOT_BITS]),
-        .given_lanes_o(given_lanes[b*LANES +: LANES]),
-        .given_slots_o(given_slots[b*LANES*SLOT_BITS +: LANES*SLOT_BITS]),
-        .given_data_o(given_data[b*DATA_BITS +: DATA_BITS]),
-        .offer_valid_o(offer_valid[b]), .offer_ready_i(offer_ready[b]), .offer_lane_o(offer_lane[b*LANES +: LANES]),
-        .offer_slot_o(), .request_valid_o(request_valid[b]), .request_ready_i(request_grant[b] && request_ready_i),
-        .request_line_o(request_line[b*BANK_LINE_BITS +: BANK_LINE_BITS]),
-        .request_id_o(request_id[b*MSHR_BITS +: MSHR_BITS]), .fill_valid_i(fill_valid_i && fill_bank[b]),
-        .fill_ready_o(fill_ready[b]), .fill_id_i(fill_id_i[MSHR_BITS-1:0]), .fill_data_i(fill_data_i));
+          .clk_i(clk_i),
+          .rst_ni(rst_ni),
+          .valid_i(look_valid[b]),
+          .ready_o(look_ready[b]),
+          .line_i(look_line[b*BANK_LINE_BITS +: BANK_LINE_BITS]),
+          .lanes_i(look_lanes[b*LANES +: LANES]),
+          .slots_i(look_slots[b*LANES*SLOT_BITS +: LANES*SLOT_BITS]),
+          .given_lanes_o(given_lanes[b*LANES +: LANES]),
+          .given_slots_o(given_slots[b*LANES*SLOT_BITS +: LANES*SLOT_BITS]),
+          .given_data_o(given_data[b*DATA_BITS +: DATA_BITS]),
+          .offer_valid_o(offer_valid[b]),
+          .offer_ready_i(offer_ready[b]),
+          .offer_lane_o(offer_lane[b*LANES +: LANES]),
+          .offer_slot_o(),
+          .request_valid_o(request_valid[b]),
+          .request_ready_i(request_grant[b] && request_ready_i),
+          .request_line_o(request_line[b*LINE_BITS+BANK_BITS +: BANK_LINE_BITS]),
+          .request_id_o(request_id[b*ID_BITS +: MSHR_BITS]),
+          .fill_valid_i(fill_valid_i && fill_bank[b]),
+          .fill_ready_o(fill_ready[b]),
+          .fill_id_i(fill_id_i[MSHR_BITS-1:0]),
+          .fill_data_i(fill_data_i)
+        );
     end
   endgenerate
 
@@ -133,41 +160,26 @@ module tree_banks #(
   assign fill_ready_o = |(fill_bank & fill_ready);
   round_robin #(.COUNT(BANKS)) request_turn (
     .clk_i(clk_i), .rst_ni(rst_ni), .request_i(request_valid), .advance_i(request_ready_i), .grant_o(request_grant));
-  integer r;
-  always @* begin
-    request_line_o = {LINE_BITS{1'b0}};
-    request_id_o = {ID_BITS{1'b0}};
-    for (r = 0; r < BANKS; r = r + 1)
-      if (request_grant[r]) begin
-        request_line_o = request_line_o |
-          ({{BANK_BITS{1'b0}}, request_line[r*BANK_LINE_BITS +: BANK_LINE_BITS]} << BANK_BITS) | r[LINE_BITS-1:0];
-        request_id_o = request_id_o | {{BANK_BITS{1'b0}}, request_id[r*MSHR_BITS +: MSHR_BITS]} |
-          (r[ID_BITS-1:0] << MSHR_BITS);
-      end
-  end
+  `ONEHOT_SELECT(line_among, BANKS, LINE_BITS)
+  `ONEHOT_SELECT(id_among, BANKS, ID_BITS)
+  assign request_line_o = line_among(request_grant, request_line);
+  assign request_id_o = id_among(request_grant, request_id);
 
   // ---- Who gets a line: of one bank at most
 
+  `ONEHOT_SELECT(slot_among, BANKS, SLOT_BITS)
+  `ONEHOT_SELECT(data_among, BANKS, DATA_BITS)
   generate
     for (l = 0; l < LANES; l = l + 1) begin : gen_given
-      reg valid;
-      reg [SLOT_BITS-1:0] slot;
-      reg [DATA_BITS-1:0] data;
-      integer g;
-      always @* begin
-        valid = 1'b0;
-        slot = {SLOT_BITS{1'b0}};
-        data = {DATA_BITS{1'b0}};
-        for (g = 0; g < BANKS; g = g + 1)
-          if (given_lanes[g*LANES+l]) begin
-            valid = 1'b1;
-            slot = slot | given_slots[(g*LANES+l)*SLOT_BITS +: SLOT_BITS];
-            data = data | given_data[g*DATA_BITS +: DATA_BITS];
-          end
+      wire [BANKS-1:0] from;
+      wire [BANKS*SLOT_BITS-1:0] slots;
+      for (b = 0; b < BANKS; b = b + 1) begin : gen_of
+        assign from[b] = given_lanes[b*LANES+l];
+        assign slots[b*SLOT_BITS +: SLOT_BITS] = given_slots[(b*LANES+l)*SLOT_BITS +: SLOT_BITS];
       end
-      assign given_valid_o[l] = valid;
-      assign given_slot_o[l*SLOT_BITS +: SLOT_BITS] = slot;
-      assign given_data_o[l*DATA_BITS +: DATA_BITS] = data;
+      assign given_valid_o[l] = |from;
+      assign given_slot_o[l*SLOT_BITS +: SLOT_BITS] = slot_among(from, slots);
+      assign given_data_o[l*DATA_BITS +: DATA_BITS] = data_among(from, given_data);
     end
   endgenerate
 endmodule

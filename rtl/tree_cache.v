@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // A bank of a cache of the traverser, read only: a lookup a cycle, of a line for all lanes that ask for it. A hit gives
 // them the line two cycles later. A miss asks the memory for the line; lanes wait in a list and are offered the line,
 // oldest first, once it has come. A lookup for no lane asks for a line that somebody will want, if a register is free.
@@ -90,6 +92,7 @@ module tree_cache #(
   reg [MSHRS*LINE_BITS-1:0] mshr_line_q;
   reg [MSHRS*WAY_BITS-1:0] mshr_way_q;
   reg [MSHRS*WAITER_BITS-1:0] head_q, tail_q;     // who waits longest, and shortest: lane and slot
+`include "onehot.vh"
   localparam [1:0] NOBODY = 2'd0, CHOSEN = 2'd1, OFFERED = 2'd2;
   reg [1:0] serving_q;
   reg [MSHR_BITS-1:0] serve_id_q;
@@ -107,56 +110,48 @@ module tree_cache #(
   generate
     for (g = 0; g < WAYS; g = g + 1) begin : gen_way
       ram_1r1w #(.WIDTH(TAG_BITS), .DEPTH(SETS)) ram (
-        .clk_i(clk_i), .read_i(ready_o), .read_address_i(line_i[SET_BITS-1:0]),
+        .clk_i(clk_i),
+        .read_i(ready_o),
+        .read_address_i(line_i[SET_BITS-1:0]),
         .read_data_o(tags[g*TAG_BITS +: TAG_BITS]),
-        .write_i(fill && fill_way == g[WAY_BITS-1:0]), .write_address_i(fill_set),
-        .write_data_i(fill_line[LINE_BITS-1:SET_BITS]));
+        .write_i(fill && fill_way == g[WAY_BITS-1:0]),
+        .write_address_i(fill_set),
+        .write_data_i(fill_line[LINE_BITS-1:SET_BITS])
+      );
     end
   endgenerate
-  reg [WAYS-1:0] set_valid, order;                // of the set
-  integer s;
-  always @* begin
-    set_valid = NO_WAY;
-    order = NO_WAY;
-    for (s = 0; s < SETS; s = s + 1)
-      if (set_q[s]) begin
-        set_valid = set_valid | valid_q[s*WAYS +: WAYS];
-        order = order | order_q[s*WAYS +: WAYS];
-      end
-  end
+  `ONEHOT_SELECT(ways_among, SETS, WAYS)
+  wire [WAYS-1:0] set_valid = ways_among(set_q, valid_q), order = ways_among(set_q, order_q);   // of the set
 
   // ---- What the lookup comes to: of registers and tags alone
 
   reg [WAYS-1:0] hits, locked;
-  reg [WAY_BITS-1:0] hit_way, victim;
   reg [MSHRS-1:0] match;
-  reg [MSHR_BITS-1:0] match_id, free_id;
+  reg [MSHR_BITS-1:0] free_id;
+  `ONEHOT_NUMBER(way_among, WAYS, WAY_BITS)
+  `ONEHOT_NUMBER(mshr_among, MSHRS, MSHR_BITS)
+  wire [WAY_BITS-1:0] hit_way = way_among(hits);
+  wire [MSHR_BITS-1:0] match_id = mshr_among(match);
   integer w, m;
-  always @* begin
-    hit_way = {WAY_BITS{1'b0}};
-    for (w = 0; w < WAYS; w = w + 1) begin
+  always @*
+    for (w = 0; w < WAYS; w = w + 1)
       hits[w] = set_valid[w] && tags[w*TAG_BITS +: TAG_BITS] == line_q[LINE_BITS-1:SET_BITS];
-      if (hits[w]) hit_way = hit_way | w[WAY_BITS-1:0];
-    end
-  end
   // Ways of the set that are promised to a register, and the line's own register.
   always @* begin
     locked = NO_WAY;
     match = NO_MSHR;
-    match_id = {MSHR_BITS{1'b0}};
     free_id = {MSHR_BITS{1'b0}};
     for (m = MSHRS - 1; m >= 0; m = m - 1) begin
       if (!busy_q[m]) free_id = m[MSHR_BITS-1:0];
       else begin
         match[m] = mshr_line_q[m*LINE_BITS +: LINE_BITS] == line_q;
-        if (match[m]) match_id = match_id | m[MSHR_BITS-1:0];
         if (mshr_line_q[m*LINE_BITS +: SET_BITS] == set) locked[mshr_way_q[m*WAY_BITS +: WAY_BITS]] = 1'b1;
       end
     end
   end
   // The less recently used half, unless all its ways are promised. Each half says for itself which of its own two is,
   // as which of them lead to the victim is known late.
-  integer n, v;
+  integer n;
   reg [2*WAYS-1:0] unlocked, leads;               // a way of this half is not promised; the victim is of this half
   reg [WAYS-1:0] upper;                           // the less recently used one of its halves is the upper one
   always @* begin
@@ -171,9 +166,8 @@ module tree_cache #(
       leads[2*n] = leads[n] && !upper[n];
       leads[2*n+1] = leads[n] && upper[n];
     end
-    victim = {WAY_BITS{1'b0}};
-    for (v = 0; v < WAYS; v = v + 1) if (leads[WAYS+v]) victim = victim | v[WAY_BITS-1:0];
   end
+  wire [WAY_BITS-1:0] victim = way_among(leads[2*WAYS-1:WAYS]);
 
   wire hit = fresh_q && |hits;
   wire miss = looks_q && !hit;
@@ -274,12 +268,7 @@ module tree_cache #(
   wire [MSHRS-1:0] choice;
   round_robin #(.COUNT(MSHRS)) turn (
     .clk_i(clk_i), .rst_ni(rst_ni), .request_i(waits), .advance_i(choose), .grant_o(choice));
-  integer c;
-  reg [MSHR_BITS-1:0] choice_id;
-  always @* begin
-    choice_id = {MSHR_BITS{1'b0}};
-    for (c = 0; c < MSHRS; c = c + 1) if (choice[c]) choice_id = choice_id | c[MSHR_BITS-1:0];
-  end
+  wire [MSHR_BITS-1:0] choice_id = mshr_among(choice);
   wire [WAITER_BITS-1:0] choice_head = head_q[choice_id*WAITER_BITS +: WAITER_BITS];
 
   // Who waits behind whom. Lanes that join a line's list when it has come do so in one cycle after another from that in
@@ -287,9 +276,14 @@ module tree_cache #(
   wire [WAITER_BITS-1:0] next;
   wire append = joins && waited_for_q[join_id_q];
   ram_1r1w #(.WIDTH(WAITER_BITS), .DEPTH(1 << WAITER_BITS)) waiters (
-    .clk_i(clk_i), .read_i(!joins && (choose || serving_q == CHOSEN)),
-    .read_address_i(choose ? choice_head : head), .read_data_o(next),
-    .write_i(append), .write_address_i(tail_q[join_id_q*WAITER_BITS +: WAITER_BITS]), .write_data_i(waiter));
+    .clk_i(clk_i),
+    .read_i(!joins && (choose || serving_q == CHOSEN)),
+    .read_address_i(choose ? choice_head : head),
+    .read_data_o(next),
+    .write_i(append),
+    .write_address_i(tail_q[join_id_q*WAITER_BITS +: WAITER_BITS]),
+    .write_data_i(waiter)
+  );
   integer i;
   always @(posedge clk_i)
     for (i = 0; i < MSHRS; i = i + 1) begin
@@ -304,8 +298,14 @@ module tree_cache #(
 
   // Their requests.
   ram_queue #(.WIDTH(MSHR_BITS), .DEPTH(MSHRS)) requests (
-    .clk_i(clk_i), .rst_ni(rst_ni), .push_i(allocate), .data_i(free_id), .valid_o(request_valid_o),
-    .ready_i(request_ready_i), .data_o(request_id_o));
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .push_i(allocate),
+    .data_i(free_id),
+    .valid_o(request_valid_o),
+    .ready_i(request_ready_i),
+    .data_o(request_id_o)
+  );
   assign request_line_o = mshr_line_q[request_id_o*LINE_BITS +: LINE_BITS];
 
   // Who has waited. While it is served no lookup is taken: so nobody joins the list whose head has been read, and no
@@ -343,9 +343,14 @@ module tree_cache #(
       read_row_q <= {mshr_line_q[serve_id_q*LINE_BITS +: SET_BITS], mshr_way_q[serve_id_q*WAY_BITS +: WAY_BITS]};
     end
   ram_1r1w #(.WIDTH(DATA_BITS), .DEPTH(LINES)) data (
-    .clk_i(clk_i), .read_i(hit || read_q), .read_address_i(read_q ? read_row_q : {set, hit_way}),
-    .read_data_o(given_data_o), .write_i(fill), .write_address_i({fill_set, fill_way}),
-    .write_data_i(fill_data_i));
+    .clk_i(clk_i),
+    .read_i(hit || read_q),
+    .read_address_i(read_q ? read_row_q : {set, hit_way}),
+    .read_data_o(given_data_o),
+    .write_i(fill),
+    .write_address_i({fill_set, fill_way}),
+    .write_data_i(fill_data_i)
+  );
   always @(posedge clk_i)
     if (!rst_ni) given_lanes_o <= NO_LANE;
     else given_lanes_o <= read_q ? read_lane_q : (hit ? lanes_q : NO_LANE);

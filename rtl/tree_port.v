@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // The traverser's side of its memory: one request in a cycle, of nodes, of triangles and of the stacks in rotation, and
 // lines that come back in the order of the reads. Nodes lie from line 0 on, triangles from triangles_line_i, the stacks
 // from stacks_line_i: of a slot 2^BLOCK_BITS blocks of four entries of 64 bits, two blocks to a line.
@@ -69,6 +71,7 @@ module tree_port #(
   localparam integer CACHE_ID_BITS = (NODE_ID_BITS > TRIANGLE_ID_BITS) ? NODE_ID_BITS : TRIANGLE_ID_BITS;
   localparam integer ID_BITS = (CACHE_ID_BITS > STACK_ID_BITS) ? CACHE_ID_BITS : STACK_ID_BITS;
   localparam integer STACK_LINE_BITS = LANE_BITS + SLOT_BITS + BLOCK_BITS - 1;
+`include "onehot.vh"
   localparam [1:0] NODES = 2'd0, TRIANGLES = 2'd1, STACKS = 2'd2;
 
   // ---- Who asks
@@ -92,28 +95,15 @@ module tree_port #(
   assign triangle_request_ready_o = takes && grant[1];
   assign stack_request_ready_o = stack_heard & {LANES{takes && grant[2]}};
 
-  reg [LANE_BITS-1:0] lane;
-  reg write;
-  reg [SLOT_BITS-1:0] slot;
-  reg [BLOCK_BITS-1:0] block;
-  reg [4*ENTRY_BITS-1:0] entries;
-  integer l;
-  always @* begin
-    lane = {LANE_BITS{1'b0}};
-    write = 1'b0;
-    slot = {SLOT_BITS{1'b0}};
-    block = {BLOCK_BITS{1'b0}};
-    entries = {4*ENTRY_BITS{1'b0}};
-    for (l = 0; l < LANES; l = l + 1)
-      if (stack_grant[l]) begin
-        lane = lane | l[LANE_BITS-1:0];
-        write = write | stack_request_write_i[l];
-        slot = slot | stack_request_slot_i[l*SLOT_BITS +: SLOT_BITS];
-        block = block | stack_request_block_i[l*BLOCK_BITS +: BLOCK_BITS];
-        entries = entries | stack_request_entries_i[l*4*ENTRY_BITS +: 4*ENTRY_BITS];
-      end
-  end
-  wire writes = grant[2] && write;
+  `ONEHOT_NUMBER(lane_among, LANES, LANE_BITS)
+  `ONEHOT_SELECT(slot_among, LANES, SLOT_BITS)
+  `ONEHOT_SELECT(block_among, LANES, BLOCK_BITS)
+  `ONEHOT_SELECT(entries_among, LANES, 4*ENTRY_BITS)
+  wire [LANE_BITS-1:0] lane = lane_among(stack_grant);
+  wire [SLOT_BITS-1:0] slot = slot_among(stack_grant, stack_request_slot_i);
+  wire [BLOCK_BITS-1:0] block = block_among(stack_grant, stack_request_block_i);
+  wire [4*ENTRY_BITS-1:0] entries = entries_among(stack_grant, stack_request_entries_i);
+  wire writes = grant[2] && |(stack_grant & stack_request_write_i);
   wire [25:0] stack_line = {{26-STACK_LINE_BITS{1'b0}}, lane, slot, block[BLOCK_BITS-1:1]};
   wire [25:0] offset = grant[0] ? node_request_line_i : grant[1] ? triangle_request_line_i : stack_line;
 
@@ -159,9 +149,14 @@ module tree_port #(
   wire [1:0] source;
   wire [ID_BITS-1:0] come_id;
   ram_queue #(.WIDTH(2+ID_BITS), .DEPTH(LINES)) on_way (
-    .clk_i(clk_i), .rst_ni(rst_ni), .push_i(takes && |grant && !writes),
-    .data_i({grant[0] ? NODES : grant[1] ? TRIANGLES : STACKS, id}), .valid_o(comes), .ready_i(last),
-    .data_o({source, come_id}));
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .push_i(takes && |grant && !writes),
+    .data_i({grant[0] ? NODES : grant[1] ? TRIANGLES : STACKS, id}),
+    .valid_o(comes),
+    .ready_i(last),
+    .data_o({source, come_id})
+  );
 
   // ---- A line that has come, until it is taken
   reg [383:0] beats_q;                           // before the last

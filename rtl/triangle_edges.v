@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // On which side of a triangle's three edges a ray passes, exactly: the sign of each edge function x_a y_b - y_a x_b
 // from its two products, which are compared and not subtracted. docs/traverser.md has the argument. A triangle a cycle,
 // its result five moves later.

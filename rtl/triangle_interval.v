@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Between which times a ray is in the box of a triangle, in floats, as it would be found in a box of the tree. A
 // triangle a cycle, 14 cycles; it never waits.
 // Must be given: finite numbers, of which no difference is infinite.

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // The normal of a triangle, (1 - 0) x (2 - 0) of its corners, and its length. An axis a cycle, x first; a name ends
 // with the stage that holds what is of the first one then, and first_i says in which that is. Numbers have a sign, 11
 // bits of exponent and so many behind the first one; none is subnormal.
@@ -30,8 +32,14 @@ module triangle_normal #(
   // ---- 18: the largest exponent; 19: of 31 bits at its place, the rest cut off; 21: squares; 24: their sum
   wire [42:0] normal_18;
   wire [10:0] largest_18, largest_24;
-  largest_exponent largest (.clk_i(clk_i), .first_i(first_i[14]), .all_i(first_i[17]), .number_i(normal_14),
-    .number_o(normal_18), .largest_o(largest_18));
+  largest_exponent largest (
+    .clk_i(clk_i),
+    .first_i(first_i[14]),
+    .all_i(first_i[17]),
+    .number_i(normal_14),
+    .number_o(normal_18),
+    .largest_o(largest_18)
+  );
   ray_delay #(.WIDTH(11), .MOVES(2)) largest_delay (.clk_i(clk_i), .move_i({first_i[23], first_i[20]}),
     .data_i(largest_18), .data_o(largest_24));
   wire [10:0] places_18 = largest_18 - normal_18[41:31];

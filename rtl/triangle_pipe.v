@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Whether and where a ray hits a triangle, from the triangle's plane: docs/traverser.md says what is computed. A test
 // a cycle, its result 30 + BITS / 2 cycles later; it never waits.
 // Tests of one ray may follow each other at once: what may change, its best hit, each is told in the cycle before its
@@ -74,12 +76,32 @@ module triangle_pipe #(
   wire [104:0] main_direction = direction >> ((main_axis == 2'd2) ? 7'd70 : (main_axis == 2'd1) ? 7'd35 : 7'd0);
   wire [95:0] x, y;
   wire [2:0] in_front;
-  triangle_view view (.clk_i(clk_i), .corners_i(corners), .origin_i(origin), .main_axis_i(main_axis),
-    .backwards_i(main_direction[34]), .shear_i(shear), .x_o(x), .y_o(y), .in_front_o(in_front));
+  triangle_view view (
+    .clk_i(clk_i),
+    .corners_i(corners),
+    .origin_i(origin),
+    .main_axis_i(main_axis),
+    .backwards_i(main_direction[34]),
+    .shear_i(shear),
+    .x_o(x),
+    .y_o(y),
+    .in_front_o(in_front)
+  );
   wire inside, edges_ready, edges_valid;
   wire [2:0] negative, zero;
-  triangle_edges edges (.clk_i(clk_i), .rst_ni(rst_ni), .valid_i(1'b1), .ready_o(edges_ready), .x_i(x), .y_i(y),
-    .valid_o(edges_valid), .ready_i(1'b1), .negative_o(negative), .zero_o(zero), .inside_o(inside));
+  triangle_edges edges (
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .valid_i(1'b1),
+    .ready_o(edges_ready),
+    .x_i(x),
+    .y_i(y),
+    .valid_o(edges_valid),
+    .ready_i(1'b1),
+    .negative_o(negative),
+    .zero_o(zero),
+    .inside_o(inside)
+  );
   wire unused = &{1'b0, main_direction, edges_ready, edges_valid, negative, zero, best_t_i[31]};
   wire all_front, some_front, inside_t, all_front_t;
   steady_delay #(.WIDTH(2), .CYCLES(5)) front_delay (.clk_i(clk_i), .data_i({in_front != 3'd0, in_front == 3'd7}),
@@ -88,8 +110,16 @@ module triangle_pipe #(
     .data_o({inside_t, all_front_t}));
   wire [30:0] near, far, near_t, far_t;
   wire met, met_t;
-  triangle_interval interval (.clk_i(clk_i), .corners_i(corners), .padded_lower_i(padded_lower),
-    .padded_upper_i(padded_upper), .inverse_i(inverse), .near_o(near), .far_o(far), .met_o(met));
+  triangle_interval interval (
+    .clk_i(clk_i),
+    .corners_i(corners),
+    .padded_lower_i(padded_lower),
+    .padded_upper_i(padded_upper),
+    .inverse_i(inverse),
+    .near_o(near),
+    .far_o(far),
+    .met_o(met)
+  );
   steady_delay #(.WIDTH(63), .CYCLES(T-15)) interval_delay (.clk_i(clk_i), .data_i({near, far, met}),
     .data_o({near_t, far_t, met_t}));
   wire [31:0] t;

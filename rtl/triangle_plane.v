@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Where a ray meets the plane of a triangle: t = n . a / n . d, of the plane's normal n, a corner a as seen from the
 // ray's origin and the direction d, in numbers of BITS bits with exponents of 11, which no step leaves. A triangle a
 // cycle, 23 + BITS / 2 cycles; it never waits.

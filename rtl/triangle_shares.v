@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Of the point in which a ray hits a triangle, the shares of the corners, as numerators and their sum: each corner's
 // weight is the cross product of the other two, as the ray sees them. Of a hit all weights have one sign, so sizes do.
 // A corner a cycle, 0 first; a name ends with the stage that holds what is of the first corner then, and first_i says
@@ -18,9 +20,17 @@ module triangle_shares (
   // ---- 12: the corner as the ray sees it; 21: weights
   wire [31:0] x_12, y_12;
   wire in_front_12;
-  triangle_view #(.CORNERS(1)) view (.clk_i(clk_i), .corners_i(corner_2_i), .origin_i(origin_2_i),
-    .main_axis_i(main_axis_2_i), .backwards_i(1'b0), .shear_i(shear_2_i), .x_o(x_12), .y_o(y_12),
-    .in_front_o(in_front_12));
+  triangle_view #(.CORNERS(1)) view (
+    .clk_i(clk_i),
+    .corners_i(corner_2_i),
+    .origin_i(origin_2_i),
+    .main_axis_i(main_axis_2_i),
+    .backwards_i(1'b0),
+    .shear_i(shear_2_i),
+    .x_o(x_12),
+    .y_o(y_12),
+    .in_front_o(in_front_12)
+  );
   wire [34:0] x_13, y_13;
   float_widen #(.MANTISSA_BITS(23)) widen_x (.clk_i(clk_i), .float_i(x_12), .number_o(x_13));
   float_widen #(.MANTISSA_BITS(23)) widen_y (.clk_i(clk_i), .float_i(y_12), .number_o(y_13));
@@ -32,8 +42,14 @@ module triangle_shares (
   // ---- 25: the largest exponent; 26: units of its last place, the rest cut off; 29: the sum, of 34 bits at most
   wire [42:0] weight_25;
   wire [10:0] largest_25, largest_28;
-  largest_exponent largest (.clk_i(clk_i), .first_i(first_i[21]), .all_i(first_i[24]),
-    .number_i({1'b0, weight_21[41:0]}), .number_o(weight_25), .largest_o(largest_25));
+  largest_exponent largest (
+    .clk_i(clk_i),
+    .first_i(first_i[21]),
+    .all_i(first_i[24]),
+    .number_i({1'b0, weight_21[41:0]}),
+    .number_o(weight_25),
+    .largest_o(largest_25)
+  );
   ray_delay #(.WIDTH(11)) largest_delay (.clk_i(clk_i), .move_i(first_i[27]), .data_i(largest_25),
     .data_o(largest_28));
   wire [10:0] places_25 = largest_25 - weight_25[41:31];

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // The corners of a triangle as the ray sees them, in floats: their places across it, from the ray's origin and along
 // its direction, and whether they lie in front of it. A triangle a cycle, or one of its corners, ten cycles; it never
 // waits.

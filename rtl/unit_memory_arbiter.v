@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Joins the memory ports of 2 to 4 units. A request's id grows by the unit's number, and a response
 // goes to the unit that its id names.
 // Promises: one request a cycle, in rotation (port_arbiter); requests of one unit keep
@@ -43,9 +45,16 @@ module unit_memory_arbiter #(
   endgenerate
 
   port_arbiter #(.COUNT(UNITS), .WIDTH(WIDTH)) port_arbiter (
-    .clk_i(clk_i), .rst_ni(rst_ni), .valid_i(unit_request_valid_i), .ready_o(unit_request_ready_o), .data_i(requests),
-    .last_i({UNITS{1'b1}}), .valid_o(request_valid_o), .ready_i(request_ready_i),
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .valid_i(unit_request_valid_i),
+    .ready_o(unit_request_ready_o),
+    .data_i(requests),
+    .last_i({UNITS{1'b1}}),
+    .valid_o(request_valid_o),
+    .ready_i(request_ready_i),
     .data_o({request_write_o, request_address_o, request_data_o, request_mask_o, request_id_o[4:0]}),
-    .number_o(request_id_o[6:5]));
+    .number_o(request_id_o[6:5])
+  );
 endmodule
 `default_nettype wire

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
   // Generated from cpp_model/config/parameters.hpp by `raypool isa --write`; a test compares. Do not edit.
   parameter integer WARPS = 8,
   parameter integer LANES = 8,

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // One warp: instruction buffer, PC stack, predicates and register bank, joined.
 `default_nettype none
 module warp #(
@@ -118,25 +120,61 @@ module warp #(
   end
 
   pc_stack #(.DEPTH(STACK_DEPTH), .PC_BITS(PC_BITS)) pc_stack (
-    .clk_i(clk_i), .rst_ni(rst_ni), .start_i(start_i), .start_pc_i(start_pc_i),
-    .step_i(step), .pc_valid_o(pc_valid), .pc_o(stack_pc),
-    .jump_i(jump || leave), .push_i(enter || call), .push_return_i(enter),
-    .pop_i(control && field_operation == ISA_BRH_RET), .target_i(target),
-    .end_i(enter ? field_target : field_end), .return_i(pc_o), .overflow_o(overflow), .underflow_o(underflow));
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .start_i(start_i),
+    .start_pc_i(start_pc_i),
+    .step_i(step),
+    .pc_valid_o(pc_valid),
+    .pc_o(stack_pc),
+    .jump_i(jump || leave),
+    .push_i(enter || call),
+    .push_return_i(enter),
+    .pop_i(control && field_operation == ISA_BRH_RET),
+    .target_i(target),
+    .end_i(enter ? field_target : field_end),
+    .return_i(pc_o),
+    .overflow_o(overflow),
+    .underflow_o(underflow)
+  );
 
   instruction_buffer #(
     .FMA(FMA != 0), .TRIPLES(TRIPLES != 0), .INTERSECTION_WORDS(INTERSECTION_WORDS), .REGISTERS(REGISTERS),
     .PREDICATES(PREDICATES), .ARGUMENTS(ARGUMENTS), .PC_BITS(PC_BITS), .WITHOUT(WITHOUT)
   ) instruction_buffer (
-    .clk_i(clk_i), .rst_ni(rst_ni), .start_i(start_i), .halt_i(halt_i), .active_o(active_o),
-    .step_o(step), .pc_valid_i(pc_valid), .pc_i(stack_pc), .program_length_i(program_length_i),
-    .fetch_request_o(fetch_request_o), .fetch_pc_o(fetch_pc_o), .fetch_grant_i(fetch_grant_i),
-    .cache_hit_i(cache_hit_i), .cache_instruction_i(cache_instruction_i), .refill_done_i(refill_done_i),
-    .read_o(read), .want_o(want_o), .grant_i(grant_i), .done_i(retire_o), .fault_i(subnormal),
-    .instruction_o(instruction_o), .triple_o(triple), .read_element_o(read_element), .done_element_o(done_element),
-    .overlaps_o(overlaps_o), .pc_o(pc_o), .writes_register_o(writes_register),
-    .writes_predicate_o(writes_predicate), .fetching_o(fetching_o), .executing_o(executing_o), .illegal_o(illegal),
-    .outside_o(outside));
+    .clk_i(clk_i),
+    .rst_ni(rst_ni),
+    .start_i(start_i),
+    .halt_i(halt_i),
+    .active_o(active_o),
+    .step_o(step),
+    .pc_valid_i(pc_valid),
+    .pc_i(stack_pc),
+    .program_length_i(program_length_i),
+    .fetch_request_o(fetch_request_o),
+    .fetch_pc_o(fetch_pc_o),
+    .fetch_grant_i(fetch_grant_i),
+    .cache_hit_i(cache_hit_i),
+    .cache_instruction_i(cache_instruction_i),
+    .refill_done_i(refill_done_i),
+    .read_o(read),
+    .want_o(want_o),
+    .grant_i(grant_i),
+    .done_i(retire_o),
+    .fault_i(subnormal),
+    .instruction_o(instruction_o),
+    .triple_o(triple),
+    .read_element_o(read_element),
+    .done_element_o(done_element),
+    .overlaps_o(overlaps_o),
+    .pc_o(pc_o),
+    .writes_register_o(writes_register),
+    .writes_predicate_o(writes_predicate),
+    .fetching_o(fetching_o),
+    .executing_o(executing_o),
+    .illegal_o(illegal),
+    .outside_o(outside)
+  );
 
   // ---- The element of a triple: what of its numbers moves on, and the operation that it has alone.
   wire one_ra;
@@ -163,17 +201,33 @@ module warp #(
   endgenerate
 
   predicate_file #(.LANES(LANES), .PREDICATES(PREDICATES)) predicate_file (
-    .clk_i(clk_i), .clear_i(start_i), .read_i(read), .launched_i(launched_q),
-    .guard_negated_i(field_guard_negated), .guard_i(field_guard), .x_index_i(field_x[3:0]), .b_index_i(field_rb),
-    .mask_o(mask_o), .x_o(predicate_x_o), .b_o(predicate_b_o),
-    .write_i(retire_o && writes_predicate), .write_index_i(field_rd), .write_data_i(retire_predicate_o));
+    .clk_i(clk_i),
+    .clear_i(start_i),
+    .read_i(read),
+    .launched_i(launched_q),
+    .guard_negated_i(field_guard_negated),
+    .guard_i(field_guard),
+    .x_index_i(field_x[3:0]),
+    .b_index_i(field_rb),
+    .mask_o(mask_o),
+    .x_o(predicate_x_o),
+    .b_o(predicate_b_o),
+    .write_i(retire_o && writes_predicate),
+    .write_index_i(field_rd),
+    .write_data_i(retire_predicate_o)
+  );
 
   ram_2r1w #(.WIDTH(LANES*32), .DEPTH(REGISTERS), .GRANULE(32)) register_bank (
-    .clk_i(clk_i), .read_i(read),
-    .read_address_a_i(task_ra[REGISTER_BITS-1:0]), .read_address_b_i(task_rb[REGISTER_BITS-1:0]),
-    .read_data_a_o(operand_a_o), .read_data_b_o(operand_b_o),
+    .clk_i(clk_i),
+    .read_i(read),
+    .read_address_a_i(task_ra[REGISTER_BITS-1:0]),
+    .read_address_b_i(task_rb[REGISTER_BITS-1:0]),
+    .read_data_a_o(operand_a_o),
+    .read_data_b_o(operand_b_o),
     .write_mask_i(retire_o && writes_register ? mask_o : {LANES{1'b0}}),
-    .write_address_i(written[REGISTER_BITS-1:0]), .write_data_i(retire_data_o));
+    .write_address_i(written[REGISTER_BITS-1:0]),
+    .write_data_i(retire_data_o)
+  );
 
   // A copy of the bank gives the third operand, as memories with three read ports are rare.
   genvar l;
@@ -182,10 +236,14 @@ module warp #(
       wire [3:0] task_rc = field_x[3:0] + {2'd0, read_element};
       for (l = 0; l < LANES; l = l + 1) begin : gen_lane
         ram_1r1w #(.WIDTH(32), .DEPTH(REGISTERS)) register_copy (
-          .clk_i(clk_i), .read_i(read), .read_address_i(task_rc[REGISTER_BITS-1:0]),
+          .clk_i(clk_i),
+          .read_i(read),
+          .read_address_i(task_rc[REGISTER_BITS-1:0]),
           .read_data_o(operand_c_o[l*32 +: 32]),
-          .write_i(retire_o && writes_register && mask_o[l]), .write_address_i(written[REGISTER_BITS-1:0]),
-          .write_data_i(retire_data_o[l*32 +: 32]));
+          .write_i(retire_o && writes_register && mask_o[l]),
+          .write_address_i(written[REGISTER_BITS-1:0]),
+          .write_data_i(retire_data_o[l*32 +: 32])
+        );
       end
       wire unused = &{1'b0, task_rc};
     end else begin : gen_no_third

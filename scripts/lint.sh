@@ -1,7 +1,7 @@
 #!/bin/bash
 # Checks the sources: scripts/lint.sh [KIND]... (default: all kinds)
 #   verilog  Verilator, Icarus and Yosys, each for several configurations
-#   pages    the table of modules, what the pages name, the layers of the folders
+#   pages    the table of modules, what the pages name, the layers of the folders, licences
 #   columns  no line is longer than 120 columns
 #   python   flake8 (.flake8)
 #   shell    shellcheck (.shellcheckrc)
@@ -141,6 +141,7 @@ check_pages() {
   check "table of modules" scripts/module_table.py
   check "what the pages name" scripts/pages.py
   check "layers of the sources" scripts/layers.py
+  check "licences of what others carry away" scripts/licences.sh
 }
 
 check_columns() { check "lines of at most 120 columns" scripts/columns.sh; }

@@ -70,7 +70,7 @@ def proofs(names):
     """[module] = the proofs of it."""
     found = {name: set() for name in names}
     for path in (ROOT / "tb/proofs/control").glob("*.v"):
-        for name in re.search(r"^// @modules (.*)$", path.read_text(), re.M).group(1).split():
+        for name in re.search(r"^// @modules(.*)$", path.read_text(), re.M).group(1).split():
             found[name].add(path.stem)
     for path in (ROOT / "tb/proofs").glob("*.sh"):
         for name in set(re.findall(r"rtl/(\w+)\.v", path.read_text())) & set(names):

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Arithmetic of the Flt and Slw ALUs and of the float compares, bit for bit as the RTL does it. Values are IEEE-754
 // single bit patterns. Round to nearest even; every NaN result is 7FC00000. docs/numerics.md has the rules. Needs the
 // host's default floating-point environment: nearest even, and neither flush-to-zero nor denormals-are-zero set in

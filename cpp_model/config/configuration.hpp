@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // The configuration: one machine, from one JSON file (configs/*.json) that the models, the Verilated build, the chip
 // and synthesis all read.
 #pragma once

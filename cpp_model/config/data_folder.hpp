@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Where the files lie that belong to the program: configs/, rtl/, scripts/.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // The rows of config/parameters.hpp as objects: for whoever goes through all parameters.
 #pragma once
 

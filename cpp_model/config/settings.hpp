@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Fields of a configuration by name, as `--set FIELD=VALUE` changes them: every field that a configuration file may
 // hold, of the unit and of the chip.
 #pragma once

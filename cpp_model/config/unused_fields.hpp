@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Fields of a machine that nothing looks at, as another field is what it is: those of a traverser that it has not, for
 // example. They change its name, and nothing that a run shows.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Reading of files that a user names: the whole of it, or one sentence why not.
 #pragma once
 

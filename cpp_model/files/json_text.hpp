@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // JSON as users write it: text to value, and the sentence when it is none.
 #pragma once
 

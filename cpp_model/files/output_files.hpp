@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Writing of files that a user names. A regular file is written beside its place and renamed, so it is never
 // half-written; a symbolic link is followed, not replaced; a device or FIFO is written through.
 #pragma once

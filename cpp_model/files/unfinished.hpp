@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Files that are being written when a program ends before its time: stopped by a signal, or killed.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // The one table of performance counters. The number is what counter_select_i of the RTL asks
 // for; rtl/counters.vh is made from it.
 #pragma once

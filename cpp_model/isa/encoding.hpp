@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Encoder and decoder of single instructions, derived from the table in isa.hpp.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // The one table of ALU types and instructions. Decoder, encoder, assembler, disassembler, configuration keys, Verilog
 // parameters, rtl/*.vh and docs/isa.md are derived from it. docs/add-an-alu.md adds a type.
 //

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Machine code as the assembler and the kernel compiler hand it over.
 #pragma once
 

@@ -1,4 +1,6 @@
-// The texts that are generated from the tables of isa.hpp and checked in.
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
+// The texts that are generated from the tables of isa.hpp, counters.hpp and records.hpp and checked in.
 #pragma once
 
 #include <string>
@@ -17,6 +19,8 @@ std::string isa_fields_verilog();
 std::string isa_verilog_functions();
 /// rtl/counters.vh: numbers of the performance counters, to be included inside a module body.
 std::string counters_verilog();
+/// rtl/records.vh: places of the fields of records, to be included inside a module body.
+std::string records_verilog();
 /// docs/isa.md
 std::string isa_markdown();
 
@@ -26,6 +30,11 @@ std::string alu_instance_types_verilog();
 /// rtl/alu_instances.vh: the ALUs with the framework's ports, to be included inside compute_unit's loop over the
 /// instances.
 std::string alu_instances_verilog();
+
+/// How each file of rtl/ begins (scripts/licences.sh).
+inline constexpr const char* kLicence =
+    "// SPDX-License-Identifier: Apache-2.0\n"
+    "// SPDX-FileCopyrightText: 2026 raypool maintainers\n";
 
 struct GeneratedFile {
   std::string path;  ///< from the root of the checkout

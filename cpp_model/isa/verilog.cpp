@@ -1,4 +1,4 @@
-// Writes the two Verilog files of the instruction set.
+// Writes the Verilog files of the instruction set, the counters and the records.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +8,7 @@
 
 #include "isa/counters.hpp"
 #include "isa/encoding.hpp"
+#include "isa/records.hpp"
 #include "isa/reference.hpp"
 
 namespace raypool {
@@ -269,6 +270,26 @@ std::string counters_verilog() {
   text += "  // A module uses some of them only.\n  /* verilator lint_off UNUSEDPARAM */\n";
   for (const CounterInfo& info : kCounters) {
     text += fmt::format("  localparam integer COUNTER_{} = {};\n", words_in_upper_case(info.name), info.number);
+  }
+  text += "  /* verilator lint_on UNUSEDPARAM */\n";
+  return text;
+}
+
+std::string records_verilog() {
+  std::string text =
+      "  // Generated from cpp_model/isa/records.hpp by `raypool isa --write`; a test compares. Do not edit.\n"
+      "  // Of each record how many bits it has, and of each of its fields the lowest bit and how many. To be "
+      "included\n"
+      "  // inside a module body. A module uses some of them only.\n"
+      "  /* verilator lint_off UNUSEDPARAM */\n";
+  for (const Record& record : record::kAll) {
+    const std::string name = upper(record.name);
+    text += fmt::format("\n  // {}\n  localparam integer {}_BITS = {};\n", record.meaning, name, record.bits());
+    for (int i = 0; i < record.count; ++i) {
+      const RecordField& field = record.fields[i];
+      text += fmt::format("  localparam integer {0}_{1} = {2}, {0}_{1}_BITS = {3};\n", name, upper(field.name),
+                          record.low(field.name), field.bits);
+    }
   }
   text += "  /* verilator lint_on UNUSEDPARAM */\n";
   return text;

@@ -107,12 +107,13 @@ std::string alu_instances_verilog() {
 }
 
 std::vector<GeneratedFile> generated_files() {
-  return {{"rtl/isa.vh", isa_verilog()},
-          {"rtl/isa_fields.vh", isa_fields_verilog()},
-          {"rtl/isa_functions.vh", isa_verilog_functions()},
-          {"rtl/counters.vh", counters_verilog()},
-          {"rtl/alu_instance_types.vh", alu_instance_types_verilog()},
-          {"rtl/alu_instances.vh", alu_instances_verilog()},
+  return {{"rtl/isa.vh", kLicence + isa_verilog()},
+          {"rtl/isa_fields.vh", kLicence + isa_fields_verilog()},
+          {"rtl/isa_functions.vh", kLicence + isa_verilog_functions()},
+          {"rtl/counters.vh", kLicence + counters_verilog()},
+          {"rtl/records.vh", kLicence + records_verilog()},
+          {"rtl/alu_instance_types.vh", kLicence + alu_instance_types_verilog()},
+          {"rtl/alu_instances.vh", kLicence + alu_instances_verilog()},
           {"docs/isa.md", isa_markdown()}};
 }
 

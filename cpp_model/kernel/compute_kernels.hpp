@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Kernels that use memory only, for `raypool run`. Any number of blocks and threads may be
 // launched, all blocks with the same number.
 #pragma once

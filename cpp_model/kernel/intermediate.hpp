@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // The compiler's intermediate code: machine instructions whose registers and predicates
 // are not yet numbered as the machine's.
 #pragma once

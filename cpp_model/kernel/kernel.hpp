@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // The kernel language. A kernel is a template over K, written once:
 //
 //   template <typename K>

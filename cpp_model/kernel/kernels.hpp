@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // The ray-tracing kernels and what runs them natively. Written once in the kernel language (kernel.hpp); the same
 // source runs as C++ and compiles to machine code.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Which virtual registers and predicates hold a value that is still needed, after each op.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // The kernel language run as C++: one thread at a time, every operation with the bits the machine
 // gives. kernel.hpp describes the language.
 #pragma once

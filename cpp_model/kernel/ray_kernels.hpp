@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // The ray kernels' source. kernels.hpp says what each is for, packages.hpp what the words
 // hold, docs/kernels.md has the formulas.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Which words of an intersection kernels need, and the compact record that holds no others.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // The kernel language recorded: each operation becomes an instruction of intermediate
 // code. kernel.hpp describes the language.
 // A value owns a virtual register or predicate. Operands are taken as

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Collects a kernel's operations as intermediate code while its source runs once. The
 // value types of recorded.hpp call it.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/alu_pipeline.v: when an ALU with `latency` cycles between tasks and `depth` stages takes its next task,
 // and when a task is done. It is all that tid_alu, brh_alu, int_alu, flt_alu and slw_alu have of time; what
 // they compute is the functional core's.

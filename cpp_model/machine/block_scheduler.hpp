@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/block_scheduler.v: which unit takes a launch. present() and clock() as those of PortArbiter.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // What the set-up of a ray computes once for the narrow box test (box_pipe.hpp): reciprocals of `bits` bits, rounded
 // down, and times as keys that are compared like integers.
 #pragma once

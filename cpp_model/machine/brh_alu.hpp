@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // What rtl/brh_alu.v computes: compares into predicates, predicate logic, and the decision of control instructions.
 #pragma once
 

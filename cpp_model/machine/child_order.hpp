@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/child_order.v: the children of a node that a ray meets, the nearest first.
 #pragma once
 

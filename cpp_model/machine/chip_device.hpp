@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // The chip's interface: one set of ports, behind which stand its model, the Verilated rtl/chip.v and the lockstep of
 // both. Outside remain the memory, the frame buffer, a host that starts a frame, and a traverser at its ports, unless
 // one is inside.

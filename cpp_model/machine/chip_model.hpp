@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/chip.v, cycle by cycle: it joins the classes of the blocks around a device of compute units, of any engine.
 #pragma once
 

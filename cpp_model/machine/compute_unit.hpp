@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // The compute-unit interface: one set of ports, behind which stand the functional model, the Verilated RTL and the
 // lockstep of both; and several units as one device (machine/multiprocessor.hpp), with the same ports. A device of n
 // units numbers them from 0; a single unit is number 0 of its own.

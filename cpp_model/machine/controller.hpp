@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/controller.v: the controller that counts what is under way, and decides in four cycles.
 //
 // It is told what happens, with the cycle in which it does, and asked what follows from what a cycle has come to: so

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Engine `model`: rtl/compute_unit.v, cycle by cycle. It joins the blocks, which are called
 // as in the RTL and have a file each.
 //

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/data_cache.v, cycle by cycle, without data: 2-way, least recently used, write-through, no write-allocate, loads
 // that miss do not block. docs/memory.md gives the rules that both sides follow.
 #pragma once

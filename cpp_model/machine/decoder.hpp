@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Decodes an instruction once, so that executing it needs no more field extraction.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/dispatcher.v: gives every free ALU instance the lowest warp that wants its type, of those that go first if there
 // are some, and keeps the task registers behind it.
 #pragma once

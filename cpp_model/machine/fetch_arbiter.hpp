@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/fetch_arbiter.v: which warp looks up the instruction cache in a cycle.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // What rtl/flt_alu.v computes: floating-point operations and conversions.
 #pragma once
 

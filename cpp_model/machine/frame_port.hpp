@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/frame_port.v: the frame buffer's port, which takes one contribution a cycle.
 //
 // The port is told what happens, with the cycle in which it does: so nobody need call it in the others. Within a cycle

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/free_list.v: the numbers 0 .. size-1 that are free: first those that have never been taken, then those that have
 // come back, in the order in which they did.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // The architecture itself: registers, predicates, PC stacks, ray slices and memory of one compute unit, without ports
 // and without time. step() executes one instruction of one warp and says everything it did. Engine `functional` runs on
 // it, and the lockstep compares with it.

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Engine `functional`: a compute unit that runs machine code without a notion of
 // time, behind the same ports as the RTL.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/import_arbiter.v: the units' import requests in turn, and the way back of their beats. present()
 // and clock() as those of PortArbiter.
 #pragma once

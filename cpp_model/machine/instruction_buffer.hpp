@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/instruction_buffer.v, of all warps at once: what the Verilog has as a state of each warp is a set of
 // warps here. The states that last a known number of cycles (F_STACK, F_CACHE, D_READ, and D_EXECUTE in a
 // pipelined ALU) are on the timeline.

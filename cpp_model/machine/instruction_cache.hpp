@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Time of the instruction cache: rtl/instruction_cache.v, cycle by cycle, without data; docs/memory.md, section 4. The
 // instructions themselves are the functional core's.
 #pragma once

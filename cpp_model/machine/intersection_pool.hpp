@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/intersection_pool.v: the intersection pool's queues, its port to the units, and its levels.
 //
 // It is told what happens, with the cycle in which it does, and says in which cycle a request is taken and a beat

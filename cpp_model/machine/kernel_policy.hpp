@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // The controller's policy: which kernel a unit gets next. A policy only proposes; the controller sees to it that what
 // it launches is possible and safe. A new policy is a subclass, its name in config/parameters.hpp (PolicyName, and the
 // row of chip.policy), and a line in make_policy.

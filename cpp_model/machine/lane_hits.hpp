@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/lane_hits.v: what a lane knows of its rays' hits, each ray's best one so far, and when the last triangle of a
 // leaf has its result.
 #pragma once

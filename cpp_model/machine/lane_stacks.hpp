@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/lane_stacks.v: the stacks of a lane of the traverser. Of each slot's ray the youngest entries, and how many
 // blocks of four older ones are in the memory; who waits for an entry, for room or for a block; and what goes to the
 // memory.

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // The lanes of an instruction of one warp, with which the ALUs' models compute all at once.
 #pragma once
 

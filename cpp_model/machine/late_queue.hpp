@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // A first-in first-out queue behind a register: what is pushed in a cycle is offered from the one behind the next on.
 #pragma once
 

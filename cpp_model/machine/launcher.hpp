@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/launcher.v: takes launches, of which one may wait while a kernel runs, starts the warps, and notices the end of
 // the kernel. With kernel_overlap two kernels may run, the older one ending first.
 #pragma once

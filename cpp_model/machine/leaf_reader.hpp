@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/leaf_reader.v: the leaves that a lane's rays come to. Which of their lines are wanted from the cache, and the
 // triangles in them, one in a cycle.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/line_offers.v: two lines at most that are offered to be looked up, of which one can be taken in a cycle.
 #pragma once
 

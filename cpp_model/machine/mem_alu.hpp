@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/mem_alu.v, cycle by cycle, without data: the memory ALU around its cache, sequencer and request
 // queue. What loads and stores do to registers and memory is the functional core's; docs/memory.md
 // gives the rules that both sides follow.

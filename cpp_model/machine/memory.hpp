@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // The machine's memory: bytes, little endian, addressed from 0. Program first, then data.
 #pragma once
 

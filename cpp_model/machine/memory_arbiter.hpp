@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/memory_arbiter.v: joins the instruction side and the data side to the unit's
 // memory port, and tells responses apart.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/memory_port.v: the chip's memory port, which device and traverser share.
 //
 // The port is told what happens, with the cycle in which it does, and says in which cycle the next request is served

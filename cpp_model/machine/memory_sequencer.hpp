@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/memory_sequencer.v: which warp's memory task goes through the cache next. A warp is queued (new, not
 // started) or parked (lanes are left); a parked one waits for lines that are being fetched, or was
 // refused a fetch (it is a loser), or both.

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/miss_status.v: the miss-status holding registers (MSHRs) of the data cache, that is which lines are being
 // fetched, into which way, and which warps wait for them.
 #pragma once

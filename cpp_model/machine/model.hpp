@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // The golden model as a device: cycle-exact compute units behind the arbiters of the multiprocessor.
 #pragma once
 

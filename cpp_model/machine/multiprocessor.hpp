@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Several compute units behind one set of ports: rtl/multiprocessor.v in C++, around units of any engine.
 #pragma once
 

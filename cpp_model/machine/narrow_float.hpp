@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Arithmetic with a significand of so many bits, as a unit of that width would have it.
 #pragma once
 

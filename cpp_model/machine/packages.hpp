@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // The two packages that travel between pools, compute units and traverser. Words are raw 32-bit patterns.
 #pragma once
 

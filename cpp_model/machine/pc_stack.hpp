@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/pc_stack.v: the PC/RPC stack of one warp. An entry whose PC has reached its RPC
 // is finished; the first one never is. A PC that does not fit becomes the greatest, which is outside of every program.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/performance_counters.v: what is counted while a kernel runs. The numbers are those of namespace counter. The RTL
 // adds events one or two cycles later, which nobody sees while it is idle.
 #pragma once

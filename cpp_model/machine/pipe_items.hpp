@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // What is in a pipe that begins one thing a cycle at most: whether a stage has something is a bit, and these move;
 // what it has, which was known when it began, stays where it is.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/port_arbiter.v: a port that is shared package by package. In each cycle present() is told what the requesters
 // show and says what the port shows; clock() then is told what was transferred.
 #pragma once

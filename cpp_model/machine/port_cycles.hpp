@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // The pools' and memory's ports say in which cycle something happens, so that nobody need ask in the others.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/predicate_file.v: the predicates of one warp, a bit a lane. p0 reads as all ones; writes to it are ignored.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/ray_exit.v: what becomes of rays that have visited everything: nothing, a contribution, or a package, for which a
 // hit's triangle is read and what it carries computed.
 //

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/ray_export.v, cycle by cycle: takes warps' output slices in the order in which they are pushed, reads the masked
 // lanes' packages, four words a cycle, and offers them on the ray-pool port or the frame-buffer port.
 #pragma once

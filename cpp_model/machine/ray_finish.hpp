@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/ray_finish.v: what a ray carries on of its hit, once it is known which triangle it has hit and when: the time,
 // where in the triangle, and the triangle's normal; without double. docs/traverser.md says why it is so.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/ray_import.v, cycle by cycle, without data: requests a launch's packages, thread after thread, and writes their
 // beats into the warps' input slices.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/ray_memory.v, of which a unit has three sets, as far as time goes: the one port that each of them
 // has. The words are those of RaySlices.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/ray_pool.v: the ray pool's port, its places and levels; and RayReader, its port to the traverser.
 //
 // The port is told what happens, with the cycle in which it does, and says in which cycle the next beat is taken: so

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Local ray memory as the architecture sees it: three slices a warp that change roles, and the
 // packages that wait to become current.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/request_queue.v: a short first-in first-out queue with valid/ready at its end.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // What rtl/slw_alu.v computes: quotients and roots.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Counts the infinities and NaNs that a program's float instructions meet: at which PC, as operands or as results.
 #pragma once
 

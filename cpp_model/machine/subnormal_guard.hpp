@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // What rtl/subnormal_guard.v finds, on machines with arithmetic.subnormals none: whether a float instruction has masked
 // lanes in which an operand that it reads is a subnormal number, or the result was one before it was flushed.
 #pragma once

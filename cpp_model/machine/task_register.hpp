@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/task_register.v: the task of one ALU instance, for one cycle. Of an instance timed by events; the task
 // of a pipelined one is over before it begins, as the cycle in which it will be done is known. What the RTL
 // holds of the operands is the core's.

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // What rtl/tid_alu.v gives: thread, warp and block indices, dimensions, kernel arguments.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/tile_walk.v: the tiles of a picture in the order in which they are cast, row for row, or along a Hilbert curve,
 // which stays longer among neighbours, so that rays find in the traverser's caches what those before them have read.
 //

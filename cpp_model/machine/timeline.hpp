@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // What the model knows ahead: the warps that get on in each of the next cycles. So a cycle in which nothing happens
 // costs next to nothing. No module of the RTL: there a state machine counts the cycles.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/traverser.v: the whole traverser, at the ports that the chip has for it.
 //
 // Use, once a cycle: read outputs(), which depend on no input of the cycle, then call clock(inputs).

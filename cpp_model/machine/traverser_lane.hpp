@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/traverser_lane.v: a lane of the traverser. Slots for rays, a box pipe, the stacks, what is kept of each ray and
 // its best hit; nodes, leaves and the results of triangle tests come from outside.
 //

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/tree_banks.v: a cache of the traverser, of banks (machine/tree_cache.hpp). A line's last bits choose its bank. In
 // a cycle each bank looks up one line, and each lane has one of its two wants looked up, or takes one line for which
 // its ray has waited; so it is given one line at most.

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/tree_cache.v: a bank of a cache of the traverser. Tags, registers of the lines that are on their way (MSHRs), and
 // who waits for them. Of the data it says in which row it stands: it moves as the tags do, and only hardware needs it.
 //

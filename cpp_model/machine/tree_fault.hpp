@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Why rtl/traverser.v has stopped: what its memory holds is no tree. Sticky, the first one.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/tree_port.v: the traverser's side of its memory: requests of nodes, triangles and stacks in rotation, and lines
 // that come back in the order of the reads. What lies beyond the tree is a fault.
 //

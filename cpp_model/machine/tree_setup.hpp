@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Where the memory of rtl/traverser.v has a scene's tree, and what leaves of its hits: what stays for a frame.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // On which side of a triangle's edges a ray passes, exactly, in integers: what hardware compares in place of adding
 // products of doubles. docs/traverser.md has the argument.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/triangle_group.v: a triangle pipe, and the lanes that share it.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Where a hit may lie, and which of two counts. Included in a namespace, after triangle_ray.hpp, and so without a
 // guard: sim/scene has it once for each set of instructions. Every operation rounds the same way in each. `corner(i,
 // axis)` is a coordinate of the triangle.

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/triangle_pipe.v: whether and where a ray hits a triangle, from the triangle's plane, without double.
 // docs/traverser.md says why it is so.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // A triangle, and what the set-up of a ray computes once for its tests; scene/prepared_ray.cpp says how.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/unit_memory_arbiter.v: joins the memory ports of several units. present() and clock() as those of PortArbiter.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/warp.v as the architecture sees it: what a warp has besides its registers, which lie with those of all warps.
 #pragma once
 

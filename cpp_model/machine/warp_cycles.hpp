@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Where the cycles of a device's warps went while kernels ran, from its performance counters: each cycle of each warp
 // is in one of these. They are defined while no kernel runs.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Rules of blocks inside a chip: of a block's own inputs in the RTL a rule knows what its outputs must be. So whatever
 // is wrong around it, a block whose outputs break its rule is wrong itself, and one that keeps it is not.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // What the RTL of the chip and its model show in a cycle, port by port, each port under the block that drives it.
 #pragma once
 

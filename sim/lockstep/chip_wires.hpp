@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // The signals of the traverser that the inspection of a chip reads. sim/rtl/chip_probes.vlt keeps them readable in the
 // Verilated RTL.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // What RTL and model show in one cycle, compared: outputs, and the trace of what happened inside.
 // A difference is thrown as Mismatch.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // What an inspection has found inside the RTL, in the order in which it did.
 #pragma once
 

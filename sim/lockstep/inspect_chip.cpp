@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "bits.hpp"
+#include "isa/records.hpp"
 #include "lockstep/chip_inspection.hpp"
 
 namespace raypool::lockstep {
@@ -13,7 +14,7 @@ constexpr const char* kScope = "gen_inside.traverser";
 constexpr const char* kArbiter = "rtl/bank_arbiter.v, rtl/tree_banks.v";
 constexpr const char* kBanks = "rtl/tree_banks.v, rtl/bank_arbiter.v";
 constexpr const char* kCache = "rtl/tree_cache.v, rtl/tree_banks.v";
-constexpr uint32_t kLineBits = 26, kBlockBits = 7, kTestBits = 875;
+constexpr uint32_t kLineBits = 26, kBlockBits = 7;
 
 }  // namespace
 
@@ -349,22 +350,22 @@ void ChipInspection::check_test(uint32_t number) {
   if (!expect(w_.test_valid.flag(number), lane.test_valid(), kReader, "a triangle can be tested") || !lane.test_valid())
     return;
   const LeafReader::Test test = *lane.test();
-  const uint32_t slot_bits = model_->slot_bits(), tag_bits = 30 + slot_bits, low = number * kTestBits;
+  const uint32_t slot_bits = model_->slot_bits(), tag_bits = 30 + slot_bits, low = number * record::kTest.bits();
   const uint64_t tag = TestTag{test.slot, test.last, test.place}.word(slot_bits);
   expect(w_.test_tag.bits(number * tag_bits, 30), tag & 0x3fffffff, kReader, "slot and place of a triangle's test");
   std::array<uint32_t, 10> words;
   std::memcpy(words.data(), &test.triangle, sizeof words);
   expect_words(w_.test, low, words.data(), 10, kReader, "triangle that is tested");
   const TriangleRay& ray = lane.ray(test.slot).triangle;
-  const auto floats = [&](uint32_t at, const float* values, uint32_t count, const char* what) {
+  const auto floats = [&](int at, const float* values, uint32_t count, const char* what) {
     for (uint32_t i = 0; i < count; ++i) expect(w_.test.bits(low + at + 32 * i, 32), as_bits(values[i]), kRays, what);
   };
-  floats(320, ray.origin, 3, "origin of a triangle's ray");
-  floats(416, ray.padded[0], 3, "padded origin of a triangle's ray");
-  floats(512, ray.padded[1], 3, "padded origin of a triangle's ray");
-  floats(608, ray.inverse, 3, "inverse direction of a triangle's ray");
-  floats(706, &ray.shear_x, 1, "shear of a triangle's ray");
-  floats(738, &ray.shear_y, 1, "shear of a triangle's ray");
+  floats(record::kTest.low("origin"), ray.origin, 3, "origin of a triangle's ray");
+  floats(record::kTest.low("padded_lower"), ray.padded[0], 3, "padded origin of a triangle's ray");
+  floats(record::kTest.low("padded_upper"), ray.padded[1], 3, "padded origin of a triangle's ray");
+  floats(record::kTest.low("inverse"), ray.inverse, 3, "inverse direction of a triangle's ray");
+  floats(record::kTest.low("shear"), &ray.shear_x, 1, "shear of a triangle's ray");
+  floats(record::kTest.low("shear") + 32, &ray.shear_y, 1, "shear of a triangle's ray");
 }
 
 void ChipInspection::check_caches() {

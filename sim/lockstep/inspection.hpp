@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Looks inside the RTL, block by block, so that a report can name the file to look at: each block of a compute unit
 // must do with its inputs, which are the RTL's own, what its rule or the model says. It never fails a run by itself:
 // what a user sees of the machine is what must agree, and what differs inside first only tells where to look.

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // The Verilated chip and its model side by side on the same inputs, all ports of all blocks compared in every cycle. It
 // is a chip itself, so that who draws on it does not know.
 #pragma once

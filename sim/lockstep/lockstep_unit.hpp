@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Engine `lockstep`: the RTL and the golden model side by side on the same inputs, compared in every
 // cycle; stops at the first difference.
 //

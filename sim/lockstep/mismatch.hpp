@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // What a comparison throws when RTL and model differ, and what the inspection finds inside;
 // the lockstep makes the report of them.
 #pragma once

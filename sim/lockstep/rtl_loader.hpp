@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Loads the Verilated compute unit, or chip, that scripts/verilate.sh has built.
 #pragma once
 

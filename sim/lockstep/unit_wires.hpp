@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // The signals of a compute unit that the inspection reads. sim/rtl/probes.vlt keeps them readable in the Verilated RTL.
 #pragma once
 

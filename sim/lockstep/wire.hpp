@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // A signal of the Verilated RTL, read where it stands (ComputeUnit::signal). One that the engine has not reads as 0.
 #pragma once
 

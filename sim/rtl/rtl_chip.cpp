@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // The Verilated rtl/chip.v behind the interface of the chip. scripts/verilate.sh --top chip compiles it into a shared
 // library. What the blocks show each other is read from the wires between them, which sim/rtl/chip_probes.vlt keeps.
 #include <algorithm>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // Engine `rtl`: the Verilated rtl/multiprocessor.v, of one unit or several, behind the compute-unit interface.
 // scripts/verilate.sh compiles it into a shared library. A clock is two evaluations of the model and the copying of the
 // narrow outputs; wide ports are read only while they are valid, the trace only after trace_on().

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // What a shared library with a Verilated design exports, and how its loader knows that both were compiled from the same
 // interface. Here of a multiprocessor, in chip_library.hpp of a chip.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 raypool maintainers
 // What Verilated designs have in common: clock, reset, signals by name and waveform; and reading the ports of a
 // multiprocessor, which is the design or stands in it.
 #pragma once

@@ -6,7 +6,7 @@
 #   @proves SENTENCE           printed when it holds, once for each
 #   @parameters NAME=VALUE...  set of parameters to prove it for; more lines are more
 #                              proofs; without one, as the checker stands
-#   @break FILE SED            a sed script that breaks FILE; the proof must then fail
+#   @break FILE SED            a sed script that breaks FILE (NAME.vh: a header); the proof must then fail
 #   @zeros                     registers that have no reset start as 0 instead of anything
 #   @slow                      not with --quick
 # A sentence or a script goes on in lines that begin with `//   `.
@@ -48,7 +48,7 @@ solve() {
   for parameter in $parameters; do chparam+=" -set ${parameter%=*} ${parameter#*=}"; done
   [ -z "$chparam" ] || chparam="chparam$chparam check;"
   ! grep -q '^// @zeros' "$checker" || zeros="zinit -all;"
-  yosys -q -l "$folder/yosys" -p "read_verilog -formal -DSYNTHESIS -Irtl $checker $*
+  yosys -q -l "$folder/yosys" -p "read_verilog -formal -DSYNTHESIS -I$folder -Irtl $checker $*
     $chparam prep -top check -flatten; delete -output; memory_map; async2sync; $zeros opt -fast
     setundef -undriven -anyseq; setundef -anyseq; formalff -clk2ff -ff2anyinit; techmap; opt -fast; dffunmap; aigmap
     opt_clean; setundef -undriven -anyseq; setundef -anyseq
@@ -89,18 +89,20 @@ for name in "${names[@]}"; do
   broken=0
   while read -r module script; do
     engine="bmc3 -F 40 -T 300"
-    sed -E "$script" "rtl/$module.v" > "$folder/$module.v"
-    ! cmp -s "rtl/$module.v" "$folder/$module.v" ||
-      { echo "FAILED: $name: '$script' changes nothing in rtl/$module.v"; failed=1; continue; }
+    file=${module%.vh}.v
+    [[ $module != *.vh ]] || file=$module
+    sed -E "$script" "rtl/$file" > "$folder/$file"
+    ! cmp -s "rtl/$file" "$folder/$file" ||
+      { echo "FAILED: $name: '$script' changes nothing in rtl/$file"; failed=1; continue; }
     # shellcheck disable=SC2086 # a list of files
-    solve "$checker" "${sets[0]}" ${files/rtl\/$module.v/$folder/$module.v}
-    rm "$folder/$module.v"
+    solve "$checker" "${sets[0]}" ${files/rtl\/$file/$folder/$file}
+    rm "$folder/$file"
     if [ $verdict = refuted ]; then
       broken=$((broken + 1))
       [ -z "${VERBOSE:-}" ] || echo "  broken: $module $script: refuted after $depth cycles"
     else
       failed=1
-      echo "FAILED: $name: $verdict with rtl/$module.v broken by '$script'"
+      echo "FAILED: $name: $verdict with rtl/$file broken by '$script'"
     fi
   done < <(said break "$checker")
   [ $broken -gt 0 ] || { echo "FAILED: $name: no broken copy was refuted"; failed=1; }

@@ -11,7 +11,7 @@
 // @parameters QUEUE=1 TRAVERSER_QUEUE=1 CYCLES_PER_BEAT=1 LINES=1
 // @break memory_port s/lines_left = lines_q != .*;/lines_left = 1'b1;/
 // @break memory_port s/memory_beat_ready_o = beats != 2'd2/memory_beat_ready_o = beats != 2'd3/
-// @break memory_port s/push_i\(serve_line\), .data_i\(\{traverser_turn/push_i(serve_line), .data_i({traverser_waits/
+// @break memory_port s/^    .data_i\(\{traverser_turn/    .data_i({traverser_waits/
 // @break memory_port s/line_ends = hand_on && beat_q == 2'd3/line_ends = hand_on \&\& beat_q == 2'd2/
 // @break memory_port s/read_ends = line_ends/read_ends = hand_on/
 // @break memory_port s/came_q == went_q && lines_q == .LINES_BITS.1'b0.. &&/came_q == went_q \&\&/

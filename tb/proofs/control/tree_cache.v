@@ -14,7 +14,7 @@
 // @break tree_cache s/if \(!rst_ni\) valid_q <= \{LINES\{1'b0\}\};/if (!rst_ni) valid_q <= valid_q \& 4'b1010;/
 // @break tree_cache s/if \(!rst_ni\) valid_q <= \{LINES\{1'b0\}\};/if (!rst_ni \&\& !fill) valid_q <= 0;/
 // @break tree_cache s/if \(!rst_ni\) serving_q/if (1'b0) serving_q/
-// @break tree_cache s/if \(hits\[w\]\) hit_way = hit_way \| w/if (hits[w]) hit_way = hit_way | ~w/
+// @break tree_cache s/hit_way = way_among\(hits\)/hit_way = ~way_among(hits)/
 // @break tree_cache s/locked\[mshr_way_q\[m\*WAY_BITS \+: WAY_BITS\]\] = 1'b1/locked = locked/
 // @break tree_cache s/asked && !\(last && \(known \|\| room\)\)/1'b0/
 // @break tree_cache s/!known && room/room/
