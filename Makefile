@@ -6,6 +6,8 @@ SHELL := /bin/bash
 .DELETE_ON_ERROR:
 MAKEFLAGS += --no-print-directory
 
+# Targets of the machine stand here, those of its studies there.
+STUDIES := studies/studies.mk
 empty :=
 space := $(empty) $(empty)
 ifneq (,$(findstring $(space),$(CURDIR)))
@@ -52,7 +54,8 @@ said = $(foreach name,$1,$(if $(findstring command,$(origin $(name))),$(name)))
 # What is mistyped must not be ignored. What an outer make hands on is not looked at; tools have variables of their own.
 TOOLS := CC CXX CFLAGS CXXFLAGS LDFLAGS VERILATOR CCACHE_% CMAKE_% RAYPOOL_%
 given := $(if $(filter 0,$(MAKELEVEL)),$(filter-out $(TOOLS),$(call said,$(.VARIABLES))))
-known := $(if $(given),$(shell grep -oE '(^|  |export )[A-Z_]+ *[:?+]?=' Makefile | sed -E 's/export//; s/[^A-Z_]//g'))
+known := $(if $(given),$(shell grep -hoE '(^|  |export )[A-Z_]+ *[:?+]?=' Makefile $(STUDIES) | \
+  sed -E 's/export//; s/[^A-Z_]//g'))
 unknown := $(firstword $(filter-out $(known),$(given)))
 ifneq (,$(unknown))
   nearest := $(shell python3 -c 'import difflib, sys; print(*difflib.get_close_matches(sys.argv[1], sys.argv[2:], 1))' \
@@ -89,82 +92,52 @@ UNIT = scripts/unit.sh "$$CONFIG" $(call options,SET) $(WAVES_FLAG)
 UNIT_OF_ENGINE = $(if $(filter rtl lockstep,$(ENGINE)),$(UNIT),true)
 # That of a frame may be the chip, with its traverser inside or not.
 OF_FRAME = $(call options,CUS BOUNDARY) $${TRAVERSER:+--set "chip.traverser=$$TRAVERSER"}
+# The modules of Debian's packages are those of Debian's Python, whatever stands first in PATH.
+PYTHON := $(or $(wildcard /usr/bin/python3),python3)
 # The synthesis flow; paths may be relative to this folder.
-SYNTH := PYTHONPATH=scripts python3 -m synth
+SYNTH := PYTHONPATH=scripts $(PYTHON) -m synth
 LIBRARY := MEMORIES LIBERTY CLOCK
 # Of synth, synth-replay and synth-prove.
 SYNTH_CHIP = $(if $(filter-out 0,$(CHIP)),--chip $(call options,CUS))
-SWEEP := RAYPOOL="$(abspath $(RAYPOOL))" PYTHONPATH=scripts python3 -m sweep
-SWEEP_SETUP := setup-sweep $(if $(filter slurm,$(WHERE)),setup-slurm)
-# The modules of Debian's packages are those of Debian's Python, whatever stands first in PATH.
-PYTHON := $(or $(wildcard /usr/bin/python3),python3)
-REPORT := RAYPOOL="$(abspath $(RAYPOOL))" PYTHONPATH=scripts $(PYTHON) -m report
 FOLLOW := RAYPOOL="$(abspath $(RAYPOOL))" PYTHONPATH=scripts python3 -m follow
-FIT_SETUP := $(if $(filter-out 0,$(AREA) $(POWER)),setup-synth)
-GATES_SETUP := $(if $(filter-out 0,$(GATES)),setup-synth)
 
-.PHONY: intervals
-.PHONY: help help-all sim fidelity fit compare run cosim configurations mutants faults unit test test-long lint format
+.PHONY: help help-all sim compare run cosim configurations faults unit test test-long lint format
 .PHONY: bench clean
 .PHONY: setup-% program configured-%
-.PHONY: numerics-long proofs synth synth-replay synth-prove growth numerics significands extremes isa diagrams quoted
-.PHONY: package sweep report bench-native pareto boxes triangles synth-module follow tour chip-frames
-.PHONY: traverser-trees block-mutants
+.PHONY: numerics-long proofs synth synth-replay synth-prove growth isa diagrams quoted
+.PHONY: package bench-native synth-module follow tour chip-frames
+.PHONY: traverser-trees
 
-# Of a target the line that lists it, made of the comment behind it.
-LISTED = sed -nE 's/^($1):.*\#\# (.*)/  make \1\t\2/p' Makefile | expand -t 23
+# Of targets of a file the lines that list them, made of the comments behind them.
+LISTED = sed -nE 's/^($1):.*\#\# (.*)/  make \1\t\2/p' $2 | expand -t 23
 
 help: ## the targets and variables that one needs first
 	@echo 'raypool: a ray-tracing GPU to render on, measure, verify and synthesise'
-	@echo
-	@$(call LISTED,sim|compare|sweep|report|run|cosim|synth|test)
+	@$(call LISTED,sim|compare|run|cosim|synth|test,Makefile)
+	@echo 'studies of the machine'
+	@$(call LISTED,fit|sweep|report,$(STUDIES))
 	@echo
 	@sed -nE '/^#: .*make sim/,/^$$/ s/^#:   ((SCENE|CONFIG|ENGINE|BOUNDARY|SIZE|DEPTH|OUT)=[^ ]*).*/\1/p' Makefile | \
 	  paste -sd ' ' | fold -sw 96 | sed '1s/^/  of make sim: /; 2,$$s/^/               /; s/ $$//'
-	@echo
 	@echo '  make help-all lists every target and variable, docs/commands.md what to do with them'
 
 help-all: ## every target and variable
 	@echo 'raypool: a ray-tracing GPU to render on, measure, verify and synthesise'
 	@echo
-	@$(call LISTED,[a-z-]+)
+	@echo 'the machine: simulate, verify and synthesise it'
+	@$(call LISTED,[a-z-]+,Makefile)
+	@echo
+	@echo 'studies of the machine'
+	@$(call LISTED,[a-z-]+,$(STUDIES))
 	@echo
 	@awk 'line && /^export /  { line = sprintf("%-75s ", line) $$4 } line { print line; line = "" } \
-	  /^#: / { line = substr($$0, 4) }' Makefile
+	  /^#: / { line = substr($$0, 4) }' Makefile $(STUDIES)
 
 # An environment may hold a TIME of its own, for time(1).
 sim: setup-sim program ## draw a scene on the simulated chip: picture, report, figures
 	@$(UNIT_OF_ENGINE) $(OF_FRAME)
 	@$(RAYPOOL) sim $(call options,$(FRAME) ENGINE BOUNDARY HITS OUT THREADS ERROR $(call said,TIME) \
 	  $(if $(filter sampled,$(ENGINE)),SEED)) $(WAVES_FLAG) $(TRACE_FLAG) $(ARGS)
-
-#: variables of make fidelity: those of the frame, from SCENE to DETAIL
-#:   LEVELS="native model ..."     only these                                  all
-#:   RUNS=N                        times that each draws                       1
-#:   OUT=FOLDER
-fidelity: setup-sim setup-fidelity program ## a frame at every level of simulation, speed against error
-	@scripts/fidelity.py $(call options,$(FRAME) LEVELS RUNS OUT) $(ARGS)
-
-#: of make intervals:  ARGS="--samples 50": seeds of each frame; 200 if not given
-intervals: setup-sim program ## do the intervals of ENGINE=sampled contain the true values as often as they say?
-	@python3 scripts/intervals.py $(call options,OUT) $(ARGS)
-
-#: variables of make pareto: those of the frame
-#:   MACHINES="24 20-flush ..."    only these                                  what one chooses among
-#:   JOBS=N                        blocks that are mapped at a time            all cores
-#:   OUT=FOLDER
-pareto: setup-sim setup-synth program ## area against picture error: arithmetic modes and fits of a frame
-	@scripts/pareto.py $(call options,$(FRAME) MACHINES JOBS OUT) $(ARGS)
-
-#: variables of make fit: those of the frame
-#:   SLOWER=N%                     cycles that the whole may take more         1%
-#:   AREA=1                        what each change saves in area
-#:   POWER=1                       area, and timing and power before and after
-#:   OUT=FILE                      for the configuration
-fit: setup-sim $(FIT_SETUP) program ## what a scene needs of CONFIG: a configuration with only that
-	@mkdir -p $(BUILD)/out
-	@$(RAYPOOL) fit $(call options,$(FRAME) SLOWER OUT) --json $(BUILD)/out/fit.json $(ARGS)
-	@$(if $(FIT_SETUP),$(SYNTH) fit $(BUILD)/out/fit.json $(POWER_FLAG))
 
 #: variables of make compare:  A=FOLDER|REPORT  B=FOLDER|REPORT
 compare: setup-sim program ## two runs beside each other: A=FOLDER_OR_REPORT B=...
@@ -210,45 +183,19 @@ traverser-trees: setup-sim setup-test ## random trees, and garbage, in the trave
 	    $(BUILD)/benches/tb/$$bench --gtest_filter='*OfChance*' --gtest_brief=1 $(ARGS); \
 	done
 
-#: variables of make mutants
-#:   MUTANTS=N                     faults
-export MUTANTS ?= 500
-mutants: setup-sim setup-lint program ## small faults put into the RTL: which does the lockstep notice?
-	@scripts/build.sh $(BUILD) raypool_mutants
-	@scripts/mutants.sh $(BUILD)/mutants tb/mutants/2w2c.json "$$MUTANTS" 1
-	@$(BUILD)/raypool_mutants --unit $(BUILD)/mutants/libraypool_unit.so --list $(BUILD)/mutants/list.txt \
-	  --config tb/mutants/2w2c.json --survivors tb/mutants/survivors.json --json $(BUILD)/mutants/outcomes.json $(ARGS)
-
-#: variables of make block-mutants
-#:   EACH=N                        faults of each module
-export EACH ?= 10
-#:   MODULES="box_pipe ..."        only these                                  those of the traverser
-# All of them.
-MODULES ?= traverser tree_port triangle_group ray_exit traverser_lane ray_finish quotient_digits root_digits \
-  cross_products triangle_view triangle_normal triangle_shares float_shorten ray_setup ray_direction \
-  ray_padding triangle_pipe triangle_edges triangle_interval triangle_plane leaf_reader line_offers \
-  tree_banks bank_arbiter tree_cache box_pipe box_axis child_order lane_hits lane_stacks
-block-mutants: setup-sim setup-test configured-ON ## small faults in each module of the traverser
-	@scripts/build.sh $(BUILD) raypool_block_mutants
-	@mkdir -p $(BUILD)/block-mutants
-	@python3 scripts/block_mutants.py rtl $(BUILD)/block-mutants/rtl $(BUILD)/block-mutants/list.json "$$EACH" \
-	  "$$SEED" $(MODULES:=.v)
-	@scripts/configure.sh $(BUILD)/block-mutants/benches ON -DRAYPOOL_BENCHES=pools -DRAYPOOL_BENCHES_OPTIMISED=ON \
-	  -DRAYPOOL_RTL=$(abspath $(BUILD))/block-mutants/rtl
-	@scripts/build.sh $(BUILD)/block-mutants/benches $$(grep -o '[a-z_]*_test' tb/mutants/benches.json)
-	@$(BUILD)/raypool_block_mutants --list $(BUILD)/block-mutants/list.json \
-	  --benches $(BUILD)/block-mutants/benches/tb --json $(BUILD)/block-mutants/outcomes.json \
-	  $(if $(filter 10:1,$(EACH):$(SEED)),--survivors tb/mutants/traverser_survivors.json) \
-	  $(if $(filter file,$(origin MODULES)),,--part) $(ARGS)
-
-faults: setup-sim setup-test configured-ON program ## designers' mistakes: what notices each, where its report leads
+#: variables of make faults
+#:   SOURCE=catalogue|units|frames|mutants|blocks
+#:                                 seeded bugs (3 ways), or mutants (2)
+export SOURCE ?= catalogue
+#:   COUNT=N                       mutants: of all; blocks: of each module     500; 10
+#:   MODULES="box_pipe ..."        mutants, blocks: in these only
+#:   MACHINES=2w2c,4w2c_few,...    only these, frames: by number; mutants: CONFIG=FILE
+#:                                 ARGS="--every 40", "--only 16 21", "--resume", ...
+faults: setup-sim setup-test configured-ON program ## faults in the Verilog: what detects each, where its report leads
 	@scripts/build.sh $(BUILD) raypool_faults
-	@scripts/faults.sh $(BUILD)/faults
-	@scripts/configure.sh $(BUILD)/faults/benches ON -DRAYPOOL_BENCHES_OPTIMISED=ON \
-	  -DRAYPOOL_RTL=$(abspath $(BUILD))/faults/rtl
-	@scripts/build.sh $(BUILD)/faults/benches $$(grep -o '[a-z_]*_test' tb/faults/benches.json)
-	@$(BUILD)/raypool_faults $(BUILD)/faults --benches $(BUILD)/faults/benches/tb --json $(BUILD)/faults/outcomes.json \
-	  $(ARGS)
+	@PYTHONPATH=scripts python3 -m faults $(SOURCE) $(BUILD)/faults $(call options,COUNT SEED MODULES MACHINES) \
+	  $(call options,$(call said,CONFIG))
+	@$(BUILD)/raypool_faults $(SOURCE) $(BUILD)/faults $(call options,MACHINES $(call said,FRAMES)) $(ARGS)
 
 # Its frame is small, whatever the defaults of make sim are: only what the command line says of it counts.
 #: variables of make follow: those of the frame; without them SCENE is examples/tour.obj with its view, CONFIG 4w4c,
@@ -273,22 +220,6 @@ isa: setup-sim program ## write what is derived from the tables of ALU types and
 
 diagrams: setup-sim setup-test program ## draw docs/images/*.svg: the unit, the chip, and the stages of a run in Icarus
 	@PYTHONPATH=scripts python3 -m diagrams $(RAYPOOL) $(BUILD)/diagrams
-
-#: variables of make sweep
-#:   EXPERIMENT=FILE.json
-#:   WHERE=here|slurm                                                          here
-#:   JOBS=N                        points at a time                            all cores; slurm: 100
-#:   SCENES=FOLDER:FOLDER          where scenes are that are not part of the project
-#:   OUT=FOLDER
-sweep: setup-sim $(SWEEP_SETUP) program ## all points of EXPERIMENT (docs/sweeps.md)
-	@[ -n "$${EXPERIMENT-}" ] || { echo 'make sweep: say which, EXPERIMENT=configs/experiments/caches.json' >&2; exit 1; }
-	@$(SWEEP) "$$EXPERIMENT" $(call options,WHERE OUT JOBS) $(ARGS)
-
-#: variables of make report
-#:   FROM="FOLDER ..."             sweeps, runs, synthesis reports, or folders of them
-#:   OUT=FOLDER
-report: setup-sim setup-report program ## sweeps, runs and synthesis reports as one page (docs/page.md)
-	@$(REPORT) $${FROM:+--from $$FROM} $(call options,OUT) $(ARGS)
 
 unit: setup-sim program ## Verilate CUS compute units of CONFIG (WAVES=1: with waveforms; BOUNDARY=chip: the whole chip)
 	@$(UNIT) $(OF_FRAME) $(ARGS)
@@ -357,7 +288,7 @@ bench: setup-sim configured-OFF ## measured rates of the engines on this machine
 	@for config in 4w4c 8w8c 16w16c; do scripts/unit.sh "$$config"; done
 	@$(BUILD)/raypool_bench $(ARGS)
 
-#: variables of make bench-native, boxes, triangles: SCENE, SIZE, DEPTH, and from VIEW to DETAIL; bench-native: THREADS
+#: variables of make bench-native: SCENE, SIZE, DEPTH, and from VIEW to DETAIL, THREADS
 bench-native: setup-sim program ## our intersection beside Embree's on a frame's rays, one thread and all
 	@$(RAYPOOL) bench $(call options,SCENE SIZE DEPTH $(LOOK) THREADS) $(ARGS)
 
@@ -366,34 +297,7 @@ package: setup-sim setup-package ## Debian packages of program and library, in b
 	@mkdir -p $(BUILD)/package
 	@flock $(BUILD)/package/.lock scripts/package.sh $(BUILD)/package
 
-#: variable of make numerics:  GATES=1: synthesise the lanes of every mode first
-# The Slw lane does not depend on fma: its newton variants are not synthesised twice.
-numerics: setup-sim setup-numerics $(GATES_SETUP) program ## errors of each arithmetic mode, what they do, its cost
-	@$(RAYPOOL) errors
-	@$(if $(GATES_SETUP),lanes=$(BUILD)/out/lanes; \
-	  for config in $$($(RAYPOOL) numerics --config 1w1c --configurations "$$lanes" | grep -v 'newton.-fma'); do \
-	    $(SYNTH) report --config "$$config" --memories macros > "$$lanes/synth.txt" || \
-	      { cat "$$lanes/synth.txt"; exit 1; }; \
-	  done)
-	@echo
-	@$(RAYPOOL) numerics $(ARGS)
-
-#: variables of make significands: SCENE, CONFIG, SET, DEPTH, and from VIEW to DETAIL
-significands: setup-sim program ## what floats of 11 to 24 bits do to SCENE's picture, and how few bits nobody sees
-	@$(RAYPOOL) significands $(call options,SCENE CONFIG SET DEPTH $(LOOK)) $(ARGS)
-
-boxes: setup-sim program ## boxes in integers of 16 to 6 bits: nodes and triangles that a ray of SCENE tests
-	@$(RAYPOOL) boxes $(call options,SCENE SIZE DEPTH $(LOOK)) $(ARGS)
-
-triangles: setup-sim program ## triangle tests of 53 to 24 bits: what they do to SCENE's hits and picture, to seams
-	@$(RAYPOOL) triangles $(call options,SCENE SIZE DEPTH $(LOOK)) $(ARGS)
-
-#: variable of make extremes:  MODE=all|ieee-exact|...
-extremes: setup-sim program ## hard cases in every arithmetic mode, on every engine
-	@for config in $$($(RAYPOOL) numerics $(call options,MODE) --configurations $(BUILD)/out/modes); do \
-	  scripts/unit.sh "$$config"; \
-	done
-	@$(RAYPOOL) numerics $(call options,MODE) --extremes $(ARGS)
+include $(STUDIES)
 
 clean: ## remove the build folder (pictures in its out/ too)
 	@rm -rf $(BUILD)

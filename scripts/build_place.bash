@@ -29,7 +29,7 @@ leave_place() {
   fi
   # shellcheck disable=SC2034 # for the caller
   mapfile -t kept < <(sed -nE 's/^(RAYPOOL_[A-Z_]+:(BOOL|STRING)=.*)/-D\1/p' "$1/CMakeCache.txt")
-  rm -rf "$1"/{,cpp_model/,sim/,tb/}CMakeFiles
+  rm -rf "$1"/{,cpp_model/,sim/,studies/,program/,tb/}CMakeFiles
   rm -f "$1"/{CMakeCache.txt,build.ninja,.ninja_log,.ninja_deps}
   echo "make: the build folder \"$1\" was made for $was: it is configured and built again for $PWD; results stay" >&2
 }

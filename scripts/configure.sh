@@ -13,8 +13,8 @@ leave_place "$build"
 [[ " ${kept[*]} " != *' -DRAYPOOL_TESTS:BOOL=ON '* ]] || tests=ON
 if [ -f "$cache" ] && [ -f "$build/build.ninja" ]; then
   # Ninja would configure again by itself, but first build by the old rules what the configuration depends on.
-  changed=$(find CMakeLists.txt cmake cpp_model sim tb \( -name CMakeLists.txt -o -name '*.cmake' \) \
-    -newer "$build/build.ninja")
+  changed=$(find CMakeLists.txt cmake cpp_model sim studies program tb -newer "$build/build.ninja" \
+    \( -name CMakeLists.txt -o -name '*.cmake' \))
   if [ -z "$changed" ]; then
     [ "$tests" = ON ] && grep -q '^RAYPOOL_TESTS:BOOL=OFF' "$cache" || exit 0
   fi

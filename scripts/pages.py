@@ -20,10 +20,12 @@ FOLDERS = (
     "cpp_model",
     "docs",
     "examples",
+    "program",
     "rtl",
     "schemas",
     "scripts",
     "sim",
+    "studies",
     "tb",
 )
 PATH = re.compile(rf"^(?:{'|'.join(FOLDERS)})/[\w./*+-]*$")
@@ -78,14 +80,16 @@ class Project:
     """What there is of each kind."""
 
     def __init__(self):
-        files = [path for folder in ("cpp_model", "sim", "tb") for path in (ROOT / folder).rglob("*.[ch]pp")]
+        folders = ("cpp_model", "sim", "studies", "program", "tb")
+        files = [path for folder in folders for path in (ROOT / folder).rglob("*.[ch]pp")]
         self.sources = [re.sub(r"//.*", "", path.read_text()) for path in files]
         cmake = "".join(path.read_text() for path in [ROOT / "CMakeLists.txt"] + list(ROOT.glob("*/CMakeLists.txt")))
         self.words = {name + "_test" for name in re.findall(r"raypool_library\((\w+)", cmake)}
         everything = [path for name in FOLDERS for path in (ROOT / name).rglob("*")]
         for path in filter(has_identifiers, everything + [ROOT / "CMakeLists.txt", ROOT / "Makefile"]):
             self.words |= {path.stem} | set(re.findall(r"\w+", path.read_text(errors="replace")))
-        self.targets = set(re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text(), re.M))
+        makefiles = (ROOT / "Makefile").read_text() + (ROOT / "studies/studies.mk").read_text()
+        self.targets = set(re.findall(r"^([a-z-]+):", makefiles, re.M))
 
     def has_member(self, owner, member):
         inside = re.compile(rf"\b(?:class|struct|enum class) {owner}\b[^;]*\{{")

@@ -5,14 +5,15 @@ set -eu -o pipefail
 cd "$(dirname "$0")/.."
 files() {
   case $1 in
-    cpp) find cpp_model sim tb bench examples -name '*.cpp' -o -name '*.hpp' ;;
+    cpp) find cpp_model sim studies program tb bench examples -name '*.cpp' -o -name '*.hpp' ;;
     verilog) find rtl -name '*.v' ;;
-    shell) find scripts tb .ci -type f \( -name '*.sh' -o -name '*.bash' -o -name run \) ;;
-    python) find scripts -name '*.py' ;;
+    shell) find scripts studies tb .ci -type f \( -name '*.sh' -o -name '*.bash' -o -name run \) ;;
+    python) find scripts studies -name '*.py' ;;
     text)
       files cpp; files shell; files python
       find rtl tb -name '*.v' -o -name '*.vh' -o -name '*.vlt'
-      echo Makefile; find CMakeLists.txt cmake cpp_model sim tb examples -name CMakeLists.txt -o -name '*.cmake'
+      echo Makefile; echo studies/studies.mk
+      find CMakeLists.txt cmake cpp_model sim studies program tb examples -name CMakeLists.txt -o -name '*.cmake'
       ;;
     pages) find README.md CHANGELOG.md docs examples -name '*.md' ;;
     *) echo "usage: scripts/sources.sh cpp|verilog|shell|python|text|pages" >&2; exit 1 ;;

@@ -23,7 +23,7 @@ set_tests_properties(cosim_command PROPERTIES FIXTURES_REQUIRED units_of_cosim T
 add_test(NAME faults_catalogue COMMAND ${scripts}/tests/faults_test.sh ${raypool_program} $<TARGET_FILE:raypool_faults>
   ${CMAKE_BINARY_DIR}/faults-test)
 set_tests_properties(faults_catalogue PROPERTIES TIMEOUT 900 FIXTURES_SETUP faulty_2w2c)
-# So are small faults of single blocks put where they belong; `make block-mutants` runs them.
+# So are small faults of single blocks put where they belong; `make faults SOURCE=blocks` runs them.
 add_test(NAME block_mutants COMMAND ${scripts}/tests/block_mutants_test.py)
 set_tests_properties(block_mutants PROPERTIES TIMEOUT 300)
 # Whoever meets a difference runs again with a look inside the RTL: of its mistakes.
@@ -36,8 +36,9 @@ add_test(NAME module_table COMMAND ${scripts}/module_table.py)
 # docs/verification.md says of each counter of rtl/ in which test it wraps.
 add_test(NAME counter_table COMMAND ${scripts}/counter_table.py)
 add_test(NAME pages COMMAND ${scripts}/pages.py)
-# tb stands on sim and this on cpp_model; CMakeLists.txt checks their targets.
+# Neither the machine nor what verifies it uses a study of it; CMakeLists.txt checks the same of targets.
 add_test(NAME layers COMMAND ${scripts}/layers.py)
+add_test(NAME layers_refused COMMAND ${scripts}/tests/layers_test.sh)
 
 # clang-tidy on all sources; `make lint` reads those that have changed.
 find_program(CLANG_TIDY clang-tidy)

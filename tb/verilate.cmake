@@ -3,7 +3,7 @@
 # A model is Verilated and compiled when its bench is built: configuring costs nothing, and only the benches that run
 # are built. Only tests use these models, so they are compiled for the shortest time of compiler and run together: with
 # -O0 the bench of flt_alu compiles 13 s faster and runs more than a minute longer. RAYPOOL_BENCHES_OPTIMISED is for
-# runs of hours (make numerics-long, traverser-trees, faults, block-mutants).
+# runs of hours (make numerics-long, traverser-trees, faults).
 option(RAYPOOL_BENCHES_OPTIMISED "optimise the Verilated models of the benches" OFF)
 set(raypool_model_flags OPT_FAST=-O1)
 if(RAYPOOL_BENCHES_OPTIMISED)

@@ -88,6 +88,15 @@ void run_native(RayKernel which, NativeThread& thread) {
                       : run_in_mode<Subnormals::Ieee, false>(which, thread);
 }
 
+std::vector<RayKernel> kernels_of(const ChipConfiguration& chip, int depth, bool reflections) {
+  const RayKernel secondary = secondary_kernel(depth, reflections);
+  std::vector<RayKernel> kernels = {RayKernel::CastEye, secondary};
+  // With culling a hit of the last depth, or on what does not reflect, casts no reflection.
+  if (chip.culling && secondary != RayKernel::CastSecondaryDirect) kernels.push_back(RayKernel::CastSecondaryDirect);
+  if (chip.shading == Shading::Kernel) kernels.push_back(RayKernel::Shade);
+  return kernels;
+}
+
 const Program& ray_kernel_program(const KernelTarget& target) { return compiled(target).program; }
 
 RecordLayout ray_record_layout(const Configuration& configuration) {

@@ -26,6 +26,9 @@ constexpr RayKernel secondary_kernel(int depth, bool reflections) {
   return depth > 1 && reflections ? RayKernel::CastSecondary : RayKernel::CastSecondaryDirect;
 }
 
+/// Those that the chip may launch in such a frame.
+std::vector<RayKernel> kernels_of(const ChipConfiguration& chip, int depth, bool reflections);
+
 /// Argument words of the ray kernels (floats unless said otherwise). The direction through the centre of pixel (x, y)
 /// is corner + x * step_x + y * step_y.
 namespace argument {

@@ -309,6 +309,20 @@ TEST(RayKernels, MachineCodeAgreesWithNativeInEveryMode) {
   EXPECT_GT(rays, 8 * 40 * 8 * 3);
 }
 
+TEST(RayKernels, OfAFrameAreThoseThatTheChipMayLaunch) {
+  ChipConfiguration chip;
+  using Kernels = std::vector<RayKernel>;
+  const auto eye = RayKernel::CastEye, reflecting = RayKernel::CastSecondary, direct = RayKernel::CastSecondaryDirect,
+             shade = RayKernel::Shade;
+  EXPECT_EQ(kernels_of(chip, 3, true), (Kernels{eye, reflecting, shade}));
+  EXPECT_EQ(kernels_of(chip, 3, false), (Kernels{eye, direct, shade}));
+  EXPECT_EQ(kernels_of(chip, 1, true), (Kernels{eye, direct, shade}));
+  chip.culling = true;
+  EXPECT_EQ(kernels_of(chip, 3, true), (Kernels{eye, reflecting, direct, shade}));
+  chip.shading = Shading::Traverser;
+  EXPECT_EQ(kernels_of(chip, 1, true), (Kernels{eye, direct}));
+}
+
 TEST(RayKernels, AreAsShortAsTheyWere) {
   const auto total = [](const char* name) {
     const InstructionCounts counts = count_instructions(ray_kernel_program(), name);

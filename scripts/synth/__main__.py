@@ -6,7 +6,7 @@ import shutil
 import sys
 import time
 
-from . import elaborate, fit, flow, growth, module, plots, power, prove, replay, report, timing
+from . import elaborate, fit, flow, growth, module, pictures, power, prove, replay, report, timing
 from .errors import SynthError, say, warn
 
 
@@ -79,7 +79,7 @@ def made_report(options, wanted):
         result["seconds"] = round(time.time() - begin, 1)
         report.check(result)
         store(result, path)
-        plots.area_bars(result, os.path.join(design.folder, "work"), os.path.join(design.folder, "area.png"))
+        pictures.area_bars(result, os.path.join(design.folder, "area.png"))
     for name, estimate in (("power", power.estimate), ("proofs", prove.prove)):
         if name in wanted and not result[name]:
             if design.netlist is None:

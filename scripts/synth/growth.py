@@ -2,7 +2,7 @@
 import json
 import os
 
-from . import flow, plots, report
+from . import flow, pictures, report
 from .errors import SynthError, say
 from .library import ROOT
 
@@ -89,8 +89,8 @@ def grow(jobs, out, plan_path=None):
                 f"memory, {found['mm2']:.3f} mm2"
             )
         results["axes"][axis["name"]] = rows
-        plots.growth_lines(
-            axis["title"], axis["name"], rows, out, os.path.join(out, f"growth-{axis['name'].replace(' ', '-')}.png")
+        pictures.growth_lines(
+            axis["title"], axis["name"], rows, os.path.join(out, f"growth-{axis['name'].replace(' ', '-')}.png")
         )
     say(f"\n{'step':58} {'logic kGE':>10} {'memory kGE':>11} {'flip-flops':>11} {'mm2 40 nm':>10}")
     for step in plan["steps"]:

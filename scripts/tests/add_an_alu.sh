@@ -75,7 +75,8 @@ replace() {
 
 rm -rf "$tree"
 mkdir -p "$tree"
-cp -R CMakeLists.txt Makefile bench cmake configs cpp_model docs examples LICENSE rtl schemas scripts sim tb "$tree"
+cp -R CMakeLists.txt Makefile bench cmake configs cpp_model docs examples LICENSE program rtl schemas scripts sim \
+  studies tb "$tree"
 cd "$tree"
 # Most of the time here is the compiler's, and what it makes runs little.
 replace 'CMakeLists.txt, FLAGS_RELEASE "-O2" => FLAGS_RELEASE "-O0"'

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""scripts/block_mutants.py puts faults where expressions read something and nowhere else, the same ones every time, and
+"""scripts/faults/blocks.py puts faults where expressions read something and nowhere else, the same ones every time, and
 what comes of all modules of rtl/ that it is used for is Verilog."""
 import json
 import pathlib
@@ -11,7 +11,8 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path.insert(0, str(ROOT / "scripts"))
-import block_mutants  # noqa: E402  the path comes first
+import faults.__main__  # noqa: E402  the path comes first
+from faults import blocks, errors, mutants  # noqa: E402
 
 MODULE = """// a_i && b_i: of comments nothing is read
 module small #(
@@ -35,13 +36,13 @@ endmodule
 """
 
 
-def mutants(count, seed=1):
-    return block_mutants.mutants_of(MODULE, count, seed)
+def faults_of(count, seed=1):
+    return blocks.mutants_of(MODULE, count, seed)
 
 
-class BlockMutants(unittest.TestCase):
+class Blocks(unittest.TestCase):
     def test_an_expression_is_what_is_assigned_asked_or_given(self):
-        places = block_mutants.expressions(block_mutants.without_comments(MODULE))
+        places = blocks.expressions(blocks.without_comments(MODULE))
         self.assertEqual(
             [MODULE[begin:end] for begin, end in places],
             ["a_i && |b_i", "!either", "b_i == 4'd3 ? {state_o[6:0], a_i} : state_o + 8'd1", "either != none",
@@ -49,7 +50,7 @@ class BlockMutants(unittest.TestCase):
         )  # fmt: skip
 
     def test_each_fault_changes_one_token_of_one_expression(self):
-        every = [fault for seed in range(1, 40) for fault in mutants(10**6, seed)]
+        every = [fault for seed in range(1, 40) for fault in faults_of(10**6, seed)]
         said = [what for *_, what in every]
         for part in ("|| in place of &&", "! is left out", "== in place of !=", "< in place of <=", "- in place of +",
                      "not 1'b0", "a_i is inverted", "bit 0 of b_i is 1", "bit (WIDTH-1) of b_i is"):  # fmt: skip
@@ -63,23 +64,24 @@ class BlockMutants(unittest.TestCase):
         self.assertTrue({found[1] for found in numbers if found} <= {"8'd199", "8'd201"})
 
     def test_the_same_seed_is_the_same_faults(self):
-        self.assertEqual(mutants(8), mutants(8))
-        self.assertNotEqual(mutants(8), mutants(8, 2))
-        self.assertEqual(len(mutants(8)), 8)
+        self.assertEqual(faults_of(8), faults_of(8))
+        self.assertNotEqual(faults_of(8), faults_of(8, 2))
+        self.assertEqual(len(faults_of(8)), 8)
         # Whatever stands before them.
         longer = MODULE.replace("  wire either", "  reg other;\n  always @(posedge clk_i) other <= a_i;\n  wire either")
-        known = {what for *_, what in mutants(8)}
-        left = known & {what for *_, what in block_mutants.mutants_of(longer, 8, 1)}
+        known = {what for *_, what in faults_of(8)}
+        left = known & {what for *_, what in blocks.mutants_of(longer, 8, 1)}
         self.assertGreaterEqual(len(left), 6)
 
-    def test_all_that_make_block_mutants_uses_is_verilog(self):
-        makefile = (ROOT / "Makefile").read_text().replace("\\\n", "")
-        files = [f"{name}.v" for name in re.search(r"^MODULES +\?= (.*)$", makefile, re.M)[1].split()]
+    def test_all_that_make_faults_uses_is_verilog(self):
         with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name)
-            script = [sys.executable, ROOT / "scripts/block_mutants.py", ROOT / "rtl", folder / "rtl"]
-            subprocess.run([*script, folder / "list.json", "20", "7", *files], check=True, stdout=subprocess.DEVNULL)
-            listed = json.loads((folder / "list.json").read_text())
+            files = [f"{module}.v" for module in faults.__main__.MODULES]
+            options = faults.__main__.arguments_of(["blocks", name, "--count", "20", "--seed", "7"])
+            faults.__main__.put_in("blocks", folder, options)
+            told = json.loads((folder / "faults.json").read_text())
+            self.assertEqual(told["judged"], "none")
+            listed = told["faults"]
             self.assertEqual([fault["number"] for fault in listed], list(range(1, len(listed) + 1)))
             self.assertEqual({fault["file"] for fault in listed}, set(files))
             lint = ["verilator", "--lint-only", "-DSYNTHESIS", "--default-language", "1364-2005", f"-I{folder}/rtl",
@@ -87,10 +89,35 @@ class BlockMutants(unittest.TestCase):
                     *(folder / "rtl").glob("*.vlt"), folder / "rtl/traverser.v", "-y", folder / "rtl"]  # fmt: skip
             done = subprocess.run(lint, capture_output=True, text=True, check=False)
             self.assertEqual(done.returncode, 0, done.stderr[:2000])
-            # A module that is not there is refused in a sentence.
-            unknown = [*script, folder / "list.json", "1", "1", "nothing.v"]
-            done = subprocess.run(unknown, capture_output=True, text=True, check=False)
-            self.assertEqual((done.returncode, done.stderr), (1, "block_mutants.py: there is no rtl/nothing.v\n"))
+
+    def test_a_module_that_is_not_there_is_refused(self):
+        for put_in in (lambda: blocks.put_in({}, 1, 1, ["nothing.v"]),
+                       lambda: mutants.put_in({}, None, 1, 1, ["nothing.v"], [])):  # fmt: skip
+            with self.assertRaisesRegex(errors.Refused, "^there is no rtl/nothing.v"):
+                put_in()
+
+    def test_survivors_are_judged_of_the_faults_that_the_file_is_about_alone(self):
+        for words, judged, count in (([], "all", 300), (["--modules", "box_axis"], "some", 10),
+                                     (["--count", "3"], "none", 90),
+                                     (["--seed", "2", "--modules", "box_axis"], "none", 10)):  # fmt: skip
+            with tempfile.TemporaryDirectory() as name:
+                options = faults.__main__.arguments_of(["blocks", name, *words])
+                faults.__main__.put_in("blocks", pathlib.Path(name), options)
+                told = json.loads((pathlib.Path(name) / "faults.json").read_text())
+                self.assertEqual((told["judged"], len(told["faults"])), (judged, count), words)
+
+
+class Mutants(unittest.TestCase):
+    def test_are_named_without_the_numbers_that_yosys_makes_up(self):
+        line = (r"mutate -ctrl mutant_i 9 7 -mode cnot1 -module compute_unit "
+                r"-cell $flatten\gen_warp[0].warp.$eq$rtl/x.vh:13$4711 -port A -portbit 2 -ctrlbit 5 "
+                r"-wire \warp.q -wirebit 8 -src rtl/warp.v:0.0-0.0 -src rtl/pc_stack.v:52.7-83.14 "
+                r"-src rtl/warp.v:55.19-57.70")
+        self.assertEqual(mutants.fault_of(7, line), {
+            "number": 7, "file": "pc_stack.v",
+            "mistake": r"cnot1, A[2] of gen_warp[0].warp.eq at x.vh:13, by bit 5, wire \warp.q[8]"})  # fmt: skip
+        made = mutants.fault_of(1, "mutate -mode inv -cell $auto$opt_reduce.cc:134:opt_pmux$99 -port Y -portbit 0")
+        self.assertEqual((made["file"], made["mistake"]), ("(made by Yosys)", "inv, Y[0] of opt_pmux"))
 
 
 if __name__ == "__main__":

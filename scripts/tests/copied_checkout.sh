@@ -16,8 +16,9 @@ fail() {
 }
 
 old=$folder/old
-mkdir -p "$old/cmake" "$old/cpp_model" "$old/sim" "$old/tb" "$old/scripts"
+mkdir -p "$old"/{cmake,cpp_model,sim,studies,program,tb,scripts}
 cp Makefile "$old/"
+cp studies/studies.mk "$old/studies/"
 cp scripts/*.sh scripts/*.bash "$old/scripts/"
 cat > "$old/CMakeLists.txt" << 'END'
 cmake_minimum_required(VERSION 3.25)

@@ -19,31 +19,40 @@ changed() {
     { failures=$((failures + 1)); echo "FAILED: '$1' changes nothing in the catalogue"; }
 }
 
-expect "the small machine with every mistake is built" 0 "" scripts/faults.sh "$folder" 2w2c
-expect "it is plain Verilog" 0 "" iverilog -g2005 -I"$folder/rtl" -s multiprocessor -o /dev/null "$folder"/rtl/*.v
+export PYTHONPATH=scripts
+rtl=$folder/catalogue/rtl
+expect "the small machine with every mistake is built" 0 "650 faults" python3 -m faults units "$folder" --machines 2w2c
+expect "it is plain Verilog" 0 "" iverilog -g2005 -I"$rtl" -s multiprocessor -o /dev/null "$rtl"/*.v
 expect "so it is with several units and every option" 0 "" verilator --lint-only --default-language 1364-2005 \
-  -I"$folder/rtl" --top-module multiprocessor \
-  -GUNITS=4 -GWARPS=2 -GLANES=2 -GFMA=1 -GFLT_DEPTH=5 -GSUBNORMALS=1 -GSLOW_UNIT=1 "$folder"/rtl/*.vlt "$folder"/rtl/*.v
+  -I"$rtl" --top-module multiprocessor \
+  -GUNITS=4 -GWARPS=2 -GLANES=2 -GFMA=1 -GFLT_DEPTH=5 -GSUBNORMALS=1 -GSLOW_UNIT=1 "$rtl"/*.vlt "$rtl"/*.v
 expect "so it is where products have digits, as benches have them" 0 "" verilator --lint-only -DSYNTHESIS \
-  --default-language 1364-2005 -I"$folder/rtl" --top-module multiply_tree "$folder"/rtl/*.vlt \
-  "$folder/rtl/multiply_tree.v"
-expect "so it is with the features of best" 0 "" verilator --lint-only --default-language 1364-2005 -I"$folder/rtl" \
+  --default-language 1364-2005 -I"$rtl" --top-module multiply_tree "$rtl"/*.vlt \
+  "$rtl/multiply_tree.v"
+expect "so it is with the features of best" 0 "" verilator --lint-only --default-language 1364-2005 -I"$rtl" \
   --top-module multiprocessor -GWARPS=2 -GLANES=8 -GTRIPLES=1 -GKERNEL_OVERLAP=1 -GWIDE_RAY_MEMORY=1 -GSLOW_LANES=2 \
-  -GSLW_DEPTH=13 -GFLT_DEPTH=5 -GFMA=1 "$folder"/rtl/*.vlt "$folder"/rtl/*.v
-expect "mistakes are noticed, and without one the unit agrees" 0 "no mistake: 40 programs agree" \
-  "$faults" "$folder" --programs 40 --only 16 21 44 79 96
+  -GSLW_DEPTH=13 -GFLT_DEPTH=5 -GFMA=1 "$rtl"/*.vlt "$rtl"/*.v
+expect "mistakes are detected, and without one the unit agrees" 0 "no fault: 40 programs agree" \
+  "$faults" units "$folder" --programs 40 --only 16 21 44 79 96
 # Each of these once led to another file: of the block beside it, or of the one above.
 expect "reports name the right file first or second" 0 "the first or the second: 9 of 9" \
-  "$faults" "$folder" --programs 60 --only 6 10 11 13 28 33 67 81 88
-expect "a survivor is an error" 1 "NOT JUDGED" "$faults" "$folder" --programs 1 --only 160
-expect "a bench that is not there is an error" 1 "there is no bench" \
-  "$faults" "$folder" --programs 1 --only 160 --benches "$folder/nowhere"
+  "$faults" units "$folder" --programs 60 --only 6 10 11 13 28 33 67 81 88
+expect "a run that was interrupted goes on" 0 "units: 9 of 9" \
+  "$faults" units "$folder" --programs 60 --only 6 10 11 13 28 33 67 81 88 --resume
+expect "few kills can be an error" 1 "units: 0 of 1" "$faults" units "$folder" --programs 1 --only 160 --least 90
+echo '{"catalogue": []}' > "$folder/none.json"
+expect "a survivor is an error" 1 "NOT JUDGED" \
+  "$faults" catalogue "$folder" --programs 1 --only 160 --bench-list "$folder/none.json"
+expect "a bench that is not there is an error" 1 "there is no bench" "$faults" catalogue "$folder" --only 160
+expect "so is a machine" 1 "has no machine that is asked for" "$faults" units "$folder" --machines 9w9c
+expect "of which the builder says what there are" 1 "there is no machine 9w9c: 2w2c, 2w8c-best, 2w2c-4cu, " \
+  python3 -m faults units "$folder" --machines 9w9c
 changed 's/next_pc >= program_length_i/next_pc >= program_size_i/'
 expect "a mistake that does not fit is refused" 1 \
   "fault 30 (instruction_buffer.v: The instruction behind the program's last one is let through.)" \
-  python3 scripts/faults.py "$folder/changed.json" rtl "$folder/refused"
+  python3 -m faults units "$folder/refused" --catalogue "$folder/changed.json"
 changed 's/"number": 7/"number": 77/'
-expect "a catalogue with a number left out is refused" 1 "must be numbered" python3 scripts/faults.py \
-  "$folder/changed.json" rtl "$folder/refused"
+expect "a catalogue with a number left out is refused" 1 "must be numbered" \
+  python3 -m faults units "$folder/refused" --catalogue "$folder/changed.json"
 
 [ "$failures" = 0 ] || { echo "$failures cases failed"; exit 1; }

@@ -8,7 +8,8 @@ import tempfile
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-MAKEFILE = (ROOT / "Makefile").read_text()
+STUDIES = "studies/studies.mk"
+MAKEFILE = (ROOT / "Makefile").read_text() + (ROOT / STUDIES).read_text()
 README = (ROOT / "README.md").read_text()
 DEFAULTS = re.findall(r"^(?:export )?([A-Z_]+) \?=", MAKEFILE, re.M)
 
@@ -59,6 +60,12 @@ class Help(unittest.TestCase):
     def test_help_all_lists_every_target_that_is_described(self):
         self.assertEqual(named_targets(printed("help-all")), self.described)
 
+    def test_help_all_lists_studies_apart(self):
+        lines = printed("help-all")
+        studies = lines[lines.index("studies of the machine") :]
+        self.assertEqual(named_targets(studies), re.findall(r"^([a-z-]+):.*## ", (ROOT / STUDIES).read_text(), re.M))
+        self.assertIn("fit", named_targets(studies))
+
     def test_help_all_tells_every_variable_that_has_a_default(self):
         listed = {name for _, name in variables()}
         self.assertGreater(len(listed), 50)
@@ -90,7 +97,9 @@ class Values(unittest.TestCase):
     def setUp(self):
         self.folder = pathlib.Path(tempfile.mkdtemp())
         self.addCleanup(shutil.rmtree, self.folder)
-        shutil.copy(ROOT / "Makefile", self.folder)
+        (self.folder / "studies").mkdir()
+        for name in ("Makefile", STUDIES):
+            shutil.copy(ROOT / name, self.folder / name)
         for name in ("setup.sh", "configure.sh", "build.sh", "unit.sh", "raypool"):
             path = self.folder / ("build" if name == "raypool" else "scripts") / name
             path.parent.mkdir(exist_ok=True)

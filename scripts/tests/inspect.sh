@@ -1,9 +1,9 @@
 #!/bin/bash
 # A difference is run again with a look inside the RTL, and the report names the file:
 # scripts/tests/inspect.sh RAYPOOL FOLDER
-# FOLDER has the machine 2w2c with the designers' mistakes, as scripts/faults.sh builds it.
+# FOLDER has the machine 2w2c with the designers' mistakes, as python3 -m faults builds it.
 set -u -o pipefail
-raypool=$(realpath "$1") machine=$(realpath "$2")/2w2c/libraypool_unit.so
+raypool=$(realpath "$1") machine=$(realpath "$2")/catalogue/2w2c/libraypool_unit.so
 cd "$(dirname "$0")/../.." || exit 1
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

@@ -1,6 +1,6 @@
 #!/bin/bash
-# scripts/mutants_prove.sh proves a mutant equivalent that is, and neither one whose output differs nor one whose next
-# state does: a unit of one register with four faults, as scripts/mutants.sh leaves them.
+# `python3 -m faults prove` proves a mutant equivalent that is, and neither one whose output differs nor one whose next
+# state does: a unit of one register with four faults, as `python3 -m faults mutants` leaves them.
 set -u -o pipefail
 cd "$(dirname "$0")/../.." || exit 1
 folder=$(mktemp -d)
@@ -23,7 +23,7 @@ failures=0
 expect() {
   local what=$1 status=$2 wanted=$3 said ended
   shift 3
-  said=$(scripts/mutants_prove.sh "$folder" "$@" 2>&1)
+  said=$(PYTHONPATH=scripts python3 -m faults prove "$folder" "$@" 2>&1)
   ended=$?
   if [ "$ended" = "$status" ] && [ "$said" = "$wanted" ]; then
     echo "ok: $what"
@@ -39,5 +39,5 @@ expect "a next state that differs in one state" 1 "3: not proved" 3
 expect "one of several" 1 $'1: equivalent\n2: not proved\n4: equivalent' 1 2 4
 mv "$folder/netlist.v" "$folder/kept.v"
 expect "mutants that have not been made" 1 \
-  "mutants_prove.sh: $folder/netlist.v is not there: make it with make mutants" 1
+  "faults: $folder/netlist.v is not there: make it with make faults SOURCE=mutants" 1
 [ "$failures" = 0 ]

@@ -1,17 +1,14 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """The JSON Schemas say what the program accepts and writes: scripts/tests/schemas_test.py RAYPOOL [ENGINE...]
 
-Checked-in configurations and views, a report of each ENGINE (default: those without a Verilated unit), what
-scripts/fidelity.py and scripts/pareto.py leave of them, and what raypool fit --json writes, are valid; what raypool
-refuses, and what it takes the schema takes, at both ends of every range; a field of what is written that is missing,
-unknown or of another kind is not valid, and each is named in its page of docs/.
+Checked-in configurations and views, and a report of each ENGINE (default: those without a Verilated unit), are valid;
+what raypool refuses, and what it takes the schema takes, at both ends of every range; a field of what is written that
+is missing, unknown or of another kind is not valid, and each is named in its page of docs/.
 """
 import copy
 import json
-import os
 import pathlib
 import re
-import shutil
 import subprocess
 import sys
 import tempfile
@@ -20,9 +17,6 @@ import unittest
 import jsonschema
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-sys.path.insert(0, str(ROOT / "scripts"))
-import fidelity  # noqa: E402
-
 RAYPOOL = ""
 ENGINES = ["native", "functional", "sampled", "model"]
 
@@ -235,76 +229,6 @@ class Report(Written):
 
     def test_docs_name_each_field(self):
         self.names_each_field("report.md", "report.json")
-
-
-class Fidelity(Written):
-    """Of a small frame at the levels that are among the engines."""
-
-    @unittest.skipIf(shutil.which("gnuplot") is None, "gnuplot was not found")
-    def test_fidelity(self):
-        valid = validator("fidelity.json")
-        levels = [level.name for level in fidelity.LEVELS if level.name in ENGINES]
-        with tempfile.TemporaryDirectory() as folder:
-            command = [ROOT / "scripts/fidelity.py", "--scene", "cornell", "--size", "8x8", "--config", "4w4c",
-                       "--levels", ",".join(levels), "--out", folder]  # fmt: skip
-            done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=120, check=False,
-                                  env={**os.environ, "RAYPOOL": RAYPOOL})
-            self.assertEqual(done.returncode, 0, done.stderr)
-            document = read(folder + "/fidelity.json")
-        self.assertEqual([error.message for error in valid.iter_errors(document)], [])
-        self.assertEqual([row["level"] for row in document["levels"]], levels)
-        self.refuses(valid, document, lambda path: path[-2:-1] not in (("alus",), ("ports",)),
-                     [("x",), ("scene", "x"), ("levels", 0, "x"), ("levels", 0, "picture", "x")])
-
-    def test_docs_name_each_field(self):
-        self.names_each_field("speed-and-accuracy.md", "fidelity.json")
-
-
-class Pareto(Written):
-    """Pictures of a small frame; what has areas is in the test `pareto`."""
-
-    @unittest.skipIf(shutil.which("gnuplot") is None, "gnuplot was not found")
-    def test_pareto(self):
-        valid = validator("pareto.json")
-        with tempfile.TemporaryDirectory() as folder:
-            command = [ROOT / "scripts/pareto.py", "--scene", "cornell", "--size", "8x8", "--config", "2w2c",
-                       "--machines", "11", "--no-area", "--out", folder]  # fmt: skip
-            done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=120, check=False,
-                                  env={**os.environ, "RAYPOOL": RAYPOOL})
-            self.assertEqual(done.returncode, 0, done.stderr)
-            document = read(folder + "/pareto.json")
-        for row, area in zip(document["machines"], (1.5, 1.25)):
-            row["area"] = {"logic_kge": area, "memory_kge": area, "memory_bits": 3, "flip_flops": 4}
-            self.assertTrue(validator("configuration.json").is_valid(row.pop("configuration")))
-            row["configuration"] = {}
-        self.assertEqual([error.message for error in valid.iter_errors(document)], [])
-        self.refuses(valid, document, lambda path: True,
-                     [("x",), ("scene", "x"), ("machines", 0, "x"), ("machines", 0, "picture", "x"),
-                      ("machines", 0, "area", "x")])  # fmt: skip
-
-    def test_docs_name_each_field(self):
-        self.names_each_field("speed-and-accuracy.md", "pareto.json")
-
-
-class Fit(Written):
-    """Of a small frame."""
-
-    def test_fit(self):
-        valid = validator("fit.json")
-        with tempfile.TemporaryDirectory() as folder:
-            done = raypool("fit", "cornell", "--size", "8x8", "--config", "4w4c", "--out", folder + "/fitted.json",
-                           "--json", folder + "/found.json")  # fmt: skip
-            self.assertEqual(done.returncode, 0, done.stderr)
-            document = read(folder + "/found.json")
-            fitted = read(folder + "/fitted.json")
-        self.assertEqual([error.message for error in valid.iter_errors(document)], [])
-        self.assertTrue(document["changes"])
-        self.assertTrue(validator("configuration.json").is_valid(fitted))
-        self.refuses(valid, document, lambda path: path[0] not in ("base", "fitted"),
-                     [("x",), ("scene", "x"), ("cycles", "x"), ("changes", 0, "x"), ("fitted", "x")])
-
-    def test_docs_name_each_field(self):
-        self.names_each_field("fit.md", "fit.json")
 
 
 if __name__ == "__main__":

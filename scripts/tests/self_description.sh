@@ -32,8 +32,10 @@ sed -nE '/^\| [0-9] \|/p' docs/package.md | diff "$folder/codes" - ||
 "$raypool" man > "$folder/man"
 for shell in bash zsh fish; do "$raypool" completion "$shell" > "$folder/$shell"; done
 sed -E 's/\\f[BIR]//g; s/\\-/-/g' "$folder/man" > "$folder/text"
-"$raypool" --help | sed -nE '/^Subcommands:/,/^$/s/^  ([a-z]+) .*/\1/p' > "$folder/commands"
+"$raypool" --help | sed -nE '/^(Machine|Studies):/,/^$/s/^  ([a-z]+) .*/\1/p' > "$folder/commands"
 [ "$(wc -l < "$folder/commands")" -ge 15 ] || fail "raypool --help lists only $(wc -l < "$folder/commands") commands"
+[ "$(grep -E '^\.SH (MACHINE|STUDIES)$|^\.SS (sim|fit)$' "$folder/man" | paste -sd ' ')" = \
+  ".SH MACHINE .SS sim .SH STUDIES .SS fit" ] || fail "the man page has other groups than raypool --help"
 options=0
 while read -r command; do
   grep -qFx ".SS $command" "$folder/man" || fail "the man page lacks $command"

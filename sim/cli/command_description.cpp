@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cctype>
 #include <string_view>
 #include <vector>
 
@@ -202,6 +203,11 @@ std::string roff(std::string_view text) {
   return !result.empty() && (result[0] == '.' || result[0] == '\'') ? "\\&" + result : result;
 }
 
+std::string upper(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return text;
+}
+
 std::string roff_options(const CLI::App& app) {
   std::string text;
   for (const OptionText& option : options_of(app)) {
@@ -228,10 +234,14 @@ std::string completion(const CLI::App& app, const std::string& shell) {
 std::string man_page(const CLI::App& app) {
   std::string text = fmt::format(".TH RAYPOOL 1 \"\" \"raypool {}\"\n.SH NAME\n{}\n", kVersion,
                                  roff("raypool - a ray-tracing GPU to render on, measure, verify and synthesise"));
-  text += ".SH SYNOPSIS\n.B raypool\n.I COMMAND\n.RI [ OPTIONS ]\n.SH OPTIONS\n" + roff_options(app) + ".SH COMMANDS\n";
-  for (const CLI::App* command : commands_of(app))
+  text += ".SH SYNOPSIS\n.B raypool\n.I COMMAND\n.RI [ OPTIONS ]\n.SH OPTIONS\n" + roff_options(app);
+  std::string group;
+  for (const CLI::App* command : commands_of(app)) {
+    if (command->get_group() != group) text += ".SH " + upper(command->get_group()) + "\n";
+    group = command->get_group();
     text +=
         fmt::format(".SS {}\n{}\n{}", command->get_name(), roff(command->get_description()), roff_options(*command));
+  }
   text += ".SH EXIT STATUS\n";
   for (const ExitCode& row : kExitCodes) text += fmt::format(".TP\n{}\n{}\n", row.code, roff(row.meaning));
   text += ".SH ENVIRONMENT\n.TP\nRAYPOOL_CONFIGS\na folder of configurations, looked up before all others\n";

@@ -13,7 +13,7 @@ namespace raypool {
 /// list such as "model|rtl" is completed with its words, every other value with file names.
 std::string completion(const CLI::App& app, const std::string& shell);
 
-/// The man page, section 1.
+/// The man page, section 1: commands in the groups of --help, which must stand together.
 std::string man_page(const CLI::App& app);
 
 }  // namespace raypool

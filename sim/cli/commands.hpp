@@ -1,4 +1,4 @@
-// What the subcommands of `raypool` do; main/main.cpp parses the command line into these options. Each throws
+// What the subcommands of `raypool` do; machine_commands.cpp parses the command line into these options. Each throws
 // InputError on input that cannot be used and returns the exit code otherwise.
 #pragma once
 
@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "chip/sampling.hpp"
 #include "cli/scene_loading.hpp"
 #include "machine/compute_unit.hpp"
 #include "machine/memory.hpp"
@@ -46,6 +47,7 @@ struct SimOptions {
   std::vector<std::string> command;  ///< the command line, for the report
   /// Puts something around the device, which works on that memory; empty: nothing. No option of the command line.
   std::function<std::unique_ptr<ComputeUnit>(std::unique_ptr<ComputeUnit>, const Memory&)> wrap = {};
+  const sampled::Sampler* sampler = nullptr;  ///< engine sampled; null: there is none
 };
 int sim_command(const SimOptions& options);
 
@@ -176,76 +178,5 @@ struct ConfigurationsOptions {
   std::string folder;      ///< gets a JSON file for each and their list; empty: only the table is printed
 };
 int configurations_command(const ConfigurationsOptions& options);
-
-/// `raypool numerics`
-struct NumericsOptions {
-  std::string config = "4w4c";  ///< the base, to which each mode's arithmetic is applied
-  std::vector<std::string> set;
-  std::string mode = "all";  ///< or one of numerics::arithmetic_modes()
-  std::string size = "256x256";
-  int depth = 3;
-  std::string out;             ///< folder; empty: out/numerics beside the executable
-  std::string synthesis;       ///< folder of synthesis reports; empty: synth beside the executable
-  std::string configurations;  ///< folder: only write a configuration file for each mode
-  bool extremes = false;       ///< the catalogue of hard cases instead of the trade
-  bool catalogue = false;      ///< only its cases and what is expected
-  bool quiet = false;          ///< no progress
-};
-int numerics_command(const NumericsOptions& options);
-
-/// `raypool significands`
-struct SignificandsOptions {
-  std::string scene = "room";
-  double detail = 1;
-  std::string view;
-  ViewWords look;
-  std::string size = "256x256";
-  int depth = 3;
-  std::string config = "4w4c";  ///< what else the arithmetic is
-  std::vector<std::string> set;
-  bool quiet = false;  ///< no progress
-};
-int significands_command(const SignificandsOptions& options);
-
-/// `raypool boxes` and `raypool triangles`
-struct WidthsOptions {
-  std::string scene = "room";
-  double detail = 1;
-  std::string view;
-  ViewWords look;
-  std::string size = "320x320";
-  uint32_t depth = 3;
-  std::vector<uint32_t> bits;
-  bool quiet = false;  ///< no progress
-};
-struct BoxesOptions : WidthsOptions {
-  BoxesOptions() { bits = {16, 14, 12, 11, 10, 9, 8, 7, 6}; }
-};
-struct TrianglesOptions : WidthsOptions {
-  TrianglesOptions() { bits = {53, 40, 32, 28, 26, 24}; }
-};
-/// Exit code 3 if a hit is another one.
-int boxes_command(const BoxesOptions& options);
-int triangles_command(const TrianglesOptions& options);
-
-/// `raypool fit`: the frame is that of `raypool sim`.
-struct FitOptions {
-  std::string scene = "room";
-  double detail = 1;
-  std::string view;
-  ViewWords look;
-  std::string size = "320x320";
-  int depth = 3;
-  int units = 1;
-  std::string config = "8w8c";  ///< what there is to be less of
-  std::vector<std::string> set;
-  std::string traverser;
-  std::string slower = "1%";  ///< cycles that the whole may take more
-  std::string out;            ///< the configuration's file; empty: out/fit/<its name>.json beside the executable
-  std::string json;           ///< file with what was found; empty: none
-  bool quiet = false;         ///< no progress
-  std::vector<std::string> command;
-};
-int fit_command(const FitOptions& options);
 
 }  // namespace raypool

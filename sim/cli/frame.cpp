@@ -6,7 +6,6 @@
 #include <iterator>
 
 #include "bits.hpp"
-#include "fit/needs.hpp"
 #include "isa/assembler.hpp"
 #include "kernel/kernel_report.hpp"
 #include "kernel/kernels.hpp"
@@ -45,7 +44,7 @@ void check_fits(const RunRecord& record, const Scene& scene) {
     }
   }
   const Program& program = ray_kernel_program(KernelTarget(record.configuration));
-  for (const RayKernel kernel : fit::kernels_of(chip, record.depth, record.reflections))
+  for (const RayKernel kernel : kernels_of(chip, record.depth, record.reflections))
     check_instructions(program, std::string(kRayKernelNames[kernel]), record.configuration);
 }
 

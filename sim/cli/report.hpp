@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "chip/chip.hpp"
+#include "chip/sampling.hpp"
 #include "config/configuration.hpp"
 #include "lockstep/lockstep_chip.hpp"
 #include "lockstep/lockstep_unit.hpp"
-#include "sampled/sampled_frame.hpp"
 #include "scene/native_renderer.hpp"
 
 namespace raypool {

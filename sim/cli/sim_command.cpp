@@ -43,6 +43,8 @@ bool is_chosen(const SimOptions& options, const std::string& field) {
 }
 
 void check(const SimOptions& options, Engine engine) {
+  if (engine == Engine::Sampled && options.sampler == nullptr)
+    throw InputError("this program has no engine sampled: use another, such as model");
   check_depth_and_units(options.depth, options.units);
   if (!options.boundary.empty() && !has_verilog(engine)) {
     throw InputError(fmt::format(
@@ -168,7 +170,7 @@ FrameBuffer draw_natively(const SimOptions& options, RunRecord& record, const Sc
     native.trace = [&](const Ray& ray, Intersection& hit) { return embree->trace(ray, hit); };
   }
   if (work != nullptr) {
-    native.parts = sampled::blocks_of(record.configuration, native.width, native.height);
+    native.parts = options.sampler->blocks_of(record.configuration, native.width, native.height);
     native.work = work;
   }
   record.native.emplace();
@@ -310,7 +312,7 @@ FrameBuffer draw_sampled_frame(const SimOptions& options, RunRecord& record, con
   chip.progress = [&](const ChipProgress& done) {
     if (progress.due()) progress.show(progress_text(done, true, progress.seconds()));
   };
-  record.sampled = sampled::draw_sampled(chip, static_cast<uint32_t>(options.units), work, wanted);
+  record.sampled = options.sampler->draw(chip, static_cast<uint32_t>(options.units), work, wanted);
   record.simulation_seconds = drawing.seconds();
   return frame;
 }

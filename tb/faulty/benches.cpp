@@ -23,18 +23,20 @@ constexpr int kSecondsLimit = 1500;
 
 }  // namespace
 
-std::vector<Bench> read_benches(const std::string& path, const std::string& folder) {
+std::vector<Bench> read_benches(const std::string& path, const std::string& source, const std::string& folder,
+                                const std::string& added) {
   std::ifstream file(path);
   if (!file) throw InputError(fmt::format("{}: the file cannot be read", path));
   std::vector<Bench> benches;
   try {
-    for (const auto& entry : nlohmann::json::parse(file)) {
+    const nlohmann::json all = nlohmann::json::parse(file);
+    for (const auto& entry : all.at(source)) {
       Bench bench;
       bench.name = entry.at("bench").get<std::string>();
       const std::string program = folder + "/" + bench.name;
       if (access(program.c_str(), X_OK) != 0)
-        throw InputError(fmt::format("--benches {}: there is no bench {}: build it there", folder, bench.name));
-      const std::string arguments = entry.contains("arguments") ? entry["arguments"].get<std::string>()
+        throw InputError(fmt::format("{}: there is no bench {}: build it there", folder, bench.name));
+      const std::string arguments = entry.contains("arguments") ? entry["arguments"].get<std::string>() + added
                                                                 : fmt::format("--gtest_fail_fast '--gtest_filter={}'",
                                                                               entry.at("filter").get<std::string>());
       bench.command = fmt::format("timeout {} {} {}", kSecondsLimit, program, arguments);
@@ -42,7 +44,7 @@ std::vector<Bench> read_benches(const std::string& path, const std::string& fold
       benches.push_back(bench);
     }
   } catch (const nlohmann::json::exception& error) {
-    throw InputError(fmt::format("{}: not a list of {{bench, tops, filter}}: {}", path, error.what()));
+    throw InputError(fmt::format("{}: no list {} of {{bench, tops, filter}}: {}", path, source, error.what()));
   }
   return benches;
 }
@@ -64,13 +66,13 @@ void run_benches(const std::vector<Bench>& benches, Outcome& outcome) {
     std::string failed;
     std::array<char, 500> line;
     while (std::fgets(line.data(), line.size(), printed) != nullptr)
-      if (failed.empty() && std::string_view(line.data()).find("FAILED") != std::string_view::npos)
-        failed = line.data();
+      if (!failed.empty() || std::string_view(line.data()).find("FAILED") != std::string_view::npos)
+        failed += line.data();
     const int status = pclose(printed);
     if (status == 0) continue;
     outcome.kind = Outcome::Kind::Bench;
     outcome.by = bench.name;
-    outcome.text = failed.empty() ? fmt::format("ended with status {}", status) : failed.substr(0, failed.find('\n'));
+    outcome.text = failed.empty() ? fmt::format("ended with status {}", status) : failed;
     return;
   }
 }

@@ -9,16 +9,17 @@
 
 namespace raypool::faulty {
 
-Judgements::Judgements(const std::string& path) : path_(path) {
+Judgements::Judgements(const std::string& path, const std::string& source) : path_(path) {
   if (path.empty()) return;
   std::ifstream file(path);
   if (!file) throw InputError(fmt::format("{}: the judged survivors cannot be read", path));
   try {
-    for (const auto& entry : nlohmann::json::parse(file))
+    const nlohmann::json all = nlohmann::json::parse(file);
+    for (const auto& entry : all.at(source))
       judged_[entry.at("survivor").get<std::string>()] = {entry.at("equivalent").get<bool>(),
                                                           entry.at("reason").get<std::string>()};
   } catch (const nlohmann::json::exception& error) {
-    throw InputError(fmt::format("{}: not a list of {{survivor, equivalent, reason}}: {}", path, error.what()));
+    throw InputError(fmt::format("{}: no list {} of {{survivor, equivalent, reason}}: {}", path, source, error.what()));
   }
 }
 

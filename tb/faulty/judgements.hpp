@@ -1,4 +1,4 @@
-// The survivors that have been judged one by one, in a file beside the faults, against those of a run.
+// The survivors that have been judged one by one, in a file, against those of a run.
 #pragma once
 
 #include <map>
@@ -15,9 +15,9 @@ struct Judgement {
 
 class Judgements {
  public:
-  /// `path`: a JSON list of {"survivor", "equivalent", "reason"}; empty: nothing is
+  /// `path`: a JSON object with a list of {"survivor", "equivalent", "reason"} for each source; empty: nothing is
   /// judged, nor asked for. Throws InputError.
-  explicit Judgements(const std::string& path);
+  Judgements(const std::string& path, const std::string& source);
 
   /// Counts a survivor of this run, and says what is known of it: "equivalent: ...", "a gap: ...", or "NOT JUDGED".
   std::string survived(const std::string& id);

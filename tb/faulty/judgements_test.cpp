@@ -17,8 +17,10 @@ std::string file_with(const std::string& text) {
 }
 
 TEST(Judgements, AreUpToDateWhenTheSurvivorsAreThoseOfTheFile) {
-  Judgements judgements(file_with(R"([{"survivor": "a", "equivalent": true, "reason": "r"},
-                                      {"survivor": "b", "equivalent": false, "reason": "s"}])"));
+  Judgements judgements(file_with(R"({"mutants": [{"survivor": "a", "equivalent": true, "reason": "r"},
+                                                  {"survivor": "b", "equivalent": false, "reason": "s"}],
+                                      "blocks": [{"survivor": "c", "equivalent": true, "reason": "t"}]})"),
+                        "mutants");
   EXPECT_EQ(judgements.survived("a"), "equivalent: r");
   EXPECT_FALSE(judgements.up_to_date()) << "b did not survive yet";
   EXPECT_EQ(judgements.survived("b"), "a gap: s");
@@ -30,21 +32,21 @@ TEST(Judgements, AreUpToDateWhenTheSurvivorsAreThoseOfTheFile) {
 }
 
 TEST(Judgements, AreNotAskedForWithoutAFile) {
-  Judgements judgements("");
+  Judgements judgements("", "mutants");
   EXPECT_EQ(judgements.survived("a"), "NOT JUDGED");
   EXPECT_TRUE(judgements.up_to_date());
 }
 
 TEST(Judgements, OfABrokenFileAreRefusedWithItsName) {
-  for (const char* text : {"[", R"([{"survivor": "a", "equivalent": true}])"}) {
+  for (const char* text : {"[", R"({"mutants": [{"survivor": "a", "equivalent": true}]})", R"({"blocks": []})"}) {
     try {
-      Judgements broken(file_with(text));
+      Judgements broken(file_with(text), "mutants");
       FAIL() << text;
     } catch (const InputError& error) {
       EXPECT_NE(std::string(error.what()).find("judged.json"), std::string::npos) << error.what();
     }
   }
-  EXPECT_THROW(Judgements("no such file"), InputError);
+  EXPECT_THROW(Judgements("no such file", "mutants"), InputError);
 }
 
 }  // namespace

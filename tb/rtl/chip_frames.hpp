@@ -19,11 +19,12 @@
 
 namespace raypool::test {
 
-/// Path of the library of its Verilated chip.
-inline std::string chip_library(const Machine& machine) {
+/// Path of the library of its Verilated chip, from the Verilog of the tree `tree`.
+inline std::string chip_library(const Machine& machine, const std::string& tree = RAYPOOL_TEST_TREE,
+                                const std::string& units = RAYPOOL_TEST_UNITS) {
   return verilate(machine.configuration.name,
-                  " --top chip --quick" + words_of(chip_verilog_parameters(machine.configuration, machine.units)),
-                  RAYPOOL_TEST_TREE) +
+                  " --top chip --quick" + words_of(chip_verilog_parameters(machine.configuration, machine.units)), tree,
+                  units) +
          "/libraypool_chip.so";
 }
 

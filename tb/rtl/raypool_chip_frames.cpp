@@ -19,6 +19,7 @@
 #include <memory>
 #include <optional>
 #include <random>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -26,6 +27,7 @@
 #include "chip/chip.hpp"
 #include "cosim/chip_recorder.hpp"
 #include "lockstep/lockstep_chip.hpp"
+#include "lockstep/lockstep_unit.hpp"
 #include "lockstep/rtl_loader.hpp"
 #include "machine/chip_model.hpp"
 #include "machine/model.hpp"
@@ -247,28 +249,33 @@ std::optional<ChipResult> draw_inside(const Case& c, const Machine& machine, Dra
   return {};
 }
 
-/// As failure_of(), with the traverser inside.
-std::string failure_inside(const Case& c, const Machine& machine, const std::string& library, Drawn& drawn) {
-  try {
-    Drawing drawing(machine, c.picture, scene_of(c), c.tree, c.spoilt, c.strange);
-    const std::unique_ptr<LockstepChip> chip =
-        make_lockstep_chip(machine.configuration, load_rtl_chip(library, machine.configuration, machine.units),
-                           drawing.memory(), machine.configuration.name);
-    WaitingChip waiting(*chip, c.waits, c.seed);
-    const std::optional<ChipResult> result = draw_inside(c, machine, drawing, waiting, drawn.reached);
-    if (result && chip->lockstep_counts().counters == 0) return "the counters were not compared";
-    drawn.cycles += chip->lockstep_counts().cycles;
-    drawn.rays += chip->lockstep_counts().rays;
-    ++drawn.reached.frames;
-    drawn.reached.deep += waiting.deep;
-    drawn.reached.black += waiting.black;
-    drawn.faults += result ? 0 : 1;
-    for (size_t kernel = 0; result && kernel < kRayKernels; ++kernel)
-      drawn.reached.launches[kernel] += result->kernels[static_cast<RayKernel>(kernel)].launches;
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-  return "";
+/// The machine's Verilog beside its model, which looks inside up to this cycle.
+std::unique_ptr<LockstepChip> lockstep_of(const Machine& machine, const std::string& library, const Memory& memory,
+                                          uint64_t inspect_until) {
+  return make_lockstep_chip(machine.configuration, load_rtl_chip(library, machine.configuration, machine.units), memory,
+                            machine.configuration.name, inspect_until);
+}
+
+void expect_counters(const LockstepChip& chip) {
+  if (chip.lockstep_counts().counters == 0) throw std::runtime_error("the counters were not compared");
+}
+
+/// As draw_case(), with the traverser inside.
+void draw_case_inside(const Case& c, const Machine& machine, const std::string& library, uint64_t inspect_until,
+                      Drawn& drawn) {
+  Drawing drawing(machine, c.picture, scene_of(c), c.tree, c.spoilt, c.strange);
+  const std::unique_ptr<LockstepChip> chip = lockstep_of(machine, library, drawing.memory(), inspect_until);
+  WaitingChip waiting(*chip, c.waits, c.seed);
+  const std::optional<ChipResult> result = draw_inside(c, machine, drawing, waiting, drawn.reached);
+  if (result) expect_counters(*chip);
+  drawn.cycles += chip->lockstep_counts().cycles;
+  drawn.rays += chip->lockstep_counts().rays;
+  ++drawn.reached.frames;
+  drawn.reached.deep += waiting.deep;
+  drawn.reached.black += waiting.black;
+  drawn.faults += result ? 0 : 1;
+  for (size_t kernel = 0; result && kernel < kRayKernels; ++kernel)
+    drawn.reached.launches[kernel] += result->kernels[static_cast<RayKernel>(kernel)].launches;
 }
 
 /// Without a traverser inside: draws it, and the frames that follow it.
@@ -280,18 +287,27 @@ void draw_frames(const Case& c, ChipDevice& chip, const Machine& machine, Frame&
   }
 }
 
-/// Draws it on a device of its own. Returns what went wrong; empty: nothing.
-std::string failure_of(const Case& c, const Machine& machine, const std::string& library, Drawn& drawn) {
-  if (is_inside(machine)) return failure_inside(c, machine, library, drawn);
+/// Draws it on a device of its own. Throws what went wrong.
+void draw_case(const Case& c, const Machine& machine, const std::string& library, uint64_t inspect_until,
+               Drawn& drawn) {
+  if (is_inside(machine)) return draw_case_inside(c, machine, library, inspect_until, drawn);
   Frame frame(machine, c.picture, c.seed | 1);
+  const std::unique_ptr<LockstepChip> chip = lockstep_of(machine, library, frame.image.memory, inspect_until);
+  draw_frames(c, *chip, machine, frame, drawn.reached);
+  drawn.cycles += chip->lockstep_counts().cycles;
+  drawn.rays += chip->lockstep_counts().rays;
+  expect_counters(*chip);
+}
+
+/// What goes wrong when it is drawn; empty: nothing. `inspected`: a difference is met again with a look inside.
+std::string failure_of(const Case& c, const Machine& machine, const std::string& library, Drawn& drawn,
+                       bool inspected = false) {
   try {
-    const std::unique_ptr<LockstepChip> chip =
-        make_lockstep_chip(machine.configuration, load_rtl_chip(library, machine.configuration, machine.units),
-                           frame.image.memory, machine.configuration.name);
-    draw_frames(c, *chip, machine, frame, drawn.reached);
-    drawn.cycles += chip->lockstep_counts().cycles;
-    drawn.rays += chip->lockstep_counts().rays;
-    if (chip->lockstep_counts().counters == 0) return "the counters were not compared";
+    const auto run = [&](uint64_t inspect_until) { draw_case(c, machine, library, inspect_until, drawn); };
+    if (inspected)
+      inspect_differences(run);
+    else
+      run(0);
   } catch (const std::exception& error) {
     return error.what();
   }
@@ -365,6 +381,7 @@ Case shrunk(Case c, const Machine& machine, const std::string& library) {
 struct Options {
   std::string program;  ///< as it was called
   std::string record;   ///< folder for one frame; empty: none
+  std::string tree;     ///< with another Verilog; empty: that of the project
   uint32_t frames = 50, seed = 1, frame = 0;
   std::vector<uint32_t> only;  ///< machines
   uint32_t machines = 0;
@@ -439,7 +456,8 @@ int run(const Options& options) {
     if (!is_chosen(options, first, number)) continue;
     const Machine& machine = machines[number - 1];
     Clock clock;
-    const std::string library = chip_library(machine);
+    const std::string library =
+        options.tree.empty() ? chip_library(machine) : chip_library(machine, options.tree, options.tree + "/chips");
     const double built = clock.seconds();
     const Drawn before = drawn;
     ++drawn_on;
@@ -447,7 +465,7 @@ int run(const Options& options) {
     for (uint32_t frame = 1; frame <= options.frames && held; ++frame) {
       if (options.frame != 0 && frame != options.frame) continue;
       const Case c = case_on(number, frame);
-      const std::string failure = failure_of(c, machine, library, drawn);
+      const std::string failure = failure_of(c, machine, library, drawn, true);
       held = failure.empty();
       if (held) continue;
       ++failed;
@@ -495,6 +513,7 @@ int main(int argc, char** argv) {
   app.add_option("--record", options.record, "folder that gets this frame as the model draws it; no Verilog is needed")
       ->needs(machine)
       ->needs(frame);
+  app.add_option("--tree", options.tree, "whose rtl/ the chips, kept there in chips/, are built from");
   app.add_flag("--stop", options.stop, "end at the first frame that fails, and do not make it smaller");
   CLI11_PARSE(app, argc, argv);
   try {

@@ -12,10 +12,11 @@
 
 namespace raypool::test {
 
-/// Runs scripts/verilate.sh of the tree `tree` with `options` in the folder `name` below RAYPOOL_TEST_UNITS.
-/// Returns this folder. What the script says is shown if it fails.
-inline std::string verilate(const std::string& name, const std::string& options, const std::string& tree = ".") {
-  std::string folder = std::string(RAYPOOL_TEST_UNITS) + "/" + name;
+/// Runs scripts/verilate.sh of the tree `tree` with `options` in the folder `name` below `units`. Returns this folder.
+/// What the script says is shown if it fails.
+inline std::string verilate(const std::string& name, const std::string& options, const std::string& tree = ".",
+                            const std::string& units = RAYPOOL_TEST_UNITS) {
+  std::string folder = units + "/" + name;
   std::filesystem::create_directories(folder);
   const std::string log = folder + "/verilate.log";
   const std::string command = "flock " + folder + "/.lock " + tree + "/scripts/verilate.sh " + folder + options;

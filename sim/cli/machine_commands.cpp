@@ -1,0 +1,297 @@
+#include "cli/machine_commands.hpp"
+
+#include <cstdio>
+
+#include "cli/command_description.hpp"
+#include "cli/command_options.hpp"
+#include "scene/native_renderer.hpp"
+
+namespace raypool {
+namespace {
+
+CLI::Option* add_unit(CLI::App& app, std::string& engine, std::string& library) {
+  app.add_option("--unit-library", library, "Verilated unit (default: where raypool unit builds it)");
+  return app
+      .add_option("--engine", engine,
+                  "what plays the machine; native, the kernels as C++, and sampled are for sim only")
+      ->type_name("native|functional|sampled|model|rtl|lockstep")
+      ->capture_default_str();
+}
+
+void add_inspect(CLI::App& app, uint64_t& until) {
+  app.add_option("--inspect", until,
+                 "lockstep: look inside the RTL up to this cycle, in which an earlier run met a difference; that run "
+                 "does it by itself")
+      ->type_name("CYCLE")
+      ->check(CLI::PositiveNumber);
+}
+
+}  // namespace
+
+MachineCommands::MachineCommands(CLI::App& app, const std::vector<std::string>& command,
+                                 const sampled::Sampler& sampler, int& code)
+    : app_(app), code_(code) {
+  sim_.command = command;
+  sim_.sampler = &sampler;
+  add_sim_command();
+  add_compare_command();
+  add_run_command();
+  add_cosim_command();
+  add_configurations_command();
+  add_config_command();
+  add_unit_command();
+  add_isa_command();
+  add_assembly_command();
+  add_kernels_command();
+  add_errors_command();
+  add_scene_command();
+  add_bench_command();
+  add_descriptions_command();
+}
+
+CLI::App* MachineCommands::add(const std::string& name, const std::string& what) {
+  return app_.add_subcommand(name, what)->group("Machine");
+}
+
+void MachineCommands::add_sim_command() {
+  CLI::App* sim_app = add("sim", "draw a scene on the simulated chip; leaves image.png and report.json");
+  add_scene(*sim_app, sim_.scene, sim_.size, sim_.view, sim_.look, sim_.detail);
+  add_config(*sim_app, sim_.config, sim_.set);
+  add_unit(*sim_app, sim_.engine, sim_.unit_library);
+  sim_app
+      ->add_option("--boundary", sim_.boundary,
+                   "rtl and lockstep: what is Verilog, the units in the model of the chip, or the whole chip (default: "
+                   "unit)")
+      ->type_name("unit|chip");
+  sim_app->add_option("--hits", sim_.hits, "native: hits of its own, or Embree's (default: own)")
+      ->type_name("own|embree");
+  add_units_and_depth(*sim_app, sim_.units, sim_.depth);
+  add_threads(*sim_app, sim_.threads, "native and sampled: threads");
+  sim_app
+      ->add_option("--error", sim_.error,
+                   "sampled: half of the 95% interval of the cycles; as many tiles as that takes (default: 2%)")
+      ->type_name("PERCENT");
+  sim_app->add_option("--time", sim_.time, "sampled: in place of --error, as many tiles as the command has time for")
+      ->type_name("SECONDS");
+  sim_app->add_option("--seed", sim_.seed, "sampled: of the random choice of tiles (default: 1)")
+      ->check(CLI::PositiveNumber);
+  sim_app->add_option("--traverser", sim_.traverser, "as --set chip.traverser=NAME");
+  sim_app->add_option(
+      "--out", sim_.out,
+      "folder for the results (default: out/<what was run> beside the program; installed: in raypool-out)");
+  sim_app->add_option(
+      "--trace", sim_.trace,
+      "FROM:CYCLES or pixel:X,Y:CYCLES, : for 0:20000; leave what happens in this window too, trace.json "
+      "for Perfetto and trace.kanata for Konata; model only");
+  sim_app->add_flag("--waves", sim_.waves, "leave a waveform, waves.fst, too; rtl and lockstep only");
+  sim_app->add_flag("--modules", sim_.modules,
+                    "draw nothing: print the chip's SystemC modules, and what their ports are bound to");
+  sim_app
+      ->add_option("--cycles", sim_.cycle_limit,
+                   "give up after this many cycles (default: after 10000000 without a transfer)")
+      ->check(CLI::PositiveNumber);
+  add_inspect(*sim_app, sim_.inspect_until);
+  sim_app->add_flag("--json", sim_.json, "the report on standard output, and nothing else there");
+  sim_app->add_flag("--quiet", sim_.quiet, "no progress and no table");
+  sim_app->callback([this] { code_ = sim_command(sim_); });
+}
+
+void MachineCommands::add_compare_command() {
+  CLI::App* compare_app = add("compare", "two reports of sim: what differs in the set-up, and what that did");
+  compare_app->add_option("a", compare_.a, "report.json, or the folder it is in")->required();
+  compare_app->add_option("b", compare_.b, "another")->required();
+  compare_app
+      ->add_option(
+          "--synthesis", compare_.synthesis,
+          "report of make synth, or a folder of such folders, for the area (default: synth beside the program)")
+      ->allow_extra_args(false)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  compare_app->add_flag("--json", compare_.json, "all of it as JSON");
+  compare_app->callback([this] { code_ = compare_command(compare_); });
+}
+
+void MachineCommands::add_run_command() {
+  CLI::App* run_app = add("run", "run a compute kernel on one compute unit");
+  run_app->add_option("kernel", compute_.kernel, "saxpy, matmul, or the path of an assembly file")->required();
+  add_config(*run_app, compute_.config, compute_.set);
+  add_unit(*run_app, compute_.engine, compute_.unit_library);
+  run_app->add_option("--n", compute_.n, "size of saxpy (elements) or matmul (rows of a square matrix)");
+  run_app->add_option("--blocks", compute_.blocks, "assembly file: blocks to launch")->capture_default_str();
+  run_app->add_option("--threads", compute_.threads, "assembly file: threads a block (default: warps x lanes)");
+  run_app
+      ->add_option("--arg", compute_.arguments,
+                   "assembly file: next kernel argument; integer, 0x..., or float (with a point)")
+      ->allow_extra_args(false)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  run_app->add_option("--memory", compute_.memory_bytes, "assembly file: bytes of memory, program first")
+      ->capture_default_str();
+  run_app->add_option("--print", compute_.print, "assembly file: ADDRESS:WORDS of memory to print afterwards")
+      ->allow_extra_args(false)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  run_app->add_option("--waves", compute_.waves, "leave a waveform (FST) in this file; rtl and lockstep only");
+  add_inspect(*run_app, compute_.inspect_until);
+  run_app
+      ->add_option(
+          "--cycles", compute_.cycle_limit,
+          "give up after this many cycles; functional: warp instructions (default: 100000000, and after 10000000 "
+          "without a transfer)")
+      ->check(CLI::PositiveNumber);
+  run_app->add_flag("--quiet", compute_.quiet, "no progress");
+  run_app->callback([this] { code_ = run_command(compute_); });
+}
+
+void MachineCommands::add_cosim_command() {
+  CLI::App* cosim_app = add("cosim", "random programs, with stalls on every port, in lockstep with the golden model");
+  auto* config = cosim_app->add_option("--config", cosim_.config,
+                                       "machine: a name in configs/, NwMc (N warps, M lanes) or a JSON file (default: "
+                                       "the small ones that --machines prints, which share the programs)");
+  add_set(*cosim_app, cosim_.set)->needs(config);
+  add_unit(*cosim_app, cosim_.engine, cosim_.unit_library);
+  cosim_app->add_option("--units", cosim_.units, "compute units of --config: 1, 2 or 4")
+      ->needs(config)
+      ->check(CLI::IsMember({1, 2, 4}))
+      ->capture_default_str();
+  cosim_app->add_option("--programs", cosim_.programs, "how many")->capture_default_str();
+  cosim_app->add_option("--seed", cosim_.seed, "of the first; the next one has the next seed")->capture_default_str();
+  cosim_app->add_option("--length", cosim_.length, "about how many instructions a program has, 1 to 2000")
+      ->check(CLI::Range(1, 2000))
+      ->capture_default_str();
+  cosim_app->add_option("--mix", cosim_.mix, "one mix of instructions for all programs: mixed, memory, ..., operands");
+  cosim_app->add_flag("--quiet", cosim_.quiet, "no progress");
+  cosim_app->add_flag("!--no-shrink", cosim_.shrink, "leave a program that fails as it is");
+  cosim_app->add_option("--save", cosim_.save, "folder for the shrunk program")->capture_default_str();
+  cosim_app->add_option("--coverage", cosim_.coverage, "JSON file with what was covered");
+  cosim_app->add_option("--vectors", cosim_.vectors, "record every cycle in this file, for tb/icarus");
+  cosim_app->add_flag("--machines", cosim_.machines, "print the machines of a run without --config: file and units");
+  auto* replay = cosim_app->add_option("--replay", cosim_.replay, "run a saved program instead of random ones");
+  cosim_app->add_flag("--show-config", cosim_.show_configuration, "print the configuration of the saved program")
+      ->needs(replay);
+  cosim_app->add_flag("--unchecked", cosim_.unchecked, "run the saved program even if it breaks the rules")
+      ->needs(replay);
+  cosim_app->callback([this] { code_ = cosim_command(cosim_); });
+}
+
+void MachineCommands::add_configurations_command() {
+  CLI::App* configurations_app = add("configurations", "a set of machines with every pair of parameter values");
+  configurations_app->add_flag("--all-pairs", configurations_.all_pairs, "large machines too (default: small ones)");
+  configurations_app->add_option("--most", configurations_.most,
+                                 "only the first so many of those that bring pairs of values");
+  configurations_app->add_option("--out", configurations_.folder, "folder that gets a JSON file for each");
+  configurations_app->callback([this] { code_ = configurations_command(configurations_); });
+}
+
+void MachineCommands::add_config_command() {
+  CLI::App* config_app = add("config", "print a configuration");
+  config_app->add_option("config", config_.config, "a name in configs/, NwMc or a JSON file")->capture_default_str();
+  add_set(*config_app, config_.set);
+  auto* formats = config_app->add_option_group("format");
+  formats->add_flag("--json", config_.json, "as a configuration file");
+  CLI::Option* verilog = formats->add_flag("--verilog-parameters", config_.verilog_parameters,
+                                           "as NAME=VALUE lines for rtl/multiprocessor.v");
+  formats->add_flag("--unit-library", config_.unit_library, "path of its Verilated unit");
+  formats->require_option(0, 1);
+  config_app->add_flag("--in-use", config_.in_use, "refuse a field of --set that a frame on it does not look at");
+  config_app->add_flag("--chip", config_.chip, "with --verilog-parameters: those of rtl/chip.v")->needs(verilog);
+  config_app->add_option("--units", config_.units, "with --unit-library or --chip: compute units, 1, 2 or 4")
+      ->check(CLI::IsMember({1, 2, 4}));
+  config_app->callback([this] { code_ = config_command(config_); });
+}
+
+void MachineCommands::add_unit_command() {
+  CLI::App* unit_app =
+      add("unit", "build the Verilated unit that engines rtl and lockstep run (takes a minute or more)");
+  add_config(*unit_app, unit_.config, unit_.set);
+  unit_app->add_option("--units", unit_.units, "compute units: 1, 2 or 4")
+      ->check(CLI::IsMember({1, 2, 4}))
+      ->capture_default_str();
+  unit_app->add_option("--boundary", unit_.boundary, "the units, or the whole chip around them, as of sim")
+      ->type_name("unit|chip")
+      ->capture_default_str();
+  unit_app->add_flag("--waves", unit_.waves, "one that can leave a waveform, beside the fast one");
+  unit_app->callback([this] { code_ = unit_command(unit_); });
+}
+
+void MachineCommands::add_isa_command() {
+  CLI::App* isa_app = add("isa", "print the instruction table (default: as Markdown)");
+  auto* isa_formats = isa_app->add_option_group("format");
+  isa_formats->add_flag("--markdown", markdown_, "docs/isa.md");
+  isa_formats->add_flag("--verilog", verilog_, "rtl/isa.vh: constants");
+  isa_formats->add_flag("--verilog-functions", functions_, "rtl/isa_functions.vh: decoding");
+  isa_formats->add_flag("--write", write_, "all files that are derived from the table, in place");
+  isa_formats->require_option(0, 1);
+  isa_app->callback([this] {
+    if (write_) {
+      code_ = isa_write_command();
+      return;
+    }
+    code_ = isa_command(verilog_ ? IsaFormat::Verilog : functions_ ? IsaFormat::VerilogFunctions : IsaFormat::Markdown);
+  });
+}
+
+void MachineCommands::add_assembly_command() {
+  CLI::App* asm_app = add("asm", "assemble: one hexadecimal 64-bit word a line");
+  CLI::App* disasm_app = add("disasm", "disassemble what asm has written");
+  for (CLI::App* sub : {asm_app, disasm_app}) {
+    sub->add_option("file", text_path_, "input, - for standard input")->required();
+    sub->add_option("--out,-o", text_out_, "output (default: standard output)");
+  }
+  asm_app->callback([this] { code_ = asm_command(text_path_, text_out_); });
+  disasm_app->callback([this] { code_ = disasm_command(text_path_, text_out_); });
+}
+
+void MachineCommands::add_kernels_command() {
+  CLI::App* kernels_app = add("kernels", "the ray kernels' instruction counts by ALU, or the listing of one kernel");
+  kernels_app->add_option("name", kernel_, "kernel to list");
+  add_config(*kernels_app, kernels_config_, kernels_set_);
+  kernels_app->callback([this] { code_ = kernels_command(kernel_, kernels_config_, kernels_set_); });
+}
+
+void MachineCommands::add_errors_command() {
+  CLI::App* errors_app = add("errors", "measure the errors of division and roots of every slow unit, in ulp");
+  errors_app->add_option("--grid", grid_, "fdiv: GRID x GRID pairs of mantissas, 2 to 32768")
+      ->check(CLI::Range(2u, 32768u))
+      ->capture_default_str();
+  errors_app->callback([this] { code_ = errors_command(grid_); });
+}
+
+void MachineCommands::add_scene_command() {
+  CLI::App* scene_app = add("scene", "what a scene holds: triangles, materials, box, camera, light");
+  CLI::App* hits_app = add("hits", "compare our traversal's hits on a frame with Embree's");
+  for (CLI::App* sub : {scene_app, hits_app})
+    add_scene(*sub, scene_.scene, scene_.size, scene_.view, scene_.look, scene_.detail);
+  scene_app->add_option("--write-obj", scene_.write_obj, "write it as an OBJ, with its MTL beside it");
+  scene_app->add_option(
+      "--write-bvh", scene_.write_bvh,
+      "write its tree as the traverser's memory holds it, a binary file that docs/scenes.md describes");
+  scene_app->callback([this] { code_ = scene_command(scene_); });
+  hits_app->callback([this] { code_ = hits_command(scene_); });
+}
+
+void MachineCommands::add_bench_command() {
+  CLI::App* bench_app =
+      add("bench", "how fast our intersection is beside Embree's, on the eye, reflection and shadow rays of a frame");
+  add_scene(*bench_app, bench_.scene, bench_.size, bench_.view, bench_.look, bench_.detail);
+  bench_app->add_option("--depth", bench_.depth, "of the frame's rays")
+      ->check(CLI::Range(1, kLargestDepth))
+      ->capture_default_str();
+  add_threads(*bench_app, bench_.threads, "threads of the second half of the table");
+  bench_app->add_option("--repetitions", bench_.repetitions, "turns, each of both sides")
+      ->check(CLI::Range(1, 10000))
+      ->capture_default_str();
+  bench_app->add_flag("--processor-time", bench_.processor_time,
+                      "what the threads used of the processor, divided by their number, in place of the time on the "
+                      "wall: for a machine that does other things too");
+  bench_app->add_flag("--json", bench_.json, "the figures as JSON on standard output, and nothing else there");
+  bench_app->add_flag("--quiet", bench_.quiet, "no progress");
+  bench_app->callback([this] { code_ = bench_command(bench_); });
+}
+
+void MachineCommands::add_descriptions_command() {
+  CLI::App* completion_app = add("completion", "print what completes raypool's commands and options in a shell");
+  completion_app->add_option("shell", shell_, "whose")->type_name("bash|zsh|fish")->capture_default_str();
+  completion_app->callback([this] { std::fputs(completion(app_, shell_).c_str(), stdout); });
+  CLI::App* man_app = add("man", "print the man page: raypool man | man -l -");
+  man_app->callback([this] { std::fputs(man_page(app_).c_str(), stdout); });
+}
+
+}  // namespace raypool

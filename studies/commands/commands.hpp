@@ -1,0 +1,84 @@
+// What the commands of the studies do; study_commands.cpp parses the command line into these options. Each throws
+// InputError on input that cannot be used and returns the exit code otherwise.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "cli/scene_loading.hpp"
+
+namespace raypool {
+
+/// `raypool numerics`
+struct NumericsOptions {
+  std::string config = "4w4c";  ///< the base, to which each mode's arithmetic is applied
+  std::vector<std::string> set;
+  std::string mode = "all";  ///< or one of numerics::arithmetic_modes()
+  std::string size = "256x256";
+  int depth = 3;
+  std::string out;             ///< folder; empty: out/numerics beside the executable
+  std::string synthesis;       ///< folder of synthesis reports; empty: synth beside the executable
+  std::string configurations;  ///< folder: only write a configuration file for each mode
+  bool extremes = false;       ///< the catalogue of hard cases instead of the trade
+  bool catalogue = false;      ///< only its cases and what is expected
+  bool quiet = false;          ///< no progress
+};
+int numerics_command(const NumericsOptions& options);
+
+/// `raypool significands`
+struct SignificandsOptions {
+  std::string scene = "room";
+  double detail = 1;
+  std::string view;
+  ViewWords look;
+  std::string size = "256x256";
+  int depth = 3;
+  std::string config = "4w4c";  ///< what else the arithmetic is
+  std::vector<std::string> set;
+  bool quiet = false;  ///< no progress
+};
+int significands_command(const SignificandsOptions& options);
+
+/// `raypool boxes` and `raypool triangles`
+struct WidthsOptions {
+  std::string scene = "room";
+  double detail = 1;
+  std::string view;
+  ViewWords look;
+  std::string size = "320x320";
+  uint32_t depth = 3;
+  std::vector<uint32_t> bits;
+  bool quiet = false;  ///< no progress
+};
+struct BoxesOptions : WidthsOptions {
+  BoxesOptions() { bits = {16, 14, 12, 11, 10, 9, 8, 7, 6}; }
+};
+struct TrianglesOptions : WidthsOptions {
+  TrianglesOptions() { bits = {53, 40, 32, 28, 26, 24}; }
+};
+/// Exit code 3 if a hit is another one.
+int boxes_command(const BoxesOptions& options);
+int triangles_command(const TrianglesOptions& options);
+
+/// `raypool fit`: the frame is that of `raypool sim`.
+struct FitOptions {
+  std::string scene = "room";
+  double detail = 1;
+  std::string view;
+  ViewWords look;
+  std::string size = "320x320";
+  int depth = 3;
+  int units = 1;
+  std::string config = "8w8c";  ///< what there is to be less of
+  std::vector<std::string> set;
+  std::string traverser;
+  std::string slower = "1%";  ///< cycles that the whole may take more
+  std::string out;            ///< the configuration's file; empty: out/fit/<its name>.json beside the executable
+  std::string json;           ///< file with what was found; empty: none
+  bool quiet = false;         ///< no progress
+  std::vector<std::string> command;
+};
+int fit_command(const FitOptions& options);
+
+}  // namespace raypool

@@ -1,0 +1,234 @@
+// `raypool numerics`: what each arithmetic mode does to pictures and costs; the catalogue of extremes.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+
+#include "cli/engine.hpp"
+#include "cli/exit_code.hpp"
+#include "cli/folders.hpp"
+#include "cli/image_size.hpp"
+#include "cli/output_folder.hpp"
+#include "cli/progress.hpp"
+#include "commands/commands.hpp"
+#include "numerics/cost.hpp"
+#include "numerics/extreme_parts.hpp"
+#include "numerics/extremes.hpp"
+#include "numerics/trade_report.hpp"
+
+namespace raypool {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace numerics;
+
+constexpr uint64_t kSeamRays = 1'000'000;
+
+std::vector<ArithmeticMode> chosen_modes(const std::string& name) {
+  if (name == "all") return arithmetic_modes();
+  std::string names;
+  for (const ArithmeticMode& mode : arithmetic_modes()) {
+    if (mode.name == name) return {mode};
+    names += ", " + mode.name;
+  }
+  throw InputError(fmt::format("there is no arithmetic mode '{}': use all{}", name, names));
+}
+
+UnitMaker unit_maker(Engine engine) {
+  return [engine](const Configuration& configuration, Memory& memory) {
+    EngineOptions options;
+    options.engine = engine;
+    options.configuration = configuration;
+    options.inspect_until = kInspectAlways;
+    return make_unit(options, memory);
+  };
+}
+
+/// Whether the Verilated unit of a configuration has been built.
+bool has_rtl(const Configuration& configuration) { return fs::exists(unit_library_path(configuration, false)); }
+
+struct NamedScene {
+  std::string title;
+  Scene scene;
+};
+
+std::vector<NamedScene> trade_scenes() {
+  std::vector<NamedScene> scenes;
+  scenes.push_back({"cornell", make_cornell()});
+  scenes.push_back({"room at detail 0.1", make_room(0.1)});
+  scenes.push_back({"cornell moved by 1 km", moved(make_cornell(), 1, {1000, 700, -900})});
+  return scenes;
+}
+
+TradeResult measure_trade(const NumericsOptions& options, const ImageSize& size, Progress& progress) {
+  const Configuration base = load_configuration(options.config, options.set);
+  const std::vector<ArithmeticMode> modes = chosen_modes(options.mode);
+  TradeResult result;
+  result.configuration = base.name;
+  for (NamedScene& named : trade_scenes()) {
+    progress.show(fmt::format("  {}: the reference picture", named.title));
+    TradeScene scene(named.title, std::move(named.scene), size.width, size.height, options.depth);
+    scene.draw_reference([&](double share) {
+      if (progress.due()) progress.show(fmt::format("  {}: the reference picture, {:.0f}%", named.title, 100 * share));
+    });
+    for (const ArithmeticMode& mode : modes) {
+      if (progress.due()) progress.show(fmt::format("  {}: {}", named.title, mode.name));
+      result.rows.push_back({named.title, mode, judge_frame(scene, record_frame(scene, mode.mode))});
+    }
+  }
+  const Scene timed = make_cornell();
+  for (const ArithmeticMode& mode : modes) {
+    const Configuration configuration = mode.applied_to(base);
+    TradeCost cost{
+        mode, std::nullopt,
+        read_gates(options.synthesis.empty() ? results_folder().parent_path() / "synth" : fs::path(options.synthesis),
+                   mode.mode)};
+    if (progress.due()) progress.show(fmt::format("  cost: {}", mode.name));
+    cost.timing = time_mode(timed, options.depth, configuration, unit_maker(Engine::Model));
+    result.costs.push_back(cost);
+  }
+  return result;
+}
+
+int trade_command(const NumericsOptions& options) {
+  const ImageSize size = parse_image_size(options.size);
+  OutputFolder out(options.out.empty() ? results_folder() / "numerics" : fs::path(options.out));
+  Progress progress(options.quiet);
+  const TradeResult trade = measure_trade(options, size, progress);
+
+  const std::vector<WatertightMesh> meshes = watertight_meshes();
+  std::vector<WatertightCounts> seams;
+  for (const WatertightMesh& mesh : meshes) {
+    if (progress.due()) progress.show(fmt::format("  rays at seams: {}", mesh.name));
+    seams.push_back(aim_at_seams(mesh, kSeamRays / meshes.size()));
+  }
+
+  const std::vector<OffsetScene> scenes = offset_scenes();
+  const std::vector<OffsetRule> rules = offset_rules();
+  std::vector<std::vector<OffsetCounts>> offsets;
+  for (const OffsetScene& scene : scenes) {
+    if (progress.due()) progress.show(fmt::format("  offsets: {}", scene.name));
+    offsets.push_back(study_offsets(scene.scene, rules, std::clamp(size.width, 16, 256)));
+  }
+
+  out.write("numerics.json", to_json(trade, meshes, seams, scenes, rules, offsets));
+  const bool gates_known =
+      std::all_of(trade.costs.begin(), trade.costs.end(), [](const TradeCost& c) { return c.gates; });
+  out.publish();
+
+  fmt::print("{}\nrays aimed at shared edges and vertices\n{}\n", trade_table(trade), seam_table(meshes, seams));
+  fmt::print("offset of secondary rays, against the reference, ties apart\n{}\n", offset_table(scenes, rules, offsets));
+  if (!gates_known)
+    fmt::print("no gates where there is a -: make numerics GATES=1 synthesises the lanes of every mode first\n");
+  fmt::print("results in {}: numerics.json\n", fs::proximate(out.path(".")).lexically_normal().string());
+  const bool leak =
+      std::any_of(seams.begin(), seams.end(), [](const WatertightCounts& counts) { return counts.leaks > 0; });
+  return leak ? kOtherFailure : kDone;
+}
+
+/// What the letters mean, and the columns: a number each, as names are too wide.
+void print_letters(const std::vector<ArithmeticMode>& modes) {
+  fmt::print(
+      "n engine native, f functional, m model, l RTL in lockstep with the model, X failed, b breaks with so few bits, "
+      "- no Verilated unit\n");
+  for (size_t i = 0; i < modes.size(); ++i) fmt::print("{}{} {}", i == 0 ? "modes " : ", ", i + 1, modes[i].name);
+  fmt::print("\n{:<58}", "");
+  for (size_t i = 0; i < modes.size(); ++i) fmt::print(" {:>4}", i + 1);
+  fmt::print("\n");
+}
+
+/// One letter an engine, in the order native, functional, model, lockstep: its own passed, X failed, - not run.
+int extremes_command(const NumericsOptions& options) {
+  const Configuration base = load_configuration(options.config, options.set);
+  const std::vector<ArithmeticMode> modes = chosen_modes(options.mode);
+  std::vector<ExtremeMachine> machines;
+  std::vector<std::string> missing;
+  for (const ArithmeticMode& mode : modes) {
+    machines.emplace_back("native", mode, base);
+    machines.emplace_back("functional", mode, base, unit_maker(Engine::Functional));
+    machines.emplace_back("model", mode, base, unit_maker(Engine::Model));
+    if (has_rtl(mode.applied_to(base))) {
+      machines.emplace_back("lockstep", mode, base, unit_maker(Engine::Lockstep));
+    } else {
+      missing.push_back(mode.name);
+    }
+  }
+  Progress progress(options.quiet);
+  std::string failures;
+  uint64_t checks = 0, failed = 0, broken = 0, on_rtl = 0;
+  print_letters(modes);
+  std::string theme;
+  for (const ExtremeCase& extreme : extreme_cases()) {
+    if (extreme.theme != theme) {
+      theme = extreme.theme;
+      fmt::print("{}\n", theme);
+    }
+    std::map<std::string, std::string> letters;
+    for (const ExtremeMachine& machine : machines) {
+      if (progress.due())
+        progress.show(fmt::format("  {}: {}, {}", extreme.name, machine.mode().name, machine.engine()));
+      const auto [holds, failure] = run_extreme(extreme, machine);
+      ++checks;
+      on_rtl += machine.engine() == "lockstep";
+      failed += !failure.empty();
+      broken += !holds && failure.empty();
+      letters[machine.mode().name] += holds ? machine.engine()[0] : failure.empty() ? 'b' : 'X';
+      if (!failure.empty()) {
+        failures += fmt::format("FAILED: {}: {} ({}), {}, {}: {}\n", extreme.theme, extreme.name, extreme.expected,
+                                machine.mode().name, machine.engine(), failure);
+      }
+    }
+    fmt::print("  {:<56}", extreme.name);
+    for (const ArithmeticMode& mode : modes) {
+      std::string cell = letters[mode.name];
+      if (cell.size() < 4) cell += '-';
+      fmt::print(" {:>4}", cell);
+    }
+    fmt::print("\n");
+    std::fflush(stdout);
+  }
+  fmt::print("{}{} cases, {} runs ({} on RTL in lockstep), {} break with few bits, {} failed\n", failures,
+             extreme_cases().size(), checks, on_rtl, broken, failed);
+  if (!missing.empty()) {
+    fmt::print("without hardware: {} of {} modes; make extremes builds their units\n", missing.size(), modes.size());
+  }
+  return failed == 0 ? kDone : kOtherFailure;
+}
+
+/// Every case of the catalogue and its expected behaviour.
+int list_extremes() {
+  std::string theme;
+  for (const ExtremeCase& extreme : extreme_cases()) {
+    if (extreme.theme != theme) fmt::print("{}\n", theme = extreme.theme);
+    fmt::print("  {:<56} {}\n", extreme.name, extreme.expected);
+  }
+  fmt::print("{} cases\n", extreme_cases().size());
+  return 0;
+}
+
+/// A configuration file for each mode, named after it.
+int write_configurations(const NumericsOptions& options) {
+  const Configuration base = load_configuration(options.config, options.set);
+  OutputFolder folder(options.configurations);
+  std::string names;
+  for (const ArithmeticMode& mode : chosen_modes(options.mode)) {
+    const Configuration configuration = mode.applied_to(base);
+    const std::string name = configuration.name + ".json";
+    folder.write(name, to_json(configuration) + "\n");
+    names += folder.path(name).string() + "\n";
+  }
+  folder.publish();
+  fmt::print("{}", names);
+  return 0;
+}
+
+}  // namespace
+
+int numerics_command(const NumericsOptions& options) {
+  if (!options.configurations.empty()) return write_configurations(options);
+  if (options.catalogue) return list_extremes();
+  return options.extremes ? extremes_command(options) : trade_command(options);
+}
+
+}  // namespace raypool

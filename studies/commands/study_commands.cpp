@@ -1,0 +1,100 @@
+#include "commands/study_commands.hpp"
+
+#include "cli/command_options.hpp"
+#include "machine/box_ray.hpp"
+#include "machine/narrow_float.hpp"
+
+namespace raypool {
+namespace {
+
+void add_widths_command(CLI::App& app, WidthsOptions& options, uint32_t least, uint32_t most) {
+  add_scene(app, options.scene, options.size, options.view, options.look, options.detail);
+  app.add_option("--depth", options.depth, "of the rays")->check(CLI::Range(1, 254))->capture_default_str();
+  app.add_option("--bits", options.bits, "widths, with commas between")
+      ->delimiter(',')
+      ->check(CLI::Range(least, most))
+      ->capture_default_str();
+  app.add_flag("--quiet", options.quiet, "no progress");
+}
+
+}  // namespace
+
+StudyCommands::StudyCommands(CLI::App& app, const std::vector<std::string>& command, int& code)
+    : app_(app), code_(code) {
+  fit_.command = command;
+  add_numerics_command();
+  add_significands_command();
+  add_widths_commands();
+  add_fit_command();
+}
+
+CLI::App* StudyCommands::add(const std::string& name, const std::string& what) {
+  return app_.add_subcommand(name, what)->group("Studies");
+}
+
+void StudyCommands::add_numerics_command() {
+  CLI::App* numerics_app =
+      add("numerics", "what each arithmetic mode does to pictures, and costs; seams; offsets; extremes");
+  add_config(*numerics_app, numerics_.config, numerics_.set);
+  numerics_app->add_option("--mode", numerics_.mode, "all, or one: ieee-exact, flush-newton1, ...")
+      ->capture_default_str();
+  numerics_app->add_option("--size", numerics_.size, "pictures, WIDTHxHEIGHT in pixels")->capture_default_str();
+  numerics_app->add_option("--depth", numerics_.depth, "of the pictures' rays")
+      ->check(CLI::Range(1, 254))
+      ->capture_default_str();
+  numerics_app->add_option(
+      "--out", numerics_.out,
+      "folder for numerics.json and plots (default: out/numerics beside the program; installed: in raypool-out)");
+  numerics_app->add_option("--synthesis", numerics_.synthesis,
+                           "folder of synthesis reports (default: synth beside the program)");
+  numerics_app->add_flag("--extremes", numerics_.extremes, "the catalogue of hard cases, by mode and engine");
+  numerics_app->add_flag("--catalogue", numerics_.catalogue, "only list those cases, with what is expected of them");
+  numerics_app->add_option("--configurations", numerics_.configurations,
+                           "only write a configuration file of each mode into this folder");
+  numerics_app->add_flag("--quiet", numerics_.quiet, "no progress");
+  numerics_app->callback([this] { code_ = numerics_command(numerics_); });
+}
+
+void StudyCommands::add_significands_command() {
+  CLI::App* significands_app =
+      add("significands", "what floats of fewer bits do to a scene's picture, and how few bits nobody sees");
+  add_scene(*significands_app, significands_.scene, significands_.size, significands_.view, significands_.look,
+            significands_.detail);
+  significands_app->add_option("--depth", significands_.depth, "of the picture's rays")
+      ->check(CLI::Range(1, 254))
+      ->capture_default_str();
+  add_config(*significands_app, significands_.config, significands_.set);
+  significands_app->add_flag("--quiet", significands_.quiet, "no progress");
+  significands_app->callback([this] { code_ = significands_command(significands_); });
+}
+
+void StudyCommands::add_widths_commands() {
+  CLI::App* boxes_app = add(
+      "boxes", "what a scene's rays visit when boxes are tested in integers of few bits: nodes and triangles a ray");
+  add_widths_command(*boxes_app, boxes_, kLeastBoxBits, kMostBoxBits);
+  boxes_app->callback([this] { code_ = boxes_command(boxes_); });
+  CLI::App* triangles_app = add(
+      "triangles", "what triangle tests without double do to a scene's hits and picture, to seams and to hard cases");
+  add_widths_command(*triangles_app, triangles_, kLeastTimeBits, kMostTimeBits);
+  triangles_app->callback([this] { code_ = triangles_command(triangles_); });
+}
+
+void StudyCommands::add_fit_command() {
+  CLI::App* fit_app =
+      add("fit", "what a scene needs of a machine: leaves a configuration with only that, for the other commands");
+  add_scene(*fit_app, fit_.scene, fit_.size, fit_.view, fit_.look, fit_.detail);
+  add_config(*fit_app, fit_.config, fit_.set);
+  add_units_and_depth(*fit_app, fit_.units, fit_.depth);
+  fit_app->add_option("--traverser", fit_.traverser, "as --set chip.traverser=NAME");
+  fit_app->add_option("--slower", fit_.slower, "cycles that the whole may take more, in percent")
+      ->type_name("N%")
+      ->capture_default_str();
+  fit_app->add_option("--out", fit_.out,
+                      "file for the configuration (default: out/fit/NAME.json beside the program; installed: in "
+                      "raypool-out)");
+  fit_app->add_option("--json", fit_.json, "file for all that was found, as JSON");
+  fit_app->add_flag("--quiet", fit_.quiet, "no progress");
+  fit_app->callback([this] { code_ = fit_command(fit_); });
+}
+
+}  // namespace raypool

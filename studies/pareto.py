@@ -1,0 +1,439 @@
+#!/usr/bin/python3
+"""Area of the unit against error of the picture: a frame on machines of several arithmetic modes, whole and fitted.
+
+    studies/pareto.py [--machines "24 20-flush-newton1 24-fit ..."] [--no-area] [--out FOLDER] [options of raypool sim]
+
+Prints a table and leaves pareto.json (docs/speed-and-accuracy.md), pareto.svg, and in machines/ each machine's picture
+and the configuration of those that were fitted, in FOLDER. `make pareto` calls it. RAYPOOL names the program, default
+raypool in the build folder (BUILD).
+"""
+import argparse
+import contextlib
+import json
+import math
+import os
+import pathlib
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import typing
+
+import fidelity
+from experiments import show
+from fidelity import INPUT_FAILURE, INTERRUPTED, RAYPOOL, Failed, FidelityError, say
+import synth.fit
+from plots.plot import Plot, legend, plain
+from plots.style import colour
+from synth.errors import SynthError
+
+# dB of two pictures between which nobody sees a difference: kInvisible of studies/numerics/significands.hpp.
+INVISIBLE = 48
+# What a designer chooses among. Of whether subnormal numbers may be left out altogether a fit decides.
+MACHINES = (
+    "24 24-newton2 24-flush 24-flush-newton1 24-flush-newton0 20 20-flush-newton1 18-flush-newton1 16 "
+    "16-flush-newton1 16-flush-newton0 14-flush-newton1 13 13-flush-newton1 12-flush-newton1 11 11-flush-newton0 "
+    "24-fit smallest-fit"
+).split()
+# The fit of the smallest machine without a visible difference, whichever that turns out to be.
+SMALLEST_FIT = "smallest-fit"
+SUBNORMALS, SLOW_UNIT = "subnormals", "slow_unit"
+
+
+class Machine(typing.NamedTuple):
+    """An arithmetic, and whether the machine has only what the frame needs."""
+
+    name: str
+    fields: tuple  # "arithmetic.significand=20", ...: all four
+    fitted: bool = False
+
+
+class Row:
+    """A machine, and what has come out of it."""
+
+    def __init__(self, machine):
+        self.machine = machine
+        self.report = None
+        self.picture = None  # against that of the full machine
+        self.area = None
+
+    @property
+    def decibels(self):
+        return math.inf if self.picture["psnr"] is None else self.picture["psnr"]
+
+    @property
+    def invisible(self):
+        return self.decibels >= INVISIBLE
+
+
+# Machines
+
+
+def arithmetic():
+    """Values of each field, as the schema of configurations has them; the first is that of the full machine."""
+    with open(fidelity.ROOT / "schemas/configuration.json", encoding="utf-8") as file:
+        fields = json.load(file)["properties"]["arithmetic"]["properties"]
+    bits = fields["significand"]
+    return {"significand": [str(value) for value in range(bits["maximum"], bits["minimum"] - 1, -1)],
+            SUBNORMALS: fields[SUBNORMALS]["enum"], SLOW_UNIT: fields[SLOW_UNIT]["enum"],
+            "fma": ["false", "true"]}  # fmt: skip
+
+
+def machine_of(name):
+    """The machine that a name of BITS[-SUBNORMALS][-SLOW_UNIT][-fma][-fit] means."""
+    values = arithmetic()
+    bits, *words = name.split("-")
+    fitted = words[-1:] == ["fit"]
+    words = words[:-1] if fitted else words
+    chosen = {field: names[0] for field, names in values.items()}
+    if bits not in values["significand"]:
+        raise FidelityError(f"'{name}' is no machine: it begins with the bits of a significand, "
+                            f"{values['significand'][-1]} to {values['significand'][0]}")
+    chosen["significand"] = bits
+    of_word = {"fma": ("fma", "true"), **{word: (field, word) for field in (SLOW_UNIT, SUBNORMALS)
+                                          for word in values[field][1:]}}  # fmt: skip
+    for word in words:
+        if word not in of_word:
+            raise FidelityError(f"'{name}' is no machine: '{word}' is none of {', '.join(of_word)}, and fit at the end")
+        field, value = of_word.pop(word)
+        of_word = {word: of for word, of in of_word.items() if of[0] != field}
+        chosen[field] = value
+    return Machine(name, tuple(f"arithmetic.{field}={value}" for field, value in chosen.items()), fitted)
+
+
+def chosen_machines(text):
+    """Names, each once, without the full machine, which is always there."""
+    names = list(dict.fromkeys(text.replace(",", " ").split() if text else MACHINES))
+    if not names:
+        raise FidelityError("no machine is named: 24 20-flush 16-newton1-fit ...")
+    for name in names:
+        if name != SMALLEST_FIT:
+            machine_of(name)
+    return [name for name in names if name != full().name]
+
+
+def full():
+    return machine_of(arithmetic()["significand"][0])
+
+
+# Pictures and areas
+
+
+def call(*command):
+    """Its output is progress."""
+    code = subprocess.run([RAYPOOL, *command], stdout=sys.stderr, check=False).returncode
+    if code != 0:
+        raise Failed(code if code > 0 else 128 - code)
+
+
+def draw(row, options, folder, reference):
+    """The frame by the machine's own code, so that what it must not meet, a subnormal number say, is noticed."""
+    name, fields = row.machine.name, [f"--set={field}" for field in row.machine.fields]
+    out = folder / "drawn" / name
+    if row.machine.fitted:
+        say(f"pareto: {name}: what the frame needs of it")
+        config = folder / "machines" / f"{name}.json"
+        call("fit", *options, *fields, "--quiet", "--out", config)
+        # Its own name is that of a file that the user may take elsewhere.
+        options = [word for word in options if not word.startswith(("--config=", "--set=", "--traverser="))]
+        fields = [f"--config={config}"]
+    say(f"pareto: {name}: drawing")
+    code = subprocess.run([RAYPOOL, "sim", *options, *fields, "--engine", "functional", "--quiet", "--out", out],
+                          stdout=subprocess.DEVNULL, check=False).returncode  # fmt: skip
+    if code != 0:
+        raise Failed(code if code > 0 else 128 - code)
+    with open(out / "report.json", encoding="utf-8") as file:
+        row.report = json.load(file)
+    done = subprocess.run([RAYPOOL, "compare", folder / "drawn" / reference, out, "--json"], text=True,
+                          stdout=subprocess.PIPE, check=False)  # fmt: skip
+    if done.returncode != 0:
+        raise Failed(done.returncode)
+    row.picture = json.loads(done.stdout)["picture"]
+    if not row.picture.pop("compared"):
+        raise FidelityError(f"{name}: the picture cannot be compared: {row.picture['reason']}")
+    shutil.copy(out / "image.png", folder / "machines" / f"{name}.png")
+
+
+def measure(row, jobs):
+    say(f"pareto: {row.machine.name}: area")
+    row.area = synth.fit.area(row.report["configuration"], jobs)
+
+
+def smallest(rows):
+    """Of those without a visible difference the one with the least logic, or None."""
+    return min((row for row in rows if row.invisible), key=lambda row: row.area["logic_kge"], default=None)
+
+
+def front(points):
+    """Of (area, error in dB, the higher the better) those that no other is better than in one and as good in both."""
+    return [point for point in points
+            if not any(other[0] <= point[0] and other[1] >= point[1] and other[:2] != point[:2] for other in points)]
+
+
+# What it leaves
+
+
+def summary(rows, arguments):
+    report = rows[0].report
+    # A fitted machine draws less than a whole one: each competes with its like.
+    kinds = [[row for row in rows if row.machine.fitted == fitted] for fitted in (False, True)]
+    best = [{(row.area["logic_kge"], row.decibels) for row in kind} for kind in kinds] if arguments.area else []
+    best = [set(front(points)) for points in best]
+    least = [smallest(kind) for kind in kinds] if arguments.area else [None, None]
+    return {
+        "raypool": report["raypool"],
+        "command": sys.argv,
+        **{name: report[name] for name in ("scene", "size", "depth", "units")},
+        "config": pathlib.Path(arguments.config).stem,
+        "reference": rows[0].machine.name,
+        "invisible_db": INVISIBLE,
+        "smallest": least[0] and least[0].machine.name,
+        "smallest_fitted": least[1] and least[1].machine.name,
+        "machines": [{
+            "machine": row.machine.name,
+            "configuration": row.report["configuration"],
+            "fitted": row.machine.fitted,
+            "picture": row.picture,
+            "visible": not row.invisible,
+            "area": None if row.area is None else {key: row.area[key] for _, key, _ in synth.fit.FIGURES},
+            "pareto": bool(best) and (row.area["logic_kge"], row.decibels) in best[row.machine.fitted],
+        } for row in rows],
+    }  # fmt: skip
+
+
+def print_table(found):
+    rows = found["machines"]
+    with_area = rows[0]["area"] is not None
+    print(fidelity.title(found))
+    header = ["machine", *(["logic kGE", "less", "memory bits"] if with_area else []), "dB", "pixels differ",
+              "largest of 255", *(["Pareto"] if with_area else [])]  # fmt: skip
+    lines = []
+    for row in sorted(rows, key=lambda row: -row["area"]["logic_kge"] if with_area else 0):
+        area, picture = row["area"], row["picture"]
+        cells = [row["machine"]]
+        if with_area:
+            less = 1 - area["logic_kge"] / rows[0]["area"]["logic_kge"]
+            cells += [f"{area['logic_kge']:.1f}", f"{100 * less:.1f}%", str(area["memory_bits"])]
+        cells += ["equal" if picture["psnr"] is None else f"{picture['psnr']:.1f}", str(picture["differ"]),
+                  str(picture["largest_difference"])]  # fmt: skip
+        lines.append(cells + (["*" if row["pareto"] else ""] if with_area else []))
+    show(header, lines)
+    if with_area:
+        kge = {row["machine"]: f"{row['machine']}, {row['area']['logic_kge']:.1f} kGE" for row in rows}
+        fitted = found["smallest_fitted"]
+        print(f"smallest without a visible difference from {found['reference']} ({INVISIBLE} dB): "
+              f"{kge[found['smallest']]}{'; fitted ' + kge[fitted] if fitted else ''}")
+
+
+# The plot
+
+WIDTH, HEIGHT = 900, 560
+# The axes' box, as shares of the picture.
+LEFT, RIGHT, BOTTOM, TOP = 0.08, 0.98, 0.11, 0.88
+LETTER, LINE = 6.6, 14  # pixels of a letter and of a line of labels
+KEY_WIDTH, KEY_HEIGHT = 320, 84  # of the lines that explain, in the corner at the right and below
+# Rows of the axis of errors, in dB: that of equal pictures lies above all others, with room for names around it.
+STEP = 10
+
+
+def boxes_overlap(one, other):
+    return one[0] < other[2] and other[0] < one[2] and one[1] < other[3] and other[1] < one[3]
+
+
+def candidates(x, y, width):
+    """Boxes (left, bottom, right, top) for a name, the nearest to its point first."""
+    for distance in range(9, 200, 8):
+        yield (x - distance - width, y - LINE / 2, x - distance, y + LINE / 2)
+        yield (x + distance, y - LINE / 2, x + distance + width, y + LINE / 2)
+        for up in (1, -1):
+            middle = y + up * (distance + LINE / 2)
+            for shift in (0, 0.5, -0.5):
+                centre = x + shift * width
+                yield (centre - width / 2, middle - LINE / 2, centre + width / 2, middle + LINE / 2)
+
+
+def place(points, taken, width, height):
+    """[(x, y, name)] in pixels to a box for each name, which lies on no other, on no point and on no box of `taken`."""
+    marks = [*taken, *((x - 6, y - 6, x + 6, y + 6) for x, y, _ in points)]
+    placed = []
+    for x, y, name in points:
+        for box in candidates(x, y, LETTER * len(name) + 4):
+            inside = box[0] >= 2 and box[1] >= 2 and box[2] <= width and box[3] <= height
+            if inside and not any(boxes_overlap(box, other) for other in [*placed, *marks]):
+                break
+        else:
+            raise FidelityError(f"pareto.svg has no place for the name {name}: draw fewer machines")
+        placed.append(box)
+    return placed
+
+
+def plot(found, svg):
+    rows = found["machines"]
+    finite = [row["picture"]["psnr"] for row in rows if row["picture"]["psnr"] is not None]
+    worst = STEP * math.floor((min([INVISIBLE, *finite]) - 3) / STEP)
+    equal = STEP * (math.ceil(max([INVISIBLE, *finite]) / STEP) + 1)
+    best = equal + STEP
+    areas = [row["area"]["logic_kge"] for row in rows]
+    span = max(max(areas) - min(areas), 1)
+    low, high = min(areas) - 0.08 * span, max(areas) + 0.08 * span
+    width, height = WIDTH * (RIGHT - LEFT), HEIGHT * (TOP - BOTTOM)
+    points = []
+    for row in sorted(rows, key=lambda row: not row["pareto"]):  # those on the front get the best places
+        error = equal if row["picture"]["psnr"] is None else row["picture"]["psnr"]
+        points.append((row, row["area"]["logic_kge"], error))
+    at = [(width * (x - low) / (high - low), height * (y - worst) / (best - worst), row["machine"])
+          for row, x, y in points]  # fmt: skip
+    drawn = Plot(HEIGHT, WIDTH)
+    drawn.figure.set_layout_engine("none")
+    axes = drawn.axes
+    axes.set_position((LEFT, BOTTOM, RIGHT - LEFT, TOP - BOTTOM))
+    axes.set_xlim(low, high)
+    axes.set_ylim(worst, best)
+    line = height * (INVISIBLE - worst) / (best - worst)
+    steps = sorted((x, y) for (row, _, _), (x, y, _) in zip(points, at) if row["pareto"] and not row["fitted"])
+    taken = [(width - KEY_WIDTH, 0, width, KEY_HEIGHT), (0, line, width, line)]
+    for (x, y), (next_x, next_y) in zip(steps, steps[1:]):  # the front: to the right, then up
+        taken += [(x, y, next_x, y), (next_x, y, next_x, next_y)]
+    for (row, _, _), (x, y, name), box in zip(points, at, place(at, taken, width, height)):
+        middle = ((box[0] + box[2]) / 2 / width, (box[1] + box[3]) / 2 / height)
+        axes.text(*middle, plain(name), transform=axes.transAxes, ha="center", va="center",
+                  color=colour("accent" if row["pareto"] else "muted"))  # fmt: skip
+        near = (min(max(x, box[0]), box[2]), min(max(y, box[1]), box[3]))
+        if math.dist((x, y), near) > 14:
+            axes.plot([x / width, near[0] / width], [y / height, near[1] / height], transform=axes.transAxes,
+                      color=colour("registers"), linewidth=0.5)  # fmt: skip
+    axes.axhline(INVISIBLE, color=colour("flt"), linestyle="--", linewidth=1, label="above: nobody sees a difference")
+
+    def some(words, name, mark, wanted, **style):
+        axes.plot(*zip(*[(x, y) for row, x, y in points if wanted(row)] or [(math.nan, math.nan)]), mark, label=words,
+                  color=colour(name), zorder=3, **style)  # fmt: skip
+
+    optimal = sorted((x, y) for row, x, y in points if row["pareto"] and not row["fitted"])
+    axes.step(*zip(*optimal or [(math.nan, math.nan)]), where="post", color=colour("s1"), linewidth=1.2, zorder=2)
+    some("another is smaller and as good", "muted", "o", lambda row: not row["pareto"] and not row["fitted"],
+         markerfacecolor=colour("paper"))  # fmt: skip
+    some("Pareto-optimal", "accent", "o", lambda row: row["pareto"] and not row["fitted"])
+    some("fitted to the frame", "mem", "s", lambda row: row["fitted"])
+    ticks = range(worst, equal + 1, STEP)
+    axes.set_yticks(ticks, [*map(str, ticks[:-1]), "equal"])
+    axes.set_xlabel("logic, kGE")
+    axes.set_ylabel("PSNR, dB")
+    legend(axes, loc="lower right")
+    drawn.title(fidelity.title(found),
+                f"logic of the unit against the picture's difference from that of {found['reference']}")
+    drawn.save(svg, "Logic of the unit against the difference of its picture")
+
+
+# The command
+
+
+def positive(text):
+    if not re.fullmatch(r"0*[1-9]\d{0,2}", text):
+        raise argparse.ArgumentTypeError(f"'{text}' must be from 1 to 999")
+    return int(text)
+
+
+def parser():
+    options = fidelity.Parser(prog="pareto", description=__doc__.splitlines()[0], allow_abbrev=False)
+    options.add_argument("--machines", help="names of BITS[-flush][-newtonN][-fma][-fit]")
+    options.add_argument("--no-area", dest="area", action="store_false", help="pictures only: no synthesis, no plot")
+    options.add_argument("--jobs", type=positive, default=os.cpu_count() or 1, help="blocks that are mapped at a time")
+    options.add_argument("--out", help="folder (default: build/pareto/ and the frame's name)")
+    for name in (*fidelity.DEFAULTS, *fidelity.OTHERS):
+        default = fidelity.DEFAULTS.get(name)
+        options.add_argument(f"--{name}", default=default, help="of raypool sim" + (f": {default}" if default else ""))
+    return options
+
+
+def publish(out, folder, names):
+    """All of it at its place, in a moment that nothing interrupts."""
+    old = folder / "old"
+    old.mkdir()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, signal.SIG_IGN)
+    for name in ("machines", "pareto.svg", "pareto.json"):
+        with contextlib.suppress(FileNotFoundError):
+            (out / name).rename(old / name)
+    for name in names:
+        (folder / name).rename(out / name)
+    print(f"wrote {out}/{', '.join(names[1:])}, and each machine's picture in machines/")
+
+
+def compare_machines(arguments, options, out, folder):
+    """In `folder`, a new one in `out`."""
+    (folder / "machines").mkdir()
+    rows = [Row(full())]
+    draw(rows[0], options, folder, rows[0].machine.name)
+    wanted = chosen_machines(arguments.machines)
+    if not arguments.area:
+        wanted = [name for name in wanted if name != SMALLEST_FIT]
+    for name in wanted:
+        if name != SMALLEST_FIT:
+            rows.append(Row(machine_of(name)))
+            draw(rows[-1], options, folder, rows[0].machine.name)
+    if arguments.area:
+        for row in rows:
+            measure(row, arguments.jobs)
+        if SMALLEST_FIT in wanted:
+            name = smallest([row for row in rows if not row.machine.fitted]).machine.name + "-fit"
+            if name not in (row.machine.name for row in rows):
+                rows.append(Row(machine_of(name)))
+                draw(rows[-1], options, folder, rows[0].machine.name)
+                measure(rows[-1], arguments.jobs)
+    found = summary(rows, arguments)
+    with open(folder / "pareto.json", "w", encoding="utf-8") as file:
+        json.dump(found, file, indent=2)
+        file.write("\n")
+    if arguments.area:
+        plot(found, folder / "pareto.svg")
+    print_table(found)
+    publish(out, folder, ["machines", *(["pareto.svg"] if arguments.area else []), "pareto.json"])
+
+
+def pareto(arguments):
+    if not os.access(RAYPOOL, os.X_OK):
+        raise FidelityError(f"{RAYPOOL} was not found: make pareto builds it, or RAYPOOL names one")
+    chosen_machines(arguments.machines)
+    options, name = fidelity.frame(arguments)
+    out = pathlib.Path(arguments.out or os.path.join(fidelity.BUILD, "pareto", name))
+    made = not out.exists()
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+        temporary = tempfile.TemporaryDirectory(dir=out, prefix=".pareto-")
+    except OSError as error:
+        raise FidelityError(f"the folder {out} cannot be written: {error.strerror}") from error
+    try:
+        with temporary as folder:
+            compare_machines(arguments, options, out, pathlib.Path(folder))
+    finally:
+        if made:  # goes again if nothing came into it
+            with contextlib.suppress(OSError):
+                out.rmdir()
+
+
+def main():
+    def interrupt(*_):
+        raise KeyboardInterrupt
+
+    signal.signal(signal.SIGTERM, interrupt)
+    os.environ["RAYPOOL"] = RAYPOOL  # for the synthesis
+    try:
+        pareto(parser().parse_args())
+    except (FidelityError, SynthError) as error:
+        say(f"pareto: {error}")
+        return getattr(error, "code", INPUT_FAILURE)
+    except Failed as error:
+        return error.args[0]
+    except (OSError, subprocess.CalledProcessError) as error:
+        say(f"pareto: {error}")
+        return INPUT_FAILURE
+    except KeyboardInterrupt:
+        say("\npareto: interrupted; earlier results are as they were")
+        return INTERRUPTED
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

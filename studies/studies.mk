@@ -1,0 +1,84 @@
+# What is studied with the machine. The Makefile includes it behind its own variables: those of a frame, the program,
+# and `options`.
+.PHONY: fidelity intervals pareto fit sweep report numerics significands boxes triangles extremes
+
+SWEEP := RAYPOOL="$(abspath $(RAYPOOL))" PYTHONPATH=studies $(PYTHON) -m sweep
+SWEEP_SETUP := setup-sweep $(if $(filter slurm,$(WHERE)),setup-slurm)
+REPORT := RAYPOOL="$(abspath $(RAYPOOL))" PYTHONPATH=studies:scripts $(PYTHON) -m report
+FIT_SETUP := $(if $(filter-out 0,$(AREA) $(POWER)),setup-synth)
+GATES_SETUP := $(if $(filter-out 0,$(GATES)),setup-synth)
+
+#: variables of make fidelity: those of the frame, from SCENE to DETAIL
+#:   LEVELS="native model ..."     only these                                  all
+#:   RUNS=N                        times that each draws                       1
+#:   OUT=FOLDER
+fidelity: setup-sim setup-fidelity program ## a frame at every level of simulation, speed against error
+	@$(PYTHON) studies/fidelity.py $(call options,$(FRAME) LEVELS RUNS OUT) $(ARGS)
+
+#: of make intervals:  ARGS="--samples 50": seeds of each frame; 200 if not given
+intervals: setup-sim program ## do the intervals of ENGINE=sampled contain the true values as often as they say?
+	@python3 studies/intervals.py $(call options,OUT) $(ARGS)
+
+#: variables of make pareto: those of the frame
+#:   MACHINES="24 20-flush ..."    only these                                  what one chooses among
+#:   JOBS=N                        blocks that are mapped at a time            all cores
+#:   OUT=FOLDER
+pareto: setup-sim setup-synth program ## area against picture error: arithmetic modes and fits of a frame
+	@$(PYTHON) studies/pareto.py $(call options,$(FRAME) MACHINES JOBS OUT) $(ARGS)
+
+#: variables of make fit: those of the frame
+#:   SLOWER=N%                     cycles that the whole may take more         1%
+#:   AREA=1                        what each change saves in area
+#:   POWER=1                       area, and timing and power before and after
+#:   OUT=FILE                      for the configuration
+fit: setup-sim $(FIT_SETUP) program ## what a scene needs of CONFIG: a configuration with only that
+	@mkdir -p $(BUILD)/out
+	@$(RAYPOOL) fit $(call options,$(FRAME) SLOWER OUT) --json $(BUILD)/out/fit.json $(ARGS)
+	@$(if $(FIT_SETUP),$(SYNTH) fit $(BUILD)/out/fit.json $(POWER_FLAG))
+
+#: variables of make sweep
+#:   EXPERIMENT=FILE.json
+#:   WHERE=here|slurm                                                          here
+#:   JOBS=N                        points at a time                            all cores; slurm: 100
+#:   SCENES=FOLDER:FOLDER          where scenes are that are not part of the project
+#:   OUT=FOLDER
+sweep: setup-sim $(SWEEP_SETUP) program ## all points of EXPERIMENT (docs/sweeps.md)
+	@[ -n "$${EXPERIMENT-}" ] || { echo 'make sweep: say which, EXPERIMENT=configs/experiments/caches.json' >&2; exit 1; }
+	@$(SWEEP) "$$EXPERIMENT" $(call options,WHERE OUT JOBS) $(ARGS)
+
+#: variables of make report
+#:   FROM="FOLDER ..."             sweeps, runs, synthesis reports, or folders of them
+#:   OUT=FOLDER
+report: setup-sim setup-report program ## sweeps, runs and synthesis reports as one page (docs/page.md)
+	@$(REPORT) $${FROM:+--from $$FROM} $(call options,OUT) $(ARGS)
+
+#: variables of make numerics:  GATES=1: synthesise the lanes of every mode first;  OUT=FOLDER
+# The Slw lane does not depend on fma: its newton variants are not synthesised twice.
+numerics: setup-sim setup-numerics $(GATES_SETUP) program ## errors of each arithmetic mode, what they do, its cost
+	@$(RAYPOOL) errors
+	@$(if $(GATES_SETUP),lanes=$(BUILD)/out/lanes; \
+	  for config in $$($(RAYPOOL) numerics --config 1w1c --configurations "$$lanes" | grep -v 'newton.-fma'); do \
+	    $(SYNTH) report --config "$$config" --memories macros > "$$lanes/synth.txt" || \
+	      { cat "$$lanes/synth.txt"; exit 1; }; \
+	  done)
+	@echo
+	@$(RAYPOOL) numerics $(call options,OUT) $(ARGS)
+	@$(PYTHON) studies/numerics_plots.py "$${OUT:-$(BUILD)/out/numerics}"
+
+#: variables of make significands: SCENE, CONFIG, SET, DEPTH, and from VIEW to DETAIL
+significands: setup-sim program ## what floats of 11 to 24 bits do to SCENE's picture, and how few bits nobody sees
+	@$(RAYPOOL) significands $(call options,SCENE CONFIG SET DEPTH $(LOOK)) $(ARGS)
+
+#: variables of make boxes, triangles: SCENE, SIZE, DEPTH, and from VIEW to DETAIL
+boxes: setup-sim program ## boxes in integers of 16 to 6 bits: nodes and triangles that a ray of SCENE tests
+	@$(RAYPOOL) boxes $(call options,SCENE SIZE DEPTH $(LOOK)) $(ARGS)
+
+triangles: setup-sim program ## triangle tests of 53 to 24 bits: what they do to SCENE's hits and picture, to seams
+	@$(RAYPOOL) triangles $(call options,SCENE SIZE DEPTH $(LOOK)) $(ARGS)
+
+#: variable of make extremes:  MODE=all|ieee-exact|...
+extremes: setup-sim program ## hard cases in every arithmetic mode, on every engine
+	@for config in $$($(RAYPOOL) numerics $(call options,MODE) --configurations $(BUILD)/out/modes); do \
+	  scripts/unit.sh "$$config"; \
+	done
+	@$(RAYPOOL) numerics $(call options,MODE) --extremes $(ARGS)
