@@ -32,7 +32,7 @@ export ENGINE ?= lockstep
 #:   CUS=1|2|4                     compute units
 export CUS ?= 1
 #:   SET="FIELD=VALUE ..."         change fields of CONFIG, chip.ray_pool.size=256 (raypool config prints all)
-#:   TRAVERSER=static|hardware     of constant speed, or rtl/traverser.v       as CONFIG says: hardware
+#:   TRAVERSER=static|hardware     of constant speed, or rtl/traverser/rp_traverser.v       as CONFIG says: hardware
 #:   VIEW=FILE                     camera and light (JSON)                     from the scene
 #:   CAMERA=NAME                   of a glTF file                              its first
 #:   EYE=X,Y,Z  LOOK_AT=X,Y,Z  UP=X,Y,Z  FOV=DEGREES  LIGHT=X,Y,Z              from the view

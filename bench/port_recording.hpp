@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "isa/isa.hpp"
-#include "machine/compute_unit.hpp"
-#include "machine/memory.hpp"
+#include "machine/common/memory.hpp"
+#include "machine/compute/compute_unit.hpp"
 
 namespace raypool::bench {
 

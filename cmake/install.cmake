@@ -12,14 +12,18 @@ foreach(source sim/rtl/rtl_unit.cpp sim/rtl/rtl_chip.cpp sim/rtl/unit_library.hp
     sim/rtl/verilated_design.hpp sim/rtl/probes.vlt sim/rtl/chip_probes.vlt sim/rtl/shared_modules.vlt
     cpp_model/bits.hpp cpp_model/enum_array.hpp
     cpp_model/isa/isa.hpp cpp_model/isa/counters.hpp cpp_model/isa/input_error.hpp cpp_model/config/configuration.hpp
-    cpp_model/config/parameters.hpp cpp_model/machine/box_ray.hpp cpp_model/machine/compute_unit.hpp
-    cpp_model/machine/compute_unit.cpp cpp_model/machine/chip_device.hpp cpp_model/machine/chip_device.cpp
-    cpp_model/machine/memory.hpp cpp_model/machine/memory_port.hpp cpp_model/machine/packages.hpp
-    cpp_model/machine/pipe_items.hpp cpp_model/machine/port_cycles.hpp cpp_model/machine/ram_queue.hpp
-    cpp_model/machine/ray_kernel.hpp
-    cpp_model/machine/ray_setup.hpp cpp_model/machine/traverser_work.hpp cpp_model/machine/tree_fault.hpp
-    cpp_model/machine/tree_setup.hpp
-    cpp_model/machine/triangle_ray.hpp)
+    cpp_model/config/parameters.hpp cpp_model/machine/traverser/box_ray.hpp cpp_model/machine/compute/compute_unit.hpp
+    cpp_model/machine/compute/compute_unit.cpp cpp_model/machine/chip/chip_device.hpp
+    cpp_model/machine/chip/chip_device.cpp
+    cpp_model/machine/common/memory.hpp cpp_model/machine/chip/memory_port.hpp cpp_model/machine/common/packages.hpp
+    cpp_model/machine/common/pipe_items.hpp cpp_model/machine/common/port_cycles.hpp
+    cpp_model/machine/common/ram_queue.hpp cpp_model/machine/common/memory_line.hpp
+    cpp_model/machine/traverser/tree_lines.hpp
+    cpp_model/machine/chip/ray_kernel.hpp
+    cpp_model/machine/traverser/ray_setup.hpp cpp_model/machine/traverser/traverser_work.hpp
+    cpp_model/machine/traverser/tree_fault.hpp
+    cpp_model/machine/traverser/tree_setup.hpp
+    cpp_model/machine/traverser/triangle_ray.hpp)
   cmake_path(GET source PARENT_PATH folder)
   install(FILES ${source} DESTINATION ${data}/${folder} COMPONENT program)
 endforeach()
@@ -42,7 +46,7 @@ foreach(library IN LISTS libraries)
   add_library(raypool::${name} ALIAS ${library})
 endforeach()
 install(TARGETS ${libraries} EXPORT raypool ARCHIVE COMPONENT development)
-# Among themselves the headers are included as in the checkout; users write <raypool/machine/model.hpp>.
+# Among themselves the headers are included as in the checkout; users write <raypool/machine/compute/model.hpp>.
 install(DIRECTORY cpp_model/ sim/lockstep DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/raypool COMPONENT development
         FILES_MATCHING PATTERN "*.hpp" PATTERN "test_*.hpp" EXCLUDE)
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/raypool)

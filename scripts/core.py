@@ -18,7 +18,7 @@ def version():
 
 
 def parameters(raypool):
-    """Name and default of each, in the order of rtl/multiprocessor.v."""
+    """Name and default of each, in the order of rtl/compute/rp_multiprocessor.v."""
     text = subprocess.run(
         [raypool, "config", "8w8c", "--verilog-parameters"], cwd=ROOT, capture_output=True, text=True, check=True
     )
@@ -26,7 +26,7 @@ def parameters(raypool):
 
 
 def names(pattern):
-    return sorted(str(path.relative_to(ROOT)) for path in (ROOT / "rtl").glob(pattern))
+    return sorted(str(path.relative_to(ROOT)) for path in (ROOT / "rtl").rglob(pattern))
 
 
 def core(raypool):
@@ -52,7 +52,7 @@ def core(raypool):
     yield "targets:"
     yield "  default: &default"
     yield '    filesets: [rtl, "tool_verilator ? (waivers)"]'
-    yield "    toplevel: multiprocessor"
+    yield "    toplevel: rp_multiprocessor"
     yield f"    parameters: [{listed}]"
     yield "  lint:"
     yield "    <<: *default"

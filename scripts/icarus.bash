@@ -19,8 +19,8 @@ compile_replay() {
     [[ " $kept " != *" ${parameter%=*} "* ]] || own+=("-P$bench.$parameter")
   done
   local macro=${bench%_replay}
-  iverilog -g2005 -Wall -Wno-timescale -I"${RTL:-rtl}" -Itb/icarus -s "$bench" \
-    -D"${macro^^}_PARAMETERS=$list" "${own[@]}" -o "$folder/$bench.vvp" "tb/icarus/$bench.v" "${RTL:-rtl}"/*.v
+  iverilog -g2005 -Wall -Wno-timescale -I"${RTL:-rtl}/include" -Itb/icarus -s "$bench" \
+    -D"${macro^^}_PARAMETERS=$list" "${own[@]}" -o "$folder/$bench.vvp" "tb/icarus/$bench.v" "${RTL:-rtl}"/*/*.v
 }
 
 # replay BENCH FOLDER WHAT: replays FOLDER/vectors.txt; WHAT: of what, in messages.

@@ -12,6 +12,6 @@ missing=0
 for file in "${files[@]}"; do
   head -2 "$file" | tr '\n' '|' |
     grep -qE '^// SPDX-License-Identifier: Apache-2\.0\|// SPDX-FileCopyrightText: 20[0-9]{2} raypool maintainers\|$' ||
-    { echo "$file: does not begin as rtl/chip.v does: licence and copyright"; missing=1; }
+    { echo "$file: does not begin as rtl/chip/rp_chip.v does: licence and copyright"; missing=1; }
 done
 exit $missing

@@ -122,17 +122,17 @@ check_verilog() {
     local verilator_flags=() iverilog_flags=() yosys_flags=()
     for parameter in $parameters; do
       verilator_flags+=("-G$parameter")
-      iverilog_flags+=("-P$top.$parameter")
+      iverilog_flags+=("-Prp_$top.$parameter")
       yosys_flags+=(-chparam "${parameter%=*}" "${parameter#*=}")
     done
-    check "verilator $configuration" verilator --lint-only -Wall --default-language 1364-2005 -Irtl rtl/waivers.vlt \
-      "${verilator_flags[@]}" --top-module "$top" "${rtl[@]}"
-    check "iverilog $configuration" iverilog -g2005 -Wall -Irtl -o /dev/null "${iverilog_flags[@]}" -s "$top" \
-      "${rtl[@]}"
+    check "verilator $configuration" verilator --lint-only -Wall --default-language 1364-2005 -Irtl/include \
+      rtl/waivers.vlt "${verilator_flags[@]}" --top-module "rp_$top" "${rtl[@]}"
+    check "iverilog $configuration" iverilog -g2005 -Wall -Irtl/include -o /dev/null "${iverilog_flags[@]}" \
+      -s "rp_$top" "${rtl[@]}"
     # Synthesis view, of the whole in one piece: no latch, no combinational loop, no undriven or doubly driven net.
     check "yosys $configuration" yosys -q -e '.*latch.*' -p "
-      read_verilog -DSYNTHESIS -DNO_CLOCK_GATES -Irtl ${rtl[*]}
-      hierarchy -check -top $top ${yosys_flags[*]}; proc -noopt; flatten; opt_clean
+      read_verilog -DSYNTHESIS -DNO_CLOCK_GATES -Irtl/include ${rtl[*]}
+      hierarchy -check -top rp_$top ${yosys_flags[*]}; proc -noopt; flatten; opt_clean
       select -assert-none t:\$dlatch t:\$adlatch t:\$dlatchsr; check -assert"
   done
 }

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Checks docs/modules.md against the project: scripts/module_table.py; exit code 1 if a row is missing or untrue.
 
-Each module of rtl/ has one row: module, Verilog file, C++, tests, proofs. What the C++ column names is defined in a
-file that it names, and a class that is called like the module is among them. A test builds a module that holds the
-module, and a bench of the module's own is named. The proofs are those whose checkers read the module.
+Each module of rtl/ has one row: module, without its prefix, Verilog file, C++, tests, proofs. What the C++ column names
+is defined in a file that it names, and a class that is called like the module is among them. A test builds a module
+that holds the module, and a bench of the module's own is named. The proofs are those whose checkers read the module.
 """
 import pathlib
 import re
@@ -12,26 +12,23 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs/modules.md"
 NOTHING = "-"
+PREFIX = "rp_"
 
 
 def modules():
-    """Name and text of each module of rtl/."""
-    found = {}
-    for path in sorted((ROOT / "rtl").glob("*.v")):
-        text = path.read_text()
-        found.update((name, text) for name in re.findall(r"^module (\w+)", text, re.M))
-    return found
+    """Text of each module of rtl/, which is named as its file, by its name without the prefix."""
+    return {path.stem.removeprefix(PREFIX): path.read_text() for path in sorted((ROOT / "rtl").glob("*/*.v"))}
 
 
 def instances(text, names):
     """Which of the modules a Verilog text instantiates."""
-    return {name for name in names if re.search(rf"^\s*{name}\s+(#\(|\w+\s*\()", text, re.M)}
+    return {name for name in names if re.search(rf"^\s*{PREFIX}{name}\s+(#\(|\w+\s*\()", text, re.M)}
 
 
 def inside(texts):
     """[module] = the modules that it holds, with those inside them, and itself. ALUs are placed by an included file."""
-    placed = (ROOT / "rtl/alu_instances.vh").read_text()
-    whole = {name: text + (placed if '"alu_instances.vh"' in text else "") for name, text in texts.items()}
+    placed = (ROOT / "rtl/include/rp_alu_instances.vh").read_text()
+    whole = {name: text + (placed if '"rp_alu_instances.vh"' in text else "") for name, text in texts.items()}
     direct = {name: instances(text, texts) for name, text in whole.items()}
     holds = {name: {name} for name in texts}
     while True:
@@ -49,16 +46,16 @@ def tests(holds):
 
     def whole(path):
         text = path.read_text()
-        headers = re.findall(r'#include "((?:unit|rtl)/\w+\.hpp)"', text)
+        headers = re.findall(r'#include "((?:unit/\w+|rtl)/\w+\.hpp)"', text)
         return text + "".join((ROOT / "tb" / header).read_text() for header in headers)
 
     found = {}
     for path in (ROOT / "tb/rtl").glob("*_test.cpp"):
         found[path.stem] = holds["chip" if " --top chip " in whole(path) else "multiprocessor"]
     tops = {**holds}
-    for path in (ROOT / "tb/unit").glob("*.v"):
+    for path in (ROOT / "tb/unit").glob("*/*.v"):
         tops[path.stem] = set().union(*(holds[name] for name in instances(path.read_text(), holds)))
-    for path in (ROOT / "tb/unit").glob("*_test.cpp"):
+    for path in (ROOT / "tb/unit").glob("*/*_test.cpp"):
         text = whole(path)
         included = re.findall(r'#include "V(\w+)\.h"', text)
         built = [[top for top in tops if re.match(rf"{top}(_|$)", each)] for each in included]
@@ -73,7 +70,7 @@ def proofs(names):
         for name in re.search(r"^// @modules(.*)$", path.read_text(), re.M).group(1).split():
             found[name].add(path.stem)
     for path in (ROOT / "tb/proofs").glob("*.sh"):
-        for name in set(re.findall(r"rtl/(\w+)\.v", path.read_text())) & set(names):
+        for name in set(re.findall(r"rtl/\w+/rp_(\w+)\.v", path.read_text())) & set(names):
             found[name].add(path.stem)
     return found
 
@@ -123,7 +120,7 @@ def cpp_errors(name, cell, known):
 
 def row_errors(cells, holds, built, proved, known):
     name, verilog, cpp, test, proof = cells
-    if verilog != f"rtl/{name}.v" or not (ROOT / verilog).is_file():
+    if pathlib.PurePath(verilog).name != f"{PREFIX}{name}.v" or not (ROOT / verilog).is_file():
         yield f"{name}: its Verilog file is not {verilog}"
     yield from cpp_errors(name, cpp, known)
     named = set() if test == NOTHING else set(test.split(", "))

@@ -10,6 +10,8 @@ import pathlib
 import re
 import sys
 
+import module_table
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGES = [ROOT / "README.md"] + sorted((ROOT / "docs").glob("*.md"))
 FOLDERS = (
@@ -87,7 +89,8 @@ class Project:
         self.words = {name + "_test" for name in re.findall(r"raypool_library\((\w+)", cmake)}
         everything = [path for name in FOLDERS for path in (ROOT / name).rglob("*")]
         for path in filter(has_identifiers, everything + [ROOT / "CMakeLists.txt", ROOT / "Makefile"]):
-            self.words |= {path.stem} | set(re.findall(r"\w+", path.read_text(errors="replace")))
+            own = {path.stem, path.stem.removeprefix(module_table.PREFIX)}
+            self.words |= own | set(re.findall(r"\w+", path.read_text(errors="replace")))
         makefiles = (ROOT / "Makefile").read_text() + (ROOT / "studies/studies.mk").read_text()
         self.targets = set(re.findall(r"^([a-z-]+):", makefiles, re.M))
 

@@ -86,6 +86,17 @@ def share_of(sources, share):
     return set(listed[len(listed) * (k - 1) // n:len(listed) * k // n])
 
 
+def of_sources(commands):
+    """Commands of single sources: those that are compiled in batches take the command of their batch."""
+    for entry in commands:
+        file = pathlib.Path(entry["file"])
+        if file.parent.name != "Unity":
+            yield entry
+            continue
+        for source in re.findall(r'^#include "(.*)"$', file.read_text(), re.M):
+            yield {**entry, "file": source}
+
+
 def make_headers(build, commands, sources):
     """The headers of Verilated models that these sources include, which are made when their bench is built."""
     targets = set()
@@ -195,7 +206,8 @@ def main():
     if not file.is_file():
         sys.exit(f"tidy.py: there is no {file}: configure the build with tests, or run make lint")
     # Sources that a larger variant of a bench is built from too are read as those of make test.
-    commands = [entry for entry in json.loads(file.read_text()) if "-DRAYPOOL_LARGE" not in entry["command"]]
+    commands = [entry for entry in of_sources(json.loads(file.read_text()))
+                if "-DRAYPOOL_LARGE" not in entry["command"]]
     listed = subprocess.run([ROOT / "scripts/sources.sh", "cpp"], cwd=ROOT, check=True, capture_output=True, text=True)
     ours = {ROOT / name for name in listed.stdout.split() if name.endswith(".cpp")}
     within = [pathlib.Path(name).resolve() for name in options.folders]

@@ -71,16 +71,18 @@ stamp=$output/libraypool_$kind.stamp
 cd "$root"
 shopt -s nullglob
 headers=(cpp_model/{bits,enum_array}.hpp cpp_model/isa/{isa,counters,input_error}.hpp \
-  cpp_model/config/{configuration,parameters}.hpp cpp_model/machine/{compute_unit,memory,packages}.hpp \
+  cpp_model/config/{configuration,parameters}.hpp \
+  cpp_model/machine/{compute/compute_unit,common/memory,common/packages}.hpp \
   sim/rtl/{unit_library,verilated_design}.hpp)
-wrapper=("sim/rtl/rtl_$kind.cpp" cpp_model/machine/compute_unit.cpp)
-verilog=(rtl/*.v)
+wrapper=("sim/rtl/rtl_$kind.cpp" cpp_model/machine/compute/compute_unit.cpp)
+verilog=(rtl/*/*.v)
 waivers=(rtl/*.vlt)   # and what the lockstep looks at inside
 shared=()             # the modules of which all instances have the same code
 if [ "$kind" = chip ]; then
-  headers+=(cpp_model/machine/{chip_device,memory_port,port_cycles,ram_queue,ray_kernel}.hpp sim/rtl/chip_library.hpp
-    cpp_model/machine/{tree_setup,ray_setup,box_ray,triangle_ray,traverser_work}.hpp)
-  wrapper+=(cpp_model/machine/chip_device.cpp)
+  headers+=(cpp_model/machine/chip/{chip_device,memory_port,ray_kernel}.hpp
+    cpp_model/machine/common/{memory_line,port_cycles,ram_queue}.hpp sim/rtl/chip_library.hpp
+    cpp_model/machine/traverser/{tree_setup,tree_lines,ray_setup,box_ray,triangle_ray,traverser_work}.hpp)
+  wrapper+=(cpp_model/machine/chip/chip_device.cpp)
   waivers+=(sim/rtl/chip_probes.vlt)
   shared=(sim/rtl/shared_modules.vlt)
 else
@@ -93,7 +95,7 @@ if [ ${#netlist[@]} -gt 0 ]; then
   replaced=compute_unit
   [ "$kind" = unit ] || replaced=chip
   verilog=("${netlist[@]}")
-  for file in rtl/*.v; do [ "$file" = "rtl/$replaced.v" ] || verilog+=("$file"); done
+  for file in rtl/*/*.v; do [ "${file##*/}" = "rp_$replaced.v" ] || verilog+=("$file"); done
   what="the shell of a netlist"
   wrapper+=(sim/rtl/gate_simulator.cpp)
 fi
@@ -102,7 +104,8 @@ fold=
 if [ ${#shared[@]} -gt 0 ] && command -v ld.gold > /dev/null; then fold="-fuse-ld=gold -Wl,--icf=all"; fi
 digest=$({
   printf '%s\n' "$version" "$compiler_version" "trace $trace quick $quick fold $fold" "${parameters[@]}"
-  sha256sum "${verilog[@]}" "${waivers[@]}" "${shared[@]}" rtl/*.vh "${headers[@]}" "${wrapper[@]}" scripts/verilate.sh
+  sha256sum "${verilog[@]}" "${waivers[@]}" "${shared[@]}" rtl/include/*.vh "${headers[@]}" "${wrapper[@]}" \
+    scripts/verilate.sh
 } | sha256sum | cut -d ' ' -f 1)
 if [ -f "$library" ] && [ "$(cat "$stamp" 2> /dev/null)" = "$digest" ]; then
   touch "$library"   # raypool warns of one that is older than the Verilog
@@ -130,13 +133,14 @@ if [ ${#shared[@]} -gt 0 ]; then
   {
     echo "\`verilator_config"
     sed -n 's/^no_inline -module "\(.*\)"$/\1/p' "${shared[@]}" | while read -r module; do
-      sed -nE '/^ *input /{s,//.*,,; s/.*[^a-z0-9_]([a-z0-9_]+)[ ,)]*$/\1/p}' "rtl/$module.v" | grep -vx clk_i |
+      sed -nE '/^ *input /{s,//.*,,; s/.*[^a-z0-9_]([a-z0-9_]+)[ ,)]*$/\1/p}' rtl/*/"$module.v" | grep -vx clk_i |
         sed "s/.*/public_flat_rd -module \"$module\" -var \"&\"/"
     done
   } > "$ports"
   shared+=("$ports")
 fi
-options=(--cc --exe --top-module "$top" --Mdir "$build" -Irtl --default-language 1364-2005 +1800-2017ext+sv
+options=(--cc --exe --top-module "rp_$top" --prefix "V$top" --Mdir "$build" -Irtl/include
+  --default-language 1364-2005 +1800-2017ext+sv
   -O3 --x-assign fast --x-initial fast --noassert
   -CFLAGS "-std=c++17 -fPIC -fvisibility=hidden -fno-gnu-unique -fno-plt -fno-semantic-interposition"
   -CFLAGS "-I$root/cpp_model -I$root/sim -I$build"

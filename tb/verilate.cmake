@@ -22,20 +22,19 @@ if(VERILATOR)
     ${VERILATOR_ROOT}/include/vltstd)
 endif()
 
-# raypool_verilate(BENCH PREFIX CLASS TOP_MODULE MODULE SOURCES FILE... [INCLUDE_DIRS FOLDER...]
+# raypool_verilate(BENCH PREFIX CLASS TOP_MODULE MODULE SOURCES FILE...
 #                  [VERILATOR_ARGS ARGUMENT...]): the class CLASS, of the header CLASS.h, for the program BENCH.
 # The target BENCH_headers makes the headers alone, for clang-tidy.
 function(raypool_verilate bench)
-  cmake_parse_arguments(MODEL "" "PREFIX;TOP_MODULE" "SOURCES;INCLUDE_DIRS;VERILATOR_ARGS" ${ARGN})
+  cmake_parse_arguments(MODEL "" "PREFIX;TOP_MODULE" "SOURCES;VERILATOR_ARGS" ${ARGN})
   set(folder ${CMAKE_CURRENT_BINARY_DIR}/models/${bench}/${MODEL_PREFIX})
   set(header ${folder}/${MODEL_PREFIX}.h)
   set(library ${folder}/${MODEL_PREFIX}__ALL.a)
-  list(TRANSFORM MODEL_INCLUDE_DIRS PREPEND -I)
   file(MAKE_DIRECTORY ${folder})
   # Verilator lists what it has read; Ninja takes that as what the model depends on.
   add_custom_command(OUTPUT ${header}
     COMMAND ${CMAKE_SOURCE_DIR}/scripts/model.sh ${folder} ${MODEL_PREFIX} ${VERILATOR} --top-module ${MODEL_TOP_MODULE}
-      ${MODEL_INCLUDE_DIRS} ${MODEL_VERILATOR_ARGS} ${MODEL_SOURCES}
+      ${MODEL_VERILATOR_ARGS} ${MODEL_SOURCES}
     DEPENDS ${MODEL_SOURCES} ${CMAKE_SOURCE_DIR}/scripts/model.sh
     DEPFILE ${folder}/${MODEL_PREFIX}.depends
     COMMENT "Verilating ${MODEL_PREFIX}" VERBATIM)
@@ -56,4 +55,27 @@ function(raypool_verilate bench)
   add_dependencies(${bench} ${model})
   target_include_directories(${bench} SYSTEM PRIVATE ${folder})
   target_link_libraries(${bench} PRIVATE ${library} raypool_verilated)
+endfunction()
+
+# raypool_block_models(BENCH MODULE PARAMETERS MODEL...): class V<module>_<model>, a model being the parameters' values
+# with _ between; a module of rtl/, or of tb/unit/. With SYNTHESIS, as for the benches of the arithmetic:
+# the multiplier that hardware has. That is what `raypool_multiplier` says; without, the simulator multiplies.
+set(raypool_multiplier -DSYNTHESIS)
+function(raypool_block_models bench module names)
+  rtl_file(source ${module})
+  set(top rp_${module})
+  if(NOT source)
+    file(GLOB source ${CMAKE_CURRENT_SOURCE_DIR}/unit/*/${module}.v)
+    set(top ${module})
+  endif()
+  foreach(model IN LISTS ARGN)
+    string(REPLACE "_" ";" values ${model})
+    set(parameters)
+    foreach(name value IN ZIP_LISTS names values)
+      list(APPEND parameters -G${name}=${value})
+    endforeach()
+    raypool_verilate(${bench} SOURCES ${source} PREFIX V${module}_${model} TOP_MODULE ${top}
+      VERILATOR_ARGS -O3 --default-language 1364-2005 ${raypool_multiplier} ${RAYPOOL_RTL_SEARCH}
+      ${parameters})
+  endforeach()
 endfunction()

@@ -1,5 +1,5 @@
 // The slow unit: exact results from the host's double precision, Newton results by the RTL's own integer steps
-// (rtl/slow_newton.v).
+// (rtl/arith/rp_slow_newton.v).
 #include "arith/arith.hpp"
 
 #include <array>

@@ -489,8 +489,8 @@ std::vector<std::pair<std::string, int>> verilog_parameters(const Configuration&
 
 namespace {
 
-/// Whether rtl/chip.v has it by its own name: which kernels there are is its host's business, and the traverser is
-/// hardware_traverser_parameters().
+/// Whether rtl/chip/rp_chip.v has it by its own name: which kernels there are is its host's business, and the traverser
+/// is hardware_traverser_parameters().
 bool is_of_chip_verilog(const Parameter& parameter) {
   static constexpr std::string_view kNot[] = {"traverser",    "reflections",      "static_traverser_stall_cycles",
                                               "memory_banks", "memory_row_bytes", "memory_row_miss"};
@@ -498,8 +498,8 @@ bool is_of_chip_verilog(const Parameter& parameter) {
          std::find(std::begin(kNot), std::end(kNot), parameter.name) == std::end(kNot);
 }
 
-/// Of rtl/traverser.v in rtl/chip.v. A chip that has it outside has its sizes as they are by default, so that its
-/// Verilog does not depend on them.
+/// Of rtl/traverser/rp_traverser.v in rtl/chip/rp_chip.v. A chip that has it outside has its sizes as they are by
+/// default, so that its Verilog does not depend on them.
 std::vector<std::pair<std::string, int>> hardware_traverser_parameters(const ChipConfiguration& chip) {
   constexpr uint32_t kLine = 64;
   const bool inside = chip.traverser == TraverserName::Hardware;

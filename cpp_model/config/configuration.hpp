@@ -123,9 +123,10 @@ void check_configuration(const Configuration& configuration, const std::string& 
 
 std::string to_json(const Configuration& configuration);
 
-/// Parameters of rtl/compute_unit.v in their order: {"WARPS", 8}, ...
+/// Parameters of rtl/compute/rp_compute_unit.v in their order: {"WARPS", 8}, ...
 std::vector<std::pair<std::string, int>> verilog_parameters(const Configuration& configuration);
-/// Of rtl/chip.v with so many units: UNITS, those of its units, and those of the chip, rtl/chip_parameters.vh.
+/// Of rtl/chip/rp_chip.v with so many units: UNITS, those of its units, and those of the chip,
+/// rtl/include/rp_chip_parameters.vh.
 std::vector<std::pair<std::string, int>> chip_verilog_parameters(const Configuration& configuration, int units);
 
 }  // namespace raypool

@@ -438,14 +438,14 @@ void read_parameters(const std::string& path, std::vector<std::pair<std::string,
     if (std::sscanf(line.c_str(), " parameter integer %63[A-Z_] = %d", name, &value) == 2)
       declared.emplace_back(name, value);
     if (std::sscanf(line.c_str(), " `include \"%63[a-z_.]\"", name) == 1)
-      read_parameters(std::string("rtl/") + name, declared);
+      read_parameters(std::string("rtl/include/") + name, declared);
   }
 }
 
 TEST(Configuration, VerilogParametersAreThoseOfTheComputeUnitInOrder) {
   // The port list is the contract: parameters with the default configuration's values, but for derived ones.
   std::vector<std::pair<std::string, int>> declared;
-  read_parameters("rtl/compute_unit.v", declared);
+  read_parameters("rtl/compute/rp_compute_unit.v", declared);
   const auto parameters = verilog_parameters(Configuration{});
   EXPECT_EQ(parameters, declared);
 }

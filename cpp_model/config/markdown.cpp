@@ -20,7 +20,7 @@ way to the module that uses it, and adds one.
 | --- | --- | --- | --- | --- |
 )";
 
-constexpr const char* kChip = R"(
+constexpr const char* kChipTable = R"(
 What stands around the unit, which [chip.md](chip.md) describes, has its own. None of them is in the Verilog, so
 machines that differ in nothing else share a Verilated unit. The defaults are the thesis' chip.
 
@@ -119,7 +119,7 @@ std::string parameters_markdown() {
       if (parameter.range.form == Range::Form::Instructions)
         text += fmt::format("| {} | {} |\n", kAluNames[alu], fmt::join(names_of(range_of(parameter, alu)), ", "));
   }
-  text += kChip;
+  text += kChipTable;
   for (const Parameter& parameter : parameter::kOfChip) {
     text += fmt::format("| {} | {} | {} | {} |\n", path_of(parameter), values_text(parameter, false),
                         text_of(parameter, parameter.get(defaults)), parameter.meaning);

@@ -18,7 +18,8 @@ enum class SlowUnit : uint8_t { Exact = 0, Newton2 = 1, Newton1 = 2, Newton0 = 3
 /// What chooses the next kernel. Each name has its class in cpp_model/machine/.
 enum class PolicyName : uint8_t { Thesis = 0, Fill = 1 };
 enum class TileOrder : uint8_t { Rows = 0, Hilbert = 1 };
-/// Static: the published one of constant speed, at the ports of rtl/chip.v. Hardware: rtl/traverser.v, inside it.
+/// Static: the published one of constant speed, at the ports of rtl/chip/rp_chip.v. Hardware:
+/// rtl/traverser/rp_traverser.v, inside it.
 enum class TraverserName : uint8_t { Static = 0, Hardware = 1 };
 /// What becomes of a shadow ray that reaches the light: an intersection, for the kernel `shade`, or a contribution.
 enum class Shading : uint8_t { Kernel = 0, Traverser = 1 };
@@ -71,7 +72,7 @@ enum class Shading : uint8_t { Kernel = 0, Traverser = 1 };
   CHIP(launch_ahead, bool, true, on_or_off(), "a kernel is launched behind a running one, if it is worth it") \
   CHIP(held_limit, uint32_t, 512, integers(1, 1 << 20), "unfinished pixels at a time") \
   CHIP(traverser, TraverserName, TraverserName::Hardware, names("static", "hardware"), \
-       "the traverser: the published one of constant speed, or rtl/traverser.v") \
+       "the traverser: the published one of constant speed, or rtl/traverser/rp_traverser.v") \
   CHIP(tile_order, TileOrder, TileOrder::Rows, names("rows", "hilbert"), \
        "order in which tiles are cast: rows from the top, or along a Hilbert curve, each beside the last") \
   CHIP(shading, Shading, Shading::Kernel, names("kernel", "traverser"), \

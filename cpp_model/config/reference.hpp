@@ -16,9 +16,10 @@ std::string configuration_schema();
 /// docs/parameters.md
 std::string parameters_markdown();
 
-/// rtl/*_parameters.vh, to be included in a parameter list; rtl/*_parameter_map.vh, to be included where a module with
-/// these parameters is instantiated; rtl/*_parameter_checks.vh, to be included inside the body of a module with them: *
-/// is unit, which has all parameters, or the name of a part, which has its own.
+/// rtl/include/rp_*_parameters.vh, to be included in a parameter list; rtl/include/rp_*_parameter_map.vh, to be
+/// included where a module with these parameters is instantiated; rtl/include/rp_*_parameter_checks.vh, to be included
+/// inside the body of a module with them: * is unit, which has all parameters, or the name of a part, which has its
+/// own.
 std::vector<GeneratedFile> parameters_verilog();
 
 /// All of them.

@@ -7,7 +7,7 @@
 namespace raypool {
 namespace {
 
-std::string error_of(const std::vector<std::string>& set, const std::string& config = "8w2c") {
+std::string settings_error(const std::vector<std::string>& set, const std::string& config = "8w2c") {
   try {
     load_configuration(config, set);
   } catch (const InputError& error) {
@@ -58,7 +58,8 @@ TEST(Settings, TheNameTellsWhatWasChanged) {
   EXPECT_EQ(name({"warps=8"}), "8w8c") << "nothing is changed";
   EXPECT_EQ(name({"name=mine", "warps=4"}), "mine");
   EXPECT_EQ(name({"alus.flt.count=2 alus.int.count=2 alus.slw.count=2 warps=4 lanes=4"}), "8w8c+5_changes");
-  EXPECT_EQ(error_of({"name=4w4c"}).find("8w2c with --set name=4w4c: the name '4w4c' stands for other hardware"), 0u);
+  EXPECT_EQ(settings_error({"name=4w4c"}).find("8w2c with --set name=4w4c: the name '4w4c' stands for other hardware"),
+            0u);
 }
 
 TEST(Settings, OnlyTheUnitsFieldsAskForAnotherVerilatedUnit) {
@@ -68,29 +69,31 @@ TEST(Settings, OnlyTheUnitsFieldsAskForAnotherVerilatedUnit) {
 }
 
 TEST(Settings, AnUnknownFieldNamesTheNearest) {
-  EXPECT_EQ(error_of({"flt.count=2"}).find("--set: there is no field 'flt.count'; near to it are alus.flt.count, "), 0u)
-      << error_of({"flt.count=2"});
-  EXPECT_NE(error_of({"slow_unit=exact"}).find("near to it are arithmetic.slow_unit, "), std::string::npos);
-  EXPECT_NE(error_of({"data_cache.size=512"}).find("data_cache.bytes"), std::string::npos);
-  EXPECT_NE(error_of({"chip.memory=5"}).find("chip.memory.latency, chip.memory.cycles_per_beat, chip.memory.queue"),
-            std::string::npos)
-      << error_of({"chip.memory=5"});
+  EXPECT_EQ(
+      settings_error({"flt.count=2"}).find("--set: there is no field 'flt.count'; near to it are alus.flt.count, "), 0u)
+      << settings_error({"flt.count=2"});
+  EXPECT_NE(settings_error({"slow_unit=exact"}).find("near to it are arithmetic.slow_unit, "), std::string::npos);
+  EXPECT_NE(settings_error({"data_cache.size=512"}).find("data_cache.bytes"), std::string::npos);
+  EXPECT_NE(
+      settings_error({"chip.memory=5"}).find("chip.memory.latency, chip.memory.cycles_per_beat, chip.memory.queue"),
+      std::string::npos)
+      << settings_error({"chip.memory=5"});
 }
 
 TEST(Settings, AValueThatCannotBeIsOneSentence) {
-  EXPECT_EQ(error_of({"warps=eight"}), "--set warps=eight: warps must be a power of two from 1 to 32");
-  EXPECT_EQ(error_of({"warps="}), "--set warps=: warps must be a power of two from 1 to 32");
-  EXPECT_EQ(error_of({"warps=8.5"}), "--set warps=8.5: warps must be a power of two from 1 to 32");
-  EXPECT_EQ(error_of({"stack_depth=99999999999"}),
+  EXPECT_EQ(settings_error({"warps=eight"}), "--set warps=eight: warps must be a power of two from 1 to 32");
+  EXPECT_EQ(settings_error({"warps="}), "--set warps=: warps must be a power of two from 1 to 32");
+  EXPECT_EQ(settings_error({"warps=8.5"}), "--set warps=8.5: warps must be a power of two from 1 to 32");
+  EXPECT_EQ(settings_error({"stack_depth=99999999999"}),
             "--set stack_depth=99999999999: stack_depth must be an integer from 2 to 32");
-  EXPECT_EQ(error_of({"arithmetic.fma=1"}), "--set arithmetic.fma=1: arithmetic.fma must be true or false");
-  EXPECT_EQ(error_of({"warps"}), "--set warps: write FIELD=VALUE, such as data_cache.bytes=4096");
-  EXPECT_EQ(error_of({"warps=3"}), "8w2c with --set warps=3: warps is 3; it must be a power of two from 1 to 32");
-  EXPECT_EQ(error_of({"arithmetic.slow_unit=fast"}),
+  EXPECT_EQ(settings_error({"arithmetic.fma=1"}), "--set arithmetic.fma=1: arithmetic.fma must be true or false");
+  EXPECT_EQ(settings_error({"warps"}), "--set warps: write FIELD=VALUE, such as data_cache.bytes=4096");
+  EXPECT_EQ(settings_error({"warps=3"}), "8w2c with --set warps=3: warps is 3; it must be a power of two from 1 to 32");
+  EXPECT_EQ(settings_error({"arithmetic.slow_unit=fast"}),
             "--set arithmetic.slow_unit=fast: arithmetic.slow_unit must be one of exact, newton2, newton1, newton0");
-  EXPECT_EQ(error_of({"arithmetic.slow_unit=\xff"}).find("--set arithmetic.slow_unit="), 0u);
+  EXPECT_EQ(settings_error({"arithmetic.slow_unit=\xff"}).find("--set arithmetic.slow_unit="), 0u);
   EXPECT_EQ(
-      error_of({"alus.mem.count=2"}),
+      settings_error({"alus.mem.count=2"}),
       "8w2c with --set alus.mem.count=2: alus.mem.count is 2; it must be 1, because this unit owns the data cache");
 }
 

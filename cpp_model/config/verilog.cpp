@@ -52,7 +52,7 @@ std::string unit_checks() {
 }
 
 GeneratedFile file_of(std::string_view owner, const char* what, const std::string& text) {
-  return {fmt::format("rtl/{}_{}.vh", owner, what), text};
+  return {fmt::format("rtl/include/rp_{}_{}.vh", owner, what), text};
 }
 
 }  // namespace

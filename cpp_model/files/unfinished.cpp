@@ -28,11 +28,12 @@ constexpr std::array<int, 4> kStopSignals = {SIGINT, SIGTERM, SIGHUP, SIGPIPE};
 constexpr time_t kPatience = 2;  // seconds
 
 // What a handler may look at: lock-free, and of this process, not of one that it has forked.
-struct Place {
+struct UnfinishedPath {
   std::atomic<bool> taken{false}, valid{false};
   std::array<char, PATH_MAX> path{};
 };
-std::array<Place, 16> places;  // more files are hardly ever written at once; those have to be cleared by the next run
+// More files are hardly ever written at once; those have to be cleared by the next run.
+std::array<UnfinishedPath, 16> places;
 std::atomic<int> keepers{0}, first_signal{0};
 std::atomic<time_t> first_time{0};
 pid_t owner = 0;
@@ -57,7 +58,7 @@ void on_signal(int number) {
         return;
       }
     } else {
-      for (const Place& place : places)
+      for (const UnfinishedPath& place : places)
         if (place.valid) unlink(place.path.data());
     }
   }

@@ -17,7 +17,6 @@ namespace raypool {
 namespace {
 
 constexpr size_t kLongestProgram = 65535;  // PCs have 16 bits, and FFFF hex is the end that is never reached
-constexpr int kLastRayWord = 20;
 
 struct Place {
   int line = 0;

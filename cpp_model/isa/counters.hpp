@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // The one table of performance counters. The number is what counter_select_i of the RTL asks
-// for; rtl/counters.vh is made from it.
+// for; rtl/include/rp_counters.vh is made from it.
 #pragma once
 
 #include <cstdint>

@@ -11,8 +11,6 @@
 namespace raypool {
 namespace {
 
-constexpr uint32_t kLastRayWord = 20;
-
 using Labels = std::map<uint32_t, std::string>;
 
 std::string float_text(uint32_t bits) {

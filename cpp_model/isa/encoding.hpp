@@ -37,6 +37,8 @@ inline constexpr std::array<Field, 12> kFields = {
     field::kType,         field::kOperation, field::kGuardNegated, field::kGuard,  field::kRd, field::kRa, field::kRb,
     field::kBIsImmediate, field::kX,         field::kImmediate,    field::kTarget, field::kEnd};
 
+inline constexpr uint32_t kLastRayWord = 20;  ///< of a ray memory's set
+
 /// An instruction in parts. Parts that its operands do not use are 0.
 struct Instruction {
   const InstructionInfo* info = nullptr;  ///< null: no table row has this type and operation
@@ -62,7 +64,7 @@ bool has_operand(const InstructionInfo& info, Operand operand);
 inline bool writes_register(const InstructionInfo& info) { return has_operand(info, Operand::Rd); }
 inline bool writes_predicate(const InstructionInfo& info) { return has_operand(info, Operand::Pd); }
 
-/// What an ALU is handed with a task, beside warp, operation and mask: the task_* ports of rtl/alu_ports.vh.
+/// What an ALU is handed with a task, beside warp, operation and mask: the task_* ports of rtl/include/rp_alu_ports.vh.
 enum class TaskOperand : uint8_t { OperandA, OperandB, OperandC, Immediate, Word, PredicateX, PredicateB };
 inline constexpr std::array<TaskOperand, 7> kTaskOperands = {
     TaskOperand::OperandA, TaskOperand::OperandB,   TaskOperand::OperandC,  TaskOperand::Immediate,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // The one table of ALU types and instructions. Decoder, encoder, assembler, disassembler, configuration keys, Verilog
-// parameters, rtl/*.vh and docs/isa.md are derived from it. docs/add-an-alu.md adds a type.
+// parameters, rtl/include/*.vh and docs/isa.md are derived from it. docs/add-an-alu.md adds a type.
 //
 // Encoding of an instruction, 64 bits:
 //   63:60 type | 59:55 operation | 54 guard negated | 53:50 guard predicate
@@ -24,9 +24,10 @@ namespace raypool {
 //   name        three lower-case letters: key of the configuration, prefix of the Verilog parameters, module <name>_alu
 //   depth       least pipeline depth, which is what the function needs at speed, and
 //               the default one; 0: timed by events
-//   ports       Framework: those of docs/architecture.md, section 3; rtl/alu_instances.vh
-//               places it. Guarded: these and done_subnormal_o. Own: rtl/compute_unit.v places it
-//   parameters  of the module beside the framework's, as rtl/compute_unit.v names them, separated by ", "; a type
+//   ports       Framework: those of docs/architecture.md, section 3; rtl/include/rp_alu_instances.vh
+//               places it. Guarded: these and done_subnormal_o. Own: rtl/compute/rp_compute_unit.v places it
+//   parameters  of the module beside the framework's, as rtl/compute/rp_compute_unit.v names them, separated by ", "; a
+//   type
 //               with instructions that are Optional has WITHOUT too, a bit for each operation that it lacks
 //   title       for docs/isa.md
 // CORE: FunctionalCore executes the type. CLASS: a class derived from AluModel does, and the ports are the framework's.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
-// The one table of the records that modules hand to each other, or to memory, as one vector; rtl/records.vh is made
-// from it.
+// The one table of the records that modules hand to each other, or to memory, as one vector; rtl/include/rp_records.vh
+// is made from it.
 #pragma once
 
 #include <stdexcept>
@@ -52,7 +52,7 @@ inline constexpr Record kTest =
 inline constexpr Record kTriangle = record("triangle", "a triangle in the traverser's memory", kTriangleFields);
 inline constexpr Record kNode = record("node", "a node there, the low bits of its line", kNodeFields);
 inline constexpr Record kRay =
-    record("ray", "a ray, in beats of 128 bits; word by word machine/packages.hpp", kRayFields);
+    record("ray", "a ray, in beats of 128 bits; word by word machine/common/packages.hpp", kRayFields);
 
 inline constexpr Record kAll[] = {kTest, kTriangle, kNode, kRay};
 }  // namespace record

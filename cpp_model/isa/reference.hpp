@@ -10,25 +10,25 @@
 
 namespace raypool {
 
-/// rtl/isa.vh: constants, to be included inside a module body.
+/// rtl/include/rp_isa.vh: constants, to be included inside a module body.
 std::string isa_verilog();
-/// rtl/isa_fields.vh: wires of the fields of an instruction, to be included inside a module body behind its
+/// rtl/include/rp_isa_fields.vh: wires of the fields of an instruction, to be included inside a module body behind its
 /// declaration.
 std::string isa_fields_verilog();
-/// rtl/isa_functions.vh: functions, to be included inside a module body; needs no constants.
+/// rtl/include/rp_isa_functions.vh: functions, to be included inside a module body; needs no constants.
 std::string isa_verilog_functions();
-/// rtl/counters.vh: numbers of the performance counters, to be included inside a module body.
+/// rtl/include/rp_counters.vh: numbers of the performance counters, to be included inside a module body.
 std::string counters_verilog();
-/// rtl/records.vh: places of the fields of records, to be included inside a module body.
+/// rtl/include/rp_records.vh: places of the fields of records, to be included inside a module body.
 std::string records_verilog();
 /// docs/isa.md
 std::string isa_markdown();
 
-/// rtl/alu_instance_types.vh: how many types and instances, the type of each instance; to be included inside the body
-/// of compute_unit.
+/// rtl/include/rp_alu_instance_types.vh: how many types and instances, the type of each instance; to be included inside
+/// the body of compute_unit.
 std::string alu_instance_types_verilog();
-/// rtl/alu_instances.vh: the ALUs with the framework's ports, to be included inside compute_unit's loop over the
-/// instances.
+/// rtl/include/rp_alu_instances.vh: the ALUs with the framework's ports, to be included inside compute_unit's loop over
+/// the instances.
 std::string alu_instances_verilog();
 
 /// How each file of rtl/ begins (scripts/licences.sh).

@@ -181,7 +181,7 @@ std::string verilog_name(AluType type) { return upper(alu_info(type).name); }
 std::string isa_verilog() {
   std::string text = fmt::format(fmt::runtime(kGenerated), "--verilog");
   text +=
-      "  // Constants of the instruction set. To be included inside a module body; rtl/isa_functions.vh "
+      "  // Constants of the instruction set. To be included inside a module body; rtl/include/rp_isa_functions.vh "
       "decodes.\n";
   text += "  // A module uses some of them only.\n  /* verilator lint_off UNUSEDPARAM */\n\n";
   text += "  // ALU types\n";

@@ -1,4 +1,4 @@
-// Writes what rtl/compute_unit.v includes for the ALU types: their instances.
+// Writes what rtl/compute/rp_compute_unit.v includes for the ALU types: their instances.
 #include <fmt/format.h>
 
 #include "isa/encoding.hpp"
@@ -7,7 +7,7 @@
 namespace raypool {
 namespace {
 
-constexpr const char* kGenerated =
+constexpr const char* kGeneratedAlus =
     "// Generated from cpp_model/isa/isa.hpp by `raypool isa --write`; a test compares. Do not edit.\n";
 
 /// Calls function(name in upper case, table row) for each type.
@@ -50,7 +50,7 @@ std::string without(const std::string& name) {
 }  // namespace
 
 std::string alu_instance_types_verilog() {
-  std::string text = fmt::format("  {}", kGenerated);
+  std::string text = fmt::format("  {}", kGeneratedAlus);
   text += fmt::format("  localparam integer ALU_TYPES = {};\n", kAluTypes);
   std::string instances, types;
   for_each_alu([&](const std::string& name, const AluInfo& info) {
@@ -76,16 +76,16 @@ std::string alu_instance_types_verilog() {
 }
 
 std::string alu_instances_verilog() {
-  std::string text = fmt::format("      {}", kGenerated);
+  std::string text = fmt::format("      {}", kGeneratedAlus);
   for_each_alu([&](const std::string& name, const AluInfo& info) {
     if (info.ports == Ports::Own) return;
     text += fmt::format(
         "      if (TYPE == ISA_TYPE_{0}) begin : gen_{1}\n"
-        "        {1}_alu #(\n"
+        "        rp_{1}_alu #(\n"
         "          .WARPS(WARPS), .LANES(LANES), .WARP_BITS(WARP_BITS), .LATENCY({0}_LATENCY),\n"
         "{2}\n"
         "        ) {1}_alu (\n{3}"
-        "`include \"alu_port_map.vh\"\n"
+        "`include \"rp_alu_port_map.vh\"\n"
         "        );\n"
         "      end\n",
         name, info.name,
@@ -107,13 +107,13 @@ std::string alu_instances_verilog() {
 }
 
 std::vector<GeneratedFile> generated_files() {
-  return {{"rtl/isa.vh", kLicence + isa_verilog()},
-          {"rtl/isa_fields.vh", kLicence + isa_fields_verilog()},
-          {"rtl/isa_functions.vh", kLicence + isa_verilog_functions()},
-          {"rtl/counters.vh", kLicence + counters_verilog()},
-          {"rtl/records.vh", kLicence + records_verilog()},
-          {"rtl/alu_instance_types.vh", kLicence + alu_instance_types_verilog()},
-          {"rtl/alu_instances.vh", kLicence + alu_instances_verilog()},
+  return {{"rtl/include/rp_isa.vh", kLicence + isa_verilog()},
+          {"rtl/include/rp_isa_fields.vh", kLicence + isa_fields_verilog()},
+          {"rtl/include/rp_isa_functions.vh", kLicence + isa_verilog_functions()},
+          {"rtl/include/rp_counters.vh", kLicence + counters_verilog()},
+          {"rtl/include/rp_records.vh", kLicence + records_verilog()},
+          {"rtl/include/rp_alu_instance_types.vh", kLicence + alu_instance_types_verilog()},
+          {"rtl/include/rp_alu_instances.vh", kLicence + alu_instances_verilog()},
           {"docs/isa.md", isa_markdown()}};
 }
 

@@ -14,9 +14,9 @@
 #include "isa/isa.hpp"
 #include "isa/program.hpp"
 #include "kernel/target.hpp"
-#include "machine/compute_unit.hpp"
-#include "machine/packages.hpp"
-#include "machine/ray_kernel.hpp"
+#include "machine/chip/ray_kernel.hpp"
+#include "machine/common/packages.hpp"
+#include "machine/compute/compute_unit.hpp"
 
 namespace raypool {
 

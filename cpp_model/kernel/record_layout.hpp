@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "kernel/intermediate.hpp"
-#include "machine/packages.hpp"
+#include "machine/common/packages.hpp"
 
 namespace raypool::kernel {
 

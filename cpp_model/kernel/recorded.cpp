@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "isa/input_error.hpp"
-#include "machine/packages.hpp"
+#include "machine/common/packages.hpp"
 
 namespace raypool::kernel {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "bits.hpp"
 #include "kernel/recorder.hpp"
-#include "machine/packages.hpp"
+#include "machine/common/packages.hpp"
 
 namespace raypool::kernel {
 namespace recorded {

@@ -7,7 +7,7 @@
 #include <cstddef>
 
 #include "config/configuration.hpp"
-#include "machine/packages.hpp"
+#include "machine/common/packages.hpp"
 
 namespace raypool {
 

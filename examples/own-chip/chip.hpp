@@ -3,7 +3,7 @@
 #pragma once
 
 #include <deque>
-#include <raypool/machine/compute_unit.hpp>
+#include <raypool/machine/compute/compute_unit.hpp>
 #include <stdexcept>
 
 class Chip {

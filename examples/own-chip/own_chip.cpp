@@ -8,7 +8,7 @@
 #include <raypool/kernel/kernel.hpp>
 #include <raypool/lockstep/lockstep_unit.hpp>
 #include <raypool/lockstep/rtl_loader.hpp>
-#include <raypool/machine/cycle_unit.hpp>
+#include <raypool/machine/compute/cycle_unit.hpp>
 
 #include "chip.hpp"
 

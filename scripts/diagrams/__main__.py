@@ -14,13 +14,14 @@ from . import chip_verilog, compute_unit, stages
 from .svg import DiagramError
 
 ROOT = stages.ROOT
-MODULES = {path.stem for path in (ROOT / "rtl").glob("*.v")}
+MODULES = {path.stem.removeprefix("rp_") for path in (ROOT / "rtl").glob("*/*.v")}
 INSTANCE = re.compile(r"^ *(\w+) *(?:#\(|\w+ *\()", re.M)
 
 
 def modules_within(module):
     """The modules of rtl/ of which this one has instances."""
-    return set(INSTANCE.findall((ROOT / f"rtl/{module}.v").read_text())) & MODULES - {module}
+    text = next((ROOT / "rtl").glob(f"*/rp_{module}.v")).read_text()
+    return {name.removeprefix("rp_") for name in INSTANCE.findall(text)} & MODULES - {module}
 
 
 def check_chip(picture):
@@ -28,7 +29,7 @@ def check_chip(picture):
     inside = set().union(*map(modules_within, chip_verilog.OPENED)) - chip_verilog.LEFT_OUT
     missing, wrong = sorted(inside - picture.modules), sorted(picture.modules - inside - {"chip"})
     if missing or wrong:
-        raise DiagramError(f"docs/images/chip-verilog.svg lacks {missing or 'nothing'} of rtl/chip.v and shows "
+        raise DiagramError(f"docs/images/chip-verilog.svg lacks {missing or 'nothing'} of rtl/chip/rp_chip.v and shows "
                            f"{wrong or 'nothing'} that is not in it: mend scripts/diagrams/chip_verilog.py")
     return picture
 

@@ -1,4 +1,4 @@
-"""The chip in Verilog: what rtl/chip.v joins, with what stands in its multiprocessor and its traverser."""
+"""The chip in Verilog: what rtl/chip/rp_chip.v joins, with what stands in its multiprocessor and its traverser."""
 from .svg import Picture
 
 # Modules whose insides are shown, and what of these is left out: arbiters of a few gates.
@@ -7,7 +7,7 @@ LEFT_OUT = {"round_robin"}
 
 
 def around(picture):
-    picture.group((14, 40, 872, 772), "chip", "rtl/chip.v: all but memory, frame buffer and host")
+    picture.group((14, 40, 872, 772), "chip", "rtl/chip/rp_chip.v: all but memory, frame buffer and host")
     picture.box((346, 66, 218, 62), "controller", ["tiles, which kernel next,", "whether it is safe"])
     picture.box((30, 271, 144, 80), "intersection_pool", ["what rays have hit,", "of each kind"], "box memory")
     picture.box((740, 303, 130, 80), "ray_pool", ["rays that are", "still to be traced"], "box memory")

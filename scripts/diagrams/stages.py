@@ -33,8 +33,8 @@ def trace(raypool, folder):
     folder.mkdir(parents=True, exist_ok=True)
     words, bench = folder / "stages.hex", folder / "stage_trace.vvp"
     run([raypool, "asm", PROGRAM, "-o", words])
-    verilog = sorted((ROOT / "rtl").glob("*.v"))
-    run(["iverilog", "-g2005", "-Irtl", "-s", "stage_trace", "-o", bench, "tb/icarus/stage_trace.v"] + verilog)
+    verilog = sorted((ROOT / "rtl").glob("*/*.v"))
+    run(["iverilog", "-g2005", "-Irtl/include", "-s", "stage_trace", "-o", bench, "tb/icarus/stage_trace.v"] + verilog)
     events = [line.split() for line in run(["vvp", "-n", bench, f"+program={words}"]).splitlines()]
     events = [(int(e[0]), int(e[1]), e[2], int(e[3])) for e in events if len(e) == 4 and e[0].isdigit()]
     if not events:

@@ -47,15 +47,25 @@ def parameters_of(config):
     return run(RAYPOOL, "config", config, "--verilog-parameters", stdout=subprocess.PIPE).split()
 
 
+def file_of(module):
+    return f"rp_{module}.v"
+
+
+def files_of(rtl):
+    """{name: path} of the Verilog in a folder's rooms: each name is there once."""
+    return {path.name: path for path in rtl.rglob("*") if path.suffix in (".v", ".vh", ".vlt")}
+
+
 def write_folder(folder, texts):
-    """The folder has these files and no others; what is as it was is left alone, so that nothing is built again for
-    it."""
-    folder.mkdir(parents=True, exist_ok=True)
-    for path in folder.iterdir():
+    """The folder has these files, in the rooms of rtl/, and no others; what is as it was is left alone, so that nothing
+    is built again for it."""
+    for path in files_of(folder).values():
         if path.name not in texts:
             path.unlink()
+    rooms = {name: path.parent.relative_to(ROOT / "rtl") for name, path in files_of(ROOT / "rtl").items()}
     for name, text in texts.items():
-        path = folder / name
+        path = folder / rooms[name] / name
+        path.parent.mkdir(parents=True, exist_ok=True)
         if not path.exists() or path.read_text() != text:
             path.write_text(text)
 
@@ -63,9 +73,9 @@ def write_folder(folder, texts):
 def put_in(source, folder, options):
     """The faults, in a tree whose rtl/ has them: verilate.sh builds from the tree that it stands in."""
     folder.mkdir(parents=True, exist_ok=True)
-    texts = {path.name: path.read_text() for path in (ROOT / "rtl").iterdir() if path.suffix in (".v", ".vh", ".vlt")}
+    texts = {name: path.read_text() for name, path in files_of(ROOT / "rtl").items()}
     count, judged = options.count or COUNTS.get(source), "all"
-    names = [f"{name}.v" for name in options.modules]
+    names = [file_of(name) for name in options.modules]
     if source in COUNTS and (count, options.seed) != (COUNTS[source], 1):
         judged = "none"
     if source == "mutants":
@@ -73,7 +83,7 @@ def put_in(source, folder, options):
         faults = mutants.put_in(texts, folder, count, options.seed, names, parameters_of(options.config))
     elif source == "blocks":
         judged = "some" if names and judged == "all" else judged
-        faults = blocks.put_in(texts, count, options.seed, names or [f"{name}.v" for name in MODULES])
+        faults = blocks.put_in(texts, count, options.seed, names or [file_of(name) for name in MODULES])
     else:
         faults = catalogue.put_in(texts, options.catalogue)
     write_folder(folder / "rtl", texts)
@@ -124,7 +134,7 @@ def build_benches(source, folder, options):
         run(BUILD / "raypool_chip_frames", "--tree", folder, "--frames", "1", *machines, stdout=subprocess.DEVNULL)
         return
     build = folder / "benches"
-    some = ["-DRAYPOOL_BENCHES=pools"] if source == "blocks" else []
+    some = ["-DRAYPOOL_BENCHES=traverser"] if source == "blocks" else []
     run("scripts/configure.sh", build, "ON", *some, "-DRAYPOOL_BENCHES_OPTIMISED=ON", f"-DRAYPOOL_RTL={folder}/rtl")
     benches = json.loads((ROOT / "tb/faults/benches.json").read_text())[source]
     run("scripts/build.sh", build, *sorted({bench["bench"] for bench in benches}))

@@ -20,9 +20,9 @@ def prove(folder, numbers):
 
         def gates(number, module):
             """The unit with this fault, as a module of this name."""
-            yosys(f"read_verilog {netlist}; hierarchy -top compute_unit; proc; memory_collect; cd compute_unit; "
+            yosys(f"read_verilog {netlist}; hierarchy -top rp_compute_unit; proc; memory_collect; cd rp_compute_unit; "
                   f"connect -set mutant_i {bits}'d{number}; cd; opt_expr; simplemap; opt_expr; opt_clean -purge; "
-                  f"rename compute_unit {module}; write_rtlil {work}/{module}.il", work / "log")  # fmt: skip
+                  f"rename rp_compute_unit {module}; write_rtlil {work}/{module}.il", work / "log")  # fmt: skip
 
         gates(0, "gold")
         for number in numbers:

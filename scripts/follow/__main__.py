@@ -1,4 +1,4 @@
-"""Follows one pixel through the chip in Verilog, from port to port of rtl/chip.v, in a waveform of the frame.
+"""Follows one pixel through the chip in Verilog, from port to port of rtl/chip/rp_chip.v, in a waveform of the frame.
 
     PYTHONPATH=scripts python3 -m follow [--pixel X,Y] [--scene SCENE] [--config CONFIG] [--out FOLDER] ...
 

@@ -1,5 +1,6 @@
-"""What passes the ports between the blocks of rtl/chip.v in a frame, in its order: launches, rays, intersections and
-contributions. Who follows whom is what the blocks promise: pools are queues, and a unit imports launch after launch."""
+"""What passes the ports between the blocks of rtl/chip/rp_chip.v in a frame, in its order: launches, rays,
+intersections and contributions. Who follows whom is what the blocks promise: pools are queues, and a unit imports
+launch after launch."""
 import bisect
 from dataclasses import dataclass, field
 

@@ -58,7 +58,8 @@ def journey_lines(options, frame, chip, journey, tree):
         scene, units = frame.report["scene"], f"{chip.units} unit{'s' if chip.units > 1 else ''}"
         config, lanes = frame.report["config"].split("+")[0], chip.wave.constant(INSIDE + "LANES")
         yield (f"pixel {x},{y} of {scene['name']}, {scene['triangles']} triangles, {width}x{height}, depth "
-               f"{frame.report['depth']}: rtl/chip.v, {units} of {config}, {lanes} lanes of traverser")  # fmt: skip
+               f"{frame.report['depth']}: rtl/chip/rp_chip.v, {units} of {config}, "
+               f"{lanes} lanes of traverser")  # fmt: skip
         yield (f"the frame takes {chip.wave.cycles} cycles, {len(chip.launches)} launches and "
                f"{len(chip.exports)} rays, {len(journey.lives)} of them of this pixel")  # fmt: skip
     if "arguments" in options.stations:

@@ -85,9 +85,9 @@ def header(lines):
 
 def name_in_chip(scopes, name):
     """Its way from the innermost scope of this name; empty outside of it."""
-    if b"chip" not in scopes:
+    if b"rp_chip" not in scopes:
         return ""
-    return b".".join((*scopes[len(scopes) - scopes[::-1].index(b"chip") :], name)).decode()
+    return b".".join((*scopes[len(scopes) - scopes[::-1].index(b"rp_chip") :], name)).decode()
 
 
 class Wave:
@@ -114,7 +114,7 @@ class Wave:
         missing = names - {EACH.sub("[*]", name) for name in self.signals}
         ports = sorted(name for name in missing if "." not in name)
         if ports:
-            raise FollowError(f"the waveform has no signal '{ports[0]}' in rtl/chip.v: it is of something else")
+            raise FollowError(f"the waveform has no signal '{ports[0]}' in rtl/chip/rp_chip.v: it is of something else")
         if missing:
             raise FollowError("the chip of this waveform has no traverser inside: draw with chip.traverser=hardware")
         return codes

@@ -1,5 +1,5 @@
-"""A ray's walk through the tree, from the wires of rtl/traverser.v and of the lane that had it: nodes and triangles,
-each with the cycles of its test and what came of it."""
+"""A ray's walk through the tree, from the wires of rtl/traverser/rp_traverser.v and of the lane that had it: nodes and
+triangles, each with the cycles of its test and what came of it."""
 from dataclasses import dataclass
 
 from . import packages

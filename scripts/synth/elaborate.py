@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from .errors import SynthError, need, run
 from .library import ROOT
 
+PREFIX = "rp_"  # of all modules in the Verilog; reports are without
 MEMORIES = ("ram_1rw", "ram_1r1w", "ram_2r1w")
 
 
@@ -16,7 +17,7 @@ class Kind:
     """One module with one set of parameters. `identity` is Yosys' name for it, the type of its instances."""
 
     identity: str
-    base: str
+    base: str  # the module, without the prefix
     parameters: dict  # name -> (bits as text)
     ports: dict  # name -> (direction, width)
     children: dict  # instance -> identity
@@ -33,11 +34,16 @@ class Kind:
 
 
 def rtl_files():
-    return sorted(glob.glob(os.path.join(ROOT, "rtl", "*.v")))
+    return sorted(glob.glob(os.path.join(ROOT, "rtl", "*", "*.v")))
+
+
+def text_of(texts, base):
+    """Of rtl_texts() that of a module."""
+    return next(text for path, text in texts.items() if os.path.basename(path) == f"{PREFIX}{base}.v")
 
 
 def defines(gated):
-    """The Verilog as it becomes hardware: Booth trees in place of products; free_running.vh tells what clock gates
+    """The Verilog as it becomes hardware: Booth trees in place of products; rp_free_running.vh tells what clock gates
     change.
     """
     return "-DSYNTHESIS" if gated else "-DSYNTHESIS -DNO_CLOCK_GATES"
@@ -45,13 +51,13 @@ def defines(gated):
 
 def read_rtl(gated):
     """Yosys: reads all of rtl/, for cells with clock gates or without."""
-    return f"read_verilog {defines(gated)} -I{ROOT}/rtl {' '.join(rtl_files())}"
+    return f"read_verilog {defines(gated)} -I{ROOT}/rtl/include {' '.join(rtl_files())}"
 
 
 def rtl_texts():
     """Every text the RTL is made of, by path below the project."""
     texts = {}
-    for path in rtl_files() + sorted(glob.glob(os.path.join(ROOT, "rtl", "*.vh"))):
+    for path in rtl_files() + sorted(glob.glob(os.path.join(ROOT, "rtl", "include", "*.vh"))):
         with open(path, encoding="utf-8") as file:
             texts[os.path.relpath(path, ROOT)] = file.read()
     return texts
@@ -96,7 +102,8 @@ def tree(parameters, folder, top, gated=False):
     script, result = os.path.join(folder, "elaborate.ys"), os.path.join(folder, "elaborate.json")
     chosen = " ".join(f"-chparam {n} {v}" for n, v in parameters.items())
     with open(script, "w", encoding="utf-8") as file:
-        file.write(f"{read_rtl(gated)}\nhierarchy -check -top {top} {chosen}\n" f"delete */p:*\nwrite_json {result}\n")
+        file.write(f"{read_rtl(gated)}\nhierarchy -check -top {PREFIX}{top} {chosen}\n")
+        file.write(f"delete */p:*\nwrite_json {result}\n")
     run([need("yosys", "yosys"), "-q", script], os.path.join(folder, "elaborate.log"))
     with open(result, encoding="utf-8") as file:
         modules = json.load(file)["modules"]
@@ -104,7 +111,7 @@ def tree(parameters, folder, top, gated=False):
     for identity, module in modules.items():
         if "top" in module["attributes"]:
             identity = top
-        base = module["attributes"].get("hdlname", "\\" + identity).lstrip("\\")
+        base = module["attributes"].get("hdlname", "\\" + identity).lstrip("\\").removeprefix(PREFIX)
         ports = {n: (p["direction"], len(p["bits"])) for n, p in module["ports"].items()}
         children = {n: c["type"] for n, c in module["cells"].items() if c["type"] in modules}
         bits = sum(len(b) for c in module["cells"].values() for b in c["connections"].values())

@@ -9,7 +9,7 @@ import re
 import subprocess
 
 from . import clock_gates
-from .elaborate import defines, read_rtl, rtl_texts
+from .elaborate import PREFIX, defines, read_rtl, rtl_texts, text_of
 from .errors import SynthError, need, run, progress
 from .library import ROOT, keep
 
@@ -107,7 +107,7 @@ class Mapper:
         waiting = [text]
         while waiting:
             for name in re.findall(r'`include\s+"([^"]+)"', waiting.pop()):
-                path = f"rtl/{name}"
+                path = f"rtl/include/{name}"
                 if path not in found:
                     found[path] = self.texts[path]
                     waiting.append(found[path])
@@ -117,7 +117,7 @@ class Mapper:
         """Yosys: one kind down to generic gates and library flip-flops. Its children stay blocks."""
         chosen = " ".join(f"-chparam {n} {constant(v)}" for n, v in sorted(kind.parameters.items()))
         return f"""{read_rtl(self.gated)}
-hierarchy -check -top {kind.base} {chosen}
+hierarchy -check -top {PREFIX}{kind.base} {chosen}
 select -set kids * A:top %d
 blackbox @kids
 select -clear
@@ -161,7 +161,7 @@ write_json {result}
             .replace(self.constraints.replace(ROOT, ""), "/abc.constr")
             .replace(self.cells.replace(ROOT, "").removesuffix(".lib"), "")
         )
-        source = self.texts[f"rtl/{kind.base}.v"]
+        source = text_of(self.texts, kind.base)
         parts = [
             self.version,
             self.library.digest,

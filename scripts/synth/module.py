@@ -21,8 +21,7 @@ def parsed(text):
 
 def synthesise(name, rows, options):
     """[(parameters as text, design)], in the order of `rows`; without any, the module as it is."""
-    names = [os.path.splitext(os.path.basename(path))[0] for path in elaborate.rtl_files()]
-    if name not in names:
+    if f"{elaborate.PREFIX}{name}.v" not in map(os.path.basename, elaborate.rtl_files()):
         raise SynthError(f"{name}: no such module in rtl/")
     found = []
     for text in rows or [""]:

@@ -9,7 +9,7 @@ import re
 import subprocess
 
 from . import clock_gates, mapping
-from .elaborate import defines, read_rtl, rtl_texts
+from .elaborate import PREFIX, defines, read_rtl, rtl_texts, text_of
 from .errors import need, run, progress
 
 SECONDS = 120
@@ -115,10 +115,10 @@ def prove_one(design, identity, folder, cells):
     gated = bool(design.library.clock_gate)
     stem = os.path.join(folder, kind.name)
     text = gate_module(design, module)
-    source = rtl_texts()[f"rtl/{kind.base}.v"]
+    source = text_of(rtl_texts(), kind.base)
     chosen = " ".join(f"-chparam {n} {mapping.constant(v)}" for n, v in sorted(kind.parameters.items()))
     script = f"""{read_rtl(gated)}
-hierarchy -check -top {kind.base} {chosen}
+hierarchy -check -top {PREFIX}{kind.base} {chosen}
 select -set kids * A:top %d
 blackbox @kids
 select -clear
@@ -129,7 +129,7 @@ memory_map
 opt -fast
 techmap
 opt -fast
-rename {kind.base} gold
+rename {PREFIX}{kind.base} gold
 read_liberty -ignore_miss_func -overwrite {cells}
 read_verilog {stem}.v
 flatten gate

@@ -199,15 +199,15 @@ def probed(design, top):
     if not os.path.exists(path):
         return []
     with open(path, encoding="utf-8") as file:
-        names = re.findall(rf'^public_flat_rd -module "{design.top}" -var "(\w+)"', file.read(), re.M)
+        names = re.findall(rf'^public_flat_rd -module "{elaborate.PREFIX}{design.top}" -var "(\w+)"', file.read(), re.M)
     wires = design.kinds[design.netlist.top].wires
     found = []
     for name in names:
         drivers = wires.get(name, [None])
         if None in drivers:
             raise SynthError(
-                f"{path}: {design.top}.v has no wire {name} that one of its blocks or inputs drives: the netlist has "
-                "none of this name"
+                f"{path}: {elaborate.PREFIX}{design.top}.v has no wire {name} that one of its blocks or inputs drives: "
+                "the netlist has none of this name"
             )
         found.append((name, [int(d) if isinstance(d, str) else top[d[:2]][d[2]] for d in drivers]))
     return found
@@ -236,7 +236,7 @@ def simulator(design, folder, count):
                 connections.append(f".{port}({name})")
                 (outputs if direction == "input" else inputs).append((name, connected.get(port, [0] * width)))
         parameters = ", ".join(f".{n}({int(v, 2)})" for n, v in kind.parameters.items())
-        lines.append(f"  {kind.base} #({parameters}) ram_{place} ({', '.join(connections)});")
+        lines.append(f"  {elaborate.PREFIX}{kind.base} #({parameters}) ram_{place} ({', '.join(connections)});")
         if count:
             lines += [
                 f"  longint unsigned accesses_{place} = 0;",
@@ -262,10 +262,8 @@ def simulator(design, folder, count):
     with open(data, "wb") as file:
         words.tofile(file)
     with open(shell, "w", encoding="utf-8") as file:
-        file.write(
-            f"module {design.top} #({', '.join(f'parameter {n} = {int(v, 2)}' for n, v in unit.parameters.items())}) "
-            f"({', '.join(unit.ports)});\n"
-        )
+        listed = ", ".join(f"parameter {n} = {int(v, 2)}" for n, v in unit.parameters.items())
+        file.write(f"module {elaborate.PREFIX}{design.top} #({listed}) ({', '.join(unit.ports)});\n")
         for name, (direction, width) in unit.ports.items():
             file.write(f"  {direction} [{width - 1}:0] {name};\n")
         file.write(

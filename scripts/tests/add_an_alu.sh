@@ -113,7 +113,7 @@ take run 'build/raypool configurations'
 grep -q '; tid brh int flt slw box as count/latency/depth, ' "$output" ||
   { cat "$output"; fail "the set of configurations has no column for box"; }
 lint='verilator --lint-only -Wall --default-language 1364-2005'
-take run "$lint -Irtl rtl/waivers.vlt --top-module multiprocessor rtl/*.v"
+take run "$lint -Irtl/include rtl/waivers.vlt --top-module rp_multiprocessor rtl/*/*.v"
 [ ! -s "$output" ] || { cat "$output"; fail "Verilator warns of the page's module"; }
 take run 'scripts/configure.sh build ON -DRAYPOOL_UNIT_BENCHES=OFF; cmake --build build --target raypool_cosim_test'
 take run "build/sim/raypool_cosim_test --gtest_filter='RandomPrograms.*:Covering*'"

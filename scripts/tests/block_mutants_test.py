@@ -76,7 +76,7 @@ class Blocks(unittest.TestCase):
     def test_all_that_make_faults_uses_is_verilog(self):
         with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name)
-            files = [f"{module}.v" for module in faults.__main__.MODULES]
+            files = [f"rp_{module}.v" for module in faults.__main__.MODULES]
             options = faults.__main__.arguments_of(["blocks", name, "--count", "20", "--seed", "7"])
             faults.__main__.put_in("blocks", folder, options)
             told = json.loads((folder / "faults.json").read_text())
@@ -84,9 +84,10 @@ class Blocks(unittest.TestCase):
             listed = told["faults"]
             self.assertEqual([fault["number"] for fault in listed], list(range(1, len(listed) + 1)))
             self.assertEqual({fault["file"] for fault in listed}, set(files))
-            lint = ["verilator", "--lint-only", "-DSYNTHESIS", "--default-language", "1364-2005", f"-I{folder}/rtl",
-                    "--top-module", "traverser", "-GLANES=1", "-GSLOTS=2", "-GTRIANGLE_PIPES=1",
-                    *(folder / "rtl").glob("*.vlt"), folder / "rtl/traverser.v", "-y", folder / "rtl"]  # fmt: skip
+            lint = ["verilator", "--lint-only", "-DSYNTHESIS", "--default-language", "1364-2005",
+                    f"-I{folder}/rtl/include", "--top-module", "rp_traverser", "-GLANES=1", "-GSLOTS=2",
+                    "-GTRIANGLE_PIPES=1",
+                    *(folder / "rtl").glob("*.vlt"), *(folder / "rtl").glob("*/*.v")]  # fmt: skip
             done = subprocess.run(lint, capture_output=True, text=True, check=False)
             self.assertEqual(done.returncode, 0, done.stderr[:2000])
 
@@ -109,12 +110,13 @@ class Blocks(unittest.TestCase):
 
 class Mutants(unittest.TestCase):
     def test_are_named_without_the_numbers_that_yosys_makes_up(self):
-        line = (r"mutate -ctrl mutant_i 9 7 -mode cnot1 -module compute_unit "
-                r"-cell $flatten\gen_warp[0].warp.$eq$rtl/x.vh:13$4711 -port A -portbit 2 -ctrlbit 5 "
-                r"-wire \warp.q -wirebit 8 -src rtl/warp.v:0.0-0.0 -src rtl/pc_stack.v:52.7-83.14 "
-                r"-src rtl/warp.v:55.19-57.70")
+        line = (r"mutate -ctrl mutant_i 9 7 -mode cnot1 -module rp_compute_unit "
+                r"-cell $flatten\gen_warp[0].warp.$eq$rtl/include/x.vh:13$4711 -port A -portbit 2 -ctrlbit 5 "
+                r"-wire \warp.q -wirebit 8 -src rtl/compute/rp_warp.v:0.0-0.0 "
+                r"-src rtl/compute/rp_pc_stack.v:52.7-83.14 "
+                r"-src rtl/compute/rp_warp.v:55.19-57.70")
         self.assertEqual(mutants.fault_of(7, line), {
-            "number": 7, "file": "pc_stack.v",
+            "number": 7, "file": "rp_pc_stack.v",
             "mistake": r"cnot1, A[2] of gen_warp[0].warp.eq at x.vh:13, by bit 5, wire \warp.q[8]"})  # fmt: skip
         made = mutants.fault_of(1, "mutate -mode inv -cell $auto$opt_reduce.cc:134:opt_pmux$99 -port Y -portbit 0")
         self.assertEqual((made["file"], made["mistake"]), ("(made by Yosys)", "inv, Y[0] of opt_pmux"))

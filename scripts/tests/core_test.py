@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """raypool.core describes rtl/ as it is: scripts/tests/core_test.py RAYPOOL
 
-It is what scripts/core.py writes; every file of rtl/ is in it once; its parameters are those of rtl/multiprocessor.v
+It is what scripts/core.py writes; every file of rtl/ is in it once; its parameters are those of
+rtl/compute/rp_multiprocessor.v
 with their defaults; and Verilator, given its files, options and a value for each parameter, has nothing to complain
 about.
 """
@@ -22,7 +23,7 @@ def declared(path):
         if line.startswith(") ("):
             return
         if include := re.match(r'`include "(.*)"', line):
-            yield from declared(ROOT / "rtl" / include[1])
+            yield from declared(ROOT / "rtl/include" / include[1])
         if parameter := re.match(r"\s*parameter integer ([A-Z_]+) = (\d+),?$", line):
             yield parameter[1], int(parameter[2])
 
@@ -41,7 +42,7 @@ class Core(unittest.TestCase):
         subprocess.run([ROOT / "scripts" / "core.py", RAYPOOL, "--check"], check=True)
 
     def test_lists_every_file_once(self):
-        rtl = sorted(str(path.relative_to(ROOT)) for path in (ROOT / "rtl").iterdir() if path.is_file())
+        rtl = sorted(str(path.relative_to(ROOT)) for path in (ROOT / "rtl").rglob("*") if path.is_file())
         self.assertEqual(sorted(name for name, _ in self.files), rtl)
         self.assertEqual(
             [name for name, include in self.files if include], [name for name in rtl if name.endswith(".vh")]
@@ -49,7 +50,7 @@ class Core(unittest.TestCase):
 
     def test_has_the_parameters_of_the_top(self):
         target = self.core["targets"]["default"]
-        top = dict(declared(ROOT / "rtl" / f"{target['toplevel']}.v"))
+        top = dict(declared(next((ROOT / "rtl").glob(f"*/{target['toplevel']}.v"))))
         given = {name: row["default"] for name, row in self.core["parameters"].items()}
         self.assertEqual(given, top)
         self.assertEqual(target["parameters"], list(top))
@@ -61,7 +62,8 @@ class Core(unittest.TestCase):
         parameters = [f"-G{name}={row['default']}" for name, row in self.core["parameters"].items()]
         waivers = [name for name, _ in self.files if name.endswith(".vlt")]
         verilog = [name for name, include in self.files if not include and name not in waivers]
-        command = ["verilator", "--lint-only", *tool["verilator_options"], "--top-module", target["toplevel"], "-Irtl"]
+        command = ["verilator", "--lint-only", *tool["verilator_options"], "--top-module", target["toplevel"],
+                   "-Irtl/include"]  # fmt: skip
         done = subprocess.run(
             command + parameters + waivers + verilog, cwd=ROOT, capture_output=True, text=True, check=False
         )

@@ -22,16 +22,16 @@ changed() {
 export PYTHONPATH=scripts
 rtl=$folder/catalogue/rtl
 expect "the small machine with every mistake is built" 0 "650 faults" python3 -m faults units "$folder" --machines 2w2c
-expect "it is plain Verilog" 0 "" iverilog -g2005 -I"$rtl" -s multiprocessor -o /dev/null "$rtl"/*.v
+expect "it is plain Verilog" 0 "" iverilog -g2005 -I"$rtl/include" -s rp_multiprocessor -o /dev/null "$rtl"/*/*.v
 expect "so it is with several units and every option" 0 "" verilator --lint-only --default-language 1364-2005 \
-  -I"$rtl" --top-module multiprocessor \
-  -GUNITS=4 -GWARPS=2 -GLANES=2 -GFMA=1 -GFLT_DEPTH=5 -GSUBNORMALS=1 -GSLOW_UNIT=1 "$rtl"/*.vlt "$rtl"/*.v
+  -I"$rtl/include" --top-module rp_multiprocessor \
+  -GUNITS=4 -GWARPS=2 -GLANES=2 -GFMA=1 -GFLT_DEPTH=5 -GSUBNORMALS=1 -GSLOW_UNIT=1 "$rtl"/*.vlt "$rtl"/*/*.v
 expect "so it is where products have digits, as benches have them" 0 "" verilator --lint-only -DSYNTHESIS \
-  --default-language 1364-2005 -I"$rtl" --top-module multiply_tree "$rtl"/*.vlt \
-  "$rtl/multiply_tree.v"
-expect "so it is with the features of best" 0 "" verilator --lint-only --default-language 1364-2005 -I"$rtl" \
-  --top-module multiprocessor -GWARPS=2 -GLANES=8 -GTRIPLES=1 -GKERNEL_OVERLAP=1 -GWIDE_RAY_MEMORY=1 -GSLOW_LANES=2 \
-  -GSLW_DEPTH=13 -GFLT_DEPTH=5 -GFMA=1 "$rtl"/*.vlt "$rtl"/*.v
+  --default-language 1364-2005 -I"$rtl/include" --top-module rp_multiply_tree "$rtl"/*.vlt \
+  "$rtl/arith/rp_multiply_tree.v"
+expect "so it is with the features of best" 0 "" verilator --lint-only --default-language 1364-2005 -I"$rtl/include" \
+  --top-module rp_multiprocessor -GWARPS=2 -GLANES=8 -GTRIPLES=1 -GKERNEL_OVERLAP=1 -GWIDE_RAY_MEMORY=1 -GSLOW_LANES=2 \
+  -GSLW_DEPTH=13 -GFLT_DEPTH=5 -GFMA=1 "$rtl"/*.vlt "$rtl"/*/*.v
 expect "mistakes are detected, and without one the unit agrees" 0 "no fault: 40 programs agree" \
   "$faults" units "$folder" --programs 40 --only 16 21 44 79 96
 # Each of these once led to another file: of the block beside it, or of the one above.
@@ -49,7 +49,7 @@ expect "of which the builder says what there are" 1 "there is no machine 9w9c: 2
   python3 -m faults units "$folder" --machines 9w9c
 changed 's/next_pc >= program_length_i/next_pc >= program_size_i/'
 expect "a mistake that does not fit is refused" 1 \
-  "fault 30 (instruction_buffer.v: The instruction behind the program's last one is let through.)" \
+  "fault 30 (rp_instruction_buffer.v: The instruction behind the program's last one is let through.)" \
   python3 -m faults units "$folder/refused" --catalogue "$folder/changed.json"
 changed 's/"number": 7/"number": 77/'
 expect "a catalogue with a number left out is refused" 1 "must be numbered" \

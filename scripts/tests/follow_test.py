@@ -260,7 +260,7 @@ class Notices(Case):
 
     def test_a_waveform_without_a_signal(self):
         lines = [line.replace(b" launch_valid ", b" launch_invalid ") for line in self.lines]
-        self.refused("no signal 'launch_valid' in rtl/chip.v", *self.run_with(lines))
+        self.refused("no signal 'launch_valid' in rtl/chip/rp_chip.v", *self.run_with(lines))
 
     def test_a_chip_without_a_traverser(self):
         lines = [line.replace(b" gen_inside ", b" gen_outside ") for line in self.lines]

@@ -49,9 +49,9 @@ undefined=tb/icarus/undefined_register.json
 "$raypool" cosim --replay $undefined --unchecked --show-config > "$folder/undefined.json"
 RAYPOOL=$raypool scripts/unit.sh "$folder/undefined.json"
 notices "a register that is read before it is written" rtl "retire_data" $undefined
-without_reset compute_unit.v fault_q
+without_reset compute/rp_compute_unit.v fault_q
 notices "the fault flag without reset" "$folder/rtl" "fault_valid" 1
-without_reset launcher.v running_o
+without_reset compute/rp_launcher.v running_o
 notices "the launcher's state without reset" "$folder/rtl" "busy" 1
 
 # Of a chip with the traverser inside: 22 is the smallest, 26 has several rays in flight.
@@ -59,13 +59,13 @@ for machine in 22 26; do
   text=$(scripts/icarus_chip.sh "$chip_frames" "$folder/run" $machine 1 2>&1) ||
     { failures=$((failures + 1)); echo "FAILED: the sound chip: $text"; }
 done
-without_reset controller.v busy_o
+without_reset chip/rp_controller.v busy_o
 chip_notices "whether a frame is drawn, without reset" busy 22
-without_reset tree_port.v request_valid_o
+without_reset traverser/rp_tree_port.v request_valid_o
 chip_notices "a request of the traverser without reset" tree_request_valid 22
-without_reset tree_cache.v valid_q
+without_reset traverser/rp_tree_cache.v valid_q
 chip_notices "which lines a cache has, without reset" tree_request_valid 22
-without_reset leaf_reader.v held_q
+without_reset traverser/rp_leaf_reader.v held_q
 chip_notices "how many lines a lane holds, without reset" tree_request_address 26 2
 
 [ "$failures" = 0 ] || { echo "$failures cases failed"; exit 1; }

@@ -27,12 +27,14 @@ differs() {
 }
 
 # Without a look inside, a warp that retires early leads to instruction buffer and cache.
-arbiter='inside, [0-9]+ cycles before: fetch arbiter, grant.*look at: rtl/fetch_arbiter.v, rtl/round_robin.v'
+arbiter='inside, [0-9]+ cycles before: fetch arbiter, grant.*'
+arbiter+='look at: rtl/compute/rp_fetch_arbiter.v, rtl/common/rp_round_robin.v'
 differs "a compute kernel" 45 "$twice.*$arbiter" run matmul --n 6 --engine lockstep "${on[@]}"
 sim=(sim --scene cornell --size 16x16 --out "$folder/frame" "${on[@]}")
 "$raypool" "${sim[@]}" --engine functional || { failures=$((failures + 1)); echo "FAILED: no frame to spoil"; }
 before=$(cd "$folder/frame" && ls -A && cksum ./*)
-differs "a frame" 52 "$twice.*inside, [0-9]+ cycles before: instruction cache.*look at: rtl/instruction_cache.v" \
+differs "a frame" 52 \
+  "$twice.*inside, [0-9]+ cycles before: instruction cache.*look at: rtl/compute/rp_instruction_cache.v" \
   "${sim[@]}" --engine lockstep
 differs "random programs" 45 "in seed [0-9]+.*$arbiter" cosim --programs 100 --no-shrink "${on[@]}"
 differs "a shrunk program" 45 "$arbiter.*saved" cosim --programs 100 --save "$folder/saved" "${on[@]}"

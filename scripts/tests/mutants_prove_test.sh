@@ -6,7 +6,7 @@ cd "$(dirname "$0")/../.." || exit 1
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cat > "$folder/netlist.v" <<'END'
-module compute_unit (input clk_i, input [3:0] a_i, input [3:0] b_i, output [3:0] sum_o, output [3:0] state_o);
+module rp_compute_unit (input clk_i, input [3:0] a_i, input [3:0] b_i, output [3:0] sum_o, output [3:0] state_o);
   wire [2:0] mutant_i;
   reg [3:0] state_q;
   // 1: the same by other gates; 2: one bit of the output, for one pair of operands.

@@ -77,7 +77,7 @@ class MappedBlocks(SmallBlocks):
 
     def test_wires_that_a_wrapper_reads_are_found_in_the_netlist(self):
         design = small_design(self.folder, "frame_port", {})
-        probes = self.written("frame_port_probes.vlt", 'public_flat_rd -module "frame_port" -var "count"\n')
+        probes = self.written("frame_port_probes.vlt", 'public_flat_rd -module "rp_frame_port" -var "count"\n')
         numbers = random.Random(1)
         cycles = [numbers.getrandbits(300) & ~1 | (cycle > 0) for cycle in range(300)]
         with mock.patch.object(replay, "PROBES", os.path.join(self.folder, "{}_probes.vlt")):
@@ -91,8 +91,8 @@ class MappedBlocks(SmallBlocks):
             # Its first output says that there is room.
             self.assertEqual([count != 2 for count in counts], [bool(value & 1) for value in values])
             with open(probes, "a", encoding="utf-8") as file:
-                file.write('public_flat_rd -module "frame_port" -var "take"\n')
-            with self.assertRaisesRegex(SynthError, "frame_port.v has no wire take that one of its blocks"):
+                file.write('public_flat_rd -module "rp_frame_port" -var "take"\n')
+            with self.assertRaisesRegex(SynthError, "rp_frame_port.v has no wire take that one of its blocks"):
                 self.simulated(design, cycles)
 
     def test_clock_gates_load_registers_when_their_enables_say_so(self):

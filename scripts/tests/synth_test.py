@@ -242,18 +242,18 @@ class Synthesis(SmallBlocks):
         self.assertEqual(self.won_back({"a": 1}, lambda efforts: -0.3)[0], {})
 
     def test_a_latch_is_refused(self):
-        path = os.path.join(self.folder, "rtl", "held.v")
+        path = os.path.join(self.folder, "rtl", "common", "rp_held.v")
         os.makedirs(os.path.dirname(path))
         with open(path, "w", encoding="utf-8") as file:
             file.write(
-                "module held (input wire e_i, input wire d_i, output reg q_o);\n  always @* if (e_i) q_o = "
+                "module rp_held (input wire e_i, input wire d_i, output reg q_o);\n  always @* if (e_i) q_o = "
                 "d_i;\nendmodule\n"
             )
         mapper = mapping.Mapper(library.Library(), self.folder, 4.0)
         kind = elaborate.Kind(
             "held", "held", {}, {"e_i": ("input", 1), "d_i": ("input", 1), "q_o": ("output", 1)}, {}, "held"
         )
-        mapper.texts["rtl/held.v"] = ""
+        mapper.texts["rtl/common/rp_held.v"] = ""
         original = elaborate.rtl_files
         elaborate.rtl_files = lambda: [path]
         try:

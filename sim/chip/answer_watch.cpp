@@ -5,7 +5,7 @@
 namespace raypool::chip {
 
 void AnswerWatch::Port::clock(uint64_t cycle, bool asks, bool beat) {
-  if (beat && ++beats == raypool::MemoryPort::kLineBeats) {
+  if (beat && ++beats == raypool::MemoryLine::kBeats) {
     beats = 0;
     if (!asked.empty()) asked.pop_front();
   }

@@ -8,8 +8,8 @@
 #include <string>
 
 #include "config/configuration.hpp"
-#include "machine/chip_device.hpp"
-#include "machine/memory_port.hpp"
+#include "machine/chip/chip_device.hpp"
+#include "machine/chip/memory_port.hpp"
 
 namespace raypool::chip {
 
@@ -23,7 +23,7 @@ class AnswerWatch {
   static uint64_t limit(const ChipConfiguration& chip) {
     const auto limits = raypool::MemoryPort::Limits::of(chip);
     const uint64_t before = uint64_t{chip.memory_queue} + limits.traverser_queue + limits.lines + 1;
-    return 2 * before * (chip.memory_latency + uint64_t{raypool::MemoryPort::kLineBeats} * chip.memory_cycles_per_beat);
+    return 2 * before * (chip.memory_latency + uint64_t{raypool::MemoryLine::kBeats} * chip.memory_cycles_per_beat);
   }
 
   /// Who waits for a line, and since when, in a few words; nobody may.

@@ -10,8 +10,8 @@
 #include "chip/frame_setup.hpp"
 #include "chip/traverser_fault.hpp"
 #include "config/limits.hpp"
-#include "machine/chip_model.hpp"
-#include "machine/intersection_pool.hpp"
+#include "machine/chip/chip_model.hpp"
+#include "machine/chip/intersection_pool.hpp"
 #include "scene/native_renderer.hpp"
 
 namespace raypool {
@@ -130,7 +130,7 @@ void Board::follow_kernels(const ChipOutputs& outputs) {
 void Board::remember(uint32_t tile) {
   remember_lines(chip_, lines_of(options_.visited_before(tile)), [this](uint32_t line) {
     TreeLine data;
-    uint32_t address = raypool::MemoryPort::kLineBytes * line;
+    uint32_t address = raypool::MemoryLine::kBytes * line;
     for (uint32_t& word : data) word = options_.tree->memory.load(address), address += 4;
     return data;
   });

@@ -1,4 +1,4 @@
-// A board with the chip (machine/chip_device.hpp): its memory, its frame buffer, a host that starts a
+// A board with the chip (machine/chip/chip_device.hpp): its memory, its frame buffer, a host that starts a
 // frame, and, unless the chip has one inside, the traverser at its ports. A loop over cycles, without SystemC: the chip
 // has all that takes its time.
 #pragma once
@@ -19,7 +19,7 @@
 #include "chip/tile_watch.hpp"
 #include "chip/traverser_watch.hpp"
 #include "isa/counters.hpp"
-#include "machine/chip_device.hpp"
+#include "machine/chip/chip_device.hpp"
 
 namespace raypool {
 

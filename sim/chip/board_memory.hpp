@@ -12,16 +12,16 @@
 
 #include "chip/memory_rows.hpp"
 #include "config/configuration.hpp"
-#include "machine/chip_device.hpp"
-#include "machine/memory.hpp"
-#include "machine/memory_port.hpp"
+#include "machine/chip/chip_device.hpp"
+#include "machine/chip/memory_port.hpp"
+#include "machine/common/memory.hpp"
 
 namespace raypool::chip {
 
 /// What the memories hold, and how long they take.
 class LineStore {
  public:
-  using Line = std::array<Beat, raypool::MemoryPort::kLineBeats>;
+  using Line = std::array<Beat, raypool::MemoryLine::kBeats>;
 
   virtual ~LineStore() = default;
   /// Reads a line that is asked for in this cycle. Returns the cycles from its service at the chip's memory port to its
@@ -73,7 +73,7 @@ class BoardMemory {
       : store_(store), cycles_per_beat_(chip.memory_cycles_per_beat), least_latency_(least_latency(chip)) {}
   /// Of a line, from its service at the port to its last beat: the port has three cycles of them, and the beats.
   static uint64_t least_latency(const ChipConfiguration& chip) {
-    return 3 + uint64_t{raypool::MemoryPort::kLineBeats - 1} * chip.memory_cycles_per_beat;
+    return 3 + uint64_t{raypool::MemoryLine::kBeats - 1} * chip.memory_cycles_per_beat;
   }
 
   /// Shows what it has at the memory's ports.
@@ -99,7 +99,7 @@ class BoardMemory {
   // The bus moves a beat at a time, whenever the memory has had the next line.
   void give(uint64_t cycle) {
     const uint64_t next = cycle + cycles_per_beat_;
-    if (++next_beat_ < raypool::MemoryPort::kLineBeats) {
+    if (++next_beat_ < raypool::MemoryLine::kBeats) {
       lines_.front().due = next;
       return;
     }

@@ -12,6 +12,7 @@
 
 #include "chip/answer_watch.hpp"
 #include "chip/test_board.hpp"
+#include "machine/traverser/box_pipe.hpp"
 #include "scene/native_renderer.hpp"
 
 namespace raypool {

@@ -15,11 +15,11 @@
 #include "config/configuration.hpp"
 #include "isa/isa.hpp"
 #include "kernel/kernels.hpp"
-#include "machine/compute_unit.hpp"
-#include "machine/memory.hpp"
-#include "machine/traverser_work.hpp"
-#include "machine/tree_fault.hpp"
-#include "machine/warp_cycles.hpp"
+#include "machine/common/memory.hpp"
+#include "machine/compute/compute_unit.hpp"
+#include "machine/compute/warp_cycles.hpp"
+#include "machine/traverser/traverser_work.hpp"
+#include "machine/traverser/tree_fault.hpp"
 #include "scene/ray_counts.hpp"
 
 namespace raypool {
@@ -63,7 +63,8 @@ struct ChipOptions {
   TreeImage* tree = nullptr;  ///< of a traverser in hardware, which needs no tracer; its stacks are written
   FrameSink* frame = nullptr;
 
-  /// Numbers along the tile walk (machine/tile_walk.hpp) of those that are cast, ascending; empty: all of the picture.
+  /// Numbers along the tile walk (machine/chip/tile_walk.hpp) of those that are cast, ascending; empty: all of the
+  /// picture.
   std::vector<uint32_t> tiles;
   chip::TileCosts* tile_costs = nullptr;  ///< gets what each of them costs; may be null
   /// What rays have visited of the tree, last what they visited last, when this tile of `tiles` is cast, of whose

@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "chip/frame_figures.hpp"
-#include "machine/warp_cycles.hpp"
+#include "machine/compute/warp_cycles.hpp"
 #include "scene/native_renderer.hpp"
 
 namespace raypool::chip {

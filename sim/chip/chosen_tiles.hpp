@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "bits.hpp"
-#include "machine/tile_walk.hpp"
+#include "machine/chip/tile_walk.hpp"
 
 namespace raypool::chip {
 

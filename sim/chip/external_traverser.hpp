@@ -1,11 +1,11 @@
-// A traverser at the ports of a chip that has none inside (machine/chip_device.hpp).
+// A traverser at the ports of a chip that has none inside (machine/chip/chip_device.hpp).
 #pragma once
 
 #include <cstdint>
 #include <string>
 
 #include "chip/traverser_counts.hpp"
-#include "machine/chip_device.hpp"
+#include "machine/chip/chip_device.hpp"
 
 namespace raypool::chip {
 

@@ -9,7 +9,7 @@
 
 #include "chip/memory_rows.hpp"
 #include "chip/memory_transport.hpp"
-#include "machine/memory.hpp"
+#include "machine/common/memory.hpp"
 
 namespace raypool::chip {
 

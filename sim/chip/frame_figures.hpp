@@ -10,8 +10,8 @@
 #include "chip/statistics.hpp"
 #include "chip/traverser_counts.hpp"
 #include "enum_array.hpp"
-#include "machine/compute_unit.hpp"
-#include "machine/traverser_work.hpp"
+#include "machine/compute/compute_unit.hpp"
+#include "machine/traverser/traverser_work.hpp"
 
 namespace raypool::chip {
 

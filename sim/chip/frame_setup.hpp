@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "chip/chip.hpp"
-#include "machine/chip_device.hpp"
-#include "machine/tile_walk.hpp"
+#include "machine/chip/chip_device.hpp"
+#include "machine/chip/tile_walk.hpp"
 #include "scene/native_renderer.hpp"
 
 namespace raypool::chip {

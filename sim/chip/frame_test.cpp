@@ -2,22 +2,22 @@
 #include <gtest/gtest.h>
 
 #include "chip/test_real_frame.hpp"
-#include "machine/functional_unit.hpp"
-#include "machine/multiprocessor.hpp"
+#include "machine/compute/functional_unit.hpp"
+#include "machine/compute/multiprocessor.hpp"
 #include "scene/native_renderer.hpp"
 
 namespace raypool {
 namespace {
 
-struct Case {
+struct FrameCase {
   int warps, lanes, units, width, height, depth;
   uint32_t intersection_words = kIntersectionWords;
 };
 
-class Frame : public testing::TestWithParam<Case> {};
+class Frame : public testing::TestWithParam<FrameCase> {};
 
 TEST_P(Frame, IsThatOfTheNativeRenderer) {
-  const Case c = GetParam();
+  const FrameCase c = GetParam();
   test::RealFrame run(c.warps, c.lanes, c.width, c.height, c.depth, make_cornell(), false, c.intersection_words);
   std::vector<std::unique_ptr<ComputeUnit>> units;
   for (int i = 0; i < c.units; ++i) units.push_back(make_functional_unit(run.options.configuration, run.image.memory));
@@ -114,10 +114,11 @@ TEST(Culling, GivesHitsThatReflectNothingTheShorterKernel) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Chip, Frame,
-                         testing::Values(Case{8, 8, 1, 32, 24, 1}, Case{8, 8, 4, 67, 41, 5}, Case{1, 1, 2, 13, 7, 3},
-                                         Case{2, 8, 2, 31, 29, 2}, Case{32, 32, 4, 61, 53, 4}, Case{4, 4, 1, 1, 1, 5},
-                                         Case{8, 8, 2, 41, 31, 1, 16}, Case{4, 8, 4, 37, 29, 5, 18}),
-                         [](const testing::TestParamInfo<Case>& c) {
+                         testing::Values(FrameCase{8, 8, 1, 32, 24, 1}, FrameCase{8, 8, 4, 67, 41, 5},
+                                         FrameCase{1, 1, 2, 13, 7, 3}, FrameCase{2, 8, 2, 31, 29, 2},
+                                         FrameCase{32, 32, 4, 61, 53, 4}, FrameCase{4, 4, 1, 1, 1, 5},
+                                         FrameCase{8, 8, 2, 41, 31, 1, 16}, FrameCase{4, 8, 4, 37, 29, 5, 18}),
+                         [](const testing::TestParamInfo<FrameCase>& c) {
                            return std::to_string(c.param.warps) + "w" + std::to_string(c.param.lanes) + "c" +
                                   std::to_string(c.param.units) + "u_depth" + std::to_string(c.param.depth) + "_" +
                                   std::to_string(c.param.intersection_words) + "words";

@@ -4,9 +4,8 @@
 
 namespace raypool::chip {
 
-using namespace host_register;
-
 void HostRegisters::set(const FrameSetup& setup) {
+  using namespace host_register;
   store(kProgramLength, setup.program_length);
   store(kMemoryLimit, setup.memory_limit);
   store(kWidth, setup.width);
@@ -29,6 +28,7 @@ void HostRegisters::set(const FrameSetup& setup) {
 }
 
 FrameSetup HostRegisters::setup(uint32_t record_words) const {
+  using namespace host_register;
   FrameSetup setup;
   setup.program_length = load(kProgramLength);
   setup.memory_limit = load(kMemoryLimit);

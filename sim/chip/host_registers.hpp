@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 
-#include "machine/chip_device.hpp"
+#include "machine/chip/chip_device.hpp"
 
 namespace raypool::chip {
 

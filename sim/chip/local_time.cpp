@@ -1,6 +1,6 @@
 #include "chip/local_time.hpp"
 
-#include "machine/port_cycles.hpp"
+#include "machine/common/port_cycles.hpp"
 
 namespace raypool::chip {
 

@@ -8,12 +8,12 @@
 #include <tlm>
 #include <utility>
 
-#include "machine/memory_port.hpp"
+#include "machine/chip/memory_port.hpp"
 
 namespace raypool::chip {
 
-inline constexpr uint32_t kLineBeats = raypool::MemoryPort::kLineBeats;
-inline constexpr uint32_t kBeatBytes = raypool::MemoryPort::kQuadwordBytes, kLineBytes = kLineBeats * kBeatBytes;
+inline constexpr uint32_t kLineBeats = raypool::MemoryLine::kBeats;
+inline constexpr uint32_t kBeatBytes = raypool::MemoryLine::kQuadwordBytes, kLineBytes = kLineBeats * kBeatBytes;
 
 inline constexpr unsigned kMemoryBits = 8 * kBeatBytes;  ///< width of the sockets of memories and frame buffer
 using MemorySocket = tlm::tlm_initiator_socket<kMemoryBits>;

@@ -8,7 +8,7 @@
 
 #include "bits.hpp"
 #include "enum_array.hpp"
-#include "machine/intersection_pool.hpp"
+#include "machine/chip/intersection_pool.hpp"
 
 namespace raypool::chip {
 

@@ -11,9 +11,9 @@
 #include <deque>
 #include <vector>
 
-#include "machine/chip_device.hpp"
-#include "machine/packages.hpp"
-#include "machine/ray_kernel.hpp"
+#include "machine/chip/chip_device.hpp"
+#include "machine/chip/ray_kernel.hpp"
+#include "machine/common/packages.hpp"
 
 namespace raypool::chip {
 

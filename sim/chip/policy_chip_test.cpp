@@ -11,9 +11,9 @@
 #include "chip/test_frame_run.hpp"
 #include "chip/test_real_frame.hpp"
 #include "chip/tree_image.hpp"
-#include "machine/chip_model.hpp"
-#include "machine/kernel_policy.hpp"
-#include "machine/model.hpp"
+#include "machine/chip/chip_model.hpp"
+#include "machine/chip/kernel_policy.hpp"
+#include "machine/compute/model.hpp"
 
 namespace raypool {
 namespace {

@@ -1,5 +1,5 @@
-// A traverser at the ports of a chip (machine/chip_device.hpp): beats of rays come in, packages and contributions go
-// out, each ray frees its place when what it has become has left.
+// A traverser at the ports of a chip (machine/chip/chip_device.hpp): beats of rays come in, packages and contributions
+// go out, each ray frees its place when what it has become has left.
 #pragma once
 
 #include <cstdint>
@@ -13,8 +13,8 @@
 #include "chip/traverser_counts.hpp"
 #include "config/configuration.hpp"
 #include "enum_array.hpp"
-#include "machine/chip_device.hpp"
-#include "machine/packages.hpp"
+#include "machine/chip/chip_device.hpp"
+#include "machine/common/packages.hpp"
 
 namespace raypool::chip {
 

@@ -2,8 +2,8 @@
 // contributions; and both made from the real ones.
 #pragma once
 
-#include "machine/compute_unit.hpp"
-#include "machine/packages.hpp"
+#include "machine/common/packages.hpp"
+#include "machine/compute/compute_unit.hpp"
 #include "scene/image.hpp"
 #include "scene/traversal.hpp"
 

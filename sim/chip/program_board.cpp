@@ -93,7 +93,7 @@ void ProgramBoard::offer_launch(const UnitOutputs& outputs) {
   ++transfers_;
 }
 
-// As the chip does (machine/chip_model.cpp): what the port shows in a cycle depends on the cycles before it.
+// As the chip does (machine/chip/chip_model.cpp): what the port shows in a cycle depends on the cycles before it.
 void ProgramBoard::clock_memory(const UnitOutputs& outputs) {
   inputs_.memory_request_ready = port_.room_from() <= cycle_;
   inputs_.memory_response_valid = port_.response_due() <= cycle_;

@@ -10,9 +10,9 @@
 #include "chip/board_memory.hpp"
 #include "chip/program_run.hpp"
 #include "chip/progress_watch.hpp"
-#include "machine/chip_device.hpp"
-#include "machine/compute_unit.hpp"
-#include "machine/memory_port.hpp"
+#include "machine/chip/chip_device.hpp"
+#include "machine/chip/memory_port.hpp"
+#include "machine/compute/compute_unit.hpp"
 
 namespace raypool::chip {
 

@@ -9,8 +9,8 @@
 #include "chip/board_memory.hpp"
 #include "chip/program_board.hpp"
 #include "config/limits.hpp"
-#include "machine/decoder.hpp"
-#include "machine/functional_core.hpp"
+#include "machine/compute/decoder.hpp"
+#include "machine/compute/functional_core.hpp"
 
 namespace raypool {
 

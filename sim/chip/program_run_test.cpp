@@ -7,9 +7,9 @@
 #include "chip/board_memory.hpp"
 #include "chip/progress_watch.hpp"
 #include "kernel/compute_kernels.hpp"
-#include "machine/functional_unit.hpp"
-#include "machine/model.hpp"
-#include "machine/test_program.hpp"
+#include "machine/compute/functional_unit.hpp"
+#include "machine/compute/model.hpp"
+#include "machine/compute/test_program.hpp"
 
 namespace raypool {
 namespace {

@@ -10,9 +10,9 @@
 #include "chip/progress_watch.hpp"
 #include "chip/test_real_frame.hpp"
 #include "chip/tree_image.hpp"
-#include "machine/chip_model.hpp"
-#include "machine/kernel_policy.hpp"
-#include "machine/model.hpp"
+#include "machine/chip/chip_model.hpp"
+#include "machine/chip/kernel_policy.hpp"
+#include "machine/compute/model.hpp"
 
 namespace raypool {
 namespace {
@@ -85,8 +85,8 @@ void long_stalls(ChipConfiguration& chip) {
   chip.static_traverser_stall_cycles = 50 * kPeriod + 1;
 }
 
-struct Frame {
-  Frame(Scene scene, TraverserName traverser, void (*change)(ChipConfiguration&), uint32_t size = 2)
+struct DrawnFrame {
+  DrawnFrame(Scene scene, TraverserName traverser, void (*change)(ChipConfiguration&), uint32_t size = 2)
       : run(4, 4, size, size, 1, std::move(scene)) {
     ChipConfiguration& chip = run.options.configuration.chip;
     chip.traverser = traverser;
@@ -162,7 +162,7 @@ struct PortsAlone : ChipDevice {
 
 TEST(Progress, ARayThatTestsForLongIsNoLockUp) {
   const auto draw = [](std::optional<uint32_t> given) {
-    Frame frame(pile(2000), TraverserName::Hardware, one_ray);
+    DrawnFrame frame(pile(2000), TraverserName::Hardware, one_ray);
     std::string error = error_of([&] {
       frame.draw([&](std::unique_ptr<ChipDevice> chip) -> std::unique_ptr<ChipDevice> {
         if (!given) return chip;
@@ -181,14 +181,14 @@ TEST(Progress, ARayThatTestsForLongIsNoLockUp) {
 
 TEST(Progress, AWaitForTheMemoryIsNoLockUp) {
   for (const TraverserName traverser : {TraverserName::Static, TraverserName::Hardware}) {
-    Frame frame(pile(20), traverser, slow_memory);
+    DrawnFrame frame(pile(20), traverser, slow_memory);
     EXPECT_EQ(error_of([&] { frame.draw(); }), "");
     EXPECT_TRUE(frame.run.frame == frame.native());
   }
 }
 
 TEST(Progress, AStallOfTheShaderIsNoLockUp) {
-  Frame frame(pile(1), TraverserName::Static, long_stalls);
+  DrawnFrame frame(pile(1), TraverserName::Static, long_stalls);
   EXPECT_EQ(error_of([&] { frame.draw(); }), "");
   EXPECT_TRUE(frame.run.frame == frame.native());
 }
@@ -209,7 +209,7 @@ struct GivesUp : KernelPolicy {
 TEST(Progress, APolicyThatNeverLaunchesIsALockUp) {
   for (const TraverserName traverser : {TraverserName::Static, TraverserName::Hardware}) {
     for (const uint32_t tiles : {0u, 1u}) {
-      Frame frame(pile(20), traverser, one_ray, 8);
+      DrawnFrame frame(pile(20), traverser, one_ray, 8);
       frame.run.options.limits.cycles = 100 * kPeriod;
       const std::string error =
           error_of([&] { frame.draw({}, [&](const PolicySetup&) { return std::make_unique<GivesUp>(tiles); }); });
@@ -237,7 +237,7 @@ struct DeafMemory : PortsAlone {
 
 TEST(Progress, ABoardWhoseMemoryHearsNothingIsLockedUp) {
   for (const TraverserName traverser : {TraverserName::Static, TraverserName::Hardware}) {
-    Frame frame(pile(20), traverser, one_ray);
+    DrawnFrame frame(pile(20), traverser, one_ray);
     frame.run.options.limits.cycles = 100 * kPeriod;
     const std::string error = error_of([&] {
       frame.draw([](std::unique_ptr<ChipDevice> chip) { return std::make_unique<DeafMemory>(std::move(chip)); });
@@ -261,7 +261,7 @@ struct Standstill : PortsAlone {
 };
 
 TEST(Progress, ARayThatIsOfferedAndNeverTakenIsALockUp) {
-  Frame frame(pile(20), TraverserName::Hardware, one_ray);
+  DrawnFrame frame(pile(20), TraverserName::Hardware, one_ray);
   frame.run.options.limits.cycles = 100 * kPeriod;
   const std::string error = error_of([&] {
     frame.draw([](std::unique_ptr<ChipDevice> chip) { return std::make_unique<Standstill>(std::move(chip)); });

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "machine/port_cycles.hpp"
+#include "machine/common/port_cycles.hpp"
 
 namespace raypool::chip {
 

@@ -5,8 +5,8 @@
 
 #include "chip/ports.hpp"
 #include "config/configuration.hpp"
-#include "machine/compute_unit.hpp"
-#include "machine/packages.hpp"
+#include "machine/common/packages.hpp"
+#include "machine/compute/compute_unit.hpp"
 
 namespace raypool::chip {
 

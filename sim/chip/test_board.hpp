@@ -7,8 +7,8 @@
 #include "chip/board.hpp"
 #include "chip/test_real_frame.hpp"
 #include "chip/tree_image.hpp"
-#include "machine/chip_model.hpp"
-#include "machine/model.hpp"
+#include "machine/chip/chip_model.hpp"
+#include "machine/compute/model.hpp"
 
 namespace raypool::test {
 

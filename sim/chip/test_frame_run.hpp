@@ -9,7 +9,7 @@
 
 #include "chip/board.hpp"
 #include "chip/test_scripted_unit.hpp"
-#include "machine/multiprocessor.hpp"
+#include "machine/compute/multiprocessor.hpp"
 
 namespace raypool::test {
 

@@ -8,8 +8,8 @@
 #include "chip/chip.hpp"
 #include "chip/pixel_watch.hpp"
 #include "chip/tile_costs.hpp"
-#include "machine/chip_device.hpp"
-#include "machine/tile_walk.hpp"
+#include "machine/chip/chip_device.hpp"
+#include "machine/chip/tile_walk.hpp"
 
 namespace raypool::chip {
 

@@ -2,14 +2,14 @@
 
 #include <fmt/format.h>
 
-#include "machine/leaf_reader.hpp"
-#include "machine/memory_port.hpp"
+#include "machine/chip/memory_port.hpp"
+#include "machine/traverser/leaf_reader.hpp"
 
 namespace raypool::chip {
 
 namespace {
 
-uint64_t byte_of(uint64_t line) { return line * raypool::MemoryPort::kLineBytes; }
+uint64_t byte_of(uint64_t line) { return line * raypool::MemoryLine::kBytes; }
 
 std::string what(const TreeFault& fault, const TreeSetup& tree) {
   const uint64_t byte = byte_of(fault.line);
@@ -23,7 +23,7 @@ std::string what(const TreeFault& fault, const TreeSetup& tree) {
                          byte_of(uint64_t{tree.triangles_line} + tree.triangle_lines));
     case TreeFaultCode::StackFull:
       return fmt::format("the stack of a ray, up to byte {} of the traverser's memory, is full: the tree is too deep",
-                         byte + raypool::MemoryPort::kLineBytes);
+                         byte + raypool::MemoryLine::kBytes);
     case TreeFaultCode::Children:
       return fmt::format("node {}, at byte {} of the traverser's memory, has not one to four children", fault.line,
                          byte);

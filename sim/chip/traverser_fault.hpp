@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "machine/tree_fault.hpp"
-#include "machine/tree_setup.hpp"
+#include "machine/traverser/tree_fault.hpp"
+#include "machine/traverser/tree_setup.hpp"
 
 namespace raypool::chip {
 

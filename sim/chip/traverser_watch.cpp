@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "bits.hpp"
-#include "machine/intersection_pool.hpp"
+#include "machine/chip/intersection_pool.hpp"
 
 namespace raypool::chip {
 

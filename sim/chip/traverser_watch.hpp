@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "chip/traverser_counts.hpp"
-#include "machine/chip_device.hpp"
-#include "machine/packages.hpp"
+#include "machine/chip/chip_device.hpp"
+#include "machine/common/packages.hpp"
 
 namespace raypool::chip {
 

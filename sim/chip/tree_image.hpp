@@ -4,9 +4,9 @@
 #include <cstdint>
 
 #include "config/configuration.hpp"
-#include "machine/memory.hpp"
-#include "machine/tree_lines.hpp"
-#include "machine/tree_setup.hpp"
+#include "machine/common/memory.hpp"
+#include "machine/traverser/tree_lines.hpp"
+#include "machine/traverser/tree_setup.hpp"
 #include "scene/bvh.hpp"
 #include "scene/scene.hpp"
 #include "scene/traversal.hpp"

@@ -11,8 +11,8 @@
 
 #include "chip/sampling.hpp"
 #include "cli/scene_loading.hpp"
-#include "machine/compute_unit.hpp"
-#include "machine/memory.hpp"
+#include "machine/common/memory.hpp"
+#include "machine/compute/compute_unit.hpp"
 
 namespace raypool {
 

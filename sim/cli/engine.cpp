@@ -13,9 +13,9 @@
 #include "config/data_folder.hpp"
 #include "lockstep/lockstep_chip.hpp"
 #include "lockstep/rtl_loader.hpp"
-#include "machine/functional_unit.hpp"
-#include "machine/model.hpp"
-#include "machine/multiprocessor.hpp"
+#include "machine/compute/functional_unit.hpp"
+#include "machine/compute/model.hpp"
+#include "machine/compute/multiprocessor.hpp"
 
 namespace raypool {
 
@@ -65,7 +65,7 @@ std::string chip_library_path(const Configuration& configuration, bool waves, in
 std::string newer_verilog(const std::string& library, const std::string& rtl) {
   std::error_code missing;
   const fs::file_time_type built = fs::last_write_time(library);
-  for (const fs::directory_entry& file : fs::directory_iterator(rtl, missing)) {
+  for (const fs::directory_entry& file : fs::recursive_directory_iterator(rtl, missing)) {
     const fs::path extension = file.path().extension();
     if ((extension == ".v" || extension == ".vh") && file.last_write_time() > built) return file.path();
   }

@@ -10,9 +10,9 @@
 #include "config/configuration.hpp"
 #include "lockstep/lockstep_chip.hpp"
 #include "lockstep/lockstep_unit.hpp"
-#include "machine/chip_device.hpp"
-#include "machine/compute_unit.hpp"
-#include "machine/memory.hpp"
+#include "machine/chip/chip_device.hpp"
+#include "machine/common/memory.hpp"
+#include "machine/compute/compute_unit.hpp"
 
 namespace raypool {
 
@@ -65,7 +65,7 @@ std::string newer_verilog(const std::string& library, const std::string& rtl);
 std::unique_ptr<ComputeUnit> make_unit(const EngineOptions& options, Memory& memory, const std::string& name = "unit",
                                        const std::map<uint32_t, std::string>& kernel_names = {});
 
-/// rtl/chip.v whole, of engine rtl or lockstep; else as make_unit().
+/// rtl/chip/rp_chip.v whole, of engine rtl or lockstep; else as make_unit().
 std::unique_ptr<ChipDevice> make_verilog_chip(const EngineOptions& options, const Memory& memory);
 
 /// What the device has compared; none unless it is a lockstep.

@@ -187,11 +187,12 @@ void MachineCommands::add_config_command() {
   auto* formats = config_app->add_option_group("format");
   formats->add_flag("--json", config_.json, "as a configuration file");
   CLI::Option* verilog = formats->add_flag("--verilog-parameters", config_.verilog_parameters,
-                                           "as NAME=VALUE lines for rtl/multiprocessor.v");
+                                           "as NAME=VALUE lines for rtl/compute/rp_multiprocessor.v");
   formats->add_flag("--unit-library", config_.unit_library, "path of its Verilated unit");
   formats->require_option(0, 1);
   config_app->add_flag("--in-use", config_.in_use, "refuse a field of --set that a frame on it does not look at");
-  config_app->add_flag("--chip", config_.chip, "with --verilog-parameters: those of rtl/chip.v")->needs(verilog);
+  config_app->add_flag("--chip", config_.chip, "with --verilog-parameters: those of rtl/chip/rp_chip.v")
+      ->needs(verilog);
   config_app->add_option("--units", config_.units, "with --unit-library or --chip: compute units, 1, 2 or 4")
       ->check(CLI::IsMember({1, 2, 4}));
   config_app->callback([this] { code_ = config_command(config_); });
@@ -215,8 +216,8 @@ void MachineCommands::add_isa_command() {
   CLI::App* isa_app = add("isa", "print the instruction table (default: as Markdown)");
   auto* isa_formats = isa_app->add_option_group("format");
   isa_formats->add_flag("--markdown", markdown_, "docs/isa.md");
-  isa_formats->add_flag("--verilog", verilog_, "rtl/isa.vh: constants");
-  isa_formats->add_flag("--verilog-functions", functions_, "rtl/isa_functions.vh: decoding");
+  isa_formats->add_flag("--verilog", verilog_, "rtl/include/rp_isa.vh: constants");
+  isa_formats->add_flag("--verilog-functions", functions_, "rtl/include/rp_isa_functions.vh: decoding");
   isa_formats->add_flag("--write", write_, "all files that are derived from the table, in place");
   isa_formats->require_option(0, 1);
   isa_app->callback([this] {

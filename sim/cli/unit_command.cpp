@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-void make_folder(const fs::path& folder) {
+void make_unit_folder(const fs::path& folder) {
   if (folder.string().find(' ') != std::string::npos)
     throw InputError(
         fmt::format("'{}': Verilator's makefiles cannot handle a space in the path of the unit{}", folder.string(),
@@ -46,7 +46,7 @@ int unit_command(const UnitOptions& options) {
   const bool chip = parse_boundary(options.boundary) == Boundary::Chip;
   const auto path = chip ? chip_library_path : unit_library_path;
   const fs::path folder = fs::path(path(configuration, options.waves, options.units)).parent_path();
-  make_folder(folder);
+  make_unit_folder(folder);
   // One build at a time in a folder: a second waits here. So what lies there half done is of one that was killed.
   std::vector<std::string> command = {
       "flock",      folder / ".lock", "bash", "-c",

@@ -2,7 +2,7 @@
 
 #include "bits.hpp"
 #include "cosim/bus.hpp"
-#include "machine/packages.hpp"
+#include "machine/common/packages.hpp"
 
 namespace raypool {
 namespace {
@@ -108,7 +108,7 @@ void expect_traverser(ExpectedBus& bus, const ChipOutputs& chip, int place_bits,
   bus.put(out.contribution_valid ? 1 : 0, 1, on);
   bus.put(out.contribution.pixel, 32, contribution);
   bus.put_words(out.contribution.rgb, contribution ? kAll : 0);
-  const MemoryPort::TreeRequest& request = out.tree_request;
+  const TreeRequest& request = out.tree_request;
   const bool asks = on && out.tree_request_valid, writes = asks && request.write;
   bus.put(out.tree_request_valid ? 1 : 0, 1, on);
   bus.put(request.write ? 1 : 0, 1, asks);

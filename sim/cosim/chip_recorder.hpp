@@ -5,7 +5,7 @@
 #include <ostream>
 
 #include "config/configuration.hpp"
-#include "machine/chip_device.hpp"
+#include "machine/chip/chip_device.hpp"
 
 namespace raypool {
 

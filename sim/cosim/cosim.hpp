@@ -7,7 +7,7 @@
 
 #include "cosim/random_program.hpp"
 #include "isa/input_error.hpp"
-#include "machine/compute_unit.hpp"
+#include "machine/compute/compute_unit.hpp"
 
 namespace raypool {
 

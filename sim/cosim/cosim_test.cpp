@@ -15,9 +15,9 @@
 #include "cosim/program_profile.hpp"
 #include "cosim/shrink.hpp"
 #include "isa/encoding.hpp"
-#include "machine/chip_device.hpp"
-#include "machine/functional_unit.hpp"
-#include "machine/test_program.hpp"
+#include "machine/chip/chip_device.hpp"
+#include "machine/compute/functional_unit.hpp"
+#include "machine/compute/test_program.hpp"
 
 namespace raypool {
 namespace {

@@ -7,7 +7,7 @@
 namespace raypool {
 namespace {
 
-constexpr uint64_t kNever = ~uint64_t{0} / 2;
+constexpr uint64_t kNoBeatYet = ~uint64_t{0} / 2;
 // A store that waited for its line passes again within this many cycles of the line's last beat.
 constexpr uint64_t kReplayCycles = 12;
 constexpr uint32_t kInstructionId = 16;
@@ -383,7 +383,7 @@ void Coverage::memory_request(const UnitOutputs& outputs, const UnitInputs& inpu
   Line& line = lines_[line_key(unit, request.address)];
   if (++line.fetches > 1) hit(Event::FetchedAgain);
   line.stored = false;
-  line.first_beat = kNever;
+  line.first_beat = kNoBeatYet;
   uint32_t in_use = 0, of_set = 0;
   for (uint32_t id = unit * 32; id < unit * 32 + kInstructionId; ++id) {
     if (!reads_[id].valid) continue;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "isa/encoding.hpp"
-#include "machine/functional_core.hpp"
+#include "machine/compute/functional_core.hpp"
 
 namespace raypool {
 namespace {

@@ -13,7 +13,7 @@
 #include "config/configuration.hpp"
 #include "cosim/stalls.hpp"
 #include "isa/program.hpp"
-#include "machine/compute_unit.hpp"
+#include "machine/compute/compute_unit.hpp"
 
 namespace raypool {
 

@@ -6,7 +6,7 @@
 #include <ostream>
 
 #include "config/configuration.hpp"
-#include "machine/compute_unit.hpp"
+#include "machine/compute/compute_unit.hpp"
 
 namespace raypool {
 

@@ -15,8 +15,9 @@
 
 #include "config/configuration.hpp"
 #include "lockstep/findings.hpp"
+#include "lockstep/rtl_files.hpp"
 #include "lockstep/wire.hpp"
-#include "machine/chip_device.hpp"
+#include "machine/chip/chip_device.hpp"
 
 namespace raypool::lockstep {
 
@@ -33,8 +34,7 @@ struct Block {
 
 class BlockRule {
  public:
-  explicit BlockRule(Block block)
-      : block_(std::move(block)), files_(fmt::format("rtl/{}.v, rtl/{}.v", block_.file, block_.parent)) {}
+  explicit BlockRule(Block block) : block_(std::move(block)), files_(rtl_files({block_.file, block_.parent})) {}
   BlockRule(const BlockRule&) = delete;
   BlockRule& operator=(const BlockRule&) = delete;
   virtual ~BlockRule() = default;

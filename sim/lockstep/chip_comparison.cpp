@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "bits.hpp"
+#include "lockstep/rtl_files.hpp"
 
 namespace raypool::lockstep {
 namespace {
@@ -54,9 +55,11 @@ class Ports {
  private:
   // The block, or what in it says what its port shows; and what joins the blocks.
   std::string files() const {
-    if (first_block_ == "controller" && first_port_ == "launch_block") return "rtl/tile_walk.v, rtl/chip.v";
-    if (first_port_ == "node_given" || first_port_ == "leaf_given") return "rtl/tree_banks.v, rtl/tree_cache.v";
-    return fmt::format("rtl/{}.v, rtl/chip.v", first_block_);
+    if (first_block_ == "controller" && first_port_ == "launch_block")
+      return "rtl/chip/rp_tile_walk.v, rtl/chip/rp_chip.v";
+    if (first_port_ == "node_given" || first_port_ == "leaf_given")
+      return "rtl/traverser/rp_tree_banks.v, rtl/traverser/rp_tree_cache.v";
+    return rtl_files({first_block_, "chip"});
   }
   void differs(const char* port, const std::string& rtl, const std::string& model) {
     if (title_.empty()) {
@@ -235,7 +238,7 @@ void compare_traverser(Ports& ports, const ChipOutputs& rtl_chip, const ChipOutp
     ports.same("leaf_given", rtl_chip.leaves_given, model_chip.leaves_given);
   }
   if (!ports.both("request_valid", rtl.tree_request_valid, model.tree_request_valid)) return;
-  const MemoryPort::TreeRequest &r = rtl.tree_request, &m = model.tree_request;
+  const TreeRequest &r = rtl.tree_request, &m = model.tree_request;
   ports.same("request_second", r.second, m.second);
   ports.same_word("request_address", r.address, m.address);
   if (!ports.same("request_write", r.write, m.write) || !m.write) return;

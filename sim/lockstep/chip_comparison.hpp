@@ -4,7 +4,7 @@
 #pragma once
 
 #include "lockstep/mismatch.hpp"
-#include "machine/chip_device.hpp"
+#include "machine/chip/chip_device.hpp"
 
 namespace raypool::lockstep {
 

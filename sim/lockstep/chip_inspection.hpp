@@ -13,8 +13,12 @@
 #include "lockstep/block_rules.hpp"
 #include "lockstep/chip_wires.hpp"
 #include "lockstep/findings.hpp"
-#include "machine/chip_device.hpp"
-#include "machine/traverser.hpp"
+#include "machine/chip/chip_device.hpp"
+#include "machine/traverser/line_want.hpp"
+
+namespace raypool {
+class Traverser;
+}
 
 namespace raypool::lockstep {
 

@@ -8,7 +8,7 @@
 
 #include "lockstep/wire.hpp"
 
-// Signals of rtl/traverser.v, between its blocks, and of rtl/traverser_lane.v.
+// Signals of rtl/traverser/rp_traverser.v, between its blocks, and of rtl/traverser/rp_traverser_lane.v.
 // clang-format off
 #define RAYPOOL_TRAVERSER_WIRES(X) \
   X(slot_valid) X(slot_of) X(enters) X(enter_grant) X(enter_slot) X(set_valid) X(set_place) X(set_depth) X(set_shadow) \

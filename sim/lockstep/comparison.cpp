@@ -4,16 +4,20 @@
 
 #include "bits.hpp"
 #include "lockstep/text.hpp"
-#include "machine/warp_cycles.hpp"
+#include "machine/compute/warp_cycles.hpp"
 
 namespace raypool::lockstep {
 namespace {
 
-constexpr const char* kMemoryModules = "rtl/mem_alu.v, rtl/data_cache.v, rtl/memory_arbiter.v";
-constexpr const char* kFetchModules = "rtl/instruction_cache.v, rtl/memory_arbiter.v";
-constexpr const char* kImportModules = "rtl/ray_import.v, rtl/ray_alu.v, rtl/import_arbiter.v";
-constexpr const char* kExportModules = "rtl/ray_export.v, rtl/ray_alu.v, rtl/ray_memory.v";
-constexpr const char* kExportCountModules = "rtl/ray_alu.v, rtl/compute_unit.v, rtl/multiprocessor.v";
+constexpr const char* kMemoryModules =
+    "rtl/compute/rp_mem_alu.v, rtl/compute/rp_data_cache.v, rtl/compute/rp_memory_arbiter.v";
+constexpr const char* kFetchModules = "rtl/compute/rp_instruction_cache.v, rtl/compute/rp_memory_arbiter.v";
+constexpr const char* kImportModules =
+    "rtl/compute/rp_ray_import.v, rtl/compute/rp_ray_alu.v, rtl/compute/rp_import_arbiter.v";
+constexpr const char* kExportModules =
+    "rtl/compute/rp_ray_export.v, rtl/compute/rp_ray_alu.v, rtl/compute/rp_ray_memory.v";
+constexpr const char* kExportCountModules =
+    "rtl/compute/rp_ray_alu.v, rtl/compute/rp_compute_unit.v, rtl/compute/rp_multiprocessor.v";
 
 // A row of a table of what differs.
 template <typename Value>
@@ -47,21 +51,23 @@ std::string retired_line(const char* who, const RetireEvent& event) {
 
 // What gives a performance counter its events.
 const char* source_of_events(int number) {
-  if (number >= counter::kUnused) return "rtl/dispatcher.v";
-  if (number >= counter::kWarpsInRay) return "rtl/ray_alu.v";
-  if (number == counter::kWarpsNotLaunched) return "rtl/launcher.v";
-  if (number >= counter::kWarpsEnded) return "rtl/instruction_buffer.v";
-  return number >= counter::kDataCacheHits ? "rtl/mem_alu.v" : "rtl/event_counter.v";
+  if (number >= counter::kUnused) return "rtl/compute/rp_dispatcher.v";
+  if (number >= counter::kWarpsInRay) return "rtl/compute/rp_ray_alu.v";
+  if (number == counter::kWarpsNotLaunched) return "rtl/compute/rp_launcher.v";
+  if (number >= counter::kWarpsEnded) return "rtl/compute/rp_instruction_buffer.v";
+  return number >= counter::kDataCacheHits ? "rtl/compute/rp_mem_alu.v" : "rtl/common/rp_event_counter.v";
 }
 
 // A unit that calls itself idle too early has overlooked what still waits at a port.
 const char* launch_files(const UnitOutputs& rtl, const UnitOutputs& model) {
   const bool only_idle = rtl.launch_ready == model.launch_ready && rtl.kernel_done == model.kernel_done &&
                          rtl.busy == model.busy && rtl.launch_unit == model.launch_unit;
-  if (!only_idle) return "rtl/launcher.v, rtl/compute_unit.v";
-  if (model.memory_request_valid) return "rtl/memory_arbiter.v, rtl/compute_unit.v, rtl/mem_alu.v";
-  if (model.export_valid || model.frame_valid) return "rtl/compute_unit.v, rtl/ray_export.v, rtl/ray_alu.v";
-  return "rtl/compute_unit.v, rtl/mem_alu.v, rtl/launcher.v";
+  if (!only_idle) return "rtl/compute/rp_launcher.v, rtl/compute/rp_compute_unit.v";
+  if (model.memory_request_valid)
+    return "rtl/compute/rp_memory_arbiter.v, rtl/compute/rp_compute_unit.v, rtl/compute/rp_mem_alu.v";
+  if (model.export_valid || model.frame_valid)
+    return "rtl/compute/rp_compute_unit.v, rtl/compute/rp_ray_export.v, rtl/compute/rp_ray_alu.v";
+  return "rtl/compute/rp_compute_unit.v, rtl/compute/rp_mem_alu.v, rtl/compute/rp_launcher.v";
 }
 
 bool is_fetch(const MemoryRequest& request) { return !request.write && (request.id & 31) == 16; }
@@ -89,11 +95,12 @@ void pair_up(const std::vector<Event>& rtl, const std::vector<Event>& model, Bot
 // Where all that differ count the events of one block, that block is likelier than what counts them.
 std::string counter_files(ComputeUnit& rtl, ComputeUnit& model, int first) {
   const std::string source = source_of_events(first);
-  bool one_source = source != "rtl/event_counter.v";
+  bool one_source = source != "rtl/common/rp_event_counter.v";
   for (int number = 0; number < counter::kCount; ++number)
     one_source = one_source && (rtl.counter(number) == model.counter(number) || source == source_of_events(number));
-  if (rtl.units() > 1) return "rtl/performance_counters.v, rtl/multiprocessor.v, " + source;
-  return one_source ? source + ", rtl/performance_counters.v" : "rtl/performance_counters.v, " + source;
+  if (rtl.units() > 1) return "rtl/compute/rp_performance_counters.v, rtl/compute/rp_multiprocessor.v, " + source;
+  return one_source ? source + ", rtl/compute/rp_performance_counters.v"
+                    : "rtl/compute/rp_performance_counters.v, " + source;
 }
 
 }  // namespace
@@ -115,7 +122,7 @@ void Comparison::trace(const UnitTrace& rtl, const UnitTrace& model) {
       other_cycle("stores", kMemoryModules));
   pair_up(
       rtl.ray_writes, model.ray_writes, [this](const auto& r, const auto& m) { ray_write(r, m); },
-      other_cycle("writes ray memory", "rtl/ray_alu.v"));
+      other_cycle("writes ray memory", "rtl/compute/rp_ray_alu.v"));
   pair_up(
       rtl.retired, model.retired, [this](const auto& r, const auto& m) { retirement(r, m); },
       [this](const auto& event, bool in_rtl) { only_one(event, in_rtl); });
@@ -123,15 +130,16 @@ void Comparison::trace(const UnitTrace& rtl, const UnitTrace& model) {
 
 void Comparison::only_one(const RetireEvent& event, bool in_rtl) const {
   const DecodedInstruction instruction = decode(event.instruction, configuration_);
-  throw Mismatch{fmt::format("warp {} retires an instruction in this cycle in {}, and not in {}", event.warp,
-                             in_rtl ? "the RTL" : "the model", in_rtl ? "the model" : "the RTL"),
-                 retired_line(in_rtl ? "RTL" : "model", event),
-                 instruction.legal() && alu_info(instruction.info->alu()).timed_by_events()
-                     ? result_files(instruction, configuration_)
-                     : "rtl/fetch_arbiter.v, rtl/instruction_buffer.v, rtl/dispatcher.v",
-                 Context::Warp,
-                 event.unit,
-                 event.warp};
+  throw Mismatch{
+      fmt::format("warp {} retires an instruction in this cycle in {}, and not in {}", event.warp,
+                  in_rtl ? "the RTL" : "the model", in_rtl ? "the model" : "the RTL"),
+      retired_line(in_rtl ? "RTL" : "model", event),
+      instruction.legal() && alu_info(instruction.info->alu()).timed_by_events()
+          ? result_files(instruction, configuration_)
+          : "rtl/compute/rp_fetch_arbiter.v, rtl/compute/rp_instruction_buffer.v, rtl/compute/rp_dispatcher.v",
+      Context::Warp,
+      event.unit,
+      event.warp};
 }
 
 void Comparison::retirement(const RetireEvent& rtl, const RetireEvent& model) {
@@ -141,20 +149,20 @@ void Comparison::retirement(const RetireEvent& rtl, const RetireEvent& model) {
   const auto both = [&] { return retired_line("RTL", rtl) + retired_line("model", model); };
   if (rtl.pc != model.pc) {
     throw differs(fmt::format("warp {} retired another PC than the model's", rtl.warp), both(),
-                  "rtl/pc_stack.v, rtl/brh_alu.v", Context::Warp);
+                  "rtl/compute/rp_pc_stack.v, rtl/compute/rp_brh_alu.v", Context::Warp);
   }
   if (rtl.instruction != model.instruction) {
     throw differs(fmt::format("warp {} executed another instruction than lies in memory at PC {}", rtl.warp, rtl.pc),
                   both() + fmt::format("  encoding: RTL {:016x}, memory {:016x}\n", rtl.instruction, model.instruction),
-                  "rtl/instruction_cache.v, rtl/instruction_buffer.v", Context::Warp);
+                  "rtl/compute/rp_instruction_cache.v, rtl/compute/rp_instruction_buffer.v", Context::Warp);
   }
   const CycleUnit::Issue& issue = issue_(rtl.unit, rtl.warp);
   const auto masks = [&](uint32_t r, uint32_t m) {
     return fmt::format("  RTL   {}\n  model {}  (lane 0 rightmost)\n", mask_text(r, lanes_), mask_text(m, lanes_));
   };
   if (rtl.mask != model.mask) {
-    throw differs("the thread mask differs", masks(rtl.mask, model.mask), "rtl/predicate_file.v, rtl/warp.v",
-                  Context::Operands);
+    throw differs("the thread mask differs", masks(rtl.mask, model.mask),
+                  "rtl/compute/rp_predicate_file.v, rtl/compute/rp_warp.v", Context::Operands);
   }
   ++counts_->instructions;
   if (issue.instruction->writes_register) {
@@ -170,7 +178,7 @@ void Comparison::retirement(const RetireEvent& rtl, const RetireEvent& model) {
       throw differs("the predicate result differs", masks(rtl.predicate, model.predicate),
                     (rtl.predicate ^ model.predicate) & model.mask
                         ? result_files(*issue.instruction, configuration_)
-                        : "rtl/warp.v, " + result_files(*issue.instruction, configuration_),
+                        : "rtl/compute/rp_warp.v, " + result_files(*issue.instruction, configuration_),
                     Context::Operands);
     }
     counts_->thread_results += static_cast<uint64_t>(lanes_);
@@ -182,7 +190,7 @@ void Comparison::store(const StoreEvent& rtl, const StoreEvent& model) {
     throw Mismatch{"the words stored differ",
                    quadword_line("RTL", rtl.address, rtl.mask, rtl.data) +
                        quadword_line("model", model.address, model.mask, model.data),
-                   "rtl/mem_alu.v, rtl/data_cache.v",
+                   "rtl/compute/rp_mem_alu.v, rtl/compute/rp_data_cache.v",
                    Context::Operands,
                    rtl.unit,
                    rtl.warp};
@@ -201,7 +209,7 @@ void Comparison::ray_write(const RayWriteEvent& rtl, const RayWriteEvent& model)
                    fmt::format("  RTL wrote word {} of lanes {}, the model word {} of lanes {} (lane 0 rightmost)\n",
                                rtl.word, mask_text(rtl.mask, lanes_), model.word, mask_text(model.mask, lanes_)) +
                        lane_table(issue_(rtl.unit, rtl.warp), lanes_, rtl.data.data(), model.data.data()),
-                   "rtl/ray_alu.v",
+                   "rtl/compute/rp_ray_alu.v",
                    Context::Instruction,
                    rtl.unit,
                    rtl.warp};
@@ -212,12 +220,13 @@ void Comparison::ray_write(const RayWriteEvent& rtl, const RayWriteEvent& model)
 void Comparison::fault(const UnitOutputs& rtl, const UnitOutputs& model) const {
   if (rtl.fault.code != model.fault.code || rtl.fault.unit != model.fault.unit || rtl.fault.warp != model.fault.warp ||
       rtl.fault.pc != model.fault.pc) {
-    throw Mismatch{"the faults differ in this cycle",
-                   "  RTL:   " + fault_text(rtl.fault) + "\n  model: " + fault_text(model.fault) + "\n",
-                   rtl.fault.unit != model.fault.unit
-                       ? "rtl/multiprocessor.v, rtl/compute_unit.v, rtl/instruction_buffer.v"
-                       : "rtl/compute_unit.v, rtl/instruction_buffer.v, rtl/multiprocessor.v",
-                   Context::Unit};
+    throw Mismatch{
+        "the faults differ in this cycle",
+        "  RTL:   " + fault_text(rtl.fault) + "\n  model: " + fault_text(model.fault) + "\n",
+        rtl.fault.unit != model.fault.unit
+            ? "rtl/compute/rp_multiprocessor.v, rtl/compute/rp_compute_unit.v, rtl/compute/rp_instruction_buffer.v"
+            : "rtl/compute/rp_compute_unit.v, rtl/compute/rp_instruction_buffer.v, rtl/compute/rp_multiprocessor.v",
+        Context::Unit};
   }
 }
 
@@ -257,7 +266,7 @@ void Comparison::memory_request(const UnitOutputs& rtl, const UnitOutputs& model
   }
   const bool stopped = model.fault.code != FaultCode::None;  // nothing is begun after a fault
   throw Mismatch{"the memory requests differ in this cycle", details,
-                 fetches && stopped ? "rtl/instruction_buffer.v, rtl/instruction_cache.v"
+                 fetches && stopped ? "rtl/compute/rp_instruction_buffer.v, rtl/compute/rp_instruction_cache.v"
                  : fetches          ? kFetchModules
                                     : kMemoryModules,
                  Context::Unit};
@@ -327,7 +336,7 @@ void compare_counters(const Configuration& configuration, ComputeUnit& rtl, Comp
   // Modulo what one counts to.
   if (((cycles.sum() - cycles.busy) & ((uint64_t{1} << configuration.counter_bits) - 1)) == 0) return;
   throw Mismatch{"the warps' states do not sum up to their cycles", row("cycles", cycles.sum(), cycles.busy),
-                 "rtl/performance_counters.v, cpp_model/machine/warp_cycles.cpp", Context::Unit};
+                 "rtl/compute/rp_performance_counters.v, cpp_model/machine/compute/warp_cycles.cpp", Context::Unit};
 }
 
 }  // namespace raypool::lockstep

@@ -9,8 +9,8 @@
 
 #include "lockstep/lockstep_unit.hpp"
 #include "lockstep/mismatch.hpp"
-#include "machine/compute_unit.hpp"
-#include "machine/cycle_unit.hpp"
+#include "machine/compute/compute_unit.hpp"
+#include "machine/compute/cycle_unit.hpp"
 
 namespace raypool::lockstep {
 

@@ -5,11 +5,11 @@
 #include <optional>
 
 #include "lockstep/block_rules.hpp"
-#include "machine/free_list.hpp"
-#include "machine/kernel_policy.hpp"
-#include "machine/launch_records.hpp"
-#include "machine/launch_rules.hpp"
-#include "machine/tile_walk.hpp"
+#include "machine/chip/kernel_policy.hpp"
+#include "machine/chip/launch_records.hpp"
+#include "machine/chip/launch_rules.hpp"
+#include "machine/chip/tile_walk.hpp"
+#include "machine/common/free_list.hpp"
 
 namespace raypool::lockstep {
 namespace {

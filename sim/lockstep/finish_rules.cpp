@@ -1,9 +1,9 @@
-// The blocks inside rtl/ray_finish.v: products, sizes and quotients of what a ray carries on of its hit.
+// The blocks inside rtl/traverser/rp_ray_finish.v: products, sizes and quotients of what a ray carries on of its hit.
 #include <algorithm>
 #include <cmath>
 
 #include "lockstep/block_rules.hpp"
-#include "machine/ray_finish.hpp"
+#include "machine/traverser/ray_finish.hpp"
 
 namespace raypool::lockstep {
 namespace {
@@ -58,7 +58,7 @@ class CrossProductsRule : public BlockRule {
   }
   // By an even number of places, so that the first bit is one of the first two.
   void check_normaliser(Findings& findings) const {
-    const std::string files = "rtl/normaliser.v, rtl/cross_products.v";
+    const std::string files = "rtl/arith/rp_normaliser.v, rtl/arith/rp_cross_products.v";
     const uint32_t width = sum_.width();
     uint32_t zeros = 0;
     while (zeros < width && !sum_.flag(width - 1 - zeros)) ++zeros;
@@ -123,7 +123,7 @@ class NormalLengthRule : public BlockRule {
     for (size_t number = 0; number < 3; ++number)
       if (begun(kAgain - kMade + number))
         expect(findings, again_.wide(0, kBits), *normals_.ago(kAgain - kMade), "component of a normal, later",
-               "rtl/triangle_normal.v, rtl/ram_delay.v");
+               "rtl/traverser/rp_triangle_normal.v, rtl/common/rp_ram_delay.v");
   }
   void take() override {
     constexpr uint32_t kFirst = 14 - 1;  // bits are numbered from 1
@@ -150,7 +150,8 @@ class NormalLengthRule : public BlockRule {
     while (root * root > sum) --root;
     while ((root + 1) * (root + 1) <= sum) ++root;
     const uint64_t length = uint64_t{largest + more} << kFraction | (root & ((1u << 30) - 1)) << 1;
-    expect(findings, length_.wide(0, kBits), length, "length of a normal", "rtl/triangle_normal.v, rtl/root_digits.v");
+    expect(findings, length_.wide(0, kBits), length, "length of a normal",
+           "rtl/traverser/rp_triangle_normal.v, rtl/arith/rp_root_digits.v");
   }
 
   Wire first_ = wire("first_i"), normal_ = wire("normal_14"), length_ = wire("length_40_o"),

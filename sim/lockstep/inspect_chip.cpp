@@ -5,15 +5,16 @@
 #include "bits.hpp"
 #include "isa/records.hpp"
 #include "lockstep/chip_inspection.hpp"
+#include "machine/traverser/traverser.hpp"
 
 namespace raypool::lockstep {
 namespace {
 
 constexpr const char* kScope = "gen_inside.traverser";
 /// What a bank of a cache decides has a rule of its own: what is left is between the banks, or its data.
-constexpr const char* kArbiter = "rtl/bank_arbiter.v, rtl/tree_banks.v";
-constexpr const char* kBanks = "rtl/tree_banks.v, rtl/bank_arbiter.v";
-constexpr const char* kCache = "rtl/tree_cache.v, rtl/tree_banks.v";
+constexpr const char* kArbiter = "rtl/traverser/rp_bank_arbiter.v, rtl/traverser/rp_tree_banks.v";
+constexpr const char* kBanks = "rtl/traverser/rp_tree_banks.v, rtl/traverser/rp_bank_arbiter.v";
+constexpr const char* kCache = "rtl/traverser/rp_tree_cache.v, rtl/traverser/rp_tree_banks.v";
 constexpr uint32_t kLineBits = 26, kBlockBits = 7;
 
 }  // namespace
@@ -91,33 +92,40 @@ void ChipInspection::advance_traverser() {
   expect(w_.leaf_taken.bits(2 * lane_, 2), exit.leaf_taken, kArbiter, "want of a triangle's line that is taken");
   if (expect(w_.leaf_given.flag(lane_), exit.leaf_slot.has_value(), kBanks, "a triangle's line is given") &&
       exit.leaf_slot)
-    expect_words(w_.leaf_given_data, 512 * lane_, exit.leaf.data(), 16, "rtl/tree_cache.v, rtl/tree_banks.v",
-                 "triangle's line that is given");
+    expect_words(w_.leaf_given_data, 512 * lane_, exit.leaf.data(), 16,
+                 "rtl/traverser/rp_tree_cache.v, rtl/traverser/rp_tree_banks.v", "triangle's line that is given");
 }
 
 // A ray that has been set up, for its lane and for ray_exit.
 void ChipInspection::check_set() {
   const auto& set = model_->handed().set;
-  constexpr const char* kSetup = "rtl/ray_setup.v, rtl/traverser.v";
-  constexpr const char* kDirection = "rtl/ray_direction.v, rtl/ray_setup.v";
-  constexpr const char* kPadding = "rtl/ray_padding.v, rtl/ray_setup.v";
+  constexpr const char* kSetup = "rtl/traverser/rp_ray_setup.v, rtl/traverser/rp_traverser.v";
+  constexpr const char* kDirection = "rtl/traverser/rp_ray_direction.v, rtl/traverser/rp_ray_setup.v";
+  constexpr const char* kPadding = "rtl/traverser/rp_ray_padding.v, rtl/traverser/rp_ray_setup.v";
   if (!expect(w_.set_valid.value(), set.has_value(), kSetup, "a ray is set up") || !set) return;
   lane_ = set->slot.lane;
-  expect(w_.set_lane.value(), 1u << lane_, "rtl/ray_setup.v, rtl/ray_delay.v", "lane of the ray that is set up");
-  expect(w_.set_slot.value(), set->slot.slot, "rtl/ray_setup.v, rtl/ray_delay.v", "slot of the ray that is set up");
-  expect(w_.set_place.value(), set->set.place, "rtl/traverser.v, rtl/ray_setup.v", "place of the ray that is set up");
-  expect(w_.set_depth.value(), set->set.depth, "rtl/traverser.v, rtl/ray_setup.v", "depth of the ray that is set up");
-  expect(w_.set_shadow.value(), set->set.shadow, "rtl/traverser.v, rtl/ray_setup.v", "a shadow ray is set up");
+  expect(w_.set_lane.value(), 1u << lane_, "rtl/traverser/rp_ray_setup.v, rtl/traverser/rp_ray_delay.v",
+         "lane of the ray that is set up");
+  expect(w_.set_slot.value(), set->slot.slot, "rtl/traverser/rp_ray_setup.v, rtl/traverser/rp_ray_delay.v",
+         "slot of the ray that is set up");
+  expect(w_.set_place.value(), set->set.place, "rtl/traverser/rp_traverser.v, rtl/traverser/rp_ray_setup.v",
+         "place of the ray that is set up");
+  expect(w_.set_depth.value(), set->set.depth, "rtl/traverser/rp_traverser.v, rtl/traverser/rp_ray_setup.v",
+         "depth of the ray that is set up");
+  expect(w_.set_shadow.value(), set->set.shadow, "rtl/traverser/rp_traverser.v, rtl/traverser/rp_ray_setup.v",
+         "a shadow ray is set up");
   const LaneRay& ray = set->entered.ray;
-  if (!expect(w_.meets.value(), ray.meets, "rtl/ray_setup.v, rtl/ray_direction.v", "the ray can hit something") ||
+  if (!expect(w_.meets.value(), ray.meets, "rtl/traverser/rp_ray_setup.v, rtl/traverser/rp_ray_direction.v",
+              "the ray can hit something") ||
       !ray.meets)
     return;
   const auto bits = static_cast<uint32_t>(model_->box_bits());
   const TriangleRay& triangle = ray.triangle;
   expect(w_.main_axis.value(), static_cast<uint32_t>(triangle.kz), kDirection, "main axis");
   expect(w_.scale.value(), static_cast<uint32_t>(ray.limit.scale) & 0x1ff, kDirection, "scale");
-  expect(w_.limit.value(), as_bits(ray.limit.limit), "rtl/ray_setup.v", "limit");
-  expect(w_.limit_key.value(), ray.box.limit, "rtl/ray_setup.v, rtl/float_parts.v", "key of the limit");
+  expect(w_.limit.value(), as_bits(ray.limit.limit), "rtl/traverser/rp_ray_setup.v", "limit");
+  expect(w_.limit_key.value(), ray.box.limit, "rtl/traverser/rp_ray_setup.v, rtl/arith/rp_float_parts.v",
+         "key of the limit");
   for (uint32_t axis = 0; axis < 3; ++axis) {
     const BoxRay::Axis& box = ray.box.axes[axis];
     expect(w_.origin.word(axis), as_bits(triangle.origin[axis]), kPadding, "origin");
@@ -140,31 +148,34 @@ void ChipInspection::advance_lane(uint32_t number) {
   const Traverser::Handed::ToLane& lane = model_->handed().lanes[number];
   const uint32_t slot_bits = model_->slot_bits();
   const bool enters = w_.enters.value() != 0 && w_.enter_grant.flag(number);
-  expect(enters, lane.slot_taken, "rtl/traverser.v, rtl/round_robin.v", "a ray that comes gets a slot here");
-  expect(w_.slot_free.flag(number), lane.freed.has_value(), "rtl/ray_exit.v, rtl/ray_finish.v", "a slot is free again");
+  expect(enters, lane.slot_taken, "rtl/traverser/rp_traverser.v, rtl/common/rp_round_robin.v",
+         "a ray that comes gets a slot here");
+  expect(w_.slot_free.flag(number), lane.freed.has_value(),
+         "rtl/traverser/rp_ray_exit.v, rtl/traverser/rp_ray_finish.v", "a slot is free again");
   if (lane.freed && w_.slot_free.flag(number))
-    expect(w_.slot_free_slot.value(), *lane.freed, "rtl/ray_exit.v", "slot that is free again");
+    expect(w_.slot_free_slot.value(), *lane.freed, "rtl/traverser/rp_ray_exit.v", "slot that is free again");
   // Results of tests before what they lead to.
-  if (expect(w_.result_valid.flag(number), lane.result.has_value(), "rtl/triangle_group.v, rtl/triangle_pipe.v",
-             "a triangle has its result") &&
+  if (expect(w_.result_valid.flag(number), lane.result.has_value(),
+             "rtl/traverser/rp_triangle_group.v, rtl/traverser/rp_triangle_pipe.v", "a triangle has its result") &&
       lane.result) {
     const uint32_t tag_bits = 30 + slot_bits;
     const uint64_t tag = lane.result->tag.word(slot_bits);
-    expect(w_.result_tag.bits(number * tag_bits, 30), tag & 0x3fffffff, "rtl/triangle_group.v, rtl/triangle_pipe.v",
+    expect(w_.result_tag.bits(number * tag_bits, 30), tag & 0x3fffffff,
+           "rtl/traverser/rp_triangle_group.v, rtl/traverser/rp_triangle_pipe.v",
            "slot and place of a triangle's result");
-    expect(w_.result_number.word(number), lane.result->number, "rtl/triangle_pipe.v, rtl/triangle_group.v",
-           "number of a triangle's result");
+    expect(w_.result_number.word(number), lane.result->number,
+           "rtl/traverser/rp_triangle_pipe.v, rtl/traverser/rp_triangle_group.v", "number of a triangle's result");
     // Its parts have rules of their own.
-    if (expect(w_.result_hit.flag(number), lane.result->hit, "rtl/triangle_pipe.v, rtl/lane_hits.v",
-               "the triangle is hit") &&
+    if (expect(w_.result_hit.flag(number), lane.result->hit,
+               "rtl/traverser/rp_triangle_pipe.v, rtl/traverser/rp_lane_hits.v", "the triangle is hit") &&
         lane.result->hit)
-      expect(w_.result_t.word(number), as_bits(lane.result->t), "rtl/triangle_pipe.v, rtl/triangle_plane.v",
-             "time of the hit");
+      expect(w_.result_t.word(number), as_bits(lane.result->t),
+             "rtl/traverser/rp_triangle_pipe.v, rtl/traverser/rp_triangle_plane.v", "time of the hit");
   }
   expect(w_.test_valid.flag(number) && w_.test_ready.flag(number), lane.test_taken,
-         "rtl/triangle_group.v, rtl/round_robin.v", "a triangle's test begins");
-  expect(w_.done_valid.flag(number) && w_.done_ready.flag(number), lane.done_taken, "rtl/ray_exit.v, rtl/traverser.v",
-         "a ray that is done is taken");
+         "rtl/traverser/rp_triangle_group.v, rtl/common/rp_round_robin.v", "a triangle's test begins");
+  expect(w_.done_valid.flag(number) && w_.done_ready.flag(number), lane.done_taken,
+         "rtl/traverser/rp_ray_exit.v, rtl/traverser/rp_traverser.v", "a ray that is done is taken");
 }
 
 // What the caches and the memory give a lane in the cycle.
@@ -186,16 +197,16 @@ void ChipInspection::advance_lines(uint32_t number) {
     expect_words(w_.leaf_given_data, 512 * number, lane.leaf.data(), 16, kCache, "triangle's line that is given");
   }
   expect(w_.stack_request_valid.flag(number) && w_.stack_request_ready.flag(number), lane.request_taken,
-         "rtl/tree_port.v, rtl/round_robin.v", "a request of a stack is taken");
-  if (expect(w_.stack_fill_valid.flag(number), lane.filled.has_value(), "rtl/tree_port.v",
+         "rtl/traverser/rp_tree_port.v, rtl/common/rp_round_robin.v", "a request of a stack is taken");
+  if (expect(w_.stack_fill_valid.flag(number), lane.filled.has_value(), "rtl/traverser/rp_tree_port.v",
              "a block of a stack comes") &&
       lane.filled) {
     const auto key_bits = static_cast<uint32_t>(model_->box_bits() + 9);
     for (uint32_t i = 0; i < LaneStacks::kBlock; ++i) {
       const uint32_t low = i * (key_bits + 32);
-      expect(w_.stack_fill_entries.bits(low, 32), (*lane.filled)[i].reference, "rtl/tree_port.v",
+      expect(w_.stack_fill_entries.bits(low, 32), (*lane.filled)[i].reference, "rtl/traverser/rp_tree_port.v",
              "reference in a block of a stack that comes");
-      expect(w_.stack_fill_entries.bits(low + 32, key_bits), (*lane.filled)[i].key, "rtl/tree_port.v",
+      expect(w_.stack_fill_entries.bits(low + 32, key_bits), (*lane.filled)[i].key, "rtl/traverser/rp_tree_port.v",
              "key in a block of a stack that comes");
     }
   }
@@ -205,7 +216,7 @@ void ChipInspection::advance_lines(uint32_t number) {
 void ChipInspection::advance_stacks(uint32_t number) {
   const LaneWires& l = lanes_[number];
   const LaneStacks::Outcome& outcome = model_->lane(number).stacks_outcome();
-  constexpr const char* kStacks = "rtl/lane_stacks.v, rtl/pass_queue.v";
+  constexpr const char* kStacks = "rtl/traverser/rp_lane_stacks.v, rtl/traverser/rp_pass_queue.v";
   expect(l.goes_on.value(), outcome.node_goes_on, kStacks, "a ray goes on with its nearest child");
   expect(l.next_valid.value(), outcome.next, kStacks, "a ray goes on from its stack");
   expect(l.done.value(), outcome.done, kStacks, "a ray is done");
@@ -241,35 +252,42 @@ void ChipInspection::check_lane_boxes(uint32_t number) {
   const TraverserLane& lane = model_->lane(number);
   const LaneWires& l = lanes_[number];
   const auto key_bits = static_cast<uint32_t>(model_->box_bits() + 9);
-  expect(l.begin_valid.value(), lane.begin_valid(), "rtl/traverser_lane.v, rtl/ram_queue.v", "a ray is to begin");
+  expect(l.begin_valid.value(), lane.begin_valid(), "rtl/traverser/rp_traverser_lane.v, rtl/common/rp_ram_queue.v",
+         "a ray is to begin");
   if (lane.begin_valid() && l.begin_valid.value() != 0)
-    expect(l.begin_slot.value(), lane.begin_slot(), "rtl/traverser_lane.v, rtl/ram_queue.v", "slot that is to begin");
-  expect(l.given_q.value(), lane.given_slot().has_value(), "rtl/traverser_lane.v", "boxes of a node are tested");
+    expect(l.begin_slot.value(), lane.begin_slot(), "rtl/traverser/rp_traverser_lane.v, rtl/common/rp_ram_queue.v",
+           "slot that is to begin");
+  expect(l.given_q.value(), lane.given_slot().has_value(), "rtl/traverser/rp_traverser_lane.v",
+         "boxes of a node are tested");
   if (lane.given_slot() && l.given_q.value() != 0) {
-    expect(l.given_slot_q.value(), *lane.given_slot(), "rtl/traverser_lane.v", "slot whose boxes are tested");
+    expect(l.given_slot_q.value(), *lane.given_slot(), "rtl/traverser/rp_traverser_lane.v",
+           "slot whose boxes are tested");
     const uint32_t limit = l.best_key_valid.value() != 0 ? l.best_key.value() : l.box_limit.value();
-    expect(limit, lane.hits().limit_key(*lane.given_slot()), "rtl/lane_hits.v, rtl/traverser_lane.v",
-           "limit of the boxes' test");
-    expect(l.test_limit.value(), limit, "rtl/traverser_lane.v, rtl/lane_hits.v", "limit that the boxes are given");
+    expect(limit, lane.hits().limit_key(*lane.given_slot()),
+           "rtl/traverser/rp_lane_hits.v, rtl/traverser/rp_traverser_lane.v", "limit of the boxes' test");
+    expect(l.test_limit.value(), limit, "rtl/traverser/rp_traverser_lane.v, rtl/traverser/rp_lane_hits.v",
+           "limit that the boxes are given");
   }
-  if (expect(l.boxes_valid.value(), lane.boxes().valid(), "rtl/box_pipe.v, rtl/traverser_lane.v",
+  const BoxResult* const boxes = lane.boxes();
+  if (expect(l.boxes_valid.value(), boxes != nullptr, "rtl/traverser/rp_box_pipe.v, rtl/traverser/rp_traverser_lane.v",
              "boxes have their result") &&
-      lane.boxes().valid()) {
-    const BoxResult& result = lane.boxes().result();
-    constexpr const char* kAxis = "rtl/box_axis.v, rtl/box_pipe.v";
+      boxes != nullptr) {
+    const BoxResult& result = *boxes;
+    constexpr const char* kAxis = "rtl/traverser/rp_box_axis.v, rtl/traverser/rp_box_pipe.v";
     expect(l.met.value(), result.met, kAxis, "boxes that are met");
     for (uint32_t i = 0; i < kBoxes; ++i)
       if ((result.met >> i & 1) != 0)
         expect(l.entry.bits(i * key_bits, key_bits), result.entry[i], kAxis, "key of a box's entry");
   }
   const LaneStacks::NodeResult* const node = lane.node();
-  constexpr const char* kOrder = "rtl/child_order.v, rtl/traverser_lane.v";
-  if (expect(l.node_valid_q.value(), node != nullptr, "rtl/traverser_lane.v", "a node has been tested") &&
+  constexpr const char* kOrder = "rtl/traverser/rp_child_order.v, rtl/traverser/rp_traverser_lane.v";
+  if (expect(l.node_valid_q.value(), node != nullptr, "rtl/traverser/rp_traverser_lane.v", "a node has been tested") &&
       node != nullptr) {
     expect(l.children.value(), node->children, kOrder, "children that are met");
-    expect(l.node_slot_q.value(), node->slot, "rtl/traverser_lane.v, rtl/ram_delay.v", "slot of the node");
+    expect(l.node_slot_q.value(), node->slot, "rtl/traverser/rp_traverser_lane.v, rtl/common/rp_ram_delay.v",
+           "slot of the node");
     // Their references have waited for the boxes.
-    constexpr const char* kReferences = "rtl/child_order.v, rtl/ram_delay.v";
+    constexpr const char* kReferences = "rtl/traverser/rp_child_order.v, rtl/common/rp_ram_delay.v";
     if (node->children != 0) expect(l.nearest.value(), node->nearest, kReferences, "nearest child");
     for (uint32_t i = 0; i + 1 < node->children; ++i) {
       const uint32_t low = i * (key_bits + 32);
@@ -277,10 +295,11 @@ void ChipInspection::check_lane_boxes(uint32_t number) {
       expect(l.others.bits(low + 32, key_bits), node->others[i].key, kOrder, "key of another child");
     }
     if (node->children == 0)
-      expect(l.node_limit_q.value(), node->limit, "rtl/traverser_lane.v, rtl/lane_hits.v", "limit of the node");
+      expect(l.node_limit_q.value(), node->limit, "rtl/traverser/rp_traverser_lane.v, rtl/traverser/rp_lane_hits.v",
+             "limit of the node");
   }
   const std::optional<LaneStacks::LeafResult> leaf = lane.leaf_result();
-  constexpr const char* kHits = "rtl/lane_hits.v, rtl/traverser_lane.v";
+  constexpr const char* kHits = "rtl/traverser/rp_lane_hits.v, rtl/traverser/rp_traverser_lane.v";
   if (expect(l.leaf_valid.value(), leaf.has_value(), kHits, "a leaf has its results") && leaf) {
     expect(l.leaf_over.value(), leaf->over, kHits, "the leaf's ray is done");
     expect(l.leaf_limit.value(), leaf->limit, kHits, "limit after the leaf");
@@ -301,21 +320,23 @@ void ChipInspection::check_wants(const LineWants& wants, const Wire& valid, cons
 void ChipInspection::check_lane_ports(uint32_t number) {
   const TraverserLane& lane = model_->lane(number);
   const uint32_t slot_bits = model_->slot_bits();
-  expect(w_.slot_valid.flag(number), lane.slot_valid(), "rtl/free_list.v, rtl/traverser_lane.v", "a slot is free");
+  expect(w_.slot_valid.flag(number), lane.slot_valid(), "rtl/common/rp_free_list.v, rtl/traverser/rp_traverser_lane.v",
+         "a slot is free");
   if (lane.slot_valid() && w_.slot_valid.flag(number))
-    expect(w_.slot_of.bits(number * slot_bits, slot_bits), lane.slot(), "rtl/free_list.v, rtl/traverser_lane.v",
-           "slot that is free");
-  expect(lanes_[number].fill_waits.value(), lane.fill_waits(), "rtl/lane_stacks.v", "a block of a stack waits");
+    expect(w_.slot_of.bits(number * slot_bits, slot_bits), lane.slot(),
+           "rtl/common/rp_free_list.v, rtl/traverser/rp_traverser_lane.v", "slot that is free");
+  expect(lanes_[number].fill_waits.value(), lane.fill_waits(), "rtl/traverser/rp_lane_stacks.v",
+         "a block of a stack waits");
   check_wants(lane.wants_node() ? lane.node_wants() : LineWants{}, w_.node_want, w_.node_want_line, w_.node_want_slot,
-              number, "rtl/traverser_lane.v, rtl/line_offers.v", "node that is wanted");
+              number, "rtl/traverser/rp_traverser_lane.v, rtl/traverser/rp_line_offers.v", "node that is wanted");
   check_wants(lane.leaf_wants(), w_.leaf_want, w_.leaf_want_line, w_.leaf_want_slot, number,
-              "rtl/leaf_reader.v, rtl/line_offers.v", "triangle's line that is wanted");
-  expect(w_.leaf_room.flag(number), lane.leaf_room(), "rtl/leaf_reader.v", "room for a triangle's line");
+              "rtl/traverser/rp_leaf_reader.v, rtl/traverser/rp_line_offers.v", "triangle's line that is wanted");
+  expect(w_.leaf_room.flag(number), lane.leaf_room(), "rtl/traverser/rp_leaf_reader.v", "room for a triangle's line");
   const TreeFault& fault = lane.fault();
-  constexpr const char* kLane = "rtl/traverser_lane.v";
+  constexpr const char* kLane = "rtl/traverser/rp_traverser_lane.v";
   if (expect(w_.node_fault.flag(number), fault.valid, kLane, "a node that no tree has") && fault.valid)
     expect(w_.node_fault_line.bits(number * kLineBits, kLineBits), fault.line, kLane, "number of that node");
-  constexpr const char* kStacks = "rtl/lane_stacks.v, rtl/pass_queue.v";
+  constexpr const char* kStacks = "rtl/traverser/rp_lane_stacks.v, rtl/traverser/rp_pass_queue.v";
   if (expect(w_.stack_request_valid.flag(number), lane.request_valid(), kStacks, "request of a stack") &&
       lane.request_valid()) {
     const LaneStacks::Request& request = lane.request();
@@ -330,10 +351,10 @@ void ChipInspection::check_lane_ports(uint32_t number) {
     }
   }
   check_test(number);
-  if (expect(w_.done_valid.flag(number), lane.done_valid(), "rtl/traverser_lane.v, rtl/lane_stacks.v",
-             "a ray is done") &&
+  if (expect(w_.done_valid.flag(number), lane.done_valid(),
+             "rtl/traverser/rp_traverser_lane.v, rtl/traverser/rp_lane_stacks.v", "a ray is done") &&
       lane.done_valid()) {
-    constexpr const char* kHits = "rtl/lane_hits.v, rtl/traverser_lane.v";
+    constexpr const char* kHits = "rtl/traverser/rp_lane_hits.v, rtl/traverser/rp_traverser_lane.v";
     expect(w_.done_slot.bits(number * slot_bits, slot_bits), lane.done_slot(), kLane, "slot of the ray that is done");
     const LaneHits::Hit& hit = lane.hits().best(lane.done_slot());
     if (expect(w_.done_hit.flag(number), hit.hit, kHits, "the ray has hit something") && hit.hit) {
@@ -345,8 +366,8 @@ void ChipInspection::check_lane_ports(uint32_t number) {
 
 void ChipInspection::check_test(uint32_t number) {
   const TraverserLane& lane = model_->lane(number);
-  constexpr const char* kReader = "rtl/leaf_reader.v, rtl/pass_queue.v";
-  constexpr const char* kRays = "rtl/traverser_lane.v, rtl/leaf_reader.v";
+  constexpr const char* kReader = "rtl/traverser/rp_leaf_reader.v, rtl/traverser/rp_pass_queue.v";
+  constexpr const char* kRays = "rtl/traverser/rp_traverser_lane.v, rtl/traverser/rp_leaf_reader.v";
   if (!expect(w_.test_valid.flag(number), lane.test_valid(), kReader, "a triangle can be tested") || !lane.test_valid())
     return;
   const LeafReader::Test test = *lane.test();
@@ -381,12 +402,14 @@ void ChipInspection::check_caches() {
     expect(w_.triangle_request_id.value(), leaves.request_id(), kBanks, "register of the triangle cache's request");
   }
   const std::optional<TreePort::Line>& line = model_->port().line();
-  constexpr const char* kPort = "rtl/tree_port.v";
+  constexpr const char* kPort = "rtl/traverser/rp_tree_port.v";
   const bool to_nodes = line && line->source == TreePort::Source::Nodes;
   const bool to_leaves = line && line->source == TreePort::Source::Triangles;
   // One that has gone has been taken.
   const auto expect_line = [&](const Wire& wire, bool comes, const char* what) {
-    expect(wire.value(), comes, comes ? "rtl/tree_banks.v, rtl/tree_port.v" : "rtl/tree_port.v, rtl/tree_banks.v",
+    expect(wire.value(), comes,
+           comes ? "rtl/traverser/rp_tree_banks.v, rtl/traverser/rp_tree_port.v"
+                 : "rtl/traverser/rp_tree_port.v, rtl/traverser/rp_tree_banks.v",
            what);
   };
   expect_line(w_.node_fill_valid, to_nodes, "a line comes for the node cache");
@@ -399,8 +422,9 @@ void ChipInspection::check_caches() {
   check_exit();
   lane_ = model_->lanes();
   check_wants(model_->exit().wants(), w_.leaf_want, w_.leaf_want_line, w_.leaf_want_slot, lane_,
-              "rtl/ray_exit.v, rtl/leaf_reader.v", "line of a triangle that was hit, which is wanted");
-  expect(w_.leaf_room.flag(lane_), model_->exit().room(), "rtl/ray_exit.v, rtl/leaf_reader.v",
+              "rtl/traverser/rp_ray_exit.v, rtl/traverser/rp_leaf_reader.v",
+              "line of a triangle that was hit, which is wanted");
+  expect(w_.leaf_room.flag(lane_), model_->exit().room(), "rtl/traverser/rp_ray_exit.v, rtl/traverser/rp_leaf_reader.v",
          "room for the line of a triangle that was hit");
 }
 
@@ -408,9 +432,9 @@ void ChipInspection::check_caches() {
 void ChipInspection::check_exit() {
   const RayExit& exit = model_->exit();
   const TraverserPorts& ports = rtl_->outputs().traverser;
-  constexpr const char* kExit = "rtl/ray_exit.v, rtl/ray_finish.v";
+  constexpr const char* kExit = "rtl/traverser/rp_ray_exit.v, rtl/traverser/rp_ray_finish.v";
   const TreePort& port = model_->port();
-  constexpr const char* kPort = "rtl/tree_port.v, rtl/traverser.v";
+  constexpr const char* kPort = "rtl/traverser/rp_tree_port.v, rtl/traverser/rp_traverser.v";
   if (expect(ports.tree_request_valid, port.request_valid(), kPort, "request to the memory") && port.request_valid()) {
     expect(ports.tree_request.address, port.request().address, kPort, "address of a request");
     expect(ports.tree_request.write, port.request().write, kPort, "a request writes");
@@ -424,11 +448,11 @@ void ChipInspection::check_exit() {
     const uint32_t number = exit.put_word(i);
     const bool normal = number >= word::kNormal && number < word::kNormal + 3;
     const bool shares = number >= word::kBarycentric && number < word::kBarycentric + 2;
-    const char* files = normal                      ? "rtl/ray_finish.v, rtl/triangle_normal.v"
-                        : shares                    ? "rtl/triangle_shares.v, rtl/ray_finish.v"
-                        : number == word::kDistance ? "rtl/ray_finish.v, rtl/ray_delay.v"
-                        : number == word::kMaterial ? "rtl/ray_exit.v, rtl/leaf_reader.v"
-                                                    : "rtl/ray_exit.v, rtl/ray_finish.v";
+    const char* files = normal   ? "rtl/traverser/rp_ray_finish.v, rtl/traverser/rp_triangle_normal.v"
+                        : shares ? "rtl/traverser/rp_triangle_shares.v, rtl/traverser/rp_ray_finish.v"
+                        : number == word::kDistance ? "rtl/traverser/rp_ray_finish.v, rtl/traverser/rp_ray_delay.v"
+                        : number == word::kMaterial ? "rtl/traverser/rp_ray_exit.v, rtl/traverser/rp_leaf_reader.v"
+                                                    : "rtl/traverser/rp_ray_exit.v, rtl/traverser/rp_ray_finish.v";
     if (number != kNoWord) expect(ports.put_data[i], expected[i], files, "word of an intersection");
   }
 }

@@ -8,7 +8,7 @@
 namespace raypool::lockstep {
 
 void UnitInspection::check_memory_alu() {
-  constexpr const char* kAlu = "rtl/mem_alu.v";
+  constexpr const char* kAlu = "rtl/compute/rp_mem_alu.v";
   const MemAlu& mem = model_->mem();
   // What is idle on both sides needs no closer look.
   if (!mem.active() && (mem_.pass_q.value() | mem_.access_valid_q.value() | sequencer_.next_valid_q.value()) == 0) {
@@ -26,7 +26,8 @@ void UnitInspection::check_memory_alu() {
   expect(mem_.done_q.value(), r.done, kAlu, "memory ALU, done");
   expect(mem_.park_q.value(), r.park, kAlu, "memory ALU, parks a warp");
   if (r.done || r.park) expect(mem_.end_warp_q.value(), r.end_warp, kAlu, "memory ALU, warp at the end of a pass");
-  expect(mem_.queue_count.value(), mem.requests().count(), "rtl/request_queue.v, rtl/memory_arbiter.v, rtl/mem_alu.v",
+  expect(mem_.queue_count.value(), mem.requests().count(),
+         "rtl/common/rp_request_queue.v, rtl/compute/rp_memory_arbiter.v, rtl/compute/rp_mem_alu.v",
          "memory ALU, requests that wait");
   if (!mem.request_valid()) return;
   const MemoryRequest& request = mem.request();
@@ -40,12 +41,14 @@ void UnitInspection::check_memory_alu() {
   } else {
     same = same && w_.data_request_id.value() == request.id;
   }
-  if (!same) find("rtl/mem_alu.v, rtl/request_queue.v, rtl/data_cache.v", "memory ALU: the request is another one");
+  if (!same)
+    find("rtl/compute/rp_mem_alu.v, rtl/common/rp_request_queue.v, rtl/compute/rp_data_cache.v",
+         "memory ALU: the request is another one");
 }
 
 // The access stage: its registers, and what the cache and its miss-status holding registers say to it.
 void UnitInspection::check_access() {
-  constexpr const char* kAlu = "rtl/mem_alu.v";
+  constexpr const char* kAlu = "rtl/compute/rp_mem_alu.v";
   const MemAlu::Access& r = model_->mem().registers().access;
   const DataCache::Outcome outcome = model_->mem().access();
   expect(mem_.access_valid_q.value(), r.valid, kAlu, "memory ALU, an access");
@@ -55,18 +58,20 @@ void UnitInspection::check_access() {
   expect(cache_.quad_q.value(), model_->mem().cache().registers().quad, kAlu, "memory ALU, quadword of the access");
   // A line that is still there was perhaps never to be forgotten; one that is missing went elsewhere.
   const bool stays = argument_written_ && cache_.found.value() != 0;
-  const char* cache = stays ? "rtl/data_cache.v, rtl/compute_unit.v" : "rtl/data_cache.v, rtl/miss_status.v";
+  const char* cache = stays ? "rtl/compute/rp_data_cache.v, rtl/compute/rp_compute_unit.v"
+                            : "rtl/compute/rp_data_cache.v, rtl/compute/rp_miss_status.v";
   expect(cache_.found.value(), outcome.found, cache, "data cache, the line is in it");
   if (!outcome.hit)
-    expect(cache_.match.value(), outcome.match, "rtl/miss_status.v, rtl/data_cache.v", "the line is being fetched");
+    expect(cache_.match.value(), outcome.match, "rtl/compute/rp_miss_status.v, rtl/compute/rp_data_cache.v",
+           "the line is being fetched");
   if (!findings_.empty()) return;  // what follows is made from these
-  const char* status = "rtl/data_cache.v, rtl/miss_status.v";
+  const char* status = "rtl/compute/rp_data_cache.v, rtl/compute/rp_miss_status.v";
   expect(mem_.hit.value(), outcome.hit, cache, "data cache, hit");
   expect(mem_.accepts.value(), outcome.accept, status, "data cache, accepts the store");
   expect(mem_.allocates.value(), outcome.allocate, status, "data cache, takes a miss-status holding register");
   expect(mem_.refuses.value(), outcome.refuse, status, "data cache, refuses");
   if (outcome.allocate) {
-    expect(cache_.push_id_o.value(), outcome.push_id, "rtl/miss_status.v, rtl/data_cache.v",
+    expect(cache_.push_id_o.value(), outcome.push_id, "rtl/compute/rp_miss_status.v, rtl/compute/rp_data_cache.v",
            "number of the free register");
     expect(cache_.victim.value(), outcome.victim, status, "way for the line");
   }
@@ -81,16 +86,17 @@ void UnitInspection::check_loaded(uint32_t warp) {
     const uint32_t lane = lowest(lanes);
     const uint32_t word = (issue.operand_a[lane] + issue.instruction->immediate) >> 2 & 3;
     if (mem_.access_word_q.bits(lane * 2, 2) != word)
-      return find("rtl/mem_alu.v",
+      return find("rtl/compute/rp_mem_alu.v",
                   fmt::format("memory ALU: lane {} takes another word of the quadword than its address says", lane));
     if (mem_.quad_data.word(word) != issue.data[lane])
-      return find("rtl/data_cache.v, rtl/mem_alu.v", fmt::format("data cache: {:08x} for lane {}, memory has {:08x}",
-                                                                 mem_.quad_data.word(word), lane, issue.data[lane]));
+      return find("rtl/compute/rp_data_cache.v, rtl/compute/rp_mem_alu.v",
+                  fmt::format("data cache: {:08x} for lane {}, memory has {:08x}", mem_.quad_data.word(word), lane,
+                              issue.data[lane]));
   }
 }
 
 void UnitInspection::check_miss_status() {
-  constexpr const char* kFiles = "rtl/miss_status.v, rtl/data_cache.v";
+  constexpr const char* kFiles = "rtl/compute/rp_miss_status.v, rtl/compute/rp_data_cache.v";
   const MissStatus::Registers& r = model_->mem().cache().miss_status().registers();
   expect(miss_.busy_q.value(), r.busy, kFiles, "miss-status holding registers that are busy");
   expect(miss_.filled_q.value(), r.filled, kFiles, "miss-status holding registers whose line has come");
@@ -103,7 +109,7 @@ void UnitInspection::check_miss_status() {
 }
 
 void UnitInspection::check_sequencer() {
-  constexpr const char* kFiles = "rtl/memory_sequencer.v, rtl/mem_alu.v";
+  constexpr const char* kFiles = "rtl/compute/rp_memory_sequencer.v, rtl/compute/rp_mem_alu.v";
   const MemorySequencer::Registers& r = model_->mem().sequencer().registers();
   expect(sequencer_.queued_q.value(), r.queued, kFiles, "memory sequencer, new tasks");
   expect(sequencer_.parked_q.value(), r.parked, kFiles, "memory sequencer, parked warps");

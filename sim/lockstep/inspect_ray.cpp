@@ -8,9 +8,10 @@
 namespace raypool::lockstep {
 namespace {
 
-constexpr const char* kAlu = "rtl/ray_alu.v";
-constexpr const char* kImport = "rtl/ray_import.v, rtl/ray_alu.v, rtl/import_arbiter.v";
-constexpr const char* kExport = "rtl/ray_export.v, rtl/ray_alu.v, rtl/port_arbiter.v";
+constexpr const char* kAlu = "rtl/compute/rp_ray_alu.v";
+constexpr const char* kImport =
+    "rtl/compute/rp_ray_import.v, rtl/compute/rp_ray_alu.v, rtl/compute/rp_import_arbiter.v";
+constexpr const char* kExport = "rtl/compute/rp_ray_export.v, rtl/compute/rp_ray_alu.v, rtl/compute/rp_port_arbiter.v";
 
 }  // namespace
 
@@ -80,7 +81,9 @@ void UnitInspection::check_ray_ports() {
     same = w_.frame_pixel_o.value() == out.frame.pixel;
     for (uint32_t i = 0; i < 3; ++i) same = same && w_.frame_color_o.word(i) == out.frame.rgb[i];
   }
-  if (!same) find("rtl/ray_export.v, rtl/ray_memory.v, rtl/ray_alu.v", "export: other words than the slice holds");
+  if (!same)
+    find("rtl/compute/rp_ray_export.v, rtl/compute/rp_ray_memory.v, rtl/compute/rp_ray_alu.v",
+         "export: other words than the slice holds");
 }
 
 }  // namespace raypool::lockstep

@@ -7,8 +7,9 @@
 #include "bits.hpp"
 #include "isa/encoding.hpp"
 #include "lockstep/inspection.hpp"
+#include "lockstep/rtl_files.hpp"
 #include "lockstep/text.hpp"
-#include "machine/brh_alu.hpp"
+#include "machine/compute/brh_alu.hpp"
 
 namespace raypool::lockstep {
 namespace {
@@ -148,32 +149,33 @@ void UnitInspection::check() {
 
 void UnitInspection::check_launch() {
   const bool running = model_->outputs().busy != 0;
-  expect(w_.waiting_launch.value(), model_->launcher().waiting(), "rtl/launcher.v", "a launch waits");
-  expect(w_.busy_o.value(), running, "rtl/launcher.v", "a kernel runs");
-  expect(w_.active.value(), model_->active_warps(), "rtl/instruction_buffer.v, rtl/launcher.v", "warps that run");
-  expect(w_.kernel_done_o.value(), model_->outputs().kernel_done, "rtl/launcher.v", "the kernel's end");
+  expect(w_.waiting_launch.value(), model_->launcher().waiting(), "rtl/compute/rp_launcher.v", "a launch waits");
+  expect(w_.busy_o.value(), running, "rtl/compute/rp_launcher.v", "a kernel runs");
+  expect(w_.active.value(), model_->active_warps(), "rtl/compute/rp_instruction_buffer.v, rtl/compute/rp_launcher.v",
+         "warps that run");
+  expect(w_.kernel_done_o.value(), model_->outputs().kernel_done, "rtl/compute/rp_launcher.v", "the kernel's end");
   if (running) {
     const LaunchCommand& launched = model_->launcher().newest();
     const uint32_t place = model_->launcher().registers().newest;
     if (w_.threads.bits(11 * place, 11) != launched.threads || w_.block.bits(32 * place, 32) != launched.block ||
         w_.blocks.bits(32 * place, 32) != launched.blocks)
-      find("rtl/launcher.v", "threads, block or blocks of the launch that runs are wrong");
+      find("rtl/compute/rp_launcher.v", "threads, block or blocks of the launch that runs are wrong");
   }
   const uint32_t warps = model_->launcher().starts(model_->active_warps());
-  expect(w_.start.value(), warps, "rtl/launcher.v", "warps that are started");
+  expect(w_.start.value(), warps, "rtl/compute/rp_launcher.v", "warps that are started");
   if (warps == 0) return;
   const LaunchCommand& started = model_->launcher().start_launch();
-  expect(w_.start_pc.value(), started.pc, "rtl/launcher.v", "PC of the start");
+  expect(w_.start_pc.value(), started.pc, "rtl/compute/rp_launcher.v", "PC of the start");
   for (uint32_t thread = 0; thread < warps_ * lanes_; ++thread)
-    expect(w_.start_lanes.flag(thread), thread < started.threads, "rtl/launcher.v", "lane that is started");
+    expect(w_.start_lanes.flag(thread), thread < started.threads, "rtl/compute/rp_launcher.v", "lane that is started");
 }
 
 // The guard looks at what the ALU has taken and made; which of an instruction's operands and lanes that is, and when,
 // the ALU says.
 std::string UnitInspection::subnormal_files(uint32_t warp) const {
   const DecodedInstruction* instruction = warp < warps_ ? model_->issue(warp).instruction : nullptr;
-  if (instruction == nullptr || !instruction->legal()) return "rtl/subnormal_guard.v, rtl/warp.v";
-  return fmt::format("rtl/{}_alu.v, rtl/subnormal_guard.v", alu_info(instruction->alu()).name);
+  if (instruction == nullptr || !instruction->legal()) return "rtl/compute/rp_subnormal_guard.v, rtl/compute/rp_warp.v";
+  return rtl_files({std::string(alu_info(instruction->alu()).name) + "_alu", "subnormal_guard"});
 }
 
 void UnitInspection::check_faults() {
@@ -193,14 +195,15 @@ void UnitInspection::check_faults() {
   const bool same_raiser = rtl.code != FaultCode::None && expected.code != FaultCode::None &&
                            rtl.warp == expected.warp && of_rtl_alu == of_alu;
   if (raised == (expected.code != FaultCode::None) && !same_raiser)
-    return find("rtl/compute_unit.v", "the fault that was raised is not the one shown");
+    return find("rtl/compute/rp_compute_unit.v", "the fault that was raised is not the one shown");
   const bool other_pc = same_raiser && rtl.code == expected.code;
-  const char* files = other_pc                                ? "rtl/warp.v, rtl/compute_unit.v, rtl/pc_stack.v"
-                      : code == FaultCode::IllegalInstruction ? "rtl/instruction_buffer.v, rtl/isa_functions.vh"
-                      : code == FaultCode::PcOutsideProgram   ? "rtl/instruction_buffer.v, rtl/pc_stack.v"
-                      : code <= FaultCode::StackUnderflow     ? "rtl/pc_stack.v, rtl/warp.v"
-                      : code == FaultCode::RayWordOutside     ? "rtl/ray_alu.v"
-                                                              : "rtl/mem_alu.v";
+  const char* files =
+      other_pc ? "rtl/compute/rp_warp.v, rtl/compute/rp_compute_unit.v, rtl/compute/rp_pc_stack.v"
+      : code == FaultCode::IllegalInstruction ? "rtl/compute/rp_instruction_buffer.v, rtl/include/rp_isa_functions.vh"
+      : code == FaultCode::PcOutsideProgram   ? "rtl/compute/rp_instruction_buffer.v, rtl/compute/rp_pc_stack.v"
+      : code <= FaultCode::StackUnderflow     ? "rtl/compute/rp_pc_stack.v, rtl/compute/rp_warp.v"
+      : code == FaultCode::RayWordOutside     ? "rtl/compute/rp_ray_alu.v"
+                                              : "rtl/compute/rp_mem_alu.v";
   const char* text = expected.code == FaultCode::None ? "a fault is raised that is none"
                      : same_raiser                    ? "another fault is raised, or at another PC"
                                                       : "a fault is not raised";
@@ -252,7 +255,7 @@ void UnitInspection::check_memory_port() {
     }
   }
   if (!same)
-    find("rtl/memory_arbiter.v, rtl/unit_memory_arbiter.v",
+    find("rtl/compute/rp_memory_arbiter.v, rtl/compute/rp_unit_memory_arbiter.v",
          "the memory port shows another request than was handed to it");
 }
 
@@ -284,8 +287,8 @@ void UnitInspection::advance_fetch(const UnitTransfers& given) {
 
 void UnitInspection::check_instruction_cache() {
   const char* files = argument_written_ && w_.instruction_hit.value() != 0
-                          ? "rtl/instruction_cache.v, rtl/compute_unit.v"
-                          : "rtl/instruction_cache.v";
+                          ? "rtl/compute/rp_instruction_cache.v, rtl/compute/rp_compute_unit.v"
+                          : "rtl/compute/rp_instruction_cache.v";
   expect(w_.instruction_hit.value(), lookup_ && lookup_hit_, files, "instruction cache, hit");
   expect(w_.instruction_miss.value(), lookup_ && !lookup_hit_, files, "instruction cache, miss");
   if (lookup_) expect(w_.result_warp.value(), lookup_warp_, files, "instruction cache, warp of the result");
@@ -311,8 +314,9 @@ void UnitInspection::check_fetch() {
     requests_ |= 1u << warp;
     // One that does not want yet has perhaps not gone on to it.
     if ((w_.fetch_request.value() >> warp & 1) != 0 && w_.fetch_pc.bits(warp * 16, 16) != next.fetch_pc) {
-      find("rtl/pc_stack.v, rtl/warp.v", fmt::format("warp {} fetches PC {}, after its last instruction comes {}", warp,
-                                                     w_.fetch_pc.bits(warp * 16, 16), next.fetch_pc));
+      find("rtl/compute/rp_pc_stack.v, rtl/compute/rp_warp.v",
+           fmt::format("warp {} fetches PC {}, after its last instruction comes {}", warp,
+                       w_.fetch_pc.bits(warp * 16, 16), next.fetch_pc));
     }
   }
   const uint32_t rtl = w_.fetch_request.value();
@@ -321,9 +325,10 @@ void UnitInspection::check_fetch() {
     const bool early = (rtl >> warp & 1) != 0;
     const bool stack = early && w_.fetch_pc.bits(warp * 16, 16) != model_->timing(warp).fetch_pc;
     // That a line has come is told to those who wait for it.
-    find(stack                          ? "rtl/pc_stack.v, rtl/instruction_buffer.v, rtl/warp.v"
-         : (refilled_ >> warp & 1) != 0 ? "rtl/instruction_buffer.v, rtl/compute_unit.v"
-                                        : "rtl/instruction_buffer.v, rtl/pc_stack.v, rtl/warp.v",
+    find(stack ? "rtl/compute/rp_pc_stack.v, rtl/compute/rp_instruction_buffer.v, rtl/compute/rp_warp.v"
+         : (refilled_ >> warp & 1) != 0
+             ? "rtl/compute/rp_instruction_buffer.v, rtl/compute/rp_compute_unit.v"
+             : "rtl/compute/rp_instruction_buffer.v, rtl/compute/rp_pc_stack.v, rtl/compute/rp_warp.v",
          fmt::format("warp {} {} the instruction cache", warp, early ? "wants too early" : "does not want in time"));
   }
 }
@@ -338,11 +343,13 @@ void UnitInspection::check_fetch_arbiter() {
     grant = 1u << choice;
     fetch_turn_.advance(choice);
   }
-  expect(w_.fetch_grant.value(), grant, "rtl/fetch_arbiter.v, rtl/round_robin.v", "fetch arbiter, grant");
-  expect(w_.fetch_valid.value(), requests != 0, "rtl/fetch_arbiter.v", "fetch arbiter, valid");
+  expect(w_.fetch_grant.value(), grant, "rtl/compute/rp_fetch_arbiter.v, rtl/common/rp_round_robin.v",
+         "fetch arbiter, grant");
+  expect(w_.fetch_valid.value(), requests != 0, "rtl/compute/rp_fetch_arbiter.v", "fetch arbiter, valid");
   if (grant == 0) return;
-  expect(w_.fetch_warp.value(), lowest(grant), "rtl/fetch_arbiter.v", "fetch arbiter, warp");
-  expect(w_.lookup_pc.value(), w_.fetch_pc.bits(lowest(grant) * 16, 16), "rtl/compute_unit.v", "PC that is looked up");
+  expect(w_.fetch_warp.value(), lowest(grant), "rtl/compute/rp_fetch_arbiter.v", "fetch arbiter, warp");
+  expect(w_.lookup_pc.value(), w_.fetch_pc.bits(lowest(grant) * 16, 16), "rtl/compute/rp_compute_unit.v",
+         "PC that is looked up");
 }
 
 // ---- From the instruction buffer to dispatch
@@ -353,7 +360,8 @@ void UnitInspection::check_wants() {
     wants_ |= 1u << warp;
     check_operands(warp);
   }
-  expect(w_.want.value(), wants_, "rtl/instruction_buffer.v, rtl/warp.v", "warps that want an ALU");
+  expect(w_.want.value(), wants_, "rtl/compute/rp_instruction_buffer.v, rtl/compute/rp_warp.v",
+         "warps that want an ALU");
 }
 
 void UnitInspection::check_operands(uint32_t warp) {
@@ -362,12 +370,12 @@ void UnitInspection::check_operands(uint32_t warp) {
   const uint32_t low = w_.retire_instruction_o.word(warp * 2), high = w_.retire_instruction_o.word(warp * 2 + 1);
   const uint32_t pc = w_.retire_pc_o.bits(warp * 16, 16);
   if (pc != issue.pc || low != static_cast<uint32_t>(encoding) || high != encoding >> 32)
-    return find("rtl/instruction_buffer.v, rtl/warp.v",
+    return find("rtl/compute/rp_instruction_buffer.v, rtl/compute/rp_warp.v",
                 fmt::format("warp {}: not the instruction, or not the PC, that was fetched", warp));
   const auto uses = [&](TaskOperand operand) { return looks_at(*issue.instruction->info, operand); };
   const auto lanes_of = [&](const Wire& wire) { return wire.bits(warp * lanes_, lanes_); };
   const uint32_t all = lanes_ == 32 ? ~0u : (1u << lanes_) - 1;
-  const char* predicates = "rtl/predicate_file.v, rtl/warp.v";
+  const char* predicates = "rtl/compute/rp_predicate_file.v, rtl/compute/rp_warp.v";
   expect(lanes_of(w_.retire_mask_o), issue.mask, predicates, "thread mask that was read");
   if (uses(TaskOperand::PredicateX))
     expect(lanes_of(w_.predicate_x), issue.predicate_x & all, predicates, "predicate px that was read");
@@ -383,7 +391,8 @@ void UnitInspection::check_operands(uint32_t warp) {
     // Of a triple the instruction buffer says which element is read.
     const bool triple = is_triple(*unpack(encoding).info);
     if (!same)
-      return find(triple ? "rtl/warp.v, rtl/instruction_buffer.v" : "rtl/warp.v, rtl/ram_2r1w.v",
+      return find(triple ? "rtl/compute/rp_warp.v, rtl/compute/rp_instruction_buffer.v"
+                         : "rtl/compute/rp_warp.v, rtl/common/rp_ram_2r1w.v",
                   fmt::format("warp {}, lane {}: a register was read wrong", warp, lane));
   }
 }
@@ -393,7 +402,8 @@ void UnitInspection::check_operands(uint32_t warp) {
 void UnitInspection::check_tasks() {
   for (uint32_t i = 0; i < instances_.size(); ++i) {
     const bool expected = (tasks_ >> i & 1) != 0;
-    expect(task_[i].task_valid_o.value(), expected, "rtl/task_register.v, rtl/dispatcher.v", "an instance gets a task");
+    expect(task_[i].task_valid_o.value(), expected, "rtl/compute/rp_task_register.v, rtl/compute/rp_dispatcher.v",
+           "an instance gets a task");
     if (expected && task_[i].task_valid_o.value() != 0) check_task(i, instances_[i].task, *instances_[i].issue);
   }
 }
@@ -428,9 +438,9 @@ void UnitInspection::check_task(uint32_t instance, uint32_t warp, const CycleUni
   // Of a triple the warp works out the element.
   const bool triple = is_triple(*unpack(instruction.encoding).info);
   const bool other_warp = task.task_warp_o.value() != warp;
-  find(other_warp ? "rtl/dispatcher.v, rtl/task_register.v"
-       : triple   ? "rtl/task_register.v, rtl/warp.v"
-                  : "rtl/task_register.v",
+  find(other_warp ? "rtl/compute/rp_dispatcher.v, rtl/compute/rp_task_register.v"
+       : triple   ? "rtl/compute/rp_task_register.v, rtl/compute/rp_warp.v"
+                  : "rtl/compute/rp_task_register.v",
        fmt::format("instance {}: the task is not that of warp {}: {}, the {} differs", instance, warp,
                    instruction.info->mnemonic, differs));
 }
@@ -443,7 +453,7 @@ void UnitInspection::check_ready() {
   const uint32_t wrong = (ready ^ w_.ready.value()) & piped_;
   if (wrong != 0) {
     const std::string files =
-        fmt::format("rtl/alu_pipeline.v, rtl/{}_alu.v", kAluNames[instances_[lowest(wrong)].type]);
+        rtl_files({"alu_pipeline", std::string(kAluNames[instances_[lowest(wrong)].type]) + "_alu"});
     find(files.c_str(), "the ALU takes its next task too early or too late");
   }
 }
@@ -468,8 +478,9 @@ void UnitInspection::check_dispatch() {
       break;
     }
   }
-  expect(w_.grant.value(), granted, "rtl/dispatcher.v", "dispatcher, warps that are granted");
-  expect(w_.instance_grant.value(), tasks_, "rtl/dispatcher.v", "dispatcher, instances that are given a task");
+  expect(w_.grant.value(), granted, "rtl/compute/rp_dispatcher.v", "dispatcher, warps that are granted");
+  expect(w_.instance_grant.value(), tasks_, "rtl/compute/rp_dispatcher.v",
+         "dispatcher, instances that are given a task");
 }
 
 // ---- ALUs
@@ -495,7 +506,7 @@ void UnitInspection::check_done() {
     const uint32_t warp = warp_field(w_.done_warp, i);
     const bool in_time = ((done ^ expected) >> i & 1) == 0 && instance.under_way[now_ % kRing] == warp;
     if (instance.piped && !in_time) {
-      const std::string files = fmt::format("rtl/alu_pipeline.v, rtl/{}_alu.v", kAluNames[instance.type]);
+      const std::string files = rtl_files({"alu_pipeline", std::string(kAluNames[instance.type]) + "_alu"});
       find(files.c_str(), "the ALU is done too early or too late, or with another warp");
     } else if (warp < warps_ && model_->issue(warp).instruction != nullptr) {
       check_result(i, warp);
@@ -532,10 +543,11 @@ void UnitInspection::check_retired() {
     retired |= 1u << warp;
     for (uint32_t lane = 0; lane < lanes_; ++lane) {
       if (w_.retire_data_o.word(warp * lanes_ + lane) != w_.done_data.word(i * lanes_ + lane))
-        return find("rtl/warp.v", fmt::format("warp {} takes another result than that of its ALU", warp));
+        return find("rtl/compute/rp_warp.v", fmt::format("warp {} takes another result than that of its ALU", warp));
     }
   }
-  expect(w_.retire_valid_o.value(), retired, "rtl/warp.v, rtl/compute_unit.v", "warps that retire");
+  expect(w_.retire_valid_o.value(), retired, "rtl/compute/rp_warp.v, rtl/compute/rp_compute_unit.v",
+         "warps that retire");
 }
 
 }  // namespace raypool::lockstep

@@ -77,7 +77,8 @@ void Inspection::check() {
     // be blamed for what it does with it.
     const bool response = before_.memory_response_valid && unit_of_id(before_.memory_response.id) == u;
     if (units_.size() > 1 && (units_[u].wires().memory_response_valid_i.value() != 0) != response)
-      find("rtl/unit_memory_arbiter.v, rtl/multiprocessor.v", "a response goes to another unit than its id names");
+      find("rtl/compute/rp_unit_memory_arbiter.v, rtl/compute/rp_multiprocessor.v",
+           "a response goes to another unit than its id names");
     units_[u].check();
   }
 }
@@ -105,22 +106,24 @@ void Inspection::check_arbiters() {
   frames_.present(frames);
   const UnitOutputs& out = rtl_->outputs();
   if (out.launch_ready != block_scheduler_.ready() || (out.launch_ready && out.launch_unit != block_scheduler_.unit()))
-    find("rtl/block_scheduler.v, rtl/round_robin.v", "the launch is offered to another unit than its rule says");
+    find("rtl/compute/rp_block_scheduler.v, rtl/common/rp_round_robin.v",
+         "the launch is offered to another unit than its rule says");
   if (out.memory_request_valid != memory_.valid() ||
       (out.memory_request_valid && unit_of_id(out.memory_request.id) != memory_.choice()))
-    find("rtl/unit_memory_arbiter.v, rtl/port_arbiter.v, rtl/round_robin.v",
+    find("rtl/compute/rp_unit_memory_arbiter.v, rtl/compute/rp_port_arbiter.v, rtl/common/rp_round_robin.v",
          "another unit's memory request is taken than its rule says");
   else if (out.memory_request_valid && !same_request(out.memory_request, units_[memory_.choice()].wires()))
-    find("rtl/unit_memory_arbiter.v, rtl/multiprocessor.v", "the memory request is not that of its unit");
+    find("rtl/compute/rp_unit_memory_arbiter.v, rtl/compute/rp_multiprocessor.v",
+         "the memory request is not that of its unit");
   if (out.import_request_valid != imports_.valid() ||
       (out.import_request_valid && out.import_request_unit != imports_.choice()))
-    find("rtl/import_arbiter.v, rtl/port_arbiter.v, rtl/request_queue.v",
+    find("rtl/compute/rp_import_arbiter.v, rtl/compute/rp_port_arbiter.v, rtl/common/rp_request_queue.v",
          "another unit's import request is taken than its rule says");
   if (out.export_valid != exports_.valid() || (out.export_valid && out.export_unit != exports_.choice()))
-    find("rtl/port_arbiter.v, rtl/multiprocessor.v, rtl/round_robin.v",
+    find("rtl/compute/rp_port_arbiter.v, rtl/compute/rp_multiprocessor.v, rtl/common/rp_round_robin.v",
          "another unit's ray is exported than its rule says");
   if (out.frame_valid != frames_.valid() || (out.frame_valid && out.frame_unit != frames_.choice()))
-    find("rtl/port_arbiter.v, rtl/round_robin.v, rtl/multiprocessor.v",
+    find("rtl/compute/rp_port_arbiter.v, rtl/common/rp_round_robin.v, rtl/compute/rp_multiprocessor.v",
          "another unit's contribution is sent than its rule says");
 }
 

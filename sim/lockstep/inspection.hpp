@@ -13,13 +13,13 @@
 #include "config/configuration.hpp"
 #include "lockstep/mismatch.hpp"
 #include "lockstep/unit_wires.hpp"
-#include "machine/block_scheduler.hpp"
-#include "machine/compute_unit.hpp"
-#include "machine/cycle_unit.hpp"
-#include "machine/import_arbiter.hpp"
-#include "machine/instruction_cache.hpp"
-#include "machine/port_arbiter.hpp"
-#include "machine/unit_memory_arbiter.hpp"
+#include "machine/compute/block_scheduler.hpp"
+#include "machine/compute/compute_unit.hpp"
+#include "machine/compute/cycle_unit.hpp"
+#include "machine/compute/import_arbiter.hpp"
+#include "machine/compute/instruction_cache.hpp"
+#include "machine/compute/port_arbiter.hpp"
+#include "machine/compute/unit_memory_arbiter.hpp"
 
 namespace raypool::lockstep {
 

@@ -10,8 +10,8 @@
 #include "lockstep/chip_inspection.hpp"
 #include "lockstep/rtl_loader.hpp"
 #include "lockstep/text.hpp"
-#include "machine/chip_model.hpp"
-#include "machine/model.hpp"
+#include "machine/chip/chip_model.hpp"
+#include "machine/compute/model.hpp"
 
 namespace raypool {
 namespace {
@@ -21,7 +21,7 @@ using namespace lockstep;
 /// Cycles from when nothing passes a port any more until all counters are right: more than what the ports need for a
 /// line and for a ray, which the model counts when they begin, or end.
 uint64_t settling_cycles(const ChipConfiguration& chip) {
-  return 8 + MemoryPort::kLineBeats * chip.memory_cycles_per_beat + chip.ray_pool_overhead +
+  return 8 + MemoryLine::kBeats * chip.memory_cycles_per_beat + chip.ray_pool_overhead +
          kRayBeats * chip.ray_pool_cycles_per_beat;
 }
 
@@ -130,7 +130,8 @@ class LockstepChipImpl : public LockstepChip {
       const uint64_t r = rtl_->counter(number), m = model_->counter(number);
       if (r == m) continue;
       throw Mismatch{fmt::format("performance counter {} is {} in the RTL, {} in the model", number, r, m), "",
-                     "rtl/performance_counters.v, rtl/multiprocessor.v, rtl/chip.v", Context::Unit};
+                     "rtl/compute/rp_performance_counters.v, rtl/compute/rp_multiprocessor.v, rtl/chip/rp_chip.v",
+                     Context::Unit};
     }
     ++counts_.counters;
   }

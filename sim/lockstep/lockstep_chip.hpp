@@ -10,7 +10,7 @@
 
 #include "lockstep/lockstep_unit.hpp"
 #include "lockstep/mismatch.hpp"
-#include "machine/chip_device.hpp"
+#include "machine/chip/chip_device.hpp"
 
 namespace raypool {
 

@@ -12,7 +12,7 @@
 #include "lockstep/comparison.hpp"
 #include "lockstep/inspection.hpp"
 #include "lockstep/text.hpp"
-#include "machine/model.hpp"
+#include "machine/compute/model.hpp"
 
 namespace raypool {
 namespace {

@@ -16,8 +16,8 @@
 
 #include "config/configuration.hpp"
 #include "lockstep/mismatch.hpp"
-#include "machine/compute_unit.hpp"
-#include "machine/memory.hpp"
+#include "machine/common/memory.hpp"
+#include "machine/compute/compute_unit.hpp"
 
 namespace raypool {
 

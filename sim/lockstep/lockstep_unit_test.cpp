@@ -8,9 +8,9 @@
 
 #include "bits.hpp"
 #include "lockstep/comparison.hpp"
-#include "machine/cycle_unit.hpp"
-#include "machine/test_chip.hpp"
-#include "machine/test_program.hpp"
+#include "machine/compute/cycle_unit.hpp"
+#include "machine/compute/test_chip.hpp"
+#include "machine/compute/test_program.hpp"
 
 namespace raypool {
 namespace {
@@ -167,7 +167,7 @@ TEST(Lockstep, AWrongRegisterResultIsReportedWithItsOperandsAndHistory) {
   const std::string report = fixture.report();
   expect_parts(report,
                {"register result differs", "everything", "warp 1, PC 6: and", "<-- differs", "00000012", "00000002",
-                "int_alu.v", "not in the thread mask", "2 launched so far", "before it", "immediate"});
+                "rp_int_alu.v", "not in the thread mask", "2 launched so far", "before it", "immediate"});
   EXPECT_THROW(fixture.chip.cycle(), LockstepDifference) << "a difference stays";
 }
 
@@ -209,16 +209,16 @@ TEST_P(LockstepTrace, DifferenceIsFound) {
 INSTANTIATE_TEST_SUITE_P(All, LockstepTrace,
                          testing::Values(TraceCase{"pc",
                                                    at(9, [](RetireEvent& event) { event.pc = 13; }),
-                                                   {"another PC", "PC    13", "pc_stack.v"}},
+                                                   {"another PC", "PC    13", "rp_pc_stack.v"}},
                                          TraceCase{"instruction",
                                                    at(9, [](RetireEvent& event) { event.instruction ^= 1; }),
-                                                   {"another instruction", "instruction_cache.v"}},
+                                                   {"another instruction", "rp_instruction_cache.v"}},
                                          TraceCase{"mask",
                                                    at(9, [](RetireEvent& event) { event.mask ^= 1; }),
-                                                   {"thread mask differs", "1111", "predicate_file.v"}},
+                                                   {"thread mask differs", "1111", "rp_predicate_file.v"}},
                                          TraceCase{"predicate",
                                                    at(7, [](RetireEvent& event) { event.predicate ^= 1; }),
-                                                   {"predicate result differs", "igt", "brh_alu.v"}},
+                                                   {"predicate result differs", "igt", "rp_brh_alu.v"}},
                                          TraceCase{"lost_instruction",
                                                    [](UnitTrace& trace) {
                                                      if (!trace.retired.empty() && trace.retired[0].warp == 0 &&
@@ -230,7 +230,7 @@ INSTANTIATE_TEST_SUITE_P(All, LockstepTrace,
                                                    [](UnitTrace& trace) {
                                                      for (StoreEvent& event : trace.stores) event.data[1] ^= 1;
                                                    },
-                                                   {"words stored differ", "st", "mem_alu.v"}},
+                                                   {"words stored differ", "st", "rp_mem_alu.v"}},
                                          TraceCase{"store_address",
                                                    [](UnitTrace& trace) {
                                                      for (StoreEvent& event : trace.stores) event.address += 16;
@@ -243,7 +243,7 @@ INSTANTIATE_TEST_SUITE_P(All, LockstepTrace,
                                                    [](UnitTrace& trace) {
                                                      for (RayWriteEvent& event : trace.ray_writes) event.data[1] ^= 1;
                                                    },
-                                                   {"words written to ray memory differ", "rst", "ray_alu.v"}},
+                                                   {"words written to ray memory differ", "rst", "rp_ray_alu.v"}},
                                          TraceCase{"ray_word",
                                                    [](UnitTrace& trace) {
                                                      for (RayWriteEvent& event : trace.ray_writes) event.word ^= 1;
@@ -275,7 +275,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         PortCase{"write_data",
                  [](UnitOutputs& out) { out.memory_request.data[1] ^= 1; },
-                 {"memory requests differ", "word 1", "<-- differs", "data_cache.v"}},
+                 {"memory requests differ", "word 1", "<-- differs", "rp_data_cache.v"}},
         PortCase{
             "write_alone",
             [](UnitOutputs& out) { out.memory_request_valid = out.memory_request_valid && !out.memory_request.write; },
@@ -283,7 +283,8 @@ INSTANTIATE_TEST_SUITE_P(
         PortCase{
             "read_alone",
             [](UnitOutputs& out) { out.memory_request_valid = out.memory_request_valid && out.memory_request.write; },
-            {"memory requests differ", "read of instructions", "00000000", "16 (unit 0)", "rtl/instruction_cache.v"}},
+            {"memory requests differ", "read of instructions", "00000000", "16 (unit 0)",
+             "rtl/compute/rp_instruction_cache.v"}},
         PortCase{"write_mask", [](UnitOutputs& out) { out.memory_request.mask &= 7; }, {"memory requests differ"}},
         PortCase{
             "write_address", [](UnitOutputs& out) { out.memory_request.address ^= 64; }, {"memory requests differ"}},
@@ -301,7 +302,7 @@ INSTANTIATE_TEST_SUITE_P(
                  [](UnitOutputs& out) {
                    if (out.exports[0] > 2) --out.exports[0];
                  },
-                 {"counts of packages to be exported differ", "exports of unit 0", "rtl/ray_alu.v"}},
+                 {"counts of packages to be exported differ", "exports of unit 0", "rtl/compute/rp_ray_alu.v"}},
         PortCase{"import_kind",
                  [](UnitOutputs& out) { out.import_request_kind = ImportKind::Shadow; },
                  {"import requests differ", "kind"}},
@@ -322,7 +323,7 @@ TEST(Lockstep, ACounterThatDiffersIsFoundWhenTheUnitIsIdle) {
   fixture.device->alter_counter = [](int number, uint64_t value) {
     return value + (number == counter::kWaiting + 3 ? 1 : 0);
   };
-  expect_parts(fixture.report(), {"performance counter 27 differs", "performance_counters.v"});
+  expect_parts(fixture.report(), {"performance counter 27 differs", "rp_performance_counters.v"});
 }
 
 TEST(Lockstep, ACycleThatBothSidesForgetIsFoundWhenTheUnitIsIdle) {
@@ -348,7 +349,7 @@ TEST(Lockstep, ARetirementThatComesACycleLateIsFound) {
     for (const RetireEvent& event : now) (event.pc == 6 && event.warp == 1 ? late : trace.retired).push_back(event);
   };
   expect_parts(fixture.report(), {"warp 1 retires an instruction in this cycle in the model, and not in the RTL",
-                                  "PC     6: and", "fetch_arbiter.v"});
+                                  "PC     6: and", "rp_fetch_arbiter.v"});
 }
 
 TEST(Lockstep, AnOutputThatComesACycleLateIsFound) {
@@ -374,7 +375,7 @@ TEST(Lockstep, AnAlteredImportIsFound) {
     inputs.import_beat[3] ^= 4;
     return inputs;
   };
-  expect_parts(fixture.report(), {"register result differs", "rld", "ray_alu.v"});
+  expect_parts(fixture.report(), {"register result differs", "rld", "rp_ray_alu.v"});
 }
 
 TEST(Lockstep, AWrongLaunchIsFound) {

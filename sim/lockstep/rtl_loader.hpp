@@ -7,8 +7,8 @@
 #include <string>
 
 #include "config/configuration.hpp"
-#include "machine/chip_device.hpp"
-#include "machine/compute_unit.hpp"
+#include "machine/chip/chip_device.hpp"
+#include "machine/compute/compute_unit.hpp"
 
 namespace raypool {
 
@@ -19,7 +19,7 @@ namespace raypool {
 /// interface; the message says how to build it.
 std::unique_ptr<ComputeUnit> load_rtl_unit(const std::string& library_path, const Configuration& configuration,
                                            int units = 1);
-/// Likewise of rtl/chip.v: OUTPUT_DIR/libraypool_chip.so of scripts/verilate.sh --top chip.
+/// Likewise of rtl/chip/rp_chip.v: OUTPUT_DIR/libraypool_chip.so of scripts/verilate.sh --top chip.
 std::unique_ptr<ChipDevice> load_rtl_chip(const std::string& library_path, const Configuration& configuration,
                                           int units = 1);
 

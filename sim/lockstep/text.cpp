@@ -7,6 +7,7 @@
 
 #include "bits.hpp"
 #include "isa/assembler.hpp"
+#include "lockstep/rtl_files.hpp"
 
 namespace raypool::lockstep {
 
@@ -27,24 +28,22 @@ std::string result_files(const DecodedInstruction& instruction, const Configurat
                           : product           ? "float_multiplier"
                                               : "float_adder";
       // A difference is a sum with another sign, for which the lane sees.
-      return fmt::format(opcode == Opcode::Fsub ? "rtl/{}.v, rtl/float_lane.v, rtl/flt_alu.v"
-                                                : "rtl/{}.v, rtl/flt_alu.v, rtl/float_lane.v",
-                         block);
+      return opcode == Opcode::Fsub ? rtl_files({block, "float_lane", "flt_alu"})
+                                    : rtl_files({block, "flt_alu", "float_lane"});
     }
     case AluType::Slw:
       // Of fewer lanes than a task has, the ALU itself says which take what, and when.
-      return fmt::format("rtl/{}.v, rtl/{}.v, rtl/slow_prepare.v",
-                         configuration.slow_unit == SlowUnit::Exact ? "slow_exact" : "slow_newton",
-                         configuration.slow_groups() > 1 ? "slw_alu" : "slow_lane");
+      return rtl_files({configuration.slow_unit == SlowUnit::Exact ? "slow_exact" : "slow_newton",
+                        configuration.slow_groups() > 1 ? "slw_alu" : "slow_lane", "slow_prepare"});
     case AluType::Mem:
-      return "rtl/mem_alu.v, rtl/data_cache.v";
+      return "rtl/compute/rp_mem_alu.v, rtl/compute/rp_data_cache.v";
     case AluType::Ray:
-      return "rtl/ray_memory.v, rtl/ray_alu.v";
+      return "rtl/compute/rp_ray_memory.v, rtl/compute/rp_ray_alu.v";
     case AluType::Tid:
       // What it is told of the launch.
-      return "rtl/tid_alu.v, rtl/compute_unit.v";
+      return "rtl/compute/rp_tid_alu.v, rtl/compute/rp_compute_unit.v";
     default:
-      return fmt::format("rtl/{}_alu.v", alu_info(instruction.alu()).name);
+      return rtl_files({std::string(alu_info(instruction.alu()).name) + "_alu"});
   }
 }
 

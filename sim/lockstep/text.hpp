@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string>
 
-#include "machine/cycle_unit.hpp"
+#include "machine/compute/cycle_unit.hpp"
 
 namespace raypool::lockstep {
 

@@ -3,8 +3,8 @@
 
 #include "bits.hpp"
 #include "lockstep/block_rules.hpp"
-#include "machine/tree_cache.hpp"
-#include "machine/triangle_pipe.hpp"
+#include "machine/traverser/tree_cache.hpp"
+#include "machine/traverser/triangle_pipe.hpp"
 
 namespace raypool::lockstep {
 namespace {
@@ -156,7 +156,7 @@ class TrianglePartsRule : public BlockRule {
   void compare(Findings& findings) override {
     constexpr size_t kView = 11, kInterval = 15, kEdges = 16;
     if (const Test* const test = at(kView)) {
-      const std::string files = "rtl/triangle_view.v, rtl/triangle_pipe.v";
+      const std::string files = "rtl/traverser/rp_triangle_view.v, rtl/traverser/rp_triangle_pipe.v";
       for (uint32_t corner = 0; corner < 3; ++corner) {
         expect(findings, x_.word(corner), test->x[corner], "corner's place across the ray", files);
         expect(findings, y_.word(corner), test->y[corner], "corner's place across the ray", files);
@@ -164,18 +164,18 @@ class TrianglePartsRule : public BlockRule {
       expect(findings, in_front_.value(), test->in_front, "corners in front of the ray", files);
     }
     if (const Test* const test = at(kInterval)) {
-      const std::string files = "rtl/triangle_interval.v, rtl/triangle_pipe.v";
+      const std::string files = "rtl/traverser/rp_triangle_interval.v, rtl/traverser/rp_triangle_pipe.v";
       expect(findings, near_.value(), test->near, "when the ray enters the triangle's box", files);
       expect(findings, far_.value(), test->far, "when the ray leaves the triangle's box", files);
       expect(findings, met_.value(), test->near <= test->far, "the triangle's box is met", files);
     }
     if (const Test* const test = at(kEdges))
       expect(findings, inside_.value(), test->inside, "the ray passes inside the edges",
-             "rtl/triangle_edges.v, rtl/triangle_pipe.v");
+             "rtl/traverser/rp_triangle_edges.v, rtl/traverser/rp_triangle_pipe.v");
     const Test* const test = at(kPlane);
     if (test == nullptr || (std::isnan(as_float(t_.value())) && std::isnan(test->t))) return;
     expect(findings, t_.value(), as_bits(test->t), "time of the triangle's plane",
-           "rtl/triangle_plane.v, rtl/float_widen.v");
+           "rtl/traverser/rp_triangle_plane.v, rtl/arith/rp_float_widen.v");
   }
   void take() override { begun_.push(valid_.value() != 0 ? test() : Test{}); }
 

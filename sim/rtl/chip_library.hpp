@@ -3,7 +3,7 @@
 // What a shared library with a Verilated chip exports.
 #pragma once
 
-#include "machine/chip_device.hpp"
+#include "machine/chip/chip_device.hpp"
 #include "rtl/unit_library.hpp"
 
 namespace raypool {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
-// The Verilated rtl/chip.v behind the interface of the chip. scripts/verilate.sh --top chip compiles it into a shared
-// library. What the blocks show each other is read from the wires between them, which sim/rtl/chip_probes.vlt keeps.
+// The Verilated rtl/chip/rp_chip.v behind the interface of the chip. scripts/verilate.sh --top chip compiles it into a
+// shared library. What the blocks show each other is read from the wires between them, which sim/rtl/chip_probes.vlt
+// keeps.
 #include <algorithm>
 #include <array>
 #include <stdexcept>
@@ -11,7 +12,7 @@
 #include "Vchip___024root.h"
 #include "bits.hpp"
 #include "built_parameters.h"
-#include "machine/packages.hpp"
+#include "machine/common/packages.hpp"
 #include "rtl/chip_library.hpp"
 #include "rtl/verilated_design.hpp"
 
@@ -47,8 +48,8 @@ struct DevicePorts {
   X(frame_pixel_o, unit_frame_pixel)                  \
   X(frame_color_o, unit_frame_color)                  \
   X(frame_unit_o, unit_frame_unit)
-#define RAYPOOL_MEMBER(port, wire) const decltype(Wires::chip__DOT__##wire)& port;
-#define RAYPOOL_BIND(port, wire) port(wires.chip__DOT__##wire),
+#define RAYPOOL_MEMBER(port, wire) const decltype(Wires::rp_chip__DOT__##wire)& port;
+#define RAYPOOL_BIND(port, wire) port(wires.rp_chip__DOT__##wire),
   RAYPOOL_DEVICE_PORTS(RAYPOOL_MEMBER)
   const CData &fault_valid_o, &fault_code_o, &fault_warp_o;
   const SData& fault_pc_o;
@@ -72,9 +73,9 @@ struct LinesGiven {
 // Without a traverser these wires do not exist, and in a netlist nothing but the top's wires can be found.
 template <typename AnyWires>
 auto lines_given(const AnyWires& w, int /*preferred*/)
-    -> decltype(w.chip__DOT__gen_inside__DOT__traverser__DOT__node_given, LinesGiven()) {
-  return {w.chip__DOT__gen_inside__DOT__traverser__DOT__node_given,
-          w.chip__DOT__gen_inside__DOT__traverser__DOT__leaf_given};
+    -> decltype(w.rp_chip__DOT__gen_inside__DOT__traverser__DOT__node_given, LinesGiven()) {
+  return {w.rp_chip__DOT__gen_inside__DOT__traverser__DOT__node_given,
+          w.rp_chip__DOT__gen_inside__DOT__traverser__DOT__leaf_given};
 }
 template <typename AnyWires>
 LinesGiven lines_given(const AnyWires& /*w*/, long /*otherwise*/) {
@@ -251,104 +252,104 @@ class RtlChip : public ChipDevice {
   // Whether it is inside or not.
   void read_to_traverser() {
     const Wires& w = wires_;
-    out_.ray_valid = w.chip__DOT__ray_valid;
+    out_.ray_valid = w.rp_chip__DOT__ray_valid;
     if (out_.ray_valid) {
-      out_.ray_last = w.chip__DOT__ray_last;
-      out_.ray_place = w.chip__DOT__ray_place;
-      read_beat(w.chip__DOT__ray_data, out_.ray_data);
+      out_.ray_last = w.rp_chip__DOT__ray_last;
+      out_.ray_place = w.rp_chip__DOT__ray_place;
+      read_beat(w.rp_chip__DOT__ray_data, out_.ray_data);
     }
-    out_.put_ready = uint32_t{w.chip__DOT__put_ready} << to_underlying(ImportKind::Normal);
-    out_.contribution_ready = w.chip__DOT__contribution_ready;
-    out_.tree_request_ready = w.chip__DOT__tree_request_ready;
-    out_.tree_response_valid = w.chip__DOT__tree_response_valid;
+    out_.put_ready = uint32_t{w.rp_chip__DOT__put_ready} << to_underlying(ImportKind::Normal);
+    out_.contribution_ready = w.rp_chip__DOT__contribution_ready;
+    out_.tree_request_ready = w.rp_chip__DOT__tree_request_ready;
+    out_.tree_response_valid = w.rp_chip__DOT__tree_response_valid;
     if (!out_.tree_response_valid) return;
-    out_.tree_response_beat = w.chip__DOT__tree_response_beat;
-    read_beat(w.chip__DOT__tree_response_data, out_.tree_response_data);
+    out_.tree_response_beat = w.rp_chip__DOT__tree_response_beat;
+    read_beat(w.rp_chip__DOT__tree_response_data, out_.tree_response_data);
   }
 
   void read_traverser() {
     const Wires& w = wires_;
     TraverserPorts& ports = out_.traverser;
-    ports.ray_ready = w.chip__DOT__ray_ready;
-    ports.free_valid = w.chip__DOT__free_valid;
-    ports.free_place = w.chip__DOT__free_place;
-    ports.free_shadow = w.chip__DOT__free_shadow;
-    ports.put_valid = w.chip__DOT__put_valid;
+    ports.ray_ready = w.rp_chip__DOT__ray_ready;
+    ports.free_valid = w.rp_chip__DOT__free_valid;
+    ports.free_place = w.rp_chip__DOT__free_place;
+    ports.free_shadow = w.rp_chip__DOT__free_shadow;
+    ports.put_valid = w.rp_chip__DOT__put_valid;
     if (ports.put_valid) {
-      ports.put_kind = static_cast<ImportKind>(w.chip__DOT__put_kind);
-      read_beat(w.chip__DOT__put_data, ports.put_data);
+      ports.put_kind = static_cast<ImportKind>(w.rp_chip__DOT__put_kind);
+      read_beat(w.rp_chip__DOT__put_data, ports.put_data);
     }
-    ports.contribution_valid = w.chip__DOT__contribution_valid;
+    ports.contribution_valid = w.rp_chip__DOT__contribution_valid;
     if (ports.contribution_valid) {
-      ports.contribution.pixel = w.chip__DOT__contribution_pixel;
-      read_color(w.chip__DOT__contribution_color, ports.contribution);
+      ports.contribution.pixel = w.rp_chip__DOT__contribution_pixel;
+      read_color(w.rp_chip__DOT__contribution_color, ports.contribution);
     }
-    ports.tree_request_valid = w.chip__DOT__tree_request_valid;
+    ports.tree_request_valid = w.rp_chip__DOT__tree_request_valid;
     if (!ports.tree_request_valid) return;
-    ports.tree_request.write = w.chip__DOT__tree_request_write;
-    ports.tree_request.second = w.chip__DOT__tree_request_second;
-    ports.tree_request.address = w.chip__DOT__tree_request_address;
+    ports.tree_request.write = w.rp_chip__DOT__tree_request_write;
+    ports.tree_request.second = w.rp_chip__DOT__tree_request_second;
+    ports.tree_request.address = w.rp_chip__DOT__tree_request_address;
     for (uint32_t i = 0; i < 2 * kBeatWords; ++i)
-      ports.tree_request.data[i / kBeatWords][i % kBeatWords] = w.chip__DOT__tree_request_data.data()[i];
+      ports.tree_request.data[i / kBeatWords][i % kBeatWords] = w.rp_chip__DOT__tree_request_data.data()[i];
   }
 
   void read_device_inputs() {
     const Wires& w = wires_;
     UnitInputs& in = out_.to_device;
-    in.launch_valid = w.chip__DOT__launch_valid;
+    in.launch_valid = w.rp_chip__DOT__launch_valid;
     if (in.launch_valid) {
-      in.launch = {w.chip__DOT__launch_pc, w.chip__DOT__launch_threads, w.chip__DOT__launch_block, 1,
-                   static_cast<ImportKind>(w.chip__DOT__launch_import)};
+      in.launch = {w.rp_chip__DOT__launch_pc, w.rp_chip__DOT__launch_threads, w.rp_chip__DOT__launch_block, 1,
+                   static_cast<ImportKind>(w.rp_chip__DOT__launch_import)};
     }
-    in.memory_request_ready = w.chip__DOT__device_request_ready;
-    in.memory_response_valid = w.chip__DOT__device_response_valid;
+    in.memory_request_ready = w.rp_chip__DOT__device_request_ready;
+    in.memory_response_valid = w.rp_chip__DOT__device_response_valid;
     if (in.memory_response_valid) {
-      in.memory_response.id = w.chip__DOT__device_response_id;
-      in.memory_response.beat = w.chip__DOT__device_response_beat;
-      read_beat(w.chip__DOT__device_response_data, in.memory_response.data);
+      in.memory_response.id = w.rp_chip__DOT__device_response_id;
+      in.memory_response.beat = w.rp_chip__DOT__device_response_beat;
+      read_beat(w.rp_chip__DOT__device_response_data, in.memory_response.data);
     }
-    in.import_request_ready = w.chip__DOT__import_request_ready;
-    in.import_beat_valid = w.chip__DOT__import_beat_valid;
-    if (in.import_beat_valid) read_beat(w.chip__DOT__import_beat_data, in.import_beat);
-    in.export_ready = w.chip__DOT__export_ready;
-    in.frame_ready = w.chip__DOT__unit_frame_ready;
+    in.import_request_ready = w.rp_chip__DOT__import_request_ready;
+    in.import_beat_valid = w.rp_chip__DOT__import_beat_valid;
+    if (in.import_beat_valid) read_beat(w.rp_chip__DOT__import_beat_data, in.import_beat);
+    in.export_ready = w.rp_chip__DOT__export_ready;
+    in.frame_ready = w.rp_chip__DOT__unit_frame_ready;
   }
 
   void read_between() {
     const Wires& w = wires_;
-    out_.outcome.valid = w.chip__DOT__outcome_valid;
+    out_.outcome.valid = w.rp_chip__DOT__outcome_valid;
     if (out_.outcome.valid) {
       out_.outcome = {true,
-                      w.chip__DOT__outcome_kept != 0,
-                      w.chip__DOT__outcome_deep != 0,
-                      w.chip__DOT__outcome_shadow != 0,
-                      w.chip__DOT__outcome_eye != 0,
-                      w.chip__DOT__outcome_unit,
-                      w.chip__DOT__outcome_pixel};
+                      w.rp_chip__DOT__outcome_kept != 0,
+                      w.rp_chip__DOT__outcome_deep != 0,
+                      w.rp_chip__DOT__outcome_shadow != 0,
+                      w.rp_chip__DOT__outcome_eye != 0,
+                      w.rp_chip__DOT__outcome_unit,
+                      w.rp_chip__DOT__outcome_pixel};
     }
-    out_.rays = w.chip__DOT__rays;
-    out_.shadow_rays = w.chip__DOT__shadow_rays;
-    out_.held_up = w.chip__DOT__ray_held_up && out_.device.export_valid;
+    out_.rays = w.rp_chip__DOT__rays;
+    out_.shadow_rays = w.rp_chip__DOT__shadow_rays;
+    out_.held_up = w.rp_chip__DOT__ray_held_up && out_.device.export_valid;
     for (uint32_t kind = 0; kind < kinds_; ++kind) {
       const auto of = static_cast<ImportKind>(kind + 1);
-      out_.size[of] = bits(w.chip__DOT__size, kind * level_bits_, level_bits_);
-      out_.available[of] = bits(w.chip__DOT__available, kind * level_bits_, level_bits_);
+      out_.size[of] = bits(w.rp_chip__DOT__size, kind * level_bits_, level_bits_);
+      out_.available[of] = bits(w.rp_chip__DOT__available, kind * level_bits_, level_bits_);
     }
-    out_.reserve_valid = w.chip__DOT__reserve_valid;
-    out_.reserve_kind = static_cast<ImportKind>(w.chip__DOT__reserve_kind);
-    out_.reserve_count = w.chip__DOT__reserve_count;
-    out_.pixel_valid = w.chip__DOT__pixel_valid;
-    out_.pixel_unit = w.chip__DOT__pixel_unit;
-    out_.exported_valid = w.chip__DOT__exported_valid;
-    out_.exported_unit = w.chip__DOT__exported_unit;
-    out_.exported_pixel = w.chip__DOT__exported_pixel;
-    out_.quiet = w.chip__DOT__quiet & ((1u << kUnitCount) - 1);
+    out_.reserve_valid = w.rp_chip__DOT__reserve_valid;
+    out_.reserve_kind = static_cast<ImportKind>(w.rp_chip__DOT__reserve_kind);
+    out_.reserve_count = w.rp_chip__DOT__reserve_count;
+    out_.pixel_valid = w.rp_chip__DOT__pixel_valid;
+    out_.pixel_unit = w.rp_chip__DOT__pixel_unit;
+    out_.exported_valid = w.rp_chip__DOT__exported_valid;
+    out_.exported_unit = w.rp_chip__DOT__exported_unit;
+    out_.exported_pixel = w.rp_chip__DOT__exported_pixel;
+    out_.quiet = w.rp_chip__DOT__quiet & ((1u << kUnitCount) - 1);
   }
 
   bool inside_;  // the traverser
   uint32_t arguments_, kinds_;
   uint32_t level_bits_;  // of the intersection pool
-  VerilatedDesign<Vchip> design_{"chip"};
+  VerilatedDesign<Vchip> design_{"rp_chip"};
   const Wires& wires_ = *design_.top().rootp;
   DevicePorts device_{design_.top(), wires_};
   FrameSetup setup_;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
-// Engine `rtl`: the Verilated rtl/multiprocessor.v, of one unit or several, behind the compute-unit interface.
-// scripts/verilate.sh compiles it into a shared library. A clock is two evaluations of the model and the copying of the
-// narrow outputs; wide ports are read only while they are valid, the trace only after trace_on().
+// Engine `rtl`: the Verilated rtl/compute/rp_multiprocessor.v, of one unit or several, behind the compute-unit
+// interface. scripts/verilate.sh compiles it into a shared library. A clock is two evaluations of the model and the
+// copying of the narrow outputs; wide ports are read only while they are valid, the trace only after trace_on().
 #include <string>
 #include <utility>
 #include <vector>
@@ -144,7 +144,7 @@ class RtlUnit : public ComputeUnit {
 
   uint32_t warps_, lanes_;
   uint32_t warp_bits_;  // of a warp number
-  VerilatedDesign<Vmultiprocessor> design_{"multiprocessor"};
+  VerilatedDesign<Vmultiprocessor> design_{"rp_multiprocessor"};
   UnitOutputs outputs_;
   bool tracing_ = false;
   UnitTrace trace_;

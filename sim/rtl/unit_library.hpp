@@ -7,7 +7,7 @@
 #include <initializer_list>
 #include <string>
 
-#include "machine/compute_unit.hpp"
+#include "machine/compute/compute_unit.hpp"
 
 namespace raypool {
 

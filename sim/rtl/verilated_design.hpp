@@ -10,7 +10,7 @@
 #include <string>
 #include <type_traits>
 
-#include "machine/compute_unit.hpp"
+#include "machine/compute/compute_unit.hpp"
 #include "verilated.h"
 #include "verilated_sym_props.h"
 #if VM_TRACE

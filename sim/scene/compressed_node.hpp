@@ -6,7 +6,7 @@
 #include <array>
 #include <cstdint>
 
-#include "machine/box_pipe.hpp"
+#include "machine/traverser/box_node.hpp"
 #include "scene/bvh.hpp"
 
 namespace raypool {

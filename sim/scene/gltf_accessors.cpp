@@ -10,10 +10,8 @@
 namespace raypool {
 namespace {
 
-constexpr uint64_t kLargestCount = uint64_t{1} << 31, kLargestBytes = uint64_t{1} << 40;
+constexpr uint64_t kLargestBytes = uint64_t{1} << 40;
 constexpr uint64_t kMostWithoutView = uint64_t{1} << 24;  // elements that take no bytes of the file
-constexpr int kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsignedShort = 5123, kUnsignedInt = 5125,
-              kFloat = 5126;
 
 size_t component_bytes(int type) {
   return type == kByte || type == kUnsignedByte ? 1 : type == kShort || type == kUnsignedShort ? 2 : 4;

@@ -10,6 +10,11 @@
 
 namespace raypool {
 
+inline constexpr uint64_t kLargestCount = uint64_t{1} << 31;  ///< of elements, and of what an index names
+/// Types of components, as glTF numbers them.
+inline constexpr int kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsignedShort = 5123, kUnsignedInt = 5125,
+                     kFloat = 5126;
+
 /// What an accessor must be to be used for something.
 struct GltfForm {
   size_t components;

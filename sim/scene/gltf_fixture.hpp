@@ -84,7 +84,7 @@ struct GltfText {
 inline const std::vector<Vec3> kCorners = {{0, 0, 0}, {2, 0, 0}, {0, 1, 0}};
 
 /// One triangle in one node.
-inline GltfText triangle() {
+inline GltfText gltf_triangle() {
   GltfText document;
   const size_t positions = document.add_positions(kCorners), indices = document.add_indices<uint16_t>({0, 1, 2});
   document.json["meshes"] = {{{"primitives", {{{"attributes", {{"POSITION", positions}}}, {"indices", indices}}}}}};

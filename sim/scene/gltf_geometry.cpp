@@ -11,11 +11,9 @@ namespace {
 
 using Json = JsonPlace::Json;
 
-constexpr uint64_t kLargestCount = uint64_t{1} << 31;
 constexpr uint64_t kMostTriangles = 100'000'000;
 constexpr int kDeepest = 1000;
 constexpr double kFar = kLargestCoordinate;
-constexpr int kUnsignedInt = 5125, kFloat = 5126;
 
 /// Of numbers, as they stand.
 Json numbers(const JsonPlace& place, size_t count) {

@@ -45,7 +45,7 @@ class GltfGeometryTest : public GltfFixture {
 
 TEST_F(GltfGeometryTest, PositionsMayBeQuantised) {
   const auto check = [&](auto numbers, int component, bool normalized, size_t gap, const std::vector<Vec3>& wanted) {
-    GltfText document = triangle();
+    GltfText document = gltf_triangle();
     const size_t accessor = add(document, numbers, component, 3, gap);
     document.json["accessors"][accessor]["normalized"] = normalized;
     primitive(document)["attributes"]["POSITION"] = accessor;
@@ -75,14 +75,14 @@ void make_sparse(GltfText& document, size_t accessor, const std::vector<uint8_t>
 }
 
 TEST_F(GltfGeometryTest, SparseAccessorsReplaceElements) {
-  GltfText document = triangle();
+  GltfText document = gltf_triangle();
   make_sparse(document, 0, {1, 2}, document.add_positions({{7, 0, 0}, {0, 8, 0}}));
   expect_corners(document, {{0, 0, 0}, {7, 0, 0}, {0, 8, 0}});
   // Indices, too; and without a view all others are zero.
-  GltfText other = triangle();
+  GltfText other = gltf_triangle();
   make_sparse(other, 1, {1, 2}, other.add_indices(std::vector<uint16_t>{2, 1}));
   expect_corners(other, {{0, 0, 0}, {0, 1, 0}, {2, 0, 0}});
-  GltfText zeros = triangle();
+  GltfText zeros = gltf_triangle();
   zeros.json["accessors"][0].erase("bufferView");
   make_sparse(zeros, 0, {1, 2}, zeros.add_positions({{7, 0, 0}, {0, 8, 0}}));
   expect_corners(zeros, {{0, 0, 0}, {7, 0, 0}, {0, 8, 0}});
@@ -96,7 +96,7 @@ TEST_F(GltfGeometryTest, SparseAccessorsReplaceElements) {
 }
 
 TEST_F(GltfGeometryTest, MorphTargetsCountByTheirWeights) {
-  GltfText document = triangle();
+  GltfText document = gltf_triangle();
   const size_t up = document.add_positions({{0, 0, 0}, {0, 0, 0}, {0, 4, 0}});
   const size_t right = add(document, std::vector<int8_t>{1, 0, 0, 1, 0, 0, 1, 0, 0}, 5120, 3, 1);
   primitive(document)["targets"] = {{{"POSITION", up}}, {{"NORMAL", 99}}, {{"POSITION", right}}};
@@ -115,7 +115,7 @@ TEST_F(GltfGeometryTest, MorphTargetsCountByTheirWeights) {
     wanted.push_back(p);
   expect_corners(document, wanted);
   // A target that leaves most vertices where they are.
-  GltfText sparse = triangle();
+  GltfText sparse = gltf_triangle();
   const size_t moves = add_floats(sparse, std::vector<float>(9), 3);
   make_sparse(sparse, moves, {2}, sparse.add_positions({{0, 0, 5}}));
   sparse.json["accessors"][moves].erase("bufferView");
@@ -128,7 +128,7 @@ TEST_F(GltfGeometryTest, MorphTargetsCountByTheirWeights) {
 
 /// The triangle with a skin of two joints; its corners have the first, both, and the second.
 GltfText with_skin() {
-  GltfText document = triangle();
+  GltfText document = gltf_triangle();
   const std::vector<uint8_t> joints = {0, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0};
   const std::vector<float> weights = {1, 0, 0, 0, 0.25f, 0.75f, 0, 0, 1, 0, 0, 0};
   const size_t numbers = add(document, joints, 5121, 4), shares = add_floats(document, weights, 4);
@@ -220,7 +220,7 @@ TEST_F(GltfGeometryTest, BrokenSkinsAreRefusedWithTheirPlace) {
 }
 
 TEST_F(GltfGeometryTest, InstancesStandInTheirNode) {
-  GltfText document = triangle();
+  GltfText document = gltf_triangle();
   const float half = std::sqrt(0.5f);
   const size_t moves = document.add_positions({{0, 0, 0}, {0, 0, 3}});
   const size_t turns = add_floats(document, {0, 0, 0, 1, 0, 0, half, half}, 4);
@@ -246,7 +246,7 @@ TEST_F(GltfGeometryTest, InstancesStandInTheirNode) {
 }
 
 TEST_F(GltfGeometryTest, HiddenNodesHideWhatIsBelowThemButTheirCameras) {
-  GltfText document = triangle();
+  GltfText document = gltf_triangle();
   const Json hidden = {{"KHR_node_visibility", {{"visible", false}}}};
   document.json["extensionsRequired"] = {"KHR_node_visibility"};
   document.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}}};

@@ -75,7 +75,7 @@ TEST_F(Gltf, TextAndBinaryGiveTheTrianglesMaterialsAndThePictureOfTheObj) {
 }
 
 TEST_F(Gltf, NodesPlaceInstancesAndMirroredOnesKeepTheirFront) {
-  Document document = triangle();
+  Document document = gltf_triangle();
   const double half = std::sqrt(0.5);
   document.json["nodes"] = {
       {{"translation", {10, 0, 0}}, {"children", {1, 2, 3}}},
@@ -92,7 +92,7 @@ TEST_F(Gltf, NodesPlaceInstancesAndMirroredOnesKeepTheirFront) {
 }
 
 TEST_F(Gltf, VerticesAtOnePlaceBecomeOne) {
-  Document document = triangle();
+  Document document = gltf_triangle();
   document.json["nodes"].push_back({{"mesh", 0}, {"scale", {-1, 1, 1}}});
   const Scene both = scene(document);
   EXPECT_EQ(both.triangles.size(), 2u);
@@ -127,7 +127,7 @@ TEST_F(Gltf, StripsFansAndInterleavedPositionsAreRead) {
 }
 
 TEST_F(Gltf, MaterialsFollowTheRule) {
-  Document document = triangle();
+  Document document = gltf_triangle();
   const auto material = [](double metallic, double roughness) {
     return Json{
         {"pbrMetallicRoughness",
@@ -154,7 +154,7 @@ TEST_F(Gltf, MaterialsFollowTheRule) {
 
 /// The triangle with two cameras and an orthographic one.
 Document with_cameras() {
-  Document document = triangle();
+  Document document = gltf_triangle();
   document.json["cameras"] = {
       {{"type", "orthographic"}, {"orthographic", {{"xmag", 1}, {"ymag", 1}}}, {"name", "Plan"}},
       {{"type", "perspective"}, {"perspective", {{"yfov", 0.7}, {"znear", 0.1}}}},
@@ -180,7 +180,7 @@ TEST_F(Gltf, TheFirstPerspectiveCameraOrTheNamedOneLooks) {
   EXPECT_NEAR(side.camera->fov, 1.2 * 180 / 3.14159265358979, 1e-4);
   expect_refusal_of(with_cameras().text(), "'Plan' is orthographic", "Plan");
   expect_refusal_of(with_cameras().text(), "no camera 'Top' in it; its cameras are Plan, Front, Side", "Top");
-  expect_refusal_of(triangle().text(), "no camera in it", "Top");
+  expect_refusal_of(gltf_triangle().text(), "no camera in it", "Top");
 }
 
 TEST_F(Gltf, WordsOfTheCommandLineChangeTheViewOfTheFile) {
@@ -204,7 +204,7 @@ TEST_F(Gltf, WordsOfTheCommandLineChangeTheViewOfTheFile) {
 }
 
 Document with_lights(const std::vector<std::string>& types) {
-  Document document = triangle();
+  Document document = gltf_triangle();
   Json& lights = document.json["extensions"]["KHR_lights_punctual"]["lights"];
   for (const std::string& type : types) {
     const double place = lights.size();
@@ -230,8 +230,8 @@ TEST_F(Gltf, ASceneIsSeenThroughItsCameraInItsLight) {
 }
 
 TEST_F(Gltf, WithoutCameraTheViewIsChosenAndWithoutLightOneThatLights) {
-  EXPECT_FALSE(load(triangle()).camera);
-  for (const Document& document : {triangle(), with_cameras()}) {
+  EXPECT_FALSE(load(gltf_triangle()).camera);
+  for (const Document& document : {gltf_triangle(), with_cameras()}) {
     Document copy = document;
     const Scene read = load_scene(write("a.gltf", copy.text()));
     const std::vector<uint8_t> drawn = picture_of(read);
@@ -273,11 +273,11 @@ TEST_F(Gltf, OnePointLightIsOursAndTheOthersAreTold) {
   EXPECT_NEAR(sun.light->position.x, 1, 1e-3);
   EXPECT_NEAR(sun.light->position.y, 0.5 - 100 * diagonal, 1e-3);
   EXPECT_NEAR(sun.light->position.z, 0, 1e-3);
-  EXPECT_FALSE(load(triangle()).light);
+  EXPECT_FALSE(load(gltf_triangle()).light);
 }
 
 TEST_F(Gltf, WhatHasNoCounterpartIsCounted) {
-  Document document = triangle();
+  Document document = gltf_triangle();
   Json textured = {{"emissiveFactor", {1, 0, 0}},
                    {"alphaMode", "BLEND"},
                    {"normalTexture", {{"index", 0}}},
@@ -307,7 +307,7 @@ TEST_F(Gltf, WhatHasNoCounterpartIsCounted) {
 
 TEST_F(Gltf, EmissionOfAnyStrengthIsNoReasonToRefuse) {
   for (const Json& factor : {Json{10, 10, 10}, Json{0, 1.0000001, 0}, Json{1e30, -1, 0}}) {
-    Document document = triangle();
+    Document document = gltf_triangle();
     document.json["materials"] = {{{"emissiveFactor", factor},
                                    {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 1e9}}}}}}};
     document.json["meshes"][0]["primitives"][0]["material"] = 0;
@@ -318,7 +318,7 @@ TEST_F(Gltf, EmissionOfAnyStrengthIsNoReasonToRefuse) {
 }
 
 TEST_F(Gltf, OfFactorsBeyondTheirRangeTheNearestIsTaken) {
-  Document document = triangle();
+  Document document = gltf_triangle();
   document.json["materials"] = {
       {{"pbrMetallicRoughness",
         {{"baseColorFactor", {1.5, 0.5, -0.25, 2}}, {"metallicFactor", -0.0000001}, {"roughnessFactor", 1.01}}}}};
@@ -330,7 +330,7 @@ TEST_F(Gltf, OfFactorsBeyondTheirRangeTheNearestIsTaken) {
 }
 
 TEST_F(Gltf, AFileThatContradictsItselfIsNotCalledCutOff) {
-  const Document good = triangle();
+  const Document good = gltf_triangle();
   std::string bytes = glb(good.finished(), good.bytes);
   for (const size_t length : {bytes.size() - 4, size_t{100}, size_t{12}, size_t{0}}) {
     for (size_t i = 0; i < 4; ++i) bytes[8 + i] = static_cast<char>(length >> (8 * i) & 255);
@@ -351,7 +351,7 @@ TEST_F(Gltf, BrokenFilesAreRefusedWithTheirPlace) {
   expect_refusal_of(R"({"asset": {"version": "1.0"}})", "asset.version is '1.0'");
   expect_refusal_of(R"({"asset": {"version": "2.0"}})", "no triangles");
   expect_refusal_of(R"({"asset": {"version": "2.0"}, "x": 1e999})", "not valid JSON");
-  const Document good = triangle();
+  const Document good = gltf_triangle();
   Document document = good;
   const std::string whole = glb(good.finished(), good.bytes);
   for (size_t size = 1; size < whole.size(); ++size) expect_refusal_of(whole.substr(0, size), "");
@@ -391,23 +391,23 @@ TEST_F(Gltf, BrokenFilesAreRefusedWithTheirPlace) {
 }
 
 TEST_F(Gltf, IndicesAndPositionsOutOfRangeAreRefused) {
-  Document document = triangle();
+  Document document = gltf_triangle();
   document.bytes[40] = 3;
   expect_refusal(document, "meshes[0].primitives[0].indices has index 3, which is out of range: there are 3 vertices");
-  document = triangle();
+  document = gltf_triangle();
   const float nan = NAN;
   std::memcpy(document.bytes.data() + 16, &nan, 4);
   expect_refusal(document, "meshes[0].primitives[0].attributes.POSITION has vertex 1 at (2, nan, 0)");
-  document = triangle();
+  document = gltf_triangle();
   document.json["nodes"][0]["scale"] = {1e9, 1, 1};
   expect_refusal(document, "vertex 1 is (2000000000, 0, 0)");
-  document = triangle();
+  document = gltf_triangle();
   document.json["accessors"][1]["count"] = 2;
   expect_refusal(document, "has 2 corners, which make no triangles");
 }
 
 TEST_F(Gltf, BuffersLieInTheFolderOfTheFile) {
-  Document document = triangle();
+  Document document = gltf_triangle();
   Json json = document.finished();
   const auto refused = [&](const std::string& uri, const std::string& part) {
     json["buffers"][0]["uri"] = uri;
@@ -426,7 +426,7 @@ TEST_F(Gltf, BuffersLieInTheFolderOfTheFile) {
 }
 
 TEST_F(Gltf, NodesWithoutEndAreRefused) {
-  Document document = triangle();
+  Document document = gltf_triangle();
   for (size_t i = 1; i < 2000; ++i) {
     document.json["nodes"][i - 1]["children"] = {i};
     document.json["nodes"][i] = Json::object();
@@ -458,7 +458,7 @@ TEST_F(Gltf, TheEndingSaysTheFormat) {
       "a.stl: a scene cannot be read from this; give cornell, room, or the path of a .obj, .gltf, .glb or .ply file");
   EXPECT_EQ(refusal([&] { load_scene(folder_ + "/none.glb"); }),
             "none.glb: no such scene; give cornell, room, or the path of a .obj, .gltf, .glb or .ply file");
-  Document document = triangle();
+  Document document = gltf_triangle();
   EXPECT_EQ(load_scene(write("A.GLTF", document.text())).triangles.size(), 1u);
 }
 

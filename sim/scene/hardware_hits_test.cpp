@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "bits.hpp"
-#include "machine/ray_finish.hpp"
-#include "machine/ray_setup.hpp"
+#include "machine/traverser/ray_finish.hpp"
+#include "machine/traverser/ray_setup.hpp"
 #include "scene/hard_rays.hpp"
 #include "scene/intersection_bench.hpp"
 #include "scene/traversal.hpp"

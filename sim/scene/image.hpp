@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "machine/compute_unit.hpp"
+#include "machine/compute/compute_unit.hpp"
 
 namespace raypool {
 

@@ -9,8 +9,6 @@
 namespace raypool {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
 double power(double base, double exponent) { return std::copysign(std::pow(std::fabs(base), exponent), base); }
 
 /// Of an angle in degrees; exact for quarter turns, so that what stands against a wall does not stick through it.

@@ -11,6 +11,8 @@
 
 namespace raypool {
 
+inline constexpr double kPi = 3.14159265358979323846;
+
 /// Rotation, scale and translation of points.
 struct Transform {
   Vec3d x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};  ///< images of the axes

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "machine/ray_setup.hpp"
+#include "machine/traverser/ray_setup.hpp"
 
 namespace raypool {
 

@@ -1,11 +1,12 @@
-// The boxes of a tree of compressed nodes as rtl/box_pipe.v tests them: in integers of few bits (machine/box_pipe.hpp).
-// docs/traverser.md proves that what a ray hits is what it hits with boxes in single precision.
+// The boxes of a tree of compressed nodes as rtl/traverser/rp_box_pipe.v tests them: in integers of few bits
+// (machine/traverser/box_pipe.hpp). docs/traverser.md proves that what a ray hits is what it hits with boxes in single
+// precision.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
-#include "machine/box_pipe.hpp"
+#include "machine/traverser/box_pipe.hpp"
 #include "scene/compressed_node.hpp"
 #include "scene/prepared_ray.hpp"
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "bits.hpp"
-#include "machine/triangle_pipe.hpp"
+#include "machine/traverser/triangle_pipe.hpp"
 #include "scene/simd4.hpp"
 
 namespace raypool {

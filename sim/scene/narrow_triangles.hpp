@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "machine/narrow_float.hpp"
+#include "arith/narrow_float.hpp"
 #include "scene/bvh.hpp"
 #include "scene/prepared_ray.hpp"
 
@@ -21,7 +21,8 @@ enum class TriangleTime : uint8_t {
 /// bits, both to nearest even:
 ///
 /// 1. z = fl(vz - oz), x = fl(fl(vx - ox) - fl(sx z)), y = fl(fl(vy - oy) - fl(sy z)), of each corner.
-/// 2. The signs of u = x2 y1 - y2 x1, v = x0 y2 - y0 x2, w = x1 y0 - y1 x0, exactly (machine/triangle_edges.hpp). It is
+/// 2. The signs of u = x2 y1 - y2 x1, v = x0 y2 - y0 x2, w = x1 y0 - y1 x0, exactly
+/// (machine/traverser/triangle_edges.hpp). It is
 ///    a miss if one is above and one below zero,
 ///    or all are zero.
 /// 3. u, v, w: rb(x2 y1 - y2 x1) and so on. Floats: fl(fl(x2 y1) - fl(y2 x1)), unless that is zero for one of them.
@@ -35,7 +36,8 @@ enum class TriangleTime : uint8_t {
 ///    it is for none, it is a miss. t must be above zero, and is moved into the interval of the triangle's own box, in
 ///    floats. It must be below the ray's limit and the best hit's, or as far with a lower number.
 ///
-/// With Floats and 53 bits that is what engines do, bit for bit; Plane is what machine/triangle_pipe.hpp does.
+/// With Floats and 53 bits that is what engines do, bit for bit; Plane is what machine/traverser/triangle_pipe.hpp
+/// does.
 class TriangleTest {
  public:
   /// `bits`: kLeastTimeBits .. kMostTimeBits.

@@ -9,7 +9,7 @@
 
 #include "enum_array.hpp"
 #include "kernel/kernels.hpp"
-#include "machine/memory.hpp"
+#include "machine/common/memory.hpp"
 #include "scene/image.hpp"
 #include "scene/ray_counts.hpp"
 #include "scene/scene.hpp"

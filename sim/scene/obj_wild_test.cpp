@@ -6,7 +6,7 @@
 namespace raypool {
 namespace {
 
-const std::string kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+const std::string kOneTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 const std::string kRed = "newmtl red\nKd 0.75 0.25 0.125\n";
 const std::string kMark = "\xef\xbb\xbf";
 const Vec3 kRedKd{0.75f, 0.25f, 0.125f}, kGrey{0.5f, 0.5f, 0.5f};
@@ -23,7 +23,7 @@ class ObjInTheWild : public FileFixture {
   static Material first(const Scene& scene) { return scene.materials.at(scene.triangle_materials.at(0)); }
   /// Of a triangle whose material has these statements.
   Scene with_material(const std::string& statements) const {
-    return load(kTriangle + "usemtl a\nf 1 2 3\n", "newmtl a\n" + statements);
+    return load(kOneTriangle + "usemtl a\nf 1 2 3\n", "newmtl a\n" + statements);
   }
   std::string refused(const std::string& text) const {
     return refusal([&] { load(text); });
@@ -32,7 +32,7 @@ class ObjInTheWild : public FileFixture {
 
 TEST_F(ObjInTheWild, AByteOrderMarkIsNoPartOfTheFirstLine) {
   write("red.mtl", kMark + kRed);
-  const std::string triangle = kTriangle + "usemtl red\nf 1 2 3\n";
+  const std::string triangle = kOneTriangle + "usemtl red\nf 1 2 3\n";
   EXPECT_EQ(first(load(kMark + "mtllib red.mtl\n" + triangle)).kd, kRedKd);
   const Scene scene = load(kMark + triangle);
   EXPECT_EQ(corners_of(scene), (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
@@ -43,7 +43,7 @@ TEST_F(ObjInTheWild, AByteOrderMarkIsNoPartOfTheFirstLine) {
 }
 
 TEST_F(ObjInTheWild, LinesMayEndAsOnAnyMachine) {
-  const std::string text = "# two triangles\n" + kTriangle + "\nf 1 2 3\nf 1 3 2\n";
+  const std::string text = "# two triangles\n" + kOneTriangle + "\nf 1 2 3\nf 1 3 2\n";
   const std::vector<Vec3> wanted = corners_of(load(text));
   for (const std::string end : {"\r", "\r\n", "\r\r\n"}) {
     std::string other;
@@ -52,7 +52,7 @@ TEST_F(ObjInTheWild, LinesMayEndAsOnAnyMachine) {
   }
   EXPECT_EQ(refused("v 0 0 0\rv 0 0\rf 1 1 1\r"), "a.obj:2: vertex has 2 numbers; give three");
   write("m.mtl", "newmtl red\rKd 0.75 0.25 0.125\r");
-  EXPECT_EQ(first(load("mtllib m.mtl\r\n" + kTriangle + "usemtl red\rf 1 2 3")).kd, kRedKd);
+  EXPECT_EQ(first(load("mtllib m.mtl\r\n" + kOneTriangle + "usemtl red\rf 1 2 3")).kd, kRedKd);
 }
 
 TEST_F(ObjInTheWild, ABackslashContinuesAnyLine) {
@@ -69,7 +69,7 @@ TEST_F(ObjInTheWild, ABackslashContinuesAnyLine) {
 }
 
 TEST_F(ObjInTheWild, ACommentEndsWithItsLine) {
-  const Scene scene = load("# from C:\\models\\\n" + kTriangle + "v 5 5 5 # C:\\\nf 1 2 3 # \\\nf 1 3 2\n");
+  const Scene scene = load("# from C:\\models\\\n" + kOneTriangle + "v 5 5 5 # C:\\\nf 1 2 3 # \\\nf 1 3 2\n");
   EXPECT_EQ(scene.triangles.size(), 2u);
   EXPECT_EQ(corners_of(scene)[0], (Vec3{0, 0, 0}));
 }
@@ -107,18 +107,18 @@ TEST_F(ObjInTheWild, SpectralColoursAreGreyAndXyzOnesConverted) {
 TEST_F(ObjInTheWild, NamesMayHaveBlanks) {
   write("red cube.mtl",
         "newmtl bright red\nKd 0.75 0.25 0.125\nnewmtl bright\nKd 0 0 1\nnewmtl Material #27\nKd 0 1 0\n");
-  const Scene scene = load("mtllib red cube.mtl\n" + kTriangle +
+  const Scene scene = load("mtllib red cube.mtl\n" + kOneTriangle +
                            "usemtl bright red\nf 1 2 3\nusemtl bright \t\nf 1 2 3\nusemtl Material #27\nf 1 2 3\n"
                            "usemtl bright red # and a comment\nf 1 2 3\nusemtl bright green\nf 1 2 3\n");
   EXPECT_EQ(scene.triangle_materials, (std::vector<uint32_t>{0, 1, 2, 0, 1}));
   EXPECT_EQ(warnings(scene), Texts{});
-  EXPECT_EQ(first(load("mtllib \"red cube.mtl\"\n" + kTriangle + "usemtl bright red\nf 1 2 3\n")).kd, kRedKd);
+  EXPECT_EQ(first(load("mtllib \"red cube.mtl\"\n" + kOneTriangle + "usemtl bright red\nf 1 2 3\n")).kd, kRedKd);
 }
 
 TEST_F(ObjInTheWild, AllLibrariesOfALineAreReadAndTheFirstOfAMaterialCounts) {
   write("a b.mtl", kRed);
   write("c.mtl", "newmtl red\nKd 0 0 1\nnewmtl blue\nKd 0 0 1\n");
-  const Scene scene = load("mtllib a b.mtl none here.mtl c.mtl x.mtl\nmtllib c.mtl\n" + kTriangle +
+  const Scene scene = load("mtllib a b.mtl none here.mtl c.mtl x.mtl\nmtllib c.mtl\n" + kOneTriangle +
                            "usemtl blue\nf 1 2 3\nusemtl red\nf 1 2 3\n");
   ASSERT_EQ(scene.materials.size(), 3u);
   EXPECT_EQ(scene.triangle_materials, (std::vector<uint32_t>{2, 0}));
@@ -133,32 +133,32 @@ TEST_F(ObjInTheWild, LibrariesAreFoundAsExportersOfOtherMachinesNameThem) {
   write("beside.mtl", kRed);
   for (const char* name : {"sub\\Red.mtl", "sub/red.MTL", ".\\sub\\red.mtl", "./beside.mtl", "BESIDE.MTL",
                            "C:\\Users\\me\\beside.mtl", "/home/me/beside.mtl", "C:\\my models\\Beside.mtl"}) {
-    const Scene scene = load(fmt::format("mtllib {}\r\n", name) + kTriangle + "usemtl red\nf 1 2 3\n");
+    const Scene scene = load(fmt::format("mtllib {}\r\n", name) + kOneTriangle + "usemtl red\nf 1 2 3\n");
     EXPECT_EQ(first(scene).kd, kRedKd) << name;
     EXPECT_EQ(warnings(scene), Texts{}) << name;
   }
 }
 
 TEST_F(ObjInTheWild, WithoutItsLibraryAFileIsGreyAndThatIsTold) {
-  const Scene scene = load("v 0 0 0\nmtllib nowhere.mtl\n" + kTriangle + "usemtl red\nf 1 2 3\n");
+  const Scene scene = load("v 0 0 0\nmtllib nowhere.mtl\n" + kOneTriangle + "usemtl red\nf 1 2 3\n");
   EXPECT_EQ(first(scene).kd, kGrey);
   EXPECT_EQ(warnings(scene), Texts{fmt::format("a.obj:2: material file 'nowhere.mtl' is not in '{}': what has its "
                                                "materials is grey; put it there",
                                                folder_)});
-  const Scene none = load(kTriangle + "usemtl red\nf 1 2 3\nusemtl blue\nf 1 2 3\n");
+  const Scene none = load(kOneTriangle + "usemtl red\nf 1 2 3\nusemtl blue\nf 1 2 3\n");
   EXPECT_EQ(warnings(none), Texts{"a.obj: material 'blue' (and 1 more) is in no material file: what has it is grey"});
 }
 
 TEST_F(ObjInTheWild, ALibraryMayStandBehindTheFaces) {
   write("m.mtl", kRed);
-  EXPECT_EQ(first(load(kTriangle + "usemtl red\nf 1 2 3\nmtllib m.mtl\n")).kd, kRedKd);
+  EXPECT_EQ(first(load(kOneTriangle + "usemtl red\nf 1 2 3\nmtllib m.mtl\n")).kd, kRedKd);
 }
 
 TEST_F(ObjInTheWild, CornersMayLeaveOutWhatIsNotUsed) {
   for (const char* face : {"f 1/ 2/ 3/", "f 1// 2// 3//", "f 1/0/0 2/0/0 3/0/0", "f 1/9/ 2/9/ 3/9/", "f +1 2 3"})
-    EXPECT_EQ(load(kTriangle + face).triangles.size(), 1u) << face;
+    EXPECT_EQ(load(kOneTriangle + face).triangles.size(), 1u) << face;
   for (const char* corner : {"1/x", "1//x", "1/2/3/4", "/1", "x", "1.5", "1\\2"}) {
-    EXPECT_EQ(refused(kTriangle + "f 1 2 " + corner + "\n"),
+    EXPECT_EQ(refused(kOneTriangle + "f 1 2 " + corner + "\n"),
               fmt::format("a.obj:4: '{}' is not a corner of a face; give f 1 2 3, f 1/2 ..., f 1//3 ... or f 1/2/3 ...",
                           corner));
   }
@@ -185,7 +185,7 @@ TEST_F(ObjInTheWild, OnlyModelsOfLightWithReflectionReflect) {
 }
 
 TEST_F(ObjInTheWild, MaterialsThatAreDrawnAreCountedByHowTheyAreTaken) {
-  std::string mtl = "newmtl unused\nKs 1 1 1\nillum 2\n", text = kTriangle;
+  std::string mtl = "newmtl unused\nKs 1 1 1\nillum 2\n", text = kOneTriangle;
   for (const char* illum : {"illum 2", "illum 1", "illum 3", ""}) {
     mtl += fmt::format("newmtl m{}\nKs 1 1 1\n{}\n", illum, illum);
     text += fmt::format("usemtl m{}\nf 1 2 3\n", illum);

@@ -49,9 +49,9 @@ struct Header {
 };
 
 std::string_view next_word(std::string_view& line) {
-  constexpr std::string_view kBlanks = " \t\r\v\f";
-  line.remove_prefix(std::min(line.find_first_not_of(kBlanks), line.size()));
-  const std::string_view word = line.substr(0, line.find_first_of(kBlanks));
+  constexpr std::string_view kBetweenWords = " \t\r\v\f";
+  line.remove_prefix(std::min(line.find_first_not_of(kBetweenWords), line.size()));
+  const std::string_view word = line.substr(0, line.find_first_of(kBetweenWords));
   line.remove_prefix(word.size());
   return word;
 }

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "machine/triangle_ray.hpp"
+#include "machine/traverser/triangle_ray.hpp"
 #include "scene/bvh.hpp"
 #include "scene/scene.hpp"
 

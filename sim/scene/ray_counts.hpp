@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "machine/compute_unit.hpp"
+#include "machine/compute/compute_unit.hpp"
 
 namespace raypool {
 

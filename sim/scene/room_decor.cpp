@@ -5,12 +5,6 @@
 #include "scene/room_parts.hpp"
 
 namespace raypool::room {
-namespace {
-
-constexpr double kPi = 3.14159265358979323846;
-
-}  // namespace
-
 void add_pendant(MeshBuilder& mesh, const Palette& palette, double cord) {
   const int around = mesh.segments(64, 10), along = mesh.segments(24, 5);
   mesh.use(palette.brass);

@@ -7,8 +7,6 @@
 namespace raypool::room {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
 /// Smooth path through points, s in 0 .. 1 (Catmull-Rom).
 Vec3d through(const std::vector<Vec3d>& points, double s) {
   const int last = static_cast<int>(points.size()) - 1;

@@ -5,12 +5,6 @@
 #include "scene/room_parts.hpp"
 
 namespace raypool::room {
-namespace {
-
-constexpr double kPi = 3.14159265358979323846;
-
-}  // namespace
-
 void add_cup(MeshBuilder& mesh, const Palette& palette) {
   const int around = mesh.segments(32, 8);
   mesh.use(palette.porcelain);

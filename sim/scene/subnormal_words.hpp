@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-#include "machine/compute_unit.hpp"
+#include "machine/compute/compute_unit.hpp"
 #include "scene/scene.hpp"
 
 namespace raypool {

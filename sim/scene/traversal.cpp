@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "bits.hpp"
-#include "machine/ray_finish.hpp"
+#include "machine/traverser/ray_finish.hpp"
 #include "scene/narrow_boxes.hpp"
 #include "scene/simd4.hpp"
 
@@ -74,7 +74,7 @@ Hit finish(const PreparedRay& ray, const Candidate& best) {
   return hit;
 }
 
-/// As rtl/ray_finish.v does.
+/// As rtl/traverser/rp_ray_finish.v does.
 Hit finish_in_hardware(const PreparedRay& ray, const Candidate& best) {
   Triangle triangle{{}, best.triangle};
   for (int corner = 0; corner < 3; ++corner) {

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "config/configuration.hpp"
-#include "machine/compute_unit.hpp"
+#include "machine/compute/compute_unit.hpp"
 #include "scene/bvh.hpp"
 #include "scene/compressed_node.hpp"
 #include "scene/narrow_triangles.hpp"
@@ -80,8 +80,8 @@ class Traversal {
   /// WideVisits; boxes are in floats.
   void set_triangle_test(const TriangleTest& test) { triangle_test_ = test; }
   /// From now on hits are what the traverser of the chip makes of them. Of `hardware`: which triangle is hit, and at
-  /// which internal t, as rtl/triangle_pipe.v says (TriangleTest with the plane in 32 bits); t, u, v and normal as
-  /// rtl/ray_finish.v does. Of any other nothing changes.
+  /// which internal t, as rtl/traverser/rp_triangle_pipe.v says (TriangleTest with the plane in 32 bits); t, u, v and
+  /// normal as rtl/traverser/rp_ray_finish.v does. Of any other nothing changes.
   void take_hits_of(const ChipConfiguration& chip);
   /// Replaces the tree by another over the same triangles; no answer changes. For tests.
   void set_bvh(Bvh bvh);

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "machine/box_pipe.hpp"
+#include "machine/traverser/box_node.hpp"
 #include "scene/bvh.hpp"
 
 namespace raypool {

@@ -1,7 +1,7 @@
 // The triangle test. Included in a namespace of each set of instructions it is compiled for, after simd4.hpp,
 // prepared_ray.hpp and bits.hpp, and so without a guard. Every operation rounds the same way in each.
 
-#include "machine/triangle_interval.hpp"
+#include "machine/traverser/triangle_interval.hpp"
 
 /// Coordinates of a triangle of a leaf.
 struct LaneCorners {

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "bits.hpp"
-#include "machine/memory_arbiter.hpp"
+#include "machine/compute/memory_arbiter.hpp"
 
 namespace raypool::trace {
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "machine/compute_unit.hpp"
+#include "machine/compute/compute_unit.hpp"
 #include "trace/machine_trace.hpp"
 
 namespace raypool::trace {

@@ -8,10 +8,10 @@
 
 #include "isa/encoding.hpp"
 #include "isa/input_error.hpp"
-#include "machine/cycle_unit.hpp"
-#include "machine/multiprocessor.hpp"
-#include "machine/test_chip.hpp"
-#include "machine/test_program.hpp"
+#include "machine/compute/cycle_unit.hpp"
+#include "machine/compute/multiprocessor.hpp"
+#include "machine/compute/test_chip.hpp"
+#include "machine/compute/test_program.hpp"
 #include "trace/trace_recorder.hpp"
 
 namespace raypool::trace {

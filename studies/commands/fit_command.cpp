@@ -24,7 +24,7 @@
 #include "files/output_files.hpp"
 #include "fit/fit.hpp"
 #include "fit/needs.hpp"
-#include "machine/functional_unit.hpp"
+#include "machine/compute/functional_unit.hpp"
 #include "scene/subnormal_words.hpp"
 
 namespace raypool {

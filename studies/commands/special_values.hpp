@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "isa/program.hpp"
-#include "machine/special_census.hpp"
+#include "machine/compute/special_census.hpp"
 
 namespace raypool {
 

@@ -1,8 +1,8 @@
 #include "commands/study_commands.hpp"
 
+#include "arith/narrow_float.hpp"
 #include "cli/command_options.hpp"
-#include "machine/box_ray.hpp"
-#include "machine/narrow_float.hpp"
+#include "machine/traverser/box_ray.hpp"
 
 namespace raypool {
 namespace {

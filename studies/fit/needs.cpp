@@ -11,7 +11,7 @@
 #include "config/parameter_table.hpp"
 #include "isa/encoding.hpp"
 #include "kernel/kernel_report.hpp"
-#include "machine/packages.hpp"
+#include "machine/common/packages.hpp"
 
 namespace raypool::fit {
 namespace {

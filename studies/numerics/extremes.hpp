@@ -14,8 +14,8 @@
 #include <string>
 #include <vector>
 
-#include "machine/compute_unit.hpp"
-#include "machine/memory.hpp"
+#include "machine/common/memory.hpp"
+#include "machine/compute/compute_unit.hpp"
 #include "numerics/modes.hpp"
 #include "scene/image.hpp"
 #include "scene/narrow_triangles.hpp"

@@ -10,7 +10,7 @@
 namespace raypool::numerics {
 namespace {
 
-ExtremeCase make(const char* name, const char* expected, std::vector<std::pair<int, int>> sizes) {
+ExtremeCase image_case(const char* name, const char* expected, std::vector<std::pair<int, int>> sizes) {
   return {"images", name, expected, [sizes = std::move(sizes)](const ExtremeMachine& machine) {
             for (const auto& [width, height] : sizes) {
               ExtremeFrame frame;
@@ -34,9 +34,9 @@ ExtremeCase make(const char* name, const char* expected, std::vector<std::pair<i
 
 std::vector<ExtremeCase> image_extremes() {
   return {
-      make("1 x 1", "its one pixel", {{1, 1}}),
-      make("one row and one column", "each pixel once", {{1, 7}, {7, 1}, {97, 1}, {1, 53}}),
-      make("prime sizes", "each pixel once", {{2, 3}, {7, 13}, {13, 7}, {31, 2}, {17, 19}}),
+      image_case("1 x 1", "its one pixel", {{1, 1}}),
+      image_case("one row and one column", "each pixel once", {{1, 7}, {7, 1}, {97, 1}, {1, 53}}),
+      image_case("prime sizes", "each pixel once", {{2, 3}, {7, 13}, {13, 7}, {31, 2}, {17, 19}}),
       {"images", "no pixels, or too many", "refused",
        [](const ExtremeMachine&) {
          const Scene scene = scene_of_triangles(cube(-2, 2));

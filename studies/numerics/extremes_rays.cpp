@@ -11,9 +11,6 @@
 namespace raypool::numerics {
 namespace {
 
-constexpr float kInf = std::numeric_limits<float>::infinity();
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-
 Scene closed_cube() { return scene_of_triangles(cube(-1, 1)); }
 
 Drawing shoot(const ExtremeMachine& machine, const Scene& scene, const Vec3& origin, const Vec3& direction) {
@@ -41,7 +38,7 @@ void require_missing(const ExtremeMachine& machine, const Scene& scene, const Ve
   require_nothing(shoot(machine, scene, origin, direction));
 }
 
-ExtremeCase make(const char* name, const char* expected, std::function<void(const ExtremeMachine&)> check) {
+ExtremeCase ray_case(const char* name, const char* expected, std::function<void(const ExtremeMachine&)> check) {
   return {"rays and boxes", name, expected, std::move(check)};
 }
 
@@ -210,20 +207,20 @@ void limits(const ExtremeMachine& machine) {
 
 std::vector<ExtremeCase> ray_extremes() {
   return {
-      make("direction components 0 and -0", "the sign of a zero changes nothing", zero_components),
-      make("direction all zero", "nothing is hit", no_direction),
-      make("NaN and infinite directions", "nothing is hit", bad_directions),
-      make("NaN, infinite and far origins", "nothing is hit", bad_origins),
-      make("directions of length 1e10, 1e-10 and 1e18", "the same hit, t divided by the length", long_directions),
-      make("subnormal direction", "nothing is hit; beside a larger component it is a zero", tiny_direction),
-      make("origin on a slab plane", "as in exact arithmetic", on_a_slab_plane),
-      make("ray within a face of a box", "the face is not hit", along_a_face),
-      make("origin inside a box", "the box is met at once", inside_a_box),
-      make("origin in a triangle's plane", "not hit in an axis' plane; in others at most within its box",
-           in_the_plane_of_a_triangle),
-      make("flat boxes", "hit like others", flat_boxes),
-      make("rays through shared edges and vertices", "one of the triangles is hit", edges_and_vertices),
-      make("surface at the light", "hits count with 0 < t < limit", limits),
+      ray_case("direction components 0 and -0", "the sign of a zero changes nothing", zero_components),
+      ray_case("direction all zero", "nothing is hit", no_direction),
+      ray_case("NaN and infinite directions", "nothing is hit", bad_directions),
+      ray_case("NaN, infinite and far origins", "nothing is hit", bad_origins),
+      ray_case("directions of length 1e10, 1e-10 and 1e18", "the same hit, t divided by the length", long_directions),
+      ray_case("subnormal direction", "nothing is hit; beside a larger component it is a zero", tiny_direction),
+      ray_case("origin on a slab plane", "as in exact arithmetic", on_a_slab_plane),
+      ray_case("ray within a face of a box", "the face is not hit", along_a_face),
+      ray_case("origin inside a box", "the box is met at once", inside_a_box),
+      ray_case("origin in a triangle's plane", "not hit in an axis' plane; in others at most within its box",
+               in_the_plane_of_a_triangle),
+      ray_case("flat boxes", "hit like others", flat_boxes),
+      ray_case("rays through shared edges and vertices", "one of the triangles is hit", edges_and_vertices),
+      ray_case("surface at the light", "hits count with 0 < t < limit", limits),
   };
 }
 

@@ -11,11 +11,11 @@ namespace {
 
 constexpr int kSize = 11;
 
-ExtremeCase make(const char* name, const char* expected, std::function<void(const ExtremeMachine&)> check) {
+ExtremeCase scene_case(const char* name, const char* expected, std::function<void(const ExtremeMachine&)> check) {
   return {"scenes", name, expected, std::move(check)};
 }
 
-ExtremeFrame frame_of(Scene scene, int depth = 2) {
+ExtremeFrame scene_frame(Scene scene, int depth = 2) {
   ExtremeFrame frame;
   frame.scene = std::move(scene);
   frame.width = frame.height = kSize;
@@ -28,14 +28,14 @@ Scene small_cornell() { return make_cornell(0.05); }
 void empty_scene(const ExtremeMachine& machine) {
   const Scene scene = scene_of_triangles({});
   require_refused(scene, "no triangles");
-  require_nothing(machine.draw(frame_of(scene)));
+  require_nothing(machine.draw(scene_frame(scene)));
 }
 
 /// The picture at another scale lights the pixels that it lights at scale 1.
 void require_same_light(const ExtremeMachine& machine, double scale) {
-  const Drawing plain = machine.draw(frame_of(small_cornell()));
+  const Drawing plain = machine.draw(scene_frame(small_cornell()));
   const Scene scene = moved(small_cornell(), scale, {});
-  const Drawing scaled = machine.draw(frame_of(scene));
+  const Drawing scaled = machine.draw(scene_frame(scene));
   require_no_nan(scaled);
   require_right_hits(scaled, scene);
   for (int y = 0; y < kSize; ++y) {
@@ -65,13 +65,13 @@ void large_scene(const ExtremeMachine& machine) { require_same_light(machine, 0x
 void huge_scene(const ExtremeMachine& machine) {
   const Scene scene = moved(small_cornell(), 1e20, {});
   require_refused(scene, "1e+09");
-  require_nothing(machine.draw(frame_of(scene)));
+  require_nothing(machine.draw(scene_frame(scene)));
 }
 
 /// Every eye ray hits the closed box, and what exact arithmetic says it hits.
 void require_closed(const ExtremeMachine& machine, const Vec3d& offset) {
   const Scene scene = moved(small_cornell(), 1, offset);
-  const Drawing drawing = machine.draw(frame_of(scene, 3));
+  const Drawing drawing = machine.draw(scene_frame(scene, 3));
   require_no_nan(drawing);
   for (const TracedRay& eye : drawing.rays(false, 1)) require(eye.goes_on, "an eye ray leaves the closed box");
   require_right_hits(drawing, scene);
@@ -82,14 +82,14 @@ void far_scene(const ExtremeMachine& machine) { require_closed(machine, {1e5, -1
 void very_far_scene(const ExtremeMachine& machine) {
   // A unit in the last place is a metre here: of the box of 5.5 m little is left, and the eye may lie in a wall.
   const Scene scene = moved(small_cornell(), 1, {1e7, -1e7, 1e7});
-  const Drawing drawing = machine.draw(frame_of(scene, 3));
+  const Drawing drawing = machine.draw(scene_frame(scene, 3));
   require_no_nan(drawing);
   require_right_hits(drawing, scene);
 }
 
 void far_and_large_scene(const ExtremeMachine& machine) {
   const Scene scene = moved(small_cornell(), 1e3, {1e7, 1e7, -1e7});
-  const Drawing drawing = machine.draw(frame_of(scene, 3));
+  const Drawing drawing = machine.draw(scene_frame(scene, 3));
   require_no_nan(drawing);
   for (const TracedRay& eye : drawing.rays(false, 1)) require(eye.goes_on, "an eye ray leaves the closed box");
   require_right_hits(drawing, scene);
@@ -101,7 +101,7 @@ void mixed_scales(const ExtremeMachine& machine) {
   triangles.push_back({Vec3{-1e9f, -1, 1e9f}, Vec3{1e9f, -1, 1e9f}, Vec3{0, -1, -1e9f}});
   const Scene scene = scene_of_triangles(triangles);
   check_scene(scene, "scene");
-  const Drawing drawing = machine.draw(frame_of(scene));
+  const Drawing drawing = machine.draw(scene_frame(scene));
   require_no_nan(drawing);
   require_right_hits(drawing, scene);
   bool near = false, far = false;
@@ -116,15 +116,15 @@ void mixed_scales(const ExtremeMachine& machine) {
 
 std::vector<ExtremeCase> scene_extremes() {
   return {
-      make("an empty scene", "refused; if drawn, black", empty_scene),
-      make("coordinates of 1e-20", "the same pixels are lit as at scale 1", tiny_scene),
-      make("coordinates of 1e-30", "the same pixels are lit as at scale 1", tinier_scene),
-      make("coordinates of 1e+8", "the same pixels are lit as at scale 1", large_scene),
-      make("coordinates of 1e+20", "refused; if drawn, black", huge_scene),
-      make("a scene moved by 1e5", "closed; hits as in exact arithmetic", far_scene),
-      make("a scene moved by 1e7", "hits as in exact arithmetic", very_far_scene),
-      make("a scene of 1e4 moved by 1e7", "closed; hits as in exact arithmetic", far_and_large_scene),
-      make("1e9 beside 1e-3", "both are seen; hits as in exact arithmetic", mixed_scales),
+      scene_case("an empty scene", "refused; if drawn, black", empty_scene),
+      scene_case("coordinates of 1e-20", "the same pixels are lit as at scale 1", tiny_scene),
+      scene_case("coordinates of 1e-30", "the same pixels are lit as at scale 1", tinier_scene),
+      scene_case("coordinates of 1e+8", "the same pixels are lit as at scale 1", large_scene),
+      scene_case("coordinates of 1e+20", "refused; if drawn, black", huge_scene),
+      scene_case("a scene moved by 1e5", "closed; hits as in exact arithmetic", far_scene),
+      scene_case("a scene moved by 1e7", "hits as in exact arithmetic", very_far_scene),
+      scene_case("a scene of 1e4 moved by 1e7", "closed; hits as in exact arithmetic", far_and_large_scene),
+      scene_case("1e9 beside 1e-3", "both are seen; hits as in exact arithmetic", mixed_scales),
   };
 }
 

@@ -15,11 +15,8 @@
 namespace raypool::numerics {
 namespace {
 
-constexpr float kInf = std::numeric_limits<float>::infinity();
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-
-ExtremeCase make(const char* name, const char* expected, std::function<void(const ExtremeMachine&)> check,
-                 int least_significand = 11) {
+ExtremeCase shading_case(const char* name, const char* expected, std::function<void(const ExtremeMachine&)> check,
+                         int least_significand = 11) {
   return {"shading", name, expected, std::move(check), least_significand};
 }
 
@@ -302,22 +299,22 @@ void depth_limit(const ExtremeMachine& machine) {
 
 std::vector<ExtremeCase> shading_extremes() {
   return {
-      make("zero normals", "no light; no NaN", zero_normals),
-      make("subnormal normals", "no light; beside a larger component nothing", subnormal_normals),
-      make("NaN and infinite normals and distances", "no NaN", bad_hits),
-      make("a light on a surface", "does not light it", light_on_a_surface),
-      make("a light in the shaded point", "does not light it; no NaN", light_at_the_point),
-      make("a light behind the surface", "does not light it", light_behind),
-      make("a light inside the geometry", "walls hold it", light_inside, 20),
-      make("a light at the eye", "lights all that is seen", light_at_the_eye),
-      make("a light next to a surface", "the cosine stays within 0 .. 1", light_next_to_a_surface),
-      make("grazing shadow rays", "no surface shadows itself", grazing_light),
-      make("grazing shadow rays among blocks", "light and shadow as in the double-precision reference, no acne",
-           grazing_light_and_blocks),
-      make("radiance that overflows", "white", overflow),
-      make("infinite throughput times zero", "adds nothing", overflow_of_nothing),
-      make("radiance below the frame buffer's unit", "rounded to multiples of 2^-32", faint),
-      make("the depth limit", "as many normal rays as the depth, for 1 .. 254", depth_limit),
+      shading_case("zero normals", "no light; no NaN", zero_normals),
+      shading_case("subnormal normals", "no light; beside a larger component nothing", subnormal_normals),
+      shading_case("NaN and infinite normals and distances", "no NaN", bad_hits),
+      shading_case("a light on a surface", "does not light it", light_on_a_surface),
+      shading_case("a light in the shaded point", "does not light it; no NaN", light_at_the_point),
+      shading_case("a light behind the surface", "does not light it", light_behind),
+      shading_case("a light inside the geometry", "walls hold it", light_inside, 20),
+      shading_case("a light at the eye", "lights all that is seen", light_at_the_eye),
+      shading_case("a light next to a surface", "the cosine stays within 0 .. 1", light_next_to_a_surface),
+      shading_case("grazing shadow rays", "no surface shadows itself", grazing_light),
+      shading_case("grazing shadow rays among blocks", "light and shadow as in the double-precision reference, no acne",
+                   grazing_light_and_blocks),
+      shading_case("radiance that overflows", "white", overflow),
+      shading_case("infinite throughput times zero", "adds nothing", overflow_of_nothing),
+      shading_case("radiance below the frame buffer's unit", "rounded to multiples of 2^-32", faint),
+      shading_case("the depth limit", "as many normal rays as the depth, for 1 .. 254", depth_limit),
   };
 }
 

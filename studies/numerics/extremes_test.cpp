@@ -6,7 +6,7 @@
 
 #include <set>
 
-#include "machine/functional_unit.hpp"
+#include "machine/compute/functional_unit.hpp"
 #include "numerics/extreme_parts.hpp"
 
 namespace raypool::numerics {

@@ -13,9 +13,6 @@
 namespace raypool::numerics {
 namespace {
 
-constexpr float kInf = std::numeric_limits<float>::infinity();
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-
 ExtremeCase make(const char* name, const char* expected, std::function<void(const ExtremeMachine&)> check) {
   return {"triangles and meshes", name, expected, std::move(check)};
 }

@@ -11,7 +11,7 @@
 #include <limits>
 
 #include "bits.hpp"
-#include "machine/functional_unit.hpp"
+#include "machine/compute/functional_unit.hpp"
 #include "numerics/cost.hpp"
 #include "numerics/extreme_parts.hpp"
 #include "numerics/extremes.hpp"

@@ -11,8 +11,8 @@
 #include "chip/board.hpp"
 #include "chip/test_board.hpp"
 #include "chip/tree_image.hpp"
-#include "machine/chip_model.hpp"
-#include "machine/model.hpp"
+#include "machine/chip/chip_model.hpp"
+#include "machine/compute/model.hpp"
 
 namespace raypool::sampled {
 namespace {

@@ -102,7 +102,7 @@ class Runs(Case):
         self.uses(lines, self.read("rtl/report.json"))
         self.assertEqual(rows["model"]["picture"], {"pixels": 192, "differ": 0, "largest_difference": 0,
                                                     "mean_difference": 0, "psnr": None})  # fmt: skip
-        svg = "".join(xml.etree.ElementTree.parse(self.out / "fidelity.svg").getroot().itertext())
+        svg = " ".join(xml.etree.ElementTree.parse(self.out / "fidelity.svg").getroot().itertext())
         for name in LEVELS:
             self.assertRegex(svg, rf"\b{name}, \d+\.\d x")
 

@@ -77,6 +77,4 @@ void run_benches(const std::vector<Bench>& benches, Outcome& outcome) {
   }
 }
 
-std::string module_of(const std::string& file) { return file.substr(0, file.rfind('.')); }
-
 }  // namespace raypool::faulty

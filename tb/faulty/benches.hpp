@@ -28,7 +28,4 @@ std::vector<Bench> benches_of(const std::vector<Bench>& benches, const Hierarchy
 /// line on that says so.
 void run_benches(const std::vector<Bench>& benches, Outcome& outcome);
 
-/// A module's file is of its name.
-std::string module_of(const std::string& file);
-
 }  // namespace raypool::faulty

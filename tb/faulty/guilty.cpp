@@ -23,13 +23,19 @@ std::string read_text(const std::filesystem::path& path) {
 
 }  // namespace
 
+std::string module_of(const std::string& file) {
+  const std::string kPrefix = "rp_";
+  const size_t begin = file.compare(0, kPrefix.size(), kPrefix) == 0 ? kPrefix.size() : 0;
+  return file.substr(begin, file.rfind('.') - begin);
+}
+
 Hierarchy::Hierarchy(const std::string& rtl_folder) {
   std::map<std::string, std::string> modules, headers;
-  for (const auto& entry : std::filesystem::directory_iterator(rtl_folder)) {
-    if (entry.path().extension() == ".v") modules[entry.path().stem()] = read_text(entry.path());
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(rtl_folder)) {
+    if (entry.path().extension() == ".v") modules[module_of(entry.path().filename())] = read_text(entry.path());
     if (entry.path().extension() == ".vh") headers[entry.path().filename()] = read_text(entry.path());
   }
-  static const std::regex kInstance(R"(\n *([a-z_0-9]+) (#\(|[a-z_0-9]+ \())"),
+  static const std::regex kInstance(R"(\n *rp_([a-z_0-9]+) (#\(|[a-z_0-9]+ \())"),
       kInclude(R"re(`include "([a-z_0-9]+\.vh)")re");
   for (const auto& [name, text] : modules) {
     std::string whole = text;
@@ -58,7 +64,7 @@ std::vector<std::string> files_named(const std::string& report) {
   std::string clause = report;
   if (line != std::string::npos) clause = report.substr(line, report.find_first_of(";\n", line) - line);
   if (line == std::string::npos && report.find("%Error") == std::string::npos) return {};
-  static const std::regex kFile(R"(rtl/([a-z_0-9]+\.vh?))");
+  static const std::regex kFile(R"(rtl/[a-z]+/([a-z_0-9]+\.vh?))");
   std::vector<std::string> files;
   for (auto i = std::sregex_iterator(clause.begin(), clause.end(), kFile); i != std::sregex_iterator(); ++i)
     if (files.size() < kMostNamed && std::find(files.begin(), files.end(), (*i)[1]) == files.end())
@@ -69,10 +75,9 @@ std::vector<std::string> files_named(const std::string& report) {
 Verdict judge(const Hierarchy& hierarchy, const std::vector<std::string>& named, const std::string& file) {
   if (named.empty()) return Verdict::None;
   if (std::find(named.begin(), named.end(), file) != named.end()) return Verdict::Right;
-  const std::set<std::string>& parents = hierarchy.parents(file.substr(0, file.rfind('.')));
-  const bool parent = std::any_of(named.begin(), named.end(), [&](const std::string& name) {
-    return parents.count(name.substr(0, name.rfind('.'))) != 0;
-  });
+  const std::set<std::string>& parents = hierarchy.parents(module_of(file));
+  const bool parent = std::any_of(named.begin(), named.end(),
+                                  [&](const std::string& name) { return parents.count(module_of(name)) != 0; });
   return parent ? Verdict::Parent : Verdict::Wrong;
 }
 

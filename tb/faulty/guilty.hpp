@@ -8,6 +8,9 @@
 
 namespace raypool::faulty {
 
+/// "warp" of "rp_warp.v": modules are called without their prefix here.
+std::string module_of(const std::string& file);
+
 /// Modules and who instantiates them, from the Verilog.
 class Hierarchy {
  public:

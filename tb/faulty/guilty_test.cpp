@@ -8,17 +8,18 @@ namespace {
 const std::string kTitle = "lockstep difference in unit: the memory requests differ in this cycle\n  cycle 5\n";
 
 TEST(FilesNamed, AreThoseBeforeTheFirstSemicolonAndAtMostThree) {
-  EXPECT_EQ(files_named(kTitle + "  look at: rtl/a.v, rtl/b.v, rtl/b.v; else rtl/c.v\n  so far nothing, rtl/d.v"),
-            (std::vector<std::string>{"a.v", "b.v"}));
-  EXPECT_EQ(files_named(kTitle + "  look at: rtl/a.v, rtl/b.v, rtl/c.v, rtl/d.v"),
+  EXPECT_EQ(
+      files_named(kTitle + "  look at: rtl/x/a.v, rtl/x/b.v, rtl/x/b.v; else rtl/x/c.v\n  so far nothing, rtl/x/d.v"),
+      (std::vector<std::string>{"a.v", "b.v"}));
+  EXPECT_EQ(files_named(kTitle + "  look at: rtl/room/a.v, rtl/room/b.v, rtl/room/c.v, rtl/room/d.v"),
             (std::vector<std::string>{"a.v", "b.v", "c.v"}));
-  EXPECT_EQ(files_named(kTitle + "  look at: what the warps wait for\n  rtl/a.v"), std::vector<std::string>());
-  EXPECT_EQ(files_named("another fault than expected in rtl/a.v"), std::vector<std::string>());
+  EXPECT_EQ(files_named(kTitle + "  look at: what the warps wait for\n  rtl/room/a.v"), std::vector<std::string>());
+  EXPECT_EQ(files_named("another fault than expected in rtl/room/a.v"), std::vector<std::string>());
 }
 
 TEST(FilesNamed, AreWhatTheSimulatorSaysWhenItStops) {
-  EXPECT_EQ(files_named("signal 6: %Error: rtl/data_cache.v:203: Verilog $stop"),
-            std::vector<std::string>{"data_cache.v"});
+  EXPECT_EQ(files_named("signal 6: %Error: rtl/compute/rp_data_cache.v:203: Verilog $stop"),
+            std::vector<std::string>{"rp_data_cache.v"});
 }
 
 TEST(Hierarchy, IsThatOfTheVerilog) {
@@ -38,19 +39,19 @@ TEST(Hierarchy, IsThatOfTheVerilog) {
 
 TEST(Judge, KnowsTheFileItsParentAndOthers) {
   const Hierarchy hierarchy("rtl");
-  EXPECT_EQ(judge(hierarchy, {"warp.v", "pc_stack.v"}, "pc_stack.v"), Verdict::Right);
-  EXPECT_EQ(judge(hierarchy, {"warp.v"}, "pc_stack.v"), Verdict::Parent);
-  EXPECT_EQ(judge(hierarchy, {"compute_unit.v"}, "pc_stack.v"), Verdict::Wrong) << "two levels above is no help";
-  EXPECT_EQ(judge(hierarchy, {"pc_stack.v"}, "warp.v"), Verdict::Wrong) << "a child is not the parent";
-  EXPECT_EQ(judge(hierarchy, {}, "warp.v"), Verdict::None);
+  EXPECT_EQ(judge(hierarchy, {"rp_warp.v", "rp_pc_stack.v"}, "rp_pc_stack.v"), Verdict::Right);
+  EXPECT_EQ(judge(hierarchy, {"rp_warp.v"}, "rp_pc_stack.v"), Verdict::Parent);
+  EXPECT_EQ(judge(hierarchy, {"rp_compute_unit.v"}, "rp_pc_stack.v"), Verdict::Wrong) << "two levels above is no help";
+  EXPECT_EQ(judge(hierarchy, {"rp_pc_stack.v"}, "rp_warp.v"), Verdict::Wrong) << "a child is not the parent";
+  EXPECT_EQ(judge(hierarchy, {}, "rp_warp.v"), Verdict::None);
 }
 
 TEST(NamedEarly, IsTheFirstOrTheSecondOfTheFiles) {
-  EXPECT_TRUE(named_early({"warp.v", "pc_stack.v", "launcher.v"}, "warp.v"));
-  EXPECT_TRUE(named_early({"warp.v", "pc_stack.v", "launcher.v"}, "pc_stack.v"));
-  EXPECT_FALSE(named_early({"warp.v", "pc_stack.v", "launcher.v"}, "launcher.v"));
-  EXPECT_FALSE(named_early({"warp.v"}, "launcher.v"));
-  EXPECT_FALSE(named_early({}, "warp.v"));
+  EXPECT_TRUE(named_early({"rp_warp.v", "rp_pc_stack.v", "rp_launcher.v"}, "rp_warp.v"));
+  EXPECT_TRUE(named_early({"rp_warp.v", "rp_pc_stack.v", "rp_launcher.v"}, "rp_pc_stack.v"));
+  EXPECT_FALSE(named_early({"rp_warp.v", "rp_pc_stack.v", "rp_launcher.v"}, "rp_launcher.v"));
+  EXPECT_FALSE(named_early({"rp_warp.v"}, "rp_launcher.v"));
+  EXPECT_FALSE(named_early({}, "rp_warp.v"));
 }
 
 }  // namespace

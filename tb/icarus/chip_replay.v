@@ -52,7 +52,7 @@ module chip_replay #(
   wire [2:0]   tree_fault_code;
   wire [25:0]  tree_fault_line;
 
-  chip #(`CHIP_PARAMETERS) chip (
+  rp_chip #(`CHIP_PARAMETERS) chip (
     .clk_i(clk), .rst_ni(rst_n), .program_length_i(program_length), .memory_limit_i(memory_limit),
     .argument_write_i(argument_write), .argument_index_i(argument_write ? argument_index : 5'bx),
     .argument_data_i(argument_write ? argument_data : 32'bx), .start_i(start), .width_i(width), .height_i(height),

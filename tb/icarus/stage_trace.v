@@ -26,7 +26,7 @@ module stage_trace #(
     else if (!beat[2]) beat <= beat + 3'd1;
 
   wire kernel_done;
-  compute_unit #(.WARPS(WARPS), .LANES(LANES)) unit (
+  rp_compute_unit #(.WARPS(WARPS), .LANES(LANES)) unit (
     .clk_i(clk), .rst_ni(rst_n), .program_length_i(16'd256), .memory_limit_i(32'd2048),
     .argument_write_i(1'b0), .argument_index_i(5'd0), .argument_data_i(32'd0),
     .launch_valid_i(launch), .launch_pc_i(16'd0), .launch_threads_i(THREADS[10:0]),

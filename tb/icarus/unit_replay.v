@@ -51,7 +51,7 @@ module unit_replay #(
   wire [LANES-1:0] ray_trace_mask;
   wire [LANES*32-1:0] ray_trace_data;
 
-  compute_unit #(`UNIT_PARAMETERS) unit (
+  rp_compute_unit #(`UNIT_PARAMETERS) unit (
     .clk_i(clk), .rst_ni(rst_n), .program_length_i(program_length), .memory_limit_i(memory_limit),
     .argument_write_i(argument_write), .argument_index_i(argument_index), .argument_data_i(argument_data),
     .launch_valid_i(launch_valid), .launch_ready_o(launch_ready), .launch_pc_i(launch_pc),

@@ -2,7 +2,7 @@
 # Proves the control logic: tb/proofs/control.sh [--quick | --broken] [NAME...]. NAME is a checker
 # tb/proofs/control/NAME.v; without one, all of them.
 # A checker is a module `check` around what it checks, with assumptions and assertions, and says in its head
-#   @modules FILE...           of rtl/, without .v
+#   @modules FILE...           of rtl/, without prefix and .v
 #   @proves SENTENCE           printed when it holds, once for each
 #   @parameters NAME=VALUE...  set of parameters to prove it for; more lines are more
 #                              proofs; without one, as the checker stands
@@ -48,7 +48,7 @@ solve() {
   for parameter in $parameters; do chparam+=" -set ${parameter%=*} ${parameter#*=}"; done
   [ -z "$chparam" ] || chparam="chparam$chparam check;"
   ! grep -q '^// @zeros' "$checker" || zeros="zinit -all;"
-  yosys -q -l "$folder/yosys" -p "read_verilog -formal -DSYNTHESIS -I$folder -Irtl $checker $*
+  yosys -q -l "$folder/yosys" -p "read_verilog -formal -DSYNTHESIS -I$folder -Irtl/include $checker $*
     $chparam prep -top check -flatten; delete -output; memory_map; async2sync; $zeros opt -fast
     setundef -undriven -anyseq; setundef -anyseq; formalff -clk2ff -ff2anyinit; techmap; opt -fast; dffunmap; aigmap
     opt_clean; setundef -undriven -anyseq; setundef -anyseq
@@ -69,7 +69,7 @@ for name in "${names[@]}"; do
   [ -f "$checker" ] || { echo "control.sh: there is no checker '$name'; see tb/proofs/control" >&2; exit 1; }
   [ -z "$quick" ] || ! grep -q '^// @slow' "$checker" || continue
   files=
-  for module in $(said modules "$checker"); do files+=" rtl/$module.v"; done
+  for module in $(said modules "$checker"); do files+=" $(printf %s rtl/*/"rp_$module.v")"; done
   mapfile -t sets < <(said parameters "$checker")
   [ ${#sets[@]} -gt 0 ] || sets=("")
   for set in "${sets[@]}"; do
@@ -89,20 +89,20 @@ for name in "${names[@]}"; do
   broken=0
   while read -r module script; do
     engine="bmc3 -F 40 -T 300"
-    file=${module%.vh}.v
-    [[ $module != *.vh ]] || file=$module
-    sed -E "$script" "rtl/$file" > "$folder/$file"
-    ! cmp -s "rtl/$file" "$folder/$file" ||
-      { echo "FAILED: $name: '$script' changes nothing in rtl/$file"; failed=1; continue; }
+    [[ $module = *.* ]] || module=$module.v
+    file=$(printf %s rtl/*/"rp_$module") broken_file=$folder/rp_$module
+    sed -E "$script" "$file" > "$broken_file"
+    ! cmp -s "$file" "$broken_file" ||
+      { echo "FAILED: $name: '$script' changes nothing in $file"; failed=1; continue; }
     # shellcheck disable=SC2086 # a list of files
-    solve "$checker" "${sets[0]}" ${files/rtl\/$file/$folder/$file}
-    rm "$folder/$file"
+    solve "$checker" "${sets[0]}" ${files/$file/$broken_file}
+    rm "$broken_file"
     if [ $verdict = refuted ]; then
       broken=$((broken + 1))
       [ -z "${VERBOSE:-}" ] || echo "  broken: $module $script: refuted after $depth cycles"
     else
       failed=1
-      echo "FAILED: $name: $verdict with rtl/$file broken by '$script'"
+      echo "FAILED: $name: $verdict with $file broken by '$script'"
     fi
   done < <(said break "$checker")
   [ $broken -gt 0 ] || { echo "FAILED: $name: no broken copy was refuted"; failed=1; }

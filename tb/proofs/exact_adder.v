@@ -1,6 +1,6 @@
 // What a floating-point adder must give, written for proofs and not for speed: both numbers as integers in units of the
 // smallest subnormal number, their exact sum, one rounding to nearest even. Combinational. SUBNORMALS as in
-// rtl/float_adder.v. Shares nothing with it.
+// rtl/arith/rp_float_adder.v. Shares nothing with it.
 `default_nettype none
 module exact_adder #(
   parameter integer EXPONENT_BITS = 5,

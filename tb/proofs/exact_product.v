@@ -3,7 +3,7 @@
 // multiplication: ones_i is that of the stored bits with a one before each, and what a subnormal number has not is
 // taken off. possible_o says whether the rest may be the product of the two mantissas by what is known of any
 // product, a zero for a zero and a leading one at the sum of the factors' leading ones or one above. Combinational.
-// SUBNORMALS as in rtl/float_multiplier.v. Shares nothing with it.
+// SUBNORMALS as in rtl/arith/rp_float_multiplier.v. Shares nothing with it.
 `default_nettype none
 module exact_product #(
   parameter integer EXPONENT_BITS = 5,

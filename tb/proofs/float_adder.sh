@@ -1,10 +1,10 @@
 #!/bin/bash
-# Proves rtl/float_adder.v, as a 16-bit adder (5 exponent bits, 10 of mantissa), equal to tb/proofs/exact_adder.v for
-# all operands, added and subtracted, in both subnormal modes: tb/proofs/float_adder.sh [EXPONENT_BITS MANTISSA_BITS].
-# FLOAT_ADDER names another adder to try.
+# Proves rtl/arith/rp_float_adder.v, as a 16-bit adder (5 exponent bits, 10 of mantissa), equal to
+# tb/proofs/exact_adder.v for all operands, added and subtracted, in both subnormal modes: tb/proofs/float_adder.sh
+# [EXPONENT_BITS MANTISSA_BITS]. FLOAT_ADDER names another adder to try.
 set -eu -o pipefail
 cd "$(dirname "$0")/../.."
-exponent=${1:-5} mantissa=${2:-10} adder=${FLOAT_ADDER:-rtl/float_adder.v}
+exponent=${1:-5} mantissa=${2:-10} adder=${FLOAT_ADDER:-rtl/arith/rp_float_adder.v}
 . tb/proofs/constant_zero.bash
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
@@ -14,7 +14,7 @@ for subnormals in 0 1; do
 module top #(parameter EXPONENT_BITS = 5, MANTISSA_BITS = 10, SUBNORMALS = 0, BITS = 1 + EXPONENT_BITS + MANTISSA_BITS)
   (input clk, subtract, input [BITS-1:0] a, b, output differs);
   wire [BITS-1:0] sum, exact;
-  float_adder #(.EXPONENT_BITS(EXPONENT_BITS), .MANTISSA_BITS(MANTISSA_BITS), .SUBNORMALS(SUBNORMALS)) adder (
+  rp_float_adder #(.EXPONENT_BITS(EXPONENT_BITS), .MANTISSA_BITS(MANTISSA_BITS), .SUBNORMALS(SUBNORMALS)) adder (
     .clk_i(clk), .enable_i(3'b111), .subtract_i(subtract), .a_i(a), .b_i(b), .result_o(sum));
   exact_adder #(.EXPONENT_BITS(EXPONENT_BITS), .MANTISSA_BITS(MANTISSA_BITS), .SUBNORMALS(SUBNORMALS)) reference (
     .subtract_i(subtract), .a_i(a), .b_i(b), .result_o(exact));
@@ -23,5 +23,6 @@ endmodule
 TOP
   prove_zero "$folder" \
     "float_adder with $exponent exponent and $mantissa mantissa bits, SUBNORMALS $subnormals, all operands" \
-    "read_verilog $folder/top.v $adder tb/proofs/exact_adder.v; chparam $parameters top; hierarchy -top top"
+    "read_verilog -Irtl/include $folder/top.v $adder tb/proofs/exact_adder.v; chparam $parameters top
+    hierarchy -top top"
 done

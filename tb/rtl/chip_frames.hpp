@@ -11,7 +11,7 @@
 
 #include "cosim/covering.hpp"
 #include "kernel/kernels.hpp"
-#include "machine/test_program.hpp"
+#include "machine/compute/test_program.hpp"
 #include "rtl/chip_surroundings.hpp"
 #include "rtl/test_library.hpp"
 #include "scene/native_renderer.hpp"

@@ -1,5 +1,5 @@
-// rtl/chip.v in lockstep with its model while it draws frames with the real kernels, amid surroundings of chance: all
-// ports of all blocks in every cycle, on machines whose corners are different ones.
+// rtl/chip/rp_chip.v in lockstep with its model while it draws frames with the real kernels, amid surroundings of
+// chance: all ports of all blocks in every cycle, on machines whose corners are different ones.
 #include <gtest/gtest.h>
 
 #include <iostream>

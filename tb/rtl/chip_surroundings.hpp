@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "bits.hpp"
-#include "machine/chip_device.hpp"
+#include "machine/chip/chip_device.hpp"
 #include "random.hpp"
 
 namespace raypool::test {
@@ -122,8 +122,8 @@ class Surroundings {
       return;
     }
     uint64_t from = cycles + 1 + random_() % traffic.latency;
-    for (uint32_t beat = 0; beat < MemoryPort::kLineBeats; ++beat, from += one_of(4) ? 1 : 0) {
-      const uint32_t address = request.address + beat * MemoryPort::kQuadwordBytes;
+    for (uint32_t beat = 0; beat < MemoryLine::kBeats; ++beat, from += one_of(4) ? 1 : 0) {
+      const uint32_t address = request.address + beat * MemoryLine::kQuadwordBytes;
       lines_.push_back({out.memory_request.traverser, from, line_data(out.memory_request.traverser, address)});
       if (out.memory_request.traverser) tree_beats_.push_back(lines_.back().data);
     }
@@ -253,7 +253,7 @@ class Surroundings {
       tree_waits_ = true;
       tree_.write = one_of(4);
       tree_.second = one_of(2);
-      const uint32_t bytes = (tree_.write ? MemoryPort::kQuadwordBytes : MemoryPort::kLineBytes) << tree_.second;
+      const uint32_t bytes = (tree_.write ? MemoryLine::kQuadwordBytes : MemoryLine::kBytes) << tree_.second;
       tree_.address = random_() & ~(bytes - 1);
       for (Beat& beat : tree_.data)
         for (uint32_t& word : beat) word = random_();
@@ -298,7 +298,7 @@ class Surroundings {
   std::optional<Inside> contributing_;
   bool put_waits_ = false, tree_waits_ = false;
   std::deque<std::pair<uint32_t, bool>> leaving_;
-  MemoryPort::TreeRequest tree_;
+  TreeRequest tree_;
 };
 
 }  // namespace raypool::test

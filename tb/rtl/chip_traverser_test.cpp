@@ -1,5 +1,6 @@
-// rtl/chip.v with the traverser inside, in lockstep with its model while it draws whole frames with nothing around it
-// but memories, frame buffer and host: all ports of all blocks in every cycle. The pictures are the native engine's.
+// rtl/chip/rp_chip.v with the traverser inside, in lockstep with its model while it draws whole frames with nothing
+// around it but memories, frame buffer and host: all ports of all blocks in every cycle. The pictures are the native
+// engine's.
 #include <gtest/gtest.h>
 
 #include <deque>
@@ -15,8 +16,8 @@
 #include "chip/test_banked_dram.hpp"
 #include "lockstep/lockstep_chip.hpp"
 #include "lockstep/rtl_loader.hpp"
-#include "machine/chip_model.hpp"
-#include "machine/model.hpp"
+#include "machine/chip/chip_model.hpp"
+#include "machine/compute/model.hpp"
 #include "rtl/chip_frames.hpp"
 #include "rtl/next_frames.hpp"
 #include "rtl/traverser_frames.hpp"
@@ -250,7 +251,7 @@ void expect_named(const BrokenPort& broken, void (*prepare)(TreeImage&)) {
     const std::string report = difference.what();
     EXPECT_EQ(report.find("lockstep difference in chip: " + std::string(broken.port) + " of traverser is "), 0u)
         << report;
-    EXPECT_NE(report.find("look at: rtl/traverser.v, rtl/chip.v"), std::string::npos) << report;
+    EXPECT_NE(report.find("look at: rtl/traverser/rp_traverser.v, rtl/chip/rp_chip.v"), std::string::npos) << report;
   }
 }
 

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "machine/compute_unit.hpp"
+#include "machine/compute/compute_unit.hpp"
 
 namespace raypool::test {
 

@@ -1,6 +1,7 @@
-// rtl/multiprocessor.v against its C++ counterpart: the Verilated multiprocessor of n units and a Multiprocessor over n
-// Verilated single units are given the same inputs, and must show the same outputs in every cycle.
-#include "machine/multiprocessor.hpp"
+// rtl/compute/rp_multiprocessor.v against its C++ counterpart: the Verilated multiprocessor of n units and a
+// Multiprocessor over n Verilated single units are given the same inputs, and must show the same outputs in every
+// cycle.
+#include "machine/compute/multiprocessor.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,8 +13,8 @@
 #include "cosim/cosim.hpp"
 #include "cosim/random_program.hpp"
 #include "lockstep/rtl_loader.hpp"
-#include "machine/test_chip.hpp"
-#include "machine/test_program.hpp"
+#include "machine/compute/test_chip.hpp"
+#include "machine/compute/test_program.hpp"
 #include "rtl/compared_device.hpp"
 #include "rtl/test_library.hpp"
 

@@ -1,10 +1,10 @@
-// Draws frames of chance on tiny chips, rtl/chip.v in lockstep with its model: on machines that have every pair of
-// values of what a chip has (sim/cosim/covering.hpp), with pictures, traffic at every port and answers of the traverser
-// drawn at random; and on as many with the traverser inside, with scenes, trees and waits at the memories drawn at
-// random, whose pictures must be the native engine's. Some trees are none: of these the fault is compared, and what the
-// chip does behind it. A frame that fails is made smaller while it still does, and the
-// command that repeats it is printed. With --record one frame is drawn on the model alone and written down, for another
-// simulator of the Verilog (scripts/icarus_chip.sh).
+// Draws frames of chance on tiny chips, rtl/chip/rp_chip.v in lockstep with its model: on machines that have every pair
+// of values of what a chip has (sim/cosim/covering.hpp), with pictures, traffic at every port and answers of the
+// traverser drawn at random; and on as many with the traverser inside, with scenes, trees and waits at the memories
+// drawn at random, whose pictures must be the native engine's. Some trees are none: of these the fault is compared, and
+// what the chip does behind it. A frame that fails is made smaller while it still does, and the command that repeats it
+// is printed. With --record one frame is drawn on the model alone and written down, for another simulator of the
+// Verilog (scripts/icarus_chip.sh).
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -29,8 +29,8 @@
 #include "lockstep/lockstep_chip.hpp"
 #include "lockstep/lockstep_unit.hpp"
 #include "lockstep/rtl_loader.hpp"
-#include "machine/chip_model.hpp"
-#include "machine/model.hpp"
+#include "machine/chip/chip_model.hpp"
+#include "machine/compute/model.hpp"
 #include "random.hpp"
 #include "rtl/chip_frames.hpp"
 #include "rtl/hard_scenes.hpp"
@@ -501,7 +501,7 @@ int main(int argc, char** argv) {
   testing::InitGoogleTest(&argc, argv);
   raypool::Options options;
   options.program = argv[0];
-  CLI::App app("Frames of chance on tiny chips, rtl/chip.v in lockstep with its model.", "raypool_chip_frames");
+  CLI::App app("Frames of chance on tiny chips, rtl/chip/rp_chip.v in lockstep with its model.", "raypool_chip_frames");
   app.add_option("--frames", options.frames, "of each machine")->capture_default_str()->check(CLI::PositiveNumber);
   app.add_option("--seed", options.seed, "of pictures, scenes and traffic")->capture_default_str();
   app.add_option("--machines", options.machines, "only the first so many machines; 0: all")->capture_default_str();

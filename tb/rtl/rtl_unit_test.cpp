@@ -11,9 +11,9 @@
 #include "cosim/cosim.hpp"
 #include "lockstep/lockstep_unit.hpp"
 #include "lockstep/rtl_loader.hpp"
-#include "machine/test_chip.hpp"
-#include "machine/test_exports.hpp"
-#include "machine/test_program.hpp"
+#include "machine/compute/test_chip.hpp"
+#include "machine/compute/test_exports.hpp"
+#include "machine/compute/test_program.hpp"
 #include "rtl/test_library.hpp"
 
 namespace raypool {

@@ -29,7 +29,7 @@ module check #(parameter LANES = 3, BANKS = 2) (
   wire [BANKS-1:0] looks;
   wire [BANKS*BANK_LINE_BITS-1:0] looked;
   wire [BANKS*LANES-1:0] lanes, slots;
-  bank_arbiter #(.LANES(LANES), .BANKS(BANKS), .LINE_BITS(3), .SLOT_BITS(1)) dut (
+  rp_bank_arbiter #(.LANES(LANES), .BANKS(BANKS), .LINE_BITS(3), .SLOT_BITS(1)) dut (
     .clk_i(clk_i), .rst_ni(rst_n), .want_valid_i(valid_i), .want_line_i(lines_i), .want_slot_i(slots_i),
     .want_nobody_i(nobody_i), .silent_i(silent_i), .taken_o(taken), .valid_o(looks), .ready_i(ready_i),
     .line_o(looked), .lanes_o(lanes), .slots_o(slots));

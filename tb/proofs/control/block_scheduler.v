@@ -18,7 +18,7 @@ module check #(parameter UNITS = 4) (input wire clk_i, launch_i, input wire [UNI
   wire ready;
   wire [1:0] unit;
   wire [UNITS-1:0] valid;
-  block_scheduler #(.UNITS(UNITS)) dut (
+  rp_block_scheduler #(.UNITS(UNITS)) dut (
     .clk_i(clk_i), .rst_ni(rst_n), .launch_valid_i(launch_i), .launch_ready_o(ready), .launch_unit_o(unit),
     .ready_i(ready_i), .busy_i(busy_i), .valid_o(valid));
 

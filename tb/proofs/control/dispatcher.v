@@ -27,7 +27,7 @@ module check #(parameter OVERLAP = 1) (
   input wire clk_i, input wire [3:0] want_i, first_i, input wire [255:0] instruction_i,
   input wire [3:0] mask_i, x_i, b_i, input wire [127:0] operand_a_i, operand_b_i, operand_c_i
 );
-`include "isa.vh"
+`include "rp_isa.vh"
   localparam [11:0] TYPES = 12'h121;
   localparam [11:0] LATENCY = 12'h431, DEPTH = 12'h521;
   reg rst_n = 1'b0;
@@ -36,7 +36,7 @@ module check #(parameter OVERLAP = 1) (
   wire [3:0] grant, waiting;
   wire [2:0] ready, instance_grant, valid, done;
   wire [5:0] instance_warp, warp, done_warp;
-  dispatcher #(.WARPS(4), .WARP_BITS(2), .INSTANCES(3), .INSTANCE_TYPES(TYPES), .OVERLAP(OVERLAP)) dut (
+  rp_dispatcher #(.WARPS(4), .WARP_BITS(2), .INSTANCES(3), .INSTANCE_TYPES(TYPES), .OVERLAP(OVERLAP)) dut (
     .want_i(want_i), .type_i(types), .first_i(first_i), .grant_o(grant), .waiting_o(waiting),
     .ready_i(ready), .instance_grant_o(instance_grant), .instance_warp_o(instance_warp));
 
@@ -68,12 +68,12 @@ module check #(parameter OVERLAP = 1) (
     end
     for (s = 0; s < 3; s = s + 1) begin : gen_instance
       localparam L = LATENCY[s*4 +: 4], D = DEPTH[s*4 +: 4];
-      task_register #(.WARPS(4), .LANES(1), .WARP_BITS(2), .TYPE(TYPES[s*4 +: 4])) register (
+      rp_task_register #(.WARPS(4), .LANES(1), .WARP_BITS(2), .TYPE(TYPES[s*4 +: 4])) register (
         .clk_i(clk_i), .rst_ni(rst_n), .grant_i(instance_grant[s]), .warp_i(instance_warp[s*2 +: 2]),
         .instruction_i(instruction_i), .mask_i(mask_i), .predicate_x_i(x_i), .predicate_b_i(b_i),
         .operand_a_i(operand_a_i), .operand_b_i(operand_b_i), .operand_c_i(operand_c_i),
         .task_valid_o(valid[s]), .task_warp_o(warp[s*2 +: 2]));
-      alu_pipeline #(.WARP_BITS(2), .LATENCY(L), .DEPTH(D)) pipeline (
+      rp_alu_pipeline #(.WARP_BITS(2), .LATENCY(L), .DEPTH(D)) pipeline (
         .clk_i(clk_i), .rst_ni(rst_n), .task_valid_i(valid[s]), .task_warp_i(warp[s*2 +: 2]), .ready_o(ready[s]),
         .done_valid_o(done[s]), .done_warp_o(done_warp[s*2 +: 2]), .stage_valid_o());
       reg [3:0] since_q = 15;            // cycles since the last task
@@ -106,7 +106,7 @@ module check #(parameter OVERLAP = 1) (
       wire [1:0] source;
       wire [4:0] operation, word;
       wire [31:0] operand_a, operand_b, operand_c, immediate;
-      task_register #(.WARPS(4), .LANES(1), .WARP_BITS(2), .TYPE(t), .FMA(1)) register (
+      rp_task_register #(.WARPS(4), .LANES(1), .WARP_BITS(2), .TYPE(t), .FMA(1)) register (
         .clk_i(clk_i), .rst_ni(rst_n), .grant_i(instance_grant[0]), .warp_i(instance_warp[1:0]),
         .instruction_i(instruction_i), .mask_i(mask_i), .predicate_x_i(x_i), .predicate_b_i(b_i),
         .operand_a_i(operand_a_i), .operand_b_i(operand_b_i), .operand_c_i(operand_c_i),

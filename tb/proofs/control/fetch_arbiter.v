@@ -19,7 +19,7 @@ module check #(parameter WARPS = 8, WARP_BITS = 3) (
   wire [WARPS-1:0] grant;
   wire valid;
   wire [WARP_BITS-1:0] warp;
-  fetch_arbiter #(.WARPS(WARPS), .WARP_BITS(WARP_BITS)) dut (
+  rp_fetch_arbiter #(.WARPS(WARPS), .WARP_BITS(WARP_BITS)) dut (
     .clk_i(clk_i), .rst_ni(rst_n), .request_i(request_i), .first_i(first), .grant_o(grant), .valid_o(valid),
     .warp_o(warp));
 

@@ -26,7 +26,7 @@ module check #(parameter CONTENTS = 4, parameter RAYS = 7, parameter INTERSECTIO
   wire [BITS-1:0] safe = shadows < LIMIT ? LIMIT - shadows : 0;
   wire [1:0] kind;
   wire [$clog2(CONTENTS + 1)-1:0] threads;
-  fill_policy #(.CONTENTS(CONTENTS), .RAY_POOL_SIZE(RAYS), .INTERSECTION_POOL_SIZE(INTERSECTIONS), .BATCH(BATCH),
+  rp_fill_policy #(.CONTENTS(CONTENTS), .RAY_POOL_SIZE(RAYS), .INTERSECTION_POOL_SIZE(INTERSECTIONS), .BATCH(BATCH),
                 .COUNT_BITS(BITS)) dut (
     .clk_i(clk_i), .rays_i({4'd0, rays}), .normal_i({4'd0, normal}), .shadow_i({4'd0, shadow}),
     .secondary_room_i(safe), .rays_to_come_i({4'd0, to_come}), .promised_i({4'd0, promised}), .kernels_i(kernels),

@@ -22,7 +22,7 @@ module check (
   wire [1:0] exported_unit;
   wire [31:0] exported_pixel;
   wire [47:0] unused;
-  frame_port dut (
+  rp_frame_port dut (
     .clk_i(clk_i), .rst_ni(rst_n), .unit_valid_i(unit_valid), .unit_ready_o(unit_ready),
     .unit_pixel_i(unit_data[31:0]), .unit_color_i(unit_data[127:32]), .unit_number_i(number),
     .traverser_valid_i(traverser_valid), .traverser_ready_o(traverser_ready),

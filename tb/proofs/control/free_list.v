@@ -16,7 +16,7 @@ module check #(parameter SIZE = 4, parameter BITS = SIZE > 1 ? $clog2(SIZE) : 1)
   always @(posedge clk_i) rst_n <= 1'b1;
   wire valid;
   wire [BITS-1:0] number;
-  free_list #(.SIZE(SIZE)) dut (
+  rp_free_list #(.SIZE(SIZE)) dut (
     .clk_i(clk_i), .rst_ni(rst_n), .valid_o(valid), .ready_i(ready_i), .number_o(number), .free_i(free_i),
     .free_number_i(number_i));
 

@@ -11,7 +11,7 @@
 // @break import_arbiter s/\/ 4 - 1;/\/ 4 - 2;/
 // @break import_arbiter s/beat && receiver == UNIT/beat_valid_i \&\& request_unit_o == UNIT/
 // @break request_queue s/if \(pop\) entries_q/if (pop \&\& !push_i) entries_q/
-// @break round_robin s/\|behind \? behind : request_i/request_i/
+// @break round_robin s/\|behind \? first_behind : first/first/
 `default_nettype none
 module check #(parameter UNITS = 4, INTERSECTION_WORDS = 21) (
   input wire clk_i, ready_i, beat_i, choose_i, input wire [UNITS-1:0] request_i, input wire [UNITS*2-1:0] kind_i);
@@ -21,7 +21,7 @@ module check #(parameter UNITS = 4, INTERSECTION_WORDS = 21) (
   wire [UNITS-1:0] ready, beats;
   wire valid;
   wire [1:0] kind, unit;
-  import_arbiter #(.UNITS(UNITS), .INTERSECTION_WORDS(INTERSECTION_WORDS)) dut (
+  rp_import_arbiter #(.UNITS(UNITS), .INTERSECTION_WORDS(INTERSECTION_WORDS)) dut (
     .clk_i(clk_i), .rst_ni(rst_n), .unit_request_valid_i(request_i), .unit_request_ready_o(ready),
     .unit_request_kind_i(kind_i), .unit_beat_valid_o(beats), .request_valid_o(valid), .request_ready_i(ready_i),
     .request_kind_o(kind), .request_unit_o(unit), .beat_valid_i(beat_i));

@@ -36,8 +36,8 @@ module check #(parameter [0:0] TRIPLES = 1'b1) (
   input wire clk_i, start_i, halt_i, pc_valid_i, fetch_grant_i, hit_i, refill_i, grant_i, done_i, fault_i,
   input wire [2:0] some_pc_i, input wire [10:0] some_instruction_i
 );
-  `include "isa.vh"
-  `include "isa_functions.vh"
+  `include "rp_isa.vh"
+  `include "rp_isa_functions.vh"
   reg rst_n = 1'b0;
   always @(posedge clk_i) rst_n <= 1'b1;
   // Three bits of a PC and eleven of an instruction vary: unit, operation, the lowest bit of rd, so that elements wait
@@ -52,7 +52,7 @@ module check #(parameter [0:0] TRIPLES = 1'b1) (
   wire [63:0] instruction;
   // Two that its ALUs lack.
   localparam [511:0] WITHOUT = (512'd1 << {ISA_TYPE_INT, ISA_INT_IMUL}) | (512'd1 << {ISA_TYPE_SLW, ISA_SLW_FDIV});
-  instruction_buffer #(.TRIPLES(TRIPLES), .WITHOUT(WITHOUT)) dut (
+  rp_instruction_buffer #(.TRIPLES(TRIPLES), .WITHOUT(WITHOUT)) dut (
     .clk_i(clk_i), .rst_ni(rst_n), .start_i(start_i), .halt_i(halt_i), .active_o(active), .step_o(step),
     .pc_valid_i(pc_valid_i), .pc_i(pc_i), .program_length_i(length), .fetch_request_o(fetch), .fetch_pc_o(fetch_pc),
     .fetch_grant_i(fetch_grant_i), .cache_hit_i(hit_i), .cache_instruction_i(instruction_i), .refill_done_i(refill_i),

@@ -23,7 +23,7 @@ module check #(parameter WINDOW_REMEDY = 1, parameter UNITS = 2) (
   reg [BITS-1:0] held_q = 0, rays_q = 0, to_come_q = 0, shadow_q = 0;
   wire eye_possible;
   wire [BITS-1:0] room;
-  launch_rules #(.CONTENTS(4), .UNITS(UNITS), .RAY_POOL_SIZE(RAYS), .INTERSECTION_POOL_SIZE(INTERSECTIONS),
+  rp_launch_rules #(.CONTENTS(4), .UNITS(UNITS), .RAY_POOL_SIZE(RAYS), .INTERSECTION_POOL_SIZE(INTERSECTIONS),
                  .HELD_LIMIT(HELD), .WINDOW_REMEDY(WINDOW_REMEDY), .COUNT_BITS(BITS)) dut (
     .clk_i(clk_i), .rst_ni(rst_n), .tile_left_i(tile_left), .tile_pixels_i({1'b0, pixels}), .cast_i(cast),
     .cast_held_i(held_q), .held_i(held_q), .shadow_rays_i(rays_q), .shadow_to_come_i(to_come_q), .shadow_i(shadow_q),

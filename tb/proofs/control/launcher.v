@@ -39,7 +39,7 @@ module check #(parameter OVERLAP = 1) (
   wire [21:0] threads;
   wire [63:0] block, blocks;
   wire accept = rst_n && launch_valid_i && ready;
-  launcher #(.WARPS(WARPS), .LANES(LANES), .OVERLAP(OVERLAP)) dut (
+  rp_launcher #(.WARPS(WARPS), .LANES(LANES), .OVERLAP(OVERLAP)) dut (
     .clk_i(clk_i), .rst_ni(rst_n), .launch_valid_i(launch_valid_i), .launch_ready_o(ready),
     .launch_pc_i({12'd0, pc_i}), .launch_threads_i({7'd0, threads_i}), .launch_block_i({28'd1, pc_i}),
     .launch_blocks_i({28'd2, pc_i}), .launch_import_i(import_i), .import_start_o(import_start),

@@ -13,7 +13,7 @@ module check (input wire clk_i, valid_i, choose_i, input wire [1:0] taken_i, inp
   wire ready, asked;
   wire [1:0] valid, asked_data;
   wire [3:0] data;
-  line_offers #(.WIDTH(2)) dut (
+  rp_line_offers #(.WIDTH(2)) dut (
     .clk_i(clk_i), .rst_ni(rst_n), .valid_i(valid_i), .ready_o(ready), .data_i(data_i), .valid_o(valid), .data_o(data),
     .taken_i(taken_i), .asked_o(asked), .asked_data_o(asked_data));
 

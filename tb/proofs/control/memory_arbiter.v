@@ -21,7 +21,7 @@ module check (
   wire [127:0] quad;
   wire [3:0] mask;
   wire [4:0] id;
-  memory_arbiter dut (
+  rp_memory_arbiter dut (
     .clk_i(clk_i), .rst_ni(rst_n),
     .instruction_request_valid_i(fetch_i), .instruction_request_ready_o(fetch_ready),
     .instruction_request_address_i(fetch_address_i), .instruction_response_valid_o(fetch_response),

@@ -38,7 +38,7 @@ module check #(
   wire [31:0] address;
   wire [3:0] quiet, mask;
   wire [143:0] unused;
-  memory_port #(.QUEUE(QUEUE), .TRAVERSER_QUEUE(TRAVERSER_QUEUE), .CYCLES_PER_BEAT(CYCLES_PER_BEAT),
+  rp_memory_port #(.QUEUE(QUEUE), .TRAVERSER_QUEUE(TRAVERSER_QUEUE), .CYCLES_PER_BEAT(CYCLES_PER_BEAT),
                 .LINES(LINES)) dut (
     .clk_i(clk_i), .rst_ni(rst_n), .device_request_valid_i(device_valid), .device_request_ready_o(device_ready),
     .device_request_write_i(device_write), .device_request_address_i({25'd0, device_address, 4'd0}),

@@ -28,7 +28,7 @@ module check #(parameter WARPS = 4, WARP_BITS = 2, MSHRS = 2) (
   wire select, next, next_mshr, queue_empty, privilege, idle;
   wire [1:0] kind;
   wire [WARP_BITS-1:0] select_warp, next_warp, holder;
-  memory_sequencer #(.WARPS(WARPS), .MSHRS(MSHRS)) dut (
+  rp_memory_sequencer #(.WARPS(WARPS), .MSHRS(MSHRS)) dut (
     .clk_i(clk_i), .rst_ni(rst_n), .queue_i(queue_i), .queue_warp_i(queue_warp_i), .park_i(park_i),
     .park_warp_i(park_warp_i), .pass_end_i(end_i), .pass_warp_i(end_warp_i), .pass_refused_i(refused_i),
     .pass_allocated_i(allocated_i), .filled_i(filled_i), .waiters_i(waiters_i), .freed_i(freed_i), .select_o(select),

@@ -29,7 +29,7 @@ module check #(parameter MSHRS = 3, WARPS = 2, MSHR_BITS = 2) (
   wire [MSHRS-1:0] filled;
   wire [MSHRS*26-1:0] lines;
   wire [MSHRS*WARPS-1:0] waiters;
-  miss_status #(.WARPS(WARPS), .MSHRS(MSHRS), .SET_BITS(2)) dut (
+  rp_miss_status #(.WARPS(WARPS), .MSHRS(MSHRS), .SET_BITS(2)) dut (
     .clk_i(clk_i), .rst_ni(rst_n), .access_i(access_i), .access_line_i(line_i), .access_warp_i(warp_i), .match_o(match),
     .available_o(available), .available_id_o(available_id), .locked_o(locked), .join_i(join_i), .allocate_i(allocate_i),
     .allocate_way_i(way_i), .fill_i(fill_i), .fill_id_i(fill_id_i), .fill_last_i(last_i), .fill_line_o(fill_line),

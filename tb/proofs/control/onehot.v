@@ -7,7 +7,7 @@
 `default_nettype none
 module check #(parameter COUNT = 5) (
   input wire clk_i, input wire [COUNT-1:0] onehot_i, input wire [COUNT*3-1:0] items_i);
-`include "onehot.vh"
+`include "rp_onehot.vh"
   `ONEHOT_SELECT(chosen, COUNT, 3)
   `ONEHOT_NUMBER(number, COUNT, 3)
   wire [COUNT-1:0] below = onehot_i - 1'b1;

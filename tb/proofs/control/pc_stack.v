@@ -27,7 +27,7 @@ module check #(parameter DEPTH = 4, parameter PC_BITS = 16) (
   always @(posedge clk_i) rst_n <= 1'b1;
   wire pc_valid, overflow, underflow;
   wire [PC_BITS-1:0] pc;
-  pc_stack #(.DEPTH(DEPTH), .PC_BITS(PC_BITS)) dut (
+  rp_pc_stack #(.DEPTH(DEPTH), .PC_BITS(PC_BITS)) dut (
     .clk_i(clk_i), .rst_ni(rst_n), .start_i(start_i), .start_pc_i(start_pc_i), .step_i(step_i), .pc_valid_o(pc_valid),
     .pc_o(pc), .jump_i(jump_i), .push_i(push_i), .push_return_i(push_return_i), .pop_i(pop_i), .target_i(target_i),
     .end_i(end_i), .return_i(return_i), .overflow_o(overflow), .underflow_o(underflow));

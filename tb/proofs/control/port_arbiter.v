@@ -11,7 +11,7 @@
 // @break port_arbiter s/locked_q <= !\(ready_i && \|\(last_i & grant\)\)/locked_q <= !ready_i/
 // @break port_arbiter s/grant & \{COUNT\{ready_i\}\}/valid_i \& {COUNT{ready_i}}/
 // @break port_arbiter s/number_o = n\[1:0\]/number_o = n[1:0] ^ 2'd1/
-// @break round_robin s/\|behind \? behind : request_i/request_i/
+// @break round_robin s/\|behind \? first_behind : first/first/
 `default_nettype none
 module check #(parameter COUNT = 4) (input wire clk_i, ready_i, input wire [COUNT-1:0] valid_i, last_i,
                                      input wire [COUNT*2-1:0] data_i);
@@ -20,7 +20,7 @@ module check #(parameter COUNT = 4) (input wire clk_i, ready_i, input wire [COUN
   wire [COUNT-1:0] ready;
   wire valid;
   wire [1:0] data, number;
-  port_arbiter #(.COUNT(COUNT), .WIDTH(2)) dut (
+  rp_port_arbiter #(.COUNT(COUNT), .WIDTH(2)) dut (
     .clk_i(clk_i), .rst_ni(rst_n), .valid_i(valid_i), .ready_o(ready), .data_i(data_i), .last_i(last_i),
     .valid_o(valid), .ready_i(ready_i), .data_o(data), .number_o(number));
 

@@ -18,7 +18,7 @@ module check #(parameter DEPTH = 4) (input wire clk_i, push_i, ready_i, choose_i
   always @(posedge clk_i) rst_n <= 1'b1;
   wire valid;
   wire [1:0] data;
-  ram_queue #(.WIDTH(2), .DEPTH(DEPTH)) dut (
+  rp_ram_queue #(.WIDTH(2), .DEPTH(DEPTH)) dut (
     .clk_i(clk_i), .rst_ni(rst_n), .push_i(push_i), .data_i(data_i), .valid_o(valid), .ready_i(ready_i), .data_o(data));
 
   wire push = rst_n && push_i;

@@ -24,7 +24,7 @@
 // @break ray_exit s/if \(!puts_q\) begin/if (1'b1) begin/
 // @break ray_exit s/contributes && !contributed/contributes/
 `default_nettype none
-module leaf_reader #(parameter SLOTS = 2, parameter LINE_BITS = 26, parameter SLOT_BITS = 1) (
+module rp_leaf_reader #(parameter SLOTS = 2, parameter LINE_BITS = 26, parameter SLOT_BITS = 1) (
   input wire clk_i, rst_ni, input wire [1:0] start_i, input wire [2*SLOT_BITS-1:0] start_slot_i,
   input wire [61:0] start_leaf_i, output wire [1:0] want_o, want_nobody_o, output wire [2*LINE_BITS-1:0] want_line_o,
   output wire [2*SLOT_BITS-1:0] want_slot_o, input wire [1:0] taken_i, output wire room_o, input wire waited_i, given_i,
@@ -52,7 +52,7 @@ module leaf_reader #(parameter SLOTS = 2, parameter LINE_BITS = 26, parameter SL
   always @* if (rst_ni) assert ((waits_q & starts) == 0);
 endmodule
 
-module ray_finish #(parameter TAG_BITS = 2) (
+module rp_ray_finish #(parameter TAG_BITS = 2) (
   input wire clk_i, rst_ni, valid_i, input wire [TAG_BITS-1:0] tag_i, input wire [287:0] corners_i,
   input wire [95:0] origin_i, input wire [1:0] main_axis_i, input wire [63:0] shear_i, input wire [31:0] t_i,
   input wire [8:0] scale_i, output wire valid_o, output wire [TAG_BITS-1:0] tag_o, output wire [31:0] t_o, u_o, v_o,
@@ -79,7 +79,7 @@ module check #(parameter SHADING = 0, parameter CULLING = 0) (
   wire slot_free_slot, free, free_place, free_shadow, put, contribution;
   wire [127:0] put_data;
   wire [31:0] pixel;
-  ray_exit #(.LANES(2), .SLOTS(2), .POOL(2), .RECORD_WORDS(8), .SHADING(SHADING), .CULLING(CULLING)) dut (
+  rp_ray_exit #(.LANES(2), .SLOTS(2), .POOL(2), .RECORD_WORDS(8), .SHADING(SHADING), .CULLING(CULLING)) dut (
     .clk_i(clk_i), .rst_ni(rst_n), .material_base_i(32'd0), .record_i({21{5'd7}}), .depth_limit_i(8'd1),
     .reflections_i(1'b1), .ray_valid_i(ray_valid), .ray_place_i(ray_place),
     .ray_words_i({128'd0, 31'd0, ray_place, 224'd0}), .set_valid_i(set_valid), .set_slot_i(set_slot),

@@ -30,7 +30,7 @@ module check (
   wire [31:0] pixel;
   wire [95:0] color;
   // Two bits of each set's quadword are enough: the lowest and the highest.
-  ray_export #(.WARPS(4), .LANES(2), .WARP_BITS(2)) dut (
+  rp_ray_export #(.WARPS(4), .LANES(2), .WARP_BITS(2)) dut (
     .clk_i(clk_i), .rst_ni(rst_n), .park_i(park_i), .park_warp_i(park_warp_i), .park_frame_i(frame_i),
     .park_mask_i(mask_i), .push_i(push_i), .push_warp_i(push_warp_i), .output_set_i(sets_i), .busy_o(busy),
     .exporting_o(exporting), .read_o(read), .read_set_o(set), .read_thread_o(thread), .read_word_o(word),

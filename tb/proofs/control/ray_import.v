@@ -37,7 +37,7 @@ module check #(parameter [0:0] WIDE = 1'b1, parameter integer WORDS = 21) (
   wire [4:0] write_word;
   wire [7:0] write_mask;
   wire [255:0] write_data;
-  ray_import #(.WARPS(2), .LANES(2), .WARP_BITS(1), .INTERSECTION_WORDS(WORDS), .WIDE(WIDE)) dut (
+  rp_ray_import #(.WARPS(2), .LANES(2), .WARP_BITS(1), .INTERSECTION_WORDS(WORDS), .WIDE(WIDE)) dut (
     .clk_i(clk_i), .rst_ni(rst_n), .start_i(start_i), .start_kind_i(start_kind_i),
     .start_threads_i({8'd0, start_threads_i}), .active_o(active), .request_valid_o(request_valid),
     .request_kind_o(request_kind), .request_ready_i(request_ready_i), .beat_valid_i(beat_valid_i),

@@ -15,7 +15,7 @@ module check #(parameter DEPTH = 3) (input wire clk_i, push_i, ready_i, choose_i
   wire valid;
   wire [3:0] data;
   wire [1:0] count;
-  request_queue #(.WIDTH(4), .DEPTH(DEPTH)) dut (
+  rp_request_queue #(.WIDTH(4), .DEPTH(DEPTH)) dut (
     .clk_i(clk_i), .rst_ni(rst_n), .push_i(push_i), .data_i(data_i), .valid_o(valid), .ready_i(ready_i), .data_o(data),
     .count_o(count));
 

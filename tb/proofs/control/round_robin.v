@@ -14,7 +14,7 @@ module check #(parameter COUNT = 4) (input wire clk_i, advance_i, input wire [CO
   reg rst_n = 1'b0;
   always @(posedge clk_i) rst_n <= 1'b1;
   wire [COUNT-1:0] grant;
-  round_robin #(.COUNT(COUNT)) dut (.clk_i(clk_i), .rst_ni(rst_n), .request_i(request_i), .advance_i(advance_i),
+  rp_round_robin #(.COUNT(COUNT)) dut (.clk_i(clk_i), .rst_ni(rst_n), .request_i(request_i), .advance_i(advance_i),
                                     .grant_o(grant));
 
   (* anyconst *) wire [3:0] waiter;

@@ -18,7 +18,7 @@
 // @break slw_alu s/if \(stage_valid\[DEPTH\+s\]\) data_q/if (stage_valid[DEPTH-1+s]) data_q/
 // @break slw_alu s/if \(stage_valid\[DEPTH\+s\]\) data_q/if (1'b1) data_q/
 `default_nettype none
-module slow_lane #(
+module rp_slow_lane #(
   parameter SUBNORMALS = 0, parameter SIGNIFICAND = 24, parameter SLOW_UNIT = 0, parameter STAGES = 6,
   parameter WITHOUT = 0
 ) (
@@ -38,7 +38,7 @@ endmodule
 module check #(parameter SLOW_LANES = 2, parameter DEPTH = 7) (
   input wire clk_i, grant_i, follow_i, warp_i, input wire [1:0] operation_i, input wire [3:0] mask_i, a_i, b_i
 );
-`include "isa.vh"
+`include "rp_isa.vh"
   localparam integer LAST = DEPTH + 4 / SLOW_LANES - 1;   // cycles from a task's arrival to its end
   reg rst_n = 1'b0;
   always @(posedge clk_i) rst_n <= 1'b1;
@@ -65,7 +65,7 @@ module check #(parameter SLOW_LANES = 2, parameter DEPTH = 7) (
   wire ready, done_valid, done_warp;
   wire [127:0] done_data;
   wire [3:0] done_predicate;
-  slw_alu #(
+  rp_slw_alu #(
     .WARPS(2), .LANES(4), .WARP_BITS(1), .LATENCY(1), .DEPTH(DEPTH), .SLOW_UNIT(3), .SLOW_LANES(SLOW_LANES)
   ) dut (
     .clk_i(clk_i), .rst_ni(rst_n), .task_valid_i(valid_q), .task_warp_i(warp_q), .task_operation_i(operation),

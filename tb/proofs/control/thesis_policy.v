@@ -23,7 +23,7 @@ module check #(parameter CONTENTS = 4, parameter RAYS = 7, parameter INTERSECTIO
   wire [BITS-1:0] room = shadows < LIMIT ? LIMIT - shadows : 0;
   wire [1:0] kind;
   wire [$clog2(CONTENTS + 1)-1:0] threads;
-  thesis_policy #(.CONTENTS(CONTENTS), .RAY_POOL_SIZE(RAYS), .INTERSECTION_POOL_SIZE(INTERSECTIONS),
+  rp_thesis_policy #(.CONTENTS(CONTENTS), .RAY_POOL_SIZE(RAYS), .INTERSECTION_POOL_SIZE(INTERSECTIONS),
                   .COUNT_BITS(BITS)) dut (
     .clk_i(clk_i), .rays_i({2'd0, rays}), .normal_i({2'd0, normal}), .shadow_i({2'd0, shadow}),
     .secondary_room_i(room), .eye_possible_i(eye_possible), .more_to_come_i(more_to_come), .ahead_i(ahead),

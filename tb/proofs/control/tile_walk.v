@@ -24,7 +24,7 @@ module check #(parameter TILE_ORDER = 1, parameter SIZE_BITS = 2, parameter CONT
   wire busy, valid, last;
   wire [31:0] block;
   wire [PIXEL_BITS-1:0] pixels;
-  tile_walk #(.CONTENTS(CONTENTS), .TILE_ORDER(TILE_ORDER), .SIZE_BITS(SIZE_BITS)) dut (
+  rp_tile_walk #(.CONTENTS(CONTENTS), .TILE_ORDER(TILE_ORDER), .SIZE_BITS(SIZE_BITS)) dut (
     .clk_i(clk_i), .rst_ni(rst_n), .start_i(start), .width_i(width), .height_i(height), .busy_o(busy),
     .tile_valid_o(valid), .tile_ready_i(ready), .tile_block_o(block), .tile_pixels_o(pixels), .tile_last_o(last));
 

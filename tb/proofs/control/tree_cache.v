@@ -45,7 +45,7 @@ module check (
   wire offer_slot;
   reg [1:0] owed_q = 0;                          // registers whose lines the memory owes
   reg [2:0] line_q [0:1];
-  tree_cache #(.LANES(2), .SLOTS(1), .LINES(4), .WAYS(2), .MSHRS(2), .LINE_BITS(3), .DATA_BITS(1)) dut (
+  rp_tree_cache #(.LANES(2), .SLOTS(1), .LINES(4), .WAYS(2), .MSHRS(2), .LINE_BITS(3), .DATA_BITS(1)) dut (
     .clk_i(clk_i), .rst_ni(rst_n), .valid_i(valid), .ready_o(ready), .line_i(line), .lanes_i(lanes), .slots_i(2'd0),
     .given_lanes_o(given), .given_slots_o(given_slots), .given_data_o(data), .offer_valid_o(offers),
     .offer_ready_i(takes), .offer_lane_o(offer_lane), .offer_slot_o(offer_slot), .request_valid_o(asks),

@@ -47,7 +47,7 @@ module check (
   wire [255:0] data;
   wire [511:0] fill_data;
   wire [3:0] fill_entries;
-  tree_port #(.LANES(2), .SLOTS(2), .ENTRY_BITS(1), .BLOCK_BITS(2), .NODE_ID_BITS(1), .TRIANGLE_ID_BITS(1),
+  rp_tree_port #(.LANES(2), .SLOTS(2), .ENTRY_BITS(1), .BLOCK_BITS(2), .NODE_ID_BITS(1), .TRIANGLE_ID_BITS(1),
               .LINES(LINES)) dut (
     .clk_i(clk_i), .rst_ni(rst_n), .triangles_line_i(26'd2), .triangle_lines_i(26'd3), .stacks_line_i(26'd8),
     .fault_valid_o(fault), .fault_source_o(fault_source), .fault_line_o(fault_line), .stop_i(stop_q),

@@ -10,7 +10,7 @@
 // @break unit_memory_arbiter s/response_unit_i == UNIT/response_unit_i >= UNIT/
 // @break unit_memory_arbiter s/unit_request_mask_i\[u\*4 \+: 4\]/4'hF/
 // @break port_arbiter s/locked_q \? choice_q : next/next/
-// @break round_robin s/\|behind \? behind : request_i/request_i/
+// @break round_robin s/\|behind \? first_behind : first/first/
 `default_nettype none
 module check #(parameter UNITS = 4) (
   input wire clk_i, ready_i, response_i, input wire [1:0] response_unit_i,
@@ -25,7 +25,7 @@ module check #(parameter UNITS = 4) (
   wire [127:0] quad;
   wire [3:0] mask;
   wire [6:0] id;
-  unit_memory_arbiter #(.UNITS(UNITS)) dut (
+  rp_unit_memory_arbiter #(.UNITS(UNITS)) dut (
     .clk_i(clk_i), .rst_ni(rst_n), .unit_request_valid_i(valid_i), .unit_request_ready_o(ready),
     .unit_request_write_i(write_i), .unit_request_address_i(address_i), .unit_request_data_i(quad_i),
     .unit_request_mask_i(mask_i), .unit_request_id_i(id_i), .unit_response_valid_o(response), .request_valid_o(valid),

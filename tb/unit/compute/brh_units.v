@@ -1,0 +1,38 @@
+// Bench top: Brh ALUs fed with the same tasks. Unit m has SUBNORMALS m and the bits [m*...] of every output. The last
+// one is deeper, so that the delay behind the stages is seen too.
+`default_nettype none
+module brh_units #(
+  parameter integer LANES = 4,
+  parameter integer SIGNIFICAND = 24
+) (
+  input  wire                clk_i,
+  input  wire                rst_ni,
+  input  wire                task_valid_i,
+  input  wire [2:0]          task_warp_i,
+  input  wire [4:0]          task_operation_i,
+  input  wire [LANES-1:0]    task_mask_i,
+  input  wire [LANES*32-1:0] task_operand_a_i,
+  input  wire [LANES*32-1:0] task_operand_b_i,
+  input  wire [LANES-1:0]    task_predicate_x_i,
+  input  wire [LANES-1:0]    task_predicate_b_i,
+  output wire [1:0]          ready_o,
+  output wire [1:0]          done_valid_o,
+  output wire [2*3-1:0]      done_warp_o,
+  output wire [2*LANES-1:0]  done_predicate_o
+);
+  genvar m;
+  generate
+    for (m = 0; m < 2; m = m + 1) begin : gen_mode
+      rp_brh_alu #(.WARPS(8), .LANES(LANES), .WARP_BITS(3), .LATENCY(1), .DEPTH(2 + 3*m), .SUBNORMALS(m),
+          .SIGNIFICAND(SIGNIFICAND)) unit (
+        .clk_i(clk_i), .rst_ni(rst_ni), .task_valid_i(task_valid_i), .task_warp_i(task_warp_i),
+        .task_operation_i(task_operation_i), .task_mask_i(task_mask_i), .task_operand_a_i(task_operand_a_i),
+        .task_operand_b_i(task_operand_b_i), .task_operand_c_i({LANES*32{1'b0}}), .task_immediate_i(32'd0),
+        .task_word_i(5'd0), .task_predicate_x_i(task_predicate_x_i), .task_predicate_b_i(task_predicate_b_i),
+        .ready_o(ready_o[m]), .done_valid_o(done_valid_o[m]), .done_warp_o(done_warp_o[m*3 +: 3]), .done_data_o(),
+        .done_subnormal_o(),
+        .done_predicate_o(done_predicate_o[m*LANES +: LANES]));
+    end
+  endgenerate
+endmodule
+`default_nettype wire
