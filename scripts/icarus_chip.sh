@@ -1,6 +1,6 @@
 #!/bin/bash
-# Icarus as second opinion on the whole chip: scripts/icarus_chip.sh CHIP_FRAMES FOLDER MACHINE FRAME... records frames
-# of chance of a tiny chip as its model draws them (CHIP_FRAMES is raypool_chip_frames, whose machines and frames have
+# Icarus as second opinion on the whole chip: scripts/icarus_chip.sh CHIP_FRAMES FOLDER MACHINE FRAME... records random
+# frames of a tiny chip as its model draws them (CHIP_FRAMES is raypool_chip_frames, whose machines and frames have
 # these numbers) and replays each on rtl/chip/rp_chip.v in Icarus, where registers and memories begin as X and so does
 # what the chip is given while nothing says that it is valid. RTL names another folder with the Verilog. Fails if an
 # output differs from the recording in any cycle, or is X where it counts.

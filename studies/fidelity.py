@@ -439,22 +439,24 @@ def measure(arguments, options, out, folder):
     publish(arguments.levels, out, folder)
 
 
-def fidelity(arguments):
+def run_study(study, arguments, measured):
+    """Calls measured(arguments, options of the frame, folder of the results, a temporary folder in it). A folder that
+    was made for the results is removed if none came into it."""
     if not os.access(RAYPOOL, os.X_OK):
-        raise FidelityError(f"{RAYPOOL} was not found: make fidelity builds it, or RAYPOOL names one")
+        raise FidelityError(f"{RAYPOOL} was not found: make {study} builds it, or RAYPOOL names one")
     options, name = frame(arguments)
-    out = pathlib.Path(arguments.out or os.path.join(BUILD, "fidelity", name))
+    out = pathlib.Path(arguments.out or os.path.join(BUILD, study, name))
     made = not out.exists()
     try:
         out.mkdir(parents=True, exist_ok=True)
-        temporary = tempfile.TemporaryDirectory(dir=out, prefix=".fidelity-")
+        temporary = tempfile.TemporaryDirectory(dir=out, prefix=f".{study}-")
     except OSError as error:
         raise FidelityError(f"the folder {out} cannot be written: {error.strerror}") from error
     try:
         with temporary as folder:
-            measure(arguments, options, out, pathlib.Path(folder))
+            measured(arguments, options, out, pathlib.Path(folder))
     finally:
-        if made:  # goes again if nothing came into it
+        if made:
             with contextlib.suppress(OSError):
                 out.rmdir()
 
@@ -465,7 +467,7 @@ def main():
 
     signal.signal(signal.SIGTERM, interrupt)
     try:
-        fidelity(parser().parse_args())
+        run_study("fidelity", parser().parse_args(), measure)
     except FidelityError as error:
         say(f"fidelity: {error}")
         return error.code

@@ -18,15 +18,14 @@ import shutil
 import signal
 import subprocess
 import sys
-import tempfile
 import typing
 
 import fidelity
 from experiments import show
 from fidelity import INPUT_FAILURE, INTERRUPTED, RAYPOOL, Failed, FidelityError, say
-import synth.fit
 from plots.plot import Plot, legend, plain
 from plots.style import colour
+import synth.fit
 from synth.errors import SynthError
 
 # dB of two pictures between which nobody sees a difference: kInvisible of studies/numerics/significands.hpp.
@@ -392,27 +391,6 @@ def compare_machines(arguments, options, out, folder):
     publish(out, folder, ["machines", *(["pareto.svg"] if arguments.area else []), "pareto.json"])
 
 
-def pareto(arguments):
-    if not os.access(RAYPOOL, os.X_OK):
-        raise FidelityError(f"{RAYPOOL} was not found: make pareto builds it, or RAYPOOL names one")
-    chosen_machines(arguments.machines)
-    options, name = fidelity.frame(arguments)
-    out = pathlib.Path(arguments.out or os.path.join(fidelity.BUILD, "pareto", name))
-    made = not out.exists()
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-        temporary = tempfile.TemporaryDirectory(dir=out, prefix=".pareto-")
-    except OSError as error:
-        raise FidelityError(f"the folder {out} cannot be written: {error.strerror}") from error
-    try:
-        with temporary as folder:
-            compare_machines(arguments, options, out, pathlib.Path(folder))
-    finally:
-        if made:  # goes again if nothing came into it
-            with contextlib.suppress(OSError):
-                out.rmdir()
-
-
 def main():
     def interrupt(*_):
         raise KeyboardInterrupt
@@ -420,7 +398,9 @@ def main():
     signal.signal(signal.SIGTERM, interrupt)
     os.environ["RAYPOOL"] = RAYPOOL  # for the synthesis
     try:
-        pareto(parser().parse_args())
+        arguments = parser().parse_args()
+        chosen_machines(arguments.machines)
+        fidelity.run_study("pareto", arguments, compare_machines)
     except (FidelityError, SynthError) as error:
         say(f"pareto: {error}")
         return getattr(error, "code", INPUT_FAILURE)

@@ -43,7 +43,7 @@ def text_of(texts, base):
 
 
 def defines(gated):
-    """The Verilog as it becomes hardware: Booth trees in place of products; rp_free_running.vh tells what clock gates
+    """The Verilog that is synthesised: Booth trees in place of products; rp_free_running.vh tells what clock gates
     change.
     """
     return "-DSYNTHESIS" if gated else "-DSYNTHESIS -DNO_CLOCK_GATES"

@@ -1,4 +1,4 @@
-// Draws frames of chance on tiny chips, rtl/chip/rp_chip.v in lockstep with its model: on machines that have every pair
+// Draws random frames on tiny chips, rtl/chip/rp_chip.v in lockstep with its model: on machines that have every pair
 // of values of what a chip has (sim/cosim/covering.hpp), with pictures, traffic at every port and answers of the
 // traverser drawn at random; and on as many with the traverser inside, with scenes, trees and waits at the memories
 // drawn at random, whose pictures must be the native engine's. Some trees are none: of these the fault is compared, and
@@ -501,7 +501,7 @@ int main(int argc, char** argv) {
   testing::InitGoogleTest(&argc, argv);
   raypool::Options options;
   options.program = argv[0];
-  CLI::App app("Frames of chance on tiny chips, rtl/chip/rp_chip.v in lockstep with its model.", "raypool_chip_frames");
+  CLI::App app("Random frames on tiny chips, rtl/chip/rp_chip.v in lockstep with its model.", "raypool_chip_frames");
   app.add_option("--frames", options.frames, "of each machine")->capture_default_str()->check(CLI::PositiveNumber);
   app.add_option("--seed", options.seed, "of pictures, scenes and traffic")->capture_default_str();
   app.add_option("--machines", options.machines, "only the first so many machines; 0: all")->capture_default_str();

@@ -60,7 +60,7 @@ class TraverserLane {
   static constexpr uint32_t kNoReference = UINT32_MAX;
   static constexpr uint32_t kLeaf = 1u << 31;  ///< of a reference: it is a leaf's
 
-  /// What lanes say, and what goes on in them: sets of lanes, a bit each, so that whoever clocks them goes through
+  /// Signals and events of the lanes: sets of lanes, a bit each, so that whoever clocks them goes through
   /// those few of which something comes, kind by kind. Of a set that is said the bits hold in a whole cycle.
   struct Sets {
     uint64_t cycle = 0;

@@ -20,7 +20,7 @@ namespace {
 /// A package that a unit has made, and of which launch.
 enum class Package : uint8_t { Normal, Shadow, Contribution };
 
-/// A compute unit of chance.
+/// A random compute unit.
 struct RandomUnit {
   struct Kernel {
     uint32_t imports = 0;  // left
