@@ -20,7 +20,7 @@ endif
 #:   SCENE=cornell|room|FILE       what is drawn; .obj, .gltf, .glb, .ply
 export SCENE ?= room
 #:   SIZE=WxH                      pixels, 1..16384 each
-export SIZE ?= 320x320
+export SIZE ?= 256x256
 #:   DEPTH=N                       1: eye and shadow rays; more: reflections
 export DEPTH ?= 3
 #:   CONFIG=4w4c|8w8c|...|FILE     hardware: configs/*.json, [best_]NwMc, file
@@ -77,6 +77,10 @@ LOCKED := flock $(BUILD)/.lock
 # Benches whose runs of hours are worth an optimised build.
 OPTIMISED_BENCHES := mkdir -p $(BUILD)/benches && scripts/configure.sh $(BUILD)/benches ON \
   -DRAYPOOL_BENCHES_OPTIMISED=ON
+# Where nothing is built yet, make sim compiles only what draws. The engine sampled is a study's.
+DRAWS := $(if $(or $(wildcard $(RAYPOOL)),$(filter sampled,$(ENGINE))),raypool,raypool-sim)
+# built PROGRAM,WORDS: builds it, and says so where it is not there yet.
+built = @[ -x $(BUILD)/$1 ] || echo 'building $2'; scripts/build.sh $(BUILD) $1
 # options NAMES: of each variable that is set the option, --look-at for LOOK_AT, --units for CUS. A value stays one
 # word, and behind the equals sign it may begin with a minus.
 options = $(shell for name in $1; do option=$${name/CUS/units} option=$${option,,}; \
@@ -134,9 +138,10 @@ help-all: ## every target and variable
 	  /^#: / { line = substr($$0, 4) }' Makefile $(STUDIES)
 
 # An environment may hold a TIME of its own, for time(1).
-sim: setup-sim program ## draw a scene on the simulated chip: picture, report, figures
-	@$(UNIT_OF_ENGINE) $(OF_FRAME)
-	@$(RAYPOOL) sim $(call options,$(FRAME) ENGINE BOUNDARY HITS OUT THREADS ERROR $(call said,TIME) \
+sim: setup-sim configured-OFF ## draw a scene on the simulated chip: picture, report, figures
+	$(call built,$(DRAWS),what draws; the first time this takes about two minutes)
+	@RAYPOOL=$(BUILD)/$(DRAWS) $(UNIT_OF_ENGINE) $(OF_FRAME)
+	@$(BUILD)/$(DRAWS) sim $(call options,$(FRAME) ENGINE BOUNDARY HITS OUT THREADS ERROR $(call said,TIME) \
 	  $(if $(filter sampled,$(ENGINE)),SEED)) $(WAVES_FLAG) $(TRACE_FLAG) $(ARGS)
 
 #: variables of make compare:  A=FOLDER|REPORT  B=FOLDER|REPORT
@@ -313,5 +318,4 @@ configured-%:
 	@$(LOCKED) scripts/configure.sh $(BUILD) $*
 
 program: configured-OFF
-	@[ -x $(RAYPOOL) ] || echo 'building raypool; the first time this takes some minutes'
-	@scripts/build.sh $(BUILD) raypool
+	$(call built,raypool,raypool; the first time this takes about three minutes)

@@ -1,131 +1,25 @@
-// The program: commands of the machine and of its studies, and what it does with errors.
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-#include <unistd.h>
-
-#include <CLI/CLI.hpp>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
-#include <exception>
-
-#include "chip/chip.hpp"
-#include "cli/about.hpp"
-#include "cli/exit_code.hpp"
-#include "cli/inspecting_run.hpp"
-#include "cli/machine_commands.hpp"
+// The program `raypool`: the commands of the machine and of its studies.
 #include "commands/study_commands.hpp"
-#include "files/unfinished.hpp"
-#include "lockstep/lockstep_unit.hpp"
+#include "run_program.hpp"
 #include "sampled/sampled_frame.hpp"
+#include "tools/machine_commands.hpp"
 
 namespace raypool {
 namespace {
 
-/// The end of --help.
-std::string exit_codes() {
-  std::string text = "Exit codes:\n";
-  for (const ExitCode& row : kExitCodes) text += fmt::format("  {}  {}\n", row.code, row.meaning);
-  return text;
-}
-
-/// "--size is given 2 times (8x8, 16x16): give it once", of an option that takes one
-/// value; empty if there is none such.
-std::string given_twice(const CLI::App& app) {
-  for (const CLI::App* sub : app.get_subcommands()) {
-    for (const CLI::Option* option : sub->get_options()) {
-      const std::vector<std::string>& values = option->results();
-      if (option->get_expected_max() != 1 || values.size() < 2) continue;
-      return fmt::format("{} is given {} times ({}): give it once", option->get_name(), values.size(),
-                         fmt::join(values, ", "));
-    }
-  }
-  return "";
-}
-
-/// The commands with their options, as CLI11 takes them.
-class CommandLine {
- public:
-  explicit CommandLine(const std::vector<std::string>& words)
-      : machine_(app_, words, sampled::kSampler, code_), studies_(app_, words, code_) {
-    app_.require_subcommand(1);
-    app_.set_help_all_flag("--help-all", "help of every command");
-    app_.set_version_flag(
-        "--version", [] { return about(); }, "version, and those of the libraries");
-    app_.footer(exit_codes());
-  }
-  /// Parses, runs the command and returns its exit code.
-  int run(int argc, char** argv);
-
- private:
-  CLI::App app_{
-      "raypool: a ray-tracing GPU to render on, measure, verify and synthesise. RAYPOOL COMMAND --help tells more of a "
-      "command.",
-      "raypool"};
-  int code_ = 0;
-  MachineCommands machine_;
-  StudyCommands studies_;
+struct Commands {
+  Commands(CLI::App& app, const std::vector<std::string>& words, int& code)
+      : machine(app, words, sampled::kSampler, code), studies(app, words, code) {}
+  MachineCommands machine;
+  StudyCommands studies;
 };
-
-int CommandLine::run(int argc, char** argv) {
-  try {
-    app_.parse(argc, argv);
-  } catch (const CLI::Success& success) {
-    return app_.exit(success);
-  } catch (const CLI::ParseError& error) {
-    const std::string twice = given_twice(app_);
-    std::fprintf(stderr, "raypool: %s (raypool --help shows what there is)\n",
-                 twice.empty() ? error.what() : twice.c_str());
-    return kInputFailure;
-  }
-  return code_;
-}
-
-/// What has been printed is a result too: lost, it is an error.
-int close_output(int code) {
-  const bool lost = std::ferror(stdout) != 0;
-  int error = std::fflush(stdout) != 0 ? errno : 0;
-  // Why a write before this one failed is forgotten: one more is asked for the reason.
-  if (lost && error == 0) error = write(STDOUT_FILENO, "\n", 1) < 0 ? errno : EIO;
-  // Network file systems tell of a full disk when the file is closed; one that was closed before is none.
-  if (std::fclose(stdout) != 0 && error == 0 && errno != EBADF) error = errno;
-  if (error == 0) return code;
-  std::fprintf(stderr, "raypool: cannot write to standard output (%s): what was printed is not complete\n",
-               std::strerror(error));
-  return code == 0 ? kInputFailure : code;
-}
-
-/// Runs a command; what it throws becomes a sentence and an exit code.
-int run_and_report(int argc, char** argv) {
-  try {
-    return CommandLine({argv, argv + argc}).run(argc, argv);
-  } catch (const InputError& error) {
-    std::fprintf(stderr, "raypool: %s\n", error.what());
-    return kInputFailure;
-  } catch (const LockstepDifference& difference) {
-    if (difference.inspect_until != 0 && run_inspecting(argc, argv, difference)) return kDifference;
-    std::fprintf(stderr, "raypool: %s\n", difference.what());
-    return kDifference;
-  } catch (const ChipStalled& stalled) {
-    std::fprintf(stderr, "raypool: %s\n", stalled.what());
-    return kOtherFailure;
-  } catch (const Stopped& stopped) {
-    std::fprintf(stderr, "raypool: %s\n", stopped.what());
-    return kOtherFailure;
-  } catch (const std::exception& error) {
-    if (std::ferror(stdout) != 0) return kInputFailure;  // which close_output() says
-    std::fprintf(stderr, "raypool: failed: %s\n", error.what());
-    return kOtherFailure;
-  }
-}
 
 }  // namespace
 }  // namespace raypool
 
 int main(int argc, char** argv) {
-  raypool::handle_stop_signals();
-  raypool::tell_unfinished([](const std::string& what) { std::fprintf(stderr, "raypool: %s\n", what.c_str()); });
-  const int code = raypool::close_output(raypool::run_and_report(argc, argv));
-  if (const int signal = raypool::stop_signal()) raypool::end_by(signal);
-  return code;
+  return raypool::run_program(
+      argc, argv, [](CLI::App& app, const std::vector<std::string>& words, int& code) -> std::shared_ptr<void> {
+        return std::make_shared<raypool::Commands>(app, words, code);
+      });
 }

@@ -44,4 +44,21 @@ void add_units_and_depth(CLI::App& app, int& units, int& depth) {
   app.add_option("--depth", depth, "1: eye and shadow rays only; up to 254: with reflections")->capture_default_str();
 }
 
+CLI::Option* add_engine(CLI::App& app, std::string& engine, std::string& library) {
+  app.add_option("--unit-library", library, "Verilated unit (default: where raypool unit builds it)");
+  return app
+      .add_option("--engine", engine,
+                  "what plays the machine; native, the kernels as C++, and sampled are for sim only")
+      ->type_name("native|functional|sampled|model|rtl|lockstep")
+      ->capture_default_str();
+}
+
+void add_inspect(CLI::App& app, uint64_t& until) {
+  app.add_option("--inspect", until,
+                 "lockstep: look inside the RTL up to this cycle, in which an earlier run met a difference; that run "
+                 "does it by itself")
+      ->type_name("CYCLE")
+      ->check(CLI::PositiveNumber);
+}
+
 }  // namespace raypool

@@ -19,5 +19,8 @@ void add_threads(CLI::App& app, uint32_t& threads, const std::string& whose);
 void add_scene(CLI::App& app, std::string& scene, std::string& size, std::string& view, ViewWords& look,
                double& detail);
 void add_units_and_depth(CLI::App& app, int& units, int& depth);
+/// --engine, and --unit-library.
+CLI::Option* add_engine(CLI::App& app, std::string& engine, std::string& library);
+void add_inspect(CLI::App& app, uint64_t& until);
 
 }  // namespace raypool

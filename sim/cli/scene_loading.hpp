@@ -8,6 +8,9 @@
 
 namespace raypool {
 
+/// Of a picture, WIDTHxHEIGHT in pixels, where nobody says it: what is drawn in half a minute by Verilog too.
+constexpr char kDefaultSize[] = "256x256";
+
 /// Camera and light on the command line; what is empty stays as the view has it.
 struct ViewWords {
   std::string eye, look_at, up, light;  ///< x,y,z

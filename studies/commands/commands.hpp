@@ -46,7 +46,7 @@ struct WidthsOptions {
   double detail = 1;
   std::string view;
   ViewWords look;
-  std::string size = "320x320";
+  std::string size = kDefaultSize;
   uint32_t depth = 3;
   std::vector<uint32_t> bits;
   bool quiet = false;  ///< no progress
@@ -67,7 +67,7 @@ struct FitOptions {
   double detail = 1;
   std::string view;
   ViewWords look;
-  std::string size = "320x320";
+  std::string size = kDefaultSize;
   int depth = 3;
   int units = 1;
   std::string config = "8w8c";  ///< what there is to be less of

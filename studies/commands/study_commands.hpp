@@ -12,7 +12,7 @@ namespace raypool {
 
 class StudyCommands {
  public:
-  /// As MachineCommands (cli/machine_commands.hpp).
+  /// As MachineCommands (tools/machine_commands.hpp).
   StudyCommands(CLI::App& app, const std::vector<std::string>& command, int& code);
   StudyCommands(const StudyCommands&) = delete;
   StudyCommands& operator=(const StudyCommands&) = delete;

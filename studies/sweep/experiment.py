@@ -15,7 +15,7 @@ MOST_POINTS = 10000
 RUN_FIELDS = {
     "scene": "room",
     "view": "",
-    "size": "320x320",
+    "size": "256x256",
     "depth": 3,
     "detail": 1,
     "config": "8w8c",

@@ -1,4 +1,4 @@
-#include "cli/report_comparison.hpp"
+#include "tools/report_comparison.hpp"
 
 #include <fmt/format.h>
 

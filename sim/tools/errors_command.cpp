@@ -2,8 +2,8 @@
 #include <cstdio>
 
 #include "arith/error_table.hpp"
-#include "cli/commands.hpp"
 #include "cli/exit_code.hpp"
+#include "tools/commands.hpp"
 
 namespace raypool {
 

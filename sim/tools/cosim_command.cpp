@@ -7,7 +7,6 @@
 #include <optional>
 #include <vector>
 
-#include "cli/commands.hpp"
 #include "cli/engine.hpp"
 #include "cli/output_folder.hpp"
 #include "cli/progress.hpp"
@@ -20,6 +19,7 @@
 #include "cosim/vector_recorder.hpp"
 #include "lockstep/lockstep_unit.hpp"
 #include "lockstep/rtl_loader.hpp"
+#include "tools/commands.hpp"
 
 namespace raypool {
 namespace {

@@ -1,9 +1,9 @@
 // `raypool configurations`: the sets of configurations that the tests walk.
 #include <fmt/format.h>
 
-#include "cli/commands.hpp"
 #include "cli/output_folder.hpp"
 #include "cosim/covering.hpp"
+#include "tools/commands.hpp"
 
 namespace raypool {
 

@@ -7,11 +7,11 @@
 #include <sstream>
 
 #include "bits.hpp"
-#include "cli/commands.hpp"
 #include "cli/text_file.hpp"
 #include "files/output_files.hpp"
 #include "isa/assembler.hpp"
 #include "isa/input_error.hpp"
+#include "tools/commands.hpp"
 
 namespace raypool {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "chip/sampling.hpp"
-#include "cli/commands.hpp"
+#include "cli/drawing_commands.hpp"
+#include "tools/commands.hpp"
 
 namespace raypool {
 
@@ -21,13 +21,10 @@ class MachineCommands {
 
  private:
   CLI::App* add(const std::string& name, const std::string& what);
-  void add_sim_command();
   void add_compare_command();
   void add_run_command();
   void add_cosim_command();
   void add_configurations_command();
-  void add_config_command();
-  void add_unit_command();
   void add_isa_command();
   void add_assembly_command();
   void add_kernels_command();
@@ -38,13 +35,11 @@ class MachineCommands {
 
   CLI::App& app_;
   int& code_;
-  SimOptions sim_;
+  DrawingCommands drawing_;
   CompareOptions compare_;
   RunOptions compute_;
   CosimOptions cosim_;
   ConfigurationsOptions configurations_;
-  ConfigOptions config_;
-  UnitOptions unit_;
   bool verilog_ = false, functions_ = false, markdown_ = false, write_ = false;
   std::string text_path_, text_out_;
   std::string kernel_, kernels_config_ = "8w8c";

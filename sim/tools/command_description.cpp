@@ -1,4 +1,4 @@
-#include "cli/command_description.hpp"
+#include "tools/command_description.hpp"
 
 #include <fmt/format.h>
 

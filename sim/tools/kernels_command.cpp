@@ -2,11 +2,11 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "cli/commands.hpp"
 #include "config/configuration.hpp"
 #include "isa/assembler.hpp"
 #include "kernel/compute_kernels.hpp"
 #include "kernel/kernel_report.hpp"
+#include "tools/commands.hpp"
 
 namespace raypool {
 

@@ -9,7 +9,6 @@
 
 #include "bits.hpp"
 #include "chip/program_run.hpp"
-#include "cli/commands.hpp"
 #include "cli/engine.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/limit_sentence.hpp"
@@ -21,6 +20,7 @@
 #include "isa/assembler.hpp"
 #include "kernel/compute_kernels.hpp"
 #include "kernel/kernel_report.hpp"
+#include "tools/commands.hpp"
 
 namespace raypool {
 namespace {

@@ -4,13 +4,13 @@
 
 #include <vector>
 
-#include "cli/commands.hpp"
 #include "cli/image_size.hpp"
 #include "files/output_files.hpp"
 #include "isa/input_error.hpp"
 #include "scene/hits_check.hpp"
 #include "scene/scene.hpp"
 #include "scene/tree_file.hpp"
+#include "tools/commands.hpp"
 
 namespace raypool {
 namespace {

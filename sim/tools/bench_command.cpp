@@ -3,13 +3,13 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/commands.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/image_size.hpp"
 #include "cli/progress.hpp"
 #include "cli/scene_loading.hpp"
 #include "scene/intersection_bench.hpp"
 #include "scene/threads.hpp"
+#include "tools/commands.hpp"
 
 namespace raypool {
 namespace {

@@ -3,11 +3,11 @@
 
 #include <filesystem>
 
-#include "cli/commands.hpp"
 #include "cli/folders.hpp"
-#include "cli/report_comparison.hpp"
 #include "files/json_text.hpp"
 #include "isa/input_error.hpp"
+#include "tools/commands.hpp"
+#include "tools/report_comparison.hpp"
 
 namespace raypool {
 

@@ -5,12 +5,12 @@
 #include <filesystem>
 #include <utility>
 
-#include "cli/commands.hpp"
 #include "cli/text_file.hpp"
 #include "config/reference.hpp"
 #include "files/output_files.hpp"
 #include "isa/input_error.hpp"
 #include "isa/reference.hpp"
+#include "tools/commands.hpp"
 
 namespace raypool {
 

@@ -6,8 +6,8 @@
 #include <iterator>
 #include <string_view>
 
-#include "cli/report_comparison.hpp"
 #include "files/json_text.hpp"
+#include "tools/report_comparison.hpp"
 
 namespace raypool {
 namespace {

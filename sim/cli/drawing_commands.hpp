@@ -1,0 +1,37 @@
+// The commands that draw a frame, and build the Verilated unit for it, with their options.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "chip/sampling.hpp"
+#include "cli/commands.hpp"
+
+namespace raypool {
+
+/// The heading of the machine's commands in --help.
+constexpr char kMachineGroup[] = "Machine";
+
+class DrawingCommands {
+ public:
+  /// Adds them to `app`, which must outlive this. `command` is the command line; `sampler` is the engine sampled, null:
+  /// there is none. The command that is parsed leaves its exit code in `code`.
+  DrawingCommands(CLI::App& app, const std::vector<std::string>& command, const sampled::Sampler* sampler, int& code);
+  DrawingCommands(const DrawingCommands&) = delete;
+  DrawingCommands& operator=(const DrawingCommands&) = delete;
+
+ private:
+  CLI::App* add(const std::string& name, const std::string& what);
+  void add_sim_command();
+  void add_config_command();
+  void add_unit_command();
+
+  CLI::App& app_;
+  int& code_;
+  SimOptions sim_;
+  ConfigOptions config_;
+  UnitOptions unit_;
+};
+
+}  // namespace raypool
