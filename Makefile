@@ -20,7 +20,7 @@ endif
 #:   SCENE=cornell|room|FILE       what is drawn; .obj, .gltf, .glb, .ply
 export SCENE ?= room
 #:   SIZE=WxH                      pixels, 1..16384 each
-export SIZE ?= 256x256
+export SIZE ?= 200x200
 #:   DEPTH=N                       1: eye and shadow rays; more: reflections
 export DEPTH ?= 3
 #:   CONFIG=4w4c|8w8c|...|FILE     hardware: configs/*.json, [best_]NwMc, file

@@ -1,6 +1,6 @@
 // The program `raypool-sim`: of `raypool` what draws a frame, and is compiled in half the time.
 #include "cli/drawing_commands.hpp"
-#include "run_program.hpp"
+#include "cli/run_program.hpp"
 
 int main(int argc, char** argv) {
   return raypool::run_program(

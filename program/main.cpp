@@ -1,6 +1,6 @@
 // The program `raypool`: the commands of the machine and of its studies.
+#include "cli/run_program.hpp"
 #include "commands/study_commands.hpp"
-#include "run_program.hpp"
 #include "sampled/sampled_frame.hpp"
 #include "tools/machine_commands.hpp"
 

@@ -9,7 +9,7 @@
 namespace raypool {
 
 /// Of a picture, WIDTHxHEIGHT in pixels, where nobody says it: what is drawn in half a minute by Verilog too.
-constexpr char kDefaultSize[] = "256x256";
+constexpr char kDefaultSize[] = "200x200";
 
 /// Camera and light on the command line; what is empty stays as the view has it.
 struct ViewWords {

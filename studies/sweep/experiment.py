@@ -15,7 +15,7 @@ MOST_POINTS = 10000
 RUN_FIELDS = {
     "scene": "room",
     "view": "",
-    "size": "256x256",
+    "size": "200x200",
     "depth": 3,
     "detail": 1,
     "config": "8w8c",

@@ -1,4 +1,4 @@
-#include "run_program.hpp"
+#include "cli/run_program.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
