@@ -1,6 +1,6 @@
 #!/bin/bash
 # Checks the sources: scripts/lint.sh [KIND]... (default: all kinds)
-#   verilog  Verilator, Icarus and Yosys, each for several configurations
+#   verilog  Verilator and Icarus for several configurations, Yosys for those that are no whole chip nor large
 #   pages    the table of modules, what the pages name, the layers of the folders, licences
 #   columns  no line is longer than 120 columns
 #   python   flake8 (.flake8)
@@ -8,6 +8,8 @@
 #   cpp      clang-format, and clang-tidy on what has changed since the last commit that passed (scripts/passed.sh; the
 #            tests tidy_* of make test-long read all); needs the build folder (BUILD, default build) configured with
 #            tests
+# Not among all kinds, since they take minutes; tests of the same names, of make test-long, do them:
+#   lint_units, lint_chip   Yosys for the large multiprocessors, and for the whole chip
 # Prints what failed and the command that shows it again; ends with 1 if anything did. Keeps in the build folder how
 # long all kinds took.
 set -u -o pipefail
@@ -15,9 +17,11 @@ cd "$(dirname "$0")/.." || exit 1
 export LC_ALL=C.UTF-8 build=${BUILD:-build}
 . scripts/duration.bash
 kinds=(verilog pages columns python shell cpp)
+long_kinds=(lint_units lint_chip)
 for kind in "$@"; do
-  [[ " ${kinds[*]} " == *" $kind "* ]] ||
-    { echo "lint: '$kind' is no kind of check; there are ${kinds[*]}, and without one all are done" >&2; exit 1; }
+  [[ " ${kinds[*]} ${long_kinds[*]} " == *" $kind "* ]] ||
+    { echo "lint: '$kind' is no kind of check; there are ${kinds[*]}, and without one all of these are done;" \
+      "and ${long_kinds[*]}" >&2; exit 1; }
 done
 chosen=("${@:-${kinds[@]}}")
 checks=0
@@ -47,9 +51,11 @@ run_check() {
 
 # Corners of the parameter space: the smallest, the largest, narrow and wide warps, every
 # optional mode, every number of units.
-verilog_configurations=(
+small_configurations=(
+  "multiprocessor WARPS=4 LANES=4 SLOW_UNIT=3 BRH_LATENCY=2 SIGNIFICAND=13"
+)
+unit_configurations=(
   "WARPS=8 LANES=8"
-  "WARPS=4 LANES=4 SLOW_UNIT=3 BRH_LATENCY=2 SIGNIFICAND=13"
   "UNITS=2 WARPS=4 LANES=2 INTERSECTION_WORDS=12 SUBNORMALS=2"
   "UNITS=4 WARPS=1 LANES=1 STACK_DEPTH=2 DATA_CACHE_MSHRS=1 INSTRUCTION_CACHE_BYTES=512 DATA_CACHE_BYTES=512"
   "WARPS=32 LANES=1"
@@ -59,7 +65,7 @@ verilog_configurations=(
 )
 
 # The chip's modules, which the multiprocessor does not hold: top, and parameters.
-chip_configurations=(
+small_configurations+=(
   "ray_pool SIZE=512"
   "ray_pool SIZE=1 OVERHEAD=1"
   "ray_pool SIZE=5 OVERHEAD=9 CYCLES_PER_BEAT=3 PIPELINED=1 CULLING=1"
@@ -73,9 +79,6 @@ chip_configurations=(
   "tile_walk TILE_ORDER=1"
   "tile_walk CONTENTS=128 HELD_LIMIT=40 TILE_ORDER=1 SIZE_BITS=8"
   "frame_port"
-  "chip WARPS=2 LANES=2"
-  "chip UNITS=2 WARPS=1 LANES=1 POLICY=1 SHADING=1 CULLING=1 TILE_ORDER=1 RAY_POOL_SIZE=1 RAY_POOL_PIPELINED=1"
-  "chip WARPS=1 LANES=1 TRAVERSER=1 TRAVERSER_LANES=1 TRAVERSER_SLOTS=1 TRAVERSER_TRIANGLE_PIPES=1 TRAVERSER_BANKS=1"
   "controller UNITS=1"
   "controller UNITS=4 POLICY=1 BATCH=256 TRAVERSER_SHADES=1 CULLING=1 TILE_ORDER=1"
   "controller UNITS=2 CONTENTS=1 RAY_POOL_SIZE=1 INTERSECTION_POOL_SIZE=1 HELD_LIMIT=1"
@@ -111,31 +114,48 @@ chip_configurations=(
   "box_pipe BITS=12"
   "box_pipe BITS=16"
 )
+chip_configurations=(
+  "chip WARPS=2 LANES=2"
+  "chip UNITS=2 WARPS=1 LANES=1 POLICY=1 SHADING=1 CULLING=1 TILE_ORDER=1 RAY_POOL_SIZE=1 RAY_POOL_PIPELINED=1"
+  "chip WARPS=1 LANES=1 TRAVERSER=1 TRAVERSER_LANES=1 TRAVERSER_SLOTS=1 TRAVERSER_TRIANGLE_PIPES=1 TRAVERSER_BANKS=1"
+)
 
-check_verilog() {
-  local top parameters parameter rtl configuration
-  mapfile -t rtl < <(scripts/sources.sh verilog)
-  local configurations=("${verilog_configurations[@]/#/multiprocessor }" "${chip_configurations[@]}")
-  echo "lint: ${#rtl[@]} Verilog files in ${#configurations[@]} configurations by three tools"
-  for configuration in "${configurations[@]}"; do
-    read -r top parameters <<< "$configuration"
-    local verilator_flags=() iverilog_flags=() yosys_flags=()
-    for parameter in $parameters; do
-      verilator_flags+=("-G$parameter")
-      iverilog_flags+=("-Prp_$top.$parameter")
-      yosys_flags+=(-chparam "${parameter%=*}" "${parameter#*=}")
-    done
-    check "verilator $configuration" verilator --lint-only -Wall --default-language 1364-2005 -Irtl/include \
-      rtl/waivers.vlt "${verilator_flags[@]}" --top-module "rp_$top" "${rtl[@]}"
-    check "iverilog $configuration" iverilog -g2005 -Wall -Irtl/include -o /dev/null "${iverilog_flags[@]}" \
-      -s "rp_$top" "${rtl[@]}"
-    # Synthesis view, of the whole in one piece: no latch, no combinational loop, no undriven or doubly driven net.
-    check "yosys $configuration" yosys -q -e '.*latch.*' -p "
-      read_verilog -DSYNTHESIS -DNO_CLOCK_GATES -Irtl/include ${rtl[*]}
-      hierarchy -check -top rp_$top ${yosys_flags[*]}; proc -noopt; flatten; opt_clean
-      select -assert-none t:\$dlatch t:\$adlatch t:\$dlatchsr; check -assert"
+# each COMMAND CONFIGURATION...: COMMAND with each of them, its words apart.
+each() {
+  local command=$1 words configuration; shift
+  for configuration in "$@"; do
+    read -r -a words <<< "$configuration"
+    "$command" "${words[@]}"
   done
 }
+
+# The rest take a module and its parameters.
+read_by_simulators() {
+  local top=$1; shift
+  check "verilator $top $*" verilator --lint-only -Wall --default-language 1364-2005 -Irtl/include rtl/waivers.vlt \
+    "${@/#/-G}" --top-module "rp_$top" "${rtl[@]}"
+  check "iverilog $top $*" iverilog -g2005 -Wall -Irtl/include -o /dev/null "${@/#/-Prp_$top.}" -s "rp_$top" "${rtl[@]}"
+}
+
+# Synthesis view, of the whole in one piece: no latch, no combinational loop, no undriven or doubly driven net.
+read_by_yosys() {
+  local top=$1 flags=() parameter; shift
+  for parameter in "$@"; do flags+=(-chparam "${parameter%=*}" "${parameter#*=}"); done
+  check "yosys $top $*" yosys -q -e '.*latch.*' -p "
+    read_verilog -defer -DSYNTHESIS -DNO_CLOCK_GATES -Irtl/include ${rtl[*]}
+    hierarchy -check -top rp_$top ${flags[*]}; proc -noopt; flatten; opt_clean
+    select -assert-none t:\$dlatch t:\$adlatch t:\$dlatchsr; check -assert"
+}
+
+check_verilog() {
+  local units=("${unit_configurations[@]/#/multiprocessor }")
+  local all=("${units[@]}" "${chip_configurations[@]}" "${small_configurations[@]}")
+  echo "lint: ${#rtl[@]} Verilog files, ${#all[@]} configurations by two tools, ${#small_configurations[@]} by a third"
+  each read_by_simulators "${all[@]}"
+  each read_by_yosys "${small_configurations[@]}"
+}
+check_lint_units() { each read_by_yosys "${unit_configurations[@]/#/multiprocessor }"; }
+check_lint_chip() { each read_by_yosys "${chip_configurations[@]}"; }
 
 check_pages() {
   check "table of modules" scripts/module_table.py
@@ -170,6 +190,7 @@ check_cpp() {
 }
 
 [ $# -gt 0 ] || echo "lint: $(last_duration lint)"
+mapfile -t rtl < <(scripts/sources.sh verilog)
 for kind in "${chosen[@]}"; do "check_$kind"; done
 wait
 [ $# -gt 0 ] || keep_duration lint

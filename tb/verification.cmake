@@ -52,6 +52,16 @@ else()
   message(STATUS "clang-tidy was not found: the tests tidy_* are left out (scripts/setup.sh lint)")
 endif()
 
+# Yosys on what is large; `make lint` has it read what is small.
+find_program(YOSYS yosys)
+if(YOSYS)
+  foreach(kind lint_units lint_chip)
+    add_test(NAME ${kind} COMMAND ${scripts}/lint.sh ${kind})
+    set_tests_properties(${kind} PROPERTIES TIMEOUT 3600)
+    raypool_long(300 ${kind})
+  endforeach()
+endif()
+
 add_test(NAME shares COMMAND ${scripts}/tests/shares_test.py ${CMAKE_BINARY_DIR})
 
 # Every program that has once shown a fault.
