@@ -58,7 +58,7 @@ if(YOSYS)
   foreach(kind lint_units lint_chip)
     add_test(NAME ${kind} COMMAND ${scripts}/lint.sh ${kind})
     set_tests_properties(${kind} PROPERTIES TIMEOUT 3600)
-    raypool_long(300 ${kind})
+    raypool_long(500 ${kind})
   endforeach()
 endif()
 
