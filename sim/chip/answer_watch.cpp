@@ -22,7 +22,23 @@ std::optional<std::string> AnswerWatch::waits() const {
   return all.empty() ? std::nullopt : std::optional(all);
 }
 
-std::optional<std::string> AnswerWatch::clock(uint64_t cycle, const ChipOutputs& outputs, const ChipInputs& inputs) {
+const AnswerWatch::Port* AnswerWatch::late_port() const {
+  for (const Port& port : ports_)
+    if (!port.asked.empty() && cycle_ - port.asked.front() > limit_) return &port;
+  return nullptr;
+}
+
+std::string AnswerWatch::late() const {
+  const Port* port = late_port();
+  if (port == nullptr) return "";
+  return fmt::format(
+      "{} waits at port {} since cycle {} for a line of the memory, and none takes more than {} cycles: the memory has "
+      "lost a request or an answer",
+      port->who, port->name, port->asked.front(), limit_);
+}
+
+bool AnswerWatch::clock(uint64_t cycle, const ChipOutputs& outputs, const ChipInputs& inputs) {
+  cycle_ = cycle;
   const auto reads = [](bool valid, bool ready, bool write) { return valid && ready && !write; };
   const TraverserPorts& traverser = outputs.traverser;
   ports_[0].clock(
@@ -34,15 +50,7 @@ std::optional<std::string> AnswerWatch::clock(uint64_t cycle, const ChipOutputs&
                   reads(outputs.device.memory_request_valid, outputs.to_device.memory_request_ready,
                         outputs.device.memory_request.write),
                   outputs.to_device.memory_response_valid);
-  for (const Port& port : ports_) {
-    if (port.asked.empty() || cycle - port.asked.front() <= limit_) continue;
-    return fmt::format(
-        "{} waits at port {} since cycle {} for a line of the memory, and none takes more than {} cycles: the memory "
-        "has "
-        "lost a request or an answer",
-        port.who, port.name, port.asked.front(), limit_);
-  }
-  return {};
+  return late_port() != nullptr;
 }
 
 }  // namespace raypool::chip

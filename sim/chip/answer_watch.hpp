@@ -29,8 +29,10 @@ class AnswerWatch {
   /// Who waits for a line, and since when, in a few words; nobody may.
   std::optional<std::string> waits() const;
 
-  /// Once in a cycle. What has waited for too long, in a sentence.
-  std::optional<std::string> clock(uint64_t cycle, const ChipOutputs& outputs, const ChipInputs& inputs);
+  /// Once in a cycle: true if somebody has waited for too long.
+  bool clock(uint64_t cycle, const ChipOutputs& outputs, const ChipInputs& inputs);
+  /// Who that is, in a sentence.
+  std::string late() const;
 
  private:
   // A port at which lines are asked for, and come back in order.
@@ -41,8 +43,10 @@ class AnswerWatch {
 
     void clock(uint64_t cycle, bool asks, bool beat);
   };
+  // The first one that has waited for too long, or null.
+  const Port* late_port() const;
 
-  uint64_t limit_;
+  uint64_t limit_, cycle_ = 0;
   std::array<Port, 3> ports_{
       {{"the chip", "memory_request"}, {"the traverser", "tree_request"}, {"a unit", "device_request"}}};
 };

@@ -46,7 +46,9 @@ Board::Board(const ChipOptions& options, const FrameSetup& setup, ChipDevice& ch
       memory_(store, options.configuration.chip),
       answers_(options.configuration.chip),
       kernels_(chip.units(), options.configuration.contents()),
-      progress_(options.watchdog_cycles, options.limits.silent()) {
+      progress_(options.watchdog_cycles, options.limits.silent()),
+      last_counted_(options.timed ? counted_cycles(options.configuration) : kNever),
+      look_at_(options.watchdog_cycles == 0 ? kNever : 0) {
   const ChipConfiguration& configuration = options.configuration.chip;
   if (has_traverser(configuration)) {
     watch_.emplace(options.layout, configuration.ray_pool_size, options.depth);
@@ -95,8 +97,7 @@ void Board::clock() {
     follow_kernels(outputs);
     follow_levels(outputs);
     watch(outputs);
-    if (const std::optional<std::string> waits = answers_.clock(cycle_, outputs, inputs_))
-      throw ChipStalled(at_cycle(*waits) + "; " + state());
+    if (answers_.clock(cycle_, outputs, inputs_)) throw ChipStalled(at_cycle(answers_.late()) + "; " + state());
   }
   if (tiles_) tiles_->clock(outputs, watch_ ? outputs.traverser : inputs_);
   if (outputs.frame_valid && inputs_.frame_ready) options_.frame->add(outputs.frame);
@@ -195,13 +196,14 @@ void Board::watch(const ChipOutputs& outputs) {
   if (options_.progress && cycle_ % kProgressCycles == 0) show_progress();
   if (options_.limits.cycles != 0 && cycle_ == options_.limits.cycles)
     throw LimitPassed(at_cycle(limit_sentence(options_.limits.cycles, true)), state());
-  if (options_.timed && cycle_ == counted_cycles(options_.configuration)) {
+  if (cycle_ == last_counted_) {
     throw InputError(
         fmt::format("{} cycles have passed, and after so many a performance counter of {}, of {} bits, may "
                     "have begun anew: draw with --set counter_bits=48",
                     cycle_, options_.configuration.name, options_.configuration.counter_bits));
   }
-  if (options_.watchdog_cycles == 0 || cycle_ % options_.watchdog_cycles != 0) return;
+  if (cycle_ != look_at_) return;
+  look_at_ += options_.watchdog_cycles;
   switch (progress_.look(cycle_, {chip_.counter(counter::kInstructions), work_, due()})) {
     case ProgressWatch::State::GoesOn:
       break;

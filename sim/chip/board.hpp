@@ -93,6 +93,7 @@ class Board {
   std::optional<TileWatch> tiles_;  // where tiles' costs are asked for
   uint64_t work_ = 0;               // transfers, and lines that the caches of a traverser inside give
   ProgressWatch progress_;
+  uint64_t last_counted_, look_at_;  // cycles: the last one that counters tell; the watchdog's next one
 };
 
 }  // namespace chip

@@ -10,6 +10,7 @@ class LevelStatistics {
  public:
   /// The level is `level` from cycle `cycle` on.
   void set(uint64_t cycle, uint32_t level) {
+    if (level == level_) return;
     area_ += (cycle - since_) * level_;
     since_ = cycle;
     level_ = level;
