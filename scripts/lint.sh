@@ -1,6 +1,6 @@
 #!/bin/bash
 # Checks the sources: scripts/lint.sh [KIND]... (default: all kinds)
-#   verilog  Verilator and Icarus for several configurations, Yosys for those that are no whole chip nor large
+#   verilog  Verilator and Icarus for several configurations, Yosys for those that are small
 #   pages    the table of modules, what the pages name, the layers of the folders, licences
 #   columns  no line is longer than 120 columns
 #   python   flake8 (.flake8)
@@ -9,7 +9,7 @@
 #            tests tidy_* of make test-long read all); needs the build folder (BUILD, default build) configured with
 #            tests
 # Not among all kinds, since they take minutes; tests of the same names, of make test-long, do them:
-#   lint_units, lint_chip   Yosys for the large multiprocessors, and for the whole chip
+#   lint_units, lint_chip   Yosys for the large multiprocessors, and for whole chips and traversers
 # Prints what failed and the command that shows it again; ends with 1 if anything did. Keeps in the build folder how
 # long all kinds took.
 set -u -o pipefail
@@ -100,8 +100,6 @@ small_configurations+=(
   "traverser_lane"
   "traverser_lane SLOTS=1 ENTRIES=8 BITS=6 LINE_BITS=8 BLOCK_BITS=1"
   "traverser_lane SLOTS=256 ENTRIES=64 BITS=16 LINE_BITS=28"
-  "traverser LANES=1 SLOTS=1 BITS=6 TRIANGLE_PIPES=1 NODE_LINES=4 NODE_WAYS=2 NODE_MSHRS=1 NODE_BANKS=1 POOL=1"
-  "traverser LANES=3 SLOTS=5 TRIANGLE_PIPES=2 TRIANGLE_MSHRS=8 POOL=9 RECORD_WORDS=16 SHADING=1 CULLING=1"
   "ray_setup"
   "ray_setup BITS=6 TAG_BITS=1"
   "ray_setup BITS=16"
@@ -118,6 +116,8 @@ chip_configurations=(
   "chip WARPS=2 LANES=2"
   "chip UNITS=2 WARPS=1 LANES=1 POLICY=1 SHADING=1 CULLING=1 TILE_ORDER=1 RAY_POOL_SIZE=1 RAY_POOL_PIPELINED=1"
   "chip WARPS=1 LANES=1 TRAVERSER=1 TRAVERSER_LANES=1 TRAVERSER_SLOTS=1 TRAVERSER_TRIANGLE_PIPES=1 TRAVERSER_BANKS=1"
+  "traverser LANES=1 SLOTS=1 BITS=6 TRIANGLE_PIPES=1 NODE_LINES=4 NODE_WAYS=2 NODE_MSHRS=1 NODE_BANKS=1 POOL=1"
+  "traverser LANES=3 SLOTS=5 TRIANGLE_PIPES=2 TRIANGLE_MSHRS=8 POOL=9 RECORD_WORDS=16 SHADING=1 CULLING=1"
 )
 
 # each COMMAND CONFIGURATION...: COMMAND with each of them, its words apart.
