@@ -2,7 +2,7 @@
 """Are the intervals of engine `sampled` honest? How many of them contain what the whole frame takes.
 
     studies/intervals.py [--samples N] [--error PERCENT] [--scenes NAME,...] [--configs NAME,...] [--size WxH]
-      [--out FILE]
+      [--traverser static|hardware] [--out FILE]
 
 Draws each scene on each machine once with engine model, and so many times with engine sampled, each time with another
 seed. Prints, of each figure, which share of the 95% intervals contains its true value. Over all frames it must be 92 to
@@ -27,6 +27,8 @@ FEWEST_OF_OTHERS = 0.90
 # Those that are small and in bursts; what little they are is known badly, and said to be.
 LEAST_SHARE = 0.01  # a utilisation below is not asked for
 FAILURE, DISHONEST = 1, 3
+# {traverser: pictures of which samples of a few percent are parts}
+SIZES = {"static": "256x256", "hardware": "512x512"}
 
 
 def edge_scene(folder):
@@ -116,7 +118,9 @@ def parse(words):
     parser.add_argument("--error", default="10%", help="that is asked for (%(default)s)")
     parser.add_argument("--scenes", default=",".join(SCENES), help="of %(default)s")
     parser.add_argument("--configs", default="4w4c,8w8c", help="machines (%(default)s)")
-    parser.add_argument("--size", default="256x256", help="of the picture (%(default)s)")
+    parser.add_argument("--traverser", choices=SIZES, default="static", help="of the machines (%(default)s)")
+    sizes = ", ".join(f"{traverser}: {size}" for traverser, size in SIZES.items())
+    parser.add_argument("--size", help=f"of the picture ({sizes})")
     parser.add_argument("--depth", default="3", help="of reflections (%(default)s)")
     parser.add_argument("--out", type=pathlib.Path, help="the figures as JSON")
     arguments = parser.parse_args(words)
@@ -139,7 +143,8 @@ def run(arguments, folder):
           f"{'half width':>11} {'tiles simulated':>16}")
     for scene in arguments.scenes.split(","):
         for config in arguments.configs.split(","):
-            frame = [*SCENES[scene](folder), "--config", config, "--size", arguments.size, "--depth", arguments.depth]
+            frame = [*SCENES[scene](folder), "--config", config, "--traverser", arguments.traverser, "--size",
+                     arguments.size or SIZES[arguments.traverser], "--depth", arguments.depth]  # fmt: skip
             contained, errors, widths, tiles = check(frame, arguments, lambda text: progress(f"{scene}, {text}"))
             sums.update(contained)
             asked.update({name: arguments.samples for name in contained})

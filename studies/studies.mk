@@ -15,7 +15,7 @@ GATES_SETUP := $(if $(filter-out 0,$(GATES)),setup-synth)
 fidelity: setup-sim setup-fidelity program ## a frame at every level of simulation, speed against error
 	@$(PYTHON) studies/fidelity.py $(call options,$(FRAME) LEVELS RUNS OUT) $(ARGS)
 
-#: of make intervals:  ARGS="--samples 50": seeds of each frame; 200 if not given
+#: of make intervals:  ARGS="--samples 50 --traverser hardware": seeds of each frame, 200 if not given; else static
 intervals: setup-sim program ## do the intervals of ENGINE=sampled contain the true values as often as they say?
 	@python3 studies/intervals.py $(call options,OUT) $(ARGS)
 
