@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "bits.hpp"
+#include "scene/embree_device.hpp"
 
 namespace raypool {
 namespace {
@@ -143,10 +144,7 @@ Bvh build_bvh(const Scene& scene) {
   if (primitives.empty()) return result;
   result.bounds = {{all.lower_x, all.lower_y, all.lower_z}, {all.upper_x, all.upper_y, all.upper_z}};
 
-  // One thread: the tree, and with it the visit counts, must be the same on every machine.
-  const std::unique_ptr<RTCDeviceTy, void (*)(RTCDevice)> device(rtcNewDevice("threads=1"), rtcReleaseDevice);
-  if (!device) throw std::runtime_error("Embree cannot be started; check its installation");
-  const std::unique_ptr<RTCBVHTy, void (*)(RTCBVH)> bvh(rtcNewBVH(device.get()), rtcReleaseBVH);
+  const std::unique_ptr<RTCBVHTy, void (*)(RTCBVH)> bvh(rtcNewBVH(embree_device()), rtcReleaseBVH);
 
   RTCBuildArguments arguments = rtcDefaultBuildArguments();
   arguments.buildQuality = RTC_BUILD_QUALITY_HIGH;

@@ -1,9 +1,11 @@
 #include "scene/embree_scene.hpp"
 
-#include <stdexcept>
+#include "scene/embree_device.hpp"
 
 namespace raypool {
 namespace {
+
+constexpr size_t kFewTriangles = 256;
 
 void set(RTCRay& ray, const RayQuery& query) {
   ray.org_x = query.origin.x, ray.org_y = query.origin.y, ray.org_z = query.origin.z;
@@ -15,12 +17,14 @@ void set(RTCRay& ray, const RayQuery& query) {
 
 }  // namespace
 
-EmbreeScene::EmbreeScene(const Scene& scene) : device_(rtcNewDevice("threads=1")) {
-  if (device_ == nullptr) throw std::runtime_error("Embree cannot be started; check its installation");
-  scene_ = rtcNewScene(device_);
-  rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
-  rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_HIGH);
-  RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+EmbreeScene::EmbreeScene(const Scene& scene, EmbreeMode mode) {
+  const RTCDevice device = embree_device();
+  scene_ = rtcNewScene(device);
+  rtcSetSceneFlags(scene_, mode == EmbreeMode::Robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
+  // Splitting triangles pays in large scenes; and Embree ends the program where floats cannot tell the parts apart.
+  rtcSetSceneBuildQuality(scene_,
+                          scene.triangles.size() < kFewTriangles ? RTC_BUILD_QUALITY_MEDIUM : RTC_BUILD_QUALITY_HIGH);
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
   auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                                                3 * sizeof(float), scene.vertices.size()));
   for (const Vec3& v : scene.vertices) *vertices++ = v.x, *vertices++ = v.y, *vertices++ = v.z;
@@ -35,10 +39,7 @@ EmbreeScene::EmbreeScene(const Scene& scene) : device_(rtcNewDevice("threads=1")
   rtcCommitScene(scene_);
 }
 
-EmbreeScene::~EmbreeScene() {
-  rtcReleaseScene(scene_);
-  rtcReleaseDevice(device_);
-}
+EmbreeScene::~EmbreeScene() { rtcReleaseScene(scene_); }
 
 bool EmbreeScene::nearest(const RayQuery& query, Hit& hit) const {
   RTCRayHit found{};

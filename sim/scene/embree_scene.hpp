@@ -11,11 +11,16 @@
 
 namespace raypool {
 
-/// A robust Embree scene with the triangles of ours. Safe to ask from several threads.
+enum class EmbreeMode : uint8_t {
+  Robust,  ///< no ray passes between triangles that share an edge, Embree says
+  Fast,    ///< its default
+};
+
+/// An Embree scene with the triangles of ours. Safe to ask from several threads.
 class EmbreeScene {
  public:
   /// Throws std::runtime_error when Embree cannot be started. Keeps nothing of `scene`.
-  explicit EmbreeScene(const Scene& scene);
+  explicit EmbreeScene(const Scene& scene, EmbreeMode mode = EmbreeMode::Robust);
   EmbreeScene(const EmbreeScene&) = delete;
   EmbreeScene& operator=(const EmbreeScene&) = delete;
   ~EmbreeScene();
@@ -25,7 +30,6 @@ class EmbreeScene {
   bool occluded(const RayQuery& query) const;
 
  private:
-  RTCDevice device_;
   RTCScene scene_;
 };
 

@@ -185,16 +185,17 @@ void Traversal::set_bvh(Bvh bvh) {
 template <bool kAny>
 bool Traversal::walk(const RayQuery& query, const PreparedRay& ray, Candidate& best, TraversalCounts* counts,
                      VisitList* visits) const {
-  if (triangle_test_) {
+  if (triangle_test_ && box_bits_ == 0) {
     return traverse<kAny>(bvh_, ray, FloatBoxes(bvh_, ray), best, counts, visits, *triangle_test_);
   }
-  if (counts == nullptr && visits == nullptr) {
+  if (!triangle_test_ && counts == nullptr && visits == nullptr) {
     const Walk& fast = walks().back();
     return (kAny ? fast.any : fast.nearest)(wide_, ray, best, nullptr);
   }
   if (box_bits_ == 0) return traverse<kAny>(bvh_, ray, FloatBoxes(bvh_, ray), best, counts, visits);
-  const BoxRay narrow = narrow_ray(query, ray, bvh_.bounds, box_bits_);
-  return traverse<kAny>(bvh_, ray, NarrowBoxes(compressed_, narrow, ray), best, counts, visits);
+  const NarrowBoxes boxes(compressed_, narrow_ray(query, ray, bvh_.bounds, box_bits_), ray);
+  if (triangle_test_) return traverse<kAny>(bvh_, ray, boxes, best, counts, visits, *triangle_test_);
+  return traverse<kAny>(bvh_, ray, boxes, best, counts, visits);
 }
 
 // walk(ray, best): whether it meets something.

@@ -77,7 +77,7 @@ class Traversal {
   /// `box_bits`, 6 .. 16: boxes are then tested in integers of so many bits (narrow_boxes.hpp); 0: in floats.
   void compress_nodes(uint32_t box_bits = 0);
   /// From now on nearest() and occluded() test triangles so, whoever asks for visits or not, but for those who ask for
-  /// WideVisits; boxes are in floats.
+  /// WideVisits; boxes are in floats, or in integers if compress_nodes() says so.
   void set_triangle_test(const TriangleTest& test) { triangle_test_ = test; }
   /// From now on hits are what the traverser of the chip makes of them. Of `hardware`: which triangle is hit, and at
   /// which internal t, as rtl/traverser/rp_triangle_pipe.v says (TriangleTest with the plane in 32 bits); t, u, v and

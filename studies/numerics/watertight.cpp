@@ -69,12 +69,35 @@ WatertightMesh terrain() {
   return mesh;
 }
 
-struct Edge {
-  uint32_t a, b;
-};
+/// `traversal` is of `cast_at`.
+WatertightCounts aim(const WatertightMesh& mesh, const Scene& cast_at, const Traversal& traversal, uint64_t rays) {
+  const Scene& scene = mesh.scene;
+  const std::vector<SharedEdge> edges = shared_edges(scene);
+  std::mt19937_64 random(11);
+  WatertightCounts counts;
+  for (uint64_t i = 0; i < rays; ++i) {
+    const SharedEdge edge = edges[random() % edges.size()];
+    const Vec3 origin = mesh.origins[random() % mesh.origins.size()];
+    // A vertex, the middle, or anywhere between.
+    const bool vertex = i % 4 == 0;
+    const double share = vertex ? 0 : i % 4 == 1 ? 0.5 : std::uniform_real_distribution<double>(0, 1)(random);
+    const RayQuery ray = ray_at(scene, origin, edge, share);
+    ++(vertex ? counts.vertices : counts.edges);
+    ++counts.rays;
+    Hit hit;
+    const bool found = traversal.nearest(ray, hit);
+    bool leak = !found || !traversal.occluded({origin, ray.direction, 1.0f + static_cast<float>(kBeyond)});
+    // On a closed body that is seen from inside there is nothing behind; on others a hit further off is a leak too.
+    leak |= found && static_cast<double>(hit.t) > 1 + kBeyond;
+    counts.leaks += leak;
+    if (i % kJudged == 0 && found) counts.on_seam += std::fabs(exact_hit(cast_at, hit.triangle, ray).margin) < 1e-6;
+  }
+  return counts;
+}
 
-/// Edges of two triangles, none of whose ends lies on a rim: a ray at the rim may pass beside the mesh.
-std::vector<Edge> shared_edges(const Scene& scene) {
+}  // namespace
+
+std::vector<SharedEdge> shared_edges(const Scene& scene) {
   // Vertices of one place, as at the poles, are one.
   std::map<std::array<float, 3>, uint32_t> places;
   auto place = [&](uint32_t vertex) {
@@ -92,7 +115,7 @@ std::vector<Edge> shared_edges(const Scene& scene) {
   for (const auto& [edge, triangles] : count) {
     if (triangles == 1) rim.insert({edge.first, edge.second});
   }
-  std::vector<Edge> edges;
+  std::vector<SharedEdge> edges;
   for (const auto& [edge, triangles] : count) {
     if (triangles == 2 && rim.count(edge.first) == 0 && rim.count(edge.second) == 0)
       edges.push_back({edge.first, edge.second});
@@ -100,36 +123,11 @@ std::vector<Edge> shared_edges(const Scene& scene) {
   return edges;
 }
 
-/// `traversal` is of `cast_at`.
-WatertightCounts aim(const WatertightMesh& mesh, const Scene& cast_at, const Traversal& traversal, uint64_t rays) {
-  const Scene& scene = mesh.scene;
-  const std::vector<Edge> edges = shared_edges(scene);
-  std::mt19937_64 random(11);
-  WatertightCounts counts;
-  for (uint64_t i = 0; i < rays; ++i) {
-    const Edge edge = edges[random() % edges.size()];
-    const Vec3 origin = mesh.origins[random() % mesh.origins.size()];
-    // A vertex, the middle, or anywhere between; computed in double, so that the float point is next to the edge.
-    const bool vertex = i % 4 == 0;
-    const double share = vertex ? 0 : i % 4 == 1 ? 0.5 : std::uniform_real_distribution<double>(0, 1)(random);
-    const Vec3d a = scene.vertices[edge.a].as<double>(), b = scene.vertices[edge.b].as<double>();
-    const Vec3d aim = a + (b - a) * share;
-    const Vec3 direction = (aim - origin.as<double>()).as<float>();
-    ++(vertex ? counts.vertices : counts.edges);
-    ++counts.rays;
-    const RayQuery ray{origin, direction, INFINITY};
-    Hit hit;
-    const bool found = traversal.nearest(ray, hit);
-    bool leak = !found || !traversal.occluded({origin, direction, 1.0f + static_cast<float>(kBeyond)});
-    // On a closed body that is seen from inside there is nothing behind; on others a hit further off is a leak too.
-    leak |= found && static_cast<double>(hit.t) > 1 + kBeyond;
-    counts.leaks += leak;
-    if (i % kJudged == 0 && found) counts.on_seam += std::fabs(exact_hit(cast_at, hit.triangle, ray).margin) < 1e-6;
-  }
-  return counts;
+RayQuery ray_at(const Scene& scene, const Vec3& origin, const SharedEdge& edge, double share) {
+  // In double, so that the float point is next to the edge.
+  const Vec3d a = scene.vertices[edge.a].as<double>(), b = scene.vertices[edge.b].as<double>();
+  return {origin, (a + (b - a) * share - origin.as<double>()).as<float>(), INFINITY};
 }
-
-}  // namespace
 
 std::vector<WatertightMesh> watertight_meshes() {
   return {ball("ball", {0, 0, 0}, {1, 1, 1}, 96), ball("ball at 1e5", {1e5, -2e5, 5e4}, {100, 100, 100}, 96),

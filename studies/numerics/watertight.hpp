@@ -19,6 +19,15 @@ struct WatertightMesh {
 /// Balls near and far, a ball squeezed to needles of 1000 to 1, a bumpy star-shaped body, a terrain seen from above.
 std::vector<WatertightMesh> watertight_meshes();
 
+/// An edge that triangles of a mesh share, by the numbers of two vertices.
+struct SharedEdge {
+  uint32_t a, b;
+};
+/// Edges of two triangles, none of whose ends lies on a rim: a ray at the rim may pass beside the mesh.
+std::vector<SharedEdge> shared_edges(const Scene& scene);
+/// From an origin to a point of an edge, this share of it from a to b: next to it, as the direction is rounded.
+RayQuery ray_at(const Scene& scene, const Vec3& origin, const SharedEdge& edge, double share);
+
 struct WatertightCounts {
   uint64_t rays = 0;
   uint64_t edges = 0, vertices = 0;  ///< aimed at

@@ -3,12 +3,12 @@
 # The traverser's narrow box test. Its oracle counts in rational numbers.
 find_library(GMP_LIBRARY gmp REQUIRED)
 raypool_bench(box_pipe_test)
-target_link_libraries(box_pipe_test PRIVATE ${GMP_LIBRARY})
+target_link_libraries(box_pipe_test PRIVATE raypool_scene ${GMP_LIBRARY})
 raypool_block_models(box_pipe_test box_pipe "BITS" 6 7 10 12 16)
 
 # The edges of its triangle test, against the same oracle.
 raypool_bench(triangle_edges_test)
-target_link_libraries(triangle_edges_test PRIVATE ${GMP_LIBRARY})
+target_link_libraries(triangle_edges_test PRIVATE raypool_scene ${GMP_LIBRARY})
 raypool_verilate(triangle_edges_test SOURCES ${RAYPOOL_RTL}/traverser/rp_triangle_edges.v
   PREFIX Vtriangle_edges TOP_MODULE rp_triangle_edges
   VERILATOR_ARGS -O3 --default-language 1364-2005 -DSYNTHESIS ${RAYPOOL_RTL_SEARCH})

@@ -15,8 +15,8 @@
 #include "Vbox_pipe_6.h"
 #include "Vbox_pipe_7.h"
 #include "config/configuration.hpp"
+#include "scene/exact_rational.hpp"
 #include "unit/common/clocked.hpp"
-#include "unit/common/exact_rational.hpp"
 #include "unit/common/signal_bits.hpp"
 
 namespace raypool::bench {

@@ -15,7 +15,7 @@
 #include "Vroot_digits_15.h"
 #include "Vroot_digits_3.h"
 #include "machine/traverser/ray_finish.hpp"
-#include "unit/common/exact_rational.hpp"
+#include "scene/exact_rational.hpp"
 
 namespace raypool::bench {
 namespace {

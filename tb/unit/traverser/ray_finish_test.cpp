@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "Vray_finish_16.h"
+#include "scene/exact_rational.hpp"
 #include "scene/vec.hpp"
 #include "unit/common/clocked.hpp"
-#include "unit/common/exact_rational.hpp"
 #include "unit/traverser/drawn_triangle.hpp"
 #include "unit/traverser/triangle_signals.hpp"
 

@@ -10,9 +10,9 @@
 #include "Vray_setup_12.h"
 #include "Vray_setup_16.h"
 #include "Vray_setup_6.h"
+#include "scene/exact_rational.hpp"
 #include "scene/narrow_boxes.hpp"
 #include "unit/common/clocked.hpp"
-#include "unit/common/exact_rational.hpp"
 #include "unit/common/signal_bits.hpp"
 #include "unit/traverser/hard_words.hpp"
 

@@ -11,8 +11,8 @@
 #include <random>
 
 #include "Vtriangle_edges.h"
+#include "scene/exact_rational.hpp"
 #include "unit/common/clocked.hpp"
-#include "unit/common/exact_rational.hpp"
 
 namespace raypool::bench {
 namespace {

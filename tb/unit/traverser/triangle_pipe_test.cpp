@@ -14,8 +14,8 @@
 #include "Vfloat_quotient_6_5.h"
 #include "Vtriangle_pipe_26.h"
 #include "Vtriangle_pipe_32.h"
+#include "scene/exact_rational.hpp"
 #include "unit/common/clocked.hpp"
-#include "unit/common/exact_rational.hpp"
 #include "unit/traverser/drawn_triangle.hpp"
 #include "unit/traverser/triangle_signals.hpp"
 

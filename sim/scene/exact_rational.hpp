@@ -1,4 +1,4 @@
-// Rational numbers, for oracles of benches.
+// Rational numbers, for oracles: what is right is computed without any rounding, and compared.
 #pragma once
 
 #include <gmp.h>
@@ -7,10 +7,11 @@
 #include <cstdint>
 #include <initializer_list>
 #include <limits>
+#include <string>
 
 #include "bits.hpp"
 
-namespace raypool::bench {
+namespace raypool {
 
 /// A rational number.
 class Exact {
@@ -33,6 +34,7 @@ class Exact {
   friend Exact operator*(const Exact& a, const Exact& b) { return made(mpq_mul, a, b); }
   friend Exact operator/(const Exact& a, const Exact& b) { return made(mpq_div, a, b); }
   friend bool operator<(const Exact& a, const Exact& b) { return mpq_cmp(a.q_, b.q_) < 0; }
+  friend bool operator==(const Exact& a, const Exact& b) { return mpq_equal(a.q_, b.q_) != 0; }
   /// To so many bits, at most 53, to nearest even; it must not be smaller or larger than normal doubles are.
   double rounded(int bits) const {
     if (sign() == 0) return 0;
@@ -52,6 +54,32 @@ class Exact {
     kept >>= drop;
     kept += off > half || (off == half && (!exact || kept % 2 != 0)) ? 1 : 0;
     return std::ldexp(static_cast<double>(kept) * sign(), drop - static_cast<int>(shift));
+  }
+  /// The nearest float, of two the even one; infinity beyond the largest.
+  float nearest_float() const {
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    if (sign() == 0) return 0;
+    const Exact size = sign() < 0 ? Exact() - *this : *this;
+    // 2^exponent <= size < 2^(exponent + 1)
+    long exponent =
+        static_cast<long>(mpz_sizeinbase(mpq_numref(q_), 2)) - static_cast<long>(mpz_sizeinbase(mpq_denref(q_), 2));
+    if (exponent > 128 || exponent < -151) return exponent > 0 ? kInfinity * static_cast<float>(sign()) : 0;
+    if (size < Exact(std::ldexp(1.0, static_cast<int>(exponent)))) --exponent;
+    if (exponent < -150) return 0;
+    if (exponent == -150) return size == Exact(0x1p-150) ? 0 : 0x1p-149f * static_cast<float>(sign());
+    const double kept = rounded(exponent < -126 ? static_cast<int>(exponent) + 150 : 24);
+    return std::fabs(kept) < 0x1p128 ? static_cast<float>(kept) : kInfinity * static_cast<float>(sign());
+  }
+  /// A double near it, for what is printed.
+  double approximately() const { return mpq_get_d(q_); }
+  /// "numerator/denominator" in lowest terms, or the integer.
+  std::string text() const {
+    char* const digits = mpq_get_str(nullptr, 10, q_);
+    std::string result(digits);
+    void (*release)(void*, size_t) = nullptr;
+    mp_get_memory_functions(nullptr, nullptr, &release);
+    release(digits, result.size() + 1);
+    return result;
   }
   /// -1, 0 or 1.
   int sign() const { return mpq_sgn(q_); }
@@ -80,4 +108,4 @@ inline bool is_nearest(float rounded, const Exact& exact) {
   return true;
 }
 
-}  // namespace raypool::bench
+}  // namespace raypool
