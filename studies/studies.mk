@@ -1,6 +1,6 @@
 # What is studied with the machine. The Makefile includes it behind its own variables: those of a frame, the program,
 # and `options`.
-.PHONY: fidelity intervals pareto fit sweep report numerics significands boxes triangles extremes
+.PHONY: fidelity intervals pareto fit sweep report numerics significands boxes triangles referee extremes
 
 SWEEP := RAYPOOL="$(abspath $(RAYPOOL))" PYTHONPATH=studies $(PYTHON) -m sweep
 SWEEP_SETUP := setup-sweep $(if $(filter slurm,$(WHERE)),setup-slurm)
@@ -75,6 +75,14 @@ boxes: setup-sim program ## boxes in integers of 16 to 6 bits: nodes and triangl
 
 triangles: setup-sim program ## triangle tests of 53 to 24 bits: what they do to SCENE's hits and picture, to seams
 	@$(RAYPOOL) triangles $(call options,SCENE SIZE DEPTH $(LOOK)) $(ARGS)
+
+#: variables of make referee
+#:   CASES=N                       hard rays                                   1000000
+#:   SEED=S                        of these; ARGS="--smallest": the smallest case of each fault
+export CASES ?= 1000000
+referee: setup-sim setup-test configured-ON ## hits of hard rays beside rational numbers: ours, Embree's, four papers'
+	@scripts/build.sh $(BUILD) raypool_match
+	@$(BUILD)/raypool_match $(call options,CASES SEED) $(ARGS)
 
 #: variable of make extremes:  MODE=all|ieee-exact|...
 extremes: setup-sim program ## hard cases in every arithmetic mode, on every engine

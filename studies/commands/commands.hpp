@@ -2,11 +2,14 @@
 // InputError on input that cannot be used and returns the exit code otherwise.
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "cli/scene_loading.hpp"
+#include "referee/contender.hpp"
 
 namespace raypool {
 
@@ -60,6 +63,21 @@ struct TrianglesOptions : WidthsOptions {
 /// Exit code 3 if a hit is another one.
 int boxes_command(const BoxesOptions& options);
 int triangles_command(const TrianglesOptions& options);
+
+/// `raypool referee`
+struct RefereeCommandOptions {
+  uint64_t cases = 100'000;
+  uint64_t seed = 1;
+  std::string corpus;                ///< file; empty: cases are drawn
+  std::string write;                 ///< file for the corpus, "-": standard output; empty: it is judged
+  std::vector<std::string> answers;  ///< files
+  bool smallest = false;             ///< the smallest case of each fault
+  uint32_t threads = 0;              ///< 0: all cores
+  bool quiet = false;                ///< no progress
+};
+void add_referee_options(CLI::App& app, RefereeCommandOptions& options);
+/// `others`: contenders besides our own; may be empty.
+int referee_command(const RefereeCommandOptions& options, const std::function<referee::Contenders()>& others = {});
 
 /// `raypool fit`: the frame is that of `raypool sim`.
 struct FitOptions {

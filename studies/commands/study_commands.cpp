@@ -25,6 +25,7 @@ StudyCommands::StudyCommands(CLI::App& app, const std::vector<std::string>& comm
   add_numerics_command();
   add_significands_command();
   add_widths_commands();
+  add_referee_command();
   add_fit_command();
 }
 
@@ -77,6 +78,13 @@ void StudyCommands::add_widths_commands() {
       "triangles", "what triangle tests without double do to a scene's hits and picture, to seams and to hard cases");
   add_widths_command(*triangles_app, triangles_, kLeastTimeBits, kMostTimeBits);
   triangles_app->callback([this] { code_ = triangles_command(triangles_); });
+}
+
+void StudyCommands::add_referee_command() {
+  CLI::App* referee_app =
+      add("referee", "hits of hard rays and triangles beside rational numbers: ours with every width, and files'");
+  add_referee_options(*referee_app, referee_);
+  referee_app->callback([this] { code_ = referee_command(referee_); });
 }
 
 void StudyCommands::add_fit_command() {

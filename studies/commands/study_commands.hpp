@@ -23,6 +23,7 @@ class StudyCommands {
   void add_significands_command();
   void add_fit_command();
   void add_widths_commands();
+  void add_referee_command();
 
   CLI::App& app_;
   int& code_;
@@ -30,6 +31,7 @@ class StudyCommands {
   SignificandsOptions significands_;
   BoxesOptions boxes_;
   TrianglesOptions triangles_;
+  RefereeCommandOptions referee_;
   FitOptions fit_;
 };
 
