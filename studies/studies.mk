@@ -81,8 +81,11 @@ triangles: setup-sim program ## triangle tests of 53 to 24 bits: what they do to
 #:   SEED=S                        of these; ARGS="--smallest": the smallest case of each fault
 export CASES ?= 1000000
 referee: setup-sim setup-test configured-ON ## hits of hard rays beside rational numbers: ours, Embree's, four papers'
-	@scripts/build.sh $(BUILD) raypool_match
-	@$(BUILD)/raypool_match $(call options,CASES SEED) $(ARGS)
+	@scripts/build.sh $(BUILD) raypool raypool_match referee_answers
+	@mkdir -p $(BUILD)/out/referee
+	@$(RAYPOOL) referee $(call options,CASES SEED) --write /dev/stdout | \
+	  $(BUILD)/tb/referee_answers > $(BUILD)/out/referee/Verilog.jsonl
+	@$(BUILD)/raypool_match $(call options,CASES SEED) --answers $(BUILD)/out/referee/Verilog.jsonl $(ARGS)
 
 #: variable of make extremes:  MODE=all|ieee-exact|...
 extremes: setup-sim program ## hard cases in every arithmetic mode, on every engine

@@ -73,10 +73,12 @@ int referee_command(const RefereeCommandOptions& options, const std::function<re
   match.progress = [&](double share) {
     if (progress.due()) progress.show(fmt::format("  {:.0f}% of the cases", 100 * share));
   };
+  std::vector<referee::RecordedAnswers> recorded;
+  for (const std::string& file : options.answers) recorded.push_back(referee::read_answers(file, cases.count));
   const auto contenders = [&] {
     referee::Contenders all;
     all.push_back(referee::our_answers());
-    for (const std::string& file : options.answers) all.push_back(referee::answers_of_file(file, cases.count));
+    for (const referee::RecordedAnswers& each : recorded) all.push_back(referee::contender_of(each));
     if (others) {
       for (auto& each : others()) all.push_back(std::move(each));
     }

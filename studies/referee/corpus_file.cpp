@@ -41,17 +41,15 @@ void check_certificate(const std::string& line, const HitCase& hit_case, const s
 }
 
 /// Answers that were given before.
-class RecordedAnswers : public Contender {
+class Recorded : public Contender {
  public:
-  RecordedAnswers(std::string name, std::vector<HitAnswer> answers)
-      : name_(std::move(name)), answers_(std::move(answers)) {}
-  std::vector<std::string> names() const override { return {name_}; }
+  explicit Recorded(const RecordedAnswers& recorded) : recorded_(recorded) {}
+  std::vector<std::string> names() const override { return {recorded_.name}; }
   bool answers_any() const override { return false; }
-  void answer(const HitCase& hit_case, Said* answers) override { *answers = answers_.at(hit_case.number); }
+  void answer(const HitCase& hit_case, Said* answers) override { *answers = recorded_.answers.at(hit_case.number); }
 
  private:
-  std::string name_;
-  std::vector<HitAnswer> answers_;
+  const RecordedAnswers& recorded_;
 };
 
 }  // namespace
@@ -81,7 +79,7 @@ std::vector<HitCase> read_corpus(const std::string& path) {
   return cases;
 }
 
-std::unique_ptr<Contender> answers_of_file(const std::string& path, uint64_t cases) {
+RecordedAnswers read_answers(const std::string& path, uint64_t cases) {
   std::vector<std::optional<HitAnswer>> found(cases);
   each_line(path, "file of answers", [&](const std::string& line, const std::string& where) {
     const NumberedAnswer read = parse_answer(line, where);
@@ -91,12 +89,17 @@ std::unique_ptr<Contender> answers_of_file(const std::string& path, uint64_t cas
       throw InputError(fmt::format("{}: case {} is answered twice: keep one of them", where, read.number));
     found[read.number] = read.answer;
   });
-  std::vector<HitAnswer> answers;
+  RecordedAnswers recorded;
+  recorded.name = std::filesystem::path(path).stem().string();
   for (uint64_t i = 0; i < cases; ++i) {
     if (!found[i]) throw InputError(fmt::format("{}: case {} has no answer: each needs a line", path, i));
-    answers.push_back(*found[i]);
+    recorded.answers.push_back(*found[i]);
   }
-  return std::make_unique<RecordedAnswers>(std::filesystem::path(path).stem().string(), std::move(answers));
+  return recorded;
+}
+
+std::unique_ptr<Contender> contender_of(const RecordedAnswers& recorded) {
+  return std::make_unique<Recorded>(recorded);
 }
 
 }  // namespace raypool::referee

@@ -92,11 +92,12 @@ TEST_F(CorpusFile, RefusesACertificateThatIsNotThatOfTheNumbers) {
 TEST_F(CorpusFile, HoldsAnAnswerACase) {
   const auto says = [&](const std::string& text) {
     written(text);
-    return refusal([&] { answers_of_file(path_, 2); });
+    return refusal([&] { read_answers(path_, 2); });
   };
   const std::string first = to_line(NumberedAnswer{0, {true, 3, 1.5f}}) + '\n', second = to_line(NumberedAnswer{1, {}});
   EXPECT_EQ(says(first + second), "");
-  const auto answers = answers_of_file(path_, 2);
+  const RecordedAnswers recorded = read_answers(path_, 2);
+  const auto answers = contender_of(recorded);
   Said said;
   HitCase hit_case;
   answers->answer(hit_case, &said);

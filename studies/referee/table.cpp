@@ -123,23 +123,39 @@ void set_times(Row& row, std::vector<float>& errors) {
   row.largest = at(1);
 }
 
-/// The smallest cases of a contender's rows, of which the first is number `first`.
-void shrink_rows(Contender& contender, Row* rows) {
-  const size_t count = contender.names().size();
-  std::vector<Said> answers(count);
-  for (size_t i = 0; i < count; ++i) {
-    for (const Fault fault : kAllFaults) {
-      Failing& failing = rows[i].faults[static_cast<size_t>(fault)];
-      if (failing.count == 0) continue;
-      failing.smallest = shrink(failing.smallest, [&](const HitCase& hit_case) {
-        contender.answer(hit_case, answers.data());
-        return answers[i] && judge(hit_case, certify(hit_case), *answers[i]).has(fault);
-      });
-      contender.answer(failing.smallest, answers.data());
-      failing.answer = *answers[i];
+/// Makes the smallest cases of the rows of a contender smaller.
+class RowShrinker {
+ public:
+  RowShrinker(Contender& contender, Row* rows)
+      : contender_(contender), rows_(rows), answers_(contender.names().size()) {}
+
+  void run() {
+    for (size_t i = 0; i < answers_.size(); ++i) {
+      for (const Fault fault : kAllFaults) {
+        if (rows_[i].of(fault).count != 0) shrink_one(i, fault);
+      }
     }
   }
-}
+
+ private:
+  void shrink_one(size_t i, Fault fault) {
+    const auto spoils = [&](const HitCase& hit_case) {
+      contender_.answer(hit_case, answers_.data());
+      return answers_[i] && judge(hit_case, certify(hit_case), *answers_[i]).has(fault);
+    };
+    Failing& failing = rows_[i].faults[static_cast<size_t>(fault)];
+    // Widths that go wrong alike have the same smallest case.
+    const Failing* const before = i > 0 ? &rows_[i - 1].of(fault) : nullptr;
+    const bool alike = before != nullptr && before->count == failing.count && spoils(before->smallest);
+    failing.smallest = alike ? before->smallest : shrink(failing.smallest, spoils);
+    contender_.answer(failing.smallest, answers_.data());
+    failing.answer = *answers_[i];
+  }
+
+  Contender& contender_;
+  Row* rows_;
+  std::vector<Said> answers_;
+};
 
 std::string number_text(float x) {
   const std::string decimal = fmt::format("{}", x);
@@ -177,7 +193,7 @@ std::vector<Row> hold_match(const CaseSource& cases, const std::function<Contend
   }
   Row* first = rows.data();
   for (const auto& each : contenders) {
-    if (options.shrinks && each->answers_any()) shrink_rows(*each, first);
+    if (options.shrinks && each->answers_any()) RowShrinker(*each, first).run();
     first += each->names().size();
   }
   return rows;
@@ -196,14 +212,17 @@ std::string table_of(const std::vector<Row>& rows) {
 }
 
 std::string smallest_cases_of(const std::vector<Row>& rows) {
-  std::string text;
+  std::string text, before[kFaults];
   for (const Row& row : rows) {
     for (const Fault fault : kAllFaults) {
       const Failing& failing = row.of(fault);
       if (failing.count == 0) continue;
-      text += fmt::format("{}, {}: from case {}, {}\n  {}\n  says {}; right is {}\n", row.name, name_of(fault),
-                          failing.smallest.number, failing.smallest.kind, text_of(failing.smallest),
-                          text_of(failing.answer), text_of(certify(failing.smallest)));
+      const std::string shown = fmt::format("  {}\n  says {}; right is {}\n", text_of(failing.smallest),
+                                            text_of(failing.answer), text_of(certify(failing.smallest)));
+      if (shown == before[static_cast<size_t>(fault)]) continue;
+      before[static_cast<size_t>(fault)] = shown;
+      text += fmt::format("{}, {}: from case {}, {}\n{}", row.name, name_of(fault), failing.smallest.number,
+                          failing.smallest.kind, shown);
     }
   }
   return text;

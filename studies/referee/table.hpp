@@ -47,7 +47,7 @@ std::vector<Row> hold_match(const CaseSource& cases, const std::function<Contend
                             const RefereeOptions& options);
 
 std::string table_of(const std::vector<Row>& rows);
-/// A line for each fault of each row.
+/// Of each fault of each row; those that are the same as of the row before are left out.
 std::string smallest_cases_of(const std::vector<Row>& rows);
 
 /// Origin, direction, limit and triangles, in decimal digits where those are exact and few.

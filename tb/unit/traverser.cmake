@@ -22,6 +22,16 @@ set(raypool_multiplier)
 raypool_block_models(triangle_pipe_test triangle_pipe "BITS" 26 32)
 set(raypool_multiplier -DSYNTHESIS)
 
+# The triangle pipe's answers to a corpus of the referee: judged, they are those of the engines with its hits.
+add_executable(referee_answers ${CMAKE_CURRENT_LIST_DIR}/traverser/referee_answers.cpp)
+target_link_libraries(referee_answers PRIVATE raypool_scene)
+set(raypool_multiplier)
+raypool_block_models(referee_answers triangle_pipe "BITS" 32)
+set(raypool_multiplier -DSYNTHESIS)
+add_test(NAME referee_verilog COMMAND ${CMAKE_SOURCE_DIR}/scripts/tests/referee_verilog.sh $<TARGET_FILE:raypool>
+  $<TARGET_FILE:referee_answers>)
+set_tests_properties(referee_verilog PROPERTIES TIMEOUT 300)
+
 # The set-up of a ray, against what engines prepare too.
 raypool_bench(ray_setup_test)
 target_link_libraries(ray_setup_test PRIVATE raypool_scene ${GMP_LIBRARY})
