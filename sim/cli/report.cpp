@@ -372,6 +372,8 @@ std::string to_json(const RunRecord& record) {
   if (!record.boundary.empty()) json["boundary"] = record.boundary;
   if (!record.hits.empty()) json["hits"] = record.hits;
   json["scene"] = {{"name", record.scene}, {"triangles", record.triangles}, {"materials", record.materials}};
+  const Vec3d& centre = record.view.centre;
+  if (!(centre == Vec3d{})) json["scene"]["centre"] = {centre.x, centre.y, centre.z};
   json["view"] = Json::parse(to_json(record.view));
   json["size"] = {{"width", record.width}, {"height", record.height}};
   json["depth"] = record.depth;

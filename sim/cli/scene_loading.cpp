@@ -2,31 +2,28 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <optional>
+
+#include "scene/obj_text.hpp"
 
 namespace raypool {
 namespace {
 
 /// The whole of `text`.
-std::optional<float> number(const std::string& text) {
-  const char* const begin = text.c_str() + (text.rfind('+', 0) == 0 ? 1 : 0);
-  const char* const end = text.c_str() + text.size();
-  float value = 0;
-  const auto result = std::from_chars(begin, end, value);
-  if (result.ec != std::errc() || result.ptr != end) return std::nullopt;
-  return value;
+std::optional<double> number(const std::string& text) {
+  double value = 0;
+  return read_double(text, value) ? std::optional(value) : std::nullopt;
 }
 
-std::optional<Vec3> point(const char* option, const std::string& text) {
+std::optional<Vec3d> point(const char* option, const std::string& text) {
   if (text.empty()) return std::nullopt;
-  Vec3 result;
+  Vec3d result;
   size_t begin = 0;
   for (int axis = 0; axis < 3; ++axis) {
     const size_t end = axis < 2 ? text.find(',', begin) : text.size();
-    const std::optional<float> value =
+    const std::optional<double> value =
         end == std::string::npos ? std::nullopt : number(text.substr(begin, end - begin));
     if (!value)
       throw InputError(fmt::format("{} is '{}': give three numbers with commas between, as in 1,2.5,-3", option, text));
@@ -42,14 +39,14 @@ std::optional<Vec3> point(const char* option, const std::string& text) {
 
 }  // namespace
 
-ViewChanges parse_view_words(const ViewWords& words) {
-  ViewChanges changes;
+FileViewChanges parse_view_words(const ViewWords& words) {
+  FileViewChanges changes;
   changes.eye = point("--eye", words.eye);
   changes.look_at = point("--look-at", words.look_at);
-  changes.up = point("--up", words.up);
+  if (const std::optional<Vec3d> up = point("--up", words.up)) changes.up = up->as<float>();
   changes.light = point("--light", words.light);
   if (!words.fov.empty()) {
-    changes.fov = number(words.fov);
+    if (const std::optional<double> fov = number(words.fov)) changes.fov = static_cast<float>(*fov);
     if (!changes.fov || !(*changes.fov >= kLeastFov && *changes.fov <= kLargestFov)) {
       throw InputError(fmt::format("--fov is '{}': give the vertical field of view in degrees, {} to {}", words.fov,
                                    kLeastFov, kLargestFov));

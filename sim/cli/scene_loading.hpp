@@ -19,7 +19,7 @@ struct ViewWords {
 };
 
 /// Throws InputError that names the option.
-ViewChanges parse_view_words(const ViewWords& words);
+FileViewChanges parse_view_words(const ViewWords& words);
 
 /// load_scene() and its warnings.
 Scene load_scene_and_warn(const std::string& scene, double detail, const std::string& view, const ViewWords& words);

@@ -123,6 +123,7 @@ uint32_t content_hash(const Scene& scene, const Configuration& configuration) {
                                scene.light.color};
   for (const Material& material : scene.materials) vectors.insert(vectors.end(), {material.kd, material.ks});
   hash = hash_of(fmt::format("{}", scene.camera.fov), hash_bytes(vectors, hash));
+  if (scene.recentred()) hash = hash_bytes(std::vector<Vec3d>{scene.centre}, hash);
   Configuration nameless = configuration;
   nameless.name.clear();
   return hash_of(to_json(nameless), hash);
@@ -373,8 +374,13 @@ int sim_command(const SimOptions& options) {
   record.scene = scene.name;
   record.triangles = scene.triangles.size();
   record.materials = scene.materials.size();
-  record.view = {scene.camera, scene.light};
+  record.view = scene.view();
   record.reflections = record.depth > 1 && scene.reflects();
+  if (scene.recentred() && (options.waves || options.inspect_until != 0)) {
+    const Vec3d& centre = scene.centre;
+    fmt::print(stderr, "raypool: coordinates in words of the machine are counted from {}, {}, {} of the file\n",
+               centre.x, centre.y, centre.z);
+  }
   check_fits(record, scene);
   MemoryImage image = build_memory(ray_kernel_program(KernelTarget(record.configuration)), scene);
   if (options.modules) {

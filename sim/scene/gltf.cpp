@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "bits.hpp"
+#include "scene/far_places.hpp"
 #include "scene/gltf_document.hpp"
 #include "scene/mesh_builder.hpp"
 #include "scene/scene_file.hpp"
@@ -68,19 +69,23 @@ struct Placed {
 
 /// Of all nodes together.
 struct Assembly {
-  Scene scene;
+  Scene scene;  ///< without vertices
+  FilePlaces places;
   std::vector<Placed> cameras, lights;
 };
 
+/// Nodes are where Assimp has them, in single precision; `exact`: where the file has them.
 class Assembler {
  public:
-  Assembler(const aiScene& source, const GltfDocument& document, Assembly& result)
-      : source_(source), document_(document), result_(result) {}
+  Assembler(const aiScene& source, const GltfDocument& document, bool exact, Assembly& result)
+      : source_(source), document_(document), exact_(exact), result_(result) {}
 
   void add(const aiNode& node, const Transform& above) {
-    const Transform here = above * to_transform(node.mTransformation);
     // The root above several nodes is Assimp's own, without a number.
-    if (const std::optional<size_t> number = number_in(node.mName)) {
+    const std::optional<size_t> number = number_in(node.mName);
+    const Transform here =
+        above * (exact_ && number ? document_.nodes.at(*number).transform : to_transform(node.mTransformation));
+    if (number) {
       const GltfNode& content = document_.nodes.at(*number);
       const Transform place = content.skinned ? Transform() : here;
       for (unsigned i = 0; i < node.mNumMeshes; ++i) {
@@ -97,10 +102,10 @@ class Assembler {
  private:
   void add(const aiMesh& mesh, const Transform& here) {
     Scene& scene = result_.scene;
-    const auto first = size32(scene.vertices);
+    const auto first = static_cast<uint32_t>(result_.places.size());
     for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
       const aiVector3D& v = mesh.mVertices[i];
-      scene.vertices.push_back(here({v.x, v.y, v.z}).as<float>());
+      result_.places.add(here({v.x, v.y, v.z}));
     }
     // A mirrored mesh is wound the other way round.
     const bool mirrored = dot(cross(here.x, here.y), here.z) < 0;
@@ -124,8 +129,23 @@ class Assembler {
 
   const aiScene& source_;
   const GltfDocument& document_;
+  const bool exact_;
   Assembly& result_;
 };
+
+Assembly assemble(const aiScene& source, const std::string& path, const GltfDocument& document, bool exact) {
+  Assembly result;
+  result.scene.name = std::filesystem::path(path).stem().string();
+  result.scene.materials = document.materials;
+  Assembler(source, document, exact, result).add(*source.mRootNode, {});
+  return result;
+}
+
+std::vector<uint32_t> used_corners(const Scene& scene) {
+  std::vector<uint32_t> corners;
+  for (const auto& triangle : scene.triangles) corners.insert(corners.end(), triangle.begin(), triangle.end());
+  return corners;
+}
 
 Assembly assemble(const std::string& path, const GltfDocument& document) {
   Assimp::Importer importer;
@@ -135,10 +155,10 @@ Assembly assemble(const std::string& path, const GltfDocument& document) {
     throw InputError(
         fmt::format("{}: not a readable glTF file ({}); export it again", path, importer.GetErrorString()));
   }
-  Assembly result;
-  result.scene.name = std::filesystem::path(path).stem().string();
-  result.scene.materials = document.materials;
-  Assembler(*source, document, result).add(*source->mRootNode, {});
+  Assembly result = assemble(*source, path, document, false);
+  const Vec3d centre = result.places.centre(used_corners(result.scene));
+  if (!(centre == Vec3d{})) result = assemble(*source, path, document, true);
+  result.places.put_into(result.scene, centre);
   return result;
 }
 
@@ -181,9 +201,9 @@ std::optional<Camera> choose_camera(const std::string& path, const std::string& 
     return std::nullopt;
   }
   const Transform& at = chosen->transform;
-  Camera camera{at.origin.as<float>(), (at.z * -1.0).as<float>(), at.y.as<float>(),
+  Camera camera{from_file(scene.centre, at.origin), (at.z * -1.0).as<float>(), at.y.as<float>(),
                 *document.cameras[chosen->index].fov};
-  check_camera(camera, fmt::format("{}: camera '{}'", path, scene.cameras.front()));
+  check_camera(camera, fmt::format("{}: camera '{}'", path, scene.cameras.front()), scene.centre);
   return camera;
 }
 
@@ -198,7 +218,7 @@ std::optional<PointLight> choose_light(const std::string& path, const GltfDocume
   }
   if (chosen == nullptr) return std::nullopt;
   const GltfLight& light = document.lights[chosen->index];
-  Vec3d position = chosen->transform.origin;
+  Vec3d position = chosen->transform.origin - scene.centre;
   std::string lost = fmt::format("fall-off and intensity ({:g})", light.intensity);
   if (light.type == "spot") lost += " and cone";
   if (light.type == "directional") {
@@ -231,6 +251,7 @@ SceneFile load_gltf(const std::string& path, const std::string& camera) {
   result.scene.warnings = document.warnings;
   result.up = Vec3{0, 1, 0};
   check_scene(result.scene, path);
+  assembly.places.tell_lost_detail(result.scene, path);
   weld_vertices(result.scene);
   result.camera = choose_camera(path, camera, document, assembly, result.scene);
   result.light = choose_light(path, document, assembly, result.scene);

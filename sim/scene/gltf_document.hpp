@@ -28,6 +28,7 @@ struct GltfLight {
 struct GltfNode {
   std::string name;
   std::optional<size_t> camera, light;
+  Transform transform;               ///< from its own coordinates to its parent's, in double
   std::vector<Transform> instances;  ///< in the node, of its mesh; empty: it is there once
   bool skinned = false;              ///< the mesh stands where its joints have it: no node above it counts
 };

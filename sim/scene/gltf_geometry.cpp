@@ -389,6 +389,7 @@ size_t GltfGeometry::add_node(const JsonPlace& place, size_t index, int depth, b
   json_nodes_.push_back(nullptr);
   hidden = hidden || is_hidden(place);
   Json json = transform_json(place);
+  document_.nodes[number].transform = to_transform(json);
   json["name"] = std::to_string(number);
   json["children"] = Json::array();
   add_content(place, document_.nodes[number], hidden);

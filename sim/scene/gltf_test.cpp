@@ -188,9 +188,9 @@ TEST_F(Gltf, WordsOfTheCommandLineChangeTheViewOfTheFile) {
   SceneOptions options;
   const Scene own = load_scene(path, options);
   EXPECT_EQ(own.camera.eye, (Vec3{1, 2, 6}));
-  options.changes.eye = Vec3{1, 1, 3};
+  options.changes.eye = Vec3d{1, 1, 3};
   options.changes.fov = 30.0f;
-  options.changes.light = Vec3{0, 8, 1};
+  options.changes.light = Vec3d{0, 8, 1};
   const Scene changed = load_scene(path, options);
   EXPECT_EQ(changed.camera.eye, (Vec3{1, 1, 3}));
   EXPECT_EQ(changed.camera.direction, (Vec3{0, 0, -1}));

@@ -1,6 +1,7 @@
 // Wavefront OBJ in and out. What a file has wrong gets its line; names are looked up when all of it has been read,
 // since a library may stand behind the faces that use it.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -15,6 +16,7 @@
 
 #include "bits.hpp"
 #include "files/output_files.hpp"
+#include "scene/far_places.hpp"
 #include "scene/losses.hpp"
 #include "scene/mtl.hpp"
 #include "scene/obj_text.hpp"
@@ -52,6 +54,7 @@ class ObjReader {
       }
     }
     check_faces();
+    places_.put_into(scene_, places_.centre(corners_));
     scene_.name = fs::path(path_).stem().string();
     add_triangles();
     tell();
@@ -72,11 +75,11 @@ class ObjReader {
   void add_vertex(const ObjLine& line) {
     const std::vector<std::string_view> words = words_of(line.rest);
     if (words.size() < 3) text_.fail(line, fmt::format("vertex has {} numbers; give three", words.size()));
-    Vec3 p;
+    Vec3d p;
     for (size_t i = 0; i < 3; ++i) {
-      p[static_cast<int>(i)] = number_of(text_, line, words[i], "vertex", -kLargestCoordinate, kLargestCoordinate);
+      p[static_cast<int>(i)] = double_of(text_, line, words[i], "vertex", -kLargestCoordinate, kLargestCoordinate);
     }
-    scene_.vertices.push_back(p);
+    places_.add(p);
     // A colour stands behind the place, or behind its weight.
     coloured_.push_back(words.size() >= 6);
   }
@@ -100,7 +103,7 @@ class ObjReader {
       const auto result = std::from_chars(digits.data(), digits.data() + digits.size(), indices[i]);
       if (result.ec != std::errc() || result.ptr != digits.data() + digits.size()) refuse_corner(line, word);
     }
-    const long index = indices[0], vertices = static_cast<long>(scene_.vertices.size());
+    const long index = indices[0], vertices = static_cast<long>(places_.size());
     if (index == 0 || -index > vertices) {
       text_.fail(line,
                  fmt::format("vertex index {} is out of range; {} vertices stand above this line, numbered from 1",
@@ -190,7 +193,7 @@ class ObjReader {
   }
 
   void check_faces() const {
-    const auto vertices = static_cast<long>(scene_.vertices.size());
+    const auto vertices = static_cast<long>(places_.size());
     if (largest_ > vertices) {
       ObjLine line;
       line.number = largest_line_;
@@ -258,6 +261,7 @@ class ObjReader {
       warnings.push_back(fmt::format("{}: material '{}'{} is in no material file: what has it is grey", path_,
                                      unknown_.front(), more(unknown_.size())));
     }
+    places_.tell_lost_detail(scene_, path_);
     tell_of_materials(warnings, path_, materials_, used_);
     tell_loss(warnings, path_, losses_.coloured_faces, "face", Loss::VertexColours);
     tell_loss(warnings, path_, losses_.faces_with_normals, "face", Loss::VertexNormals);
@@ -269,6 +273,7 @@ class ObjReader {
   ObjText text_;
   Scene scene_;
   ObjLosses losses_;
+  FilePlaces places_;                      // of the vertices
   std::vector<bool> coloured_;             // [vertex]
   std::vector<uint32_t> corners_;          // of all faces, one after the other
   std::vector<size_t> begin_{0};           // [face] its first corner; one more at the end
@@ -323,7 +328,8 @@ void write_obj(const Scene& scene, const std::string& path) {
   }
   fmt::format_to(std::back_inserter(obj), "# {}: {} vertices, {} triangles\nmtllib {}\n", scene.name,
                  scene.vertices.size(), scene.triangles.size(), mtl_name);
-  for (const Vec3& v : scene.vertices) fmt::format_to(std::back_inserter(obj), "v {} {} {}\n", v.x, v.y, v.z);
+  for (const Vec3& v : scene.vertices)
+    fmt::format_to(std::back_inserter(obj), "v {}\n", fmt::join(texts_in_file(scene.centre, v), " "));
   for (size_t i = 0; i < scene.triangles.size(); ++i) {
     if (i == 0 || scene.triangle_materials[i] != scene.triangle_materials[i - 1]) {
       fmt::format_to(std::back_inserter(obj), "usemtl {}\n", names[scene.triangle_materials[i]]);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstddef>
 #include <cstdlib>
 
@@ -17,6 +18,16 @@ constexpr std::string_view kBlanks = " \t\v\f";
 
 /// Behind short keys "#" begins a comment; behind longer ones stand names, which may have it.
 bool takes_comments(std::string_view key) { return key.size() <= 2 || key.front() == '#'; }
+
+template <typename Number>
+bool read_number(std::string_view word, Number& value) {
+  if (!word.empty() && word.front() == '+') word.remove_prefix(1);
+  const auto result = std::from_chars(word.data(), word.data() + word.size(), value);
+  // Both the too large (becomes infinite) and the too small (harmless) are out of range.
+  if (result.ec == std::errc::result_out_of_range)
+    value = static_cast<Number>(std::strtod(std::string(word).c_str(), nullptr));
+  return result.ec != std::errc::invalid_argument && result.ptr == word.data() + word.size();
+}
 
 }  // namespace
 
@@ -38,21 +49,25 @@ std::vector<std::string_view> words_of(std::string_view text) {
   return words;
 }
 
-bool read_float(std::string_view word, float& value) {
-  if (!word.empty() && word.front() == '+') word.remove_prefix(1);
-  const auto result = std::from_chars(word.data(), word.data() + word.size(), value);
-  // Both the too large (becomes infinite) and the too small (harmless) are out of range.
-  if (result.ec == std::errc::result_out_of_range)
-    value = static_cast<float>(std::strtod(std::string(word).c_str(), nullptr));
-  return result.ec != std::errc::invalid_argument && result.ptr == word.data() + word.size();
+bool read_float(std::string_view word, float& value) { return read_number(word, value); }
+
+bool read_double(std::string_view word, double& value) {
+  if (!read_number(word, value)) return false;
+  // Next to the middle of two numbers of single precision the text decides, whose end double may have lost.
+  const double above = std::nextafter(value, INFINITY), below = std::nextafter(value, -INFINITY);
+  if (static_cast<float>(above) == static_cast<float>(below)) return true;
+  float single = 0;
+  read_number(word, single);
+  if (single != static_cast<float>(value)) value = single > static_cast<float>(value) ? above : below;
+  return true;
 }
 
-float number_of(const ObjText& text, const ObjLine& line, std::string_view word, const char* what, float low,
-                float high) {
-  float value = 0;
-  if (!read_float(word, value))
+double double_of(const ObjText& text, const ObjLine& line, std::string_view word, const char* what, float low,
+                 float high) {
+  double value = 0;
+  if (!read_double(word, value))
     text.fail(line, fmt::format("'{}' in {} is not a number; correct the file", word, what));
-  if (!(value >= low && value <= high)) {
+  if (!(static_cast<float>(value) >= low && static_cast<float>(value) <= high)) {
     text.fail(line, fmt::format("{} has {}, which is not in {:g} .. {:g}; correct or rescale the file", what, word, low,
                                 high));
   }

@@ -39,8 +39,15 @@ std::string_view trimmed(std::string_view text);
 
 /// Reads a decimal number and nothing after it; the result may be infinite or NaN if the text says so.
 bool read_float(std::string_view word, float& value);
-/// The same as part of `line`, within low .. high; `what` begins the sentence if it is not: "vertex".
-float number_of(const ObjText& text, const ObjLine& line, std::string_view word, const char* what, float low,
-                float high);
+/// The same in double; rounded to single precision it is what read_float() reads.
+bool read_double(std::string_view word, double& value);
+/// The same as part of `line`, in single precision within low .. high; `what` begins the sentence if it is not:
+/// "vertex".
+double double_of(const ObjText& text, const ObjLine& line, std::string_view word, const char* what, float low,
+                 float high);
+inline float number_of(const ObjText& text, const ObjLine& line, std::string_view word, const char* what, float low,
+                       float high) {
+  return static_cast<float>(double_of(text, line, word, what, low, high));
+}
 
 }  // namespace raypool

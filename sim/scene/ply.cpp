@@ -14,6 +14,7 @@
 #include "bits.hpp"
 #include "enum_array.hpp"
 #include "files/input_file.hpp"
+#include "scene/far_places.hpp"
 #include "scene/losses.hpp"
 #include "scene/polygon.hpp"
 #include "scene/scene_file.hpp"
@@ -195,7 +196,7 @@ class Values {
     if (word.empty() && place_ >= data_.size()) cut_off();
     if (word.empty()) fail("has fewer values than the header says");
     if (!read_all(word, value)) fail(fmt::format("has '{}', which is not a number", word.substr(0, 20)));
-    return type == Type::Float ? static_cast<float>(value) : value;
+    return value;
   }
 
   [[noreturn]] void fail(const std::string& message) const {
@@ -270,6 +271,7 @@ class PlyReader {
         skip(element);
       }
     }
+    add_triangles();
     if (scene_.triangles.empty())
       throw InputError(path_ + ": the file has no faces, only points or lines; nothing can be rendered");
     if (values_.bytes_left() > 0) {
@@ -325,6 +327,8 @@ class PlyReader {
         throw InputError(fmt::format("{}: vertices have no '{}'; export the file again", path_, axes[i]));
     }
     has_normals_ = find(element, {"nx"}, false) >= 0;
+    for (const int axis : place)
+      single_ = single_ || (header_.format != Format::Text && element.properties[axis].type == Type::Float);
     const bool coloured = colour[0] >= 0 && colour[1] >= 0 && colour[2] >= 0;
     std::vector<std::vector<double>> values;
     for (uint64_t number = 0; number < element.count; ++number) {
@@ -338,10 +342,11 @@ class PlyReader {
         }
         if (!coloured) continue;
         const size_t channel = colour[i];
-        c[i] = values[channel][0] / kWhite[element.properties[channel].type];
+        const Type type = element.properties[channel].type;
+        c[i] = (type == Type::Float ? static_cast<float>(values[channel][0]) : values[channel][0]) / kWhite[type];
         if (!(c[i] >= 0 && c[i] <= 1)) values_.fail(fmt::format("has the colour {}", values[channel][0]));
       }
-      scene_.vertices.push_back(p.as<float>());
+      places_.add(p);
       if (coloured) colours_.push_back(c);
     }
   }
@@ -354,33 +359,50 @@ class PlyReader {
     }
     if (find(element, {"red"}, false) >= 0) scene_.warnings.push_back(path_ + ": colours of faces are not used");
     faces_ += element.count;
+    const bool strips = element.name == "tristrips";
     std::vector<std::vector<double>> values;
-    std::vector<uint32_t> corners;
     for (uint64_t number = 0; number < element.count; ++number) {
       read_element(element, number, values);
-      corners.clear();
       for (const double index : values[list]) {
-        if (element.name == "tristrips" && index == -1) {
-          add_strip(corners);
-          corners.clear();
+        if (strips && index == -1) {
+          end_face(strips, number);
           continue;
         }
-        if (!(index >= 0 && index < scene_.vertices.size() && index == std::floor(index))) {
-          values_.fail(fmt::format("names vertex {}, which is out of range: {} vertices stand before it", index,
-                                   scene_.vertices.size()));
+        const auto vertices = static_cast<double>(places_.size());
+        if (!(index >= 0 && index < vertices && index == std::floor(index))) {
+          values_.fail(
+              fmt::format("names vertex {}, which is out of range: {} vertices stand before it", index, vertices));
         }
-        corners.push_back(static_cast<uint32_t>(index));
+        corners_.push_back(static_cast<uint32_t>(index));
       }
-      if (element.name == "tristrips") {
-        add_strip(corners);
-      } else {
-        add_face(corners, number);
-      }
+      if (const size_t corners = corners_.size() - begin_.back(); !strips && corners < 3)
+        values_.fail(fmt::format("has {} corners, fewer than three", corners));
+      end_face(strips, number);
     }
   }
 
+  /// Of the corners that have been read since the last one.
+  void end_face(bool strip, uint64_t number) {
+    is_strip_.push_back(strip);
+    number_of_.push_back(static_cast<uint32_t>(number));
+    begin_.push_back(corners_.size());
+  }
+
+  /// Of all faces, now that it is known what is far away.
+  void add_triangles() {
+    places_.put_into(scene_, places_.centre(corners_));
+    for (size_t face = 0; face < is_strip_.size(); ++face) {
+      const std::vector<uint32_t> corners(corners_.data() + begin_[face], corners_.data() + begin_[face + 1]);
+      if (is_strip_[face]) {
+        add_strip(corners);
+      } else {
+        add_face(corners, number_of_[face]);
+      }
+    }
+    places_.tell_lost_detail(scene_, path_, single_);
+  }
+
   void add_face(const std::vector<uint32_t>& corners, uint64_t number) {
-    if (corners.size() < 3) values_.fail(fmt::format("has {} corners, fewer than three", corners.size()));
     const PolygonShape shape = triangulate(scene_.vertices, corners.data(), corners.size(), scene_.triangles);
     if (shape != PolygonShape::Flat) odd_faces_[shape].push_back(number);
     scene_.triangle_materials.resize(scene_.triangles.size(), material_of(corners));
@@ -424,6 +446,12 @@ class PlyReader {
   const Header header_;
   Values values_;
   Scene scene_;
+  FilePlaces places_;                                 // of the vertices
+  bool single_ = false;                               // the file has them in single precision
+  std::vector<uint32_t> corners_;                     // of all faces, one after the other
+  std::vector<size_t> begin_{0};                      // [face] its first corner; one more at the end
+  std::vector<bool> is_strip_;                        // [face]
+  std::vector<uint32_t> number_of_;                   // [face] in its element
   std::vector<Vec3d> colours_;                        // [vertex]; empty: without
   std::map<std::array<int, 3>, uint32_t> materials_;  // by colour
   std::map<PolygonShape, std::vector<size_t>> odd_faces_;

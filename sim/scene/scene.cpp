@@ -2,12 +2,14 @@
 #include "scene/scene.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <filesystem>
 
+#include "scene/far_places.hpp"
 #include "scene/scene_file.hpp"
 
 namespace raypool {
@@ -19,12 +21,15 @@ bool usable(const Vec3& v) {
          std::fabs(v.z) <= kLargestCoordinate;
 }
 
-std::string text(const Vec3& v) { return fmt::format("({}, {}, {})", v.x, v.y, v.z); }
+std::string text(const Vec3& v, const Vec3d& centre = {}) {
+  return fmt::format("({})", fmt::join(texts_in_file(centre, v), ", "));
+}
 
-void require_usable(const Vec3& v, const std::string& where, const char* what) {
-  if (!usable(v)) {
+/// In the file's coordinates.
+void require_usable(const Vec3& v, const std::string& where, const char* what, const Vec3d& centre = {}) {
+  if (!usable(in_file(centre, v).as<float>())) {
     throw InputError(fmt::format("{}: {} is {}; each component must be a number of at most {:g} in magnitude", where,
-                                 what, text(v), kLargestCoordinate));
+                                 what, text(v, centre), kLargestCoordinate));
   }
 }
 
@@ -62,8 +67,8 @@ bool is_degenerate(const Scene& scene, size_t triangle) {
   return !(dot(normal, normal) > 0);
 }
 
-void check_camera(const Camera& camera, const std::string& where) {
-  require_usable(camera.eye, where, "the camera's eye");
+void check_camera(const Camera& camera, const std::string& where, const Vec3d& centre) {
+  require_usable(camera.eye, where, "the camera's eye", centre);
   require_usable(camera.direction, where, "the camera's direction");
   require_usable(camera.up, where, "the camera's up");
   const Vec3d direction = camera.direction.as<double>(), up = camera.up.as<double>();
@@ -104,8 +109,8 @@ void check_scene(const Scene& scene, const std::string& where) {
     require_colour(material.kd, where, fmt::format("Kd of material '{}'", material.name));
     require_colour(material.ks, where, fmt::format("Ks of material '{}'", material.name));
   }
-  check_camera(scene.camera, where);
-  require_usable(scene.light.position, where, "the light's position");
+  check_camera(scene.camera, where, scene.centre);
+  require_usable(scene.light.position, where, "the light's position", scene.centre);
   require_colour(scene.light.color, where, "the light's color");
 }
 
@@ -138,6 +143,7 @@ SceneFile load_file(const std::string& path, const std::string& camera) {
 View view_of_file(const SceneFile& file, ViewChanges changes) {
   if (!changes.light && file.light) changes.light = file.light->position;
   View view;
+  view.centre = file.scene.centre;
   if (file.camera) {
     view.camera = *file.camera;
     change_view(view, changes);
@@ -179,12 +185,13 @@ Scene load_scene(const std::string& name_or_path, const SceneOptions& options) {
     file.scene = name_or_path == "room" ? make_room(options.detail) : make_cornell(options.detail);
   }
   Scene& scene = file.scene;
-  View view{scene.camera, scene.light};
-  if (!options.view.empty()) view = load_view(options.view);
+  View view = scene.view();
+  const ViewChanges changes = options.changes.around(scene.centre);
+  if (!options.view.empty()) view = load_view(options.view, scene.centre);
   if (built_in || !options.view.empty()) {
-    change_view(view, options.changes);
+    change_view(view, changes);
   } else {
-    view = view_of_file(file, options.changes);
+    view = view_of_file(file, changes);
   }
   scene.camera = view.camera;
   scene.light = view.light;

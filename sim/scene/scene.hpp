@@ -40,6 +40,12 @@ struct Bounds {
   float diagonal() const { return static_cast<float>(length(upper.as<double>() - lower.as<double>())); }
 };
 
+struct View {
+  Camera camera;
+  PointLight light;
+  Vec3d centre;  ///< of the scene: what camera and light are counted from, in the file's coordinates
+};
+
 struct Scene {
   std::string name;
   std::vector<Vec3> vertices;
@@ -50,6 +56,8 @@ struct Scene {
   PointLight light;
   std::vector<std::string> cameras;   ///< names of those a file has, the one that is looked through first
   std::vector<std::string> warnings;  ///< a sentence each: what of a file could not be drawn as it is
+  Vec3d
+      centre;  ///< what all places are counted from, in the file's coordinates: zero unless recentred (far_places.hpp)
 
   const Vec3& corner(size_t triangle, int k) const { return vertices[triangles[triangle][k]]; }
   /// Of unit length, on the side from which the corners turn left.
@@ -62,26 +70,32 @@ struct Scene {
   /// The material of the first triangle that has one that does; null: none has.
   const Material* reflecting() const;
   bool reflects() const { return reflecting() != nullptr; }
+  View view() const { return {camera, light, centre}; }
+  bool recentred() const { return !(centre == Vec3d{}); }
 };
 
 /// Coordinates beyond this are refused: products of four of them must stay finite in single precision.
 inline constexpr float kLargestCoordinate = 1e9f;
 
-struct View {
-  Camera camera;
-  PointLight light;
-};
-
-/// What is set replaces what a view has. An eye without look_at keeps the direction.
+/// What is set replaces what a view has, in its scene's coordinates. An eye without look_at keeps the direction.
 struct ViewChanges {
   std::optional<Vec3> eye, look_at, up, light;
   std::optional<float> fov;
+};
+/// The same in the file's coordinates.
+struct FileViewChanges {
+  std::optional<Vec3d> eye, look_at;
+  std::optional<Vec3> up;
+  std::optional<Vec3d> light;
+  std::optional<float> fov;
+
+  ViewChanges around(const Vec3d& centre) const;
 };
 
 struct SceneOptions {
   double detail = 1.0;  ///< built-in scenes: share of the full triangle count, 0.01 .. 16
   std::string view;     ///< view file; empty: the scene's own camera and light, or for a file without automatic_view()
-  ViewChanges changes;
+  FileViewChanges changes;
   std::string camera;  ///< of a glTF file, by name; empty: its first one
 };
 
@@ -102,11 +116,11 @@ Scene load_obj(const std::string& path);
 /// triangles and materials back, bit for bit.
 void write_obj(const Scene& scene, const std::string& path);
 
-/// Reads a view file (JSON): eye, direction or target, up, fov, light {position, color}. Throws
-/// InputError naming file, key and range.
-View load_view(const std::string& path);
+/// Reads a view file (JSON): eye, direction or target, up, fov, light {position, color}, for a scene with this centre.
+/// Throws InputError naming file, key and range.
+View load_view(const std::string& path, const Vec3d& centre = {});
 void write_view(const View& view, const std::string& path);
-/// A view file's text.
+/// A view file's text, in the file's coordinates.
 std::string to_json(const View& view);
 /// Throws InputError when look_at is where the eye is.
 void change_view(View& view, const ViewChanges& changes);
@@ -116,8 +130,8 @@ void change_view(View& view, const ViewChanges& changes);
 /// Throws InputError when it cannot be used.
 View automatic_view(const Scene& scene, const ViewChanges& changes = {});
 
-/// Throws InputError when the camera cannot be used; `where` begins the sentence.
-void check_camera(const Camera& camera, const std::string& where);
+/// Throws InputError when the camera cannot be used; `where` begins the sentence, `centre` is its scene's.
+void check_camera(const Camera& camera, const std::string& where, const Vec3d& centre = {});
 /// Throws InputError when camera, light, indices, coordinates or materials cannot be
 /// rendered; `where` begins the sentence.
 void check_scene(const Scene& scene, const std::string& where);

@@ -285,7 +285,7 @@ TEST_F(ViewFile, OfTheConferenceRoomHasThePublishedValues) {
 
 TEST_F(ViewFile, ReadsBackWhatWasWritten) {
   const Scene scene = make_room(0.02);
-  write_view({scene.camera, scene.light}, path_);
+  write_view(scene.view(), path_);
   const View view = load_view(path_);
   EXPECT_EQ(view.camera.eye, scene.camera.eye);
   EXPECT_EQ(view.camera.direction, scene.camera.direction);

@@ -7,6 +7,7 @@
 #include "cli/image_size.hpp"
 #include "files/output_files.hpp"
 #include "isa/input_error.hpp"
+#include "scene/far_places.hpp"
 #include "scene/hits_check.hpp"
 #include "scene/scene.hpp"
 #include "scene/tree_file.hpp"
@@ -15,7 +16,15 @@
 namespace raypool {
 namespace {
 
-std::string text(const Vec3& vector) { return fmt::format("{:g} {:g} {:g}", vector.x, vector.y, vector.z); }
+template <typename Number>
+std::string text(const Vector3<Number>& vector) {
+  return fmt::format("{:g} {:g} {:g}", vector.x, vector.y, vector.z);
+}
+
+/// In the file's coordinates; of a scene far from their origin with all of their digits.
+std::string place_text(const Scene& scene, const Vec3& place) {
+  return scene.recentred() ? fmt::format("{}", fmt::join(texts_in_file(scene.centre, place), " ")) : text(place);
+}
 
 Scene load(const SceneCommandOptions& options) {
   return load_scene_and_warn(options.scene, options.detail, options.view, options.look);
@@ -61,15 +70,20 @@ int scene_command(const SceneCommandOptions& options) {
   fmt::print("triangles  {}, of which {} have no area; {} vertices\n", scene.triangles.size(), degenerate,
              scene.vertices.size());
   fmt::print("materials  {}, of which {} reflect\n", scene.materials.size(), mirrors);
-  fmt::print("box        {} .. {}\n", text(bounds.lower), text(bounds.upper));
+  fmt::print("box        {} .. {}\n", place_text(scene, bounds.lower), place_text(scene, bounds.upper));
+  if (scene.recentred()) {
+    fmt::print("centre     {} {} {}, from which coordinates are counted in single precision\n", scene.centre.x,
+               scene.centre.y, scene.centre.z);
+  }
   if (!scene.cameras.empty()) {
     const std::vector<std::string> others(scene.cameras.begin() + 1, scene.cameras.end());
     fmt::print("cameras    '{}'{}{}\n", scene.cameras.front(),
                others.empty() ? "" : "; with --camera: ", fmt::join(others, ", "));
   }
-  fmt::print("camera     eye {}, direction {}, up {}, vertical field of view {:g} degrees\n", text(scene.camera.eye),
-             text(scene.camera.direction), text(scene.camera.up), scene.camera.fov);
-  fmt::print("light      position {}, colour {}\n", text(scene.light.position), text(scene.light.color));
+  fmt::print("camera     eye {}, direction {}, up {}, vertical field of view {:g} degrees\n",
+             place_text(scene, scene.camera.eye), text(scene.camera.direction), text(scene.camera.up),
+             scene.camera.fov);
+  fmt::print("light      position {}, colour {}\n", place_text(scene, scene.light.position), text(scene.light.color));
   if (!tree.empty()) fmt::print("{}\n", tree);
   return 0;
 }
