@@ -85,7 +85,7 @@ class PipeAnswers : Clocked<Vtriangle_pipe_32> {
 
   void cycle(bool begins) {
     u->valid_i = begins;
-    u->eval();
+    // What the pipe shows comes from registers, as the last edge has left them.
     if (u->valid_o) take(flights_[u->tag_o]);
     const Flight &limited = flights_[limit_tag_], &compared = flights_[best_tag_];
     u->limit_i = as_bits(limited.setup.limit);
@@ -118,6 +118,7 @@ class PipeAnswers : Clocked<Vtriangle_pipe_32> {
 };
 
 int answer_all() {
+  std::ios::sync_with_stdio(false);
   PipeAnswers pipe;
   uint64_t number = 0;
   for (std::string line; std::getline(std::cin, line); ++number) {
