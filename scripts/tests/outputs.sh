@@ -47,7 +47,7 @@ for command in --help kernels "kernels saxpy" isa "isa --verilog" "config 4w4c" 
   "asm $folder/a.asm" "disasm $folder/a.hex" \
   "scene cornell" "hits cornell --size 4x4" "boxes cornell --size 4x4 --quiet" \
   "triangles cornell --size 4x4 --bits 24 --quiet" "errors --grid 2" configurations \
-  "numerics --catalogue" \
+  "numerics --catalogue" "referee --cases 18 --quiet" \
   "run saxpy --n 8 --engine functional" "${sim[*]} --out $folder/out"; do
   # shellcheck disable=SC2086 # words
   promise "$command on a full disk is an error" printed_on_full $command
