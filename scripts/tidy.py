@@ -102,7 +102,7 @@ def make_headers(build, commands, sources):
     targets = set()
     for entry in commands:
         if pathlib.Path(entry["file"]) in sources:
-            match = re.search(r"CMakeFiles/(\w+)\.dir/", entry["command"])
+            match = re.search(r"CMakeFiles/([^/]+)\.dir/", entry["command"])
             targets.add(match[1] + "_headers")
     known = subprocess.run(["ninja", "-C", build, "-t", "targets", "all"], check=True, capture_output=True, text=True)
     targets &= set(re.findall(r"^(\w+_headers): phony", known.stdout, re.M))
