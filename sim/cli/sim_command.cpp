@@ -347,6 +347,14 @@ void print_table(const SimOptions& options, const RunRecord& record, const Outpu
                                       : "");
 }
 
+/// Of a scene that is recentred, to who is shown words of the machine.
+void tell_centre(const SimOptions& options, const Scene& scene) {
+  if (!scene.recentred() || (!options.waves && options.inspect_until == 0)) return;
+  const Vec3d& centre = scene.centre;
+  fmt::print(stderr, "raypool: coordinates in words of the machine are counted from {}, {}, {} of the file\n", centre.x,
+             centre.y, centre.z);
+}
+
 }  // namespace
 
 int sim_command(const SimOptions& options) {
@@ -376,11 +384,7 @@ int sim_command(const SimOptions& options) {
   record.materials = scene.materials.size();
   record.view = scene.view();
   record.reflections = record.depth > 1 && scene.reflects();
-  if (scene.recentred() && (options.waves || options.inspect_until != 0)) {
-    const Vec3d& centre = scene.centre;
-    fmt::print(stderr, "raypool: coordinates in words of the machine are counted from {}, {}, {} of the file\n",
-               centre.x, centre.y, centre.z);
-  }
+  tell_centre(options, scene);
   check_fits(record, scene);
   MemoryImage image = build_memory(ray_kernel_program(KernelTarget(record.configuration)), scene);
   if (options.modules) {
