@@ -1,6 +1,7 @@
 #include "referee/certificate.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -39,7 +40,7 @@ struct Double {
 /// direction's largest component. Number is Exact, or Bounded.
 template <typename Number, typename From>
 struct Seen {
-  Number x[3], y[3];
+  std::array<Number, 3> x, y;
 
   Seen(const RayQuery& ray, const std::array<Vec3, 3>& corners) {
     int z_axis = 0;
