@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace raypool::chip {
 
 void AnswerWatch::Port::clock(uint64_t cycle, bool asks, bool beat) {
@@ -37,7 +39,7 @@ std::string AnswerWatch::late() const {
       port->who, port->name, port->asked.front(), limit_);
 }
 
-bool AnswerWatch::clock(uint64_t cycle, const ChipOutputs& outputs, const ChipInputs& inputs) {
+bool AnswerWatch::look(uint64_t cycle, const ChipOutputs& outputs, const ChipInputs& inputs) {
   cycle_ = cycle;
   const auto reads = [](bool valid, bool ready, bool write) { return valid && ready && !write; };
   const TraverserPorts& traverser = outputs.traverser;
@@ -50,7 +52,10 @@ bool AnswerWatch::clock(uint64_t cycle, const ChipOutputs& outputs, const ChipIn
                   reads(outputs.device.memory_request_valid, outputs.to_device.memory_request_ready,
                         outputs.device.memory_request.write),
                   outputs.to_device.memory_response_valid);
-  return late_port() != nullptr;
+  due_ = kNever;
+  for (const Port& port : ports_)
+    if (!port.asked.empty()) due_ = std::min(due_, port.asked.front() + limit_ + 1);
+  return cycle >= due_;
 }
 
 }  // namespace raypool::chip

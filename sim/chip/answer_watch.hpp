@@ -10,6 +10,7 @@
 #include "config/configuration.hpp"
 #include "machine/chip/chip_device.hpp"
 #include "machine/chip/memory_port.hpp"
+#include "machine/common/port_cycles.hpp"
 
 namespace raypool::chip {
 
@@ -30,7 +31,14 @@ class AnswerWatch {
   std::optional<std::string> waits() const;
 
   /// Once in a cycle: true if somebody has waited for too long.
-  bool clock(uint64_t cycle, const ChipOutputs& outputs, const ChipInputs& inputs);
+  bool clock(uint64_t cycle, const ChipOutputs& outputs, const ChipInputs& inputs) {
+    const bool moves = outputs.memory_request_valid || inputs.memory_beat_valid || outputs.tree_response_valid ||
+                       outputs.traverser.tree_request_valid || outputs.device.memory_request_valid ||
+                       outputs.to_device.memory_response_valid;
+    return (moves || cycle >= due_) && look(cycle, outputs, inputs);
+  }
+  /// Cycle from which on clock() is true if no answer comes; before, a cycle without any needs no call.
+  uint64_t due() const { return due_; }
   /// Who that is, in a sentence.
   std::string late() const;
 
@@ -43,10 +51,11 @@ class AnswerWatch {
 
     void clock(uint64_t cycle, bool asks, bool beat);
   };
+  bool look(uint64_t cycle, const ChipOutputs& outputs, const ChipInputs& inputs);
   // The first one that has waited for too long, or null.
   const Port* late_port() const;
 
-  uint64_t limit_, cycle_ = 0;
+  uint64_t limit_, cycle_ = 0, due_ = kNever;
   std::array<Port, 3> ports_{
       {{"the chip", "memory_request"}, {"the traverser", "tree_request"}, {"a unit", "device_request"}}};
 };

@@ -74,7 +74,7 @@ ChipResult Board::result() {
   return chip_result(options_, figures());
 }
 
-void Board::clock() {
+uint64_t Board::clock(uint64_t most) {
   const ChipOutputs& outputs = chip_.outputs();
   if (outputs.device.fault.code != FaultCode::None) {
     const Fault& fault = outputs.device.fault;
@@ -96,16 +96,38 @@ void Board::clock() {
   if (!ended_) {
     follow_kernels(outputs);
     follow_levels(outputs);
-    watch(outputs);
+    count_work(outputs);
+    if (cycle_ == watch_at_) watch();
     if (answers_.clock(cycle_, outputs, inputs_)) throw ChipStalled(at_cycle(answers_.late()) + "; " + state());
   }
   if (tiles_) tiles_->clock(outputs, watch_ ? outputs.traverser : inputs_);
   if (outputs.frame_valid && inputs_.frame_ready) options_.frame->add(outputs.frame);
   memory_.clock(cycle_, outputs, inputs_);
-  if (external_ != nullptr) external_->clock(outputs, inputs_, kernels_.under_way() == 0 || outputs.held_up);
+  const bool stalls = kernels_.under_way() == 0 || outputs.held_up;
+  if (external_ != nullptr) external_->clock(outputs, inputs_, stalls);
   if (watch_) watch_->clock(outputs);
-  chip_.clock(inputs_);
+  const uint32_t busy = popcount(outputs.device.busy);
+  const uint64_t cycles = chip_.run(inputs_, std::min(most, still_for(stalls)));
   ++cycle_;
+  if (cycles == 1) return 1;
+  stay(cycles - 1, stalls, busy);
+  cycle_ += cycles - 1;
+  return cycles;
+}
+
+// Before chip_.run(): cycles that it may take.
+uint64_t Board::still_for(bool stalls) const {
+  if (external_ == nullptr || ended_) return 1;
+  const uint64_t still = external_->still_for(stalls);
+  const uint64_t due = std::min({memory_.due(), answers_.due(), watch_at_});
+  return due <= cycle_ ? 1 : std::min(still, due - cycle_ - 1) + 1;
+}
+
+// After it: what is counted in each cycle. Levels are those that the second of them has begun with.
+void Board::stay(uint64_t cycles, bool stalls, uint32_t busy) {
+  external_->stay(cycles, stalls);
+  busy_cycles_ += cycles * busy;
+  follow_levels(chip_.outputs());
 }
 
 RayKernel Board::kernel_at(uint32_t pc) const {
@@ -166,8 +188,9 @@ Counts Board::counts() const {
 
 void Board::follow_levels(const ChipOutputs& outputs) {
   rays_.set(cycle_, outputs.rays);
-  for (const ImportKind kind : {ImportKind::Normal, ImportKind::Shadow, ImportKind::Direct})
-    intersections_[kind].set(cycle_, outputs.size[kind]);
+  intersections_[ImportKind::Normal].set(cycle_, outputs.size[ImportKind::Normal]);
+  intersections_[ImportKind::Shadow].set(cycle_, outputs.size[ImportKind::Shadow]);
+  intersections_[ImportKind::Direct].set(cycle_, outputs.size[ImportKind::Direct]);
   dropped_depth_ += outputs.outcome.valid && outputs.outcome.deep;
 }
 
@@ -191,8 +214,15 @@ uint64_t Board::due() const {
   return std::min(std::max(memory_.due(), cycle_ + 1), stall == 0 ? kNever : cycle_ + stall);
 }
 
-void Board::watch(const ChipOutputs& outputs) {
-  count_work(outputs);
+// The next cycle behind this one in which watch() has something to look at.
+uint64_t Board::next_watch() const {
+  uint64_t next = std::min(look_at_, last_counted_);
+  if (options_.limits.cycles > cycle_) next = std::min(next, options_.limits.cycles);
+  if (options_.progress) next = std::min(next, (cycle_ / kProgressCycles + 1) * kProgressCycles);
+  return next;
+}
+
+void Board::watch() {
   if (options_.progress && cycle_ % kProgressCycles == 0) show_progress();
   if (options_.limits.cycles != 0 && cycle_ == options_.limits.cycles)
     throw LimitPassed(at_cycle(limit_sentence(options_.limits.cycles, true)), state());
@@ -202,8 +232,10 @@ void Board::watch(const ChipOutputs& outputs) {
                     "have begun anew: draw with --set counter_bits=48",
                     cycle_, options_.configuration.name, options_.configuration.counter_bits));
   }
-  if (cycle_ != look_at_) return;
-  look_at_ += options_.watchdog_cycles;
+  const bool looks = cycle_ == look_at_;
+  if (looks) look_at_ += options_.watchdog_cycles;
+  watch_at_ = next_watch();
+  if (!looks) return;
   switch (progress_.look(cycle_, {chip_.counter(counter::kInstructions), work_, due()})) {
     case ProgressWatch::State::GoesOn:
       break;

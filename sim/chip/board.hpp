@@ -34,8 +34,8 @@ class Board {
   /// With a setup of the host's own, to which picture, depth and entries of the options must be equal.
   Board(const ChipOptions& options, const FrameSetup& setup, ChipDevice& chip, LineStore& store, FrameBegin begin);
 
-  /// One cycle.
-  void clock();
+  /// One cycle, or up to `most` in which the chip's ports are still. Returns how many.
+  uint64_t clock(uint64_t most = kNever);
   /// Nothing moves any more.
   bool ended() const { return still_ >= kStillCycles; }
   /// The next frame may begin; of this one all but the ports' busy cycles has been counted.
@@ -49,9 +49,12 @@ class Board {
   // More than any port is busy with a package: all that is counted for the report is right then.
   static constexpr uint64_t kStillCycles = 1024;
 
+  uint64_t still_for(bool stalls) const;
+  void stay(uint64_t cycles, bool stalls, uint32_t busy);
   void follow_kernels(const ChipOutputs& outputs);
   void follow_levels(const ChipOutputs& outputs);
-  void watch(const ChipOutputs& outputs);
+  uint64_t next_watch() const;
+  void watch();
   void count_work(const ChipOutputs& outputs);
   uint64_t due() const;
   std::string at_cycle(const std::string& what) const;
@@ -94,6 +97,7 @@ class Board {
   uint64_t work_ = 0;               // transfers, and lines that the caches of a traverser inside give
   ProgressWatch progress_;
   uint64_t last_counted_, look_at_;  // cycles: the last one that counters tell; the watchdog's next one
+  uint64_t watch_at_ = 0;            // of these and others the next one
 };
 
 }  // namespace chip

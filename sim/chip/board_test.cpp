@@ -22,6 +22,15 @@ using Case = test::BoardCase;
 using test::BoardRun;
 using test::TreeBoard;
 
+std::string error_of(BoardRun& board) {
+  try {
+    board.draw();
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return "";
+}
+
 class BoardFrame : public testing::TestWithParam<Case> {};
 
 TEST_P(BoardFrame, IsThatOfTheNativeRenderer) {
@@ -69,6 +78,48 @@ void fast(ChipConfiguration& chip) {
   chip.shading = Shading::Traverser;
 }
 
+/// A chip that is clocked once in every call.
+class OneByOne : public ChipDevice {
+ public:
+  explicit OneByOne(std::unique_ptr<ChipDevice> chip) : chip_(std::move(chip)) {}
+  uint32_t units() const override { return chip_->units(); }
+  void start(const FrameSetup& setup) override { chip_->start(setup); }
+  void start_next(const FrameSetup& setup) override { chip_->start_next(setup); }
+  const ChipOutputs& outputs() const override { return chip_->outputs(); }
+  void clock(const ChipInputs& inputs) override { chip_->clock(inputs); }
+  ChipCounts counts() override { return chip_->counts(); }
+  uint64_t counter(int number) override { return chip_->counter(number); }
+
+ private:
+  std::unique_ptr<ChipDevice> chip_;
+};
+
+TEST_P(BoardFrame, TakesTheSameCyclesWhenEachOfThemIsClocked) {
+  BoardRun board(GetParam()), other(GetParam());
+  other.device = std::make_unique<OneByOne>(std::move(other.device));
+  test::expect_the_same(board.draw(), other.draw());
+  EXPECT_TRUE(board.run.frame == other.run.frame);
+  // With a limit they end in the same cycle, in the same state.
+  const auto at_the_limit = [](const Case& c, bool one_by_one, uint64_t limit) {
+    BoardRun limited(c);
+    if (one_by_one) limited.device = std::make_unique<OneByOne>(std::move(limited.device));
+    limited.run.options.limits.cycles = limit;
+    return error_of(limited);
+  };
+  for (const uint64_t limit : {100, 333, 501, 640})
+    EXPECT_EQ(at_the_limit(GetParam(), false, limit), at_the_limit(GetParam(), true, limit)) << limit;
+}
+
+TEST(Board, RunsOnWhileOnlyUnitsWork) {
+  BoardRun board({"", 8, 8, 1, 32, 24, 1});
+  chip::FixedLatencyStore store(*board.run.options.memory, nullptr, board.run.options.configuration.chip);
+  chip::Board running(board.run.options, *board.device, store);
+  uint64_t calls = 0, cycles = 0;
+  for (; !running.drawn(); ++calls) cycles += running.clock();
+  EXPECT_LT(calls, cycles * 9 / 10);
+  EXPECT_EQ(cycles, BoardRun({"", 8, 8, 1, 32, 24, 1}).draw().cycles + 1);
+}
+
 INSTANTIATE_TEST_SUITE_P(Board, BoardFrame,
                          testing::Values(Case{"one", 8, 8, 1, 32, 24, 1}, Case{"two", 4, 4, 2, 37, 29, 5},
                                          Case{"four", 8, 8, 4, 67, 41, 3, 16, fast},
@@ -76,15 +127,6 @@ INSTANTIATE_TEST_SUITE_P(Board, BoardFrame,
                                          Case{"short_of_room", 2, 2, 2, 19, 13, 5, kIntersectionWords, short_of_room},
                                          Case{"one_pixel", 4, 4, 1, 1, 1, 5}),
                          [](const testing::TestParamInfo<Case>& c) { return std::string(c.param.name); });
-
-std::string error_of(BoardRun& board) {
-  try {
-    board.draw();
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-  return "";
-}
 
 TEST(Board, RefusesWhatTheChipHasNot) {
   BoardRun early({"", 4, 4, 1, 8, 8, 1});

@@ -38,8 +38,7 @@ void ChipModule::clock_until_sync() {
   while (goes_on) {
     if (time_.cycle() >= start_at_) start();
     if (!running_ || over()) break;
-    board_->clock();
-    time_.advance();
+    time_.advance(board_->clock(std::min(time_.left(), start_at_ - time_.cycle())));
     if (traverser.size() != 0) time_.compute_quantum();
     goes_on = !time_.need_sync();
   }

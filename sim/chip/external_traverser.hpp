@@ -23,6 +23,11 @@ class ExternalTraverser {
   /// pool.
   virtual void clock(const ChipOutputs& outputs, const TraverserPorts& ports, bool stalls) = 0;
 
+  /// After clock(): cycles from the next one on in which it offers nothing and clock() does nothing but count them, if
+  /// no ray comes, no kernel ends and `stalls` stays. stay() may then be called instead.
+  virtual uint64_t still_for(bool /*stalls*/) const { return 0; }
+  virtual void stay(uint64_t /*cycles*/, bool /*stalls*/) {}
+
   virtual const TraverserCounts& counts() const = 0;
   /// Cycles until it acts of its own accord; 0: it waits for the chip. For the watchdog.
   virtual uint64_t stall_left() const { return 0; }

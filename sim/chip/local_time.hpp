@@ -18,7 +18,9 @@ class LocalTime {
  public:
   /// Number of the present cycle, which begins so many ns after the start of the simulation.
   uint64_t cycle() const { return cycle_; }
-  void advance() { ++cycle_; }
+  void advance(uint64_t cycles) { cycle_ += cycles; }
+  /// Cycles from the present one on that may pass before SystemC has an event; at least 1.
+  uint64_t left() const { return need_sync() ? 1 : quantum_end_ - cycle_; }
   /// To be called first when the process resumes: in the first cycle that begins at SystemC's time or later.
   void resume();
   /// True if SystemC has an event before the present cycle begins, or at its very beginning: that comes first.

@@ -6,6 +6,7 @@
 
 #include "bits.hpp"
 #include "machine/chip/intersection_pool.hpp"
+#include "machine/common/port_cycles.hpp"
 
 namespace raypool::chip {
 
@@ -25,6 +26,7 @@ void PortTraverser::start(const FrameSetup& setup) {
   next_beat_in_ = next_beat_out_ = 0;
   rays_.clear();
   results_ = {};
+  waiting_ = 0;
   contributions_.clear();
   freed_.clear();
   leaving_.reset();
@@ -62,7 +64,12 @@ void PortTraverser::clock(const ChipOutputs& outputs, const TraverserPorts& port
   counts_.most_rays += budget;
   if (budget != 0 && trace(budget) != 0 && stall_over) ++counts_.stall_batches;
   if (outputs.ray_valid) read(outputs);
-  if (!leaving_) choose(outputs, put);
+  if (!leaving_ && waiting_ != 0) choose(outputs, put);
+}
+
+uint64_t PortTraverser::still_for(bool stalls) const {
+  if (!freed_.empty() || !contributions_.empty() || leaving_ || waiting_ != 0) return 0;
+  return stalls ? stall_cycles_ - stalled_for_ % stall_cycles_ - 1 : kNever;
 }
 
 void PortTraverser::read(const ChipOutputs& outputs) {
@@ -100,6 +107,7 @@ void PortTraverser::trace(const PlacedRay& ray) {
   } else {
     result.record = packed(hit, layout_);
     results_[result.kind].push_back(result);
+    ++waiting_;
   }
 }
 
@@ -147,6 +155,7 @@ void PortTraverser::choose(const ChipOutputs& outputs, ImportKind put) {
   if (oldest == nullptr) return;
   leaving_ = oldest->front();
   oldest->pop_front();
+  --waiting_;
 }
 
 }  // namespace raypool::chip

@@ -35,6 +35,8 @@ class PortTraverser : public ExternalTraverser {
   uint64_t stall_left() const override {
     return stalled_for_ == 0 || rays_.empty() ? 0 : stall_cycles_ - stalled_for_ % stall_cycles_;
   }
+  uint64_t still_for(bool stalls) const override;
+  void stay(uint64_t cycles, bool stalls) override { stalled_for_ = stalls ? stalled_for_ + cycles : 0; }
   std::string describe() const override;
 
  private:
@@ -75,6 +77,7 @@ class PortTraverser : public ExternalTraverser {
   uint32_t next_beat_in_ = 0;
   std::deque<PlacedRay> rays_;  // not traced, the oldest first
   EnumArray<ImportKind, std::deque<Result>, kImportKinds> results_;
+  uint32_t waiting_ = 0;  // of these
   std::deque<Result> contributions_;
   std::deque<Freed> freed_;
   std::optional<Result> leaving_;

@@ -34,6 +34,23 @@ struct BoardRun {
   std::unique_ptr<ChipDevice> device;
 };
 
+inline void expect_the_same(const ChipResult& a, const ChipResult& b) {
+  EXPECT_EQ(a.cycles, b.cycles);
+  EXPECT_EQ(a.busy_cycles, b.busy_cycles);
+  EXPECT_EQ(a.instructions, b.instructions);
+  EXPECT_EQ(a.rays(), b.rays());
+  EXPECT_EQ(a.contributions, b.contributions);
+  EXPECT_EQ(a.resource_utilisation, b.resource_utilisation);
+  EXPECT_EQ(a.rays_pool.mean, b.rays_pool.mean);
+  EXPECT_EQ(a.normal_pool.mean, b.normal_pool.mean);
+  EXPECT_EQ(a.shadow_pool.mean, b.shadow_pool.mean);
+  EXPECT_EQ(a.ray_port_utilisation, b.ray_port_utilisation);
+  EXPECT_EQ(a.memory_port_utilisation, b.memory_port_utilisation);
+  EXPECT_EQ(a.memory_reads, b.memory_reads);
+  EXPECT_EQ(a.traverser_stall_batches, b.traverser_stall_batches);
+  for (size_t i = 0; i < a.alus.size(); ++i) EXPECT_EQ(a.alus[i].waiting, b.alus[i].waiting) << i;
+}
+
 // With a traverser inside.
 inline void inside(ChipConfiguration& chip) {
   chip.traverser = TraverserName::Hardware;

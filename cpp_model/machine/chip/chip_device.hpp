@@ -160,6 +160,10 @@ class ChipDevice {
   virtual void start_next(const FrameSetup& setup) = 0;
   virtual const ChipOutputs& outputs() const = 0;
   virtual void clock(const ChipInputs& inputs) = 0;
+  /// Clocks at least once and at most `cycles` times, and returns how often. What is valid at the inputs is so in the
+  /// first cycle only, the readies stay. It ends early when in the next cycle something may be transferred, outputs()
+  /// change, or an engine cannot tell: in all but the first nothing but the units works.
+  virtual uint64_t run(const ChipInputs& inputs, uint64_t cycles);
   /// For who looks at signals inside: they show what a cycle with these inputs comes to, which clock() then ends.
   virtual void settle(const ChipInputs& inputs);
 

@@ -1,5 +1,6 @@
 #include "machine/chip/chip_model.hpp"
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <stdexcept>
@@ -86,9 +87,21 @@ class Launches {
   /// the levels.
   bool looks(uint64_t cycle, bool ready) {
     if (launch_ || ended_at_ != kNever || cycle < decide_from_) return false;
+    if (controller_.waits_for_units(ready)) {
+      changed_ = true;
+      return false;
+    }
     changed_ = changed_ || ready != ready_ || cycle >= look_at_;
     ready_ = ready;
     return changed_;
+  }
+  /// The next cycle, from this one on, in which anything of this changes unless something else does.
+  uint64_t due(uint64_t cycle, bool ready) const {
+    if (launch_) return cycle <= launch_at_ ? launch_at_ : ready ? cycle : kNever;
+    if (ended_at_ != kNever) return ended_at_;
+    if (controller_.waits_for_units(ready)) return kNever;
+    if (cycle < decide_from_) return decide_from_;
+    return changed_ || ready != ready_ ? cycle : look_at_;
   }
   void decide(uint64_t cycle, const Controller::Levels& levels) {
     controller_.settle(cycle);
@@ -208,6 +221,7 @@ class ChipModel : public ChipDevice {
     cycle_ = 0;
     ready_ = starts_ = true;
     out_ = {};
+    memory_changes_ = intersections_change_ = true;
     outcome_ = {};
     exported_valid_ = false;
     present();
@@ -217,18 +231,47 @@ class ChipModel : public ChipDevice {
     check_next(setup_, setup, out_);
     setup_ = setup;
     for (uint32_t index = 0; index < configuration_.arguments; ++index)
-      clock_around({}, [&] { device_->set_argument(index, setup.arguments[index]); });
+      clock_around({}, [&] {
+        device_->set_argument(index, setup.arguments[index]);
+        return uint64_t{1};
+      });
     starts_ = true;
   }
 
   void clock(const ChipInputs& inputs) override {
-    clock_around(inputs, [this] { device_->clock(out_.to_device); });
+    clock_around(inputs, [this] {
+      device_->clock(out_.to_device);
+      return uint64_t{1};
+    });
+  }
+
+  uint64_t run(const ChipInputs& inputs, uint64_t cycles) override {
+    return clock_around(inputs, [&] {
+      const uint64_t most = cycles == 1 ? 1 : std::min(cycles, still_for());
+      return device_->run(out_.to_device, most);
+    });
   }
 
  private:
-  // A cycle; `clock_device` is what it is for the units.
+  /// At the end of a cycle, before that of the units: cycles from this one on that pass until something happens outside
+  /// the units, if they do not change what they show. A traverser inside has something in every cycle.
+  uint64_t still_for() const {
+    const Blocks& b = *blocks_;
+    const UnitOutputs& device = out_.device;
+    if (b.traverser || !out_.busy || outcome_.valid || exported_valid_ || !b.reader.still() || b.memory.offers() ||
+        b.frame.valid() || device.frame_valid || b.rays.held_up(cycle_ + 1) != out_.held_up)
+      return 1;
+    uint64_t due =
+        std::min({b.launches.due(cycle_ + 1, device.launch_ready), b.memory.start(), b.memory.response_due(),
+                  b.memory.traverser_response_due(), b.intersections.beat_due(), b.intersections.request_due()});
+    if (device.memory_request_valid) due = std::min(due, b.memory.room_from());
+    if (device.export_valid) due = std::min(due, b.rays.beats_from());
+    return due <= cycle_ ? 1 : due - cycle_;
+  }
+
+  // A cycle, and those in which only the units work; `clock_device` is what they are for these. Returns how many.
   template <typename ClockDevice>
-  void clock_around(const ChipInputs& inputs, const ClockDevice& clock_device) {
+  uint64_t clock_around(const ChipInputs& inputs, const ClockDevice& clock_device) {
     const TraverserPorts& outside = inputs;
     const bool starts = ready_ && (starts_ || inputs.start), idle = this->idle();
     if (starts) begin_frame();
@@ -241,11 +284,12 @@ class ChipModel : public ChipDevice {
     end_kernels();
     decide();
     clock_traverser();
-    clock_device();
+    const uint64_t cycles = clock_device();
     ready_ = idle && !starts;
     starts_ = false;
-    ++cycle_;
+    cycle_ += cycles;
     present();
+    return cycles;
   }
 
   struct Blocks {
@@ -321,27 +365,33 @@ class ChipModel : public ChipDevice {
     Blocks& b = *blocks_;
     if (out_.device.import_request_valid &&
         b.intersections.request(cycle_, out_.device.import_request_kind, out_.device.import_request_unit))
-      b.launches.changed();
+      intersections_change_ = true;
     if (traverser.put_valid && (out_.put_ready >> to_underlying(traverser.put_kind) & 1) != 0) {
       b.intersections.put_beat(cycle_, traverser.put_kind, traverser.put_data);
-      b.launches.changed();
+      intersections_change_ = true;
     }
     if (out_.reserve_valid) {
       b.intersections.reserve(out_.reserve_kind, out_.reserve_count);
-      b.launches.changed();
+      intersections_change_ = true;
     }
+    if (intersections_change_) b.launches.changed();
   }
 
   void clock_memory(const ChipInputs& inputs, const TraverserPorts& traverser) {
     MemoryPort& memory = blocks_->memory;
-    if (out_.memory_request_valid && inputs.memory_request_ready) memory.taken(cycle_);
-    if (out_.device.memory_request_valid && out_.to_device.memory_request_ready)
+    const auto happens = [this](bool event) {
+      memory_changes_ = memory_changes_ || event;
+      return event;
+    };
+    if (happens(out_.memory_request_valid && inputs.memory_request_ready)) memory.taken(cycle_);
+    if (happens(out_.device.memory_request_valid && out_.to_device.memory_request_ready))
       memory.request(cycle_, out_.device.memory_request);
-    if (traverser.tree_request_valid && out_.tree_request_ready) memory.request(cycle_, traverser.tree_request);
-    if (memory.start() <= cycle_) memory.serve(cycle_);
-    if (out_.to_device.memory_response_valid) memory.response();
-    if (out_.tree_response_valid) memory.traverser_response();
-    if (inputs.memory_beat_valid && out_.memory_beat_ready) memory.beat(cycle_, inputs.memory_beat_data);
+    if (happens(traverser.tree_request_valid && out_.tree_request_ready))
+      memory.request(cycle_, traverser.tree_request);
+    if (happens(memory.start() <= cycle_)) memory.serve(cycle_);
+    if (happens(out_.to_device.memory_response_valid)) memory.response();
+    if (happens(out_.tree_response_valid)) memory.traverser_response();
+    if (happens(inputs.memory_beat_valid && out_.memory_beat_ready)) memory.beat(cycle_, inputs.memory_beat_data);
   }
 
   void clock_frame(const ChipInputs& inputs, const TraverserPorts& traverser) {
@@ -447,13 +497,7 @@ class ChipModel : public ChipDevice {
   void present_intersections() {
     IntersectionPool& pool = blocks_->intersections;
     UnitInputs& to_device = out_.to_device;
-    out_.put_ready = 0;
-    for (const ImportKind kind : kKinds) {
-      out_.size[kind] = pool.size(kind);
-      out_.available[kind] = pool.available(kind);
-      if (kind != ImportKind::Direct || configuration_.chip.culling)
-        out_.put_ready |= uint32_t{pool.put_ready(kind)} << to_underlying(kind);
-    }
+    if (intersections_change_) present_levels();
     to_device.import_request_ready = pool.request_due() == cycle_;
     to_device.import_beat_valid = pool.beat_due() == cycle_;
     out_.pixel_valid = false;
@@ -463,14 +507,22 @@ class ChipModel : public ChipDevice {
     pool.beat(to_device.import_beat);
   }
 
+  void present_levels() {
+    const IntersectionPool& pool = blocks_->intersections;
+    out_.put_ready = 0;
+    for (const ImportKind kind : kKinds) {
+      out_.size[kind] = pool.size(kind);
+      out_.available[kind] = pool.available(kind);
+      if (kind != ImportKind::Direct || configuration_.chip.culling)
+        out_.put_ready |= uint32_t{pool.put_ready(kind)} << to_underlying(kind);
+    }
+    intersections_change_ = false;
+  }
+
   void present_memory() {
     const MemoryPort& memory = blocks_->memory;
     UnitInputs& to_device = out_.to_device;
     to_device.memory_request_ready = memory.room_from() <= cycle_;
-    out_.tree_request_ready = memory.traverser_room();
-    out_.memory_beat_ready = memory.beat_ready();
-    out_.memory_request_valid = memory.offers();
-    if (out_.memory_request_valid) out_.memory_request = memory.access();
     to_device.memory_response_valid = memory.response_due() == cycle_;
     if (to_device.memory_response_valid) to_device.memory_response = memory.next_response();
     out_.tree_response_valid = memory.traverser_response_due() == cycle_;
@@ -478,6 +530,12 @@ class ChipModel : public ChipDevice {
       out_.tree_response_beat = memory.next_traverser_response().beat;
       out_.tree_response_data = memory.next_traverser_response().data;
     }
+    if (!memory_changes_) return;
+    memory_changes_ = false;
+    out_.tree_request_ready = memory.traverser_room();
+    out_.memory_beat_ready = memory.beat_ready();
+    out_.memory_request_valid = memory.offers();
+    if (out_.memory_request_valid) out_.memory_request = memory.access();
     out_.quiet = 0;
     for (uint32_t unit = 0; unit < device_->units(); ++unit)
       out_.quiet |= uint32_t{memory.quiet(cycle_ - 1, unit)} << unit;
@@ -522,7 +580,8 @@ class ChipModel : public ChipDevice {
   bool ready_ = true;    // for a frame
   bool starts_ = false;  // one begins in the next cycle that is clocked
   bool looks_inside_ = false;
-  uint64_t cycle_ = 0;  // since the reset
+  bool memory_changes_ = true, intersections_change_ = true;  // in this cycle, what their ports show of their levels
+  uint64_t cycle_ = 0;                                        // since the reset
   ChipOutputs out_;
   ChipOutputs::Outcome outcome_;  // of the cycle before, as are these
   bool exported_valid_ = false;

@@ -90,12 +90,13 @@ class Controller {
       if (!records_[unit].empty()) return false;
     return std::all_of(levels.size.begin(), levels.size.end(), [](uint32_t size) { return size == 0; });
   }
+  /// While kernels run, and the units are ready for a launch or not, ended() is false and decide() comes to none,
+  /// whatever else there is.
+  bool waits_for_units(bool ready) const { return kernels() != 0 && (!ready || (ahead() && !launch_ahead_)); }
   Launch decide(const Levels& levels, const Tiles& tiles) const {
-    bool ahead = true;
-    for (uint32_t unit = 0; unit < units_; ++unit) {
+    for (uint32_t unit = 0; unit < units_; ++unit)
       if (records_[unit].full()) return {};
-      ahead = ahead && kernels_[unit] != 0;
-    }
+    const bool ahead = this->ahead();
     if (!levels.ready || (ahead && !launch_ahead_)) return {};
     const PolicyView view = this->view(levels, tiles, ahead);
     return launch(policy_->choose(view), levels, tiles);
@@ -120,6 +121,12 @@ class Controller {
   }
 
  private:
+  // A launch would wait behind another one's kernel.
+  bool ahead() const {
+    for (uint32_t unit = 0; unit < units_; ++unit)
+      if (kernels_[unit] == 0) return false;
+    return true;
+  }
   uint32_t to_come(uint32_t (LaunchRecords::*count)() const) const {
     uint32_t sum = 0;
     for (uint32_t unit = 0; unit < units_; ++unit) sum += (records_[unit].*count)();

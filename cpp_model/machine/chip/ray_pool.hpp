@@ -138,6 +138,8 @@ class RayReader {
   bool last() const { return beat_ == kRayBeats - 1; }
   uint32_t place() const { return place_; }
 
+  /// It holds no ray and offers none.
+  bool still() const { return !arrived_ && !valid_ && !order_.valid(); }
   /// The end of a cycle: `ready`, what is offered is taken.
   void clock(bool ready) {
     if (!valid_ || ready) move();

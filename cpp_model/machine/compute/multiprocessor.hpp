@@ -28,6 +28,7 @@ class Multiprocessor : public ComputeUnit {
   void set_argument(uint32_t index, uint32_t value) override;
   const UnitOutputs& outputs() const override { return outputs_; }
   void clock(const UnitInputs& inputs) override;
+  uint64_t run(const UnitInputs& inputs, uint64_t cycles) override;
   void trace_on() override;
   void trace_off() override;
   const UnitTrace& trace() const override { return trace_; }
