@@ -110,6 +110,11 @@ std::optional<int> operation_named(const Range& range, std::string_view mnemonic
 
 std::vector<int> values_of(const Range& range) {
   std::vector<int> values;
+  if (range.form == Range::Form::PowerOfTwo) {
+    for (uint32_t value = 0; value <= static_cast<uint32_t>(range.greatest); value = std::max(1u, 2 * value))
+      if (range.has(static_cast<int>(value))) values.push_back(static_cast<int>(value));
+    return values;
+  }
   for (int value = std::min(range.least, 0); value <= range.greatest; ++value)
     if (range.has(value)) values.push_back(value);
   return values;
