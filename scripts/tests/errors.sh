@@ -95,6 +95,13 @@ refuses_sim "unknown boundary" "no boundary 'board': use unit or chip" --engine 
 refuses_sim "a boundary without Verilog" "engine model has no Verilog, and so no boundary" --engine model \
   --boundary chip
 refuses_sim "unknown hits" "--hits is 'mine': use own or embree" --engine native --hits mine
+refuses_sim "unknown precision" "--precision is 'half': use single or double" --engine native --precision half
+refuses_sim "a machine in double precision" "engine model draws with the arithmetic of its machine" \
+  --engine model --precision double
+refuses_sim "unstable pixels of a machine" "engine model draws with the arithmetic of its machine" \
+  --engine model --unstable 3
+refuses_sim "double precision of 16 bits" "--precision double has neither the arithmetic nor the hits of a machine" \
+  --engine native --precision double --set arithmetic.significand=16
 refuses_sim "hits of a chip from Embree" "engine model has the hits of its traverser" --engine model --hits embree
 refuses_sim "hits of a traverser from Embree" "takes no hits of the machine's traverser" --engine native --hits embree \
   --traverser hardware

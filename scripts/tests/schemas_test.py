@@ -41,7 +41,8 @@ def raypool(*words):
 def played_by(engine):
     """Options of sim for an engine, such as lockstep-chip-static: with boundary chip, and the traverser static."""
     engine, *more = engine.split("-")
-    options = {"chip": ("--boundary", "chip"), "static": ("--traverser", "static"), "embree": ("--hits", "embree")}
+    options = {"chip": ("--boundary", "chip"), "static": ("--traverser", "static"), "embree": ("--hits", "embree"),
+               "double": ("--precision", "double")}  # fmt: skip
     return ["--engine", engine, *(word for name in more for word in options[name])]
 
 

@@ -24,6 +24,10 @@ struct SimOptions {
   std::string engine = "model";
   std::string boundary;  ///< unit or chip: what is Verilog, of engines rtl and lockstep; empty: unit
   std::string hits;      ///< own or embree: whose hits engine native takes; empty: own
+  /// single or double, of engine native: numbers of the machine's arithmetic, or of double precision; then
+  /// decisions.bin is left too. Empty: single, and it is not.
+  std::string precision;
+  int unstable = 0;  ///< of engine native: frames with the camera's last bits moved; 0: none
   std::string size = kDefaultSize;
   std::string view;          ///< JSON file with camera and light; empty: the scene's own
   ViewWords look;            ///< changes of it

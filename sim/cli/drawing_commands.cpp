@@ -30,6 +30,17 @@ void DrawingCommands::add_sim_command() {
       ->type_name("unit|chip");
   sim_app->add_option("--hits", sim_.hits, "native: hits of its own, or Embree's (default: own)")
       ->type_name("own|embree");
+  sim_app
+      ->add_option("--precision", sim_.precision,
+                   "native: numbers of the machine's arithmetic, or of double precision (default: single); given, it "
+                   "leaves decisions.bin too, from which raypool compare says why pixels differ")
+      ->type_name("single|double");
+  sim_app
+      ->add_option("--unstable", sim_.unstable,
+                   "native: draw so many frames more, each with last bits of the camera moved, and leave unstable.png, "
+                   "which shows the pixels that change")
+      ->check(CLI::Range(1, 1000))
+      ->type_name("N");
   add_units_and_depth(*sim_app, sim_.units, sim_.depth);
   add_threads(*sim_app, sim_.threads, "native and sampled: threads");
   sim_app

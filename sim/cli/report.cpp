@@ -371,6 +371,7 @@ std::string to_json(const RunRecord& record) {
   json["engine"] = record.engine;
   if (!record.boundary.empty()) json["boundary"] = record.boundary;
   if (!record.hits.empty()) json["hits"] = record.hits;
+  if (!record.precision.empty()) json["precision"] = record.precision;
   json["scene"] = {{"name", record.scene}, {"triangles", record.triangles}, {"materials", record.materials}};
   const Vec3d& centre = record.view.centre;
   if (!(centre == Vec3d{})) json["scene"]["centre"] = {centre.x, centre.y, centre.z};
@@ -382,6 +383,7 @@ std::string to_json(const RunRecord& record) {
   json["traverser"] = configuration["chip"]["traverser"];
   if (record.chip) add_chip(json, *record.chip, record.configuration.chip);
   if (record.native) add_native(json, *record.native);
+  if (record.unstable) json["unstable"] = {{"frames", record.unstable->frames}, {"pixels", record.unstable->pixels}};
   if (record.sampled) add_sampled(json, *record.sampled, record.seed, record.depth == 1);
   if (record.lockstep) json["lockstep"] = lockstep_json(*record.lockstep);
   if (record.chip_lockstep) json["lockstep"] = lockstep_json(*record.chip_lockstep);

@@ -11,6 +11,7 @@
 #include "lockstep/lockstep_chip.hpp"
 #include "lockstep/lockstep_unit.hpp"
 #include "scene/native_renderer.hpp"
+#include "scene/unstable_pixels.hpp"
 
 namespace raypool {
 
@@ -18,8 +19,9 @@ namespace raypool {
 struct RunRecord {
   std::vector<std::string> command;  ///< the command line
   std::string engine;
-  std::string boundary;  ///< unit or chip, of engines rtl and lockstep; else empty
-  std::string hits;      ///< own or embree, of engine native; else empty
+  std::string boundary;   ///< unit or chip, of engines rtl and lockstep; else empty
+  std::string hits;       ///< own or embree, of engine native; else empty
+  std::string precision;  ///< single or double, of engine native; else empty
   Configuration configuration;
   std::string scene;
   size_t triangles = 0, materials = 0;
@@ -30,6 +32,7 @@ struct RunRecord {
   int units = 0;
   std::optional<ChipResult> chip;                   ///< engines with a chip
   std::optional<NativeStatistics> native;           ///< engines native and sampled
+  std::optional<UnstablePixels> unstable;           ///< engine native, if asked for
   std::optional<sampled::Figures> sampled;          ///< engine sampled
   uint64_t seed = 0;                                ///< its
   std::optional<LockstepCounts> lockstep;           ///< engine lockstep, of the units

@@ -21,6 +21,7 @@
 #include "config/settings.hpp"
 #include "config/unused_fields.hpp"
 #include "files/unfinished.hpp"
+#include "scene/double_renderer.hpp"
 #include "scene/embree_scene.hpp"
 #include "scene/image.hpp"
 #include "scene/native_renderer.hpp"
@@ -42,6 +43,26 @@ bool is_chosen(const SimOptions& options, const std::string& field) {
   return std::find(set.begin(), set.end(), field) != set.end();
 }
 
+void check_precision(const SimOptions& options, Engine engine) {
+  if ((!options.precision.empty() || options.unstable != 0) && engine != Engine::Native) {
+    throw InputError(fmt::format(
+        "engine {} draws with the arithmetic of its machine: use native, or leave --precision and --unstable out",
+        options.engine));
+  }
+  if (options.precision.empty()) return;
+  if (options.precision != "single" && options.precision != "double")
+    throw InputError(fmt::format("--precision is '{}': use single or double", options.precision));
+  if (options.precision == "single") return;
+  const std::vector<std::string> set = paths_set(options.set);
+  const bool arithmetic =
+      std::any_of(set.begin(), set.end(), [](const std::string& path) { return path.rfind("arithmetic.", 0) == 0; });
+  if (options.hits == "embree" || !options.traverser.empty() || is_chosen(options, "chip.traverser") || arithmetic) {
+    throw InputError(
+        "--precision double has neither the arithmetic nor the hits of a machine: leave --hits, --traverser and --set "
+        "arithmetic... out");
+  }
+}
+
 void check(const SimOptions& options, Engine engine) {
   if (engine == Engine::Sampled && options.sampler == nullptr)
     throw InputError("this program has no engine sampled: use another, such as model");
@@ -58,6 +79,7 @@ void check(const SimOptions& options, Engine engine) {
     throw InputError(fmt::format("--hits is '{}': use own or embree", options.hits));
   if (options.hits == "embree" && (!options.traverser.empty() || is_chosen(options, "chip.traverser")))
     throw InputError("--hits embree takes no hits of the machine's traverser: leave --traverser out");
+  check_precision(options, engine);
   if (options.waves && !has_verilog(engine)) {
     throw InputError(fmt::format("engine {} has no waveform: use rtl or lockstep, or leave waves out", options.engine));
   }
@@ -148,6 +170,7 @@ fs::path default_folder(const SimOptions& options, const Scene& scene, const Con
                       options.depth, options.engine);
   if (options.boundary == "chip") name += "-chip";
   if (options.hits == "embree") name += "-embree";
+  if (options.precision == "double") name += "-double";
   if (!names_say_all(options, scene, configuration)) name += fmt::format("-{:08x}", content_hash(scene, configuration));
   return results_folder() / name;
 }
@@ -161,8 +184,28 @@ std::string progress_text(const ChipProgress& done, bool timed, double seconds) 
   return text;
 }
 
+using Trace = std::function<bool(const Ray&, Intersection&)>;
+
+/// `trace`, or where it is empty the tracer's, and what it comes to is told.
+Trace told(const Trace& trace, const Tracer& tracer, PixelDecisions& decisions) {
+  return [&tracer, &decisions, trace](const Ray& ray, Intersection& intersection) {
+    const bool goes_on = trace ? trace(ray, intersection) : tracer.trace(ray, intersection);
+    const uint32_t pixel = ray[word::kPixel];
+    if ((ray[word::kFlags] & kShadowFlag) != 0) {
+      decisions.shadow(pixel, goes_on);
+    } else if (goes_on) {
+      decisions.hit(pixel, intersection[word::kTriangle]);
+    } else {
+      decisions.miss(pixel);
+    }
+    return goes_on;
+  };
+}
+
+/// `decisions`, unless null, are told what rays come to.
 FrameBuffer draw_natively(const SimOptions& options, RunRecord& record, const Scene& scene, MemoryImage& image,
-                          const Tracer& tracer, std::vector<NativeWork>* work = nullptr) {
+                          const Tracer& tracer, std::vector<NativeWork>* work = nullptr,
+                          PixelDecisions* decisions = nullptr) {
   std::optional<EmbreeTracer> embree;
   NativeOptions native = native_options(record);
   native.threads = threads_or_all(options.threads);
@@ -170,14 +213,44 @@ FrameBuffer draw_natively(const SimOptions& options, RunRecord& record, const Sc
     embree.emplace(scene, tracer);
     native.trace = [&](const Ray& ray, Intersection& hit) { return embree->trace(ray, hit); };
   }
+  if (decisions != nullptr) native.trace = told(native.trace, tracer, *decisions);
   if (work != nullptr) {
     native.parts = options.sampler->blocks_of(record.configuration, native.width, native.height);
     native.work = work;
   }
   record.native.emplace();
   const Progress drawing(true);
-  FrameBuffer frame = render_native(scene, image, tracer, native, &*record.native);
+  FrameBuffer frame = record.precision == "double"
+                          ? render_in_double(scene, image, tracer, native, *record.native, decisions)
+                          : render_native(scene, image, tracer, native, &*record.native);
   record.simulation_seconds = drawing.seconds();
+  return frame;
+}
+
+/// The picture, and what is asked of it beside.
+FrameBuffer draw_with_precision(const SimOptions& options, RunRecord& record, const Scene& scene, MemoryImage& image,
+                                OutputFolder& out) {
+  const Tracer tracer = tracer_of(record, scene, image);
+  std::optional<PixelDecisions> decisions;
+  if (!options.precision.empty())
+    decisions.emplace(static_cast<uint32_t>(record.width), static_cast<uint32_t>(record.height));
+  FrameBuffer frame = draw_natively(options, record, scene, image, tracer, nullptr, decisions ? &*decisions : nullptr);
+  if (decisions) out.write("decisions.bin", decisions->to_bytes());
+  if (options.unstable == 0) return frame;
+  Progress progress(options.quiet || options.json);
+  UnstablePixels unstable(frame);
+  for (int number = 1; number <= options.unstable; ++number) {
+    NativeOptions native = native_options(record);
+    native.threads = threads_or_all(options.threads);
+    native.change_arguments = [number](std::array<uint32_t, kArguments>& arguments) {
+      move_last_bits(arguments, number);
+    };
+    unstable.add(render_native(scene, image, tracer, native));
+    if (progress.due()) progress.show(fmt::format("  {} of {} frames with last bits moved", number, options.unstable));
+  }
+  const std::vector<uint8_t> map = unstable.png();
+  out.write("unstable.png", std::string(map.begin(), map.end()));
+  record.unstable = unstable;
   return frame;
 }
 
@@ -220,7 +293,8 @@ void write_trace(const SimOptions& options, const trace::MachineTrace& trace, Ou
 
 /// What earlier runs have left that were killed.
 void clear_unfinished(OutputFolder& out) {
-  for (const char* name : {kWaveform, "image.png", "report.json", "trace.json", "trace.kanata"})
+  for (const char* name :
+       {kWaveform, "image.png", "report.json", "trace.json", "trace.kanata", "decisions.bin", "unstable.png"})
     out.clear_unfinished(name);
 }
 
@@ -326,7 +400,7 @@ EyeOf eye_of(const SimOptions& options, const Scene& scene) {
 FrameBuffer draw(const SimOptions& options, Engine engine, RunRecord& record, const Scene& scene, MemoryImage& image,
                  OutputFolder& out, const Progress& whole) {
   if (engine == Engine::Sampled) return draw_sampled_frame(options, record, scene, image, whole);
-  if (engine == Engine::Native) return draw_natively(options, record, scene, image, tracer_of(record, scene, image));
+  if (engine == Engine::Native) return draw_with_precision(options, record, scene, image, out);
   return draw_on_chip(options, engine, record, scene, image, out);
 }
 
@@ -342,7 +416,8 @@ void print_modules(const SimOptions& options, Engine engine, const RunRecord& re
 void print_table(const SimOptions& options, const RunRecord& record, const OutputFolder& out) {
   fmt::print("{}  results     {}: image.png, report.json{}\n", to_table(record),
              fs::proximate(out.path(".")).lexically_normal().string(),
-             options.waves            ? ", waves.fst"
+             record.unstable          ? ", unstable.png"
+             : options.waves          ? ", waves.fst"
              : !options.trace.empty() ? ", trace.json, trace.kanata"
                                       : "");
 }
@@ -368,7 +443,10 @@ int sim_command(const SimOptions& options) {
   record.engine = options.engine;
   if (has_verilog(engine)) record.boundary = options.boundary.empty() ? "unit" : options.boundary;
   if (!record.boundary.empty()) parse_boundary(record.boundary);
-  if (engine == Engine::Native) record.hits = options.hits.empty() ? "own" : options.hits;
+  if (engine == Engine::Native) {
+    record.hits = options.hits.empty() ? "own" : options.hits;
+    record.precision = options.precision.empty() ? "single" : options.precision;
+  }
   std::vector<std::string> set = options.set;
   if (!options.traverser.empty()) set.push_back("chip.traverser=" + options.traverser);
   record.configuration = load_configuration(options.config, set);

@@ -78,14 +78,18 @@ std::vector<uint8_t> to_rgb8(const FrameBuffer& frame) {
 }
 
 std::vector<uint8_t> encode_png(const FrameBuffer& frame) {
-  const std::vector<uint8_t> rgb = to_rgb8(frame);
+  return encode_png(frame.width(), frame.height(), to_rgb8(frame));
+}
+
+std::vector<uint8_t> encode_png(uint32_t width, uint32_t height, const std::vector<uint8_t>& rgb) {
   std::vector<uint8_t> png;
   auto append = [](void* context, void* data, int size) {
     const auto* bytes = static_cast<const uint8_t*>(data);
     auto* out = static_cast<std::vector<uint8_t>*>(context);
     out->insert(out->end(), bytes, bytes + size);
   };
-  if (stbi_write_png_to_func(append, &png, frame.width(), frame.height(), 3, rgb.data(), 3 * frame.width()) == 0) {
+  if (stbi_write_png_to_func(append, &png, static_cast<int>(width), static_cast<int>(height), 3, rgb.data(),
+                             static_cast<int>(3 * width)) == 0) {
     throw std::runtime_error("the picture could not be encoded as PNG");
   }
   return png;

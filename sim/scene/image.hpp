@@ -53,6 +53,8 @@ std::vector<uint8_t> to_rgb8(const FrameBuffer& frame);
 
 /// The PNG file's bytes: 8 bits a channel, the same for the same frame buffer.
 std::vector<uint8_t> encode_png(const FrameBuffer& frame);
+/// The same of rows from the top, 3 bytes a pixel.
+std::vector<uint8_t> encode_png(uint32_t width, uint32_t height, const std::vector<uint8_t>& rgb);
 
 /// Throws InputError when it cannot be written.
 void write_png(const FrameBuffer& frame, const std::string& path);

@@ -21,13 +21,6 @@ void require_range(const char* what, int value, int low, int high) {
     throw InputError(fmt::format("{} is {}; it must lie in {} .. {}", what, value, low, high));
 }
 
-void add(NativeStatistics& sum, const NativeStatistics& part) {
-  sum.ray_counts.add(part.ray_counts);
-  sum.dropped_rays += part.dropped_rays;
-  sum.contributions += part.contributions;
-  for (size_t i = 0; i < kRayKernels; ++i) sum.kernel_threads[i] += part.kernel_threads[i];
-}
-
 /// One worker: its own picture and counts.
 class Worker {
  public:
@@ -128,6 +121,19 @@ class Worker {
 
 }  // namespace
 
+void NativeStatistics::add(const NativeStatistics& part) {
+  ray_counts.add(part.ray_counts);
+  dropped_rays += part.dropped_rays;
+  contributions += part.contributions;
+  for (size_t i = 0; i < kRayKernels; ++i) kernel_threads[i] += part.kernel_threads[i];
+}
+
+void NativeStatistics::count_left_out(const NativeOptions& options) {
+  ray_counts.count_left_out(kernel_threads[RayKernel::CastSecondary] + kernel_threads[RayKernel::CastSecondaryDirect],
+                            secondary_kernel(options.depth, options.reflections) == RayKernel::CastSecondary,
+                            dropped_rays);
+}
+
 float ray_offset(const Bounds& bounds, const Vec3& eye, uint32_t significand) {
   double largest = 0;
   for (const Vec3& point : {bounds.lower, bounds.upper, eye}) {
@@ -159,14 +165,12 @@ MemoryImage build_memory(const Program& program, const Scene& scene) {
   return image;
 }
 
-std::array<uint32_t, kArguments> camera_arguments(const Scene& scene, uint32_t width, uint32_t height,
-                                                  uint32_t contents, uint32_t significand) {
+CameraNumbers camera_numbers(const Scene& scene, uint32_t width, uint32_t height) {
   require_range("image width", width, 1, 65535);
   require_range("image height", height, 1, 65535);
-  std::array<uint32_t, kArguments> arguments{};
+  CameraNumbers numbers{};
   auto put = [&](int first, const Vec3d& v) {
-    const Vec3 f = v.as<float>();
-    for (int axis = 0; axis < 3; ++axis) arguments[first + axis] = as_bits(f[axis]);
+    for (int axis = 0; axis < 3; ++axis) numbers[first + axis] = v[axis];
   };
   const Vec3d forward = normalized(scene.camera.direction.as<double>());
   const Vec3d right = normalized(cross(forward, scene.camera.up.as<double>()));
@@ -181,6 +185,14 @@ std::array<uint32_t, kArguments> camera_arguments(const Scene& scene, uint32_t w
   put(argument::kStepY, step_y);
   put(argument::kLight, scene.light.position.as<double>());
   put(argument::kLightColor, scene.light.color.as<double>());
+  return numbers;
+}
+
+std::array<uint32_t, kArguments> camera_arguments(const Scene& scene, uint32_t width, uint32_t height,
+                                                  uint32_t contents, uint32_t significand) {
+  std::array<uint32_t, kArguments> arguments{};
+  const CameraNumbers numbers = camera_numbers(scene, width, height);
+  for (size_t i = 0; i < numbers.size(); ++i) arguments[i] = as_bits(static_cast<float>(numbers[i]));
   arguments[argument::kOffset] = as_bits(ray_offset(scene.bounds(), scene.camera.eye, significand));
   const uint32_t log2 = tile_width_log2(contents);
   arguments[argument::kTileWidthLog2] = log2;
@@ -244,11 +256,9 @@ FrameBuffer render_native(const Scene& scene, const MemoryImage& image, const Tr
   NativeStatistics sum = workers[0].statistics;
   for (size_t i = 1; i < workers_count; ++i) {
     frame.add(workers[i].frame);
-    add(sum, workers[i].statistics);
+    sum.add(workers[i].statistics);
   }
-  sum.ray_counts.count_left_out(
-      sum.kernel_threads[RayKernel::CastSecondary] + sum.kernel_threads[RayKernel::CastSecondaryDirect],
-      secondary_kernel(options.depth, options.reflections) == RayKernel::CastSecondary, sum.dropped_rays);
+  sum.count_left_out(options);
   if (statistics != nullptr) *statistics = sum;
   return frame;
 }

@@ -33,6 +33,11 @@ inline constexpr double kLeastOffset = 1e-6;
 /// In the unit of the scene; `bounds` are the scene's.
 float ray_offset(const Bounds& bounds, const Vec3& eye, uint32_t significand = arith::kFullSignificand);
 
+/// The arguments before kOffset, as they are before a machine rounds them: eye, directions of pixels, light.
+using CameraNumbers = std::array<double, argument::kOffset>;
+/// Throws InputError unless width and height lie in 1 .. 65535.
+CameraNumbers camera_numbers(const Scene& scene, uint32_t width, uint32_t height);
+
 /// The kernel arguments of a frame (namespace argument), for a machine whose floats have such a significand. Throws
 /// InputError unless width and height lie in 1 .. 65535.
 std::array<uint32_t, kArguments> camera_arguments(const Scene& scene, uint32_t width, uint32_t height,
@@ -83,6 +88,10 @@ struct NativeStatistics {
   EnumArray<RayKernel, uint64_t, kRayKernels> kernel_threads{};  ///< threads run of each kernel
 
   uint64_t rays() const { return ray_counts.traced(); }
+  /// Those of other pixels of the frame.
+  void add(const NativeStatistics& part);
+  /// Rays that kernels have not cast, once all pixels are counted.
+  void count_left_out(const NativeOptions& options);
 };
 
 /// `tracer` must have been made from `scene` with the material_base of build_memory(ray_kernel_program(), scene).

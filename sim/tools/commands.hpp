@@ -15,6 +15,7 @@ namespace raypool {
 struct CompareOptions {
   std::string a, b;                    ///< reports of raypool sim, or their folders
   std::vector<std::string> synthesis;  ///< reports of synthesis, or folders of them; empty: synth beside the program
+  std::string map;                     ///< picture of the pixels that differ, by cause; empty: none
   bool json = false;
 };
 int compare_command(const CompareOptions& options);

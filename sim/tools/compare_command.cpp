@@ -20,7 +20,7 @@ int compare_command(const CompareOptions& options) {
       throw InputError(fmt::format("--synthesis {}: there is no such file or folder", place));
   }
   if (synthesis.empty()) synthesis.push_back((results_folder().parent_path() / "synth").string());
-  const nlohmann::ordered_json comparison = compare_reports(a, b, synthesis);
+  const nlohmann::ordered_json comparison = compare_reports(a, b, synthesis, options.map);
   fmt::print("{}", options.json ? to_text(comparison, 2) + "\n" : comparison_table(comparison));
   return 0;
 }

@@ -85,6 +85,12 @@ void picture_line(std::string& text, const Json& picture) {
     line(text, "picture   {} of {} pixels differ, by at most {} of 255, in the mean by {:.3g}",
          picture["differ"].get<uint64_t>(), picture["pixels"].get<uint64_t>(), picture["largest_difference"].get<int>(),
          picture["mean_difference"].get<double>());
+    if (!picture.contains("causes")) return;
+    const auto pixels = [&](const char* cause) { return picture["causes"][cause].get<uint64_t>(); };
+    line(text,
+         "          of these a ray hits otherwise in {}, else a shadow falls otherwise in {}, else the colour is "
+         "rounded otherwise in {}",
+         pixels("hit"), pixels("shadow"), pixels("colour"));
   }
 }
 

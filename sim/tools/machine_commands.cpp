@@ -37,6 +37,12 @@ void MachineCommands::add_compare_command() {
           "report of make synth, or a folder of such folders, for the area (default: synth beside the program)")
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  compare_app
+      ->add_option(
+          "--map", compare_.map,
+          "write a picture of the pixels that differ: red where a ray hits otherwise, blue where only a shadow "
+          "falls otherwise, yellow where only the colour is rounded otherwise; of frames drawn with --precision")
+      ->type_name("FILE.png");
   compare_app->add_flag("--json", compare_.json, "all of it as JSON");
   compare_app->callback([this] { code_ = compare_command(compare_); });
 }

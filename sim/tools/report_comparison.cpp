@@ -14,7 +14,7 @@
 #include "config/unused_fields.hpp"
 #include "files/input_file.hpp"
 #include "files/json_text.hpp"
-#include "scene/picture_file.hpp"
+#include "tools/picture_comparison.hpp"
 
 namespace raypool {
 namespace {
@@ -23,8 +23,8 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 // What a report says of the run itself; all other numbers are what came of it.
-constexpr std::array kSetUp = {"raypool", "engine", "boundary", "hits",        "scene",        "view",
-                               "size",    "depth",  "units",    "reflections", "configuration"};
+constexpr std::array kSetUp = {"raypool", "engine", "boundary", "hits",  "precision",   "scene",
+                               "view",    "size",   "depth",    "units", "reflections", "configuration"};
 // Neither: the same things in other words, and what this computer did.
 constexpr std::array kLeftOut = {
     "command", "config", "traverser", "lockstep", "wall_seconds", "simulation_seconds", "simulated_per_second"};
@@ -119,25 +119,6 @@ Json results(const Report& a, const Report& b) {
     rows.push_back(row);
   }
   return rows;
-}
-
-Json picture(const Report& a, const Report& b) {
-  const auto path = [](const Report& report) { return (fs::path(report.path).parent_path() / "image.png").string(); };
-  for (const Report* report : {&a, &b}) {
-    std::error_code none;
-    if (!fs::exists(path(*report), none))
-      return {{"compared", false}, {"reason", fmt::format("there is no {}", path(*report))}};
-  }
-  const Picture first = read_png(path(a)), second = read_png(path(b));
-  if (first.width != second.width || first.height != second.height)
-    return {{"compared", false}, {"reason", "the pictures have different sizes"}};
-  const PictureDifference difference = difference_of(first, second);
-  return {{"compared", true},
-          {"pixels", difference.pixels},
-          {"differ", difference.differ},
-          {"largest_difference", difference.largest},
-          {"mean_difference", difference.mean},
-          {"psnr", std::isfinite(difference.psnr) ? Json(difference.psnr) : Json()}};
 }
 
 Json read_json(const std::string& path, const std::string& what) {
@@ -245,13 +226,14 @@ Report load_report(const std::string& path) {
   return report;
 }
 
-Json compare_reports(const Report& a, const Report& b, const std::vector<std::string>& synthesis) {
+Json compare_reports(const Report& a, const Report& b, const std::vector<std::string>& synthesis,
+                     const std::string& map) {
   const std::vector<SynthesisReport> known = all_synthesis(synthesis);
   return {{"a", a.path},
           {"b", b.path},
           {"set_up", set_up(a, b)},
           {"results", results(a, b)},
-          {"picture", picture(a, b)},
+          {"picture", compare_pictures(a, b, map)},
           {"area", {{"a", area(a, known)}, {"b", area(b, known)}}}};
 }
 

@@ -11,6 +11,8 @@
 #include "config/configuration.hpp"
 #include "isa/input_error.hpp"
 #include "scene/image.hpp"
+#include "scene/picture_file.hpp"
+#include "scene/pixel_decisions.hpp"
 
 namespace raypool {
 namespace {
@@ -170,6 +172,51 @@ TEST(ReportComparison, CountsThePixelsThatDiffer) {
   EXPECT_NEAR(picture["psnr"].get<double>(), 10 * std::log10(6.0), 1e-9);
   EXPECT_EQ(compare_reports(a, a, {})["picture"]["differ"], 0);
   EXPECT_TRUE(compare_reports(a, a, {})["picture"]["psnr"].is_null());
+}
+
+/// Folders of two pictures of two pixels, of which the second one differs.
+struct TwoPictures {
+  TwoPictures() {
+    for (const std::string name : {"a", "b"}) {
+      folder.write(name + "/report.json", report_of(Configuration(), 1, 1).dump());
+      FrameBuffer frame(2, 1);
+      frame.add({1, {name == "b" ? 0x3f800000u : 0u, 0, 0}});
+      write_png(frame, folder.path(name + "/image.png"));
+    }
+  }
+  void decide(const std::string& name, const PixelDecisions& decisions) const {
+    folder.write(name + "/decisions.bin", decisions.to_bytes());
+  }
+  Json compared(const std::string& map = "") const {
+    return compare_reports(load_report(folder.path("a")), load_report(folder.path("b")), {}, map)["picture"];
+  }
+
+  Folder folder;
+};
+
+TEST(ReportComparison, SaysWhyPixelsDiffer) {
+  const TwoPictures pictures;
+  EXPECT_FALSE(pictures.compared().contains("causes")) << "nobody has left what rays come to";
+  const std::string map = pictures.folder.path("map.png");
+  EXPECT_THROW(pictures.compared(map), InputError);
+  EXPECT_FALSE(fs::exists(map));
+
+  PixelDecisions a(2, 1), b(2, 1);
+  a.hit(0, 1);  // of the pixel that is the same nothing is said
+  a.hit(1, 3);
+  b.hit(1, 3);
+  b.shadow(1, true);
+  pictures.decide("a", a);
+  EXPECT_THROW(pictures.compared(map), InputError) << "one has";
+  pictures.decide("b", b);
+  EXPECT_EQ(pictures.compared(map)["causes"], (Json{{"hit", 0}, {"shadow", 1}, {"colour", 0}}));
+  const Picture drawn = read_png(map);
+  EXPECT_EQ(drawn.rgb, (std::vector<uint8_t>{0, 0, 0, 60, 120, 255}));
+  b.miss(1);
+  pictures.decide("b", b);
+  EXPECT_EQ(pictures.compared()["causes"], (Json{{"hit", 1}, {"shadow", 0}, {"colour", 0}}));
+  pictures.decide("b", PixelDecisions(1, 2));
+  EXPECT_THROW(pictures.compared(), InputError) << "of another picture";
 }
 
 TEST(ReportComparison, TakesTheAreaOfTheSameVerilog) {

@@ -114,7 +114,7 @@ void require_right_hits(const Drawing& drawing, const Scene& scene) {
       moves |= query.direction[axis] != 0;
     }
     if (!usable || !moves) continue;
-    const ReferenceHit truth =
+    const DoubleHit truth =
         reference.nearest(query.origin.as<double>(), query.direction.as<double>(), static_cast<double>(query.limit));
     const bool shadow = (traced.ray[word::kFlags] & kShadowFlag) != 0;
     HitAnswer ours, theirs{truth.triangle != kNoTriangle, truth.triangle, static_cast<float>(truth.t)};

@@ -219,7 +219,7 @@ void grazing_light_and_blocks(const ExtremeMachine& machine) {
       // The truth starts from the exact point, not from where the machine's ray does.
       const RayQuery eye = to_query(eyes.at(shadow.ray[word::kPixel]).ray);
       const Vec3d origin = eye.origin.as<double>(), direction = eye.direction.as<double>();
-      const ReferenceHit hit = reference.nearest(origin, direction, INFINITY);
+      const DoubleHit hit = reference.nearest(origin, direction, INFINITY);
       const ReferenceShadowRay truth = shadow_ray(reference, origin, direction, hit, scene.light.position.as<double>());
       if (truth.cosine <= 0) continue;
       const bool lit = reference.occluder(truth.origin, truth.direction, 1) == kNoTriangle;

@@ -86,7 +86,7 @@ std::vector<Hitpoint> hitpoints(const Scene& scene, const Traversal& traversal, 
       // The float ray is the truth here: only what happens at the hit is on trial.
       const RayQuery eye{camera.eye.as<float>(), camera.direction(x, y).as<float>(), INFINITY};
       Hitpoint point{eye, {}, {}, {}, kNoTriangle};
-      const ReferenceHit truth = reference.nearest(eye.origin.as<double>(), eye.direction.as<double>(), INFINITY);
+      const DoubleHit truth = reference.nearest(eye.origin.as<double>(), eye.direction.as<double>(), INFINITY);
       if (!traversal.nearest(eye, point.hit) || truth.triangle != point.hit.triangle) continue;
       point.normal = dot(point.hit.normal, eye.direction) > 0 ? point.hit.normal * -1.0f : point.hit.normal;
       point.shadow = shadow_ray(reference, eye.origin.as<double>(), eye.direction.as<double>(), truth, camera.light);

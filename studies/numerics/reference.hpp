@@ -12,39 +12,33 @@
 
 #include "kernel/kernels.hpp"
 #include "scene/bvh.hpp"
+#include "scene/double_traversal.hpp"
 #include "scene/scene.hpp"
 
 namespace raypool::numerics {
-
-inline constexpr uint32_t kNoTriangle = 0xffffffffu;
-
-struct ReferenceHit {
-  uint32_t triangle = kNoTriangle;  ///< at equal t the lowest index that the tree meets
-  double t = 0;
-};
 
 class ReferenceTracer {
  public:
   /// `scene` must outlive this.
   explicit ReferenceTracer(const Scene& scene);
+  ReferenceTracer(const ReferenceTracer&) = delete;
+  ReferenceTracer& operator=(const ReferenceTracer&) = delete;
 
-  /// Nearest hit with 0 < t < limit; `direction` of any length but zero, both vectors finite.
-  ReferenceHit nearest(const Vec3d& origin, const Vec3d& direction, double limit) const {
-    return trace(origin, direction, limit, false);
+  // As DoubleTraversal.
+  DoubleHit nearest(const Vec3d& origin, const Vec3d& direction, double limit) const {
+    return traversal_.nearest(origin, direction, limit);
   }
-  /// Some hit with 0 < t < limit; its triangle, or kNoTriangle.
   uint32_t occluder(const Vec3d& origin, const Vec3d& direction, double limit) const {
-    return trace(origin, direction, limit, true).triangle;
+    return traversal_.occluder(origin, direction, limit);
   }
   /// Unit geometric normal, as wound.
   Vec3d normal(uint32_t triangle) const;
   const Scene& scene() const { return scene_; }
 
  private:
-  ReferenceHit trace(const Vec3d& origin, const Vec3d& direction, double limit, bool any) const;
-
   const Scene& scene_;
   Bvh bvh_;
+  DoubleTraversal traversal_;
 };
 
 /// What happens to a pixel at one depth.
@@ -93,7 +87,7 @@ struct ReferenceShadowRay {
       0;  ///< of the angle between the normal on the ray's side and the direction; not above 0: the light is behind
 };
 ReferenceShadowRay shadow_ray(const ReferenceTracer& tracer, const Vec3d& origin, const Vec3d& direction,
-                              const ReferenceHit& hit, const Vec3d& light);
+                              const DoubleHit& hit, const Vec3d& light);
 
 /// The triangle itself, or one in its plane: no shadow ray from the one is blocked by the other.
 bool same_surface(const ReferenceTracer& tracer, uint32_t a, uint32_t b);

@@ -28,7 +28,7 @@ bool shadow_is_wrong(const TradeScene& scene, const PathStep& ours, const PathSt
                      const Ray& machine_ray) {
   const ReferenceCamera camera(scene.arguments);
   const Vec3d direction = camera.direction(x, y);
-  const ReferenceHit hit = scene.reference_tracer.nearest(camera.eye, direction, INFINITY);
+  const DoubleHit hit = scene.reference_tracer.nearest(camera.eye, direction, INFINITY);
   const ReferenceShadowRay shadow = shadow_ray(scene.reference_tracer, camera.eye, direction, hit, camera.light);
   HitAnswer machine, reference;
   machine.hit = !ours.lit;

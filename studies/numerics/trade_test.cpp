@@ -185,7 +185,7 @@ TEST(Reference, AgreesWithTheTraversalButForTies) {
 TEST(Reference, HitsAtTheExactPlane) {
   const Scene scene = scene_of_triangles(square(1, -3));
   const ReferenceTracer tracer(scene);
-  const ReferenceHit hit = tracer.nearest({0.25, 0.125, 0}, {0, 0, -2}, INFINITY);
+  const DoubleHit hit = tracer.nearest({0.25, 0.125, 0}, {0, 0, -2}, INFINITY);
   EXPECT_EQ(hit.triangle, 0u);
   EXPECT_EQ(hit.t, 1.5);
   EXPECT_EQ(tracer.nearest({2, 0, 0}, {0, 0, -1}, INFINITY).triangle, kNoTriangle);

@@ -1,0 +1,24 @@
+// Engine `native` in double precision: the kernels' source, the camera and the hits with 53 bits, and no machine's
+// arithmetic. What a picture of a machine is off by is its difference from this one.
+#pragma once
+
+#include <cstdint>
+
+#include "scene/image.hpp"
+#include "scene/native_renderer.hpp"
+#include "scene/pixel_decisions.hpp"
+#include "scene/scene.hpp"
+#include "scene/traversal.hpp"
+
+namespace raypool {
+
+/// Of `options` size, depth, reflections and threads; `tracer`, of which it takes the tree, and `image` as for
+/// render_native(). `decisions`, of the picture's size, are told unless null. Secondary rays begin
+/// double_ray_offset() off their surfaces. Throws InputError as render_native() does.
+FrameBuffer render_in_double(const Scene& scene, const MemoryImage& image, const Tracer& tracer,
+                             const NativeOptions& options, NativeStatistics& statistics, PixelDecisions* decisions);
+
+/// 2^-44 of the largest coordinate of the scene's box and the eye, hundreds of times what double precision loses there.
+double double_ray_offset(const Scene& scene);
+
+}  // namespace raypool
