@@ -258,25 +258,25 @@ growth: setup-sim setup-synth program ## area against warps, lanes, ALUs; what e
 
 test: setup-sim setup-test setup-synth configured-ON ## what guards a change
 	@scripts/build.sh $(BUILD)
-	@ctest --test-dir $(BUILD) --output-on-failure -j "$$(nproc)" -LE long
+	@ctest --test-dir $(BUILD) --output-on-failure -j "$$(nproc)" -LE '^long-'
 
 #: variable of make test-long:  SHARE=1..10: only this tenth of the tests
 test-long: setup-sim setup-test setup-synth setup-lint configured-ON program ## the other tests; SHARE=1..10: a tenth
 	@[[ "$(SHARE)" =~ ^([1-9]|10)?$$ ]] || \
 	  { echo 'make test-long: SHARE is "$(SHARE)": say 1 to 10, or nothing' >&2; exit 1; }
 	@ctest --test-dir $(BUILD) --output-on-failure -j "$$(nproc)" \
-	  -L $(if $(SHARE),'^share-$(SHARE)$$',long) --no-tests=error
+	  -L '^long-$(or $(SHARE),.*)$$' --no-tests=error
 
 #: variable of make numerics-long:  THREADS=N: 1 if not given
 numerics-long: setup-sim setup-test ## arithmetic against its oracles, 10^8 pairs; two hours
 	@$(OPTIMISED_BENCHES)
-	@scripts/build.sh $(BUILD)/benches numerics_long flt_alu_test slw_alu_test slw_alu_large_test brh_alu_test \
-	  small_floats_test
+	@scripts/build.sh $(BUILD)/benches numerics_long flt_alu_test flt_alu_large_test slw_alu_test \
+	  slw_alu_large_test brh_alu_test small_floats_test
 	@scripts/numerics_long.sh $(BUILD)/benches "$${THREADS:-1}"
 
 #: of make quoted:  ARGS="--long --update docs/isa.md": what takes long too; write it into the pages; only these
 quoted: setup-sim setup-test setup-synth setup-quoted configured-ON ## run what the pages quote
-	@scripts/build.sh $(BUILD)
+	@scripts/build.sh $(BUILD) all raypool_chip_frames
 	@scripts/quoted_output.py $(ARGS)
 
 proofs: setup-lint ## formal proofs of blocks (Yosys, ABC)

@@ -13,7 +13,7 @@ part() {
   echo "$(basename "$1"): $((SECONDS - begin)) s" | tee -a "$log"
 }
 part "$build/tb/numerics_long" 100000000 1 "$threads"
-for bench in flt_alu_test slw_alu_test slw_alu_large_test brh_alu_test small_floats_test; do
+for bench in flt_alu_test flt_alu_large_test slw_alu_test slw_alu_large_test brh_alu_test small_floats_test; do
   part "$build/tb/$bench" --gtest_brief=1 --gtest_filter='*Long*'
 done
 echo

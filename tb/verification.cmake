@@ -13,8 +13,11 @@ add_test(NAME verilate_cosim_machines COMMAND ${CMAKE_COMMAND} -E env RAYPOOL=${
   ${scripts}/cosim_units.sh)
 set_tests_properties(verilate_cosim_machines PROPERTIES FIXTURES_SETUP units_of_cosim FIXTURES_REQUIRED unit_2w2c_small
   TIMEOUT 900)
-add_test(NAME cosim_machines COMMAND raypool cosim --programs 1000 --seed 1 --no-shrink --quiet)
-set_tests_properties(cosim_machines PROPERTIES FIXTURES_REQUIRED units_of_cosim TIMEOUT 300)
+# Each of the four runs the programs from the seed on: 75, then those behind them, which makes 250 for each.
+add_test(NAME cosim_machines COMMAND raypool cosim --programs 300 --seed 1 --no-shrink --quiet)
+add_test(NAME cosim_machines_more COMMAND raypool cosim --programs 700 --seed 76 --no-shrink --quiet)
+set_tests_properties(cosim_machines cosim_machines_more PROPERTIES FIXTURES_REQUIRED units_of_cosim TIMEOUT 300)
+raypool_long(50 cosim_machines_more)
 add_test(NAME cosim_command COMMAND ${scripts}/tests/cosim.sh ${raypool_program} ${CMAKE_BINARY_DIR}/cosim-test)
 set_tests_properties(cosim_command PROPERTIES FIXTURES_REQUIRED units_of_cosim TIMEOUT 300)
 
@@ -26,6 +29,7 @@ set_tests_properties(faults_catalogue PROPERTIES TIMEOUT 900 FIXTURES_SETUP faul
 # So are small faults of single blocks put where they belong; `make faults SOURCE=blocks` runs them.
 add_test(NAME block_mutants COMMAND ${scripts}/tests/block_mutants_test.py)
 set_tests_properties(block_mutants PROPERTIES TIMEOUT 300)
+raypool_long(12 block_mutants)
 # Whoever meets a difference runs again with a look inside the RTL: of its mistakes.
 add_test(NAME inspected_differences COMMAND ${scripts}/tests/inspect.sh ${raypool_program}
   ${CMAKE_BINARY_DIR}/faults-test)
@@ -89,19 +93,20 @@ if(IVERILOG)
   add_test(NAME icarus_2w2c_small COMMAND ${scripts}/icarus.sh ${raypool_program} ${small_config}
     ${CMAKE_BINARY_DIR}/icarus/2w2c_small 1 2 3 4 5 6 7 8)
   set_tests_properties(icarus_2w2c_small PROPERTIES FIXTURES_REQUIRED unit_2w2c_small TIMEOUT 300)
+  raypool_long(30 icarus_2w2c_small)
   add_test(NAME icarus_4w4c COMMAND ${scripts}/icarus.sh ${raypool_program} 4w4c ${CMAKE_BINARY_DIR}/icarus/4w4c 1 3)
   set_tests_properties(icarus_4w4c PROPERTIES FIXTURES_REQUIRED unit_4w4c TIMEOUT 300)
   # The whole chip, without and with the traverser inside.
+  set(chip_frames $<TARGET_FILE:raypool_chip_frames>)
   foreach(machine 1 23 26)
-    add_test(NAME icarus_chip_${machine} COMMAND ${scripts}/icarus_chip.sh $<TARGET_FILE:raypool_chip_frames>
+    raypool_built_test(icarus_chip_${machine} 90 raypool_chip_frames ${scripts}/icarus_chip.sh ${chip_frames}
       ${CMAKE_BINARY_DIR}/icarus/chip_${machine} ${machine} 2)
-    set_tests_properties(icarus_chip_${machine} PROPERTIES TIMEOUT 600)
   endforeach()
   # The pictures in docs show modules that are there, and the stages that a run has now.
   add_test(NAME diagrams COMMAND ${CMAKE_COMMAND} -E env PYTHONPATH=${scripts} python3 -m diagrams ${raypool_program}
     ${CMAKE_BINARY_DIR}/diagrams --check)
   set_tests_properties(diagrams PROPERTIES TIMEOUT 60)
-  add_test(NAME icarus_notices_x COMMAND ${scripts}/tests/icarus_notices.sh ${raypool_program}
-    $<TARGET_FILE:raypool_chip_frames> ${CMAKE_BINARY_DIR}/icarus/notices)
-  set_tests_properties(icarus_notices_x PROPERTIES FIXTURES_REQUIRED unit_2w2c_small TIMEOUT 300)
+  raypool_built_test(icarus_notices_x 100 raypool_chip_frames ${scripts}/tests/icarus_notices.sh ${raypool_program}
+    ${chip_frames} ${CMAKE_BINARY_DIR}/icarus/notices)
+  set_tests_properties(icarus_notices_x PROPERTIES FIXTURES_REQUIRED unit_2w2c_small)
 endif()

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The JSON Schemas say what the program accepts and writes: scripts/tests/schemas_test.py RAYPOOL [ENGINE...]
+"""The JSON Schemas say what the program accepts and writes: scripts/tests/schemas_test.py RAYPOOL [--only CLASS] [ENGINE...]
 
 Checked-in configurations and views, and a report of each ENGINE (default: those without a Verilated unit), are valid;
 what raypool refuses, and what it takes the schema takes, at both ends of every range; a field of what is written that
@@ -234,5 +234,7 @@ class Report(Written):
 
 if __name__ == "__main__":
     RAYPOOL = str(pathlib.Path(sys.argv[1]).resolve())
-    ENGINES = sys.argv[2:] or ENGINES
-    unittest.main(argv=sys.argv[:1])
+    rest = sys.argv[2:]
+    only, rest = (rest[1:2], rest[2:]) if rest[:1] == ["--only"] else ([], rest)
+    ENGINES = rest or ENGINES
+    unittest.main(argv=[sys.argv[0], *only])

@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 """Nothing falls between the shares: shares_test.py BUILD. Each long test is in one of ten shares and `make test` runs
-all others; the parts of clang-tidy make up all sources; what has changed is read, headers through a source that
-includes them."""
+all others, among them every case of every test program; the parts of clang-tidy make up all sources; what has changed
+is read, headers through a source that includes them."""
+import collections
+import fnmatch
 import json
 import pathlib
 import subprocess
@@ -15,18 +17,59 @@ import tidy  # noqa: E402
 BUILD = sys.argv.pop() if len(sys.argv) > 1 else "build"
 
 
+# Of a test program: those that stand for themselves, in make numerics-long.
+HOURS = "*Long*:*Hours*"
+
+
+def cases(program):
+    """The names of all tests of a program of GoogleTest."""
+    listed = subprocess.run([program, "--gtest_list_tests", f"--gtest_filter=-{HOURS}"], check=True,
+                            capture_output=True, text=True)  # fmt: skip
+    found, suite = [], ""
+    for line in listed.stdout.splitlines():
+        name = line.split("#")[0].rstrip()
+        if line.startswith("  "):
+            found.append(suite + name.strip())
+        elif name.endswith("."):
+            suite = name
+    return found
+
+
 class Shares(unittest.TestCase):
-    def test_each_long_test_is_in_one_share_and_no_share_is_empty(self):
+    @classmethod
+    def setUpClass(cls):
         listed = subprocess.run(["ctest", "--test-dir", BUILD, "--show-only=json-v1"], check=True, capture_output=True,
                                 text=True)
-        shares = {}
-        for test in json.loads(listed.stdout)["tests"]:
+        cls.tests = json.loads(listed.stdout)["tests"]
+        # [program] = the filters of the tests that run it.
+        cls.programs = collections.defaultdict(list)
+        for test in cls.tests:
+            program, *words = test.get("command", [""])
+            cls.programs[program] += [word.removeprefix("--gtest_filter=") for word in words[:1]
+                                      if word.startswith("--gtest_filter=")]  # fmt: skip
+
+    def test_each_test_is_in_make_test_or_in_one_share_and_no_share_is_empty(self):
+        shares = set()
+        for test in self.tests:
             labels = next((p["value"] for p in test.get("properties", []) if p["name"] == "LABELS"), [])
-            of = [label for label in labels if label.startswith("share-")]
-            self.assertEqual(len(of), 1 if "long" in labels else 0, test["name"])
-            for label in of:
-                shares.setdefault(label, []).append(test["name"])
-        self.assertEqual(set(shares), {f"share-{k}" for k in range(1, 11)})
+            self.assertLessEqual(len(labels), 1, test["name"])
+            shares.update(labels)
+        self.assertEqual(shares, {f"long-{k}" for k in range(1, 11)})
+
+    def test_each_case_of_a_test_program_is_a_test_once(self):
+        self.assertEqual([test["name"] for test in self.tests if test["name"].endswith("_NOT_BUILT")], [])
+        programs = {program: found for program, found in self.programs.items() if found}
+        self.assertGreater(len(programs), 40)
+        for program, found in programs.items():
+            self.assertEqual(sorted(found), sorted(cases(program)), program)
+
+    def test_each_filter_of_long_cases_still_has_some(self):
+        by_name = {pathlib.Path(program).name: found for program, found in self.programs.items()}
+        lines = pathlib.Path(BUILD, "long_cases.txt").read_text().splitlines()
+        self.assertGreater(len(lines), 10)
+        for line in lines:
+            program, pattern = line.split()
+            self.assertTrue(fnmatch.filter(by_name[program], pattern), line)
 
     def test_the_parts_of_the_sources_are_all_of_them_once(self):
         sources = {pathlib.Path(f"/{n}.cpp") for n in range(57)}

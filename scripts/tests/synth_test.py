@@ -31,65 +31,7 @@ MACRO = """library (of_a_memory) { time_unit : "1ns"; cell (sram_64x20) {
 
 
 class Synthesis(SmallBlocks):
-    def command(self, *arguments):
-        done = subprocess.run(
-            [sys.executable, "-m", "synth", *arguments],
-            capture_output=True,
-            text=True,
-            check=False,
-            env={**os.environ, "PYTHONPATH": os.path.join(ROOT, "scripts")},
-        )
-        return done.returncode, done.stderr.strip()
-
-    def test_a_module_alone_has_a_row_for_each_set_of_parameters(self):
-        options = flow.Options(memories="flops", jobs=1)
-        with mock.patch.object(module, "BUILD", self.folder):
-            found = module.synthesise("free_list", ["SIZE=4", "SIZE=8,NUMBER_BITS=3"], options)
-        lines = [line.split() for line in module.table(found).splitlines()]
-        self.assertEqual(lines[0], ["osu018,", "4", "ns"])
-        self.assertEqual([line[0] for line in lines[2:]], ["SIZE=4", "SIZE=8,NUMBER_BITS=3"])
-        (kge, flops, slack), (more_kge, more_flops, less_slack) = ([float(x) for x in line[1:4]] for line in lines[2:])
-        self.assertGreater(more_kge, kge)
-        # Counts of 0 .. SIZE twice, whether there is one and more than one, two addresses, SIZE + 1 places of
-        # NUMBER_BITS, what is read, whether it came alone.
-        self.assertEqual(flops, 3 + 3 + 2 + 2 + 2 + 4 * 2 + 2 + 2 + 1)
-        self.assertGreater(more_flops, flops)
-        self.assertTrue(0 < less_slack <= slack < 4)
-
-    def test_bad_input_gets_one_sentence(self):
-        run = os.path.join(self.folder, "run.json")
-        with open(run, "w", encoding="utf-8") as file:
-            json.dump({"mrays_per_second": 1.0, "config": "4w4c", "units": 1, "traverser": "static"}, file)
-        self.written("run.json.gz", "not packed")
-        for arguments, word in (
-            (["report", "--liberty", "/no/such.lib"], "no such Liberty file; LIBERTY=NAME says where"),
-            (["report", "--liberty", "sg13g2"], "IHP-Open-PDK"),
-            (["report", "--liberty", "/dev/null"], "not a Liberty file"),
-            (["report", "--liberty", run + ".gz"], "cannot be read"),
-            (["report", "--memories", self.folder, "--config", "1w1c"], "no Liberty file (*.lib, *.lib.gz) of a"),
-            (["report", "--config", "5w5c"], "5"),
-            (["report", "--memories", "clay", "--config", "1w1c"], "clay"),
-            (["report", "--config", "1w1c", "--against", "/dev/null"], "/dev/null"),
-            (["report", "--config", "1w1c", "--run", "/dev/null"], "RUN=/dev/null"),
-            (["report", "--config", "1w1c", "--run", run], "4w4c"),
-            (["report", "--config", "1w1c", "--clock", "soon"], "CLOCK=soon"),
-            (["report", "--config", "1w1c", "--chip", "--units", "3"], "CUS=3: a chip has 1, 2 or 4 compute units"),
-            (["report", "--config", "1w1c", "--rounds", "9"], "ROUNDS=9: 0 to 8"),
-            (["report", "--config", "4w4c", "--chip", "--run", run], "drawn with traverser static, whose area nobody"),
-            (["report", "--config", "4w4c", "--chip", "--units", "4", "--run", run], "of 1 units, but this one has 4"),
-            (["prove", "--config", "1w1c", "--only", "teapot"], "has no block teapot"),
-            (["growth", "--plan", run], "not a plan"),
-            (["fit", run], "not what raypool fit --json writes"),
-            (["fit", "/no/such.json"], "not what raypool fit --json writes"),
-            (["module", "teapot"], "teapot: no such module in rtl/"),
-            (["module", "free_list", "SIZE"], "written BITS=8 or A=1,B=2"),
-            (["module", "free_list", "SPOUT=1"], "free_list has no parameter SPOUT"),
-        ):
-            code, text = self.command(*arguments)
-            self.assertEqual(code, 1, text)
-            self.assertIn(word, text)
-            self.assertNotIn("Traceback", text)
-            self.assertEqual(text.count("\n"), 0, text)
+    """One block at a time, and what the flow decides."""
 
     def test_what_a_fit_saves_is_told_by_change_and_in_all(self):
         """Units of which each part has a price stand in for synthesised ones."""
@@ -301,6 +243,149 @@ class Synthesis(SmallBlocks):
         self.assertGreater(more["blocks"][0]["switching_w"], 1.5 * less["blocks"][0]["switching_w"])
         self.assertGreater(less["blocks"][0]["switching_w"], 0)
 
+    def test_memory_macros_have_their_own_price_and_times(self):
+        self.written("sram.lib", MACRO)
+        listed = macros.read(self.folder)
+        self.assertEqual(listed, [macros.Macro("sram_64x20", 64, 20, 4000.0, 1.5, 0.35)])
+        lib = library.Library()
+        model = MemoryModel(lib, listed)
+
+        def ram(base, width, depth):
+            return elaborate.Kind("", base, {"WIDTH": f"{width:b}", "DEPTH": f"{depth:b}"}, {}, {})
+
+        fits, other = ram("ram_1rw", 18, 40), MemoryModel(lib)
+        self.assertEqual((model.price(fits).nominal, model.access_ns(fits, 0.1)), (4000.0, 1.5))
+        self.assertEqual(model.setup_ns(fits, 0.1), 0.35)
+        # Too wide, too deep, mostly empty, of two ports.
+        for kind in (ram("ram_1rw", 21, 64), ram("ram_1rw", 20, 65), ram("ram_1rw", 20, 31), ram("ram_1r1w", 20, 64)):
+            self.assertEqual(model.price(kind), other.price(kind))
+            self.assertEqual(model.access_ns(kind, 0.1), other.access_ns(kind, 0.1))
+            self.assertEqual(model.setup_ns(kind, 0.1), other.setup_ns(kind, 0.1))
+
+    def test_a_rate_is_given_at_the_clock_that_the_library_allows(self):
+        made = {"timing": {"mhz": 250.0}, "forty_nm": {"total_mm2": 0.5}, "area": {"total_kge": 400.0}}
+        found = report.efficiency(made, "run", {"mrays_per_second": 60.0, "units": 2})
+        self.assertEqual((found["mrays_per_second"], found["mrays_per_second_allowed"]), (60.0, 15.0))
+        self.assertEqual(found["mrays_per_second_mm2"], 60.0)
+        # The area of a chip is that of all its units.
+        chip = report.efficiency(made, "run", {"mrays_per_second": 60.0, "units": 2}, whole_chip=True)
+        self.assertEqual((chip["mrays_per_second_mm2"], chip["mrays_per_second_kge"]), (120.0, 0.15))
+
+    def test_other_rounds_map_as_often_for_speed_and_win_no_area_back(self):
+        for rounds in (0, 2, flow.CLOSURE_ROUNDS, 6):
+            options = flow.Options(config="1w1c", out=self.folder, rounds=rounds)
+            design = flow.open_design(options)
+            self.assertEqual(flow.label(options, design.library), f"1w1c-{rounds}rounds" if rounds != 4 else "1w1c")
+            with mock.patch.multiple(flow, prepare=mock.DEFAULT, map_design=mock.DEFAULT, time_design=mock.DEFAULT,
+                                     on_failing_paths=mock.DEFAULT, next_effort=mock.DEFAULT,
+                                     win_back=mock.DEFAULT) as done:  # fmt: skip
+                done["time_design"].return_value = -1.0
+                done["next_effort"].return_value = {"kind"}
+                design.kinds = {"kind": mock.Mock()}
+                design.kinds["kind"].name = "kind"
+                done["win_back"].return_value = -0.5
+                slack = flow.synthesise(design)
+            self.assertEqual(done["map_design"].call_count, 1 + rounds)
+            self.assertEqual(done["win_back"].call_count, 1 if rounds == flow.CLOSURE_ROUNDS else 0)
+            self.assertEqual(slack, -0.5 if rounds == flow.CLOSURE_ROUNDS else -1.0)
+
+    def test_a_file_is_reported_by_its_name_and_not_by_its_folder(self):
+        options = flow.Options(config="/elsewhere/configurations/4w4c+1_change.json", units=2, rounds=6)
+        self.assertEqual(options.title, "4w4c+1_change-chip-2cu")
+        self.assertEqual(flow.label(options, library.Library()), "4w4c+1_change-chip-2cu-6rounds")
+
+    def test_more_rounds_than_there_are_try_more_ways(self):
+        for rounds, ways in ((1, 2), (flow.CLOSURE_ROUNDS, 2), (flow.CLOSURE_ROUNDS + 1, 4)):
+            design = flow.Design(flow.Options(rounds=rounds), library.Library(), {}, "", clock_ns=4.0)
+            with mock.patch.object(flow, "BUILD", self.folder):
+                mapper = flow.mapper_of(design)
+            self.assertEqual([len(e[0]) for e in mapper.efforts[2:4]], [2, ways])
+
+    def test_the_fastest_netlist_of_all_rounds_stays(self):
+        for slacks, best, maps in (([-0.9, -0.2, -0.5], {"a": 2}, 4), ([-0.9, -0.9, -0.4], {"a": 3}, 3),
+                                   ([-2.0, -1.5, -1.2], {}, 4)):  # fmt: skip
+            design = flow.Design(flow.Options(rounds=3), None, {}, "")
+            design.kinds = {"a": mock.Mock()}
+            design.kinds["a"].name = "a"
+            with mock.patch.multiple(flow, map_design=mock.DEFAULT, time_design=mock.DEFAULT,
+                                     on_failing_paths=mock.DEFAULT, next_effort=mock.DEFAULT) as done:  # fmt: skip
+                done["next_effort"].return_value = {"a"}
+                done["time_design"].side_effect = slacks + [max(slacks + [-1.0])]
+                self.assertEqual(flow.close_timing(design, "", -1.0), max(slacks + [-1.0]))
+            self.assertEqual(design.efforts, best)
+            self.assertEqual(done["map_design"].call_count, maps)
+
+    def test_published_chips_are_scaled_by_the_square_of_the_feature_size(self):
+        lines = report.published()
+        sgrt = next(line for line in lines if "SGRT" in line)
+        self.assertIn("184 Mrays/s (conference), 25 mm2 at 65 nm, 9.5 at 40: 19.4 a mm2", sgrt)
+        self.assertIn("36.7 at 40: 5.3 to 6.5 a mm2", next(line for line in lines if "RayCore" in line))
+        self.assertIn("16.0 at 40", next(line for line in lines if "thesis" in line))
+
+
+class Whole(SmallBlocks):
+    """Commands as they are called, and chips."""
+
+    def command(self, *arguments):
+        done = subprocess.run(
+            [sys.executable, "-m", "synth", *arguments],
+            capture_output=True,
+            text=True,
+            check=False,
+            env={**os.environ, "PYTHONPATH": os.path.join(ROOT, "scripts")},
+        )
+        return done.returncode, done.stderr.strip()
+
+    def test_a_module_alone_has_a_row_for_each_set_of_parameters(self):
+        options = flow.Options(memories="flops", jobs=1)
+        with mock.patch.object(module, "BUILD", self.folder):
+            found = module.synthesise("free_list", ["SIZE=4", "SIZE=8,NUMBER_BITS=3"], options)
+        lines = [line.split() for line in module.table(found).splitlines()]
+        self.assertEqual(lines[0], ["osu018,", "4", "ns"])
+        self.assertEqual([line[0] for line in lines[2:]], ["SIZE=4", "SIZE=8,NUMBER_BITS=3"])
+        (kge, flops, slack), (more_kge, more_flops, less_slack) = ([float(x) for x in line[1:4]] for line in lines[2:])
+        self.assertGreater(more_kge, kge)
+        # Counts of 0 .. SIZE twice, whether there is one and more than one, two addresses, SIZE + 1 places of
+        # NUMBER_BITS, what is read, whether it came alone.
+        self.assertEqual(flops, 3 + 3 + 2 + 2 + 2 + 4 * 2 + 2 + 2 + 1)
+        self.assertGreater(more_flops, flops)
+        self.assertTrue(0 < less_slack <= slack < 4)
+
+    def test_bad_input_gets_one_sentence(self):
+        run = os.path.join(self.folder, "run.json")
+        with open(run, "w", encoding="utf-8") as file:
+            json.dump({"mrays_per_second": 1.0, "config": "4w4c", "units": 1, "traverser": "static"}, file)
+        self.written("run.json.gz", "not packed")
+        for arguments, word in (
+            (["report", "--liberty", "/no/such.lib"], "no such Liberty file; LIBERTY=NAME says where"),
+            (["report", "--liberty", "sg13g2"], "IHP-Open-PDK"),
+            (["report", "--liberty", "/dev/null"], "not a Liberty file"),
+            (["report", "--liberty", run + ".gz"], "cannot be read"),
+            (["report", "--memories", self.folder, "--config", "1w1c"], "no Liberty file (*.lib, *.lib.gz) of a"),
+            (["report", "--config", "5w5c"], "5"),
+            (["report", "--memories", "clay", "--config", "1w1c"], "clay"),
+            (["report", "--config", "1w1c", "--against", "/dev/null"], "/dev/null"),
+            (["report", "--config", "1w1c", "--run", "/dev/null"], "RUN=/dev/null"),
+            (["report", "--config", "1w1c", "--run", run], "4w4c"),
+            (["report", "--config", "1w1c", "--clock", "soon"], "CLOCK=soon"),
+            (["report", "--config", "1w1c", "--chip", "--units", "3"], "CUS=3: a chip has 1, 2 or 4 compute units"),
+            (["report", "--config", "1w1c", "--rounds", "9"], "ROUNDS=9: 0 to 8"),
+            (["report", "--config", "4w4c", "--chip", "--run", run], "drawn with traverser static, whose area nobody"),
+            (["report", "--config", "4w4c", "--chip", "--units", "4", "--run", run], "of 1 units, but this one has 4"),
+            (["prove", "--config", "1w1c", "--only", "teapot"], "has no block teapot"),
+            (["growth", "--plan", run], "not a plan"),
+            (["fit", run], "not what raypool fit --json writes"),
+            (["fit", "/no/such.json"], "not what raypool fit --json writes"),
+            (["module", "teapot"], "teapot: no such module in rtl/"),
+            (["module", "free_list", "SIZE"], "written BITS=8 or A=1,B=2"),
+            (["module", "free_list", "SPOUT=1"], "free_list has no parameter SPOUT"),
+        ):
+            code, text = self.command(*arguments)
+            self.assertEqual(code, 1, text)
+            self.assertIn(word, text)
+            self.assertNotIn("Traceback", text)
+            self.assertEqual(text.count("\n"), 0, text)
+
     def mapped_chip(self, units, real):
         """A chip of which the blocks of these names are mapped; in the others are their blocks and a clock alone."""
         design = flow.open_design(flow.Options(config="1w1c", out=self.folder, units=units))
@@ -404,85 +489,6 @@ class Synthesis(SmallBlocks):
             self.assertAlmostEqual(sum(row[what] for row in found["blocks"]), places["chip"][what])
         told = "\n".join(report.power_lines(found, True))
         self.assertRegex(told, r"\n +multiprocessor/compute_unit/launcher +2 ")
-
-    def test_memory_macros_have_their_own_price_and_times(self):
-        self.written("sram.lib", MACRO)
-        listed = macros.read(self.folder)
-        self.assertEqual(listed, [macros.Macro("sram_64x20", 64, 20, 4000.0, 1.5, 0.35)])
-        lib = library.Library()
-        model = MemoryModel(lib, listed)
-
-        def ram(base, width, depth):
-            return elaborate.Kind("", base, {"WIDTH": f"{width:b}", "DEPTH": f"{depth:b}"}, {}, {})
-
-        fits, other = ram("ram_1rw", 18, 40), MemoryModel(lib)
-        self.assertEqual((model.price(fits).nominal, model.access_ns(fits, 0.1)), (4000.0, 1.5))
-        self.assertEqual(model.setup_ns(fits, 0.1), 0.35)
-        # Too wide, too deep, mostly empty, of two ports.
-        for kind in (ram("ram_1rw", 21, 64), ram("ram_1rw", 20, 65), ram("ram_1rw", 20, 31), ram("ram_1r1w", 20, 64)):
-            self.assertEqual(model.price(kind), other.price(kind))
-            self.assertEqual(model.access_ns(kind, 0.1), other.access_ns(kind, 0.1))
-            self.assertEqual(model.setup_ns(kind, 0.1), other.setup_ns(kind, 0.1))
-
-    def test_a_rate_is_given_at_the_clock_that_the_library_allows(self):
-        made = {"timing": {"mhz": 250.0}, "forty_nm": {"total_mm2": 0.5}, "area": {"total_kge": 400.0}}
-        found = report.efficiency(made, "run", {"mrays_per_second": 60.0, "units": 2})
-        self.assertEqual((found["mrays_per_second"], found["mrays_per_second_allowed"]), (60.0, 15.0))
-        self.assertEqual(found["mrays_per_second_mm2"], 60.0)
-        # The area of a chip is that of all its units.
-        chip = report.efficiency(made, "run", {"mrays_per_second": 60.0, "units": 2}, whole_chip=True)
-        self.assertEqual((chip["mrays_per_second_mm2"], chip["mrays_per_second_kge"]), (120.0, 0.15))
-
-    def test_other_rounds_map_as_often_for_speed_and_win_no_area_back(self):
-        for rounds in (0, 2, flow.CLOSURE_ROUNDS, 6):
-            options = flow.Options(config="1w1c", out=self.folder, rounds=rounds)
-            design = flow.open_design(options)
-            self.assertEqual(flow.label(options, design.library), f"1w1c-{rounds}rounds" if rounds != 4 else "1w1c")
-            with mock.patch.multiple(flow, prepare=mock.DEFAULT, map_design=mock.DEFAULT, time_design=mock.DEFAULT,
-                                     on_failing_paths=mock.DEFAULT, next_effort=mock.DEFAULT,
-                                     win_back=mock.DEFAULT) as done:  # fmt: skip
-                done["time_design"].return_value = -1.0
-                done["next_effort"].return_value = {"kind"}
-                design.kinds = {"kind": mock.Mock()}
-                design.kinds["kind"].name = "kind"
-                done["win_back"].return_value = -0.5
-                slack = flow.synthesise(design)
-            self.assertEqual(done["map_design"].call_count, 1 + rounds)
-            self.assertEqual(done["win_back"].call_count, 1 if rounds == flow.CLOSURE_ROUNDS else 0)
-            self.assertEqual(slack, -0.5 if rounds == flow.CLOSURE_ROUNDS else -1.0)
-
-    def test_a_file_is_reported_by_its_name_and_not_by_its_folder(self):
-        options = flow.Options(config="/elsewhere/configurations/4w4c+1_change.json", units=2, rounds=6)
-        self.assertEqual(options.title, "4w4c+1_change-chip-2cu")
-        self.assertEqual(flow.label(options, library.Library()), "4w4c+1_change-chip-2cu-6rounds")
-
-    def test_more_rounds_than_there_are_try_more_ways(self):
-        for rounds, ways in ((1, 2), (flow.CLOSURE_ROUNDS, 2), (flow.CLOSURE_ROUNDS + 1, 4)):
-            design = flow.Design(flow.Options(rounds=rounds), library.Library(), {}, "", clock_ns=4.0)
-            with mock.patch.object(flow, "BUILD", self.folder):
-                mapper = flow.mapper_of(design)
-            self.assertEqual([len(e[0]) for e in mapper.efforts[2:4]], [2, ways])
-
-    def test_the_fastest_netlist_of_all_rounds_stays(self):
-        for slacks, best, maps in (([-0.9, -0.2, -0.5], {"a": 2}, 4), ([-0.9, -0.9, -0.4], {"a": 3}, 3),
-                                   ([-2.0, -1.5, -1.2], {}, 4)):  # fmt: skip
-            design = flow.Design(flow.Options(rounds=3), None, {}, "")
-            design.kinds = {"a": mock.Mock()}
-            design.kinds["a"].name = "a"
-            with mock.patch.multiple(flow, map_design=mock.DEFAULT, time_design=mock.DEFAULT,
-                                     on_failing_paths=mock.DEFAULT, next_effort=mock.DEFAULT) as done:  # fmt: skip
-                done["next_effort"].return_value = {"a"}
-                done["time_design"].side_effect = slacks + [max(slacks + [-1.0])]
-                self.assertEqual(flow.close_timing(design, "", -1.0), max(slacks + [-1.0]))
-            self.assertEqual(design.efforts, best)
-            self.assertEqual(done["map_design"].call_count, maps)
-
-    def test_published_chips_are_scaled_by_the_square_of_the_feature_size(self):
-        lines = report.published()
-        sgrt = next(line for line in lines if "SGRT" in line)
-        self.assertIn("184 Mrays/s (conference), 25 mm2 at 65 nm, 9.5 at 40: 19.4 a mm2", sgrt)
-        self.assertIn("36.7 at 40: 5.3 to 6.5 a mm2", next(line for line in lines if "RayCore" in line))
-        self.assertIn("16.0 at 40", next(line for line in lines if "thesis" in line))
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
-# The quick proofs of the control logic, one test for each checker; `make proofs`
-# runs all, and shows that each can fail.
+# The quick proofs of the control logic, one test for each checker, of which some are long tests; `make proofs` runs
+# all, and shows that each can fail.
 find_program(YOSYS yosys)
 find_program(YOSYS_ABC yosys-abc)
 if(YOSYS AND YOSYS_ABC)
@@ -9,8 +9,13 @@ if(YOSYS AND YOSYS_ABC)
     if(NOT slow)
       cmake_path(GET checker STEM name)
       add_test(NAME proof_${name} COMMAND ${CMAKE_CURRENT_LIST_DIR}/control.sh --quick ${name})
-      # One of them takes minutes, which it shall not do in the end, when the other core has nothing left to do.
+      # What takes long shall not do so in the end, when the other core has nothing left to do.
       set_tests_properties(proof_${name} PROPERTIES TIMEOUT 600 COST 300)
+      file(STRINGS ${checker} seconds REGEX "^// @long [0-9]+$")
+      if(seconds)
+        string(REGEX MATCH "[0-9]+" seconds ${seconds})
+        raypool_long(${seconds} proof_${name})
+      endif()
     endif()
   endforeach()
 else()

@@ -9,6 +9,7 @@
 #   @break FILE SED            a sed script that breaks FILE (NAME.vh: a header); the proof must then fail
 #   @zeros                     registers that have no reset start as 0 instead of anything
 #   @slow                      not with --quick
+#   @long SECONDS              so long with --quick; `make test` leaves it to the long tests
 # A sentence or a script goes on in lines that begin with `//   `.
 # Every proof is unbounded (property-directed reachability, ABC's pdr); counterexamples for broken copies are found by
 # bmc3, within 40 cycles. --quick leaves the broken copies out, --broken tries only these.

@@ -98,7 +98,7 @@ TEST_P(InspectedChip, NamesTheFileOfTheSignal) {
   const auto chip = make_lockstep_chip(
       c, std::make_unique<TamperedChip>(load_rtl_chip(chip_library(machine), c, machine.units), GetParam()),
       drawing.memory(), c.name, kInspectAlways);
-  drawing.draw_on(*chip);
+  drawing.draw_until(*chip, [&] { return !chip->inside().empty(); });
   const std::vector<lockstep::Finding> inside = chip->inside();
   ASSERT_FALSE(inside.empty());
   const std::string& files = inside[0].files;

@@ -213,6 +213,13 @@ class Drawing {
     while (!board.may_be_followed()) board.clock();
     return board.result();
   }
+  /// From a reset until `enough` says so, or the picture is drawn.
+  template <typename Enough>
+  void draw_until(ChipDevice& chip, const Enough& enough) {
+    chip::FixedLatencyStore store(*options_.memory, &tree_.memory, configuration_.chip);
+    chip::Board board(options_, chip, store, FrameBegin::Reset);
+    while (!enough() && !board.may_be_followed()) board.clock();
+  }
 
   /// What has been drawn, and said of it, is what the native engine does and says.
   void expect_native(const ChipResult& result) const {

@@ -14,26 +14,28 @@ endfunction()
 # SYNTHESIS, NO_CLOCK_GATES: with the multipliers and the pipeline registers that hardware has, in whose place whole
 # units in simulation have quicker ones. Tests named Long run in `make numerics-long`.
 function(arith_bench name top)
-  raypool_bench(${name} "-*Long*")
+  raypool_bench(${name} EXCEPT *Long*)
   arith_top(${name} ${top} V${top})
 endfunction()
 
-# arith_widths(NAME TOP): the same top with shorter significands, VTOP_20 and so on.
+# arith_widths(NAME TOP SIGNIFICAND...): the same top with shorter significands, VTOP_20 and so on.
 function(arith_widths name top)
-  foreach(significand IN ITEMS 20 16 13 11)
+  foreach(significand IN LISTS ARGN)
     arith_top(${name} ${top} V${top}_${significand} -GSIGNIFICAND=${significand})
   endforeach()
 endfunction()
 
 arith_bench(flt_alu_test flt_units)
-arith_widths(flt_alu_test flt_units)
+arith_widths(flt_alu_test flt_units 11)
+raypool_large_bench(flt_alu 60 --gtest_filter=-*Long*)
+arith_widths(flt_alu_large_test flt_units 20 16 13)
 
 arith_bench(brh_alu_test brh_units)
-arith_widths(brh_alu_test brh_units)
+arith_widths(brh_alu_test brh_units 20 16 13 11)
 
 arith_bench(slw_alu_test slw_units)
 raypool_large_bench(slw_alu 300 --gtest_filter=-*Long*)
-arith_widths(slw_alu_large_test slw_units)
+arith_widths(slw_alu_large_test slw_units 20 16 13 11)
 arith_top(slw_alu_test slw_group_units Vslw_group_units)
 
 # ALUs that lack instructions.
@@ -79,7 +81,7 @@ endif()
 
 # Narrow formats, against exact integers with all operands there are.
 # Tests named Hours run by hand.
-raypool_bench(small_floats_test "-*Long*:*Hours*")
+raypool_bench(small_floats_test EXCEPT *Long*:*Hours*)
 foreach(format IN ITEMS "16 5 10" "8 4 3")
   separate_arguments(format)
   list(GET format 0 bits)

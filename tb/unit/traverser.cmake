@@ -1,8 +1,11 @@
 # Benches of the traverser, block by block and whole.
 
 # The traverser's narrow box test. Its oracle counts in rational numbers.
+# Of the model's eleven widths `make test` has the narrowest, the default and the widest.
 find_library(GMP_LIBRARY gmp REQUIRED)
-raypool_bench(box_pipe_test)
+set(other_widths 1 2 3 4 5 7 8 9)
+list(TRANSFORM other_widths PREPEND Bits/Narrow.*/)
+raypool_bench(box_pipe_test LONG 20 ${other_widths})
 target_link_libraries(box_pipe_test PRIVATE raypool_scene ${GMP_LIBRARY})
 raypool_block_models(box_pipe_test box_pipe "BITS" 6 7 10 12 16)
 
@@ -28,9 +31,8 @@ target_link_libraries(referee_answers PRIVATE raypool_scene)
 set(raypool_multiplier)
 raypool_block_models(referee_answers triangle_pipe "BITS" 32)
 set(raypool_multiplier -DSYNTHESIS)
-add_test(NAME referee_verilog COMMAND ${CMAKE_SOURCE_DIR}/scripts/tests/referee_verilog.sh $<TARGET_FILE:raypool>
-  $<TARGET_FILE:referee_answers>)
-set_tests_properties(referee_verilog PROPERTIES TIMEOUT 300)
+raypool_built_test(referee_verilog 50 referee_answers ${CMAKE_SOURCE_DIR}/scripts/tests/referee_verilog.sh
+  $<TARGET_FILE:raypool> $<TARGET_FILE:referee_answers>)
 
 # The set-up of a ray, against what engines prepare too.
 raypool_bench(ray_setup_test)
@@ -67,17 +69,20 @@ raypool_block_models(lane_stacks_test lane_stacks "SLOTS;ENTRIES;KEY_BITS;REFERE
 raypool_bench(traverser_lane_test)
 target_link_libraries(traverser_lane_test PRIVATE raypool_scene)
 set(raypool_multiplier)
-raypool_block_models(traverser_lane_test lane_units "SLOTS;ENTRIES;BITS;TRIANGLE_BITS"
-  1_8_6_26 3_9_10_30 6_8_16_28 24_16_12_32)
+set(sizes "SLOTS;ENTRIES;BITS;TRIANGLE_BITS")
+raypool_block_models(traverser_lane_test lane_units "${sizes}" 24_16_12_32)
+raypool_large_bench(traverser_lane 150)
+target_link_libraries(traverser_lane_large_test PRIVATE raypool_scene)
+raypool_block_models(traverser_lane_large_test lane_units "${sizes}" 1_8_6_26 3_9_10_30 6_8_16_28)
 
 # The whole traverser.
-raypool_bench(traverser_test)
+raypool_bench(traverser_test LONG 30 TraverserTest/*.AgreesInLarge* TraverserTest/*.FaultsThatComeTogether)
 target_link_libraries(traverser_test PRIVATE raypool_scene)
 set(sizes "LANES;SLOTS;ENTRIES;BITS;TRIANGLE_PIPES;NODE_LINES;NODE_WAYS;NODE_MSHRS;NODE_BANKS;TRIANGLE_LINES;\
 TRIANGLE_WAYS;TRIANGLE_MSHRS;TRIANGLE_BANKS;POOL;RECORD_WORDS;SHADING;CULLING")
-raypool_block_models(traverser_test traverser "${sizes}"
-  1_1_8_6_1_4_2_1_1_4_2_1_1_1_21_0_0 3_4_9_10_2_16_2_4_2_32_4_6_2_9_16_1_1)
-raypool_large_bench(traverser 200)
+raypool_block_models(traverser_test traverser "${sizes}" 3_4_9_10_2_16_2_4_2_32_4_6_2_9_16_1_1)
+raypool_large_bench(traverser 320)
 target_link_libraries(traverser_large_test PRIVATE raypool_scene)
-raypool_block_models(traverser_large_test traverser "${sizes}" 5_24_16_12_1_64_4_16_8_32_2_5_1_160_20_0_1)
+raypool_block_models(traverser_large_test traverser "${sizes}"
+  1_1_8_6_1_4_2_1_1_4_2_1_1_1_21_0_0 5_24_16_12_1_64_4_16_8_32_2_5_1_160_20_0_1)
 set(raypool_multiplier -DSYNTHESIS)

@@ -1,3 +1,4 @@
+// @long 20
 // @modules bank_arbiter
 // @proves of a lane one want is taken at most, one that it has, of a bank that is ready, and none of a silent lane
 // @proves a bank that is ready looks up a line if and only if a want of it is taken; all that are taken there are of

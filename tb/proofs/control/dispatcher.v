@@ -1,5 +1,6 @@
 // Four warps, two instances of type 1 (numbers 0 and 2) and one of type 2, with pipelines of other latencies and
 // depths. What instance 0 is granted goes to a task register of each type, too.
+// @long 20
 // @modules dispatcher task_register alu_pipeline
 // @zeros
 // @proves a grant goes to a warp that wants, to one instance of its type, which is ready; no warp gets two

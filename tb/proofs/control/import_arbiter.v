@@ -1,3 +1,4 @@
+// @long 8
 // @modules import_arbiter port_arbiter round_robin request_queue
 // @proves a request at the pool's port is that of exactly one unit, and stays until it is
 //   taken; at most 3 packages are awaited

@@ -1,3 +1,4 @@
+// @long 10
 // @modules instruction_buffer
 // @zeros
 // @parameters TRIPLES=1

@@ -1,4 +1,5 @@
 // What becomes of requests, whatever the memory answers; memory_port_lines has the answers.
+// @long 25
 // @modules memory_port ram_queue ram_1r1w request_queue event_counter
 // @proves nothing is lost, nothing comes twice, the order is kept: any one request, whosever it is, is offered to the
 //   memory as it came, after just those that came before, and its second part at once after its first; what is offered

@@ -1,5 +1,6 @@
 // What becomes of the memory's answers, and that requests go on; memory_port has their order. The device's ids are made
 // of the addresses, so that the memory sees them.
+// @long 50
 // @modules memory_port ram_queue ram_1r1w request_queue event_counter
 // @proves beats are handed on unchanged, in their order, to whom has asked for the line and with its id and their
 //   number, CYCLES_PER_BEAT cycles apart at least; no more than LINES lines are on their way

@@ -1,3 +1,4 @@
+// @long 10
 // @modules pc_stack
 // @proves a push on the full stack raises overflow_o and changes nothing, a pop of the first entry
 //   raises underflow_o and changes nothing

@@ -1,4 +1,5 @@
 // Two warps of two lanes. Of each word of a beat one bit is carried.
+// @long 8
 // @modules ray_import
 // @proves each package is requested once, of the launch's kind; what is offered stays; two at most are under way, none
 //   for a slice that is full; where one may be requested it is, two cycles later

@@ -1,3 +1,4 @@
+// @long 20
 // @modules tile_walk request_queue
 // @proves each tile that has a pixel in the picture comes once, and no other one; its pixels are those in the picture
 // @proves the last one is marked, and only that; from its taking on until a start nothing is offered

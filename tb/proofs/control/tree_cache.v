@@ -1,6 +1,7 @@
 // A cache of two sets of two ways with two registers, asked by two lanes. The memory answers requests in any order,
 // after any time; of a line it holds one bit. A reset may come in any cycle in which nothing is on its way, or in which
 // the last line comes, and behind it the memory holds something else.
+// @long 25
 // @modules tree_cache round_robin ram_queue ram_1r1w
 // @zeros
 // @proves whoever is given a line has asked for one, and it is that one, as the memory holds it; a line is asked for

@@ -2,10 +2,13 @@
 // and rays that are hard; and both against a walk of the tree, and against the engine: what every ray visits and hits.
 #include <gtest/gtest.h>
 
+#ifdef RAYPOOL_LARGE
 #include "Vlane_units_1_8_6_26.h"
-#include "Vlane_units_24_16_12_32.h"
 #include "Vlane_units_3_9_10_30.h"
 #include "Vlane_units_6_8_16_28.h"
+#else
+#include "Vlane_units_24_16_12_32.h"
+#endif
 #include "scene/narrow_triangles.hpp"
 #include "unit/traverser/lane_bench.hpp"
 
@@ -45,9 +48,13 @@ class Case {
 
 template <typename P>
 class TraverserLaneTest : public testing::Test {};
-using All = testing::Types<
-    LaneParameters<Vlane_units_1_8_6_26, 1, 8, 6, 26>, LaneParameters<Vlane_units_3_9_10_30, 3, 9, 10, 30>,
-    LaneParameters<Vlane_units_6_8_16_28, 6, 8, 16, 28>, LaneParameters<Vlane_units_24_16_12_32, 24, 16, 12, 32>>;
+#ifdef RAYPOOL_LARGE  // traverser_lane_large_test, of make test-long
+using All =
+    testing::Types<LaneParameters<Vlane_units_1_8_6_26, 1, 8, 6, 26>, LaneParameters<Vlane_units_3_9_10_30, 3, 9, 10, 30>,
+                   LaneParameters<Vlane_units_6_8_16_28, 6, 8, 16, 28>>;
+#else
+using All = testing::Types<LaneParameters<Vlane_units_24_16_12_32, 24, 16, 12, 32>>;
+#endif
 TYPED_TEST_SUITE(TraverserLaneTest, All);
 
 TYPED_TEST(TraverserLaneTest, AgreesWithItsClassInEveryCycleAndEveryRayHitsWhatItMust) {

@@ -9,9 +9,9 @@
 #include <functional>
 
 #ifdef RAYPOOL_LARGE
+#include "Vtraverser_1_1_8_6_1_4_2_1_1_4_2_1_1_1_21_0_0.h"
 #include "Vtraverser_5_24_16_12_1_64_4_16_8_32_2_5_1_160_20_0_1.h"
 #else
-#include "Vtraverser_1_1_8_6_1_4_2_1_1_4_2_1_1_1_21_0_0.h"
 #include "Vtraverser_3_4_9_10_2_16_2_4_2_32_4_6_2_9_16_1_1.h"
 #endif
 #include "unit/traverser/garbage_trees.hpp"
@@ -76,11 +76,11 @@ template <typename P>
 class TraverserTest : public testing::Test {};
 #ifdef RAYPOOL_LARGE  // traverser_large_test, of make test-long
 using All = testing::Types<TraverserParameters<Vtraverser_5_24_16_12_1_64_4_16_8_32_2_5_1_160_20_0_1, 5, 24, 16, 12, 1,
-                                               Cache<64, 4, 16, 8>, Cache<32, 2, 5, 1>, 160, 20, false, true>>;
+                                               Cache<64, 4, 16, 8>, Cache<32, 2, 5, 1>, 160, 20, false, true>,
+                           TraverserParameters<Vtraverser_1_1_8_6_1_4_2_1_1_4_2_1_1_1_21_0_0, 1, 1, 8, 6, 1,
+                                               Cache<4, 2, 1, 1>, Cache<4, 2, 1, 1>, 1, 21, false, false>>;
 #else
-using All = testing::Types<TraverserParameters<Vtraverser_1_1_8_6_1_4_2_1_1_4_2_1_1_1_21_0_0, 1, 1, 8, 6, 1,
-                                               Cache<4, 2, 1, 1>, Cache<4, 2, 1, 1>, 1, 21, false, false>,
-                           TraverserParameters<Vtraverser_3_4_9_10_2_16_2_4_2_32_4_6_2_9_16_1_1, 3, 4, 9, 10, 2,
+using All = testing::Types<TraverserParameters<Vtraverser_3_4_9_10_2_16_2_4_2_32_4_6_2_9_16_1_1, 3, 4, 9, 10, 2,
                                                Cache<16, 2, 4, 2>, Cache<32, 4, 6, 2>, 9, 16, true, true>>;
 #endif
 TYPED_TEST_SUITE(TraverserTest, All);
