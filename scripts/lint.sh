@@ -9,7 +9,8 @@
 #            tests tidy_* of make test-long read all); needs the build folder (BUILD, default build) configured with
 #            tests
 # Not among all kinds, since they take minutes; tests of the same names, of make test-long, do them:
-#   lint_units, lint_chip   Yosys for the large multiprocessors, and for whole chips and traversers
+#   lint_units, lint_chip, lint_blocks   Yosys for the large multiprocessors, for whole chips and traversers, and for
+#                                        large blocks of these
 # Prints what failed and the command that shows it again; ends with 1 if anything did. Keeps in the build folder how
 # long all kinds took.
 set -u -o pipefail
@@ -17,7 +18,7 @@ cd "$(dirname "$0")/.." || exit 1
 export LC_ALL=C.UTF-8 build=${BUILD:-build}
 . scripts/duration.bash
 kinds=(verilog pages columns python shell cpp)
-long_kinds=(lint_units lint_chip)
+long_kinds=(lint_units lint_chip lint_blocks)
 for kind in "$@"; do
   [[ " ${kinds[*]} ${long_kinds[*]} " == *" $kind "* ]] ||
     { echo "lint: '$kind' is no kind of check; there are ${kinds[*]}, and without one all of these are done;" \
@@ -91,26 +92,29 @@ small_configurations+=(
   "tree_cache LANES=32 SLOTS=256 MSHRS=32"
   "tree_banks"
   "tree_banks LANES=1 SLOTS=1 LINES=4 WAYS=2 MSHRS=1 BANKS=1 LINE_BITS=3 DATA_BITS=8"
-  "tree_banks LANES=3 LINES=64 WAYS=2 MSHRS=16 BANKS=16"
-  "tree_banks LANES=32 SLOTS=256 MSHRS=64 BANKS=2"
   "lane_stacks"
   "lane_stacks SLOTS=1 ENTRIES=8 KEY_BITS=1 REFERENCE_BITS=2 BLOCK_BITS=1"
   "lane_stacks SLOTS=5 ENTRIES=9 KEY_BITS=21"
-  "lane_stacks SLOTS=256 ENTRIES=64 BLOCK_BITS=16"
   "traverser_lane"
   "traverser_lane SLOTS=1 ENTRIES=8 BITS=6 LINE_BITS=8 BLOCK_BITS=1"
-  "traverser_lane SLOTS=256 ENTRIES=64 BITS=16 LINE_BITS=28"
   "ray_setup"
   "ray_setup BITS=6 TAG_BITS=1"
   "ray_setup BITS=16"
   "ray_finish"
-  "ray_finish TAG_BITS=1"
   "triangle_edges"
   "triangle_pipe BITS=26 TAG_BITS=1"
-  "triangle_pipe BITS=32"
   "box_pipe BITS=6"
   "box_pipe BITS=12"
   "box_pipe BITS=16"
+)
+# Blocks that Yosys takes longest for.
+large_configurations=(
+  "tree_banks LANES=3 LINES=64 WAYS=2 MSHRS=16 BANKS=16"
+  "tree_banks LANES=32 SLOTS=256 MSHRS=64 BANKS=2"
+  "lane_stacks SLOTS=256 ENTRIES=64 BLOCK_BITS=16"
+  "traverser_lane SLOTS=256 ENTRIES=64 BITS=16 LINE_BITS=28"
+  "ray_finish TAG_BITS=1"
+  "triangle_pipe BITS=32"
 )
 chip_configurations=(
   "chip WARPS=2 LANES=2"
@@ -149,13 +153,14 @@ read_by_yosys() {
 
 check_verilog() {
   local units=("${unit_configurations[@]/#/multiprocessor }")
-  local all=("${units[@]}" "${chip_configurations[@]}" "${small_configurations[@]}")
+  local all=("${units[@]}" "${chip_configurations[@]}" "${large_configurations[@]}" "${small_configurations[@]}")
   echo "lint: ${#rtl[@]} Verilog files, ${#all[@]} configurations by two tools, ${#small_configurations[@]} by a third"
   each read_by_simulators "${all[@]}"
   each read_by_yosys "${small_configurations[@]}"
 }
 check_lint_units() { each read_by_yosys "${unit_configurations[@]/#/multiprocessor }"; }
 check_lint_chip() { each read_by_yosys "${chip_configurations[@]}"; }
+check_lint_blocks() { each read_by_yosys "${large_configurations[@]}"; }
 
 check_pages() {
   check "table of modules" scripts/module_table.py

@@ -59,11 +59,13 @@ endif()
 # Yosys on what is large; `make lint` has it read what is small.
 find_program(YOSYS yosys)
 if(YOSYS)
-  foreach(kind lint_units lint_chip)
+  foreach(kind lint_units lint_chip lint_blocks)
     add_test(NAME ${kind} COMMAND ${scripts}/lint.sh ${kind})
     set_tests_properties(${kind} PROPERTIES TIMEOUT 3600)
-    raypool_long(500 ${kind})
   endforeach()
+  raypool_long(300 lint_units)
+  raypool_long(500 lint_chip)
+  raypool_long(80 lint_blocks)
 endif()
 
 add_test(NAME shares COMMAND ${scripts}/tests/shares_test.py ${CMAKE_BINARY_DIR})
@@ -77,6 +79,9 @@ foreach(regression IN LISTS regressions)
                                                  ${CMAKE_BINARY_DIR}/regressions)
   set_tests_properties(regression_${regression} PROPERTIES FIXTURES_REQUIRED unit_2w2c_small TIMEOUT 900)
 endforeach()
+
+# These two have machines of their own, which they Verilate.
+raypool_long(12 regression_instruction_cache-8w1c_small-seed64.json regression_data_cache-2w2c_small-seed2280.json)
 
 # Every parameter value, and most pairs of values that a machine of 8 threads can have.
 foreach(part RANGE 1 4)

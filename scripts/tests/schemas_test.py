@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""The JSON Schemas say what the program accepts and writes: scripts/tests/schemas_test.py RAYPOOL [--only CLASS] [ENGINE...]
+"""The JSON Schemas say what the program accepts and writes:
+scripts/tests/schemas_test.py RAYPOOL [--only CLASS] [ENGINE...]
 
 Checked-in configurations and views, and a report of each ENGINE (default: those without a Verilated unit), are valid;
 what raypool refuses, and what it takes the schema takes, at both ends of every range; a field of what is written that

@@ -81,7 +81,7 @@ endif()
 
 # Narrow formats, against exact integers with all operands there are.
 # Tests named Hours run by hand.
-raypool_bench(small_floats_test EXCEPT *Long*:*Hours*)
+raypool_bench(small_floats_test EXCEPT *Long*:*Hours* LONG 6 SmallFloats.EveryTriple*)
 foreach(format IN ITEMS "16 5 10" "8 4 3")
   separate_arguments(format)
   list(GET format 0 bits)

@@ -76,7 +76,8 @@ target_link_libraries(traverser_lane_large_test PRIVATE raypool_scene)
 raypool_block_models(traverser_lane_large_test lane_units "${sizes}" 1_8_6_26 3_9_10_30 6_8_16_28)
 
 # The whole traverser.
-raypool_bench(traverser_test LONG 30 TraverserTest/*.AgreesInLarge* TraverserTest/*.FaultsThatComeTogether)
+raypool_bench(traverser_test LONG 30 TraverserTest/*.AgreesInLarge* TraverserTest/*.FaultsThatComeTogether
+  TraverserTest/*.ManyRaysWaitForOneLine)
 target_link_libraries(traverser_test PRIVATE raypool_scene)
 set(sizes "LANES;SLOTS;ENTRIES;BITS;TRIANGLE_PIPES;NODE_LINES;NODE_WAYS;NODE_MSHRS;NODE_BANKS;TRIANGLE_LINES;\
 TRIANGLE_WAYS;TRIANGLE_MSHRS;TRIANGLE_BANKS;POOL;RECORD_WORDS;SHADING;CULLING")

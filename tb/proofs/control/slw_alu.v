@@ -1,5 +1,6 @@
 // Four lanes of threads on two lanes of the unit, on one, and on four. Here a lane only carries a bit that depends on
 // its operands and the operation through its stages, as each is enabled. One task, chosen freely, is followed.
+// @long 6
 // @modules slw_alu alu_pipeline alu_delay
 // @zeros
 // @proves of a task each lane of the mask is done DEPTH cycles after the arrival, and as many more as there are further

@@ -49,9 +49,9 @@ class Case {
 template <typename P>
 class TraverserLaneTest : public testing::Test {};
 #ifdef RAYPOOL_LARGE  // traverser_lane_large_test, of make test-long
-using All =
-    testing::Types<LaneParameters<Vlane_units_1_8_6_26, 1, 8, 6, 26>, LaneParameters<Vlane_units_3_9_10_30, 3, 9, 10, 30>,
-                   LaneParameters<Vlane_units_6_8_16_28, 6, 8, 16, 28>>;
+using All = testing::Types<LaneParameters<Vlane_units_1_8_6_26, 1, 8, 6, 26>,
+                           LaneParameters<Vlane_units_3_9_10_30, 3, 9, 10, 30>,
+                           LaneParameters<Vlane_units_6_8_16_28, 6, 8, 16, 28>>;
 #else
 using All = testing::Types<LaneParameters<Vlane_units_24_16_12_32, 24, 16, 12, 32>>;
 #endif
