@@ -25,6 +25,10 @@ function(raypool_share variable seconds)
   set(${variable} long-${least} PARENT_SCOPE)
 endfunction()
 
+# What takes longest of all and is declared last has its share before the others, which then fill up evenly.
+raypool_share(RAYPOOL_SHARE_OF_NEW_ALU 500)
+raypool_share(RAYPOOL_SHARE_OF_FOLLOW 400)
+
 # raypool_long(SECONDS TEST...): all of these tests, each of about so many processor-seconds from bare, in one share.
 function(raypool_long seconds)
   list(LENGTH ARGN tests)
