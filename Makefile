@@ -261,9 +261,10 @@ test: setup-sim setup-test setup-synth configured-ON ## what guards a change
 	@ctest --test-dir $(BUILD) --output-on-failure -j "$$(nproc)" -LE '^long-'
 
 #: variable of make test-long:  SHARE=1..10: only this tenth of the tests
-test-long: setup-sim setup-test setup-synth setup-lint configured-ON program ## the other tests; SHARE=1..10: a tenth
+test-long: setup-sim setup-test setup-synth setup-lint configured-ON ## the other tests; SHARE=1..10: a tenth
 	@[[ "$(SHARE)" =~ ^([1-9]|10)?$$ ]] || \
 	  { echo 'make test-long: SHARE is "$(SHARE)": say 1 to 10, or nothing' >&2; exit 1; }
+	@scripts/build.sh $(BUILD)
 	@ctest --test-dir $(BUILD) --output-on-failure -j "$$(nproc)" \
 	  -L '^long-$(or $(SHARE),.*)$$' --no-tests=error
 
