@@ -35,6 +35,11 @@ def cases(program):
     return found
 
 
+def said(test, name):
+    """The list that a test's property is; empty without it."""
+    return next((each["value"] for each in test.get("properties", []) if each["name"] == name), [])
+
+
 class Shares(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -51,10 +56,17 @@ class Shares(unittest.TestCase):
     def test_each_test_is_in_make_test_or_in_one_share_and_no_share_is_empty(self):
         shares = set()
         for test in self.tests:
-            labels = next((p["value"] for p in test.get("properties", []) if p["name"] == "LABELS"), [])
+            labels = said(test, "LABELS")
             self.assertLessEqual(len(labels), 1, test["name"])
             shares.update(labels)
         self.assertEqual(shares, {f"long-{k}" for k in range(1, 11)})
+
+    def test_no_test_of_make_test_needs_what_a_long_one_sets_up(self):
+        long = {fixture for test in self.tests if said(test, "LABELS") for fixture in said(test, "FIXTURES_SETUP")}
+        self.assertTrue(long)
+        for test in self.tests:
+            if not said(test, "LABELS"):
+                self.assertEqual(long.intersection(said(test, "FIXTURES_REQUIRED")), set(), test["name"])
 
     def test_each_case_of_a_test_program_is_a_test_once(self):
         self.assertEqual([test["name"] for test in self.tests if test["name"].endswith("_NOT_BUILT")], [])
