@@ -422,22 +422,8 @@ void print_table(const SimOptions& options, const RunRecord& record, const Outpu
                                       : "");
 }
 
-/// Of a scene that is recentred, to who is shown words of the machine.
-void tell_centre(const SimOptions& options, const Scene& scene) {
-  if (!scene.recentred() || (!options.waves && options.inspect_until == 0)) return;
-  const Vec3d& centre = scene.centre;
-  fmt::print(stderr, "raypool: coordinates in words of the machine are counted from {}, {}, {} of the file\n", centre.x,
-             centre.y, centre.z);
-}
-
-}  // namespace
-
-int sim_command(const SimOptions& options) {
-  const Progress whole(true);
-  const Engine engine = parse_engine(options.engine);
-  const ImageSize size = parse_image_size(options.size);
-  check(options, engine);
-
+/// What the options say of a run, before its scene is read.
+RunRecord record_of(const SimOptions& options, Engine engine, const ImageSize& size) {
   RunRecord record;
   record.command = options.command;
   record.engine = options.engine;
@@ -455,7 +441,26 @@ int sim_command(const SimOptions& options) {
   record.height = size.height;
   record.depth = options.depth;
   record.units = options.units;
+  return record;
+}
 
+/// Of a scene that is recentred, to who is shown words of the machine.
+void tell_centre(const SimOptions& options, const Scene& scene) {
+  if (!scene.recentred() || (!options.waves && options.inspect_until == 0)) return;
+  const Vec3d& centre = scene.centre;
+  fmt::print(stderr, "raypool: coordinates in words of the machine are counted from {}, {}, {} of the file\n", centre.x,
+             centre.y, centre.z);
+}
+
+}  // namespace
+
+int sim_command(const SimOptions& options) {
+  const Progress whole(true);
+  const Engine engine = parse_engine(options.engine);
+  const ImageSize size = parse_image_size(options.size);
+  check(options, engine);
+
+  RunRecord record = record_of(options, engine, size);
   const Scene scene = load_scene_and_warn(options.scene, options.detail, options.view, options.look);
   record.scene = scene.name;
   record.triangles = scene.triangles.size();
