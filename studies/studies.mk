@@ -87,9 +87,13 @@ referee: setup-sim setup-test configured-ON ## hits of hard rays beside rational
 	  $(BUILD)/tb/referee_answers > $(BUILD)/out/referee/Verilog.jsonl
 	@$(BUILD)/raypool_match $(call options,CASES SEED) --answers $(BUILD)/out/referee/Verilog.jsonl $(ARGS)
 
-#: variable of make extremes:  MODE=all|ieee-exact|...
+EXTREMES = $(RAYPOOL) numerics $(call options,MODE) $(if $(filter chip,$(BOUNDARY)),--config tiny)
+
+#: variables of make extremes
+#:   MODE=all|ieee-exact|...       arithmetic                                  all
+#:   BOUNDARY=chip                 small chips, whole, in Verilog too
 extremes: setup-sim program ## hard cases in every arithmetic mode, on every engine
-	@for config in $$($(RAYPOOL) numerics $(call options,MODE) --configurations $(BUILD)/out/modes); do \
-	  scripts/unit.sh "$$config"; \
-	done
-	@$(RAYPOOL) numerics $(call options,MODE) --extremes $(ARGS)
+	@for config in $$($(EXTREMES) --configurations $(BUILD)/out/modes); do scripts/unit.sh "$$config"; done
+	@[ "$(BOUNDARY)" != chip ] || for config in $$($(EXTREMES) --boundary chip --configurations $(BUILD)/out/chips); do \
+	  scripts/unit.sh "$$config" --boundary chip; done
+	@$(EXTREMES) $(call options,BOUNDARY) --extremes $(ARGS)

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -105,6 +106,9 @@ class Board {
 /// The model of the chip of `options.configuration` around these units. If they have no notion of time it changes the
 /// options: no traverser needs any then, and hits come from the static one, at the ports.
 std::unique_ptr<ChipDevice> make_chip_around(ChipOptions& options, std::unique_ptr<ComputeUnit> device);
+
+/// Makes a chip of a configuration, for the program in a memory that outlives it.
+using ChipMaker = std::function<std::unique_ptr<ChipDevice>(const Configuration&, Memory&)>;
 
 /// Draws one frame on a chip for `options.configuration`. `tracer` has no meaning with a traverser inside, nor has
 /// `tree` with another. Throws InputError for options out of range or a configuration that the chip has not, ChipFault,

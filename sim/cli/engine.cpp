@@ -13,6 +13,7 @@
 #include "config/data_folder.hpp"
 #include "lockstep/lockstep_chip.hpp"
 #include "lockstep/rtl_loader.hpp"
+#include "machine/chip/chip_model.hpp"
 #include "machine/compute/functional_unit.hpp"
 #include "machine/compute/model.hpp"
 #include "machine/compute/multiprocessor.hpp"
@@ -149,6 +150,17 @@ std::unique_ptr<ChipDevice> make_verilog_chip(const EngineOptions& options, cons
     return make_chip(ChipKind::Rtl, configuration, memory, options.units, find_unit_library(options));
   return make_chip(ChipKind::Lockstep, configuration, memory, options.units, find_unit_library(options), "chip",
                    options.waves ? kInspectAlways : options.inspect_until);
+}
+
+ChipMaker chip_maker(Engine engine) {
+  return [engine](const Configuration& configuration, Memory& memory) {
+    EngineOptions options;
+    options.engine = engine;
+    options.configuration = configuration;
+    options.boundary = Boundary::Chip;
+    if (has_verilog(engine)) return make_verilog_chip(options, memory);
+    return make_chip_model(configuration, make_unit(options, memory));
+  };
 }
 
 std::optional<ChipLockstepCounts> lockstep_counts(const ChipDevice& chip) {

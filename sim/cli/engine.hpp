@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "chip/board.hpp"
 #include "config/configuration.hpp"
 #include "lockstep/lockstep_chip.hpp"
 #include "lockstep/lockstep_unit.hpp"
@@ -67,6 +68,10 @@ std::unique_ptr<ComputeUnit> make_unit(const EngineOptions& options, Memory& mem
 
 /// rtl/chip/rp_chip.v whole, of engine rtl or lockstep; else as make_unit().
 std::unique_ptr<ChipDevice> make_verilog_chip(const EngineOptions& options, const Memory& memory);
+
+/// Whole chips of an engine, of one unit each: rtl and lockstep all of it in Verilog, model none of it. Throws as
+/// make_verilog_chip() does.
+ChipMaker chip_maker(Engine engine);
 
 /// What the device has compared; none unless it is a lockstep.
 std::optional<LockstepCounts> lockstep_counts(ComputeUnit& device);

@@ -20,12 +20,13 @@ struct NumericsOptions {
   std::string mode = "all";  ///< or one of numerics::arithmetic_modes()
   std::string size = "256x256";
   int depth = 3;
-  std::string out;             ///< folder; empty: out/numerics beside the executable
-  std::string synthesis;       ///< folder of synthesis reports; empty: synth beside the executable
-  std::string configurations;  ///< folder: only write a configuration file for each mode
-  bool extremes = false;       ///< the catalogue of hard cases instead of the trade
-  bool catalogue = false;      ///< only its cases and what is expected
-  bool quiet = false;          ///< no progress
+  std::string out;                ///< folder; empty: out/numerics beside the executable
+  std::string synthesis;          ///< folder of synthesis reports; empty: synth beside the executable
+  std::string configurations;     ///< folder: only write a configuration file for each mode
+  std::string boundary = "unit";  ///< chip: the catalogue is drawn on whole chips in Verilog too
+  bool extremes = false;          ///< the catalogue of hard cases instead of the trade
+  bool catalogue = false;         ///< only its cases and what is expected
+  bool quiet = false;             ///< no progress
 };
 int numerics_command(const NumericsOptions& options);
 
@@ -71,9 +72,12 @@ struct RefereeCommandOptions {
   std::string corpus;                ///< file; empty: cases are drawn
   std::string write;                 ///< file for the corpus, "-": standard output; empty: it is judged
   std::vector<std::string> answers;  ///< files
-  bool smallest = false;             ///< the smallest case of each fault
-  uint32_t threads = 0;              ///< 0: all cores
-  bool quiet = false;                ///< no progress
+  std::string on_chip;               ///< engine whose whole chip answers too; empty: none
+  std::string config = "tiny";       ///< of that chip
+  std::vector<std::string> set;
+  bool smallest = false;  ///< the smallest case of each fault
+  uint32_t threads = 0;   ///< 0: all cores
+  bool quiet = false;     ///< no progress
 };
 void add_referee_options(CLI::App& app, RefereeCommandOptions& options);
 /// `others`: contenders besides our own; may be empty.

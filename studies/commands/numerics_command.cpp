@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <map>
+#include <set>
 
 #include "cli/engine.hpp"
 #include "cli/exit_code.hpp"
@@ -23,6 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 using namespace numerics;
 
+constexpr const char* kChip = "chip";
 constexpr uint64_t kSeamRays = 1'000'000;
 
 std::vector<ArithmeticMode> chosen_modes(const std::string& name) {
@@ -47,6 +50,14 @@ UnitMaker unit_maker(Engine engine) {
 
 /// Whether the Verilated unit of a configuration has been built.
 bool has_rtl(const Configuration& configuration) { return fs::exists(unit_library_path(configuration, false)); }
+
+bool has_chips(const ExtremeMachine& machine) {
+  const std::vector<Configuration> chips = machine.chips();
+  return std::all_of(chips.begin(), chips.end(),
+                     [](const Configuration& chip) { return fs::exists(chip_library_path(chip, false)); });
+}
+
+bool on_chips(const NumericsOptions& options) { return parse_boundary(options.boundary) == Boundary::Chip; }
 
 struct NamedScene {
   std::string title;
@@ -128,22 +139,24 @@ int trade_command(const NumericsOptions& options) {
 }
 
 /// What the letters mean, and the columns: a number each, as names are too wide.
-void print_letters(const std::vector<ArithmeticMode>& modes) {
+void print_letters(const std::vector<ArithmeticMode>& modes, const std::vector<std::string>& engines) {
   fmt::print(
-      "n engine native, f functional, m model, l RTL in lockstep with the model, X failed, b breaks with so few bits, "
-      "- no Verilated unit\n");
+      "n engine native, f functional, m model, l RTL in lockstep with the model, {}X failed, b breaks with so few "
+      "bits, "
+      "- not Verilated\n",
+      engines.back() == kChip ? "c the whole chip in lockstep, " : "");
   for (size_t i = 0; i < modes.size(); ++i) fmt::print("{}{} {}", i == 0 ? "modes " : ", ", i + 1, modes[i].name);
   fmt::print("\n{:<58}", "");
-  for (size_t i = 0; i < modes.size(); ++i) fmt::print(" {:>4}", i + 1);
+  for (size_t i = 0; i < modes.size(); ++i) fmt::print(" {:>{}}", i + 1, engines.size());
   fmt::print("\n");
 }
 
-/// One letter an engine, in the order native, functional, model, lockstep: its own passed, X failed, - not run.
+/// One letter an engine: its own passed, X failed, - not run.
 int extremes_command(const NumericsOptions& options) {
   const Configuration base = load_configuration(options.config, options.set);
   const std::vector<ArithmeticMode> modes = chosen_modes(options.mode);
   std::vector<ExtremeMachine> machines;
-  std::vector<std::string> missing;
+  std::set<std::string> missing;
   for (const ArithmeticMode& mode : modes) {
     machines.emplace_back("native", mode, base);
     machines.emplace_back("functional", mode, base, unit_maker(Engine::Functional));
@@ -151,29 +164,36 @@ int extremes_command(const NumericsOptions& options) {
     if (has_rtl(mode.applied_to(base))) {
       machines.emplace_back("lockstep", mode, base, unit_maker(Engine::Lockstep));
     } else {
-      missing.push_back(mode.name);
+      missing.insert(mode.name);
     }
+    if (!on_chips(options)) continue;
+    machines.emplace_back(kChip, mode, base, chip_maker(Engine::Lockstep));
+    if (has_chips(machines.back())) continue;
+    machines.pop_back();
+    missing.insert(mode.name);
   }
   Progress progress(options.quiet);
   std::string failures;
   uint64_t checks = 0, failed = 0, broken = 0, on_rtl = 0;
-  print_letters(modes);
+  std::vector<std::string> engines = {"native", "functional", "model", "lockstep"};
+  if (on_chips(options)) engines.push_back(kChip);
+  print_letters(modes, engines);
   std::string theme;
   for (const ExtremeCase& extreme : extreme_cases()) {
     if (extreme.theme != theme) {
       theme = extreme.theme;
       fmt::print("{}\n", theme);
     }
-    std::map<std::string, std::string> letters;
+    std::map<std::pair<std::string, std::string>, char> letters;  // [mode, engine]
     for (const ExtremeMachine& machine : machines) {
       if (progress.due())
         progress.show(fmt::format("  {}: {}, {}", extreme.name, machine.mode().name, machine.engine()));
       const auto [holds, failure] = run_extreme(extreme, machine);
       ++checks;
-      on_rtl += machine.engine() == "lockstep";
+      on_rtl += machine.engine() == "lockstep" || machine.engine() == kChip;
       failed += !failure.empty();
       broken += !holds && failure.empty();
-      letters[machine.mode().name] += holds ? machine.engine()[0] : failure.empty() ? 'b' : 'X';
+      letters[{machine.mode().name, machine.engine()}] = holds ? machine.engine()[0] : failure.empty() ? 'b' : 'X';
       if (!failure.empty()) {
         failures += fmt::format("FAILED: {}: {} ({}), {}, {}: {}\n", extreme.theme, extreme.name, extreme.expected,
                                 machine.mode().name, machine.engine(), failure);
@@ -181,9 +201,12 @@ int extremes_command(const NumericsOptions& options) {
     }
     fmt::print("  {:<56}", extreme.name);
     for (const ArithmeticMode& mode : modes) {
-      std::string cell = letters[mode.name];
-      if (cell.size() < 4) cell += '-';
-      fmt::print(" {:>4}", cell);
+      std::string cell;
+      for (const std::string& engine : engines) {
+        const auto found = letters.find({mode.name, engine});
+        cell += found == letters.end() ? '-' : found->second;
+      }
+      fmt::print(" {}", cell);
     }
     fmt::print("\n");
     std::fflush(stdout);
@@ -207,16 +230,20 @@ int list_extremes() {
   return 0;
 }
 
-/// A configuration file for each mode, named after it.
+/// A configuration file for each mode, named after it; of whole chips two.
 int write_configurations(const NumericsOptions& options) {
   const Configuration base = load_configuration(options.config, options.set);
   OutputFolder folder(options.configurations);
   std::string names;
   for (const ArithmeticMode& mode : chosen_modes(options.mode)) {
-    const Configuration configuration = mode.applied_to(base);
-    const std::string name = configuration.name + ".json";
-    folder.write(name, to_json(configuration) + "\n");
-    names += folder.path(name).string() + "\n";
+    const Configuration unit = mode.applied_to(base);
+    const ExtremeMachine chip(kChip, mode, base, chip_maker(Engine::Lockstep));
+    for (Configuration configuration : on_chips(options) ? chip.chips() : std::vector{unit}) {
+      if (on_chips(options) && !has_traverser(configuration.chip)) configuration.name += "_ports";
+      const std::string name = configuration.name + ".json";
+      folder.write(name, to_json(configuration) + "\n");
+      names += folder.path(name).string() + "\n";
+    }
   }
   folder.publish();
   fmt::print("{}", names);

@@ -6,11 +6,13 @@
 #include <fstream>
 
 #include "cli/command_options.hpp"
+#include "cli/engine.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/progress.hpp"
 #include "commands/commands.hpp"
 #include "config/configuration.hpp"
 #include "files/output_files.hpp"
+#include "referee/chip_contender.hpp"
 #include "referee/corpus.hpp"
 #include "referee/corpus_file.hpp"
 #include "referee/hardware.hpp"
@@ -58,10 +60,37 @@ void add_referee_options(CLI::App& app, RefereeCommandOptions& options) {
   app.add_option("--answers", options.answers, "file of answers, which become a row; may be given several times")
       ->expected(1, -1)
       ->allow_extra_args(false);
+  app.add_option("--on-chip", options.on_chip,
+                 "a whole chip answers too, each case a frame: its model, its Verilog (raypool unit --boundary chip "
+                 "builds it), or both in lockstep")
+      ->type_name("model|rtl|lockstep");
+  add_config(app, options.config, options.set);
   app.add_flag("--smallest", options.smallest, "the smallest case of each fault");
   add_threads(app, options.threads, "threads");
   app.add_flag("--quiet", options.quiet, "no progress");
 }
+
+namespace {
+
+/// The chip of --on-chip, a contender for each thread; empty: there is none.
+std::function<std::unique_ptr<referee::Contender>()> chip_of(const RefereeCommandOptions& options) {
+  if (options.on_chip.empty()) return {};
+  const Engine engine = parse_engine(options.on_chip);
+  if (engine != Engine::Model && !has_verilog(engine))
+    throw InputError(fmt::format("--on-chip is '{}': use model, rtl or lockstep", options.on_chip));
+  const Configuration configuration = load_configuration(options.config, options.set);
+  if (!has_traverser(configuration.chip) || configuration.intersection_words != kIntersectionWords) {
+    throw InputError(fmt::format(
+        "{}: a chip that answers has its traverser inside and whole records of intersections: leave chip.traverser and "
+        "intersection_words as they are by default",
+        configuration.name));
+  }
+  return [=] {
+    return referee::chip_answers(fmt::format("chip, {}", options.on_chip), configuration, chip_maker(engine));
+  };
+}
+
+}  // namespace
 
 int referee_command(const RefereeCommandOptions& options, const std::function<referee::Contenders()>& others) {
   const referee::CaseSource cases = cases_of(options);
@@ -75,9 +104,11 @@ int referee_command(const RefereeCommandOptions& options, const std::function<re
   };
   std::vector<referee::RecordedAnswers> recorded;
   for (const std::string& file : options.answers) recorded.push_back(referee::read_answers(file, cases.count));
+  const auto chip = chip_of(options);
   const auto contenders = [&] {
     referee::Contenders all;
     all.push_back(referee::our_answers());
+    if (chip) all.push_back(chip());
     for (const referee::RecordedAnswers& each : recorded) all.push_back(referee::contender_of(each));
     if (others) {
       for (auto& each : others()) all.push_back(std::move(each));

@@ -49,6 +49,12 @@ void StudyCommands::add_numerics_command() {
   numerics_app->add_option("--synthesis", numerics_.synthesis,
                            "folder of synthesis reports (default: synth beside the program)");
   numerics_app->add_flag("--extremes", numerics_.extremes, "the catalogue of hard cases, by mode and engine");
+  numerics_app
+      ->add_option("--boundary", numerics_.boundary,
+                   "with --extremes: what is Verilog, the units or whole chips too, small ones with and without a "
+                   "traverser; with --configurations: of which")
+      ->type_name("unit|chip")
+      ->capture_default_str();
   numerics_app->add_flag("--catalogue", numerics_.catalogue, "only list those cases, with what is expected of them");
   numerics_app->add_option("--configurations", numerics_.configurations,
                            "only write a configuration file of each mode into this folder");

@@ -8,8 +8,8 @@
 #include <map>
 
 #include "bits.hpp"
-#include "chip/board.hpp"
 #include "chip/program_run.hpp"
+#include "chip/tree_image.hpp"
 #include "isa/assembler.hpp"
 #include "isa/encoding.hpp"
 #include "scene/native_renderer.hpp"
@@ -112,6 +112,7 @@ class RecordingTracer : public RayTracer {
   }
   const Tracer& scene_tracer() const { return tracer_; }
   void set_triangle_test(const TriangleTest& test) { tracer_.set_triangle_test(test); }
+  void take_hits_of(const ChipConfiguration& chip) { tracer_.take_hits_of(chip); }
 
  private:
   const ExtremeFrame& frame_;
@@ -132,11 +133,14 @@ class RecordingSink : public FrameSink {
   Drawing& drawing_;
 };
 
-Drawing draw_natively(const ExtremeFrame& frame, const arith::Mode& mode, const std::optional<TriangleTest>& test) {
+/// With the hits of `chip`, if there is one.
+Drawing draw_natively(const ExtremeFrame& frame, const arith::Mode& mode, const std::optional<TriangleTest>& test,
+                      const ChipConfiguration* chip = nullptr) {
   Drawing drawing{FrameBuffer(frame.width, frame.height), {}, {}};
   const MemoryImage image = build_memory(ray_kernel_program({mode.fused, false}), frame.scene);
   RecordingTracer tracer(frame, image.material_base, drawing.traced);
   if (test) tracer.set_triangle_test(*test);
+  if (chip != nullptr) tracer.take_hits_of(*chip);
   NativeOptions options;
   options.width = frame.width;
   options.height = frame.height;
@@ -178,6 +182,16 @@ ExtremeMachine::ExtremeMachine(std::string engine, const ArithmeticMode& mode, c
   configuration_.chip.traverser = TraverserName::Static;  // at the ports its rays are seen
 }
 
+ExtremeMachine::ExtremeMachine(std::string engine, const ArithmeticMode& mode, const Configuration& base,
+                               ChipMaker chip)
+    : engine_(std::move(engine)), mode_(mode), configuration_(mode.applied_to(base)), chip_(std::move(chip)) {}
+
+std::vector<Configuration> ExtremeMachine::chips() const {
+  Configuration ports = configuration_;
+  ports.chip.traverser = TraverserName::Static;
+  return {configuration_, ports};
+}
+
 uint32_t ExtremeMachine::operate(const std::string& mnemonic, uint32_t a, uint32_t b, uint32_t c) const {
   const uint32_t native = operate_natively(mnemonic, a, b, c, mode_.mode);
   if (!unit_) return native;
@@ -211,6 +225,7 @@ uint32_t ExtremeMachine::operate_on_unit(const std::string& mnemonic, uint32_t a
 }
 
 Drawing ExtremeMachine::draw(const ExtremeFrame& frame) const {
+  if (chip_) return draw_on_chip(frame);
   Drawing native = draw_natively(frame, mode_.mode, triangle_test_);
   if (!unit_) return native;
   Drawing ours = draw_on_unit(frame);
@@ -218,20 +233,24 @@ Drawing ExtremeMachine::draw(const ExtremeFrame& frame) const {
   return ours;
 }
 
-Drawing ExtremeMachine::draw_on_unit(const ExtremeFrame& frame) const {
+namespace {
+
+/// Draws on what `make` makes of the configuration, the frame and its memory.
+template <typename Make>
+Drawing draw_on(const Configuration& configuration, const ExtremeFrame& frame, const Make& make) {
   Drawing drawing{FrameBuffer(frame.width, frame.height), {}, {}};
-  const Program& program = ray_kernel_program(KernelTarget(configuration_));
+  const Program& program = ray_kernel_program(KernelTarget(configuration));
   MemoryImage image = build_memory(program, frame.scene);
   RecordingTracer tracer(frame, image.material_base, drawing.traced);
   RecordingSink sink(drawing);
   ChipOptions chip;
-  chip.configuration = configuration_;
+  chip.configuration = configuration;
   chip.memory = &image.memory;
   chip.program_length = size32(program.code);
   for (size_t i = 0; i < kRayKernels; ++i) chip.entries[i] = program.entries.at(std::string(kRayKernelNames[i]));
-  chip.layout = ray_record_layout(configuration_);
+  chip.layout = ray_record_layout(configuration);
   chip.arguments =
-      camera_arguments(frame.scene, frame.width, frame.height, configuration_.contents(), configuration_.significand);
+      camera_arguments(frame.scene, frame.width, frame.height, configuration.contents(), configuration.significand);
   if (frame.change_arguments) frame.change_arguments(chip.arguments);
   chip.width = frame.width;
   chip.height = frame.height;
@@ -239,9 +258,34 @@ Drawing ExtremeMachine::draw_on_unit(const ExtremeFrame& frame) const {
   chip.tracer = &tracer;
   chip.frame = &sink;
   chip.limits.cycles = kCycleLimit;
-  run_board(chip, *make_chip_around(chip, unit_(configuration_, image.memory)));
+  std::optional<TreeImage> tree;
+  if (has_traverser(configuration.chip)) {
+    tree =
+        make_tree_image(frame.scene, tracer.scene_tracer().traversal().bvh(), configuration.chip, image.material_base);
+    chip.tree = &*tree;
+  }
+  const std::unique_ptr<ChipDevice> device = make(chip, image.memory);
+  run_board(chip, *device);
   sort(drawing);
   return drawing;
+}
+
+}  // namespace
+
+Drawing ExtremeMachine::draw_on_unit(const ExtremeFrame& frame) const {
+  return draw_on(configuration_, frame, [&](ChipOptions& chip, Memory& memory) {
+    return make_chip_around(chip, unit_(configuration_, memory));
+  });
+}
+
+Drawing ExtremeMachine::draw_on_chip(const ExtremeFrame& frame) const {
+  const Configuration machine = chips()[frame.trace ? 1 : 0];
+  const Drawing native = draw_natively(frame, mode_.mode, {}, &machine.chip);
+  Drawing ours = draw_on(machine, frame, [&](const ChipOptions&, Memory& memory) { return chip_(machine, memory); });
+  // What goes over the ports of a traverser inside the lockstep compares.
+  if (!frame.trace) ours.traced = native.traced;
+  require_same(ours, native);
+  return ours;
 }
 
 const std::vector<ExtremeCase>& extreme_cases() {

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "chip/board.hpp"
 #include "machine/common/memory.hpp"
 #include "machine/compute/compute_unit.hpp"
 #include "numerics/modes.hpp"
@@ -68,6 +69,12 @@ class ExtremeMachine {
  public:
   /// Without `unit` engine native; else the engine that it makes. `base` gets the mode's arithmetic.
   ExtremeMachine(std::string engine, const ArithmeticMode& mode, const Configuration& base, UnitMaker unit = nullptr);
+  /// A whole chip, with its own traverser where the frame has none: frames alone are drawn on it, and rays are those of
+  /// engine native with that traverser's hits.
+  ExtremeMachine(std::string engine, const ArithmeticMode& mode, const Configuration& base, ChipMaker chip);
+
+  /// The chips that it makes: as it is, and for frames that have a traverser of their own without one.
+  std::vector<Configuration> chips() const;
 
   /// Rays of engine native hit what this test says; there must be no other engine.
   void set_triangle_test(const TriangleTest& test) { triangle_test_ = test; }
@@ -89,11 +96,13 @@ class ExtremeMachine {
  private:
   uint32_t operate_on_unit(const std::string& mnemonic, uint32_t a, uint32_t b, uint32_t c) const;
   Drawing draw_on_unit(const ExtremeFrame& frame) const;
+  Drawing draw_on_chip(const ExtremeFrame& frame) const;
 
   std::string engine_;
   ArithmeticMode mode_;
   Configuration configuration_;
   UnitMaker unit_;
+  ChipMaker chip_;
   std::optional<TriangleTest> triangle_test_;
 };
 

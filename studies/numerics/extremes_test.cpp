@@ -6,7 +6,9 @@
 
 #include <set>
 
+#include "machine/chip/chip_model.hpp"
 #include "machine/compute/functional_unit.hpp"
+#include "machine/compute/model.hpp"
 #include "numerics/extreme_parts.hpp"
 
 namespace raypool::numerics {
@@ -15,7 +17,7 @@ namespace {
 Configuration small_unit() { return load_configuration("4w4c"); }
 
 class Extremes : public testing::TestWithParam<ArithmeticMode> {
- protected:
+ public:
   static void run_all(const ExtremeMachine& machine) {
     for (const ExtremeCase& extreme : extreme_cases()) {
       const std::string failure = run_extreme(extreme, machine).failure;
@@ -28,6 +30,15 @@ TEST_P(Extremes, AreDefinedOnEngineNative) { run_all({"native", GetParam(), smal
 
 TEST_P(Extremes, AreTheSameOnEngineFunctional) {
   run_all({"functional", GetParam(), small_unit(), make_functional_unit});
+}
+
+/// The model of the chip around functional units, whose traverser is the model's.
+std::unique_ptr<ChipDevice> chip_model(const Configuration& configuration, Memory& memory) {
+  return make_chip_model(configuration, make_model(configuration, memory, 1).device);
+}
+
+TEST(ExtremesOnTheChip, AreTheSameInItsModel) {
+  Extremes::run_all({"chip", arithmetic_modes().front(), load_configuration("tiny"), chip_model});
 }
 
 INSTANTIATE_TEST_SUITE_P(Modes, Extremes, testing::ValuesIn(arithmetic_modes()), [](const auto& instance) {
