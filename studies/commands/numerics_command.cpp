@@ -151,12 +151,10 @@ void print_letters(const std::vector<ArithmeticMode>& modes, const std::vector<s
   fmt::print("\n");
 }
 
-/// One letter an engine: its own passed, X failed, - not run.
-int extremes_command(const NumericsOptions& options) {
-  const Configuration base = load_configuration(options.config, options.set);
-  const std::vector<ArithmeticMode> modes = chosen_modes(options.mode);
+/// Those that there are; `missing`: modes of which something is not Verilated.
+std::vector<ExtremeMachine> machines_of(const NumericsOptions& options, const std::vector<ArithmeticMode>& modes,
+                                        const Configuration& base, std::set<std::string>& missing) {
   std::vector<ExtremeMachine> machines;
-  std::set<std::string> missing;
   for (const ArithmeticMode& mode : modes) {
     machines.emplace_back("native", mode, base);
     machines.emplace_back("functional", mode, base, unit_maker(Engine::Functional));
@@ -172,6 +170,15 @@ int extremes_command(const NumericsOptions& options) {
     machines.pop_back();
     missing.insert(mode.name);
   }
+  return machines;
+}
+
+/// One letter an engine: its own passed, X failed, - not run.
+int extremes_command(const NumericsOptions& options) {
+  const Configuration base = load_configuration(options.config, options.set);
+  const std::vector<ArithmeticMode> modes = chosen_modes(options.mode);
+  std::set<std::string> missing;
+  const std::vector<ExtremeMachine> machines = machines_of(options, modes, base, missing);
   Progress progress(options.quiet);
   std::string failures;
   uint64_t checks = 0, failed = 0, broken = 0, on_rtl = 0;

@@ -10,7 +10,9 @@ export RAYPOOL=$raypool
 failed() { cat "$folder/table"; echo "FAILED: $*" >&2; exit 1; }
 
 "$root/scripts/unit.sh" tiny
-for traverser in hardware static; do "$root/scripts/unit.sh" tiny --boundary chip --set "chip.traverser=$traverser"; done
+for traverser in hardware static; do
+  "$root/scripts/unit.sh" tiny --boundary chip --set "chip.traverser=$traverser"
+done
 "$raypool" numerics --extremes --boundary chip --config tiny --mode ieee-exact --quiet > "$folder/table" ||
   failed 'an extreme is not what is expected of it'
 grep -qE '^  .* nfmlc$' "$folder/table" || failed 'no extreme was drawn on the chip'
