@@ -88,16 +88,7 @@ class DoubleKernel {
 
 void run_in_double(RayKernel which, DoubleThread& thread) {
   DoubleKernel k(thread);
-  switch (which) {
-    case RayKernel::CastEye:
-      return kernel::cast_eye(k);
-    case RayKernel::CastSecondary:
-      return kernel::cast_secondary(k);
-    case RayKernel::CastSecondaryDirect:
-      return kernel::cast_secondary_direct(k);
-    case RayKernel::Shade:
-      return kernel::shade(k);
-  }
+  kernel::run_kernel(which, k);
 }
 
 }  // namespace raypool

@@ -12,16 +12,7 @@ namespace {
 template <Subnormals kSubnormals, SlowUnit kSlowUnit, bool kFused, bool kNarrow>
 void run_in_mode(RayKernel which, NativeThread& thread) {
   kernel::NativeKernel<kSubnormals, kSlowUnit, kFused, kNarrow> k(thread);
-  switch (which) {
-    case RayKernel::CastEye:
-      return kernel::cast_eye(k);
-    case RayKernel::CastSecondary:
-      return kernel::cast_secondary(k);
-    case RayKernel::CastSecondaryDirect:
-      return kernel::cast_secondary_direct(k);
-    case RayKernel::Shade:
-      return kernel::shade(k);
-  }
+  kernel::run_kernel(which, k);
 }
 
 template <Subnormals kSubnormals, SlowUnit kSlowUnit, bool kFused>

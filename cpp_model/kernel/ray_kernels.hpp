@@ -179,4 +179,19 @@ void shade(K& k) {
   k.frame_out();
 }
 
+/// The one of this name.
+template <typename K>
+void run_kernel(RayKernel which, K& k) {
+  switch (which) {
+    case RayKernel::CastEye:
+      return cast_eye(k);
+    case RayKernel::CastSecondary:
+      return cast_secondary(k);
+    case RayKernel::CastSecondaryDirect:
+      return cast_secondary_direct(k);
+    case RayKernel::Shade:
+      return shade(k);
+  }
+}
+
 }  // namespace raypool::kernel

@@ -100,6 +100,10 @@ refuses_sim "a machine in double precision" "engine model draws with the arithme
   --engine model --precision double
 refuses_sim "unstable pixels of a machine" "engine model draws with the arithmetic of its machine" \
   --engine model --unstable 3
+refuses_sim "unstable pixels in double precision" "--unstable moves last bits of single precision" --engine native \
+  --precision double --unstable 3
+refuses_sim "unstable pixels of Embree's hits" "--unstable moves last bits of single precision" --engine native \
+  --hits embree --unstable 3
 refuses_sim "double precision of 16 bits" "--precision double has neither the arithmetic nor the hits of a machine" \
   --engine native --precision double --set arithmetic.significand=16
 refuses_sim "hits of a chip from Embree" "engine model has the hits of its traverser" --engine model --hits embree

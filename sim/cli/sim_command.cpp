@@ -49,6 +49,11 @@ void check_precision(const SimOptions& options, Engine engine) {
         "engine {} draws with the arithmetic of its machine: use native, or leave --precision and --unstable out",
         options.engine));
   }
+  if (options.unstable != 0 && (options.precision == "double" || options.hits == "embree")) {
+    throw InputError(
+        "--unstable moves last bits of single precision, with hits of our own: leave it out, or --precision double and "
+        "--hits embree");
+  }
   if (options.precision.empty()) return;
   if (options.precision != "single" && options.precision != "double")
     throw InputError(fmt::format("--precision is '{}': use single or double", options.precision));

@@ -82,7 +82,7 @@ void picture_line(std::string& text, const Json& picture) {
   } else if (picture["differ"] == 0) {
     line(text, "picture   the same, {} pixels", picture["pixels"].get<uint64_t>());
   } else {
-    line(text, "picture   {} of {} pixels differ, by at most {} of 255, in the mean by {:.3g}",
+    line(text, "picture   {} of {} pixels differ, largest difference {} of 255, mean {:.3g}",
          picture["differ"].get<uint64_t>(), picture["pixels"].get<uint64_t>(), picture["largest_difference"].get<int>(),
          picture["mean_difference"].get<double>());
     if (!picture.contains("causes")) return;
