@@ -15,6 +15,18 @@
 
 namespace raypool {
 
+namespace {
+
+thread_local const FilesRead::Told* watching = nullptr;
+
+}  // namespace
+
+FilesRead::FilesRead(Told told) : told_(std::move(told)), before_(watching) { watching = &told_; }
+FilesRead::~FilesRead() { watching = before_; }
+void tell_missing(const std::string& path) {
+  if (watching != nullptr) (*watching)(path, nullptr);
+}
+
 std::string read_file(const std::string& path, const std::string& what) {
   const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
   int error = file < 0 ? errno : 0;
@@ -30,6 +42,7 @@ std::string read_file(const std::string& path, const std::string& what) {
     if (count < 0 && errno != EINTR) error = errno;
   }
   if (file >= 0) close(file);
+  if (watching != nullptr) (*watching)(path, error == 0 ? &text : nullptr);
   if (error != 0)
     throw InputError(fmt::format("{}: the {} cannot be read ({}); check the path", path, what, std::strerror(error)));
   return text;

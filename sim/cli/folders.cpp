@@ -17,12 +17,13 @@ namespace {
 fs::path program_folder() { return fs::read_symlink("/proc/self/exe").parent_path(); }
 
 /// As the XDG base directory specification has it: a path that is not absolute counts as none.
+/// Empty: neither that nor HOME is set.
 fs::path cache_folder() {
   const char* const cache = std::getenv("XDG_CACHE_HOME");
-  if (cache != nullptr && *cache == '/') return cache;
+  if (cache != nullptr && *cache == '/') return fs::path(cache) / "raypool";
   const char* const home = std::getenv("HOME");
-  if (home != nullptr && *home == '/') return fs::path(home) / ".cache";
-  throw InputError("there is no place for Verilated units: set XDG_CACHE_HOME to a folder of your own");
+  if (home != nullptr && *home == '/') return fs::path(home) / ".cache/raypool";
+  return {};
 }
 
 }  // namespace
@@ -31,7 +32,16 @@ fs::path units_folder() {
   if (!installed()) return program_folder() / "units";
   // Units of another commit are made from other Verilog.
   const std::string version = *kCommit == '\0' ? std::string(kVersion) : std::string(kVersion) + "-" + kCommit;
-  return cache_folder() / "raypool" / version / "units";
+  const fs::path cache = cache_folder();
+  if (cache.empty())
+    throw InputError("there is no place for Verilated units: set XDG_CACHE_HOME to a folder of your own");
+  return cache / version / "units";
+}
+
+fs::path scenes_folder() {
+  if (!installed()) return program_folder() / "scenes";
+  const fs::path cache = cache_folder();
+  return cache.empty() ? cache : cache / "scenes";
 }
 
 fs::path results_folder() { return installed() ? fs::path("raypool-out") : program_folder() / "out"; }

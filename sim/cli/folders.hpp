@@ -11,6 +11,10 @@ namespace raypool {
 /// version. Throws InputError when there is neither XDG_CACHE_HOME nor HOME.
 std::filesystem::path units_folder();
 
+/// What is made of scenes once (scene/scene_cache.hpp): beside the program in a build folder; of an installed program
+/// in the user's cache. Empty when there is neither XDG_CACHE_HOME nor HOME.
+std::filesystem::path scenes_folder();
+
 /// Results that no option sends elsewhere: out/ beside the program in a build folder; of an installed program
 /// raypool-out/ in the working directory.
 std::filesystem::path results_folder();

@@ -13,9 +13,11 @@
 #include "chip/chip.hpp"
 #include "cli/about.hpp"
 #include "cli/exit_code.hpp"
+#include "cli/folders.hpp"
 #include "cli/inspecting_run.hpp"
 #include "files/unfinished.hpp"
 #include "lockstep/lockstep_unit.hpp"
+#include "scene/scene_cache.hpp"
 
 namespace raypool {
 namespace {
@@ -119,6 +121,7 @@ int run_and_report(int argc, char** argv, AddCommands add) {
 
 int run_program(int argc, char** argv, AddCommands add) {
   handle_stop_signals();
+  if (const std::string folder = scenes_folder().string(); !folder.empty()) SceneCache::use(SceneCache(folder));
   tell_unfinished([](const std::string& what) { std::fprintf(stderr, "raypool: %s\n", what.c_str()); });
   const int code = close_output(run_and_report(argc, argv, add));
   if (const int signal = stop_signal()) end_by(signal);

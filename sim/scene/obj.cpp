@@ -15,6 +15,7 @@
 #include <string_view>
 
 #include "bits.hpp"
+#include "files/input_file.hpp"
 #include "files/output_files.hpp"
 #include "scene/far_places.hpp"
 #include "scene/losses.hpp"
@@ -140,6 +141,7 @@ class ObjReader {
       return fs::is_regular_file(path, none);
     };
     if (is_file(folder / name)) return (folder / name).string();
+    tell_missing((folder / name).string());
     std::replace(name.begin(), name.end(), '\\', '/');
     const fs::path own = folder / name, beside = folder / fs::path(name).filename();
     for (const fs::path& path : {own, beside}) {

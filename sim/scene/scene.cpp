@@ -10,6 +10,7 @@
 #include <filesystem>
 
 #include "scene/far_places.hpp"
+#include "scene/scene_cache.hpp"
 #include "scene/scene_file.hpp"
 
 namespace raypool {
@@ -175,7 +176,9 @@ Scene load_scene(const std::string& name_or_path, const SceneOptions& options) {
     throw InputError(fmt::format("{}: --camera is for glTF files; leave it out", name_or_path));
   SceneFile file;
   if (!built_in) {
-    file = load_file(name_or_path, options.camera);
+    const auto read = [&] { return load_file(name_or_path, options.camera); };
+    const std::optional<SceneCache>& cache = SceneCache::of_program();
+    file = cache ? cache->file(name_or_path, options.camera, read) : read();
     if (const float size = file.scene.bounds().diagonal(); size > 0 && size < kLeastDiagonal) {
       file.scene.warnings.push_back(fmt::format(
           "{}: all of it is {:.2g} across, too small for single precision: its shading is wrong; scale the file up",

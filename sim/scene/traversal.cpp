@@ -9,6 +9,7 @@
 #include "bits.hpp"
 #include "machine/traverser/ray_finish.hpp"
 #include "scene/narrow_boxes.hpp"
+#include "scene/scene_cache.hpp"
 #include "scene/simd4.hpp"
 
 namespace raypool {
@@ -151,7 +152,15 @@ int tree_depth(const Bvh& bvh) {
 
 }  // namespace
 
-Traversal::Traversal(const Scene& scene) { set_bvh(build_bvh(scene)); }
+Traversal::Traversal(const Scene& scene) {
+  const auto make = [&] {
+    SceneTrees trees{build_bvh(scene), {}};
+    trees.wide = widen(trees.bvh);
+    return trees;
+  };
+  const std::optional<SceneCache>& cache = SceneCache::of_program();
+  set_trees(cache ? cache->trees(scene, make) : make());
+}
 
 void Traversal::compress_nodes(uint32_t box_bits) {
   compressed_.clear();
@@ -174,10 +183,16 @@ void Traversal::take_hits_of(const ChipConfiguration& chip) {
 }
 
 void Traversal::set_bvh(Bvh bvh) {
-  if (tree_depth(bvh) > kMaxDepth)
+  SceneTrees trees{std::move(bvh), {}};
+  trees.wide = widen(trees.bvh);
+  set_trees(std::move(trees));
+}
+
+void Traversal::set_trees(SceneTrees trees) {
+  if (tree_depth(trees.bvh) > kMaxDepth)
     throw std::runtime_error("the bounding volume hierarchy is deeper than the traversal's stack");
-  bvh_ = std::move(bvh);
-  wide_ = widen(bvh_);
+  bvh_ = std::move(trees.bvh);
+  wide_ = std::move(trees.wide);
   compressed_.clear();
   box_bits_ = 0;
 }

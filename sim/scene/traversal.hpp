@@ -91,6 +91,7 @@ class Traversal {
   void set_compressed_nodes(std::vector<CompressedNode> nodes);
 
  private:
+  void set_trees(SceneTrees trees);
   template <bool kAny>
   bool walk(const RayQuery& query, const PreparedRay& ray, Candidate& best, TraversalCounts* counts,
             VisitList* visits) const;

@@ -38,6 +38,12 @@ class WideOrigins {
     const uint32_t end = number + 1 < begins_.size() ? begins_[number + 1] : size32(places_);
     for (uint32_t i = begins_[number]; i < end; ++i) told(places_[i]);
   }
+  /// All that it consists of, to be kept or got back.
+  template <typename Member>
+  void each_member(const Member& member) {
+    member(begins_);
+    member(places_);
+  }
 
  private:
   std::vector<uint32_t> begins_, places_;
@@ -47,6 +53,12 @@ struct WideBvh {
   std::vector<WideBvhNode> nodes;     ///< node 0 is the root; empty when no triangle has an area
   std::vector<TriangleBlock> blocks;  ///< each may hold the triangles of several leaves; `first` is not set
   WideOrigins node_origins, block_origins;
+};
+
+/// A scene's two trees: the chip's, and the one for speed made of it.
+struct SceneTrees {
+  Bvh bvh;
+  WideBvh wide;
 };
 
 /// The triangles of `bvh` under some of its boxes.

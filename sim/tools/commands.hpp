@@ -66,6 +66,7 @@ struct SceneCommandOptions {
   double detail = 1;      ///< of a built-in scene, 0.01 .. 16
   std::string write_obj;  ///< path, empty: none
   std::string write_bvh;  ///< path of a TreeFile (scene/tree_file.hpp), empty: none
+  std::string cache;      ///< "show" or "clear" what is kept of scenes, and nothing else; empty: neither
 };
 int scene_command(const SceneCommandOptions& options);
 int hits_command(const SceneCommandOptions& options);

@@ -169,6 +169,11 @@ void MachineCommands::add_scene_command() {
   scene_app->add_option(
       "--write-bvh", scene_.write_bvh,
       "write its tree as the traverser's memory holds it, a binary file that docs/scenes.md describes");
+  scene_app
+      ->add_option("--cache", scene_.cache,
+                   "show what is kept of scenes, so that a later run need not read and sort their triangles again, or "
+                   "clear it; nothing else is done then")
+      ->check(CLI::IsMember({"show", "clear"}));
   scene_app->callback([this] { code_ = scene_command(scene_); });
   hits_app->callback([this] { code_ = hits_command(scene_); });
 }

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <optional>
 #include <vector>
 
 #include "cli/image_size.hpp"
@@ -10,6 +11,7 @@
 #include "scene/far_places.hpp"
 #include "scene/hits_check.hpp"
 #include "scene/scene.hpp"
+#include "scene/scene_cache.hpp"
 #include "scene/tree_file.hpp"
 #include "tools/commands.hpp"
 
@@ -49,9 +51,30 @@ std::string write_bvh(const Scene& scene, const std::string& path, OutputFiles& 
   return text + fmt::format(", {:.1f} a triangle", share);
 }
 
+double megabytes(uint64_t bytes) { return static_cast<double>(bytes) / 1e6; }
+
+int cache_command(bool clear) {
+  const std::optional<SceneCache>& cache = SceneCache::of_program();
+  if (!cache) throw InputError("nothing is kept of scenes: set XDG_CACHE_HOME to a folder of your own");
+  if (clear) {
+    fmt::print("{} entries removed from {}\n", cache->clear(), cache->folder());
+    return 0;
+  }
+  uint64_t bytes = 0;
+  const std::vector<SceneCache::Entry> entries = cache->entries();
+  for (const SceneCache::Entry& entry : entries) {
+    fmt::print("{:>9.1f} MB  {}\n", megabytes(entry.bytes), entry.what);
+    bytes += entry.bytes;
+  }
+  fmt::print("{:>9.1f} MB  of {:.0f} MB at most, {} entries, last used first, in {}\n", megabytes(bytes),
+             megabytes(cache->limit()), entries.size(), cache->folder());
+  return 0;
+}
+
 }  // namespace
 
 int scene_command(const SceneCommandOptions& options) {
+  if (!options.cache.empty()) return cache_command(options.cache == "clear");
   const Scene scene = load(options);
   if (!options.write_bvh.empty() && options.write_bvh == options.write_obj)
     throw InputError("--write-obj and --write-bvh name the same file: give them two");
