@@ -118,16 +118,17 @@ def utilisations(report):
     return alus, ports
 
 
-def compare_pictures(run, reference, folder):
-    """Of `raypool compare`."""
-    done = subprocess.run([RAYPOOL, "compare", folder / reference.level.name, folder / run.level.name, "--json"],
-                          text=True, stdout=subprocess.PIPE, check=False)
+def compare_pictures(name, folder, reference):
+    """(picture, criterion) of `raypool compare`: that of `folder`, which is called `name`, against the reference's."""
+    done = subprocess.run([RAYPOOL, "compare", reference, folder, "--json"], text=True, stdout=subprocess.PIPE,
+                          check=False)  # fmt: skip
     if done.returncode != 0:
         raise Failed(done.returncode)
-    picture = json.loads(done.stdout)["picture"]
+    comparison = json.loads(done.stdout)
+    picture = comparison["picture"]
     if not picture.pop("compared"):
-        raise FidelityError(f"{run.level.name}: the picture cannot be compared: {picture['reason']}", DIFFERENCE)
-    return picture
+        raise FidelityError(f"{name}: the picture cannot be compared: {picture['reason']}", DIFFERENCE)
+    return picture, comparison["criterion"]
 
 
 # Drawing
@@ -428,7 +429,8 @@ def measure(arguments, options, out, folder):
     slowest = max(runs, key=lambda run: statistics.median(run.walls))
     base = next((run for run in runs if run.level.name == HARDWARE), slowest)
     for run in runs[:-1]:
-        run.picture = compare_pictures(run, reference, folder)
+        name = run.level.name
+        run.picture, _ = compare_pictures(name, folder / name, folder / reference.level.name)
     check_exact(runs, reference, out, folder)
     found = summary(runs, reference, base)
     with open(folder / "fidelity.json", "w", encoding="utf-8") as file:

@@ -3,9 +3,9 @@
 
     studies/pareto.py [--machines "24 20-flush-newton1 24-fit ..."] [--no-area] [--out FOLDER] [options of raypool sim]
 
-Prints a table and leaves pareto.json (docs/speed-and-accuracy.md), pareto.svg, and in machines/ each machine's picture
-and the configuration of those that were fitted, in FOLDER. `make pareto` calls it. RAYPOOL names the program, default
-raypool in the build folder (BUILD).
+Each picture is held against the frame in double precision. Prints a table and leaves pareto.json
+(docs/speed-and-accuracy.md), pareto.svg, and in machines/ each machine's picture and the configuration of those that
+were fitted, in FOLDER. `make pareto` calls it. RAYPOOL names the program, default raypool in the build folder (BUILD).
 """
 import argparse
 import contextlib
@@ -28,17 +28,17 @@ from plots.style import colour
 import synth.fit
 from synth.errors import SynthError
 
-# dB of two pictures between which nobody sees a difference: kInvisible of studies/numerics/significands.hpp.
-INVISIBLE = 48
 # What a designer chooses among. Of whether subnormal numbers may be left out altogether a fit decides.
 MACHINES = (
     "24 24-newton2 24-flush 24-flush-newton1 24-flush-newton0 20 20-flush-newton1 18-flush-newton1 16 "
     "16-flush-newton1 16-flush-newton0 14-flush-newton1 13 13-flush-newton1 12-flush-newton1 11 11-flush-newton0 "
     "24-fit smallest-fit"
 ).split()
-# The fit of the smallest machine without a visible difference, whichever that turns out to be.
+# The fit of the smallest machine whose picture passes, whichever that turns out to be.
 SMALLEST_FIT = "smallest-fit"
 SUBNORMALS, SLOW_UNIT = "subnormals", "slow_unit"
+# What all pictures are held against, and its folder.
+REFERENCE = "double precision"
 
 
 class Machine(typing.NamedTuple):
@@ -55,16 +55,17 @@ class Row:
     def __init__(self, machine):
         self.machine = machine
         self.report = None
-        self.picture = None  # against that of the full machine
+        self.picture = self.criterion = None  # against the reference; what makes it pass, as raypool compare says it
         self.area = None
 
     @property
-    def decibels(self):
-        return math.inf if self.picture["psnr"] is None else self.picture["psnr"]
+    def off(self):
+        """Share of the pixels."""
+        return self.picture["off_by_more"]
 
     @property
-    def invisible(self):
-        return self.decibels >= INVISIBLE
+    def passes(self):
+        return self.off <= self.criterion["most_off"]
 
 
 # Machines
@@ -127,7 +128,25 @@ def call(*command):
         raise Failed(code if code > 0 else 128 - code)
 
 
-def draw(row, options, folder, reference):
+def run_sim(options, out):
+    code = subprocess.run([RAYPOOL, "sim", *options, "--quiet", "--out", out], stdout=subprocess.DEVNULL,
+                          check=False).returncode  # fmt: skip
+    if code != 0:
+        raise Failed(code if code > 0 else 128 - code)
+
+
+def without(options, *names):
+    return [word for word in options if not word.startswith(tuple(f"--{name}=" for name in names))]
+
+
+def draw_reference(options, folder):
+    """It has neither arithmetic nor hits of a machine."""
+    say(f"pareto: {REFERENCE}: drawing")
+    run_sim([*without(options, "set", "traverser"), "--engine", "native", "--precision", "double"],
+            folder / "drawn" / REFERENCE)  # fmt: skip
+
+
+def draw(row, options, folder):
     """The frame by the machine's own code, so that what it must not meet, a subnormal number say, is noticed."""
     name, fields = row.machine.name, [f"--set={field}" for field in row.machine.fields]
     out = folder / "drawn" / name
@@ -136,22 +155,13 @@ def draw(row, options, folder, reference):
         config = folder / "machines" / f"{name}.json"
         call("fit", *options, *fields, "--quiet", "--out", config)
         # Its own name is that of a file that the user may take elsewhere.
-        options = [word for word in options if not word.startswith(("--config=", "--set=", "--traverser="))]
+        options = without(options, "config", "set", "traverser")
         fields = [f"--config={config}"]
     say(f"pareto: {name}: drawing")
-    code = subprocess.run([RAYPOOL, "sim", *options, *fields, "--engine", "functional", "--quiet", "--out", out],
-                          stdout=subprocess.DEVNULL, check=False).returncode  # fmt: skip
-    if code != 0:
-        raise Failed(code if code > 0 else 128 - code)
+    run_sim([*options, *fields, "--engine", "functional"], out)
     with open(out / "report.json", encoding="utf-8") as file:
         row.report = json.load(file)
-    done = subprocess.run([RAYPOOL, "compare", folder / "drawn" / reference, out, "--json"], text=True,
-                          stdout=subprocess.PIPE, check=False)  # fmt: skip
-    if done.returncode != 0:
-        raise Failed(done.returncode)
-    row.picture = json.loads(done.stdout)["picture"]
-    if not row.picture.pop("compared"):
-        raise FidelityError(f"{name}: the picture cannot be compared: {row.picture['reason']}")
+    row.picture, row.criterion = fidelity.compare_pictures(name, out, folder / "drawn" / REFERENCE)
     shutil.copy(out / "image.png", folder / "machines" / f"{name}.png")
 
 
@@ -161,14 +171,14 @@ def measure(row, jobs):
 
 
 def smallest(rows):
-    """Of those without a visible difference the one with the least logic, or None."""
-    return min((row for row in rows if row.invisible), key=lambda row: row.area["logic_kge"], default=None)
+    """Of those that pass the one with the least logic, or None."""
+    return min((row for row in rows if row.passes), key=lambda row: row.area["logic_kge"], default=None)
 
 
 def front(points):
-    """Of (area, error in dB, the higher the better) those that no other is better than in one and as good in both."""
+    """Of (area, share of pixels that are off) those that no other is better than in one and as good in both."""
     return [point for point in points
-            if not any(other[0] <= point[0] and other[1] >= point[1] and other[:2] != point[:2] for other in points)]
+            if not any(other[0] <= point[0] and other[1] <= point[1] and other[:2] != point[:2] for other in points)]
 
 
 # What it leaves
@@ -178,7 +188,7 @@ def summary(rows, arguments):
     report = rows[0].report
     # A fitted machine draws less than a whole one: each competes with its like.
     kinds = [[row for row in rows if row.machine.fitted == fitted] for fitted in (False, True)]
-    best = [{(row.area["logic_kge"], row.decibels) for row in kind} for kind in kinds] if arguments.area else []
+    best = [{(row.area["logic_kge"], row.off) for row in kind} for kind in kinds] if arguments.area else []
     best = [set(front(points)) for points in best]
     least = [smallest(kind) for kind in kinds] if arguments.area else [None, None]
     return {
@@ -186,8 +196,8 @@ def summary(rows, arguments):
         "command": sys.argv,
         **{name: report[name] for name in ("scene", "size", "depth", "units")},
         "config": pathlib.Path(arguments.config).stem,
-        "reference": rows[0].machine.name,
-        "invisible_db": INVISIBLE,
+        "reference": REFERENCE,
+        "criterion": rows[0].criterion,
         "smallest": least[0] and least[0].machine.name,
         "smallest_fitted": least[1] and least[1].machine.name,
         "machines": [{
@@ -195,19 +205,26 @@ def summary(rows, arguments):
             "configuration": row.report["configuration"],
             "fitted": row.machine.fitted,
             "picture": row.picture,
-            "visible": not row.invisible,
+            "passes": row.passes,
             "area": None if row.area is None else {key: row.area[key] for _, key, _ in synth.fit.FIGURES},
-            "pareto": bool(best) and (row.area["logic_kge"], row.decibels) in best[row.machine.fitted],
+            "pareto": bool(best) and (row.area["logic_kge"], row.off) in best[row.machine.fitted],
         } for row in rows],
     }  # fmt: skip
+
+
+def criterion_words(found):
+    """'at most 1% of the pixels off by 2 or more'"""
+    criterion = found["criterion"]
+    return f"at most {100 * criterion['most_off']:g}% of the pixels off by {criterion['off_by']} or more"
 
 
 def print_table(found):
     rows = found["machines"]
     with_area = rows[0]["area"] is not None
-    print(fidelity.title(found))
-    header = ["machine", *(["logic kGE", "less", "memory bits"] if with_area else []), "dB", "pixels differ",
-              "largest of 255", *(["Pareto"] if with_area else [])]  # fmt: skip
+    print(f"{fidelity.title(found)}, against {found['reference']}")
+    header = ["machine", *(["logic kGE", "less", "memory bits"] if with_area else []),
+              f"off by {found['criterion']['off_by']}+", "pixels differ", "largest of 255", "dB",
+              *(["Pareto"] if with_area else [])]  # fmt: skip
     lines = []
     for row in sorted(rows, key=lambda row: -row["area"]["logic_kge"] if with_area else 0):
         area, picture = row["area"], row["picture"]
@@ -215,15 +232,15 @@ def print_table(found):
         if with_area:
             less = 1 - area["logic_kge"] / rows[0]["area"]["logic_kge"]
             cells += [f"{area['logic_kge']:.1f}", f"{100 * less:.1f}%", str(area["memory_bits"])]
-        cells += ["equal" if picture["psnr"] is None else f"{picture['psnr']:.1f}", str(picture["differ"]),
-                  str(picture["largest_difference"])]  # fmt: skip
+        cells += [f"{100 * picture['off_by_more']:.3f}%", str(picture["differ"]), str(picture["largest_difference"]),
+                  "equal" if picture["psnr"] is None else f"{picture['psnr']:.1f}"]  # fmt: skip
         lines.append(cells + (["*" if row["pareto"] else ""] if with_area else []))
     show(header, lines)
     if with_area:
         kge = {row["machine"]: f"{row['machine']}, {row['area']['logic_kge']:.1f} kGE" for row in rows}
-        fitted = found["smallest_fitted"]
-        print(f"smallest without a visible difference from {found['reference']} ({INVISIBLE} dB): "
-              f"{kge[found['smallest']]}{'; fitted ' + kge[fitted] if fitted else ''}")
+        least, fitted = found["smallest"], found["smallest_fitted"]
+        print(f"smallest with {criterion_words(found)}: {kge[least] if least else 'none'}"
+              f"{'; fitted ' + kge[fitted] if fitted else ''}")
 
 
 # The plot
@@ -232,9 +249,7 @@ WIDTH, HEIGHT = 900, 560
 # The axes' box, as shares of the picture.
 LEFT, RIGHT, BOTTOM, TOP = 0.08, 0.98, 0.11, 0.88
 LETTER, LINE = 6.6, 14  # pixels of a letter and of a line of labels
-KEY_WIDTH, KEY_HEIGHT = 320, 84  # of the lines that explain, in the corner at the right and below
-# Rows of the axis of errors, in dB: that of equal pictures lies above all others, with room for names around it.
-STEP = 10
+KEY_WIDTH, KEY_HEIGHT = 380, 84  # of the lines that explain, in the corner at the right and below
 
 
 def boxes_overlap(one, other):
@@ -268,20 +283,28 @@ def place(points, taken, width, height):
     return placed
 
 
+def decades(share):
+    """Height of a share of the pixels in the plot: 0 for all of them, 2 for 1%; of none it is not known."""
+    return -math.log10(share)
+
+
 def plot(found, svg):
+    """The axis of errors is logarithmic, the best above; pictures with no pixel off lie above all others, with room for
+    names around them."""
     rows = found["machines"]
-    finite = [row["picture"]["psnr"] for row in rows if row["picture"]["psnr"] is not None]
-    worst = STEP * math.floor((min([INVISIBLE, *finite]) - 3) / STEP)
-    equal = STEP * (math.ceil(max([INVISIBLE, *finite]) / STEP) + 1)
-    best = equal + STEP
+    limit = decades(found["criterion"]["most_off"])
+    known = [limit, *(decades(row["picture"]["off_by_more"]) for row in rows if row["picture"]["off_by_more"])]
+    worst = math.floor(min(known) - 0.3)
+    none = math.ceil(max(known)) + 1
+    best = none + 1
     areas = [row["area"]["logic_kge"] for row in rows]
     span = max(max(areas) - min(areas), 1)
     low, high = min(areas) - 0.08 * span, max(areas) + 0.08 * span
     width, height = WIDTH * (RIGHT - LEFT), HEIGHT * (TOP - BOTTOM)
     points = []
     for row in sorted(rows, key=lambda row: not row["pareto"]):  # those on the front get the best places
-        error = equal if row["picture"]["psnr"] is None else row["picture"]["psnr"]
-        points.append((row, row["area"]["logic_kge"], error))
+        off = row["picture"]["off_by_more"]
+        points.append((row, row["area"]["logic_kge"], decades(off) if off else none))
     at = [(width * (x - low) / (high - low), height * (y - worst) / (best - worst), row["machine"])
           for row, x, y in points]  # fmt: skip
     drawn = Plot(HEIGHT, WIDTH)
@@ -290,7 +313,7 @@ def plot(found, svg):
     axes.set_position((LEFT, BOTTOM, RIGHT - LEFT, TOP - BOTTOM))
     axes.set_xlim(low, high)
     axes.set_ylim(worst, best)
-    line = height * (INVISIBLE - worst) / (best - worst)
+    line = height * (limit - worst) / (best - worst)
     steps = sorted((x, y) for (row, _, _), (x, y, _) in zip(points, at) if row["pareto"] and not row["fitted"])
     taken = [(width - KEY_WIDTH, 0, width, KEY_HEIGHT), (0, line, width, line)]
     for (x, y), (next_x, next_y) in zip(steps, steps[1:]):  # the front: to the right, then up
@@ -303,7 +326,7 @@ def plot(found, svg):
         if math.dist((x, y), near) > 14:
             axes.plot([x / width, near[0] / width], [y / height, near[1] / height], transform=axes.transAxes,
                       color=colour("registers"), linewidth=0.5)  # fmt: skip
-    axes.axhline(INVISIBLE, color=colour("flt"), linestyle="--", linewidth=1, label="above: nobody sees a difference")
+    axes.axhline(limit, color=colour("flt"), linestyle="--", linewidth=1, label=f"above: {criterion_words(found)}")
 
     def some(words, name, mark, wanted, **style):
         axes.plot(*zip(*[(x, y) for row, x, y in points if wanted(row)] or [(math.nan, math.nan)]), mark, label=words,
@@ -315,14 +338,14 @@ def plot(found, svg):
          markerfacecolor=colour("paper"))  # fmt: skip
     some("Pareto-optimal", "accent", "o", lambda row: row["pareto"] and not row["fitted"])
     some("fitted to the frame", "mem", "s", lambda row: row["fitted"])
-    ticks = range(worst, equal + 1, STEP)
-    axes.set_yticks(ticks, [*map(str, ticks[:-1]), "equal"])
+    ticks = range(max(worst, 0), none + 1)
+    axes.set_yticks(ticks, [*(f"{100 * 10**-tick:g}%" for tick in ticks[:-1]), "none"])
     axes.set_xlabel("logic, kGE")
-    axes.set_ylabel("PSNR, dB")
+    axes.set_ylabel(f"pixels off by {found['criterion']['off_by']} or more")
     legend(axes, loc="lower right")
     drawn.title(fidelity.title(found),
-                f"logic of the unit against the picture's difference from that of {found['reference']}")
-    drawn.save(svg, "Logic of the unit against the difference of its picture")
+                f"logic of the unit against pixels that differ from {found['reference']}")
+    drawn.save(svg, "Logic of the unit against the pixels of its picture that are off")
 
 
 # The command
@@ -363,24 +386,19 @@ def publish(out, folder, names):
 def compare_machines(arguments, options, out, folder):
     """In `folder`, a new one in `out`."""
     (folder / "machines").mkdir()
-    rows = [Row(full())]
-    draw(rows[0], options, folder, rows[0].machine.name)
+    draw_reference(options, folder)
     wanted = chosen_machines(arguments.machines)
-    if not arguments.area:
-        wanted = [name for name in wanted if name != SMALLEST_FIT]
-    for name in wanted:
-        if name != SMALLEST_FIT:
-            rows.append(Row(machine_of(name)))
-            draw(rows[-1], options, folder, rows[0].machine.name)
+    rows = [Row(machine) for machine in (full(), *(machine_of(name) for name in wanted if name != SMALLEST_FIT))]
+    for row in rows:
+        draw(row, options, folder)
     if arguments.area:
         for row in rows:
             measure(row, arguments.jobs)
-        if SMALLEST_FIT in wanted:
-            name = smallest([row for row in rows if not row.machine.fitted]).machine.name + "-fit"
-            if name not in (row.machine.name for row in rows):
-                rows.append(Row(machine_of(name)))
-                draw(rows[-1], options, folder, rows[0].machine.name)
-                measure(rows[-1], arguments.jobs)
+        best = smallest([row for row in rows if not row.machine.fitted])
+        if SMALLEST_FIT in wanted and best and f"{best.machine.name}-fit" not in (row.machine.name for row in rows):
+            rows.append(Row(machine_of(f"{best.machine.name}-fit")))
+            draw(rows[-1], options, folder)
+            measure(rows[-1], arguments.jobs)
     found = summary(rows, arguments)
     with open(folder / "pareto.json", "w", encoding="utf-8") as file:
         json.dump(found, file, indent=2)

@@ -66,7 +66,7 @@ numerics: setup-sim setup-numerics $(GATES_SETUP) program ## errors of each arit
 	@$(PYTHON) studies/numerics_plots.py "$${OUT:-$(BUILD)/out/numerics}"
 
 #: variables of make significands: SCENE, CONFIG, SET, DEPTH, and from VIEW to DETAIL
-significands: setup-sim program ## what floats of 11 to 24 bits do to SCENE's picture, and how few bits nobody sees
+significands: setup-sim program ## what floats of 11 to 24 bits do to SCENE's picture, and how few bits are enough
 	@$(RAYPOOL) significands $(call options,SCENE CONFIG SET DEPTH $(LOOK)) $(ARGS)
 
 #: variables of make boxes, triangles: SCENE, SIZE, DEPTH, and from VIEW to DETAIL

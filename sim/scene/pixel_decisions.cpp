@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <utility>
+
 #include "isa/input_error.hpp"
 
 namespace raypool {
@@ -43,6 +46,39 @@ PixelDecisions PixelDecisions::from_bytes(const std::string& bytes, const std::s
   for (size_t i = 0; i < decisions.pixels_.size(); ++i)
     decisions.pixels_[i] = {number_at(bytes, first + 16 * i), number_at(bytes, first + 16 * i + 8)};
   return decisions;
+}
+
+TraceRay told(TraceRay trace, PixelDecisions& decisions) {
+  return [trace = std::move(trace), &decisions](const Ray& ray, Intersection& intersection) {
+    const bool goes_on = trace(ray, intersection);
+    const uint32_t pixel = ray[word::kPixel];
+    if ((ray[word::kFlags] & kShadowFlag) != 0) {
+      decisions.shadow(pixel, goes_on);
+    } else if (goes_on) {
+      decisions.hit(pixel, intersection[word::kTriangle]);
+    } else {
+      decisions.miss(pixel);
+    }
+    return goes_on;
+  };
+}
+
+std::vector<std::optional<PixelCause>> causes_of(const DecidedPicture& a, const DecidedPicture& b) {
+  const std::vector<uint8_t>&first = a.picture.rgb, &second = b.picture.rgb;
+  std::vector<std::optional<PixelCause>> causes(first.size() / 3);
+  for (size_t pixel = 0; pixel < causes.size(); ++pixel) {
+    if (!std::equal(&first[3 * pixel], &first[3 * pixel] + 3, &second[3 * pixel]))
+      causes[pixel] = a.decisions.cause(b.decisions, pixel);
+  }
+  return causes;
+}
+
+std::array<uint64_t, kPixelCauses> count_causes(const std::vector<std::optional<PixelCause>>& causes) {
+  std::array<uint64_t, kPixelCauses> count{};
+  for (const std::optional<PixelCause>& cause : causes) {
+    if (cause) ++count[static_cast<size_t>(*cause)];
+  }
+  return count;
 }
 
 }  // namespace raypool

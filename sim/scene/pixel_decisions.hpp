@@ -2,9 +2,15 @@
 // hit something else, and where only a shadow or the colour differs.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "kernel/kernels.hpp"
+#include "scene/picture_file.hpp"
 
 namespace raypool {
 
@@ -52,5 +58,20 @@ class PixelDecisions {
   uint32_t width_ = 0, height_ = 0;
   std::vector<Pixel> pixels_;
 };
+
+/// How engine `native` asks what a ray meets: NativeOptions::trace.
+using TraceRay = std::function<bool(const Ray&, Intersection&)>;
+/// The same answers as `trace`, of which `decisions` are told.
+TraceRay told(TraceRay trace, PixelDecisions& decisions);
+
+/// A picture with what its rays have come to.
+struct DecidedPicture {
+  Picture picture;
+  PixelDecisions decisions;
+};
+/// Of each pixel: why it differs, or nothing where it does not. All of both must be of the same size.
+std::vector<std::optional<PixelCause>> causes_of(const DecidedPicture& a, const DecidedPicture& b);
+/// Pixels by cause.
+std::array<uint64_t, kPixelCauses> count_causes(const std::vector<std::optional<PixelCause>>& causes);
 
 }  // namespace raypool

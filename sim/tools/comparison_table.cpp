@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "files/json_text.hpp"
+#include "scene/picture_file.hpp"
 #include "tools/report_comparison.hpp"
 
 namespace raypool {
@@ -82,8 +83,11 @@ void picture_line(std::string& text, const Json& picture) {
   } else if (picture["differ"] == 0) {
     line(text, "picture   the same, {} pixels", picture["pixels"].get<uint64_t>());
   } else {
-    line(text, "picture   {} of {} pixels differ, largest difference {} of 255, mean {:.3g}",
-         picture["differ"].get<uint64_t>(), picture["pixels"].get<uint64_t>(), picture["largest_difference"].get<int>(),
+    line(text,
+         "picture   {} of {} pixels differ, {:.3f}% of the picture by {} or more; largest difference {} of 255, "
+         "mean {:.3g}",
+         picture["differ"].get<uint64_t>(), picture["pixels"].get<uint64_t>(),
+         100 * picture["off_by_more"].get<double>(), kOffByMore, picture["largest_difference"].get<int>(),
          picture["mean_difference"].get<double>());
     if (!picture.contains("causes")) return;
     const auto pixels = [&](const char* cause) { return picture["causes"][cause].get<uint64_t>(); };

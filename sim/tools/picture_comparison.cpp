@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "files/input_file.hpp"
@@ -55,9 +55,8 @@ std::vector<uint8_t> map_of(const Picture& first, const std::vector<std::optiona
 
 /// Adds to `json` how many pixels differ for which cause, if both frames have left what that takes. Throws InputError
 /// when `map` is wanted and they have not.
-void add_causes(Json& json, const Report& a, const Report& b, const Picture& first, const Picture& second,
-                const std::string& map) {
-  const std::optional<PixelDecisions> of_a = decisions_of(a), of_b = decisions_of(b);
+void add_causes(Json& json, const Report& a, const Report& b, Picture first, Picture second, const std::string& map) {
+  std::optional<PixelDecisions> of_a = decisions_of(a), of_b = decisions_of(b);
   if (!of_a || !of_b) {
     if (map.empty()) return;
     throw InputError(fmt::format(
@@ -71,16 +70,12 @@ void add_causes(Json& json, const Report& a, const Report& b, const Picture& fir
   if (!fits(*of_a) || !fits(*of_b))
     throw InputError(
         fmt::format("{}: not of the picture beside it: draw it again", beside(fits(*of_a) ? b : a, "decisions.bin")));
-  std::array<uint64_t, kPixelCauses> count{};
-  std::vector<std::optional<PixelCause>> causes(first.rgb.size() / 3);
-  for (size_t pixel = 0; pixel < causes.size(); ++pixel) {
-    if (std::equal(&first.rgb[3 * pixel], &first.rgb[3 * pixel] + 3, &second.rgb[3 * pixel])) continue;
-    causes[pixel] = of_a->cause(*of_b, pixel);
-    ++count[static_cast<size_t>(*causes[pixel])];
-  }
+  const DecidedPicture one = {std::move(first), std::move(*of_a)}, other = {std::move(second), std::move(*of_b)};
+  const std::vector<std::optional<PixelCause>> causes = causes_of(one, other);
+  const std::array<uint64_t, kPixelCauses> count = count_causes(causes);
   for (size_t cause = 0; cause < kPixelCauses; ++cause) json["causes"][kPixelCauseNames[cause]] = count[cause];
   if (map.empty()) return;
-  const std::vector<uint8_t> png = map_of(first, causes);
+  const std::vector<uint8_t> png = map_of(one.picture, causes);
   write_file(map, std::string(png.begin(), png.end()));
 }
 
@@ -92,17 +87,18 @@ Json compare_pictures(const Report& a, const Report& b, const std::string& map) 
     std::error_code none;
     if (!fs::exists(path(*report), none)) return not_compared(fmt::format("there is no {}", path(*report)), map);
   }
-  const Picture first = read_png(path(a)), second = read_png(path(b));
+  Picture first = read_png(path(a)), second = read_png(path(b));
   if (first.width != second.width || first.height != second.height)
     return not_compared("the pictures have different sizes", map);
   const PictureDifference difference = difference_of(first, second);
   Json json = {{"compared", true},
                {"pixels", difference.pixels},
                {"differ", difference.differ},
+               {"off_by_more", difference.share_off()},
                {"largest_difference", difference.largest},
                {"mean_difference", difference.mean},
                {"psnr", std::isfinite(difference.psnr) ? Json(difference.psnr) : Json()}};
-  add_causes(json, a, b, first, second, map);
+  add_causes(json, a, b, std::move(first), std::move(second), map);
   return json;
 }
 

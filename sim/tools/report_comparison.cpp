@@ -14,6 +14,7 @@
 #include "config/unused_fields.hpp"
 #include "files/input_file.hpp"
 #include "files/json_text.hpp"
+#include "scene/picture_file.hpp"
 #include "tools/picture_comparison.hpp"
 
 namespace raypool {
@@ -234,6 +235,7 @@ Json compare_reports(const Report& a, const Report& b, const std::vector<std::st
           {"set_up", set_up(a, b)},
           {"results", results(a, b)},
           {"picture", compare_pictures(a, b, map)},
+          {"criterion", {{"off_by", kOffByMore}, {"most_off", kMostOff}}},
           {"area", {{"a", area(a, known)}, {"b", area(b, known)}}}};
 }
 

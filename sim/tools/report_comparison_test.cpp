@@ -167,11 +167,18 @@ TEST(ReportComparison, CountsThePixelsThatDiffer) {
   const Json picture = compare_reports(a, b, {})["picture"];
   EXPECT_EQ(picture["pixels"], 2);
   EXPECT_EQ(picture["differ"], 1);
+  EXPECT_EQ(picture["off_by_more"], 0.5);
   EXPECT_EQ(picture["largest_difference"], 255);
   EXPECT_NEAR(picture["mean_difference"].get<double>(), 255.0 / 6, 1e-9);
   EXPECT_NEAR(picture["psnr"].get<double>(), 10 * std::log10(6.0), 1e-9);
   EXPECT_EQ(compare_reports(a, a, {})["picture"]["differ"], 0);
   EXPECT_TRUE(compare_reports(a, a, {})["picture"]["psnr"].is_null());
+  EXPECT_EQ(compare_reports(a, a, {})["picture"]["off_by_more"], 0.0);
+  EXPECT_NE(
+      comparison_table(compare_reports(a, b, {}))
+          .find("picture   1 of 2 pixels differ, 50.000% of the picture by 2 or more; largest difference 255 of "),
+      std::string::npos);
+  EXPECT_EQ(compare_reports(a, b, {})["criterion"], (Json{{"off_by", 2}, {"most_off", 0.01}}));
 }
 
 /// Folders of two pictures of two pixels, of which the second one differs.

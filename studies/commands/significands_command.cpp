@@ -1,4 +1,4 @@
-// `raypool significands`: what floats of fewer bits do to a scene's picture.
+// `raypool significands`: what floats of fewer bits do to a scene's picture, held against double precision.
 #include <fmt/format.h>
 
 #include "cli/exit_code.hpp"
@@ -14,18 +14,17 @@ namespace raypool {
 int significands_command(const SignificandsOptions& options) {
   const Configuration configuration = load_configuration(options.config, options.set);
   const ImageSize size = parse_image_size(options.size);
+  NativeOptions frame;
+  frame.width = static_cast<uint32_t>(size.width);
+  frame.height = static_cast<uint32_t>(size.height);
+  frame.depth = static_cast<uint32_t>(options.depth);
+  const Scene scene = load_scene_and_warn(options.scene, options.detail, options.view, options.look);
   Progress progress(options.quiet);
-  numerics::TradeScene scene(options.scene,
-                             load_scene_and_warn(options.scene, options.detail, options.view, options.look), size.width,
-                             size.height, options.depth);
-  scene.draw_reference([&](double share) {
-    if (progress.due()) progress.show(fmt::format("  the reference picture, {:.0f}%", 100 * share));
-  });
-  const auto rows = numerics::try_significands(scene, arith::mode_of(configuration), [&](size_t done) {
+  const auto rows = numerics::try_significands(scene, configuration, frame, [&](size_t done) {
     if (progress.due()) progress.show(fmt::format("  {} significands drawn", done));
   });
-  fmt::print("{}, {}x{}, depth {}, arithmetic of {}\n{}", options.scene, size.width, size.height, options.depth,
-             configuration.name, numerics::significand_table(rows));
+  fmt::print("{}, {}x{}, depth {}, {} against double precision\n{}", options.scene, size.width, size.height,
+             options.depth, configuration.name, numerics::significand_table(rows));
   return kDone;
 }
 

@@ -64,7 +64,7 @@ void StudyCommands::add_numerics_command() {
 
 void StudyCommands::add_significands_command() {
   CLI::App* significands_app =
-      add("significands", "what floats of fewer bits do to a scene's picture, and how few bits nobody sees");
+      add("significands", "what floats of fewer bits do to a scene's picture, and how few bits are enough");
   add_scene(*significands_app, significands_.scene, significands_.size, significands_.view, significands_.look,
             significands_.detail);
   significands_app->add_option("--depth", significands_.depth, "of the picture's rays")

@@ -1,33 +1,36 @@
-// What floats of fewer bits do to a scene's picture.
+// What floats of fewer bits do to a scene's picture: its difference from the frame in double precision.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "numerics/trade.hpp"
-#include "scene/image.hpp"
+#include "config/configuration.hpp"
+#include "scene/native_renderer.hpp"
+#include "scene/picture_file.hpp"
+#include "scene/pixel_decisions.hpp"
+#include "scene/scene.hpp"
 
 namespace raypool::numerics {
 
-/// dB of two pictures of 8 bits between which nobody sees a difference: by a root of mean squares of one step of 255.
-inline constexpr double kInvisible = 48;
-
 struct SignificandRow {
   uint32_t significand = arith::kFullSignificand;
-  Quality quality;             ///< against the double-precision reference
-  ImageDifference difference;  ///< of the picture from that of the full significand
+  PictureDifference difference;                 ///< from the frame in double precision
+  std::array<uint64_t, kPixelCauses> causes{};  ///< pixels that differ, as `raypool compare` counts them
 };
 
-/// A row for each significand that there is, the full one first; all else of the arithmetic is the mode's. `scene` must
-/// have its reference. `progress` gets the number of rows that are done.
-std::vector<SignificandRow> try_significands(const TradeScene& scene, arith::Mode mode,
+/// A row for each significand that there is, the full one first; all else of arithmetic and hits is the
+/// configuration's. `frame` says size and depth. `progress` gets the number of rows that are done. Throws InputError as
+/// render_native() does.
+std::vector<SignificandRow> try_significands(const Scene& scene, const Configuration& configuration,
+                                             NativeOptions frame,
                                              const std::function<void(size_t)>& progress = nullptr);
 
-/// The smallest one that, as all above it, draws what the full one does within kInvisible.
-uint32_t smallest_invisible(const std::vector<SignificandRow>& rows);
+/// The smallest one whose picture passes, as do those of all above it.
+std::optional<uint32_t> smallest_passing(const std::vector<SignificandRow>& rows);
 
 std::string significand_table(const std::vector<SignificandRow>& rows);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "scene/hits_check.hpp"
+#include "scene/picture_file.hpp"
 #include "scene/threads.hpp"
 
 namespace raypool::numerics {
@@ -145,7 +146,7 @@ Quality judge_frame(const TradeScene& scene, const RecordedFrame& drawn) {
       largest = std::max(largest, std::abs(int{to_srgb8(linear)} - int{to_srgb8(wanted)}));
     }
     quality.off_by_one += largest == 1;
-    quality.off_by_more += largest > 1;
+    quality.off_by_more += largest >= kOffByMore;
   }
   quality.psnr = decibels(squares, 3 * quality.pixels);
   quality.psnr_same_paths = decibels(squares_same, 3 * quality.same_paths);

@@ -64,7 +64,7 @@ struct Quality {
   double psnr = 0;             ///< of linear values before they become 8 bits, peak 1, dB; infinity when equal
   double psnr_same_paths = 0;  ///< over the pixels of the same paths: what arithmetic alone does to the colours
   uint64_t off_by_one = 0;     ///< largest 8-bit difference of the three channels is 1
-  uint64_t off_by_more = 0;    ///< 2 or more
+  uint64_t off_by_more = 0;    ///< kOffByMore or more
 };
 Quality judge_frame(const TradeScene& scene, const RecordedFrame& drawn);
 

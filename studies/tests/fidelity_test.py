@@ -100,8 +100,9 @@ class Runs(Case):
         self.assertEqual(table["model"][6:8] + table["model"][9:], [cycles, "exact", "equal"])
         self.assertEqual(table["rtl"][6:8] + table["rtl"][9:], [cycles, "reference", "reference"])
         self.uses(lines, self.read("rtl/report.json"))
-        self.assertEqual(rows["model"]["picture"], {"pixels": 192, "differ": 0, "largest_difference": 0,
-                                                    "mean_difference": 0, "psnr": None})  # fmt: skip
+        self.assertEqual(rows["model"]["picture"], {"pixels": 192, "differ": 0, "off_by_more": 0,
+                                                    "largest_difference": 0, "mean_difference": 0,
+                                                    "psnr": None})  # fmt: skip
         svg = " ".join(xml.etree.ElementTree.parse(self.out / "fidelity.svg").getroot().itertext())
         for name in LEVELS:
             self.assertRegex(svg, rf"\b{name}, \d+\.\d x")
@@ -205,8 +206,8 @@ class Errors(unittest.TestCase):
             "mrays_per_second": 1e5 / cycles, "simulation_seconds": 0.25, "alus": {"flt": {"utilisation": flt}},
             "pools": {"ray_port_utilisation": 0.5}, "memory": {"port_utilisation": None},
         })  # fmt: skip
-        run.picture = {"pixels": 64, "differ": 3, "largest_difference": 2, "mean_difference": 0.01,
-                       "psnr": 55.0}
+        run.picture = {"pixels": 64, "differ": 3, "off_by_more": 0.03125, "largest_difference": 2,
+                       "mean_difference": 0.01, "psnr": 55.0}
         return run
 
     def test_errors(self):

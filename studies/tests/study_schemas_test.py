@@ -58,7 +58,7 @@ class Pareto(schemas_test.Written):
             row["configuration"] = {}
         self.assertEqual([error.message for error in valid.iter_errors(document)], [])
         self.refuses(valid, document, lambda path: True,
-                     [("x",), ("scene", "x"), ("machines", 0, "x"), ("machines", 0, "picture", "x"),
+                     [("x",), ("scene", "x"), ("criterion", "x"), ("machines", 0, "x"), ("machines", 0, "picture", "x"),
                       ("machines", 0, "area", "x")])  # fmt: skip
 
     def test_docs_name_each_field(self):
