@@ -44,6 +44,7 @@ class DoubleKernel {
     friend Float rsqrt(Float a) { return 1 / std::sqrt(a.value); }
     // Of NaN and a number the number, as the machine's.
     friend Float min(Float a, Float b) { return std::fmin(a.value, b.value); }
+    friend Float abs(Float a) { return std::fabs(a.value); }
     friend Float max(Float a, Float b) { return std::fmax(a.value, b.value); }
     friend Bool operator>(Float a, Float b) { return a.value > b.value; }
   };

@@ -38,7 +38,7 @@ inline constexpr int kStepX = 6;        ///< x, y, z
 inline constexpr int kStepY = 9;        ///< x, y, z
 inline constexpr int kLight = 12;       ///< position x, y, z
 inline constexpr int kLightColor = 15;  ///< red, green, blue
-inline constexpr int kOffset = 18;  ///< distance by which a secondary ray's origin leaves the surface along the normal
+inline constexpr int kOffset = 18;      ///< of hit and t: by how much a secondary ray's origin leaves its surface
 inline constexpr int kTileWidthLog2 =
     19;  ///< integer: an eye tile is 2^this pixels wide; thread t is pixel (t & mask, t >> log2)
 inline constexpr int kTileMask = 20;  ///< integer: tile width - 1

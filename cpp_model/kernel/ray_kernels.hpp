@@ -71,19 +71,25 @@ void shadow_ray_out(K& k, const Lighting<K>& light) {
   }
 }
 
+/// By how much secondary rays leave the surface at a hit: more than it can be off its plane.
+template <typename K>
+typename K::Float surface_offset(K& k, const typename K::Float& distance, const Vector<K>& hit) {
+  const typename K::Float largest = max(max(abs(hit.x), abs(hit.y)), abs(hit.z));
+  return (largest + distance) * k.float_argument(argument::kOffset);
+}
+
 /// Where secondary rays begin: at the hit, moved off the surface to the side from which the ray came.
 template <typename K>
 Vector<K> secondary_origin(K& k, const Vector<K>& direction, const Vector<K>& normal, const typename K::Bool& back) {
   using Float = typename K::Float;
-  Float offset = k.float_argument(argument::kOffset);
-  k.if_(back, [&] { offset = -offset; });
   const Float distance = k.float_word(word::kDistance);
-  const auto along = [&](const Float& from, const Float& d, const Float& n) {
-    return multiply_add(offset, n, multiply_add(distance, d, from));
-  };
-  return {along(k.float_word(word::kOrigin), direction.x, normal.x),
-          along(k.float_word(word::kOrigin + 1), direction.y, normal.y),
-          along(k.float_word(word::kOrigin + 2), direction.z, normal.z)};
+  const Vector<K> hit = {multiply_add(distance, direction.x, k.float_word(word::kOrigin)),
+                         multiply_add(distance, direction.y, k.float_word(word::kOrigin + 1)),
+                         multiply_add(distance, direction.z, k.float_word(word::kOrigin + 2))};
+  Float offset = surface_offset(k, distance, hit);
+  k.if_(back, [&] { offset = -offset; });
+  return {multiply_add(offset, normal.x, hit.x), multiply_add(offset, normal.y, hit.y),
+          multiply_add(offset, normal.z, hit.z)};
 }
 
 template <typename K>

@@ -225,7 +225,8 @@ class Reckoning:
         diffuse, mirror = self.materials[triangle.material]
         normal = triangle.normal()
         facing = normal if dot(direction, normal) <= 0 else scale(normal, -1)
-        point = add(add(origin, scale(direction, ray.hit.t)), scale(facing, self.offset))
+        hit = add(origin, scale(direction, ray.hit.t))
+        point = add(hit, scale(facing, self.offset * (max(map(abs, hit)) + ray.hit.t)))
         self.shade(point, facing, [w * kd for w, kd in zip(weight, diffuse)], depth)
         if self.depth > 1 and any(any(ks) for _, ks in self.materials):
             reflected = subtract(direction, scale(normal, 2 * dot(direction, normal)))

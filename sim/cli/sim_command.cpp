@@ -24,7 +24,9 @@
 #include "scene/double_renderer.hpp"
 #include "scene/embree_scene.hpp"
 #include "scene/image.hpp"
+#include "scene/lost_shadows.hpp"
 #include "scene/native_renderer.hpp"
+#include "scene/pixel_decisions.hpp"
 #include "scene/scene.hpp"
 #include "scene/threads.hpp"
 #include "scene/traversal.hpp"
@@ -189,24 +191,6 @@ std::string progress_text(const ChipProgress& done, bool timed, double seconds) 
   return text;
 }
 
-using Trace = std::function<bool(const Ray&, Intersection&)>;
-
-/// `trace`, or where it is empty the tracer's, and what it comes to is told.
-Trace told(const Trace& trace, const Tracer& tracer, PixelDecisions& decisions) {
-  return [&tracer, &decisions, trace](const Ray& ray, Intersection& intersection) {
-    const bool goes_on = trace ? trace(ray, intersection) : tracer.trace(ray, intersection);
-    const uint32_t pixel = ray[word::kPixel];
-    if ((ray[word::kFlags] & kShadowFlag) != 0) {
-      decisions.shadow(pixel, goes_on);
-    } else if (goes_on) {
-      decisions.hit(pixel, intersection[word::kTriangle]);
-    } else {
-      decisions.miss(pixel);
-    }
-    return goes_on;
-  };
-}
-
 /// `decisions`, unless null, are told what rays come to.
 FrameBuffer draw_natively(const SimOptions& options, RunRecord& record, const Scene& scene, MemoryImage& image,
                           const Tracer& tracer, std::vector<NativeWork>* work = nullptr,
@@ -218,7 +202,10 @@ FrameBuffer draw_natively(const SimOptions& options, RunRecord& record, const Sc
     embree.emplace(scene, tracer);
     native.trace = [&](const Ray& ray, Intersection& hit) { return embree->trace(ray, hit); };
   }
-  if (decisions != nullptr) native.trace = told(native.trace, tracer, *decisions);
+  if (decisions != nullptr) {
+    if (!native.trace) native.trace = [&](const Ray& ray, Intersection& hit) { return tracer.trace(ray, hit); };
+    native.trace = told(native.trace, *decisions);
+  }
   if (work != nullptr) {
     native.parts = options.sampler->blocks_of(record.configuration, native.width, native.height);
     native.work = work;
@@ -232,10 +219,17 @@ FrameBuffer draw_natively(const SimOptions& options, RunRecord& record, const Sc
   return frame;
 }
 
+void warn_of_lost_shadows(const RunRecord& record, const Scene& scene, const Tracer& tracer) {
+  if (record.precision == "double") return;
+  const std::string lost = lost_shadows(scene, tracer.traversal(), arguments_of(record, scene));
+  if (!lost.empty()) fmt::print(stderr, "raypool: warning: {}\n", lost);
+}
+
 /// The picture, and what is asked of it beside.
 FrameBuffer draw_with_precision(const SimOptions& options, RunRecord& record, const Scene& scene, MemoryImage& image,
                                 OutputFolder& out) {
   const Tracer tracer = tracer_of(record, scene, image);
+  warn_of_lost_shadows(record, scene, tracer);
   std::optional<PixelDecisions> decisions;
   if (!options.precision.empty())
     decisions.emplace(static_cast<uint32_t>(record.width), static_cast<uint32_t>(record.height));
@@ -336,6 +330,7 @@ void make_drawing_chip(const SimOptions& options, Engine engine, const RunRecord
 FrameBuffer draw_on_chip(const SimOptions& options, Engine engine, RunRecord& record, const Scene& scene,
                          MemoryImage& image, OutputFolder& out) {
   Surroundings around(scene, image, record);
+  warn_of_lost_shadows(record, scene, around.tracer);
   ChipOptions frame = chip_options(record, scene, image, around);
   frame.limits.cycles = options.cycle_limit.value_or(0);
   DrawingChip drawing;
@@ -382,6 +377,7 @@ FrameBuffer draw_sampled_frame(const SimOptions& options, RunRecord& record, con
   wanted.processes = threads_or_all(options.threads);
 
   Surroundings around(scene, image, record);
+  warn_of_lost_shadows(record, scene, around.tracer);
   const Progress drawing(true);
   std::vector<NativeWork> work;
   FrameBuffer frame = draw_natively(options, record, scene, image, around.tracer, &work);

@@ -39,8 +39,7 @@ Pictures pictures(const SceneProbe& probe, const Camera& camera) {
 Vec3 automatic_light(const SceneProbe& probe, const Camera& camera, double distance, const RoomBox* room) {
   const Pictures seen = pictures(probe, camera);
   const auto bright = [&](const Vec3& place) {
-    return probe.lit(seen.square, camera.eye, place).dark <= kMostDark &&
-           probe.lit(seen.wide, camera.eye, place).dark <= kMostDark;
+    return probe.lit(seen.square, place).dark <= kMostDark && probe.lit(seen.wide, place).dark <= kMostDark;
   };
   const auto within = [](const Vec3d& place) {
     return std::max({std::fabs(place.x), std::fabs(place.y), std::fabs(place.z)}) <= kLargestCoordinate;
@@ -51,7 +50,7 @@ Vec3 automatic_light(const SceneProbe& probe, const Camera& camera, double dista
       for (const double along : {0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8, 0.12, 0.88}) {
         for (const double across : {0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8}) {
           const Vec3 place = room->place(along, height, across).as<float>();
-          const Lit lit = probe.lit(seen.coarse, camera.eye, place);
+          const Lit lit = probe.lit(seen.coarse, place);
           if (lit.dark <= 1.5 * kMostDark) places.emplace_back(-std::round(1e6 * lit.light), place);
         }
       }

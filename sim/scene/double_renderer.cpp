@@ -21,7 +21,8 @@ Arguments arguments_in_double(const Scene& scene, uint32_t width, uint32_t heigh
   Arguments arguments{};
   const CameraNumbers numbers = camera_numbers(scene, width, height);
   for (size_t i = 0; i < numbers.size(); ++i) arguments[i].number = numbers[i];
-  arguments[argument::kOffset].number = double_ray_offset(scene);
+  arguments[argument::kOffset].number =
+      kDoubleOffsetShare * std::max(1.0, longest_direction(numbers, width, height) / 2);
   // An eye tile is a pixel.
   arguments[argument::kWidth].bits = width;
   arguments[argument::kHeight].bits = height;
@@ -132,14 +133,6 @@ class DoubleWorker {
 };
 
 }  // namespace
-
-double double_ray_offset(const Scene& scene) {
-  const Bounds bounds = scene.bounds();
-  double largest = 0;
-  for (const Vec3& point : {bounds.lower, bounds.upper, scene.camera.eye})
-    for (int axis = 0; axis < 3; ++axis) largest = std::max(largest, std::fabs(static_cast<double>(point[axis])));
-  return 0x1p-44 * largest;
-}
 
 FrameBuffer render_in_double(const Scene& scene, const MemoryImage& image, const Tracer& tracer,
                              const NativeOptions& options, NativeStatistics& statistics, PixelDecisions* decisions) {

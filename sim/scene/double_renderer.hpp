@@ -13,12 +13,13 @@
 namespace raypool {
 
 /// Of `options` size, depth, reflections and threads; `tracer`, of which it takes the tree, and `image` as for
-/// render_native(). `decisions`, of the picture's size, are told unless null. Secondary rays begin
-/// double_ray_offset() off their surfaces. Throws InputError as render_native() does.
+/// render_native(). `decisions`, of the picture's size, are told unless null. Throws InputError as render_native()
+/// does.
 FrameBuffer render_in_double(const Scene& scene, const MemoryImage& image, const Tracer& tracer,
                              const NativeOptions& options, NativeStatistics& statistics, PixelDecisions* decisions);
 
-/// 2^-44 of the largest coordinate of the scene's box and the eye, hundreds of times what double precision loses there.
-double double_ray_offset(const Scene& scene);
+/// In place of offset_share(): thousands of times what double precision loses, as its hits have no bound of their
+/// error.
+inline constexpr double kDoubleOffsetShare = 0x1p-40;
 
 }  // namespace raypool

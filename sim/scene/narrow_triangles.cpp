@@ -55,14 +55,14 @@ bool TriangleTest::accept(const PreparedRay& ray, const TriangleBlock& block, un
   if (!TriangleEdges(view.x, view.y).inside()) return false;
   const float(&x)[3] = view.x, (&y)[3] = view.y;
   double weights[3];  // u, v, w
-  bool zero = time_ != TriangleTime::Floats;
+  bool small = time_ != TriangleTime::Floats;
   for (int k = 0; k < 3; ++k) {
     const int a = (k + 2) % 3, b = (k + 1) % 3;
     const float weight = x[a] * y[b] - y[a] * x[b];
-    zero |= weight == 0;
+    small |= std::fabs(weight) < kLeastWeight;
     weights[k] = weight;
   }
-  for (int k = 0; zero && k < 3; ++k) {
+  for (int k = 0; small && k < 3; ++k) {
     const int a = (k + 2) % 3, b = (k + 1) % 3;
     weights[k] = narrow_.difference(x[a], y[b], y[a], x[b]);
   }

@@ -12,7 +12,7 @@ namespace raypool {
 
 /// What t is computed from.
 enum class TriangleTime : uint8_t {
-  Floats,    ///< as engines do: interpolated by edge functions of rounded products; of exact ones where one is zero
+  Floats,    ///< as engines do: interpolated by edge functions of rounded products; of exact ones where one is small
   Products,  ///< interpolated by edge functions of exact products, each rounded once
   Plane,     ///< the triangle's plane
 };
@@ -25,10 +25,11 @@ enum class TriangleTime : uint8_t {
 /// (machine/traverser/triangle_edges.hpp). It is
 ///    a miss if one is above and one below zero,
 ///    or all are zero.
-/// 3. u, v, w: rb(x2 y1 - y2 x1) and so on. Floats: fl(fl(x2 y1) - fl(y2 x1)), unless that is zero for one of them.
+/// 3. u, v, w: rb(x2 y1 - y2 x1) and so on. Floats: fl(fl(x2 y1) - fl(y2 x1)), unless that is less than 2^-100 for one
+/// of them.
 /// 4. det = rb(rb(u + v) + w); z = rb(vz - oz) of each corner; p = rb(u z0), q = rb(v z1), r = rb(w z2);
 ///    t = rb(rb(rb(rb(p + q) + r) / det) rb(1 / dz)).
-/// 5. If |rb(rb(p + q) + r)| is less than 2^-10 rb(rb(|p| + |q|) + |r|), and for Plane always, t is the plane's:
+/// 5. If |rb(rb(p + q) + r)| is less than half of rb(rb(|p| + |q|) + |r|), and for Plane always, t is the plane's:
 ///    rb((n . a) / (n . d)), with a = rb(v0 - o), n = (v1 - v0) x (v2 - v0); each difference, product and sum of a, n
 ///    and the two scalar products is rb(), sums from left to right. Floats: v1 - v0 is rb(rb(v1 - o) - rb(v0 - o)), and
 ///    so on.

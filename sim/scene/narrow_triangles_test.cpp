@@ -149,11 +149,11 @@ class InFloats {
       return in_front() == 0 ? -1 : in_front() == 3 && !(t > 0) ? 0x1p-149f : t;
     }
     float u = x_[2] * y_[1] - y_[2] * x_[1], v = x_[0] * y_[2] - y_[0] * x_[2], w = x_[1] * y_[0] - y_[1] * x_[0];
-    if (time == TriangleTime::Products || u == 0 || v == 0 || w == 0) {
+    if (time == TriangleTime::Products || std::min({std::fabs(u), std::fabs(v), std::fabs(w)}) < 0x1p-100f) {
       u = static_cast<float>(exact(2, 1)), v = static_cast<float>(exact(0, 2)), w = static_cast<float>(exact(1, 0));
     }
     const float p = u * z_[0], q = v * z_[1], r = w * z_[2], sum = p + q + r;
-    if (std::fabs(sum) < 0x1p-10f * (std::fabs(p) + std::fabs(q) + std::fabs(r))) return plane(time);
+    if (std::fabs(sum) < 0.5f * (std::fabs(p) + std::fabs(q) + std::fabs(r))) return plane(time);
     return sum / (u + v + w) * (1 / static_cast<float>(ray_.direction[ray_.kz]));
   }
 

@@ -134,15 +134,6 @@ void NativeStatistics::count_left_out(const NativeOptions& options) {
                             dropped_rays);
 }
 
-float ray_offset(const Bounds& bounds, const Vec3& eye, uint32_t significand) {
-  double largest = 0;
-  for (const Vec3& point : {bounds.lower, bounds.upper, eye}) {
-    for (int axis = 0; axis < 3; ++axis) largest = std::max(largest, std::fabs(static_cast<double>(point[axis])));
-  }
-  const double least = std::max(kLeastOffset, std::ldexp(1.0, 1 - static_cast<int>(significand)));
-  return static_cast<float>(std::max(kOffsetShare * static_cast<double>(bounds.diagonal()), least * largest));
-}
-
 MemoryImage build_memory(const Program& program, const Scene& scene) {
   auto round_up = [](uint64_t bytes) { return (bytes + 63) / 64 * 64; };
   const uint64_t base = round_up(8 * program.code.size());
@@ -188,12 +179,30 @@ CameraNumbers camera_numbers(const Scene& scene, uint32_t width, uint32_t height
   return numbers;
 }
 
+double offset_share(double longest_direction, uint32_t significand) {
+  const auto rounding = [](uint32_t bits) { return std::ldexp(1.0, -static_cast<int>(bits)); };
+  return 4 * (rounding(significand) + rounding(arith::kFullSignificand)) * std::max(1.0, longest_direction / 2);
+}
+
+double longest_direction(const CameraNumbers& numbers, uint32_t width, uint32_t height) {
+  const auto get = [&](int first) { return Vec3d{numbers[first], numbers[first + 1], numbers[first + 2]}; };
+  double longest = 0;  // at a corner of the picture: what is longest of a parallelogram
+  for (const double x : {0.0, width - 1.0}) {
+    for (const double y : {0.0, height - 1.0}) {
+      const Vec3d direction = get(argument::kCorner) + get(argument::kStepX) * x + get(argument::kStepY) * y;
+      longest = std::max(longest, length(direction));
+    }
+  }
+  return longest;
+}
+
 std::array<uint32_t, kArguments> camera_arguments(const Scene& scene, uint32_t width, uint32_t height,
                                                   uint32_t contents, uint32_t significand) {
   std::array<uint32_t, kArguments> arguments{};
   const CameraNumbers numbers = camera_numbers(scene, width, height);
   for (size_t i = 0; i < numbers.size(); ++i) arguments[i] = as_bits(static_cast<float>(numbers[i]));
-  arguments[argument::kOffset] = as_bits(ray_offset(scene.bounds(), scene.camera.eye, significand));
+  const double longest = longest_direction(numbers, width, height);
+  arguments[argument::kOffset] = as_bits(static_cast<float>(offset_share(longest, significand)));
   const uint32_t log2 = tile_width_log2(contents);
   arguments[argument::kTileWidthLog2] = log2;
   arguments[argument::kTileMask] = (1u << log2) - 1;

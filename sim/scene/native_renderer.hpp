@@ -25,18 +25,17 @@ struct MemoryImage {
 /// Throws InputError when it would not fit in 32-bit addresses.
 MemoryImage build_memory(const Program& program, const Scene& scene);
 
-/// A secondary ray's origin leaves its surface by this share of the diagonal of the scene's bounding box
-/// (docs/scenes.md has the measurement), but by no less than this share of the largest coordinate of box and eye:
-/// eight of its units in the last place, or one of a shorter significand where that is more.
-inline constexpr double kOffsetShare = 1e-5;
-inline constexpr double kLeastOffset = 1e-6;
-/// In the unit of the scene; `bounds` are the scene's.
-float ray_offset(const Bounds& bounds, const Vec3& eye, uint32_t significand = arith::kFullSignificand);
+/// A secondary ray's origin leaves its surface by this share of the sum of its hit's largest coordinate and t: four
+/// times the most by which a rounding of the kernels is off, and four times that of t, which has 24 bits in every
+/// machine; more where directions, of this length at most, are longer than 2. docs/numerics.md says why that is enough.
+double offset_share(double longest_direction, uint32_t significand = arith::kFullSignificand);
 
 /// The arguments before kOffset, as they are before a machine rounds them: eye, directions of pixels, light.
 using CameraNumbers = std::array<double, argument::kOffset>;
 /// Throws InputError unless width and height lie in 1 .. 65535.
 CameraNumbers camera_numbers(const Scene& scene, uint32_t width, uint32_t height);
+/// The length of the longest direction of such a picture's eye rays; reflections keep it.
+double longest_direction(const CameraNumbers& numbers, uint32_t width, uint32_t height);
 
 /// The kernel arguments of a frame (namespace argument), for a machine whose floats have such a significand. Throws
 /// InputError unless width and height lie in 1 .. 65535.

@@ -95,12 +95,13 @@ TEST(CameraArguments, SpanTheFieldOfView) {
   EXPECT_EQ(a[argument::kTileMask], 7u);
   EXPECT_EQ(a[argument::kWidth], 200u);
   EXPECT_EQ(a[argument::kHeight], 100u);
-  EXPECT_NEAR(as_float(a[argument::kOffset]), 1e-5f * scene.bounds().diagonal(), 1e-9);
-  scene.camera.eye.x = 5000;
-  EXPECT_NEAR(as_float(camera_arguments(scene, 200, 100, 32)[argument::kOffset]), 5e-3, 1e-8);
-  // With few bits by one unit in the last place of 5000.
-  EXPECT_EQ(as_float(camera_arguments(scene, 200, 100, 32, 20)[argument::kOffset]), 5000 * 0x1p-19f);
-  EXPECT_EQ(as_float(camera_arguments(scene, 200, 100, 32, 11)[argument::kOffset]), 5000 * 0x1p-10f);
+  // The middle of the first pixel is the furthest from the middle of the picture, which is at 1.
+  const float longest = std::sqrt(1 + 1.99f * 1.99f + 0.99f * 0.99f);
+  EXPECT_FLOAT_EQ(as_float(a[argument::kOffset]), 0x1p-22f * longest);
+  const auto few = camera_arguments(scene, 200, 100, 32, 11);
+  EXPECT_FLOAT_EQ(as_float(few[argument::kOffset]), (0x1p-10f + 0x1p-23f) * longest);
+  scene.camera.fov = 40;
+  EXPECT_EQ(as_float(camera_arguments(scene, 200, 100, 32)[argument::kOffset]), 0x1p-21f);
   EXPECT_THROW(camera_arguments(scene, 0, 10, 64), InputError);
   EXPECT_THROW(camera_arguments(scene, 10, 65536, 64), InputError);
 }

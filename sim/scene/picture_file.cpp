@@ -51,6 +51,7 @@ PictureDifference difference_of(const Picture& a, const Picture& b) {
     }
     ++result.pixels;
     result.differ += largest > 0;
+    result.off_by_more += largest >= kOffByMore;
     result.largest = std::max(result.largest, largest);
   }
   result.mean = a.rgb.empty() ? 0 : static_cast<double>(sum) / a.rgb.size();

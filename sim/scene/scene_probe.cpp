@@ -12,6 +12,7 @@ namespace {
 constexpr double kBlack = 0.002;
 
 double brightest(const Vec3& v) { return std::max({v.x, v.y, v.z}); }
+double largest_of(const Vec3d& v) { return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)}); }
 
 }  // namespace
 
@@ -57,14 +58,14 @@ std::vector<std::optional<Sample>> SceneProbe::picture(const Camera& camera, int
   return samples;
 }
 
-Lit SceneProbe::lit(const std::vector<Sample>& samples, const Vec3& eye, const Vec3& light) const {
-  const double offset = ray_offset(bounds_, eye);
+Lit SceneProbe::lit(const std::vector<Sample>& samples, const Vec3& light) const {
   Lit result;
   int seen = 0, dark = 0;
   for (const Sample& sample : samples) {
     const double diffuse = brightest(scene_.materials[scene_.triangle_materials[sample.triangle]].kd);
     if (diffuse < 2 * kBlack) continue;
     ++seen;
+    const double offset = offset_share(1) * (largest_of(sample.point) + sample.distance);
     const Vec3 origin = (sample.point + sample.normal * offset).as<float>();
     const Vec3d way = light.as<double>() - origin.as<double>();
     const double cosine = dot(sample.normal, way) / std::max(length(way), 1e-37);

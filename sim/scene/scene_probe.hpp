@@ -41,7 +41,7 @@ class SceneProbe {
   std::optional<Sample> hit(const Vec3d& from, const Vec3d& towards) const;
   /// What the pixels of a picture of columns x rows see, row by row; pixels that see nothing have none.
   std::vector<std::optional<Sample>> picture(const Camera& camera, int columns, int rows) const;
-  Lit lit(const std::vector<Sample>& samples, const Vec3& eye, const Vec3& light) const;
+  Lit lit(const std::vector<Sample>& samples, const Vec3& light) const;
   /// Share of the directions on one side of a surface, `normal`'s, in which nothing is in the way. 0 .. 1
   double open_share(const Vec3d& point, const Vec3d& normal) const;
 

@@ -67,12 +67,14 @@ inline bool intersect_block(const PreparedRay& ray, const TriangleBlock& block, 
   const unsigned used = (1u << block.count) - 1;
   const unsigned negative = mask4((u < zero) | (v < zero) | (w < zero)),
                  positive = mask4((u > zero) | (v > zero) | (w > zero));
-  const unsigned zeros = mask4((u == zero) | (v == zero) | (w == zero));
+  const Float4 least = splat4(kLeastWeight);
+  const auto is_small = [&](const Float4& weight) { return (weight < least) & (weight > -least); };
+  const unsigned small = mask4(is_small(u) | is_small(v) | is_small(w));
   bool found = false;
   for (unsigned lanes = ~(negative & positive) & used; lanes != 0; lanes &= lanes - 1) {
     const auto lane = lowest(lanes);
     double du = u[lane], dv = v[lane], dw = w[lane];
-    if ((zeros >> lane & 1u) != 0) {
+    if ((small >> lane & 1u) != 0) {
       // Products of floats are exact in double: the sign is that of the exact edge function.
       auto edge = [&](int a, int b) {
         return static_cast<double>(x[a][lane]) * y[b][lane] - static_cast<double>(y[a][lane]) * x[b][lane];

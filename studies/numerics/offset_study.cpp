@@ -9,9 +9,11 @@
 #include "bits.hpp"
 #include "kernel/kernel.hpp"
 #include "kernel/kernel_report.hpp"
+#include "kernel/ray_kernels.hpp"
 #include "numerics/extreme_parts.hpp"
 #include "numerics/reference.hpp"
 #include "scene/hits_check.hpp"
+#include "scene/mesh_builder.hpp"
 #include "scene/native_renderer.hpp"
 #include "scene/traversal.hpp"
 
@@ -23,6 +25,7 @@ constexpr float kNearOrigin = 1.0f / 32;
 constexpr float kFloatScale = 1.0f / 65536;
 constexpr float kIntegerScale = 256;
 
+float largest_of(const Vec3& v) { return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)}); }
 Vec3 along(const OffsetInput& in, float offset) { return in.origin + in.direction * in.t + in.normal * offset; }
 
 Vec3 integer_offset(const OffsetInput& in) {
@@ -37,17 +40,25 @@ Vec3 integer_offset(const OffsetInput& in) {
   return result;
 }
 
-/// The two rules in the kernel language, nothing around them but words in and words out.
-template <typename K>
-void kernel_in_use(K& k) {
+/// The rules in the kernel language, nothing around them but words in and words out. `offset(k, distance, point)`.
+template <typename K, typename Offset>
+void kernel_along(K& k, const Offset& offset) {
   using Float = typename K::Float;
   k.ray_in();
-  for (int axis = 0; axis < 3; ++axis) {
-    const Float p =
-        k.float_word(word::kOrigin + axis) + k.float_word(word::kDistance) * k.float_word(word::kDirection + axis);
-    k.set_word(word::kOrigin + axis, p + k.float_argument(argument::kOffset) * k.float_word(word::kNormal + axis));
-  }
+  const Float distance = k.float_word(word::kDistance);
+  const kernel::Vector<K> point =
+      kernel::vector_word(k, word::kOrigin) + distance * kernel::vector_word(k, word::kDirection);
+  kernel::set_vector_word(k, word::kOrigin, point + offset(k, distance, point) * kernel::vector_word(k, word::kNormal));
   k.ray_out();
+}
+template <typename K>
+void kernel_fixed(K& k) {
+  kernel_along(k, [](K& of, const auto&, const auto&) { return of.float_argument(argument::kOffset); });
+}
+template <typename K>
+void kernel_in_use(K& k) {
+  kernel_along(
+      k, [](K& of, const auto& distance, const auto& point) { return kernel::surface_offset(of, distance, point); });
 }
 template <typename K>
 void kernel_integer(K& k) {
@@ -116,24 +127,38 @@ void judge_shadow(const ReferenceTracer& reference, const Traversal& traversal, 
   ++(blocked ? counts.moved : counts.leaks);
 }
 
+/// A cube and a ball of 1 m on a square ground, seen from 6 m.
+Scene on_ground(double size, bool tilted) {
+  Scene scene;
+  MeshBuilder mesh(scene, 1);
+  const Transform place = tilted ? Transform::turn_z(31) * Transform::turn_x(17) : Transform{};
+  mesh.place(place);
+  mesh.add_material("all", {0.8f, 0.8f, 0.8f}, {0.2f, 0.2f, 0.2f});
+  mesh.quad({-size, 0, size}, {size, 0, size}, {size, 0, -size}, {-size, 0, -size});
+  mesh.box({0, 0, 0}, {1, 1, 1});
+  mesh.sphere({-1, 0.5, 1}, 0.5, 48);
+  scene.camera = {place({4, 3, 5}).as<float>(), place({-4, -2.5, -5}).as<float>(), place({0, 1, 0}).as<float>(), 40};
+  scene.light = {place({-2, 4, 3}).as<float>(), {1, 1, 1}};
+  return scene;
+}
+
 }  // namespace
 
 std::vector<OffsetRule> offset_rules() {
   std::vector<OffsetRule> rules;
   rules.push_back({"none", [](const OffsetInput& in) { return along(in, 0); }});
-  for (float distance : {1e-5f, 1e-4f, 1e-3f}) {
-    rules.push_back(
-        {fmt::format("fixed {:.0e} m", distance), [distance](const OffsetInput& in) { return along(in, distance); }});
-  }
-  for (float share : {1e-7f, 1e-6f, 3e-6f, 1e-5f, 3e-5f, 1e-4f}) {
+  rules.push_back({"fixed 1e-04 m", [](const OffsetInput& in) { return along(in, 1e-4f); }});
+  for (float share : {1e-6f, 1e-5f}) {
     rules.push_back({fmt::format("{:.0e} of diagonal", share),
                      [share](const OffsetInput& in) { return along(in, share * in.diagonal); }});
   }
   rules.push_back({"in use", [](const OffsetInput& in) {
-                     const double offset = std::max(kOffsetShare * static_cast<double>(in.diagonal),
-                                                    kLeastOffset * static_cast<double>(in.largest));
-                     return along(in, static_cast<float>(offset));
+                     const Vec3 point = in.origin + in.direction * in.t;
+                     return along(in, (largest_of(point) + in.t) * in.share);
                    }});
+  rules.push_back(rules.back());
+  rules.back().name = "in use, hardware";
+  rules.back().hardware = true;
   rules.push_back({"integer", integer_offset});
   return rules;
 }
@@ -143,27 +168,36 @@ std::vector<OffsetScene> offset_scenes() {
   std::vector<OffsetScene> scenes;
   scenes.push_back({"cornell", cornell});
   scenes.push_back({"room", make_room(0.1)});
-  scenes.push_back({"cornell x 1e-3", moved(cornell, 1e-3, {})});
-  scenes.push_back({"cornell x 1e3", moved(cornell, 1e3, {})});
+  scenes.push_back({"cornell x 1e-6", moved(cornell, 1e-6, {})});
+  scenes.push_back({"cornell x 1e6", moved(cornell, 1e6, {})});
   scenes.push_back({"cornell + 100 m", moved(cornell, 1, {100, 70, -90})});
   scenes.push_back({"cornell + 10 km", moved(cornell, 1, {1e4, 7e3, -9e3})});
+  for (const double size : {1e1, 1e3, 1e6}) {
+    const std::string name = fmt::format("ground of {:.0e} m", size);
+    scenes.push_back({name, on_ground(size, false)});
+    scenes.push_back({name + ", tilted", on_ground(size, true)});
+  }
   return scenes;
 }
 
 std::vector<OffsetCounts> study_offsets(const Scene& scene, const std::vector<OffsetRule>& rules, int size) {
-  const Traversal traversal(scene);
+  const Traversal engines(scene);
+  Traversal hardware(scene);
+  ChipConfiguration chip;
+  chip.traverser = TraverserName::Hardware;
+  hardware.take_hits_of(chip);
   const ReferenceTracer reference(scene);
-  const std::vector<Hitpoint> points = hitpoints(scene, traversal, reference, size);
-  const Bounds bounds = scene.bounds();
+  const std::vector<Hitpoint> of_engines = hitpoints(scene, engines, reference, size);
+  const std::vector<Hitpoint> of_hardware = hitpoints(scene, hardware, reference, size);
   OffsetInput input{};
-  input.diagonal = bounds.diagonal();
-  for (const Vec3& corner : {bounds.lower, bounds.upper, scene.camera.eye}) {
-    for (int axis = 0; axis < 3; ++axis) input.largest = std::max(input.largest, std::fabs(corner[axis]));
-  }
+  input.diagonal = scene.bounds().diagonal();
+  const auto arguments = camera_arguments(scene, size, size, 1);
+  input.share = as_float(arguments[argument::kOffset]);
   std::vector<OffsetCounts> results;
   for (const OffsetRule& rule : rules) {
     OffsetCounts counts;
-    for (const Hitpoint& point : points) {
+    const Traversal& traversal = rule.hardware ? hardware : engines;
+    for (const Hitpoint& point : rule.hardware ? of_hardware : of_engines) {
       input.origin = point.eye.origin;
       input.direction = point.eye.direction;
       input.t = point.hit.t;
@@ -183,13 +217,14 @@ std::vector<OffsetCounts> study_offsets(const Scene& scene, const std::vector<Of
 
 OffsetInstructions offset_instructions() {
   Program program;
+  kernel::add_kernel(program, "fixed", [](auto& k) { kernel_fixed(k); });
   kernel::add_kernel(program, "in_use", [](auto& k) { kernel_in_use(k); });
   kernel::add_kernel(program, "integer", [](auto& k) { kernel_integer(k); });
   auto computed = [&](const char* name) {
     const InstructionCounts counts = count_instructions(program, name);
     return counts[AluType::Int] + counts[AluType::Flt] + counts[AluType::Brh] - 1;
   };
-  return {computed("in_use"), computed("integer")};
+  return {computed("fixed"), computed("in_use"), computed("integer")};
 }
 
 }  // namespace raypool::numerics

@@ -17,14 +17,15 @@ struct OffsetInput {
   float t;
   Vec3 normal;     ///< unit length, on the side from which the ray came
   float diagonal;  ///< of the scene's bounding box
-  float largest;   ///< coordinate of box and eye, absolute
+  float share;     ///< the kernels' argument kOffset
 };
 struct OffsetRule {
   std::string name;
   std::function<Vec3(const OffsetInput&)> origin;
+  bool hardware = false;  ///< the hits are those of the chip's traverser, not those of `static`
 };
-/// None; fixed distances; shares of the scene's diagonal; the machine's rule (camera_arguments()); and the
-/// integer offset along the normal (Waechter and Binder, "A Fast and Robust Method for Avoiding
+/// None; a fixed distance; shares of the scene's diagonal; the machine's rule (camera_arguments()), with the hits of
+/// each traverser; and the integer offset along the normal (Waechter and Binder, "A Fast and Robust Method for Avoiding
 /// Self-Intersection", Ray Tracing Gems, 2019, chapter 6).
 std::vector<OffsetRule> offset_rules();
 
@@ -32,8 +33,8 @@ struct OffsetScene {
   std::string name;
   Scene scene;
 };
-/// Near: the built-in scenes as they are. Small and large: cornell at 1e-3 and 1e3. Far:
-/// cornell moved by 100 m and by 10 km.
+/// Near: built-in scenes as they are. Small and large: cornell at 1e-6 and 1e6. Far: cornell moved by 100 m and by 10
+/// km. Wide: a cube and a ball on a ground that is up to 10^6 times as wide, level, and tilted by odd angles.
 std::vector<OffsetScene> offset_scenes();
 
 /// Shadow and reflection rays of the primary hits of a picture, against the reference, ties apart.
@@ -50,9 +51,10 @@ struct OffsetCounts {
 /// A picture of size x size pixels, every rule in turn; the result has the order of `rules`.
 std::vector<OffsetCounts> study_offsets(const Scene& scene, const std::vector<OffsetRule>& rules, int size);
 
-/// Instructions of the machine that the rule in use and the integer offset take, for the three coordinates.
+/// Instructions of the machine that a distance given by the host, the rule in use and the integer offset take, for the
+/// three coordinates.
 struct OffsetInstructions {
-  int in_use = 0, integer = 0;
+  int fixed = 0, in_use = 0, integer = 0;
 };
 OffsetInstructions offset_instructions();
 

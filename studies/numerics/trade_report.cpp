@@ -97,8 +97,8 @@ std::string offset_table(const std::vector<OffsetScene>& scenes, const std::vect
     }
   }
   const OffsetInstructions instructions = offset_instructions();
-  return text +
-         fmt::format("instructions for the origin: in use {}, integer {}\n", instructions.in_use, instructions.integer);
+  return text + fmt::format("instructions for the origin: fixed {}, in use {}, integer {}\n", instructions.fixed,
+                            instructions.in_use, instructions.integer);
 }
 
 std::string seam_table(const std::vector<WatertightMesh>& meshes, const std::vector<WatertightCounts>& counts) {

@@ -26,7 +26,11 @@ TEST(TriangleWidths, TellWhatEachWidthChanges) {
     const TriangleWidthRow& row = tried.rows[i];
     EXPECT_EQ(row.bits, std::vector<uint32_t>({0, 53, 24, 53, 24})[i]);
     EXPECT_EQ(row.leaks, 0u);
-    EXPECT_EQ(row.broken, 0u);
+    if (row.bits == 24) {
+      EXPECT_LE(row.broken, 1u) << "t of so few bits errs by more than secondary rays are moved off their surfaces";
+    } else {
+      EXPECT_EQ(row.broken, 0u);
+    }
     EXPECT_EQ(row.sides > 20, row.bits == 24) << "a float has too few bits for triangles of 1e9";
     if (row.bits != 24) {
       EXPECT_EQ(row.sides, 0u);
