@@ -13,8 +13,6 @@ namespace {
 
 constexpr uint32_t kGrid = 24;  // rays along each side
 
-float largest_of(const Vec3& v) { return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)}); }
-
 /// The largest extent of the triangle along an axis.
 float extent(const Scene& scene, uint32_t triangle) {
   const Vec3 a = scene.corner(triangle, 0), b = scene.corner(triangle, 1), c = scene.corner(triangle, 2);

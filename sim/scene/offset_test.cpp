@@ -34,9 +34,8 @@ std::vector<SurfacePoint> lit_side_points(const Scene& scene, const Traversal& t
       if (!traversal.nearest(ray, hit)) continue;
       const Vec3 point = ray.origin + ray.direction * hit.t;
       const Vec3 normal = dot(hit.normal, ray.direction) > 0 ? hit.normal * -1.0f : hit.normal;
-      const float largest = std::max({std::fabs(point.x), std::fabs(point.y), std::fabs(point.z)});
       if (dot(normal, scene.light.position - point) > 0)
-        points.push_back({point, normal, largest + hit.t, hit.triangle});
+        points.push_back({point, normal, largest_of(point) + hit.t, hit.triangle});
     }
   }
   return points;
@@ -95,7 +94,7 @@ Scene cube_on_ground(double size) {
   return scene;
 }
 
-TEST(Offset, AGroundThatIsWiderChangesNoPixel) {
+TEST(Offset, AGroundThatIsWiderChangesNoShadow) {
   NativeOptions options;
   options.width = options.height = 96;
   options.depth = 3;

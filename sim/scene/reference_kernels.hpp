@@ -1,7 +1,6 @@
 // For tests: what the four ray kernels compute, written down directly in float. Independent of the kernel language.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 
 #include "bits.hpp"
@@ -51,8 +50,7 @@ inline void cast_secondary(NativeThread& thread, bool reflect) {
   if (facing > 0) normal = normal * -1.0f, facing = -facing;
   const float distance = as_float(in[word::kDistance]);
   const Vec3 hit = read3(in, word::kOrigin) + direction * distance;
-  const float largest = std::max({std::fabs(hit.x), std::fabs(hit.y), std::fabs(hit.z)});
-  const Vec3 point = hit + normal * ((largest + distance) * as_float(a[argument::kOffset]));
+  const Vec3 point = hit + normal * ((largest_of(hit) + distance) * as_float(a[argument::kOffset]));
   const Vec3 to_light = read3(a, argument::kLight) - point;
   const float cosine = dot(normal, to_light) / std::sqrt(dot(to_light, to_light));
   Ray ray{};

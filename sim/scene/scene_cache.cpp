@@ -85,59 +85,39 @@ std::optional<Digest> digest_of_file(const std::string& path) {
   }
 }
 
-/// Of everything that is put into an entry or got from it, in this order.
-template <typename Bytes, typename Material>
-void material_words(Bytes&& bytes, Material& material) {
-  bytes(material.name);
-  bytes(material.kd);
-  bytes(material.ks);
+/// All that is put into an entry or got from it, in this order. `bytes(value)` puts or gets one.
+template <typename File, typename Bytes>
+void each_member(File& file, const Bytes& bytes) {
+  auto& scene = file.scene;
+  bytes(scene.name);
+  bytes(scene.vertices);
+  bytes(scene.triangles);
+  bytes(scene.triangle_materials);
+  for (auto& material : scene.materials) {
+    bytes(material.name);
+    bytes(material.kd);
+    bytes(material.ks);
+  }
+  bytes(scene.camera);
+  bytes(scene.light);
+  bytes(scene.cameras);
+  bytes(scene.warnings);
+  bytes(scene.centre);
+  bytes(file.camera);
+  bytes(file.light);
+  bytes(file.up);
 }
 
 void put(BytesWriter& out, const SceneFile& file) {
-  const Scene& scene = file.scene;
-  out.put(scene.name);
-  out.put(scene.vertices);
-  out.put(scene.triangles);
-  out.put(scene.triangle_materials);
-  out.put(uint64_t{scene.materials.size()});
-  for (const Material& material : scene.materials) material_words([&](const auto& value) { out.put(value); }, material);
-  out.put(scene.camera);
-  out.put(scene.light);
-  out.put(scene.cameras);
-  out.put(scene.warnings);
-  out.put(scene.centre);
-  const auto put_optional = [&](const auto& value) {
-    out.put(value.has_value());
-    if (value) out.put(*value);
-  };
-  put_optional(file.camera);
-  put_optional(file.light);
-  put_optional(file.up);
+  out.put(uint64_t{file.scene.materials.size()});
+  each_member(file, [&](const auto& value) { out.put(value); });
 }
 
 void get(BytesReader& in, SceneFile& file) {
-  Scene& scene = file.scene;
-  in.get(scene.name);
-  in.get(scene.vertices);
-  in.get(scene.triangles);
-  in.get(scene.triangle_materials);
   uint64_t materials = 0;
   in.get(materials);
-  for (uint64_t i = 0; i < materials; ++i)
-    material_words([&](auto& value) { in.get(value); }, scene.materials.emplace_back());
-  in.get(scene.camera);
-  in.get(scene.light);
-  in.get(scene.cameras);
-  in.get(scene.warnings);
-  in.get(scene.centre);
-  const auto get_optional = [&](auto& value) {
-    bool there = false;
-    in.get(there);
-    if (there) in.get(value.emplace());
-  };
-  get_optional(file.camera);
-  get_optional(file.light);
-  get_optional(file.up);
+  file.scene.materials.resize(materials);
+  each_member(file, [&](auto& value) { in.get(value); });
 }
 
 /// A file's bytes, mapped into memory.

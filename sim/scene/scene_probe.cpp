@@ -12,7 +12,6 @@ namespace {
 constexpr double kBlack = 0.002;
 
 double brightest(const Vec3& v) { return std::max({v.x, v.y, v.z}); }
-double largest_of(const Vec3d& v) { return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)}); }
 
 }  // namespace
 

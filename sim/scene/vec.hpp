@@ -1,6 +1,7 @@
 // Three-component vectors: Vec3 (float) is what scenes are stored in, Vec3d (double) what they are computed in.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 namespace raypool {
@@ -47,6 +48,11 @@ Vector3<T> cross(const Vector3<T>& a, const Vector3<T>& b) {
 template <typename T>
 T length(const Vector3<T>& a) {
   return std::sqrt(dot(a, a));
+}
+/// Of the components, without their signs.
+template <typename T>
+T largest_of(const Vector3<T>& a) {
+  return std::max({std::fabs(a.x), std::fabs(a.y), std::fabs(a.z)});
 }
 /// `a` must not be zero.
 template <typename T>

@@ -25,7 +25,6 @@ constexpr float kNearOrigin = 1.0f / 32;
 constexpr float kFloatScale = 1.0f / 65536;
 constexpr float kIntegerScale = 256;
 
-float largest_of(const Vec3& v) { return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)}); }
 Vec3 along(const OffsetInput& in, float offset) { return in.origin + in.direction * in.t + in.normal * offset; }
 
 Vec3 integer_offset(const OffsetInput& in) {
