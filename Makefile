@@ -123,7 +123,7 @@ help: ## the targets and variables that one needs first
 	@echo
 	@sed -nE '/^#: .*make sim/,/^$$/ s/^#:   ((SCENE|CONFIG|ENGINE|BOUNDARY|SIZE|DEPTH|OUT)=[^ ]*).*/\1/p' Makefile | \
 	  paste -sd ' ' | fold -sw 96 | sed '1s/^/  of make sim: /; 2,$$s/^/               /; s/ $$//'
-	@echo '  make help-all lists every target and variable, docs/commands.md what to do with them'
+	@echo '  make help-all lists every target and variable, docs/use/commands.md what to do with them'
 
 help-all: ## every target and variable
 	@echo 'raypool: a ray-tracing GPU to render on, measure, verify and synthesise'
@@ -212,12 +212,12 @@ faults: setup-sim setup-test configured-ON program ## faults in the Verilog: wha
 follow: setup-sim setup-follow program ## one pixel through the chip in Verilog, from a waveform
 	@$(FOLLOW) $(call options,$(call said,SCENE CONFIG CUS SIZE DEPTH) SET $(LOOK) PIXEL RAY STATION OUT) $(ARGS)
 
-tour: setup-sim setup-follow program ## write what docs/from-obj-to-pixel.md shows: its pictures, and what it quotes
+tour: setup-sim setup-follow program ## write what docs/start/from-obj-to-pixel.md shows
 	@$(FOLLOW) --out $(BUILD)/out/tour | tail -n 2
 	@for file in pixel.png time.svg way.svg export.svg node.svg triangle.svg launch.svg import.svg frame.svg; do \
 	  cp "$(BUILD)/out/tour/$$file" "docs/images/tour-$$file"; \
 	done
-	@scripts/quoted_output.py --update docs/from-obj-to-pixel.md
+	@scripts/quoted_output.py --update docs/start/from-obj-to-pixel.md
 
 isa: setup-sim program ## write what is derived from the tables of ALU types and instructions
 	@$(RAYPOOL) isa --write
@@ -275,7 +275,7 @@ numerics-long: setup-sim setup-test ## arithmetic against its oracles, 10^8 pair
 	  slw_alu_large_test brh_alu_test small_floats_test
 	@scripts/numerics_long.sh $(BUILD)/benches "$${THREADS:-1}"
 
-#: of make quoted:  ARGS="--long --update docs/isa.md": what takes long too; write it into the pages; only these
+#: of make quoted:  ARGS="--long --update docs/machine/isa.md": what takes long too; write it into the pages; only these
 quoted: setup-sim setup-test setup-synth setup-quoted configured-ON ## run what the pages quote
 	@scripts/build.sh $(BUILD) all raypool_chip_frames
 	@scripts/quoted_output.py $(ARGS)

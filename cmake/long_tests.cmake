@@ -1,5 +1,5 @@
 # Tests that `make test` leaves to `make test-long`. They stand in ten shares of about the same length; .ci/run takes
-# one, another one with each commit (docs/verification.md). A test of the K-th share has the one label long-K.
+# one, another one with each commit (docs/develop/verification.md). A test of the K-th share has the one label long-K.
 set(RAYPOOL_SHARES 10)
 foreach(share RANGE 1 ${RAYPOOL_SHARES})
   set_property(GLOBAL PROPERTY RAYPOOL_SHARE_${share} 0)

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Checks docs/modules.md against the project: scripts/module_table.py; exit code 1 if a row is missing or untrue.
+"""Checks docs/machine/modules.md against the project: scripts/module_table.py; exit code 1 if a row is
+missing or untrue.
 
 Each module of rtl/ has one row: module, without its prefix, Verilog file, C++, tests, proofs. What the C++ column names
 is defined in a file that it names, and a class that is called like the module is among them. A test builds a module
@@ -10,7 +11,7 @@ import re
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-PAGE = ROOT / "docs/modules.md"
+PAGE = ROOT / "docs/machine/modules.md"
 NOTHING = "-"
 PREFIX = "rp_"
 
@@ -160,9 +161,9 @@ def main():
     errors += [f"{name}: it has no row" for name in texts if name not in seen]
     errors += [f"{name}: it has more than one row" for name in sorted(set(seen)) if seen.count(name) > 1]
     for error in errors:
-        print(f"docs/modules.md: {error}", file=sys.stderr)
+        print(f"docs/machine/modules.md: {error}", file=sys.stderr)
     if not errors:
-        print(f"docs/modules.md: {len(seen)} modules, each with its row; all that the rows name is there")
+        print(f"docs/machine/modules.md: {len(seen)} modules, each with its row; all that the rows name is there")
     return 1 if errors else 0
 
 

@@ -13,7 +13,7 @@ import sys
 import module_table
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-PAGES = [ROOT / "README.md"] + sorted((ROOT / "docs").glob("*.md"))
+PAGES = [ROOT / "README.md"] + sorted((ROOT / "docs").rglob("*.md"))
 FOLDERS = (
     "bench",
     "cmake",
@@ -33,7 +33,7 @@ FOLDERS = (
 PATH = re.compile(rf"^(?:{'|'.join(FOLDERS)})/[\w./*+-]*$")
 MEMBER = re.compile(r"^([A-Z]\w+)::(\w+)$")
 IDENTIFIER = re.compile(r"^\w*(?:[a-z0-9]_[a-z0-9]|[A-Z]_[A-Z]|[a-z][A-Z])\w*$")
-MADE = {"docs/add-an-alu.md": ("box", "Box", "BOX", "near_of_b")}  # what the page itself makes
+MADE = {"docs/develop/add-an-alu.md": ("box", "Box", "BOX", "near_of_b")}  # what the page itself makes
 
 
 def without_code(text):
@@ -63,7 +63,7 @@ def figure_errors(readme):
     """Which of the README's figures the page beside them does not have; and how many figures it has."""
     errors, looked = [], 0
     for item in re.findall(r"^- \*\*(.*?)\*\*(.*?)(?=^-|^#|\Z)", readme, re.M | re.S):
-        page = re.search(r"\]\((docs/[\w-]+\.md)", item[1])
+        page = re.search(r"\]\((docs/[\w/-]+\.md)", item[1])
         text = (ROOT / page.group(1)).read_text() if page else ""
         known = set(re.findall(r"\d+(?:\.\d+)?", text))
         for figure in re.findall(r"\d[\d,]*(?:\.\d+)?", item[0]):

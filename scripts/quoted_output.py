@@ -25,7 +25,7 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-PAGES = ["README.md"] + sorted(str(path.relative_to(ROOT)) for path in (ROOT / "docs").glob("*.md"))
+PAGES = ["README.md"] + sorted(str(path.relative_to(ROOT)) for path in (ROOT / "docs").rglob("*.md"))
 INDENT = "    "
 OPTION = re.compile(r"<!-- quoted: (.*) -->$")
 TIME = re.compile(r"\b\d+(\.\d+)? (s|min|h)\b")
@@ -189,7 +189,7 @@ def main():
     options = parser.parse_args()
     unknown = [page for page in options.pages if page not in PAGES]
     if unknown:
-        parser.error(f"'{unknown[0]}' is no page: README.md or one of docs/*.md, named from the project's folder")
+        parser.error(f"'{unknown[0]}' is no page: README.md or one of docs/**/*.md, named from the project's folder")
     wrong = [text for text in options.file if "=" not in text or not pathlib.Path(text.split("=", 1)[1]).is_file()]
     if wrong:
         parser.error(f"--file {wrong[0]}: NAME=PATH of a file that is there")

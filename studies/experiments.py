@@ -1,6 +1,7 @@
 #!/usr/bin/python3
-"""Tables and plots of docs/experiments.md, of the table.json that a sweep of configs/experiments/published.json, or for
-thresholds that of thresholds.json, leaves; with the published figures of configs/experiments/published.csv:
+"""Tables and plots of docs/studies/experiments.md, of the table.json that a sweep of
+configs/experiments/published.json, or for thresholds that of thresholds.json, leaves; with the published figures of
+configs/experiments/published.csv:
 
     studies/experiments.py published|use|issue|kernels|cycles|... TABLE.json
     studies/experiments.py plot-speed|plot-cycles TABLE.json PICTURE.png

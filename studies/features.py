@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Tables and a plot of docs/best.md, of the table.json that a sweep of configs/experiments/features.json, way.json or
-features_area.json leaves:
+"""Tables and a plot of docs/studies/best.md, of the table.json that a sweep of configs/experiments/features.json,
+way.json or features_area.json leaves:
 
     studies/features.py alone TABLE.json              each feature alone and last: cycles
     studies/features.py area TABLE.json               each feature last: area and power

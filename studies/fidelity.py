@@ -3,8 +3,8 @@
 
     studies/fidelity.py [--levels native,model,...] [--runs N] [--out FOLDER] [options of raypool sim]
 
-Prints a table and leaves fidelity.json (docs/speed-and-accuracy.md), fidelity.svg and each level's picture and report
-in FOLDER. `make fidelity` calls it. RAYPOOL names the program, default raypool in the build folder (BUILD).
+Prints a table and leaves fidelity.json (docs/use/speed-and-accuracy.md), fidelity.svg and each level's picture and
+report in FOLDER. `make fidelity` calls it. RAYPOOL names the program, default raypool in the build folder (BUILD).
 """
 import argparse
 import contextlib

@@ -4,8 +4,9 @@
     studies/pareto.py [--machines "24 20-flush-newton1 24-fit ..."] [--no-area] [--out FOLDER] [options of raypool sim]
 
 Each picture is held against the frame in double precision. Prints a table and leaves pareto.json
-(docs/speed-and-accuracy.md), pareto.svg, and in machines/ each machine's picture and the configuration of those that
-were fitted, in FOLDER. `make pareto` calls it. RAYPOOL names the program, default raypool in the build folder (BUILD).
+(docs/use/speed-and-accuracy.md), pareto.svg, and in machines/ each machine's picture and the configuration of those
+that were fitted, in FOLDER. `make pareto` calls it. RAYPOOL names the program, default raypool in the build folder
+(BUILD).
 """
 import argparse
 import contextlib

@@ -42,14 +42,14 @@ fit: setup-sim $(FIT_SETUP) program ## what a scene needs of CONFIG: a configura
 #:   JOBS=N                        points at a time                            all cores; slurm: 100
 #:   SCENES=FOLDER:FOLDER          where scenes are that are not part of the project
 #:   OUT=FOLDER
-sweep: setup-sim $(SWEEP_SETUP) program ## all points of EXPERIMENT (docs/sweeps.md)
+sweep: setup-sim $(SWEEP_SETUP) program ## all points of EXPERIMENT (docs/use/sweeps.md)
 	@[ -n "$${EXPERIMENT-}" ] || { echo 'make sweep: say which, EXPERIMENT=configs/experiments/caches.json' >&2; exit 1; }
 	@$(SWEEP) "$$EXPERIMENT" $(call options,WHERE OUT JOBS) $(ARGS)
 
 #: variables of make report
 #:   FROM="FOLDER ..."             sweeps, runs, synthesis reports, or folders of them
 #:   OUT=FOLDER
-report: setup-sim setup-report program ## sweeps, runs and synthesis reports as one page (docs/page.md)
+report: setup-sim setup-report program ## sweeps, runs and synthesis reports as one page (docs/use/page.md)
 	@$(REPORT) $${FROM:+--from $$FROM} $(call options,OUT) $(ARGS)
 
 #: variables of make numerics:  GATES=1: synthesise the lanes of every mode first;  OUT=FOLDER

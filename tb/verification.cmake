@@ -1,5 +1,5 @@
 # Random programs, regressions, configurations and the second simulator, as tests.
-# docs/verification.md tells what each is for.
+# docs/develop/verification.md tells what each is for.
 set(raypool_program $<TARGET_FILE:raypool>)
 set(scripts ${CMAKE_SOURCE_DIR}/scripts)
 set(small_config ${CMAKE_SOURCE_DIR}/tb/mutants/2w2c.json)
@@ -35,9 +35,9 @@ add_test(NAME inspected_differences COMMAND ${scripts}/tests/inspect.sh ${raypoo
   ${CMAKE_BINARY_DIR}/faults-test)
 set_tests_properties(inspected_differences PROPERTIES FIXTURES_REQUIRED faulty_2w2c TIMEOUT 300)
 
-# docs/modules.md names every module of rtl/, and no page names what is not there.
+# docs/machine/modules.md names every module of rtl/, and no page names what is not there.
 add_test(NAME module_table COMMAND ${scripts}/module_table.py)
-# docs/verification.md says of each counter of rtl/ in which test it wraps.
+# docs/develop/verification.md says of each counter of rtl/ in which test it wraps.
 add_test(NAME counter_table COMMAND ${scripts}/counter_table.py)
 add_test(NAME pages COMMAND ${scripts}/pages.py)
 # Neither the machine nor what verifies it uses a study of it; CMakeLists.txt checks the same of targets.

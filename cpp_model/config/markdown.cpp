@@ -1,4 +1,4 @@
-// Writes docs/parameters.md.
+// Writes docs/machine/parameters.md.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 

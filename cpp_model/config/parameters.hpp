@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // The one table of a machine's parameters: of the compute unit, and of the chip around it. Members of Configuration,
-// what a configuration file may say and its schema, docs/parameters.md, parameter lists of the Verilog and their
-// checks, raypool.core and the configurations that tests walk are derived from it. docs/where.md adds a parameter.
+// what a configuration file may say and its schema, docs/machine/parameters.md, parameter lists of the Verilog and
+// their checks, raypool.core and the configurations that tests walk are derived from it. docs/develop/where.md adds a
+// parameter.
 #pragma once
 
 #include <array>

@@ -13,7 +13,7 @@ namespace raypool {
 /// schemas/configuration.json: the JSON Schema of configuration files.
 std::string configuration_schema();
 
-/// docs/parameters.md
+/// docs/machine/parameters.md
 std::string parameters_markdown();
 
 /// rtl/include/rp_*_parameters.vh, to be included in a parameter list; rtl/include/rp_*_parameter_map.vh, to be

@@ -90,7 +90,7 @@ std::vector<GeneratedFile> parameters_verilog() {
 std::vector<GeneratedFile> generated_parameter_files() {
   std::vector<GeneratedFile> files = parameters_verilog();
   for (GeneratedFile& file : files) file.text.insert(0, kLicence);
-  files.push_back({"docs/parameters.md", parameters_markdown()});
+  files.push_back({"docs/machine/parameters.md", parameters_markdown()});
   files.push_back({"schemas/configuration.json", configuration_schema()});
   return files;
 }

@@ -185,7 +185,8 @@ class Assembler {
     const std::string mnemonic = word();
     if (mnemonic.empty()) fail(start, fmt::format("expected an instruction, found {}", rest()));
     parts.info = find_instruction(mnemonic);
-    if (parts.info == nullptr) fail(start, fmt::format("unknown instruction '{}'; docs/isa.md lists them", mnemonic));
+    if (parts.info == nullptr)
+      fail(start, fmt::format("unknown instruction '{}'; docs/machine/isa.md lists them", mnemonic));
     bool first = true;
     for (const Operand operand : parts.info->operands) {
       if (operand == Operand::None) continue;

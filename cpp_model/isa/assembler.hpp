@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
-// Text to machine code and back. docs/isa.md describes the text.
+// Text to machine code and back. docs/machine/isa.md describes the text.
 #pragma once
 
 #include <cstdint>

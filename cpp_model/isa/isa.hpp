@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // The one table of ALU types and instructions. Decoder, encoder, assembler, disassembler, configuration keys, Verilog
-// parameters, rtl/include/*.vh and docs/isa.md are derived from it. docs/add-an-alu.md adds a type.
+// parameters, rtl/include/*.vh and docs/machine/isa.md are derived from it. docs/develop/add-an-alu.md adds a type.
 //
 // Encoding of an instruction, 64 bits:
 //   63:60 type | 59:55 operation | 54 guard negated | 53:50 guard predicate
@@ -24,12 +24,12 @@ namespace raypool {
 //   name        three lower-case letters: key of the configuration, prefix of the Verilog parameters, module <name>_alu
 //   depth       least pipeline depth, which is what the function needs at speed, and
 //               the default one; 0: timed by events
-//   ports       Framework: those of docs/architecture.md, section 3; rtl/include/rp_alu_instances.vh
+//   ports       Framework: those of docs/machine/architecture.md, section 3; rtl/include/rp_alu_instances.vh
 //               places it. Guarded: these and done_subnormal_o. Own: rtl/compute/rp_compute_unit.v places it
 //   parameters  of the module beside the framework's, as rtl/compute/rp_compute_unit.v names them, separated by ", "; a
 //   type
 //               with instructions that are Optional has WITHOUT too, a bit for each operation that it lacks
-//   title       for docs/isa.md
+//   title       for docs/machine/isa.md
 // CORE: FunctionalCore executes the type. CLASS: a class derived from AluModel does, and the ports are the framework's.
 // clang-format off
 #define RAYPOOL_ALU_TYPES(CORE, CLASS) \
@@ -139,7 +139,7 @@ enum class Feature : uint8_t {
 //   operands   four of Operand, in the order of the assembly text
 //   immediate  of ImmediateType: what operand B is when it is no register
 //   kind       of Kind
-//   meaning    for docs/isa.md; behind it, if not every machine has the instruction, a Feature
+//   meaning    for docs/machine/isa.md; behind it, if not every machine has the instruction, a Feature
 #define RAYPOOL_INSTRUCTIONS(ROW) \
   /* Tid: indices, dimensions, arguments */ \
   ROW(Tid,     Tid, 0,  Rd, None, None, None, None, Plain, "rd = index of the thread in its block") \

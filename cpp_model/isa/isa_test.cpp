@@ -340,7 +340,7 @@ TEST(Assembler, ErrorsNameLineColumnAndRemedy) {
   EXPECT_EQ(error_of("@p16 mov r1, 1"), "file:1:2: unknown predicate p16; predicates are p0 to p15");
   EXPECT_EQ(error_of("mov r01, 1"), "file:1:5: unknown register r01; registers are r0 to r15");
   EXPECT_EQ(error_of("iadd r1, r2, r17"), "file:1:14: unknown register r17; registers are r0 to r15");
-  EXPECT_EQ(error_of("fad r1, r2, r3"), "file:1:1: unknown instruction 'fad'; docs/isa.md lists them");
+  EXPECT_EQ(error_of("fad r1, r2, r3"), "file:1:1: unknown instruction 'fad'; docs/machine/isa.md lists them");
   EXPECT_EQ(error_of("fadd r1, r2"), "file:1:12: expected ',' before the next operand, found the end of the line");
   EXPECT_EQ(error_of("fadd r1, r2, r3, r4"), "file:1:16: expected the end of the line, found ','");
   EXPECT_EQ(error_of("fadd r1, r2, 2"),
@@ -383,7 +383,7 @@ TEST(Generated, ExampleInTheReferenceAssembles) {
   const size_t begin = text.find("# a comment");
   const size_t end = text.find("```", begin);
   ASSERT_NE(begin, std::string::npos);
-  EXPECT_EQ(assemble(text.substr(begin, end - begin), "docs/isa.md").code.size(), 7u);
+  EXPECT_EQ(assemble(text.substr(begin, end - begin), "docs/machine/isa.md").code.size(), 7u);
 }
 
 }  // namespace

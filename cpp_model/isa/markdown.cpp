@@ -1,4 +1,4 @@
-// Writes docs/isa.md.
+// Writes docs/machine/isa.md.
 #include <fmt/format.h>
 
 #include "isa/encoding.hpp"

@@ -21,7 +21,7 @@ std::string isa_verilog_functions();
 std::string counters_verilog();
 /// rtl/include/rp_records.vh: places of the fields of records, to be included inside a module body.
 std::string records_verilog();
-/// docs/isa.md
+/// docs/machine/isa.md
 std::string isa_markdown();
 
 /// rtl/include/rp_alu_instance_types.vh: how many types and instances, the type of each instance; to be included inside

@@ -114,7 +114,7 @@ std::vector<GeneratedFile> generated_files() {
           {"rtl/include/rp_records.vh", kLicence + records_verilog()},
           {"rtl/include/rp_alu_instance_types.vh", kLicence + alu_instance_types_verilog()},
           {"rtl/include/rp_alu_instances.vh", kLicence + alu_instances_verilog()},
-          {"docs/isa.md", isa_markdown()}};
+          {"docs/machine/isa.md", isa_markdown()}};
 }
 
 }  // namespace raypool

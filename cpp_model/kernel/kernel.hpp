@@ -14,7 +14,7 @@
 //   }
 //
 // With K = NativeKernel it runs as C++, one thread at a time; with K = RecordedKernel, through add_kernel(), it becomes
-// machine code. Both give the same bits. docs/kernels.md has the language's rules and lists its operations.
+// machine code. Both give the same bits. docs/use/kernels.md has the language's rules and lists its operations.
 #pragma once
 
 #include "kernel/compiler.hpp"

@@ -13,7 +13,7 @@
 namespace raypool::kernel {
 namespace {
 
-/// The example of docs/kernels.md.
+/// The example of docs/use/kernels.md.
 template <typename K>
 void scale(K& k) {
   using Int = typename K::Int;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // The ray kernels' source. kernels.hpp says what each is for, packages.hpp what the words
-// hold, docs/kernels.md has the formulas.
+// hold, docs/use/kernels.md has the formulas.
 #pragma once
 
 #include <limits>

@@ -96,7 +96,7 @@ struct Case {
   }
 };
 
-/// The shadow ray that the formulas of docs/kernels.md give, in double precision.
+/// The shadow ray that the formulas of docs/use/kernels.md give, in double precision.
 struct Expected {
   Vec origin, direction, contribution, reflected, throughput;
   double facing;  // how clearly the ray meets one side; near 0 rounding decides
@@ -342,13 +342,13 @@ TEST(RayKernels, AreAsShortAsTheyWere) {
 }
 
 TEST(RayKernels, DocumentHasTheTableOfToday) {
-  std::ifstream file("docs/kernels.md");
+  std::ifstream file("docs/use/kernels.md");
   ASSERT_TRUE(file.good()) << "run the tests from the repository's root";
   std::stringstream document, table(kernel_table());
   document << file.rdbuf();
   for (std::string line; std::getline(table, line);) {
     EXPECT_NE(document.str().find("\n    " + line + "\n"), std::string::npos)
-        << "put the output of `raypool kernels` into docs/kernels.md:\n"
+        << "put the output of `raypool kernels` into docs/use/kernels.md:\n"
         << line;
   }
 }

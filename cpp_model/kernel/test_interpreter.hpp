@@ -1,4 +1,5 @@
-// For tests: runs machine code of one warp on one ray slice, written from docs/isa.md and docs/architecture.md alone.
+// For tests: runs machine code of one warp on one ray slice, written from docs/machine/isa.md and
+// docs/machine/architecture.md alone.
 #pragma once
 
 #include <array>

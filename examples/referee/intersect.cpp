@@ -1,4 +1,4 @@
-// An intersector of your own on a corpus of hard rays (docs/referee.md), without building raypool:
+// An intersector of your own on a corpus of hard rays (docs/use/referee.md), without building raypool:
 //   g++ -O2 -std=c++17 intersect.cpp -o intersect && ./intersect corpus.jsonl answers.jsonl
 // Replace meet(), which is Moeller and Trumbore's test in double.
 #include <algorithm>

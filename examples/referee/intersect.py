@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""An intersector of your own on a corpus of hard rays (docs/referee.md): intersect.py corpus.jsonl answers.jsonl
+"""An intersector of your own on a corpus of hard rays (docs/use/referee.md): intersect.py corpus.jsonl answers.jsonl
 
 Replace meet(), which is Moeller and Trumbore's test in double.
 """

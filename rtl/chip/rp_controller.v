@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // The controller: cuts a picture into tiles, and launches on the units what the policy proposes, as far as it is safe.
-// docs/chip.md, sections 3, 4 and 8.
+// docs/machine/chip.md, sections 3, 4 and 8.
 // What it sees of a cycle, levels and events, is counted in the next one; rules and launch take one each, the policy
 // two: so a launch is made five cycles after what it was decided on, and until it is counted nothing else is decided.
 // Promises: a kernel imports only what has been reserved for it; the two rules of section 4; every tile is cast once;

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
-// The intersection pool: a queue for each kind of intersection behind a port of 128 bits. docs/chip.md gives its
-// cycles.
-// Promises: the oldest package of the kind that is asked for leaves, once, its beats in the order of the requests; its
-// place is free from the cycle after its request has been taken on; no output depends on an input of the same cycle.
-// Must be given: the beats of a package one after the other, of one kind; a request that stays until it is taken;
-// reservations of what is available only, and requests of what has been reserved. Kinds are 1 normal, 2 shadow, 3
-// direct; buses with something for each kind have normal in the low bits. 2 only with SHADOWS, 3 only with CULLING.
+// The intersection pool: a queue for each kind of intersection behind a port of 128 bits. docs/machine/chip.md gives
+// its cycles. Promises: the oldest package of the kind that is asked for leaves, once, its beats in the order of the
+// requests; its place is free from the cycle after its request has been taken on; no output depends on an input of the
+// same cycle. Must be given: the beats of a package one after the other, of one kind; a request that stays until it is
+// taken; reservations of what is available only, and requests of what has been reserved. Kinds are 1 normal, 2 shadow,
+// 3 direct; buses with something for each kind have normal in the low bits. 2 only with SHADOWS, 3 only with CULLING.
 `default_nettype none
 module rp_intersection_pool #(
   parameter integer SIZE = 512,               // packages of each kind

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
-// The policy of the thesis (its figure 5.3): which kernel a unit that can take one gets. docs/chip.md, section 3.
-// What is seen in a cycle is decided in the next one.
-// Promises: threads of a kernel are at most CONTENTS and what there is of its intersections, for a secondary kernel
-// secondary_room_i too, and at least one; eye rays are cast only if a tile may be.
+// The policy of the thesis (its figure 5.3): which kernel a unit that can take one gets. docs/machine/chip.md, section
+// 3. What is seen in a cycle is decided in the next one. Promises: threads of a kernel are at most CONTENTS and what
+// there is of its intersections, for a secondary kernel secondary_room_i too, and at least one; eye rays are cast only
+// if a tile may be.
 `default_nettype none
 module rp_thesis_policy #(
   parameter integer CONTENTS = 64,                 // threads of a full kernel

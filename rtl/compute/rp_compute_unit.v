@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
-// One SIMT compute unit: instruction routine, data routine, ALUs, caches, ray memory, launch. docs/architecture.md
-// describes it.
-// Promises: no output depends combinationally on an input; every valid/ready pair keeps its payload until taken.
+// One SIMT compute unit: instruction routine, data routine, ALUs, caches, ray memory, launch.
+// docs/machine/architecture.md describes it. Promises: no output depends combinationally on an input; every valid/ready
+// pair keeps its payload until taken.
 `default_nettype none
 module rp_compute_unit #(
 `include "rp_unit_parameters.vh"
@@ -60,7 +60,7 @@ module rp_compute_unit #(
   output wire [3:0]                fault_code_o,
   output wire [WARP_BITS-1:0]      fault_warp_o,
   output wire [15:0]               fault_pc_o,
-  // performance counters, docs/architecture.md
+  // performance counters, docs/machine/architecture.md
   input  wire [5:0]                counter_select_i,
   output wire [63:0]               counter_o,          // the one exception: depends on counter_select_i
   // trace, valid in the cycle of write-back

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // One warp's instruction buffer: the current instruction in the data routine, the next one in the instruction routine,
-// and the state of both. docs/architecture.md, section 3, has the cycles.
+// and the state of both. docs/machine/architecture.md, section 3, has the cycles.
 `default_nettype none
 module rp_instruction_buffer #(
   parameter [0:0] FMA = 1'b0,          // ffma is legal

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // The memory ALU: loads and stores of a warp's lanes through the data cache, one quadword (16 bytes) a cycle.
-// docs/memory.md gives it cycle by cycle. A task that arrives in cycle t computes its addresses in t, looks quadword k
-// up in t+1+k and accesses it in t+2+k; with n quadwords that hit, it is done in t+2+n. Lanes whose line is absent are
-// left over: the warp is parked and gives way to others, and passes again over the lanes concerned when the line has
-// come.
-// Promises: an instruction with an illegal address has no effect but the fault; every task ends, whatever other warps
-// do, if the memory answers.
-// Must be given: one task at a time of a warp; invalidate_i only while there is no task.
+// docs/machine/memory.md gives it cycle by cycle. A task that arrives in cycle t computes its addresses in t, looks
+// quadword k up in t+1+k and accesses it in t+2+k; with n quadwords that hit, it is done in t+2+n. Lanes whose line is
+// absent are left over: the warp is parked and gives way to others, and passes again over the lanes concerned when the
+// line has come. Promises: an instruction with an illegal address has no effect but the fault; every task ends,
+// whatever other warps do, if the memory answers. Must be given: one task at a time of a warp; invalidate_i only while
+// there is no task.
 `default_nettype none
 module rp_mem_alu #(
 `include "rp_data_cache_parameters.vh"

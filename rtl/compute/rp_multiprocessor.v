@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // 1, 2 or 4 compute units behind one set of ports: a block scheduler, and arbiters for memory, imports, exports and
-// frame contributions. docs/multiprocessor.md gives their cycles. With one unit all of it is wires.
+// frame contributions. docs/machine/multiprocessor.md gives their cycles. With one unit all of it is wires.
 // Promises: no output depends combinationally on an input (counter_o excepted, which depends on its selection); every
 // valid/ready pair keeps its payload until taken; a ray's beats are not mixed with those of another unit.
 // Must be given: what a compute unit must; beats of imports in the order of the requests, from the cycle after the
@@ -71,7 +71,7 @@ module rp_multiprocessor #(
   output wire [WARP_BITS-1:0]            fault_warp_o,
   output wire [15:0]                     fault_pc_o,
   output wire [1:0]                      fault_unit_o,
-  // performance counters, docs/architecture.md
+  // performance counters, docs/machine/architecture.md
   input  wire [1:0]                      counter_unit_i,
   input  wire [5:0]                      counter_select_i,
   output wire [63:0]                     counter_o,          // the exception: depends on counter_*_i

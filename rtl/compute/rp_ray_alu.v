@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // The ray ALU: three sets of local ray memory, of which every warp has a slice each; the slices change roles (input,
-// current, output) warp by warp. docs/ray-alu.md has the contract and the cycles.
+// current, output) warp by warp. docs/machine/ray-alu.md has the contract and the cycles.
 // Promises: rin, rout and rfb that have to wait do not block other warps; every task of a warp sees the effects of the
 // warp's earlier ones.
 // Must be given: one task at a time of a warp; tasks only after ready_o; for each package requested its beats, in

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
-  // The ports of every ALU, to be included at the end of a module's port list. docs/architecture.md, section 3, has
-  // their protocol. A task is there in the cycle in which task_valid_i is high. No ALU looks at all of it.
+  // The ports of every ALU, to be included at the end of a module's port list. docs/machine/architecture.md, section 3,
+  // has their protocol. A task is there in the cycle in which task_valid_i is high. No ALU looks at all of it.
   /* verilator lint_off UNUSEDSIGNAL */
   input  wire                   clk_i,
   input  wire                   rst_ni,

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
-// Whether and where a ray hits a triangle, from the triangle's plane: docs/traverser.md says what is computed. A test
-// a cycle, its result 30 + BITS / 2 cycles later; it never waits.
-// Tests of one ray may follow each other at once: what may change, its best hit, each is told in the cycle before its
-// result, so who answers must take the result that is shown then into account. Each asks a cycle before it is told.
-// Must be given: corners, and what the set-up of a valid ray has, so that no difference is infinite; a limit above
-// zero, and a best hit that is not before zero.
+// Whether and where a ray hits a triangle, from the triangle's plane: docs/machine/traverser.md says what is computed.
+// A test a cycle, its result 30 + BITS / 2 cycles later; it never waits. Tests of one ray may follow each other at
+// once: what may change, its best hit, each is told in the cycle before its result, so who answers must take the result
+// that is shown then into account. Each asks a cycle before it is told. Must be given: corners, and what the set-up of
+// a valid ray has, so that no difference is infinite; a limit above zero, and a best hit that is not before zero.
 `default_nettype none
 module rp_triangle_pipe #(
   parameter integer BITS = 32,        // of the significands of t

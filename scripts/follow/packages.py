@@ -1,4 +1,4 @@
-"""Words of rays and intersections, as docs/architecture.md has them."""
+"""Words of rays and intersections, as docs/machine/architecture.md has them."""
 import struct
 
 RAY_WORDS, INTERSECTION_WORDS = 12, 21

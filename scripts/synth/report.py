@@ -1,5 +1,5 @@
 """report.json of a synthesised unit or chip, its table, and the comparison with an earlier one.
-docs/synthesis.md explains the fields.
+docs/use/synthesis.md explains the fields.
 """
 import json
 import os

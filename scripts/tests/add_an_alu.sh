@@ -1,5 +1,5 @@
 #!/bin/bash
-# docs/add-an-alu.md works as it stands: scripts/tests/add_an_alu.sh FOLDER
+# docs/develop/add-an-alu.md works as it stands: scripts/tests/add_an_alu.sh FOLDER
 # Copies the sources to FOLDER/tree and does what the page's marked blocks say, in their
 # order. A comment before a block marks it:
 #   file: PATH                      the block is a new file
@@ -60,7 +60,7 @@ take() {
         expected=$((expected + 1))
       done < <(printf '%s' "$2")
       ;;
-    *) fail "docs/add-an-alu.md: unknown mark '$1'" ;;
+    *) fail "docs/develop/add-an-alu.md: unknown mark '$1'" ;;
   esac
 }
 
@@ -96,10 +96,10 @@ while IFS= read -r line; do
     line=${line#<!-- replace: }
     replace "${line% -->}"
   elif [[ $line == '<!-- '*' -->' ]]; then
-    [ -z "$mark" ] || fail "docs/add-an-alu.md: no block follows the mark '$mark'"
+    [ -z "$mark" ] || fail "docs/develop/add-an-alu.md: no block follows the mark '$mark'"
     mark=${line#<!-- } mark=${mark% -->}
   fi
-done < "$root/docs/add-an-alu.md"
+done < "$root/docs/develop/add-an-alu.md"
 [ $new -ge 3 ] && [ $inserted -ge 2 ] && [ $ran -ge 4 ] && [ $expected -ge 10 ] && [ $replaced -ge 1 ] ||
   fail "the page lost blocks: $new files, $inserted insertions, $ran runs," \
     "$expected expected lines, $replaced replacements"

@@ -230,7 +230,7 @@ class Report(Written):
         self.refuses(valid, report, required, [("x",), ("scene", "x"), ("configuration", "x"), ("rays_by_kind", "x")])
 
     def test_docs_name_each_field(self):
-        self.names_each_field("report.md", "report.json")
+        self.names_each_field("use/report.md", "report.json")
 
 
 if __name__ == "__main__":

@@ -22,11 +22,11 @@ grep -qE '^SystemC [0-9.]+.*Embree [0-9.]+' "$folder/version" ||
 [ "$(sed -nE '/^## /{s/^## ([0-9.]+).*/\1/p;q}' CHANGELOG.md)" = "$version" ] ||
   fail "the newest entry of CHANGELOG.md is not $version"
 
-# The table of docs/package.md is that of --help.
+# The table of docs/use/package.md is that of --help.
 "$raypool" --help | sed -nE 's/^  ([0-9])  (.*)/| \1 | \2 |/p' > "$folder/codes"
 [ "$(wc -l < "$folder/codes")" -ge 4 ] || fail "raypool --help lists no exit codes"
-sed -nE '/^\| [0-9] \|/p' docs/package.md | diff "$folder/codes" - ||
-  fail "docs/package.md has other exit codes than raypool --help"
+sed -nE '/^\| [0-9] \|/p' docs/use/package.md | diff "$folder/codes" - ||
+  fail "docs/use/package.md has other exit codes than raypool --help"
 
 # What --help knows, the man page and every completion know.
 "$raypool" man > "$folder/man"

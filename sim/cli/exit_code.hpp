@@ -1,5 +1,5 @@
 // The exit codes of `raypool`, one table: main/main.cpp returns them, --help and the man page
-// print them, docs/package.md lists them.
+// print them, docs/use/package.md lists them.
 #pragma once
 
 #include <array>

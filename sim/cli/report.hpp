@@ -1,4 +1,4 @@
-// What a run leaves in words and numbers: report.json (docs/report.md) and the table on the terminal.
+// What a run leaves in words and numbers: report.json (docs/use/report.md) and the table on the terminal.
 #pragma once
 
 #include <optional>

@@ -1,5 +1,5 @@
-// Sets of configurations that cover the parameters of docs/parameters.md: every value that matters, and pairs of
-// values.
+// Sets of configurations that cover the parameters of docs/machine/parameters.md: every value that matters, and pairs
+// of values.
 #pragma once
 
 #include <cstdint>

@@ -3,7 +3,7 @@
 // Engine `lockstep`: the RTL and the golden model side by side on the same inputs, compared in every
 // cycle; stops at the first difference.
 //
-// It is a ComputeUnit, so that the chip does not know it has one. docs/lockstep.md says what is compared.
+// It is a ComputeUnit, so that the chip does not know it has one. docs/develop/lockstep.md says what is compared.
 #pragma once
 
 #include <cstdint>

@@ -49,7 +49,7 @@ struct GltfDocument {
 /// Throws InputError naming file, place and what to do.
 GltfDocument read_gltf_document(const std::string& path);
 
-/// The rule of docs/scenes.md, "glTF files".
+/// The rule of docs/use/scenes.md, "glTF files".
 Material read_gltf_material(const JsonPlace& place, size_t index, MaterialLosses& losses);
 
 }  // namespace raypool

@@ -1,4 +1,4 @@
-// A ray and a few triangles, as a line of a corpus of cases (docs/referee.md), and what somebody says that the ray
+// A ray and a few triangles, as a line of a corpus of cases (docs/use/referee.md), and what somebody says that the ray
 // hits, as a line of answers: JSON, every float in hexadecimal digits, so that none is rounded.
 #pragma once
 

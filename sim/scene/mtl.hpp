@@ -1,4 +1,4 @@
-// Material libraries of OBJ files (MTL). docs/scenes.md, "OBJ files", says what is read.
+// Material libraries of OBJ files (MTL). docs/use/scenes.md, "OBJ files", says what is read.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,5 @@
-// Measures what the offset of secondary rays does, prints the table of docs/scenes.md, and holds offset_share() to it.
+// Measures what the offset of secondary rays does, prints the table of docs/use/scenes.md, and holds offset_share() to
+// it.
 #include <gtest/gtest.h>
 
 #include <algorithm>

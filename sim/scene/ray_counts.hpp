@@ -1,4 +1,4 @@
-// What became of the rays of a frame, by kind; docs/report.md defines the figures.
+// What became of the rays of a frame, by kind; docs/use/report.md defines the figures.
 // Every engine counts them the same way.
 #pragma once
 

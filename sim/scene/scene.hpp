@@ -1,5 +1,5 @@
 // What is rendered: triangles, materials, one camera, one point light; the built-in scenes, scene files and view files.
-// docs/scenes.md describes the formats.
+// docs/use/scenes.md describes the formats.
 #pragma once
 
 #include <array>
@@ -125,7 +125,7 @@ std::string to_json(const View& view);
 /// Throws InputError when look_at is where the eye is.
 void change_view(View& view, const ViewChanges& changes);
 
-/// A view for a scene of which nothing is known but its triangles, as docs/scenes.md
+/// A view for a scene of which nothing is known but its triangles, as docs/use/scenes.md
 /// describes; what `changes` sets is kept.
 /// Throws InputError when it cannot be used.
 View automatic_view(const Scene& scene, const ViewChanges& changes = {});

@@ -1,4 +1,4 @@
-// Readers of scene files that may bring their own camera and light. docs/scenes.md describes what they read.
+// Readers of scene files that may bring their own camera and light. docs/use/scenes.md describes what they read.
 #pragma once
 
 #include <optional>

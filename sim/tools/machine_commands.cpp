@@ -120,7 +120,7 @@ void MachineCommands::add_configurations_command() {
 void MachineCommands::add_isa_command() {
   CLI::App* isa_app = add("isa", "print the instruction table (default: as Markdown)");
   auto* isa_formats = isa_app->add_option_group("format");
-  isa_formats->add_flag("--markdown", markdown_, "docs/isa.md");
+  isa_formats->add_flag("--markdown", markdown_, "docs/machine/isa.md");
   isa_formats->add_flag("--verilog", verilog_, "rtl/include/rp_isa.vh: constants");
   isa_formats->add_flag("--verilog-functions", functions_, "rtl/include/rp_isa_functions.vh: decoding");
   isa_formats->add_flag("--write", write_, "all files that are derived from the table, in place");
@@ -168,7 +168,7 @@ void MachineCommands::add_scene_command() {
   scene_app->add_option("--write-obj", scene_.write_obj, "write it as an OBJ, with its MTL beside it");
   scene_app->add_option(
       "--write-bvh", scene_.write_bvh,
-      "write its tree as the traverser's memory holds it, a binary file that docs/scenes.md describes");
+      "write its tree as the traverser's memory holds it, a binary file that docs/use/scenes.md describes");
   scene_app
       ->add_option("--cache", scene_.cache,
                    "show what is kept of scenes, so that a later run need not read and sort their triangles again, or "

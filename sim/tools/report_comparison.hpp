@@ -17,8 +17,8 @@ struct Report {
 Report load_report(const std::string& path);
 
 /// `synthesis`: reports of synthesis, and folders of folders with one; of what lies in folders only reports count, and
-/// the newest that fits. Throws InputError when one that is named is none. docs/report.md describes the result. `map`:
-/// as of compare_pictures().
+/// the newest that fits. Throws InputError when one that is named is none. docs/use/report.md describes the result.
+/// `map`: as of compare_pictures().
 nlohmann::ordered_json compare_reports(const Report& a, const Report& b, const std::vector<std::string>& synthesis,
                                        const std::string& map = "");
 

@@ -55,7 +55,7 @@ void add_referee_options(CLI::App& app, RefereeCommandOptions& options) {
                                  ->check(CLI::Range(uint64_t{1}, uint64_t{1} << 30))
                                  ->capture_default_str();
   CLI::Option* const seed = app.add_option("--seed", options.seed, "of these")->capture_default_str();
-  app.add_option("--corpus", options.corpus, "file of cases instead (docs/referee.md)")->excludes(cases, seed);
+  app.add_option("--corpus", options.corpus, "file of cases instead (docs/use/referee.md)")->excludes(cases, seed);
   app.add_option("--write", options.write, "only write the cases, with their certificates, into this file");
   app.add_option("--answers", options.answers, "file of answers, which become a row; may be given several times")
       ->expected(1, -1)

@@ -1,4 +1,4 @@
-// A corpus as a file (docs/referee.md): a line a case, with its certificate.
+// A corpus as a file (docs/use/referee.md): a line a case, with its certificate.
 #pragma once
 
 #include <string>

@@ -1,1 +1,1 @@
-"""The page: sweeps, runs and synthesis reports as one static file, index.html. docs/page.md"""
+"""The page: sweeps, runs and synthesis reports as one static file, index.html. docs/use/page.md"""

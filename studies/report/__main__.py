@@ -20,7 +20,9 @@ USUAL = ("sweeps", "out", "synth")
 
 def parser():
     options = argparse.ArgumentParser(
-        prog="report", description="Turns sweeps, runs and synthesis reports into one page, index.html (docs/page.md).")
+        prog="report",
+        description="Turns sweeps, runs and synthesis reports into one page, index.html (docs/use/page.md).",
+    )
     options.add_argument("--from", dest="folders", nargs="+", default=[], metavar="FOLDER",
                          help="a sweep, run, synthesis report, or a folder of them (default: build/sweeps, out, synth)")
     options.add_argument("--out", default=os.path.join(BUILD, "report"), help="of index.html (default: build/report)")

@@ -101,7 +101,7 @@ def power_figure(points):
 
 def area_section(points):
     points = [point for point in points if point.area_mm2]
-    intro = "Area is that of make synth, scaled to 40 nm (docs/synthesis.md); the chip around the units is not in it."
+    intro = "make synth's area, scaled to 40 nm (docs/use/synthesis.md), without the chip around the units."
     figures = [area_figure(group) for group in runs_alike(points)]
     return Section("area", "Speed against area", intro, figures, AREA_MISSING)
 

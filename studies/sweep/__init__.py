@@ -1,1 +1,1 @@
-"""Sweeps: many runs of raypool from one file, by Snakemake. docs/sweeps.md"""
+"""Sweeps: many runs of raypool from one file, by Snakemake. docs/use/sweeps.md"""

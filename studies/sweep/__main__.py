@@ -22,7 +22,8 @@ SLURM_JOBS = 100
 
 def parser():
     options = argparse.ArgumentParser(
-        prog="sweep", description="Runs every point of an experiment (docs/sweeps.md) that is not finished yet, and "
+        prog="sweep",
+        description="Runs every point of an experiment (docs/use/sweeps.md) that is not finished yet, and "
         "writes table.csv and table.json of all that are.",
         epilog=EXIT_CODES, formatter_class=argparse.RawDescriptionHelpFormatter)  # fmt: skip
     options.add_argument("experiment", help="JSON file, as schemas/experiment.json says")

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The tables of docs/best.md: what they say is what the sweep's table says, and what is not there is told."""
+"""The tables of docs/studies/best.md: what they say is what the sweep's table says, and what is not there is told."""
 import json
 import pathlib
 import subprocess

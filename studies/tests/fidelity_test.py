@@ -136,7 +136,7 @@ class Runs(Case):
         self.assertEqual(found["speed_up_over"], slowest["level"])
 
     def test_the_page_says_what_each_level_is_for(self):
-        page = (ROOT / "docs/speed-and-accuracy.md").read_text(encoding="utf-8").split("## ")[0]
+        page = (ROOT / "docs/use/speed-and-accuracy.md").read_text(encoding="utf-8").split("## ")[0]
         self.assertEqual(re.findall(r"^\| `(\w+)` \|", page, re.M), LEVELS)
 
     def test_frames_that_differ_have_folders_of_their_own(self):

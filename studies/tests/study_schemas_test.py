@@ -37,7 +37,7 @@ class Fidelity(schemas_test.Written):
                      [("x",), ("scene", "x"), ("levels", 0, "x"), ("levels", 0, "picture", "x")])
 
     def test_docs_name_each_field(self):
-        self.names_each_field("speed-and-accuracy.md", "fidelity.json")
+        self.names_each_field("use/speed-and-accuracy.md", "fidelity.json")
 
 
 class Pareto(schemas_test.Written):
@@ -62,7 +62,7 @@ class Pareto(schemas_test.Written):
                       ("machines", 0, "area", "x")])  # fmt: skip
 
     def test_docs_name_each_field(self):
-        self.names_each_field("speed-and-accuracy.md", "pareto.json")
+        self.names_each_field("use/speed-and-accuracy.md", "pareto.json")
 
 
 class Fit(schemas_test.Written):
@@ -83,7 +83,7 @@ class Fit(schemas_test.Written):
                      [("x",), ("scene", "x"), ("cycles", "x"), ("changes", 0, "x"), ("fitted", "x")])
 
     def test_docs_name_each_field(self):
-        self.names_each_field("fit.md", "fit.json")
+        self.names_each_field("use/fit.md", "fit.json")
 
 
 if __name__ == "__main__":

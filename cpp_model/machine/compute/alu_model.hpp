@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // What a plain ALU computes: the golden model of a type that has a CLASS row in the table of
-// isa.hpp. docs/add-an-alu.md adds one.
+// isa.hpp. docs/develop/add-an-alu.md adds one.
 #pragma once
 
 #include <cstdint>

@@ -7,7 +7,7 @@
 // Use, once a cycle: read outputs() (what the unit's output ports show in this cycle; they never depend on
 // this cycle's inputs), decide the inputs, call clock(inputs). A handshake transfers when both its valid and
 // its ready are set in the same cycle.
-// docs/architecture.md and docs/multiprocessor.md give the protocols; names are those of
+// docs/machine/architecture.md and docs/machine/multiprocessor.md give the protocols; names are those of
 // rtl/compute/rp_multiprocessor.v without _i and _o.
 #pragma once
 

@@ -95,7 +95,7 @@ TEST(CycleUnit, LeavesWhatTheFunctionalUnitLeaves) {
   }
 }
 
-// docs/architecture.md, section 3.
+// docs/machine/architecture.md, section 3.
 TEST(CycleUnit, AWarpWithoutStallsIssuesEveryFourCyclesWithAnAluOfDepthOne) {
   const std::vector<uint64_t> code = assembled("tid r1; tid r2; tid r3; tid r4; exit");
   Memory memory = with_program(code);
@@ -145,7 +145,7 @@ std::vector<uint64_t> written_back(const std::string& text, uint32_t lanes, bool
   return cycles;
 }
 
-// docs/architecture.md, section 3. The last is a `tid` behind it, which takes 4.
+// docs/machine/architecture.md, section 3. The last is a `tid` behind it, which takes 4.
 TEST(CycleUnit, ATripleTakesTheCyclesThatArchitectureMdTells) {
   using Cycles = std::vector<uint64_t>;
   EXPECT_EQ(written_back("ffma r1, r4, r7, r10", 4, false), (Cycles{6, 10}));
@@ -286,7 +286,7 @@ TEST(CycleUnit, WarpsOfTwoKernelsRunAtTheSameTimeEachWithItsOwnLaunch) {
   EXPECT_GT(cycles.busy, 0u);
 }
 
-// docs/architecture.md, section 3.
+// docs/machine/architecture.md, section 3.
 TEST(CycleUnit, AWarpThatHasEndedIsStartedInTheNextCycle) {
   std::vector<uint64_t> between;
   for (const bool overlap : {false, true}) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/compute/rp_data_cache.v, cycle by cycle, without data: 2-way, least recently used, write-through, no
-// write-allocate, loads that miss do not block. docs/memory.md gives the rules that both sides follow.
+// write-allocate, loads that miss do not block. docs/machine/memory.md gives the rules that both sides follow.
 #pragma once
 
 #include <array>

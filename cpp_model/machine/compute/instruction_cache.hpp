@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
-// Time of the instruction cache: rtl/compute/rp_instruction_cache.v, cycle by cycle, without data; docs/memory.md,
-// section 4. The instructions themselves are the functional core's.
+// Time of the instruction cache: rtl/compute/rp_instruction_cache.v, cycle by cycle, without data;
+// docs/machine/memory.md, section 4. The instructions themselves are the functional core's.
 #pragma once
 
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/compute/rp_mem_alu.v, cycle by cycle, without data: the memory ALU around its cache, sequencer and request
-// queue. What loads and stores do to registers and memory is the functional core's; docs/memory.md
+// queue. What loads and stores do to registers and memory is the functional core's; docs/machine/memory.md
 // gives the rules that both sides follow.
 #pragma once
 

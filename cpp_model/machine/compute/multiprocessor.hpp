@@ -15,8 +15,9 @@
 
 namespace raypool {
 
-/// Block scheduler and arbiters agree with the RTL in every cycle (docs/multiprocessor.md); so the whole agrees as far
-/// as its units do. A clock costs a clock of each unit and some tests; payloads are copied only while they are valid.
+/// Block scheduler and arbiters agree with the RTL in every cycle (docs/machine/multiprocessor.md); so the whole agrees
+/// as far as its units do. A clock costs a clock of each unit and some tests; payloads are copied only while they are
+/// valid.
 class Multiprocessor : public ComputeUnit {
  public:
   /// 2 to kMostUnits single units of one configuration, whose intersections have so many beats.

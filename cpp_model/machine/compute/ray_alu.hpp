@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/compute/rp_ray_alu.v, cycle by cycle, without data: the tasks of the ray ALU, and which set is a warp's
 // input, current and output. The words of the local ray memory are the functional core's.
-// docs/ray-alu.md gives the rules that both sides follow.
+// docs/machine/ray-alu.md gives the rules that both sides follow.
 #pragma once
 
 #include <array>

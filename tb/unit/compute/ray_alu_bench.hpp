@@ -1,8 +1,8 @@
-// Drives a Verilated ray_alu between pools of random speed and checks in every cycle what docs/ray-alu.md promises:
-// every word read, every ray and frame contribution (order, lanes, content), which package goes to which thread, the
-// rules of requests, stable payloads, the trace, exporting_o, exports_o and import_active_o to the cycle, bounded time.
-// What the unit breaks is thrown, with cycle and seed. MODEL is a struct with the Verilated class as Unit and kWarps,
-// kLanes, kWide, kWords.
+// Drives a Verilated ray_alu between pools of random speed and checks in every cycle what docs/machine/ray-alu.md
+// promises: every word read, every ray and frame contribution (order, lanes, content), which package goes to which
+// thread, the rules of requests, stable payloads, the trace, exporting_o, exports_o and import_active_o to the cycle,
+// bounded time. What the unit breaks is thrown, with cycle and seed. MODEL is a struct with the Verilated class as Unit
+// and kWarps, kLanes, kWide, kWords.
 #pragma once
 
 #include <verilated.h>

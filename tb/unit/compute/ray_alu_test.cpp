@@ -1,5 +1,5 @@
-// The promises of rtl/compute/rp_ray_alu.v (docs/ray-alu.md), for narrow and wide warps. RayAluBench checks most
-// of them in every cycle of every test.
+// The promises of rtl/compute/rp_ray_alu.v (docs/machine/ray-alu.md), for narrow and wide warps. RayAluBench checks
+// most of them in every cycle of every test.
 #include <gtest/gtest.h>
 
 #include "Vray_alu_1x1.h"

@@ -1,6 +1,6 @@
-// Answers of the Verilog to a corpus of the referee (docs/referee.md): referee_answers < corpus.jsonl > answers.jsonl
-// The triangle pipe is given a test a cycle, of one case after another, as a lane gives them; a ray's set-up and the
-// scale of its t are those of the classes, which benches compare with their Verilog.
+// Answers of the Verilog to a corpus of the referee (docs/use/referee.md): referee_answers < corpus.jsonl >
+// answers.jsonl The triangle pipe is given a test a cycle, of one case after another, as a lane gives them; a ray's
+// set-up and the scale of its t are those of the classes, which benches compare with their Verilog.
 #include <cstdio>
 #include <exception>
 #include <iostream>
