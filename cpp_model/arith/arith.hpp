@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // Arithmetic of the Flt and Slw ALUs and of the float compares, bit for bit as the RTL does it. Values are IEEE-754
-// single bit patterns. Round to nearest even; every NaN result is 7FC00000. docs/studies/numerics.md has the rules.
+// single bit patterns. Round to nearest even; every NaN result is 7FC00000. docs/use/arithmetic.md has the rules.
 // Needs the host's default floating-point environment: nearest even, and neither flush-to-zero nor denormals-are-zero
 // set in MXCSR. What the kernels use most is inline and runs on the host's own unit.
 #pragma once
@@ -164,8 +164,8 @@ inline bool less_equal(uint32_t a, uint32_t b, Mode mode) {  ///< false with a N
 inline bool greater(uint32_t a, uint32_t b, Mode mode) { return less(b, a, mode); }
 inline bool greater_equal(uint32_t a, uint32_t b, Mode mode) { return less_equal(b, a, mode); }
 
-// The slow unit. Exact: each correctly rounded. Newton modes: what the RTL's table and steps give
-// (docs/studies/numerics.md has them). Zeros, infinities, NaNs and powers of four under rsqrt are exact in every mode.
+// The slow unit. Exact: each correctly rounded. Newton modes: what the RTL's table and steps give, which
+// docs/machine/float-units.md defines. Zeros, infinities, NaNs and powers of four under rsqrt are exact in every mode.
 uint32_t div(uint32_t a, uint32_t b, Mode mode);
 uint32_t sqrt(uint32_t a, Mode mode);
 uint32_t rsqrt(uint32_t a, Mode mode);  ///< one rounding; rsqrt(+-0) = +-infinity

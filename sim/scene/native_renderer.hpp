@@ -27,7 +27,7 @@ MemoryImage build_memory(const Program& program, const Scene& scene);
 
 /// A secondary ray's origin leaves its surface by this share of the sum of its hit's largest coordinate and t: four
 /// times the most by which a rounding of the kernels is off, and four times that of t, which has 24 bits in every
-/// machine; more where directions, of this length at most, are longer than 2. docs/studies/numerics.md says why that is
+/// machine; more where directions, of this length at most, are longer than 2. docs/studies/offset.md says why that is
 /// enough.
 double offset_share(double longest_direction, uint32_t significand = arith::kFullSignificand);
 

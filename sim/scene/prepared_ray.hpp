@@ -20,7 +20,7 @@ struct RayQuery {
 /// or made of products so small that floats have lost digits of them.
 inline constexpr float kLeastWeight = 0x1p-100f;
 /// What is left of a sum is a smaller share of its terms than this: some corners lie behind the ray's origin. Then the
-/// terms' errors, of floats, would be more than t bears whose error is that of a float (docs/studies/numerics.md).
+/// terms' errors, of floats, would be more than t bears whose error is that of a float (docs/studies/offset.md).
 inline constexpr double kCancelled = 0.5;
 /// Of Bvh: nodes on the way from the root to a leaf.
 inline constexpr int kMaxDepth = 80;
