@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Tables of docs/machine/traverser.md, of the folder that a sweep leaves:
+"""Tables of docs/studies/traverser-limits.md and test-widths.md, of the folder that a sweep leaves:
 
     studies/traverser_table.py binds build/sweeps/traverser    what binds the traverser: for each change of a machine
                                                                what the ceilings of the machine without it predict,

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // The chip: compute units, pools, controller, memory port and frame port, and with TRAVERSER the traverser. Outside
 // remain the memory, the frame buffer, a host that writes what stays for a frame and starts it, and a traverser at the
-// chip's ports; with one inside these are tied off. docs/machine/chip.md, section 8.
+// chip's ports; with one inside these are tied off. docs/machine/chip.md has its ports.
 // Promises: those of its blocks at its ports; of several units the one with a fault stops, and the frame does not end;
 // nor does it after a fault of the traverser. It takes a frame only while it is ready, when nothing of another one is
 // left in it. The traverser is in reset then, so that it begins each frame without a line in its caches.

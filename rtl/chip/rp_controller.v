@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // The controller: cuts a picture into tiles, and launches on the units what the policy proposes, as far as it is safe.
-// docs/machine/chip.md, sections 3, 4 and 8.
+// docs/machine/controller.md and deadlock.md.
 // What it sees of a cycle, levels and events, is counted in the next one; rules and launch take one each, the policy
 // two: so a launch is made five cycles after what it was decided on, and until it is counted nothing else is decided.
-// Promises: a kernel imports only what has been reserved for it; the two rules of section 4; every tile is cast once;
+// Promises: a kernel imports only what has been reserved for it; the two rules of deadlock.md; every tile is cast once;
 // no output depends on an input of the same cycle but that a tile is taken with its launch.
 // Must be given: levels of pools as rtl/chip/rp_ray_pool.v and rtl/chip/rp_intersection_pool.v have them; a unit that
 // is ready stays ready until it is given a kernel; a ray leaves the ray pool when what it becomes is in the

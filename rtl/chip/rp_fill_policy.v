@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // The policy `fill`: full loads, a kernel ready behind the one that runs, and a look at what a kernel will produce and
-// at who waits at the ports. docs/machine/chip.md, section 3.
+// at who waits at the ports. docs/machine/controller.md.
 // What is seen in a cycle is decided in the next one.
 // Promises: as thesis_policy. Must be given: counts below 2^(COUNT_BITS - 2); kernels on record at most 2 x UNITS.
 `default_nettype none

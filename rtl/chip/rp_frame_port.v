@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // The frame buffer's port: takes one contribution a cycle, a unit's where there is one, else the traverser's.
-// docs/machine/chip.md gives its cycles.
+// docs/machine/frame-port.md gives its cycles.
 // Promises: contributions leave in the order in which they came, unchanged; what is offered stays until it is taken; a
 // unit's never waits for one of the traverser that has not been taken. No output depends on an input of the same cycle,
 // but that traverser_ready_o is low while unit_valid_i is high.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
-// The intersection pool: a queue for each kind of intersection behind a port of 128 bits. docs/machine/chip.md gives
+// The intersection pool: a queue for each kind of intersection behind a port of 128 bits. docs/machine/pools.md gives
 // its cycles. Promises: the oldest package of the kind that is asked for leaves, once, its beats in the order of the
 // requests; its place is free from the cycle after its request has been taken on; no output depends on an input of the
 // same cycle. Must be given: the beats of a package one after the other, of one kind; a request that stays until it is

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // What the kernels of a compute unit may still export. Each launch has a record until everything that its kernel has
 // exported has left the unit: how many packages there are the unit says itself when the kernel ends.
-// docs/machine/chip.md, section 8. Promises: what it shows is never less than what kernels may still export, and exact
+// docs/machine/controller.md. Promises: what it shows is never less than what kernels may still export, and exact
 // when nothing is on record; all outputs are registers, and follow an event by a cycle, or a record's end by two. Must
 // be given: no launch while full_o; the packages of a unit in the order in which it has counted them.
 `default_nettype none

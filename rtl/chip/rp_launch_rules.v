@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
-// The two rules that keep the chip from locking up, whatever a policy proposes (docs/machine/chip.md, section 4), and
+// The two rules that keep the chip from locking up, whatever a policy proposes (docs/machine/deadlock.md), and
 // the rounds of tiles without the remedy of the window effect.
 `default_nettype none
 module rp_launch_rules #(

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // The chip's memory port: requests of the device and of the traverser go to the memory one by one, in the order in
 // which they come, and lines come back. A line keeps the port for four beats, a quadword for one; a beat takes
-// CYCLES_PER_BEAT cycles. docs/machine/chip.md gives its cycles.
+// CYCLES_PER_BEAT cycles. docs/machine/memory-port.md gives its cycles.
 // Promises: requests are served in the order in which they were taken, those of a cycle the device's first; a second
 // part follows its first one at once; beats are handed on unchanged, in the order of the requests, CYCLES_PER_BEAT
 // cycles apart at least, the first no sooner after its line's service; what is offered to the memory stays until it is

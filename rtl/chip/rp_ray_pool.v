@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // The ray pool: rays that units have exported and the traverser has not finished, behind a port of 128 bits.
-// docs/machine/chip.md gives its cycles.
+// docs/machine/pools.md gives its cycles.
 // Promises: a full pool takes nothing; a ray that stays keeps its place until the traverser frees it; the traverser
 // gets each ray once, in the order in which they came; no output depends on an input of the same cycle.
 // Must be given: three beats a ray, each as it is until it is taken, the third marked as the last; a place is freed

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
-// The policy of the thesis (its figure 5.3): which kernel a unit that can take one gets. docs/machine/chip.md, section
-// 3. What is seen in a cycle is decided in the next one. Promises: threads of a kernel are at most CONTENTS and what
+// The policy of the thesis (its figure 5.3): which kernel a unit that can take one gets. docs/machine/controller.md.
+// What is seen in a cycle is decided in the next one. Promises: threads of a kernel are at most CONTENTS and what
 // there is of its intersections, for a secondary kernel secondary_room_i too, and at least one; eye rays are cast only
 // if a tile may be.
 `default_nettype none

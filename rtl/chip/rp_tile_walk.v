@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // The tiles of a picture in the order in which they are cast: row for row, or along a Hilbert curve, which stays longer
-// among neighbours. docs/machine/chip.md, section 8.
+// among neighbours. docs/machine/controller.md.
 // Promises: each tile that has a pixel in the picture once; what is offered stays until it is taken, or until another
 // walk begins; no output depends on an input of the same cycle. Must be given: a picture of 1 pixel or more each way.
 `default_nettype none

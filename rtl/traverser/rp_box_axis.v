@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // Four boxes of a node against the slabs of one axis: the times between which the ray may be in each, as keys. Seven
-// cycles. docs/machine/traverser.md proves that no interval is too short. A register's name ends with the stage that
+// cycles. docs/machine/box-test.md proves that no interval is too short. A register's name ends with the stage that
 // loads it. Promises: the results of what stood at the inputs seven moves before.
 `default_nettype none
 module rp_box_axis #(

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // Which of the four boxes of a node of 64 bytes a ray meets, in narrow integers that are rounded so that no box is
-// missed; docs/machine/traverser.md proves it. A node a cycle, its result eight moves later.
+// missed; docs/machine/box-test.md proves it. A node a cycle, its result eight moves later.
 // Promises: it moves unless a result is there that nobody takes; no box that is not there is met; no output but ready_o
 // depends on an input of the same cycle.
 // Must be given: floats that are finite; lower planes not above upper ones; reciprocals whose first bit is 1.

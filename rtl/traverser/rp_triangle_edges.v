@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // On which side of a triangle's three edges a ray passes, exactly: the sign of each edge function x_a y_b - y_a x_b
-// from its two products, which are compared and not subtracted. docs/machine/traverser.md has the argument. A triangle
+// from its two products, compared and not subtracted: docs/machine/triangle-test.md has the argument. A triangle
 // a cycle, its result five moves later. Promises: it moves unless a result is there that nobody takes; no output but
 // ready_o depends on an input of the same cycle. Must be given: floats that are finite.
 `default_nettype none

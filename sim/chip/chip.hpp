@@ -1,5 +1,5 @@
-// A frame: what a chip draws it with, and what comes of it. docs/machine/chip.md describes the chip's blocks, their
-// timing, and why it cannot lock up.
+// A frame: what a chip draws it with, and what comes of it. docs/machine/chip.md describes the chip,
+// docs/machine/deadlock.md why it cannot deadlock.
 #pragma once
 
 #include <array>

@@ -1,6 +1,6 @@
 // The chip as one SystemC module, with TLM-2.0 sockets for both memories, the frame buffer and the host: the loop of
 // board.hpp with sockets, around the C++ model of the chip, the Verilated rtl/chip/rp_chip.v, or both in lockstep.
-// docs/machine/chip.md has the protocols, and an example.
+// docs/machine/board.md has the protocols, and an example.
 #pragma once
 
 #include <tlm_utils/simple_initiator_socket.h>

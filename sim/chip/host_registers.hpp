@@ -1,5 +1,5 @@
 // The registers of the chip at its socket `host`: 32 bits each, little endian, at byte addresses that are multiples of
-// 4. docs/machine/chip.md has the table.
+// 4. docs/machine/board.md has the table.
 #pragma once
 
 #include <array>

@@ -106,7 +106,7 @@ struct Assembly {
   sc_core::sc_signal<bool> done{"done"};
 };
 
-// For docs/machine/chip.md.
+// For docs/machine/board.md.
 ChipResult draw_with_own_dram(const ChipOptions& options, ChipDevice& device, uint64_t& row_hits) {
   Simulation simulation;
   ChipModule chip("chip", options, device);

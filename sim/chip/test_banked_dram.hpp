@@ -1,4 +1,4 @@
-// For tests, and for docs/machine/chip.md: a memory model of one's own, to be bound to the chip's socket.
+// For tests, and for docs/machine/board.md: a memory model of one's own, to be bound to the chip's socket.
 #pragma once
 
 #include <tlm_utils/simple_target_socket.h>

@@ -1,5 +1,5 @@
 // The boxes of a tree of compressed nodes as rtl/traverser/rp_box_pipe.v tests them: in integers of few bits
-// (machine/traverser/box_pipe.hpp). docs/machine/traverser.md proves that what a ray hits is what it hits with boxes in
+// (machine/traverser/box_pipe.hpp). docs/machine/box-test.md proves that what a ray hits is what it hits with boxes in
 // single precision.
 #pragma once
 

@@ -6,7 +6,7 @@
 //
 // Use, once a cycle: read outputs() (what the ports show in this cycle; they never depend on this cycle's inputs),
 // decide the inputs, call clock(inputs). A handshake transfers when both its valid and its ready are set in the same
-// cycle. Names are those of rtl/chip/rp_chip.v without _i and _o; docs/machine/chip.md, section 8, has the protocols.
+// cycle. Names are those of rtl/chip/rp_chip.v without _i and _o; docs/machine/ has the protocols.
 #pragma once
 
 #include <array>

@@ -53,7 +53,7 @@ class KernelPolicy {
   virtual Choice choose(const PolicyView& view) const = 0;
 };
 
-/// The thesis' policy (its figure 5.3), thresholds for any contents and number of units as docs/machine/chip.md says.
+/// The thesis' policy (its figure 5.3), thresholds for any contents and number of units: docs/machine/controller.md.
 class ThesisPolicy : public KernelPolicy {
  public:
   explicit ThesisPolicy(const PolicySetup& setup);

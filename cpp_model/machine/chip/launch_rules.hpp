@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/chip/rp_launch_rules.v: the two rules that keep the chip from locking up, whatever a policy proposes
-// (docs/machine/chip.md, section 4), and the rounds of tiles without the remedy of the window effect.
+// (docs/machine/deadlock.md), and the rounds of tiles without the remedy of the window effect.
 #pragma once
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/traverser/rp_box_pipe.v, with an axis as rtl/traverser/rp_box_axis.v: which of the four boxes of a node of 64
-// bytes a ray meets, in narrow integers that are rounded so that no box is missed. docs/machine/traverser.md proves it.
+// bytes a ray meets, in narrow integers that are rounded so that no box is missed. docs/machine/box-test.md proves it.
 #pragma once
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/traverser/rp_ray_setup.v: what is computed once of a ray, for box_pipe.hpp and triangle_pipe.hpp, in integers and
-// in floats of which every operation is rounded once, to nearest even. docs/machine/traverser.md says why that is all.
+// in floats of which every operation is rounded once, to nearest even. docs/machine/ray-setup.md says why that is all.
 #pragma once
 
 #include <algorithm>
@@ -28,7 +28,7 @@ inline float next_above(float x) {
 inline float next_below(float x) { return -next_above(-x); }
 
 /// p: 2^p exceeds what the padded bounds of the test in single precision, its roundings, and those of a compressed
-/// node's planes come to on this axis. docs/machine/traverser.md has each term. `padding`: of the ray; `largest`:
+/// node's planes come to on this axis. docs/machine/box-test.md has each term. `padding`: of the ray; `largest`:
 /// coordinate of the scene's box on this axis.
 inline int padding_exponent(float origin, float padded_lower, float padded_upper, float padding, float largest) {
   const float widened = std::max(padded_lower - origin, origin - padded_upper);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // On which side of a triangle's edges a ray passes, exactly: what hardware compares, in integers, in place of adding
-// products of doubles. docs/machine/traverser.md has the argument.
+// products of doubles. docs/machine/triangle-test.md has the argument.
 #pragma once
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 raypool maintainers
 // rtl/traverser/rp_triangle_pipe.v: whether and where a ray hits a triangle, from the triangle's plane, without double.
-// docs/machine/traverser.md says why it is so.
+// docs/machine/triangle-test.md says why it is so.
 #pragma once
 
 #include <cmath>

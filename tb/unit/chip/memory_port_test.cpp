@@ -348,7 +348,7 @@ void add(Seen& to, const Seen& seen) {
   to.quiet_again += seen.quiet_again;
 }
 
-/// With a memory that answers after a fixed time it is what docs/machine/chip.md says, to the cycle.
+/// With a memory that answers after a fixed time it is what docs/machine/memory-port.md says, to the cycle.
 TYPED_TEST(MemoryPortOfFixedLatency, HasTheCyclesOfTheChip) {
   using P = TypeParam;
   constexpr uint32_t kCycles = std::max(3000u, 60 * P::kLine);

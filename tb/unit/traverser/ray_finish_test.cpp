@@ -38,7 +38,7 @@ double cross_of(double a, double b, double c, double d) {
   return (Exact(a) * Exact(b) - Exact(c) * Exact(d)).rounded(32);
 }
 
-/// The shares of corners 1 and 2, as docs/machine/traverser.md defines them, or no area.
+/// The shares of corners 1 and 2, as docs/machine/ray-finish.md defines them, or no area.
 struct Shares {
   Exact u, v;
   bool area = false;

@@ -130,7 +130,7 @@ struct Scenes {
   int rays = 0, tiny = 0;
 };
 
-/// What docs/machine/traverser.md asks of the padding ("No hit is lost", 4), in rational numbers, and how much more
+/// What docs/machine/box-test.md asks of the padding ("No hit is lost", 4), in rational numbers, and how much more
 /// there is.
 void expect_padding(const HardWords& words, const RaySetup& setup, Scenes& seen) {
   const Exact u(0x1p-24);
