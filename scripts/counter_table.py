@@ -1,18 +1,18 @@
 #!/usr/bin/env python3
-"""Checks the tables of counters in docs/develop/verification.md: scripts/counter_table.py; exit code 1 if a row is
+"""Checks the tables of counters in docs/develop/coverage.md: scripts/counter_table.py; exit code 1 if a row is
 missing.
 
-Each register of rtl/ that is set to a sum or difference with itself has its place in one of two tables: of those that
-wrap, with the tests in which they do, and of those that never come there. What the tables name is
-in the Verilog, and a test that is named builds the module.
+Each register of rtl/ that is set to a sum or difference with itself has its row in one of two tables: of those that
+wrap, with the tests in which they do, and of those that never wrap. Every register that the tables name must be in the
+Verilog, and every test that they name must build its module.
 """
 import re
 import sys
 
 import module_table
 
-PAGE = module_table.ROOT / "docs/develop/verification.md"
-HEADS = ("| wraps |", "| never comes to its end |")
+PAGE = module_table.ROOT / "docs/develop/coverage.md"
+HEADS = ("| wraps |", "| never wraps |")
 LEVELS = 2  # of wires between a register and its sum
 
 
@@ -84,9 +84,9 @@ def main():
             if (module, register) not in seen
         ]
     for error in errors:
-        print(f"docs/develop/verification.md: {error}", file=sys.stderr)
+        print(f"docs/develop/coverage.md: {error}", file=sys.stderr)
     if not errors:
-        print(f"docs/develop/verification.md: {len(seen)} counters, each with its row")
+        print(f"docs/develop/coverage.md: {len(seen)} counters, each with its row")
     return 1 if errors else 0
 
 

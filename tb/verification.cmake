@@ -37,7 +37,7 @@ set_tests_properties(inspected_differences PROPERTIES FIXTURES_REQUIRED faulty_2
 
 # docs/machine/modules.md names every module of rtl/, and no page names what is not there.
 add_test(NAME module_table COMMAND ${scripts}/module_table.py)
-# docs/develop/verification.md says of each counter of rtl/ in which test it wraps.
+# docs/develop/coverage.md says of each counter of rtl/ in which test it wraps.
 add_test(NAME counter_table COMMAND ${scripts}/counter_table.py)
 add_test(NAME pages COMMAND ${scripts}/pages.py)
 # Neither the machine nor what verifies it uses a study of it; CMakeLists.txt checks the same of targets.

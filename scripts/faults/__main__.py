@@ -11,7 +11,7 @@ In FOLDER catalogue/, mutants/ or blocks/ gets
     benches/                a build folder with benches
     chips/                  Verilated chips of raypool_chip_frames
 RAYPOOL names the program (default raypool in the build folder, BUILD). What is up to date is not built again.
-`prove` asks whether mutants are equivalent: docs/develop/verification.md.
+`prove` asks whether mutants are equivalent: docs/develop/mutants.md.
 """
 import argparse
 import json

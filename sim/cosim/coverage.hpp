@@ -1,6 +1,6 @@
 // What random programs have exercised, read from a unit's ports, trace and counters alone:
 // nothing inside the RTL is looked at.
-// docs/develop/verification.md says what each group means.
+// docs/develop/coverage.md says what each group means.
 #pragma once
 
 #include <array>
