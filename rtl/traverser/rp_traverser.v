@@ -7,8 +7,8 @@
 // for nobody but the memory and those before it in ray_exit; whatever the memory holds, rays end or there is a fault,
 // which stays until the reset: no more rays come in then, no node is tested, nothing is requested, and no ray is done,
 // so that the one with the fault never leaves; what was done before still does. No output depends on an input of the
-// same cycle. Must be given: a place that is not free for each ray; a tree as docs/use/scenes.md has it, or a fault may
-// be all that comes of it; all that stays for a frame before its first ray; a reset before another tree or other
+// same cycle. Must be given: a place that is not free for each ray; a tree as docs/use/tree-file.md has it, or a fault
+// may be all that comes of it; all that stays for a frame before its first ray; a reset before another tree or other
 // materials, while none of its requests is on its way.
 `default_nettype none
 module rp_traverser #(

@@ -1,5 +1,5 @@
 """The scene, and what a ray hits in it: reckoned here in double precision from the files that raypool scene writes
-(docs/use/scenes.md), without a line of what the chip's traverser is made of."""
+(docs/use/tree-file.md), without a line of what the chip's traverser is made of."""
 import math
 import struct
 from dataclasses import dataclass

@@ -165,7 +165,7 @@ std::string fault_of(TreeBoard& board, TreeFaultCode code) {
     EXPECT_EQ(fault.fault.code, code);
     std::string said = fault.what();
     EXPECT_EQ(said.find("the traverser has stopped with a fault: "), 0u) << said;
-    EXPECT_NE(said.find("; write the tree there as docs/use/scenes.md has it"), std::string::npos) << said;
+    EXPECT_NE(said.find("; write the tree there as docs/use/tree-file.md has it"), std::string::npos) << said;
     return said;
   }
   return "";

@@ -47,9 +47,8 @@ std::string what(const TreeFault& fault, const TreeSetup& tree) {
 
 std::string fault_sentence(const TreeFault& fault, const TreeSetup& tree) {
   return fmt::format(
-      "the traverser has stopped with a fault: {}; write the tree there as docs/use/scenes.md has it (\"The tree as a "
-      "file\"), "
-      "and see to it that nobody else writes to that memory",
+      "the traverser has stopped with a fault: {}; write the tree there as docs/use/tree-file.md has it, and "
+      "see to it that nobody else writes to that memory",
       what(fault, tree));
 }
 

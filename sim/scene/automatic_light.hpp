@@ -1,4 +1,4 @@
-// Where the light of an automatic view is. docs/use/scenes.md has the rule.
+// Where the light of an automatic view is. docs/use/views.md has the rule.
 #pragma once
 
 #include "scene/enclosure.hpp"

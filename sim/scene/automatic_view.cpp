@@ -1,5 +1,5 @@
 // A view of triangles of which nothing is known: cameras around their subject and, in an interior, among them are tried
-// with a few rays each, and the one that shows most is taken; then lights. docs/use/scenes.md describes the rule.
+// with a few rays each, and the one that shows most is taken; then lights. docs/use/views.md describes the rule.
 // Scores are rounded before they are compared, so that every machine chooses the same.
 #include <algorithm>
 #include <array>

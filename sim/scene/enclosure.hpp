@@ -1,5 +1,5 @@
 // Places among the triangles from which a room is seen: whether a scene is an interior, or something to be seen from
-// outside. docs/use/scenes.md has the rule.
+// outside. docs/use/views.md has the rule.
 #pragma once
 
 #include <vector>

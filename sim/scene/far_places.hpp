@@ -1,5 +1,5 @@
 // Scenes at map coordinates: a file's coordinates are counted from a point near the scene before they are rounded to
-// single precision, and what is told of them is in the file's coordinates again. docs/use/scenes.md has the rule.
+// single precision, and reported in the file's coordinates again. docs/use/scene-preparation.md has the rule.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Measures what the offset of secondary rays does, prints the table of docs/use/scenes.md, and holds offset_share() to
+// Measures what the offset of secondary rays does, prints the table of docs/use/hits.md, and holds offset_share() to
 // it.
 #include <gtest/gtest.h>
 

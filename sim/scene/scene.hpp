@@ -125,7 +125,7 @@ std::string to_json(const View& view);
 /// Throws InputError when look_at is where the eye is.
 void change_view(View& view, const ViewChanges& changes);
 
-/// A view for a scene of which nothing is known but its triangles, as docs/use/scenes.md
+/// A view for a scene of which nothing is known but its triangles, as docs/use/views.md
 /// describes; what `changes` sets is kept.
 /// Throws InputError when it cannot be used.
 View automatic_view(const Scene& scene, const ViewChanges& changes = {});

@@ -36,7 +36,7 @@ struct Subject {
   std::vector<Vec3d> vertices;    ///< of its triangles
   bool has_surroundings = false;  ///< some triangles are not of it
 };
-/// docs/use/scenes.md has the rule.
+/// docs/use/views.md has the rule.
 Subject find_subject(const Scene& scene, const Shells& shells);
 
 }  // namespace raypool

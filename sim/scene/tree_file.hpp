@@ -1,5 +1,5 @@
 // The tree as the traverser's memory holds it, and as a file of just that: a header, nodes of 64 bytes,
-// triangles of 44. docs/use/scenes.md has a table of every byte. Numbers are little-endian.
+// triangles of 44. docs/use/tree-file.md has a table of every byte. Numbers are little-endian.
 #pragma once
 
 #include <array>

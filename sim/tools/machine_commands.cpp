@@ -168,7 +168,7 @@ void MachineCommands::add_scene_command() {
   scene_app->add_option("--write-obj", scene_.write_obj, "write it as an OBJ, with its MTL beside it");
   scene_app->add_option(
       "--write-bvh", scene_.write_bvh,
-      "write its tree as the traverser's memory holds it, a binary file that docs/use/scenes.md describes");
+      "write its tree as the traverser's memory holds it, a binary file that docs/use/tree-file.md describes");
   scene_app
       ->add_option("--cache", scene_.cache,
                    "show what is kept of scenes, so that a later run need not read and sort their triangles again, or "
