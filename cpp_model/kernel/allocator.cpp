@@ -85,6 +85,7 @@ class InterferenceGraph {
       return sum;
     };
     std::stable_sort(by_degree.begin(), by_degree.end(), [&](int a, int b) { return degree(a) > degree(b); });
+    singles_ = order_of_singles(places);
     for (const std::vector<int>& order : {by_degree, groups_, from_the_end}) {
       std::vector<int> places_of(size_, kNothing);
       int attempts = kMostAttempts;
@@ -118,7 +119,8 @@ class InterferenceGraph {
     return false;
   }
 
-  bool colour_singles(int places, std::vector<int> places_of, std::vector<int>& colours, int& failed) {
+  /// In which order what is in no group gets its place: the same wherever the groups are.
+  std::vector<int> order_of_singles(int places) {
     std::vector<int> nodes;
     for (int i = 0; i < size_; ++i) {
       if (used_[at(i)] && find(i) == i && !in_group(i)) nodes.push_back(i);
@@ -141,15 +143,20 @@ class InterferenceGraph {
       order.push_back(best);
       neighbours_[at(best)].for_each([&](int other) { --degree[at(other)]; });
     }
-    for (auto node = order.rbegin(); node != order.rend(); ++node) {
-      const uint32_t taken = taken_for(*node, places_of);
+    std::reverse(order.begin(), order.end());
+    return order;
+  }
+
+  bool colour_singles(int places, std::vector<int> places_of, std::vector<int>& colours, int& failed) {
+    for (const int node : singles_) {
+      const uint32_t taken = taken_for(node, places_of);
       int place = 0;
       while (place < places && (taken >> place & 1) != 0) ++place;
       if (place == places) {
-        failed = *node;
+        failed = node;
         return false;
       }
-      places_of[at(*node)] = place;
+      places_of[at(node)] = place;
     }
     colours.assign(size_, kNothing);
     for (int i = 0; i < size_; ++i) {
@@ -218,7 +225,8 @@ class InterferenceGraph {
   std::vector<int> representative_;
   std::vector<bool> used_;
   std::vector<std::pair<int, int>> copies_;
-  std::vector<int> groups_;  // first numbers
+  std::vector<int> groups_;   // first numbers
+  std::vector<int> singles_;  // what is in no group, in the order in which it gets its place
 };
 
 [[noreturn]] void fail(const Function& function, const Liveness& liveness, bool predicates, int failed) {

@@ -51,6 +51,10 @@ class Segment {
         ops_(function.ops.begin() + begin, function.ops.begin() + end),
         written_once_(written_once) {
     in_triple_.assign(ops_.size(), false);
+    const std::vector<Touched> touched(ops_.begin(), ops_.end());
+    for (size_t i = 0; i < ops_.size(); ++i)
+      for (size_t j = i + 1; j < ops_.size(); ++j)
+        if (depends(ops_[i], touched[i], ops_[j], touched[j])) stays_before_.emplace_back(i, j);
   }
 
   /// Up to `most` triples, the others stay as they are; takes from it what it has made.
@@ -204,26 +208,21 @@ class Segment {
   /// False if there have been enough, or the code cannot be put in such an order.
   bool add(const Three& members, Op op, int& most) {
     if (most == 0) return false;
-    const Segment before = *this;
-    const Function function_before = function_;
     op.info = triple_of(op, op.info->alu() == AluType::Flt && position(op.ra) != 0);
+    for (const int member : members) in_triple_[member] = true;
+    triples_.push_back({members, op});
+    if (in_order().empty()) {
+      for (const int member : members) in_triple_[member] = false;
+      triples_.pop_back();
+      return false;
+    }
     if (writes_register(*op.info)) {
       const int base = function_.registers;
       function_.registers += kElements;
       function_.groups.push_back(base);
       std::array<int, kElements> registers;
       for (int e = 0; e < kElements; ++e) registers[e] = ops_[members[e]].rd;
-      op.rd = base;
       for (int e = 0; e < kElements; ++e) rename(registers[e], base + e);
-    }
-    for (const int member : members) in_triple_[member] = true;
-    triples_.push_back({members, op});
-    if (in_order().empty()) {
-      function_ = function_before;
-      ops_ = before.ops_;
-      in_triple_ = before.in_triple_;
-      triples_ = before.triples_;
-      return false;
     }
     --most;
     return true;
@@ -265,15 +264,12 @@ class Segment {
       node_of[i] = static_cast<int>(nodes.size());
       nodes.emplace_back(ops_[i], static_cast<int>(i));
     }
-    const std::vector<Touched> touched(ops_.begin(), ops_.end());
     std::vector<std::vector<int>> before(nodes.size());
     std::vector<int> behind(nodes.size(), 0);
-    for (size_t i = 0; i < ops_.size(); ++i) {
-      for (size_t j = i + 1; j < ops_.size(); ++j) {
-        if (node_of[i] == node_of[j] || !depends(ops_[i], touched[i], ops_[j], touched[j])) continue;
-        before[node_of[j]].push_back(node_of[i]);
-        ++behind[node_of[i]];
-      }
+    for (const auto& [first, second] : stays_before_) {
+      if (node_of[first] == node_of[second]) continue;
+      before[node_of[second]].push_back(node_of[first]);
+      ++behind[node_of[first]];
     }
     return from_the_end(nodes, before, behind);
   }
@@ -284,14 +280,16 @@ class Segment {
       const Effects effect = effects(op);
       return effect.register_defined != kNothing && effect.register_uses[0] == kNothing;
     };
+    using Rank = std::pair<bool, int>;
+    std::vector<Rank> ranks;
+    for (const auto& [op, place] : nodes) ranks.emplace_back(is_leaf(op), place);
     std::vector<Op> order;
     std::vector<bool> placed(nodes.size(), false);
     while (order.size() < nodes.size()) {
       int best = kNothing;
       for (int n = 0; n < static_cast<int>(nodes.size()); ++n) {
         if (placed[n] || behind[n] != 0) continue;
-        const auto rank = [&](int node) { return std::pair(is_leaf(nodes[node].first), nodes[node].second); };
-        if (best == kNothing || rank(n) > rank(best)) best = n;
+        if (best == kNothing || ranks[n] > ranks[best]) best = n;
       }
       if (best == kNothing) return {};
       placed[best] = true;
@@ -312,6 +310,8 @@ class Segment {
   const std::vector<bool>& written_once_;
   std::vector<bool> in_triple_;
   std::vector<Triple> triples_;
+  /// Places of ops of which the second must stay behind the first. New names of registers change none of that.
+  std::vector<std::pair<int, int>> stays_before_;
 };
 
 bool parts_threads(const Op& op) { return op.kind != Op::Kind::Instruction || op.info->kind == Kind::Control; }
