@@ -29,5 +29,5 @@ expect "120 columns in more bytes" 0 "all 1 checks are clean" lint columns
 printf '| %0119d |\n\n    $ %0119d\n' 0 0 > "$folder/docs/page.md"
 expect "a row and an output as long as they are" 0 "all 1 checks are clean" lint columns
 printf '%0121d\n' 0 >> "$folder/docs/page.md"
-expect "a sentence of 121 columns" 1 "docs/use/page.md:4:" lint columns
+expect "a sentence of 121 columns" 1 "docs/page.md:4:" lint columns
 [ "$failures" = 0 ]
