@@ -13,9 +13,10 @@ files() {
       files cpp; files shell; files python
       find rtl tb -name '*.v' -o -name '*.vh' -o -name '*.vlt'
       echo Makefile; echo studies/studies.mk
+      find CITATION.cff Dockerfile .editorconfig .pre-commit-config.yaml .github -type f ! -name '*.md'
       find CMakeLists.txt cmake cpp_model sim studies program tb examples -name CMakeLists.txt -o -name '*.cmake'
       ;;
-    pages) find README.md CHANGELOG.md docs examples -name '*.md' ;;
+    pages) find ./*.md docs examples .github -name '*.md' | sed 's|^\./||' ;;
     *) echo "usage: scripts/sources.sh cpp|verilog|shell|python|text|pages" >&2; exit 1 ;;
   esac
 }

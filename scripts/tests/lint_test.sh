@@ -5,10 +5,11 @@ set -u -o pipefail
 cd "$(dirname "$0")/../.." || exit 1
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-mkdir -p "$folder"/{scripts,.ci,rtl,cpp_model,sim,studies,program,tb,bench,examples,cmake,docs}
+mkdir -p "$folder"/{scripts,.ci,.github,rtl,cpp_model,sim,studies,program,tb,bench,examples,cmake,docs}
 cp scripts/{lint,sources,columns}.sh scripts/duration.bash "$folder/scripts/"
 cp .flake8 .shellcheckrc "$folder/"
-touch "$folder"/{Makefile,studies/studies.mk,CMakeLists.txt,README.md,CHANGELOG.md}
+touch "$folder"/{Makefile,studies/studies.mk,CMakeLists.txt,README.md,CITATION.cff,Dockerfile}
+touch "$folder"/{.editorconfig,.pre-commit-config.yaml}
 # shellcheck source=scripts/tests/expect.bash
 . scripts/tests/expect.bash
 lint() { "$folder/scripts/lint.sh" "$@"; }
@@ -29,5 +30,5 @@ expect "120 columns in more bytes" 0 "all 1 checks are clean" lint columns
 printf '| %0119d |\n\n    $ %0119d\n' 0 0 > "$folder/docs/page.md"
 expect "a row and an output as long as they are" 0 "all 1 checks are clean" lint columns
 printf '%0121d\n' 0 >> "$folder/docs/page.md"
-expect "a sentence of 121 columns" 1 "docs/use/page.md:4:" lint columns
+expect "a sentence of 121 columns" 1 "docs/page.md:4:" lint columns
 [ "$failures" = 0 ]

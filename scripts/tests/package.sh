@@ -80,7 +80,12 @@ cmake -S "$folder/prefix/share/raypool/examples/own-chip" -B "$folder/own" -G Ni
 # The Debian packages: what they need and what they hold; unpacked, the program draws.
 cpack --config "$build/CPackConfig.cmake" -B "$folder/packages" > "$folder/log" 2>&1 ||
   { cat "$folder/log" >&2; fail cpack; }
+# One version, which CMake's project() has.
+version=$(sed -nE 's/^project\(raypool VERSION ([0-9.]+) .*/\1/p' "$root/CMakeLists.txt")
 program=$(echo "$folder"/packages/raypool_*.deb) library=$(echo "$folder"/packages/raypool-dev_*.deb)
+for package in "$program" "$library"; do
+  [ "$(dpkg-deb -f "$package" Version)" = "$version" ] || fail "$package is not of version $version"
+done
 for needed in libassimp5 libc6 libembree3-3 libfmt9 libsystemc; do
   dpkg-deb -f "$program" Depends | grep -qE "(^|, )$needed( |,|$)" ||
     fail "$program does not depend on $needed: $(dpkg-deb -f "$program" Depends)"
@@ -94,6 +99,9 @@ diff -r "$folder/unpacked/usr/share/raypool" "$folder/prefix/share/raypool" ||
   fail "the package has other data than cmake --install"
 diff -r "$folder/unpacked/usr/include/raypool" "$folder/prefix/include/raypool" ||
   fail "the package has other headers than cmake --install"
+grep -qFx "set(PACKAGE_VERSION \"$version\")" \
+  "$(find "$folder/unpacked/usr/lib" -name raypool-config-version.cmake)" ||
+  fail "find_package(raypool) finds another version than $version"
 grep -qr "$root" "$folder/unpacked/usr/lib/cmake" &&
   fail "the package names the checkout: $(grep -r "$root" "$folder/unpacked/usr/lib/cmake")"
 
