@@ -108,7 +108,7 @@ FOLLOW := RAYPOOL="$(abspath $(RAYPOOL))" PYTHONPATH=scripts python3 -m follow
 .PHONY: help help-all sim compare run cosim configurations faults unit test test-long lint format
 .PHONY: bench clean
 .PHONY: setup-% program configured-%
-.PHONY: numerics-long proofs synth synth-replay synth-prove growth isa diagrams quoted
+.PHONY: numerics-long proofs synth synth-replay synth-prove growth isa diagrams quoted docs
 .PHONY: package bench-native synth-module follow tour chip-frames
 .PHONY: traverser-trees
 
@@ -279,6 +279,9 @@ numerics-long: setup-sim setup-test ## arithmetic against its oracles, 10^8 pair
 quoted: setup-sim setup-test setup-synth setup-quoted configured-ON ## run what the pages quote
 	@scripts/build.sh $(BUILD) all raypool_chip_frames
 	@scripts/quoted_output.py $(ARGS)
+
+docs: setup-docs ## the pages as a site that works from disk: build/docs/index.html
+	@scripts/docs.sh $(BUILD)/docs
 
 proofs: setup-lint ## formal proofs of blocks (Yosys, ABC)
 	@scripts/proofs.sh
